@@ -1,0 +1,31 @@
+// Where the arm's links are, and how its joints move them.
+#pragma once
+
+#include <array>
+
+#include "fovea/model/arm_model.hpp"
+
+namespace fovea::model {
+
+// Poses of all links and of the end effector at one q.
+struct ArmPoses {
+  std::array<Pose, kMaxJoints> X_BL;  // [num_joints] link frames; column 2 of R is the joint's axis
+  Pose X_BE;
+};
+
+// `q` [num_joints]. A non-finite or huge q gives non-finite poses. Real-time: yes.
+void ComputePoses(const ArmModel& model, const VecN& q, ArmPoses& poses) noexcept;
+
+// Body Jacobian of a frame F that is fixed to the end effector: V_BF_F = J_F dq, twist [v; w] of F in B,
+// expressed in F, for `X_EF` its pose in E (identity: J_E). `J_F` becomes [6 x num_joints].
+// Real-time: yes.
+void ComputeJacobian(const ArmModel& model, const ArmPoses& poses, const Pose& X_EF, Mat6N& J_F) noexcept;
+
+using LinearJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints>;
+
+// Velocity of the end effector's point at `p_B` [m], in axes of B: v = J dq. `J_B` becomes
+// [3 x num_joints]. Real-time: yes.
+void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const Vec3& p_B,
+                           LinearJacobian& J_B) noexcept;
+
+}  // namespace fovea::model

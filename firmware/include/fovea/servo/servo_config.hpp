@@ -1,0 +1,78 @@
+// Everything that can be set about the servo. Fixed after Init; each field is the configuration key of the
+// same name in the section that its struct names, with the unit in brackets.
+#pragma once
+
+#include <cstdint>
+
+#include "fovea/features/sphere.hpp"
+#include "fovea/hal/types.hpp"
+#include "fovea/model/arm_model.hpp"
+
+namespace fovea::servo {
+
+// [servo] where the feature is now
+struct PredictConfig {
+  bool enabled = true;               // servo.predict; false: the newest measurement as it came, held
+  double target_acceleration = 0.8;  // how hard the target may be thought to accelerate [m/s^2]
+  double gate_sigma = 6.0;           // a measurement further off than this is an outlier [sigma]
+  int gate_rejects_max = 3;          // so many outliers in a row, and the target has moved: start anew
+  int accepted_min = 3;              // measurements before the target counts as known
+  double stale_s = 0.15;             // a measurement older than this is no longer fresh [s]
+  double coast_s = 0.6;              // steer by prediction for so long after the last measurement [s]
+};
+
+// [servo] how the arm shall move
+struct LawConfig {
+  double lambda = 2.0;           // e decays like exp(-lambda t) [1/s]
+  double smooth_start_s = 0.25;  // the law's velocity is blended in over this time [s]
+  double damping = 0.01;         // of the pseudo-inverse, relative to the size of the task Jacobian
+  double posture_gain = 0.6;     // pull of the posture in the free directions [1/s]
+  hal::JointArray q_posture{};   // that posture [rad]; the arm's ready posture by default
+  double unreachable_s = 1.0;    // give up when limits have kept the arm from the goal for so long [s]
+  double unreachable_progress = 0.05;  // "kept from": less than this share of the wanted motion is left
+};
+
+// [servo] the inner loop
+struct MotionLawConfig {
+  double omega_n = 25.0;  // natural frequency of the joints' error [rad/s]
+  double zeta = 1.0;      // its damping
+};
+
+// [safety] limits on the motion, as fractions of the arm's own or in their units
+struct GuardConfig {
+  double joint_velocity_fraction = 0.8;
+  double joint_acceleration_fraction = 0.7;
+  double joint_jerk_fraction = 0.5;
+  double joint_position_margin = 0.02;         // the reference stays so far inside the range [rad, m]
+  double braking_fraction = 0.5;               // of the acceleration limit, for stopping before a barrier
+  double workspace_radius = 0.85;              // |p_BE| stays below this [m]
+  double workspace_margin = 0.002;             // the reference stays so far inside [m]
+  double workspace_deceleration = 2.0;         // for stopping before it [m/s^2]
+};
+
+// [safety] limits on the torque, and when to stop altogether
+struct SafetyConfig {
+  double torque_fraction = 1.0;
+  double torque_rate_fraction = 1.0;
+  int arm_lost_ticks = 20;        // so many ticks without a new sound state: fault
+  int non_finite_ticks = 5;       // a non-finite joint value is bridged for so many ticks, then: fault
+  int missed_ticks = 20;          // so many missed deadlines in a row: fault
+  double following_error = 0.15;  // a joint further off its reference: fault [rad, m]
+  double fault_damping = 10.0;    // of the damped stop [1/s]
+  double brake_velocity = 0.02;   // brakes close when every joint is slower [rad/s, m/s]
+  double brake_after_s = 1.0;     // or after this time [s]
+};
+
+struct ServoConfig {
+  model::ArmModel arm;
+  model::Pose X_EC;  // the camera in the hand
+  features::SphereFeature feature;
+  bool auto_track = false;  // servo.auto_track: go to Track as soon as the target is known
+  PredictConfig predict;
+  LawConfig law;
+  MotionLawConfig motion_law;
+  GuardConfig guard;
+  SafetyConfig safety;
+};
+
+}  // namespace fovea::servo

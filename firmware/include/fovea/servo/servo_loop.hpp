@@ -1,0 +1,61 @@
+// The loop around the servo task: reads the arm, steps the task, writes the arm, once per period.
+//
+// The same loop runs in the simulator at either pace and on the robot; only what stands behind the seam
+// differs.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+#include "fovea/hal/arm.hpp"
+#include "fovea/hal/clock.hpp"
+#include "fovea/hal/feature.hpp"
+#include "fovea/hal/record.hpp"
+#include "fovea/servo/servo_task.hpp"
+
+namespace fovea::servo {
+
+struct LoopCounters {
+  std::uint64_t ticks = 0;
+  std::uint64_t overruns = 0;        // ticks that began a whole period or more late
+  std::uint64_t missed_ticks = 0;    // deadlines that passed without a tick
+  std::uint64_t arm_read_errors = 0;
+  std::uint64_t arm_write_errors = 0;
+};
+
+class ServoLoop {
+ public:
+  // The parts are borrowed; they outlive the loop.
+  ServoLoop(ServoTask& task, hal::Arm& arm, hal::Clock& clock, hal::FeatureMailbox& features,
+            hal::Recorder& recorder, hal::TickProbe& probe) noexcept;
+
+  // Runs ticks at start, start + 1 ms, ... on the clock, until `end_ns` or Stop or the clock closes.
+  // The grid is kept: a tick that comes late is counted, what it missed is told to the task, and the next
+  // deadline is the next point of the grid. Real-time: yes.
+  [[nodiscard]] hal::Status Run(std::int64_t end_ns) noexcept;
+
+  // From any thread: Run returns after the tick in hand.
+  void Stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  // From any thread: handed to the task in the next tick; the last one before that tick wins.
+  void Ask(Request request) noexcept { request_.store(request, std::memory_order_relaxed); }
+
+  [[nodiscard]] const LoopCounters& counters() const noexcept { return counters_; }
+  [[nodiscard]] const ServoOutputs& last_outputs() const noexcept { return outputs_; }
+
+ private:
+  void Tick(std::int32_t missed_ticks) noexcept;
+
+  ServoTask& task_;
+  hal::Arm& arm_;
+  hal::Clock& clock_;
+  hal::FeatureMailbox& features_;
+  hal::Recorder& recorder_;
+  hal::TickProbe& probe_;
+  std::atomic<bool> stop_{false};
+  std::atomic<Request> request_{Request::kNone};
+  ServoInputs inputs_;
+  ServoOutputs outputs_;
+  LoopCounters counters_;
+};
+
+}  // namespace fovea::servo

@@ -1,0 +1,110 @@
+// The 1 kHz servo task: one call of Step turns what the arm and the camera said into joint torques.
+//
+// Step is a function of (configuration, state, inputs): no clock, no globals. The same inputs give the same
+// outputs to the last bit, in the simulator, on the robot, and in a replay.
+#pragma once
+
+#include <cstdint>
+
+#include "fovea/features/feature_state.hpp"
+#include "fovea/hal/arm.hpp"
+#include "fovea/hal/record.hpp"
+#include "fovea/hal/status.hpp"
+#include "fovea/model/dynamics.hpp"
+#include "fovea/servo/check_inputs.hpp"
+#include "fovea/servo/guard_motion.hpp"
+#include "fovea/servo/modes.hpp"
+#include "fovea/servo/predict.hpp"
+#include "fovea/servo/servo_config.hpp"
+#include "fovea/servo/visual_law.hpp"
+
+namespace fovea::servo {
+
+struct ServoInputs {
+  hal::Status arm_status;  // of the read that gave `arm`
+  hal::ArmState arm;
+  bool has_feature = false;  // `feature` is new in this tick
+  hal::FeatureMeasurement feature;
+  Request request = Request::kNone;
+  std::int32_t missed_ticks = 0;  // deadlines missed since the tick before
+};
+
+// The record holds the command and all that led to it.
+struct ServoOutputs {
+  hal::TickRecord record;
+  [[nodiscard]] const hal::ArmCommand& command() const noexcept { return record.command; }
+};
+
+// Intermediate terms, grouped by the stage that computes them; each is overwritten in its turn.
+struct ServoState {
+  std::uint64_t tick = 0;
+
+  // check inputs
+  std::int64_t now_ns = 0;  // the time for which this tick computes
+  InputState inputs;
+  model::VecN q;            // [num_joints] sound
+  model::VecN dq;           // [num_joints] sound
+  model::VecN tau_applied;  // [num_joints] sound
+
+  // model
+  model::ArmPoses poses;
+  model::ArmDynamics dynamics;
+  model::Pose X_BC;
+  model::Mat6N J_C;
+  model::LinearJacobian J_E_B;
+
+  // predict
+  PredictState predict;
+  Prediction prediction;
+
+  // modes
+  ModeState mode;
+  std::int32_t fault_joint = -1;
+  std::int64_t mode_since_ns = 0;
+  std::int64_t track_since_ns = 0;  // the last entry into Track from Hold
+  std::int64_t blocked_ns = 0;  // how long limits have kept the arm from the goal
+  model::Vec3 p_BO_unreachable = model::Vec3::Zero();
+
+  // visual law
+  bool feature_valid = false;
+  features::FeatureState feature;
+  VisualLawOutput law;
+
+  // guard
+  Reference reference;
+  hal::LimitSet limits = 0;
+
+  // motion law and clamp
+  model::VecN tau;
+  bool braked = false;
+};
+
+class ServoTask {
+ public:
+  // Checks `config` and takes it over. On kOutOfRange or kInvalidArgument, where() names the field.
+  // Real-time: no.
+  [[nodiscard]] hal::Status Init(const ServoConfig& config) noexcept;
+
+  // One tick. `outputs` is written whole. Real-time: yes.
+  void Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept;
+
+  [[nodiscard]] const ServoConfig& config() const noexcept { return config_; }
+  [[nodiscard]] const ServoState& state() const noexcept { return state_; }
+
+ private:
+  void CheckArm(const ServoInputs& inputs, InputCheck& check) noexcept;
+  void ComputeModel() noexcept;
+  void PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noexcept;
+  void ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept;
+  void ComputeVisualLaw() noexcept;
+  void MoveReference() noexcept;
+  void ComputeTorque() noexcept;
+  void Clamp() noexcept;
+  void WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) const noexcept;
+  void LatchFault(hal::Fault fault, std::int32_t joint) noexcept;
+
+  ServoConfig config_;
+  ServoState state_;
+};
+
+}  // namespace fovea::servo

@@ -1,0 +1,65 @@
+#include "fovea/model/kinematics.hpp"
+
+#include "fovea/model/math.hpp"
+
+namespace fovea::model {
+namespace {
+
+// Velocity of the point at `p_B`, in axes of B, per unit of velocity of joint i.
+Vec3 PointVelocity(const ArmModel& model, const ArmPoses& poses, int i, const Vec3& p_B) noexcept {
+  const auto k = static_cast<std::size_t>(i);
+  const Vec3 axis_B = poses.X_BL[k].R.col(2);
+  if (model.joints[k].type == JointType::kPrismatic) {
+    return axis_B;
+  }
+  return Cross(axis_B, p_B - poses.X_BL[k].p);
+}
+
+}  // namespace
+
+void ComputePoses(const ArmModel& model, const VecN& q, ArmPoses& poses) noexcept {
+  const Pose* parent = nullptr;
+  for (int i = 0; i < model.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Joint& joint = model.joints[k];
+    // The joint's frame at q = 0, in B.
+    Pose& X_BL = poses.X_BL[k];
+    X_BL = parent == nullptr ? joint.X_PJ : *parent * joint.X_PJ;
+    if (joint.type == JointType::kRevolute) {
+      // A turn about z mixes the first two columns and leaves the third.
+      const auto [s, c] = SinCos(q[i]);
+      const Vec3 x = X_BL.R.col(0);
+      const Vec3 y = X_BL.R.col(1);
+      X_BL.R.col(0) = c * x + s * y;
+      X_BL.R.col(1) = c * y - s * x;
+    } else {
+      X_BL.p += q[i] * X_BL.R.col(2);
+    }
+    parent = &X_BL;
+  }
+  poses.X_BE = *parent * model.X_LnE;
+}
+
+void ComputeJacobian(const ArmModel& model, const ArmPoses& poses, const Pose& X_EF, Mat6N& J_F) noexcept {
+  const Pose X_BF = poses.X_BE * X_EF;
+  const Mat3 R_FB = X_BF.R.transpose();
+  J_F.resize(6, model.num_joints);
+  for (int i = 0; i < model.num_joints; ++i) {
+    J_F.col(i).head<3>() = R_FB * PointVelocity(model, poses, i, X_BF.p);
+    if (model.joints[static_cast<std::size_t>(i)].type == JointType::kRevolute) {
+      J_F.col(i).tail<3>() = R_FB * poses.X_BL[static_cast<std::size_t>(i)].R.col(2);
+    } else {
+      J_F.col(i).tail<3>().setZero();
+    }
+  }
+}
+
+void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const Vec3& p_B,
+                           LinearJacobian& J_B) noexcept {
+  J_B.resize(3, model.num_joints);
+  for (int i = 0; i < model.num_joints; ++i) {
+    J_B.col(i) = PointVelocity(model, poses, i, p_B);
+  }
+}
+
+}  // namespace fovea::model

@@ -1,0 +1,79 @@
+#include "fovea/servo/check_inputs.hpp"
+
+#include <cmath>
+
+namespace fovea::servo {
+namespace {
+
+// Copies the finite values of `from`; a joint that is not finite keeps its last value. Returns the first
+// such joint, or -1.
+std::int32_t CopyFinite(const hal::JointArray& from, int num_joints, hal::JointArray& to) noexcept {
+  std::int32_t bad = -1;
+  for (int i = 0; i < num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (std::isfinite(from[k])) {
+      to[k] = from[k];
+    } else if (bad < 0) {
+      bad = i;
+    }
+  }
+  return bad;
+}
+
+}  // namespace
+
+InputCheck CheckInputs(const ServoConfig& config, const hal::Status& arm_status, const hal::ArmState& arm,
+                       std::int32_t missed_ticks, InputState& state) noexcept {
+  const SafetyConfig& safety = config.safety;
+  const int n = config.arm.num_joints;
+
+  if (missed_ticks >= safety.missed_ticks) {
+    return {hal::Fault::kDeadlineMissed, -1};
+  }
+  const bool answered = arm_status.ok() && arm.num_joints == n;
+  const bool fresh = answered && (!state.has_state || arm.stamp_ns > state.stamp_ns);
+  if (!fresh) {
+    state.sound_ticks = 0;
+    state.bad_ticks += 1;
+    if (state.bad_ticks >= safety.arm_lost_ticks) {
+      return {answered ? hal::Fault::kArmStale : hal::Fault::kArmLost, -1};
+    }
+    return {};
+  }
+  state.has_state = true;
+  state.stamp_ns = arm.stamp_ns;
+  state.sequence = arm.sequence;
+  state.bad_ticks = 0;
+
+  std::int32_t bad = CopyFinite(arm.q, n, state.q);
+  if (const std::int32_t bad_dq = CopyFinite(arm.dq, n, state.dq); bad < 0) {
+    bad = bad_dq;
+  }
+  if (const std::int32_t bad_tau = CopyFinite(arm.tau_applied, n, state.tau_applied); bad < 0) {
+    bad = bad_tau;
+  }
+  if (bad >= 0) {
+    state.sound_ticks = 0;
+    state.non_finite_ticks += 1;
+    if (state.non_finite_ticks > safety.non_finite_ticks) {
+      return {hal::Fault::kNonFiniteSensor, bad};
+    }
+    return {};
+  }
+  state.non_finite_ticks = 0;
+  state.sound_ticks += 1;
+
+  for (int i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& joint = config.arm.joints[k];
+    if (state.q[k] < joint.q_min || state.q[k] > joint.q_max) {
+      return {hal::Fault::kJointPosition, i};
+    }
+    if (std::fabs(state.dq[k]) > joint.dq_max) {
+      return {hal::Fault::kJointVelocity, i};
+    }
+  }
+  return {};
+}
+
+}  // namespace fovea::servo

@@ -1,0 +1,108 @@
+// What a configuration must satisfy before the task takes it.
+#include <cmath>
+
+#include "fovea/servo/servo_task.hpp"
+
+namespace fovea::servo {
+namespace {
+
+using hal::Status;
+using hal::StatusCode;
+
+struct Range {
+  double value;
+  double min;
+  double max;
+  const char* where;
+};
+
+// True when the value is finite and inside; NaN fails.
+bool Holds(const Range& range) noexcept { return range.value >= range.min && range.value <= range.max; }
+
+Status CheckArmModel(const model::ArmModel& arm) noexcept {
+  if (arm.num_joints < 1 || arm.num_joints > model::kMaxJoints) {
+    return Status(StatusCode::kInvalidArgument, "arm.num_joints");
+  }
+  for (int i = 0; i < arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& joint = arm.joints[k];
+    const model::LinkInertia& link = arm.links[k];
+    if (!(joint.q_min < joint.q_max)) {
+      return Status(StatusCode::kOutOfRange, "joint position range");
+    }
+    if (!(joint.dq_max > 0.0 && joint.ddq_max > 0.0 && joint.dddq_max > 0.0)) {
+      return Status(StatusCode::kOutOfRange, "joint velocity, acceleration or jerk limit");
+    }
+    if (!(joint.tau_max > 0.0 && joint.dtau_max > 0.0)) {
+      return Status(StatusCode::kOutOfRange, "joint torque limit");
+    }
+    if (!(link.mass > 0.0) || !link.p_LiCom.allFinite() || !link.I_Com_Li.allFinite()) {
+      return Status(StatusCode::kOutOfRange, "link inertia");
+    }
+    if (!joint.X_PJ.p.allFinite() || !joint.X_PJ.R.allFinite()) {
+      return Status(StatusCode::kNonFinite, "joint frame");
+    }
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+Status ServoTask::Init(const ServoConfig& config) noexcept {
+  if (const Status status = CheckArmModel(config.arm); !status.ok()) {
+    return status;
+  }
+  const double huge = 1e6;
+  const Range ranges[] = {
+      {config.feature.radius, 1e-4, 10.0, "target.diameter"},
+      {config.feature.p_CO_C_star.z(), 1e-3, 100.0, "servo.goal"},
+      {config.predict.target_acceleration, 0.0, huge, "servo.target_acceleration"},
+      {config.predict.gate_sigma, 1.0, huge, "servo.gate_sigma"},
+      {config.predict.stale_s, 1e-3, config.predict.coast_s, "servo.stale_s"},
+      {config.predict.coast_s, 1e-3, 0.5 * huge, "servo.coast_s"},
+      {config.law.lambda, 0.0, 100.0, "servo.lambda"},
+      {config.law.smooth_start_s, 1e-3, huge, "servo.smooth_start_s"},
+      {config.law.damping, 1e-9, 1.0, "servo.damping"},
+      {config.law.posture_gain, 0.0, 100.0, "servo.posture_gain"},
+      {config.law.unreachable_s, 1e-3, huge, "servo.unreachable_s"},
+      {config.law.unreachable_progress, 0.0, 1.0, "servo.unreachable_progress"},
+      {config.motion_law.omega_n, 0.1, 300.0, "servo.omega_n"},
+      {config.motion_law.zeta, 0.1, 10.0, "servo.zeta"},
+      {config.guard.joint_velocity_fraction, 1e-3, 1.0, "safety.joint_velocity_fraction"},
+      {config.guard.joint_acceleration_fraction, 1e-3, 1.0, "safety.joint_acceleration_fraction"},
+      {config.guard.joint_jerk_fraction, 1e-3, 1.0, "safety.joint_jerk_fraction"},
+      {config.guard.joint_position_margin, 0.0, 1.0, "safety.joint_position_margin"},
+      {config.guard.braking_fraction, 1e-3, 0.9, "safety.braking_fraction"},
+      {config.guard.workspace_radius, 1e-2, huge, "safety.workspace_radius"},
+      {config.guard.workspace_margin, 0.0, config.guard.workspace_radius, "safety.workspace_margin"},
+      {config.guard.workspace_deceleration, 1e-2, 100.0, "safety.workspace_deceleration"},
+      {config.safety.torque_fraction, 1e-3, 1.0, "safety.torque_fraction"},
+      {config.safety.torque_rate_fraction, 1e-3, 1.0, "safety.torque_rate_fraction"},
+      {config.safety.following_error, 1e-4, 10.0, "safety.following_error"},
+      {config.safety.fault_damping, 0.1, 100.0, "safety.fault_damping"},
+      {config.safety.brake_velocity, 1e-6, 10.0, "safety.brake_velocity"},
+      {config.safety.brake_after_s, 0.0, huge, "safety.brake_after_s"},
+      {static_cast<double>(config.predict.gate_rejects_max), 1.0, huge, "servo.gate_rejects_max"},
+      {static_cast<double>(config.predict.accepted_min), 1.0, huge, "servo.accepted_min"},
+      {static_cast<double>(config.safety.arm_lost_ticks), 1.0, huge, "safety.arm_lost_ticks"},
+      {static_cast<double>(config.safety.non_finite_ticks), 0.0, huge, "safety.non_finite_ticks"},
+      {static_cast<double>(config.safety.missed_ticks), 1.0, huge, "safety.missed_ticks"},
+  };
+  for (const Range& range : ranges) {
+    if (!Holds(range)) {
+      return Status(StatusCode::kOutOfRange, range.where);
+    }
+  }
+
+  config_ = config;
+  state_ = ServoState{};
+  const int n = config.arm.num_joints;
+  state_.mode.track_asked = config.auto_track;
+  for (model::VecN* v : {&state_.q, &state_.dq, &state_.tau_applied, &state_.tau, &state_.reference.q,
+                         &state_.reference.dq, &state_.reference.ddq}) {
+    v->setZero(n);
+  }
+  return Status::Ok();
+}
+
+}  // namespace fovea::servo

@@ -1,0 +1,277 @@
+#include "fovea/servo/servo_task.hpp"
+
+#include <cmath>
+
+#include "fovea/servo/clamp_torque.hpp"
+#include "fovea/servo/motion_law.hpp"
+
+namespace fovea::servo {
+namespace {
+
+constexpr int kBootTicks = 20;               // sound states in a row before Boot is over
+constexpr double kBootSpeed = 0.05;          // at rest means slower than this [rad/s]
+constexpr double kTargetMovedM = 0.02;       // so far from where it was unreachable, and it is tried again
+constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as there
+constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
+
+bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
+
+// 0 to 1, with zero slope at both ends.
+double SmoothStep(double x) noexcept {
+  if (x >= 1.0) {
+    return 1.0;
+  }
+  return x <= 0.0 ? 0.0 : x * x * (3.0 - 2.0 * x);
+}
+
+bool IsFinite(const hal::FeatureMeasurement& feature) noexcept {
+  for (std::size_t i = 0; i < feature.s.size(); ++i) {
+    if (!std::isfinite(feature.s[i])) {
+      return false;
+    }
+  }
+  for (std::size_t i = 0; i < feature.cov_s.size(); ++i) {
+    if (!std::isfinite(feature.cov_s[i])) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void ServoTask::Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept {
+  InputCheck check;
+  CheckArm(inputs, check);
+  ComputeModel();
+  PredictFeature(inputs, check.fault);
+  ChooseMode(inputs, check);
+  ComputeVisualLaw();
+  MoveReference();
+  ComputeTorque();
+  Clamp();
+  WriteRecord(inputs, outputs.record);
+  ++state_.tick;
+}
+
+void ServoTask::CheckArm(const ServoInputs& inputs, InputCheck& check) noexcept {
+  const int n = config_.arm.num_joints;
+  check = CheckInputs(config_, inputs.arm_status, inputs.arm, inputs.missed_ticks, state_.inputs);
+  state_.q = model::ToVector(state_.inputs.q, n);
+  state_.dq = model::ToVector(state_.inputs.dq, n);
+  state_.tau_applied = model::ToVector(state_.inputs.tau_applied, n);
+  state_.now_ns = state_.inputs.stamp_ns + state_.inputs.bad_ticks * hal::kTickPeriodNs;
+}
+
+void ServoTask::ComputeModel() noexcept {
+  model::ComputePoses(config_.arm, state_.q, state_.poses);
+  model::ComputeDynamics(config_.arm, state_.poses, state_.dq, state_.dynamics);
+  state_.X_BC = state_.poses.X_BE * config_.X_EC;
+  model::ComputeJacobian(config_.arm, state_.poses, config_.X_EC, state_.J_C);
+  model::ComputeLinearJacobian(config_.arm, state_.poses, state_.poses.X_BE.p, state_.J_E_B);
+}
+
+void ServoTask::PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noexcept {
+  const bool new_state = state_.inputs.bad_ticks == 0 && state_.inputs.has_state;
+  if (new_state) {
+    state_.predict.history.Push(state_.now_ns, state_.q);
+  }
+  const hal::FeatureMeasurement* measurement = nullptr;
+  if (inputs.has_feature) {
+    if (!IsFinite(inputs.feature)) {
+      if (fault == hal::Fault::kNone) {
+        fault = hal::Fault::kNonFiniteFeature;
+      }
+    } else {
+      measurement = &inputs.feature;
+    }
+  }
+  state_.prediction = Predict(config_, state_.now_ns, state_.X_BC, measurement, state_.predict);
+}
+
+void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept {
+  ModeInputs mode_inputs;
+  mode_inputs.request = inputs.request;
+  mode_inputs.arm_ready =
+      state_.inputs.sound_ticks >= kBootTicks && state_.dq.lpNorm<Eigen::Infinity>() < kBootSpeed;
+  mode_inputs.target_known = state_.prediction.known;
+  mode_inputs.feature_age_ns = state_.prediction.age_ns;
+  mode_inputs.goal_unreachable =
+      static_cast<double>(state_.blocked_ns) > config_.law.unreachable_s * kSecondNs;
+  mode_inputs.target_moved = (state_.prediction.p_BO - state_.p_BO_unreachable).norm() > kTargetMovedM;
+  mode_inputs.fault = check.fault;
+
+  const hal::Mode before = state_.mode.mode;
+  if (check.fault != hal::Fault::kNone && before != hal::Mode::kFault) {
+    state_.fault_joint = check.joint;
+  }
+  if (!UpdateMode(config_.predict, mode_inputs, state_.mode)) {
+    return;
+  }
+  const hal::Mode now = state_.mode.mode;
+  state_.mode_since_ns = state_.now_ns;
+  if (before == hal::Mode::kBoot && now == hal::Mode::kHold) {
+    // The reference starts where the arm stands.
+    state_.reference.q = state_.q;
+    state_.reference.dq.setZero();
+    state_.reference.ddq.setZero();
+  }
+  if (now == hal::Mode::kTrack && before == hal::Mode::kHold) {
+    state_.track_since_ns = state_.now_ns;
+    state_.blocked_ns = 0;
+  }
+  if (now == hal::Mode::kHold) {
+    state_.p_BO_unreachable = state_.prediction.p_BO;
+    if (state_.mode.hold_reason == hal::HoldReason::kTargetLost) {
+      state_.predict.Reset();
+    }
+  }
+  if (now == hal::Mode::kBoot) {
+    state_.inputs.sound_ticks = 0;
+    state_.fault_joint = -1;
+    state_.braked = false;
+  }
+}
+
+void ServoTask::ComputeVisualLaw() noexcept {
+  state_.feature_valid =
+      state_.prediction.known &&
+      config_.feature.Compute(state_.prediction.p_CO_C, state_.prediction.v_BO_C, state_.feature);
+  if (state_.feature_valid) {
+    VisualLaw(config_.law, state_.feature, state_.J_C, state_.q, state_.law);
+  }
+}
+
+void ServoTask::MoveReference() noexcept {
+  state_.limits = 0;
+  if (state_.mode.mode == hal::Mode::kBoot || state_.mode.mode == hal::Mode::kFault) {
+    state_.reference.q = state_.q;
+    state_.reference.dq.setZero();
+    state_.reference.ddq.setZero();
+    return;
+  }
+  if (state_.inputs.bad_ticks > 0) {
+    return;  // nothing new is known: the last command stays in force
+  }
+  model::VecN dq_des = model::VecN::Zero(config_.arm.num_joints);
+  const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
+  if (steering) {
+    const double since_s = static_cast<double>(state_.now_ns - state_.track_since_ns) / kSecondNs;
+    dq_des = SmoothStep(since_s / config_.law.smooth_start_s) * state_.law.dq_des;
+  }
+  if (!dq_des.allFinite()) {
+    LatchFault(hal::Fault::kNonFiniteControl, -1);
+    return;
+  }
+  state_.limits = GuardMotion(config_, dq_des, state_.poses.X_BE.p, state_.J_E_B, state_.reference);
+
+  const model::VecN following_error = state_.reference.q - state_.q;
+  for (int i = 0; i < following_error.size(); ++i) {
+    if (!(std::fabs(following_error[i]) <= config_.safety.following_error)) {
+      LatchFault(hal::Fault::kNotFollowing, i);
+      return;
+    }
+  }
+
+  constexpr hal::LimitSet kBarriers = hal::Bit(hal::Limit::kJointPosition) | hal::Bit(hal::Limit::kWorkspace);
+  const bool blocked =
+      steering && (state_.limits & kBarriers) != 0 &&
+      state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
+      Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
+          config_.law.unreachable_progress;
+  state_.blocked_ns = blocked ? state_.blocked_ns + hal::kTickPeriodNs : 0;
+}
+
+void ServoTask::ComputeTorque() noexcept {
+  switch (state_.mode.mode) {
+    case hal::Mode::kBoot:
+      state_.tau.setZero(config_.arm.num_joints);
+      break;
+    case hal::Mode::kHold:
+    case hal::Mode::kTrack:
+    case hal::Mode::kCoast:
+      if (state_.inputs.bad_ticks == 0) {
+        MotionLaw(config_.motion_law, state_.dynamics, state_.reference, state_.q, state_.dq, state_.tau);
+      }
+      break;
+    case hal::Mode::kFault: {
+      // A damped stop needs true velocities; without them only the brakes are left.
+      const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0;
+      const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
+      if (blind || since_s > config_.safety.brake_after_s ||
+          state_.dq.lpNorm<Eigen::Infinity>() < config_.safety.brake_velocity) {
+        state_.braked = true;
+      }
+      DampedStop(config_.safety.fault_damping, state_.dynamics, state_.dq, state_.tau);
+      if (state_.braked) {
+        state_.tau.setZero();
+      }
+      break;
+    }
+  }
+}
+
+void ServoTask::Clamp() noexcept {
+  const ClampResult result = ClampTorque(config_.arm, config_.safety, state_.tau_applied, state_.tau);
+  state_.limits |= result.limits;
+  if (!result.finite) {
+    LatchFault(hal::Fault::kNonFiniteControl, -1);
+  }
+}
+
+void ServoTask::LatchFault(hal::Fault fault, std::int32_t joint) noexcept {
+  if (state_.mode.mode == hal::Mode::kFault) {
+    return;
+  }
+  state_.mode.mode = hal::Mode::kFault;
+  state_.mode.hold_reason = hal::HoldReason::kNone;
+  state_.mode.fault = fault;
+  state_.fault_joint = joint;
+  state_.mode_since_ns = state_.now_ns;
+}
+
+void ServoTask::WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) const noexcept {
+  record = hal::TickRecord{};
+  record.tick = state_.tick;
+  record.stamp_ns = state_.now_ns;
+  record.missed_ticks = inputs.missed_ticks;
+  record.arm = inputs.arm;
+  record.has_feature = inputs.has_feature;
+  record.feature = inputs.feature;
+
+  record.mode = state_.mode.mode;
+  record.hold_reason = state_.mode.hold_reason;
+  record.fault = state_.mode.fault;
+  record.fault_joint = state_.fault_joint;
+  record.limits_active = state_.limits;
+
+  record.target_known = state_.prediction.known;
+  record.feature_age_ns = state_.prediction.age_ns;
+  for (std::size_t i = 0; i < 3; ++i) {
+    record.p_BO[i] = state_.prediction.p_BO[static_cast<Eigen::Index>(i)];
+    record.v_BO[i] = state_.prediction.v_BO[static_cast<Eigen::Index>(i)];
+  }
+  if (state_.feature_valid) {
+    record.dim = static_cast<std::int32_t>(state_.feature.s.size());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(record.dim); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      record.s[i] = state_.feature.s[k];
+      record.s_star[i] = state_.feature.s_star[k];
+      record.e[i] = state_.law.e[k];
+    }
+  }
+  const model::Vec6 V_BC_C_cmd = state_.J_C.lazyProduct(state_.reference.dq);
+  for (std::size_t i = 0; i < 6; ++i) {
+    record.V_BC_C_cmd[i] = V_BC_C_cmd[static_cast<Eigen::Index>(i)];
+  }
+  record.q_cmd = model::ToArray(state_.reference.q);
+  record.dq_cmd = model::ToArray(state_.reference.dq);
+  record.ddq_cmd = model::ToArray(state_.reference.ddq);
+
+  record.command.state_sequence = state_.inputs.sequence;
+  record.command.num_joints = config_.arm.num_joints;
+  record.command.tau_cmd = model::ToArray(state_.tau);
+  record.command.engage_brakes = state_.braked;
+}
+
+}  // namespace fovea::servo

@@ -1,0 +1,66 @@
+// Modes, faults and limits of the servo, by name: what a log, a report or another computer must understand.
+#pragma once
+
+#include <cstdint>
+
+namespace fovea::hal {
+
+enum class Mode : std::uint8_t {
+  kBoot,   // waiting for a sound arm; the torque command is zero
+  kHold,   // standing where it stands
+  kTrack,  // steering by the target as the camera sees it
+  kCoast,  // steering by the target's prediction, since the camera does not see it
+  kFault,  // latched: damped stop, then brakes; left only by a reset
+};
+
+// Why the servo is in Hold rather than in Track.
+enum class HoldReason : std::uint8_t {
+  kNone,             // not in Hold
+  kNotAsked,         // nobody asked for Track
+  kNoTarget,         // Track is asked for, no confident feature came yet
+  kTargetLost,       // the target was not seen for longer than servo.coast_s
+  kGoalUnreachable,  // limits kept the arm from the goal for longer than servo.unreachable_s
+};
+
+// Causes of a fault, latched at the first.
+enum class Fault : std::uint8_t {
+  kNone,
+  kArmLost,           // the arm answered with an error, or not at all, for too long
+  kArmStale,          // the arm's stamps stand still or go back
+  kNonFiniteSensor,   // a joint value stayed non-finite for too long
+  kNonFiniteFeature,  // the vision task delivered a value that is not finite
+  kNonFiniteControl,  // the control law produced a value that is not finite
+  kDeadlineMissed,    // too many ticks in a row were missed
+  kJointPosition,     // a joint was measured outside its range
+  kJointVelocity,     // a joint was measured faster than it may be
+  kNotFollowing,      // a joint does not follow its reference
+};
+inline constexpr int kNumFaults = 10;
+
+// Limits that shape the motion or the torque. A limit that acts is no fault: it is reported.
+enum class Limit : std::uint8_t {
+  kJointPosition,
+  kJointVelocity,
+  kJointAcceleration,
+  kJointJerk,
+  kWorkspace,
+  kTorque,
+  kTorqueRate,
+};
+inline constexpr int kNumLimits = 7;
+
+// One bit per Limit: those which acted in a tick.
+using LimitSet = std::uint32_t;
+constexpr LimitSet Bit(Limit limit) noexcept { return LimitSet{1} << static_cast<unsigned>(limit); }
+
+// Names as they stand in logs and summaries, e.g. "joint_position"; static storage.
+const char* Name(Mode mode) noexcept;
+const char* Name(HoldReason reason) noexcept;
+const char* Name(Fault fault) noexcept;
+const char* Name(Limit limit) noexcept;
+
+// The configuration key that sets the threshold; static storage.
+const char* Key(Fault fault) noexcept;
+const char* Key(Limit limit) noexcept;
+
+}  // namespace fovea::hal

@@ -1,0 +1,67 @@
+// What the vision task tells the servo about one frame, and the way it takes.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::hal {
+
+// Which visual feature `s` is; firmware/features has one file for each.
+enum class FeatureKind : std::uint8_t {
+  kSphere,  // s [3] = p_CO_C / radius: the sphere's centre in camera axes, in units of its radius
+};
+
+struct FeatureMeasurement {
+  std::int64_t stamp_ns = 0;   // mid-exposure of the frame, monotonic, in the loop's Clock
+  std::uint64_t sequence = 0;  // of the frame
+  FeatureKind kind = FeatureKind::kSphere;
+  bool found = false;        // false: the frame was looked at and the target is not in it
+  double confidence = 0.0;   // 0 to 1; the detector refuses below its own threshold
+  std::int32_t dim = 0;      // entries of s in use
+  std::array<double, kMaxFeatureDim> s{};  // [dim] units as `kind` says
+  // [dim x dim] covariance of s, row-major with rows of kMaxFeatureDim entries.
+  std::array<double, kMaxFeatureDim * kMaxFeatureDim> cov_s{};
+};
+
+// Where a vision task puts its measurements. Real-time: yes.
+class FeatureSink {
+ public:
+  FeatureSink(const FeatureSink&) = delete;
+  FeatureSink& operator=(const FeatureSink&) = delete;
+  virtual void Put(const FeatureMeasurement& measurement) noexcept = 0;
+
+ protected:
+  FeatureSink() noexcept = default;
+  ~FeatureSink() = default;
+};
+
+// Hand-over from one vision thread (Put) to one servo thread (Take): wait-free on both sides, the newest
+// measurement wins, none is ever seen half-written.
+//
+// Three slots: one is being written, one is being read, the third changes hands by one atomic exchange.
+class FeatureMailbox final : public FeatureSink {
+ public:
+  FeatureMailbox() noexcept = default;
+
+  // A measurement older than one put before is dropped, so what Take sees never goes back in time.
+  void Put(const FeatureMeasurement& measurement) noexcept override;
+
+  // True, with the newest measurement in `measurement`, when one came since the last Take; else false, and
+  // `measurement` is left as it was.
+  [[nodiscard]] bool Take(FeatureMeasurement& measurement) noexcept;
+
+ private:
+  static constexpr std::uint8_t kFresh = 0x80;  // the slot in the middle was not read yet
+  static constexpr std::uint8_t kSlotMask = 0x03;
+
+  std::array<FeatureMeasurement, 3> slots_{};
+  std::uint8_t write_slot_ = 0;           // the writer's own
+  std::int64_t newest_stamp_ns_ = INT64_MIN;  // the writer's own
+  alignas(64) std::atomic<std::uint8_t> middle_{1};
+  alignas(64) std::uint8_t read_slot_ = 2;  // the reader's own
+};
+
+}  // namespace fovea::hal

@@ -1,0 +1,82 @@
+// What one tick leaves behind, and where it goes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "fovea/hal/arm.hpp"
+#include "fovea/hal/events.hpp"
+#include "fovea/hal/feature.hpp"
+#include "fovea/hal/types.hpp"
+
+namespace fovea::hal {
+
+// Everything that a person needs to understand one tick. Grouped by the stage that computes it.
+struct TickRecord {
+  // The tick
+  std::uint64_t tick = 0;      // counts from 0
+  std::int64_t stamp_ns = 0;   // the time for which the tick computed, in the loop's Clock
+  std::int32_t missed_ticks = 0;  // deadlines missed since the tick before
+
+  // Inputs
+  ArmState arm;
+  bool has_feature = false;    // a measurement was taken in this tick
+  FeatureMeasurement feature;  // the last one taken
+
+  // Modes
+  Mode mode = Mode::kBoot;
+  HoldReason hold_reason = HoldReason::kNone;
+  Fault fault = Fault::kNone;
+  std::int32_t fault_joint = -1;  // the joint at fault, -1 when none
+  LimitSet limits_active = 0;
+
+  // Prediction, frame B
+  bool target_known = false;
+  std::int64_t feature_age_ns = 0;  // stamp_ns less the stamp of the last accepted measurement
+  std::array<double, 3> p_BO{};     // target's centre [m]
+  std::array<double, 3> v_BO{};     // its velocity [m/s]
+
+  // Visual law, units as the feature's kind says
+  std::int32_t dim = 0;
+  std::array<double, kMaxFeatureDim> s{};       // [dim] predicted for now
+  std::array<double, kMaxFeatureDim> s_star{};  // [dim] goal
+  std::array<double, kMaxFeatureDim> e{};       // [dim] s_star - s
+  std::array<double, 6> V_BC_C_cmd{};           // camera's twist that the reference asks for [m/s, rad/s]
+
+  // Reference after the guard
+  JointArray q_cmd{};
+  JointArray dq_cmd{};
+  JointArray ddq_cmd{};
+
+  // Output
+  ArmCommand command;
+};
+
+// Takes a copy of each tick. Real-time: Record does not allocate, lock, block or throw; what it cannot
+// take is dropped and counted.
+class Recorder {
+ public:
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+  virtual void Record(const TickRecord& record) noexcept = 0;
+
+ protected:
+  Recorder() noexcept = default;
+  ~Recorder() = default;
+};
+
+// Told when the tick begins and ends, by the thread that runs it: where time is measured and where heap
+// calls are counted. Real-time: yes; whatever it must ask of the system, it asks outside Enter..Leave.
+class TickProbe {
+ public:
+  TickProbe(const TickProbe&) = delete;
+  TickProbe& operator=(const TickProbe&) = delete;
+  virtual void Enter() noexcept = 0;
+  virtual void Leave() noexcept = 0;
+
+ protected:
+  TickProbe() noexcept = default;
+  ~TickProbe() = default;
+};
+
+}  // namespace fovea::hal

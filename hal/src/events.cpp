@@ -1,0 +1,66 @@
+// One table per enumeration: the name and the key stand beside each other.
+#include "fovea/hal/events.hpp"
+
+#include <array>
+
+namespace fovea::hal {
+namespace {
+
+struct Entry {
+  const char* name;
+  const char* key;
+};
+
+constexpr std::array<Entry, kNumFaults> kFaultTable{{
+    {"none", ""},
+    {"arm_lost", "safety.arm_lost_ticks"},
+    {"arm_stale", "safety.arm_lost_ticks"},
+    {"non_finite_sensor", "safety.non_finite_ticks"},
+    {"non_finite_feature", "vision"},
+    {"non_finite_control", "servo"},
+    {"deadline_missed", "safety.missed_ticks"},
+    {"joint_position", "safety.joint_position_margin"},
+    {"joint_velocity", "safety.joint_velocity_fraction"},
+    {"not_following", "safety.following_error"},
+}};
+
+constexpr std::array<Entry, kNumLimits> kLimitTable{{
+    {"joint_position", "safety.joint_position_margin"},
+    {"joint_velocity", "safety.joint_velocity_fraction"},
+    {"joint_acceleration", "safety.joint_acceleration_fraction"},
+    {"joint_jerk", "safety.joint_jerk_fraction"},
+    {"workspace", "safety.workspace_radius"},
+    {"torque", "safety.torque_fraction"},
+    {"torque_rate", "safety.torque_rate_fraction"},
+}};
+
+}  // namespace
+
+const char* Name(Mode mode) noexcept {
+  switch (mode) {
+    case Mode::kBoot: return "boot";
+    case Mode::kHold: return "hold";
+    case Mode::kTrack: return "track";
+    case Mode::kCoast: return "coast";
+    case Mode::kFault: return "fault";
+  }
+  return "unknown";
+}
+
+const char* Name(HoldReason reason) noexcept {
+  switch (reason) {
+    case HoldReason::kNone: return "none";
+    case HoldReason::kNotAsked: return "not_asked";
+    case HoldReason::kNoTarget: return "no_target";
+    case HoldReason::kTargetLost: return "target_lost";
+    case HoldReason::kGoalUnreachable: return "goal_unreachable";
+  }
+  return "unknown";
+}
+
+const char* Name(Fault fault) noexcept { return kFaultTable[static_cast<std::size_t>(fault)].name; }
+const char* Name(Limit limit) noexcept { return kLimitTable[static_cast<std::size_t>(limit)].name; }
+const char* Key(Fault fault) noexcept { return kFaultTable[static_cast<std::size_t>(fault)].key; }
+const char* Key(Limit limit) noexcept { return kLimitTable[static_cast<std::size_t>(limit)].key; }
+
+}  // namespace fovea::hal

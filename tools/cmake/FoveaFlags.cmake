@@ -1,0 +1,44 @@
+# Compiler flags, in one place. Three sets:
+#   fovea_warnings  every target of the project: warnings are errors
+#   fovea_bits      PUBLIC on the firmware libraries: what decides the bits of a result, so that everything
+#                   that shares their types computes alike (and alike on another machine)
+#   fovea_tick      PRIVATE on what runs inside the 1 kHz tick: no exceptions, no RTTI
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+add_library(fovea_warnings INTERFACE)
+target_compile_options(fovea_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast
+  -Woverloaded-virtual -Werror
+  # GCC takes the unused capacity of an Eigen matrix of run-time size for a read of unset memory.
+  -Wno-maybe-uninitialized)
+
+add_library(fovea_bits INTERFACE)
+# No fused multiply-add behind our back, and sums that do not depend on a vector's width.
+target_compile_options(fovea_bits INTERFACE -ffp-contract=off)
+target_compile_definitions(fovea_bits INTERFACE EIGEN_DONT_VECTORIZE EIGEN_DONT_PARALLELIZE)
+
+add_library(fovea_tick INTERFACE)
+target_compile_options(fovea_tick INTERFACE -fno-exceptions -fno-rtti)
+
+if(FOVEA_SANITIZE)
+  add_compile_options(-fsanitize=${FOVEA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  add_link_options(-fsanitize=${FOVEA_SANITIZE})
+  add_compile_definitions(FOVEA_SANITIZED)
+endif()
+
+# fovea_add_library(<name> [TICK] SOURCES <file>... [PUBLIC <target>...] [PRIVATE <target>...])
+function(fovea_add_library name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "TICK" "" "SOURCES;PUBLIC;PRIVATE")
+  add_library(${name} STATIC ${arg_SOURCES})
+  target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:fovea_warnings>)
+  if(arg_TICK)
+    target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:fovea_tick>)
+  endif()
+endfunction()
