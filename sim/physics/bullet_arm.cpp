@@ -1,0 +1,324 @@
+#include "sim/physics/bullet_arm.hpp"
+
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
+#include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
+#include <BulletDynamics/Featherstone/btMultiBody.h>
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
+
+#include <Eigen/Eigenvalues>
+#include <vector>
+
+namespace fovea::sim {
+namespace {
+
+constexpr double kGravity = 9.81;  // [m/s^2]
+
+btVector3 ToBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+btQuaternion ToBullet(const Eigen::Matrix3d& R) {
+  const Eigen::Quaterniond q(R);
+  return {q.x(), q.y(), q.z(), q.w()};
+}
+btTransform ToBullet(const Eigen::Isometry3d& X) {
+  return btTransform(ToBullet(Eigen::Matrix3d(X.linear())), ToBullet(Eigen::Vector3d(X.translation())));
+}
+Eigen::Isometry3d ToEigen(const btTransform& t) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  const btQuaternion q = t.getRotation();
+  X.linear() = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).toRotationMatrix();
+  X.translation() = Eigen::Vector3d(t.getOrigin().x(), t.getOrigin().y(), t.getOrigin().z());
+  return X;
+}
+
+// A body's frame as Bullet wants it: at the centre of mass, along the principal axes of inertia.
+struct PrincipalBody {
+  Eigen::Isometry3d X_LP = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d moments = Eigen::Vector3d::Zero();
+};
+
+PrincipalBody Diagonalise(const SimLink& link) {
+  PrincipalBody body;
+  if (link.mass == 0.0) {
+    return body;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(link.I_Com);
+  Eigen::Matrix3d axes = solver.eigenvectors();
+  if (axes.determinant() < 0.0) {
+    axes.col(0) = -axes.col(0);
+  }
+  body.moments = solver.eigenvalues();
+  body.X_LP = link.X_LCom;
+  body.X_LP.linear() = link.X_LCom.linear() * axes;
+  return body;
+}
+
+}  // namespace
+
+struct BulletArm::Impl {
+  // Bullet's parts, in the order in which one needs the other.
+  btDefaultCollisionConfiguration collision_configuration;
+  btCollisionDispatcher dispatcher{&collision_configuration};
+  btDbvtBroadphase broadphase;
+  btMultiBodyConstraintSolver solver;
+  btMultiBodyDynamicsWorld world{&dispatcher, &broadphase, &solver, &collision_configuration};
+  std::vector<std::unique_ptr<btCollisionShape>> shapes;
+  std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
+  std::unique_ptr<btCollisionObject> table;
+  std::unique_ptr<btMultiBody> body;
+
+  SimRobot robot;
+  std::vector<PrincipalBody> principal;  // per link of the robot
+  std::vector<int> dof_link;             // link index of each moving joint
+  Eigen::VectorXd q;
+  Eigen::VectorXd dq;
+
+  btAlignedObjectArray<btScalar> scratch_r;
+  btAlignedObjectArray<btVector3> scratch_v;
+  btAlignedObjectArray<btMatrix3x3> scratch_m;
+  btAlignedObjectArray<btQuaternion> scratch_q;
+
+  ~Impl() {
+    world.removeMultiBody(body.get());
+    for (const auto& collider : colliders) {
+      world.removeCollisionObject(collider.get());
+    }
+    if (table) {
+      world.removeCollisionObject(table.get());
+    }
+  }
+
+  void Build(const BulletArmOptions& options) {
+    for (const SimLink& link : robot.links) {
+      principal.push_back(Diagonalise(link));
+    }
+    const int num_links = static_cast<int>(robot.links.size()) - 1;
+    body = std::make_unique<btMultiBody>(num_links, 0.0, btVector3(0, 0, 0), /*fixedBase=*/true,
+                                         /*canSleep=*/false);
+    dof_link.resize(static_cast<std::size_t>(robot.num_dofs));
+    for (int i = 0; i < num_links; ++i) {
+      AddLink(i);
+    }
+    body->setLinearDamping(0.0);
+    body->setAngularDamping(0.0);
+    body->setMaxCoordinateVelocity(1e6);
+    body->setMaxAppliedImpulse(1e6);
+    body->setHasSelfCollision(false);
+    body->useRK4Integration(options.integrator == Integrator::kRungeKutta4);
+    body->finalizeMultiDof();
+    world.setGravity(btVector3(0, 0, options.gravity ? -kGravity : 0.0));
+    world.addMultiBody(body.get());
+    AddColliders();
+    if (options.table) {
+      shapes.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0.0));
+      table = std::make_unique<btCollisionObject>();
+      table->setCollisionShape(shapes.back().get());
+      world.addCollisionObject(table.get(), btBroadphaseProxy::StaticFilter, btBroadphaseProxy::DefaultFilter);
+    }
+    q.setZero(robot.num_dofs);
+    dq.setZero(robot.num_dofs);
+  }
+
+  // Link i of Bullet is link i + 1 of the robot; Bullet's base is the robot's link 0.
+  void AddLink(int i) {
+    const auto k = static_cast<std::size_t>(i + 1);
+    const SimLink& link = robot.links[k];
+    const PrincipalBody& own = principal[k];
+    const PrincipalBody& parent = principal[static_cast<std::size_t>(link.parent)];
+    const Eigen::Isometry3d X_PaL = parent.X_LP.inverse() * link.X_PL;  // link frame in the parent's body frame
+    const Eigen::Isometry3d X_PaPo = X_PaL * own.X_LP;
+    const btQuaternion parent_to_this = ToBullet(Eigen::Matrix3d(X_PaPo.linear().transpose()));
+    const btVector3 com_to_pivot = ToBullet(Eigen::Vector3d(X_PaL.translation()));
+    const Eigen::Matrix3d R_PoL = own.X_LP.linear().transpose();
+    const btVector3 pivot_to_com = ToBullet(Eigen::Vector3d(R_PoL * own.X_LP.translation()));
+    const btVector3 axis = ToBullet(Eigen::Vector3d(R_PoL * link.axis_L));
+    const btVector3 inertia = ToBullet(own.moments);
+    switch (link.joint) {
+      case SimJointKind::kFixed:
+        body->setupFixed(i, link.mass, inertia, link.parent - 1, parent_to_this, com_to_pivot, pivot_to_com);
+        return;
+      case SimJointKind::kRevolute:
+        body->setupRevolute(i, link.mass, inertia, link.parent - 1, parent_to_this, axis, com_to_pivot,
+                            pivot_to_com, true);
+        break;
+      case SimJointKind::kPrismatic:
+        body->setupPrismatic(i, link.mass, inertia, link.parent - 1, parent_to_this, axis, com_to_pivot,
+                             pivot_to_com, true);
+        break;
+    }
+    dof_link[static_cast<std::size_t>(link.dof)] = i;
+  }
+
+  btCollisionShape* MakeShape(const Shape& shape) {
+    switch (shape.kind) {
+      case ShapeKind::kBox: shapes.push_back(std::make_unique<btBoxShape>(ToBullet(shape.size) * 0.5)); break;
+      case ShapeKind::kSphere: shapes.push_back(std::make_unique<btSphereShape>(shape.size[0])); break;
+      case ShapeKind::kCylinder:  // a capsule: its contacts are cheap and smooth
+        shapes.push_back(std::make_unique<btCapsuleShapeZ>(shape.size[0], shape.size[1]));
+        break;
+    }
+    return shapes.back().get();
+  }
+
+  // The base stands on the table for good: it has no collider.
+  void AddColliders() {
+    for (int i = 0; i < body->getNumLinks(); ++i) {
+      const auto k = static_cast<std::size_t>(i + 1);
+      if (robot.links[k].collisions.empty()) {
+        continue;
+      }
+      auto compound = std::make_unique<btCompoundShape>();
+      for (const Shape& shape : robot.links[k].collisions) {
+        compound->addChildShape(ToBullet(principal[k].X_LP.inverse() * shape.X_LS), MakeShape(shape));
+      }
+      auto collider = std::make_unique<btMultiBodyLinkCollider>(body.get(), i);
+      collider->setCollisionShape(compound.get());
+      shapes.push_back(std::move(compound));
+      body->getLink(i).m_collider = collider.get();
+      world.addCollisionObject(collider.get(), btBroadphaseProxy::DefaultFilter,
+                               btBroadphaseProxy::StaticFilter);
+      colliders.push_back(std::move(collider));
+    }
+  }
+
+  void ReadState() {
+    for (int i = 0; i < robot.num_dofs; ++i) {
+      const int link = dof_link[static_cast<std::size_t>(i)];
+      q[i] = body->getJointPos(link);
+      dq[i] = body->getJointVel(link);
+    }
+  }
+
+  void UpdatePoses() {
+    body->forwardKinematics(scratch_q, scratch_v);
+    body->updateCollisionObjectWorldTransforms(scratch_q, scratch_v);
+  }
+
+  void ApplyTorque(const Eigen::VectorXd& tau) {
+    for (int i = 0; i < robot.num_dofs; ++i) {
+      body->addJointTorque(dof_link[static_cast<std::size_t>(i)], tau[i]);
+    }
+  }
+};
+
+BulletArm::BulletArm(const SimRobot& robot, const BulletArmOptions& options) : impl_(std::make_unique<Impl>()) {
+  impl_->robot = robot;
+  impl_->Build(options);
+  SetState(Eigen::VectorXd::Zero(robot.num_dofs), Eigen::VectorXd::Zero(robot.num_dofs));
+}
+
+BulletArm::~BulletArm() = default;
+
+int BulletArm::num_dofs() const { return impl_->robot.num_dofs; }
+const Eigen::VectorXd& BulletArm::q() const { return impl_->q; }
+const Eigen::VectorXd& BulletArm::dq() const { return impl_->dq; }
+
+void BulletArm::SetState(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) {
+  for (int i = 0; i < num_dofs(); ++i) {
+    const int link = impl_->dof_link[static_cast<std::size_t>(i)];
+    impl_->body->setJointPos(link, q[i]);
+    impl_->body->setJointVel(link, dq[i]);
+  }
+  impl_->UpdatePoses();
+  impl_->ReadState();
+}
+
+void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
+  impl_->ApplyTorque(tau);
+  impl_->world.stepSimulation(dt, 0);
+  impl_->ReadState();
+}
+
+Eigen::VectorXd BulletArm::ForwardDynamics(const Eigen::VectorXd& tau) {
+  Impl& m = *impl_;
+  const Eigen::VectorXd q = m.q;
+  const Eigen::VectorXd dq = m.dq;
+  m.body->clearForcesAndTorques();
+  m.ApplyTorque(tau);
+  for (int i = 0; i < m.body->getNumLinks(); ++i) {
+    m.body->addLinkForce(i, m.world.getGravity() * m.body->getLinkMass(i));
+  }
+  // Bullet's function answers with velocities moved on by dt; a dt of 1 makes the change the acceleration.
+  m.body->computeAccelerationsArticulatedBodyAlgorithmMultiDof(1.0, m.scratch_r, m.scratch_v, m.scratch_m,
+                                                               false, false, false);
+  m.ReadState();
+  const Eigen::VectorXd ddq = m.dq - dq;
+  m.body->clearForcesAndTorques();
+  SetState(q, dq);
+  return ddq;
+}
+
+Eigen::VectorXd BulletArm::GravityTorque() const {
+  const Impl& m = *impl_;
+  Eigen::VectorXd tau = Eigen::VectorXd::Zero(m.robot.num_dofs);
+  const btVector3 g = m.world.getGravity();
+  if (g.isZero()) {
+    return tau;
+  }
+  const Eigen::Vector3d g_B(g.x(), g.y(), g.z());
+  // Joint by joint towards the base, for each body: the torque of its weight about the joint's axis.
+  for (int body = 0; body < m.body->getNumLinks(); ++body) {
+    const double mass = m.body->getLinkMass(body);
+    if (mass == 0.0) {
+      continue;
+    }
+    const btVector3 c = m.body->getLink(body).m_cachedWorldTransform.getOrigin();
+    const Eigen::Vector3d p_com(c.x(), c.y(), c.z());
+    for (int i = body; i >= 0; i = m.robot.links[static_cast<std::size_t>(i + 1)].parent - 1) {
+      const SimLink& link = m.robot.links[static_cast<std::size_t>(i + 1)];
+      if (link.joint == SimJointKind::kFixed) {
+        continue;
+      }
+      const Eigen::Isometry3d X_BL = LinkPose(i + 1);
+      const Eigen::Vector3d axis = X_BL.linear() * link.axis_L;
+      const Eigen::Vector3d direction =
+          link.joint == SimJointKind::kPrismatic ? axis : axis.cross(p_com - X_BL.translation());
+      tau[link.dof] -= mass * g_B.dot(direction);
+    }
+  }
+  return tau;
+}
+
+Eigen::Isometry3d BulletArm::LinkPose(int index) const {
+  if (index == 0) {
+    return Eigen::Isometry3d::Identity();
+  }
+  const auto k = static_cast<std::size_t>(index);
+  return ToEigen(impl_->body->getLink(index - 1).m_cachedWorldTransform) * impl_->principal[k].X_LP.inverse();
+}
+
+double BulletArm::Energy() const {
+  // Entry i + 1 belongs to Bullet's link i, in its own frame, at its centre of mass.
+  const int num_links = impl_->body->getNumLinks();
+  std::vector<btVector3> omega(static_cast<std::size_t>(num_links + 1));
+  std::vector<btVector3> velocity(omega.size());
+  impl_->body->compTreeLinkVelocities(omega.data(), velocity.data());
+  double energy = 0.0;
+  for (int i = 0; i < num_links; ++i) {
+    const btVector3& w = omega[static_cast<std::size_t>(i + 1)];
+    const btVector3& v = velocity[static_cast<std::size_t>(i + 1)];
+    energy += 0.5 * (impl_->body->getLinkMass(i) * v.length2() + w.dot(impl_->body->getLinkInertia(i) * w));
+    const btVector3 p = impl_->body->getLink(i).m_cachedWorldTransform.getOrigin();
+    energy -= impl_->body->getLinkMass(i) * impl_->world.getGravity().dot(p);
+  }
+  return energy;
+}
+
+int BulletArm::Contacts() const {
+  int contacts = 0;
+  for (int i = 0; i < impl_->dispatcher.getNumManifolds(); ++i) {
+    const btPersistentManifold* manifold = impl_->dispatcher.getManifoldByIndexInternal(i);
+    for (int j = 0; j < manifold->getNumContacts(); ++j) {
+      contacts += manifold->getContactPoint(j).getDistance() < 0.0 ? 1 : 0;
+    }
+  }
+  return contacts;
+}
+
+}  // namespace fovea::sim

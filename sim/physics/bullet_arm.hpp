@@ -1,0 +1,62 @@
+// The arm as a Bullet multi-body: torques in, motion out. Knows the truth.
+//
+// Bullet's defaults that would falsify an arm are off: linear and angular damping, sleeping, the clamp at
+// 100 rad/s. Double precision.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+
+#include "sim/robot/sim_robot.hpp"
+
+namespace fovea::sim {
+
+enum class Integrator {
+  kSemiImplicitEuler,  // Bullet's default, one evaluation per step
+  kRungeKutta4,        // four evaluations per step; keeps energy 7 orders better
+};
+
+struct BulletArmOptions {
+  Integrator integrator = Integrator::kSemiImplicitEuler;
+  bool table = true;  // a fixed plane at z = 0 of B, which the arm's collision shapes can touch
+  bool gravity = true;
+};
+
+class BulletArm {
+ public:
+  BulletArm(const SimRobot& robot, const BulletArmOptions& options);
+  ~BulletArm();
+  BulletArm(const BulletArm&) = delete;
+  BulletArm& operator=(const BulletArm&) = delete;
+
+  [[nodiscard]] int num_dofs() const;
+
+  // Joint positions [rad, m] and velocities, one per moving joint, base to tip.
+  void SetState(const Eigen::VectorXd& q, const Eigen::VectorXd& dq);
+  [[nodiscard]] const Eigen::VectorXd& q() const;
+  [[nodiscard]] const Eigen::VectorXd& dq() const;
+
+  // Moves on by `dt` [s] under the joint torques `tau` [Nm, N], gravity and contact.
+  void Step(const Eigen::VectorXd& tau, double dt);
+
+  // Joint accelerations at the present state under `tau`, gravity included, contact not; the state stays.
+  [[nodiscard]] Eigen::VectorXd ForwardDynamics(const Eigen::VectorXd& tau);
+
+  // Joint torques that hold the arm at rest where it is, from the links' weights.
+  [[nodiscard]] Eigen::VectorXd GravityTorque() const;
+
+  // Pose of link `index` of the robot in B.
+  [[nodiscard]] Eigen::Isometry3d LinkPose(int index) const;
+
+  // Kinetic and potential energy [J].
+  [[nodiscard]] double Energy() const;
+
+  // Number of contact points with a gap below 0 after the last step.
+  [[nodiscard]] int Contacts() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fovea::sim

@@ -1,0 +1,57 @@
+// A robot as the simulator sees it: every link with its shapes, straight from the URDF.
+//
+// The servo's model is read from the same file by other code (firmware/robots); the two meet only in the
+// tests that compare them.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace fovea::sim {
+
+enum class ShapeKind { kBox, kCylinder, kSphere };
+
+// A solid in its link's frame; box: size = full extents; cylinder: about z, size = (radius, length, -);
+// sphere: size = (radius, -, -).
+struct Shape {
+  ShapeKind kind = ShapeKind::kBox;
+  Eigen::Isometry3d X_LS = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  // [m]
+  Eigen::Vector3f colour{0.7F, 0.7F, 0.7F};        // linear RGB, 0 to 1
+};
+
+enum class SimJointKind { kFixed, kRevolute, kPrismatic };
+
+struct SimLink {
+  std::string name;
+  int parent = -1;  // index of the parent link; -1 for the base itself
+  SimJointKind joint = SimJointKind::kFixed;
+  int dof = -1;  // index of the joint among the moving ones, base to tip
+  Eigen::Isometry3d X_PL = Eigen::Isometry3d::Identity();  // at joint position 0
+  Eigen::Vector3d axis_L = Eigen::Vector3d::UnitZ();
+  double q_min = 0.0;
+  double q_max = 0.0;
+  double tau_max = 0.0;
+  double viscous = 0.0;  // friction [Nm s/rad]
+  double coulomb = 0.0;  // friction [Nm]
+  double mass = 0.0;     // [kg]
+  Eigen::Isometry3d X_LCom = Eigen::Isometry3d::Identity();  // centre of mass, axes of the inertia
+  Eigen::Matrix3d I_Com = Eigen::Matrix3d::Zero();           // [kg m^2]
+  std::vector<Shape> visuals;
+  std::vector<Shape> collisions;
+};
+
+struct SimRobot {
+  std::vector<SimLink> links;  // parents before children; links[0] is the base
+  int num_dofs = 0;
+  int tip = -1;  // index of the link whose frame is E
+};
+
+// Reads `urdf` from `base_link` on. Shapes other than box, cylinder and sphere are refused.
+// std::runtime_error with one line when it cannot be simulated.
+SimRobot LoadSimRobot(const std::filesystem::path& urdf, const std::string& base_link,
+                      const std::string& tip_link);
+
+}  // namespace fovea::sim
