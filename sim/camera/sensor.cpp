@@ -1,0 +1,45 @@
+#include "sim/camera/sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace fovea::sim {
+namespace {
+
+constexpr std::size_t kLongestRow = 3 * 4096;
+
+std::uint64_t Mix(std::uint64_t x) {
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31U);
+}
+
+}  // namespace
+
+Sensor::Sensor(double noise_sigma, std::uint64_t seed) : noise_(kTableSize + kLongestRow), seed_(seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal(0.0, std::max(noise_sigma, 1e-9));
+  for (std::int8_t& n : noise_) {
+    n = static_cast<std::int8_t>(std::clamp(std::lround(normal(engine)), -127L, 127L));
+  }
+}
+
+void Sensor::Expose(std::span<const std::uint8_t> rgba, int width_px, std::uint64_t frame,
+                    std::span<std::uint8_t> bgr) const {
+  const auto width = static_cast<std::size_t>(width_px);
+  const std::size_t rows = bgr.size() / (3 * width);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::size_t start = Mix(seed_ + Mix(frame * 8192U + row)) % kTableSize;
+    const std::int8_t* noise = noise_.data() + start;
+    const std::uint8_t* in = rgba.data() + row * width * 4;
+    std::uint8_t* out = bgr.data() + row * width * 3;
+    for (std::size_t x = 0; x < width; ++x) {
+      out[3 * x + 0] = static_cast<std::uint8_t>(std::clamp(in[4 * x + 2] + noise[3 * x + 0], 0, 255));
+      out[3 * x + 1] = static_cast<std::uint8_t>(std::clamp(in[4 * x + 1] + noise[3 * x + 1], 0, 255));
+      out[3 * x + 2] = static_cast<std::uint8_t>(std::clamp(in[4 * x + 0] + noise[3 * x + 2], 0, 255));
+    }
+  }
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,18 @@
+// The world at one exposure: all that is needed to draw what the camera saw.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+namespace fovea::sim {
+
+struct Exposure {
+  std::uint64_t sequence = 0;
+  std::int64_t stamp_ns = 0;  // mid-exposure
+  Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d p_BO = Eigen::Vector3d::Zero();  // target's centre [m]
+  std::vector<Eigen::Isometry3d> X_BL;              // one per link of the robot
+};
+
+}  // namespace fovea::sim

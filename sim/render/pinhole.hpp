@@ -1,0 +1,21 @@
+// The simulated camera's geometry: u = f X / Z + c_u, v = f Y / Z + c_v, pixel centres at whole numbers.
+#pragma once
+
+#include <cmath>
+
+namespace fovea::sim {
+
+struct Pinhole {
+  int width_px = 640;
+  int height_px = 480;
+  double f_px = 554.256258422041;
+  double c_u_px = 319.5;
+  double c_v_px = 239.5;
+};
+
+// A camera with the given horizontal field of view [rad], its axis in the middle of the picture.
+inline Pinhole MakePinhole(int width_px, int height_px, double hfov) {
+  return {width_px, height_px, 0.5 * width_px / std::tan(0.5 * hfov), 0.5 * (width_px - 1), 0.5 * (height_px - 1)};
+}
+
+}  // namespace fovea::sim

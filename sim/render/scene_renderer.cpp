@@ -1,0 +1,335 @@
+#include "sim/render/scene_renderer.hpp"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "sim/render/egl_context.hpp"
+#include "sim/render/gl_program.hpp"
+#include "sim/render/gpu_mesh.hpp"
+#include "sim/render/projection.hpp"
+#include "sim/render/shaders.hpp"
+#include "sim/render/shadow_map.hpp"
+
+namespace fovea::sim {
+namespace {
+
+using Eigen::Isometry3f;
+using Eigen::Matrix4f;
+using Eigen::Vector3f;
+using Eigen::Vector4f;
+
+const Vector3f kSkyLight(0.46F, 0.48F, 0.50F);  // of a level surface; as in shaders.hpp
+const Vector3f kSunLight(0.66F, 0.64F, 0.60F);
+
+struct GpuPlane {
+  TexturedPlane plane;
+  GLuint texture = 0;
+};
+
+// A thing that does not move, and where it is, so that what is out of view need not be drawn.
+struct Thing {
+  std::unique_ptr<GpuMesh> mesh;
+  Bounds bounds;
+};
+
+// A link as it looks and as it casts its shadow.
+struct Link {
+  std::unique_ptr<GpuMesh> mesh;
+  std::unique_ptr<GpuMesh> shadow;
+  Bounds bounds;
+};
+
+GLuint UploadTexture(const Texture& from) {
+  GLuint texture = 0;
+  glGenTextures(1, &texture);
+  glBindTexture(GL_TEXTURE_2D, texture);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, from.width_px, from.height_px, 0, GL_RGBA, GL_UNSIGNED_BYTE,
+               from.rgba.data());
+  glGenerateMipmap(GL_TEXTURE_2D);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  return texture;
+}
+
+Mesh MakeCameraHousing() {
+  Mesh mesh;
+  const Vector3f dark(0.07F, 0.075F, 0.08F);
+  const Vector3f ring(0.05F, 0.42F, 0.58F);
+  const auto at = [](float z) { return Isometry3f(Eigen::Translation3f(0.0F, 0.0F, z)); };
+  mesh.Append(MakeBox({0.034F, 0.034F, 0.040F}, 0.004F, dark), at(-0.042F));
+  mesh.Append(MakeCylinder(0.0155F, 0.022F, 0.002F, 32, dark), at(-0.013F));
+  mesh.Append(MakeCylinder(0.0160F, 0.003F, 0.001F, 32, ring), at(-0.018F));
+  return mesh;
+}
+
+Mesh MakeLink(const SimLink& link, Detail detail) {
+  Mesh mesh;
+  for (const Shape& shape : link.visuals) {
+    mesh.Append(MakeShape(shape, detail), Isometry3f::Identity());
+  }
+  return mesh;
+}
+
+}  // namespace
+
+struct SceneRenderer::Impl {
+  RenderScene scene;
+  Pinhole pinhole;
+  RenderQuality quality;
+  EglContext egl;
+  std::unique_ptr<GlProgram> mesh_program, plane_program, ball_program;
+  std::unique_ptr<ShadowMap> shadow;
+  std::vector<GpuPlane> planes;
+  std::vector<Thing> things;
+  std::vector<Link> links;
+  std::unique_ptr<GpuMesh> unit_ball;
+  GLuint no_vertices = 0;     // for rectangles, which are drawn from their numbers alone
+  GLuint frame[2] = {0, 0};   // drawn into (perhaps multisampled), resolved
+  GLuint buffers[3] = {0, 0, 0};
+
+  Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q) : scene(s), pinhole(p), quality(q) {
+    egl.MakeCurrent();
+    const std::string head =
+        fmt::format("#version 330 core\n#define SHADOW_TAPS {}\n#define SHADOW_SPREAD {:.3f}\n", quality.shadow_taps,
+                    quality.shadow_spread);
+    const std::string light = shaders::kLight;
+    const std::string lit = shaders::kShadow;
+    mesh_program =
+        std::make_unique<GlProgram>(head + light + shaders::kMeshVertex, head + lit + shaders::kMeshFragment);
+    plane_program = std::make_unique<GlProgram>(head + shaders::kPlaneVertex, head + lit + shaders::kPlaneFragment);
+    ball_program =
+        std::make_unique<GlProgram>(head + shaders::kBallVertex, head + light + lit + shaders::kBallFragment);
+    shadow = std::make_unique<ShadowMap>(quality.shadow_map_px);
+    Upload();
+    MakeFrames();
+    shadow->DrawStatic([this](const ShadowMap::DrawAt& draw) { DrawStaticCasters(draw); });
+  }
+
+  ~Impl() {
+    egl.MakeCurrent();
+    for (const GpuPlane& plane : planes) {
+      glDeleteTextures(1, &plane.texture);
+    }
+    glDeleteVertexArrays(1, &no_vertices);
+    glDeleteFramebuffers(2, frame);
+    glDeleteRenderbuffers(3, buffers);
+  }
+
+  void Upload() {
+    for (const TexturedPlane& plane : scene.bench.planes) {
+      planes.push_back({plane, UploadTexture(plane.texture)});
+      planes.back().plane.texture.rgba.clear();
+    }
+    for (const Mesh& mesh : scene.bench.things) {
+      things.push_back({std::make_unique<GpuMesh>(mesh), FindBounds(mesh)});
+    }
+    for (std::size_t i = 0; i < scene.robot.links.size(); ++i) {
+      Mesh mesh = MakeLink(scene.robot.links[i], Detail::kPicture);
+      Mesh caster = MakeLink(scene.robot.links[i], Detail::kShadow);
+      if (static_cast<int>(i) == scene.robot.tip) {
+        mesh.Append(MakeCameraHousing(), scene.X_EC.cast<float>());
+        caster.Append(MakeCameraHousing(), scene.X_EC.cast<float>());
+      }
+      links.push_back({std::make_unique<GpuMesh>(mesh), std::make_unique<GpuMesh>(caster), FindBounds(mesh)});
+    }
+    unit_ball = std::make_unique<GpuMesh>(MakeSphere(1.0F, 24, Vector3f::Ones()));
+    glGenVertexArrays(1, &no_vertices);
+  }
+
+  void MakeFrames() {
+    const int samples = quality.samples > 1 ? quality.samples : 0;
+    glGenFramebuffers(2, frame);
+    glGenRenderbuffers(3, buffers);
+    const auto attach = [&](GLuint buffer, GLenum format, GLenum point, int count) {
+      glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+      glRenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, pinhole.width_px, pinhole.height_px);
+      glFramebufferRenderbuffer(GL_FRAMEBUFFER, point, GL_RENDERBUFFER, buffer);
+    };
+    glBindFramebuffer(GL_FRAMEBUFFER, frame[0]);
+    attach(buffers[0], GL_RGBA8, GL_COLOR_ATTACHMENT0, samples);
+    attach(buffers[1], GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT, samples);
+    CheckFramebuffer("picture");
+    glBindFramebuffer(GL_FRAMEBUFFER, frame[1]);
+    attach(buffers[2], GL_RGBA8, GL_COLOR_ATTACHMENT0, 0);
+    CheckFramebuffer("resolved picture");
+  }
+
+  Ball Target(const Exposure& exposure) const {
+    return {exposure.p_BO.cast<float>(), static_cast<float>(scene.target_radius), scene.target_colour};
+  }
+
+  void DrawBallCaster(const Ball& ball, const ShadowMap::DrawAt& draw) const {
+    Matrix4f m = Matrix4f::Identity() * ball.radius;
+    m.block<3, 1>(0, 3) = ball.p_B;
+    m(3, 3) = 1.0F;
+    draw(*unit_ball, m);
+  }
+
+  void DrawStaticCasters(const ShadowMap::DrawAt& draw) const {
+    for (const Thing& thing : things) {
+      draw(*thing.mesh, Matrix4f::Identity());
+    }
+    for (const Ball& ball : scene.bench.balls) {
+      DrawBallCaster(ball, draw);
+    }
+  }
+
+  void DrawMovingCasters(const Exposure& exposure, const ShadowMap::DrawAt& draw) const {
+    for (std::size_t i = 0; i < links.size() && i < exposure.X_BL.size(); ++i) {
+      draw(*links[i].shadow, exposure.X_BL[i].matrix().cast<float>());
+    }
+    DrawBallCaster(Target(exposure), draw);
+  }
+
+  void SetLight(const GlProgram& program, const Isometry3f& X_BC) const {
+    program.Use();
+    program.Set("u_sun_B", shadow->sun_B());
+    program.Set("u_eye_B", Vector3f(X_BC.translation()));
+    program.Set("u_gain", static_cast<float>(scene.light));
+    program.Set("u_shadow_of_B", shadow->map_of_B());
+    SetShadow(program);
+  }
+  void SetShadow(const GlProgram& program) const {
+    program.Set("u_shadow_texel", 1.0F / static_cast<float>(quality.shadow_map_px));
+    program.Set("u_shadow", 1);
+  }
+
+  void DrawMeshes(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_B) const {
+    const Isometry3f X_CB = X_BC.inverse();
+    SetLight(*mesh_program, X_BC);
+    mesh_program->Set("u_clip_of_B", clip_of_B);
+    for (std::size_t i = 0; i < links.size() && i < exposure.X_BL.size(); ++i) {
+      const Isometry3f X_BL = exposure.X_BL[i].cast<float>();
+      if (InView(pinhole, X_CB * (X_BL * links[i].bounds.centre), links[i].bounds.radius)) {
+        mesh_program->Set("u_B_of_mesh", X_BL.matrix());
+        links[i].mesh->Draw();
+      }
+    }
+    mesh_program->Set("u_B_of_mesh", Matrix4f(Matrix4f::Identity()));
+    for (const Thing& thing : things) {
+      if (InView(pinhole, X_CB * thing.bounds.centre, thing.bounds.radius)) {
+        thing.mesh->Draw();
+      }
+    }
+  }
+
+  void DrawPlanes(const Exposure& exposure, const Matrix4f& clip_of_B) const {
+    const auto gain = static_cast<float>(scene.light);
+    const Matrix4f& map = shadow->map_of_B();
+    const Ball target = Target(exposure);
+    plane_program->Use();
+    SetShadow(*plane_program);
+    plane_program->Set("u_clip_of_B", clip_of_B);
+    plane_program->Set("u_texture", 0);
+    plane_program->Set("u_sky", Vector3f(gain * kSkyLight));
+    plane_program->Set("u_sun", Vector3f(gain * shadow->sun_B().z() * kSunLight));
+    plane_program->Set("u_shadow_x", Vector3f(map.block<3, 1>(0, 0)));
+    plane_program->Set("u_shadow_y", Vector3f(map.block<3, 1>(0, 1)));
+    plane_program->Set("u_ball_r2", target.radius * target.radius);
+    glBindVertexArray(no_vertices);
+    for (const GpuPlane& gpu : planes) {
+      const TexturedPlane& plane = gpu.plane;
+      const Eigen::Vector2f low = plane.centre_B.head<2>() - 0.5F * plane.size;
+      const Eigen::Vector2f high = low + plane.size;
+      const Eigen::Vector2f scale = plane.tile.cwiseInverse();
+      const Eigen::Vector2f offset = -low.cwiseProduct(scale);
+      const float z = plane.centre_B.z();
+      plane_program->Set("u_rectangle", Vector4f(low.x(), low.y(), high.x(), high.y()));
+      plane_program->Set("u_z", z);
+      plane_program->Set("u_uv_of_xy", Vector4f(offset.x(), offset.y(), scale.x(), scale.y()));
+      plane_program->Set("u_ball", Vector3f(target.p_B - Vector3f(0.0F, 0.0F, z)));
+      plane_program->Set("u_shadow_0", Vector3f(map.block<3, 1>(0, 2) * z + map.block<3, 1>(0, 3)));
+      glBindTexture(GL_TEXTURE_2D, gpu.texture);
+      glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    }
+  }
+
+  // Last, over what is behind them, by the share of each pixel that they cover; far ones first.
+  void DrawBalls(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_C) const {
+    const Isometry3f X_CB = X_BC.inverse();
+    std::vector<Ball> balls = scene.bench.balls;
+    balls.push_back(Target(exposure));
+    std::sort(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) {
+      return (X_CB * a.p_B).squaredNorm() > (X_CB * b.p_B).squaredNorm();
+    });
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    SetLight(*ball_program, X_BC);
+    ball_program->Set("u_clip_of_C", clip_of_C);
+    ball_program->Set("u_B_of_C", X_BC.matrix());
+    ball_program->Set("u_f_px", static_cast<float>(pinhole.f_px));
+    ball_program->Set("u_depth", WindowDepth(clip_of_C));
+    glBindVertexArray(no_vertices);
+    for (const Ball& ball : balls) {
+      const Vector3f c = X_CB * ball.p_B;
+      if (c.z() < 1.5F * ball.radius + kNear || !InView(pinhole, c, ball.radius)) {
+        continue;
+      }
+      ball_program->Set("u_rectangle", OutlineRectangle(c, ball.radius, static_cast<float>(2.0 / pinhole.f_px)));
+      ball_program->Set("u_ball_C", Vector4f(c.x(), c.y(), c.z(), ball.radius));
+      ball_program->Set("u_colour", ball.colour);
+      glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    }
+    glDisable(GL_BLEND);
+  }
+
+  void Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC_exact, std::span<std::uint8_t> rgba) {
+    egl.MakeCurrent();
+    const Isometry3f X_BC = X_BC_exact.cast<float>();
+    const Matrix4f clip_of_C = ClipOfC(pinhole);
+    const Matrix4f clip_of_B = clip_of_C * X_BC.inverse().matrix();
+    shadow->DrawMoving([&](const ShadowMap::DrawAt& draw) { DrawMovingCasters(exposure, draw); });
+
+    glBindFramebuffer(GL_FRAMEBUFFER, frame[0]);
+    glViewport(0, 0, pinhole.width_px, pinhole.height_px);
+    const auto gain = static_cast<float>(scene.light);
+    glClearColor(0.45F * gain, 0.46F * gain, 0.47F * gain, 1.0F);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glActiveTexture(GL_TEXTURE1);
+    glBindTexture(GL_TEXTURE_2D, shadow->texture());
+    glActiveTexture(GL_TEXTURE0);
+    // The table first: it fills most of the eye's picture and hides what is under it.
+    glDisable(GL_CULL_FACE);  // rectangles have no outside
+    DrawPlanes(exposure, clip_of_B);
+    glEnable(GL_CULL_FACE);
+    glFrontFace(GL_CW);  // see ClipOfC
+    DrawMeshes(exposure, X_BC, clip_of_B);
+    glDisable(GL_CULL_FACE);
+    DrawBalls(exposure, X_BC, clip_of_C);
+
+    if (quality.samples > 1) {
+      glBindFramebuffer(GL_READ_FRAMEBUFFER, frame[0]);
+      glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame[1]);
+      glBlitFramebuffer(0, 0, pinhole.width_px, pinhole.height_px, 0, 0, pinhole.width_px, pinhole.height_px,
+                        GL_COLOR_BUFFER_BIT, GL_NEAREST);
+      glBindFramebuffer(GL_FRAMEBUFFER, frame[1]);
+    }
+    glReadPixels(0, 0, pinhole.width_px, pinhole.height_px, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  }
+};
+
+SceneRenderer::SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality)
+    : impl_(std::make_unique<Impl>(scene, pinhole, quality)) {
+  driver_name_ = impl_->egl.RendererName();
+  Release();
+}
+SceneRenderer::~SceneRenderer() = default;
+
+void SceneRenderer::Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba) {
+  const auto needed = static_cast<std::size_t>(impl_->pinhole.width_px) *
+                      static_cast<std::size_t>(impl_->pinhole.height_px) * 4;
+  if (rgba.size() != needed) {
+    throw std::invalid_argument("SceneRenderer::Draw: the buffer does not have the picture's size");
+  }
+  impl_->Draw(exposure, X_BC, rgba);
+}
+
+void SceneRenderer::Release() { impl_->egl.Release(); }
+const Pinhole& SceneRenderer::pinhole() const { return impl_->pinhole; }
+
+}  // namespace fovea::sim

@@ -1,0 +1,56 @@
+// Draws the bench, the robot and the target as a pinhole camera at a given pose sees them.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/render/bench.hpp"
+#include "sim/render/exposure.hpp"
+#include "sim/render/pinhole.hpp"
+#include "sim/robot/sim_robot.hpp"
+
+namespace fovea::sim {
+
+struct RenderQuality {
+  int samples = 0;            // per pixel, for the edges of meshes; 0 or 1: one. Balls are exact anyway.
+  int shadow_map_px = 512;
+  int shadow_taps = 4;        // 1 to 16
+  float shadow_spread = 1.6F;  // of the taps, in texels of the shadow map
+};
+
+struct RenderScene {
+  Bench bench;
+  SimRobot robot;
+  Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();  // where the camera's housing sits on the tip link
+  double target_radius = 0.04;                             // [m]
+  Eigen::Vector3f target_colour{0.74F, 0.07F, 0.06F};
+  double light = 1.0;  // brightness; 1: a well-lit room and a well-set camera
+};
+
+// One thread at a time; the first call on a thread takes the OpenGL context there, and Release gives it up.
+class SceneRenderer {
+ public:
+  // std::runtime_error with one line when there is no EGL or the driver cannot do it.
+  SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality);
+  ~SceneRenderer();
+  SceneRenderer(const SceneRenderer&) = delete;
+  SceneRenderer& operator=(const SceneRenderer&) = delete;
+
+  // Draws `exposure` as seen from `X_BC` into `rgba` [height * width * 4], top row first.
+  void Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba);
+
+  void Release();
+  [[nodiscard]] const Pinhole& pinhole() const;
+  [[nodiscard]] const std::string& driver_name() const { return driver_name_; }
+
+ private:
+  struct Impl;
+  std::string driver_name_;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fovea::sim

@@ -1,0 +1,162 @@
+// The renderer's programs. Lengths in metres, positions in frame B (suffix _B) or C (suffix _C).
+#pragma once
+
+namespace fovea::sim::shaders {
+
+// One sun through a soft shadow, a bright ceiling and a darker floor, a faint gloss. Meshes are lit at their
+// vertices and shadowed at their pixels: in software every operation per pixel is paid 300 000 times.
+// SHADOW_TAPS and SHADOW_SPREAD are put before it.
+inline constexpr const char* kLight = R"glsl(
+uniform vec3 u_sun_B;        // unit vector towards the light
+uniform vec3 u_eye_B;
+uniform float u_gain;        // brightness of the light times the camera's gain
+uniform mat4 u_shadow_of_B;  // B to the shadow map, 0 to 1
+
+vec3 Sky(vec3 n_B) { return mix(vec3(0.26, 0.25, 0.24), vec3(0.46, 0.48, 0.50), 0.5 * n_B.z + 0.5); }
+vec3 Sun(vec3 n_B) { return vec3(0.66, 0.64, 0.60) * max(dot(n_B, u_sun_B), 0.0); }
+float Shine(vec3 p_B, vec3 n_B) {
+  float shine = max(dot(n_B, normalize(u_sun_B + normalize(u_eye_B - p_B))), 0.0);
+  shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;
+  return shine;
+}
+vec3 InShadowMap(vec3 p_B, vec3 n_B) { return (u_shadow_of_B * vec4(p_B + 0.004 * n_B, 1.0)).xyz; }
+)glsl";
+
+inline constexpr const char* kShadow = R"glsl(
+uniform sampler2DShadow u_shadow;
+uniform float u_shadow_texel;
+const vec2 kTaps[16] = vec2[16](
+  vec2(-0.62, -0.40), vec2(0.60, -0.51), vec2(-0.38, 0.66), vec2(0.48, 0.42),
+  vec2(-0.05, -0.93), vec2(0.94, 0.08), vec2(-0.93, 0.16), vec2(0.08, 0.95),
+  vec2(-0.28, -0.12), vec2(0.22, -0.17), vec2(-0.10, 0.28), vec2(0.26, 0.14),
+  vec2(-0.72, -0.72), vec2(0.75, 0.70), vec2(0.38, -0.86), vec2(-0.70, 0.60));
+
+float Lit(vec3 s) {
+  float lit = 0.0;
+  for (int i = 0; i < SHADOW_TAPS; ++i) {
+    lit += texture(u_shadow, vec3(s.xy + kTaps[i] * (SHADOW_SPREAD * u_shadow_texel), s.z));
+  }
+  return lit * (1.0 / float(SHADOW_TAPS));
+}
+)glsl";
+
+inline constexpr const char* kMeshVertex = R"glsl(
+layout(location = 0) in vec3 a_position;
+layout(location = 1) in vec3 a_normal;
+layout(location = 2) in vec3 a_colour;
+uniform mat4 u_clip_of_B;
+uniform mat4 u_B_of_mesh;
+out vec3 sky;  // light that reaches the pixel in any case, times the surface's colour
+out vec3 sun;  // light that a shadow takes away
+out vec3 in_shadow_map;
+void main() {
+  vec4 p = u_B_of_mesh * vec4(a_position, 1.0);
+  vec3 n_B = mat3(u_B_of_mesh) * a_normal;
+  sky = a_colour * Sky(n_B) * u_gain;
+  sun = (a_colour * Sun(n_B) + vec3(0.10 * Shine(p.xyz, n_B))) * u_gain;
+  in_shadow_map = InShadowMap(p.xyz, n_B);
+  gl_Position = u_clip_of_B * p;
+}
+)glsl";
+
+inline constexpr const char* kMeshFragment = R"glsl(
+in vec3 sky;
+in vec3 sun;
+in vec3 in_shadow_map;
+out vec4 pixel;
+void main() { pixel = vec4(sky + sun * Lit(in_shadow_map), 1.0); }
+)glsl";
+
+// A level rectangle with a texture. All that varies over it is linear in x and y of B, so these two are all
+// that is handed from vertex to pixel.
+inline constexpr const char* kPlaneVertex = R"glsl(
+uniform vec4 u_rectangle;  // x min, y min, x max, y max [m]
+uniform float u_z;
+uniform mat4 u_clip_of_B;
+out vec2 xy_B;
+void main() {
+  xy_B = vec2((gl_VertexID & 1) == 0 ? u_rectangle.x : u_rectangle.z,
+              (gl_VertexID & 2) == 0 ? u_rectangle.y : u_rectangle.w);
+  gl_Position = u_clip_of_B * vec4(xy_B, u_z, 1.0);
+}
+)glsl";
+
+// The target takes some of the sky from what it stands on.
+inline constexpr const char* kPlaneFragment = R"glsl(
+in vec2 xy_B;
+uniform sampler2D u_texture;
+uniform vec4 u_uv_of_xy;  // offset, scale
+uniform vec3 u_ball;      // the target: x, y in B, height of its centre over the plane
+uniform float u_ball_r2;  // its radius squared
+uniform vec3 u_sky;
+uniform vec3 u_sun;
+uniform vec3 u_shadow_0;  // place in the shadow map: u_shadow_0 + x u_shadow_x + y u_shadow_y
+uniform vec3 u_shadow_x;
+uniform vec3 u_shadow_y;
+out vec4 pixel;
+void main() {
+  vec3 to_ball = vec3(u_ball.xy - xy_B, u_ball.z);
+  float near = inversesqrt(dot(to_ball, to_ball));
+  float open = 1.0 - 0.8 * min(u_ball.z * near * near * near * u_ball_r2, 1.0);
+  vec3 colour = texture(u_texture, u_uv_of_xy.xy + u_uv_of_xy.zw * xy_B).rgb;
+  float lit = Lit(u_shadow_0 + xy_B.x * u_shadow_x + xy_B.y * u_shadow_y);
+  pixel = vec4(colour * (u_sky * open + u_sun * lit), 1.0);
+}
+)glsl";
+
+inline constexpr const char* kShadowVertex = R"glsl(
+layout(location = 0) in vec3 a_position;
+uniform mat4 u_clip_of_B;
+uniform mat4 u_B_of_mesh;
+void main() { gl_Position = u_clip_of_B * (u_B_of_mesh * vec4(a_position, 1.0)); }
+)glsl";
+
+inline constexpr const char* kShadowFragment = R"glsl(
+void main() {}
+)glsl";
+
+// A ball is drawn on a rectangle about its outline; each pixel's ray decides. A ray d touches the ball where
+// |d x c| = R |d|; the distance to that outline in pixels, to first order, gives the share of the pixel that
+// the ball covers.
+inline constexpr const char* kBallVertex = R"glsl(
+uniform vec4 u_rectangle;  // in normalised image coordinates: x min, y min, x max, y max
+uniform mat4 u_clip_of_C;
+out vec2 xy;
+void main() {
+  xy = vec2((gl_VertexID & 1) == 0 ? u_rectangle.x : u_rectangle.z,
+            (gl_VertexID & 2) == 0 ? u_rectangle.y : u_rectangle.w);
+  gl_Position = u_clip_of_C * vec4(xy, 1.0, 1.0);
+}
+)glsl";
+
+inline constexpr const char* kBallFragment = R"glsl(
+in vec2 xy;
+uniform vec4 u_ball_C;      // centre and radius
+uniform vec3 u_colour;
+uniform float u_f_px;
+uniform mat4 u_B_of_C;
+uniform vec2 u_depth;       // z of the depth buffer = u_depth.x + u_depth.y / Z
+out vec4 pixel;
+void main() {
+  vec3 d = vec3(xy, 1.0);
+  vec3 c = u_ball_C.xyz;
+  float R2 = u_ball_C.w * u_ball_C.w;
+  vec3 m = cross(d, c);
+  float d2 = dot(d, d);
+  float inside = R2 * d2 - dot(m, m);  // above 0 where the ray meets the ball
+  // Its slope along x and y of the image: d/dd (R2 d.d - |d x c|^2) = 2 (R2 d - c x (d x c)).
+  vec2 slope = 2.0 * (R2 * d - cross(c, m)).xy;
+  float cover = clamp(inside * u_f_px * inversesqrt(dot(slope, slope)) + 0.5, 0.0, 1.0);
+  if (cover <= 0.0) discard;
+  float t = (dot(d, c) - sqrt(max(inside, 0.0))) / d2;
+  vec3 p_C = t * d;
+  vec3 n_C = normalize(p_C - c);
+  vec3 p = (u_B_of_C * vec4(p_C, 1.0)).xyz;
+  vec3 n_B = mat3(u_B_of_C) * n_C;
+  vec3 sun = u_colour * Sun(n_B) + vec3(0.30 * Shine(p, n_B));
+  pixel = vec4((u_colour * Sky(n_B) + sun * Lit(InShadowMap(p, n_B))) * u_gain, cover);
+  gl_FragDepth = u_depth.x + u_depth.y / p_C.z;
+}
+)glsl";
+
+}  // namespace fovea::sim::shaders

@@ -1,0 +1,48 @@
+// The bench as the sun sees it: what is nearest to the light at each place is lit, the rest is in shadow.
+//
+// What does not move is drawn once and copied under what does.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <Eigen/Geometry>
+#include <functional>
+
+#include "sim/render/gl_program.hpp"
+#include "sim/render/gpu_mesh.hpp"
+
+namespace fovea::sim {
+
+class ShadowMap {
+ public:
+  // Draws one mesh at a place in B.
+  using DrawAt = std::function<void(const GpuMesh& mesh, const Eigen::Matrix4f& B_of_mesh)>;
+  // Calls DrawAt for all that casts a shadow.
+  using DrawAll = std::function<void(const DrawAt& draw)>;
+
+  explicit ShadowMap(int size_px);
+  ~ShadowMap();
+  ShadowMap(const ShadowMap&) = delete;
+  ShadowMap& operator=(const ShadowMap&) = delete;
+
+  void DrawStatic(const DrawAll& draw_all);
+  void DrawMoving(const DrawAll& draw_all);
+
+  [[nodiscard]] GLuint texture() const { return maps_[1]; }
+  [[nodiscard]] const Eigen::Vector3f& sun_B() const { return sun_B_; }
+  // From B to the map: x, y from 0 to 1, z the depth to compare.
+  [[nodiscard]] const Eigen::Matrix4f& map_of_B() const { return map_of_B_; }
+
+ private:
+  void Draw(const DrawAll& draw_all) const;
+
+  int size_px_;
+  GlProgram program_;
+  GLuint frames_[2] = {0, 0};  // what does not move; all
+  GLuint maps_[2] = {0, 0};
+  Eigen::Vector3f sun_B_;
+  Eigen::Matrix4f clip_of_B_;
+  Eigen::Matrix4f map_of_B_;
+};
+
+}  // namespace fovea::sim

@@ -1,0 +1,45 @@
+#include "sim/world/feature_delay.hpp"
+
+namespace fovea::sim {
+
+void FeatureDelay::Put(const hal::FeatureMeasurement& measurement) noexcept {
+  {
+    const std::lock_guard lock(mutex_);
+    for (Expected& expected : expected_) {
+      if (expected.sequence == measurement.sequence) {
+        expected.measurement = measurement;
+      }
+    }
+  }
+  changed_.notify_all();
+}
+
+void FeatureDelay::Expect(std::uint64_t sequence, std::int64_t due_ns) {
+  const std::lock_guard lock(mutex_);
+  expected_.push_back({sequence, due_ns, std::nullopt});
+}
+
+bool FeatureDelay::HandOver(std::int64_t now_ns, bool wait, hal::FeatureMailbox& mailbox) {
+  std::unique_lock lock(mutex_);
+  while (!expected_.empty() && expected_.front().due_ns <= now_ns) {
+    if (wait) {
+      changed_.wait(lock, [this] { return closed_ || expected_.front().measurement.has_value(); });
+    }
+    if (!expected_.front().measurement) {
+      return !closed_;
+    }
+    mailbox.Put(*expected_.front().measurement);
+    expected_.pop_front();
+  }
+  return true;
+}
+
+void FeatureDelay::Close() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+}  // namespace fovea::sim

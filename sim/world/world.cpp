@@ -1,0 +1,135 @@
+#include "sim/world/world.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr double kStictionSpeed = 0.02;  // Coulomb friction reaches its full size beyond this [rad/s]
+constexpr double kBrakeDecay = 0.8;      // an engaged brake leaves this share of the speed per step
+constexpr double kBrakeRest = 1e-3;      // and below this speed it holds [rad/s]
+
+}  // namespace
+
+World::World(const WorldConfig& config)
+    : config_(config), arm_(config.robot, config.physics), random_(config.seed) {
+  for (const SimLink& link : config_.robot.links) {
+    if (link.dof >= 0) {
+      joints_.push_back(&link);
+    }
+  }
+  arm_.SetState(config_.q_start, Eigen::VectorXd::Zero(arm_.num_dofs()));
+  command_.num_joints = arm_.num_dofs();
+  measured_.num_joints = arm_.num_dofs();
+  RecordTruth();
+  MeasureState();
+}
+
+void World::OnStep(std::function<void(const Truth&)> callback) {
+  on_step_ = std::move(callback);
+  on_step_(truth_);
+}
+
+void World::OnExposure(std::function<void(Exposure)> callback) { on_exposure_ = std::move(callback); }
+
+void World::AdvanceTo(std::int64_t time_ns) {
+  while (now_ns_ + hal::kTickPeriodNs <= time_ns) {
+    Step();
+  }
+}
+
+void World::Step() {
+  if (command_.engage_brakes) {
+    // The brakes stop each joint on its own, whatever hangs on it.
+    Eigen::VectorXd dq = arm_.dq() * kBrakeDecay;
+    for (Eigen::Index i = 0; i < dq.size(); ++i) {
+      dq[i] = std::fabs(dq[i]) < kBrakeRest ? 0.0 : dq[i];
+    }
+    arm_.SetState(arm_.q() + dq * kStepS, dq);
+  } else {
+    arm_.Step(JointTorque(), kStepS);
+  }
+  now_ns_ += hal::kTickPeriodNs;
+  RecordTruth();
+  MeasureState();
+  ExposeIfDue();
+  if (on_step_) {
+    on_step_(truth_);
+  }
+}
+
+double World::Friction(int joint, double velocity) const {
+  const SimLink& link = *joints_[static_cast<std::size_t>(joint)];
+  return link.viscous * velocity + link.coulomb * std::tanh(velocity / kStictionSpeed);
+}
+
+// What acts on the joints: the command, what the robot's own controller adds (gravity, and friction as far
+// as it knows it), and the friction itself.
+Eigen::VectorXd World::JointTorque() const {
+  Eigen::VectorXd tau = arm_.GravityTorque();
+  for (int i = 0; i < arm_.num_dofs(); ++i) {
+    tau[i] += command_.tau_cmd[static_cast<std::size_t>(i)] -
+              (1.0 - config_.friction_compensation) * Friction(i, arm_.dq()[i]);
+  }
+  return tau;
+}
+
+void World::RecordTruth() {
+  truth_.stamp_ns = now_ns_;
+  truth_.q = arm_.q();
+  truth_.dq = arm_.dq();
+  truth_.tau_cmd = Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
+  truth_.X_BE = arm_.LinkPose(config_.robot.tip);
+  truth_.X_BC = truth_.X_BE * config_.X_EC;
+  truth_.p_BO = PositionAt(config_.target, now_ns_);
+  truth_.contacts = arm_.Contacts();
+}
+
+void World::MeasureState() {
+  measured_.stamp_ns = now_ns_;
+  ++measured_.sequence;
+  const Eigen::VectorXd gravity = arm_.GravityTorque();
+  for (int i = 0; i < arm_.num_dofs(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    measured_.q[k] = arm_.q()[i] + config_.encoder_noise * normal_(random_);
+    measured_.dq[k] = arm_.dq()[i] + config_.velocity_noise * normal_(random_);
+    measured_.tau_applied[k] = command_.tau_cmd[k];
+    measured_.tau_meas[k] =
+        command_.tau_cmd[k] + gravity[i] - (1.0 - config_.friction_compensation) * Friction(i, arm_.dq()[i]);
+  }
+}
+
+Exposure World::Look() const {
+  Exposure exposure;
+  exposure.stamp_ns = now_ns_;
+  exposure.X_BC = truth_.X_BC;
+  exposure.p_BO = truth_.p_BO;
+  for (int i = 0; i < static_cast<int>(config_.robot.links.size()); ++i) {
+    exposure.X_BL.push_back(arm_.LinkPose(i));
+  }
+  return exposure;
+}
+
+// Exposures are centred on the step nearest to their time on the camera's own clock.
+void World::ExposeIfDue() {
+  const double period_ns = static_cast<double>(hal::kNsPerSecond) / config_.camera_rate_hz;
+  const auto due_ns =
+      config_.first_exposure_ns + static_cast<std::int64_t>(std::llround(static_cast<double>(next_frame_) * period_ns));
+  if (now_ns_ + hal::kTickPeriodNs / 2 < due_ns) {
+    return;
+  }
+  const std::uint64_t frame = next_frame_++;
+  const double now_s = static_cast<double>(now_ns_) * 1e-9;
+  const bool out = now_s >= config_.camera_outage.start_s && now_s < config_.camera_outage.end_s;
+  if (on_exposure_ && !out) {
+    Exposure exposure = Look();
+    exposure.sequence = frame;
+    on_exposure_(std::move(exposure));
+  }
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,95 @@
+// The simulated bench: arm, target and time. It moves in steps of 1 ms and knows the truth.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "fovea/hal/arm.hpp"
+#include "sim/physics/bullet_arm.hpp"
+#include "sim/render/exposure.hpp"
+#include "sim/world/target_motion.hpp"
+
+namespace fovea::sim {
+
+// A span of time in which the camera delivers nothing.
+struct Outage {
+  double start_s = 0.0;
+  double end_s = 0.0;
+};
+
+struct WorldConfig {
+  SimRobot robot;
+  BulletArmOptions physics;
+  Eigen::VectorXd q_start;            // [num_dofs]
+  Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
+  double friction_compensation = 0.9;  // share of the joints' friction that the robot's own controller takes away
+  double encoder_noise = 0.0;          // standard deviation of q [rad]
+  double velocity_noise = 0.0;         // standard deviation of dq [rad/s]
+  TargetMotion target;
+  double camera_rate_hz = 30.0;
+  std::int64_t first_exposure_ns = 20'000'000;
+  Outage camera_outage;
+  std::uint64_t seed = 1;
+};
+
+// What really is, at one instant. For verdicts and logs; never for the servo.
+struct Truth {
+  std::int64_t stamp_ns = 0;
+  Eigen::VectorXd q;
+  Eigen::VectorXd dq;
+  Eigen::VectorXd tau_cmd;  // in force until now
+  Eigen::Isometry3d X_BE = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d p_BO = Eigen::Vector3d::Zero();
+  int contacts = 0;
+};
+
+// One thread uses it.
+class World {
+ public:
+  explicit World(const WorldConfig& config);
+
+  // Called once per step, after it, and once at the start.
+  void OnStep(std::function<void(const Truth&)> callback);
+  // Called when the shutter opens; in the thread that advances the world.
+  void OnExposure(std::function<void(Exposure)> callback);
+
+  // Steps until the world's time is `time_ns` (a multiple of 1 ms, or the next one below).
+  void AdvanceTo(std::int64_t time_ns);
+  [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
+
+  // The arm's side of the seam.
+  [[nodiscard]] const hal::ArmState& MeasuredState() const { return measured_; }
+  void Command(const hal::ArmCommand& command) { command_ = command; }
+
+  [[nodiscard]] const Truth& truth() const { return truth_; }
+  // The bench as it is now, for a picture.
+  [[nodiscard]] Exposure Look() const;
+  [[nodiscard]] int num_joints() const { return arm_.num_dofs(); }
+
+ private:
+  void Step();
+  void MeasureState();
+  void RecordTruth();
+  void ExposeIfDue();
+  [[nodiscard]] Eigen::VectorXd JointTorque() const;
+  [[nodiscard]] double Friction(int joint, double velocity) const;
+
+  WorldConfig config_;
+  BulletArm arm_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_{0.0, 1.0};
+  std::vector<const SimLink*> joints_;  // moving links, base to tip
+  std::int64_t now_ns_ = 0;
+  std::uint64_t next_frame_ = 0;
+  hal::ArmCommand command_;
+  hal::ArmState measured_;
+  Truth truth_;
+  std::function<void(const Truth&)> on_step_;
+  std::function<void(Exposure)> on_exposure_;
+};
+
+}  // namespace fovea::sim
