@@ -69,10 +69,8 @@ void TakeIn(const ServoConfig& config, const hal::FeatureMeasurement& measuremen
   model::ArmPoses poses_then;
   model::ComputePoses(config.arm, q_then, poses_then);
   const model::Pose X_BC_then = poses_then.X_BE * config.X_EC;
-  const int rejected_before = state.filter.rejected_in_row;
-  Update(config.predict, measurement.stamp_ns, X_BC_then * p_CO_C,
-         X_BC_then.R * cov_C * X_BC_then.R.transpose(), state.filter);
-  if (state.filter.rejected_in_row > rejected_before) {
+  if (!Update(config.predict, measurement.stamp_ns, X_BC_then * p_CO_C,
+              X_BC_then.R * cov_C * X_BC_then.R.transpose(), state.filter)) {
     return;
   }
   state.has_accepted = true;
@@ -94,8 +92,9 @@ Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::
   prediction.known = state.filter.accepted >= config.predict.accepted_min;
   prediction.age_ns = now_ns - state.accepted_stamp_ns;
   if (config.predict.enabled) {
-    prediction.p_BO = PositionAt(state.filter, now_ns);
-    prediction.v_BO = state.filter.v_BO;
+    const TargetMotion motion = MotionAt(state.filter, now_ns);
+    prediction.p_BO = motion.p_BO;
+    prediction.v_BO = motion.v_BO;
     prediction.p_CO_C = X_BC.Inverse() * prediction.p_BO;
     prediction.v_BO_C = X_BC.R.transpose() * prediction.v_BO;
   } else {

@@ -5,78 +5,116 @@
 namespace fovea::servo {
 namespace {
 
-constexpr double kStartSpeedSigma = 0.3;  // how fast a target may be when it is first seen [m/s]
+using model::Mat3;
+using model::Vec3;
+
+constexpr int kOrder = TargetFilter::kOrder;
+constexpr double kStartSpeedSigma = 0.3;         // how fast a target may be when it is first seen [m/s]
+constexpr double kStartAccelerationSigma = 0.5;  // and how hard it may accelerate [m/s^2]
+constexpr double kJerkTime = 0.1;                // the jerk's mean over this time has the configured size [s]
 
 double Seconds(std::int64_t duration_ns) noexcept { return static_cast<double>(duration_ns) * 1e-9; }
 
-void StartAt(std::int64_t stamp_ns, const model::Vec3& p_BO, const model::Mat3& cov_B,
-             TargetFilter& filter) noexcept {
+void StartAt(std::int64_t stamp_ns, const Vec3& p_BO, const Mat3& cov_B, TargetFilter& filter) noexcept {
   filter = TargetFilter{};
   filter.accepted = 1;
   filter.stamp_ns = stamp_ns;
-  filter.p_BO = p_BO;
-  filter.P_pp = cov_B;
-  filter.P_vv = model::Mat3::Identity() * (kStartSpeedSigma * kStartSpeedSigma);
+  filter.x[0] = p_BO;
+  filter.P[0][0] = cov_B;
+  filter.P[1][1] = Mat3::Identity() * (kStartSpeedSigma * kStartSpeedSigma);
+  filter.P[2][2] = Mat3::Identity() * (kStartAccelerationSigma * kStartAccelerationSigma);
 }
 
-// Moves the estimate on by `dt` [s] under an acceleration that is constant within the step, of standard
-// deviation `acceleration` [m/s^2].
-void Advance(double dt, double acceleration, TargetFilter& filter) noexcept {
-  const double a2 = acceleration * acceleration;
-  filter.p_BO += dt * filter.v_BO;
-  filter.P_pp += dt * (filter.P_pv + filter.P_pv.transpose()) + dt * dt * filter.P_vv;
-  filter.P_pv += dt * filter.P_vv;
-  filter.P_pp.diagonal().array() += a2 * dt * dt * dt * dt / 4.0;
-  filter.P_pv.diagonal().array() += a2 * dt * dt * dt / 2.0;
-  filter.P_vv.diagonal().array() += a2 * dt * dt;
+// Moves the estimate on by `dt` [s]: x' = F x, P' = F P F^T + Q, with jerk of spectral density q [m^2/s^5].
+void Advance(double dt, double jerk, TargetFilter& filter) noexcept {
+  const double F[kOrder][kOrder] = {{1.0, dt, 0.5 * dt * dt}, {0.0, 1.0, dt}, {0.0, 0.0, 1.0}};
+  const double q = jerk * jerk * kJerkTime;
+  const double dt2 = dt * dt;
+  const double dt3 = dt2 * dt;
+  const double Q[kOrder][kOrder] = {{q * dt3 * dt2 / 20.0, q * dt2 * dt2 / 8.0, q * dt3 / 6.0},
+                                    {q * dt2 * dt2 / 8.0, q * dt3 / 3.0, q * dt2 / 2.0},
+                                    {q * dt3 / 6.0, q * dt2 / 2.0, q * dt}};
+  const TargetFilter before = filter;
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    filter.x[i].setZero();
+    for (std::size_t k = i; k < kOrder; ++k) {
+      filter.x[i] += F[i][k] * before.x[k];
+    }
+    for (std::size_t j = 0; j < kOrder; ++j) {
+      Mat3 sum = Mat3::Identity() * Q[i][j];
+      for (std::size_t k = i; k < kOrder; ++k) {
+        for (std::size_t l = j; l < kOrder; ++l) {
+          sum += (F[i][k] * F[j][l]) * before.P[k][l];
+        }
+      }
+      filter.P[i][j] = sum;
+    }
+  }
 }
 
 }  // namespace
 
-void Update(const PredictConfig& config, std::int64_t stamp_ns, const model::Vec3& p_BO,
-            const model::Mat3& cov_B, TargetFilter& filter) noexcept {
+TargetFilter::TargetFilter() noexcept {
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    x[i].setZero();
+    for (std::size_t j = 0; j < kOrder; ++j) {
+      P[i][j].setZero();
+    }
+  }
+}
+
+bool Update(const PredictConfig& config, std::int64_t stamp_ns, const Vec3& p_BO, const Mat3& cov_B,
+            TargetFilter& filter) noexcept {
   if (filter.accepted == 0) {
     StartAt(stamp_ns, p_BO, cov_B, filter);
-    return;
+    return true;
   }
   if (stamp_ns <= filter.stamp_ns) {
-    return;  // no news
+    return false;  // no news
   }
   TargetFilter next = filter;
-  Advance(Seconds(stamp_ns - filter.stamp_ns), config.target_acceleration, next);
+  Advance(Seconds(stamp_ns - filter.stamp_ns), config.target_jerk, next);
 
-  const model::Vec3 innovation = p_BO - next.p_BO;
-  const model::Mat3 S = next.P_pp + cov_B;
-  const model::Mat3 S_inverse = S.inverse();
+  const Vec3 innovation = p_BO - next.x[0];
+  const Mat3 S = next.P[0][0] + cov_B;
+  const Mat3 S_inverse = S.inverse();
   const double distance2 = innovation.dot(S_inverse * innovation);
   if (!(distance2 <= config.gate_sigma * config.gate_sigma)) {
     if (filter.rejected_in_row + 1 >= config.gate_rejects_max) {
       StartAt(stamp_ns, p_BO, cov_B, filter);
-    } else {
-      ++filter.rejected_in_row;
+      return true;
     }
-    return;
+    ++filter.rejected_in_row;
+    return false;
   }
-  const model::Mat3 K_p = next.P_pp * S_inverse;
-  const model::Mat3 K_v = next.P_pv.transpose() * S_inverse;
-  next.p_BO += K_p * innovation;
-  next.v_BO += K_v * innovation;
-  next.P_vv -= K_v * S * K_v.transpose();
-  next.P_pv -= K_p * S * K_v.transpose();
-  next.P_pp -= K_p * S * K_p.transpose();
-  // Rounding must not make the covariance lean to one side over hours.
-  next.P_pp = 0.5 * (next.P_pp + next.P_pp.transpose()).eval();
-  next.P_vv = 0.5 * (next.P_vv + next.P_vv.transpose()).eval();
+  std::array<Mat3, kOrder> K;
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    K[i] = next.P[i][0] * S_inverse;
+    next.x[i] += K[i] * innovation;
+  }
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    for (std::size_t j = i; j < kOrder; ++j) {
+      next.P[i][j] -= K[i] * S * K[j].transpose();
+      // Rounding must not make the covariance lean to one side over hours.
+      if (i == j) {
+        next.P[i][i] = 0.5 * (next.P[i][i] + next.P[i][i].transpose()).eval();
+      } else {
+        next.P[j][i] = next.P[i][j].transpose();
+      }
+    }
+  }
   next.stamp_ns = stamp_ns;
   next.rejected_in_row = 0;
   if (next.accepted < config.accepted_min) {
     ++next.accepted;
   }
   filter = next;
+  return true;
 }
 
-model::Vec3 PositionAt(const TargetFilter& filter, std::int64_t now_ns) noexcept {
-  return filter.p_BO + Seconds(now_ns - filter.stamp_ns) * filter.v_BO;
+TargetMotion MotionAt(const TargetFilter& filter, std::int64_t now_ns) noexcept {
+  const double dt = Seconds(now_ns - filter.stamp_ns);
+  return {filter.x[0] + dt * (filter.x[1] + 0.5 * dt * filter.x[2]), filter.x[1] + dt * filter.x[2]};
 }
 
 }  // namespace fovea::servo

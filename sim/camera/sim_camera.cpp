@@ -1,29 +1,39 @@
 #include "sim/camera/sim_camera.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
 namespace fovea::sim {
 
-SimCamera::SimCamera(int width_px, int height_px, std::int64_t exposure_ns, Sensor sensor, DrawExposure draw)
-    : width_px_(width_px),
-      height_px_(height_px),
-      exposure_ns_(exposure_ns),
-      sensor_(std::move(sensor)),
-      draw_(std::move(draw)),
-      rgba_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * 4),
-      bgr_(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * 3) {}
+SimCamera::SimCamera(const SimCameraConfig& config, Sensor sensor, std::vector<Painter> painters)
+    : config_(config), sensor_(std::move(sensor)) {
+  for (Painter& painter : painters) {
+    workers_.emplace_back([this, painter = std::move(painter)] { Work(painter); });
+  }
+}
+
+SimCamera::~SimCamera() {
+  Close();
+  for (std::thread& worker : workers_) {
+    worker.join();
+  }
+}
 
 void SimCamera::Expose(Exposure exposure) {
   {
     const std::lock_guard lock(mutex_);
-    if (waiting_.size() == kQueue) {
-      waiting_.pop_front();
+    const auto waiting = std::count_if(jobs_.begin(), jobs_.end(),
+                                       [](const auto& job) { return job->progress == Progress::kWaiting; });
+    if (static_cast<std::size_t>(waiting) >= config_.queue) {
+      jobs_.erase(std::find(jobs_.begin(), jobs_.end(), NextWaiting()));
       ++lost_;
     }
-    waiting_.push_back(std::move(exposure));
+    auto job = std::make_shared<Job>();
+    job->exposure = std::move(exposure);
+    jobs_.push_back(std::move(job));
   }
-  arrived_.notify_one();
+  changed_.notify_all();
 }
 
 void SimCamera::Close() {
@@ -31,7 +41,7 @@ void SimCamera::Close() {
     const std::lock_guard lock(mutex_);
     closed_ = true;
   }
-  arrived_.notify_all();
+  changed_.notify_all();
 }
 
 std::uint64_t SimCamera::lost() const {
@@ -44,36 +54,86 @@ std::string SimCamera::fault() const {
   return fault_;
 }
 
+std::shared_ptr<SimCamera::Job> SimCamera::NextWaiting() const {
+  const auto found = std::find_if(jobs_.begin(), jobs_.end(),
+                                  [](const auto& job) { return job->progress == Progress::kWaiting; });
+  return found == jobs_.end() ? nullptr : *found;
+}
+
+void SimCamera::Work(const Painter& painter) {
+  DrawUntilClosed(painter);
+  if (painter.leave_thread) {
+    painter.leave_thread();
+  }
+}
+
+void SimCamera::DrawUntilClosed(const Painter& painter) {
+  const std::size_t pixels = static_cast<std::size_t>(config_.width_px) * static_cast<std::size_t>(config_.height_px);
+  std::vector<std::uint8_t> rgba(pixels * 4);
+  while (true) {
+    std::shared_ptr<Job> job;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return closed_ || NextWaiting() != nullptr; });
+      if (closed_) {
+        return;
+      }
+      job = NextWaiting();
+      job->progress = Progress::kDrawing;
+      if (!spare_buffers_.empty()) {
+        job->bgr = std::move(spare_buffers_.back());
+        spare_buffers_.pop_back();
+      }
+    }
+    try {
+      painter.draw(job->exposure, rgba);
+    } catch (const std::exception& error) {
+      const std::lock_guard lock(mutex_);
+      fault_ = error.what();
+      closed_ = true;
+      changed_.notify_all();
+      return;
+    }
+    job->bgr.resize(pixels * 3);
+    sensor_.Expose(rgba, config_.width_px, job->exposure.sequence, job->bgr);
+    {
+      const std::lock_guard lock(mutex_);
+      job->progress = Progress::kDone;
+    }
+    changed_.notify_all();
+  }
+}
+
 hal::Status SimCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept {
-  Exposure exposure;
+  std::shared_ptr<Job> job;
   {
     std::unique_lock lock(mutex_);
-    const auto ready = [this] { return closed_ || !waiting_.empty(); };
-    if (!arrived_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), ready)) {
+    const auto ready = [this] {
+      return closed_ || (!jobs_.empty() && jobs_.front()->progress == Progress::kDone);
+    };
+    if (!changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), ready)) {
       return hal::Status(hal::StatusCode::kTimeout, "sim camera");
     }
-    if (waiting_.empty()) {
+    if (!fault_.empty()) {
+      return hal::Status(hal::StatusCode::kDeviceFault, "sim camera");
+    }
+    if (closed_) {
       return hal::Status(hal::StatusCode::kClosed, "sim camera");
     }
-    exposure = std::move(waiting_.front());
-    waiting_.pop_front();
+    job = jobs_.front();
+    jobs_.pop_front();
+    // The frame before is given up now; its buffer serves again.
+    spare_buffers_.push_back(std::move(handed_out_));
+    handed_out_ = std::move(job->bgr);
   }
-  try {
-    draw_(exposure, rgba_);
-  } catch (const std::exception& error) {
-    const std::lock_guard lock(mutex_);
-    fault_ = error.what();
-    return hal::Status(hal::StatusCode::kDeviceFault, "sim camera");
-  }
-  sensor_.Expose(rgba_, width_px_, exposure.sequence, bgr_);
-  frame.stamp_ns = exposure.stamp_ns;
-  frame.exposure_ns = exposure_ns_;
-  frame.sequence = exposure.sequence;
-  frame.width_px = width_px_;
-  frame.height_px = height_px_;
-  frame.stride_bytes = width_px_ * 3;
+  frame.stamp_ns = job->exposure.stamp_ns;
+  frame.exposure_ns = config_.exposure_ns;
+  frame.sequence = job->exposure.sequence;
+  frame.width_px = config_.width_px;
+  frame.height_px = config_.height_px;
+  frame.stride_bytes = config_.width_px * 3;
   frame.format = hal::PixelFormat::kBgr8;
-  frame.pixels = bgr_;
+  frame.pixels = handed_out_;
   return hal::Status::Ok();
 }
 

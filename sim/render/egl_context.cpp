@@ -6,6 +6,7 @@
 
 #include <array>
 #include <stdexcept>
+#include <vector>
 
 namespace fovea::sim {
 namespace {
@@ -15,32 +16,57 @@ constexpr const char* kAdvice =
 
 std::string ErrorText() { return fmt::format("EGL error 0x{:x}", eglGetError()); }
 
-}  // namespace
+bool Has(const char* extensions, const char* name) {
+  return extensions != nullptr && std::string(extensions).find(name) != std::string::npos;
+}
 
-EglContext::EglContext() {
+// Displays that could render, the best first: GPUs, then software.
+struct Displays {
+  std::vector<void*> gpu;
+  std::vector<void*> software;
+};
+
+Displays FindDisplays() {
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   if (extensions == nullptr) {
     throw std::runtime_error(fmt::format("{} ({})", kAdvice, ErrorText()));
   }
-  const std::string known = extensions;
-  std::string reason = "no usable display";
-  const bool has_platforms = known.find("EGL_EXT_platform_base") != std::string::npos;
-  if (has_platforms && known.find("EGL_MESA_platform_surfaceless") != std::string::npos &&
-      TryDisplay(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr),
-                 reason)) {
-    return;
+  Displays displays;
+  if (!Has(extensions, "EGL_EXT_platform_base")) {
+    return displays;
   }
-  if (has_platforms && known.find("EGL_EXT_platform_device") != std::string::npos &&
-      known.find("EGL_EXT_device") != std::string::npos) {
+  if (Has(extensions, "EGL_MESA_platform_surfaceless")) {
+    displays.software.push_back(
+        eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+  }
+  if (Has(extensions, "EGL_EXT_platform_device") && Has(extensions, "EGL_EXT_device")) {
     std::array<EGLDeviceEXT, 16> devices{};
     EGLint num_devices = 0;
     eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &num_devices);
     for (EGLint i = 0; i < num_devices; ++i) {
-      void* display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[static_cast<std::size_t>(i)],
-                                               nullptr);
-      if (TryDisplay(display, reason)) {
-        return;
-      }
+      EGLDeviceEXT device = devices[static_cast<std::size_t>(i)];
+      void* display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
+      const bool is_software = Has(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
+      (is_software ? displays.software : displays.gpu).push_back(display);
+    }
+  }
+  return displays;
+}
+
+}  // namespace
+
+EglContext::EglContext(int index) {
+  const Displays displays = FindDisplays();
+  std::string reason = "no usable display";
+  for (void* display : displays.gpu) {
+    if (TryDisplay(display, reason)) {
+      return;
+    }
+  }
+  const std::size_t count = displays.software.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (TryDisplay(displays.software[(static_cast<std::size_t>(index) + i) % count], reason)) {
+      return;
     }
   }
   throw std::runtime_error(fmt::format("{} ({})", kAdvice, reason));
@@ -64,7 +90,6 @@ bool EglContext::TryDisplay(void* display, std::string& reason) {
   }
   if (context == EGL_NO_CONTEXT) {
     reason = "no OpenGL 3.3 core context, " + ErrorText();
-    eglTerminate(display);
     return false;
   }
   display_ = display;
@@ -74,9 +99,9 @@ bool EglContext::TryDisplay(void* display, std::string& reason) {
 
 EglContext::~EglContext() {
   if (display_ != nullptr) {
+    // The display is not terminated: all contexts of the process share it.
     eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);
-    eglTerminate(display_);
   }
 }
 

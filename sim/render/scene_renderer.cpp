@@ -10,6 +10,8 @@
 #include "sim/render/egl_context.hpp"
 #include "sim/render/gl_program.hpp"
 #include "sim/render/gpu_mesh.hpp"
+#include "sim/render/light.hpp"
+#include "sim/render/plane_painter.hpp"
 #include "sim/render/projection.hpp"
 #include "sim/render/shaders.hpp"
 #include "sim/render/shadow_map.hpp"
@@ -22,14 +24,6 @@ using Eigen::Matrix4f;
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 
-const Vector3f kSkyLight(0.46F, 0.48F, 0.50F);  // of a level surface; as in shaders.hpp
-const Vector3f kSunLight(0.66F, 0.64F, 0.60F);
-
-struct GpuPlane {
-  TexturedPlane plane;
-  GLuint texture = 0;
-};
-
 // A thing that does not move, and where it is, so that what is out of view need not be drawn.
 struct Thing {
   std::unique_ptr<GpuMesh> mesh;
@@ -41,19 +35,8 @@ struct Link {
   std::unique_ptr<GpuMesh> mesh;
   std::unique_ptr<GpuMesh> shadow;
   Bounds bounds;
+  std::vector<Bounds> shapes;  // tighter: one for each of its solids
 };
-
-GLuint UploadTexture(const Texture& from) {
-  GLuint texture = 0;
-  glGenTextures(1, &texture);
-  glBindTexture(GL_TEXTURE_2D, texture);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, from.width_px, from.height_px, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-               from.rgba.data());
-  glGenerateMipmap(GL_TEXTURE_2D);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  return texture;
-}
 
 Mesh MakeCameraHousing() {
   Mesh mesh;
@@ -81,17 +64,18 @@ struct SceneRenderer::Impl {
   Pinhole pinhole;
   RenderQuality quality;
   EglContext egl;
-  std::unique_ptr<GlProgram> mesh_program, plane_program, ball_program;
+  std::unique_ptr<GlProgram> mesh_program, ball_program;
   std::unique_ptr<ShadowMap> shadow;
-  std::vector<GpuPlane> planes;
+  std::unique_ptr<PlanePainter> planes;
   std::vector<Thing> things;
   std::vector<Link> links;
   std::unique_ptr<GpuMesh> unit_ball;
-  GLuint no_vertices = 0;     // for rectangles, which are drawn from their numbers alone
+  GLuint no_vertices = 0;     // for balls, which are drawn from their numbers alone
   GLuint frame[2] = {0, 0};   // drawn into (perhaps multisampled), resolved
   GLuint buffers[3] = {0, 0, 0};
 
-  Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q) : scene(s), pinhole(p), quality(q) {
+  Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q, int index)
+      : scene(s), pinhole(p), quality(q), egl(index) {
     egl.MakeCurrent();
     const std::string head =
         fmt::format("#version 330 core\n#define SHADOW_TAPS {}\n#define SHADOW_SPREAD {:.3f}\n", quality.shadow_taps,
@@ -100,30 +84,24 @@ struct SceneRenderer::Impl {
     const std::string lit = shaders::kShadow;
     mesh_program =
         std::make_unique<GlProgram>(head + light + shaders::kMeshVertex, head + lit + shaders::kMeshFragment);
-    plane_program = std::make_unique<GlProgram>(head + shaders::kPlaneVertex, head + lit + shaders::kPlaneFragment);
     ball_program =
         std::make_unique<GlProgram>(head + shaders::kBallVertex, head + light + lit + shaders::kBallFragment);
     shadow = std::make_unique<ShadowMap>(quality.shadow_map_px);
     Upload();
     MakeFrames();
-    shadow->DrawStatic([this](const ShadowMap::DrawAt& draw) { DrawStaticCasters(draw); });
+    const auto draw_static = [this](const ShadowMap::DrawAt& draw) { DrawStaticCasters(draw); };
+    shadow->DrawStatic(draw_static);
+    planes = std::make_unique<PlanePainter>(scene.bench.planes, head, draw_static);
   }
 
   ~Impl() {
     egl.MakeCurrent();
-    for (const GpuPlane& plane : planes) {
-      glDeleteTextures(1, &plane.texture);
-    }
     glDeleteVertexArrays(1, &no_vertices);
     glDeleteFramebuffers(2, frame);
     glDeleteRenderbuffers(3, buffers);
   }
 
   void Upload() {
-    for (const TexturedPlane& plane : scene.bench.planes) {
-      planes.push_back({plane, UploadTexture(plane.texture)});
-      planes.back().plane.texture.rgba.clear();
-    }
     for (const Mesh& mesh : scene.bench.things) {
       things.push_back({std::make_unique<GpuMesh>(mesh), FindBounds(mesh)});
     }
@@ -134,7 +112,12 @@ struct SceneRenderer::Impl {
         mesh.Append(MakeCameraHousing(), scene.X_EC.cast<float>());
         caster.Append(MakeCameraHousing(), scene.X_EC.cast<float>());
       }
-      links.push_back({std::make_unique<GpuMesh>(mesh), std::make_unique<GpuMesh>(caster), FindBounds(mesh)});
+      std::vector<Bounds> shapes;
+      for (const Shape& shape : scene.robot.links[i].visuals) {
+        shapes.push_back(FindBounds(MakeShape(shape, Detail::kShadow)));
+      }
+      links.push_back(
+          {std::make_unique<GpuMesh>(mesh), std::make_unique<GpuMesh>(caster), FindBounds(mesh), std::move(shapes)});
     }
     unit_ball = std::make_unique<GpuMesh>(MakeSphere(1.0F, 24, Vector3f::Ones()));
     glGenVertexArrays(1, &no_vertices);
@@ -187,13 +170,13 @@ struct SceneRenderer::Impl {
 
   void SetLight(const GlProgram& program, const Isometry3f& X_BC) const {
     program.Use();
-    program.Set("u_sun_B", shadow->sun_B());
+    program.Set("u_sun_B", kSun_B);
+    program.Set("u_sun_light", kSunLight);
+    program.Set("u_sky_from_above", kSkyFromAbove);
+    program.Set("u_sky_from_below", kSkyFromBelow);
     program.Set("u_eye_B", Vector3f(X_BC.translation()));
     program.Set("u_gain", static_cast<float>(scene.light));
     program.Set("u_shadow_of_B", shadow->map_of_B());
-    SetShadow(program);
-  }
-  void SetShadow(const GlProgram& program) const {
     program.Set("u_shadow_texel", 1.0F / static_cast<float>(quality.shadow_map_px));
     program.Set("u_shadow", 1);
   }
@@ -218,34 +201,15 @@ struct SceneRenderer::Impl {
   }
 
   void DrawPlanes(const Exposure& exposure, const Matrix4f& clip_of_B) const {
-    const auto gain = static_cast<float>(scene.light);
-    const Matrix4f& map = shadow->map_of_B();
     const Ball target = Target(exposure);
-    plane_program->Use();
-    SetShadow(*plane_program);
-    plane_program->Set("u_clip_of_B", clip_of_B);
-    plane_program->Set("u_texture", 0);
-    plane_program->Set("u_sky", Vector3f(gain * kSkyLight));
-    plane_program->Set("u_sun", Vector3f(gain * shadow->sun_B().z() * kSunLight));
-    plane_program->Set("u_shadow_x", Vector3f(map.block<3, 1>(0, 0)));
-    plane_program->Set("u_shadow_y", Vector3f(map.block<3, 1>(0, 1)));
-    plane_program->Set("u_ball_r2", target.radius * target.radius);
-    glBindVertexArray(no_vertices);
-    for (const GpuPlane& gpu : planes) {
-      const TexturedPlane& plane = gpu.plane;
-      const Eigen::Vector2f low = plane.centre_B.head<2>() - 0.5F * plane.size;
-      const Eigen::Vector2f high = low + plane.size;
-      const Eigen::Vector2f scale = plane.tile.cwiseInverse();
-      const Eigen::Vector2f offset = -low.cwiseProduct(scale);
-      const float z = plane.centre_B.z();
-      plane_program->Set("u_rectangle", Vector4f(low.x(), low.y(), high.x(), high.y()));
-      plane_program->Set("u_z", z);
-      plane_program->Set("u_uv_of_xy", Vector4f(offset.x(), offset.y(), scale.x(), scale.y()));
-      plane_program->Set("u_ball", Vector3f(target.p_B - Vector3f(0.0F, 0.0F, z)));
-      plane_program->Set("u_shadow_0", Vector3f(map.block<3, 1>(0, 2) * z + map.block<3, 1>(0, 3)));
-      glBindTexture(GL_TEXTURE_2D, gpu.texture);
-      glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    std::vector<MovingBounds> moving{{target.p_B, target.radius}};
+    for (std::size_t i = 0; i < links.size() && i < exposure.X_BL.size(); ++i) {
+      const Isometry3f X_BL = exposure.X_BL[i].cast<float>();
+      for (const Bounds& shape : links[i].shapes) {
+        moving.push_back({X_BL * shape.centre, shape.radius});
+      }
     }
+    planes->Draw(clip_of_B, static_cast<float>(scene.light), *shadow, target, moving);
   }
 
   // Last, over what is behind them, by the share of each pixel that they cover; far ones first.
@@ -294,7 +258,7 @@ struct SceneRenderer::Impl {
     glBindTexture(GL_TEXTURE_2D, shadow->texture());
     glActiveTexture(GL_TEXTURE0);
     // The table first: it fills most of the eye's picture and hides what is under it.
-    glDisable(GL_CULL_FACE);  // rectangles have no outside
+    glDisable(GL_CULL_FACE);  // tiles and balls' rectangles have no outside
     DrawPlanes(exposure, clip_of_B);
     glEnable(GL_CULL_FACE);
     glFrontFace(GL_CW);  // see ClipOfC
@@ -313,8 +277,8 @@ struct SceneRenderer::Impl {
   }
 };
 
-SceneRenderer::SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality)
-    : impl_(std::make_unique<Impl>(scene, pinhole, quality)) {
+SceneRenderer::SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality, int index)
+    : impl_(std::make_unique<Impl>(scene, pinhole, quality, index)) {
   driver_name_ = impl_->egl.RendererName();
   Release();
 }

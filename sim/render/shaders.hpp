@@ -3,17 +3,19 @@
 
 namespace fovea::sim::shaders {
 
-// One sun through a soft shadow, a bright ceiling and a darker floor, a faint gloss. Meshes are lit at their
-// vertices and shadowed at their pixels: in software every operation per pixel is paid 300 000 times.
-// SHADOW_TAPS and SHADOW_SPREAD are put before it.
+// Meshes are lit at their vertices and shadowed at their pixels: in software every operation per pixel is paid
+// 300 000 times. The figures of the light come from light.hpp.
 inline constexpr const char* kLight = R"glsl(
 uniform vec3 u_sun_B;        // unit vector towards the light
+uniform vec3 u_sun_light;
+uniform vec3 u_sky_from_above;
+uniform vec3 u_sky_from_below;
 uniform vec3 u_eye_B;
 uniform float u_gain;        // brightness of the light times the camera's gain
 uniform mat4 u_shadow_of_B;  // B to the shadow map, 0 to 1
 
-vec3 Sky(vec3 n_B) { return mix(vec3(0.26, 0.25, 0.24), vec3(0.46, 0.48, 0.50), 0.5 * n_B.z + 0.5); }
-vec3 Sun(vec3 n_B) { return vec3(0.66, 0.64, 0.60) * max(dot(n_B, u_sun_B), 0.0); }
+vec3 Sky(vec3 n_B) { return mix(u_sky_from_below, u_sky_from_above, 0.5 * n_B.z + 0.5); }
+vec3 Sun(vec3 n_B) { return u_sun_light * max(dot(n_B, u_sun_B), 0.0); }
 float Shine(vec3 p_B, vec3 n_B) {
   float shine = max(dot(n_B, normalize(u_sun_B + normalize(u_eye_B - p_B))), 0.0);
   shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;
@@ -22,6 +24,7 @@ float Shine(vec3 p_B, vec3 n_B) {
 vec3 InShadowMap(vec3 p_B, vec3 n_B) { return (u_shadow_of_B * vec4(p_B + 0.004 * n_B, 1.0)).xyz; }
 )glsl";
 
+// SHADOW_TAPS and SHADOW_SPREAD are put before it.
 inline constexpr const char* kShadow = R"glsl(
 uniform sampler2DShadow u_shadow;
 uniform float u_shadow_texel;
@@ -67,27 +70,25 @@ out vec4 pixel;
 void main() { pixel = vec4(sky + sun * Lit(in_shadow_map), 1.0); }
 )glsl";
 
-// A level rectangle with a texture. All that varies over it is linear in x and y of B, so these two are all
-// that is handed from vertex to pixel.
+// A tile of a level surface. All that varies over it is linear in x and y of B, so these two are all that is
+// handed from vertex to pixel.
 inline constexpr const char* kPlaneVertex = R"glsl(
-uniform vec4 u_rectangle;  // x min, y min, x max, y max [m]
+layout(location = 0) in vec2 a_low;  // the tile's corner
+uniform vec2 u_tile_size;
 uniform float u_z;
 uniform mat4 u_clip_of_B;
 out vec2 xy_B;
 void main() {
-  xy_B = vec2((gl_VertexID & 1) == 0 ? u_rectangle.x : u_rectangle.z,
-              (gl_VertexID & 2) == 0 ? u_rectangle.y : u_rectangle.w);
+  xy_B = a_low + u_tile_size * vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1));
   gl_Position = u_clip_of_B * vec4(xy_B, u_z, 1.0);
 }
 )glsl";
 
-// The target takes some of the sky from what it stands on.
-inline constexpr const char* kPlaneFragment = R"glsl(
+// Once: colour times light, with the shadows of all that stands still.
+inline constexpr const char* kPaintFragment = R"glsl(
 in vec2 xy_B;
 uniform sampler2D u_texture;
 uniform vec4 u_uv_of_xy;  // offset, scale
-uniform vec3 u_ball;      // the target: x, y in B, height of its centre over the plane
-uniform float u_ball_r2;  // its radius squared
 uniform vec3 u_sky;
 uniform vec3 u_sun;
 uniform vec3 u_shadow_0;  // place in the shadow map: u_shadow_0 + x u_shadow_x + y u_shadow_y
@@ -95,12 +96,41 @@ uniform vec3 u_shadow_x;
 uniform vec3 u_shadow_y;
 out vec4 pixel;
 void main() {
+  vec3 colour = texture(u_texture, u_uv_of_xy.xy + u_uv_of_xy.zw * xy_B).rgb;
+  pixel = vec4(colour * (u_sky + u_sun * Lit(u_shadow_0 + xy_B.x * u_shadow_x + xy_B.y * u_shadow_y)), 1.0);
+}
+)glsl";
+
+// Per picture: the painted surface,
+inline constexpr const char* kLitPlaneFragment = R"glsl(
+in vec2 xy_B;
+uniform sampler2D u_texture;
+uniform vec4 u_uv_of_xy;
+uniform float u_gain;
+out vec4 pixel;
+void main() { pixel = vec4(texture(u_texture, u_uv_of_xy.xy + u_uv_of_xy.zw * xy_B).rgb * u_gain, 1.0); }
+)glsl";
+
+// and where moving things are near, their shadows, and the sky that the target takes from what it stands on.
+inline constexpr const char* kShadedPlaneFragment = R"glsl(
+in vec2 xy_B;
+uniform sampler2D u_texture;
+uniform vec4 u_uv_of_xy;
+uniform float u_gain;
+uniform vec3 u_ball;      // the target: x, y in B, height of its centre over the plane
+uniform float u_ball_r2;  // its radius squared
+uniform float u_left;     // share of the light that a shadow leaves
+uniform vec3 u_shadow_0;
+uniform vec3 u_shadow_x;
+uniform vec3 u_shadow_y;
+out vec4 pixel;
+void main() {
   vec3 to_ball = vec3(u_ball.xy - xy_B, u_ball.z);
   float near = inversesqrt(dot(to_ball, to_ball));
-  float open = 1.0 - 0.8 * min(u_ball.z * near * near * near * u_ball_r2, 1.0);
-  vec3 colour = texture(u_texture, u_uv_of_xy.xy + u_uv_of_xy.zw * xy_B).rgb;
+  float open = 1.0 - 0.8 * u_left * min(u_ball.z * near * near * near * u_ball_r2, 1.0);
   float lit = Lit(u_shadow_0 + xy_B.x * u_shadow_x + xy_B.y * u_shadow_y);
-  pixel = vec4(colour * (u_sky * open + u_sun * lit), 1.0);
+  vec3 colour = texture(u_texture, u_uv_of_xy.xy + u_uv_of_xy.zw * xy_B).rgb;
+  pixel = vec4(colour * (u_gain * open * mix(u_left, 1.0, lit)), 1.0);
 }
 )glsl";
 

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "sim/render/light.hpp"
 #include "sim/render/shaders.hpp"
 
 namespace fovea::sim {
@@ -33,8 +34,7 @@ ShadowMap::ShadowMap(int size_px)
     : size_px_(size_px),
       program_(std::string("#version 330 core\n") + shaders::kShadowVertex,
                std::string("#version 330 core\n") + shaders::kShadowFragment),
-      sun_B_(Vector3f(-0.35F, -0.55F, 1.0F).normalized()),
-      clip_of_B_(ClipOfB(sun_B_)) {
+      clip_of_B_(ClipOfB(kSun_B)) {
   Matrix4f to_map = Matrix4f::Identity() * 0.5F;
   to_map.block<3, 1>(0, 3).setConstant(0.5F);
   to_map(3, 3) = 1.0F;

@@ -29,7 +29,7 @@ class ShadowMap {
   void DrawMoving(const DrawAll& draw_all);
 
   [[nodiscard]] GLuint texture() const { return maps_[1]; }
-  [[nodiscard]] const Eigen::Vector3f& sun_B() const { return sun_B_; }
+  [[nodiscard]] int size_px() const { return size_px_; }
   // From B to the map: x, y from 0 to 1, z the depth to compare.
   [[nodiscard]] const Eigen::Matrix4f& map_of_B() const { return map_of_B_; }
 
@@ -40,7 +40,6 @@ class ShadowMap {
   GlProgram program_;
   GLuint frames_[2] = {0, 0};  // what does not move; all
   GLuint maps_[2] = {0, 0};
-  Eigen::Vector3f sun_B_;
   Eigen::Matrix4f clip_of_B_;
   Eigen::Matrix4f map_of_B_;
 };

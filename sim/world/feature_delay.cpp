@@ -5,6 +5,10 @@ namespace fovea::sim {
 void FeatureDelay::Put(const hal::FeatureMeasurement& measurement) noexcept {
   {
     const std::lock_guard lock(mutex_);
+    // Frames come in order: what was expected before this one and has no measurement was lost on the way.
+    std::erase_if(expected_, [&](const Expected& expected) {
+      return expected.sequence < measurement.sequence && !expected.measurement;
+    });
     for (Expected& expected : expected_) {
       if (expected.sequence == measurement.sequence) {
         expected.measurement = measurement;

@@ -144,7 +144,7 @@ TEST_P(KdlTest, DynamicsAgree) {
 }
 
 // The mixed arm has prismatic joints, skew axes, fixed joints with mass and an axis that is -z.
-INSTANTIATE_TEST_SUITE_P(Arms, KdlTest, testing::Values("/panda.toml", "/../../tests/model/mixed_arm.urdf"));
+INSTANTIATE_TEST_SUITE_P(Arms, KdlTest, testing::Values("/panda.toml", "/../../../tests/model/mixed_arm.urdf"));
 
 }  // namespace
 }  // namespace fovea

@@ -5,9 +5,10 @@
 namespace fovea::linux_rt {
 namespace {
 
-// Plain data of the thread: reaching it must not itself allocate.
-thread_local bool in_region = false;
-thread_local std::uint64_t heap_calls = 0;
+// Plain data of the thread: reaching it must not itself allocate. Volatile, since the compiler takes malloc for
+// a function that cannot come back into this file.
+thread_local volatile bool in_region = false;
+thread_local volatile std::uint64_t heap_calls = 0;
 
 }  // namespace
 
@@ -17,7 +18,7 @@ std::uint64_t CountedHeapCalls() noexcept { return heap_calls; }
 
 void NoteHeapCall() noexcept {
   if (in_region) {
-    ++heap_calls;
+    heap_calls = heap_calls + 1;
   }
 }
 

@@ -13,7 +13,7 @@ namespace fovea::servo {
 // [servo] where the feature is now
 struct PredictConfig {
   bool enabled = true;               // servo.predict; false: the newest measurement as it came, held
-  double target_acceleration = 0.8;  // how hard the target may be thought to accelerate [m/s^2]
+  double target_jerk = 1.0;   // how fast the target's acceleration may be thought to change [m/s^3]
   double gate_sigma = 6.0;           // a measurement further off than this is an outlier [sigma]
   int gate_rejects_max = 3;          // so many outliers in a row, and the target has moved: start anew
   int accepted_min = 3;              // measurements before the target counts as known

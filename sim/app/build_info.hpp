@@ -1,0 +1,10 @@
+// What this program was built from. Written by the build (tools/cmake/WriteBuildInfo.cmake).
+#pragma once
+
+namespace fovea {
+
+extern const char* const kGitRevision;       // git describe --always --dirty; "" outside a checkout
+extern const char* const kServoLibraryHash;  // SHA-256 of the servo library that is linked in
+extern const char* const kVersion;
+
+}  // namespace fovea

@@ -1,0 +1,32 @@
+// Shows how far a run is: a bar on a terminal, a line now and then elsewhere. On standard error.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace fovea::sim {
+
+class Progress {
+ public:
+  // `quiet`: show nothing.
+  Progress(std::string name, double end_s, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  // Cheap unless it is time to show something. `note` says what is going on.
+  void Update(double now_s, const char* note);
+
+ private:
+  void Show(double share, double now_s, const char* note);
+
+  std::string name_;
+  double end_s_;
+  bool quiet_;
+  bool is_terminal_;
+  bool shown_ = false;
+  int next_line_percent_ = 0;
+  std::chrono::steady_clock::time_point next_look_;
+};
+
+}  // namespace fovea::sim

@@ -1,0 +1,83 @@
+#include "sim/app/record_hash.hpp"
+
+#include <openssl/evp.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <stdexcept>
+
+namespace fovea::sim {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "a hash compares across machines only byte by byte");
+
+// Appends values to a byte string; structures are walked field by field, so that padding never counts.
+class Writer {
+ public:
+  explicit Writer(std::vector<std::uint8_t>& bytes) : bytes_(bytes) { bytes_.clear(); }
+
+  template <typename T>
+    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
+  void operator()(const T& value) {
+    const auto* from = reinterpret_cast<const std::uint8_t*>(&value);
+    bytes_.insert(bytes_.end(), from, from + sizeof(T));
+  }
+  template <typename T, std::size_t N>
+  void operator()(const std::array<T, N>& values) {
+    for (const T& value : values) {
+      (*this)(value);
+    }
+  }
+  template <typename... T>
+  void All(const T&... values) {
+    ((*this)(values), ...);
+  }
+
+ private:
+  std::vector<std::uint8_t>& bytes_;
+};
+
+}  // namespace
+
+struct RecordHash::Digest {
+  EVP_MD_CTX* context = EVP_MD_CTX_new();
+  ~Digest() { EVP_MD_CTX_free(context); }
+};
+
+RecordHash::RecordHash() : digest_(std::make_unique<Digest>()) {
+  if (digest_->context == nullptr || EVP_DigestInit_ex(digest_->context, EVP_sha256(), nullptr) != 1) {
+    throw std::runtime_error("OpenSSL cannot compute SHA-256");
+  }
+}
+
+RecordHash::~RecordHash() = default;
+
+void RecordHash::Add(const hal::TickRecord& r) {
+  Writer write(bytes_);
+  write.All(r.tick, r.stamp_ns, r.missed_ticks);
+  write.All(r.arm.stamp_ns, r.arm.sequence, r.arm.num_joints, r.arm.q, r.arm.dq, r.arm.tau_meas, r.arm.tau_applied);
+  write.All(r.has_feature, r.feature.stamp_ns, r.feature.sequence, r.feature.kind, r.feature.found,
+            r.feature.confidence, r.feature.dim, r.feature.s, r.feature.cov_s);
+  write.All(r.mode, r.hold_reason, r.fault, r.fault_joint, r.limits_active);
+  write.All(r.target_known, r.feature_age_ns, r.p_BO, r.v_BO);
+  write.All(r.dim, r.s, r.s_star, r.e, r.V_BC_C_cmd);
+  write.All(r.q_cmd, r.dq_cmd, r.ddq_cmd);
+  write.All(r.command.state_sequence, r.command.num_joints, r.command.tau_cmd, r.command.engage_brakes);
+  EVP_DigestUpdate(digest_->context, bytes_.data(), bytes_.size());
+}
+
+std::string RecordHash::Finish() {
+  std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
+  unsigned length = 0;
+  EVP_DigestFinal_ex(digest_->context, hash.data(), &length);
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (unsigned i = 0; i < length; ++i) {
+    text += kDigits[hash[i] >> 4U];
+    text += kDigits[hash[i] & 15U];
+  }
+  return text;
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,366 @@
+#include "sim/app/run.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <thread>
+
+#include "fovea/config/input_error.hpp"
+#include "fovea/linux_rt/heap_counter.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
+#include "fovea/linux_rt/realtime.hpp"
+#include "fovea/linux_rt/record_ring.hpp"
+#include "fovea/linux_rt/tick_meter.hpp"
+#include "fovea/servo/servo_loop.hpp"
+#include "fovea/vision/vision_task.hpp"
+#include "sim/app/build_info.hpp"
+#include "sim/app/output_folder.hpp"
+#include "sim/app/pictures.hpp"
+#include "sim/app/progress.hpp"
+#include "sim/app/record_hash.hpp"
+#include "sim/app/verdict.hpp"
+#include "sim/camera/sim_camera.hpp"
+#include "sim/render/scene_renderer.hpp"
+#include "sim/world/feature_delay.hpp"
+#include "sim/world/sim_arm.hpp"
+#include "sim/world/world.hpp"
+#include "sim/world/world_clock.hpp"
+
+namespace fovea::sim {
+namespace {
+
+using config::InputError;
+constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
+constexpr std::int64_t kPathStepNs = 20'000'000;  // between points of the paths in the bench's picture
+
+// Pictures that are drawn at the same time, each by a renderer of its own.
+constexpr int kRenderers = 2;
+
+// Mesa's software renderer splits a picture over all cores by default. Here whole pictures run beside each
+// other, which wastes less; who sets the variable keeps their choice. (A GPU's driver does not look at it.)
+void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0); }
+
+Eigen::Vector3d ToVector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+Eigen::Isometry3d CameraMount(const Scenario& s) {
+  constexpr double kDeg = std::numbers::pi / 180.0;
+  const Eigen::Vector3d rpy = kDeg * ToVector(s.camera.mount_rpy_deg);
+  Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
+  X_EC.linear() = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  X_EC.translation() = ToVector(s.camera.mount_xyz);
+  return X_EC;
+}
+
+void CheckStart(const Scenario& s, const robots::Robot& robot) {
+  const std::vector<double>& q = s.arm.q_start;
+  if (static_cast<int>(q.size()) != robot.model.num_joints) {
+    throw InputError(fmt::format("arm.q_start has {} entries, arm \"{}\" has {} joints", q.size(), robot.name,
+                                 robot.model.num_joints));
+  }
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const model::Joint& joint = robot.model.joints[i];
+    if (q[i] < joint.q_min || q[i] > joint.q_max) {
+      throw InputError(fmt::format("arm.q_start[{}] = {} is not allowed: joint {} reaches from {} to {}", i, q[i],
+                                   i + 1, joint.q_min, joint.q_max));
+    }
+  }
+}
+
+WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
+  WorldConfig config;
+  config.robot = robot;
+  config.physics.integrator =
+      s.arm.integrator == "rk4" ? Integrator::kRungeKutta4 : Integrator::kSemiImplicitEuler;
+  config.q_start = Eigen::Map<const Eigen::VectorXd>(s.arm.q_start.data(),
+                                                     static_cast<Eigen::Index>(s.arm.q_start.size()));
+  config.X_EC = CameraMount(s);
+  config.friction_compensation = s.arm.friction_compensation;
+  config.encoder_noise = s.arm.encoder_noise;
+  config.velocity_noise = s.arm.velocity_noise;
+  config.target.kind = s.target.motion == "circle" ? MotionKind::kCircle : MotionKind::kStill;
+  config.target.p_BO = ToVector(s.target.position);
+  config.target.path_radius = s.target.path_radius;
+  config.target.speed = s.target.speed;
+  config.camera_rate_hz = s.camera.rate_hz;
+  config.camera_outage = {s.faults.camera_outage_s[0], s.faults.camera_outage_s[1]};
+  config.seed = static_cast<std::uint64_t>(s.run.seed);
+  return config;
+}
+
+RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
+  RenderScene scene;
+  scene.bench = MakeBench(s.target.clutter);
+  scene.robot = robot;
+  scene.X_EC = CameraMount(s);
+  scene.target_radius = 0.5 * s.target.diameter;
+  scene.target_colour = ToVector(s.target.colour).cast<float>();
+  scene.light = s.camera.light;
+  return scene;
+}
+
+// Everything of one run, wired up. Members stand in the order in which one needs the other.
+class Run {
+ public:
+  Run(const Scenario& scenario, const RunOptions& options)
+      : scenario_(scenario),
+        options_(options),
+        robot_(LoadScenarioRobot(scenario)),
+        sim_robot_(LoadSimRobot(robot_.urdf, robot_.base_link, robot_.tip_link)),
+        radius_(0.5 * scenario.target.diameter),
+        pinhole_(MakePinhole(scenario.camera.width_px, scenario.camera.height_px,
+                             scenario.camera.hfov_deg * std::numbers::pi / 180.0)),
+        intrinsics_{pinhole_.width_px, pinhole_.height_px, pinhole_.f_px, pinhole_.f_px, pinhole_.c_u_px,
+                    pinhole_.c_v_px},
+        vision_(config::MakeVisionConfig(scenario.vision, intrinsics_, radius_)),
+        ring_(kRingCapacity) {
+    CheckStart(scenario_, robot_);
+    const Eigen::Isometry3d X_EC = CameraMount(scenario_);
+    const servo::ServoConfig servo_config = config::MakeServoConfig(
+        scenario_.servo, robot_, model::Pose{X_EC.linear(), X_EC.translation()}, radius_);
+    if (!servo_.Init(servo_config).ok()) {
+      throw std::logic_error("a servo configuration that was checked is refused");
+    }
+    if (!options_.out.empty()) {
+      folder_.emplace(options_.out);
+    }
+    scene_ = MakeRenderScene(scenario_, sim_robot_);
+    UseOneThreadPerRenderer();
+    for (int i = 0; i < kRenderers; ++i) {
+      renderers_.push_back(std::make_unique<SceneRenderer>(scene_, pinhole_, RenderQuality{}, i));
+    }
+    BuildWorld(servo_config);
+  }
+
+  Summary Execute() {
+    std::thread vision_thread([this] { RunVisionThread(); });
+    const auto begin = std::chrono::steady_clock::now();
+    std::string failure;
+    hal::Status status;
+    {
+      Progress progress(scenario_.name, scenario_.run.duration_s, !options_.show_progress);
+      status = options_.pace == Pace::kReal ? RunAtRealPace(progress) : RunInLockstep(progress);
+    }
+    wall_time_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    stop_vision_ = true;
+    camera_->Close();
+    vision_thread.join();
+    TakeRecords();
+    if (!camera_->fault().empty()) {
+      throw std::runtime_error("the camera broke during the run: " + camera_->fault());
+    }
+    if (!status.ok()) {
+      throw std::runtime_error(fmt::format("the run broke off: {} ({})", hal::ToString(status.code()), status.where()));
+    }
+    Summary summary = Summarise();
+    WriteFiles(summary);
+    return summary;
+  }
+
+ private:
+  void BuildWorld(const servo::ServoConfig& servo_config) {
+    VerdictConfig verdict_config;
+    verdict_config.arm = servo_config.arm;
+    verdict_config.pinhole = pinhole_;
+    verdict_config.p_CO_C_star = servo_config.feature.p_CO_C_star;
+    verdict_config.target_moves = scenario_.target.motion != "still";
+    verdict_config.tracking_bound_px = scenario_.run.tracking_bound_px;
+    verdict_config.workspace_radius = servo_config.guard.workspace_radius;
+    verdict_ = std::make_unique<Verdict>(verdict_config);
+
+    SimCameraConfig camera_config;
+    camera_config.width_px = pinhole_.width_px;
+    camera_config.height_px = pinhole_.height_px;
+    camera_config.exposure_ns = static_cast<std::int64_t>(scenario_.camera.exposure_ms * 1e6);
+    // In lockstep no frame is ever lost: the world waits for each. A real camera keeps two.
+    camera_config.queue = options_.pace == Pace::kReal ? 2 : 1024;
+    std::vector<Painter> painters;
+    for (const auto& owned : renderers_) {
+      SceneRenderer* renderer = owned.get();
+      painters.push_back({[renderer](const Exposure& exposure, std::span<std::uint8_t> rgba) {
+                            renderer->Draw(exposure, exposure.X_BC, rgba);
+                          },
+                          [renderer] { renderer->Release(); }});
+    }
+    camera_ = std::make_unique<SimCamera>(
+        camera_config, Sensor(scenario_.camera.noise_sigma, static_cast<std::uint64_t>(scenario_.run.seed)),
+        std::move(painters));
+    world_ = std::make_unique<World>(MakeWorldConfig(scenario_, sim_robot_));
+    world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
+    const auto latency_ns = static_cast<std::int64_t>(scenario_.camera.latency_ms * 1e6);
+    world_->OnExposure([this, latency_ns](Exposure exposure) {
+      target_in_frame_[exposure.sequence] = exposure.X_BC.inverse() * exposure.p_BO;
+      delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns);
+      camera_->Expose(std::move(exposure));
+    });
+    arm_ = std::make_unique<SimArm>(*world_);
+  }
+
+  void ObserveTruth(const Truth& truth) {
+    verdict_->AddTruth(truth);
+    if (truth.stamp_ns % kPathStepNs == 0) {
+      camera_path_.push_back(truth.X_BC.translation());
+      target_path_.push_back(truth.p_BO);
+    }
+  }
+
+  void RunVisionThread() {
+    linux_rt::MakeThreadYielding();
+    const hal::Status status =
+        vision::RunVision(*camera_, vision_, delay_, stop_vision_,
+                          [this](const hal::Frame& frame, const vision::BallDetection& detection) {
+                            frames_.Keep(frame, detection);
+                          });
+    static_cast<void>(status);  // an orderly end, or a fault that the camera keeps the words for
+    delay_.Close();
+  }
+
+  [[nodiscard]] std::int64_t EndNs() const {
+    return static_cast<std::int64_t>(scenario_.run.duration_s * static_cast<double>(hal::kNsPerSecond));
+  }
+
+  void TakeRecords() {
+    ring_.Drain([this](const hal::TickRecord& record) {
+      hash_.Add(record);
+      verdict_->AddRecord(record);
+      mode_ = record.mode;
+    });
+  }
+
+  hal::Status RunInLockstep(Progress& progress) {
+    LockstepClock clock(*world_, [&](std::int64_t now_ns) {
+      TakeRecords();
+      progress.Update(static_cast<double>(now_ns) * 1e-9, hal::Name(mode_));
+      return delay_.HandOver(now_ns, /*wait=*/true, mailbox_);
+    });
+    servo::ServoLoop loop(servo_, *arm_, clock, mailbox_, ring_, meter_);
+    const hal::Status status = loop.Run(EndNs());
+    counters_ = loop.counters();
+    return status;
+  }
+
+  hal::Status RunAtRealPace(Progress& progress) {
+    linux_rt::MonotonicClock monotonic;
+    std::atomic<bool> done{false};
+    hal::Status status;
+    std::thread servo_thread([&] {
+      realtime_missing_ = linux_rt::MakeThreadRealtime({});
+      RealPaceClock clock(*world_, monotonic, [&](std::int64_t now_ns) {
+        return delay_.HandOver(now_ns, /*wait=*/false, mailbox_);
+      });
+      servo::ServoLoop loop(servo_, *arm_, clock, mailbox_, ring_, meter_);
+      status = loop.Run(EndNs());
+      counters_ = loop.counters();
+      done = true;
+    });
+    double now_s = 0.0;
+    while (!done) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      ring_.Drain([&](const hal::TickRecord& record) {
+        hash_.Add(record);
+        verdict_->AddRecord(record);
+        mode_ = record.mode;
+        now_s = static_cast<double>(record.stamp_ns) * 1e-9;
+      });
+      progress.Update(now_s, hal::Name(mode_));
+    }
+    servo_thread.join();
+    return status;
+  }
+
+  Summary Summarise() {
+    Summary s;
+    s.scenario = scenario_.name;
+    s.seed = scenario_.run.seed;
+    s.pace = options_.pace == Pace::kReal ? "real" : "lockstep";
+    verdict_->Fill(s);
+    s.frames = frames_.frames();
+    s.frames_detected = frames_.detected();
+    s.frames_lost = camera_->lost();
+    s.ticks = counters_.ticks;
+    s.overruns = counters_.overruns;
+    s.missed_ticks = counters_.missed_ticks;
+    s.records_dropped = ring_.dropped();
+    if (linux_rt::HeapCounterActive()) {
+      s.heap_allocations_in_tick = meter_.heap_calls();
+    }
+    s.page_faults_in_loop = meter_.page_faults();
+    s.tick_ns_p50 = meter_.durations().Percentile(0.5);
+    s.tick_ns_p99 = meter_.durations().Percentile(0.99);
+    s.tick_ns_p999 = meter_.durations().Percentile(0.999);
+    s.tick_ns_max = meter_.durations().max_ns();
+    s.sim_time_s = static_cast<double>(world_->now_ns()) * 1e-9;
+    s.wall_time_s = wall_time_s_;
+    s.real_time_factor = s.sim_time_s / s.wall_time_s;
+    s.realtime_missing = realtime_missing_;
+    s.renderer = renderers_.front()->driver_name();
+    s.log_hash = hash_.Finish();
+    s.servo = kServoLibraryHash;
+    s.git = kGitRevision;
+    s.version = kVersion;
+    return s;
+  }
+
+  void WriteFiles(const Summary& summary) {
+    if (!folder_) {
+      return;
+    }
+    if (frames_.frames() > 0) {
+      const Eigen::Vector3d goal = servo_.config().feature.p_CO_C_star;
+      for (const auto& [name, frame] :
+           {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
+        folder_->Write(name, DrawEyePicture(*frame, intrinsics_, radius_, target_in_frame_.at(frame->sequence), goal));
+      }
+    }
+    if (options_.pictures) {
+      folder_->Write("bench.png", DrawBenchPicture(scene_, world_->Look(), camera_path_, target_path_));
+    }
+    folder_->Write("summary.json", ToJson(summary));  // last: where it is, the rest is too
+  }
+
+  Scenario scenario_;
+  RunOptions options_;
+  robots::Robot robot_;
+  SimRobot sim_robot_;
+  double radius_;
+  Pinhole pinhole_;
+  vision::Intrinsics intrinsics_;
+  vision::VisionTask vision_;
+  servo::ServoTask servo_;
+  std::optional<OutputFolder> folder_;
+  RenderScene scene_;
+  std::vector<std::unique_ptr<SceneRenderer>> renderers_;
+  std::unique_ptr<Verdict> verdict_;
+  std::unique_ptr<SimCamera> camera_;
+  std::unique_ptr<World> world_;
+  std::unique_ptr<SimArm> arm_;
+  FeatureDelay delay_;
+  hal::FeatureMailbox mailbox_;
+  linux_rt::RecordRing ring_;
+  linux_rt::TickMeter meter_;
+  RecordHash hash_;
+  FrameKeeper frames_;
+  std::map<std::uint64_t, Eigen::Vector3d> target_in_frame_;  // p_CO_C by frame
+  std::vector<Eigen::Vector3d> camera_path_;
+  std::vector<Eigen::Vector3d> target_path_;
+  std::atomic<bool> stop_vision_{false};
+  servo::LoopCounters counters_;
+  hal::Mode mode_ = hal::Mode::kBoot;
+  std::vector<std::string> realtime_missing_;
+  double wall_time_s_ = 0.0;
+};
+
+}  // namespace
+
+Summary RunScenario(const Scenario& scenario, const RunOptions& options) {
+  return Run(scenario, options).Execute();
+}
+
+}  // namespace fovea::sim

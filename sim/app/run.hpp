@@ -1,0 +1,30 @@
+// One simulated run, from scenario to summary and files.
+#pragma once
+
+#include <filesystem>
+
+#include "sim/app/scenario.hpp"
+#include "sim/app/summary.hpp"
+
+namespace fovea::sim {
+
+enum class Pace {
+  kLockstep,  // virtual time, as fast as it goes, bit-reproducible
+  kReal,      // the servo on a real-time thread, 1 ms by the clock
+};
+
+struct RunOptions {
+  Pace pace = Pace::kLockstep;
+  std::filesystem::path out;     // empty: no files
+  bool pictures = true;          // the bench's picture costs a second
+  bool show_progress = true;
+};
+
+// Composes robot, bench, camera and servo, runs the scenario to its end, judges it against the truth, and
+// leaves summary.json, eye-first.png, eye-last.png and bench.png in `options.out`. Nothing is written before
+// the run is over.
+// InputError: the scenario cannot be run, or the files not be written. std::runtime_error: no EGL, or the
+// renderer broke during the run.
+Summary RunScenario(const Scenario& scenario, const RunOptions& options);
+
+}  // namespace fovea::sim

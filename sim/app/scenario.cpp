@@ -1,0 +1,139 @@
+#include "sim/app/scenario.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "fovea/config/input_error.hpp"
+
+namespace fovea::sim {
+namespace {
+
+namespace fs = std::filesystem;
+using config::InputError;
+
+void AddArmKeys(Scenario& s, config::KeyTable& keys) {
+  keys.Text("arm.model", s.arm.model, "a shipped arm by name, or the path of an arm file or URDF");
+  keys.Numbers("arm.q_start", s.arm.q_start, 1, model::kMaxJoints, -1e4, 1e4, "rad",
+               "joint positions at the start, one per joint");
+  keys.Number("arm.friction_compensation", s.arm.friction_compensation, 0.0, 1.0, "",
+              "share of the joints' friction that the robot's own controller takes away");
+  keys.Number("arm.encoder_noise", s.arm.encoder_noise, 0.0, 0.1, "rad", "standard deviation of measured positions");
+  keys.Number("arm.velocity_noise", s.arm.velocity_noise, 0.0, 1.0, "rad/s",
+              "standard deviation of measured velocities");
+  keys.Choice("arm.integrator", s.arm.integrator, {"euler", "rk4"},
+              "how the physics steps: semi-implicit Euler, or Runge-Kutta of order 4 at 3.5 times the cost");
+}
+
+void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
+  keys.Integer("camera.width_px", s.camera.width_px, 64, 4096, "px", "picture width");
+  keys.Integer("camera.height_px", s.camera.height_px, 64, 4096, "px", "picture height");
+  keys.Number("camera.hfov_deg", s.camera.hfov_deg, 5.0, 150.0, "deg", "horizontal field of view");
+  keys.Number("camera.rate_hz", s.camera.rate_hz, 1.0, 240.0, "Hz", "frames per second");
+  keys.Number("camera.exposure_ms", s.camera.exposure_ms, 0.01, 100.0, "ms", "exposure time; stamps are at its middle");
+  keys.Number("camera.latency_ms", s.camera.latency_ms, 0.0, 500.0, "ms",
+              "from mid-exposure until the feature reaches the servo");
+  keys.Number("camera.noise_sigma", s.camera.noise_sigma, 0.0, 60.0, "gray levels", "standard deviation of read noise");
+  keys.Number("camera.light", s.camera.light, 0.01, 4.0, "", "brightness of the picture; 1 is a well-lit bench");
+  keys.Numbers("camera.mount_xyz", s.camera.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
+  keys.Numbers("camera.mount_rpy_deg", s.camera.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
+               "roll, pitch, yaw of C in E, about fixed axes");
+}
+
+void AddTargetKeys(Scenario& s, config::KeyTable& keys) {
+  keys.Choice("target.kind", s.target.kind, {"sphere"}, "what is looked at");
+  keys.Number("target.diameter", s.target.diameter, 0.005, 2.0, "m", "its size");
+  keys.Numbers("target.position", s.target.position, 3, 3, -5.0, 5.0, "m", "its centre in B, or its path's middle");
+  keys.Numbers("target.colour", s.target.colour, 3, 3, 0.0, 1.0, "", "red, green, blue");
+  keys.Choice("target.motion", s.target.motion, {"still", "circle"}, "how it moves; the circle lies level");
+  keys.Number("target.path_radius", s.target.path_radius, 0.001, 2.0, "m", "of the circle");
+  keys.Number("target.speed", s.target.speed, 0.0, 5.0, "m/s", "along its path");
+  keys.Flag("target.clutter", s.target.clutter, "put things about that resemble it");
+}
+
+void AddRunKeys(Scenario& s, config::KeyTable& keys) {
+  keys.Numbers("faults.camera_outage_s", s.faults.camera_outage_s, 2, 2, 0.0, 1e6, "s",
+               "the camera delivers nothing from the first time to the second");
+  keys.Text("run.description", s.run.description, "one line for `fovea-sim list`");
+  keys.Number("run.duration_s", s.run.duration_s, 0.1, 1e6, "s", "simulated time");
+  keys.Integer("run.seed", s.run.seed, 0, 2147483647, "", "of all that is random");
+  keys.Number("run.tracking_bound_px", s.run.tracking_bound_px, 0.01, 1e4, "px",
+              "a moving target counts as tracked below this error, rms over the second half");
+}
+
+fs::path FindScenario(const std::string& name_or_path) {
+  if (fs::path(name_or_path).extension() == ".toml") {
+    return name_or_path;
+  }
+  const fs::path shipped = ShareFolder() / "scenarios" / (name_or_path + ".toml");
+  if (fs::is_regular_file(shipped)) {
+    return shipped;
+  }
+  const std::vector<std::string> names = ShippedScenarios();
+  const std::string nearest = config::Nearest(name_or_path, names);
+  throw InputError(fmt::format("unknown scenario \"{}\"{}; shipped are {} (or give the path of a .toml)", name_or_path,
+                               nearest.empty() ? "" : "; did you mean " + nearest + "?", fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+config::KeyTable ScenarioKeys(Scenario& scenario) {
+  config::KeyTable keys;
+  AddArmKeys(scenario, keys);
+  AddCameraKeys(scenario, keys);
+  config::AddVisionKeys(scenario.vision, keys);
+  AddTargetKeys(scenario, keys);
+  config::AddServoKeys(scenario.servo, keys);
+  AddRunKeys(scenario, keys);
+  return keys;
+}
+
+fs::path ShareFolder() {
+  const fs::path program = fs::read_symlink("/proc/self/exe");
+  return program.parent_path().parent_path() / "share" / "fovea";
+}
+
+std::vector<std::string> ShippedScenarios() {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(ShareFolder() / "scenarios", ignored)) {
+    if (entry.path().extension() == ".toml") {
+      names.push_back(entry.path().stem().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Scenario LoadScenario(const std::string& name_or_path, const std::vector<std::string>& assignments) {
+  const fs::path file = FindScenario(name_or_path);
+  Scenario scenario;
+  scenario.name = file.stem().string();
+  scenario.folder = file.parent_path();
+  const config::KeyTable keys = ScenarioKeys(scenario);
+  for (const config::Setting& setting : config::ReadTomlFile(file)) {
+    keys.Apply(setting);
+  }
+  for (const std::string& assignment : assignments) {
+    keys.Apply(config::ParseAssignment(assignment));
+  }
+  return scenario;
+}
+
+robots::Robot LoadScenarioRobot(const Scenario& scenario) {
+  const fs::path model = scenario.arm.model;
+  if (model.extension() == ".toml" || model.extension() == ".urdf") {
+    const fs::path beside = scenario.folder / model;
+    return robots::LoadRobot(fs::exists(beside) ? beside : model);
+  }
+  const fs::path shipped = ShareFolder() / "robots" / (scenario.arm.model + ".toml");
+  if (!fs::is_regular_file(shipped)) {
+    throw InputError(fmt::format("arm.model = \"{}\": no shipped arm of that name (or give the path of an arm file "
+                                 ".toml or a .urdf)",
+                                 scenario.arm.model));
+  }
+  return robots::LoadRobot(shipped);
+}
+
+}  // namespace fovea::sim

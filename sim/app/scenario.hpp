@@ -1,0 +1,83 @@
+// A scenario: everything that can be set about a simulated run. Its defaults are the scenario `ball`.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fovea/config/key_table.hpp"
+#include "fovea/config/servo_keys.hpp"
+
+namespace fovea::sim {
+
+struct Scenario {
+  std::string name;
+  std::filesystem::path folder;  // of its file; a relative arm.model is looked for there first
+
+  struct {
+    std::string model = "panda";
+    std::vector<double> q_start{-0.30, -0.75, 0.0, -2.05, 0.0, 1.55, 0.485398};
+    double friction_compensation = 0.9;
+    double encoder_noise = 1e-5;
+    double velocity_noise = 1e-3;
+    std::string integrator = "euler";
+  } arm;
+
+  struct {
+    int width_px = 640;
+    int height_px = 480;
+    double hfov_deg = 60.0;
+    double rate_hz = 30.0;
+    double exposure_ms = 5.0;
+    double latency_ms = 40.0;
+    double noise_sigma = 3.0;
+    double light = 1.0;
+    std::vector<double> mount_xyz{0.05, 0.0, 0.04};
+    std::vector<double> mount_rpy_deg{0.0, 0.0, 90.0};
+  } camera;
+
+  struct {
+    std::string kind = "sphere";
+    double diameter = 0.080;
+    std::vector<double> position{0.56, 0.14, 0.04};
+    std::vector<double> colour{0.74, 0.07, 0.06};
+    std::string motion = "still";
+    double path_radius = 0.10;
+    double speed = 0.2;
+    bool clutter = false;
+  } target;
+
+  config::VisionSettings vision;
+  config::ServoSettings servo;
+
+  struct {
+    std::vector<double> camera_outage_s{0.0, 0.0};
+  } faults;
+
+  struct {
+    std::string description;
+    double duration_s = 8.0;
+    int seed = 1;
+    double tracking_bound_px = 3.0;
+  } run;
+
+  Scenario() { servo.config.auto_track = true; }
+};
+
+// The keys of all sections, bound to `scenario`, which must outlive the table.
+config::KeyTable ScenarioKeys(Scenario& scenario);
+
+// Where the shipped scenarios and robots are: share/fovea beside the folder of the running program.
+std::filesystem::path ShareFolder();
+
+// Names of the shipped scenarios, in order.
+std::vector<std::string> ShippedScenarios();
+
+// Reads a shipped scenario by name, or a .toml by path, then applies `assignments` ("key=value") in order.
+// InputError when either is wrong.
+Scenario LoadScenario(const std::string& name_or_path, const std::vector<std::string>& assignments);
+
+// The robot that arm.model names: a shipped one, or a path to an arm file or URDF.
+robots::Robot LoadScenarioRobot(const Scenario& scenario);
+
+}  // namespace fovea::sim

@@ -1,0 +1,127 @@
+#include "sim/app/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace fovea::sim {
+namespace {
+
+using nlohmann::ordered_json;
+
+template <typename T>
+ordered_json OrNull(const std::optional<T>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+std::string Figure(const std::optional<double>& value, const char* unit) {
+  return value ? fmt::format("{:.3g} {}", *value, unit) : std::string("-");
+}
+
+class Table {
+ public:
+  void Row(const std::string& name, const std::string& value) {
+    text_ += fmt::format("  {:<22}{}\n", name, value);
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace
+
+std::string ToJson(const Summary& s) {
+  ordered_json faults = ordered_json::array();
+  for (const FaultEvent& f : s.faults) {
+    faults.push_back({{"t_s", f.t_s}, {"name", f.name}, {"key", f.key}, {"detail", f.detail}});
+  }
+  ordered_json modes = ordered_json::array();
+  for (const ModeEvent& m : s.modes) {
+    modes.push_back({{"t_s", m.t_s}, {"mode", m.mode}, {"reason", m.reason}});
+  }
+  ordered_json json;
+  json["scenario"] = s.scenario;
+  json["seed"] = s.seed;
+  json["pace"] = s.pace;
+  json["converged"] = s.converged;
+  json["verdict"] = s.verdict;
+  json["settle_time_s"] = OrNull(s.settle_time_s);
+  json["start_error_px"] = OrNull(s.start_error_px);
+  json["final_error_px_rms"] = OrNull(s.final_error_px_rms);
+  json["final_error_mm"] = OrNull(s.final_error_mm);
+  json["final_error_lateral_mm"] = OrNull(s.final_error_lateral_mm);
+  json["final_error_depth_mm"] = OrNull(s.final_error_depth_mm);
+  json["final_error_deg"] = OrNull(s.final_error_deg);
+  json["tracking_error_px_rms"] = OrNull(s.tracking_error_px_rms);
+  json["limits"] = s.limits;
+  json["limit_violations"] = s.limit_violations;
+  json["limit_ticks"] = s.limit_ticks;
+  json["contact_ticks"] = s.contact_ticks;
+  json["faults"] = faults;
+  json["modes"] = modes;
+  json["frames"] = s.frames;
+  json["frames_detected"] = s.frames_detected;
+  json["frames_lost"] = s.frames_lost;
+  json["ticks"] = s.ticks;
+  json["overruns"] = s.overruns;
+  json["missed_ticks"] = s.missed_ticks;
+  json["records_dropped"] = s.records_dropped;
+  json["heap_allocations_in_tick"] = OrNull(s.heap_allocations_in_tick);
+  json["page_faults_in_loop"] = s.page_faults_in_loop;
+  json["tick_ns"] = {
+      {"p50", s.tick_ns_p50}, {"p99", s.tick_ns_p99}, {"p999", s.tick_ns_p999}, {"max", s.tick_ns_max}};
+  json["sim_time_s"] = s.sim_time_s;
+  json["wall_time_s"] = s.wall_time_s;
+  json["real_time_factor"] = s.real_time_factor;
+  json["realtime_missing"] = s.realtime_missing;
+  json["renderer"] = s.renderer;
+  json["log_hash"] = s.log_hash;
+  json["servo"] = s.servo;
+  json["git"] = s.git;
+  json["version"] = s.version;
+  return json.dump(2) + "\n";
+}
+
+std::string ToTable(const Summary& s) {
+  Table table;
+  table.Row("scenario", fmt::format("{}, seed {}, {} pace", s.scenario, s.seed, s.pace));
+  table.Row("verdict", s.verdict);
+  if (s.tracking_error_px_rms) {
+    table.Row("tracking error", Figure(s.tracking_error_px_rms, "px rms"));
+  } else {
+    table.Row("image error", fmt::format("{} at the start, {} at the end", Figure(s.start_error_px, "px"),
+                                         Figure(s.final_error_px_rms, "px rms")));
+    table.Row("position error", fmt::format("{} ({} sideways, {} in depth)", Figure(s.final_error_mm, "mm"),
+                                            Figure(s.final_error_lateral_mm, "mm"),
+                                            Figure(s.final_error_depth_mm, "mm")));
+    table.Row("settled after", Figure(s.settle_time_s, "s"));
+  }
+  table.Row("frames", fmt::format("{}, target found in {}", s.frames, s.frames_detected));
+  std::string limits;
+  for (const auto& [name, used] : s.limits) {
+    limits += fmt::format("{}{} {:.0f} %", limits.empty() ? "" : ", ", name, 100.0 * used);
+  }
+  table.Row("limits used", limits);
+  table.Row("limit violations", fmt::format("{}", s.limit_violations));
+  table.Row("faults", s.faults.empty() ? "none" : "");
+  for (const FaultEvent& f : s.faults) {
+    table.Row("", fmt::format("{:.3f} s: {} ({}), see {}", f.t_s, f.name, f.detail, f.key));
+  }
+  table.Row("servo tick", fmt::format("{:.1f} us median, {:.1f} us p99.9, {:.1f} us max",
+                                      1e-3 * static_cast<double>(s.tick_ns_p50),
+                                      1e-3 * static_cast<double>(s.tick_ns_p999),
+                                      1e-3 * static_cast<double>(s.tick_ns_max)));
+  table.Row("heap calls in the tick",
+            s.heap_allocations_in_tick ? fmt::format("{}", *s.heap_allocations_in_tick) : "not measured");
+  table.Row("overruns", fmt::format("{} of {} ticks", s.overruns, s.ticks));
+  table.Row("speed", fmt::format("{:.1f} s in {:.2f} s: {:.1f} times real time, rendered by {}", s.sim_time_s,
+                                 s.wall_time_s, s.real_time_factor, s.renderer));
+  for (const std::string& missing : s.realtime_missing) {
+    table.Row("not real-time", missing);
+  }
+  table.Row("log hash", s.log_hash);
+  return table.text();
+}
+
+}  // namespace fovea::sim

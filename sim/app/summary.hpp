@@ -1,0 +1,78 @@
+// What a run came to: figures for a machine (summary.json) and for a person (a table).
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace fovea::sim {
+
+struct FaultEvent {
+  double t_s = 0.0;
+  std::string name;
+  std::string key;
+  std::string detail;
+};
+
+struct ModeEvent {
+  double t_s = 0.0;
+  std::string mode;
+  std::string reason;  // of Hold; "" otherwise
+};
+
+struct Summary {
+  std::string scenario;
+  int seed = 0;
+  std::string pace;
+  bool converged = false;
+  std::string verdict;  // one sentence: converged, or why not
+
+  // Against the simulator's truth. Still targets: over the last 0.5 s.
+  std::optional<double> settle_time_s;
+  std::optional<double> start_error_px;
+  std::optional<double> final_error_px_rms;
+  std::optional<double> final_error_mm;
+  std::optional<double> final_error_lateral_mm;
+  std::optional<double> final_error_depth_mm;
+  std::optional<double> final_error_deg;  // none for a sphere, which has no orientation
+  // Moving targets: over the second half.
+  std::optional<double> tracking_error_px_rms;
+
+  std::map<std::string, double> limits;  // largest used fraction of each
+  std::uint64_t limit_violations = 0;    // ticks with a fraction above 1
+  std::map<std::string, std::uint64_t> limit_ticks;  // ticks in which the servo's guard acted, by limit
+  std::uint64_t contact_ticks = 0;       // ticks in which the arm touched the table
+  std::vector<FaultEvent> faults;
+  std::vector<ModeEvent> modes;
+
+  std::uint64_t frames = 0;
+  std::uint64_t frames_detected = 0;
+  std::uint64_t frames_lost = 0;
+  std::uint64_t ticks = 0;
+  std::uint64_t overruns = 0;
+  std::uint64_t missed_ticks = 0;
+  std::uint64_t records_dropped = 0;
+  std::optional<std::uint64_t> heap_allocations_in_tick;  // none when the counter is not active
+  std::uint64_t page_faults_in_loop = 0;
+  std::int64_t tick_ns_p50 = 0;
+  std::int64_t tick_ns_p99 = 0;
+  std::int64_t tick_ns_p999 = 0;
+  std::int64_t tick_ns_max = 0;
+  double sim_time_s = 0.0;
+  double wall_time_s = 0.0;
+  double real_time_factor = 0.0;
+  std::vector<std::string> realtime_missing;  // what the machine did not grant at real pace
+
+  std::string renderer;
+  std::string log_hash;
+  std::string servo;
+  std::string git;
+  std::string version;
+};
+
+std::string ToJson(const Summary& summary);
+std::string ToTable(const Summary& summary);
+
+}  // namespace fovea::sim

@@ -1,0 +1,24 @@
+# Run by the build: writes OUTPUT from the checkout at SOURCE and the library LIBRARY, and leaves the file alone
+# when nothing changed.
+find_package(Git QUIET)
+set(revision "")
+if(GIT_FOUND)
+  execute_process(COMMAND ${GIT_EXECUTABLE} -C ${SOURCE} describe --always --dirty
+                  OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+file(SHA256 ${LIBRARY} hash)
+set(content "// Written by tools/cmake/WriteBuildInfo.cmake.
+#include \"sim/app/build_info.hpp\"
+
+namespace fovea {
+const char* const kGitRevision = \"${revision}\";
+const char* const kServoLibraryHash = \"${hash}\";
+const char* const kVersion = \"${VERSION}\";
+}  // namespace fovea
+")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} before)
+endif()
+if(NOT "${before}" STREQUAL "${content}")
+  file(WRITE ${OUTPUT} "${content}")
+endif()
