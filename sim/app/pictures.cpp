@@ -68,8 +68,8 @@ void DrawCross(cv::Mat& image, double u, double v, double arm_px, const cv::Scal
   cv::line(image, Enlarged(u, v - arm_px), Enlarged(u, v + arm_px), colour, 1, cv::LINE_AA, kSubPixelBits);
 }
 
-void Write(cv::Mat& image, const std::string& text, int x, int y, double size, const cv::Scalar& colour) {
-  cv::putText(image, text, {x, y}, cv::FONT_HERSHEY_DUPLEX, size, colour, 1, cv::LINE_AA);
+void Write(cv::Mat& image, const std::string& text, int x, int y, const cv::Scalar& colour) {
+  cv::putText(image, text, {x, y}, cv::FONT_HERSHEY_DUPLEX, 0.7, colour, 1, cv::LINE_AA);
 }
 
 KeptFrame Copy(const hal::Frame& frame, const vision::BallDetection& detection) {
@@ -120,15 +120,16 @@ std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
   const double error_px = std::hypot(in.U(p_CO_C) - in.U(p_CO_C_star), in.V(p_CO_C) - in.V(p_CO_C_star));
   const int top = picture.rows + 34;
   const int bottom = picture.rows + 66;
-  Write(page, fmt::format("t = {:.3f} s", static_cast<double>(frame.stamp_ns) * 1e-9), 20, top, 0.8, kTruthColour);
-  Write(page, fmt::format("image error {:.1f} px", error_px), 20, bottom, 0.8, kTruthColour);
-  Write(page, "goal", 420, top, 0.8, kGoalColour);
-  Write(page, "true outline", 420, bottom, 0.8, kTruthColour);
+  const int middle = page.cols / 2;
+  Write(page, fmt::format("t = {:.3f} s   image error {:.1f} px", static_cast<double>(frame.stamp_ns) * 1e-9, error_px),
+        20, top, kTruthColour);
+  Write(page, "dashed: true outline", 20, bottom, kTruthColour);
+  Write(page, "dashed, with cross: goal", middle, bottom, kGoalColour);
   Write(page,
         frame.detection.found ? fmt::format("detection, confidence {:.2f}, edge {:.2f} px rms",
                                             frame.detection.confidence, frame.detection.outline.rms_px)
                               : std::string("no detection"),
-        680, top, 0.8, kDetectionColour);
+        middle, top, kDetectionColour);
   return ToPng(page);
 }
 

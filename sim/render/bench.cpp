@@ -42,7 +42,8 @@ void AddRoom(Bench& bench) {
 }
 
 void AddTable(Bench& bench) {
-  const Eigen::Vector2f size(kTableWidth, kTableDepth);
+  // The textured top ends where the slab's rounded edge begins.
+  const Eigen::Vector2f size(kTableWidth - 2.0F * kBevel, kTableDepth - 2.0F * kBevel);
   bench.planes.push_back({{kTableX, 0.0F, 0.0F}, size, size,
                           MakeTableTop(2048, kTableWidth, kTableDepth, 0.14, 0.0, 0.90, 0.95)});
 

@@ -11,6 +11,7 @@
 #include "sim/render/gl_program.hpp"
 #include "sim/render/gpu_mesh.hpp"
 #include "sim/render/light.hpp"
+#include "sim/render/outline_smoother.hpp"
 #include "sim/render/plane_painter.hpp"
 #include "sim/render/projection.hpp"
 #include "sim/render/shaders.hpp"
@@ -27,6 +28,7 @@ using Eigen::Vector4f;
 // A thing that does not move, and where it is, so that what is out of view need not be drawn.
 struct Thing {
   std::unique_ptr<GpuMesh> mesh;
+  std::vector<MeshEdge> edges;
   Bounds bounds;
 };
 
@@ -34,6 +36,7 @@ struct Thing {
 struct Link {
   std::unique_ptr<GpuMesh> mesh;
   std::unique_ptr<GpuMesh> shadow;
+  std::vector<MeshEdge> edges;
   Bounds bounds;
   std::vector<Bounds> shapes;  // tighter: one for each of its solids
 };
@@ -64,7 +67,8 @@ struct SceneRenderer::Impl {
   Pinhole pinhole;
   RenderQuality quality;
   EglContext egl;
-  std::unique_ptr<GlProgram> mesh_program, ball_program;
+  std::unique_ptr<GlProgram> mesh_program, hem_program, ball_program;
+  std::unique_ptr<OutlineSmoother> smoother;
   std::unique_ptr<ShadowMap> shadow;
   std::unique_ptr<PlanePainter> planes;
   std::vector<Thing> things;
@@ -84,6 +88,9 @@ struct SceneRenderer::Impl {
     const std::string lit = shaders::kShadow;
     mesh_program =
         std::make_unique<GlProgram>(head + light + shaders::kMeshVertex, head + lit + shaders::kMeshFragment);
+    hem_program =
+        std::make_unique<GlProgram>(head + light + shaders::kHemVertex, head + lit + shaders::kHemFragment);
+    smoother = std::make_unique<OutlineSmoother>();
     ball_program =
         std::make_unique<GlProgram>(head + shaders::kBallVertex, head + light + lit + shaders::kBallFragment);
     shadow = std::make_unique<ShadowMap>(quality.shadow_map_px);
@@ -103,7 +110,7 @@ struct SceneRenderer::Impl {
 
   void Upload() {
     for (const Mesh& mesh : scene.bench.things) {
-      things.push_back({std::make_unique<GpuMesh>(mesh), FindBounds(mesh)});
+      things.push_back({std::make_unique<GpuMesh>(mesh), FindEdges(mesh), FindBounds(mesh)});
     }
     for (std::size_t i = 0; i < scene.robot.links.size(); ++i) {
       Mesh mesh = MakeLink(scene.robot.links[i], Detail::kPicture);
@@ -116,8 +123,8 @@ struct SceneRenderer::Impl {
       for (const Shape& shape : scene.robot.links[i].visuals) {
         shapes.push_back(FindBounds(MakeShape(shape, Detail::kShadow)));
       }
-      links.push_back(
-          {std::make_unique<GpuMesh>(mesh), std::make_unique<GpuMesh>(caster), FindBounds(mesh), std::move(shapes)});
+      links.push_back({std::make_unique<GpuMesh>(mesh), std::make_unique<GpuMesh>(caster), FindEdges(mesh),
+                       FindBounds(mesh), std::move(shapes)});
     }
     unit_ball = std::make_unique<GpuMesh>(MakeSphere(1.0F, 24, Vector3f::Ones()));
     glGenVertexArrays(1, &no_vertices);
@@ -177,6 +184,7 @@ struct SceneRenderer::Impl {
     program.Set("u_eye_B", Vector3f(X_BC.translation()));
     program.Set("u_gain", static_cast<float>(scene.light));
     program.Set("u_shadow_of_B", shadow->map_of_B());
+    program.Set("u_shadow_lift", 1.5F * shadow->texel_m());
     program.Set("u_shadow_texel", 1.0F / static_cast<float>(quality.shadow_map_px));
     program.Set("u_shadow", 1);
   }
@@ -190,14 +198,28 @@ struct SceneRenderer::Impl {
       if (InView(pinhole, X_CB * (X_BL * links[i].bounds.centre), links[i].bounds.radius)) {
         mesh_program->Set("u_B_of_mesh", X_BL.matrix());
         links[i].mesh->Draw();
+        smoother->Add(links[i].edges, X_BL, X_BC.translation());
       }
     }
     mesh_program->Set("u_B_of_mesh", Matrix4f(Matrix4f::Identity()));
     for (const Thing& thing : things) {
       if (InView(pinhole, X_CB * thing.bounds.centre, thing.bounds.radius)) {
         thing.mesh->Draw();
+        smoother->Add(thing.edges, Isometry3f::Identity(), X_BC.translation());
       }
     }
+  }
+
+  void DrawHems(const Isometry3f& X_BC, const Matrix4f& clip_of_B) const {
+    SetLight(*hem_program, X_BC);
+    hem_program->Set("u_clip_of_B", clip_of_B);
+    hem_program->Set("u_half_size_px", Eigen::Vector2f(0.5F * static_cast<float>(pinhole.width_px),
+                                                       0.5F * static_cast<float>(pinhole.height_px)));
+    glEnable(GL_BLEND);
+    glDepthMask(GL_FALSE);
+    smoother->Draw();
+    glDepthMask(GL_TRUE);
+    glDisable(GL_BLEND);
   }
 
   void DrawPlanes(const Exposure& exposure, const Matrix4f& clip_of_B) const {
@@ -221,7 +243,6 @@ struct SceneRenderer::Impl {
       return (X_CB * a.p_B).squaredNorm() > (X_CB * b.p_B).squaredNorm();
     });
     glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     SetLight(*ball_program, X_BC);
     ball_program->Set("u_clip_of_C", clip_of_C);
     ball_program->Set("u_B_of_C", X_BC.matrix());
@@ -264,6 +285,8 @@ struct SceneRenderer::Impl {
     glFrontFace(GL_CW);  // see ClipOfC
     DrawMeshes(exposure, X_BC, clip_of_B);
     glDisable(GL_CULL_FACE);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    DrawHems(X_BC, clip_of_B);
     DrawBalls(exposure, X_BC, clip_of_C);
 
     if (quality.samples > 1) {

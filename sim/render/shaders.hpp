@@ -13,6 +13,7 @@ uniform vec3 u_sky_from_below;
 uniform vec3 u_eye_B;
 uniform float u_gain;        // brightness of the light times the camera's gain
 uniform mat4 u_shadow_of_B;  // B to the shadow map, 0 to 1
+uniform float u_shadow_lift;  // off the surface, so that it does not shade itself [m]
 
 vec3 Sky(vec3 n_B) { return mix(u_sky_from_below, u_sky_from_above, 0.5 * n_B.z + 0.5); }
 vec3 Sun(vec3 n_B) { return u_sun_light * max(dot(n_B, u_sun_B), 0.0); }
@@ -21,7 +22,7 @@ float Shine(vec3 p_B, vec3 n_B) {
   shine *= shine; shine *= shine; shine *= shine; shine *= shine; shine *= shine;
   return shine;
 }
-vec3 InShadowMap(vec3 p_B, vec3 n_B) { return (u_shadow_of_B * vec4(p_B + 0.004 * n_B, 1.0)).xyz; }
+vec3 InShadowMap(vec3 p_B, vec3 n_B) { return (u_shadow_of_B * vec4(p_B + u_shadow_lift * n_B, 1.0)).xyz; }
 )glsl";
 
 // SHADOW_TAPS and SHADOW_SPREAD are put before it.
@@ -68,6 +69,43 @@ in vec3 sun;
 in vec3 in_shadow_map;
 out vec4 pixel;
 void main() { pixel = vec4(sky + sun * Lit(in_shadow_map), 1.0); }
+)glsl";
+
+// The hem of an outline's edge (outline_smoother.hpp): one pixel wide on the side away from the mesh.
+inline constexpr const char* kHemVertex = R"glsl(
+layout(location = 0) in vec3 a_position;
+layout(location = 1) in vec3 a_other;
+layout(location = 2) in vec3 a_normal;
+layout(location = 3) in vec3 a_colour;
+layout(location = 4) in vec2 a_hem;
+uniform mat4 u_clip_of_B;
+uniform vec2 u_half_size_px;
+out vec3 sky;
+out vec3 sun;
+out vec3 in_shadow_map;
+out float cover;
+void main() {
+  vec4 here = u_clip_of_B * vec4(a_position, 1.0);
+  vec4 there = u_clip_of_B * vec4(a_other, 1.0);
+  // Along the edge on the screen; the sign of w keeps an end behind the eye from turning it round.
+  vec2 along = (there.xy * here.w - here.xy * there.w) * u_half_size_px * sign(there.w);
+  vec2 out_px = normalize(along + vec2(1e-9, 0.0)).yx * vec2(-1.0, 1.0) * a_hem.x;
+  here.xy += a_hem.y * out_px / u_half_size_px * here.w;
+  sky = a_colour * Sky(a_normal) * u_gain;
+  sun = (a_colour * Sun(a_normal) + vec3(0.10 * Shine(a_position, a_normal))) * u_gain;
+  in_shadow_map = InShadowMap(a_position, a_normal);
+  cover = 1.0 - a_hem.y;
+  gl_Position = here;
+}
+)glsl";
+
+inline constexpr const char* kHemFragment = R"glsl(
+in vec3 sky;
+in vec3 sun;
+in vec3 in_shadow_map;
+in float cover;
+out vec4 pixel;
+void main() { pixel = vec4(sky + sun * Lit(in_shadow_map), cover); }
 )glsl";
 
 // A tile of a level surface. All that varies over it is linear in x and y of B, so these two are all that is

@@ -64,6 +64,8 @@ ShadowMap::~ShadowMap() {
   glDeleteTextures(2, maps_);
 }
 
+float ShadowMap::texel_m() const { return 2.0F * kHalfSize / static_cast<float>(size_px_); }
+
 void ShadowMap::Draw(const DrawAll& draw_all) const {
   glViewport(0, 0, size_px_, size_px_);
   glEnable(GL_DEPTH_TEST);

@@ -30,6 +30,7 @@ class ShadowMap {
 
   [[nodiscard]] GLuint texture() const { return maps_[1]; }
   [[nodiscard]] int size_px() const { return size_px_; }
+  [[nodiscard]] float texel_m() const;  // what one texel covers [m]
   // From B to the map: x, y from 0 to 1, z the depth to compare.
   [[nodiscard]] const Eigen::Matrix4f& map_of_B() const { return map_of_B_; }
 
