@@ -55,7 +55,8 @@ void KeyTable::Add(Key key) { keys_.push_back(std::move(key)); }
 
 void KeyTable::Number(std::string name, double& field, double min, double max, std::string unit,
                       std::string meaning) {
-  Key key{std::move(name), "a number", std::move(unit), Range(min, max), std::move(meaning), Plain(field), {}};
+  Key key{std::move(name), "a number", std::move(unit), Range(min, max), std::move(meaning),
+          Plain(field),    {}};
   key.set = [key, &field, min, max](const Setting& setting) {
     double number = 0.0;
     if (!ToDouble(setting.value, number) || number < min || number > max) {
@@ -66,9 +67,15 @@ void KeyTable::Number(std::string name, double& field, double min, double max, s
   Add(std::move(key));
 }
 
-void KeyTable::Integer(std::string name, int& field, int min, int max, std::string unit, std::string meaning) {
-  Key key{std::move(name), "a whole number", std::move(unit), fmt::format("{} to {}", min, max),
-          std::move(meaning), fmt::format("{}", field), {}};
+void KeyTable::Integer(std::string name, int& field, int min, int max, std::string unit,
+                       std::string meaning) {
+  Key key{std::move(name),
+          "a whole number",
+          std::move(unit),
+          fmt::format("{} to {}", min, max),
+          std::move(meaning),
+          fmt::format("{}", field),
+          {}};
   key.set = [key, &field, min, max](const Setting& setting) {
     const auto* integer = std::get_if<std::int64_t>(&setting.value);
     if (integer == nullptr || *integer < min || *integer > max) {
@@ -105,8 +112,13 @@ void KeyTable::Text(std::string name, std::string& field, std::string meaning) {
 
 void KeyTable::Choice(std::string name, std::string& field, std::vector<std::string> choices,
                       std::string meaning) {
-  Key key{std::move(name), "one of", "", fmt::format("\"{}\"", fmt::join(choices, "\", \"")),
-          std::move(meaning), fmt::format("\"{}\"", field), {}};
+  Key key{std::move(name),
+          "one of",
+          "",
+          fmt::format("\"{}\"", fmt::join(choices, "\", \"")),
+          std::move(meaning),
+          fmt::format("\"{}\"", field),
+          {}};
   key.set = [key, &field, choices](const Setting& setting) {
     const auto* text = std::get_if<std::string>(&setting.value);
     if (text == nullptr || std::find(choices.begin(), choices.end(), *text) == choices.end()) {
@@ -121,8 +133,13 @@ void KeyTable::Numbers(std::string name, std::vector<double>& field, std::size_t
                        std::size_t size_max, double min, double max, std::string unit, std::string meaning) {
   const std::string count =
       size_min == size_max ? fmt::format("{}", size_min) : fmt::format("{} to {}", size_min, size_max);
-  Key key{std::move(name), "a list of " + count + " numbers", std::move(unit), "each " + Range(min, max),
-          std::move(meaning), ToText(field), {}};
+  Key key{std::move(name),
+          "a list of " + count + " numbers",
+          std::move(unit),
+          "each " + Range(min, max),
+          std::move(meaning),
+          ToText(field),
+          {}};
   key.set = [key, &field, size_min, size_max, min, max](const Setting& setting) {
     const auto* numbers = std::get_if<std::vector<double>>(&setting.value);
     if (numbers == nullptr || numbers->size() < size_min || numbers->size() > size_max) {

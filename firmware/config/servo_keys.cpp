@@ -11,12 +11,15 @@ namespace {
 void AddPredictKeys(servo::PredictConfig& c, KeyTable& keys) {
   keys.Flag("servo.predict", c.enabled,
             "predict the target for every tick; false: hold the newest measurement as it came");
-  keys.Number("servo.target_jerk", c.target_jerk, 0.0, 1000.0, "m/s^3",
-              "how fast the target's acceleration may be thought to change; larger follows faster, filters less");
-  keys.Number("servo.gate_sigma", c.gate_sigma, 1.0, 1000.0, "sigma", "a measurement further off is an outlier");
+  keys.Number(
+      "servo.target_jerk", c.target_jerk, 0.0, 1000.0, "m/s^3",
+      "how fast the target's acceleration may be thought to change; larger follows faster, filters less");
+  keys.Number("servo.gate_sigma", c.gate_sigma, 1.0, 1000.0, "sigma",
+              "a measurement further off is an outlier");
   keys.Integer("servo.gate_rejects_max", c.gate_rejects_max, 1, 1000, "",
                "so many outliers in a row, and the target is taken to have moved there");
-  keys.Integer("servo.accepted_min", c.accepted_min, 1, 1000, "", "measurements before the target counts as known");
+  keys.Integer("servo.accepted_min", c.accepted_min, 1, 1000, "",
+               "measurements before the target counts as known");
   keys.Number("servo.stale_s", c.stale_s, 0.001, 10.0, "s", "without a measurement for so long: Coast");
   keys.Number("servo.coast_s", c.coast_s, 0.001, 60.0, "s", "without a measurement for so long: Hold");
 }
@@ -27,8 +30,10 @@ void AddLawKeys(ServoSettings& settings, KeyTable& keys) {
   keys.Number("servo.lambda", c.lambda, 0.0, 20.0, "1/s", "gain: the error decays like exp(-lambda t)");
   keys.Numbers("servo.goal", settings.goal, 3, 3, -10.0, 10.0, "m",
                "where the target's centre shall stand in camera axes: x right, y down, z forward");
-  keys.Number("servo.smooth_start_s", c.smooth_start_s, 0.001, 10.0, "s", "the law is blended in over this time");
-  keys.Number("servo.damping", c.damping, 1e-6, 1.0, "", "of the pseudo-inverse, relative to the Jacobian's size");
+  keys.Number("servo.smooth_start_s", c.smooth_start_s, 0.001, 10.0, "s",
+              "the law is blended in over this time");
+  keys.Number("servo.damping", c.damping, 1e-6, 1.0, "",
+              "of the pseudo-inverse, relative to the Jacobian's size");
   keys.Number("servo.posture_gain", c.posture_gain, 0.0, 20.0, "1/s",
               "pull of the posture in the directions that the feature leaves free");
   keys.Numbers("servo.posture", settings.posture, 1, model::kMaxJoints, -1e4, 1e4, "rad",
@@ -59,13 +64,16 @@ void AddGuardKeys(servo::GuardConfig& c, KeyTable& keys) {
 }
 
 void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
-  keys.Number("safety.torque_fraction", c.torque_fraction, 0.001, 1.0, "", "share of the arm's torque range in use");
+  keys.Number("safety.torque_fraction", c.torque_fraction, 0.001, 1.0, "",
+              "share of the arm's torque range in use");
   keys.Number("safety.torque_rate_fraction", c.torque_rate_fraction, 0.001, 1.0, "",
               "share of the arm's torque rate in use");
-  keys.Integer("safety.arm_lost_ticks", c.arm_lost_ticks, 1, 10000, "ms", "without a new state for so long: Fault");
+  keys.Integer("safety.arm_lost_ticks", c.arm_lost_ticks, 1, 10000, "ms",
+               "without a new state for so long: Fault");
   keys.Integer("safety.non_finite_ticks", c.non_finite_ticks, 0, 10000, "ms",
                "a joint value that is no number is bridged for so long, then: Fault");
-  keys.Integer("safety.missed_ticks", c.missed_ticks, 1, 10000, "ms", "so many deadlines missed in a row: Fault");
+  keys.Integer("safety.missed_ticks", c.missed_ticks, 1, 10000, "ms",
+               "so many deadlines missed in a row: Fault");
   keys.Number("safety.following_error", c.following_error, 1e-4, 10.0, "rad",
               "a joint further off its reference: Fault");
   keys.Number("safety.fault_damping", c.fault_damping, 0.1, 100.0, "1/s", "of the stop after a fault");
@@ -87,14 +95,19 @@ void AddVisionKeys(VisionSettings& settings, KeyTable& keys) {
   vision::BallDetectorConfig& c = settings.config;
   keys.Choice("vision.method", settings.method, {"colour", "gray"},
               "search by back-projection of the target's colour, or in the gray image");
-  keys.Number("vision.hue_deg", c.finder.hue_deg, 0.0, 360.0, "deg", "the target's hue: 0 red, 120 green, 240 blue");
+  keys.Number("vision.hue_deg", c.finder.hue_deg, 0.0, 360.0, "deg",
+              "the target's hue: 0 red, 120 green, 240 blue");
   keys.Number("vision.hue_width_deg", c.finder.hue_width_deg, 1.0, 90.0, "deg", "its standard deviation");
   keys.Number("vision.saturation_min", c.finder.saturation_min, 0.0, 1.0, "", "paler colours are nobody's");
-  keys.Number("vision.blur_sigma_px", c.finder.blur_sigma_px, 0.1, 10.0, "px", "blur before the search, at half size");
-  keys.Number("vision.canny_threshold", c.finder.canny_threshold, 1.0, 1000.0, "", "of edges that vote for circles");
+  keys.Number("vision.blur_sigma_px", c.finder.blur_sigma_px, 0.1, 10.0, "px",
+              "blur before the search, at half size");
+  keys.Number("vision.canny_threshold", c.finder.canny_threshold, 1.0, 1000.0, "",
+              "of edges that vote for circles");
   keys.Number("vision.votes", c.finder.votes, 1.0, 1000.0, "", "a circle needs so many");
-  keys.Number("vision.radius_min_px", c.finder.radius_min_px, 4.0, 500.0, "px", "smallest circle that is searched");
-  keys.Number("vision.radius_max_px", c.finder.radius_max_px, 8.0, 2000.0, "px", "largest circle that is searched");
+  keys.Number("vision.radius_min_px", c.finder.radius_min_px, 4.0, 500.0, "px",
+              "smallest circle that is searched");
+  keys.Number("vision.radius_max_px", c.finder.radius_max_px, 8.0, 2000.0, "px",
+              "largest circle that is searched");
   keys.Number("vision.distance_min", c.distance_min, 0.01, 100.0, "m", "a target nearer than this is none");
   keys.Number("vision.distance_max", c.distance_max, 0.01, 100.0, "m", "nor one further off");
   keys.Number("vision.confidence_min", c.confidence_min, 0.0, 1.0, "", "finds below it are refused");
@@ -110,8 +123,8 @@ servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::
   config.law.q_posture = robot.model.q_ready;
   if (!settings.posture.empty()) {
     if (static_cast<int>(settings.posture.size()) != robot.model.num_joints) {
-      throw InputError(fmt::format("servo.posture has {} entries, arm \"{}\" has {} joints", settings.posture.size(),
-                                   robot.name, robot.model.num_joints));
+      throw InputError(fmt::format("servo.posture has {} entries, arm \"{}\" has {} joints",
+                                   settings.posture.size(), robot.name, robot.model.num_joints));
     }
     for (std::size_t i = 0; i < settings.posture.size(); ++i) {
       config.law.q_posture[i] = settings.posture[i];
@@ -124,8 +137,8 @@ servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::
   return config;
 }
 
-vision::BallDetectorConfig MakeVisionConfig(const VisionSettings& settings, const vision::Intrinsics& intrinsics,
-                                            double target_radius) {
+vision::BallDetectorConfig MakeVisionConfig(const VisionSettings& settings,
+                                            const vision::Intrinsics& intrinsics, double target_radius) {
   vision::BallDetectorConfig config = settings.config;
   config.intrinsics = intrinsics;
   config.radius = target_radius;

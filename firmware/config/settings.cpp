@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <toml++/toml.h>
+#include <algorithm>
 
 #include "fovea/config/input_error.hpp"
 
@@ -81,8 +81,8 @@ std::vector<Setting> ReadTomlFile(const std::filesystem::path& path) {
     const toml::table table = toml::parse_file(path.string());
     Flatten(table, "", path.string(), settings);
   } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}: not TOML: {}", path.string(), error.source().begin.line,
-                                 error.description()));
+    throw InputError(
+        fmt::format("{}:{}: not TOML: {}", path.string(), error.source().begin.line, error.description()));
   }
   return settings;
 }

@@ -29,7 +29,7 @@ Twist JointTwist(const ArmModel& model, const ArmPoses& poses, std::size_t i) no
 // Mass, first moment and inertia about the origin of B of a set of bodies.
 struct Composite {
   double mass = 0.0;
-  Vec3 h = Vec3::Zero();   // mass times centre of mass
+  Vec3 h = Vec3::Zero();  // mass times centre of mass
   Mat3 I = Mat3::Zero();
 };
 

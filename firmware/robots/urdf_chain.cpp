@@ -23,7 +23,9 @@ using model::Vec3;
 // Collects what urdfdom has to say, so that it reaches the person as part of one line.
 class MessageCollector final : public console_bridge::OutputHandler {
  public:
-  MessageCollector() : previous_(console_bridge::getOutputHandler()) { console_bridge::useOutputHandler(this); }
+  MessageCollector() : previous_(console_bridge::getOutputHandler()) {
+    console_bridge::useOutputHandler(this);
+  }
   ~MessageCollector() override { console_bridge::useOutputHandler(previous_); }
   MessageCollector(const MessageCollector&) = delete;
   MessageCollector& operator=(const MessageCollector&) = delete;
@@ -148,7 +150,8 @@ class ChainReader {
         }
       }
       if (leaves.size() != 1) {
-        Fail(fmt::format("{} links could be the end effector; name one as tip in an arm file", leaves.size()));
+        Fail(
+            fmt::format("{} links could be the end effector; name one as tip in an arm file", leaves.size()));
       }
       robot_.tip_link = leaves.front();
     }
@@ -167,7 +170,8 @@ class ChainReader {
       link = link->getParent();
     }
     if (!link) {
-      Fail(fmt::format("tip link \"{}\" does not hang on base link \"{}\"", robot_.tip_link, robot_.base_link));
+      Fail(fmt::format("tip link \"{}\" does not hang on base link \"{}\"", robot_.tip_link,
+                       robot_.base_link));
     }
     std::reverse(chain.begin(), chain.end());
     return chain;
@@ -253,9 +257,10 @@ class ChainReader {
       Fail(fmt::format("link \"{}\": mass and inertia must be finite, the mass above 0", link));
     }
     if (!(moments[0] > 0.0) || !(moments[0] + moments[1] >= moments[2] * (1.0 - 1e-6))) {
-      Fail(fmt::format("link \"{}\": no body has principal moments of inertia {:.4g}, {:.4g}, {:.4g} kg m^2 "
-                       "(each must be above 0 and below the sum of the others)",
-                       link, moments[0], moments[1], moments[2]));
+      Fail(
+          fmt::format("link \"{}\": no body has principal moments of inertia {:.4g}, {:.4g}, {:.4g} kg m^2 "
+                      "(each must be above 0 and below the sum of the others)",
+                      link, moments[0], moments[1], moments[2]));
     }
   }
 

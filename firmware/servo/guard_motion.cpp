@@ -13,7 +13,22 @@ using model::LinearJacobian;
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 // The time lost between the wish to brake and full deceleration: one tick, and the ramp of the jerk limit.
-double ReactionTime(double deceleration, double jerk) noexcept { return 2.0 * kPeriodS + deceleration / jerk; }
+double ReactionTime(double deceleration, double jerk) noexcept {
+  return 2.0 * kPeriodS + deceleration / jerk;
+}
+
+// The largest of these over the joints: the arm as a whole brakes no sooner.
+double SlowestReaction(const ServoConfig& config) noexcept {
+  const GuardConfig& guard = config.guard;
+  double slowest = 0.0;
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+    slowest = std::fmax(
+        slowest, ReactionTime(guard.braking_fraction * guard.joint_acceleration_fraction * joint.ddq_max,
+                              guard.joint_jerk_fraction * joint.dddq_max));
+  }
+  return slowest;
+}
 
 const model::Joint& JointOf(const ServoConfig& config, int i) noexcept {
   return config.arm.joints[static_cast<std::size_t>(i)];
@@ -45,7 +60,8 @@ LimitSet LimitJointPosition(const ServoConfig& config, const model::VecN& q, mod
     const double deceleration = guard.braking_fraction * guard.joint_acceleration_fraction * joint.ddq_max;
     const double reaction = ReactionTime(deceleration, guard.joint_jerk_fraction * joint.dddq_max);
     const double up = BarrierSpeed(joint.q_max - guard.joint_position_margin - q[i], deceleration, reaction);
-    const double down = BarrierSpeed(q[i] - joint.q_min - guard.joint_position_margin, deceleration, reaction);
+    const double down =
+        BarrierSpeed(q[i] - joint.q_min - guard.joint_position_margin, deceleration, reaction);
     if (dq[i] > up) {
       dq[i] = up;
       limits |= Bit(Limit::kJointPosition);
@@ -82,9 +98,9 @@ LimitSet LimitWorkspace(const ServoConfig& config, const model::Vec3& p_BE, cons
     spent = v_t2_max;
     limits |= Bit(Limit::kWorkspace);
   }
-  const double deceleration = std::fmax(guard.workspace_deceleration - spent / radius,
-                                        0.5 * guard.workspace_deceleration);
-  const double v_max = BarrierSpeed(distance, deceleration, 4.0 * kPeriodS);
+  const double deceleration =
+      std::fmax(guard.workspace_deceleration - spent / radius, 0.5 * guard.workspace_deceleration);
+  const double v_max = BarrierSpeed(distance, deceleration, SlowestReaction(config));
   if (v_out > v_max) {
     // Smallest change of dq that brings the outward speed to v_max.
     model::VecN a = model::VecN::Zero(dq.size());
@@ -102,7 +118,8 @@ LimitSet LimitWorkspace(const ServoConfig& config, const model::Vec3& p_BE, cons
 }
 
 // Acceleration and jerk: the reference approaches the wished velocity without overshoot.
-LimitSet LimitAcceleration(const ServoConfig& config, const model::VecN& dq_des, Reference& reference) noexcept {
+LimitSet LimitAcceleration(const ServoConfig& config, const model::VecN& dq_des,
+                           Reference& reference) noexcept {
   const GuardConfig& guard = config.guard;
   LimitSet limits = 0;
   for (int i = 0; i < dq_des.size(); ++i) {

@@ -36,8 +36,8 @@ bool JointHistory::At(std::int64_t stamp_ns, model::VecN& q) const noexcept {
     return true;
   }
   const Entry& after = FromOldest(low);
-  const double share = static_cast<double>(stamp_ns - before.stamp_ns) /
-                       static_cast<double>(after.stamp_ns - before.stamp_ns);
+  const double share =
+      static_cast<double>(stamp_ns - before.stamp_ns) / static_cast<double>(after.stamp_ns - before.stamp_ns);
   q = before.q + share * (after.q - before.q);
   return true;
 }

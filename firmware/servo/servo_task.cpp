@@ -174,19 +174,16 @@ void ServoTask::MoveReference() noexcept {
   }
 
   constexpr hal::LimitSet kBarriers = hal::Bit(hal::Limit::kJointPosition) | hal::Bit(hal::Limit::kWorkspace);
-  const bool blocked =
-      steering && (state_.limits & kBarriers) != 0 &&
-      state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
-      Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
-          config_.law.unreachable_progress;
+  const bool blocked = steering && (state_.limits & kBarriers) != 0 &&
+                       state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
+                       Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
+                           config_.law.unreachable_progress;
   state_.blocked_ns = blocked ? state_.blocked_ns + hal::kTickPeriodNs : 0;
 }
 
 void ServoTask::ComputeTorque() noexcept {
   switch (state_.mode.mode) {
-    case hal::Mode::kBoot:
-      state_.tau.setZero(config_.arm.num_joints);
-      break;
+    case hal::Mode::kBoot: state_.tau.setZero(config_.arm.num_joints); break;
     case hal::Mode::kHold:
     case hal::Mode::kTrack:
     case hal::Mode::kCoast:

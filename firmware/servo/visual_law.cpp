@@ -7,8 +7,8 @@ namespace {
 
 using features::FeatureVector;
 using features::kMaxDim;
-using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxDim,
-                                   model::kMaxJoints>;
+using TaskJacobian =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxDim, model::kMaxJoints>;
 using TaskMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxDim, kMaxDim>;
 
 // Cholesky factor of the symmetric positive definite `A` in its lower half, in place. A pivot that is not
@@ -52,7 +52,8 @@ void VisualLaw(const LawConfig& config, const features::FeatureState& feature, c
   output.ds_cmd = config.lambda * output.e - feature.ds_dt_target;
 
   const TaskJacobian J_s = feature.L_s.lazyProduct(J_C);
-  const model::VecN dq_0 = config.posture_gain * (model::ToVector(config.q_posture, static_cast<int>(q.size())) - q);
+  const model::VecN dq_0 =
+      config.posture_gain * (model::ToVector(config.q_posture, static_cast<int>(q.size())) - q);
 
   // (J J^T + mu^2 I), with mu in proportion to the size of J, so that units do not matter.
   TaskMatrix A = J_s.lazyProduct(J_s.transpose());

@@ -8,7 +8,7 @@
 namespace fovea::vision {
 namespace {
 
-constexpr double kMaxRmsPx = 0.6;       // edge points further about the outline: it is no ball's
+constexpr double kMaxRmsPx = 0.6;        // edge points further about the outline: it is no ball's
 constexpr double kMinColourShare = 0.6;  // of the inside that must look like the target
 
 // How far the ball may be from where it is expected, before it is searched for anew.
@@ -21,7 +21,8 @@ BallDetector::BallDetector(const BallDetectorConfig& config) : config_(config), 
 BallDetection BallDetector::Detect(const cv::Mat& image) {
   BallDetection best;
   if (has_last_) {
-    const Circle expected{last_.u_px + step_.u_px, last_.v_px + step_.v_px, last_.radius_px + step_.radius_px};
+    const Circle expected{last_.u_px + step_.u_px, last_.v_px + step_.v_px,
+                          last_.radius_px + step_.radius_px};
     best = Judge(image, FitOutline(image, config_.intrinsics, expected, TrackSearchPx(expected)));
     best.tracked = best.found;
   }

@@ -19,7 +19,8 @@ double HueDistance(double a_deg, double b_deg) {
 
 }  // namespace
 
-BallFinder::BallFinder(const FinderConfig& config) : config_(config), histogram_(kHueBins, kSaturationBins, CV_32F) {
+BallFinder::BallFinder(const FinderConfig& config)
+    : config_(config), histogram_(kHueBins, kSaturationBins, CV_32F) {
   for (int h = 0; h < kHueBins; ++h) {
     const double d = HueDistance((h + 0.5) * kDegPerBin, config.hue_deg) / config.hue_width_deg;
     for (int s = 0; s < kSaturationBins; ++s) {

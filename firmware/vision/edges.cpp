@@ -16,8 +16,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kMinContrast = 6.0;  // gray levels between the two sides, or it is no edge
 constexpr int kHalf = 6;              // samples of a fine profile on each side of the edge, one per pixel
 constexpr int kSamples = 2 * kHalf + 1;
-constexpr int kClear = 2;             // samples nearer to the edge than this belong to neither side
-constexpr int kInner = 4;             // the area is taken from this far inside
+constexpr int kClear = 2;  // samples nearer to the edge than this belong to neither side
+constexpr int kInner = 4;  // the area is taken from this far inside
 
 // Reads the image between its pixels. Gray images count as three equal channels.
 class Sampler {
@@ -84,7 +84,8 @@ void ReadProfiles(const Sampler& sampler, const RayFan& fan, Profiles& profiles)
       const double r = first + sample;
       profiles.colour[k][static_cast<std::size_t>(sample)] = sampler.At(fan.u_px + r * du, fan.v_px + r * dv);
     }
-    profiles.step[k] = MeanOf(profiles.colour[k], -kInner, -kClear) - MeanOf(profiles.colour[k], kClear, kHalf);
+    profiles.step[k] =
+        MeanOf(profiles.colour[k], -kInner, -kClear) - MeanOf(profiles.colour[k], kClear, kHalf);
     profiles.valid[k] = profiles.step[k].norm() >= kMinContrast;
   }
 }
@@ -151,7 +152,8 @@ bool SolveEdge(const std::array<Vec3, kSamples>& colour, const Vec3& direction, 
   // The inner level less the shading's share: a in a + c z(d).
   double level = 0.0;
   for (int d = kClear; d <= kInner; ++d) {
-    level += direction.dot(colour[static_cast<std::size_t>(kHalf - d)]) - (c == 0.0 ? 0.0 : c * Turn(d, radius_px));
+    level += direction.dot(colour[static_cast<std::size_t>(kHalf - d)]) -
+             (c == 0.0 ? 0.0 : c * Turn(d, radius_px));
   }
   level /= kInner - kClear + 1;
   contrast = level - outside;
@@ -227,8 +229,8 @@ void FindCoarseEdges(const cv::Mat& image, const RayFan& fan, double search_px, 
       }
     }
     if (distance > 0.0) {
-      edges.list[static_cast<std::size_t>(edges.count++)] = {fan.u_px + distance * du, fan.v_px + distance * dv, du,
-                                                             dv};
+      edges.list[static_cast<std::size_t>(edges.count++)] = {fan.u_px + distance * du,
+                                                             fan.v_px + distance * dv, du, dv};
     }
   }
 }
@@ -257,7 +259,8 @@ void MeasureFineEdges(const cv::Mat& image, const RayFan& fan, double radius_px,
       continue;
     }
     const double distance = fan.distance_px[k] + shift;
-    edges.list[static_cast<std::size_t>(edges.count++)] = {fan.u_px + distance * du, fan.v_px + distance * dv, du, dv};
+    edges.list[static_cast<std::size_t>(edges.count++)] = {fan.u_px + distance * du, fan.v_px + distance * dv,
+                                                           du, dv};
     edges.contrast += contrast;
   }
   if (edges.count > 0) {

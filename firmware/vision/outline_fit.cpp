@@ -14,8 +14,8 @@ using model::Mat3;
 using model::Vec3;
 
 constexpr int kMinRays = 48;
-constexpr double kMinRms = 0.02;      // edges are never trusted beyond this [px]
-constexpr double kCommonPx = 0.05;    // what shading and lens may shift the whole outline in or out [px]
+constexpr double kMinRms = 0.02;    // edges are never trusted beyond this [px]
+constexpr double kCommonPx = 0.05;  // what shading and lens may shift the whole outline in or out [px]
 constexpr double kPi = 3.14159265358979323846;
 
 // Distance of the outline's function |x| - x . m from zero, per pixel along the ray.
@@ -167,8 +167,8 @@ void Describe(const Intrinsics& in, const Vec3& m, OutlineFit& fit) {
 
 }  // namespace
 
-double OutlineDistance(const Intrinsics& intrinsics, const Vec3& m, double u_px, double v_px, double du, double dv,
-                       double start_px) {
+double OutlineDistance(const Intrinsics& intrinsics, const Vec3& m, double u_px, double v_px, double du,
+                       double dv, double start_px) {
   constexpr int kNewtonSteps = 3;
   double distance = start_px;
   for (int i = 0; i < kNewtonSteps; ++i) {

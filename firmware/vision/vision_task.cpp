@@ -37,8 +37,8 @@ hal::Status VisionTask::Process(const hal::Frame& frame, hal::FeatureMeasurement
   return hal::Status::Ok();
 }
 
-hal::Status RunVision(hal::Camera& camera, VisionTask& task, hal::FeatureSink& sink, const std::atomic<bool>& stop,
-                      const FrameObserver& observer) {
+hal::Status RunVision(hal::Camera& camera, VisionTask& task, hal::FeatureSink& sink,
+                      const std::atomic<bool>& stop, const FrameObserver& observer) {
   constexpr std::int64_t kPollNs = 100'000'000;  // how often `stop` is looked at while no frame comes
   while (!stop.load(std::memory_order_relaxed)) {
     hal::Frame frame;

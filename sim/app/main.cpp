@@ -57,8 +57,8 @@ int Keys() {
   sim::Scenario scenario;
   const config::KeyTable keys = sim::ScenarioKeys(scenario);
   for (const config::Key& key : keys.keys()) {
-    fmt::print("{} = {}\n    {}; {}, {}{}{}\n", key.name, key.default_text, key.meaning, key.kind, key.allowed,
-               key.unit.empty() ? "" : " ", key.unit);
+    fmt::print("{} = {}\n    {}; {}, {}{}{}\n", key.name, key.default_text, key.meaning, key.kind,
+               key.allowed, key.unit.empty() ? "" : " ", key.unit);
   }
   return kDone;
 }
@@ -78,13 +78,15 @@ int main(int argc, char** argv) {
 
   RunArguments arguments;
   CLI::App* run = app.add_subcommand("run", "simulate a scenario");
-  run->add_option("scenario", arguments.scenario, "a shipped scenario by name, or the path of a .toml")->required();
+  run->add_option("scenario", arguments.scenario, "a shipped scenario by name, or the path of a .toml")
+      ->required();
   run->add_option("--set", arguments.assignments, "key=value, over the scenario's own; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
   run->add_option("--seed", arguments.seed, "of all that is random")->check(CLI::Range(0, 2147483647));
-  run->add_option("--pace", arguments.pace, "lockstep: as fast as it goes, repeatable; real: 1 ms by the clock")
+  run->add_option("--pace", arguments.pace,
+                  "lockstep: as fast as it goes, repeatable; real: 1 ms by the clock")
       ->check(CLI::IsMember({"lockstep", "real"}));
   run->add_option("--out", arguments.out, "folder for the files; out/<scenario> when not given");
   run->add_flag("--no-report", arguments.no_report, "leave out what takes long to draw");

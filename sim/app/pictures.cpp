@@ -12,8 +12,8 @@
 namespace fovea::sim {
 namespace {
 
-constexpr int kScale = 2;       // of the eye's pictures
-constexpr int kLegendPx = 84;   // height of the strip below them
+constexpr int kScale = 2;      // of the eye's pictures
+constexpr int kLegendPx = 84;  // height of the strip below them
 constexpr int kSubPixelBits = 4;
 
 // Blue, green, red; told apart by brightness too.
@@ -53,13 +53,14 @@ std::vector<cv::Point> Outline(const vision::Intrinsics& in, const model::Vec3& 
   return points;
 }
 
-void DrawOutline(cv::Mat& image, const std::vector<cv::Point>& points, const cv::Scalar& colour, int thickness,
-                 bool dashed) {
+void DrawOutline(cv::Mat& image, const std::vector<cv::Point>& points, const cv::Scalar& colour,
+                 int thickness, bool dashed) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (dashed && i % 6 >= 3) {
       continue;
     }
-    cv::line(image, points[i], points[(i + 1) % points.size()], colour, thickness, cv::LINE_AA, kSubPixelBits);
+    cv::line(image, points[i], points[(i + 1) % points.size()], colour, thickness, cv::LINE_AA,
+             kSubPixelBits);
   }
 }
 
@@ -121,7 +122,9 @@ std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
   const int top = picture.rows + 34;
   const int bottom = picture.rows + 66;
   const int middle = page.cols / 2;
-  Write(page, fmt::format("t = {:.3f} s   image error {:.1f} px", static_cast<double>(frame.stamp_ns) * 1e-9, error_px),
+  Write(page,
+        fmt::format("t = {:.3f} s   image error {:.1f} px", static_cast<double>(frame.stamp_ns) * 1e-9,
+                    error_px),
         20, top, kTruthColour);
   Write(page, "dashed: true outline", 20, bottom, kTruthColour);
   Write(page, "dashed, with cross: goal", middle, bottom, kGoalColour);

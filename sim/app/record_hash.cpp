@@ -10,7 +10,8 @@
 namespace fovea::sim {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "a hash compares across machines only byte by byte");
+static_assert(std::endian::native == std::endian::little,
+              "a hash compares across machines only byte by byte");
 
 // Appends values to a byte string; structures are walked field by field, so that padding never counts.
 class Writer {
@@ -18,8 +19,7 @@ class Writer {
   explicit Writer(std::vector<std::uint8_t>& bytes) : bytes_(bytes) { bytes_.clear(); }
 
   template <typename T>
-    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>)
-  void operator()(const T& value) {
+  requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void operator()(const T& value) {
     const auto* from = reinterpret_cast<const std::uint8_t*>(&value);
     bytes_.insert(bytes_.end(), from, from + sizeof(T));
   }
@@ -56,7 +56,8 @@ RecordHash::~RecordHash() = default;
 void RecordHash::Add(const hal::TickRecord& r) {
   Writer write(bytes_);
   write.All(r.tick, r.stamp_ns, r.missed_ticks);
-  write.All(r.arm.stamp_ns, r.arm.sequence, r.arm.num_joints, r.arm.q, r.arm.dq, r.arm.tau_meas, r.arm.tau_applied);
+  write.All(r.arm.stamp_ns, r.arm.sequence, r.arm.num_joints, r.arm.q, r.arm.dq, r.arm.tau_meas,
+            r.arm.tau_applied);
   write.All(r.has_feature, r.feature.stamp_ns, r.feature.sequence, r.feature.kind, r.feature.found,
             r.feature.confidence, r.feature.dim, r.feature.s, r.feature.cov_s);
   write.All(r.mode, r.hold_reason, r.fault, r.fault_joint, r.limits_active);

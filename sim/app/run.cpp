@@ -35,7 +35,7 @@ namespace fovea::sim {
 namespace {
 
 using config::InputError;
-constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
+constexpr std::size_t kRingCapacity = 4096;       // records; four seconds at 1 kHz
 constexpr std::int64_t kPathStepNs = 20'000'000;  // between points of the paths in the bench's picture
 
 // Pictures that are drawn at the same time, each by a renderer of its own.
@@ -68,8 +68,8 @@ void CheckStart(const Scenario& s, const robots::Robot& robot) {
   for (std::size_t i = 0; i < q.size(); ++i) {
     const model::Joint& joint = robot.model.joints[i];
     if (q[i] < joint.q_min || q[i] > joint.q_max) {
-      throw InputError(fmt::format("arm.q_start[{}] = {} is not allowed: joint {} reaches from {} to {}", i, q[i],
-                                   i + 1, joint.q_min, joint.q_max));
+      throw InputError(fmt::format("arm.q_start[{}] = {} is not allowed: joint {} reaches from {} to {}", i,
+                                   q[i], i + 1, joint.q_min, joint.q_max));
     }
   }
 }
@@ -117,8 +117,8 @@ class Run {
         radius_(0.5 * scenario.target.diameter),
         pinhole_(MakePinhole(scenario.camera.width_px, scenario.camera.height_px,
                              scenario.camera.hfov_deg * std::numbers::pi / 180.0)),
-        intrinsics_{pinhole_.width_px, pinhole_.height_px, pinhole_.f_px, pinhole_.f_px, pinhole_.c_u_px,
-                    pinhole_.c_v_px},
+        intrinsics_{pinhole_.width_px, pinhole_.height_px, pinhole_.f_px,
+                    pinhole_.f_px,     pinhole_.c_u_px,    pinhole_.c_v_px},
         vision_(config::MakeVisionConfig(scenario.vision, intrinsics_, radius_)),
         ring_(kRingCapacity) {
     CheckStart(scenario_, robot_);
@@ -142,14 +142,12 @@ class Run {
   Summary Execute() {
     std::thread vision_thread([this] { RunVisionThread(); });
     const auto begin = std::chrono::steady_clock::now();
-    std::string failure;
     hal::Status status;
     {
       Progress progress(scenario_.name, scenario_.run.duration_s, !options_.show_progress);
       status = options_.pace == Pace::kReal ? RunAtRealPace(progress) : RunInLockstep(progress);
     }
     wall_time_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    stop_vision_ = true;
     camera_->Close();
     vision_thread.join();
     TakeRecords();
@@ -157,7 +155,8 @@ class Run {
       throw std::runtime_error("the camera broke during the run: " + camera_->fault());
     }
     if (!status.ok()) {
-      throw std::runtime_error(fmt::format("the run broke off: {} ({})", hal::ToString(status.code()), status.where()));
+      throw std::runtime_error(
+          fmt::format("the run broke off: {} ({})", hal::ToString(status.code()), status.where()));
     }
     Summary summary = Summarise();
     WriteFiles(summary);
@@ -214,7 +213,7 @@ class Run {
   void RunVisionThread() {
     linux_rt::MakeThreadYielding();
     const hal::Status status =
-        vision::RunVision(*camera_, vision_, delay_, stop_vision_,
+        vision::RunVision(*camera_, vision_, delay_, never_stop_,
                           [this](const hal::Frame& frame, const vision::BallDetection& detection) {
                             frames_.Keep(frame, detection);
                           });
@@ -316,7 +315,8 @@ class Run {
       const Eigen::Vector3d goal = servo_.config().feature.p_CO_C_star;
       for (const auto& [name, frame] :
            {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
-        folder_->Write(name, DrawEyePicture(*frame, intrinsics_, radius_, target_in_frame_.at(frame->sequence), goal));
+        folder_->Write(
+            name, DrawEyePicture(*frame, intrinsics_, radius_, target_in_frame_.at(frame->sequence), goal));
       }
     }
     if (options_.pictures) {
@@ -350,7 +350,7 @@ class Run {
   std::map<std::uint64_t, Eigen::Vector3d> target_in_frame_;  // p_CO_C by frame
   std::vector<Eigen::Vector3d> camera_path_;
   std::vector<Eigen::Vector3d> target_path_;
-  std::atomic<bool> stop_vision_{false};
+  const std::atomic<bool> never_stop_{false};  // the vision thread ends when the camera closes
   servo::LoopCounters counters_;
   hal::Mode mode_ = hal::Mode::kBoot;
   std::vector<std::string> realtime_missing_;

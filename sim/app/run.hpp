@@ -15,8 +15,8 @@ enum class Pace {
 
 struct RunOptions {
   Pace pace = Pace::kLockstep;
-  std::filesystem::path out;     // empty: no files
-  bool pictures = true;          // the bench's picture costs a second
+  std::filesystem::path out;  // empty: no files
+  bool pictures = true;       // the bench's picture costs a second
   bool show_progress = true;
 };
 

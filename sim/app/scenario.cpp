@@ -19,7 +19,8 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
                "joint positions at the start, one per joint");
   keys.Number("arm.friction_compensation", s.arm.friction_compensation, 0.0, 1.0, "",
               "share of the joints' friction that the robot's own controller takes away");
-  keys.Number("arm.encoder_noise", s.arm.encoder_noise, 0.0, 0.1, "rad", "standard deviation of measured positions");
+  keys.Number("arm.encoder_noise", s.arm.encoder_noise, 0.0, 0.1, "rad",
+              "standard deviation of measured positions");
   keys.Number("arm.velocity_noise", s.arm.velocity_noise, 0.0, 1.0, "rad/s",
               "standard deviation of measured velocities");
   keys.Choice("arm.integrator", s.arm.integrator, {"euler", "rk4"},
@@ -31,11 +32,14 @@ void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
   keys.Integer("camera.height_px", s.camera.height_px, 64, 4096, "px", "picture height");
   keys.Number("camera.hfov_deg", s.camera.hfov_deg, 5.0, 150.0, "deg", "horizontal field of view");
   keys.Number("camera.rate_hz", s.camera.rate_hz, 1.0, 240.0, "Hz", "frames per second");
-  keys.Number("camera.exposure_ms", s.camera.exposure_ms, 0.01, 100.0, "ms", "exposure time; stamps are at its middle");
+  keys.Number("camera.exposure_ms", s.camera.exposure_ms, 0.01, 100.0, "ms",
+              "exposure time; stamps are at its middle");
   keys.Number("camera.latency_ms", s.camera.latency_ms, 0.0, 500.0, "ms",
               "from mid-exposure until the feature reaches the servo");
-  keys.Number("camera.noise_sigma", s.camera.noise_sigma, 0.0, 60.0, "gray levels", "standard deviation of read noise");
-  keys.Number("camera.light", s.camera.light, 0.01, 4.0, "", "brightness of the picture; 1 is a well-lit bench");
+  keys.Number("camera.noise_sigma", s.camera.noise_sigma, 0.0, 60.0, "gray levels",
+              "standard deviation of read noise");
+  keys.Number("camera.light", s.camera.light, 0.01, 4.0, "",
+              "brightness of the picture; 1 is a well-lit bench");
   keys.Numbers("camera.mount_xyz", s.camera.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
   keys.Numbers("camera.mount_rpy_deg", s.camera.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
                "roll, pitch, yaw of C in E, about fixed axes");
@@ -44,7 +48,8 @@ void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
 void AddTargetKeys(Scenario& s, config::KeyTable& keys) {
   keys.Choice("target.kind", s.target.kind, {"sphere"}, "what is looked at");
   keys.Number("target.diameter", s.target.diameter, 0.005, 2.0, "m", "its size");
-  keys.Numbers("target.position", s.target.position, 3, 3, -5.0, 5.0, "m", "its centre in B, or its path's middle");
+  keys.Numbers("target.position", s.target.position, 3, 3, -5.0, 5.0, "m",
+               "its centre in B, or its path's middle");
   keys.Numbers("target.colour", s.target.colour, 3, 3, 0.0, 1.0, "", "red, green, blue");
   keys.Choice("target.motion", s.target.motion, {"still", "circle"}, "how it moves; the circle lies level");
   keys.Number("target.path_radius", s.target.path_radius, 0.001, 2.0, "m", "of the circle");
@@ -72,8 +77,9 @@ fs::path FindScenario(const std::string& name_or_path) {
   }
   const std::vector<std::string> names = ShippedScenarios();
   const std::string nearest = config::Nearest(name_or_path, names);
-  throw InputError(fmt::format("unknown scenario \"{}\"{}; shipped are {} (or give the path of a .toml)", name_or_path,
-                               nearest.empty() ? "" : "; did you mean " + nearest + "?", fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown scenario \"{}\"{}; shipped are {} (or give the path of a .toml)",
+                               name_or_path, nearest.empty() ? "" : "; did you mean " + nearest + "?",
+                               fmt::join(names, ", ")));
 }
 
 }  // namespace
@@ -129,9 +135,10 @@ robots::Robot LoadScenarioRobot(const Scenario& scenario) {
   }
   const fs::path shipped = ShareFolder() / "robots" / (scenario.arm.model + ".toml");
   if (!fs::is_regular_file(shipped)) {
-    throw InputError(fmt::format("arm.model = \"{}\": no shipped arm of that name (or give the path of an arm file "
-                                 ".toml or a .urdf)",
-                                 scenario.arm.model));
+    throw InputError(
+        fmt::format("arm.model = \"{}\": no shipped arm of that name (or give the path of an arm file "
+                    ".toml or a .urdf)",
+                    scenario.arm.model));
   }
   return robots::LoadRobot(shipped);
 }

@@ -19,7 +19,7 @@ struct Scenario {
     std::vector<double> q_start{-0.30, -0.75, 0.0, -2.05, 0.0, 1.55, 0.485398};
     double friction_compensation = 0.9;
     double encoder_noise = 1e-5;
-    double velocity_noise = 1e-3;
+    double velocity_noise = 5e-4;
     std::string integrator = "euler";
   } arm;
 

@@ -92,9 +92,9 @@ std::string ToTable(const Summary& s) {
   } else {
     table.Row("image error", fmt::format("{} at the start, {} at the end", Figure(s.start_error_px, "px"),
                                          Figure(s.final_error_px_rms, "px rms")));
-    table.Row("position error", fmt::format("{} ({} sideways, {} in depth)", Figure(s.final_error_mm, "mm"),
-                                            Figure(s.final_error_lateral_mm, "mm"),
-                                            Figure(s.final_error_depth_mm, "mm")));
+    table.Row("position error",
+              fmt::format("{} ({} sideways, {} in depth)", Figure(s.final_error_mm, "mm"),
+                          Figure(s.final_error_lateral_mm, "mm"), Figure(s.final_error_depth_mm, "mm")));
     table.Row("settled after", Figure(s.settle_time_s, "s"));
   }
   table.Row("frames", fmt::format("{}, target found in {}", s.frames, s.frames_detected));
@@ -108,10 +108,10 @@ std::string ToTable(const Summary& s) {
   for (const FaultEvent& f : s.faults) {
     table.Row("", fmt::format("{:.3f} s: {} ({}), see {}", f.t_s, f.name, f.detail, f.key));
   }
-  table.Row("servo tick", fmt::format("{:.1f} us median, {:.1f} us p99.9, {:.1f} us max",
-                                      1e-3 * static_cast<double>(s.tick_ns_p50),
-                                      1e-3 * static_cast<double>(s.tick_ns_p999),
-                                      1e-3 * static_cast<double>(s.tick_ns_max)));
+  table.Row("servo tick",
+            fmt::format("{:.1f} us median, {:.1f} us p99.9, {:.1f} us max",
+                        1e-3 * static_cast<double>(s.tick_ns_p50), 1e-3 * static_cast<double>(s.tick_ns_p999),
+                        1e-3 * static_cast<double>(s.tick_ns_max)));
   table.Row("heap calls in the tick",
             s.heap_allocations_in_tick ? fmt::format("{}", *s.heap_allocations_in_tick) : "not measured");
   table.Row("overruns", fmt::format("{} of {} ticks", s.overruns, s.ticks));

@@ -40,10 +40,10 @@ struct Summary {
   // Moving targets: over the second half.
   std::optional<double> tracking_error_px_rms;
 
-  std::map<std::string, double> limits;  // largest used fraction of each
-  std::uint64_t limit_violations = 0;    // ticks with a fraction above 1
+  std::map<std::string, double> limits;              // largest used fraction of each
+  std::uint64_t limit_violations = 0;                // ticks with a fraction above 1
   std::map<std::string, std::uint64_t> limit_ticks;  // ticks in which the servo's guard acted, by limit
-  std::uint64_t contact_ticks = 0;       // ticks in which the arm touched the table
+  std::uint64_t contact_ticks = 0;                   // ticks in which the arm touched the table
   std::vector<FaultEvent> faults;
   std::vector<ModeEvent> modes;
 

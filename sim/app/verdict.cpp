@@ -10,11 +10,11 @@ namespace fovea::sim {
 namespace {
 
 constexpr double kTickS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kWindowS = 0.5;           // final_* are over this last part of a run
-constexpr double kConvergedPx = 1.0;       // converged: no sample of it is further off
+constexpr double kWindowS = 0.5;      // final_* are over this last part of a run
+constexpr double kConvergedPx = 1.0;  // converged: no sample of it is further off
 constexpr double kConvergedM = 0.002;
-constexpr double kSettledShare = 0.02;     // settled: below this share of the first error, for good
-constexpr double kLimitTolerance = 1e-9;   // rounding is no violation
+constexpr double kSettledShare = 0.02;    // settled: below this share of the first error, for good
+constexpr double kLimitTolerance = 1e-9;  // rounding is no violation
 
 double RootMeanSquare(const std::vector<double>& values) {
   double sum = 0.0;
@@ -93,8 +93,8 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
     modes_.push_back({t_s, hal::Name(record.mode), is_hold ? hal::Name(record.hold_reason) : ""});
   }
   if (record.fault != hal::Fault::kNone && (!has_record_ || before_.fault != record.fault)) {
-    const std::string detail =
-        record.fault_joint >= 0 ? fmt::format("joint {}", record.fault_joint + 1) : std::string("no one joint");
+    const std::string detail = record.fault_joint >= 0 ? fmt::format("joint {}", record.fault_joint + 1)
+                                                       : std::string("no one joint");
     faults_.push_back({t_s, hal::Name(record.fault), hal::Key(record.fault), detail});
   }
   before_ = record;
@@ -175,7 +175,8 @@ void Verdict::FillMoving(Summary& summary) const {
     summary.converged = *summary.tracking_error_px_rms <= config_.tracking_bound_px && faults_.empty();
   }
   if (summary.converged) {
-    summary.verdict = fmt::format("converged: the target is tracked within {:g} px", config_.tracking_bound_px);
+    summary.verdict =
+        fmt::format("converged: the target is tracked within {:g} px", config_.tracking_bound_px);
   }
 }
 
@@ -190,9 +191,10 @@ std::string Verdict::WhyNot(const Summary& summary) const {
   }
   if (!modes_.empty() && modes_.back().mode == hal::Name(hal::Mode::kHold)) {
     if (modes_.back().reason == hal::Name(hal::HoldReason::kGoalUnreachable)) {
-      return fmt::format("not converged: limits keep the arm from the goal, so it holds since {:.3f} s (see "
-                         "target.position, servo.goal, safety.workspace_radius)",
-                         modes_.back().t_s);
+      return fmt::format(
+          "not converged: limits keep the arm from the goal, so it holds since {:.3f} s (see "
+          "target.position, servo.goal, safety.workspace_radius)",
+          modes_.back().t_s);
     }
     return fmt::format("not converged: the arm holds since {:.3f} s, reason {}", modes_.back().t_s,
                        modes_.back().reason);
@@ -203,8 +205,9 @@ std::string Verdict::WhyNot(const Summary& summary) const {
                                                      : std::string("infinite"),
                        config_.tracking_bound_px);
   }
-  return fmt::format("not converged: over the last {:g} s the target was not within {:g} px and {:g} mm of its goal",
-                     kWindowS, kConvergedPx, 1e3 * kConvergedM);
+  return fmt::format(
+      "not converged: over the last {:g} s the target was not within {:g} px and {:g} mm of its goal",
+      kWindowS, kConvergedPx, 1e3 * kConvergedM);
 }
 
 }  // namespace fovea::sim

@@ -68,17 +68,18 @@ void SimCamera::Work(const Painter& painter) {
 }
 
 void SimCamera::DrawUntilClosed(const Painter& painter) {
-  const std::size_t pixels = static_cast<std::size_t>(config_.width_px) * static_cast<std::size_t>(config_.height_px);
+  const std::size_t pixels =
+      static_cast<std::size_t>(config_.width_px) * static_cast<std::size_t>(config_.height_px);
   std::vector<std::uint8_t> rgba(pixels * 4);
   while (true) {
     std::shared_ptr<Job> job;
     {
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return closed_ || NextWaiting() != nullptr; });
-      if (closed_) {
+      changed_.wait(lock, [this] { return closed_ || !fault_.empty() || NextWaiting() != nullptr; });
+      job = NextWaiting();
+      if (job == nullptr || !fault_.empty()) {
         return;
       }
-      job = NextWaiting();
       job->progress = Progress::kDrawing;
       if (!spare_buffers_.empty()) {
         job->bgr = std::move(spare_buffers_.back());
@@ -90,7 +91,6 @@ void SimCamera::DrawUntilClosed(const Painter& painter) {
     } catch (const std::exception& error) {
       const std::lock_guard lock(mutex_);
       fault_ = error.what();
-      closed_ = true;
       changed_.notify_all();
       return;
     }
@@ -109,7 +109,7 @@ hal::Status SimCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noe
   {
     std::unique_lock lock(mutex_);
     const auto ready = [this] {
-      return closed_ || (!jobs_.empty() && jobs_.front()->progress == Progress::kDone);
+      return !fault_.empty() || (jobs_.empty() ? closed_ : jobs_.front()->progress == Progress::kDone);
     };
     if (!changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), ready)) {
       return hal::Status(hal::StatusCode::kTimeout, "sim camera");
@@ -117,7 +117,7 @@ hal::Status SimCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noe
     if (!fault_.empty()) {
       return hal::Status(hal::StatusCode::kDeviceFault, "sim camera");
     }
-    if (closed_) {
+    if (jobs_.empty()) {
       return hal::Status(hal::StatusCode::kClosed, "sim camera");
     }
     job = jobs_.front();

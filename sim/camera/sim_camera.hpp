@@ -23,8 +23,8 @@ namespace fovea::sim {
 
 // What draws an exposure. Both functions are called by one and the same thread.
 struct Painter {
-  // Into an RGBA picture of the camera's size, top row first. May throw: the camera then reports a device fault
-  // and keeps the message.
+  // Into an RGBA picture of the camera's size, top row first. May throw: the camera then reports a device
+  // fault and keeps the message.
   std::function<void(const Exposure& exposure, std::span<std::uint8_t> rgba)> draw;
   // The thread is about to end; may be empty.
   std::function<void()> leave_thread;
@@ -45,7 +45,8 @@ class SimCamera final : public hal::Camera {
 
   // From the simulation's thread.
   void Expose(Exposure exposure);
-  // From any thread: frames that are exposed but not drawn are lost, Acquire answers kClosed.
+  // From any thread: no exposure will follow. What was exposed is still drawn and handed out; then Acquire
+  // answers kClosed.
   void Close();
 
   [[nodiscard]] std::uint64_t lost() const;
@@ -70,7 +71,7 @@ class SimCamera final : public hal::Camera {
 
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<std::shared_ptr<Job>> jobs_;                  // in order of exposure
+  std::deque<std::shared_ptr<Job>> jobs_;                 // in order of exposure
   std::vector<std::vector<std::uint8_t>> spare_buffers_;  // reused
   std::vector<std::uint8_t> handed_out_;                  // the pixels of the last frame
   bool closed_ = false;

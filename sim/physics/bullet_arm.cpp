@@ -119,7 +119,8 @@ struct BulletArm::Impl {
       shapes.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0.0));
       table = std::make_unique<btCollisionObject>();
       table->setCollisionShape(shapes.back().get());
-      world.addCollisionObject(table.get(), btBroadphaseProxy::StaticFilter, btBroadphaseProxy::DefaultFilter);
+      world.addCollisionObject(table.get(), btBroadphaseProxy::StaticFilter,
+                               btBroadphaseProxy::DefaultFilter);
     }
     q.setZero(robot.num_dofs);
     dq.setZero(robot.num_dofs);
@@ -131,7 +132,8 @@ struct BulletArm::Impl {
     const SimLink& link = robot.links[k];
     const PrincipalBody& own = principal[k];
     const PrincipalBody& parent = principal[static_cast<std::size_t>(link.parent)];
-    const Eigen::Isometry3d X_PaL = parent.X_LP.inverse() * link.X_PL;  // link frame in the parent's body frame
+    const Eigen::Isometry3d X_PaL =
+        parent.X_LP.inverse() * link.X_PL;  // link frame in the parent's body frame
     const Eigen::Isometry3d X_PaPo = X_PaL * own.X_LP;
     const btQuaternion parent_to_this = ToBullet(Eigen::Matrix3d(X_PaPo.linear().transpose()));
     const btVector3 com_to_pivot = ToBullet(Eigen::Vector3d(X_PaL.translation()));
@@ -207,7 +209,8 @@ struct BulletArm::Impl {
   }
 };
 
-BulletArm::BulletArm(const SimRobot& robot, const BulletArmOptions& options) : impl_(std::make_unique<Impl>()) {
+BulletArm::BulletArm(const SimRobot& robot, const BulletArmOptions& options)
+    : impl_(std::make_unique<Impl>()) {
   impl_->robot = robot;
   impl_->Build(options);
   SetState(Eigen::VectorXd::Zero(robot.num_dofs), Eigen::VectorXd::Zero(robot.num_dofs));

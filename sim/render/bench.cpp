@@ -44,11 +44,14 @@ void AddRoom(Bench& bench) {
 void AddTable(Bench& bench) {
   // The textured top ends where the slab's rounded edge begins.
   const Eigen::Vector2f size(kTableWidth - 2.0F * kBevel, kTableDepth - 2.0F * kBevel);
-  bench.planes.push_back({{kTableX, 0.0F, 0.0F}, size, size,
+  bench.planes.push_back({{kTableX, 0.0F, 0.0F},
+                          size,
+                          size,
                           MakeTableTop(2048, kTableWidth, kTableDepth, 0.14, 0.0, 0.90, 0.95)});
 
   const float below = -0.5F * kTableThickness;
-  AddBox(bench, {kTableWidth, kTableDepth, kTableThickness}, At(kTableX, 0.0F, below - 0.001F), {0.60F, 0.50F, 0.36F});
+  AddBox(bench, {kTableWidth, kTableDepth, kTableThickness}, At(kTableX, 0.0F, below - 0.001F),
+         {0.60F, 0.50F, 0.36F});
   const float leg_height = -kFloorZ - kTableThickness;
   for (const float x : {-0.72F, 0.72F}) {
     for (const float y : {-0.57F, 0.57F}) {
@@ -66,11 +69,12 @@ void AddTools(Bench& bench) {
   AddBox(bench, {0.018F, 0.15F, 0.016F}, At(0.775F, 0.49F, 0.010F, -0.35F), {0.16F, 0.28F, 0.40F});
   AddCylinder(bench, 0.036F, 0.085F, At(0.99F, -0.44F, 0.0425F), {0.83F, 0.83F, 0.80F});  // mug
   AddCylinder(bench, 0.031F, 0.002F, At(0.99F, -0.44F, 0.0855F), {0.20F, 0.12F, 0.07F});  // coffee
-  AddBox(bench, {0.16F, 0.024F, 0.012F}, At(0.84F, -0.50F, 0.006F, 0.5F), kSteel);     // ruler
+  AddBox(bench, {0.16F, 0.024F, 0.012F}, At(0.84F, -0.50F, 0.006F, 0.5F), kSteel);        // ruler
   AddCylinder(bench, 0.012F, 0.11F,
               At(0.30F, -0.54F, 0.012F, 0.9F) * Isometry3f(Eigen::AngleAxisf(1.5708F, Vector3f::UnitY())),
               {0.78F, 0.60F, 0.12F});  // screwdriver's handle
-  AddBox(bench, {0.13F, 0.09F, 0.05F}, At(0.05F, -0.50F, 0.025F, -0.2F), {0.18F, 0.30F, 0.42F});  // box of parts
+  AddBox(bench, {0.13F, 0.09F, 0.05F}, At(0.05F, -0.50F, 0.025F, -0.2F),
+         {0.18F, 0.30F, 0.42F});  // box of parts
 }
 
 void AddClutter(Bench& bench) {

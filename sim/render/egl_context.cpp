@@ -46,7 +46,8 @@ Displays FindDisplays() {
     for (EGLint i = 0; i < num_devices; ++i) {
       EGLDeviceEXT device = devices[static_cast<std::size_t>(i)];
       void* display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
-      const bool is_software = Has(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
+      const bool is_software =
+          Has(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
       (is_software ? displays.software : displays.gpu).push_back(display);
     }
   }

@@ -8,10 +8,10 @@ namespace fovea::sim {
 
 class EglContext {
  public:
-  // The `index`-th context of this program, counted from 0. A GPU is taken where there is one. Mesa's software
-  // renderer draws for one context of a display at a time, so each of the first contexts takes a software
-  // display of its own as far as there are some. std::runtime_error with one line when no OpenGL 3.3 core
-  // context can be had. The context is not current anywhere yet.
+  // The `index`-th context of this program, counted from 0. A GPU is taken where there is one. Mesa's
+  // software renderer draws for one context of a display at a time, so each of the first contexts takes a
+  // software display of its own as far as there are some. std::runtime_error with one line when no OpenGL 3.3
+  // core context can be had. The context is not current anywhere yet.
   explicit EglContext(int index);
   ~EglContext();
   EglContext(const EglContext&) = delete;

@@ -17,10 +17,12 @@ GpuMesh::GpuMesh(const Mesh& mesh) : num_indices_(static_cast<GLsizei>(mesh.indi
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, indices_);
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
                mesh.indices.data(), GL_STATIC_DRAW);
-  const std::size_t offsets[] = {offsetof(Vertex, position), offsetof(Vertex, normal), offsetof(Vertex, colour)};
+  const std::size_t offsets[] = {offsetof(Vertex, position), offsetof(Vertex, normal),
+                                 offsetof(Vertex, colour)};
   for (GLuint i = 0; i < 3; ++i) {
     glEnableVertexAttribArray(i);
-    glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex), reinterpret_cast<const void*>(offsets[i]));
+    glVertexAttribPointer(i, 3, GL_FLOAT, GL_FALSE, sizeof(Vertex),
+                          reinterpret_cast<const void*>(offsets[i]));
   }
 }
 

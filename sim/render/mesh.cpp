@@ -26,9 +26,8 @@ Mesh Revolve(const std::vector<RingPoint>& outline, int segments, const Eigen::V
       const float angle = 2.0F * kPi * static_cast<float>(i) / static_cast<float>(segments);
       const float c = std::cos(angle);
       const float s = std::sin(angle);
-      mesh.vertices.push_back({{p.radius * c, p.radius * s, p.z},
-                               {p.normal_r * c, p.normal_r * s, p.normal_z},
-                               colour});
+      mesh.vertices.push_back(
+          {{p.radius * c, p.radius * s, p.z}, {p.normal_r * c, p.normal_r * s, p.normal_z}, colour});
     }
   }
   const auto row = static_cast<std::uint32_t>(segments + 1);

@@ -27,7 +27,8 @@ std::vector<MeshEdge> FindEdges(const Mesh& mesh) {
   std::map<std::pair<Corner, Corner>, MeshEdge> half_edges;
   std::vector<MeshEdge> edges;
   for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
-    const std::array<const Vertex*, 3> v = {&mesh.vertices[mesh.indices[t]], &mesh.vertices[mesh.indices[t + 1]],
+    const std::array<const Vertex*, 3> v = {&mesh.vertices[mesh.indices[t]],
+                                            &mesh.vertices[mesh.indices[t + 1]],
                                             &mesh.vertices[mesh.indices[t + 2]]};
     const Vector3f normal = (v[1]->position - v[0]->position).cross(v[2]->position - v[0]->position);
     if (normal.norm() < 1e-14F) {
@@ -71,7 +72,8 @@ OutlineSmoother::~OutlineSmoother() {
   glDeleteBuffers(1, &buffer_);
 }
 
-void OutlineSmoother::Add(const std::vector<MeshEdge>& edges, const Eigen::Isometry3f& X_BM, const Vector3f& eye_B) {
+void OutlineSmoother::Add(const std::vector<MeshEdge>& edges, const Eigen::Isometry3f& X_BM,
+                          const Vector3f& eye_B) {
   const Vector3f eye_M = X_BM.inverse() * eye_B;
   for (const MeshEdge& edge : edges) {
     const Vector3f to_eye = eye_M - edge.from;
@@ -97,8 +99,8 @@ void OutlineSmoother::Draw() {
   if (!vertices_.empty()) {
     glBindVertexArray(vertex_array_);
     glBindBuffer(GL_ARRAY_BUFFER, buffer_);
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(HemVertex)), vertices_.data(),
-                 GL_STREAM_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices_.size() * sizeof(HemVertex)),
+                 vertices_.data(), GL_STREAM_DRAW);
     glDrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(vertices_.size()));
   }
   vertices_.clear();

@@ -15,7 +15,8 @@ struct Pinhole {
 
 // A camera with the given horizontal field of view [rad], its axis in the middle of the picture.
 inline Pinhole MakePinhole(int width_px, int height_px, double hfov) {
-  return {width_px, height_px, 0.5 * width_px / std::tan(0.5 * hfov), 0.5 * (width_px - 1), 0.5 * (height_px - 1)};
+  return {width_px, height_px, 0.5 * width_px / std::tan(0.5 * hfov), 0.5 * (width_px - 1),
+          0.5 * (height_px - 1)};
 }
 
 }  // namespace fovea::sim

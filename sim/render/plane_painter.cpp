@@ -14,11 +14,11 @@ using Eigen::Vector2f;
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 
-constexpr float kTileSize = 0.10F;       // [m]
-constexpr float kLargePlane = 4.0F;      // from this size on a plane is one tile [m]
+constexpr float kTileSize = 0.10F;   // [m]
+constexpr float kLargePlane = 4.0F;  // from this size on a plane is one tile [m]
 constexpr int kPaintedShadowMapPx = 2048;
-constexpr float kDarkenedReach = 4.0F;   // how far a ball darkens what it stands on, in its radii
-constexpr float kShadowMargin = 0.03F;   // for the shadow's soft edge [m]
+constexpr float kDarkenedReach = 4.0F;  // how far a ball darkens what it stands on, in its radii
+constexpr float kShadowMargin = 0.03F;  // for the shadow's soft edge [m]
 
 const char* const kHead = "#version 330 core\n";
 const char* const kPaintHead = "#version 330 core\n#define SHADOW_TAPS 16\n#define SHADOW_SPREAD 6.0\n";
@@ -57,7 +57,8 @@ void SetShadowOfXy(const GlProgram& program, const Matrix4f& map_of_B, float z) 
 
 PlanePainter::PlanePainter(const std::vector<TexturedPlane>& planes, const std::string& shadow_head,
                            const ShadowMap::DrawAll& draw_static)
-    : lit_program_(std::string(kHead) + shaders::kPlaneVertex, std::string(kHead) + shaders::kLitPlaneFragment),
+    : lit_program_(std::string(kHead) + shaders::kPlaneVertex,
+                   std::string(kHead) + shaders::kLitPlaneFragment),
       shaded_program_(shadow_head + shaders::kPlaneVertex,
                       shadow_head + shaders::kShadow + shaders::kShadedPlaneFragment) {
   glGenVertexArrays(1, &vertex_array_);

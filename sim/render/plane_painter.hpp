@@ -24,8 +24,8 @@ struct MovingBounds {
 
 class PlanePainter {
  public:
-  // Paints the light into the textures of `planes`; `draw_static` draws what stands still. `shadow_head` is the
-  // GLSL preamble that sets the quality of the moving shadows.
+  // Paints the light into the textures of `planes`; `draw_static` draws what stands still. `shadow_head` is
+  // the GLSL preamble that sets the quality of the moving shadows.
   PlanePainter(const std::vector<TexturedPlane>& planes, const std::string& shadow_head,
                const ShadowMap::DrawAll& draw_static);
   ~PlanePainter();
@@ -54,7 +54,7 @@ class PlanePainter {
   GLuint vertex_array_ = 0;
   GLuint tile_buffer_ = 0;
   std::vector<Plane> planes_;
-  mutable std::vector<Eigen::Vector2f> lit_tiles_;     // their lower corners, reused from picture to picture
+  mutable std::vector<Eigen::Vector2f> lit_tiles_;  // their lower corners, reused from picture to picture
   mutable std::vector<Eigen::Vector2f> shaded_tiles_;
 };
 

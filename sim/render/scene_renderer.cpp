@@ -74,16 +74,16 @@ struct SceneRenderer::Impl {
   std::vector<Thing> things;
   std::vector<Link> links;
   std::unique_ptr<GpuMesh> unit_ball;
-  GLuint no_vertices = 0;     // for balls, which are drawn from their numbers alone
-  GLuint frame[2] = {0, 0};   // drawn into (perhaps multisampled), resolved
+  GLuint no_vertices = 0;    // for balls, which are drawn from their numbers alone
+  GLuint frame[2] = {0, 0};  // drawn into (perhaps multisampled), resolved
   GLuint buffers[3] = {0, 0, 0};
 
   Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q, int index)
       : scene(s), pinhole(p), quality(q), egl(index) {
     egl.MakeCurrent();
     const std::string head =
-        fmt::format("#version 330 core\n#define SHADOW_TAPS {}\n#define SHADOW_SPREAD {:.3f}\n", quality.shadow_taps,
-                    quality.shadow_spread);
+        fmt::format("#version 330 core\n#define SHADOW_TAPS {}\n#define SHADOW_SPREAD {:.3f}\n",
+                    quality.shadow_taps, quality.shadow_spread);
     const std::string light = shaders::kLight;
     const std::string lit = shaders::kShadow;
     mesh_program =
@@ -254,7 +254,8 @@ struct SceneRenderer::Impl {
       if (c.z() < 1.5F * ball.radius + kNear || !InView(pinhole, c, ball.radius)) {
         continue;
       }
-      ball_program->Set("u_rectangle", OutlineRectangle(c, ball.radius, static_cast<float>(2.0 / pinhole.f_px)));
+      ball_program->Set("u_rectangle",
+                        OutlineRectangle(c, ball.radius, static_cast<float>(2.0 / pinhole.f_px)));
       ball_program->Set("u_ball_C", Vector4f(c.x(), c.y(), c.z(), ball.radius));
       ball_program->Set("u_colour", ball.colour);
       glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
@@ -300,14 +301,16 @@ struct SceneRenderer::Impl {
   }
 };
 
-SceneRenderer::SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality, int index)
+SceneRenderer::SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality,
+                             int index)
     : impl_(std::make_unique<Impl>(scene, pinhole, quality, index)) {
   driver_name_ = impl_->egl.RendererName();
   Release();
 }
 SceneRenderer::~SceneRenderer() = default;
 
-void SceneRenderer::Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba) {
+void SceneRenderer::Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC,
+                         std::span<std::uint8_t> rgba) {
   const auto needed = static_cast<std::size_t>(impl_->pinhole.width_px) *
                       static_cast<std::size_t>(impl_->pinhole.height_px) * 4;
   if (rgba.size() != needed) {

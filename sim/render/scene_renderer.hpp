@@ -16,9 +16,9 @@
 namespace fovea::sim {
 
 struct RenderQuality {
-  int samples = 0;            // per pixel, for the edges of meshes; 0 or 1: one. Balls are exact anyway.
+  int samples = 0;  // per pixel, for the edges of meshes; 0 or 1: one. Balls are exact anyway.
   int shadow_map_px = 256;
-  int shadow_taps = 1;        // 1 to 16; each smooths over four texels
+  int shadow_taps = 1;         // 1 to 16; each smooths over four texels
   float shadow_spread = 1.6F;  // of the taps, in texels of the shadow map
 };
 
@@ -36,7 +36,8 @@ class SceneRenderer {
  public:
   // `index` counts the renderers that work at the same time, from 0 (see EglContext). std::runtime_error with
   // one line when there is no EGL or the driver cannot do it.
-  SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality, int index = 0);
+  SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality,
+                int index = 0);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;

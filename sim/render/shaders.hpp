@@ -3,8 +3,8 @@
 
 namespace fovea::sim::shaders {
 
-// Meshes are lit at their vertices and shadowed at their pixels: in software every operation per pixel is paid
-// 300 000 times. The figures of the light come from light.hpp.
+// Meshes are lit at their vertices and shadowed at their pixels: in software every operation per pixel is
+// paid 300 000 times. The figures of the light come from light.hpp.
 inline constexpr const char* kLight = R"glsl(
 uniform vec3 u_sun_B;        // unit vector towards the light
 uniform vec3 u_sun_light;

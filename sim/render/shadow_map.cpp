@@ -11,8 +11,8 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector3f;
 
-constexpr float kHalfSize = 1.05F;        // the map covers a square of twice this about the centre [m]
-constexpr float kHalfDepth = 2.0F;        // and this much towards the sun and away from it [m]
+constexpr float kHalfSize = 1.05F;  // the map covers a square of twice this about the centre [m]
+constexpr float kHalfDepth = 2.0F;  // and this much towards the sun and away from it [m]
 const Vector3f kCentre_B(0.40F, 0.0F, 0.25F);
 
 // Orthographic, looking along -sun.
@@ -44,8 +44,8 @@ ShadowMap::ShadowMap(int size_px)
   glGenFramebuffers(2, frames_);
   for (int i = 0; i < 2; ++i) {
     glBindTexture(GL_TEXTURE_2D, maps_[i]);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size_px, size_px, 0, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT,
-                 nullptr);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_DEPTH_COMPONENT24, size_px, size_px, 0, GL_DEPTH_COMPONENT,
+                 GL_UNSIGNED_INT, nullptr);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);

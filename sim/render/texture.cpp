@@ -9,8 +9,8 @@ namespace {
 
 // 0 to 1, without pattern, for a grid point.
 float Hash(int x, int y, std::uint32_t seed) {
-  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9E3779B1U + static_cast<std::uint32_t>(y) * 0x85EBCA77U +
-                    seed * 0xC2B2AE3DU;
+  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9E3779B1U +
+                    static_cast<std::uint32_t>(y) * 0x85EBCA77U + seed * 0xC2B2AE3DU;
   h ^= h >> 15;
   h *= 0x2C1B3C6DU;
   h ^= h >> 12;
@@ -49,7 +49,8 @@ Colour Mix(const Colour& a, const Colour& b, float t) {
 
 void Put(Texture& texture, int x, int y, const Colour& colour) {
   const auto at = (static_cast<std::size_t>(y) * static_cast<std::size_t>(texture.width_px) +
-                   static_cast<std::size_t>(x)) * 4;
+                   static_cast<std::size_t>(x)) *
+                  4;
   for (std::size_t c = 0; c < 3; ++c) {
     texture.rgba[at + c] = static_cast<std::uint8_t>(std::lround(std::clamp(colour[c], 0.0F, 1.0F) * 255.0F));
   }
@@ -58,7 +59,8 @@ void Put(Texture& texture, int x, int y, const Colour& colour) {
 
 Texture Blank(int width_px, int height_px) {
   return {width_px, height_px,
-          std::vector<std::uint8_t>(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) * 4)};
+          std::vector<std::uint8_t>(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) *
+                                    4)};
 }
 
 // Birch: fibres along x, broad bands, fine pores. Position in metres.
@@ -89,8 +91,8 @@ Colour Mat(float x, float y, float texel) {
 
 }  // namespace
 
-Texture MakeTableTop(int size_px, double width_m, double depth_m, double mat_x, double mat_y, double mat_width,
-                     double mat_depth) {
+Texture MakeTableTop(int size_px, double width_m, double depth_m, double mat_x, double mat_y,
+                     double mat_width, double mat_depth) {
   Texture texture = Blank(size_px, size_px);
   const auto texel = static_cast<float>(std::max(width_m, depth_m) / size_px);
   for (int j = 0; j < size_px; ++j) {

@@ -14,8 +14,8 @@ struct Texture {
 
 // The table's top, as a whole: light birch with a dark mat, ruled every 50 mm, where the arm works.
 // `width_m` and `depth_m` are the table's size; the mat's centre and size are in the table's own frame.
-Texture MakeTableTop(int size_px, double width_m, double depth_m, double mat_x, double mat_y, double mat_width,
-                     double mat_depth);
+Texture MakeTableTop(int size_px, double width_m, double depth_m, double mat_x, double mat_y,
+                     double mat_width, double mat_depth);
 
 // A floor of large grey tiles; repeats.
 Texture MakeFloor(int size_px);

@@ -89,7 +89,8 @@ class Reader {
     }
   }
 
-  Shape ToShape(const urdf::Geometry& geometry, const Eigen::Isometry3d& X_LS, const std::string& link) const {
+  Shape ToShape(const urdf::Geometry& geometry, const Eigen::Isometry3d& X_LS,
+                const std::string& link) const {
     Shape shape;
     shape.X_LS = X_LS;
     switch (geometry.type) {

@@ -34,9 +34,9 @@ struct SimLink {
   double q_min = 0.0;
   double q_max = 0.0;
   double tau_max = 0.0;
-  double viscous = 0.0;  // friction [Nm s/rad]
-  double coulomb = 0.0;  // friction [Nm]
-  double mass = 0.0;     // [kg]
+  double viscous = 0.0;                                      // friction [Nm s/rad]
+  double coulomb = 0.0;                                      // friction [Nm]
+  double mass = 0.0;                                         // [kg]
   Eigen::Isometry3d X_LCom = Eigen::Isometry3d::Identity();  // centre of mass, axes of the inertia
   Eigen::Matrix3d I_Com = Eigen::Matrix3d::Zero();           // [kg m^2]
   std::vector<Shape> visuals;

@@ -117,8 +117,8 @@ Exposure World::Look() const {
 // Exposures are centred on the step nearest to their time on the camera's own clock.
 void World::ExposeIfDue() {
   const double period_ns = static_cast<double>(hal::kNsPerSecond) / config_.camera_rate_hz;
-  const auto due_ns =
-      config_.first_exposure_ns + static_cast<std::int64_t>(std::llround(static_cast<double>(next_frame_) * period_ns));
+  const auto due_ns = config_.first_exposure_ns +
+                      static_cast<std::int64_t>(std::llround(static_cast<double>(next_frame_) * period_ns));
   if (now_ns_ + hal::kTickPeriodNs / 2 < due_ns) {
     return;
   }

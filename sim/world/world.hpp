@@ -23,11 +23,12 @@ struct Outage {
 struct WorldConfig {
   SimRobot robot;
   BulletArmOptions physics;
-  Eigen::VectorXd q_start;            // [num_dofs]
+  Eigen::VectorXd q_start;  // [num_dofs]
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
-  double friction_compensation = 0.9;  // share of the joints' friction that the robot's own controller takes away
-  double encoder_noise = 0.0;          // standard deviation of q [rad]
-  double velocity_noise = 0.0;         // standard deviation of dq [rad/s]
+  double friction_compensation =
+      0.9;                      // share of the joints' friction that the robot's own controller takes away
+  double encoder_noise = 0.0;   // standard deviation of q [rad]
+  double velocity_noise = 0.0;  // standard deviation of dq [rad/s]
   TargetMotion target;
   double camera_rate_hz = 30.0;
   std::int64_t first_exposure_ns = 20'000'000;

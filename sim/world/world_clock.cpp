@@ -7,7 +7,8 @@ namespace {
 
 hal::Status Advance(World& world, std::int64_t time_ns, const AfterAdvance& after_advance) {
   world.AdvanceTo(time_ns);
-  return after_advance(world.now_ns()) ? hal::Status::Ok() : hal::Status(hal::StatusCode::kClosed, "sim clock");
+  return after_advance(world.now_ns()) ? hal::Status::Ok()
+                                       : hal::Status(hal::StatusCode::kClosed, "sim clock");
 }
 
 }  // namespace

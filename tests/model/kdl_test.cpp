@@ -65,7 +65,9 @@ KDL::JntArray ToKdl(const model::VecN& v) {
 
 class KdlTest : public testing::TestWithParam<const char*> {
  protected:
-  KdlTest() : robot_(robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + GetParam())), chain_(BuildKdlChain(robot_)) {}
+  KdlTest()
+      : robot_(robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + GetParam())),
+        chain_(BuildKdlChain(robot_)) {}
 
   robots::Robot robot_;
   KDL::Chain chain_;
@@ -144,7 +146,8 @@ TEST_P(KdlTest, DynamicsAgree) {
 }
 
 // The mixed arm has prismatic joints, skew axes, fixed joints with mass and an axis that is -z.
-INSTANTIATE_TEST_SUITE_P(Arms, KdlTest, testing::Values("/panda.toml", "/../../../tests/model/mixed_arm.urdf"));
+INSTANTIATE_TEST_SUITE_P(Arms, KdlTest,
+                         testing::Values("/panda.toml", "/../../../tests/model/mixed_arm.urdf"));
 
 }  // namespace
 }  // namespace fovea

@@ -19,8 +19,10 @@ TEST(SinCosTest, IsWithinItsStatedError) {
     for (int i = 0; i < 1'000'000; ++i) {
       const double x = uniform(engine);
       const SinCosResult r = SinCos(x);
-      worst = std::max(worst, std::fabs(static_cast<long double>(r.sin) - std::sin(static_cast<long double>(x))));
-      worst = std::max(worst, std::fabs(static_cast<long double>(r.cos) - std::cos(static_cast<long double>(x))));
+      worst =
+          std::max(worst, std::fabs(static_cast<long double>(r.sin) - std::sin(static_cast<long double>(x))));
+      worst =
+          std::max(worst, std::fabs(static_cast<long double>(r.cos) - std::cos(static_cast<long double>(x))));
     }
     std::cout << "|x| <= " << size << ": worst error " << static_cast<double>(worst) << "\n";
     EXPECT_LT(worst, 1.2e-16L);

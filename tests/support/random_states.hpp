@@ -13,7 +13,9 @@ class RandomStates {
 
   double Uniform(double min, double max) { return std::uniform_real_distribution<double>(min, max)(engine_); }
 
-  model::Vec3 Vector(double size) { return {Uniform(-size, size), Uniform(-size, size), Uniform(-size, size)}; }
+  model::Vec3 Vector(double size) {
+    return {Uniform(-size, size), Uniform(-size, size), Uniform(-size, size)};
+  }
 
   // Anywhere in the joints' range.
   model::VecN Position(const model::ArmModel& arm) {

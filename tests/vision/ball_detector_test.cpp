@@ -35,7 +35,9 @@ struct Errors {
 
 Errors Measure(test::BallPicture picture, int count, FindBy by = FindBy::kColour) {
   std::mt19937 engine(picture.seed);
-  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine); };
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(engine);
+  };
   Errors errors;
   for (int i = 0; i < count; ++i) {
     picture.seed = static_cast<unsigned>(100 + i);
@@ -63,9 +65,10 @@ Errors Measure(test::BallPicture picture, int count, FindBy by = FindBy::kColour
     errors.chi2 += (d.s - s).dot(d.cov_s.inverse() * (d.s - s));
   }
   const double n = std::max(errors.found, 1);
-  std::cout << "found " << errors.found << " of " << count << ", centre " << std::sqrt(errors.lateral2 / n / 2)
-            << " px rms per axis (worst " << errors.worst_px << "), depth " << 100.0 * std::sqrt(errors.depth2 / n)
-            << " % rms, bias " << 100.0 * errors.bias_depth / n << " %, chi2/3 " << errors.chi2 / n / 3 << "\n";
+  std::cout << "found " << errors.found << " of " << count << ", centre "
+            << std::sqrt(errors.lateral2 / n / 2) << " px rms per axis (worst " << errors.worst_px
+            << "), depth " << 100.0 * std::sqrt(errors.depth2 / n) << " % rms, bias "
+            << 100.0 * errors.bias_depth / n << " %, chi2/3 " << errors.chi2 / n / 3 << "\n";
   return errors;
 }
 

@@ -5,8 +5,8 @@
 namespace fovea::linux_rt {
 namespace {
 
-// Plain data of the thread: reaching it must not itself allocate. Volatile, since the compiler takes malloc for
-// a function that cannot come back into this file.
+// Plain data of the thread: reaching it must not itself allocate. Volatile, since the compiler takes malloc
+// for a function that cannot come back into this file.
 thread_local volatile bool in_region = false;
 thread_local volatile std::uint64_t heap_calls = 0;
 

@@ -33,7 +33,7 @@ servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::
                                    const model::Pose& X_EC, double target_radius);
 
 // The detector's whole configuration.
-vision::BallDetectorConfig MakeVisionConfig(const VisionSettings& settings, const vision::Intrinsics& intrinsics,
-                                            double target_radius);
+vision::BallDetectorConfig MakeVisionConfig(const VisionSettings& settings,
+                                            const vision::Intrinsics& intrinsics, double target_radius);
 
 }  // namespace fovea::config

@@ -9,10 +9,11 @@
 
 namespace fovea::config {
 
-using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
+using Value =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
 
 struct Setting {
-  std::string key;    // dotted, e.g. "camera.rate_hz"
+  std::string key;  // dotted, e.g. "camera.rate_hz"
   Value value;
   std::string where;  // "file.toml:12" or "--set"
 };

@@ -17,7 +17,7 @@ struct SphereFeature {
   static constexpr int kDim = 3;
   static constexpr double kMinDistance = 1.05;  // nearest centre, in units of R, at which s means something
 
-  double radius = 0.04;            // [m]
+  double radius = 0.04;                     // [m]
   model::Vec3 p_CO_C_star{0.0, 0.0, 0.40};  // where the centre shall be, in C [m]
 
   // s, s_star, L_s and the target's share, for a sphere at `p_CO_C` [m] whose centre moves with

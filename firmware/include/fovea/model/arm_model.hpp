@@ -37,7 +37,7 @@ struct ArmModel {
   int num_joints = 0;
   std::array<Joint, kMaxJoints> joints{};
   std::array<LinkInertia, kMaxJoints> links{};
-  Pose X_LnE;  // end effector E (flange) in the last link's frame
+  Pose X_LnE;                 // end effector E (flange) in the last link's frame
   Vec3 g_B{0.0, 0.0, -9.81};  // gravity in B [m/s^2]
   hal::JointArray q_ready{};  // a posture far from limits and singularities
 };

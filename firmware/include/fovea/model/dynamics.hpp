@@ -10,9 +10,9 @@
 namespace fovea::model {
 
 struct ArmDynamics {
-  MatN M;       // [num_joints x num_joints] mass matrix
-  VecN Cdq;     // [num_joints] Coriolis and centrifugal torques C(q, dq) dq
-  VecN g;       // [num_joints] torques that hold the arm against gravity
+  MatN M;    // [num_joints x num_joints] mass matrix
+  VecN Cdq;  // [num_joints] Coriolis and centrifugal torques C(q, dq) dq
+  VecN g;    // [num_joints] torques that hold the arm against gravity
 };
 
 // Everything at once, for `poses` of the same q and `dq` [num_joints]. Real-time: yes.

@@ -11,9 +11,9 @@ namespace fovea::robots {
 
 struct Robot {
   std::string name;
-  std::filesystem::path urdf;  // also what a simulator or a viewer reads shapes and friction from
-  std::string base_link;       // frame B
-  std::string tip_link;        // frame E
+  std::filesystem::path urdf;            // also what a simulator or a viewer reads shapes and friction from
+  std::string base_link;                 // frame B
+  std::string tip_link;                  // frame E
   std::vector<std::string> joint_names;  // [num_joints] base to tip
   model::ArmModel model;
 };

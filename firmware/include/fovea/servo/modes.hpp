@@ -19,11 +19,11 @@ enum class Request : std::uint8_t {
 // What the mode depends on, as seen in this tick.
 struct ModeInputs {
   Request request = Request::kNone;
-  bool arm_ready = false;          // enough sound states in a row, arm at rest
+  bool arm_ready = false;  // enough sound states in a row, arm at rest
   bool target_known = false;
-  std::int64_t feature_age_ns = 0;  // of the last accepted measurement
-  bool goal_unreachable = false;    // limits kept the arm from the goal for too long
-  bool target_moved = false;        // far enough from where it was unreachable to try again
+  std::int64_t feature_age_ns = 0;       // of the last accepted measurement
+  bool goal_unreachable = false;         // limits kept the arm from the goal for too long
+  bool target_moved = false;             // far enough from where it was unreachable to try again
   hal::Fault fault = hal::Fault::kNone;  // found in this tick
 };
 

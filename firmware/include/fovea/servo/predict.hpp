@@ -54,8 +54,8 @@ struct PredictState {
 };
 
 struct Prediction {
-  bool known = false;       // enough measurements to say where the target is
-  std::int64_t age_ns = 0;  // now less the last accepted stamp; only when one was accepted
+  bool known = false;                        // enough measurements to say where the target is
+  std::int64_t age_ns = 0;                   // now less the last accepted stamp; only when one was accepted
   model::Vec3 p_BO = model::Vec3::Zero();    // now [m]
   model::Vec3 v_BO = model::Vec3::Zero();    // [m/s]
   model::Vec3 p_CO_C = model::Vec3::Zero();  // now, in axes of C [m]

@@ -12,23 +12,23 @@ namespace fovea::servo {
 
 // [servo] where the feature is now
 struct PredictConfig {
-  bool enabled = true;               // servo.predict; false: the newest measurement as it came, held
-  double target_jerk = 1.0;   // how fast the target's acceleration may be thought to change [m/s^3]
-  double gate_sigma = 6.0;           // a measurement further off than this is an outlier [sigma]
-  int gate_rejects_max = 3;          // so many outliers in a row, and the target has moved: start anew
-  int accepted_min = 3;              // measurements before the target counts as known
-  double stale_s = 0.15;             // a measurement older than this is no longer fresh [s]
-  double coast_s = 0.6;              // steer by prediction for so long after the last measurement [s]
+  bool enabled = true;       // servo.predict; false: the newest measurement as it came, held
+  double target_jerk = 1.0;  // how fast the target's acceleration may be thought to change [m/s^3]
+  double gate_sigma = 6.0;   // a measurement further off than this is an outlier [sigma]
+  int gate_rejects_max = 3;  // so many outliers in a row, and the target has moved: start anew
+  int accepted_min = 3;      // measurements before the target counts as known
+  double stale_s = 0.15;     // a measurement older than this is no longer fresh [s]
+  double coast_s = 0.6;      // steer by prediction for so long after the last measurement [s]
 };
 
 // [servo] how the arm shall move
 struct LawConfig {
-  double lambda = 2.0;           // e decays like exp(-lambda t) [1/s]
-  double smooth_start_s = 0.25;  // the law's velocity is blended in over this time [s]
-  double damping = 0.01;         // of the pseudo-inverse, relative to the size of the task Jacobian
-  double posture_gain = 0.6;     // pull of the posture in the free directions [1/s]
-  hal::JointArray q_posture{};   // that posture [rad]; the arm's ready posture by default
-  double unreachable_s = 1.0;    // give up when limits have kept the arm from the goal for so long [s]
+  double lambda = 2.0;                 // e decays like exp(-lambda t) [1/s]
+  double smooth_start_s = 0.25;        // the law's velocity is blended in over this time [s]
+  double damping = 0.01;               // of the pseudo-inverse, relative to the size of the task Jacobian
+  double posture_gain = 0.6;           // pull of the posture in the free directions [1/s]
+  hal::JointArray q_posture{};         // that posture [rad]; the arm's ready posture by default
+  double unreachable_s = 1.0;          // give up when limits have kept the arm from the goal for so long [s]
   double unreachable_progress = 0.05;  // "kept from": less than this share of the wanted motion is left
 };
 
@@ -42,12 +42,12 @@ struct MotionLawConfig {
 struct GuardConfig {
   double joint_velocity_fraction = 0.8;
   double joint_acceleration_fraction = 0.7;
-  double joint_jerk_fraction = 0.5;
-  double joint_position_margin = 0.02;         // the reference stays so far inside the range [rad, m]
-  double braking_fraction = 0.5;               // of the acceleration limit, for stopping before a barrier
-  double workspace_radius = 0.85;              // |p_BE| stays below this [m]
-  double workspace_margin = 0.002;             // the reference stays so far inside [m]
-  double workspace_deceleration = 2.0;         // for stopping before it [m/s^2]
+  double joint_jerk_fraction = 0.05;    // gentle: a step of torque stays below 1 Nm per tick
+  double joint_position_margin = 0.02;  // the reference stays so far inside the range [rad, m]
+  double braking_fraction = 0.5;        // of the acceleration limit, for stopping before a barrier
+  double workspace_radius = 0.85;       // |p_BE| stays below this [m]
+  double workspace_margin = 0.002;      // the reference stays so far inside [m]
+  double workspace_deceleration = 2.0;  // for stopping before it [m/s^2]
 };
 
 // [safety] limits on the torque, and when to stop altogether

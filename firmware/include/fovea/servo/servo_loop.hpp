@@ -17,8 +17,8 @@ namespace fovea::servo {
 
 struct LoopCounters {
   std::uint64_t ticks = 0;
-  std::uint64_t overruns = 0;        // ticks that began a whole period or more late
-  std::uint64_t missed_ticks = 0;    // deadlines that passed without a tick
+  std::uint64_t overruns = 0;      // ticks that began a whole period or more late
+  std::uint64_t missed_ticks = 0;  // deadlines that passed without a tick
   std::uint64_t arm_read_errors = 0;
   std::uint64_t arm_write_errors = 0;
 };

@@ -31,8 +31,8 @@ struct TargetFilter {
 // Takes in the measured centre `p_BO` [m] in B, true at `stamp_ns`, with covariance `cov_B` [m^2]. An
 // outlier is left out; after too many in a row the filter starts anew there. Returns whether it was taken in.
 // Real-time: yes.
-bool Update(const PredictConfig& config, std::int64_t stamp_ns, const model::Vec3& p_BO, const model::Mat3& cov_B,
-            TargetFilter& filter) noexcept;
+bool Update(const PredictConfig& config, std::int64_t stamp_ns, const model::Vec3& p_BO,
+            const model::Mat3& cov_B, TargetFilter& filter) noexcept;
 
 // Where the target is at `now_ns` [m], and how fast [m/s]. Real-time: yes.
 struct TargetMotion {

@@ -21,9 +21,9 @@ struct BallDetectorConfig {
 
 struct BallDetection {
   bool found = false;
-  bool tracked = false;       // found where the last one led to expect it, without a search
-  double confidence = 0.0;    // 0 to 1
-  model::Vec3 s = model::Vec3::Zero();      // p_CO_C / radius
+  bool tracked = false;                 // found where the last one led to expect it, without a search
+  double confidence = 0.0;              // 0 to 1
+  model::Vec3 s = model::Vec3::Zero();  // p_CO_C / radius
   model::Mat3 cov_s = model::Mat3::Zero();
   OutlineFit outline;
 };

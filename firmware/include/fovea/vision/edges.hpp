@@ -4,8 +4,8 @@
 // Along a ray the profile falls from the ball's level to the background's; the area under it up to a point
 // inside tells how far the edge is from there, whatever the lens' blur. The ball's level is not constant near
 // the edge: with d the distance from it and r the outline's radius the surface turns away like
-// z(d) = sqrt(2 d / r - d^2 / r^2), and the brightness follows, a + c z(d). How strongly, c, is fitted over all
-// rays as c0 + c1 cos + s1 sin of the ray's angle: a light from any side.
+// z(d) = sqrt(2 d / r - d^2 / r^2), and the brightness follows, a + c z(d). How strongly, c, is fitted over
+// all rays as c0 + c1 cos + s1 sin of the ray's angle: a light from any side.
 #pragma once
 
 #include <array>

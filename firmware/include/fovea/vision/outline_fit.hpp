@@ -17,23 +17,24 @@ namespace fovea::vision {
 
 struct OutlineFit {
   bool converged = false;
-  model::Vec3 m = model::Vec3::Zero();       // the cone
-  model::Mat3 cov_m = model::Mat3::Zero();   // its covariance
-  double u_px = 0.0;                         // centre of the outline
+  model::Vec3 m = model::Vec3::Zero();      // the cone
+  model::Mat3 cov_m = model::Mat3::Zero();  // its covariance
+  double u_px = 0.0;                        // centre of the outline
   double v_px = 0.0;
-  double radius_px = 0.0;                    // of the circle with the outline's area
-  double rms_px = 0.0;                       // of the edge points about the outline
-  double contrast = 0.0;                     // mean step across the edge [gray levels]
-  double seen = 0.0;                         // share of the outline that is inside the image and on an edge
+  double radius_px = 0.0;  // of the circle with the outline's area
+  double rms_px = 0.0;     // of the edge points about the outline
+  double contrast = 0.0;   // mean step across the edge [gray levels]
+  double seen = 0.0;       // share of the outline that is inside the image and on an edge
 };
 
 // Fits the outline near `start`. `search_px` is how far the edge may be from there. Not converged when too
 // little of an outline is there. `image` is CV_8UC3 or CV_8UC1, of the intrinsics' size.
-OutlineFit FitOutline(const cv::Mat& image, const Intrinsics& intrinsics, const Circle& start, double search_px);
+OutlineFit FitOutline(const cv::Mat& image, const Intrinsics& intrinsics, const Circle& start,
+                      double search_px);
 
 // The point of the cone's outline in direction (du, dv) from (u, v), a point inside; distance in pixels
 // along that direction, found by Newton's method from `start_px`.
-double OutlineDistance(const Intrinsics& intrinsics, const model::Vec3& m, double u_px, double v_px, double du,
-                       double dv, double start_px);
+double OutlineDistance(const Intrinsics& intrinsics, const model::Vec3& m, double u_px, double v_px,
+                       double du, double dv, double start_px);
 
 }  // namespace fovea::vision

@@ -32,7 +32,7 @@ using FrameObserver = std::function<void(const hal::Frame& frame, const BallDete
 
 // Takes frames from the camera until it closes or breaks, or `stop` becomes true, and puts a measurement of
 // each into the sink. Returns why it ended: kClosed for an orderly end. `observer` may be empty.
-hal::Status RunVision(hal::Camera& camera, VisionTask& task, hal::FeatureSink& sink, const std::atomic<bool>& stop,
-                      const FrameObserver& observer);
+hal::Status RunVision(hal::Camera& camera, VisionTask& task, hal::FeatureSink& sink,
+                      const std::atomic<bool>& stop, const FrameObserver& observer);
 
 }  // namespace fovea::vision

@@ -18,9 +18,9 @@ struct FeatureMeasurement {
   std::int64_t stamp_ns = 0;   // mid-exposure of the frame, monotonic, in the loop's Clock
   std::uint64_t sequence = 0;  // of the frame
   FeatureKind kind = FeatureKind::kSphere;
-  bool found = false;        // false: the frame was looked at and the target is not in it
-  double confidence = 0.0;   // 0 to 1; the detector refuses below its own threshold
-  std::int32_t dim = 0;      // entries of s in use
+  bool found = false;                      // false: the frame was looked at and the target is not in it
+  double confidence = 0.0;                 // 0 to 1; the detector refuses below its own threshold
+  std::int32_t dim = 0;                    // entries of s in use
   std::array<double, kMaxFeatureDim> s{};  // [dim] units as `kind` says
   // [dim x dim] covariance of s, row-major with rows of kMaxFeatureDim entries.
   std::array<double, kMaxFeatureDim * kMaxFeatureDim> cov_s{};
@@ -58,7 +58,7 @@ class FeatureMailbox final : public FeatureSink {
   static constexpr std::uint8_t kSlotMask = 0x03;
 
   std::array<FeatureMeasurement, 3> slots_{};
-  std::uint8_t write_slot_ = 0;           // the writer's own
+  std::uint8_t write_slot_ = 0;               // the writer's own
   std::int64_t newest_stamp_ns_ = INT64_MIN;  // the writer's own
   alignas(64) std::atomic<std::uint8_t> middle_{1};
   alignas(64) std::uint8_t read_slot_ = 2;  // the reader's own

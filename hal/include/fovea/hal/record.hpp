@@ -14,8 +14,8 @@ namespace fovea::hal {
 // Everything that a person needs to understand one tick. Grouped by the stage that computes it.
 struct TickRecord {
   // The tick
-  std::uint64_t tick = 0;      // counts from 0
-  std::int64_t stamp_ns = 0;   // the time for which the tick computed, in the loop's Clock
+  std::uint64_t tick = 0;         // counts from 0
+  std::int64_t stamp_ns = 0;      // the time for which the tick computed, in the loop's Clock
   std::int32_t missed_ticks = 0;  // deadlines missed since the tick before
 
   // Inputs

@@ -7,8 +7,8 @@
 namespace fovea::linux_rt {
 
 struct RealtimeOptions {
-  int fifo_priority = 80;      // of SCHED_FIFO
-  bool lock_memory = true;     // mlockall, now and for all that comes
+  int fifo_priority = 80;   // of SCHED_FIFO
+  bool lock_memory = true;  // mlockall, now and for all that comes
   int stack_prefault_kib = 256;
 };
 
