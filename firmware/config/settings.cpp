@@ -59,7 +59,8 @@ Value ToValue(const toml::node& node, const std::string& what) {
 void Flatten(const toml::table& table, const std::string& prefix, const std::string& file,
              std::vector<Setting>& settings) {
   for (const auto& [name, node] : table) {
-    const std::string key = prefix.empty() ? std::string(name.str()) : prefix + "." + std::string(name.str());
+    const std::string key =
+        prefix.empty() ? std::string(name.str()) : fmt::format("{}.{}", prefix, name.str());
     if (const toml::table* inner = node.as_table()) {
       Flatten(*inner, key, file, settings);
       continue;

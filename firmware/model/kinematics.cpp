@@ -18,13 +18,13 @@ Vec3 PointVelocity(const ArmModel& model, const ArmPoses& poses, int i, const Ve
 }  // namespace
 
 void ComputePoses(const ArmModel& model, const VecN& q, ArmPoses& poses) noexcept {
-  const Pose* parent = nullptr;
+  Pose X_BP;  // of the link before
   for (int i = 0; i < model.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const Joint& joint = model.joints[k];
     // The joint's frame at q = 0, in B.
     Pose& X_BL = poses.X_BL[k];
-    X_BL = parent == nullptr ? joint.X_PJ : *parent * joint.X_PJ;
+    X_BL = X_BP * joint.X_PJ;
     if (joint.type == JointType::kRevolute) {
       // A turn about z mixes the first two columns and leaves the third.
       const auto [s, c] = SinCos(q[i]);
@@ -35,9 +35,9 @@ void ComputePoses(const ArmModel& model, const VecN& q, ArmPoses& poses) noexcep
     } else {
       X_BL.p += q[i] * X_BL.R.col(2);
     }
-    parent = &X_BL;
+    X_BP = X_BL;
   }
-  poses.X_BE = *parent * model.X_LnE;
+  poses.X_BE = X_BP * model.X_LnE;
 }
 
 void ComputeJacobian(const ArmModel& model, const ArmPoses& poses, const Pose& X_EF, Mat6N& J_F) noexcept {

@@ -252,7 +252,7 @@ class ChainReader {
   // inequality; a description that does not would make M lose its definiteness.
   void CheckInertia(const std::string& link, double mass, const Mat3& I) const {
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(I, Eigen::EigenvaluesOnly);
-    const Vec3 moments = solver.eigenvalues();  // ascending
+    const Vec3& moments = solver.eigenvalues();  // ascending
     if (!(mass > 0.0) || !I.allFinite()) {
       Fail(fmt::format("link \"{}\": mass and inertia must be finite, the mass above 0", link));
     }
