@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "fovea/servo/stop_path.hpp"
+
 namespace fovea::servo {
 namespace {
 
@@ -169,8 +171,26 @@ LimitSet GuardMotion(const ServoConfig& config, const model::VecN& dq_des, const
   // The correction for the workspace may have set a joint on the move again: what it may not do is cut.
   limits |= LimitJointPosition(config, reference.q, dq);
   limits |= LimitVelocity(config, dq);
-  limits |= LimitAcceleration(config, dq, reference);
-  return limits;
+
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, reference.q, poses);
+  const double radius_now = poses.X_BE.p.norm();
+  // The largest share of the wish from which a stop is proved, found by halving; the last try is braking.
+  constexpr int kTries = 5;
+  double share = 1.0;
+  Reference next;
+  LimitSet acceleration_limits = 0;
+  for (int i = 0; i < kTries; ++i) {
+    next = reference;
+    acceleration_limits = LimitAcceleration(config, share * dq, next);
+    if (share == 0.0 || StopsInside(config, next, reference.q, radius_now)) {
+      break;
+    }
+    limits |= Bit(Limit::kWorkspace);
+    share = i + 2 < kTries ? 0.5 * share : 0.0;
+  }
+  reference = next;
+  return limits | acceleration_limits;
 }
 
 }  // namespace fovea::servo

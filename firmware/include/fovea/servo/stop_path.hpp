@@ -1,0 +1,41 @@
+// How a reference comes to rest when every joint brakes as hard as it may, and where that leads.
+//
+// Each joint's velocity goes to zero in the shortest time that its acceleration and jerk limits allow: jerk,
+// constant deceleration, jerk. The joints stop at different times, so the end effector's way is none that was
+// planned; it is looked at point by point.
+#pragma once
+
+#include <array>
+
+#include "fovea/model/types.hpp"
+#include "fovea/servo/reference.hpp"
+#include "fovea/servo/servo_config.hpp"
+
+namespace fovea::servo {
+
+// One joint's way to rest: acceleration a_0 to -a_peak to 0 (for sign = +1), with the jerk `jerk`.
+struct JointStop {
+  double sign = 1.0;
+  double jerk = 1.0;
+  double a_peak = 0.0;
+  double ramp_s = 0.0;     // until the peak is reached
+  double hold_s = 0.0;     // at the peak
+  double release_s = 0.0;  // back to zero
+  [[nodiscard]] double Duration() const noexcept { return ramp_s + hold_s + release_s; }
+};
+
+// The shortest stop from velocity `dq` and acceleration `ddq` within `ddq_max` and `dddq_max`.
+// Real-time: yes.
+[[nodiscard]] JointStop PlanStop(double dq, double ddq, double ddq_max, double dddq_max) noexcept;
+
+// How far the joint goes until `t` seconds into the stop. Real-time: yes.
+[[nodiscard]] double StopTravel(const JointStop& stop, double dq, double ddq, double t) noexcept;
+
+// Whether a stop from `reference` stays inside the joints' range and inside the workspace, each with its
+// margin; what is already outside may only come back. `radius_now` is |p_BE| of the reference before, and
+// `q_now` its joints. Real-time: yes, at most kStopSamples poses.
+inline constexpr int kStopSamples = 12;
+[[nodiscard]] bool StopsInside(const ServoConfig& config, const Reference& reference,
+                               const model::VecN& q_now, double radius_now) noexcept;
+
+}  // namespace fovea::servo

@@ -1,0 +1,72 @@
+// The simulator's drivers against the contracts.
+#include <memory>
+
+#include "contract/arm_contract.hpp"
+#include "contract/camera_contract.hpp"
+#include "contract/clock_contract.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
+#include "sim/camera/sim_camera.hpp"
+#include "sim/world/sim_arm.hpp"
+#include "sim/world/world.hpp"
+#include "sim/world/world_clock.hpp"
+
+namespace fovea::test {
+namespace {
+
+sim::WorldConfig PandaWorld() {
+  sim::WorldConfig config;
+  config.robot =
+      sim::LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf", "panda_base", "panda_flange");
+  config.q_start.resize(7);
+  config.q_start << 0.0, -0.7, 0.0, -2.2, 0.0, 1.6, 0.7;
+  return config;
+}
+
+struct SimArmFixture {
+  sim::World world{PandaWorld()};
+  sim::SimArm driver{world};
+  hal::Arm& arm() { return driver; }
+  void Advance() { world.AdvanceTo(world.now_ns() + hal::kTickPeriodNs); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(SimArm, ArmContract, SimArmFixture);
+
+struct LockstepClockFixture {
+  sim::World world{PandaWorld()};
+  sim::LockstepClock driver{world, [](std::int64_t) { return true; }};
+  hal::Clock& clock() { return driver; }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(LockstepClock, ClockContract, LockstepClockFixture);
+
+struct RealPaceClockFixture {
+  sim::World world{PandaWorld()};
+  linux_rt::MonotonicClock monotonic;
+  sim::RealPaceClock driver{world, monotonic, [](std::int64_t) { return true; }};
+  hal::Clock& clock() { return driver; }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(RealPaceClock, ClockContract, RealPaceClockFixture);
+
+// Two painters that fill the picture with the exposure's number.
+struct SimCameraFixture {
+  static sim::Painter Painter() {
+    return {[](const sim::Exposure& exposure, std::span<std::uint8_t> rgba) {
+              std::fill(rgba.begin(), rgba.end(), static_cast<std::uint8_t>(exposure.sequence));
+            },
+            {}};
+  }
+  sim::SimCamera driver{{.width_px = 64, .height_px = 48, .exposure_ns = 1000, .queue = 16},
+                        sim::Sensor(2.0, 1),
+                        {Painter(), Painter()}};
+  std::uint64_t next = 0;
+  hal::Camera& camera() { return driver; }
+  void Expose(std::int64_t stamp_ns) {
+    sim::Exposure exposure;
+    exposure.sequence = next++;
+    exposure.stamp_ns = stamp_ns;
+    driver.Expose(exposure);
+  }
+  void Close() { driver.Close(); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(SimCamera, CameraContract, SimCameraFixture);
+
+}  // namespace
+}  // namespace fovea::test

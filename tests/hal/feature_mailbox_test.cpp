@@ -1,0 +1,107 @@
+// The hand-over from camera to servo: newest wins, never half-written, never back in time.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "fovea/hal/feature.hpp"
+
+namespace fovea::hal {
+namespace {
+
+// A measurement in which every number tells the same story, so that a mixture would show.
+FeatureMeasurement Make(std::uint64_t sequence) {
+  FeatureMeasurement m;
+  m.sequence = sequence;
+  m.stamp_ns = static_cast<std::int64_t>(sequence) * 1000;
+  m.s.fill(static_cast<double>(sequence));
+  m.cov_s.fill(static_cast<double>(sequence));
+  return m;
+}
+
+bool IsWhole(const FeatureMeasurement& m) {
+  const auto expected = static_cast<double>(m.sequence);
+  for (const double value : m.s) {
+    if (value != expected) {
+      return false;
+    }
+  }
+  for (const double value : m.cov_s) {
+    if (value != expected) {
+      return false;
+    }
+  }
+  return m.stamp_ns == static_cast<std::int64_t>(m.sequence) * 1000;
+}
+
+TEST(FeatureMailboxTest, IsEmptyAtFirstAndAfterTaking) {
+  FeatureMailbox mailbox;
+  FeatureMeasurement m = Make(7);
+  EXPECT_FALSE(mailbox.Take(m));
+  EXPECT_EQ(m.sequence, 7U);  // untouched
+  mailbox.Put(Make(1));
+  EXPECT_TRUE(mailbox.Take(m));
+  EXPECT_EQ(m.sequence, 1U);
+  EXPECT_FALSE(mailbox.Take(m));
+}
+
+TEST(FeatureMailboxTest, TheNewestWins) {
+  FeatureMailbox mailbox;
+  for (std::uint64_t i = 1; i <= 5; ++i) {
+    mailbox.Put(Make(i));
+  }
+  FeatureMeasurement m;
+  EXPECT_TRUE(mailbox.Take(m));
+  EXPECT_EQ(m.sequence, 5U);
+  EXPECT_FALSE(mailbox.Take(m));
+}
+
+TEST(FeatureMailboxTest, NeverGoesBackInTime) {
+  FeatureMailbox mailbox;
+  mailbox.Put(Make(5));
+  mailbox.Put(Make(3));  // came out of order
+  FeatureMeasurement m;
+  EXPECT_TRUE(mailbox.Take(m));
+  EXPECT_EQ(m.sequence, 5U);
+  mailbox.Put(Make(4));
+  EXPECT_FALSE(mailbox.Take(m));
+}
+
+TEST(FeatureMailboxTest, TwoThreadsNeverSeeAHalf) {
+  constexpr std::uint64_t kCount = 300'000;
+  FeatureMailbox mailbox;
+  std::atomic<bool> done{false};
+  std::thread writer([&] {
+    for (std::uint64_t i = 1; i <= kCount; ++i) {
+      mailbox.Put(Make(i));
+    }
+    done = true;
+  });
+  std::uint64_t last = 0;
+  std::uint64_t taken = 0;
+  bool whole = true;
+  bool forward = true;
+  FeatureMeasurement m;
+  const auto take_one = [&] {
+    if (!mailbox.Take(m)) {
+      return false;
+    }
+    ++taken;
+    whole = whole && IsWhole(m);
+    forward = forward && m.sequence > last;
+    last = m.sequence;
+    return true;
+  };
+  while (!done) {
+    take_one();
+  }
+  take_one();
+  writer.join();
+  EXPECT_TRUE(whole);
+  EXPECT_TRUE(forward);
+  EXPECT_EQ(last, kCount);  // the last one is never lost
+  EXPECT_GT(taken, 0U);
+}
+
+}  // namespace
+}  // namespace fovea::hal

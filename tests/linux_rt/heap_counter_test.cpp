@@ -1,0 +1,82 @@
+// The heap counter sees every way to the heap, and says when it sees none.
+#include "fovea/linux_rt/heap_counter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace fovea::linux_rt {
+namespace {
+
+template <typename Function>
+std::uint64_t CallsIn(Function&& function) {
+  const std::uint64_t before = CountedHeapCalls();
+  EnterCountedRegion();
+  function();
+  LeaveCountedRegion();
+  return CountedHeapCalls() - before;
+}
+
+class HeapCounterTest : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifdef FOVEA_SANITIZED
+    GTEST_SKIP() << "a sanitizer brings a malloc of its own";
+#endif
+    ASSERT_TRUE(HeapCounterActive()) << "the interposer is not linked: nothing below would mean anything";
+  }
+  // Through a volatile pointer, so that the compiler cannot take a pair of calls away.
+  static void Use(void* block) {
+    void* volatile used = block;
+    std::free(used);
+  }
+};
+
+TEST_F(HeapCounterTest, SeesEveryWayToTheHeap) {
+  EXPECT_EQ(CallsIn([] { Use(std::malloc(10)); }), 2U);
+  EXPECT_EQ(CallsIn([] { Use(std::calloc(2, 10)); }), 2U);
+  EXPECT_EQ(CallsIn([] { Use(std::realloc(nullptr, 10)); }), 2U);
+  EXPECT_EQ(CallsIn([] { Use(std::aligned_alloc(64, 64)); }), 2U);
+  EXPECT_EQ(CallsIn([] {
+              void* block = nullptr;
+              ASSERT_EQ(posix_memalign(&block, 64, 100), 0);
+              Use(block);
+            }),
+            2U);
+  EXPECT_EQ(CallsIn([] { std::vector<double> v(100); }), 2U);
+  EXPECT_EQ(CallsIn([] {
+              int* volatile number = new int(3);
+              delete number;
+            }),
+            2U);
+  EXPECT_GE(CallsIn([] { std::string(100, 'x'); }), 2U);
+}
+
+TEST_F(HeapCounterTest, SeesNothingOutsideTheRegionOrInOtherThreads) {
+  const std::uint64_t before = CountedHeapCalls();
+  Use(std::malloc(10));
+  EXPECT_EQ(CountedHeapCalls(), before);
+  std::uint64_t other = 1;
+  EXPECT_EQ(CallsIn([&] {
+              static double value = 0.0;
+              value += 1.0;
+            }),
+            0U);
+  std::thread thread([&] { other = CallsIn([] { Use(std::malloc(1)); }); });
+  thread.join();
+  EXPECT_EQ(other, 2U);
+  EXPECT_EQ(CountedHeapCalls(), before);
+}
+
+TEST_F(HeapCounterTest, RefusesABadAlignmentAsTheStandardSays) {
+  void* block = nullptr;
+  EXPECT_EQ(posix_memalign(&block, 3, 10), EINVAL);
+  EXPECT_EQ(block, nullptr);
+}
+
+}  // namespace
+}  // namespace fovea::linux_rt

@@ -1,0 +1,208 @@
+// The guard against wishes of every kind: no limit is ever passed, whatever is wished for.
+#include "fovea/servo/guard_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <iostream>
+
+#include "support/panda.hpp"
+#include "support/random_states.hpp"
+
+namespace fovea::servo {
+namespace {
+
+constexpr double kTick = 1e-3;
+
+// Moves a reference tick by tick, as an arm that follows it perfectly, and keeps the largest use of each
+// limit.
+class Walker {
+ public:
+  explicit Walker(const ServoConfig& config, const model::VecN& q) : config_(config) {
+    reference_.q = q;
+    reference_.dq = model::VecN::Zero(q.size());
+    reference_.ddq = model::VecN::Zero(q.size());
+    Update();
+  }
+
+  hal::LimitSet Step(const model::VecN& dq_des) {
+    const Reference before = reference_;
+    const hal::LimitSet limits = GuardMotion(config_, dq_des, poses_.X_BE.p, J_E_B_, reference_);
+    for (int i = 0; i < reference_.q.size(); ++i) {
+      const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
+      const double half = 0.5 * (joint.q_max - joint.q_min) - config_.guard.joint_position_margin;
+      const double middle = 0.5 * (joint.q_max + joint.q_min);
+      Use(position, std::abs(reference_.q[i] - middle) / half);
+      Use(velocity, std::abs(reference_.dq[i]) / (config_.guard.joint_velocity_fraction * joint.dq_max));
+      Use(acceleration,
+          std::abs(reference_.ddq[i]) / (config_.guard.joint_acceleration_fraction * joint.ddq_max));
+      Use(jerk, std::abs(reference_.ddq[i] - before.ddq[i]) /
+                    (config_.guard.joint_jerk_fraction * joint.dddq_max * kTick));
+      // The reference is one motion: each derivative is the change of the one above.
+      EXPECT_NEAR(reference_.q[i] - before.q[i], reference_.dq[i] * kTick, 1e-12);
+      EXPECT_NEAR(reference_.dq[i] - before.dq[i], reference_.ddq[i] * kTick, 1e-12);
+    }
+    Update();
+    radius = std::max(radius, poses_.X_BE.p.norm());
+    all_limits |= limits;
+    return limits;
+  }
+
+  // The joint velocity that moves the end effector with `v_B`, as well as it can.
+  [[nodiscard]] model::VecN Towards(const model::Vec3& v_B) const {
+    const Eigen::MatrixXd J = J_E_B_;
+    return J.completeOrthogonalDecomposition().solve(Eigen::VectorXd(v_B));
+  }
+
+  [[nodiscard]] const model::Vec3& p_BE() const { return poses_.X_BE.p; }
+  [[nodiscard]] const Reference& reference() const { return reference_; }
+
+  double position = 0.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0;  // largest use of each limit
+  double radius = 0.0;                                                    // largest |p_BE|
+  hal::LimitSet all_limits = 0;
+
+ private:
+  static void Use(double& most, double now) { most = std::max(most, now); }
+  void Update() {
+    model::ComputePoses(config_.arm, reference_.q, poses_);
+    model::ComputeLinearJacobian(config_.arm, poses_, poses_.X_BE.p, J_E_B_);
+  }
+
+  ServoConfig config_;
+  Reference reference_;
+  model::ArmPoses poses_;
+  model::LinearJacobian J_E_B_;
+};
+
+void ExpectAllHeld(const Walker& walker, const ServoConfig& config) {
+  std::cout << "largest use: position " << walker.position << ", velocity " << walker.velocity
+            << ", acceleration " << walker.acceleration << ", jerk " << walker.jerk << ", |p_BE| "
+            << walker.radius << " m\n";
+  EXPECT_LE(walker.position, 1.0 + 1e-3);
+  EXPECT_LE(walker.velocity, 1.0 + 0.01);  // braking at full jerk may end a hair later
+  EXPECT_LE(walker.acceleration, 1.0 + 1e-9);
+  EXPECT_LE(walker.jerk, 1.0 + 1e-9);
+  EXPECT_LE(walker.radius, config.guard.workspace_radius + 1e-3);
+}
+
+TEST(GuardMotionTest, HoldsEveryLimitUnderRandomWishes) {
+  const ServoConfig config = test::PandaConfig();
+  test::RandomStates random(31);
+  Walker walker(config, test::Ready());
+  model::VecN wish = model::VecN::Zero(7);
+  for (int tick = 0; tick < 200'000; ++tick) {
+    if (tick % 97 == 0) {
+      wish = random.Joints(config.arm, random.Uniform(0.0, 1.0) < 0.1 ? 1e6 : 3.0);
+    }
+    walker.Step(wish);
+  }
+  ExpectAllHeld(walker, config);
+}
+
+// THEORY B5: towards the boundary, along it, and aslant, at 1 m/s, from many places.
+TEST(GuardMotionTest, AttacksOnTheWorkspaceStopInsideIt) {
+  const ServoConfig config = test::PandaConfig();
+  test::RandomStates random(32);
+  double worst = 0.0;
+  int reached = 0;
+  for (int attack = 0; attack < 300; ++attack) {
+    Walker walker(config, test::Ready() + random.Joints(config.arm, 0.3));
+    const model::Vec3 direction = random.Vector(1.0).normalized();
+    const double turn = random.Uniform(-2.0, 2.0);
+    for (int tick = 0; tick < 3000; ++tick) {
+      // Outward at first, then more and more along the boundary, the direction turning as it goes.
+      const model::Vec3 outward = walker.p_BE().normalized();
+      const double share = attack % 3 == 0 ? 0.0 : std::min(1.0, tick / 1500.0);
+      const model::Vec3 along = model::Cross(outward, direction).normalized() * (turn > 0 ? 1.0 : -1.0);
+      const model::Vec3 v =
+          attack % 3 == 2 ? direction : model::Vec3((1.0 - share) * outward + share * along);
+      const model::VecN wish = walker.Towards(v.normalized());
+      walker.Step(wish.allFinite() ? wish : model::VecN(model::VecN::Zero(7)));
+    }
+    worst = std::max(worst, walker.radius);
+    reached += walker.radius > config.guard.workspace_radius - 0.01 ? 1 : 0;
+  }
+  std::cout << "300 attacks, " << reached << " reached the last centimetre; furthest |p_BE| " << worst
+            << " m, boundary " << config.guard.workspace_radius << " m\n";
+  EXPECT_LE(worst, config.guard.workspace_radius + 1e-3);
+  EXPECT_GT(reached, 50) << "the attacks must be attacks";
+}
+
+TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
+  const ServoConfig config = test::PandaConfig();
+  for (int joint = 0; joint < 7; ++joint) {
+    for (const double sign : {-1.0, 1.0}) {
+      ServoConfig far = config;
+      far.guard.workspace_radius = 10.0;  // this is about the joints alone
+      Walker walker(far, test::Ready());
+      model::VecN wish = model::VecN::Zero(7);
+      wish[joint] = sign * 10.0;
+      hal::LimitSet last = 0;
+      for (int tick = 0; tick < 5000; ++tick) {
+        last = walker.Step(wish);
+      }
+      EXPECT_LE(walker.position, 1.0 + 1e-3) << "joint " << joint + 1;
+      EXPECT_GE(walker.position, 1.0 - 1e-2) << "it goes to the end of its range";
+      EXPECT_LT(walker.reference().dq.norm(), 1e-2) << "and stands there";
+      EXPECT_TRUE(last & hal::Bit(hal::Limit::kJointPosition)) << "and says why";
+    }
+  }
+}
+
+TEST(GuardMotionTest, LetsAGentleWishThroughUnchanged) {
+  const ServoConfig config = test::PandaConfig();
+  Walker walker(config, test::Ready());
+  const model::VecN wish = model::VecN::Constant(7, 0.05);
+  for (int tick = 0; tick < 500; ++tick) {
+    walker.Step(wish);
+  }
+  EXPECT_LT((walker.reference().dq - wish).norm(), 1e-9);
+  EXPECT_EQ(walker.Step(wish), 0U);
+}
+
+TEST(GuardMotionTest, ScalesTheVelocityWithoutTurningIt) {
+  ServoConfig config = test::PandaConfig();
+  config.guard.workspace_radius = 10.0;
+  Walker walker(config, test::Ready());
+  model::VecN wish(7);
+  wish << 8.0, 1.0, -2.0, 0.5, 0.0, 3.0, -4.0;
+  for (int tick = 0; tick < 400; ++tick) {
+    walker.Step(wish);
+  }
+  const model::VecN dq = walker.reference().dq;
+  EXPECT_GT(dq.dot(wish) / (dq.norm() * wish.norm()), 1.0 - 1e-9);
+  EXPECT_NEAR(dq[0], config.guard.joint_velocity_fraction * config.arm.joints[0].dq_max, 1e-9);
+}
+
+TEST(GuardMotionTest, FromOutsideOnlyInwardIsLeft) {
+  ServoConfig config = test::PandaConfig();
+  config.guard.workspace_radius = 0.5;  // the arm stands outside it
+  Walker walker(config, test::Ready());
+  ASSERT_GT(walker.p_BE().norm(), 0.5);
+  const double start = walker.p_BE().norm();
+  for (int tick = 0; tick < 300; ++tick) {
+    walker.Step(walker.Towards(walker.p_BE().normalized() * 0.3));
+  }
+  EXPECT_LE(walker.p_BE().norm(), start + 1e-4);
+  for (int tick = 0; tick < 2000; ++tick) {
+    walker.Step(walker.Towards(-walker.p_BE().normalized() * 0.3));
+  }
+  EXPECT_LT(walker.p_BE().norm(), start - 0.05);
+}
+
+TEST(BarrierSpeedTest, IsWhatCanStillBeStopped) {
+  for (const double distance : {1e-6, 1e-3, 0.05, 1.0}) {
+    for (const double deceleration : {0.5, 3.0, 20.0}) {
+      const double reaction = 0.02;
+      const double v = BarrierSpeed(distance, deceleration, reaction);
+      EXPECT_NEAR(v * reaction + v * v / (2.0 * deceleration), distance, 1e-12);
+    }
+  }
+  EXPECT_EQ(BarrierSpeed(0.0, 3.0, 0.01), 0.0);
+  EXPECT_EQ(BarrierSpeed(-1.0, 3.0, 0.01), 0.0);
+  EXPECT_EQ(BarrierSpeed(std::nan(""), 3.0, 0.01), 0.0);
+}
+
+}  // namespace
+}  // namespace fovea::servo

@@ -1,0 +1,56 @@
+// Init refuses what cannot work and names the key.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fovea/servo/servo_task.hpp"
+#include "support/panda.hpp"
+
+namespace fovea::servo {
+namespace {
+
+struct Case {
+  const char* where;
+  std::function<void(ServoConfig&)> spoil;
+};
+
+TEST(ServoInitTest, TakesTheDefaults) {
+  ServoTask task;
+  EXPECT_TRUE(task.Init(test::PandaConfig()).ok());
+}
+
+TEST(ServoInitTest, RefusesAndNamesTheKey) {
+  const double nan = std::nan("");
+  const std::vector<Case> cases = {
+      {"arm.num_joints", [](ServoConfig& c) { c.arm.num_joints = 0; }},
+      {"arm.num_joints", [](ServoConfig& c) { c.arm.num_joints = 9; }},
+      {"joint position range", [](ServoConfig& c) { c.arm.joints[2].q_max = -3.0; }},
+      {"joint velocity, acceleration or jerk limit", [](ServoConfig& c) { c.arm.joints[2].ddq_max = 0.0; }},
+      {"joint torque limit", [=](ServoConfig& c) { c.arm.joints[2].dtau_max = nan; }},
+      {"link inertia", [](ServoConfig& c) { c.arm.links[6].mass = 0.0; }},
+      {"joint frame", [=](ServoConfig& c) { c.arm.joints[0].X_PJ.p.x() = nan; }},
+      {"target.diameter", [](ServoConfig& c) { c.feature.radius = 0.0; }},
+      {"servo.goal", [](ServoConfig& c) { c.feature.p_CO_C_star.z() = -0.4; }},
+      {"servo.lambda", [=](ServoConfig& c) { c.law.lambda = nan; }},
+      {"servo.stale_s", [](ServoConfig& c) { c.predict.stale_s = 2.0 * c.predict.coast_s; }},
+      {"servo.omega_n", [](ServoConfig& c) { c.motion_law.omega_n = 1000.0; }},
+      {"safety.joint_velocity_fraction", [](ServoConfig& c) { c.guard.joint_velocity_fraction = 1.5; }},
+      {"safety.workspace_radius", [](ServoConfig& c) { c.guard.workspace_radius = 0.0; }},
+      {"safety.torque_fraction", [](ServoConfig& c) { c.safety.torque_fraction = 1.1; }},
+      {"safety.missed_ticks", [](ServoConfig& c) { c.safety.missed_ticks = 0; }},
+  };
+  for (const Case& c : cases) {
+    ServoConfig config = test::PandaConfig();
+    c.spoil(config);
+    ServoTask task;
+    const hal::Status status = task.Init(config);
+    EXPECT_FALSE(status.ok()) << c.where;
+    EXPECT_STREQ(status.where(), c.where);
+  }
+}
+
+}  // namespace
+}  // namespace fovea::servo

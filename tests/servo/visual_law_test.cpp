@@ -1,0 +1,112 @@
+#include "fovea/servo/visual_law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/SVD>
+#include <iostream>
+
+#include "fovea/model/kinematics.hpp"
+#include "support/panda.hpp"
+#include "support/random_states.hpp"
+
+namespace fovea::servo {
+namespace {
+
+struct Scene {
+  features::FeatureState feature;
+  model::Mat6N J_C;
+  model::VecN q;
+};
+
+// A random posture well inside the range, with a sphere before the camera.
+Scene RandomScene(test::RandomStates& random, const ServoConfig& config) {
+  Scene scene;
+  scene.q = test::Ready() + random.Joints(config.arm, 0.5);
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, scene.q, poses);
+  model::ComputeJacobian(config.arm, poses, config.X_EC, scene.J_C);
+  const double z = random.Uniform(0.25, 0.8);
+  const model::Vec3 p(z * random.Uniform(-0.4, 0.4), z * random.Uniform(-0.3, 0.3), z);
+  EXPECT_TRUE(config.feature.Compute(p, random.Vector(0.2), scene.feature));
+  return scene;
+}
+
+TEST(VisualLawTest, AsksForAnExponentialDecayInTheFeature) {
+  const ServoConfig config = test::PandaConfig();
+  test::RandomStates random(21);
+  double worst = 0.0;
+  for (int k = 0; k < 1000; ++k) {
+    const Scene s = RandomScene(random, config);
+    VisualLawOutput out;
+    VisualLaw(config.law, s.feature, s.J_C, s.q, out);
+    // What the joints then do to s, with the target's own share: ds/dt = lambda e.
+    const Eigen::VectorXd ds = s.feature.L_s * (s.J_C * out.dq_des) + s.feature.ds_dt_target;
+    worst = std::max(worst, (ds - config.law.lambda * out.e).norm() / (config.law.lambda * out.e).norm());
+  }
+  std::cout << "worst departure from lambda e: " << worst << " relative (the damping's share)\n";
+  EXPECT_LT(worst, 0.01);
+}
+
+// Without damping the law is the pseudo-inverse with the posture in its null space.
+TEST(VisualLawTest, IsThePseudoInverseAndThePostureStaysInTheFreeDirections) {
+  ServoConfig config = test::PandaConfig();
+  config.law.damping = 1e-9;
+  test::RandomStates random(22);
+  double worst = 0.0;
+  double worst_posture = 0.0;
+  for (int k = 0; k < 500; ++k) {
+    const Scene s = RandomScene(random, config);
+    VisualLawOutput out;
+    VisualLaw(config.law, s.feature, s.J_C, s.q, out);
+    const Eigen::MatrixXd J_s = s.feature.L_s * s.J_C;
+    const Eigen::MatrixXd pinv = J_s.completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::VectorXd dq_0 = config.law.posture_gain * (model::ToVector(config.law.q_posture, 7) - s.q);
+    const Eigen::VectorXd expected = pinv * (out.ds_cmd - J_s * dq_0) + dq_0;
+    worst = std::max(worst, (expected - out.dq_des).norm() / expected.norm());
+
+    LawConfig no_posture = config.law;
+    no_posture.posture_gain = 0.0;
+    VisualLawOutput without;
+    VisualLaw(no_posture, s.feature, s.J_C, s.q, without);
+    worst_posture = std::max(worst_posture, (J_s * (out.dq_des - without.dq_des)).norm());
+  }
+  std::cout << "worst difference from the pseudo-inverse " << worst << ", the posture moves the feature by "
+            << worst_posture << " 1/s\n";
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_LT(worst_posture, 1e-8);
+}
+
+TEST(VisualLawTest, StaysBoundedWhereTheTaskIsSingular) {
+  // Arm stretched out: the task Jacobian loses rank or comes near it.
+  const ServoConfig config = test::PandaConfig();
+  test::RandomStates random(23);
+  for (int k = 0; k < 500; ++k) {
+    model::VecN q(7);
+    q << random.Uniform(-1, 1), random.Uniform(0, 0.5), 0.0, -0.0698, 0.0, random.Uniform(0.0, 0.3), 0.7;
+    model::ArmPoses poses;
+    model::ComputePoses(config.arm, q, poses);
+    model::Mat6N J_C;
+    model::ComputeJacobian(config.arm, poses, config.X_EC, J_C);
+    features::FeatureState feature;
+    ASSERT_TRUE(config.feature.Compute({0.0, 0.0, 1.0}, model::Vec3::Zero(), feature));
+    VisualLawOutput out;
+    VisualLaw(config.law, feature, J_C, q, out);
+    EXPECT_TRUE(out.dq_des.allFinite());
+    EXPECT_LT(out.dq_des.norm(), 100.0);
+  }
+}
+
+TEST(ProgressTest, IsTheShareOfTheWantedMotion) {
+  const ServoConfig config = test::PandaConfig();
+  test::RandomStates random(24);
+  const Scene s = RandomScene(random, config);
+  VisualLawOutput out;
+  VisualLaw(config.law, s.feature, s.J_C, s.q, out);
+  EXPECT_NEAR(Progress(s.feature, out.ds_cmd, s.J_C, out.dq_des), 1.0, 0.01);
+  EXPECT_NEAR(Progress(s.feature, out.ds_cmd, s.J_C, 0.5 * out.dq_des), 0.5, 0.01);
+  EXPECT_NEAR(Progress(s.feature, out.ds_cmd, s.J_C, model::VecN::Zero(7)), 0.0, 1e-12);
+  EXPECT_EQ(Progress(s.feature, features::FeatureVector::Zero(3), s.J_C, out.dq_des), 1.0);
+}
+
+}  // namespace
+}  // namespace fovea::servo

@@ -1,0 +1,36 @@
+// The Panda and a servo configuration for it, as most tests want them.
+#pragma once
+
+#include <string>
+
+#include "fovea/model/math.hpp"
+#include "fovea/robots/robot.hpp"
+#include "fovea/servo/servo_config.hpp"
+
+namespace fovea::test {
+
+inline const robots::Robot& Panda() {
+  static const robots::Robot robot = robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.toml");
+  return robot;
+}
+
+// The default camera mount: +90 degrees about z, (0.05, 0, 0.04) m.
+inline model::Pose DefaultMount() {
+  model::Pose X_EC;
+  X_EC.R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  X_EC.p = {0.05, 0.0, 0.04};
+  return X_EC;
+}
+
+inline servo::ServoConfig PandaConfig() {
+  servo::ServoConfig config;
+  config.arm = Panda().model;
+  config.X_EC = DefaultMount();
+  config.law.q_posture = config.arm.q_ready;
+  config.auto_track = true;
+  return config;
+}
+
+inline model::VecN Ready() { return model::ToVector(Panda().model.q_ready, Panda().model.num_joints); }
+
+}  // namespace fovea::test
