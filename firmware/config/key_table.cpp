@@ -188,7 +188,7 @@ void KeyTable::Apply(const Setting& setting) const {
 
 std::string Nearest(const std::string& name, const std::vector<std::string>& names) {
   std::string best;
-  int best_distance = std::max(3, static_cast<int>(name.size()) / 3);
+  int best_distance = std::max(3, static_cast<int>(name.size()) / 3) + 1;
   for (const std::string& candidate : names) {
     const int distance = EditDistance(name, candidate);
     if (distance < best_distance) {

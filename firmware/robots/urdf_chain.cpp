@@ -87,8 +87,9 @@ class ChainReader {
       if (joint->type == urdf::Joint::FIXED) {
         continue;  // its bodies were added with the link that carries it
       }
+      const model::JointType type = TypeOf(*joint);
       const Pose X_UL{AlignZ(Axis(*joint)), Vec3::Zero()};
-      AddJoint(*joint, X_PU * X_UL);
+      AddJoint(*joint, type, X_PU * X_UL);
       X_PU = X_UL.Inverse();
       Bodies bodies;
       AddBodies(child, &bodies, X_PU, chain);
@@ -185,7 +186,18 @@ class ChainReader {
     return axis.normalized();
   }
 
-  void AddJoint(const urdf::Joint& joint, const Pose& X_PJ) {
+  model::JointType TypeOf(const urdf::Joint& joint) const {
+    switch (joint.type) {
+      case urdf::Joint::REVOLUTE:
+      case urdf::Joint::CONTINUOUS: return model::JointType::kRevolute;
+      case urdf::Joint::PRISMATIC: return model::JointType::kPrismatic;
+      default:
+        Fail(fmt::format("joint \"{}\": only revolute, continuous, prismatic and fixed joints can be driven",
+                         joint.name));
+    }
+  }
+
+  void AddJoint(const urdf::Joint& joint, model::JointType type, const Pose& X_PJ) {
     model::ArmModel& arm = robot_.model;
     if (joint.mimic) {
       Fail(fmt::format("joint \"{}\": mimic joints cannot be driven", joint.name));
@@ -195,14 +207,7 @@ class ChainReader {
     }
     model::Joint& out = arm.joints[static_cast<std::size_t>(arm.num_joints)];
     out.X_PJ = X_PJ;
-    switch (joint.type) {
-      case urdf::Joint::REVOLUTE:
-      case urdf::Joint::CONTINUOUS: out.type = model::JointType::kRevolute; break;
-      case urdf::Joint::PRISMATIC: out.type = model::JointType::kPrismatic; break;
-      default:
-        Fail(fmt::format("joint \"{}\": only revolute, continuous, prismatic and fixed joints can be driven",
-                         joint.name));
-    }
+    out.type = type;
     if (!joint.limits) {
       Fail(fmt::format("joint \"{}\": <limit> with velocity and effort is missing", joint.name));
     }

@@ -1,5 +1,6 @@
 #include "fovea/servo/clamp_torque.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fovea::servo {
@@ -17,7 +18,7 @@ ClampResult ClampTorque(const model::ArmModel& arm, const SafetyConfig& config,
       wanted = 0.0;
       result.finite = false;
     }
-    double allowed = std::fmin(std::fmax(wanted, -range), range);
+    double allowed = std::min(std::max(wanted, -range), range);
     if (allowed != wanted) {
       result.limits |= hal::Bit(hal::Limit::kTorque);
     }
@@ -26,7 +27,7 @@ ClampResult ClampTorque(const model::ArmModel& arm, const SafetyConfig& config,
       allowed = tau_applied[i] + std::copysign(step, change);
       result.limits |= hal::Bit(hal::Limit::kTorqueRate);
     }
-    tau[i] = std::fmin(std::fmax(allowed, -range), range);
+    tau[i] = std::min(std::max(allowed, -range), range);
   }
   return result;
 }

@@ -1,5 +1,6 @@
 #include "fovea/servo/guard_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fovea/servo/stop_path.hpp"
@@ -25,7 +26,7 @@ double SlowestReaction(const ServoConfig& config) noexcept {
   double slowest = 0.0;
   for (int i = 0; i < config.arm.num_joints; ++i) {
     const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
-    slowest = std::fmax(
+    slowest = std::max(
         slowest, ReactionTime(guard.braking_fraction * guard.joint_acceleration_fraction * joint.ddq_max,
                               guard.joint_jerk_fraction * joint.dddq_max));
   }
@@ -101,7 +102,7 @@ LimitSet LimitWorkspace(const ServoConfig& config, const model::Vec3& p_BE, cons
     limits |= Bit(Limit::kWorkspace);
   }
   const double deceleration =
-      std::fmax(guard.workspace_deceleration - spent / radius, 0.5 * guard.workspace_deceleration);
+      std::max(guard.workspace_deceleration - spent / radius, 0.5 * guard.workspace_deceleration);
   const double v_max = BarrierSpeed(distance, deceleration, SlowestReaction(config));
   if (v_out > v_max) {
     // Smallest change of dq that brings the outward speed to v_max.

@@ -1,5 +1,6 @@
 #include "fovea/servo/stop_path.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fovea/model/kinematics.hpp"
@@ -13,7 +14,7 @@ constexpr double kSlack = 1e-9;  // rounding is no step outward [m, rad]
 // A joint that stops after `distance` from q_now, given that it may go up to `limit` (or no further than it
 // already is).
 bool Within(double q, double q_now, double low, double high) noexcept {
-  return q <= std::fmax(high, q_now) + kSlack && q >= std::fmin(low, q_now) - kSlack;
+  return q <= std::max(high, q_now) + kSlack && q >= std::min(low, q_now) - kSlack;
 }
 
 struct StopPlan {
@@ -29,7 +30,7 @@ StopPlan PlanAll(const ServoConfig& config, const Reference& reference) noexcept
     plan.joints[k] =
         PlanStop(reference.dq[i], reference.ddq[i], config.guard.joint_acceleration_fraction * joint.ddq_max,
                  config.guard.joint_jerk_fraction * joint.dddq_max);
-    plan.duration_s = std::fmax(plan.duration_s, plan.joints[k].Duration());
+    plan.duration_s = std::max(plan.duration_s, plan.joints[k].Duration());
   }
   return plan;
 }
@@ -45,14 +46,14 @@ JointStop PlanStop(double dq, double ddq, double ddq_max, double dddq_max) noexc
   const double v = stop.sign * dq;
   const double a = stop.sign * ddq;
   // Velocity taken away: (2 a_peak^2 - a^2) / (2 jerk) + a_peak hold = v.
-  const double peak2 = std::fmax(v * dddq_max + 0.5 * a * a, 0.0);
+  const double peak2 = std::max(v * dddq_max + 0.5 * a * a, 0.0);
   stop.a_peak = std::sqrt(peak2);
   if (stop.a_peak > ddq_max) {
     stop.a_peak = ddq_max;
     stop.hold_s = (v + (a * a - 2.0 * ddq_max * ddq_max) / (2.0 * dddq_max)) / ddq_max;
   }
-  stop.ramp_s = std::fmax((a + stop.a_peak) / dddq_max, 0.0);
-  stop.hold_s = std::fmax(stop.hold_s, 0.0);
+  stop.ramp_s = std::max((a + stop.a_peak) / dddq_max, 0.0);
+  stop.hold_s = std::max(stop.hold_s, 0.0);
   stop.release_s = stop.a_peak / dddq_max;
   return stop;
 }
@@ -65,7 +66,7 @@ double StopTravel(const JointStop& stop, double dq, double ddq, double t) noexce
   const double durations[3] = {stop.ramp_s, stop.hold_s, stop.release_s};
   const double jerks[3] = {-stop.jerk, 0.0, stop.jerk};
   for (int phase = 0; phase < 3; ++phase) {
-    const double d = std::fmin(std::fmax(left, 0.0), durations[phase]);
+    const double d = std::min(std::max(left, 0.0), durations[phase]);
     x += d * (v + d * (0.5 * a + d * jerks[phase] / 6.0));
     v += d * (a + 0.5 * d * jerks[phase]);
     a += d * jerks[phase];
@@ -97,7 +98,7 @@ bool StopsInside(const ServoConfig& config, const Reference& reference, const mo
 
   // Workspace: no point of the arm moves further than the joints' travel times its distance from their axes,
   // which is at most about two workspace radii. Far from the boundary that settles it.
-  const double boundary = std::fmax(guard.workspace_radius - guard.workspace_margin, radius_now) + kSlack;
+  const double boundary = std::max(guard.workspace_radius - guard.workspace_margin, radius_now) + kSlack;
   if (radius_now + 2.0 * guard.workspace_radius * travel < boundary) {
     return true;
   }

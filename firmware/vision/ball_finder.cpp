@@ -72,6 +72,9 @@ const std::vector<Circle>& BallFinder::Find(const cv::Mat& image) {
     cv::calcBackProject(&hsv_, 1, channels, histogram_, likeness_, ranges, 1.0, true);
   }
   cv::GaussianBlur(likeness_, blurred_, cv::Size(), config_.blur_sigma_px);
+  if (config_.by == FindBy::kGray || image.channels() == 1) {
+    cv::normalize(blurred_, blurred_, 0.0, 255.0, cv::NORM_MINMAX);  // thresholds mean the same in any light
+  }
   cv::HoughCircles(blurred_, hough_, cv::HOUGH_GRADIENT, 1.5, 0.5 * config_.radius_min_px + 4.0,
                    config_.canny_threshold, config_.votes, static_cast<int>(0.5 * config_.radius_min_px),
                    static_cast<int>(std::ceil(0.5 * config_.radius_max_px)));

@@ -20,8 +20,9 @@ target_compile_options(fovea_warnings INTERFACE
   -Wno-maybe-uninitialized)
 
 add_library(fovea_bits INTERFACE)
-# No fused multiply-add behind our back, and sums that do not depend on a vector's width.
-target_compile_options(fovea_bits INTERFACE -ffp-contract=off)
+# No fused multiply-add behind our back, and sums that do not depend on a vector's width; a square root is an
+# instruction, not a call that might set errno.
+target_compile_options(fovea_bits INTERFACE -ffp-contract=off -fno-math-errno)
 target_compile_definitions(fovea_bits INTERFACE EIGEN_DONT_VECTORIZE EIGEN_DONT_PARALLELIZE)
 
 add_library(fovea_tick INTERFACE)

@@ -1,0 +1,63 @@
+// The arrows of the design point one way, proved from what each file includes.
+#include <gtest/gtest.h>
+
+#include "arch/source_tree.hpp"
+
+namespace fovea {
+namespace {
+
+// Sources below `folder` may include what matches `allowed`, and the standard library.
+struct Rule {
+  const char* folder;
+  const char* allowed;
+  const char* why;
+};
+
+// Headers of the standard library have neither folder nor extension.
+const std::regex kStandard("[a-z_]+");
+
+class IncludeRule : public testing::TestWithParam<Rule> {};
+
+TEST_P(IncludeRule, Holds) {
+  const Rule& rule = GetParam();
+  const std::regex allowed(rule.allowed);
+  const auto files = test::SourcesIn(rule.folder);
+  ASSERT_FALSE(files.empty());
+  for (const auto& file : files) {
+    for (const std::string& include : test::IncludesOf(file)) {
+      EXPECT_TRUE(std::regex_match(include, kStandard) || std::regex_match(include, allowed))
+          << std::filesystem::relative(file, test::SourceRoot()).string() << " includes " << include << ": "
+          << rule.why;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Tree, IncludeRule,
+    testing::Values(
+        Rule{"hal/include", "fovea/hal/.*", "the contract depends on the standard library alone"},
+        Rule{"hal/src", "fovea/hal/.*", "the contract depends on the standard library alone"},
+        Rule{"hal/drivers/linux_rt", "fovea/(hal|linux_rt)/.*|(sys/|sched|unistd).*",
+             "a driver depends on the contract and on its device"},
+        Rule{"firmware/include/fovea/model", "(fovea/(hal|model)/|Eigen/).*", "the model sees hal and Eigen"},
+        Rule{"firmware/model", "(fovea/(hal|model)/|Eigen/).*", "the model sees hal and Eigen"},
+        Rule{"firmware/include/fovea/features", "(fovea/(hal|model|features)/|Eigen/).*",
+             "features see hal, model and Eigen"},
+        Rule{"firmware/features", "(fovea/(hal|model|features)/|Eigen/).*", "features see hal, model and Eigen"},
+        Rule{"firmware/include/fovea/servo", "(fovea/(hal|model|features|servo)/|Eigen/).*",
+             "the servo sees hal, model, features and Eigen"},
+        Rule{"firmware/servo", "(fovea/(hal|model|features|servo)/|Eigen/).*",
+             "the servo sees hal, model, features and Eigen"},
+        Rule{"firmware/vision", "(fovea/(hal|model|features|vision)/|Eigen/|opencv2/).*",
+             "vision sees hal, features and OpenCV"},
+        Rule{"firmware/include", "(fovea/(hal|model|features|servo|vision|config|robots)/|Eigen/|opencv2/).*",
+             "nothing of the firmware sees the simulator"},
+        Rule{"sim/camera", "fovea/hal/.*|sim/(camera|render)/.*", "the simulator sees hal, not the firmware"},
+        Rule{"sim/physics", "sim/(physics|robot)/.*|Eigen/.*|Bullet.*", "physics sees Bullet and the robot alone"},
+        Rule{"sim/render", "sim/(render|robot)/.*|(Eigen|epoxy|fmt)/.*", "rendering sees no physics and no servo"},
+        Rule{"sim/robot", "sim/robot/.*|(Eigen|fmt|urdf_parser)/.*", "the simulated robot comes from its URDF alone"},
+        Rule{"sim/world", "fovea/hal/.*|sim/(world|physics|render|robot)/.*|Eigen/.*",
+             "the simulator sees hal, not the firmware"}));
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,55 @@
+// What runs in the tick calls nothing that could allocate, lock, throw or enter the system: proved from the
+// symbols that its libraries need. They would link on bare metal.
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "arch/source_tree.hpp"
+
+namespace fovea {
+namespace {
+
+const char* const kLibraries[] = {FOVEA_HAL_LIBRARY, FOVEA_MODEL_LIBRARY, FOVEA_FEATURES_LIBRARY,
+                                  FOVEA_SERVO_LIBRARY};
+
+// The last word of each line of `nm`.
+std::set<std::string> Symbols(const std::string& options) {
+  std::set<std::string> symbols;
+  for (const char* library : kLibraries) {
+    std::istringstream lines(test::OutputOf("nm " + options + " '" + library + "' 2>&1"));
+    for (std::string line; std::getline(lines, line);) {
+      const auto space = line.find_last_of(' ');
+      if (space != std::string::npos && line.find(':') == std::string::npos) {
+        symbols.insert(line.substr(space + 1));
+      }
+    }
+  }
+  return symbols;
+}
+
+TEST(TickSymbolsTest, NeedsNothingButPlainMemory) {
+#ifdef FOVEA_SANITIZED
+  GTEST_SKIP() << "a sanitizer adds calls of its own";
+#endif
+  const std::set<std::string> defined = Symbols("--defined-only");
+  const std::set<std::string> needed = Symbols("--undefined-only");
+  ASSERT_GT(defined.size(), 50U) << "nm must have been there";
+  const std::set<std::string> allowed = {"memcpy",           "memset", "memmove", "memcmp", "_GLOBAL_OFFSET_TABLE_",
+                                         "__stack_chk_fail", "__cxa_pure_virtual"};
+  for (const std::string& symbol : needed) {
+    EXPECT_TRUE(defined.count(symbol) == 1 || allowed.count(symbol) == 1) << "the tick needs " << symbol;
+  }
+}
+
+// The hardware target's libraries carry no simulator along.
+TEST(LinkTest, ThisProgramOfFirmwareLibrariesNeedsNoBulletAndNoEgl) {
+  const std::string needed = test::OutputOf("readelf -d /proc/self/exe | grep NEEDED; true");
+  const std::string own = test::OutputOf("readelf -d '" FOVEA_FIRMWARE_PROGRAM "' | grep NEEDED");
+  ASSERT_NE(own.find("libopencv_imgproc"), std::string::npos) << "readelf must have been there: " << needed;
+  for (const char* name : {"Bullet", "LinearMath", "libEGL", "libepoxy", "libGL"}) {
+    EXPECT_EQ(own.find(name), std::string::npos) << name;
+  }
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,125 @@
+// No heap in the tick: the whole tick, from reading the arm to the record, in every mode, counted by the
+// interposer. If the interposer does not count, these tests fail.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+
+#include "fovea/hal/types.hpp"
+#include "fovea/linux_rt/heap_counter.hpp"
+#include "fovea/linux_rt/record_ring.hpp"
+#include "fovea/linux_rt/tick_meter.hpp"
+#include "fovea/servo/servo_loop.hpp"
+#include "support/panda.hpp"
+
+namespace fovea {
+namespace {
+
+// An arm and a clock in one, without a heap: the arm stands where its reference wants it.
+class SteadyArm final : public hal::Arm {
+ public:
+  SteadyArm() : Arm(7, false) {
+    state_.num_joints = 7;
+    state_.q = test::Panda().model.q_ready;
+  }
+  void Advance() { state_.stamp_ns += hal::kTickPeriodNs; }
+  hal::ArmState& state() { return state_; }
+
+ private:
+  hal::Status DoRead(hal::ArmState& state) noexcept override {
+    state = state_;
+    return hal::Status::Ok();
+  }
+  hal::Status DoWrite(const hal::ArmCommand& command) noexcept override {
+    state_.tau_applied = command.tau_cmd;
+    return hal::Status::Ok();
+  }
+  hal::ArmState state_;
+};
+
+class SteppingClock final : public hal::Clock {
+ public:
+  explicit SteppingClock(std::function<void(std::int64_t)> on_tick) : on_tick_(std::move(on_tick)) {}
+
+ private:
+  [[nodiscard]] std::int64_t DoNowNs() const noexcept override { return now_ns_; }
+  hal::Status DoWaitUntil(std::int64_t deadline_ns) noexcept override {
+    now_ns_ = deadline_ns;
+    on_tick_(now_ns_);
+    return hal::Status::Ok();
+  }
+  std::int64_t now_ns_ = 0;
+  std::function<void(std::int64_t)> on_tick_;
+};
+
+class TickHeapTest : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifdef FOVEA_SANITIZED
+    GTEST_SKIP() << "a sanitizer brings a malloc of its own";
+#endif
+    ASSERT_TRUE(linux_rt::HeapCounterActive()) << "the interposer is not linked: a count of 0 would mean nothing";
+    ASSERT_TRUE(task_.Init(test::PandaConfig()).ok());
+  }
+
+  // The ball stands where it should, so the arm need not move.
+  void PutFeature(std::int64_t now_ns) {
+    hal::FeatureMeasurement m;
+    m.stamp_ns = now_ns - 20 * hal::kNsPerMs;
+    m.found = true;
+    m.dim = 3;
+    m.s = {0.0, 0.0, 10.0};
+    for (std::size_t i = 0; i < 3; ++i) {
+      m.cov_s[i * hal::kMaxFeatureDim + i] = 1e-4;
+    }
+    mailbox_.Put(m);
+  }
+
+  servo::ServoTask task_;
+  SteadyArm arm_;
+  hal::FeatureMailbox mailbox_;
+  linux_rt::RecordRing ring_{8192};
+  linux_rt::TickMeter meter_;
+};
+
+TEST_F(TickHeapTest, NoHeapCallInAnyMode) {
+  int modes_seen = 0;
+  SteppingClock clock([&](std::int64_t now_ns) {
+    arm_.Advance();
+    const std::int64_t ms = now_ns / hal::kNsPerMs;
+    // Seen, lost for a while, seen again, then a sensor breaks.
+    if (ms > 60 && ms % 33 == 0 && (ms < 1000 || ms > 2500)) {
+      PutFeature(now_ns);
+    }
+    if (ms > 4000) {
+      arm_.state().q[2] = std::nan("");
+    }
+  });
+  servo::ServoLoop loop(task_, arm_, clock, mailbox_, ring_, meter_);
+  ASSERT_TRUE(loop.Run(5 * hal::kNsPerSecond).ok());
+  ring_.Drain([&](const hal::TickRecord& record) { modes_seen |= 1 << static_cast<int>(record.mode); });
+  EXPECT_EQ(modes_seen, 0b11111) << "boot, hold, track, coast and fault were all run through";
+  EXPECT_EQ(meter_.durations().count(), 5000U);
+  EXPECT_EQ(meter_.heap_calls(), 0U);
+}
+
+// The guard's own proof: a recorder that allocates is caught.
+class AllocatingRecorder final : public hal::Recorder {
+ public:
+  void Record(const hal::TickRecord&) noexcept override {
+    void* volatile block = std::malloc(1);
+    std::free(block);
+  }
+};
+
+TEST_F(TickHeapTest, AHeapCallInTheTickIsSeen) {
+  SteppingClock clock([&](std::int64_t) { arm_.Advance(); });
+  AllocatingRecorder recorder;
+  servo::ServoLoop loop(task_, arm_, clock, mailbox_, recorder, meter_);
+  ASSERT_TRUE(loop.Run(10 * hal::kNsPerMs).ok());
+  EXPECT_EQ(meter_.heap_calls(), 20U);
+}
+
+}  // namespace
+}  // namespace fovea
