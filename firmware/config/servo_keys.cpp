@@ -82,6 +82,26 @@ void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
   keys.Number("safety.brake_after_s", c.brake_after_s, 0.0, 60.0, "s", "or after this time");
 }
 
+// Values that are allowed each by itself and must fit each other.
+void CheckTogether(const servo::ServoConfig& c) {
+  const model::Vec3& goal = c.feature.p_CO_C_star;
+  if (goal.z() <= c.feature.radius) {
+    throw InputError(fmt::format(
+        "servo.goal = [{}, {}, {}] is not allowed: the target must be wholly before the camera, so "
+        "the third above its radius of {} m",
+        goal.x(), goal.y(), goal.z(), c.feature.radius));
+  }
+  if (c.predict.stale_s > c.predict.coast_s) {
+    throw InputError(fmt::format("servo.stale_s = {} is not allowed: at most servo.coast_s, which is {} s",
+                                 c.predict.stale_s, c.predict.coast_s));
+  }
+  if (c.guard.workspace_margin >= c.guard.workspace_radius) {
+    throw InputError(fmt::format(
+        "safety.workspace_margin = {} is not allowed: below safety.workspace_radius, which is {} m",
+        c.guard.workspace_margin, c.guard.workspace_radius));
+  }
+}
+
 }  // namespace
 
 void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
@@ -130,6 +150,7 @@ servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::
       config.law.q_posture[i] = settings.posture[i];
     }
   }
+  CheckTogether(config);
   servo::ServoTask probe;
   if (const hal::Status status = probe.Init(config); !status.ok()) {
     throw InputError(fmt::format("{}: {}", status.where(), hal::ToString(status.code())));

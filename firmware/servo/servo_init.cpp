@@ -55,7 +55,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
   const double huge = 1e6;
   const Range ranges[] = {
       {config.feature.radius, 1e-4, 10.0, "target.diameter"},
-      {config.feature.p_CO_C_star.z(), 1e-3, 100.0, "servo.goal"},
+      {config.feature.p_CO_C_star.z(), config.feature.radius, 100.0, "servo.goal"},
       {config.predict.target_jerk, 0.0, huge, "servo.target_jerk"},
       {config.predict.gate_sigma, 1.0, huge, "servo.gate_sigma"},
       {config.predict.stale_s, 1e-3, config.predict.coast_s, "servo.stale_s"},

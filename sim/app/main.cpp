@@ -41,7 +41,7 @@ int Run(const RunArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}", sim::ToJson(summary));
   } else {
-    fmt::print("{}  {:<22}{}\n", sim::ToTable(summary), "files", options.out.string());
+    fmt::print("{}  {:<24}{}\n", sim::ToTable(summary), "files", options.out.string());
   }
   return summary.converged ? kDone : kGoalMissed;
 }
@@ -57,7 +57,7 @@ int Keys() {
   sim::Scenario scenario;
   const config::KeyTable keys = sim::ScenarioKeys(scenario);
   for (const config::Key& key : keys.keys()) {
-    fmt::print("{} = {}\n    {}; {}, {}{}{}\n", key.name, key.default_text, key.meaning, key.kind,
+    fmt::print("{} = {}\n    {}; {}: {}{}{}\n", key.name, key.default_text, key.meaning, key.kind,
                key.allowed, key.unit.empty() ? "" : " ", key.unit);
   }
   return kDone;

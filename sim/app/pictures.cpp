@@ -23,7 +23,7 @@ const cv::Scalar kTruthColour(255, 255, 255);
 
 std::string ToPng(const cv::Mat& image) {
   std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6})) {
+  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 4})) {
     throw std::runtime_error("a picture cannot be encoded as PNG");
   }
   return {bytes.begin(), bytes.end()};

@@ -6,11 +6,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <thread>
 
-#include "fovea/config/input_error.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
@@ -19,6 +17,7 @@
 #include "fovea/servo/servo_loop.hpp"
 #include "fovea/vision/vision_task.hpp"
 #include "sim/app/build_info.hpp"
+#include "sim/app/compose.hpp"
 #include "sim/app/output_folder.hpp"
 #include "sim/app/pictures.hpp"
 #include "sim/app/progress.hpp"
@@ -34,7 +33,6 @@
 namespace fovea::sim {
 namespace {
 
-using config::InputError;
 constexpr std::size_t kRingCapacity = 4096;       // records; four seconds at 1 kHz
 constexpr std::int64_t kPathStepNs = 20'000'000;  // between points of the paths in the bench's picture
 
@@ -45,96 +43,37 @@ constexpr int kRenderers = 2;
 // other, which wastes less; who sets the variable keeps their choice. (A GPU's driver does not look at it.)
 void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0); }
 
-Eigen::Vector3d ToVector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
-
-Eigen::Isometry3d CameraMount(const Scenario& s) {
-  constexpr double kDeg = std::numbers::pi / 180.0;
-  const Eigen::Vector3d rpy = kDeg * ToVector(s.camera.mount_rpy_deg);
-  Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
-  X_EC.linear() = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-                   Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
-                      .toRotationMatrix();
-  X_EC.translation() = ToVector(s.camera.mount_xyz);
-  return X_EC;
-}
-
-void CheckStart(const Scenario& s, const robots::Robot& robot) {
-  const std::vector<double>& q = s.arm.q_start;
-  if (static_cast<int>(q.size()) != robot.model.num_joints) {
-    throw InputError(fmt::format("arm.q_start has {} entries, arm \"{}\" has {} joints", q.size(), robot.name,
-                                 robot.model.num_joints));
-  }
-  for (std::size_t i = 0; i < q.size(); ++i) {
-    const model::Joint& joint = robot.model.joints[i];
-    if (q[i] < joint.q_min || q[i] > joint.q_max) {
-      throw InputError(fmt::format("arm.q_start[{}] = {} is not allowed: joint {} reaches from {} to {}", i,
-                                   q[i], i + 1, joint.q_min, joint.q_max));
-    }
-  }
-}
-
-WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
-  WorldConfig config;
-  config.robot = robot;
-  config.physics.integrator =
-      s.arm.integrator == "rk4" ? Integrator::kRungeKutta4 : Integrator::kSemiImplicitEuler;
-  config.q_start = Eigen::Map<const Eigen::VectorXd>(s.arm.q_start.data(),
-                                                     static_cast<Eigen::Index>(s.arm.q_start.size()));
-  config.X_EC = CameraMount(s);
-  config.friction_compensation = s.arm.friction_compensation;
-  config.encoder_noise = s.arm.encoder_noise;
-  config.velocity_noise = s.arm.velocity_noise;
-  config.target.kind = s.target.motion == "circle" ? MotionKind::kCircle : MotionKind::kStill;
-  config.target.p_BO = ToVector(s.target.position);
-  config.target.path_radius = s.target.path_radius;
-  config.target.speed = s.target.speed;
-  config.camera_rate_hz = s.camera.rate_hz;
-  config.camera_outage = {s.faults.camera_outage_s[0], s.faults.camera_outage_s[1]};
-  config.seed = static_cast<std::uint64_t>(s.run.seed);
-  return config;
-}
-
-RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
-  RenderScene scene;
-  scene.bench = MakeBench(s.target.clutter);
-  scene.robot = robot;
-  scene.X_EC = CameraMount(s);
-  scene.target_radius = 0.5 * s.target.diameter;
-  scene.target_colour = ToVector(s.target.colour).cast<float>();
-  scene.light = s.camera.light;
-  return scene;
-}
-
 // Everything of one run, wired up. Members stand in the order in which one needs the other.
 class Run {
  public:
   Run(const Scenario& scenario, const RunOptions& options)
       : scenario_(scenario),
         options_(options),
+        progress_(scenario.name, scenario.run.duration_s, !options.show_progress),
         robot_(LoadScenarioRobot(scenario)),
         sim_robot_(LoadSimRobot(robot_.urdf, robot_.base_link, robot_.tip_link)),
         radius_(0.5 * scenario.target.diameter),
-        pinhole_(MakePinhole(scenario.camera.width_px, scenario.camera.height_px,
-                             scenario.camera.hfov_deg * std::numbers::pi / 180.0)),
+        pinhole_(MakeScenarioPinhole(scenario)),
         intrinsics_{pinhole_.width_px, pinhole_.height_px, pinhole_.f_px,
                     pinhole_.f_px,     pinhole_.c_u_px,    pinhole_.c_v_px},
         vision_(config::MakeVisionConfig(scenario.vision, intrinsics_, radius_)),
         ring_(kRingCapacity) {
+    progress_.Update(0.0, "preparing");
     CheckStart(scenario_, robot_);
     const Eigen::Isometry3d X_EC = CameraMount(scenario_);
     const servo::ServoConfig servo_config = config::MakeServoConfig(
         scenario_.servo, robot_, model::Pose{X_EC.linear(), X_EC.translation()}, radius_);
+    CheckGoal(scenario_);
     if (!servo_.Init(servo_config).ok()) {
       throw std::logic_error("a servo configuration that was checked is refused");
-    }
-    if (!options_.out.empty()) {
-      folder_.emplace(options_.out);
     }
     scene_ = MakeRenderScene(scenario_, sim_robot_);
     UseOneThreadPerRenderer();
     for (int i = 0; i < kRenderers; ++i) {
       renderers_.push_back(std::make_unique<SceneRenderer>(scene_, pinhole_, RenderQuality{}, i));
+    }
+    if (!options_.out.empty()) {
+      folder_.emplace(options_.out);  // after all that can be refused: what is refused leaves no folder
     }
     BuildWorld(servo_config);
   }
@@ -142,11 +81,7 @@ class Run {
   Summary Execute() {
     std::thread vision_thread([this] { RunVisionThread(); });
     const auto begin = std::chrono::steady_clock::now();
-    hal::Status status;
-    {
-      Progress progress(scenario_.name, scenario_.run.duration_s, !options_.show_progress);
-      status = options_.pace == Pace::kReal ? RunAtRealPace(progress) : RunInLockstep(progress);
-    }
+    const hal::Status status = options_.pace == Pace::kReal ? RunAtRealPace() : RunInLockstep();
     wall_time_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     camera_->Close();
     vision_thread.join();
@@ -208,6 +143,9 @@ class Run {
       camera_path_.push_back(truth.X_BC.translation());
       target_path_.push_back(truth.p_BO);
     }
+    if (options_.observer.on_truth) {
+      options_.observer.on_truth(truth);
+    }
   }
 
   void RunVisionThread() {
@@ -229,14 +167,18 @@ class Run {
     ring_.Drain([this](const hal::TickRecord& record) {
       hash_.Add(record);
       verdict_->AddRecord(record);
+      if (options_.observer.on_record) {
+        options_.observer.on_record(record);
+      }
       mode_ = record.mode;
+      recorded_s_ = static_cast<double>(record.stamp_ns) * 1e-9;
     });
   }
 
-  hal::Status RunInLockstep(Progress& progress) {
+  hal::Status RunInLockstep() {
     LockstepClock clock(*world_, [&](std::int64_t now_ns) {
       TakeRecords();
-      progress.Update(static_cast<double>(now_ns) * 1e-9, hal::Name(mode_));
+      progress_.Update(recorded_s_, hal::Name(mode_));
       return delay_.HandOver(now_ns, /*wait=*/true, mailbox_);
     });
     servo::ServoLoop loop(servo_, *arm_, clock, mailbox_, ring_, meter_);
@@ -245,7 +187,7 @@ class Run {
     return status;
   }
 
-  hal::Status RunAtRealPace(Progress& progress) {
+  hal::Status RunAtRealPace() {
     linux_rt::MonotonicClock monotonic;
     std::atomic<bool> done{false};
     hal::Status status;
@@ -259,16 +201,10 @@ class Run {
       counters_ = loop.counters();
       done = true;
     });
-    double now_s = 0.0;
     while (!done) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
-      ring_.Drain([&](const hal::TickRecord& record) {
-        hash_.Add(record);
-        verdict_->AddRecord(record);
-        mode_ = record.mode;
-        now_s = static_cast<double>(record.stamp_ns) * 1e-9;
-      });
-      progress.Update(now_s, hal::Name(mode_));
+      TakeRecords();
+      progress_.Update(recorded_s_, hal::Name(mode_));
     }
     servo_thread.join();
     return status;
@@ -311,6 +247,7 @@ class Run {
     if (!folder_) {
       return;
     }
+    progress_.Update(scenario_.run.duration_s, "drawing the pictures");
     if (frames_.frames() > 0) {
       const Eigen::Vector3d goal = servo_.config().feature.p_CO_C_star;
       for (const auto& [name, frame] :
@@ -327,6 +264,7 @@ class Run {
 
   Scenario scenario_;
   RunOptions options_;
+  Progress progress_;
   robots::Robot robot_;
   SimRobot sim_robot_;
   double radius_;
@@ -352,7 +290,8 @@ class Run {
   std::vector<Eigen::Vector3d> target_path_;
   const std::atomic<bool> never_stop_{false};  // the vision thread ends when the camera closes
   servo::LoopCounters counters_;
-  hal::Mode mode_ = hal::Mode::kBoot;
+  hal::Mode mode_ = hal::Mode::kBoot;  // of the last record
+  double recorded_s_ = 0.0;            // and its time
   std::vector<std::string> realtime_missing_;
   double wall_time_s_ = 0.0;
 };

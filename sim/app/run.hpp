@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
+#include "fovea/hal/record.hpp"
 #include "sim/app/scenario.hpp"
 #include "sim/app/summary.hpp"
+#include "sim/world/world.hpp"
 
 namespace fovea::sim {
 
@@ -13,11 +16,19 @@ enum class Pace {
   kReal,      // the servo on a real-time thread, 1 ms by the clock
 };
 
+// Who looks on while it runs. `on_truth` is called by the thread that advances the world, `on_record` by the
+// one that called RunScenario, in order of the ticks; in lockstep that is one thread. Either may be empty.
+struct RunObserver {
+  std::function<void(const Truth&)> on_truth;
+  std::function<void(const hal::TickRecord&)> on_record;
+};
+
 struct RunOptions {
   Pace pace = Pace::kLockstep;
   std::filesystem::path out;  // empty: no files
   bool pictures = true;       // the bench's picture costs a second
   bool show_progress = true;
+  RunObserver observer;
 };
 
 // Composes robot, bench, camera and servo, runs the scenario to its end, judges it against the truth, and

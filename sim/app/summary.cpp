@@ -21,7 +21,7 @@ std::string Figure(const std::optional<double>& value, const char* unit) {
 class Table {
  public:
   void Row(const std::string& name, const std::string& value) {
-    text_ += fmt::format("  {:<22}{}\n", name, value);
+    text_ += fmt::format("  {:<24}{}\n", name, value);
   }
   [[nodiscard]] const std::string& text() const { return text_; }
 

@@ -80,13 +80,13 @@ void AddTools(Bench& bench) {
 void AddClutter(Bench& bench) {
   // The target's colour, another shape.
   AddBox(bench, {0.07F, 0.07F, 0.05F}, At(0.42F, -0.10F, 0.025F, 0.6F), kRed);
-  AddBox(bench, {0.15F, 0.028F, 0.02F}, At(0.66F, 0.03F, 0.01F, -0.8F), kRed);
+  AddBox(bench, {0.15F, 0.028F, 0.02F}, At(0.615F, 0.105F, 0.01F, -0.8F), kRed);  // beside the target
   AddBox(bench, {0.028F, 0.11F, 0.012F}, At(0.47F, 0.33F, 0.006F, 0.4F), kRed);
   // The target's colour and a round outline, but far too small.
   AddCylinder(bench, 0.011F, 0.03F, At(0.60F, -0.20F, 0.015F), kRed);
   AddCylinder(bench, 0.013F, 0.012F, At(0.40F, 0.22F, 0.006F), kRed);
   // The target's shape, another colour.
-  bench.balls.push_back({{0.44F, 0.02F, 0.040F}, 0.040F, {0.10F, 0.22F, 0.58F}});
+  bench.balls.push_back({{0.485F, 0.095F, 0.040F}, 0.040F, {0.10F, 0.22F, 0.58F}});
   bench.balls.push_back({{0.70F, 0.23F, 0.032F}, 0.032F, {0.12F, 0.46F, 0.16F}});
   bench.balls.push_back({{0.52F, -0.27F, 0.036F}, 0.036F, {0.88F, 0.72F, 0.10F}});
   bench.balls.push_back({{0.31F, 0.29F, 0.030F}, 0.030F, {0.86F, 0.86F, 0.84F}});

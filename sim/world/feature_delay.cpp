@@ -27,7 +27,11 @@ bool FeatureDelay::HandOver(std::int64_t now_ns, bool wait, hal::FeatureMailbox&
   std::unique_lock lock(mutex_);
   while (!expected_.empty() && expected_.front().due_ns <= now_ns) {
     if (wait) {
-      changed_.wait(lock, [this] { return closed_ || expected_.front().measurement.has_value(); });
+      changed_.wait(
+          lock, [this] { return closed_ || expected_.empty() || expected_.front().measurement.has_value(); });
+      if (expected_.empty()) {
+        return !closed_;
+      }
     }
     if (!expected_.front().measurement) {
       return !closed_;

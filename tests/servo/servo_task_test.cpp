@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <iostream>
 #include <limits>
@@ -350,10 +349,9 @@ TEST_F(ServoTaskTest, TheSameInputsGiveTheSameBits) {
   for (std::size_t k = 0; k < inputs.size(); ++k) {
     again.Step(inputs[k], outputs);
     ASSERT_EQ(outputs.record.mode, first[k].mode);
-    ASSERT_EQ(
-        std::memcmp(&outputs.record.command.tau_cmd, &first[k].command.tau_cmd, sizeof(hal::JointArray)), 0);
-    ASSERT_EQ(std::memcmp(&outputs.record.q_cmd, &first[k].q_cmd, sizeof(hal::JointArray)), 0);
-    ASSERT_EQ(std::memcmp(&outputs.record.s, &first[k].s, sizeof(first[k].s)), 0);
+    ASSERT_EQ(outputs.record.command.tau_cmd, first[k].command.tau_cmd);
+    ASSERT_EQ(outputs.record.q_cmd, first[k].q_cmd);
+    ASSERT_EQ(outputs.record.s, first[k].s);
   }
 }
 

@@ -1,0 +1,102 @@
+#include "sim/app/compose.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "fovea/config/input_error.hpp"
+
+namespace fovea::sim {
+namespace {
+
+using config::InputError;
+constexpr double kDeg = std::numbers::pi / 180.0;
+
+Eigen::Vector3d ToVector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+
+}  // namespace
+
+Eigen::Isometry3d CameraMount(const Scenario& s) {
+  const Eigen::Vector3d rpy = kDeg * ToVector(s.camera.mount_rpy_deg);
+  Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
+  X_EC.linear() = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+                   Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+                   Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
+                      .toRotationMatrix();
+  X_EC.translation() = ToVector(s.camera.mount_xyz);
+  return X_EC;
+}
+
+void CheckStart(const Scenario& s, const robots::Robot& robot) {
+  const std::vector<double>& q = s.arm.q_start;
+  if (static_cast<int>(q.size()) != robot.model.num_joints) {
+    throw InputError(fmt::format("arm.q_start has {} entries, arm \"{}\" has {} joints", q.size(), robot.name,
+                                 robot.model.num_joints));
+  }
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const model::Joint& joint = robot.model.joints[i];
+    if (q[i] < joint.q_min || q[i] > joint.q_max) {
+      throw InputError(fmt::format("arm.q_start[{}] = {} is not allowed: joint {} reaches from {} to {}", i,
+                                   q[i], i + 1, joint.q_min, joint.q_max));
+    }
+  }
+}
+
+WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
+  WorldConfig config;
+  config.robot = robot;
+  config.physics.integrator =
+      s.arm.integrator == "rk4" ? Integrator::kRungeKutta4 : Integrator::kSemiImplicitEuler;
+  config.q_start = Eigen::Map<const Eigen::VectorXd>(s.arm.q_start.data(),
+                                                     static_cast<Eigen::Index>(s.arm.q_start.size()));
+  config.X_EC = CameraMount(s);
+  config.friction_compensation = s.arm.friction_compensation;
+  config.encoder_noise = s.arm.encoder_noise;
+  config.velocity_noise = s.arm.velocity_noise;
+  config.target.kind = s.target.motion == "circle" ? MotionKind::kCircle : MotionKind::kStill;
+  config.target.p_BO = ToVector(s.target.position);
+  config.target.path_radius = s.target.path_radius;
+  config.target.speed = s.target.speed;
+  config.camera_rate_hz = s.camera.rate_hz;
+  config.camera_outage = {s.faults.camera_outage_s[0], s.faults.camera_outage_s[1]};
+  config.seed = static_cast<std::uint64_t>(s.run.seed);
+  return config;
+}
+
+RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
+  RenderScene scene;
+  scene.bench = MakeBench(s.target.clutter);
+  scene.robot = robot;
+  scene.X_EC = CameraMount(s);
+  scene.target_radius = 0.5 * s.target.diameter;
+  scene.target_colour = ToVector(s.target.colour).cast<float>();
+  scene.light = s.camera.light;
+  return scene;
+}
+
+Pinhole MakeScenarioPinhole(const Scenario& s) {
+  return MakePinhole(s.camera.width_px, s.camera.height_px, s.camera.hfov_deg * kDeg);
+}
+
+void CheckGoal(const Scenario& s) {
+  const Pinhole pinhole = MakeScenarioPinhole(s);
+  const Eigen::Vector3d goal = ToVector(s.servo.goal);
+  const double u = pinhole.f_px * goal.x() / goal.z() + pinhole.c_u_px;
+  const double v = pinhole.f_px * goal.y() / goal.z() + pinhole.c_v_px;
+  if (!(u >= 0.0 && u <= pinhole.width_px - 1 && v >= 0.0 && v <= pinhole.height_px - 1)) {
+    throw InputError(fmt::format(
+        "servo.goal = [{}, {}, {}] is not allowed: it is at ({:.0f}, {:.0f}) px, outside the picture "
+        "of {} x {} px",
+        goal.x(), goal.y(), goal.z(), u, v, pinhole.width_px, pinhole.height_px));
+  }
+  const double near = s.vision.config.distance_min;
+  const double far = s.vision.config.distance_max;
+  if (goal.norm() < near || goal.norm() > far) {
+    throw InputError(
+        fmt::format("servo.goal = [{}, {}, {}] is not allowed: {:.3g} m off, where vision.distance_min and "
+                    "vision.distance_max let the target be from {} to {} m",
+                    goal.x(), goal.y(), goal.z(), goal.norm(), near, far));
+  }
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,25 @@
+// From a scenario's keys to what the simulator is made of, and the checks that need more than one key.
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "sim/app/scenario.hpp"
+#include "sim/render/pinhole.hpp"
+#include "sim/render/scene_renderer.hpp"
+#include "sim/robot/sim_robot.hpp"
+#include "sim/world/world.hpp"
+
+namespace fovea::sim {
+
+// X_EC.
+Eigen::Isometry3d CameraMount(const Scenario& scenario);
+Pinhole MakeScenarioPinhole(const Scenario& scenario);
+WorldConfig MakeWorldConfig(const Scenario& scenario, const SimRobot& robot);
+RenderScene MakeRenderScene(const Scenario& scenario, const SimRobot& robot);
+
+// InputError when arm.q_start does not fit the arm.
+void CheckStart(const Scenario& scenario, const robots::Robot& robot);
+// InputError when the target, standing at servo.goal, could not be seen.
+void CheckGoal(const Scenario& scenario);
+
+}  // namespace fovea::sim

@@ -1,0 +1,225 @@
+// fovea-sim as its users type it: what it answers, what it refuses, with which words and which exit code.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "support/program.hpp"
+#include "support/temp_folder.hpp"
+
+namespace fovea::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class CommandLineTest : public testing::Test {
+ protected:
+  static ProgramResult Sim(std::vector<std::string> arguments,
+                           const std::vector<std::string>& environment = {}) {
+    arguments.insert(arguments.begin(), FOVEA_SIM_PROGRAM);
+    return RunProgram(std::move(arguments), environment);
+  }
+  // What a run with these arguments says when it is refused: one line, exit code 2, no files.
+  std::string Refusal(std::vector<std::string> arguments, const std::vector<std::string>& environment = {}) {
+    const fs::path out = folder_.path() / "refused";
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--out", out.string()});
+    const ProgramResult result = Sim(std::move(arguments), environment);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_FALSE(fs::exists(out)) << "something was left behind";
+    // Of progress there may be a line before it; the answer itself is the last.
+    std::string line = result.err;
+    line.erase(line.find_last_not_of('\n') + 1);
+    return line.substr(line.find_last_of('\n') + 1);
+  }
+  std::string Write(const std::string& name, const std::string& text) {
+    const fs::path path = folder_.path() / name;
+    std::ofstream(path) << text;
+    return path;
+  }
+  std::string Out() { return folder_.path() / "out"; }
+
+  TempFolder folder_;
+};
+
+TEST_F(CommandLineTest, UnknownScenario) {
+  EXPECT_THAT(Refusal({"bal"}), AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
+                                      HasSubstr("ball, ball-clutter, ball-dark, ball-moving")));
+  EXPECT_THAT(Refusal({"nowhere/to/be.toml"}), HasSubstr("nowhere/to/be.toml"));
+}
+
+TEST_F(CommandLineTest, UnknownKey) {
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lamda=3"}),
+              AllOf(HasSubstr("servo.lamda"), HasSubstr("servo.lambda")));
+  const std::string file = Write("mine.toml", "[camera]\nrate_hz = 30\nspeed_hz = 3\n");
+  EXPECT_THAT(Refusal({file}), AllOf(HasSubstr("mine.toml:3"), HasSubstr("camera.speed_hz")));
+}
+
+TEST_F(CommandLineTest, ValueOutOfRange) {
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda=-1"}),
+              AllOf(HasSubstr("servo.lambda = -1"), HasSubstr("0 to 20 1/s")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda=nan"}), HasSubstr("0 to 20 1/s"));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda=fast"}), HasSubstr("servo.lambda"));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda"}), HasSubstr("key=value"));
+  EXPECT_THAT(Refusal({"ball", "--set", "target.motion=\"hop\""}),
+              AllOf(HasSubstr("\"still\""), HasSubstr("\"circle\"")));
+  const std::string file = Write("mine.toml", "[camera]\nrate_hz = 30000\n");
+  EXPECT_THAT(Refusal({file}), AllOf(HasSubstr("mine.toml:2"), HasSubstr("1 to 240 Hz")));
+}
+
+// Each value is allowed; together they are not.
+TEST_F(CommandLineTest, ValuesThatDoNotFitEachOther) {
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.q_start=[0, 0, 0]"}),
+              AllOf(HasSubstr("arm.q_start has 3 entries"), HasSubstr("has 7 joints")));
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.q_start=[0, 0, 0, 1, 0, 0, 0]"}),
+              AllOf(HasSubstr("arm.q_start[3] = 1"), HasSubstr("joint 4 reaches from -3.0718 to -0.0698")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.goal=[0, 0, 0.1]", "--set", "target.diameter=0.3"}),
+              AllOf(HasSubstr("servo.goal = [0, 0, 0.1]"), HasSubstr("radius of 0.15 m")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.goal=[0.3, 0, 0.4]"}),
+              AllOf(HasSubstr("servo.goal"), HasSubstr("outside the picture of 640 x 480 px")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.goal=[0, 0, 1.3]"}),
+              AllOf(HasSubstr("servo.goal"), HasSubstr("from 0.12 to 1.2 m")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.stale_s=0.7"}),
+              AllOf(HasSubstr("servo.stale_s = 0.7"), HasSubstr("servo.coast_s, which is 0.6 s")));
+}
+
+TEST_F(CommandLineTest, TomlThatIsNone) {
+  EXPECT_THAT(Refusal({Write("mine.toml", "[camera\nrate_hz = 30\n")}), HasSubstr("mine.toml:1"));
+}
+
+TEST_F(CommandLineTest, BrokenUrdf) {
+  const std::string broken = Write("broken.urdf", "<robot name=\"b\"><link name=\"a\"/>");
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"" + broken + "\""}), HasSubstr("broken.urdf"));
+  const std::string massless = Write(
+      "massless.urdf",
+      R"(<robot name="m"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>
+         <child link="b"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>)");
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"" + massless + "\""}),
+              AllOf(HasSubstr("massless.urdf"), HasSubstr("inertia")));
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"gone.urdf\""}), HasSubstr("gone.urdf"));
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"pandaa\""}), HasSubstr("arm.model = \"pandaa\""));
+}
+
+TEST_F(CommandLineTest, OutputFolderThatCannotBeWritten) {
+  const std::string file = Write("file", "something");
+  const ProgramResult result =
+      Sim({"run", "ball", "--set", "run.duration_s=0.1", "--no-report", "--out", file + "/out"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("--out " + file + "/out"), HasSubstr("cannot be made")));
+}
+
+TEST_F(CommandLineTest, NoEgl) {
+  EXPECT_THAT(Refusal({"ball"}, {"__EGL_VENDOR_LIBRARY_DIRS=/nonexistent"}),
+              AllOf(HasSubstr("EGL"), HasSubstr("libgl1-mesa-dri")));
+}
+
+TEST_F(CommandLineTest, WrongUsage) {
+  EXPECT_EQ(Sim({}).exit_code, 2);
+  EXPECT_EQ(Sim({"fly"}).exit_code, 2);
+  EXPECT_EQ(Sim({"run"}).exit_code, 2);
+  const ProgramResult pace = Sim({"run", "ball", "--pace", "slow"});
+  EXPECT_EQ(pace.exit_code, 2);
+  EXPECT_THAT(pace.err, AllOf(HasSubstr("--pace"), HasSubstr("lockstep"), HasSubstr("real")));
+  EXPECT_EQ(Sim({"run", "ball", "--seed", "-3"}).exit_code, 2);
+}
+
+TEST_F(CommandLineTest, HelpShowsExamplesAndExitCodes) {
+  const ProgramResult help = Sim({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("fovea-sim run ball"), HasSubstr("Exit: 0")));
+  EXPECT_THAT(Sim({"run", "--help"}).out, AllOf(HasSubstr("--set"), HasSubstr("--pace"), HasSubstr("--out")));
+  EXPECT_THAT(Sim({"--version"}).out, testing::StartsWith("fovea-sim 0."));
+}
+
+TEST_F(CommandLineTest, ListAndKeysSayWhatThereIs) {
+  const std::string list = Sim({"list"}).out;
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 4);
+  EXPECT_THAT(list, AllOf(HasSubstr("ball "), HasSubstr("ball-moving "), HasSubstr("ball-dark "),
+                          HasSubstr("ball-clutter ")));
+  EXPECT_THAT(Sim({"keys"}).out,
+              HasSubstr("servo.lambda = 2\n    gain: the error decays like exp(-lambda t); "
+                        "a number: 0 to 20 1/s\n"));
+}
+
+// A run too short to converge: exit code 1, and files that are whole.
+TEST_F(CommandLineTest, ARunThatMissesItsGoal) {
+  const ProgramResult result = Sim(
+      {"run", "ball", "--set", "run.duration_s=0.3", "--seed", "9", "--json", "--no-report", "--out", Out()});
+  EXPECT_EQ(result.exit_code, 1);
+  const auto json = nlohmann::json::parse(result.out);
+  std::ifstream file(Out() + "/summary.json");
+  EXPECT_EQ(json, nlohmann::json::parse(file)) << "what is printed is what is written";
+  for (const char* key : {"scenario",
+                          "seed",
+                          "converged",
+                          "settle_time_s",
+                          "final_error_px_rms",
+                          "final_error_mm",
+                          "final_error_lateral_mm",
+                          "final_error_depth_mm",
+                          "final_error_deg",
+                          "tracking_error_px_rms",
+                          "limits",
+                          "limit_violations",
+                          "faults",
+                          "frames",
+                          "frames_detected",
+                          "ticks",
+                          "overruns",
+                          "heap_allocations_in_tick",
+                          "page_faults_in_loop",
+                          "tick_ns",
+                          "sim_time_s",
+                          "wall_time_s",
+                          "real_time_factor",
+                          "log_hash",
+                          "servo",
+                          "git"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  for (const char* key : {"p50", "p99", "p999", "max"}) {
+    EXPECT_TRUE(json["tick_ns"].contains(key)) << key;
+  }
+  EXPECT_EQ(json["scenario"], "ball");
+  EXPECT_EQ(json["seed"], 9);
+  EXPECT_EQ(json["converged"], false);
+  EXPECT_EQ(json["ticks"], 300);
+  EXPECT_EQ(json["log_hash"].get<std::string>().size(), 64U);
+  EXPECT_THAT(json["verdict"].get<std::string>(), HasSubstr("not converged"));
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(Out())) {
+    names.push_back(entry.path().filename());
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAre("summary.json", "eye-first.png", "eye-last.png"));
+}
+
+TEST_F(CommandLineTest, ARefusedRunLeavesTheLastOnesFilesAlone) {
+  ASSERT_EQ(Sim({"run", "ball", "--set", "run.duration_s=0.1", "--no-report", "--out", Out()}).exit_code, 1);
+  const auto written = fs::last_write_time(Out() + "/summary.json");
+  EXPECT_EQ(Sim({"run", "ball", "--set", "servo.lambda=-1", "--out", Out()}).exit_code, 2);
+  EXPECT_EQ(fs::last_write_time(Out() + "/summary.json"), written);
+}
+
+// One core or two, this process or another: the same run.
+TEST_F(CommandLineTest, TheSameSeedIsTheSameRunOnOneCoreToo) {
+  const auto hash = [&](std::vector<std::string> before, const std::string& seed) {
+    before.insert(before.end(), {FOVEA_SIM_PROGRAM, "run", "ball", "--set", "run.duration_s=1.5", "--seed",
+                                 seed, "--json", "--no-report", "--out", Out()});
+    const ProgramResult result = RunProgram(before);
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    return nlohmann::json::parse(result.out)["log_hash"].get<std::string>();
+  };
+  const std::string first = hash({}, "1");
+  EXPECT_EQ(hash({}, "1"), first);
+  EXPECT_EQ(hash({"taskset", "-c", "0"}, "1"), first);
+  EXPECT_NE(hash({}, "2"), first);
+}
+
+}  // namespace
+}  // namespace fovea::test

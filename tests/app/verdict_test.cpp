@@ -1,0 +1,141 @@
+// The judge, on runs made up for it: each bound is kept, and each is broken.
+#include "sim/app/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/panda.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr double kGoalZ = 0.4;
+
+class VerdictTest : public testing::Test {
+ protected:
+  VerdictTest() {
+    config_.arm = test::Panda().model;
+    config_.p_CO_C_star = {0.0, 0.0, kGoalZ};
+    config_.workspace_radius = 0.85;
+    config_.tracking_bound_px = 3.0;
+  }
+
+  // A run of `duration_s` in which the target is `offset(t)` off its goal, in axes of C [m].
+  Summary Judge(double duration_s, const std::function<Eigen::Vector3d(double)>& offset,
+                const std::function<void(Truth&)>& change = {}) {
+    Verdict verdict(config_);
+    const auto ticks = static_cast<std::int64_t>(duration_s * 1e3);
+    for (std::int64_t k = 0; k <= ticks; ++k) {
+      Truth truth;
+      truth.stamp_ns = k * kMs;
+      truth.q = test::Ready();
+      truth.dq = truth.tau_cmd = Eigen::VectorXd::Zero(7);
+      truth.X_BE.translation() = Eigen::Vector3d(0.3, 0.0, 0.5);
+      truth.p_BO = config_.p_CO_C_star + offset(static_cast<double>(k) * 1e-3);  // C is B here
+      if (change) {
+        change(truth);
+      }
+      verdict.AddTruth(truth);
+    }
+    for (const hal::TickRecord& record : records_) {
+      verdict.AddRecord(record);
+    }
+    Summary summary;
+    verdict.Fill(summary);
+    return summary;
+  }
+  static Eigen::Vector3d Still(double) { return {0.0005, 0.0, 0.0}; }
+
+  VerdictConfig config_;
+  std::vector<hal::TickRecord> records_;
+};
+
+TEST_F(VerdictTest, FiguresAreThoseOfTheLastHalfSecond) {
+  const Summary s = Judge(2.0, [](double t) {
+    return t < 1.5 ? Eigen::Vector3d(0.1, 0.0, 0.0) : Eigen::Vector3d(0.0003, 0.0004, 0.0012);
+  });
+  EXPECT_TRUE(s.converged);
+  EXPECT_NEAR(*s.start_error_px, config_.pinhole.f_px * 0.1 / 0.4, 1e-9);
+  EXPECT_NEAR(*s.final_error_px_rms, config_.pinhole.f_px * 0.0005 / 0.4012, 1e-9);
+  EXPECT_NEAR(*s.final_error_lateral_mm, 0.5, 1e-9);
+  EXPECT_NEAR(*s.final_error_depth_mm, 1.2, 1e-9);
+  EXPECT_NEAR(*s.final_error_mm, 1.3, 1e-9);
+  EXPECT_EQ(s.tracking_error_px_rms, std::nullopt);
+}
+
+TEST_F(VerdictTest, OneSampleTooFarOffInTheWindowIsNotConverged) {
+  const auto pixel_off = [&](double t) {
+    return Eigen::Vector3d(std::abs(t - 1.7) < 1e-6 ? 1.01 * kGoalZ / config_.pinhole.f_px : 0.0, 0.0, 0.0);
+  };
+  EXPECT_FALSE(Judge(2.0, pixel_off).converged);
+  const auto depth_off = [](double t) {
+    return Eigen::Vector3d(0.0, 0.0, std::abs(t - 1.7) < 1e-6 ? 0.00201 : 0.0);
+  };
+  const Summary s = Judge(2.0, depth_off);
+  EXPECT_FALSE(s.converged);
+  EXPECT_THAT(s.verdict, testing::HasSubstr("not converged"));
+}
+
+TEST_F(VerdictTest, SettleTimeIsThatOfTheLastReturn) {
+  const Summary s = Judge(4.0, [](double t) {
+    const bool peak = t > 2.4 && t < 2.6;
+    return Eigen::Vector3d(peak ? 0.01 : 0.1 * std::exp(-4.0 * t), 0.0, 0.0);
+  });
+  EXPECT_NEAR(*s.settle_time_s, 2.6, 1.5e-3);
+  EXPECT_EQ(Judge(1.0, [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); }).settle_time_s, std::nullopt);
+}
+
+TEST_F(VerdictTest, BehindTheCameraIsNoErrorInPixels) {
+  const Summary s = Judge(1.0, [](double) { return Eigen::Vector3d(0.0, 0.0, -0.8); });
+  EXPECT_FALSE(s.converged);
+  EXPECT_EQ(s.final_error_px_rms, std::nullopt);
+}
+
+TEST_F(VerdictTest, AMovingTargetIsJudgedOverTheSecondHalf) {
+  config_.target_moves = true;
+  const double px = kGoalZ / config_.pinhole.f_px;
+  EXPECT_TRUE(
+      Judge(2.0, [&](double t) { return Eigen::Vector3d((t < 0.99 ? 50 : 2.9) * px, 0, 0); }).converged);
+  const Summary s = Judge(2.0, [&](double) { return Eigen::Vector3d(3.1 * px, 0, 0); });
+  EXPECT_FALSE(s.converged);
+  EXPECT_NEAR(*s.tracking_error_px_rms, 3.1, 1e-9);
+}
+
+TEST_F(VerdictTest, EveryLimitThatIsBrokenIsCounted) {
+  const auto violations = [&](const std::function<void(Truth&)>& change) {
+    return Judge(0.1, Still,
+                 [&](Truth& truth) {
+                   if (truth.stamp_ns == 50 * kMs) {
+                     change(truth);
+                   }
+                 })
+        .limit_violations;
+  };
+  EXPECT_EQ(violations([](Truth&) {}), 0U);
+  EXPECT_EQ(violations([](Truth& t) { t.q[1] = 1.77; }), 1U);                    // +-1.7628 rad
+  EXPECT_EQ(violations([](Truth& t) { t.dq[6] = -2.62; }), 1U);                  // 2.61 rad/s
+  EXPECT_EQ(violations([](Truth& t) { t.tau_cmd[6] = 0.99; }), 0U);              // 1 Nm per tick
+  EXPECT_EQ(violations([](Truth& t) { t.tau_cmd[6] = 1.01; }), 2U);              // up, and down again
+  EXPECT_EQ(violations([](Truth& t) { t.X_BE.translation().x() = 0.86; }), 1U);  // 0.85 m
+  EXPECT_EQ(violations([](Truth& t) { t.tau_cmd[6] = -12.1; }), 2U);             // 12 Nm
+}
+
+TEST_F(VerdictTest, AFaultIsNamedAndIsNoSuccess) {
+  hal::TickRecord record;
+  record.stamp_ns = 250 * kMs;
+  record.mode = hal::Mode::kFault;
+  record.fault = hal::Fault::kJointVelocity;
+  record.fault_joint = 3;
+  records_ = {record, record};
+  const Summary s = Judge(1.0, Still);
+  EXPECT_FALSE(s.converged);
+  ASSERT_EQ(s.faults.size(), 1U);
+  EXPECT_EQ(s.faults[0].name, "joint_velocity");
+  EXPECT_EQ(s.faults[0].detail, "joint 4");
+  EXPECT_DOUBLE_EQ(s.faults[0].t_s, 0.25);
+  EXPECT_THAT(s.verdict, testing::HasSubstr("joint_velocity"));
+}
+
+}  // namespace
+}  // namespace fovea::sim

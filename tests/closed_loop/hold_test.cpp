@@ -1,0 +1,88 @@
+// What cannot be reached, is not there, or goes away: the arm stands still in Hold, and says why.
+#include <gmock/gmock.h>
+
+#include "closed_loop/closed_loop.hpp"
+
+namespace fovea::test {
+namespace {
+
+using testing::HasSubstr;
+
+// The fastest that the end effector's joints moved in the last half second of a run [rad/s].
+class RestWatch {
+ public:
+  sim::RunOptions Options(double duration_s) {
+    sim::RunOptions options;
+    options.observer.on_truth = [this, duration_s](const sim::Truth& truth) {
+      const double speed = truth.dq.cwiseAbs().maxCoeff();
+      fastest_ = std::max(fastest_, speed);
+      if (static_cast<double>(truth.stamp_ns) * 1e-9 > duration_s - 0.5) {
+        at_the_end_ = std::max(at_the_end_, speed);
+      }
+    };
+    return options;
+  }
+  [[nodiscard]] double fastest() const { return fastest_; }
+  [[nodiscard]] double at_the_end() const { return at_the_end_; }
+
+ private:
+  double fastest_ = 0.0;
+  double at_the_end_ = 0.0;
+};
+
+constexpr double kAtRest = 0.005;  // [rad/s]; what encoder noise leaves
+
+TEST(Hold, ABallOutOfReachIsHeldBeforeWithReason) {
+  RestWatch watch;
+  // Seen from the start, but 1.1 m away from it the arm would have to be behind itself.
+  const sim::Summary s = RunShipped("ball", {"servo.goal=[0, 0, 1.1]"}, watch.Options(8.0));
+  PrintResidual(s);
+  EXPECT_FALSE(s.converged);
+  EXPECT_EQ(LastMode(s), "hold");
+  EXPECT_EQ(LastReason(s), "goal_unreachable");
+  EXPECT_THAT(s.verdict, HasSubstr("limits keep the arm from the goal"));
+  EXPECT_LT(watch.at_the_end(), kAtRest);
+  ExpectSound(s);
+}
+
+TEST(Hold, ABallThatIsNeverInViewMovesNothing) {
+  RestWatch watch;
+  const sim::Summary s =
+      RunShipped("ball", {"target.position=[-0.5, 0.6, 0.04]", "run.duration_s=2"}, watch.Options(2.0));
+  EXPECT_FALSE(s.converged);
+  EXPECT_EQ(s.frames_detected, 0U);
+  EXPECT_EQ(LastMode(s), "hold");
+  EXPECT_EQ(LastReason(s), "no_target");
+  EXPECT_THAT(s.verdict, HasSubstr("never found in view"));
+  EXPECT_LT(watch.fastest(), kAtRest);
+  ExpectSound(s);
+}
+
+TEST(Hold, ACameraThatFallsSilentIsCoastedOverThenHeldThenTakenUpAgain) {
+  RestWatch watch;
+  const sim::Summary s = RunShipped("ball", {"faults.camera_outage_s=[0.8, 3.0]"}, watch.Options(8.0));
+  PrintResidual(s);
+  std::vector<std::string> modes;
+  for (const sim::ModeEvent& m : s.modes) {
+    modes.push_back(m.mode + (m.reason.empty() ? "" : ":" + m.reason));
+  }
+  EXPECT_THAT(modes,
+              testing::ElementsAre("boot", "hold:no_target", "track", "coast", "hold:target_lost", "track"));
+  EXPECT_TRUE(s.converged);
+  ExpectSound(s);
+}
+
+TEST(Hold, AShortSilenceIsCoastedOver) {
+  const sim::Summary s = RunShipped("ball-moving", {"faults.camera_outage_s=[5.0, 5.4]"});
+  PrintResidual(s);
+  std::vector<std::string> modes;
+  for (const sim::ModeEvent& m : s.modes) {
+    modes.push_back(m.mode);
+  }
+  EXPECT_THAT(modes, testing::ElementsAre("boot", "hold", "track", "coast", "track"));
+  EXPECT_TRUE(s.converged);
+  ExpectSound(s);
+}
+
+}  // namespace
+}  // namespace fovea::test

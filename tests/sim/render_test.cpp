@@ -1,0 +1,119 @@
+// The renderer against the truth: what the detector measures in a rendered picture is where the ball was put.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iostream>
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+#include "fovea/vision/ball_detector.hpp"
+#include "sim/physics/bullet_arm.hpp"
+#include "sim/render/egl_context.hpp"
+#include "sim/render/scene_renderer.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr double kRadius = 0.04;
+
+class RenderTest : public ::testing::Test {
+ protected:
+  RenderTest() {
+    scene_.bench = MakeBench(/*clutter=*/false);
+    scene_.robot = LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf", "panda_base", "panda_flange");
+    scene_.X_EC.translation() = Eigen::Vector3d(0.05, 0.0, 0.04);
+    scene_.target_radius = kRadius;
+    BulletArm arm(scene_.robot, {});
+    Eigen::VectorXd q(7);
+    q << 0.0, -0.7, 0.0, -2.2, 0.0, 1.6, 0.7;
+    arm.SetState(q, Eigen::VectorXd::Zero(7));
+    for (int i = 0; i < static_cast<int>(scene_.robot.links.size()); ++i) {
+      exposure_.X_BL.push_back(arm.LinkPose(i));
+    }
+    exposure_.X_BC = arm.LinkPose(scene_.robot.tip) * scene_.X_EC;
+  }
+
+  cv::Mat Draw(SceneRenderer& renderer) {
+    cv::Mat rgba(pinhole_.height_px, pinhole_.width_px, CV_8UC4);
+    renderer.Draw(exposure_, exposure_.X_BC, {rgba.data, rgba.total() * 4});
+    return rgba;
+  }
+
+  vision::BallDetection Detect(const cv::Mat& rgba) const {
+    cv::Mat bgr;
+    cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
+    vision::BallDetectorConfig config;
+    config.intrinsics = intrinsics_;
+    config.radius = kRadius;
+    return vision::BallDetector(config).Detect(bgr);
+  }
+
+  const Pinhole pinhole_ = MakePinhole(640, 480, 1.0471975511965976);
+  const vision::Intrinsics intrinsics_{
+      640, 480, pinhole_.f_px, pinhole_.f_px, pinhole_.c_u_px, pinhole_.c_v_px};
+  RenderScene scene_;
+  Exposure exposure_;
+};
+
+TEST_F(RenderTest, ABallIsSeenWhereItIs) {
+  SceneRenderer renderer(scene_, pinhole_, {});
+  std::mt19937 engine(1);
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(engine);
+  };
+  double centre2 = 0.0;
+  double worst_px = 0.0;
+  double worst_depth = 0.0;
+  constexpr int kCount = 40;
+  for (int i = 0; i < kCount; ++i) {
+    const double z = uniform(0.22, 0.40);
+    const Eigen::Vector3d p_CO_C(z * uniform(-0.38, 0.38), z * uniform(-0.26, 0.26), z);
+    exposure_.p_BO = exposure_.X_BC * p_CO_C;
+    const vision::BallDetection d = Detect(Draw(renderer));
+    ASSERT_TRUE(d.found) << "at " << p_CO_C.transpose();
+    const Eigen::Vector3d s = p_CO_C / kRadius;
+    const double error_px =
+        std::hypot(intrinsics_.U(d.s) - intrinsics_.U(s), intrinsics_.V(d.s) - intrinsics_.V(s));
+    centre2 += error_px * error_px;
+    worst_px = std::max(worst_px, error_px);
+    worst_depth = std::max(worst_depth, std::fabs(d.s.norm() / s.norm() - 1.0));
+  }
+  const double rms_px = std::sqrt(centre2 / kCount);
+  std::cout << "centre " << rms_px << " px rms, worst " << worst_px << " px; distance, worst "
+            << 100 * worst_depth << " %\n";
+  EXPECT_LT(rms_px, 0.06);
+  EXPECT_LT(worst_px, 0.2);
+  EXPECT_LT(worst_depth, 0.005);
+}
+
+TEST_F(RenderTest, WhatStandsBeforeTheBallHidesIt) {
+  SceneRenderer renderer(scene_, pinhole_, {});
+  exposure_.p_BO = exposure_.X_BC * Eigen::Vector3d(0.0, 0.0, 0.3);
+  ASSERT_TRUE(Detect(Draw(renderer)).found);
+  exposure_.p_BO.z() = -0.5;  // below the table's top
+  EXPECT_FALSE(Detect(Draw(renderer)).found);
+}
+
+TEST_F(RenderTest, TwoRenderersDrawTheSameBytes) {
+  SceneRenderer first(scene_, pinhole_, {}, 0);
+  exposure_.p_BO = exposure_.X_BC * Eigen::Vector3d(0.03, -0.02, 0.3);
+  const cv::Mat a = Draw(first).clone();
+  first.Release();
+  SceneRenderer second(scene_, pinhole_, {}, 1);
+  const cv::Mat b = Draw(second);
+  EXPECT_EQ(cv::norm(a, b, cv::NORM_INF), 0.0);
+}
+
+TEST_F(RenderTest, LessLightIsADarkerPicture) {
+  exposure_.p_BO = exposure_.X_BC * Eigen::Vector3d(0.0, 0.0, 0.3);
+  const auto mean = [&](double light) {
+    scene_.light = light;
+    SceneRenderer renderer(scene_, pinhole_, {});
+    return cv::mean(Draw(renderer))[1];
+  };
+  const double full = mean(1.0);
+  EXPECT_NEAR(mean(0.1) / full, 0.1, 0.02);
+}
+
+}  // namespace
+}  // namespace fovea::sim

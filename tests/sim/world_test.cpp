@@ -1,0 +1,104 @@
+// The world: time, target, encoders, exposures, friction.
+#include "sim/world/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+WorldConfig PandaWorld() {
+  WorldConfig config;
+  config.robot = LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf", "panda_base", "panda_flange");
+  config.q_start.resize(7);
+  config.q_start << 0.0, -0.7, 0.0, -2.2, 0.0, 1.6, 0.7;
+  return config;
+}
+
+TEST(TargetMotionTest, TheCircleIsRoundLevelAndAsFastAsAskedFor) {
+  TargetMotion motion{MotionKind::kCircle, {0.5, 0.1, 0.04}, 0.10, 0.2};
+  for (std::int64_t t = 0; t < 4'000 * kMs; t += 37 * kMs) {
+    const Eigen::Vector3d p = PositionAt(motion, t);
+    EXPECT_NEAR((p - motion.p_BO).norm(), 0.10, 1e-12);
+    EXPECT_EQ(p.z(), 0.04);
+    const Eigen::Vector3d v = (PositionAt(motion, t + 1000) - PositionAt(motion, t)) / 1e-6;
+    EXPECT_NEAR(v.norm(), 0.2, 1e-6);
+  }
+  motion.kind = MotionKind::kStill;
+  EXPECT_EQ(PositionAt(motion, 3'000 * kMs), motion.p_BO);
+}
+
+TEST(WorldTest, EncodersHaveTheNoiseThatWasAskedFor) {
+  WorldConfig config = PandaWorld();
+  config.encoder_noise = 1e-5;
+  config.velocity_noise = 2e-3;
+  World world(config);
+  double q2 = 0.0;
+  double dq2 = 0.0;
+  int count = 0;
+  world.OnStep([&](const Truth& truth) {
+    for (int i = 0; i < 7; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      q2 += std::pow(world.MeasuredState().q[k] - truth.q[i], 2);
+      dq2 += std::pow(world.MeasuredState().dq[k] - truth.dq[i], 2);
+      ++count;
+    }
+  });
+  world.AdvanceTo(1'000 * kMs);
+  EXPECT_NEAR(std::sqrt(q2 / count), 1e-5, 3e-7);
+  EXPECT_NEAR(std::sqrt(dq2 / count), 2e-3, 6e-5);
+}
+
+TEST(WorldTest, TheSameSeedIsTheSameWorld) {
+  WorldConfig config = PandaWorld();
+  config.encoder_noise = 1e-5;
+  const auto run = [&](std::uint64_t seed) {
+    config.seed = seed;
+    World world(config);
+    world.AdvanceTo(100 * kMs);
+    return world.MeasuredState().q;
+  };
+  EXPECT_EQ(run(1), run(1));
+  EXPECT_NE(run(1), run(2));
+}
+
+TEST(WorldTest, TheCameraKeepsItsOwnTimeAndFallsSilentWhereItIsTold) {
+  WorldConfig config = PandaWorld();
+  config.camera_rate_hz = 30.0;
+  config.camera_outage = {0.5, 0.8};
+  World world(config);
+  std::vector<Exposure> exposures;
+  world.OnExposure([&](Exposure e) { exposures.push_back(std::move(e)); });
+  world.AdvanceTo(2'000 * kMs);
+  ASSERT_EQ(exposures.size(), 60U - 9U);
+  for (const Exposure& e : exposures) {
+    const double ideal_ns = 20e6 + static_cast<double>(e.sequence) * 1e9 / 30.0;
+    EXPECT_LE(std::fabs(static_cast<double>(e.stamp_ns) - ideal_ns), 0.5e6 + 1.0) << "no drift";
+    EXPECT_FALSE(e.stamp_ns >= 500 * kMs && e.stamp_ns < 800 * kMs);
+  }
+}
+
+// A joint under friction, and the same one whose controller takes all friction away.
+TEST(WorldTest, FrictionSlowsAJointAndCompensationTakesItAway) {
+  const auto speed_after = [](double compensation) {
+    WorldConfig config = PandaWorld();
+    config.friction_compensation = compensation;
+    World world(config);
+    hal::ArmCommand command;
+    command.num_joints = 7;
+    command.tau_cmd[0] = 2.0;
+    world.Command(command);
+    world.AdvanceTo(200 * kMs);
+    return world.truth().dq[0];
+  };
+  EXPECT_GT(speed_after(1.0), 1.1 * speed_after(0.5));
+  EXPECT_GT(speed_after(0.5), 1.1 * speed_after(0.0));
+}
+
+}  // namespace
+}  // namespace fovea::sim
