@@ -45,6 +45,20 @@ TEST(Hold, ABallOutOfReachIsHeldBeforeWithReason) {
   ExpectSound(s);
 }
 
+TEST(Hold, ABallBeyondTheWorkspaceIsHeldBeforeAtTheBarrier) {
+  RestWatch watch;
+  const sim::Summary s = RunShipped(
+      "ball", {"target.position=[1.2, 0.1, 0.04]", "arm.q_start=[0.1, -0.2, 0, -1.9, 0, 2.2, 0.785]"},
+      watch.Options(8.0));
+  PrintResidual(s);
+  EXPECT_FALSE(s.converged);
+  EXPECT_EQ(LastReason(s), "goal_unreachable");
+  EXPECT_GT(s.limits.at("workspace"), 0.98) << "it was not the barrier that kept it";
+  EXPECT_LE(s.limits.at("workspace"), 1.0);
+  EXPECT_LT(watch.at_the_end(), kAtRest);
+  ExpectSound(s);
+}
+
 TEST(Hold, ABallThatIsNeverInViewMovesNothing) {
   RestWatch watch;
   const sim::Summary s =
