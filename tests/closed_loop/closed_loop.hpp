@@ -29,7 +29,7 @@ inline void ExpectSound(const sim::Summary& s) {
   EXPECT_EQ(s.contact_ticks, 0U);
   EXPECT_TRUE(s.faults.empty());
   EXPECT_EQ(s.records_dropped, 0U);
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(FOVEA_SANITIZED)
   EXPECT_FALSE(linux_rt::HeapCounterActive()) << "a sanitizer has the heap to itself";
 #else
   ASSERT_TRUE(s.heap_allocations_in_tick.has_value()) << "the heap counter is not active";

@@ -29,7 +29,9 @@ add_library(fovea_tick INTERFACE)
 target_compile_options(fovea_tick INTERFACE -fno-exceptions -fno-rtti)
 
 if(FOVEA_SANITIZE)
-  add_compile_options(-fsanitize=${FOVEA_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  # The check of virtual calls needs the type information that the tick is built without.
+  add_compile_options(-fsanitize=${FOVEA_SANITIZE} -fno-sanitize=vptr -fno-omit-frame-pointer
+                      -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${FOVEA_SANITIZE})
   add_compile_definitions(FOVEA_SANITIZED)
 endif()
