@@ -155,23 +155,6 @@ void KeyTable::Numbers(std::string name, std::vector<double>& field, std::size_t
   Add(std::move(key));
 }
 
-void KeyTable::Texts(std::string name, std::vector<std::string>& field, std::string meaning) {
-  Key key{std::move(name), "a list of texts", "", "in quotes", std::move(meaning), ToText(field), {}};
-  key.set = [key, &field](const Setting& setting) {
-    if (const auto* texts = std::get_if<std::vector<std::string>>(&setting.value)) {
-      field = *texts;
-      return;
-    }
-    // TOML cannot tell an empty list of texts from one of numbers.
-    const auto* numbers = std::get_if<std::vector<double>>(&setting.value);
-    if (numbers == nullptr || !numbers->empty()) {
-      Refuse(setting, key);
-    }
-    field.clear();
-  };
-  Add(std::move(key));
-}
-
 void KeyTable::Apply(const Setting& setting) const {
   std::vector<std::string> names;
   for (const Key& key : keys_) {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <toml++/toml.h>
-#include <algorithm>
 
 #include "fovea/config/input_error.hpp"
 
@@ -14,6 +13,9 @@ namespace {
 std::vector<double> ToNumbers(const toml::array& array, const std::string& what) {
   std::vector<double> numbers;
   for (const toml::node& element : array) {
+    if (element.is_table()) {
+      throw InputError(what + ": a list of tables is no value here; a section is written [name], once");
+    }
     const auto number = element.value<double>();
     if (!number || !element.is_number()) {
       throw InputError(what + ": every entry must be a number");
@@ -21,17 +23,6 @@ std::vector<double> ToNumbers(const toml::array& array, const std::string& what)
     numbers.push_back(*number);
   }
   return numbers;
-}
-
-std::vector<std::string> ToTexts(const toml::array& array, const std::string& what) {
-  std::vector<std::string> texts;
-  for (const toml::node& element : array) {
-    if (!element.is_string()) {
-      throw InputError(what + ": every entry must be a text");
-    }
-    texts.push_back(*element.value<std::string>());
-  }
-  return texts;
 }
 
 Value ToValue(const toml::node& node, const std::string& what) {
@@ -48,10 +39,10 @@ Value ToValue(const toml::node& node, const std::string& what) {
     return text->get();
   }
   if (const auto array = node.as_array()) {
-    if (!array->empty() && array->front().is_string()) {
-      return ToTexts(*array, what);
-    }
     return ToNumbers(*array, what);
+  }
+  if (node.is_table()) {
+    throw InputError(what + ": a table is no value here");
   }
   throw InputError(what + ": dates and times are no values here");
 }
@@ -66,7 +57,7 @@ void Flatten(const toml::table& table, const std::string& prefix, const std::str
       continue;
     }
     const std::string where = fmt::format("{}:{}", file, node.source().begin.line);
-    settings.push_back({key, ToValue(node, where + ": " + key), where});
+    settings.push_back({key, ToValue(node, fmt::format("{}: {}", where, key)), where});
   }
 }
 
@@ -97,6 +88,9 @@ Setting ParseAssignment(const std::string& text) {
   const std::string value = text.substr(equals + 1);
   try {
     const toml::table table = toml::parse("value = " + value);
+    if (table.size() != 1) {
+      throw InputError("--set " + key + ": more than one value");
+    }
     return {key, ToValue(*table.get("value"), "--set " + key), "--set"};
   } catch (const toml::parse_error&) {
     // Bare text needs no quotes on a command line; anything with TOML's own characters must be TOML.
@@ -115,9 +109,6 @@ std::string ToText(const Value& value) {
     std::string operator()(const std::string& text) const { return fmt::format("\"{}\"", text); }
     std::string operator()(const std::vector<double>& numbers) const {
       return fmt::format("[{}]", fmt::join(numbers, ", "));
-    }
-    std::string operator()(const std::vector<std::string>& texts) const {
-      return texts.empty() ? "[]" : fmt::format("[\"{}\"]", fmt::join(texts, "\", \""));
     }
   };
   return std::visit(Printer{}, value);

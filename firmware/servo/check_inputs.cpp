@@ -20,16 +20,11 @@ std::int32_t CopyFinite(const hal::JointArray& from, int num_joints, hal::JointA
   return bad;
 }
 
-}  // namespace
-
-InputCheck CheckInputs(const ServoConfig& config, const hal::Status& arm_status, const hal::ArmState& arm,
-                       std::int32_t missed_ticks, InputState& state) noexcept {
+// Takes in what the arm answered.
+InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, const hal::ArmState& arm,
+                  InputState& state) noexcept {
   const SafetyConfig& safety = config.safety;
   const int n = config.arm.num_joints;
-
-  if (missed_ticks >= safety.missed_ticks) {
-    return {hal::Fault::kDeadlineMissed, -1};
-  }
   const bool answered = arm_status.ok() && arm.num_joints == n;
   const bool fresh = answered && (!state.has_state || arm.stamp_ns > state.stamp_ns);
   if (!fresh) {
@@ -74,6 +69,17 @@ InputCheck CheckInputs(const ServoConfig& config, const hal::Status& arm_status,
     }
   }
   return {};
+}
+
+}  // namespace
+
+InputCheck CheckInputs(const ServoConfig& config, const hal::Status& arm_status, const hal::ArmState& arm,
+                       std::int32_t missed_ticks, InputState& state) noexcept {
+  const InputCheck check = TakeIn(config, arm_status, arm, state);
+  if (missed_ticks >= config.safety.missed_ticks) {
+    return {hal::Fault::kDeadlineMissed, -1};
+  }
+  return check;
 }
 
 }  // namespace fovea::servo

@@ -184,10 +184,11 @@ LimitSet GuardMotion(const ServoConfig& config, const model::VecN& dq_des, const
   for (int i = 0; i < kTries; ++i) {
     next = reference;
     acceleration_limits = LimitAcceleration(config, share * dq, next);
-    if (share == 0.0 || StopsInside(config, next, reference.q, radius_now)) {
+    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, radius_now) : 0;
+    if (passed == 0) {
       break;
     }
-    limits |= Bit(Limit::kWorkspace);
+    limits |= passed;
     share = i + 2 < kTries ? 0.5 * share : 0.0;
   }
   reference = next;

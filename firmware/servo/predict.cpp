@@ -45,10 +45,13 @@ bool JointHistory::At(std::int64_t stamp_ns, model::VecN& q) const noexcept {
 namespace {
 
 // Takes in one measurement; leaves the state as it was when the measurement says nothing.
-void TakeIn(const ServoConfig& config, const hal::FeatureMeasurement& measurement,
+void TakeIn(const ServoConfig& config, std::int64_t now_ns, const hal::FeatureMeasurement& measurement,
             PredictState& state) noexcept {
   if (!measurement.found || measurement.dim != features::SphereFeature::kDim) {
     return;
+  }
+  if (measurement.stamp_ns > now_ns + hal::kTickPeriodNs) {
+    return;  // nothing can have been seen yet; a filter that believed it would refuse all that is true
   }
   model::VecN q_then;
   if (!state.history.At(measurement.stamp_ns, q_then)) {
@@ -83,7 +86,7 @@ void TakeIn(const ServoConfig& config, const hal::FeatureMeasurement& measuremen
 Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::Pose& X_BC,
                    const hal::FeatureMeasurement* measurement, PredictState& state) noexcept {
   if (measurement != nullptr) {
-    TakeIn(config, *measurement, state);
+    TakeIn(config, now_ns, *measurement, state);
   }
   Prediction prediction;
   if (!state.has_accepted) {

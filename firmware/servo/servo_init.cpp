@@ -19,6 +19,8 @@ struct Range {
 // True when the value is finite and inside; NaN fails.
 bool Holds(const Range& range) noexcept { return range.value >= range.min && range.value <= range.max; }
 
+bool IsPositive(double x) noexcept { return x > 0.0 && std::isfinite(x); }
+
 Status CheckArmModel(const model::ArmModel& arm) noexcept {
   if (arm.num_joints < 1 || arm.num_joints > model::kMaxJoints) {
     return Status(StatusCode::kInvalidArgument, "arm.num_joints");
@@ -27,16 +29,16 @@ Status CheckArmModel(const model::ArmModel& arm) noexcept {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = arm.joints[k];
     const model::LinkInertia& link = arm.links[k];
-    if (!(joint.q_min < joint.q_max)) {
+    if (!(joint.q_min < joint.q_max) || !std::isfinite(joint.q_min) || !std::isfinite(joint.q_max)) {
       return Status(StatusCode::kOutOfRange, "joint position range");
     }
-    if (!(joint.dq_max > 0.0 && joint.ddq_max > 0.0 && joint.dddq_max > 0.0)) {
+    if (!IsPositive(joint.dq_max) || !IsPositive(joint.ddq_max) || !IsPositive(joint.dddq_max)) {
       return Status(StatusCode::kOutOfRange, "joint velocity, acceleration or jerk limit");
     }
-    if (!(joint.tau_max > 0.0 && joint.dtau_max > 0.0)) {
+    if (!IsPositive(joint.tau_max) || !IsPositive(joint.dtau_max)) {
       return Status(StatusCode::kOutOfRange, "joint torque limit");
     }
-    if (!(link.mass > 0.0) || !link.p_LiCom.allFinite() || !link.I_Com_Li.allFinite()) {
+    if (!IsPositive(link.mass) || !link.p_LiCom.allFinite() || !link.I_Com_Li.allFinite()) {
       return Status(StatusCode::kOutOfRange, "link inertia");
     }
     if (!joint.X_PJ.p.allFinite() || !joint.X_PJ.R.allFinite()) {
@@ -60,7 +62,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.predict.gate_sigma, 1.0, huge, "servo.gate_sigma"},
       {config.predict.stale_s, 1e-3, config.predict.coast_s, "servo.stale_s"},
       {config.predict.coast_s, 1e-3, 0.5 * huge, "servo.coast_s"},
-      {config.law.lambda, 0.0, 100.0, "servo.lambda"},
+      {config.law.lambda, 0.0, 20.0, "servo.lambda"},
       {config.law.smooth_start_s, 1e-3, huge, "servo.smooth_start_s"},
       {config.law.damping, 1e-9, 1.0, "servo.damping"},
       {config.law.posture_gain, 0.0, 100.0, "servo.posture_gain"},
@@ -73,7 +75,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.guard.joint_jerk_fraction, 1e-3, 1.0, "safety.joint_jerk_fraction"},
       {config.guard.joint_position_margin, 0.0, 1.0, "safety.joint_position_margin"},
       {config.guard.braking_fraction, 1e-3, 0.9, "safety.braking_fraction"},
-      {config.guard.workspace_radius, 1e-2, huge, "safety.workspace_radius"},
+      {config.guard.workspace_radius, 1e-2, 1000.0, "safety.workspace_radius"},
       {config.guard.workspace_margin, 0.0, config.guard.workspace_radius, "safety.workspace_margin"},
       {config.guard.workspace_deceleration, 1e-2, 100.0, "safety.workspace_deceleration"},
       {config.safety.torque_fraction, 1e-3, 1.0, "safety.torque_fraction"},
@@ -94,12 +96,29 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
     }
   }
 
+  if (!config.feature.p_CO_C_star.allFinite()) {
+    return Status(StatusCode::kNonFinite, "servo.goal");
+  }
+  if (!config.X_EC.p.allFinite() || !config.X_EC.R.allFinite()) {
+    return Status(StatusCode::kNonFinite, "camera.mount_xyz");
+  }
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& joint = config.arm.joints[k];
+    if (!std::isfinite(config.law.q_posture[k])) {
+      return Status(StatusCode::kNonFinite, "servo.posture");
+    }
+    if (!(2.0 * config.guard.joint_position_margin < joint.q_max - joint.q_min)) {
+      return Status(StatusCode::kOutOfRange, "safety.joint_position_margin");
+    }
+  }
+
   config_ = config;
   state_ = ServoState{};
   const int n = config.arm.num_joints;
   state_.mode.track_asked = config.auto_track;
-  for (model::VecN* v : {&state_.q, &state_.dq, &state_.tau_applied, &state_.tau, &state_.reference.q,
-                         &state_.reference.dq, &state_.reference.ddq}) {
+  for (model::VecN* v : {&state_.q, &state_.dq, &state_.tau_applied, &state_.tau, &state_.tau_before,
+                         &state_.reference.q, &state_.reference.dq, &state_.reference.ddq}) {
     v->setZero(n);
   }
   return Status::Ok();

@@ -42,6 +42,7 @@ bool IsFinite(const hal::FeatureMeasurement& feature) noexcept {
 
 void ServoTask::Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept {
   InputCheck check;
+  state_.tau_before = state_.tau;
   CheckArm(inputs, check);
   ComputeModel();
   PredictFeature(inputs, check.fault);
@@ -129,7 +130,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   if (now == hal::Mode::kBoot) {
     state_.inputs.sound_ticks = 0;
     state_.fault_joint = -1;
-    state_.braked = false;
+    state_.give_up = false;
   }
 }
 
@@ -197,10 +198,10 @@ void ServoTask::ComputeTorque() noexcept {
       const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
       if (blind || since_s > config_.safety.brake_after_s ||
           state_.dq.lpNorm<Eigen::Infinity>() < config_.safety.brake_velocity) {
-        state_.braked = true;
+        state_.give_up = true;
       }
       DampedStop(config_.safety.fault_damping, state_.dynamics, state_.dq, state_.tau);
-      if (state_.braked) {
+      if (state_.give_up) {
         state_.tau.setZero();
       }
       break;
@@ -209,8 +210,19 @@ void ServoTask::ComputeTorque() noexcept {
 }
 
 void ServoTask::Clamp() noexcept {
-  const ClampResult result = ClampTorque(config_.arm, config_.safety, state_.tau_applied, state_.tau);
+  // The rate counts from what the arm says is in force; when it says nothing that can be, from what was sent
+  // last.
+  model::VecN in_force = state_.tau_applied;
+  const bool told = state_.inputs.bad_ticks == 0 && state_.inputs.non_finite_ticks == 0;
+  for (int i = 0; i < in_force.size(); ++i) {
+    const double tau_max = config_.arm.joints[static_cast<std::size_t>(i)].tau_max;
+    if (!told || std::fabs(in_force[i]) > tau_max) {
+      in_force[i] = state_.tau_before[i];
+    }
+  }
+  const ClampResult result = ClampTorque(config_.arm, config_.safety, in_force, state_.tau);
   state_.limits |= result.limits;
+  state_.braked = state_.give_up && (state_.tau.array() == 0.0).all();
   if (!result.finite) {
     LatchFault(hal::Fault::kNonFiniteControl, -1);
   }

@@ -75,8 +75,8 @@ double StopTravel(const JointStop& stop, double dq, double ddq, double t) noexce
   return stop.sign * x;
 }
 
-bool StopsInside(const ServoConfig& config, const Reference& reference, const model::VecN& q_now,
-                 double radius_now) noexcept {
+hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference, const model::VecN& q_now,
+                           double radius_now) noexcept {
   const GuardConfig& guard = config.guard;
   const StopPlan plan = PlanAll(config, reference);
   // The ticks' own steps come on top of the continuous motion.
@@ -91,7 +91,7 @@ bool StopsInside(const ServoConfig& config, const Reference& reference, const mo
     const double stop = StopTravel(plan.joints[k], reference.dq[i], reference.ddq[i], duration) + step;
     if (!Within(reference.q[i] + stop, q_now[i], joint.q_min + guard.joint_position_margin,
                 joint.q_max - guard.joint_position_margin)) {
-      return false;
+      return hal::Bit(hal::Limit::kJointPosition);
     }
     travel += std::fabs(reference.dq[i]) * duration + std::fabs(reference.ddq[i]) * duration * duration;
   }
@@ -100,7 +100,7 @@ bool StopsInside(const ServoConfig& config, const Reference& reference, const mo
   // which is at most about two workspace radii. Far from the boundary that settles it.
   const double boundary = std::max(guard.workspace_radius - guard.workspace_margin, radius_now) + kSlack;
   if (radius_now + 2.0 * guard.workspace_radius * travel < boundary) {
-    return true;
+    return 0;
   }
   model::VecN q = reference.q;
   model::ArmPoses poses;
@@ -115,10 +115,10 @@ bool StopsInside(const ServoConfig& config, const Reference& reference, const mo
     }
     model::ComputePoses(config.arm, q, poses);
     if (!(poses.X_BE.p.norm() <= boundary)) {
-      return false;
+      return hal::Bit(hal::Limit::kWorkspace);
     }
   }
-  return true;
+  return 0;
 }
 
 }  // namespace fovea::servo

@@ -15,7 +15,8 @@ using model::Vec3;
 
 constexpr int kMinRays = 48;
 constexpr double kMinRms = 0.02;    // edges are never trusted beyond this [px]
-constexpr double kCommonPx = 0.05;  // what shading and lens may shift the whole outline in or out [px]
+constexpr double kCommonPx = 0.05;  // what shading and lens may move the whole outline in or out [px]
+constexpr double kAsidePx = 0.04;   // and what light from one side may move it along u and along v [px]
 constexpr double kPi = 3.14159265358979323846;
 
 // Distance of the outline's function |x| - x . m from zero, per pixel along the ray.
@@ -66,7 +67,9 @@ ConeFit FitCone(const Intrinsics& in, const EdgeSet& edges, const Vec3& start, d
     const double limit = 4.685 * std::max(1.4826 * MedianSize(in, fit.m, edges), min_scale_px);
     Mat3 normal = Mat3::Zero();
     Vec3 right = Vec3::Zero();
-    Vec3 common = Vec3::Zero();  // what an equal shift of all edges does
+    Vec3 common = Vec3::Zero();   // what an equal shift of all edges does
+    Vec3 aside_u = Vec3::Zero();  // and one along u or v
+    Vec3 aside_v = Vec3::Zero();
     double sum = 0.0;
     double weights = 0.0;
     fit.inliers = 0;
@@ -80,6 +83,8 @@ ConeFit FitCone(const Intrinsics& in, const EdgeSet& edges, const Vec3& start, d
       normal += w * row * row.transpose();
       right += w * row * (x.norm() / slope);
       common += w * row;
+      aside_u += w * edge.du * row;
+      aside_v += w * edge.dv * row;
       sum += w * residual * residual;
       weights += w;
       fit.inliers += w > 0.2 ? 1 : 0;
@@ -92,8 +97,11 @@ ConeFit FitCone(const Intrinsics& in, const EdgeSet& edges, const Vec3& start, d
     fit.m = inverse * right;
     fit.rms_px = std::sqrt(sum / weights);
     const double sigma = std::max(fit.rms_px, kMinRms);
-    const Vec3 shift = kCommonPx * (inverse * common);
-    fit.cov = sigma * sigma * inverse + shift * shift.transpose();
+    fit.cov = sigma * sigma * inverse;
+    for (const Vec3& shift : {Vec3(kCommonPx * common), Vec3(kAsidePx * aside_u), Vec3(kAsidePx * aside_v)}) {
+      const Vec3 dm = inverse * shift;
+      fit.cov += dm * dm.transpose();
+    }
   }
   fit.ok = fit.m.allFinite() && fit.m.squaredNorm() > 1.0 && fit.m.z() > 0.0;
   return fit;

@@ -16,11 +16,11 @@ constexpr std::array<Entry, kNumFaults> kFaultTable{{
     {"arm_lost", "safety.arm_lost_ticks"},
     {"arm_stale", "safety.arm_lost_ticks"},
     {"non_finite_sensor", "safety.non_finite_ticks"},
-    {"non_finite_feature", "vision"},
-    {"non_finite_control", "servo"},
+    {"non_finite_feature", ""},
+    {"non_finite_control", ""},
     {"deadline_missed", "safety.missed_ticks"},
-    {"joint_position", "safety.joint_position_margin"},
-    {"joint_velocity", "safety.joint_velocity_fraction"},
+    {"joint_position", "arm.model"},
+    {"joint_velocity", "arm.model"},
     {"not_following", "safety.following_error"},
 }};
 

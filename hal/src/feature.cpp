@@ -3,10 +3,6 @@
 namespace fovea::hal {
 
 void FeatureMailbox::Put(const FeatureMeasurement& measurement) noexcept {
-  if (measurement.stamp_ns < newest_stamp_ns_) {
-    return;
-  }
-  newest_stamp_ns_ = measurement.stamp_ns;
   slots_[write_slot_] = measurement;
   // Release: the slot's content is visible before its number is. Acquire: the reader is done with the slot
   // that comes back.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "fovea/config/input_error.hpp"
+#include "fovea/model/kinematics.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -40,6 +41,17 @@ void CheckStart(const Scenario& s, const robots::Robot& robot) {
                                    q[i], i + 1, joint.q_min, joint.q_max));
     }
   }
+  model::ArmPoses poses;
+  const Eigen::Map<const Eigen::VectorXd> q_start(q.data(), robot.model.num_joints);
+  model::ComputePoses(robot.model, q_start, poses);
+  const servo::GuardConfig& guard = s.servo.config.guard;
+  const double radius = poses.X_BE.p.norm();
+  if (radius > guard.workspace_radius - guard.workspace_margin) {
+    throw InputError(
+        fmt::format("arm.q_start is not allowed: the end effector is {:.3f} m from the base there, outside "
+                    "safety.workspace_radius = {} m less safety.workspace_margin = {} m",
+                    radius, guard.workspace_radius, guard.workspace_margin));
+  }
 }
 
 WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
@@ -59,7 +71,7 @@ WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
   config.target.speed = s.target.speed;
   config.camera_rate_hz = s.camera.rate_hz;
   config.camera_outage = {s.faults.camera_outage_s[0], s.faults.camera_outage_s[1]};
-  config.seed = static_cast<std::uint64_t>(s.run.seed);
+  config.seed = SeedOf(s, RandomStream::kEncoders);
   return config;
 }
 
@@ -72,6 +84,15 @@ RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
   scene.target_colour = ToVector(s.target.colour).cast<float>();
   scene.light = s.camera.light;
   return scene;
+}
+
+// SplitMix64 (Steele, Lea and Flood, Fast splittable pseudorandom number generators, 2014).
+std::uint64_t SeedOf(const Scenario& s, RandomStream stream) {
+  std::uint64_t x = (static_cast<std::uint64_t>(s.run.seed) << 8U) + static_cast<std::uint64_t>(stream);
+  x += 0x9E3779B97F4A7C15U;
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
+  return x ^ (x >> 31U);
 }
 
 Pinhole MakeScenarioPinhole(const Scenario& s) {
@@ -96,6 +117,32 @@ void CheckGoal(const Scenario& s) {
         fmt::format("servo.goal = [{}, {}, {}] is not allowed: {:.3g} m off, where vision.distance_min and "
                     "vision.distance_max let the target be from {} to {} m",
                     goal.x(), goal.y(), goal.z(), goal.norm(), near, far));
+  }
+}
+
+void CheckTimes(const Scenario& s) {
+  const double period_ms = 1e3 / s.camera.rate_hz;
+  if (s.camera.exposure_ms > period_ms) {
+    throw InputError(
+        fmt::format("camera.exposure_ms = {} is not allowed: at camera.rate_hz = {} a frame has {:.3g} ms",
+                    s.camera.exposure_ms, s.camera.rate_hz, period_ms));
+  }
+  if (s.camera.latency_ms < 0.5 * s.camera.exposure_ms) {
+    throw InputError(fmt::format(
+        "camera.latency_ms = {} is not allowed: the second half of camera.exposure_ms = {} comes first",
+        s.camera.latency_ms, s.camera.exposure_ms));
+  }
+  const double stale_ms = 1e3 * s.servo.config.predict.stale_s;
+  if (s.camera.latency_ms >= stale_ms) {
+    throw InputError(fmt::format(
+        "camera.latency_ms = {} is not allowed: every measurement would be older than servo.stale_s = "
+        "{} s when it comes",
+        s.camera.latency_ms, s.servo.config.predict.stale_s));
+  }
+  const std::vector<double>& outage_s = s.faults.camera_outage_s;
+  if (outage_s[0] > outage_s[1]) {
+    throw InputError(fmt::format("faults.camera_outage_s = [{}, {}] is not allowed: it ends before it begins",
+                                 outage_s[0], outage_s[1]));
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 
 #include "sim/app/scenario.hpp"
 #include "sim/render/pinhole.hpp"
@@ -17,9 +18,15 @@ Pinhole MakeScenarioPinhole(const Scenario& scenario);
 WorldConfig MakeWorldConfig(const Scenario& scenario, const SimRobot& robot);
 RenderScene MakeRenderScene(const Scenario& scenario, const SimRobot& robot);
 
-// InputError when arm.q_start does not fit the arm.
+// Each consumer of random numbers has a generator of its own.
+enum class RandomStream : std::uint8_t { kEncoders, kSensor };
+std::uint64_t SeedOf(const Scenario& scenario, RandomStream stream);
+
+// InputError when arm.q_start does not fit the arm, or is outside its workspace.
 void CheckStart(const Scenario& scenario, const robots::Robot& robot);
 // InputError when the target, standing at servo.goal, could not be seen.
 void CheckGoal(const Scenario& scenario);
+// InputError when exposure, latency, frame rate, stale limit or outage contradict each other.
+void CheckTimes(const Scenario& scenario);
 
 }  // namespace fovea::sim

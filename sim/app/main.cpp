@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <exception>
 
 #include "fovea/config/input_error.hpp"
@@ -43,7 +44,7 @@ int Run(const RunArguments& arguments) {
   } else {
     fmt::print("{}  {:<24}{}\n", sim::ToTable(summary), "files", options.out.string());
   }
-  return summary.converged ? kDone : kGoalMissed;
+  return summary.converged && summary.limit_violations == 0 ? kDone : kGoalMissed;
 }
 
 int List() {
@@ -92,7 +93,7 @@ int main(int argc, char** argv) {
   run->add_flag("--no-report", arguments.no_report, "leave out what takes long to draw");
   run->add_flag("--json", arguments.json, "print summary.json instead of the table");
   CLI::App* list = app.add_subcommand("list", "shipped scenarios, one line each");
-  CLI::App* keys = app.add_subcommand("keys", "every key of a scenario: default, meaning, range, unit");
+  app.add_subcommand("keys", "every key of a scenario: default, meaning, range, unit");
 
   try {
     app.parse(argc, argv);
@@ -101,15 +102,13 @@ int main(int argc, char** argv) {
     return code == 0 ? kDone : kBadInput;
   }
   try {
-    if (run->parsed()) {
-      return Run(arguments);
+    const int code = run->parsed() ? Run(arguments) : list->parsed() ? List() : Keys();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw std::runtime_error("standard output cannot be written");
     }
-    if (list->parsed()) {
-      return List();
-    }
-    return keys->parsed() ? Keys() : kBadInput;
+    return code;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "fovea-sim: {}\n", error.what());
+    std::fprintf(stderr, "fovea-sim: %s\n", error.what());
     return kBadInput;
   }
 }

@@ -22,20 +22,45 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   }
 }
 
-void OutputFolder::Write(const std::string& name, const std::string& content) const {
-  const fs::path partial = folder_ / ("." + name + ".partial");
-  std::ofstream file(partial, std::ios::binary | std::ios::trunc);
-  file.write(content.data(), static_cast<std::streamsize>(content.size()));
-  file.close();
-  std::error_code error;
-  if (file) {
-    fs::rename(partial, folder_ / name, error);
+fs::path OutputFolder::Partial(const OutputFile& file) const {
+  return folder_ / ("." + file.name + ".partial");
+}
+
+void OutputFolder::WritePartial(const OutputFile& file) const {
+  std::error_code ignored;
+  if (fs::is_directory(folder_ / file.name, ignored)) {
+    throw config::InputError((folder_ / file.name).string() + ": cannot be written: a folder has that name");
   }
-  if (!file || error) {
-    std::error_code ignored;
-    fs::remove(partial, ignored);
-    throw config::InputError((folder_ / name).string() + ": cannot be written" +
-                             (error ? ": " + error.message() : std::string(" (is the disk full?)")));
+  std::ofstream stream(Partial(file), std::ios::binary | std::ios::trunc);
+  stream.write(file.content.data(), static_cast<std::streamsize>(file.content.size()));
+  stream.close();
+  if (!stream) {
+    throw config::InputError((folder_ / file.name).string() + ": cannot be written (is the disk full?)");
+  }
+}
+
+void OutputFolder::Replace(const std::vector<OutputFile>& files,
+                           const std::vector<std::string>& all_names) const {
+  std::error_code ignored;
+  try {
+    for (const OutputFile& file : files) {
+      WritePartial(file);
+    }
+  } catch (...) {
+    for (const OutputFile& file : files) {
+      fs::remove(Partial(file), ignored);
+    }
+    throw;
+  }
+  for (const std::string& name : all_names) {
+    fs::remove(folder_ / name, ignored);
+  }
+  for (const OutputFile& file : files) {
+    std::error_code error;
+    fs::rename(Partial(file), folder_ / file.name, error);
+    if (error) {
+      throw config::InputError((folder_ / file.name).string() + ": cannot be written: " + error.message());
+    }
   }
 }
 

@@ -14,6 +14,12 @@ constexpr auto kBarInterval = std::chrono::milliseconds(80);
 constexpr int kLineStepPercent = 25;
 constexpr int kBarWidth = 30;
 
+// Nobody listening is no reason to stop.
+void Say(const std::string& text) {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
+}
+
 }  // namespace
 
 Progress::Progress(std::string name, double end_s, bool quiet)
@@ -21,7 +27,7 @@ Progress::Progress(std::string name, double end_s, bool quiet)
 
 Progress::~Progress() {
   if (shown_ && is_terminal_) {
-    std::fputs("\r\033[K", stderr);  // the table takes the bar's place
+    Say("\r\033[K");  // the table takes the bar's place
   }
 }
 
@@ -48,12 +54,11 @@ void Progress::Show(double share, double now_s, const char* note) {
       fmt::format("{:3.0f} %  {:.1f} of {:.1f} s  {}", 100.0 * share, now_s, end_s_, note);
   if (is_terminal_) {
     const int filled = static_cast<int>(share * kBarWidth);
-    fmt::print(stderr, "\r{} [{}{}] {}\033[K", name_, std::string(static_cast<std::size_t>(filled), '#'),
-               std::string(static_cast<std::size_t>(kBarWidth - filled), '.'), figures);
+    Say(fmt::format("\r{} [{}{}] {}\033[K", name_, std::string(static_cast<std::size_t>(filled), '#'),
+                    std::string(static_cast<std::size_t>(kBarWidth - filled), '.'), figures));
   } else {
-    fmt::print(stderr, "{}: {}\n", name_, figures);
+    Say(fmt::format("{}: {}\n", name_, figures));
   }
-  std::fflush(stderr);
 }
 
 }  // namespace fovea::sim

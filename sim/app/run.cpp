@@ -5,6 +5,9 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <exception>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -19,6 +22,7 @@
 #include "sim/app/build_info.hpp"
 #include "sim/app/compose.hpp"
 #include "sim/app/output_folder.hpp"
+#include "sim/app/path.hpp"
 #include "sim/app/pictures.hpp"
 #include "sim/app/progress.hpp"
 #include "sim/app/record_hash.hpp"
@@ -33,8 +37,8 @@
 namespace fovea::sim {
 namespace {
 
-constexpr std::size_t kRingCapacity = 4096;       // records; four seconds at 1 kHz
-constexpr std::int64_t kPathStepNs = 20'000'000;  // between points of the paths in the bench's picture
+constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
+const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png", "summary.json"};
 
 // Pictures that are drawn at the same time, each by a renderer of its own.
 constexpr int kRenderers = 2;
@@ -64,6 +68,7 @@ class Run {
     const servo::ServoConfig servo_config = config::MakeServoConfig(
         scenario_.servo, robot_, model::Pose{X_EC.linear(), X_EC.translation()}, radius_);
     CheckGoal(scenario_);
+    CheckTimes(scenario_);
     if (!servo_.Init(servo_config).ok()) {
       throw std::logic_error("a servo configuration that was checked is refused");
     }
@@ -81,11 +86,21 @@ class Run {
   Summary Execute() {
     std::thread vision_thread([this] { RunVisionThread(); });
     const auto begin = std::chrono::steady_clock::now();
-    const hal::Status status = options_.pace == Pace::kReal ? RunAtRealPace() : RunInLockstep();
+    hal::Status status;
+    try {
+      status = options_.pace == Pace::kReal ? RunAtRealPace() : RunInLockstep();
+    } catch (...) {
+      failure_ = std::current_exception();
+    }
     wall_time_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     camera_->Close();
     vision_thread.join();
     TakeRecords();
+    for (const std::exception_ptr& failure : {failure_, vision_failure_}) {
+      if (failure) {
+        std::rethrow_exception(failure);
+      }
+    }
     if (!camera_->fault().empty()) {
       throw std::runtime_error("the camera broke during the run: " + camera_->fault());
     }
@@ -106,6 +121,7 @@ class Run {
     verdict_config.p_CO_C_star = servo_config.feature.p_CO_C_star;
     verdict_config.target_moves = scenario_.target.motion != "still";
     verdict_config.tracking_bound_px = scenario_.run.tracking_bound_px;
+    verdict_config.duration_s = scenario_.run.duration_s;
     verdict_config.workspace_radius = servo_config.guard.workspace_radius;
     verdict_ = std::make_unique<Verdict>(verdict_config);
 
@@ -124,13 +140,13 @@ class Run {
                           [renderer] { renderer->Release(); }});
     }
     camera_ = std::make_unique<SimCamera>(
-        camera_config, Sensor(scenario_.camera.noise_sigma, static_cast<std::uint64_t>(scenario_.run.seed)),
+        camera_config, Sensor(scenario_.camera.noise_sigma, SeedOf(scenario_, RandomStream::kSensor)),
         std::move(painters));
     world_ = std::make_unique<World>(MakeWorldConfig(scenario_, sim_robot_));
     world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
     const auto latency_ns = static_cast<std::int64_t>(scenario_.camera.latency_ms * 1e6);
     world_->OnExposure([this, latency_ns](Exposure exposure) {
-      target_in_frame_[exposure.sequence] = exposure.X_BC.inverse() * exposure.p_BO;
+      RememberTarget(exposure);
       delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns);
       camera_->Expose(std::move(exposure));
     });
@@ -139,23 +155,34 @@ class Run {
 
   void ObserveTruth(const Truth& truth) {
     verdict_->AddTruth(truth);
-    if (truth.stamp_ns % kPathStepNs == 0) {
-      camera_path_.push_back(truth.X_BC.translation());
-      target_path_.push_back(truth.p_BO);
-    }
+    camera_path_.Add(truth.stamp_ns, truth.X_BC.translation());
+    target_path_.Add(truth.stamp_ns, truth.p_BO);
     if (options_.observer.on_truth) {
       options_.observer.on_truth(truth);
     }
   }
 
+  // Where the target really was in a frame: of the first, and of those that may still be the last.
+  void RememberTarget(const Exposure& exposure) {
+    constexpr std::size_t kFramesUnderWay = 2048;
+    target_in_frame_[exposure.sequence] = exposure.X_BC.inverse() * exposure.p_BO;
+    if (target_in_frame_.size() > kFramesUnderWay) {
+      target_in_frame_.erase(std::next(target_in_frame_.begin()));
+    }
+  }
+
   void RunVisionThread() {
     linux_rt::MakeThreadYielding();
-    const hal::Status status =
-        vision::RunVision(*camera_, vision_, delay_, never_stop_,
-                          [this](const hal::Frame& frame, const vision::BallDetection& detection) {
-                            frames_.Keep(frame, detection);
-                          });
-    static_cast<void>(status);  // an orderly end, or a fault that the camera keeps the words for
+    try {
+      const hal::Status status =
+          vision::RunVision(*camera_, vision_, delay_, never_stop_,
+                            [this](const hal::Frame& frame, const vision::BallDetection& detection) {
+                              frames_.Keep(frame, detection);
+                            });
+      static_cast<void>(status);  // an orderly end, or a fault that the camera keeps the words for
+    } catch (...) {
+      vision_failure_ = std::current_exception();
+    }
     delay_.Close();
   }
 
@@ -184,6 +211,7 @@ class Run {
     servo::ServoLoop loop(servo_, *arm_, clock, mailbox_, ring_, meter_);
     const hal::Status status = loop.Run(EndNs());
     counters_ = loop.counters();
+    clock.RethrowFailure();
     return status;
   }
 
@@ -191,11 +219,11 @@ class Run {
     linux_rt::MonotonicClock monotonic;
     std::atomic<bool> done{false};
     hal::Status status;
+    RealPaceClock clock(*world_, monotonic, [&](std::int64_t now_ns) {
+      return delay_.HandOver(now_ns, /*wait=*/false, mailbox_);
+    });
     std::thread servo_thread([&] {
       realtime_missing_ = linux_rt::MakeThreadRealtime({});
-      RealPaceClock clock(*world_, monotonic, [&](std::int64_t now_ns) {
-        return delay_.HandOver(now_ns, /*wait=*/false, mailbox_);
-      });
       servo::ServoLoop loop(servo_, *arm_, clock, mailbox_, ring_, meter_);
       status = loop.Run(EndNs());
       counters_ = loop.counters();
@@ -207,6 +235,7 @@ class Run {
       progress_.Update(recorded_s_, hal::Name(mode_));
     }
     servo_thread.join();
+    clock.RethrowFailure();
     return status;
   }
 
@@ -215,10 +244,10 @@ class Run {
     s.scenario = scenario_.name;
     s.seed = scenario_.run.seed;
     s.pace = options_.pace == Pace::kReal ? "real" : "lockstep";
-    verdict_->Fill(s);
     s.frames = frames_.frames();
     s.frames_detected = frames_.detected();
     s.frames_lost = camera_->lost();
+    verdict_->Fill(s);
     s.ticks = counters_.ticks;
     s.overruns = counters_.overruns;
     s.missed_ticks = counters_.missed_ticks;
@@ -248,18 +277,21 @@ class Run {
       return;
     }
     progress_.Update(scenario_.run.duration_s, "drawing the pictures");
+    std::vector<OutputFile> files;
     if (frames_.frames() > 0) {
       const Eigen::Vector3d goal = servo_.config().feature.p_CO_C_star;
       for (const auto& [name, frame] :
            {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
-        folder_->Write(
-            name, DrawEyePicture(*frame, intrinsics_, radius_, target_in_frame_.at(frame->sequence), goal));
+        files.push_back(
+            {name, DrawEyePicture(*frame, intrinsics_, radius_, target_in_frame_.at(frame->sequence), goal)});
       }
     }
     if (options_.pictures) {
-      folder_->Write("bench.png", DrawBenchPicture(scene_, world_->Look(), camera_path_, target_path_));
+      files.push_back({"bench.png", DrawBenchPicture(scene_, world_->Look(), camera_path_.points(),
+                                                     target_path_.points())});
     }
-    folder_->Write("summary.json", ToJson(summary));  // last: where it is, the rest is too
+    files.push_back({"summary.json", ToJson(summary)});
+    folder_->Replace(files, kFileNames);
   }
 
   Scenario scenario_;
@@ -286,14 +318,16 @@ class Run {
   RecordHash hash_;
   FrameKeeper frames_;
   std::map<std::uint64_t, Eigen::Vector3d> target_in_frame_;  // p_CO_C by frame
-  std::vector<Eigen::Vector3d> camera_path_;
-  std::vector<Eigen::Vector3d> target_path_;
+  Path camera_path_;
+  Path target_path_;
   const std::atomic<bool> never_stop_{false};  // the vision thread ends when the camera closes
   servo::LoopCounters counters_;
   hal::Mode mode_ = hal::Mode::kBoot;  // of the last record
   double recorded_s_ = 0.0;            // and its time
   std::vector<std::string> realtime_missing_;
   double wall_time_s_ = 0.0;
+  std::exception_ptr failure_;  // what the run threw, and what the vision thread threw
+  std::exception_ptr vision_failure_;
 };
 
 }  // namespace

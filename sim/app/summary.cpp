@@ -80,7 +80,8 @@ std::string ToJson(const Summary& s) {
   json["servo"] = s.servo;
   json["git"] = s.git;
   json["version"] = s.version;
-  return json.dump(2) + "\n";
+  // A scenario's file may have any name.
+  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string ToTable(const Summary& s) {
@@ -106,7 +107,8 @@ std::string ToTable(const Summary& s) {
   table.Row("limit violations", fmt::format("{}", s.limit_violations));
   table.Row("faults", s.faults.empty() ? "none" : "");
   for (const FaultEvent& f : s.faults) {
-    table.Row("", fmt::format("{:.3f} s: {} ({}), see {}", f.t_s, f.name, f.detail, f.key));
+    table.Row("", fmt::format("{:.3f} s: {} ({}){}", f.t_s, f.name, f.detail,
+                              f.key.empty() ? "" : ", see " + f.key));
   }
   table.Row("servo tick",
             fmt::format("{:.1f} us median, {:.1f} us p99.9, {:.1f} us max",

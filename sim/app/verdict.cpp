@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace fovea::sim {
@@ -13,16 +14,7 @@ constexpr double kTickS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kWindowS = 0.5;      // final_* are over this last part of a run
 constexpr double kConvergedPx = 1.0;  // converged: no sample of it is further off
 constexpr double kConvergedM = 0.002;
-constexpr double kSettledShare = 0.02;    // settled: below this share of the first error, for good
-constexpr double kLimitTolerance = 1e-9;  // rounding is no violation
-
-double RootMeanSquare(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) {
-    sum += value * value;
-  }
-  return values.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(values.size()));
-}
+constexpr double kSettledShare = 0.02;  // settled: below this share of the first error, for good
 
 }  // namespace
 
@@ -30,12 +22,6 @@ Verdict::Verdict(const VerdictConfig& config)
     : config_(config),
       goal_px_(config.pinhole.f_px * config.p_CO_C_star.x() / config.p_CO_C_star.z(),
                config.pinhole.f_px * config.p_CO_C_star.y() / config.p_CO_C_star.z()) {}
-
-void Verdict::Use(const char* limit, double fraction) {
-  double& most = limits_[limit];
-  most = std::max(most, fraction);
-  violated_now_ = violated_now_ || fraction > 1.0 + kLimitTolerance;
-}
 
 void Verdict::AddTruth(const Truth& truth) {
   const Eigen::Vector3d p_CO_C = truth.X_BC.inverse() * truth.p_BO;
@@ -48,38 +34,56 @@ void Verdict::AddTruth(const Truth& truth) {
                              config_.pinhole.f_px * p_CO_C.y() / p_CO_C.z());
     sample.error_px = (px - goal_px_).norm();
   }
-  samples_.push_back(sample);
+  AddSample(sample);
 
-  violated_now_ = false;
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
     const double half = 0.5 * (joint.q_max - joint.q_min);
-    Use("joint_position", std::fabs(truth.q[i] - 0.5 * (joint.q_max + joint.q_min)) / half);
-    Use("joint_velocity", std::fabs(truth.dq[i]) / joint.dq_max);
-    Use("torque", std::fabs(truth.tau_cmd[i]) / joint.tau_max);
+    const auto note = [&](const char* limit, double fraction) {
+      motion_.Note(truth.stamp_ns, limit, std::fabs(fraction));
+    };
+    note("joint_position", (truth.q[i] - 0.5 * (joint.q_max + joint.q_min)) / half);
+    note("joint_velocity", truth.dq[i] / joint.dq_max);
+    note("torque", truth.tau_cmd[i] / joint.tau_max);
     if (tau_before_.size() > 0) {
-      Use("torque_rate", std::fabs(truth.tau_cmd[i] - tau_before_[i]) / (joint.dtau_max * kTickS));
+      note("torque_rate", (truth.tau_cmd[i] - tau_before_[i]) / (joint.dtau_max * kTickS));
     }
   }
-  Use("workspace", truth.X_BE.translation().norm() / config_.workspace_radius);
-  violations_ += violated_now_ ? 1U : 0U;
+  motion_.Note(truth.stamp_ns, "workspace", truth.X_BE.translation().norm() / config_.workspace_radius);
   contact_ticks_ += truth.contacts > 0 ? 1U : 0U;
   tau_before_ = truth.tau_cmd;
 }
 
+void Verdict::AddSample(const Sample& sample) {
+  if (!first_px_) {
+    first_px_ = sample.error_px;
+  }
+  window_.push_back(sample);
+  while (window_.front().t_s <= sample.t_s - kWindowS) {
+    window_.pop_front();
+  }
+  is_outside_ = !(sample.error_px <= kSettledShare * *first_px_);
+  if (is_outside_) {
+    last_outside_s_ = sample.t_s;
+  }
+  if (sample.t_s > 0.5 * config_.duration_s) {
+    second_half_px2_ += sample.error_px * sample.error_px;
+    ++second_half_samples_;
+  }
+}
+
 void Verdict::AddRecord(const hal::TickRecord& record) {
-  violated_now_ = false;
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config_.arm.joints[k];
-    Use("joint_acceleration", std::fabs(record.ddq_cmd[k]) / joint.ddq_max);
+    reference_.Note(record.stamp_ns, "joint_acceleration", std::fabs(record.ddq_cmd[k]) / joint.ddq_max);
     // Only where the reference runs on; it starts anew at every stop of the servo.
     const auto runs = [](hal::Mode mode) { return mode != hal::Mode::kBoot && mode != hal::Mode::kFault; };
     if (has_record_ && runs(before_.mode) && runs(record.mode)) {
-      Use("joint_jerk", std::fabs(record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * kTickS));
+      reference_.Note(record.stamp_ns, "joint_jerk",
+                      std::fabs(record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * kTickS));
     }
   }
-  violations_ += violated_now_ ? 1U : 0U;
   for (int i = 0; i < hal::kNumLimits; ++i) {
     const auto limit = static_cast<hal::Limit>(i);
     if ((record.limits_active & hal::Bit(limit)) != 0) {
@@ -101,26 +105,22 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
   has_record_ = true;
 }
 
-std::vector<Verdict::Sample> Verdict::Last(double duration_s) const {
-  const double from = samples_.back().t_s - duration_s;
-  const auto first =
-      std::find_if(samples_.begin(), samples_.end(), [from](const Sample& s) { return s.t_s > from; });
-  return {first, samples_.end()};
-}
-
 void Verdict::Fill(Summary& summary) const {
-  summary.limits = limits_;
-  summary.limit_violations = violations_;
+  summary.limits = motion_.most();
+  summary.limits.insert(reference_.most().begin(), reference_.most().end());
+  std::vector<std::int64_t> passed_ns;
+  std::set_union(motion_.passed_ns().begin(), motion_.passed_ns().end(), reference_.passed_ns().begin(),
+                 reference_.passed_ns().end(), std::back_inserter(passed_ns));
+  summary.limit_violations = passed_ns.size();
   summary.limit_ticks = limit_ticks_;
   summary.contact_ticks = contact_ticks_;
   summary.faults = faults_;
   summary.modes = modes_;
-  if (samples_.empty()) {
-    summary.verdict = "nothing was simulated";
+  if (window_.empty()) {
     return;
   }
-  if (std::isfinite(samples_.front().error_px)) {
-    summary.start_error_px = samples_.front().error_px;
+  if (std::isfinite(*first_px_)) {
+    summary.start_error_px = *first_px_;
   }
   if (config_.target_moves) {
     FillMoving(summary);
@@ -129,34 +129,34 @@ void Verdict::Fill(Summary& summary) const {
   }
   if (!summary.converged) {
     summary.verdict = WhyNot(summary);
+  } else if (summary.limit_violations > 0) {
+    summary.verdict = fmt::format("converged, but in {} ticks a limit was passed", summary.limit_violations);
   }
 }
 
 void Verdict::FillStill(Summary& summary) const {
-  std::vector<double> px, mm, lateral, depth;
+  double px2 = 0.0;
+  double lateral2 = 0.0;
+  double depth2 = 0.0;
   double worst_px = 0.0;
   double worst_m = 0.0;
-  for (const Sample& sample : Last(kWindowS)) {
-    px.push_back(sample.error_px);
-    mm.push_back(1e3 * sample.error_C.norm());
-    lateral.push_back(1e3 * sample.error_C.head<2>().norm());
-    depth.push_back(1e3 * sample.error_C.z());
+  for (const Sample& sample : window_) {
+    px2 += sample.error_px * sample.error_px;
+    lateral2 += sample.error_C.head<2>().squaredNorm();
+    depth2 += sample.error_C.z() * sample.error_C.z();
     worst_px = std::max(worst_px, sample.error_px);
     worst_m = std::max(worst_m, sample.error_C.norm());
   }
+  const auto n = static_cast<double>(window_.size());
   if (std::isfinite(worst_px)) {
-    summary.final_error_px_rms = RootMeanSquare(px);
+    summary.final_error_px_rms = std::sqrt(px2 / n);
   }
-  summary.final_error_mm = RootMeanSquare(mm);
-  summary.final_error_lateral_mm = RootMeanSquare(lateral);
-  summary.final_error_depth_mm = RootMeanSquare(depth);
+  summary.final_error_mm = 1e3 * std::sqrt((lateral2 + depth2) / n);
+  summary.final_error_lateral_mm = 1e3 * std::sqrt(lateral2 / n);
+  summary.final_error_depth_mm = 1e3 * std::sqrt(depth2 / n);
   summary.converged = worst_px <= kConvergedPx && worst_m <= kConvergedM && faults_.empty();
-
-  const double settled_px = kSettledShare * samples_.front().error_px;
-  const auto last_outside = std::find_if(samples_.rbegin(), samples_.rend(),
-                                         [&](const Sample& s) { return !(s.error_px <= settled_px); });
-  if (last_outside != samples_.rbegin() && last_outside != samples_.rend()) {
-    summary.settle_time_s = last_outside->t_s + kTickS;
+  if (!is_outside_ && last_outside_s_) {
+    summary.settle_time_s = *last_outside_s_ + kTickS;
   }
   if (summary.converged) {
     summary.verdict = "converged: the target stands at its goal";
@@ -164,14 +164,8 @@ void Verdict::FillStill(Summary& summary) const {
 }
 
 void Verdict::FillMoving(Summary& summary) const {
-  std::vector<double> px;
-  bool always_before_camera = true;
-  for (const Sample& sample : Last(0.5 * samples_.back().t_s)) {
-    px.push_back(sample.error_px);
-    always_before_camera = always_before_camera && std::isfinite(sample.error_px);
-  }
-  if (always_before_camera) {
-    summary.tracking_error_px_rms = RootMeanSquare(px);
+  if (second_half_samples_ > 0 && std::isfinite(second_half_px2_)) {
+    summary.tracking_error_px_rms = std::sqrt(second_half_px2_ / static_cast<double>(second_half_samples_));
     summary.converged = *summary.tracking_error_px_rms <= config_.tracking_bound_px && faults_.empty();
   }
   if (summary.converged) {
@@ -183,11 +177,18 @@ void Verdict::FillMoving(Summary& summary) const {
 std::string Verdict::WhyNot(const Summary& summary) const {
   if (!faults_.empty()) {
     const FaultEvent& f = faults_.front();
-    return fmt::format("not converged: fault {} at {:.3f} s ({}), see {}", f.name, f.t_s, f.detail, f.key);
+    return fmt::format("not converged: fault {} at {:.3f} s ({}){}", f.name, f.t_s, f.detail,
+                       f.key.empty() ? "" : ", see " + f.key);
   }
-  if (!ever_known_) {
+  if (!ever_known_ && summary.frames_detected == 0) {
     return "not converged: the target was never found in view; the arm held still (see target.position, "
            "arm.q_start, [vision])";
+  }
+  if (!ever_known_) {
+    return fmt::format(
+        "not converged: the target was found in {} frames, too few to be sure of it (see run.duration_s, "
+        "servo.accepted_min)",
+        summary.frames_detected);
   }
   if (!modes_.empty() && modes_.back().mode == hal::Name(hal::Mode::kHold)) {
     if (modes_.back().reason == hal::Name(hal::HoldReason::kGoalUnreachable)) {

@@ -1,10 +1,15 @@
 // Judges a run against the simulator's truth.
 #pragma once
 
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "fovea/hal/record.hpp"
 #include "fovea/model/arm_model.hpp"
+#include "sim/app/limit_book.hpp"
 #include "sim/app/summary.hpp"
 #include "sim/render/pinhole.hpp"
 #include "sim/world/world.hpp"
@@ -17,9 +22,12 @@ struct VerdictConfig {
   Eigen::Vector3d p_CO_C_star = Eigen::Vector3d::Zero();  // [m]
   bool target_moves = false;
   double tracking_bound_px = 3.0;
+  double duration_s = 8.0;         // of the run
   double workspace_radius = 0.85;  // [m]
 };
 
+// AddTruth and AddRecord may be called by two threads: neither touches what the other does. Its size does not
+// grow with the length of the run, but for ticks in which a limit was passed.
 class Verdict {
  public:
   explicit Verdict(const VerdictConfig& config);
@@ -27,7 +35,8 @@ class Verdict {
   void AddTruth(const Truth& truth);
   void AddRecord(const hal::TickRecord& record);
 
-  // Fills in everything that follows from truth and records.
+  // When both are done: fills in everything that follows from truth and records. `summary` already says how
+  // many frames there were.
   void Fill(Summary& summary) const;
 
  private:
@@ -36,22 +45,28 @@ class Verdict {
     double error_px = 0.0;                              // infinite when the target is behind the camera
     Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal less truth, in axes of C [m]
   };
-  void Use(const char* limit, double fraction);
+  void AddSample(const Sample& sample);
   void FillStill(Summary& summary) const;
   void FillMoving(Summary& summary) const;
   [[nodiscard]] std::string WhyNot(const Summary& summary) const;
-  // The samples of the last `share_s` seconds of the run.
-  [[nodiscard]] std::vector<Sample> Last(double duration_s) const;
 
-  VerdictConfig config_;
-  Eigen::Vector2d goal_px_;
-  std::vector<Sample> samples_;
-  std::map<std::string, double> limits_;
-  std::uint64_t violations_ = 0;
-  bool violated_now_ = false;
-  std::map<std::string, std::uint64_t> limit_ticks_;
+  const VerdictConfig config_;
+  const Eigen::Vector2d goal_px_;
+
+  // from the truth
+  LimitBook motion_;
+  std::deque<Sample> window_;       // of the last half second
+  std::optional<double> first_px_;  // error at the start
+  bool is_outside_ = false;         // the last sample was not settled
+  std::optional<double> last_outside_s_;
+  double second_half_px2_ = 0.0;  // sum of squares
+  std::uint64_t second_half_samples_ = 0;
   std::uint64_t contact_ticks_ = 0;
   Eigen::VectorXd tau_before_;
+
+  // from the records
+  LimitBook reference_;
+  std::map<std::string, std::uint64_t> limit_ticks_;
   hal::TickRecord before_;
   bool has_record_ = false;
   bool ever_known_ = false;

@@ -23,17 +23,28 @@ SimCamera::~SimCamera() {
 void SimCamera::Expose(Exposure exposure) {
   {
     const std::lock_guard lock(mutex_);
-    const auto waiting = std::count_if(jobs_.begin(), jobs_.end(),
-                                       [](const auto& job) { return job->progress == Progress::kWaiting; });
-    if (static_cast<std::size_t>(waiting) >= config_.queue) {
-      jobs_.erase(std::find(jobs_.begin(), jobs_.end(), NextWaiting()));
-      ++lost_;
+    if (jobs_.size() >= config_.queue) {
+      LoseOldest();
     }
     auto job = std::make_shared<Job>();
     job->exposure = std::move(exposure);
     jobs_.push_back(std::move(job));
   }
   changed_.notify_all();
+}
+
+// What is being drawn cannot be taken out of a painter's hands.
+void SimCamera::LoseOldest() {
+  const auto oldest = std::find_if(jobs_.begin(), jobs_.end(),
+                                   [](const auto& job) { return job->progress != Progress::kDrawing; });
+  if (oldest == jobs_.end()) {
+    return;
+  }
+  if ((*oldest)->progress == Progress::kDone) {
+    spare_buffers_.push_back(std::move((*oldest)->bgr));
+  }
+  jobs_.erase(oldest);
+  ++lost_;
 }
 
 void SimCamera::Close() {

@@ -34,7 +34,8 @@ struct SimCameraConfig {
   int width_px = 640;
   int height_px = 480;
   std::int64_t exposure_ns = 5'000'000;
-  std::size_t queue = 2;  // exposures that may wait; when more come, the oldest is lost, as in a real camera
+  // Exposures that may wait to be drawn and taken; when more come, the oldest is lost, as in a real camera.
+  std::size_t queue = 2;
 };
 
 class SimCamera final : public hal::Camera {
@@ -62,6 +63,7 @@ class SimCamera final : public hal::Camera {
   };
 
   hal::Status DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept override;
+  void LoseOldest();
   void Work(const Painter& painter);
   void DrawUntilClosed(const Painter& painter);
   [[nodiscard]] std::shared_ptr<Job> NextWaiting() const;

@@ -77,12 +77,6 @@ class Reader {
     link.joint = joint.type == urdf::Joint::PRISMATIC ? SimJointKind::kPrismatic : SimJointKind::kRevolute;
     link.dof = robot_.num_dofs++;
     link.axis_L = Eigen::Vector3d(joint.axis.x, joint.axis.y, joint.axis.z).normalized();
-    if (joint.limits) {
-      const bool endless = joint.type == urdf::Joint::CONTINUOUS;
-      link.q_min = endless ? -HUGE_VAL : joint.limits->lower;
-      link.q_max = endless ? HUGE_VAL : joint.limits->upper;
-      link.tau_max = joint.limits->effort;
-    }
     if (joint.dynamics) {
       link.viscous = joint.dynamics->damping;
       link.coulomb = joint.dynamics->friction;

@@ -31,9 +31,6 @@ struct SimLink {
   int dof = -1;  // index of the joint among the moving ones, base to tip
   Eigen::Isometry3d X_PL = Eigen::Isometry3d::Identity();  // at joint position 0
   Eigen::Vector3d axis_L = Eigen::Vector3d::UnitZ();
-  double q_min = 0.0;
-  double q_max = 0.0;
-  double tau_max = 0.0;
   double viscous = 0.0;                                      // friction [Nm s/rad]
   double coulomb = 0.0;                                      // friction [Nm]
   double mass = 0.0;                                         // [kg]

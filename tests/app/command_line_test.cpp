@@ -87,10 +87,20 @@ TEST_F(CommandLineTest, ValuesThatDoNotFitEachOther) {
               AllOf(HasSubstr("servo.goal"), HasSubstr("from 0.12 to 1.2 m")));
   EXPECT_THAT(Refusal({"ball", "--set", "servo.stale_s=0.7"}),
               AllOf(HasSubstr("servo.stale_s = 0.7"), HasSubstr("servo.coast_s, which is 0.6 s")));
+  EXPECT_THAT(Refusal({"ball", "--set", "camera.latency_ms=200"}),
+              AllOf(HasSubstr("camera.latency_ms = 200"), HasSubstr("servo.stale_s = 0.15 s")));
+  EXPECT_THAT(Refusal({"ball", "--set", "camera.exposure_ms=40"}),
+              AllOf(HasSubstr("camera.exposure_ms = 40"), HasSubstr("33.3 ms")));
+  EXPECT_THAT(Refusal({"ball", "--set", "faults.camera_outage_s=[3, 1]"}),
+              HasSubstr("ends before it begins"));
+  EXPECT_THAT(Refusal({"ball", "--set", "safety.workspace_radius=0.7"}),
+              AllOf(HasSubstr("arm.q_start"), HasSubstr("safety.workspace_radius = 0.7 m")));
 }
 
 TEST_F(CommandLineTest, TomlThatIsNone) {
   EXPECT_THAT(Refusal({Write("mine.toml", "[camera\nrate_hz = 30\n")}), HasSubstr("mine.toml:1"));
+  EXPECT_THAT(Refusal({Write("mine.toml", "[[target]]\ndiameter = 0.1\n")}),
+              AllOf(HasSubstr("mine.toml:1"), HasSubstr("a section is written [name]")));
 }
 
 TEST_F(CommandLineTest, BrokenUrdf) {
@@ -117,6 +127,26 @@ TEST_F(CommandLineTest, OutputFolderThatCannotBeWritten) {
 TEST_F(CommandLineTest, NoEgl) {
   EXPECT_THAT(Refusal({"ball"}, {"__EGL_VENDOR_LIBRARY_DIRS=/nonexistent"}),
               AllOf(HasSubstr("EGL"), HasSubstr("libgl1-mesa-dri")));
+}
+
+TEST_F(CommandLineTest, NobodyReadsWhatItSays) {
+  const auto shell = [&](const std::string& redirection) {
+    return RunProgram({"sh", "-c",
+                       std::string("\"$0\" run ball --set run.duration_s=0.1 --no-report --out \"$1\" ") +
+                           redirection,
+                       FOVEA_SIM_PROGRAM, Out()})
+        .exit_code;
+  };
+  EXPECT_EQ(shell("2>/dev/full"), 1) << "the progress is lost, the run is not";
+  EXPECT_EQ(shell("2>&-"), 1);
+  EXPECT_EQ(shell(">/dev/full"), 2) << "the result is lost, and that is said";
+}
+
+TEST_F(CommandLineTest, AScenarioOfAnyName) {
+  const std::string file = Write("b\xFF ll.toml", "[run]\nduration_s = 0.1\n");
+  const ProgramResult result = Sim({"run", file, "--json", "--no-report", "--out", Out()});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_TRUE(nlohmann::json::accept(result.out));
 }
 
 TEST_F(CommandLineTest, WrongUsage) {

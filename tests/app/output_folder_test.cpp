@@ -24,19 +24,26 @@ std::string Read(const fs::path& path) {
 TEST(OutputFolderTest, WritesReplacesAndLeavesNothingElse) {
   const test::TempFolder temp;
   const OutputFolder folder(temp.path() / "a" / "b");
-  folder.Write("x.json", "one");
-  folder.Write("x.json", "two");
+  const std::vector<std::string> names{"x.json", "y.png"};
+  folder.Replace({{"y.png", "picture"}, {"x.json", "one"}}, names);
+  std::ofstream(folder.path() / "mine.txt") << "a person's own";
+  folder.Replace({{"x.json", "two"}}, names);
   EXPECT_EQ(Read(folder.path() / "x.json"), "two");
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 1);
+  EXPECT_FALSE(fs::exists(folder.path() / "y.png")) << "a picture of another run beside this one's figures";
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
 }
 
-TEST(OutputFolderTest, AWriteThatFailsLeavesTheOldFile) {
+TEST(OutputFolderTest, AWriteThatFailsLeavesTheOldFiles) {
   const test::TempFolder temp;
   const OutputFolder folder(temp.path());
-  folder.Write("x.json", "one");
-  fs::create_directory(temp.path() / ".x.json.partial");  // the file beside it cannot be made
-  EXPECT_THROW(folder.Write("x.json", "two"), config::InputError);
+  const std::vector<std::string> names{"a.png", "b.png", "x.json"};
+  folder.Replace({{"a.png", "one"}, {"x.json", "one"}}, names);
+  fs::create_directory(temp.path() / "b.png");
+  EXPECT_THROW(folder.Replace({{"a.png", "two"}, {"b.png", "two"}, {"x.json", "two"}}, names),
+               config::InputError);
+  EXPECT_EQ(Read(temp.path() / "a.png"), "one");
   EXPECT_EQ(Read(temp.path() / "x.json"), "one");
+  EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 3);
 }
 
 TEST(OutputFolderTest, AFolderThatCannotBeIsRefusedAtOnce) {

@@ -24,6 +24,7 @@ class VerdictTest : public testing::Test {
   // A run of `duration_s` in which the target is `offset(t)` off its goal, in axes of C [m].
   Summary Judge(double duration_s, const std::function<Eigen::Vector3d(double)>& offset,
                 const std::function<void(Truth&)>& change = {}) {
+    config_.duration_s = duration_s;
     Verdict verdict(config_);
     const auto ticks = static_cast<std::int64_t>(duration_s * 1e3);
     for (std::int64_t k = 0; k <= ticks; ++k) {

@@ -47,13 +47,16 @@ TEST(RealPace, ConvergesAndReportsItsOverruns) {
   PrintResidual(s);
   std::cout << s.overruns << " overruns and " << s.missed_ticks << " missed of " << s.ticks << " ticks\n";
   EXPECT_EQ(s.pace, "real");
-  // How late a shared machine wakes the loop is no property of the code: with lost time the arm may hold, but
-  // no limit is ever passed, and every tick is accounted for.
-  EXPECT_EQ(s.ticks + s.missed_ticks, 8000U);
+  // Every tick is accounted for, but for the time that passes before the first.
+  EXPECT_LE(s.ticks + s.missed_ticks, 8000U);
+  EXPECT_GE(s.ticks + s.missed_ticks, 7900U);
   EXPECT_EQ(s.limit_violations, 0U);
-  if (s.missed_ticks < 80) {
-    EXPECT_TRUE(s.converged);
+  if (s.missed_ticks >= 80) {
+    GTEST_SKIP()
+        << "this machine is too busy for real time: how late it wakes the loop is no property of the code";
   }
+  EXPECT_TRUE(s.converged);
+  ExpectSound(s);
 }
 
 }  // namespace

@@ -56,13 +56,68 @@ TEST_F(ServoLoopTest, MissesAreCountedAndToldAndTheGridStays) {
   }
 }
 
-TEST_F(ServoLoopTest, AnArmThatPacesItIsNotWaitedForTwice) {
-  test::FakeArm pacing(7, /*paces_loop=*/true);
-  pacing.state.q = test::Panda().model.q_ready;
-  ServoLoop loop(task_, pacing, clock_, mailbox_, recorder_, probe_);
-  EXPECT_TRUE(loop.Run(5 * hal::kNsPerMs).ok());
+// The last deadline is the end: what passes after it is no miss.
+TEST_F(ServoLoopTest, NothingIsMissedBeyondTheEnd) {
+  clock_.late_ns = {0, 0, 0, 0, 0, 0, 0, 0, 1'500'000, 3'200'000};
+  EXPECT_TRUE(loop_.Run(10 * hal::kNsPerMs).ok());
+  EXPECT_EQ(loop_.counters().ticks + loop_.counters().missed_ticks, 10U);
+}
+
+// An arm with a clock of its own: the loop ticks when it answers, however its period compares with ours.
+class PacedLoopTest : public ServoLoopTest {
+ protected:
+  PacedLoopTest() {
+    pacing_.state.q = test::Panda().model.q_ready;
+    pacing_.before_read = [this] {
+      clock_.now_ns += period_ns_;
+      if (pacing_.read_status.ok()) {
+        pacing_.state.stamp_ns += period_ns_;
+        ++pacing_.state.sequence;
+      }
+    };
+  }
+  std::int64_t period_ns_ = hal::kNsPerMs;
+  test::FakeArm pacing_{7, /*paces_loop=*/true};
+  ServoLoop paced_{task_, pacing_, clock_, mailbox_, recorder_, probe_};
+};
+
+TEST_F(PacedLoopTest, TicksAtTheArmsPaceAndWaitsForNothingElse) {
+  for (const std::int64_t period_ns : {999'000, 1'000'000, 1'000'050}) {
+    period_ns_ = period_ns;
+    EXPECT_TRUE(paced_.Run(clock_.now_ns + 50'000 * period_ns).ok());
+    EXPECT_EQ(paced_.counters().missed_ticks, 0U) << period_ns;
+  }
   EXPECT_TRUE(clock_.deadlines_ns.empty());
-  EXPECT_EQ(loop.counters().ticks, 5U);
+  EXPECT_EQ(paced_.counters().ticks, 150'000U);
+}
+
+TEST_F(PacedLoopTest, AStallIsSeenInTheStampsOfTheArm) {
+  period_ns_ = 999'000;
+  int reads = 0;
+  const auto usual = pacing_.before_read;
+  pacing_.before_read = [&] {
+    if (++reads == 30'000) {
+      clock_.now_ns += 15 * period_ns_;
+      pacing_.state.stamp_ns += 15 * period_ns_;
+    }
+    usual();
+  };
+  EXPECT_TRUE(paced_.Run(40'000 * period_ns_).ok());
+  EXPECT_EQ(paced_.counters().overruns, 1U);
+  EXPECT_EQ(paced_.counters().missed_ticks, 15U);
+  EXPECT_EQ(recorder_.records[29'999].missed_ticks, 15);
+}
+
+TEST_F(PacedLoopTest, ASilentArmIsTickedForAndAnArmThatIsGoneDoesNotSpinTheLoop) {
+  EXPECT_TRUE(paced_.Run(10 * hal::kNsPerMs).ok());
+  pacing_.read_status = hal::Status(hal::StatusCode::kTimeout);
+  EXPECT_TRUE(paced_.Run(15 * hal::kNsPerMs).ok());
+  EXPECT_EQ(paced_.counters().arm_read_errors, 5U);
+  pacing_.read_status = hal::Status(hal::StatusCode::kDisconnected);
+  pacing_.before_read = {};  // it answers at once
+  EXPECT_TRUE(paced_.Run(50 * hal::kNsPerMs).ok());
+  EXPECT_EQ(paced_.counters().arm_read_errors, 40U);
+  EXPECT_EQ(recorder_.records.back().mode, hal::Mode::kFault);
 }
 
 TEST_F(ServoLoopTest, HandsTheNewestFeatureOnOnce) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "fovea/model/kinematics.hpp"
 #include "support/panda.hpp"
 #include "support/random_states.hpp"
 
@@ -55,17 +56,26 @@ TEST(PlanStopTest, AtRestItIsNothing) {
   EXPECT_EQ(StopTravel(stop, 0.0, 0.0, 1.0), 0.0);
 }
 
-TEST(StopsInsideTest, RefusesWhatCannotStopAndTakesWhatCan) {
+TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
   const ServoConfig config = test::PandaConfig();
   Reference reference{test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
-  EXPECT_TRUE(StopsInside(config, reference, reference.q, 0.66));
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, 0.66), 0U);
   // Joint 6 half a degree before its margin, at 1 rad/s.
   const model::Joint& joint = config.arm.joints[5];
   reference.q[5] = joint.q_max - config.guard.joint_position_margin - 0.01;
   reference.dq[5] = 1.0;
-  EXPECT_FALSE(StopsInside(config, reference, reference.q, 0.66));
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, 0.66), hal::Bit(hal::Limit::kJointPosition));
   reference.dq[5] = -1.0;
-  EXPECT_TRUE(StopsInside(config, reference, reference.q, 0.66));
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, 0.66), 0U);
+  // A workspace that ends a centimetre before the end effector, towards which joint 2 leans out.
+  reference = {test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, reference.q, poses);
+  const double radius = poses.X_BE.p.norm();
+  ServoConfig narrow = config;
+  narrow.guard.workspace_radius = radius + narrow.guard.workspace_margin + 0.01;
+  reference.dq[3] = 1.0;  // stretches the elbow
+  EXPECT_EQ(LimitsPassed(narrow, reference, reference.q, radius), hal::Bit(hal::Limit::kWorkspace));
 }
 
 }  // namespace

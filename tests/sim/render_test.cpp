@@ -1,7 +1,7 @@
 // The renderer against the truth: what the detector measures in a rendered picture is where the ball was put.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <Eigen/LU>
 #include <iostream>
 #include <opencv2/imgproc.hpp>
 #include <random>
@@ -64,6 +64,7 @@ TEST_F(RenderTest, ABallIsSeenWhereItIs) {
   double centre2 = 0.0;
   double worst_px = 0.0;
   double worst_depth = 0.0;
+  double chi2 = 0.0;
   constexpr int kCount = 40;
   for (int i = 0; i < kCount; ++i) {
     const double z = uniform(0.22, 0.40);
@@ -77,10 +78,12 @@ TEST_F(RenderTest, ABallIsSeenWhereItIs) {
     centre2 += error_px * error_px;
     worst_px = std::max(worst_px, error_px);
     worst_depth = std::max(worst_depth, std::fabs(d.s.norm() / s.norm() - 1.0));
+    chi2 += (d.s - s).dot(d.cov_s.inverse() * (d.s - s));
   }
   const double rms_px = std::sqrt(centre2 / kCount);
   std::cout << "centre " << rms_px << " px rms, worst " << worst_px << " px; distance, worst "
-            << 100 * worst_depth << " %\n";
+            << 100 * worst_depth << " %; chi2/3 " << chi2 / kCount / 3 << "\n";
+  EXPECT_LT(chi2 / kCount / 3, 1.5) << "the covariance promises too much";
   EXPECT_LT(rms_px, 0.06);
   EXPECT_LT(worst_px, 0.2);
   EXPECT_LT(worst_depth, 0.005);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <vector>
 
 #include "fovea/hal/arm.hpp"
@@ -20,10 +21,14 @@ class FakeArm final : public hal::Arm {
   }
   hal::ArmState state;
   hal::Status read_status;
+  std::function<void()> before_read;  // what the arm does while it is waited for; may be empty
   std::vector<hal::ArmCommand> written;
 
  private:
   hal::Status DoRead(hal::ArmState& out) noexcept override {
+    if (before_read) {
+      before_read();
+    }
     if (read_status.ok()) {
       out = state;
     }

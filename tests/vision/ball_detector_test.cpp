@@ -84,8 +84,10 @@ TEST(BallDetectorTest, ShadedBalls) {
   picture.shade = 0.7;
   const Errors errors = Measure(picture, 60);
   EXPECT_EQ(errors.found, 60);
-  EXPECT_LT(std::sqrt(errors.lateral2 / 120), 0.1);
-  EXPECT_LT(std::sqrt(errors.depth2 / 60), 0.004);
+  EXPECT_LT(std::sqrt(errors.lateral2 / 120), 0.05);
+  EXPECT_LT(errors.worst_px, 0.15);
+  EXPECT_LT(std::sqrt(errors.depth2 / 60), 0.001);
+  EXPECT_LT(errors.chi2 / 180, 1.5) << "the covariance promises too much";
 }
 
 TEST(BallDetectorTest, NoisyPictures) {
@@ -94,8 +96,11 @@ TEST(BallDetectorTest, NoisyPictures) {
   picture.grid = 4;
   const Errors errors = Measure(picture, 60);
   EXPECT_EQ(errors.found, 60);
-  EXPECT_LT(std::sqrt(errors.lateral2 / 120), 0.1);
-  EXPECT_LT(std::sqrt(errors.depth2 / 60), 0.005);
+  EXPECT_LT(std::sqrt(errors.lateral2 / 120), 0.04);
+  EXPECT_LT(errors.worst_px, 0.15);
+  EXPECT_LT(std::sqrt(errors.depth2 / 60), 0.001);
+  EXPECT_LT(errors.chi2 / 180, 1.5) << "the covariance promises too much";
+  EXPECT_GT(errors.chi2 / 180, 0.05) << "the covariance says nothing";
 }
 
 TEST(BallDetectorTest, GrayPictures) {

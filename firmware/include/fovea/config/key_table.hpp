@@ -34,7 +34,6 @@ class KeyTable {
   // A list of `size_min` to `size_max` numbers.
   void Numbers(std::string name, std::vector<double>& field, std::size_t size_min, std::size_t size_max,
                double min, double max, std::string unit, std::string meaning);
-  void Texts(std::string name, std::vector<std::string>& field, std::string meaning);
 
   // Sets one field, or throws InputError and leaves it: unknown key (with the nearest known one), wrong
   // kind, out of range.

@@ -9,8 +9,7 @@
 
 namespace fovea::config {
 
-using Value =
-    std::variant<bool, std::int64_t, double, std::string, std::vector<double>, std::vector<std::string>>;
+using Value = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
 
 struct Setting {
   std::string key;  // dotted, e.g. "camera.rate_hz"

@@ -63,7 +63,8 @@ struct Prediction {
 };
 
 // Takes in `measurement` (null: none came) and predicts for `now_ns` with today's camera pose `X_BC`.
-// A measurement that names no sphere, or whose stamp the history does not reach, is left out.
+// A measurement that names no sphere, whose stamp the history does not reach, or that was not yet true at
+// `now_ns` is left out.
 // Real-time: yes.
 [[nodiscard]] Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::Pose& X_BC,
                                  const hal::FeatureMeasurement* measurement, PredictState& state) noexcept;

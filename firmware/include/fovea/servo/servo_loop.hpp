@@ -18,7 +18,7 @@ namespace fovea::servo {
 struct LoopCounters {
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0;      // ticks that began a whole period or more late
-  std::uint64_t missed_ticks = 0;  // deadlines that passed without a tick
+  std::uint64_t missed_ticks = 0;  // periods that passed without a tick
   std::uint64_t arm_read_errors = 0;
   std::uint64_t arm_write_errors = 0;
 };
@@ -29,9 +29,11 @@ class ServoLoop {
   ServoLoop(ServoTask& task, hal::Arm& arm, hal::Clock& clock, hal::FeatureMailbox& features,
             hal::Recorder& recorder, hal::TickProbe& probe) noexcept;
 
-  // Runs ticks at start, start + 1 ms, ... on the clock, until `end_ns` or Stop or the clock closes.
-  // The grid is kept: a tick that comes late is counted, what it missed is told to the task, and the next
-  // deadline is the next point of the grid. Real-time: yes.
+  // Runs ticks until `end_ns` or Stop or the clock closes. Real-time: yes.
+  // By the clock: at start, start + 1 ms, ... The grid is kept: a tick that comes late is counted, what it
+  // missed is told to the task, and the next deadline is the next point of the grid.
+  // By an arm that paces the loop: one tick for each state, or each time that it says none came; ticks are
+  // missed where the states' stamps say so.
   [[nodiscard]] hal::Status Run(std::int64_t end_ns) noexcept;
 
   // From any thread: Run returns after the tick in hand.
@@ -40,9 +42,11 @@ class ServoLoop {
   void Ask(Request request) noexcept { request_.store(request, std::memory_order_relaxed); }
 
   [[nodiscard]] const LoopCounters& counters() const noexcept { return counters_; }
-  [[nodiscard]] const ServoOutputs& last_outputs() const noexcept { return outputs_; }
 
  private:
+  [[nodiscard]] hal::Status RunByClock(std::int64_t end_ns) noexcept;
+  [[nodiscard]] hal::Status RunByArm(std::int64_t end_ns) noexcept;
+  void CountMissed(std::int32_t missed_ticks) noexcept;
   void Tick(std::int32_t missed_ticks) noexcept;
 
   ServoTask& task_;

@@ -76,7 +76,9 @@ struct ServoState {
 
   // motion law and clamp
   model::VecN tau;
-  bool braked = false;
+  model::VecN tau_before;  // the command of the tick before
+  bool give_up = false;    // in Fault: no torque any more
+  bool braked = false;     // and the brakes, once it is gone
 };
 
 class ServoTask {

@@ -7,6 +7,7 @@
 
 #include <array>
 
+#include "fovea/hal/events.hpp"
 #include "fovea/model/types.hpp"
 #include "fovea/servo/reference.hpp"
 #include "fovea/servo/servo_config.hpp"
@@ -31,11 +32,11 @@ struct JointStop {
 // How far the joint goes until `t` seconds into the stop. Real-time: yes.
 [[nodiscard]] double StopTravel(const JointStop& stop, double dq, double ddq, double t) noexcept;
 
-// Whether a stop from `reference` stays inside the joints' range and inside the workspace, each with its
-// margin; what is already outside may only come back. `radius_now` is |p_BE| of the reference before, and
-// `q_now` its joints. Real-time: yes, at most kStopSamples poses.
+// The limits that a stop from `reference` would pass: the joints' range or the workspace, each with its
+// margin; 0 when it stays inside both. What is already outside may only come back. `radius_now` is |p_BE| of
+// the reference before, and `q_now` its joints. Real-time: yes, at most kStopSamples poses.
 inline constexpr int kStopSamples = 12;
-[[nodiscard]] bool StopsInside(const ServoConfig& config, const Reference& reference,
-                               const model::VecN& q_now, double radius_now) noexcept;
+[[nodiscard]] hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference,
+                                         const model::VecN& q_now, double radius_now) noexcept;
 
 }  // namespace fovea::servo

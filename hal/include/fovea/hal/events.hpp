@@ -59,7 +59,7 @@ const char* Name(HoldReason reason) noexcept;
 const char* Name(Fault fault) noexcept;
 const char* Name(Limit limit) noexcept;
 
-// The configuration key that sets the threshold; static storage.
+// The configuration key that sets the threshold, "" when none does; static storage.
 const char* Key(Fault fault) noexcept;
 const char* Key(Limit limit) noexcept;
 

@@ -46,7 +46,7 @@ class FeatureMailbox final : public FeatureSink {
  public:
   FeatureMailbox() noexcept = default;
 
-  // A measurement older than one put before is dropped, so what Take sees never goes back in time.
+  // Replaces what was put before. Cameras deliver in order; who takes a measurement judges its stamp.
   void Put(const FeatureMeasurement& measurement) noexcept override;
 
   // True, with the newest measurement in `measurement`, when one came since the last Take; else false, and
@@ -58,8 +58,7 @@ class FeatureMailbox final : public FeatureSink {
   static constexpr std::uint8_t kSlotMask = 0x03;
 
   std::array<FeatureMeasurement, 3> slots_{};
-  std::uint8_t write_slot_ = 0;               // the writer's own
-  std::int64_t newest_stamp_ns_ = INT64_MIN;  // the writer's own
+  std::uint8_t write_slot_ = 0;  // the writer's own
   alignas(64) std::atomic<std::uint8_t> middle_{1};
   alignas(64) std::uint8_t read_slot_ = 2;  // the reader's own
 };

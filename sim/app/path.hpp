@@ -1,0 +1,35 @@
+// Where something went, for a picture: evenly in time, and never more points than a picture can show.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace fovea::sim {
+
+class Path {
+ public:
+  // Called once per millisecond of the run, in order; keeps what the picture needs.
+  void Add(std::int64_t stamp_ns, const Eigen::Vector3d& p_B) {
+    if (stamp_ns % step_ns_ != 0) {
+      return;
+    }
+    points_.push_back(p_B);
+    if (points_.size() > kMostPoints) {
+      for (std::size_t i = 0; 2 * i < points_.size(); ++i) {
+        points_[i] = points_[2 * i];
+      }
+      points_.resize((points_.size() + 1) / 2);
+      step_ns_ *= 2;
+    }
+  }
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& points() const { return points_; }
+
+ private:
+  static constexpr std::size_t kMostPoints = 4000;
+  std::int64_t step_ns_ = 16'000'000;  // between points; doubled when there are too many
+  std::vector<Eigen::Vector3d> points_;
+};
+
+}  // namespace fovea::sim
