@@ -114,7 +114,7 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
 void AddVisionKeys(VisionSettings& settings, KeyTable& keys) {
   vision::BallDetectorConfig& c = settings.config;
   keys.Choice("vision.method", settings.method, {"colour", "gray"},
-              "search by back-projection of the target's colour, or in the gray image");
+              "search by the target's colour, or for what is round in the gray image, of whatever colour");
   keys.Number("vision.hue_deg", c.finder.hue_deg, 0.0, 360.0, "deg",
               "the target's hue: 0 red, 120 green, 240 blue");
   keys.Number("vision.hue_width_deg", c.finder.hue_width_deg, 1.0, 90.0, "deg", "its standard deviation");
@@ -122,7 +122,7 @@ void AddVisionKeys(VisionSettings& settings, KeyTable& keys) {
   keys.Number("vision.blur_sigma_px", c.finder.blur_sigma_px, 0.1, 10.0, "px",
               "blur before the search, at half size");
   keys.Number("vision.canny_threshold", c.finder.canny_threshold, 1.0, 1000.0, "",
-              "of edges that vote for circles");
+              "of edges that vote for circles; higher by itself in a picture full of them");
   keys.Number("vision.votes", c.finder.votes, 1.0, 1000.0, "", "a circle needs so many");
   keys.Number("vision.radius_min_px", c.finder.radius_min_px, 4.0, 500.0, "px",
               "smallest circle that is searched");

@@ -1,5 +1,6 @@
 #include "fovea/servo/servo_task.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fovea/servo/clamp_torque.hpp"
@@ -179,7 +180,8 @@ void ServoTask::MoveReference() noexcept {
                        state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
                        Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
                            config_.law.unreachable_progress;
-  state_.blocked_ns = blocked ? state_.blocked_ns + hal::kTickPeriodNs : 0;
+  // Noise lets it through for a tick now and then: what counts is how often it is kept.
+  state_.blocked_ns = std::max<std::int64_t>(state_.blocked_ns + (blocked ? 1 : -1) * hal::kTickPeriodNs, 0);
 }
 
 void ServoTask::ComputeTorque() noexcept {

@@ -1,6 +1,10 @@
 // The arrows of the design point one way, proved from what each file includes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
+#include <ostream>
+
 #include "arch/source_tree.hpp"
 
 namespace fovea {
@@ -12,6 +16,8 @@ struct Rule {
   const char* allowed;
   const char* why;
 };
+
+void PrintTo(const Rule& rule, std::ostream* out) { *out << rule.folder; }
 
 // Headers of the standard library have neither folder nor extension.
 const std::regex kStandard("[a-z_]+");
@@ -43,21 +49,39 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"firmware/model", "(fovea/(hal|model)/|Eigen/).*", "the model sees hal and Eigen"},
         Rule{"firmware/include/fovea/features", "(fovea/(hal|model|features)/|Eigen/).*",
              "features see hal, model and Eigen"},
-        Rule{"firmware/features", "(fovea/(hal|model|features)/|Eigen/).*", "features see hal, model and Eigen"},
+        Rule{"firmware/features", "(fovea/(hal|model|features)/|Eigen/).*",
+             "features see hal, model and Eigen"},
         Rule{"firmware/include/fovea/servo", "(fovea/(hal|model|features|servo)/|Eigen/).*",
              "the servo sees hal, model, features and Eigen"},
         Rule{"firmware/servo", "(fovea/(hal|model|features|servo)/|Eigen/).*",
              "the servo sees hal, model, features and Eigen"},
         Rule{"firmware/vision", "(fovea/(hal|model|features|vision)/|Eigen/|opencv2/).*",
              "vision sees hal, features and OpenCV"},
+        Rule{"firmware/config",
+             "fovea/(hal|model|features|servo|vision|config|robots)/.*|(fmt|toml\\+\\+)/.*",
+             "nothing of the firmware sees the simulator"},
+        Rule{"firmware/robots",
+             "fovea/(hal|model|config|robots)/.*|urdf_chain[.]hpp|(fmt|urdf_parser|console_bridge)/.*|Eigen/"
+             ".*",
+             "nothing of the firmware sees the simulator"},
         Rule{"firmware/include", "(fovea/(hal|model|features|servo|vision|config|robots)/|Eigen/|opencv2/).*",
              "nothing of the firmware sees the simulator"},
         Rule{"sim/camera", "fovea/hal/.*|sim/(camera|render)/.*", "the simulator sees hal, not the firmware"},
-        Rule{"sim/physics", "sim/(physics|robot)/.*|Eigen/.*|Bullet.*", "physics sees Bullet and the robot alone"},
-        Rule{"sim/render", "sim/(render|robot)/.*|(Eigen|epoxy|fmt)/.*", "rendering sees no physics and no servo"},
-        Rule{"sim/robot", "sim/robot/.*|(Eigen|fmt|urdf_parser)/.*", "the simulated robot comes from its URDF alone"},
+        Rule{"sim/physics", "sim/(physics|robot)/.*|Eigen/.*|Bullet.*",
+             "physics sees Bullet and the robot alone"},
+        Rule{"sim/render", "sim/(render|robot)/.*|(Eigen|epoxy|fmt)/.*",
+             "rendering sees no physics and no servo"},
+        Rule{"sim/robot", "sim/robot/.*|(Eigen|fmt|urdf_parser)/.*",
+             "the simulated robot comes from its URDF alone"},
         Rule{"sim/world", "fovea/hal/.*|sim/(world|physics|render|robot)/.*|Eigen/.*",
-             "the simulator sees hal, not the firmware"}));
+             "the simulator sees hal, not the firmware"}),
+    [](const auto& rule) {
+      std::string name = rule.param.folder;
+      std::replace_if(
+          name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; },
+          '_');
+      return name;
+    });
 
 }  // namespace
 }  // namespace fovea

@@ -34,20 +34,24 @@ TEST(TickSymbolsTest, NeedsNothingButPlainMemory) {
   const std::set<std::string> defined = Symbols("--defined-only");
   const std::set<std::string> needed = Symbols("--undefined-only");
   ASSERT_GT(defined.size(), 50U) << "nm must have been there";
-  const std::set<std::string> allowed = {"memcpy",           "memset", "memmove", "memcmp", "_GLOBAL_OFFSET_TABLE_",
-                                         "__stack_chk_fail", "__cxa_pure_virtual"};
+  const std::set<std::string> allowed = {"memcpy",
+                                         "memset",
+                                         "memmove",
+                                         "memcmp",
+                                         "_GLOBAL_OFFSET_TABLE_",
+                                         "__stack_chk_fail",
+                                         "__cxa_pure_virtual"};
   for (const std::string& symbol : needed) {
     EXPECT_TRUE(defined.count(symbol) == 1 || allowed.count(symbol) == 1) << "the tick needs " << symbol;
   }
 }
 
 // The hardware target's libraries carry no simulator along.
-TEST(LinkTest, ThisProgramOfFirmwareLibrariesNeedsNoBulletAndNoEgl) {
-  const std::string needed = test::OutputOf("readelf -d /proc/self/exe | grep NEEDED; true");
-  const std::string own = test::OutputOf("readelf -d '" FOVEA_FIRMWARE_PROGRAM "' | grep NEEDED");
-  ASSERT_NE(own.find("libopencv_imgproc"), std::string::npos) << "readelf must have been there: " << needed;
+TEST(LinkTest, AProgramOfFirmwareLibrariesNeedsNoBulletAndNoEgl) {
+  const std::string needed = test::OutputOf("readelf -d '" FOVEA_FIRMWARE_PROGRAM "' | grep NEEDED");
+  ASSERT_NE(needed.find("libopencv_imgproc"), std::string::npos) << "readelf must have been there";
   for (const char* name : {"Bullet", "LinearMath", "libEGL", "libepoxy", "libGL"}) {
-    EXPECT_EQ(own.find(name), std::string::npos) << name;
+    EXPECT_EQ(needed.find(name), std::string::npos) << name;
   }
 }
 

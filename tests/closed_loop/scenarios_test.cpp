@@ -28,6 +28,16 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, StillBall, testing::Values("ball", "ball-dar
                            return name;
                          });
 
+// Without its colour the ball is found by its roundness; so it is on a bench where nothing else is round.
+TEST(GrayBall, StandsAtItsGoal) {
+  const sim::Summary s = RunShipped("ball", {"vision.method=gray"});
+  PrintResidual(s);
+  EXPECT_TRUE(s.converged);
+  EXPECT_LE(s.final_error_px_rms.value(), 0.5);
+  EXPECT_EQ(s.frames_detected, s.frames);
+  ExpectSound(s);
+}
+
 TEST(MovingBall, IsFollowedAndPredictionIsWhatDoesIt) {
   const sim::Summary with = RunShipped("ball-moving");
   const sim::Summary without = RunShipped("ball-moving", {"servo.predict=false"});

@@ -62,7 +62,7 @@ struct ServoState {
   std::int32_t fault_joint = -1;
   std::int64_t mode_since_ns = 0;
   std::int64_t track_since_ns = 0;  // the last entry into Track from Hold
-  std::int64_t blocked_ns = 0;      // how long limits have kept the arm from the goal
+  std::int64_t blocked_ns = 0;      // how much longer limits have kept the arm from the goal than not
   model::Vec3 p_BO_unreachable = model::Vec3::Zero();
 
   // visual law

@@ -15,11 +15,11 @@ struct FinderConfig {
   double hue_width_deg = 12.0;    // standard deviation of the hue
   double saturation_min = 0.35;   // below it a colour says nothing, 0 to 1
   double blur_sigma_px = 1.5;     // at half resolution
-  double canny_threshold = 90.0;  // of the edges that vote
+  double canny_threshold = 90.0;  // of the edges that vote; higher by itself where there are too many
   double votes = 14.0;            // a circle needs so many
   double radius_min_px = 10.0;
   double radius_max_px = 200.0;
-  int candidates_max = 8;
+  int candidates_max = 16;
 };
 
 struct Circle {
@@ -40,9 +40,11 @@ class BallFinder {
   [[nodiscard]] double Likeness(double blue, double green, double red) const;
 
  private:
+  [[nodiscard]] double EdgeThreshold();
+
   const FinderConfig config_;
   cv::Mat histogram_;  // [hue x saturation] likeness, 0 to 255
-  cv::Mat half_, hsv_, likeness_, blurred_;
+  cv::Mat half_, hsv_, likeness_, blurred_, dx_, dy_;
   std::vector<cv::Vec3f> hough_;
   std::vector<Circle> circles_;
 };

@@ -1,0 +1,1 @@
+#error "the hardware target has neither Bullet nor EGL nor epoxy"
