@@ -36,9 +36,6 @@ class BallDetector {
   // `image` is CV_8UC3 (BGR) or CV_8UC1, of the intrinsics' size.
   BallDetection Detect(const cv::Mat& image);
 
-  // Forgets what was tracked.
-  void Reset() { has_last_ = false; }
-
  private:
   BallDetection Judge(const cv::Mat& image, const OutlineFit& outline) const;
   [[nodiscard]] double ColourShare(const cv::Mat& image, const OutlineFit& outline) const;
