@@ -219,12 +219,12 @@ class Run {
     linux_rt::MonotonicClock monotonic;
     std::atomic<bool> done{false};
     hal::Status status;
-    RealPaceClock clock(*world_, monotonic, [&](std::int64_t now_ns) {
-      return delay_.HandOver(now_ns, /*wait=*/false, mailbox_);
-    });
+    std::optional<RealPaceClock> clock;  // its time begins when the thread is ready
     std::thread servo_thread([&] {
       realtime_missing_ = linux_rt::MakeThreadRealtime({});
-      servo::ServoLoop loop(servo_, *arm_, clock, mailbox_, ring_, meter_);
+      clock.emplace(*world_, monotonic,
+                    [&](std::int64_t now_ns) { return delay_.HandOver(now_ns, /*wait=*/false, mailbox_); });
+      servo::ServoLoop loop(servo_, *arm_, *clock, mailbox_, ring_, meter_);
       status = loop.Run(EndNs());
       counters_ = loop.counters();
       done = true;
@@ -235,7 +235,7 @@ class Run {
       progress_.Update(recorded_s_, hal::Name(mode_));
     }
     servo_thread.join();
-    clock.RethrowFailure();
+    clock->RethrowFailure();
     return status;
   }
 

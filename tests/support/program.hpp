@@ -38,6 +38,7 @@ inline ProgramResult RunProgram(std::vector<std::string> arguments,
   const std::string out = folder.path() / "out";
   const std::string err = folder.path() / "err";
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) {
     argv.push_back(argument.data());
   }
