@@ -4,6 +4,8 @@
 #                   that shares their types computes alike (and alike on another machine)
 #   fovea_tick      PRIVATE on what runs inside the 1 kHz tick: no exceptions, no RTTI
 
+include(FoveaInstall)
+
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -25,6 +27,8 @@ add_library(fovea_bits INTERFACE)
 target_compile_options(fovea_bits INTERFACE -ffp-contract=off -fno-math-errno)
 target_compile_definitions(fovea_bits INTERFACE EIGEN_DONT_VECTORIZE EIGEN_DONT_PARALLELIZE)
 
+fovea_install(fovea_bits core)  # whoever shares our types must compute alike
+
 add_library(fovea_tick INTERFACE)
 target_compile_options(fovea_tick INTERFACE -fno-exceptions -fno-rtti)
 
@@ -36,10 +40,20 @@ if(FOVEA_SANITIZE)
   add_compile_definitions(FOVEA_SANITIZED)
 endif()
 
-# fovea_add_library(<name> [TICK] SOURCES <file>... [PUBLIC <target>...] [PRIVATE <target>...])
+# fovea_add_library(<name> [TICK] [COMPONENT <core|host>] SOURCES <file>... [HEADERS <file>...]
+#                   [PUBLIC <target>...] [PRIVATE <target>...])
+# HEADERS are the public ones, relative to the folder's include/. With COMPONENT the library is installed with
+# them, and belongs to that component of the CMake package.
 function(fovea_add_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "TICK" "" "SOURCES;PUBLIC;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "TICK" "COMPONENT" "SOURCES;HEADERS;PUBLIC;PRIVATE")
   add_library(${name} STATIC ${arg_SOURCES})
+  if(arg_HEADERS)
+    list(TRANSFORM arg_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/include/)
+    target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include FILES ${arg_HEADERS})
+  endif()
+  if(arg_COMPONENT)
+    fovea_install(${name} ${arg_COMPONENT})
+  endif()
   target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:fovea_warnings>)
   if(arg_TICK)
     target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:fovea_tick>)

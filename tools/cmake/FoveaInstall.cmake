@@ -1,0 +1,68 @@
+# What is installed where, the CMake package `fovea`, and the Debian packages.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(FOVEA_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/fovea)
+
+# Installs a library with its public headers, as fovea::<name without fovea_> in <component> of the package.
+function(fovea_install target component)
+  string(REPLACE "fovea_" "" export_name ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${export_name})
+  get_target_property(headers ${target} HEADER_SETS)
+  set(header_set)
+  if(headers)
+    set(header_set FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+  endif()
+  install(TARGETS ${target} EXPORT fovea-${component}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev
+    OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/fovea COMPONENT dev
+    ${header_set})
+endfunction()
+
+# Called once, when all targets are there.
+function(fovea_install_package)
+  foreach(component core host)
+    install(EXPORT fovea-${component} NAMESPACE fovea:: FILE fovea-${component}.cmake
+      DESTINATION ${FOVEA_PACKAGE_FOLDER} COMPONENT dev)
+  endforeach()
+  write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake
+    VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake
+    ${PROJECT_SOURCE_DIR}/tools/cmake/fovea-config.cmake
+    DESTINATION ${FOVEA_PACKAGE_FOLDER} COMPONENT dev)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/firmware/robots/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/robots
+    COMPONENT data)
+  fovea_debian_packages()
+endfunction()
+
+# `cpack --config build/<preset>/CPackConfig.cmake` makes them: fovea (programs), libfovea-dev, fovea-data.
+macro(fovea_debian_packages)
+  set(CPACK_GENERATOR DEB)
+  set(CPACK_PACKAGE_CONTACT "The Fovea authors <fovea@localhost>")
+  set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+  set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+  set(CPACK_STRIP_FILES ON)
+  set(CPACK_DEB_COMPONENT_INSTALL ON)
+  set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+  set(CPACK_COMPONENTS_ALL dev data)
+  set(CPACK_DEBIAN_PACKAGE_SECTION science)
+
+  set(CPACK_DEBIAN_DEV_PACKAGE_NAME libfovea-dev)
+  set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
+  set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
+    "fovea-data, libeigen3-dev, libfmt-dev, libtomlplusplus-dev, liburdfdom-dev, libopencv-dev")
+  set(CPACK_COMPONENT_DEV_DESCRIPTION "Headers, libraries and CMake package")
+
+  set(CPACK_DEBIAN_DATA_PACKAGE_NAME fovea-data)
+  set(CPACK_DEBIAN_DATA_PACKAGE_ARCHITECTURE all)
+  set(CPACK_COMPONENT_DATA_DESCRIPTION "Robots and scenarios")
+
+  if(FOVEA_SIM)
+    list(APPEND CPACK_COMPONENTS_ALL runtime)
+    set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME fovea)
+    set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+    set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "fovea-data, libegl1, libgl1-mesa-dri")
+    set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "The simulator fovea-sim")
+  endif()
+  include(CPack)
+endmacro()

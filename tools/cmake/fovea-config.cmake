@@ -1,0 +1,42 @@
+# find_package(fovea [COMPONENTS core|host]...)
+#   core  hal, model, features, servo, linux_rt, heap_interposer: all that runs in and around the tick
+#   host  vision, config, robots, servo_keys: what needs OpenCV, TOML and URDF; contains core
+# Targets are fovea::hal, fovea::servo, ... fovea_SHARE_DIR is where robots and scenarios are.
+include(CMakeFindDependencyMacro)
+
+if(NOT fovea_FIND_COMPONENTS)
+  set(fovea_FIND_COMPONENTS core)
+endif()
+foreach(component IN LISTS fovea_FIND_COMPONENTS)
+  if(NOT component MATCHES "^(core|host)$")
+    set(fovea_FOUND FALSE)
+    set(fovea_NOT_FOUND_MESSAGE "fovea has no component \"${component}\"; there are core and host")
+    return()
+  endif()
+endforeach()
+
+find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(Threads)
+include(${CMAKE_CURRENT_LIST_DIR}/fovea-core.cmake)
+set(fovea_core_FOUND TRUE)
+
+if("host" IN_LIST fovea_FIND_COMPONENTS)
+  find_dependency(fmt)
+  find_dependency(tomlplusplus)
+  find_dependency(PkgConfig)
+  pkg_check_modules(urdfdom QUIET IMPORTED_TARGET urdfdom)
+  if(NOT urdfdom_FOUND)
+    set(fovea_FOUND FALSE)
+    set(fovea_NOT_FOUND_MESSAGE "fovea's component host needs urdfdom")
+    return()
+  endif()
+  find_dependency(OpenCV 4.6 COMPONENTS core imgproc)
+  include(${CMAKE_CURRENT_LIST_DIR}/fovea-host.cmake)
+  target_include_directories(fovea::vision SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
+  set(fovea_host_FOUND TRUE)
+endif()
+
+get_filename_component(fovea_SHARE_DIR ${CMAKE_CURRENT_LIST_DIR}/../../../share/fovea ABSOLUTE)
+if(NOT EXISTS ${fovea_SHARE_DIR})  # a library folder with the machine's name in it is one level deeper
+  get_filename_component(fovea_SHARE_DIR ${CMAKE_CURRENT_LIST_DIR}/../../../../share/fovea ABSOLUTE)
+endif()
