@@ -1,0 +1,5 @@
+# Plain comments to Doxygen's, in headers only: a line that is a comment becomes ///, one behind code ///<.
+1s|^// \(.*\)$|/// @file\n/// \1|
+s|^\( *\)// |\1/// |
+s|^\( *\)//$|\1///|
+s|\([;,{})]\) *// |\1  ///< |
