@@ -8,69 +8,19 @@
 #include <stdexcept>
 
 #include "fovea/features/sphere.hpp"
+#include "sim/app/overlay.hpp"
 
 namespace fovea::sim {
 namespace {
 
 constexpr int kScale = 2;      // of the eye's pictures
 constexpr int kLegendPx = 84;  // height of the strip below them
-constexpr int kSubPixelBits = 4;
-
-// Blue, green, red; told apart by brightness too.
-const cv::Scalar kDetectionColour(255, 220, 60);
-const cv::Scalar kGoalColour(60, 215, 255);
-const cv::Scalar kTruthColour(255, 255, 255);
-
 std::string ToPng(const cv::Mat& image) {
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 4})) {
     throw std::runtime_error("a picture cannot be encoded as PNG");
   }
   return {bytes.begin(), bytes.end()};
-}
-
-// A point in the enlarged picture, in OpenCV's fixed-point pixels. Pixel centres stay pixel centres.
-cv::Point Enlarged(double u, double v) {
-  const double one = 1 << kSubPixelBits;
-  return {static_cast<int>(std::lround((kScale * (u + 0.5) - 0.5) * one)),
-          static_cast<int>(std::lround((kScale * (v + 0.5) - 0.5) * one))};
-}
-
-std::vector<cv::Point> Outline(const vision::Intrinsics& in, const model::Vec3& m) {
-  constexpr int kPoints = 180;
-  std::vector<cv::Point> points;
-  const double u = in.U(m);
-  const double v = in.V(m);
-  // The radius of a small cone about the axis to start from: tan(theta) f.
-  double distance = in.f_u_px * std::sqrt(std::max(m.squaredNorm() - 1.0, 1e-6)) / std::max(m.z(), 0.1);
-  for (int i = 0; i < kPoints; ++i) {
-    const double angle = 2.0 * CV_PI * i / kPoints;
-    const double du = std::cos(angle);
-    const double dv = std::sin(angle);
-    distance = vision::OutlineDistance(in, m, u, v, du, dv, distance);
-    points.push_back(Enlarged(u + distance * du, v + distance * dv));
-  }
-  return points;
-}
-
-void DrawOutline(cv::Mat& image, const std::vector<cv::Point>& points, const cv::Scalar& colour,
-                 int thickness, bool dashed) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (dashed && i % 6 >= 3) {
-      continue;
-    }
-    cv::line(image, points[i], points[(i + 1) % points.size()], colour, thickness, cv::LINE_AA,
-             kSubPixelBits);
-  }
-}
-
-void DrawCross(cv::Mat& image, double u, double v, double arm_px, const cv::Scalar& colour) {
-  cv::line(image, Enlarged(u - arm_px, v), Enlarged(u + arm_px, v), colour, 1, cv::LINE_AA, kSubPixelBits);
-  cv::line(image, Enlarged(u, v - arm_px), Enlarged(u, v + arm_px), colour, 1, cv::LINE_AA, kSubPixelBits);
-}
-
-void Write(cv::Mat& image, const std::string& text, int x, int y, const cv::Scalar& colour) {
-  cv::putText(image, text, {x, y}, cv::FONT_HERSHEY_DUPLEX, 0.7, colour, 1, cv::LINE_AA);
 }
 
 KeptFrame Copy(const hal::Frame& frame, const vision::BallDetection& detection) {
@@ -106,30 +56,28 @@ std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
                            const Eigen::Vector3d& p_CO_C, const Eigen::Vector3d& p_CO_C_star) {
   cv::Mat picture;
   cv::resize(frame.bgr, picture, cv::Size(), kScale, kScale, cv::INTER_CUBIC);
+  Overlay overlay(picture, in, kScale);
   if (p_CO_C.z() > 1.1 * radius) {
-    DrawOutline(picture, Outline(in, features::ConeFromSphere(p_CO_C / radius)), kTruthColour, 1, true);
+    overlay.Outline(features::ConeFromSphere(p_CO_C / radius), kTruthColour, 1, true);
   }
-  DrawOutline(picture, Outline(in, features::ConeFromSphere(p_CO_C_star / radius)), kGoalColour, 2, true);
-  DrawCross(picture, in.U(p_CO_C_star), in.V(p_CO_C_star), 9.0, kGoalColour);
-  if (frame.detection.found) {
-    DrawOutline(picture, Outline(in, frame.detection.outline.m), kDetectionColour, 2, false);
-    DrawCross(picture, in.U(frame.detection.s), in.V(frame.detection.s), 5.0, kDetectionColour);
-  }
+  overlay.Goal(p_CO_C_star, radius);
+  overlay.Detection(frame.detection);
 
-  cv::Mat page(picture.rows + kLegendPx, picture.cols, CV_8UC3, cv::Scalar(38, 34, 30));
+  cv::Mat page(picture.rows + kLegendPx, picture.cols, CV_8UC3, kLegendColour);
   picture.copyTo(page.rowRange(0, picture.rows));
   const double error_px = std::hypot(in.U(p_CO_C) - in.U(p_CO_C_star), in.V(p_CO_C) - in.V(p_CO_C_star));
   const int top = picture.rows + 34;
   const int bottom = picture.rows + 66;
   const int middle = page.cols / 2;
-  Write(page,
-        fmt::format("t = {:.3f} s   image error {:.1f} px", static_cast<double>(frame.stamp_ns) * 1e-9,
+  const auto write = [&page](const std::string& text, int x, int y, const cv::Scalar& colour) {
+    DrawText(page, text, x, y, 0.7, colour);
+  };
+  write(fmt::format("t = {:.3f} s   image error {:.1f} px", static_cast<double>(frame.stamp_ns) * 1e-9,
                     error_px),
         20, top, kTruthColour);
-  Write(page, "dashed: true outline", 20, bottom, kTruthColour);
-  Write(page, "dashed, with cross: goal", middle, bottom, kGoalColour);
-  Write(page,
-        frame.detection.found ? fmt::format("detection, confidence {:.2f}, edge {:.2f} px rms",
+  write("dashed: true outline", 20, bottom, kTruthColour);
+  write("dashed, with cross: goal", middle, bottom, kGoalColour);
+  write(frame.detection.found ? fmt::format("detection, confidence {:.2f}, edge {:.2f} px rms",
                                             frame.detection.confidence, frame.detection.outline.rms_px)
                               : std::string("no detection"),
         middle, top, kDetectionColour);

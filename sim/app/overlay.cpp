@@ -1,0 +1,65 @@
+#include "sim/app/overlay.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "fovea/features/sphere.hpp"
+#include "fovea/vision/outline_fit.hpp"
+
+namespace fovea::sim {
+
+// Pixel centres stay pixel centres.
+cv::Point Overlay::At(double u_px, double v_px) const {
+  const double one = 1 << kSubPixelBits;
+  return {static_cast<int>(std::lround((scale_ * (u_px + 0.5) - 0.5) * one)),
+          static_cast<int>(std::lround((scale_ * (v_px + 0.5) - 0.5) * one))};
+}
+
+void Overlay::Outline(const model::Vec3& m, const cv::Scalar& colour, int thickness, bool dashed) {
+  constexpr std::size_t kPoints = 180;
+  std::vector<cv::Point> points;
+  points.reserve(kPoints);
+  const double u = in_.U(m);
+  const double v = in_.V(m);
+  // The radius of a small cone about the axis to start from: tan(theta) f.
+  double distance = in_.f_u_px * std::sqrt(std::max(m.squaredNorm() - 1.0, 1e-6)) / std::max(m.z(), 0.1);
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const double angle = 2.0 * CV_PI * static_cast<double>(i) / kPoints;
+    const double du = std::cos(angle);
+    const double dv = std::sin(angle);
+    distance = vision::OutlineDistance(in_, m, u, v, du, dv, distance);
+    points.push_back(At(u + distance * du, v + distance * dv));
+  }
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    if (!dashed || i % 6 < 3) {
+      cv::line(image_, points[i], points[(i + 1) % kPoints], colour, thickness, cv::LINE_AA, kSubPixelBits);
+    }
+  }
+}
+
+void Overlay::Cross(const model::Vec3& p, double arm_px, const cv::Scalar& colour) {
+  const double u = in_.U(p);
+  const double v = in_.V(p);
+  cv::line(image_, At(u - arm_px, v), At(u + arm_px, v), colour, 1, cv::LINE_AA, kSubPixelBits);
+  cv::line(image_, At(u, v - arm_px), At(u, v + arm_px), colour, 1, cv::LINE_AA, kSubPixelBits);
+}
+
+void Overlay::Goal(const Eigen::Vector3d& p_CO_C_star, double radius) {
+  Outline(features::ConeFromSphere(p_CO_C_star / radius), kGoalColour, 2, true);
+  Cross(p_CO_C_star, 9.0, kGoalColour);
+}
+
+void Overlay::Detection(const vision::BallDetection& detection) {
+  if (detection.found) {
+    Outline(detection.outline.m, kDetectionColour, 2, false);
+    Cross(detection.s, 5.0, kDetectionColour);
+  }
+}
+
+void DrawText(cv::Mat& image, const std::string& text, int x, int y, double size, const cv::Scalar& colour) {
+  cv::putText(image, text, {x, y}, cv::FONT_HERSHEY_DUPLEX, size, colour, 1, cv::LINE_AA);
+}
+
+}  // namespace fovea::sim
