@@ -22,8 +22,20 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   }
 }
 
-fs::path OutputFolder::Partial(const OutputFile& file) const {
-  return folder_ / ("." + file.name + ".partial");
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  for (const std::string& name : begun_) {
+    fs::remove(Partial(name), ignored);
+  }
+}
+
+fs::path OutputFolder::Begin(const std::string& name) {
+  begun_.push_back(name);
+  return Partial(name);
+}
+
+fs::path OutputFolder::Partial(const std::string& name) const {
+  return folder_ / ("." + name + ".partial");
 }
 
 void OutputFolder::WritePartial(const OutputFile& file) const {
@@ -31,8 +43,11 @@ void OutputFolder::WritePartial(const OutputFile& file) const {
   if (fs::is_directory(folder_ / file.name, ignored)) {
     throw config::InputError((folder_ / file.name).string() + ": cannot be written: a folder has that name");
   }
-  std::ofstream stream(Partial(file), std::ios::binary | std::ios::trunc);
-  stream.write(file.content.data(), static_cast<std::streamsize>(file.content.size()));
+  if (!file.content) {
+    return;
+  }
+  std::ofstream stream(Partial(file.name), std::ios::binary | std::ios::trunc);
+  stream.write(file.content->data(), static_cast<std::streamsize>(file.content->size()));
   stream.close();
   if (!stream) {
     throw config::InputError((folder_ / file.name).string() + ": cannot be written (is the disk full?)");
@@ -48,7 +63,7 @@ void OutputFolder::Replace(const std::vector<OutputFile>& files,
     }
   } catch (...) {
     for (const OutputFile& file : files) {
-      fs::remove(Partial(file), ignored);
+      fs::remove(Partial(file.name), ignored);
     }
     throw;
   }
@@ -57,7 +72,7 @@ void OutputFolder::Replace(const std::vector<OutputFile>& files,
   }
   for (const OutputFile& file : files) {
     std::error_code error;
-    fs::rename(Partial(file), folder_ / file.name, error);
+    fs::rename(Partial(file.name), folder_ / file.name, error);
     if (error) {
       throw config::InputError((folder_ / file.name).string() + ": cannot be written: " + error.message());
     }

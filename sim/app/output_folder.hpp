@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,13 +10,20 @@ namespace fovea::sim {
 
 struct OutputFile {
   std::string name;
-  std::string content;
+  std::optional<std::string> content;  // none: what was written to the path that Begin gave
 };
 
 class OutputFolder {
  public:
   // Makes the folder, and makes sure that files can be written to it. InputError when they cannot.
   explicit OutputFolder(const std::filesystem::path& folder);
+  // Removes what was begun and not put in place.
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  // A path to write the file `name` to while the run goes on; Replace puts it in place.
+  std::filesystem::path Begin(const std::string& name);
 
   // Puts `files` there, in place of what an earlier run left under `all_names`. When one cannot be written,
   // InputError, and everything is as it was. The last of `files` appears after all the others: where it is,
@@ -25,10 +33,11 @@ class OutputFolder {
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
  private:
-  [[nodiscard]] std::filesystem::path Partial(const OutputFile& file) const;
+  [[nodiscard]] std::filesystem::path Partial(const std::string& name) const;
   void WritePartial(const OutputFile& file) const;
 
   std::filesystem::path folder_;
+  std::vector<std::string> begun_;
 };
 
 }  // namespace fovea::sim

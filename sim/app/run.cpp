@@ -21,6 +21,7 @@
 #include "fovea/vision/vision_task.hpp"
 #include "sim/app/build_info.hpp"
 #include "sim/app/compose.hpp"
+#include "sim/app/eye_film.hpp"
 #include "sim/app/output_folder.hpp"
 #include "sim/app/path.hpp"
 #include "sim/app/pictures.hpp"
@@ -38,7 +39,8 @@ namespace fovea::sim {
 namespace {
 
 constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
-const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png", "summary.json"};
+const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png", "camera.mp4",
+                                          "summary.json"};
 
 // Pictures that are drawn at the same time, each by a renderer of its own.
 constexpr int kRenderers = 2;
@@ -79,6 +81,9 @@ class Run {
     }
     if (!options_.out.empty()) {
       folder_.emplace(options_.out);  // after all that can be refused: what is refused leaves no folder
+      if (options_.pictures) {
+        BeginFilm(servo_config.feature.p_CO_C_star);
+      }
     }
     BuildWorld(servo_config);
   }
@@ -114,6 +119,16 @@ class Run {
   }
 
  private:
+  void BeginFilm(const Eigen::Vector3d& p_CO_C_star) {
+    EyeFilmConfig config;
+    config.path = folder_->Begin("camera.mp4");
+    config.intrinsics = intrinsics_;
+    config.radius = radius_;
+    config.p_CO_C_star = p_CO_C_star;
+    config.may_drop = options_.pace == Pace::kReal;
+    film_ = std::make_unique<EyeFilm>(config);
+  }
+
   void BuildWorld(const servo::ServoConfig& servo_config) {
     VerdictConfig verdict_config;
     verdict_config.arm = servo_config.arm;
@@ -178,6 +193,9 @@ class Run {
           vision::RunVision(*camera_, vision_, delay_, never_stop_,
                             [this](const hal::Frame& frame, const vision::BallDetection& detection) {
                               frames_.Keep(frame, detection);
+                              if (film_) {
+                                film_->Add(frame, detection);
+                              }
                             });
       static_cast<void>(status);  // an orderly end, or a fault that the camera keeps the words for
     } catch (...) {
@@ -252,6 +270,7 @@ class Run {
     s.overruns = counters_.overruns;
     s.missed_ticks = counters_.missed_ticks;
     s.records_dropped = ring_.dropped();
+    s.film_frames_dropped = film_ ? film_->dropped() : 0;
     if (linux_rt::HeapCounterActive()) {
       s.heap_allocations_in_tick = meter_.heap_calls();
     }
@@ -286,6 +305,10 @@ class Run {
             {name, DrawEyePicture(*frame, intrinsics_, radius_, target_in_frame_.at(frame->sequence), goal)});
       }
     }
+    if (film_ && frames_.frames() > 0) {
+      film_->Finish();
+      files.push_back({"camera.mp4", std::nullopt});
+    }
     if (options_.pictures) {
       files.push_back({"bench.png", DrawBenchPicture(scene_, world_->Look(), camera_path_.points(),
                                                      target_path_.points())});
@@ -305,6 +328,7 @@ class Run {
   vision::VisionTask vision_;
   servo::ServoTask servo_;
   std::optional<OutputFolder> folder_;
+  std::unique_ptr<EyeFilm> film_;
   RenderScene scene_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;
   std::unique_ptr<Verdict> verdict_;

@@ -46,6 +46,20 @@ TEST(OutputFolderTest, AWriteThatFailsLeavesTheOldFiles) {
   EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 3);
 }
 
+TEST(OutputFolderTest, WhatIsBegunIsPutInPlaceOrRemoved) {
+  const test::TempFolder temp;
+  {
+    OutputFolder folder(temp.path());
+    std::ofstream(folder.Begin("film.mp4")) << "film";
+    EXPECT_FALSE(fs::exists(temp.path() / "film.mp4"));
+    folder.Replace({{"film.mp4", std::nullopt}, {"x.json", "one"}}, {"film.mp4", "x.json"});
+    EXPECT_EQ(Read(temp.path() / "film.mp4"), "film");
+    std::ofstream(folder.Begin("film.mp4")) << "half a fil";
+  }
+  EXPECT_EQ(Read(temp.path() / "film.mp4"), "film");
+  EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 2);
+}
+
 TEST(OutputFolderTest, AFolderThatCannotBeIsRefusedAtOnce) {
   const test::TempFolder temp;
   std::ofstream(temp.path() / "file") << "x";

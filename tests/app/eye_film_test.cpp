@@ -1,0 +1,103 @@
+// The film: read back by another reader, frame by frame.
+#include "sim/app/eye_film.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <sstream>
+
+#include "support/temp_folder.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr int kWidth = 64;
+constexpr int kHeight = 48;
+constexpr int kFrames = 45;
+
+class EyeFilmTest : public testing::Test {
+ protected:
+  // A film of plain frames that grow brighter, 30 per second, with a gap after the 20th.
+  void Film(const std::string& name) {
+    EyeFilmConfig config;
+    config.path = Path(name);
+    config.intrinsics = {kWidth, kHeight, 60.0, 60.0, 31.5, 23.5};
+    config.p_CO_C_star = {0.0, 0.0, 0.4};
+    EyeFilm film(config);
+    for (int i = 0; i < kFrames; ++i) {
+      const std::vector<std::uint8_t> pixels(std::size_t{3} * kWidth * kHeight, Level(i));
+      hal::Frame frame;
+      frame.stamp_ns = StampNs(i);
+      frame.width_px = kWidth;
+      frame.height_px = kHeight;
+      frame.stride_bytes = 3 * kWidth;
+      frame.pixels = pixels;
+      film.Add(frame, {});
+    }
+    film.Finish();
+    EXPECT_EQ(film.dropped(), 0U);
+  }
+  static std::uint8_t Level(int i) { return static_cast<std::uint8_t>(20 + 4 * i); }
+  static std::int64_t StampNs(int i) {
+    return 20'000'000 + std::int64_t{i} * 33'333'333 + (i >= 20 ? 500'000'000 : 0);
+  }
+  std::string Path(const std::string& name) { return folder_.path() / name; }
+  std::string Bytes(const std::string& name) {
+    std::ostringstream bytes;
+    bytes << std::ifstream(Path(name), std::ios::binary).rdbuf();
+    return bytes.str();
+  }
+  test::TempFolder folder_;
+};
+
+TEST_F(EyeFilmTest, EveryFrameIsThereAtItsTimeWithItsLegend) {
+  Film("film.mp4");
+  cv::VideoCapture film(Path("film.mp4"));
+  ASSERT_TRUE(film.isOpened());
+  EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_WIDTH), kWidth);
+  EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_HEIGHT), kHeight + 28);
+  const int fourcc = static_cast<int>(film.get(cv::CAP_PROP_FOURCC));
+  EXPECT_EQ(fourcc, cv::VideoWriter::fourcc('a', 'v', 'c', '1')) << "no browser plays it";
+  EXPECT_EQ(static_cast<int>(film.get(cv::CAP_PROP_CODEC_PIXEL_FORMAT)),
+            cv::VideoWriter::fourcc('I', '4', '2', '0'));
+  cv::Mat frame;
+  int count = 0;
+  double brightest = 0.0;
+  while (film.read(frame)) {
+    ASSERT_LT(count, kFrames);
+    const double shown_ms = film.get(cv::CAP_PROP_POS_MSEC);
+    EXPECT_NEAR(shown_ms, 1e-6 * static_cast<double>(StampNs(count) - StampNs(0)), 0.02) << "frame " << count;
+    // A corner, where nothing is drawn.
+    EXPECT_NEAR(cv::mean(frame(cv::Rect(2, 2, 8, 8)))[1], Level(count), 6.0) << "frame " << count;
+    double bright = 0.0;
+    cv::Mat gray;
+    cv::cvtColor(frame.rowRange(kHeight, kHeight + 28), gray, cv::COLOR_BGR2GRAY);
+    cv::minMaxLoc(gray, nullptr, &bright);
+    brightest = std::max(brightest, bright);
+    ++count;
+  }
+  EXPECT_EQ(count, kFrames);
+  EXPECT_GT(brightest, 150.0) << "no legend";
+}
+
+TEST_F(EyeFilmTest, TheSameFramesAreTheSameBytes) {
+  Film("a.mp4");
+  Film("b.mp4");
+  EXPECT_GT(Bytes("a.mp4").size(), 1000U);
+  EXPECT_EQ(Bytes("a.mp4"), Bytes("b.mp4"));
+}
+
+TEST_F(EyeFilmTest, AFileThatCannotBeMadeIsSaidAtOnce) {
+  try {
+    VideoFile film(Path("nowhere/film.mp4"), kWidth, kHeight);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("No such file or directory"));
+  }
+}
+
+}  // namespace
+}  // namespace fovea::sim
