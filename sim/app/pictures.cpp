@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -92,8 +93,14 @@ std::string DrawBenchPicture(const RenderScene& scene, const Exposure& exposure,
   constexpr int kSuperSampling = 2;
   const Pinhole pinhole = MakePinhole(kSuperSampling * kWidth, kSuperSampling * kHeight, 0.80);
   // Someone stands at the bench's front corner and looks at what happens over the mat.
-  const Eigen::Vector3d eye(1.72, -1.28, 1.02);
-  const Eigen::Vector3d look_at(0.30, 0.02, 0.33);
+  // A tall arm makes them step back and look up.
+  double top = 0.0;
+  for (const Eigen::Isometry3d& X_BL : exposure.X_BL) {
+    top = std::max(top, X_BL.translation().z());
+  }
+  const double taller = std::max(0.0, top - 0.75);  // than what stands well in the picture [m]
+  const Eigen::Vector3d look_at(0.30, 0.02, 0.33 + 0.4 * taller);
+  const Eigen::Vector3d eye = look_at + (1.0 + taller) * Eigen::Vector3d(1.42, -1.30, 0.69);
   Eigen::Isometry3d X_BV = Eigen::Isometry3d::Identity();
   const Eigen::Vector3d z = (look_at - eye).normalized();
   const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();

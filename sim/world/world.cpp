@@ -1,5 +1,6 @@
 #include "sim/world/world.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,9 +10,19 @@ namespace fovea::sim {
 namespace {
 
 constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kStictionSpeed = 0.02;  // Coulomb friction reaches its full size beyond this [rad/s]
+constexpr double kStictionSpeed = 0.02;  // Coulomb friction reaches its full size beyond this [rad/s, m/s]
 constexpr double kBrakeDecay = 0.8;      // an engaged brake leaves this share of the speed per step
 constexpr double kBrakeRest = 1e-3;      // and below this speed it holds [rad/s]
+
+// The inertia of a link alone about its own joint [kg m^2, kg].
+double OwnInertia(const SimLink& link) {
+  if (link.joint == SimJointKind::kPrismatic) {
+    return link.mass;
+  }
+  const Eigen::Matrix3d I_L = link.X_LCom.linear() * link.I_Com * link.X_LCom.linear().transpose();
+  return link.axis_L.dot(I_L * link.axis_L) +
+         link.mass * link.axis_L.cross(link.X_LCom.translation()).squaredNorm();
+}
 
 }  // namespace
 
@@ -20,6 +31,10 @@ World::World(const WorldConfig& config)
   for (const SimLink& link : config_.robot.links) {
     if (link.dof >= 0) {
       joints_.push_back(&link);
+      // On a light link the full friction within one step would throw the speed over to the other side; it
+      // comes on more slowly there.
+      const double left = (1.0 - config_.friction_compensation) * link.coulomb;
+      stiction_speed_.push_back(std::max(kStictionSpeed, 2.0 * left * kStepS / OwnInertia(link)));
     }
   }
   arm_.SetState(config_.q_start, Eigen::VectorXd::Zero(arm_.num_dofs()));
@@ -64,7 +79,8 @@ void World::Step() {
 
 double World::Friction(int joint, double velocity) const {
   const SimLink& link = *joints_[static_cast<std::size_t>(joint)];
-  return link.viscous * velocity + link.coulomb * std::tanh(velocity / kStictionSpeed);
+  return link.viscous * velocity +
+         link.coulomb * std::tanh(velocity / stiction_speed_[static_cast<std::size_t>(joint)]);
 }
 
 // What acts on the joints: the command, what the robot's own controller adds (gravity, and friction as far

@@ -84,6 +84,7 @@ class World {
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
   std::vector<const SimLink*> joints_;  // moving links, base to tip
+  std::vector<double> stiction_speed_;  // of each: below it Coulomb friction is not at its full size
   std::int64_t now_ns_ = 0;
   std::uint64_t next_frame_ = 0;
   hal::ArmCommand command_;

@@ -49,8 +49,9 @@ class CommandLineTest : public testing::Test {
 };
 
 TEST_F(CommandLineTest, UnknownScenario) {
-  EXPECT_THAT(Refusal({"bal"}), AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
-                                      HasSubstr("ball, ball-clutter, ball-dark, ball-moving")));
+  EXPECT_THAT(Refusal({"bal"}),
+              AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
+                    HasSubstr("ball, ball-clutter, ball-dark, ball-moving, ball-puma560, ball-ur5e")));
   EXPECT_THAT(Refusal({"nowhere/to/be.toml"}), HasSubstr("nowhere/to/be.toml"));
 }
 
@@ -169,7 +170,7 @@ TEST_F(CommandLineTest, HelpShowsExamplesAndExitCodes) {
 
 TEST_F(CommandLineTest, ListAndKeysSayWhatThereIs) {
   const std::string list = Sim({"list"}).out;
-  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 4);
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 6);
   EXPECT_THAT(list, AllOf(HasSubstr("ball "), HasSubstr("ball-moving "), HasSubstr("ball-dark "),
                           HasSubstr("ball-clutter ")));
   EXPECT_THAT(Sim({"keys"}).out,

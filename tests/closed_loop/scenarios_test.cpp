@@ -21,7 +21,8 @@ TEST_P(StillBall, StandsAtItsGoal) {
   EXPECT_EQ(LastMode(s), "track");
   ExpectSound(s);
 }
-INSTANTIATE_TEST_SUITE_P(Scenarios, StillBall, testing::Values("ball", "ball-dark", "ball-clutter"),
+INSTANTIATE_TEST_SUITE_P(Scenarios, StillBall,
+                         testing::Values("ball", "ball-dark", "ball-clutter", "ball-ur5e", "ball-puma560"),
                          [](const auto& scenario) {
                            std::string name = scenario.param;
                            name.erase(std::remove(name.begin(), name.end(), '-'), name.end());

@@ -147,7 +147,8 @@ TEST_P(KdlTest, DynamicsAgree) {
 
 // The mixed arm has prismatic joints, skew axes, fixed joints with mass and an axis that is -z.
 INSTANTIATE_TEST_SUITE_P(Arms, KdlTest,
-                         testing::Values("/panda.toml", "/../../../tests/model/mixed_arm.urdf"));
+                         testing::Values("/panda.toml", "/ur5e.toml", "/puma560.toml",
+                                         "/../../../tests/model/mixed_arm.urdf"));
 
 }  // namespace
 }  // namespace fovea

@@ -4,14 +4,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iostream>
 #include <sstream>
 
 #include "fovea/config/input_error.hpp"
 #include "fovea/model/kinematics.hpp"
 #include "support/panda.hpp"
+#include "support/random_states.hpp"
 #include "support/temp_folder.hpp"
 
 namespace fovea::robots {
@@ -40,6 +44,66 @@ TEST(RobotTest, ReadsThePanda) {
   EXPECT_NEAR(poses.X_BE.p.y(), 0.0, 1e-9);
   EXPECT_NEAR(poses.X_BE.p.z(), 0.5903, 1e-3);
   EXPECT_NEAR(poses.X_BE.R(2, 2), -1.0, 1e-9);
+}
+
+// The makers' Denavit-Hartenberg parameters, standard form: a, d, alpha.
+struct DhRow {
+  double a, d, alpha;
+};
+
+model::Pose FlangeByDh(const std::vector<DhRow>& rows, double base_height, const model::VecN& q) {
+  model::Pose X;
+  X.p = {0.0, 0.0, base_height};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double c = std::cos(q[static_cast<Eigen::Index>(i)]);
+    const double s = std::sin(q[static_cast<Eigen::Index>(i)]);
+    const double ca = std::cos(rows[i].alpha);
+    const double sa = std::sin(rows[i].alpha);
+    model::Pose step;
+    step.R << c, -s * ca, s * sa, s, c * ca, -c * sa, 0, sa, ca;
+    step.p = {rows[i].a * c, rows[i].a * s, rows[i].d};
+    X = X * step;
+  }
+  return X;
+}
+
+TEST(RobotTest, Ur5eAndPuma560AreWhereTheirParametersPutThem) {
+  constexpr double kHalfPi = 1.5707963267948966;
+  struct Case {
+    const char* file;
+    double base_height;
+    std::vector<DhRow> rows;
+  };
+  const std::vector<Case> cases = {{"/ur5e.toml",
+                                    0.0,
+                                    {{0, 0.1625, kHalfPi},
+                                     {-0.425, 0, 0},
+                                     {-0.3922, 0, 0},
+                                     {0, 0.1333, kHalfPi},
+                                     {0, 0.0997, -kHalfPi},
+                                     {0, 0.0996, 0}}},
+                                   {"/puma560.toml",
+                                    0.672,
+                                    {{0, 0, kHalfPi},
+                                     {0.4318, 0, 0},
+                                     {0.0203, 0.15005, -kHalfPi},
+                                     {0, 0.4318, kHalfPi},
+                                     {0, 0, -kHalfPi},
+                                     {0, 0.05625, 0}}}};
+  for (const Case& c : cases) {
+    const Robot robot = LoadRobot(std::string(FOVEA_TEST_ROBOTS) + c.file);
+    test::RandomStates random(71);
+    double worst = 0.0;
+    for (int k = 0; k < 500; ++k) {
+      const model::VecN q = random.Position(robot.model);
+      model::ArmPoses poses;
+      model::ComputePoses(robot.model, q, poses);
+      const model::Pose expected = FlangeByDh(c.rows, c.base_height, q);
+      worst = std::max({worst, (poses.X_BE.p - expected.p).norm(), (poses.X_BE.R - expected.R).norm()});
+    }
+    std::cout << robot.name << ": worst difference " << worst << "\n";
+    EXPECT_LT(worst, 1e-14);
+  }
 }
 
 TEST(RobotTest, ABareUrdfGetsDerivedLimitsAndItsOnlyLeafAsTip) {
@@ -101,12 +165,15 @@ TEST(RobotTest, RefusesWhatItCannotDrive) {
       {"", "not a usable URDF"},
       {"<robot name='x'>", "not a usable URDF"},
       {"no xml at all", "not a usable URDF"},
-      {Replace(good, "type=\"revolute\"", "type=\"floating\""), "only revolute, continuous, prismatic and fixed"},
-      {Replace(good, "type=\"revolute\"", "type=\"planar\""), "only revolute, continuous, prismatic and fixed"},
+      {Replace(good, "type=\"revolute\"", "type=\"floating\""),
+       "only revolute, continuous, prismatic and fixed"},
+      {Replace(good, "type=\"revolute\"", "type=\"planar\""),
+       "only revolute, continuous, prismatic and fixed"},
       {Replace(good, inertia2, "<link name=\"l2\"/>"), "without <inertial>"},
       {Replace(good, "mass value=\"1\"", "mass value=\"0\""), "the mass above 0"},
       {Replace(good, "ixx=\"0.01\"", "ixx=\"-0.01\""), "principal moments"},
-      {Replace(good, "izz=\"0.01\"", "izz=\"0.03\""), "principal moments"},  // against the triangle inequality
+      {Replace(good, "izz=\"0.01\"", "izz=\"0.03\""),
+       "principal moments"},  // against the triangle inequality
       {Replace(good, "lower=\"-1\"", "lower=\"2\""), "lower limit"},
       {Replace(good, "velocity=\"2\"", "velocity=\"0\""), "must be above 0"},
       {Replace(good, "<limit lower=\"-1\" upper=\"1\" velocity=\"2\" effort=\"10\"/>", ""), "limits"},
@@ -130,9 +197,11 @@ TEST(RobotTest, RefusesMoreJointsThanItHolds) {
   std::ostringstream urdf;
   urdf << "<robot name=\"long\"><link name=\"l0\"/>";
   for (int i = 1; i <= model::kMaxJoints + 1; ++i) {
-    urdf << "<joint name=\"j" << i << "\" type=\"revolute\"><parent link=\"l" << i - 1 << "\"/><child link=\"l" << i
+    urdf << "<joint name=\"j" << i << "\" type=\"revolute\"><parent link=\"l" << i - 1
+         << "\"/><child link=\"l" << i
          << "\"/><axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" velocity=\"2\" effort=\"10\"/></joint>"
-         << "<link name=\"l" << i << "\"><inertial><mass value=\"1\"/><inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\""
+         << "<link name=\"l" << i
+         << "\"><inertial><mass value=\"1\"/><inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\""
          << " ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial></link>";
   }
   urdf << "</robot>";

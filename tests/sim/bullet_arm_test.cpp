@@ -59,7 +59,8 @@ TEST_P(BulletArmTest, ForwardDynamicsClosesOnOurInverseDynamics) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Arms, BulletArmTest,
-                         testing::Values("/panda.toml", "/../../../tests/model/mixed_arm.urdf"));
+                         testing::Values("/panda.toml", "/ur5e.toml", "/puma560.toml",
+                                         "/../../../tests/model/mixed_arm.urdf"));
 
 // A free swing without gravity: the energy must stay. The figures say which integrator to take.
 TEST(BulletArmEnergyTest, FreeSwingDrift) {
