@@ -54,9 +54,13 @@ int List() {
   return kDone;
 }
 
-int Keys() {
+int Keys(bool markdown) {
   sim::Scenario scenario;
   const config::KeyTable keys = sim::ScenarioKeys(scenario);
+  if (markdown) {
+    fmt::print("{}", sim::KeysAsMarkdown(keys));
+    return kDone;
+  }
   for (const config::Key& key : keys.keys()) {
     fmt::print("{} = {}\n    {}; {}: {}{}{}\n", key.name, key.default_text, key.meaning, key.kind,
                key.allowed, key.unit.empty() ? "" : " ", key.unit);
@@ -93,7 +97,9 @@ int main(int argc, char** argv) {
   run->add_flag("--no-report", arguments.no_report, "leave out what takes long to draw");
   run->add_flag("--json", arguments.json, "print summary.json instead of the table");
   CLI::App* list = app.add_subcommand("list", "shipped scenarios, one line each");
-  app.add_subcommand("keys", "every key of a scenario: default, meaning, range, unit");
+  bool markdown = false;
+  CLI::App* keys = app.add_subcommand("keys", "every key of a scenario: default, meaning, range, unit");
+  keys->add_flag("--markdown", markdown, "as the table in sim/scenarios/KEYS.md");
 
   try {
     app.parse(argc, argv);
@@ -102,7 +108,7 @@ int main(int argc, char** argv) {
     return code == 0 ? kDone : kBadInput;
   }
   try {
-    const int code = run->parsed() ? Run(arguments) : list->parsed() ? List() : Keys();
+    const int code = run->parsed() ? Run(arguments) : list->parsed() ? List() : Keys(markdown);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
       throw std::runtime_error("standard output cannot be written");
     }

@@ -34,9 +34,7 @@ fs::path OutputFolder::Begin(const std::string& name) {
   return Partial(name);
 }
 
-fs::path OutputFolder::Partial(const std::string& name) const {
-  return folder_ / ("." + name + ".partial");
-}
+fs::path OutputFolder::Partial(const std::string& name) const { return folder_ / ("." + name + ".partial"); }
 
 void OutputFolder::WritePartial(const OutputFile& file) const {
   std::error_code ignored;

@@ -95,6 +95,24 @@ config::KeyTable ScenarioKeys(Scenario& scenario) {
   return keys;
 }
 
+std::string KeysAsMarkdown(const config::KeyTable& keys) {
+  std::string text =
+      "# Keys of a scenario\n\n"
+      "Printed by `fovea-sim keys --markdown`. A scenario names what differs from these defaults.\n";
+  std::string section;
+  for (const config::Key& key : keys.keys()) {
+    const auto dot = key.name.find('.');
+    if (key.name.substr(0, dot) != section) {
+      section = key.name.substr(0, dot);
+      text += fmt::format(
+          "\n## [{}]\n\n| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n", section);
+    }
+    text += fmt::format("| `{}` | `{}` | {} | {}: {} | {} |\n", key.name.substr(dot + 1), key.default_text,
+                        key.unit, key.kind, key.allowed, key.meaning);
+  }
+  return text;
+}
+
 fs::path ShareFolder() {
   const fs::path program = fs::read_symlink("/proc/self/exe");
   return program.parent_path().parent_path() / "share" / "fovea";

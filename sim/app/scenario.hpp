@@ -67,6 +67,9 @@ struct Scenario {
 // The keys of all sections, bound to `scenario`, which must outlive the table.
 config::KeyTable ScenarioKeys(Scenario& scenario);
 
+// A table of each section's keys.
+std::string KeysAsMarkdown(const config::KeyTable& keys);
+
 // Where the shipped scenarios and robots are: share/fovea beside the folder of the running program.
 std::filesystem::path ShareFolder();
 

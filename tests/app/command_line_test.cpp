@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "support/program.hpp"
 #include "support/temp_folder.hpp"
@@ -176,6 +177,13 @@ TEST_F(CommandLineTest, ListAndKeysSayWhatThereIs) {
   EXPECT_THAT(Sim({"keys"}).out,
               HasSubstr("servo.lambda = 2\n    gain: the error decays like exp(-lambda t); "
                         "a number: 0 to 20 1/s\n"));
+}
+
+// The table in the repository is what the program says; renew it with `fovea-sim keys --markdown`.
+TEST_F(CommandLineTest, TheTableOfKeysIsUpToDate) {
+  std::ostringstream table;
+  table << std::ifstream(FOVEA_SOURCE_ROOT "/sim/scenarios/KEYS.md").rdbuf();
+  EXPECT_EQ(Sim({"keys", "--markdown"}).out, table.str());
 }
 
 // A run too short to converge: exit code 1, and files that are whole.
