@@ -69,8 +69,12 @@ class MyClock final : public hal::Clock {
   std::int64_t now_ns_ = 0;
 };
 
-int main() {
-  const robots::Robot robot = robots::LoadRobot(ROBOT);
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::printf("usage: consumer ARM_FILE\n");
+    return 2;
+  }
+  const robots::Robot robot = robots::LoadRobot(argv[1]);
   servo::ServoConfig config;
   config.arm = robot.model;
   config.law.q_posture = robot.model.q_ready;

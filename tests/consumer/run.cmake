@@ -11,7 +11,8 @@ execute_process(COMMAND ${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE_DIR} -B ${W
   -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK_DIR}/build COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${WORK_DIR}/build/consumer COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${WORK_DIR}/build/consumer ${WORK_DIR}/prefix/share/fovea/robots/panda.toml
+  COMMAND_ERROR_IS_FATAL ANY)
 # What is installed must not know where it was built.
 file(GLOB_RECURSE package ${WORK_DIR}/prefix/*.cmake)
 foreach(file IN LISTS package)
