@@ -1,4 +1,5 @@
-// The servo, driving an arm that this program brings along: what someone with a robot of their own would write.
+// The servo, driving an arm that this program brings along: what someone with a robot of their own would
+// write.
 #include <Eigen/Cholesky>
 #include <cstdio>
 

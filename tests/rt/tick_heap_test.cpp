@@ -59,7 +59,8 @@ class TickHeapTest : public testing::Test {
 #ifdef FOVEA_SANITIZED
     GTEST_SKIP() << "a sanitizer brings a malloc of its own";
 #endif
-    ASSERT_TRUE(linux_rt::HeapCounterActive()) << "the interposer is not linked: a count of 0 would mean nothing";
+    ASSERT_TRUE(linux_rt::HeapCounterActive())
+        << "the interposer is not linked: a count of 0 would mean nothing";
     ASSERT_TRUE(task_.Init(test::PandaConfig()).ok());
   }
 

@@ -183,10 +183,12 @@ TEST_F(VisionTaskTest, RunsUntilTheCameraEnds) {
   ListSink sink;
   int observed = 0;
   const std::atomic<bool> stop{false};
-  EXPECT_EQ(RunVision(camera, task_, sink, stop, [&](const hal::Frame&, const BallDetection& d) {
-              EXPECT_TRUE(d.found);
-              ++observed;
-            }).code(),
+  EXPECT_EQ(RunVision(camera, task_, sink, stop,
+                      [&](const hal::Frame&, const BallDetection& d) {
+                        EXPECT_TRUE(d.found);
+                        ++observed;
+                      })
+                .code(),
             hal::StatusCode::kClosed);
   EXPECT_EQ(sink.list.size(), 3U);
   EXPECT_EQ(observed, 3);
