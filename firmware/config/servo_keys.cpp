@@ -123,7 +123,8 @@ void AddVisionKeys(VisionSettings& settings, KeyTable& keys) {
               "blur before the search, at half size");
   keys.Number("vision.canny_threshold", c.finder.canny_threshold, 1.0, 1000.0, "",
               "of edges that vote for circles; higher by itself in a picture full of them");
-  keys.Number("vision.votes", c.finder.votes, 1.0, 1000.0, "", "a circle needs so many");
+  keys.Number("vision.votes", c.finder.votes, 1.0, 1000.0, "",
+              "a circle needs so many, when searched by colour");
   keys.Number("vision.radius_min_px", c.finder.radius_min_px, 4.0, 500.0, "px",
               "smallest circle that is searched");
   keys.Number("vision.radius_max_px", c.finder.radius_max_px, 8.0, 2000.0, "px",

@@ -6,6 +6,7 @@
 
 #include "fovea/config/input_error.hpp"
 #include "fovea/model/kinematics.hpp"
+#include "sim/camera/mix_bits.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -86,13 +87,10 @@ RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
   return scene;
 }
 
-// SplitMix64 (Steele, Lea and Flood, Fast splittable pseudorandom number generators, 2014).
 std::uint64_t SeedOf(const Scenario& s, RandomStream stream) {
-  std::uint64_t x = (static_cast<std::uint64_t>(s.run.seed) << 8U) + static_cast<std::uint64_t>(stream);
-  x += 0x9E3779B97F4A7C15U;
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31U);
+  constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15U;  // so that seed 0 is not mixed to 0
+  return MixBits((static_cast<std::uint64_t>(s.run.seed) << 8U) + static_cast<std::uint64_t>(stream) +
+                 kGoldenRatio);
 }
 
 Pinhole MakeScenarioPinhole(const Scenario& s) {
@@ -102,8 +100,8 @@ Pinhole MakeScenarioPinhole(const Scenario& s) {
 void CheckGoal(const Scenario& s) {
   const Pinhole pinhole = MakeScenarioPinhole(s);
   const Eigen::Vector3d goal = ToVector(s.servo.goal);
-  const double u = pinhole.f_px * goal.x() / goal.z() + pinhole.c_u_px;
-  const double v = pinhole.f_px * goal.y() / goal.z() + pinhole.c_v_px;
+  const double u = pinhole.U(goal);
+  const double v = pinhole.V(goal);
   if (!(u >= 0.0 && u <= pinhole.width_px - 1 && v >= 0.0 && v <= pinhole.height_px - 1)) {
     throw InputError(fmt::format(
         "servo.goal = [{}, {}, {}] is not allowed: it is at ({:.0f}, {:.0f}) px, outside the picture "

@@ -29,7 +29,9 @@ EyeFilm::EyeFilm(const EyeFilmConfig& config)
       file_(config.path, PageSize(config.intrinsics).width, PageSize(config.intrinsics).height),
       thread_([this] { Encode(); }) {}
 
-EyeFilm::~EyeFilm() {
+EyeFilm::~EyeFilm() { Close(); }
+
+void EyeFilm::Close() {
   {
     const std::lock_guard lock(mutex_);
     closed_ = true;
@@ -57,8 +59,11 @@ void EyeFilm::Add(const hal::Frame& frame, const vision::BallDetection& detectio
       spare_.pop_back();
     }
   }
-  item.page.create(PageSize(config_.intrinsics), CV_8UC3);
-  item.page.setTo(kLegendColour);
+  if (item.page.empty()) {
+    item.page.create(PageSize(config_.intrinsics), CV_8UC3);
+    item.page.setTo(kLegendColour);
+  }
+  item.page.rowRange(frame.height_px, item.page.rows).setTo(kLegendColour);
   const cv::Mat pixels(frame.height_px, frame.width_px, CV_8UC3,
                        const_cast<std::uint8_t*>(frame.pixels.data()),
                        static_cast<std::size_t>(frame.stride_bytes));
@@ -121,12 +126,7 @@ void EyeFilm::Encode() {
 }
 
 void EyeFilm::Finish() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
-  changed_.notify_all();
-  thread_.join();
+  Close();
   if (failure_) {
     std::rethrow_exception(failure_);
   }

@@ -43,6 +43,7 @@ class EyeFilm {
     std::int64_t stamp_ns = 0;
     vision::BallDetection detection;
   };
+  void Close();
   void Encode();
   void Draw(Item& item) const;
 

@@ -44,7 +44,7 @@ int Run(const RunArguments& arguments) {
   } else {
     fmt::print("{}  {:<24}{}\n", sim::ToTable(summary), "files", options.out.string());
   }
-  return summary.converged && summary.limit_violations == 0 ? kDone : kGoalMissed;
+  return sim::ReachedItsGoal(summary) ? kDone : kGoalMissed;
 }
 
 int List() {

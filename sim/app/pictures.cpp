@@ -24,14 +24,6 @@ std::string ToPng(const cv::Mat& image) {
   return {bytes.begin(), bytes.end()};
 }
 
-KeptFrame Copy(const hal::Frame& frame, const vision::BallDetection& detection) {
-  KeptFrame kept;
-  kept.stamp_ns = frame.stamp_ns;
-  kept.sequence = frame.sequence;
-  kept.detection = detection;
-  return kept;
-}
-
 void CopyPixels(const hal::Frame& frame, cv::Mat& bgr) {
   const cv::Mat view(frame.height_px, frame.width_px, CV_8UC3, const_cast<std::uint8_t*>(frame.pixels.data()),
                      static_cast<std::size_t>(frame.stride_bytes));
@@ -40,10 +32,11 @@ void CopyPixels(const hal::Frame& frame, cv::Mat& bgr) {
 
 }  // namespace
 
-void FrameKeeper::Keep(const hal::Frame& frame, const vision::BallDetection& detection) {
-  cv::Mat reused = std::move(last_.bgr);
-  last_ = Copy(frame, detection);
-  last_.bgr = std::move(reused);
+void FrameKeeper::Keep(const hal::Frame& frame, const vision::BallDetection& detection,
+                       const Eigen::Vector3d& p_CO_C) {
+  last_.stamp_ns = frame.stamp_ns;
+  last_.detection = detection;
+  last_.p_CO_C = p_CO_C;
   CopyPixels(frame, last_.bgr);
   if (frames_ == 0) {
     first_ = last_;
@@ -54,7 +47,8 @@ void FrameKeeper::Keep(const hal::Frame& frame, const vision::BallDetection& det
 }
 
 std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in, double radius,
-                           const Eigen::Vector3d& p_CO_C, const Eigen::Vector3d& p_CO_C_star) {
+                           const Eigen::Vector3d& p_CO_C_star) {
+  const Eigen::Vector3d& p_CO_C = frame.p_CO_C;
   cv::Mat picture;
   cv::resize(frame.bgr, picture, cv::Size(), kScale, kScale, cv::INTER_CUBIC);
   Overlay overlay(picture, in, kScale);
@@ -122,8 +116,7 @@ std::string DrawBenchPicture(const RenderScene& scene, const Exposure& exposure,
     std::vector<cv::Point> points;
     for (const Eigen::Vector3d& p_B : path) {
       const Eigen::Vector3d p = X_BV.inverse() * p_B;
-      points.emplace_back(static_cast<int>((pinhole.f_px * p.x() / p.z() + pinhole.c_u_px) * one),
-                          static_cast<int>((pinhole.f_px * p.y() / p.z() + pinhole.c_v_px) * one));
+      points.emplace_back(static_cast<int>(pinhole.U(p) * one), static_cast<int>(pinhole.V(p) * one));
     }
     for (std::size_t i = 1; i < points.size(); ++i) {
       cv::line(bgr, points[i - 1], points[i], colour, 4, cv::LINE_AA, kSubPixelBits);

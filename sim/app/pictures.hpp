@@ -16,14 +16,15 @@ namespace fovea::sim {
 struct KeptFrame {
   cv::Mat bgr;
   std::int64_t stamp_ns = 0;
-  std::uint64_t sequence = 0;
   vision::BallDetection detection;
+  Eigen::Vector3d p_CO_C = Eigen::Vector3d::Zero();  // where the target really was [m]
 };
 
 // Keeps the first frame of a run and the newest. Called by the vision thread; read when that has ended.
 class FrameKeeper {
  public:
-  void Keep(const hal::Frame& frame, const vision::BallDetection& detection);
+  // `p_CO_C`: where the target really was [m].
+  void Keep(const hal::Frame& frame, const vision::BallDetection& detection, const Eigen::Vector3d& p_CO_C);
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] std::uint64_t detected() const { return detected_; }
   [[nodiscard]] const KeptFrame& first() const { return first_; }
@@ -37,9 +38,9 @@ class FrameKeeper {
 };
 
 // The frame at twice its size with target (true outline), detection and goal drawn in, and a legend; as PNG.
-// `p_CO_C` is where the target really was, `p_CO_C_star` where it shall be [m].
+// `p_CO_C_star` is where the target shall be [m].
 std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& intrinsics, double radius,
-                           const Eigen::Vector3d& p_CO_C, const Eigen::Vector3d& p_CO_C_star);
+                           const Eigen::Vector3d& p_CO_C_star);
 
 // The bench as someone standing beside it sees it, with the paths of camera and target drawn in; as PNG.
 // `camera_path` and `target_path` are points in B [m].

@@ -6,8 +6,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <exception>
-#include <iterator>
-#include <map>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -27,6 +25,7 @@
 #include "sim/app/pictures.hpp"
 #include "sim/app/progress.hpp"
 #include "sim/app/record_hash.hpp"
+#include "sim/app/target_log.hpp"
 #include "sim/app/verdict.hpp"
 #include "sim/camera/sim_camera.hpp"
 #include "sim/render/scene_renderer.hpp"
@@ -161,7 +160,7 @@ class Run {
     world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
     const auto latency_ns = static_cast<std::int64_t>(scenario_.camera.latency_ms * 1e6);
     world_->OnExposure([this, latency_ns](Exposure exposure) {
-      RememberTarget(exposure);
+      targets_.Put(exposure.sequence, exposure.X_BC.inverse() * exposure.p_BO);
       delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns);
       camera_->Expose(std::move(exposure));
     });
@@ -177,22 +176,13 @@ class Run {
     }
   }
 
-  // Where the target really was in a frame: of the first, and of those that may still be the last.
-  void RememberTarget(const Exposure& exposure) {
-    constexpr std::size_t kFramesUnderWay = 2048;
-    target_in_frame_[exposure.sequence] = exposure.X_BC.inverse() * exposure.p_BO;
-    if (target_in_frame_.size() > kFramesUnderWay) {
-      target_in_frame_.erase(std::next(target_in_frame_.begin()));
-    }
-  }
-
   void RunVisionThread() {
     linux_rt::MakeThreadYielding();
     try {
       const hal::Status status =
           vision::RunVision(*camera_, vision_, delay_, never_stop_,
                             [this](const hal::Frame& frame, const vision::BallDetection& detection) {
-                              frames_.Keep(frame, detection);
+                              frames_.Keep(frame, detection, targets_.Take(frame.sequence));
                               if (film_) {
                                 film_->Add(frame, detection);
                               }
@@ -238,7 +228,7 @@ class Run {
     std::atomic<bool> done{false};
     hal::Status status;
     std::optional<RealPaceClock> clock;  // its time begins when the thread is ready
-    std::thread servo_thread([&] {
+    std::jthread servo_thread([&] {      // joins, whatever is thrown below
       realtime_missing_ = linux_rt::MakeThreadRealtime({});
       clock.emplace(*world_, monotonic,
                     [&](std::int64_t now_ns) { return delay_.HandOver(now_ns, /*wait=*/false, mailbox_); });
@@ -301,8 +291,7 @@ class Run {
       const Eigen::Vector3d goal = servo_.config().feature.p_CO_C_star;
       for (const auto& [name, frame] :
            {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
-        files.push_back(
-            {name, DrawEyePicture(*frame, intrinsics_, radius_, target_in_frame_.at(frame->sequence), goal)});
+        files.push_back({name, DrawEyePicture(*frame, intrinsics_, radius_, goal)});
       }
     }
     if (film_ && frames_.frames() > 0) {
@@ -341,7 +330,7 @@ class Run {
   linux_rt::TickMeter meter_;
   RecordHash hash_;
   FrameKeeper frames_;
-  std::map<std::uint64_t, Eigen::Vector3d> target_in_frame_;  // p_CO_C by frame
+  TargetLog targets_;
   Path camera_path_;
   Path target_path_;
   const std::atomic<bool> never_stop_{false};  // the vision thread ends when the camera closes

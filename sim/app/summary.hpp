@@ -73,6 +73,11 @@ struct Summary {
   std::string version;
 };
 
+// Whether the run did what it was for: converged, and no limit passed on the way. The program's exit code.
+inline bool ReachedItsGoal(const Summary& summary) {
+  return summary.converged && summary.limit_violations == 0;
+}
+
 std::string ToJson(const Summary& summary);
 std::string ToTable(const Summary& summary);
 

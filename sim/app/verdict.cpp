@@ -19,9 +19,7 @@ constexpr double kSettledShare = 0.02;  // settled: below this share of the firs
 }  // namespace
 
 Verdict::Verdict(const VerdictConfig& config)
-    : config_(config),
-      goal_px_(config.pinhole.f_px * config.p_CO_C_star.x() / config.p_CO_C_star.z(),
-               config.pinhole.f_px * config.p_CO_C_star.y() / config.p_CO_C_star.z()) {}
+    : config_(config), goal_px_(config.pinhole.U(config.p_CO_C_star), config.pinhole.V(config.p_CO_C_star)) {}
 
 void Verdict::AddTruth(const Truth& truth) {
   const Eigen::Vector3d p_CO_C = truth.X_BC.inverse() * truth.p_BO;
@@ -30,8 +28,7 @@ void Verdict::AddTruth(const Truth& truth) {
   sample.error_C = config_.p_CO_C_star - p_CO_C;
   sample.error_px = std::numeric_limits<double>::infinity();
   if (p_CO_C.z() > 0.0) {
-    const Eigen::Vector2d px(config_.pinhole.f_px * p_CO_C.x() / p_CO_C.z(),
-                             config_.pinhole.f_px * p_CO_C.y() / p_CO_C.z());
+    const Eigen::Vector2d px(config_.pinhole.U(p_CO_C), config_.pinhole.V(p_CO_C));
     sample.error_px = (px - goal_px_).norm();
   }
   AddSample(sample);
@@ -39,17 +36,18 @@ void Verdict::AddTruth(const Truth& truth) {
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
     const double half = 0.5 * (joint.q_max - joint.q_min);
-    const auto note = [&](const char* limit, double fraction) {
-      motion_.Note(truth.stamp_ns, limit, std::fabs(fraction));
+    const auto note = [&](hal::Limit limit, double fraction) {
+      motion_.Note(truth.stamp_ns, limit, fraction);
     };
-    note("joint_position", (truth.q[i] - 0.5 * (joint.q_max + joint.q_min)) / half);
-    note("joint_velocity", truth.dq[i] / joint.dq_max);
-    note("torque", truth.tau_cmd[i] / joint.tau_max);
+    note(hal::Limit::kJointPosition, (truth.q[i] - 0.5 * (joint.q_max + joint.q_min)) / half);
+    note(hal::Limit::kJointVelocity, truth.dq[i] / joint.dq_max);
+    note(hal::Limit::kTorque, truth.tau_cmd[i] / joint.tau_max);
     if (tau_before_.size() > 0) {
-      note("torque_rate", (truth.tau_cmd[i] - tau_before_[i]) / (joint.dtau_max * kTickS));
+      note(hal::Limit::kTorqueRate, (truth.tau_cmd[i] - tau_before_[i]) / (joint.dtau_max * kTickS));
     }
   }
-  motion_.Note(truth.stamp_ns, "workspace", truth.X_BE.translation().norm() / config_.workspace_radius);
+  motion_.Note(truth.stamp_ns, hal::Limit::kWorkspace,
+               truth.X_BE.translation().norm() / config_.workspace_radius);
   contact_ticks_ += truth.contacts > 0 ? 1U : 0U;
   tau_before_ = truth.tau_cmd;
 }
@@ -76,12 +74,12 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config_.arm.joints[k];
-    reference_.Note(record.stamp_ns, "joint_acceleration", std::fabs(record.ddq_cmd[k]) / joint.ddq_max);
+    reference_.Note(record.stamp_ns, hal::Limit::kJointAcceleration, record.ddq_cmd[k] / joint.ddq_max);
     // Only where the reference runs on; it starts anew at every stop of the servo.
     const auto runs = [](hal::Mode mode) { return mode != hal::Mode::kBoot && mode != hal::Mode::kFault; };
     if (has_record_ && runs(before_.mode) && runs(record.mode)) {
-      reference_.Note(record.stamp_ns, "joint_jerk",
-                      std::fabs(record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * kTickS));
+      reference_.Note(record.stamp_ns, hal::Limit::kJointJerk,
+                      (record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * kTickS));
     }
   }
   for (int i = 0; i < hal::kNumLimits; ++i) {
@@ -106,8 +104,8 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
 }
 
 void Verdict::Fill(Summary& summary) const {
-  summary.limits = motion_.most();
-  summary.limits.insert(reference_.most().begin(), reference_.most().end());
+  motion_.AddMost(summary.limits);
+  reference_.AddMost(summary.limits);
   std::vector<std::int64_t> passed_ns;
   std::set_union(motion_.passed_ns().begin(), motion_.passed_ns().end(), reference_.passed_ns().begin(),
                  reference_.passed_ns().end(), std::back_inserter(passed_ns));

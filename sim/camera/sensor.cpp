@@ -4,16 +4,12 @@
 #include <cmath>
 #include <random>
 
+#include "sim/camera/mix_bits.hpp"
+
 namespace fovea::sim {
 namespace {
 
 constexpr std::size_t kLongestRow = 3 * 4096;
-
-std::uint64_t Mix(std::uint64_t x) {
-  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9U;
-  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBU;
-  return x ^ (x >> 31U);
-}
 
 }  // namespace
 
@@ -30,7 +26,7 @@ void Sensor::Expose(std::span<const std::uint8_t> rgba, int width_px, std::uint6
   const auto width = static_cast<std::size_t>(width_px);
   const std::size_t rows = bgr.size() / (3 * width);
   for (std::size_t row = 0; row < rows; ++row) {
-    const std::size_t start = Mix(seed_ + Mix(frame * 8192U + row)) % kTableSize;
+    const std::size_t start = MixBits(seed_ + MixBits(frame * 8192U + row)) % kTableSize;
     const std::int8_t* noise = noise_.data() + start;
     const std::uint8_t* in = rgba.data() + row * width * 4;
     std::uint8_t* out = bgr.data() + row * width * 3;

@@ -1,6 +1,7 @@
 // The simulated camera's geometry: u = f X / Z + c_u, v = f Y / Z + c_v, pixel centres at whole numbers.
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 
 namespace fovea::sim {
@@ -11,6 +12,10 @@ struct Pinhole {
   double f_px = 554.256258422041;
   double c_u_px = 319.5;
   double c_v_px = 239.5;
+
+  // Where a point before the camera is seen [px]; `p_C` in axes of C [m].
+  [[nodiscard]] double U(const Eigen::Vector3d& p_C) const { return f_px * p_C.x() / p_C.z() + c_u_px; }
+  [[nodiscard]] double V(const Eigen::Vector3d& p_C) const { return f_px * p_C.y() / p_C.z() + c_v_px; }
 };
 
 // A camera with the given horizontal field of view [rad], its axis in the middle of the picture.

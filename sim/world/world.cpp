@@ -31,10 +31,12 @@ World::World(const WorldConfig& config)
   for (const SimLink& link : config_.robot.links) {
     if (link.dof >= 0) {
       joints_.push_back(&link);
-      // On a light link the full friction within one step would throw the speed over to the other side; it
-      // comes on more slowly there.
-      const double left = (1.0 - config_.friction_compensation) * link.coulomb;
-      stiction_speed_.push_back(std::max(kStictionSpeed, 2.0 * left * kStepS / OwnInertia(link)));
+      // On a light link the full friction within one step would throw the speed over to the other side. Its
+      // two parts together take no more than all the speed out of a step.
+      const double left = 1.0 - config_.friction_compensation;
+      const double most = 0.5 * OwnInertia(link) / kStepS;  // damping of one part [N m s/rad, N s/m]
+      viscous_.push_back(std::min(left * link.viscous, most));
+      stiction_speed_.push_back(std::max(kStictionSpeed, left * link.coulomb / most));
     }
   }
   arm_.SetState(config_.q_start, Eigen::VectorXd::Zero(arm_.num_dofs()));
@@ -77,10 +79,11 @@ void World::Step() {
   }
 }
 
-double World::Friction(int joint, double velocity) const {
-  const SimLink& link = *joints_[static_cast<std::size_t>(joint)];
-  return link.viscous * velocity +
-         link.coulomb * std::tanh(velocity / stiction_speed_[static_cast<std::size_t>(joint)]);
+// What the robot's own controller leaves of a joint's friction [N m, N].
+double World::FrictionLeft(int joint, double velocity) const {
+  const auto k = static_cast<std::size_t>(joint);
+  return viscous_[k] * velocity + (1.0 - config_.friction_compensation) * joints_[k]->coulomb *
+                                      std::tanh(velocity / stiction_speed_[k]);
 }
 
 // What acts on the joints: the command, what the robot's own controller adds (gravity, and friction as far
@@ -88,8 +91,7 @@ double World::Friction(int joint, double velocity) const {
 Eigen::VectorXd World::JointTorque() const {
   Eigen::VectorXd tau = arm_.GravityTorque();
   for (int i = 0; i < arm_.num_dofs(); ++i) {
-    tau[i] += command_.tau_cmd[static_cast<std::size_t>(i)] -
-              (1.0 - config_.friction_compensation) * Friction(i, arm_.dq()[i]);
+    tau[i] += command_.tau_cmd[static_cast<std::size_t>(i)] - FrictionLeft(i, arm_.dq()[i]);
   }
   return tau;
 }
@@ -114,8 +116,7 @@ void World::MeasureState() {
     measured_.q[k] = arm_.q()[i] + config_.encoder_noise * normal_(random_);
     measured_.dq[k] = arm_.dq()[i] + config_.velocity_noise * normal_(random_);
     measured_.tau_applied[k] = command_.tau_cmd[k];
-    measured_.tau_meas[k] =
-        command_.tau_cmd[k] + gravity[i] - (1.0 - config_.friction_compensation) * Friction(i, arm_.dq()[i]);
+    measured_.tau_meas[k] = command_.tau_cmd[k] + gravity[i] - FrictionLeft(i, arm_.dq()[i]);
   }
 }
 

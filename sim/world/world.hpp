@@ -77,13 +77,14 @@ class World {
   void RecordTruth();
   void ExposeIfDue();
   [[nodiscard]] Eigen::VectorXd JointTorque() const;
-  [[nodiscard]] double Friction(int joint, double velocity) const;
+  [[nodiscard]] double FrictionLeft(int joint, double velocity) const;
 
   WorldConfig config_;
   BulletArm arm_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
   std::vector<const SimLink*> joints_;  // moving links, base to tip
+  std::vector<double> viscous_;         // damping left to each [N m s/rad, N s/m]
   std::vector<double> stiction_speed_;  // of each: below it Coulomb friction is not at its full size
   std::int64_t now_ns_ = 0;
   std::uint64_t next_frame_ = 0;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <iostream>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <sstream>
@@ -88,6 +89,36 @@ TEST_F(EyeFilmTest, TheSameFramesAreTheSameBytes) {
   Film("b.mp4");
   EXPECT_GT(Bytes("a.mp4").size(), 1000U);
   EXPECT_EQ(Bytes("a.mp4"), Bytes("b.mp4"));
+}
+
+// At real pace nobody waits for the film: what finds no place is counted, the rest is there.
+TEST_F(EyeFilmTest, FramesThatFindNoPlaceAreCounted) {
+  constexpr std::uint64_t kMany = 300;
+  EyeFilmConfig config;
+  config.path = Path("film.mp4");
+  config.intrinsics = {kWidth, kHeight, 60.0, 60.0, 31.5, 23.5};
+  config.p_CO_C_star = {0.0, 0.0, 0.4};
+  config.may_drop = true;
+  EyeFilm film(config);
+  const std::vector<std::uint8_t> pixels(std::size_t{3} * kWidth * kHeight, 90);
+  for (std::uint64_t i = 0; i < kMany; ++i) {
+    hal::Frame frame;
+    frame.stamp_ns = StampNs(static_cast<int>(i));
+    frame.width_px = kWidth;
+    frame.height_px = kHeight;
+    frame.stride_bytes = 3 * kWidth;
+    frame.pixels = pixels;
+    film.Add(frame, {});
+  }
+  film.Finish();
+  cv::VideoCapture reader(Path("film.mp4"));
+  cv::Mat frame;
+  std::uint64_t count = 0;
+  while (reader.read(frame)) {
+    ++count;
+  }
+  std::cout << film.dropped() << " of " << kMany << " dropped\n";
+  EXPECT_EQ(count + film.dropped(), kMany);
 }
 
 TEST_F(EyeFilmTest, AFileThatCannotBeMadeIsSaidAtOnce) {

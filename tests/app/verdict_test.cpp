@@ -43,6 +43,7 @@ class VerdictTest : public testing::Test {
       verdict.AddRecord(record);
     }
     Summary summary;
+    summary.frames_detected = frames_detected_;
     verdict.Fill(summary);
     return summary;
   }
@@ -50,6 +51,7 @@ class VerdictTest : public testing::Test {
 
   VerdictConfig config_;
   std::vector<hal::TickRecord> records_;
+  std::uint64_t frames_detected_ = 1;
 };
 
 TEST_F(VerdictTest, FiguresAreThoseOfTheLastHalfSecond) {
@@ -120,6 +122,33 @@ TEST_F(VerdictTest, EveryLimitThatIsBrokenIsCounted) {
   EXPECT_EQ(violations([](Truth& t) { t.tau_cmd[6] = 1.01; }), 2U);              // up, and down again
   EXPECT_EQ(violations([](Truth& t) { t.X_BE.translation().x() = 0.86; }), 1U);  // 0.85 m
   EXPECT_EQ(violations([](Truth& t) { t.tau_cmd[6] = -12.1; }), 2U);             // 12 Nm
+}
+
+TEST_F(VerdictTest, APassedLimitIsNoSuccessAndATickCountsOnce) {
+  hal::TickRecord record;
+  record.stamp_ns = 50 * kMs;
+  record.ddq_cmd[0] = 2.0 * config_.arm.joints[0].ddq_max;
+  records_ = {record};
+  // In the same tick the truth is beyond a limit too, and in one more.
+  const Summary s = Judge(1.0, Still, [](Truth& truth) {
+    if (truth.stamp_ns == 50 * kMs || truth.stamp_ns == 70 * kMs) {
+      truth.dq[6] = 2.62;
+    }
+  });
+  EXPECT_TRUE(s.converged);
+  EXPECT_EQ(s.limit_violations, 2U);
+  EXPECT_EQ(s.verdict, "converged, but in 2 ticks a limit was passed");
+  EXPECT_FALSE(ReachedItsGoal(s));
+  records_.clear();
+  EXPECT_TRUE(ReachedItsGoal(Judge(1.0, Still)));
+}
+
+TEST_F(VerdictTest, SeenTooSeldomIsNotTheSameAsNeverSeen) {
+  const auto far = [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); };
+  frames_detected_ = 0;
+  EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("never found in view"));
+  frames_detected_ = 2;
+  EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("found in 2 frames, too few"));
 }
 
 TEST_F(VerdictTest, AFaultIsNamedAndIsNoSuccess) {

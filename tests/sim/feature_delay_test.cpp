@@ -67,6 +67,18 @@ TEST_F(FeatureDelayTest, AFrameThatWasLostHoldsNothingUp) {
   EXPECT_EQ(Taken(), 2);
 }
 
+// The frame that is waited for is lost while it is waited for, and nothing else is expected.
+TEST_F(FeatureDelayTest, AFrameThatIsLostWhileItIsWaitedForEndsTheWaiting) {
+  delay_.Expect(1, 40'000'000);
+  std::thread vision([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    delay_.Put(Measurement(2));
+  });
+  EXPECT_TRUE(delay_.HandOver(40'000'000, true, mailbox_));
+  EXPECT_EQ(Taken(), -1);
+  vision.join();
+}
+
 TEST_F(FeatureDelayTest, AVisionThatEndedEndsTheWaiting) {
   delay_.Expect(1, 40'000'000);
   delay_.Close();

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "fovea/hal/types.hpp"
+#include "sim/world/world_clock.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -81,6 +83,43 @@ TEST(WorldTest, TheCameraKeepsItsOwnTimeAndFallsSilentWhereItIsTold) {
     EXPECT_LE(std::fabs(static_cast<double>(e.stamp_ns) - ideal_ns), 0.5e6 + 1.0) << "no drift";
     EXPECT_FALSE(e.stamp_ns >= 500 * kMs && e.stamp_ns < 800 * kMs);
   }
+}
+
+// What those who look on throw does not pass through the loop: the clock closes, and gives it back when
+// asked.
+TEST(WorldClockTest, KeepsWhatIsThrownAndSaysThatItIsClosed) {
+  World world(PandaWorld());
+  LockstepClock clock(world, [](std::int64_t now_ns) -> bool {
+    if (now_ns == 2 * kMs) {
+      throw std::runtime_error("no more");
+    }
+    return true;
+  });
+  EXPECT_TRUE(clock.WaitUntil(kMs).ok());
+  EXPECT_NO_THROW(clock.RethrowFailure());
+  EXPECT_EQ(clock.WaitUntil(2 * kMs).code(), hal::StatusCode::kClosed);
+  EXPECT_THROW(clock.RethrowFailure(), std::runtime_error);
+}
+
+// A link of 40 kg mm^2 under friction that a step of 1 ms could turn round at full size.
+TEST(WorldTest, ALightLinkComesToRestUnderFriction) {
+  WorldConfig config;
+  config.robot =
+      LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/puma560.urdf", "puma560_base", "puma560_flange");
+  config.q_start.resize(6);
+  config.q_start << 0.2, 0.9, -3.75, 0.0, -0.3, 0.0;
+  config.friction_compensation = 0.0;
+  World world(config);
+  hal::ArmCommand command;
+  command.num_joints = 6;
+  command.tau_cmd[5] = 0.15;
+  world.Command(command);
+  world.AdvanceTo(100 * kMs);
+  EXPECT_GT(std::fabs(world.truth().dq[5]), 0.01) << "it was not moved";
+  command.tau_cmd[5] = 0.0;
+  world.Command(command);
+  world.AdvanceTo(1'100 * kMs);
+  EXPECT_LT(world.truth().dq.cwiseAbs().maxCoeff(), 1e-3);
 }
 
 // A joint under friction, and the same one whose controller takes all friction away.
