@@ -220,4 +220,20 @@ OutlineFit FitOutline(const cv::Mat& image, const Intrinsics& in, const Circle& 
   return fit;
 }
 
+std::vector<std::pair<double, double>> OutlinePoints(const Intrinsics& in, const model::Vec3& m, int count) {
+  std::vector<std::pair<double, double>> points;
+  const double u = in.U(m);
+  const double v = in.V(m);
+  // The radius of a small cone about the axis to start from: tan(theta) f.
+  double distance = in.f_u_px * std::sqrt(std::max(m.squaredNorm() - 1.0, 1e-6)) / std::max(m.z(), 0.1);
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.0 * CV_PI * i / count;
+    const double du = std::cos(angle);
+    const double dv = std::sin(angle);
+    distance = OutlineDistance(in, m, u, v, du, dv, distance);
+    points.emplace_back(u + distance * du, v + distance * dv);
+  }
+  return points;
+}
+
 }  // namespace fovea::vision

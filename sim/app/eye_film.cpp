@@ -97,7 +97,7 @@ void EyeFilm::Draw(Item& item) const {
 }
 
 void EyeFilm::Encode() {
-  linux_rt::MakeThreadYielding();
+  linux_rt::MakeThreadYielding("fovea-film");
   try {
     while (true) {
       Item item;

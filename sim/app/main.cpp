@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "fovea/config/input_error.hpp"
-#include "sim/app/build_info.hpp"
+#include "fovea/build_info.hpp"
 #include "sim/app/run.hpp"
 #include "sim/app/scenario.hpp"
 

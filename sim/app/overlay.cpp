@@ -1,6 +1,5 @@
 #include "sim/app/overlay.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -20,17 +19,8 @@ cv::Point Overlay::At(double u_px, double v_px) const {
 void Overlay::Outline(const model::Vec3& m, const cv::Scalar& colour, int thickness, bool dashed) {
   constexpr std::size_t kPoints = 180;
   std::vector<cv::Point> points;
-  points.reserve(kPoints);
-  const double u = in_.U(m);
-  const double v = in_.V(m);
-  // The radius of a small cone about the axis to start from: tan(theta) f.
-  double distance = in_.f_u_px * std::sqrt(std::max(m.squaredNorm() - 1.0, 1e-6)) / std::max(m.z(), 0.1);
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    const double angle = 2.0 * CV_PI * static_cast<double>(i) / kPoints;
-    const double du = std::cos(angle);
-    const double dv = std::sin(angle);
-    distance = vision::OutlineDistance(in_, m, u, v, du, dv, distance);
-    points.push_back(At(u + distance * du, v + distance * dv));
+  for (const auto& [u, v] : vision::OutlinePoints(in_, m, static_cast<int>(kPoints))) {
+    points.push_back(At(u, v));
   }
   for (std::size_t i = 0; i < kPoints; ++i) {
     if (!dashed || i % 6 < 3) {

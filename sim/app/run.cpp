@@ -15,16 +15,17 @@
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/record_ring.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
+#include "fovea/log/record_hash.hpp"
 #include "fovea/servo/servo_loop.hpp"
 #include "fovea/vision/vision_task.hpp"
-#include "sim/app/build_info.hpp"
+#include "fovea/build_info.hpp"
 #include "sim/app/compose.hpp"
 #include "sim/app/eye_film.hpp"
+#include "sim/app/log_feed.hpp"
 #include "sim/app/output_folder.hpp"
 #include "sim/app/path.hpp"
 #include "sim/app/pictures.hpp"
 #include "sim/app/progress.hpp"
-#include "sim/app/record_hash.hpp"
 #include "sim/app/target_log.hpp"
 #include "sim/app/verdict.hpp"
 #include "sim/camera/sim_camera.hpp"
@@ -38,7 +39,7 @@ namespace fovea::sim {
 namespace {
 
 constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
-const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png", "camera.mp4",
+const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png", "camera.mp4", "log.mcap",
                                           "summary.json"};
 
 // Pictures that are drawn at the same time, each by a renderer of its own.
@@ -82,6 +83,7 @@ class Run {
       folder_.emplace(options_.out);  // after all that can be refused: what is refused leaves no folder
       if (options_.pictures) {
         BeginFilm(servo_config.feature.p_CO_C_star);
+        BeginLog(servo_config);
       }
     }
     BuildWorld(servo_config);
@@ -128,6 +130,12 @@ class Run {
     film_ = std::make_unique<EyeFilm>(config);
   }
 
+  void BeginLog(const servo::ServoConfig& servo_config) {
+    log_ = std::make_unique<LogFeed>(LogFeedConfig{folder_->Begin("log.mcap"), scenario_, robot_, servo_config,
+                                                   scene_, pinhole_, intrinsics_,
+                                                   options_.pace == Pace::kReal});
+  }
+
   void BuildWorld(const servo::ServoConfig& servo_config) {
     VerdictConfig verdict_config;
     verdict_config.arm = servo_config.arm;
@@ -171,20 +179,25 @@ class Run {
     verdict_->AddTruth(truth);
     camera_path_.Add(truth.stamp_ns, truth.X_BC.translation());
     target_path_.Add(truth.stamp_ns, truth.p_BO);
+    if (log_) {
+      log_->AddTruth(truth);
+    }
     if (options_.observer.on_truth) {
       options_.observer.on_truth(truth);
     }
   }
 
   void RunVisionThread() {
-    linux_rt::MakeThreadYielding();
+    linux_rt::MakeThreadYielding("fovea-vision");
     try {
       const hal::Status status =
           vision::RunVision(*camera_, vision_, delay_, never_stop_,
                             [this](const hal::Frame& frame, const vision::BallDetection& detection) {
-                              frames_.Keep(frame, detection, targets_.Take(frame.sequence));
+                              const Eigen::Vector3d p_CO_C = targets_.Take(frame.sequence);
+                              frames_.Keep(frame, detection, p_CO_C);
                               if (film_) {
                                 film_->Add(frame, detection);
+                                log_->AddFrame(frame, detection, p_CO_C);
                               }
                             });
       static_cast<void>(status);  // an orderly end, or a fault that the camera keeps the words for
@@ -202,6 +215,9 @@ class Run {
     ring_.Drain([this](const hal::TickRecord& record) {
       hash_.Add(record);
       verdict_->AddRecord(record);
+      if (log_) {
+        log_->AddRecord(record);
+      }
       if (options_.observer.on_record) {
         options_.observer.on_record(record);
       }
@@ -261,6 +277,7 @@ class Run {
     s.missed_ticks = counters_.missed_ticks;
     s.records_dropped = ring_.dropped();
     s.film_frames_dropped = film_ ? film_->dropped() : 0;
+    s.log_entries_dropped = log_ ? log_->dropped() : 0;
     if (linux_rt::HeapCounterActive()) {
       s.heap_allocations_in_tick = meter_.heap_calls();
     }
@@ -294,15 +311,22 @@ class Run {
         files.push_back({name, DrawEyePicture(*frame, intrinsics_, radius_, goal)});
       }
     }
+    std::optional<std::filesystem::path> film;
     if (film_ && frames_.frames() > 0) {
       film_->Finish();
+      film = folder_->Begin("camera.mp4");
       files.push_back({"camera.mp4", std::nullopt});
+    }
+    const std::string summary_json = ToJson(summary);
+    if (log_) {
+      log_->Finish(meter_.durations(), summary_json, film);
+      files.push_back({"log.mcap", std::nullopt});
     }
     if (options_.pictures) {
       files.push_back({"bench.png", DrawBenchPicture(scene_, world_->Look(), camera_path_.points(),
                                                      target_path_.points())});
     }
-    files.push_back({"summary.json", ToJson(summary)});
+    files.push_back({"summary.json", summary_json});
     folder_->Replace(files, kFileNames);
   }
 
@@ -318,6 +342,7 @@ class Run {
   servo::ServoTask servo_;
   std::optional<OutputFolder> folder_;
   std::unique_ptr<EyeFilm> film_;
+  std::unique_ptr<LogFeed> log_;
   RenderScene scene_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;
   std::unique_ptr<Verdict> verdict_;
@@ -328,7 +353,7 @@ class Run {
   hal::FeatureMailbox mailbox_;
   linux_rt::RecordRing ring_;
   linux_rt::TickMeter meter_;
-  RecordHash hash_;
+  log::RecordHash hash_;
   FrameKeeper frames_;
   TargetLog targets_;
   Path camera_path_;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "fovea/config/input_error.hpp"
+#include "fovea/config/share_folder.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -71,7 +72,7 @@ fs::path FindScenario(const std::string& name_or_path) {
   if (fs::path(name_or_path).extension() == ".toml") {
     return name_or_path;
   }
-  const fs::path shipped = ShareFolder() / "scenarios" / (name_or_path + ".toml");
+  const fs::path shipped = config::ShareFolder() / "scenarios" / (name_or_path + ".toml");
   if (fs::is_regular_file(shipped)) {
     return shipped;
   }
@@ -113,15 +114,10 @@ std::string KeysAsMarkdown(const config::KeyTable& keys) {
   return text;
 }
 
-fs::path ShareFolder() {
-  const fs::path program = fs::read_symlink("/proc/self/exe");
-  return program.parent_path().parent_path() / "share" / "fovea";
-}
-
 std::vector<std::string> ShippedScenarios() {
   std::vector<std::string> names;
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(ShareFolder() / "scenarios", ignored)) {
+  for (const auto& entry : fs::directory_iterator(config::ShareFolder() / "scenarios", ignored)) {
     if (entry.path().extension() == ".toml") {
       names.push_back(entry.path().stem().string());
     }
@@ -151,7 +147,7 @@ robots::Robot LoadScenarioRobot(const Scenario& scenario) {
     const fs::path beside = scenario.folder / model;
     return robots::LoadRobot(fs::exists(beside) ? beside : model);
   }
-  const fs::path shipped = ShareFolder() / "robots" / (scenario.arm.model + ".toml");
+  const fs::path shipped = config::ShareFolder() / "robots" / (scenario.arm.model + ".toml");
   if (!fs::is_regular_file(shipped)) {
     throw InputError(
         fmt::format("arm.model = \"{}\": no shipped arm of that name (or give the path of an arm file "

@@ -70,9 +70,6 @@ config::KeyTable ScenarioKeys(Scenario& scenario);
 // A table of each section's keys.
 std::string KeysAsMarkdown(const config::KeyTable& keys);
 
-// Where the shipped scenarios and robots are: share/fovea beside the folder of the running program.
-std::filesystem::path ShareFolder();
-
 // Names of the shipped scenarios, in order.
 std::vector<std::string> ShippedScenarios();
 

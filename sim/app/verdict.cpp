@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
+
+#include "sim/app/target_error.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -18,20 +19,11 @@ constexpr double kSettledShare = 0.02;  // settled: below this share of the firs
 
 }  // namespace
 
-Verdict::Verdict(const VerdictConfig& config)
-    : config_(config), goal_px_(config.pinhole.U(config.p_CO_C_star), config.pinhole.V(config.p_CO_C_star)) {}
+Verdict::Verdict(const VerdictConfig& config) : config_(config) {}
 
 void Verdict::AddTruth(const Truth& truth) {
-  const Eigen::Vector3d p_CO_C = truth.X_BC.inverse() * truth.p_BO;
-  Sample sample;
-  sample.t_s = static_cast<double>(truth.stamp_ns) * 1e-9;
-  sample.error_C = config_.p_CO_C_star - p_CO_C;
-  sample.error_px = std::numeric_limits<double>::infinity();
-  if (p_CO_C.z() > 0.0) {
-    const Eigen::Vector2d px(config_.pinhole.U(p_CO_C), config_.pinhole.V(p_CO_C));
-    sample.error_px = (px - goal_px_).norm();
-  }
-  AddSample(sample);
+  const TargetError error = ErrorOf(truth, config_.pinhole, config_.p_CO_C_star);
+  AddSample({static_cast<double>(truth.stamp_ns) * 1e-9, error.error_px, error.error_C});
 
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];

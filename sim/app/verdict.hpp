@@ -51,7 +51,6 @@ class Verdict {
   [[nodiscard]] std::string WhyNot(const Summary& summary) const;
 
   const VerdictConfig config_;
-  const Eigen::Vector2d goal_px_;
 
   // from the truth
   LimitBook motion_;

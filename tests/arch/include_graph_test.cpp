@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Rule{"hal/include", "fovea/hal/.*", "the contract depends on the standard library alone"},
         Rule{"hal/src", "fovea/hal/.*", "the contract depends on the standard library alone"},
-        Rule{"hal/drivers/linux_rt", "fovea/(hal|linux_rt)/.*|(sys/|sched|unistd).*",
+        Rule{"hal/drivers/linux_rt", "fovea/(hal|linux_rt)/.*|(sys/|sched|unistd|pthread).*",
              "a driver depends on the contract and on its device"},
         Rule{"firmware/include/fovea/model", "(fovea/(hal|model)/|Eigen/).*", "the model sees hal and Eigen"},
         Rule{"firmware/model", "(fovea/(hal|model)/|Eigen/).*", "the model sees hal and Eigen"},

@@ -29,7 +29,7 @@ TEST(RealtimeTest, HasOrNamesEachThing) {
 TEST(RealtimeTest, YieldingLowersTheThreadAlone) {
   const int before = getpriority(PRIO_PROCESS, 0);
   std::thread thread([] {
-    MakeThreadYielding();
+    MakeThreadYielding("fovea-test");
     EXPECT_EQ(getpriority(PRIO_PROCESS, 0), 10);
   });
   thread.join();

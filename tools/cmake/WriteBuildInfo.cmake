@@ -8,12 +8,14 @@ if(GIT_FOUND)
 endif()
 file(SHA256 ${LIBRARY} hash)
 set(content "// Written by tools/cmake/WriteBuildInfo.cmake.
-#include \"sim/app/build_info.hpp\"
+#include \"fovea/build_info.hpp\"
 
 namespace fovea {
 const char* const kGitRevision = \"${revision}\";
 const char* const kServoLibraryHash = \"${hash}\";
 const char* const kVersion = \"${VERSION}\";
+const char* const kCompiler = \"${COMPILER}\";
+const char* const kFlags = \"${FLAGS}\";
 }  // namespace fovea
 ")
 if(EXISTS ${OUTPUT})

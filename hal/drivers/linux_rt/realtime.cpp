@@ -1,5 +1,6 @@
 #include "fovea/linux_rt/realtime.hpp"
 
+#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -42,7 +43,8 @@ std::vector<std::string> MakeThreadRealtime(const RealtimeOptions& options) {
   return missing;
 }
 
-void MakeThreadYielding() {
+void MakeThreadYielding(const char* name) {
+  pthread_setname_np(pthread_self(), name);
   // On Linux the nice value belongs to the thread. Lowering one's own claim is always allowed.
   setpriority(PRIO_PROCESS, 0, 10);
 }

@@ -8,6 +8,8 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <utility>
+#include <vector>
 
 #include "fovea/model/types.hpp"
 #include "fovea/vision/ball_finder.hpp"
@@ -36,5 +38,9 @@ OutlineFit FitOutline(const cv::Mat& image, const Intrinsics& intrinsics, const 
 // along that direction, found by Newton's method from `start_px`.
 double OutlineDistance(const Intrinsics& intrinsics, const model::Vec3& m, double u_px, double v_px,
                        double du, double dv, double start_px);
+
+// `count` points (u, v) of the cone's outline [px], evenly turned about the image of its axis; for drawing.
+std::vector<std::pair<double, double>> OutlinePoints(const Intrinsics& intrinsics, const model::Vec3& m,
+                                                     int count);
 
 }  // namespace fovea::vision

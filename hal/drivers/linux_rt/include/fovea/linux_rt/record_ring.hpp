@@ -1,40 +1,31 @@
-// Carries tick records out of the real-time thread: a bounded ring, one writer, one reader, no locks.
+// Carries tick records out of the real-time thread.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <vector>
 
 #include "fovea/hal/record.hpp"
+#include "fovea/linux_rt/bounded_ring.hpp"
 
 namespace fovea::linux_rt {
 
 class RecordRing final : public hal::Recorder {
  public:
-  // Room for `capacity` records [>= 1], allocated and touched here.
-  explicit RecordRing(std::size_t capacity);
+  // Room for `capacity` records [>= 1].
+  explicit RecordRing(std::size_t capacity) : ring_(capacity) {}
 
-  // From the real-time thread. A record that finds the ring full is dropped and counted.
-  void Record(const hal::TickRecord& record) noexcept override;
+  // From the real-time thread.
+  void Record(const hal::TickRecord& record) noexcept override { ring_.Push(record); }
 
   // From one other thread: calls `take(record)` for every record that is there, oldest first.
   template <typename Take>
   void Drain(Take&& take) {
-    const std::uint64_t end = written_.load(std::memory_order_acquire);
-    std::uint64_t next = read_.load(std::memory_order_relaxed);
-    for (; next != end; ++next) {
-      take(records_[next % records_.size()]);
-      read_.store(next + 1, std::memory_order_release);
-    }
+    ring_.Drain(take);
   }
 
-  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return ring_.dropped(); }
 
  private:
-  std::vector<hal::TickRecord> records_;
-  alignas(64) std::atomic<std::uint64_t> written_{0};
-  alignas(64) std::atomic<std::uint64_t> read_{0};
-  alignas(64) std::atomic<std::uint64_t> dropped_{0};
+  BoundedRing<hal::TickRecord> ring_;
 };
 
 }  // namespace fovea::linux_rt

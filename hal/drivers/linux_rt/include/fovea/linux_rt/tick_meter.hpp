@@ -17,6 +17,15 @@ class DurationHistogram {
   // The duration that the share `p` [0, 1] of all durations does not exceed (a bin's upper edge); 0 when
   // there are none.
   [[nodiscard]] std::int64_t Percentile(double p) const noexcept;
+  // Calls `take(upper_edge_ns, count)` for each bin that holds something, shortest durations first.
+  template <typename Take>
+  void ForEach(Take&& take) const {
+    for (int bin = 0; bin < kBins; ++bin) {
+      if (const std::uint64_t count = bins_[static_cast<std::size_t>(bin)]; count > 0) {
+        take(static_cast<std::int64_t>(UpperEdge(bin)), count);
+      }
+    }
+  }
 
  private:
   static constexpr int kSubBits = 6;

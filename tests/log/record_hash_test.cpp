@@ -1,12 +1,12 @@
 // The fingerprint: one bit anywhere in a record changes it.
-#include "sim/app/record_hash.hpp"
+#include "fovea/log/record_hash.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <set>
 
-namespace fovea::sim {
+namespace fovea::log {
 namespace {
 
 std::string HashOf(const std::function<void(hal::TickRecord&)>& change) {
@@ -72,4 +72,4 @@ TEST(RecordHashTest, TheSameIsTheSame) {
 }
 
 }  // namespace
-}  // namespace fovea::sim
+}  // namespace fovea::log

@@ -1,4 +1,4 @@
-#include "sim/app/record_hash.hpp"
+#include "fovea/log/record_hash.hpp"
 
 #include <openssl/evp.h>
 
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace fovea::sim {
+namespace fovea::log {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
@@ -29,6 +29,12 @@ class Writer {
       (*this)(value);
     }
   }
+  template <typename M>
+  void Matrix(const M& m) {
+    for (Eigen::Index i = 0; i < m.size(); ++i) {
+      (*this)(m.data()[i]);
+    }
+  }
   template <typename... T>
   void All(const T&... values) {
     ((*this)(values), ...);
@@ -42,15 +48,32 @@ class Writer {
 
 struct RecordHash::Digest {
   EVP_MD_CTX* context = EVP_MD_CTX_new();
+  Digest() {
+    if (context == nullptr || EVP_DigestInit_ex(context, EVP_sha256(), nullptr) != 1) {
+      EVP_MD_CTX_free(context);
+      throw std::runtime_error("OpenSSL cannot compute SHA-256");
+    }
+  }
   ~Digest() { EVP_MD_CTX_free(context); }
+  Digest(const Digest&) = delete;
+  Digest& operator=(const Digest&) = delete;
+
+  void Add(const std::vector<std::uint8_t>& bytes) { EVP_DigestUpdate(context, bytes.data(), bytes.size()); }
+  std::string Finish() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
+    unsigned length = 0;
+    EVP_DigestFinal_ex(context, hash.data(), &length);
+    constexpr const char* kDigits = "0123456789abcdef";
+    std::string text;
+    for (unsigned i = 0; i < length; ++i) {
+      text += kDigits[hash[i] >> 4U];
+      text += kDigits[hash[i] & 15U];
+    }
+    return text;
+  }
 };
 
-RecordHash::RecordHash() : digest_(std::make_unique<Digest>()) {
-  if (digest_->context == nullptr || EVP_DigestInit_ex(digest_->context, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("OpenSSL cannot compute SHA-256");
-  }
-}
-
+RecordHash::RecordHash() : digest_(std::make_unique<Digest>()) {}
 RecordHash::~RecordHash() = default;
 
 void RecordHash::Add(const hal::TickRecord& r) {
@@ -65,20 +88,32 @@ void RecordHash::Add(const hal::TickRecord& r) {
   write.All(r.dim, r.s, r.s_star, r.e, r.V_BC_C_cmd);
   write.All(r.q_cmd, r.dq_cmd, r.ddq_cmd);
   write.All(r.command.state_sequence, r.command.num_joints, r.command.tau_cmd, r.command.engage_brakes);
-  EVP_DigestUpdate(digest_->context, bytes_.data(), bytes_.size());
+  digest_->Add(bytes_);
 }
 
-std::string RecordHash::Finish() {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> hash{};
-  unsigned length = 0;
-  EVP_DigestFinal_ex(digest_->context, hash.data(), &length);
-  constexpr const char* kDigits = "0123456789abcdef";
-  std::string text;
-  for (unsigned i = 0; i < length; ++i) {
-    text += kDigits[hash[i] >> 4U];
-    text += kDigits[hash[i] & 15U];
+std::string RecordHash::Finish() { return digest_->Finish(); }
+
+std::string HashOfModel(const model::ArmModel& model) {
+  std::vector<std::uint8_t> bytes;
+  Writer write(bytes);
+  write.All(std::int32_t{model.num_joints});
+  for (std::size_t i = 0; i < static_cast<std::size_t>(model.num_joints); ++i) {
+    const model::Joint& j = model.joints[i];
+    write(j.type);
+    write.Matrix(j.X_PJ.R);
+    write.Matrix(j.X_PJ.p);
+    write.All(j.q_min, j.q_max, j.dq_max, j.ddq_max, j.dddq_max, j.tau_max, j.dtau_max);
+    write(model.links[i].mass);
+    write.Matrix(model.links[i].p_LiCom);
+    write.Matrix(model.links[i].I_Com_Li);
+    write(model.q_ready[i]);
   }
-  return text;
+  write.Matrix(model.X_LnE.R);
+  write.Matrix(model.X_LnE.p);
+  write.Matrix(model.g_B);
+  RecordHash::Digest digest;
+  digest.Add(bytes);
+  return digest.Finish();
 }
 
-}  // namespace fovea::sim
+}  // namespace fovea::log

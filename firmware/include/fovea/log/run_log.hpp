@@ -1,0 +1,112 @@
+// A run's log.mcap: fed by the threads of a run, written by one of its own.
+//
+// What comes per tick goes through bounded rings without locks; all else through a bounded queue. From ticks
+// the log makes by itself what viewers want: modes and faults in words, and the poses of all frames.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "fovea/hal/camera.hpp"
+#include "fovea/hal/record.hpp"
+#include "fovea/linux_rt/bounded_ring.hpp"
+#include "fovea/model/arm_model.hpp"
+
+namespace google::protobuf {
+class Message;
+}
+
+namespace fovea::log {
+
+class LogFile;
+class TickWriter;
+
+// A frame that moves with the arm: fixed to what joint `joint` moves, or to B when that is -1.
+struct LinkFrame {
+  std::string name;
+  int joint = -1;
+  model::Pose X_LnF;  // in the frame L_joint of the model, or in B
+};
+
+struct RunLogConfig {
+  std::filesystem::path path;
+  std::string library;  // who writes
+  model::ArmModel arm;
+  std::vector<LinkFrame> frames;  // of /tf, the camera's among them
+  bool may_drop = false;  // when the disk is slower than the run: drop and count (true), or wait (false)
+  int jpeg_quality = 80;
+};
+
+// What a simulator knows; see Truth in firmware/log/proto/fovea/run.proto.
+struct TruthSample {
+  std::int64_t stamp_ns = 0;
+  std::array<double, 3> p_BO{};
+  std::array<double, 3> p_BC{};
+  double error_px = 0.0;
+  double error_mm = 0.0;
+};
+
+class RunLog {
+ public:
+  // Creates the file. std::runtime_error when it cannot.
+  explicit RunLog(const RunLogConfig& config);
+  // Ends the thread; a file that was not finished stays readable up to what was written.
+  ~RunLog();
+  RunLog(const RunLog&) = delete;
+  RunLog& operator=(const RunLog&) = delete;
+
+  // From one thread. Real-time when the log may drop.
+  void AddTick(const hal::TickRecord& record);
+  // From one thread. Real-time when the log may drop.
+  void AddTruth(const TruthSample& sample);
+  // From any thread that need not be real-time.
+  void Add(const char* topic, std::int64_t time_ns, const google::protobuf::Message& message);
+  // Copies the pixels; encoded as JPEG by the log's thread.
+  void AddImage(const hal::Frame& frame);
+  void AddMetadata(const std::string& name, const std::map<std::string, std::string>& entries);
+  void AddAttachment(const std::string& name, const std::string& media_type, const std::string& content);
+
+  // Writes what is left and completes the file. Throws what went wrong at any time.
+  void Finish();
+  // Ticks, samples, pictures and messages that found no place.
+  [[nodiscard]] std::uint64_t dropped() const;
+
+ private:
+  using Job = std::function<void(LogFile&)>;
+
+  void Push(Job job);
+  void WriteAll();
+  // Writes what is there; false when nothing was.
+  bool WriteRound();
+  void Close();
+  template <typename T>
+  void PushOrWait(linux_rt::BoundedRing<T>& ring, const T& value);
+
+  const RunLogConfig config_;
+  std::unique_ptr<LogFile> file_;
+  std::unique_ptr<TickWriter> tick_writer_;
+  linux_rt::BoundedRing<hal::TickRecord> ticks_;
+  linux_rt::BoundedRing<TruthSample> truths_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Job> jobs_;
+  bool closed_ = false;
+  std::uint64_t dropped_jobs_ = 0;
+  std::exception_ptr failure_;  // of the writing thread; after it the log takes everything and keeps nothing
+  std::atomic<bool> failed_{false};
+  std::thread thread_;
+};
+
+}  // namespace fovea::log

@@ -1,0 +1,75 @@
+#include "fovea/log/picture_messages.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+#include "fovea/log/stamp.hpp"
+#include "fovea/log/topics.hpp"
+#include "fovea/vision/outline_fit.hpp"
+#include "foxglove/image.pb.h"
+
+namespace fovea::log {
+namespace {
+
+constexpr int kOutlinePoints = 96;
+
+void SetColour(const char* role, foxglove::Color& colour) {
+  const std::string_view name(role);
+  // Sky blue for what is seen, yellow for the goal, white for the truth: told apart by brightness too.
+  const bool detection = name == kDetectionRole;
+  colour.set_r(detection ? 0.24 : 1.0);
+  colour.set_g(detection ? 0.86 : name == kGoalRole ? 0.84 : 1.0);
+  colour.set_b(detection ? 1.0 : name == kGoalRole ? 0.24 : 1.0);
+  colour.set_a(1.0);
+}
+
+}  // namespace
+
+foxglove::CameraCalibration CalibrationMessage(std::int64_t time_ns, const vision::Intrinsics& in) {
+  foxglove::CameraCalibration calibration;
+  SetStamp(time_ns, *calibration.mutable_timestamp());
+  calibration.set_frame_id(kCameraFrame);
+  calibration.set_width(static_cast<std::uint32_t>(in.width_px));
+  calibration.set_height(static_cast<std::uint32_t>(in.height_px));
+  const double K[] = {in.f_u_px, 0.0, in.c_u_px, 0.0, in.f_v_px, in.c_v_px, 0.0, 0.0, 1.0};
+  calibration.mutable_k()->Add(std::begin(K), std::end(K));
+  const double R[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+  calibration.mutable_r()->Add(std::begin(R), std::end(R));
+  const double P[] = {in.f_u_px, 0.0, in.c_u_px, 0.0, 0.0, in.f_v_px, in.c_v_px, 0.0, 0.0, 0.0, 1.0, 0.0};
+  calibration.mutable_p()->Add(std::begin(P), std::end(P));
+  return calibration;
+}
+
+void AddOutline(const vision::Intrinsics& in, const model::Vec3& m, const char* role,
+                foxglove::ImageAnnotations& annotations) {
+  foxglove::PointsAnnotation& outline = *annotations.add_points();
+  outline.set_type(foxglove::PointsAnnotation::LINE_LOOP);
+  outline.set_thickness(1.5);
+  SetColour(role, *outline.mutable_outline_color());
+  foxglove::KeyValuePair& entry = *outline.add_metadata();
+  entry.set_key("role");
+  entry.set_value(role);
+  for (const auto& [u, v] : vision::OutlinePoints(in, m, kOutlinePoints)) {
+    foxglove::Point2& point = *outline.add_points();
+    point.set_x(u);
+    point.set_y(v);
+  }
+}
+
+void AddDetection(const vision::Intrinsics& in, const vision::BallDetection& detection,
+                  foxglove::ImageAnnotations& annotations) {
+  if (!detection.found) {
+    return;
+  }
+  AddOutline(in, detection.outline.m, kDetectionRole, annotations);
+  foxglove::TextAnnotation& text = *annotations.add_texts();
+  text.mutable_position()->set_x(detection.outline.u_px + detection.outline.radius_px);
+  text.mutable_position()->set_y(detection.outline.v_px - detection.outline.radius_px);
+  text.set_text(fmt::format("{:.2f}", detection.confidence));
+  text.set_font_size(12.0);
+  SetColour(kDetectionRole, *text.mutable_text_color());
+  text.mutable_background_color()->set_a(0.5);
+}
+
+}  // namespace fovea::log

@@ -1,0 +1,176 @@
+#include "fovea/log/run_log.hpp"
+
+#include <chrono>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "fovea/linux_rt/realtime.hpp"
+#include "fovea/log/stamp.hpp"
+#include "fovea/log/topics.hpp"
+#include "fovea/run.pb.h"
+#include "foxglove/image.pb.h"
+#include "log_file.hpp"
+#include "tick_writer.hpp"
+
+namespace fovea::log {
+namespace {
+
+constexpr std::size_t kRing = 2048;                      // ticks that may wait: two seconds
+constexpr std::size_t kMostJobs = 16;                    // pictures and messages that may wait
+constexpr auto kPoll = std::chrono::milliseconds(2);     // how often the rings are looked at
+constexpr auto kFlush = std::chrono::milliseconds(500);  // what is older than this is in the file
+
+Truth ToMessage(const TruthSample& sample) {
+  Truth truth;
+  truth.set_stamp_ns(sample.stamp_ns);
+  truth.mutable_p_bo()->Add(sample.p_BO.begin(), sample.p_BO.end());
+  truth.mutable_p_bc()->Add(sample.p_BC.begin(), sample.p_BC.end());
+  truth.set_error_px(sample.error_px);
+  truth.set_error_mm(sample.error_mm);
+  return truth;
+}
+
+}  // namespace
+
+RunLog::RunLog(const RunLogConfig& config)
+    : config_(config),
+      file_(std::make_unique<LogFile>(config.path, config.library)),
+      tick_writer_(std::make_unique<TickWriter>(config_)),
+      ticks_(kRing),
+      truths_(kRing),
+      thread_([this] { WriteAll(); }) {}
+
+RunLog::~RunLog() { Close(); }
+
+template <typename T>
+void RunLog::PushOrWait(linux_rt::BoundedRing<T>& ring, const T& value) {
+  while (!config_.may_drop && !ring.HasRoom() && !failed_.load(std::memory_order_relaxed)) {
+    std::this_thread::sleep_for(kPoll / 4);
+  }
+  ring.Push(value);
+}
+
+void RunLog::AddTick(const hal::TickRecord& record) { PushOrWait(ticks_, record); }
+void RunLog::AddTruth(const TruthSample& sample) { PushOrWait(truths_, sample); }
+
+void RunLog::Push(Job job) {
+  {
+    std::unique_lock lock(mutex_);
+    const auto has_room = [this] { return jobs_.size() < kMostJobs || failure_ != nullptr; };
+    if (!config_.may_drop) {
+      changed_.wait(lock, has_room);
+    }
+    if (!has_room() || failure_ != nullptr) {
+      ++dropped_jobs_;
+      return;
+    }
+    jobs_.push_back(std::move(job));
+  }
+  changed_.notify_all();
+}
+
+void RunLog::Add(const char* topic, std::int64_t time_ns, const google::protobuf::Message& message) {
+  Push([topic, time_ns, type = message.GetDescriptor(), bytes = message.SerializeAsString()](LogFile& file) {
+    file.Write(topic, *type, time_ns, bytes);
+  });
+}
+
+void RunLog::AddImage(const hal::Frame& frame) {
+  const int type = frame.format == hal::PixelFormat::kMono8 ? CV_8UC1 : CV_8UC3;
+  const cv::Mat view(frame.height_px, frame.width_px, type, const_cast<std::uint8_t*>(frame.pixels.data()),
+                     static_cast<std::size_t>(frame.stride_bytes));
+  Push([picture = view.clone(), stamp_ns = frame.stamp_ns, quality = config_.jpeg_quality](LogFile& file) {
+    std::vector<unsigned char> jpeg;
+    if (!cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality})) {
+      throw std::runtime_error("a picture cannot be encoded as JPEG");
+    }
+    foxglove::CompressedImage image;
+    SetStamp(stamp_ns, *image.mutable_timestamp());
+    image.set_frame_id(kCameraFrame);
+    image.set_format("jpeg");
+    image.set_data(jpeg.data(), jpeg.size());
+    file.Write(kImageTopic, stamp_ns, image);
+  });
+}
+
+void RunLog::AddMetadata(const std::string& name, const std::map<std::string, std::string>& entries) {
+  Push([name, entries](LogFile& file) { file.writer().WriteMetadata(name, entries); });
+}
+
+void RunLog::AddAttachment(const std::string& name, const std::string& media_type, const std::string& content) {
+  Push([name, media_type, content](LogFile& file) {
+    file.writer().WriteAttachment(name, media_type, 0, content);
+  });
+}
+
+bool RunLog::WriteRound() {
+  std::size_t written = ticks_.Drain([this](const hal::TickRecord& r) { tick_writer_->Write(r, *file_); });
+  written += truths_.Drain(
+      [this](const TruthSample& sample) { file_->Write(kTruthTopic, sample.stamp_ns, ToMessage(sample)); });
+  std::deque<Job> jobs;
+  {
+    const std::lock_guard lock(mutex_);
+    jobs.swap(jobs_);
+  }
+  changed_.notify_all();
+  for (const Job& job : jobs) {
+    job(*file_);
+  }
+  return written + jobs.size() > 0;
+}
+
+void RunLog::WriteAll() {
+  linux_rt::MakeThreadYielding("fovea-log");
+  try {
+    auto flushed = std::chrono::steady_clock::now();
+    bool last = false;
+    while (!last) {
+      {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, kPoll, [this] { return closed_ || !jobs_.empty(); });
+        last = closed_;  // whatever was added before is there now
+      }
+      const bool any = WriteRound();
+      const auto now = std::chrono::steady_clock::now();
+      if (any && now - flushed > kFlush) {
+        file_->writer().Flush();
+        flushed = now;
+      }
+    }
+  } catch (...) {
+    {
+      const std::lock_guard lock(mutex_);
+      failure_ = std::current_exception();
+    }
+    failed_ = true;
+    changed_.notify_all();
+  }
+}
+
+void RunLog::Close() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+}
+
+void RunLog::Finish() {
+  Close();
+  if (failure_) {
+    std::rethrow_exception(failure_);
+  }
+  file_->writer().Finish();
+}
+
+std::uint64_t RunLog::dropped() const {
+  const std::lock_guard lock(mutex_);
+  return ticks_.dropped() + truths_.dropped() + dropped_jobs_;
+}
+
+}  // namespace fovea::log

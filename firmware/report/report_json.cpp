@@ -1,0 +1,170 @@
+// RunData as the page's scripts read it; numbers by the thousand as base64 of little-endian float32.
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "fovea/report/report.hpp"
+
+namespace fovea::report {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string Base64(std::string_view bytes) {
+  std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // and the 0 that OpenSSL puts after it
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                  reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+  text.pop_back();
+  return text;
+}
+
+std::string Base64(const std::vector<float>& values) {
+  return Base64(std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
+}
+
+ordered_json Ticks(const RunData& run) {
+  const Envelope::Rows rows = run.ticks->rows();
+  const std::size_t joints = run.joints.size();
+  ordered_json ticks;
+  ticks["t_s"] = Base64(rows.t_s);
+  std::size_t column = 0;
+  for (const char* name : {"q", "dq", "tau", "tau_meas"}) {
+    ticks[name] = ordered_json::array();
+    for (std::size_t i = 0; i < joints; ++i) {
+      ticks[name].push_back(Base64(rows.columns[column++]));
+    }
+  }
+  const auto truth = [&](std::size_t which) {
+    return run.has_truth ? ordered_json(Base64(rows.columns[column + which])) : ordered_json(nullptr);
+  };
+  ticks["error_px"] = truth(RunData::kErrorPx);
+  ticks["error_mm"] = truth(RunData::kErrorMm);
+  ticks["predicted_px"] = Base64(rows.columns[column + RunData::kPredictedPx]);
+  return ticks;
+}
+
+ordered_json Frame(const RunData& run, const std::optional<EyeFrame>& frame) {
+  if (!frame) {
+    return nullptr;
+  }
+  ordered_json shapes = ordered_json::array();
+  for (const EyeFrame::Outline& outline : frame->outlines) {
+    shapes.push_back({{"role", outline.role}, {"points", outline.points_px}});
+  }
+  return {{"t_s", frame->t_s},
+          {"width_px", run.width_px},
+          {"height_px", run.height_px},
+          {"jpeg", Base64(std::string_view(frame->jpeg))},
+          {"shapes", shapes}};
+}
+
+ordered_json Scene(const RunData& run) {
+  if (run.links.empty() || run.motion.t_s.empty()) {
+    return nullptr;
+  }
+  ordered_json links = ordered_json::array();
+  for (const SceneLink& link : run.links) {
+    ordered_json shapes = ordered_json::array();
+    for (const SceneShape& shape : link.shapes) {
+      ordered_json entry = {{"kind", shape.kind},
+                            {"size", shape.size},
+                            {"position", shape.position},
+                            {"quaternion", shape.quaternion},
+                            {"colour", shape.colour}};
+      if (!shape.vertices.empty()) {
+        entry["vertices"] = Base64(shape.vertices);
+      }
+      shapes.push_back(entry);
+    }
+    links.push_back({{"name", link.frame}, {"shapes", shapes}});
+  }
+  return {{"links", links},
+          {"t_s", Base64(run.motion.t_s)},
+          {"poses", Base64(run.motion.poses)},
+          {"camera_path", Base64(run.motion.camera_path)},
+          {"target_path", Base64(run.motion.target_path)},
+          {"workspace_radius", run.workspace_radius},
+          {"table_z", 0.0}};
+}
+
+// The keys as a TOML file would have them.
+std::string Configuration(const std::map<std::string, std::string>& keys) {
+  std::string text;
+  std::string section;
+  for (const auto& [name, value] : keys) {
+    const auto dot = name.find('.');
+    if (name.substr(0, dot) != section) {
+      section = name.substr(0, dot);
+      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section);
+    }
+    text += fmt::format("{} = {}\n", name.substr(dot + 1), value);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ToJson(const RunData& run) {
+  ordered_json json;
+  json["name"] = run.name;
+  json["source"] = std::filesystem::path(run.source).filename().string();
+  json["incomplete"] = run.complete ? ordered_json(nullptr) : ordered_json(run.why_incomplete);
+  json["summary"] = run.summary_json ? ordered_json::parse(*run.summary_json, nullptr, false) : ordered_json(nullptr);
+  if (json["summary"].is_discarded()) {
+    json["summary"] = nullptr;
+  }
+  json["info"] = ordered_json::object();
+  for (const auto& [name, entries] : run.metadata) {
+    for (const auto& [key, value] : entries) {
+      if (name != "configuration") {
+        json["info"][name == "build" ? key : name + " " + key] = value;
+      }
+    }
+  }
+  const auto keys = run.metadata.find("configuration");
+  json["config"] = keys == run.metadata.end() ? std::string() : Configuration(keys->second);
+  json["duration_s"] = run.duration_s;
+  json["lambda"] = run.lambda;
+  json["target"] = {{"kind", "sphere"}, {"radius_m", run.target_radius}, {"moves", run.target_moves}};
+  json["joints"] = ordered_json::array();
+  for (const JointInfo& joint : run.joints) {
+    json["joints"].push_back({{"name", joint.name},
+                              {"type", joint.prismatic ? "prismatic" : "revolute"},
+                              {"q_min", joint.q_min},
+                              {"q_max", joint.q_max},
+                              {"dq_max", joint.dq_max},
+                              {"tau_max", joint.tau_max}});
+  }
+  json["ticks"] = Ticks(run);
+  const Envelope::Rows measured = run.measured.rows();
+  json["measured"] = {{"t_s", Base64(measured.t_s)},
+                      {"error_px", Base64(measured.columns[RunData::kMeasuredPx])},
+                      {"age_ms", Base64(measured.columns[RunData::kAgeMs])},
+                      {"confidence", Base64(measured.columns[RunData::kConfidence])}};
+  json["modes"] = ordered_json::array();
+  for (const ModeChange& change : run.modes) {
+    json["modes"].push_back({{"t_s", change.t_s}, {"mode", change.mode}, {"reason", change.reason}});
+  }
+  json["faults"] = ordered_json::array();
+  for (const FaultNote& fault : run.faults) {
+    json["faults"].push_back(
+        {{"t_s", fault.t_s}, {"name", fault.name}, {"key", fault.key}, {"detail", fault.detail}});
+  }
+  json["limits_active"] = ordered_json::array();
+  for (const LimitSpans& limit : run.limits_active) {
+    json["limits_active"].push_back({{"name", limit.name}, {"spans", limit.spans_s}});
+  }
+  json["tick_times"] = run.tick_counts.empty()
+                           ? ordered_json(nullptr)
+                           : ordered_json({{"upper_us", run.tick_upper_us}, {"counts", run.tick_counts}});
+  json["frames"] = run.first_frame ? ordered_json({{"first", Frame(run, run.first_frame)},
+                                                   {"last", Frame(run, run.last_frame)}})
+                                   : ordered_json(nullptr);
+  json["video"] = run.video ? ordered_json(Base64(std::string_view(*run.video))) : ordered_json(nullptr);
+  json["scene"] = Scene(run);
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace fovea::report

@@ -1,0 +1,83 @@
+// Puts the page together: the template's marks are replaced by the files that they name, and by the runs' data.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+
+#include "fovea/report/report.hpp"
+
+namespace fovea::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string ReadFile(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    throw std::runtime_error(path.string() + ": not there; the report is made with it");
+  }
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+void ReplaceAll(std::string& text, std::string_view from, std::string_view to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+// Text within <script> ends at the first "</script": it must not be in there.
+std::string InScript(std::string text) {
+  ReplaceAll(text, "</script", "<\\/script");
+  ReplaceAll(text, "<!--", "<\\!--");
+  return text;
+}
+
+std::string Escaped(std::string text) {
+  ReplaceAll(text, "&", "&amp;");
+  ReplaceAll(text, "<", "&lt;");
+  return text;
+}
+
+}  // namespace
+
+std::string MakeReport(const std::vector<RunData>& runs, const fs::path& page_folder) {
+  const fs::path libraries = FOVEA_JAVASCRIPT_FOLDER;
+  std::string title = runs.front().name;
+  if (runs.size() > 1) {
+    title += " and " + runs[1].name;
+  }
+  std::string page;
+  std::istringstream lines(ReadFile(page_folder / "report.html"));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string mark;
+    std::string kind;
+    words >> mark >> kind;
+    const bool is_mark = mark == "<!--" && kind.rfind("FOVEA:", 0) == 0;
+    if (!is_mark) {
+      ReplaceAll(line, "FOVEA_TITLE", Escaped(title));
+      page += line + "\n";
+      continue;
+    }
+    if (kind == "FOVEA:DATA") {
+      for (const RunData& run : runs) {
+        std::string json = ToJson(run);
+        ReplaceAll(json, "</", "<\\/");
+        ReplaceAll(json, "<!--", "\\u003c!--");
+        page += "<script type=\"application/json\" class=\"fovea-run\">" + json + "</script>\n";
+      }
+      continue;
+    }
+    const bool is_style = kind == "FOVEA:STYLE";
+    for (std::string name; words >> name && name != "-->";) {
+      const bool is_library = name.rfind("lib:", 0) == 0;
+      const std::string text = ReadFile(is_library ? libraries / name.substr(4) : page_folder / name);
+      page += is_style ? "<style>\n" + text + "</style>\n" : "<script>\n" + InScript(text) + "</script>\n";
+    }
+  }
+  return page;
+}
+
+}  // namespace fovea::report

@@ -1,0 +1,279 @@
+#include "fovea/report/run_data.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <stdexcept>
+
+#include "fovea/hal/record.hpp"
+#include "fovea/log/mcap_reader.hpp"
+#include "fovea/log/tick_message.hpp"
+#include "fovea/log/topics.hpp"
+#include "fovea/run.pb.h"
+#include "fovea/tick.pb.h"
+#include "foxglove/image.pb.h"
+#include "scene_reader.hpp"
+
+namespace fovea::report {
+namespace {
+
+constexpr std::size_t kMostBuckets = 1500;
+constexpr std::size_t kMostWaiting = 20'000;  // ticks that wait for their truth
+constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+
+double Seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
+
+template <typename Message>
+Message Parse(const log::McapMessage& message) {
+  Message parsed;
+  if (!parsed.ParseFromArray(message.data.data(), static_cast<int>(message.data.size()))) {
+    throw std::runtime_error(fmt::format("a message of {} cannot be parsed", message.topic));
+  }
+  return parsed;
+}
+
+class Reader {
+ public:
+  explicit Reader(RunData& run) : run_(run), scene_(run) {}
+
+  void Take(const log::McapMessage& message) {
+    const std::string_view topic = message.topic;
+    if (topic == log::kTickTopic) {
+      TakeTick(Parse<log::Tick>(message));
+    } else if (topic == log::kTruthTopic) {
+      truths_.push_back(Parse<log::Truth>(message));
+      scene_.AddTruth(truths_.back());
+      Join(false);
+    } else if (topic == log::kFeatureTopic) {
+      TakeFeature(Parse<log::Feature>(message), message.time_ns);
+    } else if (topic == log::kSetupTopic) {
+      TakeSetup(Parse<log::Setup>(message));
+    } else if (topic == log::kImageTopic) {
+      TakeImage(message);
+    } else if (topic == log::kAnnotationTopic) {
+      annotations_[message.time_ns] = Parse<foxglove::ImageAnnotations>(message);
+    } else if (topic == log::kCalibrationTopic) {
+      const auto calibration = Parse<foxglove::CameraCalibration>(message);
+      run_.width_px = static_cast<int>(calibration.width());
+      run_.height_px = static_cast<int>(calibration.height());
+    } else if (topic == log::kTickTimesTopic) {
+      TakeTickTimes(Parse<log::TickTimes>(message));
+    } else if (topic == log::kSceneTopic) {
+      scene_.AddScene(Parse<foxglove::SceneUpdate>(message));
+    } else if (topic == log::kTransformTopic) {
+      scene_.AddTransforms(Parse<foxglove::FrameTransforms>(message), message.time_ns);
+    }
+  }
+
+  void Finish() {
+    Join(true);
+    for (std::size_t i = 0; i < open_limits_.size(); ++i) {
+      if (open_limits_[i]) {
+        run_.limits_active[i].spans_s.push_back({*open_limits_[i], run_.duration_s});
+      }
+    }
+    if (!last_image_.empty()) {
+      run_.last_frame = MakeFrame(last_image_ns_, last_image_);
+    }
+    scene_.Finish();
+  }
+
+ private:
+  void TakeSetup(const log::Setup& setup) {
+    run_.name = setup.name();
+    for (const log::Joint& joint : setup.joints()) {
+      run_.joints.push_back(
+          {joint.name(), joint.prismatic(), joint.q_min(), joint.q_max(), joint.dq_max(), joint.tau_max()});
+    }
+    run_.lambda = setup.lambda();
+    run_.target_radius = setup.target_radius();
+    run_.target_moves = setup.target_moves();
+    run_.workspace_radius = setup.workspace_radius();
+    for (const std::string& name : setup.limits()) {
+      run_.limits_active.push_back({name, {}});
+    }
+    open_limits_.resize(run_.limits_active.size());
+    setup_ = setup;
+    run_.ticks.emplace(4 * run_.joints.size() + RunData::kNumTickColumns, kMostBuckets);
+  }
+
+  // Distance in the picture between two values of the sphere's feature [px]; NaN when one is behind the camera.
+  template <typename S>
+  float ErrorPx(const S& s, const S& s_star) const {
+    if (s.size() < 3 || s_star.size() < 3 || !(s[2] > 0.0) || !(s_star[2] > 0.0)) {
+      return kNone;
+    }
+    return static_cast<float>(setup_.f_px() * std::hypot(s[0] / s[2] - s_star[0] / s_star[2],
+                                                         s[1] / s[2] - s_star[1] / s_star[2]));
+  }
+
+  void TakeTick(const log::Tick& tick) {
+    if (!run_.ticks) {
+      throw std::runtime_error("a tick comes before the set-up");
+    }
+    const double t_s = Seconds(tick.stamp_ns());
+    run_.duration_s = t_s;
+    NoteEvents(tick, t_s);
+    for (std::size_t i = 0; i < open_limits_.size(); ++i) {
+      const bool acts = ((tick.limits_active() >> i) & 1U) != 0;
+      if (acts && !open_limits_[i]) {
+        open_limits_[i] = t_s;
+      } else if (!acts && open_limits_[i]) {
+        run_.limits_active[i].spans_s.push_back({*open_limits_[i], t_s});
+        open_limits_[i].reset();
+      }
+    }
+    Row row;
+    row.stamp_ns = tick.stamp_ns();
+    const auto joints = static_cast<int>(run_.joints.size());
+    for (const auto* values : {&tick.arm().q(), &tick.arm().dq(), &tick.command().tau(), &tick.arm().tau_meas()}) {
+      for (int i = 0; i < joints; ++i) {
+        row.values.push_back(i < values->size() ? static_cast<float>((*values)[i]) : kNone);
+      }
+    }
+    row.values.push_back(kNone);
+    row.values.push_back(kNone);
+    row.values.push_back(tick.target_known() ? ErrorPx(tick.s(), tick.s_star()) : kNone);
+    waiting_.push_back(std::move(row));
+    s_star_ = tick.s_star();
+    Join(false);
+  }
+
+  void NoteEvents(const log::Tick& tick, double t_s) {
+    const auto mode = static_cast<hal::Mode>(tick.mode());
+    const auto reason = static_cast<hal::HoldReason>(tick.hold_reason());
+    const std::string mode_name = hal::Name(mode);
+    const std::string reason_name = mode == hal::Mode::kHold ? hal::Name(reason) : "";
+    if (run_.modes.empty() || run_.modes.back().mode != mode_name || run_.modes.back().reason != reason_name) {
+      run_.modes.push_back({t_s, mode_name, reason_name});
+    }
+    const auto fault = static_cast<hal::Fault>(tick.fault());
+    if (fault != hal::Fault::kNone && fault != last_fault_) {
+      run_.faults.push_back({t_s, hal::Name(fault), hal::Key(fault),
+                             tick.fault_joint() >= 0 ? fmt::format("joint {}", tick.fault_joint() + 1) : ""});
+    }
+    last_fault_ = fault;
+  }
+
+  // Gives each tick the truth of its own time. The two streams are written one after the other, so that one waits
+  // for the other.
+  void Join(bool last) {
+    while (!waiting_.empty()) {
+      Row& row = waiting_.front();
+      while (!truths_.empty() && truths_.front().stamp_ns() < row.stamp_ns) {
+        truths_.pop_front();
+      }
+      if (truths_.empty() && !last && waiting_.size() < kMostWaiting) {
+        return;
+      }
+      if (!truths_.empty() && truths_.front().stamp_ns() == row.stamp_ns) {
+        const std::size_t at = row.values.size() - RunData::kNumTickColumns;
+        const double error_px = truths_.front().error_px();
+        row.values[at + RunData::kErrorPx] = std::isfinite(error_px) ? static_cast<float>(error_px) : kNone;
+        row.values[at + RunData::kErrorMm] = static_cast<float>(truths_.front().error_mm());
+        run_.has_truth = true;
+      }
+      run_.ticks->Add(Seconds(row.stamp_ns), row.values);
+      waiting_.pop_front();
+    }
+  }
+
+  void TakeFeature(const log::Feature& feature, std::int64_t taken_ns) {
+    const float error = feature.found() ? ErrorPx(feature.s(), s_star_) : kNone;
+    run_.measured.Add(Seconds(feature.stamp_ns()),
+                      {error, static_cast<float>(1e-6 * static_cast<double>(taken_ns - feature.stamp_ns())),
+                       static_cast<float>(feature.confidence())});
+  }
+
+  void TakeImage(const log::McapMessage& message) {
+    last_image_ns_ = message.time_ns;
+    last_image_ = Parse<foxglove::CompressedImage>(message).data();
+    if (!run_.first_frame) {
+      run_.first_frame = MakeFrame(last_image_ns_, last_image_);
+    }
+    annotations_.erase(annotations_.begin(), annotations_.lower_bound(last_image_ns_));
+  }
+
+  EyeFrame MakeFrame(std::int64_t time_ns, const std::string& jpeg) const {
+    EyeFrame frame;
+    frame.t_s = Seconds(time_ns);
+    frame.jpeg = jpeg;
+    const auto found = annotations_.find(time_ns);
+    if (found == annotations_.end()) {
+      return frame;
+    }
+    for (const foxglove::PointsAnnotation& from : found->second.points()) {
+      EyeFrame::Outline outline;
+      outline.role = from.metadata_size() > 0 ? from.metadata(0).value() : "";
+      for (const foxglove::Point2& point : from.points()) {
+        outline.points_px.push_back({point.x(), point.y()});
+      }
+      frame.outlines.push_back(outline);
+    }
+    return frame;
+  }
+
+  void TakeTickTimes(const log::TickTimes& times) {
+    for (int i = 0; i < std::min(times.upper_ns_size(), times.counts_size()); ++i) {
+      run_.tick_upper_us.push_back(1e-3 * static_cast<double>(times.upper_ns(i)));
+      run_.tick_counts.push_back(times.counts(i));
+    }
+  }
+
+  struct Row {
+    std::int64_t stamp_ns = 0;
+    std::vector<float> values;
+  };
+
+  RunData& run_;
+  SceneReader scene_;
+  log::Setup setup_;
+  google::protobuf::RepeatedField<double> s_star_;
+  std::deque<Row> waiting_;
+  std::deque<log::Truth> truths_;
+  std::vector<std::optional<double>> open_limits_;  // since when each acts
+  hal::Fault last_fault_ = hal::Fault::kNone;
+  std::map<std::int64_t, foxglove::ImageAnnotations> annotations_;
+  std::int64_t last_image_ns_ = 0;
+  std::string last_image_;
+};
+
+}  // namespace
+
+RunData ReadRun(const std::filesystem::path& log_or_folder) {
+  const std::filesystem::path path =
+      std::filesystem::is_directory(log_or_folder) ? log_or_folder / "log.mcap" : log_or_folder;
+  RunData run;
+  run.source = path.string();
+  Reader reader(run);
+  log::McapVisitor visitor;
+  visitor.on_message = [&](const log::McapMessage& message) { reader.Take(message); };
+  visitor.on_attachment = [&](const log::McapAttachment& attachment) {
+    if (attachment.name == "summary.json") {
+      run.summary_json = std::string(attachment.data);
+    } else if (attachment.media_type == "video/mp4") {
+      run.video = std::string(attachment.data);
+    }
+  };
+  visitor.on_metadata = [&](std::string_view name, const std::map<std::string, std::string>& entries) {
+    run.metadata[std::string(name)] = entries;
+  };
+  log::McapEnd end;
+  try {
+    end = log::ReadMcap(path, visitor);
+  } catch (const std::runtime_error& error) {
+    const std::string text = error.what();
+    throw std::runtime_error(text.rfind(path.string(), 0) == 0 ? text : path.string() + ": " + text);
+  }
+  run.complete = end.complete;
+  run.why_incomplete = end.why;
+  if (!run.ticks) {
+    throw std::runtime_error(path.string() + ": no log of a run of Fovea's: it has no " + log::kSetupTopic);
+  }
+  reader.Finish();
+  return run;
+}
+
+}  // namespace fovea::report

@@ -1,0 +1,55 @@
+// A bounded ring from one thread to another: one writer, one reader, no locks. What finds it full is dropped
+// and counted.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace fovea::linux_rt {
+
+template <typename T>
+class BoundedRing {
+ public:
+  // Room for `capacity` values [>= 1], allocated and touched here.
+  explicit BoundedRing(std::size_t capacity) : values_(capacity > 0 ? capacity : 1) {}
+
+  // From the writing thread. Real-time: yes.
+  void Push(const T& value) noexcept {
+    const std::uint64_t at = written_.load(std::memory_order_relaxed);
+    if (!HasRoom()) {
+      dropped_.fetch_add(1, std::memory_order_relaxed);
+      return;
+    }
+    values_[at % values_.size()] = value;
+    written_.store(at + 1, std::memory_order_release);
+  }
+
+  // From the writing thread: whether the next Push finds a place.
+  [[nodiscard]] bool HasRoom() const noexcept {
+    return written_.load(std::memory_order_relaxed) - read_.load(std::memory_order_acquire) < values_.size();
+  }
+
+  // From the reading thread: calls `take(value)` for every value that is there, oldest first. Returns how many.
+  template <typename Take>
+  std::size_t Drain(Take&& take) {
+    const std::uint64_t end = written_.load(std::memory_order_acquire);
+    const std::uint64_t begin = read_.load(std::memory_order_relaxed);
+    for (std::uint64_t next = begin; next != end; ++next) {
+      take(values_[next % values_.size()]);
+      read_.store(next + 1, std::memory_order_release);
+    }
+    return end - begin;
+  }
+
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+
+ private:
+  std::vector<T> values_;
+  alignas(64) std::atomic<std::uint64_t> written_{0};
+  alignas(64) std::atomic<std::uint64_t> read_{0};
+  alignas(64) std::atomic<std::uint64_t> dropped_{0};
+};
+
+}  // namespace fovea::linux_rt

@@ -1,0 +1,53 @@
+// Feeds a simulated run's log: what the run is about, what happens in it, and what came of it.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "fovea/linux_rt/tick_meter.hpp"
+#include "fovea/log/run_log.hpp"
+#include "fovea/servo/servo_config.hpp"
+#include "fovea/vision/ball_detector.hpp"
+#include "sim/app/scenario.hpp"
+#include "sim/render/pinhole.hpp"
+#include "sim/render/scene_renderer.hpp"
+#include "sim/world/world.hpp"
+
+namespace fovea::sim {
+
+struct LogFeedConfig {
+  std::filesystem::path path;
+  Scenario scenario;
+  robots::Robot robot;
+  servo::ServoConfig servo;
+  RenderScene scene;
+  Pinhole pinhole;
+  vision::Intrinsics intrinsics;
+  bool may_drop = false;  // at real pace
+};
+
+class LogFeed {
+ public:
+  // Creates the file, with all that is known before the run. std::runtime_error when it cannot.
+  explicit LogFeed(const LogFeedConfig& config);
+
+  // From the thread that advances the world.
+  void AddTruth(const Truth& truth);
+  // From the thread that empties the recorder.
+  void AddRecord(const hal::TickRecord& record) { log_.AddTick(record); }
+  // From the vision thread. `p_CO_C`: where the target really was [m].
+  void AddFrame(const hal::Frame& frame, const vision::BallDetection& detection, const Eigen::Vector3d& p_CO_C);
+
+  // When all is over: how long the ticks took, the summary, the film; then completes the file.
+  void Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json,
+              const std::optional<std::filesystem::path>& film);
+  [[nodiscard]] std::uint64_t dropped() const { return log_.dropped(); }
+
+ private:
+  const LogFeedConfig config_;
+  log::RunLog log_;
+};
+
+}  // namespace fovea::sim

@@ -1,0 +1,86 @@
+// fovea: what is done with runs that are over.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+
+#include "fovea/build_info.hpp"
+#include "fovea/config/share_folder.hpp"
+#include "fovea/report/report.hpp"
+
+namespace {
+
+using namespace fovea;
+
+constexpr int kDone = 0;
+constexpr int kBadInput = 2;
+
+struct ReportArguments {
+  std::vector<std::string> logs;
+  std::string out;
+};
+
+// Beside its log; one of two runs, in the current folder.
+std::filesystem::path DefaultOut(const std::vector<std::string>& logs) {
+  if (logs.size() > 1) {
+    return "comparison.html";
+  }
+  const std::filesystem::path log = logs.front();
+  return (std::filesystem::is_directory(log) ? log : log.parent_path()) / "report.html";
+}
+
+int Report(const ReportArguments& arguments) {
+  std::vector<report::RunData> runs;
+  for (const std::string& log : arguments.logs) {
+    runs.push_back(report::ReadRun(log));
+    if (!runs.back().complete) {
+      fmt::print(stderr, "fovea: {}; the report shows what is there\n", runs.back().why_incomplete);
+    }
+  }
+  const std::string page = report::MakeReport(runs, config::ShareFolder() / "report");
+  const std::filesystem::path out = arguments.out.empty() ? DefaultOut(arguments.logs) : std::filesystem::path(arguments.out);
+  std::ofstream stream(out, std::ios::binary | std::ios::trunc);
+  stream << page;
+  stream.close();
+  if (!stream) {
+    throw std::runtime_error(out.string() + ": cannot be written");
+  }
+  fmt::print("{}\n", out.string());
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Fovea's tools for runs that are over."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", fmt::format("fovea {} {}", kVersion, kGitRevision));
+  app.footer(
+      "Examples:\n"
+      "  fovea report out/ball\n"
+      "  fovea report out/ball/log.mcap --out ball.html\n"
+      "  fovea report out/slow out/fast --out comparison.html\n"
+      "Exit: 0 done, 2 wrong usage or input.");
+
+  ReportArguments arguments;
+  CLI::App* report = app.add_subcommand("report", "make the report of a log, or of two beside each other");
+  report->add_option("log", arguments.logs, "a log.mcap, or the folder of a run; one or two")->required()->expected(1, 2);
+  report->add_option("--out", arguments.out,
+                     "the file to write; report.html beside the log, or comparison.html for two");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? kDone : kBadInput;
+  }
+  try {
+    return Report(arguments);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "fovea: {}\n", error.what());
+    return kBadInput;
+  }
+}
