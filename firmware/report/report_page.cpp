@@ -42,42 +42,46 @@ std::string Escaped(std::string text) {
 
 }  // namespace
 
-std::string MakeReport(const std::vector<RunData>& runs, const fs::path& page_folder) {
+ReportPage::ReportPage(const fs::path& folder) {
   const fs::path libraries = FOVEA_JAVASCRIPT_FOLDER;
-  std::string title = runs.front().name;
-  if (runs.size() > 1) {
-    title += " and " + runs[1].name;
-  }
-  std::string page;
-  std::istringstream lines(ReadFile(page_folder / "report.html"));
+  std::string* part = &before_data_;
+  std::istringstream lines(ReadFile(folder / "report.html"));
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
     std::string mark;
     std::string kind;
     words >> mark >> kind;
-    const bool is_mark = mark == "<!--" && kind.rfind("FOVEA:", 0) == 0;
-    if (!is_mark) {
-      ReplaceAll(line, "FOVEA_TITLE", Escaped(title));
-      page += line + "\n";
+    if (mark != "<!--" || kind.rfind("FOVEA:", 0) != 0) {
+      *part += line + "\n";
       continue;
     }
     if (kind == "FOVEA:DATA") {
-      for (const RunData& run : runs) {
-        std::string json = ToJson(run);
-        ReplaceAll(json, "</", "<\\/");
-        ReplaceAll(json, "<!--", "\\u003c!--");
-        page += "<script type=\"application/json\" class=\"fovea-run\">" + json + "</script>\n";
-      }
+      part = &after_data_;
       continue;
     }
     const bool is_style = kind == "FOVEA:STYLE";
     for (std::string name; words >> name && name != "-->";) {
       const bool is_library = name.rfind("lib:", 0) == 0;
-      const std::string text = ReadFile(is_library ? libraries / name.substr(4) : page_folder / name);
-      page += is_style ? "<style>\n" + text + "</style>\n" : "<script>\n" + InScript(text) + "</script>\n";
+      const std::string text = ReadFile(is_library ? libraries / name.substr(4) : folder / name);
+      *part += is_style ? "<style>\n" + text + "</style>\n" : "<script>\n" + InScript(text) + "</script>\n";
     }
   }
-  return page;
+}
+
+std::string ReportPage::Make(const std::vector<RunData>& runs) const {
+  std::string title = runs.front().name;
+  if (runs.size() > 1) {
+    title += " and " + runs[1].name;
+  }
+  std::string page = before_data_;
+  ReplaceAll(page, "FOVEA_TITLE", Escaped(title));
+  for (const RunData& run : runs) {
+    std::string json = ToJson(run);
+    ReplaceAll(json, "</", "<\\/");
+    ReplaceAll(json, "<!--", "\\u003c!--");
+    page += "<script type=\"application/json\" class=\"fovea-run\">" + json + "</script>\n";
+  }
+  return page + after_data_;
 }
 
 }  // namespace fovea::report

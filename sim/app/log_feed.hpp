@@ -44,6 +44,7 @@ class LogFeed {
   void Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json,
               const std::optional<std::filesystem::path>& film);
   [[nodiscard]] std::uint64_t dropped() const { return log_.dropped(); }
+  [[nodiscard]] const std::filesystem::path& path() const { return config_.path; }
 
  private:
   const LogFeedConfig config_;

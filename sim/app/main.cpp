@@ -43,6 +43,9 @@ int Run(const RunArguments& arguments) {
     fmt::print("{}", sim::ToJson(summary));
   } else {
     fmt::print("{}  {:<24}{}\n", sim::ToTable(summary), "files", options.out.string());
+    if (options.pictures) {
+      fmt::print("  {:<24}{}\n", "report", (options.out / "report.html").string());
+    }
   }
   return sim::ReachedItsGoal(summary) ? kDone : kGoalMissed;
 }

@@ -10,12 +10,14 @@
 #include <optional>
 #include <thread>
 
+#include "fovea/config/share_folder.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/record_ring.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "fovea/log/record_hash.hpp"
+#include "fovea/report/report.hpp"
 #include "fovea/servo/servo_loop.hpp"
 #include "fovea/vision/vision_task.hpp"
 #include "fovea/build_info.hpp"
@@ -39,7 +41,7 @@ namespace fovea::sim {
 namespace {
 
 constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
-const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png", "camera.mp4", "log.mcap",
+const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png", "camera.mp4", "log.mcap", "report.html",
                                           "summary.json"};
 
 // Pictures that are drawn at the same time, each by a renderer of its own.
@@ -78,6 +80,9 @@ class Run {
     UseOneThreadPerRenderer();
     for (int i = 0; i < kRenderers; ++i) {
       renderers_.push_back(std::make_unique<SceneRenderer>(scene_, pinhole_, RenderQuality{}, i));
+    }
+    if (!options_.out.empty() && options_.pictures) {
+      page_.emplace(config::ShareFolder() / "report");
     }
     if (!options_.out.empty()) {
       folder_.emplace(options_.out);  // after all that can be refused: what is refused leaves no folder
@@ -321,6 +326,9 @@ class Run {
     if (log_) {
       log_->Finish(meter_.durations(), summary_json, film);
       files.push_back({"log.mcap", std::nullopt});
+      report::RunData data = report::ReadRun(log_->path());
+      data.source = "log.mcap";
+      files.push_back({"report.html", page_->Make({data})});
     }
     if (options_.pictures) {
       files.push_back({"bench.png", DrawBenchPicture(scene_, world_->Look(), camera_path_.points(),
@@ -343,6 +351,7 @@ class Run {
   std::optional<OutputFolder> folder_;
   std::unique_ptr<EyeFilm> film_;
   std::unique_ptr<LogFeed> log_;
+  std::optional<report::ReportPage> page_;
   RenderScene scene_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;
   std::unique_ptr<Verdict> verdict_;

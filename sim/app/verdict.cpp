@@ -12,7 +12,7 @@ namespace fovea::sim {
 namespace {
 
 constexpr double kTickS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kWindowS = 0.5;      // final_* are over this last part of a run
+constexpr std::int64_t kWindowNs = hal::kNsPerSecond / 2;  // final_* are over this last part of a run
 constexpr double kConvergedPx = 1.0;  // converged: no sample of it is further off
 constexpr double kConvergedM = 0.002;
 constexpr double kSettledShare = 0.02;  // settled: below this share of the first error, for good
@@ -23,7 +23,7 @@ Verdict::Verdict(const VerdictConfig& config) : config_(config) {}
 
 void Verdict::AddTruth(const Truth& truth) {
   const TargetError error = ErrorOf(truth, config_.pinhole, config_.p_CO_C_star);
-  AddSample({static_cast<double>(truth.stamp_ns) * 1e-9, error.error_px, error.error_C});
+  AddSample({truth.stamp_ns, error.error_px, error.error_C});
 
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
@@ -49,14 +49,15 @@ void Verdict::AddSample(const Sample& sample) {
     first_px_ = sample.error_px;
   }
   window_.push_back(sample);
-  while (window_.front().t_s <= sample.t_s - kWindowS) {
+  while (window_.front().stamp_ns <= sample.stamp_ns - kWindowNs) {
     window_.pop_front();
   }
+  const double t_s = static_cast<double>(sample.stamp_ns) * 1e-9;
   is_outside_ = !(sample.error_px <= kSettledShare * *first_px_);
   if (is_outside_) {
-    last_outside_s_ = sample.t_s;
+    last_outside_s_ = t_s;
   }
-  if (sample.t_s > 0.5 * config_.duration_s) {
+  if (t_s > 0.5 * config_.duration_s) {
     second_half_px2_ += sample.error_px * sample.error_px;
     ++second_half_samples_;
   }
@@ -198,7 +199,7 @@ std::string Verdict::WhyNot(const Summary& summary) const {
   }
   return fmt::format(
       "not converged: over the last {:g} s the target was not within {:g} px and {:g} mm of its goal",
-      kWindowS, kConvergedPx, 1e3 * kConvergedM);
+      1e-9 * static_cast<double>(kWindowNs), kConvergedPx, 1e3 * kConvergedM);
 }
 
 }  // namespace fovea::sim

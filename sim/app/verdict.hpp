@@ -41,7 +41,7 @@ class Verdict {
 
  private:
   struct Sample {
-    double t_s = 0.0;
+    std::int64_t stamp_ns = 0;
     double error_px = 0.0;                              // infinite when the target is behind the camera
     Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal less truth, in axes of C [m]
   };

@@ -64,7 +64,16 @@ INSTANTIATE_TEST_SUITE_P(
              "fovea/(hal|model|config|robots)/.*|urdf_chain[.]hpp|(fmt|urdf_parser|console_bridge)/.*|Eigen/"
              ".*",
              "nothing of the firmware sees the simulator"},
-        Rule{"firmware/include", "(fovea/(hal|model|features|servo|vision|config|robots)/|Eigen/|opencv2/).*",
+        Rule{"firmware/log",
+             "fovea/(hal|model|vision|linux_rt|log)/.*|(log_file|mcap_format|tick_writer)[.]hpp|"
+             "(fovea|foxglove)/[a-z]+[.]pb[.]h|(fmt|google|openssl|opencv2)/.*|Eigen/.*|(zlib|zstd)[.]h",
+             "nothing of the firmware sees the simulator"},
+        Rule{"firmware/report",
+             "fovea/(hal|log|report)/.*|scene_reader[.]hpp|(fovea|foxglove)/[a-z]+[.]pb[.]h|(fmt|nlohmann|openssl)/.*",
+             "a report is made of a log alone"},
+        Rule{"tools/fovea", "fovea/.*|(fmt|CLI)/.*", "works on what runs leave, without the simulator"},
+        Rule{"firmware/include",
+             "(fovea/(hal|model|features|servo|vision|config|robots|linux_rt|log|report)/|Eigen/|opencv2/|google/).*",
              "nothing of the firmware sees the simulator"},
         Rule{"sim/camera", "fovea/hal/.*|sim/(camera|render)/.*", "the simulator sees hal, not the firmware"},
         Rule{"sim/physics", "sim/(physics|robot)/.*|Eigen/.*|Bullet.*",

@@ -40,7 +40,7 @@ int Report(const ReportArguments& arguments) {
       fmt::print(stderr, "fovea: {}; the report shows what is there\n", runs.back().why_incomplete);
     }
   }
-  const std::string page = report::MakeReport(runs, config::ShareFolder() / "report");
+  const std::string page = report::ReportPage(config::ShareFolder() / "report").Make(runs);
   const std::filesystem::path out = arguments.out.empty() ? DefaultOut(arguments.logs) : std::filesystem::path(arguments.out);
   std::ofstream stream(out, std::ios::binary | std::ios::trunc);
   stream << page;

@@ -9,9 +9,19 @@
 
 namespace fovea::report {
 
-// Of one run or two. `page_folder` holds the page's own parts. std::runtime_error when a part, or a library that is
-// put into the page, is not there.
-std::string MakeReport(const std::vector<RunData>& runs, const std::filesystem::path& page_folder);
+class ReportPage {
+ public:
+  // Reads the page's own parts from `folder`, and the libraries that are put into it. std::runtime_error, naming
+  // the file, when one is not there.
+  explicit ReportPage(const std::filesystem::path& folder);
+
+  // The whole file, for one run or two.
+  [[nodiscard]] std::string Make(const std::vector<RunData>& runs) const;
+
+ private:
+  std::string before_data_;
+  std::string after_data_;
+};
 
 // What the page's scripts read; see firmware/report/README.md.
 std::string ToJson(const RunData& run);

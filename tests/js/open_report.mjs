@@ -1,0 +1,90 @@
+// Opens a report as a person would, wide and narrow, and on paper: every part is drawn, nothing is fetched, nothing
+// is complained of, nothing sticks out. Leaves pictures of what it saw.
+//   node open_report.mjs REPORT.html FOLDER
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import os from "node:os";
+import path from "node:path";
+import { pathToFileURL } from "node:url";
+
+import { chromium } from "playwright-core";
+
+const [report, folder] = process.argv.slice(2);
+const name = path.basename(report, ".html");
+const url = pathToFileURL(path.resolve(report)).href;
+const program = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(fs.existsSync);
+assert.ok(program, "Chromium is there (tools/install test)");
+
+const home = fs.mkdtempSync(path.join(os.tmpdir(), "fovea-report-"));
+const context = await chromium.launchPersistentContext(home, {
+  executablePath: program,
+  headless: true,
+  args: [
+    "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
+    "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+  ],
+});
+
+const parts = ["verdict", "eye", "error", "path", "joints", "timeline", "ticks", "config"];
+try {
+  for (const [width, height] of [[1280, 900], [400, 800]]) {
+    const page = await context.newPage();
+    await page.setViewportSize({ width, height });
+    const said = [];
+    page.on("console", (message) => {
+      if (["error", "warning"].includes(message.type())) said.push(message.text());
+    });
+    page.on("pageerror", (error) => said.push(String(error)));
+    const asked = [];
+    page.on("request", (request) => {
+      if (request.url() !== url && !/^(data|blob):/.test(request.url())) asked.push(request.url());
+    });
+    await page.goto(url);
+    for (const part of parts) {
+      await page.locator(`#${part}`).scrollIntoViewIfNeeded();
+      await page.locator(`#${part}[data-drawn="true"]`).waitFor({ state: "attached", timeout: 30_000 });
+    }
+    const seen = await page.evaluate(() => {
+      // A canvas counts as drawn when its pixels differ.
+      const drawn = (canvas) => {
+        const copy = document.createElement("canvas");
+        copy.width = canvas.width;
+        copy.height = canvas.height;
+        const context = copy.getContext("2d");
+        context.drawImage(canvas, 0, 0);
+        const pixels = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
+        return pixels.some((value) => value !== pixels[0]);
+      };
+      const plots = (id) => [...document.querySelectorAll(`#${id} canvas`)].filter((c) => c.width > 0 && drawn(c)).length;
+      const videos = [...document.querySelectorAll("video")];
+      return {
+        plots: Object.fromEntries(["error", "path", "joints"].map((id) => [id, plots(id)])),
+        words: document.querySelector("#verdict").innerText.length,
+        images: [...document.querySelectorAll("#eye img, #eye image")].length,
+        videos: videos.map((v) => v.error === null && v.duration),
+        sideways: document.documentElement.scrollWidth - document.documentElement.clientWidth,
+        absent: [...document.querySelectorAll(".absent")].map((p) => p.innerText),
+      };
+    });
+    console.log(`${width} px: ${JSON.stringify(seen)}`);
+    await page.evaluate(() => window.scrollTo(0, 0));
+    await page.screenshot({ path: path.join(folder, `${name}-${width}.png`), fullPage: true });
+    assert.deepEqual(said, [], "the console is silent");
+    assert.deepEqual(asked, [], "nothing is fetched");
+    assert.ok(seen.words > 100);
+    assert.ok(seen.plots.error >= 1 && seen.plots.path >= 1 && seen.plots.joints >= 3, "plots are drawn");
+    assert.ok(seen.images >= 2, "first and last frame");
+    assert.ok(seen.videos.length >= 1 && seen.videos.every((duration) => duration > 1), "the film can be played");
+    assert.equal(seen.sideways, 0, "nothing sticks out to the side");
+    assert.deepEqual(seen.absent, [], "nothing is missing from a whole run");
+    if (width === 1280) {
+      await page.pdf({ path: path.join(folder, `${name}.pdf`), format: "A4", printBackground: true });
+    }
+    await page.close();
+  }
+} finally {
+  await context.close();
+  fs.rmSync(home, { recursive: true, force: true });
+}
+console.log("the report can be read");
