@@ -9,6 +9,7 @@ import path from "node:path";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
 import { loadDecompressHandlers, protobufFromBinaryDescriptor } from "@mcap/support";
 
+import { checkLayouts } from "./layouts.mjs";
 import { compareWithOfficial } from "./schemas.mjs";
 
 const folder = process.argv[2];
@@ -152,6 +153,9 @@ assert.equal(words.length, summary.modes.length, words.join("; "));
 assert.equal(of("/setup").length, 1);
 const counted = of("/servo/tick_times")[0].data.counts.reduce((sum, count) => sum + Number(count), 0);
 assert.equal(counted, summary.ticks);
+
+const layouts = new URL("../../tools/layouts", import.meta.url).pathname;
+console.log(`${checkLayouts(layouts, byTopic)} streams and fields of the layouts are there`);
 
 const metadata = {};
 for await (const record of reader.readMetadata()) {
