@@ -71,8 +71,8 @@ INSTANTIATE_TEST_SUITE_P(
              "physics sees Bullet and the robot alone"},
         Rule{"sim/render", "sim/(render|robot)/.*|(Eigen|epoxy|fmt)/.*",
              "rendering sees no physics and no servo"},
-        Rule{"sim/robot", "sim/robot/.*|(Eigen|fmt|urdf_parser)/.*",
-             "the simulated robot comes from its URDF alone"},
+        Rule{"sim/robot", "sim/robot/.*|(Eigen|assimp|fmt|urdf_parser)/.*",
+             "the simulated robot comes from its URDF and its meshes alone"},
         Rule{"sim/world", "fovea/hal/.*|sim/(world|physics|render|robot)/.*|Eigen/.*",
              "the simulator sees hal, not the firmware"}),
     [](const auto& rule) {
