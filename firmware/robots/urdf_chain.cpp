@@ -133,6 +133,19 @@ class ChainReader {
                          joint->child_link_name, it->second, name));
       }
     }
+    for (const auto& [name, link] : urdf_->links_) {
+      CheckReachesRoot(*link);
+    }
+  }
+
+  // Links that hang on each other in a ring, beside the root, have one joint each.
+  void CheckReachesRoot(const urdf::Link& link) const {
+    std::size_t steps = 0;
+    for (urdf::LinkConstSharedPtr above = link.getParent(); above; above = above->getParent()) {
+      if (++steps > urdf_->links_.size()) {
+        Fail(fmt::format("link \"{}\" hangs on itself: a loop is no serial arm", link.name));
+      }
+    }
   }
 
   void FindEnds() {
