@@ -170,6 +170,9 @@ TEST(RobotTest, RefusesWhatItCannotDrive) {
       {Replace(good, "type=\"revolute\"", "type=\"planar\""),
        "only revolute, continuous, prismatic and fixed"},
       {Replace(good, inertia2, "<link name=\"l2\"/>"), "without <inertial>"},
+      {Replace(good, "<link name=\"base\"/>",
+               "<link name=\"base\"><visual><geometry><cone/></geometry></visual></link>"),
+       "cone"},  // which urdfdom would leave out
       {Replace(good, "mass value=\"1\"", "mass value=\"0\""), "the mass above 0"},
       {Replace(good, "ixx=\"0.01\"", "ixx=\"-0.01\""), "principal moments"},
       {Replace(good, "izz=\"0.01\"", "izz=\"0.03\""),
