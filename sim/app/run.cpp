@@ -25,6 +25,7 @@
 #include "sim/app/pictures.hpp"
 #include "sim/app/progress.hpp"
 #include "sim/app/record_hash.hpp"
+#include "sim/app/scene_film.hpp"
 #include "sim/app/target_log.hpp"
 #include "sim/app/verdict.hpp"
 #include "sim/camera/sim_camera.hpp"
@@ -38,8 +39,8 @@ namespace fovea::sim {
 namespace {
 
 constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
-const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png", "camera.mp4",
-                                          "summary.json"};
+const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png",
+                                          "camera.mp4",    "scene.mp4",    "summary.json"};
 
 // Pictures that are drawn at the same time, each by a renderer of its own.
 constexpr int kRenderers = 2;
@@ -82,6 +83,10 @@ class Run {
       folder_.emplace(options_.out);  // after all that can be refused: what is refused leaves no folder
       if (options_.pictures) {
         BeginFilm(servo_config.feature.p_CO_C_star);
+        if (scenario_.run.scene_video) {
+          scene_film_ = std::make_unique<SceneFilm>(
+              SceneFilmConfig{folder_->Begin("scene.mp4"), scene_, kRenderers, options_.pace == Pace::kReal});
+        }
       }
     }
     BuildWorld(servo_config);
@@ -162,6 +167,9 @@ class Run {
     world_->OnExposure([this, latency_ns](Exposure exposure) {
       targets_.Put(exposure.sequence, exposure.X_BC.inverse() * exposure.p_BO);
       delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns);
+      if (scene_film_) {
+        scene_film_->Add(exposure);
+      }
       camera_->Expose(std::move(exposure));
     });
     arm_ = std::make_unique<SimArm>(*world_);
@@ -260,7 +268,7 @@ class Run {
     s.overruns = counters_.overruns;
     s.missed_ticks = counters_.missed_ticks;
     s.records_dropped = ring_.dropped();
-    s.film_frames_dropped = film_ ? film_->dropped() : 0;
+    s.film_frames_dropped = (film_ ? film_->dropped() : 0) + (scene_film_ ? scene_film_->dropped() : 0);
     if (linux_rt::HeapCounterActive()) {
       s.heap_allocations_in_tick = meter_.heap_calls();
     }
@@ -298,6 +306,10 @@ class Run {
       film_->Finish();
       files.push_back({"camera.mp4", std::nullopt});
     }
+    if (scene_film_ && frames_.frames() > 0) {
+      scene_film_->Finish();
+      files.push_back({"scene.mp4", std::nullopt});
+    }
     if (options_.pictures) {
       files.push_back({"bench.png", DrawBenchPicture(scene_, world_->Look(), camera_path_.points(),
                                                      target_path_.points())});
@@ -318,6 +330,7 @@ class Run {
   servo::ServoTask servo_;
   std::optional<OutputFolder> folder_;
   std::unique_ptr<EyeFilm> film_;
+  std::unique_ptr<SceneFilm> scene_film_;
   RenderScene scene_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;
   std::unique_ptr<Verdict> verdict_;
