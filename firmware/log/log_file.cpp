@@ -11,7 +11,8 @@ namespace {
 using google::protobuf::FileDescriptor;
 
 // Adds `file` after all that it imports.
-void AddFile(const FileDescriptor& file, std::set<std::string>& known, google::protobuf::FileDescriptorSet& set) {
+void AddFile(const FileDescriptor& file, std::set<std::string>& known,
+             google::protobuf::FileDescriptorSet& set) {
   if (!known.insert(file.name()).second) {
     return;
   }

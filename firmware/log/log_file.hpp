@@ -25,7 +25,7 @@ class LogFile {
 
  private:
   McapWriter writer_;
-  std::map<std::string, std::uint16_t> schemas_;  // by the type's name
+  std::map<std::string, std::uint16_t> schemas_;   // by the type's name
   std::map<std::string, std::uint16_t> channels_;  // by topic
   std::string bytes_;
 };

@@ -11,7 +11,8 @@
 
 namespace fovea::log::mcap {
 
-static_assert(std::endian::native == std::endian::little, "the log's numbers are copied as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "the log's numbers are copied as they lie in memory");
 
 inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};
 

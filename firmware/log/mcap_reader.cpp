@@ -160,8 +160,7 @@ class Reader {
     } else if (!compression.empty()) {
       throw DamageError(fmt::format("chunks are packed by \"{}\"; only zstd is read", compression));
     }
-    if (crc != 0 &&
-        crc32_z(0, reinterpret_cast<const Bytef*>(plain.data()), plain.size()) != crc) {
+    if (crc != 0 && crc32_z(0, reinterpret_cast<const Bytef*>(plain.data()), plain.size()) != crc) {
       throw DamageError("a chunk's checksum is wrong");
     }
     for (Cursor cursor(plain); !cursor.empty();) {

@@ -20,7 +20,7 @@ using mcap::PutText;
 namespace {
 
 constexpr std::size_t kChunkBytes = 1U << 20U;  // a chunk is closed when it holds so much
-constexpr int kZstdLevel = 1;                   // pictures are compressed already, numbers shrink at any level
+constexpr int kZstdLevel = 1;  // pictures are compressed already, numbers shrink at any level
 
 std::uint32_t Crc(std::string_view bytes, std::uint32_t before = 0) {
   return static_cast<std::uint32_t>(

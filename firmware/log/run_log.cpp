@@ -99,7 +99,8 @@ void RunLog::AddMetadata(const std::string& name, const std::map<std::string, st
   Push([name, entries](LogFile& file) { file.writer().WriteMetadata(name, entries); });
 }
 
-void RunLog::AddAttachment(const std::string& name, const std::string& media_type, const std::string& content) {
+void RunLog::AddAttachment(const std::string& name, const std::string& media_type,
+                           const std::string& content) {
   Push([name, media_type, content](LogFile& file) {
     file.writer().WriteAttachment(name, media_type, 0, content);
   });

@@ -21,7 +21,8 @@ std::string Base64(std::string_view bytes) {
 }
 
 std::string Base64(const std::vector<float>& values) {
-  return Base64(std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
+  return Base64(
+      std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
 }
 
 ordered_json Ticks(const RunData& run) {
@@ -111,7 +112,8 @@ std::string ToJson(const RunData& run) {
   json["name"] = run.name;
   json["source"] = std::filesystem::path(run.source).filename().string();
   json["incomplete"] = run.complete ? ordered_json(nullptr) : ordered_json(run.why_incomplete);
-  json["summary"] = run.summary_json ? ordered_json::parse(*run.summary_json, nullptr, false) : ordered_json(nullptr);
+  json["summary"] =
+      run.summary_json ? ordered_json::parse(*run.summary_json, nullptr, false) : ordered_json(nullptr);
   if (json["summary"].is_discarded()) {
     json["summary"] = nullptr;
   }
@@ -159,9 +161,10 @@ std::string ToJson(const RunData& run) {
   json["tick_times"] = run.tick_counts.empty()
                            ? ordered_json(nullptr)
                            : ordered_json({{"upper_us", run.tick_upper_us}, {"counts", run.tick_counts}});
-  json["frames"] = run.first_frame ? ordered_json({{"first", Frame(run, run.first_frame)},
-                                                   {"last", Frame(run, run.last_frame)}})
-                                   : ordered_json(nullptr);
+  json["frames"] =
+      run.first_frame
+          ? ordered_json({{"first", Frame(run, run.first_frame)}, {"last", Frame(run, run.last_frame)}})
+          : ordered_json(nullptr);
   json["video"] = run.video ? ordered_json(Base64(std::string_view(*run.video))) : ordered_json(nullptr);
   json["scene"] = Scene(run);
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);

@@ -1,4 +1,5 @@
-// Puts the page together: the template's marks are replaced by the files that they name, and by the runs' data.
+// Puts the page together: the template's marks are replaced by the files that they name, and by the runs'
+// data.
 #include <fmt/format.h>
 
 #include <fstream>

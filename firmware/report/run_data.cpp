@@ -99,14 +99,15 @@ class Reader {
     run_.ticks.emplace(4 * run_.joints.size() + RunData::kNumTickColumns, kMostBuckets);
   }
 
-  // Distance in the picture between two values of the sphere's feature [px]; NaN when one is behind the camera.
+  // Distance in the picture between two values of the sphere's feature [px]; NaN when one is behind the
+  // camera.
   template <typename S>
   float ErrorPx(const S& s, const S& s_star) const {
     if (s.size() < 3 || s_star.size() < 3 || !(s[2] > 0.0) || !(s_star[2] > 0.0)) {
       return kNone;
     }
-    return static_cast<float>(setup_.f_px() * std::hypot(s[0] / s[2] - s_star[0] / s_star[2],
-                                                         s[1] / s[2] - s_star[1] / s_star[2]));
+    return static_cast<float>(
+        setup_.f_px() * std::hypot(s[0] / s[2] - s_star[0] / s_star[2], s[1] / s[2] - s_star[1] / s_star[2]));
   }
 
   void TakeTick(const log::Tick& tick) {
@@ -128,7 +129,8 @@ class Reader {
     Row row;
     row.stamp_ns = tick.stamp_ns();
     const auto joints = static_cast<int>(run_.joints.size());
-    for (const auto* values : {&tick.arm().q(), &tick.arm().dq(), &tick.command().tau(), &tick.arm().tau_meas()}) {
+    for (const auto* values :
+         {&tick.arm().q(), &tick.arm().dq(), &tick.command().tau(), &tick.arm().tau_meas()}) {
       for (int i = 0; i < joints; ++i) {
         row.values.push_back(i < values->size() ? static_cast<float>((*values)[i]) : kNone);
       }
@@ -146,7 +148,8 @@ class Reader {
     const auto reason = static_cast<hal::HoldReason>(tick.hold_reason());
     const std::string mode_name = hal::Name(mode);
     const std::string reason_name = mode == hal::Mode::kHold ? hal::Name(reason) : "";
-    if (run_.modes.empty() || run_.modes.back().mode != mode_name || run_.modes.back().reason != reason_name) {
+    if (run_.modes.empty() || run_.modes.back().mode != mode_name ||
+        run_.modes.back().reason != reason_name) {
       run_.modes.push_back({t_s, mode_name, reason_name});
     }
     const auto fault = static_cast<hal::Fault>(tick.fault());
@@ -157,8 +160,8 @@ class Reader {
     last_fault_ = fault;
   }
 
-  // Gives each tick the truth of its own time. The two streams are written one after the other, so that one waits
-  // for the other.
+  // Gives each tick the truth of its own time. The two streams are written one after the other, so that one
+  // waits for the other.
   void Join(bool last) {
     while (!waiting_.empty()) {
       Row& row = waiting_.front();

@@ -66,7 +66,8 @@ void SceneReader::AddScene(const foxglove::SceneUpdate& scene) {
       link.shapes.push_back(MakeShape(cube, "box", {cube.size().x(), cube.size().y(), cube.size().z()}));
     }
     for (const foxglove::CylinderPrimitive& cylinder : entity.cylinders()) {
-      link.shapes.push_back(MakeShape(cylinder, "cylinder", {0.5 * cylinder.size().x(), cylinder.size().z()}));
+      link.shapes.push_back(
+          MakeShape(cylinder, "cylinder", {0.5 * cylinder.size().x(), cylinder.size().z()}));
     }
     for (const foxglove::SpherePrimitive& sphere : entity.spheres()) {
       link.shapes.push_back(MakeShape(sphere, "sphere", {0.5 * sphere.size().x()}));
@@ -96,7 +97,8 @@ void SceneReader::AddTransforms(const foxglove::FrameTransforms& transforms, std
     const std::array<double, kPoseSize> pose{p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
     const auto put = [&pose](std::vector<float>& to, std::size_t at, std::size_t count) {
       std::transform(pose.begin(), pose.begin() + static_cast<std::ptrdiff_t>(count),
-                     to.begin() + static_cast<std::ptrdiff_t>(at), [](double v) { return static_cast<float>(v); });
+                     to.begin() + static_cast<std::ptrdiff_t>(at),
+                     [](double v) { return static_cast<float>(v); });
     };
     if (const auto link = link_of_frame_.find(transform.child_frame_id()); link != link_of_frame_.end()) {
       put(motion.poses, begin + link->second * kPoseSize, kPoseSize);
@@ -145,7 +147,8 @@ void SceneReader::Finish() {
     const auto after = std::lower_bound(truth_t_s_.begin(), truth_t_s_.end(), motion.t_s[i]);
     const auto at = std::min<std::ptrdiff_t>(after - truth_t_s_.begin(),
                                              static_cast<std::ptrdiff_t>(truth_t_s_.size()) - 1);
-    std::copy_n(truth_p_.begin() + 3 * at, 3, motion.target_path.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    std::copy_n(truth_p_.begin() + 3 * at, 3,
+                motion.target_path.begin() + static_cast<std::ptrdiff_t>(3 * i));
   }
 }
 

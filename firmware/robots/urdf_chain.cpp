@@ -31,15 +31,17 @@ class MessageCollector final : public console_bridge::OutputHandler {
   MessageCollector& operator=(const MessageCollector&) = delete;
 
   void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && first_.empty()) {
-      first_ = text;
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && count_++ < kMost) {
+      text_ += (text_.empty() ? "" : "; ") + text;
     }
   }
-  [[nodiscard]] const std::string& first() const { return first_; }
+  [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
+  static constexpr int kMost = 2;  // what is wrong, and in which element; then it goes on about what follows
   console_bridge::OutputHandler* previous_;
-  std::string first_;
+  std::string text_;
+  int count_ = 0;
 };
 
 Vec3 ToVec3(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
@@ -122,8 +124,9 @@ class ChainReader {
     } catch (const std::exception& error) {  // number parsing inside urdfdom
       Fail(fmt::format("not a usable URDF: {}", error.what()));
     }
-    if (!urdf_) {
-      Fail("not a usable URDF: " + (messages.first().empty() ? "no robot in it" : messages.first()));
+    // Of a link with an error in it urdfdom drops what follows the error, and goes on.
+    if (!urdf_ || !messages.text().empty()) {
+      Fail("not a usable URDF: " + (messages.text().empty() ? "no robot in it" : messages.text()));
     }
     std::map<std::string, std::string> parent_joint;
     for (const auto& [name, joint] : urdf_->joints_) {
@@ -131,6 +134,19 @@ class ChainReader {
       if (!is_new) {
         Fail(fmt::format("link \"{}\" hangs on two joints, \"{}\" and \"{}\": a loop is no serial arm",
                          joint->child_link_name, it->second, name));
+      }
+    }
+    for (const auto& [name, link] : urdf_->links_) {
+      CheckReachesRoot(*link);
+    }
+  }
+
+  // Links that hang on each other in a ring, beside the root, have one joint each.
+  void CheckReachesRoot(const urdf::Link& link) const {
+    std::size_t steps = 0;
+    for (urdf::LinkConstSharedPtr above = link.getParent(); above; above = above->getParent()) {
+      if (++steps > urdf_->links_.size()) {
+        Fail(fmt::format("link \"{}\" hangs on itself: a loop is no serial arm", link.name));
       }
     }
   }

@@ -4,16 +4,15 @@
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <utility>
 
-#include "fovea/linux_rt/realtime.hpp"
 #include "sim/app/overlay.hpp"
 
 namespace fovea::sim {
 namespace {
 
-constexpr std::size_t kQueue = 8;  // frames that may wait
-constexpr int kLegendPx = 28;      // height of the strip below the picture
+constexpr int kLegendPx = 28;  // height of the strip below the picture
 
 // H.264 with halved colour planes wants even sizes.
 int Even(int size) { return size + size % 2; }
@@ -27,38 +26,17 @@ cv::Size PageSize(const vision::Intrinsics& in) {
 EyeFilm::EyeFilm(const EyeFilmConfig& config)
     : config_(config),
       file_(config.path, PageSize(config.intrinsics).width, PageSize(config.intrinsics).height),
-      thread_([this] { Encode(); }) {}
-
-EyeFilm::~EyeFilm() { Close(); }
-
-void EyeFilm::Close() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
-  changed_.notify_all();
-  if (thread_.joinable()) {
-    thread_.join();
-  }
-}
+      queue_(config.may_drop, [this](Item& item) {
+        Draw(item);
+        file_.Add(item.page, item.stamp_ns);
+      }) {}
 
 void EyeFilm::Add(const hal::Frame& frame, const vision::BallDetection& detection) {
-  Item item;
-  {
-    std::unique_lock lock(mutex_);
-    const auto has_room = [this] { return items_.size() < kQueue || failure_ != nullptr; };
-    if (!config_.may_drop) {
-      changed_.wait(lock, has_room);
-    }
-    if (!has_room() || failure_ != nullptr) {
-      ++dropped_;
-      return;
-    }
-    if (!spare_.empty()) {
-      item.page = std::move(spare_.back());
-      spare_.pop_back();
-    }
+  std::optional<Item> place = queue_.Take();
+  if (!place) {
+    return;
   }
+  Item& item = *place;
   if (item.page.empty()) {
     item.page.create(PageSize(config_.intrinsics), CV_8UC3);
     item.page.setTo(kLegendColour);
@@ -70,11 +48,7 @@ void EyeFilm::Add(const hal::Frame& frame, const vision::BallDetection& detectio
   pixels.copyTo(item.page(cv::Rect(0, 0, frame.width_px, frame.height_px)));
   item.stamp_ns = frame.stamp_ns;
   item.detection = detection;
-  {
-    const std::lock_guard lock(mutex_);
-    items_.push_back(std::move(item));
-  }
-  changed_.notify_all();
+  queue_.Put(std::move(item));
 }
 
 void EyeFilm::Draw(Item& item) const {
@@ -96,46 +70,9 @@ void EyeFilm::Draw(Item& item) const {
   DrawText(item.page, words, 2 * in.width_px / 3, y, 0.45, kDetectionColour);
 }
 
-void EyeFilm::Encode() {
-  linux_rt::MakeThreadYielding("fovea-film");
-  try {
-    while (true) {
-      Item item;
-      {
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [this] { return closed_ || !items_.empty(); });
-        if (items_.empty()) {
-          return;
-        }
-        item = std::move(items_.front());
-        items_.pop_front();
-      }
-      changed_.notify_all();
-      Draw(item);
-      file_.Add(item.page, item.stamp_ns);
-      const std::lock_guard lock(mutex_);
-      spare_.push_back(std::move(item.page));
-    }
-  } catch (...) {
-    {
-      const std::lock_guard lock(mutex_);
-      failure_ = std::current_exception();
-    }
-    changed_.notify_all();
-  }
-}
-
 void EyeFilm::Finish() {
-  Close();
-  if (failure_) {
-    std::rethrow_exception(failure_);
-  }
+  queue_.Finish();
   file_.Finish();
-}
-
-std::uint64_t EyeFilm::dropped() const {
-  const std::lock_guard lock(mutex_);
-  return dropped_;
 }
 
 }  // namespace fovea::sim

@@ -102,7 +102,8 @@ void LogFeed::AddFrame(const hal::Frame& frame, const vision::BallDetection& det
   log::AddOutline(config_.intrinsics, features::ConeFromSphere(config_.servo.feature.p_CO_C_star / radius),
                   log::kGoalRole, annotations);
   if (p_CO_C.z() > 1.1 * radius) {
-    log::AddOutline(config_.intrinsics, features::ConeFromSphere(p_CO_C / radius), log::kTruthRole, annotations);
+    log::AddOutline(config_.intrinsics, features::ConeFromSphere(p_CO_C / radius), log::kTruthRole,
+                    annotations);
   }
   log::AddDetection(config_.intrinsics, detection, annotations);
   log_.Add(log::kAnnotationTopic, frame.stamp_ns, annotations);

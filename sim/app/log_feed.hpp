@@ -38,7 +38,8 @@ class LogFeed {
   // From the thread that empties the recorder.
   void AddRecord(const hal::TickRecord& record) { log_.AddTick(record); }
   // From the vision thread. `p_CO_C`: where the target really was [m].
-  void AddFrame(const hal::Frame& frame, const vision::BallDetection& detection, const Eigen::Vector3d& p_CO_C);
+  void AddFrame(const hal::Frame& frame, const vision::BallDetection& detection,
+                const Eigen::Vector3d& p_CO_C);
 
   // When all is over: how long the ticks took, the summary, the film; then completes the file.
   void Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json,

@@ -37,7 +37,8 @@ void SetSize(double x, double y, double z, foxglove::Vector3& size) {
   size.set_z(z);
 }
 
-foxglove::SceneEntity& AddEntity(const std::string& id, const std::string& frame, foxglove::SceneUpdate& update) {
+foxglove::SceneEntity& AddEntity(const std::string& id, const std::string& frame,
+                                 foxglove::SceneUpdate& update) {
   foxglove::SceneEntity& entity = *update.add_entities();
   entity.set_id(id);
   entity.set_frame_id(frame);
@@ -72,6 +73,22 @@ void AddSphere(const Eigen::Isometry3d& X, double radius, const Eigen::Vector3f&
   SetColour(colour, *sphere.mutable_color());
 }
 
+void AddMesh(const Eigen::Isometry3d& X, const Mesh& mesh, foxglove::SceneEntity& entity) {
+  foxglove::TriangleListPrimitive& triangles = *entity.add_triangles();
+  SetPose(X, *triangles.mutable_pose());
+  for (const Vertex& vertex : mesh.vertices) {
+    foxglove::Point3& point = *triangles.add_points();
+    point.set_x(static_cast<double>(vertex.position.x()));
+    point.set_y(static_cast<double>(vertex.position.y()));
+    point.set_z(static_cast<double>(vertex.position.z()));
+    SetColour(vertex.colour, *triangles.add_colors());
+  }
+  triangles.mutable_indices()->Add(mesh.indices.begin(), mesh.indices.end());
+  if (!mesh.vertices.empty()) {
+    SetColour(mesh.vertices.front().colour, *triangles.mutable_color());
+  }
+}
+
 void AddShape(const Shape& shape, foxglove::SceneEntity& entity) {
   switch (shape.kind) {
     case ShapeKind::kBox: AddBox(shape.X_LS, shape.size, shape.colour, entity); return;
@@ -79,6 +96,7 @@ void AddShape(const Shape& shape, foxglove::SceneEntity& entity) {
       AddCylinder(shape.X_LS, shape.size[0], shape.size[1], shape.colour, entity);
       return;
     case ShapeKind::kSphere: AddSphere(shape.X_LS, shape.size[0], shape.colour, entity); return;
+    case ShapeKind::kMesh: AddMesh(shape.X_LS, *shape.mesh, entity); return;
   }
 }
 

@@ -12,8 +12,8 @@ class SceneUpdate;
 
 namespace fovea::sim {
 
-// A frame for each link of `robot`, by its name, as it moves with the joints of `arm` (the servo's model of the
-// same robot), and the camera's.
+// A frame for each link of `robot`, by its name, as it moves with the joints of `arm` (the servo's model of
+// the same robot), and the camera's.
 std::vector<log::LinkFrame> MakeLinkFrames(const SimRobot& robot, const model::ArmModel& arm,
                                            const Eigen::Isometry3d& X_EC);
 

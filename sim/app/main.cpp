@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <exception>
 
-#include "fovea/config/input_error.hpp"
 #include "fovea/build_info.hpp"
+#include "fovea/config/input_error.hpp"
 #include "sim/app/run.hpp"
 #include "sim/app/scenario.hpp"
 
@@ -37,13 +37,13 @@ int Run(const RunArguments& arguments) {
   sim::RunOptions options;
   options.pace = arguments.pace == "real" ? sim::Pace::kReal : sim::Pace::kLockstep;
   options.out = arguments.out.empty() ? "out/" + scenario.name : arguments.out;
-  options.pictures = !arguments.no_report;
+  options.report = !arguments.no_report;
   const sim::Summary summary = sim::RunScenario(scenario, options);
   if (arguments.json) {
     fmt::print("{}", sim::ToJson(summary));
   } else {
     fmt::print("{}  {:<24}{}\n", sim::ToTable(summary), "files", options.out.string());
-    if (options.pictures) {
+    if (options.report) {
       fmt::print("  {:<24}{}\n", "report", (options.out / "report.html").string());
     }
   }

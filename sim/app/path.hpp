@@ -10,9 +10,9 @@ namespace fovea::sim {
 
 class Path {
  public:
-  // Called once per millisecond of the run, in order; keeps what the picture needs.
+  // Called in order, as often as one likes; keeps what the picture needs.
   void Add(std::int64_t stamp_ns, const Eigen::Vector3d& p_B) {
-    if (stamp_ns % step_ns_ != 0) {
+    if (stamp_ns < next_ns_) {
       return;
     }
     points_.push_back(p_B);
@@ -23,12 +23,14 @@ class Path {
       points_.resize((points_.size() + 1) / 2);
       step_ns_ *= 2;
     }
+    next_ns_ = stamp_ns + step_ns_;
   }
   [[nodiscard]] const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
  private:
-  static constexpr std::size_t kMostPoints = 4000;
-  std::int64_t step_ns_ = 16'000'000;  // between points; doubled when there are too many
+  static constexpr std::size_t kMostPoints = 4000;  // even, so that the newest outlasts a halving
+  std::int64_t step_ns_ = 16'000'000;  // between points, at least; doubled when there are too many
+  std::int64_t next_ns_ = 0;
   std::vector<Eigen::Vector3d> points_;
 };
 

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
 #include "fovea/features/sphere.hpp"
+#include "sim/app/bench_view.hpp"
 #include "sim/app/overlay.hpp"
 
 namespace fovea::sim {
@@ -85,45 +85,18 @@ std::string DrawBenchPicture(const RenderScene& scene, const Exposure& exposure,
   constexpr int kWidth = 1280;
   constexpr int kHeight = 800;
   constexpr int kSuperSampling = 2;
-  const Pinhole pinhole = MakePinhole(kSuperSampling * kWidth, kSuperSampling * kHeight, 0.80);
-  // Someone stands at the bench's front corner and looks at what happens over the mat.
-  // A tall arm makes them step back and look up.
-  double top = 0.0;
-  for (const Eigen::Isometry3d& X_BL : exposure.X_BL) {
-    top = std::max(top, X_BL.translation().z());
-  }
-  const double taller = std::max(0.0, top - 0.75);  // than what stands well in the picture [m]
-  const Eigen::Vector3d look_at(0.30, 0.02, 0.33 + 0.4 * taller);
-  const Eigen::Vector3d eye = look_at + (1.0 + taller) * Eigen::Vector3d(1.42, -1.30, 0.69);
-  Eigen::Isometry3d X_BV = Eigen::Isometry3d::Identity();
-  const Eigen::Vector3d z = (look_at - eye).normalized();
-  const Eigen::Vector3d x = z.cross(Eigen::Vector3d::UnitZ()).normalized();
-  X_BV.linear().col(0) = x;
-  X_BV.linear().col(1) = z.cross(x);
-  X_BV.linear().col(2) = z;
-  X_BV.translation() = eye;
-
+  const BenchView view =
+      MakeBenchView(exposure, MakeBenchPinhole(kSuperSampling * kWidth, kSuperSampling * kHeight));
   RenderScene bright = scene;
   bright.light = 1.0;  // the eye may be dark, the reader is not
-  SceneRenderer renderer(bright, pinhole, {4, 2048, 16, 2.5F});
-  cv::Mat rgba(pinhole.height_px, pinhole.width_px, CV_8UC4);
-  renderer.Draw(exposure, X_BV, {rgba.data, rgba.total() * 4});
+  SceneRenderer renderer(bright, view.pinhole, {4, 2048, 16, 2.5F});
+  cv::Mat rgba(view.pinhole.height_px, view.pinhole.width_px, CV_8UC4);
+  renderer.Draw(exposure, view.X_BV, {rgba.data, rgba.total() * 4});
   cv::Mat bgr;
   cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
 
-  const auto draw_path = [&](const std::vector<Eigen::Vector3d>& path, const cv::Scalar& colour) {
-    const double one = 1 << kSubPixelBits;
-    std::vector<cv::Point> points;
-    for (const Eigen::Vector3d& p_B : path) {
-      const Eigen::Vector3d p = X_BV.inverse() * p_B;
-      points.emplace_back(static_cast<int>(pinhole.U(p) * one), static_cast<int>(pinhole.V(p) * one));
-    }
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      cv::line(bgr, points[i - 1], points[i], colour, 4, cv::LINE_AA, kSubPixelBits);
-    }
-  };
-  draw_path(target_path, kGoalColour);
-  draw_path(camera_path, kDetectionColour);
+  DrawPath(bgr, view, target_path, kGoalColour, 2 * kSuperSampling);
+  DrawPath(bgr, view, camera_path, kDetectionColour, 2 * kSuperSampling);
   cv::resize(bgr, bgr, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
   return ToPng(bgr);
 }

@@ -10,24 +10,18 @@
 #include <optional>
 #include <thread>
 
-#include "fovea/config/share_folder.hpp"
+#include "fovea/build_info.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/record_ring.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "fovea/log/record_hash.hpp"
-#include "fovea/report/report.hpp"
 #include "fovea/servo/servo_loop.hpp"
 #include "fovea/vision/vision_task.hpp"
-#include "fovea/build_info.hpp"
 #include "sim/app/compose.hpp"
-#include "sim/app/eye_film.hpp"
-#include "sim/app/log_feed.hpp"
-#include "sim/app/output_folder.hpp"
-#include "sim/app/path.hpp"
-#include "sim/app/pictures.hpp"
 #include "sim/app/progress.hpp"
+#include "sim/app/run_files.hpp"
 #include "sim/app/target_log.hpp"
 #include "sim/app/verdict.hpp"
 #include "sim/camera/sim_camera.hpp"
@@ -41,9 +35,6 @@ namespace fovea::sim {
 namespace {
 
 constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
-const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png", "camera.mp4", "log.mcap", "report.html",
-                                          "summary.json"};
-
 // Pictures that are drawn at the same time, each by a renderer of its own.
 constexpr int kRenderers = 2;
 
@@ -81,16 +72,10 @@ class Run {
     for (int i = 0; i < kRenderers; ++i) {
       renderers_.push_back(std::make_unique<SceneRenderer>(scene_, pinhole_, RenderQuality{}, i));
     }
-    if (!options_.out.empty() && options_.pictures) {
-      page_.emplace(config::ShareFolder() / "report");
-    }
-    if (!options_.out.empty()) {
-      folder_.emplace(options_.out);  // after all that can be refused: what is refused leaves no folder
-      if (options_.pictures) {
-        BeginFilm(servo_config.feature.p_CO_C_star);
-        BeginLog(servo_config);
-      }
-    }
+    // After all that can be refused: what is refused leaves no folder.
+    files_ = std::make_unique<RunFiles>(RunFilesConfig{options_.out, options_.report, kRenderers, scenario_,
+                                                       robot_, servo_config, scene_, pinhole_, intrinsics_,
+                                                       options_.pace == Pace::kReal});
     BuildWorld(servo_config);
   }
 
@@ -120,27 +105,12 @@ class Run {
           fmt::format("the run broke off: {} ({})", hal::ToString(status.code()), status.where()));
     }
     Summary summary = Summarise();
-    WriteFiles(summary);
+    progress_.Update(scenario_.run.duration_s, "drawing the pictures");
+    files_->Write(summary, world_->Look(), meter_.durations());
     return summary;
   }
 
  private:
-  void BeginFilm(const Eigen::Vector3d& p_CO_C_star) {
-    EyeFilmConfig config;
-    config.path = folder_->Begin("camera.mp4");
-    config.intrinsics = intrinsics_;
-    config.radius = radius_;
-    config.p_CO_C_star = p_CO_C_star;
-    config.may_drop = options_.pace == Pace::kReal;
-    film_ = std::make_unique<EyeFilm>(config);
-  }
-
-  void BeginLog(const servo::ServoConfig& servo_config) {
-    log_ = std::make_unique<LogFeed>(LogFeedConfig{folder_->Begin("log.mcap"), scenario_, robot_, servo_config,
-                                                   scene_, pinhole_, intrinsics_,
-                                                   options_.pace == Pace::kReal});
-  }
-
   void BuildWorld(const servo::ServoConfig& servo_config) {
     VerdictConfig verdict_config;
     verdict_config.arm = servo_config.arm;
@@ -175,6 +145,7 @@ class Run {
     world_->OnExposure([this, latency_ns](Exposure exposure) {
       targets_.Put(exposure.sequence, exposure.X_BC.inverse() * exposure.p_BO);
       delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns);
+      files_->AddExposure(exposure);
       camera_->Expose(std::move(exposure));
     });
     arm_ = std::make_unique<SimArm>(*world_);
@@ -182,11 +153,7 @@ class Run {
 
   void ObserveTruth(const Truth& truth) {
     verdict_->AddTruth(truth);
-    camera_path_.Add(truth.stamp_ns, truth.X_BC.translation());
-    target_path_.Add(truth.stamp_ns, truth.p_BO);
-    if (log_) {
-      log_->AddTruth(truth);
-    }
+    files_->AddTruth(truth);
     if (options_.observer.on_truth) {
       options_.observer.on_truth(truth);
     }
@@ -198,12 +165,7 @@ class Run {
       const hal::Status status =
           vision::RunVision(*camera_, vision_, delay_, never_stop_,
                             [this](const hal::Frame& frame, const vision::BallDetection& detection) {
-                              const Eigen::Vector3d p_CO_C = targets_.Take(frame.sequence);
-                              frames_.Keep(frame, detection, p_CO_C);
-                              if (film_) {
-                                film_->Add(frame, detection);
-                                log_->AddFrame(frame, detection, p_CO_C);
-                              }
+                              files_->AddFrame(frame, detection, targets_.Take(frame.sequence));
                             });
       static_cast<void>(status);  // an orderly end, or a fault that the camera keeps the words for
     } catch (...) {
@@ -220,9 +182,7 @@ class Run {
     ring_.Drain([this](const hal::TickRecord& record) {
       hash_.Add(record);
       verdict_->AddRecord(record);
-      if (log_) {
-        log_->AddRecord(record);
-      }
+      files_->AddRecord(record);
       if (options_.observer.on_record) {
         options_.observer.on_record(record);
       }
@@ -273,16 +233,16 @@ class Run {
     s.scenario = scenario_.name;
     s.seed = scenario_.run.seed;
     s.pace = options_.pace == Pace::kReal ? "real" : "lockstep";
-    s.frames = frames_.frames();
-    s.frames_detected = frames_.detected();
+    s.frames = files_->frames();
+    s.frames_detected = files_->frames_detected();
     s.frames_lost = camera_->lost();
     verdict_->Fill(s);
     s.ticks = counters_.ticks;
     s.overruns = counters_.overruns;
     s.missed_ticks = counters_.missed_ticks;
     s.records_dropped = ring_.dropped();
-    s.film_frames_dropped = film_ ? film_->dropped() : 0;
-    s.log_entries_dropped = log_ ? log_->dropped() : 0;
+    s.film_frames_dropped = files_->film_frames_dropped();
+    s.log_entries_dropped = files_->log_entries_dropped();
     if (linux_rt::HeapCounterActive()) {
       s.heap_allocations_in_tick = meter_.heap_calls();
     }
@@ -303,41 +263,6 @@ class Run {
     return s;
   }
 
-  void WriteFiles(const Summary& summary) {
-    if (!folder_) {
-      return;
-    }
-    progress_.Update(scenario_.run.duration_s, "drawing the pictures");
-    std::vector<OutputFile> files;
-    if (frames_.frames() > 0) {
-      const Eigen::Vector3d goal = servo_.config().feature.p_CO_C_star;
-      for (const auto& [name, frame] :
-           {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
-        files.push_back({name, DrawEyePicture(*frame, intrinsics_, radius_, goal)});
-      }
-    }
-    std::optional<std::filesystem::path> film;
-    if (film_ && frames_.frames() > 0) {
-      film_->Finish();
-      film = folder_->Begin("camera.mp4");
-      files.push_back({"camera.mp4", std::nullopt});
-    }
-    const std::string summary_json = ToJson(summary);
-    if (log_) {
-      log_->Finish(meter_.durations(), summary_json, film);
-      files.push_back({"log.mcap", std::nullopt});
-      report::RunData data = report::ReadRun(log_->path());
-      data.source = "log.mcap";
-      files.push_back({"report.html", page_->Make({data})});
-    }
-    if (options_.pictures) {
-      files.push_back({"bench.png", DrawBenchPicture(scene_, world_->Look(), camera_path_.points(),
-                                                     target_path_.points())});
-    }
-    files.push_back({"summary.json", summary_json});
-    folder_->Replace(files, kFileNames);
-  }
-
   Scenario scenario_;
   RunOptions options_;
   Progress progress_;
@@ -348,11 +273,8 @@ class Run {
   vision::Intrinsics intrinsics_;
   vision::VisionTask vision_;
   servo::ServoTask servo_;
-  std::optional<OutputFolder> folder_;
-  std::unique_ptr<EyeFilm> film_;
-  std::unique_ptr<LogFeed> log_;
-  std::optional<report::ReportPage> page_;
   RenderScene scene_;
+  std::unique_ptr<RunFiles> files_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;
   std::unique_ptr<Verdict> verdict_;
   std::unique_ptr<SimCamera> camera_;
@@ -363,10 +285,7 @@ class Run {
   linux_rt::RecordRing ring_;
   linux_rt::TickMeter meter_;
   log::RecordHash hash_;
-  FrameKeeper frames_;
   TargetLog targets_;
-  Path camera_path_;
-  Path target_path_;
   const std::atomic<bool> never_stop_{false};  // the vision thread ends when the camera closes
   servo::LoopCounters counters_;
   hal::Mode mode_ = hal::Mode::kBoot;  // of the last record

@@ -26,15 +26,15 @@ struct RunObserver {
 struct RunOptions {
   Pace pace = Pace::kLockstep;
   std::filesystem::path out;  // empty: no files
-  bool pictures = true;       // the film, and the bench's picture, which costs a second
+  bool report = true;         // films, log, report and the bench's picture too
   bool show_progress = true;
   RunObserver observer;
 };
 
 // Composes robot, bench, camera and servo, runs the scenario to its end, judges it against the truth, and
-// leaves summary.json, eye-first.png, eye-last.png, camera.mp4 and bench.png in `options.out`. Nothing is
-// written before the run is over. InputError: the scenario cannot be run, or the files not be written.
-// std::runtime_error: no EGL, or the renderer broke during the run.
+// leaves its files in `options.out` (see RunFiles). Nothing is in place before the run is over. InputError:
+// the scenario cannot be run, or the files not be written. std::runtime_error: no EGL, or the renderer broke
+// during the run.
 Summary RunScenario(const Scenario& scenario, const RunOptions& options);
 
 }  // namespace fovea::sim

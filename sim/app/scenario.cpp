@@ -66,6 +66,8 @@ void AddRunKeys(Scenario& s, config::KeyTable& keys) {
   keys.Integer("run.seed", s.run.seed, 0, 2147483647, "", "of all that is random");
   keys.Number("run.tracking_bound_px", s.run.tracking_bound_px, 0.01, 1e4, "px",
               "a moving target counts as tracked below this error, rms over the second half");
+  keys.Flag("run.scene_video", s.run.scene_video,
+            "also film the bench from beside it, with the paths of camera and target: scene.mp4");
 }
 
 fs::path FindScenario(const std::string& name_or_path) {

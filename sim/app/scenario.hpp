@@ -59,6 +59,7 @@ struct Scenario {
     double duration_s = 8.0;
     int seed = 1;
     double tracking_bound_px = 3.0;
+    bool scene_video = false;
   } run;
 
   Scenario() { servo.config.auto_track = true; }

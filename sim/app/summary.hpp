@@ -54,7 +54,7 @@ struct Summary {
   std::uint64_t overruns = 0;
   std::uint64_t missed_ticks = 0;
   std::uint64_t records_dropped = 0;
-  std::uint64_t film_frames_dropped = 0;
+  std::uint64_t film_frames_dropped = 0;  // of both films
   std::uint64_t log_entries_dropped = 0;
   std::optional<std::uint64_t> heap_allocations_in_tick;  // none when the counter is not active
   std::uint64_t page_faults_in_loop = 0;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTickS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr std::int64_t kWindowNs = hal::kNsPerSecond / 2;  // final_* are over this last part of a run
-constexpr double kConvergedPx = 1.0;  // converged: no sample of it is further off
+constexpr double kConvergedPx = 1.0;                       // converged: no sample of it is further off
 constexpr double kConvergedM = 0.002;
 constexpr double kSettledShare = 0.02;  // settled: below this share of the first error, for good
 

@@ -15,7 +15,8 @@ extern "C" {
 namespace fovea::sim {
 namespace {
 
-constexpr AVRational kTimeBase{1, 90'000};  // of the stream; what MP4 players expect
+constexpr AVRational kTimeBase{1, 90'000};     // of the stream; what MP4 players expect
+constexpr std::int64_t kUsualDuration = 3000;  // of a frame that nothing is known of: 1/30 s
 
 void Check(int result, const std::string& what) {
   if (result < 0) {
@@ -45,6 +46,7 @@ struct VideoFile::Impl {
   AVStream* stream = nullptr;  // owned by `format`
   cv::Mat i420;                // Y, U and V planes below each other
   std::int64_t first_ns = -1;
+  std::int64_t last_pts = -kUsualDuration;
 
   void OpenEncoder(int width_px, int height_px) {
     const AVCodec* encoder = avcodec_find_encoder_by_name("libx264");
@@ -77,6 +79,9 @@ struct VideoFile::Impl {
         return;
       }
       Check(result, "encoding");
+      // The film's length ends with the last frame's duration; without one, players leave that frame out.
+      packet->duration = packet->pts - last_pts;
+      last_pts = packet->pts;
       av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
       packet->stream_index = stream->index;
       Check(av_interleaved_write_frame(format.get(), packet.get()), "writing");

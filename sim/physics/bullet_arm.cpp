@@ -6,6 +6,7 @@
 #include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
+#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -15,6 +16,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <vector>
+
+#include "sim/physics/hull_points.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -57,6 +60,16 @@ PrincipalBody Diagonalise(const SimLink& link) {
   body.X_LP = link.X_LCom;
   body.X_LP.linear() = link.X_LCom.linear() * axes;
   return body;
+}
+
+std::unique_ptr<btCollisionShape> MakeHull(const Mesh& mesh) {
+  auto hull = std::make_unique<btConvexHullShape>();
+  for (const Eigen::Vector3d& point : HullPoints(mesh)) {
+    hull->addPoint(ToBullet(point), /*recalculateLocalAabb=*/false);
+  }
+  hull->setMargin(0.0);  // Bullet's own would make it 40 mm larger all round
+  hull->recalcLocalAabb();
+  return hull;
 }
 
 }  // namespace
@@ -164,6 +177,7 @@ struct BulletArm::Impl {
       case ShapeKind::kCylinder:  // a capsule: its contacts are cheap and smooth
         shapes.push_back(std::make_unique<btCapsuleShapeZ>(shape.size[0], shape.size[1]));
         break;
+      case ShapeKind::kMesh: shapes.push_back(MakeHull(*shape.mesh)); break;
     }
     return shapes.back().get();
   }

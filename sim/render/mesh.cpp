@@ -4,8 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/render/simplify.hpp"
+
 namespace fovea::sim {
 namespace {
+
+// A mesh with more triangles than these casts the shadow of a coarser one, whose cells are half a texel of
+// the eye's shadow map [m].
+constexpr std::size_t kFewTriangles = 2000;
+constexpr float kShadowCell = 0.004F;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
@@ -44,16 +51,6 @@ Mesh Revolve(const std::vector<RingPoint>& outline, int segments, const Eigen::V
 }
 
 }  // namespace
-
-void Mesh::Append(const Mesh& other, const Eigen::Isometry3f& X) {
-  const auto base = static_cast<std::uint32_t>(vertices.size());
-  for (const Vertex& v : other.vertices) {
-    vertices.push_back({X * v.position, X.linear() * v.normal, v.colour});
-  }
-  for (const std::uint32_t i : other.indices) {
-    indices.push_back(base + i);
-  }
-}
 
 Bounds FindBounds(const Mesh& mesh) {
   if (mesh.vertices.empty()) {
@@ -154,6 +151,10 @@ Mesh MakeShape(const Shape& shape, Detail detail) {
     case ShapeKind::kBox: mesh = MakeBox(size, bevel, shape.colour); break;
     case ShapeKind::kCylinder: mesh = MakeCylinder(size[0], size[1], bevel, segments, shape.colour); break;
     case ShapeKind::kSphere: mesh = MakeSphere(size[0], segments, shape.colour); break;
+    case ShapeKind::kMesh:
+      mesh = picture || shape.mesh->num_triangles() <= kFewTriangles ? *shape.mesh
+                                                                     : Simplify(*shape.mesh, kShadowCell);
+      break;
   }
   Mesh placed;
   placed.Append(mesh, shape.X_LS.cast<float>());

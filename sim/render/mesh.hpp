@@ -1,27 +1,12 @@
-// Triangle meshes of simple solids, built on the CPU.
+// What is drawn of simple solids and of the robot's shapes, as triangles built on the CPU.
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
-#include <vector>
 
 #include "sim/robot/sim_robot.hpp"
+#include "sim/robot/triangle_mesh.hpp"
 
 namespace fovea::sim {
-
-struct Vertex {
-  Eigen::Vector3f position;
-  Eigen::Vector3f normal;
-  Eigen::Vector3f colour;
-};
-
-struct Mesh {
-  std::vector<Vertex> vertices;
-  std::vector<std::uint32_t> indices;  // three per triangle, counter-clockwise seen from outside
-
-  // Adds `other`, moved to `X`.
-  void Append(const Mesh& other, const Eigen::Isometry3f& X);
-};
 
 // A ball that holds all vertices of a mesh.
 struct Bounds {

@@ -14,6 +14,8 @@ using Eigen::Vector3f;
 // Corners nearer than this are one [m].
 constexpr float kWeld = 1e-5F;
 
+constexpr std::size_t kMostTriangles = 20'000;
+
 using Corner = std::array<long, 3>;
 
 Corner CornerOf(const Vector3f& p) {
@@ -23,6 +25,9 @@ Corner CornerOf(const Vector3f& p) {
 }  // namespace
 
 std::vector<MeshEdge> FindEdges(const Mesh& mesh) {
+  if (mesh.num_triangles() > kMostTriangles) {
+    return {};
+  }
   // A triangle knows its edges in the direction of its own turn; its neighbour knows them in the other.
   std::map<std::pair<Corner, Corner>, MeshEdge> half_edges;
   std::vector<MeshEdge> edges;

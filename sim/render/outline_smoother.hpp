@@ -24,7 +24,9 @@ struct MeshEdge {
   Eigen::Vector3f colour;
 };
 
-// The edges of a closed mesh, corners that coincide taken as one.
+// The edges of a closed mesh, corners that coincide taken as one. None of a mesh with more than 20 000
+// triangles: looking at all of its edges would cost more per picture than drawing it, and its outline stays a
+// little rough.
 std::vector<MeshEdge> FindEdges(const Mesh& mesh);
 
 class OutlineSmoother {

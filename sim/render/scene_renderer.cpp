@@ -52,12 +52,34 @@ Mesh MakeCameraHousing() {
   return mesh;
 }
 
-Mesh MakeLink(const SimLink& link, Detail detail) {
-  Mesh mesh;
+// A link's solids and, on the tip link, the camera; each by itself.
+std::vector<Mesh> MakeParts(const SimLink& link, const Isometry3f* X_LC, Detail detail) {
+  std::vector<Mesh> parts;
   for (const Shape& shape : link.visuals) {
-    mesh.Append(MakeShape(shape, detail), Isometry3f::Identity());
+    parts.push_back(MakeShape(shape, detail));
+  }
+  if (X_LC != nullptr) {
+    parts.emplace_back().Append(MakeCameraHousing(), *X_LC);
+  }
+  return parts;
+}
+
+Mesh Join(const std::vector<Mesh>& parts) {
+  Mesh mesh;
+  for (const Mesh& part : parts) {
+    mesh.Append(part, Isometry3f::Identity());
   }
   return mesh;
+}
+
+// Found part by part, so that a dense one does not cost the others theirs.
+std::vector<MeshEdge> FindAllEdges(const std::vector<Mesh>& parts) {
+  std::vector<MeshEdge> edges;
+  for (const Mesh& part : parts) {
+    const std::vector<MeshEdge> own = FindEdges(part);
+    edges.insert(edges.end(), own.begin(), own.end());
+  }
+  return edges;
 }
 
 }  // namespace
@@ -113,18 +135,18 @@ struct SceneRenderer::Impl {
       things.push_back({std::make_unique<GpuMesh>(mesh), FindEdges(mesh), FindBounds(mesh)});
     }
     for (std::size_t i = 0; i < scene.robot.links.size(); ++i) {
-      Mesh mesh = MakeLink(scene.robot.links[i], Detail::kPicture);
-      Mesh caster = MakeLink(scene.robot.links[i], Detail::kShadow);
-      if (static_cast<int>(i) == scene.robot.tip) {
-        mesh.Append(MakeCameraHousing(), scene.X_EC.cast<float>());
-        caster.Append(MakeCameraHousing(), scene.X_EC.cast<float>());
-      }
+      const SimLink& link = scene.robot.links[i];
+      const Isometry3f X_EC = scene.X_EC.cast<float>();
+      const Isometry3f* camera = static_cast<int>(i) == scene.robot.tip ? &X_EC : nullptr;
+      const std::vector<Mesh> seen = MakeParts(link, camera, Detail::kPicture);
+      const std::vector<Mesh> casters = MakeParts(link, camera, Detail::kShadow);
       std::vector<Bounds> shapes;
-      for (const Shape& shape : scene.robot.links[i].visuals) {
-        shapes.push_back(FindBounds(MakeShape(shape, Detail::kShadow)));
+      for (std::size_t k = 0; k < link.visuals.size(); ++k) {
+        shapes.push_back(FindBounds(casters[k]));
       }
-      links.push_back({std::make_unique<GpuMesh>(mesh), std::make_unique<GpuMesh>(caster), FindEdges(mesh),
-                       FindBounds(mesh), std::move(shapes)});
+      const Mesh mesh = Join(seen);
+      links.push_back({std::make_unique<GpuMesh>(mesh), std::make_unique<GpuMesh>(Join(casters)),
+                       FindAllEdges(seen), FindBounds(mesh), std::move(shapes)});
     }
     unit_ball = std::make_unique<GpuMesh>(MakeSphere(1.0F, 24, Vector3f::Ones()));
     glGenVertexArrays(1, &no_vertices);

@@ -4,7 +4,12 @@
 #include <urdf_parser/urdf_parser.h>
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
+
+#include "sim/robot/mesh_file.hpp"
+#include "sim/robot/mesh_path.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -51,15 +56,16 @@ class Reader {
       link.I_Com << in.ixx, in.ixy, in.ixz, in.ixy, in.iyy, in.iyz, in.ixz, in.iyz, in.izz;
     }
     for (const auto& visual : from->visual_array) {
-      Shape shape = ToShape(*visual->geometry, ToIsometry(visual->origin), link.name);
+      std::optional<Eigen::Vector3f> colour;
       if (visual->material) {
-        const urdf::Color& colour = visual->material->color;
-        shape.colour = {colour.r, colour.g, colour.b};
+        const urdf::Color& given = visual->material->color;
+        colour.emplace(given.r, given.g, given.b);
       }
-      link.visuals.push_back(shape);
+      link.visuals.push_back(ToShape(*visual->geometry, ToIsometry(visual->origin), colour, link.name));
     }
     for (const auto& collision : from->collision_array) {
-      link.collisions.push_back(ToShape(*collision->geometry, ToIsometry(collision->origin), link.name));
+      link.collisions.push_back(
+          ToShape(*collision->geometry, ToIsometry(collision->origin), std::nullopt, link.name));
     }
     if (link.name == tip_) {
       robot_.tip = index;
@@ -84,9 +90,10 @@ class Reader {
   }
 
   Shape ToShape(const urdf::Geometry& geometry, const Eigen::Isometry3d& X_LS,
-                const std::string& link) const {
+                const std::optional<Eigen::Vector3f>& colour, const std::string& link) const {
     Shape shape;
     shape.X_LS = X_LS;
+    shape.colour = colour.value_or(shape.colour);
     switch (geometry.type) {
       case urdf::Geometry::BOX: {
         const urdf::Vector3& dim = static_cast<const urdf::Box&>(geometry).dim;
@@ -104,12 +111,34 @@ class Reader {
         shape.kind = ShapeKind::kSphere;
         shape.size = {static_cast<const urdf::Sphere&>(geometry).radius, 0.0, 0.0};
         break;
-      default: Fail(fmt::format("link \"{}\": only box, cylinder and sphere shapes can be simulated", link));
+      case urdf::Geometry::MESH: {
+        shape.kind = ShapeKind::kMesh;
+        shape.mesh = ReadMesh(static_cast<const urdf::Mesh&>(geometry), colour, link);
+        return shape;
+      }
+      default:
+        Fail(fmt::format("link \"{}\": only box, cylinder, sphere and mesh shapes can be simulated", link));
     }
     if (!(shape.size[0] > 0.0)) {
       Fail(fmt::format("link \"{}\": a shape has no size", link));
     }
     return shape;
+  }
+
+  std::shared_ptr<const Mesh> ReadMesh(const urdf::Mesh& from, const std::optional<Eigen::Vector3f>& colour,
+                                       const std::string& link) const {
+    try {
+      const urdf::Vector3& scale = from.scale;
+      Mesh mesh = LoadMeshFile(FindMeshFile(file_, from.filename), {scale.x, scale.y, scale.z});
+      if (colour) {
+        for (Vertex& vertex : mesh.vertices) {
+          vertex.colour = *colour;
+        }
+      }
+      return std::make_shared<const Mesh>(std::move(mesh));
+    } catch (const std::exception& error) {
+      Fail(fmt::format("link \"{}\": mesh \"{}\": {}", link, from.filename, error.what()));
+    }
   }
 
   std::string file_;

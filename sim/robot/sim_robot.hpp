@@ -6,20 +6,24 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "sim/robot/triangle_mesh.hpp"
+
 namespace fovea::sim {
 
-enum class ShapeKind { kBox, kCylinder, kSphere };
+enum class ShapeKind { kBox, kCylinder, kSphere, kMesh };
 
 // A solid in its link's frame; box: size = full extents; cylinder: about z, size = (radius, length, -);
-// sphere: size = (radius, -, -).
+// sphere: size = (radius, -, -); mesh: its triangles, at their size and with their colours.
 struct Shape {
   ShapeKind kind = ShapeKind::kBox;
   Eigen::Isometry3d X_LS = Eigen::Isometry3d::Identity();
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  // [m]
   Eigen::Vector3f colour{0.7F, 0.7F, 0.7F};        // linear RGB, 0 to 1
+  std::shared_ptr<const Mesh> mesh;                // of kMesh, in S; not changed by anyone
 };
 
 enum class SimJointKind { kFixed, kRevolute, kPrismatic };
@@ -46,8 +50,9 @@ struct SimRobot {
   int tip = -1;  // index of the link whose frame is E
 };
 
-// Reads `urdf` from `base_link` on. Shapes other than box, cylinder and sphere are refused.
-// std::runtime_error with one line when it cannot be simulated.
+// Reads `urdf` from `base_link` on, and the mesh files that it names (mesh_path.hpp says where they may be,
+// mesh_file.hpp what they may hold). A mesh has the colour of its URDF material, or those of its file.
+// std::runtime_error with one line, naming the URDF, the link and the mesh, when it cannot be simulated.
 SimRobot LoadSimRobot(const std::filesystem::path& urdf, const std::string& base_link,
                       const std::string& tip_link);
 

@@ -43,7 +43,9 @@ class EyeFilmTest : public testing::Test {
   }
   static std::uint8_t Level(int i) { return static_cast<std::uint8_t>(20 + 4 * i); }
   static std::int64_t StampNs(int i) {
-    return 20'000'000 + std::int64_t{i} * 33'333'333 + (i >= 20 ? 500'000'000 : 0);
+    const std::int64_t step_ms =
+        (std::int64_t{i} * 100 + 1) / 3;  // as the world exposes: on whole steps of 1 ms
+    return 1'000'000 * (20 + step_ms + (i >= 20 ? 500 : 0));
   }
   std::string Path(const std::string& name) { return folder_.path() / name; }
   std::string Bytes(const std::string& name) {

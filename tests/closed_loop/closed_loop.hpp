@@ -15,7 +15,7 @@ namespace fovea::test {
 // Runs a shipped scenario with `assignments` over it; writes no files.
 inline sim::Summary RunShipped(const std::string& name, const std::vector<std::string>& assignments = {},
                                sim::RunOptions options = {}) {
-  options.pictures = false;
+  options.report = false;
   options.show_progress = false;
   return sim::RunScenario(sim::LoadScenario(name, assignments), options);
 }

@@ -135,7 +135,8 @@ TEST_F(McapTest, NoticesDamage) {
       EXPECT_FALSE(content.end.complete) << "damage at try " << i << " was not noticed";
     }
   }
-  // What is left are names, times and the index, which have no checksum of their own when read from the front.
+  // What is left are names, times and the index, which have no checksum of their own when read from the
+  // front.
   EXPECT_GT(noticed, kTries * 8 / 10);
 }
 

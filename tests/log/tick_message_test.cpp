@@ -69,8 +69,8 @@ hal::TickRecord RandomRecord(Random& random) {
   r.arm.sequence = ~std::uint64_t{0} - static_cast<std::uint64_t>(random.Whole(5));
   r.arm.num_joints = r.command.num_joints = static_cast<std::int32_t>(random.Whole(hal::kMaxJoints));
   const int n = r.arm.num_joints;
-  for (auto* values : {&r.arm.q, &r.arm.dq, &r.arm.tau_meas, &r.arm.tau_applied, &r.q_cmd, &r.dq_cmd, &r.ddq_cmd,
-                       &r.command.tau_cmd}) {
+  for (auto* values : {&r.arm.q, &r.arm.dq, &r.arm.tau_meas, &r.arm.tau_applied, &r.q_cmd, &r.dq_cmd,
+                       &r.ddq_cmd, &r.command.tau_cmd}) {
     random.Fill(*values, n);
   }
   r.has_feature = random.Whole(1) == 1;

@@ -46,7 +46,8 @@ TEST(EnvelopeTest, KeepsEveryPeak) {
     // Any stretch between two rows of a bucket holds no value outside them.
     for (std::size_t i = 0; i + 1 < rows.t_s.size(); i += 2) {
       const auto [low, high] = std::minmax(rows.columns[0][i], rows.columns[0][i + 1]);
-      for (auto k = static_cast<std::size_t>(rows.t_s[i]); k <= static_cast<std::size_t>(rows.t_s[i + 1]); ++k) {
+      for (auto k = static_cast<std::size_t>(rows.t_s[i]); k <= static_cast<std::size_t>(rows.t_s[i + 1]);
+           ++k) {
         ASSERT_LE(low, all[k]);
         ASSERT_GE(high, all[k]);
       }

@@ -170,6 +170,9 @@ TEST(RobotTest, RefusesWhatItCannotDrive) {
       {Replace(good, "type=\"revolute\"", "type=\"planar\""),
        "only revolute, continuous, prismatic and fixed"},
       {Replace(good, inertia2, "<link name=\"l2\"/>"), "without <inertial>"},
+      {Replace(good, "<link name=\"base\"/>",
+               "<link name=\"base\"><visual><geometry><cone/></geometry></visual></link>"),
+       "cone"},  // which urdfdom would leave out
       {Replace(good, "mass value=\"1\"", "mass value=\"0\""), "the mass above 0"},
       {Replace(good, "ixx=\"0.01\"", "ixx=\"-0.01\""), "principal moments"},
       {Replace(good, "izz=\"0.01\"", "izz=\"0.03\""),
@@ -185,6 +188,15 @@ TEST(RobotTest, RefusesWhatItCannotDrive) {
       {Replace(good, "</robot>",
                R"(<joint name="c" type="fixed"><parent link="base"/><child link="l2"/></joint></robot>)"),
        "hangs on two joints"},
+      {Replace(good, "</robot>",
+               R"(<joint name="c" type="revolute"><parent link="l2"/><child link="base"/><axis xyz="0 1 0"/>
+               <limit lower="-1" upper="1" velocity="2" effort="10"/></joint></robot>)"),
+       "not a usable URDF"},  // a ring without a root
+      {Replace(good, "</robot>",
+               R"(<joint name="c" type="fixed"><parent link="r1"/><child link="r2"/></joint><link name="r1"/>
+               <joint name="d" type="fixed"><parent link="r2"/><child link="r1"/></joint><link name="r2"/></robot>)"),
+       "hangs on itself"},  // a ring beside the arm
+      {Replace(good, "</robot>", "<link name=\"alone\"/></robot>"), "not a usable URDF"},  // two roots
       {Replace(good, "<limit lower", "<mimic joint=\"b\"/><limit lower"), "mimic"},
       {R"(<robot name="r"><link name="base"/></robot>)", "no moving joint"},
   };
@@ -225,6 +237,12 @@ TEST(RobotTest, AnArmFileIsCheckedKeyByKey) {
   EXPECT_THAT(error("urdf = \"none.urdf\"\n"), HasSubstr("no such file"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\nbase = \"x\"\n"), HasSubstr("base link \"x\""));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\ntip = \"x\"\n"), HasSubstr("no end effector"));
+  // The arm's own links in a ring, beside a root that is not its base.
+  std::ofstream(folder.path() / "ring.urdf") << Replace(
+      GoodUrdf(), "</robot>",
+      R"(<joint name="c" type="fixed"><parent link="l2"/><child link="base"/></joint><link name="world"/></robot>)");
+  EXPECT_THAT(error("urdf = \"ring.urdf\"\nbase = \"base\"\ntip = \"l2\"\n"),
+              HasSubstr("a loop is no serial arm"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\nbase = \"l2\"\ntip = \"l1\"\n"), HasSubstr("does not hang on"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\njerk_max = [1.0]\n"), HasSubstr("jerk_max has 1 entries"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\nready = [0.0, 5.0]\n"), HasSubstr("outside the joint's range"));

@@ -41,7 +41,8 @@ int Report(const ReportArguments& arguments) {
     }
   }
   const std::string page = report::ReportPage(config::ShareFolder() / "report").Make(runs);
-  const std::filesystem::path out = arguments.out.empty() ? DefaultOut(arguments.logs) : std::filesystem::path(arguments.out);
+  const std::filesystem::path out =
+      arguments.out.empty() ? DefaultOut(arguments.logs) : std::filesystem::path(arguments.out);
   std::ofstream stream(out, std::ios::binary | std::ios::trunc);
   stream << page;
   stream.close();
@@ -67,7 +68,9 @@ int main(int argc, char** argv) {
 
   ReportArguments arguments;
   CLI::App* report = app.add_subcommand("report", "make the report of a log, or of two beside each other");
-  report->add_option("log", arguments.logs, "a log.mcap, or the folder of a run; one or two")->required()->expected(1, 2);
+  report->add_option("log", arguments.logs, "a log.mcap, or the folder of a run; one or two")
+      ->required()
+      ->expected(1, 2);
   report->add_option("--out", arguments.out,
                      "the file to write; report.html beside the log, or comparison.html for two");
 

@@ -59,10 +59,10 @@ class McapWriter {
   std::ofstream file_;
   std::uint64_t position_ = 0;  // in the file
 
-  std::vector<std::string> schemas_;           // records as they were written
-  std::vector<std::string> channel_records_;   //
-  std::vector<Channel> channels_;              // number 0 first
-  std::vector<std::string> chunk_indexes_;     // records for the summary
+  std::vector<std::string> schemas_;          // records as they were written
+  std::vector<std::string> channel_records_;  //
+  std::vector<Channel> channels_;             // number 0 first
+  std::vector<std::string> chunk_indexes_;    // records for the summary
   std::vector<std::string> attachment_indexes_;
   std::vector<std::string> metadata_indexes_;
   std::uint64_t messages_ = 0;

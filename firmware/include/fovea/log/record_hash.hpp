@@ -1,7 +1,7 @@
 // Fingerprints, SHA-256 in 64 hexadecimal digits: of a run, and of the arm that it was computed for.
 //
-// A run's is taken over every tick's record, field by field, in little-endian bytes. Records hold virtual time
-// only, so the same binary, scenario and seed give the same hash. Measured times are not part of them.
+// A run's is taken over every tick's record, field by field, in little-endian bytes. Records hold virtual
+// time only, so the same binary, scenario and seed give the same hash. Measured times are not part of them.
 #pragma once
 
 #include <cstdint>

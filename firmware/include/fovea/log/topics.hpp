@@ -3,17 +3,17 @@
 
 namespace fovea::log {
 
-inline constexpr const char* kTickTopic = "/servo/tick";              // fovea.log.Tick
-inline constexpr const char* kFeatureTopic = "/servo/feature";        // fovea.log.Feature
-inline constexpr const char* kEventTopic = "/servo/events";           // foxglove.Log: modes and faults in words
-inline constexpr const char* kTickTimesTopic = "/servo/tick_times";   // fovea.log.TickTimes
-inline constexpr const char* kSetupTopic = "/setup";                  // fovea.log.Setup
-inline constexpr const char* kTruthTopic = "/truth";                  // fovea.log.Truth; simulator only
-inline constexpr const char* kImageTopic = "/camera/image";           // foxglove.CompressedImage, JPEG
-inline constexpr const char* kAnnotationTopic = "/camera/annotations";  // foxglove.ImageAnnotations
+inline constexpr const char* kTickTopic = "/servo/tick";        // fovea.log.Tick
+inline constexpr const char* kFeatureTopic = "/servo/feature";  // fovea.log.Feature
+inline constexpr const char* kEventTopic = "/servo/events";     // foxglove.Log: modes and faults in words
+inline constexpr const char* kTickTimesTopic = "/servo/tick_times";      // fovea.log.TickTimes
+inline constexpr const char* kSetupTopic = "/setup";                     // fovea.log.Setup
+inline constexpr const char* kTruthTopic = "/truth";                     // fovea.log.Truth; simulator only
+inline constexpr const char* kImageTopic = "/camera/image";              // foxglove.CompressedImage, JPEG
+inline constexpr const char* kAnnotationTopic = "/camera/annotations";   // foxglove.ImageAnnotations
 inline constexpr const char* kCalibrationTopic = "/camera/calibration";  // foxglove.CameraCalibration
-inline constexpr const char* kTransformTopic = "/tf";                 // foxglove.FrameTransforms
-inline constexpr const char* kSceneTopic = "/scene";                  // foxglove.SceneUpdate
+inline constexpr const char* kTransformTopic = "/tf";                    // foxglove.FrameTransforms
+inline constexpr const char* kSceneTopic = "/scene";                     // foxglove.SceneUpdate
 
 // Frames of /tf that are not links of the robot.
 inline constexpr const char* kBaseFrame = "base";      // B

@@ -34,8 +34,8 @@ class Envelope {
     }
   }
 
-  // The times, and each column's values: one row for a bucket of one row, two for others, in the order in which
-  // the column ran through them.
+  // The times, and each column's values: one row for a bucket of one row, two for others, in the order in
+  // which the column ran through them.
   struct Rows {
     std::vector<float> t_s;
     std::vector<std::vector<float>> columns;

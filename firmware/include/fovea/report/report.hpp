@@ -11,8 +11,8 @@ namespace fovea::report {
 
 class ReportPage {
  public:
-  // Reads the page's own parts from `folder`, and the libraries that are put into it. std::runtime_error, naming
-  // the file, when one is not there.
+  // Reads the page's own parts from `folder`, and the libraries that are put into it. std::runtime_error,
+  // naming the file, when one is not there.
   explicit ReportPage(const std::filesystem::path& folder);
 
   // The whole file, for one run or two.

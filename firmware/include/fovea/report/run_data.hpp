@@ -52,9 +52,9 @@ struct EyeFrame {
 };
 
 struct SceneShape {
-  std::string kind;              // "box", "cylinder", "sphere", "mesh"
-  std::vector<double> size;      // box: x, y, z; cylinder: radius, length; sphere: radius [m]
-  std::vector<float> vertices;   // mesh: x, y, z of each corner of each triangle [m]
+  std::string kind;             // "box", "cylinder", "sphere", "mesh"
+  std::vector<double> size;     // box: x, y, z; cylinder: radius, length; sphere: radius [m]
+  std::vector<float> vertices;  // mesh: x, y, z of each corner of each triangle [m]
   std::array<double, 3> position{};
   std::array<double, 4> quaternion{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
   std::array<double, 3> colour{};                        // as screens show it, 0 to 1
@@ -111,8 +111,8 @@ struct RunData {
   SceneMotion motion;
 };
 
-// Reads a log, or the log in a run's folder. One that was cut off is read as far as it goes. std::runtime_error,
-// naming the file: it cannot be read, is no MCAP file, or holds no run of Fovea's.
+// Reads a log, or the log in a run's folder. One that was cut off is read as far as it goes.
+// std::runtime_error, naming the file: it cannot be read, is no MCAP file, or holds no run of Fovea's.
 RunData ReadRun(const std::filesystem::path& log_or_folder);
 
 }  // namespace fovea::report

@@ -31,7 +31,8 @@ class BoundedRing {
     return written_.load(std::memory_order_relaxed) - read_.load(std::memory_order_acquire) < values_.size();
   }
 
-  // From the reading thread: calls `take(value)` for every value that is there, oldest first. Returns how many.
+  // From the reading thread: calls `take(value)` for every value that is there, oldest first. Returns how
+  // many.
   template <typename Take>
   std::size_t Drain(Take&& take) {
     const std::uint64_t end = written_.load(std::memory_order_acquire);

@@ -16,8 +16,8 @@ struct RealtimeOptions {
 // empty list means that all could. Call it once, before the loop. Real-time: no.
 std::vector<std::string> MakeThreadRealtime(const RealtimeOptions& options);
 
-// Lowers the calling thread's claim on the processor (nice), for work that must not disturb the loop, and gives it
-// the name [at most 15 letters] that top and perf show.
+// Lowers the calling thread's claim on the processor (nice), for work that must not disturb the loop, and
+// gives it the name [at most 15 letters] that top and perf show.
 void MakeThreadYielding(const char* name);
 
 }  // namespace fovea::linux_rt

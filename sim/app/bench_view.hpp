@@ -1,0 +1,27 @@
+// The bench as someone who stands beside it sees it, and paths drawn into that view.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "sim/render/exposure.hpp"
+#include "sim/render/pinhole.hpp"
+
+namespace fovea::sim {
+
+struct BenchView {
+  Eigen::Isometry3d X_BV = Eigen::Isometry3d::Identity();  // axes of V as those of C
+  Pinhole pinhole;
+};
+
+// The view's lens for a picture of the given size.
+Pinhole MakeBenchPinhole(int width_px, int height_px);
+// So that the arm of `exposure` is in the picture.
+BenchView MakeBenchView(const Exposure& exposure, const Pinhole& pinhole);
+
+// Draws `path`, points in B [m], as a line into `bgr`, which begins where the view's picture does.
+void DrawPath(cv::Mat& bgr, const BenchView& view, const std::vector<Eigen::Vector3d>& path,
+              const cv::Scalar& colour, int thickness);
+
+}  // namespace fovea::sim

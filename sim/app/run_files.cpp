@@ -1,0 +1,119 @@
+#include "sim/app/run_files.hpp"
+
+#include <future>
+
+#include "fovea/config/share_folder.hpp"
+
+namespace fovea::sim {
+namespace {
+
+// All that any run leaves, for the next to take away.
+const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png",   "camera.mp4",
+                                          "scene.mp4",     "log.mcap",     "report.html", "summary.json"};
+
+}  // namespace
+
+RunFiles::RunFiles(const RunFilesConfig& config) : config_(config) {
+  if (config.out.empty()) {
+    return;
+  }
+  if (config.report) {
+    page_.emplace(config::ShareFolder() / "report");
+  }
+  folder_.emplace(config.out);
+  if (!config.report) {
+    return;
+  }
+  EyeFilmConfig film;
+  film.path = folder_->Begin("camera.mp4");
+  film.intrinsics = config.intrinsics;
+  film.radius = config.scene.target_radius;
+  film.p_CO_C_star = config.servo.feature.p_CO_C_star;
+  film.may_drop = config.may_drop;
+  eye_film_ = std::make_unique<EyeFilm>(film);
+  if (config.scenario.run.scene_video) {
+    scene_film_ = std::make_unique<SceneFilm>(
+        SceneFilmConfig{folder_->Begin("scene.mp4"), config.scene, config.renderer_index, config.may_drop});
+  }
+  log_ = std::make_unique<LogFeed>(LogFeedConfig{folder_->Begin("log.mcap"), config.scenario, config.robot,
+                                                 config.servo, config.scene, config.pinhole,
+                                                 config.intrinsics, config.may_drop});
+}
+
+void RunFiles::AddTruth(const Truth& truth) {
+  camera_path_.Add(truth.stamp_ns, truth.X_BC.translation());
+  target_path_.Add(truth.stamp_ns, truth.p_BO);
+  if (log_) {
+    log_->AddTruth(truth);
+  }
+}
+
+void RunFiles::AddExposure(const Exposure& exposure) {
+  if (scene_film_) {
+    scene_film_->Add(exposure);
+  }
+}
+
+void RunFiles::AddRecord(const hal::TickRecord& record) {
+  if (log_) {
+    log_->AddRecord(record);
+  }
+}
+
+void RunFiles::AddFrame(const hal::Frame& frame, const vision::BallDetection& detection,
+                        const Eigen::Vector3d& p_CO_C) {
+  frames_.Keep(frame, detection, p_CO_C);
+  if (HasReport()) {
+    eye_film_->Add(frame, detection);
+    log_->AddFrame(frame, detection, p_CO_C);
+  }
+}
+
+std::uint64_t RunFiles::film_frames_dropped() const {
+  return (eye_film_ ? eye_film_->dropped() : 0) + (scene_film_ ? scene_film_->dropped() : 0);
+}
+
+void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt::DurationHistogram& ticks) {
+  if (!folder_) {
+    return;
+  }
+  const std::string summary_json = ToJson(summary);
+  std::vector<OutputFile> files;
+  // The bench takes longest to draw; the rest is written meanwhile.
+  std::future<std::string> bench;
+  if (HasReport()) {
+    bench = std::async(std::launch::async, [&] {
+      return DrawBenchPicture(config_.scene, end, camera_path_.points(), target_path_.points());
+    });
+  }
+  const bool has_frames = frames_.frames() > 0;
+  if (has_frames) {
+    const Eigen::Vector3d& goal = config_.servo.feature.p_CO_C_star;
+    for (const auto& [name, frame] :
+         {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
+      files.push_back({name, DrawEyePicture(*frame, config_.intrinsics, config_.scene.target_radius, goal)});
+    }
+  }
+  if (HasReport()) {
+    std::optional<std::filesystem::path> film;
+    if (has_frames) {
+      eye_film_->Finish();
+      film = eye_film_->path();
+      files.push_back({"camera.mp4", std::nullopt});
+    }
+    if (has_frames && scene_film_) {
+      scene_film_->Finish();
+      files.push_back({"scene.mp4", std::nullopt});
+    }
+    log_->Finish(ticks, summary_json, film);
+    files.push_back({"log.mcap", std::nullopt});
+    report::RunData run = report::ReadRun(log_->path());
+    run.source = "log.mcap";  // as it will be called
+    files.push_back({"report.html", page_->Make({run})});
+    files.push_back({"bench.png", bench.get()});
+  }
+  files.push_back({"summary.json", summary_json});
+  folder_->Replace(files, kFileNames);
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,70 @@
+// What a run leaves behind: films, log, report, pictures and summary, gathered while it goes on.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "fovea/report/report.hpp"
+#include "sim/app/eye_film.hpp"
+#include "sim/app/log_feed.hpp"
+#include "sim/app/output_folder.hpp"
+#include "sim/app/path.hpp"
+#include "sim/app/pictures.hpp"
+#include "sim/app/scene_film.hpp"
+#include "sim/app/summary.hpp"
+
+namespace fovea::sim {
+
+struct RunFilesConfig {
+  std::filesystem::path out;  // empty: no files
+  bool report = true;         // films, log, report and the bench's picture too
+  int renderer_index = 0;     // the first that the run itself does not use; see SceneRenderer
+  Scenario scenario;
+  robots::Robot robot;
+  servo::ServoConfig servo;
+  RenderScene scene;
+  Pinhole pinhole;
+  vision::Intrinsics intrinsics;
+  bool may_drop = false;  // at real pace: nobody waits for a film or a log
+};
+
+class RunFiles {
+ public:
+  // InputError when nothing can be written there; std::runtime_error when the report's page is not there.
+  explicit RunFiles(const RunFilesConfig& config);
+
+  // From the thread that advances the world.
+  void AddTruth(const Truth& truth);
+  void AddExposure(const Exposure& exposure);
+  // From the thread that empties the recorder.
+  void AddRecord(const hal::TickRecord& record);
+  // From the vision thread. `p_CO_C`: where the target really was [m].
+  void AddFrame(const hal::Frame& frame, const vision::BallDetection& detection,
+                const Eigen::Vector3d& p_CO_C);
+
+  // When the threads are done: frames that the vision task got, and in how many it found the target; what
+  // found no place in films and log.
+  [[nodiscard]] std::uint64_t frames() const { return frames_.frames(); }
+  [[nodiscard]] std::uint64_t frames_detected() const { return frames_.detected(); }
+  [[nodiscard]] std::uint64_t film_frames_dropped() const;
+  [[nodiscard]] std::uint64_t log_entries_dropped() const { return log_ ? log_->dropped() : 0; }
+
+  // Puts everything in place; `end` is the bench as it is at the end. Throws what went wrong with any of it;
+  // then the folder is as it was.
+  void Write(const Summary& summary, const Exposure& end, const linux_rt::DurationHistogram& ticks);
+
+ private:
+  [[nodiscard]] bool HasReport() const { return page_.has_value(); }
+
+  const RunFilesConfig config_;
+  std::optional<report::ReportPage> page_;
+  std::optional<OutputFolder> folder_;
+  std::unique_ptr<EyeFilm> eye_film_;
+  std::unique_ptr<SceneFilm> scene_film_;
+  std::unique_ptr<LogFeed> log_;
+  FrameKeeper frames_;
+  Path camera_path_;
+  Path target_path_;
+};
+
+}  // namespace fovea::sim

@@ -1,0 +1,114 @@
+#include "sim/robot/mesh_path.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+namespace fovea::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPackage = "package://";
+constexpr const char* kFile = "file://";
+
+[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
+
+bool StartsWith(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
+
+bool IsFile(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+bool IsFolder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+// The entries of a colon-separated list in the environment.
+std::vector<fs::path> Entries(const char* variable) {
+  std::vector<fs::path> entries;
+  const char* list = std::getenv(variable);
+  std::istringstream stream(list == nullptr ? "" : list);
+  for (std::string entry; std::getline(stream, entry, ':');) {
+    if (!entry.empty()) {
+      entries.emplace_back(entry);
+    }
+  }
+  return entries;
+}
+
+// Folders that may be the package, the nearest first.
+std::vector<fs::path> PackageFolders(const fs::path& urdf, const std::string& name) {
+  std::vector<fs::path> folders;
+  const fs::path start = fs::absolute(urdf).lexically_normal().parent_path();
+  for (fs::path above = start;; above = above.parent_path()) {
+    if (above.filename() == name) {
+      folders.push_back(above);
+    }
+    folders.push_back(above / name);
+    if (above == above.parent_path()) {
+      break;
+    }
+  }
+  for (const fs::path& entry : Entries("ROS_PACKAGE_PATH")) {
+    folders.push_back(entry / name);
+  }
+  for (const fs::path& entry : Entries("AMENT_PREFIX_PATH")) {
+    folders.push_back(entry / "share" / name);
+  }
+  return folders;
+}
+
+fs::path FindInPackage(const fs::path& urdf, const std::string& name, const std::string& rest) {
+  std::string there_is;
+  for (const fs::path& folder : PackageFolders(urdf, name)) {
+    if (IsFile(folder / rest)) {
+      return folder / rest;
+    }
+    if (there_is.empty() && IsFolder(folder)) {
+      there_is = (folder / rest).string();
+    }
+  }
+  if (!there_is.empty()) {
+    Fail(fmt::format("no such file: {}", there_is));
+  }
+  Fail(fmt::format(
+      "no folder of package \"{}\": looked above {}, in ROS_PACKAGE_PATH and in AMENT_PREFIX_PATH/share",
+      name, fs::absolute(urdf).lexically_normal().parent_path().string()));
+}
+
+}  // namespace
+
+fs::path FindMeshFile(const fs::path& urdf, const std::string& filename) {
+  if (StartsWith(filename, kPackage)) {
+    const std::string path = filename.substr(std::string(kPackage).size());
+    const auto slash = path.find('/');
+    if (slash == std::string::npos || slash == 0 || slash + 1 == path.size()) {
+      Fail("a package's file is written package://name/path");
+    }
+    return FindInPackage(urdf, path.substr(0, slash), path.substr(slash + 1));
+  }
+  fs::path file = filename;
+  if (StartsWith(filename, kFile)) {
+    file = filename.substr(std::string(kFile).size());
+    if (!file.is_absolute()) {
+      Fail("a file's URL is written file:///absolute/path");
+    }
+  } else if (filename.find("://") != std::string::npos) {
+    Fail("only package:// and file:// URLs and paths are read");
+  }
+  if (file.is_relative()) {
+    file = urdf.parent_path() / file;
+  }
+  if (!IsFile(file)) {
+    Fail(fmt::format("no such file: {}", fs::absolute(file).lexically_normal().string()));
+  }
+  return file;
+}
+
+}  // namespace fovea::sim
