@@ -11,6 +11,8 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -23,7 +25,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 const Vector3f kGrey(0.7F, 0.7F, 0.7F);
-constexpr float kSmoothBelow_deg = 40.0F;  // an edge that bends more is sharp
+constexpr float kSmoothBelowDeg = 40.0F;  // an edge that bends more is sharp
 
 [[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
 
@@ -36,6 +38,30 @@ std::string LowerExtension(const std::filesystem::path& file) {
 
 // The first line of what the importer says.
 std::string OneLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+// Whole numbers are all that Collada's lists of corners hold; at anything else in one, assimp's reader stays
+// where it is for good.
+void CheckColladaLists(const std::filesystem::path& file) {
+  std::ostringstream content;
+  content << std::ifstream(file, std::ios::binary).rdbuf();
+  const std::string text = content.str();
+  for (const std::string name : {"p", "vcount", "v", "h"}) {
+    for (auto at = text.find("<" + name); at != std::string::npos; at = text.find("<" + name, at + 1)) {
+      const auto after_name = at + 1 + name.size();
+      const auto begin = text.find('>', at);
+      const bool is_other =
+          after_name < text.size() && std::string("> \t\r\n").find(text[after_name]) == std::string::npos;
+      if (begin == std::string::npos || is_other || text[begin - 1] == '/') {
+        continue;
+      }
+      const auto wrong = text.find_first_not_of("0123456789+- \t\r\n", begin + 1);
+      if (wrong != std::string::npos && text[wrong] != '<') {
+        Fail(fmt::format("cannot be read: in <{}>, where only whole numbers may stand, byte {} is none", name,
+                         wrong));
+      }
+    }
+  }
+}
 
 Vector3d ToVector(const aiVector3D& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
@@ -160,9 +186,12 @@ Mesh LoadMeshFile(const std::filesystem::path& file, const Vector3d& scale) {
     Fail(fmt::format("scale = {} {} {} is not allowed: finite numbers other than 0", scale.x(), scale.y(),
                      scale.z()));
   }
+  if (extension == ".dae") {
+    CheckColladaLists(file);
+  }
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelow_deg);
+  importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelowDeg);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const unsigned normals =
       extension == ".stl" ? aiProcess_GenNormals | aiProcess_ForceGenNormals : aiProcess_GenSmoothNormals;

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <limits>
+#include <sstream>
 
 #include "sim/physics/hull_points.hpp"
 #include "sim/render/mesh.hpp"
@@ -211,6 +212,20 @@ TEST_F(MeshFileTest, WhatCannotBeUsedIsRefusedWithTheReason) {
     EXPECT_THAT(Refusal(File("broken.stl")), HasSubstr("not a finite number"));
   }
   EXPECT_THAT(Refusal(File("good.stl"), {1e300, 1.0, 1.0}), HasSubstr("not a finite number"));
+}
+
+// On such a list assimp's reader does not come back.
+TEST_F(MeshFileTest, AColladaListWithSomethingElseThanNumbersIsRefused) {
+  test::WriteDae(File("a.dae"), Tetrahedron(), "<up_axis>Z_UP</up_axis>");
+  std::ostringstream good;
+  good << std::ifstream(File("a.dae")).rdbuf();
+  EXPECT_EQ(Refusal(File("a.dae")), "accepted");
+  for (const char* bad : {"<p>x", "<p>1 2 ; ", "<p>0.5 "}) {
+    std::string text = good.str();
+    text.replace(text.find("<p>"), 3, bad);
+    std::ofstream(File("a.dae")) << text;
+    EXPECT_THAT(Refusal(File("a.dae")), AllOf(HasSubstr("<p>"), HasSubstr("only whole numbers")));
+  }
 }
 
 TEST_F(MeshFileTest, MoreTrianglesThanCanBeDrawnAreRefused) {
