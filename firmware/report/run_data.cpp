@@ -139,7 +139,6 @@ class Reader {
     row.values.push_back(kNone);
     row.values.push_back(tick.target_known() ? ErrorPx(tick.s(), tick.s_star()) : kNone);
     waiting_.push_back(std::move(row));
-    s_star_ = tick.s_star();
     Join(false);
   }
 
@@ -184,7 +183,8 @@ class Reader {
   }
 
   void TakeFeature(const log::Feature& feature, std::int64_t taken_ns) {
-    const float error = feature.found() ? ErrorPx(feature.s(), s_star_) : kNone;
+    // In pixels s and s_star in units of the radius, or p_CO_C itself, are the same.
+    const float error = feature.found() ? ErrorPx(feature.s(), setup_.p_co_c_star()) : kNone;
     run_.measured.Add(Seconds(feature.stamp_ns()),
                       {error, static_cast<float>(1e-6 * static_cast<double>(taken_ns - feature.stamp_ns())),
                        static_cast<float>(feature.confidence())});
@@ -218,10 +218,17 @@ class Reader {
     return frame;
   }
 
+  // As bars of equal width on a logarithmic axis; the log's own bins are finer than any screen.
   void TakeTickTimes(const log::TickTimes& times) {
+    constexpr double kBinsPerDecade = 30.0;
+    std::map<int, std::uint64_t> bins;
     for (int i = 0; i < std::min(times.upper_ns_size(), times.counts_size()); ++i) {
-      run_.tick_upper_us.push_back(1e-3 * static_cast<double>(times.upper_ns(i)));
-      run_.tick_counts.push_back(times.counts(i));
+      const double upper_us = 1e-3 * static_cast<double>(std::max<std::uint64_t>(times.upper_ns(i), 1));
+      bins[static_cast<int>(std::ceil(kBinsPerDecade * std::log10(upper_us)))] += times.counts(i);
+    }
+    for (int bin = bins.empty() ? 0 : bins.begin()->first; !bins.empty() && bin <= bins.rbegin()->first; ++bin) {
+      run_.tick_upper_us.push_back(std::pow(10.0, bin / kBinsPerDecade));
+      run_.tick_counts.push_back(bins.count(bin) == 1 ? bins.at(bin) : 0);
     }
   }
 
@@ -233,7 +240,6 @@ class Reader {
   RunData& run_;
   SceneReader scene_;
   log::Setup setup_;
-  google::protobuf::RepeatedField<double> s_star_;
   std::deque<Row> waiting_;
   std::deque<log::Truth> truths_;
   std::vector<std::optional<double>> open_limits_;  // since when each acts

@@ -60,14 +60,16 @@ TEST(EnvelopeTest, PassesOverWhatIsNotThere) {
   for (int i = 0; i < 64; ++i) {
     envelope.Add(i, {i % 2 == 0 ? kNone : static_cast<float>(i)});
   }
-  for (const float value : envelope.rows().columns[0]) {
+  const Envelope::Rows rows = envelope.rows();
+  for (const float value : rows.columns[0]) {
     EXPECT_FALSE(std::isnan(value));
   }
   Envelope none(1, 2);
   for (int i = 0; i < 64; ++i) {
     none.Add(i, {kNone});
   }
-  for (const float value : none.rows().columns[0]) {
+  const Envelope::Rows no_rows = none.rows();
+  for (const float value : no_rows.columns[0]) {
     EXPECT_TRUE(std::isnan(value));
   }
 }
