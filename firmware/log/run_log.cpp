@@ -106,10 +106,11 @@ void RunLog::AddAttachment(const std::string& name, const std::string& media_typ
   });
 }
 
+// What a thread added first is written first: the rings are marked before the messages are taken, so that every
+// message that was added before a tick is there with it.
 bool RunLog::WriteRound() {
-  std::size_t written = ticks_.Drain([this](const hal::TickRecord& r) { tick_writer_->Write(r, *file_); });
-  written += truths_.Drain(
-      [this](const TruthSample& sample) { file_->Write(kTruthTopic, sample.stamp_ns, ToMessage(sample)); });
+  const std::uint64_t ticks_end = ticks_.End();
+  const std::uint64_t truths_end = truths_.End();
   std::deque<Job> jobs;
   {
     const std::lock_guard lock(mutex_);
@@ -119,7 +120,12 @@ bool RunLog::WriteRound() {
   for (const Job& job : jobs) {
     job(*file_);
   }
-  return written + jobs.size() > 0;
+  std::size_t written = jobs.size();
+  written += ticks_.Drain(ticks_end, [this](const hal::TickRecord& r) { tick_writer_->Write(r, *file_); });
+  written += truths_.Drain(truths_end, [this](const TruthSample& sample) {
+    file_->Write(kTruthTopic, sample.stamp_ns, ToMessage(sample));
+  });
+  return written > 0;
 }
 
 void RunLog::WriteAll() {

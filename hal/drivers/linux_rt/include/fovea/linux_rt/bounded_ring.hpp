@@ -31,11 +31,12 @@ class BoundedRing {
     return written_.load(std::memory_order_relaxed) - read_.load(std::memory_order_acquire) < values_.size();
   }
 
-  // From the reading thread: calls `take(value)` for every value that is there, oldest first. Returns how
-  // many.
+  // From the reading thread: a mark after all that is there now, for Drain.
+  [[nodiscard]] std::uint64_t End() const noexcept { return written_.load(std::memory_order_acquire); }
+
+  // From the reading thread: calls `take(value)` for every value before the mark, oldest first. Returns how many.
   template <typename Take>
-  std::size_t Drain(Take&& take) {
-    const std::uint64_t end = written_.load(std::memory_order_acquire);
+  std::size_t Drain(std::uint64_t end, Take&& take) {
     const std::uint64_t begin = read_.load(std::memory_order_relaxed);
     for (std::uint64_t next = begin; next != end; ++next) {
       take(values_[next % values_.size()]);

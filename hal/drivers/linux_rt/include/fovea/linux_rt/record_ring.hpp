@@ -19,7 +19,7 @@ class RecordRing final : public hal::Recorder {
   // From one other thread: calls `take(record)` for every record that is there, oldest first.
   template <typename Take>
   void Drain(Take&& take) {
-    ring_.Drain(take);
+    ring_.Drain(ring_.End(), take);
   }
 
   [[nodiscard]] std::uint64_t dropped() const noexcept { return ring_.dropped(); }

@@ -1,0 +1,198 @@
+// From a log to a page: what is there is shown, what is not is left out, and nothing in a log breaks the page.
+#include "fovea/report/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fovea/log/run_log.hpp"
+#include "fovea/log/topics.hpp"
+#include "fovea/run.pb.h"
+
+namespace fovea::report {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class ReportTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("fovea-report-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::create_directories(folder_ / "page");
+    path_ = folder_ / "log.mcap";
+    Page("<title>FOVEA_TITLE</title>\n<!-- FOVEA:STYLE a.css -->\n<!-- FOVEA:DATA -->\n<!-- FOVEA:SCRIPT a.js -->\n");
+    std::ofstream(folder_ / "page" / "a.css") << "p {}\n";
+    std::ofstream(folder_ / "page" / "a.js") << "say('</script>');\n";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  void Page(const std::string& text) const { std::ofstream(folder_ / "page" / "report.html") << text; }
+
+  static log::RunLogConfig Config(const fs::path& path) {
+    log::RunLogConfig config;
+    config.path = path;
+    config.library = "test";
+    config.arm.num_joints = 2;
+    return config;
+  }
+  static log::Setup Setup(const std::string& name) {
+    log::Setup setup;
+    setup.set_name(name);
+    setup.add_joints()->set_name("shoulder");
+    setup.add_joints()->set_name("elbow");
+    setup.set_lambda(2.0);
+    setup.set_target_radius(0.04);
+    setup.set_f_px(500.0);
+    for (const double value : {0.0, 0.0, 0.4}) {
+      setup.add_p_co_c_star(value);
+    }
+    for (int i = 0; i < hal::kNumLimits; ++i) {
+      setup.add_limits(hal::Name(static_cast<hal::Limit>(i)));
+    }
+    return setup;
+  }
+  static hal::TickRecord Record(int tick) {
+    hal::TickRecord r;
+    r.tick = static_cast<std::uint64_t>(tick);
+    r.stamp_ns = tick * hal::kTickPeriodNs;
+    r.arm.num_joints = r.command.num_joints = 2;
+    r.arm.q[1] = 0.001 * tick;
+    r.mode = tick < 100 ? hal::Mode::kBoot : hal::Mode::kTrack;
+    r.target_known = tick >= 100;
+    r.dim = 3;
+    r.s = {1.0, 0.0, 10.0};
+    r.s_star = {0.0, 0.0, 10.0};
+    if (tick >= 200 && tick < 300) {
+      r.limits_active = hal::Bit(hal::Limit::kWorkspace);
+    }
+    if (tick % 50 == 40) {
+      r.has_feature = true;
+      r.feature.stamp_ns = r.stamp_ns - 40 * hal::kNsPerMs;
+      r.feature.found = tick != 240;
+      r.feature.dim = r.feature.found ? 3 : 0;
+      if (r.feature.found) {
+        r.feature.s = {0.5, 0.0, 10.0};
+      }
+    }
+    return r;
+  }
+  // With truth when asked for.
+  void WriteLog(const std::string& name, bool truth, int ticks = 500) const {
+    log::RunLog log(Config(path_));
+    log.Add(log::kSetupTopic, 0, Setup(name));
+    for (int i = 0; i < ticks; ++i) {
+      log.AddTick(Record(i));
+      if (truth) {
+        log.AddTruth({i * hal::kTickPeriodNs, {}, {}, 100.0 - 0.1 * i, 3.0});
+      }
+    }
+    log.Finish();
+  }
+
+  fs::path folder_;
+  fs::path path_;
+};
+
+TEST_F(ReportTest, TellsTheRunOfALog) {
+  WriteLog("swing", true);
+  const RunData run = ReadRun(folder_);
+  EXPECT_TRUE(run.complete);
+  EXPECT_EQ(run.name, "swing");
+  EXPECT_DOUBLE_EQ(run.duration_s, 0.499);
+  ASSERT_EQ(run.modes.size(), 2U);
+  EXPECT_EQ(run.modes[1].mode, "track");
+  EXPECT_DOUBLE_EQ(run.modes[1].t_s, 0.1);
+  for (const LimitSpans& limit : run.limits_active) {
+    EXPECT_EQ(limit.spans_s.size(), limit.name == "workspace" ? 1U : 0U) << limit.name;
+    if (limit.name == "workspace") {
+      EXPECT_DOUBLE_EQ(limit.spans_s[0][0], 0.2);
+      EXPECT_DOUBLE_EQ(limit.spans_s[0][1], 0.3);
+    }
+  }
+  const Envelope::Rows ticks = run.ticks->rows();
+  ASSERT_EQ(ticks.t_s.size(), 500U);
+  const std::size_t at = 4 * run.joints.size();
+  EXPECT_FLOAT_EQ(ticks.columns[1][250], 0.25F);
+  EXPECT_FLOAT_EQ(ticks.columns[at + RunData::kErrorPx][250], 75.0F) << "the truth of its own tick";
+  EXPECT_TRUE(std::isnan(ticks.columns[at + RunData::kPredictedPx][50])) << "nothing is known yet";
+  EXPECT_FLOAT_EQ(ticks.columns[at + RunData::kPredictedPx][250], 50.0F);
+  const Envelope::Rows measured = run.measured.rows();
+  ASSERT_EQ(measured.t_s.size(), 10U);
+  EXPECT_FLOAT_EQ(measured.columns[RunData::kMeasuredPx][0], 25.0F) << "before the servo knows the target too";
+  EXPECT_TRUE(std::isnan(measured.columns[RunData::kMeasuredPx][4])) << "not found";
+  EXPECT_FLOAT_EQ(measured.columns[RunData::kAgeMs][0], 40.0F);
+}
+
+TEST_F(ReportTest, LeavesOutWhatTheLogDoesNotHold) {
+  WriteLog("robot", false);
+  const json data = json::parse(ToJson(ReadRun(path_)));
+  EXPECT_TRUE(data["ticks"]["error_px"].is_null());
+  EXPECT_TRUE(data["ticks"]["predicted_px"].is_string());
+  for (const char* key : {"summary", "tick_times", "frames", "video", "scene", "incomplete"}) {
+    EXPECT_TRUE(data[key].is_null()) << key;
+  }
+}
+
+TEST_F(ReportTest, ShowsALogThatWasCutOff) {
+  WriteLog("cut", true, 8000);
+  fs::resize_file(path_, fs::file_size(path_) * 6 / 10);
+  const RunData run = ReadRun(path_);
+  EXPECT_GT(run.duration_s, 1.0);
+  EXPECT_LT(run.duration_s, 7.0);
+  EXPECT_FALSE(run.complete);
+  EXPECT_NE(run.why_incomplete.find("cut off"), std::string::npos) << run.why_incomplete;
+  EXPECT_FALSE(json::parse(ToJson(run))["incomplete"].is_null());
+}
+
+TEST_F(ReportTest, RefusesWhatIsNoRun) {
+  EXPECT_THROW(ReadRun(folder_ / "nothing.mcap"), std::runtime_error);
+  std::ofstream(path_) << "no log";
+  EXPECT_THROW(ReadRun(path_), std::runtime_error);
+  {
+    log::RunLog log(Config(path_));
+    log.Finish();
+  }
+  try {
+    ReadRun(path_);
+    ADD_FAILURE() << "a log without a set-up was taken";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("/setup"), std::string::npos) << error.what();
+  }
+}
+
+// A name may hold anything; the page's own scripts too.
+TEST_F(ReportTest, NothingBreaksOutOfItsPlace) {
+  WriteLog("</script><!--<b>&", true);
+  const std::string page = ReportPage(folder_ / "page").Make({ReadRun(path_), ReadRun(path_)});
+  const auto count = [&page](const std::string& text) {
+    std::size_t found = 0;
+    for (std::size_t at = page.find(text); at != std::string::npos; at = page.find(text, at + 1)) {
+      ++found;
+    }
+    return found;
+  };
+  EXPECT_EQ(count("</script"), 3U) << "one closes each of two runs, one the page's script";
+  EXPECT_EQ(count("<!--"), 0U);
+  EXPECT_EQ(count("<style>"), 1U);
+  EXPECT_EQ(count("<title>&lt;/script>&lt;!--&lt;b>&amp; and"), 1U);
+  const auto begin = page.find("class=\"fovea-run\">") + 18;
+  const json data = json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  EXPECT_EQ(data["name"], "</script><!--<b>&");
+}
+
+TEST_F(ReportTest, NamesThePartThatIsNotThere) {
+  Page("<!-- FOVEA:SCRIPT missing.js -->\n");
+  try {
+    ReportPage page(folder_ / "page");
+    ADD_FAILURE() << "a page without its script was made";
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("missing.js"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace fovea::report
