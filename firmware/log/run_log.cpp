@@ -18,7 +18,8 @@ namespace fovea::log {
 namespace {
 
 constexpr std::size_t kRing = 2048;                      // ticks that may wait: two seconds
-constexpr std::size_t kMostJobs = 16;                    // pictures and messages that may wait
+constexpr std::size_t kMostImages = 8;                   // pictures that may wait
+constexpr std::size_t kMostJobs = 1024;                  // and messages
 constexpr auto kPoll = std::chrono::milliseconds(2);     // how often the rings are looked at
 constexpr auto kFlush = std::chrono::milliseconds(500);  // what is older than this is in the file
 
@@ -58,56 +59,63 @@ void RunLog::AddTruth(const TruthSample& sample) { PushOrWait(truths_, sample); 
 void RunLog::Push(Job job) {
   {
     std::unique_lock lock(mutex_);
-    const auto has_room = [this] { return jobs_.size() < kMostJobs || failure_ != nullptr; };
-    if (!config_.may_drop) {
+    const auto has_room = [&] {
+      return failure_ != nullptr || (job.is_image ? images_waiting_ < kMostImages : jobs_.size() < kMostJobs);
+    };
+    if (!config_.may_drop || !job.is_image) {
       changed_.wait(lock, has_room);
     }
-    if (!has_room() || failure_ != nullptr) {
-      ++dropped_jobs_;
+    if (failure_ != nullptr) {
+      return;  // told by Finish
+    }
+    if (!has_room()) {
+      ++dropped_images_;
       return;
     }
+    images_waiting_ += job.is_image ? 1U : 0U;
     jobs_.push_back(std::move(job));
   }
   changed_.notify_all();
 }
 
 void RunLog::Add(const char* topic, std::int64_t time_ns, const google::protobuf::Message& message) {
-  Push([topic, time_ns, type = message.GetDescriptor(), bytes = message.SerializeAsString()](LogFile& file) {
+  Push({[topic, time_ns, type = message.GetDescriptor(), bytes = message.SerializeAsString()](LogFile& file) {
     file.Write(topic, *type, time_ns, bytes);
-  });
+  }});
 }
 
 void RunLog::AddImage(const hal::Frame& frame) {
   const int type = frame.format == hal::PixelFormat::kMono8 ? CV_8UC1 : CV_8UC3;
   const cv::Mat view(frame.height_px, frame.width_px, type, const_cast<std::uint8_t*>(frame.pixels.data()),
                      static_cast<std::size_t>(frame.stride_bytes));
-  Push([picture = view.clone(), stamp_ns = frame.stamp_ns, quality = config_.jpeg_quality](LogFile& file) {
-    std::vector<unsigned char> jpeg;
-    if (!cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality})) {
-      throw std::runtime_error("a picture cannot be encoded as JPEG");
-    }
-    foxglove::CompressedImage image;
-    SetStamp(stamp_ns, *image.mutable_timestamp());
-    image.set_frame_id(kCameraFrame);
-    image.set_format("jpeg");
-    image.set_data(jpeg.data(), jpeg.size());
-    file.Write(kImageTopic, stamp_ns, image);
-  });
+  Push({[picture = view.clone(), stamp_ns = frame.stamp_ns, quality = config_.jpeg_quality](LogFile& file) {
+          std::vector<unsigned char> jpeg;
+          if (!cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality})) {
+            throw std::runtime_error("a picture cannot be encoded as JPEG");
+          }
+          foxglove::CompressedImage image;
+          SetStamp(stamp_ns, *image.mutable_timestamp());
+          image.set_frame_id(kCameraFrame);
+          image.set_format("jpeg");
+          image.set_data(jpeg.data(), jpeg.size());
+          file.Write(kImageTopic, stamp_ns, image);
+        },
+        true});
 }
 
 void RunLog::AddMetadata(const std::string& name, const std::map<std::string, std::string>& entries) {
-  Push([name, entries](LogFile& file) { file.writer().WriteMetadata(name, entries); });
+  Push({[name, entries](LogFile& file) { file.writer().WriteMetadata(name, entries); }});
 }
 
 void RunLog::AddAttachment(const std::string& name, const std::string& media_type,
                            const std::string& content) {
-  Push([name, media_type, content](LogFile& file) {
+  Push({[name, media_type, content](LogFile& file) {
     file.writer().WriteAttachment(name, media_type, 0, content);
-  });
+  }});
 }
 
-// What a thread added first is written first: the rings are marked before the messages are taken, so that every
-// message that was added before a tick is there with it.
+// What a thread added first is written first: the rings are marked before the messages are taken, so that
+// every message that was added before a tick is there with it.
 bool RunLog::WriteRound() {
   const std::uint64_t ticks_end = ticks_.End();
   const std::uint64_t truths_end = truths_.End();
@@ -115,10 +123,11 @@ bool RunLog::WriteRound() {
   {
     const std::lock_guard lock(mutex_);
     jobs.swap(jobs_);
+    images_waiting_ = 0;
   }
   changed_.notify_all();
   for (const Job& job : jobs) {
-    job(*file_);
+    job.write(*file_);
   }
   std::size_t written = jobs.size();
   written += ticks_.Drain(ticks_end, [this](const hal::TickRecord& r) { tick_writer_->Write(r, *file_); });
@@ -177,7 +186,7 @@ void RunLog::Finish() {
 
 std::uint64_t RunLog::dropped() const {
   const std::lock_guard lock(mutex_);
-  return ticks_.dropped() + truths_.dropped() + dropped_jobs_;
+  return ticks_.dropped() + truths_.dropped() + dropped_images_;
 }
 
 }  // namespace fovea::log

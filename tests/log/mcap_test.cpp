@@ -8,6 +8,7 @@
 
 #include "fovea/log/mcap_reader.hpp"
 #include "fovea/log/mcap_writer.hpp"
+#include "support/temp_folder.hpp"
 
 namespace fovea::log {
 namespace {
@@ -51,12 +52,6 @@ std::string FileBytes(const fs::path& path) {
 
 class McapTest : public testing::Test {
  protected:
-  void SetUp() override {
-    path_ = fs::temp_directory_path() /
-            ("fovea-mcap-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  }
-  void TearDown() override { fs::remove(path_); }
-
   // A file of several chunks, with everything in it.
   void WriteSample() {
     McapWriter writer(path_, "test");
@@ -82,7 +77,8 @@ class McapTest : public testing::Test {
     writer.Finish();
   }
 
-  fs::path path_;
+  const test::TempFolder folder_;
+  const fs::path path_ = folder_.path() / "log.mcap";
   std::vector<Line> written_;
 };
 

@@ -10,6 +10,7 @@
 #include "fovea/tick.pb.h"
 #include "foxglove/geometry.pb.h"
 #include "foxglove/log.pb.h"
+#include "support/temp_folder.hpp"
 
 namespace fovea::log {
 namespace {
@@ -37,12 +38,6 @@ hal::TickRecord RecordAt(std::uint64_t tick) {
 
 class RunLogTest : public testing::Test {
  protected:
-  void SetUp() override {
-    path_ = fs::temp_directory_path() /
-            ("fovea-log-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-  }
-  void TearDown() override { fs::remove(path_); }
-
   template <typename Message>
   std::vector<Message> Messages(const char* topic) const {
     std::vector<Message> messages;
@@ -57,7 +52,8 @@ class RunLogTest : public testing::Test {
     return messages;
   }
 
-  fs::path path_;
+  const test::TempFolder folder_;
+  const fs::path path_ = folder_.path() / "log.mcap";
 };
 
 TEST_F(RunLogTest, WaitsAndLosesNothingWhereItMayNotDrop) {

@@ -10,6 +10,7 @@
 #include "fovea/log/run_log.hpp"
 #include "fovea/log/topics.hpp"
 #include "fovea/run.pb.h"
+#include "support/temp_folder.hpp"
 
 namespace fovea::report {
 namespace {
@@ -20,15 +21,11 @@ using nlohmann::json;
 class ReportTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("fovea-report-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::create_directories(folder_ / "page");
-    path_ = folder_ / "log.mcap";
     Page("<title>FOVEA_TITLE</title>\n<!-- FOVEA:STYLE a.css -->\n<!-- FOVEA:DATA -->\n<!-- FOVEA:SCRIPT a.js -->\n");
     std::ofstream(folder_ / "page" / "a.css") << "p {}\n";
     std::ofstream(folder_ / "page" / "a.js") << "say('</script>');\n";
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   void Page(const std::string& text) const { std::ofstream(folder_ / "page" / "report.html") << text; }
 
@@ -93,8 +90,9 @@ class ReportTest : public testing::Test {
     log.Finish();
   }
 
-  fs::path folder_;
-  fs::path path_;
+  const test::TempFolder temporary_;
+  const fs::path folder_ = temporary_.path();
+  const fs::path path_ = folder_ / "log.mcap";
 };
 
 TEST_F(ReportTest, TellsTheRunOfALog) {

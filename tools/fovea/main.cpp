@@ -47,6 +47,8 @@ int Report(const ReportArguments& arguments) {
   stream << page;
   stream.close();
   if (!stream) {
+    std::error_code ignored;
+    std::filesystem::remove(out, ignored);
     throw std::runtime_error(out.string() + ": cannot be written");
   }
   fmt::print("{}\n", out.string());

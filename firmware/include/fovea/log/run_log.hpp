@@ -45,7 +45,9 @@ struct RunLogConfig {
   std::string library;  // who writes
   model::ArmModel arm;
   std::vector<LinkFrame> frames;  // of /tf, the camera's among them
-  bool may_drop = false;  // when the disk is slower than the run: drop and count (true), or wait (false)
+  // When the disk is slower than the run: drop ticks, samples and pictures and count them (true), or wait
+  // (false).
+  bool may_drop = false;
   int jpeg_quality = 80;
 };
 
@@ -71,7 +73,7 @@ class RunLog {
   void AddTick(const hal::TickRecord& record);
   // From one thread. Real-time when the log may drop.
   void AddTruth(const TruthSample& sample);
-  // From any thread that need not be real-time.
+  // From any thread that need not be real-time. For messages that are few and small: none is dropped.
   void Add(const char* topic, std::int64_t time_ns, const google::protobuf::Message& message);
   // Copies the pixels; encoded as JPEG by the log's thread.
   void AddImage(const hal::Frame& frame);
@@ -80,11 +82,14 @@ class RunLog {
 
   // Writes what is left and completes the file. Throws what went wrong at any time.
   void Finish();
-  // Ticks, samples, pictures and messages that found no place.
+  // Ticks, samples and pictures that found no place.
   [[nodiscard]] std::uint64_t dropped() const;
 
  private:
-  using Job = std::function<void(LogFile&)>;
+  struct Job {
+    std::function<void(LogFile&)> write;
+    bool is_image = false;
+  };
 
   void Push(Job job);
   void WriteAll();
@@ -102,8 +107,9 @@ class RunLog {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Job> jobs_;
+  std::size_t images_waiting_ = 0;  // of jobs_
   bool closed_ = false;
-  std::uint64_t dropped_jobs_ = 0;
+  std::uint64_t dropped_images_ = 0;
   std::exception_ptr failure_;  // of the writing thread; after it the log takes everything and keeps nothing
   std::atomic<bool> failed_{false};
   std::thread thread_;
