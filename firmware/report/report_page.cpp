@@ -28,6 +28,16 @@ void ReplaceAll(std::string& text, std::string_view from, std::string_view to) {
   }
 }
 
+// Takes out the lines that name a library's source map, a file that the page does not bring.
+std::string WithoutSourceMap(std::string text) {
+  constexpr std::string_view kMark = "# sourceMappingURL=";
+  for (std::size_t at = text.find(kMark); at != std::string::npos; at = text.find(kMark)) {
+    const std::size_t line = text.rfind('\n', at) + 1;  // 0 when it is the first
+    text.erase(line, text.find('\n', at) - line);
+  }
+  return text;
+}
+
 // Text within <script> ends at the first "</script": it must not be in there.
 std::string InScript(std::string text) {
   ReplaceAll(text, "</script", "<\\/script");
@@ -63,7 +73,8 @@ ReportPage::ReportPage(const fs::path& folder) {
     const bool is_style = kind == "FOVEA:STYLE";
     for (std::string name; words >> name && name != "-->";) {
       const bool is_library = name.rfind("lib:", 0) == 0;
-      const std::string text = ReadFile(is_library ? libraries / name.substr(4) : folder / name);
+      const std::string text =
+          WithoutSourceMap(ReadFile(is_library ? libraries / name.substr(4) : folder / name));
       *part += is_style ? "<style>\n" + text + "</style>\n" : "<script>\n" + InScript(text) + "</script>\n";
     }
   }

@@ -226,7 +226,8 @@ class Reader {
       const double upper_us = 1e-3 * static_cast<double>(std::max<std::uint64_t>(times.upper_ns(i), 1));
       bins[static_cast<int>(std::ceil(kBinsPerDecade * std::log10(upper_us)))] += times.counts(i);
     }
-    for (int bin = bins.empty() ? 0 : bins.begin()->first; !bins.empty() && bin <= bins.rbegin()->first; ++bin) {
+    for (int bin = bins.empty() ? 0 : bins.begin()->first; !bins.empty() && bin <= bins.rbegin()->first;
+         ++bin) {
       run_.tick_upper_us.push_back(std::pow(10.0, bin / kBinsPerDecade));
       run_.tick_counts.push_back(bins.count(bin) == 1 ? bins.at(bin) : 0);
     }

@@ -34,8 +34,11 @@ export function checkLayouts(folder, byTopic) {
       check(topic, field, panel);
     }
     const named = [
-      config.topicToRender, config.imageMode?.imageTopic, config.imageMode?.calibrationTopic,
-      ...Object.keys(config.imageMode?.annotations ?? {}), ...Object.keys(config.topics ?? {}),
+      config.topicToRender,
+      config.imageMode?.imageTopic,
+      config.imageMode?.calibrationTopic,
+      ...Object.keys(config.imageMode?.annotations ?? {}),
+      ...Object.keys(config.topics ?? {}),
     ];
     for (const topic of named.filter(Boolean)) {
       check(topic, "", panel);
@@ -55,7 +58,10 @@ export function checkLayouts(folder, byTopic) {
   const curves = [...fs.readFileSync(`${folder}/plotjuggler.xml`, "utf8").matchAll(/<curve [^>]*name="([^"]+)"/g)];
   assert.ok(curves.length > 10);
   for (const [, curve] of curves) {
-    const topic = [...byTopic.keys()].filter((name) => curve.startsWith(`${name}/`)).sort().at(-1);
+    const topic = [...byTopic.keys()]
+      .filter((name) => curve.startsWith(`${name}/`))
+      .sort()
+      .at(-1);
     assert.ok(topic, `PlotJuggler's ${curve}: no such stream`);
     check(topic, curve.slice(topic.length + 1).replaceAll("/", "."), "PlotJuggler");
   }

@@ -20,15 +20,24 @@ const context = await chromium.launchPersistentContext(home, {
   executablePath: program,
   headless: true,
   args: [
-    "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking",
-    "--disable-component-update", "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader",
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
   ],
 });
 
 const parts = ["verdict", "eye", "error", "path", "joints", "timeline", "ticks", "config"];
 try {
-  for (const [width, height] of [[1280, 900], [400, 800]]) {
+  for (const [width, height] of [
+    [1280, 900],
+    [400, 800],
+  ]) {
     const page = await context.newPage();
     await page.setViewportSize({ width, height });
     const said = [];
@@ -56,7 +65,8 @@ try {
         const pixels = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
         return pixels.some((value) => value !== pixels[0]);
       };
-      const plots = (id) => [...document.querySelectorAll(`#${id} canvas`)].filter((c) => c.width > 0 && drawn(c)).length;
+      const plots = (id) =>
+        [...document.querySelectorAll(`#${id} canvas`)].filter((c) => c.width > 0 && drawn(c)).length;
       const videos = [...document.querySelectorAll("video")];
       return {
         plots: Object.fromEntries(["error", "path", "joints"].map((id) => [id, plots(id)])),

@@ -57,7 +57,10 @@ for (const [topic, entries] of byTopic) {
   console.log(`${topic}: ${entries.length}`);
 }
 assert.equal(streamed, Number(reader.statistics.messageCount));
-assert.equal(streamed, [...byTopic.values()].reduce((sum, entries) => sum + entries.length, 0));
+assert.equal(
+  streamed,
+  [...byTopic.values()].reduce((sum, entries) => sum + entries.length, 0),
+);
 
 // Every tick, value by value: the same bytes as the run hashed.
 const kMostJoints = 8;
@@ -69,12 +72,24 @@ class Bytes {
     write(buffer);
     this.parts.push(buffer);
   }
-  u8(value) { this.number(1, (b) => b.writeUInt8(Number(value))); }
-  i32(value) { this.number(4, (b) => b.writeInt32LE(value)); }
-  u32(value) { this.number(4, (b) => b.writeUInt32LE(value)); }
-  i64(value) { this.number(8, (b) => b.writeBigInt64LE(BigInt(value.toString()))); }
-  u64(value) { this.number(8, (b) => b.writeBigUInt64LE(BigInt(value.toString()))); }
-  f64(value) { this.number(8, (b) => b.writeDoubleLE(value)); }
+  u8(value) {
+    this.number(1, (b) => b.writeUInt8(Number(value)));
+  }
+  i32(value) {
+    this.number(4, (b) => b.writeInt32LE(value));
+  }
+  u32(value) {
+    this.number(4, (b) => b.writeUInt32LE(value));
+  }
+  i64(value) {
+    this.number(8, (b) => b.writeBigInt64LE(BigInt(value.toString())));
+  }
+  u64(value) {
+    this.number(8, (b) => b.writeBigUInt64LE(BigInt(value.toString())));
+  }
+  f64(value) {
+    this.number(8, (b) => b.writeDoubleLE(value));
+  }
   f64s(values, count) {
     for (let i = 0; i < count; ++i) {
       this.f64(i < values.length ? values[i] : 0);
@@ -93,24 +108,41 @@ for (const { time, data: t } of of("/servo/tick")) {
     ++taken;
   }
   const out = new Bytes();
-  out.u64(t.tick); out.i64(t.stamp_ns); out.i32(t.missed_ticks);
-  out.i64(t.arm.stamp_ns); out.u64(t.arm.sequence); out.i32(t.arm.q.length);
+  out.u64(t.tick);
+  out.i64(t.stamp_ns);
+  out.i32(t.missed_ticks);
+  out.i64(t.arm.stamp_ns);
+  out.u64(t.arm.sequence);
+  out.i32(t.arm.q.length);
   for (const values of [t.arm.q, t.arm.dq, t.arm.tau_meas, t.arm.tau_applied]) out.f64s(values, kMostJoints);
   out.u8(t.has_feature ? 1 : 0);
-  out.i64(feature.stamp_ns); out.u64(feature.sequence); out.u8(feature.kind); out.u8(feature.found ? 1 : 0);
+  out.i64(feature.stamp_ns);
+  out.u64(feature.sequence);
+  out.u8(feature.kind);
+  out.u8(feature.found ? 1 : 0);
   out.f64(feature.confidence);
   const dim = feature.s.length;
-  out.i32(dim); out.f64s(feature.s, kMostFeature);
+  out.i32(dim);
+  out.f64s(feature.s, kMostFeature);
   for (let row = 0; row < kMostFeature; ++row) {
     out.f64s(row < dim ? feature.cov_s.slice(row * dim, (row + 1) * dim) : [], kMostFeature);
   }
-  out.u8(t.mode); out.u8(t.hold_reason); out.u8(t.fault); out.i32(t.fault_joint); out.u32(t.limits_active);
-  out.u8(t.target_known ? 1 : 0); out.i64(t.feature_age_ns); out.f64s(t.p_BO, 3); out.f64s(t.v_BO, 3);
+  out.u8(t.mode);
+  out.u8(t.hold_reason);
+  out.u8(t.fault);
+  out.i32(t.fault_joint);
+  out.u32(t.limits_active);
+  out.u8(t.target_known ? 1 : 0);
+  out.i64(t.feature_age_ns);
+  out.f64s(t.p_BO, 3);
+  out.f64s(t.v_BO, 3);
   out.i32(t.s.length);
   for (const values of [t.s, t.s_star, t.e]) out.f64s(values, kMostFeature);
   out.f64s(t.V_BC_C_cmd, 6);
   for (const values of [t.q_cmd, t.dq_cmd, t.ddq_cmd]) out.f64s(values, kMostJoints);
-  out.u64(t.command.state_sequence); out.i32(t.command.tau.length); out.f64s(t.command.tau, kMostJoints);
+  out.u64(t.command.state_sequence);
+  out.i32(t.command.tau.length);
+  out.f64s(t.command.tau, kMostJoints);
   out.u8(t.command.engage_brakes ? 1 : 0);
   hash.update(Buffer.concat(out.parts));
 }
@@ -135,7 +167,10 @@ const windowStart = errors.at(-1).stamp_ns - 5e8;
 const window = errors.filter((e) => e.stamp_ns > windowStart);
 const rms = Math.sqrt(window.reduce((sum, e) => sum + e.error_px * e.error_px, 0) / window.length);
 if (summary.final_error_px_rms !== null) {
-  assert.ok(Math.abs(rms - summary.final_error_px_rms) < 1e-9, `${rms} px, the summary says ${summary.final_error_px_rms}`);
+  assert.ok(
+    Math.abs(rms - summary.final_error_px_rms) < 1e-9,
+    `${rms} px, the summary says ${summary.final_error_px_rms}`,
+  );
 }
 const frames = new Set(of("/tf").flatMap(({ data }) => data.transforms.map((t) => t.child_frame_id)));
 for (const { data } of of("/scene")) {

@@ -14,30 +14,38 @@ Fovea.armScene = (function () {
     for (let i = 0; i < p.length; i += 3) {
       const key = `${Math.round(p[i] * 2e4)},${Math.round(p[i + 1] * 2e4)},${Math.round(p[i + 2] * 2e4)}`;
       const list = sharing.get(key);
-      if (list) list.push(i); else sharing.set(key, [i]);
+      if (list) list.push(i);
+      else sharing.set(key, [i]);
     }
     for (const corners of sharing.values()) {
       for (const i of corners) {
-        let x = 0, y = 0, z = 0;
+        let x = 0,
+          y = 0,
+          z = 0;
         for (const k of corners) {
           if (flat[i] * flat[k] + flat[i + 1] * flat[k + 1] + flat[i + 2] * flat[k + 2] < 0.75) continue;
-          x += flat[k]; y += flat[k + 1]; z += flat[k + 2];
+          x += flat[k];
+          y += flat[k + 1];
+          z += flat[k + 2];
         }
         const size = Math.hypot(x, y, z) || 1;
-        smooth[i] = x / size; smooth[i + 1] = y / size; smooth[i + 2] = z / size;
+        smooth[i] = x / size;
+        smooth[i + 1] = y / size;
+        smooth[i + 2] = z / size;
       }
     }
   }
 
   function geometryOf(shape) {
     const size = shape.size || [];
-    if (shape.kind === 'box') return new THREE.BoxBufferGeometry(size[0], size[1], size[2]);
-    if (shape.kind === 'cylinder') return new THREE.CylinderBufferGeometry(size[0], size[0], size[1], 36).rotateX(Math.PI / 2);
-    if (shape.kind === 'sphere') return new THREE.SphereBufferGeometry(size[0], 32, 20);
-    const vertices = shape.kind === 'mesh' ? Fovea.floats(shape.vertices) : null;
+    if (shape.kind === "box") return new THREE.BoxBufferGeometry(size[0], size[1], size[2]);
+    if (shape.kind === "cylinder")
+      return new THREE.CylinderBufferGeometry(size[0], size[0], size[1], 36).rotateX(Math.PI / 2);
+    if (shape.kind === "sphere") return new THREE.SphereBufferGeometry(size[0], 32, 20);
+    const vertices = shape.kind === "mesh" ? Fovea.floats(shape.vertices) : null;
     if (!vertices || !vertices.length) return null;
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(vertices, 3));
+    geometry.setAttribute("position", new THREE.BufferAttribute(vertices, 3));
     smoothNormals(geometry);
     return geometry;
   }
@@ -50,7 +58,12 @@ Fovea.armScene = (function () {
       for (const shape of link.shapes || []) {
         const geometry = geometryOf(shape);
         if (!geometry) continue;
-        const material = new THREE.MeshStandardMaterial({ color: srgb(shape.colour || [0.8, 0.8, 0.8]), roughness: 0.55, metalness: 0.05, side: THREE.DoubleSide });
+        const material = new THREE.MeshStandardMaterial({
+          color: srgb(shape.colour || [0.8, 0.8, 0.8]),
+          roughness: 0.55,
+          metalness: 0.05,
+          side: THREE.DoubleSide,
+        });
         if (ghost) Object.assign(material, { transparent: true, opacity: 0.38, depthWrite: false });
         const mesh = new THREE.Mesh(geometry, material);
         const [x, y, z] = shape.position || [0, 0, 0];
@@ -71,7 +84,8 @@ Fovea.armScene = (function () {
     const points = [];
     for (let i = 0; i + 2 < flat.length; i += 3) {
       const p = new THREE.Vector3(flat[i], flat[i + 1], flat[i + 2]);
-      if (Number.isFinite(p.x + p.y + p.z) && (!points.length || points[points.length - 1].distanceTo(p) > 0.004)) points.push(p);
+      if (Number.isFinite(p.x + p.y + p.z) && (!points.length || points[points.length - 1].distanceTo(p) > 0.004))
+        points.push(p);
     }
     const group = new THREE.Group();
     group.userData.colour = colour;
@@ -83,7 +97,12 @@ Fovea.armScene = (function () {
     for (let k = 0; k < pieces; k++) {
       const part = dashed ? curve.getSpacedPoints(pieces * 8).slice(k * 8, k * 8 + 5) : null;
       const line = part ? new THREE.CatmullRomCurve3(part) : curve;
-      group.add(new THREE.Mesh(new THREE.TubeBufferGeometry(line, dashed ? 4 : Math.min(600, points.length * 3), radius, 8), material));
+      group.add(
+        new THREE.Mesh(
+          new THREE.TubeBufferGeometry(line, dashed ? 4 : Math.min(600, points.length * 3), radius, 8),
+          material,
+        ),
+      );
     }
     return group;
   }
@@ -91,10 +110,14 @@ Fovea.armScene = (function () {
   // A sphere of which mostly the rim is seen.
   function workspace(radius) {
     const material = new THREE.ShaderMaterial({
-      transparent: true, depthWrite: false, side: THREE.DoubleSide,
+      transparent: true,
+      depthWrite: false,
+      side: THREE.DoubleSide,
       uniforms: { colour: { value: new THREE.Color() }, strength: { value: 0.5 } },
-      vertexShader: 'varying vec3 n; varying vec3 v; void main() { vec4 p = modelViewMatrix * vec4(position, 1.0); n = normalMatrix * normal; v = -p.xyz; gl_Position = projectionMatrix * p; }',
-      fragmentShader: 'uniform vec3 colour; uniform float strength; varying vec3 n; varying vec3 v; void main() { float rim = 1.0 - abs(dot(normalize(n), normalize(v))); gl_FragColor = vec4(colour, strength * (0.03 + pow(rim, 5.0))); }',
+      vertexShader:
+        "varying vec3 n; varying vec3 v; void main() { vec4 p = modelViewMatrix * vec4(position, 1.0); n = normalMatrix * normal; v = -p.xyz; gl_Position = projectionMatrix * p; }",
+      fragmentShader:
+        "uniform vec3 colour; uniform float strength; varying vec3 n; varying vec3 v; void main() { float rim = 1.0 - abs(dot(normalize(n), normalize(v))); gl_FragColor = vec4(colour, strength * (0.03 + pow(rim, 5.0))); }",
     });
     const sphere = new THREE.Mesh(new THREE.SphereBufferGeometry(radius, 64, 40), material);
     sphere.renderOrder = 5;
@@ -103,8 +126,12 @@ Fovea.armScene = (function () {
 
   function ring(radius, z) {
     const points = [];
-    for (let i = 0; i <= 128; i++) points.push(new THREE.Vector3(radius * Math.cos(i * Math.PI / 64), radius * Math.sin(i * Math.PI / 64), z));
-    return new THREE.Line(new THREE.BufferGeometry().setFromPoints(points), new THREE.LineBasicMaterial({ transparent: true, opacity: 0.8 }));
+    for (let i = 0; i <= 128; i++)
+      points.push(new THREE.Vector3(radius * Math.cos((i * Math.PI) / 64), radius * Math.sin((i * Math.PI) / 64), z));
+    return new THREE.Line(
+      new THREE.BufferGeometry().setFromPoints(points),
+      new THREE.LineBasicMaterial({ transparent: true, opacity: 0.8 }),
+    );
   }
 
   // The table as a grid of 10 cm squares that also takes the shadows.
@@ -112,7 +139,7 @@ Fovea.armScene = (function () {
     const points = [];
     for (let i = -10; i <= 10; i++) points.push(i / 10, -1, 0, i / 10, 1, 0, -1, i / 10, 0, 1, i / 10, 0);
     const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(points), 3));
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points), 3));
     const grid = new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ transparent: true, opacity: 0.75 }));
     const plane = new THREE.Mesh(new THREE.PlaneBufferGeometry(2, 2), new THREE.ShadowMaterial({ opacity: 0.22 }));
     plane.receiveShadow = true;
@@ -139,18 +166,38 @@ Fovea.armScene = (function () {
     scene.add(sun, sky, fill);
   }
 
+  // The directions x and y of the base, drawn on the table.
+  function axes(z) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute(
+      "position",
+      new THREE.BufferAttribute(new Float32Array([0, 0, z, 0.3, 0, z, 0, 0, z, 0, 0.3, z]), 3),
+    );
+    const letters = [
+      ["x", 0.35, 0],
+      ["y", 0, 0.35],
+    ].map(([text, x, y]) => {
+      const s = letter(text);
+      s.position.set(x, y, z);
+      return s;
+    });
+    return { letters, lines: new THREE.LineSegments(geometry, new THREE.LineBasicMaterial()) };
+  }
+
   // A letter that always faces the viewer, for the axes.
   function letter(text) {
-    const canvas = document.createElement('canvas');
+    const canvas = document.createElement("canvas");
     canvas.width = canvas.height = 64;
-    const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas), transparent: true }));
-    sprite.scale.set(0.075, 0.075, 1);
+    const sprite = new THREE.Sprite(
+      new THREE.SpriteMaterial({ map: new THREE.CanvasTexture(canvas), transparent: true, depthWrite: false }),
+    );
+    sprite.scale.set(0.06, 0.06, 1);
     sprite.userData.paint = (colour) => {
-      const ctx = canvas.getContext('2d');
+      const ctx = canvas.getContext("2d");
       ctx.clearRect(0, 0, 64, 64);
-      ctx.font = '600 40px system-ui, sans-serif';
-      ctx.textAlign = 'center';
-      ctx.textBaseline = 'middle';
+      ctx.font = "600 40px system-ui, sans-serif";
+      ctx.textAlign = "center";
+      ctx.textBaseline = "middle";
       ctx.fillStyle = colour;
       ctx.fillText(text, 32, 34);
       sprite.material.map.needsUpdate = true;
@@ -158,5 +205,5 @@ Fovea.armScene = (function () {
     return sprite;
   }
 
-  return { arm, path, workspace, ring, table, lights, letter, css };
+  return { arm, path, workspace, ring, table, lights, axes, css };
 })();

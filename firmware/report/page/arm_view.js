@@ -6,7 +6,11 @@ Fovea.armView = (function () {
 
   function context(canvas) {
     const wishes = { antialias: true, alpha: false, preserveDrawingBuffer: true };
-    try { return canvas.getContext('webgl', wishes); } catch (trouble) { return null; }
+    try {
+      return canvas.getContext("webgl", wishes);
+    } catch (trouble) {
+      return null;
+    }
   }
 
   // The pose of a link between two frames of the scene.
@@ -44,14 +48,43 @@ Fovea.armView = (function () {
     const group = new THREE.Group();
     group.add(arm);
     const parts = [];
-    const own = (object, colour) => { object.userData.colour = colour; parts.push(object); group.add(object); return object; };
+    const own = (object, colour) => {
+      object.userData.colour = colour;
+      parts.push(object);
+      group.add(object);
+      return object;
+    };
     const { camera_path: seen, target_path: target } = run.scene;
-    if (seen) own(make.path(seen, '--blue', ghost, 0.005), '--blue');
-    if (target) own(make.path(target, '--vermillion', ghost, 0.004), '--vermillion');
-    const dot = seen ? own(new THREE.Mesh(new THREE.SphereBufferGeometry(0.013, 20, 14), new THREE.MeshBasicMaterial()), '--blue') : null;
-    const ball = target ? new THREE.Mesh(new THREE.SphereBufferGeometry(run.target.radius_m || 0.02, 40, 28), new THREE.MeshStandardMaterial({ color: 0xb3120a, roughness: 0.4, transparent: ghost, opacity: ghost ? 0.4 : 1 })) : null;
-    if (ball) { ball.castShadow = true; group.add(ball); }
-    const gaze = dot && ball ? own(new THREE.Line(new THREE.BufferGeometry(), new THREE.LineDashedMaterial({ dashSize: 0.02, gapSize: 0.014 })), '--axis') : null;
+    if (seen) own(make.path(seen, "--blue", ghost, 0.005), "--blue");
+    if (target) own(make.path(target, "--vermillion", ghost, 0.004), "--vermillion");
+    const dot = seen
+      ? own(new THREE.Mesh(new THREE.SphereBufferGeometry(0.013, 20, 14), new THREE.MeshBasicMaterial()), "--blue")
+      : null;
+    const ball = target
+      ? new THREE.Mesh(
+          new THREE.SphereBufferGeometry(run.target.radius_m || 0.02, 40, 28),
+          new THREE.MeshStandardMaterial({
+            color: 0xb3120a,
+            roughness: 0.4,
+            transparent: ghost,
+            opacity: ghost ? 0.4 : 1,
+          }),
+        )
+      : null;
+    if (ball) {
+      ball.castShadow = true;
+      group.add(ball);
+    }
+    const gaze =
+      dot && ball
+        ? own(
+            new THREE.Line(
+              new THREE.BufferGeometry(),
+              new THREE.LineDashedMaterial({ dashSize: 0.02, gapSize: 0.014 }),
+            ),
+            "--axis",
+          )
+        : null;
     scene.add(group);
     const set = (t) => {
       setPose(t);
@@ -59,14 +92,19 @@ Fovea.armView = (function () {
       const to = ball && pointAt(run, target, t);
       if (from) dot.position.copy(from);
       if (to) ball.position.copy(to);
-      if (gaze && from && to) { gaze.geometry.setFromPoints([from, to]); gaze.computeLineDistances(); }
+      if (gaze && from && to) {
+        gaze.geometry.setFromPoints([from, to]);
+        gaze.computeLineDistances();
+      }
     };
     return { run, group, parts, set };
   }
 
   function paint(object) {
     const colour = make.css(object.userData.colour);
-    object.traverse((node) => { if (node.material) node.material.color.copy(colour); });
+    object.traverse((node) => {
+      if (node.material) node.material.color.copy(colour);
+    });
   }
 
   function build(host, runs, canvas, gl) {
@@ -83,21 +121,37 @@ Fovea.armView = (function () {
     scene.add(table);
     const radius = first.workspace_radius;
     const sphere = radius ? make.workspace(radius) : null;
-    const circle = radius && radius > Math.abs(floor) ? make.ring(Math.sqrt(radius * radius - floor * floor), floor + 0.001) : null;
+    const circle =
+      radius && radius > Math.abs(floor) ? make.ring(Math.sqrt(radius * radius - floor * floor), floor + 0.001) : null;
     if (sphere) scene.add(sphere);
     if (circle) scene.add(circle);
-    const letters = [['x', 1.07, 0], ['y', 0, 1.07]].map(([text, x, y]) => { const s = make.letter(text); s.position.set(x, y, floor); scene.add(s); return s; });
+    const axes = make.axes(floor + 0.002);
+    scene.add(axes.lines, ...axes.letters);
     const actors = runs.map((run) => actor(run, scene));
 
     const camera = new THREE.PerspectiveCamera(32, 1, 0.02, 30);
     camera.up.set(0, 0, 1);
     const controls = new THREE.OrbitControls(camera, canvas);
-    Object.assign(controls, { enableKeys: false, enableZoom: false, maxPolarAngle: Math.PI * 0.62, minDistance: 0.3, maxDistance: 8 });
+    Object.assign(controls, {
+      enableKeys: false,
+      enableZoom: false,
+      maxPolarAngle: Math.PI * 0.62,
+      minDistance: 0.3,
+      maxDistance: 8,
+    });
     let asked = false;
-    const render = () => { asked = false; renderer.render(scene, camera); };
-    const ask = () => { if (!asked) { asked = true; requestAnimationFrame(render); } };
+    const render = () => {
+      asked = false;
+      renderer.render(scene, camera);
+    };
+    const ask = () => {
+      if (!asked) {
+        asked = true;
+        requestAnimationFrame(render);
+      }
+    };
     const home = () => {
-      const top = (radius || 0.85);
+      const top = radius || 0.85;
       controls.target.set(0.08, 0, (floor + top * 0.92) / 2);
       const away = 2.4 * Math.max(1, 0.5 + 0.62 / camera.aspect) * Math.max(0.5, top / 0.85);
       camera.position.copy(controls.target).add(new THREE.Vector3(0.62, -0.7, 0.3).normalize().multiplyScalar(away));
@@ -105,11 +159,12 @@ Fovea.armView = (function () {
       ask();
     };
     const colours = () => {
-      renderer.setClearColor(new THREE.Color(theme.colour('--scene')));
-      table.userData.grid.material.color.copy(make.css('--grid-3d'));
-      if (sphere) sphere.material.uniforms.colour.value.set(theme.colour('--rim'));
-      if (circle) circle.material.color.copy(make.css('--rim'));
-      letters.forEach((s) => s.userData.paint(theme.colour('--quiet')));
+      renderer.setClearColor(new THREE.Color(theme.colour("--scene")));
+      table.userData.grid.material.color.copy(make.css("--grid-3d"));
+      if (sphere) sphere.material.uniforms.colour.value.set(theme.colour("--rim"));
+      if (circle) circle.material.color.copy(make.css("--rim"));
+      axes.lines.material.color.copy(make.css("--quiet"));
+      axes.letters.forEach((s) => s.userData.paint(theme.colour("--quiet")));
       actors.forEach((a) => a.parts.forEach(paint));
     };
     const resize = () => {
@@ -121,12 +176,18 @@ Fovea.armView = (function () {
       camera.aspect = width / height;
       camera.updateProjectionMatrix();
     };
-    const setTime = (t) => { actors.forEach((a) => a.set(t)); ask(); };
-    controls.addEventListener('change', ask);
+    const setTime = (t) => {
+      actors.forEach((a) => a.set(t));
+      ask();
+    };
+    controls.addEventListener("change", ask);
     resize();
     colours();
     home();
-    new ResizeObserver(() => { resize(); render(); }).observe(host);
+    new ResizeObserver(() => {
+      resize();
+      render();
+    }).observe(host);
     return { controls, camera, actors, render, ask, home, colours, resize, setTime };
   }
 
@@ -144,101 +205,137 @@ Fovea.armView = (function () {
   }
 
   function steering(view, host, canvas) {
-    canvas.addEventListener('keydown', (event) => {
-      const moves = { ArrowLeft: [-0.1, 0, 1], ArrowRight: [0.1, 0, 1], ArrowUp: [0, 0.1, 1], ArrowDown: [0, -0.1, 1], '+': [0, 0, 0.85], '=': [0, 0, 0.85], '-': [0, 0, 1.18] };
+    canvas.addEventListener("keydown", (event) => {
+      const moves = {
+        ArrowLeft: [-0.1, 0, 1],
+        ArrowRight: [0.1, 0, 1],
+        ArrowUp: [0, 0.1, 1],
+        ArrowDown: [0, -0.1, 1],
+        "+": [0, 0, 0.85],
+        "=": [0, 0, 0.85],
+        "-": [0, 0, 1.18],
+      };
       if (!moves[event.key]) return;
       nudge(view, ...moves[event.key]);
       event.preventDefault();
     });
     // A finger scrolls the page until turning is switched on; the wheel zooms only after a click into the view.
     let turning = false;
-    const touch = el('button', { type: 'button', class: 'touch-only', 'aria-pressed': 'false', text: 'Turn with the finger' });
-    touch.addEventListener('click', () => {
+    const touch = el("button", {
+      type: "button",
+      class: "touch-only",
+      "aria-pressed": "false",
+      text: "Turn with the finger",
+    });
+    touch.addEventListener("click", () => {
       turning = !turning;
-      touch.setAttribute('aria-pressed', String(turning));
-      touch.textContent = turning ? 'Done turning' : 'Turn with the finger';
-      canvas.style.touchAction = turning ? 'none' : 'pan-y';
+      touch.setAttribute("aria-pressed", String(turning));
+      touch.textContent = turning ? "Done turning" : "Turn with the finger";
+      canvas.style.touchAction = turning ? "none" : "pan-y";
     });
-    canvas.addEventListener('pointerdown', (event) => {
-      view.controls.enabled = event.pointerType !== 'touch' || turning;
-      view.controls.enableZoom = true;
-    }, true);
-    host.addEventListener('pointerleave', () => { view.controls.enableZoom = false; });
-    const button = (text, label, action) => el('button', { type: 'button', text, 'aria-label': label, onclick: action });
-    return el('div', { class: 'choice', role: 'group', 'aria-label': 'View' }, touch, button('−', 'Move away', () => nudge(view, 0, 0, 1.18)),
-      button('+', 'Move closer', () => nudge(view, 0, 0, 0.85)), button('Reset view', 'Reset view', view.home));
-  }
-
-  function player() {
-    const slider = el('input', { type: 'range', min: 0, max: clock.duration, step: clock.duration / 2000, value: 0, 'aria-label': 'Time of the shown pose, in seconds' });
-    const shown = el('output', { class: 'now' });
-    const play = el('button', { type: 'button', class: 'play', text: '▶ Play' });
-    let last = null;
-    const step = (stamp) => {
-      if (last === null) return;
-      const t = (clock.time || 0) + (stamp - last) / 1000;
-      last = stamp;
-      clock.setTime(t, 'player');
-      if (t >= clock.duration) stop(); else requestAnimationFrame(step);
-    };
-    const stop = () => { last = null; play.textContent = '▶ Play'; };
-    play.addEventListener('click', () => {
-      if (last !== null) return stop();
-      if (clock.time === null || clock.time >= clock.duration - 1e-6) clock.setTime(0, 'player');
-      last = performance.now();
-      play.textContent = '❚❚ Pause';
-      requestAnimationFrame(step);
+    canvas.addEventListener(
+      "pointerdown",
+      (event) => {
+        view.controls.enabled = event.pointerType !== "touch" || turning;
+        view.controls.enableZoom = true;
+      },
+      true,
+    );
+    host.addEventListener("pointerleave", () => {
+      view.controls.enableZoom = false;
     });
-    slider.addEventListener('input', () => { stop(); clock.setTime(Number(slider.value), 'slider'); });
-    const show = (t) => { slider.value = t; shown.textContent = `${t.toFixed(3)} s`; };
-    return { node: el('div', { class: 'player no-print' }, play, slider, shown), show, stop };
+    const button = (text, label, action) =>
+      el("button", { type: "button", text, "aria-label": label, onclick: action });
+    return el(
+      "div",
+      { class: "choice", role: "group", "aria-label": "View" },
+      touch,
+      button("−", "Move away", () => nudge(view, 0, 0, 1.18)),
+      button("+", "Move closer", () => nudge(view, 0, 0, 0.85)),
+      button("Reset view", "Reset view", view.home),
+    );
   }
 
   function legend(runs, view) {
-    const item = (colour, words, dots) => el('li', {}, Fovea.plots.swatch({ colour, dots }), el('span', { text: words }));
-    const items = [item('--blue', 'path of the camera')];
-    if (runs.some((run) => run.scene.target_path)) items.push(item('--vermillion', 'path of the target', true));
-    if (runs[0].scene.workspace_radius) items.push(item('--rim', `allowed workspace, a sphere of ${Fovea.number(runs[0].scene.workspace_radius, 3)} m`));
-    const boxes = runs.length < 2 ? [] : view.actors.map((a) => {
-      const box = el('input', { type: 'checkbox', checked: true, onchange: () => { a.group.visible = box.checked; view.ask(); } });
-      return el('li', {}, el('label', {}, box, ` run${suffix(a.run)} (${a.run.index ? 'pale, dashed path' : 'solid'})`));
-    });
-    return el('ul', { class: 'legend plain' }, items, el('li', {}, el('span', { text: 'grid squares: 10 cm' })), boxes);
+    const item = (colour, words, dots) =>
+      el("li", {}, Fovea.plots.swatch({ colour, dots }), el("span", { text: words }));
+    const items = [item("--blue", "path of the camera")];
+    if (runs.some((run) => run.scene.target_path)) items.push(item("--vermillion", "path of the target", true));
+    if (runs[0].scene.workspace_radius)
+      items.push(item("--rim", `allowed workspace, a sphere of ${Fovea.number(runs[0].scene.workspace_radius, 3)} m`));
+    const boxes =
+      runs.length < 2
+        ? []
+        : view.actors.map((a) => {
+            const box = el("input", {
+              type: "checkbox",
+              checked: true,
+              onchange: () => {
+                a.group.visible = box.checked;
+                view.ask();
+              },
+            });
+            return el(
+              "li",
+              {},
+              el("label", {}, box, ` run${suffix(a.run)} (${a.run.index ? "pale, dashed path" : "solid"})`),
+            );
+          });
+    return el("ul", { class: "legend plain" }, items, el("li", {}, el("span", { text: "grid squares: 10 cm" })), boxes);
   }
 
   function draw(runs) {
-    const body = document.querySelector('#path .body');
+    const body = document.querySelector("#path .body");
     const shown = runs.filter((run) => run.scene && run.scene.poses && run.scene.t_s && run.scene.t_s.length);
     const missing = runs.filter((run) => !shown.includes(run));
-    if (missing.length) body.append(Fovea.absent(`The log${runs.length > 1 ? ` of run ${missing.map((r) => r.letter).join(' and ')}` : ''} holds no scene to draw: no robot model or no poses.`));
-    if (!shown.length) return Fovea.drawn('path');
-    const canvas = el('canvas', { tabindex: '0', role: 'img', 'aria-label': 'The arm and the paths of camera and target in three dimensions. Arrow keys turn the view, plus and minus zoom.' });
+    if (missing.length)
+      body.append(
+        Fovea.absent(
+          `The log${runs.length > 1 ? ` of run ${missing.map((r) => r.letter).join(" and ")}` : ""} holds no scene to draw: no robot model or no poses.`,
+        ),
+      );
+    if (!shown.length) return Fovea.drawn("path");
+    const canvas = el("canvas", {
+      tabindex: "0",
+      role: "application",
+      "aria-label":
+        "The arm and the paths of camera and target in three dimensions. Arrow keys turn the view, plus and minus zoom.",
+    });
     const gl = context(canvas);
     if (!gl) {
-      body.append(Fovea.absent('This browser offers no WebGL, so the path in space cannot be shown here.'));
-      return Fovea.drawn('path');
+      body.append(Fovea.absent("This browser offers no WebGL, so the path in space cannot be shown here."));
+      return Fovea.drawn("path");
     }
-    const still = el('img', { class: 'print-image', alt: 'The arm and the paths of camera and target' });
-    const host = el('div', { class: 'scene' }, canvas);
+    const still = el("img", { class: "print-image", alt: "The arm and the paths of camera and target" });
+    const host = el("div", { class: "scene" }, canvas);
     body.append(host, still);
     const view = build(host, shown, canvas, gl);
-    const controls = player();
-    body.append(el('div', { class: 'toolbar under' }, controls.node, steering(view, host, canvas)), legend(shown, view),
-      el('p', { class: 'hint no-print', text: 'Drag to turn, with the right button to move; after a click the wheel zooms. The time is the one of all plots.' }));
-    const follow = (t) => { view.setTime(t); controls.show(t); };
+    const controls = Fovea.player();
+    body.append(
+      el("div", { class: "toolbar under" }, controls.node, steering(view, host, canvas)),
+      legend(shown, view),
+      el("p", {
+        class: "hint no-print",
+        text: "Drag to turn, with the right button to move; after a click the wheel zooms. The time is the one of all plots.",
+      }),
+    );
+    const follow = (t) => {
+      view.setTime(t);
+      controls.show(t);
+    };
     follow(clock.time === null ? clock.duration : clock.time);
     clock.listen((what, source) => {
-      if (what !== 'time' || clock.time === null) return;
-      if (source !== 'player') controls.stop();
+      if (what !== "time" || clock.time === null) return;
+      if (source !== "player") controls.stop();
       follow(clock.time);
     });
     theme.listen(() => {
       view.colours();
       view.render();
-      if (theme.printing) still.src = canvas.toDataURL('image/png');
+      if (theme.printing) still.src = canvas.toDataURL("image/png");
     });
     view.render();
-    Fovea.drawn('path');
+    Fovea.drawn("path");
   }
 
   return { draw };

@@ -4,12 +4,14 @@ Fovea.clock = (function () {
   const listeners = [];
   const clock = {
     duration: 1,
-    time: null,      // the shared time [s], null when nothing is pointed at
-    span: [0, 1],    // the visible span of time [s]
-    listen(callback) { listeners.push(callback); },
+    time: null, // the shared time [s], null when nothing is pointed at
+    span: [0, 1], // the visible span of time [s]
+    listen(callback) {
+      listeners.push(callback);
+    },
     setTime(time, source) {
       clock.time = time === null ? null : Math.min(clock.duration, Math.max(0, time));
-      tell('time', source);
+      tell("time", source);
     },
     setSpan(from, to) {
       const least = Math.max(0.01, clock.duration / 2000);
@@ -17,21 +19,25 @@ Fovea.clock = (function () {
       const high = Math.min(clock.duration, Math.max(from, to, low + least));
       low = Math.min(low, high - least);
       clock.span = [low, high];
-      tell('span');
+      tell("span");
     },
-    showAll() { clock.setSpan(0, clock.duration); },
+    showAll() {
+      clock.setSpan(0, clock.duration);
+    },
     zoomed: () => clock.span[0] > 0 || clock.span[1] < clock.duration,
     step(share) {
       const width = clock.span[1] - clock.span[0];
-      clock.setTime((clock.time === null ? clock.span[0] : clock.time) + share * width, 'keys');
+      clock.setTime((clock.time === null ? clock.span[0] : clock.time) + share * width, "keys");
     },
     zoom(factor) {
       const centre = clock.time === null ? (clock.span[0] + clock.span[1]) / 2 : clock.time;
-      const half = (clock.span[1] - clock.span[0]) * factor / 2;
+      const half = ((clock.span[1] - clock.span[0]) * factor) / 2;
       clock.setSpan(centre - half, centre + half);
     },
   };
-  function tell(what, source) { listeners.forEach((callback) => callback(what, source)); }
+  function tell(what, source) {
+    listeners.forEach((callback) => callback(what, source));
+  }
   return clock;
 })();
 
@@ -41,11 +47,11 @@ Fovea.timeKeys = function (event) {
   const actions = {
     ArrowLeft: () => clock.step(event.shiftKey ? -0.1 : -0.01),
     ArrowRight: () => clock.step(event.shiftKey ? 0.1 : 0.01),
-    Home: () => clock.setTime(clock.span[0], 'keys'),
-    End: () => clock.setTime(clock.span[1], 'keys'),
-    '+': () => clock.zoom(0.5),
-    '=': () => clock.zoom(0.5),
-    '-': () => clock.zoom(2),
+    Home: () => clock.setTime(clock.span[0], "keys"),
+    End: () => clock.setTime(clock.span[1], "keys"),
+    "+": () => clock.zoom(0.5),
+    "=": () => clock.zoom(0.5),
+    "-": () => clock.zoom(2),
     Escape: () => clock.showAll(),
   };
   if (!actions[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -58,21 +64,30 @@ Fovea.theme = (function () {
   const theme = {
     // The value of a custom property of the page, for what is painted on a canvas.
     colour: (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim(),
-    listen(callback) { listeners.push(callback); },
-    tell() { listeners.forEach((callback) => callback()); },
+    listen(callback) {
+      listeners.push(callback);
+    },
+    tell() {
+      listeners.forEach((callback) => callback());
+    },
     printing: false,
   };
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', theme.tell);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", theme.tell);
   const print = (on) => () => {
     if (theme.printing === on) return;
     theme.printing = on;
-    document.documentElement.classList.toggle('printing', on);
+    document.documentElement.classList.toggle("printing", on);
+    const folded = document.querySelectorAll(on ? "details:not([open])" : "details.opened-for-print");
+    folded.forEach((node) => {
+      node.open = on;
+      node.classList.toggle("opened-for-print", on);
+    });
     theme.tell();
   };
-  addEventListener('beforeprint', print(true));
-  addEventListener('afterprint', print(false));
+  addEventListener("beforeprint", print(true));
+  addEventListener("afterprint", print(false));
   return theme;
 })();
 
 // Letter of a run, as a suffix, when there are several.
-Fovea.suffix = (run) => (Fovea.runs.length > 1 ? ` ${run.letter}` : '');
+Fovea.suffix = (run) => (Fovea.runs.length > 1 ? ` ${run.letter}` : "");

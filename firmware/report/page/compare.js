@@ -5,26 +5,32 @@ Fovea.compare = (function () {
 
   // Which run is better, in words, where that is clear.
   function better(a, b) {
-    if (!a || !b || !a.better || a.value === b.value) return '';
+    if (!a || !b || !a.better || a.value === b.value) return "";
     const scale = Math.max(Math.abs(a.value), Math.abs(b.value));
-    if (!a.count && Math.abs(a.value - b.value) < (a.slack || 0.05) * scale) return 'about equal';
-    return (a.value < b.value) === (a.better === 'low') ? 'A is better' : 'B is better';
+    if (!a.count && Math.abs(a.value - b.value) < (a.slack || 0.05) * scale) return "about equal";
+    return a.value < b.value === (a.better === "low") ? "A is better" : "B is better";
   }
 
   function difference(a, b) {
-    if (!a || !b) return '–';
+    if (!a || !b) return "–";
     const delta = b.value - a.value;
-    if (delta === 0) return '0';
+    if (delta === 0) return "0";
     const text = a.count ? String(Math.abs(delta)) : number(Math.abs(delta), 2);
-    return (delta > 0 ? '+' : '−') + text;
+    return (delta > 0 ? "+" : "−") + text;
   }
 
   function row(label, unit, a, b) {
     const verdict = better(a, b);
-    const cell = (figure, wins) => el('td', { class: wins ? 'number wins' : 'number', text: figure ? Fovea.verdict.show(figure) : '–' });
-    return el('tr', {}, el('th', { scope: 'row' }, label, unit ? el('span', { class: 'unit', text: ` [${unit}]` }) : null),
-      cell(a, verdict.startsWith('A')), cell(b, verdict.startsWith('B')),
-      el('td', { class: 'number' }, difference(a, b), el('span', { class: 'better', text: verdict })));
+    const cell = (figure, wins) =>
+      el("td", { class: wins ? "number wins" : "number", text: figure ? Fovea.verdict.show(figure) : "–" });
+    return el(
+      "tr",
+      {},
+      el("th", { scope: "row" }, label, unit ? el("span", { class: "unit", text: ` [${unit}]` }) : null),
+      cell(a, verdict.startsWith("A")),
+      cell(b, verdict.startsWith("B")),
+      el("td", { class: "number" }, difference(a, b), el("span", { class: "better", text: verdict })),
+    );
   }
 
   function table(runs) {
@@ -34,22 +40,46 @@ Fovea.compare = (function () {
       const one = first.get(key) || second.get(key);
       return row(one.label, one.unit, first.get(key), second.get(key));
     });
-    for (const [key, label] of [['p50', 'Tick time, median'], ['p99', 'Tick time, 99 %'], ['p999', 'Tick time, 99.9 %'], ['max', 'Tick time, longest']]) {
+    for (const [key, label] of [
+      ["p50", "Tick time, median"],
+      ["p99", "Tick time, 99 %"],
+      ["p999", "Tick time, 99.9 %"],
+      ["max", "Tick time, longest"],
+    ]) {
       const [a, b] = runs.map((run) => {
         const times = run.summary && run.summary.tick_ns;
-        return times && Number.isFinite(times[key]) ? { value: times[key] / 1000, better: 'low', slack: 0.15 } : null;
+        return times && Number.isFinite(times[key]) ? { value: times[key] / 1000, better: "low", slack: 0.15 } : null;
       });
-      if (a || b) rows.push(row(label, 'µs', a, b));
+      if (a || b) rows.push(row(label, "µs", a, b));
     }
-    return el('table', { class: 'figures' }, el('caption', { text: 'Figures of both runs' }),
-      el('thead', {}, el('tr', {}, ['Figure', 'A', 'B', 'B − A'].map((text, i) => el('th', { scope: 'col', class: i ? 'number' : '', text })))),
-      el('tbody', {}, rows));
+    return el(
+      "table",
+      { class: "figures" },
+      el("caption", { text: "Figures of both runs" }),
+      el(
+        "thead",
+        {},
+        el(
+          "tr",
+          {},
+          ["Figure", "A", "B", "B − A"].map((text, i) =>
+            el(
+              "th",
+              { scope: "col", class: i ? "number" : "" },
+              text,
+              i === 3 ? el("span", { class: "better" }) : null,
+            ),
+          ),
+        ),
+      ),
+      el("tbody", {}, rows),
+    );
   }
 
   // Lines of two texts as [{side: ' ' | 'A' | 'B', text}], by the longest common subsequence.
   function diff(textA, textB) {
-    const a = textA.split('\n');
-    const b = textB.split('\n');
+    const a = textA.split("\n");
+    const b = textB.split("\n");
     const length = a.map(() => new Uint16Array(b.length + 1));
     length.push(new Uint16Array(b.length + 1));
     for (let i = a.length - 1; i >= 0; i--) {
@@ -61,29 +91,64 @@ Fovea.compare = (function () {
     let i = 0;
     let j = 0;
     while (i < a.length || j < b.length) {
-      if (i < a.length && j < b.length && a[i] === b[j]) { lines.push({ side: ' ', text: a[i] }); i++; j++; }
-      else if (j >= b.length || (i < a.length && length[i + 1][j] >= length[i][j + 1])) lines.push({ side: 'A', text: a[i++] });
-      else lines.push({ side: 'B', text: b[j++] });
+      if (i < a.length && j < b.length && a[i] === b[j]) {
+        lines.push({ side: " ", text: a[i] });
+        i++;
+        j++;
+      } else if (j >= b.length || (i < a.length && length[i + 1][j] >= length[i][j + 1]))
+        lines.push({ side: "A", text: a[i++] });
+      else lines.push({ side: "B", text: b[j++] });
     }
     return lines;
   }
 
   // The largest used share of every limit, as bars; one bar for each run.
   function limitBars(runs) {
-    const names = Array.from(new Set(runs.flatMap((run) => Object.keys((run.summary && run.summary.limits) || {})))).sort();
+    const names = Array.from(
+      new Set(runs.flatMap((run) => Object.keys((run.summary && run.summary.limits) || {}))),
+    ).sort();
     if (!names.length) return null;
     const bar = (run, name) => {
       const share = run.summary && run.summary.limits ? run.summary.limits[name] : undefined;
       const ticks = run.summary && run.summary.limit_ticks ? run.summary.limit_ticks[name] : 0;
       if (!Number.isFinite(share)) return null;
       const over = share > 1 + 1e-6;
-      const text = `${fixed(100 * share, 0)} %${over ? ', over the limit' : ''}${ticks ? ` · held the motion back for ${ticks} ticks` : ''}`;
-      return el('div', { class: `share run-${run.index}` }, el('div', { class: 'share-track', 'aria-hidden': 'true' },
-        el('div', { class: over ? 'share-fill over' : 'share-fill', style: `width:${Math.min(100, 100 * share).toFixed(1)}%` })),
-      el('span', { class: 'share-text', text: (runs.length > 1 ? `${run.letter}: ` : '') + text }));
+      const text = `${fixed(100 * share, 0)} %${over ? ", over the limit" : ""}${ticks ? ` · held the motion back for ${ticks} ticks` : ""}`;
+      return el(
+        "div",
+        { class: `share run-${run.index}` },
+        el(
+          "div",
+          { class: "share-track", "aria-hidden": "true" },
+          el("div", {
+            class: over ? "share-fill over" : "share-fill",
+            style: `width:${Math.min(100, 100 * share).toFixed(1)}%`,
+          }),
+        ),
+        el("span", { class: "share-text", text: (runs.length > 1 ? `${run.letter}: ` : "") + text }),
+      );
     };
-    return el('div', { class: 'shares' }, el('h3', { text: 'Largest used share of each limit' }),
-      el('dl', {}, names.map((name) => el('div', { class: 'share-row' }, el('dt', { text: words(name) }), el('dd', {}, runs.map((run) => bar(run, name)))))));
+    return el(
+      "div",
+      { class: "shares" },
+      el("h3", { text: "Largest used share of each limit" }),
+      el(
+        "dl",
+        {},
+        names.map((name) =>
+          el(
+            "div",
+            { class: "share-row" },
+            el("dt", { text: words(name) }),
+            el(
+              "dd",
+              {},
+              runs.map((run) => bar(run, name)),
+            ),
+          ),
+        ),
+      ),
+    );
   }
 
   return { table, diff, limitBars };

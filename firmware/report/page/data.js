@@ -1,11 +1,11 @@
 // Reading the embedded runs, and the small tools that every other file uses.
-'use strict';
+"use strict";
 
 const Fovea = {};
 
 // base64 of little-endian float32 to a typed array; null stays null.
 Fovea.floats = function (text) {
-  if (typeof text !== 'string') return null;
+  if (typeof text !== "string") return null;
   const bytes = Fovea.bytes(text);
   return new Float32Array(bytes.buffer, 0, Math.floor(bytes.length / 4));
 };
@@ -18,8 +18,8 @@ Fovea.bytes = function (text) {
 };
 
 Fovea.readRuns = function () {
-  const letters = 'ABCDEFGH';
-  return Array.from(document.querySelectorAll('script.fovea-run')).map((node, index) => {
+  const letters = "ABCDEFGH";
+  return Array.from(document.querySelectorAll("script.fovea-run")).map((node, index) => {
     const run = JSON.parse(node.textContent);
     run.letter = letters[index];
     run.index = index;
@@ -33,12 +33,12 @@ Fovea.decode = function (run) {
   const list = (value) => (Array.isArray(value) ? value : []);
   const ticks = run.ticks || {};
   run.ticks = {};
-  for (const key of ['t_s', 'error_px', 'error_mm', 'predicted_px']) run.ticks[key] = Fovea.floats(ticks[key]);
-  for (const key of ['q', 'dq', 'tau', 'tau_meas']) run.ticks[key] = list(ticks[key]).map(Fovea.floats);
+  for (const key of ["t_s", "error_px", "error_mm", "predicted_px"]) run.ticks[key] = Fovea.floats(ticks[key]);
+  for (const key of ["q", "dq", "tau", "tau_meas"]) run.ticks[key] = list(ticks[key]).map(Fovea.floats);
   const measured = run.measured || {};
   run.measured = {};
-  for (const key of ['t_s', 'error_px', 'age_ms', 'confidence']) run.measured[key] = Fovea.floats(measured[key]);
-  for (const key of ['modes', 'faults', 'limits_active', 'joints']) run[key] = list(run[key]);
+  for (const key of ["t_s", "error_px", "age_ms", "confidence"]) run.measured[key] = Fovea.floats(measured[key]);
+  for (const key of ["modes", "faults", "limits_active", "joints"]) run[key] = list(run[key]);
   run.info = run.info || {};
   run.target = run.target || {};
   if (!Number.isFinite(run.duration_s)) {
@@ -46,7 +46,7 @@ Fovea.decode = function (run) {
     run.duration_s = Math.max(last(run.ticks.t_s), last(run.measured.t_s)) || 0;
   }
   if (run.scene) {
-    for (const key of ['t_s', 'poses', 'camera_path', 'target_path']) run.scene[key] = Fovea.floats(run.scene[key]);
+    for (const key of ["t_s", "poses", "camera_path", "target_path"]) run.scene[key] = Fovea.floats(run.scene[key]);
   }
 };
 
@@ -56,40 +56,45 @@ Fovea.el = function (tag, attributes, ...children) {
 };
 
 Fovea.svg = function (tag, attributes, ...children) {
-  return Fovea.fill(document.createElementNS('http://www.w3.org/2000/svg', tag), attributes, children);
+  return Fovea.fill(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
 };
 
 Fovea.fill = function (node, attributes, children) {
   for (const [key, value] of Object.entries(attributes || {})) {
     if (value === null || value === undefined || value === false) continue;
-    if (key === 'text') node.textContent = value;
-    else if (key.startsWith('on')) node.addEventListener(key.slice(2), value);
-    else node.setAttribute(key, value === true ? '' : String(value));
+    if (key === "text") node.textContent = value;
+    else if (key.startsWith("on")) node.addEventListener(key.slice(2), value);
+    else node.setAttribute(key, value === true ? "" : String(value));
   }
   for (const child of children.flat()) if (child !== null && child !== undefined) node.append(child);
   return node;
 };
 
-Fovea.absent = (words) => Fovea.el('p', { class: 'absent', text: words });
+Fovea.absent = (words) => Fovea.el("p", { class: "absent", text: words });
 
 // A number in words with about `digits` significant digits, never in scientific notation.
 Fovea.number = function (value, digits = 3) {
-  if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
+  if (typeof value !== "number" || !Number.isFinite(value)) return "–";
   const size = Math.abs(value);
-  if (size === 0) return '0';
+  if (size === 0) return "0";
   const decimals = Math.max(0, Math.min(6, digits - 1 - Math.floor(Math.log10(size))));
   const text = value.toFixed(decimals);
-  return (/^-0\.?0*$/.test(text) ? text.slice(1) : text).replace('-', '−');
+  return (/^-0\.?0*$/.test(text) ? text.slice(1) : text).replace("-", "−");
 };
+
+// A given number, such as a limit, without digits that it does not have: 2.175, 87.
+Fovea.plain = (value, digits = 4) =>
+  Number.isFinite(value) ? String(parseFloat(value.toPrecision(digits))).replace("-", "−") : "–";
 
 Fovea.fixed = function (value, decimals) {
-  if (typeof value !== 'number' || !Number.isFinite(value)) return '–';
-  return value.toFixed(decimals).replace('-', '−');
+  if (typeof value !== "number" || !Number.isFinite(value)) return "–";
+  const text = value.toFixed(decimals);
+  return (/^-0\.?0*$/.test(text) ? text.slice(1) : text).replace("-", "−");
 };
 
-Fovea.words = (key) => String(key === null || key === undefined ? '' : key).replace(/_/g, ' ');
+Fovea.words = (key) => String(key === null || key === undefined ? "" : key).replace(/_/g, " ");
 
-Fovea.plural = (count, one, many) => `${count} ${count === 1 ? one : many || one + 's'}`;
+Fovea.plural = (count, one, many) => `${count} ${count === 1 ? one : many || one + "s"}`;
 
 // Index of the last entry with times[i] <= t, or -1.
 Fovea.indexAt = function (times, t) {
@@ -114,14 +119,20 @@ Fovea.hasNumbers = (values) => !!values && values.some(Number.isFinite);
 
 // A row of buttons of which one is pressed.
 Fovea.choice = function (label, options, chosen, onChoose) {
-  const buttons = options.map(([key, words]) => Fovea.el('button', {
-    type: 'button', 'aria-pressed': String(key === chosen), text: words,
-    onclick: () => {
-      buttons.forEach((button, i) => button.setAttribute('aria-pressed', String(options[i][0] === key)));
-      onChoose(key);
-    },
-  }));
-  return Fovea.el('div', { class: 'choice', role: 'group', 'aria-label': label }, buttons);
+  const buttons = options.map(([key, words]) =>
+    Fovea.el("button", {
+      type: "button",
+      "aria-pressed": String(key === chosen),
+      text: words,
+      onclick: () => {
+        buttons.forEach((button, i) => button.setAttribute("aria-pressed", String(options[i][0] === key)));
+        onChoose(key);
+      },
+    }),
+  );
+  return Fovea.el("div", { class: "choice", role: "group", "aria-label": label }, buttons);
 };
 
-Fovea.drawn = (id) => { document.getElementById(id).dataset.drawn = 'true'; };
+Fovea.drawn = (id) => {
+  document.getElementById(id).dataset.drawn = "true";
+};

@@ -1,23 +1,29 @@
 // Positions, velocities and torques of all joints, as shares of their limits or in physical units.
 
 Fovea.joints = (function () {
-  const { el, plots, hasNumbers, number, fixed, suffix } = Fovea;
+  const { el, plots, hasNumbers, number, plain, fixed, suffix } = Fovea;
 
   // What can be shown: where it is found, its limits, and its units.
   const QUANTITIES = {
-    q: { title: 'position', low: (j) => j.q_min, high: (j) => j.q_max, unit: ['rad', 'm'], range: true },
-    dq: { title: 'velocity', low: (j) => -j.dq_max, high: (j) => j.dq_max, unit: ['rad/s', 'm/s'] },
-    tau: { title: 'commanded torque without gravity', low: (j) => -j.tau_max, high: (j) => j.tau_max, unit: ['N m', 'N'] },
-    tau_meas: { title: 'measured torque', low: (j) => -j.tau_max, high: (j) => j.tau_max, unit: ['N m', 'N'] },
+    q: { title: "position", low: (j) => j.q_min, high: (j) => j.q_max, unit: ["rad", "m"], range: true },
+    dq: { title: "velocity", low: (j) => -j.dq_max, high: (j) => j.dq_max, unit: ["rad/s", "m/s"] },
+    tau: {
+      title: "commanded torque without gravity",
+      low: (j) => -j.tau_max,
+      high: (j) => j.tau_max,
+      unit: ["N m", "N"],
+    },
+    tau_meas: { title: "measured torque", low: (j) => -j.tau_max, high: (j) => j.tau_max, unit: ["N m", "N"] },
   };
 
-  const limited = (kind, joint) => Number.isFinite(kind.low(joint)) && Number.isFinite(kind.high(joint)) && kind.high(joint) > kind.low(joint);
+  const limited = (kind, joint) =>
+    Number.isFinite(kind.low(joint)) && Number.isFinite(kind.high(joint)) && kind.high(joint) > kind.low(joint);
 
   // A value as percent of the way from the middle of its range to its limit: ±100 is at the limit.
   function share(kind, joint, values) {
     const middle = (kind.high(joint) + kind.low(joint)) / 2;
     const half = (kind.high(joint) - kind.low(joint)) / 2;
-    return values.map((v) => 100 * (v - middle) / half);
+    return values.map((v) => (100 * (v - middle)) / half);
   }
 
   function seriesOf(runs, key, physical, only) {
@@ -26,10 +32,18 @@ Fovea.joints = (function () {
     for (const run of runs) {
       run.joints.forEach((joint, i) => {
         const values = run.ticks[key][i];
-        if (!values || !hasNumbers(values) || !run.ticks.t_s || (only !== null && only !== i)) return;
+        if (!values || !run.ticks.t_s || (only !== null && only !== i) || (only === null && !hasNumbers(values)))
+          return;
         if (!physical && !limited(kind, joint)) return;
-        series.push({ name: `joint ${i + 1}`, tag: run.index ? null : String(i + 1), run: run.index, colour: `--joint-${i + 1}`, width: 1.5,
-          t: run.ticks.t_s, v: physical ? values : share(kind, joint, values) });
+        series.push({
+          name: `joint ${i + 1}`,
+          tag: run.index ? null : String(i + 1),
+          run: run.index,
+          colour: `--joint-${i + 1}`,
+          width: 1.5,
+          t: run.ticks.t_s,
+          v: physical ? values : share(kind, joint, values),
+        });
       });
     }
     return series;
@@ -38,21 +52,37 @@ Fovea.joints = (function () {
   function settings(runs, key, physical, only, fit) {
     const kind = QUANTITIES[key];
     const joints = runs[0].joints;
+    // Without limits there is nothing to take a share of.
+    if (!(only === null ? joints : [joints[only]]).some((joint) => limited(kind, joint))) physical = true;
     const series = seriesOf(runs, key, physical, only);
-    const sliding = (only === null ? joints : [joints[only]]).map((j) => (j.type === 'prismatic' ? 1 : 0));
-    const unit = Array.from(new Set(sliding)).sort().map((k) => kind.unit[k]).join(' or ');
+    const sliding = (only === null ? joints : [joints[only]]).map((j) => (j.type === "prismatic" ? 1 : 0));
+    const unit = Array.from(new Set(sliding))
+      .sort()
+      .map((k) => kind.unit[k])
+      .join(" or ");
     if (!physical) {
       let top = 0;
       for (const s of series) for (const v of s.v) if (Math.abs(v) > top) top = Math.abs(v);
       const edge = Math.max(112, Math.min(top * 1.08, 400));
-      return { series, label: `${kind.title} [% of the limit]`, range: fit ? null : [-edge, edge], format: (v) => (Number.isFinite(v) ? fixed(v, 0) + ' %' : '–'),
-        lines: [{ value: 100, text: kind.range ? 'upper limit' : 'limit' }, { value: -100, text: kind.range ? 'lower limit' : 'limit' }, { value: 0, colour: '--axis', alpha: 0.6, dash: [] }] };
+      return {
+        series,
+        label: `${kind.title} [% of the limit]`,
+        range: fit ? null : [-edge, edge],
+        format: (v) => (Number.isFinite(v) ? fixed(v, 0) + " %" : "–"),
+
+        lines: [
+          { value: 100, text: kind.range ? "upper limit" : "limit" },
+          { value: -100, above: true, text: kind.range ? "lower limit" : "limit" },
+          { value: 0, colour: "--axis", alpha: 0.6, dash: [] },
+        ],
+      };
     }
     const lines = [];
     joints.forEach((joint, i) => {
       if ((only !== null && only !== i) || !limited(kind, joint)) return;
       for (const value of [kind.low(joint), kind.high(joint)]) {
-        if (only !== null) lines.push({ value, text: `limit ${number(value, 3)} ${unit}` });
+        if (only !== null)
+          lines.push({ value, above: value === kind.low(joint), text: `limit ${plain(value)} ${unit}` });
         else lines.push({ value, colour: `--joint-${i + 1}`, alpha: 0.7 });
       }
     });
@@ -69,67 +99,173 @@ Fovea.joints = (function () {
   function extremes(values) {
     let low = Infinity;
     let high = -Infinity;
-    for (const v of values || []) { if (v < low) low = v; if (v > high) high = v; }
+    for (const v of values || []) {
+      if (v < low) low = v;
+      if (v > high) high = v;
+    }
     return low <= high ? { low, high, size: Math.max(-low, high) } : null;
   }
 
   // The peaks of every joint beside its limits.
   function table(run) {
     const cell = (size, limit) => {
-      const text = size === null ? '–' : Number.isFinite(limit) && limit > 0 ? `${number(size, 3)} of ${number(limit, 3)} (${fixed(100 * size / limit, 0)} %)` : number(size, 3);
-      return el('td', { class: size !== null && size > limit ? 'number over' : 'number', text });
+      const text =
+        size === null
+          ? "–"
+          : Number.isFinite(limit) && limit > 0
+            ? `${number(size, 3)} of ${plain(limit)} (${fixed((100 * size) / limit, 0)} %)`
+            : number(size, 3);
+      return el("td", { class: size !== null && size > limit ? "number over" : "number", text });
     };
     const rows = run.joints.map((joint, i) => {
       const q = extremes(run.ticks.q[i]);
       const dq = extremes(run.ticks.dq[i]);
       const tau = extremes(run.ticks.tau[i]);
       const margin = q && Number.isFinite(joint.q_min) ? Math.min(q.low - joint.q_min, joint.q_max - q.high) : null;
-      return el('tr', {}, el('th', { scope: 'row' }, el('span', { class: 'joint-dot', style: `background:var(--joint-${i + 1})`, 'aria-hidden': 'true' }), `${i + 1} `, el('span', { class: 'quiet', text: joint.name })),
-        el('td', { class: margin !== null && margin < 0 ? 'number over' : 'number', text: q ? `${number(q.low, 3)} … ${number(q.high, 3)}` : '–' }),
-        el('td', { class: 'number', text: number(margin, 3) }), cell(dq && dq.size, joint.dq_max), cell(tau && tau.size, joint.tau_max));
+      return el(
+        "tr",
+        {},
+        el(
+          "th",
+          { scope: "row" },
+          el("span", { class: "joint-dot", style: `background:var(--joint-${i + 1})`, "aria-hidden": "true" }),
+          `${i + 1} `,
+          el("span", { class: "quiet", text: joint.name }),
+        ),
+        el("td", {
+          class: margin !== null && margin < 0 ? "number over" : "number",
+          text: q ? `${number(q.low, 3)} … ${number(q.high, 3)}` : "–",
+        }),
+        el("td", { class: "number", text: number(margin, 3) }),
+        cell(dq && dq.size, joint.dq_max),
+        cell(tau && tau.size, joint.tau_max),
+      );
     });
-    const slides = run.joints.some((j) => j.type === 'prismatic');
-    const turn = slides ? 'rad or m' : 'rad';
-    const heads = ['Joint', `Positions [${turn}]`, `Left to the nearer stop [${turn}]`, `Peak velocity [${slides ? 'rad/s or m/s' : 'rad/s'}]`, `Peak torque [${slides ? 'N m or N' : 'N m'}]`];
-    return el('details', { class: 'peaks' }, el('summary', { text: `Peaks and limits of every joint in numbers${suffix(run) && ', run' + suffix(run)}` }),
-      el('div', { class: 'scroll' }, el('table', {}, el('thead', {}, el('tr', {}, heads.map((text, i) => el('th', { scope: 'col', class: i ? 'number' : '', text })))), el('tbody', {}, rows))));
+    const slides = run.joints.some((j) => j.type === "prismatic");
+    const turn = slides ? "rad or m" : "rad";
+    const heads = [
+      "Joint",
+      `Positions [${turn}]`,
+      `Left to the nearer stop [${turn}]`,
+      `Peak velocity [${slides ? "rad/s or m/s" : "rad/s"}]`,
+      `Peak torque [${slides ? "N m or N" : "N m"}]`,
+    ];
+    return el(
+      "details",
+      { class: "peaks" },
+      el("summary", { text: `Peaks and limits of every joint in numbers${suffix(run) && ", run" + suffix(run)}` }),
+
+      el(
+        "div",
+        { class: "scroll" },
+        el(
+          "table",
+          {},
+          el(
+            "thead",
+            {},
+            el(
+              "tr",
+              {},
+              heads.map((text, i) => el("th", { scope: "col", class: i ? "number" : "", text })),
+            ),
+          ),
+          el("tbody", {}, rows),
+        ),
+      ),
+    );
   }
 
   function draw(runs) {
-    const body = document.querySelector('#joints .body');
+    const body = document.querySelector("#joints .body");
     const bars = Fovea.compare.limitBars(runs);
     if (bars) body.append(bars);
     if (!runs[0].joints.length) {
-      body.append(Fovea.absent('The log does not describe the joints.'));
-      return Fovea.drawn('joints');
+      body.append(Fovea.absent("The log does not describe the joints."));
+      return Fovea.drawn("joints");
     }
     let physical = false;
     let only = null;
     let fit = false;
-    let torque = 'tau';
+    let torque = "tau";
     const shown = [];
-    const redraw = () => shown.forEach((plot) => plot.plot.change(settings(runs, plot.key === 'tau' ? torque : plot.key, physical, only, fit)));
-    const bar = el('div', { class: 'toolbar' }, Fovea.choice('Units of the joint plots', [['share', 'Share of the limit'], ['units', 'Physical units']], 'share', (key) => { physical = key === 'units'; redraw(); }));
-    const pick = el('select', { id: 'joint-pick', onchange: () => { only = pick.value === 'all' ? null : Number(pick.value); redraw(); } },
-      el('option', { value: 'all', text: 'all joints' }), runs[0].joints.map((joint, i) => el('option', { value: i, text: `joint ${i + 1}: ${joint.name}` })));
-    bar.append(el('label', { for: 'joint-pick' }, 'Show ', pick));
+    const redraw = () =>
+      shown.forEach((plot) =>
+        plot.plot.change(settings(runs, plot.key === "tau" ? torque : plot.key, physical, only, fit)),
+      );
+    const bar = el(
+      "div",
+      { class: "toolbar" },
+      Fovea.choice(
+        "Units of the joint plots",
+        [
+          ["share", "Share of the limit"],
+          ["units", "Physical units"],
+        ],
+        "share",
+        (key) => {
+          physical = key === "units";
+          redraw();
+        },
+      ),
+    );
+    const pick = el(
+      "select",
+      {
+        "aria-label": "Joints to show",
+        onchange: () => {
+          only = pick.value === "all" ? null : Number(pick.value);
+          redraw();
+        },
+      },
+      el("option", { value: "all", text: "all joints" }),
+      runs[0].joints.map((joint, i) => el("option", { value: i, text: `joint ${i + 1}: ${joint.name}` })),
+    );
+    bar.append(pick);
     const measured = runs.some((run) => run.ticks.tau_meas.some(hasNumbers));
     const commanded = runs.some((run) => run.ticks.tau.some(hasNumbers));
-    if (!commanded && measured) torque = 'tau_meas';
-    if (measured && commanded) bar.append(Fovea.choice('Which torque', [['tau', 'Commanded torque'], ['tau_meas', 'Measured torque']], 'tau', (key) => { torque = key; redraw(); }));
-    const box = el('input', { type: 'checkbox', onchange: () => { fit = box.checked; redraw(); } });
-    bar.append(el('label', {}, box, ' fit to the data'), Fovea.zoomBar());
+    if (!commanded && measured) torque = "tau_meas";
+    if (measured && commanded)
+      bar.append(
+        Fovea.choice(
+          "Which torque",
+          [
+            ["tau", "Commanded torque"],
+            ["tau_meas", "Measured"],
+          ],
+          "tau",
+          (key) => {
+            torque = key;
+            redraw();
+          },
+        ),
+      );
+    const box = el("input", {
+      type: "checkbox",
+      onchange: () => {
+        fit = box.checked;
+        redraw();
+      },
+    });
+    bar.append(el("label", {}, box, " fit to the data"), Fovea.zoomBar());
     body.append(bar);
     const missing = [];
-    for (const key of ['q', 'dq', 'tau']) {
-      const first = settings(runs, key === 'tau' ? torque : key, physical, only, fit);
-      if (first.series.length) shown.push({ key, plot: plots.create(body, Object.assign({ height: 230, endLabels: true }, first)) });
-      else missing.push(key === 'tau' ? 'torques' : key === 'q' ? 'positions' : 'velocities');
+    for (const key of ["q", "dq", "tau"]) {
+      const first = settings(runs, key === "tau" ? torque : key, physical, only, fit);
+      if (first.series.length)
+        shown.push({ key, plot: plots.create(body, Object.assign({ height: 230, endLabels: true }, first)) });
+      else missing.push(key === "tau" ? "torques" : key === "q" ? "positions" : "velocities");
     }
-    if (missing.length) body.append(Fovea.absent(`The log holds no ${missing.join(', no ')} of the joints, or no limits for them.`));
-    body.append(el('p', { class: 'hint', text: 'Share of the limit: 0 % is the middle of a joint’s range (or standing still, or no torque), ±100 % is the limit of that joint. The number at the right end of a line is its joint.' }));
+    if (missing.length)
+      body.append(Fovea.absent(`The log holds no ${missing.join(", no ")} of the joints, or no limits for them.`));
+    body.append(
+      el("p", {
+        class: "hint",
+        text: "Share of the limit: 0 % is the middle of a joint’s range (or standing still, or no torque), ±100 % is the limit of that joint. The number at the right end of a line is its joint.",
+      }),
+    );
     runs.forEach((run) => body.append(table(run)));
-    Fovea.drawn('joints');
+    Fovea.drawn("joints");
   }
 
   return { draw };

@@ -1,7 +1,16 @@
 // Draws the sections one after the other, so that the verdict is readable at once.
 
 (function () {
-  const sections = [['verdict', 'verdict'], ['eye', 'eye'], ['error', 'error'], ['joints', 'joints'], ['timeline', 'timeline'], ['ticks', 'ticks'], ['config', 'config'], ['path', 'armView']];
+  const sections = [
+    ["verdict", "verdict"],
+    ["eye", "eye"],
+    ["error", "error"],
+    ["joints", "joints"],
+    ["timeline", "timeline"],
+    ["ticks", "ticks"],
+    ["config", "config"],
+    ["path", "armView"],
+  ];
 
   // A section that cannot be drawn says so, and leaves the others alone.
   function draw([id, name]) {
@@ -9,8 +18,10 @@
       Fovea[name].draw(Fovea.runs);
     } catch (trouble) {
       const section = document.getElementById(id);
-      (section.querySelector('.body') || section).append(Fovea.absent(`This part could not be drawn: ${trouble.message}.`));
-      section.dataset.drawn = 'true';
+      (section.querySelector(".body") || section).append(
+        Fovea.absent(`This part could not be drawn: ${trouble.message}.`),
+      );
+      section.dataset.drawn = "true";
       section.dataset.trouble = String(trouble.stack || trouble);
     }
   }
@@ -18,17 +29,28 @@
   function start() {
     Fovea.runs = Fovea.readRuns().slice(0, 2);
     if (!Fovea.runs.length) {
-      document.querySelector('main').prepend(Fovea.absent('This page holds no run.'));
+      document.querySelector("main").prepend(Fovea.absent("This page holds no run."));
       return;
     }
     Fovea.clock.duration = Math.max(0.001, ...Fovea.runs.map((run) => run.duration_s));
     Fovea.clock.span = [0, Fovea.clock.duration];
     const waiting = sections.slice();
     draw(waiting.shift());
-    const next = () => { if (waiting.length) { draw(waiting.shift()); setTimeout(next, 0); } };
+    const next = () => {
+      if (waiting.length) {
+        draw(waiting.shift());
+        setTimeout(next, 0);
+      }
+    };
     requestAnimationFrame(() => setTimeout(next, 0));
     // A print must show everything, also when it comes early.
-    addEventListener('beforeprint', () => { while (waiting.length) draw(waiting.shift()); });
+    addEventListener(
+      "beforeprint",
+      () => {
+        while (waiting.length) draw(waiting.shift());
+      },
+      true,
+    );
   }
 
   start();

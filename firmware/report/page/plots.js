@@ -10,7 +10,9 @@ Fovea.plots = (function () {
     const rows = [];
     for (;;) {
       let t = Infinity;
-      times.forEach((list, k) => { if (next[k] < list.length && list[next[k]] < t) t = list[next[k]]; });
+      times.forEach((list, k) => {
+        if (next[k] < list.length && list[next[k]] < t) t = list[next[k]];
+      });
       if (t === Infinity) return rows;
       const row = [t];
       const here = times.map((list, k) => (list[next[k]] === t ? next[k]++ : -1));
@@ -27,12 +29,30 @@ Fovea.plots = (function () {
 
   // A sample of each of the given series, one beneath the other.
   function swatch(...list) {
-    const box = svg('svg', { viewBox: '0 0 26 12', class: 'swatch', 'aria-hidden': 'true', style: `color:var(${list[0].colour})` });
+    const box = svg("svg", {
+      viewBox: "0 0 26 12",
+      class: "swatch",
+      "aria-hidden": "true",
+      style: `color:var(${list[0].colour})`,
+    });
     list.forEach((s, k) => {
       const y = list.length > 1 ? 3 + 6 * k : 6;
       const r = list.length > 1 ? 1.9 : 2.2;
-      if (s.dots) for (const x of [5, 13, 21]) box.append(svg('circle', { cx: x, cy: y, r, fill: s.run ? 'none' : 'currentColor', stroke: 'currentColor' }));
-      else box.append(svg('line', { x1: 1, x2: 25, y1: y, y2: y, stroke: 'currentColor', 'stroke-width': 2.4, 'stroke-dasharray': (dashOf(s) || []).join(' ') || null }));
+      if (s.dots)
+        for (const x of [5, 13, 21])
+          box.append(svg("circle", { cx: x, cy: y, r, fill: s.run ? "none" : "currentColor", stroke: "currentColor" }));
+      else
+        box.append(
+          svg("line", {
+            x1: 1,
+            x2: 25,
+            y1: y,
+            y2: y,
+            stroke: "currentColor",
+            "stroke-width": 2.4,
+            "stroke-dasharray": (dashOf(s) || []).join(" ") || null,
+          }),
+        );
     });
     return box;
   }
@@ -41,62 +61,133 @@ Fovea.plots = (function () {
     return (g, name, ctx, x, y, colour, radius) => {
       ctx.beginPath();
       ctx.arc(x, y, hollow ? radius + 0.4 : radius, 0, 2 * Math.PI);
-      if (hollow) { ctx.lineWidth = 1; ctx.strokeStyle = colour; ctx.stroke(); } else { ctx.fillStyle = colour; ctx.fill(); }
+      if (hollow) {
+        ctx.lineWidth = 1;
+        ctx.strokeStyle = colour;
+        ctx.stroke();
+      } else {
+        ctx.fillStyle = colour;
+        ctx.fill();
+      }
     };
   }
 
-  const axisText = (value) => String(parseFloat(value.toPrecision(6))).replace('-', '−');
+  const axisText = (value) => String(parseFloat(value.toPrecision(6))).replace("-", "−");
+
+  // Labels of a logarithmic axis: the decades, and 2 and 5 of each when there are few.
+  function decades(low, high) {
+    const ticks = [];
+    if (!(low > 0 && high > low)) return ticks;
+    const steps = Math.log10(high / low) < 2.2 ? [1, 2, 5] : [1];
+    for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); power++) {
+      for (const step of steps) {
+        const v = step * Math.pow(10, power);
+        if (v >= low * 0.999 && v <= high) ticks.push({ v, label: axisText(v) });
+      }
+    }
+    return ticks;
+  }
 
   // options: {label, summary, series, log, range, includeZero, lines, endLabels, format, height}
   function create(host, options) {
     const state = Object.assign({ format: (v) => number(v, 3), lines: [] }, options);
-    const area = el('div', { class: 'plot-area', style: state.height ? `height:${state.height}px` : null });
-    const cursor = el('div', { class: 'cursor', hidden: true });
-    const brush = el('div', { class: 'brush', hidden: true });
-    const glass = el('div', { class: 'glass' }, cursor, brush);
-    const ends = el('div', { 'aria-hidden': 'true' });
-    const frame = el('div', { class: 'plot-frame', tabindex: '0', role: 'group', onkeydown: Fovea.timeKeys,
-      'aria-label': `Plot: ${state.summary || state.label}. Arrow keys move the time, plus and minus zoom, Escape shows everything.` }, area, ends, glass);
-    const now = el('span', { class: 'now' });
-    const legend = el('ul', { class: 'legend' });
-    const caption = el('figcaption', {}, el('span', { class: 'plot-label', text: state.label }), now);
-    host.append(el('figure', { class: 'plot' }, caption, frame, el('p', { class: 'axis-x', text: 'time [s]' }), legend));
+    const area = el("div", { class: "plot-area", style: state.height ? `height:${state.height}px` : null });
+    const cursor = el("div", { class: "cursor", hidden: true });
+    const brush = el("div", { class: "brush", hidden: true });
+    const glass = el("div", { class: "glass" }, cursor, brush);
+    const ends = el("div", { "aria-hidden": "true" });
+    const still = el("img", { class: "plot-still", alt: "" });
+    const frame = el(
+      "div",
+      {
+        class: "plot-frame",
+        tabindex: "0",
+        role: "group",
+        onkeydown: Fovea.timeKeys,
+        "aria-label": `Plot: ${state.summary || state.label}. Arrow keys move the time, plus and minus zoom, Escape shows everything.`,
+      },
+      area,
+      still,
+      ends,
+      glass,
+    );
+    const now = el("span", { class: "now" });
+    const legend = el("ul", { class: "legend" });
+    const caption = el("figcaption", {}, el("span", { class: "plot-label", text: state.label }), now);
+    host.append(
+      el("figure", { class: "plot" }, caption, frame, el("p", { class: "axis-x", text: "time [s]" }), legend),
+    );
     let graph = null;
     let outputs = [];
     let visible = [];
 
     function fillLegend() {
-      legend.textContent = '';
+      legend.textContent = "";
       visible = state.series.map(() => true);
       // One entry for each quantity; it stands for the lines of both runs.
       outputs = Array.from(new Set(state.series.map((s) => s.name))).map((name) => {
         const members = state.series.map((s, i) => i).filter((i) => state.series[i].name === name);
-        const output = el('span', { class: 'legend-value' });
-        const button = el('button', { type: 'button', 'aria-pressed': 'true', title: 'show or hide' }, swatch(...members.map((i) => state.series[i])), el('span', { text: name }), output);
-        button.addEventListener('click', () => {
+        const output = el("span", { class: "legend-value" });
+        const button = el(
+          "button",
+          { type: "button", "aria-pressed": "true", title: "show or hide" },
+          swatch(...members.map((i) => state.series[i])),
+          el("span", { text: name }),
+          output,
+        );
+        button.addEventListener("click", () => {
           const on = !visible[members[0]];
-          members.forEach((i) => { visible[i] = on; });
-          button.setAttribute('aria-pressed', String(on));
+          members.forEach((i) => {
+            visible[i] = on;
+          });
+          button.setAttribute("aria-pressed", String(on));
           graph.setVisibility(members, on);
         });
-        legend.append(el('li', {}, button));
+        legend.append(el("li", {}, button));
         return { output, members };
       });
-      if (state.series.some((s) => s.run)) legend.append(el('li', { class: 'rule', text: 'A solid or filled, B dashed or hollow' }));
+      if (state.series.some((s) => s.run))
+        legend.append(
+          el("li", {
+            class: "rule",
+            text: state.series.every((s) => s.dots)
+              ? "A filled, B hollow"
+              : state.series.some((s) => s.dots)
+                ? "A solid or filled, B dashed or hollow"
+                : "A solid, B dashed",
+          }),
+        );
     }
 
     function styles() {
       const series = {};
       state.series.forEach((s, i) => {
         series[`s${i}`] = {
-          color: theme.colour(s.colour), strokeWidth: s.dots ? 0 : s.width || 1.6, strokePattern: dashOf(s),
-          drawPoints: !!s.dots, pointSize: s.dots ? s.size || 1.9 : 1, drawPointCallback: drawDot(!!s.run),
+          color: theme.colour(s.colour),
+          strokeWidth: s.dots ? 0 : s.width || 1.6,
+          strokePattern: dashOf(s),
+          drawPoints: !!s.dots,
+          pointSize: s.dots ? s.size || 1.9 : 1,
+          drawPointCallback: drawDot(!!s.run),
         };
       });
-      const grid = theme.colour('--grid');
-      return { series, axisLineColor: theme.colour('--axis'), axes: {
-        x: { gridLineColor: grid, gridLineWidth: 1, axisLabelFormatter: axisText, pixelsPerLabel: 60 },
-        y: { gridLineColor: grid, gridLineWidth: 1, axisLabelFormatter: axisText, axisLabelWidth: 46, pixelsPerLabel: 32 } } };
+      const grid = theme.colour("--grid");
+      const y = {
+        gridLineColor: grid,
+        gridLineWidth: 1,
+        axisLabelFormatter: axisText,
+        axisLabelWidth: 46,
+        pixelsPerLabel: 32,
+      };
+      if (state.log) y.ticker = decades;
+      return {
+        series,
+        axisLineColor: theme.colour("--axis"),
+        axes: {
+          x: { gridLineColor: grid, gridLineWidth: 1, axisLabelFormatter: axisText, pixelsPerLabel: 60 },
+          y,
+        },
+      };
     }
 
     // Lines across the plot, such as limits.
@@ -105,12 +196,19 @@ Fovea.plots = (function () {
         const y = Math.round(g.toDomYCoord(line.value));
         if (!(y >= box.y - 1 && y <= box.y + box.h + 1)) continue;
         ctx.save();
-        ctx.strokeStyle = ctx.fillStyle = theme.colour(line.colour || '--alarm');
+        ctx.strokeStyle = ctx.fillStyle = theme.colour(line.colour || "--alarm");
         ctx.globalAlpha = line.alpha || 1;
         ctx.setLineDash(line.dash || [2, 3]);
         ctx.lineWidth = 2;
-        ctx.beginPath(); ctx.moveTo(box.x, y); ctx.lineTo(box.x + box.w, y); ctx.stroke();
-        if (line.text) { ctx.font = '11px system-ui, sans-serif'; ctx.textAlign = 'left'; ctx.fillText(line.text, box.x + 5, line.value < 0 ? y - 4 : y + 12); }
+        ctx.beginPath();
+        ctx.moveTo(box.x, y);
+        ctx.lineTo(box.x + box.w, y);
+        ctx.stroke();
+        if (line.text) {
+          ctx.font = "11px system-ui, sans-serif";
+          ctx.textAlign = "left";
+          ctx.fillText(line.text, box.x + 5, line.above ? y - 4 : y + 12);
+        }
         ctx.restore();
       }
     }
@@ -125,34 +223,77 @@ Fovea.plots = (function () {
     function moveCursor() {
       const shown = clock.time !== null && clock.time >= clock.span[0] && clock.time <= clock.span[1];
       cursor.hidden = !shown;
-      now.textContent = clock.time === null ? '' : `at ${clock.time.toFixed(3)} s`;
+      now.textContent = clock.time === null ? "" : `at ${clock.time.toFixed(3)} s`;
       if (shown && graph) cursor.style.left = `${graph.toDomXCoord(clock.time) - graph.getArea().x}px`;
       const reach = clock.duration / 60;
       for (const { output, members } of outputs) {
-        const value = (s) => (Fovea.runs.length > 1 ? Fovea.runs[s.run].letter + ' ' : '') + state.format(Fovea.valueAt(s.t, s.v, clock.time, reach));
-        output.textContent = clock.time === null ? '' : members.map((i) => value(state.series[i])).join(' · ');
+        const value = (s) =>
+          (Fovea.runs.length > 1 ? Fovea.runs[s.run].letter + " " : "") +
+          state.format(Fovea.valueAt(s.t, s.v, clock.time, reach));
+        output.textContent = clock.time === null ? "" : members.map((i) => value(state.series[i])).join(" · ");
       }
+    }
+
+    // What was painted during `beforeprint` does not reach the paper, but a picture of it does.
+    function keepStill() {
+      const layers = Array.from(area.querySelectorAll("canvas"));
+      const copy = el("canvas", { width: layers[0].width, height: layers[0].height });
+      layers.forEach((layer) => copy.getContext("2d").drawImage(layer, 0, 0));
+      still.src = copy.toDataURL();
+      still.style.width = layers[0].style.width;
+      still.style.height = layers[0].style.height;
     }
 
     function build() {
       fillLegend();
-      const labels = ['time', ...state.series.map((s, i) => `s${i}`)];
-      const base = { labels, legend: 'never', connectSeparatedPoints: true, highlightCircleSize: 0, showLabelsOnHighlight: false,
-        interactionModel: {}, dateWindow: clock.span.slice(), valueRange: state.range || null, logscale: !!state.log, xAxisHeight: 18,
-        includeZero: !!state.includeZero, rightGap: state.endLabels ? 22 : 10, underlayCallback: underlay, drawCallback: () => { if (graph) place(); },
-        visibility: visible.slice() };
+      const labels = ["time", ...state.series.map((s, i) => `s${i}`)];
+      const base = {
+        labels,
+        legend: "never",
+        connectSeparatedPoints: true,
+        highlightCircleSize: 0,
+        showLabelsOnHighlight: false,
+        interactionModel: {},
+        dateWindow: clock.span.slice(),
+        valueRange: state.range || null,
+        logscale: !!state.log,
+        xAxisHeight: 18,
+        includeZero: !!state.includeZero,
+        rightGap: state.endLabels ? 22 : 10,
+        underlayCallback: underlay,
+        drawCallback: () => {
+          if (graph) place();
+        },
+        visibility: visible.slice(),
+      };
       if (graph) graph.destroy();
+      graph = null;
       graph = new Dygraph(area, rowsOf(state.series), Object.assign(base, styles()));
       place();
     }
 
     build();
-    Fovea.plots.pointer(glass, brush, (x) => graph.toDataXCoord(x + graph.getArea().x));
-    clock.listen((what) => { if (what === 'time') moveCursor(); else { graph.updateOptions({ dateWindow: clock.span.slice() }); moveCursor(); } });
-    theme.listen(() => { graph.updateOptions(styles(), true); graph.resize(); graph.updateOptions({}); });
+    Fovea.pointer(glass, brush, (x) => graph.toDataXCoord(x + graph.getArea().x));
+    clock.listen((what) => {
+      if (what === "span") graph.updateOptions({ dateWindow: clock.span.slice() });
+      moveCursor();
+    });
+    new ResizeObserver(() => {
+      if (!theme.printing && area.clientWidth) graph.resize();
+    }).observe(area);
+    theme.listen(() => {
+      graph.updateOptions(styles(), true);
+      graph.resize();
+      graph.updateOptions({});
+      if (theme.printing) keepStill();
+    });
     return {
       graph: () => graph,
-      change(more) { Object.assign(state, more); if (more.label) caption.firstChild.textContent = more.label; build(); },
+      change(more) {
+        Object.assign(state, more);
+        if (more.label) caption.firstChild.textContent = more.label;
+        build();
+      },
     };
   }
 
@@ -170,55 +311,20 @@ Fovea.plots.endLabels = function (host, box, g, series, visible) {
   for (let pass = 0; pass < 40; pass++) {
     for (let i = 1; i < labels.length; i++) {
       const overlap = 11 - (labels[i].y - labels[i - 1].y);
-      if (overlap > 0) { labels[i].y += overlap / 2; labels[i - 1].y -= overlap / 2; }
+      if (overlap > 0) {
+        labels[i].y += overlap / 2;
+        labels[i - 1].y -= overlap / 2;
+      }
     }
   }
-  host.textContent = '';
+  host.textContent = "";
   for (const { y, s } of labels) {
-    host.append(Fovea.el('span', { class: 'end-label', text: s.tag, style: `left:${box.x + box.w + 5}px;top:${y}px;color:var(${s.colour})` }));
+    host.append(
+      Fovea.el("span", {
+        class: "end-label",
+        text: s.tag,
+        style: `left:${box.x + box.w + 5}px;top:${y}px;border-color:var(${s.colour})`,
+      }),
+    );
   }
-};
-
-// Pointing moves the shared time, dragging with a mouse zooms, double-click shows everything.
-// A finger moves the time sideways and still scrolls the page up and down (touch-action: pan-y).
-Fovea.plots.pointer = function (glass, brush, timeAt) {
-  const clock = Fovea.clock;
-  let start = null;
-  const xOf = (event) => event.clientX - glass.getBoundingClientRect().left;
-  glass.addEventListener('pointerdown', (event) => {
-    clock.setTime(timeAt(xOf(event)), 'plot');
-    if (event.pointerType === 'touch' || event.button !== 0) return;
-    start = xOf(event);
-    glass.setPointerCapture(event.pointerId);
-  });
-  glass.addEventListener('pointermove', (event) => {
-    const x = xOf(event);
-    clock.setTime(timeAt(x), 'plot');
-    if (start === null) return;
-    const left = Math.max(0, Math.min(start, x));
-    brush.hidden = Math.abs(x - start) < 4;
-    brush.style.left = `${left}px`;
-    brush.style.width = `${Math.min(glass.clientWidth, Math.max(start, x)) - left}px`;
-  });
-  glass.addEventListener('pointerup', (event) => {
-    if (start === null) return;
-    const x = xOf(event);
-    if (Math.abs(x - start) >= 4) clock.setSpan(timeAt(start), timeAt(x));
-    start = null;
-    brush.hidden = true;
-  });
-  glass.addEventListener('pointercancel', () => { start = null; brush.hidden = true; });
-  glass.addEventListener('dblclick', () => clock.showAll());
-};
-
-// Buttons that zoom the shared span of time, for fingers and keys.
-Fovea.zoomBar = function () {
-  const { el, clock } = Fovea;
-  const all = el('button', { type: 'button', text: 'Whole run', onclick: () => clock.showAll() });
-  const show = () => { all.disabled = !clock.zoomed(); };
-  clock.listen(show);
-  show();
-  return el('div', { class: 'choice', role: 'group', 'aria-label': 'Zoom in time' },
-    el('button', { type: 'button', text: '−', 'aria-label': 'Zoom out in time', onclick: () => clock.zoom(2) }),
-    el('button', { type: 'button', text: '+', 'aria-label': 'Zoom in in time', onclick: () => clock.zoom(0.5) }), all);
 };
