@@ -88,19 +88,32 @@ void RunLog::AddImage(const hal::Frame& frame) {
   const int type = frame.format == hal::PixelFormat::kMono8 ? CV_8UC1 : CV_8UC3;
   const cv::Mat view(frame.height_px, frame.width_px, type, const_cast<std::uint8_t*>(frame.pixels.data()),
                      static_cast<std::size_t>(frame.stride_bytes));
-  Push({[picture = view.clone(), stamp_ns = frame.stamp_ns, quality = config_.jpeg_quality](LogFile& file) {
-          std::vector<unsigned char> jpeg;
-          if (!cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, quality})) {
-            throw std::runtime_error("a picture cannot be encoded as JPEG");
-          }
-          foxglove::CompressedImage image;
-          SetStamp(stamp_ns, *image.mutable_timestamp());
-          image.set_frame_id(kCameraFrame);
-          image.set_format("jpeg");
-          image.set_data(jpeg.data(), jpeg.size());
-          file.Write(kImageTopic, stamp_ns, image);
-        },
+  cv::Mat picture;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!spare_.empty()) {
+      picture = std::move(spare_.back());
+      spare_.pop_back();
+    }
+  }
+  view.copyTo(picture);
+  Push({[this, picture, stamp_ns = frame.stamp_ns](LogFile& file) { WriteImage(picture, stamp_ns, file); },
         true});
+}
+
+void RunLog::WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& file) {
+  std::vector<unsigned char> jpeg;
+  if (!cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, config_.jpeg_quality})) {
+    throw std::runtime_error("a picture cannot be encoded as JPEG");
+  }
+  foxglove::CompressedImage image;
+  SetStamp(stamp_ns, *image.mutable_timestamp());
+  image.set_frame_id(kCameraFrame);
+  image.set_format("jpeg");
+  image.set_data(jpeg.data(), jpeg.size());
+  file.Write(kImageTopic, stamp_ns, image);
+  const std::lock_guard lock(mutex_);
+  spare_.push_back(picture);
 }
 
 void RunLog::AddMetadata(const std::string& name, const std::map<std::string, std::string>& entries) {

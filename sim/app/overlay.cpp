@@ -17,15 +17,22 @@ cv::Point Overlay::At(double u_px, double v_px) const {
 }
 
 void Overlay::Outline(const model::Vec3& m, const cv::Scalar& colour, int thickness, bool dashed) {
-  constexpr std::size_t kPoints = 180;
+  constexpr int kPoints = 96;
+  constexpr int kDash = 2;  // segments drawn, then as many left out
   std::vector<cv::Point> points;
-  for (const auto& [u, v] : vision::OutlinePoints(in_, m, static_cast<int>(kPoints))) {
+  for (const auto& [u, v] : vision::OutlinePoints(in_, m, kPoints)) {
     points.push_back(At(u, v));
   }
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    if (!dashed || i % 6 < 3) {
-      cv::line(image_, points[i], points[(i + 1) % kPoints], colour, thickness, cv::LINE_AA, kSubPixelBits);
-    }
+  const auto draw = [&](const std::vector<cv::Point>& line, bool closed) {
+    cv::polylines(image_, line, closed, colour, thickness, cv::LINE_AA, kSubPixelBits);
+  };
+  if (!dashed) {
+    draw(points, true);
+    return;
+  }
+  points.push_back(points.front());
+  for (int i = 0; i < kPoints; i += 2 * kDash) {
+    draw({points.begin() + i, points.begin() + i + kDash + 1}, false);
   }
 }
 

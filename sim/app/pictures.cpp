@@ -89,7 +89,7 @@ std::string DrawBenchPicture(const RenderScene& scene, const Exposure& exposure,
       MakeBenchView(exposure, MakeBenchPinhole(kSuperSampling * kWidth, kSuperSampling * kHeight));
   RenderScene bright = scene;
   bright.light = 1.0;  // the eye may be dark, the reader is not
-  SceneRenderer renderer(bright, view.pinhole, {4, 2048, 16, 2.5F});
+  SceneRenderer renderer(bright, view.pinhole, {0, 2048, 16, 2.5F});
   cv::Mat rgba(view.pinhole.height_px, view.pinhole.width_px, CV_8UC4);
   renderer.Draw(exposure, view.X_BV, {rgba.data, rgba.total() * 4});
   cv::Mat bgr;

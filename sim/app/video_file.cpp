@@ -68,7 +68,7 @@ struct VideoFile::Impl {
       codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     }
     av_opt_set(codec->priv_data, "preset", "ultrafast", 0);
-    av_opt_set(codec->priv_data, "crf", "24", 0);
+    av_opt_set(codec->priv_data, "crf", "28", 0);
     Check(avcodec_open2(codec.get(), encoder, nullptr), "libx264");
   }
 

@@ -15,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <opencv2/core.hpp>
 #include <string>
 #include <thread>
 #include <vector>
@@ -92,6 +93,7 @@ class RunLog {
   };
 
   void Push(Job job);
+  void WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& file);
   void WriteAll();
   // Writes what is there; false when nothing was.
   bool WriteRound();
@@ -108,6 +110,7 @@ class RunLog {
   std::condition_variable changed_;
   std::deque<Job> jobs_;
   std::size_t images_waiting_ = 0;  // of jobs_
+  std::vector<cv::Mat> spare_;      // pictures whose memory is used again
   bool closed_ = false;
   std::uint64_t dropped_images_ = 0;
   std::exception_ptr failure_;  // of the writing thread; after it the log takes everything and keeps nothing
