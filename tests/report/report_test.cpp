@@ -1,4 +1,5 @@
-// From a log to a page: what is there is shown, what is not is left out, and nothing in a log breaks the page.
+// From a log to a page: what is there is shown, what is not is left out, and nothing in a log breaks the
+// page.
 #include "fovea/report/report.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +23,9 @@ class ReportTest : public testing::Test {
  protected:
   void SetUp() override {
     fs::create_directories(folder_ / "page");
-    Page("<title>FOVEA_TITLE</title>\n<!-- FOVEA:STYLE a.css -->\n<!-- FOVEA:DATA -->\n<!-- FOVEA:SCRIPT a.js -->\n");
+    Page(
+        "<title>FOVEA_TITLE</title>\n<!-- FOVEA:STYLE a.css -->\n<!-- FOVEA:DATA -->\n<!-- FOVEA:SCRIPT a.js "
+        "-->\n");
     std::ofstream(folder_ / "page" / "a.css") << "p {}\n";
     std::ofstream(folder_ / "page" / "a.js") << "say('</script>');\n";
   }
@@ -120,7 +123,8 @@ TEST_F(ReportTest, TellsTheRunOfALog) {
   EXPECT_FLOAT_EQ(ticks.columns[at + RunData::kPredictedPx][250], 50.0F);
   const Envelope::Rows measured = run.measured.rows();
   ASSERT_EQ(measured.t_s.size(), 10U);
-  EXPECT_FLOAT_EQ(measured.columns[RunData::kMeasuredPx][0], 25.0F) << "before the servo knows the target too";
+  EXPECT_FLOAT_EQ(measured.columns[RunData::kMeasuredPx][0], 25.0F)
+      << "before the servo knows the target too";
   EXPECT_TRUE(std::isnan(measured.columns[RunData::kMeasuredPx][4])) << "not found";
   EXPECT_FLOAT_EQ(measured.columns[RunData::kAgeMs][0], 40.0F);
 }

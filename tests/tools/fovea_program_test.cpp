@@ -86,7 +86,8 @@ TEST_F(FoveaProgramTest, SaysWhatIsNoLog) {
 }
 
 TEST_F(FoveaProgramTest, SaysWhereItCannotWrite) {
-  const test::ProgramResult result = Fovea({"report", MakeRun("swing").string(), "--out", "/nowhere/report.html"});
+  const test::ProgramResult result =
+      Fovea({"report", MakeRun("swing").string(), "--out", "/nowhere/report.html"});
   ExpectRefused(result, "/nowhere/report.html: cannot be written");
 }
 

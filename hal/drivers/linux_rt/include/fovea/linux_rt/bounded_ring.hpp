@@ -34,7 +34,8 @@ class BoundedRing {
   // From the reading thread: a mark after all that is there now, for Drain.
   [[nodiscard]] std::uint64_t End() const noexcept { return written_.load(std::memory_order_acquire); }
 
-  // From the reading thread: calls `take(value)` for every value before the mark, oldest first. Returns how many.
+  // From the reading thread: calls `take(value)` for every value before the mark, oldest first. Returns how
+  // many.
   template <typename Take>
   std::size_t Drain(std::uint64_t end, Take&& take) {
     const std::uint64_t begin = read_.load(std::memory_order_relaxed);
