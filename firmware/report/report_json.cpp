@@ -121,7 +121,7 @@ std::string ToJson(const RunData& run) {
   for (const auto& [name, entries] : run.metadata) {
     for (const auto& [key, value] : entries) {
       if (name != "configuration") {
-        json["info"][name == "build" ? key : name + " " + key] = value;
+        json["info"][name == "build" ? key : fmt::format("{} {}", name, key)] = value;
       }
     }
   }

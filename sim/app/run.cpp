@@ -72,6 +72,7 @@ class Run {
     UseOneThreadPerRenderer();
     // Making one takes a second, most of it for textures and shaders; they are made beside each other.
     std::vector<std::future<std::unique_ptr<SceneRenderer>>> made;
+    made.reserve(kRenderers);
     for (int i = 0; i < kRenderers; ++i) {
       made.push_back(std::async(std::launch::async, [this, i] {
         return std::make_unique<SceneRenderer>(scene_, pinhole_, RenderQuality{}, i);
