@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <exception>
-#include <future>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -70,16 +69,8 @@ class Run {
     }
     scene_ = MakeRenderScene(scenario_, sim_robot_);
     UseOneThreadPerRenderer();
-    // Making one takes a second, most of it for textures and shaders; they are made beside each other.
-    std::vector<std::future<std::unique_ptr<SceneRenderer>>> made;
-    made.reserve(kRenderers);
-    for (int i = 0; i < kRenderers; ++i) {
-      made.push_back(std::async(std::launch::async, [this, i] {
-        return std::make_unique<SceneRenderer>(scene_, pinhole_, RenderQuality{}, i);
-      }));
-    }
-    for (auto& renderer : made) {
-      renderers_.push_back(renderer.get());
+    for (int i = 0; i < kRenderers; ++i) {  // one after the other: drivers set themselves up with the first
+      renderers_.push_back(std::make_unique<SceneRenderer>(scene_, pinhole_, RenderQuality{}, i));
     }
     // After all that can be refused: what is refused leaves no folder.
     files_ = std::make_unique<RunFiles>(RunFilesConfig{options_.out, options_.report, kRenderers, scenario_,
