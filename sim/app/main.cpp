@@ -2,11 +2,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 
 #include "fovea/build_info.hpp"
-#include "fovea/config/input_error.hpp"
+#include "fovea/config/program.hpp"
 #include "sim/app/run.hpp"
 #include "sim/app/scenario.hpp"
 
@@ -14,9 +12,8 @@ namespace {
 
 using namespace fovea;
 
-constexpr int kDone = 0;
-constexpr int kGoalMissed = 1;
-constexpr int kBadInput = 2;
+using config::kDone;
+using config::kGoalMissed;
 
 struct RunArguments {
   std::string scenario;
@@ -104,20 +101,7 @@ int main(int argc, char** argv) {
   CLI::App* keys = app.add_subcommand("keys", "every key of a scenario: default, meaning, range, unit");
   keys->add_flag("--markdown", markdown, "as the table in sim/scenarios/KEYS.md");
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? kDone : kBadInput;
-  }
-  try {
-    const int code = run->parsed() ? Run(arguments) : list->parsed() ? List() : Keys(markdown);
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      throw std::runtime_error("standard output cannot be written");
-    }
-    return code;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "fovea-sim: %s\n", error.what());
-    return kBadInput;
-  }
+  return config::RunProgram("fovea-sim", app, argc, argv, [&] {
+    return run->parsed() ? Run(arguments) : list->parsed() ? List() : Keys(markdown);
+  });
 }

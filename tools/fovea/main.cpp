@@ -2,21 +2,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 
 #include "fovea/build_info.hpp"
+#include "fovea/config/program.hpp"
 #include "fovea/config/share_folder.hpp"
 #include "fovea/report/report.hpp"
 
 namespace {
 
 using namespace fovea;
-
-constexpr int kDone = 0;
-constexpr int kBadInput = 2;
 
 struct ReportArguments {
   std::vector<std::string> logs;
@@ -52,7 +48,7 @@ int Report(const ReportArguments& arguments) {
     throw std::runtime_error(out.string() + ": cannot be written");
   }
   fmt::print("{}\n", out.string());
-  return kDone;
+  return config::kDone;
 }
 
 }  // namespace
@@ -76,16 +72,5 @@ int main(int argc, char** argv) {
   report->add_option("--out", arguments.out,
                      "the file to write; report.html beside the log, or comparison.html for two");
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? kDone : kBadInput;
-  }
-  try {
-    return Report(arguments);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "fovea: {}\n", error.what());
-    return kBadInput;
-  }
+  return config::RunProgram("fovea", app, argc, argv, [&] { return Report(arguments); });
 }
