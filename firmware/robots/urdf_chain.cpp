@@ -74,6 +74,16 @@ Mat3 AlignZ(const Vec3& axis) {
 class ChainReader {
  public:
   explicit ChainReader(Robot& robot) : robot_(robot), file_(robot.urdf.string()) {}
+  // Links own their children; those of a ring would keep each other alive.
+  ~ChainReader() {
+    if (urdf_) {
+      for (const auto& [name, link] : urdf_->links_) {
+        link->child_links.clear();
+      }
+    }
+  }
+  ChainReader(const ChainReader&) = delete;
+  ChainReader& operator=(const ChainReader&) = delete;
 
   void Read() {
     Parse();
