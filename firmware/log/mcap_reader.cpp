@@ -43,6 +43,10 @@ class Reader {
     } catch (const DamageError& damage) {
       return {false, fmt::format("{}: damaged at byte {}: {}", path_.string(), at, damage.what())};
     }
+    if (num_messages_ != num_promised_) {
+      return {false,
+              fmt::format("{}: holds {} of its {} messages", path_.string(), num_messages_, num_promised_)};
+    }
     return {true, ""};
   }
 
@@ -93,7 +97,10 @@ class Reader {
       case Op::kChunk: TakeChunk(content); return;
       case Op::kAttachment: TakeAttachment(content); return;
       case Op::kMetadata: TakeMetadata(content); return;
-      case Op::kDataEnd: ended_ = true; return;
+      case Op::kStatistics:
+        num_promised_ = Parsed(content, [](Cursor& c) { return c.Number<std::uint64_t>(); });
+        return;
+      case Op::kFooter: ended_ = true; return;
       default: return;  // indexes, and what later versions may add
     }
   }
@@ -130,6 +137,7 @@ class Reader {
       m.data = c.Rest();
       return m;
     });
+    ++num_messages_;
     if (visitor_.on_message) {
       visitor_.on_message(message);
     }
@@ -210,6 +218,8 @@ class Reader {
   std::ifstream file_;
   std::uint64_t size_ = 0;
   bool ended_ = false;
+  std::uint64_t num_messages_ = 0;
+  std::uint64_t num_promised_ = 0;  // as the summary at the file's end has it
   std::string record_;
   std::string chunk_;
   std::map<std::uint16_t, std::string> schemas_;

@@ -31,7 +31,7 @@ struct McapVisitor {
 };
 
 struct McapEnd {
-  bool complete = false;  // the file was finished by its writer
+  bool complete = false;  // the file was finished by its writer, and all its messages were there
   std::string why;        // when not complete: what is wrong, and where
 };
 
