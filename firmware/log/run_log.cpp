@@ -59,29 +59,19 @@ void RunLog::AddTruth(const TruthSample& sample) { PushOrWait(truths_, sample); 
 void RunLog::Push(Job job) {
   {
     std::unique_lock lock(mutex_);
-    const auto has_room = [&] {
-      return failure_ != nullptr || (job.is_image ? images_waiting_ < kMostImages : jobs_.size() < kMostJobs);
-    };
-    if (!config_.may_drop || !job.is_image) {
-      changed_.wait(lock, has_room);
-    }
+    changed_.wait(lock, [this] { return jobs_.size() < kMostJobs || failure_ != nullptr; });
     if (failure_ != nullptr) {
       return;  // told by Finish
     }
-    if (!has_room()) {
-      ++dropped_images_;
-      return;
-    }
-    images_waiting_ += job.is_image ? 1U : 0U;
     jobs_.push_back(std::move(job));
   }
   changed_.notify_all();
 }
 
 void RunLog::Add(const char* topic, std::int64_t time_ns, const google::protobuf::Message& message) {
-  Push({[topic, time_ns, type = message.GetDescriptor(), bytes = message.SerializeAsString()](LogFile& file) {
+  Push([topic, time_ns, type = message.GetDescriptor(), bytes = message.SerializeAsString()](LogFile& file) {
     file.Write(topic, *type, time_ns, bytes);
-  }});
+  });
 }
 
 void RunLog::AddImage(const hal::Frame& frame) {
@@ -90,15 +80,23 @@ void RunLog::AddImage(const hal::Frame& frame) {
                      static_cast<std::size_t>(frame.stride_bytes));
   cv::Mat picture;
   {
-    const std::lock_guard lock(mutex_);
+    std::unique_lock lock(mutex_);
+    const auto has_room = [this] { return images_waiting_ < kMostImages || failure_ != nullptr; };
+    if (!config_.may_drop) {
+      changed_.wait(lock, has_room);
+    }
+    if (!has_room() || failure_ != nullptr) {
+      ++dropped_images_;
+      return;
+    }
+    ++images_waiting_;
     if (!spare_.empty()) {
       picture = std::move(spare_.back());
       spare_.pop_back();
     }
   }
   view.copyTo(picture);
-  Push({[this, picture, stamp_ns = frame.stamp_ns](LogFile& file) { WriteImage(picture, stamp_ns, file); },
-        true});
+  Push([this, picture, stamp_ns = frame.stamp_ns](LogFile& file) { WriteImage(picture, stamp_ns, file); });
 }
 
 void RunLog::WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& file) {
@@ -112,19 +110,23 @@ void RunLog::WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& 
   image.set_format("jpeg");
   image.set_data(jpeg.data(), jpeg.size());
   file.Write(kImageTopic, stamp_ns, image);
-  const std::lock_guard lock(mutex_);
-  spare_.push_back(picture);
+  {
+    const std::lock_guard lock(mutex_);
+    spare_.push_back(picture);
+    --images_waiting_;
+  }
+  changed_.notify_all();
 }
 
 void RunLog::AddMetadata(const std::string& name, const std::map<std::string, std::string>& entries) {
-  Push({[name, entries](LogFile& file) { file.writer().WriteMetadata(name, entries); }});
+  Push([name, entries](LogFile& file) { file.writer().WriteMetadata(name, entries); });
 }
 
 void RunLog::AddAttachment(const std::string& name, const std::string& media_type,
                            const std::string& content) {
-  Push({[name, media_type, content](LogFile& file) {
+  Push([name, media_type, content](LogFile& file) {
     file.writer().WriteAttachment(name, media_type, 0, content);
-  }});
+  });
 }
 
 // What a thread added first is written first: the rings are marked before the messages are taken, so that
@@ -136,11 +138,10 @@ bool RunLog::WriteRound() {
   {
     const std::lock_guard lock(mutex_);
     jobs.swap(jobs_);
-    images_waiting_ = 0;
   }
   changed_.notify_all();
   for (const Job& job : jobs) {
-    job.write(*file_);
+    job(*file_);
   }
   std::size_t written = jobs.size();
   written += ticks_.Drain(ticks_end, [this](const hal::TickRecord& r) { tick_writer_->Write(r, *file_); });

@@ -87,10 +87,7 @@ class RunLog {
   [[nodiscard]] std::uint64_t dropped() const;
 
  private:
-  struct Job {
-    std::function<void(LogFile&)> write;
-    bool is_image = false;
-  };
+  using Job = std::function<void(LogFile&)>;
 
   void Push(Job job);
   void WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& file);
@@ -109,7 +106,7 @@ class RunLog {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Job> jobs_;
-  std::size_t images_waiting_ = 0;  // of jobs_
+  std::size_t images_waiting_ = 0;  // to be encoded
   std::vector<cv::Mat> spare_;      // pictures whose memory is used again
   bool closed_ = false;
   std::uint64_t dropped_images_ = 0;
