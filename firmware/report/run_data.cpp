@@ -23,8 +23,6 @@ constexpr std::size_t kMostBuckets = 1500;
 constexpr std::size_t kMostWaiting = 20'000;  // ticks that wait for their truth
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-double Seconds(std::int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9; }
-
 template <typename Message>
 Message Parse(const log::McapMessage& message) {
   Message parsed;
@@ -44,7 +42,7 @@ class Reader {
       TakeTick(Parse<log::Tick>(message));
     } else if (topic == log::kTruthTopic) {
       truths_.push_back(Parse<log::Truth>(message));
-      scene_.AddTruth(truths_.back());
+      scene_.AddTruth(truths_.back(), Seconds(truths_.back().stamp_ns()));
       Join(false);
     } else if (topic == log::kFeatureTopic) {
       TakeFeature(Parse<log::Feature>(message), message.time_ns);
@@ -63,7 +61,7 @@ class Reader {
     } else if (topic == log::kSceneTopic) {
       scene_.AddScene(Parse<foxglove::SceneUpdate>(message));
     } else if (topic == log::kTransformTopic) {
-      scene_.AddTransforms(Parse<foxglove::FrameTransforms>(message), message.time_ns);
+      scene_.AddTransforms(Parse<foxglove::FrameTransforms>(message), Seconds(message.time_ns));
     }
   }
 
@@ -81,6 +79,11 @@ class Reader {
   }
 
  private:
+  // Since the run began.
+  [[nodiscard]] double Seconds(std::int64_t time_ns) const {
+    return static_cast<double>(time_ns - setup_.start_ns()) * 1e-9;
+  }
+
   void TakeSetup(const log::Setup& setup) {
     run_.name = setup.name();
     for (const log::Joint& joint : setup.joints()) {

@@ -80,14 +80,14 @@ void SceneReader::AddScene(const foxglove::SceneUpdate& scene) {
   }
 }
 
-void SceneReader::AddTransforms(const foxglove::FrameTransforms& transforms, std::int64_t time_ns) {
+void SceneReader::AddTransforms(const foxglove::FrameTransforms& transforms, double t_s) {
   if (frames_seen_++ % stride_ != 0) {
     return;
   }
   SceneMotion& motion = run_.motion;
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const std::size_t begin = motion.poses.size();
-  motion.t_s.push_back(static_cast<float>(1e-9 * static_cast<double>(time_ns)));
+  motion.t_s.push_back(static_cast<float>(t_s));
   motion.poses.resize(begin + run_.links.size() * kPoseSize, kNone);
   motion.camera_path.resize(motion.t_s.size() * 3, kNone);
   motion.target_path.resize(motion.t_s.size() * 3, kNone);
@@ -123,11 +123,11 @@ void SceneReader::Thin() {
   stride_ *= 2;
 }
 
-void SceneReader::AddTruth(const log::Truth& truth) {
+void SceneReader::AddTruth(const log::Truth& truth, double t_s) {
   if (truth.p_bo_size() != 3 || truths_seen_++ % truth_stride_ != 0) {
     return;
   }
-  truth_t_s_.push_back(static_cast<float>(1e-9 * static_cast<double>(truth.stamp_ns())));
+  truth_t_s_.push_back(static_cast<float>(t_s));
   for (const double value : truth.p_bo()) {
     truth_p_.push_back(static_cast<float>(value));
   }

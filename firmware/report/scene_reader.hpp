@@ -17,8 +17,8 @@ class SceneReader {
   explicit SceneReader(RunData& run) : run_(run) {}
 
   void AddScene(const foxglove::SceneUpdate& scene);
-  void AddTransforms(const foxglove::FrameTransforms& transforms, std::int64_t time_ns);
-  void AddTruth(const log::Truth& truth);
+  void AddTransforms(const foxglove::FrameTransforms& transforms, double t_s);
+  void AddTruth(const log::Truth& truth, double t_s);
   // When all is read: the true target's path takes the place of the predicted one.
   void Finish();
 

@@ -39,11 +39,12 @@ class ReportTest : public testing::Test {
     config.arm.num_joints = 2;
     return config;
   }
-  static log::Setup Setup(const std::string& name) {
+  static log::Setup Setup(const std::string& name, std::int64_t start_ns = 0) {
     log::Setup setup;
     setup.set_name(name);
     setup.add_joints()->set_name("shoulder");
     setup.add_joints()->set_name("elbow");
+    setup.set_start_ns(start_ns);
     setup.set_lambda(2.0);
     setup.set_target_radius(0.04);
     setup.set_f_px(500.0);
@@ -55,10 +56,10 @@ class ReportTest : public testing::Test {
     }
     return setup;
   }
-  static hal::TickRecord Record(int tick) {
+  static hal::TickRecord Record(int tick, std::int64_t start_ns = 0) {
     hal::TickRecord r;
     r.tick = static_cast<std::uint64_t>(tick);
-    r.stamp_ns = tick * hal::kTickPeriodNs;
+    r.stamp_ns = start_ns + tick * hal::kTickPeriodNs;
     r.arm.num_joints = r.command.num_joints = 2;
     r.arm.q[1] = 0.001 * tick;
     r.mode = tick < 100 ? hal::Mode::kBoot : hal::Mode::kTrack;
@@ -81,13 +82,13 @@ class ReportTest : public testing::Test {
     return r;
   }
   // With truth when asked for.
-  void WriteLog(const std::string& name, bool truth, int ticks = 500) const {
+  void WriteLog(const std::string& name, bool truth, int ticks = 500, std::int64_t start_ns = 0) const {
     log::RunLog log(Config(path_));
-    log.Add(log::kSetupTopic, 0, Setup(name));
+    log.Add(log::kSetupTopic, start_ns, Setup(name, start_ns));
     for (int i = 0; i < ticks; ++i) {
-      log.AddTick(Record(i));
+      log.AddTick(Record(i, start_ns));
       if (truth) {
-        log.AddTruth({i * hal::kTickPeriodNs, {}, {}, 100.0 - 0.1 * i, 3.0});
+        log.AddTruth({start_ns + i * hal::kTickPeriodNs, {}, {}, 100.0 - 0.1 * i, 3.0});
       }
     }
     log.Finish();
@@ -127,6 +128,21 @@ TEST_F(ReportTest, TellsTheRunOfALog) {
       << "before the servo knows the target too";
   EXPECT_TRUE(std::isnan(measured.columns[RunData::kMeasuredPx][4])) << "not found";
   EXPECT_FLOAT_EQ(measured.columns[RunData::kAgeMs][0], 40.0F);
+}
+
+// A robot's clock may have run for a century when the run begins.
+TEST_F(ReportTest, CountsTimeFromTheRunsStart) {
+  WriteLog("late", true, 500, std::int64_t{1} << 62);
+  const RunData run = ReadRun(folder_);
+  EXPECT_DOUBLE_EQ(run.duration_s, 0.499);
+  ASSERT_EQ(run.modes.size(), 2U);
+  EXPECT_DOUBLE_EQ(run.modes[1].t_s, 0.1);
+  const Envelope::Rows ticks = run.ticks->rows();
+  ASSERT_EQ(ticks.t_s.size(), 500U);
+  EXPECT_FLOAT_EQ(static_cast<float>(ticks.t_s[250]), 0.25F);
+  const Envelope::Rows measured = run.measured.rows();
+  ASSERT_EQ(measured.t_s.size(), 10U);
+  EXPECT_FLOAT_EQ(static_cast<float>(measured.t_s[0]), 0.0F);
 }
 
 TEST_F(ReportTest, LeavesOutWhatTheLogDoesNotHold) {
