@@ -32,6 +32,17 @@ const context = await chromium.launchPersistentContext(home, {
   ],
 });
 
+// What `act` does is to be seen in `place`.
+async function changes(place, what, act) {
+  await place.scrollIntoViewIfNeeded();
+  const before = await place.evaluate((canvas) => canvas.toDataURL());
+  await act();
+  for (const end = Date.now() + 5000; Date.now() < end; await new Promise((go) => setTimeout(go, 100))) {
+    if ((await place.evaluate((canvas) => canvas.toDataURL())) !== before) return;
+  }
+  assert.fail(what);
+}
+
 const parts = ["verdict", "eye", "error", "path", "joints", "timeline", "ticks", "config"];
 try {
   for (const [width, height] of [
@@ -70,6 +81,15 @@ try {
       const videos = [...document.querySelectorAll("video")];
       return {
         plots: Object.fromEntries(["error", "path", "joints"].map((id) => [id, plots(id)])),
+        marks: Object.fromEntries(
+          ["ticks", "timeline"].map((id) => [
+            id,
+            [...document.querySelectorAll(`#${id} svg :is(rect, path, line, circle)`)].filter((mark) => {
+              const box = mark.getBoundingClientRect();
+              return box.width + box.height > 1;
+            }).length,
+          ]),
+        ),
         words: document.querySelector("#verdict").innerText.length,
         images: [...document.querySelectorAll("#eye img, #eye image")].length,
         videos: videos.map((v) => v.error === null && v.duration),
@@ -84,11 +104,23 @@ try {
     assert.deepEqual(asked, [], "nothing is fetched");
     assert.ok(seen.words > 100);
     assert.ok(seen.plots.error >= 1 && seen.plots.path >= 1 && seen.plots.joints >= 3, "plots are drawn");
+    assert.ok(seen.marks.ticks >= 10 && seen.marks.timeline >= 3, "histogram and time axis are drawn");
     assert.ok(seen.images >= 2, "first and last frame");
     assert.ok(seen.videos.length >= 1 && seen.videos.every((duration) => duration > 1), "the film can be played");
     assert.equal(seen.sideways, 0, "nothing sticks out to the side");
     assert.deepEqual(seen.absent, [], "nothing is missing from a whole run");
     if (width === 1280) {
+      await changes(page.locator("#error canvas").first(), "a logarithmic scale changes the plot", () =>
+        page.locator("#error").getByText("Logarithmic").click(),
+      );
+      const scene = page.locator("#path canvas");
+      await changes(scene, "dragging turns the bench", async () => {
+        const box = await scene.boundingBox();
+        await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+        await page.mouse.down();
+        await page.mouse.move(box.x + 0.7 * box.width, box.y + 0.55 * box.height, { steps: 5 });
+        await page.mouse.up();
+      });
       await page.pdf({ path: path.join(folder, `${name}.pdf`), format: "A4", printBackground: true });
     }
     await page.close();

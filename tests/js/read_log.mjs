@@ -175,7 +175,10 @@ if (summary.final_error_px_rms !== null) {
 const frames = new Set(of("/tf").flatMap(({ data }) => data.transforms.map((t) => t.child_frame_id)));
 for (const { data } of of("/scene")) {
   for (const entity of data.entities) {
-    assert.ok(frames.has(entity.frame_id) || entity.frame_id === "base", `${entity.id} stands in a frame that moves`);
+    assert.ok(
+      frames.has(entity.frame_id) || entity.frame_id === "fovea/base",
+      `${entity.id} stands in a frame that moves`,
+    );
   }
 }
 for (const { data } of of("/tf")) {

@@ -15,9 +15,9 @@ inline constexpr const char* kCalibrationTopic = "/camera/calibration";  // foxg
 inline constexpr const char* kTransformTopic = "/tf";                    // foxglove.FrameTransforms
 inline constexpr const char* kSceneTopic = "/scene";                     // foxglove.SceneUpdate
 
-// Frames of /tf that are not links of the robot.
-inline constexpr const char* kBaseFrame = "base";      // B
-inline constexpr const char* kCameraFrame = "camera";  // C
-inline constexpr const char* kTargetFrame = "target";  // O, as predicted by the servo
+// Frames of /tf that are not links of the robot; no link has such a name.
+inline constexpr const char* kBaseFrame = "fovea/base";      // B
+inline constexpr const char* kCameraFrame = "fovea/camera";  // C
+inline constexpr const char* kTargetFrame = "fovea/target";  // O, as predicted by the servo
 
 }  // namespace fovea::log
