@@ -7,12 +7,14 @@
 #include <optional>
 #include <utility>
 
+#include "fovea/features/sphere.hpp"
 #include "sim/app/overlay.hpp"
 
 namespace fovea::sim {
 namespace {
 
-constexpr int kLegendPx = 28;  // height of the strip below the picture
+constexpr int kLegendPx = 28;    // height of the strip below the picture
+constexpr int kBaselinePx = 19;  // of the text in it
 
 // H.264 with halved colour planes wants even sizes.
 int Even(int size) { return size + size % 2; }
@@ -25,11 +27,17 @@ cv::Size PageSize(const vision::Intrinsics& in) {
 
 EyeFilm::EyeFilm(const EyeFilmConfig& config)
     : config_(config),
+      goal_(
+          Overlay::CurveOf(config.intrinsics, features::ConeFromSphere(config.p_CO_C_star / config.radius))),
+      legend_(PageSize(config.intrinsics).height - config.intrinsics.height_px,
+              PageSize(config.intrinsics).width, CV_8UC3, kLegendColour),
       file_(config.path, PageSize(config.intrinsics).width, PageSize(config.intrinsics).height),
       queue_(config.may_drop, [this](Item& item) {
         Draw(item);
         file_.Add(item.page, item.stamp_ns);
-      }) {}
+      }) {
+  DrawText(legend_, "dashed: goal", config.intrinsics.width_px / 3, kBaselinePx, 0.45, kGoalColour);
+}
 
 void EyeFilm::Add(const hal::Frame& frame, const vision::BallDetection& detection) {
   std::optional<Item> place = queue_.Take();
@@ -41,7 +49,7 @@ void EyeFilm::Add(const hal::Frame& frame, const vision::BallDetection& detectio
     item.page.create(PageSize(config_.intrinsics), CV_8UC3);
     item.page.setTo(kLegendColour);
   }
-  item.page.rowRange(frame.height_px, item.page.rows).setTo(kLegendColour);
+  legend_.copyTo(item.page.rowRange(frame.height_px, item.page.rows));
   const cv::Mat pixels(frame.height_px, frame.width_px, CV_8UC3,
                        const_cast<std::uint8_t*>(frame.pixels.data()),
                        static_cast<std::size_t>(frame.stride_bytes));
@@ -55,12 +63,11 @@ void EyeFilm::Draw(Item& item) const {
   const vision::Intrinsics& in = config_.intrinsics;
   cv::Mat picture = item.page(cv::Rect(0, 0, in.width_px, in.height_px));
   Overlay overlay(picture, in, 1);
-  overlay.Goal(config_.p_CO_C_star, config_.radius);
+  overlay.Goal(goal_, config_.p_CO_C_star);
   overlay.Detection(item.detection);
-  const int y = in.height_px + 19;
+  const int y = in.height_px + kBaselinePx;
   DrawText(item.page, fmt::format("t = {:.3f} s", static_cast<double>(item.stamp_ns) * 1e-9), 10, y, 0.45,
            kTruthColour);
-  DrawText(item.page, "dashed: goal", in.width_px / 3, y, 0.45, kGoalColour);
   std::string words = "no detection";
   if (item.detection.found) {
     const double error_px = std::hypot(in.U(item.detection.s) - in.U(config_.p_CO_C_star),

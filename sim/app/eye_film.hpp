@@ -7,6 +7,7 @@
 #include "fovea/hal/camera.hpp"
 #include "fovea/vision/ball_detector.hpp"
 #include "sim/app/film_queue.hpp"
+#include "sim/app/overlay.hpp"
 #include "sim/app/video_file.hpp"
 
 namespace fovea::sim {
@@ -39,6 +40,8 @@ class EyeFilm {
   void Draw(Item& item) const;
 
   const EyeFilmConfig config_;
+  const Overlay::Curve goal_;
+  cv::Mat legend_;  // what it says in every frame
   VideoFile file_;
   FilmQueue<Item> queue_;  // last: its thread uses the others
 };

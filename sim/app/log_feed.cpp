@@ -19,40 +19,41 @@
 namespace fovea::sim {
 namespace {
 
-log::RunLogConfig MakeRunLogConfig(const LogFeedConfig& config) {
+log::RunLogConfig MakeRunLogConfig(const RunDescription& about, const std::filesystem::path& path,
+                                   bool may_drop) {
   log::RunLogConfig out;
-  out.path = config.path;
+  out.path = path;
   out.library = fmt::format("fovea {}", kVersion);
-  out.arm = config.servo.arm;
-  out.frames = MakeLinkFrames(config.scene.robot, config.servo.arm, config.scene.X_EC);
-  out.may_drop = config.may_drop;
+  out.arm = about.servo.arm;
+  out.frames = MakeLinkFrames(about.scene.robot, about.servo.arm, about.scene.X_EC);
+  out.may_drop = may_drop;
   return out;
 }
 
-log::Setup MakeSetup(const LogFeedConfig& config) {
+log::Setup MakeSetup(const RunDescription& about) {
   log::Setup setup;
-  setup.set_name(config.scenario.name);
-  const model::ArmModel& arm = config.servo.arm;
+  setup.set_name(about.scenario.name);
+  const model::ArmModel& arm = about.servo.arm;
   for (int i = 0; i < arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     log::Joint& joint = *setup.add_joints();
-    joint.set_name(config.robot.joint_names[k]);
+    joint.set_name(about.robot.joint_names[k]);
     joint.set_prismatic(arm.joints[k].type == model::JointType::kPrismatic);
     joint.set_q_min(arm.joints[k].q_min);
     joint.set_q_max(arm.joints[k].q_max);
     joint.set_dq_max(arm.joints[k].dq_max);
     joint.set_tau_max(arm.joints[k].tau_max);
   }
-  setup.set_lambda(config.servo.law.lambda);
-  setup.set_target_radius(config.scene.target_radius);
-  setup.set_target_moves(config.scenario.target.motion != "still");
-  const model::Vec3& goal = config.servo.feature.p_CO_C_star;
+  setup.set_lambda(about.servo.law.lambda);
+  setup.set_target_radius(about.scene.target_radius);
+  setup.set_target_moves(about.scenario.target.motion != "still");
+  const model::Vec3& goal = about.servo.feature.p_CO_C_star;
   setup.mutable_p_co_c_star()->Add(goal.data(), goal.data() + 3);
-  setup.set_workspace_radius(config.servo.guard.workspace_radius);
-  setup.set_duration_s(config.scenario.run.duration_s);
-  setup.set_f_px(config.pinhole.f_px);
-  setup.set_c_u_px(config.pinhole.c_u_px);
-  setup.set_c_v_px(config.pinhole.c_v_px);
+  setup.set_workspace_radius(about.servo.guard.workspace_radius);
+  setup.set_duration_s(about.scenario.run.duration_s);
+  setup.set_f_px(about.pinhole.f_px);
+  setup.set_c_u_px(about.pinhole.c_u_px);
+  setup.set_c_v_px(about.pinhole.c_v_px);
   for (int i = 0; i < hal::kNumLimits; ++i) {
     setup.add_limits(hal::Name(static_cast<hal::Limit>(i)));
   }
@@ -71,21 +72,25 @@ std::map<std::string, std::string> Configuration(Scenario scenario) {
 
 }  // namespace
 
-LogFeed::LogFeed(const LogFeedConfig& config) : config_(config), log_(MakeRunLogConfig(config)) {
-  log_.AddMetadata("configuration", Configuration(config.scenario));
+LogFeed::LogFeed(const RunDescription& about, const std::filesystem::path& path, bool may_drop)
+    : about_(about), path_(path), log_(MakeRunLogConfig(about, path, may_drop)) {
+  log::AddOutline(about.intrinsics,
+                  features::ConeFromSphere(about.servo.feature.p_CO_C_star / about.scene.target_radius),
+                  log::kGoalRole, goal_);
+  log_.AddMetadata("configuration", Configuration(about.scenario));
   log_.AddMetadata("build", {{"version", kVersion},
                              {"git", kGitRevision},
                              {"servo library", kServoLibraryHash},
                              {"compiler", kCompiler},
                              {"flags", kFlags}});
-  log_.AddMetadata("robot", {{"name", config.robot.name}, {"model", log::HashOfModel(config.servo.arm)}});
-  log_.Add(log::kSetupTopic, 0, MakeSetup(config));
-  log_.Add(log::kCalibrationTopic, 0, log::CalibrationMessage(0, config.intrinsics));
-  log_.Add(log::kSceneTopic, 0, MakeSceneMessage(config.scene));
+  log_.AddMetadata("robot", {{"name", about.robot.name}, {"model", log::HashOfModel(about.servo.arm)}});
+  log_.Add(log::kSetupTopic, 0, MakeSetup(about));
+  log_.Add(log::kCalibrationTopic, 0, log::CalibrationMessage(0, about.intrinsics));
+  log_.Add(log::kSceneTopic, 0, MakeSceneMessage(about.scene));
 }
 
 void LogFeed::AddTruth(const Truth& truth) {
-  const TargetError error = ErrorOf(truth, config_.pinhole, config_.servo.feature.p_CO_C_star);
+  const TargetError error = ErrorOf(truth, about_.pinhole, about_.servo.feature.p_CO_C_star);
   log::TruthSample sample;
   sample.stamp_ns = truth.stamp_ns;
   Eigen::Map<Eigen::Vector3d>(sample.p_BO.data()) = truth.p_BO;
@@ -97,15 +102,13 @@ void LogFeed::AddTruth(const Truth& truth) {
 
 void LogFeed::AddFrame(const hal::Frame& frame, const vision::BallDetection& detection,
                        const Eigen::Vector3d& p_CO_C) {
-  foxglove::ImageAnnotations annotations;
-  const double radius = config_.scene.target_radius;
-  log::AddOutline(config_.intrinsics, features::ConeFromSphere(config_.servo.feature.p_CO_C_star / radius),
-                  log::kGoalRole, annotations);
+  foxglove::ImageAnnotations annotations = goal_;
+  const double radius = about_.scene.target_radius;
   if (p_CO_C.z() > 1.1 * radius) {
-    log::AddOutline(config_.intrinsics, features::ConeFromSphere(p_CO_C / radius), log::kTruthRole,
+    log::AddOutline(about_.intrinsics, features::ConeFromSphere(p_CO_C / radius), log::kTruthRole,
                     annotations);
   }
-  log::AddDetection(config_.intrinsics, detection, annotations);
+  log::AddDetection(about_.intrinsics, detection, annotations);
   log_.Add(log::kAnnotationTopic, frame.stamp_ns, annotations);
   log_.AddImage(frame);
 }
@@ -117,7 +120,7 @@ void LogFeed::Finish(const linux_rt::DurationHistogram& ticks, const std::string
     times.add_upper_ns(static_cast<std::uint64_t>(upper_ns));
     times.add_counts(count);
   });
-  log_.Add(log::kTickTimesTopic, static_cast<std::int64_t>(config_.scenario.run.duration_s * 1e9), times);
+  log_.Add(log::kTickTimesTopic, static_cast<std::int64_t>(about_.scenario.run.duration_s * 1e9), times);
   log_.AddAttachment("summary.json", "application/json", summary_json);
   if (film) {
     std::ifstream stream(*film, std::ios::binary);

@@ -8,30 +8,18 @@
 
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "fovea/log/run_log.hpp"
-#include "fovea/servo/servo_config.hpp"
 #include "fovea/vision/ball_detector.hpp"
-#include "sim/app/scenario.hpp"
-#include "sim/render/pinhole.hpp"
-#include "sim/render/scene_renderer.hpp"
+#include "foxglove/image.pb.h"
+#include "sim/app/run_description.hpp"
 #include "sim/world/world.hpp"
 
 namespace fovea::sim {
 
-struct LogFeedConfig {
-  std::filesystem::path path;
-  Scenario scenario;
-  robots::Robot robot;
-  servo::ServoConfig servo;
-  RenderScene scene;
-  Pinhole pinhole;
-  vision::Intrinsics intrinsics;
-  bool may_drop = false;  // at real pace
-};
-
 class LogFeed {
  public:
-  // Creates the file, with all that is known before the run. std::runtime_error when it cannot.
-  explicit LogFeed(const LogFeedConfig& config);
+  // Creates the file, with all that is known before the run. `about` must outlive it; `may_drop`: at real
+  // pace. std::runtime_error when it cannot.
+  LogFeed(const RunDescription& about, const std::filesystem::path& path, bool may_drop);
 
   // From the thread that advances the world.
   void AddTruth(const Truth& truth);
@@ -45,10 +33,12 @@ class LogFeed {
   void Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json,
               const std::optional<std::filesystem::path>& film);
   [[nodiscard]] std::uint64_t dropped() const { return log_.dropped(); }
-  [[nodiscard]] const std::filesystem::path& path() const { return config_.path; }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  const LogFeedConfig config_;
+  const RunDescription& about_;
+  const std::filesystem::path path_;
+  foxglove::ImageAnnotations goal_;  // drawn on every picture
   log::RunLog log_;
 };
 

@@ -4,10 +4,15 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "fovea/features/sphere.hpp"
 #include "fovea/vision/outline_fit.hpp"
 
 namespace fovea::sim {
+namespace {
+
+constexpr int kCurvePoints = 96;
+constexpr int kDash = 2;  // segments drawn, then as many left out
+
+}  // namespace
 
 // Pixel centres stay pixel centres.
 cv::Point Overlay::At(double u_px, double v_px) const {
@@ -16,11 +21,13 @@ cv::Point Overlay::At(double u_px, double v_px) const {
           static_cast<int>(std::lround((scale_ * (v_px + 0.5) - 0.5) * one))};
 }
 
-void Overlay::Outline(const model::Vec3& m, const cv::Scalar& colour, int thickness, bool dashed) {
-  constexpr int kPoints = 96;
-  constexpr int kDash = 2;  // segments drawn, then as many left out
+Overlay::Curve Overlay::CurveOf(const vision::Intrinsics& intrinsics, const model::Vec3& m) {
+  return vision::OutlinePoints(intrinsics, m, kCurvePoints);
+}
+
+void Overlay::Outline(const Curve& curve, const cv::Scalar& colour, int thickness, bool dashed) {
   std::vector<cv::Point> points;
-  for (const auto& [u, v] : vision::OutlinePoints(in_, m, kPoints)) {
+  for (const auto& [u, v] : curve) {
     points.push_back(At(u, v));
   }
   const auto draw = [&](const std::vector<cv::Point>& line, bool closed) {
@@ -31,7 +38,7 @@ void Overlay::Outline(const model::Vec3& m, const cv::Scalar& colour, int thickn
     return;
   }
   points.push_back(points.front());
-  for (int i = 0; i < kPoints; i += 2 * kDash) {
+  for (int i = 0; i < kCurvePoints; i += 2 * kDash) {
     draw({points.begin() + i, points.begin() + i + kDash + 1}, false);
   }
 }
@@ -43,14 +50,14 @@ void Overlay::Cross(const model::Vec3& p, double arm_px, const cv::Scalar& colou
   cv::line(image_, At(u, v - arm_px), At(u, v + arm_px), colour, 1, cv::LINE_AA, kSubPixelBits);
 }
 
-void Overlay::Goal(const Eigen::Vector3d& p_CO_C_star, double radius) {
-  Outline(features::ConeFromSphere(p_CO_C_star / radius), kGoalColour, 2, true);
+void Overlay::Goal(const Curve& outline, const Eigen::Vector3d& p_CO_C_star) {
+  Outline(outline, kGoalColour, 2, true);
   Cross(p_CO_C_star, 9.0, kGoalColour);
 }
 
 void Overlay::Detection(const vision::BallDetection& detection) {
   if (detection.found) {
-    Outline(detection.outline.m, kDetectionColour, 2, false);
+    Outline(CurveOf(in_, detection.outline.m), kDetectionColour, 2, false);
     Cross(detection.s, 5.0, kDetectionColour);
   }
 }

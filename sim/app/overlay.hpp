@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "fovea/vision/ball_detector.hpp"
 #include "fovea/vision/intrinsics.hpp"
@@ -24,13 +26,15 @@ class Overlay {
   Overlay(cv::Mat& image, const vision::Intrinsics& intrinsics, int scale)
       : image_(image), in_(intrinsics), scale_(scale) {}
 
-  // The outline of cone `m` (|x| = x . m for rays x).
-  void Outline(const model::Vec3& m, const cv::Scalar& colour, int thickness, bool dashed);
+  // An outline's points in pixels of the camera, evenly along it, closed or dashed.
+  using Curve = std::vector<std::pair<double, double>>;
+  static Curve CurveOf(const vision::Intrinsics& intrinsics, const model::Vec3& m);  // of cone |x| = x . m
+  void Outline(const Curve& curve, const cv::Scalar& colour, int thickness, bool dashed);
   // A cross at the ray `p`, `arm_px` of the camera's pixels to each side.
   void Cross(const model::Vec3& p, double arm_px, const cv::Scalar& colour);
 
-  // The sphere of `radius` where it shall be, dashed and with a cross; and where it was detected.
-  void Goal(const Eigen::Vector3d& p_CO_C_star, double radius);
+  // The sphere where it shall be, dashed and with a cross; and where it was detected.
+  void Goal(const Curve& outline, const Eigen::Vector3d& p_CO_C_star);
   void Detection(const vision::BallDetection& detection);
 
  private:

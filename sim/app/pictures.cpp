@@ -53,9 +53,9 @@ std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
   cv::resize(frame.bgr, picture, cv::Size(), kScale, kScale, cv::INTER_CUBIC);
   Overlay overlay(picture, in, kScale);
   if (p_CO_C.z() > 1.1 * radius) {
-    overlay.Outline(features::ConeFromSphere(p_CO_C / radius), kTruthColour, 1, true);
+    overlay.Outline(Overlay::CurveOf(in, features::ConeFromSphere(p_CO_C / radius)), kTruthColour, 1, true);
   }
-  overlay.Goal(p_CO_C_star, radius);
+  overlay.Goal(Overlay::CurveOf(in, features::ConeFromSphere(p_CO_C_star / radius)), p_CO_C_star);
   overlay.Detection(frame.detection);
 
   cv::Mat page(picture.rows + kLegendPx, picture.cols, CV_8UC3, kLegendColour);

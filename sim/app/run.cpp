@@ -21,6 +21,7 @@
 #include "fovea/vision/vision_task.hpp"
 #include "sim/app/compose.hpp"
 #include "sim/app/progress.hpp"
+#include "sim/app/run_description.hpp"
 #include "sim/app/run_files.hpp"
 #include "sim/app/target_log.hpp"
 #include "sim/app/verdict.hpp"
@@ -46,37 +47,22 @@ void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);
 class Run {
  public:
   Run(const Scenario& scenario, const RunOptions& options)
-      : scenario_(scenario),
-        options_(options),
+      : options_(options),
         progress_(scenario.name, scenario.run.duration_s, !options.show_progress),
-        robot_(LoadScenarioRobot(scenario)),
-        sim_robot_(LoadSimRobot(robot_.urdf, robot_.base_link, robot_.tip_link)),
-        radius_(0.5 * scenario.target.diameter),
-        pinhole_(MakeScenarioPinhole(scenario)),
-        intrinsics_{pinhole_.width_px, pinhole_.height_px, pinhole_.f_px,
-                    pinhole_.f_px,     pinhole_.c_u_px,    pinhole_.c_v_px},
-        vision_(config::MakeVisionConfig(scenario.vision, intrinsics_, radius_)),
+        about_(Prepare(scenario, progress_)),
+        vision_(config::MakeVisionConfig(scenario.vision, about_.intrinsics, about_.scene.target_radius)),
         ring_(kRingCapacity) {
-    progress_.Update(0.0, "preparing");
-    CheckStart(scenario_, robot_);
-    const Eigen::Isometry3d X_EC = CameraMount(scenario_);
-    const servo::ServoConfig servo_config = config::MakeServoConfig(
-        scenario_.servo, robot_, model::Pose{X_EC.linear(), X_EC.translation()}, radius_);
-    CheckGoal(scenario_);
-    CheckTimes(scenario_);
-    if (!servo_.Init(servo_config).ok()) {
+    if (!servo_.Init(about_.servo).ok()) {
       throw std::logic_error("a servo configuration that was checked is refused");
     }
-    scene_ = MakeRenderScene(scenario_, sim_robot_);
     UseOneThreadPerRenderer();
     for (int i = 0; i < kRenderers; ++i) {  // one after the other: drivers set themselves up with the first
-      renderers_.push_back(std::make_unique<SceneRenderer>(scene_, pinhole_, RenderQuality{}, i));
+      renderers_.push_back(std::make_unique<SceneRenderer>(about_.scene, about_.pinhole, RenderQuality{}, i));
     }
     // After all that can be refused: what is refused leaves no folder.
-    files_ = std::make_unique<RunFiles>(RunFilesConfig{options_.out, options_.report, kRenderers, scenario_,
-                                                       robot_, servo_config, scene_, pinhole_, intrinsics_,
-                                                       options_.pace == Pace::kReal});
-    BuildWorld(servo_config);
+    files_ = std::make_unique<RunFiles>(
+        about_, RunFilesConfig{options_.out, options_.report, kRenderers, options_.pace == Pace::kReal});
+    BuildWorld();
   }
 
   Summary Execute() {
@@ -105,27 +91,32 @@ class Run {
           fmt::format("the run broke off: {} ({})", hal::ToString(status.code()), status.where()));
     }
     Summary summary = Summarise();
-    progress_.Update(scenario_.run.duration_s, "drawing the pictures");
+    progress_.Update(about_.scenario.run.duration_s, "drawing the pictures");
     files_->Write(summary, world_->Look(), meter_.durations());
     return summary;
   }
 
  private:
-  void BuildWorld(const servo::ServoConfig& servo_config) {
+  static RunDescription Prepare(const Scenario& scenario, Progress& progress) {
+    progress.Update(0.0, "preparing");
+    return DescribeRun(scenario);
+  }
+
+  void BuildWorld() {
     VerdictConfig verdict_config;
-    verdict_config.arm = servo_config.arm;
-    verdict_config.pinhole = pinhole_;
-    verdict_config.p_CO_C_star = servo_config.feature.p_CO_C_star;
-    verdict_config.target_moves = scenario_.target.motion != "still";
-    verdict_config.tracking_bound_px = scenario_.run.tracking_bound_px;
-    verdict_config.duration_s = scenario_.run.duration_s;
-    verdict_config.workspace_radius = servo_config.guard.workspace_radius;
+    verdict_config.arm = about_.servo.arm;
+    verdict_config.pinhole = about_.pinhole;
+    verdict_config.p_CO_C_star = about_.servo.feature.p_CO_C_star;
+    verdict_config.target_moves = about_.scenario.target.motion != "still";
+    verdict_config.tracking_bound_px = about_.scenario.run.tracking_bound_px;
+    verdict_config.duration_s = about_.scenario.run.duration_s;
+    verdict_config.workspace_radius = about_.servo.guard.workspace_radius;
     verdict_ = std::make_unique<Verdict>(verdict_config);
 
     SimCameraConfig camera_config;
-    camera_config.width_px = pinhole_.width_px;
-    camera_config.height_px = pinhole_.height_px;
-    camera_config.exposure_ns = static_cast<std::int64_t>(scenario_.camera.exposure_ms * 1e6);
+    camera_config.width_px = about_.pinhole.width_px;
+    camera_config.height_px = about_.pinhole.height_px;
+    camera_config.exposure_ns = static_cast<std::int64_t>(about_.scenario.camera.exposure_ms * 1e6);
     // In lockstep no frame is ever lost: the world waits for each. A real camera keeps two.
     camera_config.queue = options_.pace == Pace::kReal ? 2 : 1024;
     std::vector<Painter> painters;
@@ -137,11 +128,12 @@ class Run {
                           [renderer] { renderer->Release(); }});
     }
     camera_ = std::make_unique<SimCamera>(
-        camera_config, Sensor(scenario_.camera.noise_sigma, SeedOf(scenario_, RandomStream::kSensor)),
+        camera_config,
+        Sensor(about_.scenario.camera.noise_sigma, SeedOf(about_.scenario, RandomStream::kSensor)),
         std::move(painters));
-    world_ = std::make_unique<World>(MakeWorldConfig(scenario_, sim_robot_));
+    world_ = std::make_unique<World>(MakeWorldConfig(about_.scenario, about_.scene.robot));
     world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
-    const auto latency_ns = static_cast<std::int64_t>(scenario_.camera.latency_ms * 1e6);
+    const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);
     world_->OnExposure([this, latency_ns](Exposure exposure) {
       targets_.Put(exposure.sequence, exposure.X_BC.inverse() * exposure.p_BO);
       delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns);
@@ -175,7 +167,7 @@ class Run {
   }
 
   [[nodiscard]] std::int64_t EndNs() const {
-    return static_cast<std::int64_t>(scenario_.run.duration_s * static_cast<double>(hal::kNsPerSecond));
+    return static_cast<std::int64_t>(about_.scenario.run.duration_s * static_cast<double>(hal::kNsPerSecond));
   }
 
   void TakeRecords() {
@@ -230,8 +222,8 @@ class Run {
 
   Summary Summarise() {
     Summary s;
-    s.scenario = scenario_.name;
-    s.seed = scenario_.run.seed;
+    s.scenario = about_.scenario.name;
+    s.seed = about_.scenario.run.seed;
     s.pace = options_.pace == Pace::kReal ? "real" : "lockstep";
     s.frames = files_->frames();
     s.frames_detected = files_->frames_detected();
@@ -263,17 +255,11 @@ class Run {
     return s;
   }
 
-  Scenario scenario_;
   RunOptions options_;
   Progress progress_;
-  robots::Robot robot_;
-  SimRobot sim_robot_;
-  double radius_;
-  Pinhole pinhole_;
-  vision::Intrinsics intrinsics_;
+  const RunDescription about_;
   vision::VisionTask vision_;
   servo::ServoTask servo_;
-  RenderScene scene_;
   std::unique_ptr<RunFiles> files_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;
   std::unique_ptr<Verdict> verdict_;

@@ -13,7 +13,7 @@ const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "benc
 
 }  // namespace
 
-RunFiles::RunFiles(const RunFilesConfig& config) : config_(config) {
+RunFiles::RunFiles(const RunDescription& about, const RunFilesConfig& config) : about_(about) {
   if (config.out.empty()) {
     return;
   }
@@ -26,18 +26,16 @@ RunFiles::RunFiles(const RunFilesConfig& config) : config_(config) {
   }
   EyeFilmConfig film;
   film.path = folder_->Begin("camera.mp4");
-  film.intrinsics = config.intrinsics;
-  film.radius = config.scene.target_radius;
-  film.p_CO_C_star = config.servo.feature.p_CO_C_star;
+  film.intrinsics = about.intrinsics;
+  film.radius = about.scene.target_radius;
+  film.p_CO_C_star = about.servo.feature.p_CO_C_star;
   film.may_drop = config.may_drop;
   eye_film_ = std::make_unique<EyeFilm>(film);
-  if (config.scenario.run.scene_video) {
+  if (about.scenario.run.scene_video) {
     scene_film_ = std::make_unique<SceneFilm>(
-        SceneFilmConfig{folder_->Begin("scene.mp4"), config.scene, config.renderer_index, config.may_drop});
+        SceneFilmConfig{folder_->Begin("scene.mp4"), about.scene, config.renderer_index, config.may_drop});
   }
-  log_ = std::make_unique<LogFeed>(LogFeedConfig{folder_->Begin("log.mcap"), config.scenario, config.robot,
-                                                 config.servo, config.scene, config.pinhole,
-                                                 config.intrinsics, config.may_drop});
+  log_ = std::make_unique<LogFeed>(about, folder_->Begin("log.mcap"), config.may_drop);
 }
 
 void RunFiles::AddTruth(const Truth& truth) {
@@ -83,15 +81,15 @@ void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt
   std::future<std::string> bench;
   if (HasReport()) {
     bench = std::async(std::launch::async, [&] {
-      return DrawBenchPicture(config_.scene, end, camera_path_.points(), target_path_.points());
+      return DrawBenchPicture(about_.scene, end, camera_path_.points(), target_path_.points());
     });
   }
   const bool has_frames = frames_.frames() > 0;
   if (has_frames) {
-    const Eigen::Vector3d& goal = config_.servo.feature.p_CO_C_star;
+    const Eigen::Vector3d& goal = about_.servo.feature.p_CO_C_star;
     for (const auto& [name, frame] :
          {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
-      files.push_back({name, DrawEyePicture(*frame, config_.intrinsics, config_.scene.target_radius, goal)});
+      files.push_back({name, DrawEyePicture(*frame, about_.intrinsics, about_.scene.target_radius, goal)});
     }
   }
   if (HasReport()) {

@@ -10,6 +10,7 @@
 #include "sim/app/output_folder.hpp"
 #include "sim/app/path.hpp"
 #include "sim/app/pictures.hpp"
+#include "sim/app/run_description.hpp"
 #include "sim/app/scene_film.hpp"
 #include "sim/app/summary.hpp"
 
@@ -19,19 +20,14 @@ struct RunFilesConfig {
   std::filesystem::path out;  // empty: no files
   bool report = true;         // films, log, report and the bench's picture too
   int renderer_index = 0;     // the first that the run itself does not use; see SceneRenderer
-  Scenario scenario;
-  robots::Robot robot;
-  servo::ServoConfig servo;
-  RenderScene scene;
-  Pinhole pinhole;
-  vision::Intrinsics intrinsics;
-  bool may_drop = false;  // at real pace: nobody waits for a film or a log
+  bool may_drop = false;      // at real pace: nobody waits for a film or a log
 };
 
 class RunFiles {
  public:
-  // InputError when nothing can be written there; std::runtime_error when the report's page is not there.
-  explicit RunFiles(const RunFilesConfig& config);
+  // `about` must outlive it. InputError when nothing can be written there; std::runtime_error when the
+  // report's page is not there.
+  RunFiles(const RunDescription& about, const RunFilesConfig& config);
 
   // From the thread that advances the world.
   void AddTruth(const Truth& truth);
@@ -56,7 +52,7 @@ class RunFiles {
  private:
   [[nodiscard]] bool HasReport() const { return page_.has_value(); }
 
-  const RunFilesConfig config_;
+  const RunDescription& about_;
   std::optional<report::ReportPage> page_;
   std::optional<OutputFolder> folder_;
   std::unique_ptr<EyeFilm> eye_film_;

@@ -51,6 +51,20 @@ class CommandLineTest : public testing::Test {
   TempFolder folder_;
 };
 
+// A camera that never says anything leaves no film and no pictures of what it saw; all else is there.
+TEST_F(CommandLineTest, ARunWithoutAnyFrame) {
+  const ProgramResult result = Sim({"run", "ball", "--set", "faults.camera_outage_s=[0,100]", "--set",
+                                    "run.duration_s=0.5", "--out", Out()});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, HasSubstr("the target was never found in view"));
+  for (const char* file : {"report.html", "log.mcap", "summary.json", "bench.png"}) {
+    EXPECT_TRUE(fs::exists(fs::path(Out()) / file)) << file;
+  }
+  for (const char* file : {"camera.mp4", "eye-first.png", "eye-last.png"}) {
+    EXPECT_FALSE(fs::exists(fs::path(Out()) / file)) << file;
+  }
+}
+
 TEST_F(CommandLineTest, UnknownScenario) {
   EXPECT_THAT(Refusal({"bal"}),
               AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
