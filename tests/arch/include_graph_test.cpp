@@ -72,9 +72,14 @@ INSTANTIATE_TEST_SUITE_P(
              "fovea/(hal|log|report)/.*|scene_reader[.]hpp|(fovea|foxglove)/"
              "[a-z]+[.]pb[.]h|(fmt|nlohmann|openssl)/.*",
              "a report is made of a log alone"},
-        Rule{"tools/fovea", "fovea/.*|(fmt|CLI)/.*", "works on what runs leave, without the simulator"},
+        Rule{"firmware/include/fovea/design", "(fovea/design|Eigen)/.*", "design is mathematics alone"},
+        Rule{"firmware/design", "fovea/design/.*|characteristic[.]hpp|(unsupported/)?Eigen/.*",
+             "design is mathematics alone"},
+        Rule{"tools/fovea", "fovea/.*|gains[.]hpp|(fmt|CLI|nlohmann)/.*",
+             "works beside runs, without the simulator"},
         Rule{"firmware/include",
-             "(fovea/(hal|model|features|servo|vision|config|robots|linux_rt|log|report)/|Eigen/|opencv2/"
+             "(fovea/(hal|model|features|servo|vision|config|design|robots|linux_rt|log|report)/|Eigen/"
+             "|opencv2/"
              "|google/|CLI/).*",
              "nothing of the firmware sees the simulator"},
         Rule{"sim/camera", "fovea/hal/.*|sim/(camera|render)/.*", "the simulator sees hal, not the firmware"},
