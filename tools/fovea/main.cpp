@@ -1,4 +1,4 @@
-// fovea: what is done with runs that are over.
+// fovea: what is done beside runs: reports of those that are over, gains for those to come.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +9,7 @@
 #include "fovea/config/program.hpp"
 #include "fovea/config/share_folder.hpp"
 #include "fovea/report/report.hpp"
+#include "gains.hpp"
 
 namespace {
 
@@ -54,7 +55,7 @@ int Report(const ReportArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Fovea's tools for runs that are over."};
+  CLI::App app{"Fovea's tools beside its runs: reports of logs, design of gains."};
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("fovea {} {}", kVersion, kGitRevision));
   app.footer(
@@ -62,6 +63,7 @@ int main(int argc, char** argv) {
       "  fovea report out/ball\n"
       "  fovea report out/ball/log.mcap --out ball.html\n"
       "  fovea report out/slow out/fast --out comparison.html\n"
+      "  fovea gains --mass 16 --damping 16 --stiffness 4 --closed-loop-stiffness 16\n"
       "Exit: 0 done, 2 wrong usage or input.");
 
   ReportArguments arguments;
@@ -72,5 +74,9 @@ int main(int argc, char** argv) {
   report->add_option("--out", arguments.out,
                      "the file to write; report.html beside the log, or comparison.html for two");
 
-  return config::RunProgram("fovea", app, argc, argv, [&] { return Report(arguments); });
+  GainsArguments gains_arguments;
+  const CLI::App* gains = AddGains(app, gains_arguments);
+
+  return config::RunProgram("fovea", app, argc, argv,
+                            [&] { return gains->parsed() ? Gains(gains_arguments) : Report(arguments); });
 }
