@@ -102,7 +102,8 @@ std::string HashOfModel(const model::ArmModel& model) {
     write(j.type);
     write.Matrix(j.X_PJ.R);
     write.Matrix(j.X_PJ.p);
-    write.All(j.q_min, j.q_max, j.dq_max, j.ddq_max, j.dddq_max, j.tau_max, j.dtau_max);
+    write.All(j.q_min, j.q_max, j.dq_max, j.ddq_max, j.dddq_max, j.tau_max, j.dtau_max, j.viscous, j.coulomb,
+              j.spring);
     write(model.links[i].mass);
     write.Matrix(model.links[i].p_LiCom);
     write.Matrix(model.links[i].I_Com_Li);

@@ -30,9 +30,9 @@ To Same(From value) {
 }
 
 // The message's enumerations have the numbers of the servo's.
-static_assert(static_cast<int>(hal::Mode::kFault) == FAULT);
-static_assert(static_cast<int>(hal::HoldReason::kGoalUnreachable) == GOAL_UNREACHABLE);
-static_assert(static_cast<int>(hal::Fault::kNotFollowing) == NOT_FOLLOWING && hal::kNumFaults == 10);
+static_assert(static_cast<int>(hal::Mode::kMove) == MOVE);
+static_assert(static_cast<int>(hal::HoldReason::kMotionRefused) == MOTION_REFUSED);
+static_assert(static_cast<int>(hal::Fault::kContact) == CONTACT && hal::kNumFaults == 11);
 static_assert(static_cast<int>(hal::FeatureKind::kSphere) == Feature::SPHERE);
 
 }  // namespace

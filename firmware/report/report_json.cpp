@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -61,6 +63,8 @@ ordered_json Frame(const RunData& run, const std::optional<EyeFrame>& frame) {
           {"shapes", shapes}};
 }
 
+constexpr double kLargestShown = 5.0;  // a workspace beyond it would leave the arm a dot [m]
+
 ordered_json Scene(const RunData& run) {
   if (run.links.empty() || run.motion.t_s.empty()) {
     return nullptr;
@@ -81,12 +85,17 @@ ordered_json Scene(const RunData& run) {
     }
     links.push_back({{"name", link.frame}, {"shapes", shapes}});
   }
+  const auto is_known = [](const std::vector<float>& path) {
+    return std::any_of(path.begin(), path.end(), [](float value) { return std::isfinite(value); });
+  };
   return {{"links", links},
           {"t_s", Base64(run.motion.t_s)},
           {"poses", Base64(run.motion.poses)},
           {"camera_path", Base64(run.motion.camera_path)},
-          {"target_path", Base64(run.motion.target_path)},
-          {"workspace_radius", run.workspace_radius},
+          {"target_path",
+           is_known(run.motion.target_path) ? ordered_json(Base64(run.motion.target_path)) : nullptr},
+          {"workspace_radius",
+           run.workspace_radius > kLargestShown ? ordered_json(nullptr) : ordered_json(run.workspace_radius)},
           {"table_z", 0.0}};
 }
 
@@ -129,7 +138,11 @@ std::string ToJson(const RunData& run) {
   json["config"] = keys == run.metadata.end() ? std::string() : Configuration(keys->second);
   json["duration_s"] = run.duration_s;
   json["lambda"] = run.lambda;
-  json["target"] = {{"kind", "sphere"}, {"radius_m", run.target_radius}, {"moves", run.target_moves}};
+  // Without a target the run had no eye.
+  json["target"] =
+      run.target_radius == 0.0
+          ? ordered_json(nullptr)
+          : ordered_json({{"kind", "sphere"}, {"radius_m", run.target_radius}, {"moves", run.target_moves}});
   json["joints"] = ordered_json::array();
   for (const JointInfo& joint : run.joints) {
     json["joints"].push_back({{"name", joint.name},
@@ -145,6 +158,14 @@ std::string ToJson(const RunData& run) {
                       {"error_px", Base64(measured.columns[RunData::kMeasuredPx])},
                       {"age_ms", Base64(measured.columns[RunData::kAgeMs])},
                       {"confidence", Base64(measured.columns[RunData::kConfidence])}};
+  json["theory"] = nullptr;
+  if (run.has_theory) {
+    const Envelope::Rows rows = run.theory.rows();
+    json["theory"] = {{"t_s", Base64(rows.t_s)},
+                      {"x", Base64(rows.columns[RunData::kTheoryX])},
+                      {"goal", Base64(rows.columns[RunData::kTheoryGoal])},
+                      {"analytic", Base64(rows.columns[RunData::kTheoryAnalytic])}};
+  }
   json["modes"] = ordered_json::array();
   for (const ModeChange& change : run.modes) {
     json["modes"].push_back({{"t_s", change.t_s}, {"mode", change.mode}, {"reason", change.reason}});

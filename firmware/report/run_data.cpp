@@ -44,6 +44,8 @@ class Reader {
       truths_.push_back(Parse<log::Truth>(message));
       scene_.AddTruth(truths_.back(), Seconds(truths_.back().stamp_ns()));
       Join(false);
+    } else if (topic == log::kTheoryTopic) {
+      TakeTheory(Parse<log::Theory>(message));
     } else if (topic == log::kFeatureTopic) {
       TakeFeature(Parse<log::Feature>(message), message.time_ns);
     } else if (topic == log::kSetupTopic) {
@@ -183,6 +185,13 @@ class Reader {
       run_.ticks->Add(Seconds(row.stamp_ns), row.values);
       waiting_.pop_front();
     }
+  }
+
+  void TakeTheory(const log::Theory& theory) {
+    run_.theory.Add(Seconds(theory.stamp_ns()),
+                    {static_cast<float>(theory.x()), static_cast<float>(theory.x_goal()),
+                     static_cast<float>(theory.x_analytic())});
+    run_.has_theory = true;
   }
 
   void TakeFeature(const log::Feature& feature, std::int64_t taken_ns) {

@@ -243,6 +243,13 @@ class ChainReader {
     out.q_max = endless ? kEndless : joint.limits->upper;
     out.dq_max = joint.limits->velocity;
     out.tau_max = joint.limits->effort;
+    if (joint.dynamics) {
+      out.viscous = joint.dynamics->damping;
+      out.coulomb = joint.dynamics->friction;
+    }
+    if (!(out.viscous >= 0.0 && out.coulomb >= 0.0)) {
+      Fail(fmt::format("joint \"{}\": damping and friction must not be below 0", joint.name));
+    }
     if (!(out.q_min < out.q_max)) {
       Fail(fmt::format("joint \"{}\": lower limit {} is not below upper limit {}", joint.name, out.q_min,
                        out.q_max));

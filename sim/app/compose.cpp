@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "fovea/config/input_error.hpp"
@@ -15,6 +16,9 @@ using config::InputError;
 constexpr double kDeg = std::numbers::pi / 180.0;
 
 Eigen::Vector3d ToVector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+Eigen::VectorXd ToVectorX(const std::vector<double>& v) {
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
 
 }  // namespace
 
@@ -29,12 +33,47 @@ Eigen::Isometry3d CameraMount(const Scenario& s) {
   return X_EC;
 }
 
+void CheckSizes(const Scenario& s, const robots::Robot& robot) {
+  struct PerJoint {
+    const char* key;
+    const std::vector<double>& values;
+    bool may_be_empty;
+  };
+  for (const PerJoint& list : {PerJoint{"arm.q_start", s.arm.q_start, false},
+                               {"arm.dq_start", s.arm.dq_start, true},
+                               {"arm.spring", s.arm.spring, true},
+                               {"arm.viscous", s.arm.viscous, true},
+                               {"arm.coulomb", s.arm.coulomb, true},
+                               {"faults.push", s.faults.push, true},
+                               {"motion.from", s.motion.from, true},
+                               {"motion.velocity", s.motion.velocity, true},
+                               {"motion.amplitude", s.motion.amplitude, true}}) {
+    const bool fits = static_cast<int>(list.values.size()) == robot.model.num_joints;
+    if (!fits && !(list.values.empty() && list.may_be_empty)) {
+      throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", list.key,
+                                   list.values.size(), robot.name, robot.model.num_joints));
+    }
+  }
+}
+
+void SetFriction(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
+  for (int i = 0; i < robot.model.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    model::Joint& joint = robot.model.joints[k];
+    joint.spring = s.arm.spring.empty() ? 0.0 : s.arm.spring[k];
+    joint.viscous = s.arm.viscous.empty() ? joint.viscous : s.arm.viscous[k];
+    joint.coulomb = s.arm.coulomb.empty() ? joint.coulomb : s.arm.coulomb[k];
+    for (SimLink& link : sim_robot.links) {
+      if (link.dof == i) {
+        link.viscous = joint.viscous;
+        link.coulomb = joint.coulomb;
+      }
+    }
+  }
+}
+
 void CheckStart(const Scenario& s, const robots::Robot& robot) {
   const std::vector<double>& q = s.arm.q_start;
-  if (static_cast<int>(q.size()) != robot.model.num_joints) {
-    throw InputError(fmt::format("arm.q_start has {} entries, arm \"{}\" has {} joints", q.size(), robot.name,
-                                 robot.model.num_joints));
-  }
   for (std::size_t i = 0; i < q.size(); ++i) {
     const model::Joint& joint = robot.model.joints[i];
     if (q[i] < joint.q_min || q[i] > joint.q_max) {
@@ -60,8 +99,11 @@ WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
   config.robot = robot;
   config.physics.integrator =
       s.arm.integrator == "rk4" ? Integrator::kRungeKutta4 : Integrator::kSemiImplicitEuler;
-  config.q_start = Eigen::Map<const Eigen::VectorXd>(s.arm.q_start.data(),
-                                                     static_cast<Eigen::Index>(s.arm.q_start.size()));
+  config.q_start = ToVectorX(s.arm.q_start);
+  config.dq_start = ToVectorX(s.arm.dq_start);
+  config.spring = ToVectorX(s.arm.spring);
+  config.stiction = s.arm.stiction;
+  config.push = {ToVectorX(s.faults.push), s.faults.push_s[0], s.faults.push_s[1]};
   config.X_EC = CameraMount(s);
   config.friction_compensation = s.arm.friction_compensation;
   config.encoder_noise = s.arm.encoder_noise;
@@ -76,10 +118,21 @@ WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
   return config;
 }
 
+CommandedMotion MakeMotion(const Scenario& s) {
+  const auto joints = [](const std::vector<double>& values) {
+    hal::JointArray array{};
+    std::copy(values.begin(), values.end(), array.begin());
+    return array;
+  };
+  const auto& m = s.motion;
+  return {joints(m.from.empty() ? s.arm.q_start : m.from), joints(m.velocity), joints(m.amplitude), m.omega};
+}
+
 RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
   RenderScene scene;
   scene.bench = MakeBench(s.target.clutter);
   scene.robot = robot;
+  scene.has_eye = s.camera.enabled;
   scene.X_EC = CameraMount(s);
   scene.target_radius = 0.5 * s.target.diameter;
   scene.target_colour = ToVector(s.target.colour).cast<float>();

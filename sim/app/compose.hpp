@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 
+#include "sim/app/commanded_motion.hpp"
 #include "sim/app/scenario.hpp"
 #include "sim/render/pinhole.hpp"
 #include "sim/render/scene_renderer.hpp"
@@ -17,12 +18,18 @@ Eigen::Isometry3d CameraMount(const Scenario& scenario);
 Pinhole MakeScenarioPinhole(const Scenario& scenario);
 WorldConfig MakeWorldConfig(const Scenario& scenario, const SimRobot& robot);
 RenderScene MakeRenderScene(const Scenario& scenario, const SimRobot& robot);
+// What [motion] commands; of interest when motion.kind says so.
+CommandedMotion MakeMotion(const Scenario& scenario);
 
 // Each consumer of random numbers has a generator of its own.
 enum class RandomStream : std::uint8_t { kEncoders, kSensor };
 std::uint64_t SeedOf(const Scenario& scenario, RandomStream stream);
 
-// InputError when arm.q_start does not fit the arm, or is outside its workspace.
+// InputError when a list has not one entry per joint.
+void CheckSizes(const Scenario& scenario, const robots::Robot& robot);
+// Springs and friction as the scenario has them, for the servo's model and for the physics.
+void SetFriction(const Scenario& scenario, robots::Robot& robot, SimRobot& sim_robot);
+// InputError when arm.q_start is outside the joints' range or the workspace.
 void CheckStart(const Scenario& scenario, const robots::Robot& robot);
 // InputError when the target, standing at servo.goal, could not be seen.
 void CheckGoal(const Scenario& scenario);

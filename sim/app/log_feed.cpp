@@ -45,7 +45,9 @@ log::Setup MakeSetup(const RunDescription& about) {
     joint.set_tau_max(arm.joints[k].tau_max);
   }
   setup.set_lambda(about.servo.law.lambda);
-  setup.set_target_radius(about.scene.target_radius);
+  if (about.scene.has_eye) {
+    setup.set_target_radius(about.scene.target_radius);
+  }
   setup.set_target_moves(about.scenario.target.motion != "still");
   const model::Vec3& goal = about.servo.feature.p_CO_C_star;
   setup.mutable_p_co_c_star()->Add(goal.data(), goal.data() + 3);
@@ -89,7 +91,19 @@ LogFeed::LogFeed(const RunDescription& about, const std::filesystem::path& path,
   log_.Add(log::kSceneTopic, 0, MakeSceneMessage(about.scene));
 }
 
+void LogFeed::AddTheory(const TheorySample& sample) {
+  log::Theory message;
+  message.set_stamp_ns(sample.stamp_ns);
+  message.set_x(sample.x);
+  message.set_x_goal(sample.x_goal);
+  message.set_x_analytic(sample.x_analytic);
+  log_.Add(log::kTheoryTopic, sample.stamp_ns, message);
+}
+
 void LogFeed::AddTruth(const Truth& truth) {
+  if (!about_.scene.has_eye) {
+    return;  // there is no target
+  }
   const TargetError error = ErrorOf(truth, about_.pinhole, about_.servo.feature.p_CO_C_star);
   log::TruthSample sample;
   sample.stamp_ns = truth.stamp_ns;

@@ -23,6 +23,7 @@ class LogFeed {
 
   // From the thread that advances the world.
   void AddTruth(const Truth& truth);
+  void AddTheory(const TheorySample& sample);
   // From the thread that empties the recorder.
   void AddRecord(const hal::TickRecord& record) { log_.AddTick(record); }
   // From the vision thread. `p_CO_C`: where the target really was [m].

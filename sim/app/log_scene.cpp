@@ -141,13 +141,16 @@ foxglove::SceneUpdate MakeSceneMessage(const RenderScene& scene) {
       AddShape(shape, entity);
     }
   }
+  AddBox(At(0.35, 0.0, -0.01), {1.6, 1.3, 0.018}, {0.42F, 0.40F, 0.37F},
+         AddEntity("table", log::kBaseFrame, update));
+  if (!scene.has_eye) {
+    return update;
+  }
   foxglove::SceneEntity& camera = AddEntity("camera", log::kCameraFrame, update);
   AddBox(At(0.0, 0.0, -0.042), {0.034, 0.034, 0.040}, dark, camera);
   AddCylinder(At(0.0, 0.0, -0.013), 0.0155, 0.022, dark, camera);
   AddSphere(At(0.0, 0.0, 0.0), scene.target_radius, scene.target_colour,
             AddEntity("target", log::kTargetFrame, update));
-  AddBox(At(0.35, 0.0, -0.01), {1.6, 1.3, 0.018}, {0.42F, 0.40F, 0.37F},
-         AddEntity("table", log::kBaseFrame, update));
   return update;
 }
 

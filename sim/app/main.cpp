@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "fovea/build_info.hpp"
 #include "fovea/config/program.hpp"
@@ -48,8 +49,13 @@ int Run(const RunArguments& arguments) {
 }
 
 int List() {
-  for (const std::string& name : sim::ShippedScenarios()) {
-    fmt::print("{:<16}{}\n", name, sim::LoadScenario(name, {}).run.description);
+  const std::vector<std::string> names = sim::ShippedScenarios();
+  std::size_t width = 0;
+  for (const std::string& name : names) {
+    width = std::max(width, name.size());
+  }
+  for (const std::string& name : names) {
+    fmt::print("{:<{}}{}\n", name, width + 2, sim::LoadScenario(name, {}).run.description);
   }
   return kDone;
 }

@@ -56,7 +56,8 @@ class Run {
       throw std::logic_error("a servo configuration that was checked is refused");
     }
     UseOneThreadPerRenderer();
-    for (int i = 0; i < kRenderers; ++i) {  // one after the other: drivers set themselves up with the first
+    const int renderers = HasEye() ? kRenderers : 0;
+    for (int i = 0; i < renderers; ++i) {  // one after the other: drivers set themselves up with the first
       renderers_.push_back(std::make_unique<SceneRenderer>(about_.scene, about_.pinhole, RenderQuality{}, i));
     }
     // After all that can be refused: what is refused leaves no folder.
@@ -66,7 +67,13 @@ class Run {
   }
 
   Summary Execute() {
-    std::thread vision_thread([this] { RunVisionThread(); });
+    std::thread vision_thread;
+    if (HasEye()) {
+      vision_thread = std::thread([this] { RunVisionThread(); });
+    }
+    if (about_.motion) {
+      motion_.emplace(*about_.motion);
+    }
     const auto begin = std::chrono::steady_clock::now();
     hal::Status status;
     try {
@@ -75,15 +82,17 @@ class Run {
       failure_ = std::current_exception();
     }
     wall_time_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    camera_->Close();
-    vision_thread.join();
+    if (HasEye()) {
+      camera_->Close();
+      vision_thread.join();
+    }
     TakeRecords();
     for (const std::exception_ptr& failure : {failure_, vision_failure_}) {
       if (failure) {
         std::rethrow_exception(failure);
       }
     }
-    if (!camera_->fault().empty()) {
+    if (HasEye() && !camera_->fault().empty()) {
       throw std::runtime_error("the camera broke during the run: " + camera_->fault());
     }
     if (!status.ok()) {
@@ -107,12 +116,36 @@ class Run {
     verdict_config.arm = about_.servo.arm;
     verdict_config.pinhole = about_.pinhole;
     verdict_config.p_CO_C_star = about_.servo.feature.p_CO_C_star;
+    verdict_config.has_eye = HasEye();
     verdict_config.target_moves = about_.scenario.target.motion != "still";
     verdict_config.tracking_bound_px = about_.scenario.run.tracking_bound_px;
     verdict_config.duration_s = about_.scenario.run.duration_s;
     verdict_config.workspace_radius = about_.servo.guard.workspace_radius;
     verdict_ = std::make_unique<Verdict>(verdict_config);
+    if (about_.theory) {
+      theory_.emplace(*about_.theory);
+    }
 
+    if (HasEye()) {
+      BuildCamera();
+    }
+    world_ = std::make_unique<World>(MakeWorldConfig(about_.scenario, about_.scene.robot));
+    world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
+    const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);
+    world_->OnExposure([this, latency_ns](Exposure exposure) {
+      if (!HasEye()) {
+        files_->AddExposure(exposure);
+        return;
+      }
+      targets_.Put(exposure.sequence, exposure.X_BC.inverse() * exposure.p_BO);
+      delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns);
+      files_->AddExposure(exposure);
+      camera_->Expose(std::move(exposure));
+    });
+    arm_ = std::make_unique<SimArm>(*world_);
+  }
+
+  void BuildCamera() {
     SimCameraConfig camera_config;
     camera_config.width_px = about_.pinhole.width_px;
     camera_config.height_px = about_.pinhole.height_px;
@@ -131,21 +164,14 @@ class Run {
         camera_config,
         Sensor(about_.scenario.camera.noise_sigma, SeedOf(about_.scenario, RandomStream::kSensor)),
         std::move(painters));
-    world_ = std::make_unique<World>(MakeWorldConfig(about_.scenario, about_.scene.robot));
-    world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
-    const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);
-    world_->OnExposure([this, latency_ns](Exposure exposure) {
-      targets_.Put(exposure.sequence, exposure.X_BC.inverse() * exposure.p_BO);
-      delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns);
-      files_->AddExposure(exposure);
-      camera_->Expose(std::move(exposure));
-    });
-    arm_ = std::make_unique<SimArm>(*world_);
   }
 
   void ObserveTruth(const Truth& truth) {
     verdict_->AddTruth(truth);
     files_->AddTruth(truth);
+    if (theory_) {
+      files_->AddTheory(theory_->Add(truth));
+    }
     if (options_.observer.on_truth) {
       options_.observer.on_truth(truth);
     }
@@ -183,6 +209,12 @@ class Run {
     });
   }
 
+  void UseMotion(servo::ServoLoop& loop) {
+    if (motion_) {
+      loop.UseMotion(*motion_);
+    }
+  }
+
   hal::Status RunInLockstep() {
     LockstepClock clock(*world_, [&](std::int64_t now_ns) {
       TakeRecords();
@@ -190,6 +222,7 @@ class Run {
       return delay_.HandOver(now_ns, /*wait=*/true, mailbox_);
     });
     servo::ServoLoop loop(servo_, *arm_, clock, mailbox_, ring_, meter_);
+    UseMotion(loop);
     const hal::Status status = loop.Run(EndNs());
     counters_ = loop.counters();
     clock.RethrowFailure();
@@ -206,6 +239,7 @@ class Run {
       clock.emplace(*world_, monotonic,
                     [&](std::int64_t now_ns) { return delay_.HandOver(now_ns, /*wait=*/false, mailbox_); });
       servo::ServoLoop loop(servo_, *arm_, *clock, mailbox_, ring_, meter_);
+      UseMotion(loop);
       status = loop.Run(EndNs());
       counters_ = loop.counters();
       done = true;
@@ -227,8 +261,13 @@ class Run {
     s.pace = options_.pace == Pace::kReal ? "real" : "lockstep";
     s.frames = files_->frames();
     s.frames_detected = files_->frames_detected();
-    s.frames_lost = camera_->lost();
+    s.frames_lost = HasEye() ? camera_->lost() : 0;
     verdict_->Fill(s);
+    if (theory_) {
+      s.theory = theory_->Finish();
+      s.converged = s.converged && s.theory->agrees;
+      s.verdict = s.converged || !s.theory->agrees ? s.theory->verdict : s.verdict;
+    }
     s.ticks = counters_.ticks;
     s.overruns = counters_.overruns;
     s.missed_ticks = counters_.missed_ticks;
@@ -247,13 +286,15 @@ class Run {
     s.wall_time_s = wall_time_s_;
     s.real_time_factor = s.sim_time_s / s.wall_time_s;
     s.realtime_missing = realtime_missing_;
-    s.renderer = renderers_.front()->driver_name();
+    s.renderer = HasEye() ? renderers_.front()->driver_name() : "nothing";
     s.log_hash = hash_.Finish();
     s.servo = kServoLibraryHash;
     s.git = kGitRevision;
     s.version = kVersion;
     return s;
   }
+
+  [[nodiscard]] bool HasEye() const { return about_.scenario.camera.enabled; }
 
   RunOptions options_;
   Progress progress_;
@@ -263,6 +304,8 @@ class Run {
   std::unique_ptr<RunFiles> files_;
   std::vector<std::unique_ptr<SceneRenderer>> renderers_;
   std::unique_ptr<Verdict> verdict_;
+  std::optional<TheoryRun> theory_;
+  std::optional<CommandedMotionSource> motion_;
   std::unique_ptr<SimCamera> camera_;
   std::unique_ptr<World> world_;
   std::unique_ptr<SimArm> arm_;

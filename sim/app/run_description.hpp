@@ -1,11 +1,14 @@
 // What a run is of: everything that follows from its scenario, checked and ready. Made once, then only read.
 #pragma once
 
+#include <optional>
+
 #include "fovea/servo/servo_config.hpp"
 #include "fovea/vision/intrinsics.hpp"
 #include "sim/app/scenario.hpp"
 #include "sim/render/pinhole.hpp"
 #include "sim/render/scene_renderer.hpp"
+#include "sim/theory/theory_run.hpp"
 
 namespace fovea::sim {
 
@@ -16,6 +19,8 @@ struct RunDescription {
   RenderScene scene;
   Pinhole pinhole;
   vision::Intrinsics intrinsics;  // of the same camera, as the vision task has them
+  std::optional<CommandedMotion> motion;
+  std::optional<TheoryConfig> theory;
 };
 
 // InputError when the scenario cannot be run.

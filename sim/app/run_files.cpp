@@ -46,6 +46,12 @@ void RunFiles::AddTruth(const Truth& truth) {
   }
 }
 
+void RunFiles::AddTheory(const TheorySample& sample) {
+  if (log_) {
+    log_->AddTheory(sample);
+  }
+}
+
 void RunFiles::AddExposure(const Exposure& exposure) {
   if (scene_film_) {
     scene_film_->Add(exposure);
@@ -85,6 +91,7 @@ void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt
     });
   }
   const bool has_frames = frames_.frames() > 0;
+  const bool has_eye = about_.scenario.camera.enabled;
   if (has_frames) {
     const Eigen::Vector3d& goal = about_.servo.feature.p_CO_C_star;
     for (const auto& [name, frame] :
@@ -99,7 +106,7 @@ void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt
       film = eye_film_->path();
       files.push_back({"camera.mp4", std::nullopt});
     }
-    if (has_frames && scene_film_) {
+    if ((has_frames || !has_eye) && scene_film_) {
       scene_film_->Finish();
       files.push_back({"scene.mp4", std::nullopt});
     }

@@ -32,6 +32,7 @@ class RunFiles {
   // From the thread that advances the world.
   void AddTruth(const Truth& truth);
   void AddExposure(const Exposure& exposure);
+  void AddTheory(const TheorySample& sample);
   // From the thread that empties the recorder.
   void AddRecord(const hal::TickRecord& record);
   // From the vision thread. `p_CO_C`: where the target really was [m].

@@ -18,6 +18,16 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
   keys.Text("arm.model", s.arm.model, "a shipped arm by name, or the path of an arm file or URDF");
   keys.Numbers("arm.q_start", s.arm.q_start, 1, model::kMaxJoints, -1e4, 1e4, "rad",
                "joint positions at the start, one per joint");
+  keys.Numbers("arm.dq_start", s.arm.dq_start, 1, model::kMaxJoints, -100.0, 100.0, "rad/s",
+               "joint velocities at the start, one per joint; at rest when not given");
+  keys.Numbers("arm.spring", s.arm.spring, 1, model::kMaxJoints, 0.0, 1e6, "Nm/rad",
+               "springs that pull each joint to 0, one per joint, known to the servo; none when not given");
+  keys.Numbers("arm.viscous", s.arm.viscous, 1, model::kMaxJoints, 0.0, 1e6, "Nm s/rad",
+               "viscous friction, one per joint; the URDF's damping when not given");
+  keys.Numbers("arm.coulomb", s.arm.coulomb, 1, model::kMaxJoints, 0.0, 1e6, "Nm",
+               "Coulomb friction, one per joint; the URDF's friction when not given");
+  keys.Flag("arm.stiction", s.arm.stiction,
+            "Coulomb friction holds a joint at rest; false: it is smooth about standstill");
   keys.Number("arm.friction_compensation", s.arm.friction_compensation, 0.0, 1.0, "",
               "share of the joints' friction that the robot's own controller takes away");
   keys.Number("arm.encoder_noise", s.arm.encoder_noise, 0.0, 0.1, "rad",
@@ -29,6 +39,7 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
 }
 
 void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
+  keys.Flag("camera.enabled", s.camera.enabled, "false: a run without eyes, for commanded motions");
   keys.Integer("camera.width_px", s.camera.width_px, 64, 4096, "px", "picture width");
   keys.Integer("camera.height_px", s.camera.height_px, 64, 4096, "px", "picture height");
   keys.Number("camera.hfov_deg", s.camera.hfov_deg, 5.0, 150.0, "deg", "horizontal field of view");
@@ -61,6 +72,9 @@ void AddTargetKeys(Scenario& s, config::KeyTable& keys) {
 void AddRunKeys(Scenario& s, config::KeyTable& keys) {
   keys.Numbers("faults.camera_outage_s", s.faults.camera_outage_s, 2, 2, 0.0, 1e6, "s",
                "the camera delivers nothing from the first time to the second");
+  keys.Numbers("faults.push", s.faults.push, 1, model::kMaxJoints, -1e4, 1e4, "Nm",
+               "torques that push the joints from outside, one per joint; nothing does when not given");
+  keys.Numbers("faults.push_s", s.faults.push_s, 2, 2, 0.0, 1e6, "s", "from the first time to the second");
   keys.Text("run.description", s.run.description, "one line for `fovea-sim list`");
   keys.Number("run.duration_s", s.run.duration_s, 0.1, 1e6, "s", "simulated time");
   keys.Integer("run.seed", s.run.seed, 0, 2147483647, "", "of all that is random");
@@ -70,11 +84,35 @@ void AddRunKeys(Scenario& s, config::KeyTable& keys) {
             "also film the bench from beside it, with the paths of camera and target: scene.mp4");
 }
 
+void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
+  constexpr std::size_t kMax = model::kMaxJoints;
+  keys.Choice("motion.kind", s.motion.kind, {"none", "joints"},
+              "commanded motion; joints: from + velocity t + amplitude sin(omega t) for each joint");
+  keys.Numbers("motion.from", s.motion.from, 1, kMax, -1e4, 1e4, "rad",
+               "joint positions, one per joint; arm.q_start when not given");
+  keys.Numbers("motion.velocity", s.motion.velocity, 1, kMax, -100.0, 100.0, "rad/s",
+               "one per joint; 0 when not given");
+  keys.Numbers("motion.amplitude", s.motion.amplitude, 1, kMax, -100.0, 100.0, "rad",
+               "one per joint; 0 when not given");
+  keys.Number("motion.omega", s.motion.omega, 1e-3, 1e3, "rad/s", "angular frequency of the swing");
+  keys.Flag("theory.enabled", s.theory.enabled,
+            "judge a one-joint arm against its analytic response instead of a target");
+  keys.Numbers("theory.fit_s", s.theory.fit_s, 2, 2, 0.0, 1e6, "s",
+               "zeta, omega_n and poles are fitted from the first time to the second");
+}
+
+fs::path ShippedFolder() { return config::ShareFolder() / "scenarios"; }
+
+// "ball", "theory/open-loop".
+std::string ShippedName(const fs::path& file) {
+  return fs::relative(file, ShippedFolder()).replace_extension().generic_string();
+}
+
 fs::path FindScenario(const std::string& name_or_path) {
   if (fs::path(name_or_path).extension() == ".toml") {
     return name_or_path;
   }
-  const fs::path shipped = config::ShareFolder() / "scenarios" / (name_or_path + ".toml");
+  const fs::path shipped = ShippedFolder() / (name_or_path + ".toml");
   if (fs::is_regular_file(shipped)) {
     return shipped;
   }
@@ -94,6 +132,7 @@ config::KeyTable ScenarioKeys(Scenario& scenario) {
   config::AddVisionKeys(scenario.vision, keys);
   AddTargetKeys(scenario, keys);
   config::AddServoKeys(scenario.servo, keys);
+  AddMotionKeys(scenario, keys);
   AddRunKeys(scenario, keys);
   return keys;
 }
@@ -119,9 +158,9 @@ std::string KeysAsMarkdown(const config::KeyTable& keys) {
 std::vector<std::string> ShippedScenarios() {
   std::vector<std::string> names;
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(config::ShareFolder() / "scenarios", ignored)) {
+  for (const auto& entry : fs::recursive_directory_iterator(ShippedFolder(), ignored)) {
     if (entry.path().extension() == ".toml") {
-      names.push_back(entry.path().stem().string());
+      names.push_back(ShippedName(entry.path()));
     }
   }
   std::sort(names.begin(), names.end());
@@ -131,7 +170,8 @@ std::vector<std::string> ShippedScenarios() {
 Scenario LoadScenario(const std::string& name_or_path, const std::vector<std::string>& assignments) {
   const fs::path file = FindScenario(name_or_path);
   Scenario scenario;
-  scenario.name = file.stem().string();
+  const bool is_path = fs::path(name_or_path).extension() == ".toml";
+  scenario.name = is_path ? file.stem().string() : ShippedName(file);
   scenario.folder = file.parent_path();
   const config::KeyTable keys = ScenarioKeys(scenario);
   for (const config::Setting& setting : config::ReadTomlFile(file)) {

@@ -17,6 +17,11 @@ struct Scenario {
   struct {
     std::string model = "panda";
     std::vector<double> q_start{-0.30, -0.75, 0.0, -2.05, 0.0, 1.55, 0.485398};
+    std::vector<double> dq_start;  // empty: at rest
+    std::vector<double> spring;    // empty: none
+    std::vector<double> viscous;   // empty: the URDF's
+    std::vector<double> coulomb;   // empty: the URDF's
+    bool stiction = false;
     double friction_compensation = 0.9;
     double encoder_noise = 1e-5;
     double velocity_noise = 5e-4;
@@ -24,6 +29,7 @@ struct Scenario {
   } arm;
 
   struct {
+    bool enabled = true;
     int width_px = 640;
     int height_px = 480;
     double hfov_deg = 60.0;
@@ -52,7 +58,23 @@ struct Scenario {
 
   struct {
     std::vector<double> camera_outage_s{0.0, 0.0};
+    std::vector<double> push;  // empty: nothing pushes
+    std::vector<double> push_s{0.0, 0.0};
   } faults;
+
+  // A commanded motion of the joints: from + velocity t + amplitude sin(omega t).
+  struct {
+    std::string kind = "none";
+    std::vector<double> from;
+    std::vector<double> velocity;
+    std::vector<double> amplitude;
+    double omega = 1.0;
+  } motion;
+
+  struct {
+    bool enabled = false;
+    std::vector<double> fit_s{0.0, 1e6};
+  } theory;
 
   struct {
     std::string description;

@@ -18,6 +18,36 @@ std::string Figure(const std::optional<double>& value, const char* unit) {
   return value ? fmt::format("{:.3g} {}", *value, unit) : std::string("-");
 }
 
+ordered_json ToJson(const TheoryFigures& f) {
+  ordered_json poles = ordered_json::array();
+  for (const std::complex<double>& pole : f.poles) {
+    poles.push_back({pole.real(), pole.imag()});
+  }
+  return {{"zeta", OrNull(f.zeta)},
+          {"omega_n", OrNull(f.omega_n)},
+          {"settle_time_s", OrNull(f.settle_time_s)},
+          {"e_ss", f.e_ss},
+          {"poles", poles}};
+}
+
+ordered_json ToJson(const TheoryResult& theory) {
+  ordered_json json = ToJson(theory.run);
+  json["analytic"] = ToJson(theory.analytic);
+  json["residual_rms"] = theory.residual_rms;
+  json["residual_max"] = theory.residual_max;
+  json["error_max"] = theory.error_max;
+  return json;
+}
+
+std::string Poles(const TheoryFigures& f) {
+  std::string text;
+  for (const std::complex<double>& pole : f.poles) {
+    text += fmt::format("{}{:.3f}{}", text.empty() ? "" : ", ", pole.real(),
+                        pole.imag() == 0.0 ? "" : fmt::format("{:+.3f}i", pole.imag()));
+  }
+  return text.empty() ? "-" : text;
+}
+
 class Table {
  public:
   void Row(const std::string& name, const std::string& value) {
@@ -28,6 +58,24 @@ class Table {
  private:
   std::string text_;
 };
+
+}  // namespace
+
+namespace {
+
+void AddTheory(const TheoryResult& theory, Table& table) {
+  const auto row = [&](const char* name, const std::string& run, const std::string& analytic) {
+    table.Row(name, fmt::format("{:<24}theory {}", run, analytic));
+  };
+  row("zeta", Figure(theory.run.zeta, ""), Figure(theory.analytic.zeta, ""));
+  row("omega_n", Figure(theory.run.omega_n, "rad/s"), Figure(theory.analytic.omega_n, "rad/s"));
+  row("poles [1/s]", Poles(theory.run), Poles(theory.analytic));
+  row("settled after", Figure(theory.run.settle_time_s, "s"), Figure(theory.analytic.settle_time_s, "s"));
+  row("error that stays", Figure(theory.run.e_ss, "m"), Figure(theory.analytic.e_ss, "m"));
+  table.Row("from theory",
+            fmt::format("{:.2g} m rms, {:.2g} m at most", theory.residual_rms, theory.residual_max));
+  table.Row("largest error", fmt::format("{:.3g} m after the first second", theory.error_max));
+}
 
 }  // namespace
 
@@ -54,6 +102,9 @@ std::string ToJson(const Summary& s) {
   json["final_error_depth_mm"] = OrNull(s.final_error_depth_mm);
   json["final_error_deg"] = OrNull(s.final_error_deg);
   json["tracking_error_px_rms"] = OrNull(s.tracking_error_px_rms);
+  if (s.theory) {
+    json["theory"] = ToJson(*s.theory);
+  }
   json["limits"] = s.limits;
   json["limit_violations"] = s.limit_violations;
   json["limit_ticks"] = s.limit_ticks;
@@ -90,7 +141,9 @@ std::string ToTable(const Summary& s) {
   Table table;
   table.Row("scenario", fmt::format("{}, seed {}, {} pace", s.scenario, s.seed, s.pace));
   table.Row("verdict", s.verdict);
-  if (s.tracking_error_px_rms) {
+  if (s.theory) {
+    AddTheory(*s.theory, table);
+  } else if (s.tracking_error_px_rms) {
     table.Row("tracking error", Figure(s.tracking_error_px_rms, "px rms"));
   } else {
     table.Row("image error", fmt::format("{} at the start, {} at the end", Figure(s.start_error_px, "px"),
@@ -100,7 +153,9 @@ std::string ToTable(const Summary& s) {
                           Figure(s.final_error_lateral_mm, "mm"), Figure(s.final_error_depth_mm, "mm")));
     table.Row("settled after", Figure(s.settle_time_s, "s"));
   }
-  table.Row("frames", fmt::format("{}, target found in {}", s.frames, s.frames_detected));
+  if (s.frames > 0) {
+    table.Row("frames", fmt::format("{}, target found in {}", s.frames, s.frames_detected));
+  }
   std::string limits;
   for (const auto& [name, used] : s.limits) {
     limits += fmt::format("{}{} {:.0f} %", limits.empty() ? "" : ", ", name, 100.0 * used);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/theory/theory_run.hpp"
+
 namespace fovea::sim {
 
 struct FaultEvent {
@@ -39,6 +41,8 @@ struct Summary {
   std::optional<double> final_error_deg;  // none for a sphere, which has no orientation
   // Moving targets: over the second half.
   std::optional<double> tracking_error_px_rms;
+
+  std::optional<TheoryResult> theory;  // of a run beside its analytic answer
 
   std::map<std::string, double> limits;              // largest used fraction of each
   std::uint64_t limit_violations = 0;                // ticks with a fraction above 1

@@ -22,8 +22,10 @@ constexpr double kSettledShare = 0.02;  // settled: below this share of the firs
 Verdict::Verdict(const VerdictConfig& config) : config_(config) {}
 
 void Verdict::AddTruth(const Truth& truth) {
-  const TargetError error = ErrorOf(truth, config_.pinhole, config_.p_CO_C_star);
-  AddSample({truth.stamp_ns, error.error_px, error.error_C});
+  if (config_.has_eye) {
+    const TargetError error = ErrorOf(truth, config_.pinhole, config_.p_CO_C_star);
+    AddSample({truth.stamp_ns, error.error_px, error.error_C});
+  }
 
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
@@ -108,6 +110,7 @@ void Verdict::Fill(Summary& summary) const {
   summary.faults = faults_;
   summary.modes = modes_;
   if (window_.empty()) {
+    FillMotion(summary);
     return;
   }
   if (std::isfinite(*first_px_)) {
@@ -123,6 +126,16 @@ void Verdict::Fill(Summary& summary) const {
   } else if (summary.limit_violations > 0) {
     summary.verdict = fmt::format("converged, but in {} ticks a limit was passed", summary.limit_violations);
   }
+}
+
+// Without a target: what was commanded was followed, or not.
+void Verdict::FillMotion(Summary& summary) const {
+  const bool refused = has_record_ && before_.hold_reason == hal::HoldReason::kMotionRefused;
+  summary.converged = faults_.empty() && !refused && summary.limit_violations == 0;
+  summary.verdict = !faults_.empty()    ? "a fault stopped the arm: " + faults_.front().name
+                    : refused           ? "the commanded motion was refused (see modes and limits)"
+                    : summary.converged ? "the commanded motion was followed"
+                                        : "a limit was passed";
 }
 
 void Verdict::FillStill(Summary& summary) const {

@@ -20,6 +20,7 @@ struct VerdictConfig {
   model::ArmModel arm;
   Pinhole pinhole;
   Eigen::Vector3d p_CO_C_star = Eigen::Vector3d::Zero();  // [m]
+  bool has_eye = true;                                    // false: there is no target to judge by
   bool target_moves = false;
   double tracking_bound_px = 3.0;
   double duration_s = 8.0;         // of the run
@@ -46,6 +47,7 @@ class Verdict {
     Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal less truth, in axes of C [m]
   };
   void AddSample(const Sample& sample);
+  void FillMotion(Summary& summary) const;
   void FillStill(Summary& summary) const;
   void FillMoving(Summary& summary) const;
   [[nodiscard]] std::string WhyNot(const Summary& summary) const;

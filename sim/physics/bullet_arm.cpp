@@ -7,11 +7,13 @@
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
+#include <BulletCollision/CollisionShapes/btEmptyShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyJointMotor.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include <Eigen/Eigenvalues>
@@ -85,6 +87,9 @@ struct BulletArm::Impl {
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
   std::unique_ptr<btCollisionObject> table;
   std::unique_ptr<btMultiBody> body;
+  std::vector<std::unique_ptr<btMultiBodyJointMotor>> stiction;  // per moving joint, or none
+  Eigen::VectorXd coulomb;                                       // their largest torques
+  double last_dt = 1.0;
 
   SimRobot robot;
   std::vector<PrincipalBody> principal;  // per link of the robot
@@ -98,6 +103,9 @@ struct BulletArm::Impl {
   btAlignedObjectArray<btQuaternion> scratch_q;
 
   ~Impl() {
+    for (const auto& motor : stiction) {
+      world.removeMultiBodyConstraint(motor.get());
+    }
     world.removeMultiBody(body.get());
     for (const auto& collider : colliders) {
       world.removeCollisionObject(collider.get());
@@ -203,6 +211,16 @@ struct BulletArm::Impl {
     }
   }
 
+  // Bullet solves constraints only of bodies that have a collider; this one touches nothing.
+  void AddEmptyCollider() {
+    shapes.push_back(std::make_unique<btEmptyShape>());
+    auto collider = std::make_unique<btMultiBodyLinkCollider>(body.get(), 0);
+    collider->setCollisionShape(shapes.back().get());
+    body->getLink(0).m_collider = collider.get();
+    world.addCollisionObject(collider.get(), /*collisionFilterGroup=*/0, /*collisionFilterMask=*/0);
+    colliders.push_back(std::move(collider));
+  }
+
   void ReadState() {
     for (int i = 0; i < robot.num_dofs; ++i) {
       const int link = dof_link[static_cast<std::size_t>(i)];
@@ -246,7 +264,36 @@ void BulletArm::SetState(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) {
   impl_->ReadState();
 }
 
+// A motor that wants standstill and has no more torque than this is Coulomb's friction.
+void BulletArm::SetStiction(const Eigen::VectorXd& coulomb) {
+  Impl& m = *impl_;
+  m.coulomb = coulomb;
+  if (m.colliders.empty()) {
+    m.AddEmptyCollider();
+  }
+  for (int i = 0; i < num_dofs(); ++i) {
+    m.stiction.push_back(
+        std::make_unique<btMultiBodyJointMotor>(m.body.get(), m.dof_link[static_cast<std::size_t>(i)],
+                                                /*desiredVelocity=*/0.0, /*maxMotorImpulse=*/0.0));
+    m.stiction.back()->finalizeMultiDof();
+    m.world.addMultiBodyConstraint(m.stiction.back().get());
+  }
+}
+
+Eigen::VectorXd BulletArm::StictionTorque() const {
+  const Impl& m = *impl_;
+  Eigen::VectorXd tau = Eigen::VectorXd::Zero(num_dofs());
+  for (std::size_t i = 0; i < m.stiction.size(); ++i) {
+    tau[static_cast<Eigen::Index>(i)] = m.stiction[i]->getAppliedImpulse(0) / m.last_dt;
+  }
+  return tau;
+}
+
 void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
+  for (std::size_t i = 0; i < impl_->stiction.size(); ++i) {
+    impl_->stiction[i]->setMaxAppliedImpulse(impl_->coulomb[static_cast<Eigen::Index>(i)] * dt);
+  }
+  impl_->last_dt = dt;
   impl_->ApplyTorque(tau);
   impl_->world.stepSimulation(dt, 0);
   impl_->ReadState();

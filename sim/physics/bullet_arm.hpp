@@ -36,6 +36,12 @@ class BulletArm {
   [[nodiscard]] const Eigen::VectorXd& q() const;
   [[nodiscard]] const Eigen::VectorXd& dq() const;
 
+  // From now on friction of `coulomb` [Nm, N] >= 0 in each joint: it takes away what speed it can, and holds
+  // a joint at rest that no more than this pulls at.
+  void SetStiction(const Eigen::VectorXd& coulomb);
+  // That friction's torque on the joints in the last step [Nm, N].
+  [[nodiscard]] Eigen::VectorXd StictionTorque() const;
+
   // Moves on by `dt` [s] under the joint torques `tau` [Nm, N], gravity and contact.
   void Step(const Eigen::VectorXd& tau, double dt);
 

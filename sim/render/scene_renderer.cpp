@@ -137,7 +137,7 @@ struct SceneRenderer::Impl {
     for (std::size_t i = 0; i < scene.robot.links.size(); ++i) {
       const SimLink& link = scene.robot.links[i];
       const Isometry3f X_EC = scene.X_EC.cast<float>();
-      const Isometry3f* camera = static_cast<int>(i) == scene.robot.tip ? &X_EC : nullptr;
+      const Isometry3f* camera = scene.has_eye && static_cast<int>(i) == scene.robot.tip ? &X_EC : nullptr;
       const std::vector<Mesh> seen = MakeParts(link, camera, Detail::kPicture);
       const std::vector<Mesh> casters = MakeParts(link, camera, Detail::kShadow);
       std::vector<Bounds> shapes;
@@ -171,6 +171,9 @@ struct SceneRenderer::Impl {
   }
 
   Ball Target(const Exposure& exposure) const {
+    if (!scene.has_eye) {
+      return {Vector3f(0.0F, 0.0F, -10.0F), 1e-3F, scene.target_colour};  // far under the table
+    }
     return {exposure.p_BO.cast<float>(), static_cast<float>(scene.target_radius), scene.target_colour};
   }
 

@@ -26,7 +26,8 @@ struct RenderScene {
   Bench bench;
   SimRobot robot;
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();  // where the camera's housing sits on the tip link
-  double target_radius = 0.04;                             // [m]
+  bool has_eye = true;          // false: neither the camera's housing nor its target are there
+  double target_radius = 0.04;  // [m]
   Eigen::Vector3f target_colour{0.74F, 0.07F, 0.06F};
   double light = 1.0;  // brightness; 1: a well-lit room and a well-set camera
 };

@@ -39,7 +39,15 @@ World::World(const WorldConfig& config)
       stiction_speed_.push_back(std::max(kStictionSpeed, left * link.coulomb / most));
     }
   }
-  arm_.SetState(config_.q_start, Eigen::VectorXd::Zero(arm_.num_dofs()));
+  arm_.SetState(config_.q_start,
+                config_.dq_start.size() > 0 ? config_.dq_start : Eigen::VectorXd::Zero(arm_.num_dofs()));
+  if (config_.stiction) {
+    Eigen::VectorXd left(arm_.num_dofs());
+    for (Eigen::Index i = 0; i < left.size(); ++i) {
+      left[i] = (1.0 - config_.friction_compensation) * joints_[static_cast<std::size_t>(i)]->coulomb;
+    }
+    arm_.SetStiction(left);
+  }
   command_.num_joints = arm_.num_dofs();
   measured_.num_joints = arm_.num_dofs();
   RecordTruth();
@@ -79,9 +87,25 @@ void World::Step() {
   }
 }
 
-// What the robot's own controller leaves of a joint's friction [N m, N].
+// Springs, and what pushes the joints from outside.
+Eigen::VectorXd World::Pulls() const {
+  Eigen::VectorXd tau = Eigen::VectorXd::Zero(arm_.num_dofs());
+  if (config_.spring.size() > 0) {
+    tau -= config_.spring.cwiseProduct(arm_.q());
+  }
+  const double now_s = static_cast<double>(now_ns_) * 1e-9;
+  if (config_.push.tau.size() > 0 && now_s >= config_.push.start_s && now_s < config_.push.end_s) {
+    tau += config_.push.tau;
+  }
+  return tau;
+}
+
+// What the robot's own controller leaves of a joint's friction [N m, N], but for what physics does about it.
 double World::FrictionLeft(int joint, double velocity) const {
   const auto k = static_cast<std::size_t>(joint);
+  if (config_.stiction) {
+    return viscous_[k] * velocity;
+  }
   return viscous_[k] * velocity + (1.0 - config_.friction_compensation) * joints_[k]->coulomb *
                                       std::tanh(velocity / stiction_speed_[k]);
 }
@@ -89,7 +113,7 @@ double World::FrictionLeft(int joint, double velocity) const {
 // What acts on the joints: the command, what the robot's own controller adds (gravity, and friction as far
 // as it knows it), and the friction itself.
 Eigen::VectorXd World::JointTorque() const {
-  Eigen::VectorXd tau = arm_.GravityTorque();
+  Eigen::VectorXd tau = arm_.GravityTorque() + Pulls();
   for (int i = 0; i < arm_.num_dofs(); ++i) {
     tau[i] += command_.tau_cmd[static_cast<std::size_t>(i)] - FrictionLeft(i, arm_.dq()[i]);
   }
@@ -111,12 +135,13 @@ void World::MeasureState() {
   measured_.stamp_ns = now_ns_;
   ++measured_.sequence;
   const Eigen::VectorXd gravity = arm_.GravityTorque();
+  const Eigen::VectorXd stiction = arm_.StictionTorque();
   for (int i = 0; i < arm_.num_dofs(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     measured_.q[k] = arm_.q()[i] + config_.encoder_noise * normal_(random_);
     measured_.dq[k] = arm_.dq()[i] + config_.velocity_noise * normal_(random_);
     measured_.tau_applied[k] = command_.tau_cmd[k];
-    measured_.tau_meas[k] = command_.tau_cmd[k] + gravity[i] - FrictionLeft(i, arm_.dq()[i]);
+    measured_.tau_meas[k] = command_.tau_cmd[k] + gravity[i] - FrictionLeft(i, arm_.dq()[i]) + stiction[i];
   }
 }
 

@@ -20,13 +20,24 @@ struct Outage {
   double end_s = 0.0;
 };
 
+// Something that pulls at the joints for a while.
+struct JointPush {
+  Eigen::VectorXd tau;  // [num_dofs] torques [Nm, N]; empty: nothing does
+  double start_s = 0.0;
+  double end_s = 0.0;
+};
+
 struct WorldConfig {
   SimRobot robot;
   BulletArmOptions physics;
-  Eigen::VectorXd q_start;  // [num_dofs]
+  Eigen::VectorXd q_start;   // [num_dofs]
+  Eigen::VectorXd dq_start;  // [num_dofs]; empty: at rest
+  Eigen::VectorXd spring;    // [num_dofs] pulls each joint to 0 [Nm/rad, N/m]; empty: none does
+  JointPush push;
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
   double friction_compensation =
       0.9;                      // share of the joints' friction that the robot's own controller takes away
+  bool stiction = false;        // Coulomb friction holds a joint at rest; else it is smooth about rest
   double encoder_noise = 0.0;   // standard deviation of q [rad]
   double velocity_noise = 0.0;  // standard deviation of dq [rad/s]
   TargetMotion target;
@@ -78,6 +89,7 @@ class World {
   void ExposeIfDue();
   [[nodiscard]] Eigen::VectorXd JointTorque() const;
   [[nodiscard]] double FrictionLeft(int joint, double velocity) const;
+  [[nodiscard]] Eigen::VectorXd Pulls() const;
 
   WorldConfig config_;
   BulletArm arm_;

@@ -1,6 +1,6 @@
 // Opens a report as a person would, wide and narrow, and on paper: every part is drawn, nothing is fetched, nothing
 // is complained of, nothing sticks out. Leaves pictures of what it saw.
-//   node open_report.mjs REPORT.html FOLDER
+//   node open_report.mjs REPORT.html FOLDER [theory]
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -9,7 +9,7 @@ import { pathToFileURL } from "node:url";
 
 import { chromium } from "playwright-core";
 
-const [report, folder] = process.argv.slice(2);
+const [report, folder] = process.argv.slice(2, 4);
 const name = path.basename(report, ".html");
 const url = pathToFileURL(path.resolve(report)).href;
 const program = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(fs.existsSync);
@@ -43,7 +43,17 @@ async function changes(place, what, act) {
   assert.fail(what);
 }
 
-const parts = ["verdict", "eye", "error", "path", "joints", "timeline", "ticks", "config"];
+// A run without a camera has no eye; a run beside theory has a section for it.
+const kind = process.argv[4] ?? "eye";
+const parts = [
+  "verdict",
+  ...(kind === "eye" ? ["eye", "error"] : [kind]),
+  "path",
+  "joints",
+  "timeline",
+  "ticks",
+  "config",
+];
 try {
   for (const [width, height] of [
     [1280, 900],
@@ -80,7 +90,7 @@ try {
         [...document.querySelectorAll(`#${id} canvas`)].filter((c) => c.width > 0 && drawn(c)).length;
       const videos = [...document.querySelectorAll("video")];
       return {
-        plots: Object.fromEntries(["error", "path", "joints"].map((id) => [id, plots(id)])),
+        plots: Object.fromEntries(["error", "theory", "path", "joints"].map((id) => [id, plots(id)])),
         marks: Object.fromEntries(
           ["ticks", "timeline"].map((id) => [
             id,
@@ -103,16 +113,24 @@ try {
     assert.deepEqual(said, [], "the console is silent");
     assert.deepEqual(asked, [], "nothing is fetched");
     assert.ok(seen.words > 100);
-    assert.ok(seen.plots.error >= 1 && seen.plots.path >= 1 && seen.plots.joints >= 3, "plots are drawn");
+    assert.ok(seen.plots.path >= 1 && seen.plots.joints >= 3, "plots are drawn");
+    if (kind === "eye") {
+      assert.ok(seen.plots.error >= 1, "the error is drawn");
+      assert.ok(seen.images >= 2, "first and last frame");
+      assert.ok(seen.videos.length >= 1 && seen.videos.every((duration) => duration > 1), "the film can be played");
+    } else {
+      assert.ok(seen.plots[kind] >= 2, "the response is drawn over the analytic one, and what is between them");
+      assert.equal(seen.images + seen.videos.length, 0, "nothing was seen");
+    }
     assert.ok(seen.marks.ticks >= 10 && seen.marks.timeline >= 3, "histogram and time axis are drawn");
-    assert.ok(seen.images >= 2, "first and last frame");
-    assert.ok(seen.videos.length >= 1 && seen.videos.every((duration) => duration > 1), "the film can be played");
     assert.equal(seen.sideways, 0, "nothing sticks out to the side");
     assert.deepEqual(seen.absent, [], "nothing is missing from a whole run");
     if (width === 1280) {
-      await changes(page.locator("#error canvas").first(), "a logarithmic scale changes the plot", () =>
-        page.locator("#error").getByText("Logarithmic").click(),
-      );
+      if (kind === "eye") {
+        await changes(page.locator("#error canvas").first(), "a logarithmic scale changes the plot", () =>
+          page.locator("#error").getByText("Logarithmic").click(),
+        );
+      }
       const scene = page.locator("#path canvas");
       await changes(scene, "dragging turns the bench", async () => {
         const box = await scene.boundingBox();

@@ -38,8 +38,10 @@ Fovea.decode = function (run) {
   const measured = run.measured || {};
   run.measured = {};
   for (const key of ["t_s", "error_px", "age_ms", "confidence"]) run.measured[key] = Fovea.floats(measured[key]);
+  if (run.theory) for (const key of ["t_s", "x", "goal", "analytic"]) run.theory[key] = Fovea.floats(run.theory[key]);
   for (const key of ["modes", "faults", "limits_active", "joints"]) run[key] = list(run[key]);
   run.info = run.info || {};
+  run.has_eye = !!run.target;
   run.target = run.target || {};
   if (!Number.isFinite(run.duration_s)) {
     const last = (times) => (times && times.length ? times[times.length - 1] : 0);

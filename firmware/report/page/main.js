@@ -4,6 +4,7 @@
   const sections = [
     ["verdict", "verdict"],
     ["eye", "eye"],
+    ["theory", "theory"],
     ["error", "error"],
     ["joints", "joints"],
     ["timeline", "timeline"],
@@ -11,6 +12,16 @@
     ["config", "config"],
     ["path", "armView"],
   ];
+
+  // What no run of this page has, and the way to it.
+  function dropSection(id) {
+    document.getElementById(id).remove();
+    document.querySelector(`a[href="#${id}"]`).remove();
+    sections.splice(
+      sections.findIndex(([name]) => name === id),
+      1,
+    );
+  }
 
   // A section that cannot be drawn says so, and leaves the others alone.
   function draw([id, name]) {
@@ -32,6 +43,8 @@
       document.querySelector("main").prepend(Fovea.absent("This page holds no run."));
       return;
     }
+    if (!Fovea.runs.some((run) => run.theory)) dropSection("theory");
+    if (!Fovea.runs.some((run) => run.has_eye)) ["eye", "error"].forEach(dropSection);
     Fovea.clock.duration = Math.max(0.001, ...Fovea.runs.map((run) => run.duration_s));
     Fovea.clock.span = [0, Fovea.clock.duration];
     const waiting = sections.slice();

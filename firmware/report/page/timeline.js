@@ -8,6 +8,7 @@ Fovea.timeline = (function () {
     hold: "standing still and waiting",
     track: "steering to the target",
     coast: "steering on the prediction alone",
+    move: "following a commanded motion",
     fault: "stopped by a fault",
   };
   const modeWords = (m) => (MODES[m.mode] || words(m.mode)) + (m.reason ? ` (${words(m.reason)})` : "");
@@ -63,7 +64,7 @@ Fovea.timeline = (function () {
       });
     }
     for (const run of runs) {
-      const spans = lostSpans(run);
+      const spans = run.has_eye && lostSpans(run);
       if (spans) rows.push({ name: "pictures without target" + suffix(run), spans, empty: "none" });
     }
     const names = Array.from(new Set(runs.flatMap((run) => run.limits_active.map((l) => l.name)))).sort();

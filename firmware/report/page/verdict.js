@@ -61,10 +61,11 @@ Fovea.verdict = (function () {
       note: (s.faults || run.faults).map((f) => words(f.name)).join(", ") || "none",
       count: true,
     });
-    add("lost", "Frames without target", s.frames_lost, "", {
-      note: Number.isFinite(s.frames) ? `of ${s.frames} frames` : "",
-      count: true,
-    });
+    if (run.has_eye)
+      add("lost", "Frames without target", s.frames_lost, "", {
+        note: Number.isFinite(s.frames) ? `of ${s.frames} frames` : "",
+        count: true,
+      });
     add("overruns", "Overruns of the tick", s.overruns, "", {
       note: Number.isFinite(s.ticks) ? `in ${s.ticks} ticks, ${s.missed_ticks || 0} missed` : "",
       count: true,
@@ -177,7 +178,7 @@ Fovea.verdict = (function () {
       const parts = [
         run.info.robot ? `robot ${run.info.robot}` : null,
         `${number(run.duration_s)} s`,
-        run.lambda ? `gain λ = ${number(run.lambda, 2)} 1/s` : null,
+        run.lambda && run.has_eye ? `gain λ = ${number(run.lambda, 2)} 1/s` : null,
         s.pace ? `pace ${s.pace}` : null,
         Number.isFinite(s.seed) ? `seed ${s.seed}` : null,
         run.source ? `from ${run.source}` : null,

@@ -100,6 +100,10 @@ struct RunData {
   // Columns of `measured`.
   enum MeasuredColumn : std::uint8_t { kMeasuredPx, kAgeMs, kConfidence, kNumMeasuredColumns };
   Envelope measured{kNumMeasuredColumns, 1500};
+  // Columns of `theory`: a one-joint arm, its goal, and its analytic answer; empty for all other runs.
+  enum TheoryColumn : std::uint8_t { kTheoryX, kTheoryGoal, kTheoryAnalytic, kNumTheoryColumns };
+  Envelope theory{kNumTheoryColumns, 1500};
+  bool has_theory = false;
   std::vector<ModeChange> modes;
   std::vector<FaultNote> faults;
   std::vector<LimitSpans> limits_active;

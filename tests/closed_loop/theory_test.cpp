@@ -1,0 +1,106 @@
+// One degree of freedom in Bullet beside its analytic answers (the exercises of part A).
+#include <cmath>
+#include <complex>
+
+#include "closed_loop/closed_loop.hpp"
+
+namespace fovea::test {
+namespace {
+
+constexpr double kOnePercent = 0.01;
+constexpr double kPoles = 0.05;
+
+sim::TheoryResult RunTheory(const std::string& name) {
+  const sim::Summary s = RunShipped("theory/" + name);
+  ExpectSound(s);
+  EXPECT_TRUE(s.converged) << s.verdict;
+  const sim::TheoryResult& t = s.theory.value();
+  std::cout << name << ": zeta " << t.run.zeta.value_or(NAN) << ", omega_n " << t.run.omega_n.value_or(NAN)
+            << ", settled after " << t.run.settle_time_s.value_or(NAN) << " s, e_ss " << t.run.e_ss
+            << " m, poles";
+  for (const std::complex<double>& pole : t.run.poles) {
+    std::cout << ' ' << pole;
+  }
+  std::cout << "; from theory " << 1e3 * t.residual_rms << " mm rms, " << 1e3 * t.residual_max
+            << " mm at most\n";
+  return t;
+}
+
+void ExpectPoles(const sim::TheoryFigures& figures, const std::vector<std::complex<double>>& poles) {
+  ASSERT_EQ(figures.poles.size(), poles.size());
+  for (std::size_t i = 0; i < poles.size(); ++i) {
+    EXPECT_LE(std::abs(figures.poles[i] - poles[i]), kPoles * std::abs(poles[i]));
+  }
+}
+
+// 16 kg, 16 N s/m, 4 N/m.
+TEST(Theory, OpenLoopIsCriticallyDampedAtHalfARadian) {
+  const sim::TheoryResult t = RunTheory("open-loop");
+  EXPECT_NEAR(t.run.zeta.value(), 1.0, kOnePercent);
+  EXPECT_NEAR(t.run.omega_n.value(), 0.5, kOnePercent * 0.5);
+  EXPECT_NEAR(t.run.settle_time_s.value(), 5.8339 / 0.5, kOnePercent * 5.8339 / 0.5);
+  ExpectPoles(t.run, {-0.5, -0.5});
+  EXPECT_LT(t.residual_max, 1e-3);
+}
+
+TEST(Theory, PdRegulatorHasTheStiffnessThatWasAskedFor) {
+  const sim::TheoryResult t = RunTheory("pd-regulator");
+  EXPECT_NEAR(t.run.zeta.value(), 1.0, kOnePercent);
+  EXPECT_NEAR(t.run.omega_n.value(), 1.0, kOnePercent);
+  EXPECT_NEAR(t.run.settle_time_s.value(), 5.8339, kOnePercent * 5.8339);
+  ExpectPoles(t.run, {-1.0, -1.0});
+  EXPECT_LT(t.residual_max, 1e-3);
+}
+
+TEST(Theory, PartitionLawHasItsPolesAgainstDryFriction) {
+  const sim::TheoryResult t = RunTheory("trajectory-friction");
+  EXPECT_NEAR(t.run.zeta.value(), 1.0, kOnePercent);
+  EXPECT_NEAR(t.run.omega_n.value(), 1.0, kOnePercent);
+  EXPECT_NEAR(t.run.settle_time_s.value(), 5.8339, kOnePercent * 5.8339);
+  ExpectPoles(t.run, {-1.0, -1.0});
+  EXPECT_LT(t.residual_max, 1e-3);
+}
+
+TEST(Theory, ReversalsAgainstDryFrictionLeaveMillimetres) {
+  const sim::TheoryResult t = RunTheory("trajectory-reversal");
+  std::cout << "largest error at the turns: " << 1e3 * t.error_max << " mm\n";
+  EXPECT_LT(t.error_max, 1.5e-3);
+  // Without the reference's sign at standstill, or without any compensation, it is hundreds of times that.
+  const sim::TheoryResult bare =
+      RunShipped("theory/trajectory-reversal", {"servo.friction_compensation=0"}).theory.value();
+  EXPECT_GT(bare.error_max, 0.2);
+}
+
+TEST(Theory, AConstantForceLeavesHalfAMetre) {
+  const sim::TheoryResult t = RunTheory("disturbance");
+  EXPECT_NEAR(t.run.e_ss, 0.5, kOnePercent * 0.5);
+  EXPECT_NEAR(t.run.zeta.value(), 1.0, kOnePercent);
+  EXPECT_NEAR(t.run.omega_n.value(), 1.0, kOnePercent);
+  EXPECT_NEAR(t.run.settle_time_s.value(), 5.8339, kOnePercent * 5.8339);
+  ExpectPoles(t.run, {-1.0, -1.0});
+}
+
+TEST(Theory, AnIntegralTakesItAway) {
+  const sim::TheoryResult t = RunTheory("disturbance-integral");
+  EXPECT_LT(std::fabs(t.run.e_ss), 1e-5);
+  ASSERT_EQ(t.analytic.poles.size(), 3U);
+  ExpectPoles(t.run, t.analytic.poles);
+  EXPECT_LT(t.residual_max, 1e-3);
+}
+
+TEST(Theory, LessThanStictionMovesNothing) {
+  const sim::TheoryResult t = RunTheory("disturbance-stiction");
+  EXPECT_EQ(t.run.e_ss, 0.0);
+  EXPECT_EQ(t.residual_max, 0.0);
+  // The same push where friction is less than it.
+  const sim::TheoryResult moved =
+      RunShipped("theory/disturbance-stiction", {"arm.coulomb=[7]"}).theory.value();
+  EXPECT_GT(std::fabs(moved.run.e_ss), 0.01);
+}
+
+TEST(Theory, OnlyAOneJointArmHasAnAnalyticAnswer) {
+  EXPECT_THROW(RunShipped("ball", {"theory.enabled=true"}), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace fovea::test
