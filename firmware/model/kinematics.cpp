@@ -62,4 +62,32 @@ void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const V
   }
 }
 
+Vec6 BiasAcceleration(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept {
+  // Joint by joint outwards: angular velocity w and acceleration alpha, and acceleration a of the point at p.
+  Vec3 w = Vec3::Zero();
+  Vec3 alpha = Vec3::Zero();
+  Vec3 a = Vec3::Zero();
+  Vec3 p = Vec3::Zero();
+  const auto move_to = [&](const Vec3& to) {
+    const Vec3 r = to - p;
+    a += Cross(alpha, r) + Cross(w, Cross(w, r));
+    p = to;
+  };
+  for (int i = 0; i < model.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Vec3 axis = poses.X_BL[k].R.col(2);
+    move_to(poses.X_BL[k].p);
+    if (model.joints[k].type == JointType::kRevolute) {
+      alpha += Cross(w, axis) * dq[i];
+      w += axis * dq[i];
+    } else {
+      a += 2.0 * Cross(w, axis) * dq[i];  // Coriolis, of the link that slides along the turning axis
+    }
+  }
+  move_to(poses.X_BE.p);
+  Vec6 bias;
+  bias << a, alpha;
+  return bias;
+}
+
 }  // namespace fovea::model

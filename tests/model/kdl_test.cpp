@@ -10,6 +10,7 @@
 #include <kdl/chaindynparam.hpp>
 #include <kdl/chainfksolverpos_recursive.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
+#include <kdl/chainjnttojacdotsolver.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
 #include "fovea/model/dynamics.hpp"
@@ -105,6 +106,28 @@ TEST_P(KdlTest, PosesAndJacobianAgree) {
             << worst_jacobian << "\n";
   EXPECT_LT(worst_pose, 1e-14);
   EXPECT_LT(worst_jacobian, 1e-14);
+}
+
+TEST_P(KdlTest, BiasAccelerationAgrees) {
+  const model::ArmModel& arm = robot_.model;
+  KDL::ChainJntToJacDotSolver solver(chain_);
+  solver.setHybridRepresentation();  // of E's origin, in axes of B
+  double worst = 0.0;
+  for (int k = 0; k < kStates; ++k) {
+    const model::VecN q = random_.Position(arm);
+    const model::VecN dq = random_.Joints(arm, 2.0);
+    model::ArmPoses poses;
+    model::ComputePoses(arm, q, poses);
+    const model::Vec6 bias = model::BiasAcceleration(arm, poses, dq);
+    KDL::Twist of_kdl;
+    ASSERT_GE(solver.JntToJacDot(KDL::JntArrayVel(ToKdl(q), ToKdl(dq)), of_kdl), 0);
+    for (int r = 0; r < 3; ++r) {
+      worst = std::max(worst, std::abs(bias[r] - of_kdl.vel[r]));
+      worst = std::max(worst, std::abs(bias[r + 3] - of_kdl.rot[r]));
+    }
+  }
+  std::cout << "worst difference over " << kStates << " states: " << worst << "\n";
+  EXPECT_LT(worst, 1e-11);
 }
 
 TEST_P(KdlTest, DynamicsAgree) {

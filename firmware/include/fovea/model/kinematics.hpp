@@ -28,4 +28,8 @@ using LinearJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor,
 void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const Vec3& p_B,
                            LinearJacobian& J_B) noexcept;
 
+// What the end effector's acceleration owes to the joints' velocities alone: dJ/dt dq [m/s^2, rad/s^2],
+// linear first, of E's origin, in axes of B. Real-time: yes.
+[[nodiscard]] Vec6 BiasAcceleration(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept;
+
 }  // namespace fovea::model
