@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "fovea/config/input_error.hpp"
 #include "fovea/servo/servo_task.hpp"
 
@@ -42,9 +44,35 @@ void AddLawKeys(ServoSettings& settings, KeyTable& keys) {
               "limits keep the arm from the goal for so long: Hold");
   keys.Number("servo.unreachable_progress", c.unreachable_progress, 0.0, 1.0, "",
               "kept from it means that less than this share of the wanted motion is left");
-  keys.Number("servo.omega_n", settings.config.motion_law.omega_n, 0.1, 300.0, "rad/s",
-              "natural frequency of the joints' error");
-  keys.Number("servo.zeta", settings.config.motion_law.zeta, 0.1, 10.0, "", "damping of the joints' error");
+}
+
+void AddMotionLawKeys(ServoSettings& settings, KeyTable& keys) {
+  servo::MotionLawConfig& c = settings.config.motion_law;
+  std::vector<std::string> laws;
+  for (const servo::MotionLawEntry& law : servo::kMotionLaws) {
+    laws.emplace_back(law.name);
+  }
+  keys.Choice("servo.motion_law", settings.motion_law, laws,
+              "how the joints follow their reference; float: not at all, to be led by hand");
+  keys.Number("servo.omega_n", c.omega_n, 0.1, 300.0, "rad/s", "natural frequency of the joints' error");
+  keys.Number("servo.zeta", c.zeta, 0.1, 10.0, "", "damping of the joints' error");
+  keys.Number("servo.integral", c.integral, 0.0, 100.0, "1/s",
+              "computed_torque: how fast an error that stays is made up for; 0: not");
+  keys.Number("servo.integral_torque_fraction", c.integral_torque_fraction, 0.0, 1.0, "",
+              "with at most this share of a joint's torque");
+  keys.Numbers("servo.k_p", settings.k_p, 1, model::kMaxJoints, 0.0, 1e6, "Nm/rad",
+               "pd and joint_impedance: stiffness, one per joint; from servo.omega_n when not given");
+  keys.Numbers("servo.k_v", settings.k_v, 1, model::kMaxJoints, 0.0, 1e6, "Nm s/rad",
+               "and damping, one per joint; from servo.zeta when not given");
+  keys.Number("servo.friction_compensation", c.friction_compensation, 0.0, 1.0, "",
+              "share of the joints' friction that the servo makes up for, where the robot does not");
+  keys.Number("servo.friction_width", c.friction_width, 1e-9, 10.0, "rad/s",
+              "the sign of a speed is smooth within this");
+  keys.Number("servo.friction_slow", c.friction_slow, 1e-9, 10.0, "rad/s",
+              "below it the sign of the wanted speed has the say");
+  keys.Number("servo.operational_damping", c.operational_damping, 1e-9, 1.0, "",
+              "operational_space: damping near a singularity, relative to the inertia's size");
+  keys.Number("servo.change_s", c.change_s, 0.001, 10.0, "s", "one law takes over from another in this time");
 }
 
 void AddGuardKeys(servo::GuardConfig& c, KeyTable& keys) {
@@ -74,6 +102,12 @@ void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
                "a joint value that is no number is bridged for so long, then: Fault");
   keys.Integer("safety.missed_ticks", c.missed_ticks, 1, 10000, "ms",
                "so many deadlines missed in a row: Fault");
+  keys.Integer("safety.boot_ticks", c.boot_ticks, 1, 10000, "ms",
+               "the arm must have been sound for so long before it is moved");
+  keys.Number("safety.boot_velocity", c.boot_velocity, 1e-6, 1e3, "rad/s",
+              "and every joint slower than this");
+  keys.Number("safety.setpoint_jump", c.setpoint_jump, 0.0, 1e3, "rad",
+              "commanded setpoints start this close to where the arm stands, and go on so");
   keys.Number("safety.following_error", c.following_error, 1e-4, 10.0, "rad",
               "a joint further off its reference: Fault");
   keys.Number("safety.fault_damping", c.fault_damping, 0.1, 100.0, "1/s", "of the stop after a fault");
@@ -102,10 +136,45 @@ void CheckTogether(const servo::ServoConfig& c) {
   }
 }
 
+void CheckSize(const char* key, const std::vector<double>& values, const robots::Robot& robot) {
+  if (!values.empty() && static_cast<int>(values.size()) != robot.model.num_joints) {
+    throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", key, values.size(),
+                                 robot.name, robot.model.num_joints));
+  }
+}
+
+void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, servo::MotionLawConfig& c) {
+  for (const servo::MotionLawEntry& law : servo::kMotionLaws) {
+    if (settings.motion_law == law.name) {
+      c.kind = law.kind;
+      if (robot.model.num_joints < law.joints_min) {
+        throw InputError(
+            fmt::format("servo.motion_law = \"{}\" is not allowed: it takes {} joints, arm \"{}\" has {}",
+                        law.name, law.joints_min, robot.name, robot.model.num_joints));
+      }
+    }
+  }
+  CheckSize("servo.k_p", settings.k_p, robot);
+  CheckSize("servo.k_v", settings.k_v, robot);
+  model::ArmPoses poses;
+  model::ArmDynamics dynamics;
+  const model::VecN q = model::ToVector(robot.model.q_ready, robot.model.num_joints);
+  model::ComputePoses(robot.model, q, poses);
+  model::ComputeDynamics(robot.model, poses, model::VecN::Zero(q.size()), dynamics);
+  c.damp_by_inertia = settings.k_v.empty();
+  for (int i = 0; i < robot.model.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double inertia = dynamics.M(i, i);
+    c.k_p[k] = settings.k_p.empty() ? inertia * c.omega_n * c.omega_n : settings.k_p[k];
+    c.k_v[k] = settings.k_v.empty() ? 2.0 * c.zeta * std::sqrt(c.k_p[k] * inertia) : settings.k_v[k];
+  }
+}
+
 }  // namespace
 
 void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
   AddLawKeys(settings, keys);
+  AddMotionLawKeys(settings, keys);
   AddPredictKeys(settings.config.predict, keys);
   AddGuardKeys(settings.config.guard, keys);
   AddFaultKeys(settings.config.safety, keys);
@@ -142,15 +211,13 @@ servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::
   config.feature.radius = target_radius;
   config.feature.p_CO_C_star = model::Vec3(settings.goal[0], settings.goal[1], settings.goal[2]);
   config.law.q_posture = robot.model.q_ready;
+  CheckSize("servo.posture", settings.posture, robot);
   if (!settings.posture.empty()) {
-    if (static_cast<int>(settings.posture.size()) != robot.model.num_joints) {
-      throw InputError(fmt::format("servo.posture has {} entries, arm \"{}\" has {} joints",
-                                   settings.posture.size(), robot.name, robot.model.num_joints));
-    }
     for (std::size_t i = 0; i < settings.posture.size(); ++i) {
       config.law.q_posture[i] = settings.posture[i];
     }
   }
+  SetMotionLaw(settings, robot, config.motion_law);
   CheckTogether(config);
   servo::ServoTask probe;
   if (const hal::Status status = probe.Init(config); !status.ok()) {

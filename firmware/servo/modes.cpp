@@ -1,82 +1,103 @@
 #include "fovea/servo/modes.hpp"
 
+#include <array>
+
 namespace fovea::servo {
 namespace {
 
 using hal::HoldReason;
 using hal::Mode;
+using F = ModeFacts;
+
+constexpr ModeEdge FromAny(const char* words, bool (*when)(const F&), Mode to) {
+  return {true, Mode::kBoot, words, when, to, HoldReason::kNone};
+}
+constexpr ModeEdge From(Mode from, const char* words, bool (*when)(const F&), Mode to,
+                        HoldReason reason = HoldReason::kNone) {
+  return {false, from, words, when, to, reason};
+}
+
+// The first that fits is taken.
+// clang-format off
+constexpr std::array kEdges{
+    FromAny(            "a fault is found",                   [](const F& f) { return f.fault; },            Mode::kFault),
+    From(Mode::kFault,  "reset is asked for",                 [](const F& f) { return f.request == Request::kReset; }, Mode::kBoot),
+    From(Mode::kBoot,   "the arm is sound and at rest, track is asked for", [](const F& f) { return f.ready && f.asked; }, Mode::kHold, HoldReason::kNoTarget),
+    From(Mode::kBoot,   "the arm is sound and at rest",       [](const F& f) { return f.ready; },            Mode::kHold, HoldReason::kNotAsked),
+
+    From(Mode::kHold,   "goal unreachable, the target has not moved", [](const F& f) { return f.asked && f.hold_reason == HoldReason::kGoalUnreachable && !f.moved; }, Mode::kHold, HoldReason::kGoalUnreachable),
+    From(Mode::kHold,   "track is asked for, the target seen", [](const F& f) { return f.asked && f.fresh; }, Mode::kTrack),
+    From(Mode::kHold,   "a motion is commanded",              [](const F& f) { return !f.asked && f.motion; }, Mode::kMove),
+    From(Mode::kHold,   "track is asked for, after a motion or none", [](const F& f) { return f.asked && f.hold_reason != HoldReason::kTargetLost; }, Mode::kHold, HoldReason::kNoTarget),
+    From(Mode::kHold,   "nothing is asked for",               [](const F& f) { return !f.asked && f.hold_reason != HoldReason::kMotionDone && f.hold_reason != HoldReason::kMotionRefused; }, Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kHold,   "hold is asked for",                  [](const F& f) { return f.request == Request::kHold; }, Mode::kHold, HoldReason::kNotAsked),
+
+    From(Mode::kTrack,  "track is asked for no more",         [](const F& f) { return !f.asked; },           Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kTrack,  "limits keep the arm from the goal",  [](const F& f) { return f.unreachable; },      Mode::kHold, HoldReason::kGoalUnreachable),
+    From(Mode::kTrack,  "the target is lost",                 [](const F& f) { return f.lost; },             Mode::kHold, HoldReason::kTargetLost),
+    From(Mode::kTrack,  "the target is not seen for a moment", [](const F& f) { return !f.fresh; },          Mode::kCoast),
+    From(Mode::kCoast,  "track is asked for no more",         [](const F& f) { return !f.asked; },           Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kCoast,  "limits keep the arm from the goal",  [](const F& f) { return f.unreachable; },      Mode::kHold, HoldReason::kGoalUnreachable),
+    From(Mode::kCoast,  "the target is lost",                 [](const F& f) { return f.lost; },             Mode::kHold, HoldReason::kTargetLost),
+    From(Mode::kCoast,  "the target is seen again",           [](const F& f) { return f.fresh; },            Mode::kTrack),
+
+    From(Mode::kMove,   "hold is asked for",                  [](const F& f) { return f.request == Request::kHold; }, Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kMove,   "track is asked for",                 [](const F& f) { return f.asked; },            Mode::kHold, HoldReason::kNoTarget),
+    From(Mode::kMove,   "a limit forbids the motion",         [](const F& f) { return f.refused; },          Mode::kHold, HoldReason::kMotionRefused),
+    From(Mode::kMove,   "the motion is done",                 [](const F& f) { return !f.motion; },          Mode::kHold, HoldReason::kMotionDone),
+};
+// clang-format on
 
 std::int64_t Ns(double seconds) noexcept {
   return static_cast<std::int64_t>(seconds * static_cast<double>(hal::kNsPerSecond));
 }
 
-void EnterHold(HoldReason reason, ModeState& state) noexcept {
-  state.mode = Mode::kHold;
-  state.hold_reason = reason;
-}
-
-void EnterTrack(Mode mode, ModeState& state) noexcept {
-  state.mode = mode;
-  state.hold_reason = HoldReason::kNone;
-}
-
 }  // namespace
+
+std::span<const ModeEdge> ModeEdges() noexcept { return kEdges; }
+
+ModeFacts FactsOf(const PredictConfig& config, const ModeInputs& inputs, const ModeState& state) noexcept {
+  ModeFacts f{};
+  f.request = inputs.request;
+  f.hold_reason = state.hold_reason;
+  f.fault = inputs.fault != hal::Fault::kNone;
+  f.ready = inputs.arm_ready;
+  f.asked = inputs.request == Request::kTrack || (state.track_asked && inputs.request != Request::kHold);
+  f.fresh = inputs.target_known && inputs.feature_age_ns <= Ns(config.stale_s);
+  f.lost = !inputs.target_known || inputs.feature_age_ns > Ns(config.coast_s);
+  f.unreachable = inputs.goal_unreachable;
+  f.moved = inputs.target_moved;
+  f.motion = inputs.motion_asked && !state.motion_barred;
+  f.refused = inputs.motion_refused;
+  return f;
+}
 
 bool UpdateMode(const PredictConfig& config, const ModeInputs& inputs, ModeState& state) noexcept {
   const Mode before = state.mode;
-  const bool fresh = inputs.target_known && inputs.feature_age_ns <= Ns(config.stale_s);
-  const bool lost = !inputs.target_known || inputs.feature_age_ns > Ns(config.coast_s);
-  if (inputs.request == Request::kTrack) {
-    state.track_asked = true;
-  } else if (inputs.request == Request::kHold) {
-    state.track_asked = false;
-  }
-
-  if (inputs.fault != hal::Fault::kNone) {
-    if (state.mode != Mode::kFault) {
-      state.fault = inputs.fault;  // the first cause stays
+  const ModeFacts facts = FactsOf(config, inputs, state);
+  state.track_asked = facts.asked;
+  for (const ModeEdge& edge : kEdges) {
+    if ((edge.from_any || edge.from == before) && edge.when(facts)) {
+      state.mode = edge.to;
+      state.hold_reason = edge.reason;
+      break;
     }
-    state.mode = Mode::kFault;
-    state.hold_reason = HoldReason::kNone;
-    return state.mode != before;
   }
-
-  // from    when                              to
-  switch (state.mode) {
-    case Mode::kFault:
-      if (inputs.request == Request::kReset) {
-        state.mode = Mode::kBoot;
-        state.fault = hal::Fault::kNone;
-      }
-      break;
-    case Mode::kBoot:
-      if (inputs.arm_ready) {
-        EnterHold(state.track_asked ? HoldReason::kNoTarget : HoldReason::kNotAsked, state);
-      }
-      break;
-    case Mode::kHold:
-      if (!state.track_asked) {
-        state.hold_reason = HoldReason::kNotAsked;
-      } else if (state.hold_reason == HoldReason::kGoalUnreachable && !inputs.target_moved) {
-        break;
-      } else if (fresh) {
-        EnterTrack(Mode::kTrack, state);
-      } else if (state.hold_reason == HoldReason::kNotAsked) {
-        state.hold_reason = HoldReason::kNoTarget;
-      }
-      break;
-    case Mode::kTrack:
-    case Mode::kCoast:
-      if (!state.track_asked) {
-        EnterHold(HoldReason::kNotAsked, state);
-      } else if (inputs.goal_unreachable) {
-        EnterHold(HoldReason::kGoalUnreachable, state);
-      } else if (lost) {
-        EnterHold(HoldReason::kTargetLost, state);
-      } else {
-        EnterTrack(fresh ? Mode::kTrack : Mode::kCoast, state);
-      }
-      break;
+  if (state.mode == Mode::kFault && before != Mode::kFault) {
+    state.fault = inputs.fault;  // the first cause stays
+  } else if (state.mode != Mode::kFault) {
+    state.fault = hal::Fault::kNone;
+  }
+  if (!inputs.motion_asked) {
+    state.motion_barred = false;
+  }
+  // A motion that was broken off, or comes while something else moves the arm, does not begin later by
+  // itself.
+  const bool broken_off = before == Mode::kMove && state.mode != Mode::kMove;
+  const bool elsewhere =
+      state.mode == Mode::kTrack || state.mode == Mode::kCoast || state.mode == Mode::kFault;
+  if (inputs.motion_asked && (broken_off || elsewhere || inputs.request == Request::kHold)) {
+    state.motion_barred = true;
   }
   return state.mode != before;
 }

@@ -1,14 +1,65 @@
 #include "fovea/servo/motion_law.hpp"
 
-namespace fovea::servo {
+#include "fovea/servo/smooth_step.hpp"
+#include "laws/motion_laws.hpp"
 
-void MotionLaw(const MotionLawConfig& config, const model::ArmDynamics& dynamics, const Reference& reference,
-               const model::VecN& q, const model::VecN& dq, model::VecN& tau) noexcept {
-  const double k_p = config.omega_n * config.omega_n;
-  const double k_v = 2.0 * config.zeta * config.omega_n;
-  const model::VecN wanted = reference.ddq + k_v * (reference.dq - dq) + k_p * (reference.q - q);
-  tau = dynamics.Cdq;
-  tau += dynamics.M.lazyProduct(wanted);
+namespace fovea::servo {
+namespace {
+
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+
+void TorqueOf(MotionLawKind kind, const MotionLawConfig& config, const MotionLawInputs& inputs,
+              MotionLawState& state, model::VecN& tau) noexcept {
+  kMotionLaws[static_cast<std::size_t>(kind)].torque(config, inputs, state, tau);
+}
+
+// What is left of the step of the last change of laws.
+double Fade(const MotionLawConfig& config, const MotionLawState& state) noexcept {
+  return 1.0 - SmoothStep(state.since_change_s / config.change_s);
+}
+
+}  // namespace
+
+// In the order of MotionLawKind.
+const std::array<MotionLawEntry, kNumMotionLaws> kMotionLaws{{
+    {MotionLawKind::kComputedTorque, "computed_torque", ComputedTorque, 1},
+    {MotionLawKind::kPd, "pd", PdLaw, 1},
+    {MotionLawKind::kJointImpedance, "joint_impedance", JointImpedance, 1},
+    {MotionLawKind::kOperationalSpace, "operational_space", OperationalSpace, 6},
+    {MotionLawKind::kFloat, "float", Float, 1},
+}};
+
+void MotionLawState::Reset(MotionLawKind law, int num_joints) noexcept {
+  kind = law;
+  integral.setZero(num_joints);
+  cut.setZero(num_joints);
+  step.setZero(num_joints);
+  since_change_s = 0.0;
+}
+
+void MotionLaw(const MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
+               model::VecN& tau) noexcept {
+  TorqueOf(state.kind, config, inputs, state, tau);
+  tau += Fade(config, state) * state.step;
+  if (state.since_change_s < config.change_s) {
+    state.since_change_s += kPeriodS;
+  }
+}
+
+void ChangeMotionLaw(const MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawKind kind,
+                     MotionLawState& state) noexcept {
+  if (kind == state.kind) {
+    return;
+  }
+  model::VecN before;
+  model::VecN after;
+  TorqueOf(state.kind, config, inputs, state, before);
+  before += Fade(config, state) * state.step;
+  state.integral.setZero();  // what it held is in the step now
+  TorqueOf(kind, config, inputs, state, after);
+  state.kind = kind;
+  state.step = before - after;
+  state.since_change_s = 0.0;
 }
 
 void DampedStop(double damping, const model::ArmDynamics& dynamics, const model::VecN& dq,

@@ -70,6 +70,13 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.law.unreachable_progress, 0.0, 1.0, "servo.unreachable_progress"},
       {config.motion_law.omega_n, 0.1, 300.0, "servo.omega_n"},
       {config.motion_law.zeta, 0.1, 10.0, "servo.zeta"},
+      {config.motion_law.integral, 0.0, 100.0, "servo.integral"},
+      {config.motion_law.integral_torque_fraction, 0.0, 1.0, "servo.integral_torque_fraction"},
+      {config.motion_law.friction_compensation, 0.0, 1.0, "servo.friction_compensation"},
+      {config.motion_law.friction_width, 1e-9, 10.0, "servo.friction_width"},
+      {config.motion_law.friction_slow, 1e-9, 10.0, "servo.friction_slow"},
+      {config.motion_law.operational_damping, 1e-9, 1.0, "servo.operational_damping"},
+      {config.motion_law.change_s, 1e-3, 10.0, "servo.change_s"},
       {config.guard.joint_velocity_fraction, 1e-3, 1.0, "safety.joint_velocity_fraction"},
       {config.guard.joint_acceleration_fraction, 1e-3, 1.0, "safety.joint_acceleration_fraction"},
       {config.guard.joint_jerk_fraction, 1e-3, 1.0, "safety.joint_jerk_fraction"},
@@ -89,6 +96,9 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {static_cast<double>(config.safety.arm_lost_ticks), 1.0, huge, "safety.arm_lost_ticks"},
       {static_cast<double>(config.safety.non_finite_ticks), 0.0, huge, "safety.non_finite_ticks"},
       {static_cast<double>(config.safety.missed_ticks), 1.0, huge, "safety.missed_ticks"},
+      {static_cast<double>(config.safety.boot_ticks), 1.0, huge, "safety.boot_ticks"},
+      {config.safety.boot_velocity, 1e-6, huge, "safety.boot_velocity"},
+      {config.safety.setpoint_jump, 0.0, huge, "safety.setpoint_jump"},
   };
   for (const Range& range : ranges) {
     if (!Holds(range)) {
@@ -105,6 +115,15 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
   for (int i = 0; i < config.arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config.arm.joints[k];
+    if (!(config.motion_law.k_p[k] >= 0.0 && std::isfinite(config.motion_law.k_p[k]))) {
+      return Status(StatusCode::kOutOfRange, "servo.k_p");
+    }
+    if (!(config.motion_law.k_v[k] >= 0.0 && std::isfinite(config.motion_law.k_v[k]))) {
+      return Status(StatusCode::kOutOfRange, "servo.k_v");
+    }
+    if (!(joint.viscous >= 0.0 && joint.coulomb >= 0.0 && joint.spring >= 0.0)) {
+      return Status(StatusCode::kOutOfRange, "joint friction or spring");
+    }
     if (!std::isfinite(config.law.q_posture[k])) {
       return Status(StatusCode::kNonFinite, "servo.posture");
     }
@@ -113,10 +132,15 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
     }
   }
 
+  if (config.arm.num_joints < kMotionLaws[static_cast<std::size_t>(config.motion_law.kind)].joints_min) {
+    return Status(StatusCode::kInvalidArgument, "servo.motion_law");
+  }
+
   config_ = config;
   state_ = ServoState{};
   const int n = config.arm.num_joints;
   state_.mode.track_asked = config.auto_track;
+  state_.law_state.Reset(config.motion_law.kind, n);
   for (model::VecN* v : {&state_.q, &state_.dq, &state_.tau_applied, &state_.tau, &state_.tau_before,
                          &state_.reference.q, &state_.reference.dq, &state_.reference.ddq}) {
     v->setZero(n);

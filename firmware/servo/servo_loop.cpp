@@ -76,6 +76,14 @@ void ServoLoop::CountMissed(std::int32_t missed_ticks) noexcept {
 void ServoLoop::Tick(std::int32_t missed_ticks) noexcept {
   inputs_.has_feature = features_.Take(inputs_.feature);
   inputs_.request = request_.exchange(Request::kNone, std::memory_order_relaxed);
+  const int law = law_.exchange(-1, std::memory_order_relaxed);
+  inputs_.change_law = law >= 0;
+  if (inputs_.change_law) {
+    inputs_.law = static_cast<MotionLawKind>(law);
+  }
+  if (motion_ != nullptr) {
+    inputs_.motion = motion_->At(inputs_.arm.stamp_ns);
+  }
   inputs_.missed_ticks = missed_ticks;
   task_.Step(inputs_, outputs_);
   const hal::Status written = arm_.Write(outputs_.command());

@@ -4,26 +4,17 @@
 #include <cmath>
 
 #include "fovea/servo/clamp_torque.hpp"
-#include "fovea/servo/motion_law.hpp"
+#include "fovea/servo/follow_motion.hpp"
+#include "fovea/servo/smooth_step.hpp"
 
 namespace fovea::servo {
 namespace {
 
-constexpr int kBootTicks = 20;               // sound states in a row before Boot is over
-constexpr double kBootSpeed = 0.05;          // at rest means slower than this [rad/s]
 constexpr double kTargetMovedM = 0.02;       // so far from where it was unreachable, and it is tried again
 constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as there
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
-
-// 0 to 1, with zero slope at both ends.
-double SmoothStep(double x) noexcept {
-  if (x >= 1.0) {
-    return 1.0;
-  }
-  return x <= 0.0 ? 0.0 : x * x * (3.0 - 2.0 * x);
-}
 
 bool IsFinite(const hal::FeatureMeasurement& feature) noexcept {
   for (std::size_t i = 0; i < feature.s.size(); ++i) {
@@ -49,8 +40,8 @@ void ServoTask::Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept 
   PredictFeature(inputs, check.fault);
   ChooseMode(inputs, check);
   ComputeVisualLaw();
-  MoveReference();
-  ComputeTorque();
+  MoveReference(inputs);
+  ComputeTorque(inputs);
   Clamp();
   WriteRecord(inputs, outputs.record);
   ++state_.tick;
@@ -94,14 +85,17 @@ void ServoTask::PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noe
 void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept {
   ModeInputs mode_inputs;
   mode_inputs.request = inputs.request;
-  mode_inputs.arm_ready =
-      state_.inputs.sound_ticks >= kBootTicks && state_.dq.lpNorm<Eigen::Infinity>() < kBootSpeed;
+  mode_inputs.arm_ready = state_.inputs.sound_ticks >= config_.safety.boot_ticks &&
+                          state_.dq.lpNorm<Eigen::Infinity>() < config_.safety.boot_velocity;
   mode_inputs.target_known = state_.prediction.known;
   mode_inputs.feature_age_ns = state_.prediction.age_ns;
   mode_inputs.goal_unreachable =
       static_cast<double>(state_.blocked_ns) > config_.law.unreachable_s * kSecondNs;
   mode_inputs.target_moved = (state_.prediction.p_BO - state_.p_BO_unreachable).norm() > kTargetMovedM;
+  mode_inputs.motion_asked = inputs.motion.kind != MotionKind::kNone;
+  mode_inputs.motion_refused = state_.motion_refused;
   mode_inputs.fault = check.fault;
+  state_.motion_refused = false;
 
   const hal::Mode before = state_.mode.mode;
   if (check.fault != hal::Fault::kNone && before != hal::Mode::kFault) {
@@ -144,9 +138,10 @@ void ServoTask::ComputeVisualLaw() noexcept {
   }
 }
 
-void ServoTask::MoveReference() noexcept {
+void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   state_.limits = 0;
-  if (state_.mode.mode == hal::Mode::kBoot || state_.mode.mode == hal::Mode::kFault) {
+  const bool floats = state_.law_state.kind == MotionLawKind::kFloat;
+  if (state_.mode.mode == hal::Mode::kBoot || state_.mode.mode == hal::Mode::kFault || floats) {
     state_.reference.q = state_.q;
     state_.reference.dq.setZero();
     state_.reference.ddq.setZero();
@@ -155,9 +150,13 @@ void ServoTask::MoveReference() noexcept {
   if (state_.inputs.bad_ticks > 0) {
     return;  // nothing new is known: the last command stays in force
   }
+  if (state_.mode.mode == hal::Mode::kMove) {
+    FollowCommand(inputs.motion);
+    CheckFollowing();
+    return;
+  }
   model::VecN dq_des = model::VecN::Zero(config_.arm.num_joints);
-  const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
-  if (steering) {
+  if (IsTracking(state_.mode.mode) && state_.feature_valid) {
     const double since_s = static_cast<double>(state_.now_ns - state_.track_since_ns) / kSecondNs;
     dq_des = SmoothStep(since_s / config_.law.smooth_start_s) * state_.law.dq_des;
   }
@@ -166,7 +165,21 @@ void ServoTask::MoveReference() noexcept {
     return;
   }
   state_.limits = GuardMotion(config_, dq_des, state_.poses.X_BE.p, state_.J_E_B, state_.reference);
+  CheckFollowing();
+  NoteBlocked();
+}
 
+void ServoTask::FollowCommand(const MotionCommand& command) noexcept {
+  const SetpointCheck check = TakeSetpoint(config_, command, state_.poses.X_BE.p.norm(), state_.reference);
+  state_.motion_refused = check.refused;
+  state_.limits = check.limits;
+  if (check.refused) {
+    const model::VecN stop = model::VecN::Zero(config_.arm.num_joints);
+    state_.limits |= GuardMotion(config_, stop, state_.poses.X_BE.p, state_.J_E_B, state_.reference);
+  }
+}
+
+void ServoTask::CheckFollowing() noexcept {
   const model::VecN following_error = state_.reference.q - state_.q;
   for (int i = 0; i < following_error.size(); ++i) {
     if (!(std::fabs(following_error[i]) <= config_.safety.following_error)) {
@@ -174,8 +187,12 @@ void ServoTask::MoveReference() noexcept {
       return;
     }
   }
+}
 
+// For how long limits have kept the arm from the goal.
+void ServoTask::NoteBlocked() noexcept {
   constexpr hal::LimitSet kBarriers = hal::Bit(hal::Limit::kJointPosition) | hal::Bit(hal::Limit::kWorkspace);
+  const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
   const bool blocked = steering && (state_.limits & kBarriers) != 0 &&
                        state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
                        Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
@@ -184,30 +201,41 @@ void ServoTask::MoveReference() noexcept {
   state_.blocked_ns = std::max<std::int64_t>(state_.blocked_ns + (blocked ? 1 : -1) * hal::kTickPeriodNs, 0);
 }
 
-void ServoTask::ComputeTorque() noexcept {
+void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
+  const MotionLawInputs law_inputs{config_.arm,      state_.poses, state_.dynamics,
+                                   state_.reference, state_.q,     state_.dq};
+  const auto law = static_cast<std::size_t>(inputs.law);
+  if (inputs.change_law && config_.arm.num_joints >= kMotionLaws[law].joints_min) {
+    ChangeMotionLaw(config_.motion_law, law_inputs, inputs.law, state_.law_state);
+  }
   switch (state_.mode.mode) {
-    case hal::Mode::kBoot: state_.tau.setZero(config_.arm.num_joints); break;
+    case hal::Mode::kBoot:
+      state_.tau.setZero(config_.arm.num_joints);
+      state_.law_state.Reset(state_.law_state.kind, config_.arm.num_joints);
+      break;
     case hal::Mode::kHold:
     case hal::Mode::kTrack:
     case hal::Mode::kCoast:
+    case hal::Mode::kMove:
       if (state_.inputs.bad_ticks == 0) {
-        MotionLaw(config_.motion_law, state_.dynamics, state_.reference, state_.q, state_.dq, state_.tau);
+        MotionLaw(config_.motion_law, law_inputs, state_.law_state, state_.tau);
       }
       break;
-    case hal::Mode::kFault: {
-      // A damped stop needs true velocities; without them only the brakes are left.
-      const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0;
-      const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
-      if (blind || since_s > config_.safety.brake_after_s ||
-          state_.dq.lpNorm<Eigen::Infinity>() < config_.safety.brake_velocity) {
-        state_.give_up = true;
-      }
-      DampedStop(config_.safety.fault_damping, state_.dynamics, state_.dq, state_.tau);
-      if (state_.give_up) {
-        state_.tau.setZero();
-      }
-      break;
-    }
+    case hal::Mode::kFault: StopDamped(); break;
+  }
+}
+
+void ServoTask::StopDamped() noexcept {
+  // A damped stop needs true velocities; without them only the brakes are left.
+  const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0;
+  const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
+  if (blind || since_s > config_.safety.brake_after_s ||
+      state_.dq.lpNorm<Eigen::Infinity>() < config_.safety.brake_velocity) {
+    state_.give_up = true;
+  }
+  DampedStop(config_.safety.fault_damping, state_.dynamics, state_.dq, state_.tau);
+  if (state_.give_up) {
+    state_.tau.setZero();
   }
 }
 
@@ -222,7 +250,9 @@ void ServoTask::Clamp() noexcept {
       in_force[i] = state_.tau_before[i];
     }
   }
+  state_.law_state.cut = state_.tau;
   const ClampResult result = ClampTorque(config_.arm, config_.safety, in_force, state_.tau);
+  state_.law_state.cut -= state_.tau;
   state_.limits |= result.limits;
   state_.braked = state_.give_up && (state_.tau.array() == 0.0).all();
   if (!result.finite) {

@@ -22,6 +22,7 @@ constexpr std::array<Entry, kNumFaults> kFaultTable{{
     {"joint_position", "arm.model"},
     {"joint_velocity", "arm.model"},
     {"not_following", "safety.following_error"},
+    {"contact", "safety.contact_torque_fraction"},
 }};
 
 constexpr std::array<Entry, kNumLimits> kLimitTable{{
@@ -32,6 +33,9 @@ constexpr std::array<Entry, kNumLimits> kLimitTable{{
     {"workspace", "safety.workspace_radius"},
     {"torque", "safety.torque_fraction"},
     {"torque_rate", "safety.torque_rate_fraction"},
+    {"obstacle", "safety.planes"},
+    {"cartesian_speed", "safety.cartesian_speed"},
+    {"singularity", "safety.singularity_min"},
 }};
 
 }  // namespace
@@ -43,6 +47,7 @@ const char* Name(Mode mode) noexcept {
     case Mode::kTrack: return "track";
     case Mode::kCoast: return "coast";
     case Mode::kFault: return "fault";
+    case Mode::kMove: return "move";
   }
   return "unknown";
 }
@@ -54,6 +59,8 @@ const char* Name(HoldReason reason) noexcept {
     case HoldReason::kNoTarget: return "no_target";
     case HoldReason::kTargetLost: return "target_lost";
     case HoldReason::kGoalUnreachable: return "goal_unreachable";
+    case HoldReason::kMotionDone: return "motion_done";
+    case HoldReason::kMotionRefused: return "motion_refused";
   }
   return "unknown";
 }

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <iostream>
+#include <set>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace fovea::servo {
@@ -134,12 +138,46 @@ TEST_F(ModesTest, OnlyAResetWithoutAFaultLeavesFault) {
   }
 }
 
-// All inputs there are, from every state that Fault can turn into without a reset: none moves.
-TEST_F(ModesTest, NoWayFromFaultToMotionWithoutReset) {
+TEST_F(ModesTest, ACommandedMotionIsFollowedUntilItsEnd) {
+  ModeInputs motion;
+  motion.motion_asked = true;
+  EXPECT_EQ(After(In(Mode::kHold, false), motion), Mode::kMove);
+  EXPECT_EQ(After(last_, motion), Mode::kMove);
+  EXPECT_EQ(After(last_, ModeInputs{}), Mode::kHold);
+  EXPECT_EQ(last_.hold_reason, HoldReason::kMotionDone);
+  EXPECT_EQ(After(last_, motion), Mode::kMove) << "and another one";
+  EXPECT_EQ(After(In(Mode::kHold, true), motion), Mode::kHold) << "not while track is asked for";
+}
+
+TEST_F(ModesTest, AMotionThatWasStoppedStaysStopped) {
+  ModeInputs motion;
+  motion.motion_asked = true;
+  ModeInputs refused = motion;
+  refused.motion_refused = true;
+  ModeInputs hold = motion;
+  hold.request = Request::kHold;
+  for (const auto& [inputs, reason] :
+       {std::pair{refused, HoldReason::kMotionRefused}, {hold, HoldReason::kNotAsked}}) {
+    EXPECT_EQ(After(In(Mode::kMove, false), inputs), Mode::kHold);
+    EXPECT_EQ(last_.hold_reason, reason);
+    EXPECT_EQ(After(last_, motion), Mode::kHold) << "the stream that goes on is not taken up again";
+    EXPECT_EQ(After(last_, motion), Mode::kHold);
+    EXPECT_EQ(After(last_, ModeInputs{}), Mode::kHold);
+    EXPECT_EQ(After(last_, motion), Mode::kMove) << "a new one is";
+  }
+  ModeInputs track = Seen(kFresh);
+  track.motion_asked = true;
+  track.request = Request::kTrack;
+  EXPECT_EQ(After(In(Mode::kMove, false), track), Mode::kHold) << "first it stands";
+  EXPECT_EQ(After(last_, track), Mode::kTrack);
+}
+
+// Everything that can be asked and seen in a tick.
+std::vector<ModeInputs> AllInputs(std::int64_t stale_ns, std::int64_t lost_ns) {
   std::vector<ModeInputs> all;
-  for (const Request request : {Request::kNone, Request::kTrack, Request::kHold}) {
-    for (unsigned bits = 0; bits < 16; ++bits) {
-      for (const std::int64_t age : {kFresh, Stale(), Lost()}) {
+  for (const Request request : {Request::kNone, Request::kTrack, Request::kHold, Request::kReset}) {
+    for (unsigned bits = 0; bits < 64; ++bits) {
+      for (const std::int64_t age : {std::int64_t{0}, stale_ns, lost_ns}) {
         for (const Fault fault : {Fault::kNone, Fault::kArmStale}) {
           ModeInputs inputs;
           inputs.request = request;
@@ -147,6 +185,8 @@ TEST_F(ModesTest, NoWayFromFaultToMotionWithoutReset) {
           inputs.target_known = (bits & 2U) != 0;
           inputs.goal_unreachable = (bits & 4U) != 0;
           inputs.target_moved = (bits & 8U) != 0;
+          inputs.motion_asked = (bits & 16U) != 0;
+          inputs.motion_refused = (bits & 32U) != 0;
           inputs.feature_age_ns = age;
           inputs.fault = fault;
           all.push_back(inputs);
@@ -154,17 +194,97 @@ TEST_F(ModesTest, NoWayFromFaultToMotionWithoutReset) {
       }
     }
   }
-  for (const bool asked : {false, true}) {
-    for (const ModeInputs& first : all) {
-      for (const ModeInputs& second : all) {
-        ModeState state = In(Mode::kFault, asked);
-        UpdateMode(config_, first, state);
-        UpdateMode(config_, second, state);
-        ASSERT_EQ(state.mode, Mode::kFault);
-        ASSERT_EQ(state.fault, Fault::kArmLost);
+  return all;
+}
+
+struct Less {
+  bool operator()(const ModeState& a, const ModeState& b) const {
+    const auto key = [](const ModeState& s) {
+      return std::tuple(s.mode, s.hold_reason, s.fault, s.track_asked, s.motion_barred);
+    };
+    return key(a) < key(b);
+  }
+};
+
+// All states that `inputs` lead to from `start`, in any order and number.
+template <typename Each>
+std::set<ModeState, Less> Reachable(const PredictConfig& config, const std::vector<ModeState>& start,
+                                    const std::vector<ModeInputs>& inputs, Each each) {
+  std::set<ModeState, Less> seen(start.begin(), start.end());
+  std::vector<ModeState> open = start;
+  while (!open.empty()) {
+    const ModeState before = open.back();
+    open.pop_back();
+    for (const ModeInputs& i : inputs) {
+      ModeState after = before;
+      UpdateMode(config, i, after);
+      each(before, i, after);
+      if (seen.insert(after).second) {
+        open.push_back(after);
       }
     }
   }
+  return seen;
+}
+
+// The whole space of states, searched: without a reset there is no way from Fault to anything, and its cause
+// stays.
+TEST_F(ModesTest, NoWayFromFaultToMotionWithoutReset) {
+  std::vector<ModeInputs> inputs = AllInputs(Stale(), Lost());
+  std::erase_if(inputs, [](const ModeInputs& i) { return i.request == Request::kReset; });
+  for (const bool asked : {false, true}) {
+    const auto seen = Reachable(config_, {In(Mode::kFault, asked)}, inputs,
+                                [](const ModeState&, const ModeInputs&, const ModeState&) {});
+    for (const ModeState& state : seen) {
+      ASSERT_EQ(state.mode, Mode::kFault);
+      ASSERT_EQ(state.fault, Fault::kArmLost);
+    }
+  }
+}
+
+// From the start, with all inputs: every edge of the table is walked, none that is not in it, and motion
+// comes only from Hold, which comes only by way of Boot with the arm at rest.
+TEST_F(ModesTest, EveryEdgeIsWalkedAndNoOther) {
+  std::set<const ModeEdge*> walked;
+  std::set<std::pair<Mode, Mode>> pairs;
+  const auto allowed = [](Mode from, Mode to) {
+    for (const ModeEdge& edge : ModeEdges()) {
+      if ((edge.from_any || edge.from == from) && edge.to == to) {
+        return true;
+      }
+    }
+    return from == to;
+  };
+  const auto seen = Reachable(config_, {ModeState{}, In(Mode::kBoot, true)}, AllInputs(Stale(), Lost()),
+                              [&](const ModeState& before, const ModeInputs& i, const ModeState& after) {
+                                pairs.insert({before.mode, after.mode});
+                                const bool moves = after.mode == Mode::kTrack || after.mode == Mode::kCoast ||
+                                                   after.mode == Mode::kMove;
+                                if (moves && (before.mode == Mode::kBoot || before.mode == Mode::kFault)) {
+                                  ADD_FAILURE() << "motion straight from " << hal::Name(before.mode);
+                                }
+                                if (before.mode == Mode::kBoot && after.mode == Mode::kHold) {
+                                  EXPECT_TRUE(i.arm_ready);
+                                }
+                                EXPECT_EQ(after.mode == Mode::kFault, after.fault != Fault::kNone);
+                                EXPECT_EQ(after.mode == Mode::kHold, after.hold_reason != HoldReason::kNone);
+                                const ModeFacts facts = FactsOf(config_, i, before);
+                                for (const ModeEdge& edge : ModeEdges()) {
+                                  if ((edge.from_any || edge.from == before.mode) && edge.when(facts)) {
+                                    walked.insert(&edge);
+                                    EXPECT_EQ(after.mode, edge.to) << edge.words;
+                                    break;
+                                  }
+                                }
+                              });
+  for (const auto& [from, to] : pairs) {
+    EXPECT_TRUE(allowed(from, to)) << hal::Name(from) << " to " << hal::Name(to);
+  }
+  for (const ModeEdge& edge : ModeEdges()) {
+    EXPECT_EQ(walked.count(&edge), 1U) << hal::Name(edge.from) << ": " << edge.words << " is never taken";
+  }
+  std::cout << seen.size() << " states, " << walked.size() << " edges, " << pairs.size()
+            << " pairs of modes\n";
 }
 
 }  // namespace

@@ -16,6 +16,9 @@ struct ServoSettings {
   servo::ServoConfig config;
   std::vector<double> goal{0.0, 0.0, 0.40};  // p_CO_C_star [m]
   std::vector<double> posture;               // empty: the robot's ready posture
+  std::string motion_law = "computed_torque";
+  std::vector<double> k_p;  // per joint; empty: omega_n^2 times the inertia in the ready posture
+  std::vector<double> k_v;  // per joint; empty: by zeta, from k_p and that inertia
 };
 
 struct VisionSettings {

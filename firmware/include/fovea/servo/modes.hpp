@@ -1,7 +1,9 @@
-// Modes and how one leads to another. The table is in modes.cpp, on one screen.
+// Modes and how one leads to another. The table of transitions is in modes.cpp, on one screen.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "fovea/hal/events.hpp"
 #include "fovea/servo/servo_config.hpp"
@@ -24,6 +26,8 @@ struct ModeInputs {
   std::int64_t feature_age_ns = 0;       // of the last accepted measurement
   bool goal_unreachable = false;         // limits kept the arm from the goal for too long
   bool target_moved = false;             // far enough from where it was unreachable to try again
+  bool motion_asked = false;             // a motion is commanded, or not yet at its end
+  bool motion_refused = false;           // the one of the tick before was
   hal::Fault fault = hal::Fault::kNone;  // found in this tick
 };
 
@@ -32,7 +36,39 @@ struct ModeState {
   hal::HoldReason hold_reason = hal::HoldReason::kNone;
   hal::Fault fault = hal::Fault::kNone;  // latched
   bool track_asked = false;
+  bool motion_barred = false;  // what is commanded now was stopped: only a new motion may move the arm
 };
+
+// What the table's conditions look at.
+struct ModeFacts {
+  Request request;
+  hal::HoldReason hold_reason;  // before this tick
+  bool fault;
+  bool ready;
+  bool asked;  // for Track
+  bool fresh;  // the target was seen a moment ago
+  bool lost;   // or not for too long
+  bool unreachable;
+  bool moved;
+  bool motion;  // one that may move the arm
+  bool refused;
+};
+
+// One way from a mode to a mode. The first of the table whose `from` and `when` fit is taken; where none
+// fits, all stays as it is.
+struct ModeEdge {
+  bool from_any;
+  hal::Mode from;
+  const char* words;  // the condition, for people
+  bool (*when)(const ModeFacts&);
+  hal::Mode to;
+  hal::HoldReason reason;  // of Hold
+};
+std::span<const ModeEdge> ModeEdges() noexcept;
+
+// What the table sees of this tick's `inputs` in `state`.
+[[nodiscard]] ModeFacts FactsOf(const PredictConfig& config, const ModeInputs& inputs,
+                                const ModeState& state) noexcept;
 
 // One tick of the mode. True when the mode changed. Real-time: yes.
 bool UpdateMode(const PredictConfig& config, const ModeInputs& inputs, ModeState& state) noexcept;

@@ -1,19 +1,57 @@
-// Stage 4, motion law: the partition law alpha/beta, with matrices (Craig, Introduction to Robotics, ch. 10).
+// Stage 4, motion law: from the joints' reference to their torques. Several laws, chosen by servo.motion_law
+// and changed while the arm moves; each is a file in firmware/servo/laws and a line in kMotionLaws.
 //
-//   tau = alpha (ddq_ref + k_v' e' + k_p' e) + beta      alpha = M(q),  beta = C(q, dq) dq,  e = q_ref - q
-//
-// gives e'' + k_v' e' + k_p' e = 0. Gravity and motor friction are the arm's own affair at the seam.
+// Gravity and motor friction are the arm's own affair at the seam. What friction it leaves to the servo, and
+// springs, are the laws' affair, as far as the configuration says.
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "fovea/model/dynamics.hpp"
-#include "fovea/servo/guard_motion.hpp"
+#include "fovea/servo/reference.hpp"
 #include "fovea/servo/servo_config.hpp"
 
 namespace fovea::servo {
 
-// `tau` [num_joints] at the seam, for the measured `q` and `dq`. Real-time: yes.
-void MotionLaw(const MotionLawConfig& config, const model::ArmDynamics& dynamics, const Reference& reference,
-               const model::VecN& q, const model::VecN& dq, model::VecN& tau) noexcept;
+// What a law looks at.
+struct MotionLawInputs {
+  const model::ArmModel& arm;
+  const model::ArmPoses& poses;        // at q
+  const model::ArmDynamics& dynamics;  // at q, dq
+  const Reference& reference;
+  const model::VecN& q;   // [num_joints] measured
+  const model::VecN& dq;  // [num_joints] measured
+};
+
+struct MotionLawState {
+  model::VecN integral;  // [num_joints] of the error over time [rad s]
+  model::VecN cut;       // [num_joints] what the clamp took from the last torque; the integral waits for it
+  // A change of laws: the torque's step, which fades away.
+  MotionLawKind kind = MotionLawKind::kComputedTorque;
+  model::VecN step;
+  double since_change_s = 0.0;
+
+  void Reset(MotionLawKind law, int num_joints) noexcept;
+};
+
+// Torques at the seam `tau` [num_joints] by the law that `state` names, and its step if there was a change.
+// Real-time: yes.
+void MotionLaw(const MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
+               model::VecN& tau) noexcept;
+
+// From now on the law `kind`; the torque goes from one to the other within config.change_s without a step,
+// whatever each of them asks. `inputs` as in the last call. Real-time: yes.
+void ChangeMotionLaw(const MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawKind kind,
+                     MotionLawState& state) noexcept;
+
+struct MotionLawEntry {
+  MotionLawKind kind;
+  const char* name;  // as servo.motion_law has it
+  void (*torque)(const MotionLawConfig&, const MotionLawInputs&, MotionLawState&, model::VecN&) noexcept;
+  int joints_min;  // arms with fewer joints cannot be driven by it
+};
+extern const std::array<MotionLawEntry, kNumMotionLaws> kMotionLaws;
 
 // The damped stop of mode Fault: tau = -damping M dq, which takes the speed away like exp(-damping t).
 // Real-time: yes.

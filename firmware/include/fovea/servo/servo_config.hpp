@@ -32,10 +32,24 @@ struct LawConfig {
   double unreachable_progress = 0.05;  // "kept from": less than this share of the wanted motion is left
 };
 
-// [servo] the inner loop
+// [servo] the inner loop; the laws are in motion_law.hpp
+enum class MotionLawKind : std::uint8_t { kComputedTorque, kPd, kJointImpedance, kOperationalSpace, kFloat };
+inline constexpr int kNumMotionLaws = 5;
+
 struct MotionLawConfig {
-  double omega_n = 25.0;  // natural frequency of the joints' error [rad/s]
-  double zeta = 1.0;      // its damping
+  MotionLawKind kind = MotionLawKind::kComputedTorque;  // servo.motion_law
+  double omega_n = 25.0;                                // natural frequency of the joints' error [rad/s]
+  double zeta = 1.0;                                    // its damping
+  double integral = 0.0;                  // how fast an error that stays is made up for [1/s]; 0: not
+  double integral_torque_fraction = 0.2;  // with at most this share of a joint's torque
+  hal::JointArray k_p{};                  // stiffness of pd and joint_impedance [Nm/rad]
+  hal::JointArray k_v{};                  // their damping [Nm s/rad]
+  bool damp_by_inertia = true;            // joint_impedance: damping from zeta and the inertia, not k_v
+  double friction_compensation = 0.0;     // share of the joints' friction that the servo makes up for
+  double friction_width = 1e-3;           // the sign of a speed is smooth within this [rad/s]
+  double friction_slow = 0.02;            // below it the reference's speed has the say [rad/s]
+  double operational_damping = 1e-3;      // of operational_space near a singularity, relative
+  double change_s = 0.2;                  // time in which one law takes over from another [s]
 };
 
 // [safety] limits on the motion, as fractions of the arm's own or in their units
@@ -57,6 +71,9 @@ struct SafetyConfig {
   int arm_lost_ticks = 20;        // so many ticks without a new sound state: fault
   int non_finite_ticks = 5;       // a non-finite joint value is bridged for so many ticks, then: fault
   int missed_ticks = 20;          // so many missed deadlines in a row: fault
+  int boot_ticks = 20;            // sound states in a row before Boot is over
+  double boot_velocity = 0.05;    // and every joint slower than this [rad/s, m/s]
+  double setpoint_jump = 1e-3;    // a stream of setpoints starts and goes on this close [rad, m]
   double following_error = 0.15;  // a joint further off its reference: fault [rad, m]
   double fault_damping = 10.0;    // of the damped stop [1/s]
   double brake_velocity = 0.02;   // brakes close when every joint is slower [rad/s, m/s]

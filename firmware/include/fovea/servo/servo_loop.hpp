@@ -38,8 +38,11 @@ class ServoLoop {
 
   // From any thread: Run returns after the tick in hand.
   void Stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  // Before Run: where commanded motions come from. Without it there are none.
+  void UseMotion(MotionSource& motion) noexcept { motion_ = &motion; }
   // From any thread: handed to the task in the next tick; the last one before that tick wins.
   void Ask(Request request) noexcept { request_.store(request, std::memory_order_relaxed); }
+  void Ask(MotionLawKind law) noexcept { law_.store(static_cast<int>(law), std::memory_order_relaxed); }
 
   [[nodiscard]] const LoopCounters& counters() const noexcept { return counters_; }
 
@@ -57,6 +60,8 @@ class ServoLoop {
   hal::TickProbe& probe_;
   std::atomic<bool> stop_{false};
   std::atomic<Request> request_{Request::kNone};
+  std::atomic<int> law_{-1};  // asked for; -1: none
+  MotionSource* motion_ = nullptr;
   ServoInputs inputs_;
   ServoOutputs outputs_;
   LoopCounters counters_;

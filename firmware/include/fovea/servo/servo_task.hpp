@@ -14,6 +14,8 @@
 #include "fovea/servo/check_inputs.hpp"
 #include "fovea/servo/guard_motion.hpp"
 #include "fovea/servo/modes.hpp"
+#include "fovea/servo/motion_command.hpp"
+#include "fovea/servo/motion_law.hpp"
 #include "fovea/servo/predict.hpp"
 #include "fovea/servo/servo_config.hpp"
 #include "fovea/servo/visual_law.hpp"
@@ -26,6 +28,9 @@ struct ServoInputs {
   bool has_feature = false;  // `feature` is new in this tick
   hal::FeatureMeasurement feature;
   Request request = Request::kNone;
+  MotionCommand motion;
+  bool change_law = false;  // from now on `law`
+  MotionLawKind law = MotionLawKind::kComputedTorque;
   std::int32_t missed_ticks = 0;  // deadlines missed since the tick before
 };
 
@@ -72,9 +77,11 @@ struct ServoState {
 
   // guard
   Reference reference;
+  bool motion_refused = false;  // mode Move: what was commanded cannot be followed
   hal::LimitSet limits = 0;
 
   // motion law and clamp
+  MotionLawState law_state;
   model::VecN tau;
   model::VecN tau_before;  // the command of the tick before
   bool give_up = false;    // in Fault: no torque any more
@@ -99,8 +106,12 @@ class ServoTask {
   void PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noexcept;
   void ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept;
   void ComputeVisualLaw() noexcept;
-  void MoveReference() noexcept;
-  void ComputeTorque() noexcept;
+  void MoveReference(const ServoInputs& inputs) noexcept;
+  void FollowCommand(const MotionCommand& command) noexcept;
+  void CheckFollowing() noexcept;
+  void NoteBlocked() noexcept;
+  void ComputeTorque(const ServoInputs& inputs) noexcept;
+  void StopDamped() noexcept;
   void Clamp() noexcept;
   void WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) const noexcept;
   void LatchFault(hal::Fault fault, std::int32_t joint) noexcept;

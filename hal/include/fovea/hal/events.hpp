@@ -11,6 +11,7 @@ enum class Mode : std::uint8_t {
   kTrack,  // steering by the target as the camera sees it
   kCoast,  // steering by the target's prediction, since the camera does not see it
   kFault,  // latched: damped stop, then brakes; left only by a reset
+  kMove,   // following a motion that was commanded: a goal, or a stream of setpoints
 };
 
 // Why the servo is in Hold rather than in Track.
@@ -20,6 +21,8 @@ enum class HoldReason : std::uint8_t {
   kNoTarget,         // Track is asked for, no confident feature came yet
   kTargetLost,       // the target was not seen for longer than servo.coast_s
   kGoalUnreachable,  // limits kept the arm from the goal for longer than servo.unreachable_s
+  kMotionDone,       // the commanded motion came to its end
+  kMotionRefused,    // the commanded motion would have passed a limit, or was none
 };
 
 // Causes of a fault, latched at the first.
@@ -34,8 +37,9 @@ enum class Fault : std::uint8_t {
   kJointPosition,     // a joint was measured outside its range
   kJointVelocity,     // a joint was measured faster than it may be
   kNotFollowing,      // a joint does not follow its reference
+  kContact,           // something pushes the arm harder than it may
 };
-inline constexpr int kNumFaults = 10;
+inline constexpr int kNumFaults = 11;
 
 // Limits that shape the motion or the torque. A limit that acts is no fault: it is reported.
 enum class Limit : std::uint8_t {
@@ -46,8 +50,11 @@ enum class Limit : std::uint8_t {
   kWorkspace,
   kTorque,
   kTorqueRate,
+  kObstacle,        // a plane or a box that the end effector must not enter
+  kCartesianSpeed,  // of the end effector
+  kSingularity,     // a posture in which a direction of the end effector is lost
 };
-inline constexpr int kNumLimits = 7;
+inline constexpr int kNumLimits = 10;
 
 // One bit per Limit: those which acted in a tick.
 using LimitSet = std::uint32_t;

@@ -1,0 +1,36 @@
+// Stage 3 in mode Move: the reference follows what was commanded, as far as it may.
+//
+// Joint goals are planned online, jerk-limited and synchronised (joint_move.hpp), and so are the six
+// coordinates of a pose goal (synchronised_move.hpp). Joint setpoints, planned or streamed, become the
+// reference as they are, if they keep every limit and the arm could still stop inside all of them. Poses are
+// brought to joint velocities first and go through the guard like the visual law's.
+#pragma once
+
+#include "fovea/hal/events.hpp"
+#include "fovea/servo/joint_move.hpp"
+#include "fovea/servo/motion_command.hpp"
+#include "fovea/servo/reference.hpp"
+#include "fovea/servo/servo_config.hpp"
+#include "fovea/servo/synchronised_move.hpp"
+
+namespace fovea::servo {
+
+struct MotionState {
+  MotionCommand goal;  // the one under way, kNone when there is none
+  std::int64_t start_ns = 0;
+  JointMove joints;
+  SynchronisedMove pose;  // position less goal, and the turn from the goal, both in axes of B
+  bool refused = false;   // in the last tick
+
+  // Whether a motion goes on after this tick without another command.
+  [[nodiscard]] bool IsUnderWay() const noexcept { return goal.kind != MotionKind::kNone; }
+  void Stop() noexcept { goal.kind = MotionKind::kNone; }
+};
+
+// One tick of a commanded motion: moves `reference` on. Returns the limits that acted or forbade it; where
+// they, or a command that is none, forbid it, `state.refused` is set and the reference brakes.
+// Real-time: yes; a new goal takes some 10 us.
+hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& command, std::int64_t now_ns,
+                           MotionState& state, Reference& reference) noexcept;
+
+}  // namespace fovea::servo

@@ -1,0 +1,157 @@
+#include "fovea/servo/follow_motion.hpp"
+
+#include <cmath>
+
+#include "fovea/model/rotation.hpp"
+#include "fovea/servo/guard_motion.hpp"
+#include "fovea/servo/stop_path.hpp"
+#include "pose_motion.hpp"
+
+namespace fovea::servo {
+namespace {
+
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr double kRounding = 1.0 + 1e-9;  // a plan that uses all of a limit may round above it
+
+bool Exceeds(double value, double limit) noexcept { return !(std::fabs(value) <= limit * kRounding); }
+
+hal::LimitSet LimitsOfJoint(const ServoConfig& config, int i, const Reference& next) noexcept {
+  const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+  const GuardConfig& guard = config.guard;
+  hal::LimitSet limits = 0;
+  if (Exceeds(next.dq[i], guard.joint_velocity_fraction * joint.dq_max)) {
+    limits |= hal::Bit(hal::Limit::kJointVelocity);
+  }
+  if (Exceeds(next.ddq[i], guard.joint_acceleration_fraction * joint.ddq_max)) {
+    limits |= hal::Bit(hal::Limit::kJointAcceleration);
+  }
+  if (next.q[i] > joint.q_max - guard.joint_position_margin ||
+      next.q[i] < joint.q_min + guard.joint_position_margin) {
+    limits |= hal::Bit(hal::Limit::kJointPosition);
+  }
+  return limits;
+}
+
+model::ArmPoses PosesOf(const ServoConfig& config, const model::VecN& q) noexcept {
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, q, poses);
+  return poses;
+}
+
+// The reference slows down as fast as it may, and stays on its course as long as it can.
+hal::LimitSet Brake(const ServoConfig& config, Reference& reference) noexcept {
+  const model::ArmPoses poses = PosesOf(config, reference.q);
+  model::LinearJacobian J_E_B;
+  model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
+  return GuardMotion(config, model::VecN::Zero(config.arm.num_joints), poses.X_BE.p, J_E_B, reference);
+}
+
+// `next` becomes the reference if nothing forbids it.
+hal::LimitSet TakeReference(const ServoConfig& config, const Reference& next, MotionState& state,
+                            Reference& reference) noexcept {
+  hal::LimitSet limits = 0;
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    const double expected = reference.q[i] + reference.dq[i] * kPeriodS;
+    state.refused = state.refused || Exceeds(next.q[i] - expected, config.safety.setpoint_jump);
+    limits |= LimitsOfJoint(config, i, next);
+  }
+  if (limits == 0 && !state.refused) {
+    const double radius = PosesOf(config, reference.q).X_BE.p.norm();
+    limits = LimitsPassed(config, next, reference.q, radius);
+  }
+  state.refused = state.refused || limits != 0;
+  if (state.refused) {
+    return limits | Brake(config, reference);
+  }
+  reference = next;
+  return 0;
+}
+
+hal::LimitSet TakeSetpoint(const ServoConfig& config, const MotionCommand& command, MotionState& state,
+                           Reference& reference) noexcept {
+  const int n = config.arm.num_joints;
+  Reference next;
+  next.q = model::ToVector(command.q, n);
+  next.dq = model::ToVector(command.dq, n);
+  next.ddq = model::ToVector(command.ddq, n);
+  if (!next.q.allFinite() || !next.dq.allFinite() || !next.ddq.allFinite()) {
+    state.refused = true;
+    return Brake(config, reference);
+  }
+  return TakeReference(config, next, state, reference);
+}
+
+bool PlanJoints(const ServoConfig& config, const MotionCommand& command, const Reference& reference,
+                MotionState& state) noexcept {
+  JointMove::Limits limits;
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& joint = config.arm.joints[k];
+    limits[k] = {config.guard.joint_velocity_fraction * joint.dq_max,
+                 config.guard.joint_acceleration_fraction * joint.ddq_max,
+                 config.guard.joint_jerk_fraction * joint.dddq_max};
+  }
+  return state.joints.Plan(reference, model::ToVector(command.q, config.arm.num_joints), limits);
+}
+
+bool SameGoal(const MotionCommand& a, const MotionCommand& b) noexcept {
+  return a.kind == b.kind && a.q == b.q && a.p_BE == b.p_BE && a.quaternion_BE == b.quaternion_BE;
+}
+
+// Plans for a goal that is not the one under way. False when it is none.
+bool TakeGoal(const ServoConfig& config, const MotionCommand& command, std::int64_t now_ns,
+              const Reference& reference, MotionState& state) noexcept {
+  if (SameGoal(command, state.goal)) {
+    return true;
+  }
+  const bool planned = command.kind == MotionKind::kJointGoal ? PlanJoints(config, command, reference, state)
+                                                              : PlanPose(config, command, reference, state.pose);
+  if (planned) {
+    state.goal = command;
+    state.start_ns = now_ns;
+  }
+  return planned;
+}
+
+}  // namespace
+
+hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& command, std::int64_t now_ns,
+                           MotionState& state, Reference& reference) noexcept {
+  state.refused = false;
+  switch (command.kind) {
+    case MotionKind::kNone: break;
+    case MotionKind::kJointSetpoint: state.Stop(); return TakeSetpoint(config, command, state, reference);
+    case MotionKind::kPoseSetpoint: state.Stop(); return FollowPose(config, command, state.refused, reference);
+    case MotionKind::kJointGoal:
+    case MotionKind::kPoseGoal:
+      if (!TakeGoal(config, command, now_ns, reference, state)) {
+        state.Stop();
+        state.refused = true;
+        return Brake(config, reference);
+      }
+      break;
+  }
+  const double t = static_cast<double>(now_ns - state.start_ns) * 1e-9 + kPeriodS;
+  hal::LimitSet limits = 0;
+  if (state.goal.kind == MotionKind::kJointGoal) {
+    Reference next;
+    state.joints.At(t, next);
+    limits = TakeReference(config, next, state, reference);
+    if (t >= state.joints.Duration()) {
+      state.Stop();
+    }
+  } else if (state.goal.kind == MotionKind::kPoseGoal) {
+    limits = FollowPose(config, PoseAt(state.goal, state.pose, t), state.refused, reference);
+    if (t >= state.pose.Duration() && PoseReached(config, state.goal, reference)) {
+      state.Stop();
+    }
+  } else {
+    return Brake(config, reference);
+  }
+  if (state.refused) {
+    state.Stop();
+  }
+  return limits;
+}
+
+}  // namespace fovea::servo
