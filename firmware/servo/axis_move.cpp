@@ -81,9 +81,14 @@ VelocityChange ChangeFrom(const AxisState& state, double v1, const AxisLimits& l
   return PlanVelocityChange(state.v, state.a, v1, limits);
 }
 
+// The first part of `t` seconds of forward acceleration: until it has reached its limit.
+double RampTime(const AxisState& state, double t, const AxisLimits& limits) noexcept {
+  return std::min(t, std::max((limits.a_max - state.a) / limits.j_max, 0.0));
+}
+
 // `state` after `t` seconds of forward jerk, and forward acceleration once that has reached its limit.
 AxisState Accelerate(const AxisState& state, double t, const AxisLimits& limits) noexcept {
-  const double ramp_s = std::min(t, std::max((limits.a_max - state.a) / limits.j_max, 0.0));
+  const double ramp_s = RampTime(state, t, limits);
   return After(After(state, limits.j_max, ramp_s), 0.0, t - ramp_s);
 }
 
@@ -115,12 +120,10 @@ Sprint FindSprint(const AxisState& start, double distance, const AxisLimits& lim
     const AxisState state = Accelerate(start, s, limits);
     return state.x + ChangeFrom(state, 0.0, limits).Travel() - distance;
   };
-  const VelocityChange stop = ChangeFrom(start, 0.0, limits);
-  const double least = stop.direction > 0.0 ? ForwardTime(stop) : 0.0;
   // A start that settles at v_max, but for rounding above it, may only release its braking.
   const double most =
       rise.direction > 0.0 ? ForwardTime(rise) : rise.phases[VelocityChange::kRelease].duration_s;
-  sprint.accelerate_s = BracketedRoot(beyond, least, beyond(least), most, -cruise);
+  sprint.accelerate_s = BracketedRoot(beyond, 0.0, beyond(0.0), most, -cruise);
   sprint.duration_s = sprint.accelerate_s +
                       ChangeFrom(Accelerate(start, sprint.accelerate_s, limits), 0.0, limits).Duration();
   return sprint;
@@ -152,7 +155,7 @@ void AppendReturn(const AxisLimits& limits, MoveWriter& writer) noexcept {
   }
 }
 
-// A problem from where the writer is: rest `distance` forward, which is the direction of `sign`, within
+// A problem from where the writer is: rest `distance` forward, which is the direction of `sign`, after
 // `duration_s`.
 struct Task {
   AxisLimits limits;
@@ -168,8 +171,7 @@ AxisMove WriteSprint(const Task& task, const Sprint& sprint, MoveWriter& writer)
     writer.Append(Mirrored(ChangeFrom(start, limits.v_max, limits), task.sign));
     writer.Append(0.0, sprint.cruise_s);
   } else {
-    const double ramp_s =
-        std::min(sprint.accelerate_s, std::max((limits.a_max - start.a) / limits.j_max, 0.0));
+    const double ramp_s = RampTime(start, sprint.accelerate_s, limits);
     writer.Append(task.sign * limits.j_max, ramp_s);
     writer.Append(0.0, sprint.accelerate_s - ramp_s);
   }
@@ -220,18 +222,16 @@ AxisMove WriteStretched(const Task& task, const Sprint& sprint, MoveWriter& writ
   };
   const double stop_s = stop.Duration();
   const double late_at_end = late(stop_s);
-  Task rest = task;
+  double brake_s = stop_s;
   if (late_at_end >= 0.0) {
-    const double brake_s = BracketedRoot(late, 0.0, sprint.duration_s - task.duration_s, stop_s, late_at_end);
+    brake_s = BracketedRoot(late, 0.0, sprint.duration_s - task.duration_s, stop_s, late_at_end);
     writer.AppendPart(Mirrored(stop, task.sign), brake_s);
-    rest.duration_s -= brake_s;
-    rest.distance -= stop.At(brake_s).x;
   } else {
+    // Even that is too early, which no case is known to be: wait where the stop ends.
     writer.Append(Mirrored(stop, task.sign));
     writer.Append(0.0, -late_at_end);
-    rest.distance -= stop.Travel();
   }
-  return WriteSprint(rest, FindSprint(Seen(writer.Now(), task.sign), rest.distance, limits), writer);
+  return WriteSprint(task, sprint_after(brake_s), writer);
 }
 
 }  // namespace
@@ -245,9 +245,7 @@ AxisState AxisMove::At(double t) const noexcept {
     ++k;
   }
   const Phase& phase = phases[static_cast<std::size_t>(k)];
-  // Not beyond the phase's own end, which its rounded times may leave room for: the limits hold to the last
-  // bits.
-  return After(phase.start, phase.jerk, std::min(std::max(t - phase.start_s, 0.0), phase.duration_s));
+  return After(phase.start, phase.jerk, std::max(t - phase.start_s, 0.0));
 }
 
 AxisMove PlanAxisMove(const AxisState& start, double goal_x, const AxisLimits& limits,

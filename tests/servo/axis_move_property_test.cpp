@@ -18,7 +18,7 @@ struct Case {
   AxisLimits limits;
   AxisState start;
   double goal_x = 0.0;
-  bool stops_there = false;  // the shortest stop ends at the goal
+  bool stops_there = false;  // the shortest stop ends at the goal, but for rounding
 };
 
 double Decades(test::RandomStates& random, double low, double high) {
@@ -44,18 +44,20 @@ Case Draw(test::RandomStates& random) {
       c.start = {c.start.x, std::copysign(c.limits.v_max, c.start.v), 0.0};
     }
   }
-  const double stop_x = c.start.x + PlanVelocityChange(c.start.v, c.start.a, 0.0, c.limits).Travel();
+  const VelocityChange stop = PlanVelocityChange(c.start.v, c.start.a, 0.0, c.limits);
+  const double stop_x = c.start.x + stop.Travel();
   const double goal_kind = random.Uniform(0.0, 10.0);
   if (goal_kind < 1.0) {
     c.goal_x = c.start.x;
   } else if (goal_kind < 1.5) {
     c.goal_x = stop_x;
-    c.stops_there = true;
   } else if (goal_kind < 5.0) {
     c.goal_x = stop_x + Sign(random) * Decades(random, -6, 0) * std::fabs(stop_x - c.start.x);
   } else {
     c.goal_x = c.start.x + Sign(random) * Decades(random, -6, 4);
   }
+  const double scale = std::fabs(c.start.x) + std::fabs(stop_x) + std::fabs(c.start.v) * stop.Duration();
+  c.stops_there = std::fabs(c.goal_x - stop_x) <= 1e-14 * scale;
   return c;
 }
 

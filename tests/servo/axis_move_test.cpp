@@ -73,6 +73,13 @@ TEST(AxisMoveTest, WhatItCannotStopBeforeItComesBackTo) {
   EXPECT_LT(move.At(move.Duration() - 1e-3).v, 0.0);
 }
 
+TEST(AxisMoveTest, BeyondItsVelocityLimitItBrakesOnTowardsANearGoal) {
+  const AxisLimits limits{1.0, 2.0, 20.0};
+  const VelocityChange stop = PlanVelocityChange(2.0, 0.0, 0.0, limits);
+  const AxisMove move = PlanAxisMove({0.0, 2.0, 0.0}, stop.Travel(), limits);
+  EXPECT_NEAR(move.Duration(), stop.Duration(), 1e-4) << "no pause at the limit";
+}
+
 TEST(AxisMoveTest, TakesALongerTimeByCruisingSlower) {
   const AxisLimits limits{1.0, 2.0, 20.0};
   const AxisState start{0.0, 0.5, 0.0};

@@ -35,8 +35,9 @@ struct AxisMove {
     double jerk = 0.0;
     AxisState start;
   };
-  // Return to the limits (3), brake (3), wait, change (3), cruise, change (3), rest.
-  static constexpr int kMaxPhases = 16;
+  // Return to the limits (4), brake (4), wait, change (4), cruise, change (4), rest; most of them are usually
+  // none.
+  static constexpr int kMaxPhases = 19;
 
   // The last phase is the rest at the goal. Computed forward from the start and, for the last change of
   // velocity, backward from the goal, so that both ends are exact and rounding shows between.
