@@ -3,7 +3,7 @@
 //
 // An axis is anything with one coordinate: a joint [rad, rad/s, ...] or a direction [m, m/s, ...]. The method
 // is the double integrator's time optimum with its acceleration as a bounded state (Biagiotti and Melchiorri,
-// Trajectory Planning for Automatic Machines and Robots, 2008, section 3.4).
+// Trajectory Planning for Automatic Machines and Robots, 2008).
 #pragma once
 
 #include <array>
