@@ -62,6 +62,21 @@ void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const V
   }
 }
 
+void ComputeBaseJacobian(const ArmModel& model, const ArmPoses& poses, Mat6N& J_B) noexcept {
+  J_B.resize(6, model.num_joints);
+  for (int i = 0; i < model.num_joints; ++i) {
+    const Pose& X_BL = poses.X_BL[static_cast<std::size_t>(i)];
+    const Vec3 axis = X_BL.R.col(2);
+    if (model.joints[static_cast<std::size_t>(i)].type == JointType::kRevolute) {
+      J_B.col(i).head<3>() = Cross(axis, poses.X_BE.p - X_BL.p);
+      J_B.col(i).tail<3>() = axis;
+    } else {
+      J_B.col(i).head<3>() = axis;
+      J_B.col(i).tail<3>().setZero();
+    }
+  }
+}
+
 Vec6 BiasAcceleration(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept {
   // Joint by joint outwards: angular velocity w and acceleration alpha, and acceleration a of the point at p.
   Vec3 w = Vec3::Zero();

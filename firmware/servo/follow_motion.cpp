@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "fovea/model/rotation.hpp"
 #include "fovea/servo/guard_motion.hpp"
 #include "fovea/servo/stop_path.hpp"
 #include "pose_motion.hpp"
@@ -11,6 +10,7 @@ namespace fovea::servo {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr double kLateS = 1.0;  // the end effector is there so soon after its plan, or a limit keeps it away
 constexpr double kRounding = 1.0 + 1e-9;  // a plan that uses all of a limit may round above it
 
 bool Exceeds(double value, double limit) noexcept { return !(std::fabs(value) <= limit * kRounding); }
@@ -104,8 +104,14 @@ bool TakeGoal(const ServoConfig& config, const MotionCommand& command, std::int6
   if (SameGoal(command, state.goal)) {
     return true;
   }
-  const bool planned = command.kind == MotionKind::kJointGoal ? PlanJoints(config, command, reference, state)
-                                                              : PlanPose(config, command, reference, state.pose);
+  PoseSetpoint setpoint;
+  bool planned = false;
+  if (command.kind == MotionKind::kJointGoal) {
+    planned = PlanJoints(config, command, reference, state);
+  } else if (ToSetpoint(command, setpoint)) {
+    planned = PlanPose(config, setpoint.X_BE, reference, state.pose);
+    state.X_BE = setpoint.X_BE;
+  }
   if (planned) {
     state.goal = command;
     state.start_ns = now_ns;
@@ -121,7 +127,12 @@ hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& comma
   switch (command.kind) {
     case MotionKind::kNone: break;
     case MotionKind::kJointSetpoint: state.Stop(); return TakeSetpoint(config, command, state, reference);
-    case MotionKind::kPoseSetpoint: state.Stop(); return FollowPose(config, command, state.refused, reference);
+    case MotionKind::kPoseSetpoint: {
+      state.Stop();
+      PoseSetpoint setpoint;
+      state.refused = !ToSetpoint(command, setpoint);
+      return FollowPose(config, setpoint, state.refused, reference);
+    }
     case MotionKind::kJointGoal:
     case MotionKind::kPoseGoal:
       if (!TakeGoal(config, command, now_ns, reference, state)) {
@@ -141,10 +152,11 @@ hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& comma
       state.Stop();
     }
   } else if (state.goal.kind == MotionKind::kPoseGoal) {
-    limits = FollowPose(config, PoseAt(state.goal, state.pose, t), state.refused, reference);
-    if (t >= state.pose.Duration() && PoseReached(config, state.goal, reference)) {
+    limits = FollowPose(config, PoseAt(state.X_BE, state.pose, t), state.refused, reference);
+    if (t >= state.pose.Duration() && StandsAt(config, state.X_BE, reference)) {
       state.Stop();
     }
+    state.refused = state.refused || t > state.pose.Duration() + kLateS;
   } else {
     return Brake(config, reference);
   }

@@ -9,23 +9,30 @@
 
 namespace fovea::servo {
 
-// Plans from where `reference` has the end effector, with its velocity and acceleration, to rest at the goal's
-// pose: six coordinates that end at zero, position less goal and the turn from the goal. False when the goal
-// is no pose. Real-time: yes.
-[[nodiscard]] bool PlanPose(const ServoConfig& config, const MotionCommand& goal, const Reference& reference,
+// Where the end effector shall be, and how it shall move, in this tick.
+struct PoseSetpoint {
+  model::Pose X_BE;
+  model::Vec6 V_BE_B = model::Vec6::Zero();  // [v; w] in axes of B
+};
+
+// False when the command's numbers are no pose. Real-time: yes.
+[[nodiscard]] bool ToSetpoint(const MotionCommand& command, PoseSetpoint& setpoint) noexcept;
+
+// Plans from where `reference` has the end effector, with its velocity and acceleration, to rest at `X_BE`:
+// six coordinates that end at zero, position less goal and the turn from the goal. Real-time: yes.
+[[nodiscard]] bool PlanPose(const ServoConfig& config, const model::Pose& X_BE, const Reference& reference,
                             SynchronisedMove& move) noexcept;
 
-// Where the end effector shall be `t` seconds into the move, as a setpoint. Real-time: yes.
-[[nodiscard]] MotionCommand PoseAt(const MotionCommand& goal, const SynchronisedMove& move, double t) noexcept;
+// The setpoint `t` seconds into the move to `X_BE`. Real-time: yes.
+[[nodiscard]] PoseSetpoint PoseAt(const model::Pose& X_BE, const SynchronisedMove& move, double t) noexcept;
 
-// Moves the joints' reference on by a tick towards a pose setpoint, through the guard. `refused` is set when
-// the setpoint is none, or the end effector has fallen behind it by more than servo.pose_error_max: a limit
-// forbids the way. Real-time: yes.
-hal::LimitSet FollowPose(const ServoConfig& config, const MotionCommand& setpoint, bool& refused,
+// Moves the joints' reference on by a tick towards `setpoint`, through the guard. `refused` is set when the
+// end effector is further from it than servo.pose_error_max: a limit forbids the way. Real-time: yes.
+hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint, bool& refused,
                          Reference& reference) noexcept;
 
-// Whether the reference stands at the goal. Real-time: yes.
-[[nodiscard]] bool PoseReached(const ServoConfig& config, const MotionCommand& goal,
-                               const Reference& reference) noexcept;
+// Whether the reference stands at `X_BE`. Real-time: yes.
+[[nodiscard]] bool StandsAt(const ServoConfig& config, const model::Pose& X_BE,
+                            const Reference& reference) noexcept;
 
 }  // namespace fovea::servo

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "fovea/servo/clamp_torque.hpp"
-#include "fovea/servo/follow_motion.hpp"
 #include "fovea/servo/smooth_step.hpp"
 
 namespace fovea::servo {
@@ -92,10 +91,9 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   mode_inputs.goal_unreachable =
       static_cast<double>(state_.blocked_ns) > config_.law.unreachable_s * kSecondNs;
   mode_inputs.target_moved = (state_.prediction.p_BO - state_.p_BO_unreachable).norm() > kTargetMovedM;
-  mode_inputs.motion_asked = inputs.motion.kind != MotionKind::kNone;
-  mode_inputs.motion_refused = state_.motion_refused;
+  mode_inputs.motion_asked = inputs.motion.kind != MotionKind::kNone || state_.motion.IsUnderWay();
+  mode_inputs.motion_refused = state_.motion.refused;
   mode_inputs.fault = check.fault;
-  state_.motion_refused = false;
 
   const hal::Mode before = state_.mode.mode;
   if (check.fault != hal::Fault::kNone && before != hal::Mode::kFault) {
@@ -106,6 +104,10 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   }
   const hal::Mode now = state_.mode.mode;
   state_.mode_since_ns = state_.now_ns;
+  if (now != hal::Mode::kMove) {
+    state_.motion.Stop();
+    state_.motion.refused = false;
+  }
   if (before == hal::Mode::kBoot && now == hal::Mode::kHold) {
     // The reference starts where the arm stands.
     state_.reference.q = state_.q;
@@ -151,7 +153,7 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     return;  // nothing new is known: the last command stays in force
   }
   if (state_.mode.mode == hal::Mode::kMove) {
-    FollowCommand(inputs.motion);
+    state_.limits = FollowMotion(config_, inputs.motion, state_.now_ns, state_.motion, state_.reference);
     CheckFollowing();
     return;
   }
@@ -167,16 +169,6 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   state_.limits = GuardMotion(config_, dq_des, state_.poses.X_BE.p, state_.J_E_B, state_.reference);
   CheckFollowing();
   NoteBlocked();
-}
-
-void ServoTask::FollowCommand(const MotionCommand& command) noexcept {
-  const SetpointCheck check = TakeSetpoint(config_, command, state_.poses.X_BE.p.norm(), state_.reference);
-  state_.motion_refused = check.refused;
-  state_.limits = check.limits;
-  if (check.refused) {
-    const model::VecN stop = model::VecN::Zero(config_.arm.num_joints);
-    state_.limits |= GuardMotion(config_, stop, state_.poses.X_BE.p, state_.J_E_B, state_.reference);
-  }
 }
 
 void ServoTask::CheckFollowing() noexcept {

@@ -16,7 +16,7 @@ struct CommandedMotion {
 
   [[nodiscard]] servo::MotionCommand At(double t_s) const noexcept {
     servo::MotionCommand command;
-    command.kind = servo::MotionKind::kSetpoint;
+    command.kind = servo::MotionKind::kJointSetpoint;
     const double sine = std::sin(omega * t_s);
     const double cosine = std::cos(omega * t_s);
     for (std::size_t i = 0; i < from.size(); ++i) {

@@ -93,6 +93,9 @@ TEST_P(KdlTest, PosesAndJacobianAgree) {
     ASSERT_GE(fk.JntToCart(ToKdl(q), X_BE), 0);
     KDL::Jacobian J_kdl(chain_.getNrOfJoints());
     ASSERT_GE(jac.JntToJac(ToKdl(q), J_kdl), 0);
+    model::Mat6N J_B;
+    model::ComputeBaseJacobian(arm, poses, J_B);
+    worst_jacobian = std::max(worst_jacobian, (J_kdl.data - J_B).cwiseAbs().maxCoeff());
     J_kdl.changeBase(X_BE.M.Inverse());  // KDL's is in axes of B, ours in axes of E
     for (int r = 0; r < 3; ++r) {
       worst_pose = std::max(worst_pose, std::abs(X_BE.p[r] - poses.X_BE.p[r]));

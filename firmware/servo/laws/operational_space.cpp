@@ -4,25 +4,12 @@
 #include "motion_laws.hpp"
 
 namespace fovea::servo {
-namespace {
 
 using model::Mat6;
 using model::Mat6N;
 using model::MatN;
 using model::Vec6;
 using model::VecN;
-
-// Twist of E [v; w] in axes of B, per joint velocity.
-Mat6N SpatialJacobian(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept {
-  Mat6N J_E;
-  model::ComputeJacobian(arm, poses, model::Pose{}, J_E);
-  Mat6N J(6, J_E.cols());
-  J.topRows<3>() = poses.X_BE.R.lazyProduct(J_E.topRows<3>());
-  J.bottomRows<3>() = poses.X_BE.R.lazyProduct(J_E.bottomRows<3>());
-  return J;
-}
-
-}  // namespace
 
 void OperationalSpace(const MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& /*state*/,
                       VecN& tau) noexcept {
@@ -32,8 +19,10 @@ void OperationalSpace(const MotionLawConfig& config, const MotionLawInputs& inpu
 
   model::ArmPoses goal;
   model::ComputePoses(inputs.arm, reference.q, goal);
-  const Mat6N J_goal = SpatialJacobian(inputs.arm, goal);
-  const Mat6N J = SpatialJacobian(inputs.arm, inputs.poses);
+  Mat6N J_goal;
+  Mat6N J;
+  model::ComputeBaseJacobian(inputs.arm, goal, J_goal);
+  model::ComputeBaseJacobian(inputs.arm, inputs.poses, J);
 
   // The acceleration that takes the end effector's error away.
   Vec6 e_x;

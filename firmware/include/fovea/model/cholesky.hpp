@@ -22,25 +22,39 @@ void FactorCholesky(Matrix& A) noexcept {
   }
 }
 
-// Solves L L^T x = b in place, `L` from FactorCholesky; `x` [n], or [n x m] column by column.
-// Real-time: yes.
+// Solves L x = b in place, `L` from FactorCholesky; `x` [n], or [n x m] column by column. Real-time: yes.
 template <typename Matrix, typename Vectors>
-void SolveCholesky(const Matrix& L, Vectors& x) noexcept {
-  const Eigen::Index n = L.rows();
+void SolveLower(const Matrix& L, Vectors& x) noexcept {
   for (Eigen::Index c = 0; c < x.cols(); ++c) {
-    for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index i = 0; i < L.rows(); ++i) {
+      double sum = x(i, c);
       for (Eigen::Index k = 0; k < i; ++k) {
-        x(i, c) -= L(i, k) * x(k, c);
+        sum -= L(i, k) * x(k, c);
       }
-      x(i, c) /= L(i, i);
-    }
-    for (Eigen::Index i = n - 1; i >= 0; --i) {
-      for (Eigen::Index k = i + 1; k < n; ++k) {
-        x(i, c) -= L(k, i) * x(k, c);
-      }
-      x(i, c) /= L(i, i);
+      x(i, c) = sum / L(i, i);
     }
   }
+}
+
+// Solves L^T x = b in place. Real-time: yes.
+template <typename Matrix, typename Vectors>
+void SolveLowerTransposed(const Matrix& L, Vectors& x) noexcept {
+  for (Eigen::Index c = 0; c < x.cols(); ++c) {
+    for (Eigen::Index i = L.rows() - 1; i >= 0; --i) {
+      double sum = x(i, c);
+      for (Eigen::Index k = i + 1; k < L.rows(); ++k) {
+        sum -= L(k, i) * x(k, c);
+      }
+      x(i, c) = sum / L(i, i);
+    }
+  }
+}
+
+// Solves L L^T x = b in place. Real-time: yes.
+template <typename Matrix, typename Vectors>
+void SolveCholesky(const Matrix& L, Vectors& x) noexcept {
+  SolveLower(L, x);
+  SolveLowerTransposed(L, x);
 }
 
 }  // namespace fovea::model

@@ -21,6 +21,10 @@ void ComputePoses(const ArmModel& model, const VecN& q, ArmPoses& poses) noexcep
 // Real-time: yes.
 void ComputeJacobian(const ArmModel& model, const ArmPoses& poses, const Pose& X_EF, Mat6N& J_F) noexcept;
 
+// The end effector's Jacobian in axes of B: [v; w] of E's origin = J dq. `J_B` becomes [6 x num_joints].
+// Real-time: yes.
+void ComputeBaseJacobian(const ArmModel& model, const ArmPoses& poses, Mat6N& J_B) noexcept;
+
 using LinearJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMaxJoints>;
 
 // Velocity of the end effector's point at `p_B` [m], in axes of B: v = J dq. `J_B` becomes

@@ -19,6 +19,7 @@ struct MotionState {
   MotionCommand goal;  // the one under way, kNone when there is none
   std::int64_t start_ns = 0;
   JointMove joints;
+  model::Pose X_BE;       // a pose goal's
   SynchronisedMove pose;  // position less goal, and the turn from the goal, both in axes of B
   bool refused = false;   // in the last tick
 

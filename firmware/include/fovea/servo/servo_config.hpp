@@ -80,6 +80,18 @@ struct SafetyConfig {
   double brake_after_s = 1.0;     // or after this time [s]
 };
 
+// [servo] commanded motions of the end effector
+struct MoveConfig {
+  double speed = 0.5;              // [m/s]
+  double acceleration = 2.0;       // [m/s^2]
+  double jerk = 20.0;              // [m/s^3]
+  double turn_speed = 1.0;         // [rad/s]
+  double turn_acceleration = 4.0;  // [rad/s^2]
+  double turn_jerk = 40.0;         // [rad/s^3]
+  double pose_gain = 20.0;         // takes away what the end effector is off its way [1/s]
+  double pose_error_max = 0.02;    // further off, and the motion is refused [m]
+};
+
 struct ServoConfig {
   model::ArmModel arm;
   model::Pose X_EC;  // the camera in the hand
@@ -87,6 +99,7 @@ struct ServoConfig {
   bool auto_track = false;  // servo.auto_track: go to Track as soon as the target is known
   PredictConfig predict;
   LawConfig law;
+  MoveConfig move;
   MotionLawConfig motion_law;
   GuardConfig guard;
   SafetyConfig safety;

@@ -12,9 +12,9 @@
 #include "fovea/hal/status.hpp"
 #include "fovea/model/dynamics.hpp"
 #include "fovea/servo/check_inputs.hpp"
+#include "fovea/servo/follow_motion.hpp"
 #include "fovea/servo/guard_motion.hpp"
 #include "fovea/servo/modes.hpp"
-#include "fovea/servo/motion_command.hpp"
 #include "fovea/servo/motion_law.hpp"
 #include "fovea/servo/predict.hpp"
 #include "fovea/servo/servo_config.hpp"
@@ -77,7 +77,7 @@ struct ServoState {
 
   // guard
   Reference reference;
-  bool motion_refused = false;  // mode Move: what was commanded cannot be followed
+  MotionState motion;  // mode Move
   hal::LimitSet limits = 0;
 
   // motion law and clamp
@@ -107,7 +107,6 @@ class ServoTask {
   void ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept;
   void ComputeVisualLaw() noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
-  void FollowCommand(const MotionCommand& command) noexcept;
   void CheckFollowing() noexcept;
   void NoteBlocked() noexcept;
   void ComputeTorque(const ServoInputs& inputs) noexcept;

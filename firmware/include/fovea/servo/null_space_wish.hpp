@@ -1,0 +1,56 @@
+// What the arm would do with the freedom that the task leaves it: a sum of wished joint velocities, each with
+// its own gain. None of them disturbs the task; the resolution sees to that.
+//
+//   posture         gain (q_posture - q)
+//   joint limits    -gain dP/dq, a potential P that is zero in the middle of the range and rises from `onset`
+//                   (share of the half range) on; quadratic slope, so that the wish sets in smoothly, and
+//                   bounded also past the range's end. It does not act in the middle on purpose: there the
+//                   posture pulls, and two pulls to different places would settle between them.
+//   manipulability  gain dm/dq,  m = 1/2 log det(J J^T + soft^2 I): the logarithm of the manipulability
+//                   sqrt(det J J^T) (Yoshikawa, 1985), softened so that the wish stays bounded at a
+//                   singularity. J is the body Jacobian with its linear rows divided by `length`.
+#pragma once
+
+#include "fovea/model/kinematics.hpp"
+
+namespace fovea::servo {
+
+struct NullSpaceConfig {
+  double posture_gain = 0.6;          // [1/s]
+  hal::JointArray q_posture{};        // [rad]
+  double joint_limit_gain = 2.0;      // [1/s]
+  double joint_limit_onset = 0.8;     // share of the half range, 0 to 1 (excluded)
+  double manipulability_gain = 0.05;  // [rad^2/s]
+  double manipulability_soft = 0.05;  // singular values below this count little; > 0
+  double length = 0.3;                // that a metre counts as much as a radian for [m]
+};
+
+// dJ_j/dq_k for body Jacobian columns `J_j`, `J_k` (any fixed frame of the end effector): the Lie bracket
+// [J_j, J_k] for k > j, since joint k carries the frame past joint j's axis; zero otherwise. Real-time: yes.
+[[nodiscard]] inline model::Vec6 ColumnChange(const model::Mat6N& J, int j, int k) noexcept {
+  model::Vec6 change = model::Vec6::Zero();
+  if (k > j) {
+    const model::Vec3 w_j = J.col(j).tail<3>();
+    const model::Vec3 w_k = J.col(k).tail<3>();
+    const model::Vec3 v_j = J.col(j).head<3>();
+    const model::Vec3 v_k = J.col(k).head<3>();
+    change.head<3>() = model::Cross(w_j, v_k) + model::Cross(v_j, w_k);
+    change.tail<3>() = model::Cross(w_j, w_k);
+  }
+  return change;
+}
+
+// The potential's slope [rad], [num_joints], at `q`, without gain: -dP/dq. At most (1 - onset) half ranges.
+// A joint whose range is empty wishes nothing. Real-time: yes.
+[[nodiscard]] model::VecN JointLimitWish(const model::ArmModel& arm, const model::VecN& q,
+                                         double onset) noexcept;
+
+// dm/dq [1/rad], [num_joints], for the body Jacobian `J` [6 x num_joints] of any frame fixed to the end
+// effector. With soft = 0 not bounded, and NaN at a singularity. Real-time: yes.
+[[nodiscard]] model::VecN ManipulabilityGradient(const model::Mat6N& J, double length, double soft) noexcept;
+
+// The sum. A wish with gain 0 costs nothing. Real-time: yes.
+[[nodiscard]] model::VecN NullSpaceWish(const NullSpaceConfig& config, const model::ArmModel& arm,
+                                        const model::VecN& q, const model::Mat6N& J) noexcept;
+
+}  // namespace fovea::servo

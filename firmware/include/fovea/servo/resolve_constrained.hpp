@@ -1,0 +1,36 @@
+// Kinematic resolution with all limits inside: one constrained problem per tick.
+//
+// The wish is the damped solution without limits (resolve_damped.hpp). Of all joint velocities that keep the
+// limits, the one is taken that departs least from it, where a departure d costs
+//
+//   |J d|^2 off the task's course + progress_weight |J d|^2 along it + null_weight^2 |d|^2_W
+//
+// in this order of size. So while the joints can still do it together, the task is kept exactly and the null
+// space pays for the limits; when they no longer can, the task slows down rather than leave its course; and
+// it leaves it, to slide along a boundary, when it could not go on otherwise. The weights stand in for a
+// strict order of priorities, with which the result would not be continuous.
+#pragma once
+
+#include "fovea/servo/move_into_limits.hpp"
+#include "fovea/servo/resolve_damped.hpp"
+
+namespace fovea::servo {
+
+struct ConstrainedConfig {
+  DampingConfig damping;
+  double progress_weight = 0.1;  // 1: slide freely along a boundary; towards 0: keep the direction, > 0
+  double null_weight = 0.02;     // of the null space, relative to the rms singular value of J W^-1/2, > 0
+};
+
+struct ConstrainedMotion {
+  DampedMotion wish;
+  LimitedMotion limited;  // its dq is the result
+  double task_share =
+      1.0;  // how much of the wish's task velocity is left, projected on it; 1 when it has none
+};
+
+// Real-time: yes.
+void ResolveConstrained(const ConstrainedConfig& config, const MotionTask& task, const MotionLimits& limits,
+                        ConstrainedMotion& motion) noexcept;
+
+}  // namespace fovea::servo

@@ -1,0 +1,47 @@
+// Kinematic resolution without limits: from a wished task velocity to joint velocities.
+//
+//   dq = dq_0 + J^# (v - J dq_0)            J^# = W^-1/2 Jw^T g(Jw Jw^T),   Jw = J W^-1/2
+//
+// J^# is the weighted pseudo-inverse, damped in each singular direction on its own: with sigma the
+// direction's singular value and t = sigma / threshold,
+//
+//   1 / g = sigma^2                                  for t >= 1: exact
+//   1 / g = sigma^2 + (threshold (1 - t^2) / 2)^2    for t <  1: damping that grows smoothly from nothing
+//
+// so what is well conditioned stays exact beside what is not, |W^1/2 J^# v| <= 1.3 |v| / threshold, and dq is
+// a smooth function of J even where singular values meet or vanish, being a function of the matrix and not
+// of its singular vectors. dq_0 acts in what J^# leaves free, (I - J^# J) dq_0: exactly the null space while
+// t >= 1 for all directions; below that it may disturb the task by 0.22 threshold |W^1/2 dq_0| at most.
+//
+// (Nakamura and Hanafusa, Inverse kinematic solutions with singularity robustness, 1986; Chiaverini,
+// Singularity-robust task-priority redundancy resolution, 1997; Maciejewski and Klein, Numerical filtering
+// for the operation of robotic manipulators through kinematically singular configurations, 1988.)
+#pragma once
+
+#include "fovea/servo/row_svd.hpp"
+
+namespace fovea::servo {
+
+struct MotionTask {
+  TaskJacobian J;             // [dim x num_joints]
+  features::FeatureVector v;  // [dim] wished J dq
+  model::VecN dq_0;           // [num_joints] wish for the directions that the task leaves free
+  model::VecN weight;         // [num_joints] diagonal of W, > 0: a heavy joint moves less
+};
+
+struct DampingConfig {
+  double threshold = 0.05;        // damping begins at this singular value, relative to the rms one of Jw
+  double threshold_floor = 1e-6;  // and at this one at the latest, in units of Jw; > 0
+};
+
+struct DampedMotion {
+  model::VecN dq;          // [num_joints]
+  double threshold = 0.0;  // below which a singular value of Jw is damped
+  double sigma_min = 0.0;  // smallest singular value of Jw, or `threshold` when it is not below that
+  bool finite = false;     // false: an argument was not finite, or dq left the range of numbers; dq = 0
+};
+
+// Real-time: yes.
+void ResolveDamped(const DampingConfig& config, const MotionTask& task, DampedMotion& motion) noexcept;
+
+}  // namespace fovea::servo

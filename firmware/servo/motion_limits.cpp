@@ -1,0 +1,114 @@
+#include "fovea/servo/motion_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fovea/servo/guard_motion.hpp"
+
+namespace fovea::servo {
+namespace {
+
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+
+struct JointPace {
+  double ddq_max = 0.0;       // [rad/s^2]
+  double ramp_s = 0.0;        // from no acceleration to ddq_max
+  double deceleration = 0.0;  // for stopping before a barrier [rad/s^2]
+  double reaction_s = 0.0;    // until it is there: a tick to see it, a tick to act, and the ramp
+};
+
+JointPace PaceOf(const ServoConfig& config, int i) noexcept {
+  const GuardConfig& guard = config.guard;
+  const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+  const double jerk = guard.joint_jerk_fraction * joint.dddq_max;
+  JointPace pace;
+  pace.ddq_max = guard.joint_acceleration_fraction * joint.ddq_max;
+  pace.ramp_s = pace.ddq_max / jerk;
+  pace.deceleration = guard.braking_fraction * pace.ddq_max;
+  pace.reaction_s = 2.0 * kPeriodS + pace.deceleration / jerk;
+  return pace;
+}
+
+}  // namespace
+
+bool MotionLimits::AddRow(const model::VecN& a, double b) noexcept {
+  if (num_rows >= kMaxRows) {
+    return false;
+  }
+  rows[static_cast<std::size_t>(num_rows)] = {a, b};
+  ++num_rows;
+  return true;
+}
+
+bool MotionLimits::KeptBy(const model::VecN& dq) const noexcept {
+  bool kept = true;
+  for (Eigen::Index i = 0; i < dq.size(); ++i) {
+    kept = kept && dq[i] >= dq_min[i] && dq[i] <= dq_max[i];
+  }
+  for (int k = 0; k < num_rows; ++k) {
+    const LimitRow& row = rows[static_cast<std::size_t>(k)];
+    kept = kept && row.a.dot(dq) <= row.b;
+  }
+  return kept;
+}
+
+void LimitJoints(const ServoConfig& config, const Reference& reference, MotionLimits& limits) noexcept {
+  const GuardConfig& guard = config.guard;
+  const Eigen::Index n = reference.q.size();
+  limits.num_rows = 0;
+  limits.dq_min.resize(n);
+  limits.dq_max.resize(n);
+  for (int i = 0; i < n; ++i) {
+    const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+    const JointPace pace = PaceOf(config, i);
+    const double speed = guard.joint_velocity_fraction * joint.dq_max;
+    const double room_up = joint.q_max - guard.joint_position_margin - reference.q[i];
+    const double room_down = reference.q[i] - joint.q_min - guard.joint_position_margin;
+    const double up = std::min(speed, BarrierSpeed(room_up, pace.deceleration, pace.reaction_s));
+    const double down = std::min(speed, BarrierSpeed(room_down, pace.deceleration, pace.reaction_s));
+    const double change = pace.ddq_max * pace.ramp_s;
+    limits.dq_max[i] = std::clamp(reference.dq[i] + change, -down, up);
+    limits.dq_min[i] = std::clamp(reference.dq[i] - change, -down, up);
+  }
+}
+
+void LimitOutwardMotion(const ServoConfig& config, const model::Vec3& p_BE,
+                        const model::LinearJacobian& J_E_B, const model::VecN& dq,
+                        MotionLimits& limits) noexcept {
+  const GuardConfig& guard = config.guard;
+  const double radius = p_BE.norm();
+  if (radius < 1e-6) {
+    return;  // at the centre every direction leads out, and none is near the boundary
+  }
+  const model::Vec3 outward = p_BE / radius;
+  const model::Vec3 v_E = J_E_B.lazyProduct(dq);
+  const double v_out = v_E.dot(outward);
+  // Along the boundary the centripetal share of the deceleration is spent, at most half of it.
+  const double spent = (v_E - v_out * outward).squaredNorm() / radius;
+  const double deceleration =
+      std::max(guard.workspace_deceleration - spent, 0.5 * guard.workspace_deceleration);
+  double reaction_s = 0.0;  // of the slowest joint
+  for (int i = 0; i < dq.size(); ++i) {
+    reaction_s = std::max(reaction_s, PaceOf(config, i).reaction_s);
+  }
+  const double distance = guard.workspace_radius - guard.workspace_margin - radius;
+  const model::VecN a = J_E_B.transpose().lazyProduct(outward);
+  limits.AddRow(a, BarrierSpeed(distance, deceleration, reaction_s));
+}
+
+double ScaleIntoRange(const MotionLimits& limits, model::VecN& dq) noexcept {
+  double scale = 1.0;
+  for (int i = 0; i < dq.size(); ++i) {
+    if (dq[i] > 0.0 && limits.dq_max[i] >= 0.0 && dq[i] * scale > limits.dq_max[i]) {
+      scale = limits.dq_max[i] / dq[i];
+    } else if (dq[i] < 0.0 && limits.dq_min[i] <= 0.0 && dq[i] * scale < limits.dq_min[i]) {
+      scale = limits.dq_min[i] / dq[i];
+    }
+  }
+  for (int i = 0; i < dq.size(); ++i) {
+    dq[i] = std::min(std::max(scale * dq[i], limits.dq_min[i]), limits.dq_max[i]);
+  }
+  return scale;
+}
+
+}  // namespace fovea::servo

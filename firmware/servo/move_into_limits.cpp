@@ -1,0 +1,313 @@
+#include "fovea/servo/move_into_limits.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "fovea/model/cholesky.hpp"
+
+namespace fovea::servo {
+namespace {
+
+using model::kMaxJoints;
+using model::VecN;
+
+constexpr double kBroken = 1e-10;       // a limit passed by more is broken [rad/s, normal of length 1]
+constexpr double kAcceptBroken = 1e-9;  // and by more than this the result is not accepted
+constexpr double kDependent = 1e-9;     // a normal this near to the span of others lies in it
+
+// Limits are numbered: upper ends of the ranges, lower ends, rows.
+constexpr int kFirstLower = kMaxJoints;
+constexpr int kFirstRow = 2 * kMaxJoints;
+constexpr int kNumLimits = kFirstRow + MotionLimits::kMaxRows;
+
+// The limits with normals of length 1 and ranges that are none the wrong way round.
+struct Limits {
+  Eigen::Index n = 0;
+  VecN dq_min, dq_max;
+  int num_rows = 0;
+  std::array<LimitRow, MotionLimits::kMaxRows> rows;
+  std::array<int, MotionLimits::kMaxRows> origin{};  // number of the row as it was given
+  bool contradict = false;                           // a range that is empty, a row that no dq keeps
+  bool sound = true;                                 // false: something is not a number
+
+  explicit Limits(const MotionLimits& given) noexcept
+      : n(given.dq_min.size()), dq_min(given.dq_min), dq_max(given.dq_max) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      sound = sound && !std::isnan(dq_min[i]) && !std::isnan(dq_max[i]);
+      if (dq_min[i] > dq_max[i]) {
+        contradict = true;
+        dq_min[i] = dq_max[i] = std::fabs(dq_min[i]) < std::fabs(dq_max[i]) ? dq_min[i] : dq_max[i];
+      }
+    }
+    for (int k = 0; k < given.num_rows; ++k) {
+      const LimitRow& row = given.rows[static_cast<std::size_t>(k)];
+      sound = sound && row.a.allFinite() && !std::isnan(row.b);
+      const double largest = row.a.lpNorm<Eigen::Infinity>();
+      if (!(largest > 0.0)) {
+        contradict |= row.b < 0.0;  // says nothing about dq
+        continue;
+      }
+      LimitRow& unit = rows[static_cast<std::size_t>(num_rows)];
+      unit.a = row.a / largest;  // first this, lest a square overflow
+      const double size = unit.a.norm();
+      unit.a /= size;
+      unit.b = row.b / largest / size;
+      origin[static_cast<std::size_t>(num_rows)] = k;
+      ++num_rows;
+    }
+  }
+
+  [[nodiscard]] bool Exists(int limit) const noexcept {
+    return limit < kFirstRow ? limit % kMaxJoints < n : limit - kFirstRow < num_rows;
+  }
+
+  // By how much `dq` passes the limit.
+  [[nodiscard]] double Passed(int limit, const VecN& dq) const noexcept {
+    if (limit < kFirstLower) {
+      return dq[limit] - dq_max[limit];
+    }
+    if (limit < kFirstRow) {
+      return dq_min[limit - kFirstLower] - dq[limit - kFirstLower];
+    }
+    const LimitRow& row = rows[static_cast<std::size_t>(limit - kFirstRow)];
+    return row.a.dot(dq) - row.b;
+  }
+
+  [[nodiscard]] VecN Normal(int limit) const noexcept {
+    if (limit >= kFirstRow) {
+      return rows[static_cast<std::size_t>(limit - kFirstRow)].a;
+    }
+    VecN normal = VecN::Zero(n);
+    normal[limit % kMaxJoints] = limit < kFirstLower ? 1.0 : -1.0;
+    return normal;
+  }
+
+  [[nodiscard]] VecN IntoRange(const VecN& dq) const noexcept {
+    VecN inside(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      inside[i] = std::min(std::max(dq[i], dq_min[i]), dq_max[i]);
+    }
+    return inside;
+  }
+
+  [[nodiscard]] double MostRowPassed(const VecN& dq) const noexcept {
+    double most = 0.0;
+    for (int k = 0; k < num_rows; ++k) {
+      most = std::max(most, Passed(kFirstRow + k, dq));
+    }
+    return most;
+  }
+};
+
+// The limits that hold the estimate back, their normals in the coordinates y = L^T dq (where H is the
+// identity) as N = Q R, and their multipliers.
+struct ActiveSet {
+  int size = 0;
+  std::array<int, kMaxJoints> limit{};
+  std::array<double, kMaxJoints> multiplier{};
+  std::array<VecN, kMaxJoints> normal;
+  std::array<VecN, kMaxJoints> Q;
+  std::array<std::array<double, kMaxJoints>, kMaxJoints> R{};  // R[column][row]
+  std::uint32_t members = 0;                                   // bit per limit
+
+  // Splits `normal` into its share along Q, `along`, and the rest, which it becomes.
+  void Split(VecN& vector, std::array<double, kMaxJoints>& along) const noexcept {
+    along.fill(0.0);
+    for (int pass = 0; pass < 2; ++pass) {  // the second takes away what rounding left
+      for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
+        const double share = Q[i].dot(vector);
+        along[i] += share;
+        vector -= share * Q[i];
+      }
+    }
+  }
+
+  // R^-1 along, in place.
+  void SolveR(std::array<double, kMaxJoints>& x) const noexcept {
+    for (int i = size - 1; i >= 0; --i) {
+      const auto row = static_cast<std::size_t>(i);
+      for (auto column = row + 1; column < static_cast<std::size_t>(size); ++column) {
+        x[row] -= R[column][row] * x[column];
+      }
+      x[row] /= R[row][row];
+    }
+  }
+
+  // `rest` and `along`: what Split made of `whitened`.
+  void Add(int new_limit, double new_multiplier, const VecN& whitened, const VecN& rest,
+           const std::array<double, kMaxJoints>& along) noexcept {
+    const auto k = static_cast<std::size_t>(size);
+    limit[k] = new_limit;
+    multiplier[k] = new_multiplier;
+    normal[k] = whitened;
+    const double length = rest.norm();
+    Q[k] = rest / length;
+    R[k] = along;
+    R[k][k] = length;
+    members |= 1U << static_cast<unsigned>(new_limit);
+    ++size;
+  }
+
+  void Drop(int index) noexcept {
+    const int old_size = size;
+    const auto dropped = static_cast<std::size_t>(index);
+    members &= ~(1U << static_cast<unsigned>(limit[dropped]));
+    size = index;
+    for (std::size_t k = dropped + 1; k < static_cast<std::size_t>(old_size); ++k) {
+      const VecN whitened = normal[k];
+      VecN rest = whitened;
+      std::array<double, kMaxJoints> along;
+      Split(rest, along);
+      Add(limit[k], multiplier[k], whitened, rest, along);
+    }
+  }
+};
+static_assert(kNumLimits <= 32, "one bit each");
+
+enum class Search : std::uint8_t { kDone, kGaveUp, kInfeasible };
+
+// From `dq`, the wish, to the nearest point that keeps all limits.
+Search FindNearest(const model::MatN& L, const Limits& limits, VecN& dq, ActiveSet& active,
+                   int& steps) noexcept {
+  const double broken = kBroken + 1e-14 * dq.lpNorm<Eigen::Infinity>();
+  int entering = -1;
+  double entering_multiplier = 0.0;
+  VecN whitened;
+  for (steps = 0; steps < LimitedMotion::kMaxSteps; ++steps) {
+    if (entering < 0) {
+      double most = broken;
+      for (int limit = 0; limit < kNumLimits; ++limit) {
+        if (!limits.Exists(limit) || (active.members >> static_cast<unsigned>(limit) & 1U) != 0) {
+          continue;
+        }
+        const double passed = limits.Passed(limit, dq);
+        if (passed > most) {
+          most = passed;
+          entering = limit;
+        }
+      }
+      if (entering < 0) {
+        return Search::kDone;
+      }
+      entering_multiplier = 0.0;
+      whitened = limits.Normal(entering);
+      model::SolveLower(L, whitened);
+    }
+    // Way towards the limit within those that already hold, and how their multipliers change along it.
+    VecN rest = whitened;
+    std::array<double, kMaxJoints> along;
+    active.Split(rest, along);
+    std::array<double, kMaxJoints> change = along;
+    active.SolveR(change);
+    const double rest2 = rest.squaredNorm();
+    const bool blocked =
+        active.size == dq.size() || rest2 <= kDependent * kDependent * whitened.squaredNorm();
+    const double full = blocked ? 0.0 : limits.Passed(entering, dq) / rest2;
+    double step = full;
+    int drop = -1;
+    for (int k = 0; k < active.size; ++k) {
+      const auto index = static_cast<std::size_t>(k);
+      if (change[index] > 0.0) {
+        const double until_zero = active.multiplier[index] / change[index];
+        if ((blocked && drop < 0) || until_zero < step) {
+          step = until_zero;
+          drop = k;
+        }
+      }
+    }
+    if (blocked && drop < 0) {
+      return Search::kInfeasible;
+    }
+    if (!blocked) {
+      VecN towards = rest;
+      model::SolveLowerTransposed(L, towards);
+      dq -= step * towards;
+    }
+    for (std::size_t k = 0; k < static_cast<std::size_t>(active.size); ++k) {
+      active.multiplier[k] -= step * change[k];
+    }
+    entering_multiplier += step;
+    if (drop >= 0) {
+      active.Drop(drop);
+    } else {
+      active.Add(entering, entering_multiplier, whitened, rest, along);
+      entering = -1;
+    }
+  }
+  return Search::kGaveUp;
+}
+
+// From `rest`, which keeps all limits, towards `goal`, as far as they are kept.
+VecN GoAsFarAsKept(const Limits& limits, const VecN& rest, const VecN& goal) noexcept {
+  const VecN way = limits.IntoRange(goal) - rest;
+  double share = 1.0;
+  for (int k = 0; k < limits.num_rows; ++k) {
+    const double rise = limits.rows[static_cast<std::size_t>(k)].a.dot(way);
+    const double room = std::max(-limits.Passed(kFirstRow + k, rest), 0.0);
+    if (rise * share > room) {
+      share = room / rise;
+    }
+  }
+  return limits.IntoRange(rest + share * way);
+}
+
+}  // namespace
+
+void MoveIntoLimits(const model::MatN& H, const VecN& dq_wish, const MotionLimits& limits_given,
+                    LimitedMotion& motion) noexcept {
+  const Limits limits(limits_given);
+  const VecN at_rest = limits.IntoRange(VecN::Zero(limits.n));
+  motion.steps = 0;
+  motion.upper = motion.lower = motion.rows = 0;
+  motion.dq = at_rest;
+  model::MatN L = H;
+  model::FactorCholesky(L);
+  bool finite = limits.sound && dq_wish.allFinite();
+  for (Eigen::Index i = 0; i < limits.n; ++i) {
+    finite = finite && std::isfinite(L(i, i)) && L(i, i) > 0.0;
+  }
+  if (!finite) {
+    motion.outcome = LimitOutcome::kNotFinite;
+    return;
+  }
+  if (limits.contradict) {
+    motion.outcome = LimitOutcome::kInfeasible;
+    return;
+  }
+  VecN dq = dq_wish;
+  ActiveSet active;
+  const Search search = FindNearest(L, limits, dq, active, motion.steps);
+  const bool rest_is_kept = limits.MostRowPassed(at_rest) <= kAcceptBroken;
+  if (search == Search::kInfeasible && !rest_is_kept) {
+    motion.outcome = LimitOutcome::kInfeasible;
+    return;
+  }
+  const VecN nearest = limits.IntoRange(dq);
+  if (search == Search::kDone && nearest.allFinite() && limits.MostRowPassed(nearest) <= kAcceptBroken) {
+    motion.dq = nearest;
+    motion.outcome = motion.steps == 0 ? LimitOutcome::kFree : LimitOutcome::kLimited;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(active.size); ++k) {
+      const int limit = active.limit[k];
+      if (limit < kFirstLower) {
+        motion.upper |= 1U << static_cast<unsigned>(limit);
+      } else if (limit < kFirstRow) {
+        motion.lower |= 1U << static_cast<unsigned>(limit - kFirstLower);
+      } else {
+        motion.rows |=
+            1U << static_cast<unsigned>(limits.origin[static_cast<std::size_t>(limit - kFirstRow)]);
+      }
+    }
+    return;
+  }
+  if (!rest_is_kept) {
+    motion.outcome = LimitOutcome::kInfeasible;
+    return;
+  }
+  motion.outcome = LimitOutcome::kScaled;
+  if (dq.allFinite()) {
+    motion.dq = GoAsFarAsKept(limits, at_rest, dq);
+  }
+}
+
+}  // namespace fovea::servo

@@ -1,0 +1,45 @@
+#include "fovea/servo/singularity.hpp"
+
+#include <algorithm>
+
+#include "fovea/servo/null_space_wish.hpp"
+#include "fovea/servo/row_svd.hpp"
+
+namespace fovea::servo {
+
+void ComputeSingularity(const model::Mat6N& J, double length, Singularity& singularity) noexcept {
+  const int n = static_cast<int>(J.cols());
+  singularity.sigma = 0.0;
+  singularity.gradient = model::VecN::Zero(n);
+  if (n == 0) {
+    return;
+  }
+  TaskJacobian scaled = J;
+  scaled.topRows<3>() /= length;
+  RowSvd svd;
+  ComputeRowSvd(scaled, svd);
+  const auto last = static_cast<std::size_t>(std::min(n, 6) - 1);
+  singularity.sigma = svd.sigma[last];
+  if (!(singularity.sigma > 0.0)) {
+    return;
+  }
+  model::Vec6 u;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    u[i] = svd.u[last][static_cast<std::size_t>(i)];
+  }
+  u.head<3>() /= length;  // so that it takes unscaled changes
+  for (int j = 0; j + 1 < n; ++j) {
+    const double v_j = svd.r[last][static_cast<std::size_t>(j)] / singularity.sigma;
+    for (int k = j + 1; k < n; ++k) {
+      singularity.gradient[k] += v_j * u.dot(ColumnChange(J, j, k));
+    }
+  }
+}
+
+bool LimitSingularity(const SingularityConfig& config, const Singularity& singularity,
+                      MotionLimits& limits) noexcept {
+  const model::VecN a = -singularity.gradient;
+  return limits.AddRow(a, config.rate * std::max(singularity.sigma - config.sigma_min, 0.0));
+}
+
+}  // namespace fovea::servo
