@@ -9,6 +9,11 @@ namespace fovea::servo {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+// The row's boundary lies inside the guard's, and pushes back: on the guard's own boundary its proof would
+// let nothing pass that moves along it, since every step along a sphere leads out of it.
+constexpr double kInsideGuard = 0.002;  // [m]
+constexpr double kReturnRate = 5.0;     // what is past the boundary goes back with this rate [1/s]
+constexpr double kReturnSpeed = 0.02;   // but no faster [m/s]
 
 struct JointPace {
   double ddq_max = 0.0;       // [rad/s^2]
@@ -52,9 +57,9 @@ bool MotionLimits::KeptBy(const model::VecN& dq) const noexcept {
   return kept;
 }
 
-void LimitJoints(const ServoConfig& config, const Reference& reference, MotionLimits& limits) noexcept {
+void LimitJoints(const ServoConfig& config, const model::VecN& q, MotionLimits& limits) noexcept {
   const GuardConfig& guard = config.guard;
-  const Eigen::Index n = reference.q.size();
+  const Eigen::Index n = q.size();
   limits.num_rows = 0;
   limits.dq_min.resize(n);
   limits.dq_max.resize(n);
@@ -62,13 +67,21 @@ void LimitJoints(const ServoConfig& config, const Reference& reference, MotionLi
     const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
     const JointPace pace = PaceOf(config, i);
     const double speed = guard.joint_velocity_fraction * joint.dq_max;
-    const double room_up = joint.q_max - guard.joint_position_margin - reference.q[i];
-    const double room_down = reference.q[i] - joint.q_min - guard.joint_position_margin;
-    const double up = std::min(speed, BarrierSpeed(room_up, pace.deceleration, pace.reaction_s));
-    const double down = std::min(speed, BarrierSpeed(room_down, pace.deceleration, pace.reaction_s));
+    const double room_up = joint.q_max - guard.joint_position_margin - q[i];
+    const double room_down = q[i] - joint.q_min - guard.joint_position_margin;
+    limits.dq_max[i] = std::min(speed, BarrierSpeed(room_up, pace.deceleration, pace.reaction_s));
+    limits.dq_min[i] = -std::min(speed, BarrierSpeed(room_down, pace.deceleration, pace.reaction_s));
+  }
+}
+
+void LimitAcceleration(const ServoConfig& config, const Reference& reference, MotionLimits& limits) noexcept {
+  for (int i = 0; i < reference.dq.size(); ++i) {
+    const JointPace pace = PaceOf(config, i);
     const double change = pace.ddq_max * pace.ramp_s;
-    limits.dq_max[i] = std::clamp(reference.dq[i] + change, -down, up);
-    limits.dq_min[i] = std::clamp(reference.dq[i] - change, -down, up);
+    const double dq_min = limits.dq_min[i];
+    const double dq_max = limits.dq_max[i];
+    limits.dq_min[i] = std::clamp(reference.dq[i] - change, dq_min, dq_max);
+    limits.dq_max[i] = std::clamp(reference.dq[i] + change, dq_min, dq_max);
   }
 }
 
@@ -91,9 +104,11 @@ void LimitOutwardMotion(const ServoConfig& config, const model::Vec3& p_BE,
   for (int i = 0; i < dq.size(); ++i) {
     reaction_s = std::max(reaction_s, PaceOf(config, i).reaction_s);
   }
-  const double distance = guard.workspace_radius - guard.workspace_margin - radius;
+  const double distance = guard.workspace_radius - guard.workspace_margin - kInsideGuard - radius;
+  const double v_max = distance > 0.0 ? BarrierSpeed(distance, deceleration, reaction_s)
+                                      : std::max(kReturnRate * distance, -kReturnSpeed);
   const model::VecN a = J_E_B.transpose().lazyProduct(outward);
-  limits.AddRow(a, BarrierSpeed(distance, deceleration, reaction_s));
+  limits.AddRow(a, v_max);
 }
 
 double ScaleIntoRange(const MotionLimits& limits, model::VecN& dq) noexcept {

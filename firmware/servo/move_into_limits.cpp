@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fovea/model/cholesky.hpp"
+#include "fovea/servo/active_set.hpp"
 
 namespace fovea::servo {
 namespace {
@@ -100,69 +101,6 @@ struct Limits {
   }
 };
 
-// The limits that hold the estimate back, their normals in the coordinates y = L^T dq (where H is the
-// identity) as N = Q R, and their multipliers.
-struct ActiveSet {
-  int size = 0;
-  std::array<int, kMaxJoints> limit{};
-  std::array<double, kMaxJoints> multiplier{};
-  std::array<VecN, kMaxJoints> normal;
-  std::array<VecN, kMaxJoints> Q;
-  std::array<std::array<double, kMaxJoints>, kMaxJoints> R{};  // R[column][row]
-  std::uint32_t members = 0;                                   // bit per limit
-
-  // Splits `normal` into its share along Q, `along`, and the rest, which it becomes.
-  void Split(VecN& vector, std::array<double, kMaxJoints>& along) const noexcept {
-    along.fill(0.0);
-    for (int pass = 0; pass < 2; ++pass) {  // the second takes away what rounding left
-      for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
-        const double share = Q[i].dot(vector);
-        along[i] += share;
-        vector -= share * Q[i];
-      }
-    }
-  }
-
-  // R^-1 along, in place.
-  void SolveR(std::array<double, kMaxJoints>& x) const noexcept {
-    for (int i = size - 1; i >= 0; --i) {
-      const auto row = static_cast<std::size_t>(i);
-      for (auto column = row + 1; column < static_cast<std::size_t>(size); ++column) {
-        x[row] -= R[column][row] * x[column];
-      }
-      x[row] /= R[row][row];
-    }
-  }
-
-  // `rest` and `along`: what Split made of `whitened`.
-  void Add(int new_limit, double new_multiplier, const VecN& whitened, const VecN& rest,
-           const std::array<double, kMaxJoints>& along) noexcept {
-    const auto k = static_cast<std::size_t>(size);
-    limit[k] = new_limit;
-    multiplier[k] = new_multiplier;
-    normal[k] = whitened;
-    const double length = rest.norm();
-    Q[k] = rest / length;
-    R[k] = along;
-    R[k][k] = length;
-    members |= 1U << static_cast<unsigned>(new_limit);
-    ++size;
-  }
-
-  void Drop(int index) noexcept {
-    const int old_size = size;
-    const auto dropped = static_cast<std::size_t>(index);
-    members &= ~(1U << static_cast<unsigned>(limit[dropped]));
-    size = index;
-    for (std::size_t k = dropped + 1; k < static_cast<std::size_t>(old_size); ++k) {
-      const VecN whitened = normal[k];
-      VecN rest = whitened;
-      std::array<double, kMaxJoints> along;
-      Split(rest, along);
-      Add(limit[k], multiplier[k], whitened, rest, along);
-    }
-  }
-};
 static_assert(kNumLimits <= 32, "one bit each");
 
 enum class Search : std::uint8_t { kDone, kGaveUp, kInfeasible };

@@ -54,6 +54,8 @@ model::VecN NullSpaceWish(const NullSpaceConfig& config, const model::ArmModel& 
   if (config.manipulability_gain > 0.0) {
     wish += config.manipulability_gain * ManipulabilityGradient(J, config.length, config.manipulability_soft);
   }
+  const double bound2 = config.speed_max * config.speed_max;
+  wish *= std::sqrt(bound2 / (bound2 + wish.squaredNorm()));
   return wish;
 }
 

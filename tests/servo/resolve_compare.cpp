@@ -20,23 +20,27 @@ struct Way {
 };
 
 std::vector<Way> Ways(const ServoConfig& config) {
-  const NullSpaceConfig posture = PostureOnly(config);
+  constexpr double kUnbounded = 1e6;
+  const NullSpaceConfig pull = PostureOnly(config, kUnbounded);
+  const NullSpaceConfig posture = PostureOnly(config, NullSpaceConfig{}.speed_max);
   const NullSpaceConfig all = AllWishes(config);
-  std::vector<Way> ways = {
-      {"law, as it is", ByVisualLaw},
-      {"damped, posture", [=](const Scene& s) { return ByDamped(s, posture); }},
-      {"damped, all wishes", [=](const Scene& s) { return ByDamped(s, all); }},
+  const auto constrained = [](double progress_weight, bool acceleration, const NullSpaceConfig& wishes) {
+    ConstrainedConfig way;
+    way.progress_weight = progress_weight;
+    return [=](const Scene& s) { return ByConstrained(s, wishes, way, acceleration); };
   };
-  for (const double progress : {0.03, 0.1, 0.3, 1.0}) {
-    ConstrainedConfig constrained;
-    constrained.progress_weight = progress;
-    char name[64];
-    std::snprintf(name, sizeof(name), "constrained %.2f, posture", progress);
-    ways.push_back({name, [=](const Scene& s) { return ByConstrained(s, posture, constrained); }});
-    std::snprintf(name, sizeof(name), "constrained %.2f, all", progress);
-    ways.push_back({name, [=](const Scene& s) { return ByConstrained(s, all, constrained); }});
-  }
-  return ways;
+  return {
+      {"law, as it is", ByVisualLaw},
+      {"damped, unbounded posture", [=](const Scene& s) { return ByDamped(s, pull); }},
+      {"damped", [=](const Scene& s) { return ByDamped(s, posture); }},
+      {"damped, all wishes", [=](const Scene& s) { return ByDamped(s, all); }},
+      {"constr., unb. posture, acc.", constrained(0.3, true, pull)},
+      {"constrained, acceleration", constrained(0.3, true, posture)},
+      {"constrained, progress 0.1", constrained(0.1, false, posture)},
+      {"constrained, progress 0.3", constrained(0.3, false, posture)},
+      {"constrained, progress 1", constrained(1.0, false, posture)},
+      {"constrained, all wishes", constrained(0.3, false, all)},
+  };
 }
 
 double Quantile(std::vector<double> values, double share) {

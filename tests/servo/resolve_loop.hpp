@@ -22,7 +22,7 @@
 namespace fovea::servo::resolve_loop {
 
 constexpr double kTickS = 1e-3;
-constexpr double kFocal_px = 554.256;
+constexpr double kFocal = 554.256;  // [px]
 
 struct Start {
   model::VecN q;
@@ -38,7 +38,7 @@ struct Seen {
 };
 
 inline Seen See(const model::Vec3& p_CO_C) {
-  return {kFocal_px * p_CO_C.x() / p_CO_C.z(), kFocal_px * p_CO_C.y() / p_CO_C.z(), p_CO_C.z()};
+  return {kFocal * p_CO_C.x() / p_CO_C.z(), kFocal * p_CO_C.y() / p_CO_C.z(), p_CO_C.z()};
 }
 
 inline model::ArmPoses PosesAt(const ServoConfig& config, const model::VecN& q) {
@@ -172,24 +172,30 @@ inline model::VecN ByDamped(const Scene& scene, const NullSpaceConfig& wishes) {
 }
 
 inline model::VecN ByConstrained(const Scene& scene, const NullSpaceConfig& wishes,
-                                 const ConstrainedConfig& config) {
+                                 const ConstrainedConfig& config, bool acceleration) {
   MotionLimits limits;
-  LimitJoints(scene.config, scene.reference, limits);
+  LimitJoints(scene.config, scene.reference.q, limits);
+  if (acceleration) {
+    LimitAcceleration(scene.config, scene.reference, limits);
+  }
   LimitOutwardMotion(scene.config, scene.poses.X_BE.p, scene.J_E_B, scene.reference.dq, limits);
   ConstrainedMotion motion;
   ResolveConstrained(config, TaskOf(scene, wishes), limits, motion);
   return motion.limited.dq;
 }
 
-// The posture alone, as the visual law has it; and all wishes.
-inline NullSpaceConfig PostureOnly(const ServoConfig& config) {
+// The posture alone, pulling as hard as in the visual law, or no faster than `speed_max` [rad/s].
+inline NullSpaceConfig PostureOnly(const ServoConfig& config, double speed_max) {
   NullSpaceConfig wishes;
   wishes.posture_gain = config.law.posture_gain;
   wishes.q_posture = config.law.q_posture;
   wishes.joint_limit_gain = 0.0;
   wishes.manipulability_gain = 0.0;
+  wishes.speed_max = speed_max;
   return wishes;
 }
+
+// All wishes.
 inline NullSpaceConfig AllWishes(const ServoConfig& config) {
   NullSpaceConfig wishes;
   wishes.posture_gain = config.law.posture_gain;

@@ -127,7 +127,7 @@ TEST(JointLimitWishTest, PushesInwardNearTheEndsOnlyAndSmoothly) {
   }
 }
 
-TEST(NullSpaceWishTest, IsTheWeightedSum) {
+TEST(NullSpaceWishTest, IsTheWeightedSumAndBounded) {
   const ServoConfig config = test::PandaConfig();
   test::RandomStates random(523);
   NullSpaceConfig wishes;
@@ -135,11 +135,16 @@ TEST(NullSpaceWishTest, IsTheWeightedSum) {
   for (int state = 0; state < 100; ++state) {
     const model::VecN q = random.Position(config.arm);
     const model::Mat6N J = JacobianAt(config, q);
-    const model::VecN expected =
+    const model::VecN sum =
         wishes.posture_gain * (test::Ready() - q) +
         wishes.joint_limit_gain * JointLimitWish(config.arm, q, wishes.joint_limit_onset) +
         wishes.manipulability_gain * ManipulabilityGradient(J, wishes.length, wishes.manipulability_soft);
-    EXPECT_LT((NullSpaceWish(wishes, config.arm, q, J) - expected).norm(), 1e-12);
+    const model::VecN wish = NullSpaceWish(wishes, config.arm, q, J);
+    EXPECT_LT(wish.norm(), wishes.speed_max);
+    EXPECT_NEAR(wish.dot(sum), wish.norm() * sum.norm(), 1e-12) << "the same direction";
+    NullSpaceConfig fast = wishes;
+    fast.speed_max = 1e9;
+    EXPECT_LT((NullSpaceWish(fast, config.arm, q, J) - sum).norm(), 1e-12);
   }
   const model::VecN q = random.Position(config.arm);
   wishes.posture_gain = wishes.joint_limit_gain = wishes.manipulability_gain = 0.0;

@@ -33,14 +33,19 @@ struct MotionLimits {
   [[nodiscard]] bool KeptBy(const model::VecN& dq) const noexcept;
 };
 
-// Sets the range of each joint, and takes all rows away: velocity; the end of the joint's range, by
-// BarrierSpeed; and what `reference` can reach while its acceleration ramps up at full jerk. (A shorter
-// time, such as one tick, would leave the guard's jerk limit, which aims ahead, nothing to aim at.) Where
-// these exclude each other, the range's end comes first. Real-time: yes.
-void LimitJoints(const ServoConfig& config, const Reference& reference, MotionLimits& limits) noexcept;
+// Sets the range of each joint by its velocity limit and, by BarrierSpeed, the end of its range of motion;
+// takes all rows away. Real-time: yes.
+void LimitJoints(const ServoConfig& config, const model::VecN& q, MotionLimits& limits) noexcept;
+
+// Narrows the joints' ranges to what `reference` can reach while its acceleration ramps up at full jerk;
+// where that excludes what was allowed, to the end nearest to it. (A shorter time, such as one tick, would
+// leave the guard's jerk limit, which aims ahead, nothing to aim at.) Real-time: yes.
+void LimitAcceleration(const ServoConfig& config, const Reference& reference, MotionLimits& limits) noexcept;
 
 // Adds the workspace's row (THEORY B5): the end effector at `p_BE` [m], moving by `J_E_B` [3 x num_joints]
-// and at present with the joint velocities `dq`, may go outward only so fast. Real-time: yes.
+// and at present with the joint velocities `dq`, may go outward only so fast. The boundary is the guard's
+// less 2 mm; past it the row asks for a slow way back, so standing still does not keep it there. Real-time:
+// yes.
 void LimitOutwardMotion(const ServoConfig& config, const model::Vec3& p_BE,
                         const model::LinearJacobian& J_E_B, const model::VecN& dq,
                         MotionLimits& limits) noexcept;

@@ -1,5 +1,6 @@
 // What the arm would do with the freedom that the task leaves it: a sum of wished joint velocities, each with
-// its own gain. None of them disturbs the task; the resolution sees to that.
+// its own gain, bounded as a whole. None of them disturbs a task that is free to move; where a limit holds
+// the arm back, wish and task compete for what is left, and the bound keeps the wish the weaker one.
 //
 //   posture         gain (q_posture - q)
 //   joint limits    -gain dP/dq, a potential P that is zero in the middle of the range and rises from `onset`
@@ -23,6 +24,7 @@ struct NullSpaceConfig {
   double manipulability_gain = 0.05;  // [rad^2/s]
   double manipulability_soft = 0.05;  // singular values below this count little; > 0
   double length = 0.3;                // that a metre counts as much as a radian for [m]
+  double speed_max = 0.1;             // |wish| stays below this, smoothly [rad/s]; > 0
 };
 
 // dJ_j/dq_k for body Jacobian columns `J_j`, `J_k` (any fixed frame of the end effector): the Lie bracket
@@ -49,7 +51,8 @@ struct NullSpaceConfig {
 // effector. With soft = 0 not bounded, and NaN at a singularity. Real-time: yes.
 [[nodiscard]] model::VecN ManipulabilityGradient(const model::Mat6N& J, double length, double soft) noexcept;
 
-// The sum. A wish with gain 0 costs nothing. Real-time: yes.
+// The sum s, bounded: s speed_max / sqrt(speed_max^2 + |s|^2). A wish with gain 0 costs nothing. Real-time:
+// yes.
 [[nodiscard]] model::VecN NullSpaceWish(const NullSpaceConfig& config, const model::ArmModel& arm,
                                         const model::VecN& q, const model::Mat6N& J) noexcept;
 

@@ -5,10 +5,11 @@
 //
 //   |J d|^2 off the task's course + progress_weight |J d|^2 along it + null_weight^2 |d|^2_W
 //
-// in this order of size. So while the joints can still do it together, the task is kept exactly and the null
-// space pays for the limits; when they no longer can, the task slows down rather than leave its course; and
-// it leaves it, to slide along a boundary, when it could not go on otherwise. The weights stand in for a
-// strict order of priorities, with which the result would not be continuous.
+// in this order of size. So while the joints can still do it together, the task is kept (to some
+// null_weight^2) and the null space pays for the limits; when they no longer can, the task slows down rather
+// than leave its course; and it leaves it, to slide along a boundary, when it could not go on otherwise. The
+// weights stand in for a strict order of priorities, under which the result would jump. A wish dq_0 that
+// pulls against a limit keeps the task off its goal by about null_weight^2 |dq_0|: keep it small.
 #pragma once
 
 #include "fovea/servo/move_into_limits.hpp"
@@ -18,17 +19,17 @@ namespace fovea::servo {
 
 struct ConstrainedConfig {
   DampingConfig damping;
-  double progress_weight = 0.1;  // 1: slide freely along a boundary; towards 0: keep the direction, > 0
-  double null_weight = 0.02;     // of the null space, relative to the rms singular value of J W^-1/2, > 0
+  double progress_weight = 0.3;  // 1: slide freely along a boundary; towards 0: keep the direction, > 0
+  double null_weight = 0.04;     // of the null space, relative to the rms singular value of J W^-1/2, > 0
 };
 
 struct ConstrainedMotion {
   DampedMotion wish;
-  LimitedMotion limited;  // its dq is the result
-  double task_share =
-      1.0;  // how much of the wish's task velocity is left, projected on it; 1 when it has none
+  LimitedMotion limited;    // its dq is the result
+  double task_share = 1.0;  // of the wish's task velocity, projected on it; 1 when it has none
 };
 
+// When the wish is not finite, `limited` says so and is as near to rest as the joints' ranges allow.
 // Real-time: yes.
 void ResolveConstrained(const ConstrainedConfig& config, const MotionTask& task, const MotionLimits& limits,
                         ConstrainedMotion& motion) noexcept;
