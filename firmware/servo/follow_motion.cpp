@@ -43,7 +43,8 @@ hal::LimitSet Brake(const ServoConfig& config, Reference& reference) noexcept {
   const model::ArmPoses poses = PosesOf(config, reference.q);
   model::LinearJacobian J_E_B;
   model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
-  return GuardMotion(config, model::VecN::Zero(config.arm.num_joints), poses.X_BE.p, J_E_B, reference);
+  return GuardMotion(config, MotionWish::Velocity(model::VecN::Zero(config.arm.num_joints)), poses.X_BE.p,
+                     J_E_B, reference);
 }
 
 // `next` becomes the reference if nothing forbids it.
@@ -131,7 +132,7 @@ hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& comma
       state.Stop();
       PoseSetpoint setpoint;
       state.refused = !ToSetpoint(command, setpoint);
-      return FollowPose(config, setpoint, state.refused, reference);
+      return FollowPose(config, setpoint, state.refused, state.dq_before, reference);
     }
     case MotionKind::kJointGoal:
     case MotionKind::kPoseGoal:
@@ -152,7 +153,7 @@ hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& comma
       state.Stop();
     }
   } else if (state.goal.kind == MotionKind::kPoseGoal) {
-    limits = FollowPose(config, PoseAt(state.X_BE, state.pose, t), state.refused, reference);
+    limits = FollowPose(config, PoseAt(state.X_BE, state.pose, t), state.refused, state.dq_before, reference);
     if (t >= state.pose.Duration() && StandsAt(config, state.X_BE, reference)) {
       state.Stop();
     }

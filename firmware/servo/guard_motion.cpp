@@ -120,8 +120,9 @@ LimitSet LimitWorkspace(const ServoConfig& config, const model::Vec3& p_BE, cons
   return limits;
 }
 
-// Acceleration and jerk: the reference approaches the wished velocity without overshoot.
-LimitSet LimitAcceleration(const ServoConfig& config, const model::VecN& dq_des,
+// Acceleration and jerk: the reference approaches the wished velocity without overshoot, also when that goes
+// on changing by `ddq_des`.
+LimitSet LimitAcceleration(const ServoConfig& config, const model::VecN& dq_des, const model::VecN& ddq_des,
                            Reference& reference) noexcept {
   const GuardConfig& guard = config.guard;
   LimitSet limits = 0;
@@ -130,7 +131,7 @@ LimitSet LimitAcceleration(const ServoConfig& config, const model::VecN& dq_des,
     const double a_max = guard.joint_acceleration_fraction * joint.ddq_max;
     const double jerk_step = guard.joint_jerk_fraction * joint.dddq_max * kPeriodS;
     const double dv = dq_des[i] - reference.dq[i];
-    const double wanted = dv / kPeriodS;
+    const double wanted = dv / kPeriodS - ddq_des[i];
     // The acceleration from which it can still return to zero, by the jerk limit, within dv.
     const double half = 0.5 * jerk_step;
     const double a_stop = std::sqrt(half * half + 2.0 * jerk_step * std::fabs(wanted)) - half;
@@ -138,6 +139,7 @@ LimitSet LimitAcceleration(const ServoConfig& config, const model::VecN& dq_des,
     if (std::fabs(a) > a_stop) {
       a = std::copysign(a_stop, a);
     }
+    a += ddq_des[i];
     if (std::fabs(a) > a_max) {
       a = std::copysign(a_max, a);
       limits |= Bit(Limit::kJointAcceleration);
@@ -163,15 +165,16 @@ double BarrierSpeed(double distance, double deceleration, double reaction_s) noe
   return deceleration * (std::sqrt(reaction_s * reaction_s + 2.0 * distance / deceleration) - reaction_s);
 }
 
-LimitSet GuardMotion(const ServoConfig& config, const model::VecN& dq_des, const model::Vec3& p_BE,
+LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
                      const LinearJacobian& J_E_B, Reference& reference) noexcept {
-  model::VecN dq = dq_des;
+  model::VecN dq = wish.dq;
   LimitSet limits = LimitVelocity(config, dq);
   limits |= LimitJointPosition(config, reference.q, dq);
   limits |= LimitWorkspace(config, p_BE, J_E_B, dq);
   // The correction for the workspace may have set a joint on the move again: what it may not do is cut.
   limits |= LimitJointPosition(config, reference.q, dq);
   limits |= LimitVelocity(config, dq);
+  const model::VecN ddq = limits == 0 ? wish.ddq : model::VecN::Zero(dq.size());
 
   model::ArmPoses poses;
   model::ComputePoses(config.arm, reference.q, poses);
@@ -183,7 +186,7 @@ LimitSet GuardMotion(const ServoConfig& config, const model::VecN& dq_des, const
   LimitSet acceleration_limits = 0;
   for (int i = 0; i < kTries; ++i) {
     next = reference;
-    acceleration_limits = LimitAcceleration(config, share * dq, next);
+    acceleration_limits = LimitAcceleration(config, share * dq, share * ddq, next);
     const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, radius_now) : 0;
     if (passed == 0) {
       break;

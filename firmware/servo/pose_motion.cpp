@@ -27,6 +27,14 @@ Vec6 Difference(const model::Pose& X_goal, const model::Pose& X) noexcept {
   return difference;
 }
 
+// Pull of the posture in the directions that the pose leaves free, bounded as a whole.
+model::VecN PostureWish(const ServoConfig& config, const model::VecN& q) noexcept {
+  constexpr double kMost = 0.1;  // [rad/s]
+  const model::VecN wish =
+      config.law.posture_gain * (model::ToVector(config.law.q_posture, config.arm.num_joints) - q);
+  return wish * (kMost / std::sqrt(kMost * kMost + wish.squaredNorm()));
+}
+
 }  // namespace
 
 bool ToSetpoint(const MotionCommand& command, PoseSetpoint& setpoint) noexcept {
@@ -87,13 +95,14 @@ PoseSetpoint PoseAt(const model::Pose& X_BE, const SynchronisedMove& move, doubl
   const Vec3 phi(states[3].x, states[4].x, states[5].x);
   const Vec3 dphi(states[3].v, states[4].v, states[5].v);
   PoseSetpoint setpoint;
+  setpoint.is_end = t >= move.Duration();
   setpoint.X_BE = {model::RotationOf(phi).lazyProduct(X_BE.R), X_BE.p + way};
   setpoint.V_BE_B << states[0].v, states[1].v, states[2].v, model::TurnRateMatrix(phi).lazyProduct(dphi);
   return setpoint;
 }
 
 hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint, bool& refused,
-                         Reference& reference) noexcept {
+                         model::VecN& dq_before, Reference& reference) noexcept {
   model::ArmPoses poses;
   model::ComputePoses(config.arm, reference.q, poses);
   model::LinearJacobian J_E_B;
@@ -102,7 +111,8 @@ hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint
   refused = refused || !(e.head<3>().norm() <= config.move.pose_error_max &&
                          e.tail<3>().norm() <= config.move.pose_error_max / kLength);
   if (refused) {
-    return GuardMotion(config, model::VecN::Zero(config.arm.num_joints), poses.X_BE.p, J_E_B, reference);
+    return GuardMotion(config, MotionWish::Velocity(model::VecN::Zero(config.arm.num_joints)), poses.X_BE.p,
+                       J_E_B, reference);
   }
   // Where the reference is one tick late by itself, the feedback has nothing to take away.
   Vec6 V = setpoint.V_BE_B + config.move.pose_gain * (e - kPeriodS * setpoint.V_BE_B);
@@ -113,13 +123,18 @@ hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint
   MotionTask task;
   task.J = J;
   task.v = V;
-  task.dq_0 =
-      config.law.posture_gain * (model::ToVector(config.law.q_posture, config.arm.num_joints) - reference.q);
+  task.dq_0 = setpoint.is_end ? model::VecN(model::VecN::Zero(config.arm.num_joints))
+                              : PostureWish(config, reference.q);
   task.weight.setOnes(config.arm.num_joints);
   DampedMotion motion;
   ResolveDamped(DampingConfig{}, task, motion);
   refused = !motion.finite;
-  return GuardMotion(config, motion.dq, poses.X_BE.p, J_E_B, reference);
+  MotionWish wish = MotionWish::Velocity(motion.dq);
+  if (dq_before.size() == wish.dq.size()) {
+    wish.ddq = (wish.dq - dq_before) / kPeriodS;
+  }
+  dq_before = wish.dq;
+  return GuardMotion(config, wish, poses.X_BE.p, J_E_B, reference);
 }
 
 bool StandsAt(const ServoConfig& config, const model::Pose& X_BE, const Reference& reference) noexcept {

@@ -13,6 +13,7 @@ namespace fovea::servo {
 struct PoseSetpoint {
   model::Pose X_BE;
   model::Vec6 V_BE_B = model::Vec6::Zero();  // [v; w] in axes of B
+  bool is_end = false;                       // the joints shall come to rest too
 };
 
 // False when the command's numbers are no pose. Real-time: yes.
@@ -27,9 +28,10 @@ struct PoseSetpoint {
 [[nodiscard]] PoseSetpoint PoseAt(const model::Pose& X_BE, const SynchronisedMove& move, double t) noexcept;
 
 // Moves the joints' reference on by a tick towards `setpoint`, through the guard. `refused` is set when the
-// end effector is further from it than servo.pose_error_max: a limit forbids the way. Real-time: yes.
+// end effector is further from it than servo.pose_error_max: a limit forbids the way. `dq_before` is the
+// wish of the tick before, empty in the first, and becomes this one's. Real-time: yes.
 hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint, bool& refused,
-                         Reference& reference) noexcept;
+                         model::VecN& dq_before, Reference& reference) noexcept;
 
 // Whether the reference stands at `X_BE`. Real-time: yes.
 [[nodiscard]] bool StandsAt(const ServoConfig& config, const model::Pose& X_BE,

@@ -106,6 +106,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   state_.mode_since_ns = state_.now_ns;
   if (now != hal::Mode::kMove) {
     state_.motion.Stop();
+    state_.motion.dq_before.resize(0);
     state_.motion.refused = false;
   }
   if (before == hal::Mode::kBoot && now == hal::Mode::kHold) {
@@ -166,7 +167,8 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     LatchFault(hal::Fault::kNonFiniteControl, -1);
     return;
   }
-  state_.limits = GuardMotion(config_, dq_des, state_.poses.X_BE.p, state_.J_E_B, state_.reference);
+  state_.limits =
+      GuardMotion(config_, MotionWish::Velocity(dq_des), state_.poses.X_BE.p, state_.J_E_B, state_.reference);
   CheckFollowing();
   NoteBlocked();
 }

@@ -21,6 +21,7 @@ struct MotionState {
   JointMove joints;
   model::Pose X_BE;       // a pose goal's
   SynchronisedMove pose;  // position less goal, and the turn from the goal, both in axes of B
+  model::VecN dq_before;  // the joint velocity that the last pose asked for; empty: none did
   bool refused = false;   // in the last tick
 
   // Whether a motion goes on after this tick without another command.

@@ -20,10 +20,24 @@ namespace fovea::servo {
 // and the reaction time; 0 when the distance is used up. Real-time: yes.
 [[nodiscard]] double BarrierSpeed(double distance, double deceleration, double reaction_s) noexcept;
 
-// Moves `reference` on by one tick towards the velocity `dq_des` (finite). `p_BE` [m] is where the end
+// How the joints shall move, and how that goes on to change. Finite.
+struct MotionWish {
+  model::VecN dq;   // [num_joints]
+  model::VecN ddq;  // [num_joints]
+
+  // A velocity to stay at, as far as anybody knows.
+  static MotionWish Velocity(const model::VecN& dq) noexcept {
+    MotionWish wish;
+    wish.dq = dq;
+    wish.ddq.setZero(dq.size());
+    return wish;
+  }
+};
+
+// Moves `reference` on by one tick towards `wish`. `p_BE` [m] is where the end
 // effector is, `J_E_B` [3 x num_joints] its linear Jacobian in axes of B. Returns the limits that acted.
 // Real-time: yes.
-hal::LimitSet GuardMotion(const ServoConfig& config, const model::VecN& dq_des, const model::Vec3& p_BE,
+hal::LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
                           const model::LinearJacobian& J_E_B, Reference& reference) noexcept;
 
 }  // namespace fovea::servo
