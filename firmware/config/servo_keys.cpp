@@ -35,9 +35,14 @@ void AddLawKeys(ServoSettings& settings, KeyTable& keys) {
   keys.Number("servo.smooth_start_s", c.smooth_start_s, 0.001, 10.0, "s",
               "the law is blended in over this time");
   keys.Number("servo.damping", c.damping, 1e-6, 1.0, "",
-              "of the pseudo-inverse, relative to the Jacobian's size");
+              "the task is damped in directions whose singular value is below this share of the rms one");
   keys.Number("servo.posture_gain", c.posture_gain, 0.0, 20.0, "1/s",
               "pull of the posture in the directions that the feature leaves free");
+  keys.Number("servo.joint_limit_gain", c.joint_limit_gain, 0.0, 20.0, "1/s",
+              "and away from the ends of the joints' ranges");
+  keys.Number("servo.manipulability_gain", c.manipulability_gain, 0.0, 20.0, "rad^2/s",
+              "and towards more manipulability");
+  keys.Number("servo.free_speed", c.free_speed, 1e-6, 10.0, "rad/s", "all these together no faster");
   keys.Numbers("servo.posture", settings.posture, 1, model::kMaxJoints, -1e4, 1e4, "rad",
                "that posture, one per joint; the arm's ready posture when not given");
   keys.Number("servo.unreachable_s", c.unreachable_s, 0.001, 60.0, "s",
@@ -75,7 +80,22 @@ void AddMotionLawKeys(ServoSettings& settings, KeyTable& keys) {
   keys.Number("servo.change_s", c.change_s, 0.001, 10.0, "s", "one law takes over from another in this time");
 }
 
-void AddGuardKeys(servo::GuardConfig& c, KeyTable& keys) {
+void AddMoveKeys(servo::MoveConfig& c, KeyTable& keys) {
+  const std::string of_hand = "of the end effector in commanded motions";
+  keys.Number("servo.move_speed", c.speed, 0.001, 10.0, "m/s", of_hand);
+  keys.Number("servo.move_acceleration", c.acceleration, 0.001, 1000.0, "m/s^2", of_hand);
+  keys.Number("servo.move_jerk", c.jerk, 0.001, 1e6, "m/s^3", of_hand);
+  keys.Number("servo.turn_speed", c.turn_speed, 0.001, 10.0, "rad/s", of_hand);
+  keys.Number("servo.turn_acceleration", c.turn_acceleration, 0.001, 1000.0, "rad/s^2", of_hand);
+  keys.Number("servo.turn_jerk", c.turn_jerk, 0.001, 1e6, "rad/s^3", of_hand);
+  keys.Number("servo.pose_gain", c.pose_gain, 0.0, 200.0, "1/s",
+              "takes away what the end effector is off its commanded way");
+  keys.Number("servo.pose_error_max", c.pose_error_max, 1e-6, 10.0, "m",
+              "further off, and the motion is refused");
+}
+
+void AddGuardKeys(ServoSettings& settings, KeyTable& keys) {
+  servo::GuardConfig& c = settings.config.guard;
   const std::string share = "share of the arm's own limit that the reference may use";
   keys.Number("safety.joint_velocity_fraction", c.joint_velocity_fraction, 0.001, 1.0, "", share);
   keys.Number("safety.joint_acceleration_fraction", c.joint_acceleration_fraction, 0.001, 1.0, "", share);
@@ -89,6 +109,15 @@ void AddGuardKeys(servo::GuardConfig& c, KeyTable& keys) {
   keys.Number("safety.workspace_margin", c.workspace_margin, 0.0, 1.0, "m", "and so far inside it");
   keys.Number("safety.workspace_deceleration", c.workspace_deceleration, 0.01, 100.0, "m/s^2",
               "with which it stops before it");
+  keys.Number("safety.cartesian_speed", c.cartesian_speed, 0.001, 100.0, "m/s", "of the end effector");
+  keys.Number(
+      "safety.singularity_min", c.singularity_min, 0.0, 1.0, "",
+      "the arm goes no nearer to a singular posture: smallest singular value of the hand's Jacobian, a "
+      "metre counted as 1 / 0.3 rad; 0: it may");
+  keys.Numbers("safety.planes", settings.planes, 4, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
+               "planes n p >= d that the end effector stays above: n_x, n_y, n_z, d, the same again");
+  keys.Numbers("safety.boxes", settings.boxes, 6, 6 * servo::Obstacles::kMost, -100.0, 100.0, "m",
+               "boxes that it stays out of: low x, y, z, high x, y, z, the same again");
 }
 
 void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
@@ -110,6 +139,10 @@ void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
               "commanded setpoints start this close to where the arm stands, and go on so");
   keys.Number("safety.following_error", c.following_error, 1e-4, 10.0, "rad",
               "a joint further off its reference: Fault");
+  keys.Number("safety.contact_torque_fraction", c.contact_torque_fraction, 0.001, 1e6, "",
+              "pushed from outside with more than this share of a joint's torque: Fault");
+  keys.Number("safety.contact_gain", c.contact_gain, 0.1, 300.0, "1/s",
+              "of the observer that sees a push from the arm's momentum");
   keys.Number("safety.fault_damping", c.fault_damping, 0.1, 100.0, "1/s", "of the stop after a fault");
   keys.Number("safety.brake_velocity", c.brake_velocity, 1e-6, 10.0, "rad/s",
               "after a fault the brakes close when every joint is slower");
@@ -140,6 +173,35 @@ void CheckSize(const char* key, const std::vector<double>& values, const robots:
   if (!values.empty() && static_cast<int>(values.size()) != robot.model.num_joints) {
     throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", key, values.size(),
                                  robot.name, robot.model.num_joints));
+  }
+}
+
+void SetObstacles(const ServoSettings& settings, servo::Obstacles& obstacles) {
+  const std::vector<double>& planes = settings.planes;
+  const std::vector<double>& boxes = settings.boxes;
+  if (planes.size() % 4 != 0) {
+    throw InputError(
+        fmt::format("safety.planes has {} entries: four for each plane are allowed", planes.size()));
+  }
+  if (boxes.size() % 6 != 0) {
+    throw InputError(fmt::format("safety.boxes has {} entries: six for each box are allowed", boxes.size()));
+  }
+  for (std::size_t i = 0; i < planes.size(); i += 4) {
+    const model::Vec3 normal(planes[i], planes[i + 1], planes[i + 2]);
+    const double length = normal.norm();
+    if (!(length > 1e-6)) {
+      throw InputError("safety.planes: a plane's normal must not be zero");
+    }
+    obstacles.planes[static_cast<std::size_t>(obstacles.num_planes++)] = {normal / length,
+                                                                          planes[i + 3] / length};
+  }
+  for (std::size_t i = 0; i < boxes.size(); i += 6) {
+    servo::Box& box = obstacles.boxes[static_cast<std::size_t>(obstacles.num_boxes++)];
+    box.low = {boxes[i], boxes[i + 1], boxes[i + 2]};
+    box.high = {boxes[i + 3], boxes[i + 4], boxes[i + 5]};
+    if (!(box.low.array() < box.high.array()).all()) {
+      throw InputError("safety.boxes: each low corner must be below its high corner");
+    }
   }
 }
 
@@ -176,7 +238,8 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
   AddLawKeys(settings, keys);
   AddMotionLawKeys(settings, keys);
   AddPredictKeys(settings.config.predict, keys);
-  AddGuardKeys(settings.config.guard, keys);
+  AddMoveKeys(settings.config.move, keys);
+  AddGuardKeys(settings, keys);
   AddFaultKeys(settings.config.safety, keys);
 }
 
@@ -218,6 +281,7 @@ servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::
     }
   }
   SetMotionLaw(settings, robot, config.motion_law);
+  SetObstacles(settings, config.guard.obstacles);
   CheckTogether(config);
   servo::ServoTask probe;
   if (const hal::Status status = probe.Init(config); !status.ok()) {

@@ -57,8 +57,7 @@ hal::LimitSet TakeReference(const ServoConfig& config, const Reference& next, Mo
     limits |= LimitsOfJoint(config, i, next);
   }
   if (limits == 0 && !state.refused) {
-    const double radius = PosesOf(config, reference.q).X_BE.p.norm();
-    limits = LimitsPassed(config, next, reference.q, radius);
+    limits = LimitsPassed(config, next, reference.q, PosesOf(config, reference.q).X_BE.p);
   }
   state.refused = state.refused || limits != 0;
   if (state.refused) {
@@ -132,7 +131,7 @@ hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& comma
       state.Stop();
       PoseSetpoint setpoint;
       state.refused = !ToSetpoint(command, setpoint);
-      return FollowPose(config, setpoint, state.refused, state.dq_before, reference);
+      return FollowPose(config, setpoint, state.refused, state.resolved, reference);
     }
     case MotionKind::kJointGoal:
     case MotionKind::kPoseGoal:
@@ -153,7 +152,7 @@ hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& comma
       state.Stop();
     }
   } else if (state.goal.kind == MotionKind::kPoseGoal) {
-    limits = FollowPose(config, PoseAt(state.X_BE, state.pose, t), state.refused, state.dq_before, reference);
+    limits = FollowPose(config, PoseAt(state.X_BE, state.pose, t), state.refused, state.resolved, reference);
     if (t >= state.pose.Duration() && StandsAt(config, state.X_BE, reference)) {
       state.Stop();
     }

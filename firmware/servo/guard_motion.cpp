@@ -20,19 +20,6 @@ double ReactionTime(double deceleration, double jerk) noexcept {
   return 2.0 * kPeriodS + deceleration / jerk;
 }
 
-// The largest of these over the joints: the arm as a whole brakes no sooner.
-double SlowestReaction(const ServoConfig& config) noexcept {
-  const GuardConfig& guard = config.guard;
-  double slowest = 0.0;
-  for (int i = 0; i < config.arm.num_joints; ++i) {
-    const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
-    slowest = std::max(
-        slowest, ReactionTime(guard.braking_fraction * guard.joint_acceleration_fraction * joint.ddq_max,
-                              guard.joint_jerk_fraction * joint.dddq_max));
-  }
-  return slowest;
-}
-
 const model::Joint& JointOf(const ServoConfig& config, int i) noexcept {
   return config.arm.joints[static_cast<std::size_t>(i)];
 }
@@ -52,6 +39,16 @@ LimitSet LimitVelocity(const ServoConfig& config, model::VecN& dq) noexcept {
   }
   dq *= scale;
   return Bit(Limit::kJointVelocity);
+}
+
+// Cartesian speed, the same way.
+LimitSet LimitSpeed(const ServoConfig& config, const LinearJacobian& J_E_B, model::VecN& dq) noexcept {
+  const double speed = J_E_B.lazyProduct(dq).norm();
+  if (speed <= config.guard.cartesian_speed) {
+    return 0;
+  }
+  dq *= config.guard.cartesian_speed / speed;
+  return Bit(Limit::kCartesianSpeed);
 }
 
 // Joint position: each joint on its own, since the others may still carry the task.
@@ -158,6 +155,19 @@ LimitSet LimitAcceleration(const ServoConfig& config, const model::VecN& dq_des,
 
 }  // namespace
 
+// The largest of these over the joints: the arm as a whole brakes no sooner.
+double SlowestReaction(const ServoConfig& config) noexcept {
+  const GuardConfig& guard = config.guard;
+  double slowest = 0.0;
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    const model::Joint& joint = JointOf(config, i);
+    slowest = std::max(
+        slowest, ReactionTime(guard.braking_fraction * guard.joint_acceleration_fraction * joint.ddq_max,
+                              guard.joint_jerk_fraction * joint.dddq_max));
+  }
+  return slowest;
+}
+
 double BarrierSpeed(double distance, double deceleration, double reaction_s) noexcept {
   if (!(distance > 0.0)) {
     return 0.0;
@@ -174,11 +184,11 @@ LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const mo
   // The correction for the workspace may have set a joint on the move again: what it may not do is cut.
   limits |= LimitJointPosition(config, reference.q, dq);
   limits |= LimitVelocity(config, dq);
+  limits |= LimitSpeed(config, J_E_B, dq);
   const model::VecN ddq = limits == 0 ? wish.ddq : model::VecN::Zero(dq.size());
 
   model::ArmPoses poses;
   model::ComputePoses(config.arm, reference.q, poses);
-  const double radius_now = poses.X_BE.p.norm();
   // The largest share of the wish from which a stop is proved, found by halving; the last try is braking.
   constexpr int kTries = 5;
   double share = 1.0;
@@ -187,7 +197,7 @@ LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const mo
   for (int i = 0; i < kTries; ++i) {
     next = reference;
     acceleration_limits = LimitAcceleration(config, share * dq, share * ddq, next);
-    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, radius_now) : 0;
+    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, poses.X_BE.p) : 0;
     if (passed == 0) {
       break;
     }

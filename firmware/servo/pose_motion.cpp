@@ -5,7 +5,7 @@
 #include "fovea/model/kinematics.hpp"
 #include "fovea/model/rotation.hpp"
 #include "fovea/servo/guard_motion.hpp"
-#include "fovea/servo/resolve_damped.hpp"
+#include "fovea/servo/resolve_motion.hpp"
 
 namespace fovea::servo {
 namespace {
@@ -25,14 +25,6 @@ Vec6 Difference(const model::Pose& X_goal, const model::Pose& X) noexcept {
   Vec6 difference;
   difference << X_goal.p - X.p, model::RotationVector(X_goal.R.lazyProduct(X.R.transpose()));
   return difference;
-}
-
-// Pull of the posture in the directions that the pose leaves free, bounded as a whole.
-model::VecN PostureWish(const ServoConfig& config, const model::VecN& q) noexcept {
-  constexpr double kMost = 0.1;  // [rad/s]
-  const model::VecN wish =
-      config.law.posture_gain * (model::ToVector(config.law.q_posture, config.arm.num_joints) - q);
-  return wish * (kMost / std::sqrt(kMost * kMost + wish.squaredNorm()));
 }
 
 }  // namespace
@@ -102,7 +94,7 @@ PoseSetpoint PoseAt(const model::Pose& X_BE, const SynchronisedMove& move, doubl
 }
 
 hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint, bool& refused,
-                         model::VecN& dq_before, Reference& reference) noexcept {
+                         ResolvedMotion& motion, Reference& reference) noexcept {
   model::ArmPoses poses;
   model::ComputePoses(config.arm, reference.q, poses);
   model::LinearJacobian J_E_B;
@@ -118,23 +110,26 @@ hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint
   Vec6 V = setpoint.V_BE_B + config.move.pose_gain * (e - kPeriodS * setpoint.V_BE_B);
   model::Mat6N J;
   model::ComputeBaseJacobian(config.arm, poses, J);
+  model::Mat6N J_E;
+  model::ComputeJacobian(config.arm, poses, model::Pose{}, J_E);
   J.topRows<3>() /= kLength;
   V.head<3>() /= kLength;
   MotionTask task;
   task.J = J;
   task.v = V;
-  task.dq_0 = setpoint.is_end ? model::VecN(model::VecN::Zero(config.arm.num_joints))
-                              : PostureWish(config, reference.q);
+  task.dq_0.setZero(config.arm.num_joints);
+  if (!setpoint.is_end) {
+    task.dq_0 = FreeWish(config.law, config.arm, reference.q, J_E);
+  }
   task.weight.setOnes(config.arm.num_joints);
-  DampedMotion motion;
-  ResolveDamped(DampingConfig{}, task, motion);
+  const model::VecN dq_before = motion.dq;
+  ResolveMotion(config, task, {reference, poses, J_E_B, J_E}, motion);
   refused = !motion.finite;
   MotionWish wish = MotionWish::Velocity(motion.dq);
   if (dq_before.size() == wish.dq.size()) {
     wish.ddq = (wish.dq - dq_before) / kPeriodS;
   }
-  dq_before = wish.dq;
-  return GuardMotion(config, wish, poses.X_BE.p, J_E_B, reference);
+  return motion.limits | GuardMotion(config, wish, poses.X_BE.p, J_E_B, reference);
 }
 
 bool StandsAt(const ServoConfig& config, const model::Pose& X_BE, const Reference& reference) noexcept {

@@ -4,6 +4,7 @@
 #include "fovea/hal/events.hpp"
 #include "fovea/servo/motion_command.hpp"
 #include "fovea/servo/reference.hpp"
+#include "fovea/servo/resolve_motion.hpp"
 #include "fovea/servo/servo_config.hpp"
 #include "fovea/servo/synchronised_move.hpp"
 
@@ -28,10 +29,10 @@ struct PoseSetpoint {
 [[nodiscard]] PoseSetpoint PoseAt(const model::Pose& X_BE, const SynchronisedMove& move, double t) noexcept;
 
 // Moves the joints' reference on by a tick towards `setpoint`, through the guard. `refused` is set when the
-// end effector is further from it than servo.pose_error_max: a limit forbids the way. `dq_before` is the
-// wish of the tick before, empty in the first, and becomes this one's. Real-time: yes.
+// end effector is further from it than servo.pose_error_max: a limit forbids the way. `motion` is that
+// of the tick before, its dq empty in the first, and becomes this one's. Real-time: yes.
 hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint, bool& refused,
-                         model::VecN& dq_before, Reference& reference) noexcept;
+                         ResolvedMotion& motion, Reference& reference) noexcept;
 
 // Whether the reference stands at `X_BE`. Real-time: yes.
 [[nodiscard]] bool StandsAt(const ServoConfig& config, const model::Pose& X_BE,

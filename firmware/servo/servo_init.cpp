@@ -66,6 +66,9 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.law.smooth_start_s, 1e-3, huge, "servo.smooth_start_s"},
       {config.law.damping, 1e-9, 1.0, "servo.damping"},
       {config.law.posture_gain, 0.0, 100.0, "servo.posture_gain"},
+      {config.law.joint_limit_gain, 0.0, 100.0, "servo.joint_limit_gain"},
+      {config.law.manipulability_gain, 0.0, 100.0, "servo.manipulability_gain"},
+      {config.law.free_speed, 1e-6, 100.0, "servo.free_speed"},
       {config.law.unreachable_s, 1e-3, huge, "servo.unreachable_s"},
       {config.law.unreachable_progress, 0.0, 1.0, "servo.unreachable_progress"},
       {config.motion_law.omega_n, 0.1, 300.0, "servo.omega_n"},
@@ -85,9 +88,21 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.guard.workspace_radius, 1e-2, 1000.0, "safety.workspace_radius"},
       {config.guard.workspace_margin, 0.0, config.guard.workspace_radius, "safety.workspace_margin"},
       {config.guard.workspace_deceleration, 1e-2, 100.0, "safety.workspace_deceleration"},
+      {config.guard.cartesian_speed, 1e-3, huge, "safety.cartesian_speed"},
+      {config.guard.singularity_min, 0.0, 1.0, "safety.singularity_min"},
+      {config.move.speed, 1e-3, huge, "servo.move_speed"},
+      {config.move.acceleration, 1e-3, huge, "servo.move_acceleration"},
+      {config.move.jerk, 1e-3, huge, "servo.move_jerk"},
+      {config.move.turn_speed, 1e-3, huge, "servo.turn_speed"},
+      {config.move.turn_acceleration, 1e-3, huge, "servo.turn_acceleration"},
+      {config.move.turn_jerk, 1e-3, huge, "servo.turn_jerk"},
+      {config.move.pose_gain, 0.0, 200.0, "servo.pose_gain"},
+      {config.move.pose_error_max, 1e-6, huge, "servo.pose_error_max"},
       {config.safety.torque_fraction, 1e-3, 1.0, "safety.torque_fraction"},
       {config.safety.torque_rate_fraction, 1e-3, 1.0, "safety.torque_rate_fraction"},
       {config.safety.following_error, 1e-4, 10.0, "safety.following_error"},
+      {config.safety.contact_torque_fraction, 1e-3, huge, "safety.contact_torque_fraction"},
+      {config.safety.contact_gain, 0.1, 300.0, "safety.contact_gain"},
       {config.safety.fault_damping, 0.1, 100.0, "safety.fault_damping"},
       {config.safety.brake_velocity, 1e-6, 10.0, "safety.brake_velocity"},
       {config.safety.brake_after_s, 0.0, huge, "safety.brake_after_s"},
@@ -132,6 +147,23 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
     }
   }
 
+  const Obstacles& obstacles = config.guard.obstacles;
+  if (obstacles.num_planes < 0 || obstacles.num_planes > Obstacles::kMost || obstacles.num_boxes < 0 ||
+      obstacles.num_boxes > Obstacles::kMost) {
+    return Status(StatusCode::kOutOfRange, "safety.planes or safety.boxes");
+  }
+  for (int i = 0; i < obstacles.num_planes; ++i) {
+    const Plane& plane = obstacles.planes[static_cast<std::size_t>(i)];
+    if (!(std::fabs(plane.normal.norm() - 1.0) < 1e-9) || !std::isfinite(plane.distance)) {
+      return Status(StatusCode::kOutOfRange, "safety.planes");
+    }
+  }
+  for (int i = 0; i < obstacles.num_boxes; ++i) {
+    const Box& box = obstacles.boxes[static_cast<std::size_t>(i)];
+    if (!(box.low.array() < box.high.array()).all() || !box.low.allFinite() || !box.high.allFinite()) {
+      return Status(StatusCode::kOutOfRange, "safety.boxes");
+    }
+  }
   if (config.arm.num_joints < kMotionLaws[static_cast<std::size_t>(config.motion_law.kind)].joints_min) {
     return Status(StatusCode::kInvalidArgument, "servo.motion_law");
   }

@@ -36,6 +36,7 @@ void ServoTask::Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept 
   state_.tau_before = state_.tau;
   CheckArm(inputs, check);
   ComputeModel();
+  CheckContact(inputs.missed_ticks, check.fault, check.joint);
   PredictFeature(inputs, check.fault);
   ChooseMode(inputs, check);
   ComputeVisualLaw();
@@ -61,6 +62,24 @@ void ServoTask::ComputeModel() noexcept {
   state_.X_BC = state_.poses.X_BE * config_.X_EC;
   model::ComputeJacobian(config_.arm, state_.poses, config_.X_EC, state_.J_C);
   model::ComputeLinearJacobian(config_.arm, state_.poses, state_.poses.X_BE.p, state_.J_E_B);
+}
+
+// While the servo drives the arm: in Boot the robot may hold it by itself.
+void ServoTask::CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept {
+  const bool drives = state_.mode.mode != hal::Mode::kBoot && state_.mode.mode != hal::Mode::kFault;
+  if (!drives || missed_ticks > 0 || state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0) {
+    state_.contact.started = false;
+    return;
+  }
+  ObserveContact(config_.safety.contact_gain, state_.dynamics, state_.dq, state_.tau_applied, state_.contact);
+  for (int i = 0; i < state_.contact.residual.size(); ++i) {
+    const double most =
+        config_.safety.contact_torque_fraction * config_.arm.joints[static_cast<std::size_t>(i)].tau_max;
+    if (!(std::fabs(state_.contact.residual[i]) <= most) && fault == hal::Fault::kNone) {
+      fault = hal::Fault::kContact;
+      joint = i;
+    }
+  }
 }
 
 void ServoTask::PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noexcept {
@@ -106,7 +125,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   state_.mode_since_ns = state_.now_ns;
   if (now != hal::Mode::kMove) {
     state_.motion.Stop();
-    state_.motion.dq_before.resize(0);
+    state_.motion.resolved.dq.resize(0);
     state_.motion.refused = false;
   }
   if (before == hal::Mode::kBoot && now == hal::Mode::kHold) {
@@ -137,7 +156,7 @@ void ServoTask::ComputeVisualLaw() noexcept {
       state_.prediction.known &&
       config_.feature.Compute(state_.prediction.p_CO_C, state_.prediction.v_BO_C, state_.feature);
   if (state_.feature_valid) {
-    VisualLaw(config_.law, state_.feature, state_.J_C, state_.q, state_.law);
+    VisualLaw(config_.law, config_.arm, state_.feature, state_.J_C, state_.q, state_.law);
   }
 }
 
@@ -161,13 +180,19 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   model::VecN dq_des = model::VecN::Zero(config_.arm.num_joints);
   if (IsTracking(state_.mode.mode) && state_.feature_valid) {
     const double since_s = static_cast<double>(state_.now_ns - state_.track_since_ns) / kSecondNs;
-    dq_des = SmoothStep(since_s / config_.law.smooth_start_s) * state_.law.dq_des;
+    const double blend = SmoothStep(since_s / config_.law.smooth_start_s);
+    state_.law.task.v *= blend;
+    state_.law.task.dq_0 *= blend;
+    ResolveMotion(config_, state_.law.task, {state_.reference, state_.poses, state_.J_E_B, state_.J_C},
+                  state_.resolved);
+    if (!state_.resolved.finite || !state_.resolved.dq.allFinite()) {
+      LatchFault(hal::Fault::kNonFiniteControl, -1);
+      return;
+    }
+    dq_des = state_.resolved.dq;
+    state_.limits = state_.resolved.limits;
   }
-  if (!dq_des.allFinite()) {
-    LatchFault(hal::Fault::kNonFiniteControl, -1);
-    return;
-  }
-  state_.limits =
+  state_.limits |=
       GuardMotion(config_, MotionWish::Velocity(dq_des), state_.poses.X_BE.p, state_.J_E_B, state_.reference);
   CheckFollowing();
   NoteBlocked();
@@ -185,7 +210,9 @@ void ServoTask::CheckFollowing() noexcept {
 
 // For how long limits have kept the arm from the goal.
 void ServoTask::NoteBlocked() noexcept {
-  constexpr hal::LimitSet kBarriers = hal::Bit(hal::Limit::kJointPosition) | hal::Bit(hal::Limit::kWorkspace);
+  constexpr hal::LimitSet kBarriers = hal::Bit(hal::Limit::kJointPosition) |
+                                      hal::Bit(hal::Limit::kWorkspace) | hal::Bit(hal::Limit::kObstacle) |
+                                      hal::Bit(hal::Limit::kSingularity);
   const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
   const bool blocked = steering && (state_.limits & kBarriers) != 0 &&
                        state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&

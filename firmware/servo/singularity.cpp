@@ -36,6 +36,22 @@ void ComputeSingularity(const model::Mat6N& J, double length, Singularity& singu
   }
 }
 
+bool IsNear(const SingularityConfig& config, const model::Mat6N& J, double speed, double reach,
+            SingularityWatch& watch, Singularity& singularity) noexcept {
+  constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+  // No entry pair of dJ/dq_k is longer than two reaches over the length and one; their sum over the columns
+  // bounds how fast any singular value changes.
+  const double rate = (2.0 * reach / config.length + 1.0) * std::sqrt(static_cast<double>(J.cols()));
+  watch.sigma -= rate * speed * kPeriodS;
+  const double near = config.sigma_min + SingularityWatch::kNear;
+  if (watch.sigma > near) {
+    return false;
+  }
+  ComputeSingularity(J, config.length, singularity);
+  watch.sigma = singularity.sigma;
+  return !(singularity.sigma > near);
+}
+
 bool LimitSingularity(const SingularityConfig& config, const Singularity& singularity,
                       MotionLimits& limits) noexcept {
   const model::VecN a = -singularity.gradient;

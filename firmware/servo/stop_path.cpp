@@ -1,9 +1,11 @@
 #include "fovea/servo/stop_path.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/obstacle.hpp"
 
 namespace fovea::servo {
 namespace {
@@ -76,7 +78,7 @@ double StopTravel(const JointStop& stop, double dq, double ddq, double t) noexce
 }
 
 hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference, const model::VecN& q_now,
-                           double radius_now) noexcept {
+                           const model::Vec3& p_now) noexcept {
   const GuardConfig& guard = config.guard;
   const StopPlan plan = PlanAll(config, reference);
   // The ticks' own steps come on top of the continuous motion.
@@ -98,8 +100,18 @@ hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference
 
   // Workspace: no point of the arm moves further than the joints' travel times its distance from their axes,
   // which is at most about two workspace radii. Far from the boundary that settles it.
+  const double radius_now = p_now.norm();
   const double boundary = std::max(guard.workspace_radius - guard.workspace_margin, radius_now) + kSlack;
-  if (radius_now + 2.0 * guard.workspace_radius * travel < boundary) {
+  const double reach = 2.0 * guard.workspace_radius * travel;
+  const int num_obstacles = CountObstacles(guard.obstacles);
+  std::array<double, 2 * Obstacles::kMost> least{};  // clearance of each that must be kept
+  double nearest = HUGE_VAL;
+  for (int i = 0; i < num_obstacles; ++i) {
+    const double clearance = ClearanceOf(guard.obstacles, i, p_now).distance;
+    least[static_cast<std::size_t>(i)] = std::min(guard.workspace_margin, clearance) - kSlack;
+    nearest = std::min(nearest, clearance - guard.workspace_margin);
+  }
+  if (radius_now + reach < boundary && reach < nearest) {
     return 0;
   }
   model::VecN q = reference.q;
@@ -116,6 +128,11 @@ hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference
     model::ComputePoses(config.arm, q, poses);
     if (!(poses.X_BE.p.norm() <= boundary)) {
       return hal::Bit(hal::Limit::kWorkspace);
+    }
+    for (int i = 0; i < num_obstacles; ++i) {
+      if (!(ClearanceOf(guard.obstacles, i, poses.X_BE.p).distance >= least[static_cast<std::size_t>(i)])) {
+        return hal::Bit(hal::Limit::kObstacle);
+      }
     }
   }
   return 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "fovea/config/input_error.hpp"
@@ -20,15 +21,19 @@ Eigen::VectorXd ToVectorX(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
 }
 
+// About fixed axes.
+Eigen::Quaterniond RollPitchYaw(const std::vector<double>& degrees) {
+  const Eigen::Vector3d rpy = kDeg * ToVector(degrees);
+  return Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
+         Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX());
+}
+
 }  // namespace
 
 Eigen::Isometry3d CameraMount(const Scenario& s) {
-  const Eigen::Vector3d rpy = kDeg * ToVector(s.camera.mount_rpy_deg);
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
-  X_EC.linear() = (Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-                   Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-                   Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX()))
-                      .toRotationMatrix();
+  X_EC.linear() = RollPitchYaw(s.camera.mount_rpy_deg).toRotationMatrix();
   X_EC.translation() = ToVector(s.camera.mount_xyz);
   return X_EC;
 }
@@ -125,7 +130,22 @@ CommandedMotion MakeMotion(const Scenario& s) {
     return array;
   };
   const auto& m = s.motion;
-  return {joints(m.from.empty() ? s.arm.q_start : m.from), joints(m.velocity), joints(m.amplitude), m.omega};
+  if (m.kind == "circle") {
+    const Eigen::Vector3d normal = ToVector(m.normal).normalized();
+    const Eigen::Vector3d aside =
+        std::fabs(normal.z()) < 0.9 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
+    CommandedCircle circle;
+    circle.centre = ToVector(m.centre);
+    circle.across = aside.cross(normal).normalized();
+    circle.down = -normal.cross(circle.across);
+    circle.hand = RollPitchYaw(m.hand_rpy_deg);
+    circle.radius = m.radius;
+    circle.rate_hz = m.rate_hz;
+    circle.lead_s = m.lead_s;
+    return circle;
+  }
+  return CommandedJoints{joints(m.from.empty() ? s.arm.q_start : m.from), joints(m.velocity),
+                         joints(m.amplitude), m.omega};
 }
 
 RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {

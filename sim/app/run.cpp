@@ -117,6 +117,10 @@ class Run {
     verdict_config.pinhole = about_.pinhole;
     verdict_config.p_CO_C_star = about_.servo.feature.p_CO_C_star;
     verdict_config.has_eye = HasEye();
+    if (about_.motion && std::holds_alternative<CommandedCircle>(*about_.motion)) {
+      verdict_config.circle = std::get<CommandedCircle>(*about_.motion);
+    }
+    verdict_config.path_bound_mm = about_.scenario.motion.bound_mm;
     verdict_config.target_moves = about_.scenario.target.motion != "still";
     verdict_config.tracking_bound_px = about_.scenario.run.tracking_bound_px;
     verdict_config.duration_s = about_.scenario.run.duration_s;

@@ -27,7 +27,12 @@ TheoryConfig MakeTheoryConfig(const Scenario& s, const RunDescription& run) {
   theory.plant = {arm.links[0].mass, arm.joints[0].viscous, arm.joints[0].spring};
   theory.coulomb = arm.joints[0].coulomb;
   theory.law = run.servo.motion_law;
-  theory.motion = run.motion;
+  if (run.motion) {
+    if (!std::holds_alternative<CommandedJoints>(*run.motion)) {
+      throw config::InputError("theory.enabled = true is not allowed with motion.kind = \"circle\"");
+    }
+    theory.motion = std::get<CommandedJoints>(*run.motion);
+  }
   theory.push = s.faults.push.empty() ? 0.0 : s.faults.push[0];
   theory.push_s = s.faults.push_s[0];
   theory.fit_begin_s = s.theory.fit_s[0];

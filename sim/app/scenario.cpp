@@ -86,8 +86,10 @@ void AddRunKeys(Scenario& s, config::KeyTable& keys) {
 
 void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
   constexpr std::size_t kMax = model::kMaxJoints;
-  keys.Choice("motion.kind", s.motion.kind, {"none", "joints"},
-              "commanded motion; joints: from + velocity t + amplitude sin(omega t) for each joint");
+  keys.Choice(
+      "motion.kind", s.motion.kind, {"none", "joints", "circle"},
+      "commanded motion; joints: from + velocity t + amplitude sin(omega t) for each joint; circle: of "
+      "the end effector");
   keys.Numbers("motion.from", s.motion.from, 1, kMax, -1e4, 1e4, "rad",
                "joint positions, one per joint; arm.q_start when not given");
   keys.Numbers("motion.velocity", s.motion.velocity, 1, kMax, -100.0, 100.0, "rad/s",
@@ -95,6 +97,15 @@ void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
   keys.Numbers("motion.amplitude", s.motion.amplitude, 1, kMax, -100.0, 100.0, "rad",
                "one per joint; 0 when not given");
   keys.Number("motion.omega", s.motion.omega, 1e-3, 1e3, "rad/s", "angular frequency of the swing");
+  keys.Numbers("motion.centre", s.motion.centre, 3, 3, -5.0, 5.0, "m", "of the circle, in B");
+  keys.Numbers("motion.normal", s.motion.normal, 3, 3, -1.0, 1.0, "", "of its plane, in B");
+  keys.Numbers("motion.hand_rpy_deg", s.motion.hand_rpy_deg, 3, 3, -360.0, 360.0, "deg",
+               "roll, pitch, yaw of the end effector on it, about fixed axes of B");
+  keys.Number("motion.radius", s.motion.radius, 0.001, 2.0, "m", "of the circle");
+  keys.Number("motion.rate_hz", s.motion.rate_hz, 0.001, 10.0, "Hz", "turns per second");
+  keys.Number("motion.lead_s", s.motion.lead_s, 0.1, 1e3, "s", "time to come to its lowest point first");
+  keys.Number("motion.bound_mm", s.motion.bound_mm, 0.001, 1e3, "mm",
+              "the circle counts as followed when the end effector never is further off");
   keys.Flag("theory.enabled", s.theory.enabled,
             "judge a one-joint arm against its analytic response instead of a target");
   keys.Numbers("theory.fit_s", s.theory.fit_s, 2, 2, 0.0, 1e6, "s",

@@ -62,13 +62,20 @@ struct Scenario {
     std::vector<double> push_s{0.0, 0.0};
   } faults;
 
-  // A commanded motion of the joints: from + velocity t + amplitude sin(omega t).
+  // A commanded motion; see commanded_motion.hpp.
   struct {
     std::string kind = "none";
     std::vector<double> from;
     std::vector<double> velocity;
     std::vector<double> amplitude;
     double omega = 1.0;
+    std::vector<double> centre{0.45, 0.0, 0.50};
+    std::vector<double> normal{1.0, 0.0, 0.0};
+    std::vector<double> hand_rpy_deg{180.0, 0.0, 0.0};
+    double radius = 0.15;
+    double rate_hz = 0.5;
+    double lead_s = 3.0;
+    double bound_mm = 1.0;
   } motion;
 
   struct {

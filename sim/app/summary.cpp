@@ -102,6 +102,8 @@ std::string ToJson(const Summary& s) {
   json["final_error_depth_mm"] = OrNull(s.final_error_depth_mm);
   json["final_error_deg"] = OrNull(s.final_error_deg);
   json["tracking_error_px_rms"] = OrNull(s.tracking_error_px_rms);
+  json["path_error_mm_rms"] = OrNull(s.path_error_mm_rms);
+  json["path_error_mm_max"] = OrNull(s.path_error_mm_max);
   if (s.theory) {
     json["theory"] = ToJson(*s.theory);
   }
@@ -143,6 +145,9 @@ std::string ToTable(const Summary& s) {
   table.Row("verdict", s.verdict);
   if (s.theory) {
     AddTheory(*s.theory, table);
+  } else if (s.path_error_mm_max) {
+    table.Row("off the way", fmt::format("{} rms, {} at most", Figure(s.path_error_mm_rms, "mm"),
+                                         Figure(s.path_error_mm_max, "mm")));
   } else if (s.tracking_error_px_rms) {
     table.Row("tracking error", Figure(s.tracking_error_px_rms, "px rms"));
   } else {

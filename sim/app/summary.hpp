@@ -42,6 +42,9 @@ struct Summary {
   // Moving targets: over the second half.
   std::optional<double> tracking_error_px_rms;
 
+  // Commanded circles: of the end effector, from the circle's start on.
+  std::optional<double> path_error_mm_rms;
+  std::optional<double> path_error_mm_max;
   std::optional<TheoryResult> theory;  // of a run beside its analytic answer
 
   std::map<std::string, double> limits;              // largest used fraction of each

@@ -27,6 +27,14 @@ void Verdict::AddTruth(const Truth& truth) {
     AddSample({truth.stamp_ns, error.error_px, error.error_C});
   }
 
+  const double t_s = 1e-9 * static_cast<double>(truth.stamp_ns);
+  if (config_.circle && t_s >= config_.circle->lead_s) {
+    const std::array<double, 3> p = config_.circle->At(t_s).p_BE;
+    const double off = (truth.X_BE.translation() - Eigen::Vector3d(p[0], p[1], p[2])).norm();
+    path2_ += off * off;
+    path_most_ = std::max(path_most_, off);
+    ++path_samples_;
+  }
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
     const double half = 0.5 * (joint.q_max - joint.q_min);
@@ -132,6 +140,16 @@ void Verdict::Fill(Summary& summary) const {
 void Verdict::FillMotion(Summary& summary) const {
   const bool refused = has_record_ && before_.hold_reason == hal::HoldReason::kMotionRefused;
   summary.converged = faults_.empty() && !refused && summary.limit_violations == 0;
+  if (path_samples_ > 0) {
+    summary.path_error_mm_rms = 1e3 * std::sqrt(path2_ / static_cast<double>(path_samples_));
+    summary.path_error_mm_max = 1e3 * path_most_;
+  }
+  if (summary.converged && config_.circle && 1e3 * path_most_ > config_.path_bound_mm) {
+    summary.converged = false;
+    summary.verdict = fmt::format("the end effector was {:.2g} mm off its way, motion.bound_mm allows {}",
+                                  1e3 * path_most_, config_.path_bound_mm);
+    return;
+  }
   summary.verdict = !faults_.empty()    ? "a fault stopped the arm: " + faults_.front().name
                     : refused           ? "the commanded motion was refused (see modes and limits)"
                     : summary.converged ? "the commanded motion was followed"

@@ -9,6 +9,7 @@
 
 #include "fovea/hal/record.hpp"
 #include "fovea/model/arm_model.hpp"
+#include "sim/app/commanded_motion.hpp"
 #include "sim/app/limit_book.hpp"
 #include "sim/app/summary.hpp"
 #include "sim/render/pinhole.hpp"
@@ -23,8 +24,10 @@ struct VerdictConfig {
   bool has_eye = true;                                    // false: there is no target to judge by
   bool target_moves = false;
   double tracking_bound_px = 3.0;
-  double duration_s = 8.0;         // of the run
-  double workspace_radius = 0.85;  // [m]
+  double duration_s = 8.0;                // of the run
+  double workspace_radius = 0.85;         // [m]
+  std::optional<CommandedCircle> circle;  // that the end effector shall follow
+  double path_bound_mm = 1.0;
 };
 
 // AddTruth and AddRecord may be called by two threads: neither touches what the other does. Its size does not
@@ -55,6 +58,9 @@ class Verdict {
   const VerdictConfig config_;
 
   // from the truth
+  double path2_ = 0.0;  // sum of squares of the distance from the commanded circle [m^2]
+  double path_most_ = 0.0;
+  std::uint64_t path_samples_ = 0;
   LimitBook motion_;
   std::deque<Sample> window_;       // of the last half second
   std::optional<double> first_px_;  // error at the start

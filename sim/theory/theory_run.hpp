@@ -23,7 +23,7 @@ struct TheoryConfig {
   design::SecondOrder plant;
   double coulomb = 0.0;                   // friction of the plant [N]
   servo::MotionLawConfig law;             // k_p[0], k_v[0] are those of pd
-  std::optional<CommandedMotion> motion;  // none: the goal is 0
+  std::optional<CommandedJoints> motion;  // none: the goal is 0
   double push = 0.0;                      // constant force from push_s on [N]
   double push_s = 0.0;                    // [s]
   double fit_begin_s = 0.0;

@@ -179,8 +179,8 @@ TEST_F(FollowMotionTest, TheFlangeFollowsACircle) {
     rate = kOmega * t * t * t * (10.0 + t * (-15.0 + 6.0 * t));
     return kOmega * t * t * t * t * (2.5 + t * (-3.0 + t));
   };
-  const model::Vec3 centre(0.45, 0.0, 0.45);
-  Tick(Pose(MotionKind::kPoseGoal, centre - model::Vec3(0.0, kRadius, 0.0), phi));
+  const model::Vec3 centre(0.45, 0.0, 0.50);
+  Tick(Pose(MotionKind::kPoseGoal, centre - model::Vec3(0.0, 0.0, kRadius), phi));
   RunToHold();
   ASSERT_EQ(record().hold_reason, HoldReason::kMotionDone);
   double worst = 0.0;
@@ -188,8 +188,8 @@ TEST_F(FollowMotionTest, TheFlangeFollowsACircle) {
   for (int tick = 0; tick < 6000; ++tick) {
     double rate = 0.0;
     const double a = angle(1e-3 * tick, rate);
-    const model::Vec3 p = centre + kRadius * model::Vec3(std::sin(a), -std::cos(a), 0.0);
-    const model::Vec3 v = kRadius * rate * model::Vec3(std::cos(a), std::sin(a), 0.0);
+    const model::Vec3 p = centre + kRadius * model::Vec3(0.0, std::sin(a), -std::cos(a));
+    const model::Vec3 v = kRadius * rate * model::Vec3(0.0, std::cos(a), std::sin(a));
     worst = std::max(worst, (PoseOf(arm_->q()).p - p).norm());
     ASSERT_EQ(Tick(Pose(MotionKind::kPoseSetpoint, p, phi, v)).mode, Mode::kMove) << "tick " << tick;
     worst_reference = std::max(worst_reference, (PoseOf(Reference()).p - p).norm());

@@ -30,7 +30,7 @@ std::vector<Way> Ways(const ServoConfig& config) {
     return [=](const Scene& s) { return ByConstrained(s, wishes, way, acceleration); };
   };
   return {
-      {"law, as it is", ByVisualLaw},
+      {"law, as it is", ByFixedDamping},
       {"damped, unbounded posture", [=](const Scene& s) { return ByDamped(s, pull); }},
       {"damped", [=](const Scene& s) { return ByDamped(s, posture); }},
       {"damped, all wishes", [=](const Scene& s) { return ByDamped(s, all); }},

@@ -8,6 +8,8 @@
 // from where it shall be. So there is a posture that reaches the goal, but no promise of a way there.
 #pragma once
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -15,7 +17,7 @@
 #include "fovea/servo/guard_motion.hpp"
 #include "fovea/servo/null_space_wish.hpp"
 #include "fovea/servo/resolve_constrained.hpp"
-#include "fovea/servo/visual_law.hpp"
+#include "fovea/servo/resolve_motion.hpp"
 #include "support/panda.hpp"
 #include "support/random_states.hpp"
 
@@ -150,10 +152,19 @@ inline Run Loop(const ServoConfig& config, const Start& start, const Resolve& re
 
 // Ways of resolution. `wishes`: what to do with the free directions.
 
-inline model::VecN ByVisualLaw(const Scene& scene) {
-  VisualLawOutput out;
-  VisualLaw(scene.config.law, scene.feature, scene.J_C, scene.reference.q, out);
-  return out.dq_des;
+// The pseudo-inverse with one damping for all directions, and the posture's pull as hard as it comes: what is
+// usual, for comparison.
+inline model::VecN ByFixedDamping(const Scene& scene) {
+  constexpr double kDamping = 0.01;  // relative to the Jacobian's size
+  const Eigen::MatrixXd J = scene.feature.L_s * scene.J_C;
+  const Eigen::VectorXd v =
+      scene.config.law.lambda * (scene.feature.s_star - scene.feature.s) - scene.feature.ds_dt_target;
+  const int n = static_cast<int>(scene.reference.q.size());
+  const Eigen::VectorXd dq_0 =
+      scene.config.law.posture_gain * (model::ToVector(scene.config.law.q_posture, n) - scene.reference.q);
+  Eigen::MatrixXd A = J * J.transpose();
+  A.diagonal().array() += kDamping * kDamping * A.trace() / static_cast<double>(A.rows());
+  return dq_0 + J.transpose() * A.ldlt().solve(v - J * dq_0);
 }
 
 inline MotionTask TaskOf(const Scene& scene, const NullSpaceConfig& wishes) {

@@ -15,7 +15,7 @@ TEST(ResolveLoopTest, WithLimitsInsideMoreStartsReachTheirGoal) {
   const ServoConfig config = test::PandaConfig();
   const NullSpaceConfig wishes = resolve_loop::PostureOnly(config, NullSpaceConfig{}.speed_max);
   const resolve_loop::Resolve ways[3] = {
-      resolve_loop::ByVisualLaw, [&](const resolve_loop::Scene& scene) { return ByDamped(scene, wishes); },
+      resolve_loop::ByFixedDamping, [&](const resolve_loop::Scene& scene) { return ByDamped(scene, wishes); },
       [&](const resolve_loop::Scene& scene) {
         return ByConstrained(scene, wishes, ConstrainedConfig{}, false);
       }};
@@ -31,7 +31,7 @@ TEST(ResolveLoopTest, WithLimitsInsideMoreStartsReachTheirGoal) {
       EXPECT_LE(run.range_used, 1.0 + 1e-3);
     }
   }
-  std::cout << "of " << starts << " starts converge: " << converged[0] << " by the visual law, "
+  std::cout << "of " << starts << " starts converge: " << converged[0] << " by fixed damping, "
             << converged[1] << " damped, " << converged[2] << " constrained\n";
   EXPECT_GE(converged[2], starts * 9 / 10);
   EXPECT_GE(converged[2], converged[0]);

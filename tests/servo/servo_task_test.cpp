@@ -312,7 +312,24 @@ TEST_F(FaultTest, JointTooFast) {
   ExpectStopsAndStays(Fault::kJointVelocity, 1500);
 }
 
+// What jams the arm pushes it.
+TEST_F(FaultTest, SomethingHoldsTheArm) {
+  arm_->Jam();
+  int ticks = 0;
+  while (outputs_.record.mode != Mode::kFault && ticks++ < 3000) {
+    Tick();
+  }
+  std::cout << "found after " << ticks << " ms\n";
+  EXPECT_GE(outputs_.record.fault_joint, 0);
+  ExpectStopsAndStays(Fault::kContact, 150);
+}
+
+// Without that observer it is seen later, by its error.
 TEST_F(FaultTest, ArmDoesNotFollow) {
+  ServoConfig config = test::PandaConfig();
+  config.safety.contact_torque_fraction = 1e3;
+  Start(config);
+  Run(500);
   arm_->Jam();
   int ticks = 0;
   while (outputs_.record.mode != Mode::kFault && ticks++ < 3000) {

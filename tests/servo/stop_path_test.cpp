@@ -59,14 +59,15 @@ TEST(PlanStopTest, AtRestItIsNothing) {
 TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
   const ServoConfig config = test::PandaConfig();
   Reference reference{test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
-  EXPECT_EQ(LimitsPassed(config, reference, reference.q, 0.66), 0U);
+  const model::Vec3 kInside(0.5, 0.1, 0.4);
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, kInside), 0U);
   // Joint 6 half a degree before its margin, at 1 rad/s.
   const model::Joint& joint = config.arm.joints[5];
   reference.q[5] = joint.q_max - config.guard.joint_position_margin - 0.01;
   reference.dq[5] = 1.0;
-  EXPECT_EQ(LimitsPassed(config, reference, reference.q, 0.66), hal::Bit(hal::Limit::kJointPosition));
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, kInside), hal::Bit(hal::Limit::kJointPosition));
   reference.dq[5] = -1.0;
-  EXPECT_EQ(LimitsPassed(config, reference, reference.q, 0.66), 0U);
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, kInside), 0U);
   // A workspace that ends a centimetre before the end effector, towards which joint 2 leans out.
   reference = {test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
   model::ArmPoses poses;
@@ -75,7 +76,29 @@ TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
   ServoConfig narrow = config;
   narrow.guard.workspace_radius = radius + narrow.guard.workspace_margin + 0.01;
   reference.dq[3] = 1.0;  // stretches the elbow
-  EXPECT_EQ(LimitsPassed(narrow, reference, reference.q, radius), hal::Bit(hal::Limit::kWorkspace));
+  EXPECT_EQ(LimitsPassed(narrow, reference, reference.q, poses.X_BE.p), hal::Bit(hal::Limit::kWorkspace));
+  // The same with a plane and with a box a centimetre before it; away from them it may go.
+  const model::Vec3& p = poses.X_BE.p;
+  const model::Vec3 outward = p / radius;
+  ServoConfig plane = config;
+  plane.guard.obstacles.num_planes = 1;
+  plane.guard.obstacles.planes[0] = {-outward, -(radius + plane.guard.workspace_margin + 0.01)};
+  EXPECT_EQ(LimitsPassed(plane, reference, reference.q, p), hal::Bit(hal::Limit::kObstacle));
+  ServoConfig box = config;
+  box.guard.obstacles.num_boxes = 1;
+  model::LinearJacobian J_E_B;
+  model::ComputeLinearJacobian(config.arm, poses, p, J_E_B);
+  int axis = 0;
+  J_E_B.col(3).cwiseAbs().maxCoeff(&axis);
+  const model::Vec3 way = std::copysign(1.0, J_E_B(axis, 3)) * model::Vec3::Unit(axis);
+  const model::Vec3 face = p + (box.guard.workspace_margin + 0.01) * way;
+  const model::Vec3 across = model::Vec3::Ones() - model::Vec3::Unit(axis);
+  box.guard.obstacles.boxes[0] = {(face - across).cwiseMin(face + across + way),
+                                  (face - across).cwiseMax(face + across + way)};
+  EXPECT_EQ(LimitsPassed(box, reference, reference.q, p), hal::Bit(hal::Limit::kObstacle));
+  reference.dq[3] = -1.0;
+  EXPECT_EQ(LimitsPassed(plane, reference, reference.q, p), 0U);
+  EXPECT_EQ(LimitsPassed(box, reference, reference.q, p), 0U);
 }
 
 }  // namespace

@@ -16,6 +16,8 @@ struct ServoSettings {
   servo::ServoConfig config;
   std::vector<double> goal{0.0, 0.0, 0.40};  // p_CO_C_star [m]
   std::vector<double> posture;               // empty: the robot's ready posture
+  std::vector<double> planes;                // n_x, n_y, n_z, d of each
+  std::vector<double> boxes;                 // low x, y, z, high x, y, z of each
   std::string motion_law = "computed_torque";
   std::vector<double> k_p;  // per joint; empty: omega_n^2 times the inertia in the ready posture
   std::vector<double> k_v;  // per joint; empty: by zeta, from k_p and that inertia

@@ -10,6 +10,7 @@
 #include "fovea/servo/joint_move.hpp"
 #include "fovea/servo/motion_command.hpp"
 #include "fovea/servo/reference.hpp"
+#include "fovea/servo/resolve_motion.hpp"
 #include "fovea/servo/servo_config.hpp"
 #include "fovea/servo/synchronised_move.hpp"
 
@@ -19,10 +20,10 @@ struct MotionState {
   MotionCommand goal;  // the one under way, kNone when there is none
   std::int64_t start_ns = 0;
   JointMove joints;
-  model::Pose X_BE;       // a pose goal's
-  SynchronisedMove pose;  // position less goal, and the turn from the goal, both in axes of B
-  model::VecN dq_before;  // the joint velocity that the last pose asked for; empty: none did
-  bool refused = false;   // in the last tick
+  model::Pose X_BE;         // a pose goal's
+  SynchronisedMove pose;    // position less goal, and the turn from the goal, both in axes of B
+  ResolvedMotion resolved;  // what the last pose asked of the joints; its dq empty: none did
+  bool refused = false;     // in the last tick
 
   // Whether a motion goes on after this tick without another command.
   [[nodiscard]] bool IsUnderWay() const noexcept { return goal.kind != MotionKind::kNone; }

@@ -20,6 +20,9 @@ namespace fovea::servo {
 // and the reaction time; 0 when the distance is used up. Real-time: yes.
 [[nodiscard]] double BarrierSpeed(double distance, double deceleration, double reaction_s) noexcept;
 
+// The time that the slowest joint takes from the wish to brake to full deceleration [s]. Real-time: yes.
+[[nodiscard]] double SlowestReaction(const ServoConfig& config) noexcept;
+
 // How the joints shall move, and how that goes on to change. Finite.
 struct MotionWish {
   model::VecN dq;   // [num_joints]

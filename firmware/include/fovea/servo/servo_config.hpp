@@ -2,6 +2,7 @@
 // same name in the section that its struct names, with the unit in brackets.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "fovea/features/sphere.hpp"
@@ -25,8 +26,11 @@ struct PredictConfig {
 struct LawConfig {
   double lambda = 2.0;                 // e decays like exp(-lambda t) [1/s]
   double smooth_start_s = 0.25;        // the law's velocity is blended in over this time [s]
-  double damping = 0.01;               // of the pseudo-inverse, relative to the size of the task Jacobian
+  double damping = 0.05;               // begins at this share of the task Jacobian's rms singular value
   double posture_gain = 0.6;           // pull of the posture in the free directions [1/s]
+  double joint_limit_gain = 0.0;       // and away from the ends of the joints' ranges [1/s]
+  double manipulability_gain = 0.0;    // and towards more manipulability [rad^2/s]
+  double free_speed = 0.1;             // all of these together no faster [rad/s]
   hal::JointArray q_posture{};         // that posture [rad]; the arm's ready posture by default
   double unreachable_s = 1.0;          // give up when limits have kept the arm from the goal for so long [s]
   double unreachable_progress = 0.05;  // "kept from": less than this share of the wanted motion is left
@@ -52,6 +56,23 @@ struct MotionLawConfig {
   double change_s = 0.2;                  // time in which one law takes over from another [s]
 };
 
+// Planes n p >= d and boxes that the end effector's point p_BE keeps out of, in B.
+struct Plane {
+  model::Vec3 normal = model::Vec3::UnitZ();  // of length 1
+  double distance = 0.0;                      // [m]
+};
+struct Box {
+  model::Vec3 low = model::Vec3::Zero();   // [m]
+  model::Vec3 high = model::Vec3::Zero();  // [m]
+};
+struct Obstacles {
+  static constexpr int kMost = 4;  // of each
+  int num_planes = 0;
+  int num_boxes = 0;
+  std::array<Plane, kMost> planes;
+  std::array<Box, kMost> boxes;
+};
+
 // [safety] limits on the motion, as fractions of the arm's own or in their units
 struct GuardConfig {
   double joint_velocity_fraction = 0.8;
@@ -62,22 +83,27 @@ struct GuardConfig {
   double workspace_radius = 0.85;       // |p_BE| stays below this [m]
   double workspace_margin = 0.002;      // the reference stays so far inside [m]
   double workspace_deceleration = 2.0;  // for stopping before it [m/s^2]
+  double cartesian_speed = 1.7;         // of the end effector [m/s]
+  double singularity_min = 0.02;        // smallest singular value of the hand's Jacobian, 1 / 0.3 m
+  Obstacles obstacles;                  // which the end effector keeps out of
 };
 
 // [safety] limits on the torque, and when to stop altogether
 struct SafetyConfig {
   double torque_fraction = 1.0;
   double torque_rate_fraction = 1.0;
-  int arm_lost_ticks = 20;        // so many ticks without a new sound state: fault
-  int non_finite_ticks = 5;       // a non-finite joint value is bridged for so many ticks, then: fault
-  int missed_ticks = 20;          // so many missed deadlines in a row: fault
-  int boot_ticks = 20;            // sound states in a row before Boot is over
-  double boot_velocity = 0.05;    // and every joint slower than this [rad/s, m/s]
-  double setpoint_jump = 1e-3;    // a stream of setpoints starts and goes on this close [rad, m]
-  double following_error = 0.15;  // a joint further off its reference: fault [rad, m]
-  double fault_damping = 10.0;    // of the damped stop [1/s]
-  double brake_velocity = 0.02;   // brakes close when every joint is slower [rad/s, m/s]
-  double brake_after_s = 1.0;     // or after this time [s]
+  int arm_lost_ticks = 20;               // so many ticks without a new sound state: fault
+  int non_finite_ticks = 5;              // a non-finite joint value is bridged for so many ticks, then: fault
+  int missed_ticks = 20;                 // so many missed deadlines in a row: fault
+  int boot_ticks = 20;                   // sound states in a row before Boot is over
+  double boot_velocity = 0.05;           // and every joint slower than this [rad/s, m/s]
+  double setpoint_jump = 1e-3;           // a stream of setpoints starts and goes on this close [rad, m]
+  double following_error = 0.15;         // a joint further off its reference: fault [rad, m]
+  double contact_torque_fraction = 0.2;  // pushed with more than this share of a joint's torque: fault
+  double contact_gain = 30.0;            // of the observer that sees it [1/s]
+  double fault_damping = 10.0;           // of the damped stop [1/s]
+  double brake_velocity = 0.02;          // brakes close when every joint is slower [rad/s, m/s]
+  double brake_after_s = 1.0;            // or after this time [s]
 };
 
 // [servo] commanded motions of the end effector

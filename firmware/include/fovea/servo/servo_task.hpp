@@ -12,6 +12,7 @@
 #include "fovea/hal/status.hpp"
 #include "fovea/model/dynamics.hpp"
 #include "fovea/servo/check_inputs.hpp"
+#include "fovea/servo/contact.hpp"
 #include "fovea/servo/follow_motion.hpp"
 #include "fovea/servo/guard_motion.hpp"
 #include "fovea/servo/modes.hpp"
@@ -58,6 +59,8 @@ struct ServoState {
   model::Mat6N J_C;
   model::LinearJacobian J_E_B;
 
+  ContactState contact;
+
   // predict
   PredictState predict;
   Prediction prediction;
@@ -76,6 +79,7 @@ struct ServoState {
   VisualLawOutput law;
 
   // guard
+  ResolvedMotion resolved;
   Reference reference;
   MotionState motion;  // mode Move
   hal::LimitSet limits = 0;
@@ -107,6 +111,7 @@ class ServoTask {
   void ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept;
   void ComputeVisualLaw() noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
+  void CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept;
   void CheckFollowing() noexcept;
   void NoteBlocked() noexcept;
   void ComputeTorque(const ServoInputs& inputs) noexcept;

@@ -27,6 +27,19 @@ struct Singularity {
 // joints it is the smallest of its num_joints singular values. Real-time: yes.
 void ComputeSingularity(const model::Mat6N& J, double length, Singularity& singularity) noexcept;
 
+// Looks after the measure at the cost that it deserves: sigma changes no faster than the joints' speed
+// allows, so that far from a singularity it need not be computed anew in each tick.
+struct SingularityWatch {
+  static constexpr double kNear = 0.08;  // the limit is looked at when sigma is this close to its least
+
+  double sigma = 0.0;  // at the last look, less all that it may have lost since
+};
+
+// `speed`: sum of the joints' speeds since the last call [rad/s], in a tick; `reach`: no point of the arm is
+// further from an axis [m]. True, with `singularity` computed, when the posture is near. Real-time: yes.
+bool IsNear(const SingularityConfig& config, const model::Mat6N& J, double speed, double reach,
+            SingularityWatch& watch, Singularity& singularity) noexcept;
+
 // Adds the row  dsigma/dt >= -rate (sigma - sigma_min), or >= 0 where sigma is already below: standing still
 // is always allowed. False, and nothing added, when there is no room. Real-time: yes.
 bool LimitSingularity(const SingularityConfig& config, const Singularity& singularity,

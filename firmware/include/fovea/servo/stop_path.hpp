@@ -32,11 +32,11 @@ struct JointStop {
 // How far the joint goes until `t` seconds into the stop. Real-time: yes.
 [[nodiscard]] double StopTravel(const JointStop& stop, double dq, double ddq, double t) noexcept;
 
-// The limits that a stop from `reference` would pass: the joints' range or the workspace, each with its
-// margin; 0 when it stays inside both. What is already outside may only come back. `radius_now` is |p_BE| of
-// the reference before, and `q_now` its joints. Real-time: yes, at most kStopSamples poses.
+// The limits that a stop from `reference` would pass: the joints' range, the workspace, an obstacle, each
+// with its margin; 0 when it stays clear of all. What is already past one may only come back. `p_now` is p_BE
+// of the reference before [m], and `q_now` its joints. Real-time: yes, at most kStopSamples poses.
 inline constexpr int kStopSamples = 12;
 [[nodiscard]] hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference,
-                                         const model::VecN& q_now, double radius_now) noexcept;
+                                         const model::VecN& q_now, const model::Vec3& p_now) noexcept;
 
 }  // namespace fovea::servo

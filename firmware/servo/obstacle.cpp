@@ -1,0 +1,48 @@
+#include "fovea/servo/obstacle.hpp"
+
+#include <cmath>
+
+namespace fovea::servo {
+namespace {
+
+Clearance ClearanceOf(const Box& box, const model::Vec3& p) noexcept {
+  model::Vec3 outside = model::Vec3::Zero();  // from the box's nearest point
+  double nearest_face = HUGE_VAL;
+  int axis = 0;
+  double side = 1.0;
+  for (int i = 0; i < 3; ++i) {
+    const double below = box.low[i] - p[i];
+    const double above = p[i] - box.high[i];
+    outside[i] = above > 0.0 ? above : below > 0.0 ? -below : 0.0;
+    if (-above < nearest_face) {
+      nearest_face = -above;
+      axis = i;
+      side = 1.0;
+    }
+    if (-below < nearest_face) {
+      nearest_face = -below;
+      axis = i;
+      side = -1.0;
+    }
+  }
+  const double distance = outside.norm();
+  if (distance > 0.0) {
+    return {distance, outside / distance};
+  }
+  Clearance clearance;
+  clearance.distance = -nearest_face;
+  clearance.away = side * model::Vec3::Unit(axis);
+  return clearance;
+}
+
+}  // namespace
+
+Clearance ClearanceOf(const Obstacles& obstacles, int i, const model::Vec3& p_B) noexcept {
+  if (i < obstacles.num_planes) {
+    const Plane& plane = obstacles.planes[static_cast<std::size_t>(i)];
+    return {plane.normal.dot(p_B) - plane.distance, plane.normal};
+  }
+  return ClearanceOf(obstacles.boxes[static_cast<std::size_t>(i - obstacles.num_planes)], p_B);
+}
+
+}  // namespace fovea::servo

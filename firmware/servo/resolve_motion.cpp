@@ -1,0 +1,111 @@
+#include "fovea/servo/resolve_motion.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "fovea/servo/guard_motion.hpp"
+#include "fovea/servo/null_space_wish.hpp"
+#include "fovea/servo/obstacle.hpp"
+#include "fovea/servo/singularity.hpp"
+
+namespace fovea::servo {
+namespace {
+
+using hal::Bit;
+using hal::Limit;
+using hal::LimitSet;
+
+// Rows, and what each stands for.
+struct NamedLimits {
+  MotionLimits limits;
+  std::array<Limit, MotionLimits::kMaxRows> names{};
+
+  void NameNewRows(Limit limit, int before) noexcept {
+    for (int k = before; k < limits.num_rows; ++k) {
+      names[static_cast<std::size_t>(k)] = limit;
+    }
+  }
+};
+
+// The guard proves a stop before each obstacle; the row keeps it from having to.
+void LimitApproach(const ServoConfig& config, const MotionScene& scene, MotionLimits& limits) noexcept {
+  const Obstacles& obstacles = config.guard.obstacles;
+  const double deceleration = 0.5 * config.guard.workspace_deceleration;
+  for (int i = 0; i < CountObstacles(obstacles); ++i) {
+    const Clearance clearance = ClearanceOf(obstacles, i, scene.poses.X_BE.p);
+    const double room = clearance.distance - 2.0 * config.guard.workspace_margin;
+    const double speed = BarrierSpeed(room, deceleration, SlowestReaction(config));
+    limits.AddRow(-scene.J_E_B.transpose().lazyProduct(clearance.away), speed);
+  }
+}
+
+void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatch& watch,
+            NamedLimits& named) noexcept {
+  MotionLimits& limits = named.limits;
+  LimitJoints(config, scene.reference.q, limits);
+  LimitOutwardMotion(config, scene.poses.X_BE.p, scene.J_E_B, scene.reference.dq, limits);
+  named.NameNewRows(Limit::kWorkspace, 0);
+  int rows = limits.num_rows;
+  LimitApproach(config, scene, limits);
+  named.NameNewRows(Limit::kObstacle, rows);
+  if (config.guard.singularity_min > 0.0) {
+    rows = limits.num_rows;
+    SingularityConfig singularity_config;
+    singularity_config.sigma_min = config.guard.singularity_min;
+    Singularity singularity;
+    if (IsNear(singularity_config, scene.J, scene.reference.dq.lpNorm<1>(),
+               2.0 * config.guard.workspace_radius, watch, singularity)) {
+      LimitSingularity(singularity_config, singularity, limits);
+      named.NameNewRows(Limit::kSingularity, rows);
+    }
+  }
+}
+
+LimitSet LimitsThatAct(const ServoConfig& config, const NamedLimits& named,
+                       const LimitedMotion& motion) noexcept {
+  LimitSet active = 0;
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    const double speed =
+        config.guard.joint_velocity_fraction * config.arm.joints[static_cast<std::size_t>(i)].dq_max;
+    const bool up = ((motion.upper >> i) & 1U) != 0;
+    const bool down = ((motion.lower >> i) & 1U) != 0;
+    if (up || down) {
+      const double bound = up ? named.limits.dq_max[i] : -named.limits.dq_min[i];
+      active |= Bit(bound < speed ? Limit::kJointPosition : Limit::kJointVelocity);
+    }
+  }
+  for (int k = 0; k < named.limits.num_rows; ++k) {
+    if (((motion.rows >> k) & 1U) != 0) {
+      active |= Bit(named.names[static_cast<std::size_t>(k)]);
+    }
+  }
+  return active;
+}
+
+}  // namespace
+
+void ResolveMotion(const ServoConfig& config, const MotionTask& task, const MotionScene& scene,
+                   ResolvedMotion& motion) noexcept {
+  NamedLimits named;
+  Gather(config, scene, motion.watch, named);
+  ConstrainedConfig constrained;
+  constrained.damping.threshold = config.law.damping;
+  ConstrainedMotion resolved;
+  ResolveConstrained(constrained, task, named.limits, resolved);
+  motion.dq = resolved.limited.dq;
+  motion.finite = resolved.limited.outcome != LimitOutcome::kNotFinite;
+  motion.limits = LimitsThatAct(config, named, resolved.limited);
+}
+
+model::VecN FreeWish(const LawConfig& config, const model::ArmModel& arm, const model::VecN& q,
+                     const model::Mat6N& J) noexcept {
+  NullSpaceConfig wishes;
+  wishes.posture_gain = config.posture_gain;
+  wishes.q_posture = config.q_posture;
+  wishes.joint_limit_gain = config.joint_limit_gain;
+  wishes.manipulability_gain = config.manipulability_gain;
+  wishes.speed_max = config.free_speed;
+  return NullSpaceWish(wishes, arm, q, J);
+}
+
+}  // namespace fovea::servo
