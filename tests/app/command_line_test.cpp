@@ -246,9 +246,9 @@ TEST_F(CommandLineTest, HelpShowsExamplesAndExitCodes) {
 
 TEST_F(CommandLineTest, ListAndKeysSayWhatThereIs) {
   const std::string list = Sim({"list"}).out;
-  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 6);
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 14);
   EXPECT_THAT(list, AllOf(HasSubstr("ball "), HasSubstr("ball-moving "), HasSubstr("ball-dark "),
-                          HasSubstr("ball-clutter ")));
+                          HasSubstr("ball-clutter "), HasSubstr("circle "), HasSubstr("theory/open-loop ")));
   EXPECT_THAT(Sim({"keys"}).out,
               HasSubstr("servo.lambda = 2\n    gain: the error decays like exp(-lambda t); "
                         "a number: 0 to 20 1/s\n"));

@@ -53,7 +53,9 @@ INSTANTIATE_TEST_SUITE_P(
              "features see hal, model and Eigen"},
         Rule{"firmware/include/fovea/servo", "(fovea/(hal|model|features|servo)/|Eigen/).*",
              "the servo sees hal, model, features and Eigen"},
-        Rule{"firmware/servo", "(fovea/(hal|model|features|servo)/|Eigen/).*|bracketed_root[.]hpp",
+        Rule{"firmware/servo",
+             "(fovea/(hal|model|features|servo)/|Eigen/).*|(bracketed_root|pose_motion|(laws/"
+             ")?motion_laws)[.]hpp",
              "the servo sees hal, model, features and Eigen"},
         Rule{"firmware/vision", "(fovea/(hal|model|features|vision)/|Eigen/|opencv2/).*",
              "vision sees hal, features and OpenCV"},

@@ -10,6 +10,7 @@
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/record_ring.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
+#include "fovea/model/rotation.hpp"
 #include "fovea/servo/servo_loop.hpp"
 #include "support/panda.hpp"
 
@@ -101,6 +102,67 @@ TEST_F(TickHeapTest, NoHeapCallInAnyMode) {
   ASSERT_TRUE(loop.Run(5 * hal::kNsPerSecond).ok());
   ring_.Drain([&](const hal::TickRecord& record) { modes_seen |= 1 << static_cast<int>(record.mode); });
   EXPECT_EQ(modes_seen, 0b11111) << "boot, hold, track, coast and fault were all run through";
+  EXPECT_EQ(meter_.durations().count(), 5000U);
+  EXPECT_EQ(meter_.heap_calls(), 0U);
+}
+
+// Goals of both kinds, and setpoints, a hundred of them in turn, each near where the arm stands.
+class BusySource final : public servo::MotionSource {
+ public:
+  servo::MotionCommand At(std::int64_t now_ns) noexcept override {
+    const std::int64_t ms = now_ns / hal::kNsPerMs;
+    servo::MotionCommand command;
+    if (ms < 100 || ms % 400 > 350) {
+      return command;  // now and then nothing: the arm comes to Hold
+    }
+    command.kind = ms % 800 < 400 ? servo::MotionKind::kJointGoal : servo::MotionKind::kPoseGoal;
+    command.q = test::Panda().model.q_ready;
+    command.q[static_cast<std::size_t>(ms / 50 % 7)] += 0.005;
+    model::ArmPoses poses;
+    model::ComputePoses(test::Panda().model, model::ToVector(command.q, 7), poses);
+    command.p_BE = {poses.X_BE.p.x(), poses.X_BE.p.y(), poses.X_BE.p.z()};
+    const model::Vec3 phi = model::RotationVector(poses.X_BE.R);
+    const double half = 0.5 * phi.norm();
+    command.quaternion_BE = {std::cos(half), 0.0, 0.0, 0.0};
+    for (std::size_t i = 0; i < 3; ++i) {
+      command.quaternion_BE[i + 1] = std::sin(half) * phi[static_cast<Eigen::Index>(i)] / phi.norm();
+    }
+    return command;
+  }
+};
+
+TEST_F(TickHeapTest, NoHeapCallInCommandedMotionsAndWithAnyLaw) {
+  servo::ServoConfig config = test::PandaConfig();
+  config.auto_track = false;
+  config.guard.obstacles.num_planes = 1;
+  config.guard.obstacles.num_boxes = 1;
+  config.guard.obstacles.boxes[0] = {model::Vec3(0.9, 0.9, 0.0), model::Vec3(1.0, 1.0, 1.0)};
+  config.guard.singularity_min = 0.15;  // near, so that it is looked at in each tick
+  config.motion_law.integral = 0.5;
+  config.motion_law.friction_compensation = 1.0;
+  config.motion_law.k_p.fill(50.0);
+  config.motion_law.k_v.fill(5.0);
+  config.law.joint_limit_gain = 1.0;
+  config.law.manipulability_gain = 0.05;
+  ASSERT_TRUE(task_.Init(config).ok());
+  servo::ServoLoop* running = nullptr;
+  SteppingClock clock([&](std::int64_t now_ns) {
+    arm_.Advance();
+    const std::int64_t ms = now_ns / hal::kNsPerMs;
+    if (ms % 300 == 0) {
+      running->Ask(servo::kMotionLaws[static_cast<std::size_t>(ms / 300 % servo::kNumMotionLaws)].kind);
+    }
+  });
+  BusySource source;
+  servo::ServoLoop loop(task_, arm_, clock, mailbox_, ring_, meter_);
+  loop.UseMotion(source);
+  running = &loop;
+  ASSERT_TRUE(loop.Run(5 * hal::kNsPerSecond).ok());
+  int modes_seen = 0;
+  ring_.Drain([&](const hal::TickRecord& record) { modes_seen |= 1 << static_cast<int>(record.mode); });
+  EXPECT_EQ(modes_seen, (1 << static_cast<int>(hal::Mode::kBoot)) |
+                            (1 << static_cast<int>(hal::Mode::kHold)) |
+                            (1 << static_cast<int>(hal::Mode::kMove)));
   EXPECT_EQ(meter_.durations().count(), 5000U);
   EXPECT_EQ(meter_.heap_calls(), 0U);
 }

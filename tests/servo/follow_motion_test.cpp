@@ -251,6 +251,97 @@ TEST_F(FollowMotionTest, AWayOutOfTheWorkspaceIsStopped) {
   EXPECT_LT(arm_->dq().norm(), 1e-3);
 }
 
+// A hand that is sent through a plane, and into a box, stops before them.
+TEST_F(FollowMotionTest, ObstaclesAreNotEntered) {
+  ServoConfig config = test::PandaConfig();
+  const model::Vec3 p = PoseOf(test::Ready()).p;
+  Obstacles plane;
+  plane.num_planes = 1;
+  plane.planes[0] = {model::Vec3::UnitZ(), p.z() - 0.10};
+  Obstacles box;
+  box.num_boxes = 1;
+  box.boxes[0] = {p + model::Vec3(-0.3, -0.3, -0.4), p + model::Vec3(0.3, 0.3, -0.10)};
+  for (const Obstacles& obstacles : {plane, box}) {
+    config.guard.obstacles = obstacles;
+    Start(config, test::Ready());
+    hal::LimitSet limits = 0;
+    double lowest = p.z();
+    Tick(Pose(MotionKind::kPoseGoal, p - model::Vec3(0.0, 0.0, 0.25),
+              model::RotationVector(PoseOf(arm_->q()).R)));
+    int ticks = 0;
+    while (record().mode == Mode::kMove) {
+      limits |= Tick({}).limits_active;
+      lowest = std::min(lowest, PoseOf(arm_->q()).p.z());
+      ++ticks;
+    }
+    for (int i = 0; i < 500; ++i) {
+      Tick({});
+      lowest = std::min(lowest, PoseOf(arm_->q()).p.z());
+    }
+    std::cout << "stops " << 1e3 * (lowest - p.z() + 0.10) << " mm before it, given up after " << ticks
+              << " ms\n";
+    EXPECT_GT(lowest, p.z() - 0.10 - 1e-3);
+    EXPECT_LT(lowest, p.z() - 0.08) << "it went there";
+    EXPECT_NE(limits & hal::Bit(hal::Limit::kObstacle), 0U);
+    EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused);
+    EXPECT_EQ(record().fault, hal::Fault::kNone);
+    EXPECT_LE(most_, 1.0);
+  }
+}
+
+TEST_F(FollowMotionTest, TheHandKeepsItsSpeed) {
+  ServoConfig config = test::PandaConfig();
+  config.guard.cartesian_speed = 0.15;
+  Start(config, test::Ready());
+  const model::Vec3 p = PoseOf(test::Ready()).p;
+  const model::Vec3 phi = model::RotationVector(PoseOf(arm_->q()).R);
+  hal::LimitSet limits = 0;
+  double fastest = 0.0;
+  model::Vec3 before = PoseOf(Reference()).p;
+  for (int tick = 0; tick < 1500; ++tick) {
+    const double t = 1e-3 * tick;
+    const double y = 0.15 * (1.0 - std::cos(2.0 * t));  // 0.3 m/s at its fastest
+    limits |= Tick(Pose(MotionKind::kPoseSetpoint, p + model::Vec3(0.0, y, 0.0), phi,
+                        {0.0, 0.30 * std::sin(2.0 * t), 0.0}))
+                  .limits_active;
+    fastest = std::max(fastest, (PoseOf(Reference()).p - before).norm() / 1e-3);
+    before = PoseOf(Reference()).p;
+  }
+  std::cout << "fastest " << fastest << " m/s of 0.15 m/s, " << hal::Name(record().hold_reason) << "\n";
+  EXPECT_LT(fastest, 0.15 * 1.01);
+  EXPECT_NE(limits & hal::Bit(hal::Limit::kCartesianSpeed), 0U);
+  EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused) << "it cannot keep up, and says so";
+}
+
+// Stretched out towards the boundary, with a workspace that would allow it: the elbow does not come straight.
+TEST_F(FollowMotionTest, ASingularPostureIsNotEntered) {
+  ServoConfig config = test::PandaConfig();
+  config.guard.workspace_radius = 2.0;
+  config.guard.singularity_min = 0.06;
+  config.move.pose_error_max = 1.0;  // it shall try for long
+  Start(config, test::Ready());
+  const model::Pose start = PoseOf(test::Ready());
+  hal::LimitSet limits = 0;
+  double least = HUGE_VAL;
+  Tick(Pose(MotionKind::kPoseGoal, start.p + model::Vec3(0.5, 0.0, 0.1), model::RotationVector(start.R)));
+  for (int i = 0; i < 4000; ++i) {
+    limits |= Tick({}).limits_active;
+    model::ArmPoses poses;
+    model::ComputePoses(config_.arm, arm_->q(), poses);
+    model::Mat6N J;
+    model::ComputeJacobian(config_.arm, poses, model::Pose{}, J);
+    Singularity singularity;
+    ComputeSingularity(J, SingularityConfig{}.length, singularity);
+    least = std::min(least, singularity.sigma);
+  }
+  std::cout << "smallest singular value " << least << ", allowed 0.06\n";
+  EXPECT_GT(least, 0.06 - 0.003);
+  EXPECT_LT(least, 0.09) << "it came near";
+  EXPECT_NE(limits & hal::Bit(hal::Limit::kSingularity), 0U);
+  EXPECT_LE(most_, 1.0);
+  EXPECT_EQ(record().fault, hal::Fault::kNone);
+}
+
 TEST_F(FollowMotionTest, AHoldRequestStopsAMotionForGood) {
   model::VecN goal = test::Ready();
   goal[0] += 1.0;

@@ -213,5 +213,21 @@ TEST_F(FoveaProgramTest, HelpShowsExamples) {
   EXPECT_EQ(Fovea({}).exit_code, 2);
 }
 
+// The table in the repository is what the program says; renew it with `fovea guards`.
+TEST_F(FoveaProgramTest, TheTableOfGuardsIsUpToDateAndWhole) {
+  std::ifstream stream(FOVEA_SOURCE_ROOT "/firmware/GUARDS.md");
+  const std::string table{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_EQ(Fovea({"guards"}).out, table);
+  EXPECT_EQ(table.find("|  |"), std::string::npos) << "an empty cell";
+  for (int i = 0; i < hal::kNumLimits; ++i) {
+    EXPECT_NE(table.find(std::string("| `") + hal::Name(static_cast<hal::Limit>(i)) + "` |"),
+              std::string::npos);
+  }
+  for (int i = 1; i < hal::kNumFaults; ++i) {
+    EXPECT_NE(table.find(std::string("| `") + hal::Name(static_cast<hal::Fault>(i)) + "` |"),
+              std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace fovea

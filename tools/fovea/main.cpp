@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "fovea/build_info.hpp"
+#include "fovea/config/guard_table.hpp"
 #include "fovea/config/program.hpp"
 #include "fovea/config/share_folder.hpp"
 #include "fovea/report/report.hpp"
@@ -76,7 +77,14 @@ int main(int argc, char** argv) {
 
   GainsArguments gains_arguments;
   const CLI::App* gains = AddGains(app, gains_arguments);
+  const CLI::App* guards =
+      app.add_subcommand("guards", "what the servo watches, as the table in firmware/GUARDS.md");
 
-  return config::RunProgram("fovea", app, argc, argv,
-                            [&] { return gains->parsed() ? Gains(gains_arguments) : Report(arguments); });
+  return config::RunProgram("fovea", app, argc, argv, [&] {
+    if (guards->parsed()) {
+      fmt::print("{}", config::GuardTableAsMarkdown());
+      return config::kDone;
+    }
+    return gains->parsed() ? Gains(gains_arguments) : Report(arguments);
+  });
 }
