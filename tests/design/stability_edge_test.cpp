@@ -149,6 +149,17 @@ TEST(StabilityEdgeTest, DelayEdgeIsTheFirstOfSeveral) {
   }
 }
 
+// A stiff plant that its regulator softens: delays from 6.0 to 6.1 periods drive it, a little less or more
+// does not.
+TEST(StabilityEdgeTest, FindsAStretchOfLessThanTwoPercent) {
+  const SampledLoop loop{{12.1043, 665.625, 3004.8}, {-2963.54, -646.537}, 22.7676, 0.0};
+  const double edge = DelayEdge(loop).at.value();
+  EXPECT_NEAR(edge * loop.rate_hz, 5.989, 0.001);
+  EXPECT_EQ(FateOf(WithDelay(loop, 0.98 * edge)), Fate::kDecays);
+  EXPECT_EQ(FateOf(WithDelay(loop, 1.005 * edge)), Fate::kGrows);
+  EXPECT_EQ(FateOf(WithDelay(loop, 1.03 * edge)), Fate::kDecays) << "or this test proves nothing";
+}
+
 TEST(StabilityEdgeTest, NothingBeforeTheGainEdgeIsUnstable) {
   std::mt19937 random(42);
   for (int i = 0; i < 30; ++i) {
