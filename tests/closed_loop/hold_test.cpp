@@ -34,8 +34,9 @@ constexpr double kAtRest = 0.005;  // [rad/s]; what encoder noise leaves
 
 TEST(Hold, ABallOutOfReachIsHeldBeforeWithReason) {
   RestWatch watch;
-  // Seen from the start, but 1.1 m away from it the arm would have to be behind itself.
-  const sim::Summary s = RunShipped("ball", {"servo.goal=[0, 0, 1.1]"}, watch.Options(8.0));
+  // Seen from the start, but 1.15 m away from it the arm would have to be outside its narrow workspace.
+  const sim::Summary s =
+      RunShipped("ball", {"servo.goal=[0, 0, 1.15]", "safety.workspace_radius=0.79"}, watch.Options(8.0));
   PrintResidual(s);
   EXPECT_FALSE(s.converged);
   EXPECT_EQ(LastMode(s), "hold");
@@ -48,7 +49,7 @@ TEST(Hold, ABallOutOfReachIsHeldBeforeWithReason) {
 TEST(Hold, ABallBeyondTheWorkspaceIsHeldBeforeAtTheBarrier) {
   RestWatch watch;
   const sim::Summary s = RunShipped(
-      "ball", {"target.position=[1.2, 0.1, 0.04]", "arm.q_start=[0.1, -0.2, 0, -1.9, 0, 2.2, 0.785]"},
+      "ball", {"target.position=[1.4, 0.1, 0.04]", "arm.q_start=[0.1, -0.2, 0, -1.9, 0, 2.2, 0.785]"},
       watch.Options(8.0));
   PrintResidual(s);
   EXPECT_FALSE(s.converged);

@@ -139,6 +139,8 @@ TEST_F(TickHeapTest, NoHeapCallInCommandedMotionsAndWithAnyLaw) {
   config.guard.obstacles.boxes[0] = {model::Vec3(0.9, 0.9, 0.0), model::Vec3(1.0, 1.0, 1.0)};
   config.guard.singularity_min = 0.15;  // near, so that it is looked at in each tick
   config.motion_law.integral = 0.5;
+  config.safety.contact_torque_fraction = 1e3;  // the arm stands whatever it is told
+  config.safety.following_error = 1.0;
   config.motion_law.friction_compensation = 1.0;
   config.motion_law.k_p.fill(50.0);
   config.motion_law.k_v.fill(5.0);

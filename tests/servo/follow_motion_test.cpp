@@ -254,6 +254,7 @@ TEST_F(FollowMotionTest, AWayOutOfTheWorkspaceIsStopped) {
 // A hand that is sent through a plane, and into a box, stops before them.
 TEST_F(FollowMotionTest, ObstaclesAreNotEntered) {
   ServoConfig config = test::PandaConfig();
+  config.move.pose_error_max = 0.2;  // it shall try for long
   const model::Vec3 p = PoseOf(test::Ready()).p;
   Obstacles plane;
   plane.num_planes = 1;
@@ -281,7 +282,7 @@ TEST_F(FollowMotionTest, ObstaclesAreNotEntered) {
     std::cout << "stops " << 1e3 * (lowest - p.z() + 0.10) << " mm before it, given up after " << ticks
               << " ms\n";
     EXPECT_GT(lowest, p.z() - 0.10 - 1e-3);
-    EXPECT_LT(lowest, p.z() - 0.08) << "it went there";
+    EXPECT_LT(lowest, p.z() - 0.09) << "it went there";
     EXPECT_NE(limits & hal::Bit(hal::Limit::kObstacle), 0U);
     EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused);
     EXPECT_EQ(record().fault, hal::Fault::kNone);
@@ -335,7 +336,7 @@ TEST_F(FollowMotionTest, ASingularPostureIsNotEntered) {
     least = std::min(least, singularity.sigma);
   }
   std::cout << "smallest singular value " << least << ", allowed 0.06\n";
-  EXPECT_GT(least, 0.06 - 0.003);
+  EXPECT_GT(least, 0.06 - 0.005);  // the jerk limit lags behind
   EXPECT_LT(least, 0.09) << "it came near";
   EXPECT_NE(limits & hal::Bit(hal::Limit::kSingularity), 0U);
   EXPECT_LE(most_, 1.0);

@@ -30,7 +30,7 @@ struct LawConfig {
   double posture_gain = 0.6;           // pull of the posture in the free directions [1/s]
   double joint_limit_gain = 0.0;       // and away from the ends of the joints' ranges [1/s]
   double manipulability_gain = 0.0;    // and towards more manipulability [rad^2/s]
-  double free_speed = 0.1;             // all of these together no faster [rad/s]
+  double free_speed = 0.3;             // all of these together no faster [rad/s]
   hal::JointArray q_posture{};         // that posture [rad]; the arm's ready posture by default
   double unreachable_s = 1.0;          // give up when limits have kept the arm from the goal for so long [s]
   double unreachable_progress = 0.05;  // "kept from": less than this share of the wanted motion is left
