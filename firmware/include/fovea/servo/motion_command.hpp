@@ -20,10 +20,10 @@ enum class MotionKind : std::uint8_t {
 // effect in the tick that asks for it.
 struct MotionCommand {
   MotionKind kind = MotionKind::kNone;
-  hal::JointArray q{};                                    // [num_joints]
-  hal::JointArray dq{};                                   // [num_joints]
-  hal::JointArray ddq{};                                  // [num_joints]
-  std::array<double, 3> p_BE{};                           // [m]
+  hal::JointArray q{};                                      // [num_joints]
+  hal::JointArray dq{};                                     // [num_joints]
+  hal::JointArray ddq{};                                    // [num_joints]
+  std::array<double, 3> p_BE{};                             // [m]
   std::array<double, 4> quaternion_BE{1.0, 0.0, 0.0, 0.0};  // w, x, y, z; of any length but 0
   std::array<double, 6> V_BE_B{};  // twist of E in axes of B, linear first [m/s, rad/s]
 };
