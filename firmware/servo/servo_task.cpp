@@ -64,9 +64,11 @@ void ServoTask::ComputeModel() noexcept {
   model::ComputeLinearJacobian(config_.arm, state_.poses, state_.poses.X_BE.p, state_.J_E_B);
 }
 
-// While the servo drives the arm: in Boot the robot may hold it by itself.
+// While the servo drives the arm: in Boot the robot may hold it by itself, and a floating arm is there to be
+// pushed.
 void ServoTask::CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept {
-  const bool drives = state_.mode.mode != hal::Mode::kBoot && state_.mode.mode != hal::Mode::kFault;
+  const bool drives = state_.mode.mode != hal::Mode::kBoot && state_.mode.mode != hal::Mode::kFault &&
+                      state_.law_state.kind != MotionLawKind::kFloat;
   if (!drives || missed_ticks > 0 || state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0) {
     state_.contact.started = false;
     return;
@@ -125,9 +127,9 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   state_.mode_since_ns = state_.now_ns;
   if (now != hal::Mode::kMove) {
     state_.motion.Stop();
-    state_.motion.resolved.dq.resize(0);
     state_.motion.refused = false;
   }
+  ForgetMotion();
   if (before == hal::Mode::kBoot && now == hal::Mode::kHold) {
     // The reference starts where the arm stands.
     state_.reference.q = state_.q;
@@ -151,6 +153,12 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   }
 }
 
+// What the last resolution knew of the posture holds no longer once something else has moved the arm.
+void ServoTask::ForgetMotion() noexcept {
+  state_.resolved = ResolvedMotion{};
+  state_.motion.resolved = ResolvedMotion{};
+}
+
 void ServoTask::ComputeVisualLaw() noexcept {
   state_.feature_valid =
       state_.prediction.known &&
@@ -167,6 +175,7 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     state_.reference.q = state_.q;
     state_.reference.dq.setZero();
     state_.reference.ddq.setZero();
+    ForgetMotion();
     return;
   }
   if (state_.inputs.bad_ticks > 0) {

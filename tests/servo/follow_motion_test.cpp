@@ -343,6 +343,16 @@ TEST_F(FollowMotionTest, ASingularPostureIsNotEntered) {
   EXPECT_EQ(record().fault, hal::Fault::kNone);
 }
 
+// Between two motions something else may have moved the arm.
+TEST_F(FollowMotionTest, AfterAPauseTheSingularityIsLookedAtAnew) {
+  const model::Pose start = PoseOf(arm_->q());
+  Tick(Pose(MotionKind::kPoseGoal, start.p + model::Vec3(0.0, 0.05, 0.0), model::RotationVector(start.R)));
+  EXPECT_GT(task_.state().motion.resolved.watch.sigma, 0.0);
+  RunToHold();
+  EXPECT_EQ(task_.state().motion.resolved.watch.sigma, 0.0);
+  EXPECT_EQ(task_.state().motion.resolved.dq.size(), 0);
+}
+
 TEST_F(FollowMotionTest, AHoldRequestStopsAMotionForGood) {
   model::VecN goal = test::Ready();
   goal[0] += 1.0;

@@ -324,6 +324,23 @@ TEST_F(FaultTest, SomethingHoldsTheArm) {
   ExpectStopsAndStays(Fault::kContact, 150);
 }
 
+TEST_F(FaultTest, AFloatingArmMayBePushed) {
+  ServoConfig config = test::PandaConfig();
+  config.safety.contact_torque_fraction = 0.05;
+  camera_on_ = false;
+  for (const MotionLawKind law : {MotionLawKind::kFloat, MotionLawKind::kComputedTorque}) {
+    config.motion_law.kind = law;
+    Start(config);
+    Run(100);
+    ASSERT_EQ(outputs_.record.mode, Mode::kHold);
+    for (int i = 0; i < 80; ++i) {
+      arm_->SetVelocity(arm_->dq() + 0.02 * model::VecN::Unit(7, 0));  // some 10 Nm
+      Tick();
+    }
+    EXPECT_STREQ(hal::Name(outputs_.record.fault), law == MotionLawKind::kFloat ? "none" : "contact");
+  }
+}
+
 // Without that observer it is seen later, by its error.
 TEST_F(FaultTest, ArmDoesNotFollow) {
   ServoConfig config = test::PandaConfig();

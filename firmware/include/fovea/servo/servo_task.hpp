@@ -112,6 +112,7 @@ class ServoTask {
   void ComputeVisualLaw() noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
   void CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept;
+  void ForgetMotion() noexcept;
   void CheckFollowing() noexcept;
   void NoteBlocked() noexcept;
   void ComputeTorque(const ServoInputs& inputs) noexcept;
