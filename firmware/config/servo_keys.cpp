@@ -54,6 +54,7 @@ void AddLawKeys(ServoSettings& settings, KeyTable& keys) {
 void AddMotionLawKeys(ServoSettings& settings, KeyTable& keys) {
   servo::MotionLawConfig& c = settings.config.motion_law;
   std::vector<std::string> laws;
+  laws.reserve(servo::kMotionLaws.size());
   for (const servo::MotionLawEntry& law : servo::kMotionLaws) {
     laws.emplace_back(law.name);
   }
