@@ -1,10 +1,12 @@
 #include "fovea/vision/vision_task.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <opencv2/core.hpp>
 
 namespace fovea::vision {
 
-VisionTask::VisionTask(const BallDetectorConfig& config) : intrinsics_(config.intrinsics), detector_(config) {
+VisionTask::VisionTask(const DetectorConfig& config) : intrinsics_(config.intrinsics), detector_(config) {
   // One thread, so that a run repeats to the bit and other threads keep their cores.
   cv::setNumThreads(1);
 }
@@ -22,16 +24,23 @@ hal::Status VisionTask::Process(const hal::Frame& frame, hal::FeatureMeasurement
   measurement = hal::FeatureMeasurement{};
   measurement.stamp_ns = frame.stamp_ns;
   measurement.sequence = frame.sequence;
-  measurement.kind = hal::FeatureKind::kSphere;
+  measurement.kind = last_.kind;
   measurement.found = last_.found;
   measurement.confidence = last_.confidence;
   if (last_.found) {
-    measurement.dim = 3;
-    for (int row = 0; row < 3; ++row) {
-      measurement.s[static_cast<std::size_t>(row)] = last_.s[row];
-      for (int col = 0; col < 3; ++col) {
+    measurement.dim = static_cast<std::int32_t>(last_.s.size());
+    std::copy(last_.s.begin(), last_.s.end(), measurement.s.begin());
+    for (Eigen::Index row = 0; row < last_.cov_s.rows(); ++row) {
+      for (Eigen::Index col = 0; col < last_.cov_s.cols(); ++col) {
         measurement.cov_s[static_cast<std::size_t>(row * hal::kMaxFeatureDim + col)] = last_.cov_s(row, col);
       }
+    }
+    measurement.num_poses = last_.pose_count;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(last_.pose_count); ++i) {
+      const Detection::Pose& pose = last_.pose[i];
+      const Eigen::Quaterniond q(pose.X_CO.R);
+      measurement.poses[i] = {
+          {pose.X_CO.p.x(), pose.X_CO.p.y(), pose.X_CO.p.z()}, {q.w(), q.x(), q.y(), q.z()}, pose.first};
     }
   }
   return hal::Status::Ok();

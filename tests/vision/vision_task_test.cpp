@@ -13,11 +13,11 @@
 namespace fovea::vision {
 namespace {
 
-BallDetectorConfig Config() {
+DetectorConfig Config() {
   const test::BallPicture p;
-  BallDetectorConfig config;
+  DetectorConfig config;
   config.intrinsics = {p.width_px, p.height_px, p.f_px, p.f_px, p.c_u_px, p.c_v_px};
-  config.radius = p.radius;
+  config.size = 2.0 * p.radius;
   return config;
 }
 
@@ -25,11 +25,11 @@ cv::Mat Ground() { return cv::Mat(480, 640, CV_8UC3, cv::Scalar(60, 52, 30)); }
 const cv::Scalar kRed(15, 18, 190);
 
 bool Finds(const cv::Mat& image) {
-  BallDetector detector(Config());
+  TargetDetector detector(Config());
   return detector.Detect(image).found;
 }
 
-TEST(BallDetectorTest, FindsNothingWhereNothingIs) {
+TEST(TargetDetectorTest, FindsNothingWhereNothingIs) {
   EXPECT_FALSE(Finds(Ground()));
   EXPECT_FALSE(Finds(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(0)))) << "black";
   EXPECT_FALSE(Finds(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(255)))) << "saturated";
@@ -40,7 +40,7 @@ TEST(BallDetectorTest, FindsNothingWhereNothingIs) {
   EXPECT_FALSE(Finds(noise));
 }
 
-TEST(BallDetectorTest, RefusesOtherShapesOtherColoursOtherSizes) {
+TEST(TargetDetectorTest, RefusesOtherShapesOtherColoursOtherSizes) {
   cv::Mat square = Ground();
   cv::rectangle(square, {250, 180}, {350, 280}, kRed, cv::FILLED, cv::LINE_AA);
   EXPECT_FALSE(Finds(square));
@@ -64,40 +64,40 @@ TEST(BallDetectorTest, RefusesOtherShapesOtherColoursOtherSizes) {
   EXPECT_FALSE(Finds(half));
 }
 
-TEST(BallDetectorTest, FindsThePartlyHiddenAndThePartlyOutOfView) {
+TEST(TargetDetectorTest, FindsThePartlyHiddenAndThePartlyOutOfView) {
   test::BallPicture picture;
   picture.noise = 3.0;
   cv::Mat image = test::RayCast(picture);
   cv::rectangle(image, {330, 100}, {420, 230}, {90, 140, 150}, cv::FILLED);  // over the upper right quarter
-  BallDetector detector(Config());
-  const BallDetection d = detector.Detect(image);
+  TargetDetector detector(Config());
+  const Detection d = detector.Detect(image);
   ASSERT_TRUE(d.found);
   EXPECT_LT(d.confidence, 0.9) << "and says that it saw less";
   EXPECT_NEAR(d.s.x(), 0.0, 0.02);
   EXPECT_NEAR(d.s.z(), 10.0, 0.05);
 
   picture.x = -0.215;  // a third of it is outside the left border
-  BallDetector other(Config());
-  const BallDetection edge = other.Detect(test::RayCast(picture));
+  TargetDetector other(Config());
+  const Detection edge = other.Detect(test::RayCast(picture));
   ASSERT_TRUE(edge.found);
   EXPECT_NEAR(edge.s.x(), picture.x / picture.radius, 0.02);
 }
 
-TEST(BallDetectorTest, TracksWithoutSearchingAndFindsAgainAfterAJump) {
-  BallDetector detector(Config());
+TEST(TargetDetectorTest, TracksWithoutSearchingAndFindsAgainAfterAJump) {
+  TargetDetector detector(Config());
   test::BallPicture picture;
   picture.grid = 4;
   picture.noise = 3.0;
   for (int i = 0; i < 6; ++i) {
     picture.x = -0.05 + 0.008 * i;
     picture.seed = static_cast<unsigned>(i + 1);
-    const BallDetection d = detector.Detect(test::RayCast(picture));
+    const Detection d = detector.Detect(test::RayCast(picture));
     ASSERT_TRUE(d.found);
     EXPECT_EQ(d.tracked, i > 0);
     EXPECT_NEAR(d.s.x(), picture.x / picture.radius, 0.01);
   }
   picture.x = 0.12;
-  const BallDetection jumped = detector.Detect(test::RayCast(picture));
+  const Detection jumped = detector.Detect(test::RayCast(picture));
   ASSERT_TRUE(jumped.found);
   EXPECT_FALSE(jumped.tracked);
   EXPECT_FALSE(detector.Detect(Ground()).found);
@@ -151,8 +151,8 @@ TEST_F(VisionTaskTest, TakesRowsWithGapsAndGrayFrames) {
 
   cv::Mat gray;
   cv::cvtColor(image, gray, cv::COLOR_BGR2GRAY);
-  BallDetectorConfig config = Config();
-  config.finder.by = FindBy::kGray;
+  DetectorConfig config = Config();
+  config.by = FindBy::kGray;
   VisionTask gray_task(config);
   ASSERT_TRUE(gray_task.Process(FrameOf(gray), m).ok());
   EXPECT_TRUE(m.found);
@@ -184,7 +184,7 @@ TEST_F(VisionTaskTest, RunsUntilTheCameraEnds) {
   int observed = 0;
   const std::atomic<bool> stop{false};
   EXPECT_EQ(RunVision(camera, task_, sink, stop,
-                      [&](const hal::Frame&, const BallDetection& d) {
+                      [&](const hal::Frame&, const Detection& d) {
                         EXPECT_TRUE(d.found);
                         ++observed;
                       })

@@ -1,0 +1,28 @@
+// The pre-flight: what of computer and robot is as it should be before an arm moves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hw_config.hpp"
+
+namespace fovea::hw {
+
+enum class Verdict : std::uint8_t { kPass, kWarn, kFail };
+
+struct CheckRow {
+  std::string what;
+  Verdict verdict = Verdict::kPass;
+  std::string found;
+  std::string advice;  // what to do; empty when there is nothing
+};
+
+// Looks at the computer, then at the robot, which is not moved. NetworkError never: a robot that is not there
+// is a row.
+std::vector<CheckRow> Check(const HwConfig& config);
+
+[[nodiscard]] bool AnyFails(const std::vector<CheckRow>& rows);
+std::string ToTable(const std::vector<CheckRow>& rows);
+std::string ToJson(const std::vector<CheckRow>& rows);
+
+}  // namespace fovea::hw

@@ -1,0 +1,86 @@
+// What a configuration of fovea-hw can say.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "fovea/config/camera_keys.hpp"
+#include "fovea/config/load_keys.hpp"
+#include "fovea/config/servo_keys.hpp"
+#include "fovea/config/vision_keys.hpp"
+#include "fovea/franka/franka_arm.hpp"
+#include "fovea/robots/robot.hpp"
+
+namespace fovea::hw {
+
+struct HwConfig {
+  std::string name;
+
+  struct {
+    std::string model = "panda";
+    config::LoadSettings load;
+  } arm;
+
+  struct {
+    std::string host = "172.16.0.2";  // as the maker ships it
+    int port = franka::kFciPort;
+    bool set_load = true;
+    std::string time = "computer";
+    double state_timeout_ms = 2.0;
+    double torque_step = 1.0;  // [Nm]
+    double speed_scale = 1.0;
+  } robot;
+
+  struct {
+    double dead_man_s = 0.0;
+  } input;
+
+  struct {
+    std::string driver = "none";
+    std::string device;
+    std::string pixel_format;
+    double rate_hz = 0.0;
+    double exposure_ms = 0.0;
+    double gain = -1.0;
+    int packet_size = 0;
+    std::string stamp_at = "start";
+    double transport_ms = 0.0;
+    std::string time = "computer";
+    config::CalibrationSettings calibration;
+  } camera;
+
+  struct {
+    int priority = 80;
+    int cpu = -1;
+  } loop;
+
+  struct {
+    double seconds = 10.0;
+  } check;
+
+  config::VisionSettings vision;
+  config::TargetSettings target;
+  config::ServoSettings servo;
+
+  [[nodiscard]] bool HasCamera() const { return camera.driver != "none"; }
+};
+
+// The keys of all sections, bound to `config`, which must outlive the table.
+config::KeyTable HwKeys(HwConfig& config);
+
+// Reads a shipped configuration by name, or a .toml by path, then applies `assignments` ("key=value").
+// InputError.
+HwConfig LoadHwConfig(const std::string& name_or_path, const std::vector<std::string>& assignments);
+
+// The arm of arm.model, with its load.
+robots::Robot LoadHwRobot(const HwConfig& config);
+
+// The servo's configuration: with a camera as it is calibrated, without one for an arm that is held.
+// InputError.
+servo::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot);
+
+// What the driver of the robot is told.
+franka::FrankaConfig MakeFrankaConfig(const HwConfig& config, bool allow_motion);
+
+}  // namespace fovea::hw

@@ -1,0 +1,72 @@
+#include "hw_vision.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <exception>
+
+#include "fovea/linux_rt/realtime.hpp"
+
+namespace fovea::hw {
+
+HwVision::HwVision(const HwConfig& config, const features::TargetFeature& goal, std::int64_t start_ns,
+                   hal::FeatureSink& features)
+    : intrinsics_(config::MakeIntrinsics(config.camera.calibration)),
+      p_CO_C_star_(goal.p_CO_C_star),
+      camera_(config, start_ns),
+      task_(config::MakeVisionConfig(config.vision, intrinsics_, config.target)) {
+  thread_ = std::thread([this, &features] {
+    linux_rt::MakeThreadYielding("fovea-vision");
+    std::string failure;
+    try {
+      const hal::Status status = vision::RunVision(
+          camera_.camera(), task_, features, stop_,
+          [this](const hal::Frame& frame, const vision::Detection& detection) { Look(frame, detection); });
+      if (status.code() != hal::StatusCode::kClosed) {
+        failure = fmt::format("{} ({})", hal::ToString(status.code()), status.where());
+      }
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+    const std::lock_guard lock(mutex_);
+    failure_ = failure;
+  });
+}
+
+HwVision::~HwVision() {
+  stop_ = true;
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+}
+
+void HwVision::Look(const hal::Frame& /*frame*/, const vision::Detection& detection) {
+  const std::lock_guard lock(mutex_);
+  ++seen_.frames;
+  if (detection.found) {
+    ++seen_.frames_detected;
+    const model::Vec3 p = detection.Middle();
+    seen_.last_px = std::hypot(intrinsics_.U(p) - intrinsics_.U(p_CO_C_star_),
+                               intrinsics_.V(p) - intrinsics_.V(p_CO_C_star_));
+  }
+}
+
+SeenError HwVision::seen() const {
+  const std::lock_guard lock(mutex_);
+  return seen_;
+}
+
+std::string HwVision::failure() const {
+  const std::lock_guard lock(mutex_);
+  return failure_;
+}
+
+CameraCounters HwVision::Finish() {
+  stop_ = true;
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+  return camera_.counters();
+}
+
+}  // namespace fovea::hw

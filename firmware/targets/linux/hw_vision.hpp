@@ -1,0 +1,53 @@
+// The eye of the hardware target: camera and detector on a thread of their own, measurements to the servo.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "fovea/vision/vision_task.hpp"
+#include "hw_camera.hpp"
+
+namespace fovea::hw {
+
+// How far the target is from its goal in the picture, as the camera sees it.
+struct SeenError {
+  std::uint64_t frames = 0;
+  std::uint64_t frames_detected = 0;
+  std::optional<double> last_px;  // of the newest picture with the target in it
+};
+
+class HwVision {
+ public:
+  // Opens the camera and begins. CameraError, InputError. `features` must outlive it.
+  HwVision(const HwConfig& config, const features::TargetFeature& goal, std::int64_t start_ns,
+           hal::FeatureSink& features);
+  ~HwVision();
+
+  // From any thread.
+  [[nodiscard]] SeenError seen() const;
+  // Why there are no measurements any more; "" while the camera works, or was only told to end.
+  [[nodiscard]] std::string failure() const;
+  [[nodiscard]] std::string name() const { return camera_.name(); }
+
+  // Ends the thread; then what the driver counted.
+  CameraCounters Finish();
+
+ private:
+  void Look(const hal::Frame& frame, const vision::Detection& detection);
+
+  const vision::Intrinsics intrinsics_;
+  const model::Vec3 p_CO_C_star_;
+  HwCamera camera_;
+  vision::VisionTask task_;
+  std::atomic<bool> stop_{false};
+  mutable std::mutex mutex_;
+  SeenError seen_;
+  std::string failure_;
+  std::thread thread_;
+};
+
+}  // namespace fovea::hw

@@ -1,0 +1,93 @@
+// fovea-hw: the servo on the robot.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "check.hpp"
+#include "fovea/build_info.hpp"
+#include "fovea/config/input_error.hpp"
+#include "fovea/config/program.hpp"
+#include "hw_run.hpp"
+
+namespace {
+
+using namespace fovea;
+
+struct Arguments {
+  std::string config;
+  std::vector<std::string> assignments;
+  bool check = false;
+  bool no_motion = false;
+  bool enable = false;
+  bool track = false;
+  bool json = false;
+  double seconds = 0.0;
+};
+
+int Check(const hw::HwConfig& config, bool json) {
+  const std::vector<hw::CheckRow> rows = hw::Check(config);
+  fmt::print("{}", json ? hw::ToJson(rows) : hw::ToTable(rows));
+  return hw::AnyFails(rows) ? config::kGoalMissed : config::kDone;
+}
+
+int Run(const Arguments& arguments) {
+  const hw::HwConfig config = hw::LoadHwConfig(arguments.config, arguments.assignments);
+  if (arguments.check) {
+    return Check(config, arguments.json);
+  }
+  if (arguments.track && !config.HasCamera()) {
+    throw config::InputError("--track is not allowed: camera.driver = \"none\"");
+  }
+  const hw::HwSummary summary = hw::Run(
+      config, {!arguments.no_motion, arguments.enable || arguments.track, arguments.track, arguments.seconds},
+      [](const std::string& line) {
+        fmt::print(stderr, "{}\n", line);
+        std::fflush(stderr);
+      });
+  if (arguments.json) {
+    fmt::print("{}", hw::ToJson(summary));
+  } else {
+    if (summary.seen && summary.seen->last_px) {
+      fmt::print("{} frames, the target in {}; at last {:.2f} px off its goal\n", summary.seen->frames,
+                 summary.seen->frames_detected, *summary.seen->last_px);
+    }
+    fmt::print(
+        "{} ticks, {} overruns; {} states, {} lost; {} commands, {:.0f} % of the last 100 came; ended in "
+        "{}\n",
+        summary.loop.ticks, summary.loop.overruns, summary.robot.states, summary.robot.lost_states,
+        summary.robot.commands, 100.0 * summary.success_rate, hal::Name(summary.mode));
+  }
+  return summary.fault == hal::Fault::kNone ? config::kDone : config::kGoalMissed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Fovea on hardware: the servo with a Franka Emika Panda as its arm, and a camera in its hand."};
+  app.set_version_flag("--version", fmt::format("fovea-hw {} {}", kVersion, kGitRevision));
+  app.footer(
+      "Examples:\n"
+      "  fovea-hw panda --check\n"
+      "  fovea-hw panda --no-motion --seconds 10\n"
+      "  fovea-sim serve ball --pace lockstep & fovea-hw loopback --track --seconds 8 --json\n"
+      "On standard input, a word a line: enable, track, hold, recover, end. SIGUSR1 recovers, SIGINT ends.\n"
+      "Exit: 0 done, 1 it ended in a fault or a check failed, 2 wrong usage or input.");
+  Arguments arguments;
+  app.add_option("config", arguments.config, "a shipped configuration by name, or the path of a .toml")
+      ->required();
+  app.add_option("--set", arguments.assignments, "key=value, over the configuration's own; may be repeated")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  app.add_flag("--check", arguments.check,
+               "look at computer and robot, move nothing, and say what is to be done");
+  app.add_flag("--no-motion", arguments.no_motion, "read states, command nothing");
+  app.add_flag("--enable", arguments.enable,
+               "the arm may move from the start; else when \"enable\" is typed");
+  app.add_flag("--track", arguments.track, "and steers by the target, as if \"track\" were typed");
+  app.add_option("--seconds", arguments.seconds, "end after this time; until a signal when not given")
+      ->check(CLI::Range(0.0, 1e6));
+  app.add_flag("--json", arguments.json, "print the summary as JSON");
+  return config::RunProgram("fovea-hw", app, argc, argv, [&] { return Run(arguments); });
+}

@@ -1,0 +1,97 @@
+// Once warm, a detector takes nothing from the heap: every malloc of the process is counted, those inside
+// OpenCV too.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <iostream>
+#include <vector>
+
+#include "fovea/linux_rt/heap_counter.hpp"
+#include "fovea/vision/target_detector.hpp"
+#include "tools/bench/scenes.hpp"
+
+namespace fovea::vision {
+namespace {
+
+using bench::TargetKind;
+
+template <class Function>
+std::uint64_t HeapCallsOf(Function function) {
+  const std::uint64_t before = linux_rt::CountedHeapCalls();
+  linux_rt::EnterCountedRegion();
+  function();
+  linux_rt::LeaveCountedRegion();
+  return linux_rt::CountedHeapCalls() - before;
+}
+
+DetectorConfig ConfigOf(TargetKind kind, FindBy by) {
+  const bench::PictureCamera camera;
+  DetectorConfig config;
+  config.kind = kind == TargetKind::kSphere ? hal::FeatureKind::kSphere : hal::FeatureKind::kCircle;
+  config.by = by;
+  config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
+                       camera.f_px,     camera.c_u_px,    camera.c_v_px};
+  config.distance_min = 0.10;
+  config.distance_max = 2.2;
+  return config;
+}
+
+cv::Mat PictureOf(const char* name, TargetKind kind, bool with_target) {
+  for (const bench::SceneClass& scene_class : bench::SceneClasses()) {
+    if (scene_class.name == name) {
+      return Draw(MakeScene(scene_class, kind, with_target, 4));
+    }
+  }
+  ADD_FAILURE() << "no class " << name;
+  return {};
+}
+
+class DetectorHeapTest : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifdef FOVEA_SANITIZED
+    GTEST_SKIP() << "a sanitizer brings a malloc of its own";
+#endif
+    ASSERT_TRUE(linux_rt::HeapCounterActive())
+        << "the interposer is not linked: a count of 0 would mean nothing";
+    cv::setNumThreads(1);
+  }
+
+  // Heap calls of: searched and found, found again where it was, lost, found anew. The second time round.
+  static std::uint64_t CallsOf(TargetKind kind, FindBy by) {
+    const char* scene = by == FindBy::kColour ? "clutter" : "noise-15";
+    const cv::Mat with = PictureOf(scene, kind, true);
+    const cv::Mat without = PictureOf(scene, kind, false);
+    TargetDetector detector(ConfigOf(kind, by));
+    std::uint64_t calls = 0;
+    for (int round = 0; round < 2; ++round) {
+      calls = HeapCallsOf([&] {
+        EXPECT_TRUE(detector.Detect(with).found);
+        EXPECT_TRUE(detector.Detect(with).tracked);
+        EXPECT_FALSE(detector.Detect(without).found);
+        EXPECT_TRUE(detector.Detect(with).found);
+      });
+      detector.Forget();
+    }
+    std::cout << calls << " heap calls in 4 images\n";
+    return calls;
+  }
+};
+
+TEST_F(DetectorHeapTest, SphereByBrightness) { EXPECT_EQ(CallsOf(TargetKind::kSphere, FindBy::kGray), 0U); }
+TEST_F(DetectorHeapTest, SphereByColour) { EXPECT_EQ(CallsOf(TargetKind::kSphere, FindBy::kColour), 0U); }
+TEST_F(DetectorHeapTest, DiscByBrightness) { EXPECT_EQ(CallsOf(TargetKind::kCircle, FindBy::kGray), 0U); }
+TEST_F(DetectorHeapTest, DiscByColour) { EXPECT_EQ(CallsOf(TargetKind::kCircle, FindBy::kColour), 0U); }
+
+// The test's own proof.
+TEST_F(DetectorHeapTest, AVectorIsSeen) {
+  EXPECT_EQ(HeapCallsOf([] {
+              std::vector<EdgePoint> points(7);
+              volatile const float* kept = &points[3].gu;
+              static_cast<void>(*kept);
+            }),
+            2U);
+}
+
+}  // namespace
+}  // namespace fovea::vision

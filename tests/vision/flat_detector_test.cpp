@@ -1,0 +1,157 @@
+// Disc, square and triangle on ray-cast pictures: poses against the truth and against their own covariance.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "fovea/model/rotation.hpp"
+#include "fovea/vision/outline.hpp"
+#include "fovea/vision/target_detector.hpp"
+#include "tools/bench/picture.hpp"
+
+namespace fovea::vision {
+namespace {
+
+using model::Mat3;
+using model::Vec3;
+
+DetectorConfig ConfigOf(hal::FeatureKind kind) {
+  const bench::PictureCamera camera;
+  DetectorConfig config;
+  config.kind = kind;
+  config.by = FindBy::kGray;
+  config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
+                       camera.f_px,     camera.c_u_px,    camera.c_v_px};
+  return config;
+}
+
+bench::PictureScene SceneOf(const DetectorConfig& config, const model::Pose& X_CO, double noise,
+                            unsigned seed) {
+  bench::PictureScene scene;
+  scene.noise = noise;
+  scene.seed = seed;
+  bench::Body body;
+  body.p = X_CO.p;
+  body.R = X_CO.R;
+  if (config.kind == hal::FeatureKind::kCircle) {
+    body.shape = bench::Shape::kDisc;
+    body.radius = 0.5 * config.size;
+  } else {
+    body.shape = bench::Shape::kPolygon;
+    body.corners = CornersOf(config);
+  }
+  scene.bodies.push_back(body);
+  return scene;
+}
+
+struct Errors {
+  int found = 0;
+  int right = 0;  // of the right branch
+  double mm2 = 0.0;
+  double deg2 = 0.0;
+  double chi2 = 0.0;  // over 6
+};
+
+// Tilted by up to `most_tilt` [rad], in a first image: nothing is known of the pose before.
+Errors MeasurePoses(hal::FeatureKind kind, double most_tilt, double most_turn, int count) {
+  const DetectorConfig config = ConfigOf(kind);
+  std::mt19937 engine(5);
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(engine);
+  };
+  Errors errors;
+  for (int i = 0; i < count; ++i) {
+    const double about = uniform(0.0, 6.28);
+    model::Pose X_CO;
+    X_CO.R = model::RotationOf(uniform(0.0, most_tilt) * Vec3(std::cos(about), std::sin(about), 0.0)) *
+             model::RotationOf(Vec3(0.0, 0.0, uniform(-most_turn, most_turn)));
+    X_CO.p.z() = uniform(0.25, 0.5);
+    X_CO.p.x() = X_CO.p.z() * uniform(-0.2, 0.2);
+    X_CO.p.y() = X_CO.p.z() * uniform(-0.12, 0.12);
+    TargetDetector detector(config);
+    const Detection d =
+        detector.Detect(bench::Draw(SceneOf(config, X_CO, 3.0, static_cast<unsigned>(i + 1))));
+    if (!d.found) {
+      continue;
+    }
+    ++errors.found;
+    model::Vec6 e;
+    e.head<3>() = d.pose[0].X_CO.p - X_CO.p;
+    e.tail<3>() = model::RotationVector(d.pose[0].X_CO.R * X_CO.R.transpose());
+    const double deg = e.tail<3>().norm() * 57.29578;
+    if (deg > 2.0) {
+      continue;
+    }
+    ++errors.right;
+    errors.mm2 += 1e6 * e.head<3>().squaredNorm();
+    errors.deg2 += deg * deg;
+    errors.chi2 += e.dot(d.cov_pose.inverse() * e) / 6.0;
+  }
+  const double n = std::max(errors.right, 1);
+  errors.mm2 /= n;
+  errors.deg2 /= n;
+  errors.chi2 /= n;
+  std::cout << "found " << errors.found << ", right branch " << errors.right << " of " << count << "; "
+            << std::sqrt(errors.mm2) << " mm, " << std::sqrt(errors.deg2) << " deg rms, chi2/6 "
+            << errors.chi2 << "\n";
+  return errors;
+}
+
+TEST(FlatDetectorTest, SquarePoses) {
+  const Errors e = MeasurePoses(hal::FeatureKind::kSquare, 0.6, 0.7, 30);
+  EXPECT_EQ(e.found, 30);
+  EXPECT_EQ(e.right, 30);
+  EXPECT_LT(std::sqrt(e.mm2), 0.05);
+  EXPECT_LT(std::sqrt(e.deg2), 0.08);
+  EXPECT_LT(e.chi2, 1.0);
+}
+
+TEST(FlatDetectorTest, TrianglePoses) {
+  const Errors e = MeasurePoses(hal::FeatureKind::kTriangle, 0.25, 3.0, 30);
+  EXPECT_EQ(e.found, 30);
+  EXPECT_GE(e.right, 20) << "without a last pose, three points leave a choice";
+  EXPECT_LT(std::sqrt(e.mm2), 0.5);
+  EXPECT_LT(e.chi2, 3.0);
+}
+
+TEST(FlatDetectorTest, ATiltedDiscsMiddleIsNotItsEllipses) {
+  const DetectorConfig config = ConfigOf(hal::FeatureKind::kCircle);
+  double worst = 0.0;
+  double worst_depth = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    // The table's discs face the optical axis, wherever they are in the picture.
+    const int row = i / 4;
+    const model::Pose X_CO{Mat3::Identity(), Vec3(0.02 * (i % 4 - 1.5), 0.02 * (row - 1.0), 0.25 + 0.02 * i)};
+    TargetDetector detector(config);
+    const Detection d =
+        detector.Detect(bench::Draw(SceneOf(config, X_CO, 2.0, static_cast<unsigned>(i + 1))));
+    ASSERT_TRUE(d.found);
+    worst = std::max(
+        worst, 554.256 * std::hypot(d.s[0] - X_CO.p.x() / X_CO.p.z(), d.s[1] - X_CO.p.y() / X_CO.p.z()));
+    worst_depth = std::max(worst_depth, std::fabs(d.s[2] * X_CO.p.z() / config.size - 1.0));
+  }
+  std::cout << "middle, worst " << worst << " px; depth, worst " << 100.0 * worst_depth << " %\n";
+  EXPECT_LT(worst, 0.35);
+  EXPECT_LT(worst_depth, 0.001);
+
+  // Exactly, from the ellipse of a tilted one.
+  const Mat3 tilt = model::RotationOf(Vec3(0.6, 0.0, 0.0));
+  std::array<DiscPose, 2> poses;
+  const model::Pose X_CO{tilt, Vec3(0.03, -0.02, 0.4)};
+  Eigen::Matrix3d H;  // from the disc's plane, in radii, to pixels
+  const Intrinsics& in = config.intrinsics;
+  Eigen::Matrix3d K;
+  K << in.f_u_px, 0.0, in.c_u_px, 0.0, in.f_v_px, in.c_v_px, 0.0, 0.0, 1.0;
+  H << 0.04 * X_CO.R.col(0), 0.04 * X_CO.R.col(1), X_CO.p;
+  const Eigen::Matrix3d G = (K * H).inverse();
+  const Eigen::Matrix3d conic = G.transpose() * Eigen::Vector3d(1.0, 1.0, -1.0).asDiagonal() * G;
+  ASSERT_TRUE(PosesOfDisc(conic, in, 0.08, 0.0, poses));
+  const double off = std::min((poses[0].p_CO_C - X_CO.p).norm(), (poses[1].p_CO_C - X_CO.p).norm());
+  std::cout << "a disc's pose from its exact conic: off " << off << " m\n";
+  EXPECT_LT(off, 1e-9);
+}
+
+}  // namespace
+}  // namespace fovea::vision
