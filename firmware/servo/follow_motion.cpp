@@ -44,7 +44,7 @@ hal::LimitSet Brake(const ServoConfig& config, Reference& reference) noexcept {
   model::LinearJacobian J_E_B;
   model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
   return GuardMotion(config, MotionWish::Velocity(model::VecN::Zero(config.arm.num_joints)), poses.X_BE.p,
-                     J_E_B, reference);
+                     J_E_B, poses.X_BE.p, reference);
 }
 
 // `next` becomes the reference if nothing forbids it.
@@ -94,6 +94,13 @@ bool PlanJoints(const ServoConfig& config, const MotionCommand& command, const R
   return state.joints.Plan(reference, model::ToVector(command.q, config.arm.num_joints), limits);
 }
 
+MotionCommand HomeOf(const model::ArmModel& arm) noexcept {
+  MotionCommand command;
+  command.kind = MotionKind::kJointGoal;
+  command.q = arm.q_ready;
+  return command;
+}
+
 bool SameGoal(const MotionCommand& a, const MotionCommand& b) noexcept {
   return a.kind == b.kind && a.q == b.q && a.p_BE == b.p_BE && a.quaternion_BE == b.quaternion_BE;
 }
@@ -109,8 +116,8 @@ bool TakeGoal(const ServoConfig& config, const MotionCommand& command, std::int6
   if (command.kind == MotionKind::kJointGoal) {
     planned = PlanJoints(config, command, reference, state);
   } else if (ToSetpoint(command, setpoint)) {
-    planned = PlanPose(config, setpoint.X_BE, reference, state.pose);
     state.X_BE = setpoint.X_BE;
+    planned = PlanPose(config, state.X_BE, reference, state.pose);
   }
   if (planned) {
     state.goal = command;
@@ -121,8 +128,9 @@ bool TakeGoal(const ServoConfig& config, const MotionCommand& command, std::int6
 
 }  // namespace
 
-hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& command, std::int64_t now_ns,
+hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& asked, std::int64_t now_ns,
                            MotionState& state, Reference& reference) noexcept {
+  const MotionCommand command = asked.kind == MotionKind::kHome ? HomeOf(config.arm) : asked;
   state.refused = false;
   switch (command.kind) {
     case MotionKind::kNone: break;
@@ -133,6 +141,7 @@ hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& comma
       state.refused = !ToSetpoint(command, setpoint);
       return FollowPose(config, setpoint, state.refused, state.resolved, reference);
     }
+    case MotionKind::kHome:
     case MotionKind::kJointGoal:
     case MotionKind::kPoseGoal:
       if (!TakeGoal(config, command, now_ns, reference, state)) {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/servo/joint_pace.hpp"
 #include "fovea/servo/stop_path.hpp"
+#include "fovea/servo/velocity_step.hpp"
 
 namespace fovea::servo {
 namespace {
@@ -14,11 +16,6 @@ using hal::LimitSet;
 using model::LinearJacobian;
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-
-// The time lost between the wish to brake and full deceleration: one tick, and the ramp of the jerk limit.
-double ReactionTime(double deceleration, double jerk) noexcept {
-  return 2.0 * kPeriodS + deceleration / jerk;
-}
 
 const model::Joint& JointOf(const ServoConfig& config, int i) noexcept {
   return config.arm.joints[static_cast<std::size_t>(i)];
@@ -57,11 +54,11 @@ LimitSet LimitJointPosition(const ServoConfig& config, const model::VecN& q, mod
   LimitSet limits = 0;
   for (int i = 0; i < dq.size(); ++i) {
     const model::Joint& joint = JointOf(config, i);
-    const double deceleration = guard.braking_fraction * guard.joint_acceleration_fraction * joint.ddq_max;
-    const double reaction = ReactionTime(deceleration, guard.joint_jerk_fraction * joint.dddq_max);
-    const double up = BarrierSpeed(joint.q_max - guard.joint_position_margin - q[i], deceleration, reaction);
+    const JointPace pace = PaceOf(config, i);
+    const double up =
+        BarrierSpeed(joint.q_max - guard.joint_position_margin - q[i], pace.deceleration, pace.reaction_s);
     const double down =
-        BarrierSpeed(q[i] - joint.q_min - guard.joint_position_margin, deceleration, reaction);
+        BarrierSpeed(q[i] - joint.q_min - guard.joint_position_margin, pace.deceleration, pace.reaction_s);
     if (dq[i] > up) {
       dq[i] = up;
       limits |= Bit(Limit::kJointPosition);
@@ -117,56 +114,25 @@ LimitSet LimitWorkspace(const ServoConfig& config, const model::Vec3& p_BE, cons
   return limits;
 }
 
-// Acceleration and jerk: the reference approaches the wished velocity without overshoot, also when that goes
-// on changing by `ddq_des`.
+// Acceleration and jerk, joint by joint.
 LimitSet LimitAcceleration(const ServoConfig& config, const model::VecN& dq_des, const model::VecN& ddq_des,
                            Reference& reference) noexcept {
-  const GuardConfig& guard = config.guard;
-  LimitSet limits = 0;
+  bool at_a_max = false;
+  bool at_j_max = false;
   for (int i = 0; i < dq_des.size(); ++i) {
-    const model::Joint& joint = JointOf(config, i);
-    const double a_max = guard.joint_acceleration_fraction * joint.ddq_max;
-    const double jerk_step = guard.joint_jerk_fraction * joint.dddq_max * kPeriodS;
-    const double dv = dq_des[i] - reference.dq[i];
-    const double wanted = dv / kPeriodS - ddq_des[i];
-    // The acceleration from which it can still return to zero, by the jerk limit, within dv.
-    const double half = 0.5 * jerk_step;
-    const double a_stop = std::sqrt(half * half + 2.0 * jerk_step * std::fabs(wanted)) - half;
-    double a = wanted;
-    if (std::fabs(a) > a_stop) {
-      a = std::copysign(a_stop, a);
-    }
-    a += ddq_des[i];
-    if (std::fabs(a) > a_max) {
-      a = std::copysign(a_max, a);
-      limits |= Bit(Limit::kJointAcceleration);
-    }
-    const double change = a - reference.ddq[i];
-    if (std::fabs(change) > jerk_step) {
-      a = reference.ddq[i] + std::copysign(jerk_step, change);
-      limits |= Bit(Limit::kJointJerk);
-    }
-    reference.ddq[i] = a;
-    reference.dq[i] += a * kPeriodS;
-    reference.q[i] += reference.dq[i] * kPeriodS;
+    const JointPace pace = PaceOf(config, i);
+    const VelocityStep step = StepVelocity({reference.q[i], reference.dq[i], reference.ddq[i]}, dq_des[i],
+                                           ddq_des[i], {0.0, pace.ddq_max, pace.dddq_max}, kPeriodS);
+    reference.q[i] = step.state.x;
+    reference.dq[i] = step.state.v;
+    reference.ddq[i] = step.state.a;
+    at_a_max = at_a_max || step.at_a_max;
+    at_j_max = at_j_max || step.at_j_max;
   }
-  return limits;
+  return (at_a_max ? Bit(Limit::kJointAcceleration) : 0) | (at_j_max ? Bit(Limit::kJointJerk) : 0);
 }
 
 }  // namespace
-
-// The largest of these over the joints: the arm as a whole brakes no sooner.
-double SlowestReaction(const ServoConfig& config) noexcept {
-  const GuardConfig& guard = config.guard;
-  double slowest = 0.0;
-  for (int i = 0; i < config.arm.num_joints; ++i) {
-    const model::Joint& joint = JointOf(config, i);
-    slowest = std::max(
-        slowest, ReactionTime(guard.braking_fraction * guard.joint_acceleration_fraction * joint.ddq_max,
-                              guard.joint_jerk_fraction * joint.dddq_max));
-  }
-  return slowest;
-}
 
 double BarrierSpeed(double distance, double deceleration, double reaction_s) noexcept {
   if (!(distance > 0.0)) {
@@ -176,7 +142,8 @@ double BarrierSpeed(double distance, double deceleration, double reaction_s) noe
 }
 
 LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
-                     const LinearJacobian& J_E_B, Reference& reference) noexcept {
+                     const LinearJacobian& J_E_B, const model::Vec3& p_BE_reference,
+                     Reference& reference) noexcept {
   model::VecN dq = wish.dq;
   LimitSet limits = LimitVelocity(config, dq);
   limits |= LimitJointPosition(config, reference.q, dq);
@@ -187,8 +154,6 @@ LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const mo
   limits |= LimitSpeed(config, J_E_B, dq);
   const model::VecN ddq = limits == 0 ? wish.ddq : model::VecN::Zero(dq.size());
 
-  model::ArmPoses poses;
-  model::ComputePoses(config.arm, reference.q, poses);
   // The largest share of the wish from which a stop is proved, found by halving; the last try is braking.
   constexpr int kTries = 5;
   double share = 1.0;
@@ -197,7 +162,7 @@ LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const mo
   for (int i = 0; i < kTries; ++i) {
     next = reference;
     acceleration_limits = LimitAcceleration(config, share * dq, share * ddq, next);
-    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, poses.X_BE.p) : 0;
+    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, p_BE_reference) : 0;
     if (passed == 0) {
       break;
     }

@@ -4,35 +4,16 @@
 #include <cmath>
 
 #include "fovea/servo/guard_motion.hpp"
+#include "fovea/servo/joint_pace.hpp"
 
 namespace fovea::servo {
 namespace {
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 // The row's boundary lies inside the guard's, and pushes back: on the guard's own boundary its proof would
 // let nothing pass that moves along it, since every step along a sphere leads out of it.
 constexpr double kInsideGuard = 0.002;  // [m]
 constexpr double kReturnRate = 5.0;     // what is past the boundary goes back with this rate [1/s]
 constexpr double kReturnSpeed = 0.02;   // but no faster [m/s]
-
-struct JointPace {
-  double ddq_max = 0.0;       // [rad/s^2]
-  double ramp_s = 0.0;        // from no acceleration to ddq_max
-  double deceleration = 0.0;  // for stopping before a barrier [rad/s^2]
-  double reaction_s = 0.0;    // until it is there: a tick to see it, a tick to act, and the ramp
-};
-
-JointPace PaceOf(const ServoConfig& config, int i) noexcept {
-  const GuardConfig& guard = config.guard;
-  const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
-  const double jerk = guard.joint_jerk_fraction * joint.dddq_max;
-  JointPace pace;
-  pace.ddq_max = guard.joint_acceleration_fraction * joint.ddq_max;
-  pace.ramp_s = pace.ddq_max / jerk;
-  pace.deceleration = guard.braking_fraction * pace.ddq_max;
-  pace.reaction_s = 2.0 * kPeriodS + pace.deceleration / jerk;
-  return pace;
-}
 
 }  // namespace
 
@@ -100,12 +81,8 @@ void LimitOutwardMotion(const ServoConfig& config, const model::Vec3& p_BE,
   const double spent = (v_E - v_out * outward).squaredNorm() / radius;
   const double deceleration =
       std::max(guard.workspace_deceleration - spent, 0.5 * guard.workspace_deceleration);
-  double reaction_s = 0.0;  // of the slowest joint
-  for (int i = 0; i < dq.size(); ++i) {
-    reaction_s = std::max(reaction_s, PaceOf(config, i).reaction_s);
-  }
   const double distance = guard.workspace_radius - guard.workspace_margin - kInsideGuard - radius;
-  const double v_max = distance > 0.0 ? BarrierSpeed(distance, deceleration, reaction_s)
+  const double v_max = distance > 0.0 ? BarrierSpeed(distance, deceleration, SlowestReaction(config))
                                       : std::max(kReturnRate * distance, -kReturnSpeed);
   const model::VecN a = J_E_B.transpose().lazyProduct(outward);
   limits.AddRow(a, v_max);

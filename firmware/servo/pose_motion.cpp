@@ -30,22 +30,9 @@ Vec6 Difference(const model::Pose& X_goal, const model::Pose& X) noexcept {
 }  // namespace
 
 bool ToSetpoint(const MotionCommand& command, PoseSetpoint& setpoint) noexcept {
-  double norm2 = 0.0;
-  for (const double entry : command.quaternion_BE) {
-    norm2 += entry * entry;
-  }
-  if (!(norm2 > 1e-12 && norm2 < 1e12)) {
+  if (!model::RotationOfQuaternion(command.quaternion_BE, setpoint.X_BE.R)) {
     return false;
   }
-  const double scale = 1.0 / std::sqrt(norm2);
-  const double w = command.quaternion_BE[0] * scale;
-  const double x = command.quaternion_BE[1] * scale;
-  const double y = command.quaternion_BE[2] * scale;
-  const double z = command.quaternion_BE[3] * scale;
-  // THEORY B4.
-  setpoint.X_BE.R << 2.0 * (w * w + x * x) - 1.0, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y),  //
-      2.0 * (x * y + w * z), 2.0 * (w * w + y * y) - 1.0, 2.0 * (y * z - w * x),                 //
-      2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 2.0 * (w * w + z * z) - 1.0;
   setpoint.X_BE.p = {command.p_BE[0], command.p_BE[1], command.p_BE[2]};
   for (std::size_t i = 0; i < command.V_BE_B.size(); ++i) {
     setpoint.V_BE_B[static_cast<Eigen::Index>(i)] = command.V_BE_B[i];
@@ -97,19 +84,18 @@ hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint
                          ResolvedMotion& motion, Reference& reference) noexcept {
   model::ArmPoses poses;
   model::ComputePoses(config.arm, reference.q, poses);
-  model::LinearJacobian J_E_B;
-  model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
+  model::Mat6N J;
+  model::ComputeBaseJacobian(config.arm, poses, J);
+  const model::LinearJacobian J_E_B = J.topRows<3>();
   const Vec6 e = Difference(setpoint.X_BE, poses.X_BE);
   refused = refused || !(e.head<3>().norm() <= config.move.pose_error_max &&
                          e.tail<3>().norm() <= config.move.pose_error_max / kLength);
   if (refused) {
     return GuardMotion(config, MotionWish::Velocity(model::VecN::Zero(config.arm.num_joints)), poses.X_BE.p,
-                       J_E_B, reference);
+                       J_E_B, poses.X_BE.p, reference);
   }
   // Where the reference is one tick late by itself, the feedback has nothing to take away.
   Vec6 V = setpoint.V_BE_B + config.move.pose_gain * (e - kPeriodS * setpoint.V_BE_B);
-  model::Mat6N J;
-  model::ComputeBaseJacobian(config.arm, poses, J);
   model::Mat6N J_E;
   model::ComputeJacobian(config.arm, poses, model::Pose{}, J_E);
   J.topRows<3>() /= kLength;
@@ -129,7 +115,7 @@ hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint
   if (dq_before.size() == wish.dq.size()) {
     wish.ddq = (wish.dq - dq_before) / kPeriodS;
   }
-  return motion.limits | GuardMotion(config, wish, poses.X_BE.p, J_E_B, reference);
+  return motion.limits | GuardMotion(config, wish, poses.X_BE.p, J_E_B, poses.X_BE.p, reference);
 }
 
 bool StandsAt(const ServoConfig& config, const model::Pose& X_BE, const Reference& reference) noexcept {

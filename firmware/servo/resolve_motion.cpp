@@ -4,6 +4,7 @@
 #include <array>
 
 #include "fovea/servo/guard_motion.hpp"
+#include "fovea/servo/joint_pace.hpp"
 #include "fovea/servo/null_space_wish.hpp"
 #include "fovea/servo/obstacle.hpp"
 #include "fovea/servo/singularity.hpp"
@@ -31,10 +32,12 @@ struct NamedLimits {
 void LimitApproach(const ServoConfig& config, const MotionScene& scene, MotionLimits& limits) noexcept {
   const Obstacles& obstacles = config.guard.obstacles;
   const double deceleration = 0.5 * config.guard.workspace_deceleration;
-  for (int i = 0; i < CountObstacles(obstacles); ++i) {
+  const int num_obstacles = CountObstacles(obstacles);
+  const double reaction_s = num_obstacles > 0 ? SlowestReaction(config) : 0.0;
+  for (int i = 0; i < num_obstacles; ++i) {
     const Clearance clearance = ClearanceOf(obstacles, i, scene.poses.X_BE.p);
     const double room = clearance.distance - 2.0 * config.guard.workspace_margin;
-    const double speed = BarrierSpeed(room, deceleration, SlowestReaction(config));
+    const double speed = BarrierSpeed(room, deceleration, reaction_s);
     limits.AddRow(-scene.J_E_B.transpose().lazyProduct(clearance.away), speed);
   }
 }
@@ -58,6 +61,11 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
       LimitSingularity(singularity_config, singularity, limits);
       named.NameNewRows(Limit::kSingularity, rows);
     }
+  }
+  if (scene.target != nullptr) {
+    rows = limits.num_rows;
+    LimitView(config.guard.view, *scene.target, limits);
+    named.NameNewRows(Limit::kFieldOfView, rows);
   }
 }
 

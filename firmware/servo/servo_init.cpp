@@ -1,6 +1,8 @@
 // What a configuration must satisfy before the task takes it.
 #include <cmath>
 
+#include "fovea/features/hold_orientation.hpp"
+
 #include "fovea/servo/servo_task.hpp"
 
 namespace fovea::servo {
@@ -59,10 +61,13 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.feature.radius, 1e-4, 10.0, "target.diameter"},
       {config.feature.p_CO_C_star.z(), config.feature.radius, 100.0, "servo.goal"},
       {config.predict.target_jerk, 0.0, huge, "servo.target_jerk"},
+      {config.predict.target_turn, 0.0, huge, "servo.target_turn"},
       {config.predict.gate_sigma, 1.0, huge, "servo.gate_sigma"},
       {config.predict.stale_s, 1e-3, config.predict.coast_s, "servo.stale_s"},
       {config.predict.coast_s, 1e-3, 0.5 * huge, "servo.coast_s"},
       {config.law.lambda, 0.0, 20.0, "servo.lambda"},
+      {config.law.lambda_near, 0.0, 20.0, "servo.lambda_near"},
+      {config.law.lambda_slope, 0.0, huge, "servo.lambda_slope"},
       {config.law.smooth_start_s, 1e-3, huge, "servo.smooth_start_s"},
       {config.law.damping, 1e-9, 1.0, "servo.damping"},
       {config.law.posture_gain, 0.0, 100.0, "servo.posture_gain"},
@@ -124,6 +129,23 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
   if (!config.feature.p_CO_C_star.allFinite()) {
     return Status(StatusCode::kNonFinite, "servo.goal");
   }
+  if (!config.feature.IsListed()) {
+    return Status(StatusCode::kInvalidArgument, "servo.feature");
+  }
+  features::FeatureState goal;
+  if (!config.feature.ComputeAtGoal(goal)) {
+    return Status(StatusCode::kOutOfRange, "servo.goal");
+  }
+  if (config.feature.hold_orientation) {
+    features::FeatureState held;
+    if (!features::HoldOrientation{}.Compute(model::Mat3::Identity(), held) || !features::Stack(held, goal)) {
+      return Status(StatusCode::kInvalidArgument, "servo.hold_orientation");
+    }
+  }
+  const ViewConfig& view = config.guard.view;
+  if (view.enabled && !(view.x_min < view.x_max && view.y_min < view.y_max)) {
+    return Status(StatusCode::kOutOfRange, "safety.view_margin_px");
+  }
   if (!config.X_EC.p.allFinite() || !config.X_EC.R.allFinite()) {
     return Status(StatusCode::kNonFinite, "camera.mount_xyz");
   }
@@ -169,6 +191,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
   }
 
   config_ = config;
+  goal_ = goal;
   state_ = ServoState{};
   const int n = config.arm.num_joints;
   state_.mode.track_asked = config.auto_track;

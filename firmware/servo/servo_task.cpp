@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/features/hold_orientation.hpp"
+#include "fovea/model/rotation.hpp"
 #include "fovea/servo/clamp_torque.hpp"
 #include "fovea/servo/smooth_step.hpp"
 
@@ -11,6 +13,7 @@ namespace {
 
 constexpr double kTargetMovedM = 0.02;       // so far from where it was unreachable, and it is tried again
 constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as there
+constexpr double kSpeedsUp = 0.2;            // a stop in which a joint gains so much is none [rad/s, m/s]
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
@@ -35,15 +38,25 @@ void ServoTask::Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept 
   InputCheck check;
   state_.tau_before = state_.tau;
   CheckArm(inputs, check);
+  Done(Stage::kCheck);
   ComputeModel();
+  Done(Stage::kModel);
   CheckContact(inputs.missed_ticks, check.fault, check.joint);
+  Done(Stage::kContact);
   PredictFeature(inputs, check.fault);
+  Done(Stage::kPredict);
   ChooseMode(inputs, check);
+  Done(Stage::kModes);
   ComputeVisualLaw();
+  Done(Stage::kVisualLaw);
   MoveReference(inputs);
+  Done(Stage::kReference);
   ComputeTorque(inputs);
+  Done(Stage::kMotionLaw);
   Clamp();
+  Done(Stage::kClamp);
   WriteRecord(inputs, outputs.record);
+  Done(Stage::kRecord);
   ++state_.tick;
 }
 
@@ -131,14 +144,15 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   }
   ForgetMotion();
   if (before == hal::Mode::kBoot && now == hal::Mode::kHold) {
-    // The reference starts where the arm stands.
+    // The reference starts as the arm is, which may still be settling, and Hold brings it to rest.
     state_.reference.q = state_.q;
-    state_.reference.dq.setZero();
+    state_.reference.dq = state_.dq;
     state_.reference.ddq.setZero();
   }
   if (now == hal::Mode::kTrack && before == hal::Mode::kHold) {
     state_.track_since_ns = state_.now_ns;
     state_.blocked_ns = 0;
+    state_.R_BC_held = state_.X_BC.R;
   }
   if (now == hal::Mode::kHold) {
     state_.p_BO_unreachable = state_.prediction.p_BO;
@@ -150,6 +164,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
     state_.inputs.sound_ticks = 0;
     state_.fault_joint = -1;
     state_.give_up = false;
+    state_.stop_speed = HUGE_VAL;
   }
 }
 
@@ -160,12 +175,25 @@ void ServoTask::ForgetMotion() noexcept {
 }
 
 void ServoTask::ComputeVisualLaw() noexcept {
-  state_.feature_valid =
-      state_.prediction.known &&
-      config_.feature.Compute(state_.prediction.p_CO_C, state_.prediction.v_BO_C, state_.feature);
+  state_.feature_valid = state_.prediction.known && ComputeFeature();
   if (state_.feature_valid) {
+    ChooseInteraction(config_.law, goal_.L_s, state_.feature);
     VisualLaw(config_.law, config_.arm, state_.feature, state_.J_C, state_.q, state_.law);
   }
+}
+
+// The target's feature, and what is stacked below it.
+bool ServoTask::ComputeFeature() noexcept {
+  if (!config_.feature.Compute(state_.prediction.seen, state_.feature)) {
+    return false;
+  }
+  if (!config_.feature.hold_orientation) {
+    return true;
+  }
+  features::FeatureState held;
+  const features::HoldOrientation orientation{IsTracking(state_.mode.mode) ? state_.R_BC_held
+                                                                           : state_.X_BC.R};
+  return orientation.Compute(state_.X_BC.R, held) && features::Stack(held, state_.feature);
 }
 
 void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
@@ -192,8 +220,9 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     const double blend = SmoothStep(since_s / config_.law.smooth_start_s);
     state_.law.task.v *= blend;
     state_.law.task.dq_0 *= blend;
-    ResolveMotion(config_, state_.law.task, {state_.reference, state_.poses, state_.J_E_B, state_.J_C},
-                  state_.resolved);
+    const ViewedTarget target{config_.feature.Outline(), state_.prediction.seen, state_.J_C};
+    ResolveMotion(config_, state_.law.task,
+                  {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target}, state_.resolved);
     if (!state_.resolved.finite || !state_.resolved.dq.allFinite()) {
       LatchFault(hal::Fault::kNonFiniteControl, -1);
       return;
@@ -201,8 +230,10 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     dq_des = state_.resolved.dq;
     state_.limits = state_.resolved.limits;
   }
-  state_.limits |=
-      GuardMotion(config_, MotionWish::Velocity(dq_des), state_.poses.X_BE.p, state_.J_E_B, state_.reference);
+  model::ArmPoses reference_poses;
+  model::ComputePoses(config_.arm, state_.reference.q, reference_poses);
+  state_.limits |= GuardMotion(config_, MotionWish::Velocity(dq_des), state_.poses.X_BE.p, state_.J_E_B,
+                               reference_poses.X_BE.p, state_.reference);
   CheckFollowing();
   NoteBlocked();
 }
@@ -221,7 +252,7 @@ void ServoTask::CheckFollowing() noexcept {
 void ServoTask::NoteBlocked() noexcept {
   constexpr hal::LimitSet kBarriers = hal::Bit(hal::Limit::kJointPosition) |
                                       hal::Bit(hal::Limit::kWorkspace) | hal::Bit(hal::Limit::kObstacle) |
-                                      hal::Bit(hal::Limit::kSingularity);
+                                      hal::Bit(hal::Limit::kSingularity) | hal::Bit(hal::Limit::kFieldOfView);
   const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
   const bool blocked = steering && (state_.limits & kBarriers) != 0 &&
                        state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
@@ -259,8 +290,11 @@ void ServoTask::StopDamped() noexcept {
   // A damped stop needs true velocities; without them only the brakes are left.
   const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0;
   const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
-  if (blind || since_s > config_.safety.brake_after_s ||
-      state_.dq.lpNorm<Eigen::Infinity>() < config_.safety.brake_velocity) {
+  // Nor does damping stop a joint whose motor is dead, or that is pushed: the arm gets faster again.
+  const double speed = state_.dq.lpNorm<Eigen::Infinity>();
+  state_.stop_speed = std::min(state_.stop_speed, speed);
+  const bool in_vain = speed > state_.stop_speed + kSpeedsUp;
+  if (blind || in_vain || since_s > config_.safety.brake_after_s || speed < config_.safety.brake_velocity) {
     state_.give_up = true;
   }
   DampedStop(config_.safety.fault_damping, state_.dynamics, state_.dq, state_.tau);
@@ -321,6 +355,9 @@ void ServoTask::WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) 
   for (std::size_t i = 0; i < 3; ++i) {
     record.p_BO[i] = state_.prediction.p_BO[static_cast<Eigen::Index>(i)];
     record.v_BO[i] = state_.prediction.v_BO[static_cast<Eigen::Index>(i)];
+  }
+  if (state_.prediction.known) {
+    record.q_BO = model::QuaternionOf(state_.prediction.R_BO);
   }
   if (state_.feature_valid) {
     record.dim = static_cast<std::int32_t>(state_.feature.s.size());

@@ -1,12 +1,36 @@
 #include "fovea/servo/visual_law.hpp"
 
+#include <cmath>
+
+#include "fovea/servo/compress_task.hpp"
+
 namespace fovea::servo {
+
+double GainAt(const LawConfig& config, double e) noexcept {
+  const double step = config.lambda_near - config.lambda;
+  if (config.lambda_near == 0.0 || step == 0.0) {
+    return config.lambda;
+  }
+  return config.lambda + step / (1.0 + config.lambda_slope * e / std::fabs(step));
+}
+
+void ChooseInteraction(const LawConfig& config, const features::InteractionMatrix& L_s_star,
+                       features::FeatureState& feature) noexcept {
+  switch (config.interaction) {
+    case Interaction::kCurrent: break;
+    case Interaction::kDesired: feature.L_s = L_s_star; break;
+    case Interaction::kMean: feature.L_s = 0.5 * (feature.L_s + L_s_star); break;
+  }
+}
+
 void VisualLaw(const LawConfig& config, const model::ArmModel& arm, const features::FeatureState& feature,
                const model::Mat6N& J_C, const model::VecN& q, VisualLawOutput& output) noexcept {
   output.e = feature.s_star - feature.s;
-  output.ds_cmd = config.lambda * output.e - feature.ds_dt_target;
-  output.task.J = feature.L_s.lazyProduct(J_C);
+  output.ds_cmd = GainAt(config, output.e.norm()) * output.e - feature.ds_dt_target;
+  features::InteractionMatrix L = feature.L_s;
   output.task.v = output.ds_cmd;
+  CompressTask(L, output.task.v);
+  output.task.J = L.lazyProduct(J_C);
   output.task.dq_0 = FreeWish(config, arm, q, J_C);
   output.task.weight.setOnes(q.size());
 }

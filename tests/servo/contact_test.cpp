@@ -56,9 +56,9 @@ TEST(ContactTest, SeesWhatPushesAndNothingElse) {
   const model::VecN r = Observed(2.0, worst_before);
   std::cout << "in motion and untouched " << worst_before << " Nm at most; pushed with 2 Nm " << r.transpose()
             << "\n";
-  EXPECT_LT(worst_before, 0.05);
+  EXPECT_LT(worst_before, 0.01);
   for (int i = 0; i < 7; ++i) {
-    EXPECT_NEAR(r[i], 2.0, 0.05);
+    EXPECT_NEAR(r[i], 2.0, 0.005);
   }
 }
 

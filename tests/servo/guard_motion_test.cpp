@@ -30,7 +30,7 @@ class Walker {
   hal::LimitSet Step(const model::VecN& dq_des) {
     const Reference before = reference_;
     const hal::LimitSet limits =
-        GuardMotion(config_, MotionWish::Velocity(dq_des), poses_.X_BE.p, J_E_B_, reference_);
+        GuardMotion(config_, MotionWish::Velocity(dq_des), poses_.X_BE.p, J_E_B_, poses_.X_BE.p, reference_);
     for (int i = 0; i < reference_.q.size(); ++i) {
       const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
       const double half = 0.5 * (joint.q_max - joint.q_min) - config_.guard.joint_position_margin;

@@ -138,8 +138,8 @@ TEST(MotionLawTest, OperationalSpaceDecouplesTheEndEffector) {
   }
   std::cout << "worst departure from the analytic error: " << 1e3 * worst << " mm of " << 1e3 * e_0.norm()
             << " mm; posture at the end off by " << (reference.q - loop.arm().q()).norm() << " rad\n";
-  EXPECT_LT(worst, 0.03 * e_0.norm());
-  EXPECT_LT((reference.q - loop.arm().q()).norm(), 1e-3) << "the posture follows in the null space";
+  EXPECT_LT(worst, 0.01 * e_0.norm());
+  EXPECT_LT((reference.q - loop.arm().q()).norm(), 1e-5) << "the posture follows in the null space";
 }
 
 TEST(MotionLawTest, EveryLawThatKnowsTheArmFollowsASwing) {
@@ -156,7 +156,7 @@ TEST(MotionLawTest, EveryLawThatKnowsTheArmFollowsASwing) {
     const MotionLawEntry& law = kMotionLaws[static_cast<std::size_t>(kind)];
     EXPECT_EQ(law.kind, kind);
     std::cout << law.name << " follows within " << worst << " rad\n";
-    EXPECT_LT(worst, kind == MotionLawKind::kPd ? 0.05 : 2e-3);
+    EXPECT_LT(worst, kind == MotionLawKind::kPd ? 5e-3 : 2e-5);
   }
 }
 

@@ -86,11 +86,11 @@ TEST_F(PredictTest, MakesUpForTheLatencyWhileCameraAndTargetMove) {
     if (ms > 2000) {
       ASSERT_TRUE(p.known);
       const model::Vec3 truth = CameraAt(t).Inverse() * target(t);
-      worst = std::max(worst, (p.p_CO_C - truth).norm());
-      worst_held = std::max(worst_held, (h.p_CO_C - truth).norm());
+      worst = std::max(worst, (p.seen.X_CO.p - truth).norm());
+      worst_held = std::max(worst_held, (h.seen.X_CO.p - truth).norm());
       EXPECT_GE(p.age_ns, kLatencyMs * hal::kNsPerMs);
       EXPECT_LE(p.age_ns, (kLatencyMs + 33) * hal::kNsPerMs);
-      EXPECT_TRUE(h.v_BO_C.isZero());
+      EXPECT_TRUE(h.seen.v_BO_C.isZero());
     }
   }
   std::cout << "worst error " << 1e3 * worst << " mm predicted, " << 1e3 * worst_held << " mm held\n";

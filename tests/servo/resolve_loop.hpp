@@ -111,7 +111,7 @@ inline Run Loop(const ServoConfig& config, const Start& start, const Resolve& re
     const model::ArmPoses poses = PosesAt(config, reference.q);
     const model::Pose X_CB = (poses.X_BE * config.X_EC).Inverse();
     features::FeatureState feature;
-    if (!config.feature.Compute(X_CB * start.p_BO, model::Vec3::Zero(), feature)) {
+    if (!config.feature.Compute({{model::Mat3::Identity(), X_CB * start.p_BO}}, feature)) {
       return run;  // behind the camera: lost
     }
     const Seen seen = See(X_CB * start.p_BO);
@@ -145,7 +145,7 @@ inline Run Loop(const ServoConfig& config, const Start& start, const Resolve& re
     const model::VecN wish = resolve({config, feature, poses, J_C, J_E_B, reference});
     const double x = std::min(tick * kTickS / config.law.smooth_start_s, 1.0);
     const model::VecN dq_des = x * x * (3.0 - 2.0 * x) * wish;
-    GuardMotion(config, MotionWish::Velocity(dq_des), poses.X_BE.p, J_E_B, reference);
+    GuardMotion(config, MotionWish::Velocity(dq_des), poses.X_BE.p, J_E_B, poses.X_BE.p, reference);
   }
   return run;
 }

@@ -35,6 +35,16 @@ TEST(ServoInitTest, RefusesAndNamesTheKey) {
       {"target.diameter", [](ServoConfig& c) { c.feature.radius = 0.0; }},
       {"servo.goal", [](ServoConfig& c) { c.feature.p_CO_C_star.z() = -0.4; }},
       {"servo.goal", [=](ServoConfig& c) { c.feature.p_CO_C_star.x() = nan; }},
+      {"servo.feature", [](ServoConfig& c) { c.feature.form = features::FeatureForm::kCorners; }},
+      {"servo.goal",
+       [](ServoConfig& c) {
+         c.feature.target = hal::FeatureKind::kSquare;
+         c.feature.form = features::FeatureForm::kCorners;
+         c.feature.corners = features::MakeSquare(1.0);  // a corner of which is behind the camera, turned so
+         c.feature.R_CO_star << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+       }},
+      {"safety.view_margin_px", [](ServoConfig& c) { c.guard.view.enabled = true; }},
+      {"servo.lambda_near", [](ServoConfig& c) { c.law.lambda_near = -1.0; }},
       {"servo.posture", [=](ServoConfig& c) { c.law.q_posture[0] = nan; }},
       {"camera.mount_xyz", [=](ServoConfig& c) { c.X_EC.p.x() = nan; }},
       {"joint position range", [](ServoConfig& c) { c.arm.joints[4].q_max = INFINITY; }},

@@ -7,54 +7,12 @@
 #include <iostream>
 
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/velocity_change.hpp"
 #include "support/panda.hpp"
 #include "support/random_states.hpp"
 
 namespace fovea::servo {
 namespace {
-
-TEST(PlanStopTest, ComesToRestWithinItsLimits) {
-  test::RandomStates random(61);
-  double worst_start = 0.0;
-  double worst_end = 0.0;
-  double worst_a = 0.0;
-  double worst_jerk = 0.0;
-  for (int k = 0; k < 2000; ++k) {
-    const double a_max = random.Uniform(1.0, 15.0);
-    const double jerk = random.Uniform(50.0, 5000.0);
-    const double dq = random.Uniform(-2.0, 2.0);
-    const double ddq = random.Uniform(-a_max, a_max);
-    const JointStop stop = PlanStop(dq, ddq, a_max, jerk);
-    const double T = stop.Duration();
-    const auto x = [&](double t) { return StopTravel(stop, dq, ddq, t); };
-    const double h = T / 500;
-    const auto velocity = [&](double t) { return (x(t + h) - x(t - h)) / (2.0 * h); };
-    const auto acceleration = [&](double t) { return (x(t + h) - 2.0 * x(t) + x(t - h)) / (h * h); };
-    // A central difference of a cubic is off by jerk h^2 / 6 and jerk h.
-    worst_start = std::max(worst_start, std::abs(velocity(h) - dq - ddq * h) - jerk * h * h);
-    worst_end =
-        std::max(worst_end, std::abs(x(T) - x(T + 10.0)) + std::abs(x(T) - x(T - h)) - jerk * h * h * h);
-    double last = ddq;
-    for (int i = 1; i < 500; ++i) {
-      const double a = acceleration(i * h);
-      worst_a = std::max(worst_a, std::abs(a) / a_max);
-      worst_jerk = std::max(worst_jerk, std::abs(a - last) / h / jerk);
-      last = a;
-    }
-  }
-  std::cout << "starts off by " << worst_start << " rad/s, is not at rest by " << worst_end
-            << " rad; largest use: acceleration " << worst_a << ", jerk " << worst_jerk << "\n";
-  EXPECT_LE(worst_start, 0.0);
-  EXPECT_LE(worst_end, 0.0);
-  EXPECT_LE(worst_a, 1.0 + 1e-6);
-  EXPECT_LE(worst_jerk, 1.0 + 1e-3);
-}
-
-TEST(PlanStopTest, AtRestItIsNothing) {
-  const JointStop stop = PlanStop(0.0, 0.0, 5.0, 500.0);
-  EXPECT_EQ(stop.Duration(), 0.0);
-  EXPECT_EQ(StopTravel(stop, 0.0, 0.0, 1.0), 0.0);
-}
 
 TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
   const ServoConfig config = test::PandaConfig();
@@ -99,6 +57,63 @@ TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
   reference.dq[3] = -1.0;
   EXPECT_EQ(LimitsPassed(plane, reference, reference.q, p), 0U);
   EXPECT_EQ(LimitsPassed(box, reference, reference.q, p), 0U);
+}
+
+// The same verdict as from all points of the way, near bounds and far from them.
+TEST(LimitsPassedTest, LeavesOutNoPointThatMatters) {
+  test::RandomStates random(9);
+  ServoConfig config = test::PandaConfig();
+  config.guard.obstacles.num_planes = 1;
+  config.guard.obstacles.planes[0] = {{0.0, 0.0, 1.0}, 0.1};
+  int num_passed = 0;
+  constexpr int kCases = 20'000;
+  for (int k = 0; k < kCases; ++k) {
+    model::VecN q_now = test::Ready();
+    Reference next{q_now, model::VecN::Zero(7), model::VecN::Zero(7)};
+    for (int i = 0; i < 7; ++i) {
+      const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+      q_now[i] += random.Uniform(-0.9, 0.9);
+      next.dq[i] = random.Uniform(-1.0, 1.0) * joint.dq_max;
+      next.ddq[i] = random.Uniform(-0.7, 0.7) * joint.ddq_max;
+      next.q[i] = q_now[i] + 1e-3 * next.dq[i];
+    }
+    model::ArmPoses poses;
+    model::ComputePoses(config.arm, q_now, poses);
+    const model::Vec3 p_now = poses.X_BE.p;
+    const hal::LimitSet passed = LimitsPassed(config, next, q_now, p_now);
+    if (passed == hal::Bit(hal::Limit::kJointPosition)) {
+      continue;
+    }
+    double duration = 0.0;
+    std::array<VelocityChange, 7> stops;
+    for (int i = 0; i < 7; ++i) {
+      const auto j = static_cast<std::size_t>(i);
+      const model::Joint& joint = config.arm.joints[j];
+      stops[j] = PlanVelocityChange(next.dq[i], next.ddq[i], 0.0,
+                                    {joint.dq_max, config.guard.joint_acceleration_fraction * joint.ddq_max,
+                                     config.guard.joint_jerk_fraction * joint.dddq_max});
+      duration = std::max(duration, stops[j].Duration());
+    }
+    duration += 1e-3;
+    const double boundary =
+        std::max(config.guard.workspace_radius - config.guard.workspace_margin, p_now.norm()) + 1e-9;
+    const double height = std::min(0.1 + config.guard.workspace_margin, p_now.z()) - 1e-9;
+    bool expected = false;
+    for (int sample = 0; sample < kStopSamples && !expected; ++sample) {
+      const double share = static_cast<double>(sample) / (kStopSamples - 1);
+      model::VecN q = next.q + 1e-3 * next.dq;
+      for (int i = 0; i < 7; ++i) {
+        q[i] += stops[static_cast<std::size_t>(i)].At(duration * share * share).x;
+      }
+      model::ComputePoses(config.arm, q, poses);
+      expected = poses.X_BE.p.norm() > boundary || poses.X_BE.p.z() < height;
+    }
+    ASSERT_EQ(passed != 0, expected) << "case " << k;
+    num_passed += expected ? 1 : 0;
+  }
+  std::cout << num_passed << " of " << kCases << " pass a bound\n";
+  EXPECT_GT(num_passed, kCases / 10);
+  EXPECT_LT(num_passed, kCases * 9 / 10);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iostream>
 
-#include "fovea/servo/stop_path.hpp"
 #include "support/random_states.hpp"
 #include "support/repetitions.hpp"
 
@@ -49,20 +48,48 @@ TEST(VelocityChangeTest, EndsAtItsVelocityWithinItsLimits) {
   EXPECT_LE(worst_a, 1.0 + 1e-13);
 }
 
-TEST(VelocityChangeTest, ToRestIsTheGuardsStop) {
-  test::RandomStates random(63);
-  double worst = 0.0;
-  for (int n = 0; n < test::Repetitions(100000); ++n) {
-    const AxisLimits limits{1.0, random.Uniform(1.0, 15.0), random.Uniform(50.0, 5000.0)};
-    const double v = random.Uniform(-2.0, 2.0);
-    const double a = random.Uniform(-1.0, 1.0) * limits.a_max;
-    const JointStop stop = PlanStop(v, a, limits.a_max, limits.j_max);
-    const VelocityChange change = PlanVelocityChange(v, a, 0.0, limits);
-    worst = std::max({worst, std::fabs(change.Duration() - stop.Duration()),
-                      std::fabs(change.Travel() - StopTravel(stop, v, a, stop.Duration()))});
+// Told by its positions alone.
+TEST(VelocityChangeTest, AStopComesToRestWithinItsLimits) {
+  test::RandomStates random(61);
+  double worst_start = 0.0;
+  double worst_end = 0.0;
+  double worst_a = 0.0;
+  double worst_jerk = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    const double a_max = random.Uniform(1.0, 15.0);
+    const double jerk = random.Uniform(50.0, 5000.0);
+    const double dq = random.Uniform(-2.0, 2.0);
+    const double ddq = random.Uniform(-a_max, a_max);
+    const VelocityChange stop = PlanVelocityChange(dq, ddq, 0.0, {1.0, a_max, jerk});
+    const double T = stop.Duration();
+    const auto x = [&](double t) { return stop.At(t).x; };
+    const double h = T / 500;
+    const auto velocity = [&](double t) { return (x(t + h) - x(t - h)) / (2.0 * h); };
+    const auto acceleration = [&](double t) { return (x(t + h) - 2.0 * x(t) + x(t - h)) / (h * h); };
+    // A central difference of a cubic is off by jerk h^2 / 6 and jerk h.
+    worst_start = std::max(worst_start, std::abs(velocity(h) - dq - ddq * h) - jerk * h * h);
+    worst_end =
+        std::max(worst_end, std::abs(x(T) - x(T + 10.0)) + std::abs(x(T) - x(T - h)) - jerk * h * h * h);
+    double last = ddq;
+    for (int i = 1; i < 500; ++i) {
+      const double a = acceleration(i * h);
+      worst_a = std::max(worst_a, std::abs(a) / a_max);
+      worst_jerk = std::max(worst_jerk, std::abs(a - last) / h / jerk);
+      last = a;
+    }
   }
-  std::cout << "differs by " << worst << " s or m\n";
-  EXPECT_LE(worst, 1e-12);
+  std::cout << "starts off by " << worst_start << " rad/s, is not at rest by " << worst_end
+            << " rad; largest use: acceleration " << worst_a << ", jerk " << worst_jerk << "\n";
+  EXPECT_LE(worst_start, 0.0);
+  EXPECT_LE(worst_end, 0.0);
+  EXPECT_LE(worst_a, 1.0 + 1e-6);
+  EXPECT_LE(worst_jerk, 1.0 + 1e-3);
+}
+
+TEST(VelocityChangeTest, AStopFromRestIsNothing) {
+  const VelocityChange stop = PlanVelocityChange(0.0, 0.0, 0.0, {1.0, 5.0, 500.0});
+  EXPECT_EQ(stop.Duration(), 0.0);
+  EXPECT_EQ(stop.At(1.0).x, 0.0);
 }
 
 TEST(VelocityChangeTest, NothingToChangeIsNothing) {

@@ -27,7 +27,7 @@ Scene RandomScene(test::RandomStates& random, const ServoConfig& config) {
   model::ComputeJacobian(config.arm, poses, config.X_EC, scene.J_C);
   const double z = random.Uniform(0.25, 0.8);
   const model::Vec3 p(z * random.Uniform(-0.4, 0.4), z * random.Uniform(-0.3, 0.3), z);
-  EXPECT_TRUE(config.feature.Compute(p, random.Vector(0.2), scene.feature));
+  EXPECT_TRUE(config.feature.Compute({{model::Mat3::Identity(), p}, random.Vector(0.2)}, scene.feature));
   return scene;
 }
 
@@ -99,7 +99,7 @@ TEST(VisualLawTest, StaysBoundedWhereTheTaskIsSingular) {
     model::Mat6N J_C;
     model::ComputeJacobian(config.arm, poses, config.X_EC, J_C);
     features::FeatureState feature;
-    ASSERT_TRUE(config.feature.Compute({0.0, 0.0, 1.0}, model::Vec3::Zero(), feature));
+    ASSERT_TRUE(config.feature.Compute({{model::Mat3::Identity(), {0.0, 0.0, 1.0}}}, feature));
     VisualLawOutput out;
     const model::VecN dq_des = Unlimited(config, config.law, feature, J_C, q, out);
     EXPECT_TRUE(dq_des.allFinite());
@@ -117,6 +117,42 @@ TEST(ProgressTest, IsTheShareOfTheWantedMotion) {
   EXPECT_NEAR(Progress(s.feature, out.ds_cmd, s.J_C, 0.5 * dq_des), 0.5, 0.01);
   EXPECT_NEAR(Progress(s.feature, out.ds_cmd, s.J_C, model::VecN::Zero(7)), 0.0, 1e-12);
   EXPECT_EQ(Progress(s.feature, features::FeatureVector::Zero(3), s.J_C, dq_des), 1.0);
+}
+
+TEST(GainTest, GoesFromNearToFarWithItsSlope) {
+  LawConfig law;
+  law.lambda = 1.5;
+  EXPECT_EQ(GainAt(law, 0.0), 1.5) << "constant while lambda_near is 0";
+  EXPECT_EQ(GainAt(law, 10.0), 1.5);
+  for (const double near : {4.0, 0.5}) {
+    law.lambda_near = near;
+    EXPECT_EQ(GainAt(law, 0.0), near);
+    EXPECT_NEAR(GainAt(law, 1e9), law.lambda, 1e-6);
+    const double slope = (GainAt(law, 1e-7) - GainAt(law, 0.0)) / 1e-7;
+    EXPECT_NEAR(slope, near > law.lambda ? -law.lambda_slope : law.lambda_slope, 1e-3);
+    double before = near;
+    for (double e = 0.01; e < 3.0; e += 0.01) {  // without a turn
+      const double gain = GainAt(law, e);
+      EXPECT_GT((gain - before) * (law.lambda - near), 0.0);
+      before = gain;
+    }
+  }
+}
+
+TEST(InteractionTest, IsOfNowOfTheGoalOrTheMean) {
+  ServoConfig config = test::PandaConfig();
+  test::RandomStates random(25);
+  const Scene s = RandomScene(random, config);
+  features::FeatureState goal;
+  ASSERT_TRUE(config.feature.ComputeAtGoal(goal));
+  for (const Interaction which : {Interaction::kCurrent, Interaction::kDesired, Interaction::kMean}) {
+    config.law.interaction = which;
+    features::FeatureState feature = s.feature;
+    ChooseInteraction(config.law, goal.L_s, feature);
+    const double of_goal = which == Interaction::kCurrent ? 0.0 : which == Interaction::kDesired ? 1.0 : 0.5;
+    EXPECT_LT((feature.L_s - (of_goal * goal.L_s + (1.0 - of_goal) * s.feature.L_s)).norm(), 1e-13);
+    EXPECT_EQ(feature.s, s.feature.s);
+  }
 }
 
 }  // namespace

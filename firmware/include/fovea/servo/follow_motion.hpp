@@ -33,7 +33,7 @@ struct MotionState {
 // One tick of a commanded motion: moves `reference` on. Returns the limits that acted or forbade it; where
 // they, or a command that is none, forbid it, `state.refused` is set and the reference brakes.
 // Real-time: yes; a new goal takes some 10 us.
-hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& command, std::int64_t now_ns,
+hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& asked, std::int64_t now_ns,
                            MotionState& state, Reference& reference) noexcept;
 
 }  // namespace fovea::servo

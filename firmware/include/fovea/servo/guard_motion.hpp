@@ -20,9 +20,6 @@ namespace fovea::servo {
 // and the reaction time; 0 when the distance is used up. Real-time: yes.
 [[nodiscard]] double BarrierSpeed(double distance, double deceleration, double reaction_s) noexcept;
 
-// The time that the slowest joint takes from the wish to brake to full deceleration [s]. Real-time: yes.
-[[nodiscard]] double SlowestReaction(const ServoConfig& config) noexcept;
-
 // How the joints shall move, and how that goes on to change. Finite.
 struct MotionWish {
   model::VecN dq;   // [num_joints]
@@ -37,10 +34,11 @@ struct MotionWish {
   }
 };
 
-// Moves `reference` on by one tick towards `wish`. `p_BE` [m] is where the end
-// effector is, `J_E_B` [3 x num_joints] its linear Jacobian in axes of B. Returns the limits that acted.
-// Real-time: yes.
+// Moves `reference` on by one tick towards `wish`. `p_BE` [m] is where the end effector is, `J_E_B`
+// [3 x num_joints] its linear Jacobian in axes of B, and `p_BE_reference` [m] where `reference` has it.
+// Returns the limits that acted. Real-time: yes.
 hal::LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
-                          const model::LinearJacobian& J_E_B, Reference& reference) noexcept;
+                          const model::LinearJacobian& J_E_B, const model::Vec3& p_BE_reference,
+                          Reference& reference) noexcept;
 
 }  // namespace fovea::servo

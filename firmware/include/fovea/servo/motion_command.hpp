@@ -14,6 +14,7 @@ enum class MotionKind : std::uint8_t {
   kPoseSetpoint,   // where the end effector shall be now, one of a stream: p_BE, R_BE, V_BE_B
   kJointGoal,      // where the joints shall come to rest: q
   kPoseGoal,       // where the end effector shall come to rest: p_BE, R_BE
+  kHome,           // the joints shall come to rest in the arm's ready posture
 };
 
 // A goal is asked for in one tick or in many; the motion to it goes on until it is there. Another goal takes

@@ -19,7 +19,7 @@ struct LimitRow {
 };
 
 struct MotionLimits {
-  static constexpr int kMaxRows = 12;
+  static constexpr int kMaxRows = 16;
 
   model::VecN dq_min;  // [num_joints]
   model::VecN dq_max;  // [num_joints]

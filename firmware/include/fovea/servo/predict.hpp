@@ -9,6 +9,7 @@
 
 #include "fovea/hal/feature.hpp"
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/pose_choice.hpp"
 #include "fovea/servo/servo_config.hpp"
 #include "fovea/servo/target_filter.hpp"
 
@@ -41,31 +42,32 @@ class JointHistory {
 
 struct PredictState {
   JointHistory history;
-  TargetFilter filter;
+  TargetFilter filter;  // of sphere and circle
+  PoseChoice poses;     // of square and triangle
   bool has_accepted = false;
   std::int64_t accepted_stamp_ns = 0;  // of the last measurement that went into the filter
   // The last measurement itself, for servo.predict = false.
-  model::Vec3 p_CO_C_meas = model::Vec3::Zero();
+  model::Pose X_CO_meas;
 
   void Reset() noexcept {
     filter = TargetFilter{};
+    poses = PoseChoice{};
     has_accepted = false;
   }
 };
 
 struct Prediction {
-  bool known = false;                        // enough measurements to say where the target is
-  std::int64_t age_ns = 0;                   // now less the last accepted stamp; only when one was accepted
-  model::Vec3 p_BO = model::Vec3::Zero();    // now [m]
-  model::Vec3 v_BO = model::Vec3::Zero();    // [m/s]
-  model::Vec3 p_CO_C = model::Vec3::Zero();  // now, in axes of C [m]
-  model::Vec3 v_BO_C = model::Vec3::Zero();  // v_BO in axes of C [m/s]
+  bool known = false;                          // enough measurements to say where the target is
+  std::int64_t age_ns = 0;                     // now less the last accepted stamp; only when one was accepted
+  model::Vec3 p_BO = model::Vec3::Zero();      // now [m]
+  model::Mat3 R_BO = model::Mat3::Identity();  // now; of a target whose orientation is seen
+  model::Vec3 v_BO = model::Vec3::Zero();      // [m/s]
+  features::TargetInCamera seen;               // now: pose and twist in axes of C
 };
 
 // Takes in `measurement` (null: none came) and predicts for `now_ns` with today's camera pose `X_BC`.
-// A measurement that names no sphere, whose stamp the history does not reach, or that was not yet true at
-// `now_ns` is left out.
-// Real-time: yes.
+// A measurement that names no such target, whose stamp the history does not reach, or that was not yet true
+// at `now_ns` is left out. Real-time: yes.
 [[nodiscard]] Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::Pose& X_BC,
                                  const hal::FeatureMeasurement* measurement, PredictState& state) noexcept;
 

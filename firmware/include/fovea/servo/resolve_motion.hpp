@@ -1,15 +1,16 @@
 // Stage 3, first half: a task becomes joint velocities, with the limits on the motion inside.
 //
 // The limits are gathered as ranges of the joints' velocities and as rows across them (motion_limits.hpp):
-// joint velocity and the end of each range, workspace, planes, boxes, singularity. Of all that keeps them,
-// the joint velocity nearest to the task's is taken (resolve_constrained.hpp). So a joint at the end of its
-// range hands its part over to the others, and a task along a boundary slides along it; limits that cut
-// afterwards would have stopped it. (300 random starts, kinematic: 99 % reach their goal with the limits
-// inside, 66 % with a damped pseudo-inverse whose result is cut: tests/servo/resolve_compare.cpp.)
+// joint velocity and the end of each range, workspace, planes, boxes, singularity, the picture. Of all that
+// keeps them, the joint velocity nearest to the task's is taken (resolve_constrained.hpp). So a joint at the
+// end of its range hands its part over to the others, and a task along a boundary slides along it; limits
+// that cut afterwards would have stopped it. (300 random starts, kinematic: 99 % reach their goal with the
+// limits inside, 66 % with a damped pseudo-inverse whose result is cut: tests/servo/resolve_compare.cpp.)
 #pragma once
 
 #include "fovea/hal/events.hpp"
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/keep_in_view.hpp"
 #include "fovea/servo/reference.hpp"
 #include "fovea/servo/resolve_constrained.hpp"
 #include "fovea/servo/servo_config.hpp"
@@ -21,8 +22,9 @@ namespace fovea::servo {
 struct MotionScene {
   const Reference& reference;
   const model::ArmPoses& poses;
-  const model::LinearJacobian& J_E_B;  // of the end effector's point, in axes of B
-  const model::Mat6N& J;               // body Jacobian of a frame of the hand, for the singularity
+  const model::LinearJacobian& J_E_B;    // of the end effector's point, in axes of B
+  const model::Mat6N& J;                 // body Jacobian of a frame of the hand, for the singularity
+  const ViewedTarget* target = nullptr;  // what shall stay in the picture; null: nothing
 };
 
 struct ResolvedMotion {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "fovea/features/sphere.hpp"
+#include "fovea/features/target_feature.hpp"
 #include "fovea/hal/types.hpp"
 #include "fovea/model/arm_model.hpp"
 
@@ -15,6 +15,7 @@ namespace fovea::servo {
 struct PredictConfig {
   bool enabled = true;       // servo.predict; false: the newest measurement as it came, held
   double target_jerk = 1.0;  // how fast the target's acceleration may be thought to change [m/s^3]
+  double target_turn = 0.1;  // and its angular velocity, of a target whose orientation is seen [rad/s^2]
   double gate_sigma = 6.0;   // a measurement further off than this is an outlier [sigma]
   int gate_rejects_max = 3;  // so many outliers in a row, and the target has moved: start anew
   int accepted_min = 3;      // measurements before the target counts as known
@@ -22,9 +23,16 @@ struct PredictConfig {
   double coast_s = 0.6;      // steer by prediction for so long after the last measurement [s]
 };
 
+// [servo] the interaction matrix that the law inverts: of now, of the goal, or the mean of both
+enum class Interaction : std::uint8_t { kCurrent, kDesired, kMean };
+inline constexpr std::array<const char*, 3> kInteractionNames{"current", "desired", "mean"};
+
 // [servo] how the arm shall move
 struct LawConfig {
-  double lambda = 2.0;                 // e decays like exp(-lambda t) [1/s]
+  double lambda = 2.0;         // e decays like exp(-lambda t) [1/s]
+  double lambda_near = 0.0;    // the gain towards e = 0, `lambda` being that of large e; 0: the same
+  double lambda_slope = 30.0;  // how fast it changes with |e| at e = 0 [1/s per unit of e]
+  Interaction interaction = Interaction::kCurrent;
   double smooth_start_s = 0.25;        // the law's velocity is blended in over this time [s]
   double damping = 0.05;               // begins at this share of the task Jacobian's rms singular value
   double posture_gain = 0.6;           // pull of the posture in the free directions [1/s]
@@ -73,11 +81,20 @@ struct Obstacles {
   std::array<Box, kMost> boxes;
 };
 
+// [safety] what the target is kept in: the picture less a margin, in the normalised image
+struct ViewConfig {
+  bool enabled = false;
+  double x_min = 0.0;
+  double x_max = 0.0;
+  double y_min = 0.0;
+  double y_max = 0.0;
+};
+
 // [safety] limits on the motion, as fractions of the arm's own or in their units
 struct GuardConfig {
   double joint_velocity_fraction = 0.8;
   double joint_acceleration_fraction = 0.7;
-  double joint_jerk_fraction = 0.05;    // gentle: a step of torque stays below 1 Nm per tick
+  double joint_jerk_fraction = 0.025;   // gentle: more asks for torque steps past their rate far out
   double joint_position_margin = 0.02;  // the reference stays so far inside the range [rad, m]
   double braking_fraction = 0.5;        // of the acceleration limit, for stopping before a barrier
   double workspace_radius = 0.85;       // |p_BE| stays below this [m]
@@ -86,6 +103,7 @@ struct GuardConfig {
   double cartesian_speed = 1.7;         // of the end effector [m/s]
   double singularity_min = 0.02;        // smallest singular value of the hand's Jacobian, 1 / 0.3 m
   Obstacles obstacles;                  // which the end effector keeps out of
+  ViewConfig view;                      // safety.keep_in_view, safety.view_margin_px
 };
 
 // [safety] limits on the torque, and when to stop altogether
@@ -121,7 +139,7 @@ struct MoveConfig {
 struct ServoConfig {
   model::ArmModel arm;
   model::Pose X_EC;  // the camera in the hand
-  features::SphereFeature feature;
+  features::TargetFeature feature;
   bool auto_track = false;  // servo.auto_track: go to Track as soon as the target is known
   PredictConfig predict;
   LawConfig law;

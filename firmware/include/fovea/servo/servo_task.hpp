@@ -4,6 +4,7 @@
 // outputs to the last bit, in the simulator, on the robot, and in a replay.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "fovea/features/feature_state.hpp"
@@ -19,6 +20,7 @@
 #include "fovea/servo/motion_law.hpp"
 #include "fovea/servo/predict.hpp"
 #include "fovea/servo/servo_config.hpp"
+#include "fovea/servo/stage_probe.hpp"
 #include "fovea/servo/visual_law.hpp"
 
 namespace fovea::servo {
@@ -76,6 +78,7 @@ struct ServoState {
   // visual law
   bool feature_valid = false;
   features::FeatureState feature;
+  model::Mat3 R_BC_held = model::Mat3::Identity();  // the camera's when Track began
   VisualLawOutput law;
 
   // guard
@@ -87,9 +90,10 @@ struct ServoState {
   // motion law and clamp
   MotionLawState law_state;
   model::VecN tau;
-  model::VecN tau_before;  // the command of the tick before
-  bool give_up = false;    // in Fault: no torque any more
-  bool braked = false;     // and the brakes, once it is gone
+  model::VecN tau_before;        // the command of the tick before
+  double stop_speed = HUGE_VAL;  // in Fault: the slowest that the fastest joint was since [rad/s, m/s]
+  bool give_up = false;          // in Fault: no torque any more
+  bool braked = false;           // and the brakes, once it is gone
 };
 
 class ServoTask {
@@ -101,6 +105,9 @@ class ServoTask {
   // One tick. `outputs` is written whole. Real-time: yes.
   void Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept;
 
+  // From now on told of each stage; null: nobody is. Real-time: yes.
+  void UseProbe(StageProbe* probe) noexcept { probe_ = probe; }
+
   [[nodiscard]] const ServoConfig& config() const noexcept { return config_; }
   [[nodiscard]] const ServoState& state() const noexcept { return state_; }
 
@@ -110,6 +117,7 @@ class ServoTask {
   void PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noexcept;
   void ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept;
   void ComputeVisualLaw() noexcept;
+  [[nodiscard]] bool ComputeFeature() noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
   void CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept;
   void ForgetMotion() noexcept;
@@ -120,9 +128,16 @@ class ServoTask {
   void Clamp() noexcept;
   void WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) const noexcept;
   void LatchFault(hal::Fault fault, std::int32_t joint) noexcept;
+  void Done(Stage stage) noexcept {
+    if (probe_ != nullptr) {
+      probe_->Done(stage);
+    }
+  }
 
   ServoConfig config_;
+  features::FeatureState goal_;  // the feature at its goal
   ServoState state_;
+  StageProbe* probe_ = nullptr;
 };
 
 }  // namespace fovea::servo

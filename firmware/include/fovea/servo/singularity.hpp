@@ -30,7 +30,7 @@ void ComputeSingularity(const model::Mat6N& J, double length, Singularity& singu
 // Looks after the measure at the cost that it deserves: sigma changes no faster than the joints' speed
 // allows, so that far from a singularity it need not be computed anew in each tick.
 struct SingularityWatch {
-  static constexpr double kNear = 0.08;  // the limit is looked at when sigma is this close to its least
+  static constexpr double kNear = 0.3;  // the limit is looked at when sigma is this close to its least
 
   double sigma = 0.0;  // at the last look, less all that it may have lost since
 };

@@ -1,0 +1,14 @@
+// A task of more rows than the hand has degrees of freedom, in as many rows as it has: the least-squares
+// solution of L V = v is that of R V = Q^T v with L = Q R, and a task of six rows costs the law a third of
+// one of eight.
+#pragma once
+
+#include "fovea/features/feature_state.hpp"
+
+namespace fovea::servo {
+
+// Leaves `L` [dim x 6] and `v` [dim] with at most six rows: R and the head of Q^T v, by Householder's
+// reflections. Fewer rows stay as they are. Real-time: yes.
+void CompressTask(features::InteractionMatrix& L, features::FeatureVector& v) noexcept;
+
+}  // namespace fovea::servo

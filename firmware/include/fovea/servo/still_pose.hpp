@@ -1,0 +1,40 @@
+// Where a flat target would be if it stood still: the pose that fits its corners in some views, taken from
+// different places, all at once.
+//
+// Not by a filter: beside the cylinder through a triangle's corners its poses lie on a fold, and what a
+// filter believed there before the camera moved it does not give up again.
+#pragma once
+
+#include <array>
+
+#include "fovea/servo/corner_view.hpp"
+
+namespace fovea::servo {
+
+// Views spread over the camera's way, however long that gets.
+struct StillViews {
+  static constexpr int kMost = 8;
+  struct View {
+    model::Pose X_CB;
+    features::SeenCorners::Vector xy;
+    double weight = 0.0;  // 1 / variance of an entry of xy
+  };
+
+  int count = 0;
+  double step = 0.005;  // how far the camera goes from one to the next [m]; doubles when they are too many
+  std::array<View, kMost> views;
+};
+
+// Takes the view when the camera has gone far enough since the last one. Real-time: yes.
+void AddView(const CornerView& view, StillViews& views) noexcept;
+
+// The squared distances of the corners from where `X_BO` has them, in standard deviations: summed over all
+// views and `newest`; large where one is not before the camera. Real-time: yes.
+[[nodiscard]] double MisfitOf(const features::Polygon& polygon, const StillViews& views,
+                              const CornerView& newest, const model::Pose& X_BO) noexcept;
+
+// Improves `X_BO` and gives its misfit. Real-time: yes.
+[[nodiscard]] double FitStill(const features::Polygon& polygon, const StillViews& views,
+                              const CornerView& newest, model::Pose& X_BO) noexcept;
+
+}  // namespace fovea::servo

@@ -1,0 +1,184 @@
+// Every fault on an arm that obeys the model: what is found, in what time, and that the arm stops and stays.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+#include "servo/task_on_ideal_arm.hpp"
+
+namespace fovea::servo {
+namespace {
+
+using hal::Fault;
+using hal::Mode;
+
+// After a fault the arm must come to rest, the brakes close, and nothing but a reset and a new approach move
+// it.
+class FaultTest : public ServoTaskTest {
+ protected:
+  void ExpectStopsAndStays(Fault fault, int within_ticks) {
+    EXPECT_EQ(outputs_.record.mode, Mode::kFault);
+    EXPECT_EQ(outputs_.record.fault, fault) << hal::Name(outputs_.record.fault);
+    const double at_the_fault = arm_->dq().norm();
+    for (int i = 0; i < within_ticks; ++i) {
+      Tick();
+      EXPECT_LE(arm_->dq().norm(), at_the_fault * 1.05 + 1e-6) << "it must not speed up";
+    }
+    EXPECT_TRUE(outputs_.command().engage_brakes);
+    EXPECT_EQ(outputs_.command().tau_cmd, hal::JointArray{});
+    EXPECT_LT(arm_->dq().norm(), 1e-9);
+    Tick([](ServoInputs& inputs) { inputs.request = Request::kTrack; });
+    EXPECT_EQ(outputs_.record.mode, Mode::kFault) << "only a reset leaves it";
+  }
+  void ExpectResetWorks() {
+    Tick([](ServoInputs& inputs) { inputs.request = Request::kReset; });
+    EXPECT_EQ(outputs_.record.mode, Mode::kBoot);
+    EXPECT_FALSE(outputs_.command().engage_brakes);
+    Run(3000);
+    EXPECT_EQ(outputs_.record.mode, Mode::kTrack);
+    EXPECT_EQ(outputs_.record.fault, Fault::kNone);
+    EXPECT_LT(Error(), 0.05);
+  }
+  void SetUp() override {
+    ServoTaskTest::SetUp();
+    Run(500);  // in full approach
+    ASSERT_EQ(outputs_.record.mode, Mode::kTrack);
+    ASSERT_GT(arm_->dq().norm(), 0.1);
+  }
+};
+
+TEST_F(FaultTest, ArmLost) {
+  for (int i = 0; i < config_.safety.arm_lost_ticks; ++i) {
+    EXPECT_EQ(outputs_.record.mode, Mode::kTrack) << "tick " << i;
+    const hal::JointArray before = outputs_.command().tau_cmd;
+    Tick([](ServoInputs& inputs) { inputs.arm_status = hal::Status(hal::StatusCode::kTimeout); });
+    if (outputs_.record.mode == Mode::kTrack) {
+      for (std::size_t k = 0; k < 7; ++k) {
+        EXPECT_NEAR(outputs_.command().tau_cmd[k], before[k], 1.0 + 1e-9) << "the last command is held";
+      }
+    }
+  }
+  EXPECT_EQ(outputs_.record.fault, Fault::kArmLost);
+  // It stays silent: the torque goes at its rate, and the brakes close when it is gone.
+  int ticks = 0;
+  while (!outputs_.command().engage_brakes && ticks < 100) {
+    const hal::JointArray before = outputs_.command().tau_cmd;
+    Tick([](ServoInputs& inputs) { inputs.arm_status = hal::Status(hal::StatusCode::kTimeout); });
+    ++ticks;
+    for (std::size_t k = 0; k < 7; ++k) {
+      EXPECT_LE(std::abs(outputs_.command().tau_cmd[k]), std::max(std::abs(before[k]) - 1.0, 0.0) + 1e-9);
+    }
+  }
+  std::cout << "brakes " << ticks << " ms after the fault\n";
+  EXPECT_TRUE(outputs_.command().engage_brakes) << "blind: only the brakes are left";
+  EXPECT_EQ(outputs_.command().tau_cmd, hal::JointArray{});
+  ExpectStopsAndStays(Fault::kArmLost, 50);
+  ExpectResetWorks();
+}
+
+TEST_F(FaultTest, ArmStale) {
+  const hal::ArmState frozen = arm_->State();
+  for (int i = 0; i <= config_.safety.arm_lost_ticks; ++i) {
+    Tick([&](ServoInputs& inputs) { inputs.arm = frozen; });
+  }
+  ExpectStopsAndStays(Fault::kArmStale, 50);
+  ExpectResetWorks();
+}
+
+TEST_F(FaultTest, NonFiniteSensorIsBridgedThenLatched) {
+  for (const int joint : {3}) {
+    for (int i = 0; i < config_.safety.non_finite_ticks; ++i) {
+      Tick([&](ServoInputs& inputs) { inputs.arm.q[static_cast<std::size_t>(joint)] = std::nan(""); });
+      ASSERT_EQ(outputs_.record.mode, Mode::kTrack) << "bridged";
+    }
+    Tick();
+    ASSERT_EQ(outputs_.record.mode, Mode::kTrack);
+    for (int i = 0; i <= config_.safety.non_finite_ticks; ++i) {
+      Tick([&](ServoInputs& inputs) {
+        inputs.arm.dq[static_cast<std::size_t>(joint)] = std::numeric_limits<double>::infinity();
+      });
+    }
+    EXPECT_EQ(outputs_.record.fault_joint, joint);
+  }
+  ExpectStopsAndStays(Fault::kNonFiniteSensor, 1500);
+  ExpectResetWorks();
+}
+
+TEST_F(FaultTest, NonFiniteFeature) {
+  Tick([&](ServoInputs& inputs) {
+    inputs.has_feature = true;
+    inputs.feature = Measure();
+    inputs.feature.s[1] = std::nan("");
+  });
+  ExpectStopsAndStays(Fault::kNonFiniteFeature, 1500);
+  ExpectResetWorks();
+}
+
+TEST_F(FaultTest, DeadlinesMissed) {
+  Tick([](ServoInputs& inputs) { inputs.missed_ticks = 1; });
+  EXPECT_EQ(outputs_.record.mode, Mode::kTrack) << "one miss is held by rule";
+  Tick([this](ServoInputs& inputs) { inputs.missed_ticks = config_.safety.missed_ticks; });
+  ExpectStopsAndStays(Fault::kDeadlineMissed, 1500);
+  ExpectResetWorks();
+}
+
+TEST_F(FaultTest, JointOutsideItsRange) {
+  Tick([](ServoInputs& inputs) { inputs.arm.q[5] = 3.76; });
+  EXPECT_EQ(outputs_.record.fault_joint, 5);
+  ExpectStopsAndStays(Fault::kJointPosition, 1500);
+}
+
+TEST_F(FaultTest, JointTooFast) {
+  Tick([](ServoInputs& inputs) { inputs.arm.dq[2] = -2.2; });
+  EXPECT_EQ(outputs_.record.fault_joint, 2);
+  ExpectStopsAndStays(Fault::kJointVelocity, 1500);
+}
+
+// What jams the arm pushes it.
+TEST_F(FaultTest, SomethingHoldsTheArm) {
+  arm_->Jam();
+  int ticks = 0;
+  while (outputs_.record.mode != Mode::kFault && ticks++ < 3000) {
+    Tick();
+  }
+  std::cout << "found after " << ticks << " ms\n";
+  EXPECT_GE(outputs_.record.fault_joint, 0);
+  ExpectStopsAndStays(Fault::kContact, 150);
+}
+
+TEST_F(FaultTest, AFloatingArmMayBePushed) {
+  ServoConfig config = test::PandaConfig();
+  config.safety.contact_torque_fraction = 0.05;
+  camera_on_ = false;
+  for (const MotionLawKind law : {MotionLawKind::kFloat, MotionLawKind::kComputedTorque}) {
+    config.motion_law.kind = law;
+    Start(config);
+    Run(100);
+    ASSERT_EQ(outputs_.record.mode, Mode::kHold);
+    for (int i = 0; i < 80; ++i) {
+      arm_->SetVelocity(arm_->dq() + 0.02 * model::VecN::Unit(7, 0));  // some 10 Nm
+      Tick();
+    }
+    EXPECT_STREQ(hal::Name(outputs_.record.fault), law == MotionLawKind::kFloat ? "none" : "contact");
+  }
+}
+
+// Without that observer it is seen later, by its error.
+TEST_F(FaultTest, ArmDoesNotFollow) {
+  ServoConfig config = test::PandaConfig();
+  config.safety.contact_torque_fraction = 1e3;
+  Start(config);
+  Run(500);
+  arm_->Jam();
+  int ticks = 0;
+  while (outputs_.record.mode != Mode::kFault && ticks++ < 3000) {
+    Tick();
+  }
+  std::cout << "found after " << ticks << " ms\n";
+  EXPECT_GE(outputs_.record.fault_joint, 0);
+  ExpectStopsAndStays(Fault::kNotFollowing, 150);  // the torque had grown, and goes at its own rate
+}
+
+}  // namespace
+}  // namespace fovea::servo
