@@ -43,6 +43,9 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kSingularity:
       return {"smallest singular value of the hand's Jacobian",
               "the posture goes no deeper; the task gives way"};
+    case hal::Limit::kFieldOfView:
+      return {"the target before the edge of the picture, less this margin",
+              "only so fast towards it; the task slides along"};
   }
   return {"", ""};
 }
@@ -78,7 +81,9 @@ std::string GuardTableAsMarkdown() {
       "a reset "
       "alone.\nMeasurements that do not fit the target's motion are left out (`servo.gate_sigma`); without "
       "one the "
-      "servo coasts\n(`servo.stale_s`), then holds (`servo.coast_s`).\n";
+      "servo coasts\n(`servo.stale_s`), then holds (`servo.coast_s`). A damped stop in which the arm gets "
+      "faster "
+      "again is given up for the\nbrakes. Each row is provoked in closed loop by `guard_test`.\n";
   const auto head = [&](const char* title) {
     text +=
         fmt::format("\n## {}\n\n| name | watches | key | default | then |\n|---|---|---|---|---|\n", title);

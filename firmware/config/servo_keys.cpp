@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fovea/config/input_error.hpp"
+#include "fovea/config/roll_pitch_yaw.hpp"
 #include "fovea/servo/servo_task.hpp"
 
 namespace fovea::config {
@@ -16,6 +18,8 @@ void AddPredictKeys(servo::PredictConfig& c, KeyTable& keys) {
   keys.Number(
       "servo.target_jerk", c.target_jerk, 0.0, 1000.0, "m/s^3",
       "how fast the target's acceleration may be thought to change; larger follows faster, filters less");
+  keys.Number("servo.target_turn", c.target_turn, 0.0, 1000.0, "rad/s^2",
+              "square and triangle: how fast their angular velocity may be thought to change");
   keys.Number("servo.gate_sigma", c.gate_sigma, 1.0, 1000.0, "sigma",
               "a measurement further off is an outlier");
   keys.Integer("servo.gate_rejects_max", c.gate_rejects_max, 1, 1000, "",
@@ -30,8 +34,28 @@ void AddLawKeys(ServoSettings& settings, KeyTable& keys) {
   servo::LawConfig& c = settings.config.law;
   keys.Flag("servo.auto_track", settings.config.auto_track, "go to Track as soon as the target is known");
   keys.Number("servo.lambda", c.lambda, 0.0, 20.0, "1/s", "gain: the error decays like exp(-lambda t)");
+  keys.Number("servo.lambda_near", c.lambda_near, 0.0, 20.0, "1/s",
+              "gain near the goal, servo.lambda being that of large errors; 0: servo.lambda everywhere");
+  keys.Number("servo.lambda_slope", c.lambda_slope, 0.0, 1e6, "1/s",
+              "how fast the gain changes with the feature's error at the goal, per unit of it");
+  std::vector<std::string> forms{"auto"};
+  forms.insert(forms.end(), features::kFormNames.begin(), features::kFormNames.end());
+  keys.Choice(
+      "servo.feature", settings.feature, forms,
+      "what the law works on; auto: sphere P/R, circle x, y, D/Z, the square's corners, the triangle's pose; "
+      "circle also for a sphere, side and corner_side for a square (4 of 6 degrees of freedom), pose and "
+      "corners for both");
+  keys.Flag("servo.hold_orientation", settings.config.feature.hold_orientation,
+            "also keep the camera's orientation as it was when tracking began; sphere, circle, side");
+  keys.Choice("servo.interaction", settings.interaction,
+              {servo::kInteractionNames.begin(), servo::kInteractionNames.end()},
+              "the interaction matrix that the law inverts: of now, of the goal, or the mean of both");
   keys.Numbers("servo.goal", settings.goal, 3, 3, -10.0, 10.0, "m",
                "where the target's centre shall stand in camera axes: x right, y down, z forward");
+  keys.Numbers(
+      "servo.goal_rpy_deg", settings.goal_rpy_deg, 3, 3, -360.0, 360.0, "deg",
+      "and how a square or triangle shall be turned there: roll, pitch, yaw about fixed camera axes; 0: it "
+      "faces the camera");
   keys.Number("servo.smooth_start_s", c.smooth_start_s, 0.001, 10.0, "s",
               "the law is blended in over this time");
   keys.Number("servo.damping", c.damping, 1e-6, 1.0, "",
@@ -115,6 +139,9 @@ void AddGuardKeys(ServoSettings& settings, KeyTable& keys) {
       "safety.singularity_min", c.singularity_min, 0.0, 1.0, "",
       "the arm goes no nearer to a singular posture: smallest singular value of the hand's Jacobian, a "
       "metre counted as 1 / 0.3 rad; 0: it may");
+  keys.Flag("safety.keep_in_view", settings.keep_in_view, "keep the target in the picture");
+  keys.Number("safety.view_margin_px", settings.view_margin_px, 0.0, 1000.0, "px",
+              "and its outline so far from the edge");
   keys.Numbers("safety.planes", settings.planes, 4, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
                "planes n p >= d that the end effector stays above: n_x, n_y, n_z, d, the same again");
   keys.Numbers("safety.boxes", settings.boxes, 6, 6 * servo::Obstacles::kMost, -100.0, 100.0, "m",
@@ -150,10 +177,51 @@ void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
   keys.Number("safety.brake_after_s", c.brake_after_s, 0.0, 60.0, "s", "or after this time");
 }
 
+void SetFeature(const ServoSettings& settings, const TargetSettings& target,
+                features::TargetFeature& feature) {
+  const bool hold_orientation = feature.hold_orientation;
+  feature = MakeTarget(target);
+  feature.hold_orientation = hold_orientation;
+  feature.p_CO_C_star = model::Vec3(settings.goal[0], settings.goal[1], settings.goal[2]);
+  feature.R_CO_star = RollPitchYaw(settings.goal_rpy_deg);
+  if (settings.feature != "auto") {
+    const auto* form = std::find(features::kFormNames.begin(), features::kFormNames.end(), settings.feature);
+    feature.form = static_cast<features::FeatureForm>(form - features::kFormNames.begin());
+  }
+  if (!feature.IsListed()) {
+    throw InputError(fmt::format(
+        "servo.feature = \"{}\"{} is not allowed for target.kind = \"{}\": sphere has sphere and circle, "
+        "circle has circle, square has corners, side, corner_side and pose, triangle has pose and corners; "
+        "with "
+        "servo.hold_orientation no more than {} entries in all",
+        settings.feature, hold_orientation ? " with servo.hold_orientation" : "", target.kind,
+        features::kMaxDim));
+  }
+}
+
+servo::ViewConfig MakeView(const ServoSettings& settings, const vision::Intrinsics& in) {
+  const double margin = settings.view_margin_px;
+  const auto side = [margin](double edge_px, double sign, double c_px, double f_px) {
+    return (edge_px - sign * margin - c_px) / f_px;
+  };
+  servo::ViewConfig view;
+  view.enabled = settings.keep_in_view;
+  view.x_min = side(-0.5, -1.0, in.c_u_px, in.f_u_px);
+  view.x_max = side(in.width_px - 0.5, 1.0, in.c_u_px, in.f_u_px);
+  view.y_min = side(-0.5, -1.0, in.c_v_px, in.f_v_px);
+  view.y_max = side(in.height_px - 0.5, 1.0, in.c_v_px, in.f_v_px);
+  if (view.enabled && !(view.x_min < view.x_max && view.y_min < view.y_max)) {
+    throw InputError(
+        fmt::format("safety.view_margin_px = {} is not allowed: of a picture of {} x {} px nothing is left",
+                    margin, in.width_px, in.height_px));
+  }
+  return view;
+}
+
 // Values that are allowed each by itself and must fit each other.
 void CheckTogether(const servo::ServoConfig& c) {
   const model::Vec3& goal = c.feature.p_CO_C_star;
-  if (goal.z() <= c.feature.radius) {
+  if (!c.feature.SeesOrientation() && goal.z() <= c.feature.radius) {
     throw InputError(fmt::format(
         "servo.goal = [{}, {}, {}] is not allowed: the target must be wholly before the camera, so "
         "the third above its radius of {} m",
@@ -244,36 +312,17 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
   AddFaultKeys(settings.config.safety, keys);
 }
 
-void AddVisionKeys(VisionSettings& settings, KeyTable& keys) {
-  vision::BallDetectorConfig& c = settings.config;
-  keys.Choice("vision.method", settings.method, {"colour", "gray"},
-              "search by the target's colour, or for what is round in the gray image, of whatever colour");
-  keys.Number("vision.hue_deg", c.finder.hue_deg, 0.0, 360.0, "deg",
-              "the target's hue: 0 red, 120 green, 240 blue");
-  keys.Number("vision.hue_width_deg", c.finder.hue_width_deg, 1.0, 90.0, "deg", "its standard deviation");
-  keys.Number("vision.saturation_min", c.finder.saturation_min, 0.0, 1.0, "", "paler colours are nobody's");
-  keys.Number("vision.blur_sigma_px", c.finder.blur_sigma_px, 0.1, 10.0, "px",
-              "blur before the search, at half size");
-  keys.Number("vision.canny_threshold", c.finder.canny_threshold, 1.0, 1000.0, "",
-              "of edges that vote for circles; higher by itself in a picture full of them");
-  keys.Number("vision.votes", c.finder.votes, 1.0, 1000.0, "",
-              "a circle needs so many, when searched by colour");
-  keys.Number("vision.radius_min_px", c.finder.radius_min_px, 4.0, 500.0, "px",
-              "smallest circle that is searched");
-  keys.Number("vision.radius_max_px", c.finder.radius_max_px, 8.0, 2000.0, "px",
-              "largest circle that is searched");
-  keys.Number("vision.distance_min", c.distance_min, 0.01, 100.0, "m", "a target nearer than this is none");
-  keys.Number("vision.distance_max", c.distance_max, 0.01, 100.0, "m", "nor one further off");
-  keys.Number("vision.confidence_min", c.confidence_min, 0.0, 1.0, "", "finds below it are refused");
-}
-
 servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::Robot& robot,
-                                   const model::Pose& X_EC, double target_radius) {
+                                   const model::Pose& X_EC, const vision::Intrinsics& intrinsics,
+                                   const TargetSettings& target) {
   servo::ServoConfig config = settings.config;
   config.arm = robot.model;
   config.X_EC = X_EC;
-  config.feature.radius = target_radius;
-  config.feature.p_CO_C_star = model::Vec3(settings.goal[0], settings.goal[1], settings.goal[2]);
+  SetFeature(settings, target, config.feature);
+  config.guard.view = MakeView(settings, intrinsics);
+  const auto* interaction =
+      std::find(servo::kInteractionNames.begin(), servo::kInteractionNames.end(), settings.interaction);
+  config.law.interaction = static_cast<servo::Interaction>(interaction - servo::kInteractionNames.begin());
   config.law.q_posture = robot.model.q_ready;
   CheckSize("servo.posture", settings.posture, robot);
   if (!settings.posture.empty()) {
@@ -287,21 +336,6 @@ servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::
   servo::ServoTask probe;
   if (const hal::Status status = probe.Init(config); !status.ok()) {
     throw InputError(fmt::format("{}: {}", status.where(), hal::ToString(status.code())));
-  }
-  return config;
-}
-
-vision::BallDetectorConfig MakeVisionConfig(const VisionSettings& settings,
-                                            const vision::Intrinsics& intrinsics, double target_radius) {
-  vision::BallDetectorConfig config = settings.config;
-  config.intrinsics = intrinsics;
-  config.radius = target_radius;
-  config.finder.by = settings.method == "gray" ? vision::FindBy::kGray : vision::FindBy::kColour;
-  if (config.finder.radius_min_px >= config.finder.radius_max_px) {
-    throw InputError("vision.radius_min_px must be below vision.radius_max_px");
-  }
-  if (config.distance_min >= config.distance_max) {
-    throw InputError("vision.distance_min must be below vision.distance_max");
   }
   return config;
 }

@@ -18,13 +18,15 @@ Vec3 PointVelocity(const ArmModel& model, const ArmPoses& poses, int i, const Ve
 }  // namespace
 
 void ComputePoses(const ArmModel& model, const VecN& q, ArmPoses& poses) noexcept {
-  Pose X_BP;  // of the link before
+  const Pose base;
+  const Pose* X_BP = &base;  // of the link before
   for (int i = 0; i < model.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const Joint& joint = model.joints[k];
     // The joint's frame at q = 0, in B.
     Pose& X_BL = poses.X_BL[k];
-    X_BL = X_BP * joint.X_PJ;
+    X_BL.R.noalias() = X_BP->R.lazyProduct(joint.X_PJ.R);
+    X_BL.p.noalias() = X_BP->p + X_BP->R.lazyProduct(joint.X_PJ.p);
     if (joint.type == JointType::kRevolute) {
       // A turn about z mixes the first two columns and leaves the third.
       const auto [s, c] = SinCos(q[i]);
@@ -35,9 +37,9 @@ void ComputePoses(const ArmModel& model, const VecN& q, ArmPoses& poses) noexcep
     } else {
       X_BL.p += q[i] * X_BL.R.col(2);
     }
-    X_BP = X_BL;
+    X_BP = &X_BL;
   }
-  poses.X_BE = X_BP * model.X_LnE;
+  poses.X_BE = *X_BP * model.X_LnE;
 }
 
 void ComputeJacobian(const ArmModel& model, const ArmPoses& poses, const Pose& X_EF, Mat6N& J_F) noexcept {

@@ -16,6 +16,7 @@ TEST(RotationTest, AgreesWithEigenAndComesBack) {
   std::normal_distribution<double> normal;
   double worst_matrix = 0.0;
   double worst_back = 0.0;
+  double worst_quaternion = 0.0;
   for (int n = 0; n < 20000; ++n) {
     const Vec3 axis = Vec3(normal(random), normal(random), normal(random)).normalized();
     // Angles of every size, with many near zero and near half a turn.
@@ -28,9 +29,18 @@ TEST(RotationTest, AgreesWithEigenAndComesBack) {
     const Mat3 R = RotationOf(phi);
     worst_matrix = std::max(worst_matrix, (R - truth).cwiseAbs().maxCoeff());
     worst_back = std::max(worst_back, (RotationVector(R) - phi).norm());
+    const std::array<double, 4> q = QuaternionOf(truth);
+    const Eigen::Quaterniond q_truth(truth);
+    EXPECT_GE(q[0], 0.0);
+    const double dot = q[0] * q_truth.w() + q[1] * q_truth.x() + q[2] * q_truth.y() + q[3] * q_truth.z();
+    worst_quaternion = std::max(worst_quaternion, std::fabs(std::fabs(dot) - 1.0));
+    Mat3 again;
+    ASSERT_TRUE(RotationOfQuaternion(q, again));
+    worst_quaternion = std::max(worst_quaternion, (again - truth).cwiseAbs().maxCoeff());
   }
   std::cout << "matrices differ by " << worst_matrix << ", vectors come back within " << worst_back
-            << " rad\n";
+            << " rad, quaternions " << worst_quaternion << "\n";
+  EXPECT_LT(worst_quaternion, 1e-14);
   EXPECT_LT(worst_matrix, 1e-14);
   EXPECT_LT(worst_back, 1e-12);
   EXPECT_EQ(RotationVector(Mat3::Identity()).norm(), 0.0);
