@@ -6,13 +6,10 @@
 
 #include "fovea/log/stamp.hpp"
 #include "fovea/log/topics.hpp"
-#include "fovea/vision/outline_fit.hpp"
 #include "foxglove/image.pb.h"
 
 namespace fovea::log {
 namespace {
-
-constexpr int kOutlinePoints = 96;
 
 void SetColour(const char* role, foxglove::Color& colour) {
   const std::string_view name(role);
@@ -34,6 +31,11 @@ foxglove::CameraCalibration CalibrationMessage(std::int64_t time_ns, const visio
   calibration.set_height(static_cast<std::uint32_t>(in.height_px));
   const double K[] = {in.f_u_px, 0.0, in.c_u_px, 0.0, in.f_v_px, in.c_v_px, 0.0, 0.0, 1.0};
   calibration.mutable_k()->Add(std::begin(K), std::end(K));
+  if (!in.lens.IsZero()) {
+    calibration.set_distortion_model("plumb_bob");
+    const double D[] = {in.lens.k1, in.lens.k2, in.lens.p1, in.lens.p2, in.lens.k3};
+    calibration.mutable_d()->Add(std::begin(D), std::end(D));
+  }
   const double R[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
   calibration.mutable_r()->Add(std::begin(R), std::end(R));
   const double P[] = {in.f_u_px, 0.0, in.c_u_px, 0.0, 0.0, in.f_v_px, in.c_v_px, 0.0, 0.0, 0.0, 1.0, 0.0};
@@ -41,8 +43,11 @@ foxglove::CameraCalibration CalibrationMessage(std::int64_t time_ns, const visio
   return calibration;
 }
 
-void AddOutline(const vision::Intrinsics& in, const model::Vec3& m, const char* role,
+void AddOutline(const vision::Intrinsics& in, std::span<const vision::ImagePoint> points, const char* role,
                 foxglove::ImageAnnotations& annotations) {
+  if (points.empty()) {
+    return;
+  }
   foxglove::PointsAnnotation& outline = *annotations.add_points();
   outline.set_type(foxglove::PointsAnnotation::LINE_LOOP);
   outline.set_thickness(1.5);
@@ -50,22 +55,23 @@ void AddOutline(const vision::Intrinsics& in, const model::Vec3& m, const char* 
   foxglove::KeyValuePair& entry = *outline.add_metadata();
   entry.set_key("role");
   entry.set_value(role);
-  for (const auto& [u, v] : vision::OutlinePoints(in, m, kOutlinePoints)) {
+  for (vision::ImagePoint p : points) {
+    in.Distort(p.u_px, p.v_px);
     foxglove::Point2& point = *outline.add_points();
-    point.set_x(u);
-    point.set_y(v);
+    point.set_x(p.u_px);
+    point.set_y(p.v_px);
   }
 }
 
-void AddDetection(const vision::Intrinsics& in, const vision::BallDetection& detection,
+void AddDetection(const vision::Intrinsics& in, const vision::Detection& detection,
                   foxglove::ImageAnnotations& annotations) {
   if (!detection.found) {
     return;
   }
-  AddOutline(in, detection.outline.m, kDetectionRole, annotations);
+  AddOutline(in, detection.Outline(), kDetectionRole, annotations);
   foxglove::TextAnnotation& text = *annotations.add_texts();
-  text.mutable_position()->set_x(detection.outline.u_px + detection.outline.radius_px);
-  text.mutable_position()->set_y(detection.outline.v_px - detection.outline.radius_px);
+  text.mutable_position()->set_x(detection.u_px + detection.radius_px);
+  text.mutable_position()->set_y(detection.v_px - detection.radius_px);
   text.set_text(fmt::format("{:.2f}", detection.confidence));
   text.set_font_size(12.0);
   SetColour(kDetectionRole, *text.mutable_text_color());

@@ -30,6 +30,7 @@ Truth ToMessage(const TruthSample& sample) {
   truth.mutable_p_bc()->Add(sample.p_BC.begin(), sample.p_BC.end());
   truth.set_error_px(sample.error_px);
   truth.set_error_mm(sample.error_mm);
+  truth.mutable_q_bo()->Add(sample.q_BO.begin(), sample.q_BO.end());
   return truth;
 }
 

@@ -33,7 +33,7 @@ To Same(From value) {
 static_assert(static_cast<int>(hal::Mode::kMove) == MOVE);
 static_assert(static_cast<int>(hal::HoldReason::kMotionRefused) == MOTION_REFUSED);
 static_assert(static_cast<int>(hal::Fault::kContact) == CONTACT && hal::kNumFaults == 11);
-static_assert(static_cast<int>(hal::FeatureKind::kSphere) == Feature::SPHERE);
+static_assert(static_cast<int>(hal::FeatureKind::kTriangle) == Feature::TRIANGLE);
 
 }  // namespace
 
@@ -58,6 +58,7 @@ void ToMessage(const hal::TickRecord& r, Tick& m) {
   m.set_target_known(r.target_known);
   m.set_feature_age_ns(r.feature_age_ns);
   Put(r.p_BO, 3, *m.mutable_p_bo());
+  Put(r.q_BO, 4, *m.mutable_q_bo());
   Put(r.v_BO, 3, *m.mutable_v_bo());
   Put(r.s, r.dim, *m.mutable_s());
   Put(r.s_star, r.dim, *m.mutable_s_star());
@@ -86,6 +87,13 @@ void ToMessage(const hal::FeatureMeasurement& f, Feature& m) {
       m.add_cov_s(f.cov_s[row * hal::kMaxFeatureDim + col]);
     }
   }
+  m.clear_poses();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(f.num_poses); ++i) {
+    FlatPose& pose = *m.add_poses();
+    Put(f.poses[i].p_CO_C, 3, *pose.mutable_p_co_c());
+    Put(f.poses[i].q_CO, 4, *pose.mutable_q_co());
+    pose.set_first(f.poses[i].first);
+  }
 }
 
 hal::FeatureMeasurement FromMessage(const Feature& m) {
@@ -104,6 +112,16 @@ hal::FeatureMeasurement FromMessage(const Feature& m) {
     for (int col = 0; col < f.dim; ++col) {
       f.cov_s[static_cast<std::size_t>(row * hal::kMaxFeatureDim + col)] = m.cov_s(row * f.dim + col);
     }
+  }
+  f.num_poses = m.poses_size();
+  if (f.num_poses > hal::kMaxPoses) {
+    throw std::runtime_error("the log holds more poses than the servo takes");
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(f.num_poses); ++i) {
+    const FlatPose& pose = m.poses(static_cast<int>(i));
+    Get(pose.p_co_c(), f.poses[i].p_CO_C);
+    Get(pose.q_co(), f.poses[i].q_CO);
+    f.poses[i].first = pose.first();
   }
   return f;
 }
@@ -130,6 +148,7 @@ hal::TickRecord FromMessage(const Tick& m, const hal::FeatureMeasurement& featur
   r.target_known = m.target_known();
   r.feature_age_ns = m.feature_age_ns();
   Get(m.p_bo(), r.p_BO);
+  Get(m.q_bo(), r.q_BO);
   Get(m.v_bo(), r.v_BO);
   r.dim = m.s_size();
   Get(m.s(), r.s);

@@ -8,6 +8,7 @@
 #include "fovea/log/tick_message.hpp"
 #include "fovea/log/topics.hpp"
 #include "fovea/model/kinematics.hpp"
+#include "fovea/model/rotation.hpp"
 #include "foxglove/log.pb.h"
 
 namespace fovea::log {
@@ -100,7 +101,9 @@ void TickWriter::WriteTransforms(const hal::TickRecord& record, LogFile& file) {
     add(frame.name, X_BL * frame.X_LnF);
   }
   if (record.target_known) {
-    add(kTargetFrame, {model::Mat3::Identity(), {record.p_BO[0], record.p_BO[1], record.p_BO[2]}});
+    model::Pose X_BO{model::Mat3::Identity(), {record.p_BO[0], record.p_BO[1], record.p_BO[2]}};
+    static_cast<void>(model::RotationOfQuaternion(record.q_BO, X_BO.R));  // else as it was: not turned
+    add(kTargetFrame, X_BO);
   }
   file.Write(kTransformTopic, record.stamp_ns, transforms_);
 }

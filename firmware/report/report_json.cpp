@@ -94,6 +94,8 @@ ordered_json Scene(const RunData& run) {
           {"camera_path", Base64(run.motion.camera_path)},
           {"target_path",
            is_known(run.motion.target_path) ? ordered_json(Base64(run.motion.target_path)) : nullptr},
+          {"target_turn",
+           is_known(run.motion.target_turn) ? ordered_json(Base64(run.motion.target_turn)) : nullptr},
           {"workspace_radius",
            run.workspace_radius > kLargestShown ? ordered_json(nullptr) : ordered_json(run.workspace_radius)},
           {"table_z", 0.0}};
@@ -139,10 +141,11 @@ std::string ToJson(const RunData& run) {
   json["duration_s"] = run.duration_s;
   json["lambda"] = run.lambda;
   // Without a target the run had no eye.
-  json["target"] =
-      run.target_radius == 0.0
-          ? ordered_json(nullptr)
-          : ordered_json({{"kind", "sphere"}, {"radius_m", run.target_radius}, {"moves", run.target_moves}});
+  json["target"] = run.target_radius == 0.0 ? ordered_json(nullptr)
+                                            : ordered_json({{"kind", run.target_kind},
+                                                            {"radius_m", run.target_radius},
+                                                            {"corners_m", run.target_corners},
+                                                            {"moves", run.target_moves}});
   json["joints"] = ordered_json::array();
   for (const JointInfo& joint : run.joints) {
     json["joints"].push_back({{"name", joint.name},

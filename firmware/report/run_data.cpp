@@ -14,6 +14,7 @@
 #include "fovea/run.pb.h"
 #include "fovea/tick.pb.h"
 #include "foxglove/image.pb.h"
+#include "image_error.hpp"
 #include "scene_reader.hpp"
 
 namespace fovea::report {
@@ -93,6 +94,8 @@ class Reader {
           {joint.name(), joint.prismatic(), joint.q_min(), joint.q_max(), joint.dq_max(), joint.tau_max()});
     }
     run_.lambda = setup.lambda();
+    run_.target_kind = setup.target().empty() ? "sphere" : setup.target();
+    run_.target_corners.assign(setup.corners().begin(), setup.corners().end());
     run_.target_radius = setup.target_radius();
     run_.target_moves = setup.target_moves();
     run_.workspace_radius = setup.workspace_radius();
@@ -101,18 +104,8 @@ class Reader {
     }
     open_limits_.resize(run_.limits_active.size());
     setup_ = setup;
+    image_error_ = ImageError(setup);
     run_.ticks.emplace(4 * run_.joints.size() + RunData::kNumTickColumns, kMostBuckets);
-  }
-
-  // Distance in the picture between two values of the sphere's feature [px]; NaN when one is behind the
-  // camera.
-  template <typename S>
-  float ErrorPx(const S& s, const S& s_star) const {
-    if (s.size() < 3 || s_star.size() < 3 || !(s[2] > 0.0) || !(s_star[2] > 0.0)) {
-      return kNone;
-    }
-    return static_cast<float>(
-        setup_.f_px() * std::hypot(s[0] / s[2] - s_star[0] / s_star[2], s[1] / s[2] - s_star[1] / s_star[2]));
   }
 
   void TakeTick(const log::Tick& tick) {
@@ -142,7 +135,7 @@ class Reader {
     }
     row.values.push_back(kNone);
     row.values.push_back(kNone);
-    row.values.push_back(tick.target_known() ? ErrorPx(tick.s(), tick.s_star()) : kNone);
+    row.values.push_back(tick.target_known() ? image_error_.OfTick(tick) : kNone);
     waiting_.push_back(std::move(row));
     Join(false);
   }
@@ -195,10 +188,9 @@ class Reader {
   }
 
   void TakeFeature(const log::Feature& feature, std::int64_t taken_ns) {
-    // In pixels s and s_star in units of the radius, or p_CO_C itself, are the same.
-    const float error = feature.found() ? ErrorPx(feature.s(), setup_.p_co_c_star()) : kNone;
     run_.measured.Add(Seconds(feature.stamp_ns()),
-                      {error, static_cast<float>(1e-6 * static_cast<double>(taken_ns - feature.stamp_ns())),
+                      {image_error_.OfMeasurement(feature),
+                       static_cast<float>(1e-6 * static_cast<double>(taken_ns - feature.stamp_ns())),
                        static_cast<float>(feature.confidence())});
   }
 
@@ -253,6 +245,7 @@ class Reader {
   RunData& run_;
   SceneReader scene_;
   log::Setup setup_;
+  ImageError image_error_;
   std::deque<Row> waiting_;
   std::deque<log::Truth> truths_;
   std::vector<std::optional<double>> open_limits_;  // since when each acts

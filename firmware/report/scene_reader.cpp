@@ -91,6 +91,7 @@ void SceneReader::AddTransforms(const foxglove::FrameTransforms& transforms, dou
   motion.poses.resize(begin + run_.links.size() * kPoseSize, kNone);
   motion.camera_path.resize(motion.t_s.size() * 3, kNone);
   motion.target_path.resize(motion.t_s.size() * 3, kNone);
+  motion.target_turn.resize(motion.t_s.size() * 4, kNone);
   for (const foxglove::FrameTransform& transform : transforms.transforms()) {
     const foxglove::Vector3& p = transform.translation();
     const foxglove::Quaternion& q = transform.rotation();
@@ -107,6 +108,8 @@ void SceneReader::AddTransforms(const foxglove::FrameTransforms& transforms, dou
       put(motion.camera_path, motion.camera_path.size() - 3, 3);
     } else if (transform.child_frame_id() == log::kTargetFrame) {
       put(motion.target_path, motion.target_path.size() - 3, 3);
+      std::transform(pose.begin() + 3, pose.end(), motion.target_turn.end() - 4,
+                     [](double v) { return static_cast<float>(v); });
     }
   }
   if (motion.t_s.size() > kMostFrames) {
@@ -120,6 +123,7 @@ void SceneReader::Thin() {
   Halve(motion.poses, run_.links.size() * kPoseSize);
   Halve(motion.camera_path, 3);
   Halve(motion.target_path, 3);
+  Halve(motion.target_turn, 4);
   stride_ *= 2;
 }
 
@@ -129,11 +133,15 @@ void SceneReader::AddTruth(const log::Truth& truth, double t_s) {
   }
   truth_t_s_.push_back(static_cast<float>(t_s));
   for (const double value : truth.p_bo()) {
-    truth_p_.push_back(static_cast<float>(value));
+    truth_X_.push_back(static_cast<float>(value));
+  }
+  for (int i = 0; i < 4; ++i) {
+    const double one = i == 0 ? 1.0 : 0.0;  // not turned
+    truth_X_.push_back(static_cast<float>(truth.q_bo_size() == 4 ? truth.q_bo(i) : one));
   }
   if (truth_t_s_.size() > 16 * kMostFrames) {
     Halve(truth_t_s_, 1);
-    Halve(truth_p_, 3);
+    Halve(truth_X_, kPoseSize);
     truth_stride_ *= 2;
   }
 }
@@ -147,8 +155,9 @@ void SceneReader::Finish() {
     const auto after = std::lower_bound(truth_t_s_.begin(), truth_t_s_.end(), motion.t_s[i]);
     const auto at = std::min<std::ptrdiff_t>(after - truth_t_s_.begin(),
                                              static_cast<std::ptrdiff_t>(truth_t_s_.size()) - 1);
-    std::copy_n(truth_p_.begin() + 3 * at, 3,
-                motion.target_path.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    const auto X_BO = truth_X_.begin() + static_cast<std::ptrdiff_t>(kPoseSize) * at;
+    std::copy_n(X_BO, 3, motion.target_path.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    std::copy_n(X_BO + 3, 4, motion.target_turn.begin() + static_cast<std::ptrdiff_t>(4 * i));
   }
 }
 

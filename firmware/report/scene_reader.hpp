@@ -19,7 +19,7 @@ class SceneReader {
   void AddScene(const foxglove::SceneUpdate& scene);
   void AddTransforms(const foxglove::FrameTransforms& transforms, double t_s);
   void AddTruth(const log::Truth& truth, double t_s);
-  // When all is read: the true target's path takes the place of the predicted one.
+  // When all is read: the true target's poses take the place of the predicted one.
   void Finish();
 
  private:
@@ -30,7 +30,7 @@ class SceneReader {
   std::int64_t frames_seen_ = 0;
   std::int64_t stride_ = 1;  // every so many frames are kept
   std::vector<float> truth_t_s_;
-  std::vector<float> truth_p_;
+  std::vector<float> truth_X_;  // x, y, z, qw, qx, qy, qz of the target in B
   std::int64_t truths_seen_ = 0;
   std::int64_t truth_stride_ = 1;
 };

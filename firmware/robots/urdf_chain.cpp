@@ -11,6 +11,7 @@
 #include <set>
 
 #include "fovea/config/input_error.hpp"
+#include "fovea/model/load.hpp"
 
 namespace fovea::robots {
 namespace {
@@ -114,12 +115,7 @@ class ChainReader {
   }
 
  private:
-  struct Body {
-    double mass;
-    Vec3 p_LCom;
-    Mat3 I_Com_L;
-  };
-  using Bodies = std::vector<Body>;
+  using Bodies = std::vector<model::LinkInertia>;  // all in the moving link's frame
 
   [[noreturn]] void Fail(const std::string& what) const { throw InputError(file_ + ": " + what); }
 
@@ -303,20 +299,13 @@ class ChainReader {
   }
 
   model::LinkInertia Merge(const Bodies& bodies, const std::string& joint) const {
-    model::LinkInertia sum;
     if (bodies.empty()) {
       Fail(fmt::format("joint \"{}\" moves a link without <inertial>: the torque for it cannot be computed",
                        joint));
     }
-    Vec3 moment = Vec3::Zero();
-    for (const Body& body : bodies) {
-      sum.mass += body.mass;
-      moment += body.mass * body.p_LCom;
-    }
-    sum.p_LiCom = moment / sum.mass;
-    for (const Body& body : bodies) {
-      const Vec3 d = body.p_LCom - sum.p_LiCom;
-      sum.I_Com_Li += body.I_Com_L + body.mass * (d.squaredNorm() * Mat3::Identity() - d * d.transpose());
+    model::LinkInertia sum;
+    for (const model::LinkInertia& body : bodies) {
+      sum = model::Join(sum, body);
     }
     return sum;
   }

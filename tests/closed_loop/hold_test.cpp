@@ -60,6 +60,25 @@ TEST(Hold, ABallBeyondTheWorkspaceIsHeldBeforeAtTheBarrier) {
   ExpectSound(s);
 }
 
+TEST(Hold, TheWayHomeEndsInTheReadyPostureAtRest) {
+  RestWatch watch;
+  const sim::Summary s = RunShipped("home", {}, watch.Options(4.0));
+  ASSERT_TRUE(s.home_error_rad.has_value());
+  std::cout << "off home by " << *s.home_error_rad << " rad; fastest joint " << watch.fastest() << " rad/s\n";
+  EXPECT_TRUE(s.converged) << s.verdict;
+  EXPECT_LT(*s.home_error_rad, 2e-5);
+  EXPECT_GT(watch.fastest(), 1.0) << "it did not have to go far";
+  EXPECT_LT(watch.at_the_end(), kAtRest);
+  ExpectSound(s);
+}
+
+TEST(Hold, AWayHomeThatALimitForbidsIsNoSuccess) {
+  const sim::Summary s = RunShipped("home", {"safety.boxes=[0.2, -0.1, 0.4, 0.4, 0.1, 0.8]"});
+  EXPECT_FALSE(s.converged);
+  EXPECT_EQ(LastReason(s), "motion_refused");
+  EXPECT_EQ(s.limit_violations, 0U);
+}
+
 TEST(Hold, ABallThatIsNeverInViewMovesNothing) {
   RestWatch watch;
   const sim::Summary s =

@@ -29,6 +29,48 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, StillBall,
                            return name;
                          });
 
+// Half a second without sight: the arm goes on by prediction and comes no later.
+TEST(OccludedBall, IsComeToByPrediction) {
+  const sim::Summary s = RunShipped("ball-occluded");
+  PrintResidual(s);
+  EXPECT_TRUE(s.converged);
+  EXPECT_EQ(s.frames - s.frames_detected, 15U);
+  EXPECT_EQ(std::count_if(s.modes.begin(), s.modes.end(), [](const auto& m) { return m.mode == "coast"; }),
+            1);
+  EXPECT_LT(s.settle_time_s.value(), 2.6);
+  ExpectSound(s);
+}
+
+// Pushed by 0.06 Ns once the arm stands over it, the ball rolls 0.11 m and stops; it is lost for three frames
+// at most, while the filter learns that it has been moved.
+TEST(PushedBall, IsFollowedToWhereItStops) {
+  sim::RunOptions options;
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();
+  Eigen::Vector3d last = Eigen::Vector3d::Zero();
+  double fastest = 0.0;
+  options.observer.on_truth = [&](const sim::Truth& truth) {
+    if (truth.stamp_ns == 0) {
+      first = truth.p_BO;
+    } else {
+      fastest = std::max(fastest, 1e3 * (truth.p_BO - last).norm());
+    }
+    last = truth.p_BO;
+  };
+  const sim::Summary s = RunShipped("ball-pushed", {}, options);
+  PrintResidual(s);
+  const double rolled = (last - first).norm();
+  std::cout << "the ball rolled " << rolled << " m, at most at " << fastest << " m/s\n";
+  EXPECT_GT(rolled, 0.10);
+  EXPECT_NEAR(fastest, 0.3, 0.01);
+  EXPECT_TRUE(s.converged);
+  EXPECT_EQ(s.frames_detected, s.frames);
+  EXPECT_LE(s.final_error_px_rms.value(), 0.3);
+  EXPECT_LE(s.final_error_mm.value(), 1.0);
+  EXPECT_LE(s.settle_time_s.value(), 5.5);
+  EXPECT_EQ(LastMode(s), "track");
+  ExpectSound(s);
+}
+
 // Without its colour the ball is found by its roundness; so it is on a bench where nothing else is round.
 TEST(GrayBall, StandsAtItsGoal) {
   const sim::Summary s = RunShipped("ball", {"vision.method=gray"});

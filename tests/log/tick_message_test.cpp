@@ -57,6 +57,12 @@ hal::FeatureMeasurement RandomFeature(Random& random) {
       f.cov_s[static_cast<std::size_t>(row * hal::kMaxFeatureDim + col)] = random.Double();
     }
   }
+  f.num_poses = static_cast<std::int32_t>(random.Whole(hal::kMaxPoses));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(f.num_poses); ++i) {
+    random.Fill(f.poses[i].p_CO_C, 3);
+    random.Fill(f.poses[i].q_CO, 4);
+    f.poses[i].first = static_cast<std::int32_t>(random.Whole(3));
+  }
   return f;
 }
 
@@ -83,6 +89,7 @@ hal::TickRecord RandomRecord(Random& random) {
   r.target_known = random.Whole(1) == 1;
   r.feature_age_ns = random.Whole(1'000'000'000);
   random.Fill(r.p_BO, 3);
+  random.Fill(r.q_BO, 4);
   random.Fill(r.v_BO, 3);
   r.dim = static_cast<std::int32_t>(random.Whole(hal::kMaxFeatureDim));
   random.Fill(r.s, r.dim);

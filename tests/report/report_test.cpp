@@ -130,6 +130,81 @@ TEST_F(ReportTest, TellsTheRunOfALog) {
   EXPECT_FLOAT_EQ(measured.columns[RunData::kAgeMs][0], 40.0F);
 }
 
+// What the servo and the eye say of a flat target is told in the same pixels as the truth, whatever s is.
+TEST_F(ReportTest, TellsTheErrorsOfFlatTargets) {
+  const double c = std::cos(0.1);
+  const double s = std::sin(0.1);
+  const auto error_of = [&](const std::string& target, const std::string& form, const hal::TickRecord& r) {
+    log::RunLog log(Config(path_));
+    log::Setup setup = Setup("flat");
+    setup.set_target(target);
+    setup.set_feature(form);
+    if (target == "square") {
+      for (const double value : {-0.04, -0.04, 0.04, -0.04, 0.04, 0.04, -0.04, 0.04}) {
+        setup.add_corners(value);
+      }
+    }
+    log.Add(log::kSetupTopic, 0, setup);
+    log.AddTick(r);
+    log.Finish();
+    const RunData run = ReadRun(folder_);
+    const std::size_t at = 4 * run.joints.size() + RunData::kPredictedPx;
+    return std::pair(run.ticks->rows().columns[at][0], run.measured.rows().columns[RunData::kMeasuredPx][0]);
+  };
+  hal::TickRecord r = Record(140);
+  // A disc, 0.01 of the focal length aside.
+  r.feature.kind = hal::FeatureKind::kCircle;
+  r.s = r.feature.s = {0.01, 0.0, 0.2};
+  r.s_star = {0.0, 0.0, 0.2};
+  const auto [disc_predicted, disc_measured] = error_of("circle", "circle", r);
+  EXPECT_FLOAT_EQ(disc_predicted, 5.0F);
+  EXPECT_FLOAT_EQ(disc_measured, 5.0F);
+  // A square 0.4 m away, turned by a quarter, which nobody sees, and by 0.1 rad, of which every corner moves
+  // by 2 sin(0.05) of its distance from the middle.
+  const double moved_px = 500.0 * 2.0 * std::sin(0.05) * 0.04 * std::sqrt(2.0) / 0.4;
+  r.feature.kind = hal::FeatureKind::kSquare;
+  r.feature.num_poses = 1;
+  r.feature.poses[0].p_CO_C = {0.0, 0.0, 0.4};
+  r.feature.poses[0].q_CO = {std::cos(0.5 * (0.1 + M_PI / 2)), 0.0, 0.0, std::sin(0.5 * (0.1 + M_PI / 2))};
+  r.dim = 8;
+  r.s_star = {-0.1, -0.1, 0.1, -0.1, 0.1, 0.1, -0.1, 0.1};
+  for (std::size_t i = 0; i < 8; i += 2) {
+    r.s[i] = c * r.s_star[i] - s * r.s_star[i + 1];
+    r.s[i + 1] = s * r.s_star[i] + c * r.s_star[i + 1];
+  }
+  const auto [square_predicted, square_measured] = error_of("square", "corners", r);
+  EXPECT_NEAR(square_predicted, moved_px, 1e-4);
+  EXPECT_NEAR(square_measured, moved_px, 1e-4);
+  // The same by its pose: phi takes it from where it is to where it shall be.
+  r.dim = 6;
+  r.s = {0.0, 0.0, 0.4, 0.0, 0.0, -0.1};
+  r.s_star = {0.0, 0.0, 0.4, 0.0, 0.0, 0.0};
+  EXPECT_NEAR(error_of("square", "pose", r).first, moved_px, 1e-4);
+}
+
+// A target that turns is turned in the 3-D view: by the truth where there is one.
+TEST_F(ReportTest, TheTargetsOrientationReachesTheScene) {
+  for (const bool truth : {false, true}) {
+    log::RunLog log(Config(path_));
+    log.Add(log::kSetupTopic, 0, Setup("turn"));
+    for (int i = 0; i < 60; ++i) {
+      hal::TickRecord r = Record(i + 200);
+      r.q_BO = {0.6, 0.0, 0.8, 0.0};
+      log.AddTick(r);
+      if (truth) {
+        log.AddTruth({r.stamp_ns, {}, {}, 1.0, 1.0, {0.0, 0.6, 0.0, 0.8}});
+      }
+    }
+    log.Finish();
+    const SceneMotion& motion = ReadRun(folder_).motion;
+    ASSERT_GE(motion.target_turn.size(), 8U);
+    EXPECT_EQ(motion.target_turn.size(), 4 * motion.t_s.size());
+    const std::vector<float> first(motion.target_turn.begin(), motion.target_turn.begin() + 4);
+    EXPECT_EQ(first, truth ? std::vector<float>({0.0F, 0.6F, 0.0F, 0.8F})
+                           : std::vector<float>({0.6F, 0.0F, 0.8F, 0.0F}));
+  }
+}
+
 // A robot's clock may have run for a century when the run begins.
 TEST_F(ReportTest, CountsTimeFromTheRunsStart) {
   WriteLog("late", true, 500, std::int64_t{1} << 62);

@@ -1,4 +1,4 @@
-// The objects of the 3-D view, made from a run's scene: arm, paths, ball, workspace, table.
+// The objects of the 3-D view, made from a run's scene: arm, paths, target, workspace, table.
 
 Fovea.armScene = (function () {
   const srgb = (rgb) => new THREE.Color(rgb[0], rgb[1], rgb[2]).convertSRGBToLinear();
@@ -107,6 +107,36 @@ Fovea.armScene = (function () {
     return group;
   }
 
+  // The target, in its own frame: x and y in its plane, z into it. A ball, a disc or a plate of some thickness
+  // behind the painted side.
+  function target(run, ghost) {
+    const { kind, radius_m: radius, corners_m: corners } = run.target;
+    const thick = 0.004;
+    let geometry;
+    if (kind === "circle") {
+      geometry = new THREE.CylinderBufferGeometry(radius, radius, thick, 64).rotateX(Math.PI / 2);
+      geometry.translate(0, 0, thick / 2);
+    } else if (corners && corners.length >= 6) {
+      const shape = new THREE.Shape();
+      for (let i = 0; i + 1 < corners.length; i += 2)
+        if (i) shape.lineTo(corners[i], corners[i + 1]);
+        else shape.moveTo(corners[i], corners[i + 1]);
+      geometry = new THREE.ExtrudeBufferGeometry(shape, { depth: thick, bevelEnabled: false });
+    } else geometry = new THREE.SphereBufferGeometry(radius || 0.02, 40, 28);
+    const mesh = new THREE.Mesh(
+      geometry,
+      new THREE.MeshStandardMaterial({
+        color: 0xb3120a,
+        roughness: 0.4,
+        transparent: ghost,
+        opacity: ghost ? 0.4 : 1,
+        side: THREE.DoubleSide,
+      }),
+    );
+    mesh.castShadow = true;
+    return mesh;
+  }
+
   // A sphere of which mostly the rim is seen.
   function workspace(radius) {
     const material = new THREE.ShaderMaterial({
@@ -205,5 +235,5 @@ Fovea.armScene = (function () {
     return sprite;
   }
 
-  return { arm, path, workspace, ring, table, lights, axes, css };
+  return { arm, path, target, workspace, ring, table, lights, axes, css };
 })();

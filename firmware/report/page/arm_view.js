@@ -40,6 +40,11 @@ Fovea.armView = (function () {
     return Number.isFinite(p.x + p.y + p.z) ? p : null;
   }
 
+  function turnAt(run, flat, t) {
+    const i = Math.min(Math.max(0, Fovea.indexAt(run.scene.t_s, t)), flat.length / 4 - 1) * 4;
+    return Number.isFinite(flat[i]) ? new THREE.Quaternion(flat[i + 1], flat[i + 2], flat[i + 3], flat[i]) : null;
+  }
+
   // Everything of one run that moves with the time.
   function actor(run, scene) {
     const ghost = run.index > 0;
@@ -54,29 +59,16 @@ Fovea.armView = (function () {
       group.add(object);
       return object;
     };
-    const { camera_path: seen, target_path: target } = run.scene;
+    const { camera_path: seen, target_path: target, target_turn: turns } = run.scene;
     if (seen) own(make.path(seen, "--blue", ghost, 0.005), "--blue");
     if (target) own(make.path(target, "--vermillion", ghost, 0.004), "--vermillion");
     const dot = seen
       ? own(new THREE.Mesh(new THREE.SphereBufferGeometry(0.013, 20, 14), new THREE.MeshBasicMaterial()), "--blue")
       : null;
-    const ball = target
-      ? new THREE.Mesh(
-          new THREE.SphereBufferGeometry(run.target.radius_m || 0.02, 40, 28),
-          new THREE.MeshStandardMaterial({
-            color: 0xb3120a,
-            roughness: 0.4,
-            transparent: ghost,
-            opacity: ghost ? 0.4 : 1,
-          }),
-        )
-      : null;
-    if (ball) {
-      ball.castShadow = true;
-      group.add(ball);
-    }
+    const thing = target ? make.target(run, ghost) : null;
+    if (thing) group.add(thing);
     const gaze =
-      dot && ball
+      dot && thing
         ? own(
             new THREE.Line(
               new THREE.BufferGeometry(),
@@ -89,9 +81,11 @@ Fovea.armView = (function () {
     const set = (t) => {
       setPose(t);
       const from = dot && pointAt(run, seen, t);
-      const to = ball && pointAt(run, target, t);
+      const to = thing && pointAt(run, target, t);
       if (from) dot.position.copy(from);
-      if (to) ball.position.copy(to);
+      if (to) thing.position.copy(to);
+      const turn = thing && turns && turnAt(run, turns, t);
+      if (turn) thing.quaternion.copy(turn);
       if (gaze && from && to) {
         gaze.geometry.setFromPoints([from, to]);
         gaze.computeLineDistances();

@@ -48,7 +48,8 @@ Fovea.decode = function (run) {
     run.duration_s = Math.max(last(run.ticks.t_s), last(run.measured.t_s)) || 0;
   }
   if (run.scene) {
-    for (const key of ["t_s", "poses", "camera_path", "target_path"]) run.scene[key] = Fovea.floats(run.scene[key]);
+    for (const key of ["t_s", "poses", "camera_path", "target_path", "target_turn"])
+      run.scene[key] = Fovea.floats(run.scene[key]);
   }
 };
 

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
-#include "fovea/vision/ball_detector.hpp"
+#include "fovea/vision/detection.hpp"
 #include "fovea/vision/intrinsics.hpp"
 
 namespace foxglove {
@@ -15,16 +16,17 @@ namespace fovea::log {
 
 foxglove::CameraCalibration CalibrationMessage(std::int64_t time_ns, const vision::Intrinsics& intrinsics);
 
-// Outlines on one picture. Each carries the metadata "role": kGoalRole, kDetectionRole or kTruthRole.
+// Outlines on one picture, drawn where the lens puts them. Each carries the metadata "role": kGoalRole,
+// kDetectionRole or kTruthRole.
 inline constexpr const char* kGoalRole = "goal";
 inline constexpr const char* kDetectionRole = "detection";
 inline constexpr const char* kTruthRole = "truth";
 
-// The outline of cone `m` (features/sphere.hpp), dashed or closed.
-void AddOutline(const vision::Intrinsics& intrinsics, const model::Vec3& m, const char* role,
-                foxglove::ImageAnnotations& annotations);
+// A closed outline of ideal pixels; nothing when it has none.
+void AddOutline(const vision::Intrinsics& intrinsics, std::span<const vision::ImagePoint> points,
+                const char* role, foxglove::ImageAnnotations& annotations);
 // The detection's outline, and its confidence in words; nothing when nothing was found.
-void AddDetection(const vision::Intrinsics& intrinsics, const vision::BallDetection& detection,
+void AddDetection(const vision::Intrinsics& intrinsics, const vision::Detection& detection,
                   foxglove::ImageAnnotations& annotations);
 
 }  // namespace fovea::log

@@ -59,6 +59,7 @@ struct TruthSample {
   std::array<double, 3> p_BC{};
   double error_px = 0.0;
   double error_mm = 0.0;
+  std::array<double, 4> q_BO{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
 };
 
 class RunLog {

@@ -71,6 +71,7 @@ struct SceneMotion {
   std::vector<float> poses;        // [F * links * 7] x, y, z, qw, qx, qy, qz
   std::vector<float> camera_path;  // [F * 3]
   std::vector<float> target_path;  // [F * 3]; NaN where it is not known
+  std::vector<float> target_turn;  // [F * 4] w, x, y, z of its orientation in B, the same
 };
 
 struct RunData {
@@ -82,7 +83,9 @@ struct RunData {
   std::string name;
   std::vector<JointInfo> joints;
   double lambda = 0.0;
-  double target_radius = 0.0;
+  std::string target_kind;             // "sphere", "circle", "square", "triangle"
+  double target_radius = 0.0;          // of the ball that holds it [m]; 0: there is none
+  std::vector<double> target_corners;  // x, y of each in O [m]; none of what is round
   bool target_moves = false;
   double workspace_radius = 0.0;
   double duration_s = 0.0;  // of the records that are there

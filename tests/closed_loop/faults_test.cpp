@@ -1,0 +1,64 @@
+// Whole runs with faults by script and by seed: what passes is ridden out, what lasts is latched, and a run
+// repeats to the last bit.
+#include <gmock/gmock.h>
+
+#include "closed_loop/closed_loop.hpp"
+
+namespace fovea::test {
+namespace {
+
+struct Case {
+  const char* name;
+  std::vector<std::string> assignments;
+};
+
+// Each from 0.6 s, in full approach, on for at most 1.8 s; 5 s in all.
+class Passing : public testing::TestWithParam<Case> {};
+
+TEST_P(Passing, IsRiddenOut) {
+  std::vector<std::string> assignments = GetParam().assignments;
+  assignments.emplace_back("run.duration_s=5");
+  const sim::Summary s = RunShipped("ball", assignments);
+  std::cout << GetParam().name << ": " << s.frames << " frames, " << s.frames_detected << " detected, "
+            << s.modes.size() << " modes; ";
+  PrintResidual(s);
+  EXPECT_TRUE(s.converged);
+  ExpectSound(s);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Faults, Passing,
+    testing::Values(Case{"FrameLoss", {"faults.frame_loss_s=[0.6, 2.4]", "faults.frame_loss=0.6"}},
+                    Case{"Freeze", {"faults.freeze_s=[0.6, 0.8]"}},
+                    Case{"Latency", {"faults.latency_s=[0.6, 2.4]", "faults.latency_ms=60"}},
+                    Case{"GlareAndOccluder",
+                         {"faults.glare_s=[0.6, 1.6]", "faults.glare_px=[340, 260, 30]",
+                          "faults.occluder_s=[0.6, 1.6]", "faults.occluder_px=[300, 240, 20, 480]"}},
+                    Case{"WrongDetections",
+                         {"faults.wrong_detection_s=[0.6, 2.4]", "faults.wrong_detection=0.3",
+                          "faults.wrong_detection_shift=[3, -2, 1]"}},
+                    Case{"Line",
+                         {"faults.packet_loss_s=[0.6, 2.4]", "faults.packet_loss=0.2",
+                          "faults.deadline_miss_s=[0.6, 2.4]", "faults.deadline_miss=0.2",
+                          "faults.encoder_noise_s=[1.0, 1.2]", "faults.encoder_noise=2e-4",
+                          "faults.velocity_noise=0.01"}},
+                    Case{"Load", {"faults.load_s=[0.6, 2.4]", "faults.load_mass=1"}}),
+    [](const auto& fault) { return std::string(fault.param.name); });
+
+std::string HashOf(int seed) {
+  const sim::Summary s = RunShipped(
+      "ball", {"run.duration_s=1.2", "run.seed=" + std::to_string(seed), "faults.frame_loss_s=[0.2, 1]",
+               "faults.packet_loss_s=[0.2, 1]", "faults.packet_loss=0.1", "faults.encoder_noise_s=[0.5, 0.6]",
+               "faults.encoder_noise=1e-4", "faults.wrong_detection_s=[0.2, 1]", "faults.wrong_detection=0.2",
+               "faults.deadline_miss_s=[0.2, 1]", "faults.deadline_miss=0.05"});
+  return s.log_hash;
+}
+
+TEST(Faults, TheSameSeedIsTheSameRunAndAnotherIsAnother) {
+  const std::string first = HashOf(3);
+  EXPECT_EQ(HashOf(3), first);
+  EXPECT_NE(HashOf(4), first);
+}
+
+}  // namespace
+}  // namespace fovea::test

@@ -1,0 +1,71 @@
+// The scenarios of all targets and motions on the simulated arm, with friction and encoder noise, seen by the
+// truth plus 0.05 px: what is left is the servo's own.
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "closed_loop/closed_loop.hpp"
+#include "closed_loop/truth_run.hpp"
+
+namespace fovea::test {
+namespace {
+
+void Print(const sim::Summary& s) {
+  PrintResidual(s);
+  if (s.final_error_deg) {
+    std::cout << "  " << *s.final_error_deg << " deg\n";
+  }
+}
+
+class StillTarget : public testing::TestWithParam<const char*> {};
+
+TEST_P(StillTarget, StandsAtItsGoal) {
+  const sim::Summary s = RunByTruth(GetParam());
+  Print(s);
+  EXPECT_TRUE(s.converged);
+  EXPECT_GE(s.start_error_px.value(), 100.0);
+  EXPECT_LE(s.final_error_px_rms.value(), 0.5);
+  EXPECT_LE(s.final_error_mm.value(), 1.0);
+  EXPECT_LE(s.final_error_deg.value_or(0.0), 0.2);
+  EXPECT_EQ(s.limit_violations, 0U);
+  EXPECT_TRUE(s.faults.empty());
+}
+INSTANTIATE_TEST_SUITE_P(Scenarios, StillTarget,
+                         testing::Values("ball", "ball-jump", "circle", "square", "triangle"),
+                         [](const auto& c) {
+                           std::string name = c.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+class MovingTarget : public testing::TestWithParam<const char*> {};
+
+TEST_P(MovingTarget, IsFollowedAndPredictionIsWhatDoesIt) {
+  const sim::Summary with = RunByTruth(GetParam());
+  const sim::Summary without = RunByTruth(GetParam(), {"servo.predict=false"});
+  Print(with);
+  Print(without);
+  EXPECT_TRUE(with.converged);
+  EXPECT_LE(with.tracking_error_px_rms.value(), 3.0);
+  EXPECT_LE(with.tracking_error_px_rms.value(), without.tracking_error_px_rms.value() / 5.0);
+  EXPECT_EQ(with.limit_violations, 0U);
+}
+INSTANTIATE_TEST_SUITE_P(Scenarios, MovingTarget, testing::Values("ball-moving", "ball-line", "ball-eight"),
+                         [](const auto& c) {
+                           std::string name = c.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+// A square that goes round and turns: all six degrees of freedom in motion.
+TEST(MovingSquare, IsFollowedInAllSix) {
+  const sim::Summary s =
+      RunByTruth("square", {"target.motion=circle", "target.path_radius=0.06", "target.speed=0.1",
+                            "target.turn_deg_s=8", "run.duration_s=10", "run.tracking_bound_px=5"});
+  Print(s);
+  EXPECT_TRUE(s.converged);
+  EXPECT_LE(s.tracking_error_px_rms.value(), 3.0);
+}
+
+}  // namespace
+}  // namespace fovea::test

@@ -1,0 +1,234 @@
+// Faults in closed loop: each is provoked while the arm in Bullet moves, latched after a stated number of
+// ticks, and the arm comes to rest, its brakes close, and nothing but a reset moves it again.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <limits>
+
+#include "closed_loop/guard_bench.hpp"
+#include "closed_loop/guard_provocations.hpp"
+
+namespace fovea::test {
+namespace {
+
+using hal::Fault;
+using hal::Mode;
+
+constexpr double kStart = 0.5;  // when what provokes begins [s]
+constexpr int kStartMs = 500;
+constexpr double kNever = 1e6;
+
+// An arm in full motion at kStart.
+GuardSetup Moving() {
+  GuardSetup setup;
+  Eigen::VectorXd goal = setup.world.q_start;
+  goal[0] += 1.2;
+  goal[3] += 0.3;
+  setup.motion = GoTo(0.1, goal);
+  return setup;
+}
+
+// Runs the fault out, and checks that it came `ticks` after `begin_ms` and that the arm stopped.
+void ExpectStop(GuardBench& bench, Fault fault, int begin_ms, int ticks, int tolerance,
+                PushedBy by = PushedBy::kServo) {
+  bench.RunUntil(2.5);
+  const int at = bench.FirstFault();
+  ASSERT_GE(at, 0) << "no fault came";
+  const auto first = std::find_if(bench.ticks().begin(), bench.ticks().end(),
+                                  [&](const GuardTick& tick) { return tick.ms == at; });
+  EXPECT_EQ(first->record.fault, fault) << hal::Name(first->record.fault);
+  EXPECT_NEAR(at, begin_ms + ticks, tolerance);
+
+  const double speed = bench.speeds()[static_cast<std::size_t>(at)];
+  const auto fastest = std::max_element(bench.speeds().begin() + at, bench.speeds().end());
+  const auto braked = std::find_if(bench.ticks().begin(), bench.ticks().end(),
+                                   [](const GuardTick& tick) { return tick.record.command.engage_brakes; });
+  ASSERT_NE(braked, bench.ticks().end()) << "the brakes never closed";
+  PrintFigures(std::string(hal::Name(fault)) + ": latched " + std::to_string(at - begin_ms) +
+                   " ticks after it began at " + std::to_string(speed) + " rad/s, fastest after that " +
+                   std::to_string(*fastest) + " rad/s, at rest " + std::to_string(bench.AtRest() - at) +
+                   " and brakes " + std::to_string(braked->ms - at) + " ticks after the fault",
+               bench);
+  EXPECT_LE(*fastest, 1.05 * speed + 0.05) << "it must not speed up";
+  EXPECT_LT(bench.AtRest() - at, 700);
+  EXPECT_EQ(bench.speeds().back(), 0.0);
+  ExpectInsideLimits(bench, by);
+
+  bench.Ask(servo::Request::kTrack);
+  bench.RunUntil(2.6);
+  EXPECT_EQ(bench.last().record.mode, Mode::kFault) << "only a reset leaves it";
+  bench.Ask(servo::Request::kReset);
+  bench.RunUntil(2.7);
+  EXPECT_EQ(bench.last().record.mode == Mode::kFault, bench.last().record.fault != Fault::kNone);
+}
+
+}  // namespace
+
+void ProvokeArmLost() {
+  GuardSetup setup = Moving();
+  setup.arm_faults.packet_loss = {{kStart, 1.0}, 1.0};
+  GuardBench bench(setup);
+  ExpectStop(bench, Fault::kArmLost, kStartMs, setup.servo.safety.arm_lost_ticks - 1, 0);
+}
+
+void ProvokeArmStale() {
+  GuardSetup setup = Moving();
+  setup.arm_faults.clock_jump = {{kStart, 1.0}, -hal::kNsPerSecond};
+  GuardBench bench(setup);
+  ExpectStop(bench, Fault::kArmStale, kStartMs, setup.servo.safety.arm_lost_ticks - 1, 0);
+}
+
+void ProvokeNonFiniteSensor() {
+  GuardSetup setup = Moving();
+  setup.arm_faults.not_a_number = {{kStart, 1.0}, 3};
+  GuardBench bench(setup);
+  ExpectStop(bench, Fault::kNonFiniteSensor, kStartMs, setup.servo.safety.non_finite_ticks, 0);
+  EXPECT_EQ(bench.ticks()[static_cast<std::size_t>(bench.FirstFault())].record.fault_joint, 3);
+}
+
+// The arm follows a target when the detector says something that is no number.
+void ProvokeNonFiniteFeature() {
+  GuardSetup setup;
+  setup.servo.auto_track = true;
+  setup.target = [](double) { return Eigen::Vector3d(0.56, 0.14, 0.04); };
+  setup.spoil = [](hal::FeatureMeasurement& m) {
+    if (m.stamp_ns >= (kStartMs - 40) * hal::kNsPerMs) {
+      m.s[1] = std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  GuardBench bench(setup);
+  ExpectStop(bench, Fault::kNonFiniteFeature, kStartMs, 17, 17);  // with the next frame
+  const auto said = std::find_if(bench.ticks().begin(), bench.ticks().end(), [](const GuardTick& tick) {
+    return tick.record.has_feature && std::isnan(tick.record.feature.s[1]);
+  });
+  ASSERT_NE(said, bench.ticks().end());
+  EXPECT_EQ(said->ms, bench.FirstFault()) << "in the tick that was told";
+}
+
+// The computer is away for 30 ticks, the last command stays in force; for half of that it goes on.
+void ProvokeDeadlineMissed() {
+  GuardSetup setup = Moving();
+  setup.stall.window = {kStart, kStart + 0.030};
+  GuardBench bench(setup);
+  ExpectStop(bench, Fault::kDeadlineMissed, kStartMs, 30, 0);
+
+  GuardSetup shorter = Moving();
+  shorter.stall.window = {kStart, kStart + 0.001 * (shorter.servo.safety.missed_ticks - 1)};
+  GuardBench goes_on(shorter);
+  goes_on.RunUntil(2.5);
+  PrintFigures("one missed tick less", goes_on);
+  EXPECT_EQ(goes_on.last().record.mode, Mode::kHold) << hal::Name(goes_on.last().record.fault);
+  ExpectInsideLimits(goes_on);
+}
+
+namespace {
+
+// An arm that floats is pushed by joint 1 alone.
+GuardSetup Pushed(double q1, double tau, double for_s) {
+  GuardSetup setup;
+  setup.servo.motion_law.kind = servo::MotionLawKind::kFloat;
+  setup.world.q_start[0] = q1;
+  setup.world.push.tau = tau * Eigen::VectorXd::Unit(7, 0);
+  setup.world.push.window = {0.3, 0.3 + for_s};
+  return setup;
+}
+
+// When joint 1 was measured past its limit for the first time [ms]; the fault must come in that very tick.
+template <typename Passed>
+int FirstPassed(const GuardBench& bench, Passed passed) {
+  const auto found = std::find_if(bench.ticks().begin(), bench.ticks().end(),
+                                  [&](const GuardTick& tick) { return passed(tick.record.arm); });
+  return found == bench.ticks().end() ? -1 : found->ms;
+}
+
+}  // namespace
+
+// A model with friction so absurd that a law which makes up for it overflows where a joint moves: a defect as
+// such, since no finite input brings the shipped laws to it. The arm floats and was pushed when that law
+// comes.
+void ProvokeNonFiniteControl() {
+  GuardSetup setup = Pushed(-1.5, 4.0, 0.05);
+  setup.servo.motion_law.friction_compensation = 1.0;
+  setup.servo.arm.joints[0].coulomb = std::numeric_limits<double>::max();
+  setup.servo.arm.joints[0].viscous = std::numeric_limits<double>::max();
+  GuardBench bench(setup);
+  bench.RunUntil(kStart);
+  ASSERT_EQ(bench.last().record.mode, Mode::kHold);
+  bench.Ask(servo::MotionLawKind::kComputedTorque);
+  ExpectStop(bench, Fault::kNonFiniteControl, kStartMs, 0, 0);
+}
+
+void ProvokeJointOutside() {
+  const model::Joint& joint = Panda().model.joints[0];
+  GuardBench bench(Pushed(joint.q_max - 0.1, 2.0, 0.12));
+  ExpectStop(bench, Fault::kJointPosition, 300, 160, 40, PushedBy::kWorld);
+  EXPECT_EQ(bench.FirstFault(),
+            FirstPassed(bench, [&](const hal::ArmState& arm) { return arm.q[0] > joint.q_max; }));
+  std::cout << "stopped " << bench.truth().q[0] - joint.q_max << " rad past the end\n";
+  EXPECT_LT(bench.truth().q[0], joint.q_max + 0.12);
+}
+
+void ProvokeJointTooFast() {
+  const model::Joint& joint = Panda().model.joints[0];
+  GuardBench bench(Pushed(-1.5, 15.0, 0.036));
+  ExpectStop(bench, Fault::kJointVelocity, 300, 36, 4, PushedBy::kWorld);
+  EXPECT_EQ(bench.FirstFault(),
+            FirstPassed(bench, [&](const hal::ArmState& arm) { return arm.dq[0] > joint.dq_max; }));
+}
+
+// The motor of joint 1 gives nothing while the joint is to speed up; what would see it sooner is off.
+void ProvokeNotFollowing() {
+  GuardSetup setup = Moving();
+  setup.servo.safety.contact_torque_fraction = 1e3;
+  setup.world.torque_loss = {{0.1, kNever}, 0, 1.0};
+  GuardBench bench(setup);
+  ExpectStop(bench, Fault::kNotFollowing, 100, 143, 20);
+  const auto& at = bench.ticks()[static_cast<std::size_t>(bench.FirstFault())].record;
+  EXPECT_EQ(at.fault_joint, 0);
+  const auto off = std::find_if(bench.ticks().begin(), bench.ticks().end(), [&](const GuardTick& tick) {
+    return std::fabs(tick.record.q_cmd[0] - tick.record.arm.q[0]) > setup.servo.safety.following_error;
+  });
+  EXPECT_EQ(off->ms, bench.FirstFault()) << "in the tick in which it was off";
+}
+
+// Joint 2 of an arm that stands is pushed with 1.5 times the torque that it may be: the observer's answer is
+// 1 - exp(-K t) of the push.
+void ProvokeContact() {
+  GuardSetup setup;
+  const servo::SafetyConfig& safety = setup.servo.safety;
+  const double most = safety.contact_torque_fraction * Panda().model.joints[1].tau_max;
+  setup.world.push.tau = 1.5 * most * Eigen::VectorXd::Unit(7, 1);
+  setup.world.push.window = {kStart, kStart + 0.04};
+  GuardBench bench(setup);
+  const double after_ms = 1e3 * std::log(3.0) / safety.contact_gain;
+  std::cout << "expected after " << after_ms << " ticks\n";
+  ExpectStop(bench, Fault::kContact, kStartMs, static_cast<int>(std::lround(after_ms)), 3);
+  EXPECT_EQ(bench.ticks()[static_cast<std::size_t>(bench.FirstFault())].record.fault_joint, 1);
+}
+
+// The motor of a joint that bears the arm gives nothing any more: no damping stops that joint, the brakes
+// must.
+TEST(GuardFault, ADeadMotorUnderLoadIsFoundAndTheBrakesHold) {
+  for (const int joint : {1, 3}) {
+    GuardSetup setup;
+    setup.world.torque_loss = {{kStart, kNever}, joint, 1.0};
+    GuardBench bench(setup);
+    bench.RunUntil(2.5);
+    const int at = bench.FirstFault();
+    ASSERT_GE(at, kStartMs);
+    const double speed = bench.speeds()[static_cast<std::size_t>(at)];
+    const double fastest = *std::max_element(bench.speeds().begin() + at, bench.speeds().end());
+    PrintFigures("joint " + std::to_string(joint + 1) + " dead: " + hal::Name(bench.last().record.fault) +
+                     " latched " + std::to_string(at - kStartMs) + " ticks after it at " +
+                     std::to_string(speed) + " rad/s, fastest " + std::to_string(fastest) +
+                     " rad/s, at rest " + std::to_string(bench.AtRest() - at) + " ticks after the fault",
+                 bench);
+    EXPECT_LT(bench.AtRest() - at, 150);
+    EXPECT_LT(fastest, speed + 2.4) << "so much until the torque is gone and the brakes close";
+    EXPECT_EQ(bench.speeds().back(), 0.0);
+  }
+}
+
+}  // namespace fovea::test

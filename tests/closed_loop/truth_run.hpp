@@ -1,0 +1,94 @@
+// A shipped scenario without renderer and detector: physics, servo and judge as they are, the eye told the
+// truth with noise of a size in pixels. What a feature, the filter and the law do is seen in a tenth of the
+// time.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "fovea/servo/servo_loop.hpp"
+#include "sim/app/compose.hpp"
+#include "sim/app/run_description.hpp"
+#include "sim/app/verdict.hpp"
+#include "sim/world/sim_arm.hpp"
+#include "sim/world/world_clock.hpp"
+#include "support/truth_eye.hpp"
+
+namespace fovea::test {
+
+class TruthRun final : private hal::Recorder, private hal::TickProbe {
+ public:
+  TruthRun(const std::string& name, const std::vector<std::string>& assignments, double sigma_px)
+      : about_(sim::DescribeRun(sim::LoadScenario(name, assignments))),
+        eye_(about_.servo.feature, about_.pinhole.f_px, sigma_px,
+             static_cast<unsigned>(about_.scenario.run.seed)),
+        verdict_(MakeVerdictConfig()),
+        world_(sim::MakeWorldConfig(about_.scenario, about_.scene.robot)) {}
+
+  sim::Summary Execute() {
+    if (!task_.Init(about_.servo).ok()) {
+      throw std::logic_error("a servo configuration that was checked is refused");
+    }
+    const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);
+    sim::Summary summary;
+    world_.OnStep([&](const sim::Truth& truth) { verdict_.AddTruth(truth); });
+    world_.OnExposure([&](const sim::Exposure& exposure) {
+      const Eigen::Isometry3d X_CB = exposure.X_BC.inverse();
+      const model::Pose X_CO{X_CB.linear() * exposure.R_BO, X_CB * exposure.p_BO};
+      under_way_.push_back(eye_.See(X_CO, exposure.stamp_ns, exposure.sequence));
+      ++summary.frames;
+      ++summary.frames_detected;
+    });
+    hal::FeatureMailbox mailbox;
+    sim::SimArm arm(world_);
+    sim::LockstepClock clock(world_, [&](std::int64_t now_ns) {
+      while (!under_way_.empty() && under_way_.front().stamp_ns + latency_ns <= now_ns) {
+        mailbox.Put(under_way_.front());
+        under_way_.pop_front();
+      }
+      return true;
+    });
+    servo::ServoLoop loop(task_, arm, clock, mailbox, *this, *this);
+    const hal::Status status = loop.Run(static_cast<std::int64_t>(about_.scenario.run.duration_s * 1e9));
+    clock.RethrowFailure();
+    if (!status.ok()) {
+      throw std::runtime_error("the run broke off");
+    }
+    summary.scenario = about_.scenario.name;
+    summary.seed = about_.scenario.run.seed;
+    verdict_.Fill(summary);
+    return summary;
+  }
+
+ private:
+  void Record(const hal::TickRecord& record) noexcept override { verdict_.AddRecord(record); }
+  void Enter() noexcept override {}
+  void Leave() noexcept override {}
+
+  sim::VerdictConfig MakeVerdictConfig() const {
+    sim::VerdictConfig config;
+    config.arm = about_.servo.arm;
+    config.pinhole = about_.pinhole;
+    config.goal = sim::GoalOf(about_.servo.feature);
+    config.target_moves = sim::KeepsMoving(about_.scenario.target);
+    config.tracking_bound_px = about_.scenario.run.tracking_bound_px;
+    config.duration_s = about_.scenario.run.duration_s;
+    config.workspace_radius = about_.servo.guard.workspace_radius;
+    return config;
+  }
+
+  const sim::RunDescription about_;
+  TruthEye eye_;
+  sim::Verdict verdict_;
+  sim::World world_;
+  servo::ServoTask task_;
+  std::deque<hal::FeatureMeasurement> under_way_;
+};
+
+inline sim::Summary RunByTruth(const std::string& name, const std::vector<std::string>& assignments = {},
+                               double sigma_px = 0.05) {
+  return TruthRun(name, assignments, sigma_px).Execute();
+}
+
+}  // namespace fovea::test
