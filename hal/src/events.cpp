@@ -36,6 +36,7 @@ constexpr std::array<Entry, kNumLimits> kLimitTable{{
     {"obstacle", "safety.planes"},
     {"cartesian_speed", "safety.cartesian_speed"},
     {"singularity", "safety.singularity_min"},
+    {"field_of_view", "safety.view_margin_px"},
 }};
 
 }  // namespace

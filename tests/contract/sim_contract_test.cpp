@@ -6,6 +6,8 @@
 #include "contract/clock_contract.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "sim/camera/sim_camera.hpp"
+#include "sim/faults/faulty_arm.hpp"
+#include "sim/faults/stalling_clock.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_clock.hpp"
@@ -36,6 +38,24 @@ struct LockstepClockFixture {
   hal::Clock& clock() { return driver; }
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(LockstepClock, ClockContract, LockstepClockFixture);
+
+// The decorators of faults are drivers, too.
+struct FaultyArmFixture {
+  sim::World world{PandaWorld()};
+  sim::SimArm inner{world};
+  sim::FaultyArm driver{inner, {}};
+  hal::Arm& arm() { return driver; }
+  void Advance() { world.AdvanceTo(world.now_ns() + hal::kTickPeriodNs); }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(FaultyArm, ArmContract, FaultyArmFixture);
+
+struct StallingClockFixture {
+  sim::World world{PandaWorld()};
+  sim::LockstepClock inner{world, [](std::int64_t) { return true; }};
+  sim::StallingClock driver{inner, {{0.001, 0.004}, 0.5, 1}};
+  hal::Clock& clock() { return driver; }
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(StallingClock, ClockContract, StallingClockFixture);
 
 struct RealPaceClockFixture {
   sim::World world{PandaWorld()};

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <thread>
 
 namespace fovea::linux_rt {
@@ -17,13 +19,37 @@ TEST(RealtimeTest, HasOrNamesEachThing) {
     int named = 0;
     for (const std::string& line : missing) {
       named += line.find("SCHED_FIFO") != std::string::npos ? 1 : 0;
-      EXPECT_NE(line.find("limits.d"), std::string::npos) << "it says what to do: " << line;
+      EXPECT_NE(line.find("): "), std::string::npos) << "it says what to do: " << line;
       EXPECT_EQ(line.find('\n'), std::string::npos);
     }
     EXPECT_EQ(sched_getscheduler(0) == SCHED_FIFO, named == 0);
   });
   thread.join();
   munlockall();  // not for the rest of this process
+}
+
+TEST(RealtimeTest, StaysOnItsProcessorAndItsTimersHaveNoSlack) {
+  std::thread thread([] {
+    const int here = sched_getcpu();
+    MakeThreadRealtime({.fifo_priority = 10, .lock_memory = false, .cpu = here});
+    cpu_set_t cpus;
+    ASSERT_EQ(sched_getaffinity(0, sizeof(cpus), &cpus), 0);
+    EXPECT_EQ(CPU_COUNT(&cpus), 1);
+    EXPECT_EQ(sched_getcpu(), here);
+    EXPECT_LE(prctl(PR_GET_TIMERSLACK), 1);
+  });
+  thread.join();
+}
+
+TEST(RealtimeTest, AProcessorThatIsNotThereIsNamed) {
+  std::thread thread([] {
+    const auto missing = MakeThreadRealtime({.fifo_priority = 10, .lock_memory = false, .cpu = 1000});
+    const auto named = [](const std::string& line) {
+      return line.find("processor 1000") != std::string::npos;
+    };
+    EXPECT_EQ(std::count_if(missing.begin(), missing.end(), named), 1);
+  });
+  thread.join();
 }
 
 TEST(RealtimeTest, YieldingLowersTheThreadAlone) {

@@ -1,12 +1,16 @@
 #include "fovea/linux_rt/realtime.hpp"
 
+#include <fcntl.h>
+#include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
 
 namespace fovea::linux_rt {
@@ -25,6 +29,21 @@ void PrefaultStack(int kib) {
   page[kPage - 1] = page[0];  // keeps the frame alive across the call
 }
 
+// The wish holds as long as the file is open: until the process ends, on purpose.
+bool KeepProcessorAwake() {
+  const int file = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
+  const std::int32_t latency_us = 0;
+  return file >= 0 && write(file, &latency_us, sizeof(latency_us)) == sizeof(latency_us);
+}
+
+bool StayOn(int cpu) {
+  cpu_set_t cpus;
+  CPU_ZERO(&cpus);
+  CPU_SET(static_cast<std::size_t>(cpu), &cpus);
+  errno = pthread_setaffinity_np(pthread_self(), sizeof(cpus), &cpus);
+  return errno == 0;
+}
+
 }  // namespace
 
 std::vector<std::string> MakeThreadRealtime(const RealtimeOptions& options) {
@@ -39,6 +58,19 @@ std::vector<std::string> MakeThreadRealtime(const RealtimeOptions& options) {
     missing.push_back("memory is not locked (" + Reason() +
                       "): run as root, or give your user a memlock in /etc/security/limits.d");
   }
+  if (options.cpu >= 0 && !StayOn(options.cpu)) {
+    missing.push_back("not kept on processor " + std::to_string(options.cpu) + " (" + Reason() +
+                      "): see `nproc` for those that there are");
+  }
+  if (options.keep_awake && !KeepProcessorAwake()) {
+    missing.push_back("the processor may sleep deeply, /dev/cpu_dma_latency (" + Reason() +
+                      "): run as root, or give your user write access by a udev rule");
+  }
+  if (options.keep_memory) {
+    mallopt(M_TRIM_THRESHOLD, -1);
+    mallopt(M_MMAP_MAX, 0);
+  }
+  prctl(PR_SET_TIMERSLACK, 1UL);  // a thread of SCHED_FIFO has none; one that could not become so is helped
   PrefaultStack(options.stack_prefault_kib);
   return missing;
 }

@@ -53,8 +53,9 @@ enum class Limit : std::uint8_t {
   kObstacle,        // a plane or a box that the end effector must not enter
   kCartesianSpeed,  // of the end effector
   kSingularity,     // a posture in which a direction of the end effector is lost
+  kFieldOfView,     // the target at the edge of the picture
 };
-inline constexpr int kNumLimits = 10;
+inline constexpr int kNumLimits = 11;
 
 // One bit per Limit: those which acted in a tick.
 using LimitSet = std::uint32_t;

@@ -9,10 +9,25 @@
 
 namespace fovea::hal {
 
-// Which visual feature `s` is; firmware/features has one file for each.
+// What was seen, and what `s` and `cov_s` say of it; firmware/features has one file for each.
+//
+// A flat target's frame O: origin in its middle (the mean of its corners), x to the right and y down as one
+// looks at its painted side, z into it; so a target that faces the camera squarely has R_CO = I.
 enum class FeatureKind : std::uint8_t {
-  kSphere,  // s [3] = p_CO_C / radius: the sphere's centre in camera axes, in units of its radius
+  kSphere,    // s [3] = p_CO_C / radius: the sphere's centre in camera axes, in units of its radius
+  kCircle,    // s [3] = (X / Z, Y / Z, D / Z) of the disc's centre p_CO_C and its diameter D
+  kSquare,    // s [8], kTriangle s [6] = (x_0, y_0, x_1, y_1, ...): the corners in the normalised image, in
+  kTriangle,  // O's order, which turns from x to y; `poses` says which one may be O's first
 };
+
+// A pose of a flat target in which its corners look as they were measured. Three corners have up to four of
+// them, a square two; one image does not tell which is true, only the camera's motion does.
+struct FlatPose {
+  std::array<double, 3> p_CO_C{};                  // [m]
+  std::array<double, 4> q_CO{1.0, 0.0, 0.0, 0.0};  // (w, x, y, z)
+  std::int32_t first = 0;  // O's corner i is s's corner (first + i) modulo their number
+};
+inline constexpr int kMaxPoses = 6;
 
 struct FeatureMeasurement {
   std::int64_t stamp_ns = 0;   // mid-exposure of the frame, monotonic, in the loop's Clock
@@ -24,6 +39,9 @@ struct FeatureMeasurement {
   std::array<double, kMaxFeatureDim> s{};  // [dim] units as `kind` says
   // [dim x dim] covariance of s, row-major with rows of kMaxFeatureDim entries.
   std::array<double, kMaxFeatureDim * kMaxFeatureDim> cov_s{};
+  // Of square and triangle: the poses that s allows, the likeliest first; 0 when none fits. To start from.
+  std::int32_t num_poses = 0;
+  std::array<FlatPose, kMaxPoses> poses{};
 };
 
 // Where a vision task puts its measurements. Real-time: yes.

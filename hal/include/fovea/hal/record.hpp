@@ -32,9 +32,10 @@ struct TickRecord {
 
   // Prediction, frame B
   bool target_known = false;
-  std::int64_t feature_age_ns = 0;  // stamp_ns less the stamp of the last accepted measurement
-  std::array<double, 3> p_BO{};     // target's centre [m]
-  std::array<double, 3> v_BO{};     // its velocity [m/s]
+  std::int64_t feature_age_ns = 0;                 // stamp_ns less the stamp of the last accepted measurement
+  std::array<double, 3> p_BO{};                    // target's centre [m]
+  std::array<double, 4> q_BO{1.0, 0.0, 0.0, 0.0};  // its orientation (w, x, y, z); 1 where none is seen
+  std::array<double, 3> v_BO{};                    // its velocity [m/s]
 
   // Visual law, units as the feature's kind says
   std::int32_t dim = 0;

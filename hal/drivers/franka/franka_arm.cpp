@@ -1,0 +1,273 @@
+// What runs in the loop: no heap, no lock, no exception. The set-up is in franka_setup.cpp.
+#include "fovea/franka/franka_arm.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+namespace fovea::franka {
+namespace {
+
+using hal::Status;
+using hal::StatusCode;
+
+// The robot's clock may run this much faster or slower than the computer's: what the estimate of their offset
+// gives way each millisecond.
+constexpr std::int64_t kDriftNsPerState = 200;
+constexpr int kMostDatagramsPerRead = 256;
+// States from before a recovery may come after its answer: two channels, no common order.
+constexpr int kMostStoppedStates = 100;
+constexpr int kMostStartingStates = 500;  // until a motion that was asked for shows
+
+std::int64_t NowNs() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
+}
+
+hal::JointArray ToJoints(const Vector7& values) noexcept {
+  hal::JointArray joints{};
+  std::copy(values.begin(), values.end(), joints.begin());
+  return joints;
+}
+
+}  // namespace
+
+Status FrankaArm::DoRead(hal::ArmState& state) noexcept {
+  if (recovery_asked_.exchange(false, std::memory_order_relaxed)) {
+    Recover();
+  }
+  Answer(/*repeated=*/true);
+  const std::int64_t deadline_ns = NowNs() + state_timeout_ns_;
+  for (;;) {
+    const bool new_state = TakeStates();
+    TakeAnswers();  // an answer that was sent before the state is read before it is acted on
+    if (!tcp_.open()) {
+      return Status(StatusCode::kDisconnected, failure_);
+    }
+    if (new_state) {
+      break;
+    }
+    const std::int64_t left_ns = deadline_ns - NowNs();
+    if (left_ns <= 0) {
+      ++counters_.timeouts;
+      return Status(StatusCode::kTimeout, "robot state");
+    }
+    const std::array fds{udp_.fd(), tcp_.fd()};
+    WaitReadable(fds, left_ns);
+  }
+  FollowPhase();
+  if (phase_ == MotionPhase::kFailed) {
+    return Status(StatusCode::kDeviceFault, failure_);
+  }
+  Fill(state);
+  return Status::Ok();
+}
+
+Status FrankaArm::DoWrite(const hal::ArmCommand& command) noexcept {
+  if (!tcp_.open()) {
+    return Status(StatusCode::kDisconnected, failure_);
+  }
+  std::copy_n(command.tau_cmd.begin(), tau_wish_.size(), tau_wish_.begin());
+  brakes_ = command.engage_brakes;
+  if (!brakes_ && phase_ == MotionPhase::kIdle && allow_motion_) {
+    StartMotion();
+  }
+  Answer(/*repeated=*/false);
+  return phase_ == MotionPhase::kFailed ? Status(StatusCode::kDeviceFault, failure_) : Status::Ok();
+}
+
+// Once for each state of a motion.
+void FrankaArm::Answer(bool repeated) noexcept {
+  phase_ = phase_ == MotionPhase::kRunning && brakes_ ? MotionPhase::kFinishing : phase_;
+  if (answered_ || (phase_ != MotionPhase::kRunning && phase_ != MotionPhase::kFinishing)) {
+    return;
+  }
+  answered_ = true;
+  RobotCommand command;
+  command.message_id = state_.message_id;
+  command.q_c = state_.q_d;
+  command.O_T_EE_c = state_.O_T_EE_d;
+  command.elbow_c = state_.elbow_d;
+  command.motion_generation_finished = phase_ == MotionPhase::kFinishing ? 1 : 0;
+  const bool limited = torque_rate_.Limit(tau_wish_, state_.tau_J_d, command.tau_J_d);
+  ++counters_.commands;
+  counters_.repeated_commands += repeated ? 1U : 0U;
+  counters_.rate_limited += limited ? 1U : 0U;
+  counters_.send_failures += udp_.Send(Bytes(command), robot_udp_) ? 0U : 1U;
+}
+
+void FrankaArm::StartMotion() noexcept {
+  if (Post(Command::kMove, MoveRequest{}, move_id_)) {
+    phase_ = MotionPhase::kStarting;
+    torque_rate_.Clear();
+    move_started_ = false;
+    starting_states_ = 0;
+    ++counters_.motions;
+  }
+}
+
+void FrankaArm::Recover() noexcept {
+  std::uint32_t id = 0;
+  if (phase_ == MotionPhase::kFailed && !recovery_id_ &&
+      Post(Command::kAutomaticErrorRecovery, Nothing{}, id)) {
+    recovery_id_ = id;
+  }
+}
+
+bool FrankaArm::PostBytes(std::span<const std::byte> message) noexcept {
+  const bool sent = tcp_.Send(message);
+  counters_.send_failures += sent ? 0U : 1U;
+  return sent;
+}
+
+void FrankaArm::TakeAnswers() noexcept {
+  Header header;
+  std::span<const std::byte> payload;
+  while (tcp_.open()) {
+    switch (stream_.Take(tcp_, header, payload)) {
+      case MessageStream::Next::kMessage: TakeAnswer(header, payload); break;
+      case MessageStream::Next::kNothing: return;
+      case MessageStream::Next::kClosed:
+        Fail("the robot closed the connection");
+        tcp_.Close();
+        return;
+      case MessageStream::Next::kGarbage:
+        Fail("the robot sent what is no message");
+        tcp_.Close();
+        return;
+    }
+  }
+}
+
+// Of what was posted; answers of the set-up are taken there.
+void FrankaArm::TakeAnswer(const Header& header, std::span<const std::byte> payload) noexcept {
+  StatusAnswer answer;
+  if (!Decode(payload, answer)) {
+    return;
+  }
+  const bool under_way = phase_ == MotionPhase::kStarting || phase_ == MotionPhase::kRunning ||
+                         phase_ == MotionPhase::kFinishing;
+  if (header.command == Command::kMove && header.command_id == move_id_ && under_way) {
+    switch (static_cast<MoveStatus>(answer.status)) {
+      case MoveStatus::kMotionStarted: move_started_ = true; break;
+      case MoveStatus::kSuccess: break;  // the states show it
+      case MoveStatus::kPreempted: Fail("another motion took its place"); break;
+      case MoveStatus::kNotPossible: Fail("the robot cannot move now"); break;
+      case MoveStatus::kStartAtSingularPose: Fail("start at a singular pose"); break;
+      case MoveStatus::kInvalidArgument: Fail("the robot refuses the motion's arguments"); break;
+      case MoveStatus::kEmergencyAborted: Fail("user stop"); break;
+      default: Fail("the robot broke the motion off"); break;  // the state says why
+    }
+  } else if (header.command == Command::kAutomaticErrorRecovery && recovery_id_ == header.command_id) {
+    recovery_id_.reset();
+    if (static_cast<RecoveryStatus>(answer.status) == RecoveryStatus::kSuccess) {
+      phase_ = MotionPhase::kIdle;
+      failure_ = "none";
+      stopped_states_borne_ = kMostStoppedStates;
+    } else {
+      Fail("the robot needs a person to recover it");
+    }
+  }
+}
+
+// The newest of the states that are there; false when there is none that is new.
+bool FrankaArm::TakeStates() noexcept {
+  bool taken = false;
+  std::array<std::byte, kStateSize + 1> bytes;  // one more, so that a longer datagram shows
+  std::size_t size = 0;
+  Endpoint from;
+  for (int k = 0; k < kMostDatagramsPerRead && udp_.Receive(bytes, size, from); ++k) {
+    if (from.ip != robot_tcp_.ip) {
+      ++counters_.foreign;
+      continue;
+    }
+    RobotState next;
+    if (size != kStateSize || !Decode(bytes, next)) {
+      ++counters_.malformed;
+      continue;
+    }
+    if (has_state_ && next.message_id <= state_.message_id) {
+      ++(next.message_id == state_.message_id ? counters_.duplicate_states : counters_.late_states);
+      continue;
+    }
+    counters_.lost_states += has_state_ ? next.message_id - state_.message_id - 1 : 0;
+    counters_.skipped_states += taken ? 1U : 0U;
+    ++counters_.states;
+    state_ = next;
+    has_state_ = true;
+    robot_udp_ = from;
+    stamp_ns_ = StampOf(next.message_id, NowNs());
+    taken = true;
+    answered_ = false;
+  }
+  return taken;
+}
+
+// The robot's time in the computer's. A datagram never comes before it is sent, so the smallest difference
+// seen is the nearest to the truth; the estimate gives way a little with each state, since the two clocks
+// drift.
+std::int64_t FrankaArm::StampOf(std::uint64_t message_id, std::int64_t arrival_ns) noexcept {
+  const std::int64_t robot_ns = static_cast<std::int64_t>(message_id) * hal::kNsPerMs;
+  if (robot_time_ != nullptr) {
+    robot_time_->Advance(robot_ns);
+    return robot_ns;
+  }
+  const std::int64_t seen_ns = arrival_ns - robot_ns;
+  robot_offset_ns_ = robot_offset_ns_ ? std::min(*robot_offset_ns_ + kDriftNsPerState, seen_ns) : seen_ns;
+  return std::max(stamp_ns_ + 1, robot_ns + *robot_offset_ns_);
+}
+
+// What the newest state says of the motion.
+void FrankaArm::FollowPhase() noexcept {
+  const bool moves = state_.robot_mode == RobotMode::kMove;
+  const bool stopped =
+      state_.robot_mode == RobotMode::kReflex || state_.robot_mode == RobotMode::kUserStopped;
+  const bool borne = stopped && stopped_states_borne_ > 0;
+  stopped_states_borne_ = borne ? stopped_states_borne_ - 1 : 0;
+  if (stopped && !borne) {
+    Fail(state_.robot_mode == RobotMode::kUserStopped ? "user stop" : FirstError(state_.errors));
+  } else if (phase_ == MotionPhase::kStarting && move_started_ && moves &&
+             state_.controller_mode == ControllerMode::kExternal) {
+    phase_ = MotionPhase::kRunning;
+  } else if (phase_ == MotionPhase::kStarting && ++starting_states_ > kMostStartingStates) {
+    Fail("the robot does not start the motion");
+  } else if (phase_ == MotionPhase::kFinishing && !moves) {
+    phase_ = MotionPhase::kIdle;
+  } else if (phase_ == MotionPhase::kRunning && !moves) {
+    Fail("the robot left the motion");
+  }
+}
+
+void FrankaArm::Fail(const char* why) noexcept {
+  phase_ = MotionPhase::kFailed;
+  failure_ = why;
+}
+
+void FrankaArm::Fill(hal::ArmState& state) const noexcept {
+  state.stamp_ns = stamp_ns_;
+  state.sequence = state_.message_id;
+  state.num_joints = kJoints;
+  state.q = ToJoints(state_.q);
+  state.dq = ToJoints(state_.dq);
+  state.tau_meas = ToJoints(state_.tau_J);
+  state.tau_applied = ToJoints(state_.tau_J_d);
+}
+
+void FrankaArm::Stop() noexcept {
+  constexpr std::int64_t kPatienceNs = hal::kNsPerSecond;
+  const std::int64_t end_ns = NowNs() + kPatienceNs;
+  hal::ArmState ignored;
+  while (tcp_.open() && NowNs() < end_ns &&
+         (phase_ == MotionPhase::kStarting || phase_ == MotionPhase::kRunning ||
+          phase_ == MotionPhase::kFinishing)) {
+    brakes_ = true;
+    static_cast<void>(DoRead(ignored));  // what it says shows in phase_
+  }
+  std::uint32_t id = 0;
+  if (tcp_.open() && phase_ != MotionPhase::kIdle && phase_ != MotionPhase::kFailed) {
+    static_cast<void>(Post(Command::kStopMove, Nothing{}, id));  // closing ends the motion in any case
+  }
+  tcp_.Close();
+}
+
+}  // namespace fovea::franka

@@ -1,0 +1,65 @@
+// One camera, opened, set up and streaming, until it is lost or let go. All that speaks with Aravis.
+#pragma once
+
+#include <arv.h>
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "fovea/camera/raw_picture.hpp"
+#include "fovea/genicam/genicam_camera.hpp"
+
+namespace fovea::genicam {
+
+struct Unref {
+  void operator()(void* object) const { g_object_unref(object); }
+};
+template <typename T>
+using Owned = std::unique_ptr<T, Unref>;
+
+// The formats that the seam knows; empty for all others.
+std::optional<camera::RawFormat> FormatOf(ArvPixelFormat format);
+
+class GenicamCamera::Session {
+ public:
+  // CameraError.
+  explicit Session(const GenicamConfig& config);
+  ~Session();
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  // The next buffer, whole or not; null when none came in time. Give it back.
+  ArvBuffer* Pop(std::int64_t timeout_ns);
+  void GiveBack(ArvBuffer* buffer) { arv_stream_push_buffer(stream_.get(), buffer); }
+
+  [[nodiscard]] bool lost() const { return lost_.load(std::memory_order_relaxed); }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] int width_px() const { return width_px_; }
+  [[nodiscard]] int height_px() const { return height_px_; }
+  [[nodiscard]] std::int64_t exposure_ns() const { return exposure_ns_; }
+  // Numbers of frames have 16 bits, until one is larger.
+  [[nodiscard]] bool counts_to_16_bits() const { return is_gige_; }
+  // Resent and missing packets of a GigE Vision camera.
+  void AddPackets(GenicamCounters& counters) const;
+
+ private:
+  void SetUp(const GenicamConfig& config);
+  void SetRegion(const GenicamConfig& config);
+  void SetExposure(const GenicamConfig& config);
+  void Start(const GenicamConfig& config);
+
+  std::string device_;
+  std::string name_;
+  Owned<ArvCamera> camera_;
+  Owned<ArvStream> stream_;
+  gulong signal_ = 0;
+  bool is_gige_ = false;
+  int width_px_ = 0;
+  int height_px_ = 0;
+  std::int64_t exposure_ns_ = 0;
+  std::atomic<bool> lost_{false};
+};
+
+}  // namespace fovea::genicam

@@ -1,0 +1,100 @@
+// A GigE Vision or USB3 Vision camera, by Aravis.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <opencv2/core.hpp>
+#include <string>
+#include <thread>
+
+#include "fovea/camera/frame_counter.hpp"
+#include "fovea/camera/stamp_mapper.hpp"
+#include "fovea/hal/camera.hpp"
+
+struct _ArvBuffer;  // Aravis' own name
+
+namespace fovea::genicam {
+
+// When in the exposure the camera takes its stamp; makers differ.
+enum class StampAt : std::uint8_t { kStart, kMiddle, kEnd };
+
+struct GenicamConfig {
+  std::string device;  // "vendor-model-serial", the serial number, or an address; empty: the first one found
+  int width_px = 0;    // of a region in the sensor's top left corner; 0: as the camera is set
+  int height_px = 0;
+  std::string pixel_format;  // by its GenICam name; empty: as the camera is set
+  double rate_hz = 0.0;      // 0: as the camera is set
+  double exposure_us = 0.0;  // 0: as the camera is set
+  double gain = -1.0;        // in the camera's unit; negative: as the camera is set
+  int packet_size = 0;       // GigE Vision [bytes]; 0: the largest that the network carries
+  StampAt stamp_at = StampAt::kStart;
+  std::int64_t transport_ns = 0;  // the least time from stamp to arrival
+  // The camera's clock is the loop's (by PTP; or a simulated one in lockstep): stamps are taken as they are.
+  bool device_time = false;
+  bool reconnect = true;  // after a loss, look for the camera until it is there again
+};
+
+struct GenicamCounters {
+  std::uint64_t frames = 0;
+  std::uint64_t incomplete = 0;  // frames with packets missing, or given up
+  std::uint64_t lost = 0;        // frames that never came whole, by their numbers
+  std::uint64_t overtaken = 0;   // whole, but a newer one was there already
+  std::uint64_t resent_packets = 0;
+  std::uint64_t missing_packets = 0;
+  std::uint64_t disconnects = 0;
+  std::uint64_t reconnects = 0;
+};
+
+class GenicamCamera final : public hal::Camera {
+ public:
+  // Opens, sets up and starts. CameraError: there is none, it is in use, or it refuses a setting.
+  explicit GenicamCamera(const GenicamConfig& config);
+  ~GenicamCamera();
+
+  // From any thread: Acquire still hands out what waits, then answers kClosed.
+  void Close();
+
+  [[nodiscard]] int width_px() const { return width_px_; }
+  [[nodiscard]] int height_px() const { return height_px_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  // From the thread that acquires, or after it.
+  [[nodiscard]] GenicamCounters counters() const;
+  [[nodiscard]] double clock_drift() const { return mapper_.drift(); }
+
+ private:
+  class Session;
+
+  // While the camera is away: kTimeout, when it is looked for; else kDisconnected. When frames wait, the
+  // newest is taken, the others are counted as overtaken.
+  hal::Status DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept override;
+  [[nodiscard]] hal::Status Take(Session& session, hal::Frame& frame, std::int64_t timeout_ns);
+  [[nodiscard]] bool IsNoPicture(const Session& session, _ArvBuffer* buffer) const;
+  [[nodiscard]] std::int64_t StampOf(std::int64_t device_ns, std::int64_t arrival_ns,
+                                     std::int64_t exposure_ns);
+  void Look();
+
+  const GenicamConfig config_;
+  std::shared_ptr<Session> session_;  // guarded by mutex_ once the looking thread runs; null: camera away
+  std::string name_;
+  int width_px_ = 0;
+  int height_px_ = 0;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool closed_ = false;
+  bool came_back_ = false;
+  std::atomic<std::uint64_t> reconnects_{0};
+
+  // Of the thread that acquires.
+  cv::Mat picture_;
+  std::int64_t last_device_ns_ = INT64_MIN;  // stamp of the last picture
+  camera::FrameCounter numbers_;
+  camera::StampMapper mapper_;
+  GenicamCounters counters_;
+  std::thread looking_;
+};
+
+}  // namespace fovea::genicam

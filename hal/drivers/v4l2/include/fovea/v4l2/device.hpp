@@ -1,0 +1,28 @@
+// What the driver asks of the kernel: one video device, opened by its path. A test plays the kernel.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace fovea::v4l2 {
+
+class Device {
+ public:
+  virtual ~Device() = default;
+
+  // Each answers 0 or above when it worked, else -errno.
+  virtual int Open(const std::string& path) = 0;
+  virtual int Control(unsigned long request, void* argument) = 0;  // an ioctl
+  virtual int Map(std::size_t size, std::int64_t offset, void*& memory) = 0;
+  virtual void Unmap(void* memory, std::size_t size) = 0;
+  // 1: a buffer waits, or the device has something to say; 0: nothing came in time.
+  virtual int Wait(std::int64_t timeout_ns) = 0;
+  virtual void Close() = 0;
+};
+
+// The kernel itself.
+std::unique_ptr<Device> MakeSystemDevice();
+
+}  // namespace fovea::v4l2

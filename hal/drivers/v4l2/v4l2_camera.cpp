@@ -1,0 +1,129 @@
+#include "fovea/v4l2/v4l2_camera.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <ctime>
+#include <utility>
+
+#include "fovea/camera/camera_error.hpp"
+#include "fovea/hal/types.hpp"
+#include "v4l2_session.hpp"
+
+namespace fovea::v4l2 {
+namespace {
+
+constexpr std::int64_t kLookPeriodNs = 500 * hal::kNsPerMs;
+
+std::int64_t NowNs() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
+}
+
+void SleepUntil(std::int64_t time_ns) {
+  const timespec at{time_ns / hal::kNsPerSecond, time_ns % hal::kNsPerSecond};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr) == EINTR) {
+  }
+}
+
+// Mid-exposure. A driver that does not stamp by CLOCK_MONOTONIC leaves the arrival as all there is.
+std::int64_t StampOf(const v4l2_buffer& buffer, std::int64_t arrival_ns, std::int64_t exposure_ns,
+                     std::int64_t transport_ns) {
+  const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
+  if (monotonic && (buffer.flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE) {
+    return buffer.timestamp.tv_sec * hal::kNsPerSecond + buffer.timestamp.tv_usec * 1000 + exposure_ns / 2;
+  }
+  const std::int64_t end_ns =
+      monotonic ? buffer.timestamp.tv_sec * hal::kNsPerSecond + buffer.timestamp.tv_usec * 1000 : arrival_ns;
+  return end_ns - transport_ns - exposure_ns / 2;
+}
+
+}  // namespace
+
+V4l2Camera::V4l2Camera(const V4l2Config& config, std::unique_ptr<Device> device)
+    : config_(config), device_(std::move(device)), session_(std::make_unique<Session>(config_, *device_)) {
+  name_ = session_->name();
+}
+
+V4l2Camera::~V4l2Camera() = default;
+
+hal::Status V4l2Camera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept {
+  try {
+    if (!session_ && !closed_ && config_.reconnect && !Reopen(timeout_ns)) {
+      return hal::Status(hal::StatusCode::kTimeout, "camera is away");
+    }
+    if (!session_) {
+      return hal::Status(closed_ ? hal::StatusCode::kClosed : hal::StatusCode::kDisconnected, "camera");
+    }
+    const hal::Status status = Take(frame, closed_ ? 0 : timeout_ns);
+    return closed_ && !status.ok() ? hal::Status(hal::StatusCode::kClosed, "camera") : status;
+  } catch (const std::exception&) {  // OpenCV's, of a picture that it cannot convert; memory
+    return hal::Status(hal::StatusCode::kDeviceFault, "camera picture");
+  }
+}
+
+// True when the device is there again; waits for that at most `timeout_ns`.
+bool V4l2Camera::Reopen(std::int64_t timeout_ns) {
+  const std::int64_t end_ns = NowNs() + timeout_ns;
+  if (next_look_ns_ > end_ns) {
+    SleepUntil(end_ns);
+    return false;
+  }
+  SleepUntil(next_look_ns_);
+  next_look_ns_ = NowNs() + kLookPeriodNs;
+  try {
+    session_ = std::make_unique<Session>(config_, *device_);
+  } catch (const camera::CameraError&) {  // not yet
+    return false;
+  }
+  ++counters_.reconnects;
+  numbers_.Restart();
+  return true;
+}
+
+hal::Status V4l2Camera::Take(hal::Frame& frame, std::int64_t timeout_ns) {
+  const std::int64_t end_ns = NowNs() + timeout_ns;
+  std::optional<v4l2_buffer> newest;
+  std::int64_t arrival_ns = 0;
+  while (true) {
+    v4l2_buffer buffer{};
+    const int result = session_->Dequeue(buffer);
+    if (result == 0) {
+      const bool whole =
+          (buffer.flags & V4L2_BUF_FLAG_ERROR) == 0 && camera::Unpack(session_->PictureIn(buffer), picture_);
+      counters_.incomplete += whole ? 0U : 1U;
+      if (whole) {
+        counters_.overtaken += newest ? 1U : 0U;
+        newest = buffer;
+        arrival_ns = NowNs();
+      }
+      static_cast<void>(session_->Enqueue(buffer));  // what it says, the next Dequeue says too
+      continue;
+    }
+    if (result != -EAGAIN) {  // ENODEV: unplugged; any other is no better
+      ++counters_.disconnects;
+      session_.reset();
+      if (!newest) {
+        return config_.reconnect ? hal::Status(hal::StatusCode::kTimeout, "camera is away")
+                                 : hal::Status(hal::StatusCode::kDisconnected, "camera");
+      }
+    }
+    const std::int64_t left_ns = end_ns - NowNs();
+    if (newest || left_ns <= 0) {
+      break;
+    }
+    static_cast<void>(device_->Wait(left_ns));  // what is wrong, the next Dequeue says
+  }
+  if (!newest) {
+    return hal::Status(hal::StatusCode::kTimeout, "camera");
+  }
+  frame = camera::FrameOf(picture_);
+  frame.exposure_ns = std::max<std::int64_t>(session_ ? session_->exposure_ns() : 0, 1);
+  frame.stamp_ns = StampOf(*newest, arrival_ns, frame.exposure_ns, config_.transport_ns);
+  frame.sequence = numbers_.Count(newest->sequence);
+  counters_.lost = numbers_.lost();
+  ++counters_.frames;
+  return hal::Status::Ok();
+}
+
+}  // namespace fovea::v4l2

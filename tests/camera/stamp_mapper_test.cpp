@@ -1,0 +1,101 @@
+// Stamps of a device whose clock runs apart from the host's, through a network that is late by chance.
+#include "fovea/camera/stamp_mapper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::camera {
+namespace {
+
+constexpr std::int64_t kTransportNs = 12 * hal::kNsPerMs;
+constexpr std::int64_t kFrameNs = hal::kNsPerSecond / 30;
+
+// The device's clock began elsewhere and gains `drift` seconds a second on the host's.
+struct Device {
+  double drift = 0.0;
+  std::int64_t offset_ns = 0;
+  std::mt19937_64 random{7};
+  std::exponential_distribution<double> late_ms{1.0 / 2.0};
+
+  [[nodiscard]] std::int64_t Stamp(std::int64_t host_ns) const {
+    return offset_ns + host_ns + std::llround(drift * static_cast<double>(host_ns));
+  }
+  std::int64_t Arrival(std::int64_t host_ns) {
+    return host_ns + kTransportNs + static_cast<std::int64_t>(1e6 * late_ms(random));
+  }
+};
+
+// Largest error [ns] of frames `from` to `to`.
+double WorstNs(StampMapper& mapper, Device& device, int from, int to) {
+  double worst = 0.0;
+  for (int k = 0; k < to; ++k) {
+    const std::int64_t true_ns = 1'000'000'007 + k * kFrameNs;
+    const std::int64_t mapped_ns = mapper.Map(device.Stamp(true_ns), device.Arrival(true_ns));
+    if (k >= from) {
+      worst = std::max(worst, std::fabs(static_cast<double>(mapped_ns - true_ns)));
+    }
+  }
+  return worst;
+}
+
+TEST(StampMapper, FollowsADriftingClock) {
+  for (const double drift : {0.0, 50e-6, -50e-6}) {
+    StampMapper mapper(kTransportNs);
+    Device device{drift, -77 * hal::kNsPerSecond};
+    const double worst_ns = WorstNs(mapper, device, 30 * 20, 30 * 600);
+    std::cout << "drift " << 1e6 * drift << " ppm: " << 1e6 * -mapper.drift()
+              << " ppm found, stamps off by at most " << 1e-3 * worst_ns << " us\n";
+    EXPECT_NEAR(-mapper.drift(), drift, 2e-7);
+    EXPECT_LT(worst_ns, 8e4);
+    EXPECT_EQ(mapper.restarts(), 0U);
+  }
+}
+
+TEST(StampMapper, WithoutJitterItIsExact) {
+  StampMapper mapper(kTransportNs);
+  const Device device{20e-6, 5 * hal::kNsPerSecond};
+  std::int64_t worst_ns = 0;
+  for (int k = 0; k < 1800; ++k) {
+    const std::int64_t true_ns = k * kFrameNs;
+    const std::int64_t mapped_ns = mapper.Map(device.Stamp(true_ns), true_ns + kTransportNs);
+    worst_ns = k < 300 ? 0 : std::max<std::int64_t>(worst_ns, std::llabs(mapped_ns - true_ns));
+  }
+  EXPECT_LE(worst_ns, 2);  // what rounding leaves
+}
+
+TEST(StampMapper, StampsRiseAndNeverComeAfterTheirArrival) {
+  StampMapper mapper(0);
+  std::mt19937_64 random(3);
+  std::uniform_int_distribution<std::int64_t> late(0, 80 * hal::kNsPerMs);
+  std::int64_t last_ns = INT64_MIN;
+  std::int64_t arrival_ns = 0;
+  for (int k = 0; k < 3000; ++k) {
+    arrival_ns = std::max(arrival_ns + 1, k * kFrameNs + late(random));
+    const std::int64_t mapped_ns = mapper.Map(k * kFrameNs, arrival_ns);
+    ASSERT_GT(mapped_ns, last_ns);
+    ASSERT_LE(mapped_ns, arrival_ns);
+    last_ns = mapped_ns;
+  }
+}
+
+// A camera that was unplugged counts from zero again.
+TEST(StampMapper, ADeviceThatStartsAnewIsLearntAnew) {
+  StampMapper mapper(kTransportNs);
+  Device device{0.0, 1000 * hal::kNsPerSecond};
+  static_cast<void>(WorstNs(mapper, device, 0, 600));
+  const std::int64_t again_ns = 100 * hal::kNsPerSecond;
+  std::int64_t mapped_ns = 0;
+  for (int k = 0; k < 3; ++k) {
+    mapped_ns = mapper.Map(k * kFrameNs, again_ns + k * kFrameNs + kTransportNs);
+    EXPECT_EQ(mapped_ns, again_ns + k * kFrameNs);
+  }
+  EXPECT_EQ(mapper.restarts(), 1U);
+}
+
+}  // namespace
+}  // namespace fovea::camera

@@ -1,0 +1,366 @@
+// The driver in the loop, against a robot that does what the test says.
+#include <gmock/gmock.h>
+
+#include <memory>
+
+#include "fovea/linux_rt/heap_counter.hpp"
+#include "franka/fake_robot.hpp"
+
+namespace fovea::test {
+namespace {
+
+using franka::MotionPhase;
+using hal::StatusCode;
+
+class FrankaArmTest : public testing::Test {
+ protected:
+  void SetUp() override { Connect(ConfigFor(robot_)); }
+
+  void Connect(const franka::FrankaConfig& config) {
+    std::jthread other([this] { EXPECT_TRUE(robot_.ServeSetUp()); });
+    arm_ = std::make_unique<franka::FrankaArm>(config, &clock_);
+  }
+
+  // The robot sends a state and the driver reads it.
+  hal::Status Next() {
+    robot_.SendState();
+    return arm_->Read(state_);
+  }
+  [[nodiscard]] hal::Status Write(double tau, bool brakes = false) {
+    hal::ArmCommand command;
+    command.num_joints = 7;
+    command.tau_cmd[0] = tau;
+    command.engage_brakes = brakes;
+    return arm_->Write(command);
+  }
+  // A motion under way: Move asked for, started, shown.
+  void Start() {
+    EXPECT_TRUE(Next().ok());
+    EXPECT_TRUE(Write(0.0).ok());
+    const auto move = robot_.Take();
+    ASSERT_TRUE(move.has_value());
+    ASSERT_EQ(move->header.command, franka::Command::kMove);
+    move_ = *move;
+    robot_.AnswerStatus(move_, 1);
+    robot_.ShowMove();
+    EXPECT_TRUE(Next().ok());
+    ASSERT_EQ(arm_->phase(), MotionPhase::kRunning);
+  }
+
+  FakeRobot robot_;
+  franka::RobotClock clock_;
+  std::unique_ptr<franka::FrankaArm> arm_;
+  hal::ArmState state_;
+  FakeRobot::Request move_;
+};
+
+TEST_F(FrankaArmTest, AStateComesThroughAsItIs) {
+  for (std::size_t i = 0; i < 7; ++i) {
+    const auto k = static_cast<double>(i);
+    robot_.state.q[i] = 0.1 + k;
+    robot_.state.dq[i] = 0.2 + k;
+    robot_.state.tau_J[i] = 0.3 + k;
+    robot_.state.tau_J_d[i] = 0.4 + k;
+  }
+  ASSERT_TRUE(Next().ok());
+  EXPECT_EQ(state_.num_joints, 7);
+  EXPECT_EQ(state_.sequence, 1001U);
+  EXPECT_EQ(state_.stamp_ns, 1001 * hal::kNsPerMs);
+  EXPECT_EQ(clock_.NowNs(), state_.stamp_ns);
+  EXPECT_EQ(state_.q[6], 6.1);
+  EXPECT_EQ(state_.dq[6], 6.2);
+  EXPECT_EQ(state_.tau_meas[6], 6.3);
+  EXPECT_EQ(state_.tau_applied[6], 6.4);
+  EXPECT_EQ(state_.q[7], 0.0);
+}
+
+TEST_F(FrankaArmTest, AMotionIsAskedForOnceAndEachOfItsStatesAnsweredOnce) {
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.5).ok());
+  EXPECT_EQ(arm_->phase(), MotionPhase::kStarting);
+  const auto move = robot_.Take();
+  ASSERT_TRUE(move.has_value());
+  franka::MoveRequest request;
+  ASSERT_TRUE(franka::Decode(move->payload, request));
+  EXPECT_EQ(request.controller, franka::MoveController::kExternal);
+  EXPECT_EQ(request.generator, franka::MoveGenerator::kJointVelocity);
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.5).ok());
+  EXPECT_FALSE(robot_.TakeCommand(20ms).has_value()) << "the motion has not started";
+  robot_.AnswerStatus(*move, 1);
+  robot_.ShowMove();
+  for (int k = 0; k < 5; ++k) {
+    const std::uint64_t id = robot_.state.message_id;
+    ASSERT_TRUE(Next().ok());
+    ASSERT_TRUE(Write(0.5).ok());
+    const auto command = robot_.TakeCommand();
+    ASSERT_TRUE(command.has_value());
+    EXPECT_EQ(command->message_id, id);
+    EXPECT_EQ(command->tau_J_d[0], 0.5);
+    EXPECT_EQ(command->dq_c, franka::Vector7{});
+    EXPECT_EQ(command->motion_generation_finished, 0);
+  }
+  EXPECT_FALSE(robot_.TakeCommand(20ms).has_value()) << "one command for one state";
+  EXPECT_EQ(arm_->counters().commands, 5U);
+  EXPECT_EQ(arm_->counters().motions, 1U);
+  EXPECT_EQ(arm_->counters().repeated_commands, 0U);
+}
+
+TEST_F(FrankaArmTest, TheTorqueRateIsTakenFromWhatTheRobotApplies) {
+  Start();
+  ASSERT_TRUE(Write(10.0).ok());
+  EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 1.0);
+  // The command was lost: the robot still applies 0.
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(10.0).ok());
+  EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 1.0);
+  robot_.state.tau_J_d[0] = 1.0;
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(10.0).ok());
+  EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 2.0);
+  // None of ours: near to it, and to what may still come.
+  robot_.state.tau_J_d[0] = 1.5;
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(10.0).ok());
+  EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 2.0);
+  EXPECT_EQ(arm_->counters().rate_limited, 4U);
+}
+
+TEST_F(FrankaArmTest, TheLastCommandAnswersWhatTheLoopLeftOpen) {
+  Start();
+  ASSERT_TRUE(Write(0.5).ok());
+  EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 0.5);
+  ASSERT_TRUE(Next().ok());
+  const std::uint64_t open = robot_.state.message_id - 1;
+  ASSERT_TRUE(Next().ok());  // no Write between
+  const auto command = robot_.TakeCommand();
+  ASSERT_TRUE(command.has_value());
+  EXPECT_EQ(command->message_id, open);
+  EXPECT_EQ(command->tau_J_d[0], 0.5);
+  EXPECT_EQ(arm_->counters().repeated_commands, 1U);
+}
+
+TEST_F(FrankaArmTest, LostLateRepeatedShortAndForeignDatagramsAreCounted) {
+  robot_.state.message_id += 3;
+  ASSERT_TRUE(Next().ok());
+  EXPECT_EQ(arm_->counters().lost_states, 3U);
+  const std::uint64_t newest = robot_.state.message_id - 1;
+  robot_.state.message_id = newest - 2;
+  robot_.SendState();  // late
+  robot_.state.message_id = newest;
+  robot_.SendState();                                              // again
+  robot_.SendDatagram(std::vector<std::byte>(2372, std::byte{}));  // short
+  robot_.SendDatagram(std::vector<std::byte>(2374, std::byte{}));  // long
+  robot_.SendDatagram({});                                         // empty
+  robot_.SendState();
+  robot_.SendState();  // two that are new
+  ASSERT_TRUE(arm_->Read(state_).ok());
+  EXPECT_EQ(state_.sequence, newest + 2);
+  const franka::FrankaCounters& c = arm_->counters();
+  EXPECT_EQ(c.late_states, 1U);
+  EXPECT_EQ(c.duplicate_states, 1U);
+  EXPECT_EQ(c.malformed, 3U);
+  EXPECT_EQ(c.skipped_states, 1U);
+  EXPECT_EQ(c.states, 3U);
+}
+
+TEST_F(FrankaArmTest, SilenceIsATimeoutThatLeavesTheStateAsItWas) {
+  ASSERT_TRUE(Next().ok());
+  const hal::ArmState before = state_;
+  EXPECT_EQ(arm_->Read(state_).code(), StatusCode::kTimeout);
+  EXPECT_EQ(state_.sequence, before.sequence);
+  EXPECT_EQ(arm_->counters().timeouts, 1U);
+  EXPECT_TRUE(Next().ok()) << "and goes on";
+}
+
+TEST_F(FrankaArmTest, ARobotThatClosesIsGone) {
+  Start();
+  robot_.Close();
+  hal::Status status = hal::Status::Ok();
+  for (int k = 0; k < 20 && status.code() != StatusCode::kDisconnected; ++k) {
+    status = arm_->Read(state_);
+  }
+  EXPECT_EQ(status.code(), StatusCode::kDisconnected);
+  EXPECT_STREQ(status.where(), "the robot closed the connection");
+  EXPECT_EQ(Write(0.0).code(), StatusCode::kDisconnected);
+}
+
+TEST_F(FrankaArmTest, GarbageInMidMotionEndsTheConnection) {
+  Start();
+  robot_.SendRaw(std::vector<std::byte>(20, std::byte{0xFF}));
+  hal::Status status = hal::Status::Ok();
+  for (int k = 0; k < 20 && status.code() != StatusCode::kDisconnected; ++k) {
+    status = arm_->Read(state_);
+  }
+  EXPECT_STREQ(status.where(), "the robot sent what is no message");
+}
+
+TEST_F(FrankaArmTest, AReflexStopsAllUntilRecoveryAndTheNewStartIsNoStep) {
+  Start();
+  ASSERT_TRUE(Write(0.5).ok());
+  ASSERT_TRUE(robot_.TakeCommand().has_value());
+  robot_.ShowReflex(franka::Error::kCommunicationConstraints);
+  robot_.AnswerStatus(move_, 6);
+  hal::Status status = Next();
+  EXPECT_EQ(status.code(), StatusCode::kDeviceFault);
+  EXPECT_STREQ(status.where(), "communication_constraints_violation");
+  EXPECT_EQ(Write(5.0).code(), StatusCode::kDeviceFault);
+  EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
+  EXPECT_FALSE(robot_.TakeCommand(20ms).has_value()) << "nothing is sent to a robot that stopped";
+
+  arm_->AskRecovery();
+  EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
+  const auto recovery = robot_.Take();
+  ASSERT_TRUE(recovery.has_value());
+  EXPECT_EQ(recovery->header.command, franka::Command::kAutomaticErrorRecovery);
+  robot_.AnswerStatus(*recovery, 0);
+  std::this_thread::sleep_for(5ms);
+  EXPECT_TRUE(Next().ok()) << "a state from before that comes after the answer is borne";
+  robot_.state.errors = {};
+  robot_.ShowIdle();
+  robot_.state.tau_J_d[0] = 2.0;
+  EXPECT_TRUE(Next().ok());
+  EXPECT_EQ(arm_->phase(), MotionPhase::kIdle);
+
+  Start();
+  ASSERT_TRUE(Write(-8.0).ok());
+  EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 1.0) << "one step from the 2 Nm that are in force";
+}
+
+TEST_F(FrankaArmTest, AUserStopSaysSo) {
+  Start();
+  robot_.ShowIdle();
+  robot_.state.robot_mode = franka::RobotMode::kUserStopped;
+  const hal::Status status = Next();
+  EXPECT_EQ(status.code(), StatusCode::kDeviceFault);
+  EXPECT_STREQ(status.where(), "user stop");
+}
+
+TEST_F(FrankaArmTest, ARefusedMotionSaysSo) {
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.0).ok());
+  robot_.AnswerStatus(*robot_.Take(), 3);
+  std::this_thread::sleep_for(5ms);
+  const hal::Status status = Next();
+  EXPECT_EQ(status.code(), StatusCode::kDeviceFault);
+  EXPECT_STREQ(status.where(), "the robot cannot move now");
+}
+
+TEST_F(FrankaArmTest, AMotionThatNeverStartsIsGivenUp) {
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.0).ok());
+  hal::Status status = hal::Status::Ok();
+  int states = 0;
+  for (; states < 1000 && status.ok(); ++states) {
+    status = Next();
+  }
+  EXPECT_EQ(states, 501);
+  EXPECT_STREQ(status.where(), "the robot does not start the motion");
+}
+
+TEST_F(FrankaArmTest, BrakesFinishTheMotionAndTheirReleaseStartsANewOne) {
+  Start();
+  ASSERT_TRUE(Write(0.5).ok());
+  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 0);
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.0, /*brakes=*/true).ok());
+  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1);
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.0, true).ok());
+  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "until the states show the end";
+  robot_.ShowIdle();
+  robot_.AnswerStatus(move_, 0);
+  ASSERT_TRUE(Next().ok());
+  EXPECT_EQ(arm_->phase(), MotionPhase::kIdle);
+  ASSERT_TRUE(Write(0.0, true).ok());
+  EXPECT_FALSE(robot_.TakeCommand(20ms).has_value());
+  Start();
+  EXPECT_EQ(arm_->counters().motions, 2U);
+}
+
+TEST_F(FrankaArmTest, StopEndsTheMotionInOrder) {
+  Start();
+  std::jthread other([this] {
+    for (int k = 0; k < 200; ++k) {
+      const auto command = robot_.TakeCommand(100ms);
+      if (command && command->motion_generation_finished == 1) {
+        robot_.ShowIdle();
+        robot_.AnswerStatus(move_, 0);
+        robot_.SendState();
+        return;
+      }
+      robot_.SendState();
+    }
+    ADD_FAILURE() << "the end was never announced";
+  });
+  arm_->Stop();
+  EXPECT_EQ(arm_->phase(), MotionPhase::kIdle);
+  EXPECT_EQ(arm_->Read(state_).code(), StatusCode::kDisconnected);
+}
+
+TEST_F(FrankaArmTest, TheLoopTakesNothingFromTheHeap) {
+#ifdef FOVEA_SANITIZED
+  GTEST_SKIP() << "a sanitizer has the heap to itself";
+#endif
+  ASSERT_TRUE(linux_rt::HeapCounterActive());
+  Start();
+  const std::uint64_t before = linux_rt::CountedHeapCalls();
+  for (int k = 0; k < 200; ++k) {
+    robot_.SendState();
+    if (k == 100) {
+      robot_.SendDatagram({});
+      robot_.ShowReflex(franka::Error::kJointReflex);
+      robot_.AnswerStatus(move_, 6);
+    }
+    linux_rt::EnterCountedRegion();
+    static_cast<void>(arm_->Read(state_));
+    static_cast<void>(Write(0.1));
+    linux_rt::LeaveCountedRegion();
+  }
+  EXPECT_EQ(linux_rt::CountedHeapCalls() - before, 0U);
+  EXPECT_GT(arm_->counters().commands, 90U);
+  EXPECT_EQ(arm_->phase(), MotionPhase::kFailed);
+}
+
+TEST(FrankaArm, WithoutLeaveToMoveNothingIsCommanded) {
+  FakeRobot robot;
+  franka::FrankaConfig config = ConfigFor(robot);
+  config.allow_motion = false;
+  std::jthread other([&] { EXPECT_TRUE(robot.ServeSetUp()); });
+  franka::FrankaArm arm(config);
+  other.join();
+  hal::ArmState state;
+  hal::ArmCommand command;
+  command.num_joints = 7;
+  for (int k = 0; k < 5; ++k) {
+    robot.SendState();
+    ASSERT_TRUE(arm.Read(state).ok());
+    EXPECT_TRUE(arm.Write(command).ok());
+  }
+  EXPECT_EQ(arm.phase(), MotionPhase::kIdle);
+  EXPECT_EQ(arm.counters().motions, 0U);
+}
+
+TEST(FrankaArm, StampsFollowTheEarliestArrivals) {
+  FakeRobot robot;
+  std::jthread other([&] { EXPECT_TRUE(robot.ServeSetUp()); });
+  franka::FrankaArm arm(ConfigFor(robot));
+  other.join();
+  hal::ArmState state;
+  std::int64_t first_ns = 0;
+  // A state that comes 20 ms late is stamped as if it had not.
+  for (int k = 0; k < 3; ++k) {
+    robot.SendState();
+    ASSERT_TRUE(arm.Read(state).ok());
+    first_ns = k == 0 ? state.stamp_ns : first_ns;
+  }
+  std::this_thread::sleep_for(20ms);
+  robot.SendState();
+  ASSERT_TRUE(arm.Read(state).ok());
+  const double span_ms = static_cast<double>(state.stamp_ns - first_ns) * 1e-6;
+  std::cout << "four states in " << span_ms << " ms of stamps\n";
+  EXPECT_LT(span_ms, 3.01);
+}
+
+}  // namespace
+}  // namespace fovea::test

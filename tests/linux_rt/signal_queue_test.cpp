@@ -1,0 +1,27 @@
+#include "fovea/linux_rt/signal_queue.hpp"
+
+#include <gtest/gtest.h>
+#include <pthread.h>
+
+namespace fovea::linux_rt {
+namespace {
+
+TEST(SignalQueue, HandsOutWhatCameAndThenNothing) {
+  const SignalQueue queue({SIGUSR1, SIGUSR2});
+  EXPECT_EQ(queue.Next(0), -1);
+  pthread_kill(pthread_self(), SIGUSR2);
+  EXPECT_EQ(queue.Next(500), SIGUSR2);
+  EXPECT_EQ(queue.Next(0), -1);
+}
+
+TEST(SignalQueue, LeavesTheMaskAsItWas) {
+  sigset_t before;
+  sigset_t after;
+  pthread_sigmask(SIG_BLOCK, nullptr, &before);
+  { const SignalQueue queue({SIGUSR1}); }
+  pthread_sigmask(SIG_BLOCK, nullptr, &after);
+  EXPECT_EQ(sigismember(&before, SIGUSR1), sigismember(&after, SIGUSR1));
+}
+
+}  // namespace
+}  // namespace fovea::linux_rt
