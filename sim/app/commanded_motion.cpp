@@ -41,6 +41,12 @@ servo::MotionCommand CommandedCircle::At(double t_s) const noexcept {
   return command;
 }
 
+servo::MotionCommand CommandedHome::At(double /*t_s*/) const noexcept {
+  servo::MotionCommand command;
+  command.kind = servo::MotionKind::kHome;
+  return command;
+}
+
 servo::MotionCommand CommandedMotionSource::At(std::int64_t now_ns) noexcept {
   const double t_s = 1e-9 * static_cast<double>(now_ns);
   return std::visit([t_s](const auto& motion) { return motion.At(t_s); }, motion_);

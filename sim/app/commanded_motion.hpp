@@ -32,7 +32,12 @@ struct CommandedCircle {
   [[nodiscard]] servo::MotionCommand At(double t_s) const noexcept;
 };
 
-using CommandedMotion = std::variant<CommandedJoints, CommandedCircle>;
+// The joints go to the arm's ready posture.
+struct CommandedHome {
+  [[nodiscard]] servo::MotionCommand At(double t_s) const noexcept;
+};
+
+using CommandedMotion = std::variant<CommandedJoints, CommandedCircle, CommandedHome>;
 
 class CommandedMotionSource final : public servo::MotionSource {
  public:

@@ -4,29 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <stdexcept>
 
 #include "fovea/config/input_error.hpp"
 #include "fovea/model/kinematics.hpp"
+#include "sim/app/roll_pitch_yaw.hpp"
 #include "sim/camera/mix_bits.hpp"
 
 namespace fovea::sim {
 namespace {
 
 using config::InputError;
-constexpr double kDeg = std::numbers::pi / 180.0;
 
 Eigen::Vector3d ToVector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 Eigen::VectorXd ToVectorX(const std::vector<double>& v) {
   return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
-}
-
-// About fixed axes.
-Eigen::Quaterniond RollPitchYaw(const std::vector<double>& degrees) {
-  const Eigen::Vector3d rpy = kDeg * ToVector(degrees);
-  return Eigen::AngleAxisd(rpy.z(), Eigen::Vector3d::UnitZ()) *
-         Eigen::AngleAxisd(rpy.y(), Eigen::Vector3d::UnitY()) *
-         Eigen::AngleAxisd(rpy.x(), Eigen::Vector3d::UnitX());
 }
 
 }  // namespace
@@ -77,6 +69,16 @@ void SetFriction(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
   }
 }
 
+void AddLoad(const model::Load& load, SimRobot& robot) {
+  SimLink link;
+  link.name = "fovea/load";
+  link.parent = robot.tip;
+  link.mass = load.mass;
+  link.X_LCom.translation() = load.p_ECom;
+  link.I_Com = load.I_Com_E;
+  robot.links.push_back(link);
+}
+
 void CheckStart(const Scenario& s, const robots::Robot& robot) {
   const std::vector<double>& q = s.arm.q_start;
   for (std::size_t i = 0; i < q.size(); ++i) {
@@ -108,17 +110,16 @@ WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
   config.dq_start = ToVectorX(s.arm.dq_start);
   config.spring = ToVectorX(s.arm.spring);
   config.stiction = s.arm.stiction;
-  config.push = {ToVectorX(s.faults.push), s.faults.push_s[0], s.faults.push_s[1]};
   config.X_EC = CameraMount(s);
   config.friction_compensation = s.arm.friction_compensation;
   config.encoder_noise = s.arm.encoder_noise;
   config.velocity_noise = s.arm.velocity_noise;
-  config.target.kind = s.target.motion == "circle" ? MotionKind::kCircle : MotionKind::kStill;
-  config.target.p_BO = ToVector(s.target.position);
-  config.target.path_radius = s.target.path_radius;
-  config.target.speed = s.target.speed;
+  config.target = MakeTargetMotion(s.target, SeedOf(s, RandomStream::kTarget));
+  config.ball = MakeRollingBall(s.target);
+  config.ball_push = ToVector(s.target.push);
+  config.ball_push_s = s.target.push_s;
   config.camera_rate_hz = s.camera.rate_hz;
-  config.camera_outage = {s.faults.camera_outage_s[0], s.faults.camera_outage_s[1]};
+  SetBenchFaults(s.faults, config);
   config.seed = SeedOf(s, RandomStream::kEncoders);
   return config;
 }
@@ -144,6 +145,9 @@ CommandedMotion MakeMotion(const Scenario& s) {
     circle.lead_s = m.lead_s;
     return circle;
   }
+  if (m.kind == "home") {
+    return CommandedHome{};
+  }
   return CommandedJoints{joints(m.from.empty() ? s.arm.q_start : m.from), joints(m.velocity),
                          joints(m.amplitude), m.omega};
 }
@@ -154,7 +158,8 @@ RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
   scene.robot = robot;
   scene.has_eye = s.camera.enabled;
   scene.X_EC = CameraMount(s);
-  scene.target_radius = 0.5 * s.target.diameter;
+  scene.target = MakeTargetShape(config::MakeTarget(s.target));
+  scene.target_R_BO = RollPitchYaw(s.target.rpy_deg).toRotationMatrix();
   scene.target_colour = ToVector(s.target.colour).cast<float>();
   scene.light = s.camera.light;
   return scene;
@@ -167,7 +172,20 @@ std::uint64_t SeedOf(const Scenario& s, RandomStream stream) {
 }
 
 Pinhole MakeScenarioPinhole(const Scenario& s) {
-  return MakePinhole(s.camera.width_px, s.camera.height_px, s.camera.hfov_deg * kDeg);
+  return MakePinhole(s.camera.width_px, s.camera.height_px, s.camera.hfov_deg * kRadPerDeg);
+}
+
+void CheckLens(const Scenario& s) {
+  const Lens& lens = s.camera.lens;
+  try {
+    if (!lens.IsZero()) {
+      const LensMap map(lens, MakeScenarioPinhole(s));
+    }
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format(
+        "camera.k1, k2, p1, p2, k3 = {}, {}, {}, {}, {} is not allowed with camera.hfov_deg = {}: {}",
+        lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, s.camera.hfov_deg, error.what()));
+  }
 }
 
 void CheckGoal(const Scenario& s) {
@@ -209,11 +227,6 @@ void CheckTimes(const Scenario& s) {
         "camera.latency_ms = {} is not allowed: every measurement would be older than servo.stale_s = "
         "{} s when it comes",
         s.camera.latency_ms, s.servo.config.predict.stale_s));
-  }
-  const std::vector<double>& outage_s = s.faults.camera_outage_s;
-  if (outage_s[0] > outage_s[1]) {
-    throw InputError(fmt::format("faults.camera_outage_s = [{}, {}] is not allowed: it ends before it begins",
-                                 outage_s[0], outage_s[1]));
   }
 }
 

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "fovea/features/sphere.hpp"
 #include "sim/app/overlay.hpp"
 
 namespace fovea::sim {
@@ -27,8 +26,6 @@ cv::Size PageSize(const vision::Intrinsics& in) {
 
 EyeFilm::EyeFilm(const EyeFilmConfig& config)
     : config_(config),
-      goal_(
-          Overlay::CurveOf(config.intrinsics, features::ConeFromSphere(config.p_CO_C_star / config.radius))),
       legend_(PageSize(config.intrinsics).height - config.intrinsics.height_px,
               PageSize(config.intrinsics).width, CV_8UC3, kLegendColour),
       file_(config.path, PageSize(config.intrinsics).width, PageSize(config.intrinsics).height),
@@ -39,7 +36,7 @@ EyeFilm::EyeFilm(const EyeFilmConfig& config)
   DrawText(legend_, "dashed: goal", config.intrinsics.width_px / 3, kBaselinePx, 0.45, kGoalColour);
 }
 
-void EyeFilm::Add(const hal::Frame& frame, const vision::BallDetection& detection) {
+void EyeFilm::Add(const hal::Frame& frame, const vision::Detection& detection) {
   std::optional<Item> place = queue_.Take();
   if (!place) {
     return;
@@ -63,15 +60,15 @@ void EyeFilm::Draw(Item& item) const {
   const vision::Intrinsics& in = config_.intrinsics;
   cv::Mat picture = item.page(cv::Rect(0, 0, in.width_px, in.height_px));
   Overlay overlay(picture, in, 1);
-  overlay.Goal(goal_, config_.p_CO_C_star);
+  overlay.Goal(config_.goal, config_.p_CO_C_star);
   overlay.Detection(item.detection);
   const int y = in.height_px + kBaselinePx;
   DrawText(item.page, fmt::format("t = {:.3f} s", static_cast<double>(item.stamp_ns) * 1e-9), 10, y, 0.45,
            kTruthColour);
   std::string words = "no detection";
   if (item.detection.found) {
-    const double error_px = std::hypot(in.U(item.detection.s) - in.U(config_.p_CO_C_star),
-                                       in.V(item.detection.s) - in.V(config_.p_CO_C_star));
+    const double error_px = std::hypot(in.U(item.detection.Middle()) - in.U(config_.p_CO_C_star),
+                                       in.V(item.detection.Middle()) - in.V(config_.p_CO_C_star));
     words = fmt::format("detection, {:.1f} px off", error_px);
   }
   DrawText(item.page, words, 2 * in.width_px / 3, y, 0.45, kDetectionColour);

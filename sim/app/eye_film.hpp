@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "fovea/hal/camera.hpp"
-#include "fovea/vision/ball_detector.hpp"
+#include "fovea/vision/detection.hpp"
 #include "sim/app/film_queue.hpp"
 #include "sim/app/overlay.hpp"
 #include "sim/app/video_file.hpp"
@@ -15,7 +15,7 @@ namespace fovea::sim {
 struct EyeFilmConfig {
   std::filesystem::path path;
   vision::Intrinsics intrinsics;
-  double radius = 0.04;                                   // of the target [m]
+  Overlay::Curve goal;                                    // the target's outline at its goal
   Eigen::Vector3d p_CO_C_star = Eigen::Vector3d::Zero();  // the goal [m]
   bool may_drop = false;  // when encoding is slower than the camera: drop a frame (true) or wait (false)
 };
@@ -24,7 +24,7 @@ class EyeFilm {
  public:
   explicit EyeFilm(const EyeFilmConfig& config);
   // From the vision thread; copies the pixels.
-  void Add(const hal::Frame& frame, const vision::BallDetection& detection);
+  void Add(const hal::Frame& frame, const vision::Detection& detection);
   // Encodes what is left and completes the file. Throws what went wrong at any time.
   void Finish();
   // Frames that found no place.
@@ -35,12 +35,11 @@ class EyeFilm {
   struct Item {
     cv::Mat page;  // the picture, with room for the legend below
     std::int64_t stamp_ns = 0;
-    vision::BallDetection detection;
+    vision::Detection detection;
   };
   void Draw(Item& item) const;
 
   const EyeFilmConfig config_;
-  const Overlay::Curve goal_;
   cv::Mat legend_;  // what it says in every frame
   VideoFile file_;
   FilmQueue<Item> queue_;  // last: its thread uses the others

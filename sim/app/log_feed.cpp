@@ -6,14 +6,15 @@
 #include <iterator>
 
 #include "fovea/build_info.hpp"
-#include "fovea/features/sphere.hpp"
 #include "fovea/log/picture_messages.hpp"
 #include "fovea/log/record_hash.hpp"
 #include "fovea/log/topics.hpp"
+#include "fovea/model/rotation.hpp"
 #include "fovea/run.pb.h"
 #include "foxglove/image.pb.h"
 #include "foxglove/scene.pb.h"
 #include "sim/app/log_scene.hpp"
+#include "sim/app/target_curve.hpp"
 #include "sim/app/target_error.hpp"
 
 namespace fovea::sim {
@@ -46,10 +47,19 @@ log::Setup MakeSetup(const RunDescription& about) {
   }
   setup.set_lambda(about.servo.law.lambda);
   if (about.scene.has_eye) {
-    setup.set_target_radius(about.scene.target_radius);
+    setup.set_target_radius(about.scene.target.Reach());
   }
-  setup.set_target_moves(about.scenario.target.motion != "still");
-  const model::Vec3& goal = about.servo.feature.p_CO_C_star;
+  const features::TargetFeature& feature = about.servo.feature;
+  setup.set_target(features::kTargetNames[static_cast<std::size_t>(feature.target)]);
+  setup.set_feature(features::kFormNames[static_cast<std::size_t>(feature.form)]);
+  for (int i = 0; feature.SeesOrientation() && i < feature.corners.num_corners; ++i) {
+    setup.add_corners(feature.corners.corners[static_cast<std::size_t>(i)].x());
+    setup.add_corners(feature.corners.corners[static_cast<std::size_t>(i)].y());
+  }
+  const std::array<double, 4> q_CO_star = model::QuaternionOf(feature.R_CO_star);
+  setup.mutable_q_co_star()->Add(q_CO_star.begin(), q_CO_star.end());
+  setup.set_target_moves(KeepsMoving(about.scenario.target));
+  const model::Vec3& goal = feature.p_CO_C_star;
   setup.mutable_p_co_c_star()->Add(goal.data(), goal.data() + 3);
   setup.set_workspace_radius(about.servo.guard.workspace_radius);
   setup.set_duration_s(about.scenario.run.duration_s);
@@ -76,9 +86,10 @@ std::map<std::string, std::string> Configuration(Scenario scenario) {
 
 LogFeed::LogFeed(const RunDescription& about, const std::filesystem::path& path, bool may_drop)
     : about_(about), path_(path), log_(MakeRunLogConfig(about, path, may_drop)) {
-  log::AddOutline(about.intrinsics,
-                  features::ConeFromSphere(about.servo.feature.p_CO_C_star / about.scene.target_radius),
-                  log::kGoalRole, goal_);
+  if (about.scene.has_eye) {
+    log::AddOutline(about.intrinsics, GoalCurve(about.intrinsics, about.servo.feature), log::kGoalRole,
+                    goal_);
+  }
   log_.AddMetadata("configuration", Configuration(about.scenario));
   log_.AddMetadata("build", {{"version", kVersion},
                              {"git", kGitRevision},
@@ -104,24 +115,21 @@ void LogFeed::AddTruth(const Truth& truth) {
   if (!about_.scene.has_eye) {
     return;  // there is no target
   }
-  const TargetError error = ErrorOf(truth, about_.pinhole, about_.servo.feature.p_CO_C_star);
+  const TargetError error = ErrorOf(truth, about_.pinhole, GoalOf(about_.servo.feature));
   log::TruthSample sample;
   sample.stamp_ns = truth.stamp_ns;
   Eigen::Map<Eigen::Vector3d>(sample.p_BO.data()) = truth.p_BO;
   Eigen::Map<Eigen::Vector3d>(sample.p_BC.data()) = truth.X_BC.translation();
   sample.error_px = error.error_px;
   sample.error_mm = 1e3 * error.error_C.norm();
+  sample.q_BO = model::QuaternionOf(truth.R_BO);
   log_.AddTruth(sample);
 }
 
-void LogFeed::AddFrame(const hal::Frame& frame, const vision::BallDetection& detection,
-                       const Eigen::Vector3d& p_CO_C) {
+void LogFeed::AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO) {
   foxglove::ImageAnnotations annotations = goal_;
-  const double radius = about_.scene.target_radius;
-  if (p_CO_C.z() > 1.1 * radius) {
-    log::AddOutline(about_.intrinsics, features::ConeFromSphere(p_CO_C / radius), log::kTruthRole,
-                    annotations);
-  }
+  log::AddOutline(about_.intrinsics, TargetCurve(about_.intrinsics, about_.servo.feature, X_CO),
+                  log::kTruthRole, annotations);
   log::AddDetection(about_.intrinsics, detection, annotations);
   log_.Add(log::kAnnotationTopic, frame.stamp_ns, annotations);
   log_.AddImage(frame);

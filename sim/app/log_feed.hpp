@@ -8,7 +8,7 @@
 
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "fovea/log/run_log.hpp"
-#include "fovea/vision/ball_detector.hpp"
+#include "fovea/vision/detection.hpp"
 #include "foxglove/image.pb.h"
 #include "sim/app/run_description.hpp"
 #include "sim/world/world.hpp"
@@ -26,9 +26,8 @@ class LogFeed {
   void AddTheory(const TheorySample& sample);
   // From the thread that empties the recorder.
   void AddRecord(const hal::TickRecord& record) { log_.AddTick(record); }
-  // From the vision thread. `p_CO_C`: where the target really was [m].
-  void AddFrame(const hal::Frame& frame, const vision::BallDetection& detection,
-                const Eigen::Vector3d& p_CO_C);
+  // From the vision thread. `X_CO`: where the target really was.
+  void AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
 
   // When all is over: how long the ticks took, the summary, the film; then completes the file.
   void Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json,

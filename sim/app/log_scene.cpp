@@ -104,6 +104,31 @@ Eigen::Isometry3d At(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
+// The log's target frame turns with what shows its turn; a disc is shown as it lies at the start.
+void AddTarget(const RenderScene& scene, foxglove::SceneEntity& entity) {
+  const TargetShape& target = scene.target;
+  if (target.kind == TargetShape::Kind::kBall) {
+    AddSphere(At(0.0, 0.0, 0.0), target.radius, scene.target_colour, entity);
+    return;
+  }
+  if (target.kind == TargetShape::Kind::kDisc) {
+    Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
+    turned.linear() = scene.target_R_BO;
+    AddCylinder(turned, target.radius, 0.001, scene.target_colour, entity);
+    return;
+  }
+  Mesh plate;
+  for (const Eigen::Vector2d& corner : target.corners) {
+    plate.vertices.push_back(
+        {Eigen::Vector3f(static_cast<float>(corner.x()), static_cast<float>(corner.y()), 0.0F),
+         -Eigen::Vector3f::UnitZ(), scene.target_colour});
+  }
+  for (std::uint32_t i = 2; i < plate.vertices.size(); ++i) {
+    plate.indices.insert(plate.indices.end(), {0, i, i - 1});
+  }
+  AddMesh(Eigen::Isometry3d::Identity(), plate, entity);
+}
+
 }  // namespace
 
 std::vector<log::LinkFrame> MakeLinkFrames(const SimRobot& robot, const model::ArmModel& arm,
@@ -149,8 +174,7 @@ foxglove::SceneUpdate MakeSceneMessage(const RenderScene& scene) {
   foxglove::SceneEntity& camera = AddEntity("camera", log::kCameraFrame, update);
   AddBox(At(0.0, 0.0, -0.042), {0.034, 0.034, 0.040}, dark, camera);
   AddCylinder(At(0.0, 0.0, -0.013), 0.0155, 0.022, dark, camera);
-  AddSphere(At(0.0, 0.0, 0.0), scene.target_radius, scene.target_colour,
-            AddEntity("target", log::kTargetFrame, update));
+  AddTarget(scene, AddEntity("target", log::kTargetFrame, update));
   return update;
 }
 

@@ -5,9 +5,12 @@
 #include <algorithm>
 
 #include "fovea/build_info.hpp"
+#include "fovea/config/board_flags.hpp"
 #include "fovea/config/program.hpp"
+#include "sim/app/calibration_pictures.hpp"
 #include "sim/app/run.hpp"
 #include "sim/app/scenario.hpp"
+#include "sim/app/serve.hpp"
 
 namespace {
 
@@ -48,6 +51,128 @@ int Run(const RunArguments& arguments) {
   return sim::ReachedItsGoal(summary) ? kDone : kGoalMissed;
 }
 
+struct ServeArguments {
+  std::string scenario;
+  std::vector<std::string> assignments;
+  int seed = -1;
+  std::string pace = "real";
+  bool json = false;
+  sim::ServeOptions options;
+};
+
+int Serve(const ServeArguments& arguments) {
+  std::vector<std::string> assignments = arguments.assignments;
+  if (arguments.seed >= 0) {
+    assignments.push_back(fmt::format("run.seed={}", arguments.seed));
+  }
+  sim::ServeOptions options = arguments.options;
+  options.server.lockstep = arguments.pace == "lockstep";
+  const sim::ServeSummary summary =
+      sim::Serve(sim::LoadScenario(arguments.scenario, assignments), options, [](const std::string& line) {
+        fmt::print(stderr, "{}\n", line);
+        std::fflush(stderr);
+      });
+  if (arguments.json) {
+    fmt::print("{}", sim::ToJson(summary));
+  } else {
+    const sim::FciServerCounters& c = summary.robot;
+    fmt::print("{} states, {} commands applied, {} missing, {} overruns; {} frames\n", c.states, c.commands,
+               c.missing, c.overruns, summary.frames_sent);
+    if (summary.error_px) {
+      fmt::print("in the end the target was {:.2f} px, {:.2f} mm off its goal\n", *summary.error_px,
+                 *summary.error_mm);
+    }
+  }
+  return kDone;
+}
+
+void AddServe(CLI::App& serve, ServeArguments& arguments) {
+  sim::FciServerConfig& server = arguments.options.server;
+  serve.add_option("scenario", arguments.scenario, "a shipped scenario by name, or the path of a .toml")
+      ->required();
+  serve.add_option("--set", arguments.assignments, "key=value, over the scenario's own; may be repeated")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  serve.add_option("--seed", arguments.seed, "of all that is random")->check(CLI::Range(0, 2147483647));
+  serve
+      .add_option("--pace", arguments.pace,
+                  "real: 1 ms by the clock; lockstep: a motion waits for its client")
+      ->check(CLI::IsMember({"lockstep", "real"}));
+  serve.add_option("--fci-port", server.at.port, "TCP port; 0 takes a free one and says which")
+      ->capture_default_str();
+  serve
+      .add_option("--address", arguments.options.address,
+                  "where to listen; 0.0.0.0 is every network there is")
+      ->capture_default_str();
+  serve
+      .add_option("--camera-serial", arguments.options.camera_serial,
+                  "serial number of the GigE Vision camera; \"\": no camera")
+      ->capture_default_str();
+  serve.add_option("--late-ms", server.late_ms, "a command may answer a state that is this old")
+      ->check(CLI::Range(0, 19))
+      ->capture_default_str();
+  const auto share = [&](const char* name, double& value, const char* what) {
+    serve.add_option(name, value, what)->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  };
+  share("--loss", server.faults.loss, "share of datagrams that the network loses");
+  share("--duplicate", server.faults.duplicate, "share that comes twice");
+  share("--reorder", server.faults.reorder, "share that is overtaken");
+  serve.add_option("--delay-ms", server.faults.delay_ms, "of every datagram; in lockstep of commands alone")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  serve.add_option("--jitter-ms", server.faults.jitter_ms, "up to this much more")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  serve.add_flag("--json", arguments.json, "print the counters as JSON at the end");
+}
+
+struct PictureArguments {
+  std::string scenario = "ball";
+  std::vector<std::string> assignments;
+  config::BoardFlags board;
+  int views = 14;
+  std::string out = "out/calibration";
+};
+
+int TakePictures(const PictureArguments& arguments) {
+  sim::CalibrationPicturesOptions options{config::MakeBoard(arguments.board), arguments.views, arguments.out};
+  const sim::CalibrationPictures taken =
+      sim::TakeCalibrationPictures(sim::LoadScenario(arguments.scenario, arguments.assignments), options);
+  const vision::Board& board = options.board;
+  std::string flags = fmt::format("--board {}x{} --square {}", board.columns, board.rows, board.square);
+  if (board.HasMarkers()) {
+    flags += fmt::format(" --marker {} --dictionary {}", board.marker, board.dictionary);
+  }
+  fmt::print(
+      "{0} views of the board in {1}, {2} of a disc in {1}/focal; what they show in {1}/truth.json. Now:\n"
+      "  fovea calibrate intrinsics {1} {3} --out {1}/camera.toml\n"
+      "  fovea calibrate hand-eye {1} {3} --camera {1}/camera.toml\n"
+      "  fovea calibrate focal --diameter {4} --delta-z {5} {1}/{6} {1}/{7}\n",
+      taken.boards.size(), arguments.out, taken.discs.size(), flags, taken.disc_diameter, taken.disc_delta_z,
+      taken.discs[0], taken.discs[1]);
+  return kDone;
+}
+
+void AddPictures(CLI::App& pictures, PictureArguments& arguments) {
+  pictures.add_option("scenario", arguments.scenario, "whose arm and camera; a shipped one or a .toml")
+      ->capture_default_str();
+  pictures.add_option("--set", arguments.assignments, "key=value, over the scenario's own; may be repeated")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  config::AddBoardFlags(pictures, arguments.board);
+  pictures.add_option("--views", arguments.views, "of the board")
+      ->check(CLI::Range(4, 60))
+      ->capture_default_str();
+  pictures.add_option("--out", arguments.out, "folder for pictures, poses.csv and truth.json")
+      ->capture_default_str();
+  pictures.footer(
+      "The arm is placed at each view, not driven there.\n"
+      "Example:\n"
+      "  fovea-sim pictures --board 8x5 --square 0.03 --marker 0.022 --set camera.k1=-0.12");
+}
+
 int List() {
   const std::vector<std::string> names = sim::ShippedScenarios();
   std::size_t width = 0;
@@ -85,6 +210,8 @@ int main(int argc, char** argv) {
       "  fovea-sim run ball\n"
       "  fovea-sim run ball --set servo.lambda=3 --seed 7 --out out/fast\n"
       "  fovea-sim run my.toml --pace real --json\n"
+      "  fovea-sim serve ball --fci-port 1337\n"
+      "  fovea-sim pictures --board 9x6 --square 0.025 --out out/boards\n"
       "Exit: 0 the run reached its goal, 1 it did not, 2 wrong usage or input.");
 
   RunArguments arguments;
@@ -102,12 +229,23 @@ int main(int argc, char** argv) {
   run->add_option("--out", arguments.out, "folder for the files; out/<scenario> when not given");
   run->add_flag("--no-report", arguments.no_report, "leave out what takes long to draw");
   run->add_flag("--json", arguments.json, "print summary.json instead of the table");
+  ServeArguments serve_arguments;
+  CLI::App* serve = app.add_subcommand("serve", "the scenario's Panda on the network, until interrupted");
+  AddServe(*serve, serve_arguments);
+  PictureArguments picture_arguments;
+  CLI::App* pictures = app.add_subcommand(
+      "pictures", "of a board from many sides, to calibrate the scenario's camera with `fovea calibrate`");
+  AddPictures(*pictures, picture_arguments);
   CLI::App* list = app.add_subcommand("list", "shipped scenarios, one line each");
   bool markdown = false;
   CLI::App* keys = app.add_subcommand("keys", "every key of a scenario: default, meaning, range, unit");
   keys->add_flag("--markdown", markdown, "as the table in sim/scenarios/KEYS.md");
 
   return config::RunProgram("fovea-sim", app, argc, argv, [&] {
-    return run->parsed() ? Run(arguments) : list->parsed() ? List() : Keys(markdown);
+    return run->parsed()        ? Run(arguments)
+           : serve->parsed()    ? Serve(serve_arguments)
+           : pictures->parsed() ? TakePictures(picture_arguments)
+           : list->parsed()     ? List()
+                                : Keys(markdown);
   });
 }

@@ -4,7 +4,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "fovea/vision/outline_fit.hpp"
+#include "fovea/vision/outline.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -14,21 +14,27 @@ constexpr int kDash = 2;  // segments drawn, then as many left out
 
 }  // namespace
 
-// Pixel centres stay pixel centres.
+// Where the lens puts it; pixel centres stay pixel centres.
 cv::Point Overlay::At(double u_px, double v_px) const {
+  in_.Distort(u_px, v_px);
   const double one = 1 << kSubPixelBits;
   return {static_cast<int>(std::lround((scale_ * (u_px + 0.5) - 0.5) * one)),
           static_cast<int>(std::lround((scale_ * (v_px + 0.5) - 0.5) * one))};
 }
 
 Overlay::Curve Overlay::CurveOf(const vision::Intrinsics& intrinsics, const model::Vec3& m) {
-  return vision::OutlinePoints(intrinsics, m, kCurvePoints);
+  return vision::SphereOutline(intrinsics, m, kCurvePoints);
 }
 
-void Overlay::Outline(const Curve& curve, const cv::Scalar& colour, int thickness, bool dashed) {
+void Overlay::Outline(std::span<const vision::ImagePoint> curve, const cv::Scalar& colour, int thickness,
+                      bool dashed) {
+  if (curve.empty()) {
+    return;
+  }
   std::vector<cv::Point> points;
-  for (const auto& [u, v] : curve) {
-    points.push_back(At(u, v));
+  points.reserve(curve.size() + 1);
+  for (const vision::ImagePoint& p : curve) {
+    points.push_back(At(p.u_px, p.v_px));
   }
   const auto draw = [&](const std::vector<cv::Point>& line, bool closed) {
     cv::polylines(image_, line, closed, colour, thickness, cv::LINE_AA, kSubPixelBits);
@@ -55,10 +61,10 @@ void Overlay::Goal(const Curve& outline, const Eigen::Vector3d& p_CO_C_star) {
   Cross(p_CO_C_star, 9.0, kGoalColour);
 }
 
-void Overlay::Detection(const vision::BallDetection& detection) {
+void Overlay::Detection(const vision::Detection& detection) {
   if (detection.found) {
-    Outline(CurveOf(in_, detection.outline.m), kDetectionColour, 2, false);
-    Cross(detection.s, 5.0, kDetectionColour);
+    Outline(detection.Outline(), kDetectionColour, 2, false);
+    Cross(detection.Middle(), 5.0, kDetectionColour);
   }
 }
 

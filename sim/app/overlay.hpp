@@ -1,13 +1,13 @@
-// Marks on a camera's picture: outlines of spheres and crosses, to a fraction of a pixel.
+// Marks on a camera's picture: outlines and crosses, to a fraction of a pixel.
 #pragma once
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "fovea/vision/ball_detector.hpp"
+#include "fovea/vision/detection.hpp"
 #include "fovea/vision/intrinsics.hpp"
 
 namespace fovea::sim {
@@ -26,16 +26,17 @@ class Overlay {
   Overlay(cv::Mat& image, const vision::Intrinsics& intrinsics, int scale)
       : image_(image), in_(intrinsics), scale_(scale) {}
 
-  // An outline's points in pixels of the camera, evenly along it, closed or dashed.
-  using Curve = std::vector<std::pair<double, double>>;
+  // An outline's points in ideal pixels, evenly along it, closed or dashed; none: nothing is drawn.
+  using Curve = std::vector<vision::ImagePoint>;
   static Curve CurveOf(const vision::Intrinsics& intrinsics, const model::Vec3& m);  // of cone |x| = x . m
-  void Outline(const Curve& curve, const cv::Scalar& colour, int thickness, bool dashed);
+  void Outline(std::span<const vision::ImagePoint> curve, const cv::Scalar& colour, int thickness,
+               bool dashed);
   // A cross at the ray `p`, `arm_px` of the camera's pixels to each side.
   void Cross(const model::Vec3& p, double arm_px, const cv::Scalar& colour);
 
-  // The sphere where it shall be, dashed and with a cross; and where it was detected.
+  // The target where it shall be, dashed and with a cross; and where it was detected.
   void Goal(const Curve& outline, const Eigen::Vector3d& p_CO_C_star);
-  void Detection(const vision::BallDetection& detection);
+  void Detection(const vision::Detection& detection);
 
  private:
   [[nodiscard]] cv::Point At(double u_px, double v_px) const;

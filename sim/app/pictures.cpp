@@ -7,9 +7,9 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "fovea/features/sphere.hpp"
 #include "sim/app/bench_view.hpp"
 #include "sim/app/overlay.hpp"
+#include "sim/app/target_curve.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -32,11 +32,10 @@ void CopyPixels(const hal::Frame& frame, cv::Mat& bgr) {
 
 }  // namespace
 
-void FrameKeeper::Keep(const hal::Frame& frame, const vision::BallDetection& detection,
-                       const Eigen::Vector3d& p_CO_C) {
+void FrameKeeper::Keep(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO) {
   last_.stamp_ns = frame.stamp_ns;
   last_.detection = detection;
-  last_.p_CO_C = p_CO_C;
+  last_.X_CO = X_CO;
   CopyPixels(frame, last_.bgr);
   if (frames_ == 0) {
     first_ = last_;
@@ -46,16 +45,15 @@ void FrameKeeper::Keep(const hal::Frame& frame, const vision::BallDetection& det
   detected_ += detection.found ? 1U : 0U;
 }
 
-std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in, double radius,
-                           const Eigen::Vector3d& p_CO_C_star) {
-  const Eigen::Vector3d& p_CO_C = frame.p_CO_C;
+std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
+                           const features::TargetFeature& target) {
+  const Eigen::Vector3d& p_CO_C_star = target.p_CO_C_star;
+  const Eigen::Vector3d& p_CO_C = frame.X_CO.p;
   cv::Mat picture;
   cv::resize(frame.bgr, picture, cv::Size(), kScale, kScale, cv::INTER_CUBIC);
   Overlay overlay(picture, in, kScale);
-  if (p_CO_C.z() > 1.1 * radius) {
-    overlay.Outline(Overlay::CurveOf(in, features::ConeFromSphere(p_CO_C / radius)), kTruthColour, 1, true);
-  }
-  overlay.Goal(Overlay::CurveOf(in, features::ConeFromSphere(p_CO_C_star / radius)), p_CO_C_star);
+  overlay.Outline(TargetCurve(in, target, frame.X_CO), kTruthColour, 1, true);
+  overlay.Goal(GoalCurve(in, target), p_CO_C_star);
   overlay.Detection(frame.detection);
 
   cv::Mat page(picture.rows + kLegendPx, picture.cols, CV_8UC3, kLegendColour);
@@ -67,13 +65,13 @@ std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
   const auto write = [&page](const std::string& text, int x, int y, const cv::Scalar& colour) {
     DrawText(page, text, x, y, 0.7, colour);
   };
-  write(fmt::format("t = {:.3f} s   image error {:.1f} px", static_cast<double>(frame.stamp_ns) * 1e-9,
+  write(fmt::format("t = {:.3f} s   its middle {:.1f} px off", static_cast<double>(frame.stamp_ns) * 1e-9,
                     error_px),
         20, top, kTruthColour);
   write("dashed: true outline", 20, bottom, kTruthColour);
   write("dashed, with cross: goal", middle, bottom, kGoalColour);
   write(frame.detection.found ? fmt::format("detection, confidence {:.2f}, edge {:.2f} px rms",
-                                            frame.detection.confidence, frame.detection.outline.rms_px)
+                                            frame.detection.confidence, frame.detection.rms_px)
                               : std::string("no detection"),
         middle, top, kDetectionColour);
   return ToPng(page);

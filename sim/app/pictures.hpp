@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "fovea/features/target_feature.hpp"
 #include "fovea/hal/camera.hpp"
-#include "fovea/vision/ball_detector.hpp"
+#include "fovea/vision/detection.hpp"
+#include "fovea/vision/intrinsics.hpp"
 #include "sim/render/scene_renderer.hpp"
 
 namespace fovea::sim {
@@ -16,15 +18,15 @@ namespace fovea::sim {
 struct KeptFrame {
   cv::Mat bgr;
   std::int64_t stamp_ns = 0;
-  vision::BallDetection detection;
-  Eigen::Vector3d p_CO_C = Eigen::Vector3d::Zero();  // where the target really was [m]
+  vision::Detection detection;
+  model::Pose X_CO;  // where the target really was
 };
 
 // Keeps the first frame of a run and the newest. Called by the vision thread; read when that has ended.
 class FrameKeeper {
  public:
-  // `p_CO_C`: where the target really was [m].
-  void Keep(const hal::Frame& frame, const vision::BallDetection& detection, const Eigen::Vector3d& p_CO_C);
+  // `X_CO`: where the target really was.
+  void Keep(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] std::uint64_t detected() const { return detected_; }
   [[nodiscard]] const KeptFrame& first() const { return first_; }
@@ -38,9 +40,8 @@ class FrameKeeper {
 };
 
 // The frame at twice its size with target (true outline), detection and goal drawn in, and a legend; as PNG.
-// `p_CO_C_star` is where the target shall be [m].
-std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& intrinsics, double radius,
-                           const Eigen::Vector3d& p_CO_C_star);
+std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& intrinsics,
+                           const features::TargetFeature& target);
 
 // The bench as someone standing beside it sees it, with the paths of camera and target drawn in; as PNG.
 // `camera_path` and `target_path` are points in B [m].

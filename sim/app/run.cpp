@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -20,13 +19,16 @@
 #include "fovea/servo/servo_loop.hpp"
 #include "fovea/vision/vision_task.hpp"
 #include "sim/app/compose.hpp"
+#include "sim/app/eye.hpp"
 #include "sim/app/progress.hpp"
 #include "sim/app/run_description.hpp"
 #include "sim/app/run_files.hpp"
 #include "sim/app/target_log.hpp"
 #include "sim/app/verdict.hpp"
-#include "sim/camera/sim_camera.hpp"
-#include "sim/render/scene_renderer.hpp"
+#include "sim/faults/faulty_arm.hpp"
+#include "sim/faults/faulty_detector.hpp"
+#include "sim/faults/frame_faults.hpp"
+#include "sim/faults/stalling_clock.hpp"
 #include "sim/world/feature_delay.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world.hpp"
@@ -36,13 +38,6 @@ namespace fovea::sim {
 namespace {
 
 constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
-// Pictures that are drawn at the same time, each by a renderer of its own.
-constexpr int kRenderers = 2;
-
-// Mesa's software renderer splits a picture over all cores by default. Here whole pictures run beside each
-// other, which wastes less; who sets the variable keeps their choice. (A GPU's driver does not look at it.)
-void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0); }
-
 // Everything of one run, wired up. Members stand in the order in which one needs the other.
 class Run {
  public:
@@ -50,15 +45,17 @@ class Run {
       : options_(options),
         progress_(scenario.name, scenario.run.duration_s, !options.show_progress),
         about_(Prepare(scenario, progress_)),
-        vision_(config::MakeVisionConfig(scenario.vision, about_.intrinsics, about_.scene.target_radius)),
+        vision_(config::MakeVisionConfig(scenario.vision, about_.intrinsics, scenario.target)),
+        stall_(MakeStallFault(scenario.faults, SeedOf(scenario, RandomStream::kStalls))),
+        detector_(delay_,
+                  MakeDetectorFaults(scenario.faults, SeedOf(scenario, RandomStream::kDetectorFaults))),
         ring_(kRingCapacity) {
     if (!servo_.Init(about_.servo).ok()) {
       throw std::logic_error("a servo configuration that was checked is refused");
     }
-    UseOneThreadPerRenderer();
-    const int renderers = HasEye() ? kRenderers : 0;
-    for (int i = 0; i < renderers; ++i) {  // one after the other: drivers set themselves up with the first
-      renderers_.push_back(std::make_unique<SceneRenderer>(about_.scene, about_.pinhole, RenderQuality{}, i));
+    if (HasEye()) {
+      // In lockstep no frame is ever lost: the world waits for each. A real camera keeps two.
+      eye_ = std::make_unique<Eye>(about_, options_.pace == Pace::kReal ? 2 : 1024);
     }
     // After all that can be refused: what is refused leaves no folder.
     files_ = std::make_unique<RunFiles>(
@@ -83,7 +80,7 @@ class Run {
     }
     wall_time_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     if (HasEye()) {
-      camera_->Close();
+      eye_->camera().Close();
       vision_thread.join();
     }
     TakeRecords();
@@ -92,8 +89,8 @@ class Run {
         std::rethrow_exception(failure);
       }
     }
-    if (HasEye() && !camera_->fault().empty()) {
-      throw std::runtime_error("the camera broke during the run: " + camera_->fault());
+    if (HasEye() && !eye_->camera().fault().empty()) {
+      throw std::runtime_error("the camera broke during the run: " + eye_->camera().fault());
     }
     if (!status.ok()) {
       throw std::runtime_error(
@@ -115,13 +112,14 @@ class Run {
     VerdictConfig verdict_config;
     verdict_config.arm = about_.servo.arm;
     verdict_config.pinhole = about_.pinhole;
-    verdict_config.p_CO_C_star = about_.servo.feature.p_CO_C_star;
+    verdict_config.goal = GoalOf(about_.servo.feature);
     verdict_config.has_eye = HasEye();
     if (about_.motion && std::holds_alternative<CommandedCircle>(*about_.motion)) {
       verdict_config.circle = std::get<CommandedCircle>(*about_.motion);
     }
+    verdict_config.goes_home = about_.motion && std::holds_alternative<CommandedHome>(*about_.motion);
     verdict_config.path_bound_mm = about_.scenario.motion.bound_mm;
-    verdict_config.target_moves = about_.scenario.target.motion != "still";
+    verdict_config.target_moves = KeepsMoving(about_.scenario.target);
     verdict_config.tracking_bound_px = about_.scenario.run.tracking_bound_px;
     verdict_config.duration_s = about_.scenario.run.duration_s;
     verdict_config.workspace_radius = about_.servo.guard.workspace_radius;
@@ -130,44 +128,31 @@ class Run {
       theory_.emplace(*about_.theory);
     }
 
-    if (HasEye()) {
-      BuildCamera();
-    }
+    const FaultSettings& faults = about_.scenario.faults;
+    frame_faults_ = std::make_unique<FrameSpoiler>(
+        MakeFrameFaults(faults, SeedOf(about_.scenario, RandomStream::kFrameFaults)));
     world_ = std::make_unique<World>(MakeWorldConfig(about_.scenario, about_.scene.robot));
     world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
     const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);
-    world_->OnExposure([this, latency_ns](Exposure exposure) {
+    world_->OnExposure([this, latency_ns](const Exposure& exposure) {
       if (!HasEye()) {
         files_->AddExposure(exposure);
         return;
       }
-      targets_.Put(exposure.sequence, exposure.X_BC.inverse() * exposure.p_BO);
-      delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns);
+      std::optional<Exposure> taken = frame_faults_->Spoil(exposure);
+      if (!taken) {
+        return;
+      }
+      targets_.Put(exposure.sequence, {exposure.X_BC.linear().transpose() * exposure.R_BO,
+                                       exposure.X_BC.inverse() * exposure.p_BO});
+      delay_.Expect(exposure.sequence,
+                    exposure.stamp_ns + latency_ns + frame_faults_->DelayNs(exposure.stamp_ns));
       files_->AddExposure(exposure);
-      camera_->Expose(std::move(exposure));
+      eye_->camera().Expose(*std::move(taken));
     });
     arm_ = std::make_unique<SimArm>(*world_);
-  }
-
-  void BuildCamera() {
-    SimCameraConfig camera_config;
-    camera_config.width_px = about_.pinhole.width_px;
-    camera_config.height_px = about_.pinhole.height_px;
-    camera_config.exposure_ns = static_cast<std::int64_t>(about_.scenario.camera.exposure_ms * 1e6);
-    // In lockstep no frame is ever lost: the world waits for each. A real camera keeps two.
-    camera_config.queue = options_.pace == Pace::kReal ? 2 : 1024;
-    std::vector<Painter> painters;
-    for (const auto& owned : renderers_) {
-      SceneRenderer* renderer = owned.get();
-      painters.push_back({[renderer](const Exposure& exposure, std::span<std::uint8_t> rgba) {
-                            renderer->Draw(exposure, exposure.X_BC, rgba);
-                          },
-                          [renderer] { renderer->Release(); }});
-    }
-    camera_ = std::make_unique<SimCamera>(
-        camera_config,
-        Sensor(about_.scenario.camera.noise_sigma, SeedOf(about_.scenario, RandomStream::kSensor)),
-        std::move(painters));
+    faulty_arm_ = std::make_unique<FaultyArm>(
+        *arm_, MakeArmFaults(faults, SeedOf(about_.scenario, RandomStream::kArmFaults)));
   }
 
   void ObserveTruth(const Truth& truth) {
@@ -185,8 +170,8 @@ class Run {
     linux_rt::MakeThreadYielding("fovea-vision");
     try {
       const hal::Status status =
-          vision::RunVision(*camera_, vision_, delay_, never_stop_,
-                            [this](const hal::Frame& frame, const vision::BallDetection& detection) {
+          vision::RunVision(eye_->camera(), vision_, detector_, never_stop_,
+                            [this](const hal::Frame& frame, const vision::Detection& detection) {
                               files_->AddFrame(frame, detection, targets_.Take(frame.sequence));
                             });
       static_cast<void>(status);  // an orderly end, or a fault that the camera keeps the words for
@@ -225,7 +210,8 @@ class Run {
       progress_.Update(recorded_s_, hal::Name(mode_));
       return delay_.HandOver(now_ns, /*wait=*/true, mailbox_);
     });
-    servo::ServoLoop loop(servo_, *arm_, clock, mailbox_, ring_, meter_);
+    StallingClock stalling(clock, stall_);
+    servo::ServoLoop loop(servo_, *faulty_arm_, stalling, mailbox_, ring_, meter_);
     UseMotion(loop);
     const hal::Status status = loop.Run(EndNs());
     counters_ = loop.counters();
@@ -242,7 +228,8 @@ class Run {
       realtime_missing_ = linux_rt::MakeThreadRealtime({});
       clock.emplace(*world_, monotonic,
                     [&](std::int64_t now_ns) { return delay_.HandOver(now_ns, /*wait=*/false, mailbox_); });
-      servo::ServoLoop loop(servo_, *arm_, *clock, mailbox_, ring_, meter_);
+      StallingClock stalling(*clock, stall_);
+      servo::ServoLoop loop(servo_, *faulty_arm_, stalling, mailbox_, ring_, meter_);
       UseMotion(loop);
       status = loop.Run(EndNs());
       counters_ = loop.counters();
@@ -265,7 +252,7 @@ class Run {
     s.pace = options_.pace == Pace::kReal ? "real" : "lockstep";
     s.frames = files_->frames();
     s.frames_detected = files_->frames_detected();
-    s.frames_lost = HasEye() ? camera_->lost() : 0;
+    s.frames_lost = HasEye() ? eye_->camera().lost() : 0;
     verdict_->Fill(s);
     if (theory_) {
       s.theory = theory_->Finish();
@@ -290,7 +277,7 @@ class Run {
     s.wall_time_s = wall_time_s_;
     s.real_time_factor = s.sim_time_s / s.wall_time_s;
     s.realtime_missing = realtime_missing_;
-    s.renderer = HasEye() ? renderers_.front()->driver_name() : "nothing";
+    s.renderer = HasEye() ? eye_->driver_name() : "nothing";
     s.log_hash = hash_.Finish();
     s.servo = kServoLibraryHash;
     s.git = kGitRevision;
@@ -305,15 +292,18 @@ class Run {
   const RunDescription about_;
   vision::VisionTask vision_;
   servo::ServoTask servo_;
+  const StallFault stall_;
   std::unique_ptr<RunFiles> files_;
-  std::vector<std::unique_ptr<SceneRenderer>> renderers_;
+  std::unique_ptr<Eye> eye_;
   std::unique_ptr<Verdict> verdict_;
   std::optional<TheoryRun> theory_;
   std::optional<CommandedMotionSource> motion_;
-  std::unique_ptr<SimCamera> camera_;
   std::unique_ptr<World> world_;
   std::unique_ptr<SimArm> arm_;
+  std::unique_ptr<FaultyArm> faulty_arm_;
+  std::unique_ptr<FrameSpoiler> frame_faults_;
   FeatureDelay delay_;
+  FaultyDetector detector_;
   hal::FeatureMailbox mailbox_;
   linux_rt::RecordRing ring_;
   linux_rt::TickMeter meter_;

@@ -29,7 +29,7 @@ TheoryConfig MakeTheoryConfig(const Scenario& s, const RunDescription& run) {
   theory.law = run.servo.motion_law;
   if (run.motion) {
     if (!std::holds_alternative<CommandedJoints>(*run.motion)) {
-      throw config::InputError("theory.enabled = true is not allowed with motion.kind = \"circle\"");
+      throw config::InputError("theory.enabled = true is allowed with motion.kind = \"joints\" or none");
     }
     theory.motion = std::get<CommandedJoints>(*run.motion);
   }
@@ -49,17 +49,26 @@ RunDescription DescribeRun(const Scenario& scenario) {
   CheckSizes(scenario, run.robot);
   SimRobot robot = LoadSimRobot(run.robot.urdf, run.robot.base_link, run.robot.tip_link);
   SetFriction(scenario, run.robot, robot);
+  const model::Load load = config::MakeLoad(scenario.arm.load);
+  if (load.mass > 0.0) {
+    model::Attach(load, run.robot.model);
+    AddLoad(load, robot);
+  }
   CheckStart(scenario, run.robot);
   const Eigen::Isometry3d X_EC = CameraMount(scenario);
-  run.servo =
-      config::MakeServoConfig(scenario.servo, run.robot, model::Pose{X_EC.linear(), X_EC.translation()},
-                              0.5 * scenario.target.diameter);
-  CheckGoal(scenario);
-  CheckTimes(scenario);
-  run.scene = MakeRenderScene(scenario, robot);
   run.pinhole = MakeScenarioPinhole(scenario);
   run.intrinsics = {run.pinhole.width_px, run.pinhole.height_px, run.pinhole.f_px,
                     run.pinhole.f_px,     run.pinhole.c_u_px,    run.pinhole.c_v_px};
+  const Lens& lens = scenario.camera.lens;
+  run.intrinsics.lens = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+  CheckLens(scenario);
+  run.servo =
+      config::MakeServoConfig(scenario.servo, run.robot, model::Pose{X_EC.linear(), X_EC.translation()},
+                              run.intrinsics, scenario.target);
+  CheckGoal(scenario);
+  CheckTimes(scenario);
+  CheckFaults(scenario.faults, run.robot.model.num_joints);
+  run.scene = MakeRenderScene(scenario, robot);
   if (scenario.motion.kind != "none") {
     run.motion = MakeMotion(scenario);
   }

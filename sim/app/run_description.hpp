@@ -6,9 +6,9 @@
 #include "fovea/servo/servo_config.hpp"
 #include "fovea/vision/intrinsics.hpp"
 #include "sim/app/scenario.hpp"
+#include "sim/app/theory_run.hpp"
 #include "sim/render/pinhole.hpp"
 #include "sim/render/scene_renderer.hpp"
-#include "sim/theory/theory_run.hpp"
 
 namespace fovea::sim {
 

@@ -3,6 +3,7 @@
 #include <future>
 
 #include "fovea/config/share_folder.hpp"
+#include "sim/app/target_curve.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -27,7 +28,7 @@ RunFiles::RunFiles(const RunDescription& about, const RunFilesConfig& config) : 
   EyeFilmConfig film;
   film.path = folder_->Begin("camera.mp4");
   film.intrinsics = about.intrinsics;
-  film.radius = about.scene.target_radius;
+  film.goal = GoalCurve(about.intrinsics, about.servo.feature);
   film.p_CO_C_star = about.servo.feature.p_CO_C_star;
   film.may_drop = config.may_drop;
   eye_film_ = std::make_unique<EyeFilm>(film);
@@ -64,12 +65,12 @@ void RunFiles::AddRecord(const hal::TickRecord& record) {
   }
 }
 
-void RunFiles::AddFrame(const hal::Frame& frame, const vision::BallDetection& detection,
-                        const Eigen::Vector3d& p_CO_C) {
-  frames_.Keep(frame, detection, p_CO_C);
+void RunFiles::AddFrame(const hal::Frame& frame, const vision::Detection& detection,
+                        const model::Pose& X_CO) {
+  frames_.Keep(frame, detection, X_CO);
   if (HasReport()) {
     eye_film_->Add(frame, detection);
-    log_->AddFrame(frame, detection, p_CO_C);
+    log_->AddFrame(frame, detection, X_CO);
   }
 }
 
@@ -93,10 +94,9 @@ void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt
   const bool has_frames = frames_.frames() > 0;
   const bool has_eye = about_.scenario.camera.enabled;
   if (has_frames) {
-    const Eigen::Vector3d& goal = about_.servo.feature.p_CO_C_star;
     for (const auto& [name, frame] :
          {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
-      files.push_back({name, DrawEyePicture(*frame, about_.intrinsics, about_.scene.target_radius, goal)});
+      files.push_back({name, DrawEyePicture(*frame, about_.intrinsics, about_.servo.feature)});
     }
   }
   if (HasReport()) {

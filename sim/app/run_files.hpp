@@ -35,9 +35,8 @@ class RunFiles {
   void AddTheory(const TheorySample& sample);
   // From the thread that empties the recorder.
   void AddRecord(const hal::TickRecord& record);
-  // From the vision thread. `p_CO_C`: where the target really was [m].
-  void AddFrame(const hal::Frame& frame, const vision::BallDetection& detection,
-                const Eigen::Vector3d& p_CO_C);
+  // From the vision thread. `X_CO`: where the target really was.
+  void AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
 
   // When the threads are done: frames that the vision task got, and in how many it found the target; what
   // found no place in films and log.

@@ -36,6 +36,7 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
               "standard deviation of measured velocities");
   keys.Choice("arm.integrator", s.arm.integrator, {"euler", "rk4"},
               "how the physics steps: semi-implicit Euler, or Runge-Kutta of order 4 at 3.5 times the cost");
+  config::AddLoadKeys(s.arm.load, keys);
 }
 
 void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
@@ -52,29 +53,19 @@ void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
               "standard deviation of read noise");
   keys.Number("camera.light", s.camera.light, 0.01, 4.0, "",
               "brightness of the picture; 1 is a well-lit bench");
+  keys.Number(
+      "camera.k1", s.camera.lens.k1, -2.0, 2.0, "",
+      "the lens' radial distortion, with k2 and k3; not 0: each picture takes some five times as long");
+  keys.Number("camera.k2", s.camera.lens.k2, -10.0, 10.0, "", "times r^4");
+  keys.Number("camera.p1", s.camera.lens.p1, -0.1, 0.1, "", "its tangential distortion, with p2");
+  keys.Number("camera.p2", s.camera.lens.p2, -0.1, 0.1, "", "along x");
+  keys.Number("camera.k3", s.camera.lens.k3, -50.0, 50.0, "", "times r^6");
   keys.Numbers("camera.mount_xyz", s.camera.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
   keys.Numbers("camera.mount_rpy_deg", s.camera.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
                "roll, pitch, yaw of C in E, about fixed axes");
 }
 
-void AddTargetKeys(Scenario& s, config::KeyTable& keys) {
-  keys.Choice("target.kind", s.target.kind, {"sphere"}, "what is looked at");
-  keys.Number("target.diameter", s.target.diameter, 0.005, 2.0, "m", "its size");
-  keys.Numbers("target.position", s.target.position, 3, 3, -5.0, 5.0, "m",
-               "its centre in B, or its path's middle");
-  keys.Numbers("target.colour", s.target.colour, 3, 3, 0.0, 1.0, "", "red, green, blue");
-  keys.Choice("target.motion", s.target.motion, {"still", "circle"}, "how it moves; the circle lies level");
-  keys.Number("target.path_radius", s.target.path_radius, 0.001, 2.0, "m", "of the circle");
-  keys.Number("target.speed", s.target.speed, 0.0, 5.0, "m/s", "along its path");
-  keys.Flag("target.clutter", s.target.clutter, "put things about that resemble it");
-}
-
 void AddRunKeys(Scenario& s, config::KeyTable& keys) {
-  keys.Numbers("faults.camera_outage_s", s.faults.camera_outage_s, 2, 2, 0.0, 1e6, "s",
-               "the camera delivers nothing from the first time to the second");
-  keys.Numbers("faults.push", s.faults.push, 1, model::kMaxJoints, -1e4, 1e4, "Nm",
-               "torques that push the joints from outside, one per joint; nothing does when not given");
-  keys.Numbers("faults.push_s", s.faults.push_s, 2, 2, 0.0, 1e6, "s", "from the first time to the second");
   keys.Text("run.description", s.run.description, "one line for `fovea-sim list`");
   keys.Number("run.duration_s", s.run.duration_s, 0.1, 1e6, "s", "simulated time");
   keys.Integer("run.seed", s.run.seed, 0, 2147483647, "", "of all that is random");
@@ -87,9 +78,9 @@ void AddRunKeys(Scenario& s, config::KeyTable& keys) {
 void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
   constexpr std::size_t kMax = model::kMaxJoints;
   keys.Choice(
-      "motion.kind", s.motion.kind, {"none", "joints", "circle"},
+      "motion.kind", s.motion.kind, {"none", "joints", "circle", "home"},
       "commanded motion; joints: from + velocity t + amplitude sin(omega t) for each joint; circle: of "
-      "the end effector");
+      "the end effector; home: to the arm's ready posture");
   keys.Numbers("motion.from", s.motion.from, 1, kMax, -1e4, 1e4, "rad",
                "joint positions, one per joint; arm.q_start when not given");
   keys.Numbers("motion.velocity", s.motion.velocity, 1, kMax, -100.0, 100.0, "rad/s",
@@ -141,9 +132,10 @@ config::KeyTable ScenarioKeys(Scenario& scenario) {
   AddArmKeys(scenario, keys);
   AddCameraKeys(scenario, keys);
   config::AddVisionKeys(scenario.vision, keys);
-  AddTargetKeys(scenario, keys);
+  AddTargetSceneKeys(scenario.target, keys);
   config::AddServoKeys(scenario.servo, keys);
   AddMotionKeys(scenario, keys);
+  AddFaultKeys(scenario.faults, keys);
   AddRunKeys(scenario, keys);
   return keys;
 }

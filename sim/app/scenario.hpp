@@ -6,7 +6,12 @@
 #include <vector>
 
 #include "fovea/config/key_table.hpp"
+#include "fovea/config/load_keys.hpp"
 #include "fovea/config/servo_keys.hpp"
+#include "fovea/config/vision_keys.hpp"
+#include "sim/app/fault_settings.hpp"
+#include "sim/app/target_scene.hpp"
+#include "sim/camera/lens.hpp"
 
 namespace fovea::sim {
 
@@ -26,6 +31,7 @@ struct Scenario {
     double encoder_noise = 1e-5;
     double velocity_noise = 5e-4;
     std::string integrator = "euler";
+    config::LoadSettings load;
   } arm;
 
   struct {
@@ -38,29 +44,17 @@ struct Scenario {
     double latency_ms = 40.0;
     double noise_sigma = 3.0;
     double light = 1.0;
+    Lens lens;
     std::vector<double> mount_xyz{0.05, 0.0, 0.04};
     std::vector<double> mount_rpy_deg{0.0, 0.0, 90.0};
   } camera;
 
-  struct {
-    std::string kind = "sphere";
-    double diameter = 0.080;
-    std::vector<double> position{0.56, 0.14, 0.04};
-    std::vector<double> colour{0.74, 0.07, 0.06};
-    std::string motion = "still";
-    double path_radius = 0.10;
-    double speed = 0.2;
-    bool clutter = false;
-  } target;
+  TargetScene target;
 
   config::VisionSettings vision;
   config::ServoSettings servo;
 
-  struct {
-    std::vector<double> camera_outage_s{0.0, 0.0};
-    std::vector<double> push;  // empty: nothing pushes
-    std::vector<double> push_s{0.0, 0.0};
-  } faults;
+  FaultSettings faults;
 
   // A commanded motion; see commanded_motion.hpp.
   struct {

@@ -104,6 +104,7 @@ std::string ToJson(const Summary& s) {
   json["tracking_error_px_rms"] = OrNull(s.tracking_error_px_rms);
   json["path_error_mm_rms"] = OrNull(s.path_error_mm_rms);
   json["path_error_mm_max"] = OrNull(s.path_error_mm_max);
+  json["home_error_rad"] = OrNull(s.home_error_rad);
   if (s.theory) {
     json["theory"] = ToJson(*s.theory);
   }
@@ -148,6 +149,8 @@ std::string ToTable(const Summary& s) {
   } else if (s.path_error_mm_max) {
     table.Row("off the way", fmt::format("{} rms, {} at most", Figure(s.path_error_mm_rms, "mm"),
                                          Figure(s.path_error_mm_max, "mm")));
+  } else if (s.home_error_rad) {
+    table.Row("off home", fmt::format("{:.2g} rad, the joint that is furthest", *s.home_error_rad));
   } else if (s.tracking_error_px_rms) {
     table.Row("tracking error", Figure(s.tracking_error_px_rms, "px rms"));
   } else {

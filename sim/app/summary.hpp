@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/theory/theory_run.hpp"
+#include "sim/app/theory_run.hpp"
 
 namespace fovea::sim {
 
@@ -45,7 +45,8 @@ struct Summary {
   // Commanded circles: of the end effector, from the circle's start on.
   std::optional<double> path_error_mm_rms;
   std::optional<double> path_error_mm_max;
-  std::optional<TheoryResult> theory;  // of a run beside its analytic answer
+  std::optional<double> home_error_rad;  // largest of the joints', at the end of a way home
+  std::optional<TheoryResult> theory;    // of a run beside its analytic answer
 
   std::map<std::string, double> limits;              // largest used fraction of each
   std::uint64_t limit_violations = 0;                // ticks with a fraction above 1

@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-
-#include "sim/app/target_error.hpp"
+#include <numbers>
 
 namespace fovea::sim {
 namespace {
@@ -15,6 +14,9 @@ constexpr double kTickS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr std::int64_t kWindowNs = hal::kNsPerSecond / 2;  // final_* are over this last part of a run
 constexpr double kConvergedPx = 1.0;                       // converged: no sample of it is further off
 constexpr double kConvergedM = 0.002;
+constexpr double kConvergedDeg = 0.5;  // of a goal with an orientation
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kHomeBound = 1e-3;     // at home: no joint is further off [rad]
 constexpr double kSettledShare = 0.02;  // settled: below this share of the first error, for good
 
 }  // namespace
@@ -23,8 +25,8 @@ Verdict::Verdict(const VerdictConfig& config) : config_(config) {}
 
 void Verdict::AddTruth(const Truth& truth) {
   if (config_.has_eye) {
-    const TargetError error = ErrorOf(truth, config_.pinhole, config_.p_CO_C_star);
-    AddSample({truth.stamp_ns, error.error_px, error.error_C});
+    const TargetError error = ErrorOf(truth, config_.pinhole, config_.goal);
+    AddSample({truth.stamp_ns, error.error_px, error.error_C, error.error_rad.value_or(0.0)});
   }
 
   const double t_s = 1e-9 * static_cast<double>(truth.stamp_ns);
@@ -35,6 +37,8 @@ void Verdict::AddTruth(const Truth& truth) {
     path_most_ = std::max(path_most_, off);
     ++path_samples_;
   }
+  home_error_ =
+      (truth.q - model::ToVector(config_.arm.q_ready, config_.arm.num_joints)).cwiseAbs().maxCoeff();
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
     const double half = 0.5 * (joint.q_max - joint.q_min);
@@ -150,6 +154,14 @@ void Verdict::FillMotion(Summary& summary) const {
                                   1e3 * path_most_, config_.path_bound_mm);
     return;
   }
+  if (config_.goes_home) {
+    summary.home_error_rad = home_error_;
+    if (summary.converged && home_error_ > kHomeBound) {
+      summary.converged = false;
+      summary.verdict = fmt::format("a joint is {:.2g} rad from the ready posture at the end", home_error_);
+      return;
+    }
+  }
   summary.verdict = !faults_.empty()    ? "a fault stopped the arm: " + faults_.front().name
                     : refused           ? "the commanded motion was refused (see modes and limits)"
                     : summary.converged ? "the commanded motion was followed"
@@ -162,12 +174,16 @@ void Verdict::FillStill(Summary& summary) const {
   double depth2 = 0.0;
   double worst_px = 0.0;
   double worst_m = 0.0;
+  double turn2 = 0.0;
+  double worst_deg = 0.0;
   for (const Sample& sample : window_) {
     px2 += sample.error_px * sample.error_px;
     lateral2 += sample.error_C.head<2>().squaredNorm();
     depth2 += sample.error_C.z() * sample.error_C.z();
     worst_px = std::max(worst_px, sample.error_px);
     worst_m = std::max(worst_m, sample.error_C.norm());
+    turn2 += sample.error_rad * sample.error_rad;
+    worst_deg = std::max(worst_deg, kDegPerRad * sample.error_rad);
   }
   const auto n = static_cast<double>(window_.size());
   if (std::isfinite(worst_px)) {
@@ -176,7 +192,11 @@ void Verdict::FillStill(Summary& summary) const {
   summary.final_error_mm = 1e3 * std::sqrt((lateral2 + depth2) / n);
   summary.final_error_lateral_mm = 1e3 * std::sqrt(lateral2 / n);
   summary.final_error_depth_mm = 1e3 * std::sqrt(depth2 / n);
-  summary.converged = worst_px <= kConvergedPx && worst_m <= kConvergedM && faults_.empty();
+  if (config_.goal.R_CO_star) {
+    summary.final_error_deg = kDegPerRad * std::sqrt(turn2 / n);
+  }
+  summary.converged =
+      worst_px <= kConvergedPx && worst_m <= kConvergedM && worst_deg <= kConvergedDeg && faults_.empty();
   if (!is_outside_ && last_outside_s_) {
     summary.settle_time_s = *last_outside_s_ + kTickS;
   }
@@ -229,8 +249,9 @@ std::string Verdict::WhyNot(const Summary& summary) const {
                        config_.tracking_bound_px);
   }
   return fmt::format(
-      "not converged: over the last {:g} s the target was not within {:g} px and {:g} mm of its goal",
-      1e-9 * static_cast<double>(kWindowNs), kConvergedPx, 1e3 * kConvergedM);
+      "not converged: over the last {:g} s the target was not within {:g} px and {:g} mm{} of its goal",
+      1e-9 * static_cast<double>(kWindowNs), kConvergedPx, 1e3 * kConvergedM,
+      config_.goal.R_CO_star ? fmt::format(" and {:g} deg", kConvergedDeg) : std::string());
 }
 
 }  // namespace fovea::sim

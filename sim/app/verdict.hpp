@@ -12,6 +12,7 @@
 #include "sim/app/commanded_motion.hpp"
 #include "sim/app/limit_book.hpp"
 #include "sim/app/summary.hpp"
+#include "sim/app/target_error.hpp"
 #include "sim/render/pinhole.hpp"
 #include "sim/world/world.hpp"
 
@@ -20,14 +21,15 @@ namespace fovea::sim {
 struct VerdictConfig {
   model::ArmModel arm;
   Pinhole pinhole;
-  Eigen::Vector3d p_CO_C_star = Eigen::Vector3d::Zero();  // [m]
-  bool has_eye = true;                                    // false: there is no target to judge by
+  TargetGoal goal;
+  bool has_eye = true;  // false: there is no target to judge by
   bool target_moves = false;
   double tracking_bound_px = 3.0;
   double duration_s = 8.0;                // of the run
   double workspace_radius = 0.85;         // [m]
   std::optional<CommandedCircle> circle;  // that the end effector shall follow
   double path_bound_mm = 1.0;
+  bool goes_home = false;  // to arm.q_ready, where it shall stand at the end
 };
 
 // AddTruth and AddRecord may be called by two threads: neither touches what the other does. Its size does not
@@ -48,6 +50,7 @@ class Verdict {
     std::int64_t stamp_ns = 0;
     double error_px = 0.0;                              // infinite when the target is behind the camera
     Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal less truth, in axes of C [m]
+    double error_rad = 0.0;                             // of the orientation, where the goal has one
   };
   void AddSample(const Sample& sample);
   void FillMotion(Summary& summary) const;
@@ -69,6 +72,7 @@ class Verdict {
   double second_half_px2_ = 0.0;  // sum of squares
   std::uint64_t second_half_samples_ = 0;
   std::uint64_t contact_ticks_ = 0;
+  double home_error_ = 0.0;  // largest of the joints', at the last truth [rad]
   Eigen::VectorXd tau_before_;
 
   // from the records

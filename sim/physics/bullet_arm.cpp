@@ -3,12 +3,8 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 #include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
-#include <BulletCollision/CollisionShapes/btBoxShape.h>
-#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
-#include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btEmptyShape.h>
-#include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -19,7 +15,7 @@
 #include <Eigen/Eigenvalues>
 #include <vector>
 
-#include "sim/physics/hull_points.hpp"
+#include "sim/physics/bullet_shapes.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -64,16 +60,6 @@ PrincipalBody Diagonalise(const SimLink& link) {
   return body;
 }
 
-std::unique_ptr<btCollisionShape> MakeHull(const Mesh& mesh) {
-  auto hull = std::make_unique<btConvexHullShape>();
-  for (const Eigen::Vector3d& point : HullPoints(mesh)) {
-    hull->addPoint(ToBullet(point), /*recalculateLocalAabb=*/false);
-  }
-  hull->setMargin(0.0);  // Bullet's own would make it 40 mm larger all round
-  hull->recalcLocalAabb();
-  return hull;
-}
-
 }  // namespace
 
 struct BulletArm::Impl {
@@ -94,6 +80,7 @@ struct BulletArm::Impl {
   SimRobot robot;
   std::vector<PrincipalBody> principal;  // per link of the robot
   std::vector<int> dof_link;             // link index of each moving joint
+  int load = -1;                         // Bullet's link that is the load; -1: there is none
   Eigen::VectorXd q;
   Eigen::VectorXd dq;
 
@@ -120,11 +107,16 @@ struct BulletArm::Impl {
       principal.push_back(Diagonalise(link));
     }
     const int num_links = static_cast<int>(robot.links.size()) - 1;
-    body = std::make_unique<btMultiBody>(num_links, 0.0, btVector3(0, 0, 0), /*fixedBase=*/true,
+    load = options.may_be_loaded ? num_links : -1;
+    body = std::make_unique<btMultiBody>(options.may_be_loaded ? num_links + 1 : num_links, 0.0,
+                                         btVector3(0, 0, 0), /*fixedBase=*/true,
                                          /*canSleep=*/false);
     dof_link.resize(static_cast<std::size_t>(robot.num_dofs));
     for (int i = 0; i < num_links; ++i) {
       AddLink(i);
+    }
+    if (load >= 0) {
+      AddLoad();
     }
     body->setLinearDamping(0.0);
     body->setAngularDamping(0.0);
@@ -178,28 +170,25 @@ struct BulletArm::Impl {
     dof_link[static_cast<std::size_t>(link.dof)] = i;
   }
 
-  btCollisionShape* MakeShape(const Shape& shape) {
-    switch (shape.kind) {
-      case ShapeKind::kBox: shapes.push_back(std::make_unique<btBoxShape>(ToBullet(shape.size) * 0.5)); break;
-      case ShapeKind::kSphere: shapes.push_back(std::make_unique<btSphereShape>(shape.size[0])); break;
-      case ShapeKind::kCylinder:  // a capsule: its contacts are cheap and smooth
-        shapes.push_back(std::make_unique<btCapsuleShapeZ>(shape.size[0], shape.size[1]));
-        break;
-      case ShapeKind::kMesh: shapes.push_back(MakeHull(*shape.mesh)); break;
-    }
-    return shapes.back().get();
+  // A fixed link without mass, for now, in the tip's frame.
+  void AddLoad() {
+    const Eigen::Isometry3d X_PaL = principal[static_cast<std::size_t>(robot.tip)].X_LP.inverse();
+    body->setupFixed(load, 0.0, btVector3(0, 0, 0), robot.tip - 1,
+                     ToBullet(Eigen::Matrix3d(X_PaL.linear().transpose())),
+                     ToBullet(Eigen::Vector3d(X_PaL.translation())), btVector3(0, 0, 0));
   }
 
   // The base stands on the table for good: it has no collider.
   void AddColliders() {
-    for (int i = 0; i < body->getNumLinks(); ++i) {
+    for (int i = 0; i < static_cast<int>(robot.links.size()) - 1; ++i) {
       const auto k = static_cast<std::size_t>(i + 1);
       if (robot.links[k].collisions.empty()) {
         continue;
       }
       auto compound = std::make_unique<btCompoundShape>();
       for (const Shape& shape : robot.links[k].collisions) {
-        compound->addChildShape(ToBullet(principal[k].X_LP.inverse() * shape.X_LS), MakeShape(shape));
+        shapes.push_back(MakeBulletShape(shape));
+        compound->addChildShape(ToBullet(principal[k].X_LP.inverse() * shape.X_LS), shapes.back().get());
       }
       auto collider = std::make_unique<btMultiBodyLinkCollider>(body.get(), i);
       collider->setCollisionShape(compound.get());
@@ -289,6 +278,8 @@ Eigen::VectorXd BulletArm::StictionTorque() const {
   return tau;
 }
 
+void BulletArm::SetLoad(double mass) { impl_->body->getLink(impl_->load).m_mass = mass; }
+
 void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
   for (std::size_t i = 0; i < impl_->stiction.size(); ++i) {
     impl_->stiction[i]->setMaxAppliedImpulse(impl_->coulomb[static_cast<Eigen::Index>(i)] * dt);
@@ -327,7 +318,7 @@ Eigen::VectorXd BulletArm::GravityTorque() const {
   }
   const Eigen::Vector3d g_B(g.x(), g.y(), g.z());
   // Joint by joint towards the base, for each body: the torque of its weight about the joint's axis.
-  for (int body = 0; body < m.body->getNumLinks(); ++body) {
+  for (int body = 0; body < static_cast<int>(m.robot.links.size()) - 1; ++body) {
     const double mass = m.body->getLinkMass(body);
     if (mass == 0.0) {
       continue;

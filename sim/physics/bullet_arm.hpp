@@ -20,6 +20,7 @@ struct BulletArmOptions {
   Integrator integrator = Integrator::kSemiImplicitEuler;
   bool table = true;  // a fixed plane at z = 0 of B, which the arm's collision shapes can touch
   bool gravity = true;
+  bool may_be_loaded = false;  // SetLoad will be called; without it physics has one body less to step
 };
 
 class BulletArm {
@@ -41,6 +42,10 @@ class BulletArm {
   void SetStiction(const Eigen::VectorXd& coulomb);
   // That friction's torque on the joints in the last step [Nm, N].
   [[nodiscard]] Eigen::VectorXd StictionTorque() const;
+
+  // From now on a point of `mass` [kg] >= 0 hangs at the robot's tip, with its velocity; the torque that
+  // GravityTorque gives knows nothing of it. Needs BulletArmOptions::may_be_loaded.
+  void SetLoad(double mass);
 
   // Moves on by `dt` [s] under the joint torques `tau` [Nm, N], gravity and contact.
   void Step(const Eigen::VectorXd& tau, double dt);

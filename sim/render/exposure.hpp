@@ -12,7 +12,8 @@ struct Exposure {
   std::int64_t stamp_ns = 0;  // mid-exposure
   Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
   Eigen::Vector3d p_BO = Eigen::Vector3d::Zero();  // target's centre [m]
-  std::vector<Eigen::Isometry3d> X_BL;             // one per link of the robot
+  Eigen::Matrix3d R_BO = Eigen::Matrix3d::Identity();
+  std::vector<Eigen::Isometry3d> X_BL;  // one per link of the robot
 };
 
 }  // namespace fovea::sim

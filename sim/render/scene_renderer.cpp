@@ -13,6 +13,7 @@
 #include "sim/render/light.hpp"
 #include "sim/render/outline_smoother.hpp"
 #include "sim/render/plane_painter.hpp"
+#include "sim/render/plate_painter.hpp"
 #include "sim/render/projection.hpp"
 #include "sim/render/shaders.hpp"
 #include "sim/render/shadow_map.hpp"
@@ -93,6 +94,7 @@ struct SceneRenderer::Impl {
   std::unique_ptr<OutlineSmoother> smoother;
   std::unique_ptr<ShadowMap> shadow;
   std::unique_ptr<PlanePainter> planes;
+  std::unique_ptr<PlatePainter> plate;  // none when the target is a ball, or none is there
   std::vector<Thing> things;
   std::vector<Link> links;
   std::unique_ptr<GpuMesh> unit_ball;
@@ -115,6 +117,9 @@ struct SceneRenderer::Impl {
     smoother = std::make_unique<OutlineSmoother>();
     ball_program =
         std::make_unique<GlProgram>(head + shaders::kBallVertex, head + light + lit + shaders::kBallFragment);
+    if (scene.has_eye && scene.target.kind != TargetShape::Kind::kBall) {
+      plate = std::make_unique<PlatePainter>(scene.target, head);
+    }
     shadow = std::make_unique<ShadowMap>(quality.shadow_map_px);
     Upload();
     MakeFrames();
@@ -171,10 +176,17 @@ struct SceneRenderer::Impl {
   }
 
   Ball Target(const Exposure& exposure) const {
-    if (!scene.has_eye) {
+    if (!HasBall()) {
       return {Vector3f(0.0F, 0.0F, -10.0F), 1e-3F, scene.target_colour};  // far under the table
     }
-    return {exposure.p_BO.cast<float>(), static_cast<float>(scene.target_radius), scene.target_colour};
+    return {exposure.p_BO.cast<float>(), static_cast<float>(scene.target.radius), scene.target_colour};
+  }
+  bool HasBall() const { return scene.has_eye && scene.target.kind == TargetShape::Kind::kBall; }
+  static Isometry3f PlatePose(const Exposure& exposure) {
+    Eigen::Isometry3d X_BO = Eigen::Isometry3d::Identity();
+    X_BO.linear() = exposure.R_BO;
+    X_BO.translation() = exposure.p_BO;
+    return X_BO.cast<float>();
   }
 
   void DrawBallCaster(const Ball& ball, const ShadowMap::DrawAt& draw) const {
@@ -198,6 +210,9 @@ struct SceneRenderer::Impl {
       draw(*links[i].shadow, exposure.X_BL[i].matrix().cast<float>());
     }
     DrawBallCaster(Target(exposure), draw);
+    if (plate) {
+      draw(plate->caster(), PlatePose(exposure).matrix());
+    }
   }
 
   void SetLight(const GlProgram& program, const Isometry3f& X_BC) const {
@@ -250,6 +265,9 @@ struct SceneRenderer::Impl {
   void DrawPlanes(const Exposure& exposure, const Matrix4f& clip_of_B) const {
     const Ball target = Target(exposure);
     std::vector<MovingBounds> moving{{target.p_B, target.radius}};
+    if (plate) {
+      moving.push_back({exposure.p_BO.cast<float>(), static_cast<float>(scene.target.Reach())});
+    }
     for (std::size_t i = 0; i < links.size() && i < exposure.X_BL.size(); ++i) {
       const Isometry3f X_BL = exposure.X_BL[i].cast<float>();
       for (const Bounds& shape : links[i].shapes) {
@@ -257,6 +275,16 @@ struct SceneRenderer::Impl {
       }
     }
     planes->Draw(clip_of_B, static_cast<float>(scene.light), *shadow, target, moving);
+  }
+
+  void DrawPlate(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_C) const {
+    if (!plate) {
+      return;
+    }
+    glEnable(GL_BLEND);
+    SetLight(plate->program(), X_BC);
+    plate->Draw(X_BC.inverse() * PlatePose(exposure), X_BC, pinhole, clip_of_C, scene.target_colour);
+    glDisable(GL_BLEND);
   }
 
   // Last, over what is behind them, by the share of each pixel that they cover; far ones first.
@@ -313,6 +341,7 @@ struct SceneRenderer::Impl {
     glDisable(GL_CULL_FACE);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     DrawHems(X_BC, clip_of_B);
+    DrawPlate(exposure, X_BC, clip_of_C);
     DrawBalls(exposure, X_BC, clip_of_C);
 
     if (quality.samples > 1) {

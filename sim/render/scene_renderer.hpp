@@ -11,6 +11,7 @@
 #include "sim/render/bench.hpp"
 #include "sim/render/exposure.hpp"
 #include "sim/render/pinhole.hpp"
+#include "sim/render/target_shape.hpp"
 #include "sim/robot/sim_robot.hpp"
 
 namespace fovea::sim {
@@ -26,8 +27,9 @@ struct RenderScene {
   Bench bench;
   SimRobot robot;
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();  // where the camera's housing sits on the tip link
-  bool has_eye = true;          // false: neither the camera's housing nor its target are there
-  double target_radius = 0.04;  // [m]
+  bool has_eye = true;  // false: neither the camera's housing nor its target are there
+  TargetShape target;
+  Eigen::Matrix3d target_R_BO = Eigen::Matrix3d::Identity();  // at the start
   Eigen::Vector3f target_colour{0.74F, 0.07F, 0.06F};
   double light = 1.0;  // brightness; 1: a well-lit room and a well-set camera
 };

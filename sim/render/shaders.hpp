@@ -214,15 +214,59 @@ void main() {
   float inside = R2 * d2 - dot(m, m);  // above 0 where the ray meets the ball
   // Its slope along x and y of the image: d/dd (R2 d.d - |d x c|^2) = 2 (R2 d - c x (d x c)).
   vec2 slope = 2.0 * (R2 * d - cross(c, m)).xy;
-  float cover = clamp(inside * u_f_px * inversesqrt(dot(slope, slope)) + 0.5, 0.0, 1.0);
+  float per_px = u_f_px * inversesqrt(dot(slope, slope));
+  float cover = clamp(inside * per_px + 0.5, 0.0, 1.0);
   if (cover <= 0.0) discard;
-  float t = (dot(d, c) - sqrt(max(inside, 0.0))) / d2;
+  // Of a pixel that is partly covered, the brightness of that part: the normal's component towards the eye grows
+  // with the root of the depth, and has its mean over 0 to w at 4/9 w.
+  inside = max(inside, 4.0 / 9.0 * cover / per_px);
+  float t = (dot(d, c) - sqrt(inside)) / d2;
   vec3 p_C = t * d;
   vec3 n_C = normalize(p_C - c);
   vec3 p = (u_B_of_C * vec4(p_C, 1.0)).xyz;
   vec3 n_B = mat3(u_B_of_C) * n_C;
   vec3 sun = u_colour * Sun(n_B) + vec3(0.30 * Shine(p, n_B));
   pixel = vec4((u_colour * Sky(n_B) + sun * Lit(InShadowMap(p, n_B))) * u_gain, cover);
+  gl_FragDepth = u_depth.x + u_depth.y / p_C.z;
+}
+)glsl";
+
+// A flat plate, on the ball's rectangle: a polygon by the lines of its edges in the image, a disc by the cone
+// of rays to its rim, |(n.p) d - (n.d) p| = R |n.d| for its normal n and centre p; each by the distance to
+// its outline in pixels, to first order.
+inline constexpr const char* kPlateFragment = R"glsl(
+in vec2 xy;
+uniform vec3 u_normal_C;   // into the plate
+uniform vec3 u_centre_C;
+uniform float u_radius;    // of a disc
+uniform int u_num_edges;   // 0: a disc
+uniform vec3 u_edges[4];   // distance inside = edge . (x, y, 1), in the normalised image
+uniform vec3 u_colour;
+uniform float u_f_px;
+uniform mat4 u_B_of_C;
+uniform vec2 u_depth;
+out vec4 pixel;
+void main() {
+  vec3 d = vec3(xy, 1.0);
+  vec3 n = u_normal_C;
+  vec3 p = u_centre_C;
+  float to_plane = dot(n, p);
+  float slant = dot(n, d);
+  float cover = 1.0;
+  if (u_num_edges == 0) {
+    vec3 m = to_plane * d - slant * p;
+    float inside = u_radius * u_radius * slant * slant - dot(m, m);
+    vec2 slope = 2.0 * (u_radius * u_radius * slant * n - to_plane * m + dot(p, m) * n).xy;
+    cover = clamp(inside * u_f_px * inversesqrt(dot(slope, slope)) + 0.5, 0.0, 1.0);
+  }
+  for (int i = 0; i < u_num_edges; ++i) {
+    cover *= clamp(dot(u_edges[i], d) * u_f_px + 0.5, 0.0, 1.0);
+  }
+  if (cover <= 0.0) discard;
+  vec3 p_C = (to_plane / slant) * d;
+  vec3 p_B = (u_B_of_C * vec4(p_C, 1.0)).xyz;
+  vec3 n_B = mat3(u_B_of_C) * -n;
+  pixel = vec4(u_colour * (Sky(n_B) + Sun(n_B) * Lit(InShadowMap(p_B, n_B))) * u_gain, cover);
   gl_FragDepth = u_depth.x + u_depth.y / p_C.z;
 }
 )glsl";

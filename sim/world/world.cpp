@@ -24,10 +24,15 @@ double OwnInertia(const SimLink& link) {
          link.mass * link.axis_L.cross(link.X_LCom.translation()).squaredNorm();
 }
 
+BulletArmOptions WithLoad(BulletArmOptions options, const Load& load) {
+  options.may_be_loaded = options.may_be_loaded || load.mass > 0.0;
+  return options;
+}
+
 }  // namespace
 
 World::World(const WorldConfig& config)
-    : config_(config), arm_(config.robot, config.physics), random_(config.seed) {
+    : config_(config), arm_(config.robot, WithLoad(config.physics, config.load)), random_(config.seed) {
   for (const SimLink& link : config_.robot.links) {
     if (link.dof >= 0) {
       joints_.push_back(&link);
@@ -38,6 +43,9 @@ World::World(const WorldConfig& config)
       viscous_.push_back(std::min(left * link.viscous, most));
       stiction_speed_.push_back(std::max(kStictionSpeed, left * link.coulomb / most));
     }
+  }
+  if (config_.target.kind == MotionKind::kPushed) {
+    ball_.emplace(config_.ball);
   }
   arm_.SetState(config_.q_start,
                 config_.dq_start.size() > 0 ? config_.dq_start : Eigen::VectorXd::Zero(arm_.num_dofs()));
@@ -76,8 +84,10 @@ void World::Step() {
     }
     arm_.SetState(arm_.q() + dq * kStepS, dq);
   } else {
+    TakeUpLoad();
     arm_.Step(JointTorque(), kStepS);
   }
+  StepBall();
   now_ns_ += hal::kTickPeriodNs;
   RecordTruth();
   MeasureState();
@@ -87,15 +97,41 @@ void World::Step() {
   }
 }
 
+void World::StepBall() {
+  if (!ball_) {
+    return;
+  }
+  const auto push_ns = static_cast<std::int64_t>(std::llround(config_.ball_push_s * 1e9));
+  if (now_ns_ <= push_ns && push_ns < now_ns_ + hal::kTickPeriodNs) {
+    ball_->Push(config_.ball_push);
+  }
+  ball_->Step(kStepS);
+}
+
 // Springs, and what pushes the joints from outside.
 Eigen::VectorXd World::Pulls() const {
   Eigen::VectorXd tau = Eigen::VectorXd::Zero(arm_.num_dofs());
   if (config_.spring.size() > 0) {
     tau -= config_.spring.cwiseProduct(arm_.q());
   }
-  const double now_s = static_cast<double>(now_ns_) * 1e-9;
-  if (config_.push.tau.size() > 0 && now_s >= config_.push.start_s && now_s < config_.push.end_s) {
+  if (config_.push.tau.size() > 0 && config_.push.window.Contains(now_ns_)) {
     tau += config_.push.tau;
+  }
+  return tau;
+}
+
+void World::TakeUpLoad() {
+  if (config_.load.mass > 0.0) {
+    arm_.SetLoad(config_.load.window.Contains(now_ns_) ? config_.load.mass : 0.0);
+  }
+}
+
+// The command and what the robot's own controller adds against gravity, as far as the motors give it.
+Eigen::VectorXd World::MotorTorque() const {
+  Eigen::VectorXd tau =
+      arm_.GravityTorque() + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
+  if (config_.torque_loss.window.Contains(now_ns_)) {
+    tau[config_.torque_loss.joint] *= 1.0 - config_.torque_loss.share;
   }
   return tau;
 }
@@ -110,12 +146,11 @@ double World::FrictionLeft(int joint, double velocity) const {
                                       std::tanh(velocity / stiction_speed_[k]);
 }
 
-// What acts on the joints: the command, what the robot's own controller adds (gravity, and friction as far
-// as it knows it), and the friction itself.
+// What acts on the joints: motors, what comes from outside, and what is left of friction.
 Eigen::VectorXd World::JointTorque() const {
-  Eigen::VectorXd tau = arm_.GravityTorque() + Pulls();
+  Eigen::VectorXd tau = MotorTorque() + Pulls();
   for (int i = 0; i < arm_.num_dofs(); ++i) {
-    tau[i] += command_.tau_cmd[static_cast<std::size_t>(i)] - FrictionLeft(i, arm_.dq()[i]);
+    tau[i] -= FrictionLeft(i, arm_.dq()[i]);
   }
   return tau;
 }
@@ -127,21 +162,22 @@ void World::RecordTruth() {
   truth_.tau_cmd = Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
   truth_.X_BE = arm_.LinkPose(config_.robot.tip);
   truth_.X_BC = truth_.X_BE * config_.X_EC;
-  truth_.p_BO = PositionAt(config_.target, now_ns_);
+  truth_.p_BO = ball_ ? Eigen::Vector3d(ball_->X_BO().translation()) : PositionAt(config_.target, now_ns_);
+  truth_.R_BO = ball_ ? Eigen::Matrix3d(ball_->X_BO().linear()) : OrientationAt(config_.target, now_ns_);
   truth_.contacts = arm_.Contacts();
 }
 
 void World::MeasureState() {
   measured_.stamp_ns = now_ns_;
   ++measured_.sequence;
-  const Eigen::VectorXd gravity = arm_.GravityTorque();
+  const Eigen::VectorXd motor = MotorTorque();
   const Eigen::VectorXd stiction = arm_.StictionTorque();
   for (int i = 0; i < arm_.num_dofs(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     measured_.q[k] = arm_.q()[i] + config_.encoder_noise * normal_(random_);
     measured_.dq[k] = arm_.dq()[i] + config_.velocity_noise * normal_(random_);
     measured_.tau_applied[k] = command_.tau_cmd[k];
-    measured_.tau_meas[k] = command_.tau_cmd[k] + gravity[i] - FrictionLeft(i, arm_.dq()[i]) + stiction[i];
+    measured_.tau_meas[k] = motor[i] - FrictionLeft(i, arm_.dq()[i]) + stiction[i];
   }
 }
 
@@ -150,6 +186,7 @@ Exposure World::Look() const {
   exposure.stamp_ns = now_ns_;
   exposure.X_BC = truth_.X_BC;
   exposure.p_BO = truth_.p_BO;
+  exposure.R_BO = truth_.R_BO;
   for (int i = 0; i < static_cast<int>(config_.robot.links.size()); ++i) {
     exposure.X_BL.push_back(arm_.LinkPose(i));
   }
@@ -165,9 +202,7 @@ void World::ExposeIfDue() {
     return;
   }
   const std::uint64_t frame = next_frame_++;
-  const double now_s = static_cast<double>(now_ns_) * 1e-9;
-  const bool out = now_s >= config_.camera_outage.start_s && now_s < config_.camera_outage.end_s;
-  if (on_exposure_ && !out) {
+  if (on_exposure_ && !config_.camera_outage.Contains(now_ns_)) {
     Exposure exposure = Look();
     exposure.sequence = frame;
     on_exposure_(std::move(exposure));

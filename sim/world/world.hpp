@@ -4,28 +4,18 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <random>
 #include <vector>
 
 #include "fovea/hal/arm.hpp"
+#include "sim/faults/bench_faults.hpp"
 #include "sim/physics/bullet_arm.hpp"
+#include "sim/physics/rolling_ball.hpp"
 #include "sim/render/exposure.hpp"
 #include "sim/world/target_motion.hpp"
 
 namespace fovea::sim {
-
-// A span of time in which the camera delivers nothing.
-struct Outage {
-  double start_s = 0.0;
-  double end_s = 0.0;
-};
-
-// Something that pulls at the joints for a while.
-struct JointPush {
-  Eigen::VectorXd tau;  // [num_dofs] torques [Nm, N]; empty: nothing does
-  double start_s = 0.0;
-  double end_s = 0.0;
-};
 
 struct WorldConfig {
   SimRobot robot;
@@ -34,6 +24,8 @@ struct WorldConfig {
   Eigen::VectorXd dq_start;  // [num_dofs]; empty: at rest
   Eigen::VectorXd spring;    // [num_dofs] pulls each joint to 0 [Nm/rad, N/m]; empty: none does
   JointPush push;
+  TorqueLoss torque_loss;
+  Load load;
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
   double friction_compensation =
       0.9;                      // share of the joints' friction that the robot's own controller takes away
@@ -41,9 +33,12 @@ struct WorldConfig {
   double encoder_noise = 0.0;   // standard deviation of q [rad]
   double velocity_noise = 0.0;  // standard deviation of dq [rad/s]
   TargetMotion target;
+  RollingBallConfig ball;                               // a target that is pushed
+  Eigen::Vector3d ball_push = Eigen::Vector3d::Zero();  // impulse, in axes of B [N s]
+  double ball_push_s = 0.0;                             // when
   double camera_rate_hz = 30.0;
   std::int64_t first_exposure_ns = 20'000'000;
-  Outage camera_outage;
+  TimeWindow camera_outage;  // in which it delivers nothing
   std::uint64_t seed = 1;
 };
 
@@ -56,6 +51,7 @@ struct Truth {
   Eigen::Isometry3d X_BE = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
   Eigen::Vector3d p_BO = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d R_BO = Eigen::Matrix3d::Identity();
   int contacts = 0;
 };
 
@@ -90,9 +86,13 @@ class World {
   [[nodiscard]] Eigen::VectorXd JointTorque() const;
   [[nodiscard]] double FrictionLeft(int joint, double velocity) const;
   [[nodiscard]] Eigen::VectorXd Pulls() const;
+  [[nodiscard]] Eigen::VectorXd MotorTorque() const;
+  void TakeUpLoad();
+  void StepBall();
 
   WorldConfig config_;
   BulletArm arm_;
+  std::optional<RollingBall> ball_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
   std::vector<const SimLink*> joints_;  // moving links, base to tip

@@ -66,9 +66,10 @@ TEST_F(CommandLineTest, ARunWithoutAnyFrame) {
 }
 
 TEST_F(CommandLineTest, UnknownScenario) {
-  EXPECT_THAT(Refusal({"bal"}),
-              AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
-                    HasSubstr("ball, ball-clutter, ball-dark, ball-moving, ball-puma560, ball-ur5e")));
+  EXPECT_THAT(Refusal({"bal"}), AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
+                                      HasSubstr("ball, ball-clutter, ball-dark, ball-eight, ball-jump, "
+                                                "ball-line, ball-moving, ball-occluded, ball-puma560, "
+                                                "ball-pushed, ball-ur5e, circle")));
   EXPECT_THAT(Refusal({"nowhere/to/be.toml"}), HasSubstr("nowhere/to/be.toml"));
 }
 
@@ -111,6 +112,13 @@ TEST_F(CommandLineTest, ValuesThatDoNotFitEachOther) {
               AllOf(HasSubstr("camera.exposure_ms = 40"), HasSubstr("33.3 ms")));
   EXPECT_THAT(Refusal({"ball", "--set", "faults.camera_outage_s=[3, 1]"}),
               HasSubstr("ends before it begins"));
+  EXPECT_THAT(Refusal({"ball", "--set", "faults.load_s=[3, 1]"}),
+              AllOf(HasSubstr("faults.load_s = [3, 1]"), HasSubstr("ends before it begins")));
+  EXPECT_THAT(
+      Refusal({"ball-ur5e", "--set", "faults.encoder_nan_s=[1, 2]", "--set", "faults.encoder_nan_joint=7"}),
+      AllOf(HasSubstr("faults.encoder_nan_joint = 7"), HasSubstr("the arm has 6 joints")));
+  EXPECT_THAT(Refusal({"ball", "--set", "faults.occluder_px=[1, 2, 0, 4]"}),
+              HasSubstr("faults.occluder_px is not allowed: its size must be above 0 px"));
   EXPECT_THAT(Refusal({"ball", "--set", "safety.workspace_radius=0.7"}),
               AllOf(HasSubstr("arm.q_start"), HasSubstr("safety.workspace_radius = 0.7 m")));
 }
@@ -246,9 +254,10 @@ TEST_F(CommandLineTest, HelpShowsExamplesAndExitCodes) {
 
 TEST_F(CommandLineTest, ListAndKeysSayWhatThereIs) {
   const std::string list = Sim({"list"}).out;
-  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 14);
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 23);
   EXPECT_THAT(list, AllOf(HasSubstr("ball "), HasSubstr("ball-moving "), HasSubstr("ball-dark "),
-                          HasSubstr("ball-clutter "), HasSubstr("circle "), HasSubstr("theory/open-loop ")));
+                          HasSubstr("ball-clutter "), HasSubstr("circle "), HasSubstr("flange-circle "),
+                          HasSubstr("theory/open-loop ")));
   EXPECT_THAT(Sim({"keys"}).out,
               HasSubstr("servo.lambda = 2\n    gain: the error decays like exp(-lambda t); "
                         "a number: 0 to 20 1/s\n"));

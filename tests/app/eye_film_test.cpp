@@ -10,6 +10,7 @@
 #include <opencv2/videoio.hpp>
 #include <sstream>
 
+#include "fovea/features/sphere.hpp"
 #include "support/temp_folder.hpp"
 
 namespace fovea::sim {
@@ -27,6 +28,7 @@ class EyeFilmTest : public testing::Test {
     config.path = Path(name);
     config.intrinsics = {kWidth, kHeight, 60.0, 60.0, 31.5, 23.5};
     config.p_CO_C_star = {0.0, 0.0, 0.4};
+    config.goal = Overlay::CurveOf(config.intrinsics, features::ConeFromSphere({0.0, 0.0, 10.0}));
     EyeFilm film(config);
     for (int i = 0; i < kFrames; ++i) {
       const std::vector<std::uint8_t> pixels(std::size_t{3} * kWidth * kHeight, Level(i));
@@ -100,6 +102,7 @@ TEST_F(EyeFilmTest, FramesThatFindNoPlaceAreCounted) {
   config.path = Path("film.mp4");
   config.intrinsics = {kWidth, kHeight, 60.0, 60.0, 31.5, 23.5};
   config.p_CO_C_star = {0.0, 0.0, 0.4};
+  config.goal = Overlay::CurveOf(config.intrinsics, features::ConeFromSphere({0.0, 0.0, 10.0}));
   config.may_drop = true;
   EyeFilm film(config);
   const std::vector<std::uint8_t> pixels(std::size_t{3} * kWidth * kHeight, 90);

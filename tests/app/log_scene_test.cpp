@@ -52,6 +52,29 @@ TEST_P(LogSceneTest, EveryLinkStandsWhereThePhysicsHasIt) {
 INSTANTIATE_TEST_SUITE_P(Arms, LogSceneTest, testing::Values("panda", "ur5e", "puma560"),
                          [](const auto& arm) { return std::string(arm.param); });
 
+// The target's frame has its orientation, so a plate stands in it as it is: not turned a second time. A
+// disc's frame has none, so it lies as the scenario has it.
+TEST(LogSceneTargetTest, APlateIsTurnedByItsFrameAlone) {
+  RenderScene scene;
+  scene.target_R_BO = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  const auto target_of = [&scene] {
+    const foxglove::SceneUpdate update = MakeSceneMessage(scene);
+    const foxglove::SceneEntity& entity = update.entities(update.entities_size() - 1);
+    EXPECT_EQ(entity.frame_id(), log::kTargetFrame);
+    return entity;
+  };
+  scene.target.kind = TargetShape::Kind::kPolygon;
+  scene.target.corners = {{-0.05, -0.05}, {0.05, -0.05}, {0.05, 0.05}, {-0.05, 0.05}};
+  const foxglove::SceneEntity plate = target_of();
+  ASSERT_EQ(plate.triangles_size(), 1);
+  EXPECT_EQ(plate.triangles(0).pose().orientation().w(), 1.0);
+  EXPECT_EQ(plate.triangles(0).points_size(), 4);
+  scene.target = {TargetShape::Kind::kDisc, 0.04, {}};
+  const foxglove::SceneEntity disc = target_of();
+  ASSERT_EQ(disc.cylinders_size(), 1);
+  EXPECT_NEAR(disc.cylinders(0).pose().orientation().x(), std::sin(0.35), 1e-12);
+}
+
 // Links may be called as our own frames seem to be.
 TEST(LogSceneNamesTest, NoLinkIsTakenForAFrameOfOurs) {
   const test::TempFolder folder;

@@ -27,12 +27,12 @@ TEST(PathTest, StaysSmallEvenAndWhole) {
 TEST(TargetLogTest, FramesThatWereLostAreForgottenAndTheOthersKeepTheirTarget) {
   TargetLog log;
   for (std::uint64_t i = 0; i < 5; ++i) {
-    log.Put(i, Eigen::Vector3d::Constant(static_cast<double>(i)));
+    log.Put(i, {model::Mat3::Identity(), model::Vec3::Constant(static_cast<double>(i))});
   }
-  EXPECT_EQ(log.Take(2).x(), 2.0);  // 0 and 1 were lost, the very first frames too
+  EXPECT_EQ(log.Take(2).p.x(), 2.0);  // 0 and 1 were lost, the very first frames too
   EXPECT_EQ(log.size(), 2U);
-  EXPECT_EQ(log.Take(3).x(), 3.0);
-  EXPECT_EQ(log.Take(4).x(), 4.0);
+  EXPECT_EQ(log.Take(3).p.x(), 3.0);
+  EXPECT_EQ(log.Take(4).p.x(), 4.0);
   EXPECT_EQ(log.size(), 0U);
 }
 

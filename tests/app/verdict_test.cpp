@@ -16,7 +16,7 @@ class VerdictTest : public testing::Test {
  protected:
   VerdictTest() {
     config_.arm = test::Panda().model;
-    config_.p_CO_C_star = {0.0, 0.0, kGoalZ};
+    config_.goal.p_CO_C_star = {0.0, 0.0, kGoalZ};
     config_.workspace_radius = 0.85;
     config_.tracking_bound_px = 3.0;
   }
@@ -33,7 +33,7 @@ class VerdictTest : public testing::Test {
       truth.q = test::Ready();
       truth.dq = truth.tau_cmd = Eigen::VectorXd::Zero(7);
       truth.X_BE.translation() = Eigen::Vector3d(0.3, 0.0, 0.5);
-      truth.p_BO = config_.p_CO_C_star + offset(static_cast<double>(k) * 1e-3);  // C is B here
+      truth.p_BO = config_.goal.p_CO_C_star + offset(static_cast<double>(k) * 1e-3);  // C is B here
       if (change) {
         change(truth);
       }

@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "fovea/vision/ball_detector.hpp"
+#include "fovea/vision/target_detector.hpp"
 #include "sim/physics/bullet_arm.hpp"
 #include "sim/render/egl_context.hpp"
 #include "sim/render/scene_renderer.hpp"
@@ -22,7 +22,7 @@ class RenderTest : public ::testing::Test {
     scene_.bench = MakeBench(/*clutter=*/false);
     scene_.robot = LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf", "panda_base", "panda_flange");
     scene_.X_EC.translation() = Eigen::Vector3d(0.05, 0.0, 0.04);
-    scene_.target_radius = kRadius;
+    scene_.target.radius = kRadius;
     BulletArm arm(scene_.robot, {});
     Eigen::VectorXd q(7);
     q << 0.0, -0.7, 0.0, -2.2, 0.0, 1.6, 0.7;
@@ -39,13 +39,13 @@ class RenderTest : public ::testing::Test {
     return rgba;
   }
 
-  vision::BallDetection Detect(const cv::Mat& rgba) const {
+  vision::Detection Detect(const cv::Mat& rgba) const {
     cv::Mat bgr;
     cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
-    vision::BallDetectorConfig config;
+    vision::DetectorConfig config;
     config.intrinsics = intrinsics_;
-    config.radius = kRadius;
-    return vision::BallDetector(config).Detect(bgr);
+    config.size = 2.0 * kRadius;
+    return vision::TargetDetector(config).Detect(bgr);
   }
 
   const Pinhole pinhole_ = MakePinhole(640, 480, 1.0471975511965976);
@@ -70,11 +70,11 @@ TEST_F(RenderTest, ABallIsSeenWhereItIs) {
     const double z = uniform(0.22, 0.40);
     const Eigen::Vector3d p_CO_C(z * uniform(-0.38, 0.38), z * uniform(-0.26, 0.26), z);
     exposure_.p_BO = exposure_.X_BC * p_CO_C;
-    const vision::BallDetection d = Detect(Draw(renderer));
+    const vision::Detection d = Detect(Draw(renderer));
     ASSERT_TRUE(d.found) << "at " << p_CO_C.transpose();
     const Eigen::Vector3d s = p_CO_C / kRadius;
-    const double error_px =
-        std::hypot(intrinsics_.U(d.s) - intrinsics_.U(s), intrinsics_.V(d.s) - intrinsics_.V(s));
+    const double error_px = std::hypot(intrinsics_.U(d.Middle()) - intrinsics_.U(s),
+                                       intrinsics_.V(d.Middle()) - intrinsics_.V(s));
     centre2 += error_px * error_px;
     worst_px = std::max(worst_px, error_px);
     worst_depth = std::max(worst_depth, std::fabs(d.s.norm() / s.norm() - 1.0));
@@ -84,9 +84,9 @@ TEST_F(RenderTest, ABallIsSeenWhereItIs) {
   std::cout << "centre " << rms_px << " px rms, worst " << worst_px << " px; distance, worst "
             << 100 * worst_depth << " %; chi2/3 " << chi2 / kCount / 3 << "\n";
   EXPECT_LT(chi2 / kCount / 3, 1.5) << "the covariance promises too much";
-  EXPECT_LT(rms_px, 0.06);
-  EXPECT_LT(worst_px, 0.15);
-  EXPECT_LT(worst_depth, 0.002);
+  EXPECT_LT(rms_px, 0.035);
+  EXPECT_LT(worst_px, 0.07);
+  EXPECT_LT(worst_depth, 0.0005);
 }
 
 TEST_F(RenderTest, WhatStandsBeforeTheBallHidesIt) {

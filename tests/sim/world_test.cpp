@@ -35,6 +35,52 @@ TEST(TargetMotionTest, TheCircleIsRoundLevelAndAsFastAsAskedFor) {
   EXPECT_EQ(PositionAt(motion, 3'000 * kMs), motion.p_BO);
 }
 
+// Each stays within its reach and within its speed, comes near to both, and runs without a step.
+TEST(TargetMotionTest, EveryPathKeepsItsReachAndItsSpeed) {
+  TargetMotion motion{MotionKind::kStill, {0.5, 0.1, 0.2}, 0.12, 0.2};
+  motion.direction = Eigen::Vector3d(0.6, 0.8, 0.0);
+  const auto look = [&](MotionKind kind) {
+    motion.kind = kind;
+    double far = 0.0;
+    double fast = 0.0;
+    for (std::int64_t t = 0; t < 60'000 * kMs; t += 13 * kMs) {
+      far = std::max(far, (PositionAt(motion, t) - motion.p_BO).norm());
+      fast = std::max(fast, (PositionAt(motion, t + kMs) - PositionAt(motion, t)).norm() / 1e-3);
+    }
+    return std::pair(far, fast);
+  };
+  for (const MotionKind kind : {MotionKind::kLine, MotionKind::kEight}) {
+    const auto [far, fast] = look(kind);
+    EXPECT_NEAR(far, 0.12, 0.001);
+    EXPECT_NEAR(fast, 0.2, 0.002);
+  }
+  const auto [far, fast] = look(MotionKind::kWander);
+  EXPECT_LE(far, 0.12);
+  EXPECT_GT(far, 0.06);
+  EXPECT_LE(fast, 0.2);
+  EXPECT_GT(fast, 0.06);
+  // A pendulum of 0.12 m: its bob never nearer to the pivot nor further from it than that.
+  motion.kind = MotionKind::kPendulum;
+  const Eigen::Vector3d pivot = motion.p_BO + Eigen::Vector3d(0, 0, 0.12);
+  for (std::int64_t t = 0; t < 2'000 * kMs; t += 7 * kMs) {
+    EXPECT_NEAR((PositionAt(motion, t) - pivot).norm(), 0.12, 1e-12);
+  }
+}
+
+TEST(TargetMotionTest, JumpsAtItsTimeAndTurnsAboutItsNormal) {
+  TargetMotion motion;
+  motion.kind = MotionKind::kJump;
+  motion.jump = {0.0, -0.1, 0.0};
+  motion.jump_s = 2.0;
+  EXPECT_EQ(PositionAt(motion, 1'999 * kMs), motion.p_BO);
+  EXPECT_EQ(PositionAt(motion, 2'000 * kMs), Eigen::Vector3d(motion.p_BO + motion.jump));
+  motion.R_BO = Eigen::AngleAxisd(3.0, Eigen::Vector3d(0.6, 0.8, 0.0)).toRotationMatrix();
+  motion.turn_rate = 0.5;
+  const Eigen::Matrix3d R = OrientationAt(motion, 2'000 * kMs);
+  EXPECT_LT((R.col(2) - motion.R_BO.col(2)).norm(), 1e-12);
+  EXPECT_NEAR(R.col(0).dot(motion.R_BO.col(0)), std::cos(1.0), 1e-12);
+}
+
 TEST(WorldTest, EncodersHaveTheNoiseThatWasAskedFor) {
   WorldConfig config = PandaWorld();
   config.encoder_noise = 1e-5;

@@ -80,7 +80,7 @@ class TheoryRun {
     double e = 0.0;
     double v = 0.0;  // e'
   };
-  [[nodiscard]] TheoryFigures Measure(const std::vector<State>& states, bool fit) const;
+  [[nodiscard]] TheoryFigures Measure(const std::vector<State>& states) const;
   void Fit(const std::vector<State>& states, TheoryFigures& figures) const;
 
   TheoryConfig config_;

@@ -1,4 +1,4 @@
-#include "sim/theory/theory_run.hpp"
+#include "sim/app/theory_run.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,7 +22,7 @@ constexpr double kStill = 5e-3;            // a response that stays within this 
 constexpr std::size_t kOneSecond = 1000;   // in samples
 constexpr double kFigureTolerance = 0.01;  // relative: zeta, omega_n, settling time, e_ss
 constexpr double kPoleTolerance = 0.05;    // relative
-constexpr double kErrorTolerance = 0.005;  // of a run whose analytic error is 0 [m]
+constexpr double kErrorTolerance = 0.002;  // of a run whose analytic error is 0 [m]
 
 Eigen::Matrix4d TransitionOf(const TheoryLoop& loop) {
   Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
@@ -155,14 +155,11 @@ void TheoryRun::Fit(const std::vector<State>& states, TheoryFigures& figures) co
   }
 }
 
-TheoryFigures TheoryRun::Measure(const std::vector<State>& states, bool fit) const {
+TheoryFigures TheoryRun::Measure(const std::vector<State>& states) const {
   TheoryFigures figures;
   const std::size_t tail = std::min(kEndSamples, states.size());
   for (std::size_t k = states.size() - tail; k < states.size(); ++k) {
     figures.e_ss += states[k].e / static_cast<double>(tail);
-  }
-  if (loop_.d == 0.0 && !fit) {
-    figures.e_ss = 0.0;
   }
   const double start_s = loop_.d != 0.0 ? config_.push_s : 0.0;
   const double end = loop_.d != 0.0 ? figures.e_ss : 0.0;
@@ -190,8 +187,8 @@ TheoryResult TheoryRun::Finish() const {
     result.verdict = "the run was too short";
     return result;
   }
-  result.run = Measure(run_, true);
-  result.analytic = Measure(analytic_, false);
+  result.run = Measure(run_);
+  result.analytic = Measure(analytic_);
   Fit(run_, result.run);
   const bool moves = !result.run.poles.empty();
   if (moves && loop_.c_i == 0.0) {
@@ -202,9 +199,7 @@ TheoryResult TheoryRun::Finish() const {
     result.analytic.poles =
         design::Poles(Eigen::MatrixXd(design::IntegralLoop(loop_.c_0, loop_.c_1, loop_.c_i)));
   }
-  if (loop_.d != 0.0) {
-    result.analytic.e_ss = loop_.c_i > 0.0 ? 0.0 : loop_.d / loop_.c_0;
-  }
+  result.analytic.e_ss = loop_.c_i > 0.0 ? 0.0 : loop_.d / loop_.c_0;
 
   for (std::size_t k = 0; k < run_.size(); ++k) {
     const double residual = run_[k].e - analytic_[k].e;

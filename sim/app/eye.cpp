@@ -1,0 +1,41 @@
+#include "sim/app/eye.hpp"
+
+#include <cstdlib>
+#include <utility>
+
+#include "sim/app/compose.hpp"
+
+namespace fovea::sim {
+namespace {
+
+// Mesa's software renderer splits a picture over all cores by default. Here whole pictures run beside each
+// other, which wastes less; who sets the variable keeps their choice. (A GPU's driver does not look at it.)
+void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0); }
+
+}  // namespace
+
+Eye::Eye(const RunDescription& about, std::size_t queue)
+    : faults_(MakePictureFaults(about.scenario.faults)), width_px_(about.pinhole.width_px) {
+  UseOneThreadPerRenderer();
+  std::vector<Painter> painters;
+  for (int i = 0; i < kRenderers; ++i) {  // one after the other: drivers set themselves up with the first
+    optics_.push_back(std::make_unique<Optics>(about.scene, about.pinhole, about.scenario.camera.lens,
+                                               Sampling::kPlain, i));
+    Optics* const optics = optics_.back().get();
+    painters.push_back({[this, optics](const Exposure& exposure, std::span<std::uint8_t> rgba) {
+                          optics->Draw(exposure, rgba);
+                          SpoilPicture(faults_, exposure.stamp_ns, width_px_, rgba);
+                        },
+                        [optics] { optics->Release(); }});
+  }
+  SimCameraConfig config;
+  config.width_px = about.pinhole.width_px;
+  config.height_px = about.pinhole.height_px;
+  config.exposure_ns = static_cast<std::int64_t>(about.scenario.camera.exposure_ms * 1e6);
+  config.queue = queue;
+  camera_ = std::make_unique<SimCamera>(
+      config, Sensor(about.scenario.camera.noise_sigma, SeedOf(about.scenario, RandomStream::kSensor)),
+      std::move(painters));
+}
+
+}  // namespace fovea::sim

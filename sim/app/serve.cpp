@@ -1,0 +1,163 @@
+#include "sim/app/serve.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <exception>
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "fovea/config/input_error.hpp"
+#include "fovea/config/share_folder.hpp"
+#include "fovea/linux_rt/realtime.hpp"
+#include "fovea/linux_rt/signal_queue.hpp"
+#include "sim/app/compose.hpp"
+#include "sim/app/network_eye.hpp"
+#include "sim/app/run_description.hpp"
+#include "sim/app/target_error.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr int kLookMs = 50;
+
+using Say = std::function<void(const std::string&)>;
+
+// Whether somebody typed "s" and a line's end. What cannot be read, or has ended, is not looked at again.
+class StopKey {
+ public:
+  bool Pressed() {
+    pollfd wait{STDIN_FILENO, POLLIN, 0};
+    if (closed_ || poll(&wait, 1, 0) != 1) {
+      return false;
+    }
+    std::array<char, 64> line{};
+    const auto got = read(STDIN_FILENO, line.data(), line.size());
+    closed_ = got <= 0;
+    return got > 0 && line[0] == 's';
+  }
+
+ private:
+  bool closed_ = false;
+};
+
+// Empty when it is not there.
+std::vector<std::byte> ReadModelLibrary() {
+  std::ifstream file(config::ShareFolder() / "model_library" / "panda.so", std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const auto bytes = std::as_bytes(std::span(text));
+  return {bytes.begin(), bytes.end()};
+}
+
+void CheckIsPanda(const RunDescription& about) {
+  if (about.robot.name != "panda" || about.servo.arm.num_joints != franka::kJoints) {
+    throw config::InputError(fmt::format(
+        "arm.model = \"{}\" is not allowed: the Franka Control Interface is a Panda's, so `serve` takes "
+        "\"panda\"",
+        about.scenario.arm.model));
+  }
+}
+
+}  // namespace
+
+ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const Say& say) {
+  const RunDescription about = DescribeRun(scenario);
+  CheckIsPanda(about);
+  const linux_rt::SignalQueue signals({SIGINT, SIGTERM, SIGUSR1});
+  World world(MakeWorldConfig(scenario, about.scene.robot));
+  FciRobot robot(world, about.scene.robot);
+  FciServerConfig config = options.server;
+  config.at.ip = franka::Resolve(options.address, 0).ip;
+  config.seed = static_cast<std::uint64_t>(scenario.run.seed);
+  config.model_library = ReadModelLibrary();
+  if (config.model_library.empty()) {
+    say("no model library beside this program: LoadModelLibrary will be answered with an error");
+  }
+  std::optional<NetworkEye> eye;
+  if (scenario.camera.enabled && !options.camera_serial.empty()) {
+    eye.emplace(about, world, options.address, options.camera_serial);
+    config.after_step = [&eye, &config] { eye->Advance(config.lockstep); };
+  }
+  FciServer server(robot, config);
+  say(fmt::format("serving scenario {} at {}:{}, {} pace", scenario.name, options.address, server.port(),
+                  config.lockstep ? "lockstep" : "real"));
+  if (eye) {
+    say(fmt::format("camera \"{}\" at {}: GigE Vision, {} x {} px", options.camera_serial, options.address,
+                    about.pinhole.width_px, about.pinhole.height_px));
+  }
+
+  std::atomic<bool> stop{false};
+  std::exception_ptr failure;
+  std::mutex saying;
+  const Say say_from_any = [&](const std::string& line) {
+    const std::lock_guard lock(saying);
+    say(line);
+  };
+  std::jthread thread([&] {
+    try {
+      if (!config.lockstep) {
+        for (const std::string& line : linux_rt::MakeThreadRealtime({})) {
+          say_from_any("real time: " + line);
+        }
+      }
+      server.Run(stop, say_from_any);
+    } catch (...) {
+      failure = std::current_exception();
+      stop = true;
+    }
+  });
+  StopKey key;
+  bool pressed = false;
+  while (!stop) {
+    const int signal = signals.Next(kLookMs);
+    stop = stop || signal == SIGINT || signal == SIGTERM;
+    if (signal == SIGUSR1 || key.Pressed()) {
+      pressed = !pressed;
+      server.PressStop(pressed);
+    }
+  }
+  thread.join();
+  if (failure) {
+    std::rethrow_exception(failure);
+  }
+  ServeSummary summary;
+  summary.robot = server.counters();
+  if (eye) {
+    if (!eye->fault().empty()) {
+      throw std::runtime_error("the camera broke: " + eye->fault());
+    }
+    summary.frames_sent = eye->sent();
+    const TargetError error = ErrorOf(world.truth(), about.pinhole, GoalOf(about.servo.feature));
+    summary.error_px = error.error_px;
+    summary.error_mm = 1e3 * error.error_C.norm();
+  }
+  return summary;
+}
+
+std::string ToJson(const ServeSummary& s) {
+  using Json = nlohmann::ordered_json;
+  const auto or_null = [](const std::optional<double>& value) {
+    return value ? Json(*value) : Json(nullptr);
+  };
+  const FciServerCounters& c = s.robot;
+  const Json json{{"clients", c.clients},
+                  {"refused_clients", c.refused_clients},
+                  {"states", c.states},
+                  {"commands", c.commands},
+                  {"missing", c.missing},
+                  {"unused", c.unused},
+                  {"malformed", c.malformed},
+                  {"overruns", c.overruns},
+                  {"frames_sent", s.frames_sent},
+                  {"error_px", or_null(s.error_px)},
+                  {"error_mm", or_null(s.error_mm)}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,19 @@
+#include "sim/faults/stalling_clock.hpp"
+
+#include "fovea/hal/types.hpp"
+#include "sim/faults/chance.hpp"
+
+namespace fovea::sim {
+
+hal::Status StallingClock::DoWaitUntil(std::int64_t deadline_ns) noexcept {
+  const auto swallowed = [this](std::int64_t tick_ns) {
+    return fault_.window.Contains(tick_ns) &&
+           Chance(fault_.seed, static_cast<std::uint64_t>(tick_ns / hal::kTickPeriodNs)) < fault_.share;
+  };
+  while (swallowed(deadline_ns)) {
+    deadline_ns += hal::kTickPeriodNs;
+  }
+  return clock_.WaitUntil(deadline_ns);
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,103 @@
+#include "sim/render/plate_painter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/render/projection.hpp"
+#include "sim/render/shaders.hpp"
+
+namespace fovea::sim {
+namespace {
+
+using Eigen::Vector3f;
+using Eigen::Vector4f;
+
+constexpr int kDiscPoints = 48;
+constexpr float kMarginPx = 3.0F;    // of the rectangle that is looked at
+constexpr float kEdgeOnCos = 0.02F;  // a plate seen flatter than this is not painted
+
+std::vector<Vector3f> OutlineOf(const TargetShape& shape) {
+  std::vector<Vector3f> outline;
+  if (shape.kind == TargetShape::Kind::kDisc) {
+    for (int i = 0; i < kDiscPoints; ++i) {
+      const double angle = 2.0 * std::numbers::pi * i / kDiscPoints;
+      outline.emplace_back(
+          (shape.radius * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0)).cast<float>());
+    }
+  }
+  for (const Eigen::Vector2d& corner : shape.corners) {
+    outline.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()), 0.0F);
+  }
+  return outline;
+}
+
+// A fan, seen from both sides.
+Mesh MakeFan(const std::vector<Vector3f>& outline) {
+  Mesh mesh;
+  for (const Vector3f& p : outline) {
+    mesh.vertices.push_back({p, -Vector3f::UnitZ(), Vector3f::Ones()});
+  }
+  for (std::uint32_t i = 2; i < outline.size(); ++i) {
+    mesh.indices.insert(mesh.indices.end(), {0, i - 1, i, 0, i, i - 1});
+  }
+  return mesh;
+}
+
+}  // namespace
+
+PlatePainter::PlatePainter(const TargetShape& shape, const std::string& head)
+    : shape_(shape),
+      program_(head + shaders::kBallVertex,
+               head + shaders::kLight + shaders::kShadow + shaders::kPlateFragment),
+      outline_(OutlineOf(shape)) {
+  caster_ = std::make_unique<GpuMesh>(MakeFan(outline_));
+  glGenVertexArrays(1, &no_vertices_);
+}
+
+PlatePainter::~PlatePainter() { glDeleteVertexArrays(1, &no_vertices_); }
+
+void PlatePainter::Draw(const Eigen::Isometry3f& X_CO, const Eigen::Isometry3f& X_BC, const Pinhole& pinhole,
+                        const Eigen::Matrix4f& clip_of_C, const Vector3f& colour) const {
+  const Vector3f normal = X_CO.linear().col(2);
+  const Vector3f centre = X_CO.translation();
+  if (normal.dot(centre) < kEdgeOnCos * centre.norm()) {
+    return;
+  }
+  const auto f_px = static_cast<float>(pinhole.f_px);
+  Vector4f rectangle(1e9F, 1e9F, -1e9F, -1e9F);
+  std::vector<Vector3f> seen;  // (x, y, 1) of the outline
+  for (const Vector3f& p_O : outline_) {
+    const Vector3f p = X_CO * p_O;
+    if (p.z() < 2.0F * kNear) {
+      return;
+    }
+    seen.emplace_back(p / p.z());
+    rectangle.head<2>() = rectangle.head<2>().cwiseMin(seen.back().head<2>());
+    rectangle.tail<2>() = rectangle.tail<2>().cwiseMax(seen.back().head<2>());
+  }
+  rectangle.head<2>().array() -= kMarginPx / f_px;
+  rectangle.tail<2>().array() += kMarginPx / f_px;
+
+  program_.Set("u_clip_of_C", clip_of_C);
+  program_.Set("u_B_of_C", X_BC.matrix());
+  program_.Set("u_f_px", f_px);
+  program_.Set("u_depth", WindowDepth(clip_of_C));
+  program_.Set("u_rectangle", rectangle);
+  program_.Set("u_colour", colour);
+  program_.Set("u_normal_C", normal);
+  program_.Set("u_centre_C", centre);
+  program_.Set("u_radius", static_cast<float>(shape_.radius));
+  const bool is_disc = shape_.kind == TargetShape::Kind::kDisc;
+  program_.Set("u_num_edges", is_disc ? 0 : static_cast<int>(seen.size()));
+  const Vector3f middle = centre / centre.z();
+  for (std::size_t i = 0; !is_disc && i < seen.size(); ++i) {
+    Vector3f edge = seen[i].cross(seen[(i + 1) % seen.size()]);  // the line through both
+    edge /= edge.head<2>().norm() * (edge.dot(middle) < 0.0F ? -1.0F : 1.0F);
+    program_.Set(("u_edges[" + std::to_string(i) + "]").c_str(), edge);
+  }
+  glBindVertexArray(no_vertices_);
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+}  // namespace fovea::sim

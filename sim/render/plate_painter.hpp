@@ -1,0 +1,42 @@
+// Draws a flat target by its exact outline, not by triangles: each pixel by the share of it that is covered.
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <string>
+
+#include "sim/render/gl_program.hpp"
+#include "sim/render/gpu_mesh.hpp"
+#include "sim/render/pinhole.hpp"
+#include "sim/render/target_shape.hpp"
+
+namespace fovea::sim {
+
+class PlatePainter {
+ public:
+  // `head`: the GLSL preamble that sets the quality of shadows. The shape is a disc or a polygon.
+  PlatePainter(const TargetShape& shape, const std::string& head);
+  ~PlatePainter();
+  PlatePainter(const PlatePainter&) = delete;
+  PlatePainter& operator=(const PlatePainter&) = delete;
+
+  // For the light's uniforms, before Draw.
+  [[nodiscard]] const GlProgram& program() const { return program_; }
+  // The plate at `X_CO` over what is behind it, with `colour`. Nothing when its painted side is turned away,
+  // or a part of it is beside or behind the camera.
+  void Draw(const Eigen::Isometry3f& X_CO, const Eigen::Isometry3f& X_BC, const Pinhole& pinhole,
+            const Eigen::Matrix4f& clip_of_C, const Eigen::Vector3f& colour) const;
+  // What casts its shadow, in O.
+  [[nodiscard]] const GpuMesh& caster() const { return *caster_; }
+
+ private:
+  const TargetShape shape_;
+  GlProgram program_;
+  std::unique_ptr<GpuMesh> caster_;
+  std::vector<Eigen::Vector3f> outline_;  // in O; of a disc points close together on it
+  GLuint no_vertices_ = 0;
+};
+
+}  // namespace fovea::sim

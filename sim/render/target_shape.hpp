@@ -1,0 +1,26 @@
+// What the target looks like to the renderer. Flat ones are painted plates: frame O with x to the right and y
+// down as one looks at the painted side, z into it.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace fovea::sim {
+
+struct TargetShape {
+  enum class Kind { kBall, kDisc, kPolygon };
+  Kind kind = Kind::kBall;
+  double radius = 0.04;                  // of ball and disc [m]
+  std::vector<Eigen::Vector2d> corners;  // of a convex polygon, in order [m]
+
+  // About its centre [m].
+  [[nodiscard]] double Reach() const {
+    double reach = kind == Kind::kPolygon ? 0.0 : radius;
+    for (const Eigen::Vector2d& corner : corners) {
+      reach = reach < corner.norm() ? corner.norm() : reach;
+    }
+    return reach;
+  }
+};
+
+}  // namespace fovea::sim

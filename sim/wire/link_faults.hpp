@@ -1,0 +1,81 @@
+// What a network does to datagrams: loses, delays, shuffles and repeats them. By seed, so that it can be
+// repeated.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace fovea::sim {
+
+struct LinkFaults {
+  double loss = 0.0;       // share that is lost
+  double duplicate = 0.0;  // share that comes twice
+  double reorder = 0.0;    // share that is held back so long that the next overtakes it
+  double delay_ms = 0.0;
+  double jitter_ms = 0.0;  // up to this much is added, evenly spread
+};
+
+class FaultDice {
+ public:
+  FaultDice(const LinkFaults& faults, std::uint64_t seed) : faults_(faults), random_(seed) {}
+
+  void SetLoss(double share) { faults_.loss = share; }
+  [[nodiscard]] bool Loses() { return Happens(faults_.loss); }
+  [[nodiscard]] bool Repeats() { return Happens(faults_.duplicate); }
+  [[nodiscard]] std::int64_t DelayNs();
+
+ private:
+  [[nodiscard]] bool Happens(double share) { return share > 0.0 && even_(random_) < share; }
+
+  LinkFaults faults_;
+  std::mt19937_64 random_;
+  std::uniform_real_distribution<double> even_{0.0, 1.0};
+};
+
+// One way of the link.
+template <typename Datagram>
+class FaultyLink {
+ public:
+  FaultyLink(const LinkFaults& faults, std::uint64_t seed) : dice_(faults, seed) {}
+
+  void Put(const Datagram& datagram, std::int64_t now_ns) {
+    if (dice_.Loses()) {
+      return;
+    }
+    for (int copies = dice_.Repeats() ? 2 : 1; copies > 0; --copies) {
+      on_the_way_.push_back({now_ns + dice_.DelayNs(), datagram});
+    }
+  }
+
+  // The earliest of those that have arrived by `now_ns`.
+  [[nodiscard]] std::optional<Datagram> Take(std::int64_t now_ns) {
+    auto earliest = on_the_way_.end();
+    for (auto at = on_the_way_.begin(); at != on_the_way_.end(); ++at) {
+      if (at->due_ns <= now_ns && (earliest == on_the_way_.end() || at->due_ns < earliest->due_ns)) {
+        earliest = at;
+      }
+    }
+    if (earliest == on_the_way_.end()) {
+      return std::nullopt;
+    }
+    Datagram datagram = std::move(earliest->datagram);
+    on_the_way_.erase(earliest);
+    return datagram;
+  }
+
+  void SetLoss(double share) { dice_.SetLoss(share); }
+  void Clear() { on_the_way_.clear(); }
+
+ private:
+  struct OnTheWay {
+    std::int64_t due_ns;
+    Datagram datagram;
+  };
+  FaultDice dice_;
+  std::vector<OnTheWay> on_the_way_;
+};
+
+}  // namespace fovea::sim

@@ -1,0 +1,348 @@
+"""What an independent client sees of `fovea-sim serve`:  fci_server_test.py FOVEA_SIM"""
+
+import ctypes
+import math
+import platform
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import fci_client as fci
+
+PROGRAM = None
+
+
+class Served(unittest.TestCase):
+    """A server of its own for each test, ended by its own process id."""
+
+    options = ["--pace", "lockstep"]
+
+    def setUp(self):
+        self.server = subprocess.Popen(
+            [PROGRAM, "serve", "ball", "--fci-port", "0", "--camera-serial", "", *self.options],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        line = self.server.stderr.readline()
+        self.assertIn("serving scenario ball at 127.0.0.1:", line)
+        self.port = int(line.split("127.0.0.1:")[1].split(",")[0])
+        self.client = fci.Client(self.port)
+        self.client.state()
+
+    def tearDown(self):
+        self.client.close()
+        self.server.send_signal(signal.SIGTERM)
+        self.assertEqual(self.server.wait(timeout=10), 0)
+        self.server.stderr.close()
+
+
+def fade(k, steps):
+    """From 0 to 1, at rest at both ends."""
+    x = min(1.0, k / steps)
+    return x**4 * (35 - 84 * x + 70 * x**2 - 20 * x**3)
+
+
+class Connecting(Served):
+    def test_connect_says_version_5(self):
+        self.assertEqual((self.client.status, self.client.version), (0, 5))
+
+    def test_another_version_is_refused(self):
+        self.client.close()
+        time.sleep(0.1)
+        old = fci.Client(self.port, version=4)
+        self.assertEqual((old.status, old.version), (1, 5))
+        old.close()
+        time.sleep(0.1)
+        self.client = fci.Client(self.port)
+        self.assertEqual(self.client.status, 0)
+
+    def test_states_are_numbered_by_the_millisecond(self):
+        first = self.client.state()
+        second = self.client.state()
+        self.assertEqual(second.message_id, first.message_id + 1)
+        self.assertEqual(first.robot_mode, fci.IDLE)
+        self.assertEqual((first.motion_generator_mode, first.controller_mode), (0, 3))
+        self.assertEqual(first.O_T_EE[15], 1.0)
+        self.assertEqual(first.O_ddP_O, [0.0, 0.0, -9.81])
+        self.assertAlmostEqual(first.elbow[0], first.q[2], places=9)
+        self.assertEqual(first.elbow[1], -1.0)
+
+
+class RealPace(Served):
+    options = ["--pace", "real"]
+
+    def test_a_thousand_states_in_a_second(self):
+        first = self.client.newest()
+        begin = time.monotonic()
+        count = 0
+        while time.monotonic() - begin < 2.0:
+            last = self.client.state()
+            count += 1
+        rate = count / (time.monotonic() - begin)
+        print(f"\n{rate:.1f} states/s, {last.message_id - first.message_id - count} lost")
+        self.assertLess(rate, 1100)  # not faster than its clock; slower only where the machine is
+
+
+class Setters(Served):
+    def test_frames_change_the_end_effector(self):
+        before = self.client.newest()
+        tool = list(fci.IDENTITY)
+        tool[14] = 0.1034
+        self.assertEqual(self.client.set(fci.SET_NE_TO_EE, *tool), 0)
+        after = self.client.newest()
+        self.assertEqual(after.NE_T_EE, tool)
+        self.assertEqual(after.F_T_EE, tool)
+        moved = math.dist(after.O_T_EE[12:15], before.O_T_EE[12:15])
+        self.assertAlmostEqual(moved, 0.1034, places=4)
+        self.assertEqual(self.client.set(fci.SET_EE_TO_K, *tool), 0)
+        self.assertEqual(self.client.newest().EE_T_K, tool)
+
+    def test_a_frame_that_is_none_is_an_invalid_argument(self):
+        self.assertEqual(self.client.set(fci.SET_NE_TO_EE, *([2.0] * 16)), 2)
+
+    def test_a_load_that_is_not_there_is_felt_as_a_push_upwards(self):
+        self.assertEqual(self.client.set(fci.SET_LOAD, 0.5, 0, 0, 0.05, 0.001, 0, 0, 0, 0.001, 0, 0, 0, 0.001), 0)
+        for _ in range(400):
+            state = self.client.state()
+        self.assertEqual(state.m_load, 0.5)
+        self.assertEqual(state.F_x_Cload, [0, 0, 0.05])
+        self.assertAlmostEqual(state.O_F_ext_hat_K[2], 0.5 * 9.81, delta=0.5)
+
+    def test_all_others_are_taken(self):
+        c = self.client
+        self.assertEqual(c.set(fci.SET_COLLISION_BEHAVIOR, *([20.0] * 28), *([25.0] * 24)), 0)
+        self.assertEqual(c.set(fci.SET_JOINT_IMPEDANCE, *([2000.0] * 7)), 0)
+        self.assertEqual(c.set(fci.SET_JOINT_IMPEDANCE, *([-1.0] * 7)), 2)
+        self.assertEqual(c.set(fci.SET_CARTESIAN_IMPEDANCE, 2000, 2000, 2000, 200, 200, 200), 0)
+        self.assertEqual(c.set(fci.SET_CARTESIAN_IMPEDANCE, 1e6, 2000, 2000, 200, 200, 200), 2)
+        self.assertEqual(c.set(fci.SET_GUIDING_MODE, 1, 1, 1, 0, 0, 0, 1, form="<7B"), 0)
+        self.assertEqual(c.set(fci.SET_FILTERS, 100, 100, 100, 100, 100), 0)
+        self.assertEqual(c.set(fci.SET_FILTERS, 0, 100, 100, 100, 100), 2)
+
+    def test_a_cartesian_limit(self):
+        answer = self.client.request(fci.GET_CARTESIAN_LIMIT, struct.pack("<i", 0))
+        self.assertEqual(len(answer), 154)
+        self.assertEqual(answer[0], 0)
+        self.assertEqual(self.client.request(fci.GET_CARTESIAN_LIMIT, struct.pack("<i", -1))[0], 2)
+
+    def test_nothing_is_set_in_a_motion(self):
+        self.client.start(fci.EXTERNAL, fci.JOINT_VELOCITY)
+        self.assertEqual(self.client.set(fci.SET_JOINT_IMPEDANCE, *([2000.0] * 7)), 1)
+
+
+class ModelLibrary(Served):
+    def test_it_is_loaded_and_agrees_with_the_robot(self):
+        machine = {"x86_64": 0, "aarch64": 3}[platform.machine()]
+        answer = self.client.request(fci.LOAD_MODEL_LIBRARY, bytes([machine, 0]))
+        self.assertEqual(answer[0], 0)
+        with tempfile.NamedTemporaryFile(suffix=".so") as file:
+            file.write(answer[1:])
+            file.flush()
+            library = ctypes.CDLL(file.name)
+        s = self.client.newest()
+
+        def doubles(values):
+            return (ctypes.c_double * len(values))(*values)
+
+        pose = doubles([0.0] * 16)
+        library.O_T_J9(doubles(s.q), doubles(s.F_T_EE), pose)
+        off = max(abs(a - b) for a, b in zip(pose, s.O_T_EE))
+        # With the end effector's and the load's masses as one, both at the end effector's place: there is no load.
+        torque = doubles([0.0] * 7)
+        library.g_NE(doubles(s.q), doubles(s.O_ddP_O), ctypes.c_double(s.m_ee + s.m_load), doubles(s.F_x_Cee), torque)
+        felt = [a - b for a, b in zip(s.tau_J, s.tau_J_d)]
+        off_torque = max(abs(a - b) for a, b in zip(torque, felt))
+        print(f"\nO_T_J9 off by {off:.1e}, g_NE from what the joints feel by {off_torque:.1e} Nm")
+        self.assertLess(off, 1e-12)
+        self.assertLess(off_torque, 5e-3)
+        mass = doubles([0.0] * 49)
+        library.M_NE(doubles(s.q), doubles([0.0] * 9), ctypes.c_double(0), doubles([0.0] * 3), mass)
+        self.assertGreater(min(mass[8 * i] for i in range(7)), 0)
+
+    def test_another_machines_is_not_there(self):
+        self.assertEqual(self.client.request(fci.LOAD_MODEL_LIBRARY, bytes([1, 0])), b"\x01")
+        self.assertEqual(self.client.request(fci.LOAD_MODEL_LIBRARY, bytes([0, 1])), b"\x01")
+
+
+class Motions(Served):
+    def start(self, controller, generator):
+        return self.client.start(controller, generator)
+
+    def test_joint_positions(self):
+        for controller in (fci.JOINT_IMPEDANCE, fci.CARTESIAN_IMPEDANCE):
+            q = self.start(controller, fci.JOINT_POSITION).q_d
+            for k in range(1, 1301):
+                goal = [v + 0.15 * fade(k, 1000) for v in q]
+                state = self.client.step(q_c=goal)
+                self.assertEqual(state.robot_mode, fci.MOVING, state.reflex_reason)
+            off = max(abs(a - b) for a, b in zip(state.q, goal))
+            print(f"\njoint positions, controller {controller}: off by {off:.2e} rad")
+            self.assertLess(off, 1e-3 if controller == fci.JOINT_IMPEDANCE else 3e-2)
+            self.assertEqual(state.control_command_success_rate, 1.0)
+            self.assertEqual(self.client.finish(q_c=goal), 0)
+            self.assertEqual(self.client.last.control_command_success_rate, 0.0)
+
+    def test_joint_velocities(self):
+        q = self.start(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY).q_d
+        way = 0.0
+        for k in range(1, 1001):
+            v = 0.2 * (fade(k, 300) - fade(max(k - 600, 0), 300))
+            way += v * 1e-3
+            state = self.client.step(dq_c=[v] + [0.0] * 6)
+            self.assertEqual(state.robot_mode, fci.MOVING, state.reflex_reason)
+        self.assertAlmostEqual(state.q[0] - q[0], way, delta=1e-3)
+        self.assertEqual(self.client.finish(), 0)
+
+    def test_poses_and_the_elbow(self):
+        first = self.start(fci.JOINT_IMPEDANCE, fci.CARTESIAN_POSITION)
+        for k in range(1, 1301):
+            pose = list(first.O_T_EE_d)
+            pose[13] += 0.05 * fade(k, 1000)
+            elbow = [first.elbow_d[0] + 0.1 * fade(k, 1000), first.elbow_d[1]]
+            state = self.client.step(O_T_EE_c=pose, elbow_c=elbow)
+            self.assertEqual(state.robot_mode, fci.MOVING, state.reflex_reason)
+        self.assertLess(math.dist(state.O_T_EE[12:15], pose[12:15]), 1e-3)
+        self.assertAlmostEqual(state.elbow[0], elbow[0], delta=1e-3)
+        self.assertEqual(self.client.finish(O_T_EE_c=pose, elbow_c=elbow), 0)
+
+    def test_twists(self):
+        first = self.start(fci.CARTESIAN_IMPEDANCE, fci.CARTESIAN_VELOCITY)
+        for k in range(1, 1001):
+            v = 0.1 * (fade(k, 300) - fade(max(k - 600, 0), 300))
+            state = self.client.step(O_dP_EE_c=[0, v, 0, 0, 0, 0])
+            self.assertEqual(state.robot_mode, fci.MOVING, state.reflex_reason)
+        self.assertAlmostEqual(state.O_T_EE[13] - first.O_T_EE[13], 0.06, delta=2e-3)
+        self.assertEqual(self.client.finish(), 0)
+
+    def test_torques(self):
+        first = self.start(fci.EXTERNAL, fci.JOINT_VELOCITY)
+        q = first.q
+        for k in range(1, 1001):
+            s = self.client.last
+            goal = [v + 0.1 * fade(k, 700) for v in q]
+            wish = [(60 if i < 4 else 8) * (goal[i] - s.q[i]) - (12 if i < 4 else 1) * s.dq[i] for i in range(7)]
+            tau = [min(max(w, d - 1.0), d + 1.0) for w, d in zip(wish, s.tau_J_d)]
+            s = self.client.step(tau=tau)
+            self.assertEqual(s.robot_mode, fci.MOVING, s.reflex_reason)
+            self.assertEqual(s.tau_J_d, tau)
+        self.assertGreater(s.q[0] - q[0], 0.05)
+        self.assertEqual(self.client.finish(tau=s.tau_J_d), 0)
+
+    def test_a_motion_is_stopped(self):
+        self.start(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY)
+        self.client.step()
+        self.assertEqual(self.client.request(fci.STOP_MOVE)[0], 0)
+        self.assertEqual(self.client.move_end(), 2)
+        self.assertEqual(self.client.request(fci.STOP_MOVE)[0], 1)
+
+    def test_a_second_motion_at_once_is_not_possible(self):
+        self.start(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY)
+        answer = self.client.request(fci.MOVE, struct.pack("<II6d", 0, 1, *([1.0] * 6)))
+        self.assertEqual(answer, b"\x03")
+
+
+class Errors(Served):
+    def provoke(self, controller, generator, what, error):
+        """Runs `what` until the robot stops, checks why, and recovers."""
+        first = self.client.start(controller, generator)
+        for k in range(1, 5000):
+            state = self.client.step(**what(k, first))
+            if state.robot_mode != fci.MOVING:
+                break
+        self.assertEqual(state.robot_mode, fci.REFLEX)
+        self.assertEqual(state.reflex_reason, [error])
+        self.assertEqual(state.errors, [error])
+        self.assertEqual(self.client.move_end(), 6)
+        self.assertEqual(self.client.request(fci.MOVE, struct.pack("<II6d", 0, 1, *([1.0] * 6))), b"\x03")
+        time.sleep(0.3)
+        self.assertEqual(self.client.recover(), 0)
+        state = self.client.newest()
+        self.assertEqual((state.robot_mode, state.errors, state.reflex_reason), (fci.IDLE, [], [error]))
+
+    def test_torque_step(self):
+        self.provoke(fci.EXTERNAL, fci.JOINT_VELOCITY,
+                     lambda k, s: {"tau": [0, 0, 0, 0, 0, 0, 1.5 + s.tau_J_d[6]] if k >= 3 else s.tau_J_d},
+                     "controller_torque_discontinuity")
+
+    def test_joint_motions(self):
+        self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_POSITION,
+                     lambda k, s: {"q_c": [v + 0.1 for v in s.q_d]},
+                     "joint_position_motion_generator_start_pose_invalid")
+        self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY,
+                     lambda k, s: {"dq_c": [0.1 if k > 2 else 0.0] * 7},
+                     "joint_motion_generator_velocity_discontinuity")
+        self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY,
+                     lambda k, s: {"dq_c": [6e-3 * (k % 2)] * 7},
+                     "joint_motion_generator_acceleration_discontinuity")
+        self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY,
+                     lambda k, s: {"dq_c": [2.3 * fade(k, 800)] + [0.0] * 6},
+                     "joint_motion_generator_velocity_limits")
+
+    def test_joint_limit(self):
+        self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY,
+                     lambda k, s: {"dq_c": [0.0] * 5 + [0.8 * fade(k, 400), 0.0]},
+                     "joint_motion_generator_position_limits")
+
+    def test_cartesian_motions(self):
+        def shifted(s, by):
+            pose = list(s.O_T_EE_d)
+            pose[12] += by
+            return pose
+        self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_POSITION,
+                     lambda k, s: {"O_T_EE_c": shifted(s, 0.1)},
+                     "cartesian_position_motion_generator_start_pose_invalid")
+        self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_POSITION,
+                     lambda k, s: {"O_T_EE_c": [3.0] * 16},
+                     "cartesian_position_motion_generator_invalid_frame")
+        self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_POSITION,
+                     lambda k, s: {"O_T_EE_c": shifted(s, 0.001 if k > 2 else 0.0)},
+                     "cartesian_motion_generator_velocity_discontinuity")
+        self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_POSITION,
+                     lambda k, s: {"O_T_EE_c": s.O_T_EE_d, "elbow_c": [s.elbow_d[0], -s.elbow_d[1]]},
+                     "start_elbow_sign_inconsistent")
+        self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_VELOCITY,
+                     lambda k, s: {"O_dP_EE_c": [9e-3 * (k % 2), 0, 0, 0, 0, 0]},
+                     "cartesian_motion_generator_acceleration_discontinuity")
+
+    def test_the_table_is_felt(self):
+        """The arm leans forward until the hand is on the table with more than the threshold."""
+        self.assertEqual(self.client.set(fci.SET_COLLISION_BEHAVIOR, *([100.0] * 28), *([10.0] * 6), *([20.0] * 6),
+                                         *([10.0] * 6), *([20.0] * 6)), 0)
+        self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY,
+                     lambda k, s: {"dq_c": [0, 0.6 * fade(k, 500), 0, 0, 0, 0, 0]}, "cartesian_reflex")
+
+    def test_silence_stops_it_after_20_states(self):
+        self.client.start(fci.EXTERNAL, fci.JOINT_VELOCITY)
+        tau = self.client.last.tau_J_d
+        for _ in range(10):
+            self.client.step(tau=tau)
+        last = self.client.last.message_id
+        state = self.client.last
+        while state.robot_mode == fci.MOVING:
+            state = self.client.state()
+        self.assertEqual(state.reflex_reason, ["communication_constraints"])
+        self.assertEqual(state.message_id - last, 20)
+        self.assertEqual(self.client.move_end(), 6)
+        self.assertEqual(self.client.recover(), 0)
+
+    def test_user_stop(self):
+        self.client.start(fci.EXTERNAL, fci.JOINT_VELOCITY)
+        tau = self.client.last.tau_J_d
+        self.client.step(tau=tau)
+        self.server.send_signal(signal.SIGUSR1)
+        for _ in range(5000):
+            if self.client.step(tau=self.client.last.tau_J_d).robot_mode != fci.MOVING:
+                break
+        self.assertEqual(self.client.last.robot_mode, fci.USER_STOPPED)
+        self.assertEqual(self.client.move_end(), 7)
+        self.assertEqual(self.client.recover(), 4)
+        self.server.send_signal(signal.SIGUSR1)
+        time.sleep(0.3)
+        self.assertEqual(self.client.newest().robot_mode, fci.IDLE)
+
+
+if __name__ == "__main__":
+    PROGRAM = sys.argv.pop(1)
+    unittest.main(verbosity=2)
