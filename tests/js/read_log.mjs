@@ -98,7 +98,7 @@ class Bytes {
 }
 const hash = createHash("sha256");
 const features = new Map(of("/servo/feature").map((entry) => [entry.time, entry.data]));
-let feature = { stamp_ns: 0, sequence: 0, kind: 0, found: false, confidence: 0, s: [], cov_s: [] };
+let feature = { stamp_ns: 0, sequence: 0, kind: 0, found: false, confidence: 0, s: [], cov_s: [], poses: [] };
 let taken = 0;
 for (const { time, data: t } of of("/servo/tick")) {
   assert.equal(BigInt(t.stamp_ns.toString()), time);
@@ -127,6 +127,12 @@ for (const { time, data: t } of of("/servo/tick")) {
   for (let row = 0; row < kMostFeature; ++row) {
     out.f64s(row < dim ? feature.cov_s.slice(row * dim, (row + 1) * dim) : [], kMostFeature);
   }
+  out.i32(feature.poses.length);
+  for (const pose of feature.poses) {
+    out.f64s(pose.p_CO_C, 3);
+    out.f64s(pose.q_CO, 4);
+    out.i32(pose.first);
+  }
   out.u8(t.mode);
   out.u8(t.hold_reason);
   out.u8(t.fault);
@@ -135,6 +141,7 @@ for (const { time, data: t } of of("/servo/tick")) {
   out.u8(t.target_known ? 1 : 0);
   out.i64(t.feature_age_ns);
   out.f64s(t.p_BO, 3);
+  out.f64s(t.q_BO, 4);
   out.f64s(t.v_BO, 3);
   out.i32(t.s.length);
   for (const values of [t.s, t.s_star, t.e]) out.f64s(values, kMostFeature);

@@ -1,6 +1,6 @@
 # find_package(fovea [COMPONENTS core|host]...)
 #   core  hal, model, features, servo, linux_rt, heap_interposer: all that runs in and around the tick
-#   host  vision, config, robots, servo_keys: what needs OpenCV, TOML and URDF; contains core
+#   host  vision, calibration, config, robots, servo_keys: what needs OpenCV, TOML and URDF; contains core
 # Targets are fovea::hal, fovea::servo, ... fovea_SHARE_DIR is where robots and scenarios are.
 include(CMakeFindDependencyMacro)
 

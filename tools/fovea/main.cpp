@@ -1,16 +1,22 @@
-// fovea: what is done beside runs: reports of those that are over, gains for those to come.
+// fovea: what is done beside runs: reports of those that are over; gains, models and features for those to
+// come.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 
+#include "atlas.hpp"
+#include "calibrate.hpp"
+#include "detect.hpp"
+#include "features.hpp"
 #include "fovea/build_info.hpp"
 #include "fovea/config/guard_table.hpp"
 #include "fovea/config/program.hpp"
 #include "fovea/config/share_folder.hpp"
 #include "fovea/report/report.hpp"
 #include "gains.hpp"
+#include "model.hpp"
 
 namespace {
 
@@ -56,7 +62,10 @@ int Report(const ReportArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Fovea's tools beside its runs: reports of logs, design of gains."};
+  CLI::App app{
+      "Fovea's tools beside its runs: reports of logs, design of gains, models of arms, what features "
+      "control, "
+      "what the eye sees, calibration."};
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("fovea {} {}", kVersion, kGitRevision));
   app.footer(
@@ -65,7 +74,12 @@ int main(int argc, char** argv) {
       "  fovea report out/ball/log.mcap --out ball.html\n"
       "  fovea report out/slow out/fast --out comparison.html\n"
       "  fovea gains --mass 16 --damping 16 --stiffness 4 --closed-loop-stiffness 16\n"
-      "Exit: 0 done, 2 wrong usage or input.");
+      "  fovea model panda\n"
+      "  fovea features --target triangle --pose 0,0,0.4,1,0,0,0\n"
+      "  fovea atlas --target sphere --runs 200 --jobs 2\n"
+      "  fovea detect --target circle photo.png\n"
+      "  fovea calibrate intrinsics boards/ --out camera.toml\n"
+      "Exit: 0 done, 1 an atlas missed its goal, 2 wrong usage or input.");
 
   ReportArguments arguments;
   CLI::App* report = app.add_subcommand("report", "make the report of a log, or of two beside each other");
@@ -77,6 +91,16 @@ int main(int argc, char** argv) {
 
   GainsArguments gains_arguments;
   const CLI::App* gains = AddGains(app, gains_arguments);
+  DetectArguments detect_arguments;
+  const CLI::App* detect = AddDetect(app, detect_arguments);
+  AtlasArguments atlas_arguments;
+  const CLI::App* atlas = AddAtlas(app, atlas_arguments);
+  CalibrateArguments calibrate_arguments;
+  const CLI::App* calibrate = AddCalibrate(app, calibrate_arguments);
+  ModelArguments model_arguments;
+  const CLI::App* model = AddModel(app, model_arguments);
+  FeaturesArguments features_arguments;
+  const CLI::App* features = AddFeatures(app, features_arguments);
   const CLI::App* guards =
       app.add_subcommand("guards", "what the servo watches, as the table in firmware/GUARDS.md");
 
@@ -84,6 +108,21 @@ int main(int argc, char** argv) {
     if (guards->parsed()) {
       fmt::print("{}", config::GuardTableAsMarkdown());
       return config::kDone;
+    }
+    if (atlas->parsed()) {
+      return Atlas(atlas_arguments);
+    }
+    if (detect->parsed()) {
+      return Detect(detect_arguments);
+    }
+    if (calibrate->parsed()) {
+      return Calibrate(*calibrate, calibrate_arguments);
+    }
+    if (model->parsed()) {
+      return Model(model_arguments);
+    }
+    if (features->parsed()) {
+      return Features(features_arguments);
     }
     return gains->parsed() ? Gains(gains_arguments) : Report(arguments);
   });

@@ -1,0 +1,106 @@
+#include "instructions.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "shell.hpp"
+
+namespace fovea::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder of its own, gone with the object.
+class Scratch {
+ public:
+  Scratch() {
+    // mkdtemp puts letters of its own in the place of the six.
+    std::string name = (fs::temp_directory_path() / "fovea-bench-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw std::runtime_error("no folder for valgrind's output can be made in " +
+                               fs::temp_directory_path().string());
+    }
+    path_ = name;
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+double Totals(const fs::path& file) {
+  std::ifstream stream(file);
+  std::string word;
+  while (stream >> word) {
+    double count = 0.0;
+    if (word == "totals:" && stream >> count) {
+      return count;
+    }
+  }
+  throw std::runtime_error(file.string() + ": callgrind wrote no totals");
+}
+
+}  // namespace
+
+// Found by its name: the one function in which callgrind counts.
+[[gnu::noinline]] void FoveaBenchCountedStep(servo::ServoTask& task, const servo::ServoInputs& inputs,
+                                             servo::ServoOutputs& outputs) {
+  task.Step(inputs, outputs);
+}
+
+void RunCounted(const std::vector<TickCase>& cases, const std::string& mode) {
+  std::uint64_t counted = 0;
+  for (const TickCase& c : cases) {
+    // Run twice: which ticks are of that mode is known only after them.
+    servo::ServoTask scout;
+    servo::ServoTask task;
+    if (!scout.Init(c.config).ok() || !task.Init(c.config).ok()) {
+      throw std::logic_error("a configuration that was run is refused");
+    }
+    servo::ServoOutputs outputs;
+    for (const servo::ServoInputs& inputs : c.inputs) {
+      scout.Step(inputs, outputs);
+      if (hal::Name(outputs.record.mode) == mode) {
+        FoveaBenchCountedStep(task, inputs, outputs);
+        ++counted;
+      } else {
+        task.Step(inputs, outputs);
+      }
+    }
+  }
+  fmt::print("{}\n", counted);
+}
+
+std::optional<double> CountInstructions(const std::vector<std::string>& arguments, const std::string& mode) {
+  const Scratch scratch;
+  const fs::path out = scratch.path() / "callgrind.out";
+  std::string command = fmt::format(
+      "valgrind --tool=callgrind --callgrind-out-file={} --collect-atstart=no "
+      "--toggle-collect='*FoveaBenchCountedStep*' {}",
+      Quoted(out.string()), Quoted(fs::read_symlink("/proc/self/exe").string()));
+  for (const std::string& argument : arguments) {
+    command += fmt::format(" {}", Quoted(argument));
+  }
+  command += fmt::format(" --count {} 2>/dev/null", Quoted(mode));
+  const ShellResult run = RunShell(command);
+  if (!run.done) {
+    throw std::runtime_error("valgrind failed or is not installed (Debian package valgrind): " + command);
+  }
+  const double ticks = std::stod(run.output);
+  if (ticks == 0.0) {
+    return std::nullopt;
+  }
+  return Totals(out) / ticks;
+}
+
+}  // namespace fovea::bench

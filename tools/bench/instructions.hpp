@@ -1,0 +1,20 @@
+// Instructions per tick, counted by valgrind's callgrind: the same number whatever else the machine does.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tick_inputs.hpp"
+
+namespace fovea::bench {
+
+// In the process that valgrind watches: runs all `cases`, the ticks of `mode` where they are counted; prints
+// how many they were.
+void RunCounted(const std::vector<TickCase>& cases, const std::string& mode);
+
+// Runs this program again under valgrind, `arguments` before `--count MODE`. The mean per tick of `mode`;
+// nothing when no tick was of that mode. Throws std::runtime_error when valgrind is not there or fails.
+std::optional<double> CountInstructions(const std::vector<std::string>& arguments, const std::string& mode);
+
+}  // namespace fovea::bench

@@ -1,0 +1,18 @@
+// `fovea-bench jitter`: does this machine hold 1 kHz?
+#pragma once
+
+#include <string>
+
+namespace fovea::bench {
+
+struct JitterArguments {
+  int seconds = 20;  // of the servo's loop; the sleeper gets as many
+  std::string load = "none";
+  std::string policy = "fifo";
+  int cpu = -1;  // that the measured thread is bound to; -1: any
+  bool json = false;
+};
+
+int RunJitter(const JitterArguments& arguments);
+
+}  // namespace fovea::bench

@@ -1,0 +1,92 @@
+#include "law_speed.hpp"
+
+#include <chrono>
+#include <functional>
+#include <random>
+
+#include "fovea/model/kinematics.hpp"
+#include "fovea/servo/motion_limits.hpp"
+#include "fovea/servo/resolve_constrained.hpp"
+#include "fovea/servo/visual_law.hpp"
+#include "spread.hpp"
+
+namespace fovea::bench {
+namespace {
+
+constexpr int kCases = 500;
+constexpr int kRounds = 41;
+constexpr int kFeatures = 8;
+
+struct Case {
+  features::FeatureState feature;
+  model::Mat6N J_C;
+  servo::Reference reference;
+  servo::VisualLawOutput law;
+};
+
+std::vector<Case> RandomCases(const model::ArmModel& arm) {
+  std::mt19937_64 engine(2);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<Case> cases(kCases);
+  for (Case& c : cases) {
+    c.reference.q = model::ToVector(arm.q_ready, arm.num_joints);
+    c.reference.dq = c.reference.ddq = model::VecN::Zero(arm.num_joints);
+    for (int i = 0; i < arm.num_joints; ++i) {
+      c.reference.q[i] += 0.4 * unit(engine);
+    }
+    model::ArmPoses poses;
+    model::ComputePoses(arm, c.reference.q, poses);
+    model::ComputeJacobian(arm, poses, model::Pose{}, c.J_C);
+    // Four corners of a square at about 0.4 m, as normalised image points.
+    c.feature.s.resize(kFeatures);
+    c.feature.L_s.resize(kFeatures, 6);
+    for (Eigen::Index k = 0; k < kFeatures / 2; ++k) {
+      const double x = (k % 2 == 0 ? -0.12 : 0.12) + 0.03 * unit(engine);
+      const double y = (k < 2 ? -0.12 : 0.12) + 0.03 * unit(engine);
+      const double Z = 0.4 + 0.05 * unit(engine);
+      c.feature.s.segment<2>(2 * k) << x, y;
+      c.feature.L_s.middleRows<2>(2 * k) << -1 / Z, 0, x / Z, x * y, -(1 + x * x), y,  //
+          0, -1 / Z, y / Z, 1 + y * y, -x * y, -x;
+    }
+    c.feature.s_star = c.feature.s + 0.05 * features::FeatureVector::Random(kFeatures);
+    c.feature.ds_dt_target = features::FeatureVector::Zero(kFeatures);
+  }
+  return cases;
+}
+
+double MedianNs(std::vector<Case>& cases, const std::function<void(Case&)>& call) {
+  std::vector<double> rounds;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (Case& c : cases) {
+      call(c);
+    }
+    const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - begin;
+    rounds.push_back(took.count() / kCases);
+  }
+  return Percentile(rounds, 0.5);
+}
+
+}  // namespace
+
+std::vector<Figure> LawSpeed(const model::ArmModel& arm) {
+  std::vector<Case> cases = RandomCases(arm);
+  servo::ServoConfig config;
+  config.arm = arm;
+  config.law.q_posture = arm.q_ready;
+  servo::DampedMotion damped;
+  servo::ConstrainedMotion constrained;
+  servo::MotionLimits limits;
+  const double law = MedianNs(cases, [&](Case& c) {
+    servo::VisualLaw(config.law, arm, c.feature, c.J_C, c.reference.q, c.law);
+    servo::ResolveDamped({}, c.law.task, damped);
+  });
+  const double resolved = MedianNs(cases, [&](Case& c) {
+    servo::LimitJoints(config, c.reference.q, limits);
+    servo::LimitAcceleration(config, c.reference, limits);
+    servo::ResolveConstrained({}, c.law.task, limits, constrained);
+  });
+  return {{"visual_law_ns", law, "ns", 500.0}, {"resolve_constrained_ns", resolved, "ns", {}}};
+}
+
+}  // namespace fovea::bench

@@ -1,0 +1,92 @@
+// fovea-bench: figures. Each command prints a table, or with --json a list of {name, value, unit, goal}.
+#include <CLI/CLI.hpp>
+
+#include "compare.hpp"
+#include "fovea/build_info.hpp"
+#include "fovea/config/program.hpp"
+#include "jitter.hpp"
+#include "load.hpp"
+#include "sim.hpp"
+#include "tick.hpp"
+#include "vision.hpp"
+
+int main(int argc, char** argv) {
+  using namespace fovea;
+  CLI::App app{"Fovea's benchmarks: each prints figures, with their goals where there are any."};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("fovea-bench ") + kVersion + " " + kGitRevision);
+  app.footer(
+      "Examples:\n  fovea-bench tick\n  fovea-bench tick --instructions --json\n  fovea-bench jitter "
+      "--seconds 60 --load cpu\n  fovea-bench vision --target sphere --class noise-15\n  fovea-bench compare "
+      "old.json new.json --most 1.05\nExit: 0 done, 1 compare "
+      "found more than --most, 2 wrong usage "
+      "or input.");
+
+  bench::TickArguments tick;
+  CLI::App* tick_command =
+      app.add_subcommand("tick", "What one tick of the servo costs: by input, by stage, by mode; beside KDL");
+  tick_command->add_option("--robot", tick.robot, "A shipped arm")->capture_default_str();
+  tick_command->add_option("--runs", tick.runs, "Random closed loops in which the worst input is searched")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  tick_command->add_flag("--instructions", tick.instructions,
+                         "Count instructions too, by valgrind (minutes)");
+  tick_command->add_option("--count", tick.count)->group("");  // of the process that valgrind watches
+  tick_command->add_flag("--json", tick.json, "Print JSON");
+
+  bench::JitterArguments jitter;
+  CLI::App* jitter_command = app.add_subcommand(
+      "jitter",
+      "Does this machine hold 1 kHz: the servo's loop by the clock, beside a thread that only sleeps");
+  jitter_command
+      ->add_option("--seconds", jitter.seconds, "Of each of the two, in blocks of a second in turns")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  jitter_command->add_option("--load", jitter.load, "Work beside it")
+      ->check(CLI::IsMember(bench::kLoads))
+      ->capture_default_str();
+  jitter_command->add_option("--policy", jitter.policy, "Of the measured thread: SCHED_FIFO, or as any other")
+      ->check(CLI::IsMember({"fifo", "other"}))
+      ->capture_default_str();
+  jitter_command->add_option("--cpu", jitter.cpu, "Processor that the measured thread is bound to")
+      ->check(CLI::NonNegativeNumber);
+  jitter_command->add_flag("--json", jitter.json, "Print JSON");
+
+  bench::SimArguments sim;
+  CLI::App* sim_command = app.add_subcommand(
+      "sim", "How much faster than the clock the simulator runs, by picture size and rate");
+  sim_command->add_option("--seconds", sim.seconds, "Simulated, of each run")
+      ->check(CLI::Range(0.5, 1000.0))
+      ->capture_default_str();
+  sim_command->add_flag("--json", sim.json, "Print JSON");
+
+  bench::VisionArguments vision;
+  CLI::App* vision_command = app.add_subcommand(
+      "vision", "How often, how well and how fast targets are found in pictures of known truth");
+  vision_command->add_option("--target", vision.target, "Which target")
+      ->check(CLI::IsMember({"all", "sphere", "circle", "square", "triangle"}))
+      ->capture_default_str();
+  vision_command->add_option("--class", vision.only, "One class of pictures; all when not given");
+  vision_command->add_option("--pictures", vision.pictures, "Of each class; a third without a target")
+      ->check(CLI::Range(3, 100000))
+      ->capture_default_str();
+  vision_command->add_option("--seed", vision.seed, "Of the pictures")->capture_default_str();
+  vision_command->add_flag("--json", vision.json, "Print JSON");
+
+  bench::CompareArguments compare;
+  CLI::App* compare_command = app.add_subcommand("compare", "The ratios of two files that --json printed");
+  compare_command->add_option("old", compare.old_file)->required();
+  compare_command->add_option("new", compare.new_file)->required();
+  compare_command
+      ->add_option("--most", compare.most,
+                   "Fail when a figure is more than this times the old one, or is gone")
+      ->check(CLI::PositiveNumber);
+
+  return config::RunProgram("fovea-bench", app, argc, argv, [&] {
+    return compare_command->parsed()  ? bench::RunCompare(compare)
+           : jitter_command->parsed() ? bench::RunJitter(jitter)
+           : sim_command->parsed()    ? bench::RunSim(sim)
+           : vision_command->parsed() ? bench::RunVision(vision)
+                                      : bench::RunTick(tick);
+  });
+}

@@ -1,0 +1,203 @@
+#include "vision.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "bound.hpp"
+#include "contestants.hpp"
+#include "figure.hpp"
+#include "fovea/config/input_error.hpp"
+#include "fovea/config/program.hpp"
+#include "scenes.hpp"
+
+namespace fovea::bench {
+namespace {
+
+constexpr double kWrongPx = 2.0;  // further off than this is wrong
+
+struct Score {
+  int with_target = 0;
+  int without = 0;
+  int found = 0;  // of those with a target, not more than kWrongPx off
+  int wrong = 0;  // further off, or found where nothing is
+  double centre2 = 0.0;
+  double radius2 = 0.0;
+  double chi2 = 0.0;
+  double worst_px = 0.0;
+  std::vector<double> ms;
+  std::vector<double> tracked_ms;
+};
+
+double Median(std::vector<double> values) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+template <class Function>
+double MsOf(Function function) {
+  const auto start = std::chrono::steady_clock::now();
+  function();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Judge(Contestant& contestant, const cv::Mat& image, const TrueOutline* truth, Score& score) {
+  Answer answer;
+  score.ms.push_back(MsOf([&] { answer = contestant.Look(image); }));
+  if (truth == nullptr) {
+    ++score.without;
+    score.wrong += answer.found ? 1 : 0;
+    return;
+  }
+  ++score.with_target;
+  if (!answer.found) {
+    return;
+  }
+  const double off_px = std::hypot(answer.u_px - truth->u_px, answer.v_px - truth->v_px);
+  if (off_px > kWrongPx) {
+    ++score.wrong;
+    return;
+  }
+  ++score.found;
+  score.centre2 += 0.5 * off_px * off_px;
+  score.radius2 += std::pow(answer.radius_px - truth->radius_px, 2);
+  score.worst_px = std::max(score.worst_px, off_px);
+  score.chi2 += answer.sigma_px > 0.0 ? 0.5 * std::pow(off_px / answer.sigma_px, 2) : 0.0;
+  if (contestant.tracks()) {
+    score.tracked_ms.push_back(MsOf([&] { contestant.LookAgain(image); }));
+  }
+}
+
+const char* NameOf(TargetKind kind) {
+  switch (kind) {
+    case TargetKind::kSphere: return "sphere";
+    case TargetKind::kCircle: return "circle";
+    case TargetKind::kSquare: return "square";
+    case TargetKind::kTriangle: break;
+  }
+  return "triangle";
+}
+
+struct Row {
+  std::string contestant;
+  Score score;
+};
+
+// One class of one target: all contestants on the same pictures.
+void RunClass(const SceneClass& scenes, TargetKind kind, const VisionArguments& arguments,
+              std::vector<Figure>& figures) {
+  const PictureCamera camera;
+  const auto contestants = MakeContestants(kind, camera, scenes.clutter);
+  std::vector<Row> rows;
+  for (const auto& contestant : contestants) {
+    rows.push_back({contestant->name(), {}});
+  }
+  double bound_centre2 = 0.0;
+  double bound_radius2 = 0.0;
+  int bounds = 0;
+  for (int i = 0; i < arguments.pictures; ++i) {
+    const bool with_target = i % 3 != 2;
+    const auto seed = static_cast<unsigned>(arguments.seed * 100'003 + i);
+    const PictureScene scene = MakeScene(scenes, kind, with_target, seed);
+    const cv::Mat image = Draw(scene);
+    TrueOutline truth;
+    if (with_target) {
+      truth = OutlineOf(scene.camera, scene.bodies.front());
+      const Bound bound = CramerRao(scene);
+      bound_centre2 += bound.centre_px * bound.centre_px;
+      bound_radius2 += bound.radius_px * bound.radius_px;
+      ++bounds;
+    }
+    for (std::size_t k = 0; k < contestants.size(); ++k) {
+      Judge(*contestants[k], image, with_target ? &truth : nullptr, rows[k].score);
+    }
+  }
+  const double bound_centre = std::sqrt(bound_centre2 / std::max(bounds, 1));
+  const double bound_radius = std::sqrt(bound_radius2 / std::max(bounds, 1));
+  // The bound is on the middle of the outline; a polygon's is the mean of its corners, which it does not
+  // name.
+  const bool is_round = kind == TargetKind::kSphere || kind == TargetKind::kCircle;
+  for (const Row& row : rows) {
+    const Score& s = row.score;
+    const double n = std::max(s.found, 1);
+    const double centre = std::sqrt(s.centre2 / n);
+    const double radius = std::sqrt(s.radius2 / n);
+    if (!arguments.json) {
+      const std::string tracked =
+          s.tracked_ms.empty() ? "     -" : fmt::format("{:6.3f}", Median(s.tracked_ms));
+      const std::string bound =
+          is_round ? fmt::format("{:7.4f} {:7.4f}", bound_centre, bound_radius) : "      -       -";
+      fmt::print("{:<9}{:<13}{:<23}{:5.1f} {:5.1f} {:8.4f} {:8.4f} {} {:7.3f} {:6.2f} {:7.3f} {}\n",
+                 NameOf(kind), scenes.name, row.contestant, 100.0 * s.found / std::max(s.with_target, 1),
+                 100.0 * s.wrong / std::max(s.with_target + s.without, 1), centre, radius, bound, s.worst_px,
+                 s.chi2 / n, Median(s.ms), tracked);
+      std::fflush(stdout);
+    }
+    if (row.contestant != "fovea") {
+      continue;
+    }
+    const std::string prefix = fmt::format("vision_{}_{}_", NameOf(kind), scenes.name);
+    std::optional<double> goal_centre;
+    std::optional<double> goal_radius;
+    if (is_round && scenes.goal_px > 0.0) {
+      goal_centre = std::max(scenes.goal_px, 1.3 * bound_centre);
+      goal_radius = std::max(scenes.goal_px, 1.3 * bound_radius);
+    }
+    figures.push_back({prefix + "found", 100.0 * s.found / std::max(s.with_target, 1), "%", 100.0});
+    figures.push_back({prefix + "wrong", 100.0 * s.wrong / std::max(s.with_target + s.without, 1), "%", 0.0});
+    figures.push_back({prefix + "centre_rms", centre, "px", goal_centre});
+    figures.push_back({prefix + "radius_rms", radius, "px", goal_radius});
+    if (is_round) {
+      figures.push_back({prefix + "centre_bound", bound_centre, "px", std::nullopt});
+      figures.push_back({prefix + "radius_bound", bound_radius, "px", std::nullopt});
+    }
+    figures.push_back({prefix + "ms_p50", Median(s.ms), "ms", 0.5});
+    figures.push_back({prefix + "tracked_ms_p50", Median(s.tracked_ms), "ms", 0.1});
+  }
+}
+
+}  // namespace
+
+int RunVision(const VisionArguments& arguments) {
+  cv::setNumThreads(1);
+  if (!arguments.json) {
+    fmt::print("{} pictures of 640x480 a class, a third of them without a target; rms along one axis [px]\n",
+               arguments.pictures);
+    fmt::print("{:<9}{:<13}{:<23}{:>5} {:>5} {:>8} {:>8} {:>7} {:>7} {:>7} {:>6} {:>7} {:>6}\n", "target",
+               "class", "", "found", "wrong", "centre", "radius", "CR c.", "CR r.", "worst", "chi2/2", "ms",
+               "track");
+    fmt::print("{:<45}{:>5} {:>5}\n", "", "%", "%");
+  }
+  std::vector<Figure> figures;
+  bool any = false;
+  for (const TargetKind kind :
+       {TargetKind::kSphere, TargetKind::kCircle, TargetKind::kSquare, TargetKind::kTriangle}) {
+    if (arguments.target != "all" && arguments.target != NameOf(kind)) {
+      continue;
+    }
+    for (const SceneClass& scenes : SceneClasses()) {
+      const bool fits = !scenes.off_axis || kind == TargetKind::kSphere;
+      if (fits && (arguments.only.empty() || arguments.only == scenes.name)) {
+        RunClass(scenes, kind, arguments, figures);
+        any = true;
+      }
+    }
+  }
+  if (!any) {
+    throw config::InputError(
+        fmt::format("--class {}: there is no such class of --target {}", arguments.only, arguments.target));
+  }
+  if (arguments.json) {
+    fmt::print("{}\n", ToJson(figures));
+  }
+  return config::kDone;
+}
+
+}  // namespace fovea::bench

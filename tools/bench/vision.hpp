@@ -1,0 +1,18 @@
+// `fovea-bench vision`: how often, how well and how fast targets are found in pictures of known truth.
+#pragma once
+
+#include <string>
+
+namespace fovea::bench {
+
+struct VisionArguments {
+  int pictures = 60;  // of each class; a third of them without a target
+  int seed = 1;
+  std::string target = "all";
+  std::string only;  // one class; empty: all
+  bool json = false;
+};
+
+int RunVision(const VisionArguments& arguments);
+
+}  // namespace fovea::bench

@@ -1,0 +1,13 @@
+# fovea_emit_model(<target> <arm>...): the shipped arms' models as `fovea model --emit-cpp` writes them, for
+# `target` to include as "emitted/<arm>.hpp".
+function(fovea_emit_model target)
+  set(robots ${PROJECT_SOURCE_DIR}/firmware/robots/share)
+  file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/emitted)
+  foreach(arm IN LISTS ARGN)
+    add_custom_command(OUTPUT emitted/${arm}.hpp
+      COMMAND fovea model ${arm} --emit-cpp > emitted/${arm}.hpp
+      DEPENDS fovea fovea_firmware_share ${robots}/${arm}.urdf ${robots}/${arm}.toml VERBATIM)
+    target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/emitted/${arm}.hpp)
+  endforeach()
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
+endfunction()

@@ -1,0 +1,259 @@
+#include "atlas.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "atlas_children.hpp"
+#include "atlas_figures.hpp"
+#include "atlas_page.hpp"
+#include "atlas_rows.hpp"
+#include "atlas_sampler.hpp"
+#include "fovea/build_info.hpp"
+#include "fovea/config/input_error.hpp"
+#include "fovea/config/program.hpp"
+#include "fovea/config/share_folder.hpp"
+#include "fovea/config/target_keys.hpp"
+#include "fovea/robots/robot.hpp"
+
+namespace fovea {
+namespace {
+
+namespace fs = std::filesystem;
+using atlas::Row;
+
+constexpr std::chrono::seconds kRunLimit{900};  // of wall time; a run takes some seconds
+
+const char* ScenarioOf(const std::string& target) { return target == "sphere" ? "ball" : target.c_str(); }
+
+// Beside this program.
+fs::path Simulator() {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "fovea-sim";
+  if (!fs::is_regular_file(program)) {
+    throw config::InputError(program.string() +
+                             ": not there; fovea atlas needs the simulator built beside it");
+  }
+  return program;
+}
+
+atlas::Sampler MakeSampler(const std::string& target) {
+  config::TargetSettings settings;
+  settings.kind = target;
+  return {robots::LoadRobot(config::ShareFolder() / "robots" / "panda.toml").model,
+          config::MakeTarget(settings)};
+}
+
+// What the sampler decides or builds upon stays as it is.
+void CheckAssignments(const std::vector<std::string>& assignments) {
+  for (const std::string& assignment : assignments) {
+    for (const char* own :
+         {"arm.model", "arm.q_start", "camera.enabled", "camera.width_px", "camera.height_px",
+          "camera.hfov_deg", "camera.mount_", "target.", "servo.goal", "run.seed"}) {
+      if (assignment.rfind(own, 0) == 0) {
+        throw config::InputError(fmt::format("--set {}: the atlas sets {} itself", assignment, own));
+      }
+    }
+  }
+}
+
+std::string Content(const fs::path& file) {
+  std::ostringstream content;
+  content << std::ifstream(file, std::ios::binary).rdbuf();
+  return content.str();
+}
+
+std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+void WriteFile(const fs::path& file, const std::string& content) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << content;
+  stream.close();
+  if (!stream) {
+    throw config::InputError(file.string() + ": cannot be written");
+  }
+}
+
+// How far it is, on standard error: a bar on a terminal, else a line for every tenth.
+class Progress {
+ public:
+  Progress(std::string name, int runs) : name_(std::move(name)), runs_(runs) {}
+  ~Progress() { End(); }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void Show(int done, int failed) {
+    constexpr int kWidth = 30;
+    const std::string figures = fmt::format("{} of {} runs, {} failed", done, runs_, failed);
+    if (is_terminal_) {
+      const auto filled = static_cast<std::size_t>(kWidth * done / runs_);
+      fmt::print(stderr, "\r{} [{}{}] {}\033[K", name_, std::string(filled, '#'),
+                 std::string(kWidth - filled, '.'), figures);
+    } else if (10 * done / runs_ > shown_tenth_) {
+      shown_tenth_ = 10 * done / runs_;
+      fmt::print(stderr, "{}: {}\n", name_, figures);
+    }
+    std::fflush(stderr);
+  }
+  void End() {
+    if (is_terminal_) {
+      fmt::print(stderr, "\r\033[K");
+      std::fflush(stderr);
+    }
+  }
+
+ private:
+  std::string name_;
+  int runs_;
+  int shown_tenth_ = 0;
+  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+};
+
+class AtlasRun {
+ public:
+  explicit AtlasRun(const AtlasArguments& arguments)
+      : arguments_(arguments),
+        heading_{arguments.target, static_cast<std::uint64_t>(arguments.seed), arguments.assignments,
+                 kServoLibraryHash},
+        scenario_(ScenarioOf(arguments_.target)),
+        simulator_(Simulator()),
+        sampler_(MakeSampler(arguments.target)),
+        page_(config::ShareFolder() / "report"),
+        out_(arguments.out.empty() ? fs::path("out") / ("atlas-" + arguments.target)
+                                   : fs::path(arguments.out)) {
+    std::error_code error;
+    fs::create_directories(out_ / "runs", error);
+    if (error) {
+      throw config::InputError(out_.string() + ": no folder can be made there");
+    }
+    rows_.emplace(out_ / "rows.jsonl", heading_, arguments.resume);
+  }
+
+  atlas::Figures Execute() {
+    const int cores = static_cast<int>(std::thread::hardware_concurrency());
+    const auto jobs =
+        static_cast<std::size_t>(arguments_.jobs > 0 ? arguments_.jobs : std::max(cores / 2, 1));
+    Progress progress("atlas " + arguments_.target, arguments_.runs);
+    int next = 0;
+    for (;;) {
+      for (; next < arguments_.runs && children_.running() < jobs; ++next) {
+        if (rows_->rows().count(next) == 0) {
+          Begin(next);
+        }
+      }
+      if (children_.running() == 0) {
+        break;
+      }
+      Finish(children_.WaitForOne());
+      const auto& rows = rows_->rows();
+      progress.Show(static_cast<int>(std::distance(rows.begin(), rows.lower_bound(arguments_.runs))),
+                    static_cast<int>(std::count_if(rows.begin(), rows.lower_bound(arguments_.runs),
+                                                   [](const auto& row) { return !row.second.converged; })));
+    }
+    progress.End();
+    const atlas::Figures figures = atlas::Summarise(heading_, scenario_, rows_->rows(), arguments_.runs);
+    WriteFile(out_ / "atlas.json", atlas::ToJson(figures));
+    WriteFile(out_ / "atlas.html", page_.Make(figures, rows_->rows()));
+    return figures;
+  }
+
+  [[nodiscard]] const fs::path& out() const { return out_; }
+
+ private:
+  [[nodiscard]] fs::path Folder(int index) const { return out_ / "runs" / fmt::format("{:04}", index); }
+  [[nodiscard]] fs::path Printed(int index) const { return out_ / "runs" / fmt::format("{:04}.json", index); }
+  [[nodiscard]] fs::path Said(int index) const { return out_ / "runs" / fmt::format("{:04}.txt", index); }
+
+  void Begin(int index) {
+    const atlas::Start& start = starts_[index] = sampler_.Draw(heading_.seed, index);
+    std::vector<std::string> command{
+        simulator_,    "run",    scenario_, "--seed",     std::to_string(start.run_seed),
+        "--no-report", "--json", "--out",   Folder(index)};
+    for (const std::string& assignment : atlas::AssignmentsOf(heading_, start)) {
+      command.emplace_back("--set");
+      command.push_back(assignment);
+    }
+    children_.Start(index, command, Printed(index), Said(index), kRunLimit);
+  }
+
+  // What did not converge leaves its pictures.
+  void Finish(const atlas::Children::Ended& ended) {
+    const int index = ended.tag;
+    Row row;
+    if (ended.exit_code == config::kDone || ended.exit_code == config::kGoalMissed) {
+      row = atlas::MakeRow(index, starts_[index], nlohmann::json::parse(Content(Printed(index))));
+    } else if (ended.exit_code < 0) {
+      row.index = index;
+      row.start = starts_[index];
+      row.verdict = fmt::format("the simulator broke off, or did not end within {} s", kRunLimit.count());
+    } else {
+      throw std::runtime_error(fmt::format("run {}: {}", index, FirstLine(Content(Said(index)))));
+    }
+    rows_->Add(row);
+    starts_.erase(index);
+    std::error_code ignored;
+    fs::remove(Printed(index), ignored);
+    fs::remove(Said(index), ignored);
+    if (row.converged) {
+      fs::remove_all(Folder(index), ignored);
+    }
+  }
+
+  const AtlasArguments& arguments_;
+  const atlas::Heading heading_;
+  const std::string scenario_;
+  const fs::path simulator_;
+  const atlas::Sampler sampler_;
+  const atlas::AtlasPage page_;
+  const fs::path out_;
+  std::optional<atlas::RowFile> rows_;
+  std::map<int, atlas::Start> starts_;  // of the runs under way
+  atlas::Children children_;
+};
+
+}  // namespace
+
+CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
+  CLI::App* atlas = app.add_subcommand("atlas", "simulate many runs from random starts: how many converge");
+  atlas->add_option("--target", arguments.target, "what is looked at")
+      ->required()
+      ->check(CLI::IsMember({"sphere", "circle", "square", "triangle"}));
+  atlas->add_option("--runs", arguments.runs, "how many")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  atlas
+      ->add_option("-j,--jobs", arguments.jobs,
+                   "that run beside each other; one for every two cores when not given")
+      ->check(CLI::Range(1, 256));
+  atlas->add_option("--seed", arguments.seed, "of the starts and of all that is random in the runs")
+      ->check(CLI::Range(0, 2147483647))
+      ->capture_default_str();
+  atlas
+      ->add_option("--set", arguments.assignments,
+                   "key=value for every run, over the scenario's own; may be repeated")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  atlas->add_option("--out", arguments.out, "folder for the files; out/atlas-<target> when not given");
+  atlas->add_flag("--resume", arguments.resume, "go on with the rows that are in the folder");
+  atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
+  return atlas;
+}
+
+int Atlas(const AtlasArguments& arguments) {
+  CheckAssignments(arguments.assignments);
+  AtlasRun run(arguments);
+  const atlas::Figures figures = run.Execute();
+  if (arguments.json) {
+    fmt::print("{}", atlas::ToJson(figures));
+  } else {
+    fmt::print("{}  {:<24}{}\n", atlas::ToTable(figures), "page", (run.out() / "atlas.html").string());
+  }
+  return figures.ReachedGoal() ? config::kDone : config::kGoalMissed;
+}
+
+}  // namespace fovea

@@ -1,0 +1,38 @@
+// A heat map of runs over two of their quantities, as SVG.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace fovea::atlas {
+
+struct MapPoint {
+  double x = 0.0;
+  double y = 0.0;
+  double heat = 0.0;  // of a run that did not fail
+  bool failed = false;
+  int run = 0;
+};
+
+struct MapAxes {
+  std::string x_name;
+  std::string y_name;
+  double x_min = 0.0, x_max = 1.0;
+  double y_min = 0.0, y_max = 1.0;
+  double cell = 0.1;    // side of a cell, in the axes' unit
+  bool y_down = false;  // as rows of a picture
+};
+
+// The range of heat that the colours stand for.
+struct HeatScale {
+  double least = 0.0;
+  double most = 1.0;
+};
+
+// A cell's colour is its median heat, its number the runs in it; a failed run is a cross with its number.
+std::string HeatMap(const std::vector<MapPoint>& points, const MapAxes& axes, const HeatScale& scale);
+
+// The colours with their numbers.
+std::string HeatLegend(const HeatScale& scale, const std::string& name);
+
+}  // namespace fovea::atlas
