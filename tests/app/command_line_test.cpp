@@ -10,6 +10,7 @@
 
 #include "sim/render/mesh.hpp"
 #include "support/mesh_files.hpp"
+#include "support/places.hpp"
 #include "support/program.hpp"
 #include "support/temp_folder.hpp"
 
@@ -147,12 +148,12 @@ class MeshArmTest : public CommandLineTest {
  protected:
   MeshArmTest() {
     std::ostringstream panda;
-    panda << std::ifstream(FOVEA_TEST_ROBOTS "/panda.urdf").rdbuf();
+    panda << std::ifstream(test::RobotsFolder() + "/panda.urdf").rdbuf();
     urdf_ = panda.str();
     fs::create_directory(folder_.path() / "meshes");
     const sim::Mesh box = sim::MakeBox({0.08F, 0.08F, 0.05F}, 0.0F, Eigen::Vector3f::Ones());
     WriteStlBinary(folder_.path() / "meshes" / "link.stl", box);
-    fs::copy_file(FOVEA_TEST_ROBOTS "/panda.toml", folder_.path() / "panda.toml");
+    fs::copy_file(test::RobotsFolder() + "/panda.toml", folder_.path() / "panda.toml");
   }
   // Puts `mesh` in place of the first visual and the first collision geometry of link 7; the setting for it.
   std::string Arm(const std::string& mesh) {
@@ -266,7 +267,7 @@ TEST_F(CommandLineTest, ListAndKeysSayWhatThereIs) {
 // The table in the repository is what the program says; renew it with `fovea-sim keys --markdown`.
 TEST_F(CommandLineTest, TheTableOfKeysIsUpToDate) {
   std::ostringstream table;
-  table << std::ifstream(FOVEA_SOURCE_ROOT "/sim/scenarios/KEYS.md").rdbuf();
+  table << std::ifstream(test::SourceRoot() / "sim/scenarios/KEYS.md").rdbuf();
   EXPECT_EQ(Sim({"keys", "--markdown"}).out, table.str());
 }
 

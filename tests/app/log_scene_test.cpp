@@ -12,6 +12,7 @@
 #include "fovea/robots/robot.hpp"
 #include "foxglove/scene.pb.h"
 #include "sim/physics/bullet_arm.hpp"
+#include "support/places.hpp"
 #include "support/random_states.hpp"
 #include "support/temp_folder.hpp"
 
@@ -24,7 +25,7 @@ const Eigen::Isometry3d kMount =
 class LogSceneTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(LogSceneTest, EveryLinkStandsWhereThePhysicsHasIt) {
-  const robots::Robot robot = robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/" + GetParam() + ".toml");
+  const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/" + GetParam() + ".toml");
   const SimRobot sim_robot = LoadSimRobot(robot.urdf, robot.base_link, robot.tip_link);
   const std::vector<log::LinkFrame> frames = MakeLinkFrames(sim_robot, robot.model, kMount);
   ASSERT_EQ(frames.size(), sim_robot.links.size() + 1) << "all links, and the camera";

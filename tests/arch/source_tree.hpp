@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-namespace fovea::test {
+#include "support/places.hpp"
 
-inline std::filesystem::path SourceRoot() { return FOVEA_SOURCE_ROOT; }
+namespace fovea::test {
 
 // All sources and headers below `folder` (relative to the root).
 inline std::vector<std::filesystem::path> SourcesIn(const std::string& folder) {

@@ -11,14 +11,14 @@
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_clock.hpp"
+#include "support/places.hpp"
 
 namespace fovea::test {
 namespace {
 
 sim::WorldConfig PandaWorld() {
   sim::WorldConfig config;
-  config.robot =
-      sim::LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf", "panda_base", "panda_flange");
+  config.robot = sim::LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
   config.q_start.resize(7);
   config.q_start << 0.0, -0.7, 0.0, -2.2, 0.0, 1.6, 0.7;
   return config;

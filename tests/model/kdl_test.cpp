@@ -17,6 +17,7 @@
 #include "fovea/model/kinematics.hpp"
 #include "fovea/model/load.hpp"
 #include "fovea/robots/robot.hpp"
+#include "support/places.hpp"
 #include "support/random_states.hpp"
 
 namespace fovea {
@@ -67,9 +68,7 @@ KDL::JntArray ToKdl(const model::VecN& v) {
 
 class KdlTest : public testing::TestWithParam<const char*> {
  protected:
-  KdlTest()
-      : robot_(robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + GetParam())),
-        chain_(BuildKdlChain(robot_)) {
+  KdlTest() : robot_(robots::LoadRobot(test::RobotsFolder() + GetParam())), chain_(BuildKdlChain(robot_)) {
     // Every arm carries something with six different moments, aside of its flange.
     model::Load load;
     load.mass = 1.7;

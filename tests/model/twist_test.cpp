@@ -9,6 +9,7 @@
 
 #include "fovea/model/kinematics.hpp"
 #include "fovea/robots/robot.hpp"
+#include "support/places.hpp"
 #include "support/random_states.hpp"
 
 namespace fovea::model {
@@ -28,7 +29,7 @@ Pose Mount() {
 }
 
 TEST(TwistTest, TheCamerasVelocityIsTheHandsByBothJacobians) {
-  const robots::Robot robot = robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.toml");
+  const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/panda.toml");
   test::RandomStates random(31);
   double worst = 0.0;
   for (int k = 0; k < 500; ++k) {

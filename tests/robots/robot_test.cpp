@@ -18,6 +18,7 @@
 #include "fovea/config/input_error.hpp"
 #include "fovea/model/kinematics.hpp"
 #include "support/panda.hpp"
+#include "support/places.hpp"
 #include "support/random_states.hpp"
 #include "support/temp_folder.hpp"
 
@@ -94,7 +95,7 @@ TEST(RobotTest, Ur5eAndPuma560AreWhereTheirParametersPutThem) {
                                      {0, 0, -kHalfPi},
                                      {0, 0.05625, 0}}}};
   for (const Case& c : cases) {
-    const Robot robot = LoadRobot(std::string(FOVEA_TEST_ROBOTS) + c.file);
+    const Robot robot = LoadRobot(test::RobotsFolder() + c.file);
     test::RandomStates random(71);
     double worst = 0.0;
     for (int k = 0; k < 500; ++k) {
@@ -110,7 +111,7 @@ TEST(RobotTest, Ur5eAndPuma560AreWhereTheirParametersPutThem) {
 }
 
 TEST(RobotTest, ABareUrdfGetsDerivedLimitsAndItsOnlyLeafAsTip) {
-  const Robot robot = LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/../../../tests/model/mixed_arm.urdf");
+  const Robot robot = LoadRobot((test::SourceRoot() / "tests/model/mixed_arm.urdf").string());
   EXPECT_EQ(robot.tip_link, "tool");
   EXPECT_EQ(robot.model.num_joints, 4);
   EXPECT_EQ(robot.model.joints[1].type, model::JointType::kPrismatic);

@@ -1,6 +1,7 @@
 // Moves of one axis that can be told in words, and the durations of others against least ones that a linear
 // programme found (axis_move_optimum.py).
 #include "fovea/servo/axis_move.hpp"
+#include "support/places.hpp"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +24,7 @@ void ForEachState(const AxisMove& move, Look look) {
 }
 
 TEST(AxisMoveTest, IsAsFastAsTheLinearProgramme) {
-  std::ifstream file(FOVEA_TEST_SERVO "/axis_move_optimum.csv");
+  std::ifstream file(test::SourceRoot() / "tests/servo/axis_move_optimum.csv");
   int cases = 0;
   double fastest = 1.0;
   double slowest = 0.0;

@@ -8,6 +8,7 @@
 
 #include "fovea/model/dynamics.hpp"
 #include "fovea/robots/robot.hpp"
+#include "support/places.hpp"
 #include "support/random_states.hpp"
 
 namespace fovea::sim {
@@ -16,7 +17,7 @@ namespace {
 class BulletArmTest : public testing::TestWithParam<const char*> {
  protected:
   BulletArmTest()
-      : robot_(robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + GetParam())),
+      : robot_(robots::LoadRobot(test::RobotsFolder() + GetParam())),
         sim_robot_(LoadSimRobot(robot_.urdf, robot_.base_link, robot_.tip_link)) {}
 
   robots::Robot robot_;
@@ -64,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(Arms, BulletArmTest,
 
 // A free swing without gravity: the energy must stay. The figures say which integrator to take.
 TEST(BulletArmEnergyTest, FreeSwingDrift) {
-  const std::string panda = std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf";
+  const std::string panda = test::RobotsFolder() + "/panda.urdf";
   const SimRobot robot = LoadSimRobot(panda, "panda_base", "panda_flange");
   for (const Integrator integrator : {Integrator::kSemiImplicitEuler, Integrator::kRungeKutta4}) {
     BulletArm bullet(robot, {.integrator = integrator, .table = false, .gravity = false});

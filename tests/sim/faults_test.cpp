@@ -17,6 +17,7 @@
 #include "sim/faults/stalling_clock.hpp"
 #include "sim/world/world.hpp"
 #include "support/fake_drivers.hpp"
+#include "support/places.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -224,7 +225,7 @@ TEST(PictureFaultsTest, GlareAndOccluderAreWhereTheyShouldBe) {
 
 class BenchFaultTest : public testing::Test {
  protected:
-  BenchFaultTest() : robot_(robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.toml")) {
+  BenchFaultTest() : robot_(robots::LoadRobot(test::RobotsFolder() + "/panda.toml")) {
     config_.robot = LoadSimRobot(robot_.urdf, robot_.base_link, robot_.tip_link);
     config_.q_start.resize(7);
     config_.q_start << 0.1, -0.7, 0.2, -2.2, 0.3, 1.6, 0.7;

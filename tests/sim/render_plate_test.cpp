@@ -8,6 +8,7 @@
 
 #include "sim/physics/bullet_arm.hpp"
 #include "sim/render/scene_renderer.hpp"
+#include "support/places.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -21,7 +22,7 @@ class RenderPlateTest : public ::testing::Test {
  protected:
   RenderPlateTest() {
     scene_.bench = MakeBench(/*clutter=*/false);
-    scene_.robot = LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf", "panda_base", "panda_flange");
+    scene_.robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
     BulletArm arm(scene_.robot, {});
     Eigen::VectorXd q(7);
     q << 0.0, -0.7, 0.0, -2.2, 0.0, 1.6, 0.7;

@@ -10,6 +10,7 @@
 #include "sim/physics/bullet_arm.hpp"
 #include "sim/render/egl_context.hpp"
 #include "sim/render/scene_renderer.hpp"
+#include "support/places.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -20,7 +21,7 @@ class RenderTest : public ::testing::Test {
  protected:
   RenderTest() {
     scene_.bench = MakeBench(/*clutter=*/false);
-    scene_.robot = LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf", "panda_base", "panda_flange");
+    scene_.robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
     scene_.X_EC.translation() = Eigen::Vector3d(0.05, 0.0, 0.04);
     scene_.target.radius = kRadius;
     BulletArm arm(scene_.robot, {});

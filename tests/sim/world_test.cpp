@@ -8,6 +8,7 @@
 
 #include "fovea/hal/types.hpp"
 #include "sim/world/world_clock.hpp"
+#include "support/places.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -16,7 +17,7 @@ constexpr std::int64_t kMs = 1'000'000;
 
 WorldConfig PandaWorld() {
   WorldConfig config;
-  config.robot = LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf", "panda_base", "panda_flange");
+  config.robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
   config.q_start.resize(7);
   config.q_start << 0.0, -0.7, 0.0, -2.2, 0.0, 1.6, 0.7;
   return config;
@@ -150,8 +151,7 @@ TEST(WorldClockTest, KeepsWhatIsThrownAndSaysThatItIsClosed) {
 // A link of 40 kg mm^2 under friction that a step of 1 ms could turn round at full size.
 TEST(WorldTest, ALightLinkComesToRestUnderFriction) {
   WorldConfig config;
-  config.robot =
-      LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/puma560.urdf", "puma560_base", "puma560_flange");
+  config.robot = LoadSimRobot(test::RobotsFolder() + "/puma560.urdf", "puma560_base", "puma560_flange");
   config.q_start.resize(6);
   config.q_start << 0.2, 0.9, -3.75, 0.0, -0.3, 0.0;
   config.friction_compensation = 0.0;

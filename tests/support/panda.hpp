@@ -6,11 +6,12 @@
 #include "fovea/model/math.hpp"
 #include "fovea/robots/robot.hpp"
 #include "fovea/servo/servo_config.hpp"
+#include "support/places.hpp"
 
 namespace fovea::test {
 
 inline const robots::Robot& Panda() {
-  static const robots::Robot robot = robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.toml");
+  static const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/panda.toml");
   return robot;
 }
 

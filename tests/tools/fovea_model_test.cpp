@@ -10,6 +10,7 @@
 #include "emitted/slider.hpp"
 #include "emitted/ur5e.hpp"
 #include "fovea/robots/robot.hpp"
+#include "support/places.hpp"
 #include "support/program.hpp"
 
 namespace fovea {
@@ -91,7 +92,7 @@ void ExpectSame(const model::ArmModel& emitted, const model::ArmModel& read) {
 
 TEST(FoveaModel, TheEmittedModelIsTheArmToTheLastBit) {
   const auto read = [](const char* name) {
-    return robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/" + name + ".toml").model;
+    return robots::LoadRobot(test::RobotsFolder() + "/" + name + ".toml").model;
   };
   model::ArmModel arm;
   arms::LoadPanda(arm);

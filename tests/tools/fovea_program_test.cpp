@@ -10,6 +10,7 @@
 #include "fovea/log/run_log.hpp"
 #include "fovea/log/topics.hpp"
 #include "fovea/run.pb.h"
+#include "support/places.hpp"
 #include "support/program.hpp"
 
 namespace fovea {
@@ -215,7 +216,7 @@ TEST_F(FoveaProgramTest, HelpShowsExamples) {
 
 // The table in the repository is what the program says; renew it with `fovea guards`.
 TEST_F(FoveaProgramTest, TheTableOfGuardsIsUpToDateAndWhole) {
-  std::ifstream stream(FOVEA_SOURCE_ROOT "/firmware/GUARDS.md");
+  std::ifstream stream(test::SourceRoot() / "firmware/GUARDS.md");
   const std::string table{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_EQ(Fovea({"guards"}).out, table);
   EXPECT_EQ(table.find("|  |"), std::string::npos) << "an empty cell";

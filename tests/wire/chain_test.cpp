@@ -7,6 +7,7 @@
 
 #include "fovea/model/dynamics.hpp"
 #include "fovea/robots/robot.hpp"
+#include "support/places.hpp"
 
 namespace fovea::test {
 namespace {
@@ -17,7 +18,7 @@ TEST(Chain, AgreesWithTheServosModel) {
   double mass = 0.0;
   double coriolis = 0.0;
   for (const char* name : {"panda", "ur5e", "puma560"}) {
-    const robots::Robot robot = robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/" + name + ".toml");
+    const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/" + name + ".toml");
     const sim::Chain chain(sim::LoadSimRobot(robot.urdf, robot.base_link, robot.tip_link));
     ASSERT_EQ(chain.num_dofs(), robot.model.num_joints);
     std::mt19937_64 random(7);

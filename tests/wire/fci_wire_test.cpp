@@ -5,6 +5,7 @@
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "fovea/robots/robot.hpp"
 #include "fovea/servo/servo_loop.hpp"
+#include "support/places.hpp"
 #include "wire/wire_panda.hpp"
 
 namespace fovea::test {
@@ -40,7 +41,7 @@ class Keeper final : public hal::Recorder {
 // The servo, with the robot on the wire as its arm.
 struct ServoOnWire {
   explicit ServoOnWire(const ServedPanda& served) : arm(served.ClientConfig(), &clock) {
-    const robots::Robot robot = robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.toml");
+    const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/panda.toml");
     servo::ServoConfig config;
     config.arm = robot.model;
     EXPECT_TRUE(task.Init(config).ok());

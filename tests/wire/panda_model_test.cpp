@@ -8,6 +8,7 @@
 #include "fovea/model/dynamics.hpp"
 #include "fovea/model/load.hpp"
 #include "fovea/robots/robot.hpp"
+#include "support/places.hpp"
 
 namespace fovea::test {
 namespace {
@@ -26,7 +27,7 @@ class PandaModel : public testing::Test {
     }
     return v;
   }
-  robots::Robot panda_ = robots::LoadRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.toml");
+  robots::Robot panda_ = robots::LoadRobot(test::RobotsFolder() + "/panda.toml");
   std::mt19937_64 random_{3};
   std::uniform_real_distribution<double> even_{-2.0, 2.0};
 };

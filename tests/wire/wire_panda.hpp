@@ -11,13 +11,13 @@
 #include "fovea/franka/franka_arm.hpp"
 #include "sim/wire/fci_robot.hpp"
 #include "sim/wire/fci_server.hpp"
+#include "support/places.hpp"
 
 namespace fovea::test {
 
 inline sim::WorldConfig WirePandaWorld() {
   sim::WorldConfig config;
-  config.robot =
-      sim::LoadSimRobot(std::string(FOVEA_TEST_ROBOTS) + "/panda.urdf", "panda_base", "panda_flange");
+  config.robot = sim::LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
   config.q_start.resize(7);
   config.q_start << 0.0, -0.7, 0.0, -2.2, 0.0, 1.6, 0.7;
   config.encoder_noise = 1e-5;

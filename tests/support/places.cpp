@@ -1,0 +1,8 @@
+#include "support/places.hpp"
+
+namespace fovea::test {
+
+std::filesystem::path SourceRoot() { return FOVEA_SOURCE_ROOT; }
+std::string RobotsFolder() { return (SourceRoot() / "firmware/robots/share").string(); }
+
+}  // namespace fovea::test
