@@ -287,7 +287,7 @@ TEST(FourTargetsLaw, KeepsTheTargetInThePicture) {
     EXPECT_LT(loop.Now().px, 0.3);
   }
   EXPECT_GT(out[0], 0.010);
-  EXPECT_LT(out[1], 0.007) << "the arm follows later than it is told; the margin of 10 px is for that";
+  EXPECT_LT(out[1], 0.006) << "the arm follows later than it is told; the margin of 10 px is for that";
 }
 
 // The source's four entries: the square's turn comes right, its tilts stay what they happen to be.

@@ -22,7 +22,7 @@ namespace fovea::servo {
 struct ConstrainedConfig {
   DampingConfig damping;
   double progress_weight = 0.3;  // 1: slide freely along a boundary; towards 0: keep the direction, > 0
-  double null_weight = 0.04;     // of the null space, relative to the rms singular value of J W^-1/2, > 0
+  double null_weight = 0.02;     // of the null space, relative to the rms singular value of J W^-1/2, > 0
   double free_weight = 4e-4;     // of the wish dq_0 beside the task, the same way, > 0
 };
 
