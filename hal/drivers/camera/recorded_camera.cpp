@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cmath>
-#include <ctime>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
@@ -13,23 +11,12 @@
 #include "fovea/camera/camera_error.hpp"
 #include "fovea/camera/raw_picture.hpp"
 #include "fovea/hal/types.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
 
 namespace fovea::camera {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::int64_t NowNs() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
-}
-
-void SleepUntil(std::int64_t time_ns) {
-  const timespec at{time_ns / hal::kNsPerSecond, time_ns % hal::kNsPerSecond};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr) == EINTR) {
-  }
-}
 
 bool IsPicture(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -120,8 +107,8 @@ hal::Status RecordedCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns
     }
     const std::int64_t stamp_ns = p.StampNs();
     if (p.config.wait) {
-      const std::int64_t latest_ns = NowNs() + timeout_ns;
-      SleepUntil(std::min(stamp_ns, latest_ns));
+      const std::int64_t latest_ns = linux_rt::MonotonicNs() + timeout_ns;
+      linux_rt::SleepUntilNs(std::min(stamp_ns, latest_ns));
       if (stamp_ns > latest_ns) {
         return hal::Status(hal::StatusCode::kTimeout, "recorded picture");
       }

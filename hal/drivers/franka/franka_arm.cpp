@@ -2,7 +2,8 @@
 #include "fovea/franka/franka_arm.hpp"
 
 #include <algorithm>
-#include <ctime>
+
+#include "fovea/linux_rt/monotonic_clock.hpp"
 
 namespace fovea::franka {
 namespace {
@@ -18,12 +19,6 @@ constexpr int kMostDatagramsPerRead = 256;
 constexpr int kMostStoppedStates = 100;
 constexpr int kMostStartingStates = 500;  // until a motion that was asked for shows
 
-std::int64_t NowNs() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
-}
-
 hal::JointArray ToJoints(const Vector7& values) noexcept {
   hal::JointArray joints{};
   std::copy(values.begin(), values.end(), joints.begin());
@@ -37,7 +32,7 @@ Status FrankaArm::DoRead(hal::ArmState& state) noexcept {
     Recover();
   }
   Answer(/*repeated=*/true);
-  const std::int64_t deadline_ns = NowNs() + state_timeout_ns_;
+  const std::int64_t deadline_ns = linux_rt::MonotonicNs() + state_timeout_ns_;
   for (;;) {
     const bool new_state = TakeStates();
     TakeAnswers();  // an answer that was sent before the state is read before it is acted on
@@ -47,7 +42,7 @@ Status FrankaArm::DoRead(hal::ArmState& state) noexcept {
     if (new_state) {
       break;
     }
-    const std::int64_t left_ns = deadline_ns - NowNs();
+    const std::int64_t left_ns = deadline_ns - linux_rt::MonotonicNs();
     if (left_ns <= 0) {
       ++counters_.timeouts;
       return Status(StatusCode::kTimeout, "robot state");
@@ -196,7 +191,7 @@ bool FrankaArm::TakeStates() noexcept {
     state_ = next;
     has_state_ = true;
     robot_udp_ = from;
-    stamp_ns_ = StampOf(next.message_id, NowNs());
+    stamp_ns_ = StampOf(next.message_id, linux_rt::MonotonicNs());
     taken = true;
     answered_ = false;
   }
@@ -255,9 +250,9 @@ void FrankaArm::Fill(hal::ArmState& state) const noexcept {
 
 void FrankaArm::Stop() noexcept {
   constexpr std::int64_t kPatienceNs = hal::kNsPerSecond;
-  const std::int64_t end_ns = NowNs() + kPatienceNs;
+  const std::int64_t end_ns = linux_rt::MonotonicNs() + kPatienceNs;
   hal::ArmState ignored;
-  while (tcp_.open() && NowNs() < end_ns &&
+  while (tcp_.open() && linux_rt::MonotonicNs() < end_ns &&
          (phase_ == MotionPhase::kStarting || phase_ == MotionPhase::kRunning ||
           phase_ == MotionPhase::kFinishing)) {
     brakes_ = true;

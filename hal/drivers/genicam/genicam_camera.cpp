@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 
 #include "aravis_session.hpp"
 #include "fovea/camera/camera_error.hpp"
 #include "fovea/hal/types.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
 
 namespace fovea::genicam {
 namespace {
@@ -15,12 +15,6 @@ constexpr std::chrono::milliseconds kLookPeriod{500};
 constexpr std::uint64_t k16Bits = 65535;
 constexpr std::int64_t kLostLookNs =
     50 * hal::kNsPerMs;  // no wait without a look at the connection is longer
-
-std::int64_t NowNs() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
-}
 
 }  // namespace
 
@@ -82,11 +76,11 @@ hal::Status GenicamCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns)
 }
 
 hal::Status GenicamCamera::Take(Session& session, hal::Frame& frame, std::int64_t timeout_ns) {
-  const std::int64_t end_ns = NowNs() + timeout_ns;
+  const std::int64_t end_ns = linux_rt::MonotonicNs() + timeout_ns;
   ArvBuffer* newest = nullptr;
   std::int64_t arrival_ns = 0;
   do {
-    ArvBuffer* buffer = session.Pop(std::min(end_ns - NowNs(), kLostLookNs));
+    ArvBuffer* buffer = session.Pop(std::min(end_ns - linux_rt::MonotonicNs(), kLostLookNs));
     while (buffer != nullptr) {
       if (arv_buffer_get_status(buffer) != ARV_BUFFER_STATUS_SUCCESS) {
         ++counters_.incomplete;
@@ -99,11 +93,11 @@ hal::Status GenicamCamera::Take(Session& session, hal::Frame& frame, std::int64_
           session.GiveBack(newest);
         }
         newest = buffer;
-        arrival_ns = NowNs();
+        arrival_ns = linux_rt::MonotonicNs();
       }
       buffer = session.Pop(0);
     }
-  } while (newest == nullptr && NowNs() < end_ns && !session.lost());
+  } while (newest == nullptr && linux_rt::MonotonicNs() < end_ns && !session.lost());
   if (newest == nullptr) {
     if (!session.lost()) {
       return hal::Status(hal::StatusCode::kTimeout, "camera");

@@ -4,19 +4,13 @@
 
 #include <bit>
 #include <cmath>
-#include <ctime>
 
 #include "fovea/hal/types.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
 
 namespace fovea::linux_rt {
 namespace {
-
-std::int64_t NowNs() noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
-}
 
 std::int64_t ThreadPageFaults() noexcept {
   rusage usage{};
@@ -71,13 +65,13 @@ std::int64_t DurationHistogram::Percentile(double p) const noexcept {
 void TickMeter::Enter() noexcept {
   page_faults_before_ = ThreadPageFaults();
   heap_calls_before_ = CountedHeapCalls();
-  start_ns_ = NowNs();
+  start_ns_ = MonotonicNs();
   EnterCountedRegion();
 }
 
 void TickMeter::Leave() noexcept {
   LeaveCountedRegion();
-  durations_.Add(NowNs() - start_ns_);
+  durations_.Add(MonotonicNs() - start_ns_);
   heap_calls_ += CountedHeapCalls() - heap_calls_before_;
   page_faults_ += static_cast<std::uint64_t>(ThreadPageFaults() - page_faults_before_);
 }

@@ -2,29 +2,17 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <ctime>
 #include <utility>
 
 #include "fovea/camera/camera_error.hpp"
 #include "fovea/hal/types.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
 #include "v4l2_session.hpp"
 
 namespace fovea::v4l2 {
 namespace {
 
 constexpr std::int64_t kLookPeriodNs = 500 * hal::kNsPerMs;
-
-std::int64_t NowNs() {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
-}
-
-void SleepUntil(std::int64_t time_ns) {
-  const timespec at{time_ns / hal::kNsPerSecond, time_ns % hal::kNsPerSecond};
-  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &at, nullptr) == EINTR) {
-  }
-}
 
 // Mid-exposure. A driver that does not stamp by CLOCK_MONOTONIC leaves the arrival as all there is.
 std::int64_t StampOf(const v4l2_buffer& buffer, std::int64_t arrival_ns, std::int64_t exposure_ns,
@@ -64,13 +52,13 @@ hal::Status V4l2Camera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) no
 
 // True when the device is there again; waits for that at most `timeout_ns`.
 bool V4l2Camera::Reopen(std::int64_t timeout_ns) {
-  const std::int64_t end_ns = NowNs() + timeout_ns;
+  const std::int64_t end_ns = linux_rt::MonotonicNs() + timeout_ns;
   if (next_look_ns_ > end_ns) {
-    SleepUntil(end_ns);
+    linux_rt::SleepUntilNs(end_ns);
     return false;
   }
-  SleepUntil(next_look_ns_);
-  next_look_ns_ = NowNs() + kLookPeriodNs;
+  linux_rt::SleepUntilNs(next_look_ns_);
+  next_look_ns_ = linux_rt::MonotonicNs() + kLookPeriodNs;
   try {
     session_ = std::make_unique<Session>(config_, *device_);
   } catch (const camera::CameraError&) {  // not yet
@@ -82,7 +70,7 @@ bool V4l2Camera::Reopen(std::int64_t timeout_ns) {
 }
 
 hal::Status V4l2Camera::Take(hal::Frame& frame, std::int64_t timeout_ns) {
-  const std::int64_t end_ns = NowNs() + timeout_ns;
+  const std::int64_t end_ns = linux_rt::MonotonicNs() + timeout_ns;
   std::optional<v4l2_buffer> newest;
   std::int64_t arrival_ns = 0;
   while (true) {
@@ -95,7 +83,7 @@ hal::Status V4l2Camera::Take(hal::Frame& frame, std::int64_t timeout_ns) {
       if (whole) {
         counters_.overtaken += newest ? 1U : 0U;
         newest = buffer;
-        arrival_ns = NowNs();
+        arrival_ns = linux_rt::MonotonicNs();
       }
       static_cast<void>(session_->Enqueue(buffer));  // what it says, the next Dequeue says too
       continue;
@@ -108,7 +96,7 @@ hal::Status V4l2Camera::Take(hal::Frame& frame, std::int64_t timeout_ns) {
                                  : hal::Status(hal::StatusCode::kDisconnected, "camera");
       }
     }
-    const std::int64_t left_ns = end_ns - NowNs();
+    const std::int64_t left_ns = end_ns - linux_rt::MonotonicNs();
     if (newest || left_ns <= 0) {
       break;
     }

@@ -1,9 +1,14 @@
 // CLOCK_MONOTONIC with absolute deadlines.
 #pragma once
 
+#include <cstdint>
+
 #include "fovea/hal/clock.hpp"
 
 namespace fovea::linux_rt {
+
+std::int64_t MonotonicNs() noexcept;
+void SleepUntilNs(std::int64_t time_ns) noexcept;  // of MonotonicNs(); at once when it is past
 
 class MonotonicClock final : public hal::Clock {
  private:
