@@ -103,9 +103,9 @@ TEST(KeepInViewTest, ASpheresOutlineCountsAndNothingIsSaidWhereNothingIsSeen) {
   scene.outline.p_OP[0].setZero();
   scene.outline.radius = 0.04;
   scene.seen = {{model::Mat3::Identity(), {0.1, 0.0, 0.4}}, Vec3::Zero(), Vec3::Zero()};
-  EXPECT_NEAR(Limits(kView, scene).rows[1].b, 2.0 * (0.55 - 0.25 - 0.1), 1e-12);
+  EXPECT_NEAR(Limits(kView, scene).rows[1].b, 1.5 * (0.55 - 0.25 - 0.1), 1e-12);
   scene.seen.v_BO_C = {0.04, 0.0, 0.0};  // it runs out by itself: d x/dt = 0.1
-  EXPECT_NEAR(Limits(kView, scene).rows[1].b, 2.0 * (0.55 - 0.25 - 0.1) - 0.1, 1e-12);
+  EXPECT_NEAR(Limits(kView, scene).rows[1].b, 1.5 * (0.55 - 0.25 - 0.1) - 0.1, 1e-12);
   scene.seen.X_CO.p.z() = -0.4;
   EXPECT_EQ(Limits(kView, scene).num_rows, 0);
   EXPECT_EQ(Limits(ViewConfig{}, scene).num_rows, 0);
