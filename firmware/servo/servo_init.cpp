@@ -1,5 +1,6 @@
 // What a configuration must satisfy before the task takes it.
 #include <cmath>
+#include <memory>
 
 #include "fovea/features/hold_orientation.hpp"
 
@@ -192,7 +193,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
 
   config_ = config;
   goal_ = goal;
-  state_ = ServoState{};
+  std::construct_at(&state_);  // no other one for a moment: it is large, and a stack may be small
   const int n = config.arm.num_joints;
   state_.mode.track_asked = config.auto_track;
   state_.law_state.Reset(config.motion_law.kind, n);

@@ -4,7 +4,7 @@
 
 namespace fovea::servo {
 
-ServoLoop::ServoLoop(ServoTask& task, hal::Arm& arm, hal::Clock& clock, hal::FeatureMailbox& features,
+ServoLoop::ServoLoop(ServoStep& task, hal::Arm& arm, hal::Clock& clock, hal::FeatureMailbox& features,
                      hal::Recorder& recorder, hal::TickProbe& probe) noexcept
     : task_(task), arm_(arm), clock_(clock), features_(features), recorder_(recorder), probe_(probe) {}
 

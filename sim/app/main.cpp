@@ -7,6 +7,7 @@
 #include "fovea/build_info.hpp"
 #include "fovea/config/board_flags.hpp"
 #include "fovea/config/program.hpp"
+#include "fovea/config/share_folder.hpp"
 #include "sim/app/calibration_pictures.hpp"
 #include "sim/app/run.hpp"
 #include "sim/app/scenario.hpp"
@@ -24,6 +25,8 @@ struct RunArguments {
   std::vector<std::string> assignments;
   int seed = -1;
   std::string pace = "lockstep";
+  std::string servo = "pc";
+  std::string servo_image;
   std::string out;
   bool no_report = false;
   bool json = false;
@@ -37,6 +40,13 @@ int Run(const RunArguments& arguments) {
   const sim::Scenario scenario = sim::LoadScenario(arguments.scenario, assignments);
   sim::RunOptions options;
   options.pace = arguments.pace == "real" ? sim::Pace::kReal : sim::Pace::kLockstep;
+  if (arguments.servo == "mcu") {
+    if (options.pace == sim::Pace::kReal) {
+      throw config::InputError("--servo mcu goes with --pace lockstep");
+    }
+    options.servo_image = arguments.servo_image.empty() ? config::ShareFolder() / "fovea-mcu.elf"
+                                                        : std::filesystem::path(arguments.servo_image);
+  }
   options.out = arguments.out.empty() ? "out/" + scenario.name : arguments.out;
   options.report = !arguments.no_report;
   const sim::Summary summary = sim::RunScenario(scenario, options);
@@ -226,6 +236,11 @@ int main(int argc, char** argv) {
   run->add_option("--pace", arguments.pace,
                   "lockstep: as fast as it goes, repeatable; real: 1 ms by the clock")
       ->check(CLI::IsMember({"lockstep", "real"}));
+  run->add_option("--servo", arguments.servo,
+                  "where the servo runs: pc, in this program; mcu, on a Cortex-M7 that QEMU emulates")
+      ->check(CLI::IsMember({"pc", "mcu"}));
+  run->add_option("--servo-image", arguments.servo_image, "of --servo mcu; the shipped one when not given")
+      ->check(CLI::ExistingFile);
   run->add_option("--out", arguments.out, "folder for the files; out/<scenario> when not given");
   run->add_flag("--no-report", arguments.no_report, "leave out what takes long to draw");
   run->add_flag("--json", arguments.json, "print summary.json instead of the table");

@@ -1,5 +1,5 @@
-// Orientations as a scenario writes them. (Not those of firmware/config: what the truth is made of shares no code with
-// what is judged by it.)
+// Orientations as a scenario writes them. (Not those of firmware/config: what the truth is made of shares no
+// code with what is judged by it.)
 #pragma once
 
 #include <Eigen/Geometry>

@@ -29,6 +29,7 @@
 #include "sim/faults/faulty_detector.hpp"
 #include "sim/faults/frame_faults.hpp"
 #include "sim/faults/stalling_clock.hpp"
+#include "sim/mcu/board_servo.hpp"
 #include "sim/world/feature_delay.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world.hpp"
@@ -52,6 +53,10 @@ class Run {
         ring_(kRingCapacity) {
     if (!servo_.Init(about_.servo).ok()) {
       throw std::logic_error("a servo configuration that was checked is refused");
+    }
+    if (!options_.servo_image.empty()) {
+      board_ = std::make_unique<BoardServo>(QemuConfig{options_.servo_image}, about_.servo,
+                                            config::MakeLoad(about_.scenario.arm.load));
     }
     if (HasEye()) {
       // In lockstep no frame is ever lost: the world waits for each. A real camera keeps two.
@@ -208,10 +213,14 @@ class Run {
     LockstepClock clock(*world_, [&](std::int64_t now_ns) {
       TakeRecords();
       progress_.Update(recorded_s_, hal::Name(mode_));
+      if (board_ && !board_->failure().empty()) {
+        throw std::runtime_error(board_->failure() + "; the arm's brakes were closed");
+      }
       return delay_.HandOver(now_ns, /*wait=*/true, mailbox_);
     });
     StallingClock stalling(clock, stall_);
-    servo::ServoLoop loop(servo_, *faulty_arm_, stalling, mailbox_, ring_, meter_);
+    servo::ServoStep& servo = board_ ? static_cast<servo::ServoStep&>(*board_) : servo_;
+    servo::ServoLoop loop(servo, *faulty_arm_, stalling, mailbox_, ring_, meter_);
     UseMotion(loop);
     const hal::Status status = loop.Run(EndNs());
     counters_ = loop.counters();
@@ -269,6 +278,9 @@ class Run {
       s.heap_allocations_in_tick = meter_.heap_calls();
     }
     s.page_faults_in_loop = meter_.page_faults();
+    if (board_) {
+      s.mcu = board_->Summarise();
+    }
     s.tick_ns_p50 = meter_.durations().Percentile(0.5);
     s.tick_ns_p99 = meter_.durations().Percentile(0.99);
     s.tick_ns_p999 = meter_.durations().Percentile(0.999);
@@ -292,6 +304,7 @@ class Run {
   const RunDescription about_;
   vision::VisionTask vision_;
   servo::ServoTask servo_;
+  std::unique_ptr<BoardServo> board_;  // instead of `servo_`
   const StallFault stall_;
   std::unique_ptr<RunFiles> files_;
   std::unique_ptr<Eye> eye_;

@@ -25,6 +25,8 @@ struct RunObserver {
 
 struct RunOptions {
   Pace pace = Pace::kLockstep;
+  std::filesystem::path
+      servo_image;            // the servo runs on an emulated board, from this file; empty: in this process
   std::filesystem::path out;  // empty: no files
   bool report = true;         // films, log, report and the bench's picture too
   bool show_progress = true;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace fovea::sim {
@@ -28,6 +29,19 @@ ordered_json ToJson(const TheoryFigures& f) {
           {"settle_time_s", OrNull(f.settle_time_s)},
           {"e_ss", f.e_ss},
           {"poles", poles}};
+}
+
+ordered_json ToJson(const BoardSummary& board) {
+  ordered_json json;
+  json["tick_instructions"] = {{"min", board.tick_instructions_min},
+                               {"p50", board.tick_instructions_p50},
+                               {"max", board.tick_instructions_max}};
+  for (const auto& [stage, mean] : board.stage_instructions) {
+    json["stage_instructions_mean"][stage] = std::round(mean);
+  }
+  json["stack_bytes"] = board.stack_bytes;
+  json["frames_sent_again"] = board.frames_sent_again;
+  return json;
 }
 
 ordered_json ToJson(const TheoryResult& theory) {
@@ -105,6 +119,9 @@ std::string ToJson(const Summary& s) {
   json["path_error_mm_rms"] = OrNull(s.path_error_mm_rms);
   json["path_error_mm_max"] = OrNull(s.path_error_mm_max);
   json["home_error_rad"] = OrNull(s.home_error_rad);
+  if (s.mcu) {
+    json["mcu"] = ToJson(*s.mcu);
+  }
   if (s.theory) {
     json["theory"] = ToJson(*s.theory);
   }
@@ -175,7 +192,13 @@ std::string ToTable(const Summary& s) {
     table.Row("", fmt::format("{:.3f} s: {} ({}){}", f.t_s, f.name, f.detail,
                               f.key.empty() ? "" : ", see " + f.key));
   }
-  table.Row("servo tick",
+  if (s.mcu) {
+    table.Row("servo's processor",
+              fmt::format("Cortex-M7: {} to {} instructions a tick, {} in the middle; stack {:.1f} KiB",
+                          s.mcu->tick_instructions_min, s.mcu->tick_instructions_max,
+                          s.mcu->tick_instructions_p50, s.mcu->stack_bytes / 1024.0));
+  }
+  table.Row(s.mcu ? "tick and line" : "servo tick",
             fmt::format("{:.1f} us median, {:.1f} us p99.9, {:.1f} us max",
                         1e-3 * static_cast<double>(s.tick_ns_p50), 1e-3 * static_cast<double>(s.tick_ns_p999),
                         1e-3 * static_cast<double>(s.tick_ns_max)));

@@ -26,7 +26,7 @@ struct LoopCounters {
 class ServoLoop {
  public:
   // The parts are borrowed; they outlive the loop.
-  ServoLoop(ServoTask& task, hal::Arm& arm, hal::Clock& clock, hal::FeatureMailbox& features,
+  ServoLoop(ServoStep& task, hal::Arm& arm, hal::Clock& clock, hal::FeatureMailbox& features,
             hal::Recorder& recorder, hal::TickProbe& probe) noexcept;
 
   // Runs ticks until `end_ns` or Stop or the clock closes. Real-time: yes.
@@ -52,7 +52,7 @@ class ServoLoop {
   void CountMissed(std::int32_t missed_ticks) noexcept;
   void Tick(std::int32_t missed_ticks) noexcept;
 
-  ServoTask& task_;
+  ServoStep& task_;
   hal::Arm& arm_;
   hal::Clock& clock_;
   hal::FeatureMailbox& features_;

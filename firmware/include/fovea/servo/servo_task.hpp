@@ -96,14 +96,24 @@ struct ServoState {
   bool braked = false;           // and the brakes, once it is gone
 };
 
-class ServoTask {
+// One tick: here, or on another processor.
+class ServoStep {
+ public:
+  // `outputs` is written whole. Real-time: yes, where it is computed.
+  virtual void Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept = 0;
+
+ protected:
+  ~ServoStep() = default;
+};
+
+class ServoTask final : public ServoStep {
  public:
   // Checks `config` and takes it over. On kOutOfRange or kInvalidArgument, where() names the field.
   // Real-time: no.
   [[nodiscard]] hal::Status Init(const ServoConfig& config) noexcept;
 
   // One tick. `outputs` is written whole. Real-time: yes.
-  void Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept;
+  void Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept override;
 
   // From now on told of each stage; null: nobody is. Real-time: yes.
   void UseProbe(StageProbe* probe) noexcept { probe_ = probe; }

@@ -1,0 +1,12 @@
+// CRC-32 as Ethernet and zlib have it: reflected polynomial 0xedb88320, all ones before and after.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace fovea::link {
+
+// Of `bytes` after what gave `before`; 0: nothing. Real-time: yes.
+[[nodiscard]] std::uint32_t Crc32(std::span<const std::uint8_t> bytes, std::uint32_t before = 0) noexcept;
+
+}  // namespace fovea::link

@@ -1,0 +1,138 @@
+// Plain values as bytes, little-endian, one after the other without gaps. A list of fields is written once,
+// as a template, and serves both ways: `template <class Archive, class T> void Fields(Archive& a, T& t) {
+// a(t.x); ... }`.
+//
+// Neither goes past its bytes; what does not fit, or is no value of its type, makes ok() false.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+namespace fovea::link {
+
+class FieldWriter {
+ public:
+  explicit FieldWriter(std::span<std::uint8_t> bytes) noexcept : bytes_(bytes) {}
+
+  void operator()(bool value) noexcept { Put(value ? 1U : 0U, 1); }
+  void operator()(std::uint32_t value) noexcept { Put(value, 4); }
+  void operator()(std::uint64_t value) noexcept { Put(value, 8); }
+  void operator()(std::int64_t value) noexcept { Put(static_cast<std::uint64_t>(value), 8); }
+  void operator()(double value) noexcept { Put(std::bit_cast<std::uint64_t>(value), 8); }
+  // Of 32 bits. (Which type that is, int or long, is not the same on all processors.)
+  template <class Integer>
+  void Int(Integer value) noexcept {
+    static_assert(std::is_signed_v<Integer> && sizeof(Integer) == 4);
+    Put(static_cast<std::uint32_t>(value), 4);
+  }
+  // 0 to `most`.
+  template <class Integer>
+  void Count(Integer value, int most) noexcept {
+    ok_ = ok_ && value >= 0 && value <= most;
+    Int(value);
+  }
+  // One of the `count` first values of its type.
+  template <class Enum>
+  void Choice(Enum value, int count) noexcept {
+    ok_ = ok_ && static_cast<int>(value) < count;
+    Put(static_cast<std::uint8_t>(value), 1);
+  }
+
+  [[nodiscard]] bool ok() const noexcept { return ok_; }
+  [[nodiscard]] std::span<const std::uint8_t> written() const noexcept { return bytes_.first(size_); }
+
+ private:
+  void Put(std::uint64_t value, std::size_t size) noexcept {
+    if (bytes_.size() - size_ < size) {
+      ok_ = false;
+      return;
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      bytes_[size_++] = static_cast<std::uint8_t>(value >> (8U * i));
+    }
+  }
+
+  std::span<std::uint8_t> bytes_;
+  std::size_t size_ = 0;
+  bool ok_ = true;
+};
+
+class FieldReader {
+ public:
+  explicit FieldReader(std::span<const std::uint8_t> bytes) noexcept : bytes_(bytes) {}
+
+  void operator()(bool& value) noexcept {
+    const std::uint64_t bits = Take(1);
+    ok_ = ok_ && bits <= 1;
+    value = bits == 1;
+  }
+  void operator()(std::uint32_t& value) noexcept { value = static_cast<std::uint32_t>(Take(4)); }
+  void operator()(std::uint64_t& value) noexcept { value = Take(8); }
+  void operator()(std::int64_t& value) noexcept { value = static_cast<std::int64_t>(Take(8)); }
+  void operator()(double& value) noexcept { value = std::bit_cast<double>(Take(8)); }
+  template <class Integer>
+  void Int(Integer& value) noexcept {
+    static_assert(std::is_signed_v<Integer> && sizeof(Integer) == 4);
+    value = static_cast<Integer>(static_cast<std::uint32_t>(Take(4)));
+  }
+  template <class Integer>
+  void Count(Integer& value, int most) noexcept {
+    Int(value);
+    if (value < 0 || value > most) {
+      ok_ = false;
+      value = 0;
+    }
+  }
+  template <class Enum>
+  void Choice(Enum& value, int count) noexcept {
+    const std::uint64_t bits = Take(1);
+    ok_ = ok_ && bits < static_cast<std::uint64_t>(count);
+    value = ok_ ? static_cast<Enum>(bits) : Enum{};
+  }
+
+  // All was there and sound, and nothing is left over.
+  [[nodiscard]] bool Done() const noexcept { return ok_ && at_ == bytes_.size(); }
+
+ private:
+  std::uint64_t Take(std::size_t size) noexcept {
+    if (bytes_.size() - at_ < size) {
+      ok_ = false;
+      at_ = bytes_.size();
+      return 0;
+    }
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      value |= static_cast<std::uint64_t>(bytes_[at_++]) << (8U * i);
+    }
+    return value;
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  std::size_t at_ = 0;
+  bool ok_ = true;
+};
+
+template <class Archive, class Array>
+void EachOf(Archive& a, Array& values) noexcept {
+  for (auto& value : values) {
+    a(value);
+  }
+}
+
+// Of fixed size, column by column.
+template <class Archive, class Matrix>
+void Entries(Archive& a, Matrix& m) noexcept {
+  static_assert(Matrix::SizeAtCompileTime != Eigen::Dynamic);
+  for (Eigen::Index j = 0; j < m.cols(); ++j) {
+    for (Eigen::Index i = 0; i < m.rows(); ++i) {
+      a(m(i, j));
+    }
+  }
+}
+
+}  // namespace fovea::link

@@ -1,0 +1,83 @@
+// fovea-mcu: the servo on a processor without an operating system, at the end of a serial line.
+#include "emitted/panda.hpp"
+#include "fovea/cortex_m7/faults.hpp"
+#include "fovea/cortex_m7/interrupts.hpp"
+#include "fovea/cortex_m7/program.hpp"
+#include "fovea/cortex_m7/registers.hpp"
+#include "fovea/cortex_m7/stack.hpp"
+#include "fovea/cortex_m7/timers.hpp"
+#include "fovea/cortex_m7/uart.hpp"
+#include "fovea/link/servo_server.hpp"
+
+namespace {
+
+namespace m7 = fovea::cortex_m7;
+namespace link = fovea::link;
+
+constexpr std::uint32_t kTicksPerStackLook = 64;  // it reads all of the stack that is not used
+
+class Mps2Board final : public link::Board {
+ public:
+  void Send(std::span<const std::uint8_t> bytes) noexcept override { m7::SendBytes(bytes); }
+  [[nodiscard]] std::uint32_t TimerCounts() noexcept override { return m7::TimerCounts(); }
+  [[nodiscard]] std::uint32_t StackBytes() noexcept override {
+    if (looks_++ % kTicksPerStackLook == 0) {
+      stack_bytes_ = m7::StackBytes();
+    }
+    return stack_bytes_;
+  }
+  void Provoke(link::Provocation what) noexcept override {
+    if (what == link::Provocation::kUsageFault) {
+      m7::Register(m7::kCoprocessors) = m7::Register(m7::kCoprocessors) & ~m7::kFpuOn;
+      asm volatile("dsb\n isb\n vmov.f64 d0, #1.0" ::: "d0", "memory");
+    }
+  }
+
+ private:
+  std::uint32_t looks_ = 0;
+  std::uint32_t stack_bytes_ = 0;
+};
+
+fovea::model::ArmModel arm;
+Mps2Board board;
+link::ServoServer server(arm, board);
+
+// Of their own: what the server holds may be half-written when a fault comes.
+link::FrameWriter crash_writer;
+std::array<std::uint8_t, 64> crash_payload;
+
+}  // namespace
+
+// The host is told; it holds what it drives when it is, or when nothing comes any more.
+void fovea::cortex_m7::OnFault(const FaultRegisters& registers) noexcept {
+  const link::Crash crash{registers.exception, registers.cfsr, registers.hfsr, registers.pc, registers.lr};
+  SendBytesNow(crash_writer.Encode({link::FrameKind::kCrash, 0, link::Encode(crash, crash_payload)}));
+}
+
+void fovea::cortex_m7::RunProgram() {
+  fovea::arms::LoadPanda(arm);
+  m7::StartTimers();
+  m7::StartUart();
+  server.SayHello();
+  bool timer_on = false;
+  std::uint32_t ticks_done = 0;
+  for (;;) {
+    std::uint8_t byte = 0;
+    while (m7::TakeByte(byte)) {
+      server.Receive(byte);
+    }
+    if (server.TicksByTimer() && !timer_on) {
+      m7::StartSysTick();
+      ticks_done = m7::SysTicks();
+      timer_on = true;
+    }
+    if (const std::uint32_t due = m7::SysTicks() - ticks_done; timer_on && due > 0) {
+      ticks_done += due;
+      server.TickByTimer(static_cast<std::int32_t>(due - 1));
+    }
+    const m7::InterruptLock lock;
+    if (!m7::HasByte() && m7::SysTicks() == ticks_done) {
+      m7::WaitForInterrupt();
+    }
+  }
+}

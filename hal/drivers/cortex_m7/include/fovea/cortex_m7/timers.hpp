@@ -1,0 +1,20 @@
+// The 1 kHz tick, and a counter to measure with.
+#pragma once
+
+#include <cstdint>
+
+namespace fovea::cortex_m7 {
+
+// Of TimerCounts.
+inline constexpr std::uint32_t kTimerHz = 25'000'000;
+
+void StartTimers() noexcept;
+
+// SysTick's interrupts at 1 kHz, from now on.
+void StartSysTick() noexcept;
+[[nodiscard]] std::uint32_t SysTicks() noexcept;  // since then; wraps
+
+// Runs freely, upwards, wraps after 172 s.
+[[nodiscard]] std::uint32_t TimerCounts() noexcept;
+
+}  // namespace fovea::cortex_m7

@@ -1,0 +1,145 @@
+// The servo's image on an emulated Cortex-M7: what is in it, and how it ends when it must.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "arch/source_tree.hpp"
+#include "fovea/link/frame.hpp"
+#include "fovea/link/messages.hpp"
+#include "sim/mcu/qemu.hpp"
+#include "support/ideal_arm.hpp"
+#include "support/panda.hpp"
+
+namespace fovea {
+namespace {
+
+using namespace std::chrono_literals;
+
+class BoardTest : public testing::Test {
+ protected:
+  // The next frame of `kind`, kept in reader_; false when none comes within `limit`.
+  bool Await(link::FrameKind kind, std::chrono::seconds limit = 20s) {
+    const auto end = std::chrono::steady_clock::now() + limit;
+    while (std::chrono::steady_clock::now() < end && !board_.gone()) {
+      while (!left_.empty()) {
+        const std::uint8_t byte = left_.front();
+        left_ = left_.subspan(1);
+        if (reader_.Add(byte) && reader_.frame().kind == kind) {
+          return true;
+        }
+      }
+      left_ = board_.Receive(received_, 100);
+    }
+    return false;
+  }
+  void Send(link::FrameKind kind, std::uint32_t sequence, std::span<const std::uint8_t> payload) {
+    ASSERT_TRUE(board_.Send(writer_.Encode({kind, sequence, payload})));
+  }
+  void Configure(link::Pacing pacing) {
+    ASSERT_TRUE(Await(link::FrameKind::kHello));
+    link::Configuration c;
+    c.pacing = pacing;
+    c.may_provoke = true;
+    c.servo = test::PandaConfig();
+    c.arm_crc = link::ArmCrc(c.servo.arm);
+    Send(link::FrameKind::kConfigure, 0, link::Encode(c, payload_));
+    ASSERT_TRUE(Await(link::FrameKind::kAnswer));
+    link::Answer answer;
+    ASSERT_TRUE(link::Decode(reader_.frame().payload, answer));
+    ASSERT_EQ(answer.code, hal::StatusCode::kOk) << answer.where.data();
+  }
+  void SendState(std::uint32_t sequence) {
+    servo::ServoInputs inputs;
+    inputs.arm = arm_.State();
+    arm_.Step();
+    Send(link::FrameKind::kInputs, sequence, link::Encode(inputs, payload_));
+  }
+  // The next tick's outputs.
+  link::Outputs Outputs() {
+    link::Outputs outputs;
+    EXPECT_TRUE(Await(link::FrameKind::kOutputs));
+    EXPECT_TRUE(link::Decode(reader_.frame().payload, outputs));
+    return outputs;
+  }
+
+  sim::Qemu board_{{FOVEA_MCU_IMAGE}};
+  test::IdealArm arm_{test::PandaConfig().arm, test::Ready()};
+  link::FrameWriter writer_;
+  link::FrameReader reader_;
+  std::array<std::uint8_t, link::kMaxPayload> payload_{};
+  std::array<std::uint8_t, 4096> received_{};
+  std::span<const std::uint8_t> left_;
+};
+
+TEST(McuImage, HoldsNoHeapAndNoStream) {
+  const std::string symbols = test::OutputOf("arm-none-eabi-nm -C '" FOVEA_MCU_IMAGE "'");
+  ASSERT_NE(symbols.find("fovea::servo::ServoTask::Step"), std::string::npos) << "no symbols were read";
+  for (const char* forbidden : {"malloc", "calloc", "realloc", " free", "operator new", "operator delete",
+                                "_sbrk", "printf", "fwrite", "__cxa_throw", "__cxa_guard"}) {
+    EXPECT_EQ(symbols.find(forbidden), std::string::npos) << forbidden;
+  }
+}
+
+TEST_F(BoardTest, ALineThatFallsSilentIsAnArmThatIsLost) {
+  Configure(link::Pacing::kTimer);
+  link::Outputs outputs;
+  for (std::uint32_t k = 1; k <= 300 || outputs.record.mode == hal::Mode::kBoot; ++k) {
+    SendState(k);
+    outputs = Outputs();
+    ASSERT_LT(k, 3000U);
+  }
+  std::uint64_t ticks = 0;
+  for (; ticks < 5000 && !outputs.record.command.engage_brakes; ++ticks) {
+    outputs = Outputs();
+  }
+  std::cout << "brakes after " << ticks << " silent ticks\n";
+  EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
+  EXPECT_TRUE(outputs.record.command.engage_brakes);
+  for (const double torque : outputs.record.command.tau_cmd) {
+    EXPECT_EQ(torque, 0.0);
+  }
+}
+
+TEST_F(BoardTest, AStormOfBadChecksumsEndsTheSameWay) {
+  Configure(link::Pacing::kTimer);
+  link::Outputs outputs;
+  for (std::uint32_t k = 1; k <= 300 || outputs.record.mode == hal::Mode::kBoot; ++k) {
+    SendState(k);
+    outputs = Outputs();
+    ASSERT_LT(k, 3000U);
+  }
+  for (std::uint32_t k = 0;
+       k < 5000 && !(outputs.record.command.engage_brakes && outputs.damaged_frames > 10); ++k) {
+    servo::ServoInputs inputs;
+    inputs.arm = arm_.State();
+    const auto frame = writer_.Encode({link::FrameKind::kInputs, 10'000 + k, link::Encode(inputs, payload_)});
+    std::vector<std::uint8_t> bad(frame.begin(), frame.end());
+    bad[bad.size() / 2] ^= 0x55;
+    ASSERT_TRUE(board_.Send(bad));
+    outputs = Outputs();
+  }
+  EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
+  EXPECT_TRUE(outputs.record.command.engage_brakes);
+  EXPECT_GT(outputs.damaged_frames, 10U);
+}
+
+TEST_F(BoardTest, FloatingPointWithoutItsUnitIsReportedAndTheLastThingItDoes) {
+  Configure(link::Pacing::kLockstep);
+  SendState(1);
+  static_cast<void>(Outputs());
+  Send(link::FrameKind::kProvoke, 2, link::Encode(link::Provocation::kUsageFault, payload_));
+  ASSERT_TRUE(Await(link::FrameKind::kCrash));
+  link::Crash crash;
+  ASSERT_TRUE(link::Decode(reader_.frame().payload, crash));
+  constexpr std::uint32_t kNoCoprocessor = 1U << 19U;
+  EXPECT_EQ(crash.exception, 6U);
+  EXPECT_NE(crash.cfsr & kNoCoprocessor, 0U);
+  EXPECT_GT(crash.pc, 0U);
+  SendState(3);
+  EXPECT_FALSE(Await(link::FrameKind::kOutputs, 2s));
+}
+
+}  // namespace
+}  // namespace fovea
