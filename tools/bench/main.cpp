@@ -35,11 +35,11 @@ int main(int argc, char** argv) {
   tick_command->add_flag("--json", tick.json, "Print JSON");
 
   bench::JitterArguments jitter;
-  CLI::App* jitter_command = app.add_subcommand(
-      "jitter",
-      "Does this machine hold 1 kHz: the servo's loop by the clock, beside a thread that only sleeps");
-  jitter_command
-      ->add_option("--seconds", jitter.seconds, "Of each of the two, in blocks of a second in turns")
+  CLI::App* jitter_command = app.add_subcommand("jitter",
+                                                "Does this machine hold 1 kHz: the servo's loop by the "
+                                                "clock, beside a thread that only sleeps and, where it "
+                                                "is installed, cyclictest");
+  jitter_command->add_option("--seconds", jitter.seconds, "Of each kind, in blocks of a second in turns")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   jitter_command->add_option("--load", jitter.load, "Work beside it")
@@ -50,6 +50,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   jitter_command->add_option("--cpu", jitter.cpu, "Processor that the measured thread is bound to")
       ->check(CLI::NonNegativeNumber);
+  jitter_command->add_option("--out", jitter.out, "Folder for jitter.html and jitter.json")
+      ->capture_default_str();
   jitter_command->add_flag("--json", jitter.json, "Print JSON");
 
   bench::SimArguments sim;
