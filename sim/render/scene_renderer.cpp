@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "sim/render/egl_context.hpp"
 #include "sim/render/gl_program.hpp"
@@ -101,6 +102,7 @@ struct SceneRenderer::Impl {
   GLuint no_vertices = 0;    // for balls, which are drawn from their numbers alone
   GLuint frame[2] = {0, 0};  // drawn into (perhaps multisampled), resolved
   GLuint buffers[3] = {0, 0, 0};
+  RenderWatch watch;
 
   Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q, int index)
       : scene(s), pinhole(p), quality(q), egl(index) {
@@ -322,6 +324,7 @@ struct SceneRenderer::Impl {
     const Matrix4f clip_of_C = ClipOfC(pinhole);
     const Matrix4f clip_of_B = clip_of_C * X_BC.inverse().matrix();
     shadow->DrawMoving([&](const ShadowMap::DrawAt& draw) { DrawMovingCasters(exposure, draw); });
+    Tell("shadow");
 
     glBindFramebuffer(GL_FRAMEBUFFER, frame[0]);
     glViewport(0, 0, pinhole.width_px, pinhole.height_px);
@@ -351,7 +354,17 @@ struct SceneRenderer::Impl {
                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
       glBindFramebuffer(GL_FRAMEBUFFER, frame[1]);
     }
+    Tell("picture");
     glReadPixels(0, 0, pinhole.width_px, pinhole.height_px, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    Tell("read-back");
+  }
+
+  // A driver draws when it likes; who watches wants each part done.
+  void Tell(const char* part) const {
+    if (watch) {
+      glFinish();
+      watch(part);
+    }
   }
 };
 
@@ -373,6 +386,7 @@ void SceneRenderer::Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC
   impl_->Draw(exposure, X_BC, rgba);
 }
 
+void SceneRenderer::Watch(RenderWatch watch) { impl_->watch = std::move(watch); }
 void SceneRenderer::Release() { impl_->egl.Release(); }
 const Pinhole& SceneRenderer::pinhole() const { return impl_->pinhole; }
 

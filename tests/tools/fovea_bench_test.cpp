@@ -94,8 +94,22 @@ TEST(FoveaBench, JitterHopsAddUp) {
 
 TEST(FoveaBench, JitterPageNeedsNothingElse) {
   const test::TempFolder folder;
+  const std::string trace = folder.path() / "trace.json";
   const test::ProgramResult run =
-      Bench({"jitter", "--seconds", "1", "--policy", "other", "--out", folder.path()});
+      Bench({"jitter", "--seconds", "1", "--policy", "other", "--out", folder.path(), "--trace", trace});
+  std::set<std::string> threads;
+  std::map<std::string, int> spans;
+  const json timeline = json::parse(TextOf(trace));
+  for (const json& event : timeline["traceEvents"]) {
+    if (event["name"] == "thread_name") {
+      threads.insert(event["args"]["name"]);
+    }
+    ++spans[event["name"]];
+  }
+  EXPECT_EQ(threads, (std::set<std::string>{"camera", "servo", "sleeper", "vision"}));
+  EXPECT_GT(spans["tick"], 0);
+  EXPECT_EQ(spans["model"], spans["tick"]);
+  EXPECT_GT(spans["detect"], 0);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   for (const char* words : {"servo: wake-up", "picture to torque", "overruns", "1 kHz here", "p99.99"}) {
     EXPECT_THAT(run.out, HasSubstr(words));

@@ -119,6 +119,9 @@ int RunJitter(const JitterArguments& arguments) {
   }
   result.pictures = eye.Hops();
   WriteFiles(arguments.out, result);
+  if (!arguments.trace.empty()) {
+    WriteJitterTrace(result, arguments.trace);
+  }
   if (arguments.json) {
     fmt::print("{}\n", ToJson(JitterFigures(result)));
   } else {

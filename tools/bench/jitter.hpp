@@ -11,6 +11,7 @@ struct JitterArguments {
   std::string policy = "fifo";
   int cpu = -1;                    // that the measured thread is bound to; -1: any
   std::string out = "out/jitter";  // folder for jitter.html and jitter.json
+  std::string trace;               // file for a timeline; empty: none
   bool json = false;
 };
 

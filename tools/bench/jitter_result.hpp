@@ -65,5 +65,7 @@ JitterVerdict Judge(const JitterResult& result);
 std::vector<Figure> JitterFigures(const JitterResult& result);
 std::string JitterText(const JitterResult& result);
 std::string JitterPage(const JitterResult& result, const std::string& style);
+// As a timeline for ui.perfetto.dev or chrome://tracing. std::runtime_error when the file cannot be written.
+void WriteJitterTrace(const JitterResult& result, const std::string& file);
 
 }  // namespace fovea::bench

@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   tick_command->add_flag("--instructions", tick.instructions,
                          "Count instructions too, by valgrind (minutes)");
   tick_command->add_option("--count", tick.count)->group("");  // of the process that valgrind watches
+  tick_command->add_flag("--traced", tick.traced)->group("");
   tick_command->add_flag("--json", tick.json, "Print JSON");
 
   bench::JitterArguments jitter;
@@ -52,6 +53,8 @@ int main(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   jitter_command->add_option("--out", jitter.out, "Folder for jitter.html and jitter.json")
       ->capture_default_str();
+  jitter_command->add_option("--trace", jitter.trace,
+                             "File for a timeline, for ui.perfetto.dev or chrome://tracing");
   jitter_command->add_flag("--json", jitter.json, "Print JSON");
 
   bench::SimArguments sim;
