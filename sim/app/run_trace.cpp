@@ -26,7 +26,7 @@ RunTrace::RunTrace(std::filesystem::path file, double duration_s, double camera_
   }
   constexpr double kAroundTick = 3.0;        // the world, the records and the wait in it
   constexpr double kVisionPerPicture = 3.0;  // wait, detect, log; and a wait that was in vain, now and then
-  constexpr double kPartsOfPicture = 6.0;
+  constexpr double kPartsOfPicture = 8.0;
   const double pictures = duration_s * camera_rate_hz;
   const double per_tick = static_cast<double>(trace::kEventsPerTick) + kAroundTick;
   servo_ = &trace_.AddTrack("servo and world", Room(duration_s * kTickHz * per_tick + pictures));

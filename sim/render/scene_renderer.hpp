@@ -22,6 +22,7 @@ struct RenderQuality {
   int shadow_map_px = 256;
   int shadow_taps = 1;         // 1 to 16; each smooths over four texels
   float shadow_spread = 1.6F;  // of the taps, in texels of the shadow map
+  bool skip_hidden = true;     // what a table hides wholly is not drawn; the picture is the same
 };
 
 struct RenderScene {
