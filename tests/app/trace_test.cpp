@@ -146,6 +146,28 @@ TEST(TraceTest, TheRunIsTheSame) {
   EXPECT_EQ(traced.summary["log_hash"], json::parse(plain.out)["log_hash"]);
 }
 
+// Each share is one; those of one thread are not more than the whole, those of the eye not more than its
+// threads.
+TEST(TraceTest, BenchSaysWhatTheTimeGoesTo) {
+  const ProgramResult run =
+      RunProgram({FOVEA_BENCH_PROGRAM, "sim", "--shares", "--seconds", "0.5", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::map<std::string, double> value;
+  for (const json& figure : json::parse(run.out)) {
+    value[figure["name"]] = figure["value"];
+  }
+  for (const char* name :
+       {"share_physics", "share_servo", "share_render", "share_read_back", "share_sensor", "share_detection",
+        "share_logging", "physics_us_1_joint", "physics_us_6_joints", "physics_us_7_joints",
+        "picture_ms_320x240", "picture_ms_640x480", "picture_ms_1280x960", "picture_ms_clutter"}) {
+    ASSERT_EQ(value.count(name), 1U) << name;
+    EXPECT_GT(value[name], 0.0) << name;
+  }
+  EXPECT_LE(value["share_physics"] + value["share_servo"], 1.0);
+  EXPECT_LE(value["share_detection"], 1.0);
+  EXPECT_LE(value["share_render"] + value["share_read_back"] + value["share_sensor"], 2.0);
+}
+
 TEST(TraceTest, RefusesWhatCannotBeWritten) {
   const TempFolder folder;
   const ProgramResult run = RunProgram(

@@ -58,11 +58,13 @@ int main(int argc, char** argv) {
   jitter_command->add_flag("--json", jitter.json, "Print JSON");
 
   bench::SimArguments sim;
-  CLI::App* sim_command = app.add_subcommand(
-      "sim", "How much faster than the clock the simulator runs, by picture size and rate");
+  CLI::App* sim_command = app.add_subcommand("sim",
+                                             "What a simulated run's time goes to, and how much faster than "
+                                             "the clock it is, by picture size and rate");
   sim_command->add_option("--seconds", sim.seconds, "Simulated, of each run")
       ->check(CLI::Range(0.5, 1000.0))
       ->capture_default_str();
+  sim_command->add_flag("--shares", sim.shares, "Only what the time goes to, and how that grows");
   sim_command->add_flag("--json", sim.json, "Print JSON");
 
   bench::VisionArguments vision;
