@@ -39,7 +39,7 @@ class RankedBlocks {
     if (total == 0) {
       return 0.0;
     }
-    const auto rank = static_cast<std::size_t>(p * static_cast<double>(total - 1) + 0.5);
+    const auto rank = static_cast<std::size_t>(std::llround(p * static_cast<double>(total - 1)));
     std::size_t above = total - 1 - rank;  // so many are larger
     for (const Ranked& entry : ranked_) {
       if (above < times[entry.block]) {
