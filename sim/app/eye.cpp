@@ -14,7 +14,7 @@ void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);
 
 }  // namespace
 
-Eye::Eye(const RunDescription& about, std::size_t queue)
+Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
     : faults_(MakePictureFaults(about.scenario.faults)), width_px_(about.pinhole.width_px) {
   UseOneThreadPerRenderer();
   std::vector<Painter> painters;
@@ -22,11 +22,14 @@ Eye::Eye(const RunDescription& about, std::size_t queue)
     optics_.push_back(std::make_unique<Optics>(about.scene, about.pinhole, about.scenario.camera.lens,
                                                Sampling::kPlain, i));
     Optics* const optics = optics_.back().get();
-    painters.push_back({[this, optics](const Exposure& exposure, std::span<std::uint8_t> rgba) {
-                          optics->Draw(exposure, rgba);
-                          SpoilPicture(faults_, exposure.stamp_ns, width_px_, rgba);
-                        },
-                        [optics] { optics->Release(); }});
+    Painter painter;
+    painter.draw = [this, optics](const Exposure& exposure, std::span<std::uint8_t> rgba) {
+      optics->Draw(exposure, rgba);
+      SpoilPicture(faults_, exposure.stamp_ns, width_px_, rgba);
+    };
+    painter.leave_thread = [optics] { optics->Release(); };
+    painters.push_back(trace != nullptr ? trace->Watched(std::move(painter), *optics, i)
+                                        : std::move(painter));
   }
   SimCameraConfig config;
   config.width_px = about.pinhole.width_px;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/app/run_description.hpp"
+#include "sim/app/run_trace.hpp"
 #include "sim/camera/optics.hpp"
 #include "sim/camera/sim_camera.hpp"
 #include "sim/faults/picture_faults.hpp"
@@ -17,9 +18,9 @@ inline constexpr int kRenderers = 2;
 
 class Eye {
  public:
-  // `about` must outlive it. `queue`: see SimCameraConfig. InputError, std::runtime_error: it cannot be drawn
-  // here.
-  Eye(const RunDescription& about, std::size_t queue);
+  // `about` must outlive it, and `trace`, where there is one. `queue`: see SimCameraConfig. InputError,
+  // std::runtime_error: it cannot be drawn here.
+  Eye(const RunDescription& about, std::size_t queue, RunTrace* trace = nullptr);
 
   [[nodiscard]] SimCamera& camera() { return *camera_; }
   [[nodiscard]] const SimCamera& camera() const { return *camera_; }

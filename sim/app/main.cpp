@@ -28,6 +28,7 @@ struct RunArguments {
   std::string servo = "pc";
   std::string servo_image;
   std::string out;
+  std::string trace;
   bool no_report = false;
   bool json = false;
 };
@@ -49,6 +50,7 @@ int Run(const RunArguments& arguments) {
   }
   options.out = arguments.out.empty() ? "out/" + scenario.name : arguments.out;
   options.report = !arguments.no_report;
+  options.trace = arguments.trace;
   const sim::Summary summary = sim::RunScenario(scenario, options);
   if (arguments.json) {
     fmt::print("{}", sim::ToJson(summary));
@@ -220,6 +222,7 @@ int main(int argc, char** argv) {
       "  fovea-sim run ball\n"
       "  fovea-sim run ball --set servo.lambda=3 --seed 7 --out out/fast\n"
       "  fovea-sim run my.toml --pace real --json\n"
+      "  fovea-sim run ball --pace real --trace trace.json\n"
       "  fovea-sim serve ball --fci-port 1337\n"
       "  fovea-sim pictures --board 9x6 --square 0.025 --out out/boards\n"
       "Exit: 0 the run reached its goal, 1 it did not, 2 wrong usage or input.");
@@ -242,6 +245,8 @@ int main(int argc, char** argv) {
   run->add_option("--servo-image", arguments.servo_image, "of --servo mcu; the shipped one when not given")
       ->check(CLI::ExistingFile);
   run->add_option("--out", arguments.out, "folder for the files; out/<scenario> when not given");
+  run->add_option("--trace", arguments.trace,
+                  "file for a timeline of all threads, for ui.perfetto.dev or chrome://tracing");
   run->add_flag("--no-report", arguments.no_report, "leave out what takes long to draw");
   run->add_flag("--json", arguments.json, "print summary.json instead of the table");
   ServeArguments serve_arguments;

@@ -17,12 +17,15 @@
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "fovea/log/record_hash.hpp"
 #include "fovea/servo/servo_loop.hpp"
+#include "fovea/trace/tick_trace.hpp"
+#include "fovea/trace/vision_trace.hpp"
 #include "fovea/vision/vision_task.hpp"
 #include "sim/app/compose.hpp"
 #include "sim/app/eye.hpp"
 #include "sim/app/progress.hpp"
 #include "sim/app/run_description.hpp"
 #include "sim/app/run_files.hpp"
+#include "sim/app/run_trace.hpp"
 #include "sim/app/target_log.hpp"
 #include "sim/app/verdict.hpp"
 #include "sim/faults/faulty_arm.hpp"
@@ -58,9 +61,13 @@ class Run {
       board_ = std::make_unique<BoardServo>(QemuConfig{options_.servo_image}, about_.servo,
                                             config::MakeLoad(about_.scenario.arm.load));
     }
+    if (!options_.trace.empty()) {
+      trace_.emplace(options_.trace, scenario.run.duration_s, scenario.camera.rate_hz, kRenderers);
+    }
     if (HasEye()) {
       // In lockstep no frame is ever lost: the world waits for each. A real camera keeps two.
-      eye_ = std::make_unique<Eye>(about_, options_.pace == Pace::kReal ? 2 : 1024);
+      eye_ =
+          std::make_unique<Eye>(about_, options_.pace == Pace::kReal ? 2 : 1024, trace_ ? &*trace_ : nullptr);
     }
     // After all that can be refused: what is refused leaves no folder.
     files_ = std::make_unique<RunFiles>(
@@ -89,6 +96,9 @@ class Run {
       vision_thread.join();
     }
     TakeRecords();
+    if (trace_) {
+      trace_->Write();
+    }
     for (const std::exception_ptr& failure : {failure_, vision_failure_}) {
       if (failure) {
         std::rethrow_exception(failure);
@@ -173,9 +183,14 @@ class Run {
 
   void RunVisionThread() {
     linux_rt::MakeThreadYielding("fovea-vision");
+    std::optional<trace::VisionTrace> traced;
+    if (trace_) {
+      traced.emplace(trace_->vision(), eye_->camera(), detector_);
+    }
     try {
       const hal::Status status =
-          vision::RunVision(eye_->camera(), vision_, detector_, never_stop_,
+          vision::RunVision(traced ? static_cast<hal::Camera&>(*traced) : eye_->camera(), vision_,
+                            traced ? static_cast<hal::FeatureSink&>(*traced) : detector_, never_stop_,
                             [this](const hal::Frame& frame, const vision::Detection& detection) {
                               files_->AddFrame(frame, detection, targets_.Take(frame.sequence));
                             });
@@ -203,45 +218,72 @@ class Run {
     });
   }
 
-  void UseMotion(servo::ServoLoop& loop) {
+  // Runs the servo by `clock` to the run's end, watched by a timeline where one is asked for.
+  hal::Status RunLoop(hal::Clock& clock) {
+    StallingClock stalling(clock, stall_);
+    std::optional<trace::TickTrace> ticks;
+    std::optional<trace::ClockTrace> world;
+    if (trace_) {
+      servo_.UseProbe(&ticks.emplace(trace_->servo(), meter_, ring_));
+      world.emplace(trace_->servo(), stalling, "world");
+    }
+    servo::ServoStep& servo = board_ ? static_cast<servo::ServoStep&>(*board_) : servo_;
+    servo::ServoLoop loop(servo, *faulty_arm_, world ? static_cast<hal::Clock&>(*world) : stalling, mailbox_,
+                          ticks ? static_cast<hal::Recorder&>(*ticks) : ring_,
+                          ticks ? static_cast<hal::TickProbe&>(*ticks) : meter_);
     if (motion_) {
       loop.UseMotion(*motion_);
     }
+    const hal::Status status = loop.Run(EndNs());
+    counters_ = loop.counters();
+    servo_.UseProbe(nullptr);
+    return status;
+  }
+
+  // What is due of the measurements goes to the servo.
+  bool HandOver(std::int64_t now_ns, bool wait) {
+    if (!trace_) {
+      return delay_.HandOver(now_ns, wait, mailbox_);
+    }
+    const std::int64_t begin_ns = trace::NowNs();
+    trace::SinkTrace traced(trace_->servo(), mailbox_);
+    const bool open = delay_.HandOver(now_ns, wait, traced);
+    trace_->servo().Add({"wait for vision", begin_ns, trace::NowNs(), -1, trace::Flow::kNone});
+    return open;
   }
 
   hal::Status RunInLockstep() {
     LockstepClock clock(*world_, [&](std::int64_t now_ns) {
+      const std::int64_t begin_ns = trace_ ? trace::NowNs() : 0;
       TakeRecords();
       progress_.Update(recorded_s_, hal::Name(mode_));
+      if (trace_) {
+        trace_->servo().Add({"records", begin_ns, trace::NowNs(), -1, trace::Flow::kNone});
+      }
       if (board_ && !board_->failure().empty()) {
         throw std::runtime_error(board_->failure() + "; the arm's brakes were closed");
       }
-      return delay_.HandOver(now_ns, /*wait=*/true, mailbox_);
+      return HandOver(now_ns, /*wait=*/true);
     });
-    StallingClock stalling(clock, stall_);
-    servo::ServoStep& servo = board_ ? static_cast<servo::ServoStep&>(*board_) : servo_;
-    servo::ServoLoop loop(servo, *faulty_arm_, stalling, mailbox_, ring_, meter_);
-    UseMotion(loop);
-    const hal::Status status = loop.Run(EndNs());
-    counters_ = loop.counters();
+    const hal::Status status = RunLoop(clock);
     clock.RethrowFailure();
     return status;
   }
 
   hal::Status RunAtRealPace() {
     linux_rt::MonotonicClock monotonic;
+    std::optional<trace::ClockTrace> sleep;
+    if (trace_) {
+      sleep.emplace(trace_->servo(), monotonic, "sleep");
+    }
     std::atomic<bool> done{false};
     hal::Status status;
     std::optional<RealPaceClock> clock;  // its time begins when the thread is ready
     std::jthread servo_thread([&] {      // joins, whatever is thrown below
       realtime_missing_ = linux_rt::MakeThreadRealtime({});
-      clock.emplace(*world_, monotonic,
-                    [&](std::int64_t now_ns) { return delay_.HandOver(now_ns, /*wait=*/false, mailbox_); });
-      StallingClock stalling(*clock, stall_);
-      servo::ServoLoop loop(servo_, *faulty_arm_, stalling, mailbox_, ring_, meter_);
-      UseMotion(loop);
-      status = loop.Run(EndNs());
-      counters_ = loop.counters();
+      clock.emplace(*world_, sleep ? static_cast<hal::Clock&>(*sleep) : monotonic,
+                    [&](std::int64_t now_ns) { return HandOver(now_ns, /*wait=*/false); });
+      status = RunLoop(*clock);
       done = true;
     });
     while (!done) {
@@ -306,6 +348,7 @@ class Run {
   servo::ServoTask servo_;
   std::unique_ptr<BoardServo> board_;  // instead of `servo_`
   const StallFault stall_;
+  std::optional<RunTrace> trace_;
   std::unique_ptr<RunFiles> files_;
   std::unique_ptr<Eye> eye_;
   std::unique_ptr<Verdict> verdict_;

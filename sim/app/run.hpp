@@ -30,6 +30,7 @@ struct RunOptions {
   std::filesystem::path out;  // empty: no files
   bool report = true;         // films, log, report and the bench's picture too
   bool show_progress = true;
+  std::filesystem::path trace;  // empty: none; else a file for the timeline of all threads
   RunObserver observer;
 };
 

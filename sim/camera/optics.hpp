@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/camera/lens.hpp"
@@ -27,6 +28,8 @@ class Optics {
 
   // Draws `exposure` into `rgba` [height * width * 4], top row first.
   void Draw(const Exposure& exposure, std::span<std::uint8_t> rgba);
+  // As SceneRenderer's.
+  void Watch(RenderWatch watch) { renderer_.Watch(std::move(watch)); }
   void Release() { renderer_.Release(); }
   [[nodiscard]] const std::string& driver_name() const { return renderer_.driver_name(); }
 

@@ -107,6 +107,9 @@ void SimCamera::DrawUntilClosed(const Painter& painter) {
     }
     job->bgr.resize(pixels * 3);
     sensor_.Expose(rgba, config_.width_px, job->exposure.sequence, job->bgr);
+    if (painter.picture_done) {
+      painter.picture_done();
+    }
     {
       const std::lock_guard lock(mutex_);
       job->progress = Progress::kDone;

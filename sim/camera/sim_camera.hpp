@@ -21,13 +21,15 @@
 
 namespace fovea::sim {
 
-// What draws an exposure. Both functions are called by one and the same thread.
+// What draws an exposure. All functions are called by one and the same thread.
 struct Painter {
   // Into an RGBA picture of the camera's size, top row first. May throw: the camera then reports a device
   // fault and keeps the message.
   std::function<void(const Exposure& exposure, std::span<std::uint8_t> rgba)> draw;
+  // The sensor has made its picture of it; may be empty.
+  std::function<void()> picture_done = nullptr;
   // The thread is about to end; may be empty.
-  std::function<void()> leave_thread;
+  std::function<void()> leave_thread = nullptr;
 };
 
 struct SimCameraConfig {

@@ -13,6 +13,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include <Eigen/Eigenvalues>
+#include <optional>
 #include <vector>
 
 #include "sim/physics/bullet_shapes.hpp"
@@ -41,6 +42,7 @@ Eigen::Isometry3d ToEigen(const btTransform& t) {
 // A body's frame as Bullet wants it: at the centre of mass, along the principal axes of inertia.
 struct PrincipalBody {
   Eigen::Isometry3d X_LP = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d X_PL = Eigen::Isometry3d::Identity();
   Eigen::Vector3d moments = Eigen::Vector3d::Zero();
 };
 
@@ -57,6 +59,7 @@ PrincipalBody Diagonalise(const SimLink& link) {
   body.moments = solver.eigenvalues();
   body.X_LP = link.X_LCom;
   body.X_LP.linear() = link.X_LCom.linear() * axes;
+  body.X_PL = body.X_LP.inverse();
   return body;
 }
 
@@ -83,6 +86,7 @@ struct BulletArm::Impl {
   int load = -1;                         // Bullet's link that is the load; -1: there is none
   Eigen::VectorXd q;
   Eigen::VectorXd dq;
+  std::optional<Eigen::VectorXd> gravity_torque;  // at q, once somebody asked for it
 
   btAlignedObjectArray<btScalar> scratch_r;
   btAlignedObjectArray<btVector3> scratch_v;
@@ -145,8 +149,7 @@ struct BulletArm::Impl {
     const SimLink& link = robot.links[k];
     const PrincipalBody& own = principal[k];
     const PrincipalBody& parent = principal[static_cast<std::size_t>(link.parent)];
-    const Eigen::Isometry3d X_PaL =
-        parent.X_LP.inverse() * link.X_PL;  // link frame in the parent's body frame
+    const Eigen::Isometry3d X_PaL = parent.X_PL * link.X_PL;  // link frame in the parent's body frame
     const Eigen::Isometry3d X_PaPo = X_PaL * own.X_LP;
     const btQuaternion parent_to_this = ToBullet(Eigen::Matrix3d(X_PaPo.linear().transpose()));
     const btVector3 com_to_pivot = ToBullet(Eigen::Vector3d(X_PaL.translation()));
@@ -172,7 +175,7 @@ struct BulletArm::Impl {
 
   // A fixed link without mass, for now, in the tip's frame.
   void AddLoad() {
-    const Eigen::Isometry3d X_PaL = principal[static_cast<std::size_t>(robot.tip)].X_LP.inverse();
+    const Eigen::Isometry3d X_PaL = principal[static_cast<std::size_t>(robot.tip)].X_PL;
     body->setupFixed(load, 0.0, btVector3(0, 0, 0), robot.tip - 1,
                      ToBullet(Eigen::Matrix3d(X_PaL.linear().transpose())),
                      ToBullet(Eigen::Vector3d(X_PaL.translation())), btVector3(0, 0, 0));
@@ -188,7 +191,7 @@ struct BulletArm::Impl {
       auto compound = std::make_unique<btCompoundShape>();
       for (const Shape& shape : robot.links[k].collisions) {
         shapes.push_back(MakeBulletShape(shape));
-        compound->addChildShape(ToBullet(principal[k].X_LP.inverse() * shape.X_LS), shapes.back().get());
+        compound->addChildShape(ToBullet(principal[k].X_PL * shape.X_LS), shapes.back().get());
       }
       auto collider = std::make_unique<btMultiBodyLinkCollider>(body.get(), i);
       collider->setCollisionShape(compound.get());
@@ -211,6 +214,7 @@ struct BulletArm::Impl {
   }
 
   void ReadState() {
+    gravity_torque.reset();
     for (int i = 0; i < robot.num_dofs; ++i) {
       const int link = dof_link[static_cast<std::size_t>(i)];
       q[i] = body->getJointPos(link);
@@ -221,6 +225,49 @@ struct BulletArm::Impl {
   void UpdatePoses() {
     body->forwardKinematics(scratch_q, scratch_v);
     body->updateCollisionObjectWorldTransforms(scratch_q, scratch_v);
+  }
+
+  Eigen::Isometry3d LinkPose(int index) const {
+    if (index == 0) {
+      return Eigen::Isometry3d::Identity();
+    }
+    return ToEigen(body->getLink(index - 1).m_cachedWorldTransform) *
+           principal[static_cast<std::size_t>(index)].X_PL;
+  }
+
+  Eigen::VectorXd ComputeGravityTorque() const {
+    Eigen::VectorXd tau = Eigen::VectorXd::Zero(robot.num_dofs);
+    const btVector3 g = world.getGravity();
+    if (g.isZero()) {
+      return tau;
+    }
+    const Eigen::Vector3d g_B(g.x(), g.y(), g.z());
+    std::vector<Eigen::Isometry3d> X_BL;
+    X_BL.reserve(robot.links.size());
+    for (int i = 0; i < static_cast<int>(robot.links.size()); ++i) {
+      X_BL.push_back(LinkPose(i));
+    }
+    // Joint by joint towards the base, for each body: the torque of its weight about the joint's axis.
+    for (int link = 1; link < static_cast<int>(robot.links.size()); ++link) {
+      const double mass = body->getLinkMass(link - 1);
+      if (mass == 0.0) {
+        continue;
+      }
+      const btVector3 c = body->getLink(link - 1).m_cachedWorldTransform.getOrigin();
+      const Eigen::Vector3d p_com(c.x(), c.y(), c.z());
+      for (int i = link; i > 0; i = robot.links[static_cast<std::size_t>(i)].parent) {
+        const SimLink& joint = robot.links[static_cast<std::size_t>(i)];
+        if (joint.joint == SimJointKind::kFixed) {
+          continue;
+        }
+        const Eigen::Isometry3d& X = X_BL[static_cast<std::size_t>(i)];
+        const Eigen::Vector3d axis = X.linear() * joint.axis_L;
+        const Eigen::Vector3d direction =
+            joint.joint == SimJointKind::kPrismatic ? axis : axis.cross(p_com - X.translation());
+        tau[joint.dof] -= mass * g_B.dot(direction);
+      }
+    }
+    return tau;
   }
 
   void ApplyTorque(const Eigen::VectorXd& tau) {
@@ -310,43 +357,13 @@ Eigen::VectorXd BulletArm::ForwardDynamics(const Eigen::VectorXd& tau) {
 }
 
 Eigen::VectorXd BulletArm::GravityTorque() const {
-  const Impl& m = *impl_;
-  Eigen::VectorXd tau = Eigen::VectorXd::Zero(m.robot.num_dofs);
-  const btVector3 g = m.world.getGravity();
-  if (g.isZero()) {
-    return tau;
+  if (!impl_->gravity_torque) {
+    impl_->gravity_torque = impl_->ComputeGravityTorque();
   }
-  const Eigen::Vector3d g_B(g.x(), g.y(), g.z());
-  // Joint by joint towards the base, for each body: the torque of its weight about the joint's axis.
-  for (int body = 0; body < static_cast<int>(m.robot.links.size()) - 1; ++body) {
-    const double mass = m.body->getLinkMass(body);
-    if (mass == 0.0) {
-      continue;
-    }
-    const btVector3 c = m.body->getLink(body).m_cachedWorldTransform.getOrigin();
-    const Eigen::Vector3d p_com(c.x(), c.y(), c.z());
-    for (int i = body; i >= 0; i = m.robot.links[static_cast<std::size_t>(i + 1)].parent - 1) {
-      const SimLink& link = m.robot.links[static_cast<std::size_t>(i + 1)];
-      if (link.joint == SimJointKind::kFixed) {
-        continue;
-      }
-      const Eigen::Isometry3d X_BL = LinkPose(i + 1);
-      const Eigen::Vector3d axis = X_BL.linear() * link.axis_L;
-      const Eigen::Vector3d direction =
-          link.joint == SimJointKind::kPrismatic ? axis : axis.cross(p_com - X_BL.translation());
-      tau[link.dof] -= mass * g_B.dot(direction);
-    }
-  }
-  return tau;
+  return *impl_->gravity_torque;
 }
 
-Eigen::Isometry3d BulletArm::LinkPose(int index) const {
-  if (index == 0) {
-    return Eigen::Isometry3d::Identity();
-  }
-  const auto k = static_cast<std::size_t>(index);
-  return ToEigen(impl_->body->getLink(index - 1).m_cachedWorldTransform) * impl_->principal[k].X_LP.inverse();
-}
+Eigen::Isometry3d BulletArm::LinkPose(int index) const { return impl_->LinkPose(index); }
 
 double BulletArm::Energy() const {
   // Entry i + 1 belongs to Bullet's link i, in its own frame, at its centre of mass.

@@ -179,9 +179,12 @@ void PlanePainter::DrawTiles(const std::vector<Vector2f>& tiles) const {
 }
 
 void PlanePainter::Draw(const Matrix4f& clip_of_B, float gain, const ShadowMap& shadow, const Ball& target,
-                        const std::vector<MovingBounds>& moving) const {
+                        const std::vector<MovingBounds>& moving, float bottom) const {
   const float sun = kSun_B.z() * kSunLight.mean();
   for (const Plane& plane : planes_) {
+    if (plane.shape.centre_B.z() < bottom) {
+      continue;
+    }
     SortTiles(plane, target, moving);
     const Vector2f tile_size = plane.shape.size.cwiseQuotient(
         Vector2f(static_cast<float>(plane.columns), static_cast<float>(plane.rows)));

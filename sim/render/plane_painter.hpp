@@ -33,9 +33,9 @@ class PlanePainter {
   PlanePainter& operator=(const PlanePainter&) = delete;
 
   // Draws all planes into the bound frame. `moving` are the things whose shadows are in `shadow`, the target
-  // among them; the target also darkens what it stands on.
+  // among them; the target also darkens what it stands on. Planes below `bottom` [m] are hidden.
   void Draw(const Eigen::Matrix4f& clip_of_B, float gain, const ShadowMap& shadow, const Ball& target,
-            const std::vector<MovingBounds>& moving) const;
+            const std::vector<MovingBounds>& moving, float bottom) const;
 
  private:
   struct Plane {

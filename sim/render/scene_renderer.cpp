@@ -5,8 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
+#include "sim/render/cover.hpp"
 #include "sim/render/egl_context.hpp"
 #include "sim/render/gl_program.hpp"
 #include "sim/render/gpu_mesh.hpp"
@@ -31,6 +35,7 @@ struct Thing {
   std::unique_ptr<GpuMesh> mesh;
   std::vector<MeshEdge> edges;
   Bounds bounds;
+  Box box;
 };
 
 // A link as it looks and as it casts its shadow.
@@ -101,6 +106,7 @@ struct SceneRenderer::Impl {
   GLuint no_vertices = 0;    // for balls, which are drawn from their numbers alone
   GLuint frame[2] = {0, 0};  // drawn into (perhaps multisampled), resolved
   GLuint buffers[3] = {0, 0, 0};
+  RenderWatch watch;
 
   Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q, int index)
       : scene(s), pinhole(p), quality(q), egl(index) {
@@ -137,7 +143,7 @@ struct SceneRenderer::Impl {
 
   void Upload() {
     for (const Mesh& mesh : scene.bench.things) {
-      things.push_back({std::make_unique<GpuMesh>(mesh), FindEdges(mesh), FindBounds(mesh)});
+      things.push_back({std::make_unique<GpuMesh>(mesh), FindEdges(mesh), FindBounds(mesh), FindBox(mesh)});
     }
     for (std::size_t i = 0; i < scene.robot.links.size(); ++i) {
       const SimLink& link = scene.robot.links[i];
@@ -229,7 +235,18 @@ struct SceneRenderer::Impl {
     program.Set("u_shadow", 1);
   }
 
-  void DrawMeshes(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_B) const {
+  // The box in which all lies that can be seen; nothing when there is no such box.
+  std::optional<Box> Seen(const Isometry3f& X_BC) const {
+    for (const TexturedPlane& plane : scene.bench.planes) {
+      if (const std::optional<Box> seen = SeenOver(plane, pinhole, X_BC); seen && quality.skip_hidden) {
+        return seen;
+      }
+    }
+    return std::nullopt;
+  }
+
+  void DrawMeshes(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_B,
+                  const std::optional<Box>& seen) const {
     const Isometry3f X_CB = X_BC.inverse();
     SetLight(*mesh_program, X_BC);
     mesh_program->Set("u_clip_of_B", clip_of_B);
@@ -243,7 +260,8 @@ struct SceneRenderer::Impl {
     }
     mesh_program->Set("u_B_of_mesh", Matrix4f(Matrix4f::Identity()));
     for (const Thing& thing : things) {
-      if (InView(pinhole, X_CB * thing.bounds.centre, thing.bounds.radius)) {
+      const bool hidden = seen && !seen->intersects(thing.box);
+      if (!hidden && InView(pinhole, X_CB * thing.bounds.centre, thing.bounds.radius)) {
         thing.mesh->Draw();
         smoother->Add(thing.edges, Isometry3f::Identity(), X_BC.translation());
       }
@@ -262,7 +280,7 @@ struct SceneRenderer::Impl {
     glDisable(GL_BLEND);
   }
 
-  void DrawPlanes(const Exposure& exposure, const Matrix4f& clip_of_B) const {
+  void DrawPlanes(const Exposure& exposure, const Matrix4f& clip_of_B, const std::optional<Box>& seen) const {
     const Ball target = Target(exposure);
     std::vector<MovingBounds> moving{{target.p_B, target.radius}};
     if (plate) {
@@ -274,7 +292,8 @@ struct SceneRenderer::Impl {
         moving.push_back({X_BL * shape.centre, shape.radius});
       }
     }
-    planes->Draw(clip_of_B, static_cast<float>(scene.light), *shadow, target, moving);
+    const float bottom = seen ? seen->min().z() : -std::numeric_limits<float>::infinity();
+    planes->Draw(clip_of_B, static_cast<float>(scene.light), *shadow, target, moving, bottom);
   }
 
   void DrawPlate(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_C) const {
@@ -322,6 +341,7 @@ struct SceneRenderer::Impl {
     const Matrix4f clip_of_C = ClipOfC(pinhole);
     const Matrix4f clip_of_B = clip_of_C * X_BC.inverse().matrix();
     shadow->DrawMoving([&](const ShadowMap::DrawAt& draw) { DrawMovingCasters(exposure, draw); });
+    Tell("shadow");
 
     glBindFramebuffer(GL_FRAMEBUFFER, frame[0]);
     glViewport(0, 0, pinhole.width_px, pinhole.height_px);
@@ -334,13 +354,17 @@ struct SceneRenderer::Impl {
     glActiveTexture(GL_TEXTURE0);
     // The table first: it fills most of the eye's picture and hides what is under it.
     glDisable(GL_CULL_FACE);  // tiles and balls' rectangles have no outside
-    DrawPlanes(exposure, clip_of_B);
+    const std::optional<Box> seen = Seen(X_BC);
+    DrawPlanes(exposure, clip_of_B, seen);
+    Tell("planes");
     glEnable(GL_CULL_FACE);
     glFrontFace(GL_CW);  // see ClipOfC
-    DrawMeshes(exposure, X_BC, clip_of_B);
+    DrawMeshes(exposure, X_BC, clip_of_B, seen);
+    Tell("meshes");
     glDisable(GL_CULL_FACE);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     DrawHems(X_BC, clip_of_B);
+    Tell("outlines");
     DrawPlate(exposure, X_BC, clip_of_C);
     DrawBalls(exposure, X_BC, clip_of_C);
 
@@ -351,7 +375,17 @@ struct SceneRenderer::Impl {
                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
       glBindFramebuffer(GL_FRAMEBUFFER, frame[1]);
     }
+    Tell("target and balls");
     glReadPixels(0, 0, pinhole.width_px, pinhole.height_px, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    Tell("read-back");
+  }
+
+  // A driver draws when it likes; who watches wants each part done.
+  void Tell(const char* part) const {
+    if (watch) {
+      glFinish();
+      watch(part);
+    }
   }
 };
 
@@ -373,6 +407,7 @@ void SceneRenderer::Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC
   impl_->Draw(exposure, X_BC, rgba);
 }
 
+void SceneRenderer::Watch(RenderWatch watch) { impl_->watch = std::move(watch); }
 void SceneRenderer::Release() { impl_->egl.Release(); }
 const Pinhole& SceneRenderer::pinhole() const { return impl_->pinhole; }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,6 +22,7 @@ struct RenderQuality {
   int shadow_map_px = 256;
   int shadow_taps = 1;         // 1 to 16; each smooths over four texels
   float shadow_spread = 1.6F;  // of the taps, in texels of the shadow map
+  bool skip_hidden = true;     // what a table hides wholly is not drawn; the picture is the same
 };
 
 struct RenderScene {
@@ -33,6 +35,9 @@ struct RenderScene {
   Eigen::Vector3f target_colour{0.74F, 0.07F, 0.06F};
   double light = 1.0;  // brightness; 1: a well-lit room and a well-set camera
 };
+
+// Told by Draw when a part of it is done, and how it is called.
+using RenderWatch = std::function<void(const char* part)>;
 
 // One thread at a time; the first call on a thread takes the OpenGL context there, and Release gives it up.
 class SceneRenderer {
@@ -47,6 +52,9 @@ class SceneRenderer {
 
   // Draws `exposure` as seen from `X_BC` into `rgba` [height * width * 4], top row first.
   void Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba);
+
+  // Before the first Draw: each then ends its parts one by one, which makes it a little slower.
+  void Watch(RenderWatch watch);
 
   void Release();
   [[nodiscard]] const Pinhole& pinhole() const;

@@ -23,7 +23,7 @@ void FeatureDelay::Expect(std::uint64_t sequence, std::int64_t due_ns) {
   expected_.push_back({sequence, due_ns, std::nullopt});
 }
 
-bool FeatureDelay::HandOver(std::int64_t now_ns, bool wait, hal::FeatureMailbox& mailbox) {
+bool FeatureDelay::HandOver(std::int64_t now_ns, bool wait, hal::FeatureSink& servo) {
   std::unique_lock lock(mutex_);
   while (!expected_.empty() && expected_.front().due_ns <= now_ns) {
     if (wait) {
@@ -36,7 +36,7 @@ bool FeatureDelay::HandOver(std::int64_t now_ns, bool wait, hal::FeatureMailbox&
     if (!expected_.front().measurement) {
       return !closed_;
     }
-    mailbox.Put(*expected_.front().measurement);
+    servo.Put(*expected_.front().measurement);
     expected_.pop_front();
   }
   return true;

@@ -25,7 +25,7 @@ class FeatureDelay final : public hal::FeatureSink {
   void Expect(std::uint64_t sequence, std::int64_t due_ns);
   // Hands over all that is due at `now_ns`. With `wait`, first waits for those which are due; returns false
   // when the vision side was closed while it waited.
-  bool HandOver(std::int64_t now_ns, bool wait, hal::FeatureMailbox& mailbox);
+  bool HandOver(std::int64_t now_ns, bool wait, hal::FeatureSink& servo);
 
   // From any thread: nothing more will be put.
   void Close();

@@ -86,6 +86,8 @@ INSTANTIATE_TEST_SUITE_P(
              "fovea/(hal|log|model|report)/.*|(image_error|scene_reader)[.]hpp|(fovea|foxglove)/"
              "[a-z]+[.]pb[.]h|(fmt|google|nlohmann|openssl)/.*",
              "a report is made of a log alone"},
+        Rule{"firmware/trace", "fovea/(hal|servo|trace)/.*|nlohmann/.*",
+             "a timeline watches the servo from outside"},
         Rule{"firmware/include/fovea/design", "(fovea/design|Eigen)/.*", "design is mathematics alone"},
         Rule{"firmware/design", "fovea/design/.*|characteristic[.]hpp|(unsupported/)?Eigen/.*",
              "design is mathematics alone"},
@@ -99,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
              "(fovea|fmt|CLI|nlohmann|opencv2|Eigen|kdl|arpa|netinet|sys|linux)/.*|[a-z_]+[.]h(pp)?",
              "measures, without the simulator"},
         Rule{"firmware/include",
-             "(fovea/(hal|model|features|servo|vision|config|design|robots|linux_rt|log|report)/|Eigen/"
+             "(fovea/(hal|model|features|servo|vision|config|design|robots|linux_rt|log|report|trace)/|Eigen/"
              "|opencv2/"
              "|google/|CLI/).*",
              "nothing of the firmware sees the simulator"},

@@ -8,6 +8,7 @@
 
 #include "fovea/vision/target_detector.hpp"
 #include "sim/physics/bullet_arm.hpp"
+#include "sim/render/cover.hpp"
 #include "sim/render/egl_context.hpp"
 #include "sim/render/scene_renderer.hpp"
 #include "support/places.hpp"
@@ -106,6 +107,60 @@ TEST_F(RenderTest, TwoRenderersDrawTheSameBytes) {
   SceneRenderer second(scene_, pinhole_, {}, 1);
   const cv::Mat b = Draw(second);
   EXPECT_EQ(cv::norm(a, b, cv::NORM_INF), 0.0);
+}
+
+// What is left out because a table hides it would not have been seen: from above the bench, from its edge and
+// from beside it, the same bytes.
+TEST_F(RenderTest, LeavingOutWhatIsHiddenIsTheSamePicture) {
+  SceneRenderer renderer(scene_, pinhole_, {});
+  SceneRenderer whole(scene_, pinhole_, {.skip_hidden = false}, 1);
+  std::mt19937 engine(3);
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(engine);
+  };
+  exposure_.p_BO = Eigen::Vector3d(0.5, 0.0, 0.04);
+  int covered = 0;
+  constexpr int kCount = 60;
+  for (int i = 0; i < kCount; ++i) {
+    exposure_.X_BC = Eigen::Translation3d(uniform(-0.3, 1.2), uniform(-0.6, 0.6), uniform(0.15, 0.9)) *
+                     Eigen::AngleAxisd(uniform(-3.1, 3.1), Eigen::Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd(3.1416 + uniform(-0.6, 0.6), Eigen::Vector3d::UnitX());
+    const bool is_covered =
+        SeenOver(scene_.bench.planes.front(), pinhole_, exposure_.X_BC.cast<float>()).has_value();
+    covered += is_covered ? 1 : 0;
+    renderer.Release();
+    const cv::Mat drawn = Draw(renderer).clone();
+    renderer.Release();
+    const cv::Mat expected = Draw(whole);
+    whole.Release();
+    EXPECT_EQ(cv::norm(drawn, expected, cv::NORM_INF), 0.0) << "picture " << i;
+  }
+  std::cout << covered << " of " << kCount << " pictures show nothing beside the table\n";
+  EXPECT_GE(covered, 5);
+  EXPECT_LE(covered, kCount - 5);
+}
+
+// From h above a plane, straight down, the picture's corners meet it at h times their rays.
+TEST(Cover, KnowsWhatATableHides) {
+  const Pinhole pinhole = MakePinhole(640, 480, 1.0471975511965976);
+  TexturedPlane plane;
+  plane.size = {1.6F, 1.3F};
+  const auto from = [](float x, float y, float z) {
+    return Eigen::Isometry3f(Eigen::Translation3f(x, y, z) *
+                             Eigen::AngleAxisf(3.14159265F, Eigen::Vector3f::UnitX()));
+  };
+  const auto seen = SeenOver(plane, pinhole, from(0.1F, 0.0F, 0.5F));
+  ASSERT_TRUE(seen.has_value());
+  const auto reach = static_cast<float>(0.5 * (319.5 + 2.0) / pinhole.f_px);
+  EXPECT_NEAR(seen->min().x(), 0.1F - reach - 0.02F, 1e-5F);
+  EXPECT_NEAR(seen->max().x(), 0.1F + reach + 0.02F, 1e-5F);
+  EXPECT_FLOAT_EQ(seen->min().z(), -0.03F);
+  EXPECT_NEAR(seen->max().z(), 0.52F, 1e-6F);
+  EXPECT_FALSE(SeenOver(plane, pinhole, from(0.55F, 0.0F, 0.5F)).has_value()) << "over the edge";
+  EXPECT_FALSE(SeenOver(plane, pinhole, from(0.0F, 0.0F, -0.5F)).has_value()) << "from below";
+  EXPECT_FALSE(SeenOver(plane, pinhole, from(0.0F, 0.0F, 2.0F)).has_value()) << "from too far";
+  const Eigen::Isometry3f level(Eigen::AngleAxisf(1.57079633F, Eigen::Vector3f::UnitX()));
+  EXPECT_FALSE(SeenOver(plane, pinhole, Eigen::Translation3f(0.0F, 0.0F, 0.5F) * level).has_value());
 }
 
 TEST_F(RenderTest, LessLightIsADarkerPicture) {

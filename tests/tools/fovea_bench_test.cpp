@@ -3,9 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
+#include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "support/program.hpp"
 
@@ -14,6 +19,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 test::ProgramResult Bench(std::vector<std::string> arguments) {
   arguments.insert(arguments.begin(), FOVEA_BENCH_PROGRAM);
@@ -42,12 +48,79 @@ TEST(FoveaBench, TickHasItsFigures) {
   }
 }
 
+std::string TextOf(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
 TEST(FoveaBench, JitterHasItsFigures) {
-  const std::set<std::string> names =
-      NamesOf(Bench({"jitter", "--seconds", "1", "--policy", "other", "--json"}));
-  for (const char* name : {"wake_us_p999", "execute_us_p50", "response_us_max", "sleeper_wake_us_p999",
-                           "wake_ratio_p999", "servo_overruns", "servo_page_faults"}) {
+  const test::TempFolder folder;
+  const test::ProgramResult run =
+      Bench({"jitter", "--seconds", "1", "--policy", "other", "--out", folder.path() / "j", "--json"});
+  const std::set<std::string> names = NamesOf(run);
+  for (const char* name :
+       {"wake_us_p999", "execute_us_p50", "off_period_us_p9999", "response_us_max", "sleeper_wake_us_min",
+        "stage_model_us_p50", "stage_record_us_max", "hop_arrival_us_p50", "hop_detection_us_p50",
+        "hop_hand_over_us_p50", "hop_tick_us_p50", "image_to_torque_us_p50", "wake_ratio_p999",
+        "wake_ratio_p999_low", "servo_overruns", "servo_page_faults", "servo_voluntary_switches",
+        "sleeper_involuntary_switches"}) {
     EXPECT_EQ(names.count(name), 1U) << name;
+  }
+  EXPECT_EQ(json::parse(TextOf(folder.path() / "j" / "jitter.json")), json::parse(run.out));
+}
+
+// A picture's way is the sum of its hops, so its least is no less than the sum of theirs, nor its most more.
+TEST(FoveaBench, JitterHopsAddUp) {
+  const test::TempFolder folder;
+  const test::ProgramResult run =
+      Bench({"jitter", "--seconds", "1", "--policy", "other", "--out", folder.path(), "--json"});
+  std::map<std::string, double> value;
+  for (const json& figure : json::parse(run.out)) {
+    value[figure["name"]] = figure["value"];
+  }
+  double least = 0.0;
+  double most = 0.0;
+  for (const char* hop : {"hop_exposure", "hop_arrival", "hop_detection", "hop_hand_over", "hop_tick"}) {
+    EXPECT_GE(value[fmt::format("{}_us_min", hop)], 0.0) << hop;
+    least += value[fmt::format("{}_us_min", hop)];
+    most += value[fmt::format("{}_us_max", hop)];
+  }
+  EXPECT_GE(value["pictures"], 1.0);
+  EXPECT_GE(value["image_to_torque_us_min"], least - 1e-6);
+  EXPECT_LE(value["image_to_torque_us_max"], most + 1e-6);
+  EXPECT_GE(value["hop_exposure_us_min"] + value["hop_arrival_us_min"], 5500.0);  // the camera's own
+}
+
+TEST(FoveaBench, JitterPageNeedsNothingElse) {
+  const test::TempFolder folder;
+  const std::string trace = folder.path() / "trace.json";
+  const test::ProgramResult run =
+      Bench({"jitter", "--seconds", "1", "--policy", "other", "--out", folder.path(), "--trace", trace});
+  std::set<std::string> threads;
+  std::map<std::string, int> spans;
+  const json timeline = json::parse(TextOf(trace));
+  for (const json& event : timeline["traceEvents"]) {
+    if (event["name"] == "thread_name") {
+      threads.insert(event["args"]["name"]);
+    }
+    ++spans[event["name"]];
+  }
+  EXPECT_EQ(threads, (std::set<std::string>{"camera", "servo", "sleeper", "vision"}));
+  EXPECT_GT(spans["tick"], 0);
+  EXPECT_EQ(spans["model"], spans["tick"]);
+  EXPECT_GT(spans["detect"], 0);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  for (const char* words : {"servo: wake-up", "picture to torque", "overruns", "1 kHz here", "p99.99"}) {
+    EXPECT_THAT(run.out, HasSubstr(words));
+  }
+  const std::string page = TextOf(folder.path() / "jitter.html");
+  for (const char* part : {"id=\"verdict\"", "What limits it", "Wake-up latency", "Stages of the tick",
+                           "From picture to torque", "sleeper: wake-up", "</html>"}) {
+    EXPECT_THAT(page, HasSubstr(part));
+  }
+  for (const char* outside : {"http:", "https:", "src=", "href="}) {
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "fovea/trace/tick_trace.hpp"
 #include "shell.hpp"
 
 namespace fovea::bench {
@@ -38,6 +39,12 @@ class Scratch {
   fs::path path_;
 };
 
+class Unwatched final : public hal::TickProbe, public hal::Recorder {
+  void Enter() noexcept override {}
+  void Leave() noexcept override {}
+  void Record(const hal::TickRecord& /*record*/) noexcept override {}
+};
+
 double Totals(const fs::path& file) {
   std::ifstream stream(file);
   std::string word;
@@ -58,7 +65,7 @@ double Totals(const fs::path& file) {
   task.Step(inputs, outputs);
 }
 
-void RunCounted(const std::vector<TickCase>& cases, const std::string& mode) {
+void RunCounted(const std::vector<TickCase>& cases, const std::string& mode, bool traced) {
   std::uint64_t counted = 0;
   for (const TickCase& c : cases) {
     // Run twice: which ticks are of that mode is known only after them.
@@ -66,6 +73,12 @@ void RunCounted(const std::vector<TickCase>& cases, const std::string& mode) {
     servo::ServoTask task;
     if (!scout.Init(c.config).ok() || !task.Init(c.config).ok()) {
       throw std::logic_error("a configuration that was run is refused");
+    }
+    trace::Track track("servo", traced ? trace::kEventsPerTick * c.inputs.size() : 0);
+    Unwatched unwatched;
+    trace::TickTrace tick_trace(track, unwatched, unwatched);
+    if (traced) {
+      task.UseProbe(&tick_trace);
     }
     servo::ServoOutputs outputs;
     for (const servo::ServoInputs& inputs : c.inputs) {

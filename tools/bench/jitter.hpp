@@ -6,10 +6,12 @@
 namespace fovea::bench {
 
 struct JitterArguments {
-  int seconds = 20;  // of the servo's loop; the sleeper gets as many
+  int seconds = 20;  // of the servo's loop; the sleeper gets as many, and cyclictest where it is there
   std::string load = "none";
   std::string policy = "fifo";
-  int cpu = -1;  // that the measured thread is bound to; -1: any
+  int cpu = -1;                    // that the measured thread is bound to; -1: any
+  std::string out = "out/jitter";  // folder for jitter.html and jitter.json
+  std::string trace;               // file for a timeline; empty: none
   bool json = false;
 };
 

@@ -1,7 +1,11 @@
 #include "machine.hpp"
 
+#include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/utsname.h>
+#include <unistd.h>
 
+#include <array>
 #include <fstream>
 #include <thread>
 
@@ -29,7 +33,7 @@ std::string CpuInfo(const std::string& name) {
 
 }  // namespace
 
-MachineFacts LookAtMachine(const std::vector<std::string>& missing) {
+MachineFacts LookAtMachine(const std::vector<std::string>& missing, bool kept_awake) {
   MachineFacts facts;
   utsname names{};
   if (uname(&names) == 0) {
@@ -47,15 +51,67 @@ MachineFacts LookAtMachine(const std::vector<std::string>& missing) {
     facts.limits.push_back("the CPU governor is \"" + governor +
                            "\": cpupower frequency-set --governor performance keeps the clock up");
   }
-  if (!FirstLine("/sys/devices/system/cpu/cpuidle/current_driver").empty() &&
-      FirstLine("/sys/devices/system/cpu/cpuidle/current_driver") != "none") {
+  const std::string idle_driver = FirstLine("/sys/devices/system/cpu/cpuidle/current_driver");
+  if (!kept_awake && !idle_driver.empty() && idle_driver != "none") {
     facts.limits.emplace_back(
-        "idle states are on: holding /dev/cpu_dma_latency at 0 keeps the processor awake");
+        "idle states are on: holding /dev/cpu_dma_latency at 0 keeps the processor awake (--policy fifo "
+        "does)");
   }
   if (CpuInfo("flags").find(" hypervisor") != std::string::npos) {
     facts.limits.emplace_back("this is a virtual machine: its host may take the processor away at any time");
   }
   return facts;
+}
+ProcessorTime::ProcessorTime() : start_(Now()) {}
+
+// The first line of /proc/stat: user, nice, system, idle, iowait, irq, softirq, steal, in clock ticks.
+ProcessorTime::Counts ProcessorTime::Now() {
+  std::ifstream stream("/proc/stat");
+  std::string name;
+  stream >> name;
+  std::array<double, 8> ticks{};
+  for (double& value : ticks) {
+    stream >> value;
+  }
+  const auto per_s = static_cast<double>(sysconf(_SC_CLK_TCK));
+  Counts counts;
+  for (const double value : ticks) {
+    counts.total += value / per_s;
+  }
+  counts.busy = (ticks[0] + ticks[1] + ticks[2] + ticks[5] + ticks[6]) / per_s;
+  counts.stolen = ticks[7] / per_s;
+  for (const int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    for (const timeval& time : {usage.ru_utime, usage.ru_stime}) {
+      counts.own += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    }
+  }
+  return counts;
+}
+
+ProcessorTime::Shares ProcessorTime::SinceStart() const {
+  const Counts now = Now();
+  const double total = now.total - start_.total;
+  if (!(total > 0.0)) {
+    return {};
+  }
+  const double others = (now.busy - start_.busy) - (now.own - start_.own);
+  return {(now.stolen - start_.stolen) / total, others > 0.0 ? others / total : 0.0};
+}
+
+std::vector<std::string> InWords(const ProcessorTime::Shares& shares) {
+  std::vector<std::string> words;
+  if (shares.stolen > 0.001) {
+    words.push_back(
+        fmt::format("the host took {:.1f} % of the processors' time away from this virtual machine meanwhile",
+                    100.0 * shares.stolen));
+  }
+  if (shares.others > 0.05) {
+    words.push_back(
+        fmt::format("other processes had {:.0f} % of the processors' time meanwhile", 100.0 * shares.others));
+  }
+  return words;
 }
 
 }  // namespace fovea::bench

@@ -32,14 +32,15 @@ int main(int argc, char** argv) {
   tick_command->add_flag("--instructions", tick.instructions,
                          "Count instructions too, by valgrind (minutes)");
   tick_command->add_option("--count", tick.count)->group("");  // of the process that valgrind watches
+  tick_command->add_flag("--traced", tick.traced)->group("");
   tick_command->add_flag("--json", tick.json, "Print JSON");
 
   bench::JitterArguments jitter;
-  CLI::App* jitter_command = app.add_subcommand(
-      "jitter",
-      "Does this machine hold 1 kHz: the servo's loop by the clock, beside a thread that only sleeps");
-  jitter_command
-      ->add_option("--seconds", jitter.seconds, "Of each of the two, in blocks of a second in turns")
+  CLI::App* jitter_command = app.add_subcommand("jitter",
+                                                "Does this machine hold 1 kHz: the servo's loop by the "
+                                                "clock, beside a thread that only sleeps and, where it "
+                                                "is installed, cyclictest");
+  jitter_command->add_option("--seconds", jitter.seconds, "Of each kind, in blocks of a second in turns")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   jitter_command->add_option("--load", jitter.load, "Work beside it")
@@ -50,14 +51,20 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   jitter_command->add_option("--cpu", jitter.cpu, "Processor that the measured thread is bound to")
       ->check(CLI::NonNegativeNumber);
+  jitter_command->add_option("--out", jitter.out, "Folder for jitter.html and jitter.json")
+      ->capture_default_str();
+  jitter_command->add_option("--trace", jitter.trace,
+                             "File for a timeline, for ui.perfetto.dev or chrome://tracing");
   jitter_command->add_flag("--json", jitter.json, "Print JSON");
 
   bench::SimArguments sim;
-  CLI::App* sim_command = app.add_subcommand(
-      "sim", "How much faster than the clock the simulator runs, by picture size and rate");
+  CLI::App* sim_command = app.add_subcommand("sim",
+                                             "What a simulated run's time goes to, and how much faster than "
+                                             "the clock it is, by picture size and rate");
   sim_command->add_option("--seconds", sim.seconds, "Simulated, of each run")
       ->check(CLI::Range(0.5, 1000.0))
       ->capture_default_str();
+  sim_command->add_flag("--shares", sim.shares, "Only what the time goes to, and how that grows");
   sim_command->add_flag("--json", sim.json, "Print JSON");
 
   bench::VisionArguments vision;

@@ -14,6 +14,7 @@
 #include "figure.hpp"
 #include "fovea/config/program.hpp"
 #include "shell.hpp"
+#include "sim_shares.hpp"
 
 namespace fovea::bench {
 namespace {
@@ -68,7 +69,11 @@ int RunSim(const SimArguments& arguments) {
     throw std::runtime_error(program.string() +
                              ": not there; fovea-bench sim needs the simulator built beside it");
   }
-  std::vector<Figure> figures;
+  std::vector<Figure> figures = SimShares(program, arguments.seconds);
+  if (arguments.shares) {
+    fmt::print("{}", arguments.json ? ToJson(figures) + "\n" : ToTable(figures));
+    return config::kDone;
+  }
   const std::vector<Setting> settings = Settings();
   for (std::size_t i = 0; i < settings.size(); ++i) {
     if (isatty(STDERR_FILENO) != 0) {

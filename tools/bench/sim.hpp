@@ -5,6 +5,7 @@ namespace fovea::bench {
 
 struct SimArguments {
   double seconds = 4.0;  // simulated, of each run
+  bool shares = false;   // only what the time goes to
   bool json = false;
 };
 

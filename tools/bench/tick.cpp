@@ -153,13 +153,19 @@ void Say(const char* what) {
 }
 
 void AddInstructions(const TickArguments& arguments, std::vector<Figure>& figures) {
+  const std::vector<std::string> words{"tick", "--robot", arguments.robot, "--runs",
+                                       std::to_string(std::min(arguments.runs, 2))};
   for (const char* mode : {"boot", "hold", "track", "coast", "move", "fault"}) {
     Say(fmt::format("counting instructions in mode {} ...", mode).c_str());
-    const std::optional<double> count = CountInstructions(
-        {"tick", "--robot", arguments.robot, "--runs", std::to_string(std::min(arguments.runs, 2))}, mode);
-    if (count) {
+    if (const std::optional<double> count = CountInstructions(words, mode)) {
       figures.push_back({fmt::format("instructions_{}", mode), *count, "instructions", {}});
     }
+  }
+  std::vector<std::string> traced = words;
+  traced.emplace_back("--traced");
+  Say("counting instructions with a timeline ...");
+  if (const std::optional<double> count = CountInstructions(traced, "track")) {
+    figures.push_back({"instructions_track_traced", *count, "instructions", {}});
   }
 }
 
@@ -222,7 +228,7 @@ int RunTick(const TickArguments& arguments) {
   }
   const std::vector<TickCase> cases = Cases(arm, arguments.runs);
   if (!arguments.count.empty()) {
-    RunCounted(cases, arguments.count);
+    RunCounted(cases, arguments.count, arguments.traced);
     return config::kDone;
   }
   std::vector<Figure> figures;

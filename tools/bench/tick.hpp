@@ -10,6 +10,7 @@ struct TickArguments {
   int runs = 40;              // random ones in which the worst input is searched
   bool instructions = false;  // also count them, under valgrind
   std::string count;          // internal: the mode whose ticks are counted in this process
+  bool traced = false;        // internal: and each of them leaves its spans on a timeline
   bool json = false;
 };
 

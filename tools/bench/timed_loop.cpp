@@ -3,7 +3,8 @@
 #include <sys/resource.h>
 #include <time.h>
 
-#include <array>
+#include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 
@@ -46,78 +47,105 @@ class Usage {
 class NotingClock final : public hal::Clock {
  public:
   explicit NotingClock(std::vector<Period>& periods) : periods_(periods) {}
-  [[nodiscard]] std::int64_t deadline_ns() const noexcept { return deadline_ns_; }
   [[nodiscard]] std::int64_t woken_ns() const noexcept { return woken_ns_; }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
+  // The period that has begun; none before the first deadline, nor when there is no room for it.
+  [[nodiscard]] Period* current() noexcept {
+    return count_ > 0 && count_ <= periods_.size() ? &periods_[count_ - 1] : nullptr;
+  }
 
  private:
   [[nodiscard]] std::int64_t DoNowNs() const noexcept override { return clock_.NowNs(); }
   hal::Status DoWaitUntil(std::int64_t deadline_ns) noexcept override {
     const hal::Status status = clock_.WaitUntil(deadline_ns);
-    deadline_ns_ = deadline_ns;
+    const std::int64_t before_ns = woken_ns_;
     woken_ns_ = clock_.NowNs();
-    if (count_ < periods_.size()) {
-      periods_[count_].wake_ns = Clipped(woken_ns_ - deadline_ns);
-    }
     ++count_;
+    if (Period* const period = current(); period != nullptr) {
+      period->deadline_ns = deadline_ns;
+      period->wake_ns = Clipped(woken_ns_ - deadline_ns);
+      period->off_period_ns = before_ns > 0 ? Clipped(std::abs(woken_ns_ - before_ns - kPeriodNs)) : 0;
+    }
     return status;
   }
 
   linux_rt::MonotonicClock clock_;
   std::vector<Period>& periods_;
   std::size_t count_ = 0;
-  std::int64_t deadline_ns_ = 0;
   std::int64_t woken_ns_ = 0;
+};
+
+class NotingStages final : public servo::StageProbe {
+ public:
+  explicit NotingStages(NotingClock& clock) : clock_(clock) {}
+  void Done(servo::Stage stage) noexcept override {
+    const std::int64_t now_ns = NowNs();
+    const std::int64_t begin_ns = stage == servo::Stage::kCheck ? clock_.woken_ns() : last_ns_;
+    if (Period* const period = clock_.current(); period != nullptr) {
+      period->stage_ns[static_cast<std::size_t>(stage)] = Clipped(now_ns - begin_ns);
+    }
+    last_ns_ = now_ns;
+  }
+
+ private:
+  NotingClock& clock_;
+  std::int64_t last_ns_ = 0;
 };
 
 // The arm behind the seam. What it does with a command comes after the time was taken.
 class BenchArm final : public hal::Arm {
  public:
-  BenchArm(const servo::ServoConfig& config, const ModelArm& arm, const model::Vec3& p_BO, NotingClock& clock,
-           hal::FeatureMailbox& features, std::vector<Period>& periods)
+  BenchArm(const servo::ServoConfig& config, NotingClock& clock)
       : Arm(config.arm.num_joints, /*paces_loop=*/false),
-        config_(config),
-        arm_(arm),
-        p_BO_(p_BO),
+        arm_(config.arm, model::ToVector(config.arm.q_ready, config.arm.num_joints)),
         clock_(clock),
-        features_(features),
-        periods_(periods) {}
+        start_ns_(clock.NowNs()) {}
+  [[nodiscard]] std::int64_t written_ns() const noexcept { return written_ns_; }
 
  private:
+  // Stamped with the grid's time, which goes on when ticks are missed.
   hal::Status DoRead(hal::ArmState& state) noexcept override {
     state = arm_.State();
+    const std::int64_t woken_ns = clock_.count() > 0 ? clock_.woken_ns() : start_ns_;
+    state.stamp_ns = start_ns_ + (woken_ns - start_ns_) / kPeriodNs * kPeriodNs;
     return hal::Status::Ok();
   }
   hal::Status DoWrite(const hal::ArmCommand& command) noexcept override {
-    const std::int64_t done_ns = NowNs();
-    if (const std::size_t count = clock_.count(); count > 0 && count <= periods_.size()) {
-      Period& period = periods_[count - 1];
-      period.execute_ns = Clipped(done_ns - clock_.woken_ns());
-      period.response_ns = Clipped(done_ns - clock_.deadline_ns());
+    written_ns_ = NowNs();
+    if (Period* const period = clock_.current(); period != nullptr) {
+      period->execute_ns = Clipped(written_ns_ - clock_.woken_ns());
+      period->response_ns = Clipped(written_ns_ - period->deadline_ns);
     }
     arm_.Tick(command);
-    const std::size_t slot = ticks_ % seen_.size();
-    if (ticks_ >= seen_.size() && ticks_ % kFrameTicks == 0) {
-      features_.Put(seen_[slot]);
-    }
-    seen_[slot] = Measure(config_, arm_, p_BO_);
-    ++ticks_;
     return hal::Status::Ok();
   }
 
-  const servo::ServoConfig& config_;
   ModelArm arm_;
-  model::Vec3 p_BO_;
   NotingClock& clock_;
-  hal::FeatureMailbox& features_;
-  std::vector<Period>& periods_;
-  std::array<hal::FeatureMeasurement, kLatencyTicks> seen_;
-  std::size_t ticks_ = 0;
+  std::int64_t start_ns_;
+  std::int64_t written_ns_ = 0;
 };
 
-class NoRecorder final : public hal::Recorder {
-  void Record(const hal::TickRecord& /*record*/) noexcept override {}
+// Notes which tick took which picture.
+class NotingRecorder final : public hal::Recorder {
+ public:
+  NotingRecorder(EyeChain& eye, const NotingClock& clock, const BenchArm& arm)
+      : eye_(eye), clock_(clock), arm_(arm) {}
+  [[nodiscard]] std::uint64_t fault_ticks() const noexcept { return fault_ticks_; }
+  void Record(const hal::TickRecord& record) noexcept override {
+    fault_ticks_ += record.mode == hal::Mode::kFault ? 1U : 0U;
+    if (record.has_feature && clock_.count() > 0) {
+      eye_.NoteUse(record.feature.sequence, clock_.woken_ns(), arm_.written_ns());
+    }
+  }
+
+ private:
+  EyeChain& eye_;
+  const NotingClock& clock_;
+  const BenchArm& arm_;
+  std::uint64_t fault_ticks_ = 0;
 };
+
 class NoProbe final : public hal::TickProbe {
   void Enter() noexcept override {}
   void Leave() noexcept override {}
@@ -125,23 +153,22 @@ class NoProbe final : public hal::TickProbe {
 
 }  // namespace
 
-Block RunServoBlock(const model::ArmModel& arm, int periods) {
+Block RunServoBlock(const servo::ServoConfig& config, EyeChain& eye, int periods) {
   Block block;
   block.periods.resize(static_cast<std::size_t>(periods));
-  const servo::ServoConfig config = DefaultConfig(arm);
   servo::ServoTask task;
   if (!task.Init(config).ok()) {
     throw std::logic_error("the default configuration is refused");
   }
-  model::VecN q = model::ToVector(arm.q_ready, arm.num_joints);
-  q[0] -= 0.3;
   NotingClock clock(block.periods);
-  hal::FeatureMailbox features;
-  BenchArm bench_arm(config, ModelArm(arm, q), CameraAt(config, q) * model::Vec3(-0.10, 0.08, 0.55), clock,
-                     features, block.periods);
-  NoRecorder recorder;
+  NotingStages stages(clock);
+  task.UseProbe(&stages);
+  BenchArm arm(config, clock);
+  NotingRecorder recorder(eye, clock, arm);
   NoProbe probe;
-  servo::ServoLoop loop(task, bench_arm, clock, features, recorder, probe);
+  servo::ServoLoop loop(task, arm, clock, eye.mailbox(), recorder, probe);
+  hal::FeatureMeasurement old;
+  static_cast<void>(eye.mailbox().Take(old));  // what came since the block before counts for no tick
   const Usage usage;
   const hal::Status status = loop.Run(clock.NowNs() + periods * kPeriodNs);
   usage.Fill(block);
@@ -149,6 +176,7 @@ Block RunServoBlock(const model::ArmModel& arm, int periods) {
     throw std::runtime_error("the servo's loop broke off");
   }
   block.overruns = loop.counters().overruns;
+  block.fault_ticks = recorder.fault_ticks();
   // The last wake-up ends the loop; a late one takes the place of those that it missed.
   block.periods.resize(std::min(clock.count() > 0 ? clock.count() - 1 : 0, block.periods.size()));
   return block;
@@ -159,14 +187,19 @@ Block RunSleepBlock(int periods) {
   block.periods.resize(static_cast<std::size_t>(periods));
   std::size_t count = 0;
   const Usage usage;
+  std::int64_t woken_ns = 0;
   std::int64_t deadline_ns = NowNs();
   const std::int64_t end_ns = deadline_ns + periods * kPeriodNs;
   while ((deadline_ns += kPeriodNs) < end_ns && count < block.periods.size()) {
     const timespec deadline{deadline_ns / hal::kNsPerSecond, deadline_ns % hal::kNsPerSecond};
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &deadline, nullptr);
-    const std::int64_t late_ns = NowNs() - deadline_ns;
+    const std::int64_t before_ns = woken_ns;
+    woken_ns = NowNs();
+    const std::int64_t late_ns = woken_ns - deadline_ns;
     Period& period = block.periods[count++];
+    period.deadline_ns = deadline_ns;
     period.wake_ns = period.response_ns = Clipped(late_ns);
+    period.off_period_ns = before_ns > 0 ? Clipped(std::abs(woken_ns - before_ns - kPeriodNs)) : 0;
     if (late_ns >= kPeriodNs) {
       ++block.overruns;
       deadline_ns += late_ns / kPeriodNs * kPeriodNs;

@@ -1,0 +1,58 @@
+#include "sim/render/cover.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr float kMargin =
+    0.02F;  // to the sides [m]: the surface's own edge is drawn over more than it covers
+constexpr float kMarginPx = 2.0F;    // of the picture
+constexpr float kBeneath = 0.03F;    // a pixel between two tiles may show what the surface lies on [m]
+constexpr float kLeastDown = 0.05F;  // of a ray's direction; flatter ones are taken to miss
+
+}  // namespace
+
+Box FindBox(const Mesh& mesh) {
+  Box box;
+  for (const Vertex& vertex : mesh.vertices) {
+    box.extend(vertex.position);
+  }
+  return box;
+}
+
+// All rays lie within the four of the picture's corners, and what can be seen within the pyramid from the eye
+// to where these meet the plane.
+std::optional<Box> SeenOver(const TexturedPlane& plane, const Pinhole& pinhole,
+                            const Eigen::Isometry3f& X_BC) {
+  const Eigen::Vector3f eye = X_BC.translation();
+  const float height = eye.z() - plane.centre_B.z();
+  if (height <= 0.0F) {
+    return std::nullopt;
+  }
+  const auto f = static_cast<float>(pinhole.f_px);
+  const auto c_u = static_cast<float>(pinhole.c_u_px);
+  const auto c_v = static_cast<float>(pinhole.c_v_px);
+  const auto right = static_cast<float>(pinhole.width_px - 1) + kMarginPx;
+  const auto bottom = static_cast<float>(pinhole.height_px - 1) + kMarginPx;
+  Box seen(eye);
+  for (const float u : {-kMarginPx, right}) {
+    for (const float v : {-kMarginPx, bottom}) {
+      const Eigen::Vector3f ray =
+          (X_BC.linear() * Eigen::Vector3f((u - c_u) / f, (v - c_v) / f, 1.0F)).normalized();
+      if (ray.z() > -kLeastDown) {
+        return std::nullopt;
+      }
+      const Eigen::Vector3f foot = eye - ray * (height / ray.z());
+      const Eigen::Vector2f off = (foot - plane.centre_B).head<2>().cwiseAbs();
+      if ((off.array() > 0.5F * plane.size.array() - kMargin).any()) {
+        return std::nullopt;
+      }
+      seen.extend(foot);
+    }
+  }
+  seen.min() -= Eigen::Vector3f(kMargin, kMargin, 0.0F);
+  seen.max() += Eigen::Vector3f(kMargin, kMargin, kMargin);
+  seen.min().z() = plane.centre_B.z() - kBeneath;
+  return seen;
+}
+
+}  // namespace fovea::sim
