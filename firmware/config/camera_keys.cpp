@@ -14,6 +14,10 @@ void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys) {
   keys.Number("camera.c_u_px", in.c_u_px, -1e5, 1e5, "px", "principal point");
   keys.Number("camera.c_v_px", in.c_v_px, -1e5, 1e5, "px", "principal point");
   keys.Numbers("camera.lens", settings.lens, 5, 5, -1e3, 1e3, "", "distortion: k1, k2, p1, p2, k3");
+  keys.Number("camera.rms_px", settings.rms_px, 0.0, 1e3, "px",
+              "how well the views of the calibration fit, as `fovea calibrate intrinsics` says; 0: unknown");
+  keys.Number("camera.mount_rms_mm", settings.mount_rms_mm, 0.0, 1e3, "mm",
+              "how well those of the mounting agree, as `fovea calibrate hand-eye` says; 0: unknown");
   keys.Numbers("camera.mount_xyz", settings.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
   keys.Numbers("camera.mount_rpy_deg", settings.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
                "orientation of C in E: roll, pitch, yaw about fixed axes");

@@ -169,6 +169,14 @@ void KeyTable::Apply(const Setting& setting) const {
                                nearest.empty() ? std::string() : "; did you mean " + nearest + "?"));
 }
 
+std::map<std::string, std::string> KeyTable::Values() const {
+  std::map<std::string, std::string> values;
+  for (const Key& key : keys_) {
+    values[key.name] = key.default_text;
+  }
+  return values;
+}
+
 std::string Nearest(const std::string& name, const std::vector<std::string>& names) {
   std::string best;
   int best_distance = std::max(3, static_cast<int>(name.size()) / 3) + 1;

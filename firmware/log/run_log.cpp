@@ -17,9 +17,7 @@
 namespace fovea::log {
 namespace {
 
-constexpr std::size_t kRing = 2048;                      // ticks that may wait: two seconds
-constexpr std::size_t kMostImages = 8;                   // pictures that may wait
-constexpr std::size_t kMostJobs = 1024;                  // and messages
+constexpr std::size_t kMostJobs = 1024;                  // messages that may wait
 constexpr auto kPoll = std::chrono::milliseconds(2);     // how often the rings are looked at
 constexpr auto kFlush = std::chrono::milliseconds(500);  // what is older than this is in the file
 
@@ -40,8 +38,8 @@ RunLog::RunLog(const RunLogConfig& config)
     : config_(config),
       file_(std::make_unique<LogFile>(config.path, config.library)),
       tick_writer_(std::make_unique<TickWriter>(config_)),
-      ticks_(kRing),
-      truths_(kRing),
+      ticks_(config.ring),
+      truths_(config.ring),
       thread_([this] { WriteAll(); }) {}
 
 RunLog::~RunLog() { Close(); }
@@ -82,7 +80,7 @@ void RunLog::AddImage(const hal::Frame& frame) {
   cv::Mat picture;
   {
     std::unique_lock lock(mutex_);
-    const auto has_room = [this] { return images_waiting_ < kMostImages || failure_ != nullptr; };
+    const auto has_room = [this] { return images_waiting_ < config_.most_images || failure_ != nullptr; };
     if (!config_.may_drop) {
       changed_.wait(lock, has_room);
     }
@@ -202,6 +200,11 @@ void RunLog::Finish() {
 std::uint64_t RunLog::dropped() const {
   const std::lock_guard lock(mutex_);
   return ticks_.dropped() + truths_.dropped() + dropped_images_;
+}
+
+std::uint64_t RunLog::dropped_images() const {
+  const std::lock_guard lock(mutex_);
+  return dropped_images_;
 }
 
 }  // namespace fovea::log

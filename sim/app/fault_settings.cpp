@@ -133,6 +133,27 @@ void CheckFaults(const FaultSettings& f, int num_joints) {
   check_size("occluder_px", f.occluder_px[3]);
 }
 
+void CheckServedFaults(const FaultSettings& f) {
+  struct Fault {
+    const char* key;
+    const std::vector<double>& window_s;
+    const char* instead;
+  };
+  for (const Fault& fault : {Fault{"wrong_detection_s", f.wrong_detection_s, "the detector is the client's"},
+                             {"nan_detection_s", f.nan_detection_s, "the detector is the client's"},
+                             {"encoder_stuck_s", f.encoder_stuck_s, "a Panda keeps its encoders' faults"},
+                             {"encoder_noise_s", f.encoder_noise_s, "arm.encoder_noise has a lasting one"},
+                             {"encoder_nan_s", f.encoder_nan_s, "a Panda keeps its encoders' faults"},
+                             {"packet_loss_s", f.packet_loss_s, "--loss loses packets"},
+                             {"clock_jump_s", f.clock_jump_s, "stamps are the robot's own time"},
+                             {"deadline_miss_s", f.deadline_miss_s, "the ticks are the client's"}}) {
+    if (fault.window_s[1] > fault.window_s[0]) {
+      throw InputError(fmt::format("faults.{} = [{}, {}] is not allowed with serve: {}", fault.key,
+                                   fault.window_s[0], fault.window_s[1], fault.instead));
+    }
+  }
+}
+
 ArmFaults MakeArmFaults(const FaultSettings& f, std::uint64_t seed) {
   ArmFaults faults;
   faults.stuck = {ToWindow(f.encoder_stuck_s), f.encoder_stuck_joint - 1};

@@ -57,6 +57,10 @@ void AddFaultKeys(FaultSettings& faults, config::KeyTable& keys);
 // InputError when a window ends before it begins, or a joint is none of the arm's.
 void CheckFaults(const FaultSettings& faults, int num_joints);
 
+// InputError when a fault is at work that lies between arm, detector and servo: none of the bench's, which is
+// all that `serve` has.
+void CheckServedFaults(const FaultSettings& faults);
+
 // What each part of the simulator is told of them.
 ArmFaults MakeArmFaults(const FaultSettings& faults, std::uint64_t seed);
 StallFault MakeStallFault(const FaultSettings& faults, std::uint64_t seed);

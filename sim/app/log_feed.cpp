@@ -8,6 +8,7 @@
 #include "fovea/build_info.hpp"
 #include "fovea/log/picture_messages.hpp"
 #include "fovea/log/record_hash.hpp"
+#include "fovea/log/run_messages.hpp"
 #include "fovea/log/topics.hpp"
 #include "fovea/model/rotation.hpp"
 #include "fovea/run.pb.h"
@@ -31,55 +32,19 @@ log::RunLogConfig MakeRunLogConfig(const RunDescription& about, const std::files
   return out;
 }
 
-log::Setup MakeSetup(const RunDescription& about) {
-  log::Setup setup;
-  setup.set_name(about.scenario.name);
-  const model::ArmModel& arm = about.servo.arm;
-  for (int i = 0; i < arm.num_joints; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    log::Joint& joint = *setup.add_joints();
-    joint.set_name(about.robot.joint_names[k]);
-    joint.set_prismatic(arm.joints[k].type == model::JointType::kPrismatic);
-    joint.set_q_min(arm.joints[k].q_min);
-    joint.set_q_max(arm.joints[k].q_max);
-    joint.set_dq_max(arm.joints[k].dq_max);
-    joint.set_tau_max(arm.joints[k].tau_max);
-  }
-  setup.set_lambda(about.servo.law.lambda);
-  if (about.scene.has_eye) {
-    setup.set_target_radius(about.scene.target.Reach());
-  }
-  const features::TargetFeature& feature = about.servo.feature;
-  setup.set_target(features::kTargetNames[static_cast<std::size_t>(feature.target)]);
-  setup.set_feature(features::kFormNames[static_cast<std::size_t>(feature.form)]);
-  for (int i = 0; feature.SeesOrientation() && i < feature.corners.num_corners; ++i) {
-    setup.add_corners(feature.corners.corners[static_cast<std::size_t>(i)].x());
-    setup.add_corners(feature.corners.corners[static_cast<std::size_t>(i)].y());
-  }
-  const std::array<double, 4> q_CO_star = model::QuaternionOf(feature.R_CO_star);
-  setup.mutable_q_co_star()->Add(q_CO_star.begin(), q_CO_star.end());
-  setup.set_target_moves(KeepsMoving(about.scenario.target));
-  const model::Vec3& goal = feature.p_CO_C_star;
-  setup.mutable_p_co_c_star()->Add(goal.data(), goal.data() + 3);
-  setup.set_workspace_radius(about.servo.guard.workspace_radius);
-  setup.set_duration_s(about.scenario.run.duration_s);
-  setup.set_f_px(about.pinhole.f_px);
-  setup.set_c_u_px(about.pinhole.c_u_px);
-  setup.set_c_v_px(about.pinhole.c_v_px);
-  for (int i = 0; i < hal::kNumLimits; ++i) {
-    setup.add_limits(hal::Name(static_cast<hal::Limit>(i)));
-  }
+log::RunSetup MakeSetup(const RunDescription& about) {
+  log::RunSetup setup;
+  setup.name = about.scenario.name;
+  setup.joint_names = about.robot.joint_names;
+  setup.arm = about.servo.arm;
+  setup.feature = about.servo.feature;
+  setup.intrinsics = about.intrinsics;
+  setup.lambda = about.servo.law.lambda;
+  setup.target_radius = about.scene.has_eye ? about.scene.target.Reach() : 0.0;
+  setup.target_moves = KeepsMoving(about.scenario.target);
+  setup.workspace_radius = about.servo.guard.workspace_radius;
+  setup.duration_s = about.scenario.run.duration_s;
   return setup;
-}
-
-// Every key of the scenario as it was in force.
-std::map<std::string, std::string> Configuration(Scenario scenario) {
-  std::map<std::string, std::string> entries;
-  const config::KeyTable table = ScenarioKeys(scenario);
-  for (const config::Key& key : table.keys()) {
-    entries[key.name] = key.default_text;
-  }
-  return entries;
 }
 
 }  // namespace
@@ -90,14 +55,11 @@ LogFeed::LogFeed(const RunDescription& about, const std::filesystem::path& path,
     log::AddOutline(about.intrinsics, GoalCurve(about.intrinsics, about.servo.feature), log::kGoalRole,
                     goal_);
   }
-  log_.AddMetadata("configuration", Configuration(about.scenario));
-  log_.AddMetadata("build", {{"version", kVersion},
-                             {"git", kGitRevision},
-                             {"servo library", kServoLibraryHash},
-                             {"compiler", kCompiler},
-                             {"flags", kFlags}});
+  Scenario scenario = about.scenario;
+  log_.AddMetadata("configuration", ScenarioKeys(scenario).Values());
+  log_.AddMetadata("build", BuildEntries());
   log_.AddMetadata("robot", {{"name", about.robot.name}, {"model", log::HashOfModel(about.servo.arm)}});
-  log_.Add(log::kSetupTopic, 0, MakeSetup(about));
+  log_.Add(log::kSetupTopic, 0, log::SetupMessage(MakeSetup(about)));
   log_.Add(log::kCalibrationTopic, 0, log::CalibrationMessage(0, about.intrinsics));
   log_.Add(log::kSceneTopic, 0, MakeSceneMessage(about.scene));
 }
@@ -137,12 +99,8 @@ void LogFeed::AddFrame(const hal::Frame& frame, const vision::Detection& detecti
 
 void LogFeed::Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json,
                      const std::optional<std::filesystem::path>& film) {
-  log::TickTimes times;
-  ticks.ForEach([&times](std::int64_t upper_ns, std::uint64_t count) {
-    times.add_upper_ns(static_cast<std::uint64_t>(upper_ns));
-    times.add_counts(count);
-  });
-  log_.Add(log::kTickTimesTopic, static_cast<std::int64_t>(about_.scenario.run.duration_s * 1e9), times);
+  log_.Add(log::kTickTimesTopic, static_cast<std::int64_t>(about_.scenario.run.duration_s * 1e9),
+           log::TickTimesMessage(ticks));
   log_.AddAttachment("summary.json", "application/json", summary_json);
   if (film) {
     std::ifstream stream(*film, std::ios::binary);

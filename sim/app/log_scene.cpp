@@ -1,7 +1,6 @@
 #include "sim/app/log_scene.hpp"
 
-#include <cmath>
-
+#include "fovea/log/scene_message.hpp"
 #include "fovea/log/topics.hpp"
 #include "fovea/model/kinematics.hpp"
 #include "foxglove/scene.pb.h"
@@ -11,91 +10,21 @@ namespace {
 
 model::Pose ToPose(const Eigen::Isometry3d& X) { return {X.linear(), X.translation()}; }
 
-void SetPose(const Eigen::Isometry3d& X, foxglove::Pose& pose) {
-  pose.mutable_position()->set_x(X.translation().x());
-  pose.mutable_position()->set_y(X.translation().y());
-  pose.mutable_position()->set_z(X.translation().z());
-  const Eigen::Quaterniond q(X.linear());
-  pose.mutable_orientation()->set_w(q.w());
-  pose.mutable_orientation()->set_x(q.x());
-  pose.mutable_orientation()->set_y(q.y());
-  pose.mutable_orientation()->set_z(q.z());
-}
-
-// Viewers show colours as screens do; ours are linear.
-void SetColour(const Eigen::Vector3f& linear, foxglove::Color& colour) {
-  const auto shown = [](float value) { return std::pow(static_cast<double>(value), 1.0 / 2.2); };
-  colour.set_r(shown(linear.x()));
-  colour.set_g(shown(linear.y()));
-  colour.set_b(shown(linear.z()));
-  colour.set_a(1.0);
-}
-
-void SetSize(double x, double y, double z, foxglove::Vector3& size) {
-  size.set_x(x);
-  size.set_y(y);
-  size.set_z(z);
-}
-
-foxglove::SceneEntity& AddEntity(const std::string& id, const std::string& frame,
-                                 foxglove::SceneUpdate& update) {
-  foxglove::SceneEntity& entity = *update.add_entities();
-  entity.set_id(id);
-  entity.set_frame_id(frame);
-  entity.set_frame_locked(true);
-  entity.mutable_timestamp()->set_seconds(0);
-  return entity;
-}
-
-void AddBox(const Eigen::Isometry3d& X, const Eigen::Vector3d& size, const Eigen::Vector3f& colour,
-            foxglove::SceneEntity& entity) {
-  foxglove::CubePrimitive& cube = *entity.add_cubes();
-  SetPose(X, *cube.mutable_pose());
-  SetSize(size.x(), size.y(), size.z(), *cube.mutable_size());
-  SetColour(colour, *cube.mutable_color());
-}
-
-void AddCylinder(const Eigen::Isometry3d& X, double radius, double length, const Eigen::Vector3f& colour,
-                 foxglove::SceneEntity& entity) {
-  foxglove::CylinderPrimitive& cylinder = *entity.add_cylinders();
-  SetPose(X, *cylinder.mutable_pose());
-  SetSize(2.0 * radius, 2.0 * radius, length, *cylinder.mutable_size());
-  cylinder.set_bottom_scale(1.0);
-  cylinder.set_top_scale(1.0);
-  SetColour(colour, *cylinder.mutable_color());
-}
-
-void AddSphere(const Eigen::Isometry3d& X, double radius, const Eigen::Vector3f& colour,
-               foxglove::SceneEntity& entity) {
-  foxglove::SpherePrimitive& sphere = *entity.add_spheres();
-  SetPose(X, *sphere.mutable_pose());
-  SetSize(2.0 * radius, 2.0 * radius, 2.0 * radius, *sphere.mutable_size());
-  SetColour(colour, *sphere.mutable_color());
-}
-
 void AddMesh(const Eigen::Isometry3d& X, const Mesh& mesh, foxglove::SceneEntity& entity) {
-  foxglove::TriangleListPrimitive& triangles = *entity.add_triangles();
-  SetPose(X, *triangles.mutable_pose());
+  foxglove::TriangleListPrimitive& triangles = log::AddTriangles(X, entity);
   for (const Vertex& vertex : mesh.vertices) {
-    foxglove::Point3& point = *triangles.add_points();
-    point.set_x(static_cast<double>(vertex.position.x()));
-    point.set_y(static_cast<double>(vertex.position.y()));
-    point.set_z(static_cast<double>(vertex.position.z()));
-    SetColour(vertex.colour, *triangles.add_colors());
+    log::AddPoint(vertex.position, vertex.colour, triangles);
   }
   triangles.mutable_indices()->Add(mesh.indices.begin(), mesh.indices.end());
-  if (!mesh.vertices.empty()) {
-    SetColour(mesh.vertices.front().colour, *triangles.mutable_color());
-  }
 }
 
 void AddShape(const Shape& shape, foxglove::SceneEntity& entity) {
   switch (shape.kind) {
-    case ShapeKind::kBox: AddBox(shape.X_LS, shape.size, shape.colour, entity); return;
+    case ShapeKind::kBox: log::AddBox(shape.X_LS, shape.size, shape.colour, entity); return;
     case ShapeKind::kCylinder:
-      AddCylinder(shape.X_LS, shape.size[0], shape.size[1], shape.colour, entity);
+      log::AddCylinder(shape.X_LS, shape.size[0], shape.size[1], shape.colour, entity);
       return;
-    case ShapeKind::kSphere: AddSphere(shape.X_LS, shape.size[0], shape.colour, entity); return;
+    case ShapeKind::kSphere: log::AddSphere(shape.X_LS, shape.size[0], shape.colour, entity); return;
     case ShapeKind::kMesh: AddMesh(shape.X_LS, *shape.mesh, entity); return;
   }
 }
@@ -108,13 +37,13 @@ Eigen::Isometry3d At(double x, double y, double z) {
 void AddTarget(const RenderScene& scene, foxglove::SceneEntity& entity) {
   const TargetShape& target = scene.target;
   if (target.kind == TargetShape::Kind::kBall) {
-    AddSphere(At(0.0, 0.0, 0.0), target.radius, scene.target_colour, entity);
+    log::AddSphere(At(0.0, 0.0, 0.0), target.radius, scene.target_colour, entity);
     return;
   }
   if (target.kind == TargetShape::Kind::kDisc) {
     Eigen::Isometry3d turned = Eigen::Isometry3d::Identity();
     turned.linear() = scene.target_R_BO;
-    AddCylinder(turned, target.radius, 0.001, scene.target_colour, entity);
+    log::AddCylinder(turned, target.radius, 0.001, scene.target_colour, entity);
     return;
   }
   Mesh plate;
@@ -155,26 +84,23 @@ std::vector<log::LinkFrame> MakeLinkFrames(const SimRobot& robot, const model::A
 }
 
 foxglove::SceneUpdate MakeSceneMessage(const RenderScene& scene) {
-  const Eigen::Vector3f dark(0.07F, 0.075F, 0.08F);
   foxglove::SceneUpdate update;
   for (const SimLink& link : scene.robot.links) {
     if (link.visuals.empty()) {
       continue;
     }
-    foxglove::SceneEntity& entity = AddEntity(link.name, link.name, update);
+    foxglove::SceneEntity& entity = log::AddEntity(link.name, link.name, update);
     for (const Shape& shape : link.visuals) {
       AddShape(shape, entity);
     }
   }
-  AddBox(At(0.35, 0.0, -0.01), {1.6, 1.3, 0.018}, {0.42F, 0.40F, 0.37F},
-         AddEntity("table", log::kBaseFrame, update));
+  log::AddBox(At(0.35, 0.0, -0.01), {1.6, 1.3, 0.018}, {0.42F, 0.40F, 0.37F},
+              log::AddEntity("table", log::kBaseFrame, update));
   if (!scene.has_eye) {
     return update;
   }
-  foxglove::SceneEntity& camera = AddEntity("camera", log::kCameraFrame, update);
-  AddBox(At(0.0, 0.0, -0.042), {0.034, 0.034, 0.040}, dark, camera);
-  AddCylinder(At(0.0, 0.0, -0.013), 0.0155, 0.022, dark, camera);
-  AddTarget(scene, AddEntity("target", log::kTargetFrame, update));
+  log::AddCamera(update);
+  AddTarget(scene, log::AddEntity("target", log::kTargetFrame, update));
   return update;
 }
 

@@ -1,6 +1,10 @@
 #include "sim/app/network_eye.hpp"
 
+#include <optional>
 #include <utility>
+
+#include "sim/app/compose.hpp"
+#include "sim/app/fault_settings.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -26,11 +30,14 @@ GigeCameraConfig MakeGigeConfig(const RunDescription& about, const std::string& 
 
 NetworkEye::NetworkEye(const RunDescription& about, World& world, const std::string& address,
                        const std::string& serial)
-    : world_(world), eye_(about, kQueue) {
+    : world_(world),
+      eye_(about, kQueue),
+      faults_(MakeFrameFaults(about.scenario.faults, SeedOf(about.scenario, RandomStream::kFrameFaults))) {
   gige_ = std::make_unique<GigeCamera>(eye_.camera(), MakeGigeConfig(about, address, serial));
-  world.OnExposure([this](Exposure exposure) {
-    if (gige_->Expect(exposure.stamp_ns)) {
-      eye_.camera().Expose(std::move(exposure));
+  world.OnExposure([this](const Exposure& exposure) {
+    std::optional<Exposure> taken = faults_.Spoil(exposure);
+    if (taken && gige_->Expect(taken->stamp_ns, faults_.DelayNs(taken->stamp_ns))) {
+      eye_.camera().Expose(*std::move(taken));
     }
   });
 }

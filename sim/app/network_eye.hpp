@@ -1,10 +1,12 @@
-// The scenario's camera on the network: what the eye sees, as a GigE Vision camera sends it.
+// The scenario's camera on the network: what the eye sees, as a GigE Vision camera sends it, with the
+// faults that it has.
 #pragma once
 
 #include <memory>
 #include <string>
 
 #include "sim/app/eye.hpp"
+#include "sim/faults/frame_faults.hpp"
 #include "sim/wire/gige_camera.hpp"
 #include "sim/world/world.hpp"
 
@@ -26,6 +28,7 @@ class NetworkEye {
  private:
   World& world_;
   Eye eye_;
+  FrameSpoiler faults_;
   std::unique_ptr<GigeCamera> gige_;
 };
 

@@ -83,7 +83,7 @@ void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt
     return;
   }
   const std::string summary_json = ToJson(summary);
-  std::vector<OutputFile> files;
+  std::vector<config::OutputFile> files;
   // The bench takes longest to draw; the rest is written meanwhile.
   std::future<std::string> bench;
   if (HasReport()) {

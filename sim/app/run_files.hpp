@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 
+#include "fovea/config/output_folder.hpp"
 #include "fovea/report/report.hpp"
 #include "sim/app/eye_film.hpp"
 #include "sim/app/log_feed.hpp"
-#include "sim/app/output_folder.hpp"
 #include "sim/app/path.hpp"
 #include "sim/app/pictures.hpp"
 #include "sim/app/run_description.hpp"
@@ -54,7 +54,7 @@ class RunFiles {
 
   const RunDescription& about_;
   std::optional<report::ReportPage> page_;
-  std::optional<OutputFolder> folder_;
+  std::optional<config::OutputFolder> folder_;
   std::unique_ptr<EyeFilm> eye_film_;
   std::unique_ptr<SceneFilm> scene_film_;
   std::unique_ptr<LogFeed> log_;

@@ -18,6 +18,7 @@
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
 #include "sim/app/compose.hpp"
+#include "sim/app/fault_settings.hpp"
 #include "sim/app/network_eye.hpp"
 #include "sim/app/run_description.hpp"
 #include "sim/app/target_error.hpp"
@@ -69,6 +70,7 @@ void CheckIsPanda(const RunDescription& about) {
 ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const Say& say) {
   const RunDescription about = DescribeRun(scenario);
   CheckIsPanda(about);
+  CheckServedFaults(scenario.faults);
   const linux_rt::SignalQueue signals({SIGINT, SIGTERM, SIGUSR1});
   World world(MakeWorldConfig(scenario, about.scene.robot));
   FciRobot robot(world, about.scene.robot);

@@ -93,20 +93,18 @@ std::uint64_t GigeCamera::sent() const {
   return sent_;
 }
 
-bool GigeCamera::Expect(std::int64_t stamp_ns) {
+bool GigeCamera::Expect(std::int64_t stamp_ns, std::int64_t late_ns) {
   const bool wanted = streaming();
   const std::lock_guard lock(mutex_);
   if (wanted) {
-    expected_.push_back(stamp_ns);
+    expected_.push_back({stamp_ns, stamp_ns + config_.transport_ns + late_ns});
   } else {
     expected_.clear();
   }
   return wanted;
 }
 
-bool GigeCamera::IsDue() const {
-  return !expected_.empty() && expected_.front() + config_.transport_ns <= now_ns_;
-}
+bool GigeCamera::IsDue() const { return !expected_.empty() && expected_.front().due_ns <= now_ns_; }
 
 void GigeCamera::Advance(std::int64_t now_ns, bool wait) {
   std::unique_lock lock(mutex_);
@@ -129,7 +127,7 @@ void GigeCamera::Fill(void* buffer, std::uint32_t pixel_format) {
   if (on_its_way_) {  // the last one has left by now
     on_its_way_ = false;
     ++sent_;
-    while (!expected_.empty() && expected_.front() <= frame_.stamp_ns) {
+    while (!expected_.empty() && expected_.front().stamp_ns <= frame_.stamp_ns) {
       expected_.pop_front();
     }
     changed_.notify_all();
@@ -152,7 +150,7 @@ void GigeCamera::Fill(void* buffer, std::uint32_t pixel_format) {
 bool GigeCamera::TakeDue(std::unique_lock<std::mutex>& lock) {
   const auto end = std::chrono::steady_clock::now() + kFillPatience;
   while (changed_.wait_until(lock, end, [this] { return closed_ || IsDue(); }) && !closed_) {
-    const std::int64_t wanted_ns = expected_.front();
+    const std::int64_t wanted_ns = expected_.front().stamp_ns;
     lock.unlock();
     hal::Frame frame;
     const hal::Status status =
@@ -162,7 +160,7 @@ bool GigeCamera::TakeDue(std::unique_lock<std::mutex>& lock) {
       return false;
     }
     frame_ = frame;  // its pixels stay as they are until the next Acquire
-    while (!expected_.empty() && expected_.front() < frame.stamp_ns) {
+    while (!expected_.empty() && expected_.front().stamp_ns < frame.stamp_ns) {
       expected_.pop_front();  // the eye lost it
     }
     if (frame.stamp_ns >= wanted_ns) {

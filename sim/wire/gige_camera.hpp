@@ -33,7 +33,8 @@ class GigeCamera {
   ~GigeCamera();
 
   // From the thread that advances the world: the eye gets an exposure, when this says that somebody wants it.
-  [[nodiscard]] bool Expect(std::int64_t stamp_ns);
+  // It leaves `late_ns` later than others; those behind it wait.
+  [[nodiscard]] bool Expect(std::int64_t stamp_ns, std::int64_t late_ns = 0);
   // From the same: the world's time is `now_ns`, and what is due may leave. With `wait`, and while somebody
   // takes the pictures, returns when all that is due has left; after two seconds what has not is given up.
   void Advance(std::int64_t now_ns, bool wait);
@@ -55,7 +56,11 @@ class GigeCamera {
   std::condition_variable changed_;
   bool closed_ = false;
   std::int64_t now_ns_ = 0;
-  std::deque<std::int64_t> expected_;  // stamps of what has not left yet, oldest first
+  struct Expected {
+    std::int64_t stamp_ns = 0;
+    std::int64_t due_ns = 0;
+  };
+  std::deque<Expected> expected_;  // what has not left yet, oldest first
   std::uint64_t sent_ = 0;
   hal::Frame frame_;                // the last one that was taken from the eye
   bool on_its_way_ = false;         // frame_ was filled in, and leaves

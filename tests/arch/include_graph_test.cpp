@@ -72,14 +72,14 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"firmware/vision", "(fovea/(hal|model|features|vision)/|Eigen/|opencv2/).*",
              "vision sees hal, features and OpenCV"},
         Rule{"firmware/config",
-             "fovea/(hal|model|features|servo|vision|config|robots)/.*|(fmt|toml\\+\\+|Eigen)/.*",
+             "fovea/(hal|model|features|servo|vision|config|robots)/.*|(fmt|toml\\+\\+|Eigen)/.*|unistd[.]h",
              "nothing of the firmware sees the simulator"},
         Rule{"firmware/robots",
              "fovea/(hal|model|config|robots)/.*|urdf_chain[.]hpp|(fmt|urdf_parser|console_bridge)/.*|Eigen/"
              ".*",
              "nothing of the firmware sees the simulator"},
         Rule{"firmware/log",
-             "fovea/(hal|model|vision|linux_rt|log)/.*|(log_file|mcap_format|tick_writer)[.]hpp|"
+             "fovea/(hal|model|features|vision|linux_rt|log)/.*|(log_file|mcap_format|tick_writer)[.]hpp|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|(fmt|google|openssl|opencv2)/.*|Eigen/.*|(zlib|zstd)[.]h",
              "nothing of the firmware sees the simulator"},
         Rule{"firmware/report",
@@ -92,7 +92,11 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"firmware/design", "fovea/design/.*|characteristic[.]hpp|(unsupported/)?Eigen/.*",
              "design is mathematics alone"},
         Rule{"firmware/targets/linux",
-             "fovea/.*|(check|operator_input|hw_(camera|config|run|summary|vision))[.]hpp|(fmt|CLI|nlohmann)/"
+             "fovea/"
+             ".*|(check(_camera|_robot)?|frame_figures|operator_input|hw_(camera|config|files|run|scene|"
+             "summary|vision))[.]"
+             "hpp|(fmt|CLI|"
+             "nlohmann|Eigen|foxglove)/"
              ".*|(poll|unistd)[.]h",
              "the hardware target sees drivers and servo, not the simulator"},
         Rule{"tools/fovea", "(fovea|fmt|CLI|nlohmann|Eigen|opencv2|sys|tools/bench)/.*|[a-z_]+[.]h(pp)?",

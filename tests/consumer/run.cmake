@@ -1,4 +1,4 @@
-# Installs BUILD_DIR into a folder of its own, builds the project beside this file against that, and runs it.
+# Installs BUILD_DIR into a folder of its own, builds the project beside this file against that, and runs what it makes.
 foreach(name BUILD_DIR WORK_DIR SOURCE_DIR GENERATOR CXX)
   if(NOT ${name})
     message(FATAL_ERROR "${name} is not set")
@@ -13,6 +13,7 @@ execute_process(COMMAND ${CMAKE_COMMAND} -G ${GENERATOR} -S ${SOURCE_DIR} -B ${W
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK_DIR}/build COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK_DIR}/build/consumer ${WORK_DIR}/prefix/share/fovea/robots/panda.toml
   COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${WORK_DIR}/build/driver/cart_arm_test COMMAND_ERROR_IS_FATAL ANY)
 # What is installed must not know where it was built.
 file(GLOB_RECURSE package ${WORK_DIR}/prefix/*.cmake)
 foreach(file IN LISTS package)

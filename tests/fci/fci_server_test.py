@@ -70,6 +70,62 @@ class Connecting(Served):
         self.assertEqual(first.elbow[1], -1.0)
 
 
+class FaultsOfTheBench(unittest.TestCase):
+    """[faults] that act on the arm's body: at work from 1 s of the robot's time on."""
+
+    def states(self, *assignments):
+        """The last state before the fault, and one of half a second later."""
+        options = [word for assignment in assignments for word in ("--set", assignment)]
+        server = subprocess.Popen([PROGRAM, "serve", "ball", "--fci-port", "0", "--camera-serial", "", "--pace",
+                                   "lockstep", *options], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.PIPE, text=True)
+        try:
+            client = fci.Client(int(server.stderr.readline().split("127.0.0.1:")[1].split(",")[0]))
+            before = after = client.state()
+            self.assertLess(before.message_id, 1000, "the client came before the fault")
+            while after.message_id < 1500:
+                after = client.state()
+                before = after if after.message_id < 990 else before
+            client.close()
+            return before, after
+        finally:
+            server.send_signal(signal.SIGTERM)
+            self.assertEqual(server.wait(timeout=10), 0)
+            server.stderr.close()
+
+    def test_a_push(self):
+        before, after = self.states("faults.push=[0,0,0,5,0,0,0]", "faults.push_s=[1,1e6]")
+        print(f"\npushed by 5 Nm: {before.tau_ext_hat_filtered[3]:.3f}, then {after.tau_ext_hat_filtered[3]:.3f} Nm")
+        self.assertLess(abs(before.tau_ext_hat_filtered[3]), 0.3)
+        self.assertAlmostEqual(abs(after.tau_ext_hat_filtered[3]), 5.0, delta=0.5)
+
+    def test_a_load_that_nobody_was_told_of(self):
+        before, after = self.states("faults.load_mass=1", "faults.load_s=[1,1e6]")
+        more = max(abs(a - b) for a, b in zip(after.tau_J, before.tau_J))
+        print(f"\n1 kg at the hand: up to {more:.2f} Nm more")
+        self.assertGreater(more, 2.0)
+        self.assertLess(more, 10.0)
+
+    def test_a_motor_that_gives_less(self):
+        before, after = self.states("faults.torque_loss=0.5", "faults.torque_loss_joint=4",
+                                    "faults.torque_loss_s=[1,1e6]")
+        felt = after.tau_ext_hat_filtered[3] - before.tau_ext_hat_filtered[3]
+        print(f"\nhalf of joint 4's {before.tau_J[3]:.2f} Nm: it sinks by {after.q[3] - before.q[3]:.5f} rad, as if "
+              f"{felt:.2f} Nm pulled")
+        # It yields that way in which the torque that is gone held it.
+        self.assertLess((after.q[3] - before.q[3]) * before.tau_J[3], 0.0)
+        self.assertLess(felt * before.tau_J[3], -0.3 * before.tau_J[3] ** 2)
+
+    def test_what_is_none_of_the_bench_is_refused(self):
+        for key in ("wrong_detection", "nan_detection", "encoder_stuck", "encoder_noise", "encoder_nan",
+                    "packet_loss", "clock_jump", "deadline_miss"):
+            done = subprocess.run([PROGRAM, "serve", "ball", "--fci-port", "0", "--camera-serial", "", "--set",
+                                   f"faults.{key}_s=[1,2]"], timeout=20, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2, key)
+            self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+            self.assertIn(f"faults.{key}_s = [1, 2] is not allowed with serve: ", done.stderr)
+
+
 class RealPace(Served):
     options = ["--pace", "real"]
 

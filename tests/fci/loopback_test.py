@@ -1,17 +1,18 @@
 """The hardware program against the simulated robot, two processes and a network:  loopback_test.py FOVEA_SIM FOVEA_HW"""
 
 import json
+import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import unittest
 
 SIM = None
 HW = None
-# At rest the simulated robot does not wait for its client, and a busy machine may leave that out for long.
-PATIENT = ["--set", "safety.missed_ticks=2000"]
+READERS = pathlib.Path(__file__).parent.parent / "js"
 
 
 class Loopback(unittest.TestCase):
@@ -37,8 +38,7 @@ class Loopback(unittest.TestCase):
 
     def hardware(self, port, *options, camera=False, codes=(0,)):
         eye = [] if camera else ["--set", "camera.driver=none"]
-        done = subprocess.run([HW, "loopback", "--set", f"robot.port={port}", *PATIENT, "--json", *eye, *options],
-                              timeout=100,
+        done = subprocess.run([HW, "loopback", "--set", f"robot.port={port}", "--json", *eye, *options], timeout=100,
                               stdin=subprocess.DEVNULL, capture_output=True, text=True)
         self.assertIn(done.returncode, codes, done.stderr)
         return json.loads(done.stdout)
@@ -46,7 +46,7 @@ class Loopback(unittest.TestCase):
     def operator(self, port, *options):
         """The program with a person at the keyboard: write to its stdin."""
         hw = subprocess.Popen([HW, "loopback", "--set", f"robot.port={port}", "--set", "camera.driver=none", "--json",
-                               *PATIENT, *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True)
         watchdog = threading.Timer(60, hw.kill)
         watchdog.start()
@@ -62,28 +62,64 @@ class Loopback(unittest.TestCase):
         self.assertEqual(hw.returncode, code)
         return json.loads(out)
 
+    def tracked(self, *options):
+        """A run of 8 s in lockstep: what the client and the server say of it. The robot waits for the servo, but nobody
+        for the client's eye: where a busy machine left it a part of the pictures alone, it is run again, twice."""
+        for _ in range(3):
+            port = self.serve("--pace", "lockstep", *options, camera=True)
+            s = self.hardware(port, "--track", "--seconds", "8", camera=True)
+            truth = self.end_server()
+            if s["camera"]["lost"] < 0.3 * truth["frames_sent"]:
+                break
+        return s, truth
+
     def test_it_tracks_the_ball_in_lockstep(self):
-        port = self.serve("--pace", "lockstep", camera=True)
-        s = self.hardware(port, "--track", "--seconds", "8", camera=True)
-        truth = self.end_server()
+        s, truth = self.tracked()
         print(f"\nlockstep: {truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; {s['camera']['frames']} frames, "
               f"{s['camera']['lost']} lost")
         self.assertEqual(s["fault"], "none")
         self.assertLessEqual(truth["error_px"], 0.5)
-        self.assertLessEqual(truth["error_mm"], 1.2)
+        self.assertLessEqual(truth["error_mm"], 0.6)
         self.assertEqual(s["heap_allocations_in_tick"], 0)
         self.assertGreater(s["camera"]["frames_detected"], 50)
 
+    def test_its_log_and_report_say_what_was(self):
+        with tempfile.TemporaryDirectory() as temp:
+            out = pathlib.Path(temp) / "a" / "b"
+            port = self.serve("--pace", "lockstep", camera=True)
+            s = self.hardware(port, "--track", "--seconds", "4", "--out", str(out), "--set", "log.picture_rate_hz=10",
+                              camera=True)
+            print(f"\n{s['log_pictures']} pictures of {s['camera']['frames']} in the log")
+            self.assertEqual({file.name for file in out.iterdir()}, {"log.mcap", "report.html", "summary.json"})
+            self.assertEqual(json.loads((out / "summary.json").read_text()), s)
+            self.assertEqual(s["heap_allocations_in_tick"], 0)
+            # Four seconds of ticks find room in the rings, however busy the machine is.
+            self.assertEqual((s["records_dropped"], s["log_entries_dropped"]), (0, 0))
+            self.assertLessEqual(s["log_pictures"] + s["log_pictures_dropped"], 4 * 10 + 1)
+            # A busy machine may leave it without a picture in the last moment, and then it says so.
+            self.assertEqual(s["converged"], s["mode"] == "track" and s["camera"]["seen_error_px"] <= 3.0, s["verdict"])
+            self.assertEqual(s["fault"], "none")
+            for reader in (["read_log.mjs", str(out), "hardware"],
+                           ["open_report.mjs", str(out / "report.html"), str(out), "hardware"]):
+                done = subprocess.run(["node", READERS / reader[0], *reader[1:]], timeout=120, capture_output=True,
+                                      text=True)
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_moves(self):
+        with tempfile.NamedTemporaryFile() as file:
+            done = subprocess.run([HW, "loopback", "--set", "robot.port=1", "--set", "camera.driver=none", "--out",
+                                   file.name], timeout=20, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"--out {file.name}: the folder cannot be made", done.stderr)
+
     def test_it_tracks_the_ball_over_a_bad_network(self):
-        port = self.serve("--pace", "lockstep", "--late-ms", "3", "--loss", "0.05", "--jitter-ms", "2", camera=True)
-        s = self.hardware(port, "--track", "--seconds", "8", camera=True)
-        truth = self.end_server()
+        s, truth = self.tracked("--late-ms", "3", "--loss", "0.05", "--jitter-ms", "2")
         print(f"\n5 % lost, 2 ms of jitter: {truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; success rate "
               f"{s['robot']['command_success_rate']}")
         self.assertEqual(s["fault"], "none")
         self.assertGreater(s["robot"]["lost_states"], 100)
         self.assertLessEqual(truth["error_px"], 0.5)
-        self.assertLessEqual(truth["error_mm"], 1.2)
+        self.assertLessEqual(truth["error_mm"], 0.6)
 
     def test_it_tracks_the_ball_at_real_pace(self):
         for _ in range(3):
@@ -98,8 +134,8 @@ class Loopback(unittest.TestCase):
             self.assertEqual(s["heap_allocations_in_tick"], 0)
             if s["fault"] != "deadline_missed" and lost < 100 and s["camera"]["lost"] < 30:
                 self.assertEqual(s["fault"], "none")
-                self.assertLessEqual(truth["error_px"], 1.0)
-                self.assertLessEqual(truth["error_mm"], 2.0)
+                self.assertLessEqual(truth["error_px"], 0.5)
+                self.assertLessEqual(truth["error_mm"], 0.8)
                 return
         self.skipTest("this machine did not keep 1 kHz in three attempts")
 
@@ -181,9 +217,11 @@ class Loopback(unittest.TestCase):
                                "check.seconds=0.5"], timeout=60, capture_output=True, text=True)
         self.assertIn(done.returncode, (0, 1), done.stderr)
         rows = {row["what"]: row for row in json.loads(done.stdout)}
-        self.assertEqual(set(rows), {"kernel", "processor speed", "privileges", "wake-up", "robot", "robot's mode",
-                                     "states", "joint ranges", "gravity"})
-        for what in ("robot", "robot's mode", "joint ranges", "gravity"):
+        self.assertEqual(set(rows), {"kernel", "processor speed", "privileges", "wake-up", "limits", "robot",
+                                     "robot's mode", "states", "joint ranges", "kinematics", "gravity", "calibration",
+                                     "mounting", "camera"})
+        self.assertEqual(rows["camera"]["verdict"], "fail")  # there is none
+        for what in ("robot", "robot's mode", "limits", "joint ranges", "kinematics", "gravity"):
             self.assertEqual(rows[what]["verdict"], "pass", rows[what])
         self.assertEqual(done.returncode, 1 if any(r["verdict"] == "fail" for r in rows.values()) else 0)
         heavy = subprocess.run([HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
@@ -192,6 +230,87 @@ class Loopback(unittest.TestCase):
         self.assertEqual(heavy.returncode, 1)
         rows = {row["what"]: row for row in json.loads(heavy.stdout)}
         self.assertEqual(rows["gravity"]["verdict"], "fail")
+
+    def rows(self, port, *options):
+        """The pre-flight's rows by name, and its exit code."""
+        done = subprocess.run([HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
+                               "check.seconds=1", "--set", "camera.time=computer", *options], timeout=60,
+                              capture_output=True, text=True)
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        return {row["what"]: row for row in json.loads(done.stdout)}, done.returncode
+
+    def test_the_pre_flight_of_the_camera(self):
+        port = self.serve("--pace", "real", camera=True)
+        rows, _ = self.rows(port, "--set", "camera.rms_px=0.05", "--set", "camera.mount_rms_mm=0.3")
+        print("\n" + "; ".join(f"{what}: {rows[what]['found']}" for what in ("camera's rate", "frames", "latency")))
+        for what in ("calibration", "mounting", "camera"):
+            self.assertEqual(rows[what]["verdict"], "pass", rows[what])
+        self.assertEqual(rows["calibration"]["found"], "f 554.3 px, its views fit to 0.05 px rms")
+        self.assertRegex(rows["camera's rate"]["found"], r"^\d+\.\d Hz$")
+        self.assertRegex(rows["frames"]["found"], r"^\d+ came, \d+ lost, \d+ damaged, \d+ late$")
+        # The simulated camera's pictures leave 40 ms after their stamps. That is the least; a busy machine adds to it.
+        self.assertGreaterEqual(float(rows["latency"]["found"].split()[0]), 39.0)
+        # What is not known, or is bad, or is of another size.
+        rows, _ = self.rows(port)
+        self.assertEqual((rows["calibration"]["verdict"], rows["mounting"]["verdict"]), ("warn", "warn"))
+        self.assertIn("fovea calibrate intrinsics", rows["calibration"]["advice"])
+        rows, code = self.rows(port, "--set", "camera.rms_px=3", "--set", "camera.mount_rms_mm=30", "--set",
+                               "servo.stale_s=0.03")
+        self.assertEqual(code, 1)
+        for what in ("calibration", "mounting", "latency"):
+            self.assertEqual(rows[what]["verdict"], "fail", rows[what])
+        rows, _ = self.rows(port, "--set", "camera.mount_xyz=[0,0,0]", "--set", "camera.mount_rpy_deg=[0,0,0]",
+                            "--set", "camera.time=device")
+        self.assertEqual((rows["mounting"]["verdict"], rows["latency"]["verdict"]), ("fail", "warn"))
+
+    def test_the_pre_flight_of_a_camera_with_faults(self):
+        """[faults] of the scenario that is served."""
+        def frames(*assignments):
+            options = [word for assignment in assignments for word in ("--set", assignment)]
+            rows, code = self.rows(self.serve("--pace", "real", *options, camera=True))
+            self.end_server()
+            self.assertEqual(code, 1 if any(row["verdict"] == "fail" for row in rows.values()) else 0)
+            print("\n" + rows["frames"]["found"])
+            return rows
+
+        rows = frames("faults.camera_outage_s=[0,1e6]")
+        self.assertEqual(rows["frames"]["verdict"], "fail")
+        self.assertEqual(rows["frames"]["found"], "0 came in 1.0 s")
+        rows = frames("faults.frame_loss=0.5", "faults.frame_loss_s=[0,1e6]")
+        came, lost = (int(word.split()[0]) for word in rows["frames"]["found"].split(", ")[:2])
+        self.assertEqual(rows["frames"]["verdict"], "fail")
+        self.assertGreater(lost, 0.2 * (came + lost))
+
+    def test_pictures_that_come_late_are_old_when_they_are_used(self):
+        ages = []
+        for options in ([], ["--set", "faults.latency_ms=60", "--set", "faults.latency_s=[0,1e6]"]):
+            port = self.serve("--pace", "lockstep", *options, camera=True)
+            ages.append(self.hardware(port, "--track", "--seconds", "2", camera=True)["camera"]["feature_age_ms"]["p50"])
+            self.end_server()
+        print(f"\nage of a measurement: {ages[0]:.1f} ms, with 60 ms more {ages[1]:.1f} ms")
+        self.assertGreaterEqual(ages[0], 39.0)
+        self.assertGreaterEqual(ages[1], 99.0)
+
+    def test_the_pre_flight_finds_an_arm_that_is_not_the_robot(self):
+        port = self.serve("--pace", "real")
+        with tempfile.TemporaryDirectory() as temp:
+            share = pathlib.Path(HW).parent.parent / "share" / "fovea" / "robots"
+            for name, before, after, what, word in [
+                    ("toml", "torque_rate_max = [1000.0", "torque_rate_max = [1200.0", "limits", "torque rate"),
+                    ("urdf", 'upper="1.7628"', 'upper="1.8"', "limits", "joint 2's largest angle"),
+                    ("urdf", 'xyz="0 -0.316 0"', 'xyz="0 -0.33 0"', "kinematics", "mm")]:
+                for kind in ("toml", "urdf"):
+                    text = (share / f"panda.{kind}").read_text()
+                    if kind == name:
+                        self.assertIn(before, text)
+                        text = text.replace(before, after)
+                    (pathlib.Path(temp) / f"panda.{kind}").write_text(text)
+                rows, code = self.rows(port, "--set", f"arm.model={temp}/panda.toml", "--set", "camera.driver=none")
+                self.assertEqual((code, rows[what]["verdict"]), (1, "fail"), rows[what])
+                self.assertIn(word, rows[what]["found"])
+        rows, _ = self.rows(port, "--set", "safety.cartesian_speed=1.9", "--set", "camera.driver=none")
+        self.assertEqual(rows["limits"]["verdict"], "fail")
+        self.assertEqual(rows["camera"]["verdict"], "warn")
 
     def test_the_pre_flight_without_a_robot(self):
         done = subprocess.run([HW, "loopback", "--check", "--set", "robot.port=1", "--set", "check.seconds=0.1"],

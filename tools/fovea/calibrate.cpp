@@ -125,7 +125,7 @@ int FindIntrinsics(const CalibrateArguments& a) {
   const vision::Intrinsics& in = r.intrinsics;
   if (!a.out.empty()) {
     std::ofstream stream(a.out, std::ios::trunc);
-    stream << CameraFileText(in);
+    stream << CameraFileText(in, r.rms_px);
     stream.close();
     if (!stream) {
       throw config::InputError(a.out + ": cannot be written");
@@ -147,8 +147,8 @@ int FindIntrinsics(const CalibrateArguments& a) {
                            .dump(2));
   } else {
     SayWithout(found);
-    fmt::print("{}# f +- {:.3f} px, c +- {:.3f} px, {} views fit to {:.4f} px rms\n", CameraFileText(in),
-               r.sigma_f_px, r.sigma_c_px, r.views, r.rms_px);
+    fmt::print("{}# f +- {:.3f} px, c +- {:.3f} px, {} views fit to {:.4f} px rms\n",
+               CameraFileText(in, r.rms_px), r.sigma_f_px, r.sigma_c_px, r.views, r.rms_px);
   }
   return config::kDone;
 }

@@ -8,13 +8,14 @@
 
 namespace fovea {
 
-std::string CameraFileText(const vision::Intrinsics& in) {
+std::string CameraFileText(const vision::Intrinsics& in, double rms_px) {
   return fmt::format(
       "[camera]\nwidth_px = {}\nheight_px = {}\nf_u_px = {:.9g}\nf_v_px = {:.9g}\nc_u_px = {:.9g}\nc_v_px = "
       "{:.9g}\n"
-      "lens = [{:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}]  # k1, k2, p1, p2, k3\n",
+      "lens = [{:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}]  # k1, k2, p1, p2, k3\n"
+      "rms_px = {:.4g}\n",
       in.width_px, in.height_px, in.f_u_px, in.f_v_px, in.c_u_px, in.c_v_px, in.lens.k1, in.lens.k2,
-      in.lens.p1, in.lens.p2, in.lens.k3);
+      in.lens.p1, in.lens.p2, in.lens.k3, rms_px);
 }
 
 vision::Intrinsics ReadCameraFile(const std::filesystem::path& path) {

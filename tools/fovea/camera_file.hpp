@@ -8,8 +8,8 @@
 
 namespace fovea {
 
-// As TOML, with the section [camera].
-std::string CameraFileText(const vision::Intrinsics& intrinsics);
+// As TOML, with the section [camera]. `rms_px`: how well the views fit.
+std::string CameraFileText(const vision::Intrinsics& intrinsics, double rms_px);
 
 // Throws config::InputError: no such file, a key missing or out of range.
 vision::Intrinsics ReadCameraFile(const std::filesystem::path& path);

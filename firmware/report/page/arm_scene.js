@@ -83,9 +83,9 @@ Fovea.armScene = (function () {
   function path(flat, colour, dashed, radius) {
     const points = [];
     for (let i = 0; i + 2 < flat.length; i += 3) {
+      if (!Number.isFinite(flat[i] + flat[i + 1] + flat[i + 2])) continue; // a vector of three.js makes 0 of NaN
       const p = new THREE.Vector3(flat[i], flat[i + 1], flat[i + 2]);
-      if (Number.isFinite(p.x + p.y + p.z) && (!points.length || points[points.length - 1].distanceTo(p) > 0.004))
-        points.push(p);
+      if (!points.length || points[points.length - 1].distanceTo(p) > 0.004) points.push(p);
     }
     const group = new THREE.Group();
     group.userData.colour = colour;

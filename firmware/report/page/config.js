@@ -90,6 +90,7 @@ Fovea.config = (function () {
       "records_dropped",
       "film_frames_dropped",
       "log_entries_dropped",
+      "log_pictures_dropped",
     ]) {
       if (!map.has(key) && s[key] !== undefined && s[key] !== null) map.set(key, String(s[key]));
     }

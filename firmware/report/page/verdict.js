@@ -50,6 +50,8 @@ Fovea.verdict = (function () {
       note: Number.isFinite(s.start_error_px) ? `rms, from ${number(s.start_error_px)} px at the start` : "rms",
     });
     add("error_mm", "Final position error", s.final_error_mm, "mm", { note: splitNote(s) });
+    if (s.camera)
+      add("seen_px", "Last image error seen", s.camera.seen_error_px, "px", { note: "by the camera" });
     add("sideways", "of which sideways", s.final_error_lateral_mm, "mm", { onlyTable: true });
     add("depth", "of which in depth", s.final_error_depth_mm, "mm", { onlyTable: true });
     add("angle", "Final angle error", s.final_error_deg, "°");
@@ -66,6 +68,8 @@ Fovea.verdict = (function () {
         note: Number.isFinite(s.frames) ? `of ${s.frames} frames` : "",
         count: true,
       });
+    if (s.robot)
+      add("states", "States lost", s.robot.lost_states, "", { note: `of ${s.robot.states} of the robot`, count: true });
     add("overruns", "Overruns of the tick", s.overruns, "", {
       note: Number.isFinite(s.ticks) ? `in ${s.ticks} ticks, ${s.missed_ticks || 0} missed` : "",
       count: true,

@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "check_camera.hpp"
+#include "check_robot.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
-#include "fovea/model/dynamics.hpp"
 
 namespace fovea::hw {
 namespace {
@@ -23,9 +23,6 @@ constexpr std::array kVerdictNames{"pass", "warn", "fail"};
 constexpr double kNsPerUs = 1e3;
 constexpr double kWakeWarnUs = 100.0;  // p99.9; a tenth of a period
 constexpr double kWakeFailUs = 500.0;  // half of it
-constexpr int kStates = 1000;          // of the robot that are looked at
-constexpr double kGravityWarn = 1.0;   // a joint's torque beside the model's [Nm]
-constexpr double kGravityFail = 4.0;
 
 std::string FirstLine(const std::string& path) {
   std::ifstream file(path);
@@ -76,86 +73,14 @@ void CheckComputer(const HwConfig& config, Rows& rows) {
        verdict == Verdict::kPass ? "" : "end what else runs here; a kernel with PREEMPT_RT; loop.cpu"});
 }
 
-// What the robot's joints feel beside what the model says that they carry.
-CheckRow CheckGravity(const robots::Robot& robot, const hal::ArmState& state) {
-  model::ArmPoses poses;
-  model::ArmDynamics dynamics;
-  const model::VecN q = model::ToVector(state.q, franka::kJoints);
-  model::ComputePoses(robot.model, q, poses);
-  model::ComputeDynamics(robot.model, poses, model::VecN::Zero(franka::kJoints), dynamics);
-  double worst = 0.0;
-  int joint = 0;
-  for (int i = 0; i < franka::kJoints; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double off = std::fabs(state.tau_meas[k] - state.tau_applied[k] - dynamics.g[i]);
-    joint = off > worst ? i + 1 : joint;
-    worst = std::max(worst, off);
-  }
-  const Verdict verdict = worst < kGravityWarn   ? Verdict::kPass
-                          : worst < kGravityFail ? Verdict::kWarn
-                                                 : Verdict::kFail;
-  return {"gravity", verdict,
-          fmt::format("measured torques are {:.2f} Nm off the model's at joint {}", worst, joint),
-          verdict == Verdict::kPass
-              ? ""
-              : "is arm.load_* what the flange carries, and does the robot know of it?"};
-}
-
-CheckRow CheckRange(const robots::Robot& robot, const hal::ArmState& state, double margin) {
-  for (int i = 0; i < franka::kJoints; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const model::Joint& joint = robot.model.joints[k];
-    if (state.q[k] < joint.q_min + margin || state.q[k] > joint.q_max - margin) {
-      return {"joint ranges", Verdict::kFail, fmt::format("joint {} stands at {:.3f} rad", i + 1, state.q[k]),
-              fmt::format("lead it by hand to between {:.3f} and {:.3f} rad", joint.q_min + margin,
-                          joint.q_max - margin)};
-    }
-  }
-  return {"joint ranges", Verdict::kPass, "all joints are inside", ""};
-}
-
-void CheckRobot(const HwConfig& config, const robots::Robot& robot, Rows& rows) {
-  franka::FrankaArm arm(MakeFrankaConfig(config, /*allow_motion=*/false));
-  rows.push_back({"robot", Verdict::kPass, "speaks version 5 of the interface", ""});
-  hal::ArmState state;
-  bool has_state = false;
-  hal::Status status;
-  for (int k = 0; k < kStates; ++k) {
-    status = arm.Read(state);
-    has_state = has_state || status.ok();
-    if (!status.ok() && status.code() != hal::StatusCode::kTimeout) {
-      rows.push_back({"robot's mode", Verdict::kFail, status.where(),
-                      "release the stop, clear the error, switch to external control"});
-      return;
-    }
-  }
-  const franka::FrankaCounters& c = arm.counters();
-  const std::uint64_t lost = c.lost_states + c.timeouts;
-  const bool ready = has_state && arm.robot_state().robot_mode == franka::RobotMode::kIdle;
-  rows.push_back({"robot's mode", ready ? Verdict::kPass : Verdict::kFail, ready ? "idle" : "not idle",
-                  ready ? "" : "switch it to external control, and end what else moves it"});
-  rows.push_back({"states",
-                  lost == 0 ? Verdict::kPass : (lost < kStates / 100 ? Verdict::kWarn : Verdict::kFail),
-                  fmt::format("{} came, {} lost or late", c.states, lost),
-                  lost == 0 ? "" : "a cable straight to the robot, no switch and no other traffic"});
-  if (has_state) {
-    rows.push_back(CheckRange(robot, state, config.servo.config.guard.joint_position_margin));
-    rows.push_back(CheckGravity(robot, state));
-  }
-}
-
 }  // namespace
 
 std::vector<CheckRow> Check(const HwConfig& config) {
   Rows rows;
   const robots::Robot robot = LoadHwRobot(config);
   CheckComputer(config, rows);
-  try {
-    CheckRobot(config, robot, rows);
-  } catch (const franka::NetworkError& error) {
-    rows.push_back(
-        {"robot", Verdict::kFail, error.what(), "see robot.host, robot.port and the network's cable"});
-  }
+  CheckRobot(config, robot, rows);
+  CheckCamera(config, rows);
   return rows;
 }
 

@@ -1,6 +1,7 @@
 // The pre-flight: what of computer and robot is as it should be before an arm moves.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ struct CheckRow {
   std::string advice;  // what to do; empty when there is nothing
 };
 
-// Looks at the computer, then at the robot, which is not moved. NetworkError never: a robot that is not there
-// is a row.
+// Looks at the computer, at the robot, which is not moved, and at the camera. NetworkError and CameraError
+// never: what is not there is a row.
 std::vector<CheckRow> Check(const HwConfig& config);
 
 [[nodiscard]] bool AnyFails(const std::vector<CheckRow>& rows);

@@ -91,6 +91,8 @@ config::KeyTable HwKeys(HwConfig& c) {
   keys.Integer("loop.cpu", c.loop.cpu, -1, 1023, "", "the processor that it stays on; -1: any");
   keys.Number("check.seconds", c.check.seconds, 0.1, 3600.0, "s",
               "for so long --check measures how late a thread wakes up");
+  keys.Number("log.picture_rate_hz", c.log.picture_rate_hz, 0.0, 1000.0, "Hz",
+              "with --out: at most so many pictures per second are kept in the log");
   config::AddServoKeys(c.servo, keys);
   return keys;
 }

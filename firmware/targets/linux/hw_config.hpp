@@ -59,6 +59,10 @@ struct HwConfig {
     double seconds = 10.0;
   } check;
 
+  struct {
+    double picture_rate_hz = 30.0;
+  } log;
+
   config::VisionSettings vision;
   config::TargetSettings target;
   config::ServoSettings servo;

@@ -15,12 +15,14 @@
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/record_ring.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
+#include "fovea/log/record_hash.hpp"
+#include "hw_files.hpp"
 #include "operator_input.hpp"
 
 namespace fovea::hw {
 namespace {
 
-constexpr std::size_t kRingCapacity = 4096;  // records; four seconds
+constexpr std::size_t kRingCapacity = 8192;  // records; eight seconds
 constexpr int kLookMs = 20;
 
 // Tells changes of mode, and faults, as they come by.
@@ -30,17 +32,28 @@ class Watch {
       : summary_(summary), say_(say) {}
 
   void Add(const hal::TickRecord& record) {
+    start_ns_ = start_ns_ < 0 ? record.stamp_ns : start_ns_;
     if (awaited_ && record.arm.sequence != sequence_) {
       awaited_ = false;
       back_ = true;
     }
     sequence_ = record.arm.sequence;
+    if (record.has_feature) {
+      summary_.feature_ages.Add(record.stamp_ns - record.feature.stamp_ns);
+    }
     if (record.mode != summary_.mode || record.fault != summary_.fault) {
       summary_.mode = record.mode;
       summary_.fault = record.fault;
       const bool faulty = record.fault != hal::Fault::kNone;
       Say(fmt::format("{}{}{}", hal::Name(record.mode), faulty ? ": " : "",
                       faulty ? hal::Name(record.fault) : ""));
+      if (faulty) {
+        summary_.faults.push_back({Seconds(record), record.fault, record.fault_joint});
+      }
+    }
+    if (summary_.modes.empty() || record.mode != summary_.modes.back().mode ||
+        record.hold_reason != summary_.modes.back().reason) {
+      summary_.modes.push_back({Seconds(record), record.mode, record.hold_reason});
     }
   }
   // Whether the arm's states come anew; true once after each AwaitArm.
@@ -52,8 +65,13 @@ class Watch {
   }
 
  private:
+  [[nodiscard]] double Seconds(const hal::TickRecord& record) const {
+    return 1e-9 * static_cast<double>(record.stamp_ns - start_ns_);
+  }
+
   HwSummary& summary_;
   const std::function<void(const std::string&)>& say_;
+  std::int64_t start_ns_ = -1;  // of the first tick
   std::uint64_t sequence_ = 0;  // of the arm's newest state
   bool awaited_ = false;
   bool back_ = false;
@@ -77,8 +95,16 @@ class Session {
     // Checked by MakeServoConfig already; it is refused there, in words.
     static_cast<void>(task_.Init(servo_));
     summary_.config = config.name;
+    if (!options.out.empty()) {
+      files_.emplace(options.out, config, robot_, servo_, options.duration_s);
+    }
     if (config.HasCamera()) {
-      vision_.emplace(config, servo_.feature, clock_.NowNs(), features_);
+      vision_.emplace(config, servo_.feature, clock_.NowNs(), features_,
+                      [this](const hal::Frame& frame, const vision::Detection& detection) {
+                        if (files_) {
+                          files_->AddFrame(frame, detection);
+                        }
+                      });
       say(fmt::format("camera: {}", vision_->name()));
     }
   }
@@ -98,7 +124,7 @@ class Session {
     while (!done_) {
       HearSignals();
       HearOperator();
-      ring_.Drain([this](const hal::TickRecord& record) { watch_.Add(record); });
+      TakeRecords();
       LookAtCamera();
       if (watch_.ArmIsBack()) {  // before that the servo would find the same fault again
         loop_->Ask(servo::Request::kReset);
@@ -196,6 +222,16 @@ class Session {
     }
   }
 
+  void TakeRecords() {
+    ring_.Drain([this](const hal::TickRecord& record) {
+      watch_.Add(record);
+      hash_.Add(record);
+      if (files_) {
+        files_->AddRecord(record);
+      }
+    });
+  }
+
   void LookAtCamera() {
     if (vision_ && !camera_failed_ && !vision_->failure().empty()) {
       camera_failed_ = true;
@@ -204,7 +240,7 @@ class Session {
   }
 
   void Summarise() {
-    ring_.Drain([this](const hal::TickRecord& record) { watch_.Add(record); });
+    TakeRecords();
     if (!status_.ok()) {
       watch_.Say(fmt::format("the loop ended: {} ({})", hal::ToString(status_.code()), status_.where()));
     }
@@ -224,6 +260,13 @@ class Session {
     summary_.heap_counted = linux_rt::HeapCounterActive();
     summary_.heap_calls = meter_.heap_calls();
     summary_.page_faults = meter_.page_faults();
+    summary_.records_dropped = ring_.dropped();
+    summary_.log_hash = hash_.Finish();
+    Judge(summary_);
+    if (files_) {
+      summary_.log = files_->counters();
+      files_->Write(summary_);
+    }
   }
 
   const HwConfig& config_;
@@ -247,10 +290,12 @@ class Session {
   bool silence_told_ = false;
   bool camera_failed_ = false;
   hal::FeatureMailbox features_;
+  std::optional<HwFiles> files_;  // the vision thread uses it
   std::optional<HwVision> vision_;
   std::optional<franka::FrankaArm> arm_;
   linux_rt::RecordRing ring_;
   linux_rt::TickMeter meter_;
+  log::RecordHash hash_;
   std::optional<servo::ServoLoop> loop_;
   hal::Status status_;
   std::exception_ptr failure_;  // why there is no connection

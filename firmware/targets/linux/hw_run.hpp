@@ -14,6 +14,7 @@ struct HwRunOptions {
   bool enable = false;      // the arm may move from the start; else when the operator says so
   bool track = false;       // and steers by the target; needs a camera
   double duration_s = 0.0;  // of the servo, by the loop's clock; 0: until it is told to end
+  std::string out;          // the folder for log, report and summary; empty: none
 };
 
 // Connects, waits for the operator's leave (see operator_input.hpp) while the robot holds by itself, runs the
@@ -21,7 +22,7 @@ struct HwRunOptions {
 // is finished by the robot's own way before the connection is closed. "recover" or SIGUSR1 asks a robot that
 // stopped to recover, and the servo to start anew. An operator who is silent for longer than
 // input.dead_man_s has the arm held. Without a camera it is held where it stands. `say` gets a line for each
-// event. InputError, NetworkError, CameraError.
+// event. InputError (also of a folder that cannot be written to), NetworkError, CameraError.
 HwSummary Run(const HwConfig& config, const HwRunOptions& options,
               const std::function<void(const std::string&)>& say);
 

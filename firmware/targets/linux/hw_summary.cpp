@@ -1,19 +1,71 @@
 #include "hw_summary.hpp"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
+#include "fovea/build_info.hpp"
+
 namespace fovea::hw {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kAtGoalPx = 3.0;  // a target seen within this of its goal is there
+
+Json ModesOf(const HwSummary& s) {
+  Json modes = Json::array();
+  for (const ModeEvent& m : s.modes) {
+    modes.push_back({{"t_s", m.t_s},
+                     {"mode", hal::Name(m.mode)},
+                     {"reason", m.mode == hal::Mode::kHold ? hal::Name(m.reason) : ""}});
+  }
+  return modes;
+}
+
+Json FaultsOf(const HwSummary& s) {
+  Json faults = Json::array();
+  for (const FaultEvent& f : s.faults) {
+    faults.push_back({{"t_s", f.t_s},
+                      {"name", hal::Name(f.fault)},
+                      {"key", hal::Key(f.fault)},
+                      {"detail", f.joint >= 0 ? fmt::format("joint {}", f.joint + 1) : ""}});
+  }
+  return faults;
+}
+
+}  // namespace
+
+void Judge(HwSummary& s) {
+  const std::string last = s.seen && s.seen->last_px
+                               ? fmt::format("the camera saw it {:.2f} px off its goal", *s.seen->last_px)
+                               : "the camera never saw it";
+  if (s.fault != hal::Fault::kNone) {
+    s.verdict = fmt::format("it ended in a fault: {}", hal::Name(s.fault));
+  } else if (s.mode == hal::Mode::kTrack || s.mode == hal::Mode::kCoast) {
+    s.good = s.mode == hal::Mode::kTrack && s.seen && s.seen->last_px && *s.seen->last_px <= kAtGoalPx;
+    s.verdict = fmt::format("it ended while it followed the target; at last {}", last);
+  } else {
+    s.good = s.loop.ticks > 0;
+    s.verdict = s.good ? fmt::format("it ended without a fault, in mode {}", hal::Name(s.mode))
+                       : "the servo was never told to begin";
+  }
+}
 
 std::string ToJson(const HwSummary& s) {
-  using Json = nlohmann::ordered_json;
   Json json{
       {"config", s.config},
+      {"converged", s.good},
+      {"verdict", s.verdict},
       {"mode", hal::Name(s.mode)},
       {"fault", hal::Name(s.fault)},
       {"events", s.events},
+      {"modes", ModesOf(s)},
+      {"faults", FaultsOf(s)},
       {"ticks", s.loop.ticks},
       {"overruns", s.loop.overruns},
       {"missed_ticks", s.loop.missed_ticks},
+      {"records_dropped", s.records_dropped},
       {"heap_allocations_in_tick", s.heap_counted ? Json(s.heap_calls) : Json(nullptr)},
       {"page_faults_in_loop", s.page_faults},
       {"tick_ns",
@@ -36,11 +88,23 @@ std::string ToJson(const HwSummary& s) {
         {"motions", s.robot.motions},
         {"command_success_rate", s.success_rate}}},
       {"realtime_missing", s.realtime_missing},
+      {"log_hash", s.log_hash},
+      {"servo", kServoLibraryHash},
+      {"git", kGitRevision},
+      {"version", kVersion},
   };
+  if (s.log) {
+    json["log_entries_dropped"] = s.log->ticks_dropped;
+    json["log_pictures"] = s.log->pictures;
+    json["log_pictures_dropped"] = s.log->pictures_dropped;
+  }
   if (s.seen) {
     json["camera"] = {{"frames", s.seen->frames},
                       {"frames_detected", s.seen->frames_detected},
                       {"seen_error_px", s.seen->last_px ? Json(*s.seen->last_px) : Json(nullptr)},
+                      {"feature_age_ms",
+                       {{"p50", 1e-6 * static_cast<double>(s.feature_ages.Percentile(0.5))},
+                        {"max", 1e-6 * static_cast<double>(s.feature_ages.max_ns())}}},
                       {"incomplete", s.camera.incomplete},
                       {"lost", s.camera.lost},
                       {"overtaken", s.camera.overtaken},

@@ -4,24 +4,31 @@
 
 #include <cmath>
 #include <exception>
+#include <utility>
 
 #include "fovea/linux_rt/realtime.hpp"
 
 namespace fovea::hw {
 
 HwVision::HwVision(const HwConfig& config, const features::TargetFeature& goal, std::int64_t start_ns,
-                   hal::FeatureSink& features)
+                   hal::FeatureSink& features, vision::FrameObserver observer)
     : intrinsics_(config::MakeIntrinsics(config.camera.calibration)),
       p_CO_C_star_(goal.p_CO_C_star),
       camera_(config, start_ns),
-      task_(config::MakeVisionConfig(config.vision, intrinsics_, config.target)) {
+      task_(config::MakeVisionConfig(config.vision, intrinsics_, config.target)),
+      observer_(std::move(observer)) {
   thread_ = std::thread([this, &features] {
     linux_rt::MakeThreadYielding("fovea-vision");
     std::string failure;
     try {
-      const hal::Status status = vision::RunVision(
-          camera_.camera(), task_, features, stop_,
-          [this](const hal::Frame& frame, const vision::Detection& detection) { Look(frame, detection); });
+      const hal::Status status =
+          vision::RunVision(camera_.camera(), task_, features, stop_,
+                            [this](const hal::Frame& frame, const vision::Detection& detection) {
+                              Look(detection);
+                              if (observer_) {
+                                observer_(frame, detection);
+                              }
+                            });
       if (status.code() != hal::StatusCode::kClosed) {
         failure = fmt::format("{} ({})", hal::ToString(status.code()), status.where());
       }
@@ -40,7 +47,7 @@ HwVision::~HwVision() {
   }
 }
 
-void HwVision::Look(const hal::Frame& /*frame*/, const vision::Detection& detection) {
+void HwVision::Look(const vision::Detection& detection) {
   const std::lock_guard lock(mutex_);
   ++seen_.frames;
   if (detection.found) {

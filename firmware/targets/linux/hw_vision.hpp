@@ -22,9 +22,10 @@ struct SeenError {
 
 class HwVision {
  public:
-  // Opens the camera and begins. CameraError, InputError. `features` must outlive it.
+  // Opens the camera and begins. CameraError, InputError. `features` must outlive it. `observer` may be
+  // empty; called by the thread of its own.
   HwVision(const HwConfig& config, const features::TargetFeature& goal, std::int64_t start_ns,
-           hal::FeatureSink& features);
+           hal::FeatureSink& features, vision::FrameObserver observer);
   ~HwVision();
 
   // From any thread.
@@ -37,12 +38,13 @@ class HwVision {
   CameraCounters Finish();
 
  private:
-  void Look(const hal::Frame& frame, const vision::Detection& detection);
+  void Look(const vision::Detection& detection);
 
   const vision::Intrinsics intrinsics_;
   const model::Vec3 p_CO_C_star_;
   HwCamera camera_;
   vision::VisionTask task_;
+  const vision::FrameObserver observer_;
   std::atomic<bool> stop_{false};
   mutable std::mutex mutex_;
   SeenError seen_;

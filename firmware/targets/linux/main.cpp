@@ -22,6 +22,7 @@ struct Arguments {
   bool track = false;
   bool json = false;
   double seconds = 0.0;
+  std::string out;
 };
 
 int Check(const hw::HwConfig& config, bool json) {
@@ -38,12 +39,13 @@ int Run(const Arguments& arguments) {
   if (arguments.track && !config.HasCamera()) {
     throw config::InputError("--track is not allowed: camera.driver = \"none\"");
   }
-  const hw::HwSummary summary = hw::Run(
-      config, {!arguments.no_motion, arguments.enable || arguments.track, arguments.track, arguments.seconds},
-      [](const std::string& line) {
-        fmt::print(stderr, "{}\n", line);
-        std::fflush(stderr);
-      });
+  const hw::HwSummary summary = hw::Run(config,
+                                        {!arguments.no_motion, arguments.enable || arguments.track,
+                                         arguments.track, arguments.seconds, arguments.out},
+                                        [](const std::string& line) {
+                                          fmt::print(stderr, "{}\n", line);
+                                          std::fflush(stderr);
+                                        });
   if (arguments.json) {
     fmt::print("{}", hw::ToJson(summary));
   } else {
@@ -70,7 +72,7 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  fovea-hw panda --check\n"
       "  fovea-hw panda --no-motion --seconds 10\n"
-      "  fovea-sim serve ball --pace lockstep & fovea-hw loopback --track --seconds 8 --json\n"
+      "  fovea-sim serve ball --pace lockstep & fovea-hw loopback --track --seconds 8 --out out/hw\n"
       "On standard input, a word a line: enable, track, hold, recover, end. SIGUSR1 recovers, SIGINT ends.\n"
       "Exit: 0 done, 1 it ended in a fault or a check failed, 2 wrong usage or input.");
   Arguments arguments;
@@ -88,6 +90,8 @@ int main(int argc, char** argv) {
   app.add_flag("--track", arguments.track, "and steers by the target, as if \"track\" were typed");
   app.add_option("--seconds", arguments.seconds, "end after this time; until a signal when not given")
       ->check(CLI::Range(0.0, 1e6));
+  app.add_option("--out", arguments.out,
+                 "the folder for log.mcap, report.html and summary.json; none when not given");
   app.add_flag("--json", arguments.json, "print the summary as JSON");
   return config::RunProgram("fovea-hw", app, argc, argv, [&] { return Run(arguments); });
 }

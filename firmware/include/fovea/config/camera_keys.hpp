@@ -13,6 +13,8 @@ namespace fovea::config {
 struct CalibrationSettings {
   vision::Intrinsics intrinsics{640, 480, 0.0, 0.0, 319.5, 239.5};
   std::vector<double> lens{0.0, 0.0, 0.0, 0.0, 0.0};
+  double rms_px = 0.0;                               // how well the views of the calibration fit; 0: unknown
+  double mount_rms_mm = 0.0;                         // and those of where it is mounted
   std::vector<double> mount_xyz{0.0, 0.0, 0.0};      // p_EC [m]
   std::vector<double> mount_rpy_deg{0.0, 0.0, 0.0};  // R_EC
 };

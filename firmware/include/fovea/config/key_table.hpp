@@ -6,6 +6,7 @@
 
 #include <array>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ class KeyTable {
   void Apply(const Setting& setting) const;
 
   [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
+  // What each key's field held when the key was added, by the key's name.
+  [[nodiscard]] std::map<std::string, std::string> Values() const;
 
  private:
   void Add(Key key);

@@ -49,6 +49,8 @@ struct RunLogConfig {
   // When the disk is slower than the run: drop ticks, samples and pictures and count them (true), or wait
   // (false).
   bool may_drop = false;
+  std::size_t ring = 2048;      // ticks, and samples, that may wait: two seconds
+  std::size_t most_images = 8;  // pictures that may wait to be encoded
   int jpeg_quality = 80;
 };
 
@@ -84,8 +86,9 @@ class RunLog {
 
   // Writes what is left and completes the file. Throws what went wrong at any time.
   void Finish();
-  // Ticks, samples and pictures that found no place.
+  // Ticks, samples and pictures that found no place; and the pictures alone.
   [[nodiscard]] std::uint64_t dropped() const;
+  [[nodiscard]] std::uint64_t dropped_images() const;
 
  private:
   using Job = std::function<void(LogFile&)>;

@@ -1,4 +1,4 @@
-#include "sim/app/output_folder.hpp"
+#include "fovea/config/output_folder.hpp"
 
 #include <unistd.h>
 
@@ -6,7 +6,7 @@
 
 #include "fovea/config/input_error.hpp"
 
-namespace fovea::sim {
+namespace fovea::config {
 
 namespace fs = std::filesystem;
 
@@ -14,11 +14,11 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (!fs::is_directory(folder_)) {
-    throw config::InputError("--out " + folder_.string() + ": the folder cannot be made: " +
-                             (error ? error.message() : "something else has that name"));
+    throw InputError("--out " + folder_.string() + ": the folder cannot be made: " +
+                     (error ? error.message() : "something else has that name"));
   }
   if (access(folder_.c_str(), W_OK | X_OK) != 0) {
-    throw config::InputError("--out " + folder_.string() + ": the folder cannot be written to");
+    throw InputError("--out " + folder_.string() + ": the folder cannot be written to");
   }
 }
 
@@ -39,7 +39,7 @@ fs::path OutputFolder::Partial(const std::string& name) const { return folder_ /
 void OutputFolder::WritePartial(const OutputFile& file) const {
   std::error_code ignored;
   if (fs::is_directory(folder_ / file.name, ignored)) {
-    throw config::InputError((folder_ / file.name).string() + ": cannot be written: a folder has that name");
+    throw InputError((folder_ / file.name).string() + ": cannot be written: a folder has that name");
   }
   if (!file.content) {
     return;
@@ -48,7 +48,7 @@ void OutputFolder::WritePartial(const OutputFile& file) const {
   stream.write(file.content->data(), static_cast<std::streamsize>(file.content->size()));
   stream.close();
   if (!stream) {
-    throw config::InputError((folder_ / file.name).string() + ": cannot be written (is the disk full?)");
+    throw InputError((folder_ / file.name).string() + ": cannot be written (is the disk full?)");
   }
 }
 
@@ -72,9 +72,9 @@ void OutputFolder::Replace(const std::vector<OutputFile>& files,
     std::error_code error;
     fs::rename(Partial(file.name), folder_ / file.name, error);
     if (error) {
-      throw config::InputError((folder_ / file.name).string() + ": cannot be written: " + error.message());
+      throw InputError((folder_ / file.name).string() + ": cannot be written: " + error.message());
     }
   }
 }
 
-}  // namespace fovea::sim
+}  // namespace fovea::config

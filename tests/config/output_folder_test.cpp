@@ -1,5 +1,5 @@
 // A file is there whole or not at all.
-#include "sim/app/output_folder.hpp"
+#include "fovea/config/output_folder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "fovea/config/input_error.hpp"
 #include "support/temp_folder.hpp"
 
-namespace fovea::sim {
+namespace fovea::config {
 namespace {
 
 namespace fs = std::filesystem;
@@ -39,8 +39,7 @@ TEST(OutputFolderTest, AWriteThatFailsLeavesTheOldFiles) {
   const std::vector<std::string> names{"a.png", "b.png", "x.json"};
   folder.Replace({{"a.png", "one"}, {"x.json", "one"}}, names);
   fs::create_directory(temp.path() / "b.png");
-  EXPECT_THROW(folder.Replace({{"a.png", "two"}, {"b.png", "two"}, {"x.json", "two"}}, names),
-               config::InputError);
+  EXPECT_THROW(folder.Replace({{"a.png", "two"}, {"b.png", "two"}, {"x.json", "two"}}, names), InputError);
   EXPECT_EQ(Read(temp.path() / "a.png"), "one");
   EXPECT_EQ(Read(temp.path() / "x.json"), "one");
   EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 3);
@@ -63,9 +62,9 @@ TEST(OutputFolderTest, WhatIsBegunIsPutInPlaceOrRemoved) {
 TEST(OutputFolderTest, AFolderThatCannotBeIsRefusedAtOnce) {
   const test::TempFolder temp;
   std::ofstream(temp.path() / "file") << "x";
-  EXPECT_THROW(OutputFolder(temp.path() / "file"), config::InputError);
-  EXPECT_THROW(OutputFolder(temp.path() / "file" / "below"), config::InputError);
+  EXPECT_THROW(OutputFolder(temp.path() / "file"), InputError);
+  EXPECT_THROW(OutputFolder(temp.path() / "file" / "below"), InputError);
 }
 
 }  // namespace
-}  // namespace fovea::sim
+}  // namespace fovea::config

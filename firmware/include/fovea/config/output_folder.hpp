@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace fovea::sim {
+namespace fovea::config {
 
 struct OutputFile {
   std::string name;
@@ -40,4 +40,4 @@ class OutputFolder {
   std::vector<std::string> begun_;
 };
 
-}  // namespace fovea::sim
+}  // namespace fovea::config

@@ -1,0 +1,170 @@
+#include "check_camera.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "fovea/camera/camera_error.hpp"
+#include "fovea/config/input_error.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
+#include "frame_figures.hpp"
+#include "hw_camera.hpp"
+
+namespace fovea::hw {
+namespace {
+
+using Rows = std::vector<CheckRow>;
+
+constexpr double kNsPerS = 1e9;
+constexpr double kRmsWarnPx = 0.5;
+constexpr double kRmsFailPx = 2.0;
+constexpr double kMountWarnMm = 2.0;
+constexpr double kMountFailMm = 10.0;
+constexpr double kRateWarn = 0.95;  // of what was asked for
+constexpr double kRateFail = 0.7;
+constexpr double kLostFail = 0.02;                 // share of all frames
+constexpr double kLateWarn = 0.02;                 //
+constexpr std::int64_t kFirstNs = 3'000'000'000;   // patience with the first frame
+constexpr std::int64_t kPatienceNs = 200'000'000;  // and with the next
+constexpr const char* kNetwork =
+    "GigE: camera.packet_size and the MTU, net.core.rmem_max; no other traffic; fewer pixels";
+
+Verdict Grade(double value, double warn, double fail) {
+  return value < warn ? Verdict::kPass : value < fail ? Verdict::kWarn : Verdict::kFail;
+}
+
+void CheckCalibration(const config::CalibrationSettings& settings, Rows& rows) {
+  const char* const advice = "`fovea calibrate intrinsics` on pictures of a board; copy what it writes";
+  try {
+    const vision::Intrinsics in = config::MakeIntrinsics(settings);
+    if (settings.rms_px == 0.0) {
+      rows.push_back({"calibration", Verdict::kWarn,
+                      fmt::format("f {:.1f} px; how well it fits is unknown", in.f_u_px), advice});
+    } else {
+      const Verdict verdict = Grade(settings.rms_px, kRmsWarnPx, kRmsFailPx);
+      rows.push_back({"calibration", verdict,
+                      fmt::format("f {:.1f} px, its views fit to {:.3g} px rms", in.f_u_px, settings.rms_px),
+                      verdict == Verdict::kPass ? "" : advice});
+    }
+  } catch (const config::InputError& error) {
+    rows.push_back({"calibration", Verdict::kFail, error.what(), advice});
+  }
+  const auto is_zero = [](const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; });
+  };
+  const char* const mount_advice =
+      "`fovea calibrate hand-eye`; copy it into camera.mount_xyz, mount_rpy_deg and mount_rms_mm";
+  if (is_zero(settings.mount_xyz) && is_zero(settings.mount_rpy_deg)) {
+    rows.push_back(
+        {"mounting", Verdict::kFail, "the camera is said to sit in the flange's middle", mount_advice});
+  } else if (settings.mount_rms_mm == 0.0) {
+    rows.push_back({"mounting", Verdict::kWarn, "how well it was measured is unknown", mount_advice});
+  } else {
+    const Verdict verdict = Grade(settings.mount_rms_mm, kMountWarnMm, kMountFailMm);
+    rows.push_back({"mounting", verdict,
+                    fmt::format("its views agree to {:.3g} mm rms", settings.mount_rms_mm),
+                    verdict == Verdict::kPass ? "" : mount_advice});
+  }
+}
+
+void CheckRate(const HwConfig& config, const FrameFigures& figures, Rows& rows) {
+  const double wished_hz = config.camera.rate_hz;
+  if (wished_hz == 0.0) {
+    rows.push_back({"camera's rate", Verdict::kPass, fmt::format("{:.1f} Hz", figures.rate_hz), ""});
+    return;
+  }
+  const double share = figures.rate_hz / wished_hz;
+  const Verdict verdict = share > kRateWarn   ? Verdict::kPass
+                          : share > kRateFail ? Verdict::kWarn
+                                              : Verdict::kFail;
+  rows.push_back(
+      {"camera's rate", verdict, fmt::format("{:.1f} Hz, {:.1f} asked for", figures.rate_hz, wished_hz),
+       verdict == Verdict::kPass ? "" : "a shorter camera.exposure_ms; a faster line; fewer pixels"});
+}
+
+void CheckLosses(const CameraCounters& counters, std::size_t frames, int late, Rows& rows) {
+  const auto lost = static_cast<double>(counters.lost + counters.incomplete);
+  const auto came = static_cast<double>(frames);
+  const Verdict verdict = lost > kLostFail * (came + lost)      ? Verdict::kFail
+                          : lost > 0 || late > kLateWarn * came ? Verdict::kWarn
+                                                                : Verdict::kPass;
+  rows.push_back(
+      {"frames", verdict,
+       fmt::format("{} came, {} lost, {} damaged, {} late", frames, counters.lost, counters.incomplete, late),
+       verdict == Verdict::kPass ? "" : kNetwork});
+}
+
+void CheckLatency(const HwConfig& config, const FrameFigures& figures, Rows& rows) {
+  if (config.camera.time != "computer" || config.camera.driver == "recorded") {
+    rows.push_back({"latency", Verdict::kWarn, "not measured: stamps are in another clock",
+                    "with camera.time = \"computer\" it is measured here"});
+    return;
+  }
+  const double stale_ms = 1e3 * config.servo.config.predict.stale_s;
+  const Verdict verdict = Grade(figures.latency_max_ms + figures.period_ms, stale_ms,
+                                stale_ms + figures.latency_max_ms - figures.latency_ms);
+  rows.push_back(
+      {"latency", verdict,
+       fmt::format("{:.1f} ms from exposure to arrival, at most {:.1f} ms", figures.latency_ms,
+                   figures.latency_max_ms),
+       verdict == Verdict::kPass
+           ? ""
+           : fmt::format("with a period of {:.1f} ms it comes to servo.stale_s, which is {:.0f} ms",
+                         figures.period_ms, stale_ms)});
+}
+
+void CheckFrames(const HwConfig& config, Rows& rows) {
+  linux_rt::MonotonicClock clock;
+  HwCamera camera(config, clock.NowNs());
+  rows.push_back({"camera", Verdict::kPass, camera.name(), ""});
+  std::vector<Arrival> arrivals;
+  std::uint64_t lost_before = 0;  // until the first frame came
+  hal::Frame frame;
+  hal::Status status = camera.camera().Acquire(frame, kFirstNs);
+  const std::int64_t end_ns = clock.NowNs() + static_cast<std::int64_t>(config.check.seconds * kNsPerS);
+  while (clock.NowNs() < end_ns && (status.ok() || status.code() == hal::StatusCode::kTimeout)) {
+    if (status.ok()) {
+      lost_before = arrivals.empty() ? camera.counters().lost : lost_before;
+      arrivals.push_back({frame.stamp_ns, clock.NowNs()});
+    }
+    status = camera.camera().Acquire(frame, kPatienceNs);
+  }
+  if (arrivals.size() < 2) {
+    rows.push_back({"frames", Verdict::kFail,
+                    fmt::format("{} came in {:.1f} s", arrivals.size(), config.check.seconds),
+                    "is it triggered by something else? a longer check.seconds; camera.exposure_ms"});
+    return;
+  }
+  CameraCounters counters = camera.counters();
+  counters.lost -= lost_before;
+  const FrameFigures figures = FiguresOf(arrivals);
+  const vision::Intrinsics& in = config.camera.calibration.intrinsics;
+  if (frame.width_px != in.width_px || frame.height_px != in.height_px) {
+    rows.push_back({"picture size", Verdict::kFail,
+                    fmt::format("{} x {} px, calibrated for {} x {} px", frame.width_px, frame.height_px,
+                                in.width_px, in.height_px),
+                    "calibrate at the size that is used"});
+  }
+  CheckRate(config, figures, rows);
+  CheckLosses(counters, arrivals.size(), figures.late, rows);
+  CheckLatency(config, figures, rows);
+}
+
+}  // namespace
+
+void CheckCamera(const HwConfig& config, Rows& rows) {
+  if (!config.HasCamera()) {
+    rows.push_back({"camera", Verdict::kWarn, "none: the arm is held where it stands", "camera.driver"});
+    return;
+  }
+  CheckCalibration(config.camera.calibration, rows);
+  try {
+    CheckFrames(config, rows);
+  } catch (const camera::CameraError& error) {
+    rows.push_back(
+        {"camera", Verdict::kFail, error.what(),
+         "its power and cable; camera.device; `arv-tool-0.8` or `v4l2-ctl --list-devices` lists them"});
+  }
+}
+
+}  // namespace fovea::hw

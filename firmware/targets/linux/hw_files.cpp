@@ -1,0 +1,143 @@
+#include "hw_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "fovea/build_info.hpp"
+#include "fovea/config/share_folder.hpp"
+#include "fovea/log/picture_messages.hpp"
+#include "fovea/log/record_hash.hpp"
+#include "fovea/log/run_messages.hpp"
+#include "fovea/log/topics.hpp"
+#include "fovea/run.pb.h"
+#include "fovea/vision/outline.hpp"
+#include "foxglove/scene.pb.h"
+#include "hw_scene.hpp"
+
+namespace fovea::hw {
+namespace {
+
+constexpr std::size_t kRing = 8192;  // ticks that may wait for the disk: eight seconds
+constexpr std::size_t kMostImages = 32;
+
+// All that any run leaves, for the next to take away.
+const std::vector<std::string> kFileNames{"log.mcap", "report.html", "summary.json"};
+
+log::RunLogConfig MakeRunLogConfig(const HwConfig& config, const robots::Robot& robot,
+                                   const std::filesystem::path& path) {
+  log::RunLogConfig out;
+  out.path = path;
+  out.library = fmt::format("fovea {}", kVersion);
+  out.arm = robot.model;
+  out.frames = MakeLinkFrames(robot, config.HasCamera(), config::MakeMount(config.camera.calibration));
+  out.may_drop = true;
+  out.ring = kRing;
+  out.most_images = kMostImages;
+  return out;
+}
+
+// Of the ball about its centre that holds the target.
+double Reach(const features::TargetFeature& target) {
+  const features::TargetOutline outline = target.Outline();
+  double reach = 0.0;
+  for (int i = 0; i < outline.num_points; ++i) {
+    reach = std::max(reach, outline.p_OP[static_cast<std::size_t>(i)].norm() + outline.radius);
+  }
+  return reach;
+}
+
+}  // namespace
+
+HwFiles::HwFiles(const std::string& out, const HwConfig& config, const robots::Robot& robot,
+                 const servo::ServoConfig& servo, double duration_s)
+    : config_(config),
+      robot_(robot),
+      servo_(servo),
+      duration_s_(duration_s),
+      page_(config::ShareFolder() / "report"),
+      folder_(out),
+      log_path_(folder_.Begin("log.mcap")),
+      log_(MakeRunLogConfig(config, robot, log_path_)) {
+  if (config.HasCamera()) {
+    const vision::Intrinsics intrinsics = config::MakeIntrinsics(config.camera.calibration);
+    const features::TargetFeature& goal = servo.feature;
+    log::AddOutline(intrinsics,
+                    vision::TargetOutline(config::MakeVisionConfig(config.vision, intrinsics, config.target),
+                                          {goal.R_CO_star, goal.p_CO_C_star}),
+                    log::kGoalRole, goal_);
+  }
+}
+
+void HwFiles::Begin(std::int64_t start_ns) {
+  start_ns_ = start_ns;
+  HwConfig values = config_;
+  log_.AddMetadata("configuration", HwKeys(values).Values());
+  log_.AddMetadata("build", BuildEntries());
+  log_.AddMetadata("robot", {{"name", robot_.name}, {"model", log::HashOfModel(servo_.arm)}});
+  log::RunSetup setup;
+  setup.name = config_.name;
+  setup.joint_names = robot_.joint_names;
+  setup.arm = servo_.arm;
+  setup.feature = servo_.feature;
+  setup.lambda = servo_.law.lambda;
+  setup.workspace_radius = servo_.guard.workspace_radius;
+  setup.duration_s = duration_s_;
+  setup.start_ns = start_ns;
+  if (config_.HasCamera()) {
+    setup.intrinsics = config::MakeIntrinsics(config_.camera.calibration);
+    setup.target_radius = Reach(servo_.feature);
+    log_.Add(log::kCalibrationTopic, start_ns, log::CalibrationMessage(start_ns, setup.intrinsics));
+  }
+  log_.Add(log::kSetupTopic, start_ns, log::SetupMessage(setup));
+  log_.Add(log::kSceneTopic, start_ns, MakeSceneMessage(robot_, config_.HasCamera(), servo_.feature));
+  begun_ = true;
+}
+
+void HwFiles::AddRecord(const hal::TickRecord& record) {
+  if (!begun_) {
+    Begin(record.stamp_ns);
+  }
+  last_ns_ = record.stamp_ns;
+  log_.AddTick(record);
+}
+
+void HwFiles::AddFrame(const hal::Frame& frame, const vision::Detection& detection) {
+  if (!begun_ || frame.stamp_ns < start_ns_ || config_.log.picture_rate_hz == 0.0) {
+    return;
+  }
+  // On a grid, and a little before its time too: stamps of a camera of just that rate have jitter.
+  const auto period_ns = static_cast<std::int64_t>(1e9 / config_.log.picture_rate_hz);
+  if (frame.stamp_ns < next_picture_ns_ - period_ns / 10) {
+    return;
+  }
+  next_picture_ns_ = std::max(next_picture_ns_ + period_ns, frame.stamp_ns);
+  foxglove::ImageAnnotations annotations = goal_;
+  log::AddDetection(config::MakeIntrinsics(config_.camera.calibration), detection, annotations);
+  log_.Add(log::kAnnotationTopic, frame.stamp_ns, annotations);
+  log_.AddImage(frame);
+  ++pictures_;
+}
+
+LogCounters HwFiles::counters() const {
+  const std::uint64_t lost = log_.dropped_images();
+  return {log_.dropped() - lost, pictures_ - lost, lost};
+}
+
+void HwFiles::Write(const HwSummary& summary) {
+  const std::string summary_json = ToJson(summary);
+  if (!begun_) {  // nothing moved, and there is nothing to draw
+    folder_.Replace({{"summary.json", summary_json}}, kFileNames);
+    return;
+  }
+  log_.Add(log::kTickTimesTopic, last_ns_, log::TickTimesMessage(summary.ticks));
+  log_.AddAttachment("summary.json", "application/json", summary_json);
+  log_.Finish();
+  report::RunData run = report::ReadRun(log_path_);
+  run.source = "log.mcap";  // as it will be called
+  folder_.Replace(
+      {{"log.mcap", std::nullopt}, {"report.html", page_.Make({run})}, {"summary.json", summary_json}},
+      kFileNames);
+}
+
+}  // namespace fovea::hw

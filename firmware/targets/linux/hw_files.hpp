@@ -1,0 +1,58 @@
+// What a run on hardware leaves behind: log.mcap, report.html and summary.json, by the libraries that a
+// simulated run leaves its own with.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "fovea/config/output_folder.hpp"
+#include "fovea/log/run_log.hpp"
+#include "fovea/report/report.hpp"
+#include "fovea/robots/robot.hpp"
+#include "fovea/servo/servo_config.hpp"
+#include "fovea/vision/detection.hpp"
+#include "foxglove/image.pb.h"
+#include "hw_config.hpp"
+#include "hw_summary.hpp"
+
+namespace fovea::hw {
+
+class HwFiles {
+ public:
+  // The arguments must outlive it. `duration_s`: 0 when nobody knows. InputError when nothing can be written
+  // there; std::runtime_error when the report's page is not there.
+  HwFiles(const std::string& out, const HwConfig& config, const robots::Robot& robot,
+          const servo::ServoConfig& servo, double duration_s);
+
+  // From the thread that empties the recorder; the log begins with the first. Never waits.
+  void AddRecord(const hal::TickRecord& record);
+  // From the vision thread. What is exposed before the log begins is left out.
+  void AddFrame(const hal::Frame& frame, const vision::Detection& detection);
+
+  // When the threads are done.
+  [[nodiscard]] LogCounters counters() const;
+  // Puts everything in place. Throws what went wrong with any of it; then the folder is as it was.
+  void Write(const HwSummary& summary);
+
+ private:
+  void Begin(std::int64_t start_ns);
+
+  const HwConfig& config_;
+  const robots::Robot& robot_;
+  const servo::ServoConfig& servo_;
+  const double duration_s_;
+  const report::ReportPage page_;
+  config::OutputFolder folder_;
+  const std::filesystem::path log_path_;
+  foxglove::ImageAnnotations goal_;  // drawn on every picture
+  log::RunLog log_;
+  std::atomic<bool> begun_{false};
+  std::int64_t start_ns_ = 0;         // of the loop's clock; set before begun_
+  std::int64_t last_ns_ = 0;          // of the last record
+  std::int64_t next_picture_ns_ = 0;  // of the vision thread
+  std::uint64_t pictures_ = 0;
+};
+
+}  // namespace fovea::hw
