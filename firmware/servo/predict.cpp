@@ -80,6 +80,21 @@ bool TakePosition(const ServoConfig& config, const hal::FeatureMeasurement& meas
   if (!config.feature.Lift(measurement, lifted)) {
     return false;
   }
+  if (measurement.kind == hal::FeatureKind::kCircle && measurement.num_poses == 2) {
+    bool changed = false;
+    const int chosen = ChooseDisc(measurement, X_BC_then, state.disc, changed);
+    const auto& p = measurement.poses[static_cast<std::size_t>(chosen)].p_CO_C;
+    lifted.p_CO_C = {p[0], p[1], p[2]};
+    if (changed) {  // what was believed of the centre was of the other pose
+      const int accepted = state.filter.accepted;
+      state.filter = TargetFilter{};
+      (void)Update(config.predict, measurement.stamp_ns, X_BC_then * lifted.p_CO_C,
+                   X_BC_then.R * lifted.cov_p * X_BC_then.R.transpose(), state.filter);
+      state.filter.accepted = accepted;
+      state.X_CO_meas.p = lifted.p_CO_C;
+      return true;
+    }
+  }
   const model::Mat3 cov_p = X_BC_then.R * lifted.cov_p * X_BC_then.R.transpose();
   if (!Update(config.predict, measurement.stamp_ns, X_BC_then * lifted.p_CO_C, cov_p, state.filter)) {
     return false;

@@ -1,5 +1,6 @@
 #include "fovea/vision/round_detector.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -40,6 +41,15 @@ void SetCircle(const Intrinsics& /*in*/, const Circle& c, EllipseCurve& curve) {
   curve.v0_px = c.v_px;
   curve.size_px = c.radius_px;
   curve.p << 1.0, 0.0, 1.0, 0.0, 0.0;
+}
+
+// An orientation with z along `normal`; a disc's turn about it says nothing.
+Mat3 AxesAbout(const Vec3& normal) {
+  Mat3 R;
+  R.col(2) = normal.normalized();
+  R.col(1) = R.col(2).cross(std::fabs(R(0, 2)) < 0.9 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
+  R.col(0) = R.col(1).cross(R.col(2));
+  return R;
 }
 
 }  // namespace
@@ -155,15 +165,17 @@ double RoundDetector<Curve>::ColourShare(const cv::Mat& image, const Ellipse& el
 }
 
 template <class Curve>
-bool RoundDetector<Curve>::DiscOf(const EllipseCurve& curve, double round_below, DiscPose& pose) const {
-  std::array<DiscPose, 2> poses;
+bool RoundDetector<Curve>::DiscOf(const EllipseCurve& curve, double round_below,
+                                  std::array<DiscPose, 2>& poses) const {
   if (!PosesOfDisc(curve.Conic(config_.intrinsics), config_.intrinsics, config_.size, round_below, poses)) {
     return false;
   }
   const auto likeness = [&](const DiscPose& p) {
     return last_ ? last_->normal_C.dot(p.normal_C) : p.normal_C.z();
   };
-  pose = likeness(poses[0]) >= likeness(poses[1]) ? poses[0] : poses[1];
+  if (likeness(poses[1]) > likeness(poses[0])) {
+    std::swap(poses[0], poses[1]);
+  }
   return true;
 }
 
@@ -204,10 +216,11 @@ bool RoundDetector<Curve>::FeatureOf(const CurveFit<Curve>& fit, Detection& d) {
   } else {
     // What noise makes of a circle's half axes, as 1 - minor / major.
     const double round_below = kRoundSigma * std::sqrt(d.cov_uvr_px2(2, 2)) / e.radius_px;
-    DiscPose pose;
-    if (!DiscOf(fit.curve, round_below, pose)) {
+    std::array<DiscPose, 2> poses;
+    if (!DiscOf(fit.curve, round_below, poses)) {
       return false;
     }
+    const DiscPose& pose = poses[0];
     candidate_normal_ = pose.normal_C;
     const auto feature = [&](const DiscPose& p) {
       return Vec3(p.p_CO_C.x() / p.p_CO_C.z(), p.p_CO_C.y() / p.p_CO_C.z(), config_.size / p.p_CO_C.z());
@@ -216,8 +229,8 @@ bool RoundDetector<Curve>::FeatureOf(const CurveFit<Curve>& fit, Detection& d) {
     Eigen::Matrix<double, 3, kN> ds;
     for (int i = 0; i < kN; ++i) {
       const double step = 0.1 * std::sqrt(fit.cov(i, i)) + 1e-12;
-      DiscPose up;
-      DiscPose down;
+      std::array<DiscPose, 2> up;
+      std::array<DiscPose, 2> down;
       moved.p[i] = fit.curve.p[i] + step;
       const bool first = DiscOf(moved, round_below, up);
       moved.p[i] = fit.curve.p[i] - step;
@@ -226,7 +239,7 @@ bool RoundDetector<Curve>::FeatureOf(const CurveFit<Curve>& fit, Detection& d) {
       if (!first || !second) {
         return false;
       }
-      ds.col(i) = (feature(up) - feature(down)) / (2.0 * step);
+      ds.col(i) = (feature(up[0]) - feature(down[0])) / (2.0 * step);
     }
     d.s = s;
     d.cov_s = ds * fit.cov * ds.transpose();
@@ -238,6 +251,9 @@ bool RoundDetector<Curve>::FeatureOf(const CurveFit<Curve>& fit, Detection& d) {
     d.cov_s(0, 0) += unsure * unsure;
     d.cov_s(1, 1) += unsure * unsure;
     distance = pose.p_CO_C.norm();
+    for (const DiscPose& p : poses) {
+      d.pose[static_cast<std::size_t>(d.pose_count++)] = {{AxesAbout(p.normal_C), p.p_CO_C}, 0};
+    }
   }
   if (distance < config_.distance_min || distance > config_.distance_max || !d.cov_s.allFinite()) {
     return false;

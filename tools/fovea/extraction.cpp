@@ -106,7 +106,7 @@ std::optional<model::Pose> PoseIn(const vision::Detection& d, const TargetFeatur
   if (!d.found) {
     return std::nullopt;
   }
-  if (d.pose_count > 0) {
+  if (feature.SeesOrientation()) {
     const auto turned = [&](const vision::Detection::Pose& pose) {
       return model::RotationVector(pose.X_CO.R * X_CO.R.transpose()).squaredNorm();
     };

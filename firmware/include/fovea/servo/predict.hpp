@@ -9,6 +9,7 @@
 
 #include "fovea/hal/feature.hpp"
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/disc_choice.hpp"
 #include "fovea/servo/pose_choice.hpp"
 #include "fovea/servo/servo_config.hpp"
 #include "fovea/servo/target_filter.hpp"
@@ -43,6 +44,7 @@ class JointHistory {
 struct PredictState {
   JointHistory history;
   TargetFilter filter;  // of sphere and circle
+  DiscChoice disc;      // of a circle
   PoseChoice poses;     // of square and triangle
   bool has_accepted = false;
   std::int64_t accepted_stamp_ns = 0;  // of the last measurement that went into the filter
@@ -51,6 +53,7 @@ struct PredictState {
 
   void Reset() noexcept {
     filter = TargetFilter{};
+    disc = DiscChoice{};
     poses = PoseChoice{};
     has_accepted = false;
   }

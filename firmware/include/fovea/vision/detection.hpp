@@ -28,8 +28,8 @@ struct Detection {
   double confidence = 0.0;    // 0 to 1
   features::FeatureVector s;  // as hal/feature.hpp says of `kind`; empty when not found
   Covariance cov_s;
-  // Of square and triangle: the poses that the corners allow, as hal/feature.hpp has them, and the covariance
-  // of the first: position in axes of C [m], small rotation about axes of C [rad].
+  // Of flat targets: the poses that the outline allows, as hal/feature.hpp has them, and of square and
+  // triangle the covariance of the first: position in axes of C [m], small rotation about axes of C [rad].
   struct Pose {
     model::Pose X_CO;
     int first = 0;

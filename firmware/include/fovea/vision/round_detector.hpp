@@ -32,7 +32,8 @@ class RoundDetector {
  private:
   void Judge(const cv::Mat& image, const Curve& start, Detection& best);
   bool FeatureOf(const CurveFit<Curve>& fit, Detection& detection);
-  bool DiscOf(const EllipseCurve& curve, double round_below, DiscPose& pose) const;
+  // The one nearest to the last image's first.
+  bool DiscOf(const EllipseCurve& curve, double round_below, std::array<DiscPose, 2>& poses) const;
   [[nodiscard]] double ColourShare(const cv::Mat& image, const Ellipse& ellipse) const;
 
   const DetectorConfig config_;

@@ -20,12 +20,12 @@ enum class FeatureKind : std::uint8_t {
   kTriangle,  // O's order, which turns from x to y; `poses` says which one may be O's first
 };
 
-// A pose of a flat target in which its corners look as they were measured. Three corners have up to four of
-// them, a square two; one image does not tell which is true, only the camera's motion does.
+// A pose of a flat target in which its outline looks as it was measured. Three corners have up to four of
+// them, a square and a disc two; one image does not tell which is true, only the camera's motion does.
 struct FlatPose {
   std::array<double, 3> p_CO_C{};                  // [m]
   std::array<double, 4> q_CO{1.0, 0.0, 0.0, 0.0};  // (w, x, y, z)
-  std::int32_t first = 0;  // O's corner i is s's corner (first + i) modulo their number
+  std::int32_t first = 0;  // O's corner i is s's corner (first + i) modulo their number; a disc has none
 };
 inline constexpr int kMaxPoses = 6;
 
@@ -40,6 +40,7 @@ struct FeatureMeasurement {
   // [dim x dim] covariance of s, row-major with rows of kMaxFeatureDim entries.
   std::array<double, kMaxFeatureDim * kMaxFeatureDim> cov_s{};
   // Of square and triangle: the poses that s allows, the likeliest first; 0 when none fits. To start from.
+  // Of a circle both, the first being the one of s, each turned anyhow about its z; 0 where only s is known.
   std::int32_t num_poses = 0;
   std::array<FlatPose, kMaxPoses> poses{};
 };
