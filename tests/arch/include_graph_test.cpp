@@ -69,6 +69,14 @@ INSTANTIATE_TEST_SUITE_P(
              "(fovea/(hal|model|features|servo)/|Eigen/).*|(bracketed_root|pose_motion|(laws/"
              ")?motion_laws)[.]hpp",
              "the servo sees hal, model, features and Eigen"},
+        Rule{"firmware/include/fovea/link", "(fovea/(hal|model|features|servo|link)/|Eigen/).*",
+             "both ends of the line see the servo and no system"},
+        Rule{"firmware/link", "(fovea/(hal|model|features|servo|link)/|Eigen/).*|(config|tick)_fields[.]hpp",
+             "both ends of the line see the servo and no system"},
+        Rule{"hal/drivers/cortex_m7", "fovea/cortex_m7/.*",
+             "a driver depends on the contract and on its device"},
+        Rule{"firmware/targets/cortex_m7", "fovea/(cortex_m7|link)/.*|emitted/panda[.]hpp",
+             "the processor's program sees its driver and the servo behind the line"},
         Rule{"firmware/vision", "(fovea/(hal|model|features|vision)/|Eigen/|opencv2/).*",
              "vision sees hal, features and OpenCV"},
         Rule{"firmware/config",
@@ -105,7 +113,8 @@ INSTANTIATE_TEST_SUITE_P(
              "(fovea|fmt|CLI|nlohmann|opencv2|Eigen|kdl|arpa|netinet|sys|linux)/.*|[a-z_]+[.]h(pp)?",
              "measures, without the simulator"},
         Rule{"firmware/include",
-             "(fovea/(hal|model|features|servo|vision|config|design|robots|linux_rt|log|report|trace)/|Eigen/"
+             "(fovea/(hal|model|features|servo|link|vision|config|design|robots|linux_rt|log|report|trace)/"
+             "|Eigen/"
              "|opencv2/"
              "|google/|CLI/).*",
              "nothing of the firmware sees the simulator"},

@@ -10,7 +10,7 @@ namespace fovea {
 namespace {
 
 const char* const kLibraries[] = {FOVEA_HAL_LIBRARY, FOVEA_MODEL_LIBRARY, FOVEA_FEATURES_LIBRARY,
-                                  FOVEA_SERVO_LIBRARY};
+                                  FOVEA_SERVO_LIBRARY, FOVEA_LINK_LIBRARY};
 
 // The last word of each line of `nm`.
 std::set<std::string> Symbols(const std::string& options) {
