@@ -95,7 +95,10 @@ TEST_P(TracedRun, EveryTickIsThereWithinItsThread) {
     threads.insert(thread);
     ExpectNesting(thread, spans);
   }
-  EXPECT_EQ(threads, (std::set<std::string>{"renderer 0", "renderer 1", "servo and world", "vision"}));
+  // By the clock one renderer may have drawn all there was.
+  const bool one = threads.erase("renderer 0") + threads.erase("renderer 1") > 0;
+  EXPECT_TRUE(one);
+  EXPECT_EQ(threads, (std::set<std::string>{"servo and world", "vision"}));
 
   const int ticks = timeline.summary["ticks"];
   const std::vector<json>& servo = timeline.spans.at("servo and world");
@@ -119,6 +122,9 @@ TEST_P(TracedRun, EveryTickIsThereWithinItsThread) {
   EXPECT_EQ(in_vision.at("detect"), timeline.summary["frames"]);
   std::set<std::int64_t> drawn;
   for (const char* renderer : {"renderer 0", "renderer 1"}) {
+    if (timeline.spans.count(renderer) == 0) {
+      continue;
+    }
     for (const json& span : timeline.spans.at(renderer)) {
       if (span["name"] == "draw") {
         EXPECT_TRUE(drawn.insert(span["args"]["number"].get<std::int64_t>()).second) << span;
