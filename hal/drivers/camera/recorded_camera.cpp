@@ -78,7 +78,7 @@ RecordedCamera::RecordedCamera(const RecordedCameraConfig& config) : player_(std
     }
   } else if (!fs::is_regular_file(config.path)) {
     throw CameraError("camera " + name + ": no such folder or file");
-  } else if (!player_->video.open(name)) {
+  } else if (!player_->video.open(name, cv::CAP_FFMPEG)) {  // and no other: some look for devices first
     throw CameraError("camera " + name + ": not a video that can be read");
   } else if (const double rate_hz = player_->video.get(cv::CAP_PROP_FPS); rate_hz > 0.0) {
     player_->rate_hz = rate_hz;
