@@ -107,10 +107,13 @@ std::vector<std::string> Controlled(const Eigen::MatrixXd& null_space, const Vec
     basis.col(3 + i) << model::Cross(p, turns[i]), turns[i];
   }
   const char* const names[] = {"x", "y", "z", "tilt about x", "tilt about y", "turn about the line of sight"};
+  if (null_space.cols() == 0) {
+    return {std::begin(names), std::end(names)};
+  }
   const Eigen::MatrixXd shares = basis.partialPivLu().solve(null_space);
   std::vector<std::string> controlled;
   for (int i = 0; i < 6; ++i) {
-    if (shares.cols() == 0 || shares.row(i).norm() < kParallel) {
+    if (shares.row(i).norm() < kParallel) {
       controlled.emplace_back(names[i]);
     }
   }
