@@ -7,7 +7,8 @@
 namespace fovea::servo {
 namespace {
 
-constexpr double kRate = 1.5;  // what is left may be used up no faster than exp(-rate t): the arm follows some ms later [1/s]
+constexpr double kRate =
+    1.5;  // what is left may be used up no faster than exp(-rate t): the arm follows some ms later [1/s]
 
 // One side of the picture: sign * (x or y) may not pass sign * bound.
 struct Side {

@@ -99,7 +99,8 @@ try {
         .map((flat) => {
           const known = [];
           for (let i = 0; i + 2 < flat.length; i += 3) {
-            if (Number.isFinite(flat[i] + flat[i + 1] + flat[i + 2])) known.push(new THREE.Vector3(...flat.slice(i, i + 3)));
+            if (Number.isFinite(flat[i] + flat[i + 1] + flat[i + 2]))
+              known.push(new THREE.Vector3(...flat.slice(i, i + 3)));
           }
           const drawn = new THREE.Box3().setFromObject(Fovea.armScene.path(flat, "--blue", false, 0.001));
           const through = new THREE.Box3().setFromPoints(known);
@@ -136,7 +137,10 @@ try {
       assert.ok(seen.plots.error >= 1, "the error is drawn");
       assert.ok(seen.images >= 2, "first and last frame");
       assert.ok(hardware || seen.videos.length >= 1, "there is a film");
-      assert.ok(seen.videos.every((duration) => duration > 1), "the film can be played");
+      assert.ok(
+        seen.videos.every((duration) => duration > 1),
+        "the film can be played",
+      );
     } else {
       assert.ok(seen.plots[kind] >= 2, "the response is drawn over the analytic one, and what is between them");
       assert.equal(seen.images + seen.videos.length, 0, "nothing was seen");

@@ -138,15 +138,16 @@ TEST_F(ServoTaskTest, HoldsWithAReasonWhenTheGoalIsOutOfReach) {
   EXPECT_LE(poses.X_BE.p.norm(), config_.guard.workspace_radius + 1e-3);
 }
 
-// Here the goal lies in reach, but along the workspace's edge all the way: that takes long, and is no reason to
-// give up.
+// Here the goal lies in reach, but along the workspace's edge all the way: that takes long, and is no reason
+// to give up.
 TEST_F(ServoTaskTest, CreepsAlongTheEdgeToAGoalThatIsJustInReach) {
   target_ = X_BC() * model::Vec3(0.0, 0.0, 1.15);
   target_.x() += 0.5;
   Run(12000);
   const double after_12_s = Error();
   Run(12000);
-  std::cout << "off the goal: " << 1e3 * after_12_s << " mm after 12 s, " << 1e3 * Error() << " mm after 24 s\n";
+  std::cout << "off the goal: " << 1e3 * after_12_s << " mm after 12 s, " << 1e3 * Error()
+            << " mm after 24 s\n";
   EXPECT_EQ(outputs_.record.mode, Mode::kTrack);
   EXPECT_LT(after_12_s, 2e-3);
   EXPECT_LT(Error(), 0.8 * after_12_s);

@@ -50,8 +50,7 @@ Fovea.verdict = (function () {
       note: Number.isFinite(s.start_error_px) ? `rms, from ${number(s.start_error_px)} px at the start` : "rms",
     });
     add("error_mm", "Final position error", s.final_error_mm, "mm", { note: splitNote(s) });
-    if (s.camera)
-      add("seen_px", "Last image error seen", s.camera.seen_error_px, "px", { note: "by the camera" });
+    if (s.camera) add("seen_px", "Last image error seen", s.camera.seen_error_px, "px", { note: "by the camera" });
     add("sideways", "of which sideways", s.final_error_lateral_mm, "mm", { onlyTable: true });
     add("depth", "of which in depth", s.final_error_depth_mm, "mm", { onlyTable: true });
     add("angle", "Final angle error", s.final_error_deg, "°");
