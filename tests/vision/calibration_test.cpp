@@ -113,6 +113,16 @@ TEST(CalibrationTest, IntrinsicsAndLensComeBack) {
       << "all from one side";
 }
 
+Intrinsics IntrinsicsOf(const bench::PictureCamera& camera) {
+  return {640,
+          480,
+          camera.f_px,
+          camera.f_px,
+          camera.c_u_px,
+          camera.c_v_px,
+          {camera.lens[0], camera.lens[1], camera.lens[2], camera.lens[3], 0.0}};
+}
+
 // The board as DrawBoard has it, seen through a camera with a lens: each pixel the mean of 3 x 3 rays.
 cv::Mat SeenBoard(const Board& board, const Intrinsics& in, const model::Pose& X_CO, unsigned seed) {
   constexpr int kSquarePx = 160;
@@ -149,13 +159,7 @@ const Board kCharuco{8, 5, 0.02, 0.014, "5x5_100"};
 // Of a ChArUco board a part is enough, here with a third of it outside every picture.
 TEST(CalibrationTest, ACharucoBoardDoesAsMuchWithAPartOfIt) {
   const bench::PictureCamera camera = Camera();
-  const Intrinsics in{640,
-                      480,
-                      camera.f_px,
-                      camera.f_px,
-                      camera.c_u_px,
-                      camera.c_v_px,
-                      {camera.lens[0], camera.lens[1], camera.lens[2], camera.lens[3], 0.0}};
+  const Intrinsics in = IntrinsicsOf(camera);
   const model::Pose X_EC{model::RotationOf(Vec3(0.05, -0.03, 1.6)), Vec3(0.05, -0.01, 0.04)};
   const model::Pose X_BO{model::RotationOf(Vec3(0.2, 0.1, 0.5)), Vec3(0.5, 0.1, 0.02)};
   std::vector<BoardView> views;
@@ -210,13 +214,7 @@ TEST(CalibrationTest, ACharucoBoardDoesAsMuchWithAPartOfIt) {
 
 TEST(CalibrationTest, TheCamerasPlaceOnTheHandComesBack) {
   const bench::PictureCamera camera = Camera();
-  const Intrinsics in{640,
-                      480,
-                      camera.f_px,
-                      camera.f_px,
-                      camera.c_u_px,
-                      camera.c_v_px,
-                      {camera.lens[0], camera.lens[1], camera.lens[2], camera.lens[3], 0.0}};
+  const Intrinsics in = IntrinsicsOf(camera);
   const model::Pose X_EC{model::RotationOf(Vec3(0.05, -0.03, 1.6)), Vec3(0.05, -0.01, 0.04)};
   const model::Pose X_BO{model::RotationOf(Vec3(0.2, 0.1, 0.5)), Vec3(0.5, 0.1, 0.02)};
   std::vector<HandView> views;

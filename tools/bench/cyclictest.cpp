@@ -1,13 +1,12 @@
 #include "cyclictest.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "scratch.hpp"
 #include "shell.hpp"
 
 namespace fovea::bench {
@@ -15,12 +14,8 @@ namespace fovea::bench {
 bool HasCyclictest() { return RunShell("command -v cyclictest 2>/dev/null").done; }
 
 std::optional<std::vector<double>> RunCyclictest(int periods, const std::string& policy, int cpu) {
-  std::string file = "/tmp/fovea-cyclictest-XXXXXX";
-  const int descriptor = mkstemp(file.data());
-  if (descriptor < 0) {
-    return std::nullopt;
-  }
-  close(descriptor);
+  const Scratch scratch;
+  const std::string file = (scratch.path() / "cyclictest.json").string();
   constexpr int kMostUs = 1'000'000;
   const std::string command = fmt::format(
       "cyclictest -q -m -t1 -i1000 -l{} -h{} {} {} --json={} >/dev/null 2>&1", periods, kMostUs,
@@ -28,7 +23,6 @@ std::optional<std::vector<double>> RunCyclictest(int periods, const std::string&
   const bool done = RunShell(command).done;
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();
-  unlink(file.c_str());
   return done ? ReadCyclictest(text.str()) : std::nullopt;
 }
 

@@ -1,43 +1,19 @@
 #include "instructions.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
 #include "fovea/trace/tick_trace.hpp"
+#include "scratch.hpp"
 #include "shell.hpp"
 
 namespace fovea::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A folder of its own, gone with the object.
-class Scratch {
- public:
-  Scratch() {
-    // mkdtemp puts letters of its own in the place of the six.
-    std::string name = (fs::temp_directory_path() / "fovea-bench-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw std::runtime_error("no folder for valgrind's output can be made in " +
-                               fs::temp_directory_path().string());
-    }
-    path_ = name;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  [[nodiscard]] const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 class Unwatched final : public hal::TickProbe, public hal::Recorder {
   void Enter() noexcept override {}

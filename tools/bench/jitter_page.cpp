@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "html_text.hpp"
 #include "jitter_result.hpp"
 
 namespace fovea::bench {
@@ -41,20 +42,6 @@ constexpr std::array<const char*, 3> kLines{"var(--blue)", "var(--vermillion)", 
 constexpr std::array<const char*, 3> kDashes{"none", "6 4", "2 3"};
 constexpr std::array<const char*, 5> kHopColours{"var(--axis)", "var(--sky)", "var(--blue)", "var(--orange)",
                                                  "var(--vermillion)"};
-
-std::string Escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&': escaped += "&amp;"; break;
-      case '<': escaped += "&lt;"; break;
-      case '>': escaped += "&gt;"; break;
-      case '"': escaped += "&quot;"; break;
-      default: escaped += c;
-    }
-  }
-  return escaped;
-}
 
 std::string Duration(double us) {
   if (us >= 10'000.0) {

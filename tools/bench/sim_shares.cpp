@@ -1,7 +1,6 @@
 #include "sim_shares.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <fstream>
@@ -9,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "scratch.hpp"
 #include "shell.hpp"
 
 namespace fovea::bench {
@@ -19,23 +19,13 @@ using nlohmann::json;
 
 // A run of `words`, by its timeline. A run too short to converge is none that failed.
 SpanSums SumsOf(const fs::path& program, const std::string& words, double seconds) {
-  std::string folder = (fs::temp_directory_path() / "fovea-bench-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) {
-    throw std::runtime_error("no folder for timelines can be made in " + fs::temp_directory_path().string());
-  }
-  const fs::path file = fs::path(folder) / "trace.json";
-  const std::string command =
-      fmt::format("{} run {} --set run.duration_s={} --out {} --trace {} >/dev/null 2>&1",
-                  Quoted(program.string()), words, seconds, Quoted(folder + "/out"), Quoted(file.string()));
+  const Scratch scratch;
+  const fs::path file = scratch.path() / "trace.json";
+  const std::string command = fmt::format(
+      "{} run {} --set run.duration_s={} --out {} --trace {} >/dev/null 2>&1", Quoted(program.string()),
+      words, seconds, Quoted((scratch.path() / "out").string()), Quoted(file.string()));
   RunShell(command);
-  try {
-    const SpanSums sums = SumSpans(file);
-    fs::remove_all(folder);
-    return sums;
-  } catch (...) {
-    fs::remove_all(folder);
-    throw;
-  }
+  return SumSpans(file);
 }
 
 }  // namespace

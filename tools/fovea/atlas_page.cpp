@@ -9,23 +9,12 @@
 #include <stdexcept>
 
 #include "atlas_map.hpp"
+#include "tools/bench/html_text.hpp"
 
 namespace fovea::atlas {
 namespace {
 
-std::string Escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&': escaped += "&amp;"; break;
-      case '<': escaped += "&lt;"; break;
-      case '>': escaped += "&gt;"; break;
-      case '"': escaped += "&quot;"; break;
-      default: escaped += c;
-    }
-  }
-  return escaped;
-}
+using bench::Escaped;
 
 std::string Tile(const char* name, const std::string& value, const char* unit, const std::string& note) {
   return fmt::format(

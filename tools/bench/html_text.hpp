@@ -1,0 +1,23 @@
+// Words in a page.
+#pragma once
+
+#include <string>
+
+namespace fovea::bench {
+
+// `text` as a page shows it, whatever it holds.
+inline std::string Escaped(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&': escaped += "&amp;"; break;
+      case '<': escaped += "&lt;"; break;
+      case '>': escaped += "&gt;"; break;
+      case '"': escaped += "&quot;"; break;
+      default: escaped += c;
+    }
+  }
+  return escaped;
+}
+
+}  // namespace fovea::bench
