@@ -334,6 +334,7 @@ void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
   impl_->last_dt = dt;
   impl_->ApplyTorque(tau);
   impl_->world.stepSimulation(dt, 0);
+  impl_->UpdatePoses();  // Bullet's are those of the step's beginning
   impl_->ReadState();
 }
 
@@ -387,7 +388,8 @@ int BulletArm::Contacts() const {
   for (int i = 0; i < impl_->dispatcher.getNumManifolds(); ++i) {
     const btPersistentManifold* manifold = impl_->dispatcher.getManifoldByIndexInternal(i);
     for (int j = 0; j < manifold->getNumContacts(); ++j) {
-      contacts += manifold->getContactPoint(j).getDistance() < 0.0 ? 1 : 0;
+      const btManifoldPoint& point = manifold->getContactPoint(j);
+      contacts += point.getDistance() < 0.0 || point.getAppliedImpulse() > 0.0 ? 1 : 0;
     }
   }
   return contacts;
