@@ -10,9 +10,10 @@ namespace {
 using features::Polygon;
 using features::SeenCorners;
 
-constexpr double kGiveUp = 50.0;    // so much more misfit is no chance [sigma^2]
-constexpr double kRather = 6.0;     // so much less, and another branch is believed [sigma^2]
-constexpr double kStill = 4.0;      // a target whose best still pose fits worse is none, per entry [sigma^2]
+constexpr double kGiveUp = 50.0;  // so much more misfit is no chance [sigma^2]
+constexpr double kRather = 6.0;   // so much less, and another branch is believed [sigma^2]
+constexpr double kStill = 4.0;    // a target whose best still pose fits worse is none, per entry [sigma^2]
+constexpr int kViewsToTell = 4;   // so many, from different places, before it counts as one that stands still
 constexpr double kSameTurn = 0.02;  // branches nearer to each other than this are one [rad]
 constexpr double kSlip = 0.05;      // a filter that is further from the still pose may have slipped [rad]
 
@@ -96,7 +97,9 @@ void Compare(const Polygon& polygon, const CornerView& view, PoseChoice& choice)
     PoseChoice::Branch& branch = choice.branches[i];
     branch.still_misfit = FitStill(polygon, choice.views, view, branch.X_BO_still);
   }
-  if (!Weed(choice)) {
+  const bool fits = Weed(choice);
+  choice.is_still = fits && choice.views.count >= kViewsToTell;
+  if (!fits) {
     // It moves: what it showed from elsewhere says nothing more.
     choice.views = StillViews{};
     AddView(view, choice.views);
@@ -145,6 +148,14 @@ bool UpdatePoses(const PredictConfig& config, const Polygon& polygon, const Corn
   choice.rejected_in_row = 0;
   choice.accepted = std::min(choice.accepted + 1, config.accepted_min);
   return true;
+}
+
+FlatMotion MotionAt(const PoseChoice& choice, std::int64_t now_ns) noexcept {
+  if (choice.is_still) {
+    const PoseChoice::Branch& believed = choice.branches[static_cast<std::size_t>(choice.believed)];
+    return {believed.X_BO_still, model::Vec3::Zero(), model::Vec3::Zero()};
+  }
+  return MotionAt(choice.best(), now_ns);
 }
 
 }  // namespace fovea::servo

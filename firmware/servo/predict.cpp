@@ -148,7 +148,7 @@ Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::
     return prediction;
   }
   if (is_flat) {
-    const FlatMotion motion = MotionAt(state.poses.best(), now_ns);
+    const FlatMotion motion = MotionAt(state.poses, now_ns);
     prediction.p_BO = motion.X_BO.p;
     prediction.R_BO = motion.X_BO.R;
     prediction.v_BO = motion.v_BO_B;

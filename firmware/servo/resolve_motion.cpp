@@ -51,7 +51,7 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
   int rows = limits.num_rows;
   LimitApproach(config, scene, limits);
   named.NameNewRows(Limit::kObstacle, rows);
-  if (config.guard.singularity_min > 0.0) {
+  if (config.guard.singularity_min > 0.0 && !scene.by_joints) {
     rows = limits.num_rows;
     SingularityConfig singularity_config;
     singularity_config.sigma_min = config.guard.singularity_min;
@@ -98,6 +98,9 @@ void ResolveMotion(const ServoConfig& config, const MotionTask& task, const Moti
   Gather(config, scene, motion.watch, named);
   ConstrainedConfig constrained;
   constrained.damping.threshold = config.law.damping;
+  if (scene.by_joints) {
+    constrained.progress_weight = 1.0;
+  }
   ConstrainedMotion resolved;
   ResolveConstrained(constrained, task, named.limits, resolved);
   motion.dq = resolved.limited.dq;

@@ -152,6 +152,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   if (now == hal::Mode::kTrack && before == hal::Mode::kHold) {
     state_.track_since_ns = state_.now_ns;
     state_.blocked_ns = 0;
+    state_.way = WayToGoal{};
     state_.R_BC_held = state_.X_BC.R;
   }
   if (now == hal::Mode::kHold) {
@@ -178,13 +179,36 @@ void ServoTask::ComputeVisualLaw() noexcept {
   state_.feature_valid = state_.prediction.known && ComputeFeature();
   if (state_.feature_valid) {
     ChooseInteraction(config_.law, goal_.L_s, state_.feature);
-    VisualLaw(config_.law, config_.arm, state_.feature, state_.J_C, state_.q, state_.law);
+    LawConfig law = config_.law;
+    if (state_.way.preferred && state_.way.goal.found) {
+      law.q_posture = model::ToArray(state_.way.goal.q);
+    }
+    VisualLaw(law, config_.arm, state_.feature, state_.J_C, state_.q, state_.law);
+    if (IsTracking(state_.mode.mode) && SeeksGoalPosture(config_.feature)) {
+      ChooseTheWay();
+    }
+  }
+}
+
+void ServoTask::ChooseTheWay() noexcept {
+  WaySight sight{{state_.prediction.R_BO, state_.prediction.p_BO}, state_.prediction.seen.X_CO, state_.q};
+  sight.limits = state_.limits;
+  sight.now_ns = state_.now_ns;
+  sight.track_since_ns = state_.track_since_ns;
+  sight.is_told_apart = state_.predict.poses.num_branches == 1;
+  ChooseWay(config_, sight, state_.way);
+  if (state_.way.by_joints) {
+    SteerByJoints(state_.way, state_.q, state_.law.task);
   }
 }
 
 // The target's feature, and what is stacked below it.
 bool ServoTask::ComputeFeature() noexcept {
-  if (!config_.feature.Compute(state_.prediction.seen, state_.feature)) {
+  features::TargetInCamera seen = state_.prediction.seen;
+  if (state_.way.goal.turn != 0) {
+    seen.X_CO.R = seen.X_CO.R * QuarterTurns(state_.way.goal.turn);
+  }
+  if (!config_.feature.Compute(seen, state_.feature)) {
     return false;
   }
   if (!config_.feature.hold_orientation) {
@@ -216,13 +240,15 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   }
   model::VecN dq_des = model::VecN::Zero(config_.arm.num_joints);
   if (IsTracking(state_.mode.mode) && state_.feature_valid) {
-    const double since_s = static_cast<double>(state_.now_ns - state_.track_since_ns) / kSecondNs;
+    const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
+    const double since_s = static_cast<double>(state_.now_ns - since_ns) / kSecondNs;
     const double blend = SmoothStep(since_s / config_.law.smooth_start_s);
     state_.law.task.v *= blend;
     state_.law.task.dq_0 *= blend;
     const ViewedTarget target{config_.feature.Outline(), state_.prediction.seen, state_.J_C};
     ResolveMotion(config_, state_.law.task,
-                  {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target}, state_.resolved);
+                  {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, state_.way.by_joints},
+                  state_.resolved);
     if (!state_.resolved.finite || !state_.resolved.dq.allFinite()) {
       LatchFault(hal::Fault::kNonFiniteControl, -1);
       return;
@@ -250,16 +276,17 @@ void ServoTask::CheckFollowing() noexcept {
 
 // For how long limits have kept the arm from the goal.
 void ServoTask::NoteBlocked() noexcept {
-  constexpr hal::LimitSet kBarriers = hal::Bit(hal::Limit::kJointPosition) |
-                                      hal::Bit(hal::Limit::kWorkspace) | hal::Bit(hal::Limit::kObstacle) |
-                                      hal::Bit(hal::Limit::kSingularity) | hal::Bit(hal::Limit::kFieldOfView);
   const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
-  const bool blocked = steering && (state_.limits & kBarriers) != 0 &&
-                       state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
-                       Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
-                           config_.law.unreachable_progress;
+  bool blocked = false;
+  if (steering && state_.way.by_joints) {
+    blocked = NoteHeld(state_.law.task, state_.reference.dq, state_.way);
+  } else if (steering && (state_.limits & kBarriers) != 0) {
+    blocked = state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
+              Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
+                  config_.law.unreachable_progress;
+  }
   // Noise lets it through for a tick now and then: what counts is how often it is kept.
-  state_.blocked_ns = std::max<std::int64_t>(state_.blocked_ns + (blocked ? 1 : -1) * hal::kTickPeriodNs, 0);
+  CountTick(blocked, state_.blocked_ns);
 }
 
 void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {

@@ -1,5 +1,7 @@
 #include "fovea/servo/still_pose.hpp"
 
+#include <algorithm>
+
 #include "fovea/model/cholesky.hpp"
 #include "fovea/model/rotation.hpp"
 
@@ -9,15 +11,56 @@ namespace {
 using features::Polygon;
 using features::SeenCorners;
 
-constexpr int kRounds = 2;             // of Gauss-Newton, each time: the pose is near from the view before
+constexpr int kRounds = 1;             // of Gauss-Newton, each time: the pose is near from the view before
 constexpr double kCalibration = 2e-4;  // what arm, camera and lens are not known to, in the normalised image
 constexpr double kStepM = 0.05;        // steps are held back by these, so that none leaps where the corners
 constexpr double kStepRad = 0.05;      // say nothing
+constexpr double kHereM = 5e-4;        // a camera that has moved no further stands where it was
+constexpr double kHereRad = 1e-3;
+constexpr int kFramesMost = 60;  // whose mean a view is
 constexpr double kNoWay = 1e9;
+
+double WeightOf(double variance, int frames) noexcept {
+  return 1.0 / (variance / frames + kCalibration * kCalibration);
+}
 
 StillViews::View ViewOf(const CornerView& view) noexcept {
   const double variance = view.seen.cov.trace() / static_cast<double>(view.seen.xy.size());
-  return {view.X_CB, view.seen.xy, 1.0 / (variance + kCalibration * kCalibration)};
+  return {view.X_CB, view.seen.xy, variance, 1};
+}
+
+// How far the corners of a view are from where `X_BO` has them, in the polygon's order; `first` of them is
+// its first corner. False when one is not before the camera.
+bool OffFrom(const Polygon& polygon, const model::Pose& X_CB, const SeenCorners::Vector& xy,
+             const model::Pose& X_BO, SeenCorners::Vector& e, int& first) noexcept {
+  SeenCorners::Vector expected;
+  if (!ExpectCorners(polygon, X_CB, X_BO, expected)) {
+    return false;
+  }
+  const int n = polygon.num_corners;
+  first = NearestFirst(xy, expected);
+  e.resize(2 * n);
+  for (int i = 0; i < n; ++i) {
+    e.segment<2>(2 * i) = xy.segment<2>(2 * ((first + i) % n)) - expected.segment<2>(2 * i);
+  }
+  return true;
+}
+
+// Whether the camera has stayed where `view` was taken from.
+bool IsFromHere(const StillViews::View& view, const model::Pose& X_CB) noexcept {
+  const model::Pose moved = X_CB * view.X_CB.Inverse();
+  return moved.p.norm() < kHereM && model::RotationVector(moved.R).norm() < kHereRad;
+}
+
+// Makes `view` the mean of itself and of `newest`, taken from the same place.
+void Average(const CornerView& newest, StillViews::View& view) noexcept {
+  view.frames = std::min(view.frames + 1, kFramesMost);
+  const auto n = static_cast<int>(view.xy.size() / 2);
+  const int first = NearestFirst(newest.seen.xy, view.xy);
+  for (int i = 0; i < n; ++i) {
+    view.xy.segment<2>(2 * i) +=
+        (newest.seen.xy.segment<2>(2 * ((first + i) % n)) - view.xy.segment<2>(2 * i)) / view.frames;
+  }
 }
 
 // What views say of a pose: how badly it fits, and which way it fits better.
@@ -29,28 +72,23 @@ struct Fit {
 
 // One view's share; false when a corner is not before the camera.
 bool AddTo(Fit& fit, const Polygon& polygon, const StillViews::View& view, const model::Pose& X_BO) noexcept {
-  SeenCorners::Vector expected;
-  if (!ExpectCorners(polygon, view.X_CB, X_BO, expected)) {
+  SeenCorners::Vector e;
+  int first = 0;
+  if (!OffFrom(polygon, view.X_CB, view.xy, X_BO, e, first)) {
     return false;
-  }
-  const int n = polygon.num_corners;
-  const int first = NearestFirst(view.xy, expected);
-  SeenCorners::Vector e(2 * n);
-  for (int i = 0; i < n; ++i) {
-    e.segment<2>(2 * i) = view.xy.segment<2>(2 * ((first + i) % n)) - expected.segment<2>(2 * i);
   }
   CornerSlope H;
   SlopeOfCorners(polygon, view.X_CB, X_BO, H);
-  fit.misfit += view.weight * e.squaredNorm();
-  fit.information += view.weight * H.transpose().lazyProduct(H);
-  fit.right += view.weight * H.transpose().lazyProduct(e);
+  const double weight = WeightOf(view.variance, view.frames);
+  fit.misfit += weight * e.squaredNorm();
+  fit.information += weight * H.transpose().lazyProduct(H);
+  fit.right += weight * H.transpose().lazyProduct(e);
   return true;
 }
 
-Fit FitAt(const Polygon& polygon, const StillViews& views, const CornerView& newest,
-          const model::Pose& X_BO) noexcept {
+Fit FitAt(const Polygon& polygon, const StillViews& views, const model::Pose& X_BO) noexcept {
   Fit fit;
-  bool seen = AddTo(fit, polygon, ViewOf(newest), X_BO);
+  bool seen = AddTo(fit, polygon, views.here, X_BO);
   for (std::size_t i = 0; i < static_cast<std::size_t>(views.count); ++i) {
     seen = seen && AddTo(fit, polygon, views.views[i], X_BO);
   }
@@ -63,6 +101,11 @@ Fit FitAt(const Polygon& polygon, const StillViews& views, const CornerView& new
 }  // namespace
 
 void AddView(const CornerView& view, StillViews& views) noexcept {
+  if (views.count > 0 && IsFromHere(views.here, view.X_CB)) {
+    Average(view, views.here);
+  } else {
+    views.here = ViewOf(view);
+  }
   if (views.count > 0) {
     const model::Pose& last = views.views[static_cast<std::size_t>(views.count - 1)].X_CB;
     if (!((last.Inverse().p - view.X_CB.Inverse().p).norm() >= views.step)) {
@@ -81,13 +124,14 @@ void AddView(const CornerView& view, StillViews& views) noexcept {
 
 double MisfitOf(const Polygon& polygon, const StillViews& views, const CornerView& newest,
                 const model::Pose& X_BO) noexcept {
-  return FitAt(polygon, views, newest, X_BO).misfit;
+  Fit fit = FitAt(polygon, views, X_BO);
+  return fit.misfit < kNoWay && AddTo(fit, polygon, ViewOf(newest), X_BO) ? fit.misfit : kNoWay;
 }
 
 double FitStill(const Polygon& polygon, const StillViews& views, const CornerView& newest,
                 model::Pose& X_BO) noexcept {
   for (int round = 0; round < kRounds; ++round) {
-    Fit fit = FitAt(polygon, views, newest, X_BO);
+    Fit fit = FitAt(polygon, views, X_BO);
     fit.information.diagonal().head<3>().array() += 1.0 / (kStepM * kStepM);
     fit.information.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
     model::FactorCholesky(fit.information);

@@ -38,6 +38,26 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, StillTarget,
                            return name;
                          });
 
+// Starts from which the law that goes downhill ends at a limit: a triangle that needs another posture, and a
+// square of whose four goals the nearest lies outside the workspace.
+TEST(FarGoal, IsReachedByAnotherPosture) {
+  const sim::Summary s = RunByTruth(
+      "triangle", {"arm.q_start=[-0.1256,1.1934,-2.1153,-1.6094,0.3756,1.2153,-2.4184]",
+                   "target.position=[-0.3945,-0.3287,0.0338]", "target.rpy_deg=[-155.83,2.12,67.80]"});
+  Print(s);
+  EXPECT_TRUE(s.converged) << s.verdict;
+  EXPECT_EQ(s.limit_violations, 0U);
+}
+
+TEST(FarGoal, OfASquareIsTheOneOfFourThatCanBeReached) {
+  const sim::Summary s = RunByTruth(
+      "square", {"arm.q_start=[-1.8973,-1.4749,-1.2370,-2.7403,0.0384,2.4767,1.1987]",
+                 "target.position=[-0.4333,-0.8067,0.5195]", "target.rpy_deg=[107.25,16.49,-9.21]"});
+  Print(s);
+  EXPECT_TRUE(s.converged) << s.verdict;
+  EXPECT_EQ(s.limit_violations, 0U);
+}
+
 class MovingTarget : public testing::TestWithParam<const char*> {};
 
 TEST_P(MovingTarget, IsFollowedAndPredictionIsWhatDoesIt) {

@@ -56,7 +56,9 @@ std::array<double, 2> Wilson95(int converged, int runs) {
 }
 
 std::vector<std::string> AssignmentsOf(const Heading& heading, const Start& start) {
-  std::vector<std::string> assignments = heading.assignments;
+  // Told first, so that what the caller sets counts.
+  std::vector<std::string> assignments{"safety.planes=[0,0,1,0.09]"};
+  assignments.insert(assignments.end(), heading.assignments.begin(), heading.assignments.end());
   std::vector<std::string> q;
   for (const double value : start.q) {
     q.push_back(fmt::format("{:.4f}", value));

@@ -26,6 +26,7 @@ struct PoseChoice {
   int accepted = 0;  // views since the start, up to accepted_min
   int rejected_in_row = 0;
   std::int64_t stamp_ns = 0;  // of the last view that was taken in
+  bool is_still = false;      // the last view and those from elsewhere fit one pose
   StillViews views;
   std::array<Branch, hal::kMaxPoses> branches;
 
@@ -38,5 +39,12 @@ struct PoseChoice {
 // view are begun anew. Returns whether it was taken in. Real-time: yes.
 bool UpdatePoses(const PredictConfig& config, const features::Polygon& polygon, const CornerView& view,
                  PoseChoice& choice) noexcept;
+
+// Where the believed pose is `now_ns`. Of a target that stands still it is the pose that fits all views: what
+// is wrong with the corners is wrong in the same way for as long as the camera stands, so that a filter would
+// take many views from there for much news, and forget the tilt that was seen so much better from aside.
+// Where arm, camera and corners do not agree to some tenths of a pixel, nothing counts as still, and the
+// filter speaks. Real-time: yes.
+[[nodiscard]] FlatMotion MotionAt(const PoseChoice& choice, std::int64_t now_ns) noexcept;
 
 }  // namespace fovea::servo

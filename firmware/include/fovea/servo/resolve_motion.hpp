@@ -25,6 +25,7 @@ struct MotionScene {
   const model::LinearJacobian& J_E_B;    // of the end effector's point, in axes of B
   const model::Mat6N& J;                 // body Jacobian of a frame of the hand, for the singularity
   const ViewedTarget* target = nullptr;  // what shall stay in the picture; null: nothing
+  bool by_joints = false;                // a motion of the joints, which no singularity of the hand holds up
 };
 
 struct ResolvedMotion {

@@ -22,6 +22,7 @@
 #include "fovea/servo/servo_config.hpp"
 #include "fovea/servo/stage_probe.hpp"
 #include "fovea/servo/visual_law.hpp"
+#include "fovea/servo/way_to_goal.hpp"
 
 namespace fovea::servo {
 
@@ -80,6 +81,7 @@ struct ServoState {
   features::FeatureState feature;
   model::Mat3 R_BC_held = model::Mat3::Identity();  // the camera's when Track began
   VisualLawOutput law;
+  WayToGoal way;  // of a target that is steered by in all six degrees of freedom
 
   // guard
   ResolvedMotion resolved;
@@ -128,6 +130,7 @@ class ServoTask final : public ServoStep {
   void ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept;
   void ComputeVisualLaw() noexcept;
   [[nodiscard]] bool ComputeFeature() noexcept;
+  void ChooseTheWay() noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
   void CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept;
   void ForgetMotion() noexcept;

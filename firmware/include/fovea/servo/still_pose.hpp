@@ -13,16 +13,18 @@ namespace fovea::servo {
 
 // Views spread over the camera's way, however long that gets.
 struct StillViews {
-  static constexpr int kMost = 8;
+  static constexpr int kMost = 16;
   struct View {
     model::Pose X_CB;
     features::SeenCorners::Vector xy;
-    double weight = 0.0;  // 1 / variance of an entry of xy
+    double variance = 0.0;  // of an entry of one frame's corners
+    int frames = 1;         // whose mean this is
   };
 
   int count = 0;
   double step = 0.005;  // how far the camera goes from one to the next [m]; doubles when they are too many
   std::array<View, kMost> views;
+  View here;  // the mean of the frames since the camera stands where it is
 };
 
 // Takes the view when the camera has gone far enough since the last one. Real-time: yes.
@@ -33,7 +35,7 @@ void AddView(const CornerView& view, StillViews& views) noexcept;
 [[nodiscard]] double MisfitOf(const features::Polygon& polygon, const StillViews& views,
                               const CornerView& newest, const model::Pose& X_BO) noexcept;
 
-// Improves `X_BO` and gives its misfit. Real-time: yes.
+// Improves `X_BO` by the views, and gives its misfit. Real-time: yes.
 [[nodiscard]] double FitStill(const features::Polygon& polygon, const StillViews& views,
                               const CornerView& newest, model::Pose& X_BO) noexcept;
 

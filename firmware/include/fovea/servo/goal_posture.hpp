@@ -1,0 +1,51 @@
+// A posture in which the camera has a flat target where it shall be, looked for while the arm moves.
+//
+// The visual law goes downhill. Where all six degrees of freedom are controlled, that may end at the end of a
+// joint's range although another posture reaches the goal; and a square looks the same after each quarter
+// turn, one of which may be out of reach. So postures are tried by Gauss-Newton on the camera's pose, a step
+// at a time: from where the arm is, to each of the target's equal turns, the nearest first; then in rounds
+// from postures beside it, further and further off, and of those that a round finds the nearest is taken.
+// Once one is found it follows the target's estimate.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "fovea/model/kinematics.hpp"
+#include "fovea/servo/servo_config.hpp"
+
+namespace fovea::servo {
+
+struct GoalPosture {
+  bool found = false;
+  bool begun = false;          // a trial is under way
+  bool downhill = false;       // the posture was found from where the arm was
+  int turn = 0;                // quarter turns of the target about its z, for which the last posture found is
+  int trial_turn = 0;          // and for which the trial is
+  int trial = 0;               // that is under way, or led to the posture
+  int step = 0;                // of the trial; of a posture that was found, how long it has been off the goal
+  double last_off = HUGE_VAL;  // of the trial: how far it was from the goal when last looked at
+  model::VecN q;               // of the trial, or the posture [num_joints]
+  std::uint32_t random = 1;
+
+  double nearest = HUGE_VAL;  // of the round: how far its nearest posture is from the arm [rad]
+  int nearest_turn = 0;
+  model::VecN q_nearest;
+  bool has_dropped = false;
+  model::VecN q_dropped;  // the last one that could not be reached
+};
+
+// Whether the target's feature leaves the camera's pose no freedom, so that there is something to look for.
+[[nodiscard]] bool SeeksGoalPosture(const features::TargetFeature& feature) noexcept;
+
+// One step. `X_BO`: the target's estimate; `q` [num_joints]: where the arm is. Real-time: yes.
+void SeekGoalPosture(const ServoConfig& config, const model::Pose& X_BO, const model::VecN& q,
+                     GoalPosture& goal) noexcept;
+
+// The posture cannot be reached: goes on with the next trial, for another one. Real-time: yes.
+void DropGoalPosture(GoalPosture& goal) noexcept;
+
+// `turn` quarter turns about z. Real-time: yes.
+[[nodiscard]] model::Mat3 QuarterTurns(int turn) noexcept;
+
+}  // namespace fovea::servo

@@ -1,0 +1,63 @@
+// Which way the arm takes to a target that leaves its hand no freedom: the visual law's, or by the joints.
+//
+// The law takes each step that brings the feature nearer. With all six degrees of freedom controlled that may
+// end where a limit holds it, at a joint's end or along the workspace, although another posture reaches the
+// goal. So such a posture is looked for all the while (goal_posture.hpp). Where it does not lie downhill, or
+// limits let the goal come no nearer, the joints go there, all at once and as straight as the limits let
+// them: the target stays in the picture (keep_in_view.hpp). Near the posture the law takes over. All limits
+// hold on both ways, but for the guard of the hand's singularities, which a motion of the joints passes.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "fovea/hal/events.hpp"
+#include "fovea/servo/goal_posture.hpp"
+#include "fovea/servo/reference.hpp"
+#include "fovea/servo/visual_law.hpp"
+
+namespace fovea::servo {
+
+struct WayToGoal {
+  GoalPosture goal;
+  bool by_joints = false;
+  bool preferred = false;       // that posture: the law has failed without it, and bends towards it
+  std::int64_t since_ns = 0;    // when the way was last changed: it begins smoothly
+  std::int64_t held_ns = 0;     // by the joints: how much longer limits have held them up than not
+  std::int64_t idle_ns = 0;     // by the law: how long limits have acted and the goal has come no nearer
+  double least_off = HUGE_VAL;  // how near it was [m], a turn counting a tenth of its angle
+};
+
+// What is known of target and arm in this tick.
+struct WaySight {
+  model::Pose X_BO;  // the estimate
+  model::Pose X_CO;
+  const model::VecN& q;      // [num_joints]
+  hal::LimitSet limits = 0;  // that acted in the tick before
+  std::int64_t now_ns = 0;
+  std::int64_t track_since_ns = 0;
+  bool is_told_apart = false;  // of the poses that the corners allow one is left
+};
+
+// Looks on for a posture, and chooses. Real-time: yes.
+void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept;
+
+// The task of the way by the joints, in the place of the law's: all joints at once, straight to the posture;
+// to stand still while another one is looked for.
+// `q` [num_joints]. Real-time: yes.
+void SteerByJoints(const WayToGoal& way, const model::VecN& q, MotionTask& task) noexcept;
+
+// Takes note of what became of that task: `dq` is what the limits left of it. True when they hold it up, or
+// there is no way to go.
+// Real-time: yes.
+bool NoteHeld(const MotionTask& task, const model::VecN& dq, WayToGoal& way) noexcept;
+
+// The limits that bar a way, and not only slow it.
+inline constexpr hal::LimitSet kBarriers =
+    hal::Bit(hal::Limit::kJointPosition) | hal::Bit(hal::Limit::kWorkspace) |
+    hal::Bit(hal::Limit::kObstacle) | hal::Bit(hal::Limit::kSingularity) | hal::Bit(hal::Limit::kFieldOfView);
+
+// `ns` a tick more where `holds`, else less, but not below 0. Real-time: yes.
+void CountTick(bool holds, std::int64_t& ns) noexcept;
+
+}  // namespace fovea::servo

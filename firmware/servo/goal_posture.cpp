@@ -1,0 +1,248 @@
+#include "fovea/servo/goal_posture.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "fovea/model/cholesky.hpp"
+#include "fovea/model/rotation.hpp"
+#include "fovea/servo/obstacle.hpp"
+#include "fovea/servo/singularity.hpp"
+
+namespace fovea::servo {
+namespace {
+
+using features::FeatureForm;
+using model::Mat3;
+using model::Pose;
+using model::Vec6;
+using model::VecN;
+
+constexpr double kJointRoom = 0.06;       // inside the range that the reference keeps [rad]
+constexpr double kRadiusRoom = 0.003;     // inside the sphere that it keeps [m]
+constexpr double kSingularityRoom = 1.5;  // of the smallest singular value that the guard keeps
+constexpr double kStepMost = 0.2;         // [rad]
+constexpr double kDamping = 1e-6;
+constexpr double kReached = 2e-3;  // the rest follows, also of a target that moves [m, rad]
+constexpr double kOff = 0.01;      // a posture that was found and is further off than this is none any more,
+constexpr int kOffSteps = 100;     // after so many steps
+constexpr double kLost = 0.5;      // or this at once
+constexpr int kStepsMost = 100;
+constexpr int kStepsLooked = 8;       // a trial that comes no nearer in so many
+constexpr double kComesNearer = 0.8;  // than this share is given up
+constexpr int kPasses = 3;            // of joints found at the ends of their ranges, in one step
+constexpr double kSpread = 0.5;  // of the first round about the arm's posture, a step more each round [rad]
+constexpr int kTrialsInRound = 16;  // to each turn
+constexpr int kRounds = 12;         // then it begins anew: limits, target or arm may have moved
+constexpr double kSame = 0.2;       // postures no further apart are one [rad]
+
+struct Range {
+  double least;
+  double most;
+};
+
+Range RangeOf(const ServoConfig& config, Eigen::Index i) noexcept {
+  const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+  const double room = config.guard.joint_position_margin + kJointRoom;
+  return {joint.q_min + room, joint.q_max - room};
+}
+
+int TurnsOf(const features::TargetFeature& feature) noexcept {
+  return feature.target == hal::FeatureKind::kSquare ? 4 : 1;
+}
+
+// Where the camera shall be.
+Pose CameraGoal(const features::TargetFeature& feature, const Pose& X_BO, int turn) noexcept {
+  const Pose turned{X_BO.R * QuarterTurns(turn), X_BO.p};
+  return turned * Pose{feature.R_CO_star, feature.p_CO_C_star}.Inverse();
+}
+
+// The turn that the estimate has first, then the others, the nearest to the camera's orientation first.
+int TurnOfRank(const ServoConfig& config, const Pose& X_BO, const VecN& q, int rank) noexcept {
+  const int turns = TurnsOf(config.feature);
+  if (turns == 1) {
+    return 0;
+  }
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, q, poses);
+  const Pose X_BC = poses.X_BE * config.X_EC;
+  std::array<double, 4> likeness{};
+  for (int i = 0; i < 4; ++i) {
+    likeness[static_cast<std::size_t>(i)] = X_BC.R.cwiseProduct(CameraGoal(config.feature, X_BO, i).R).sum();
+  }
+  std::array<int, 4> order{0, 1, 2, 3};
+  std::sort(order.begin() + 1, order.end(), [&](int a, int b) {
+    return likeness[static_cast<std::size_t>(a)] > likeness[static_cast<std::size_t>(b)];
+  });
+  return order[static_cast<std::size_t>(rank)];
+}
+
+// Uniform in [-1, 1]: numbers of Numerical Recipes' quick generator.
+double Draw(std::uint32_t& state) noexcept {
+  state = state * 1664525U + 1013904223U;
+  return static_cast<double>(state >> 8U) * 0x1p-23 - 1.0;
+}
+
+void Begin(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) noexcept {
+  const int turns = TurnsOf(config.feature);
+  goal.trial_turn = TurnOfRank(config, X_BO, q, goal.trial % turns);
+  goal.begun = true;
+  goal.step = 0;
+  goal.last_off = HUGE_VAL;
+  goal.q = q;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const Range range = RangeOf(config, i);
+    if (goal.trial >= turns) {
+      goal.q[i] += kSpread * (1.0 + goal.trial / (turns * kTrialsInRound)) * Draw(goal.random);
+    }
+    goal.q[i] = std::clamp(goal.q[i], range.least, range.most);
+  }
+}
+
+// One step of Gauss-Newton towards the camera pose `X_BC_star`. A joint at its end rests where the step would
+// take it further. Returns how far off it was before.
+double Descend(const ServoConfig& config, const Pose& X_BC_star, const model::ArmPoses& poses,
+               VecN& q) noexcept {
+  const Pose X_BC = poses.X_BE * config.X_EC;
+  Vec6 off;
+  off.head<3>() = X_BC.R.transpose() * (X_BC_star.p - X_BC.p);
+  off.tail<3>() = model::RotationVector(X_BC.R.transpose() * X_BC_star.R);
+  model::Mat6N J;
+  model::ComputeJacobian(config.arm, poses, config.X_EC, J);
+  VecN dq = VecN::Zero(q.size());
+  for (int pass = 0; pass < kPasses; ++pass) {
+    model::Mat6 JJT = J.lazyProduct(J.transpose());
+    JJT.diagonal().array() += kDamping;
+    model::FactorCholesky(JJT);
+    Vec6 x = off;
+    model::SolveCholesky(JJT, x);
+    dq = J.transpose().lazyProduct(x);
+    const double largest = dq.lpNorm<Eigen::Infinity>();
+    dq *= largest > kStepMost ? kStepMost / largest : 1.0;
+    bool held = false;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const Range range = RangeOf(config, i);
+      if ((q[i] >= range.most && dq[i] > 0.0) || (q[i] <= range.least && dq[i] < 0.0)) {
+        J.col(i).setZero();
+        held = true;
+      }
+    }
+    if (!held) {
+      break;
+    }
+  }
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const Range range = RangeOf(config, i);
+    q[i] = std::clamp(q[i] + dq[i], range.least, range.most);
+  }
+  return off.norm();
+}
+
+bool KeepsOut(const ServoConfig& config, const model::Vec3& p_BE) noexcept {
+  const GuardConfig& guard = config.guard;
+  bool keeps = p_BE.norm() <= guard.workspace_radius - guard.workspace_margin - kRadiusRoom;
+  for (int i = 0; i < CountObstacles(guard.obstacles); ++i) {
+    keeps = keeps && ClearanceOf(guard.obstacles, i, p_BE).distance > 2.0 * guard.workspace_margin;
+  }
+  return keeps;
+}
+
+// Whether all singular values of the camera's Jacobian are above those that the guard keeps: then and only
+// then J J^T less their square is positive definite.
+bool IsRegular(const ServoConfig& config, const model::ArmPoses& poses) noexcept {
+  model::Mat6N J;
+  model::ComputeJacobian(config.arm, poses, config.X_EC, J);
+  J.topRows<3>() /= SingularityConfig{}.length;
+  const double least = kSingularityRoom * config.guard.singularity_min;
+  model::Mat6 JJT = J.lazyProduct(J.transpose());
+  JJT.diagonal().array() -= least * least;
+  model::FactorCholesky(JJT);
+  return JJT.diagonal().allFinite();
+}
+
+// A posture that reaches the goal.
+void Note(const VecN& q, GoalPosture& goal) noexcept {
+  if (goal.has_dropped && (goal.q - goal.q_dropped).lpNorm<Eigen::Infinity>() < kSame) {
+    return;
+  }
+  const double way = (goal.q - q).lpNorm<Eigen::Infinity>();
+  if (way < goal.nearest) {
+    goal.nearest = way;
+    goal.nearest_turn = goal.trial_turn;
+    goal.q_nearest = goal.q;
+  }
+}
+
+// What has been found counts at once when it lies downhill, else when the round is over.
+void NextTrial(const ServoConfig& config, GoalPosture& goal) noexcept {
+  const int turns = TurnsOf(config.feature);
+  goal.downhill = goal.trial < turns;
+  goal.begun = false;
+  ++goal.trial;
+  const bool round_over = goal.trial % (turns * kTrialsInRound) == 0;
+  if (goal.trial >= turns * kTrialsInRound * kRounds) {
+    goal.trial = 0;
+  }
+  if (goal.nearest < HUGE_VAL && (goal.downhill || round_over)) {
+    goal.found = true;
+    goal.turn = goal.nearest_turn;
+    goal.q = goal.q_nearest;
+    goal.nearest = HUGE_VAL;
+    goal.step = 0;
+  }
+}
+
+}  // namespace
+
+bool SeeksGoalPosture(const features::TargetFeature& feature) noexcept {
+  return feature.SeesOrientation() &&
+         (feature.form == FeatureForm::kCorners || feature.form == FeatureForm::kPose);
+}
+
+Mat3 QuarterTurns(int turn) noexcept {
+  constexpr std::array<double, 4> kCos{1.0, 0.0, -1.0, 0.0};
+  const double c = kCos[static_cast<std::size_t>(turn & 3)];
+  const double s = kCos[static_cast<std::size_t>((turn + 3) & 3)];
+  Mat3 R;
+  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  return R;
+}
+
+void DropGoalPosture(GoalPosture& goal) noexcept {
+  goal.has_dropped = true;
+  goal.q_dropped = goal.q;
+  goal.found = false;
+  goal.begun = false;
+  ++goal.trial;
+}
+
+void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) noexcept {
+  if (!goal.begun && !goal.found) {
+    Begin(config, X_BO, q, goal);
+  }
+  const Pose X_BC_star = CameraGoal(config.feature, X_BO, goal.found ? goal.turn : goal.trial_turn);
+  const bool allowed = KeepsOut(config, (X_BC_star * config.X_EC.Inverse()).p);
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, goal.q, poses);
+  const double off = Descend(config, X_BC_star, poses, goal.q);
+  if (goal.found) {
+    goal.step = off > kOff || !allowed ? goal.step + 1 : 0;
+    if (!(off < kLost) || goal.step > kOffSteps) {
+      goal = GoalPosture{};
+    }
+    return;
+  }
+  ++goal.step;
+  bool is_stuck = goal.step >= kStepsMost;
+  if (goal.step % kStepsLooked == 1) {
+    is_stuck = is_stuck || !(off < kComesNearer * goal.last_off);
+    goal.last_off = off;
+  }
+  if (off < kReached && allowed && IsRegular(config, poses)) {
+    Note(q, goal);
+    NextTrial(config, goal);
+  } else if (off < kReached || !allowed || is_stuck) {
+    NextTrial(config, goal);
+  }
+}
+
+}  // namespace fovea::servo

@@ -1,0 +1,107 @@
+#include "fovea/servo/way_to_goal.hpp"
+
+#include <algorithm>
+
+#include "fovea/model/rotation.hpp"
+
+namespace fovea::servo {
+namespace {
+
+constexpr int kStepsInATick = 4;  // of the search for a posture
+
+// When the joints take over.
+constexpr double kLookS = 0.2;  // after which the target's pose is believed so far as to leave the law's way
+constexpr double kIdleS = 0.4;  // for so long the goal came no nearer
+constexpr double kNearer = 0.97;    // by this share
+constexpr double kThereM = 0.0015;  // a goal that is so near needs no other way
+constexpr double kThereRad = 0.006;
+constexpr double kMetrePerRad = 0.1;
+constexpr double kBegins = 0.08;  // where some joint is further from the posture than this [rad]
+
+// How they go, and until when.
+constexpr double kGain = 3.0;       // [1/s]
+constexpr double kSpeed = 1.8;      // of the fastest [rad/s]
+constexpr double kEnds = 0.03;      // where no joint is further off [rad]
+constexpr double kHeldShare = 0.1;  // of the wanted motion: limits that leave less hold it up,
+constexpr double kHeldS = 0.4;      // and for so long, another posture is looked for
+
+constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
+
+bool IsLonger(std::int64_t ns, double s) noexcept { return static_cast<double>(ns) > s * kSecondNs; }
+
+void NoteIdle(const ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
+  const model::Mat3 R_CO = sight.X_CO.R * QuarterTurns(way.goal.turn);
+  const double turn = model::RotationVector(config.feature.R_CO_star.transpose() * R_CO).norm();
+  const double shift = (sight.X_CO.p - config.feature.p_CO_C_star).norm();
+  const double off = shift + kMetrePerRad * turn;
+  if (turn < kThereRad && shift < kThereM) {
+    way.idle_ns = 0;
+  } else if (off < kNearer * way.least_off) {
+    way.least_off = off;
+    way.idle_ns = 0;
+  } else if ((sight.limits & kBarriers) != 0) {
+    way.idle_ns += hal::kTickPeriodNs;
+  }
+}
+
+}  // namespace
+
+void CountTick(bool holds, std::int64_t& ns) noexcept {
+  ns = std::max<std::int64_t>(ns + (holds ? hal::kTickPeriodNs : -hal::kTickPeriodNs), 0);
+}
+
+void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
+  for (int i = 0; i < (way.goal.found ? 1 : kStepsInATick); ++i) {
+    SeekGoalPosture(config, sight.X_BO, sight.q, way.goal);
+  }
+  if (way.by_joints && IsLonger(way.held_ns, kHeldS)) {
+    DropGoalPosture(way.goal);
+    way.since_ns = sight.now_ns;
+    way.held_ns = 0;
+  }
+  NoteIdle(config, sight, way);
+  if (!way.goal.found || !sight.is_told_apart) {
+    return;  // or it would be the way to a pose that is not the target's
+  }
+  const double left = (way.goal.q - sight.q).lpNorm<Eigen::Infinity>();
+  if (way.by_joints) {
+    if (left < kEnds) {
+      way.by_joints = false;
+      way.since_ns = sight.now_ns;
+      way.idle_ns = 0;
+      way.least_off = HUGE_VAL;
+    }
+    return;
+  }
+  const bool elsewhere =
+      !way.preferred && !way.goal.downhill && IsLonger(sight.now_ns - sight.track_since_ns, kLookS);
+  if (elsewhere || IsLonger(way.idle_ns, kIdleS)) {
+    way.preferred = true;
+    way.held_ns = 0;
+    way.idle_ns = 0;
+    if (left > kBegins) {
+      way.by_joints = true;
+      way.since_ns = sight.now_ns;
+    }
+  }
+}
+
+void SteerByJoints(const WayToGoal& way, const model::VecN& q, MotionTask& task) noexcept {
+  task.v.setZero(q.size());
+  if (way.goal.found) {
+    task.v = kGain * (way.goal.q - q);
+  }
+  const double fastest = task.v.lpNorm<Eigen::Infinity>();
+  task.v *= fastest > kSpeed ? kSpeed / fastest : 1.0;
+  task.J.setIdentity(q.size(), q.size());
+  task.dq_0.setZero(q.size());
+  task.weight.setOnes(q.size());
+}
+
+bool NoteHeld(const MotionTask& task, const model::VecN& dq, WayToGoal& way) noexcept {
+  const bool held = !way.goal.found || dq.dot(task.v) < kHeldShare * task.v.squaredNorm();
+  CountTick(held, way.held_ns);
+  return held;
+}
+
+}  // namespace fovea::servo

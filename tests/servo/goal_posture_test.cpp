@@ -1,0 +1,123 @@
+#include "fovea/servo/goal_posture.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fovea/model/rotation.hpp"
+#include "support/panda.hpp"
+
+namespace fovea::servo {
+namespace {
+
+using model::Pose;
+using model::VecN;
+
+ServoConfig Config(hal::FeatureKind kind) {
+  ServoConfig config = test::PandaConfig();
+  config.feature.target = kind;
+  config.feature.form = features::FeatureForm::kPose;
+  return config;
+}
+
+Pose CameraAt(const ServoConfig& config, const VecN& q) {
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, q, poses);
+  return poses.X_BE * config.X_EC;
+}
+
+// Where the target is when the camera at `q` has it at its goal.
+Pose TargetFor(const ServoConfig& config, const VecN& q) {
+  return CameraAt(config, q) * Pose{config.feature.R_CO_star, config.feature.p_CO_C_star};
+}
+
+int StepsUntilFound(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) {
+  for (int step = 1; step <= 20000; ++step) {
+    SeekGoalPosture(config, X_BO, q, goal);
+    if (goal.found) {
+      return step;
+    }
+  }
+  return 0;
+}
+
+void ExpectAtGoal(const ServoConfig& config, const Pose& X_BO, const GoalPosture& goal) {
+  const Pose X_CO = CameraAt(config, goal.q).Inverse() * X_BO;
+  EXPECT_LT((X_CO.p - config.feature.p_CO_C_star).norm(), 1e-3);
+  EXPECT_LT(
+      model::RotationVector(config.feature.R_CO_star.transpose() * X_CO.R * QuarterTurns(goal.turn)).norm(),
+      1e-3);
+  for (int i = 0; i < goal.q.size(); ++i) {
+    const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+    EXPECT_GT(goal.q[i], joint.q_min + config.guard.joint_position_margin) << i;
+    EXPECT_LT(goal.q[i], joint.q_max - config.guard.joint_position_margin) << i;
+  }
+}
+
+TEST(GoalPostureTest, OneThatIsNearIsFoundDownhillAndFollowsTheTarget) {
+  const ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  VecN q_goal = test::Ready();
+  q_goal[0] += 0.3;
+  q_goal[5] -= 0.2;
+  Pose X_BO = TargetFor(config, q_goal);
+  GoalPosture goal;
+  EXPECT_GT(StepsUntilFound(config, X_BO, test::Ready(), goal), 0);
+  EXPECT_TRUE(goal.downhill);
+  for (int i = 0; i < 50; ++i) {
+    X_BO.p.x() += 1e-3;
+    SeekGoalPosture(config, X_BO, test::Ready(), goal);
+  }
+  SeekGoalPosture(config, X_BO, test::Ready(), goal);
+  EXPECT_TRUE(goal.found);
+  ExpectAtGoal(config, X_BO, goal);
+}
+
+// The last joint at its upper end, the goal a third of a turn further: another posture, the long way round.
+TEST(GoalPostureTest, PastTheEndOfAJointTheWayRoundIsFound) {
+  const ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  VecN q = test::Ready();
+  q[6] = config.arm.joints[6].q_max - 0.1;
+  VecN q_goal = q;
+  q_goal[6] = q[6] + 2.0 - 2.0 * model::kPi;
+  const Pose X_BO = TargetFor(config, q_goal);
+  GoalPosture goal;
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  EXPECT_FALSE(goal.downhill);
+  SeekGoalPosture(config, X_BO, q, goal);
+  SeekGoalPosture(config, X_BO, q, goal);
+  ExpectAtGoal(config, X_BO, goal);
+}
+
+// The hand hangs beside the camera: turned by half a turn it would be outside the workspace, as it is not.
+TEST(GoalPostureTest, ASquareIsFacedFromASideThatTheHandReaches) {
+  const ServoConfig config = Config(hal::FeatureKind::kSquare);
+  const Pose half{QuarterTurns(2), model::Vec3::Zero()};
+  const auto hand_turned = [&](const VecN& q) {
+    return (CameraAt(config, q) * half * config.X_EC.Inverse()).p.norm();
+  };
+  VecN q = test::Ready();
+  for (int i = 0; i < 100 && hand_turned(q) < config.guard.workspace_radius + 0.01; ++i) {
+    q[3] += 0.015;  // stretches the arm
+    q[5] -= 0.005;
+  }
+  ASSERT_GT(hand_turned(q), config.guard.workspace_radius);
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, q, poses);
+  ASSERT_LT(poses.X_BE.p.norm(), config.guard.workspace_radius - 0.01);
+  const Pose X_BO = TargetFor(config, q) * half;
+  GoalPosture goal;
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  SeekGoalPosture(config, X_BO, q, goal);
+  SeekGoalPosture(config, X_BO, q, goal);
+  EXPECT_NE(goal.turn, 0);
+  ExpectAtGoal(config, X_BO, goal);
+}
+
+TEST(GoalPostureTest, NoneIsFoundForAGoalOutsideTheWorkspace) {
+  const ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  Pose X_BO = TargetFor(config, test::Ready());
+  X_BO.p.x() += 1.0;
+  GoalPosture goal;
+  EXPECT_EQ(StepsUntilFound(config, X_BO, test::Ready(), goal), 0);
+}
+
+}  // namespace
+}  // namespace fovea::servo

@@ -1,0 +1,127 @@
+#include "fovea/servo/way_to_goal.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support/panda.hpp"
+
+namespace fovea::servo {
+namespace {
+
+using model::Pose;
+using model::VecN;
+
+class WayToGoalTest : public testing::Test {
+ protected:
+  WayToGoalTest() : config_(test::PandaConfig()) {
+    config_.feature.target = hal::FeatureKind::kTriangle;
+    config_.feature.form = features::FeatureForm::kPose;
+  }
+
+  [[nodiscard]] Pose CameraAt(const VecN& q) const {
+    model::ArmPoses poses;
+    model::ComputePoses(config_.arm, q, poses);
+    return poses.X_BE * config_.X_EC;
+  }
+
+  // A target that the camera has at its goal with the joints at `q`.
+  void PutTargetFor(const VecN& q) {
+    X_BO_ = CameraAt(q) * Pose{config_.feature.R_CO_star, config_.feature.p_CO_C_star};
+  }
+
+  // The arm stands at `q` for `ticks`.
+  void Stand(const VecN& q, int ticks, hal::LimitSet limits = 0) {
+    for (int i = 0; i < ticks; ++i) {
+      now_ns_ += hal::kTickPeriodNs;
+      WaySight sight{X_BO_, CameraAt(q).Inverse() * X_BO_, q};
+      sight.limits = limits;
+      sight.now_ns = now_ns_;
+      sight.is_told_apart = told_apart_;
+      ChooseWay(config_, sight, way_);
+    }
+  }
+
+  // The last joint near its upper end, the goal a third of a turn further: only the long way round leads
+  // there.
+  VecN PutTargetPastTheEnd() {
+    VecN q = test::Ready();
+    q[6] = config_.arm.joints[6].q_max - 0.1;
+    VecN q_goal = q;
+    q_goal[6] = q[6] + 2.0 - 2.0 * model::kPi;
+    PutTargetFor(q_goal);
+    return q;
+  }
+
+  ServoConfig config_;
+  Pose X_BO_;
+  WayToGoal way_;
+  std::int64_t now_ns_ = 0;
+  bool told_apart_ = true;
+};
+
+TEST_F(WayToGoalTest, DownhillTheLawGoes) {
+  VecN q_goal = test::Ready();
+  q_goal[0] += 0.3;
+  PutTargetFor(q_goal);
+  Stand(test::Ready(), 1000);
+  EXPECT_TRUE(way_.goal.found);
+  EXPECT_TRUE(way_.goal.downhill);
+  EXPECT_FALSE(way_.by_joints);
+}
+
+TEST_F(WayToGoalTest, APostureElsewhereIsGoneToByTheJoints) {
+  const VecN q = PutTargetPastTheEnd();
+  Stand(q, 1000);
+  ASSERT_TRUE(way_.goal.found);
+  EXPECT_FALSE(way_.goal.downhill);
+  ASSERT_TRUE(way_.by_joints);
+
+  MotionTask task;
+  SteerByJoints(way_, q, task);
+  const VecN to_goal = way_.goal.q - q;
+  EXPECT_NEAR(task.v.dot(to_goal), task.v.norm() * to_goal.norm(), 1e-12) << "straight";
+  EXPECT_LT(task.v.lpNorm<Eigen::Infinity>(), 2.0);
+
+  Stand(way_.goal.q, 1);
+  EXPECT_FALSE(way_.by_joints) << "there, the law takes over";
+}
+
+TEST_F(WayToGoalTest, NotBeforeTheTargetsPosesAreToldApart) {
+  told_apart_ = false;
+  const VecN q = PutTargetPastTheEnd();
+  Stand(q, 1000);
+  EXPECT_TRUE(way_.goal.found);
+  EXPECT_FALSE(way_.by_joints);
+}
+
+TEST_F(WayToGoalTest, LimitsThatLetTheGoalComeNoNearerMakeItGoByTheJoints) {
+  VecN q_goal = test::Ready();
+  q_goal[0] += 0.3;
+  PutTargetFor(q_goal);
+  Stand(test::Ready(), 200, hal::Bit(hal::Limit::kWorkspace));
+  EXPECT_FALSE(way_.by_joints);
+  Stand(test::Ready(), 400, hal::Bit(hal::Limit::kWorkspace));
+  EXPECT_TRUE(way_.by_joints);
+}
+
+TEST_F(WayToGoalTest, APostureThatLimitsHoldUpIsGivenUpForAnother) {
+  const VecN q = PutTargetPastTheEnd();
+  Stand(q, 1000);
+  ASSERT_TRUE(way_.by_joints);
+  const VecN first = way_.goal.q;
+  MotionTask task;
+  int ticks = 0;
+  for (; ticks < 1000 && way_.goal.found; ++ticks) {
+    SteerByJoints(way_, q, task);
+    EXPECT_TRUE(NoteHeld(task, VecN::Zero(q.size()), way_));
+    Stand(q, 1);
+  }
+  EXPECT_LT(ticks, 1000);
+  SteerByJoints(way_, q, task);
+  EXPECT_EQ(task.v.norm(), 0.0) << "stands while it looks for another";
+  Stand(q, 3000);
+  ASSERT_TRUE(way_.goal.found);
+  EXPECT_GT((way_.goal.q - first).lpNorm<Eigen::Infinity>(), 0.1);
+}
+
+}  // namespace
+}  // namespace fovea::servo
