@@ -362,7 +362,8 @@ void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
   impl_->last_dt = dt;
   impl_->ApplyTorque(tau);
   impl_->world.stepSimulation(dt, 0);
-  impl_->UpdatePoses();  // Bullet's are those of the step's beginning
+  // Bullet's poses are those of the step's beginning, but for the colliders'.
+  impl_->body->forwardKinematics(impl_->scratch_q, impl_->scratch_v);
   impl_->ReadState();
 }
 
