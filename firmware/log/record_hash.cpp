@@ -25,10 +25,10 @@ class Writer {
     bytes_.insert(bytes_.end(), from, from + sizeof(T));
   }
   template <typename T, std::size_t N>
+  requires std::is_arithmetic_v<T>
   void operator()(const std::array<T, N>& values) {
-    for (const T& value : values) {
-      (*this)(value);
-    }
+    const auto* from = reinterpret_cast<const std::uint8_t*>(values.data());
+    bytes_.insert(bytes_.end(), from, from + sizeof(values));
   }
   template <typename M>
   void Matrix(const M& m) {

@@ -1,58 +1,61 @@
 #include "fovea/servo/compress_task.hpp"
 
+#include <array>
 #include <cmath>
 
 namespace fovea::servo {
 namespace {
 
-constexpr Eigen::Index kRows = 6;
+constexpr std::size_t kRows = 6;
 
-// Reflects column `x` of a matrix, from row `k` on, by I - tau h h^T with h [rows - k], h_0 = 1.
-template <typename Column>
-void Reflect(const features::FeatureVector& h, double tau, Eigen::Index k, Column&& x) noexcept {
-  double share = 0.0;
-  for (Eigen::Index i = 0; i < h.size(); ++i) {
-    share += h[i] * x[k + i];
+using Column = std::array<double, features::kMaxDim>;
+static_assert(features::kMaxDim == 8, "a sum of four pairs");
+
+double Dot(const Column& a, const Column& b) noexcept {
+  std::array<double, 4> pairs;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    pairs[i] = a[i] * b[i] + a[i + 4] * b[i + 4];
   }
-  for (Eigen::Index i = 0; i < h.size(); ++i) {
-    x[k + i] -= tau * share * h[i];
-  }
+  return (pairs[0] + pairs[1]) + (pairs[2] + pairs[3]);
 }
 
 }  // namespace
 
 void CompressTask(features::InteractionMatrix& L, features::FeatureVector& v) noexcept {
-  const Eigen::Index rows = L.rows();
+  const auto rows = static_cast<std::size_t>(L.rows());
   if (rows <= kRows) {
     return;
   }
-  for (Eigen::Index k = 0; k < kRows; ++k) {
-    double below2 = 0.0;
-    for (Eigen::Index i = k + 1; i < rows; ++i) {
-      below2 += L(i, k) * L(i, k);
+  // The columns of L, and v as one more; rows that are not there are zero.
+  std::array<Column, kRows + 1> columns{};
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (std::size_t c = 0; c < kRows; ++c) {
+      columns[c][i] = L(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(c));
     }
-    if (below2 == 0.0) {
+    columns[kRows][i] = v[static_cast<Eigen::Index>(i)];
+  }
+  L.setZero(kRows, 6);
+  v.setZero(kRows);
+  for (std::size_t k = 0; k < kRows; ++k) {
+    const auto row = static_cast<Eigen::Index>(k);
+    const Column& a = columns[k];
+    const double length2 = Dot(a, a);
+    if (!(length2 > 0.0) && !std::isnan(length2)) {
       continue;
     }
-    // Golub and Van Loan, Matrix Computations (2013), section 5.1: the sign that cancels nothing.
-    const double first = L(k, k);
-    const double length = std::sqrt(first * first + below2);
-    const double pivot = first + std::copysign(length, first);
-    features::FeatureVector h(rows - k);
-    h[0] = 1.0;
-    for (Eigen::Index i = 1; i < h.size(); ++i) {
-      h[i] = L(k + i, k) / pivot;
+    // The root is not waited for: it scales what is written, not what goes on.
+    const double share = 1.0 / length2;
+    const double length = std::sqrt(length2);
+    L(row, row) = length;
+#pragma GCC unroll 8
+    for (std::size_t c = k + 1; c <= kRows; ++c) {
+      const double part = Dot(a, columns[c]) * share;
+      (c < kRows ? L(row, static_cast<Eigen::Index>(c)) : v[row]) = part * length;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        columns[c][i] -= part * a[i];
+      }
     }
-    const double tau = 2.0 * pivot * pivot / (pivot * pivot + below2);
-    for (Eigen::Index c = k; c < kRows; ++c) {
-      Reflect(h, tau, k, L.col(c));
-    }
-    Reflect(h, tau, k, v);
   }
-  const features::InteractionMatrix R = L.topRows(kRows);
-  const features::FeatureVector head = v.head(kRows);
-  L = R;
-  v = head;
 }
 
 }  // namespace fovea::servo

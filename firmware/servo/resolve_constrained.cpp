@@ -56,7 +56,8 @@ double UnitOf(const MotionTask& task) noexcept {
 
 void ResolveConstrained(const ConstrainedConfig& config, const MotionTask& task, const MotionLimits& limits,
                         ConstrainedMotion& motion) noexcept {
-  ResolveDamped(config.damping, task, motion.wish);
+  const DampedInverse inverse(config.damping, task);
+  inverse.Resolve(task, motion.wish);
   motion.task_share = 1.0;
   motion.limited = LimitedMotion{};
   motion.limited.dq = motion.wish.dq;
@@ -85,7 +86,7 @@ void ResolveConstrained(const ConstrainedConfig& config, const MotionTask& task,
   if (damped && free.allFinite()) {
     MotionTask sharper = task;
     sharper.dq_0 = free;
-    ResolveDamped(config.damping, sharper, motion.wish);
+    inverse.Resolve(sharper, motion.wish);
     motion.limited.dq = motion.wish.dq;
     if (limits.KeptBy(motion.wish.dq)) {
       return;

@@ -63,6 +63,29 @@ PrincipalBody Diagonalise(const SimLink& link) {
   return body;
 }
 
+// Bullet's world without what it prepares for soft bodies: where the links would be between two steps.
+class RigidWorld final : public btMultiBodyDynamicsWorld {
+ public:
+  using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
+
+ private:
+  void predictUnconstraintMotion(btScalar dt) override {
+    btDiscreteDynamicsWorld::predictUnconstraintMotion(dt);
+  }
+};
+
+// The table: all below z = 0. Bullet's own plane says that it is everywhere, and each link would be asked in
+// each step whether it touches.
+class TablePlane final : public btStaticPlaneShape {
+ public:
+  TablePlane() : btStaticPlaneShape(btVector3(0, 0, 1), 0.0) {}
+
+  void getAabb(const btTransform& X, btVector3& low, btVector3& high) const override {
+    btStaticPlaneShape::getAabb(X, low, high);
+    high.setZ(X.getOrigin().z() + getMargin());
+  }
+};
+
 }  // namespace
 
 struct BulletArm::Impl {
@@ -71,7 +94,7 @@ struct BulletArm::Impl {
   btCollisionDispatcher dispatcher{&collision_configuration};
   btDbvtBroadphase broadphase;
   btMultiBodyConstraintSolver solver;
-  btMultiBodyDynamicsWorld world{&dispatcher, &broadphase, &solver, &collision_configuration};
+  RigidWorld world{&dispatcher, &broadphase, &solver, &collision_configuration};
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
   std::unique_ptr<btCollisionObject> table;
@@ -87,6 +110,13 @@ struct BulletArm::Impl {
   Eigen::VectorXd q;
   Eigen::VectorXd dq;
   std::optional<Eigen::VectorXd> gravity_torque;  // at q, once somebody asked for it
+
+  // What hangs on a link with the link itself: its mass, and that times its centre of mass in B [kg, kg m].
+  struct Weight {
+    double mass = 0.0;
+    btVector3 moment = btVector3(0, 0, 0);
+  };
+  std::vector<Weight> hanging;  // per link of Bullet's, while the gravity torque is computed
 
   btAlignedObjectArray<btScalar> scratch_r;
   btAlignedObjectArray<btVector3> scratch_v;
@@ -133,7 +163,7 @@ struct BulletArm::Impl {
     world.addMultiBody(body.get());
     AddColliders();
     if (options.table) {
-      shapes.push_back(std::make_unique<btStaticPlaneShape>(btVector3(0, 0, 1), 0.0));
+      shapes.push_back(std::make_unique<TablePlane>());
       table = std::make_unique<btCollisionObject>();
       table->setCollisionShape(shapes.back().get());
       world.addCollisionObject(table.get(), btBroadphaseProxy::StaticFilter,
@@ -235,36 +265,34 @@ struct BulletArm::Impl {
            principal[static_cast<std::size_t>(index)].X_PL;
   }
 
-  Eigen::VectorXd ComputeGravityTorque() const {
+  Eigen::VectorXd ComputeGravityTorque() {
     Eigen::VectorXd tau = Eigen::VectorXd::Zero(robot.num_dofs);
     const btVector3 g = world.getGravity();
     if (g.isZero()) {
       return tau;
     }
-    const Eigen::Vector3d g_B(g.x(), g.y(), g.z());
-    std::vector<Eigen::Isometry3d> X_BL;
-    X_BL.reserve(robot.links.size());
-    for (int i = 0; i < static_cast<int>(robot.links.size()); ++i) {
-      X_BL.push_back(LinkPose(i));
-    }
-    // Joint by joint towards the base, for each body: the torque of its weight about the joint's axis.
-    for (int link = 1; link < static_cast<int>(robot.links.size()); ++link) {
-      const double mass = body->getLinkMass(link - 1);
-      if (mass == 0.0) {
+    hanging.assign(robot.links.size(), Weight{});
+    for (int i = static_cast<int>(robot.links.size()) - 2; i >= 0; --i) {  // from the tip to the base
+      const btMultibodyLink& link = body->getLink(i);
+      const btVector3& p_com = link.m_cachedWorldTransform.getOrigin();
+      Weight& weight = hanging[static_cast<std::size_t>(i)];
+      weight.mass += link.m_mass;
+      weight.moment += link.m_mass * p_com;
+      if (link.m_parent >= 0) {
+        hanging[static_cast<std::size_t>(link.m_parent)].mass += weight.mass;
+        hanging[static_cast<std::size_t>(link.m_parent)].moment += weight.moment;
+      }
+      if (link.m_dofCount == 0) {
         continue;
       }
-      const btVector3 c = body->getLink(link - 1).m_cachedWorldTransform.getOrigin();
-      const Eigen::Vector3d p_com(c.x(), c.y(), c.z());
-      for (int i = link; i > 0; i = robot.links[static_cast<std::size_t>(i)].parent) {
-        const SimLink& joint = robot.links[static_cast<std::size_t>(i)];
-        if (joint.joint == SimJointKind::kFixed) {
-          continue;
-        }
-        const Eigen::Isometry3d& X = X_BL[static_cast<std::size_t>(i)];
-        const Eigen::Vector3d axis = X.linear() * joint.axis_L;
-        const Eigen::Vector3d direction =
-            joint.joint == SimJointKind::kPrismatic ? axis : axis.cross(p_com - X.translation());
-        tau[joint.dof] -= mass * g_B.dot(direction);
+      const btMatrix3x3& R_BP = link.m_cachedWorldTransform.getBasis();
+      const int dof = robot.links[static_cast<std::size_t>(i + 1)].dof;
+      if (link.m_jointType == btMultibodyLink::ePrismatic) {
+        tau[dof] = -weight.mass * g.dot(R_BP * link.getAxisBottom(0));
+      } else {
+        const btVector3 p_joint = p_com - R_BP * link.m_dVector;
+        const btVector3 lever = weight.moment - weight.mass * p_joint;
+        tau[dof] = -g.dot((R_BP * link.getAxisTop(0)).cross(lever));
       }
     }
     return tau;
@@ -334,7 +362,8 @@ void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
   impl_->last_dt = dt;
   impl_->ApplyTorque(tau);
   impl_->world.stepSimulation(dt, 0);
-  impl_->UpdatePoses();  // Bullet's are those of the step's beginning
+  // Bullet's poses are those of the step's beginning, but for the colliders'.
+  impl_->body->forwardKinematics(impl_->scratch_q, impl_->scratch_v);
   impl_->ReadState();
 }
 

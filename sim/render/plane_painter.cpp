@@ -1,5 +1,6 @@
 #include "sim/render/plane_painter.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -13,6 +14,7 @@ using Eigen::Matrix4f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
 using Eigen::Vector4f;
+using Rectangle = Eigen::AlignedBox2f;
 
 constexpr float kTileSize = 0.10F;   // [m]
 constexpr float kLargePlane = 4.0F;  // from this size on a plane is one tile [m]
@@ -51,6 +53,16 @@ void SetShadowOfXy(const GlProgram& program, const Matrix4f& map_of_B, float z) 
   program.Set("u_shadow_0", Vector3f(map_of_B.block<3, 1>(0, 2) * z + map_of_B.block<3, 1>(0, 3)));
   program.Set("u_shadow_x", Vector3f(map_of_B.block<3, 1>(0, 0)));
   program.Set("u_shadow_y", Vector3f(map_of_B.block<3, 1>(0, 1)));
+}
+
+// Where the sun's rays through a thing may meet the plane at `z`, soft edge included.
+Rectangle ShadowOn(float z, const MovingBounds& thing) {
+  Rectangle shadow;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3f p_B = thing.X_BL * thing.box_L.corner(static_cast<Box::CornerType>(corner));
+    shadow.extend((p_B - kSun_B * ((p_B.z() - z) / kSun_B.z())).head<2>());
+  }
+  return {shadow.min() - Vector2f::Constant(kShadowMargin), shadow.max() + Vector2f::Constant(kShadowMargin)};
 }
 
 }  // namespace
@@ -147,21 +159,19 @@ void PlanePainter::SortTiles(const Plane& plane, const Ball& target,
   const Vector2f size = plane.shape.size.cwiseQuotient(
       Vector2f(static_cast<float>(plane.columns), static_cast<float>(plane.rows)));
   const float z = plane.shape.centre_B.z();
-  const float half_diagonal = 0.5F * size.norm();
-  const auto is_near = [&](const Vector2f& middle, const Vector3f& p_B, float reach) {
-    return (middle - p_B.head<2>()).norm() < reach + half_diagonal;
-  };
+  darkened_.clear();
+  const Vector2f reach = Vector2f::Constant(kDarkenedReach * target.radius);
+  darkened_.emplace_back(target.p_B.head<2>() - reach, target.p_B.head<2>() + reach);
+  for (const MovingBounds& thing : moving) {
+    darkened_.push_back(ShadowOn(z, thing));
+  }
   for (int row = 0; row < plane.rows; ++row) {
     for (int column = 0; column < plane.columns; ++column) {
       const Vector2f low = LowCorner(plane.shape) +
                            size.cwiseProduct(Vector2f(static_cast<float>(column), static_cast<float>(row)));
-      const Vector2f middle = low + 0.5F * size;
-      bool shaded = is_near(middle, target.p_B, kDarkenedReach * target.radius);
-      for (const MovingBounds& thing : moving) {
-        // Its shadow lies where the sun's rays through it meet the plane; slanting, it is longer than wide.
-        const Vector3f foot = thing.centre_B - kSun_B * ((thing.centre_B.z() - z) / kSun_B.z());
-        shaded = shaded || is_near(middle, foot, thing.radius / kSun_B.z() + kShadowMargin);
-      }
+      const Rectangle tile(low, Vector2f(low + size));
+      const bool shaded = std::any_of(darkened_.begin(), darkened_.end(),
+                                      [&](const Rectangle& dark) { return dark.intersects(tile); });
       (shaded ? shaded_tiles_ : lit_tiles_).push_back(low);
     }
   }

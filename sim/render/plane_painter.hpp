@@ -11,15 +11,16 @@
 #include <vector>
 
 #include "sim/render/bench.hpp"
+#include "sim/render/cover.hpp"
 #include "sim/render/gl_program.hpp"
 #include "sim/render/shadow_map.hpp"
 
 namespace fovea::sim {
 
-// A ball that holds a moving thing, in B.
+// A box that holds a moving thing, and where it is.
 struct MovingBounds {
-  Eigen::Vector3f centre_B = Eigen::Vector3f::Zero();
-  float radius = 0.0F;
+  Eigen::Isometry3f X_BL = Eigen::Isometry3f::Identity();
+  Box box_L;
 };
 
 class PlanePainter {
@@ -56,6 +57,7 @@ class PlanePainter {
   std::vector<Plane> planes_;
   mutable std::vector<Eigen::Vector2f> lit_tiles_;  // their lower corners, reused from picture to picture
   mutable std::vector<Eigen::Vector2f> shaded_tiles_;
+  mutable std::vector<Eigen::AlignedBox2f> darkened_;  // where these lie
 };
 
 }  // namespace fovea::sim

@@ -45,7 +45,7 @@ struct Link {
   std::unique_ptr<GpuMesh> shadow;
   std::vector<MeshEdge> edges;
   Bounds bounds;
-  std::vector<Bounds> shapes;  // tighter: one for each of its solids
+  std::vector<Box> shapes;  // tighter: one for each of its solids
 };
 
 }  // namespace
@@ -111,9 +111,9 @@ struct SceneRenderer::Impl {
       const Isometry3f* camera = scene.has_eye && static_cast<int>(i) == scene.robot.tip ? &X_EC : nullptr;
       const std::vector<Mesh> seen = MakeParts(link, camera, Detail::kPicture);
       const std::vector<Mesh> casters = MakeParts(link, camera, Detail::kShadow);
-      std::vector<Bounds> shapes;
+      std::vector<Box> shapes;
       for (std::size_t k = 0; k < link.visuals.size(); ++k) {
-        shapes.push_back(FindBounds(casters[k]));
+        shapes.push_back(FindBox(casters[k]));
       }
       const Mesh mesh = Join(seen);
       links.push_back({std::make_unique<GpuMesh>(mesh), std::make_unique<GpuMesh>(Join(casters)),
@@ -240,16 +240,21 @@ struct SceneRenderer::Impl {
     glDisable(GL_BLEND);
   }
 
+  static MovingBounds BoxAbout(const Vector3f& p_B, float reach) {
+    const Vector3f half = Vector3f::Constant(reach);
+    return {Isometry3f::Identity(), {p_B - half, p_B + half}};
+  }
+
   void DrawPlanes(const Exposure& exposure, const Matrix4f& clip_of_B, const std::optional<Box>& seen) const {
     const Ball target = Target(exposure);
-    std::vector<MovingBounds> moving{{target.p_B, target.radius}};
+    std::vector<MovingBounds> moving{BoxAbout(target.p_B, target.radius)};
     if (plate) {
-      moving.push_back({exposure.p_BO.cast<float>(), static_cast<float>(scene.target.Reach())});
+      moving.push_back(BoxAbout(exposure.p_BO.cast<float>(), static_cast<float>(scene.target.Reach())));
     }
     for (std::size_t i = 0; i < links.size() && i < exposure.X_BL.size(); ++i) {
       const Isometry3f X_BL = exposure.X_BL[i].cast<float>();
-      for (const Bounds& shape : links[i].shapes) {
-        moving.push_back({X_BL * shape.centre, shape.radius});
+      for (const Box& shape : links[i].shapes) {
+        moving.push_back({X_BL, shape});
       }
     }
     const float bottom = seen ? seen->min().z() : -std::numeric_limits<float>::infinity();

@@ -226,6 +226,94 @@ TEST(ResolveDampedTest, GoesSmoothlyThroughSingularPosturesOfThePanda) {
   EXPECT_LT(steps[1], 0.6 * steps[0]) << "half the step, half the change: continuous";
 }
 
+// From where all directions are exact to where one, two, three are damped: nothing is seen of the step from
+// one way of solving to the other.
+TEST(ResolveDampedTest, IsContinuousWhereDampingBegins) {
+  test::RandomStates random(507);
+  double largest_step = 0.0;
+  double worst = 0.0;
+  int switched = 0;
+  for (int k = 0; k < test::Repetitions(3000); ++k) {
+    const int m = 3 + k % 4;
+    MotionTask task = RandomTask(random, m, 7, false);
+    const Eigen::JacobiSVD<MatrixXd> svd(Weighted(task), Eigen::ComputeFullU | Eigen::ComputeFullV);
+    VectorXd sigma = VectorXd::Ones(m);
+    // All but the last few are 1, so that the threshold is nearly 0.05 whatever the last are.
+    const auto set = [&](double last) {
+      sigma.tail(1 + k % 3).setConstant(last);
+      const MatrixXd Jw = svd.matrixU() * sigma.asDiagonal() * svd.matrixV().leftCols(m).transpose();
+      task.J = Jw * VectorXd(task.weight).cwiseSqrt().asDiagonal();
+    };
+    DampedMotion above;
+    DampedMotion below;
+    const double threshold = [&] {
+      double at = 0.05;
+      for (int i = 0; i < 60; ++i) {  // the fixed point: a threshold that the last singular value stands at
+        set(at);
+        ResolveDamped(DampingConfig{}, task, above);
+        at = above.threshold;
+      }
+      return at;
+    }();
+    const double by = std::pow(10.0, random.Uniform(-12.0, -6.0));
+    set(threshold * (1.0 + by));
+    ResolveDamped(DampingConfig{}, task, above);
+    set(threshold * (1.0 - by));
+    ResolveDamped(DampingConfig{}, task, below);
+    switched += above.sigma_min >= above.threshold && below.sigma_min < below.threshold ? 1 : 0;
+    const double step = (above.dq - below.dq).norm() / above.dq.norm();
+    largest_step = std::max(largest_step, step);
+    worst = std::max(worst, step - 10.0 * by);
+  }
+  std::cout << switched << " steps over the threshold, by 1e-12 to 1e-6 of it: dq changes by " << largest_step
+            << " at most, by " << worst << " more than ten times the step\n";
+  EXPECT_GT(switched, test::Repetitions(3000) / 2);
+  EXPECT_LT(worst, 1e-11);
+}
+
+TEST(ResolveDampedTest, AnswersMoreThanOneWishAndHoldsForSmallThresholds) {
+  test::RandomStates random(508);
+  for (const double threshold : {1e-1, 1e-3, 1e-5}) {
+    DampingConfig config;
+    config.threshold = threshold;
+    double worst = 0.0;
+    for (int k = 0; k < test::Repetitions(3000); ++k) {
+      const int m = 2 + k % 5;
+      MotionTask task = RandomTask(random, m, 7, false);
+      task.J.row(m - 1) = task.J.row(0) + threshold * random.Uniform(0.0, 1.0) * task.J.row(m - 1);
+      const DampedInverse inverse(config, task);
+      DampedMotion motion;
+      for (int wish = 0; wish < 2; ++wish) {
+        inverse.Resolve(task, motion);
+        DampedMotion alone;
+        ResolveDamped(config, task, alone);
+        EXPECT_EQ(motion.dq, alone.dq);
+        task.dq_0 *= -2.0;
+      }
+      // The same by the accurate singular values of row_svd.hpp.
+      task.dq_0.setZero();
+      inverse.Resolve(task, motion);
+      const MatrixXd Jw = Weighted(task);
+      RowSvd svd;
+      ComputeRowSvd(TaskJacobian(Jw), svd);
+      VectorXd x = VectorXd::Zero(7);
+      for (std::size_t i = 0; i < static_cast<std::size_t>(m); ++i) {
+        const double sigma2 = svd.sigma[i] * svd.sigma[i];
+        const double threshold2 = motion.threshold * motion.threshold;
+        const double half = 0.5 * (1.0 + sigma2 / threshold2);
+        const double damped2 = sigma2 < threshold2 ? threshold2 * half * half : sigma2;
+        x += Eigen::Map<VectorXd>(svd.r[i].data(), 7) / damped2 *
+             Eigen::Map<VectorXd>(svd.u[i].data(), m).dot(VectorXd(task.v));
+      }
+      const VectorXd dq = VectorXd(task.weight).cwiseSqrt().cwiseInverse().asDiagonal() * x;
+      worst = std::max(worst, (dq - VectorXd(motion.dq)).norm() / dq.norm());
+    }
+    std::cout << "threshold " << threshold << ": differs from the singular values' answer by " << worst
+              << " (relative)\n";
+    EXPECT_LT(worst, 1e-15 / threshold / threshold * 100.0);
+  }
+}
+
 TEST(ResolveDampedTest, SaysWhenThereIsNoFiniteResult) {
   test::RandomStates random(505);
   MotionTask task = RandomTask(random, 3, 7, false);

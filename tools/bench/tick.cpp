@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <map>
 
+#include "feature_speed.hpp"
 #include "figure.hpp"
 #include "fovea/config/input_error.hpp"
 #include "fovea/config/program.hpp"
@@ -234,7 +235,7 @@ int RunTick(const TickArguments& arguments) {
   std::vector<Figure> figures;
   AddTicks(cases, figures);
   Say("timing model and law ...");
-  for (const auto& part : {LawSpeed(arm), ModelSpeed(arm)}) {
+  for (const auto& part : {LawSpeed(arm), FeatureSpeed(), ModelSpeed(arm)}) {
     figures.insert(figures.end(), part.begin(), part.end());
   }
   if (arguments.instructions) {

@@ -18,7 +18,9 @@
 // for the operation of robotic manipulators through kinematically singular configurations, 1988.)
 #pragma once
 
+#include "fovea/model/ldlt.hpp"
 #include "fovea/servo/row_svd.hpp"
+#include "fovea/servo/symmetric_axes.hpp"
 
 namespace fovea::servo {
 
@@ -39,6 +41,34 @@ struct DampedMotion {
   double threshold = 0.0;  // below which a singular value of Jw is damped
   double sigma_min = 0.0;  // smallest singular value of Jw, or `threshold` when it is not below that
   bool finite = false;     // false: an argument was not finite, or dq left the range of numbers; dq = 0
+};
+
+// J^# of one task, for as many wishes as it shall be asked about. In A = Jw Jw^T a singular value is known to
+// 1e-8 of the largest one: far below any threshold that is of use.
+class DampedInverse {
+ public:
+  // Of `task` its J and weight count. Real-time: yes.
+  DampedInverse(const DampingConfig& config, const MotionTask& task) noexcept;
+
+  // The joint velocities for `task`, the same, with its v and dq_0. Real-time: yes.
+  void Resolve(const MotionTask& task, DampedMotion& motion) const noexcept;
+
+ private:
+  template <std::size_t kRows>
+  void Factor(const DampingConfig& config) noexcept;
+  template <std::size_t kRows>
+  void Apply(std::array<double, 8>& y) const noexcept;
+
+  std::size_t rows_;
+  std::size_t columns_;
+  std::array<double, 8> shrink_{};  // [columns] diagonal of W^-1/2
+  model::Square8 Jw_{};
+  double threshold_ = 0.0;
+  double sigma_min_ = 0.0;
+  bool damped_ = false;
+  model::Square8 factors_;        // of A, where nothing is damped;
+  SymmetricAxes axes_;            // its axes, where something is,
+  std::array<double, 8> filter_;  // and g along each of them
 };
 
 // Real-time: yes.
