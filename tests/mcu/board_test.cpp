@@ -111,7 +111,7 @@ TEST_F(BoardTest, AStormOfBadChecksumsEndsTheSameWay) {
     ASSERT_LT(k, 3000U);
   }
   for (std::uint32_t k = 0;
-       k < 5000 && !(outputs.record.command.engage_brakes && outputs.damaged_frames > 10); ++k) {
+       k < 5000 && !(outputs.record.command.engage_brakes && outputs.line.damaged_frames > 10); ++k) {
     servo::ServoInputs inputs;
     inputs.arm = arm_.State();
     const auto frame = writer_.Encode({link::FrameKind::kInputs, 10'000 + k, link::Encode(inputs, payload_)});
@@ -122,7 +122,7 @@ TEST_F(BoardTest, AStormOfBadChecksumsEndsTheSameWay) {
   }
   EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
   EXPECT_TRUE(outputs.record.command.engage_brakes);
-  EXPECT_GT(outputs.damaged_frames, 10U);
+  EXPECT_GT(outputs.line.damaged_frames, 10U);
 }
 
 TEST_F(BoardTest, FloatingPointWithoutItsUnitIsReportedAndTheLastThingItDoes) {
