@@ -60,6 +60,7 @@ ordered_json ToJson(const BoardSummary& board) {
                   {"lost_bytes", board.line.lost_bytes},         {"unsent_frames", board.line.unsent_frames}};
   json["frames_sent_again"] = board.frames_sent_again;
   json["ticks_without_torque"] = board.ticks_without_torque;
+  json["stopped"] = board.stopped.empty() ? ordered_json(nullptr) : ordered_json(board.stopped);
   return json;
 }
 
@@ -121,6 +122,9 @@ void AddBoard(const BoardSummary& board, Table& table) {
                           board.instruction_ns, board.line.silent_ticks, board.line.missed_ticks));
     table.Row("its line", fmt::format("{} states late, {} ticks without a new torque", board.line.late_frames,
                                       board.ticks_without_torque));
+  }
+  if (!board.stopped.empty()) {
+    table.Row("", board.stopped + ": the brakes were closed");
   }
 }
 

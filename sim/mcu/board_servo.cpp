@@ -88,7 +88,7 @@ void BoardServo::Step(const servo::ServoInputs& inputs, servo::ServoOutputs& out
     TakeTorque();
     outputs.record.command = in_force_.command;
   }
-  if (!failure_.empty()) {
+  if (!failure_.empty() || !stopped_.empty()) {
     outputs.record.command = hal::ArmCommand{};
     outputs.record.command.state_sequence = inputs.arm.sequence;
     outputs.record.command.num_joints = inputs.arm.num_joints;
@@ -149,8 +149,8 @@ void BoardServo::TakeTorque() {
     }
   }
   ticks_without_torque_ += any ? 0U : 1U;
-  if (now_ns_ - torque_ns_ >= torque_lost_ns_) {
-    failure_ = fmt::format("no torque came from the servo's board for {} ms",
+  if (stopped_.empty() && now_ns_ - torque_ns_ >= torque_lost_ns_) {
+    stopped_ = fmt::format("no torque came from the servo's board for {} ms",
                            (now_ns_ - torque_ns_) / hal::kTickPeriodNs);
   }
 }
@@ -202,6 +202,7 @@ BoardSummary BoardServo::Summarise() const {
   summary.instruction_ns = config_.instruction_ns;
   summary.frames_sent_again = frames_sent_again_;
   summary.ticks_without_torque = ticks_without_torque_;
+  summary.stopped = stopped_;
   figures_.Fill(kTimerPeriodNs / config_.instruction_ns, summary);
   return summary;
 }

@@ -36,7 +36,8 @@ class BoardServo final : public servo::ServoStep {
              const model::Load& load);
 
   // The record is that of the board's tick; its command is the one that is in force, which is an older one
-  // when the line is late. Once the board has failed: no torque, brakes.
+  // when the line is late. Once the board has failed, or no torque has come for as long as an arm may be
+  // silent (safety.arm_lost_ticks): no torque, brakes.
   void Step(const servo::ServoInputs& inputs, servo::ServoOutputs& outputs) noexcept override;
 
   // Why it has failed, "" while it has not.
@@ -77,6 +78,7 @@ class BoardServo final : public servo::ServoStep {
   std::uint64_t frames_sent_again_ = 0;
   std::uint64_t ticks_without_torque_ = 0;
   std::string failure_;
+  std::string stopped_;  // why the brakes were closed though the board ticks
 
   // By the timer
   FaultyLink<Up> up_;

@@ -34,6 +34,7 @@ struct BoardSummary {
   std::uint32_t stack_bytes = 0;           // the deepest
   link::LineCounters line;                 // what the board counted
   std::uint64_t frames_sent_again = 0;     // by the host, which heard no answer
+  std::string stopped;                     // why the host closed the brakes, "" when it did not
   std::uint64_t ticks_without_torque = 0;  // by the timer: no new one had come, the last was held
 };
 

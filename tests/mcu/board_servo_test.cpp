@@ -126,8 +126,9 @@ TEST_F(BoardServoTest, TooMuchJitterEndsInTheSafeState) {
     BoardTick();
     fault = fault == hal::Fault::kNone ? outputs_.record.fault : fault;
   }
-  std::cout << "brakes after " << ticks << " ms: " << hal::Name(fault) << servo_->failure() << '\n';
-  EXPECT_TRUE(fault != hal::Fault::kNone || !servo_->failure().empty());
+  std::cout << "brakes after " << ticks << " ms: " << hal::Name(fault) << ' ' << servo_->Summarise().stopped
+            << '\n';
+  EXPECT_EQ(fault, hal::Fault::kArmLost);
   for (int k = 0; k < 200; ++k) {
     BoardTick();
   }
@@ -144,7 +145,7 @@ TEST_F(BoardServoTest, ALineThatGivesNoTorquesAnyMoreClosesTheBrakes) {
     ++held;
   }
   EXPECT_EQ(held, config_.safety.arm_lost_ticks - 1);
-  EXPECT_EQ(servo_->failure(), "no torque came from the servo's board for 20 ms");
+  EXPECT_EQ(servo_->Summarise().stopped, "no torque came from the servo's board for 20 ms");
   BoardTick();
   ExpectBrakes();
 }
