@@ -14,7 +14,7 @@ class BoardFigures {
  public:
   BoardFigures();
 
-  // No heap for the first million ticks.
+  // No heap for the first hundred thousand ticks.
   void Add(const link::Outputs& outputs);
   // Counts and instructions of all ticks so far; the rest is as it was.
   void Fill(double instructions_per_count, BoardSummary& summary) const;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <stdexcept>
@@ -16,7 +17,9 @@ constexpr int kConfigureTimeoutMs = 20'000;
 constexpr int kAnswerTimeoutMs = 2'000;
 constexpr int kAttempts = 10;          // frames may be damaged; the board steps once however often one comes
 constexpr double kTimerPeriodNs = 40;  // of the board's counter, 25 MHz
-constexpr std::uint64_t kWayBack = 1;  // its own stream of chance
+constexpr double kTickSeconds = 1e-9 * static_cast<double>(hal::kTickPeriodNs);
+constexpr double kRounding = 1.0 + 1e-9;  // a step as large as it may be is left as it is, to the last bit
+constexpr std::uint64_t kWayBack = 1;     // its own stream of chance
 
 const char* NameOfException(std::uint32_t number) {
   switch (number) {
@@ -39,6 +42,10 @@ BoardServo::BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& confi
       down_({}, config.seed + kWayBack) {
   in_force_.command.num_joints = servo.arm.num_joints;
   in_force_.command.engage_brakes = true;
+  for (int i = 0; i < servo.arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    torque_step_[k] = servo.arm.joints[k].dtau_max * kTickSeconds * kRounding;
+  }
   Start(servo, load);
 }
 
@@ -141,6 +148,7 @@ bool BoardServo::ExchangeByTimer(const servo::ServoInputs& inputs) {
 // The newest torque that has come; without one the last is held, for a while.
 void BoardServo::TakeTorque() {
   bool any = false;
+  const hal::ArmCommand before = in_force_.command;
   while (const std::optional<Down> came = down_.Take(now_ns_)) {
     if (came->sequence > in_force_.sequence) {
       in_force_ = *came;
@@ -149,6 +157,11 @@ void BoardServo::TakeTorque() {
     }
   }
   ticks_without_torque_ += any ? 0U : 1U;
+  // After one that was lost, the next is two steps away.
+  for (std::size_t i = 0; i < torque_step_.size(); ++i) {
+    double& torque = in_force_.command.tau_cmd[i];
+    torque = std::clamp(torque, before.tau_cmd[i] - torque_step_[i], before.tau_cmd[i] + torque_step_[i]);
+  }
   if (stopped_.empty() && now_ns_ - torque_ns_ >= torque_lost_ns_) {
     stopped_ = fmt::format("no torque came from the servo's board for {} ms",
                            (now_ns_ - torque_ns_) / hal::kTickPeriodNs);

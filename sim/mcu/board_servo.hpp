@@ -36,8 +36,9 @@ class BoardServo final : public servo::ServoStep {
              const model::Load& load);
 
   // The record is that of the board's tick; its command is the one that is in force, which is an older one
-  // when the line is late. Once the board has failed, or no torque has come for as long as an arm may be
-  // silent (safety.arm_lost_ticks): no torque, brakes.
+  // when the line is late, and no further from the last than the arm's torque rate allows. Once the board has
+  // failed, or no torque has come for as long as an arm may be silent (safety.arm_lost_ticks): no torque,
+  // brakes.
   void Step(const servo::ServoInputs& inputs, servo::ServoOutputs& outputs) noexcept override;
 
   // Why it has failed, "" while it has not.
@@ -86,6 +87,7 @@ class BoardServo final : public servo::ServoStep {
   std::int64_t now_ns_ = 0;
   std::int64_t torque_ns_ = 0;  // when `in_force_` came
   Down in_force_;
+  hal::JointArray torque_step_{};  // most from one tick to the next, by the arm's torque rate [Nm]
 };
 
 // The loop's clock where a board ticks by its timer: a tick that took longer than its period delays the next.

@@ -11,6 +11,7 @@
 #include "sim/mcu/qemu.hpp"
 #include "support/ideal_arm.hpp"
 #include "support/panda.hpp"
+#include "tools/bench/link_map.hpp"
 
 namespace fovea {
 namespace {
@@ -107,6 +108,21 @@ TEST(McuImage, HoldsNoHeapAndNoStream) {
                                 "_sbrk", "printf", "fwrite", "__cxa_throw", "__cxa_guard"}) {
     EXPECT_EQ(symbols.find(forbidden), std::string::npos) << forbidden;
   }
+}
+
+// What fovea-bench mcu prints of it.
+TEST(McuImage, ItsModulesAddUpToItsSections) {
+  const bench::LinkMap map = bench::ReadLinkMap(FOVEA_MCU_MAP);
+  bench::ModuleBytes sum;
+  for (const auto& [module, bytes] : map.modules) {
+    sum.flash += bytes.flash;
+    sum.ram += bytes.ram;
+    std::cout << module << ": " << bytes.flash << " bytes of flash, " << bytes.ram << " of RAM\n";
+  }
+  EXPECT_EQ(sum.flash, map.total.flash);
+  EXPECT_EQ(sum.ram, map.total.ram);
+  EXPECT_GT(map.modules.at("servo").flash, 0U);
+  EXPECT_FALSE(map.modules.contains("other"));
 }
 
 TEST_F(BoardTest, ALineThatFallsSilentIsAnArmThatIsLost) {
