@@ -49,8 +49,11 @@ class Sheet {
   void AddModule(const std::string& module, const ModuleBytes& bytes) {
     std::string name = module;
     std::replace(name.begin(), name.end(), ' ', '_');
-    figures_.push_back({fmt::format("mcu_flash_{}", name), static_cast<double>(bytes.flash), "bytes", {}});
-    figures_.push_back({fmt::format("mcu_ram_{}", name), static_cast<double>(bytes.ram), "bytes", {}});
+    for (const auto& [memory, size] : {std::pair{"flash", bytes.flash}, {"ram", bytes.ram}}) {
+      if (size > 0) {
+        figures_.push_back({fmt::format("mcu_{}_{}", memory, name), static_cast<double>(size), "bytes", {}});
+      }
+    }
     text_ += fmt::format("  {:<28}{:>12}{:>12}\n", module, bytes.flash, bytes.ram);
   }
   [[nodiscard]] const std::vector<Figure>& figures() const { return figures_; }
