@@ -245,7 +245,8 @@ int main(int argc, char** argv) {
       "  fovea-sim run ball --set servo.lambda=3 --seed 7 --out out/fast\n"
       "  fovea-sim run my.toml --pace real --json\n"
       "  fovea-sim run ball --pace real --trace trace.json\n"
-      "  fovea-sim run ball --servo mcu --servo-pace timer --instruction-ns 4 --line-jitter-ms 2\n"
+      "  fovea-sim run ball --servo mcu --servo-pace timer --instruction-ns 4 --line-jitter-ms 2 "
+      "--line-from-s 0.1\n"
       "  fovea-sim serve ball --fci-port 1337\n"
       "  fovea-sim pictures --board 9x6 --square 0.025 --out out/boards\n"
       "Exit: 0 the run reached its goal, 1 it did not, 2 wrong usage or input.");
