@@ -19,7 +19,7 @@ std::uint32_t FromBytes(const std::uint8_t* bytes) noexcept {
 
 bool IsKnown(std::uint8_t kind) noexcept {
   return kind >= static_cast<std::uint8_t>(FrameKind::kHello) &&
-         kind <= static_cast<std::uint8_t>(FrameKind::kProvoke);
+         kind <= static_cast<std::uint8_t>(FrameKind::kGo);
 }
 
 }  // namespace

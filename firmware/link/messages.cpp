@@ -17,7 +17,7 @@ Bytes Write(Storage storage, const Fields& fields) noexcept {
 
 template <class Archive, class T>
 void ConfigurationFields(Archive& a, T& c) noexcept {
-  a.Choice(c.pacing, 2);
+  a.Choice(c.pacing, kNumPacings);
   a(c.may_provoke);
   a(c.arm_crc);
   a(c.load.mass);

@@ -1,6 +1,18 @@
 #include "fovea/link/servo_server.hpp"
 
+#include <algorithm>
+
 namespace fovea::link {
+namespace {
+
+constexpr std::int64_t kDriftNs = hal::kTickPeriodNs / 10'000;  // in a tick, between two clocks: 100 ppm
+
+// Stamps come from the other end: whatever they are, nothing overflows.
+std::int64_t Difference(std::int64_t a, std::int64_t b) noexcept {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
+}
+
+}  // namespace
 
 template <class Message>
 void ServoServer::Send(FrameKind kind, std::uint32_t sequence, const Message& message) noexcept {
@@ -9,10 +21,17 @@ void ServoServer::Send(FrameKind kind, std::uint32_t sequence, const Message& me
 
 void ServoServer::SayHello() noexcept { board_.Send(writer_.Encode({FrameKind::kHello, 0, {}})); }
 
-void ServoServer::Receive(std::uint8_t byte) noexcept {
-  if (reader_.Add(byte)) {
-    Take(reader_.frame());
+void ServoServer::Receive(std::span<const std::uint8_t> bytes) noexcept {
+  // What a frame of Inputs makes of a tick is the tick's own time.
+  std::uint32_t began = board_.TimerCounts();
+  for (const std::uint8_t byte : bytes) {
+    if (reader_.Add(byte)) {
+      link_counts_ += board_.TimerCounts() - began;
+      Take(reader_.frame());
+      began = board_.TimerCounts();
+    }
   }
+  link_counts_ += board_.TimerCounts() - began;
 }
 
 void ServoServer::Take(const Frame& frame) noexcept {
@@ -24,6 +43,7 @@ void ServoServer::Take(const Frame& frame) noexcept {
         board_.Provoke(what);
       }
       return;
+    case FrameKind::kGo: LetTimerRun(frame); return;
     case FrameKind::kHello: SayHello(); return;  // the host came late, or anew
     default: return;                             // what only the servo sends
   }
@@ -41,12 +61,20 @@ void ServoServer::Configure(const Frame& frame) noexcept {
                  ? task_.Init(configuration_.servo)
                  : hal::Status(hal::StatusCode::kInvalidArgument, "arm");
   }
+  board_.RunTimer(false);
   if (status.ok()) {
     task_.UseProbe(this);
     inputs_ = servo::ServoInputs{};
-    fresh_ = false;
     answered_ = false;
-    silent_ticks_ = 0;
+    fresh_ = false;
+    has_inputs_ = false;
+    time_ns_ = 0;
+    least_lag_ns_ = 0;
+    line_ = LineCounters{};
+    damaged_before_ = reader_.counters().damaged;
+    periods_done_ = board_.Periods();
+    may_tick_ = configuration_.pacing == Pacing::kTimer;
+    board_.RunTimer(may_tick_);
     configured_ = true;
   }
   Answer answer;
@@ -61,19 +89,35 @@ void ServoServer::TakeInputs(const Frame& frame) noexcept {
   if (!configured_) {
     return;
   }
-  const bool again = frame.sequence == sequence_;
-  if (configuration_.pacing == Pacing::kLockstep) {
-    if (again && answered_) {
-      Send(FrameKind::kOutputs, sequence_, sent_);
-    } else if (Decode(frame.payload, inputs_)) {
-      Step(frame.sequence);
-    }
+  if (configuration_.pacing != Pacing::kLockstep) {
+    TakeInputsByTimer(frame);
     return;
   }
-  // By the timer: a frame that is late is overtaken by the next, but what it asked for and saw is not lost.
+  if (answered_ && frame.sequence == sequence_) {
+    Send(FrameKind::kOutputs, sequence_, sent_);
+    return;
+  }
+  const std::uint32_t began = board_.TimerCounts();
+  const bool whole = Decode(frame.payload, inputs_);
+  link_counts_ += board_.TimerCounts() - began;
+  if (whole) {
+    sequence_ = frame.sequence;
+    Step();
+  }
+}
+
+// By the timer: a frame that is late is overtaken by the next, but what it asked for and saw is not lost.
+void ServoServer::TakeInputsByTimer(const Frame& frame) noexcept {
+  const bool newer = !has_inputs_ || static_cast<std::int32_t>(frame.sequence - inputs_sequence_) > 0;
+  const std::uint32_t began = board_.TimerCounts();
   received_ = servo::ServoInputs{};
-  const bool newer = !answered_ || static_cast<std::int32_t>(frame.sequence - sequence_) > 0;
-  if (!newer || !Decode(frame.payload, received_)) {
+  const bool whole = newer && Decode(frame.payload, received_);
+  link_counts_ += board_.TimerCounts() - began;
+  if (!newer || (whole && ComesTooLate(received_.arm.stamp_ns))) {
+    ++line_.late_frames;
+    return;
+  }
+  if (!whole) {
     return;
   }
   if (fresh_) {
@@ -90,17 +134,47 @@ void ServoServer::TakeInputs(const Frame& frame) noexcept {
     }
   }
   inputs_ = received_;
-  sequence_ = frame.sequence;
-  answered_ = true;
+  inputs_sequence_ = frame.sequence;
+  has_inputs_ = true;
   fresh_ = true;
 }
 
-void ServoServer::TickByTimer(std::int32_t missed_ticks) noexcept {
-  if (!TicksByTimer()) {
+// The two ends have no common clock: how late a state is, is seen beside the one that was the quickest. What
+// is as late as an arm may be silent is as good as lost.
+bool ServoServer::ComesTooLate(std::int64_t stamp_ns) noexcept {
+  const std::int64_t lag_ns = Difference(time_ns_, stamp_ns);
+  least_lag_ns_ = has_inputs_ ? std::min(least_lag_ns_, lag_ns) : lag_ns;
+  return Difference(lag_ns, least_lag_ns_) >= configuration_.servo.safety.arm_lost_ticks * hal::kTickPeriodNs;
+}
+
+void ServoServer::LetTimerRun(const Frame& frame) noexcept {
+  if (!configured_ || configuration_.pacing != Pacing::kGated || may_tick_) {
     return;
   }
+  if (answered_ && frame.sequence == sequence_) {
+    Send(FrameKind::kOutputs, sequence_, sent_);
+    return;
+  }
+  sequence_ = frame.sequence;
+  may_tick_ = true;
+  board_.RunTimer(true);
+}
+
+void ServoServer::Poll() noexcept {
+  if (!configured_ || !may_tick_) {
+    return;
+  }
+  if (const std::uint32_t due = board_.Periods() - periods_done_; due > 0) {
+    periods_done_ += due;
+    time_ns_ += due * hal::kTickPeriodNs;
+    least_lag_ns_ = has_inputs_ ? Difference(least_lag_ns_, -(due * kDriftNs)) : 0;
+    TickByTimer(static_cast<std::int32_t>(due - 1));
+  }
+}
+
+void ServoServer::TickByTimer(std::int32_t missed_ticks) noexcept {
   if (!fresh_) {
-    ++silent_ticks_;
+    ++line_.silent_ticks;
     inputs_.arm_status = hal::Status(hal::StatusCode::kTimeout, "link");
     inputs_.has_feature = false;
     inputs_.request = servo::Request::kNone;
@@ -109,22 +183,43 @@ void ServoServer::TickByTimer(std::int32_t missed_ticks) noexcept {
   }
   fresh_ = false;
   inputs_.missed_ticks = missed_ticks;
-  Step(sequence_);
+  line_.missed_ticks += static_cast<std::uint32_t>(missed_ticks);
+  if (configuration_.pacing == Pacing::kTimer) {
+    sequence_ = inputs_sequence_;
+  }
+  Step();
 }
 
-void ServoServer::Step(std::uint32_t sequence) noexcept {
+LineCounters ServoServer::Counters() noexcept {
+  const LineLosses lost = board_.Lost();
+  LineCounters counters = line_;
+  counters.damaged_frames = reader_.counters().damaged - damaged_before_;
+  counters.lost_bytes = lost.bytes;
+  counters.unsent_frames = lost.frames;
+  return counters;
+}
+
+void ServoServer::Step() noexcept {
   sent_ = Outputs{};
   const std::uint32_t began = board_.TimerCounts();
   stage_began_ = began;
   task_.Step(inputs_, outputs_);
   sent_.tick_counts = board_.TimerCounts() - began;
+  if (configuration_.pacing == Pacing::kGated) {
+    board_.RunTimer(false);
+    may_tick_ = false;
+  }
+  if (configuration_.pacing != Pacing::kLockstep) {
+    sent_.periods_passed = board_.Periods() - periods_done_;
+  }
   sent_.record = outputs_.record;
+  sent_.link_counts = link_counts_;
   sent_.stack_bytes = board_.StackBytes();
-  sent_.damaged_frames = reader_.counters().damaged;
-  sent_.silent_ticks = silent_ticks_;
-  sequence_ = sequence;
+  sent_.line = Counters();
   answered_ = true;
-  Send(FrameKind::kOutputs, sequence, sent_);
+  const std::uint32_t sends = board_.TimerCounts();
+  Send(FrameKind::kOutputs, sequence_, sent_);
+  link_counts_ = board_.TimerCounts() - sends;
 }
 
 void ServoServer::Done(servo::Stage stage) noexcept {

@@ -102,13 +102,24 @@ void RecordFields(Archive& a, T& r) noexcept {
 }
 
 template <class Archive, class T>
+void LineFields(Archive& a, T& line) noexcept {
+  a(line.damaged_frames);
+  a(line.late_frames);
+  a(line.silent_ticks);
+  a(line.missed_ticks);
+  a(line.lost_bytes);
+  a(line.unsent_frames);
+}
+
+template <class Archive, class T>
 void OutputFields(Archive& a, T& out) noexcept {
   RecordFields(a, out.record);
   EachOf(a, out.stage_counts);
   a(out.tick_counts);
+  a(out.link_counts);
+  a(out.periods_passed);
   a(out.stack_bytes);
-  a(out.damaged_frames);
-  a(out.silent_ticks);
+  LineFields(a, out.line);
 }
 
 }  // namespace fovea::link

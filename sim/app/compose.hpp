@@ -29,7 +29,8 @@ enum class RandomStream : std::uint8_t {
   kFrameFaults,
   kDetectorFaults,
   kStalls,
-  kTarget
+  kTarget,
+  kBoardLine
 };
 std::uint64_t SeedOf(const Scenario& scenario, RandomStream stream);
 

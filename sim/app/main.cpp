@@ -27,11 +27,32 @@ struct RunArguments {
   std::string pace = "lockstep";
   std::string servo = "pc";
   std::string servo_image;
+  std::string servo_pace = "lockstep";
+  sim::BoardConfig board;
   std::string out;
   std::string trace;
   bool no_report = false;
   bool json = false;
 };
+
+// What goes with a servo on a board, and with its own timer, is refused without.
+sim::BoardConfig MakeBoard(const RunArguments& arguments, const sim::Scenario& scenario) {
+  sim::BoardConfig board = arguments.board;
+  board.by_timer = arguments.servo_pace == "timer";
+  const sim::LinkFaults& line = board.line;
+  if (board.by_timer && arguments.servo != "mcu") {
+    throw config::InputError("--servo-pace timer goes with --servo mcu");
+  }
+  if (!board.by_timer && (line.loss > 0.0 || line.delay_ms > 0.0 || line.jitter_ms > 0.0)) {
+    throw config::InputError("--line-loss, --line-delay-ms and --line-jitter-ms go with --servo-pace timer");
+  }
+  if (board.by_timer && scenario.faults.deadline_miss_s[1] > scenario.faults.deadline_miss_s[0]) {
+    throw config::InputError(
+        "faults.deadline_miss_s: not with --servo-pace timer, whose ticks are the board's own; a slow board "
+        "(--instruction-ns) misses some");
+  }
+  return board;
+}
 
 int Run(const RunArguments& arguments) {
   std::vector<std::string> assignments = arguments.assignments;
@@ -48,6 +69,7 @@ int Run(const RunArguments& arguments) {
     options.servo_image = arguments.servo_image.empty() ? config::ShareFolder() / "fovea-mcu.elf"
                                                         : std::filesystem::path(arguments.servo_image);
   }
+  options.board = MakeBoard(arguments, scenario);
   options.out = arguments.out.empty() ? "out/" + scenario.name : arguments.out;
   options.report = !arguments.no_report;
   options.trace = arguments.trace;
@@ -223,6 +245,8 @@ int main(int argc, char** argv) {
       "  fovea-sim run ball --set servo.lambda=3 --seed 7 --out out/fast\n"
       "  fovea-sim run my.toml --pace real --json\n"
       "  fovea-sim run ball --pace real --trace trace.json\n"
+      "  fovea-sim run ball --servo mcu --servo-pace timer --instruction-ns 4 --line-jitter-ms 2 "
+      "--line-from-s 0.1\n"
       "  fovea-sim serve ball --fci-port 1337\n"
       "  fovea-sim pictures --board 9x6 --square 0.025 --out out/boards\n"
       "Exit: 0 the run reached its goal, 1 it did not, 2 wrong usage or input.");
@@ -244,6 +268,32 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"pc", "mcu"}));
   run->add_option("--servo-image", arguments.servo_image, "of --servo mcu; the shipped one when not given")
       ->check(CLI::ExistingFile);
+  run->add_option(
+         "--servo-pace", arguments.servo_pace,
+         "of --servo mcu. lockstep: a state, a tick; timer: by the board's own 1 kHz, in virtual time, "
+         "whether a state has come or not")
+      ->check(CLI::IsMember({"lockstep", "timer"}));
+  run->add_option(
+         "--instruction-ns", arguments.board.instruction_ns,
+         "of --servo mcu: how long its processor takes for each; a slow one misses ticks of its timer")
+      ->check(CLI::IsMember({1, 2, 4, 8, 16, 32, 64}))
+      ->capture_default_str();
+  sim::LinkFaults& line = arguments.board.line;
+  run->add_option("--line-loss", line.loss,
+                  "of --servo-pace timer: share of states and of torques that get lost")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  run->add_option("--line-delay-ms", line.delay_ms,
+                  "of every state and torque; what comes between two ticks is "
+                  "there at the second")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  run->add_option("--line-jitter-ms", line.jitter_ms, "up to this much more, by the run's seed")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  run->add_option("--line-from-s", arguments.board.line_from_s, "of the run: the line is perfect before")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   run->add_option("--out", arguments.out, "folder for the files; out/<scenario> when not given");
   run->add_option("--trace", arguments.trace,
                   "file for a timeline of all threads, for ui.perfetto.dev or chrome://tracing");

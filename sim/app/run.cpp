@@ -33,6 +33,7 @@
 #include "sim/faults/frame_faults.hpp"
 #include "sim/faults/stalling_clock.hpp"
 #include "sim/mcu/board_servo.hpp"
+#include "sim/mcu/qemu.hpp"
 #include "sim/world/feature_delay.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world.hpp"
@@ -58,8 +59,11 @@ class Run {
       throw std::logic_error("a servo configuration that was checked is refused");
     }
     if (!options_.servo_image.empty()) {
-      board_ = std::make_unique<BoardServo>(QemuConfig{options_.servo_image}, about_.servo,
-                                            config::MakeLoad(about_.scenario.arm.load));
+      BoardConfig board = options_.board;
+      board.seed = SeedOf(scenario, RandomStream::kBoardLine);
+      board_ = std::make_unique<BoardServo>(
+          std::make_unique<Qemu>(QemuConfig{options_.servo_image, board.instruction_ns}), board, about_.servo,
+          config::MakeLoad(about_.scenario.arm.load));
     }
     if (!options_.trace.empty()) {
       trace_.emplace(options_.trace, scenario.run.duration_s, scenario.camera.rate_hz, kRenderers);
@@ -220,7 +224,11 @@ class Run {
 
   // Runs the servo by `clock` to the run's end, watched by a timeline where one is asked for.
   hal::Status RunLoop(hal::Clock& clock) {
-    StallingClock stalling(clock, stall_);
+    std::optional<BoardClock> board_clock;
+    if (board_) {
+      board_clock.emplace(clock, *board_);
+    }
+    StallingClock stalling(board_clock ? static_cast<hal::Clock&>(*board_clock) : clock, stall_);
     std::optional<trace::TickTrace> ticks;
     std::optional<trace::ClockTrace> world;
     if (trace_) {

@@ -7,6 +7,7 @@
 #include "fovea/hal/record.hpp"
 #include "sim/app/scenario.hpp"
 #include "sim/app/summary.hpp"
+#include "sim/mcu/board_servo.hpp"
 #include "sim/world/world.hpp"
 
 namespace fovea::sim {
@@ -27,6 +28,7 @@ struct RunOptions {
   Pace pace = Pace::kLockstep;
   std::filesystem::path
       servo_image;            // the servo runs on an emulated board, from this file; empty: in this process
+  BoardConfig board;          // with a servo_image; its seed is the scenario's
   std::filesystem::path out;  // empty: no files
   bool report = true;         // films, log, report and the bench's picture too
   bool show_progress = true;

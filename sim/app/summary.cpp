@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace fovea::sim {
@@ -31,16 +30,37 @@ ordered_json ToJson(const TheoryFigures& f) {
           {"poles", poles}};
 }
 
+ordered_json ToJson(const InstructionSpread& spread) {
+  return {{"min", spread.min}, {"p50", spread.p50}, {"max", spread.max}};
+}
+
+ordered_json ToJson(const BoardTicks& ticks) {
+  ordered_json json;
+  json["ticks"] = ticks.ticks;
+  json["tick"] = ToJson(ticks.tick);
+  for (const auto& [stage, spread] : ticks.stages) {
+    json["stages"][stage] = ToJson(spread);
+  }
+  return json;
+}
+
 ordered_json ToJson(const BoardSummary& board) {
   ordered_json json;
-  json["tick_instructions"] = {{"min", board.tick_instructions_min},
-                               {"p50", board.tick_instructions_p50},
-                               {"max", board.tick_instructions_max}};
-  for (const auto& [stage, mean] : board.stage_instructions) {
-    json["stage_instructions_mean"][stage] = std::round(mean);
+  json["pace"] = board.by_timer ? "timer" : "lockstep";
+  json["instruction_ns"] = board.instruction_ns;
+  json["instructions_per_count"] = board.instructions_per_count;
+  json["instructions"] = ToJson(board.all);
+  for (const BoardTicks& mode : board.modes) {
+    json["instructions_by_mode"][mode.mode] = ToJson(mode);
   }
+  json["link_instructions"] = ToJson(board.link);
   json["stack_bytes"] = board.stack_bytes;
+  json["line"] = {{"damaged_frames", board.line.damaged_frames}, {"late_frames", board.line.late_frames},
+                  {"silent_ticks", board.line.silent_ticks},     {"missed_ticks", board.line.missed_ticks},
+                  {"lost_bytes", board.line.lost_bytes},         {"unsent_frames", board.line.unsent_frames}};
   json["frames_sent_again"] = board.frames_sent_again;
+  json["ticks_without_torque"] = board.ticks_without_torque;
+  json["stopped"] = board.stopped.empty() ? ordered_json(nullptr) : ordered_json(board.stopped);
   return json;
 }
 
@@ -89,6 +109,23 @@ void AddTheory(const TheoryResult& theory, Table& table) {
   table.Row("from theory",
             fmt::format("{:.2g} m rms, {:.2g} m at most", theory.residual_rms, theory.residual_max));
   table.Row("largest error", fmt::format("{:.3g} m after the first second", theory.error_max));
+}
+
+void AddBoard(const BoardSummary& board, Table& table) {
+  table.Row(
+      "servo's processor",
+      fmt::format("Cortex-M7: {} to {} instructions a tick, {} in the middle; stack {:.1f} KiB",
+                  board.all.tick.min, board.all.tick.max, board.all.tick.p50, board.stack_bytes / 1024.0));
+  if (board.by_timer) {
+    table.Row("its ticks",
+              fmt::format("by its timer, {} ns an instruction; {} without a state, {} missed",
+                          board.instruction_ns, board.line.silent_ticks, board.line.missed_ticks));
+    table.Row("its line", fmt::format("{} states late, {} ticks without a new torque", board.line.late_frames,
+                                      board.ticks_without_torque));
+  }
+  if (!board.stopped.empty()) {
+    table.Row("", board.stopped + ": the brakes were closed");
+  }
 }
 
 }  // namespace
@@ -193,10 +230,7 @@ std::string ToTable(const Summary& s) {
                               f.key.empty() ? "" : ", see " + f.key));
   }
   if (s.mcu) {
-    table.Row("servo's processor",
-              fmt::format("Cortex-M7: {} to {} instructions a tick, {} in the middle; stack {:.1f} KiB",
-                          s.mcu->tick_instructions_min, s.mcu->tick_instructions_max,
-                          s.mcu->tick_instructions_p50, s.mcu->stack_bytes / 1024.0));
+    AddBoard(*s.mcu, table);
   }
   table.Row(s.mcu ? "tick and line" : "servo tick",
             fmt::format("{:.1f} us median, {:.1f} us p99.9, {:.1f} us max",

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/app/theory_run.hpp"
+#include "sim/mcu/board_summary.hpp"
 
 namespace fovea::sim {
 
@@ -23,16 +24,6 @@ struct ModeEvent {
   double t_s = 0.0;
   std::string mode;
   std::string reason;  // of Hold; "" otherwise
-};
-
-// Of a servo on an emulated board.
-struct BoardSummary {
-  std::uint32_t tick_instructions_min = 0;
-  std::uint32_t tick_instructions_p50 = 0;
-  std::uint32_t tick_instructions_max = 0;
-  std::vector<std::pair<std::string, double>> stage_instructions;  // mean of each stage, in their order
-  std::uint32_t stack_bytes = 0;
-  std::uint64_t frames_sent_again = 0;
 };
 
 struct Summary {
@@ -77,7 +68,7 @@ struct Summary {
   std::uint64_t log_entries_dropped = 0;
   std::optional<std::uint64_t> heap_allocations_in_tick;  // none when the counter is not active
   std::uint64_t page_faults_in_loop = 0;
-  std::optional<BoardSummary> mcu;
+  std::optional<BoardSummary> mcu;  // of a servo on a board
   std::int64_t tick_ns_p50 = 0;
   std::int64_t tick_ns_p99 = 0;
   std::int64_t tick_ns_p999 = 0;

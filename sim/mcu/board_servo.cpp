@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 namespace fovea::sim {
 namespace {
@@ -13,10 +14,12 @@ namespace {
 constexpr int kHelloTimeoutMs = 1'000;  // until it is asked whether it is there
 constexpr int kHelloAttempts = 20;
 constexpr int kConfigureTimeoutMs = 20'000;
-constexpr std::size_t kManyTicks = 1'000'000;  // room for their figures: the loop is not to wait for memory
 constexpr int kAnswerTimeoutMs = 2'000;
 constexpr int kAttempts = 10;          // frames may be damaged; the board steps once however often one comes
 constexpr double kTimerPeriodNs = 40;  // of the board's counter, 25 MHz
+constexpr double kTickSeconds = 1e-9 * static_cast<double>(hal::kTickPeriodNs);
+constexpr double kRounding = 1.0 + 1e-9;  // a step as large as it may be is left as it is, to the last bit
+constexpr std::uint64_t kWayBack = 1;     // its own stream of chance
 
 const char* NameOfException(std::uint32_t number) {
   switch (number) {
@@ -30,20 +33,35 @@ const char* NameOfException(std::uint32_t number) {
 
 }  // namespace
 
-BoardServo::BoardServo(const QemuConfig& qemu, const servo::ServoConfig& config, const model::Load& load)
-    : qemu_(qemu), instructions_per_count_(kTimerPeriodNs / std::exp2(qemu.instruction_shift)) {
+BoardServo::BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& config,
+                       const servo::ServoConfig& servo, const model::Load& load)
+    : line_(std::move(line)),
+      config_(config),
+      torque_lost_ns_(servo.safety.arm_lost_ticks * hal::kTickPeriodNs),
+      up_({}, config.seed),
+      down_({}, config.seed + kWayBack) {
+  in_force_.command.num_joints = servo.arm.num_joints;
+  in_force_.command.engage_brakes = true;
+  for (int i = 0; i < servo.arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    torque_step_[k] = servo.arm.joints[k].dtau_max * kTickSeconds * kRounding;
+  }
+  Start(servo, load);
+}
+
+void BoardServo::Start(const servo::ServoConfig& servo, const model::Load& load) {
   for (int attempt = 0; !Await(link::FrameKind::kHello, 0, kHelloTimeoutMs); ++attempt) {
-    if (attempt == kHelloAttempts || !qemu_.Send(writer_.Encode({link::FrameKind::kHello, 0, {}}))) {
+    if (attempt == kHelloAttempts || !line_->Send(writer_.Encode({link::FrameKind::kHello, 0, {}}))) {
       throw std::runtime_error(failure_.empty() ? "the servo's board does not start" : failure_);
     }
   }
-  tick_counts_.reserve(kManyTicks);
   link::Configuration configuration;
-  configuration.arm_crc = link::ArmCrc(config.arm);
+  configuration.pacing = config_.by_timer ? link::Pacing::kGated : link::Pacing::kLockstep;
+  configuration.arm_crc = link::ArmCrc(servo.arm);
   configuration.load = load;
-  configuration.servo = config;
+  configuration.servo = servo;
   static_cast<void>(
-      qemu_.Send(writer_.Encode({link::FrameKind::kConfigure, 0, link::Encode(configuration, payload_)})));
+      line_->Send(writer_.Encode({link::FrameKind::kConfigure, 0, link::Encode(configuration, payload_)})));
   link::Answer answer;
   if (!Await(link::FrameKind::kAnswer, 0, kConfigureTimeoutMs) ||
       !link::Decode(reader_.frame().payload, answer)) {
@@ -59,13 +77,26 @@ BoardServo::BoardServo(const QemuConfig& qemu, const servo::ServoConfig& config,
 }
 
 void BoardServo::Step(const servo::ServoInputs& inputs, servo::ServoOutputs& outputs) noexcept {
-  if (failure_.empty() && Exchange(inputs)) {
+  now_ns_ += (1 + inputs.missed_ticks) * hal::kTickPeriodNs;
+  const bool ticked =
+      failure_.empty() && (config_.by_timer ? ExchangeByTimer(inputs) : [&] {
+        ++sequence_;
+        return Exchange({link::FrameKind::kInputs, sequence_, link::Encode(inputs, payload_)});
+      }());
+  if (ticked) {
     outputs.record = answer_.record;
-    NoteFigures();
+    figures_.Add(answer_);
   } else {
     outputs.record = hal::TickRecord{};
     outputs.record.stamp_ns = inputs.arm.stamp_ns;
     outputs.record.mode = hal::Mode::kFault;
+  }
+  if (config_.by_timer && ticked) {
+    TakeTorque();
+    outputs.record.command = in_force_.command;
+  }
+  if (!failure_.empty() || !stopped_.empty()) {
+    outputs.record.command = hal::ArmCommand{};
     outputs.record.command.state_sequence = inputs.arm.sequence;
     outputs.record.command.num_joints = inputs.arm.num_joints;
     outputs.record.command.engage_brakes = true;
@@ -75,17 +106,16 @@ void BoardServo::Step(const servo::ServoInputs& inputs, servo::ServoOutputs& out
   outputs.record.feature = inputs.feature;
 }
 
-bool BoardServo::Exchange(const servo::ServoInputs& inputs) {
-  ++sequence_;
-  const std::span<const std::uint8_t> frame =
-      writer_.Encode({link::FrameKind::kInputs, sequence_, link::Encode(inputs, payload_)});
+// True with the answer to `frame` in `answer_`.
+bool BoardServo::Exchange(const link::Frame& frame) {
+  const std::span<const std::uint8_t> bytes = writer_.Encode(frame);
   for (int attempt = 0; attempt < kAttempts && failure_.empty(); ++attempt) {
     frames_sent_again_ += attempt > 0 ? 1U : 0U;
-    if (qemu_.Send(frame) && Await(link::FrameKind::kOutputs, sequence_, kAnswerTimeoutMs) &&
+    if (line_->Send(bytes) && Await(link::FrameKind::kOutputs, frame.sequence, kAnswerTimeoutMs) &&
         link::Decode(reader_.frame().payload, answer_)) {
       return true;
     }
-    if (qemu_.gone()) {
+    if (line_->gone()) {
       failure_ = "the servo's board is gone";
     }
   }
@@ -95,10 +125,58 @@ bool BoardServo::Exchange(const servo::ServoInputs& inputs) {
   return false;
 }
 
+// The state goes on its way; what has arrived by now is given to the board, and its timer runs to its next
+// tick.
+bool BoardServo::ExchangeByTimer(const servo::ServoInputs& inputs) {
+  ++sequence_;
+  if (static_cast<double>(now_ns_ - hal::kTickPeriodNs) >= config_.line_from_s * 1e9) {
+    up_.SetFaults(config_.line);
+    down_.SetFaults(config_.line);
+  }
+  up_.Put({sequence_, inputs}, now_ns_);
+  while (const std::optional<Up> came = up_.Take(now_ns_)) {
+    static_cast<void>(line_->Send(
+        writer_.Encode({link::FrameKind::kInputs, came->sequence, link::Encode(came->inputs, payload_)})));
+  }
+  if (!Exchange({link::FrameKind::kGo, sequence_, {}})) {
+    return false;
+  }
+  down_.Put({sequence_, answer_.record.command}, now_ns_ + answer_.periods_passed * hal::kTickPeriodNs);
+  return true;
+}
+
+// The newest torque that has come; without one the last is held, for a while.
+void BoardServo::TakeTorque() {
+  bool any = false;
+  const hal::ArmCommand before = in_force_.command;
+  while (const std::optional<Down> came = down_.Take(now_ns_)) {
+    if (came->sequence > in_force_.sequence) {
+      in_force_ = *came;
+      torque_ns_ = now_ns_;
+      any = true;
+    }
+  }
+  ticks_without_torque_ += any ? 0U : 1U;
+  // After one that was lost, the next is two steps away.
+  for (std::size_t i = 0; i < torque_step_.size(); ++i) {
+    double& torque = in_force_.command.tau_cmd[i];
+    torque = std::clamp(torque, before.tau_cmd[i] - torque_step_[i], before.tau_cmd[i] + torque_step_[i]);
+  }
+  if (stopped_.empty() && now_ns_ - torque_ns_ >= torque_lost_ns_) {
+    stopped_ = fmt::format("no torque came from the servo's board for {} ms",
+                           (now_ns_ - torque_ns_) / hal::kTickPeriodNs);
+  }
+}
+
+std::int64_t BoardServo::OverrunNs() const noexcept {
+  const std::uint32_t passed = answer_.periods_passed;
+  return passed > 1 ? (passed - 1) * hal::kTickPeriodNs : 0;
+}
+
 // True with such a frame in the reader.
 bool BoardServo::Await(link::FrameKind kind, std::uint32_t sequence, int timeout_ms) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
-  while (failure_.empty() && !qemu_.gone()) {
+  while (failure_.empty() && !line_->gone()) {
     while (!left_.empty()) {
       const std::uint8_t byte = left_.front();
       left_ = left_.subspan(1);
@@ -118,7 +196,7 @@ bool BoardServo::Await(link::FrameKind kind, std::uint32_t sequence, int timeout
     if (left.count() <= 0) {
       return false;
     }
-    left_ = qemu_.Receive(received_, static_cast<int>(left.count()));
+    left_ = line_->Receive(received_, static_cast<int>(left.count()));
   }
   return false;
 }
@@ -131,34 +209,14 @@ void BoardServo::NoteCrash() {
                  : "the servo's processor took a fault";
 }
 
-void BoardServo::NoteFigures() {
-  tick_counts_.push_back(answer_.tick_counts);
-  for (std::size_t i = 0; i < link::kNumStages; ++i) {
-    stage_counts_[i] += answer_.stage_counts[i];
-  }
-  stack_bytes_ = std::max(stack_bytes_, answer_.stack_bytes);
-}
-
 BoardSummary BoardServo::Summarise() const {
   BoardSummary summary;
-  summary.stack_bytes = stack_bytes_;
+  summary.by_timer = config_.by_timer;
+  summary.instruction_ns = config_.instruction_ns;
   summary.frames_sent_again = frames_sent_again_;
-  if (tick_counts_.empty()) {
-    return summary;
-  }
-  std::vector<std::uint32_t> sorted = tick_counts_;
-  std::sort(sorted.begin(), sorted.end());
-  const auto instructions = [&](std::uint32_t counts) {
-    return static_cast<std::uint32_t>(std::lround(counts * instructions_per_count_));
-  };
-  summary.tick_instructions_min = instructions(sorted.front());
-  summary.tick_instructions_p50 = instructions(sorted[sorted.size() / 2]);
-  summary.tick_instructions_max = instructions(sorted.back());
-  for (std::size_t i = 0; i < link::kNumStages; ++i) {
-    summary.stage_instructions.emplace_back(
-        servo::kStageNames[i],
-        static_cast<double>(stage_counts_[i]) * instructions_per_count_ / static_cast<double>(sorted.size()));
-  }
+  summary.ticks_without_torque = ticks_without_torque_;
+  summary.stopped = stopped_;
+  figures_.Fill(kTimerPeriodNs / config_.instruction_ns, summary);
   return summary;
 }
 

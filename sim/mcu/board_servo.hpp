@@ -3,39 +3,71 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
-#include <vector>
 
+#include "fovea/hal/clock.hpp"
 #include "fovea/link/frame.hpp"
 #include "fovea/link/messages.hpp"
 #include "fovea/servo/servo_task.hpp"
-#include "sim/app/summary.hpp"
-#include "sim/mcu/qemu.hpp"
+#include "sim/mcu/board_figures.hpp"
+#include "sim/mcu/board_line.hpp"
+#include "sim/mcu/board_summary.hpp"
+#include "sim/wire/link_faults.hpp"
 
 namespace fovea::sim {
 
+struct BoardConfig {
+  int instruction_ns = 64;  // of the board's time, each: for the figures
+  // The board ticks by its own timer, in virtual time: it stands while the host computes.
+  bool by_timer = false;
+  // By the timer: what the line does to states and to torques on their way. What comes between two ticks is
+  // there at the second.
+  LinkFaults line;
+  double line_from_s = 0.0;  // since the first tick; the line is perfect before
+  std::uint64_t seed = 1;
+};
+
 class BoardServo final : public servo::ServoStep {
  public:
-  // Starts the board and configures its servo. `config` is the whole of it, its arm with `load`.
+  // Configures the board's servo. `servo` is the whole of its configuration, its arm with `load`.
   // std::runtime_error when the board does not start, does not answer, or refuses.
-  BoardServo(const QemuConfig& qemu, const servo::ServoConfig& config, const model::Load& load);
+  BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& config, const servo::ServoConfig& servo,
+             const model::Load& load);
 
-  // Once the board has failed: no torque, brakes.
+  // The record is that of the board's tick; its command is the one that is in force, which is an older one
+  // when the line is late, and no further from the last than the arm's torque rate allows. Once the board has
+  // failed, or no torque has come for as long as an arm may be silent (safety.arm_lost_ticks): no torque,
+  // brakes.
   void Step(const servo::ServoInputs& inputs, servo::ServoOutputs& outputs) noexcept override;
 
   // Why it has failed, "" while it has not.
   [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
+  // By how much the last tick was longer than its period [ns], in whole periods.
+  [[nodiscard]] std::int64_t OverrunNs() const noexcept;
   // Of all ticks so far.
   [[nodiscard]] BoardSummary Summarise() const;
 
  private:
-  [[nodiscard]] bool Await(link::FrameKind kind, std::uint32_t sequence, int timeout_ms);
-  [[nodiscard]] bool Exchange(const servo::ServoInputs& inputs);
-  void NoteCrash();
-  void NoteFigures();
+  struct Up {
+    std::uint32_t sequence = 0;
+    servo::ServoInputs inputs;
+  };
+  struct Down {
+    std::uint32_t sequence = 0;
+    hal::ArmCommand command;
+  };
 
-  Qemu qemu_;
-  double instructions_per_count_;
+  void Start(const servo::ServoConfig& servo, const model::Load& load);
+  [[nodiscard]] bool Await(link::FrameKind kind, std::uint32_t sequence, int timeout_ms);
+  [[nodiscard]] bool Exchange(const link::Frame& frame);
+  [[nodiscard]] bool ExchangeByTimer(const servo::ServoInputs& inputs);
+  void TakeTorque();
+  void NoteCrash();
+
+  std::unique_ptr<BoardLine> line_;
+  const BoardConfig config_;
+  const std::int64_t torque_lost_ns_;
   link::FrameWriter writer_;
   link::FrameReader reader_;
   std::array<std::uint8_t, link::kMaxPayload> payload_{};
@@ -43,11 +75,35 @@ class BoardServo final : public servo::ServoStep {
   std::span<const std::uint8_t> left_;  // of `received_`, not looked at yet
   std::uint32_t sequence_ = 0;
   link::Outputs answer_;
-  std::vector<std::uint32_t> tick_counts_;                      // of each tick
-  std::array<std::uint64_t, link::kNumStages> stage_counts_{};  // in all
-  std::uint32_t stack_bytes_ = 0;
+  BoardFigures figures_;
   std::uint64_t frames_sent_again_ = 0;
+  std::uint64_t ticks_without_torque_ = 0;
   std::string failure_;
+  std::string stopped_;  // why the brakes were closed though the board ticks
+
+  // By the timer
+  FaultyLink<Up> up_;
+  FaultyLink<Down> down_;
+  std::int64_t now_ns_ = 0;
+  std::int64_t torque_ns_ = 0;  // when `in_force_` came
+  Down in_force_;
+  hal::JointArray torque_step_{};  // most from one tick to the next, by the arm's torque rate [Nm]
+};
+
+// The loop's clock where a board ticks by its timer: a tick that took longer than its period delays the next.
+class BoardClock final : public hal::Clock {
+ public:
+  // Both are borrowed.
+  BoardClock(hal::Clock& clock, const BoardServo& board) : clock_(clock), board_(board) {}
+
+ private:
+  [[nodiscard]] std::int64_t DoNowNs() const noexcept override { return clock_.NowNs(); }
+  hal::Status DoWaitUntil(std::int64_t deadline_ns) noexcept override {
+    return clock_.WaitUntil(deadline_ns + board_.OverrunNs());
+  }
+
+  hal::Clock& clock_;
+  const BoardServo& board_;
 };
 
 }  // namespace fovea::sim

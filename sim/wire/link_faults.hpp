@@ -1,7 +1,8 @@
-// What a network does to datagrams: loses, delays, shuffles and repeats them. By seed, so that it can be
-// repeated.
+// What a network or a line does to datagrams: loses, delays, shuffles and repeats them. By seed, so that it
+// can be repeated.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <random>
@@ -23,9 +24,21 @@ class FaultDice {
   FaultDice(const LinkFaults& faults, std::uint64_t seed) : faults_(faults), random_(seed) {}
 
   void SetLoss(double share) { faults_.loss = share; }
+  void SetFaults(const LinkFaults& faults) { faults_ = faults; }
   [[nodiscard]] bool Loses() { return Happens(faults_.loss); }
   [[nodiscard]] bool Repeats() { return Happens(faults_.duplicate); }
-  [[nodiscard]] std::int64_t DelayNs();
+  [[nodiscard]] std::int64_t DelayNs() {
+    constexpr double kNsPerMs = 1e6;
+    constexpr double kHeldBackMs = 1.5;
+    double ms = faults_.delay_ms;
+    if (faults_.jitter_ms > 0.0) {
+      ms += faults_.jitter_ms * even_(random_);
+    }
+    if (Happens(faults_.reorder)) {
+      ms += kHeldBackMs;
+    }
+    return static_cast<std::int64_t>(ms * kNsPerMs);
+  }
 
  private:
   [[nodiscard]] bool Happens(double share) { return share > 0.0 && even_(random_) < share; }
@@ -39,7 +52,9 @@ class FaultDice {
 template <typename Datagram>
 class FaultyLink {
  public:
-  FaultyLink(const LinkFaults& faults, std::uint64_t seed) : dice_(faults, seed) {}
+  FaultyLink(const LinkFaults& faults, std::uint64_t seed) : dice_(faults, seed) {
+    on_the_way_.reserve(kManyOnTheWay);
+  }
 
   void Put(const Datagram& datagram, std::int64_t now_ns) {
     if (dice_.Loses()) {
@@ -67,9 +82,11 @@ class FaultyLink {
   }
 
   void SetLoss(double share) { dice_.SetLoss(share); }
+  void SetFaults(const LinkFaults& faults) { dice_.SetFaults(faults); }
   void Clear() { on_the_way_.clear(); }
 
  private:
+  static constexpr std::size_t kManyOnTheWay = 64;
   struct OnTheWay {
     std::int64_t due_ns;
     Datagram datagram;

@@ -52,6 +52,16 @@ class CommandLineTest : public testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(CommandLineTest, WhatGoesWithABoardsTimerIsRefusedWithout) {
+  EXPECT_THAT(Refusal({"ball", "--servo-pace", "timer"}),
+              HasSubstr("--servo-pace timer goes with --servo mcu"));
+  EXPECT_THAT(Refusal({"ball", "--servo", "mcu", "--line-jitter-ms", "1"}),
+              AllOf(HasSubstr("--line-jitter-ms"), HasSubstr("go with --servo-pace timer")));
+  EXPECT_THAT(
+      Refusal({"ball", "--servo", "mcu", "--servo-pace", "timer", "--set", "faults.deadline_miss_s=[1, 2]"}),
+      AllOf(HasSubstr("faults.deadline_miss_s"), HasSubstr("--instruction-ns")));
+}
+
 // A camera that never says anything leaves no film and no pictures of what it saw; all else is there.
 TEST_F(CommandLineTest, ARunWithoutAnyFrame) {
   const ProgramResult result = Sim({"run", "ball", "--set", "faults.camera_outage_s=[0,100]", "--set",

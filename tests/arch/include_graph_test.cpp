@@ -128,6 +128,10 @@ INSTANTIATE_TEST_SUITE_P(
              "the simulated robot comes from its URDF and its meshes alone"},
         Rule{"sim/model_library", "fovea/model/.*|sim/model_library/.*|emitted/panda[.]hpp",
              "what the robot hands out is the servo's model and nothing else"},
+        Rule{"sim/mcu",
+             "fovea/(hal|model|servo|link)/.*|sim/(mcu/.*|wire/link_faults[.]hpp)|fmt/.*|sys/.*|"
+             "(fcntl|poll|sched|signal|unistd)[.]h",
+             "the host's end of a board's line sees the messages, and nothing of the simulated world"},
         Rule{"sim/wire", "fovea/(hal|linux_rt|franka)/.*|sim/(wire|robot|world)/.*|Eigen/.*|arv[.]h",
              "the robot's other end of the wire sees its messages and the simulator"},
         Rule{"sim/world", "fovea/hal/.*|sim/(world|physics|render|robot|faults)/.*|Eigen/.*",

@@ -68,7 +68,7 @@ ByteVector Line(const Read& frame) {
 }
 
 Read RandomFrame(Noise& noise) {
-  return {static_cast<FrameKind>(1 + noise.Below(7)), static_cast<std::uint32_t>(noise.Below(0xffffffff)),
+  return {static_cast<FrameKind>(1 + noise.Below(8)), static_cast<std::uint32_t>(noise.Below(0xffffffff)),
           noise.Bytes(noise.Below(noise.Below(3) == 0 ? kMaxPayload + 1 : 600))};
 }
 

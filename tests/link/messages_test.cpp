@@ -27,6 +27,8 @@ static_assert(sizeof(servo::MotionCommand) == 304);
 static_assert(sizeof(hal::ArmState) == 280);
 static_assert(sizeof(hal::FeatureMeasurement) == 1008);
 static_assert(sizeof(hal::TickRecord) == 1952);
+static_assert(sizeof(LineCounters) == 24);
+static_assert(sizeof(Outputs) == 1952 + 4 * (kNumStages + 4) + sizeof(LineCounters));
 
 std::array<std::uint8_t, kMaxPayload> storage;
 
@@ -121,7 +123,15 @@ TEST(Messages, ComeBack) {
   outputs.record.fault = hal::Fault::kContact;
   values.Fill(outputs.record.command.tau_cmd);
   outputs.stage_counts[3] = 4711;
+  outputs.link_counts = 12;
+  outputs.periods_passed = 13;
+  outputs.line = {1, 2, 3, 4, 5, 6};
   ExpectComesBack(outputs);
+  Outputs back;
+  ASSERT_TRUE(Decode(BytesOf(outputs), back));
+  EXPECT_EQ(back.line, outputs.line);
+  EXPECT_EQ(back.link_counts, outputs.link_counts);
+  EXPECT_EQ(back.periods_passed, outputs.periods_passed);
 
   Answer answer;
   answer.code = hal::StatusCode::kOutOfRange;

@@ -22,9 +22,15 @@ struct FakeBoard final : Board {
   }
   std::uint32_t TimerCounts() noexcept override { return counts += 10; }
   std::uint32_t StackBytes() noexcept override { return 1234; }
+  [[nodiscard]] LineLosses Lost() noexcept override { return lost; }
+  void RunTimer(bool on) noexcept override { timer_runs = on; }
+  [[nodiscard]] std::uint32_t Periods() noexcept override { return periods; }
   void Provoke(Provocation /*what*/) noexcept override { ++provoked; }
 
   std::vector<std::uint8_t> sent;
+  LineLosses lost;
+  bool timer_runs = false;
+  std::uint32_t periods = 0;
   std::uint32_t counts = 0;
   int provoked = 0;
 };
@@ -36,10 +42,11 @@ class ServoServerTest : public servo::ServoTaskTest {
     arm_model_ = config_.arm;
   }
 
-  void Give(const Frame& frame) {
-    for (const std::uint8_t byte : writer_.Encode(frame)) {
-      server_.Receive(byte);
-    }
+  void Give(const Frame& frame) { server_.Receive(writer_.Encode(frame)); }
+  // So many periods of the timer pass.
+  void Pass(std::uint32_t periods) {
+    board_.periods += periods;
+    server_.Poll();
   }
 
   // The last frame that the server sent since the last look.
@@ -169,16 +176,11 @@ class ServoServerByTimerTest : public ServoServerTest {
     }
     ++ticks_;
     line(writer_.Encode({FrameKind::kInputs, static_cast<std::uint32_t>(ticks_), Encode(inputs, payload_)}));
-    server_.TickByTimer(0);
+    Pass(1);
     const Outputs outputs = Taken();
     arm_->Apply(outputs.record.command);
     arm_->Step();
     return outputs;
-  }
-  void Pass(std::span<const std::uint8_t> bytes) {
-    for (const std::uint8_t byte : bytes) {
-      server_.Receive(byte);
-    }
   }
   static constexpr int kFrameMs = 33;
 };
@@ -195,22 +197,22 @@ TEST_F(ServoServerByTimerTest, ConvergesOverALineThatLosesAndDamages) {
       if (engine() % 100 < 2) {
         copy[engine() % copy.size()] ^= 0x10;
       }
-      Pass(copy);
+      server_.Receive(copy);
     });
     ASSERT_EQ(outputs.record.fault, hal::Fault::kNone) << hal::Name(outputs.record.fault) << " at " << k;
   }
-  std::cout << outputs.silent_ticks << " ticks without a state, " << outputs.damaged_frames
+  std::cout << outputs.line.silent_ticks << " ticks without a state, " << outputs.line.damaged_frames
             << " frames damaged, " << 1e3 * Error() << " mm from the goal\n";
   EXPECT_EQ(outputs.record.mode, hal::Mode::kTrack);
-  EXPECT_GT(outputs.silent_ticks, 200U);
-  EXPECT_GT(outputs.damaged_frames, 50U);
+  EXPECT_GT(outputs.line.silent_ticks, 200U);
+  EXPECT_GT(outputs.line.damaged_frames, 50U);
   EXPECT_LT(Error(), 1e-3);
 }
 
 TEST_F(ServoServerByTimerTest, ASilentLineIsAnArmThatIsLost) {
   Outputs outputs;
   for (int k = 0; k < 1500; ++k) {
-    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { Pass(bytes); });
+    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
   }
   ASSERT_EQ(outputs.record.mode, hal::Mode::kTrack);
   int until_fault = 0;
@@ -228,18 +230,18 @@ TEST_F(ServoServerByTimerTest, ASilentLineIsAnArmThatIsLost) {
 TEST_F(ServoServerByTimerTest, AStormOfBadFramesIsNoBetter) {
   Outputs outputs;
   for (int k = 0; k < 1500; ++k) {
-    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { Pass(bytes); });
+    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
   }
   for (int k = 0; k < 3000; ++k) {
     outputs = TickThrough([&](std::span<const std::uint8_t> bytes) {
       std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
       copy[copy.size() / 2] ^= 0x55;
-      Pass(copy);
+      server_.Receive(copy);
     });
   }
   EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
   EXPECT_TRUE(outputs.record.command.engage_brakes);
-  EXPECT_GE(outputs.damaged_frames, 2900U);
+  EXPECT_GE(outputs.line.damaged_frames, 2900U);
 }
 
 // Two frames in one period: the newer state, and what the older one saw.
@@ -254,10 +256,68 @@ TEST_F(ServoServerByTimerTest, AFrameThatIsOvertakenLeavesItsFeature) {
   Give({FrameKind::kInputs, 1, Encode(first, payload_)});
   Give({FrameKind::kInputs, 2, Encode(second, payload_)});
   Give({FrameKind::kInputs, 1, Encode(first, payload_)});  // late: it changes nothing
-  server_.TickByTimer(0);
+  Pass(1);
   const Outputs outputs = Taken();
   EXPECT_EQ(reader_.frame().sequence, 2U);
   EXPECT_EQ(outputs.record.command.state_sequence, second.arm.sequence);
+}
+
+// A frame that comes as late as an arm may be silent is none, however new it is.
+TEST_F(ServoServerByTimerTest, AStateThatIsTooOldIsLeftOut) {
+  const int most = config_.safety.arm_lost_ticks;
+  servo::ServoInputs inputs;
+  inputs.arm = arm_->State();
+  std::uint32_t sequence = 0;
+  const auto tick = [&](int age_ms) {
+    inputs.arm.stamp_ns = (++ticks_ - age_ms) * hal::kTickPeriodNs;
+    Give({FrameKind::kInputs, ++sequence, Encode(inputs, payload_)});
+    Pass(1);
+    return Taken();
+  };
+  for (int k = 0; k < 100; ++k) {
+    tick(5);  // as on a line that always takes so long
+  }
+  EXPECT_EQ(tick(5 + most - 1).line.late_frames, 0U);
+  const Outputs outputs = tick(5 + most + 1);  // the clocks may drift
+  EXPECT_EQ(outputs.line.late_frames, 1U);
+  EXPECT_EQ(outputs.line.silent_ticks, 1U);
+}
+
+TEST_F(ServoServerByTimerTest, WhatWasLostAndMissedIsReported) {
+  board_.lost = {7, 2};
+  const Outputs outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
+  EXPECT_EQ(outputs.line.lost_bytes, 7U);
+  EXPECT_EQ(outputs.line.unsent_frames, 2U);
+  EXPECT_EQ(outputs.line.missed_ticks, 0U);
+  Pass(4);
+  const Outputs late = Taken();
+  EXPECT_EQ(late.line.missed_ticks, 3U);
+  EXPECT_EQ(late.record.missed_ticks, 3);
+  EXPECT_EQ(late.line.silent_ticks, 1U);
+}
+
+// The timer stands from a tick's end until the host says Go, which may be said twice.
+TEST_F(ServoServerTest, TheGateIsTheHosts) {
+  ASSERT_EQ(Configure(Pacing::kGated).code, hal::StatusCode::kOk);
+  EXPECT_FALSE(board_.timer_runs);
+  servo::ServoInputs inputs;
+  inputs.arm = arm_->State();
+  Give({FrameKind::kInputs, 1, Encode(inputs, payload_)});
+  Pass(1);
+  EXPECT_FALSE(Answered());
+  Give({FrameKind::kGo, 1, {}});
+  Give({FrameKind::kGo, 1, {}});
+  EXPECT_TRUE(board_.timer_runs);
+  Pass(0);
+  const Outputs outputs = Taken();
+  EXPECT_EQ(outputs.line.silent_ticks, 0U);
+  EXPECT_FALSE(board_.timer_runs);
+  Give({FrameKind::kGo, 1, {}});  // the host did not hear the answer
+  EXPECT_FALSE(board_.timer_runs);
+  EXPECT_EQ(Taken().record.tick, outputs.record.tick);
+  Give({FrameKind::kGo, 2, {}});
+  Pass(1);
+  EXPECT_EQ(Taken().line.silent_ticks, 1U);
 }
 
 }  // namespace

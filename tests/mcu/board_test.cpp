@@ -11,6 +11,7 @@
 #include "sim/mcu/qemu.hpp"
 #include "support/ideal_arm.hpp"
 #include "support/panda.hpp"
+#include "tools/bench/link_map.hpp"
 
 namespace fovea {
 namespace {
@@ -63,14 +64,41 @@ class BoardTest : public testing::Test {
     EXPECT_TRUE(link::Decode(reader_.frame().payload, outputs));
     return outputs;
   }
+  // By the timer, which stands between the ticks: the next tick's.
+  link::Outputs Go() {
+    Send(link::FrameKind::kGo, ++goes_, {});
+    return Outputs();
+  }
+  // Until the servo holds the arm, each tick with its state.
+  link::Outputs Boot() {
+    link::Outputs outputs;
+    for (std::uint32_t k = 1; k <= 60; ++k) {
+      SendState(k);
+      outputs = Go();
+    }
+    EXPECT_EQ(outputs.record.mode, hal::Mode::kHold);
+    EXPECT_EQ(outputs.line, link::LineCounters{});
+    return outputs;
+  }
+  // What it does about a line without states.
+  static void ExpectBrakes(const link::Outputs& outputs) {
+    EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
+    EXPECT_TRUE(outputs.record.command.engage_brakes);
+    for (const double torque : outputs.record.command.tau_cmd) {
+      EXPECT_EQ(torque, 0.0);
+    }
+  }
+  static constexpr std::uint32_t kLongest =
+      3000;  // ticks until the brakes are closed, far more than it takes
 
-  sim::Qemu board_{{FOVEA_MCU_IMAGE}};
+  sim::Qemu board_{{FOVEA_MCU_IMAGE, 4}};
   test::IdealArm arm_{test::PandaConfig().arm, test::Ready()};
   link::FrameWriter writer_;
   link::FrameReader reader_;
   std::array<std::uint8_t, link::kMaxPayload> payload_{};
   std::array<std::uint8_t, 4096> received_{};
   std::span<const std::uint8_t> left_;
+  std::uint32_t goes_ = 0;
 };
 
 TEST(McuImage, HoldsNoHeapAndNoStream) {
@@ -82,47 +110,67 @@ TEST(McuImage, HoldsNoHeapAndNoStream) {
   }
 }
 
+// What fovea-bench mcu prints of it.
+TEST(McuImage, ItsModulesAddUpToItsSections) {
+  const bench::LinkMap map = bench::ReadLinkMap(FOVEA_MCU_MAP);
+  bench::ModuleBytes sum;
+  for (const auto& [module, bytes] : map.modules) {
+    sum.flash += bytes.flash;
+    sum.ram += bytes.ram;
+    std::cout << module << ": " << bytes.flash << " bytes of flash, " << bytes.ram << " of RAM\n";
+  }
+  EXPECT_EQ(sum.flash, map.total.flash);
+  EXPECT_EQ(sum.ram, map.total.ram);
+  EXPECT_GT(map.modules.at("servo").flash, 0U);
+  EXPECT_FALSE(map.modules.contains("other"));
+}
+
 TEST_F(BoardTest, ALineThatFallsSilentIsAnArmThatIsLost) {
-  Configure(link::Pacing::kTimer);
-  link::Outputs outputs;
-  for (std::uint32_t k = 1; k <= 300 || outputs.record.mode == hal::Mode::kBoot; ++k) {
-    SendState(k);
-    outputs = Outputs();
-    ASSERT_LT(k, 3000U);
+  Configure(link::Pacing::kGated);
+  link::Outputs outputs = Boot();
+  std::uint32_t until_fault = 0;
+  std::uint32_t ticks = 0;
+  for (; ticks < kLongest && !outputs.record.command.engage_brakes; ++ticks) {
+    outputs = Go();
+    until_fault += outputs.record.fault == hal::Fault::kNone ? 1U : 0U;
   }
-  std::uint64_t ticks = 0;
-  for (; ticks < 5000 && !outputs.record.command.engage_brakes; ++ticks) {
-    outputs = Outputs();
-  }
-  std::cout << "brakes after " << ticks << " silent ticks\n";
-  EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
-  EXPECT_TRUE(outputs.record.command.engage_brakes);
-  for (const double torque : outputs.record.command.tau_cmd) {
-    EXPECT_EQ(torque, 0.0);
-  }
+  std::cout << "bridged for " << until_fault << " silent ticks, brakes after " << ticks << '\n';
+  EXPECT_EQ(until_fault + 1, static_cast<std::uint32_t>(test::PandaConfig().safety.arm_lost_ticks));
+  EXPECT_EQ(outputs.line.silent_ticks, ticks);
+  ExpectBrakes(outputs);
 }
 
 TEST_F(BoardTest, AStormOfBadChecksumsEndsTheSameWay) {
-  Configure(link::Pacing::kTimer);
-  link::Outputs outputs;
-  for (std::uint32_t k = 1; k <= 300 || outputs.record.mode == hal::Mode::kBoot; ++k) {
-    SendState(k);
-    outputs = Outputs();
-    ASSERT_LT(k, 3000U);
-  }
-  for (std::uint32_t k = 0;
-       k < 5000 && !(outputs.record.command.engage_brakes && outputs.damaged_frames > 10); ++k) {
+  Configure(link::Pacing::kGated);
+  link::Outputs outputs = Boot();
+  std::uint32_t ticks = 0;
+  for (; ticks < kLongest && !outputs.record.command.engage_brakes; ++ticks) {
     servo::ServoInputs inputs;
     inputs.arm = arm_.State();
-    const auto frame = writer_.Encode({link::FrameKind::kInputs, 10'000 + k, link::Encode(inputs, payload_)});
+    const auto frame =
+        writer_.Encode({link::FrameKind::kInputs, 10'000 + ticks, link::Encode(inputs, payload_)});
     std::vector<std::uint8_t> bad(frame.begin(), frame.end());
     bad[bad.size() / 2] ^= 0x55;
     ASSERT_TRUE(board_.Send(bad));
+    outputs = Go();
+  }
+  std::cout << outputs.line.damaged_frames << " frames damaged, brakes after " << ticks << " ticks\n";
+  ExpectBrakes(outputs);
+  EXPECT_EQ(outputs.line.damaged_frames, ticks);
+  EXPECT_EQ(outputs.line.silent_ticks, ticks);
+}
+
+// The timer that nobody holds: the board goes on, whether the host speaks or not.
+TEST_F(BoardTest, ByItsOwnTimerItTicksForItself) {
+  Configure(link::Pacing::kTimer);
+  const std::uint64_t first = Outputs().record.tick;
+  link::Outputs outputs;
+  for (int k = 0; k < 50; ++k) {
     outputs = Outputs();
   }
+  EXPECT_GE(outputs.record.tick, first + 50);  // what found no room on the line was left out
+  EXPECT_GE(outputs.line.silent_ticks, 50U);
   EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
-  EXPECT_TRUE(outputs.record.command.engage_brakes);
-  EXPECT_GT(outputs.damaged_frames, 10U);
 }
 
 TEST_F(BoardTest, FloatingPointWithoutItsUnitIsReportedAndTheLastThingItDoes) {

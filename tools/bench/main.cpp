@@ -6,6 +6,7 @@
 #include "fovea/config/program.hpp"
 #include "jitter.hpp"
 #include "load.hpp"
+#include "mcu.hpp"
 #include "sim.hpp"
 #include "tick.hpp"
 #include "vision.hpp"
@@ -67,6 +68,15 @@ int main(int argc, char** argv) {
   sim_command->add_flag("--shares", sim.shares, "Only what the time goes to, and how that grows");
   sim_command->add_flag("--json", sim.json, "Print JSON");
 
+  bench::McuArguments mcu;
+  CLI::App* mcu_command = app.add_subcommand("mcu",
+                                             "What the servo takes of a Cortex-M7: instructions by stage and "
+                                             "by mode, counted in QEMU; stack, flash and RAM");
+  mcu_command->add_option("--seconds", mcu.seconds, "Simulated, of ball; of square a quarter")
+      ->check(CLI::Range(0.4, 1000.0))
+      ->capture_default_str();
+  mcu_command->add_flag("--json", mcu.json, "Print JSON");
+
   bench::VisionArguments vision;
   CLI::App* vision_command = app.add_subcommand(
       "vision", "How often, how well and how fast targets are found in pictures of known truth");
@@ -92,6 +102,7 @@ int main(int argc, char** argv) {
   return config::RunProgram("fovea-bench", app, argc, argv, [&] {
     return compare_command->parsed()  ? bench::RunCompare(compare)
            : jitter_command->parsed() ? bench::RunJitter(jitter)
+           : mcu_command->parsed()    ? bench::RunMcu(mcu)
            : sim_command->parsed()    ? bench::RunSim(sim)
            : vision_command->parsed() ? bench::RunVision(vision)
                                       : bench::RunTick(tick);

@@ -21,7 +21,7 @@ target_compile_options(fovea_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast
   -Woverloaded-virtual -Werror
   # GCC takes the unused capacity of an Eigen matrix of run-time size for a read of unset memory.
-  -Wno-maybe-uninitialized)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 
 add_library(fovea_bits INTERFACE)
 # No fused multiply-add behind our back, and sums that do not depend on a vector's width; a square root is an
@@ -40,6 +40,9 @@ if(FOVEA_SANITIZE)
                       -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${FOVEA_SANITIZE})
   add_compile_definitions(FOVEA_SANITIZED)
+endif()
+if(FOVEA_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
 # fovea_add_library(<name> [TICK] [COMPONENT <core|host>] SOURCES <file>... [HEADERS <file>...]

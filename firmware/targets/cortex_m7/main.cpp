@@ -26,6 +26,12 @@ class Mps2Board final : public link::Board {
     }
     return stack_bytes_;
   }
+  [[nodiscard]] link::LineLosses Lost() noexcept override {
+    const m7::UartCounters& uart = m7::Counters();
+    return {uart.received_lost, uart.messages_lost};
+  }
+  void RunTimer(bool on) noexcept override { m7::RunSysTick(on); }
+  [[nodiscard]] std::uint32_t Periods() noexcept override { return m7::SysTicks(); }
   void Provoke(link::Provocation what) noexcept override {
     if (what == link::Provocation::kUsageFault) {
       m7::Register(m7::kCoprocessors) = m7::Register(m7::kCoprocessors) & ~m7::kFpuOn;
@@ -59,24 +65,17 @@ void fovea::cortex_m7::RunProgram() {
   m7::StartTimers();
   m7::StartUart();
   server.SayHello();
-  bool timer_on = false;
-  std::uint32_t ticks_done = 0;
+  std::array<std::uint8_t, 64> bytes{};
   for (;;) {
-    std::uint8_t byte = 0;
-    while (m7::TakeByte(byte)) {
-      server.Receive(byte);
+    std::size_t count = 0;
+    while (count < bytes.size() && m7::TakeByte(bytes[count])) {
+      ++count;
     }
-    if (server.TicksByTimer() && !timer_on) {
-      m7::StartSysTick();
-      ticks_done = m7::SysTicks();
-      timer_on = true;
-    }
-    if (const std::uint32_t due = m7::SysTicks() - ticks_done; timer_on && due > 0) {
-      ticks_done += due;
-      server.TickByTimer(static_cast<std::int32_t>(due - 1));
-    }
+    server.Receive({bytes.data(), count});
+    const std::uint32_t periods = m7::SysTicks();
+    server.Poll();
     const m7::InterruptLock lock;
-    if (!m7::HasByte() && m7::SysTicks() == ticks_done) {
+    if (!m7::HasByte() && m7::SysTicks() == periods) {
       m7::WaitForInterrupt();
     }
   }

@@ -20,12 +20,12 @@ void StartTimers() noexcept {
   Register(kTimer0 + kTimerReload) = UINT32_MAX;
   Register(kTimer0 + kTimerValue) = UINT32_MAX;
   Register(kTimer0 + kTimerControl) = kOn;
-}
-
-void StartSysTick() noexcept {
   Register(kSysTickReload) = kClockHz / kTickHz - 1;
   Register(kSysTickValue) = 0;
-  Register(kSysTickControl) = kProcessorClock | kInterrupt | kOn;
+}
+
+void RunSysTick(bool on) noexcept {
+  Register(kSysTickControl) = kProcessorClock | kInterrupt | (on ? kOn : 0U);
 }
 
 std::uint32_t SysTicks() noexcept { return sys_ticks.load(std::memory_order_relaxed); }

@@ -28,6 +28,7 @@ enum class FrameKind : std::uint8_t {
   kOutputs = 5,    // servo: what a tick made of it
   kCrash = 6,      // servo: the processor faulted; the outputs are safe and stay so
   kProvoke = 7,    // host: do something forbidden, to see it end well; taken only when so configured
+  kGo = 8,         // host, of Pacing::kGated: let the timer run to its next tick
 };
 
 struct Frame {

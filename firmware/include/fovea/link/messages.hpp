@@ -24,7 +24,10 @@ namespace fovea::link {
 enum class Pacing : std::uint8_t {
   kLockstep,  // each Inputs frame is one tick; one that comes twice is answered twice and stepped once
   kTimer,     // the servo's own clock, 1 kHz: a tick without a new Inputs frame is one without an arm state
+  kGated,     // as kTimer, but that clock stands from each tick's end until the host says Go: for a host that
+              // simulates, and whose millisecond takes as long as it takes
 };
+inline constexpr int kNumPacings = 3;
 
 struct Configuration {
   Pacing pacing = Pacing::kLockstep;
@@ -43,14 +46,26 @@ struct Answer {
 
 inline constexpr std::size_t kNumStages = servo::kStageNames.size();
 
+// What went wrong on the way, since the servo was configured; bytes and frames lost: since its start.
+struct LineCounters {
+  std::uint32_t damaged_frames = 0;  // that the servo's reader counted
+  std::uint32_t late_frames = 0;     // of the timer's pacing: overtaken, or too old to be used
+  std::uint32_t silent_ticks = 0;    // of the timer's pacing: without a new Inputs frame
+  std::uint32_t missed_ticks = 0;    // of the timer's pacing: periods that passed without a tick
+  std::uint32_t lost_bytes = 0;      // that came faster than they were taken
+  std::uint32_t unsent_frames = 0;   // that found no room to be sent
+  bool operator==(const LineCounters&) const = default;
+};
+
 // One tick's outputs, without the inputs that the host sent itself, and what the tick took.
 struct Outputs {
   hal::TickRecord record;                                // `arm`, `has_feature` and `feature` are not sent
   std::array<std::uint32_t, kNumStages> stage_counts{};  // of the timer, from one stage's end to the next's
   std::uint32_t tick_counts = 0;                         // of the timer, the whole of Step
+  std::uint32_t link_counts = 0;                         // of the timer, for the line, since the tick before
+  std::uint32_t periods_passed = 0;                      // of the timer's pacing: while the tick was computed
   std::uint32_t stack_bytes = 0;                         // the deepest the stack ever was
-  std::uint32_t damaged_frames = 0;                      // that the servo's reader counted
-  std::uint32_t silent_ticks = 0;                        // of the timer's pacing, without a new Inputs frame
+  LineCounters line;
 };
 
 // Registers of a fault that the processor took.

@@ -11,6 +11,12 @@
 
 namespace fovea::link {
 
+// What a processor lost of its line so far.
+struct LineLosses {
+  std::uint32_t bytes = 0;   // that came while there was no room for them
+  std::uint32_t frames = 0;  // that found no room to be sent
+};
+
 // What the server needs of its processor. Real-time: yes.
 class Board {
  public:
@@ -19,6 +25,10 @@ class Board {
   virtual void Send(std::span<const std::uint8_t> bytes) noexcept = 0;
   [[nodiscard]] virtual std::uint32_t TimerCounts() noexcept = 0;  // runs freely, upwards, wraps
   [[nodiscard]] virtual std::uint32_t StackBytes() noexcept = 0;   // the deepest the stack ever was
+  [[nodiscard]] virtual LineLosses Lost() noexcept = 0;
+  // The 1 kHz timer. Stopped, it keeps what has passed of the period in hand.
+  virtual void RunTimer(bool on) noexcept = 0;
+  [[nodiscard]] virtual std::uint32_t Periods() noexcept = 0;  // of that timer, all that have passed; wraps
   virtual void Provoke(Provocation what) noexcept = 0;
 
  protected:
@@ -32,20 +42,21 @@ class ServoServer final : private servo::StageProbe {
   ServoServer(const model::ArmModel& arm, Board& board) noexcept : arm_(arm), board_(board) {}
 
   void SayHello() noexcept;
-  void Receive(std::uint8_t byte) noexcept;
-  // Of Pacing::kTimer: one period has passed since the last call, and `missed_ticks` before it.
-  void TickByTimer(std::int32_t missed_ticks) noexcept;
-
-  [[nodiscard]] bool TicksByTimer() const noexcept {
-    return configured_ && configuration_.pacing == Pacing::kTimer;
-  }
+  void Receive(std::span<const std::uint8_t> bytes) noexcept;
+  // To be called whenever a period may have passed: ticks if one has.
+  void Poll() noexcept;
 
  private:
   void Done(servo::Stage stage) noexcept override;
   void Take(const Frame& frame) noexcept;
   void Configure(const Frame& frame) noexcept;
   void TakeInputs(const Frame& frame) noexcept;
-  void Step(std::uint32_t sequence) noexcept;
+  void TakeInputsByTimer(const Frame& frame) noexcept;
+  [[nodiscard]] bool ComesTooLate(std::int64_t stamp_ns) noexcept;
+  void LetTimerRun(const Frame& frame) noexcept;
+  void TickByTimer(std::int32_t missed_ticks) noexcept;
+  [[nodiscard]] LineCounters Counters() noexcept;
+  void Step() noexcept;
   template <class Message>
   void Send(FrameKind kind, std::uint32_t sequence, const Message& message) noexcept;
 
@@ -63,8 +74,18 @@ class ServoServer final : private servo::StageProbe {
   Outputs sent_;
   bool answered_ = false;  // `sent_` answers `sequence_`
   std::uint32_t sequence_ = 0;
-  bool fresh_ = false;  // of kTimer: `inputs_` came since the last tick
-  std::uint32_t silent_ticks_ = 0;
+  std::uint32_t link_counts_ = 0;
+
+  // By the timer
+  bool fresh_ = false;       // `inputs_` came since the last tick
+  bool has_inputs_ = false;  // some came ever, the newest of them `inputs_sequence_`
+  std::uint32_t inputs_sequence_ = 0;
+  bool may_tick_ = false;           // false: the timer stands until the host says Go
+  std::uint32_t periods_done_ = 0;  // of Board::Periods
+  std::int64_t time_ns_ = 0;        // of the timer's ticks
+  std::int64_t least_lag_ns_ = 0;   // of a state's stamp behind them
+  LineCounters line_;
+  std::uint32_t damaged_before_ = 0;  // this configuration
   std::uint32_t stage_began_ = 0;
 };
 

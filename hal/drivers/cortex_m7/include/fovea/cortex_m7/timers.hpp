@@ -10,9 +10,9 @@ inline constexpr std::uint32_t kTimerHz = 25'000'000;
 
 void StartTimers() noexcept;
 
-// SysTick's interrupts at 1 kHz, from now on.
-void StartSysTick() noexcept;
-[[nodiscard]] std::uint32_t SysTicks() noexcept;  // since then; wraps
+// SysTick's interrupts at 1 kHz. Off, it keeps what has passed of the period in hand.
+void RunSysTick(bool on) noexcept;
+[[nodiscard]] std::uint32_t SysTicks() noexcept;  // all of them; wraps
 
 // Runs freely, upwards, wraps after 172 s.
 [[nodiscard]] std::uint32_t TimerCounts() noexcept;

@@ -1,0 +1,34 @@
+// Collects what each tick on a board took.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "fovea/link/messages.hpp"
+#include "sim/mcu/board_summary.hpp"
+
+namespace fovea::sim {
+
+class BoardFigures {
+ public:
+  BoardFigures();
+
+  // No heap for the first hundred thousand ticks.
+  void Add(const link::Outputs& outputs);
+  // Counts and instructions of all ticks so far; the rest is as it was.
+  void Fill(double instructions_per_count, BoardSummary& summary) const;
+
+ private:
+  struct Tick {
+    hal::Mode mode;
+    std::uint32_t counts;
+    std::uint32_t link_counts;
+    std::array<std::uint32_t, link::kNumStages> stage_counts;
+  };
+  std::vector<Tick> ticks_;
+  std::uint32_t stack_bytes_ = 0;
+  link::LineCounters line_;
+};
+
+}  // namespace fovea::sim

@@ -1,0 +1,25 @@
+// A serial line to a board, as a stream of bytes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace fovea::sim {
+
+class BoardLine {
+ public:
+  BoardLine() = default;
+  BoardLine(const BoardLine&) = delete;
+  BoardLine& operator=(const BoardLine&) = delete;
+  virtual ~BoardLine() = default;
+
+  // False when the board is gone.
+  virtual bool Send(std::span<const std::uint8_t> bytes) noexcept = 0;
+  // What has come into `bytes`, after at most `timeout_ms`; none when nothing came.
+  [[nodiscard]] virtual std::span<const std::uint8_t> Receive(std::span<std::uint8_t> bytes,
+                                                              int timeout_ms) noexcept = 0;
+  // Known once it was sent to or received from.
+  [[nodiscard]] virtual bool gone() const noexcept = 0;
+};
+
+}  // namespace fovea::sim

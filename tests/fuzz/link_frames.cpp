@@ -1,0 +1,49 @@
+// Frames: any bytes on the line, and any payload through a frame and back.
+#include <algorithm>
+#include <array>
+
+#include "fovea/link/frame.hpp"
+#include "fuzz/bytes.hpp"
+#include "fuzz/fuzz.hpp"
+
+using fovea::fuzz::Require;
+using namespace fovea::link;
+
+namespace {
+
+// What a reader took for a frame is one: a writer makes a line of it from which the same is read.
+void RequireComesBack(const Frame& frame) {
+  FrameWriter writer;
+  FrameReader reader;
+  const std::span<const std::uint8_t> line = writer.Encode(frame);
+  Require(line.size() >= 2 && line.front() == 0 && line.back() == 0, "a frame stands between zeros");
+  Require(std::count(line.begin(), line.end(), 0) == 2, "a frame holds no zero");
+  bool whole = false;
+  for (const std::uint8_t byte : line) {
+    Require(!whole, "a frame ends with its last byte");
+    whole = reader.Add(byte);
+  }
+  Require(whole, "a frame that was written is read");
+  const Frame& back = reader.frame();
+  Require(
+      back.kind == frame.kind && back.sequence == frame.sequence &&
+          std::equal(back.payload.begin(), back.payload.end(), frame.payload.begin(), frame.payload.end()),
+      "a frame comes back as it was");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  FrameReader reader;
+  for (std::size_t i = 0; i < size; ++i) {
+    if (reader.Add(data[i])) {
+      Require(reader.frame().payload.size() <= kMaxPayload, "a payload has its bound");
+      RequireComesBack(reader.frame());
+    }
+  }
+  fovea::fuzz::Bytes bytes(data, size);
+  const auto kind = static_cast<FrameKind>(1 + bytes.Byte() % static_cast<int>(FrameKind::kGo));
+  const std::uint32_t sequence = bytes.Word();
+  RequireComesBack({kind, sequence, bytes.Take(kMaxPayload)});
+  return 0;
+}

@@ -1,0 +1,76 @@
+// Messages: any bytes as any of them. What is taken encodes to the same bytes, and nothing in it is out of
+// its range.
+#include <algorithm>
+#include <array>
+
+#include "fovea/link/frame.hpp"
+#include "fovea/link/messages.hpp"
+#include "fuzz/bytes.hpp"
+#include "fuzz/fuzz.hpp"
+
+using fovea::fuzz::Require;
+using namespace fovea;
+using namespace fovea::link;
+
+namespace {
+
+template <class Message>
+bool TakeAndGiveBack(Bytes bytes, Message& message) {
+  static std::array<std::uint8_t, kMaxPayload> storage;
+  if (!Decode(bytes, message)) {
+    return false;
+  }
+  const Bytes back = Encode(message, storage);
+  Require(std::equal(back.begin(), back.end(), bytes.begin(), bytes.end()), "a message encodes as it came");
+  return true;
+}
+
+void TakeInputs(Bytes bytes) {
+  if (servo::ServoInputs in; TakeAndGiveBack(bytes, in)) {
+    Require(in.arm.num_joints >= 0 && in.arm.num_joints <= hal::kMaxJoints, "joints");
+    Require(in.feature.dim >= 0 && in.feature.dim <= hal::kMaxFeatureDim, "entries of s");
+    Require(in.feature.num_poses >= 0 && in.feature.num_poses <= hal::kMaxPoses, "poses");
+    Require(static_cast<int>(in.law) < servo::kNumMotionLaws, "motion law");
+  }
+}
+
+void TakeAnswer(Bytes bytes) {
+  Answer answer;
+  if (Decode(bytes, answer)) {  // its words are cut where their room ends: not byte by byte the same
+    Require(answer.where.back() == '\0', "words end");
+    Require(hal::ToString(answer.code) != nullptr, "a status has a name");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  fuzz::Bytes input(data, size);
+  const std::uint8_t kind = input.Byte();
+  const Bytes bytes = input.Rest();
+  switch (kind % 6) {
+    case 0: TakeInputs(bytes); break;
+    case 1: {
+      static Configuration configuration;
+      TakeAndGiveBack(bytes, configuration);
+      break;
+    }
+    case 2: {
+      static Outputs outputs;
+      TakeAndGiveBack(bytes, outputs);
+      break;
+    }
+    case 3: TakeAnswer(bytes); break;
+    case 4: {
+      Crash crash;
+      TakeAndGiveBack(bytes, crash);
+      break;
+    }
+    default: {
+      Provocation what{};
+      TakeAndGiveBack(bytes, what);
+      break;
+    }
+  }
+  return 0;
+}
