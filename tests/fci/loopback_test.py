@@ -19,7 +19,7 @@ class Loopback(unittest.TestCase):
     def serve(self, *options, camera=False):
         eye = [] if camera else ["--camera-serial", ""]
         self.server = subprocess.Popen([SIM, "serve", "ball", "--fci-port", "0", "--json", *eye, *options],
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                        text=True)
         self.addCleanup(self.end_server)
         line = self.server.stderr.readline()
@@ -202,6 +202,25 @@ class Loopback(unittest.TestCase):
         finally:
             hw.send_signal(signal.SIGINT)
             s = self.summary_of(hw)
+        self.assertEqual(s["robot"]["motions"], 2)
+
+    def test_a_robot_that_hangs_is_given_up_and_recovered_when_told_to(self):
+        """Its states are one and the same from then on: number, time, joints."""
+        port = self.serve("--pace", "lockstep")
+        hw = self.operator(port, "--enable", "--set", "robot.state_timeout_ms=20")
+        try:
+            self.wait_for(hw, "hold")
+            self.say(self.server, "h")
+            self.wait_for(hw, "fault: arm_lost")
+            self.say(self.server, "h")
+            time.sleep(0.5)
+            self.say(hw, "recover")
+            self.wait_for(hw, "hold")
+        finally:
+            hw.send_signal(signal.SIGINT)
+            s = self.summary_of(hw)
+        print(f"\n{s['robot']['duplicate_states']} states came again")
+        self.assertGreater(s["robot"]["duplicate_states"], 100)
         self.assertEqual(s["robot"]["motions"], 2)
 
     def wait_for(self, process, line):
