@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"hal/drivers/camera", "fovea/(hal|linux_rt|camera)/.*|opencv2/.*",
              "a driver depends on the contract and on its device"},
         Rule{"hal/drivers/genicam",
-             "fovea/(hal|linux_rt|camera|genicam)/.*|opencv2/.*|aravis_session[.]hpp|arv[.]h",
+             "fovea/(hal|linux_rt|camera|genicam)/.*|opencv2/.*|(aravis_session|device_clock)[.]hpp|arv[.]h",
              "a driver depends on the contract and on its device"},
         Rule{"hal/drivers/franka",
              "fovea/(hal|linux_rt|franka)/.*|(arpa|netinet|sys)/.*|(fcntl|netdb|poll|unistd)[.]h",

@@ -109,6 +109,7 @@ std::string ToJson(const HwSummary& s) {
                       {"lost", s.camera.lost},
                       {"overtaken", s.camera.overtaken},
                       {"missing_packets", s.camera.missing_packets},
+                      {"stamped_by_clock", s.camera.stamped_by_clock},
                       {"disconnects", s.camera.disconnects},
                       {"reconnects", s.camera.reconnects}};
   }
