@@ -90,7 +90,7 @@ class Loopback(unittest.TestCase):
             s = self.hardware(port, "--track", "--seconds", "4", "--out", str(out), "--set", "log.picture_rate_hz=10",
                               camera=True)
             print(f"\n{s['log_pictures']} pictures of {s['camera']['frames']} in the log")
-            self.assertEqual({file.name for file in out.iterdir()}, {"log.mcap", "report.html", "summary.json"})
+            self.assertEqual({file.name for file in out.iterdir()}, {"camera.mp4", "log.mcap", "report.html", "summary.json"})
             self.assertEqual(json.loads((out / "summary.json").read_text()), s)
             self.assertEqual(s["heap_allocations_in_tick"], 0)
             # Four seconds of ticks find room in the rings, however busy the machine is.
@@ -104,6 +104,15 @@ class Loopback(unittest.TestCase):
                 done = subprocess.run(["node", READERS / reader[0], *reader[1:]], timeout=120, capture_output=True,
                                       text=True)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_without_a_film(self):
+        with tempfile.TemporaryDirectory() as temp:
+            (pathlib.Path(temp) / "camera.mp4").write_text("of another run")
+            port = self.serve("--pace", "lockstep", camera=True)
+            self.hardware(port, "--track", "--seconds", "1", "--out", temp, "--set", "log.film=false", camera=True,
+                          codes=(0, 1))
+            self.assertEqual({file.name for file in pathlib.Path(temp).iterdir()},
+                             {"log.mcap", "report.html", "summary.json"})
 
     def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_moves(self):
         with tempfile.NamedTemporaryFile() as file:

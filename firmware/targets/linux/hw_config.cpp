@@ -93,6 +93,7 @@ config::KeyTable HwKeys(HwConfig& c) {
               "for so long --check measures how late a thread wakes up");
   keys.Number("log.picture_rate_hz", c.log.picture_rate_hz, 0.0, 1000.0, "Hz",
               "with --out: at most so many pictures per second are kept in the log");
+  keys.Flag("log.film", c.log.film, "with --out: what the eye saw, as camera.mp4 and in the report");
   config::AddServoKeys(c.servo, keys);
   return keys;
 }
