@@ -91,8 +91,8 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   }
   std::optional<NetworkEye> eye;
   if (scenario.camera.enabled && !options.camera_serial.empty()) {
-    eye.emplace(about, world, options.address, options.camera_serial);
-    config.after_step = [&eye, &config] { eye->Advance(config.lockstep); };
+    eye.emplace(about, world, options.address, options.camera_serial, config.lockstep);
+    config.after_step = [&eye] { eye->Advance(); };
   }
   FciServer server(robot, config);
   say(fmt::format("serving scenario {} at {}:{}, {} pace", scenario.name, options.address, server.port(),
