@@ -1,5 +1,6 @@
 """The hardware program against the simulated robot, two processes and a network:  loopback_test.py FOVEA_SIM FOVEA_HW"""
 
+import hashlib
 import json
 import pathlib
 import signal
@@ -213,6 +214,19 @@ class Loopback(unittest.TestCase):
         s = self.hardware(port, "--seconds", "1", "--no-motion")
         self.assertEqual((s["robot"]["commands"], s["robot"]["motions"]), (0, 0))
         self.assertGreater(s["robot"]["states"], 0)
+
+    def test_its_servo_is_the_simulators(self):
+        """Both programs say which servo library they were linked with; and that file is there once."""
+        port = self.serve("--pace", "lockstep")
+        hardware = self.hardware(port, "--seconds", "0.2", "--no-motion")["servo"]
+        with tempfile.TemporaryDirectory() as temp:
+            done = subprocess.run([SIM, "run", "home", "--no-report", "--json", "--out", temp, "--set", "run.duration_s=0.1"],
+                                  timeout=60, capture_output=True, text=True)
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        libraries = list(pathlib.Path(HW).parent.parent.glob("lib/libfovea_servo.a"))
+        self.assertEqual(len(libraries), 1)
+        self.assertEqual(hardware, hashlib.sha256(libraries[0].read_bytes()).hexdigest())
+        self.assertEqual(hardware, json.loads(done.stdout)["servo"])
 
     def test_a_user_stop_is_reported_and_recovered_from_when_told_to(self):
         port = self.serve("--pace", "lockstep")
