@@ -61,7 +61,8 @@ TEST_F(SceneFilmTest, EveryExposureIsThereWithThePathsSoFar) {
   cv::Scalar deviation;
   cv::meanStdDev(frames.back()(picture), mean, deviation);
   EXPECT_GT(deviation[1], 20.0) << "it is blank";
-  for (const auto& [name, colour] : {std::pair{"camera", film::kDetectionColour}, {"target", film::kGoalColour}}) {
+  for (const auto& [name, colour] :
+       {std::pair{"camera", film::kDetectionColour}, {"target", film::kGoalColour}}) {
     const int first = Count(frames.front()(picture), colour);
     const int middle = Count(frames[frames.size() / 2](picture), colour);
     const int last = Count(frames.back()(picture), colour);
