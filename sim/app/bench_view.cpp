@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "sim/app/overlay.hpp"
+#include "fovea/film/overlay.hpp"
 
 namespace fovea::sim {
 
@@ -38,7 +38,7 @@ BenchView MakeBenchView(const Exposure& exposure, const Pinhole& pinhole) {
 void DrawPath(cv::Mat& bgr, const BenchView& view, const std::vector<Eigen::Vector3d>& path,
               const cv::Scalar& colour, int thickness) {
   const Eigen::Isometry3d X_VB = view.X_BV.inverse();
-  const double one = 1 << kSubPixelBits;
+  const double one = 1 << film::kSubPixelBits;
   std::vector<cv::Point> points;
   points.reserve(path.size());
   for (const Eigen::Vector3d& p_B : path) {
@@ -46,7 +46,7 @@ void DrawPath(cv::Mat& bgr, const BenchView& view, const std::vector<Eigen::Vect
     points.emplace_back(static_cast<int>(view.pinhole.U(p) * one), static_cast<int>(view.pinhole.V(p) * one));
   }
   for (std::size_t i = 1; i < points.size(); ++i) {
-    cv::line(bgr, points[i - 1], points[i], colour, thickness, cv::LINE_AA, kSubPixelBits);
+    cv::line(bgr, points[i - 1], points[i], colour, thickness, cv::LINE_AA, film::kSubPixelBits);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "fovea/build_info.hpp"
+#include "fovea/film/target_curve.hpp"
 #include "fovea/log/picture_messages.hpp"
 #include "fovea/log/record_hash.hpp"
 #include "fovea/log/run_messages.hpp"
@@ -15,7 +16,6 @@
 #include "foxglove/image.pb.h"
 #include "foxglove/scene.pb.h"
 #include "sim/app/log_scene.hpp"
-#include "sim/app/target_curve.hpp"
 #include "sim/app/target_error.hpp"
 
 namespace fovea::sim {
@@ -52,7 +52,7 @@ log::RunSetup MakeSetup(const RunDescription& about) {
 LogFeed::LogFeed(const RunDescription& about, const std::filesystem::path& path, bool may_drop)
     : about_(about), path_(path), log_(MakeRunLogConfig(about, path, may_drop)) {
   if (about.scene.has_eye) {
-    log::AddOutline(about.intrinsics, GoalCurve(about.intrinsics, about.servo.feature), log::kGoalRole,
+    log::AddOutline(about.intrinsics, film::GoalCurve(about.intrinsics, about.servo.feature), log::kGoalRole,
                     goal_);
   }
   Scenario scenario = about.scenario;
@@ -90,7 +90,7 @@ void LogFeed::AddTruth(const Truth& truth) {
 
 void LogFeed::AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO) {
   foxglove::ImageAnnotations annotations = goal_;
-  log::AddOutline(about_.intrinsics, TargetCurve(about_.intrinsics, about_.servo.feature, X_CO),
+  log::AddOutline(about_.intrinsics, film::TargetCurve(about_.intrinsics, about_.servo.feature, X_CO),
                   log::kTruthRole, annotations);
   log::AddDetection(about_.intrinsics, detection, annotations);
   log_.Add(log::kAnnotationTopic, frame.stamp_ns, annotations);

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <sstream>
 
 #include "fovea/build_info.hpp"
 #include "fovea/config/board_flags.hpp"
@@ -91,8 +93,33 @@ struct ServeArguments {
   int seed = -1;
   std::string pace = "real";
   bool json = false;
+  std::vector<std::string> walls;
   sim::ServeOptions options;
 };
+
+// "x,y,z,dx,dy,dz": a corner and the edges from there on [m].
+sim::CartesianWall ParseWall(const std::string& text) {
+  std::istringstream words(text);
+  std::array<double, 6> v{};
+  bool commas = true;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    words >> v[i];
+    if (i + 1 < v.size()) {
+      char comma = 0;
+      words >> comma;
+      commas = commas && comma == ',';
+    }
+  }
+  if (words.fail() || !commas || words.peek() != std::istringstream::traits_type::eof() ||
+      std::any_of(v.begin() + 3, v.end(), [](double edge) { return !(edge > 0.0); })) {
+    throw config::InputError(fmt::format(
+        "--wall {} is not allowed: it is X,Y,Z,DX,DY,DZ, a corner and three edges above 0 [m]", text));
+  }
+  sim::CartesianWall wall;
+  wall.X_BW.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
+  wall.size = {v[3], v[4], v[5]};
+  return wall;
+}
 
 int Serve(const ServeArguments& arguments) {
   std::vector<std::string> assignments = arguments.assignments;
@@ -101,6 +128,9 @@ int Serve(const ServeArguments& arguments) {
   }
   sim::ServeOptions options = arguments.options;
   options.server.lockstep = arguments.pace == "lockstep";
+  for (const std::string& wall : arguments.walls) {
+    options.walls.push_back(ParseWall(wall));
+  }
   const sim::ServeSummary summary =
       sim::Serve(sim::LoadScenario(arguments.scenario, assignments), options, [](const std::string& line) {
         fmt::print(stderr, "{}\n", line);
@@ -143,6 +173,13 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
       .add_option("--camera-serial", arguments.options.camera_serial,
                   "serial number of the GigE Vision camera; \"\": no camera")
       ->capture_default_str();
+  serve
+      .add_option("--wall", arguments.walls,
+                  "X,Y,Z,DX,DY,DZ: a cuboid that the end effector may not enter, a corner and its edges [m]; "
+                  "may be repeated")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
   serve.add_option("--late-ms", server.late_ms, "a command may answer a state that is this old")
       ->check(CLI::Range(0, 19))
       ->capture_default_str();
@@ -159,6 +196,14 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
   serve.add_flag("--json", arguments.json, "print the counters as JSON at the end");
+  serve.footer(
+      "What may be typed, a word a line: s presses the stop button, and again releases it; g the enabling\n"
+      "button at the hand, which lets a person guide it; f X Y Z pulls at the hand from now on [N]; h hangs\n"
+      "the robot: the same state again and again.\n"
+      "Examples:\n"
+      "  fovea-sim serve ball --fci-port 1337\n"
+      "  fovea-sim serve ball --pace lockstep --loss 0.05 --jitter-ms 2 --late-ms 3\n"
+      "  fovea-sim serve ball --wall 0.1,0.2,0,0.6,0.5,0.8");
 }
 
 struct PictureArguments {

@@ -2,9 +2,14 @@
 // faults that it has.
 #pragma once
 
+#include <atomic>
 #include <memory>
+#include <optional>
+#include <semaphore>
 #include <string>
+#include <thread>
 
+#include "fovea/linux_rt/bounded_ring.hpp"
 #include "sim/app/eye.hpp"
 #include "sim/faults/frame_faults.hpp"
 #include "sim/wire/gige_camera.hpp"
@@ -14,22 +19,39 @@ namespace fovea::sim {
 
 class NetworkEye {
  public:
-  // `about` must outlive it, and it must outlive what `world` does next. std::runtime_error: no picture can
-  // be drawn here, or GigeCamera refuses.
-  NetworkEye(const RunDescription& about, World& world, const std::string& address,
-             const std::string& serial);
+  // `about` must outlive it, and it must outlive what `world` does next. With `lockstep` the world waits for
+  // pictures that are due to leave; without it, for nothing: a thread of the eye's own takes exposures to
+  // those that draw and send them. std::runtime_error: no picture can be drawn here, or GigeCamera refuses.
+  NetworkEye(const RunDescription& about, World& world, const std::string& address, const std::string& serial,
+             bool lockstep);
+  ~NetworkEye();
 
-  // After each step of the world. `wait`: for what is due to leave.
-  void Advance(bool wait) { gige_->Advance(world_.now_ns(), wait); }
+  // After each step of the world, by its thread.
+  void Advance();
   [[nodiscard]] std::uint64_t sent() const { return gige_->sent(); }
   // Why there are no pictures any more; "" while there are.
   [[nodiscard]] std::string fault() const { return eye_.camera().fault(); }
 
  private:
+  // What one millisecond brought.
+  struct News {
+    std::int64_t now_ns = 0;
+    std::int64_t late_ns = 0;  // of the exposure
+    std::optional<Exposure> exposure;
+  };
+  void Take(const News& news, bool wait);
+  void Run();
+
   World& world_;
+  const bool lockstep_;
   Eye eye_;
   FrameSpoiler faults_;
   std::unique_ptr<GigeCamera> gige_;
+  News news_;  // of the present millisecond; of the world's thread
+  linux_rt::BoundedRing<News> on_the_way_;
+  std::counting_semaphore<> there_{0};
+  std::atomic<bool> closed_{false};
+  std::thread courier_;  // last: it uses the others
 };
 
 }  // namespace fovea::sim

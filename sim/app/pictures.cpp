@@ -7,9 +7,9 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
+#include "fovea/film/overlay.hpp"
+#include "fovea/film/target_curve.hpp"
 #include "sim/app/bench_view.hpp"
-#include "sim/app/overlay.hpp"
-#include "sim/app/target_curve.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -51,29 +51,29 @@ std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
   const Eigen::Vector3d& p_CO_C = frame.X_CO.p;
   cv::Mat picture;
   cv::resize(frame.bgr, picture, cv::Size(), kScale, kScale, cv::INTER_CUBIC);
-  Overlay overlay(picture, in, kScale);
-  overlay.Outline(TargetCurve(in, target, frame.X_CO), kTruthColour, 1, true);
-  overlay.Goal(GoalCurve(in, target), p_CO_C_star);
+  film::Overlay overlay(picture, in, kScale);
+  overlay.Outline(film::TargetCurve(in, target, frame.X_CO), film::kTruthColour, 1, true);
+  overlay.Goal(film::GoalCurve(in, target), p_CO_C_star);
   overlay.Detection(frame.detection);
 
-  cv::Mat page(picture.rows + kLegendPx, picture.cols, CV_8UC3, kLegendColour);
+  cv::Mat page(picture.rows + kLegendPx, picture.cols, CV_8UC3, film::kLegendColour);
   picture.copyTo(page.rowRange(0, picture.rows));
   const double error_px = std::hypot(in.U(p_CO_C) - in.U(p_CO_C_star), in.V(p_CO_C) - in.V(p_CO_C_star));
   const int top = picture.rows + 34;
   const int bottom = picture.rows + 66;
   const int middle = page.cols / 2;
   const auto write = [&page](const std::string& text, int x, int y, const cv::Scalar& colour) {
-    DrawText(page, text, x, y, 0.7, colour);
+    film::DrawText(page, text, x, y, 0.7, colour);
   };
   write(fmt::format("t = {:.3f} s   its middle {:.1f} px off", static_cast<double>(frame.stamp_ns) * 1e-9,
                     error_px),
-        20, top, kTruthColour);
-  write("dashed: true outline", 20, bottom, kTruthColour);
-  write("dashed, with cross: goal", middle, bottom, kGoalColour);
+        20, top, film::kTruthColour);
+  write("dashed: true outline", 20, bottom, film::kTruthColour);
+  write("dashed, with cross: goal", middle, bottom, film::kGoalColour);
   write(frame.detection.found ? fmt::format("detection, confidence {:.2f}, edge {:.2f} px rms",
                                             frame.detection.confidence, frame.detection.rms_px)
                               : std::string("no detection"),
-        middle, top, kDetectionColour);
+        middle, top, film::kDetectionColour);
   return ToPng(page);
 }
 
@@ -93,8 +93,8 @@ std::string DrawBenchPicture(const RenderScene& scene, const Exposure& exposure,
   cv::Mat bgr;
   cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
 
-  DrawPath(bgr, view, target_path, kGoalColour, 2 * kSuperSampling);
-  DrawPath(bgr, view, camera_path, kDetectionColour, 2 * kSuperSampling);
+  DrawPath(bgr, view, target_path, film::kGoalColour, 2 * kSuperSampling);
+  DrawPath(bgr, view, camera_path, film::kDetectionColour, 2 * kSuperSampling);
   cv::resize(bgr, bgr, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
   return ToPng(bgr);
 }

@@ -3,7 +3,7 @@
 #include <future>
 
 #include "fovea/config/share_folder.hpp"
-#include "sim/app/target_curve.hpp"
+#include "fovea/film/target_curve.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -25,13 +25,13 @@ RunFiles::RunFiles(const RunDescription& about, const RunFilesConfig& config) : 
   if (!config.report) {
     return;
   }
-  EyeFilmConfig film;
+  film::EyeFilmConfig film;
   film.path = folder_->Begin("camera.mp4");
   film.intrinsics = about.intrinsics;
-  film.goal = GoalCurve(about.intrinsics, about.servo.feature);
+  film.goal = film::GoalCurve(about.intrinsics, about.servo.feature);
   film.p_CO_C_star = about.servo.feature.p_CO_C_star;
   film.may_drop = config.may_drop;
-  eye_film_ = std::make_unique<EyeFilm>(film);
+  eye_film_ = std::make_unique<film::EyeFilm>(film);
   if (about.scenario.run.scene_video) {
     scene_film_ = std::make_unique<SceneFilm>(
         SceneFilmConfig{folder_->Begin("scene.mp4"), about.scene, config.renderer_index, config.may_drop});

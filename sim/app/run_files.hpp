@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "fovea/config/output_folder.hpp"
+#include "fovea/film/eye_film.hpp"
 #include "fovea/report/report.hpp"
-#include "sim/app/eye_film.hpp"
 #include "sim/app/log_feed.hpp"
 #include "sim/app/path.hpp"
 #include "sim/app/pictures.hpp"
@@ -55,7 +55,7 @@ class RunFiles {
   const RunDescription& about_;
   std::optional<report::ReportPage> page_;
   std::optional<config::OutputFolder> folder_;
-  std::unique_ptr<EyeFilm> eye_film_;
+  std::unique_ptr<film::EyeFilm> eye_film_;
   std::unique_ptr<SceneFilm> scene_film_;
   std::unique_ptr<LogFeed> log_;
   FrameKeeper frames_;

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "sim/app/overlay.hpp"
+#include "fovea/film/overlay.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -52,17 +52,17 @@ void SceneFilm::Draw(const Exposure& exposure) {
 
   camera_path_.Add(exposure.stamp_ns, exposure.X_BC.translation());
   target_path_.Add(exposure.stamp_ns, exposure.p_BO);
-  DrawPath(picture, *view_, target_path_.points(), kGoalColour, kPathPx);
-  DrawPath(picture, *view_, camera_path_.points(), kDetectionColour, kPathPx);
+  DrawPath(picture, *view_, target_path_.points(), film::kGoalColour, kPathPx);
+  DrawPath(picture, *view_, camera_path_.points(), film::kDetectionColour, kPathPx);
 
-  page_.rowRange(kPictureHeight, page_.rows).setTo(kLegendColour);
+  page_.rowRange(kPictureHeight, page_.rows).setTo(film::kLegendColour);
   const int y = kPictureHeight + 19;
   const auto write = [&](const std::string& text, int x, const cv::Scalar& colour) {
-    DrawText(page_, text, x, y, 0.45, colour);
+    film::DrawText(page_, text, x, y, 0.45, colour);
   };
-  write(fmt::format("t = {:.3f} s", static_cast<double>(exposure.stamp_ns) * 1e-9), 10, kTruthColour);
-  write("the camera's path", kWidth / 3, kDetectionColour);
-  write("the target's path", 2 * kWidth / 3, kGoalColour);
+  write(fmt::format("t = {:.3f} s", static_cast<double>(exposure.stamp_ns) * 1e-9), 10, film::kTruthColour);
+  write("the camera's path", kWidth / 3, film::kDetectionColour);
+  write("the target's path", 2 * kWidth / 3, film::kGoalColour);
   file_.Add(page_, exposure.stamp_ns);
 }
 

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <optional>
 
+#include "fovea/film/film_queue.hpp"
+#include "fovea/film/video_file.hpp"
 #include "sim/app/bench_view.hpp"
-#include "sim/app/film_queue.hpp"
 #include "sim/app/path.hpp"
-#include "sim/app/video_file.hpp"
 #include "sim/render/scene_renderer.hpp"
 
 namespace fovea::sim {
@@ -40,7 +40,7 @@ class SceneFilm {
   void Draw(const Exposure& exposure);
 
   // Used by the queue's thread alone.
-  VideoFile file_;
+  film::VideoFile file_;
   SceneRenderer renderer_;
   std::optional<BenchView> view_;  // from the first frame on
   Path camera_path_;
@@ -48,7 +48,7 @@ class SceneFilm {
   cv::Mat rgba_;
   cv::Mat page_;
 
-  FilmQueue<Exposure> queue_;  // last: its thread uses the others
+  film::FilmQueue<Exposure> queue_;  // last: its thread uses the others
 };
 
 }  // namespace fovea::sim

@@ -1,10 +1,6 @@
 #include "sim/app/serve.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
-
-#include <array>
 #include <atomic>
 #include <exception>
 #include <fstream>
@@ -21,6 +17,7 @@
 #include "sim/app/fault_settings.hpp"
 #include "sim/app/network_eye.hpp"
 #include "sim/app/run_description.hpp"
+#include "sim/app/serve_keys.hpp"
 #include "sim/app/target_error.hpp"
 
 namespace fovea::sim {
@@ -30,22 +27,33 @@ constexpr int kLookMs = 50;
 
 using Say = std::function<void(const std::string&)>;
 
-// Whether somebody typed "s" and a line's end. What cannot be read, or has ended, is not looked at again.
-class StopKey {
+// What stands at the bench for a person: buttons, a hand, and a plug to pull.
+class Person {
  public:
-  bool Pressed() {
-    pollfd wait{STDIN_FILENO, POLLIN, 0};
-    if (closed_ || poll(&wait, 1, 0) != 1) {
-      return false;
+  Person(FciServer& server, const Say& say) : server_(server), say_(say) {}
+
+  void PressStop() { server_.PressStop(stops_ = !stops_); }
+  void Do(const ServeKey& key) {
+    switch (key.kind) {
+      case ServeKey::Kind::kStop: PressStop(); break;
+      case ServeKey::Kind::kGuide: server_.PressGuiding(guides_ = !guides_); break;
+      case ServeKey::Kind::kPull: server_.PullHand(key.force_B); break;
+      case ServeKey::Kind::kHang:
+        server_.Hang(hangs_ = !hangs_);
+        say_(hangs_ ? "the robot hangs" : "the robot goes on");
+        break;
+      case ServeKey::Kind::kUnknown:
+        say_("not known; s (stop), g (guide), f X Y Z (pull at the hand, N), h (hang)");
+        break;
     }
-    std::array<char, 64> line{};
-    const auto got = read(STDIN_FILENO, line.data(), line.size());
-    closed_ = got <= 0;
-    return got > 0 && line[0] == 's';
   }
 
  private:
-  bool closed_ = false;
+  FciServer& server_;
+  const Say& say_;
+  bool stops_ = false;
+  bool guides_ = false;
+  bool hangs_ = false;
 };
 
 // Empty when it is not there.
@@ -73,7 +81,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   CheckServedFaults(scenario.faults);
   const linux_rt::SignalQueue signals({SIGINT, SIGTERM, SIGUSR1});
   World world(MakeWorldConfig(scenario, about.scene.robot));
-  FciRobot robot(world, about.scene.robot);
+  FciRobot robot(world, about.scene.robot, options.walls);
   FciServerConfig config = options.server;
   config.at.ip = franka::Resolve(options.address, 0).ip;
   config.seed = static_cast<std::uint64_t>(scenario.run.seed);
@@ -83,8 +91,8 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   }
   std::optional<NetworkEye> eye;
   if (scenario.camera.enabled && !options.camera_serial.empty()) {
-    eye.emplace(about, world, options.address, options.camera_serial);
-    config.after_step = [&eye, &config] { eye->Advance(config.lockstep); };
+    eye.emplace(about, world, options.address, options.camera_serial, config.lockstep);
+    config.after_step = [&eye] { eye->Advance(); };
   }
   FciServer server(robot, config);
   say(fmt::format("serving scenario {} at {}:{}, {} pace", scenario.name, options.address, server.port(),
@@ -114,14 +122,16 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
       stop = true;
     }
   });
-  StopKey key;
-  bool pressed = false;
+  ServeKeys keys;
+  Person person(server, say_from_any);
   while (!stop) {
     const int signal = signals.Next(kLookMs);
     stop = stop || signal == SIGINT || signal == SIGTERM;
-    if (signal == SIGUSR1 || key.Pressed()) {
-      pressed = !pressed;
-      server.PressStop(pressed);
+    if (signal == SIGUSR1) {
+      person.PressStop();
+    }
+    while (const std::optional<ServeKey> key = keys.Next()) {
+      person.Do(*key);
     }
   }
   thread.join();

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sim/app/scenario.hpp"
 #include "sim/wire/fci_server.hpp"
@@ -13,6 +14,7 @@ namespace fovea::sim {
 struct ServeOptions {
   std::string address = "127.0.0.1";    // where to listen; loopback unless told otherwise
   std::string camera_serial = "fovea";  // of the GigE Vision camera; empty: there is none
+  std::vector<CartesianWall> walls;     // which the end effector may not enter
   FciServerConfig server;               // all but its address, of which the port counts
 };
 
@@ -25,8 +27,9 @@ struct ServeSummary {
   std::optional<double> error_mm;
 };
 
-// Serves the scenario's arm as a Panda, and its camera, until SIGINT or SIGTERM; SIGUSR1, or a line "s" on
-// standard input, presses the stop button, and again releases it. `say` gets a line for each thing that a
+// Serves the scenario's arm as a Panda, and its camera, until SIGINT or SIGTERM; SIGUSR1 presses the
+// stop button, and again releases it; so does a line on standard input, which does more (serve_keys.hpp).
+// `say` gets a line for each thing that a
 // person may want to know. InputError: a scenario that cannot be served. std::runtime_error: a port is taken,
 // no picture can be drawn.
 ServeSummary Serve(const Scenario& scenario, const ServeOptions& options,

@@ -52,6 +52,15 @@ Eigen::Isometry3d Chain::TipPose(const Eigen::VectorXd& q, Jacobian& J) const {
   return X_BE;
 }
 
+std::vector<Eigen::Isometry3d> Chain::LinkPoses(const Eigen::VectorXd& q) const {
+  std::vector<Eigen::Isometry3d> X_BL;
+  X_BL.reserve(robot_.links.size());
+  for (const Moved& moved : Poses(q)) {
+    X_BL.push_back(moved.X_BL);
+  }
+  return X_BL;
+}
+
 Eigen::MatrixXd Chain::MassMatrix(const Eigen::VectorXd& q) const {
   const std::vector<Moved> links = Poses(q);
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(robot_.num_dofs, robot_.num_dofs);

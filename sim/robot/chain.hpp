@@ -23,6 +23,9 @@ class Chain {
   [[nodiscard]] Eigen::Isometry3d TipPose(const Eigen::VectorXd& q) const;
   [[nodiscard]] Eigen::Isometry3d TipPose(const Eigen::VectorXd& q, Jacobian& J) const;
 
+  // Pose of each link in B.
+  [[nodiscard]] std::vector<Eigen::Isometry3d> LinkPoses(const Eigen::VectorXd& q) const;
+
   // The joint-space mass matrix.
   [[nodiscard]] Eigen::MatrixXd MassMatrix(const Eigen::VectorXd& q) const;
   // Centrifugal and Coriolis torques C(q, dq) dq.

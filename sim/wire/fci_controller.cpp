@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace fovea::sim {
@@ -13,6 +14,14 @@ namespace {
 
 constexpr double kDampingRatio = 1.0;
 constexpr double kPostureStiffness = 10.0;  // of what a Cartesian impedance leaves free [Nm/rad]
+
+// Of a guided hand's axes that are not free.
+constexpr double kLockedTranslation = 3000.0;  // [N/m]
+constexpr double kLockedRotation = 300.0;      // [Nm/rad]
+// And how much the free ones resist.
+constexpr double kFreeTranslation = 20.0;  // [N s/m]
+constexpr double kFreeRotation = 1.0;      // [Nm s/rad]
+constexpr double kFreePosture = 0.25;      // as the damping of a posture of this stiffness [Nm/rad]
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Matrix67 = Eigen::Matrix<double, 6, 7>;
@@ -34,19 +43,16 @@ Matrix67 MovedTo(const Jacobian& J, const Eigen::Vector3d& arm) {
   return moved;
 }
 
-}  // namespace
+// Springs at a frame K, along its axes and about them.
+struct Spring {
+  Twist K;                        // [N/m, Nm/rad]
+  Twist D_least = Twist::Zero();  // damping, where the stiffness asks for less
+  double posture = 0.0;           // stiffness of what they leave free [Nm/rad]
+};
 
-Joints JointImpedanceTorque(const FciMeasured& arm, const JointReference& reference,
-                            const franka::JointImpedance& stiffness) {
-  const Joints K = ToVector(stiffness.K_theta);
-  const Joints D = 2.0 * kDampingRatio * K.cwiseProduct(Joints(arm.M.diagonal())).cwiseSqrt();
-  const Joints rate = reference.dq - arm.dq;
-  const Joints pull = K.cwiseProduct(reference.q - arm.q + rate * kFciStepS) + D.cwiseProduct(rate);
-  return AtEndOfStep(arm, reference, K.asDiagonal(), D.asDiagonal(), pull);
-}
-
-Joints CartesianImpedanceTorque(const Chain& chain, const FciMeasured& arm, const JointReference& reference,
-                                const Eigen::Isometry3d& F_T_K, const franka::CartesianImpedance& stiffness) {
+// Between K, at F_T_K on the flange, and where the reference has it.
+Joints SpringTorque(const Chain& chain, const FciMeasured& arm, const JointReference& reference,
+                    const Eigen::Isometry3d& F_T_K, const Spring& spring) {
   Jacobian J_E;
   const Eigen::Isometry3d X_BE = chain.TipPose(arm.q, J_E);
   const Eigen::Isometry3d X_K = X_BE * F_T_K;
@@ -69,17 +75,52 @@ Joints CartesianImpedanceTorque(const Chain& chain, const FciMeasured& arm, cons
   const Matrix6 mobility =
       J_K * M_inverse * J_K.transpose() + 1e-6 * Matrix6::Identity();  // bounded when singular
   const Matrix6 inertia = mobility.inverse();
-  const Twist K = ToVector(stiffness.K_x);
-  const Twist D = 2.0 * kDampingRatio * K.cwiseProduct(Twist(inertia.diagonal())).cwiseSqrt();
+  const Twist& K = spring.K;
+  const Twist D =
+      (2.0 * kDampingRatio * K.cwiseProduct(Twist(inertia.diagonal())).cwiseSqrt()).cwiseMax(spring.D_least);
   const Twist wrench = K.cwiseProduct(to_K * (error + rate * kFciStepS)) + D.cwiseProduct(to_K * rate);
 
   // What moves the arm without moving K (Khatib 1987).
-  const Joints posture_damping = 2.0 * std::sqrt(kPostureStiffness) * arm.M.diagonal().cwiseSqrt();
+  const double as_stiff = std::max(spring.posture, kFreePosture);
+  const Joints posture_damping = 2.0 * std::sqrt(as_stiff) * arm.M.diagonal().cwiseSqrt();
   const Joints posture =
-      kPostureStiffness * (reference.q - arm.q) + posture_damping.cwiseProduct(reference.dq - arm.dq);
+      spring.posture * (reference.q - arm.q) + posture_damping.cwiseProduct(reference.dq - arm.dq);
   const Matrix7 free = Matrix7::Identity() - J_K.transpose() * inertia * J_K * M_inverse;
   return AtEndOfStep(arm, reference, J_K.transpose() * K.asDiagonal() * J_K,
                      J_K.transpose() * D.asDiagonal() * J_K, J_K.transpose() * wrench + free * posture);
+}
+
+}  // namespace
+
+Joints JointImpedanceTorque(const FciMeasured& arm, const JointReference& reference,
+                            const franka::JointImpedance& stiffness) {
+  const Joints K = ToVector(stiffness.K_theta);
+  const Joints D = 2.0 * kDampingRatio * K.cwiseProduct(Joints(arm.M.diagonal())).cwiseSqrt();
+  const Joints rate = reference.dq - arm.dq;
+  const Joints pull = K.cwiseProduct(reference.q - arm.q + rate * kFciStepS) + D.cwiseProduct(rate);
+  return AtEndOfStep(arm, reference, K.asDiagonal(), D.asDiagonal(), pull);
+}
+
+Joints CartesianImpedanceTorque(const Chain& chain, const FciMeasured& arm, const JointReference& reference,
+                                const Eigen::Isometry3d& F_T_K, const franka::CartesianImpedance& stiffness) {
+  return SpringTorque(chain, arm, reference, F_T_K,
+                      {ToVector(stiffness.K_x), Twist::Zero(), kPostureStiffness});
+}
+
+Joints GuidingTorque(const Chain& chain, const FciMeasured& arm, const Joints& begin,
+                     const Eigen::Isometry3d& F_T_EE, const franka::GuidingMode& mode) {
+  Spring spring;
+  spring.posture = mode.nullspace != 0 ? 0.0 : kPostureStiffness;
+  for (std::size_t i = 0; i < mode.axes.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const bool translation = i < 3;
+    const double locked = translation ? kLockedTranslation : kLockedRotation;
+    spring.K[k] = mode.axes[i] != 0 ? 0.0 : locked;
+    spring.D_least[k] = translation ? kFreeTranslation : kFreeRotation;
+  }
+  Eigen::Isometry3d F_T_K = F_T_EE;  // with its axes along O's
+  F_T_K.linear() = chain.TipPose(arm.q).linear().transpose();
+  return SpringTorque(chain, arm, {begin, Joints::Zero(), Joints::Zero()}, F_T_K, spring);
 }
 
 }  // namespace fovea::sim

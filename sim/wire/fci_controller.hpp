@@ -25,4 +25,10 @@ struct FciMeasured {
                                               const JointReference& reference, const Eigen::Isometry3d& F_T_K,
                                               const franka::CartesianImpedance& stiffness);
 
+// What leaves the end effector (at F_T_EE on the flange) to a hand that guides it: no spring along the axes
+// of O, or about them, that `mode` frees, and a stiff one to where `begin` has it along the others; the elbow
+// is held or free as `mode` says.
+[[nodiscard]] Joints GuidingTorque(const Chain& chain, const FciMeasured& arm, const Joints& begin,
+                                   const Eigen::Isometry3d& F_T_EE, const franka::GuidingMode& mode);
+
 }  // namespace fovea::sim

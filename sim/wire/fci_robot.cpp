@@ -15,8 +15,7 @@ using franka::MoveController;
 using franka::MoveStatus;
 using franka::RobotMode;
 
-constexpr int kPatienceForFirst = 200;    // states of a motion before its first command must have come
-constexpr double kMeasuredMargin = 1.05;  // a measured speed may be this much over what may be commanded
+constexpr int kPatienceForFirst = 200;  // states of a motion before its first command must have come
 
 ControllerMode Shown(MoveController controller) { return static_cast<ControllerMode>(controller); }
 MotionGeneratorMode Shown(franka::MoveGenerator generator) {
@@ -25,7 +24,8 @@ MotionGeneratorMode Shown(franka::MoveGenerator generator) {
 
 }  // namespace
 
-FciRobot::FciRobot(World& world, const SimRobot& robot) : world_(world), chain_(robot), reference_(chain_) {
+FciRobot::FciRobot(World& world, const SimRobot& robot, std::vector<CartesianWall> walls)
+    : world_(world), chain_(robot), reference_(chain_), self_distance_(robot), walls_(std::move(walls)) {
   Measure(world_.truth().q, world_.truth().dq);
   reference_.Hold(measured_.q, Joints::Zero());
   state_.robot_mode = RobotMode::kIdle;
@@ -57,6 +57,11 @@ franka::SetterStatus FciRobot::Set(franka::Command command, std::span<const std:
   return status;
 }
 
+std::optional<CartesianWall> FciRobot::Wall(int id) const {
+  const auto k = static_cast<std::size_t>(id);
+  return id >= 0 && k < walls_.size() ? std::optional(walls_[k]) : std::nullopt;
+}
+
 MoveStatus FciRobot::Move(const franka::MoveRequest& request) {
   if (state_.robot_mode != RobotMode::kIdle) {
     return MoveStatus::kNotPossible;
@@ -71,12 +76,12 @@ MoveStatus FciRobot::Move(const franka::MoveRequest& request) {
   }
   move_ = request;
   move_end_.reset();
-  reference_.Begin(request.generator, ToPose(settings_.F_T_NE.pose) * ToPose(settings_.NE_T_EE.pose),
-                   settings_.filters);
+  reference_.Begin(request.generator, F_T_EE(), settings_.filters);
   commanded_ = false;
   missing_ = 0;
   waited_ = 0;
   came_.fill(false);
+  swing_watch_.Clear();
   state_.reflex_reason = {};
   state_.robot_mode = RobotMode::kMove;
   state_.controller_mode = Shown(request.controller);
@@ -96,10 +101,10 @@ franka::RecoveryStatus FciRobot::Recover() {
   if (state_.robot_mode == RobotMode::kUserStopped) {
     return franka::RecoveryStatus::kEmergencyAborted;
   }
-  if (moving()) {
+  if (moving() || state_.robot_mode == RobotMode::kGuiding) {
     return franka::RecoveryStatus::kNotPossible;
   }
-  if (IsOutside()) {
+  if (JointsBeyond() > fci_limits::kBeyond || IsInWall()) {
     return franka::RecoveryStatus::kManualRecoveryRequired;
   }
   state_.errors = {};
@@ -119,7 +124,10 @@ void FciRobot::UserStop(bool pressed) {
     End(MoveStatus::kEmergencyAborted, RobotMode::kUserStopped);
     return;
   }
-  if (state_.robot_mode == RobotMode::kUserStopped) {
+  if (state_.robot_mode == RobotMode::kGuiding && guiding_.from == RobotMode::kUserStopped) {
+    guiding_.from = RobotMode::kIdle;
+    state_.errors = {};
+  } else if (state_.robot_mode == RobotMode::kUserStopped) {
     state_.errors = {};
     state_.robot_mode = RobotMode::kIdle;
     constexpr double kInside = 0.02;
@@ -139,6 +147,8 @@ void FciRobot::End(MoveStatus status, RobotMode mode) {
     const JointReference& r = reference_.joints();
     reference_.Hold(external ? measured_.q : r.q, external ? measured_.dq : r.dq);
     state_.control_command_success_rate = 0.0;
+  } else if (state_.robot_mode == RobotMode::kGuiding) {
+    reference_.Hold(measured_.q, measured_.dq);
   }
   commanded_ = false;
   state_.robot_mode = mode;
@@ -156,7 +166,9 @@ void FciRobot::Step(const std::optional<franka::RobotCommand>& command) {
   if (moving()) {
     ApplyCommand(command);
   }
-  if (!moving()) {
+  if (state_.robot_mode == RobotMode::kGuiding) {
+    reference_.Hold(measured_.q, Joints::Zero());
+  } else if (!moving()) {
     reference_.StepToRest();
   }
   if (!moving() || move_.controller != MoveController::kExternal || !commanded_) {
@@ -169,10 +181,13 @@ void FciRobot::Step(const std::optional<franka::RobotCommand>& command) {
   to_arm.num_joints = franka::kJoints;
   Eigen::Map<Joints>(to_arm.tau_cmd.data()) = tau_ + LoadTorque();
   world_.Command(to_arm);
+  PullAtJoints();
   world_.AdvanceTo(world_.now_ns() + hal::kTickPeriodNs);
   Measure(q_before, dq_before);
   if (moving()) {
-    CheckMeasured();
+    CheckMotion();
+  } else if (state_.robot_mode == RobotMode::kGuiding) {
+    CheckGuiding();
   }
   Show();
 }
@@ -236,11 +251,12 @@ void FciRobot::CountCommand(bool came) {
 }
 
 Joints FciRobot::ControllerTorque() const {
+  if (state_.robot_mode == RobotMode::kGuiding) {
+    return GuidingTorque(chain_, measured_, guiding_.q_begin, F_T_EE(), settings_.guiding);
+  }
   if (moving() && move_.controller == MoveController::kCartesianImpedance) {
-    const Eigen::Isometry3d F_T_K =
-        ToPose(settings_.F_T_NE.pose) * ToPose(settings_.NE_T_EE.pose) * ToPose(settings_.EE_T_K.pose);
-    return CartesianImpedanceTorque(chain_, measured_, reference_.joints(), F_T_K,
-                                    settings_.cartesian_impedance);
+    return CartesianImpedanceTorque(chain_, measured_, reference_.joints(),
+                                    F_T_EE() * ToPose(settings_.EE_T_K.pose), settings_.cartesian_impedance);
   }
   return JointImpedanceTorque(measured_, reference_.joints(), settings_.joint_impedance);
 }
@@ -254,53 +270,6 @@ Joints FciRobot::LoadTorque() const {
     tau[i] = -settings_.load.mass * ToVector(state_.O_ddP_O).dot(v);
   }
   return tau;
-}
-
-void FciRobot::CheckDeviation(const franka::Vector3& most, Error error) {
-  const Eigen::Isometry3d X_d = chain_.TipPose(reference_.joints().q);
-  const Eigen::AngleAxisd turn(X_d.linear() * X_BE_.linear().transpose());
-  const bool external = move_.controller == MoveController::kExternal;
-  if (!external && ((X_d.translation() - X_BE_.translation()).norm() > most[0] || turn.angle() > most[1] ||
-                    std::fabs(reference_.joints().q[2] - measured_.q[2]) > most[2])) {
-    Reflex(error);
-  }
-}
-
-bool FciRobot::IsOutside() const {
-  return ((measured_.q - fci_limits::kQMax).array() > fci_limits::kBeyond).any() ||
-         ((fci_limits::kQMin - measured_.q).array() > fci_limits::kBeyond).any();
-}
-
-// What the arm did, against what it may do.
-void FciRobot::CheckMeasured() {
-  const Joints over = measured_.dq.cwiseAbs() - kMeasuredMargin * fci_limits::kDq;
-  const Twist V = J_ * measured_.dq;
-  if (IsOutside()) {
-    Reflex(Error::kJointPositionLimits);
-  } else if ((over.array() > 0.0).any()) {
-    Reflex(Error::kJointVelocity);
-  } else if (V.head<3>().norm() > kMeasuredMargin * fci_limits::kTranslation.velocity ||
-             V.tail<3>().norm() > kMeasuredMargin * fci_limits::kRotation.velocity) {
-    Reflex(Error::kCartesianVelocity);
-  } else if (((ToVector(state_.tau_J).cwiseAbs() - fci_limits::kTau).array() > 0.0).any()) {
-    Reflex(Error::kTauJRange);
-  } else {
-    CheckForces();
-  }
-  if (moving() && commanded_) {
-    CheckDeviation(move_.max_path_deviation, Error::kMaxPathPoseDeviation);
-  }
-}
-
-void FciRobot::CheckForces() {
-  const auto any = [](const auto& flags) {
-    return std::any_of(flags.begin(), flags.end(), [](double flag) { return flag != 0.0; });
-  };
-  if (any(state_.joint_collision)) {
-    Reflex(Error::kJointReflex);
-  } else if (any(state_.cartesian_collision)) {
-    Reflex(Error::kCartesianReflex);
-  }
 }
 
 }  // namespace fovea::sim

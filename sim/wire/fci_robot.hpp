@@ -6,12 +6,16 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "fovea/franka/errors.hpp"
 #include "fovea/franka/messages.hpp"
+#include "sim/wire/cartesian_wall.hpp"
 #include "sim/wire/fci_controller.hpp"
 #include "sim/wire/fci_reference.hpp"
 #include "sim/wire/fci_settings.hpp"
+#include "sim/wire/self_distance.hpp"
+#include "sim/wire/swing_watch.hpp"
 #include "sim/world/world.hpp"
 
 namespace fovea::sim {
@@ -19,10 +23,12 @@ namespace fovea::sim {
 class FciRobot {
  public:
   // `robot` is the arm in `world`, of seven joints, with what it carries as links of its own; both outlive
-  // this.
-  FciRobot(World& world, const SimRobot& robot);
+  // this. The end effector may not enter `walls`.
+  FciRobot(World& world, const SimRobot& robot, std::vector<CartesianWall> walls = {});
 
   [[nodiscard]] franka::SetterStatus Set(franka::Command command, std::span<const std::byte> payload);
+  // The wall that GetCartesianLimit calls `id`.
+  [[nodiscard]] std::optional<CartesianWall> Wall(int id) const;
   // kMotionStarted, or why not.
   [[nodiscard]] franka::MoveStatus Move(const franka::MoveRequest& request);
   [[nodiscard]] franka::StopStatus StopMove();
@@ -32,6 +38,13 @@ class FciRobot {
   // The stop button: pressed, all stops; released, the robot is idle and without error, and joints that were
   // outside their limits have been put back by hand.
   void UserStop(bool pressed);
+
+  // The enabling button at the hand. Pressed while the robot is idle, user stopped or stopped by a reflex, it
+  // leaves the hand to who guides it, as SetGuidingMode says; let go, the robot holds there, in the mode that
+  // it came from. In a motion the button does nothing.
+  void PressGuiding(bool pressed);
+  // Somebody pulls at the end effector with `force_B` [N, in axes of B] from now on.
+  void PullHand(const Eigen::Vector3d& force_B) { hand_force_B_ = force_B; }
 
   // One millisecond, under `command` or, in a motion, without one.
   void Step(const std::optional<franka::RobotCommand>& command);
@@ -49,8 +62,16 @@ class FciRobot {
   void ApplyTorque(const franka::RobotCommand& command);
   void End(franka::MoveStatus status, franka::RobotMode mode);
   void Reflex(franka::Error error);
-  [[nodiscard]] bool IsOutside() const;
-  void CheckMeasured();
+  void PullAtJoints();
+  [[nodiscard]] Eigen::Isometry3d F_T_EE() const {
+    return ToPose(settings_.F_T_NE.pose) * ToPose(settings_.NE_T_EE.pose);
+  }
+  [[nodiscard]] double JointsBeyond() const;
+  [[nodiscard]] bool IsInWall() const;
+  [[nodiscard]] bool MeetsItself() const;
+  [[nodiscard]] std::optional<franka::Error> SpeedError() const;
+  void CheckMotion();
+  void CheckGuiding();
   void CheckDeviation(const franka::Vector3& most, franka::Error error);
   void CheckForces();
   void CountCommand(bool came);
@@ -72,6 +93,18 @@ class FciRobot {
   int waited_ = 0;                // states of this motion before its first command
   std::array<bool, 100> came_{};  // of the last states of a motion: whether a command came
   std::size_t next_came_ = 0;
+
+  SelfDistance self_distance_;
+  std::vector<CartesianWall> walls_;
+  SwingWatch swing_watch_;  // of the present motion
+  Eigen::Vector3d hand_force_B_ = Eigen::Vector3d::Zero();
+  struct Guiding {
+    franka::RobotMode from = franka::RobotMode::kIdle;  // the mode that it came from
+    Joints q_begin = Joints::Zero();
+    double beyond = 0.0;   // how far a joint has been outside, at the least [rad]
+    bool in_wall = false;  // since it began
+  };
+  Guiding guiding_;
 
   FciMeasured measured_;
   Joints tau_ = Joints::Zero();  // in force, gravity and load excluded

@@ -45,8 +45,7 @@ void FciRobot::FeelForces(const Joints& q_before, const Joints& dq_before) {
   state_.tau_ext_hat_filtered = ToArray(tau_ext_);
 
   // The force at K that would be felt so: least squares.
-  const Eigen::Isometry3d X_BK =
-      X_BE_ * ToPose(settings_.F_T_NE.pose) * ToPose(settings_.NE_T_EE.pose) * ToPose(settings_.EE_T_K.pose);
+  const Eigen::Isometry3d X_BK = X_BE_ * F_T_EE() * ToPose(settings_.EE_T_K.pose);
   Eigen::Matrix<double, 6, 7> J = J_;
   for (int i = 0; i < franka::kJoints; ++i) {
     J.col(i).head<3>() += J.col(i).tail<3>().cross(X_BK.translation() - X_BE_.translation());
@@ -73,17 +72,17 @@ void FciRobot::FeelForces(const Joints& q_before, const Joints& dq_before) {
 void FciRobot::Show() {
   franka::RobotState& s = state_;
   s.message_id = static_cast<std::uint64_t>(world_.now_ns() / hal::kNsPerMs);
-  const Eigen::Isometry3d F_T_EE = ToPose(settings_.F_T_NE.pose) * ToPose(settings_.NE_T_EE.pose);
+  const Eigen::Isometry3d X_FEE = F_T_EE();
   const JointReference& r = reference_.joints();
   Jacobian J_d;
   const Eigen::Isometry3d X_d = chain_.TipPose(r.q, J_d);
-  const Eigen::Vector3d arm = X_d.linear() * F_T_EE.translation();
+  const Eigen::Vector3d arm = X_d.linear() * X_FEE.translation();
   Twist V_d = J_d * r.dq;
   V_d.head<3>() += V_d.tail<3>().cross(arm);
 
-  s.O_T_EE = ToArray(Eigen::Isometry3d(X_BE_ * F_T_EE));
-  s.O_T_EE_d = ToArray(Eigen::Isometry3d(X_d * F_T_EE));
-  s.F_T_EE = ToArray(F_T_EE);
+  s.O_T_EE = ToArray(Eigen::Isometry3d(X_BE_ * X_FEE));
+  s.O_T_EE_d = ToArray(Eigen::Isometry3d(X_d * X_FEE));
+  s.F_T_EE = ToArray(X_FEE);
   s.EE_T_K = settings_.EE_T_K.pose;
   s.F_T_NE = settings_.F_T_NE.pose;
   s.NE_T_EE = settings_.NE_T_EE.pose;

@@ -35,28 +35,48 @@ void FciServer::Run(const std::atomic<bool>& stop, const std::function<void(cons
   say_ = say;
   next_tick_ns_ = NowNs();
   while (!stop.load(std::memory_order_relaxed)) {
-    if (const bool pressed = stop_button_.load(std::memory_order_relaxed); pressed != stop_pressed_) {
-      stop_pressed_ = pressed;
-      robot_.UserStop(pressed);
-      say_(pressed ? "user stop" : "user stop released");
-    }
+    TakeHandInput();
     const double loss = loss_.load(std::memory_order_relaxed);
     commands_.SetLoss(loss);
     states_.SetLoss(loss);
     state_dice_.SetLoss(loss);
     SendState();
-    if (WaitsForAnswer()) {
+    const bool hangs = hangs_.load(std::memory_order_relaxed);
+    if (WaitsForAnswer() && !hangs) {
       AwaitCommands();
       next_tick_ns_ = NowNs();
     } else {
-      next_tick_ns_ += hal::kTickPeriodNs;
-      const std::int64_t now_ns = NowNs();
-      counters_.overruns += now_ns > next_tick_ns_ ? 1U : 0U;
-      next_tick_ns_ = std::max(next_tick_ns_, now_ns - kMostBehindNs);
-      ServeUntil(next_tick_ns_);
+      AwaitTick();
     }
-    Tick();
+    if (!hangs) {
+      Tick();
+    }
   }
+}
+
+// The next millisecond by the clock.
+void FciServer::AwaitTick() {
+  next_tick_ns_ += hal::kTickPeriodNs;
+  const std::int64_t now_ns = NowNs();
+  counters_.overruns += now_ns > next_tick_ns_ ? 1U : 0U;
+  next_tick_ns_ = std::max(next_tick_ns_, now_ns - kMostBehindNs);
+  ServeUntil(next_tick_ns_);
+}
+
+// What a person does at the robot.
+void FciServer::TakeHandInput() {
+  if (const bool pressed = stop_button_.load(std::memory_order_relaxed); pressed != stop_pressed_) {
+    stop_pressed_ = pressed;
+    robot_.UserStop(pressed);
+    say_(pressed ? "user stop" : "user stop released");
+  }
+  if (const bool pressed = guiding_button_.load(std::memory_order_relaxed); pressed != guiding_pressed_) {
+    guiding_pressed_ = pressed;
+    robot_.PressGuiding(pressed);
+    say_(pressed ? "guiding button pressed" : "guiding button released");
+  }
+  const std::lock_guard lock(hand_mutex_);
+  robot_.PullHand(hand_force_B_);
 }
 
 // Steps the robot with what has come.

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +53,17 @@ class FciServer {
   // From any thread: the stop button is pressed or released.
   void PressStop(bool pressed) { stop_button_.store(pressed, std::memory_order_relaxed); }
 
+  // From any thread: the enabling button at the hand, and a pull at it [N, in axes of B], from now on.
+  void PressGuiding(bool pressed) { guiding_button_.store(pressed, std::memory_order_relaxed); }
+  void PullHand(const Eigen::Vector3d& force_B) {
+    const std::lock_guard lock(hand_mutex_);
+    hand_force_B_ = force_B;
+  }
+
+  // From any thread: the robot hangs, or goes on: it sends the same state each millisecond, and its time and
+  // its arm stand still.
+  void Hang(bool hangs) { hangs_.store(hangs, std::memory_order_relaxed); }
+
   // From any thread: the share of datagrams that the link loses, from now on.
   void SetLoss(double share) { loss_.store(share, std::memory_order_relaxed); }
 
@@ -59,8 +71,10 @@ class FciServer {
   [[nodiscard]] const FciServerCounters& counters() const { return counters_; }
 
  private:
+  void TakeHandInput();
   void Tick();
   void AwaitCommands();
+  void AwaitTick();
   void ServeUntil(std::int64_t time_ns);
   void Poll(std::int64_t until_ns);
   void AcceptClient();
@@ -88,6 +102,11 @@ class FciServer {
   std::uint64_t newest_answered_ = 0;
   std::atomic<bool> stop_button_{false};
   bool stop_pressed_ = false;
+  std::atomic<bool> hangs_{false};
+  std::atomic<bool> guiding_button_{false};
+  bool guiding_pressed_ = false;
+  std::mutex hand_mutex_;
+  Eigen::Vector3d hand_force_B_ = Eigen::Vector3d::Zero();  // guarded by hand_mutex_
   FciServerCounters counters_;
 };
 

@@ -75,9 +75,13 @@ bool FciSession::Do(const Header& header, std::span<const std::byte> payload) {
       break;
     case Command::kGetCartesianLimit: {
       franka::GetCartesianLimitRequest request;
-      franka::GetCartesianLimitAnswer answer;  // no wall is set up: none is active
+      franka::GetCartesianLimitAnswer answer;
       if (!franka::Decode(payload, request) || request.id < 0) {
         answer.status = franka::SetterStatus::kInvalidArgument;
+      } else if (const auto wall = robot_.Wall(request.id)) {
+        answer.size = ToArray(wall->size);
+        answer.frame = ToArray(wall->X_BW);
+        answer.active = 1;
       }
       Answer(header, answer);
       break;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include "fovea/franka/panda_limits.hpp"
 #include "fovea/franka/states.hpp"
 
 namespace fovea::sim {
@@ -40,15 +41,25 @@ struct RateLimits {
 
 namespace fci_limits {
 
-inline const Joints kQMin =
-    (Joints() << -2.8973, -1.7628, -2.8973, -3.0718, -2.8973, -0.0175, -2.8973).finished();
-inline const Joints kQMax = (Joints() << 2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973).finished();
-inline const Joints kDq = (Joints() << 2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61).finished();
-inline const Joints kDdq = (Joints() << 15.0, 7.5, 10.0, 12.5, 15.0, 20.0, 20.0).finished();
-inline const Joints kDddq = (Joints() << 7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0).finished();
-inline const Joints kTau = (Joints() << 87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0).finished();
-inline constexpr double kTorqueStep = 1.0;  // 1000 Nm/s, from one state to the next
-inline constexpr RateLimits kTranslation{1.7, 13.0, 6500.0};
+// The same limit of each joint.
+template <double franka::PandaJoint::*kMember>
+Joints OfEachJoint() {
+  Joints values;
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    values[i] = franka::kPandaJoints[static_cast<std::size_t>(i)].*kMember;
+  }
+  return values;
+}
+
+inline const Joints kQMin = OfEachJoint<&franka::PandaJoint::q_min>();
+inline const Joints kQMax = OfEachJoint<&franka::PandaJoint::q_max>();
+inline const Joints kDq = OfEachJoint<&franka::PandaJoint::dq_max>();
+inline const Joints kDdq = OfEachJoint<&franka::PandaJoint::ddq_max>();
+inline const Joints kDddq = OfEachJoint<&franka::PandaJoint::dddq_max>();
+inline const Joints kTau = OfEachJoint<&franka::PandaJoint::tau_max>();
+inline constexpr double kTorqueStep =
+    franka::kPandaTorqueRate * kFciStepS;  // from one state to the next [Nm]
+inline constexpr RateLimits kTranslation{franka::kPandaHandSpeed, 13.0, 6500.0};
 inline constexpr RateLimits kRotation{2.5, 25.0, 12500.0};
 inline constexpr RateLimits kElbow{2.175, 10.0, 5000.0};
 inline constexpr double kBeyond =

@@ -134,6 +134,7 @@ void GigeCamera::Fill(void* buffer, std::uint32_t pixel_format) {
   }
   const bool taken = TakeDue(lock);
   on_its_way_ = taken;
+  lock.unlock();  // frame_ is this thread's alone, and the robot must not wait for its pixels
   // The buffer's own memory, which nobody else looks at meanwhile; nothing is "received" in it yet.
   std::size_t received = 0;
   auto* const data = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(target, &received)));

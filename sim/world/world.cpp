@@ -117,6 +117,9 @@ Eigen::VectorXd World::Pulls() const {
   if (config_.push.tau.size() > 0 && config_.push.window.Contains(now_ns_)) {
     tau += config_.push.tau;
   }
+  if (pulled_.size() > 0) {
+    tau += pulled_;
+  }
   return tau;
 }
 

@@ -73,6 +73,9 @@ class World {
   [[nodiscard]] const hal::ArmState& MeasuredState() const { return measured_; }
   void Command(const hal::ArmCommand& command) { command_ = command; }
 
+  // From now on somebody pulls at the joints with `tau` [num_dofs; Nm, N], beside what WorldConfig says.
+  void PullAt(const Eigen::VectorXd& tau) { pulled_ = tau; }
+
   [[nodiscard]] const Truth& truth() const { return truth_; }
   // The bench as it is now, for a picture.
   [[nodiscard]] Exposure Look() const;
@@ -101,6 +104,7 @@ class World {
   std::int64_t now_ns_ = 0;
   std::uint64_t next_frame_ = 0;
   hal::ArmCommand command_;
+  Eigen::VectorXd pulled_;  // by PullAt; empty: nobody does
   hal::ArmState measured_;
   Truth truth_;
   std::function<void(const Truth&)> on_step_;

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
-#include "sim/app/overlay.hpp"
+#include "fovea/film/overlay.hpp"
 #include "sim/app/run.hpp"
 #include "support/temp_folder.hpp"
 
@@ -61,7 +61,8 @@ TEST_F(SceneFilmTest, EveryExposureIsThereWithThePathsSoFar) {
   cv::Scalar deviation;
   cv::meanStdDev(frames.back()(picture), mean, deviation);
   EXPECT_GT(deviation[1], 20.0) << "it is blank";
-  for (const auto& [name, colour] : {std::pair{"camera", kDetectionColour}, {"target", kGoalColour}}) {
+  for (const auto& [name, colour] :
+       {std::pair{"camera", film::kDetectionColour}, {"target", film::kGoalColour}}) {
     const int first = Count(frames.front()(picture), colour);
     const int middle = Count(frames[frames.size() / 2](picture), colour);
     const int last = Count(frames.back()(picture), colour);

@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"hal/drivers/camera", "fovea/(hal|linux_rt|camera)/.*|opencv2/.*",
              "a driver depends on the contract and on its device"},
         Rule{"hal/drivers/genicam",
-             "fovea/(hal|linux_rt|camera|genicam)/.*|opencv2/.*|aravis_session[.]hpp|arv[.]h",
+             "fovea/(hal|linux_rt|camera|genicam)/.*|opencv2/.*|(aravis_session|device_clock)[.]hpp|arv[.]h",
              "a driver depends on the contract and on its device"},
         Rule{"hal/drivers/franka",
              "fovea/(hal|linux_rt|franka)/.*|(arpa|netinet|sys)/.*|(fcntl|netdb|poll|unistd)[.]h",
@@ -90,6 +90,9 @@ INSTANTIATE_TEST_SUITE_P(
              "fovea/(hal|model|features|vision|linux_rt|log)/.*|(log_file|mcap_format|tick_writer)[.]hpp|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|(fmt|google|openssl|opencv2)/.*|Eigen/.*|(zlib|zstd)[.]h",
              "nothing of the firmware sees the simulator"},
+        Rule{"firmware/film",
+             "fovea/(hal|model|features|vision|film)/.*|(fmt|opencv2|libavcodec|libavformat|libavutil)/.*",
+             "a film is made of frames and detections alone"},
         Rule{"firmware/report",
              "fovea/(hal|log|model|report)/.*|(image_error|scene_reader)[.]hpp|(fovea|foxglove)/"
              "[a-z]+[.]pb[.]h|(fmt|google|nlohmann|openssl)/.*",
@@ -113,7 +116,8 @@ INSTANTIATE_TEST_SUITE_P(
              "(fovea|fmt|CLI|nlohmann|opencv2|Eigen|kdl|arpa|netinet|sys|linux)/.*|[a-z_]+[.]h(pp)?",
              "measures, without the simulator"},
         Rule{"firmware/include",
-             "(fovea/(hal|model|features|servo|link|vision|config|design|robots|linux_rt|log|report|trace)/"
+             "(fovea/"
+             "(hal|model|features|servo|link|vision|config|design|film|robots|linux_rt|log|report|trace)/"
              "|Eigen/"
              "|opencv2/"
              "|google/|CLI/).*",

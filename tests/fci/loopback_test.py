@@ -1,5 +1,6 @@
 """The hardware program against the simulated robot, two processes and a network:  loopback_test.py FOVEA_SIM FOVEA_HW"""
 
+import hashlib
 import json
 import pathlib
 import signal
@@ -19,7 +20,7 @@ class Loopback(unittest.TestCase):
     def serve(self, *options, camera=False):
         eye = [] if camera else ["--camera-serial", ""]
         self.server = subprocess.Popen([SIM, "serve", "ball", "--fci-port", "0", "--json", *eye, *options],
-                                       stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                        text=True)
         self.addCleanup(self.end_server)
         line = self.server.stderr.readline()
@@ -90,7 +91,7 @@ class Loopback(unittest.TestCase):
             s = self.hardware(port, "--track", "--seconds", "4", "--out", str(out), "--set", "log.picture_rate_hz=10",
                               camera=True)
             print(f"\n{s['log_pictures']} pictures of {s['camera']['frames']} in the log")
-            self.assertEqual({file.name for file in out.iterdir()}, {"log.mcap", "report.html", "summary.json"})
+            self.assertEqual({file.name for file in out.iterdir()}, {"camera.mp4", "log.mcap", "report.html", "summary.json"})
             self.assertEqual(json.loads((out / "summary.json").read_text()), s)
             self.assertEqual(s["heap_allocations_in_tick"], 0)
             # Four seconds of ticks find room in the rings, however busy the machine is.
@@ -104,6 +105,15 @@ class Loopback(unittest.TestCase):
                 done = subprocess.run(["node", READERS / reader[0], *reader[1:]], timeout=120, capture_output=True,
                                       text=True)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_without_a_film(self):
+        with tempfile.TemporaryDirectory() as temp:
+            (pathlib.Path(temp) / "camera.mp4").write_text("of another run")
+            port = self.serve("--pace", "lockstep", camera=True)
+            self.hardware(port, "--track", "--seconds", "1", "--out", temp, "--set", "log.film=false", camera=True,
+                          codes=(0, 1))
+            self.assertEqual({file.name for file in pathlib.Path(temp).iterdir()},
+                             {"log.mcap", "report.html", "summary.json"})
 
     def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_moves(self):
         with tempfile.NamedTemporaryFile() as file:
@@ -121,23 +131,40 @@ class Loopback(unittest.TestCase):
         self.assertLessEqual(truth["error_px"], 0.5)
         self.assertLessEqual(truth["error_mm"], 0.6)
 
-    def test_it_tracks_the_ball_at_real_pace(self):
+    def tracked_at_real_pace(self, lost_by_the_network, *options):
+        """A run of 10 s by the clock, on a machine that kept it: what the client and the server say of it. Ticks that are
+        lost beyond the share that the network takes are the machine's. So is a robot that began 20 steps late: it makes
+        up for them at once, nobody can answer states that fast, and 20 without an answer stop it."""
         for _ in range(3):
-            port = self.serve("--pace", "real", "--late-ms", "3", camera=True)
+            port = self.serve("--pace", "real", "--late-ms", "3", *options, camera=True)
             s = self.hardware(port, "--track", "--seconds", "10", "--set", "robot.time=computer", "--set",
                               "camera.time=computer", "--set", "robot.state_timeout_ms=50", "--set",
                               "safety.missed_ticks=20", camera=True, codes=(0, 1))
             truth = self.end_server()
             lost = s["missed_ticks"] + truth["missing"]
             print(f"\nreal pace: {truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; {s['mode']}, {s['fault']}; "
-                  f"{lost} ticks and {s['camera']['lost']} of {truth['frames_sent']} frames lost")
+                  f"{lost} ticks and {s['camera']['lost']} of {truth['frames_sent']} frames lost, {truth['overruns']} steps "
+                  f"late; success rate {s['robot']['command_success_rate']}")
             self.assertEqual(s["heap_allocations_in_tick"], 0)
-            if s["fault"] != "deadline_missed" and lost < 100 and s["camera"]["lost"] < 30:
-                self.assertEqual(s["fault"], "none")
-                self.assertLessEqual(truth["error_px"], 0.5)
-                self.assertLessEqual(truth["error_mm"], 0.8)
-                return
+            if (s["fault"] != "deadline_missed" and truth["overruns"] < 20 and s["camera"]["lost"] < 30
+                    and lost < 100 + lost_by_the_network * 10000):
+                return s, truth
         self.skipTest("this machine did not keep 1 kHz in three attempts")
+
+    def test_it_tracks_the_ball_at_real_pace(self):
+        s, truth = self.tracked_at_real_pace(0.0)
+        self.assertEqual(s["fault"], "none")
+        self.assertLessEqual(truth["error_px"], 0.5)
+        self.assertLessEqual(truth["error_mm"], 0.8)
+
+    def test_it_tracks_the_ball_over_a_bad_network_at_real_pace(self):
+        # Of states and of commands 5 % are lost, some overtake each other, and some answers come after 3 ms.
+        s, truth = self.tracked_at_real_pace(0.7, "--loss", "0.05", "--jitter-ms", "2")
+        self.assertEqual(s["fault"], "none")
+        self.assertGreater(s["robot"]["lost_states"], 100)
+        self.assertLess(s["robot"]["command_success_rate"], 1.0)
+        self.assertLessEqual(truth["error_px"], 0.5)
+        self.assertLessEqual(truth["error_mm"], 0.8)
 
     def test_nothing_moves_until_the_operator_says_so(self):
         port = self.serve("--pace", "lockstep")
@@ -188,6 +215,19 @@ class Loopback(unittest.TestCase):
         self.assertEqual((s["robot"]["commands"], s["robot"]["motions"]), (0, 0))
         self.assertGreater(s["robot"]["states"], 0)
 
+    def test_its_servo_is_the_simulators(self):
+        """Both programs say which servo library they were linked with; and that file is there once."""
+        port = self.serve("--pace", "lockstep")
+        hardware = self.hardware(port, "--seconds", "0.2", "--no-motion")["servo"]
+        with tempfile.TemporaryDirectory() as temp:
+            done = subprocess.run([SIM, "run", "home", "--no-report", "--json", "--out", temp, "--set", "run.duration_s=0.1"],
+                                  timeout=60, capture_output=True, text=True)
+        self.assertIn(done.returncode, (0, 1), done.stderr)
+        libraries = list(pathlib.Path(HW).parent.parent.glob("lib/libfovea_servo.a"))
+        self.assertEqual(len(libraries), 1)
+        self.assertEqual(hardware, hashlib.sha256(libraries[0].read_bytes()).hexdigest())
+        self.assertEqual(hardware, json.loads(done.stdout)["servo"])
+
     def test_a_user_stop_is_reported_and_recovered_from_when_told_to(self):
         port = self.serve("--pace", "lockstep")
         hw = self.operator(port, "--enable")
@@ -202,6 +242,25 @@ class Loopback(unittest.TestCase):
         finally:
             hw.send_signal(signal.SIGINT)
             s = self.summary_of(hw)
+        self.assertEqual(s["robot"]["motions"], 2)
+
+    def test_a_robot_that_hangs_is_given_up_and_recovered_when_told_to(self):
+        """Its states are one and the same from then on: number, time, joints."""
+        port = self.serve("--pace", "lockstep")
+        hw = self.operator(port, "--enable", "--set", "robot.state_timeout_ms=20")
+        try:
+            self.wait_for(hw, "hold")
+            self.say(self.server, "h")
+            self.wait_for(hw, "fault: arm_lost")
+            self.say(self.server, "h")
+            time.sleep(0.5)
+            self.say(hw, "recover")
+            self.wait_for(hw, "hold")
+        finally:
+            hw.send_signal(signal.SIGINT)
+            s = self.summary_of(hw)
+        print(f"\n{s['robot']['duplicate_states']} states came again")
+        self.assertGreater(s["robot"]["duplicate_states"], 100)
         self.assertEqual(s["robot"]["motions"], 2)
 
     def wait_for(self, process, line):

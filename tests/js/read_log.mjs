@@ -1,7 +1,7 @@
 // Reads a run's log.mcap with readers that are not ours, and holds it against the run's summary.json: every value of
 // every tick by the fingerprint that the run itself took, the rest by counts and by what it must be.
 //   node read_log.mjs FOLDER [hardware]
-// Of hardware there is no truth, no film, and only as many pictures as were wished for.
+// Of hardware there is no truth, and only as many pictures as were wished for.
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
 import fs from "node:fs";
@@ -224,5 +224,5 @@ for await (const attachment of reader.readAttachments({ validateCrcs: true })) {
   attachments[attachment.name] = Buffer.from(attachment.data);
 }
 assert.deepEqual(JSON.parse(attachments["summary.json"].toString()), summary);
-if (simulated) assert.deepEqual(attachments["camera.mp4"], fs.readFileSync(path.join(folder, "camera.mp4")));
+assert.deepEqual(attachments["camera.mp4"], fs.readFileSync(path.join(folder, "camera.mp4")));
 console.log("log.mcap says what the run was");

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "wire/wire_panda.hpp"
+#include "wire/fci_robot_fixture.hpp"
 
 namespace fovea::test {
 namespace {
@@ -16,67 +16,6 @@ using franka::MoveStatus;
 using franka::RobotCommand;
 using franka::RobotMode;
 using franka::RobotState;
-
-class FciRobotTest : public testing::Test {
- protected:
-  sim::FciRobot& robot() { return panda_.robot; }
-  const RobotState& state() { return panda_.robot.state(); }
-
-  void Move(MoveController controller, MoveGenerator generator) {
-    franka::MoveRequest request;
-    request.controller = controller;
-    request.generator = generator;
-    ASSERT_EQ(robot().Move(request), MoveStatus::kMotionStarted);
-    ASSERT_EQ(state().robot_mode, RobotMode::kMove);
-    begin_ = state();
-  }
-  // The command that stays where the motion began.
-  RobotCommand Still() {
-    RobotCommand c;
-    c.message_id = state().message_id;
-    c.q_c = begin_.q_d;
-    c.O_T_EE_c = begin_.O_T_EE_d;
-    c.tau_J_d = state().tau_J_d;
-    return c;
-  }
-
- public:
-  // A fade from 0 to 1 within `steps`, at rest at both ends: x^4 (35 - 84 x + 70 x^2 - 20 x^3).
-  static double Fade(int k, int steps) {
-    const double x = std::min(1.0, static_cast<double>(k) / steps);
-    return x * x * x * x * (35.0 - 84.0 * x + 70.0 * x * x - 20.0 * x * x * x);
-  }
-
- protected:
-  void Finish() {
-    RobotCommand c = Still();
-    c.motion_generation_finished = 1;
-    robot().Step(c);
-    EXPECT_EQ(robot().TakeMoveEnd(), MoveStatus::kSuccess);
-    EXPECT_EQ(state().robot_mode, RobotMode::kIdle);
-  }
-  std::string Reason() { return franka::FirstError(state().reflex_reason); }
-  // How far a motion of `steps` by `command` ends from what it wants; runs it, then 300 ms of hold.
-  void Run(int steps, const std::function<void(int, RobotCommand&)>& command) {
-    for (int k = 1; k <= steps + 300; ++k) {
-      RobotCommand c = Still();
-      command(k, c);
-      robot().Step(c);
-      ASSERT_EQ(state().robot_mode, RobotMode::kMove) << "at step " << k << ": " << Reason();
-    }
-  }
-
-  PandaAlone panda_;
-  RobotState begin_;
-};
-
-double Off(const franka::Vector7& a, const franka::Vector7& b) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    most = std::max(most, std::fabs(a[i] - b[i]));
-  }
-  return most;
-}
 
 TEST_F(FciRobotTest, AtRestItHoldsAndShowsItself) {
   const RobotState first = state();
@@ -187,102 +126,6 @@ TEST_F(FciRobotTest, TorquesMoveAJointThatWay) {
   }
   EXPECT_LT(Off(state().dq, {}), 5e-3) << "afterwards it comes to rest by itself";
 }
-
-// What each class of bad command leads to.
-struct Refused {
-  const char* what;
-  MoveController controller;
-  MoveGenerator generator;
-  std::function<void(int k, RobotCommand&)> command;
-  Error error;
-};
-class RefusedCommand : public FciRobotTest, public testing::WithParamInterface<Refused> {};
-
-TEST_P(RefusedCommand, IsAReflexOfItsOwnKind) {
-  Move(GetParam().controller, GetParam().generator);
-  for (int k = 1; k <= 4000 && robot().moving(); ++k) {
-    RobotCommand c = Still();
-    GetParam().command(k, c);
-    robot().Step(c);
-  }
-  EXPECT_EQ(state().robot_mode, RobotMode::kReflex);
-  EXPECT_EQ(Reason(), franka::Name(GetParam().error));
-  EXPECT_EQ(state().errors[static_cast<std::size_t>(GetParam().error)], 1);
-  EXPECT_EQ(robot().TakeMoveEnd(), MoveStatus::kReflexAborted);
-  EXPECT_EQ(robot().Move({}), MoveStatus::kNotPossible) << "before recovery";
-  for (int k = 0; k < 300; ++k) {
-    robot().Step(std::nullopt);
-  }
-  EXPECT_LT(Off(state().dq, {}), 1e-2) << "it stands";
-  EXPECT_EQ(robot().Recover(), franka::RecoveryStatus::kSuccess);
-  EXPECT_EQ(state().robot_mode, RobotMode::kIdle);
-  EXPECT_EQ(state().errors, franka::ErrorFlags{});
-  EXPECT_EQ(Reason(), franka::Name(GetParam().error)) << "the reason stays until the next motion";
-  franka::MoveRequest again;
-  again.generator = MoveGenerator::kJointPosition;
-  EXPECT_EQ(robot().Move(again), MoveStatus::kMotionStarted);
-  EXPECT_EQ(Reason(), "none");
-}
-
-constexpr auto kJoint = MoveController::kJointImpedance;
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, RefusedCommand,
-    testing::Values(
-        Refused{"start", kJoint, MoveGenerator::kJointPosition,
-                [](int, RobotCommand& c) { c.q_c[3] += 0.05; }, Error::kJointPositionStartPoseInvalid},
-        Refused{"joint_limit", kJoint, MoveGenerator::kJointPosition,
-                [](int k, RobotCommand& c) { c.q_c[5] -= 2.0 * (1.0 - std::cos(k * 5e-4)); },
-                Error::kJointPositionLimitsOfMotion},
-        Refused{"joint_speed", kJoint, MoveGenerator::kJointVelocity,
-                [](int k, RobotCommand& c) { c.dq_c[0] = 5e-3 * k; }, Error::kJointVelocityLimitsOfMotion},
-        Refused{"joint_step", kJoint, MoveGenerator::kJointVelocity,
-                [](int k, RobotCommand& c) { c.dq_c[0] = k > 5 ? 0.1 : 0.0; },
-                Error::kJointVelocityDiscontinuity},
-        Refused{"joint_jerk", kJoint, MoveGenerator::kJointVelocity,
-                [](int k, RobotCommand& c) { c.dq_c[0] = k % 2 == 0 ? 5e-3 : 0.0; },
-                Error::kJointAccelerationDiscontinuity},
-        Refused{"frame", kJoint, MoveGenerator::kCartesianPosition,
-                [](int, RobotCommand& c) { c.O_T_EE_c[0] = 2.0; }, Error::kCartesianPositionInvalidFrame},
-        Refused{"pose_start", kJoint, MoveGenerator::kCartesianPosition,
-                [](int, RobotCommand& c) { c.O_T_EE_c[12] += 0.05; },
-                Error::kCartesianPositionStartPoseInvalid},
-        Refused{"elbow_start", kJoint, MoveGenerator::kCartesianPosition,
-                [](int, RobotCommand& c) {
-                  c.valid_elbow = 1;
-                  c.elbow_c = {0.5, -1.0};
-                },
-                Error::kCartesianStartElbowInvalid},
-        Refused{"elbow_sign", kJoint, MoveGenerator::kCartesianPosition,
-                [](int, RobotCommand& c) {
-                  c.valid_elbow = 1;
-                  c.elbow_c = {0.0, 1.0};
-                },
-                Error::kStartElbowSignInconsistent},
-        Refused{"elbow_speed", kJoint, MoveGenerator::kCartesianPosition,
-                [](int k, RobotCommand& c) {
-                  c.valid_elbow = 1;
-                  c.elbow_c = {k > 1 ? 0.005 : 0.0, -1.0};
-                },
-                Error::kCartesianElbowLimit},
-        Refused{"twist_speed", kJoint, MoveGenerator::kCartesianVelocity,
-                [](int k, RobotCommand& c) { c.O_dP_EE_c[5] = 2.7 * FciRobotTest::Fade(k, 600); },
-                Error::kCartesianVelocityLimits},
-        Refused{"twist_step", kJoint, MoveGenerator::kCartesianVelocity,
-                [](int k, RobotCommand& c) { c.O_dP_EE_c[0] = k > 5 ? 0.05 : 0.0; },
-                Error::kCartesianVelocityDiscontinuity},
-        Refused{"twist_jerk", kJoint, MoveGenerator::kCartesianVelocity,
-                [](int k, RobotCommand& c) { c.O_dP_EE_c[0] = k % 2 == 0 ? 8e-3 : 0.0; },
-                Error::kCartesianAccelerationDiscontinuity},
-        Refused{"torque_step", MoveController::kExternal, MoveGenerator::kJointVelocity,
-                [](int k, RobotCommand& c) { c.tau_J_d[0] = k > 5 ? 3.0 : 0.0; },
-                Error::kControllerTorqueDiscontinuity},
-        Refused{"not_a_number", MoveController::kExternal, MoveGenerator::kJointVelocity,
-                [](int, RobotCommand& c) { c.tau_J_d[3] = std::nan(""); },
-                Error::kControllerTorqueDiscontinuity},
-        Refused{"too_fast", MoveController::kExternal, MoveGenerator::kJointVelocity,
-                [](int k, RobotCommand& c) { c.tau_J_d[0] = std::min(0.9 * k, 60.0); },
-                Error::kJointVelocity}),
-    [](const auto& test) { return test.param.what; });
 
 TEST_F(FciRobotTest, NineteenLostCommandsAreBridgedAndTwentyStopIt) {
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);

@@ -34,13 +34,20 @@ class GoSlowly final : public servo::MotionSource {
 
 class Keeper final : public hal::Recorder {
  public:
-  void Record(const hal::TickRecord& record) noexcept override { last = record; }
+  void Record(const hal::TickRecord& record) noexcept override {
+    last = record;
+    fault = fault == hal::Fault::kNone ? record.fault : fault;
+    ticks.fetch_add(1, std::memory_order_relaxed);
+  }
   hal::TickRecord last;
+  hal::Fault fault = hal::Fault::kNone;  // the first
+  std::atomic<int> ticks{0};
 };
 
 // The servo, with the robot on the wire as its arm.
 struct ServoOnWire {
-  explicit ServoOnWire(const ServedPanda& served) : arm(served.ClientConfig(), &clock) {
+  explicit ServoOnWire(const ServedPanda& served, std::int64_t state_timeout_ns = 3 * hal::kNsPerSecond)
+      : arm(Client(served, state_timeout_ns), &clock) {
     const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/panda.toml");
     servo::ServoConfig config;
     config.arm = robot.model;
@@ -48,6 +55,11 @@ struct ServoOnWire {
     hal::ArmState now;
     EXPECT_TRUE(arm.Read(now).ok());
     q_start = now.q;
+  }
+  static franka::FrankaConfig Client(const ServedPanda& served, std::int64_t state_timeout_ns) {
+    franka::FrankaConfig config = served.ClientConfig();
+    config.state_timeout_ns = state_timeout_ns;
+    return config;
   }
   // Runs until the robot's time has gone on by `duration_s`.
   hal::Status Run(double duration_s, servo::MotionSource& motion) {
@@ -164,6 +176,38 @@ TEST(FciWire, WithoutAnyCommandTheRobotStopsAndRecoversWhenToldTo) {
     ASSERT_TRUE(arm.Read(state).ok());
     ASSERT_TRUE(arm.Write(command).ok());
   }
+}
+
+// States that come, and are always the same one: the number stands still, and so does all else.
+TEST(ServoOnTheWire, ARobotThatHangsIsGivenUp) {
+  ServedPanda served(Lockstep());
+  ServoOnWire servo(served, 20 * hal::kNsPerMs);
+  GoSlowly motion(servo.q_start);
+  std::thread plug([&] {
+    const auto wait_for = [&](int ticks) {
+      while (servo.recorder.ticks < ticks) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      }
+    };
+    wait_for(1000);
+    served.server().Hang(true);
+    wait_for(servo.recorder.ticks + 40);  // without a state, and of those from before
+    served.server().Hang(false);
+  });
+  ASSERT_TRUE(servo.Run(3.0, motion).ok());
+  plug.join();
+  const franka::FrankaCounters& c = servo.arm.counters();
+  std::cout << c.duplicate_states << " states came again, " << c.timeouts
+            << " waits for a new one were in vain; " << hal::Name(servo.recorder.fault) << '\n';
+  EXPECT_GT(c.duplicate_states, 100U);
+  EXPECT_GE(c.timeouts, 20U) << "safety.arm_lost_ticks";
+  EXPECT_EQ(servo.recorder.fault, hal::Fault::kArmLost);
+  EXPECT_TRUE(servo.recorder.last.command.engage_brakes);
+  servo.arm.Stop();
+  served.Stop();
+  EXPECT_EQ(served.panda().robot.state().robot_mode, franka::RobotMode::kIdle);
+  EXPECT_EQ(franka::FirstError(served.panda().robot.state().reflex_reason), std::string("none"))
+      << "once it went on, the motion ended in order";
 }
 
 TEST(FciWire, TheStopButtonIsAUserStop) {

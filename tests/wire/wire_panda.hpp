@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "fovea/franka/franka_arm.hpp"
 #include "sim/wire/fci_robot.hpp"
@@ -27,8 +29,9 @@ inline sim::WorldConfig WirePandaWorld() {
 
 // A robot without a network.
 struct PandaAlone {
-  explicit PandaAlone(const sim::WorldConfig& config = WirePandaWorld())
-      : world(config), robot(world, config.robot) {}
+  explicit PandaAlone(const sim::WorldConfig& config = WirePandaWorld(),
+                      std::vector<sim::CartesianWall> walls = {})
+      : world(config), robot(world, config.robot, std::move(walls)) {}
   sim::World world;
   sim::FciRobot robot;
 };

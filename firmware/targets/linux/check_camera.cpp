@@ -94,7 +94,7 @@ void CheckLosses(const CameraCounters& counters, std::size_t frames, int late, R
        verdict == Verdict::kPass ? "" : kNetwork});
 }
 
-void CheckLatency(const HwConfig& config, const FrameFigures& figures, Rows& rows) {
+void CheckLatency(const HwConfig& config, const FrameFigures& figures, bool by_clock, Rows& rows) {
   if (config.camera.time != "computer" || config.camera.driver == "recorded") {
     rows.push_back({"latency", Verdict::kWarn, "not measured: stamps are in another clock",
                     "with camera.time = \"computer\" it is measured here"});
@@ -105,8 +105,8 @@ void CheckLatency(const HwConfig& config, const FrameFigures& figures, Rows& row
                                 stale_ms + figures.latency_max_ms - figures.latency_ms);
   rows.push_back(
       {"latency", verdict,
-       fmt::format("{:.1f} ms from exposure to arrival, at most {:.1f} ms", figures.latency_ms,
-                   figures.latency_max_ms),
+       fmt::format("{:.1f} ms from exposure to arrival, at most {:.1f} ms, by {}", figures.latency_ms,
+                   figures.latency_max_ms, by_clock ? "the camera's own clock" : "camera.transport_ms"),
        verdict == Verdict::kPass
            ? ""
            : fmt::format("with a period of {:.1f} ms it comes to servo.stale_s, which is {:.0f} ms",
@@ -147,7 +147,7 @@ void CheckFrames(const HwConfig& config, Rows& rows) {
   }
   CheckRate(config, figures, rows);
   CheckLosses(counters, arrivals.size(), figures.late, rows);
-  CheckLatency(config, figures, rows);
+  CheckLatency(config, figures, counters.stamped_by_clock > 0, rows);
 }
 
 }  // namespace

@@ -84,10 +84,11 @@ CameraCounters HwCamera::counters() const {
   CameraCounters out;
   if (genicam_) {
     const genicam::GenicamCounters c = genicam_->counters();
-    out = {c.incomplete, c.lost, c.overtaken, c.missing_packets, c.disconnects, c.reconnects};
+    out = {c.incomplete,  c.lost,       c.overtaken,       c.missing_packets,
+           c.disconnects, c.reconnects, c.stamped_by_clock};
   } else if (v4l2_) {
     const v4l2::V4l2Counters& c = v4l2_->counters();
-    out = {c.incomplete, c.lost, c.overtaken, 0, c.disconnects, c.reconnects};
+    out = {c.incomplete, c.lost, c.overtaken, 0, c.disconnects, c.reconnects, 0};
   }
   return out;
 }

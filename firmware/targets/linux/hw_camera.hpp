@@ -20,6 +20,7 @@ struct CameraCounters {
   std::uint64_t missing_packets = 0;
   std::uint64_t disconnects = 0;
   std::uint64_t reconnects = 0;
+  std::uint64_t stamped_by_clock = 0;  // frames with a stamp by the camera's own clock, not by their arrival
 };
 
 class HwCamera {

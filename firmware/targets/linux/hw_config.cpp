@@ -72,10 +72,10 @@ config::KeyTable HwKeys(HwConfig& c) {
                "GigE Vision's; 0: the largest that the network carries");
   keys.Choice("camera.stamp_at", camera.stamp_at, {"start", "middle", "end"},
               "when in an exposure the camera takes its stamp");
-  keys.Number(
-      "camera.transport_ms", camera.transport_ms, 0.0, 1000.0, "ms",
-      "the least time from a stamp until its picture is here; what is not known of it is latency that "
-      "nothing makes up for");
+  keys.Number("camera.transport_ms", camera.transport_ms, 0.0, 1000.0, "ms",
+              "the least time from a stamp until its picture is here, where the camera's own clock cannot be "
+              "asked; what "
+              "is not known of it is latency that nothing makes up for");
   keys.Choice("camera.time", camera.time, {"computer", "device"},
               "whose clock stamps are in; device: one that is the loop's already (PTP, or a simulated camera "
               "in lockstep)");
@@ -93,6 +93,7 @@ config::KeyTable HwKeys(HwConfig& c) {
               "for so long --check measures how late a thread wakes up");
   keys.Number("log.picture_rate_hz", c.log.picture_rate_hz, 0.0, 1000.0, "Hz",
               "with --out: at most so many pictures per second are kept in the log");
+  keys.Flag("log.film", c.log.film, "with --out: what the eye saw, as camera.mp4 and in the report");
   config::AddServoKeys(c.servo, keys);
   return keys;
 }

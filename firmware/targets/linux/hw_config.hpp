@@ -61,6 +61,7 @@ struct HwConfig {
 
   struct {
     double picture_rate_hz = 30.0;
+    bool film = true;
   } log;
 
   config::VisionSettings vision;

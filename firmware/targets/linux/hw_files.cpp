@@ -3,9 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <vector>
 
 #include "fovea/build_info.hpp"
 #include "fovea/config/share_folder.hpp"
+#include "fovea/film/target_curve.hpp"
 #include "fovea/log/picture_messages.hpp"
 #include "fovea/log/record_hash.hpp"
 #include "fovea/log/run_messages.hpp"
@@ -22,7 +26,7 @@ constexpr std::size_t kRing = 8192;  // ticks that may wait for the disk: eight 
 constexpr std::size_t kMostImages = 32;
 
 // All that any run leaves, for the next to take away.
-const std::vector<std::string> kFileNames{"log.mcap", "report.html", "summary.json"};
+const std::vector<std::string> kFileNames{"camera.mp4", "log.mcap", "report.html", "summary.json"};
 
 log::RunLogConfig MakeRunLogConfig(const HwConfig& config, const robots::Robot& robot,
                                    const std::filesystem::path& path) {
@@ -66,6 +70,15 @@ HwFiles::HwFiles(const std::string& out, const HwConfig& config, const robots::R
                     vision::TargetOutline(config::MakeVisionConfig(config.vision, intrinsics, config.target),
                                           {goal.R_CO_star, goal.p_CO_C_star}),
                     log::kGoalRole, goal_);
+    if (config.log.film) {
+      film::EyeFilmConfig film;
+      film.path = folder_.Begin("camera.mp4");
+      film.intrinsics = intrinsics;
+      film.goal = film::GoalCurve(intrinsics, goal);
+      film.p_CO_C_star = goal.p_CO_C_star;
+      film.may_drop = true;
+      film_.emplace(film);
+    }
   }
 }
 
@@ -103,9 +116,20 @@ void HwFiles::AddRecord(const hal::TickRecord& record) {
 }
 
 void HwFiles::AddFrame(const hal::Frame& frame, const vision::Detection& detection) {
-  if (!begun_ || frame.stamp_ns < start_ns_ || config_.log.picture_rate_hz == 0.0) {
+  if (!begun_ || frame.stamp_ns < start_ns_) {
     return;
   }
+  if (film_) {
+    film_->Add(frame, detection, start_ns_);
+    ++film_frames_;
+  }
+  if (config_.log.picture_rate_hz > 0.0) {
+    KeepPicture(frame, detection);
+  }
+}
+
+// Into the log, as often as it is wished for.
+void HwFiles::KeepPicture(const hal::Frame& frame, const vision::Detection& detection) {
   // On a grid, and a little before its time too: stamps of a camera of just that rate have jitter.
   const auto period_ns = static_cast<std::int64_t>(1e9 / config_.log.picture_rate_hz);
   if (frame.stamp_ns < next_picture_ns_ - period_ns / 10) {
@@ -121,7 +145,7 @@ void HwFiles::AddFrame(const hal::Frame& frame, const vision::Detection& detecti
 
 LogCounters HwFiles::counters() const {
   const std::uint64_t lost = log_.dropped_images();
-  return {log_.dropped() - lost, pictures_ - lost, lost};
+  return {log_.dropped() - lost, pictures_ - lost, lost, film_ ? film_->dropped() : 0};
 }
 
 void HwFiles::Write(const HwSummary& summary) {
@@ -132,12 +156,18 @@ void HwFiles::Write(const HwSummary& summary) {
   }
   log_.Add(log::kTickTimesTopic, last_ns_, log::TickTimesMessage(summary.ticks));
   log_.AddAttachment("summary.json", "application/json", summary_json);
+  std::vector<config::OutputFile> files{{"log.mcap", std::nullopt}, {"summary.json", summary_json}};
+  if (film_ && film_frames_ > film_->dropped()) {
+    film_->Finish();
+    std::ifstream stream(film_->path(), std::ios::binary);
+    log_.AddAttachment("camera.mp4", "video/mp4", {std::istreambuf_iterator<char>(stream), {}});
+    files.push_back({"camera.mp4", std::nullopt});
+  }
   log_.Finish();
   report::RunData run = report::ReadRun(log_path_);
   run.source = "log.mcap";  // as it will be called
-  folder_.Replace(
-      {{"log.mcap", std::nullopt}, {"report.html", page_.Make({run})}, {"summary.json", summary_json}},
-      kFileNames);
+  files.push_back({"report.html", page_.Make({run})});
+  folder_.Replace(files, kFileNames);
 }
 
 }  // namespace fovea::hw

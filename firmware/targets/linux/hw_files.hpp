@@ -1,13 +1,15 @@
-// What a run on hardware leaves behind: log.mcap, report.html and summary.json, by the libraries that a
-// simulated run leaves its own with.
+// What a run on hardware leaves behind: log.mcap, report.html, summary.json and camera.mp4, by the libraries
+// that a simulated run leaves its own with.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "fovea/config/output_folder.hpp"
+#include "fovea/film/eye_film.hpp"
 #include "fovea/log/run_log.hpp"
 #include "fovea/report/report.hpp"
 #include "fovea/robots/robot.hpp"
@@ -38,6 +40,7 @@ class HwFiles {
 
  private:
   void Begin(std::int64_t start_ns);
+  void KeepPicture(const hal::Frame& frame, const vision::Detection& detection);
 
   const HwConfig& config_;
   const robots::Robot& robot_;
@@ -53,6 +56,8 @@ class HwFiles {
   std::int64_t last_ns_ = 0;          // of the last record
   std::int64_t next_picture_ns_ = 0;  // of the vision thread
   std::uint64_t pictures_ = 0;
+  std::uint64_t film_frames_ = 0;      // of the vision thread
+  std::optional<film::EyeFilm> film_;  // drawn and encoded by a thread of its own
 };
 
 }  // namespace fovea::hw

@@ -97,6 +97,7 @@ std::string ToJson(const HwSummary& s) {
     json["log_entries_dropped"] = s.log->ticks_dropped;
     json["log_pictures"] = s.log->pictures;
     json["log_pictures_dropped"] = s.log->pictures_dropped;
+    json["film_frames_dropped"] = s.log->film_frames_dropped;
   }
   if (s.seen) {
     json["camera"] = {{"frames", s.seen->frames},
@@ -109,6 +110,7 @@ std::string ToJson(const HwSummary& s) {
                       {"lost", s.camera.lost},
                       {"overtaken", s.camera.overtaken},
                       {"missing_packets", s.camera.missing_packets},
+                      {"stamped_by_clock", s.camera.stamped_by_clock},
                       {"disconnects", s.camera.disconnects},
                       {"reconnects", s.camera.reconnects}};
   }

@@ -19,6 +19,7 @@ struct LogCounters {
   std::uint64_t ticks_dropped = 0;
   std::uint64_t pictures = 0;
   std::uint64_t pictures_dropped = 0;
+  std::uint64_t film_frames_dropped = 0;
 };
 
 struct ModeEvent {

@@ -76,6 +76,7 @@ GenicamCamera::Session::Session(const GenicamConfig& config)
 }
 
 GenicamCamera::Session::~Session() {
+  clock_.reset();
   if (signal_ != 0) {
     g_signal_handler_disconnect(arv_camera_get_device(camera_.get()), signal_);
   }
@@ -182,6 +183,9 @@ void GenicamCamera::Session::Start(const GenicamConfig& config) {
   }
   signal_ = g_signal_connect(arv_camera_get_device(camera), "control-lost", G_CALLBACK(OnLost), &lost_);
   arv_camera_start_acquisition(camera, Call(device_, "start"));
+  if (!config.device_time) {
+    clock_.emplace(arv_camera_get_device(camera));
+  }
 }
 
 ArvBuffer* GenicamCamera::Session::Pop(std::int64_t timeout_ns) {

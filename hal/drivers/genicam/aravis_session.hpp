@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "device_clock.hpp"
 #include "fovea/camera/raw_picture.hpp"
 #include "fovea/genicam/genicam_camera.hpp"
 
@@ -41,6 +42,8 @@ class GenicamCamera::Session {
   [[nodiscard]] std::int64_t exposure_ns() const { return exposure_ns_; }
   // Numbers of frames have 16 bits, until one is larger.
   [[nodiscard]] bool counts_to_16_bits() const { return is_gige_; }
+  // The camera's own clock; null when its stamps are taken as they are.
+  [[nodiscard]] const DeviceClock* clock() const { return clock_ ? &*clock_ : nullptr; }
   // Resent and missing packets of a GigE Vision camera.
   void AddPackets(GenicamCounters& counters) const;
 
@@ -60,6 +63,7 @@ class GenicamCamera::Session {
   int height_px_ = 0;
   std::int64_t exposure_ns_ = 0;
   std::atomic<bool> lost_{false};
+  std::optional<DeviceClock> clock_;  // last: its thread uses the camera
 };
 
 }  // namespace fovea::genicam

@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookPeriod{500};
 constexpr std::uint64_t k16Bits = 65535;
+constexpr std::int64_t kClockMarginNs = 5 * hal::kNsPerMs;  // what a reading of the camera's clock may be off
+constexpr std::int64_t kOldestNs = hal::kNsPerSecond;       // no picture is longer on its way
 constexpr std::int64_t kLostLookNs =
     50 * hal::kNsPerMs;  // no wait without a look at the connection is longer
 
@@ -139,7 +141,7 @@ hal::Status GenicamCamera::Take(Session& session, hal::Frame& frame, std::int64_
   }
   frame = camera::FrameOf(picture_);
   frame.exposure_ns = session.exposure_ns();
-  frame.stamp_ns = StampOf(device_ns, arrival_ns, frame.exposure_ns);
+  frame.stamp_ns = StampOf(session, device_ns, arrival_ns);
   frame.sequence = numbers_.Count(number);
   counters_.lost = numbers_.lost();
   ++counters_.frames;
@@ -153,12 +155,33 @@ bool GenicamCamera::IsNoPicture(const Session& session, ArvBuffer* buffer) const
 }
 
 // Mid-exposure, on the loop's clock.
-std::int64_t GenicamCamera::StampOf(std::int64_t device_ns, std::int64_t arrival_ns,
-                                    std::int64_t exposure_ns) {
+std::int64_t GenicamCamera::StampOf(const Session& session, std::int64_t device_ns, std::int64_t arrival_ns) {
+  const std::int64_t exposure_ns = session.exposure_ns();
   const std::int64_t to_middle_ns = config_.stamp_at == StampAt::kStart ? exposure_ns / 2
                                     : config_.stamp_at == StampAt::kEnd ? -exposure_ns / 2
                                                                         : 0;
-  return (config_.device_time ? device_ns : mapper_.Map(device_ns, arrival_ns)) + to_middle_ns;
+  return (config_.device_time ? device_ns : HostTimeOf(session, device_ns, arrival_ns)) + to_middle_ns;
+}
+
+// By the camera's own clock where it can be asked, else by the earliest arrivals. Rises from stamp to stamp.
+std::int64_t GenicamCamera::HostTimeOf(const Session& session, std::int64_t device_ns,
+                                       std::int64_t arrival_ns) {
+  const std::int64_t by_arrivals_ns = mapper_.Map(device_ns, arrival_ns);
+  const auto by_clock_ns = session.clock() != nullptr ? session.clock()->Map(device_ns) : std::nullopt;
+  std::int64_t host_ns = by_arrivals_ns;
+  if (by_clock_ns) {
+    // Else it is another clock that was asked than the one that stamps pictures.
+    const bool plausible =
+        *by_clock_ns < arrival_ns + kClockMarginNs && arrival_ns - *by_clock_ns < kOldestNs;
+    counters_.clock_refused += plausible ? 0U : 1U;
+    counters_.stamped_by_clock += plausible ? 1U : 0U;
+    drift_ = plausible ? session.clock()->drift() : mapper_.drift();
+    host_ns = plausible ? std::min(*by_clock_ns, arrival_ns) : by_arrivals_ns;
+  } else {
+    drift_ = mapper_.drift();
+  }
+  last_host_ns_ = std::max(host_ns, last_host_ns_ + 1);
+  return last_host_ns_;
 }
 
 // The thread that brings a lost camera back.

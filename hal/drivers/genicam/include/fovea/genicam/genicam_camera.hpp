@@ -31,7 +31,8 @@ struct GenicamConfig {
   double gain = -1.0;        // in the camera's unit; negative: as the camera is set
   int packet_size = 0;       // GigE Vision [bytes]; 0: the largest that the network carries
   StampAt stamp_at = StampAt::kStart;
-  std::int64_t transport_ns = 0;  // the least time from stamp to arrival
+  // The least time from stamp to arrival; of account where the camera's own clock cannot be asked.
+  std::int64_t transport_ns = 0;
   // The camera's clock is the loop's (by PTP; or a simulated one in lockstep): stamps are taken as they are.
   bool device_time = false;
   bool reconnect = true;  // after a loss, look for the camera until it is there again
@@ -46,6 +47,8 @@ struct GenicamCounters {
   std::uint64_t missing_packets = 0;
   std::uint64_t disconnects = 0;
   std::uint64_t reconnects = 0;
+  std::uint64_t stamped_by_clock = 0;  // frames with a stamp by the camera's own clock
+  std::uint64_t clock_refused = 0;     // frames whose stamp cannot be of the clock that was asked
 };
 
 class GenicamCamera final : public hal::Camera {
@@ -62,7 +65,8 @@ class GenicamCamera final : public hal::Camera {
   [[nodiscard]] const std::string& name() const { return name_; }
   // From the thread that acquires, or after it.
   [[nodiscard]] GenicamCounters counters() const;
-  [[nodiscard]] double clock_drift() const { return mapper_.drift(); }
+  // Seconds that the host's clock gains on the camera's in a second; 0 until 8 s are known.
+  [[nodiscard]] double clock_drift() const { return drift_; }
 
  private:
   class Session;
@@ -72,8 +76,9 @@ class GenicamCamera final : public hal::Camera {
   hal::Status DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept override;
   [[nodiscard]] hal::Status Take(Session& session, hal::Frame& frame, std::int64_t timeout_ns);
   [[nodiscard]] bool IsNoPicture(const Session& session, _ArvBuffer* buffer) const;
-  [[nodiscard]] std::int64_t StampOf(std::int64_t device_ns, std::int64_t arrival_ns,
-                                     std::int64_t exposure_ns);
+  [[nodiscard]] std::int64_t StampOf(const Session& session, std::int64_t device_ns, std::int64_t arrival_ns);
+  [[nodiscard]] std::int64_t HostTimeOf(const Session& session, std::int64_t device_ns,
+                                        std::int64_t arrival_ns);
   void Look();
 
   const GenicamConfig config_;
@@ -93,6 +98,8 @@ class GenicamCamera final : public hal::Camera {
   std::int64_t last_device_ns_ = INT64_MIN;  // stamp of the last picture
   camera::FrameCounter numbers_;
   camera::StampMapper mapper_;
+  std::int64_t last_host_ns_ = INT64_MIN;
+  double drift_ = 0.0;
   GenicamCounters counters_;
   std::thread looking_;
 };

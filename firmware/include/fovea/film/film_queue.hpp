@@ -14,7 +14,7 @@
 
 #include "fovea/linux_rt/realtime.hpp"
 
-namespace fovea::sim {
+namespace fovea::film {
 
 // `Item` holds what a frame needs; used ones are given out again, so that their memory is. One thread fills
 // it.
@@ -124,4 +124,4 @@ class FilmQueue {
   std::thread thread_;  // last: it begins when all else is there
 };
 
-}  // namespace fovea::sim
+}  // namespace fovea::film

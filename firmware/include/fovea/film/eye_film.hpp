@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "fovea/film/film_queue.hpp"
+#include "fovea/film/overlay.hpp"
+#include "fovea/film/video_file.hpp"
 #include "fovea/hal/camera.hpp"
 #include "fovea/vision/detection.hpp"
-#include "sim/app/film_queue.hpp"
-#include "sim/app/overlay.hpp"
-#include "sim/app/video_file.hpp"
 
-namespace fovea::sim {
+namespace fovea::film {
 
 struct EyeFilmConfig {
   std::filesystem::path path;
@@ -23,8 +23,9 @@ struct EyeFilmConfig {
 class EyeFilm {
  public:
   explicit EyeFilm(const EyeFilmConfig& config);
-  // From the vision thread; copies the pixels.
-  void Add(const hal::Frame& frame, const vision::Detection& detection);
+  // From the vision thread; copies the pixels. Its time is told from `begin_ns` on, of the clock that stamps
+  // frames. A frame of another size than the intrinsics' is left out.
+  void Add(const hal::Frame& frame, const vision::Detection& detection, std::int64_t begin_ns = 0);
   // Encodes what is left and completes the file. Throws what went wrong at any time.
   void Finish();
   // Frames that found no place.
@@ -34,7 +35,7 @@ class EyeFilm {
  private:
   struct Item {
     cv::Mat page;  // the picture, with room for the legend below
-    std::int64_t stamp_ns = 0;
+    std::int64_t time_ns = 0;
     vision::Detection detection;
   };
   void Draw(Item& item) const;
@@ -45,4 +46,4 @@ class EyeFilm {
   FilmQueue<Item> queue_;  // last: its thread uses the others
 };
 
-}  // namespace fovea::sim
+}  // namespace fovea::film

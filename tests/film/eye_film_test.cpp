@@ -1,5 +1,5 @@
 // The film: read back by another reader, frame by frame.
-#include "sim/app/eye_film.hpp"
+#include "fovea/film/eye_film.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "fovea/features/sphere.hpp"
 #include "support/temp_folder.hpp"
 
-namespace fovea::sim {
+namespace fovea::film {
 namespace {
 
 constexpr int kWidth = 64;
@@ -57,6 +57,35 @@ class EyeFilmTest : public testing::Test {
   }
   test::TempFolder folder_;
 };
+
+TEST_F(EyeFilmTest, GrayFramesAreShownFromTheGivenBeginAndOthersOfAnotherSizeAreLeftOut) {
+  EyeFilmConfig config;
+  config.path = Path("gray.mp4");
+  config.intrinsics = {kWidth, kHeight, 60.0, 60.0, 31.5, 23.5};
+  config.p_CO_C_star = {0.0, 0.0, 0.4};
+  EyeFilm film(config);
+  const std::int64_t begin_ns = 123'000'000'000;
+  for (int i = 0; i < 10; ++i) {
+    hal::Frame frame;
+    frame.stamp_ns = begin_ns + StampNs(i);
+    frame.width_px = i == 5 ? kWidth / 2 : kWidth;
+    frame.height_px = kHeight;
+    frame.stride_bytes = frame.width_px;
+    frame.format = hal::PixelFormat::kMono8;
+    const std::vector<std::uint8_t> pixels(std::size_t{1} * kWidth * kHeight, Level(i));
+    frame.pixels = pixels;
+    film.Add(frame, {}, begin_ns);
+  }
+  film.Finish();
+  cv::VideoCapture shown(Path("gray.mp4"));
+  cv::Mat picture;
+  int count = 0;
+  for (; shown.read(picture); ++count) {
+    const int i = count < 5 ? count : count + 1;
+    EXPECT_NEAR(cv::mean(picture(cv::Rect(2, 2, 8, 8)))[1], Level(i), 6.0) << "frame " << i;
+  }
+  EXPECT_EQ(count, 9);
+}
 
 TEST_F(EyeFilmTest, EveryFrameIsThereAtItsTimeWithItsLegend) {
   Film("film.mp4");
@@ -136,4 +165,4 @@ TEST_F(EyeFilmTest, AFileThatCannotBeMadeIsSaidAtOnce) {
 }
 
 }  // namespace
-}  // namespace fovea::sim
+}  // namespace fovea::film

@@ -1,4 +1,4 @@
-#include "sim/app/video_file.hpp"
+#include "fovea/film/video_file.hpp"
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -12,7 +12,7 @@ extern "C" {
 #include <stdexcept>
 #include <string>
 
-namespace fovea::sim {
+namespace fovea::film {
 namespace {
 
 constexpr AVRational kTimeBase{1, 90'000};     // of the stream; what MP4 players expect
@@ -143,4 +143,4 @@ void VideoFile::Finish() {
   Check(avio_closep(&impl_->format->pb), "closing");
 }
 
-}  // namespace fovea::sim
+}  // namespace fovea::film

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "fovea/features/target_feature.hpp"
-#include "sim/app/overlay.hpp"
+#include "fovea/film/overlay.hpp"
 
-namespace fovea::sim {
+namespace fovea::film {
 
 // Points along the outline of the target at `X_CO`, in ideal pixels; of a sphere its silhouette. Empty when a
 // part of it is not before the camera.
@@ -16,4 +16,4 @@ inline Overlay::Curve GoalCurve(const vision::Intrinsics& intrinsics, const feat
   return TargetCurve(intrinsics, target, {target.R_CO_star, target.p_CO_C_star});
 }
 
-}  // namespace fovea::sim
+}  // namespace fovea::film

@@ -10,7 +10,7 @@
 #include "fovea/vision/detection.hpp"
 #include "fovea/vision/intrinsics.hpp"
 
-namespace fovea::sim {
+namespace fovea::film {
 
 // Blue, green, red; told apart by brightness too.
 inline const cv::Scalar kDetectionColour(255, 220, 60);
@@ -48,4 +48,4 @@ class Overlay {
 
 void DrawText(cv::Mat& image, const std::string& text, int x, int y, double size, const cv::Scalar& colour);
 
-}  // namespace fovea::sim
+}  // namespace fovea::film

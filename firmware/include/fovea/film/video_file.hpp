@@ -6,7 +6,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
-namespace fovea::sim {
+namespace fovea::film {
 
 // One thread uses it. The same frames give the same bytes.
 class VideoFile {
@@ -27,4 +27,4 @@ class VideoFile {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace fovea::sim
+}  // namespace fovea::film

@@ -1,5 +1,5 @@
 // The queue behind the films: order, waiting, dropping, and what goes wrong on its thread.
-#include "sim/app/film_queue.hpp"
+#include "fovea/film/film_queue.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace fovea::sim {
+namespace fovea::film {
 namespace {
 
 TEST(FilmQueueTest, ASlowWorkerGetsEverythingInOrderFromOneWhoWaits) {
@@ -63,4 +63,4 @@ TEST(FilmQueueTest, WhatTheWorkThrowsComesOutAtTheEndAndHoldsNobodyUp) {
 }
 
 }  // namespace
-}  // namespace fovea::sim
+}  // namespace fovea::film

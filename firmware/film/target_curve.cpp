@@ -1,11 +1,11 @@
-#include "sim/app/target_curve.hpp"
+#include "fovea/film/target_curve.hpp"
 
 #include <cmath>
 #include <numbers>
 
 #include "fovea/features/sphere.hpp"
 
-namespace fovea::sim {
+namespace fovea::film {
 namespace {
 
 constexpr int kPoints = 96;
@@ -43,4 +43,4 @@ Overlay::Curve TargetCurve(const vision::Intrinsics& in, const features::TargetF
   return curve;
 }
 
-}  // namespace fovea::sim
+}  // namespace fovea::film

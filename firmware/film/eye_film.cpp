@@ -1,4 +1,4 @@
-#include "sim/app/eye_film.hpp"
+#include "fovea/film/eye_film.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "sim/app/overlay.hpp"
+#include "fovea/film/overlay.hpp"
 
-namespace fovea::sim {
+namespace fovea::film {
 namespace {
 
 constexpr int kLegendPx = 28;    // height of the strip below the picture
@@ -31,12 +31,15 @@ EyeFilm::EyeFilm(const EyeFilmConfig& config)
       file_(config.path, PageSize(config.intrinsics).width, PageSize(config.intrinsics).height),
       queue_(config.may_drop, [this](Item& item) {
         Draw(item);
-        file_.Add(item.page, item.stamp_ns);
+        file_.Add(item.page, item.time_ns);
       }) {
   DrawText(legend_, "dashed: goal", config.intrinsics.width_px / 3, kBaselinePx, 0.45, kGoalColour);
 }
 
-void EyeFilm::Add(const hal::Frame& frame, const vision::Detection& detection) {
+void EyeFilm::Add(const hal::Frame& frame, const vision::Detection& detection, std::int64_t begin_ns) {
+  if (frame.width_px != config_.intrinsics.width_px || frame.height_px != config_.intrinsics.height_px) {
+    return;
+  }
   std::optional<Item> place = queue_.Take();
   if (!place) {
     return;
@@ -47,11 +50,17 @@ void EyeFilm::Add(const hal::Frame& frame, const vision::Detection& detection) {
     item.page.setTo(kLegendColour);
   }
   legend_.copyTo(item.page.rowRange(frame.height_px, item.page.rows));
-  const cv::Mat pixels(frame.height_px, frame.width_px, CV_8UC3,
+  const bool mono = frame.format == hal::PixelFormat::kMono8;
+  const cv::Mat pixels(frame.height_px, frame.width_px, mono ? CV_8UC1 : CV_8UC3,
                        const_cast<std::uint8_t*>(frame.pixels.data()),
                        static_cast<std::size_t>(frame.stride_bytes));
-  pixels.copyTo(item.page(cv::Rect(0, 0, frame.width_px, frame.height_px)));
-  item.stamp_ns = frame.stamp_ns;
+  cv::Mat picture = item.page(cv::Rect(0, 0, frame.width_px, frame.height_px));
+  if (mono) {
+    cv::cvtColor(pixels, picture, cv::COLOR_GRAY2BGR);
+  } else {
+    pixels.copyTo(picture);
+  }
+  item.time_ns = frame.stamp_ns - begin_ns;
   item.detection = detection;
   queue_.Put(std::move(item));
 }
@@ -63,7 +72,7 @@ void EyeFilm::Draw(Item& item) const {
   overlay.Goal(config_.goal, config_.p_CO_C_star);
   overlay.Detection(item.detection);
   const int y = in.height_px + kBaselinePx;
-  DrawText(item.page, fmt::format("t = {:.3f} s", static_cast<double>(item.stamp_ns) * 1e-9), 10, y, 0.45,
+  DrawText(item.page, fmt::format("t = {:.3f} s", static_cast<double>(item.time_ns) * 1e-9), 10, y, 0.45,
            kTruthColour);
   std::string words = "no detection";
   if (item.detection.found) {
@@ -79,4 +88,4 @@ void EyeFilm::Finish() {
   file_.Finish();
 }
 
-}  // namespace fovea::sim
+}  // namespace fovea::film

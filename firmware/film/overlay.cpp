@@ -1,4 +1,4 @@
-#include "sim/app/overlay.hpp"
+#include "fovea/film/overlay.hpp"
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -6,7 +6,7 @@
 
 #include "fovea/vision/outline.hpp"
 
-namespace fovea::sim {
+namespace fovea::film {
 namespace {
 
 constexpr int kCurvePoints = 96;
@@ -72,4 +72,4 @@ void DrawText(cv::Mat& image, const std::string& text, int x, int y, double size
   cv::putText(image, text, {x, y}, cv::FONT_HERSHEY_DUPLEX, size, colour, 1, cv::LINE_AA);
 }
 
-}  // namespace fovea::sim
+}  // namespace fovea::film

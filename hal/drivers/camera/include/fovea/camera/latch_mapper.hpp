@@ -1,0 +1,56 @@
+// A device's stamps on the host's clock, from readings of the device's clock.
+//
+// The device showed what it was asked for at some time between question and answer; the middle is taken for
+// it, and is off by half of the round trip at the most. So of each second the reading with the shortest round
+// trip counts, and the line through those of the last half minute, each weighted by its own, gives offset and
+// drift: both however long a picture is on its way, and however late it is by chance.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+namespace fovea::camera {
+
+class LatchMapper {
+ public:
+  // The device's clock showed `device_ns` at some time from `before_ns` to `after_ns` of the host's [ns]. A
+  // device clock that goes back, or leaves the line by more than a second, has started anew: what was known
+  // of it is forgotten. So is a reading of which the round trip took longer than 5 ms.
+  void Add(std::int64_t before_ns, std::int64_t device_ns, std::int64_t after_ns);
+
+  // The host's time of `device_ns`; none without a reading.
+  [[nodiscard]] std::optional<std::int64_t> Map(std::int64_t device_ns) const;
+
+  // Seconds that the host's clock gains on the device's in a second; 0 until 8 s are known.
+  [[nodiscard]] double drift() const { return drift_; }
+  [[nodiscard]] std::uint64_t readings() const { return readings_; }  // that were not forgotten at once
+  [[nodiscard]] std::uint64_t restarts() const { return restarts_; }
+
+ private:
+  struct Reading {
+    std::int64_t device_ns = 0;
+    std::int64_t excess_ns = 0;  // middle - device's
+    std::int64_t trip_ns = 0;
+  };
+  static constexpr std::size_t kBlocks = 32;
+  static constexpr std::size_t kBlocksForDrift = 8;
+
+  void Keep(const Reading& reading);
+  void FitLine();
+  [[nodiscard]] std::int64_t LineAt(std::int64_t device_ns) const;
+
+  std::array<Reading, kBlocks> blocks_{};  // the shortest of each second; oldest first
+  std::size_t num_blocks_ = 0;
+  std::int64_t block_begin_ns_ = 0;  // of the newest
+  std::int64_t last_device_ns_ = 0;
+  std::int64_t anchor_device_ns_ = 0;  // the line goes through this point
+  double anchor_excess_ns_ = 0.0;      // relative to the newest block's
+  std::int64_t excess_base_ns_ = 0;
+  double drift_ = 0.0;
+  std::uint64_t readings_ = 0;
+  std::uint64_t restarts_ = 0;
+};
+
+}  // namespace fovea::camera

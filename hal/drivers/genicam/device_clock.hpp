@@ -1,0 +1,52 @@
+// A camera's own clock, asked again and again while it streams, on a thread of its own.
+//
+// GenICam's names for it are TimestampLatch and TimestampLatchValue [ns] (SFNC 2), before that
+// GevTimestampControlLatch and GevTimestampValue [ticks] (SFNC 1). A camera that has neither cannot be asked.
+#pragma once
+
+#include <arv.h>
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "fovea/camera/latch_mapper.hpp"
+
+namespace fovea::genicam {
+
+class DeviceClock {
+ public:
+  // Begins to ask when the camera can be asked. From then on until the end of this nobody else may use its
+  // features.
+  explicit DeviceClock(ArvDevice* device);
+  ~DeviceClock();
+  DeviceClock(const DeviceClock&) = delete;
+  DeviceClock& operator=(const DeviceClock&) = delete;
+
+  // From any thread: the host's time of a stamp of the camera's; none while nothing is known.
+  [[nodiscard]] std::optional<std::int64_t> Map(std::int64_t device_ns) const;
+  [[nodiscard]] double drift() const;
+  [[nodiscard]] std::uint64_t readings() const;
+
+ private:
+  struct Features {
+    const char* latch;
+    const char* value;
+    bool in_ticks;
+  };
+  [[nodiscard]] static std::optional<Features> FeaturesOf(ArvDevice* device);
+  void Run();
+  [[nodiscard]] bool Ask();
+
+  ArvDevice* const device_;
+  const std::optional<Features> features_;
+  double ns_per_tick_ = 1.0;
+  mutable std::mutex mutex_;
+  std::condition_variable closing_;
+  bool closed_ = false;         // guarded by mutex_
+  camera::LatchMapper mapper_;  // guarded by mutex_
+  std::thread thread_;          // last: it uses the others
+};
+
+}  // namespace fovea::genicam

@@ -1,0 +1,103 @@
+// Readings of a device's clock that runs apart from the host's, by questions that are late by chance.
+#include "fovea/camera/latch_mapper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::camera {
+namespace {
+
+constexpr std::int64_t kBeginNs = 5'000'000'007;
+
+// The device's clock began elsewhere and gains `drift` seconds a second on the host's. Question and answer
+// are each 0.1 ms on their way, and by chance longer: 0.2 ms more in the mean.
+struct Device {
+  double drift = 0.0;
+  std::int64_t offset_ns = 0;
+  std::mt19937_64 random{7};
+  std::exponential_distribution<double> late_ms{1.0 / 0.2};
+
+  [[nodiscard]] std::int64_t Stamp(std::int64_t host_ns) const {
+    return offset_ns + host_ns + std::llround(drift * static_cast<double>(host_ns));
+  }
+  std::int64_t WayNs() { return 100'000 + static_cast<std::int64_t>(1e6 * late_ms(random)); }
+  void Ask(LatchMapper& mapper, std::int64_t host_ns) {
+    const std::int64_t before_ns = host_ns - WayNs();
+    mapper.Add(before_ns, Stamp(host_ns), host_ns + WayNs());
+  }
+};
+
+// Largest error [ns] of pictures' stamps from `from_s` to `to_s`, with four readings a second.
+double WorstNs(LatchMapper& mapper, Device& device, int from_s, int to_s) {
+  double worst = 0.0;
+  for (int k = 0; k < 4 * to_s; ++k) {
+    const std::int64_t now_ns = kBeginNs + k * hal::kNsPerSecond / 4;
+    device.Ask(mapper, now_ns);
+    const std::int64_t picture_ns = now_ns + 70 * hal::kNsPerMs;  // later than any reading
+    if (k >= 4 * from_s) {
+      worst =
+          std::max(worst, std::fabs(static_cast<double>(*mapper.Map(device.Stamp(picture_ns)) - picture_ns)));
+    }
+  }
+  return worst;
+}
+
+TEST(LatchMapper, FollowsADriftingClock) {
+  for (const double drift : {0.0, 50e-6, -50e-6}) {
+    LatchMapper mapper;
+    Device device{drift, -77 * hal::kNsPerSecond};
+    const double worst_ns = WorstNs(mapper, device, 20, 600);
+    std::cout << "drift " << 1e6 * drift << " ppm: " << 1e6 * -mapper.drift()
+              << " ppm found, stamps off by at most " << 1e-3 * worst_ns << " us\n";
+    EXPECT_NEAR(-mapper.drift(), drift, 4e-6);
+    EXPECT_LT(worst_ns, 6e4) << "less than the shortest way of a question";
+    EXPECT_EQ(mapper.restarts(), 0U);
+  }
+}
+
+TEST(LatchMapper, WithoutJitterItIsExact) {
+  LatchMapper mapper;
+  const Device device{20e-6, 5 * hal::kNsPerSecond};
+  std::int64_t worst_ns = 0;
+  for (int k = 0; k < 400; ++k) {
+    const std::int64_t now_ns = kBeginNs + k * hal::kNsPerSecond / 4;
+    mapper.Add(now_ns - 150'000, device.Stamp(now_ns), now_ns + 150'000);
+    worst_ns =
+        k < 40 ? 0 : std::max<std::int64_t>(worst_ns, std::llabs(*mapper.Map(device.Stamp(now_ns)) - now_ns));
+  }
+  EXPECT_LE(worst_ns, 2);  // what rounding leaves
+}
+
+TEST(LatchMapper, TheFirstReadingIsEnough) {
+  LatchMapper mapper;
+  EXPECT_FALSE(mapper.Map(0).has_value());
+  mapper.Add(1000, 500'000, 3000);
+  EXPECT_EQ(mapper.Map(500'000), 2000);
+  EXPECT_EQ(mapper.Map(500'100), 2100);
+}
+
+TEST(LatchMapper, ASlowAnswerSaysNothing) {
+  LatchMapper mapper;
+  mapper.Add(0, 1'000'000, 6 * hal::kNsPerMs);
+  mapper.Add(10, 1'000'000, 5);
+  EXPECT_FALSE(mapper.Map(0).has_value());
+  EXPECT_EQ(mapper.readings(), 0U);
+}
+
+TEST(LatchMapper, ADeviceThatStartsAnewIsLearntAnew) {
+  LatchMapper mapper;
+  Device device{0.0, 1000 * hal::kNsPerSecond};
+  static_cast<void>(WorstNs(mapper, device, 0, 20));
+  const std::int64_t again_ns = kBeginNs + 100 * hal::kNsPerSecond;
+  mapper.Add(again_ns - 1000, 0, again_ns + 1000);
+  EXPECT_EQ(mapper.Map(0), again_ns);
+  EXPECT_EQ(mapper.restarts(), 1U);
+}
+
+}  // namespace
+}  // namespace fovea::camera
