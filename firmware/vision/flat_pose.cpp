@@ -47,6 +47,7 @@ struct Refined {
 Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorners>& at, const Intrinsics& in,
                FlatShape shape, const model::Pose& start) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, CornerFit::kMaxSize, 6>;
+  using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, CornerFit::kMaxSize>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, CornerFit::kMaxSize, 1>;
   const int n = fit.count;
   Refined r;
@@ -64,6 +65,8 @@ Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorner
   Vector e(2 * n);
   Rows J(2 * n, 6);
   constexpr int kRounds = 8;
+  constexpr double kStill2 = 1e-20;  // a step that is smaller is the last [m^2 + rad^2]
+  bool still = false;
   for (int round = 0; round <= kRounds; ++round) {
     for (int i = 0; i < n; ++i) {
       const Eigen::Vector2d& q = shape[static_cast<std::size_t>(i)];
@@ -81,20 +84,22 @@ Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorner
       J.block<2, 3>(2 * i, 0) = project;
       J.block<2, 3>(2 * i, 3) = -project * model::CrossMatrix(arm);
     }
-    model::Mat6 normal = J.transpose() * info * J;
+    const Columns weighted = J.transpose().lazyProduct(info);
+    model::Mat6 normal = weighted.lazyProduct(J);
     normal.diagonal().head<3>().array() += 1.0 / (kStepM * kStepM);
     normal.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
-    if (round == kRounds) {
-      r.chi2 = e.dot(info * e);
+    if (still || round == kRounds) {
+      r.chi2 = e.dot(info.lazyProduct(e));
       r.pose.cov = normal.inverse() * std::max(1.0, n > 3 ? r.chi2 / (2 * n - 6) : 1.0);
       break;
     }
-    const model::Vec6 step = normal.ldlt().solve(J.transpose() * info * e);
+    const model::Vec6 step = normal.ldlt().solve(weighted.lazyProduct(e));
     if (!step.allFinite()) {
       return r;
     }
     X_CO.p += step.head<3>();
     X_CO.R = model::RotationOf(step.tail<3>()) * X_CO.R;
+    still = step.squaredNorm() < kStill2;
   }
   r.pose.off_px = std::sqrt(e.squaredNorm() / n);
   // Its painted side is seen, and not too much from aside.
