@@ -125,11 +125,12 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
       fitter_.evidence().SideGoesOn(image, config_.intrinsics, corners, step)) {
     return;
   }
-  const std::vector<CornerPose> poses =
+  const CornerPoses found =
       PosesOfCorners(fit.corners, config_.intrinsics, shape_, X_CO_ ? &*X_CO_ : nullptr);
-  if (poses.empty()) {
+  if (found.count == 0) {
     return;
   }
+  const auto poses = std::span(found.pose).first(static_cast<std::size_t>(found.count));
   const CornerPose& pose = poses.front();
   const double distance = pose.X_CO.p.norm();
   const double corner_sigma = std::sqrt(fit.corners.cov.trace() / static_cast<double>(n));
