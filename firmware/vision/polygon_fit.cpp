@@ -17,9 +17,8 @@ constexpr double kRoundedBlurs = 4.5;  // and so near, in standard deviations of
 constexpr double kStraight = 0.95;  // share of a side's edges on its line: no part of it is another thing's
 constexpr int kMinLines = 6;        // on a side
 constexpr double kMinScalePx = 0.03;
-constexpr double kCommonPx = 0.01;  // what lens and light may move a side
-constexpr double kBesidePx = 0.04;  // the same where something that hides a part of it is next to the rest
-constexpr double kGridPx = 0.06;    // and the pixels' grid and colours a corner, otherwise in each picture
+// What may shift and turn a side of which something that hides a part is next to the rest.
+constexpr double kBesidePx = 0.04;
 
 }  // namespace
 
@@ -74,7 +73,7 @@ bool PolygonFitter::FitSide(Side& side, double blur, PolygonFit& fit, double& rm
                             double& weights) {
   std::array<SideEdge, Profiles::kMaxLines> edges;
   std::array<int, Profiles::kMaxLines> lines;
-  const double noise = std::max(profiles_.noise(), 0.3);
+  const double noise = std::max(profiles_.noise(), edge_noise_.floor);
   const double quiet = std::min(noise, 1.5 * profiles_.quiet() + 0.5);
   const double straight = 1.0 - 2.0 * kRoundedBlurs * blur / side.length;
   std::size_t count = 0;
@@ -115,7 +114,7 @@ bool PolygonFitter::FitSide(Side& side, double blur, PolygonFit& fit, double& rm
   // Lens and light shift the side, and turn what is seen of it about its middle.
   const Eigen::Vector2d turned(-side.line.middle, 1.0);
   const bool part = clear < side.to - side.from || side.line.on < kStraight;
-  const double common = part ? kBesidePx : kCommonPx;
+  const double common = part ? std::max(kBesidePx, edge_noise_.shift_px) : edge_noise_.shift_px;
   side.line.cov(0, 0) += common * common;
   side.line.cov +=
       common * common / (3.0 * side.line.spread * side.line.spread) * turned * turned.transpose();
@@ -147,7 +146,7 @@ void PolygonFitter::MoveCorners(PolygonFit& fit) const {
     cov.block<2, 2>(2 * k, 2 * k) = e.line.cov;
   }
   fit.corners.cov = J * cov * J.transpose();
-  fit.corners.cov.diagonal().array() += kGridPx * kGridPx;
+  fit.corners.cov.diagonal().array() += edge_noise_.corner_px * edge_noise_.corner_px;
 }
 
 // Rounds of measuring and fitting, until one moves the sides no more.

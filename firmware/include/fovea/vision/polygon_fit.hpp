@@ -5,6 +5,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "fovea/vision/detector_config.hpp"
 #include "fovea/vision/flat_pose.hpp"
 #include "fovea/vision/polygon_finder.hpp"
 #include "fovea/vision/profiles.hpp"
@@ -32,6 +33,7 @@ struct PolygonFit {
 // Keeps the memory that a fit works in. One thread uses it.
 class PolygonFitter {
  public:
+  explicit PolygonFitter(const EdgeNoise& edge_noise) : edge_noise_(edge_noise) {}
   // Fits the polygon near `start`, whose sides may be some 2 px off; its corners turn from u to v.
   PolygonFit Fit(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> start);
 
@@ -52,6 +54,7 @@ class PolygonFitter {
   bool FitSide(Side& side, double blur, PolygonFit& fit, double& rms2, double& noise2, double& weights);
   void MoveCorners(PolygonFit& fit) const;
 
+  const EdgeNoise edge_noise_;
   Profiles profiles_;
   SideEvidence evidence_;
   std::array<ProfileLine, Profiles::kMaxLines> lines_;
