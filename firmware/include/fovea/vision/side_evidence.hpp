@@ -52,7 +52,6 @@ class SideEvidence {
   [[nodiscard]] const Side& side(int k) const { return sides_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] bool hidden() const { return hidden_; }      // some of it is
   [[nodiscard]] double against() const { return against_; }  // share of the outline that is not the target's
-  [[nodiscard]] double contrast() const { return contrast_; }  // [gray levels]
   // A side of which the edges of some lines are off: whether it is because something stands before them. Two
   // things meet there; the one that lies against the ground, as the other sides do, is the target's.
   [[nodiscard]] bool ExplainsBends(const std::array<bool, Profiles::kMaxLines>& off);
