@@ -23,6 +23,15 @@ void AddVisionKeys(VisionSettings& settings, KeyTable& keys) {
               "method \"hough\": of the votes' places");
   keys.Number("vision.hough_spacing_px", c.hough.spacing_px, 1.0, 1000.0, "px",
               "method \"hough\": least distance between two circles");
+  keys.Number(
+      "vision.noise_floor", c.edge_noise.floor, 0.0, 50.0, "gray levels",
+      "of a picture's noise, standard deviation: less than this is not believed, by which the covariance is "
+      "made");
+  keys.Number("vision.edge_shift_px", c.edge_noise.shift_px, 0.0, 2.0, "px",
+              "what lens and light may move an outline, or a side, as a whole; part of the covariance");
+  keys.Number("vision.corner_shift_px", c.edge_noise.corner_px, 0.0, 2.0, "px",
+              "what the pixels' grid and colours may move a corner, otherwise in each picture; part of the "
+              "covariance");
   keys.Number("vision.radius_min_px", c.radius_min_px, 4.0, 500.0, "px",
               "smallest outline that is searched: radius of the circle with its area");
   keys.Number("vision.radius_max_px", c.radius_max_px, 8.0, 2000.0, "px", "largest outline that is searched");

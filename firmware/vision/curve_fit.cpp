@@ -20,10 +20,8 @@ constexpr double kNearPx = 0.05;
 constexpr double kStillPx = 0.003;  // a round that moves the curve less is the last
 constexpr double kOnCurvePx = 0.4;
 constexpr double kMinScalePx = 0.03;  // edges are never judged closer than this
-constexpr double kTogetherPx =
-    0.01;  // what lens and light may move the whole curve, in or out and along u, v
 constexpr double kShadedBlurPx = 1.5;
-constexpr double kShadedPx = 0.03;  // the same of a ball that is lit from one side
+constexpr double kShadedPx = 0.03;  // what light may move all of a ball that is lit from one side
 
 // Tukey's biweight: 1 at 0, 0 beyond `limit`.
 double Biweight(double residual, double limit) {
@@ -117,7 +115,7 @@ bool CurveFitter::Place(const Intrinsics& in, const Curve& curve) {
 // Rows of the least squares through the edges that are measured now.
 template <class Curve>
 bool CurveFitter::MakeRows(const Intrinsics& in, const Curve& curve) {
-  const double noise = std::max(profiles_.noise(), 0.3);
+  const double noise = std::max(profiles_.noise(), edge_noise_.floor);
   row_count_ = 0;
   for (int i = 0; i < count_; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -201,7 +199,7 @@ template <class Curve>
 bool CurveFitter::Describe(CurveFit<Curve>& fit) {
   constexpr int kN = Curve::kDim;
   using Vector = Eigen::Matrix<double, kN, 1>;
-  const double noise = std::max(profiles_.noise(), 0.3);
+  const double noise = std::max(profiles_.noise(), edge_noise_.floor);
   const double quiet = std::min(noise, 1.5 * profiles_.quiet() + 0.5);
   const double limit = Residuals<kN>(fit.curve.p);
   Eigen::Matrix<double, kN, kN> normal = Eigen::Matrix<double, kN, kN>::Zero();
@@ -236,7 +234,9 @@ bool CurveFitter::Describe(CurveFit<Curve>& fit) {
   }
   // The noise as the edges show it; never less than half of what the samples showed.
   fit.cov = std::max(chi2 / std::max(weights - kN, 1.0), 0.25) * inverse;
-  const double together_px = profiles_.shaded() ? kShadedPx : kTogetherPx;
+  // In or out, and along u, v.
+  const double together_px =
+      profiles_.shaded() ? std::max(kShadedPx, edge_noise_.shift_px) : edge_noise_.shift_px;
   for (const Vector& shift : {common, aside_u, aside_v}) {
     const Vector dp = inverse * (together_px * shift);
     fit.cov += dp * dp.transpose();

@@ -132,22 +132,31 @@ void EdgeMap::FindGradient() {
     clear(At(x, 0, width_));
     clear(At(x, height_ - 1, width_));
   }
+  // Sobel's sums, down first: then all of it is whole numbers of two bytes, eight at a time.
+  down_.resize(static_cast<std::size_t>(width_));
+  across_.resize(static_cast<std::size_t>(width_));
   for (int y = 1; y + 1 < height_; ++y) {
     clear(At(0, y, width_));
     clear(At(width_ - 1, y, width_));
     const std::uint8_t* a = &small_[At(0, y - 1, width_)];
     const std::uint8_t* b = a + width_;
     const std::uint8_t* c = b + width_;
-    // None of them overlap, which lets the loop take eight pixels at a time.
+    // None of them overlap, which lets the loops take eight pixels at a time.
+    std::int16_t* __restrict down = down_.data();
+    std::int16_t* __restrict across = across_.data();
+    for (int x = 0; x < width_; ++x) {
+      down[x] = static_cast<std::int16_t>(a[x] + 2 * b[x] + c[x]);
+      across[x] = static_cast<std::int16_t>(c[x] - a[x]);
+    }
     std::int16_t* __restrict dx = &dx_[At(0, y, width_)];
     std::int16_t* __restrict dy = &dy_[At(0, y, width_)];
     std::int32_t* __restrict size2 = &size2_[At(0, y, width_)];
     for (int x = 1; x < width_ - 1; ++x) {
-      const int gx = a[x + 1] - a[x - 1] + 2 * (b[x + 1] - b[x - 1]) + c[x + 1] - c[x - 1];
-      const int gy = c[x - 1] - a[x - 1] + 2 * (c[x] - a[x]) + c[x + 1] - a[x + 1];
-      dx[x] = static_cast<std::int16_t>(gx);
-      dy[x] = static_cast<std::int16_t>(gy);
-      size2[x] = gx * gx + gy * gy;
+      dx[x] = static_cast<std::int16_t>(down[x + 1] - down[x - 1]);
+      dy[x] = static_cast<std::int16_t>(across[x - 1] + 2 * across[x] + across[x + 1]);
+    }
+    for (int x = 1; x < width_ - 1; ++x) {
+      size2[x] = dx[x] * dx[x] + dy[x] * dy[x];
     }
   }
 }
@@ -155,7 +164,7 @@ void EdgeMap::FindGradient() {
 // Its standard deviation along one axis where there is nothing but noise: most of an image is no edge, so the
 // median of the squared length tells; that of two squared normal variables is 1.386.
 float EdgeMap::NoiseOfGradient() {
-  constexpr std::size_t kEvery = 7;
+  constexpr std::size_t kEvery = 13;
   sample_.clear();
   for (std::size_t i = 0; i < size2_.size(); i += kEvery) {
     sample_.push_back(size2_[i]);
@@ -165,17 +174,42 @@ float EdgeMap::NoiseOfGradient() {
   return std::sqrt(static_cast<float>(*middle) / 1.386F);
 }
 
+// All of ridge_at_ to -1: what the ridges before have set, or when the size is another, everywhere.
+void EdgeMap::ForgetRidges() {
+  if (ridge_at_.size() != small_.size()) {
+    ridge_at_.assign(small_.size(), -1);
+  }
+  for (const std::size_t place : ridge_places_) {
+    if (place < ridge_at_.size()) {
+      ridge_at_[place] = -1;
+    }
+  }
+  ridge_places_.clear();
+}
+
 void EdgeMap::FindRidges(const cv::Rect& area) {
   const float noise = NoiseOfGradient();
   const float strong = std::max(kWeakestEdge, kNoiseStrong * noise);
   const float weak = std::max(0.6F * kWeakestEdge, kNoiseWeak * noise);
   const auto weak2 = static_cast<std::int32_t>(weak * weak);
-  ridge_at_.assign(small_.size(), -1);
+  ForgetRidges();
   const auto scale = static_cast<float>(factor_);
   const float middle = 0.5F * (scale - 1.0F);
   for (int y = 1; y + 1 < height_; ++y) {
     for (int x = 1; x + 1 < width_; ++x) {
       const std::size_t i = At(x, y, width_);
+      // Most of a picture has no edge: eight pixels at a time are passed over.
+      constexpr int kTogether = 8;
+      if (x + kTogether < width_) {
+        int strong_ones = 0;
+        for (std::size_t k = 0; k < kTogether; ++k) {
+          strong_ones -= static_cast<int>(size2_[i + k] >= weak2);
+        }
+        if (strong_ones == 0) {
+          x += kTogether - 1;
+          continue;
+        }
+      }
       const std::int32_t m2 = size2_[i];
       if (m2 < weak2) {
         continue;
@@ -216,6 +250,7 @@ void EdgeMap::FindRidges(const cv::Rect& area) {
       ridge.y = y;
       ridge.strong = size >= strong;
       ridge_at_[i] = static_cast<std::int32_t>(ridges_.size());
+      ridge_places_.push_back(i);
       ridges_.push_back(ridge);
     }
   }

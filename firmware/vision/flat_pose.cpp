@@ -3,12 +3,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
-#include <opencv2/calib3d.hpp>
-#include <vector>
 
 #include "fovea/model/rotation.hpp"
+#include "fovea/vision/three_points.hpp"
 
 namespace fovea::vision {
 namespace {
@@ -23,7 +21,6 @@ constexpr double kSameTurn = 0.01;  // poses nearer to each other than this are 
 // Gauss-Newton steps are held back by these, so that none leaps where the corners say nothing.
 constexpr double kStepM = 0.1;
 constexpr double kStepRad = 0.05;
-constexpr double kNudge = 3.0;  // how far corners are moved to find poses that noise has taken away [sigma]
 
 // 0 for a pose that faces the camera squarely and upright; the turn about the view axis decides between
 // equals.
@@ -47,6 +44,7 @@ struct Refined {
 Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorners>& at, const Intrinsics& in,
                FlatShape shape, const model::Pose& start) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, CornerFit::kMaxSize, 6>;
+  using Columns = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, CornerFit::kMaxSize>;
   using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, CornerFit::kMaxSize, 1>;
   const int n = fit.count;
   Refined r;
@@ -63,7 +61,9 @@ Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorner
   const CornerFit::Covariance info = cov.inverse();
   Vector e(2 * n);
   Rows J(2 * n, 6);
-  constexpr int kRounds = 8;
+  constexpr int kRounds = 30;        // where the corners hardly tell the tilt; else four or five
+  constexpr double kStill2 = 1e-20;  // a step that is smaller is the last [m^2 + rad^2]
+  bool still = false;
   for (int round = 0; round <= kRounds; ++round) {
     for (int i = 0; i < n; ++i) {
       const Eigen::Vector2d& q = shape[static_cast<std::size_t>(i)];
@@ -81,20 +81,22 @@ Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorner
       J.block<2, 3>(2 * i, 0) = project;
       J.block<2, 3>(2 * i, 3) = -project * model::CrossMatrix(arm);
     }
-    model::Mat6 normal = J.transpose() * info * J;
+    const Columns weighted = J.transpose().lazyProduct(info);
+    model::Mat6 normal = weighted.lazyProduct(J);
     normal.diagonal().head<3>().array() += 1.0 / (kStepM * kStepM);
     normal.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
-    if (round == kRounds) {
-      r.chi2 = e.dot(info * e);
+    if (still || round == kRounds) {
+      r.chi2 = e.dot(info.lazyProduct(e));
       r.pose.cov = normal.inverse() * std::max(1.0, n > 3 ? r.chi2 / (2 * n - 6) : 1.0);
       break;
     }
-    const model::Vec6 step = normal.ldlt().solve(J.transpose() * info * e);
+    const model::Vec6 step = normal.ldlt().solve(weighted.lazyProduct(e));
     if (!step.allFinite()) {
       return r;
     }
     X_CO.p += step.head<3>();
     X_CO.R = model::RotationOf(step.tail<3>()) * X_CO.R;
+    still = step.squaredNorm() < kStill2;
   }
   r.pose.off_px = std::sqrt(e.squaredNorm() / n);
   // Its painted side is seen, and not too much from aside.
@@ -103,82 +105,67 @@ Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorner
   return r;
 }
 
-// By P3P or IPPE, from where the corners' rays meet the plane z = 1; none when they are no picture of it.
-std::vector<model::Pose> ExactPoses(const std::vector<cv::Point3d>& object,
-                                    const std::vector<cv::Point2d>& seen) {
-  std::vector<cv::Mat> rotations;
-  std::vector<cv::Mat> positions;
-  try {
-    if (object.size() == 3) {
-      cv::solveP3P(object, seen, cv::Matx33d::eye(), cv::noArray(), rotations, positions, cv::SOLVEPNP_P3P);
-    } else {
-      cv::solvePnPGeneric(object, seen, cv::Matx33d::eye(), cv::noArray(), rotations, positions, false,
-                          cv::SOLVEPNP_IPPE);
-    }
-  } catch (const cv::Exception&) {
-    return {};
-  }
-  std::vector<model::Pose> poses;
-  for (std::size_t i = 0; i < rotations.size(); ++i) {
-    const cv::Mat& w = rotations[i];
-    const cv::Mat& t = positions[i];
-    const model::Pose pose{model::RotationOf(Vec3(w.at<double>(0), w.at<double>(1), w.at<double>(2))),
-                           Vec3(t.at<double>(0), t.at<double>(1), t.at<double>(2))};
-    if (pose.R.allFinite() && pose.p.allFinite()) {
-      poses.push_back(pose);
-    }
-  }
-  return poses;
-}
+// Those found so far.
+struct Found {
+  static constexpr int kMost = 24;
+  int count = 0;
+  std::array<Refined, kMost> poses;
 
-// All poses with the image's corner `first` as O's first.
-void FindPoses(const CornerFit& fit, const Intrinsics& in, FlatShape shape, const model::Pose* last,
-               int first, std::vector<Refined>& all) {
-  const auto n = static_cast<std::size_t>(fit.count);
-  std::array<int, Detection::kMaxCorners> at{};
-  std::vector<cv::Point3d> object;
-  std::vector<cv::Point2d> seen;
-  for (std::size_t i = 0; i < n; ++i) {
-    at[i] = (first + static_cast<int>(i)) % fit.count;
-    object.emplace_back(shape[i].x(), shape[i].y(), 0.0);
-    const ImagePoint& c = fit.corner[static_cast<std::size_t>(at[i])];
-    const Vec3 ray = in.Ray(c.u_px, c.v_px);
-    seen.emplace_back(ray.x(), ray.y());
-  }
-  std::size_t found = 0;
-  const auto add = [&](const model::Pose& start) {
-    const Refined r = Refine(fit, at, in, shape, start);
-    const bool known = std::any_of(all.begin(), all.end(), [&](const Refined& other) {
+  [[nodiscard]] bool Has(const Refined& r) const {
+    return std::any_of(poses.begin(), poses.begin() + count, [&r](const Refined& other) {
       return other.pose.first == r.pose.first && AngleBetween(other.pose.X_CO.R, r.pose.X_CO.R) < kSameTurn;
     });
-    if (r.ok && !known) {
-      all.push_back(r);
-      ++found;
+  }
+  void Add(const Refined& r) {
+    if (r.ok && count < kMost && !Has(r)) {
+      poses[static_cast<std::size_t>(count++)] = r;
     }
-  };
-  for (const model::Pose& start : ExactPoses(object, seen)) {
-    add(start);
+  }
+};
+
+// Tilted the other way about the line of sight.
+model::Pose Mirrored(const model::Pose& X_CO) {
+  const Vec3 sight = X_CO.p.normalized();
+  const Vec3 normal = X_CO.R.col(2);
+  const Vec3 axis = normal.cross(sight);
+  const double sine = axis.norm();
+  if (!(sine > 1e-9)) {
+    return X_CO;
+  }
+  const double tilt = std::atan2(sine, normal.dot(sight));
+  return {model::RotationOf(2.0 * tilt / sine * axis) * X_CO.R, X_CO.p};
+}
+
+// All poses with the image's corner `first` as O's first: from those of three corners, on to all of them.
+void FindPoses(const CornerFit& fit, const Intrinsics& in, FlatShape shape, const model::Pose* last,
+               int first, Found& found) {
+  std::array<int, Detection::kMaxCorners> at{};
+  for (int i = 0; i < fit.count; ++i) {
+    at[static_cast<std::size_t>(i)] = (first + i) % fit.count;
+  }
+  std::array<Vec3, 3> object;
+  std::array<Vec3, 3> rays;
+  for (std::size_t i = 0; i < object.size(); ++i) {
+    object[i] = Vec3(shape[i].x(), shape[i].y(), 0.0);
+    const ImagePoint& c = fit.corner[static_cast<std::size_t>(at[i])];
+    rays[i] = in.Ray(c.u_px, c.v_px).normalized();
+  }
+  const ThreePointPoses starts = PosesOfThreePoints(object, rays);
+  for (int i = 0; i < starts.count; ++i) {
+    found.Add(Refine(fit, at, in, shape, starts.X_CO[static_cast<std::size_t>(i)]));
   }
   if (last != nullptr) {
-    add(*last);
-  } else if (n == 3 && found < 4) {
-    // Near the cylinder through the corners two poses are one, and the least noise makes them none.
-    for (std::size_t i = 0; i < 2 * n; ++i) {
-      const auto from = static_cast<Eigen::Index>(2 * at[i / 2] + static_cast<int>(i % 2));
-      const double nudge = kNudge * std::sqrt(fit.cov(from, from)) / in.f_u_px;
-      for (const double side : {-nudge, nudge}) {
-        std::vector<cv::Point2d> moved = seen;
-        (i % 2 == 0 ? moved[i / 2].x : moved[i / 2].y) += side;
-        for (const model::Pose& start : ExactPoses(object, moved)) {
-          add(start);
-        }
-      }
-    }
+    found.Add(Refine(fit, at, in, shape, *last));
+  }
+  // Four corners have a second pose near the first's mirror image about the line of sight.
+  for (int i = 0, count = fit.count == 4 ? found.count : 0; i < count; ++i) {
+    found.Add(Refine(fit, at, in, shape, Mirrored(found.poses[static_cast<std::size_t>(i)].pose.X_CO)));
   }
 }
 
 // A square's quarter turns are one to it: of the four the most likely.
-void TurnSquare(const std::function<double(const Mat3&)>& cost, CornerPose& pose) {
+template <class Cost>
+void TurnSquare(const Cost& cost, CornerPose& pose) {
   const CornerPose found = pose;
   double best = cost(pose.X_CO.R);
   for (int quarters = 1; quarters < 4; ++quarters) {
@@ -237,37 +224,36 @@ bool PosesOfDisc(const Eigen::Matrix3d& conic, const Intrinsics& in, double diam
   return true;
 }
 
-std::vector<CornerPose> PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape shape,
-                                       const model::Pose* last) {
-  std::vector<CornerPose> poses;
+CornerPoses PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape shape,
+                           const model::Pose* last) {
+  CornerPoses poses;
   const int n = fit.count;
   if (n != static_cast<int>(shape.size())) {
     return poses;
   }
-  std::vector<Refined> all;
+  Found found;
   for (int first = 0; first < (n == 3 ? n : 1); ++first) {
-    FindPoses(fit, in, shape, last, first, all);
+    FindPoses(fit, in, shape, last, first, found);
   }
+  const auto all = std::span(found.poses).first(static_cast<std::size_t>(found.count));
   double least = 1e9;
   for (const Refined& r : all) {
     least = std::min(least, r.chi2);
   }
-  const std::function<double(const Mat3&)> cost = [last](const Mat3& R) {
+  const auto cost = [last](const Mat3& R) {
     return last != nullptr ? AngleBetween(last->R, R) : Unlikeness(R);
   };
-  for (const Refined& r : all) {
-    if (r.chi2 - least > kNoChance * std::max(1.0, 0.5 * least)) {
-      continue;
-    }
-    poses.push_back(r.pose);
+  for (Refined& r : all) {
     if (n == 4) {
-      TurnSquare(cost, poses.back());
+      TurnSquare(cost, r.pose);
     }
   }
-  std::sort(poses.begin(), poses.end(),
-            [&](const CornerPose& a, const CornerPose& b) { return cost(a.X_CO.R) < cost(b.X_CO.R); });
-  if (poses.size() > hal::kMaxPoses) {
-    poses.resize(hal::kMaxPoses);
+  std::sort(all.begin(), all.end(),
+            [&](const Refined& a, const Refined& b) { return cost(a.pose.X_CO.R) < cost(b.pose.X_CO.R); });
+  for (const Refined& r : all) {
+    if (r.chi2 - least <= kNoChance * std::max(1.0, 0.5 * least) && poses.count < hal::kMaxPoses) {
+      poses.pose[static_cast<std::size_t>(poses.count++)] = r.pose;
+    }
   }
   return poses;
 }

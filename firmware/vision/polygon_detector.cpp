@@ -13,9 +13,42 @@ namespace {
 constexpr double kMaxRmsPx = 0.35;     // edges further about the sides, but for noise: it is no target's
 constexpr double kMaxRmsShare = 0.05;  // of the radius, whatever the noise: another shape shows more
 constexpr double kMaxOffPx = 0.8;      // corners further from where the pose has them
+constexpr double kMaxOffPartPx = 0.3;  // the same where a part is hidden
 constexpr double kMinColourShare = 0.6;
 constexpr double kSureConfidence = 0.9;
-constexpr int kMostFits = 6;
+constexpr double kMostAgainst = 0.08;  // of the sides: neither the target nor what could hide it
+constexpr int kMostCornersHidden = 1;  // of two, any place along the sides would do
+constexpr double kLeastSeen = 0.35;    // of each side
+constexpr double kLeastOn = 0.6;       // of its edges on its line: else it is two things' that meet
+constexpr double kWholeOn = 0.95;      // the same, when nothing is hidden
+constexpr double kPartRmsPx = 0.06;    // edges about the sides, where a part is hidden,
+constexpr double kWholeRmsPx = 0.12;   // and where none is,
+constexpr double kNoiseRms = 1.6;      // and so much more for noise over contrast
+constexpr double kPartSigmaPx = 0.3;   // of a corner, where a part is hidden,
+constexpr double kNoiseSigma = 2.0;    // and so much more for noise over contrast
+constexpr double kGoesOnShare = 0.25;  // of the target's contrast: what covers it may have any brightness
+constexpr double kGoesOnSigmas = 1.3;  // of the noise, from the mean of some 24 pairs of samples
+constexpr int kMostFits = 12;
+
+bool IsWhole(const PolygonFit& fit) { return !fit.part_hidden && fit.least_on > kWholeOn; }
+
+// Whether the fitted sides are the target's, as far as what stands beside them says.
+bool IsTargets(const PolygonFit& fit) {
+  if (fit.against > kMostAgainst || fit.corners_hidden > kMostCornersHidden || fit.least_seen < kLeastSeen ||
+      fit.least_on < kLeastOn) {
+    return false;
+  }
+  // Next to what hides a part, edges of two things may pass for one that is blurred.
+  const bool whole = IsWhole(fit);
+  const double noise = fit.quiet / std::max(fit.contrast, 1.0);
+  const double scatter = (whole ? kWholeRmsPx : kPartRmsPx) + kNoiseRms * noise;
+  const double sigma = kPartSigmaPx + kNoiseSigma * noise;
+  if (!whole && fit.corners.cov.diagonal().maxCoeff() > sigma * sigma) {
+    return false;  // a corner that is so little known may be anywhere
+  }
+  // Of a square, four sides that are not all its own fit no pose.
+  return fit.rms_px < scatter && (whole || fit.bends_explained || fit.corners.count > 3);
+}
 
 }  // namespace
 
@@ -38,7 +71,7 @@ std::vector<Eigen::Vector2d> CornersOf(const DetectorConfig& config) {
 }
 
 PolygonDetector::PolygonDetector(const DetectorConfig& config)
-    : config_(config), shape_(CornersOf(config)), colour_(config.colour) {
+    : config_(config), shape_(CornersOf(config)), colour_(config.colour), fitter_(config.edge_noise) {
   double area = 0.0;
   double side = 1e9;
   for (std::size_t i = 0; i < shape_.size(); ++i) {
@@ -74,7 +107,7 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
   const PolygonFit fit = fitter_.Fit(image, config_.intrinsics, std::span(start.corner).first(n));
   const double radius = RadiusOf(std::span(fit.corners.corner).first(n));
   const double most = std::min(kMaxRmsPx + 1.3 * fit.noise_px, std::max(kMaxRmsPx, kMaxRmsShare * radius));
-  if (!fit.converged || fit.rms_px > most) {
+  if (!fit.converged || fit.rms_px > most || !IsTargets(fit)) {
     return;
   }
   const double sharp = 1.0 - fit.rms_px / most;
@@ -86,19 +119,23 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
   if (config_.by == FindBy::kColour && ColourShare(image, corners) < kMinColourShare) {
     return;
   }
-  if (n == 3 && config_.by == FindBy::kGray && SideGoesOn(image, fit)) {
+  // Not asked where the target's colour is known: a shadow beside it would look the same.
+  const double step = std::max(kGoesOnShare * fit.contrast, kGoesOnSigmas * fit.quiet);
+  if (config_.by == FindBy::kGray &&
+      fitter_.evidence().SideGoesOn(image, config_.intrinsics, corners, step)) {
     return;
   }
-  const std::vector<CornerPose> poses =
+  const CornerPoses found =
       PosesOfCorners(fit.corners, config_.intrinsics, shape_, X_CO_ ? &*X_CO_ : nullptr);
-  if (poses.empty()) {
+  if (found.count == 0) {
     return;
   }
+  const auto poses = std::span(found.pose).first(static_cast<std::size_t>(found.count));
   const CornerPose& pose = poses.front();
   const double distance = pose.X_CO.p.norm();
   const double corner_sigma = std::sqrt(fit.corners.cov.trace() / static_cast<double>(n));
-  if (pose.off_px > kMaxOffPx + 3.0 * corner_sigma || distance < config_.distance_min ||
-      distance > config_.distance_max) {
+  if (pose.off_px > (IsWhole(fit) ? kMaxOffPx : kMaxOffPartPx) + 3.0 * corner_sigma ||
+      distance < config_.distance_min || distance > config_.distance_max) {
     return;
   }
   Detection d;
@@ -136,60 +173,6 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
   d.cov_uvr_px2 = uvr * fit.corners.cov * uvr.transpose();
   best = d;
   best_X_CO_ = pose.X_CO;
-}
-
-// Whether the edge along a side goes on beyond a corner. Any triangle is a picture of the target, and what
-// covers a part of it makes one of two of its sides and an edge of its own; but that edge is longer.
-// Not asked where the target's colour is known: a shadow beside it would look the same.
-bool PolygonDetector::SideGoesOn(const cv::Mat& image, const PolygonFit& fit) const {
-  constexpr int kFrom = 5;  // beyond the corner, which is blurred [px]
-  constexpr int kTo = 12;
-  constexpr int kAside = 4;
-  constexpr double kShare = 0.25;  // of the target's contrast: what covers it may have any brightness
-  constexpr double kSigmas = 1.3;  // of the noise, from the mean of some 24 pairs of samples
-  const auto n = static_cast<std::size_t>(fit.corners.count);
-  const double most = std::max(kShare * fit.contrast, kSigmas * fit.quiet);
-  const auto at = [&](double u, double v, Eigen::Vector3d& colour) {
-    config_.intrinsics.Distort(u, v);
-    const auto x = static_cast<int>(std::lround(u));
-    const auto y = static_cast<int>(std::lround(v));
-    if (x < 0 || y < 0 || x >= image.cols || y >= image.rows) {
-      return false;
-    }
-    const std::uint8_t* pixel = image.ptr<std::uint8_t>(y) + x * image.channels();
-    colour = image.channels() == 3 ? Eigen::Vector3d(pixel[0], pixel[1], pixel[2])
-                                   : Eigen::Vector3d(pixel[0], 0.0, 0.0);
-    return true;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    const ImagePoint& a = fit.corners.corner[i];
-    const ImagePoint& b = fit.corners.corner[(i + 1) % n];
-    const double length = std::hypot(b.u_px - a.u_px, b.v_px - a.v_px);
-    const double du = (b.u_px - a.u_px) / length;
-    const double dv = (b.v_px - a.v_px) / length;
-    for (const bool beyond_b : {false, true}) {
-      const ImagePoint& end = beyond_b ? b : a;
-      Eigen::Vector3d step = Eigen::Vector3d::Zero();
-      int pairs = 0;
-      for (int far = kFrom; far <= kTo; ++far) {
-        const double along = beyond_b ? far : -far;
-        for (int aside = 2; aside <= kAside; ++aside) {
-          const double u = end.u_px + along * du;
-          const double v = end.v_px + along * dv;
-          Eigen::Vector3d left;
-          Eigen::Vector3d right;
-          if (at(u + aside * dv, v - aside * du, left) && at(u - aside * dv, v + aside * du, right)) {
-            step += right - left;
-            ++pairs;
-          }
-        }
-      }
-      if (pairs >= 8 && step.norm() > most * pairs) {
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
 // s and cov_s: the corners in the normalised image, from `first` on.

@@ -16,11 +16,11 @@ constexpr double kShortest = 3.5;   // a piece
 
 constexpr double kMinTurn = 0.30;  // sine of the angle between neighbouring sides
 constexpr std::size_t kMostSegments = 28;
-constexpr std::size_t kMostCandidates = 12;
+constexpr std::size_t kMostCandidates = 24;
 constexpr int kMostCuts = 7;
 constexpr int kSideBins = 24;
 constexpr double kAlongNormal = 0.85;
-constexpr double kGap = 1.6;  // how much of a side may be missing, in lengths of what is seen of it
+constexpr double kGap = 3.0;  // how much of a side may be missing, in lengths of what is seen of it
 
 }  // namespace
 

@@ -12,21 +12,20 @@ constexpr double kMinBlurPx = 0.45;
 constexpr double kMaxBlurPx = 3.0;
 constexpr int kRounds = 6;
 constexpr double kStillPx = 0.003;
-constexpr double kCornerPx = 4.0;  // edges nearer to a corner than this are rounded by it
-constexpr int kMinLines = 6;       // on a side
+constexpr double kCornerPx = 4.0;      // edges nearer to a corner than this are rounded by it
+constexpr double kRoundedBlurs = 4.5;  // and so near, in standard deviations of the blur, they may be off
+constexpr double kStraight = 0.95;  // share of a side's edges on its line: no part of it is another thing's
+constexpr int kMinLines = 6;        // on a side
 constexpr double kMinScalePx = 0.03;
-constexpr double kCommonPx = 0.01;  // what lens and light may move a side
-constexpr double kGridPx = 0.06;    // and the pixels' grid and colours a corner, otherwise in each picture
-
-double Biweight(double residual, double limit) {
-  const double t = residual / limit;
-  return std::fabs(t) >= 1.0 ? 0.0 : (1.0 - t * t) * (1.0 - t * t);
-}
+// What may shift and turn a side of which something that hides a part is next to the rest.
+constexpr double kBesidePx = 0.04;
 
 }  // namespace
 
-bool PolygonFitter::ReadLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit) {
+// Lines across the sides, and what stands beside them.
+bool PolygonFitter::PlaceLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit) {
   const int n = fit.corners.count;
+  std::array<int, Detection::kMaxCorners> ends{};
   count_ = 0;
   for (int k = 0; k < n; ++k) {
     const ImagePoint& p = fit.corners.corner[static_cast<std::size_t>(k)];
@@ -41,6 +40,7 @@ bool PolygonFitter::ReadLines(const cv::Mat& image, const Intrinsics& in, const 
     side.nu = dv / side.length;
     side.nv = -du / side.length;
     side.from = count_;
+    side.line = SideLine{};
     const double skip = std::min(kCornerPx, 0.2 * side.length);
     const int lines =
         std::clamp(static_cast<int>(side.length - 2.0 * skip), kMinLines, Profiles::kMaxLines / n);
@@ -52,79 +52,72 @@ bool PolygonFitter::ReadLines(const cv::Mat& image, const Intrinsics& in, const 
       place_[line] = 2.0 * way / side.length - 1.0;
     }
     side.to = count_;
+    ends[static_cast<std::size_t>(k)] = count_;
+  }
+  const auto corners = static_cast<std::size_t>(n);
+  evidence_.Look(image, in, std::span(fit.corners.corner).first(corners),
+                 std::span(lines_).first(static_cast<std::size_t>(count_)), std::span(ends).first(corners));
+  return true;
+}
+
+bool PolygonFitter::ReadLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit) {
+  if (!PlaceLines(image, in, fit)) {
+    return false;
   }
   profiles_.Read(image, in, lines_.data(), count_, false);
   at_px_.fill(0.0);
   return true;
 }
 
-bool PolygonFitter::FitSide(Side& side, PolygonFit& fit, double& rms2, double& noise2, double& weights) {
-  constexpr int kReweights = 4;
-  std::array<double, Profiles::kMaxLines> sizes;
-  const double noise = std::max(profiles_.noise(), 0.3);
+bool PolygonFitter::FitSide(Side& side, double blur, PolygonFit& fit, double& rms2, double& noise2,
+                            double& weights) {
+  std::array<SideEdge, Profiles::kMaxLines> edges;
+  std::array<int, Profiles::kMaxLines> lines;
+  const double noise = std::max(profiles_.noise(), edge_noise_.floor);
   const double quiet = std::min(noise, 1.5 * profiles_.quiet() + 0.5);
-  // At first where the expected side is.
-  side.a = 0.0;
-  side.b = 0.0;
+  const double straight = 1.0 - 2.0 * kRoundedBlurs * blur / side.length;
+  std::size_t count = 0;
+  int clear = 0;
   for (int i = side.from; i < side.to; ++i) {
-    side.a += at_px_[static_cast<std::size_t>(i)] / (side.to - side.from);
+    const auto k = static_cast<std::size_t>(i);
+    const Profiles::Edge& edge = profiles_.edge(i);
+    weight_[k] = 0.0;
+    off_[k] = false;
+    if (!evidence_.clear(i)) {
+      continue;
+    }
+    ++clear;
+    if (edge.valid) {
+      lines[count] = i;
+      edges[count++] = {place_[k], edge.at_px, noise * noise / edge.info + kMinScalePx * kMinScalePx,
+                        std::fabs(place_[k]) > straight};
+    }
   }
-  for (int reweight = 0; reweight < kReweights; ++reweight) {
-    std::size_t count = 0;
-    const auto residual_of = [&](int i) {
-      return profiles_.edge(i).at_px - side.a - side.b * place_[static_cast<std::size_t>(i)];
-    };
-    const auto variance_of = [&](int i) {
-      return noise * noise / profiles_.edge(i).info + kMinScalePx * kMinScalePx;
-    };
-    for (int i = side.from; i < side.to; ++i) {
-      if (profiles_.edge(i).valid) {
-        sizes[count++] = std::fabs(residual_of(i)) / std::sqrt(variance_of(i));
-      }
-    }
-    if (count < kMinLines / 2) {
-      return false;
-    }
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(sizes.begin(), middle, sizes.begin() + static_cast<std::ptrdiff_t>(count));
-    const double limit = 4.685 * std::max(1.4826 * *middle, 1.0);
-    Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-12;
-    Eigen::Vector2d right = Eigen::Vector2d::Zero();
-    double chi2 = 0.0;
-    double sum = 0.0;
-    for (int i = side.from; i < side.to; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      weight_[k] = 0.0;
-      if (!profiles_.edge(i).valid) {
-        continue;
-      }
-      const double info = 1.0 / variance_of(i);
-      const double residual = residual_of(i);
-      const double w = Biweight(residual * std::sqrt(info), limit);
-      weight_[k] = w;
-      const Eigen::Vector2d row(1.0, place_[k]);
-      normal += w * info * row * row.transpose();
-      right += w * info * profiles_.edge(i).at_px * row;
-      chi2 += w * info * residual * residual;
-      sum += w;
-      if (reweight == kReweights - 1) {
-        rms2 += w * residual * residual;
-        noise2 += w * quiet * quiet / profiles_.edge(i).info;
-        weights += w;
-        fit.contrast += w * profiles_.edge(i).contrast;
-        fit.seen += w > 0.2 ? 1.0 : 0.0;
-      }
-    }
-    const Eigen::Matrix2d inverse = normal.inverse();
-    if (sum < 3.0 || !inverse.allFinite()) {
-      return false;
-    }
-    const Eigen::Vector2d line = inverse * right;
-    side.a = line[0];
-    side.b = line[1];
-    side.cov = std::max(chi2 / std::max(sum - 2.0, 1.0), 0.25) * inverse;
-    side.cov(0, 0) += kCommonPx * kCommonPx;
+  const int beside =
+      static_cast<int>(std::ceil(SideEvidence::kBesidePx * (side.to - side.from) / side.length));
+  if (!FitSideLine(std::span(edges).first(count), beside, side.line)) {
+    return false;
   }
+  for (std::size_t j = 0; j < count; ++j) {
+    const SideEdge& e = edges[j];
+    const Profiles::Edge& edge = profiles_.edge(lines[j]);
+    const double off = e.at_px - side.line.a - side.line.b * e.t;
+    weight_[static_cast<std::size_t>(lines[j])] = e.weight;
+    off_[static_cast<std::size_t>(lines[j])] = e.off;
+    rms2 += e.weight * off * off;
+    noise2 += e.weight * quiet * quiet / edge.info;
+    weights += e.weight;
+    fit.contrast += e.weight * edge.contrast;
+    fit.seen += e.weight > 0.2 ? 1.0 : 0.0;
+  }
+  fit.least_on = std::min(fit.least_on, side.line.on * static_cast<double>(count) / std::max(clear, 1));
+  // Lens and light shift the side, and turn what is seen of it about its middle.
+  const Eigen::Vector2d turned(-side.line.middle, 1.0);
+  const bool part = clear < side.to - side.from || side.line.on < kStraight;
+  const double common = part ? std::max(kBesidePx, edge_noise_.shift_px) : edge_noise_.shift_px;
+  side.line.cov(0, 0) += common * common;
+  side.line.cov +=
+      common * common / (3.0 * side.line.spread * side.line.spread) * turned * turned.transpose();
   return true;
 }
 
@@ -142,7 +135,7 @@ void PolygonFitter::MoveCorners(PolygonFit& fit) const {
     Eigen::Matrix2d normals;
     normals << s.nu, s.nv, e.nu, e.nv;
     const Eigen::Matrix2d inverse = normals.inverse();
-    const Eigen::Vector2d move = inverse * Eigen::Vector2d(s.a + s.b, e.a - e.b);
+    const Eigen::Vector2d move = inverse * Eigen::Vector2d(s.line.a + s.line.b, e.line.a - e.line.b);
     ImagePoint& corner = fit.corners.corner[static_cast<std::size_t>(k)];
     corner.u_px += move.x();
     corner.v_px += move.y();
@@ -150,21 +143,14 @@ void PolygonFitter::MoveCorners(PolygonFit& fit) const {
     J.block<2, 1>(2 * k, 2 * before + 1) += inverse.col(0);
     J.block<2, 1>(2 * k, 2 * k) += inverse.col(1);
     J.block<2, 1>(2 * k, 2 * k + 1) -= inverse.col(1);
-    cov.block<2, 2>(2 * k, 2 * k) = e.cov;
+    cov.block<2, 2>(2 * k, 2 * k) = e.line.cov;
   }
   fit.corners.cov = J * cov * J.transpose();
-  fit.corners.cov.diagonal().array() += kGridPx * kGridPx;
+  fit.corners.cov.diagonal().array() += edge_noise_.corner_px * edge_noise_.corner_px;
 }
 
-PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> start) {
-  PolygonFit fit;
-  fit.corners.count = static_cast<int>(start.size());
-  std::copy(start.begin(), start.end(), fit.corners.corner.begin());
-  double blur = kStartBlurPx;
-  weight_.fill(1.0);
-  if (!ReadLines(image, in, fit)) {
-    return fit;
-  }
+// Rounds of measuring and fitting, until one moves the sides no more.
+bool PolygonFitter::Approach(const cv::Mat& image, const Intrinsics& in, double& blur, PolygonFit& fit) {
   for (int round = 0; round < kRounds; ++round) {
     profiles_.Measure(at_px_, weight_, blur);
     double rms2 = 0.0;
@@ -172,16 +158,17 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
     double weights = 0.0;
     fit.contrast = 0.0;
     fit.seen = 0.0;
+    fit.least_on = 1.0;
     double moved = 0.0;
     double read = 0.0;
     for (int k = 0; k < fit.corners.count; ++k) {
       Side& side = sides_[static_cast<std::size_t>(k)];
-      if (!FitSide(side, fit, rms2, noise2, weights)) {
-        return fit;
+      if (!FitSide(side, blur, fit, rms2, noise2, weights)) {
+        return false;
       }
       for (int i = side.from; i < side.to; ++i) {
         const auto line = static_cast<std::size_t>(i);
-        const double now = side.a + side.b * place_[line];
+        const double now = side.line.a + side.line.b * place_[line];
         moved = std::max(moved, std::fabs(now - at_px_[line]));
         read = std::max(read, std::fabs(now));
         at_px_[line] = now;
@@ -202,15 +189,45 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
         break;
       }
       if (!ReadLines(image, in, fit)) {
-        return fit;
+        return false;
       }
     }
   }
-  for (const ImagePoint& p : std::span(fit.corners.corner).first(start.size())) {
+  for (const ImagePoint& p :
+       std::span(fit.corners.corner).first(static_cast<std::size_t>(fit.corners.count))) {
     if (!std::isfinite(p.u_px) || !std::isfinite(p.v_px)) {
-      return fit;
+      return false;
     }
   }
+  return true;
+}
+
+PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> start) {
+  PolygonFit fit;
+  fit.corners.count = static_cast<int>(start.size());
+  std::copy(start.begin(), start.end(), fit.corners.corner.begin());
+  double blur = kStartBlurPx;
+  // Once more where a part is hidden: which, is only told well from where the sides are.
+  for (int pass = 0; pass < 2; ++pass) {
+    weight_.fill(1.0);
+    if (!ReadLines(image, in, fit) || !Approach(image, in, blur, fit)) {
+      return fit;
+    }
+    if (!evidence_.hidden() && fit.least_on > kStraight) {
+      break;
+    }
+  }
+  if (!PlaceLines(image, in, fit)) {
+    return fit;
+  }
+  fit.least_seen = 1.0;
+  for (int k = 0; k < fit.corners.count; ++k) {
+    fit.least_seen = std::min(fit.least_seen, evidence_.side(k).seen);
+  }
+  fit.part_hidden = evidence_.hidden();
+  fit.against = evidence_.against();
+  fit.bends_explained = evidence_.ExplainsBends(off_);
+  fit.corners_hidden = evidence_.CornersHidden();
   fit.converged =
       fit.corners.cov.allFinite() && RadiusOf(std::span(fit.corners.corner).first(start.size())) > 0.0;
   return fit;

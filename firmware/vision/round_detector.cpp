@@ -55,7 +55,8 @@ Mat3 AxesAbout(const Vec3& normal) {
 }  // namespace
 
 template <class Curve>
-RoundDetector<Curve>::RoundDetector(const DetectorConfig& config) : config_(config), colour_(config.colour) {
+RoundDetector<Curve>::RoundDetector(const DetectorConfig& config)
+    : config_(config), colour_(config.colour), fitter_(config.edge_noise) {
   const double r = 0.5 * config.size * std::max(config.intrinsics.f_u_px, config.intrinsics.f_v_px);
   // Off the axis outlines are larger; a tilted disc's is smaller.
   limits_.radius_min_px =

@@ -27,7 +27,9 @@ std::uint64_t HeapCallsOf(Function function) {
 DetectorConfig ConfigOf(TargetKind kind, FindBy by) {
   const bench::PictureCamera camera;
   DetectorConfig config;
-  config.kind = kind == TargetKind::kSphere ? hal::FeatureKind::kSphere : hal::FeatureKind::kCircle;
+  constexpr std::array kKinds{hal::FeatureKind::kSphere, hal::FeatureKind::kCircle, hal::FeatureKind::kSquare,
+                              hal::FeatureKind::kTriangle};
+  config.kind = kKinds[static_cast<std::size_t>(kind)];
   config.by = by;
   config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
                        camera.f_px,     camera.c_u_px,    camera.c_v_px};
@@ -82,6 +84,12 @@ TEST_F(DetectorHeapTest, SphereByBrightness) { EXPECT_EQ(CallsOf(TargetKind::kSp
 TEST_F(DetectorHeapTest, SphereByColour) { EXPECT_EQ(CallsOf(TargetKind::kSphere, FindBy::kColour), 0U); }
 TEST_F(DetectorHeapTest, DiscByBrightness) { EXPECT_EQ(CallsOf(TargetKind::kCircle, FindBy::kGray), 0U); }
 TEST_F(DetectorHeapTest, DiscByColour) { EXPECT_EQ(CallsOf(TargetKind::kCircle, FindBy::kColour), 0U); }
+TEST_F(DetectorHeapTest, SquareByBrightness) { EXPECT_EQ(CallsOf(TargetKind::kSquare, FindBy::kGray), 0U); }
+TEST_F(DetectorHeapTest, SquareByColour) { EXPECT_EQ(CallsOf(TargetKind::kSquare, FindBy::kColour), 0U); }
+TEST_F(DetectorHeapTest, TriangleByBrightness) {
+  EXPECT_EQ(CallsOf(TargetKind::kTriangle, FindBy::kGray), 0U);
+}
+TEST_F(DetectorHeapTest, TriangleByColour) { EXPECT_EQ(CallsOf(TargetKind::kTriangle, FindBy::kColour), 0U); }
 
 // The test's own proof.
 TEST_F(DetectorHeapTest, AVectorIsSeen) {

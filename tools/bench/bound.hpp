@@ -3,7 +3,8 @@
 //
 // A pixel's mean brightness changes by the step across the outline times how much of the pixel the moving
 // outline sweeps; those changes over the noise, squared and summed, are the Fisher information. The levels on
-// both sides and the lens' blur count as known, so a real detector cannot quite get there.
+// both sides and the lens' blur count as known, so a real detector cannot quite get there. A polygon's
+// unknowns are its corners' places, each for itself: its middle is their mean, as the detector's is.
 #pragma once
 
 #include "picture.hpp"

@@ -32,12 +32,24 @@ class Ours final : public Contestant {
   }
   Answer LookAgain(const cv::Mat& image) override {
     const vision::Detection d = detector_.Detect(image);
-    return {d.found, d.u_px, d.v_px, d.radius_px,
-            std::sqrt(0.5 * (d.cov_uvr_px2(0, 0) + d.cov_uvr_px2(1, 1)))};
+    return {d.found,
+            d.u_px,
+            d.v_px,
+            d.radius_px,
+            std::sqrt(0.5 * (d.cov_uvr_px2(0, 0) + d.cov_uvr_px2(1, 1))),
+            CornersOf(d)};
   }
   [[nodiscard]] bool tracks() const override { return true; }
 
  private:
+  static std::vector<Eigen::Vector2d> CornersOf(const vision::Detection& d) {
+    std::vector<Eigen::Vector2d> corners;
+    corners.reserve(d.Corners().size());
+    for (const vision::ImagePoint& p : d.Corners()) {
+      corners.emplace_back(p.u_px, p.v_px);
+    }
+    return corners;
+  }
   static vision::DetectorConfig Config(TargetKind kind, const PictureCamera& camera, bool colour) {
     vision::DetectorConfig config;
     config.kind = KindOf(kind);
@@ -75,8 +87,12 @@ class Hough final : public Contestant {
     if (circles_.empty()) {
       return {};
     }
-    return {true, static_cast<double>(circles_[0][0]), static_cast<double>(circles_[0][1]),
-            static_cast<double>(circles_[0][2]), 0.0};
+    return {true,
+            static_cast<double>(circles_[0][0]),
+            static_cast<double>(circles_[0][1]),
+            static_cast<double>(circles_[0][2]),
+            0.0,
+            {}};
   }
 
  private:
@@ -104,7 +120,7 @@ class ThresholdEllipse final : public Contestant {
           0.5 * std::sqrt(static_cast<double>(e.size.width) * static_cast<double>(e.size.height));
       if (radius > kRadiusMinPx && radius < kRadiusMaxPx) {
         roundest = round;
-        best = {true, static_cast<double>(e.center.x), static_cast<double>(e.center.y), radius, 0.0};
+        best = {true, static_cast<double>(e.center.x), static_cast<double>(e.center.y), radius, 0.0, {}};
       }
     }
     return best;

@@ -15,7 +15,8 @@ struct Answer {
   double u_px = 0.0;
   double v_px = 0.0;
   double radius_px = 0.0;
-  double sigma_px = 0.0;  // what it says itself of its centre, along one axis; 0: nothing
+  double sigma_px = 0.0;                 // what it says itself of its centre, along one axis; 0: nothing
+  std::vector<Eigen::Vector2d> corners;  // of a polygon [px]
 };
 
 class Contestant {

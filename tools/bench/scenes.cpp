@@ -89,8 +89,8 @@ Body MakeTarget(TargetKind kind, const PictureCamera& camera, bool off_axis, Cha
   return body;
 }
 
-// A bar before the target that hides 30 % of its outline.
-Body MakeOccluder(const PictureCamera& camera, const Body& target, Chance& chance) {
+// A bar before the target that hides the share `hidden` of its outline.
+Body MakeOccluder(const PictureCamera& camera, const Body& target, double hidden, Chance& chance) {
   const TrueOutline outline = OutlineOf(camera, target);
   const double about = chance.Between(0.0, 2.0 * std::numbers::pi);
   const Vector2d out(std::cos(about), std::sin(about));
@@ -98,9 +98,10 @@ Body MakeOccluder(const PictureCamera& camera, const Body& target, Chance& chanc
   for (const Vector2d& p : outline.points) {
     along.push_back(out.dot(p));
   }
-  const auto at = along.begin() + static_cast<std::ptrdiff_t>(0.7 * static_cast<double>(along.size()));
+  const auto at =
+      along.begin() + static_cast<std::ptrdiff_t>((1.0 - hidden) * static_cast<double>(along.size()));
   std::nth_element(along.begin(), at, along.end());
-  const double edge = *at;  // 30 % of the outline's points are further out
+  const double edge = *at;  // as many of the outline's points are further out
   Body body;
   body.shape = Shape::kPolygon;
   body.p = Vector3d(0.0, 0.0, 0.4 * target.p.z());
@@ -185,7 +186,7 @@ const std::vector<SceneClass>& SceneClasses() {
       {.name = "noise-30", .noise = 30.0},
       {.name = "blur", .noise = 3.0, .blur_px = 2.0},
       {.name = "low-contrast", .noise = 3.0, .contrast_min = 20.0, .contrast_max = 20.0},
-      {.name = "occluded", .noise = 3.0, .occluded = true, .goal_px = 0.03},
+      {.name = "occluded", .noise = 3.0, .hidden = 0.3, .goal_px = 0.03},
       {.name = "clutter", .noise = 3.0, .clutter = true},
       {.name = "off-axis", .noise = 3.0, .off_axis = true},
   };
@@ -224,14 +225,14 @@ PictureScene MakeScene(const SceneClass& c, TargetKind kind, bool with_target, u
       target.bgr = Vector3d(30.0, 35.0, 190.0);
     }
     scene.bodies.push_back(target);
-    if (c.occluded) {
-      Body occluder = MakeOccluder(scene.camera, target, chance);
+    if (c.hidden > 0.0) {
+      Body occluder = MakeOccluder(scene.camera, target, c.hidden, chance);
       occluder.bgr.setConstant(chance.Coin() ? 20.0 : 0.5 * (ground + target.bgr.mean()));
       scene.bodies.push_back(occluder);
     }
-  } else if (c.occluded) {
+  } else if (c.hidden > 0.0) {
     const Body ghost = MakeTarget(kind, scene.camera, false, chance);
-    Body occluder = MakeOccluder(scene.camera, ghost, chance);
+    Body occluder = MakeOccluder(scene.camera, ghost, c.hidden, chance);
     occluder.bgr.setConstant(20.0);
     scene.bodies.push_back(occluder);
   }

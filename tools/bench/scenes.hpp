@@ -16,8 +16,8 @@ struct SceneClass {
   double blur_px = 0.0;
   double contrast_min = 80.0;  // of the target on the ground [gray levels]
   double contrast_max = 140.0;
-  bool occluded = false;  // 30 % of the outline
-  bool clutter = false;   // in colour, among things of another colour, shape or size
+  double hidden = 0.0;   // share of the outline that something else stands before
+  bool clutter = false;  // in colour, among things of another colour, shape or size
   bool off_axis = false;
   // Sphere and circle, when there is one: rms of the centre shall be at most this, or 1.3 times the bound.
   double goal_px = 0.0;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "bound.hpp"
@@ -17,7 +19,9 @@
 namespace fovea::bench {
 namespace {
 
-constexpr double kWrongPx = 2.0;  // further off than this is wrong
+constexpr double kWrongPx = 2.0;  // further off than this is wrong, centre or corner
+constexpr double kGoalMs = 0.5;
+constexpr double kGoalTrackedMs = 0.1;
 
 struct Score {
   int with_target = 0;
@@ -26,6 +30,8 @@ struct Score {
   int wrong = 0;  // further off, or found where nothing is
   double centre2 = 0.0;
   double radius2 = 0.0;
+  double bound_centre2 = 0.0;  // of those found
+  double bound_radius2 = 0.0;
   double chi2 = 0.0;
   double worst_px = 0.0;
   std::vector<double> ms;
@@ -48,7 +54,33 @@ double MsOf(Function function) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-void Judge(Contestant& contestant, const cv::Mat& image, const TrueOutline* truth, Score& score) {
+// What is true of a picture's target, and how well it can be known.
+struct Truth {
+  TrueOutline outline;
+  std::size_t corners = 0;  // of a polygon
+  Bound bound;
+};
+
+// How far the centre is off, or the furthest corner.
+double OffOf(const Answer& answer, const Truth& truth) {
+  double off_px = std::hypot(answer.u_px - truth.outline.u_px, answer.v_px - truth.outline.v_px);
+  if (answer.corners.size() != truth.corners || truth.corners == 0) {
+    return off_px;
+  }
+  const std::size_t per_side = truth.outline.points.size() / truth.corners;
+  double least_px = std::numeric_limits<double>::infinity();
+  for (std::size_t first = 0; first < truth.corners; ++first) {
+    double furthest_px = 0.0;
+    for (std::size_t i = 0; i < truth.corners; ++i) {
+      const Eigen::Vector2d& corner = truth.outline.points[((first + i) % truth.corners) * per_side];
+      furthest_px = std::max(furthest_px, (answer.corners[i] - corner).norm());
+    }
+    least_px = std::min(least_px, furthest_px);
+  }
+  return std::max(off_px, least_px);
+}
+
+void Judge(Contestant& contestant, const cv::Mat& image, const Truth* truth, Score& score) {
   Answer answer;
   score.ms.push_back(MsOf([&] { answer = contestant.Look(image); }));
   if (truth == nullptr) {
@@ -60,14 +92,17 @@ void Judge(Contestant& contestant, const cv::Mat& image, const TrueOutline* trut
   if (!answer.found) {
     return;
   }
-  const double off_px = std::hypot(answer.u_px - truth->u_px, answer.v_px - truth->v_px);
-  if (off_px > kWrongPx) {
+  const TrueOutline& outline = truth->outline;
+  const double off_px = std::hypot(answer.u_px - outline.u_px, answer.v_px - outline.v_px);
+  if (OffOf(answer, *truth) > kWrongPx) {
     ++score.wrong;
     return;
   }
   ++score.found;
   score.centre2 += 0.5 * off_px * off_px;
-  score.radius2 += std::pow(answer.radius_px - truth->radius_px, 2);
+  score.radius2 += std::pow(answer.radius_px - outline.radius_px, 2);
+  score.bound_centre2 += truth->bound.centre_px * truth->bound.centre_px;
+  score.bound_radius2 += truth->bound.radius_px * truth->bound.radius_px;
   score.worst_px = std::max(score.worst_px, off_px);
   score.chi2 += answer.sigma_px > 0.0 ? 0.5 * std::pow(off_px / answer.sigma_px, 2) : 0.0;
   if (contestant.tracks()) {
@@ -99,67 +134,58 @@ void RunClass(const SceneClass& scenes, TargetKind kind, const VisionArguments& 
   for (const auto& contestant : contestants) {
     rows.push_back({contestant->name(), {}});
   }
-  double bound_centre2 = 0.0;
-  double bound_radius2 = 0.0;
-  int bounds = 0;
   for (int i = 0; i < arguments.pictures; ++i) {
     const bool with_target = i % 3 != 2;
     const auto seed = static_cast<unsigned>(arguments.seed * 100'003 + i);
     const PictureScene scene = MakeScene(scenes, kind, with_target, seed);
     const cv::Mat image = Draw(scene);
-    TrueOutline truth;
+    Truth truth;
     if (with_target) {
-      truth = OutlineOf(scene.camera, scene.bodies.front());
-      const Bound bound = CramerRao(scene);
-      bound_centre2 += bound.centre_px * bound.centre_px;
-      bound_radius2 += bound.radius_px * bound.radius_px;
-      ++bounds;
+      const Body& body = scene.bodies.front();
+      truth = {OutlineOf(scene.camera, body), body.corners.size(), CramerRao(scene)};
     }
     for (std::size_t k = 0; k < contestants.size(); ++k) {
       Judge(*contestants[k], image, with_target ? &truth : nullptr, rows[k].score);
     }
   }
-  const double bound_centre = std::sqrt(bound_centre2 / std::max(bounds, 1));
-  const double bound_radius = std::sqrt(bound_radius2 / std::max(bounds, 1));
-  // The bound is on the middle of the outline; a polygon's is the mean of its corners, which it does not
-  // name.
   const bool is_round = kind == TargetKind::kSphere || kind == TargetKind::kCircle;
   for (const Row& row : rows) {
     const Score& s = row.score;
     const double n = std::max(s.found, 1);
     const double centre = std::sqrt(s.centre2 / n);
     const double radius = std::sqrt(s.radius2 / n);
+    const double bound_centre = std::sqrt(s.bound_centre2 / n);
+    const double bound_radius = std::sqrt(s.bound_radius2 / n);
+    std::optional<double> goal_centre;
+    std::optional<double> goal_radius;
+    if (is_round && row.contestant == "fovea" && scenes.goal_px > 0.0) {
+      goal_centre = std::max(scenes.goal_px, 1.3 * bound_centre);
+      goal_radius = std::max(scenes.goal_px, 1.3 * bound_radius);
+    }
     if (!arguments.json) {
       const std::string tracked =
           s.tracked_ms.empty() ? "     -" : fmt::format("{:6.3f}", Median(s.tracked_ms));
-      const std::string bound =
-          is_round ? fmt::format("{:7.4f} {:7.4f}", bound_centre, bound_radius) : "      -       -";
-      fmt::print("{:<9}{:<13}{:<23}{:5.1f} {:5.1f} {:8.4f} {:8.4f} {} {:7.3f} {:6.2f} {:7.3f} {}\n",
-                 NameOf(kind), scenes.name, row.contestant, 100.0 * s.found / std::max(s.with_target, 1),
-                 100.0 * s.wrong / std::max(s.with_target + s.without, 1), centre, radius, bound, s.worst_px,
-                 s.chi2 / n, Median(s.ms), tracked);
+      fmt::print(
+          "{:<9}{:<13}{:<23}{:5.1f} {:5.1f} {:8.4f} {:8.4f} {:7.4f} {:7.4f} {:>6} {:7.3f} {:6.2f} {:7.3f} "
+          "{}\n",
+          NameOf(kind), scenes.name, row.contestant, 100.0 * s.found / std::max(s.with_target, 1),
+          100.0 * s.wrong / std::max(s.with_target + s.without, 1), centre, radius, bound_centre,
+          bound_radius, goal_centre ? fmt::format("{:.3f}", *goal_centre) : "-", s.worst_px, s.chi2 / n,
+          Median(s.ms), tracked);
       std::fflush(stdout);
     }
     if (row.contestant != "fovea") {
       continue;
     }
     const std::string prefix = fmt::format("vision_{}_{}_", NameOf(kind), scenes.name);
-    std::optional<double> goal_centre;
-    std::optional<double> goal_radius;
-    if (is_round && scenes.goal_px > 0.0) {
-      goal_centre = std::max(scenes.goal_px, 1.3 * bound_centre);
-      goal_radius = std::max(scenes.goal_px, 1.3 * bound_radius);
-    }
     figures.push_back({prefix + "found", 100.0 * s.found / std::max(s.with_target, 1), "%", 100.0});
     figures.push_back({prefix + "wrong", 100.0 * s.wrong / std::max(s.with_target + s.without, 1), "%", 0.0});
     figures.push_back({prefix + "centre_rms", centre, "px", goal_centre});
     figures.push_back({prefix + "radius_rms", radius, "px", goal_radius});
-    if (is_round) {
-      figures.push_back({prefix + "centre_bound", bound_centre, "px", std::nullopt});
-      figures.push_back({prefix + "radius_bound", bound_radius, "px", std::nullopt});
-    }
-    figures.push_back({prefix + "ms_p50", Median(s.ms), "ms", 0.5});
-    figures.push_back({prefix + "tracked_ms_p50", Median(s.tracked_ms), "ms", 0.1});
+    figures.push_back({prefix + "centre_bound", bound_centre, "px", std::nullopt});
+    figures.push_back({prefix + "radius_bound", bound_radius, "px", std::nullopt});
+    figures.push_back({prefix + "ms_p50", Median(s.ms), "ms", kGoalMs});
+    figures.push_back({prefix + "tracked_ms_p50", Median(s.tracked_ms), "ms", kGoalTrackedMs});
   }
 }
 
@@ -170,10 +196,13 @@ int RunVision(const VisionArguments& arguments) {
   if (!arguments.json) {
     fmt::print("{} pictures of 640x480 a class, a third of them without a target; rms along one axis [px]\n",
                arguments.pictures);
-    fmt::print("{:<9}{:<13}{:<23}{:>5} {:>5} {:>8} {:>8} {:>7} {:>7} {:>7} {:>6} {:>7} {:>6}\n", "target",
-               "class", "", "found", "wrong", "centre", "radius", "CR c.", "CR r.", "worst", "chi2/2", "ms",
-               "track");
+    fmt::print("{:<9}{:<13}{:<23}{:>5} {:>5} {:>8} {:>8} {:>7} {:>7} {:>6} {:>7} {:>6} {:>7} {:>6}\n",
+               "target", "class", "", "found", "wrong", "centre", "radius", "CR c.", "CR r.", "goal", "worst",
+               "chi2/2", "ms", "track");
     fmt::print("{:<45}{:>5} {:>5}\n", "", "%", "%");
+    // As wide as the figures below them.
+    fmt::print("{:<45}{:5.1f} {:5.1f} {:>63.3f} {:6.3f}\n", "goals, of what is round", 100.0, 0.0, kGoalMs,
+               kGoalTrackedMs);
   }
   std::vector<Figure> figures;
   bool any = false;

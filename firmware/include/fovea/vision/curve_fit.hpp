@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "fovea/vision/curve.hpp"
+#include "fovea/vision/detector_config.hpp"
 #include "fovea/vision/profiles.hpp"
 
 namespace fovea::vision {
@@ -26,6 +27,7 @@ struct CurveFit {
 // Keeps the memory that a fit works in. One thread uses it.
 class CurveFitter {
  public:
+  explicit CurveFitter(const EdgeNoise& edge_noise) : edge_noise_(edge_noise) {}
   // Fits the curve near `start`, which may be some 2 px off. `shaded`: it is a ball's, whose surface turns
   // away.
   template <class Curve>
@@ -58,6 +60,7 @@ class CurveFitter {
     std::size_t line = 0;
   };
 
+  const EdgeNoise edge_noise_;
   Profiles profiles_;
   std::array<ProfileLine, Profiles::kMaxLines> lines_;
   int count_ = 0;

@@ -25,12 +25,20 @@ struct HoughConfig {
   double spacing_px = 30.0;    // between circles' middles
 };
 
+// What no picture of a camera tells of itself, and the covariance allows for.
+struct EdgeNoise {
+  double floor = 0.3;       // of a picture's noise: less is not believed [gray levels, standard deviation]
+  double shift_px = 0.01;   // what lens and light may move an outline or a side as a whole
+  double corner_px = 0.06;  // what the pixels' grid and colours may move a corner, otherwise in each picture
+};
+
 struct DetectorConfig {
   hal::FeatureKind kind = hal::FeatureKind::kSphere;
   Intrinsics intrinsics;
   FindBy by = FindBy::kColour;
   ColourConfig colour;
   HoughConfig hough;
+  EdgeNoise edge_noise;
   double size = 0.08;  // sphere's and disc's diameter, square's side [m]
   // The triangle's corners in O [m]; they are taken about their mean.
   std::array<Eigen::Vector2d, 3> triangle{Eigen::Vector2d{-0.05, 0.04}, Eigen::Vector2d{0.06, 0.03},

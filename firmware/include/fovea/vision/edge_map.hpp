@@ -41,6 +41,7 @@ class EdgeMap {
   void ReduceBy(const cv::Mat& image, const cv::Rect& area, const ColourModel* colour);
   void FindGradient();
   [[nodiscard]] float NoiseOfGradient();
+  void ForgetRidges();
   void FindRidges(const cv::Rect& area);
   void Link();
   [[nodiscard]] int Next(int index, float along_u, float along_v) const;
@@ -56,12 +57,14 @@ class EdgeMap {
   int factor_ = 4;
   int width_ = 0;
   int height_ = 0;
-  std::vector<std::uint16_t> rows_;     // sums of `factor` rows
-  std::vector<std::uint8_t> small_;     // [height x width]
-  std::vector<std::int16_t> dx_, dy_;   // Sobel's sums
-  std::vector<std::int32_t> size2_;     // their squared length
-  std::vector<std::int32_t> sample_;    // of size2_, for the noise
-  std::vector<std::int32_t> ridge_at_;  // index in ridges_, or -1
+  std::vector<std::uint16_t> rows_;          // sums of `factor` rows
+  std::vector<std::uint8_t> small_;          // [height x width]
+  std::vector<std::int16_t> down_, across_;  // a row's sums and differences of three
+  std::vector<std::int16_t> dx_, dy_;        // Sobel's sums
+  std::vector<std::int32_t> size2_;          // their squared length
+  std::vector<std::int32_t> sample_;         // of size2_, for the noise
+  std::vector<std::int32_t> ridge_at_;       // index in ridges_, or -1
+  std::vector<std::size_t> ridge_places_;    // where ridge_at_ is not -1
   std::vector<Ridge> ridges_;
   std::vector<EdgePoint> points_;
   std::vector<int> chain_ends_;

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <span>
-#include <vector>
 
 #include "fovea/model/types.hpp"
 #include "fovea/vision/curve.hpp"
@@ -46,13 +45,18 @@ struct CornerPose {
   int first = 0;                          // the image's corner that is O's corner 0
 };
 
+struct CornerPoses {
+  int count = 0;
+  std::array<CornerPose, hal::kMaxPoses> pose;
+};
+
 // Corners of the target in O [m], z = 0, about their mean, in the order that turns like the image's corners.
 using FlatShape = std::span<const Eigen::Vector2d>;
 
 // The poses of a square or triangle whose corners are `fit`, at most hal::kMaxPoses: first the one nearest to
 // `last`, its pose in the image before; or, when that is null, the one that faces the camera most squarely,
 // then the least turned about the view axis.
-std::vector<CornerPose> PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape shape,
-                                       const model::Pose* last);
+CornerPoses PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape shape,
+                           const model::Pose* last);
 
 }  // namespace fovea::vision

@@ -30,7 +30,6 @@ class PolygonDetector {
  private:
   void Judge(const cv::Mat& image, const PolygonCandidate& start, Detection& best);
   void SetCorners(const CornerFit& fit, int first, Detection& d) const;
-  [[nodiscard]] bool SideGoesOn(const cv::Mat& image, const PolygonFit& fit) const;
   [[nodiscard]] double ColourShare(const cv::Mat& image, std::span<const ImagePoint> corners) const;
 
   const DetectorConfig config_;

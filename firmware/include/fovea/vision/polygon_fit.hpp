@@ -1,49 +1,67 @@
 // Second half of finding a triangle or a square: exactly where. Edges along lines across each side
-// (profiles.hpp), a robust line through each side's, corners where the lines meet, and their covariance.
+// (profiles.hpp), a robust line through each side's, corners where the lines meet, and their covariance. What
+// stands before a side (side_evidence.hpp) is left out, and so is what is next to it.
 #pragma once
 
 #include <opencv2/core.hpp>
 
+#include "fovea/vision/detector_config.hpp"
 #include "fovea/vision/flat_pose.hpp"
 #include "fovea/vision/polygon_finder.hpp"
 #include "fovea/vision/profiles.hpp"
+#include "fovea/vision/side_evidence.hpp"
+#include "fovea/vision/side_line.hpp"
 
 namespace fovea::vision {
 
 struct PolygonFit {
   bool converged = false;
   CornerFit corners;
-  double rms_px = 0.0;    // of the edges about the sides
-  double noise_px = 0.0;  // what of that the image's noise explains
-  double contrast = 0.0;  // mean step across them [gray levels]
-  double quiet = 0.0;     // the image's noise away from them [gray levels]
-  double seen = 0.0;      // share of the sides that is inside the image and on an edge
+  double rms_px = 0.0;       // of the edges about the sides
+  double noise_px = 0.0;     // what of that the image's noise explains
+  double contrast = 0.0;     // mean step across them [gray levels]
+  double quiet = 0.0;        // the image's noise away from them [gray levels]
+  double seen = 0.0;         // share of the sides that is inside the image and on an edge
+  double least_on = 0.0;     // of the side that is least straight: share of its edges that are on its line
+  double least_seen = 0.0;   // of the side of which least is seen, where the target's colour ends
+  double against = 0.0;      // share of the sides where the target is not, and nothing hides it
+  bool part_hidden = false;  // something stands before some of it
+  bool bends_explained = false;  // where edges leave a side's line, something stands before it
+  int corners_hidden = 0;        // where they would be is only known from the sides
 };
 
 // Keeps the memory that a fit works in. One thread uses it.
 class PolygonFitter {
  public:
+  explicit PolygonFitter(const EdgeNoise& edge_noise) : edge_noise_(edge_noise) {}
   // Fits the polygon near `start`, whose sides may be some 2 px off; its corners turn from u to v.
   PolygonFit Fit(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> start);
 
+  // What stands beside the sides that were fitted last.
+  [[nodiscard]] const SideEvidence& evidence() const { return evidence_; }
+
  private:
-  // A side's line: where it is off its expected place, a + b t, t from -1 to 1 along it [px].
+  // Its line is where it is off its expected place.
   struct Side {
     double length = 0.0;
     double nu = 0.0, nv = 0.0;  // outward
     int from = 0, to = 0;       // its lines
-    double a = 0.0, b = 0.0;
-    Eigen::Matrix2d cov = Eigen::Matrix2d::Zero();
+    SideLine line;
   };
+  bool PlaceLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit);
   bool ReadLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit);
-  bool FitSide(Side& side, PolygonFit& fit, double& rms2, double& noise2, double& weights);
+  bool Approach(const cv::Mat& image, const Intrinsics& in, double& blur, PolygonFit& fit);
+  bool FitSide(Side& side, double blur, PolygonFit& fit, double& rms2, double& noise2, double& weights);
   void MoveCorners(PolygonFit& fit) const;
 
+  const EdgeNoise edge_noise_;
   Profiles profiles_;
+  SideEvidence evidence_;
   std::array<ProfileLine, Profiles::kMaxLines> lines_;
   std::array<double, Profiles::kMaxLines> place_{};  // t of each line
   std::array<double, Profiles::kMaxLines> at_px_{};
   std::array<double, Profiles::kMaxLines> weight_{};
+  std::array<bool, Profiles::kMaxLines> off_{};  // its edge is, the side's line
   std::array<Side, Detection::kMaxCorners> sides_;
   int count_ = 0;
 };

@@ -1,0 +1,151 @@
+// Each target with a part of it hidden, and on its way out of the picture and back: found rightly or refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <limits>
+#include <vector>
+
+#include "fovea/vision/target_detector.hpp"
+#include "tools/bench/scenes.hpp"
+
+namespace fovea::vision {
+namespace {
+
+using bench::TargetKind;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kWrongPx = 2.0;  // further off than this is wrong
+
+DetectorConfig ConfigOf(TargetKind kind) {
+  constexpr std::array kKinds{hal::FeatureKind::kSphere, hal::FeatureKind::kCircle, hal::FeatureKind::kSquare,
+                              hal::FeatureKind::kTriangle};
+  const bench::PictureCamera camera;
+  DetectorConfig config;
+  config.kind = kKinds[static_cast<std::size_t>(kind)];
+  config.by = FindBy::kGray;
+  config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
+                       camera.f_px,     camera.c_u_px,    camera.c_v_px};
+  config.distance_min = 0.10;
+  config.distance_max = 2.2;
+  for (std::size_t i = 0; i < config.triangle.size(); ++i) {
+    config.triangle[i] = bench::TriangleCorners()[i];
+  }
+  return config;
+}
+
+// The corner that is furthest from the truth's, or of what is round the middle [px].
+double OffOf(const Detection& d, const bench::PictureScene& scene) {
+  const bench::Body& body = scene.bodies.front();
+  const bench::PictureCamera& camera = scene.camera;
+  if (body.shape != bench::Shape::kPolygon) {
+    const bench::TrueOutline truth = OutlineOf(camera, body);
+    return std::hypot(d.u_px - truth.u_px, d.v_px - truth.v_px);
+  }
+  const std::size_t n = body.corners.size();
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t first = 0; first < n; ++first) {
+    double off = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vector2d& q = body.corners[(first + i) % n];
+      const Vector3d p = body.R * Vector3d(q.x(), q.y(), 0.0) + body.p;
+      off = std::max(off, std::hypot(d.corner[i].u_px - camera.f_px * p.x() / p.z() - camera.c_u_px,
+                                     d.corner[i].v_px - camera.f_px * p.y() / p.z() - camera.c_v_px));
+    }
+    best = std::min(best, off);
+  }
+  return best;
+}
+
+struct Score {
+  int found = 0;
+  int wrong = 0;
+  double rms_px = 0.0;
+};
+
+// `pictures` of a target with the share `hidden` of its outline behind a bar, then half as many of a bar
+// alone.
+Score Look(TargetKind kind, double hidden, int pictures) {
+  const bench::SceneClass scenes{.name = "hidden", .noise = 3.0, .hidden = hidden};
+  Score score;
+  double sum2 = 0.0;
+  for (int i = 0; i < pictures + pictures / 2; ++i) {
+    const bench::PictureScene scene = MakeScene(scenes, kind, i < pictures, static_cast<unsigned>(1000 + i));
+    const Detection d = TargetDetector(ConfigOf(kind)).Detect(Draw(scene));
+    const double off = !d.found       ? 0.0
+                       : i < pictures ? OffOf(d, scene)
+                                      : std::numeric_limits<double>::infinity();
+    score.wrong += off > kWrongPx ? 1 : 0;
+    if (d.found && off <= kWrongPx) {
+      ++score.found;
+      sum2 += off * off;
+    }
+  }
+  score.rms_px = std::sqrt(sum2 / std::max(score.found, 1));
+  std::cout << 100.0 * hidden << " % hidden: found " << score.found << " of " << pictures << ", wrong "
+            << score.wrong << ", worst corner or middle " << score.rms_px << " px rms\n";
+  return score;
+}
+
+struct Least {
+  TargetKind kind;
+  std::array<int, 3> found;  // of 20, with 10, 20 and 30 % hidden
+  double rms_px;
+};
+
+class HiddenTargetTest : public testing::TestWithParam<Least> {};
+
+// Where a side of a square is all hidden, its other three allow any square behind it: such are refused.
+INSTANTIATE_TEST_SUITE_P(Kinds, HiddenTargetTest,
+                         testing::Values(Least{TargetKind::kSphere, {20, 19, 20}, 0.05},
+                                         Least{TargetKind::kCircle, {20, 20, 19}, 0.12},
+                                         Least{TargetKind::kSquare, {14, 9, 1}, 1.0},
+                                         Least{TargetKind::kTriangle, {14, 12, 9}, 0.6}));
+
+TEST_P(HiddenTargetTest, IsFoundRightlyOrRefused) {
+  const Least& least = GetParam();
+  for (std::size_t i = 0; i < least.found.size(); ++i) {
+    const Score score = Look(least.kind, 0.1 * (static_cast<double>(i) + 1.0), 20);
+    EXPECT_EQ(score.wrong, 0);
+    EXPECT_GE(score.found, least.found[i]);
+    EXPECT_LT(score.rms_px, least.rms_px);
+  }
+}
+
+// Out over the right border and back in over it; one detector sees all of it.
+TEST_P(HiddenTargetTest, LeavesThePictureAndComesBack) {
+  const TargetKind kind = GetParam().kind;
+  constexpr std::array<double, 14> kX{0.10, 0.15, 0.18, 0.20, 0.22, 0.24, 0.30,
+                                      0.40, 0.30, 0.24, 0.22, 0.19, 0.14, 0.08};
+  TargetDetector detector(ConfigOf(kind));
+  const bench::SceneClass scenes{.name = "way", .noise = 3.0};
+  bench::PictureScene scene = MakeScene(scenes, kind, true, 7);
+  int inside = 0;
+  double worst_px = 0.0;
+  for (std::size_t i = 0; i < kX.size(); ++i) {
+    scene.seed = static_cast<unsigned>(i + 1);
+    scene.bodies.front().p = Vector3d(kX[i], 0.02, 0.4);
+    const bench::TrueOutline outline = OutlineOf(scene.camera, scene.bodies.front());
+    const auto in_picture = std::count_if(outline.points.begin(), outline.points.end(),
+                                          [](const Vector2d& p) { return p.x() < 630.0; });
+    const Detection d = detector.Detect(Draw(scene));
+    if (in_picture == 0) {
+      EXPECT_FALSE(d.found) << "at " << kX[i];
+    } else if (in_picture == static_cast<std::ptrdiff_t>(outline.points.size())) {
+      EXPECT_TRUE(d.found) << "at " << kX[i];
+      ++inside;
+    }
+    if (d.found) {
+      worst_px = std::max(worst_px, OffOf(d, scene));
+    }
+  }
+  std::cout << inside << " of " << kX.size() << " pictures have all of it; worst " << worst_px << " px\n";
+  EXPECT_GE(inside, 3);
+  EXPECT_LT(worst_px, 0.5);
+}
+
+}  // namespace
+}  // namespace fovea::vision

@@ -1,0 +1,169 @@
+// Poses of three and of four corners against OpenCV's P3P and IPPE.
+#include "fovea/vision/three_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <opencv2/calib3d.hpp>
+#include <random>
+#include <vector>
+
+#include "fovea/model/rotation.hpp"
+#include "fovea/vision/flat_pose.hpp"
+
+namespace fovea::vision {
+namespace {
+
+using model::Mat3;
+using model::Vec3;
+
+class Chance {
+ public:
+  double Between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine_); }
+  double Normal() { return normal_(engine_); }
+  model::Pose Pose(double most_tilt) {
+    const double about = Between(0.0, 6.28);
+    model::Pose X_CO;
+    X_CO.R = model::RotationOf(Between(0.0, most_tilt) * Vec3(std::cos(about), std::sin(about), 0.0)) *
+             model::RotationOf(Vec3(0.0, 0.0, Between(-3.1, 3.1)));
+    X_CO.p.z() = Between(0.25, 0.9);
+    X_CO.p.x() = X_CO.p.z() * Between(-0.3, 0.3);
+    X_CO.p.y() = X_CO.p.z() * Between(-0.2, 0.2);
+    return X_CO;
+  }
+
+ private:
+  std::mt19937 engine_{11};
+  std::normal_distribution<double> normal_;
+};
+
+std::vector<model::Pose> PosesOf(const std::vector<cv::Mat>& rotations,
+                                 const std::vector<cv::Mat>& positions) {
+  std::vector<model::Pose> poses;
+  poses.reserve(rotations.size());
+  for (std::size_t i = 0; i < rotations.size(); ++i) {
+    const cv::Mat& w = rotations[i];
+    const cv::Mat& t = positions[i];
+    poses.push_back({model::RotationOf(Vec3(w.at<double>(0), w.at<double>(1), w.at<double>(2))),
+                     Vec3(t.at<double>(0), t.at<double>(1), t.at<double>(2))});
+  }
+  return poses;
+}
+
+double TurnBetween(const Mat3& a, const Mat3& b) { return model::RotationVector(a * b.transpose()).norm(); }
+
+TEST(ThreePointsTest, FindsTheTruthAndWhatOpenCvFinds) {
+  Chance chance;
+  const std::array<Vec3, 3> points{Vec3(-0.047, 0.037, 0.0), Vec3(0.063, 0.027, 0.0),
+                                   Vec3(-0.017, -0.063, 0.0)};
+  constexpr int kPoses = 2000;
+  int of_opencv = 0;
+  int missed = 0;
+  double worst_m = 0.0;
+  for (int i = 0; i < kPoses; ++i) {
+    const model::Pose X_CO = chance.Pose(0.9);
+    std::array<Vec3, 3> rays;
+    std::vector<cv::Point3d> object;
+    std::vector<cv::Point2d> seen;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      const Vec3 p = X_CO * points[k];
+      rays[k] = p.normalized();
+      object.emplace_back(points[k].x(), points[k].y(), 0.0);
+      seen.emplace_back(p.x() / p.z(), p.y() / p.z());
+    }
+    const ThreePointPoses found = PosesOfThreePoints(points, rays);
+    const auto nearest_m = [&](const model::Pose& pose) {
+      double nearest = 1e9;
+      for (const model::Pose& ours : std::span(found.X_CO).first(static_cast<std::size_t>(found.count))) {
+        nearest = std::min(nearest, (ours.p - pose.p).norm() + 0.05 * TurnBetween(ours.R, pose.R));
+      }
+      return nearest;
+    };
+    worst_m = std::max(worst_m, nearest_m(X_CO));
+    std::vector<cv::Mat> rotations;
+    std::vector<cv::Mat> positions;
+    cv::solveP3P(object, seen, cv::Matx33d::eye(), cv::noArray(), rotations, positions, cv::SOLVEPNP_P3P);
+    for (const model::Pose& theirs : PosesOf(rotations, positions)) {
+      // Not all of its poses are before the camera, nor any.
+      bool is_one = true;
+      for (std::size_t k = 0; k < rays.size(); ++k) {
+        is_one = is_one && (theirs * points[k]).normalized().dot(rays[k]) > 1.0 - 1e-12;
+      }
+      of_opencv += is_one ? 1 : 0;
+      missed += is_one && nearest_m(theirs) > 1e-3 ? 1 : 0;
+    }
+  }
+  std::cout << "the truth, at most " << worst_m << " m off; of OpenCV's " << of_opencv << " poses " << missed
+            << " missed\n";
+  EXPECT_LT(worst_m, 1e-5);
+  EXPECT_GT(of_opencv, kPoses);
+  EXPECT_EQ(missed, 0);
+}
+
+TEST(ThreePointsTest, ASquaresPosesAreIppesOrFitBetter) {
+  Chance chance;
+  const std::vector<Eigen::Vector2d> shape{{-0.04, -0.04}, {0.04, -0.04}, {0.04, 0.04}, {-0.04, 0.04}};
+  const Intrinsics in{640, 480, 554.256, 554.256, 319.5, 239.5};
+  constexpr int kPoses = 1000;
+  constexpr double kNoisePx = 0.3;
+  constexpr double kOther = 0.1;  // [rad]
+  constexpr double kSame = 0.02;
+  int worse = 0;
+  int missed = 0;
+  int seconds = 0;
+  for (int i = 0; i < kPoses; ++i) {
+    const model::Pose X_CO = chance.Pose(0.5);
+    CornerFit fit;
+    fit.count = 4;
+    fit.cov = CornerFit::Covariance::Identity(8, 8) * (kNoisePx * kNoisePx);
+    std::vector<cv::Point3d> object;
+    std::vector<cv::Point2d> seen;
+    for (std::size_t k = 0; k < shape.size(); ++k) {
+      const Vec3 p = X_CO * Vec3(shape[k].x(), shape[k].y(), 0.0);
+      fit.corner[k] = {in.U(p) + kNoisePx * chance.Normal(), in.V(p) + kNoisePx * chance.Normal()};
+      const Vec3 ray = in.Ray(fit.corner[k].u_px, fit.corner[k].v_px);
+      object.emplace_back(shape[k].x(), shape[k].y(), 0.0);
+      seen.emplace_back(ray.x(), ray.y());
+    }
+    const auto off_px = [&](const model::Pose& pose) {
+      double sum2 = 0.0;
+      for (std::size_t k = 0; k < shape.size(); ++k) {
+        const Vec3 p = pose * Vec3(shape[k].x(), shape[k].y(), 0.0);
+        sum2 += std::pow(in.U(p) - fit.corner[k].u_px, 2) + std::pow(in.V(p) - fit.corner[k].v_px, 2);
+      }
+      return std::sqrt(sum2 / 4.0);
+    };
+    const CornerPoses ours = PosesOfCorners(fit, in, shape, nullptr);
+    const auto poses = std::span(ours.pose).first(static_cast<std::size_t>(ours.count));
+    double least_px = 1e9;
+    for (const CornerPose& pose : poses) {
+      least_px = std::min(least_px, pose.off_px);
+    }
+    std::vector<cv::Mat> rotations;
+    std::vector<cv::Mat> positions;
+    cv::solvePnPGeneric(object, seen, cv::Matx33d::eye(), cv::noArray(), rotations, positions, false,
+                        cv::SOLVEPNP_IPPE);
+    worse += off_px(PosesOf(rotations, positions).front()) < least_px - 1e-6 ? 1 : 0;
+    // Its second pose, where noise allows it and it is one: from which its own refinement does not leave.
+    cv::solvePnPRefineLM(object, seen, cv::Matx33d::eye(), cv::noArray(), rotations[1], positions[1]);
+    const model::Pose second = PosesOf(rotations, positions)[1];
+    if (off_px(second) < 2.0 * kNoisePx &&
+        TurnBetween(second.R, PosesOf(rotations, positions)[0].R) > kOther) {
+      ++seconds;
+      missed += std::none_of(poses.begin(), poses.end(), [&](const CornerPose& pose) {
+        return pose.X_CO.R.col(2).cross(second.R.col(2)).norm() < kSame;
+      });
+    }
+  }
+  std::cout << worse << " of " << kPoses << " fit worse than IPPE's; of " << seconds
+            << " second poses that noise allows " << missed << " missed\n";
+  EXPECT_EQ(worse, 0);
+  EXPECT_GE(seconds, 50);
+  EXPECT_LE(missed, 2) << "but where the corners hardly tell the tilt, and a search ends anywhere";
+}
+
+}  // namespace
+}  // namespace fovea::vision
