@@ -10,6 +10,7 @@
 #include "sim.hpp"
 #include "tick.hpp"
 #include "vision.hpp"
+#include "wire.hpp"
 
 int main(int argc, char** argv) {
   using namespace fovea;
@@ -77,6 +78,15 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   mcu_command->add_flag("--json", mcu.json, "Print JSON");
 
+  bench::WireArguments wire;
+  CLI::App* wire_command = app.add_subcommand("wire",
+                                              "The robot's network interface at real pace: states a second, "
+                                              "and how evenly they come and are answered");
+  wire_command->add_option("--seconds", wire.seconds, "By the clock")
+      ->check(CLI::Range(0.5, 100000.0))
+      ->capture_default_str();
+  wire_command->add_flag("--json", wire.json, "Print JSON");
+
   bench::VisionArguments vision;
   CLI::App* vision_command = app.add_subcommand(
       "vision", "How often, how well and how fast targets are found in pictures of known truth");
@@ -105,6 +115,7 @@ int main(int argc, char** argv) {
            : mcu_command->parsed()    ? bench::RunMcu(mcu)
            : sim_command->parsed()    ? bench::RunSim(sim)
            : vision_command->parsed() ? bench::RunVision(vision)
+           : wire_command->parsed()   ? bench::RunWire(wire)
                                       : bench::RunTick(tick);
   });
 }

@@ -1,0 +1,77 @@
+#include "wire.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include "figure.hpp"
+#include "fovea/config/program.hpp"
+#include "fovea/franka/franka_arm.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
+#include "served_robot.hpp"
+#include "spread.hpp"
+
+namespace fovea::bench {
+namespace {
+
+constexpr double kStatesPerSecond = 1000.0;
+
+// Each state as it comes, answered with torques that leave the arm where it is.
+std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds) {
+  linux_rt::MonotonicClock clock;
+  std::vector<double> gaps_us;
+  gaps_us.reserve(static_cast<std::size_t>(1.1 * seconds * kStatesPerSecond));
+  const std::int64_t begin_ns = clock.NowNs();
+  std::int64_t last_ns = begin_ns;
+  const franka::FrankaCounters before = arm.counters();
+  while (1e-9 * static_cast<double>(last_ns - begin_ns) < seconds) {
+    hal::ArmState state;
+    if (!arm.Read(state).ok()) {
+      const std::int64_t now_ns = clock.NowNs();
+      if (now_ns - last_ns > hal::kNsPerSecond) {
+        throw std::runtime_error("no state came for a second");
+      }
+      continue;
+    }
+    hal::ArmCommand command;
+    command.state_sequence = state.sequence;
+    command.num_joints = state.num_joints;
+    static_cast<void>(arm.Write(command));
+    const std::int64_t now_ns = clock.NowNs();
+    gaps_us.push_back(1e-3 * static_cast<double>(now_ns - last_ns));
+    last_ns = now_ns;
+  }
+  const franka::FrankaCounters& after = arm.counters();
+  const double took_s = 1e-9 * static_cast<double>(last_ns - begin_ns);
+  return {
+      {"states_per_s", static_cast<double>(after.states - before.states) / took_s, "1/s", kStatesPerSecond},
+      {"state_gap_p50_us", Percentile(gaps_us, 0.5), "us", {}},
+      {"state_gap_p99_us", Percentile(gaps_us, 0.99), "us", {}},
+      {"state_gap_max_us", Percentile(gaps_us, 1.0), "us", {}},
+      {"lost_states", static_cast<double>(after.lost_states - before.lost_states), "", {}},
+      {"command_success_rate", arm.robot_state().control_command_success_rate, "", {}}};
+}
+
+}  // namespace
+
+int RunWire(const WireArguments& arguments) {
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fovea-sim";
+  if (!std::filesystem::is_regular_file(program)) {
+    throw std::runtime_error(program.string() +
+                             ": not there; fovea-bench wire needs the simulator built beside it");
+  }
+  const ServedRobot robot(program);
+  franka::FrankaConfig config;
+  config.host = "127.0.0.1";
+  config.port = robot.port();
+  franka::FrankaArm arm(config);
+  const std::vector<Figure> figures = Measure(arm, arguments.seconds);
+  fmt::print("{}", arguments.json ? ToJson(figures) + "\n" : ToTable(figures));
+  return config::kDone;
+}
+
+}  // namespace fovea::bench

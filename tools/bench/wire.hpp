@@ -1,0 +1,13 @@
+// `fovea-bench wire`: the robot's network interface by the clock, its server and our client on this machine.
+#pragma once
+
+namespace fovea::bench {
+
+struct WireArguments {
+  double seconds = 10.0;
+  bool json = false;
+};
+
+int RunWire(const WireArguments& arguments);
+
+}  // namespace fovea::bench
