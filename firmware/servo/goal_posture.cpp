@@ -85,6 +85,7 @@ double Draw(std::uint32_t& state) noexcept {
 void Begin(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) noexcept {
   const int turns = TurnsOf(config.feature);
   goal.trial_turn = TurnOfRank(config, X_BO, q, goal.trial % turns);
+  const int round = goal.trial / (turns * kTrialsInRound);
   goal.begun = true;
   goal.step = 0;
   goal.last_off = HUGE_VAL;
@@ -92,7 +93,7 @@ void Begin(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPostu
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     const Range range = RangeOf(config, i);
     if (goal.trial >= turns) {
-      goal.q[i] += kSpread * (1.0 + goal.trial / (turns * kTrialsInRound)) * Draw(goal.random);
+      goal.q[i] += kSpread * (1.0 + round) * Draw(goal.random);
     }
     goal.q[i] = std::clamp(goal.q[i], range.least, range.most);
   }
