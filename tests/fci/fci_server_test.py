@@ -570,6 +570,12 @@ class Walls(Served):
         self.wait_for(lambda s: s.robot_mode == fci.REFLEX)
         self.assertEqual(self.client.recover(), 0)
 
+    def test_a_port_that_is_taken(self):
+        done = subprocess.run([PROGRAM, "serve", "ball", "--fci-port", str(self.port), "--camera-serial", ""], timeout=20,
+                              capture_output=True, text=True)
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+        self.assertIn(f"cannot listen on 127.0.0.1:{self.port}: Address already in use", done.stderr)
+
     def test_a_wall_that_is_none_is_refused(self):
         for wall in ("1,2,3", "0,0,0,1,1,0", "0,0,0,1,1,x", "0;0;0;1;1;1"):
             done = subprocess.run([PROGRAM, "serve", "ball", "--fci-port", "0", "--wall", wall], timeout=20,
