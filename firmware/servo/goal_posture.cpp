@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "fovea/model/cholesky.hpp"
 #include "fovea/model/rotation.hpp"
@@ -24,7 +25,7 @@ constexpr double kStepMost = 0.2;         // [rad]
 constexpr double kDamping = 1e-6;
 constexpr double kReached = 2e-3;  // the rest follows, also of a target that moves [m, rad]
 constexpr double kOff = 0.01;      // a posture that was found and is further off than this is none any more,
-constexpr int kOffSteps = 100;     // after so many steps
+constexpr int kOffSteps = 25;      // after so many steps
 constexpr double kLost = 0.5;      // or this at once
 constexpr int kStepsMost = 100;
 constexpr int kStepsLooked = 8;       // a trial that comes no nearer in so many
@@ -56,8 +57,8 @@ Pose CameraGoal(const features::TargetFeature& feature, const Pose& X_BO, int tu
   return turned * Pose{feature.R_CO_star, feature.p_CO_C_star}.Inverse();
 }
 
-// The turn that the estimate has first, then the others, the nearest to the camera's orientation first.
-int TurnOfRank(const ServoConfig& config, const Pose& X_BO, const VecN& q, int rank) noexcept {
+// The turn `first`, then the others, the nearest to the camera's orientation first.
+int TurnOfRank(const ServoConfig& config, const Pose& X_BO, const VecN& q, int first, int rank) noexcept {
   const int turns = TurnsOf(config.feature);
   if (turns == 1) {
     return 0;
@@ -70,6 +71,7 @@ int TurnOfRank(const ServoConfig& config, const Pose& X_BO, const VecN& q, int r
     likeness[static_cast<std::size_t>(i)] = X_BC.R.cwiseProduct(CameraGoal(config.feature, X_BO, i).R).sum();
   }
   std::array<int, 4> order{0, 1, 2, 3};
+  std::swap(order[0], order[static_cast<std::size_t>(first)]);
   std::sort(order.begin() + 1, order.end(), [&](int a, int b) {
     return likeness[static_cast<std::size_t>(a)] > likeness[static_cast<std::size_t>(b)];
   });
@@ -84,7 +86,7 @@ double Draw(std::uint32_t& state) noexcept {
 
 void Begin(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) noexcept {
   const int turns = TurnsOf(config.feature);
-  goal.trial_turn = TurnOfRank(config, X_BO, q, goal.trial % turns);
+  goal.trial_turn = TurnOfRank(config, X_BO, q, goal.turn, goal.trial % turns);
   const int round = goal.trial / (turns * kTrialsInRound);
   goal.begun = true;
   goal.step = 0;
@@ -192,6 +194,15 @@ void NextTrial(const ServoConfig& config, GoalPosture& goal) noexcept {
   }
 }
 
+// The square stays turned as it was: the camera would start to the side for nothing else.
+void BeginAnew(GoalPosture& goal) noexcept {
+  const int turn = goal.turn;
+  const std::uint32_t random = goal.random;
+  goal = GoalPosture{};
+  goal.turn = turn;
+  goal.random = random;
+}
+
 }  // namespace
 
 bool SeeksGoalPosture(const features::TargetFeature& feature) noexcept {
@@ -228,7 +239,7 @@ void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q,
   if (goal.found) {
     goal.step = off > kOff || !allowed ? goal.step + 1 : 0;
     if (!(off < kLost) || goal.step > kOffSteps) {
-      goal = GoalPosture{};
+      BeginAnew(goal);
     }
     return;
   }

@@ -7,7 +7,8 @@
 namespace fovea::servo {
 namespace {
 
-constexpr int kStepsInATick = 4;  // of the search for a posture
+constexpr int kStepsInATick = 4;  // of the search for a posture;
+constexpr int kTicksToAStep = 4;  // what was found follows the target more slowly
 
 // When the joints take over.
 constexpr double kLookS = 0.2;  // after which the target's pose is believed so far as to leave the law's way
@@ -44,6 +45,22 @@ void NoteIdle(const ServoConfig& config, const WaySight& sight, WayToGoal& way) 
   }
 }
 
+void SeekOn(const ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
+  const int turn = way.goal.turn;
+  if (way.goal.found) {
+    way.ticks_to_step = way.ticks_to_step > 0 ? way.ticks_to_step - 1 : kTicksToAStep - 1;
+  } else {
+    way.ticks_to_step = 0;
+  }
+  const int steps = way.goal.found ? 1 : kStepsInATick;
+  for (int i = 0; i < steps && way.ticks_to_step == 0; ++i) {
+    SeekGoalPosture(config, sight.X_BO, sight.q, way.goal);
+  }
+  if (way.goal.turn != turn) {
+    way.least_off = HUGE_VAL;  // it was another goal's
+  }
+}
+
 }  // namespace
 
 void CountTick(bool holds, std::int64_t& ns) noexcept {
@@ -51,10 +68,8 @@ void CountTick(bool holds, std::int64_t& ns) noexcept {
 }
 
 void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
-  for (int i = 0; i < (way.goal.found ? 1 : kStepsInATick); ++i) {
-    SeekGoalPosture(config, sight.X_BO, sight.q, way.goal);
-  }
-  if (way.by_joints && IsLonger(way.held_ns, kHeldS)) {
+  SeekOn(config, sight, way);
+  if (way.by_joints && way.goal.found && IsLonger(way.held_ns, kHeldS)) {
     DropGoalPosture(way.goal);
     way.since_ns = sight.now_ns;
     way.held_ns = 0;
@@ -99,7 +114,10 @@ void SteerByJoints(const WayToGoal& way, const model::VecN& q, MotionTask& task)
 }
 
 bool NoteHeld(const MotionTask& task, const model::VecN& dq, WayToGoal& way) noexcept {
-  const bool held = !way.goal.found || dq.dot(task.v) < kHeldShare * task.v.squaredNorm();
+  if (!way.goal.found) {
+    return true;  // while the next one is looked for, none is held up
+  }
+  const bool held = dq.dot(task.v) < kHeldShare * task.v.squaredNorm();
   CountTick(held, way.held_ns);
   return held;
 }

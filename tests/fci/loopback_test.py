@@ -134,7 +134,8 @@ class Loopback(unittest.TestCase):
     def tracked_at_real_pace(self, lost_by_the_network, *options):
         """A run of 10 s by the clock, on a machine that kept it: what the client and the server say of it. Ticks that are
         lost beyond the share that the network takes are the machine's. So is a robot that began 20 steps late: it makes
-        up for them at once, nobody can answer states that fast, and 20 without an answer stop it."""
+        up for them at once, nobody can answer states that fast, and 20 without an answer stop it. And so is a client
+        that found 19 states waiting at once: it was kept from them, and the robot has stopped."""
         for _ in range(3):
             port = self.serve("--pace", "real", "--late-ms", "3", *options, camera=True)
             s = self.hardware(port, "--track", "--seconds", "10", "--set", "robot.time=computer", "--set",
@@ -144,10 +145,11 @@ class Loopback(unittest.TestCase):
             lost = s["missed_ticks"] + truth["missing"]
             print(f"\nreal pace: {truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; {s['mode']}, {s['fault']}; "
                   f"{lost} ticks and {s['camera']['lost']} of {truth['frames_sent']} frames lost, {truth['overruns']} steps "
-                  f"late; success rate {s['robot']['command_success_rate']}")
+                  f"late, {s['robot']['skipped_states']} states found too late; success rate {s['robot']['command_success_rate']}")
             self.assertEqual(s["heap_allocations_in_tick"], 0)
-            if (s["fault"] != "deadline_missed" and truth["overruns"] < 20 and s["camera"]["lost"] < 30
-                    and lost < 100 + lost_by_the_network * 10000):
+            kept_away = s["fault"] == "arm_lost" and s["robot"]["skipped_states"] >= 19
+            if (not kept_away and s["fault"] != "deadline_missed" and truth["overruns"] < 20
+                    and s["camera"]["lost"] < 30 and lost < 100 + lost_by_the_network * 10000):
                 return s, truth
         self.skipTest("this machine did not keep 1 kHz in three attempts")
 

@@ -111,6 +111,30 @@ TEST(GoalPostureTest, ASquareIsFacedFromASideThatTheHandReaches) {
   ExpectAtGoal(config, X_BO, goal);
 }
 
+// Where the target jumps and another posture is looked for, first the same side is tried.
+TEST(GoalPostureTest, ASquareThatJumpsStaysTurnedAsItWas) {
+  const ServoConfig config = Config(hal::FeatureKind::kSquare);
+  const VecN q = test::Ready();
+  Pose X_BO = TargetFor(config, q) * Pose{QuarterTurns(3), model::Vec3::Zero()};
+  GoalPosture goal;
+  goal.turn = 1;
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  ASSERT_EQ(goal.turn, 1);
+  VecN q_after = q;
+  q_after[0] += 0.9;
+  X_BO = TargetFor(config, q_after) * Pose{QuarterTurns(3), model::Vec3::Zero()};
+  const std::uint32_t random = goal.random;
+  SeekGoalPosture(config, X_BO, q, goal);
+  ASSERT_FALSE(goal.found) << "lost";
+  EXPECT_EQ(goal.turn, 1);
+  EXPECT_EQ(goal.random, random);
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  EXPECT_EQ(goal.turn, 1);
+  SeekGoalPosture(config, X_BO, q, goal);
+  SeekGoalPosture(config, X_BO, q, goal);
+  ExpectAtGoal(config, X_BO, goal);
+}
+
 TEST(GoalPostureTest, NoneIsFoundForAGoalOutsideTheWorkspace) {
   const ServoConfig config = Config(hal::FeatureKind::kTriangle);
   Pose X_BO = TargetFor(config, test::Ready());

@@ -118,6 +118,14 @@ TEST_F(WayToGoalTest, APostureThatLimitsHoldUpIsGivenUpForAnother) {
   EXPECT_LT(ticks, 1000);
   SteerByJoints(way_, q, task);
   EXPECT_EQ(task.v.norm(), 0.0) << "stands while it looks for another";
+
+  X_BO_.p.x() += 1.0;  // out of reach, so that it looks on
+  for (int i = 0; i < 1000; ++i) {
+    EXPECT_TRUE(NoteHeld(task, VecN::Zero(q.size()), way_));
+    Stand(q, 1);
+  }
+  EXPECT_EQ((way_.goal.q_dropped - first).norm(), 0.0) << "what it only tries is not given up";
+  X_BO_.p.x() -= 1.0;
   Stand(q, 3000);
   ASSERT_TRUE(way_.goal.found);
   EXPECT_GT((way_.goal.q - first).lpNorm<Eigen::Infinity>(), 0.1);

@@ -20,6 +20,7 @@ namespace fovea::servo {
 
 struct WayToGoal {
   GoalPosture goal;
+  int ticks_to_step = 0;  // until the posture that was found follows the target again
   bool by_joints = false;
   bool preferred = false;       // that posture: the law has failed without it, and bends towards it
   std::int64_t since_ns = 0;    // when the way was last changed: it begins smoothly
