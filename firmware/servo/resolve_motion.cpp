@@ -65,6 +65,9 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
   if (scene.target != nullptr) {
     rows = limits.num_rows;
     LimitView(config.guard.view, *scene.target, limits);
+    if (scene.sight != nullptr) {
+      LimitSight(SightConfig{}, config.arm, *scene.sight, limits);
+    }
     named.NameNewRows(Limit::kFieldOfView, rows);
   }
 }
