@@ -41,11 +41,15 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kCartesianSpeed:
       return {"speed that is wished for the end effector", "the motion slows down as a whole"};
     case hal::Limit::kSingularity:
-      return {"smallest singular value of the hand's Jacobian",
-              "the posture goes no deeper; the task gives way"};
+      return {
+          "smallest singular value of the hand's Jacobian",
+          "the posture goes no deeper, but for a motion of the joints that ends clear of it; the task gives "
+          "way"};
     case hal::Limit::kFieldOfView:
-      return {"the target before the edge of the picture, less this margin",
-              "only so fast towards it; the task slides along"};
+      return {
+          "the target before the edge of the picture, less this margin; the arm's links beside the line "
+          "of sight",
+          "only so fast towards it; the task slides along"};
   }
   return {"", ""};
 }

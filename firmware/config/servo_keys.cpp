@@ -137,11 +137,15 @@ void AddGuardKeys(ServoSettings& settings, KeyTable& keys) {
   keys.Number("safety.cartesian_speed", c.cartesian_speed, 0.001, 100.0, "m/s", "of the end effector");
   keys.Number(
       "safety.singularity_min", c.singularity_min, 0.0, 1.0, "",
-      "the arm goes no nearer to a singular posture: smallest singular value of the hand's Jacobian, a "
-      "metre counted as 1 / 0.3 rad; 0: it may");
+      "the hand goes no nearer to a singular posture, but for a motion of the joints that ends clear of it: "
+      "smallest singular value of its Jacobian, a metre counted as 1 / 0.3 rad; 0: it may");
   keys.Flag("safety.keep_in_view", settings.keep_in_view, "keep the target in the picture");
   keys.Number("safety.view_margin_px", settings.view_margin_px, 0.0, 1000.0, "px",
               "and its outline so far from the edge");
+  keys.Number(
+      "safety.sight_clearance", c.sight_clearance, 0.0, 10.0, "m",
+      "the lines of the arm's own links stay so far from the line of sight to it, or come no nearer; 0: "
+      "they may");
   keys.Numbers("safety.planes", settings.planes, 4, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
                "planes n p >= d that the end effector stays above: n_x, n_y, n_z, d, the same again");
   keys.Numbers("safety.boxes", settings.boxes, 6, 6 * servo::Obstacles::kMost, -100.0, 100.0, "m",

@@ -113,6 +113,7 @@ void GuardFields(Archive& a, T& g) noexcept {
   a(g.view.x_max);
   a(g.view.y_min);
   a(g.view.y_max);
+  a(g.sight_clearance);
 }
 
 template <class Archive, class T>

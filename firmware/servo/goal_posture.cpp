@@ -6,6 +6,7 @@
 
 #include "fovea/model/cholesky.hpp"
 #include "fovea/model/rotation.hpp"
+#include "fovea/servo/keep_sight.hpp"
 #include "fovea/servo/obstacle.hpp"
 #include "fovea/servo/singularity.hpp"
 
@@ -18,8 +19,9 @@ using model::Pose;
 using model::Vec6;
 using model::VecN;
 
-constexpr double kJointRoom = 0.06;       // inside the range that the reference keeps [rad]
+constexpr double kJointRoom = 0.06;       // inside the range that the reference keeps [rad, m]
 constexpr double kRadiusRoom = 0.003;     // inside the sphere that it keeps [m]
+constexpr double kSightRoom = 0.005;      // outside the clearance that it keeps [m]
 constexpr double kSingularityRoom = 1.5;  // of the smallest singular value that the guard keeps
 constexpr double kStepMost = 0.2;         // [rad]
 constexpr double kDamping = 1e-6;
@@ -43,7 +45,8 @@ struct Range {
 
 Range RangeOf(const ServoConfig& config, Eigen::Index i) noexcept {
   const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
-  const double room = config.guard.joint_position_margin + kJointRoom;
+  const double room =
+      std::min(config.guard.joint_position_margin + kJointRoom, 0.5 * (joint.q_max - joint.q_min));
   return {joint.q_min + room, joint.q_max - room};
 }
 
@@ -86,7 +89,8 @@ double Draw(std::uint32_t& state) noexcept {
 
 void Begin(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) noexcept {
   const int turns = TurnsOf(config.feature);
-  goal.trial_turn = TurnOfRank(config, X_BO, q, goal.turn, goal.trial % turns);
+  const int rank = goal.trial % turns;
+  goal.trial_turn = goal.trial < turns ? TurnOfRank(config, X_BO, q, goal.turn, rank) : rank;
   const int round = goal.trial / (turns * kTrialsInRound);
   goal.begun = true;
   goal.step = 0;
@@ -149,17 +153,19 @@ bool KeepsOut(const ServoConfig& config, const model::Vec3& p_BE) noexcept {
   return keeps;
 }
 
-// Whether all singular values of the camera's Jacobian are above those that the guard keeps: then and only
-// then J J^T less their square is positive definite.
 bool IsRegular(const ServoConfig& config, const model::ArmPoses& poses) noexcept {
   model::Mat6N J;
   model::ComputeJacobian(config.arm, poses, config.X_EC, J);
-  J.topRows<3>() /= SingularityConfig{}.length;
-  const double least = kSingularityRoom * config.guard.singularity_min;
-  model::Mat6 JJT = J.lazyProduct(J.transpose());
-  JJT.diagonal().array() -= least * least;
-  model::FactorCholesky(JJT);
-  return JJT.diagonal().allFinite();
+  Singularity singularity;
+  ComputeSingularity(J, SingularityConfig{}.length, singularity);
+  return singularity.sigma > kSingularityRoom * config.guard.singularity_min;
+}
+
+// Whether the arm's own links leave the target in sight.
+bool IsInSight(const ServoConfig& config, const model::ArmPoses& poses, const Pose& X_BO) noexcept {
+  const double clearance = config.guard.sight_clearance;
+  return clearance <= 0.0 ||
+         ClearanceOfSight(config.arm, {poses, poses.X_BE * config.X_EC, X_BO.p}) > clearance + kSightRoom;
 }
 
 // A posture that reaches the goal.
@@ -205,8 +211,9 @@ void BeginAnew(GoalPosture& goal) noexcept {
 
 }  // namespace
 
-bool SeeksGoalPosture(const features::TargetFeature& feature) noexcept {
-  return feature.SeesOrientation() &&
+bool SeeksGoalPosture(const ServoConfig& config) noexcept {
+  const features::TargetFeature& feature = config.feature;
+  return config.arm.num_joints >= 6 && feature.SeesOrientation() &&
          (feature.form == FeatureForm::kCorners || feature.form == FeatureForm::kPose);
 }
 
@@ -233,6 +240,10 @@ void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q,
   }
   const Pose X_BC_star = CameraGoal(config.feature, X_BO, goal.found ? goal.turn : goal.trial_turn);
   const bool allowed = KeepsOut(config, (X_BC_star * config.X_EC.Inverse()).p);
+  if (!goal.found && !allowed) {
+    NextTrial(config, goal);
+    return;
+  }
   model::ArmPoses poses;
   model::ComputePoses(config.arm, goal.q, poses);
   const double off = Descend(config, X_BC_star, poses, goal.q);
@@ -249,10 +260,10 @@ void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q,
     is_stuck = is_stuck || !(off < kComesNearer * goal.last_off);
     goal.last_off = off;
   }
-  if (off < kReached && allowed && IsRegular(config, poses)) {
+  if (off < kReached && IsRegular(config, poses) && IsInSight(config, poses, X_BO)) {
     Note(q, goal);
     NextTrial(config, goal);
-  } else if (off < kReached || !allowed || is_stuck) {
+  } else if (off < kReached || is_stuck) {
     NextTrial(config, goal);
   }
 }

@@ -9,6 +9,7 @@ namespace {
 using model::Vec3;
 
 constexpr int kHandJoints = 2;  // the last ones carry the camera: what lies between them is not in its way
+constexpr double kRate = 1.5;   // what is left may be used up no faster than exp(-rate t) [1/s]
 
 // Where two segments are nearest to each other, as shares of their lengths.
 struct Nearest {
@@ -71,10 +72,10 @@ double ClearanceOfSight(const model::ArmModel& arm, const Sight& sight) noexcept
   return NearestLink(arm, sight, joint).distance;
 }
 
-void LimitSight(const SightConfig& config, const model::ArmModel& arm, const Sight& sight,
+void LimitSight(double clearance, const model::ArmModel& arm, const Sight& sight, const model::Mat6N& J_C,
                 MotionLimits& limits) noexcept {
   constexpr double kTouch = 1e-6;  // lines that cross have no direction apart [m]
-  if (config.clearance <= 0.0) {
+  if (clearance <= 0.0) {
     return;
   }
   int joint = -1;
@@ -88,13 +89,13 @@ void LimitSight(const SightConfig& config, const model::ArmModel& arm, const Sig
   const Vec3 apart = (on_sight - on_link) / nearest.distance;
   // d/dt distance = apart . (v_sight - v_link); the line of sight turns about the target, which stays.
   const Vec3 apart_C = sight.X_BC.R.transpose() * apart;
-  model::VecN gradient = (1.0 - nearest.s) * sight.J_C.topRows<3>().transpose().lazyProduct(apart_C);
+  model::VecN gradient = (1.0 - nearest.s) * J_C.topRows<3>().transpose().lazyProduct(apart_C);
   model::LinearJacobian J_link;
   model::ComputeLinearJacobian(arm, sight.poses, on_link, J_link);
   for (int i = 0; i <= joint; ++i) {
     gradient[i] -= J_link.col(i).dot(apart);
   }
-  limits.AddRow(-gradient, std::max(config.rate * (nearest.distance - config.clearance), 0.0));
+  limits.AddRow(-gradient, std::max(kRate * (nearest.distance - clearance), 0.0));
 }
 
 }  // namespace fovea::servo

@@ -95,7 +95,8 @@ void Compare(const Polygon& polygon, const CornerView& view, PoseChoice& choice)
   AddView(view, choice.views);
   for (std::size_t i = 0; i < static_cast<std::size_t>(choice.num_branches); ++i) {
     PoseChoice::Branch& branch = choice.branches[i];
-    branch.still_misfit = FitStill(polygon, choice.views, view, branch.X_BO_still);
+    FitStill(polygon, choice.views, branch.X_BO_still);
+    branch.still_misfit = MisfitOf(polygon, choice.views, view, branch.X_BO_still);
   }
   const bool fits = Weed(choice);
   choice.is_still = fits && choice.views.count >= kViewsToTell;

@@ -5,6 +5,7 @@
 
 #include "fovea/servo/guard_motion.hpp"
 #include "fovea/servo/joint_pace.hpp"
+#include "fovea/servo/keep_sight.hpp"
 #include "fovea/servo/null_space_wish.hpp"
 #include "fovea/servo/obstacle.hpp"
 #include "fovea/servo/singularity.hpp"
@@ -51,7 +52,9 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
   int rows = limits.num_rows;
   LimitApproach(config, scene, limits);
   named.NameNewRows(Limit::kObstacle, rows);
-  if (config.guard.singularity_min > 0.0 && !scene.by_joints) {
+  if (scene.by_joints) {
+    watch = SingularityWatch{};  // what it knew of the posture holds no longer
+  } else if (config.guard.singularity_min > 0.0) {
     rows = limits.num_rows;
     SingularityConfig singularity_config;
     singularity_config.sigma_min = config.guard.singularity_min;
@@ -65,9 +68,9 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
   if (scene.target != nullptr) {
     rows = limits.num_rows;
     LimitView(config.guard.view, *scene.target, limits);
-    if (scene.sight != nullptr) {
-      LimitSight(SightConfig{}, config.arm, *scene.sight, limits);
-    }
+    const model::Pose X_BC = scene.poses.X_BE * config.X_EC;
+    LimitSight(config.guard.sight_clearance, config.arm,
+               {scene.poses, X_BC, X_BC * scene.target->seen.X_CO.p}, scene.target->J_C, limits);
     named.NameNewRows(Limit::kFieldOfView, rows);
   }
 }

@@ -183,7 +183,7 @@ void ServoTask::ComputeVisualLaw() noexcept {
       law.q_posture = model::ToArray(state_.way.goal.q);
     }
     VisualLaw(law, config_.arm, state_.feature, state_.J_C, state_.q, state_.law);
-    if (IsTracking(state_.mode.mode) && SeeksGoalPosture(config_.feature)) {
+    if (IsTracking(state_.mode.mode) && SeeksGoalPosture(config_)) {
       ChooseTheWay();
     }
   }
@@ -245,11 +245,9 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     state_.law.task.v *= blend;
     state_.law.task.dq_0 *= blend;
     const ViewedTarget target{config_.feature.Outline(), state_.prediction.seen, state_.J_C};
-    const Sight sight{state_.poses, state_.J_C, state_.X_BC, state_.prediction.p_BO};
-    ResolveMotion(
-        config_, state_.law.task,
-        {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, &sight, state_.way.by_joints},
-        state_.resolved);
+    ResolveMotion(config_, state_.law.task,
+                  {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, state_.way.by_joints},
+                  state_.resolved);
     if (!state_.resolved.finite || !state_.resolved.dq.allFinite()) {
       LatchFault(hal::Fault::kNonFiniteControl, -1);
       return;

@@ -11,13 +11,12 @@ namespace {
 using features::Polygon;
 using features::SeenCorners;
 
-constexpr int kRounds = 1;             // of Gauss-Newton, each time: the pose is near from the view before
 constexpr double kCalibration = 2e-4;  // what arm, camera and lens are not known to, in the normalised image
 constexpr double kStepM = 0.05;        // steps are held back by these, so that none leaps where the corners
 constexpr double kStepRad = 0.05;      // say nothing
-constexpr double kHereM = 5e-4;        // a camera that has moved no further stands where it was
-constexpr double kHereRad = 1e-3;
-constexpr int kFramesMost = 60;  // whose mean a view is
+constexpr double kHereM = 5e-5;        // a camera that has moved no further stands where it was: corners at
+constexpr double kHereRad = 1e-4;      // 0.25 m and further shift by no more than kCalibration
+constexpr int kFramesMost = 60;        // whose mean a view is
 constexpr double kNoWay = 1e9;
 
 double WeightOf(double variance, int frames) noexcept {
@@ -29,19 +28,19 @@ StillViews::View ViewOf(const CornerView& view) noexcept {
   return {view.X_CB, view.seen.xy, variance, 1};
 }
 
-// How far the corners of a view are from where `X_BO` has them, in the polygon's order; `first` of them is
-// its first corner. False when one is not before the camera.
-bool OffFrom(const Polygon& polygon, const model::Pose& X_CB, const SeenCorners::Vector& xy,
-             const model::Pose& X_BO, SeenCorners::Vector& e, int& first) noexcept {
+// How far the corners of a view are from where `X_BO` has them, in the polygon's order. False when one is
+// not before the camera.
+bool OffFrom(const Polygon& polygon, const StillViews::View& view, const model::Pose& X_BO,
+             SeenCorners::Vector& e) noexcept {
   SeenCorners::Vector expected;
-  if (!ExpectCorners(polygon, X_CB, X_BO, expected)) {
+  if (!ExpectCorners(polygon, view.X_CB, X_BO, expected)) {
     return false;
   }
   const int n = polygon.num_corners;
-  first = NearestFirst(xy, expected);
+  const int first = NearestFirst(view.xy, expected);
   e.resize(2 * n);
   for (int i = 0; i < n; ++i) {
-    e.segment<2>(2 * i) = xy.segment<2>(2 * ((first + i) % n)) - expected.segment<2>(2 * i);
+    e.segment<2>(2 * i) = view.xy.segment<2>(2 * ((first + i) % n)) - expected.segment<2>(2 * i);
   }
   return true;
 }
@@ -63,9 +62,8 @@ void Average(const CornerView& newest, StillViews::View& view) noexcept {
   }
 }
 
-// What views say of a pose: how badly it fits, and which way it fits better.
+// What views say of a pose: which way it fits better.
 struct Fit {
-  double misfit = 0.0;
   model::Mat6 information = model::Mat6::Zero();
   model::Vec6 right = model::Vec6::Zero();
 };
@@ -73,29 +71,15 @@ struct Fit {
 // One view's share; false when a corner is not before the camera.
 bool AddTo(Fit& fit, const Polygon& polygon, const StillViews::View& view, const model::Pose& X_BO) noexcept {
   SeenCorners::Vector e;
-  int first = 0;
-  if (!OffFrom(polygon, view.X_CB, view.xy, X_BO, e, first)) {
+  if (!OffFrom(polygon, view, X_BO, e)) {
     return false;
   }
   CornerSlope H;
   SlopeOfCorners(polygon, view.X_CB, X_BO, H);
   const double weight = WeightOf(view.variance, view.frames);
-  fit.misfit += weight * e.squaredNorm();
   fit.information += weight * H.transpose().lazyProduct(H);
   fit.right += weight * H.transpose().lazyProduct(e);
   return true;
-}
-
-Fit FitAt(const Polygon& polygon, const StillViews& views, const model::Pose& X_BO) noexcept {
-  Fit fit;
-  bool seen = AddTo(fit, polygon, views.here, X_BO);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(views.count); ++i) {
-    seen = seen && AddTo(fit, polygon, views.views[i], X_BO);
-  }
-  if (!seen || !(fit.misfit < kNoWay)) {
-    fit.misfit = kNoWay;
-  }
-  return fit;
 }
 
 }  // namespace
@@ -124,25 +108,36 @@ void AddView(const CornerView& view, StillViews& views) noexcept {
 
 double MisfitOf(const Polygon& polygon, const StillViews& views, const CornerView& newest,
                 const model::Pose& X_BO) noexcept {
-  Fit fit = FitAt(polygon, views, X_BO);
-  return fit.misfit < kNoWay && AddTo(fit, polygon, ViewOf(newest), X_BO) ? fit.misfit : kNoWay;
+  double misfit = 0.0;
+  const auto add = [&](const StillViews::View& view) {
+    SeenCorners::Vector e;
+    const bool seen = OffFrom(polygon, view, X_BO, e);
+    misfit = seen ? misfit + WeightOf(view.variance, view.frames) * e.squaredNorm() : kNoWay;
+    return misfit < kNoWay;
+  };
+  bool fits = add(ViewOf(newest));
+  for (std::size_t i = 0; fits && i < static_cast<std::size_t>(views.count); ++i) {
+    fits = add(views.views[i]);
+  }
+  return fits ? misfit : kNoWay;
 }
 
-double FitStill(const Polygon& polygon, const StillViews& views, const CornerView& newest,
-                model::Pose& X_BO) noexcept {
-  for (int round = 0; round < kRounds; ++round) {
-    Fit fit = FitAt(polygon, views, X_BO);
-    fit.information.diagonal().head<3>().array() += 1.0 / (kStepM * kStepM);
-    fit.information.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
-    model::FactorCholesky(fit.information);
-    model::SolveCholesky(fit.information, fit.right);
-    if (!(fit.misfit < kNoWay) || !fit.right.allFinite()) {
-      return kNoWay;
-    }
-    X_BO.p += fit.right.head<3>();
-    X_BO.R = model::RotationOf(fit.right.tail<3>()) * X_BO.R;
+bool FitStill(const Polygon& polygon, const StillViews& views, model::Pose& X_BO) noexcept {
+  Fit fit;
+  bool seen = AddTo(fit, polygon, views.here, X_BO);
+  for (std::size_t i = 0; seen && i < static_cast<std::size_t>(views.count); ++i) {
+    seen = AddTo(fit, polygon, views.views[i], X_BO);
   }
-  return MisfitOf(polygon, views, newest, X_BO);
+  fit.information.diagonal().head<3>().array() += 1.0 / (kStepM * kStepM);
+  fit.information.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
+  model::FactorCholesky(fit.information);
+  model::SolveCholesky(fit.information, fit.right);
+  if (!seen || !fit.right.allFinite()) {
+    return false;
+  }
+  X_BO.p += fit.right.head<3>();
+  X_BO.R = model::RotationOf(fit.right.tail<3>()) * X_BO.R;
+  return true;
 }
 
 }  // namespace fovea::servo

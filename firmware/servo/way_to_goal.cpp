@@ -40,8 +40,8 @@ void NoteIdle(const ServoConfig& config, const WaySight& sight, WayToGoal& way) 
   } else if (off < kNearer * way.least_off) {
     way.least_off = off;
     way.idle_ns = 0;
-  } else if ((sight.limits & kBarriers) != 0) {
-    way.idle_ns += hal::kTickPeriodNs;
+  } else {
+    CountTick((sight.limits & kBarriers) != 0, way.idle_ns);
   }
 }
 
@@ -75,8 +75,8 @@ void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way)
     way.held_ns = 0;
   }
   NoteIdle(config, sight, way);
-  if (!way.goal.found || !sight.is_told_apart) {
-    return;  // or it would be the way to a pose that is not the target's
+  if (!way.goal.found) {
+    return;
   }
   const double left = (way.goal.q - sight.q).lpNorm<Eigen::Infinity>();
   if (way.by_joints) {
@@ -87,6 +87,9 @@ void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way)
       way.least_off = HUGE_VAL;
     }
     return;
+  }
+  if (!sight.is_told_apart) {
+    return;  // or it would be the way to a pose that is not the target's
   }
   const bool elsewhere =
       !way.preferred && !way.goal.downhill && IsLonger(sight.now_ns - sight.track_since_ns, kLookS);

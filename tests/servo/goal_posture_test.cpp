@@ -135,6 +135,49 @@ TEST(GoalPostureTest, ASquareThatJumpsStaysTurnedAsItWas) {
   ExpectAtGoal(config, X_BO, goal);
 }
 
+TEST(GoalPostureTest, NoneIsTakenInWhichTheHandIsBelowAPlaneOrTheArmHidesTheTarget) {
+  const ServoConfig free = Config(hal::FeatureKind::kTriangle);
+  VecN q_goal = test::Ready();
+  q_goal[0] += 0.3;
+  const Pose X_BO = TargetFor(free, q_goal);
+  model::ArmPoses poses;
+  model::ComputePoses(free.arm, q_goal, poses);
+
+  ServoConfig below = free;
+  below.guard.obstacles.num_planes = 1;
+  below.guard.obstacles.planes[0] = {{0.0, 0.0, 1.0}, poses.X_BE.p.z() + 0.01};
+  GoalPosture goal;
+  EXPECT_EQ(StepsUntilFound(below, X_BO, test::Ready(), goal), 0);
+  below.guard.obstacles.planes[0].distance -= 0.02;
+  goal = GoalPosture{};
+  EXPECT_GT(StepsUntilFound(below, X_BO, test::Ready(), goal), 0);
+
+  ServoConfig hidden = free;
+  hidden.guard.sight_clearance = 10.0;  // no posture is so clear
+  goal = GoalPosture{};
+  EXPECT_EQ(StepsUntilFound(hidden, X_BO, test::Ready(), goal), 0);
+
+  ServoConfig singular = free;
+  singular.guard.singularity_min = 1.0;  // nor so far from every singularity
+  goal = GoalPosture{};
+  EXPECT_EQ(StepsUntilFound(singular, X_BO, test::Ready(), goal), 0);
+}
+
+// A range that leaves no room at its ends is used in its middle.
+TEST(GoalPostureTest, AJointWithANarrowRangeStaysInIt) {
+  ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  VecN q_goal = test::Ready();
+  config.arm.joints[2].q_min = q_goal[2] - 0.05;
+  config.arm.joints[2].q_max = q_goal[2] + 0.05;
+  q_goal[0] += 0.3;
+  const Pose X_BO = TargetFor(config, q_goal);
+  VecN q = test::Ready();
+  q[2] += 0.03;
+  GoalPosture goal;
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  EXPECT_NEAR(goal.q[2], test::Ready()[2], 1e-12);
+}
+
 TEST(GoalPostureTest, NoneIsFoundForAGoalOutsideTheWorkspace) {
   const ServoConfig config = Config(hal::FeatureKind::kTriangle);
   Pose X_BO = TargetFor(config, test::Ready());

@@ -369,6 +369,34 @@ TEST(PoseChoiceTest, WhatAllViewsSayOfAStillTargetOutweighsOnePlacesError) {
   EXPECT_LT(all, 0.25);
 }
 
+// A camera that comes to rest by and by, as at the end of every approach: frames that look nearly alike are
+// not taken for frames from one place. Without noise all that is left of an error is the mean's.
+TEST(PoseChoiceTest, ACameraThatCreepsSpoilsNoMean) {
+  const PredictConfig config;
+  const Polygon square = features::MakeSquare(0.08);
+  const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
+  for (const double speed : {5e-3, 1e-3, 2e-4}) {  // [m/s]
+    Draw draw(5);
+    PoseChoice choice;
+    double worst_mm = 0.0;
+    double worst_deg = 0.0;
+    for (int k = 0; k < 150; ++k) {
+      Pose X_BC = ComesOver(flat, k * kFrameS);
+      X_BC.p.x() += speed * k * kFrameS;
+      UpdatePoses(config, square, ViewOf(square, X_BC, flat, k, 0.0, draw), choice);
+      if (k > 75) {
+        const Pose X_BO = MotionAt(choice, choice.stamp_ns).X_BO;
+        worst_mm = std::max(worst_mm, 1e3 * (X_BO.p - flat.p).norm());
+        worst_deg = std::max(worst_deg, Between(X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi);
+      }
+    }
+    std::cout << 1e3 * speed << " mm/s: off by at most " << worst_mm << " mm, " << worst_deg << " deg\n";
+    EXPECT_TRUE(choice.is_still);
+    EXPECT_LT(worst_mm, 0.017);
+    EXPECT_LT(worst_deg, 0.006);
+  }
+}
+
 TEST(PoseChoiceTest, ATargetThatSetsOutIsStillNoMore) {
   const PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);

@@ -231,7 +231,7 @@ TEST(ResolveDampedTest, GoesSmoothlyThroughSingularPosturesOfThePanda) {
 TEST(ResolveDampedTest, IsContinuousWhereDampingBegins) {
   test::RandomStates random(507);
   double largest_step = 0.0;
-  double worst = 0.0;
+  double worst = -HUGE_VAL;
   int switched = 0;
   for (int k = 0; k < test::Repetitions(3000); ++k) {
     const int m = 3 + k % 4;
@@ -263,10 +263,10 @@ TEST(ResolveDampedTest, IsContinuousWhereDampingBegins) {
     switched += above.sigma_min >= above.threshold && below.sigma_min < below.threshold ? 1 : 0;
     const double step = (above.dq - below.dq).norm() / above.dq.norm();
     largest_step = std::max(largest_step, step);
-    worst = std::max(worst, step - 10.0 * by);
+    worst = std::max(worst, step - 3.0 * by);
   }
   std::cout << switched << " steps over the threshold, by 1e-12 to 1e-6 of it: dq changes by " << largest_step
-            << " at most, by " << worst << " more than ten times the step\n";
+            << " at most, by " << worst << " more than three times the step\n";
   EXPECT_GT(switched, test::Repetitions(3000) / 2);
   EXPECT_LT(worst, 1e-11);
 }
@@ -310,7 +310,7 @@ TEST(ResolveDampedTest, AnswersMoreThanOneWishAndHoldsForSmallThresholds) {
     }
     std::cout << "threshold " << threshold << ": differs from the singular values' answer by " << worst
               << " (relative)\n";
-    EXPECT_LT(worst, 1e-15 / threshold / threshold * 100.0);
+    EXPECT_LT(worst, std::max(1e-14 / threshold / threshold, 1e-11));
   }
 }
 

@@ -44,6 +44,8 @@ TEST(ServoInitTest, RefusesAndNamesTheKey) {
          c.feature.R_CO_star << 0, 0, 1, 0, 1, 0, -1, 0, 0;
        }},
       {"safety.view_margin_px", [](ServoConfig& c) { c.guard.view.enabled = true; }},
+      {"safety.sight_clearance", [](ServoConfig& c) { c.guard.sight_clearance = -0.1; }},
+      {"servo.damping", [](ServoConfig& c) { c.law.damping = 1e-7; }},
       {"servo.lambda_near", [](ServoConfig& c) { c.law.lambda_near = -1.0; }},
       {"servo.posture", [=](ServoConfig& c) { c.law.q_posture[0] = nan; }},
       {"camera.mount_xyz", [=](ServoConfig& c) { c.X_EC.p.x() = nan; }},

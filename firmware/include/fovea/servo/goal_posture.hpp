@@ -35,8 +35,9 @@ struct GoalPosture {
   model::VecN q_dropped;  // the last one that could not be reached
 };
 
-// Whether the target's feature leaves the camera's pose no freedom, so that there is something to look for.
-[[nodiscard]] bool SeeksGoalPosture(const features::TargetFeature& feature) noexcept;
+// Whether the target's feature leaves the camera's pose no freedom, and the arm can take any, so that there
+// is something to look for.
+[[nodiscard]] bool SeeksGoalPosture(const ServoConfig& config) noexcept;
 
 // One step. `X_BO`: the target's estimate; `q` [num_joints]: where the arm is. Real-time: yes.
 void SeekGoalPosture(const ServoConfig& config, const model::Pose& X_BO, const model::VecN& q,

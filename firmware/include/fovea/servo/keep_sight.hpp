@@ -1,8 +1,9 @@
 // The arm's own links stay out of the line of sight from the camera to the target.
 //
 // With the hand where a target asks for it, another part of the arm may come between: the elbow, or the
-// forearm. How near the links' lines come to the line of sight is a limit on the motion like the others
-// (motion_limits.hpp).
+// forearm. They are taken as lines from joint to joint, of which their thickness is a part of the clearance;
+// the links between the last joints carry the camera and are never in its way. How near the links' lines come
+// to the line of sight is a limit on the motion like the others (motion_limits.hpp).
 #pragma once
 
 #include "fovea/model/kinematics.hpp"
@@ -10,15 +11,9 @@
 
 namespace fovea::servo {
 
-struct SightConfig {
-  double clearance = 0.12;  // of a link's line from the line of sight [m]; 0: nothing is kept
-  double rate = 1.5;        // what is left may be used up no faster than exp(-rate t) [1/s]
-};
-
 struct Sight {
   const model::ArmPoses& poses;
-  const model::Mat6N& J_C;  // body Jacobian of the camera
-  model::Pose X_BC;
+  model::Pose X_BC;  // of the same posture
   model::Vec3 p_BO;  // the target's centre [m]
 };
 
@@ -26,9 +21,10 @@ struct Sight {
 // Real-time: yes.
 [[nodiscard]] double ClearanceOfSight(const model::ArmModel& arm, const Sight& sight) noexcept;
 
-// Adds the row for the nearest link. What is already nearer than the clearance may not come nearer still.
-// Real-time: yes.
-void LimitSight(const SightConfig& config, const model::ArmModel& arm, const Sight& sight,
+// Adds the row that keeps the nearest link's line `clearance` [m] away from the line of sight; what is
+// already nearer may not come nearer still. None where `clearance` is 0, and none where the two cross: there
+// is no way apart then. `J_C`: body Jacobian of the camera. Real-time: yes.
+void LimitSight(double clearance, const model::ArmModel& arm, const Sight& sight, const model::Mat6N& J_C,
                 MotionLimits& limits) noexcept;
 
 }  // namespace fovea::servo

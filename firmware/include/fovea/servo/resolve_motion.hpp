@@ -11,7 +11,6 @@
 #include "fovea/hal/events.hpp"
 #include "fovea/model/kinematics.hpp"
 #include "fovea/servo/keep_in_view.hpp"
-#include "fovea/servo/keep_sight.hpp"
 #include "fovea/servo/reference.hpp"
 #include "fovea/servo/resolve_constrained.hpp"
 #include "fovea/servo/servo_config.hpp"
@@ -25,8 +24,7 @@ struct MotionScene {
   const model::ArmPoses& poses;
   const model::LinearJacobian& J_E_B;    // of the end effector's point, in axes of B
   const model::Mat6N& J;                 // body Jacobian of a frame of the hand, for the singularity
-  const ViewedTarget* target = nullptr;  // what shall stay in the picture; null: nothing
-  const Sight* sight = nullptr;          // what the arm itself shall not hide; null: nothing
+  const ViewedTarget* target = nullptr;  // what shall stay in the picture, and in sight; null: nothing
   bool by_joints = false;                // a motion of the joints, which no singularity of the hand holds up
 };
 

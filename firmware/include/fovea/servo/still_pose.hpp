@@ -27,16 +27,18 @@ struct StillViews {
   View here;  // the mean of the frames since the camera stands where it is
 };
 
-// Takes the view when the camera has gone far enough since the last one. Real-time: yes.
+// Takes the view when the camera has gone far enough since the last one, and into the mean of those from
+// where it stands. Real-time: yes.
 void AddView(const CornerView& view, StillViews& views) noexcept;
 
-// The squared distances of the corners from where `X_BO` has them, in standard deviations: summed over all
-// views and `newest`; large where one is not before the camera. Real-time: yes.
+// The squared distances of the corners from where `X_BO` has them, in standard deviations: summed over the
+// `count` views and `newest`, each of one frame; large where one is not before the camera. Real-time: yes.
 [[nodiscard]] double MisfitOf(const features::Polygon& polygon, const StillViews& views,
                               const CornerView& newest, const model::Pose& X_BO) noexcept;
 
-// Improves `X_BO` by the views, and gives its misfit. Real-time: yes.
-[[nodiscard]] double FitStill(const features::Polygon& polygon, const StillViews& views,
-                              const CornerView& newest, model::Pose& X_BO) noexcept;
+// Improves `X_BO` by all views, with the mean from where the camera stands; by one step of Gauss-Newton,
+// since the pose is near from the view before. False, and `X_BO` as it was, when a corner is not before the
+// camera. Real-time: yes.
+bool FitStill(const features::Polygon& polygon, const StillViews& views, model::Pose& X_BO) noexcept;
 
 }  // namespace fovea::servo

@@ -1,0 +1,75 @@
+#include "fovea/servo/resolve_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/panda.hpp"
+
+namespace fovea::servo {
+namespace {
+
+using model::VecN;
+
+// Near a singular posture, and a task of the joints that leads further into it.
+class NearASingularityTest : public testing::Test {
+ protected:
+  NearASingularityTest() : config_(test::PandaConfig()), q_(test::Ready()) {
+    Singularity singularity;
+    for (int step = 0; step < 1000; ++step) {
+      model::ComputePoses(config_.arm, q_, poses_);
+      model::ComputeJacobian(config_.arm, poses_, config_.X_EC, J_C_);
+      ComputeSingularity(J_C_, SingularityConfig{}.length, singularity);
+      sigma_ = singularity.sigma;
+      if (sigma_ < 1.05 * config_.guard.singularity_min) {
+        break;
+      }
+      q_ -= 0.01 * singularity.gradient.normalized();
+      for (int i = 0; i < 7; ++i) {
+        const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
+        q_[i] = std::clamp(q_[i], joint.q_min + 0.1, joint.q_max - 0.1);
+      }
+    }
+    model::ComputeLinearJacobian(config_.arm, poses_, poses_.X_BE.p, J_E_B_);
+    reference_.q = q_;
+    reference_.dq.setZero(7);
+    reference_.ddq.setZero(7);
+    task_.v = -0.5 * singularity.gradient.normalized();
+    task_.J.setIdentity(7, 7);
+    task_.dq_0.setZero(7);
+    task_.weight.setOnes(7);
+  }
+
+  hal::LimitSet Resolve(bool by_joints) {
+    MotionScene scene{reference_, poses_, J_E_B_, J_C_};
+    scene.by_joints = by_joints;
+    ResolveMotion(config_, task_, scene, motion_);
+    return motion_.limits & hal::Bit(hal::Limit::kSingularity);
+  }
+
+  ServoConfig config_;
+  VecN q_;
+  double sigma_ = 0.0;
+  model::ArmPoses poses_;
+  model::Mat6N J_C_;
+  model::LinearJacobian J_E_B_;
+  Reference reference_;
+  MotionTask task_;
+  ResolvedMotion motion_;
+};
+
+TEST_F(NearASingularityTest, TheLawIsHeldAndAMotionOfTheJointsIsNot) {
+  ASSERT_LT(sigma_, 1.05 * config_.guard.singularity_min);
+  EXPECT_NE(Resolve(false), 0U);
+  EXPECT_EQ(Resolve(true), 0U);
+  EXPECT_GT(motion_.dq.dot(VecN(task_.v)), 0.9 * task_.v.squaredNorm());
+}
+
+TEST_F(NearASingularityTest, WhatWasKnownBeforeTheJointsMovedCountsNoMore) {
+  motion_.watch.sigma = 5.0;  // far off, where the arm was before
+  Resolve(true);
+  EXPECT_NE(Resolve(false), 0U);
+}
+
+}  // namespace
+}  // namespace fovea::servo
