@@ -207,7 +207,6 @@ void SideEvidence::Describe() {
     const double end_px = std::max(kEndPx, kEndShare * side.length_px);
     side.ends[0] = seen > 0 && (first - side.from) * spacing_px < end_px;
     side.ends[1] = seen > 0 && (side.to - 1 - last) * spacing_px < end_px;
-    side.step = (ground_ - target_);
     FindClear(side, static_cast<int>(std::ceil(kBesidePx / spacing_px)));
   }
   against_ = known > 0 ? static_cast<double>(wrong) / known : 1.0;
@@ -266,8 +265,8 @@ int SideEvidence::CornersHidden() const {
   return hidden;
 }
 
-// The step across the line through a corner along (du, dv), from `from` to before `to` beyond it; false where
-// that is outside the image.
+// The step across the line through a corner along (du, dv), from `from` to before `to` beyond it: what is on
+// its right less what is on its left. False where that is outside the image.
 bool SideEvidence::StepBeyond(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
                               double dv, int from, int to, Colour& step) {
   constexpr int kNearest = 2;  // beside the line [px]
@@ -299,7 +298,8 @@ bool SideEvidence::SideGoesOn(const cv::Mat& image, const Intrinsics& in, std::s
     const double length = std::hypot(b.u_px - a.u_px, b.v_px - a.v_px);
     const double du = (b.u_px - a.u_px) / length;
     const double dv = (b.v_px - a.v_px) / length;
-    const Colour own = sides_[i].step;
+    // Towards the end the inside is on the right, towards the begin on the left.
+    const Colour own = target_ - ground_;
     if (GoesOn(image, in, b, du, dv, length, own, least) ||
         GoesOn(image, in, a, -du, -dv, length, -own, least)) {
       return true;
@@ -308,7 +308,7 @@ bool SideEvidence::SideGoesOn(const cv::Mat& image, const Intrinsics& in, std::s
   return false;
 }
 
-// `own`: the side's own step, as seen along (du, dv) from left to right.
+// `own`: the side's own step, from left to right as one looks along (du, dv) with v downwards.
 bool SideEvidence::GoesOn(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
                           double dv, double length, const Colour& own, double least) {
   constexpr int kFirst = 4;  // beyond the corner, which is blurred [px]

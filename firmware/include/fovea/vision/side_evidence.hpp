@@ -38,7 +38,6 @@ class SideEvidence {
     double length_px = 0.0;
     double seen = 0.0;              // share of it where the target ends
     bool ends[2] = {false, false};  // seen up to its begin, its end
-    Colour step = Colour::Zero();   // from within to without
   };
 
   // `lines` cross the polygon's sides from within to without, side by side in the corners' order, each side's
