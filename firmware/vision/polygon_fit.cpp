@@ -217,6 +217,9 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
       break;
     }
   }
+  // Asked before lines are placed anew, of those that off_ tells of: one pixel more of a side, and there is
+  // another number of them.
+  fit.bends_explained = evidence_.ExplainsBends(off_);
   if (!PlaceLines(image, in, fit)) {
     return fit;
   }
@@ -226,7 +229,6 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
   }
   fit.part_hidden = evidence_.hidden();
   fit.against = evidence_.against();
-  fit.bends_explained = evidence_.ExplainsBends(off_);
   fit.corners_hidden = evidence_.CornersHidden();
   fit.converged =
       fit.corners.cov.allFinite() && RadiusOf(std::span(fit.corners.corner).first(start.size())) > 0.0;
