@@ -178,9 +178,8 @@ float EdgeMap::NoiseOfGradient() {
 void EdgeMap::ForgetRidges() {
   if (ridge_at_.size() != small_.size()) {
     ridge_at_.assign(small_.size(), -1);
-  }
-  for (const std::size_t place : ridge_places_) {
-    if (place < ridge_at_.size()) {
+  } else {
+    for (const std::size_t place : ridge_places_) {
       ridge_at_[place] = -1;
     }
   }
@@ -201,11 +200,11 @@ void EdgeMap::FindRidges(const cv::Rect& area) {
       // Most of a picture has no edge: eight pixels at a time are passed over.
       constexpr int kTogether = 8;
       if (x + kTogether < width_) {
-        int strong_ones = 0;
+        int edges = 0;
         for (std::size_t k = 0; k < kTogether; ++k) {
-          strong_ones -= static_cast<int>(size2_[i + k] >= weak2);
+          edges -= static_cast<int>(size2_[i + k] >= weak2);
         }
-        if (strong_ones == 0) {
+        if (edges == 0) {
           x += kTogether - 1;
           continue;
         }

@@ -71,8 +71,6 @@ bool PolygonFitter::ReadLines(const cv::Mat& image, const Intrinsics& in, const 
 
 bool PolygonFitter::FitSide(Side& side, double blur, PolygonFit& fit, double& rms2, double& noise2,
                             double& weights) {
-  std::array<SideEdge, Profiles::kMaxLines> edges;
-  std::array<int, Profiles::kMaxLines> lines;
   const double noise = std::max(profiles_.noise(), edge_noise_.floor);
   const double quiet = std::min(noise, 1.5 * profiles_.quiet() + 0.5);
   const double straight = 1.0 - 2.0 * kRoundedBlurs * blur / side.length;
@@ -88,22 +86,22 @@ bool PolygonFitter::FitSide(Side& side, double blur, PolygonFit& fit, double& rm
     }
     ++clear;
     if (edge.valid) {
-      lines[count] = i;
-      edges[count++] = {place_[k], edge.at_px, noise * noise / edge.info + kMinScalePx * kMinScalePx,
-                        std::fabs(place_[k]) > straight};
+      edge_line_[count] = i;
+      edges_[count++] = {place_[k], edge.at_px, noise * noise / edge.info + kMinScalePx * kMinScalePx,
+                         std::fabs(place_[k]) > straight};
     }
   }
   const int beside =
       static_cast<int>(std::ceil(SideEvidence::kBesidePx * (side.to - side.from) / side.length));
-  if (!FitSideLine(std::span(edges).first(count), beside, side.line)) {
+  if (!FitSideLine(std::span(edges_).first(count), beside, side.line)) {
     return false;
   }
   for (std::size_t j = 0; j < count; ++j) {
-    const SideEdge& e = edges[j];
-    const Profiles::Edge& edge = profiles_.edge(lines[j]);
+    const SideEdge& e = edges_[j];
+    const Profiles::Edge& edge = profiles_.edge(edge_line_[j]);
     const double off = e.at_px - side.line.a - side.line.b * e.t;
-    weight_[static_cast<std::size_t>(lines[j])] = e.weight;
-    off_[static_cast<std::size_t>(lines[j])] = e.off;
+    weight_[static_cast<std::size_t>(edge_line_[j])] = e.weight;
+    off_[static_cast<std::size_t>(edge_line_[j])] = e.off;
     rms2 += e.weight * off * off;
     noise2 += e.weight * quiet * quiet / edge.info;
     weights += e.weight;
@@ -217,6 +215,9 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
       break;
     }
   }
+  // Asked before lines are placed anew, of those that off_ tells of: one pixel more of a side, and there is
+  // another number of them.
+  fit.bends_explained = evidence_.ExplainsBends(off_);
   if (!PlaceLines(image, in, fit)) {
     return fit;
   }
@@ -226,7 +227,6 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
   }
   fit.part_hidden = evidence_.hidden();
   fit.against = evidence_.against();
-  fit.bends_explained = evidence_.ExplainsBends(off_);
   fit.corners_hidden = evidence_.CornersHidden();
   fit.converged =
       fit.corners.cov.allFinite() && RadiusOf(std::span(fit.corners.corner).first(start.size())) > 0.0;

@@ -18,11 +18,13 @@ constexpr double kEndShare = 0.2;  // or this, of its length
 // The pixel there; false outside the image.
 bool ColourAt(const cv::Mat& image, const Intrinsics& in, double u, double v, Eigen::Vector3f& colour) {
   in.Distort(u, v);
-  const auto x = static_cast<int>(std::lround(u));
-  const auto y = static_cast<int>(std::lround(v));
-  if (x < 0 || y < 0 || x >= image.cols || y >= image.rows) {
+  u += 0.5;
+  v += 0.5;
+  if (!(u >= 0.0 && v >= 0.0 && u < image.cols && v < image.rows)) {
     return false;
   }
+  const auto x = static_cast<int>(u);
+  const auto y = static_cast<int>(v);
   const int channels = image.channels();
   const std::uint8_t* pixel = image.ptr<std::uint8_t>(y) + x * channels;
   if (channels == 3) {
@@ -31,22 +33,6 @@ bool ColourAt(const cv::Mat& image, const Intrinsics& in, double u, double v, Ei
     colour = Eigen::Vector3f(pixel[0], 0.0F, 0.0F);
   }
   return true;
-}
-
-// How far a point is inside all sides but `but` [px].
-double DepthOf(std::span<const ImagePoint> corners, std::size_t but, double u, double v) {
-  double depth = 1e9;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    if (k == but) {
-      continue;
-    }
-    const ImagePoint& a = corners[k];
-    const ImagePoint& b = corners[(k + 1) % corners.size()];
-    const double du = b.u_px - a.u_px;
-    const double dv = b.v_px - a.v_px;
-    depth = std::min(depth, (du * (v - a.v_px) - dv * (u - a.u_px)) / std::hypot(du, dv));
-  }
-  return depth;
 }
 
 }  // namespace
@@ -59,21 +45,57 @@ void SideEvidence::Look(const cv::Mat& image, const Intrinsics& in, std::span<co
   for (std::size_t k = 0; k < corners.size(); ++k) {
     const ImagePoint& a = corners[k];
     const ImagePoint& b = corners[(k + 1) % corners.size()];
-    sides_[k] = Side{};
-    sides_[k].from = k == 0 ? 0 : ends[k - 1];
-    sides_[k].to = ends[k];
-    sides_[k].length_px = std::hypot(b.u_px - a.u_px, b.v_px - a.v_px);
+    Side& side = sides_[k];
+    side = Side{};
+    side.from = k == 0 ? 0 : ends[k - 1];
+    side.to = ends[k];
+    side.length_px = std::hypot(b.u_px - a.u_px, b.v_px - a.v_px);
+    side.inward_u = (a.v_px - b.v_px) / side.length_px;
+    side.inward_v = (b.u_px - a.u_px) / side.length_px;
+    side.offset_px = side.inward_u * a.u_px + side.inward_v * a.v_px;
   }
-  Sample(image, in, corners);
+  Sample(image, in);
   Judge();
   Describe();
 }
 
-void SideEvidence::Sample(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> corners) {
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    for (int i = sides_[k].from; i < sides_[k].to; ++i) {
+// How far a point is inside all sides but `but` [px].
+double SideEvidence::DepthOf(int but, double u, double v) const {
+  double depth = 1e9;
+  for (int k = 0; k < sides_count_; ++k) {
+    const Side& side = sides_[static_cast<std::size_t>(k)];
+    if (k != but) {
+      depth = std::min(depth, side.inward_u * u + side.inward_v * v - side.offset_px);
+    }
+  }
+  return depth;
+}
+
+// Whether both the nearest and the furthest place within line i, of side `k`, are clear of the other sides.
+bool SideEvidence::IsInside(int k, int i) const {
+  const ProfileLine& l = lines_[static_cast<std::size_t>(i)];
+  const auto is_clear = [&](double depth) {
+    return DepthOf(k, l.u_px - depth * l.nu, l.v_px - depth * l.nv) > kClearPx;
+  };
+  return is_clear(kDepthPx) && is_clear(kDepthPx + kDepths - 1);
+}
+
+void SideEvidence::Sample(const cv::Mat& image, const Intrinsics& in) {
+  for (int k = 0; k < sides_count_; ++k) {
+    const Side& side = sides_[static_cast<std::size_t>(k)];
+    // What is clear of the other sides is convex: so are all places between two lines that are.
+    int first = side.from;
+    int last = side.to - 1;
+    while (first < side.to && !IsInside(k, first)) {
+      ++first;
+    }
+    while (last > first && !IsInside(k, last)) {
+      --last;
+    }
+    for (int i = side.from; i < side.to; ++i) {
       const auto line = static_cast<std::size_t>(i);
       const ProfileLine& l = lines_[line];
+      const bool is_inside = i >= first && i <= last;
       Colour colour;
       Colour within = Colour::Zero();
       Colour without = Colour::Zero();
@@ -83,7 +105,7 @@ void SideEvidence::Sample(const cv::Mat& image, const Intrinsics& in, std::span<
         const double depth = kDepthPx + d;
         const double u = l.u_px - depth * l.nu;
         const double v = l.v_px - depth * l.nv;
-        if (DepthOf(corners, k, u, v) > kClearPx && ColourAt(image, in, u, v, colour)) {
+        if ((is_inside || DepthOf(k, u, v) > kClearPx) && ColourAt(image, in, u, v, colour)) {
           within += colour;
           ++count_in;
         }
@@ -207,7 +229,6 @@ void SideEvidence::Describe() {
     const double end_px = std::max(kEndPx, kEndShare * side.length_px);
     side.ends[0] = seen > 0 && (first - side.from) * spacing_px < end_px;
     side.ends[1] = seen > 0 && (side.to - 1 - last) * spacing_px < end_px;
-    side.step = (ground_ - target_);
     FindClear(side, static_cast<int>(std::ceil(kBesidePx / spacing_px)));
   }
   against_ = known > 0 ? static_cast<double>(wrong) / known : 1.0;
@@ -266,8 +287,8 @@ int SideEvidence::CornersHidden() const {
   return hidden;
 }
 
-// The step across the line through a corner along (du, dv), from `from` to before `to` beyond it; false where
-// that is outside the image.
+// The step across the line through a corner along (du, dv), from `from` to before `to` beyond it: what is on
+// its right less what is on its left. False where that is outside the image.
 bool SideEvidence::StepBeyond(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
                               double dv, int from, int to, Colour& step) {
   constexpr int kNearest = 2;  // beside the line [px]
@@ -299,7 +320,8 @@ bool SideEvidence::SideGoesOn(const cv::Mat& image, const Intrinsics& in, std::s
     const double length = std::hypot(b.u_px - a.u_px, b.v_px - a.v_px);
     const double du = (b.u_px - a.u_px) / length;
     const double dv = (b.v_px - a.v_px) / length;
-    const Colour own = sides_[i].step;
+    // Towards the end the inside is on the right, towards the begin on the left.
+    const Colour own = target_ - ground_;
     if (GoesOn(image, in, b, du, dv, length, own, least) ||
         GoesOn(image, in, a, -du, -dv, length, -own, least)) {
       return true;
@@ -308,7 +330,7 @@ bool SideEvidence::SideGoesOn(const cv::Mat& image, const Intrinsics& in, std::s
   return false;
 }
 
-// `own`: the side's own step, as seen along (du, dv) from left to right.
+// `own`: the side's own step, from left to right as one looks along (du, dv) with v downwards.
 bool SideEvidence::GoesOn(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
                           double dv, double length, const Colour& own, double least) {
   constexpr int kFirst = 4;  // beyond the corner, which is blurred [px]

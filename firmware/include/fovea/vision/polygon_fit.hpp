@@ -63,6 +63,8 @@ class PolygonFitter {
   std::array<double, Profiles::kMaxLines> weight_{};
   std::array<bool, Profiles::kMaxLines> off_{};  // its edge is, the side's line
   std::array<Side, Detection::kMaxCorners> sides_;
+  std::array<SideEdge, Profiles::kMaxLines> edges_;   // of the side being fitted,
+  std::array<int, Profiles::kMaxLines> edge_line_{};  // and on which line each is
   int count_ = 0;
 };
 

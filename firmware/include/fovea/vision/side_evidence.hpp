@@ -36,9 +36,10 @@ class SideEvidence {
   struct Side {
     int from = 0, to = 0;  // its lines
     double length_px = 0.0;
-    double seen = 0.0;              // share of it where the target ends
-    bool ends[2] = {false, false};  // seen up to its begin, its end
-    Colour step = Colour::Zero();   // from within to without
+    double inward_u = 0.0, inward_v = 0.0;  // unit vector
+    double offset_px = 0.0;                 // of its line along that, from the image's origin
+    double seen = 0.0;                      // share of it where the target ends
+    bool ends[2] = {false, false};          // seen up to its begin, its end
   };
 
   // `lines` cross the polygon's sides from within to without, side by side in the corners' order, each side's
@@ -68,7 +69,9 @@ class SideEvidence {
                          double dv, int from, int to, Colour& step);
   static bool GoesOn(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
                      double dv, double length, const Colour& own, double least);
-  void Sample(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> corners);
+  [[nodiscard]] double DepthOf(int but, double u, double v) const;
+  [[nodiscard]] bool IsInside(int k, int i) const;
+  void Sample(const cv::Mat& image, const Intrinsics& in);
   void Smooth(std::array<Colour, Profiles::kMaxLines>& colours,
               const std::array<bool, Profiles::kMaxLines>& known);
   template <class Counts>
