@@ -71,6 +71,7 @@ void ServoServer::Configure(const Frame& frame) noexcept {
     time_ns_ = 0;
     least_lag_ns_ = 0;
     line_ = LineCounters{};
+    link_counts_ = 0;
     damaged_before_ = reader_.counters().damaged;
     periods_done_ = board_.Periods();
     may_tick_ = configuration_.pacing == Pacing::kTimer;

@@ -31,22 +31,31 @@ struct RunArguments {
   std::string servo_image;
   std::string servo_pace = "lockstep";
   sim::BoardConfig board;
+  std::vector<const CLI::Option*> of_board;  // that go with --servo mcu alone
+  std::vector<const CLI::Option*> of_timer;  // and with --servo-pace timer
   std::string out;
   std::string trace;
   bool no_report = false;
   bool json = false;
 };
 
-// What goes with a servo on a board, and with its own timer, is refused without.
+// `options` are of `choice` alone: InputError when one is given.
+void RefuseGiven(const std::vector<const CLI::Option*>& options, const std::string& choice) {
+  for (const CLI::Option* option : options) {
+    if (option->count() > 0) {
+      throw config::InputError(fmt::format("{} goes with {}", option->get_name(), choice));
+    }
+  }
+}
+
 sim::BoardConfig MakeBoard(const RunArguments& arguments, const sim::Scenario& scenario) {
   sim::BoardConfig board = arguments.board;
   board.by_timer = arguments.servo_pace == "timer";
-  const sim::LinkFaults& line = board.line;
-  if (board.by_timer && arguments.servo != "mcu") {
-    throw config::InputError("--servo-pace timer goes with --servo mcu");
+  if (arguments.servo != "mcu") {
+    RefuseGiven(arguments.of_board, "--servo mcu");
   }
-  if (!board.by_timer && (line.loss > 0.0 || line.delay_ms > 0.0 || line.jitter_ms > 0.0)) {
-    throw config::InputError("--line-loss, --line-delay-ms and --line-jitter-ms go with --servo-pace timer");
+  if (!board.by_timer) {
+    RefuseGiven(arguments.of_timer, "--servo-pace timer");
   }
   if (board.by_timer && scenario.faults.deadline_miss_s[1] > scenario.faults.deadline_miss_s[0]) {
     throw config::InputError(
@@ -85,6 +94,41 @@ int Run(const RunArguments& arguments) {
     }
   }
   return sim::ReachedItsGoal(summary) ? kDone : kGoalMissed;
+}
+
+void AddBoard(CLI::App& run, RunArguments& arguments) {
+  run.add_option("--servo", arguments.servo,
+                 "where the servo runs: pc, in this program; mcu, on a Cortex-M7 that QEMU emulates")
+      ->check(CLI::IsMember({"pc", "mcu"}));
+  arguments.of_board = {
+      run.add_option("--servo-image", arguments.servo_image, "of --servo mcu; the shipped one when not given")
+          ->check(CLI::ExistingFile),
+      run.add_option(
+             "--servo-pace", arguments.servo_pace,
+             "of --servo mcu. lockstep: a state, a tick; timer: by the board's own 1 kHz, in virtual time, "
+             "whether a state has come or not")
+          ->check(CLI::IsMember({"lockstep", "timer"})),
+      run.add_option(
+             "--instruction-ns", arguments.board.instruction_ns,
+             "of --servo mcu: how long its processor takes for each; a slow one misses ticks of its timer")
+          ->check(CLI::IsMember({1, 2, 4, 8, 16, 32, 64}))
+          ->capture_default_str()};
+  sim::LinkFaults& line = arguments.board.line;
+  arguments.of_timer = {
+      run.add_option("--line-loss", line.loss,
+                     "of --servo-pace timer: share of states and of torques that get lost")
+          ->check(CLI::Range(0.0, 1.0))
+          ->capture_default_str(),
+      run.add_option("--line-delay-ms", line.delay_ms,
+                     "of every state and torque; what comes between two ticks is there at the second")
+          ->check(CLI::Range(0.0, 1000.0))
+          ->capture_default_str(),
+      run.add_option("--line-jitter-ms", line.jitter_ms, "up to this much more, by the run's seed")
+          ->check(CLI::Range(0.0, 1000.0))
+          ->capture_default_str(),
+      run.add_option("--line-from-s", arguments.board.line_from_s, "of the run: the line is perfect before")
+          ->check(CLI::NonNegativeNumber)
+          ->capture_default_str()};
 }
 
 struct ServeArguments {
@@ -308,37 +352,7 @@ int main(int argc, char** argv) {
   run->add_option("--pace", arguments.pace,
                   "lockstep: as fast as it goes, repeatable; real: 1 ms by the clock")
       ->check(CLI::IsMember({"lockstep", "real"}));
-  run->add_option("--servo", arguments.servo,
-                  "where the servo runs: pc, in this program; mcu, on a Cortex-M7 that QEMU emulates")
-      ->check(CLI::IsMember({"pc", "mcu"}));
-  run->add_option("--servo-image", arguments.servo_image, "of --servo mcu; the shipped one when not given")
-      ->check(CLI::ExistingFile);
-  run->add_option(
-         "--servo-pace", arguments.servo_pace,
-         "of --servo mcu. lockstep: a state, a tick; timer: by the board's own 1 kHz, in virtual time, "
-         "whether a state has come or not")
-      ->check(CLI::IsMember({"lockstep", "timer"}));
-  run->add_option(
-         "--instruction-ns", arguments.board.instruction_ns,
-         "of --servo mcu: how long its processor takes for each; a slow one misses ticks of its timer")
-      ->check(CLI::IsMember({1, 2, 4, 8, 16, 32, 64}))
-      ->capture_default_str();
-  sim::LinkFaults& line = arguments.board.line;
-  run->add_option("--line-loss", line.loss,
-                  "of --servo-pace timer: share of states and of torques that get lost")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  run->add_option("--line-delay-ms", line.delay_ms,
-                  "of every state and torque; what comes between two ticks is "
-                  "there at the second")
-      ->check(CLI::Range(0.0, 1000.0))
-      ->capture_default_str();
-  run->add_option("--line-jitter-ms", line.jitter_ms, "up to this much more, by the run's seed")
-      ->check(CLI::Range(0.0, 1000.0))
-      ->capture_default_str();
-  run->add_option("--line-from-s", arguments.board.line_from_s, "of the run: the line is perfect before")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  AddBoard(*run, arguments);
   run->add_option("--out", arguments.out, "folder for the files; out/<scenario> when not given");
   run->add_option("--trace", arguments.trace,
                   "file for a timeline of all threads, for ui.perfetto.dev or chrome://tracing");

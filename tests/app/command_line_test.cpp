@@ -52,11 +52,18 @@ class CommandLineTest : public testing::Test {
   TempFolder folder_;
 };
 
-TEST_F(CommandLineTest, WhatGoesWithABoardsTimerIsRefusedWithout) {
-  EXPECT_THAT(Refusal({"ball", "--servo-pace", "timer"}),
-              HasSubstr("--servo-pace timer goes with --servo mcu"));
-  EXPECT_THAT(Refusal({"ball", "--servo", "mcu", "--line-jitter-ms", "1"}),
-              AllOf(HasSubstr("--line-jitter-ms"), HasSubstr("go with --servo-pace timer")));
+TEST_F(CommandLineTest, WhatGoesWithABoardIsRefusedWithout) {
+  const auto needs = [](const std::string& option, const std::string& choice) {
+    return HasSubstr(option + " goes with " + choice);
+  };
+  EXPECT_THAT(Refusal({"ball", "--servo-pace", "timer"}), needs("--servo-pace", "--servo mcu"));
+  EXPECT_THAT(Refusal({"ball", "--servo", "pc", "--instruction-ns", "64"}),
+              needs("--instruction-ns", "--servo mcu"));
+  EXPECT_THAT(Refusal({"ball", "--servo-image", FOVEA_SIM_PROGRAM}), needs("--servo-image", "--servo mcu"));
+  for (const char* option : {"--line-loss", "--line-delay-ms", "--line-jitter-ms", "--line-from-s"}) {
+    EXPECT_THAT(Refusal({"ball", option, "1"}), needs(option, "--servo-pace timer"));
+    EXPECT_THAT(Refusal({"ball", "--servo", "mcu", option, "1"}), needs(option, "--servo-pace timer"));
+  }
   EXPECT_THAT(
       Refusal({"ball", "--servo", "mcu", "--servo-pace", "timer", "--set", "faults.deadline_miss_s=[1, 2]"}),
       AllOf(HasSubstr("faults.deadline_miss_s"), HasSubstr("--instruction-ns")));

@@ -81,6 +81,49 @@ TEST(LatchMapper, TheFirstReadingIsEnough) {
   EXPECT_EQ(mapper.Map(500'100), 2100);
 }
 
+// Quick readings at the beginning, then answers that are all too slow: with 50 ppm it is 3 ms off a minute
+// later.
+TEST(LatchMapper, AClockThatIsNotReadAnyMoreIsNotBelieved) {
+  LatchMapper mapper;
+  const Device device{50e-6, -77 * hal::kNsPerSecond};
+  std::int64_t now_ns = kBeginNs;
+  const auto ask = [&](std::int64_t trip_ns) {
+    mapper.Add(now_ns - trip_ns / 2, device.Stamp(now_ns), now_ns + trip_ns / 2);
+  };
+  for (int k = 0; k < 8; ++k) {
+    now_ns += 20 * hal::kNsPerMs;
+    ask(300'000);
+  }
+  const std::int64_t last_ns = now_ns;
+  const auto after = [&](double s) { return mapper.Map(device.Stamp(last_ns + std::llround(1e9 * s))); };
+  for (int k = 0; k < 240; ++k) {
+    now_ns += hal::kNsPerSecond / 4;
+    ask(6 * hal::kNsPerMs);
+  }
+  ASSERT_TRUE(after(1.9).has_value());
+  EXPECT_NEAR(static_cast<double>(*after(1.9) - last_ns), 1.9e9, 1.2e5) << "50 ppm, and no drift known";
+  EXPECT_FALSE(after(2.1).has_value());
+  EXPECT_FALSE(after(60.0).has_value());
+  // A reading after such a time stands for itself: what was known before is as old as it was.
+  ask(300'000);
+  ASSERT_TRUE(mapper.Map(device.Stamp(now_ns)).has_value());
+  EXPECT_NEAR(static_cast<double>(*mapper.Map(device.Stamp(now_ns)) - now_ns), 0.0, 1e3);
+  EXPECT_EQ(mapper.restarts(), 0U);
+}
+
+TEST(LatchMapper, OfWhichTheDriftIsKnownIsBelievedForLonger) {
+  LatchMapper mapper;
+  Device device{50e-6, -77 * hal::kNsPerSecond};
+  static_cast<void>(WorstNs(mapper, device, 0, 30));
+  const std::int64_t last_ns = kBeginNs + 30 * hal::kNsPerSecond - hal::kNsPerSecond / 4;
+  const auto after = [&](double s) { return mapper.Map(device.Stamp(last_ns + std::llround(1e9 * s))); };
+  ASSERT_TRUE(after(9.9).has_value());
+  std::cout << "9.9 s after the last reading a stamp is off by "
+            << 1e-3 * (static_cast<double>(*after(9.9) - last_ns) - 9.9e9) << " us\n";
+  EXPECT_NEAR(static_cast<double>(*after(9.9) - last_ns), 9.9e9, 1.4e5) << "4 ppm, and half of a way";
+  EXPECT_FALSE(after(10.1).has_value());
+}
+
 TEST(LatchMapper, ASlowAnswerSaysNothing) {
   LatchMapper mapper;
   mapper.Add(0, 1'000'000, 6 * hal::kNsPerMs);

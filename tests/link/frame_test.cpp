@@ -88,7 +88,7 @@ TEST(Crc32, IsThatOfZlib) {
 // As PROTOCOL.md writes it down.
 TEST(Frame, LooksAsItIsSpecified) {
   EXPECT_EQ(Line({FrameKind::kHello, 0, {}}),
-            (ByteVector{0x00, 0x03, 0x01, 0x01, 0x01, 0x01, 0x01, 0x05, 0xb6, 0x5b, 0xfe, 0x47, 0x00}));
+            (ByteVector{0x00, 0x03, 0x02, 0x01, 0x01, 0x01, 0x01, 0x05, 0x18, 0x29, 0x6a, 0xc1, 0x00}));
 }
 
 TEST(Frame, ComesBackAndHoldsNoZero) {
@@ -171,6 +171,11 @@ TEST(Frame, OfAnotherVersionOrKindIsCounted) {
   Read frame{static_cast<FrameKind>(99), 1, {1, 2, 3}};
   EXPECT_TRUE(ReadAll(reader, Line(frame)).empty());
   EXPECT_EQ(reader.counters().unknown, 1U);
+  const ByteVector hello_of_version_1{0x00, 0x03, 0x01, 0x01, 0x01, 0x01, 0x01,
+                                      0x05, 0xb6, 0x5b, 0xfe, 0x47, 0x00};
+  EXPECT_TRUE(ReadAll(reader, hello_of_version_1).empty());
+  EXPECT_EQ(reader.counters().unknown, 2U);
+  EXPECT_EQ(reader.counters().damaged, 0U);
 }
 
 }  // namespace

@@ -123,6 +123,23 @@ TEST_F(ServoServerTest, InLockstepItIsTheTask) {
   EXPECT_EQ(there.Finish(), here.Finish());
 }
 
+// What the line took is told of a tick, not of what came before it was configured.
+TEST_F(ServoServerTest, ConfiguredAnewItTellsOfTheTicksSinceAlone) {
+  for (int run = 0; run < 2; ++run) {
+    for (int k = 0; k < 5; ++k) {
+      Give({FrameKind::kHello, 0, {}});
+    }
+    ASSERT_EQ(Configure(Pacing::kLockstep).code, hal::StatusCode::kOk);
+    std::array<std::uint32_t, 2> link_counts{};
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      Give({FrameKind::kInputs, k, Encode(servo::ServoInputs{}, payload_)});
+      link_counts.at(k) = Taken().link_counts;
+    }
+    EXPECT_GT(link_counts[0], 0U);
+    EXPECT_LE(link_counts[0], link_counts[1]) << "run " << run;
+  }
+}
+
 TEST_F(ServoServerTest, ACarriedLoadIsTheServosToo) {
   model::Load load;
   load.mass = 0.7;

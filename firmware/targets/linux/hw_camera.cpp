@@ -84,11 +84,11 @@ CameraCounters HwCamera::counters() const {
   CameraCounters out;
   if (genicam_) {
     const genicam::GenicamCounters c = genicam_->counters();
-    out = {c.incomplete,  c.lost,       c.overtaken,       c.missing_packets,
-           c.disconnects, c.reconnects, c.stamped_by_clock};
+    out = {c.incomplete,  c.lost,       c.overtaken,        c.missing_packets,
+           c.disconnects, c.reconnects, c.stamped_by_clock, c.clock_refused};
   } else if (v4l2_) {
     const v4l2::V4l2Counters& c = v4l2_->counters();
-    out = {c.incomplete, c.lost, c.overtaken, 0, c.disconnects, c.reconnects, 0};
+    out = {c.incomplete, c.lost, c.overtaken, 0, c.disconnects, c.reconnects, 0, 0};
   }
   return out;
 }

@@ -21,6 +21,7 @@ struct CameraCounters {
   std::uint64_t disconnects = 0;
   std::uint64_t reconnects = 0;
   std::uint64_t stamped_by_clock = 0;  // frames with a stamp by the camera's own clock, not by their arrival
+  std::uint64_t clock_refused = 0;     // whose stamp cannot be of the clock that was asked: by their arrival
 };
 
 class HwCamera {

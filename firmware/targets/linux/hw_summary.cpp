@@ -111,6 +111,7 @@ std::string ToJson(const HwSummary& s) {
                       {"overtaken", s.camera.overtaken},
                       {"missing_packets", s.camera.missing_packets},
                       {"stamped_by_clock", s.camera.stamped_by_clock},
+                      {"clock_refused", s.camera.clock_refused},
                       {"disconnects", s.camera.disconnects},
                       {"reconnects", s.camera.reconnects}};
   }

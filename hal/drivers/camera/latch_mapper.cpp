@@ -12,6 +12,8 @@ namespace {
 constexpr std::int64_t kBlockNs = hal::kNsPerSecond;
 constexpr std::int64_t kLostNs = hal::kNsPerSecond;
 constexpr std::int64_t kWorstTripNs = 5 * hal::kNsPerMs;
+constexpr std::int64_t kBelievedNs = 2 * hal::kNsPerSecond;  // after a reading: 0.1 ms at 50 ppm
+constexpr std::int64_t kBelievedWithDriftNs = 10 * hal::kNsPerSecond;
 constexpr double kSurelyNs = 1e4;  // a shorter round trip than this says no more
 
 }  // namespace
@@ -25,6 +27,9 @@ void LatchMapper::Add(std::int64_t before_ns, std::int64_t device_ns, std::int64
   if (num_blocks_ > 0 &&
       (device_ns < last_device_ns_ || std::llabs(reading.excess_ns - LineAt(device_ns)) > kLostNs)) {
     ++restarts_;
+    num_blocks_ = 0;
+  }
+  if (IsTooOld(device_ns)) {
     num_blocks_ = 0;
   }
   last_device_ns_ = device_ns;
@@ -84,8 +89,13 @@ std::int64_t LatchMapper::LineAt(std::int64_t device_ns) const {
          std::llround(anchor_excess_ns_ + drift_ * static_cast<double>(device_ns - anchor_device_ns_));
 }
 
+bool LatchMapper::IsTooOld(std::int64_t device_ns) const {
+  return device_ns - last_device_ns_ > (num_blocks_ < kBlocksForDrift ? kBelievedNs : kBelievedWithDriftNs);
+}
+
 std::optional<std::int64_t> LatchMapper::Map(std::int64_t device_ns) const {
-  return num_blocks_ > 0 ? std::optional(device_ns + LineAt(device_ns)) : std::nullopt;
+  return num_blocks_ > 0 && !IsTooOld(device_ns) ? std::optional(device_ns + LineAt(device_ns))
+                                                 : std::nullopt;
 }
 
 }  // namespace fovea::camera

@@ -101,9 +101,4 @@ double DeviceClock::drift() const {
   return mapper_.drift();
 }
 
-std::uint64_t DeviceClock::readings() const {
-  const std::lock_guard lock(mutex_);
-  return mapper_.readings();
-}
-
 }  // namespace fovea::genicam

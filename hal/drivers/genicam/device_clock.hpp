@@ -24,10 +24,10 @@ class DeviceClock {
   DeviceClock(const DeviceClock&) = delete;
   DeviceClock& operator=(const DeviceClock&) = delete;
 
-  // From any thread: the host's time of a stamp of the camera's; none while nothing is known.
+  // From any thread: the host's time of a stamp of the camera's; none while nothing is known, or what is
+  // known is too old.
   [[nodiscard]] std::optional<std::int64_t> Map(std::int64_t device_ns) const;
   [[nodiscard]] double drift() const;
-  [[nodiscard]] std::uint64_t readings() const;
 
  private:
   struct Features {
