@@ -47,7 +47,7 @@ GuardRow RowOf(hal::Limit limit) {
           "way"};
     case hal::Limit::kFieldOfView:
       return {
-          "the target before the edge of the picture, less this margin; the arm's links beside the line "
+          "the target before the edge of the picture, less this margin; the arm's links beside the lines "
           "of sight",
           "only so fast towards it; the task slides along"};
   }

@@ -144,7 +144,7 @@ void AddGuardKeys(ServoSettings& settings, KeyTable& keys) {
               "and its outline so far from the edge");
   keys.Number(
       "safety.sight_clearance", c.sight_clearance, 0.0, 10.0, "m",
-      "the lines of the arm's own links stay so far from the line of sight to it, or come no nearer; 0: "
+      "the lines of the arm's own links stay so far from the lines of sight to it, or come no nearer; 0: "
       "they may");
   keys.Numbers("safety.planes", settings.planes, 4, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
                "planes n p >= d that the end effector stays above: n_x, n_y, n_z, d, the same again");

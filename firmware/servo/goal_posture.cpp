@@ -6,9 +6,7 @@
 
 #include "fovea/model/cholesky.hpp"
 #include "fovea/model/rotation.hpp"
-#include "fovea/servo/keep_sight.hpp"
-#include "fovea/servo/obstacle.hpp"
-#include "fovea/servo/singularity.hpp"
+#include "fovea/servo/posture_checks.hpp"
 
 namespace fovea::servo {
 namespace {
@@ -19,11 +17,7 @@ using model::Pose;
 using model::Vec6;
 using model::VecN;
 
-constexpr double kJointRoom = 0.06;       // inside the range that the reference keeps [rad, m]
-constexpr double kRadiusRoom = 0.003;     // inside the sphere that it keeps [m]
-constexpr double kSightRoom = 0.005;      // outside the clearance that it keeps [m]
-constexpr double kSingularityRoom = 1.5;  // of the smallest singular value that the guard keeps
-constexpr double kStepMost = 0.2;         // [rad]
+constexpr double kStepMost = 0.2;  // [rad]
 constexpr double kDamping = 1e-6;
 constexpr double kReached = 2e-3;  // the rest follows, also of a target that moves [m, rad]
 constexpr double kOff = 0.01;      // a posture that was found and is further off than this is none any more,
@@ -34,21 +28,11 @@ constexpr int kStepsLooked = 8;       // a trial that comes no nearer in so many
 constexpr double kComesNearer = 0.8;  // than this share is given up
 constexpr int kPasses = 3;            // of joints found at the ends of their ranges, in one step
 constexpr double kSpread = 0.5;  // of the first round about the arm's posture, a step more each round [rad]
-constexpr int kTrialsInRound = 16;  // to each turn
-constexpr int kRounds = 12;         // then it begins anew: limits, target or arm may have moved
-constexpr double kSame = 0.2;       // postures no further apart are one [rad]
-
-struct Range {
-  double least;
-  double most;
-};
-
-Range RangeOf(const ServoConfig& config, Eigen::Index i) noexcept {
-  const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
-  const double room =
-      std::min(config.guard.joint_position_margin + kJointRoom, 0.5 * (joint.q_max - joint.q_min));
-  return {joint.q_min + room, joint.q_max - room};
-}
+constexpr int kTrialsInRound = 16;   // to each turn
+constexpr int kRounds = 12;          // then it begins anew: limits, target or arm may have moved
+constexpr int kRoundsForClear = 12;  // before a posture is taken that has no clear way to it
+constexpr double kBarred = 100.0;    // a way that is barred counts as so much longer [rad]
+constexpr double kSame = 0.2;        // postures no further apart are one [rad]
 
 int TurnsOf(const features::TargetFeature& feature) noexcept {
   return feature.target == hal::FeatureKind::kSquare ? 4 : 1;
@@ -97,7 +81,7 @@ void Begin(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPostu
   goal.last_off = HUGE_VAL;
   goal.q = q;
   for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const Range range = RangeOf(config, i);
+    const JointRange range = RoomOfJoint(config, i);
     if (goal.trial >= turns) {
       goal.q[i] += kSpread * (1.0 + round) * Draw(goal.random);
     }
@@ -127,7 +111,7 @@ double Descend(const ServoConfig& config, const Pose& X_BC_star, const model::Ar
     dq *= largest > kStepMost ? kStepMost / largest : 1.0;
     bool held = false;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      const Range range = RangeOf(config, i);
+      const JointRange range = RoomOfJoint(config, i);
       if ((q[i] >= range.most && dq[i] > 0.0) || (q[i] <= range.least && dq[i] < 0.0)) {
         J.col(i).setZero();
         held = true;
@@ -138,42 +122,24 @@ double Descend(const ServoConfig& config, const Pose& X_BC_star, const model::Ar
     }
   }
   for (Eigen::Index i = 0; i < q.size(); ++i) {
-    const Range range = RangeOf(config, i);
+    const JointRange range = RoomOfJoint(config, i);
     q[i] = std::clamp(q[i] + dq[i], range.least, range.most);
   }
   return off.norm();
 }
 
-bool KeepsOut(const ServoConfig& config, const model::Vec3& p_BE) noexcept {
-  const GuardConfig& guard = config.guard;
-  bool keeps = p_BE.norm() <= guard.workspace_radius - guard.workspace_margin - kRadiusRoom;
-  for (int i = 0; i < CountObstacles(guard.obstacles); ++i) {
-    keeps = keeps && ClearanceOf(guard.obstacles, i, p_BE).distance > 2.0 * guard.workspace_margin;
+bool WasDropped(const GoalPosture& goal) noexcept {
+  bool dropped = false;
+  for (int i = 0; i < std::min(goal.drops, GoalPosture::kDropsKept); ++i) {
+    const VecN& q_dropped = goal.q_dropped[static_cast<std::size_t>(i)];
+    dropped = dropped || (goal.q - q_dropped).lpNorm<Eigen::Infinity>() < kSame;
   }
-  return keeps;
+  return dropped;
 }
 
-bool IsRegular(const ServoConfig& config, const model::ArmPoses& poses) noexcept {
-  model::Mat6N J;
-  model::ComputeJacobian(config.arm, poses, config.X_EC, J);
-  Singularity singularity;
-  ComputeSingularity(J, SingularityConfig{}.length, singularity);
-  return singularity.sigma > kSingularityRoom * config.guard.singularity_min;
-}
-
-// Whether the arm's own links leave the target in sight.
-bool IsInSight(const ServoConfig& config, const model::ArmPoses& poses, const Pose& X_BO) noexcept {
-  const double clearance = config.guard.sight_clearance;
-  return clearance <= 0.0 ||
-         ClearanceOfSight(config.arm, {poses, poses.X_BE * config.X_EC, X_BO.p}) > clearance + kSightRoom;
-}
-
-// A posture that reaches the goal.
-void Note(const VecN& q, GoalPosture& goal) noexcept {
-  if (goal.has_dropped && (goal.q - goal.q_dropped).lpNorm<Eigen::Infinity>() < kSame) {
-    return;
-  }
-  const double way = (goal.q - q).lpNorm<Eigen::Infinity>();
+// The way to a posture that reaches the goal has been tried.
+void Note(GoalPosture& goal) noexcept {
+  const double way = goal.way.length + (goal.way.barred ? kBarred : 0.0);
   if (way < goal.nearest) {
     goal.nearest = way;
     goal.nearest_turn = goal.trial_turn;
@@ -186,12 +152,15 @@ void NextTrial(const ServoConfig& config, GoalPosture& goal) noexcept {
   const int turns = TurnsOf(config.feature);
   goal.downhill = goal.trial < turns;
   goal.begun = false;
+  goal.reached = false;
   ++goal.trial;
   const bool round_over = goal.trial % (turns * kTrialsInRound) == 0;
   if (goal.trial >= turns * kTrialsInRound * kRounds) {
     goal.trial = 0;
   }
-  if (goal.nearest < HUGE_VAL && (goal.downhill || round_over)) {
+  goal.clear = goal.nearest < kBarred;
+  const bool enough = goal.clear || goal.trial == 0 || goal.trial >= turns * kTrialsInRound * kRoundsForClear;
+  if (goal.nearest < HUGE_VAL && (goal.downhill || (round_over && enough))) {
     goal.found = true;
     goal.turn = goal.nearest_turn;
     goal.q = goal.q_nearest;
@@ -226,15 +195,27 @@ Mat3 QuarterTurns(int turn) noexcept {
   return R;
 }
 
-void DropGoalPosture(GoalPosture& goal) noexcept {
-  goal.has_dropped = true;
-  goal.q_dropped = goal.q;
+void SeekClearerPosture(GoalPosture& goal) noexcept {
   goal.found = false;
   goal.begun = false;
+  goal.reached = false;
   ++goal.trial;
 }
 
+void DropGoalPosture(GoalPosture& goal) noexcept {
+  goal.q_dropped[static_cast<std::size_t>(goal.drops % GoalPosture::kDropsKept)] = goal.q;
+  ++goal.drops;
+  SeekClearerPosture(goal);
+}
+
 void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) noexcept {
+  if (goal.reached && !goal.found) {
+    if (!StepOnWay(config, X_BO, goal.q, goal.way)) {
+      Note(goal);
+      NextTrial(config, goal);
+    }
+    return;
+  }
   if (!goal.begun && !goal.found) {
     Begin(config, X_BO, q, goal);
   }
@@ -260,9 +241,10 @@ void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q,
     is_stuck = is_stuck || !(off < kComesNearer * goal.last_off);
     goal.last_off = off;
   }
-  if (off < kReached && IsRegular(config, poses) && IsInSight(config, poses, X_BO)) {
-    Note(q, goal);
-    NextTrial(config, goal);
+  if (off < kReached && IsRegular(config, poses) && IsInSight(config, poses, X_BO) && !WasDropped(goal)) {
+    goal.reached = true;
+    goal.way = WayTrial{};
+    goal.way.q = q;
   } else if (off < kReached || is_stuck) {
     NextTrial(config, goal);
   }

@@ -14,8 +14,10 @@ constexpr double kRate = 1.5;   // what is left may be used up no faster than ex
 // Where two segments are nearest to each other, as shares of their lengths.
 struct Nearest {
   double distance = HUGE_VAL;
-  double s = 0.0;  // on the line of sight, from the camera
-  double t = 0.0;  // on the link's line, from its joint
+  double s = 0.0;            // on the line of sight, from the camera
+  double t = 0.0;            // on the link's line, from its joint
+  int joint = -1;            // that carries the link; -1: the base
+  Vec3 p_BP = Vec3::Zero();  // the target's point that is looked at [m]
 };
 
 // Ericson, Real-Time Collision Detection, 2005, 5.1.9.
@@ -51,15 +53,18 @@ Vec3 OriginOf(const Sight& sight, int joint) noexcept {
   return joint < 0 ? Vec3(Vec3::Zero()) : sight.poses.X_BL[static_cast<std::size_t>(joint)].p;
 }
 
-// The link that comes nearest: the one that joint `joint` carries, -1 for the base.
-Nearest NearestLink(const model::ArmModel& arm, const Sight& sight, int& joint) noexcept {
+// Of all links and all lines of sight.
+Nearest NearestLink(const model::ArmModel& arm, const Sight& sight) noexcept {
   Nearest nearest;
-  joint = -1;
-  for (int i = -1; i + 1 < arm.num_joints - kHandJoints; ++i) {
-    const Nearest candidate = NearestOf(sight.X_BC.p, sight.p_BO, OriginOf(sight, i), OriginOf(sight, i + 1));
-    if (candidate.distance < nearest.distance) {
-      nearest = candidate;
-      joint = i;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
+    const Vec3 p_BP = sight.X_BO * sight.outline.p_OP[k];
+    for (int i = -1; i + 1 < arm.num_joints - kHandJoints; ++i) {
+      Nearest candidate = NearestOf(sight.X_BC.p, p_BP, OriginOf(sight, i), OriginOf(sight, i + 1));
+      if (candidate.distance < nearest.distance) {
+        candidate.joint = i;
+        candidate.p_BP = p_BP;
+        nearest = candidate;
+      }
     }
   }
   return nearest;
@@ -68,8 +73,7 @@ Nearest NearestLink(const model::ArmModel& arm, const Sight& sight, int& joint) 
 }  // namespace
 
 double ClearanceOfSight(const model::ArmModel& arm, const Sight& sight) noexcept {
-  int joint = -1;
-  return NearestLink(arm, sight, joint).distance;
+  return NearestLink(arm, sight).distance;
 }
 
 void LimitSight(double clearance, const model::ArmModel& arm, const Sight& sight, const model::Mat6N& J_C,
@@ -78,21 +82,20 @@ void LimitSight(double clearance, const model::ArmModel& arm, const Sight& sight
   if (clearance <= 0.0) {
     return;
   }
-  int joint = -1;
-  const Nearest nearest = NearestLink(arm, sight, joint);
+  const Nearest nearest = NearestLink(arm, sight);
   if (!(nearest.distance > kTouch) || !std::isfinite(nearest.distance)) {
     return;
   }
-  const Vec3 on_sight = sight.X_BC.p + nearest.s * (sight.p_BO - sight.X_BC.p);
-  const Vec3 on_link =
-      OriginOf(sight, joint) + nearest.t * (OriginOf(sight, joint + 1) - OriginOf(sight, joint));
+  const Vec3 on_sight = sight.X_BC.p + nearest.s * (nearest.p_BP - sight.X_BC.p);
+  const Vec3 on_link = OriginOf(sight, nearest.joint) +
+                       nearest.t * (OriginOf(sight, nearest.joint + 1) - OriginOf(sight, nearest.joint));
   const Vec3 apart = (on_sight - on_link) / nearest.distance;
   // d/dt distance = apart . (v_sight - v_link); the line of sight turns about the target, which stays.
   const Vec3 apart_C = sight.X_BC.R.transpose() * apart;
   model::VecN gradient = (1.0 - nearest.s) * J_C.topRows<3>().transpose().lazyProduct(apart_C);
   model::LinearJacobian J_link;
   model::ComputeLinearJacobian(arm, sight.poses, on_link, J_link);
-  for (int i = 0; i <= joint; ++i) {
+  for (int i = 0; i <= nearest.joint; ++i) {
     gradient[i] -= J_link.col(i).dot(apart);
   }
   limits.AddRow(-gradient, std::max(kRate * (nearest.distance - clearance), 0.0));

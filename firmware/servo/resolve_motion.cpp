@@ -70,7 +70,8 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
     LimitView(config.guard.view, *scene.target, limits);
     const model::Pose X_BC = scene.poses.X_BE * config.X_EC;
     LimitSight(config.guard.sight_clearance, config.arm,
-               {scene.poses, X_BC, X_BC * scene.target->seen.X_CO.p}, scene.target->J_C, limits);
+               {scene.poses, X_BC, scene.target->outline, X_BC * scene.target->seen.X_CO}, scene.target->J_C,
+               limits);
     named.NameNewRows(Limit::kFieldOfView, rows);
   }
 }

@@ -197,7 +197,8 @@ void ServoTask::ChooseTheWay() noexcept {
   sight.is_told_apart = state_.predict.poses.num_branches == 1;
   ChooseWay(config_, sight, state_.way);
   if (state_.way.by_joints) {
-    SteerByJoints(state_.way, state_.q, state_.law.task);
+    SteerByJoints(state_.way, state_.q, state_.prediction.seen, state_.J_C, config_.feature.p_CO_C_star,
+                  state_.law.task);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fovea/model/rotation.hpp"
+#include "fovea/servo/way_in_view.hpp"
 
 namespace fovea::servo {
 namespace {
@@ -93,7 +94,13 @@ void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way)
   }
   const bool elsewhere =
       !way.preferred && !way.goal.downhill && IsLonger(sight.now_ns - sight.track_since_ns, kLookS);
-  if (elsewhere || IsLonger(way.idle_ns, kIdleS)) {
+  const bool idle = IsLonger(way.idle_ns, kIdleS);
+  if (idle && way.goal.downhill && !way.goal.clear) {
+    SeekClearerPosture(way.goal);  // the joints would get no further to this one than the law
+    way.idle_ns = 0;
+    return;
+  }
+  if (elsewhere || idle) {
     way.preferred = true;
     way.held_ns = 0;
     way.idle_ns = 0;
@@ -104,10 +111,11 @@ void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way)
   }
 }
 
-void SteerByJoints(const WayToGoal& way, const model::VecN& q, MotionTask& task) noexcept {
+void SteerByJoints(const WayToGoal& way, const model::VecN& q, const features::TargetInCamera& seen,
+                   const model::Mat6N& J_C, const model::Vec3& p_CO_C_star, MotionTask& task) noexcept {
   task.v.setZero(q.size());
   if (way.goal.found) {
-    task.v = kGain * (way.goal.q - q);
+    task.v = kGain * WayInView(way.goal.q - q, seen, J_C, p_CO_C_star);
   }
   const double fastest = task.v.lpNorm<Eigen::Infinity>();
   task.v *= fastest > kSpeed ? kSpeed / fastest : 1.0;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fovea/features/square.hpp"
+#include "fovea/features/triangle.hpp"
 #include "fovea/model/rotation.hpp"
 #include "support/panda.hpp"
 
@@ -15,6 +17,9 @@ ServoConfig Config(hal::FeatureKind kind) {
   ServoConfig config = test::PandaConfig();
   config.feature.target = kind;
   config.feature.form = features::FeatureForm::kPose;
+  config.feature.corners = kind == hal::FeatureKind::kSquare
+                               ? features::MakeSquare(0.08)
+                               : features::MakeTriangle(features::kDefaultTriangle);
   return config;
 }
 

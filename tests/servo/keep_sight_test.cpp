@@ -5,6 +5,8 @@
 
 #include <iostream>
 
+#include "fovea/features/triangle.hpp"
+#include "fovea/model/rotation.hpp"
 #include "support/panda.hpp"
 #include "support/random_states.hpp"
 
@@ -37,9 +39,20 @@ Vec3 RandomTarget(test::RandomStates& random, const Posture& posture) {
   return posture.X_BC * p_C;
 }
 
-double Clearance(const ServoConfig& config, const VecN& q, const Vec3& p_BO) {
+// A target of one point, or a turned triangle.
+Sight SightOf(const Posture& posture, const Vec3& p_BO, bool triangle) {
+  Sight sight{posture.poses, posture.X_BC, {}, {model::RotationOf({0.3, -0.2, 0.9}), p_BO}};
+  sight.outline.num_points = triangle ? 3 : 1;
+  sight.outline.p_OP[0].setZero();
+  if (triangle) {
+    sight.outline.p_OP = features::MakeTriangle(features::kDefaultTriangle).corners;
+  }
+  return sight;
+}
+
+double Clearance(const ServoConfig& config, const VecN& q, const Vec3& p_BO, bool triangle) {
   const Posture posture(config, q);
-  return ClearanceOfSight(config.arm, {posture.poses, posture.X_BC, p_BO});
+  return ClearanceOfSight(config.arm, SightOf(posture, p_BO, triangle));
 }
 
 // Points on the two lines, 2 mm apart and less.
@@ -63,7 +76,7 @@ TEST(KeepSightTest, TheClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
         }
       }
     }
-    const double clearance = ClearanceOfSight(config.arm, {posture.poses, posture.X_BC, p_BO});
+    const double clearance = ClearanceOfSight(config.arm, SightOf(posture, p_BO, false));
     EXPECT_LT(clearance, least + 1e-12);
     worst = std::max(worst, least - clearance);
   }
@@ -80,16 +93,18 @@ TEST(KeepSightTest, TheRowIsHowFastTheNearestLinkComesNearer) {
     const VecN q = RandomPosture(random, config);
     const Posture posture(config, q);
     const Vec3 p_BO = RandomTarget(random, posture);
+    const bool triangle = k % 2 == 0;
     MotionLimits limits;
-    LimitSight(0.12, config.arm, {posture.poses, posture.X_BC, p_BO}, posture.J_C, limits);
+    LimitSight(0.12, config.arm, SightOf(posture, p_BO, triangle), posture.J_C, limits);
     ASSERT_EQ(limits.num_rows, 1);
-    const double clearance = Clearance(config, q, p_BO);
+    const double clearance = Clearance(config, q, p_BO, triangle);
     EXPECT_NEAR(limits.rows[0].b, 1.5 * std::max(clearance - 0.12, 0.0), 1e-12);
     beyond += clearance < 0.12 ? 1 : 0;
     const VecN dq = random.Joints(config.arm, 0.5);
     constexpr double kDt = 1e-6;
     const double rate =
-        (Clearance(config, q + kDt * dq, p_BO) - Clearance(config, q - kDt * dq, p_BO)) / (2.0 * kDt);
+        (Clearance(config, q + kDt * dq, p_BO, triangle) - Clearance(config, q - kDt * dq, p_BO, triangle)) /
+        (2.0 * kDt);
     worst = std::max(worst, std::abs(limits.rows[0].a.dot(dq) + rate));
   }
   std::cout << "off by at most " << worst << " m/s; " << beyond << " of 300 nearer than they shall be\n";
@@ -102,11 +117,11 @@ TEST(KeepSightTest, NothingIsKeptWhereNothingIsAskedForOrTheLinesCross) {
   const Posture posture(config, test::Ready());
   const Vec3 ahead = posture.X_BC * Vec3(0.0, 0.0, 0.4);
   MotionLimits limits;
-  LimitSight(0.0, config.arm, {posture.poses, posture.X_BC, ahead}, posture.J_C, limits);
+  LimitSight(0.0, config.arm, SightOf(posture, ahead, true), posture.J_C, limits);
   EXPECT_EQ(limits.num_rows, 0);
-  LimitSight(0.12, config.arm, {posture.poses, posture.X_BC, posture.poses.X_BL[2].p}, posture.J_C, limits);
+  LimitSight(0.12, config.arm, SightOf(posture, posture.poses.X_BL[2].p, false), posture.J_C, limits);
   EXPECT_EQ(limits.num_rows, 0);
-  LimitSight(0.12, config.arm, {posture.poses, posture.X_BC, ahead * std::nan("")}, posture.J_C, limits);
+  LimitSight(0.12, config.arm, SightOf(posture, ahead * std::nan(""), true), posture.J_C, limits);
   EXPECT_EQ(limits.num_rows, 0);
 }
 

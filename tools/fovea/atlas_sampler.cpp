@@ -164,20 +164,24 @@ bool Sampler::TargetAboveTable(const Pose& X_BO) const {
 }
 
 // The arm as a thick line from joint to joint: what hangs on the wrist keeps clear of what comes before, the
-// target of all of it, and the line of sight of all but the wrist, where the camera sits.
-bool Sampler::ArmInTheWay(const Posture& posture, const Vec3& p_BO) const {
+// target of all of it, and the lines of sight of all but the wrist, where the camera sits.
+bool Sampler::ArmInTheWay(const Posture& posture, const Pose& X_BO) const {
+  const features::TargetOutline outline = feature_.Outline();
   std::vector<Vec3> line{Vec3::Zero()};
   for (int i = 0; i < arm_.num_joints; ++i) {
     line.push_back(posture.poses.X_BL[static_cast<std::size_t>(i)].p);
   }
   line.push_back(posture.poses.X_BE.p);
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    if (DistanceToSegment(p_BO, line[i], line[i + 1]) < kTargetClear) {
+    if (DistanceToSegment(X_BO.p, line[i], line[i + 1]) < kTargetClear) {
       return true;
     }
     const bool upper = static_cast<int>(i) < kUpperLinks;
-    if (upper && DistanceOfSegments(posture.X_BC.p, p_BO, line[i], line[i + 1]) < kArmRadius) {
-      return true;
+    for (int k = 0; upper && k < outline.num_points; ++k) {
+      const Vec3 p_BP = X_BO * outline.p_OP[static_cast<std::size_t>(k)];
+      if (DistanceOfSegments(posture.X_BC.p, p_BP, line[i], line[i + 1]) < kArmRadius) {
+        return true;
+      }
     }
     const bool trunk = static_cast<int>(i) + 2 < kUpperLinks;
     if (trunk &&
@@ -218,7 +222,7 @@ bool Sampler::DescentFindsGoal(const VecN& q_start, const Pose& X_BO) const {
       off.tail<3>() = model::RotationVector(X_CO.R * NearestGoal(X_CO.R).transpose());
     }
     if (off.norm() < kReached) {
-      return InsideBarrier(posture) && AboveTable(posture) && !ArmInTheWay(posture, X_BO.p);
+      return InsideBarrier(posture) && AboveTable(posture) && !ArmInTheWay(posture, X_BO);
     }
     model::Mat6N J_C;
     model::ComputeJacobian(arm_, posture.poses, X_EC_, J_C);
@@ -313,7 +317,7 @@ Start Sampler::Draw(std::uint64_t seed, int index) const {
       refuse(Rejection::kTargetBelowTable);
       continue;
     }
-    if (ArmInTheWay(posture, X_BO.p)) {
+    if (ArmInTheWay(posture, X_BO)) {
       refuse(Rejection::kArmInTheWay);
       continue;
     }

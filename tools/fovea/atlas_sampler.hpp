@@ -66,7 +66,7 @@ class Sampler {
   [[nodiscard]] bool AboveTable(const Posture& posture) const;
   [[nodiscard]] bool InPicture(const model::Pose& X_CO) const;
   [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;
-  [[nodiscard]] bool ArmInTheWay(const Posture& posture, const model::Vec3& p_BO) const;
+  [[nodiscard]] bool ArmInTheWay(const Posture& posture, const model::Pose& X_BO) const;
   enum class Goal : std::uint8_t { kNear, kElsewhere, kNone };
   [[nodiscard]] Goal FindGoal(std::mt19937_64& engine, const model::VecN& q, const model::Pose& X_BO) const;
   // Whether a descent from `q` ends in a posture that has the target where it shall be.

@@ -4,35 +4,44 @@
 // joint's range although another posture reaches the goal; and a square looks the same after each quarter
 // turn, one of which may be out of reach. So postures are tried by Gauss-Newton on the camera's pose, a step
 // at a time: from where the arm is, to each of the target's equal turns, the nearest first; then in rounds
-// from postures beside it, further and further off, and of those that a round finds the nearest is taken.
-// Once one is found it follows the target's estimate.
+// from postures beside it, further and further off, and of those that a round finds the nearest is taken to
+// which the joints can go straight with the target in view; when some rounds find none such, the least
+// barred. Once one is found it follows the target's estimate.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "fovea/model/kinematics.hpp"
 #include "fovea/servo/servo_config.hpp"
+#include "fovea/servo/way_in_view.hpp"
 
 namespace fovea::servo {
 
 struct GoalPosture {
+  static constexpr int kDropsKept = 4;
+
   bool found = false;
   bool begun = false;          // a trial is under way
+  bool reached = false;        // the trial has reached the goal, and the way there is tried
   bool downhill = false;       // the posture was found from where the arm was
+  bool clear = false;          // the way to it was, when it was found
   int turn = 0;                // quarter turns of the target about its z, for which the last posture found is
   int trial_turn = 0;          // and for which the trial is
   int trial = 0;               // that is under way, or led to the posture
   int step = 0;                // of the trial; of a posture that was found, how long it has been off the goal
   double last_off = HUGE_VAL;  // of the trial: how far it was from the goal when last looked at
   model::VecN q;               // of the trial, or the posture [num_joints]
+  WayTrial way;                // there
   std::uint32_t random = 1;
 
-  double nearest = HUGE_VAL;  // of the round: how far its nearest posture is from the arm [rad]
+  double nearest =
+      HUGE_VAL;  // of the round: how long the way to its best posture is [rad], a barred one longer
   int nearest_turn = 0;
   model::VecN q_nearest;
-  bool has_dropped = false;
-  model::VecN q_dropped;  // the last one that could not be reached
+  int drops = 0;  // postures that could not be reached, and the last of them
+  std::array<model::VecN, kDropsKept> q_dropped;
 };
 
 // Whether the target's feature leaves the camera's pose no freedom, and the arm can take any, so that there
@@ -42,6 +51,9 @@ struct GoalPosture {
 // One step. `X_BO`: the target's estimate; `q` [num_joints]: where the arm is. Real-time: yes.
 void SeekGoalPosture(const ServoConfig& config, const model::Pose& X_BO, const model::VecN& q,
                      GoalPosture& goal) noexcept;
+
+// Goes on with the next trial, for a posture with a clear way to it. Real-time: yes.
+void SeekClearerPosture(GoalPosture& goal) noexcept;
 
 // The posture cannot be reached: goes on with the next trial, for another one. Real-time: yes.
 void DropGoalPosture(GoalPosture& goal) noexcept;

@@ -1,4 +1,5 @@
-// The arm's own links stay out of the line of sight from the camera to the target.
+// The arm's own links stay out of the lines of sight from the camera to the target: to its centre, or to each
+// corner.
 //
 // With the hand where a target asks for it, another part of the arm may come between: the elbow, or the
 // forearm. They are taken as lines from joint to joint, of which their thickness is a part of the clearance;
@@ -6,6 +7,7 @@
 // to the line of sight is a limit on the motion like the others (motion_limits.hpp).
 #pragma once
 
+#include "fovea/features/target_feature.hpp"
 #include "fovea/model/kinematics.hpp"
 #include "fovea/servo/motion_limits.hpp"
 
@@ -14,14 +16,15 @@ namespace fovea::servo {
 struct Sight {
   const model::ArmPoses& poses;
   model::Pose X_BC;  // of the same posture
-  model::Vec3 p_BO;  // the target's centre [m]
+  features::TargetOutline outline;
+  model::Pose X_BO;
 };
 
-// How far the nearest link's line is from the line of sight, of the links up to the forearm's end [m].
-// Real-time: yes.
+// How far the nearest link's line is from the nearest line of sight, of the links up to the forearm's end
+// [m]. Real-time: yes.
 [[nodiscard]] double ClearanceOfSight(const model::ArmModel& arm, const Sight& sight) noexcept;
 
-// Adds the row that keeps the nearest link's line `clearance` [m] away from the line of sight; what is
+// Adds the row that keeps the nearest link's line `clearance` [m] away from the lines of sight; what is
 // already nearer may not come nearer still. None where `clearance` is 0, and none where the two cross: there
 // is no way apart then. `J_C`: body Jacobian of the camera. Real-time: yes.
 void LimitSight(double clearance, const model::ArmModel& arm, const Sight& sight, const model::Mat6N& J_C,

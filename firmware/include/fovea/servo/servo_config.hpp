@@ -104,7 +104,7 @@ struct GuardConfig {
   double singularity_min = 0.02;        // smallest singular value of the hand's Jacobian, 1 / 0.3 m
   Obstacles obstacles;                  // which the end effector keeps out of
   ViewConfig view;                      // safety.keep_in_view, safety.view_margin_px
-  double sight_clearance = 0.12;        // of the links' lines from that to the target [m]; 0: any
+  double sight_clearance = 0.08;        // of the links' lines from those to the target [m]; 0: any
 };
 
 // [safety] limits on the torque, and when to stop altogether

@@ -3,9 +3,9 @@
 // The law takes each step that brings the feature nearer. With all six degrees of freedom controlled that may
 // end where a limit holds it, at a joint's end or along the workspace, although another posture reaches the
 // goal. So such a posture is looked for all the while (goal_posture.hpp). Where it does not lie downhill, or
-// limits let the goal come no nearer, the joints go there, all at once and as straight as the limits let
-// them: the target stays in the picture (keep_in_view.hpp). Near the posture the law takes over. All limits
-// hold on both ways, but for the guard of the hand's singularities, which a motion of the joints passes.
+// limits let the goal come no nearer, the joints go there, all at once, as straight as the target's place in
+// the picture and the limits let them. Near the posture the law takes over. All limits hold on both ways, but
+// for the guard of the hand's singularities, which a motion of the joints passes.
 #pragma once
 
 #include <cmath>
@@ -43,10 +43,11 @@ struct WaySight {
 // Looks on for a posture, and chooses. Real-time: yes.
 void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept;
 
-// The task of the way by the joints, in the place of the law's: all joints at once, straight to the posture;
-// to stand still while another one is looked for.
-// `q` [num_joints]. Real-time: yes.
-void SteerByJoints(const WayToGoal& way, const model::VecN& q, MotionTask& task) noexcept;
+// The task of the way by the joints, in the place of the law's: all joints at once, to the posture with the
+// target in view (way_in_view.hpp); to stand still while another one is looked for.
+// `q` [num_joints]; `J_C`: body Jacobian of the camera; `p_CO_C_star` [m]. Real-time: yes.
+void SteerByJoints(const WayToGoal& way, const model::VecN& q, const features::TargetInCamera& seen,
+                   const model::Mat6N& J_C, const model::Vec3& p_CO_C_star, MotionTask& task) noexcept;
 
 // Takes note of what became of that task: `dq` is what the limits left of it. True when they hold it up, or
 // there is no way to go.

@@ -1,0 +1,77 @@
+#include "fovea/servo/posture_checks.hpp"
+
+#include <algorithm>
+
+#include "fovea/servo/keep_sight.hpp"
+#include "fovea/servo/obstacle.hpp"
+#include "fovea/servo/singularity.hpp"
+
+namespace fovea::servo {
+namespace {
+
+constexpr double kJointRoom = 0.06;       // inside the range that the reference keeps [rad, m]
+constexpr double kRadiusRoom = 0.003;     // inside the sphere that it keeps [m]
+constexpr double kSightRoom = 0.005;      // outside the clearance that it keeps [m]
+constexpr double kSingularityRoom = 1.5;  // of the smallest singular value that the guard keeps
+
+constexpr double kSteepest = 0.2;  // cosine to a flat target's normal at which it is still made out
+constexpr double kNearest = 0.05;  // [m]
+
+}  // namespace
+
+JointRange RoomOfJoint(const ServoConfig& config, Eigen::Index i) noexcept {
+  const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+  const double room =
+      std::min(config.guard.joint_position_margin + kJointRoom, 0.5 * (joint.q_max - joint.q_min));
+  return {joint.q_min + room, joint.q_max - room};
+}
+
+bool KeepsOut(const ServoConfig& config, const model::Vec3& p_BE) noexcept {
+  const GuardConfig& guard = config.guard;
+  bool keeps = p_BE.norm() <= guard.workspace_radius - guard.workspace_margin - kRadiusRoom;
+  for (int i = 0; i < CountObstacles(guard.obstacles); ++i) {
+    keeps = keeps && ClearanceOf(guard.obstacles, i, p_BE).distance > 2.0 * guard.workspace_margin;
+  }
+  return keeps;
+}
+
+bool IsRegular(const ServoConfig& config, const model::ArmPoses& poses) noexcept {
+  model::Mat6N J;
+  model::ComputeJacobian(config.arm, poses, config.X_EC, J);
+  Singularity singularity;
+  ComputeSingularity(J, SingularityConfig{}.length, singularity);
+  return singularity.sigma > kSingularityRoom * config.guard.singularity_min;
+}
+
+bool IsInSight(const ServoConfig& config, const model::ArmPoses& poses, const model::Pose& X_BO) noexcept {
+  const double clearance = config.guard.sight_clearance;
+  return clearance <= 0.0 ||
+         ClearanceOfSight(config.arm, {poses, poses.X_BE * config.X_EC, config.feature.Outline(), X_BO}) >
+             clearance + kSightRoom;
+}
+
+bool IsInView(const ServoConfig& config, const model::Pose& X_BC, const model::Pose& X_BO) noexcept {
+  const ViewConfig& view = config.guard.view;
+  const model::Pose X_CO = X_BC.Inverse() * X_BO;
+  const bool is_flat = config.feature.SeesOrientation();
+  if (is_flat && !(X_CO.R.col(2).dot(X_CO.p) > kSteepest * X_CO.p.norm())) {
+    return false;
+  }
+  const features::TargetOutline outline = config.feature.Outline();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(outline.num_points); ++i) {
+    const model::Vec3 p = X_CO * outline.p_OP[i];
+    if (!(p.z() > kNearest)) {
+      return false;
+    }
+    const double x = p.x() / p.z();
+    const double y = p.y() / p.z();
+    const double reach = outline.radius / p.z();
+    if (view.enabled && !(x - reach > view.x_min && x + reach < view.x_max && y - reach > view.y_min &&
+                          y + reach < view.y_max)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace fovea::servo
