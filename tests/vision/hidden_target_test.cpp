@@ -90,20 +90,23 @@ Score Look(TargetKind kind, double hidden, int pictures) {
   return score;
 }
 
+// With 10, 20 and 30 % hidden.
 struct Least {
   TargetKind kind;
-  std::array<int, 3> found;  // of 20, with 10, 20 and 30 % hidden
-  double rms_px;
+  std::array<int, 3> found;  // of 20
+  std::array<double, 3> rms_px;
+  double way_px;  // worst of those on its way out and back
 };
 
 class HiddenTargetTest : public testing::TestWithParam<Least> {};
 
 // Where a side of a square is all hidden, its other three allow any square behind it: such are refused.
-INSTANTIATE_TEST_SUITE_P(Kinds, HiddenTargetTest,
-                         testing::Values(Least{TargetKind::kSphere, {20, 19, 20}, 0.05},
-                                         Least{TargetKind::kCircle, {20, 20, 19}, 0.12},
-                                         Least{TargetKind::kSquare, {14, 9, 1}, 1.0},
-                                         Least{TargetKind::kTriangle, {14, 12, 9}, 0.6}));
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, HiddenTargetTest,
+    testing::Values(Least{TargetKind::kSphere, {20, 19, 20}, {0.034, 0.017, 0.026}, 0.036},
+                    Least{TargetKind::kCircle, {20, 20, 19}, {0.043, 0.070, 0.039}, 0.30},
+                    Least{TargetKind::kSquare, {16, 12, 2}, {0.36, 0.46, 1.0}, 0.040},
+                    Least{TargetKind::kTriangle, {17, 17, 16}, {0.054, 0.085, 0.43}, 0.165}));
 
 TEST_P(HiddenTargetTest, IsFoundRightlyOrRefused) {
   const Least& least = GetParam();
@@ -111,7 +114,7 @@ TEST_P(HiddenTargetTest, IsFoundRightlyOrRefused) {
     const Score score = Look(least.kind, 0.1 * (static_cast<double>(i) + 1.0), 20);
     EXPECT_EQ(score.wrong, 0);
     EXPECT_GE(score.found, least.found[i]);
-    EXPECT_LT(score.rms_px, least.rms_px);
+    EXPECT_LT(score.rms_px, least.rms_px[i]);
   }
 }
 
@@ -144,7 +147,7 @@ TEST_P(HiddenTargetTest, LeavesThePictureAndComesBack) {
   }
   std::cout << inside << " of " << kX.size() << " pictures have all of it; worst " << worst_px << " px\n";
   EXPECT_GE(inside, 3);
-  EXPECT_LT(worst_px, 0.5);
+  EXPECT_LT(worst_px, GetParam().way_px);
 }
 
 }  // namespace
