@@ -211,7 +211,7 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
     if (!ReadLines(image, in, fit) || !Approach(image, in, blur, fit)) {
       return fit;
     }
-    if (!evidence_.hidden() && fit.least_on > kStraight) {
+    if (evidence_.is_whole() && fit.least_on > kStraight) {
       break;
     }
   }
@@ -225,7 +225,7 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
   for (int k = 0; k < fit.corners.count; ++k) {
     fit.least_seen = std::min(fit.least_seen, evidence_.side(k).seen);
   }
-  fit.part_hidden = evidence_.hidden();
+  fit.part_hidden = !evidence_.is_whole();
   fit.against = evidence_.against();
   fit.corners_hidden = evidence_.CornersHidden();
   fit.converged =
