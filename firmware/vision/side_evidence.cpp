@@ -340,7 +340,7 @@ bool SideEvidence::GoesOn(const cv::Mat& image, const Intrinsics& in, const Imag
   constexpr float kSame = 0.4F;
   std::array<Colour, kParts> steps;
   std::size_t known = 0;
-  const int last = std::max(kFirst + kPart * static_cast<int>(kParts), static_cast<int>(kFurthest * length));
+  const int last = std::max(kFirst, static_cast<int>(kFurthest * length)) + kPart * static_cast<int>(kParts);
   for (int from = kFirst; from + kPart <= last; from += kPart) {
     std::rotate(steps.begin(), steps.begin() + 1, steps.end());
     if (!StepBeyond(image, in, corner, du, dv, from, from + kPart, steps.back())) {
