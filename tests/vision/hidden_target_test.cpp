@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fovea/vision/target_detector.hpp"
+#include "tools/bench/picture_target.hpp"
 #include "tools/bench/scenes.hpp"
 
 namespace fovea::vision {
@@ -20,45 +21,7 @@ using Eigen::Vector3d;
 
 constexpr double kWrongPx = 2.0;  // further off than this is wrong
 
-DetectorConfig ConfigOf(TargetKind kind) {
-  constexpr std::array kKinds{hal::FeatureKind::kSphere, hal::FeatureKind::kCircle, hal::FeatureKind::kSquare,
-                              hal::FeatureKind::kTriangle};
-  const bench::PictureCamera camera;
-  DetectorConfig config;
-  config.kind = kKinds[static_cast<std::size_t>(kind)];
-  config.by = FindBy::kGray;
-  config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
-                       camera.f_px,     camera.c_u_px,    camera.c_v_px};
-  config.distance_min = 0.10;
-  config.distance_max = 2.2;
-  for (std::size_t i = 0; i < config.triangle.size(); ++i) {
-    config.triangle[i] = bench::TriangleCorners()[i];
-  }
-  return config;
-}
-
-// The corner that is furthest from the truth's, or of what is round the middle [px].
-double OffOf(const Detection& d, const bench::PictureScene& scene) {
-  const bench::Body& body = scene.bodies.front();
-  const bench::PictureCamera& camera = scene.camera;
-  if (body.shape != bench::Shape::kPolygon) {
-    const bench::TrueOutline truth = OutlineOf(camera, body);
-    return std::hypot(d.u_px - truth.u_px, d.v_px - truth.v_px);
-  }
-  const std::size_t n = body.corners.size();
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t first = 0; first < n; ++first) {
-    double off = 0.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vector2d& q = body.corners[(first + i) % n];
-      const Vector3d p = body.R * Vector3d(q.x(), q.y(), 0.0) + body.p;
-      off = std::max(off, std::hypot(d.corner[i].u_px - camera.f_px * p.x() / p.z() - camera.c_u_px,
-                                     d.corner[i].v_px - camera.f_px * p.y() / p.z() - camera.c_v_px));
-    }
-    best = std::min(best, off);
-  }
-  return best;
-}
+DetectorConfig ByBrightness(TargetKind kind) { return ConfigOf(kind, {}, FindBy::kGray); }
 
 struct Score {
   int found = 0;
@@ -74,7 +37,7 @@ Score Look(TargetKind kind, double hidden, int pictures) {
   double sum2 = 0.0;
   for (int i = 0; i < pictures + pictures / 2; ++i) {
     const bench::PictureScene scene = MakeScene(scenes, kind, i < pictures, static_cast<unsigned>(1000 + i));
-    const Detection d = TargetDetector(ConfigOf(kind)).Detect(Draw(scene));
+    const Detection d = TargetDetector(ByBrightness(kind)).Detect(Draw(scene));
     const double off = !d.found       ? 0.0
                        : i < pictures ? OffOf(d, scene)
                                       : std::numeric_limits<double>::infinity();
@@ -123,7 +86,7 @@ TEST_P(HiddenTargetTest, LeavesThePictureAndComesBack) {
   const TargetKind kind = GetParam().kind;
   constexpr std::array<double, 14> kX{0.10, 0.15, 0.18, 0.20, 0.22, 0.24, 0.30,
                                       0.40, 0.30, 0.24, 0.22, 0.19, 0.14, 0.08};
-  TargetDetector detector(ConfigOf(kind));
+  TargetDetector detector(ByBrightness(kind));
   const bench::SceneClass scenes{.name = "way", .noise = 3.0};
   bench::PictureScene scene = MakeScene(scenes, kind, true, 7);
   int inside = 0;
