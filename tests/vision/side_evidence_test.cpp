@@ -205,6 +205,9 @@ Crossed MakeCrossed(unsigned seed) {
   const double side_px = between(40.0, 85.0);
   const double turn = between(0.0, 2.0 * std::numbers::pi);
   std::vector<Vector2d> triangle;
+  triangle.reserve(3);
+  crossed.corners.reserve(3);
+  crossed.start.reserve(3);
   for (int k = 0; k < 3; ++k) {
     const double angle = turn + 2.0 * std::numbers::pi / 3.0 * k;
     const Vector2d p = side_px / std::numbers::sqrt3 * Vector2d(std::cos(angle), std::sin(angle));
