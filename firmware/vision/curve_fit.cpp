@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "fovea/vision/biweight.hpp"
+
 namespace fovea::vision {
 namespace {
 
@@ -19,15 +21,8 @@ constexpr int kRounds = 4;  // with all lines
 constexpr double kNearPx = 0.05;
 constexpr double kStillPx = 0.003;  // a round that moves the curve less is the last
 constexpr double kOnCurvePx = 0.4;
-constexpr double kMinScalePx = 0.03;  // edges are never judged closer than this
 constexpr double kShadedBlurPx = 1.5;
 constexpr double kShadedPx = 0.03;  // what light may move all of a ball that is lit from one side
-
-// Tukey's biweight: 1 at 0, 0 beyond `limit`.
-double Biweight(double residual, double limit) {
-  const double t = residual / limit;
-  return std::fabs(t) >= 1.0 ? 0.0 : (1.0 - t * t) * (1.0 - t * t);
-}
 
 }  // namespace
 
@@ -155,8 +150,7 @@ double CurveFitter::Residuals(const Eigen::Matrix<double, kN, 1>& p) {
   }
   const auto middle = size_.begin() + static_cast<std::ptrdiff_t>(row_count_ / 2);
   std::nth_element(size_.begin(), middle, size_.begin() + static_cast<std::ptrdiff_t>(row_count_));
-  // 1.4826 makes the median of sizes a standard deviation; Tukey's constant is 4.685 of those.
-  return 4.685 * std::max(1.4826 * *middle, 1.0);
+  return BiweightLimit(*middle);
 }
 
 // One step of weighted least squares. False when too few edges are believed.

@@ -20,7 +20,6 @@ constexpr double kMostAgainst = 0.08;  // of the sides: neither the target nor w
 constexpr int kMostCornersHidden = 1;  // of two, any place along the sides would do
 constexpr double kLeastSeen = 0.35;    // of each side
 constexpr double kLeastOn = 0.6;       // of its edges on its line: else it is two things' that meet
-constexpr double kWholeOn = 0.95;      // the same, when nothing is hidden
 constexpr double kPartRmsPx = 0.06;    // edges about the sides, where a part is hidden,
 constexpr double kWholeRmsPx = 0.12;   // and where none is,
 constexpr double kNoiseRms = 1.6;      // and so much more for noise over contrast
@@ -30,8 +29,6 @@ constexpr double kGoesOnShare = 0.25;  // of the target's contrast: what covers 
 constexpr double kGoesOnSigmas = 1.3;  // of the noise, from the mean of some 24 pairs of samples
 constexpr int kMostFits = 12;
 
-bool IsWhole(const PolygonFit& fit) { return !fit.part_hidden && fit.least_on > kWholeOn; }
-
 // Whether the fitted sides are the target's, as far as what stands beside them says.
 bool IsTargets(const PolygonFit& fit) {
   if (fit.against > kMostAgainst || fit.corners_hidden > kMostCornersHidden || fit.least_seen < kLeastSeen ||
@@ -39,15 +36,14 @@ bool IsTargets(const PolygonFit& fit) {
     return false;
   }
   // Next to what hides a part, edges of two things may pass for one that is blurred.
-  const bool whole = IsWhole(fit);
   const double noise = fit.quiet / std::max(fit.contrast, 1.0);
-  const double scatter = (whole ? kWholeRmsPx : kPartRmsPx) + kNoiseRms * noise;
+  const double scatter = (fit.whole ? kWholeRmsPx : kPartRmsPx) + kNoiseRms * noise;
   const double sigma = kPartSigmaPx + kNoiseSigma * noise;
-  if (!whole && fit.corners.cov.diagonal().maxCoeff() > sigma * sigma) {
+  if (!fit.whole && fit.corners.cov.diagonal().maxCoeff() > sigma * sigma) {
     return false;  // a corner that is so little known may be anywhere
   }
   // Of a square, four sides that are not all its own fit no pose.
-  return fit.rms_px < scatter && (whole || fit.bends_explained || fit.corners.count > 3);
+  return fit.rms_px < scatter && (fit.whole || fit.bends_explained || fit.corners.count > 3);
 }
 
 }  // namespace
@@ -134,7 +130,7 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
   const CornerPose& pose = poses.front();
   const double distance = pose.X_CO.p.norm();
   const double corner_sigma = std::sqrt(fit.corners.cov.trace() / static_cast<double>(n));
-  if (pose.off_px > (IsWhole(fit) ? kMaxOffPx : kMaxOffPartPx) + 3.0 * corner_sigma ||
+  if (pose.off_px > (fit.whole ? kMaxOffPx : kMaxOffPartPx) + 3.0 * corner_sigma ||
       distance < config_.distance_min || distance > config_.distance_max) {
     return;
   }

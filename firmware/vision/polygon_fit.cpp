@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/vision/biweight.hpp"
+
 namespace fovea::vision {
 namespace {
 
@@ -16,9 +18,8 @@ constexpr double kCornerPx = 4.0;      // edges nearer to a corner than this are
 constexpr double kRoundedBlurs = 4.5;  // and so near, in standard deviations of the blur, they may be off
 constexpr double kStraight = 0.95;  // share of a side's edges on its line: no part of it is another thing's
 constexpr int kMinLines = 6;        // on a side
-constexpr double kMinScalePx = 0.03;
 // What may shift and turn a side of which something that hides a part is next to the rest.
-constexpr double kBesidePx = 0.04;
+constexpr double kPartShiftPx = 0.04;
 
 }  // namespace
 
@@ -112,7 +113,7 @@ bool PolygonFitter::FitSide(Side& side, double blur, PolygonFit& fit, double& rm
   // Lens and light shift the side, and turn what is seen of it about its middle.
   const Eigen::Vector2d turned(-side.line.middle, 1.0);
   const bool part = clear < side.to - side.from || side.line.on < kStraight;
-  const double common = part ? std::max(kBesidePx, edge_noise_.shift_px) : edge_noise_.shift_px;
+  const double common = part ? std::max(kPartShiftPx, edge_noise_.shift_px) : edge_noise_.shift_px;
   side.line.cov(0, 0) += common * common;
   side.line.cov +=
       common * common / (3.0 * side.line.spread * side.line.spread) * turned * turned.transpose();
@@ -200,6 +201,11 @@ bool PolygonFitter::Approach(const cv::Mat& image, const Intrinsics& in, double&
   return true;
 }
 
+// Where the lines are now.
+bool PolygonFitter::IsWhole(const PolygonFit& fit) const {
+  return evidence_.is_whole() && fit.least_on > kStraight;
+}
+
 PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> start) {
   PolygonFit fit;
   fit.corners.count = static_cast<int>(start.size());
@@ -211,7 +217,7 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
     if (!ReadLines(image, in, fit) || !Approach(image, in, blur, fit)) {
       return fit;
     }
-    if (!evidence_.hidden() && fit.least_on > kStraight) {
+    if (IsWhole(fit)) {
       break;
     }
   }
@@ -225,7 +231,7 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
   for (int k = 0; k < fit.corners.count; ++k) {
     fit.least_seen = std::min(fit.least_seen, evidence_.side(k).seen);
   }
-  fit.part_hidden = evidence_.hidden();
+  fit.whole = IsWhole(fit);
   fit.against = evidence_.against();
   fit.corners_hidden = evidence_.CornersHidden();
   fit.converged =

@@ -170,7 +170,10 @@ SideEvidence::Colour SideEvidence::MedianOf(const std::array<Colour, Profiles::k
 void SideEvidence::Judge() {
   const int count = static_cast<int>(lines_.size());
   const auto any = [](int /*i*/) { return true; };
-  const auto is_side = [this](int i) { return line(i) == LineSays::kSide; };
+  const auto is_like = [](const Colour& a, const Colour& b, float most2) {
+    return (a - b).squaredNorm() < most2;
+  };
+  const auto is_side = [this](int i) { return SaysOf(i) == Says::kSide; };
   target_ = MedianOf(inside_, 0, count, any);
   ground_ = MedianOf(outside_, 0, count, any);
   for (int turn = 0; turn < 2; ++turn) {
@@ -181,16 +184,13 @@ void SideEvidence::Judge() {
     for (int i = 0; i < count; ++i) {
       const auto line = static_cast<std::size_t>(i);
       if (!in_known_[line] || !out_known_[line]) {
-        says_[line] = LineSays::kUnknown;
+        says_[line] = Says::kUnknown;
         continue;
       }
-      const bool within = (inside_[line] - target_).squaredNorm() < like2;
-      const bool without = (outside_[line] - target_).squaredNorm() < like2;
-      if (within) {
-        says_[line] = without ? LineSays::kOver : LineSays::kSide;
+      if (is_like(inside_[line], target_, like2)) {
+        says_[line] = is_like(outside_[line], target_, like2) ? Says::kNot : Says::kSide;
       } else {
-        says_[line] =
-            (inside_[line] - ground_).squaredNorm() < ground2 ? LineSays::kMissing : LineSays::kHidden;
+        says_[line] = is_like(inside_[line], ground_, ground2) ? Says::kNot : Says::kHidden;
       }
     }
     // The ground is what lies beside the sides, now that they are known.
@@ -201,7 +201,7 @@ void SideEvidence::Judge() {
 void SideEvidence::Describe() {
   int known = 0;
   int wrong = 0;
-  hidden_ = false;
+  is_whole_ = true;
   for (int k = 0; k < sides_count_; ++k) {
     Side& side = sides_[static_cast<std::size_t>(k)];
     int seen = 0;
@@ -209,18 +209,18 @@ void SideEvidence::Describe() {
     int first = side.to;
     int last = side.from - 1;
     for (int i = side.from; i < side.to; ++i) {
-      const LineSays says = line(i);
-      if (says == LineSays::kUnknown) {
+      const Says says = SaysOf(i);
+      if (says == Says::kUnknown) {
         continue;
       }
       ++of_side;
-      if (says == LineSays::kSide) {
+      if (says == Says::kSide) {
         ++seen;
         first = std::min(first, i);
         last = i;
       } else {
-        wrong += says == LineSays::kHidden ? 0 : 1;
-        hidden_ = true;
+        wrong += says == Says::kNot ? 1 : 0;
+        is_whole_ = false;
       }
     }
     known += of_side;
@@ -239,8 +239,8 @@ void SideEvidence::FindClear(const Side& side, int beside) {
   const auto is_clear = [&](int i) {
     for (int off = 0; off < side.to - side.from; ++off) {
       for (const int j : {i - off, i + off}) {
-        if (j >= side.from && j < side.to && line(j) != LineSays::kUnknown) {
-          return line(j) == LineSays::kSide;
+        if (j >= side.from && j < side.to && SaysOf(j) != Says::kUnknown) {
+          return SaysOf(j) == Says::kSide;
         }
       }
     }
@@ -264,7 +264,7 @@ bool SideEvidence::ExplainsBends(const std::array<bool, Profiles::kMaxLines>& of
   for (int k = 0; k < sides_count_; ++k) {
     const Side& side = sides_[static_cast<std::size_t>(k)];
     const auto is_off = [&](int i) { return off[static_cast<std::size_t>(i)]; };
-    const auto is_on = [&](int i) { return !is_off(i) && line(i) == LineSays::kSide; };
+    const auto is_on = [&](int i) { return !is_off(i) && SaysOf(i) == Says::kSide; };
     int count = 0;
     for (int i = side.from; i < side.to; ++i) {
       count += is_off(i) ? 1 : 0;
@@ -340,7 +340,7 @@ bool SideEvidence::GoesOn(const cv::Mat& image, const Intrinsics& in, const Imag
   constexpr float kSame = 0.4F;
   std::array<Colour, kParts> steps;
   std::size_t known = 0;
-  const int last = std::max(kFirst + kPart * static_cast<int>(kParts), static_cast<int>(kFurthest * length));
+  const int last = std::max(kFirst, static_cast<int>(kFurthest * length)) + kPart * static_cast<int>(kParts);
   for (int from = kFirst; from + kPart <= last; from += kPart) {
     std::rotate(steps.begin(), steps.begin() + 1, steps.end());
     if (!StepBeyond(image, in, corner, du, dv, from, from + kPart, steps.back())) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "fovea/vision/biweight.hpp"
 #include "fovea/vision/profiles.hpp"
 
 namespace fovea::vision {
@@ -16,14 +17,7 @@ constexpr double kBent = 2.5;         // a median further off [sigma] is no line
 constexpr double kAgreeSigmas = 3.0;  // edges that agree with a line are no further off,
 constexpr double kAgreePx = 0.15;     // and this
 constexpr double kOnPx = 0.25;
-constexpr double kTukey = 4.685;     // [sigma]
-constexpr double kToSigma = 1.4826;  // of a median
-constexpr std::size_t kTries = 10;   // edges, of which each two are tried
-
-double Biweight(double residual, double limit) {
-  const double t = residual / limit;
-  return std::fabs(t) >= 1.0 ? 0.0 : (1.0 - t * t) * (1.0 - t * t);
-}
+constexpr std::size_t kTries = 10;  // edges, of which each two are tried
 
 double OffOf(const SideEdge& edge, const SideLine& line) { return edge.at_px - line.a - line.b * edge.t; }
 
@@ -157,12 +151,12 @@ bool FitSideLine(std::span<SideEdge> edges, int beside, SideLine& line) {
       most = 2.0 * kBent;
       median = MedianOff(edges, line, most);
     }
-    if (!Solve(edges, kTukey * std::max(kToSigma * median, 1.0), line)) {
+    if (!Solve(edges, BiweightLimit(median), line)) {
       return false;
     }
   }
   for (int turn = 0; turn < 2 && LeaveOut(edges, beside, line); ++turn) {
-    if (!Solve(edges, kTukey, line)) {
+    if (!Solve(edges, BiweightLimit(0.0), line)) {
       return false;
     }
   }

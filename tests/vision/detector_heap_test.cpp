@@ -2,12 +2,12 @@
 // OpenCV too.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <iostream>
 #include <vector>
 
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/vision/target_detector.hpp"
+#include "tools/bench/picture_target.hpp"
 #include "tools/bench/scenes.hpp"
 
 namespace fovea::vision {
@@ -22,20 +22,6 @@ std::uint64_t HeapCallsOf(Function function) {
   function();
   linux_rt::LeaveCountedRegion();
   return linux_rt::CountedHeapCalls() - before;
-}
-
-DetectorConfig ConfigOf(TargetKind kind, FindBy by) {
-  const bench::PictureCamera camera;
-  DetectorConfig config;
-  constexpr std::array kKinds{hal::FeatureKind::kSphere, hal::FeatureKind::kCircle, hal::FeatureKind::kSquare,
-                              hal::FeatureKind::kTriangle};
-  config.kind = kKinds[static_cast<std::size_t>(kind)];
-  config.by = by;
-  config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
-                       camera.f_px,     camera.c_u_px,    camera.c_v_px};
-  config.distance_min = 0.10;
-  config.distance_max = 2.2;
-  return config;
 }
 
 cv::Mat PictureOf(const char* name, TargetKind kind, bool with_target) {
@@ -64,7 +50,7 @@ class DetectorHeapTest : public testing::Test {
     const char* scene = by == FindBy::kColour ? "clutter" : "noise-15";
     const cv::Mat with = PictureOf(scene, kind, true);
     const cv::Mat without = PictureOf(scene, kind, false);
-    TargetDetector detector(ConfigOf(kind, by));
+    TargetDetector detector(ConfigOf(kind, {}, by));
     std::uint64_t calls = 0;
     for (int round = 0; round < 2; ++round) {
       calls = HeapCallsOf([&] {

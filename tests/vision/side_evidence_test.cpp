@@ -13,6 +13,7 @@
 #include "fovea/vision/polygon_fit.hpp"
 #include "fovea/vision/target_detector.hpp"
 #include "tools/bench/picture.hpp"
+#include "tools/bench/picture_target.hpp"
 
 namespace fovea::vision {
 namespace {
@@ -25,15 +26,7 @@ constexpr double kGround = 100.0;
 constexpr double kContrast = 80.0;
 constexpr double kLeast = 0.25 * kContrast;
 
-DetectorConfig Triangle() {
-  const bench::PictureCamera camera;
-  DetectorConfig config;
-  config.kind = hal::FeatureKind::kTriangle;
-  config.by = FindBy::kGray;
-  config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
-                       camera.f_px,     camera.c_u_px,    camera.c_v_px};
-  return config;
-}
+DetectorConfig Triangle() { return ConfigOf(bench::TargetKind::kTriangle, {}, FindBy::kGray); }
 
 bench::Body Plate(const std::vector<Vector2d>& corners, double distance, double level) {
   bench::Body body;
@@ -177,12 +170,7 @@ TEST(SideEvidenceTest, APieceBesideABarLikeTheGroundIsNotTheTarget) {
                    kNear * (corners[k] + to * back + wide), kNear * (corners[k] + from * back + wide)},
                   kNear * kDistance, kGround));
         const Detection d = TargetDetector(config).Detect(Draw(scene));
-        double off_px = 0.0;
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-          const Vector2d q = scene.camera.f_px / kDistance * corners[i];
-          off_px = std::max(off_px, std::hypot(d.corner[i].u_px - q.x() - scene.camera.c_u_px,
-                                               d.corner[i].v_px - q.y() - scene.camera.c_v_px));
-        }
+        const double off_px = d.found ? OffOf(d, scene) : 0.0;
         ++pictures;
         right += d.found && off_px < kWrongPx ? 1 : 0;
         wrong += d.found && off_px > kWrongPx ? 1 : 0;
@@ -217,6 +205,9 @@ Crossed MakeCrossed(unsigned seed) {
   const double side_px = between(40.0, 85.0);
   const double turn = between(0.0, 2.0 * std::numbers::pi);
   std::vector<Vector2d> triangle;
+  triangle.reserve(3);
+  crossed.corners.reserve(3);
+  crossed.start.reserve(3);
   for (int k = 0; k < 3; ++k) {
     const double angle = turn + 2.0 * std::numbers::pi / 3.0 * k;
     const Vector2d p = side_px / std::numbers::sqrt3 * Vector2d(std::cos(angle), std::sin(angle));

@@ -5,22 +5,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "fovea/vision/target_detector.hpp"
+#include "picture_target.hpp"
 
 namespace fovea::bench {
 namespace {
 
 constexpr double kRadiusMinPx = 10.0;  // of what is looked for
 constexpr double kRadiusMaxPx = 190.0;
-
-hal::FeatureKind KindOf(TargetKind kind) {
-  switch (kind) {
-    case TargetKind::kSphere: return hal::FeatureKind::kSphere;
-    case TargetKind::kCircle: return hal::FeatureKind::kCircle;
-    case TargetKind::kSquare: return hal::FeatureKind::kSquare;
-    case TargetKind::kTriangle: break;
-  }
-  return hal::FeatureKind::kTriangle;
-}
 
 class Ours final : public Contestant {
  public:
@@ -42,26 +33,9 @@ class Ours final : public Contestant {
   [[nodiscard]] bool tracks() const override { return true; }
 
  private:
-  static std::vector<Eigen::Vector2d> CornersOf(const vision::Detection& d) {
-    std::vector<Eigen::Vector2d> corners;
-    corners.reserve(d.Corners().size());
-    for (const vision::ImagePoint& p : d.Corners()) {
-      corners.emplace_back(p.u_px, p.v_px);
-    }
-    return corners;
-  }
   static vision::DetectorConfig Config(TargetKind kind, const PictureCamera& camera, bool colour) {
-    vision::DetectorConfig config;
-    config.kind = KindOf(kind);
-    config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
-                         camera.f_px,     camera.c_u_px,    camera.c_v_px};
-    config.by = colour ? vision::FindBy::kColour : vision::FindBy::kGray;
-    config.size = kind == TargetKind::kSquare ? kSide : kDiameter;
-    for (std::size_t i = 0; i < config.triangle.size(); ++i) {
-      config.triangle[i] = TriangleCorners()[i];
-    }
-    config.distance_min = 0.10;
-    config.distance_max = 2.2;
+    vision::DetectorConfig config =
+        ConfigOf(kind, camera, colour ? vision::FindBy::kColour : vision::FindBy::kGray);
     config.radius_min_px = kRadiusMinPx;
     config.radius_max_px = kRadiusMaxPx;
     return config;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "figure.hpp"
 #include "fovea/config/input_error.hpp"
 #include "fovea/config/program.hpp"
+#include "picture_target.hpp"
 #include "scenes.hpp"
 
 namespace fovea::bench {
@@ -61,25 +61,6 @@ struct Truth {
   Bound bound;
 };
 
-// How far the centre is off, or the furthest corner.
-double OffOf(const Answer& answer, const Truth& truth) {
-  double off_px = std::hypot(answer.u_px - truth.outline.u_px, answer.v_px - truth.outline.v_px);
-  if (answer.corners.size() != truth.corners || truth.corners == 0) {
-    return off_px;
-  }
-  const std::size_t per_side = truth.outline.points.size() / truth.corners;
-  double least_px = std::numeric_limits<double>::infinity();
-  for (std::size_t first = 0; first < truth.corners; ++first) {
-    double furthest_px = 0.0;
-    for (std::size_t i = 0; i < truth.corners; ++i) {
-      const Eigen::Vector2d& corner = truth.outline.points[((first + i) % truth.corners) * per_side];
-      furthest_px = std::max(furthest_px, (answer.corners[i] - corner).norm());
-    }
-    least_px = std::min(least_px, furthest_px);
-  }
-  return std::max(off_px, least_px);
-}
-
 void Judge(Contestant& contestant, const cv::Mat& image, const Truth* truth, Score& score) {
   Answer answer;
   score.ms.push_back(MsOf([&] { answer = contestant.Look(image); }));
@@ -94,7 +75,7 @@ void Judge(Contestant& contestant, const cv::Mat& image, const Truth* truth, Sco
   }
   const TrueOutline& outline = truth->outline;
   const double off_px = std::hypot(answer.u_px - outline.u_px, answer.v_px - outline.v_px);
-  if (OffOf(answer, *truth) > kWrongPx) {
+  if (OffOf({answer.u_px, answer.v_px}, answer.corners, outline, truth->corners) > kWrongPx) {
     ++score.wrong;
     return;
   }

@@ -17,15 +17,15 @@ namespace fovea::vision {
 struct PolygonFit {
   bool converged = false;
   CornerFit corners;
-  double rms_px = 0.0;       // of the edges about the sides
-  double noise_px = 0.0;     // what of that the image's noise explains
-  double contrast = 0.0;     // mean step across them [gray levels]
-  double quiet = 0.0;        // the image's noise away from them [gray levels]
-  double seen = 0.0;         // share of the sides that is inside the image and on an edge
-  double least_on = 0.0;     // of the side that is least straight: share of its edges that are on its line
-  double least_seen = 0.0;   // of the side of which least is seen, where the target's colour ends
-  double against = 0.0;      // share of the sides where the target is not, and nothing hides it
-  bool part_hidden = false;  // something stands before some of it
+  double rms_px = 0.0;      // of the edges about the sides
+  double noise_px = 0.0;    // what of that the image's noise explains
+  double contrast = 0.0;    // mean step across them [gray levels]
+  double quiet = 0.0;       // the image's noise away from them [gray levels]
+  double seen = 0.0;        // share of the sides that is inside the image and on an edge
+  double least_on = 0.0;    // of the side that is least straight: share of its edges that are on its line
+  double least_seen = 0.0;  // of the side of which least is seen, where the target's colour ends
+  double against = 0.0;     // share of the sides where the target is not, and nothing hides it
+  bool whole = false;       // nothing stands before it: the target ends at all sides, which are straight
   bool bends_explained = false;  // where edges leave a side's line, something stands before it
   int corners_hidden = 0;        // where they would be is only known from the sides
 };
@@ -53,6 +53,7 @@ class PolygonFitter {
   bool Approach(const cv::Mat& image, const Intrinsics& in, double& blur, PolygonFit& fit);
   bool FitSide(Side& side, double blur, PolygonFit& fit, double& rms2, double& noise2, double& weights);
   void MoveCorners(PolygonFit& fit) const;
+  [[nodiscard]] bool IsWhole(const PolygonFit& fit) const;
 
   const EdgeNoise edge_noise_;
   Profiles profiles_;

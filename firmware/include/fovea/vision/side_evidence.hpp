@@ -18,14 +18,6 @@
 
 namespace fovea::vision {
 
-enum class LineSays : std::uint8_t {
-  kUnknown,  // outside the image, or too near to a corner
-  kSide,     // the target ends here
-  kHidden,   // something stands before it
-  kMissing,  // the ground is where the target should be
-  kOver,     // the target goes on
-};
-
 // Keeps the memory that it works in. One thread uses it.
 class SideEvidence {
  public:
@@ -47,11 +39,10 @@ class SideEvidence {
   void Look(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> corners,
             std::span<const ProfileLine> lines, std::span<const int> ends);
 
-  [[nodiscard]] LineSays line(int i) const { return says_[static_cast<std::size_t>(i)]; }
   // Whether line i's edge can be taken for the side's: it is, and nothing that hides is near.
   [[nodiscard]] bool clear(int i) const { return clear_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const Side& side(int k) const { return sides_[static_cast<std::size_t>(k)]; }
-  [[nodiscard]] bool hidden() const { return hidden_; }      // some of it is
+  [[nodiscard]] bool is_whole() const { return is_whole_; }  // the target ends at every line that is known
   [[nodiscard]] double against() const { return against_; }  // share of the outline that is not the target's
   // A side of which the edges of some lines are off: whether it is because something stands before them. Two
   // things meet there; the one that lies against the ground, as the other sides do, is the target's.
@@ -65,6 +56,13 @@ class SideEvidence {
                                 std::span<const ImagePoint> corners, double least) const;
 
  private:
+  enum class Says : std::uint8_t {
+    kUnknown,  // outside the image, or too near to a corner
+    kSide,     // the target ends here
+    kHidden,   // something stands before it
+    kNot,      // the ground is where the target should be, or the target goes on
+  };
+  [[nodiscard]] Says SaysOf(int i) const { return says_[static_cast<std::size_t>(i)]; }
   static bool StepBeyond(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
                          double dv, int from, int to, Colour& step);
   static bool GoesOn(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
@@ -83,7 +81,7 @@ class SideEvidence {
   std::span<const ProfileLine> lines_;
   int sides_count_ = 0;
   int channels_ = 1;
-  bool hidden_ = false;
+  bool is_whole_ = false;
   double against_ = 0.0;
   double contrast_ = 0.0;
   Colour target_ = Colour::Zero();
@@ -93,7 +91,7 @@ class SideEvidence {
   std::array<Colour, Profiles::kMaxLines> outside_;
   std::array<bool, Profiles::kMaxLines> in_known_{};
   std::array<bool, Profiles::kMaxLines> out_known_{};
-  std::array<LineSays, Profiles::kMaxLines> says_{};
+  std::array<Says, Profiles::kMaxLines> says_{};
   std::array<bool, Profiles::kMaxLines> clear_{};
   std::array<float, Profiles::kMaxLines> sorted_{};
   std::array<Colour, Profiles::kMaxLines> smooth_;
