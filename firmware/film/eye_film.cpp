@@ -63,6 +63,7 @@ void EyeFilm::Add(const hal::Frame& frame, const vision::Detection& detection, s
   item.time_ns = frame.stamp_ns - begin_ns;
   item.detection = detection;
   queue_.Put(std::move(item));
+  ++frames_;
 }
 
 void EyeFilm::Draw(Item& item) const {

@@ -6,9 +6,11 @@ extern "C" {
 #include <libavutil/opt.h>
 }
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -45,7 +47,8 @@ struct VideoFile::Impl {
   std::unique_ptr<AVPacket, Free> packet{av_packet_alloc()};
   AVStream* stream = nullptr;  // owned by `format`
   cv::Mat i420;                // Y, U and V planes below each other
-  std::int64_t first_ns = -1;
+  std::optional<std::int64_t> first_ns;
+  std::int64_t given_pts = -1;  // of the last frame that the encoder was given
   std::int64_t last_pts = -kUsualDuration;
 
   void OpenEncoder(int width_px, int height_px) {
@@ -128,10 +131,12 @@ void VideoFile::Add(const cv::Mat& bgr, std::int64_t stamp_ns) {
       from += width;
     }
   }
-  if (impl_->first_ns < 0) {
+  if (!impl_->first_ns) {
     impl_->first_ns = stamp_ns;
   }
-  frame->pts = av_rescale(stamp_ns - impl_->first_ns, kTimeBase.den, 1'000'000'000);
+  // Stamps that are closer than the time base, or go back, would be no film to encoder and container.
+  const std::int64_t pts = av_rescale(stamp_ns - *impl_->first_ns, kTimeBase.den, 1'000'000'000);
+  frame->pts = impl_->given_pts = std::max(pts, impl_->given_pts + 1);
   Check(avcodec_send_frame(impl_->codec.get(), frame), "encoding");
   impl_->WritePackets();
 }

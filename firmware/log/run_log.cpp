@@ -1,6 +1,8 @@
 #include "fovea/log/run_log.hpp"
 
 #include <chrono>
+#include <fstream>
+#include <iterator>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
@@ -126,6 +128,15 @@ void RunLog::AddAttachment(const std::string& name, const std::string& media_typ
   Push([name, media_type, content](LogFile& file) {
     file.writer().WriteAttachment(name, media_type, 0, content);
   });
+}
+
+void RunLog::AddFile(const std::string& name, const std::string& media_type,
+                     const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) {
+    throw std::runtime_error(path.string() + ": cannot be read");
+  }
+  AddAttachment(name, media_type, {std::istreambuf_iterator<char>(stream), {}});
 }
 
 // What a thread added first is written first: the rings are marked before the messages are taken, so that

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "fovea/build_info.hpp"
 #include "fovea/film/target_curve.hpp"
 #include "fovea/log/picture_messages.hpp"
@@ -97,15 +94,10 @@ void LogFeed::AddFrame(const hal::Frame& frame, const vision::Detection& detecti
   log_.AddImage(frame);
 }
 
-void LogFeed::Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json,
-                     const std::optional<std::filesystem::path>& film) {
+void LogFeed::Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json) {
   log_.Add(log::kTickTimesTopic, static_cast<std::int64_t>(about_.scenario.run.duration_s * 1e9),
            log::TickTimesMessage(ticks));
   log_.AddAttachment("summary.json", "application/json", summary_json);
-  if (film) {
-    std::ifstream stream(*film, std::ios::binary);
-    log_.AddAttachment("camera.mp4", "video/mp4", {std::istreambuf_iterator<char>(stream), {}});
-  }
   log_.Finish();
 }
 

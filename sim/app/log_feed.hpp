@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "fovea/linux_rt/tick_meter.hpp"
@@ -29,9 +28,11 @@ class LogFeed {
   // From the vision thread. `X_CO`: where the target really was.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
 
-  // When all is over: how long the ticks took, the summary, the film; then completes the file.
-  void Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json,
-              const std::optional<std::filesystem::path>& film);
+  // When it is complete. std::runtime_error when it cannot be read.
+  void AddFilm(const std::filesystem::path& film) { log_.AddFile("camera.mp4", "video/mp4", film); }
+
+  // When all is over: how long the ticks took, and the summary; then completes the file.
+  void Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json);
   [[nodiscard]] std::uint64_t dropped() const { return log_.dropped(); }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 

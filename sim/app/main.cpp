@@ -85,6 +85,9 @@ int Run(const RunArguments& arguments) {
   options.report = !arguments.no_report;
   options.trace = arguments.trace;
   const sim::Summary summary = sim::RunScenario(scenario, options);
+  for (const std::string& error : summary.film_errors) {
+    fmt::print(stderr, "fovea-sim: {}\n", error);
+  }
   if (arguments.json) {
     fmt::print("{}", sim::ToJson(summary));
   } else {

@@ -322,6 +322,7 @@ class Run {
     s.overruns = counters_.overruns;
     s.missed_ticks = counters_.missed_ticks;
     s.records_dropped = ring_.dropped();
+    s.film_errors = files_->EndFilms();
     s.film_frames_dropped = files_->film_frames_dropped();
     s.log_entries_dropped = files_->log_entries_dropped();
     if (linux_rt::HeapCounterActive()) {

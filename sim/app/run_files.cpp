@@ -3,6 +3,7 @@
 #include <future>
 
 #include "fovea/config/share_folder.hpp"
+#include "fovea/film/complete_film.hpp"
 #include "fovea/film/target_curve.hpp"
 
 namespace fovea::sim {
@@ -78,6 +79,24 @@ std::uint64_t RunFiles::film_frames_dropped() const {
   return (eye_film_ ? eye_film_->dropped() : 0) + (scene_film_ ? scene_film_->dropped() : 0);
 }
 
+std::vector<std::string> RunFiles::EndFilms() {
+  std::vector<std::string> errors;
+  if (eye_film_ && eye_film_->frames() > 0) {
+    has_eye_film_ = film::CompleteFilm(
+        "camera.mp4",
+        [this] {
+          eye_film_->Finish();
+          log_->AddFilm(eye_film_->path());
+        },
+        errors);
+  }
+  if (scene_film_ && (frames() > 0 || !about_.scenario.camera.enabled)) {
+    has_scene_film_ = film::CompleteFilm(
+        "scene.mp4", [this] { scene_film_->Finish(); }, errors);
+  }
+  return errors;
+}
+
 void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt::DurationHistogram& ticks) {
   if (!folder_) {
     return;
@@ -91,26 +110,20 @@ void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt
       return DrawBenchPicture(about_.scene, end, camera_path_.points(), target_path_.points());
     });
   }
-  const bool has_frames = frames_.frames() > 0;
-  const bool has_eye = about_.scenario.camera.enabled;
-  if (has_frames) {
+  if (frames() > 0) {
     for (const auto& [name, frame] :
          {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
       files.push_back({name, DrawEyePicture(*frame, about_.intrinsics, about_.servo.feature)});
     }
   }
   if (HasReport()) {
-    std::optional<std::filesystem::path> film;
-    if (has_frames) {
-      eye_film_->Finish();
-      film = eye_film_->path();
+    if (has_eye_film_) {
       files.push_back({"camera.mp4", std::nullopt});
     }
-    if ((has_frames || !has_eye) && scene_film_) {
-      scene_film_->Finish();
+    if (has_scene_film_) {
       files.push_back({"scene.mp4", std::nullopt});
     }
-    log_->Finish(ticks, summary_json, film);
+    log_->Finish(ticks, summary_json);
     files.push_back({"log.mcap", std::nullopt});
     report::RunData run = report::ReadRun(log_->path());
     run.source = "log.mcap";  // as it will be called

@@ -3,6 +3,8 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "fovea/config/output_folder.hpp"
 #include "fovea/film/eye_film.hpp"
@@ -38,6 +40,10 @@ class RunFiles {
   // From the vision thread. `X_CO`: where the target really was.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
 
+  // When the threads are done: completes the films. A film that fails is left out, and that is all; a line
+  // for each that says why.
+  std::vector<std::string> EndFilms();
+
   // When the threads are done: frames that the vision task got, and in how many it found the target; what
   // found no place in films and log.
   [[nodiscard]] std::uint64_t frames() const { return frames_.frames(); }
@@ -57,6 +63,8 @@ class RunFiles {
   std::optional<config::OutputFolder> folder_;
   std::unique_ptr<film::EyeFilm> eye_film_;
   std::unique_ptr<SceneFilm> scene_film_;
+  bool has_eye_film_ = false;  // and it is complete
+  bool has_scene_film_ = false;
   std::unique_ptr<LogFeed> log_;
   FrameKeeper frames_;
   Path camera_path_;

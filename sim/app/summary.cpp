@@ -176,6 +176,7 @@ std::string ToJson(const Summary& s) {
   json["missed_ticks"] = s.missed_ticks;
   json["records_dropped"] = s.records_dropped;
   json["film_frames_dropped"] = s.film_frames_dropped;
+  json["film_errors"] = s.film_errors;
   json["log_entries_dropped"] = s.log_entries_dropped;
   json["heap_allocations_in_tick"] = OrNull(s.heap_allocations_in_tick);
   json["page_faults_in_loop"] = s.page_faults_in_loop;

@@ -65,6 +65,7 @@ struct Summary {
   std::uint64_t missed_ticks = 0;
   std::uint64_t records_dropped = 0;
   std::uint64_t film_frames_dropped = 0;  // of both films
+  std::vector<std::string> film_errors;   // why one is not there that should be
   std::uint64_t log_entries_dropped = 0;
   std::optional<std::uint64_t> heap_allocations_in_tick;  // none when the counter is not active
   std::uint64_t page_faults_in_loop = 0;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "sim/physics/bullet_shapes.hpp"
+#include "sim/physics/weight_on_joints.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -110,13 +111,6 @@ struct BulletArm::Impl {
   Eigen::VectorXd q;
   Eigen::VectorXd dq;
   std::optional<Eigen::VectorXd> gravity_torque;  // at q, once somebody asked for it
-
-  // What hangs on a link with the link itself: its mass, and that times its centre of mass in B [kg, kg m].
-  struct Weight {
-    double mass = 0.0;
-    btVector3 moment = btVector3(0, 0, 0);
-  };
-  std::vector<Weight> hanging;  // per link of Bullet's, while the gravity torque is computed
 
   btAlignedObjectArray<btScalar> scratch_r;
   btAlignedObjectArray<btVector3> scratch_v;
@@ -265,39 +259,6 @@ struct BulletArm::Impl {
            principal[static_cast<std::size_t>(index)].X_PL;
   }
 
-  Eigen::VectorXd ComputeGravityTorque() {
-    Eigen::VectorXd tau = Eigen::VectorXd::Zero(robot.num_dofs);
-    const btVector3 g = world.getGravity();
-    if (g.isZero()) {
-      return tau;
-    }
-    hanging.assign(robot.links.size(), Weight{});
-    for (int i = static_cast<int>(robot.links.size()) - 2; i >= 0; --i) {  // from the tip to the base
-      const btMultibodyLink& link = body->getLink(i);
-      const btVector3& p_com = link.m_cachedWorldTransform.getOrigin();
-      Weight& weight = hanging[static_cast<std::size_t>(i)];
-      weight.mass += link.m_mass;
-      weight.moment += link.m_mass * p_com;
-      if (link.m_parent >= 0) {
-        hanging[static_cast<std::size_t>(link.m_parent)].mass += weight.mass;
-        hanging[static_cast<std::size_t>(link.m_parent)].moment += weight.moment;
-      }
-      if (link.m_dofCount == 0) {
-        continue;
-      }
-      const btMatrix3x3& R_BP = link.m_cachedWorldTransform.getBasis();
-      const int dof = robot.links[static_cast<std::size_t>(i + 1)].dof;
-      if (link.m_jointType == btMultibodyLink::ePrismatic) {
-        tau[dof] = -weight.mass * g.dot(R_BP * link.getAxisBottom(0));
-      } else {
-        const btVector3 p_joint = p_com - R_BP * link.m_dVector;
-        const btVector3 lever = weight.moment - weight.mass * p_joint;
-        tau[dof] = -g.dot((R_BP * link.getAxisTop(0)).cross(lever));
-      }
-    }
-    return tau;
-  }
-
   void ApplyTorque(const Eigen::VectorXd& tau) {
     for (int i = 0; i < robot.num_dofs; ++i) {
       body->addJointTorque(dof_link[static_cast<std::size_t>(i)], tau[i]);
@@ -388,7 +349,7 @@ Eigen::VectorXd BulletArm::ForwardDynamics(const Eigen::VectorXd& tau) {
 
 Eigen::VectorXd BulletArm::GravityTorque() const {
   if (!impl_->gravity_torque) {
-    impl_->gravity_torque = impl_->ComputeGravityTorque();
+    impl_->gravity_torque = WeightOnJoints(*impl_->body, impl_->robot, impl_->world.getGravity());
   }
   return *impl_->gravity_torque;
 }

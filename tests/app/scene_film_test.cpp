@@ -1,12 +1,14 @@
 // The film from beside the bench, of a short run, read back by another reader.
 #include "sim/app/scene_film.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <iostream>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <set>
 
 #include "fovea/film/overlay.hpp"
 #include "sim/app/run.hpp"
@@ -90,6 +92,29 @@ TEST_F(SceneFilmTest, IsShownInFullLight) {
   cv::Mat frame;
   ASSERT_TRUE(film.read(frame));
   EXPECT_GT(cv::mean(frame)[1], 60.0);
+}
+
+// What is worth more than a film stays, and says why there is none.
+TEST_F(SceneFilmTest, FilmsThatFailCostNothingElse) {
+  RunOptions options;
+  options.out = folder_.path();
+  options.show_progress = false;
+  options.observer.on_truth = [this](const Truth&) {  // in the midst of the run their files vanish
+    std::filesystem::remove(folder_.path() / ".camera.mp4.partial");
+    std::filesystem::remove(folder_.path() / ".scene.mp4.partial");
+  };
+  const Summary summary =
+      RunScenario(LoadScenario("ball", {"run.duration_s=0.1", "run.scene_video=true"}), options);
+  EXPECT_THAT(
+      summary.film_errors,
+      testing::ElementsAre("camera.mp4: the film cannot be written: the index: No such file or directory",
+                           "scene.mp4: the film cannot be written: the index: No such file or directory"));
+  std::set<std::string> files;
+  for (const std::filesystem::directory_entry& file : std::filesystem::directory_iterator(folder_.path())) {
+    files.insert(file.path().filename());
+  }
+  EXPECT_THAT(files, testing::ElementsAre("bench.png", "eye-first.png", "eye-last.png", "log.mcap",
+                                          "report.html", "summary.json"));
 }
 
 }  // namespace

@@ -5,64 +5,16 @@ import json
 import pathlib
 import signal
 import subprocess
-import sys
 import tempfile
-import threading
 import time
-import unittest
 
-SIM = None
-HW = None
+import two_programs
+from two_programs import TwoPrograms
+
 READERS = pathlib.Path(__file__).parent.parent / "js"
 
 
-class Loopback(unittest.TestCase):
-    def serve(self, *options, camera=False):
-        eye = [] if camera else ["--camera-serial", ""]
-        self.server = subprocess.Popen([SIM, "serve", "ball", "--fci-port", "0", "--json", *eye, *options],
-                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                       text=True)
-        self.addCleanup(self.end_server)
-        line = self.server.stderr.readline()
-        if camera:
-            self.assertIn("GigE Vision", self.server.stderr.readline())
-        return line.split("127.0.0.1:")[1].split(",")[0]
-
-    def end_server(self):
-        """What the server says in the end; None when it has ended before."""
-        if self.server.returncode is not None:
-            return None
-        self.server.send_signal(signal.SIGTERM)
-        out, _ = self.server.communicate(timeout=20)
-        self.assertEqual(self.server.returncode, 0)
-        return json.loads(out)
-
-    def hardware(self, port, *options, camera=False, codes=(0,)):
-        eye = [] if camera else ["--set", "camera.driver=none"]
-        done = subprocess.run([HW, "loopback", "--set", f"robot.port={port}", "--json", *eye, *options], timeout=100,
-                              stdin=subprocess.DEVNULL, capture_output=True, text=True)
-        self.assertIn(done.returncode, codes, done.stderr)
-        return json.loads(done.stdout)
-
-    def operator(self, port, *options):
-        """The program with a person at the keyboard: write to its stdin."""
-        hw = subprocess.Popen([HW, "loopback", "--set", f"robot.port={port}", "--set", "camera.driver=none", "--json",
-                               *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              text=True)
-        watchdog = threading.Timer(60, hw.kill)
-        watchdog.start()
-        self.addCleanup(watchdog.cancel)
-        return hw
-
-    def say(self, hw, word):
-        hw.stdin.write(word + "\n")
-        hw.stdin.flush()
-
-    def summary_of(self, hw, code=0):
-        out, _ = hw.communicate(timeout=20)
-        self.assertEqual(hw.returncode, code)
-        return json.loads(out)
-
+class Loopback(TwoPrograms):
     def tracked(self, *options):
         """A run of 8 s in lockstep: what the client and the server say of it. The robot waits for the servo, but nobody
         for the client's eye: where a busy machine left it a part of the pictures alone, it is run again, twice."""
@@ -117,7 +69,7 @@ class Loopback(unittest.TestCase):
 
     def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_moves(self):
         with tempfile.NamedTemporaryFile() as file:
-            done = subprocess.run([HW, "loopback", "--set", "robot.port=1", "--set", "camera.driver=none", "--out",
+            done = subprocess.run([two_programs.HW, "loopback", "--set", "robot.port=1", "--set", "camera.driver=none", "--out",
                                    file.name], timeout=20, capture_output=True, text=True)
             self.assertEqual(done.returncode, 2)
             self.assertIn(f"--out {file.name}: the folder cannot be made", done.stderr)
@@ -130,43 +82,6 @@ class Loopback(unittest.TestCase):
         self.assertGreater(s["robot"]["lost_states"], 100)
         self.assertLessEqual(truth["error_px"], 0.5)
         self.assertLessEqual(truth["error_mm"], 0.6)
-
-    def tracked_at_real_pace(self, lost_by_the_network, *options):
-        """A run of 10 s by the clock, on a machine that kept it: what the client and the server say of it. Ticks that are
-        lost beyond the share that the network takes are the machine's. So is a robot that began 20 steps late: it makes
-        up for them at once, nobody can answer states that fast, and 20 without an answer stop it. And so is a client
-        that found 19 states waiting at once: it was kept from them, and the robot has stopped."""
-        for _ in range(3):
-            port = self.serve("--pace", "real", "--late-ms", "3", *options, camera=True)
-            s = self.hardware(port, "--track", "--seconds", "10", "--set", "robot.time=computer", "--set",
-                              "camera.time=computer", "--set", "robot.state_timeout_ms=50", "--set",
-                              "safety.missed_ticks=20", camera=True, codes=(0, 1))
-            truth = self.end_server()
-            lost = s["missed_ticks"] + truth["missing"]
-            print(f"\nreal pace: {truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; {s['mode']}, {s['fault']}; "
-                  f"{lost} ticks and {s['camera']['lost']} of {truth['frames_sent']} frames lost, {truth['overruns']} steps "
-                  f"late, {s['robot']['skipped_states']} states found too late; success rate {s['robot']['command_success_rate']}")
-            self.assertEqual(s["heap_allocations_in_tick"], 0)
-            kept_away = s["fault"] == "arm_lost" and s["robot"]["skipped_states"] >= 19
-            if (not kept_away and s["fault"] != "deadline_missed" and truth["overruns"] < 20
-                    and s["camera"]["lost"] < 30 and lost < 100 + lost_by_the_network * 10000):
-                return s, truth
-        self.skipTest("this machine did not keep 1 kHz in three attempts")
-
-    def test_it_tracks_the_ball_at_real_pace(self):
-        s, truth = self.tracked_at_real_pace(0.0)
-        self.assertEqual(s["fault"], "none")
-        self.assertLessEqual(truth["error_px"], 0.5)
-        self.assertLessEqual(truth["error_mm"], 0.8)
-
-    def test_it_tracks_the_ball_over_a_bad_network_at_real_pace(self):
-        # Of states and of commands 5 % are lost, some overtake each other, and some answers come after 3 ms.
-        s, truth = self.tracked_at_real_pace(0.7, "--loss", "0.05", "--jitter-ms", "2")
-        self.assertEqual(s["fault"], "none")
-        self.assertGreater(s["robot"]["lost_states"], 100)
-        self.assertLess(s["robot"]["command_success_rate"], 1.0)
-        self.assertLessEqual(truth["error_px"], 0.5)
-        self.assertLessEqual(truth["error_mm"], 0.8)
 
     def test_nothing_moves_until_the_operator_says_so(self):
         port = self.serve("--pace", "lockstep")
@@ -202,15 +117,6 @@ class Loopback(unittest.TestCase):
         self.assertEqual(s["robot"]["command_success_rate"], 1.0)
         self.assertGreater(s["robot"]["commands"], 2900)
 
-    def test_at_real_pace(self):
-        port = self.serve("--pace", "real", "--late-ms", "3")
-        # A busy machine may miss 20 ticks in a row; then it ends in a fault, and says so.
-        s = self.hardware(port, "--enable", "--seconds", "2", "--set", "robot.time=computer", "--set", "robot.state_timeout_ms=50",
-                          codes=(0, 1))
-        print(f"\nreal pace: {s['robot']['states']} states, success rate {s['robot']['command_success_rate']}")
-        self.assertEqual(s["heap_allocations_in_tick"], 0)
-        self.assertGreater(s["robot"]["states"], 0)
-
     def test_without_leave_to_move(self):
         port = self.serve("--pace", "lockstep")
         s = self.hardware(port, "--seconds", "1", "--no-motion")
@@ -222,10 +128,10 @@ class Loopback(unittest.TestCase):
         port = self.serve("--pace", "lockstep")
         hardware = self.hardware(port, "--seconds", "0.2", "--no-motion")["servo"]
         with tempfile.TemporaryDirectory() as temp:
-            done = subprocess.run([SIM, "run", "home", "--no-report", "--json", "--out", temp, "--set", "run.duration_s=0.1"],
-                                  timeout=60, capture_output=True, text=True)
+            done = subprocess.run([two_programs.SIM, "run", "home", "--no-report", "--json", "--out", temp, "--set",
+                                   "run.duration_s=0.1"], timeout=60, capture_output=True, text=True)
         self.assertIn(done.returncode, (0, 1), done.stderr)
-        libraries = list(pathlib.Path(HW).parent.parent.glob("lib/libfovea_servo.a"))
+        libraries = list(pathlib.Path(two_programs.HW).parent.parent.glob("lib/libfovea_servo.a"))
         self.assertEqual(len(libraries), 1)
         self.assertEqual(hardware, hashlib.sha256(libraries[0].read_bytes()).hexdigest())
         self.assertEqual(hardware, json.loads(done.stdout)["servo"])
@@ -265,16 +171,9 @@ class Loopback(unittest.TestCase):
         self.assertGreater(s["robot"]["duplicate_states"], 100)
         self.assertEqual(s["robot"]["motions"], 2)
 
-    def wait_for(self, process, line):
-        while True:
-            got = process.stderr.readline()
-            self.assertNotEqual(got, "", f"it ended before it said {line}")
-            if got.strip() == line:
-                return
-
     def test_the_pre_flight(self):
         port = self.serve("--pace", "real")
-        done = subprocess.run([HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
+        done = subprocess.run([two_programs.HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
                                "check.seconds=0.5"], timeout=60, capture_output=True, text=True)
         self.assertIn(done.returncode, (0, 1), done.stderr)
         rows = {row["what"]: row for row in json.loads(done.stdout)}
@@ -285,7 +184,7 @@ class Loopback(unittest.TestCase):
         for what in ("robot", "robot's mode", "limits", "joint ranges", "kinematics", "gravity"):
             self.assertEqual(rows[what]["verdict"], "pass", rows[what])
         self.assertEqual(done.returncode, 1 if any(r["verdict"] == "fail" for r in rows.values()) else 0)
-        heavy = subprocess.run([HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
+        heavy = subprocess.run([two_programs.HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
                                 "check.seconds=0.1", "--set", "arm.load_mass=3"], timeout=60, capture_output=True,
                                text=True)
         self.assertEqual(heavy.returncode, 1)
@@ -294,7 +193,7 @@ class Loopback(unittest.TestCase):
 
     def rows(self, port, *options):
         """The pre-flight's rows by name, and its exit code."""
-        done = subprocess.run([HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
+        done = subprocess.run([two_programs.HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
                                "check.seconds=1", "--set", "camera.time=computer", *options], timeout=60,
                               capture_output=True, text=True)
         self.assertIn(done.returncode, (0, 1), done.stderr)
@@ -355,7 +254,7 @@ class Loopback(unittest.TestCase):
     def test_the_pre_flight_finds_an_arm_that_is_not_the_robot(self):
         port = self.serve("--pace", "real")
         with tempfile.TemporaryDirectory() as temp:
-            share = pathlib.Path(HW).parent.parent / "share" / "fovea" / "robots"
+            share = pathlib.Path(two_programs.HW).parent.parent / "share" / "fovea" / "robots"
             for name, before, after, what, word in [
                     ("toml", "torque_rate_max = [1000.0", "torque_rate_max = [1200.0", "limits", "torque rate"),
                     ("urdf", 'upper="1.7628"', 'upper="1.8"', "limits", "joint 2's largest angle"),
@@ -374,34 +273,34 @@ class Loopback(unittest.TestCase):
         self.assertEqual(rows["camera"]["verdict"], "warn")
 
     def test_the_pre_flight_without_a_robot(self):
-        done = subprocess.run([HW, "loopback", "--check", "--set", "robot.port=1", "--set", "check.seconds=0.1"],
+        done = subprocess.run([two_programs.HW, "loopback", "--check", "--set", "robot.port=1", "--set", "check.seconds=0.1"],
                               timeout=60, capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn("no connection", done.stdout)
 
     def test_no_camera(self):
-        done = subprocess.run([HW, "loopback", "--set", "robot.port=1"], timeout=60, capture_output=True, text=True)
+        done = subprocess.run([two_programs.HW, "loopback", "--set", "robot.port=1"], timeout=60, capture_output=True,
+                              text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("fovea-hw: camera 127.0.0.1: not found", done.stderr)
 
     def test_no_robot(self):
-        done = subprocess.run([HW, "loopback", "--set", "robot.port=1", "--set", "camera.driver=none"], timeout=20, capture_output=True, text=True)
+        done = subprocess.run([two_programs.HW, "loopback", "--set", "robot.port=1", "--set", "camera.driver=none"], timeout=20,
+                              capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("fovea-hw: robot 127.0.0.1:1: no connection", done.stderr)
 
     def test_tracking_needs_a_camera(self):
-        done = subprocess.run([HW, "loopback", "--track", "--set", "camera.driver=none"], timeout=20,
+        done = subprocess.run([two_programs.HW, "loopback", "--track", "--set", "camera.driver=none"], timeout=20,
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn('--track is not allowed: camera.driver = "none"', done.stderr)
 
     def test_unknown_configuration(self):
-        done = subprocess.run([HW, "loopbak"], timeout=20, capture_output=True, text=True)
+        done = subprocess.run([two_programs.HW, "loopbak"], timeout=20, capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("shipped are loopback, panda", done.stderr)
 
 
 if __name__ == "__main__":
-    HW = sys.argv.pop(2)
-    SIM = sys.argv.pop(1)
-    unittest.main(verbosity=2)
+    two_programs.main()

@@ -76,6 +76,7 @@ TEST_F(EyeFilmTest, GrayFramesAreShownFromTheGivenBeginAndOthersOfAnotherSizeAre
     frame.pixels = pixels;
     film.Add(frame, {}, begin_ns);
   }
+  EXPECT_EQ(film.frames(), 9U);
   film.Finish();
   cv::VideoCapture shown(Path("gray.mp4"));
   cv::Mat picture;
@@ -124,6 +125,27 @@ TEST_F(EyeFilmTest, TheSameFramesAreTheSameBytes) {
   EXPECT_EQ(Bytes("a.mp4"), Bytes("b.mp4"));
 }
 
+// Of a camera whose clock jumps: no film without the frames' own order.
+TEST_F(EyeFilmTest, FramesWhoseStampsAreEqualOrGoBackAreThereInTheirOrder) {
+  constexpr std::int64_t kMs = 1'000'000;
+  const std::vector<std::int64_t> stamps_ns{-5 * kMs, 0, 1, 2, 40 * kMs, 30 * kMs, 30 * kMs, 80 * kMs};
+  VideoFile film(Path("film.mp4"), kWidth, kHeight);
+  for (std::size_t i = 0; i < stamps_ns.size(); ++i) {
+    film.Add(cv::Mat(kHeight, kWidth, CV_8UC3, cv::Scalar::all(Level(static_cast<int>(i)))), stamps_ns[i]);
+  }
+  film.Finish();
+  const std::vector<double> shown_ms{0.0, 5.0, 5.0111, 5.0222, 45.0, 45.0111, 45.0222, 85.0};
+  cv::VideoCapture reader(Path("film.mp4"));
+  cv::Mat frame;
+  std::size_t count = 0;
+  for (; reader.read(frame); ++count) {
+    ASSERT_LT(count, shown_ms.size());
+    EXPECT_NEAR(reader.get(cv::CAP_PROP_POS_MSEC), shown_ms[count], 0.006) << "frame " << count;
+    EXPECT_NEAR(cv::mean(frame)[1], Level(static_cast<int>(count)), 6.0) << "frame " << count;
+  }
+  EXPECT_EQ(count, shown_ms.size());
+}
+
 // At real pace nobody waits for the film: what finds no place is counted, the rest is there.
 TEST_F(EyeFilmTest, FramesThatFindNoPlaceAreCounted) {
   constexpr std::uint64_t kMany = 300;
@@ -153,6 +175,7 @@ TEST_F(EyeFilmTest, FramesThatFindNoPlaceAreCounted) {
   }
   std::cout << film.dropped() << " of " << kMany << " dropped\n";
   EXPECT_EQ(count + film.dropped(), kMany);
+  EXPECT_EQ(film.frames(), count);
 }
 
 TEST_F(EyeFilmTest, AFileThatCannotBeMadeIsSaidAtOnce) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
 
 #include "fovea/log/mcap_reader.hpp"
@@ -144,6 +145,25 @@ TEST_F(RunLogTest, AFullDiskHoldsNobodyUp) {
     log.AddAttachment("a", "text/plain", std::string(100'000, 'x'));
   }
   EXPECT_THROW(log.Finish(), std::runtime_error);
+}
+
+TEST_F(RunLogTest, AFileIsAttachedWithEveryByteOrRefused) {
+  const std::string bytes("\0\r\n\xff film", 9);
+  std::ofstream(folder_.path() / "film", std::ios::binary) << bytes;
+  RunLog log(OneJoint(path_));
+  log.AddFile("camera.mp4", "video/mp4", folder_.path() / "film");
+  EXPECT_THROW(log.AddFile("other.mp4", "video/mp4", folder_.path() / "nothing"), std::runtime_error);
+  log.Finish();
+  int attachments = 0;
+  McapVisitor visitor;
+  visitor.on_attachment = [&](const McapAttachment& a) {
+    ++attachments;
+    EXPECT_EQ(a.name, "camera.mp4");
+    EXPECT_EQ(a.media_type, "video/mp4");
+    EXPECT_EQ(a.data, bytes);
+  };
+  ReadMcap(path_, visitor);
+  EXPECT_EQ(attachments, 1);
 }
 
 TEST_F(RunLogTest, AFileThatCannotBeMadeIsRefusedAtOnce) {

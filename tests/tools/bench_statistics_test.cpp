@@ -1,8 +1,10 @@
 // The benchmarks' statistics against what is known in closed form.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <random>
+#include <thread>
 
 #include "tools/bench/cyclictest.hpp"
 #include "tools/bench/spread.hpp"
@@ -42,6 +44,18 @@ TEST(BenchStatistics, PercentilesOfAnExponential) {
   EXPECT_EQ(Percentile({3.0, 1.0, 2.0}, 0.0), 1.0);
   EXPECT_EQ(Percentile({3.0, 1.0, 2.0}, 1.0), 3.0);
   EXPECT_EQ(Percentile({}, 0.5), 0.0);
+}
+
+TEST(BenchStatistics, EveryRoundCallsWithEveryCaseOnce) {
+  std::vector<int> calls(7, 0);
+  MedianNs(5, calls, [](int& count) { ++count; });
+  EXPECT_EQ(calls, std::vector<int>(7, 5));
+}
+
+TEST(BenchStatistics, ADurationIsOfOneCase) {
+  const std::vector<int> cases(2);
+  const double ns = MeanNs(cases, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
+  EXPECT_GE(ns, 1e6);
 }
 
 // The deviation of an exponential's sample percentile p is sqrt(p / (1 - p) / n), of its logarithm that over

@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "support/program.hpp"
 
@@ -143,6 +145,34 @@ TEST(FoveaBench, CompareTellsMoreFromLess) {
   EXPECT_EQ(Bench({"compare", small, folder.path() / "empty.json", "--most", "1.1"}).exit_code, 2);
   std::ofstream(folder.path() / "none.json") << "{";
   EXPECT_EQ(Bench({"compare", small, folder.path() / "none.json"}).exit_code, 2);
+}
+
+// With all that is shipped but the simulator, each of those that run it says so before it writes anything.
+TEST(FoveaBench, WhatNeedsTheSimulatorSaysWhereItIsNot) {
+  const test::TempFolder folder;
+  const std::filesystem::path bin = folder.path() / "bin";
+  std::filesystem::create_directories(bin);
+  std::filesystem::create_directory_symlink(
+      std::filesystem::path(FOVEA_BENCH_PROGRAM).parent_path().parent_path() / "share",
+      folder.path() / "share");
+  std::filesystem::copy_file(FOVEA_BENCH_PROGRAM, bin / "fovea-bench");
+  std::filesystem::copy_file(FOVEA_PROGRAM, bin / "fovea");
+  const std::string out = folder.path() / "out";
+  const std::vector<std::pair<std::string, std::vector<std::string>>> calls{
+      {"fovea-bench sim", {bin / "fovea-bench", "sim"}},
+      {"fovea-bench wire", {bin / "fovea-bench", "wire"}},
+      {"fovea-bench mcu", {bin / "fovea-bench", "mcu"}},
+      {"--load render",
+       {bin / "fovea-bench", "jitter", "--load", "render", "--policy", "other", "--out", out}},
+      {"fovea atlas", {bin / "fovea", "atlas", "--target", "sphere", "--out", out}}};
+  for (const auto& [name, arguments] : calls) {
+    const test::ProgramResult run = test::RunProgram(arguments);
+    EXPECT_EQ(run.exit_code, 2) << name;
+    EXPECT_THAT(run.err, HasSubstr((bin / "fovea-sim").string() + ": not there; " + name +
+                                   " needs the simulator built beside it"))
+        << name;
+    EXPECT_FALSE(std::filesystem::exists(out)) << name;
+  }
 }
 
 TEST(FoveaBench, RefusesWhatItDoesNotKnow) {

@@ -1,7 +1,5 @@
 #include "law_speed.hpp"
 
-#include <chrono>
-#include <functional>
 #include <random>
 
 #include "fovea/model/kinematics.hpp"
@@ -59,19 +57,6 @@ std::vector<Case> RandomCases(const model::ArmModel& arm) {
   return cases;
 }
 
-double MedianNs(std::vector<Case>& cases, const std::function<void(Case&)>& call) {
-  std::vector<double> rounds;
-  for (int round = 0; round < kRounds; ++round) {
-    const auto begin = std::chrono::steady_clock::now();
-    for (Case& c : cases) {
-      call(c);
-    }
-    const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - begin;
-    rounds.push_back(took.count() / kCases);
-  }
-  return Percentile(rounds, 0.5);
-}
-
 }  // namespace
 
 std::vector<Figure> LawSpeed(const model::ArmModel& arm) {
@@ -89,13 +74,13 @@ std::vector<Figure> LawSpeed(const model::ArmModel& arm) {
   const model::VecN nowhere = model::VecN::Zero(6);
   servo::DampedMotion motion;
   const auto twist = [&](const servo::DampingConfig& damping) {
-    return MedianNs(cases, [&](Case& c) {
+    return MedianNs(kRounds, cases, [&](Case& c) {
       servo::VisualLaw(config.law, free_camera, c.feature, along_itself, nowhere, c.camera_law);
       servo::ResolveDamped(damping, c.camera_law.task, motion);
     });
   };
   const auto joints = [&](const servo::DampingConfig& damping) {
-    return MedianNs(cases, [&](Case& c) {
+    return MedianNs(kRounds, cases, [&](Case& c) {
       servo::VisualLaw(config.law, arm, c.feature, c.J_C, c.reference.q, c.law);
       servo::ResolveDamped(damping, c.law.task, motion);
     });
@@ -107,7 +92,7 @@ std::vector<Figure> LawSpeed(const model::ArmModel& arm) {
 
   servo::ConstrainedMotion constrained;
   servo::MotionLimits limits;
-  const double resolved = MedianNs(cases, [&](Case& c) {
+  const double resolved = MedianNs(kRounds, cases, [&](Case& c) {
     servo::LimitJoints(config, c.reference.q, limits);
     servo::LimitAcceleration(config, c.reference, limits);
     servo::ResolveConstrained({}, c.law.task, limits, constrained);

@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "fovea/linux_rt/realtime.hpp"
+#include "shell.hpp"
 
 namespace fovea::bench {
 namespace {
@@ -86,9 +87,7 @@ Load::Load(const std::string& kind) {
 }
 
 void Load::StartRender() {
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fovea-sim";
-  const std::string path = program.string();
+  const std::string path = SimulatorBeside("--load render").string();
   std::array<const char*, 8> words{
       path.c_str(), "run", "ball-moving", "--no-report", "--set", "run.duration_s=100000", nullptr, nullptr};
   posix_spawn_file_actions_t actions;
@@ -100,7 +99,7 @@ void Load::StartRender() {
   posix_spawn_file_actions_destroy(&actions);
   if (error != 0) {
     render_pid_ = 0;
-    throw std::runtime_error("--load render: " + path + " cannot be started; the simulator is not built");
+    throw std::runtime_error("--load render: " + path + " cannot be started");
   }
 }
 

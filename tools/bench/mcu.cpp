@@ -85,7 +85,7 @@ ordered_json BoardOf(const fs::path& program, const std::string& scenario, doubl
 }  // namespace
 
 int RunMcu(const McuArguments& arguments) {
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "fovea-sim";
+  const fs::path program = SimulatorBeside("fovea-bench mcu");
   const LinkMap map = ReadLinkMap(config::ShareFolder() / "fovea-mcu.map");
   Sheet sheet;
   double most = 0.0;

@@ -1,6 +1,5 @@
 #include "model_speed.hpp"
 
-#include <chrono>
 #include <functional>
 #include <kdl/chain.hpp>
 #include <kdl/chaindynparam.hpp>
@@ -80,12 +79,7 @@ std::vector<double> Time(const std::vector<State>& states, const std::vector<Cal
   std::vector<std::vector<double>> rounds(calls.size());
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t c = 0; c < calls.size(); ++c) {
-      const auto begin = std::chrono::steady_clock::now();
-      for (const State& state : states) {
-        calls[c](state);
-      }
-      const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - begin;
-      rounds[c].push_back(took.count() / kStates);
+      rounds[c].push_back(MeanNs(states, calls[c]));
     }
   }
   std::vector<double> medians;

@@ -1,9 +1,14 @@
-// Another program, run by the shell.
+// Another program: the simulator beside this one, and what the shell runs.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace fovea::bench {
+
+// Where fovea-sim is: in this program's folder. Throws std::runtime_error, which names who `needs` it, when
+// it is not there.
+std::filesystem::path SimulatorBeside(const std::string& needs);
 
 // `text` as one word of a command.
 std::string Quoted(const std::string& text);

@@ -107,12 +107,7 @@ std::vector<Figure> ProcessorShares(const std::filesystem::path& program, const 
 }  // namespace
 
 int RunSim(const SimArguments& arguments) {
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fovea-sim";
-  if (!std::filesystem::is_regular_file(program)) {
-    throw std::runtime_error(program.string() +
-                             ": not there; fovea-bench sim needs the simulator built beside it");
-  }
+  const std::filesystem::path program = SimulatorBeside("fovea-bench sim");
   std::vector<Figure> figures = SimShares(program, arguments.seconds);
   if (arguments.shares) {
     fmt::print("{}", arguments.json ? ToJson(figures) + "\n" : ToTable(figures));

@@ -1,8 +1,10 @@
-// Percentiles of durations, and how sure their ratio is.
+// Durations: taken, their percentiles, and how sure a ratio of those is.
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 namespace fovea::bench {
@@ -16,6 +18,28 @@ inline double Percentile(std::vector<double> values, double p) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(p * last + 0.5);
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+// What `call` takes with each of `cases` on the average [ns], timed once.
+template <typename Cases, typename Call>
+double MeanNs(Cases& cases, const Call& call) {
+  const auto begin = std::chrono::steady_clock::now();
+  for (auto& each : cases) {
+    call(each);
+  }
+  const std::chrono::duration<double, std::nano> took = std::chrono::steady_clock::now() - begin;
+  return took.count() / static_cast<double>(std::size(cases));
+}
+
+// The median of that over so many `rounds` [ns].
+template <typename Cases, typename Call>
+double MedianNs(int rounds, Cases& cases, const Call& call) {
+  std::vector<double> means;
+  means.reserve(static_cast<std::size_t>(rounds));
+  for (int round = 0; round < rounds; ++round) {
+    means.push_back(MeanNs(cases, call));
+  }
+  return Percentile(means, 0.5);
 }
 
 struct Ratio {

@@ -12,6 +12,7 @@
 #include "fovea/franka/franka_arm.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "served_robot.hpp"
+#include "shell.hpp"
 #include "spread.hpp"
 
 namespace fovea::bench {
@@ -58,12 +59,7 @@ std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds) {
 }  // namespace
 
 int RunWire(const WireArguments& arguments) {
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fovea-sim";
-  if (!std::filesystem::is_regular_file(program)) {
-    throw std::runtime_error(program.string() +
-                             ": not there; fovea-bench wire needs the simulator built beside it");
-  }
+  const std::filesystem::path program = SimulatorBeside("fovea-bench wire");
   const ServedRobot robot(program);
   franka::FrankaConfig config;
   config.host = "127.0.0.1";

@@ -20,6 +20,7 @@
 #include "fovea/config/share_folder.hpp"
 #include "fovea/config/target_keys.hpp"
 #include "fovea/robots/robot.hpp"
+#include "tools/bench/shell.hpp"
 
 namespace fovea {
 namespace {
@@ -30,16 +31,6 @@ using atlas::Row;
 constexpr std::chrono::seconds kRunLimit{900};  // of wall time; a run takes some seconds
 
 const char* ScenarioOf(const std::string& target) { return target == "sphere" ? "ball" : target.c_str(); }
-
-// Beside this program.
-fs::path Simulator() {
-  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "fovea-sim";
-  if (!fs::is_regular_file(program)) {
-    throw config::InputError(program.string() +
-                             ": not there; fovea atlas needs the simulator built beside it");
-  }
-  return program;
-}
 
 atlas::Sampler MakeSampler(const std::string& target) {
   config::TargetSettings settings;
@@ -120,7 +111,7 @@ class AtlasRun {
         heading_{arguments.target, static_cast<std::uint64_t>(arguments.seed), arguments.assignments,
                  kServoLibraryHash},
         scenario_(ScenarioOf(arguments_.target)),
-        simulator_(Simulator()),
+        simulator_(bench::SimulatorBeside("fovea atlas")),
         sampler_(MakeSampler(arguments.target)),
         page_(config::ShareFolder() / "report"),
         out_(arguments.out.empty() ? fs::path("out") / ("atlas-" + arguments.target)

@@ -94,8 +94,9 @@ Fovea.config = (function () {
     ]) {
       if (!map.has(key) && s[key] !== undefined && s[key] !== null) map.set(key, String(s[key]));
     }
-    if (Array.isArray(s.realtime_missing) && s.realtime_missing.length)
-      map.set("realtime_missing", s.realtime_missing.join(", "));
+    for (const key of ["realtime_missing", "film_errors"]) {
+      if (Array.isArray(s[key]) && s[key].length) map.set(key, s[key].join(", "));
+    }
     return map;
   }
 

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "fovea/build_info.hpp"
 #include "fovea/config/share_folder.hpp"
+#include "fovea/film/complete_film.hpp"
 #include "fovea/film/target_curve.hpp"
 #include "fovea/log/picture_messages.hpp"
 #include "fovea/log/record_hash.hpp"
@@ -25,8 +24,10 @@ namespace {
 constexpr std::size_t kRing = 8192;  // ticks that may wait for the disk: eight seconds
 constexpr std::size_t kMostImages = 32;
 
+const std::string kFilmName = "camera.mp4";
+
 // All that any run leaves, for the next to take away.
-const std::vector<std::string> kFileNames{"camera.mp4", "log.mcap", "report.html", "summary.json"};
+const std::vector<std::string> kFileNames{kFilmName, "log.mcap", "report.html", "summary.json"};
 
 log::RunLogConfig MakeRunLogConfig(const HwConfig& config, const robots::Robot& robot,
                                    const std::filesystem::path& path) {
@@ -72,7 +73,7 @@ HwFiles::HwFiles(const std::string& out, const HwConfig& config, const robots::R
                     log::kGoalRole, goal_);
     if (config.log.film) {
       film::EyeFilmConfig film;
-      film.path = folder_.Begin("camera.mp4");
+      film.path = folder_.Begin(kFilmName);
       film.intrinsics = intrinsics;
       film.goal = film::GoalCurve(intrinsics, goal);
       film.p_CO_C_star = goal.p_CO_C_star;
@@ -121,7 +122,6 @@ void HwFiles::AddFrame(const hal::Frame& frame, const vision::Detection& detecti
   }
   if (film_) {
     film_->Add(frame, detection, start_ns_);
-    ++film_frames_;
   }
   if (config_.log.picture_rate_hz > 0.0) {
     KeepPicture(frame, detection);
@@ -143,9 +143,22 @@ void HwFiles::KeepPicture(const hal::Frame& frame, const vision::Detection& dete
   ++pictures_;
 }
 
-LogCounters HwFiles::counters() const {
-  const std::uint64_t lost = log_.dropped_images();
-  return {log_.dropped() - lost, pictures_ - lost, lost, film_ ? film_->dropped() : 0};
+LogCounters HwFiles::EndFilm() {
+  LogCounters out;
+  if (film_ && film_->frames() > 0) {
+    has_film_ = film::CompleteFilm(
+        kFilmName,
+        [this] {
+          film_->Finish();
+          log_.AddFile(kFilmName, "video/mp4", film_->path());
+        },
+        out.film_errors);
+  }
+  out.film_frames_dropped = film_ ? film_->dropped() : 0;
+  out.pictures_dropped = log_.dropped_images();
+  out.pictures = pictures_ - out.pictures_dropped;
+  out.ticks_dropped = log_.dropped() - out.pictures_dropped;
+  return out;
 }
 
 void HwFiles::Write(const HwSummary& summary) {
@@ -157,11 +170,8 @@ void HwFiles::Write(const HwSummary& summary) {
   log_.Add(log::kTickTimesTopic, last_ns_, log::TickTimesMessage(summary.ticks));
   log_.AddAttachment("summary.json", "application/json", summary_json);
   std::vector<config::OutputFile> files{{"log.mcap", std::nullopt}, {"summary.json", summary_json}};
-  if (film_ && film_frames_ > film_->dropped()) {
-    film_->Finish();
-    std::ifstream stream(film_->path(), std::ios::binary);
-    log_.AddAttachment("camera.mp4", "video/mp4", {std::istreambuf_iterator<char>(stream), {}});
-    files.push_back({"camera.mp4", std::nullopt});
+  if (has_film_) {
+    files.push_back({kFilmName, std::nullopt});
   }
   log_.Finish();
   report::RunData run = report::ReadRun(log_path_);

@@ -33,8 +33,9 @@ class HwFiles {
   // From the vision thread. What is exposed before the log begins is left out.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection);
 
-  // When the threads are done.
-  [[nodiscard]] LogCounters counters() const;
+  // When the threads are done: completes the film, and says what was kept and what was not. A film that fails
+  // is left out, and that is all.
+  LogCounters EndFilm();
   // Puts everything in place. Throws what went wrong with any of it; then the folder is as it was.
   void Write(const HwSummary& summary);
 
@@ -56,7 +57,7 @@ class HwFiles {
   std::int64_t last_ns_ = 0;          // of the last record
   std::int64_t next_picture_ns_ = 0;  // of the vision thread
   std::uint64_t pictures_ = 0;
-  std::uint64_t film_frames_ = 0;      // of the vision thread
+  bool has_film_ = false;              // and it is complete
   std::optional<film::EyeFilm> film_;  // drawn and encoded by a thread of its own
 };
 

@@ -264,7 +264,10 @@ class Session {
     summary_.log_hash = hash_.Finish();
     Judge(summary_);
     if (files_) {
-      summary_.log = files_->counters();
+      summary_.log = files_->EndFilm();
+      for (const std::string& error : summary_.log->film_errors) {
+        watch_.Say(error);
+      }
       files_->Write(summary_);
     }
   }

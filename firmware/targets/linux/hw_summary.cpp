@@ -98,6 +98,7 @@ std::string ToJson(const HwSummary& s) {
     json["log_pictures"] = s.log->pictures;
     json["log_pictures_dropped"] = s.log->pictures_dropped;
     json["film_frames_dropped"] = s.log->film_frames_dropped;
+    json["film_errors"] = s.log->film_errors;
   }
   if (s.seen) {
     json["camera"] = {{"frames", s.seen->frames},

@@ -20,6 +20,7 @@ struct LogCounters {
   std::uint64_t pictures = 0;
   std::uint64_t pictures_dropped = 0;
   std::uint64_t film_frames_dropped = 0;
+  std::vector<std::string> film_errors;  // why there is no film, where there should be one
 };
 
 struct ModeEvent {

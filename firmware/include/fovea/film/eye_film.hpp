@@ -28,8 +28,9 @@ class EyeFilm {
   void Add(const hal::Frame& frame, const vision::Detection& detection, std::int64_t begin_ns = 0);
   // Encodes what is left and completes the file. Throws what went wrong at any time.
   void Finish();
-  // Frames that found no place.
+  // Frames that found no place; and, when nobody adds any more, those that did: without one there is no film.
   [[nodiscard]] std::uint64_t dropped() const { return queue_.dropped(); }
+  [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] const std::filesystem::path& path() const { return config_.path; }
 
  private:
@@ -42,6 +43,7 @@ class EyeFilm {
 
   const EyeFilmConfig config_;
   cv::Mat legend_;  // what it says in every frame
+  std::uint64_t frames_ = 0;
   VideoFile file_;
   FilmQueue<Item> queue_;  // last: its thread uses the others
 };

@@ -17,7 +17,8 @@ class VideoFile {
   VideoFile(const VideoFile&) = delete;
   VideoFile& operator=(const VideoFile&) = delete;
 
-  // `bgr` (CV_8UC3) is shown from `stamp_ns` on; stamps go up.
+  // `bgr` (CV_8UC3) is shown from `stamp_ns` on; one whose stamp is not 11 us after the last one's, the
+  // film's resolution, comes just so much after it.
   void Add(const cv::Mat& bgr, std::int64_t stamp_ns);
   // Writes what is still held back and the file's index. Without it the file cannot be played.
   void Finish();

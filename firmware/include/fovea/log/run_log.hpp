@@ -83,6 +83,8 @@ class RunLog {
   void AddImage(const hal::Frame& frame);
   void AddMetadata(const std::string& name, const std::map<std::string, std::string>& entries);
   void AddAttachment(const std::string& name, const std::string& media_type, const std::string& content);
+  // What the file holds now, as an attachment. std::runtime_error when it cannot be read.
+  void AddFile(const std::string& name, const std::string& media_type, const std::filesystem::path& path);
 
   // Writes what is left and completes the file. Throws what went wrong at any time.
   void Finish();

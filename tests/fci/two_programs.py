@@ -1,0 +1,74 @@
+"""The simulated robot and the hardware program, two processes and a network, and what their tests share."""
+
+import json
+import signal
+import subprocess
+import sys
+import threading
+import unittest
+
+SIM = None
+HW = None
+
+
+def main():
+    """The tests of the file that is run:  FILE FOVEA_SIM FOVEA_HW [TEST]..."""
+    global SIM, HW
+    HW = sys.argv.pop(2)
+    SIM = sys.argv.pop(1)
+    unittest.main(verbosity=2)
+
+
+class TwoPrograms(unittest.TestCase):
+    def serve(self, *options, camera=False):
+        eye = [] if camera else ["--camera-serial", ""]
+        self.server = subprocess.Popen([SIM, "serve", "ball", "--fci-port", "0", "--json", *eye, *options],
+                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                       text=True)
+        self.addCleanup(self.end_server)
+        line = self.server.stderr.readline()
+        if camera:
+            self.assertIn("GigE Vision", self.server.stderr.readline())
+        return line.split("127.0.0.1:")[1].split(",")[0]
+
+    def end_server(self):
+        """What the server says in the end; None when it has ended before."""
+        if self.server.returncode is not None:
+            return None
+        self.server.send_signal(signal.SIGTERM)
+        out, _ = self.server.communicate(timeout=20)
+        self.assertEqual(self.server.returncode, 0)
+        return json.loads(out)
+
+    def hardware(self, port, *options, camera=False, codes=(0,)):
+        eye = [] if camera else ["--set", "camera.driver=none"]
+        done = subprocess.run([HW, "loopback", "--set", f"robot.port={port}", "--json", *eye, *options], timeout=100,
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        self.assertIn(done.returncode, codes, done.stderr)
+        return json.loads(done.stdout)
+
+    def operator(self, port, *options):
+        """The program with a person at the keyboard: write to its stdin."""
+        hw = subprocess.Popen([HW, "loopback", "--set", f"robot.port={port}", "--set", "camera.driver=none", "--json",
+                               *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                              text=True)
+        watchdog = threading.Timer(60, hw.kill)
+        watchdog.start()
+        self.addCleanup(watchdog.cancel)
+        return hw
+
+    def say(self, hw, word):
+        hw.stdin.write(word + "\n")
+        hw.stdin.flush()
+
+    def summary_of(self, hw, code=0):
+        out, _ = hw.communicate(timeout=20)
+        self.assertEqual(hw.returncode, code)
+        return json.loads(out)
+
+    def wait_for(self, process, line):
+        while True:
+            got = process.stderr.readline()
+            self.assertNotEqual(got, "", f"it ended before it said {line}")
+            if got.strip() == line:
+                return

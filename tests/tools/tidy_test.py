@@ -1,0 +1,105 @@
+"""tools/tidy in a project of its own, with programs in clang-tidy's and ninja's place:  tidy_test.py TOOLS_TIDY"""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TIDY = None
+# Finds fault with sources that say so.
+CLANG_TIDY = """#!/bin/sh
+[ "$1" = --version ] && exit 0
+for source; do :; done
+! grep -q bad "$source"
+"""
+NINJA = """#!/bin/sh
+for unit in a b; do printf '%s.o: #deps 2\\n    ../../%s.cpp\\n    ../../both.hpp\\n' $unit $unit; done
+"""
+
+
+class Tidy(unittest.TestCase):
+    def setUp(self):
+        temp = tempfile.TemporaryDirectory()
+        self.addCleanup(temp.cleanup)
+        self.root = pathlib.Path(temp.name).resolve() / "project"
+        for name, text in ((".clang-tidy", ""), ("a.cpp", ""), ("b.cpp", ""), ("both.hpp", ""),
+                           ("tests/consumer/main.cpp", ""), ("bin/clang-tidy", CLANG_TIDY), ("bin/ninja", NINJA)):
+            self.write(name, text)
+        for name in ("clang-tidy", "ninja"):
+            (self.root / "bin" / name).chmod(0o755)
+        (self.root / "tools").mkdir()
+        shutil.copy(TIDY, self.root / "tools/tidy")
+        self.write("build/release/compile_commands.json", json.dumps(
+            [{"file": str(self.root / f"{unit}.cpp"), "command": "cc", "output": f"{unit}.o"} for unit in "ab"]))
+        self.write(".gitignore", "build\nbin\n")
+        self.git("init", "--quiet")
+        self.commit()
+
+    def write(self, name, text):
+        (self.root / name).parent.mkdir(parents=True, exist_ok=True)
+        (self.root / name).write_text(text)
+
+    def git(self, *arguments):
+        subprocess.run(["git", "-c", "user.name=a", "-c", "user.email=a@b", *arguments], cwd=self.root, check=True)
+
+    def commit(self):
+        self.git("add", "-A")
+        self.git("commit", "--quiet", "--message", "a")
+
+    def tidy(self, *arguments):
+        """Exit code, and all that was said."""
+        done = subprocess.run([sys.executable, self.root / "tools/tidy", *arguments], capture_output=True, text=True,
+                              env={**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}",
+                                   "XDG_CACHE_HOME": str(self.root / "build/cache")})
+        return done.returncode, done.stdout + done.stderr
+
+    def test_what_was_found_clean_is_not_asked_again(self):
+        code, said = self.tidy()
+        self.assertEqual(code, 0, said)
+        self.assertIn("not in build/release, so not looked at: tests/consumer/main.cpp", said)
+        self.assertIn("2 sources, 2 known to be clean", self.tidy()[1])
+        self.write("b.cpp", "bad")
+        code, said = self.tidy()
+        self.assertEqual(code, 1, said)
+        self.assertIn("2 sources, 1 known to be clean", said)
+
+    def test_a_source_that_the_build_does_not_know_is_an_error(self):
+        self.write("c.cpp", "")
+        self.commit()
+        for arguments in ((), ("--since", "HEAD~1"), ("c.cpp",), ("tests/consumer/main.cpp",)):
+            code, said = self.tidy(*arguments)
+            self.assertEqual(code, 2, f"{arguments}: {said}")
+
+    def test_a_header_that_changed_is_judged_in_one_source(self):
+        self.write("both.hpp", "int x;")
+        self.commit()
+        code, said = self.tidy("--since", "HEAD~1")
+        self.assertEqual(code, 0, said)
+        self.assertIn("1 sources, 0 known to be clean", said)
+        self.assertIn("no source changed", self.tidy("--since", "HEAD")[1])
+
+    def test_a_base_that_is_no_commit_is_refused_but_for_one_before_the_first(self):
+        code, said = self.tidy("--since", "mian")
+        self.assertEqual(code, 2)
+        self.assertIn("--since mian: there is no such commit", said)
+        for base in ("HEAD~1", "HEAD^", "HEAD~20"):
+            code, said = self.tidy("--since", base)
+            self.assertEqual(code, 0, said)
+            self.assertIn("2 sources", said)
+
+    def test_sources_left_when_the_time_is_up_are_a_failure_unless_it_was_told_so(self):
+        code, said = self.tidy("--minutes", "0")
+        self.assertEqual(code, 1, said)
+        self.assertIn("2 of 2 sources were not looked at: the time was up", said)
+        code, said = self.tidy("--minutes", "0", "--partial")
+        self.assertEqual(code, 0, said)
+        self.assertIn("2 of 2 sources were not looked at: the time was up", said)
+
+
+if __name__ == "__main__":
+    TIDY = sys.argv.pop(1)
+    unittest.main(verbosity=2)
