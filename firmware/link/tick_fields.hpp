@@ -8,7 +8,6 @@
 namespace fovea::link {
 
 inline constexpr int kNumStatusCodes = 8;
-inline constexpr int kNumModes = 6;
 inline constexpr int kNumHoldReasons = 7;
 inline constexpr int kNumRequests = 4;
 inline constexpr int kNumMotionKinds = 6;
@@ -77,7 +76,7 @@ void RecordFields(Archive& a, T& r) noexcept {
   a(r.tick);
   a(r.stamp_ns);
   a.Int(r.missed_ticks);
-  a.Choice(r.mode, kNumModes);
+  a.Choice(r.mode, hal::kNumModes);
   a.Choice(r.hold_reason, kNumHoldReasons);
   a.Choice(r.fault, hal::kNumFaults);
   a.Int(r.fault_joint);

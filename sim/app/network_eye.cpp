@@ -62,7 +62,9 @@ void NetworkEye::Advance() {
   if (lockstep_) {
     Take(news_, /*wait=*/true);
   } else {
+    const std::uint64_t before = on_the_way_.dropped();
     on_the_way_.Push(news_);
+    dropped_ += news_.exposure ? on_the_way_.dropped() - before : 0;
     there_.release();
   }
   news_.exposure.reset();

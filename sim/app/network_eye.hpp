@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <semaphore>
@@ -29,6 +30,8 @@ class NetworkEye {
   // After each step of the world, by its thread.
   void Advance();
   [[nodiscard]] std::uint64_t sent() const { return gige_->sent(); }
+  // Exposures that found no place on their way to those that draw them. By the world's thread, or after it.
+  [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
   // Why there are no pictures any more; "" while there are.
   [[nodiscard]] std::string fault() const { return eye_.camera().fault(); }
 
@@ -47,7 +50,8 @@ class NetworkEye {
   Eye eye_;
   FrameSpoiler faults_;
   std::unique_ptr<GigeCamera> gige_;
-  News news_;  // of the present millisecond; of the world's thread
+  News news_;                  // of the present millisecond; of the world's thread
+  std::uint64_t dropped_ = 0;  // of the world's thread
   linux_rt::BoundedRing<News> on_the_way_;
   std::counting_semaphore<> there_{0};
   std::atomic<bool> closed_{false};

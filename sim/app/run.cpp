@@ -59,10 +59,9 @@ class Run {
       throw std::logic_error("a servo configuration that was checked is refused");
     }
     if (!options_.servo_image.empty()) {
-      BoardConfig board = options_.board;
-      board.seed = SeedOf(scenario, RandomStream::kBoardLine);
       board_ = std::make_unique<BoardServo>(
-          std::make_unique<Qemu>(QemuConfig{options_.servo_image, board.instruction_ns}), board, about_.servo,
+          std::make_unique<Qemu>(QemuConfig{options_.servo_image, options_.board.instruction_ns}),
+          options_.board, SeedOf(scenario, RandomStream::kBoardLine), about_.servo,
           config::MakeLoad(about_.scenario.arm.load));
     }
     if (!options_.trace.empty()) {

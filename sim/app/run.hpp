@@ -28,7 +28,7 @@ struct RunOptions {
   Pace pace = Pace::kLockstep;
   std::filesystem::path
       servo_image;            // the servo runs on an emulated board, from this file; empty: in this process
-  BoardConfig board;          // with a servo_image; its seed is the scenario's
+  BoardConfig board;          // with a servo_image
   std::filesystem::path out;  // empty: no files
   bool report = true;         // films, log, report and the bench's picture too
   bool show_progress = true;

@@ -145,6 +145,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
       throw std::runtime_error("the camera broke: " + eye->fault());
     }
     summary.frames_sent = eye->sent();
+    summary.frames_dropped = eye->dropped();
     const TargetError error = ErrorOf(world.truth(), about.pinhole, GoalOf(about.servo.feature));
     summary.error_px = error.error_px;
     summary.error_mm = 1e3 * error.error_C.norm();
@@ -167,6 +168,7 @@ std::string ToJson(const ServeSummary& s) {
                   {"malformed", c.malformed},
                   {"overruns", c.overruns},
                   {"frames_sent", s.frames_sent},
+                  {"frames_dropped", s.frames_dropped},
                   {"error_px", or_null(s.error_px)},
                   {"error_mm", or_null(s.error_mm)}};
   return json.dump(2) + "\n";

@@ -22,6 +22,7 @@ struct ServeOptions {
 struct ServeSummary {
   FciServerCounters robot;
   std::uint64_t frames_sent = 0;
+  std::uint64_t frames_dropped = 0;  // never drawn: what draws and sends was half a second behind the robot
   // Against the simulator's truth; none without a camera.
   std::optional<double> error_px;
   std::optional<double> error_mm;

@@ -58,7 +58,7 @@ void BoardFigures::Fill(double instructions_per_count, BoardSummary& summary) co
   const auto any = [](const Tick& /*tick*/) { return true; };
   summary.all = ticks_of(any);
   summary.link = spread(any, [](const Tick& tick) { return tick.link_counts; });
-  for (int m = 0; m <= static_cast<int>(hal::Mode::kMove); ++m) {
+  for (int m = 0; m < hal::kNumModes; ++m) {
     const auto mode = static_cast<hal::Mode>(m);
     BoardTicks ticks = ticks_of([mode](const Tick& tick) { return tick.mode == mode; });
     if (ticks.ticks > 0) {

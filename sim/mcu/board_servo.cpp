@@ -33,13 +33,13 @@ const char* NameOfException(std::uint32_t number) {
 
 }  // namespace
 
-BoardServo::BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& config,
+BoardServo::BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& config, std::uint64_t seed,
                        const servo::ServoConfig& servo, const model::Load& load)
     : line_(std::move(line)),
       config_(config),
       torque_lost_ns_(servo.safety.arm_lost_ticks * hal::kTickPeriodNs),
-      up_({}, config.seed),
-      down_({}, config.seed + kWayBack) {
+      up_({}, seed),
+      down_({}, seed + kWayBack) {
   in_force_.command.num_joints = servo.arm.num_joints;
   in_force_.command.engage_brakes = true;
   for (int i = 0; i < servo.arm.num_joints; ++i) {

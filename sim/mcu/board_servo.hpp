@@ -25,15 +25,15 @@ struct BoardConfig {
   // there at the second.
   LinkFaults line;
   double line_from_s = 0.0;  // since the first tick; the line is perfect before
-  std::uint64_t seed = 1;
 };
 
 class BoardServo final : public servo::ServoStep {
  public:
-  // Configures the board's servo. `servo` is the whole of its configuration, its arm with `load`.
-  // std::runtime_error when the board does not start, does not answer, or refuses.
-  BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& config, const servo::ServoConfig& servo,
-             const model::Load& load);
+  // Configures the board's servo. `seed` is of what the line does; `servo` is the whole of the servo's
+  // configuration, its arm with `load`. std::runtime_error when the board does not start, does not answer, or
+  // refuses.
+  BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& config, std::uint64_t seed,
+             const servo::ServoConfig& servo, const model::Load& load);
 
   // The record is that of the board's tick; its command is the one that is in force, which is an older one
   // when the line is late, and no further from the last than the arm's torque rate allows. Once the board has

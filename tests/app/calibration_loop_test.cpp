@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -36,7 +37,7 @@ class CalibrationLoopTest : public testing::TestWithParam<BoardCase> {
  protected:
   static ProgramResult Fovea(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), FOVEA_PROGRAM);
-    return RunProgram(arguments);
+    return RunProgram(arguments, {}, std::chrono::seconds(240));  // under the sanitizers it takes two minutes
   }
   static ProgramResult Pictures(const fs::path& out, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{FOVEA_SIM_PROGRAM, "pictures", "--out", out.string()};

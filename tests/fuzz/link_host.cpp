@@ -88,10 +88,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const servo::ServoConfig config = test::PandaConfig();
   fuzz::Bytes input(data, size);
   sim::BoardConfig board;
-  board.seed = input.Byte();
-  board.by_timer = board.seed % 2 == 1;
+  const std::uint8_t seed = input.Byte();
+  board.by_timer = seed % 2 == 1;
   board.line = {.loss = 0.1, .jitter_ms = 3.0};
-  sim::BoardServo servo(std::make_unique<AnyBoard>(input), board, config, model::Load{});
+  sim::BoardServo servo(std::make_unique<AnyBoard>(input), board, seed, config, model::Load{});
   servo::ServoInputs inputs;
   inputs.arm.num_joints = config.arm.num_joints;
   servo::ServoOutputs outputs;

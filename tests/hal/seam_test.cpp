@@ -125,6 +125,13 @@ TEST(EventsTest, EveryNameIsThereOnceAndEveryCauseHasAKey) {
     EXPECT_FALSE(std::string(Key(limit)).empty());
     EXPECT_EQ(Bit(limit), 1U << i);
   }
+  names.clear();
+  for (int i = 0; i < kNumModes; ++i) {
+    const auto mode = static_cast<Mode>(i);
+    EXPECT_TRUE(names.insert(Name(mode)).second) << Name(mode);
+  }
+  EXPECT_EQ(names.count("unknown"), 0U);
+  EXPECT_STREQ(Name(static_cast<Mode>(kNumModes)), "unknown") << "a mode that is not counted";
 }
 
 TEST(StatusTest, EveryCodeHasWords) {

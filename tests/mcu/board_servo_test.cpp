@@ -16,10 +16,10 @@ namespace {
 
 class BoardServoTest : public servo::ServoTaskTest {
  protected:
-  void Connect(const BoardConfig& config) {
+  void Connect(const BoardConfig& config, std::uint64_t seed = 1) {
     auto line = std::make_unique<test::ServerLine>(config_.arm);
     line_ = line.get();
-    servo_ = std::make_unique<BoardServo>(std::move(line), config, config_, model::Load{});
+    servo_ = std::make_unique<BoardServo>(std::move(line), config, seed, config_, model::Load{});
   }
   static BoardConfig ByTimer(const LinkFaults& line = {}, double from_s = 0.0) {
     BoardConfig config;
@@ -107,9 +107,7 @@ TEST_F(BoardServoTest, TheSameSeedIsTheSameRun) {
     SetUp();
     ticks_ = 0;
     pending_.clear();
-    BoardConfig config = ByTimer(kJitter, kBootedAt);
-    config.seed = seed;
-    Connect(config);
+    Connect(ByTimer(kJitter, kBootedAt), seed);
     hashes.push_back(BoardRun(1500));
   }
   EXPECT_EQ(hashes[0], hashes[1]);
@@ -193,7 +191,7 @@ TEST_F(BoardServoTest, ABoardThatRefusesSaysWhat) {
   config_.arm.joints[2].coulomb += 0.1;
   auto line = std::make_unique<test::ServerLine>(test::Panda().model);
   try {
-    const BoardServo servo(std::move(line), {}, config_, model::Load{});
+    const BoardServo servo(std::move(line), {}, 1, config_, model::Load{});
     FAIL() << "an arm that is not the board's was taken";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("its image holds the shipped panda"), std::string::npos)

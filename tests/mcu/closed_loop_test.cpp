@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(
     Scenarios, McuLoop,
     testing::Values(McuCase{"Ball", {"ball", "--set", "run.duration_s=4"}, true},
                     McuCase{"BallMoving", {"ball-moving", "--set", "run.duration_s=0.6"}, false},
-                    McuCase{"Square", {"square", "--set", "run.duration_s=0.3"}, false},
+                    McuCase{"Square", {"square", "--set", "run.duration_s=1.5"}, false},
                     McuCase{
                         "FramesAndStatesLost",
                         {"ball", "--set", "run.duration_s=0.9", "--set", "faults.camera_outage_s=[0.3,0.5]",

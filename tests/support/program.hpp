@@ -29,7 +29,7 @@ struct ProgramResult {
 // program that does not end within `limit` is killed, and std::runtime_error thrown.
 inline ProgramResult RunProgram(std::vector<std::string> arguments,
                                 const std::vector<std::string>& environment = {},
-                                std::chrono::seconds limit = std::chrono::seconds(240)) {
+                                std::chrono::seconds limit = std::chrono::seconds(90)) {
   if (!environment.empty()) {
     arguments.insert(arguments.begin(), environment.begin(), environment.end());
     arguments.insert(arguments.begin(), "env");

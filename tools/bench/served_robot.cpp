@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,6 +44,18 @@ std::uint16_t PortIn(const std::string& line) {
   return port;
 }
 
+// In the child: only calls that are allowed between fork and exec.
+[[noreturn]] void BecomeProgram(char* const* argv, int say, pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // no robot is left behind
+  const int in_file = open("/dev/null", O_RDONLY);
+  if (getppid() == parent && in_file >= 0) {  // else the parent is gone
+    dup2(in_file, STDIN_FILENO);
+    dup2(say, STDERR_FILENO);
+    execv(argv[0], argv);
+  }
+  _exit(127);
+}
+
 }  // namespace
 
 ServedRobot::ServedRobot(const std::filesystem::path& program) {
@@ -60,18 +72,17 @@ ServedRobot::ServedRobot(const std::filesystem::path& program) {
     argv.push_back(word.data());
   }
   argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, out[1], STDERR_FILENO);
-  const int error = posix_spawn(&process_, argv.front(), &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
+  const pid_t parent = getpid();
+  process_ = fork();
+  if (process_ == 0) {
+    BecomeProgram(argv.data(), out[1], parent);
+  }
   close(out[1]);
-  const std::string line = error == 0 ? FirstLine(out[0]) : std::string();
+  const std::string line = process_ > 0 ? FirstLine(out[0]) : std::string();
   said_ = out[0];  // open for as long as it may say more
   port_ = PortIn(line);
   if (port_ == 0) {
-    if (error == 0) {
+    if (process_ > 0) {
       kill(process_, SIGKILL);
       waitpid(process_, nullptr, 0);
     }

@@ -84,7 +84,7 @@ double ProcessorShare(const std::filesystem::path& program, const Setting& setti
   double shortest[2] = {HUGE_VAL, HUGE_VAL};
   for (int k = 0; k < 2 * kTries; ++k) {
     const double begin = ProcessorTime();
-    RunShell(Command(program, setting, k % 2 == 0 ? seconds : 2.0 * seconds));
+    Summary(program, setting, k % 2 == 0 ? seconds : 2.0 * seconds);
     shortest[k % 2] = std::min(shortest[k % 2], ProcessorTime() - begin);
   }
   return (shortest[1] - shortest[0]) / seconds;

@@ -20,7 +20,15 @@ namespace {
 
 constexpr double kStatesPerSecond = 1000.0;
 
-// Each state as it comes, answered with torques that leave the arm where it is.
+// std::runtime_error unless `status` is a state that only has not come yet, or nothing is wrong.
+void CheckRobot(const hal::Status& status) {
+  if (!status.ok() && status.code() != hal::StatusCode::kTimeout) {
+    throw std::runtime_error(fmt::format("the robot: {} ({})", hal::ToString(status.code()), status.where()));
+  }
+}
+
+// Each state as it comes, answered with torques that leave the arm where it is. std::runtime_error when the
+// motion is refused, or the robot breaks it off.
 std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds) {
   linux_rt::MonotonicClock clock;
   std::vector<double> gaps_us;
@@ -30,7 +38,8 @@ std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds) {
   const franka::FrankaCounters before = arm.counters();
   while (1e-9 * static_cast<double>(last_ns - begin_ns) < seconds) {
     hal::ArmState state;
-    if (!arm.Read(state).ok()) {
+    if (const hal::Status status = arm.Read(state); !status.ok()) {
+      CheckRobot(status);
       const std::int64_t now_ns = clock.NowNs();
       if (now_ns - last_ns > hal::kNsPerSecond) {
         throw std::runtime_error("no state came for a second");
@@ -40,20 +49,21 @@ std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds) {
     hal::ArmCommand command;
     command.state_sequence = state.sequence;
     command.num_joints = state.num_joints;
-    static_cast<void>(arm.Write(command));
+    CheckRobot(arm.Write(command));
     const std::int64_t now_ns = clock.NowNs();
     gaps_us.push_back(1e-3 * static_cast<double>(now_ns - last_ns));
     last_ns = now_ns;
   }
   const franka::FrankaCounters& after = arm.counters();
   const double took_s = 1e-9 * static_cast<double>(last_ns - begin_ns);
-  return {
-      {"states_per_s", static_cast<double>(after.states - before.states) / took_s, "1/s", kStatesPerSecond},
-      {"state_gap_p50_us", Percentile(gaps_us, 0.5), "us", {}},
-      {"state_gap_p99_us", Percentile(gaps_us, 0.99), "us", {}},
-      {"state_gap_max_us", Percentile(gaps_us, 1.0), "us", {}},
-      {"lost_states", static_cast<double>(after.lost_states - before.lost_states), "", {}},
-      {"command_success_rate", arm.robot_state().control_command_success_rate, "", {}}};
+  const auto states = static_cast<double>(after.states - before.states);
+  return {{"states_per_s", states / took_s, "1/s", kStatesPerSecond},
+          {"state_gap_p50_us", Percentile(gaps_us, 0.5), "us", {}},
+          {"state_gap_p99_us", Percentile(gaps_us, 0.99), "us", {}},
+          {"state_gap_max_us", Percentile(gaps_us, 1.0), "us", {}},
+          {"answered_states", static_cast<double>(after.commands - before.commands) / states, "of all", {}},
+          {"lost_states", static_cast<double>(after.lost_states - before.lost_states), "", {}},
+          {"command_success_rate", arm.robot_state().control_command_success_rate, "", {}}};
 }
 
 }  // namespace

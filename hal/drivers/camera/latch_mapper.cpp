@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "fovea/hal/types.hpp"
 
 namespace fovea::camera {
 namespace {
 
-constexpr std::int64_t kBlockNs = hal::kNsPerSecond;
-constexpr std::int64_t kLostNs = hal::kNsPerSecond;
 constexpr std::int64_t kWorstTripNs = 5 * hal::kNsPerMs;
 constexpr std::int64_t kBelievedNs = 2 * hal::kNsPerSecond;  // after a reading: 0.1 ms at 50 ppm
 constexpr std::int64_t kBelievedWithDriftNs = 10 * hal::kNsPerSecond;
@@ -23,38 +20,17 @@ void LatchMapper::Add(std::int64_t before_ns, std::int64_t device_ns, std::int64
   if (trip_ns < 0 || trip_ns > kWorstTripNs) {
     return;
   }
-  const Reading reading{device_ns, before_ns + trip_ns / 2 - device_ns, trip_ns};
-  if (num_blocks_ > 0 &&
-      (device_ns < last_device_ns_ || std::llabs(reading.excess_ns - LineAt(device_ns)) > kLostNs)) {
-    ++restarts_;
-    num_blocks_ = 0;
+  if (IsTooLate(device_ns)) {
+    best_.Forget();
   }
-  if (IsTooOld(device_ns)) {
-    num_blocks_ = 0;
-  }
-  last_device_ns_ = device_ns;
+  best_.Add({device_ns, before_ns + trip_ns / 2 - device_ns, trip_ns}, line_);
   ++readings_;
-  Keep(reading);
   FitLine();
-}
-
-void LatchMapper::Keep(const Reading& reading) {
-  if (num_blocks_ == 0 || reading.device_ns - block_begin_ns_ >= kBlockNs) {
-    if (num_blocks_ == kBlocks) {
-      std::move(blocks_.begin() + 1, blocks_.end(), blocks_.begin());
-      --num_blocks_;
-    }
-    block_begin_ns_ = reading.device_ns;
-    blocks_[num_blocks_++] = reading;
-  } else if (Reading& shortest = blocks_[num_blocks_ - 1]; reading.trip_ns < shortest.trip_ns) {
-    shortest = reading;
-  }
 }
 
 // Weighted least squares about the points' own middle; all that is subtracted is exact.
 void LatchMapper::FitLine() {
-  const Reading& newest = blocks_[num_blocks_ - 1];
-  excess_base_ns_ = newest.excess_ns;
+  const Reading& newest = best_.all().back();
   const auto weight = [](const Reading& r) {
     const double trip = std::max(static_cast<double>(r.trip_ns), kSurelyNs);
     return 1.0 / (trip * trip);
@@ -62,40 +38,36 @@ void LatchMapper::FitLine() {
   double sum = 0.0;
   double x_mean = 0.0;
   double y_mean = 0.0;
-  for (std::size_t i = 0; i < num_blocks_; ++i) {
-    const double w = weight(blocks_[i]);
+  for (const Reading& r : best_.all()) {
+    const double w = weight(r);
     sum += w;
-    x_mean += w * static_cast<double>(blocks_[i].device_ns - newest.device_ns);
-    y_mean += w * static_cast<double>(blocks_[i].excess_ns - newest.excess_ns);
+    x_mean += w * static_cast<double>(r.device_ns - newest.device_ns);
+    y_mean += w * static_cast<double>(r.excess_ns - newest.excess_ns);
   }
   x_mean /= sum;
   y_mean /= sum;
   double xx = 0.0;
   double xy = 0.0;
-  for (std::size_t i = 0; i < num_blocks_; ++i) {
-    const double w = weight(blocks_[i]);
-    const double x = static_cast<double>(blocks_[i].device_ns - newest.device_ns) - x_mean;
-    const double y = static_cast<double>(blocks_[i].excess_ns - newest.excess_ns) - y_mean;
+  for (const Reading& r : best_.all()) {
+    const double w = weight(r);
+    const double x = static_cast<double>(r.device_ns - newest.device_ns) - x_mean;
+    const double y = static_cast<double>(r.excess_ns - newest.excess_ns) - y_mean;
     xx += w * x * x;
     xy += w * x * y;
   }
-  drift_ = num_blocks_ >= kBlocksForDrift ? xy / xx : 0.0;
-  anchor_device_ns_ = newest.device_ns + std::llround(x_mean);
-  anchor_excess_ns_ = y_mean;
+  line_ = {newest.device_ns + std::llround(x_mean), newest.excess_ns + std::llround(y_mean),
+           best_.enough_for_drift() ? xy / xx : 0.0};
 }
 
-std::int64_t LatchMapper::LineAt(std::int64_t device_ns) const {
-  return excess_base_ns_ +
-         std::llround(anchor_excess_ns_ + drift_ * static_cast<double>(device_ns - anchor_device_ns_));
-}
-
-bool LatchMapper::IsTooOld(std::int64_t device_ns) const {
-  return device_ns - last_device_ns_ > (num_blocks_ < kBlocksForDrift ? kBelievedNs : kBelievedWithDriftNs);
+bool LatchMapper::IsTooLate(std::int64_t device_ns) const {
+  return device_ns - best_.last_device_ns() > (best_.enough_for_drift() ? kBelievedWithDriftNs : kBelievedNs);
 }
 
 std::optional<std::int64_t> LatchMapper::Map(std::int64_t device_ns) const {
-  return num_blocks_ > 0 && !IsTooOld(device_ns) ? std::optional(device_ns + LineAt(device_ns))
-                                                 : std::nullopt;
+  if (best_.all().empty() || IsTooLate(device_ns)) {
+    return std::nullopt;
+  }
+  return device_ns + line_.At(device_ns);
 }
 
 }  // namespace fovea::camera

@@ -13,6 +13,7 @@ enum class Mode : std::uint8_t {
   kFault,  // latched: damped stop, then brakes; left only by a reset
   kMove,   // following a motion that was commanded: a goal, or a stream of setpoints
 };
+inline constexpr int kNumModes = 6;
 
 // Why the servo is in Hold rather than in Track.
 enum class HoldReason : std::uint8_t {

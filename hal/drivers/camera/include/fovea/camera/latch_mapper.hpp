@@ -6,10 +6,10 @@
 // drift: both however long a picture is on its way, and however late it is by chance.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
+
+#include "fovea/camera/clock_points.hpp"
 
 namespace fovea::camera {
 
@@ -26,9 +26,9 @@ class LatchMapper {
   [[nodiscard]] std::optional<std::int64_t> Map(std::int64_t device_ns) const;
 
   // Seconds that the host's clock gains on the device's in a second; 0 until 8 s are known.
-  [[nodiscard]] double drift() const { return drift_; }
+  [[nodiscard]] double drift() const { return line_.drift; }
   [[nodiscard]] std::uint64_t readings() const { return readings_; }  // that were not forgotten at once
-  [[nodiscard]] std::uint64_t restarts() const { return restarts_; }
+  [[nodiscard]] std::uint64_t restarts() const { return best_.restarts(); }
 
  private:
   struct Reading {
@@ -36,24 +36,13 @@ class LatchMapper {
     std::int64_t excess_ns = 0;  // middle - device's
     std::int64_t trip_ns = 0;
   };
-  static constexpr std::size_t kBlocks = 32;
-  static constexpr std::size_t kBlocksForDrift = 8;
 
-  void Keep(const Reading& reading);
   void FitLine();
-  [[nodiscard]] bool IsTooOld(std::int64_t device_ns) const;
-  [[nodiscard]] std::int64_t LineAt(std::int64_t device_ns) const;
+  [[nodiscard]] bool IsTooLate(std::int64_t device_ns) const;
 
-  std::array<Reading, kBlocks> blocks_{};  // the shortest of each second; oldest first
-  std::size_t num_blocks_ = 0;
-  std::int64_t block_begin_ns_ = 0;  // of the newest
-  std::int64_t last_device_ns_ = 0;
-  std::int64_t anchor_device_ns_ = 0;  // the line goes through this point
-  double anchor_excess_ns_ = 0.0;      // relative to the newest block's
-  std::int64_t excess_base_ns_ = 0;
-  double drift_ = 0.0;
+  ClockPoints<Reading, &Reading::trip_ns> best_;  // the shortest of each second
+  ClockLine line_;
   std::uint64_t readings_ = 0;
-  std::uint64_t restarts_ = 0;
 };
 
 }  // namespace fovea::camera

@@ -6,9 +6,9 @@
 // measurements, 2002), here of the earliest arrival in each second of the last half minute.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
+
+#include "fovea/camera/clock_points.hpp"
 
 namespace fovea::camera {
 
@@ -24,30 +24,21 @@ class StampMapper {
   void Restart();
 
   // Seconds that the host's clock gains on the device's in a second; 0 until 8 s are known.
-  [[nodiscard]] double drift() const { return drift_; }
-  [[nodiscard]] std::uint64_t restarts() const { return restarts_; }
+  [[nodiscard]] double drift() const { return line_.drift; }
+  [[nodiscard]] std::uint64_t restarts() const { return best_.restarts(); }
 
  private:
   struct Point {
     std::int64_t device_ns = 0;
     std::int64_t excess_ns = 0;  // arrival - stamp
   };
-  static constexpr std::size_t kBlocks = 32;
-  static constexpr std::size_t kBlocksForDrift = 8;
 
-  void Keep(const Point& point);
   void FitLine();
-  [[nodiscard]] std::int64_t LineAt(std::int64_t device_ns) const;
 
   std::int64_t transport_ns_;
-  std::array<Point, kBlocks> blocks_{};  // the least of each second; oldest first
-  std::size_t num_blocks_ = 0;
-  std::int64_t block_begin_ns_ = 0;  // of the newest
-  Point anchor_;                     // the line goes through it
-  double drift_ = 0.0;
-  std::int64_t last_device_ns_ = 0;
+  ClockPoints<Point, &Point::excess_ns> best_;  // the earliest of each second
+  ClockLine line_;
   std::int64_t last_host_ns_ = INT64_MIN;
-  std::uint64_t restarts_ = 0;
 };
 
 }  // namespace fovea::camera

@@ -1,0 +1,72 @@
+// What is known of a device's clock beside the host's: a point for each second of the last half minute, and a
+// line along them. latch_mapper.hpp and stamp_mapper.hpp differ in which point of a second is the best, and
+// in how the line lies to them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::camera {
+
+// The host's clock less the device's, over the device's.
+struct ClockLine {
+  std::int64_t device_ns = 0;  // it goes through this point
+  std::int64_t excess_ns = 0;
+  double drift = 0.0;  // seconds that the host's clock gains on the device's in a second
+
+  [[nodiscard]] std::int64_t At(std::int64_t ns) const {
+    return excess_ns + std::llround(drift * static_cast<double>(ns - device_ns));
+  }
+};
+
+// Of a second's points the one with the least `kKey` stays. A Point has device_ns and excess_ns, as above.
+template <class Point, std::int64_t Point::*kKey>
+class ClockPoints {
+ public:
+  // A device clock that goes back, or leaves `line` by more than a second, has started anew: what was known
+  // of it is forgotten.
+  void Add(const Point& point, const ClockLine& line) {
+    if (count_ > 0 && (point.device_ns < last_device_ns_ ||
+                       std::llabs(point.excess_ns - line.At(point.device_ns)) > kLostNs)) {
+      ++restarts_;
+      count_ = 0;
+    }
+    last_device_ns_ = point.device_ns;
+    if (count_ == 0 || point.device_ns - begin_ns_ >= hal::kNsPerSecond) {
+      if (count_ == kMost) {
+        std::move(points_.begin() + 1, points_.end(), points_.begin());
+        --count_;
+      }
+      begin_ns_ = point.device_ns;
+      points_[count_++] = point;
+    } else if (Point& best = points_[count_ - 1]; point.*kKey < best.*kKey) {
+      best = point;
+    }
+  }
+  void Forget() { count_ = 0; }
+
+  [[nodiscard]] std::span<const Point> all() const { return {points_.data(), count_}; }  // oldest first
+  [[nodiscard]] bool enough_for_drift() const { return count_ >= kForDrift; }
+  [[nodiscard]] std::int64_t last_device_ns() const { return last_device_ns_; }
+  [[nodiscard]] std::uint64_t restarts() const { return restarts_; }
+
+ private:
+  static constexpr std::size_t kMost = 32;
+  static constexpr std::size_t kForDrift = 8;
+  static constexpr std::int64_t kLostNs = hal::kNsPerSecond;
+
+  std::array<Point, kMost> points_{};
+  std::size_t count_ = 0;
+  std::int64_t begin_ns_ = 0;  // of the newest second
+  std::int64_t last_device_ns_ = 0;
+  std::uint64_t restarts_ = 0;
+};
+
+}  // namespace fovea::camera
