@@ -101,50 +101,28 @@ void ForEachEnd(Look look) {
   }
 }
 
-TEST(SideEvidenceTest, ASideThatComesOutAgainGoesOn) {
+// Of the 12 ends, at how many the side is seen to go on where a plate begins `from` and ends `to` sides
+// beyond, which differs from the ground by `share` of the target's contrast.
+int CountThatGoOn(double from, double to, double share) {
   int found = 0;
   ForEachEnd([&](const DetectorConfig& config, double contrast, const Beyond& beyond) {
     bench::PictureScene scene = SceneOf(config, kGround + contrast);
-    scene.bodies.push_back(PlateBeyond(beyond, 0.25, 0.7, kGround + contrast));
+    scene.bodies.push_back(PlateBeyond(beyond, from, to, kGround + share * contrast));
     found += GoesOn(config, scene) ? 1 : 0;
   });
-  std::cout << found << " of 12 seen to go on\n";
-  EXPECT_EQ(found, 12);
+  return found;
 }
+
+TEST(SideEvidenceTest, ASideThatComesOutAgainGoesOn) { EXPECT_EQ(CountThatGoOn(0.25, 0.7, 1.0), 12); }
 
 TEST(SideEvidenceTest, WhatHasTheOppositeContrastIsNotItsSide) {
-  int found = 0;
-  ForEachEnd([&](const DetectorConfig& config, double contrast, const Beyond& beyond) {
-    bench::PictureScene scene = SceneOf(config, kGround + contrast);
-    scene.bodies.push_back(PlateBeyond(beyond, 0.25, 0.7, kGround - contrast));
-    found += GoesOn(config, scene) ? 1 : 0;
-  });
-  std::cout << found << " of 12 seen to go on\n";
-  EXPECT_EQ(found, 0);
+  EXPECT_EQ(CountThatGoOn(0.25, 0.7, -1.0), 0);
 }
 
-TEST(SideEvidenceTest, WhatIsFarBeyondIsAnotherThing) {
-  int found = 0;
-  ForEachEnd([&](const DetectorConfig& config, double contrast, const Beyond& beyond) {
-    bench::PictureScene scene = SceneOf(config, kGround + contrast);
-    scene.bodies.push_back(PlateBeyond(beyond, 0.65, 0.9, kGround + contrast));
-    found += GoesOn(config, scene) ? 1 : 0;
-  });
-  std::cout << found << " of 12 seen to go on\n";
-  EXPECT_EQ(found, 0);
-}
+TEST(SideEvidenceTest, WhatIsFarBeyondIsAnotherThing) { EXPECT_EQ(CountThatGoOn(0.65, 0.9, 1.0), 0); }
 
 // Right at the corner any contrast tells: it is the edge of what hides.
-TEST(SideEvidenceTest, AnEdgeThatGoesOnAtTheCornerGoesOn) {
-  int found = 0;
-  ForEachEnd([&](const DetectorConfig& config, double contrast, const Beyond& beyond) {
-    bench::PictureScene scene = SceneOf(config, kGround + contrast);
-    scene.bodies.push_back(PlateBeyond(beyond, 0.0, 0.4, kGround - 0.5 * contrast));
-    found += GoesOn(config, scene) ? 1 : 0;
-  });
-  std::cout << found << " of 12 seen to go on\n";
-  EXPECT_EQ(found, 12);
-}
+TEST(SideEvidenceTest, AnEdgeThatGoesOnAtTheCornerGoesOn) { EXPECT_EQ(CountThatGoOn(0.0, 0.4, -0.5), 12); }
 
 // A bar as bright as the ground leaves a piece of the triangle's own shape beside it.
 TEST(SideEvidenceTest, APieceBesideABarLikeTheGroundIsNotTheTarget) {
