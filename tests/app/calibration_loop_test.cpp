@@ -35,14 +35,16 @@ void PrintTo(const BoardCase& board, std::ostream* out) { *out << board.name; }
 
 class CalibrationLoopTest : public testing::TestWithParam<BoardCase> {
  protected:
+  static constexpr std::chrono::seconds kLimit{240};  // under the sanitizers each takes two minutes
+
   static ProgramResult Fovea(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), FOVEA_PROGRAM);
-    return RunProgram(arguments, {}, std::chrono::seconds(240));  // under the sanitizers it takes two minutes
+    return RunProgram(arguments, {}, kLimit);
   }
   static ProgramResult Pictures(const fs::path& out, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{FOVEA_SIM_PROGRAM, "pictures", "--out", out.string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return RunProgram(arguments);
+    return RunProgram(arguments, {}, kLimit);
   }
   static std::vector<std::string> Joined(std::vector<std::string> a, const std::vector<std::string>& b) {
     a.insert(a.end(), b.begin(), b.end());
