@@ -91,6 +91,25 @@ TEST(GoalPostureTest, PastTheEndOfAJointTheWayRoundIsFound) {
   ExpectAtGoal(config, X_BO, goal);
 }
 
+// One to which no way is clear is taken when all rounds have found no other.
+TEST(GoalPostureTest, OneWithABarredWayIsTakenLast) {
+  ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  VecN q = test::Ready();
+  q[6] = config.arm.joints[6].q_max - 0.1;
+  VecN q_goal = q;
+  q_goal[6] = q[6] + 2.0 - 2.0 * model::kPi;
+  const Pose X_BO = TargetFor(config, q_goal);
+  GoalPosture clear;
+  const int steps = StepsUntilFound(config, X_BO, q, clear);
+  ASSERT_GT(steps, 0);
+  EXPECT_TRUE(clear.clear);
+  config.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // the goal itself is not in there
+  GoalPosture barred;
+  EXPECT_GT(StepsUntilFound(config, X_BO, q, barred), 5 * steps);
+  EXPECT_TRUE(barred.found);
+  EXPECT_FALSE(barred.clear);
+}
+
 // The hand hangs beside the camera: turned by half a turn it would be outside the workspace, as it is not.
 TEST(GoalPostureTest, ASquareIsFacedFromASideThatTheHandReaches) {
   const ServoConfig config = Config(hal::FeatureKind::kSquare);

@@ -114,6 +114,20 @@ TEST_F(WayToGoalTest, LimitsThatLetTheGoalComeNoNearerMakeItGoByTheJoints) {
   EXPECT_TRUE(way_.by_joints);
 }
 
+// The joints would get no further to it than the law.
+TEST_F(WayToGoalTest, ADownhillPostureWithABarredWayIsNotGoneToByTheJoints) {
+  VecN q_goal = test::Ready();
+  q_goal[0] += 0.8;
+  PutTargetFor(q_goal);
+  config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // no way keeps it in there
+  Stand(test::Ready(), 300, hal::Bit(hal::Limit::kWorkspace));
+  EXPECT_TRUE(way_.goal.downhill);
+  EXPECT_FALSE(way_.goal.clear);
+  Stand(test::Ready(), 300, hal::Bit(hal::Limit::kWorkspace));
+  EXPECT_FALSE(way_.by_joints);
+  EXPECT_FALSE(way_.goal.found) << "another one is looked for";
+}
+
 TEST_F(WayToGoalTest, APostureThatLimitsHoldUpIsGivenUpForAnother) {
   const VecN q = PutTargetPastTheEnd();
   Stand(q, 1000);
