@@ -28,11 +28,11 @@ constexpr int kStepsLooked = 8;       // a trial that comes no nearer in so many
 constexpr double kComesNearer = 0.8;  // than this share is given up
 constexpr int kPasses = 3;            // of joints found at the ends of their ranges, in one step
 constexpr double kSpread = 0.5;  // of the first round about the arm's posture, a step more each round [rad]
-constexpr int kTrialsInRound = 16;   // to each turn
-constexpr int kRounds = 12;          // then it begins anew: limits, target or arm may have moved
-constexpr int kRoundsForClear = 12;  // before a posture is taken that has no clear way to it
-constexpr double kBarred = 100.0;    // a way that is barred counts as so much longer [rad]
-constexpr double kSame = 0.2;        // postures no further apart are one [rad]
+constexpr int kTrialsInRound = 16;    // to each turn
+constexpr int kRounds = 12;           // then it begins anew: limits, target or arm may have moved
+constexpr int kTrialsForClear = 192;  // before a posture is taken that has no clear way to it
+constexpr double kBarred = 100.0;     // a way that is barred counts as so much longer [rad]
+constexpr double kSame = 0.2;         // postures no further apart are one [rad]
 
 int TurnsOf(const features::TargetFeature& feature) noexcept {
   return feature.target == hal::FeatureKind::kSquare ? 4 : 1;
@@ -159,7 +159,7 @@ void NextTrial(const ServoConfig& config, GoalPosture& goal) noexcept {
     goal.trial = 0;
   }
   goal.clear = goal.nearest < kBarred;
-  const bool enough = goal.clear || goal.trial == 0 || goal.trial >= turns * kTrialsInRound * kRoundsForClear;
+  const bool enough = goal.clear || goal.trial == 0 || goal.trial >= kTrialsForClear;
   if (goal.nearest < HUGE_VAL && (goal.downhill || (round_over && enough))) {
     goal.found = true;
     goal.turn = goal.nearest_turn;
