@@ -210,6 +210,13 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
       .add_option("--pace", arguments.pace,
                   "real: 1 ms by the clock; lockstep: a motion waits for its client")
       ->check(CLI::IsMember({"lockstep", "real"}));
+  serve
+      .add_option(
+          "--most-speed", server.most_speed,
+          "in lockstep, of the robot's time against the clock's, so that a busy machine keeps up with "
+          "its pictures; 0: as fast as its client")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
   serve.add_option("--fci-port", server.at.port, "TCP port; 0 takes a free one and says which")
       ->capture_default_str();
   serve

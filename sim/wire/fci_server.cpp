@@ -40,10 +40,14 @@ void FciServer::Run(const std::atomic<bool>& stop, const std::function<void(cons
     commands_.SetLoss(loss);
     states_.SetLoss(loss);
     state_dice_.SetLoss(loss);
+    const std::int64_t sent_ns = NowNs();
     SendState();
     const bool hangs = hangs_.load(std::memory_order_relaxed);
     if (WaitsForAnswer() && !hangs) {
       AwaitCommands();
+      if (config_.most_speed > 0.0) {
+        ServeUntil(sent_ns + static_cast<std::int64_t>(hal::kTickPeriodNs / config_.most_speed));
+      }
       next_tick_ns_ = NowNs();
     } else {
       AwaitTick();

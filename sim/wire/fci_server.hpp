@@ -22,7 +22,8 @@ namespace fovea::sim {
 struct FciServerConfig {
   franka::Endpoint at{0x7F000001, franka::kFciPort};  // loopback
   bool lockstep = false;
-  int late_ms = 0;  // a command may answer a state that is this old
+  double most_speed = 0.0;  // in lockstep, of the robot's time against the clock's; 0: as fast as its client
+  int late_ms = 0;          // a command may answer a state that is this old
   LinkFaults faults;
   std::uint64_t seed = 1;
   std::vector<std::byte> model_library;  // the file that LoadModelLibrary answers with; empty: there is none

@@ -16,32 +16,35 @@ READERS = pathlib.Path(__file__).parent.parent / "js"
 
 class Loopback(TwoPrograms):
     def tracked(self, *options):
-        """A run of 8 s in lockstep: what the client and the server say of it. The robot waits for the servo, but nobody
-        for the client's eye: where a busy machine left it a part of the pictures alone, it is run again, twice."""
+        """A run of 8 s in lockstep, at half the clock's pace: what the client and the server say of it. The robot waits
+        for the servo, but nobody waits for the client's eye: a busy machine that kept it from a tenth of the pictures, or
+        let one be used 250 ms after it was taken, spoiled the run."""
         for _ in range(3):
-            port = self.serve("--pace", "lockstep", *options, camera=True)
-            s = self.hardware(port, "--track", "--seconds", "8", camera=True)
+            port = self.serve("--pace", "lockstep", "--most-speed", "0.5", *options, camera=True)
+            s = self.hardware(port, "--track", "--seconds", "8", camera=True, codes=(0, 1))
             truth = self.end_server()
-            if s["camera"]["lost"] < 0.3 * truth["frames_sent"]:
-                break
-        return s, truth
+            camera = s["camera"]
+            print(f"\n{truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; {camera['lost']} of {truth['frames_sent']} frames "
+                  f"lost, ages up to {camera['feature_age_ms']['max']:.0f} ms; success rate {s['robot']['command_success_rate']}")
+            self.assertEqual(s["heap_allocations_in_tick"], 0)
+            self.assertGreater(truth["frames_sent"], 200)
+            if camera["lost"] < 0.1 * truth["frames_sent"] and camera["feature_age_ms"]["max"] < 250:
+                return s, truth
+        self.skipTest("this machine kept the eye from its pictures in three attempts")
 
     def test_it_tracks_the_ball_in_lockstep(self):
         s, truth = self.tracked()
-        print(f"\nlockstep: {truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; {s['camera']['frames']} frames, "
-              f"{s['camera']['lost']} lost")
-        self.assertEqual(s["fault"], "none")
+        self.assertEqual((s["mode"], s["fault"], s["converged"]), ("track", "none", True))
         self.assertLessEqual(truth["error_px"], 0.5)
         self.assertLessEqual(truth["error_mm"], 0.6)
-        self.assertEqual(s["heap_allocations_in_tick"], 0)
-        self.assertGreater(s["camera"]["frames_detected"], 50)
+        self.assertGreater(s["camera"]["frames_detected"], 200)
 
     def test_its_log_and_report_say_what_was(self):
         with tempfile.TemporaryDirectory() as temp:
             out = pathlib.Path(temp) / "a" / "b"
-            port = self.serve("--pace", "lockstep", camera=True)
+            port = self.serve("--pace", "lockstep", "--most-speed", "0.5", camera=True)
             s = self.hardware(port, "--track", "--seconds", "4", "--out", str(out), "--set", "log.picture_rate_hz=10",
-                              camera=True)
+                              camera=True, codes=(0, 1))
             print(f"\n{s['log_pictures']} pictures of {s['camera']['frames']} in the log")
             self.assertEqual({file.name for file in out.iterdir()}, {"camera.mp4", "log.mcap", "report.html", "summary.json"})
             self.assertEqual(json.loads((out / "summary.json").read_text()), s)
@@ -49,7 +52,7 @@ class Loopback(TwoPrograms):
             # Four seconds of ticks find room in the rings, however busy the machine is.
             self.assertEqual((s["records_dropped"], s["log_entries_dropped"]), (0, 0))
             self.assertLessEqual(s["log_pictures"] + s["log_pictures_dropped"], 4 * 10 + 1)
-            # A busy machine may leave it without a picture in the last moment, and then it says so.
+            # A busy machine may keep it from its pictures in the last moment, and then it says so.
             self.assertEqual(s["converged"], s["mode"] == "track" and s["camera"]["seen_error_px"] <= 3.0, s["verdict"])
             self.assertEqual(s["fault"], "none")
             for reader in (["read_log.mjs", str(out), "hardware"],
@@ -76,10 +79,9 @@ class Loopback(TwoPrograms):
 
     def test_it_tracks_the_ball_over_a_bad_network(self):
         s, truth = self.tracked("--late-ms", "3", "--loss", "0.05", "--jitter-ms", "2")
-        print(f"\n5 % lost, 2 ms of jitter: {truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; success rate "
-              f"{s['robot']['command_success_rate']}")
-        self.assertEqual(s["fault"], "none")
-        self.assertGreater(s["robot"]["lost_states"], 100)
+        self.assertEqual((s["mode"], s["fault"], s["converged"]), ("track", "none", True))
+        self.assertGreater(s["robot"]["lost_states"], 300)
+        self.assertLess(s["robot"]["command_success_rate"], 0.9)
         self.assertLessEqual(truth["error_px"], 0.5)
         self.assertLessEqual(truth["error_mm"], 0.6)
 
@@ -244,8 +246,9 @@ class Loopback(TwoPrograms):
     def test_pictures_that_come_late_are_old_when_they_are_used(self):
         ages = []
         for options in ([], ["--set", "faults.latency_ms=60", "--set", "faults.latency_s=[0,1e6]"]):
-            port = self.serve("--pace", "lockstep", *options, camera=True)
-            ages.append(self.hardware(port, "--track", "--seconds", "2", camera=True)["camera"]["feature_age_ms"]["p50"])
+            port = self.serve("--pace", "lockstep", "--most-speed", "0.5", *options, camera=True)
+            s = self.hardware(port, "--track", "--seconds", "2", camera=True, codes=(0, 1))
+            ages.append(s["camera"]["feature_age_ms"]["p50"])
             self.end_server()
         print(f"\nage of a measurement: {ages[0]:.1f} ms, with 60 ms more {ages[1]:.1f} ms")
         self.assertGreaterEqual(ages[0], 39.0)

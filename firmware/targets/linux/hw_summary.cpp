@@ -40,11 +40,18 @@ void Judge(HwSummary& s) {
   const std::string last = s.seen && s.seen->last_px
                                ? fmt::format("the camera saw it {:.2f} px off its goal", *s.seen->last_px)
                                : "the camera never saw it";
+  const hal::HoldReason reason =
+      s.mode == hal::Mode::kHold && !s.modes.empty() ? s.modes.back().reason : hal::HoldReason::kNone;
+  s.good = false;
   if (s.fault != hal::Fault::kNone) {
     s.verdict = fmt::format("it ended in a fault: {}", hal::Name(s.fault));
   } else if (s.mode == hal::Mode::kTrack || s.mode == hal::Mode::kCoast) {
     s.good = s.mode == hal::Mode::kTrack && s.seen && s.seen->last_px && *s.seen->last_px <= kAtGoalPx;
     s.verdict = fmt::format("it ended while it followed the target; at last {}", last);
+  } else if (reason == hal::HoldReason::kNoTarget || reason == hal::HoldReason::kTargetLost ||
+             reason == hal::HoldReason::kGoalUnreachable) {
+    s.verdict =
+        fmt::format("it was to follow the target, and held in the end ({}); {}", hal::Name(reason), last);
   } else {
     s.good = s.loop.ticks > 0;
     s.verdict = s.good ? fmt::format("it ended without a fault, in mode {}", hal::Name(s.mode))
