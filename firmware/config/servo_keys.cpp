@@ -146,6 +146,10 @@ void AddGuardKeys(ServoSettings& settings, KeyTable& keys) {
       "safety.sight_clearance", c.sight_clearance, 0.0, 10.0, "m",
       "the lines of the arm's own links stay so far from the lines of sight to it, or come no nearer; 0: "
       "they may");
+  keys.Number(
+      "safety.face_tilt_max", c.face_tilt_max, 0.1, std::numbers::pi / 2.0, "rad",
+      "a disc's face is turned away from the line of sight by no more than this, or no further; pi / 2: "
+      "it may be seen edge-on");
   keys.Numbers("safety.planes", settings.planes, 4, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
                "planes n p >= d that the end effector stays above: n_x, n_y, n_z, d, the same again");
   keys.Numbers("safety.boxes", settings.boxes, 6, 6 * servo::Obstacles::kMost, -100.0, 100.0, "m",

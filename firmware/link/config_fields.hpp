@@ -114,6 +114,7 @@ void GuardFields(Archive& a, T& g) noexcept {
   a(g.view.y_min);
   a(g.view.y_max);
   a(g.sight_clearance);
+  a(g.face_tilt_max);
 }
 
 template <class Archive, class T>

@@ -5,6 +5,7 @@
 
 #include "fovea/servo/guard_motion.hpp"
 #include "fovea/servo/joint_pace.hpp"
+#include "fovea/servo/keep_face.hpp"
 #include "fovea/servo/keep_sight.hpp"
 #include "fovea/servo/null_space_wish.hpp"
 #include "fovea/servo/obstacle.hpp"
@@ -72,6 +73,10 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
     LimitSight(config.guard.sight_clearance, config.arm,
                {scene.poses, X_BC, scene.target->outline, X_BC * scene.target->seen.X_CO}, scene.target->J_C,
                limits);
+    if (!scene.target->normal_C.isZero()) {
+      LimitTilt(config.guard.face_tilt_max, scene.target->seen.X_CO.p, scene.target->normal_C,
+                scene.target->J_C, limits);
+    }
     named.NameNewRows(Limit::kFieldOfView, rows);
   }
 }

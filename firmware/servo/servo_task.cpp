@@ -245,7 +245,10 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     const double blend = SmoothStep(since_s / config_.law.smooth_start_s);
     state_.law.task.v *= blend;
     state_.law.task.dq_0 *= blend;
-    const ViewedTarget target{config_.feature.Outline(), state_.prediction.seen, state_.J_C};
+    ViewedTarget target{config_.feature.Outline(), state_.prediction.seen, state_.J_C};
+    if (state_.predict.disc.started) {
+      target.normal_C = state_.X_BC.R.transpose() * state_.predict.disc.normal_B;
+    }
     ResolveMotion(config_, state_.law.task,
                   {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, state_.way.by_joints},
                   state_.resolved);

@@ -14,7 +14,8 @@ namespace {
 using model::Mat3;
 using model::Vec3;
 
-constexpr double kMostTilt = 60.0 * std::numbers::pi / 180.0;  // of a target that is looked for
+constexpr double kMostTilt =
+    75.0 * std::numbers::pi / 180.0;  // against the line of sight, of a target that is looked for
 constexpr double kNoChance =
     30.0;  // a pose whose corners fit so much worse than the best's is none [sigma^2]
 constexpr double kSameTurn = 0.01;  // poses nearer to each other than this are one [rad]

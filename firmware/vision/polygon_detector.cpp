@@ -67,7 +67,10 @@ std::vector<Eigen::Vector2d> CornersOf(const DetectorConfig& config) {
 }
 
 PolygonDetector::PolygonDetector(const DetectorConfig& config)
-    : config_(config), shape_(CornersOf(config)), colour_(config.colour), fitter_(config.edge_noise) {
+    : config_(config),
+      shape_(CornersOf(config)),
+      colour_(config.colour),
+      fitter_(config.edge_noise, config.by == FindBy::kColour) {
   double area = 0.0;
   double side = 1e9;
   for (std::size_t i = 0; i < shape_.size(); ++i) {

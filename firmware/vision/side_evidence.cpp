@@ -12,6 +12,11 @@ constexpr double kClearPx = 1.5;  // and not nearer to another side than this
 constexpr int kReach = 2;         // neighbours whose mean a line takes, each way
 constexpr float kLike = 0.35F;    // colours nearer than this, of the target's contrast, are alike
 constexpr float kLikeGround = 0.2F;
+// In another light, a colour is the target's own times a factor, and but for so much of that.
+constexpr float kDarkest = 0.15F;
+constexpr float kBrightest = 6.0F;
+constexpr float kSameHue = 0.3F;
+constexpr float kColoured = 0.5F;  // saturation of a target of which that can be said
 constexpr double kEndPx = 12.0;    // a side that is not seen so near to its corner does not show it
 constexpr double kEndShare = 0.2;  // or this, of its length
 
@@ -167,19 +172,30 @@ SideEvidence::Colour SideEvidence::MedianOf(const std::array<Colour, Profiles::k
   return median;
 }
 
+bool SideEvidence::IsTargets(const Colour& colour) const {
+  const auto contrast = static_cast<float>(contrast_);
+  if ((colour - target_).squaredNorm() < kLike * kLike * contrast * contrast) {
+    return true;
+  }
+  const float most = target_.maxCoeff();
+  if (!in_any_light_ || channels_ < 3 || !(most - target_.minCoeff() > kColoured * most)) {
+    return false;
+  }
+  const float light = colour.dot(target_) / target_.squaredNorm();
+  return light > kDarkest && light < kBrightest &&
+         (colour - light * target_).squaredNorm() <
+             kSameHue * kSameHue * light * light * target_.squaredNorm();
+}
+
 void SideEvidence::Judge() {
   const int count = static_cast<int>(lines_.size());
   const auto any = [](int /*i*/) { return true; };
-  const auto is_like = [](const Colour& a, const Colour& b, float most2) {
-    return (a - b).squaredNorm() < most2;
-  };
   const auto is_side = [this](int i) { return SaysOf(i) == Says::kSide; };
   target_ = MedianOf(inside_, 0, count, any);
   ground_ = MedianOf(outside_, 0, count, any);
   for (int turn = 0; turn < 2; ++turn) {
     const float contrast = (target_ - ground_).norm();
     contrast_ = static_cast<double>(contrast);
-    const float like2 = kLike * kLike * contrast * contrast;
     const float ground2 = kLikeGround * kLikeGround * contrast * contrast;
     for (int i = 0; i < count; ++i) {
       const auto line = static_cast<std::size_t>(i);
@@ -187,10 +203,10 @@ void SideEvidence::Judge() {
         says_[line] = Says::kUnknown;
         continue;
       }
-      if (is_like(inside_[line], target_, like2)) {
-        says_[line] = is_like(outside_[line], target_, like2) ? Says::kNot : Says::kSide;
+      if (IsTargets(inside_[line])) {
+        says_[line] = IsTargets(outside_[line]) ? Says::kNot : Says::kSide;
       } else {
-        says_[line] = is_like(inside_[line], ground_, ground2) ? Says::kNot : Says::kHidden;
+        says_[line] = (inside_[line] - ground_).squaredNorm() < ground2 ? Says::kNot : Says::kHidden;
       }
     }
     // The ground is what lies beside the sides, now that they are known.

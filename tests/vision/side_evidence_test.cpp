@@ -81,7 +81,7 @@ bool GoesOn(const DetectorConfig& config, const bench::PictureScene& scene) {
     const Vector2d p = scene.camera.f_px / kDistance * corner;
     start.push_back({p.x() + scene.camera.c_u_px, p.y() + scene.camera.c_v_px});
   }
-  PolygonFitter fitter(config.edge_noise);
+  PolygonFitter fitter(config.edge_noise, config.by == FindBy::kColour);
   const PolygonFit fit = fitter.Fit(image, config.intrinsics, start);
   EXPECT_TRUE(fit.converged);
   return fitter.evidence().SideGoesOn(image, config.intrinsics,
@@ -230,7 +230,7 @@ TEST(SideEvidenceTest, BendsAreExplainedWhereTheFitIsTheTargets) {
     const bench::PictureCamera& camera = crossed.scene.camera;
     const Intrinsics in{camera.width_px, camera.height_px, camera.f_px,
                         camera.f_px,     camera.c_u_px,    camera.c_v_px};
-    PolygonFitter fitter(EdgeNoise{});
+    PolygonFitter fitter(EdgeNoise{}, false);
     const PolygonFit fit = fitter.Fit(Draw(crossed.scene), in, crossed.start);
     double off_px = 0.0;
     for (std::size_t i = 0; i < crossed.corners.size(); ++i) {

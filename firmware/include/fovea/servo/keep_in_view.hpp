@@ -14,7 +14,8 @@ namespace fovea::servo {
 struct ViewedTarget {
   features::TargetOutline outline;
   features::TargetInCamera seen;
-  const model::Mat6N& J_C;  // body Jacobian of the camera
+  const model::Mat6N& J_C;                     // body Jacobian of the camera
+  model::Vec3 normal_C = model::Vec3::Zero();  // of a disc, where it is known; else 0
 };
 
 // Adds at most four rows. None when the picture's limits are not enabled, or a point of the target is not

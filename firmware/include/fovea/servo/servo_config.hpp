@@ -105,6 +105,7 @@ struct GuardConfig {
   Obstacles obstacles;                  // which the end effector keeps out of
   ViewConfig view;                      // safety.keep_in_view, safety.view_margin_px
   double sight_clearance = 0.08;        // of the links' lines from those to the target [m]; 0: any
+  double face_tilt_max = 1.05;          // of a disc against the line of sight [rad]; pi / 2: any
 };
 
 // [safety] limits on the torque, and when to stop altogether

@@ -33,7 +33,9 @@ struct PolygonFit {
 // Keeps the memory that a fit works in. One thread uses it.
 class PolygonFitter {
  public:
-  explicit PolygonFitter(const EdgeNoise& edge_noise) : edge_noise_(edge_noise) {}
+  // `in_any_light`: see SideEvidence.
+  PolygonFitter(const EdgeNoise& edge_noise, bool in_any_light)
+      : edge_noise_(edge_noise), evidence_(in_any_light) {}
   // Fits the polygon near `start`, whose sides may be some 2 px off; its corners turn from u to v.
   PolygonFit Fit(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> start);
 

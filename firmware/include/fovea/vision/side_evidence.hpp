@@ -25,6 +25,10 @@ class SideEvidence {
 
   using Colour = Eigen::Vector3f;
 
+  // `in_any_light`: a coloured target is one in the sun and in the shade, where a shadow's edge crosses it
+  // too.
+  explicit SideEvidence(bool in_any_light) : in_any_light_(in_any_light) {}
+
   struct Side {
     int from = 0, to = 0;  // its lines
     double length_px = 0.0;
@@ -62,6 +66,7 @@ class SideEvidence {
     kHidden,   // something stands before it
     kNot,      // the ground is where the target should be, or the target goes on
   };
+  [[nodiscard]] bool IsTargets(const Colour& colour) const;
   [[nodiscard]] Says SaysOf(int i) const { return says_[static_cast<std::size_t>(i)]; }
   static bool StepBeyond(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
                          double dv, int from, int to, Colour& step);
@@ -78,6 +83,7 @@ class SideEvidence {
   void Describe();
   void FindClear(const Side& side, int beside);
 
+  const bool in_any_light_;
   std::span<const ProfileLine> lines_;
   int sides_count_ = 0;
   int channels_ = 1;

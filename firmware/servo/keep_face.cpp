@@ -1,0 +1,31 @@
+#include "fovea/servo/keep_face.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace fovea::servo {
+namespace {
+
+constexpr double kRate = 1.5;  // as keep_in_view.cpp has it [1/s]
+
+}  // namespace
+
+void LimitTilt(double tilt_max, const model::Vec3& p_CO_C, const model::Vec3& normal_C,
+               const model::Mat6N& J_C, MotionLimits& limits) noexcept {
+  if (tilt_max >= 0.5 * std::numbers::pi) {
+    return;
+  }
+  const double distance = p_CO_C.norm();
+  const model::Vec3 ray = p_CO_C / distance;
+  const double cosine = normal_C.dot(ray);
+  if (!(distance > 0.0) || !std::isfinite(cosine)) {
+    return;
+  }
+  // The ray turns as the camera moves: dr/dt = -(I - r r') v / distance, in axes that do not turn with it.
+  const model::Vec3 across = (normal_C - cosine * ray) / distance;
+  limits.AddRow(J_C.topRows<3>().transpose().lazyProduct(across),
+                std::max(kRate * (cosine - std::cos(tilt_max)), 0.0));
+}
+
+}  // namespace fovea::servo
