@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "atlas_bench.hpp"
 #include "fovea/model/rotation.hpp"
 
 namespace fovea::atlas {
@@ -30,6 +31,7 @@ constexpr double kRadius = 0.845;      // 1 mm inside what the servo keeps of sa
 constexpr double kAboveTable = 0.10;   // [m]
 constexpr double kArmRadius = 0.10;    // about the line through the joints [m]
 constexpr double kTargetClear = 0.15;  // of that line [m]
+constexpr double kThingClear = 0.01;   // of the lines of sight, and of the target [m]
 constexpr int kUpperLinks = 5;         // links up to the forearm, which hand and sight must pass by
 constexpr int kMostDraws = 1'000'000;
 constexpr double kNear = 0.5;      // [rad]
@@ -192,6 +194,17 @@ bool Sampler::ArmInTheWay(const Posture& posture, const Pose& X_BO) const {
   return false;
 }
 
+bool Sampler::BenchInTheWay(const Posture& posture, const Pose& X_BO) const {
+  const features::TargetOutline outline = feature_.Outline();
+  for (int k = 0; k < outline.num_points; ++k) {
+    const Vec3 p_BP = X_BO * outline.p_OP[static_cast<std::size_t>(k)];
+    if (ThingInTheWay(posture.X_BC.p, p_BP, kThingClear + outline.radius)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 // The goal's orientation; of a square the one of four that is nearest.
 Mat3 Sampler::NearestGoal(const Mat3& R_CO) const {
   const int turns = feature_.target == hal::FeatureKind::kSquare ? 4 : 1;
@@ -222,7 +235,8 @@ bool Sampler::DescentFindsGoal(const VecN& q_start, const Pose& X_BO) const {
       off.tail<3>() = model::RotationVector(X_CO.R * NearestGoal(X_CO.R).transpose());
     }
     if (off.norm() < kReached) {
-      return InsideBarrier(posture) && AboveTable(posture) && !ArmInTheWay(posture, X_BO);
+      return InsideBarrier(posture) && AboveTable(posture) && !ArmInTheWay(posture, X_BO) &&
+             !BenchInTheWay(posture, X_BO);
     }
     model::Mat6N J_C;
     model::ComputeJacobian(arm_, posture.poses, X_EC_, J_C);
@@ -319,6 +333,10 @@ Start Sampler::Draw(std::uint64_t seed, int index) const {
     }
     if (ArmInTheWay(posture, X_BO)) {
       refuse(Rejection::kArmInTheWay);
+      continue;
+    }
+    if (BenchInTheWay(posture, X_BO)) {
+      refuse(Rejection::kThingInTheWay);
       continue;
     }
     const Goal goal = FindGoal(engine, posture.q, X_BO);

@@ -23,12 +23,13 @@ enum class Rejection : std::uint8_t {
   kTargetNearEdge,       // its outline is not wholly 30 px inside the picture
   kTargetBelowTable,     // it is not wholly above the table
   kArmInTheWay,          // the arm stands in itself, in the target or in the line of sight
+  kThingInTheWay,        // a thing on the bench stands in the target or in a line of sight
   kNoGoalPosture,        // none was found that sees the target as it shall be and keeps all of the above
   kGoalElsewhere,        // one was found, but none downhill from within 0.5 rad of the start: another branch
 };
-inline constexpr std::array<const char*, 7> kRejectionNames{
+inline constexpr std::array<const char*, 8> kRejectionNames{
     "start_outside_barrier", "start_below_table", "target_near_edge", "target_below_table",
-    "arm_in_the_way",        "no_goal_posture",   "goal_elsewhere"};
+    "arm_in_the_way",        "thing_in_the_way",  "no_goal_posture",  "goal_elsewhere"};
 using Rejections = std::array<std::uint64_t, kRejectionNames.size()>;
 
 struct Start {
@@ -66,6 +67,7 @@ class Sampler {
   [[nodiscard]] bool AboveTable(const Posture& posture) const;
   [[nodiscard]] bool InPicture(const model::Pose& X_CO) const;
   [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;
+  [[nodiscard]] bool BenchInTheWay(const Posture& posture, const model::Pose& X_BO) const;
   [[nodiscard]] bool ArmInTheWay(const Posture& posture, const model::Pose& X_BO) const;
   enum class Goal : std::uint8_t { kNear, kElsewhere, kNone };
   [[nodiscard]] Goal FindGoal(std::mt19937_64& engine, const model::VecN& q, const model::Pose& X_BO) const;
