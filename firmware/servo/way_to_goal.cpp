@@ -12,18 +12,18 @@ constexpr int kStepsInATick = 4;  // of the search for a posture;
 constexpr int kTicksToAStep = 4;  // what was found follows the target more slowly
 
 // When the joints take over.
-constexpr double kLookS = 0.2;  // after which the target's pose is believed so far as to leave the law's way
-constexpr double kIdleS = 0.4;  // for so long the goal came no nearer
-constexpr double kNearer = 0.97;    // by this share
+constexpr double kLookS = 0.2;   // after which the target's pose is believed so far as to leave the law's way
+constexpr double kIdleS = 0.4;   // for so long the goal came no nearer
+constexpr double kNearer = 0.9;  // by this share
 constexpr double kThereM = 0.0015;  // a goal that is so near needs no other way
 constexpr double kThereRad = 0.006;
 constexpr double kMetrePerRad = 0.1;
-constexpr double kBegins = 0.08;  // where some joint is further from the posture than this [rad]
+constexpr double kBegins = 0.04;  // where some joint is further from the posture than this [rad]
 
 // How they go, and until when.
 constexpr double kGain = 3.0;       // [1/s]
 constexpr double kSpeed = 1.8;      // of the fastest [rad/s]
-constexpr double kEnds = 0.03;      // where no joint is further off [rad]
+constexpr double kEnds = 0.015;     // where no joint is further off [rad]
 constexpr double kHeldShare = 0.1;  // of the wanted motion: limits that leave less hold it up,
 constexpr double kHeldS = 0.4;      // and for so long, another posture is looked for
 
