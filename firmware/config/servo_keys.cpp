@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "fovea/config/input_error.hpp"
 #include "fovea/config/roll_pitch_yaw.hpp"
@@ -147,7 +148,7 @@ void AddGuardKeys(ServoSettings& settings, KeyTable& keys) {
       "the lines of the arm's own links stay so far from the lines of sight to it, or come no nearer; 0: "
       "they may");
   keys.Number(
-      "safety.face_tilt_max", c.face_tilt_max, 0.1, std::numbers::pi / 2.0, "rad",
+      "safety.face_tilt_max", settings.face_tilt_max, 0.1, std::numbers::pi / 2.0, "rad",
       "a disc's face is turned away from the line of sight by no more than this, or no further; pi / 2: "
       "it may be seen edge-on");
   keys.Numbers("safety.planes", settings.planes, 4, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
@@ -214,6 +215,8 @@ servo::ViewConfig MakeView(const ServoSettings& settings, const vision::Intrinsi
   };
   servo::ViewConfig view;
   view.enabled = settings.keep_in_view;
+  view.face_cosine_min =
+      settings.face_tilt_max < 0.5 * std::numbers::pi ? std::cos(settings.face_tilt_max) : 0.0;
   view.x_min = side(-0.5, -1.0, in.c_u_px, in.f_u_px);
   view.x_max = side(in.width_px - 0.5, 1.0, in.c_u_px, in.f_u_px);
   view.y_min = side(-0.5, -1.0, in.c_v_px, in.f_v_px);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace fovea::servo {
 namespace {
@@ -11,9 +10,9 @@ constexpr double kRate = 1.5;  // as keep_in_view.cpp has it [1/s]
 
 }  // namespace
 
-void LimitTilt(double tilt_max, const model::Vec3& p_CO_C, const model::Vec3& normal_C,
+void LimitTilt(double cosine_min, const model::Vec3& p_CO_C, const model::Vec3& normal_C,
                const model::Mat6N& J_C, MotionLimits& limits) noexcept {
-  if (tilt_max >= 0.5 * std::numbers::pi) {
+  if (cosine_min <= 0.0) {
     return;
   }
   const double distance = p_CO_C.norm();
@@ -25,7 +24,7 @@ void LimitTilt(double tilt_max, const model::Vec3& p_CO_C, const model::Vec3& no
   // The ray turns as the camera moves: dr/dt = -(I - r r') v / distance, in axes that do not turn with it.
   const model::Vec3 across = (normal_C - cosine * ray) / distance;
   limits.AddRow(J_C.topRows<3>().transpose().lazyProduct(across),
-                std::max(kRate * (cosine - std::cos(tilt_max)), 0.0));
+                std::max(kRate * (cosine - cosine_min), 0.0));
 }
 
 }  // namespace fovea::servo

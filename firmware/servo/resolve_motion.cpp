@@ -73,8 +73,8 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
     LimitSight(config.guard.sight_clearance, config.arm,
                {scene.poses, X_BC, scene.target->outline, X_BC * scene.target->seen.X_CO}, scene.target->J_C,
                limits);
-    if (!scene.target->normal_C.isZero()) {
-      LimitTilt(config.guard.face_tilt_max, scene.target->seen.X_CO.p, scene.target->normal_C,
+    if (config.guard.view.enabled && !scene.target->normal_C.isZero()) {
+      LimitTilt(config.guard.view.face_cosine_min, scene.target->seen.X_CO.p, scene.target->normal_C,
                 scene.target->J_C, limits);
     }
     named.NameNewRows(Limit::kFieldOfView, rows);

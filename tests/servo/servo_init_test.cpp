@@ -45,7 +45,7 @@ TEST(ServoInitTest, RefusesAndNamesTheKey) {
        }},
       {"safety.view_margin_px", [](ServoConfig& c) { c.guard.view.enabled = true; }},
       {"safety.sight_clearance", [](ServoConfig& c) { c.guard.sight_clearance = -0.1; }},
-      {"safety.face_tilt_max", [](ServoConfig& c) { c.guard.face_tilt_max = 0.0; }},
+      {"safety.face_tilt_max", [](ServoConfig& c) { c.guard.view.face_cosine_min = -0.1; }},
       {"servo.damping", [](ServoConfig& c) { c.law.damping = 1e-7; }},
       {"servo.lambda_near", [](ServoConfig& c) { c.law.lambda_near = -1.0; }},
       {"servo.posture", [=](ServoConfig& c) { c.law.q_posture[0] = nan; }},

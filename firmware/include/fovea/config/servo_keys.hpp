@@ -21,6 +21,7 @@ struct ServoSettings {
   std::string interaction = "current";
   bool keep_in_view = true;
   double view_margin_px = 10.0;
+  double face_tilt_max = 1.05;  // [rad]
   std::vector<double> posture;  // empty: the robot's ready posture
   std::vector<double> planes;   // n_x, n_y, n_z, d of each
   std::vector<double> boxes;    // low x, y, z, high x, y, z of each

@@ -88,6 +88,7 @@ struct ViewConfig {
   double x_max = 0.0;
   double y_min = 0.0;
   double y_max = 0.0;
+  double face_cosine_min = 0.0;  // of a disc's tilt against the line of sight; 0: any
 };
 
 // [safety] limits on the motion, as fractions of the arm's own or in their units
@@ -103,9 +104,8 @@ struct GuardConfig {
   double cartesian_speed = 1.7;         // of the end effector [m/s]
   double singularity_min = 0.02;        // smallest singular value of the hand's Jacobian, 1 / 0.3 m
   Obstacles obstacles;                  // which the end effector keeps out of
-  ViewConfig view;                      // safety.keep_in_view, safety.view_margin_px
+  ViewConfig view;                      // safety.keep_in_view, view_margin_px, face_tilt_max
   double sight_clearance = 0.08;        // of the links' lines from those to the target [m]; 0: any
-  double face_tilt_max = 1.05;          // of a disc against the line of sight [rad]; pi / 2: any
 };
 
 // [safety] limits on the torque, and when to stop altogether
