@@ -1,6 +1,6 @@
 #include "fovea/link/messages.hpp"
 
-#include "config_fields.hpp"
+#include "fovea/link/config_fields.hpp"
 #include "fovea/link/crc32.hpp"
 #include "fovea/link/frame.hpp"
 #include "tick_fields.hpp"

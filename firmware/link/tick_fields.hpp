@@ -56,6 +56,15 @@ void MotionFields(Archive& a, T& m) noexcept {
   EachOf(a, m.V_BE_B);
 }
 
+// What is asked of the servo.
+template <class Archive, class T>
+void DemandFields(Archive& a, T& in) noexcept {
+  a.Choice(in.request, kNumRequests);
+  MotionFields(a, in.motion);
+  a(in.change_law);
+  a.Choice(in.law, servo::kNumMotionLaws);
+}
+
 // But the status: its words stay with the driver that said them.
 template <class Archive, class T>
 void InputFields(Archive& a, T& in) noexcept {
@@ -64,10 +73,7 @@ void InputFields(Archive& a, T& in) noexcept {
   if (in.has_feature) {
     MeasurementFields(a, in.feature);
   }
-  a.Choice(in.request, kNumRequests);
-  MotionFields(a, in.motion);
-  a(in.change_law);
-  a.Choice(in.law, servo::kNumMotionLaws);
+  DemandFields(a, in);
   a.Int(in.missed_ticks);
 }
 

@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
              "the servo sees hal, model, features and Eigen"},
         Rule{"firmware/include/fovea/link", "(fovea/(hal|model|features|servo|link)/|Eigen/).*",
              "both ends of the line see the servo and no system"},
-        Rule{"firmware/link", "(fovea/(hal|model|features|servo|link)/|Eigen/).*|(config|tick)_fields[.]hpp",
+        Rule{"firmware/link", "(fovea/(hal|model|features|servo|link)/|Eigen/).*|(state|tick)_fields[.]hpp",
              "both ends of the line see the servo and no system"},
         Rule{"hal/drivers/cortex_m7", "fovea/cortex_m7/.*",
              "a driver depends on the contract and on its device"},

@@ -117,22 +117,34 @@ class FieldReader {
   bool ok_ = true;
 };
 
+// `count` values in a row, at once where the archive can.
+template <class Archive, class T>
+void Row(Archive& a, T* values, std::size_t count) noexcept {
+  if constexpr (requires { a.Row(values, count); }) {
+    a.Row(values, count);
+  } else {
+    for (std::size_t i = 0; i < count; ++i) {
+      a(values[i]);
+    }
+  }
+}
+
 template <class Archive, class Array>
 void EachOf(Archive& a, Array& values) noexcept {
-  for (auto& value : values) {
-    a(value);
-  }
+  Row(a, values.data(), values.size());
 }
 
 // Of fixed size, column by column.
 template <class Archive, class Matrix>
 void Entries(Archive& a, Matrix& m) noexcept {
-  static_assert(Matrix::SizeAtCompileTime != Eigen::Dynamic);
-  for (Eigen::Index j = 0; j < m.cols(); ++j) {
-    for (Eigen::Index i = 0; i < m.rows(); ++i) {
-      a(m(i, j));
-    }
-  }
+  static_assert(Matrix::SizeAtCompileTime != Eigen::Dynamic && !Matrix::IsRowMajor);
+  Row(a, m.data(), static_cast<std::size_t>(m.size()));
+}
+
+template <class Archive, class Pose>
+void PoseFields(Archive& a, Pose& pose) noexcept {
+  Entries(a, pose.R);
+  Entries(a, pose.p);
 }
 
 }  // namespace fovea::link

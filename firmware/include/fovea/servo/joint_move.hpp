@@ -25,6 +25,7 @@ class JointMove {
   [[nodiscard]] double Duration() const noexcept { return move_.Duration(); }
 
  private:
+  friend struct StateAccess;  // writes and reads all of it: firmware/link/state_fields.hpp
   SynchronisedMove move_;
 };
 

@@ -30,6 +30,7 @@ class JointHistory {
   void Clear() noexcept { size_ = 0; }
 
  private:
+  friend struct StateAccess;  // writes and reads all of it: firmware/link/state_fields.hpp
   struct Entry {
     std::int64_t stamp_ns = 0;
     model::VecN q;

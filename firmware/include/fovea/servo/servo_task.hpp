@@ -122,6 +122,8 @@ class ServoTask final : public ServoStep {
 
   [[nodiscard]] const ServoConfig& config() const noexcept { return config_; }
   [[nodiscard]] const ServoState& state() const noexcept { return state_; }
+  // After Init: goes on as the servo, of the same configuration, that left `state`. Real-time: no.
+  void Restore(const ServoState& state) noexcept { state_ = state; }
 
  private:
   void CheckArm(const ServoInputs& inputs, InputCheck& check) noexcept;

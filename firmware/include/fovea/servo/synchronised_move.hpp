@@ -41,6 +41,7 @@ class SynchronisedMove {
   [[nodiscard]] double Duration() const noexcept { return duration_s_; }
 
  private:
+  friend struct StateAccess;  // writes and reads all of it: firmware/link/state_fields.hpp
   void PlanLine(std::span<const AxisTask> tasks) noexcept;
   void PlanTimes(std::span<const AxisTask> tasks) noexcept;
 

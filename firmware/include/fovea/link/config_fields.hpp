@@ -1,17 +1,12 @@
-// The fields of the servo's configuration, in the order in which they go over the line. A field that is added
-// to a struct is added here; messages_test.cpp knows the structs' sizes and says so.
+// The fields of the servo's configuration, in the order in which they go over the line and into logs. A field
+// that is added to a struct is added here, at the end of its list, so that logs stay readable that were
+// written without it; messages_test.cpp knows the structs' sizes and says so.
 #pragma once
 
 #include "fovea/link/fields.hpp"
 #include "fovea/servo/servo_config.hpp"
 
 namespace fovea::link {
-
-template <class Archive, class T>
-void PoseFields(Archive& a, T& pose) noexcept {
-  Entries(a, pose.R);
-  Entries(a, pose.p);
-}
 
 template <class Archive, class T>
 void FeatureFields(Archive& a, T& f) noexcept {
@@ -135,18 +130,24 @@ void SafetyFields(Archive& a, T& s) noexcept {
   a(s.brake_after_s);
 }
 
-// All but the arm.
+// Calls `visit(name, fields)` for each part of `c` but the arm, in their order; `fields(archive)` goes
+// through the part's fields.
+template <class Config, class Visit>
+void EachSection(Config& c, const Visit& visit) noexcept {
+  visit("mount", [&c](auto& a) { PoseFields(a, c.X_EC); });
+  visit("feature", [&c](auto& a) { FeatureFields(a, c.feature); });
+  visit("auto_track", [&c](auto& a) { a(c.auto_track); });
+  visit("predict", [&c](auto& a) { PredictFields(a, c.predict); });
+  visit("law", [&c](auto& a) { LawFields(a, c.law); });
+  visit("move", [&c](auto& a) { MoveFields(a, c.move); });
+  visit("motion_law", [&c](auto& a) { MotionLawFields(a, c.motion_law); });
+  visit("guard", [&c](auto& a) { GuardFields(a, c.guard); });
+  visit("safety", [&c](auto& a) { SafetyFields(a, c.safety); });
+}
+
 template <class Archive, class T>
 void ServoFields(Archive& a, T& c) noexcept {
-  PoseFields(a, c.X_EC);
-  FeatureFields(a, c.feature);
-  a(c.auto_track);
-  PredictFields(a, c.predict);
-  LawFields(a, c.law);
-  MoveFields(a, c.move);
-  MotionLawFields(a, c.motion_law);
-  GuardFields(a, c.guard);
-  SafetyFields(a, c.safety);
+  EachSection(c, [&a](const char*, const auto& fields) { fields(a); });
 }
 
 template <class Archive, class T>

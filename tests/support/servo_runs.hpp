@@ -1,0 +1,149 @@
+// Inputs of the servo over some seconds, as an ideal arm and an eye that is told the truth give them: one run
+// for each target, for commanded motions, and for what goes wrong. For what looks at the servo from outside.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "fovea/features/square.hpp"
+#include "fovea/features/triangle.hpp"
+#include "fovea/servo/servo_task.hpp"
+#include "support/ideal_arm.hpp"
+#include "support/panda.hpp"
+#include "support/truth_eye.hpp"
+
+namespace fovea::test {
+
+struct ServoRun {
+  std::string name;
+  servo::ServoConfig config;
+  std::vector<servo::ServoInputs> inputs;
+};
+
+inline servo::ServoConfig ConfigOf(hal::FeatureKind target, features::FeatureForm form) {
+  servo::ServoConfig config = PandaConfig();
+  config.feature.target = target;
+  config.feature.form = form;
+  if (target == hal::FeatureKind::kSquare) {
+    config.feature.corners = features::MakeSquare(config.feature.side);
+  } else if (target == hal::FeatureKind::kTriangle) {
+    config.feature.corners = features::MakeTriangle(features::kDefaultTriangle);
+  }
+  if (config.feature.SeesOrientation()) {
+    config.law.damping = 0.002;
+  }
+  return config;
+}
+
+// `change(tick, inputs)` has the last word on each tick's inputs.
+template <class Change>
+ServoRun RunOnIdealArm(const std::string& name, const servo::ServoConfig& config, int ticks, bool sees,
+                       const Change& change) {
+  constexpr int kFrameTicks = 33;
+  constexpr std::int64_t kLatencyNs = 40 * hal::kNsPerMs;
+  ServoRun run{name, config, {}};
+  model::VecN q = Ready();
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, q, poses);
+  const model::Pose X_BO =
+      poses.X_BE * config.X_EC * model::Pose{config.feature.R_CO_star, config.feature.p_CO_C_star};
+  const double off[] = {-0.30, -0.10, 0.05, -0.12, 0.10, 0.12, 0.25};
+  for (int i = 0; i < 7; ++i) {
+    q[i] += off[i];
+  }
+  IdealArm arm(config.arm, q);
+  TruthEye eye(config.feature, 554.256, 0.05, 71);
+  std::vector<hal::FeatureMeasurement> under_way;
+  servo::ServoTask task;
+  EXPECT_TRUE(task.Init(config).ok());
+  servo::ServoOutputs outputs;
+  run.inputs.reserve(static_cast<std::size_t>(ticks));
+  for (int k = 0; k < ticks; ++k) {
+    servo::ServoInputs inputs;
+    inputs.arm = arm.State();
+    if (sees && k % kFrameTicks == 0) {
+      model::ComputePoses(config.arm, arm.q(), poses);
+      under_way.push_back(eye.See((poses.X_BE * config.X_EC).Inverse() * X_BO, inputs.arm.stamp_ns,
+                                  static_cast<std::uint64_t>(k)));
+    }
+    if (!under_way.empty() && under_way.front().stamp_ns + kLatencyNs <= inputs.arm.stamp_ns) {
+      inputs.has_feature = true;
+      inputs.feature = under_way.front();
+      under_way.erase(under_way.begin());
+    }
+    change(k, inputs);
+    task.Step(inputs, outputs);
+    arm.Apply(outputs.command());
+    arm.Step();
+    run.inputs.push_back(inputs);
+  }
+  return run;
+}
+
+inline ServoRun TrackingRun(const std::string& name, hal::FeatureKind target, features::FeatureForm form,
+                            int ticks) {
+  return RunOnIdealArm(name, ConfigOf(target, form), ticks, true, [](int, servo::ServoInputs&) {});
+}
+
+// Goals of joints and of the hand, home, another law on the way, and a request.
+inline ServoRun CommandedRun(int ticks) {
+  servo::ServoConfig config = PandaConfig();
+  config.auto_track = false;
+  return RunOnIdealArm("commanded", config, ticks, false, [&config](int k, servo::ServoInputs& inputs) {
+    if (k > 50 && k < 700) {
+      inputs.motion.kind = servo::MotionKind::kJointGoal;
+      inputs.motion.q = config.arm.q_ready;
+      inputs.motion.q[2] += k < 400 ? 0.2 : -0.1;
+    } else if (k > 900 && k < 1800) {
+      model::ArmPoses poses;
+      model::ComputePoses(config.arm, Ready(), poses);
+      inputs.motion.kind = servo::MotionKind::kPoseGoal;
+      inputs.motion.p_BE = {poses.X_BE.p.x(), poses.X_BE.p.y() + 0.05, poses.X_BE.p.z()};
+      inputs.motion.quaternion_BE = {0.0, 1.0, 0.0, 0.0};
+    } else if (k >= 1800) {
+      inputs.motion.kind = servo::MotionKind::kHome;
+    }
+    inputs.change_law = k == 600;
+    inputs.law = servo::MotionLawKind::kPd;
+    if (k == 750) {
+      inputs.request = servo::Request::kHold;
+    }
+  });
+}
+
+// States that do not come, values that are no numbers, missed ticks, an eye that goes blind; at last the arm
+// is lost, and reset.
+inline ServoRun TroubledRun(int ticks) {
+  return RunOnIdealArm("troubled", ConfigOf(hal::FeatureKind::kSphere, features::FeatureForm::kSphere), ticks,
+                       true, [ticks](int k, servo::ServoInputs& inputs) {
+                         if ((k > 300 && k < 310) || (k > ticks - 300 && k < ticks - 200)) {
+                           inputs.arm_status = hal::Status(hal::StatusCode::kTimeout, "arm");
+                         }
+                         if (k > 500 && k < 503) {
+                           inputs.arm.q[3] = std::nan("");
+                         }
+                         inputs.missed_ticks = k == 550 ? 3 : 0;
+                         inputs.has_feature = inputs.has_feature && (k < 600 || k > 1500);
+                         if (k == ticks - 150) {
+                           inputs.request = servo::Request::kReset;
+                         }
+                       });
+}
+
+// One of each, each long enough to pass two keyframes' times.
+inline std::vector<ServoRun> AllServoRuns() {
+  using features::FeatureForm;
+  using hal::FeatureKind;
+  std::vector<ServoRun> runs;
+  runs.push_back(TrackingRun("sphere", FeatureKind::kSphere, FeatureForm::kSphere, 2600));
+  runs.push_back(TrackingRun("circle", FeatureKind::kCircle, FeatureForm::kCircle, 2600));
+  runs.push_back(TrackingRun("square", FeatureKind::kSquare, FeatureForm::kCorners, 2600));
+  runs.push_back(TrackingRun("triangle", FeatureKind::kTriangle, FeatureForm::kPose, 2600));
+  runs.push_back(CommandedRun(2600));
+  runs.push_back(TroubledRun(2600));
+  return runs;
+}
+
+}  // namespace fovea::test
