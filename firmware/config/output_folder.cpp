@@ -52,6 +52,15 @@ void OutputFolder::WritePartial(const OutputFile& file) const {
   }
 }
 
+fs::path OutputFolder::Keep(const std::string& name, const std::vector<std::string>& all_names) const {
+  std::error_code ignored;
+  for (const std::string& other : all_names) {
+    fs::remove(folder_ / other, ignored);
+  }
+  fs::rename(Partial(name), folder_ / name, ignored);
+  return folder_ / name;
+}
+
 void OutputFolder::Replace(const std::vector<OutputFile>& files,
                            const std::vector<std::string>& all_names) const {
   std::error_code ignored;

@@ -323,6 +323,13 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
   AddFaultKeys(settings.config.safety, keys);
 }
 
+void ScaleSpeed(double scale, ServoSettings& settings) {
+  settings.config.law.lambda *= scale;
+  settings.config.law.lambda_near *= scale;
+  settings.config.guard.joint_velocity_fraction *= scale;
+  settings.config.guard.cartesian_speed *= scale;
+}
+
 servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::Robot& robot,
                                    const model::Pose& X_EC, const vision::Intrinsics& intrinsics,
                                    const TargetSettings& target) {

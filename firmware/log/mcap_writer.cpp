@@ -42,6 +42,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, const std::string& lib
   PutText(header, library);
   Put(mcap::kMagic);
   Put(mcap::Record(Op::kHeader, header));
+  file_.flush();  // who reads it now finds a log; what went wrong with that, the next Put says
 }
 
 void McapWriter::Put(std::string_view bytes) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kMostJobs = 1024;                  // messages that may wait
 constexpr auto kPoll = std::chrono::milliseconds(2);     // how often the rings are looked at
-constexpr auto kFlush = std::chrono::milliseconds(500);  // what is older than this is in the file
+constexpr auto kFlush = std::chrono::milliseconds(500);  // what is older than this is in the file, or soon
 
 Truth ToMessage(const TruthSample& sample) {
   Truth truth;
@@ -46,23 +46,34 @@ RunLog::RunLog(const RunLogConfig& config)
 
 RunLog::~RunLog() { Close(); }
 
+// Where nothing may be dropped.
 template <typename T>
-void RunLog::PushOrWait(linux_rt::BoundedRing<T>& ring, const T& value) {
+void RunLog::WaitForRoom(const linux_rt::BoundedRing<T>& ring) const {
   while (!config_.may_drop && !ring.HasRoom() && !failed_.load(std::memory_order_relaxed)) {
     std::this_thread::sleep_for(kPoll / 4);
   }
-  ring.Push(value);
 }
 
-void RunLog::AddTick(const hal::TickRecord& record) { PushOrWait(ticks_, record); }
-void RunLog::AddTruth(const TruthSample& sample) { PushOrWait(truths_, sample); }
+void RunLog::AddTick(const hal::TickRecord& record, const ReplayData& data) {
+  WaitForRoom(ticks_);
+  ticks_.Fill([&](LoggedTick& tick) {
+    tick.record = record;
+    tick.data = data;
+  });
+}
+
+void RunLog::AddTruth(const TruthSample& sample) {
+  WaitForRoom(truths_);
+  truths_.Push(sample);
+}
 
 void RunLog::Push(Job job) {
   {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return jobs_.size() < kMostJobs || failure_ != nullptr; });
     if (failure_ != nullptr) {
-      return;  // told by Finish
+      ++lost_;  // why: Finish says it
+      return;
     }
     jobs_.push_back(std::move(job));
   }
@@ -150,11 +161,19 @@ bool RunLog::WriteRound() {
     jobs.swap(jobs_);
   }
   changed_.notify_all();
-  for (const Job& job : jobs) {
-    job(*file_);
+  const std::size_t added = jobs.size();
+  try {
+    for (; !jobs.empty(); jobs.pop_front()) {
+      jobs.front()(*file_);
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    lost_ += jobs.size();
+    throw;
   }
-  std::size_t written = jobs.size();
-  written += ticks_.Drain(ticks_end, [this](const hal::TickRecord& r) { tick_writer_->Write(r, *file_); });
+  std::size_t written = added;
+  written += ticks_.Drain(
+      ticks_end, [this](const LoggedTick& tick) { tick_writer_->Write(tick.record, tick.data, *file_); });
   written += truths_.Drain(truths_end, [this](const TruthSample& sample) {
     file_->Write(kTruthTopic, sample.stamp_ns, ToMessage(sample));
   });
@@ -165,20 +184,17 @@ void RunLog::WriteAll() {
   linux_rt::MakeThreadYielding("fovea-log");
   try {
     auto flushed = std::chrono::steady_clock::now();
-    bool last = false;
-    while (!last) {
-      {
-        std::unique_lock lock(mutex_);
-        changed_.wait_for(lock, kPoll, [this] { return closed_ || !jobs_.empty(); });
-        last = closed_;  // whatever was added before is there now
-      }
-      const bool any = WriteRound();
+    bool dirty = false;
+    while (!WaitForMore()) {
+      dirty = WriteRound() || dirty;
       const auto now = std::chrono::steady_clock::now();
-      if (any && now - flushed > kFlush) {
+      if (dirty && now - flushed > kFlush) {
         file_->writer().Flush();
         flushed = now;
+        dirty = false;
       }
     }
+    WriteRound();
   } catch (...) {
     {
       const std::lock_guard lock(mutex_);
@@ -186,7 +202,27 @@ void RunLog::WriteAll() {
     }
     failed_ = true;
     changed_.notify_all();
+    while (!WaitForMore()) {
+      CountLost();
+    }
+    CountLost();
   }
+}
+
+// True once the log is closed: whatever was added before is there now.
+bool RunLog::WaitForMore() {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, kPoll, [this] { return closed_ || !jobs_.empty(); });
+  return closed_;
+}
+
+// After a failure: nothing is kept, and nothing goes uncounted.
+void RunLog::CountLost() {
+  std::uint64_t lost = ticks_.Drain(ticks_.End(), [](const LoggedTick&) {});
+  lost += truths_.Drain(truths_.End(), [](const TruthSample&) {});
+  const std::lock_guard lock(mutex_);
+  lost_ += lost + jobs_.size();
+  jobs_.clear();
 }
 
 void RunLog::Close() {
@@ -210,8 +246,10 @@ void RunLog::Finish() {
 
 std::uint64_t RunLog::dropped() const {
   const std::lock_guard lock(mutex_);
-  return ticks_.dropped() + truths_.dropped() + dropped_images_;
+  return ticks_.dropped() + truths_.dropped() + dropped_images_ + lost_;
 }
+
+bool RunLog::failed() const { return failed_.load(std::memory_order_relaxed); }
 
 std::uint64_t RunLog::dropped_images() const {
   const std::lock_guard lock(mutex_);

@@ -74,6 +74,14 @@ void ToMessage(const hal::TickRecord& r, Tick& m) {
   command.set_engage_brakes(r.command.engage_brakes);
 }
 
+void ToMessage(const ReplayData& data, Tick& m) {
+  m.set_demand(data.demand.data(), data.demand_size);
+  m.clear_state_digest();
+  if (data.state_digest) {
+    m.set_state_digest(*data.state_digest);
+  }
+}
+
 void ToMessage(const hal::FeatureMeasurement& f, Feature& m) {
   m.set_stamp_ns(f.stamp_ns);
   m.set_sequence(f.sequence);

@@ -32,8 +32,9 @@ void SetRotation(const model::Mat3& R, foxglove::Quaternion& to) {
 
 }  // namespace
 
-void TickWriter::Write(const hal::TickRecord& record, LogFile& file) {
+void TickWriter::Write(const hal::TickRecord& record, const ReplayData& data, LogFile& file) {
   ToMessage(record, tick_);
+  ToMessage(data, tick_);
   file.Write(kTickTopic, record.stamp_ns, tick_);
   if (record.has_feature) {
     ToMessage(record.feature, feature_);

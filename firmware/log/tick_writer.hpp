@@ -14,7 +14,7 @@ class TickWriter {
   explicit TickWriter(const RunLogConfig& config) : config_(config) {}
 
   // Call with every record, in order.
-  void Write(const hal::TickRecord& record, LogFile& file);
+  void Write(const hal::TickRecord& record, const ReplayData& data, LogFile& file);
 
  private:
   void WriteEvents(const hal::TickRecord& record, LogFile& file) const;

@@ -53,10 +53,10 @@ std::string Escaped(std::string text) {
 
 }  // namespace
 
-ReportPage::ReportPage(const fs::path& folder) {
+ReportPage::ReportPage(const fs::path& folder, const std::string& page) {
   const fs::path libraries = FOVEA_JAVASCRIPT_FOLDER;
   std::string* part = &before_data_;
-  std::istringstream lines(ReadFile(folder / "report.html"));
+  std::istringstream lines(ReadFile(folder / page));
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
     std::string mark;
@@ -85,10 +85,18 @@ std::string ReportPage::Make(const std::vector<RunData>& runs) const {
   if (runs.size() > 1) {
     title += " and " + runs[1].name;
   }
+  std::vector<std::string> jsons;
+  jsons.reserve(runs.size());
+  for (const RunData& run : runs) {
+    jsons.push_back(ToJson(run));
+  }
+  return Make(title, jsons);
+}
+
+std::string ReportPage::Make(const std::string& title, const std::vector<std::string>& runs) const {
   std::string page = before_data_;
   ReplaceAll(page, "FOVEA_TITLE", Escaped(title));
-  for (const RunData& run : runs) {
-    std::string json = ToJson(run);
+  for (std::string json : runs) {
     ReplaceAll(json, "</", "<\\/");
     ReplaceAll(json, "<!--", "\\u003c!--");
     page += "<script type=\"application/json\" class=\"fovea-run\">" + json + "</script>\n";

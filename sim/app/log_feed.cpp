@@ -4,12 +4,14 @@
 
 #include "fovea/build_info.hpp"
 #include "fovea/film/target_curve.hpp"
+#include "fovea/flight/messages.hpp"
 #include "fovea/log/picture_messages.hpp"
 #include "fovea/log/record_hash.hpp"
 #include "fovea/log/run_messages.hpp"
 #include "fovea/log/topics.hpp"
 #include "fovea/model/rotation.hpp"
 #include "fovea/run.pb.h"
+#include "fovea/tick.pb.h"
 #include "foxglove/image.pb.h"
 #include "foxglove/scene.pb.h"
 #include "sim/app/log_scene.hpp"
@@ -46,7 +48,8 @@ log::RunSetup MakeSetup(const RunDescription& about) {
 
 }  // namespace
 
-LogFeed::LogFeed(const RunDescription& about, const std::filesystem::path& path, bool may_drop)
+LogFeed::LogFeed(const RunDescription& about, const std::filesystem::path& path, bool may_drop,
+                 bool replayable)
     : about_(about), path_(path), log_(MakeRunLogConfig(about, path, may_drop)) {
   if (about.scene.has_eye) {
     log::AddOutline(about.intrinsics, film::GoalCurve(about.intrinsics, about.servo.feature), log::kGoalRole,
@@ -57,8 +60,19 @@ LogFeed::LogFeed(const RunDescription& about, const std::filesystem::path& path,
   log_.AddMetadata("build", BuildEntries());
   log_.AddMetadata("robot", {{"name", about.robot.name}, {"model", log::HashOfModel(about.servo.arm)}});
   log_.Add(log::kSetupTopic, 0, log::SetupMessage(MakeSetup(about)));
+  if (replayable) {
+    log_.Add(log::kConfigurationTopic, 0, flight::ToMessage(about.servo));
+  }
   log_.Add(log::kCalibrationTopic, 0, log::CalibrationMessage(0, about.intrinsics));
   log_.Add(log::kSceneTopic, 0, MakeSceneMessage(about.scene));
+}
+
+void LogFeed::AddRecord(const flight::FlightRecord& record) {
+  log_.AddTick(record.record, flight::ReplayDataOf(record));
+}
+
+void LogFeed::AddKeyframe(const flight::Keyframe& keyframe) {
+  log_.Add(log::kKeyframeTopic, keyframe.state.now_ns, flight::ToMessage(keyframe));
 }
 
 void LogFeed::AddTheory(const TheorySample& sample) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "fovea/flight/flight_recorder.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "fovea/log/run_log.hpp"
 #include "fovea/vision/detection.hpp"
@@ -17,14 +18,15 @@ namespace fovea::sim {
 class LogFeed {
  public:
   // Creates the file, with all that is known before the run. `about` must outlive it; `may_drop`: at real
-  // pace. std::runtime_error when it cannot.
-  LogFeed(const RunDescription& about, const std::filesystem::path& path, bool may_drop);
+  // pace; `replayable`: see RunFilesConfig. std::runtime_error when it cannot.
+  LogFeed(const RunDescription& about, const std::filesystem::path& path, bool may_drop, bool replayable);
 
   // From the thread that advances the world.
   void AddTruth(const Truth& truth);
   void AddTheory(const TheorySample& sample);
   // From the thread that empties the recorder.
-  void AddRecord(const hal::TickRecord& record) { log_.AddTick(record); }
+  void AddRecord(const flight::FlightRecord& record);
+  void AddKeyframe(const flight::Keyframe& keyframe);
   // From the vision thread. `X_CO`: where the target really was.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
 
@@ -34,6 +36,7 @@ class LogFeed {
   // When all is over: how long the ticks took, and the summary; then completes the file.
   void Finish(const linux_rt::DurationHistogram& ticks, const std::string& summary_json);
   [[nodiscard]] std::uint64_t dropped() const { return log_.dropped(); }
+  [[nodiscard]] bool failed() const { return log_.failed(); }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:

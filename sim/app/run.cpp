@@ -10,10 +10,10 @@
 #include <thread>
 
 #include "fovea/build_info.hpp"
+#include "fovea/flight/flight_recorder.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
-#include "fovea/linux_rt/record_ring.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "fovea/log/record_hash.hpp"
 #include "fovea/servo/servo_loop.hpp"
@@ -53,8 +53,7 @@ class Run {
         vision_(config::MakeVisionConfig(scenario.vision, about_.intrinsics, scenario.target)),
         stall_(MakeStallFault(scenario.faults, SeedOf(scenario, RandomStream::kStalls))),
         detector_(delay_,
-                  MakeDetectorFaults(scenario.faults, SeedOf(scenario, RandomStream::kDetectorFaults))),
-        ring_(kRingCapacity) {
+                  MakeDetectorFaults(scenario.faults, SeedOf(scenario, RandomStream::kDetectorFaults))) {
     if (!servo_.Init(about_.servo).ok()) {
       throw std::logic_error("a servo configuration that was checked is refused");
     }
@@ -73,8 +72,13 @@ class Run {
           std::make_unique<Eye>(about_, options_.pace == Pace::kReal ? 2 : 1024, trace_ ? &*trace_ : nullptr);
     }
     // After all that can be refused: what is refused leaves no folder.
-    files_ = std::make_unique<RunFiles>(
-        about_, RunFilesConfig{options_.out, options_.report, kRenderers, options_.pace == Pace::kReal});
+    // A board that ticks by its own timer sees other inputs than the host does.
+    const bool replayable = !board_ || !options_.board.by_timer;
+    files_ = std::make_unique<RunFiles>(about_, RunFilesConfig{options_.out, options_.report, kRenderers,
+                                                               options_.pace == Pace::kReal, replayable});
+    recorder_ = std::make_unique<flight::FlightRecorder>(
+        board_ ? static_cast<servo::ServoStep&>(*board_) : servo_,
+        !board_ && files_->HasLog() ? &servo_ : nullptr, kRingCapacity);
     BuildWorld();
   }
 
@@ -209,16 +213,18 @@ class Run {
   }
 
   void TakeRecords() {
-    ring_.Drain([this](const hal::TickRecord& record) {
+    const auto take = [this](const flight::FlightRecord& flown) {
+      const hal::TickRecord& record = flown.record;
       hash_.Add(record);
       verdict_->AddRecord(record);
-      files_->AddRecord(record);
+      files_->AddRecord(flown);
       if (options_.observer.on_record) {
         options_.observer.on_record(record);
       }
       mode_ = record.mode;
       recorded_s_ = static_cast<double>(record.stamp_ns) * 1e-9;
-    });
+    };
+    recorder_->Drain(take, [this](const flight::Keyframe& keyframe) { files_->AddKeyframe(keyframe); });
   }
 
   // Runs the servo by `clock` to the run's end, watched by a timeline where one is asked for.
@@ -231,12 +237,11 @@ class Run {
     std::optional<trace::TickTrace> ticks;
     std::optional<trace::ClockTrace> world;
     if (trace_) {
-      servo_.UseProbe(&ticks.emplace(trace_->servo(), meter_, ring_));
+      servo_.UseProbe(&ticks.emplace(trace_->servo(), meter_, *recorder_));
       world.emplace(trace_->servo(), stalling, "world");
     }
-    servo::ServoStep& servo = board_ ? static_cast<servo::ServoStep&>(*board_) : servo_;
-    servo::ServoLoop loop(servo, *faulty_arm_, world ? static_cast<hal::Clock&>(*world) : stalling, mailbox_,
-                          ticks ? static_cast<hal::Recorder&>(*ticks) : ring_,
+    servo::ServoLoop loop(*recorder_, *faulty_arm_, world ? static_cast<hal::Clock&>(*world) : stalling,
+                          mailbox_, ticks ? static_cast<hal::Recorder&>(*ticks) : *recorder_,
                           ticks ? static_cast<hal::TickProbe&>(*ticks) : meter_);
     if (motion_) {
       loop.UseMotion(*motion_);
@@ -320,7 +325,7 @@ class Run {
     s.ticks = counters_.ticks;
     s.overruns = counters_.overruns;
     s.missed_ticks = counters_.missed_ticks;
-    s.records_dropped = ring_.dropped();
+    s.records_dropped = recorder_->dropped();
     s.film_errors = files_->EndFilms();
     s.film_frames_dropped = files_->film_frames_dropped();
     s.log_entries_dropped = files_->log_entries_dropped();
@@ -369,7 +374,7 @@ class Run {
   FeatureDelay delay_;
   FaultyDetector detector_;
   hal::FeatureMailbox mailbox_;
-  linux_rt::RecordRing ring_;
+  std::unique_ptr<flight::FlightRecorder> recorder_;
   linux_rt::TickMeter meter_;
   log::RecordHash hash_;
   TargetLog targets_;

@@ -1,6 +1,9 @@
 #include "sim/app/run_files.hpp"
 
+#include <fmt/format.h>
+
 #include <future>
+#include <stdexcept>
 
 #include "fovea/config/share_folder.hpp"
 #include "fovea/film/complete_film.hpp"
@@ -37,7 +40,7 @@ RunFiles::RunFiles(const RunDescription& about, const RunFilesConfig& config) : 
     scene_film_ = std::make_unique<SceneFilm>(
         SceneFilmConfig{folder_->Begin("scene.mp4"), about.scene, config.renderer_index, config.may_drop});
   }
-  log_ = std::make_unique<LogFeed>(about, folder_->Begin("log.mcap"), config.may_drop);
+  log_ = std::make_unique<LogFeed>(about, folder_->Begin("log.mcap"), config.may_drop, config.replayable);
 }
 
 void RunFiles::AddTruth(const Truth& truth) {
@@ -60,9 +63,15 @@ void RunFiles::AddExposure(const Exposure& exposure) {
   }
 }
 
-void RunFiles::AddRecord(const hal::TickRecord& record) {
+void RunFiles::AddRecord(const flight::FlightRecord& record) {
   if (log_) {
     log_->AddRecord(record);
+  }
+}
+
+void RunFiles::AddKeyframe(const flight::Keyframe& keyframe) {
+  if (log_) {
+    log_->AddKeyframe(keyframe);
   }
 }
 
@@ -101,6 +110,20 @@ void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt
   if (!folder_) {
     return;
   }
+  try {
+    WriteAll(summary, end, ticks);
+  } catch (const std::exception& error) {
+    if (!log_ || !log_->failed()) {
+      throw;
+    }
+    // A disk that is full: what was recorded before is the more worth keeping.
+    throw std::runtime_error(fmt::format("{}; the log is kept as far as it goes, in {}", error.what(),
+                                         folder_->Keep("log.mcap", kFileNames).string()));
+  }
+}
+
+void RunFiles::WriteAll(const Summary& summary, const Exposure& end,
+                        const linux_rt::DurationHistogram& ticks) {
   const std::string summary_json = ToJson(summary);
   std::vector<config::OutputFile> files;
   // The bench takes longest to draw; the rest is written meanwhile.

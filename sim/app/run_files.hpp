@@ -23,6 +23,7 @@ struct RunFilesConfig {
   bool report = true;         // films, log, report and the bench's picture too
   int renderer_index = 0;     // the first that the run itself does not use; see SceneRenderer
   bool may_drop = false;      // at real pace: nobody waits for a film or a log
+  bool replayable = true;     // the servo's inputs are those that are recorded
 };
 
 class RunFiles {
@@ -36,7 +37,8 @@ class RunFiles {
   void AddExposure(const Exposure& exposure);
   void AddTheory(const TheorySample& sample);
   // From the thread that empties the recorder.
-  void AddRecord(const hal::TickRecord& record);
+  void AddRecord(const flight::FlightRecord& record);
+  void AddKeyframe(const flight::Keyframe& keyframe);
   // From the vision thread. `X_CO`: where the target really was.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
 
@@ -44,6 +46,7 @@ class RunFiles {
   // for each that says why.
   std::vector<std::string> EndFilms();
 
+  [[nodiscard]] bool HasLog() const { return log_ != nullptr; }
   // When the threads are done: frames that the vision task got, and in how many it found the target; what
   // found no place in films and log.
   [[nodiscard]] std::uint64_t frames() const { return frames_.frames(); }
@@ -52,10 +55,11 @@ class RunFiles {
   [[nodiscard]] std::uint64_t log_entries_dropped() const { return log_ ? log_->dropped() : 0; }
 
   // Puts everything in place; `end` is the bench as it is at the end. Throws what went wrong with any of it;
-  // then the folder is as it was.
+  // then the folder is as it was, but for a log that could not be written on: it stands there alone.
   void Write(const Summary& summary, const Exposure& end, const linux_rt::DurationHistogram& ticks);
 
  private:
+  void WriteAll(const Summary& summary, const Exposure& end, const linux_rt::DurationHistogram& ticks);
   [[nodiscard]] bool HasReport() const { return page_.has_value(); }
 
   const RunDescription& about_;

@@ -90,6 +90,10 @@ INSTANTIATE_TEST_SUITE_P(
              "fovea/(hal|model|features|vision|linux_rt|log)/.*|(log_file|mcap_format|tick_writer)[.]hpp|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|(fmt|google|openssl|opencv2)/.*|Eigen/.*|(zlib|zstd)[.]h",
              "nothing of the firmware sees the simulator"},
+        Rule{"firmware/flight",
+             "fovea/(hal|model|features|servo|link|linux_rt|log|flight)/.*|(fovea|foxglove)/[a-z]+[.]pb[.]h|"
+             "(fmt|google)/.*",
+             "what is recorded and replayed is the servo, by its log"},
         Rule{"firmware/film",
              "fovea/(hal|model|features|vision|film)/.*|(fmt|opencv2|libavcodec|libavformat|libavutil)/.*",
              "a film is made of frames and detections alone"},
@@ -110,14 +114,16 @@ INSTANTIATE_TEST_SUITE_P(
              "nlohmann|Eigen|foxglove)/"
              ".*|(poll|unistd)[.]h",
              "the hardware target sees drivers and servo, not the simulator"},
-        Rule{"tools/fovea", "(fovea|fmt|CLI|nlohmann|Eigen|opencv2|sys|tools/bench)/.*|[a-z_]+[.]h(pp)?",
+        Rule{"tools/fovea",
+             "(fovea|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys|tools/bench)/.*|[a-z_]+[.]h(pp)?",
              "works beside runs, without the simulator"},
         Rule{"tools/bench",
              "(fovea|fmt|CLI|nlohmann|opencv2|Eigen|kdl|arpa|netinet|sys|linux)/.*|[a-z_]+[.]h(pp)?",
              "measures, without the simulator"},
         Rule{"firmware/include",
              "(fovea/"
-             "(hal|model|features|servo|link|vision|config|design|film|robots|linux_rt|log|report|trace)/"
+             "(hal|model|features|servo|link|vision|config|design|film|flight|robots|linux_rt|log|report|"
+             "trace)/"
              "|Eigen/"
              "|opencv2/"
              "|google/|CLI/).*",

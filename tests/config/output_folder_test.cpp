@@ -66,5 +66,18 @@ TEST(OutputFolderTest, AFolderThatCannotBeIsRefusedAtOnce) {
   EXPECT_THROW(OutputFolder(temp.path() / "file" / "below"), InputError);
 }
 
+// What is kept stands alone: nothing of an earlier run beside it.
+TEST(OutputFolderTest, KeepsWhatWasBegunWhereTheRestCannotBe) {
+  const test::TempFolder temp;
+  {
+    OutputFolder folder(temp.path());
+    folder.Replace({{"log.mcap", "of before"}, {"x.json", "of before"}}, {});
+    std::ofstream(folder.Begin("log.mcap")) << "half a lo";
+    EXPECT_EQ(folder.Keep("log.mcap", {"log.mcap", "x.json"}), temp.path() / "log.mcap");
+  }
+  EXPECT_EQ(Read(temp.path() / "log.mcap"), "half a lo");
+  EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 1);
+}
+
 }  // namespace
 }  // namespace fovea::config

@@ -1,6 +1,8 @@
 // The drivers of linux_rt against the contracts.
 #include <atomic>
+#include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "contract/clock_contract.hpp"
 #include "contract/recorder_contract.hpp"
@@ -58,6 +60,25 @@ TEST(RecordRingTest, TwoThreadsLoseNothingSilently) {
   EXPECT_TRUE(whole);
   EXPECT_EQ(taken + ring.dropped(), kCount);
   EXPECT_GT(taken, 0U);
+}
+
+// Whoever cannot keep a record does not get it again.
+TEST(RecordRingTest, WhatIsInHandWhenTakingFailsIsGone) {
+  linux_rt::RecordRing ring(8);
+  hal::TickRecord record;
+  for (record.tick = 0; record.tick < 4; ++record.tick) {
+    ring.Record(record);
+  }
+  std::vector<std::uint64_t> taken;
+  const auto take = [&taken](const hal::TickRecord& r) {
+    taken.push_back(r.tick);
+    if (r.tick == 1) {
+      throw std::runtime_error("no room");
+    }
+  };
+  EXPECT_THROW(ring.Drain(take), std::runtime_error);
+  ring.Drain(take);
+  EXPECT_EQ(taken, (std::vector<std::uint64_t>{0, 1, 2, 3}));
 }
 
 }  // namespace

@@ -55,6 +55,7 @@ class Loopback(TwoPrograms):
             # A busy machine may keep it from its pictures in the last moment, and then it says so.
             self.assertEqual(s["converged"], s["mode"] == "track" and s["camera"]["seen_error_px"] <= 3.0, s["verdict"])
             self.assertEqual(s["fault"], "none")
+            self.replay(out, s["ticks"])
             for reader in (["read_log.mjs", str(out), "hardware"],
                            ["open_report.mjs", str(out / "report.html"), str(out), "hardware"]):
                 done = subprocess.run(["node", READERS / reader[0], *reader[1:]], timeout=120, capture_output=True,
@@ -96,6 +97,36 @@ class Loopback(TwoPrograms):
         s = self.summary_of(hw)
         self.assertEqual((s["ticks"], s["robot"]["motions"], s["robot"]["commands"]), (0, 0, 0))
         self.assertGreater(s["robot"]["states"], 0)
+
+    def test_a_run_with_an_operator_is_replayed_to_the_last_bit(self):
+        """Words that are typed, the stop button and a recovery: all of it reaches the servo as it did."""
+        with tempfile.TemporaryDirectory() as temp:
+            port = self.serve("--pace", "lockstep", "--loss", "0.02")
+            hw = self.operator(port, "--enable", "--out", temp)
+            try:
+                self.wait_for(hw, "hold")
+                self.say(hw, "track")
+                time.sleep(0.2)
+                self.say(hw, "hold")
+                self.server.send_signal(signal.SIGUSR1)
+                self.wait_for(hw, "fault: arm_lost")
+                self.server.send_signal(signal.SIGUSR1)
+                time.sleep(0.3)
+                self.say(hw, "recover")
+                self.wait_for(hw, "hold")
+            finally:
+                hw.send_signal(signal.SIGINT)
+                s = self.summary_of(hw)
+            self.assertEqual((s["records_dropped"], s["log_entries_dropped"]), (0, 0))
+            self.replay(temp, s["ticks"])
+
+    def test_a_run_at_real_pace_is_replayed_to_the_last_bit(self):
+        with tempfile.TemporaryDirectory() as temp:
+            port = self.serve("--pace", "real", "--late-ms", "3", "--loss", "0.02", camera=True)
+            s = self.hardware(port, "--track", "--seconds", "3", "--out", temp, "--set", "robot.time=computer", "--set",
+                              "camera.time=computer", "--set", "robot.state_timeout_ms=50", camera=True, codes=(0, 1))
+            self.assertEqual((s["records_dropped"], s["log_entries_dropped"]), (0, 0))
+            self.replay(temp, s["ticks"])
 
     def test_a_silent_operator_has_the_arm_held(self):
         port = self.serve("--pace", "lockstep")

@@ -1,6 +1,7 @@
 """The simulated robot and the hardware program, two processes and a network, and what their tests share."""
 
 import json
+import pathlib
 import signal
 import subprocess
 import sys
@@ -56,6 +57,15 @@ class TwoPrograms(unittest.TestCase):
         watchdog.start()
         self.addCleanup(watchdog.cancel)
         return hw
+
+    def replay(self, out, ticks):
+        """The log in the folder `out`, its recorded inputs put through the servo again: the same to the last bit."""
+        done = subprocess.run([pathlib.Path(HW).parent / "fovea", "replay", str(out), "--json"], timeout=60,
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        replay = json.loads(done.stdout)
+        self.assertTrue(replay["identical"] and replay["same_build"] and replay["complete"])
+        self.assertEqual((replay["ticks"], len(replay["segments"])), (ticks, 1))
 
     def say(self, hw, word):
         hw.stdin.write(word + "\n")

@@ -2,9 +2,14 @@
 #include "fovea/log/run_log.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <chrono>
+#include <csignal>
 #include <fstream>
+#include <iostream>
 #include <map>
+#include <thread>
 
 #include "fovea/log/mcap_reader.hpp"
 #include "fovea/log/topics.hpp"
@@ -132,6 +137,22 @@ TEST_F(RunLogTest, SaysWhereTheFramesAre) {
   EXPECT_NEAR(arm.rotation().z(), 0.7071067811865476, 1e-12);
 }
 
+// What was added is in the file a moment later, though nothing follows it and nobody completes it.
+TEST_F(RunLogTest, WhatWasAddedIsInTheFileSoon) {
+  RunLog log(OneJoint(path_));
+  std::size_t added = 0;
+  for (int round = 0; round < 3; ++round) {
+    for (int i = 0; i < 10; ++i) {
+      log.AddTick(RecordAt(added++));
+    }
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (Messages<Tick>(kTickTopic).size() < added) {
+      ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+}
+
 // A log that cannot be written any more says so at the end; until then it takes everything, and nobody waits.
 TEST_F(RunLogTest, AFullDiskHoldsNobodyUp) {
   if (!fs::exists("/dev/full")) {
@@ -145,6 +166,50 @@ TEST_F(RunLogTest, AFullDiskHoldsNobodyUp) {
     log.AddAttachment("a", "text/plain", std::string(100'000, 'x'));
   }
   EXPECT_THROW(log.Finish(), std::runtime_error);
+  EXPECT_TRUE(log.failed());
+}
+
+// What was to be written when it failed is counted, like what came after.
+TEST_F(RunLogTest, AFullDiskLeavesNothingUncounted) {
+  if (!fs::exists("/dev/full")) {
+    GTEST_SKIP() << "no /dev/full here";
+  }
+  constexpr int kAttachments = 50;
+  RunLog log(OneJoint("/dev/full"));
+  for (int i = 0; i < kAttachments; ++i) {
+    log.AddAttachment("a", "text/plain", std::string(100'000, 'x'));
+  }
+  EXPECT_THROW(log.Finish(), std::runtime_error);
+  EXPECT_EQ(log.dropped(), static_cast<std::uint64_t>(kAttachments));
+}
+
+// A disk that is full once a part of it is written: the file is readable up to there, and every tick is there
+// or counted, but for those of the last second before.
+TEST_F(RunLogTest, AFullDiskLeavesWhatWasWrittenBefore) {
+  constexpr std::uint64_t kTicks = 60'000;
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit small = before;
+  small.rlim_cur = 1'000'000;  // bytes: beyond it a write fails as on a full disk
+  setrlimit(RLIMIT_FSIZE, &small);
+  RunLog log(OneJoint(path_));
+  for (std::uint64_t i = 0; i < kTicks; ++i) {
+    log.AddTick(RecordAt(i));
+  }
+  EXPECT_THROW(log.Finish(), std::runtime_error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_TRUE(log.failed());
+  EXPECT_LE(fs::file_size(path_), 1'000'000U);
+  const auto ticks = Messages<Tick>(kTickTopic);
+  std::cout << ticks.size() << " ticks written, " << log.dropped() << " counted\n";
+  ASSERT_GT(ticks.size(), 1000U);
+  for (std::uint64_t i = 0; i < ticks.size(); ++i) {
+    ASSERT_EQ(ticks[i].tick(), i);
+  }
+  EXPECT_GT(log.dropped(), 0U);
+  EXPECT_LE(ticks.size() + log.dropped(), kTicks);
 }
 
 TEST_F(RunLogTest, AFileIsAttachedWithEveryByteOrRefused) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <functional>
 
+#include "fovea/flight/flight_recorder.hpp"
 #include "fovea/hal/types.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/record_ring.hpp"
@@ -166,6 +167,26 @@ TEST_F(TickHeapTest, NoHeapCallInCommandedMotionsAndWithAnyLaw) {
                             (1 << static_cast<int>(hal::Mode::kHold)) |
                             (1 << static_cast<int>(hal::Mode::kMove)));
   EXPECT_EQ(meter_.durations().count(), 5000U);
+  EXPECT_EQ(meter_.heap_calls(), 0U);
+}
+
+// Digests and keyframes are taken in the tick.
+TEST_F(TickHeapTest, NoHeapCallWithTheFlightRecorder) {
+  flight::FlightRecorder recorder(task_, &task_, 4096);
+  SteppingClock clock([&](std::int64_t now_ns) {
+    arm_.Advance();
+    if (now_ns / hal::kNsPerMs % 33 == 0) {
+      PutFeature(now_ns);
+    }
+  });
+  servo::ServoLoop loop(recorder, arm_, clock, mailbox_, recorder, meter_);
+  ASSERT_TRUE(loop.Run(3 * hal::kNsPerSecond).ok());
+  int records = 0;
+  int keyframes = 0;
+  recorder.Drain([&](const flight::FlightRecord& record) { records += record.state_digest ? 1 : 0; },
+                 [&](const flight::Keyframe&) { ++keyframes; });
+  EXPECT_EQ(records, 3000);
+  EXPECT_EQ(keyframes, 3);
   EXPECT_EQ(meter_.heap_calls(), 0U);
 }
 

@@ -36,11 +36,12 @@ class HwFilesTest : public testing::Test {
     const std::vector<std::uint8_t> pixels(
         static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), 90);
     for (int tick = 0; tick < kTicks; ++tick) {
-      hal::TickRecord record;
+      flight::FlightRecord entry;
+      hal::TickRecord& record = entry.record;
       record.tick = static_cast<std::uint64_t>(tick);
       record.stamp_ns = kStartNs + tick * hal::kTickPeriodNs;
       record.arm.num_joints = record.command.num_joints = robot_.model.num_joints;
-      files.AddRecord(record);
+      files.AddRecord(entry);
       if (tick % 70 == 10) {
         hal::Frame frame;
         frame.stamp_ns = record.stamp_ns;

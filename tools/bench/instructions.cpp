@@ -6,6 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "fovea/flight/flight_recorder.hpp"
 #include "fovea/trace/tick_trace.hpp"
 #include "scratch.hpp"
 #include "shell.hpp"
@@ -36,12 +37,13 @@ double Totals(const fs::path& file) {
 }  // namespace
 
 // Found by its name: the one function in which callgrind counts.
-[[gnu::noinline]] void FoveaBenchCountedStep(servo::ServoTask& task, const servo::ServoInputs& inputs,
-                                             servo::ServoOutputs& outputs) {
-  task.Step(inputs, outputs);
+[[gnu::noinline]] void FoveaBenchCountedStep(servo::ServoStep& step, hal::Recorder& recorder,
+                                             const servo::ServoInputs& inputs, servo::ServoOutputs& outputs) {
+  step.Step(inputs, outputs);
+  recorder.Record(outputs.record);
 }
 
-void RunCounted(const std::vector<TickCase>& cases, const std::string& mode, bool traced) {
+void RunCounted(const std::vector<TickCase>& cases, const std::string& mode, bool traced, bool recorded) {
   std::uint64_t counted = 0;
   for (const TickCase& c : cases) {
     // Run twice: which ticks are of that mode is known only after them.
@@ -56,14 +58,19 @@ void RunCounted(const std::vector<TickCase>& cases, const std::string& mode, boo
     if (traced) {
       task.UseProbe(&tick_trace);
     }
+    flight::FlightRecorder flight(task, &task, 64);
+    servo::ServoStep& step = recorded ? static_cast<servo::ServoStep&>(flight) : task;
+    hal::Recorder& recorder = recorded ? static_cast<hal::Recorder&>(flight) : unwatched;
     servo::ServoOutputs outputs;
     for (const servo::ServoInputs& inputs : c.inputs) {
+      flight.Drain([](const flight::FlightRecord&) {}, [](const flight::Keyframe&) {});
       scout.Step(inputs, outputs);
       if (hal::Name(outputs.record.mode) == mode) {
-        FoveaBenchCountedStep(task, inputs, outputs);
+        FoveaBenchCountedStep(step, recorder, inputs, outputs);
         ++counted;
       } else {
-        task.Step(inputs, outputs);
+        step.Step(inputs, outputs);
+        recorder.Record(outputs.record);
       }
     }
   }

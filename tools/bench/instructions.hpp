@@ -10,8 +10,9 @@
 namespace fovea::bench {
 
 // In the process that valgrind watches: runs all `cases`, the ticks of `mode` where they are counted; prints
-// how many they were. `traced`: each leaves its spans on a timeline, as in `fovea-sim run --trace`.
-void RunCounted(const std::vector<TickCase>& cases, const std::string& mode, bool traced);
+// how many they were. `traced`: each leaves its spans on a timeline, as in `fovea-sim run --trace`;
+// `recorded`: the flight recorder stands around it, as in every run that leaves a log.
+void RunCounted(const std::vector<TickCase>& cases, const std::string& mode, bool traced, bool recorded);
 
 // Runs this program again under valgrind, `arguments` before `--count MODE`. The mean per tick of `mode`;
 // nothing when no tick was of that mode. Throws std::runtime_error when valgrind is not there or fails.

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
                          "Count instructions too, by valgrind (minutes)");
   tick_command->add_option("--count", tick.count)->group("");  // of the process that valgrind watches
   tick_command->add_flag("--traced", tick.traced)->group("");
+  tick_command->add_flag("--recorded", tick.recorded)->group("");
   tick_command->add_flag("--json", tick.json, "Print JSON");
 
   bench::JitterArguments jitter;

@@ -162,11 +162,13 @@ void AddInstructions(const TickArguments& arguments, std::vector<Figure>& figure
       figures.push_back({fmt::format("instructions_{}", mode), *count, "instructions", {}});
     }
   }
-  std::vector<std::string> traced = words;
-  traced.emplace_back("--traced");
-  Say("counting instructions with a timeline ...");
-  if (const std::optional<double> count = CountInstructions(traced, "track")) {
-    figures.push_back({"instructions_track_traced", *count, "instructions", {}});
+  for (const char* how : {"traced", "recorded"}) {
+    std::vector<std::string> more = words;
+    more.push_back(fmt::format("--{}", how));
+    Say(fmt::format("counting instructions, {} ...", how).c_str());
+    if (const std::optional<double> count = CountInstructions(more, "track")) {
+      figures.push_back({fmt::format("instructions_track_{}", how), *count, "instructions", {}});
+    }
   }
 }
 
@@ -229,7 +231,7 @@ int RunTick(const TickArguments& arguments) {
   }
   const std::vector<TickCase> cases = Cases(arm, arguments.runs);
   if (!arguments.count.empty()) {
-    RunCounted(cases, arguments.count, arguments.traced);
+    RunCounted(cases, arguments.count, arguments.traced, arguments.recorded);
     return config::kDone;
   }
   std::vector<Figure> figures;

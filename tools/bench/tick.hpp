@@ -11,6 +11,7 @@ struct TickArguments {
   bool instructions = false;  // also count them, under valgrind
   std::string count;          // internal: the mode whose ticks are counted in this process
   bool traced = false;        // internal: and each of them leaves its spans on a timeline
+  bool recorded = false;      // internal: and each of them goes through the flight recorder
   bool json = false;
 };
 

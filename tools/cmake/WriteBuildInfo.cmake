@@ -1,4 +1,4 @@
-# Run by the build: writes OUTPUT from the checkout at SOURCE and the library LIBRARY, and leaves the file alone
+# Run by the build: writes OUTPUT from the checkout at SOURCE and the libraries SERVO and LINK, and leaves the file alone
 # when nothing changed.
 find_package(Git QUIET)
 set(revision "")
@@ -6,13 +6,15 @@ if(GIT_FOUND)
   execute_process(COMMAND ${GIT_EXECUTABLE} -C ${SOURCE} describe --always --dirty
                   OUTPUT_VARIABLE revision OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
 endif()
-file(SHA256 ${LIBRARY} hash)
+file(SHA256 ${SERVO} servo_hash)
+file(SHA256 ${LINK} link_hash)
 set(content "// Written by tools/cmake/WriteBuildInfo.cmake.
 #include \"fovea/build_info.hpp\"
 
 namespace fovea {
 const char* const kGitRevision = \"${revision}\";
-const char* const kServoLibraryHash = \"${hash}\";
+const char* const kServoLibraryHash = \"${servo_hash}\";
+const char* const kLinkLibraryHash = \"${link_hash}\";
 const char* const kVersion = \"${VERSION}\";
 const char* const kCompiler = \"${COMPILER}\";
 const char* const kFlags = \"${FLAGS}\";

@@ -14,9 +14,11 @@
 #include "fovea/config/guard_table.hpp"
 #include "fovea/config/program.hpp"
 #include "fovea/config/share_folder.hpp"
+#include "fovea/flight/log_ticks.hpp"
 #include "fovea/report/report.hpp"
 #include "gains.hpp"
 #include "model.hpp"
+#include "replay.hpp"
 
 namespace {
 
@@ -39,7 +41,7 @@ std::filesystem::path DefaultOut(const std::vector<std::string>& logs) {
 int Report(const ReportArguments& arguments) {
   std::vector<report::RunData> runs;
   for (const std::string& log : arguments.logs) {
-    runs.push_back(report::ReadRun(log));
+    runs.push_back(report::ReadRun(flight::LogIn(log)));
     if (!runs.back().complete) {
       fmt::print(stderr, "fovea: {}; the report shows what is there\n", runs.back().why_incomplete);
     }
@@ -63,7 +65,8 @@ int Report(const ReportArguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Fovea's tools beside its runs: reports of logs, design of gains, models of arms, what features "
+      "Fovea's tools beside its runs: reports and replays of logs, design of gains, models of arms, what "
+      "features "
       "control, "
       "what the eye sees, calibration."};
   app.require_subcommand(1);
@@ -73,13 +76,14 @@ int main(int argc, char** argv) {
       "  fovea report out/ball\n"
       "  fovea report out/ball/log.mcap --out ball.html\n"
       "  fovea report out/slow out/fast --out comparison.html\n"
+      "  fovea replay out/ball\n"
       "  fovea gains --mass 16 --damping 16 --stiffness 4 --closed-loop-stiffness 16\n"
       "  fovea model panda\n"
       "  fovea features --target triangle --pose 0,0,0.4,1,0,0,0\n"
       "  fovea atlas --target sphere --runs 200 --jobs 2\n"
       "  fovea detect --target circle photo.png\n"
       "  fovea calibrate intrinsics boards/ --out camera.toml\n"
-      "Exit: 0 done, 1 an atlas missed its goal, 2 wrong usage or input.");
+      "Exit: 0 done, 1 an atlas missed its goal or a replay differs, 2 wrong usage or input.");
 
   ReportArguments arguments;
   CLI::App* report = app.add_subcommand("report", "make the report of a log, or of two beside each other");
@@ -89,6 +93,8 @@ int main(int argc, char** argv) {
   report->add_option("--out", arguments.out,
                      "the file to write; report.html beside the log, or comparison.html for two");
 
+  ReplayArguments replay_arguments;
+  const CLI::App* replay = AddReplay(app, replay_arguments);
   GainsArguments gains_arguments;
   const CLI::App* gains = AddGains(app, gains_arguments);
   DetectArguments detect_arguments;
@@ -108,6 +114,9 @@ int main(int argc, char** argv) {
     if (guards->parsed()) {
       fmt::print("{}", config::GuardTableAsMarkdown());
       return config::kDone;
+    }
+    if (replay->parsed()) {
+      return Replay(replay_arguments);
     }
     if (atlas->parsed()) {
       return Atlas(atlas_arguments);

@@ -130,11 +130,7 @@ robots::Robot LoadHwRobot(const HwConfig& config) {
 
 servo::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot) {
   config::ServoSettings settings = config.servo;
-  const double scale = config.robot.speed_scale;
-  settings.config.law.lambda *= scale;
-  settings.config.law.lambda_near *= scale;
-  settings.config.guard.joint_velocity_fraction *= scale;
-  settings.config.guard.cartesian_speed *= scale;
+  config::ScaleSpeed(config.robot.speed_scale, settings);
   if (!config.HasCamera()) {
     settings.keep_in_view = false;  // there is no picture to keep anything in
     return config::MakeServoConfig(settings, robot, model::Pose{}, vision::Intrinsics{},

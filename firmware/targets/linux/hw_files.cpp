@@ -3,17 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <vector>
 
 #include "fovea/build_info.hpp"
 #include "fovea/config/share_folder.hpp"
 #include "fovea/film/complete_film.hpp"
 #include "fovea/film/target_curve.hpp"
+#include "fovea/flight/messages.hpp"
 #include "fovea/log/picture_messages.hpp"
 #include "fovea/log/record_hash.hpp"
 #include "fovea/log/run_messages.hpp"
 #include "fovea/log/topics.hpp"
 #include "fovea/run.pb.h"
+#include "fovea/tick.pb.h"
 #include "fovea/vision/outline.hpp"
 #include "foxglove/scene.pb.h"
 #include "hw_scene.hpp"
@@ -104,16 +107,21 @@ void HwFiles::Begin(std::int64_t start_ns) {
     log_.Add(log::kCalibrationTopic, start_ns, log::CalibrationMessage(start_ns, setup.intrinsics));
   }
   log_.Add(log::kSetupTopic, start_ns, log::SetupMessage(setup));
+  log_.Add(log::kConfigurationTopic, start_ns, flight::ToMessage(servo_));
   log_.Add(log::kSceneTopic, start_ns, MakeSceneMessage(robot_, config_.HasCamera(), servo_.feature));
   begun_ = true;
 }
 
-void HwFiles::AddRecord(const hal::TickRecord& record) {
+void HwFiles::AddRecord(const flight::FlightRecord& record) {
   if (!begun_) {
-    Begin(record.stamp_ns);
+    Begin(record.record.stamp_ns);
   }
-  last_ns_ = record.stamp_ns;
-  log_.AddTick(record);
+  last_ns_ = record.record.stamp_ns;
+  log_.AddTick(record.record, flight::ReplayDataOf(record));
+}
+
+void HwFiles::AddKeyframe(const flight::Keyframe& keyframe) {
+  log_.Add(log::kKeyframeTopic, keyframe.state.now_ns, flight::ToMessage(keyframe));
 }
 
 void HwFiles::AddFrame(const hal::Frame& frame, const vision::Detection& detection) {
@@ -162,6 +170,19 @@ LogCounters HwFiles::EndFilm() {
 }
 
 void HwFiles::Write(const HwSummary& summary) {
+  try {
+    WriteAll(summary);
+  } catch (const std::exception& error) {
+    if (!log_.failed()) {
+      throw;
+    }
+    // A disk that is full: what was recorded before is the more worth keeping.
+    throw std::runtime_error(fmt::format("{}; the log is kept as far as it goes, in {}", error.what(),
+                                         folder_.Keep("log.mcap", kFileNames).string()));
+  }
+}
+
+void HwFiles::WriteAll(const HwSummary& summary) {
   const std::string summary_json = ToJson(summary);
   if (!begun_) {  // nothing moved, and there is nothing to draw
     folder_.Replace({{"summary.json", summary_json}}, kFileNames);

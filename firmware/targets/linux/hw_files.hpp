@@ -10,6 +10,7 @@
 
 #include "fovea/config/output_folder.hpp"
 #include "fovea/film/eye_film.hpp"
+#include "fovea/flight/flight_recorder.hpp"
 #include "fovea/log/run_log.hpp"
 #include "fovea/report/report.hpp"
 #include "fovea/robots/robot.hpp"
@@ -29,17 +30,20 @@ class HwFiles {
           const servo::ServoConfig& servo, double duration_s);
 
   // From the thread that empties the recorder; the log begins with the first. Never waits.
-  void AddRecord(const hal::TickRecord& record);
+  void AddRecord(const flight::FlightRecord& record);
+  void AddKeyframe(const flight::Keyframe& keyframe);
   // From the vision thread. What is exposed before the log begins is left out.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection);
 
   // When the threads are done: completes the film, and says what was kept and what was not. A film that fails
   // is left out, and that is all.
   LogCounters EndFilm();
-  // Puts everything in place. Throws what went wrong with any of it; then the folder is as it was.
+  // Puts everything in place. Throws what went wrong with any of it; then the folder is as it was, but for a
+  // log that could not be written on: it stands there alone.
   void Write(const HwSummary& summary);
 
  private:
+  void WriteAll(const HwSummary& summary);
   void Begin(std::int64_t start_ns);
   void KeepPicture(const hal::Frame& frame, const vision::Detection& detection);
 

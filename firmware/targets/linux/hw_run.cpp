@@ -10,10 +10,10 @@
 #include <thread>
 #include <utility>
 
+#include "fovea/flight/flight_recorder.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
-#include "fovea/linux_rt/record_ring.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
 #include "fovea/log/record_hash.hpp"
 #include "hw_files.hpp"
@@ -91,7 +91,7 @@ class Session {
         by_robot_(config.robot.time == "robot"),
         clock_(by_robot_ ? static_cast<hal::Clock&>(robot_clock_) : monotonic_),
         enabled_(options.enable || !options.allow_motion),
-        ring_(kRingCapacity) {
+        recorder_(task_, options.out.empty() ? nullptr : &task_, kRingCapacity) {
     // Checked by MakeServoConfig already; it is refused there, in words.
     static_cast<void>(task_.Init(servo_));
     summary_.config = config.name;
@@ -151,7 +151,7 @@ class Session {
       done_ = true;
       return;
     }
-    loop_.emplace(task_, *arm_, clock_, features_, ring_, meter_);
+    loop_.emplace(recorder_, *arm_, clock_, features_, recorder_, meter_);
     if (options_.track) {
       loop_->Ask(servo::Request::kTrack);
     }
@@ -223,11 +223,16 @@ class Session {
   }
 
   void TakeRecords() {
-    ring_.Drain([this](const hal::TickRecord& record) {
-      watch_.Add(record);
-      hash_.Add(record);
+    const auto take = [this](const flight::FlightRecord& flown) {
+      watch_.Add(flown.record);
+      hash_.Add(flown.record);
       if (files_) {
-        files_->AddRecord(record);
+        files_->AddRecord(flown);
+      }
+    };
+    recorder_.Drain(take, [this](const flight::Keyframe& keyframe) {
+      if (files_) {
+        files_->AddKeyframe(keyframe);
       }
     });
   }
@@ -260,7 +265,7 @@ class Session {
     summary_.heap_counted = linux_rt::HeapCounterActive();
     summary_.heap_calls = meter_.heap_calls();
     summary_.page_faults = meter_.page_faults();
-    summary_.records_dropped = ring_.dropped();
+    summary_.records_dropped = recorder_.dropped();
     summary_.log_hash = hash_.Finish();
     Judge(summary_);
     if (files_) {
@@ -296,7 +301,7 @@ class Session {
   std::optional<HwFiles> files_;  // the vision thread uses it
   std::optional<HwVision> vision_;
   std::optional<franka::FrankaArm> arm_;
-  linux_rt::RecordRing ring_;
+  flight::FlightRecorder recorder_;
   linux_rt::TickMeter meter_;
   log::RecordHash hash_;
   std::optional<servo::ServoLoop> loop_;

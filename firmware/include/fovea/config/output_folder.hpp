@@ -30,6 +30,11 @@ class OutputFolder {
   // the rest is too.
   void Replace(const std::vector<OutputFile>& files, const std::vector<std::string>& all_names) const;
 
+  // Puts in place what was written to the path that Begin gave for `name`, as far as it goes, and takes away
+  // what an earlier run left under `all_names`. For what shall outlive a Replace that cannot be. Returns its
+  // path.
+  std::filesystem::path Keep(const std::string& name, const std::vector<std::string>& all_names) const;
+
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
  private:

@@ -33,6 +33,9 @@ struct ServoSettings {
 // The settings must outlive the table.
 void AddServoKeys(ServoSettings& settings, KeyTable& keys);
 
+// The speeds that robot.speed_scale makes a share of: gains and speed limits.
+void ScaleSpeed(double scale, ServoSettings& settings);
+
 // The servo's whole configuration for `robot`, with the camera at `X_EC`. InputError: a posture that does not
 // fit the robot, a feature that is none of the target's, or anything that ServoTask::Init refuses.
 servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::Robot& robot,

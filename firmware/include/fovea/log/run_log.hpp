@@ -23,6 +23,7 @@
 #include "fovea/hal/camera.hpp"
 #include "fovea/hal/record.hpp"
 #include "fovea/linux_rt/bounded_ring.hpp"
+#include "fovea/log/tick_message.hpp"
 #include "fovea/model/arm_model.hpp"
 
 namespace google::protobuf {
@@ -74,7 +75,7 @@ class RunLog {
   RunLog& operator=(const RunLog&) = delete;
 
   // From one thread. Real-time when the log may drop.
-  void AddTick(const hal::TickRecord& record);
+  void AddTick(const hal::TickRecord& record, const ReplayData& data = {});
   // From one thread. Real-time when the log may drop.
   void AddTruth(const TruthSample& sample);
   // From any thread that need not be real-time. For messages that are few and small: none is dropped.
@@ -88,26 +89,35 @@ class RunLog {
 
   // Writes what is left and completes the file. Throws what went wrong at any time.
   void Finish();
-  // Ticks, samples and pictures that found no place; and the pictures alone.
+  // The file could not be written; what was before stays readable.
+  [[nodiscard]] bool failed() const;
+  // Ticks, samples and pictures that found no place, and all that came after a failure (not what had been
+  // collected for the file then, of the last second at most); and the pictures alone.
   [[nodiscard]] std::uint64_t dropped() const;
   [[nodiscard]] std::uint64_t dropped_images() const;
 
  private:
   using Job = std::function<void(LogFile&)>;
+  struct LoggedTick {
+    hal::TickRecord record;
+    ReplayData data;
+  };
 
   void Push(Job job);
   void WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& file);
   void WriteAll();
+  bool WaitForMore();
+  void CountLost();
   // Writes what is there; false when nothing was.
   bool WriteRound();
   void Close();
   template <typename T>
-  void PushOrWait(linux_rt::BoundedRing<T>& ring, const T& value);
+  void WaitForRoom(const linux_rt::BoundedRing<T>& ring) const;
 
   const RunLogConfig config_;
   std::unique_ptr<LogFile> file_;
   std::unique_ptr<TickWriter> tick_writer_;
-  linux_rt::BoundedRing<hal::TickRecord> ticks_;
+  linux_rt::BoundedRing<LoggedTick> ticks_;
   linux_rt::BoundedRing<TruthSample> truths_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
@@ -116,6 +126,7 @@ class RunLog {
   std::vector<cv::Mat> spare_;      // pictures whose memory is used again
   bool closed_ = false;
   std::uint64_t dropped_images_ = 0;
+  std::uint64_t lost_ = 0;      // after the failure
   std::exception_ptr failure_;  // of the writing thread; after it the log takes everything and keeps nothing
   std::atomic<bool> failed_{false};
   std::thread thread_;

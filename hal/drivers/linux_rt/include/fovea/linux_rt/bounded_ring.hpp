@@ -17,12 +17,19 @@ class BoundedRing {
 
   // From the writing thread. Real-time: yes.
   void Push(const T& value) noexcept {
+    Fill([&value](T& place) { place = value; });
+  }
+
+  // The same, of a value that `fill(place)` puts together in its place, which holds an older one. Real-time:
+  // yes, when `fill` is.
+  template <typename Make>
+  void Fill(const Make& fill) noexcept {
     const std::uint64_t at = written_.load(std::memory_order_relaxed);
     if (!HasRoom()) {
       dropped_.fetch_add(1, std::memory_order_relaxed);
       return;
     }
-    values_[at % values_.size()] = value;
+    fill(values_[at % values_.size()]);
     written_.store(at + 1, std::memory_order_release);
   }
 
@@ -35,13 +42,13 @@ class BoundedRing {
   [[nodiscard]] std::uint64_t End() const noexcept { return written_.load(std::memory_order_acquire); }
 
   // From the reading thread: calls `take(value)` for every value before the mark, oldest first. Returns how
-  // many.
+  // many. Where `take` throws, that value is gone, and those behind it are still there.
   template <typename Take>
   std::size_t Drain(std::uint64_t end, Take&& take) {
     const std::uint64_t begin = read_.load(std::memory_order_relaxed);
     for (std::uint64_t next = begin; next != end; ++next) {
+      const Taken taken{read_, next + 1};
       take(values_[next % values_.size()]);
-      read_.store(next + 1, std::memory_order_release);
     }
     return end - begin;
   }
@@ -49,6 +56,13 @@ class BoundedRing {
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
+  // Gives a place back, however the taking ends.
+  struct Taken {
+    std::atomic<std::uint64_t>& read;
+    std::uint64_t next;
+    ~Taken() { read.store(next, std::memory_order_release); }
+  };
+
   std::vector<T> values_;
   alignas(64) std::atomic<std::uint64_t> written_{0};
   alignas(64) std::atomic<std::uint64_t> read_{0};
