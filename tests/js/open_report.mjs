@@ -2,35 +2,12 @@
 // is complained of, nothing sticks out. Leaves pictures of what it saw.
 //   node open_report.mjs REPORT.html FOLDER [theory|hardware]
 import assert from "node:assert/strict";
-import fs from "node:fs";
-import os from "node:os";
 import path from "node:path";
-import { pathToFileURL } from "node:url";
 
-import { chromium } from "playwright-core";
+import { openPage, plotsDrawn, sideways, withBrowser } from "./browser.mjs";
 
 const [report, folder] = process.argv.slice(2, 4);
 const name = path.basename(report, ".html");
-const url = pathToFileURL(path.resolve(report)).href;
-const program = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(fs.existsSync);
-assert.ok(program, "Chromium is there (tools/install test)");
-
-const home = fs.mkdtempSync(path.join(os.tmpdir(), "fovea-report-"));
-const context = await chromium.launchPersistentContext(home, {
-  executablePath: program,
-  headless: true,
-  args: [
-    "--no-sandbox",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-  ],
-});
 
 // What `act` does is to be seen in `place`.
 async function changes(place, what, act) {
@@ -56,40 +33,13 @@ const parts = [
   "ticks",
   "config",
 ];
-try {
+await withBrowser(async (context) => {
   for (const [width, height] of [
     [1280, 900],
     [400, 800],
   ]) {
-    const page = await context.newPage();
-    await page.setViewportSize({ width, height });
-    const said = [];
-    page.on("console", (message) => {
-      if (["error", "warning"].includes(message.type())) said.push(message.text());
-    });
-    page.on("pageerror", (error) => said.push(String(error)));
-    const asked = [];
-    page.on("request", (request) => {
-      if (request.url() !== url && !/^(data|blob):/.test(request.url())) asked.push(request.url());
-    });
-    await page.goto(url);
-    for (const part of parts) {
-      await page.locator(`#${part}`).scrollIntoViewIfNeeded();
-      await page.locator(`#${part}[data-drawn="true"]`).waitFor({ state: "attached", timeout: 30_000 });
-    }
+    const { page, said, asked } = await openPage(context, report, [width, height], parts);
     const seen = await page.evaluate(() => {
-      // A canvas counts as drawn when its pixels differ.
-      const drawn = (canvas) => {
-        const copy = document.createElement("canvas");
-        copy.width = canvas.width;
-        copy.height = canvas.height;
-        const context = copy.getContext("2d");
-        context.drawImage(canvas, 0, 0);
-        const pixels = new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
-        return pixels.some((value) => value !== pixels[0]);
-      };
-      const plots = (id) =>
-        [...document.querySelectorAll(`#${id} canvas`)].filter((c) => c.width > 0 && drawn(c)).length;
       const videos = [...document.querySelectorAll("video")];
       // How far a path is drawn beside the points that it goes through.
       const astray = Fovea.runs
@@ -108,7 +58,6 @@ try {
         });
       return {
         astray: Math.max(0, ...astray),
-        plots: Object.fromEntries(["error", "theory", "path", "joints"].map((id) => [id, plots(id)])),
         marks: Object.fromEntries(
           ["ticks", "timeline"].map((id) => [
             id,
@@ -121,10 +70,12 @@ try {
         words: document.querySelector("#verdict").innerText.length,
         images: [...document.querySelectorAll("#eye img, #eye image")].length,
         videos: videos.map((v) => v.error === null && v.duration),
-        sideways: document.documentElement.scrollWidth - document.documentElement.clientWidth,
         absent: [...document.querySelectorAll(".absent")].map((p) => p.innerText),
       };
     });
+    seen.sideways = await sideways(page);
+    seen.plots = {};
+    for (const id of ["error", "theory", "path", "joints"]) seen.plots[id] = await plotsDrawn(page, id);
     console.log(`${width} px: ${JSON.stringify(seen)}`);
     await page.evaluate(() => window.scrollTo(0, 0));
     await page.screenshot({ path: path.join(folder, `${name}-${width}.png`), fullPage: true });
@@ -167,8 +118,5 @@ try {
     }
     await page.close();
   }
-} finally {
-  await context.close();
-  fs.rmSync(home, { recursive: true, force: true });
-}
+});
 console.log("the report can be read");
