@@ -1,0 +1,89 @@
+// What other threads ask of a loop that runs: nothing is taken for what was not asked, the last one before a
+// tick is what it gets, and Stop ends it.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "fovea/servo/servo_loop.hpp"
+#include "support/fake_drivers.hpp"
+
+namespace fovea::servo {
+namespace {
+
+// Counts what it is told.
+class CountingStep final : public ServoStep {
+ public:
+  void Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept override {
+    outputs.record.command.num_joints = inputs.arm.num_joints;
+    tracks += inputs.request == Request::kTrack ? 1 : 0;
+    others += inputs.request == Request::kReset ? 1 : 0;
+    last = inputs.request == Request::kNone ? last : inputs.request;
+    laws += inputs.change_law ? 1 : 0;
+    wrong_laws +=
+        inputs.change_law && inputs.law != MotionLawKind::kPd && inputs.law != MotionLawKind::kFloat ? 1 : 0;
+    law = inputs.change_law ? inputs.law : law;
+    ticks.fetch_add(1, std::memory_order_relaxed);
+  }
+  int tracks = 0;
+  int others = 0;
+  int laws = 0;
+  int wrong_laws = 0;
+  Request last = Request::kNone;
+  MotionLawKind law{};
+  std::atomic<int> ticks{0};
+};
+
+class DeafRecorder final : public hal::Recorder {
+ public:
+  void Record(const hal::TickRecord& /*record*/) noexcept override {}
+};
+
+TEST(ServoLoopAsks, FromAnotherThread) {
+  constexpr int kAsks = 1000;
+  constexpr int kPiece = 1000;  // ticks
+  CountingStep step;
+  test::FakeArm arm(7);
+  test::FakeClock clock;
+  hal::FeatureMailbox mailbox;
+  DeafRecorder recorder;
+  test::NoProbe probe;
+  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
+  std::thread asker([&] {
+    for (int i = 0; i < kAsks; ++i) {
+      loop.Ask(Request::kTrack);
+      loop.Ask(MotionLawKind::kPd);
+      std::this_thread::yield();
+    }
+    loop.Ask(Request::kHold);
+    loop.Ask(MotionLawKind::kFloat);
+    // Both are on their way: in so many ticks one takes them.
+    const int enough = step.ticks.load(std::memory_order_relaxed) + 1000;
+    while (step.ticks.load(std::memory_order_relaxed) < enough) {
+      std::this_thread::yield();
+    }
+    loop.Stop();
+  });
+  // In pieces, so that what the fake drivers remember stays small: one that ticks nothing is the end.
+  hal::Status status = hal::Status::Ok();
+  for (std::uint64_t before = 1; loop.counters().ticks != before && status.ok();) {
+    before = loop.counters().ticks;
+    status = loop.Run(clock.now_ns + kPiece * hal::kTickPeriodNs);
+    arm.written.clear();
+    clock.deadlines_ns.clear();
+  }
+  asker.join();
+  EXPECT_TRUE(status.ok());
+  EXPECT_EQ(step.last, Request::kHold);
+  EXPECT_EQ(step.law, MotionLawKind::kFloat);
+  EXPECT_LE(step.tracks, kAsks);
+  EXPECT_EQ(step.others, 0);
+  EXPECT_GE(step.laws, 1);
+  EXPECT_LE(step.laws, kAsks + 1);
+  EXPECT_EQ(step.wrong_laws, 0);
+  std::printf("%llu ticks took %d of %d asked\n", static_cast<unsigned long long>(loop.counters().ticks),
+              step.tracks, kAsks);
+}
+
+}  // namespace
+}  // namespace fovea::servo
