@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Has spin look at every order of a hand-over's steps.
+
+  check.py MODEL.pml SOURCE             what the model quotes of SOURCE is there, and no assertion ever fails
+  check.py MODEL.pml SOURCE MISTAKE     with that mistake one does; each is an #ifdef of the model
+
+Exit code 0: so it is.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+
+def stripped(text):
+    """C++ without comments and white space."""
+    return re.sub(r"\s+", "", re.sub(r"//[^\n]*", "", text))
+
+
+def quotes_of(model):
+    """What the model quotes of each function: comments that begin with a colon, from a signature to the next."""
+    functions = []
+    for quote in re.findall(r"/\*:(.*?)\*/", model, flags=re.DOTALL):
+        if functions == [] or functions[-1].count("{") == functions[-1].count("}"):
+            functions.append("")
+        functions[-1] += stripped(quote)
+    return functions
+
+
+def run(*command, folder):
+    answer = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    return answer.returncode, answer.stdout + answer.stderr
+
+
+def main():
+    model, source, mistakes = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]), sys.argv[3:]
+    if shutil.which("spin") is None:
+        print("spin is not installed; tools/install test brings it")
+        return 1
+    code = stripped(source.read_text())
+    functions = quotes_of(model.read_text())
+    for function in functions or ["nothing is quoted"]:
+        if function not in code or function.count("{") != function.count("}"):
+            print(f"{model.name}: not in {source.name} (any more): {function}")
+            return 1
+    with tempfile.TemporaryDirectory() as folder:
+        for command in (["spin", "-a", *("-D" + mistake for mistake in mistakes), str(model)],
+                        ["cc", "-O1", "-DSAFETY", "-o", "pan", "pan.c"]):
+            status, said = run(*command, folder=folder)
+            if status != 0 or "error" in said.lower():
+                print(said)
+                return 1
+        _, said = run("./pan", "-m100000", folder=folder)
+    found = re.search(r"pan:\d+: (.*?)(?: \(at depth|$)", said, flags=re.MULTILINE)
+    complete = re.search(r"State-vector .* errors: (\d+)", said) and "max search depth too small" not in said
+    if not complete:
+        print(said)
+        return 1
+    states = re.search(r"(\d+) states, stored", said)
+    print(f"{model.name} {' '.join(mistakes)}: {states[1]} states, {found[1] if found else 'all assertions hold'}")
+    if mistakes:
+        return 0 if found and found[1].startswith("assertion violated") else 1
+    unreached = re.findall(r"unreached in proctype.*?\n(.*?)\(\d+ of \d+ states\)", said, flags=re.DOTALL)
+    if found or any(part.strip() for part in unreached):
+        print(said)  # a step that is never taken proves nothing
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

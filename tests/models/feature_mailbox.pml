@@ -1,0 +1,143 @@
+/* hal::FeatureMailbox: three slots, one atomic. One thread puts VALUES measurements, one takes.
+ *
+ * Follows hal/src/feature.cpp: what stands in a comment that begins with a colon is its text, and check.py compares it.
+ * Proved, for every order of the steps and every value that C++ lets an atomic give: nobody touches a slot that the other
+ * may be at; what is taken is whole, newer than what was taken before, and at least as new as what was there when the
+ * take began; after the last Put the last measurement is taken; neither side ever waits for the other. */
+#define VALUES 5
+#define PLACES 3
+#include "release_acquire.pml"
+
+/* What this code would be with one mistake; each must be found. */
+#ifdef PUT_WITHOUT_RELEASE
+#define PUT_RELEASES 0
+#else
+#define PUT_RELEASES 1
+#endif
+#ifdef PUT_WITHOUT_ACQUIRE
+#define PUT_ACQUIRES 0
+#else
+#define PUT_ACQUIRES 1
+#endif
+#ifdef TAKE_WITHOUT_RELEASE
+#define TAKE_RELEASES 0
+#else
+#define TAKE_RELEASES 1
+#endif
+#ifdef TAKE_WITHOUT_ACQUIRE
+#define TAKE_ACQUIRES 0
+#else
+#define TAKE_ACQUIRES 1
+#endif
+
+byte first_half[3]; /* slots_: what is half-written shows */
+byte second_half[3];
+byte write_slot = 0;
+byte middle_slot = 1; /* middle_ & kSlotMask */
+bool middle_fresh = false; /* middle_ & kFresh */
+int middle_knows = ALL_PLACES;
+byte read_slot = 2;
+
+byte newest = 0;   /* of the measurements whose Put has ended */
+bool done = false; /* all were put; read with acquire */
+
+inline forget(event) {
+  middle_knows = middle_knows & ~(event)
+}
+
+/* middle_.exchange(slot | fresh): takes the newest value. It goes on with what earlier releases carried, as any
+ * read-modify-write does. */
+inline exchange(thread, slot, fresh, releases, acquires, returned) {
+  d_step {
+    returned = middle_slot;
+    middle_slot = slot;
+    middle_fresh = fresh;
+    carry = (acquires -> middle_knows : 0);
+    middle_knows = middle_knows | (releases -> knows[thread] : 0);
+    knows[thread] = knows[thread] | carry;
+    carry = 0
+  }
+}
+
+/*: void FeatureMailbox::Put(const FeatureMeasurement& measurement) noexcept { */
+inline Put(measurement) {
+  /*: slots_[write_slot_] = measurement; */
+  touch(WRITER, write_slot, WRITE_OF(write_slot));
+  first_half[write_slot] = measurement;
+  second_half[write_slot] = measurement;
+  /*: const auto offered = static_cast<std::uint8_t>(write_slot_ | kFresh);
+      const std::uint8_t returned = middle_.exchange(offered, std::memory_order_acq_rel); */
+  exchange(WRITER, write_slot, true, PUT_RELEASES, PUT_ACQUIRES, returned);
+  /*: write_slot_ = returned & kSlotMask; } */
+#ifndef WRITER_KEEPS_ITS_SLOT
+  write_slot = returned;
+#endif
+  returned = 0
+}
+
+/*: bool FeatureMailbox::Take(FeatureMeasurement& measurement) noexcept { */
+inline Take(measurement, came) {
+  /*: if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) { return false; } */
+  /* A thread that knows that all is done sees the newest; any other may still see its own last exchange. */
+  if
+#ifndef TAKE_WITHOUT_LOOKING
+  :: !middle_fresh -> came = false
+  :: middle_fresh && !knows_done -> came = false
+  :: middle_fresh -> came = true
+#else
+  :: came = true
+#endif
+  fi;
+  if
+  :: !came
+  :: came ->
+    /*: const std::uint8_t taken = middle_.exchange(read_slot_, std::memory_order_acq_rel); */
+    exchange(READER, read_slot, false, TAKE_RELEASES, TAKE_ACQUIRES, taken);
+    /*: read_slot_ = taken & kSlotMask; */
+    read_slot = taken;
+    taken = 0;
+    /*: measurement = slots_[read_slot_]; */
+    touch(READER, read_slot, READ_OF(read_slot));
+    measurement = first_half[read_slot];
+    assert(second_half[read_slot] == measurement) /* whole */
+    /*: return true; } */
+  fi
+}
+
+active proctype Vision() {
+  byte value = 1, returned = 0;
+  int carry = 0;
+  do
+  :: value <= VALUES ->
+    Put(value);
+    d_step { newest = value; value++ }
+  :: else -> break
+  od;
+  done = true
+}
+
+active proctype Servo() {
+  byte last = 0, measurement = 0, at_least = 0, taken = 0;
+  int carry = 0;
+  bool came = false, knows_done = false;
+  do
+  :: knows_done = done;
+    at_least = newest;
+    Take(measurement, came);
+    if
+    :: came ->
+      assert(measurement > last);      /* forward */
+      assert(measurement >= at_least); /* the newest wins */
+      last = measurement;
+      came = false;
+      measurement = 0
+    :: else
+    fi;
+    at_least = 0;
+    if
+    :: knows_done -> break
+    :: else
+    fi
+  od;
+  assert(last == VALUES) /* the last one is never lost */
+}
