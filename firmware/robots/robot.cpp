@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "fovea/config/input_error.hpp"
+#include "fovea/config/inside_folder.hpp"
 #include "fovea/config/key_table.hpp"
 #include "urdf_chain.hpp"
 
@@ -59,11 +60,21 @@ void SetLimits(const std::filesystem::path& file, const ExtraLimits& extra, mode
   }
 }
 
+void CheckIsInside(const std::filesystem::path& root, const std::filesystem::path& file,
+                   const std::string& who) {
+  if (!root.empty() && !config::IsInside(root, std::filesystem::absolute(file))) {
+    throw config::InputError(fmt::format("{} is not allowed: it lies outside {}, the folder of what names it",
+                                         who, std::filesystem::absolute(root).lexically_normal().string()));
+  }
+}
+
 }  // namespace
 
-Robot LoadRobot(const std::filesystem::path& file) {
+Robot LoadRobot(const std::filesystem::path& file, const std::filesystem::path& root) {
   Robot robot;
   robot.name = file.stem().string();
+  robot.root = root;
+  CheckIsInside(root, file, file.string());
   if (file.extension() == ".urdf") {
     robot.urdf = file;
     ReadUrdfChain(robot);
@@ -89,6 +100,7 @@ Robot LoadRobot(const std::filesystem::path& file) {
     throw config::InputError(file.string() + ": urdf is missing");
   }
   robot.urdf = file.parent_path() / urdf;
+  CheckIsInside(root, robot.urdf, fmt::format("{}: urdf = \"{}\"", file.string(), urdf));
   ReadUrdfChain(robot);
   SetLimits(file, extra, robot.model);
   return robot;

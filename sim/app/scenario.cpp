@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "fovea/config/input_error.hpp"
+#include "fovea/config/inside_folder.hpp"
 #include "fovea/config/share_folder.hpp"
 
 namespace fovea::sim {
@@ -15,7 +16,9 @@ namespace fs = std::filesystem;
 using config::InputError;
 
 void AddArmKeys(Scenario& s, config::KeyTable& keys) {
-  keys.Text("arm.model", s.arm.model, "a shipped arm by name, or the path of an arm file or URDF");
+  keys.Text("arm.model", s.arm.model,
+            "a shipped arm by name, or the path of an arm file or URDF: in the scenario's folder, or "
+            "anywhere with --set");
   keys.Numbers("arm.q_start", s.arm.q_start, 1, model::kMaxJoints, -1e4, 1e4, "rad",
                "joint positions at the start, one per joint");
   keys.Numbers("arm.dq_start", s.arm.dq_start, 1, model::kMaxJoints, -100.0, 100.0, "rad/s",
@@ -112,6 +115,10 @@ std::string ShippedName(const fs::path& file) {
 
 fs::path FindScenario(const std::string& name_or_path) {
   if (fs::path(name_or_path).extension() == ".toml") {
+    // A run's folder has the file's name.
+    if (const fs::path name = fs::path(name_or_path).stem(); name == "." || name == "..") {
+      throw InputError(fmt::format("{}: a scenario's file needs a name before .toml", name_or_path));
+    }
     return name_or_path;
   }
   const fs::path shipped = ShippedFolder() / (name_or_path + ".toml");
@@ -181,7 +188,9 @@ Scenario LoadScenario(const std::string& name_or_path, const std::vector<std::st
     keys.Apply(setting);
   }
   for (const std::string& assignment : assignments) {
-    keys.Apply(config::ParseAssignment(assignment));
+    const config::Setting setting = config::ParseAssignment(assignment);
+    keys.Apply(setting);
+    scenario.arm_is_the_users = scenario.arm_is_the_users || setting.key == "arm.model";
   }
   return scenario;
 }
@@ -190,10 +199,20 @@ robots::Robot LoadScenarioRobot(const Scenario& scenario) {
   const fs::path model = scenario.arm.model;
   if (model.extension() == ".toml" || model.extension() == ".urdf") {
     const fs::path beside = scenario.folder / model;
-    return robots::LoadRobot(fs::exists(beside) ? beside : model);
+    if (scenario.arm_is_the_users) {
+      return robots::LoadRobot(fs::exists(beside) ? beside : model);
+    }
+    const fs::path root = fs::absolute(scenario.folder / ".");
+    if (!config::IsInside(root, model)) {
+      throw InputError(fmt::format(
+          "arm.model = \"{}\" is not allowed: it lies outside {}, the scenario's folder (--set arm.model=... "
+          "names any arm)",
+          scenario.arm.model, root.lexically_normal().string()));
+    }
+    return robots::LoadRobot(beside, root);
   }
   const fs::path shipped = config::ShareFolder() / "robots" / (scenario.arm.model + ".toml");
-  if (!fs::is_regular_file(shipped)) {
+  if (model != model.filename() || !fs::is_regular_file(shipped)) {
     throw InputError(
         fmt::format("arm.model = \"{}\": no shipped arm of that name (or give the path of an arm file "
                     ".toml or a .urdf)",

@@ -17,7 +17,8 @@ namespace fovea::sim {
 
 struct Scenario {
   std::string name;
-  std::filesystem::path folder;  // of its file; a relative arm.model is looked for there first
+  std::filesystem::path folder;   // of its file; a relative arm.model is looked for there first
+  bool arm_is_the_users = false;  // arm.model was assigned, and may lie anywhere; else in `folder`
 
   struct {
     std::string model = "panda";

@@ -6,6 +6,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <assimp/DefaultIOSystem.h>
 #include <Eigen/LU>
 #include <algorithm>
 #include <assimp/Importer.hpp>
@@ -17,6 +18,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "sim/robot/mesh_path.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -87,6 +90,23 @@ Vector3f ColourOf(const aiMaterial& material) {
   const Vector3f rgb(colour.r, colour.g, colour.b);
   return rgb.allFinite() ? rgb.cwiseMax(0.0F).cwiseMin(1.0F) : kGrey;
 }
+
+// Files alone are opened, no devices, and none but `file_` outside `root_`.
+class OwnFiles final : public Assimp::DefaultIOSystem {
+ public:
+  OwnFiles(std::filesystem::path file, std::filesystem::path root)
+      : file_(std::move(file)), root_(std::move(root)) {}
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    std::error_code ignored;
+    const bool may = std::filesystem::is_regular_file(file, ignored) &&
+                     (root_.empty() || file == file_ || LiesIn(root_, file));
+    return may ? Assimp::DefaultIOSystem::Open(file, mode) : nullptr;
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::filesystem::path root_;
+};
 
 // Puts the parts of a file into one mesh.
 class Collector {
@@ -177,7 +197,8 @@ class Collector {
 
 }  // namespace
 
-Mesh LoadMeshFile(const std::filesystem::path& file, const Vector3d& scale) {
+Mesh LoadMeshFile(const std::filesystem::path& file, const Vector3d& scale,
+                  const std::filesystem::path& root) {
   const std::string extension = LowerExtension(file);
   if (extension != ".stl" && extension != ".dae" && extension != ".obj") {
     Fail(fmt::format("\"{}\" is not a mesh that is read; .stl, .dae and .obj are", extension));
@@ -190,6 +211,7 @@ Mesh LoadMeshFile(const std::filesystem::path& file, const Vector3d& scale) {
     CheckColladaLists(file);
   }
   Assimp::Importer importer;
+  importer.SetIOHandler(new OwnFiles(file, root));  // which it deletes
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelowDeg);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

@@ -22,6 +22,10 @@ inline constexpr std::size_t kMostMeshTriangles = 1'000'000;  // of one file
 //
 // std::runtime_error with one line, without naming the file: another format, not readable, no triangles, more
 // than kMostMeshTriangles, a coordinate that is not finite, a scale that is 0 or not finite.
-Mesh LoadMeshFile(const std::filesystem::path& file, const Eigen::Vector3d& scale);
+//
+// An .obj has its colours in files that it names itself. They must be files, and with a `root` lie in it,
+// links followed; else it has no colours.
+Mesh LoadMeshFile(const std::filesystem::path& file, const Eigen::Vector3d& scale,
+                  const std::filesystem::path& root = {});
 
 }  // namespace fovea::sim

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 #include <stdexcept>
@@ -42,8 +43,8 @@ std::vector<fs::path> Entries(const char* variable) {
   return entries;
 }
 
-// Folders that may be the package, the nearest first.
-std::vector<fs::path> PackageFolders(const fs::path& urdf, const std::string& name) {
+// Folders that may be the package, the nearest first; with a `root`, of those above the URDF the ones in it.
+std::vector<fs::path> PackageFolders(const fs::path& urdf, const std::string& name, const fs::path& root) {
   std::vector<fs::path> folders;
   const fs::path start = fs::absolute(urdf).lexically_normal().parent_path();
   for (fs::path above = start;; above = above.parent_path()) {
@@ -55,6 +56,9 @@ std::vector<fs::path> PackageFolders(const fs::path& urdf, const std::string& na
       break;
     }
   }
+  if (!root.empty()) {
+    std::erase_if(folders, [&root](const fs::path& folder) { return !LiesIn(root, folder); });
+  }
   for (const fs::path& entry : Entries("ROS_PACKAGE_PATH")) {
     folders.push_back(entry / name);
   }
@@ -64,9 +68,10 @@ std::vector<fs::path> PackageFolders(const fs::path& urdf, const std::string& na
   return folders;
 }
 
-fs::path FindInPackage(const fs::path& urdf, const std::string& name, const std::string& rest) {
+fs::path FindInPackage(const fs::path& urdf, const std::string& name, const std::string& rest,
+                       const fs::path& root) {
   std::string there_is;
-  for (const fs::path& folder : PackageFolders(urdf, name)) {
+  for (const fs::path& folder : PackageFolders(urdf, name, root)) {
     if (IsFile(folder / rest)) {
       return folder / rest;
     }
@@ -82,16 +87,14 @@ fs::path FindInPackage(const fs::path& urdf, const std::string& name, const std:
       name, fs::absolute(urdf).lexically_normal().parent_path().string()));
 }
 
-}  // namespace
-
-fs::path FindMeshFile(const fs::path& urdf, const std::string& filename) {
+fs::path FindAnywhere(const fs::path& urdf, const std::string& filename, const fs::path& root) {
   if (StartsWith(filename, kPackage)) {
     const std::string path = filename.substr(std::string(kPackage).size());
     const auto slash = path.find('/');
     if (slash == std::string::npos || slash == 0 || slash + 1 == path.size()) {
       Fail("a package's file is written package://name/path");
     }
-    return FindInPackage(urdf, path.substr(0, slash), path.substr(slash + 1));
+    return FindInPackage(urdf, path.substr(0, slash), path.substr(slash + 1), root);
   }
   fs::path file = filename;
   if (StartsWith(filename, kFile)) {
@@ -107,6 +110,38 @@ fs::path FindMeshFile(const fs::path& urdf, const std::string& filename) {
   }
   if (!IsFile(file)) {
     Fail(fmt::format("no such file: {}", fs::absolute(file).lexically_normal().string()));
+  }
+  return file;
+}
+
+// In one of the user's packages its own links may lead anywhere, a stranger's ".." may not.
+bool IsUsersPackage(const fs::path& file) {
+  const fs::path plain = fs::absolute(file).lexically_normal();
+  for (const char* variable : {"ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"}) {
+    for (const fs::path& entry : Entries(variable)) {
+      const fs::path top = fs::absolute(entry / ".").lexically_normal().parent_path();
+      if (std::mismatch(top.begin(), top.end(), plain.begin(), plain.end()).first == top.end()) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool LiesIn(const fs::path& folder, const fs::path& file) {
+  std::error_code error;
+  const fs::path top = fs::canonical(folder.empty() ? "." : folder, error);
+  const fs::path place = error ? fs::path() : fs::weakly_canonical(fs::absolute(file), error);
+  return !error && std::mismatch(top.begin(), top.end(), place.begin(), place.end()).first == top.end();
+}
+
+fs::path FindMeshFile(const fs::path& urdf, const std::string& filename, const fs::path& root) {
+  const fs::path file = FindAnywhere(urdf, filename, root);
+  if (!root.empty() && !LiesIn(root, file) && !(StartsWith(filename, kPackage) && IsUsersPackage(file))) {
+    Fail(fmt::format("it lies outside {}, the folder of what names it",
+                     fs::absolute(root).lexically_normal().string()));
   }
   return file;
 }

@@ -24,8 +24,9 @@ Eigen::Isometry3d ToIsometry(const urdf::Pose& pose) {
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, const std::string& base, const std::string& tip)
-      : file_(file.string()), urdf_(urdf::parseURDFFile(file_)), tip_(tip) {
+  Reader(const std::filesystem::path& file, const std::string& base, const std::string& tip,
+         std::filesystem::path root)
+      : file_(file.string()), urdf_(urdf::parseURDFFile(file_)), tip_(tip), root_(std::move(root)) {
     if (!urdf_ || !urdf_->getLink(base)) {
       Fail("no link \"" + base + "\" to simulate");
     }
@@ -129,7 +130,7 @@ class Reader {
                                        const std::string& link) const {
     try {
       const urdf::Vector3& scale = from.scale;
-      Mesh mesh = LoadMeshFile(FindMeshFile(file_, from.filename), {scale.x, scale.y, scale.z});
+      Mesh mesh = LoadMeshFile(FindMeshFile(file_, from.filename, root_), {scale.x, scale.y, scale.z}, root_);
       if (colour) {
         for (Vertex& vertex : mesh.vertices) {
           vertex.colour = *colour;
@@ -144,13 +145,14 @@ class Reader {
   std::string file_;
   urdf::ModelInterfaceSharedPtr urdf_;
   std::string tip_;
+  std::filesystem::path root_;
 };
 
 }  // namespace
 
 SimRobot LoadSimRobot(const std::filesystem::path& urdf, const std::string& base_link,
-                      const std::string& tip_link) {
-  return std::move(Reader(urdf, base_link, tip_link).robot_);
+                      const std::string& tip_link, const std::filesystem::path& root) {
+  return std::move(Reader(urdf, base_link, tip_link, root).robot_);
 }
 
 }  // namespace fovea::sim

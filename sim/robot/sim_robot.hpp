@@ -51,9 +51,10 @@ struct SimRobot {
 };
 
 // Reads `urdf` from `base_link` on, and the mesh files that it names (mesh_path.hpp says where they may be,
-// mesh_file.hpp what they may hold). A mesh has the colour of its URDF material, or those of its file.
-// std::runtime_error with one line, naming the URDF, the link and the mesh, when it cannot be simulated.
+// mesh_file.hpp what they may hold, and both what a `root` is). A mesh has the colour of its URDF material,
+// or those of its file. std::runtime_error with one line, naming the URDF, the link and the mesh, when it
+// cannot be simulated.
 SimRobot LoadSimRobot(const std::filesystem::path& urdf, const std::string& base_link,
-                      const std::string& tip_link);
+                      const std::string& tip_link, const std::filesystem::path& root = {});
 
 }  // namespace fovea::sim

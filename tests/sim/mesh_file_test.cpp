@@ -183,6 +183,31 @@ TEST_F(MeshFileTest, ObjMaterialsColourTheirParts) {
   ExpectTetrahedron(LoadMeshFile(File("c.obj"), kOne), size_, {0.1F, 0.2F, 0.9F}, "OBJ with material");
 }
 
+// Of a stranger's, none are read from elsewhere, and no device from anywhere.
+TEST_F(MeshFileTest, AnObjsColoursComeFromFilesInTheFolderThatItMayUse) {
+  fs::create_directory(File("own"));
+  std::ofstream(File("paint.mtl")) << "newmtl blue\nKd 0.1 0.2 0.9\n";
+  fs::copy_file(File("paint.mtl"), File("own/paint.mtl"));
+  fs::create_symlink(File("paint.mtl"), File("own/linked.mtl"));
+  const Vector3f blue(0.1F, 0.2F, 0.9F);
+  struct Case {
+    const char* materials;
+    bool confined;
+    Vector3f colour;
+  };
+  // What assimp gives to a material that it has the name of and nothing else.
+  const Vector3f unknown(0.6F, 0.6F, 0.6F);
+  for (const Case& c : {Case{"paint.mtl", true, blue}, Case{"../own/paint.mtl", true, blue},
+                        Case{"../paint.mtl", true, unknown}, Case{"linked.mtl", true, unknown},
+                        Case{"../paint.mtl", false, blue}, Case{"/dev/zero", false, unknown},
+                        Case{"/dev/zero", true, unknown}}) {
+    test::WriteObj(File("own/c.obj"), Tetrahedron(), false,
+                   std::string("mtllib ") + c.materials + "\nusemtl blue");
+    const Mesh mesh = LoadMeshFile(File("own/c.obj"), kOne, c.confined ? File("own") : fs::path());
+    ExpectTetrahedron(mesh, size_, c.colour, c.materials);
+  }
+}
+
 TEST_F(MeshFileTest, WhatCannotBeUsedIsRefusedWithTheReason) {
   const Mesh solid = Tetrahedron();
   test::WriteStlBinary(File("good.stl"), solid);
