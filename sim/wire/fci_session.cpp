@@ -7,6 +7,12 @@ namespace fovea::sim {
 using franka::Command;
 using franka::Header;
 
+namespace {
+
+constexpr std::size_t kMostToSend = 64 << 10;  // bytes that may wait, besides a model library
+
+}  // namespace
+
 FciSession::FciSession(FciRobot& robot, franka::TcpConnection client,
                        const std::vector<std::byte>& model_library)
     : robot_(robot), client_(std::move(client)), model_library_(model_library) {}
@@ -16,6 +22,10 @@ bool FciSession::Serve() {
   Header header;
   std::span<const std::byte> payload;
   for (;;) {
+    if (to_send_.size() > kMostToSend + model_library_.size()) {
+      end_reason_ = "it does not read its answers";
+      return false;
+    }
     switch (stream_.Take(client_, header, payload)) {
       case franka::MessageStream::Next::kNothing: return true;
       case franka::MessageStream::Next::kMessage:

@@ -11,8 +11,40 @@ import time
 import unittest
 
 import fci_client as fci
+import listening
 import served
 from served import Served, fade
+
+
+class Strangers(Served):
+    """What somebody on the network can do who should not."""
+
+    def test_none_but_this_computer_reaches_it(self):
+        found = listening.sockets_of(self.server.pid)
+        self.assertEqual({address for _, address, _ in found}, {"127.0.0.1"}, found)
+        self.assertEqual({protocol for protocol, _, _ in found}, {"tcp", "udp"})
+
+    def test_one_who_reads_no_answers_is_let_go(self):
+        machine = {"x86_64": 0, "aarch64": 3}[platform.machine()]
+        self.client.tcp.settimeout(5)
+        with self.assertRaises(OSError):  # broken off by the other end, long before this is a gigabyte
+            for _ in range(20000):
+                self.client.post(fci.LOAD_MODEL_LIBRARY, bytes([machine, 0]))
+        said = [self.server.stderr.readline() for _ in range(2)]
+        self.assertIn("the client is gone: it does not read its answers\n", said)
+        self.client.close()
+        self.client = fci.Client(self.port)  # and the next one is served
+        self.client.state()
+
+    def test_garbage_ends_the_connection_and_nothing_else(self):
+        for garbage in (b"\xff" * 12, struct.pack("<III", 1, 0, 0xFFFFFFFF), struct.pack("<III", 99, 0, 12),
+                        struct.pack("<III", fci.MOVE, 0, 13) + b"x"):
+            self.client.tcp.sendall(garbage)
+            self.client.tcp.settimeout(5)
+            self.assertEqual(self.client.tcp.recv(1), b"")
+            self.client.close()
+            self.client = fci.Client(self.port)
+            self.client.state()
 
 
 class Connecting(Served):

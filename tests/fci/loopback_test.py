@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 import time
 
+import listening
 import two_programs
 from two_programs import TwoPrograms
 
@@ -15,6 +16,22 @@ READERS = pathlib.Path(__file__).parent.parent / "js"
 
 
 class Loopback(TwoPrograms):
+    def test_none_but_this_computer_reaches_either(self):
+        port = self.serve("--pace", "lockstep", camera=True)
+        # Aravis' stand-in for a camera answers who calls into the network for cameras; nothing else leaves loopback.
+        calls = {("udp", "255.255.255.255", 3956)}
+        found = listening.sockets_of(self.server.pid)
+        self.assertEqual({address for _, address, _ in found - calls}, {"127.0.0.1"}, found)
+        hw = self.operator(port)
+        end = time.monotonic() + 20
+        while not any(protocol == "udp" for protocol, _, _ in listening.sockets_of(hw.pid)):
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.05)
+        found = listening.sockets_of(hw.pid)
+        self.assertEqual({address for _, address, _ in found}, {"127.0.0.1"}, found)
+        self.say(hw, "end")
+        hw.communicate(timeout=60)
+
     def tracked(self, *options):
         """A run of 8 s in lockstep, at half the clock's pace: what the client and the server say of it. The robot waits
         for the servo, but nobody waits for the client's eye: a busy machine that kept it from a tenth of the pictures, or

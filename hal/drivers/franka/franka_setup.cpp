@@ -39,8 +39,8 @@ FrankaArm::~FrankaArm() { Stop(); }
 
 void FrankaArm::SetUp(const FrankaConfig& config) {
   robot_tcp_ = Resolve(config.host, config.port);
-  udp_ = UdpSocket(Endpoint{});
   tcp_ = TcpConnection::Connect(robot_tcp_, answer_timeout_ms_);
+  udp_ = UdpSocket(Endpoint{tcp_.own().ip, 0});  // on the robot's network, and no other
   const auto hello = Request<ConnectRequest, ConnectAnswer>(Command::kConnect, {kVersion, udp_.port()});
   if (hello.status != ConnectStatus::kSuccess || hello.version != kVersion) {
     throw NetworkError("it speaks version " + std::to_string(hello.version) +

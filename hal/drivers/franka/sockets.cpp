@@ -159,6 +159,8 @@ Received TcpConnection::Receive(std::span<std::byte> room, std::size_t& size) no
   return later || room.empty() ? Received::kNothing : Received::kClosed;
 }
 
+Endpoint TcpConnection::own() const noexcept { return OwnEnd(descriptor_.get()); }
+
 Endpoint TcpConnection::peer() const noexcept {
   sockaddr_in address{};
   sockaddr general{};

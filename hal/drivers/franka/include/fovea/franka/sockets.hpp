@@ -65,6 +65,7 @@ class TcpConnection {
   [[nodiscard]] Received Receive(std::span<std::byte> room, std::size_t& size) noexcept;
 
   [[nodiscard]] Endpoint peer() const noexcept;
+  [[nodiscard]] Endpoint own() const noexcept;
   void Close() noexcept { descriptor_.Close(); }
   [[nodiscard]] bool open() const noexcept { return descriptor_.open(); }
   [[nodiscard]] int fd() const noexcept { return descriptor_.get(); }

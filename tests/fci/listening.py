@@ -1,0 +1,28 @@
+"""Where a process can be reached by network."""
+
+import os
+import socket
+import struct
+
+
+def sockets_of(process_id):
+    """Its sockets that take what somebody sends to them: (protocol, address, port)."""
+    inodes = set()
+    for fd in os.listdir(f"/proc/{process_id}/fd"):
+        try:
+            target = os.readlink(f"/proc/{process_id}/fd/{fd}")
+        except FileNotFoundError:  # closed meanwhile
+            continue
+        if target.startswith("socket:["):
+            inodes.add(target[8:-1])
+    found = set()
+    for protocol in ("tcp", "tcp6", "udp", "udp6"):
+        with open(f"/proc/{process_id}/net/{protocol}", encoding="ascii") as table:
+            for line in list(table)[1:]:
+                words = line.split()
+                listens = protocol.startswith("udp") or words[3] == "0A"
+                if words[9] in inodes and listens:
+                    address, port = words[1].split(":")
+                    name = socket.inet_ntoa(struct.pack("=I", int(address, 16))) if len(address) == 8 else address
+                    found.add((protocol, name, int(port, 16)))
+    return found
