@@ -17,6 +17,10 @@ using mcap::Op;
 // No writer makes records or chunks so large; a length above it is damage.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 31U;
 
+// Zstandard's best: a block of 128 KiB in 4 bytes. A chunk that says more lies, and would have memory for
+// nothing.
+constexpr std::uint64_t kMostPacked = 32'768;
+
 class Reader {
  public:
   Reader(const std::filesystem::path& path, const McapVisitor& visitor)
@@ -157,7 +161,7 @@ class Reader {
     });
     std::string_view plain = records;
     if (compression == "zstd") {
-      if (size > kMostBytes) {
+      if (size > kMostBytes || size / kMostPacked > records.size()) {
         throw DamageError("a chunk of impossible size");
       }
       chunk_.resize(size);

@@ -101,6 +101,13 @@ ordered_json Scene(const RunData& run) {
           {"table_z", 0.0}};
 }
 
+// Discarded when it is no JSON. What lies deeper than a summary does is left out: writing it goes as deep.
+ordered_json ParseFlat(const std::string& text) {
+  constexpr int kDeepest = 16;
+  return ordered_json::parse(
+      text, [](int depth, ordered_json::parse_event_t, ordered_json&) { return depth <= kDeepest; }, false);
+}
+
 // The keys as a TOML file would have them.
 std::string Configuration(const std::map<std::string, std::string>& keys) {
   std::string text;
@@ -123,8 +130,7 @@ std::string ToJson(const RunData& run) {
   json["name"] = run.name;
   json["source"] = std::filesystem::path(run.source).filename().string();
   json["incomplete"] = run.complete ? ordered_json(nullptr) : ordered_json(run.why_incomplete);
-  json["summary"] =
-      run.summary_json ? ordered_json::parse(*run.summary_json, nullptr, false) : ordered_json(nullptr);
+  json["summary"] = run.summary_json ? ParseFlat(*run.summary_json) : ordered_json(nullptr);
   if (json["summary"].is_discarded()) {
     json["summary"] = nullptr;
   }

@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t kMostBuckets = 1500;
 constexpr std::size_t kMostWaiting = 20'000;  // ticks that wait for their truth
+constexpr int kMostLimits = 32;               // bits of Tick.limits_active
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 template <typename Message>
@@ -31,6 +32,11 @@ Message Parse(const log::McapMessage& message) {
     throw std::runtime_error(fmt::format("a message of {} cannot be parsed", message.topic));
   }
   return parsed;
+}
+
+// a - b, whatever a log says that they are.
+std::int64_t Apart(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
 }
 
 class Reader {
@@ -84,10 +90,18 @@ class Reader {
  private:
   // Since the run began.
   [[nodiscard]] double Seconds(std::int64_t time_ns) const {
-    return static_cast<double>(time_ns - setup_.start_ns()) * 1e-9;
+    return static_cast<double>(Apart(time_ns, setup_.start_ns())) * 1e-9;
   }
 
   void TakeSetup(const log::Setup& setup) {
+    if (run_.ticks) {
+      throw std::runtime_error("a second set-up");
+    }
+    if (setup.joints_size() > hal::kMaxJoints || setup.limits_size() > kMostLimits) {
+      throw std::runtime_error(fmt::format("a set-up of {} joints and {} limits; at most {} and {} are read",
+                                           setup.joints_size(), setup.limits_size(), hal::kMaxJoints,
+                                           kMostLimits));
+    }
     run_.name = setup.name();
     for (const log::Joint& joint : setup.joints()) {
       run_.joints.push_back(
@@ -190,7 +204,7 @@ class Reader {
   void TakeFeature(const log::Feature& feature, std::int64_t taken_ns) {
     run_.measured.Add(Seconds(feature.stamp_ns()),
                       {image_error_.OfMeasurement(feature),
-                       static_cast<float>(1e-6 * static_cast<double>(taken_ns - feature.stamp_ns())),
+                       static_cast<float>(1e-6 * static_cast<double>(Apart(taken_ns, feature.stamp_ns()))),
                        static_cast<float>(feature.confidence())});
   }
 

@@ -13,6 +13,9 @@ constexpr std::size_t kPoseSize = 7;
 
 // Every second row of `row` values.
 void Halve(std::vector<float>& values, std::size_t row) {
+  if (row == 0) {
+    return;
+  }
   const std::size_t rows = values.size() / row;
   for (std::size_t i = 0; 2 * i < rows; ++i) {
     std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(2 * i * row), row,
@@ -45,7 +48,7 @@ SceneShape MakeMesh(const foxglove::TriangleListPrimitive& triangles) {
     std::for_each(triangles.points().begin(), triangles.points().end(), add);
   }
   for (const std::uint32_t index : triangles.indices()) {
-    if (static_cast<int>(index) < triangles.points_size()) {
+    if (index < static_cast<std::uint32_t>(triangles.points_size())) {
       add(triangles.points(static_cast<int>(index)));
     }
   }
@@ -55,6 +58,9 @@ SceneShape MakeMesh(const foxglove::TriangleListPrimitive& triangles) {
 }  // namespace
 
 void SceneReader::AddScene(const foxglove::SceneUpdate& scene) {
+  if (!run_.motion.t_s.empty()) {
+    return;  // links that come later have no place in the poses
+  }
   for (const foxglove::SceneEntity& entity : scene.entities()) {
     // The page draws target and table itself.
     if (entity.frame_id() == log::kBaseFrame || entity.frame_id() == log::kTargetFrame) {

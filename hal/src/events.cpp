@@ -39,6 +39,13 @@ constexpr std::array<Entry, kNumLimits> kLimitTable{{
     {"field_of_view", "safety.view_margin_px"},
 }};
 
+// What comes from a file or a line may be none of the enumeration.
+template <typename Table, typename Enumerator>
+Entry EntryOf(const Table& table, Enumerator which) noexcept {
+  const auto k = static_cast<std::size_t>(which);
+  return k < table.size() ? table[k] : Entry{"unknown", ""};
+}
+
 }  // namespace
 
 const char* Name(Mode mode) noexcept {
@@ -66,9 +73,9 @@ const char* Name(HoldReason reason) noexcept {
   return "unknown";
 }
 
-const char* Name(Fault fault) noexcept { return kFaultTable[static_cast<std::size_t>(fault)].name; }
-const char* Name(Limit limit) noexcept { return kLimitTable[static_cast<std::size_t>(limit)].name; }
-const char* Key(Fault fault) noexcept { return kFaultTable[static_cast<std::size_t>(fault)].key; }
-const char* Key(Limit limit) noexcept { return kLimitTable[static_cast<std::size_t>(limit)].key; }
+const char* Name(Fault fault) noexcept { return EntryOf(kFaultTable, fault).name; }
+const char* Name(Limit limit) noexcept { return EntryOf(kLimitTable, limit).name; }
+const char* Key(Fault fault) noexcept { return EntryOf(kFaultTable, fault).key; }
+const char* Key(Limit limit) noexcept { return EntryOf(kLimitTable, limit).key; }
 
 }  // namespace fovea::hal

@@ -174,5 +174,30 @@ TEST_F(McapTest, AFullDiskIsAnError) {
   EXPECT_THROW(McapWriter("/nowhere/at/all", "test"), std::runtime_error);
 }
 
+// A few bytes that say they were two gigabytes once get no memory for it.
+TEST_F(McapTest, AChunkThatCouldNotBeSoSmallIsDamage) {
+  const auto put = [](std::string& out, auto value) {
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    out.append(bytes, sizeof value);
+  };
+  std::string chunk;
+  put(chunk, std::uint64_t{0});
+  put(chunk, std::uint64_t{0});
+  put(chunk, (std::uint64_t{1} << 31U) - 1U);  // as it was before it was packed
+  put(chunk, std::uint32_t{0});
+  put(chunk, std::uint32_t{4});
+  chunk += "zstd";
+  put(chunk, std::uint64_t{8});
+  chunk.append(8, 'x');
+  std::string file{"\x89MCAP0\r\n", 8};
+  file += '\x06';
+  put(file, std::uint64_t{chunk.size()});
+  std::ofstream(path_, std::ios::binary) << file + chunk;
+  const Content content = Read(path_);
+  EXPECT_FALSE(content.end.complete);
+  EXPECT_NE(content.end.why.find("impossible size"), std::string::npos) << content.end.why;
+}
+
 }  // namespace
 }  // namespace fovea::log

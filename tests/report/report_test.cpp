@@ -2,15 +2,19 @@
 // page.
 #include "fovea/report/report.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "fovea/log/run_log.hpp"
 #include "fovea/log/topics.hpp"
 #include "fovea/run.pb.h"
+#include "fovea/tick.pb.h"
+#include "foxglove/scene.pb.h"
 #include "support/temp_folder.hpp"
 
 namespace fovea::report {
@@ -18,6 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
+using testing::HasSubstr;
 
 class ReportTest : public testing::Test {
  protected:
@@ -255,6 +260,80 @@ TEST_F(ReportTest, RefusesWhatIsNoRun) {
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("/setup"), std::string::npos) << error.what();
   }
+}
+
+// A log of somebody else's may say anything of itself.
+TEST_F(ReportTest, ALogThatLiesIsRefusedOrShownAsFarAsItGoes) {
+  const auto said = [this](const std::function<void(log::RunLog&)>& write) -> std::string {
+    {
+      log::RunLog log(Config(path_));
+      write(log);
+      log.Finish();
+    }
+    try {
+      const std::string text = ToJson(ReadRun(folder_));
+      EXPECT_TRUE(json::accept(text));
+      return text;
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+  };
+  const auto tick = [](log::RunLog& log, const std::function<void(log::Tick&)>& change) {
+    log::Tick message;
+    change(message);
+    log.Add(log::kTickTopic, 0, message);
+  };
+  EXPECT_THAT(said([](log::RunLog& log) {
+                log.Add(log::kSetupTopic, 0, Setup("one"));
+                log.Add(log::kSetupTopic, 0, Setup("two"));
+              }),
+              HasSubstr("a second set-up"));
+  EXPECT_THAT(said([](log::RunLog& log) {
+                log::Setup setup = Setup("many");
+                for (int i = 0; i < 100; ++i) {
+                  setup.add_limits("more");
+                }
+                log.Add(log::kSetupTopic, 0, setup);
+              }),
+              HasSubstr("at most 8 and 32"));
+  // Enumerations that are none, times that no clock shows.
+  EXPECT_THAT(said([&](log::RunLog& log) {
+                log.Add(log::kSetupTopic, 0, Setup("odd", INT64_MIN));
+                tick(log, [](log::Tick& t) {
+                  t.set_fault(static_cast<log::FaultCause>(100'000));
+                  t.set_mode(static_cast<log::Mode>(77));
+                  t.set_stamp_ns(INT64_MAX);
+                  t.set_limits_active(UINT32_MAX);
+                });
+              }),
+              HasSubstr("\"name\":\"unknown\""));
+  // Corners of triangles that there are not, and links that the poses have no place for.
+  EXPECT_THAT(said([](log::RunLog& log) {
+                log.Add(log::kSetupTopic, 0, Setup("scene"));
+                foxglove::SceneUpdate scene;
+                foxglove::SceneEntity* entity = scene.add_entities();
+                entity->set_frame_id("link");
+                foxglove::TriangleListPrimitive* triangles = entity->add_triangles();
+                triangles->add_points()->set_x(1.0);
+                for (const std::uint32_t index : {0U, 1U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFFFU}) {
+                  triangles->add_indices(index);
+                }
+                foxglove::FrameTransforms transforms;
+                transforms.add_transforms()->set_child_frame_id("link");
+                for (int i = 0; i < 900; ++i) {  // as many as are thinned, without a link
+                  log.Add(log::kTransformTopic, i, transforms);
+                }
+                log.Add(log::kSceneTopic, 0, scene);
+                log.Add(log::kTransformTopic, 901, transforms);
+              }),
+              HasSubstr("\"scene\":null"));
+  // A summary that goes deeper than writing it may.
+  EXPECT_THAT(said([](log::RunLog& log) {
+                log.Add(log::kSetupTopic, 0, Setup("deep"));
+                log.AddAttachment("summary.json", "application/json",
+                                  std::string(200'000, '[') + std::string(200'000, ']'));
+              }),
+              HasSubstr("\"name\":\"deep\""));
 }
 
 // A name may hold anything; the page's own scripts too.
