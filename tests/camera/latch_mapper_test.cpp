@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <iostream>
 #include <random>
 
+#include "fovea/camera/stamp.hpp"
 #include "fovea/hal/types.hpp"
 
 namespace fovea::camera {
@@ -140,6 +142,19 @@ TEST(LatchMapper, ADeviceThatStartsAnewIsLearntAnew) {
   mapper.Add(again_ns - 1000, 0, again_ns + 1000);
   EXPECT_EQ(mapper.Map(0), again_ns);
   EXPECT_EQ(mapper.restarts(), 1U);
+}
+
+TEST(LatchMapper, WhatIsNoStampSaysNothing) {
+  LatchMapper mapper;
+  for (const std::int64_t none_ns : {INT64_MAX, INT64_MIN, kMostStampNs + 1, -kMostStampNs - 1}) {
+    mapper.Add(0, none_ns, 10);
+    EXPECT_EQ(mapper.readings(), 0U) << none_ns;
+  }
+  mapper.Add(-5, kMostStampNs, 5);
+  EXPECT_EQ(mapper.Map(kMostStampNs), 0);
+  EXPECT_FALSE(mapper.Map(kMostStampNs + 1).has_value());
+  EXPECT_FALSE(mapper.Map(INT64_MAX).has_value());
+  EXPECT_FALSE(mapper.Map(INT64_MIN).has_value());
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <climits>
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -124,6 +126,27 @@ TEST(FrameCounter, CountsAllOf64Bits) {
   EXPECT_EQ(counter.Count(1), 2U);
   EXPECT_EQ(counter.lost(), 1U);
   EXPECT_EQ(counter.Count(1), 3U);
+}
+
+TEST(FrameCounter, ANumberThatLiesIsTheNext) {
+  FrameCounter counter;
+  EXPECT_EQ(counter.Count(0), 0U);
+  EXPECT_EQ(counter.Count(std::uint64_t{1} << 32U), std::uint64_t{1} << 32U) << "as many may get lost";
+  EXPECT_EQ(counter.Count((std::uint64_t{1} << 33U) + 1), (std::uint64_t{1} << 32U) + 1) << "no more";
+  EXPECT_EQ(counter.Count(std::uint64_t{1} << 62U), (std::uint64_t{1} << 32U) + 2);
+}
+
+TEST(RawPicture, PaddingMakesRowsThatArePossible) {
+  RawPicture raw{RawFormat::kBgr8, 4, 2, 0, {}};
+  ASSERT_TRUE(SetPadding(5, raw));
+  EXPECT_EQ(raw.stride_bytes, 17);
+  EXPECT_FALSE(SetPadding(-1, raw));
+  EXPECT_FALSE(SetPadding(INT_MAX, raw)) << "a row of more bytes than are counted";
+  raw.width_px = INT_MAX / 2;
+  EXPECT_FALSE(SetPadding(0, raw));
+  raw.width_px = -4;
+  EXPECT_FALSE(SetPadding(0, raw));
+  EXPECT_EQ(raw.stride_bytes, 17);
 }
 
 }  // namespace

@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <iostream>
+#include <limits>
 #include <random>
 
+#include "fovea/camera/stamp.hpp"
 #include "fovea/hal/types.hpp"
 
 namespace fovea::camera {
@@ -95,6 +98,39 @@ TEST(StampMapper, ADeviceThatStartsAnewIsLearntAnew) {
     EXPECT_EQ(mapped_ns, again_ns + k * kFrameNs);
   }
   EXPECT_EQ(mapper.restarts(), 1U);
+}
+
+TEST(StampOfTicks, IsExactAndHasRoom) {
+  EXPECT_EQ(StampOfTicks(123'456'789'012'345'678, 1.0), 123'456'789'012'345'678);
+  EXPECT_EQ(StampOfTicks(10'000'000'000'000'001, 8.0), 80'000'000'000'000'008)
+      << "125 MHz for two and a half years";
+  EXPECT_EQ(StampOfTicks(3, 1.5), 5) << "4.5";
+  EXPECT_EQ(StampOfTicks(-7, 8.0), -56);
+  EXPECT_EQ(StampOfTicks(kMostStampNs, 1.0), kMostStampNs);
+  EXPECT_FALSE(StampOfTicks(INT64_MAX, 1.0).has_value());
+  EXPECT_FALSE(StampOfTicks(INT64_MAX, 1e9).has_value());
+  EXPECT_FALSE(StampOfTicks(INT64_MIN, 8.0).has_value());
+  EXPECT_FALSE(StampOfTicks(1, std::numeric_limits<double>::infinity()).has_value());
+  EXPECT_FALSE(StampOfTicks(0, 1e300).has_value());
+  EXPECT_FALSE(StampOfTicks(0, std::nan("")).has_value());
+  EXPECT_FALSE(StampOfTicks(1, 0.0).has_value());
+}
+
+// A stamp that no clock shows: its arrival is taken, and what is known of the clock stays.
+TEST(StampMapper, WhatIsNoStampCountsAsItsArrival) {
+  StampMapper mapper(kTransportNs);
+  EXPECT_EQ(mapper.Map(kFrameNs, 2 * kFrameNs), 2 * kFrameNs - kTransportNs);
+  std::int64_t arrival_ns = 2 * kFrameNs;
+  for (const std::int64_t none_ns : {INT64_MAX, INT64_MIN, kMostStampNs + 1, -kMostStampNs - 1}) {
+    arrival_ns += kFrameNs;
+    EXPECT_EQ(mapper.Map(none_ns, arrival_ns), arrival_ns - kTransportNs) << none_ns;
+  }
+  EXPECT_EQ(mapper.restarts(), 0U);
+  for (const std::int64_t far_ns : {kMostStampNs, -kMostStampNs, kMostStampNs}) {
+    arrival_ns += kFrameNs;
+    EXPECT_EQ(mapper.Map(far_ns, arrival_ns), arrival_ns - kTransportNs) << far_ns;
+  }
+  EXPECT_EQ(mapper.restarts(), 3U);
 }
 
 }  // namespace

@@ -1,6 +1,13 @@
 #include "fovea/camera/frame_counter.hpp"
 
+#include <algorithm>
+
 namespace fovea::camera {
+namespace {
+
+constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 32U;  // a year and more without a frame
+
+}  // namespace
 
 std::uint64_t FrameCounter::Count(std::uint64_t device) {
   std::uint64_t steps = 1;
@@ -9,8 +16,8 @@ std::uint64_t FrameCounter::Count(std::uint64_t device) {
     if (span_ != 0 && device < last_device_) {
       steps += span_;
     }
-    const std::uint64_t half = span_ == 0 ? std::uint64_t{1} << 63U : span_ / 2;
-    if (steps == 0 || steps > half) {
+    const std::uint64_t most = span_ == 0 ? kMostSteps : std::min(span_ / 2, kMostSteps);
+    if (steps == 0 || steps > most) {
       steps = 1;
     }
   }

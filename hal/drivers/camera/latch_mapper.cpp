@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/camera/stamp.hpp"
 #include "fovea/hal/types.hpp"
 
 namespace fovea::camera {
@@ -17,7 +18,7 @@ constexpr double kSurelyNs = 1e4;  // a shorter round trip than this says no mor
 
 void LatchMapper::Add(std::int64_t before_ns, std::int64_t device_ns, std::int64_t after_ns) {
   const std::int64_t trip_ns = after_ns - before_ns;
-  if (trip_ns < 0 || trip_ns > kWorstTripNs) {
+  if (trip_ns < 0 || trip_ns > kWorstTripNs || !IsStamp(device_ns)) {
     return;
   }
   if (IsTooLate(device_ns)) {
@@ -64,7 +65,7 @@ bool LatchMapper::IsTooLate(std::int64_t device_ns) const {
 }
 
 std::optional<std::int64_t> LatchMapper::Map(std::int64_t device_ns) const {
-  if (best_.all().empty() || IsTooLate(device_ns)) {
+  if (best_.all().empty() || !IsStamp(device_ns) || IsTooLate(device_ns)) {
     return std::nullopt;
   }
   return device_ns + line_.At(device_ns);

@@ -1,6 +1,7 @@
 #include "fovea/camera/raw_picture.hpp"
 
 #include <array>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 namespace fovea::camera {
@@ -54,6 +55,15 @@ int RawBytesPerPixel(RawFormat format) { return Of(format).bytes_per_pixel; }
 
 hal::PixelFormat UnpackedFormat(RawFormat format) {
   return format == RawFormat::kMono8 ? hal::PixelFormat::kMono8 : hal::PixelFormat::kBgr8;
+}
+
+bool SetPadding(int padding, RawPicture& raw) {
+  const std::int64_t stride = std::int64_t{raw.width_px} * Of(raw.format).bytes_per_pixel + padding;
+  if (raw.width_px <= 0 || padding < 0 || stride > std::numeric_limits<int>::max()) {
+    return false;
+  }
+  raw.stride_bytes = static_cast<int>(stride);
+  return true;
 }
 
 bool Unpack(const RawPicture& raw, cv::Mat& out) {

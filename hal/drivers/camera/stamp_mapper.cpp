@@ -4,9 +4,15 @@
 #include <limits>
 #include <span>
 
+#include "fovea/camera/stamp.hpp"
+
 namespace fovea::camera {
 
 std::int64_t StampMapper::Map(std::int64_t device_ns, std::int64_t arrival_ns) {
+  if (!IsStamp(device_ns)) {
+    last_host_ns_ = std::max(arrival_ns - transport_ns_, last_host_ns_ + 1);
+    return last_host_ns_;
+  }
   best_.Add({device_ns, arrival_ns - device_ns}, line_);
   FitLine();
   const std::int64_t host_ns = device_ns + line_.At(device_ns) - transport_ns_;

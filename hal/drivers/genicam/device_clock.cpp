@@ -2,8 +2,8 @@
 
 #include <array>
 #include <chrono>
-#include <cmath>
 
+#include "fovea/camera/stamp.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 
 namespace fovea::genicam {
@@ -67,7 +67,7 @@ void DeviceClock::Run() {
   }
 }
 
-// One reading; false when the camera did not answer.
+// One reading; false when the camera did not answer, or with what is no stamp.
 bool DeviceClock::Ask() {
   GError* error = nullptr;
   const std::int64_t before_ns = linux_rt::MonotonicNs();
@@ -81,13 +81,12 @@ bool DeviceClock::Ask() {
     g_error_free(error);
     return false;
   }
-  // Whole ticks first: a double has no room for nanoseconds since a camera was switched on long ago.
-  const auto whole_ns_per_tick = static_cast<std::int64_t>(ns_per_tick_);
-  const std::int64_t device_ns =
-      value * whole_ns_per_tick +
-      std::llround(static_cast<double>(value) * (ns_per_tick_ - static_cast<double>(whole_ns_per_tick)));
+  const auto device_ns = camera::StampOfTicks(value, ns_per_tick_);
+  if (!device_ns) {
+    return false;
+  }
   const std::lock_guard lock(mutex_);
-  mapper_.Add(before_ns, device_ns, after_ns);
+  mapper_.Add(before_ns, *device_ns, after_ns);
   return true;
 }
 

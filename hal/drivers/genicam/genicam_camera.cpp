@@ -5,6 +5,7 @@
 
 #include "aravis_session.hpp"
 #include "fovea/camera/camera_error.hpp"
+#include "fovea/camera/stamp.hpp"
 #include "fovea/hal/types.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 
@@ -126,13 +127,15 @@ hal::Status GenicamCamera::Take(Session& session, hal::Frame& frame, std::int64_
   bool unpacked = false;
   if (format) {
     raw.format = *format;
-    raw.stride_bytes = raw.width_px * camera::RawBytesPerPixel(*format) + x_padding;
-    unpacked = camera::Unpack(raw, picture_);
+    unpacked = camera::SetPadding(x_padding, raw) && camera::Unpack(raw, picture_);
   }
   const auto device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(newest));
   last_device_ns_ = device_ns;
   const std::uint64_t number = arv_buffer_get_frame_id(newest);
   session.GiveBack(newest);
+  if (config_.device_time && (device_ns < 0 || device_ns > camera::kMostStampNs)) {
+    return hal::Status(hal::StatusCode::kDeviceFault, "camera stamp");
+  }
   if (!unpacked || picture_.cols != width_px_ || picture_.rows != height_px_) {
     return hal::Status(hal::StatusCode::kDeviceFault, "camera picture");
   }

@@ -22,7 +22,9 @@ struct ClockLine {
   double drift = 0.0;  // seconds that the host's clock gains on the device's in a second
 
   [[nodiscard]] std::int64_t At(std::int64_t ns) const {
-    return excess_ns + std::llround(drift * static_cast<double>(ns - device_ns));
+    constexpr double kMostNs = 1e18;  // that a drift makes; far beyond what is lost
+    return excess_ns +
+           std::llround(std::clamp(drift * static_cast<double>(ns - device_ns), -kMostNs, kMostNs));
   }
 };
 
@@ -31,7 +33,7 @@ template <class Point, std::int64_t Point::*kKey>
 class ClockPoints {
  public:
   // A device clock that goes back, or leaves `line` by more than a second, has started anew: what was known
-  // of it is forgotten.
+  // of it is forgotten. The point's time is a stamp (stamp.hpp).
   void Add(const Point& point, const ClockLine& line) {
     if (count_ > 0 && (point.device_ns < last_device_ns_ ||
                        std::llabs(point.excess_ns - line.At(point.device_ns)) > kLostNs)) {

@@ -12,7 +12,8 @@ class FrameCounter {
   FrameCounter() = default;  // all 64 bits
 
   // The count of the frame with number `device`; a gap stays a gap. A number that would lie more than half a
-  // round ahead, or is the last one again, is that of a device that started anew: it counts as the next.
+  // round or 2^32 frames ahead, or is the last one again, is that of a device that started anew: it counts as
+  // the next.
   std::uint64_t Count(std::uint64_t device);
   // The device was opened anew: whatever number comes is the next.
   void Restart() { known_ = false; }

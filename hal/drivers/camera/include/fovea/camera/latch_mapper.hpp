@@ -17,12 +17,12 @@ class LatchMapper {
  public:
   // The device's clock showed `device_ns` at some time from `before_ns` to `after_ns` of the host's [ns]. A
   // device clock that goes back, or leaves the line by more than a second, has started anew: what was known
-  // of it is forgotten. So is a reading of which the round trip took longer than 5 ms, and what was known
-  // when none came for so long that Map has nothing more to say.
+  // of it is forgotten. So is a reading of which the round trip took longer than 5 ms, one of what is no
+  // stamp (stamp.hpp), and what was known when none came for so long that Map has nothing more to say.
   void Add(std::int64_t before_ns, std::int64_t device_ns, std::int64_t after_ns);
 
-  // The host's time of `device_ns`; none without a reading, nor when it is later than the last one by more
-  // than 2 s, or 10 s where the drift is known.
+  // The host's time of `device_ns`; none without a reading, of what is no stamp, nor when it is later than
+  // the last one by more than 2 s, or 10 s where the drift is known.
   [[nodiscard]] std::optional<std::int64_t> Map(std::int64_t device_ns) const;
 
   // Seconds that the host's clock gains on the device's in a second; 0 until 8 s are known.

@@ -37,6 +37,10 @@ struct RawPicture {
   std::span<const std::uint8_t> bytes;
 };
 
+// Sets `raw`'s stride to that of rows with `padding` bytes after their pixels. False, with `raw` as it was:
+// no such rows are possible.
+bool SetPadding(int padding, RawPicture& raw);
+
 // Into `out`, whose memory is used again when it fits. False, with `out` as it was: fewer bytes than the
 // picture needs, no size, a Bayer picture under 2 x 2 or a YUYV one of odd width.
 bool Unpack(const RawPicture& raw, cv::Mat& out);

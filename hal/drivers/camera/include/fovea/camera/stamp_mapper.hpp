@@ -18,8 +18,8 @@ class StampMapper {
   explicit StampMapper(std::int64_t transport_ns) : transport_ns_(transport_ns) {}
 
   // The host's time of `device_ns`, which came at `arrival_ns` [ns]. Never later than its arrival, and later
-  // than all before it. A device clock that goes back, or leaves the line by more than a second, has started
-  // anew: what was known of it is forgotten.
+  // than all before it. Of a stamp that is none (stamp.hpp) the arrival is taken. A device clock that goes
+  // back, or leaves the line by more than a second, has started anew: what was known of it is forgotten.
   std::int64_t Map(std::int64_t device_ns, std::int64_t arrival_ns);
   void Restart();
 
