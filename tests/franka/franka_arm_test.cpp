@@ -152,6 +152,9 @@ TEST_F(FrankaArmTest, LostLateRepeatedShortAndForeignDatagramsAreCounted) {
   robot_.SendDatagram(std::vector<std::byte>(2372, std::byte{}));  // short
   robot_.SendDatagram(std::vector<std::byte>(2374, std::byte{}));  // long
   robot_.SendDatagram({});                                         // empty
+  robot_.state.message_id = std::uint64_t{1} << 60U;               // of a time that no clock shows
+  robot_.SendState();
+  robot_.state.message_id = newest + 1;
   robot_.SendState();
   robot_.SendState();  // two that are new
   ASSERT_TRUE(arm_->Read(state_).ok());
@@ -159,7 +162,7 @@ TEST_F(FrankaArmTest, LostLateRepeatedShortAndForeignDatagramsAreCounted) {
   const franka::FrankaCounters& c = arm_->counters();
   EXPECT_EQ(c.late_states, 1U);
   EXPECT_EQ(c.duplicate_states, 1U);
-  EXPECT_EQ(c.malformed, 3U);
+  EXPECT_EQ(c.malformed, 4U);
   EXPECT_EQ(c.skipped_states, 1U);
   EXPECT_EQ(c.states, 3U);
 }

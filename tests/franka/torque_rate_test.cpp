@@ -7,6 +7,7 @@
 #include <cmath>
 #include <deque>
 #include <iostream>
+#include <limits>
 #include <random>
 
 namespace fovea::franka {
@@ -83,6 +84,22 @@ TEST(TorqueRate, OnAGoodNetworkTheWholeStepIsUsed) {
   }
   Vector7 command;
   EXPECT_FALSE(rate.Limit(tau, tau, command));
+}
+
+// A robot that says so must not be sent it.
+TEST(TorqueRate, WhatIsNoNumberIsNeverCommanded) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                           -std::numeric_limits<double>::infinity()}) {
+    TorqueRate rate(All(kStep));
+    Vector7 command;
+    rate.Limit(All(9.0), All(bad), command);
+    EXPECT_EQ(command, All(kStep)) << "from nothing";
+    rate.Limit(All(9.0), All(bad), command);
+    EXPECT_LE(command[0], 2.0 * kStep);
+    EXPECT_GT(command[0], 0.0);
+    rate.Limit(All(9.0), All(kStep), command);
+    EXPECT_LE(command[0], 2.0 * kStep) << "and it goes on when the robot says numbers again";
+  }
 }
 
 TEST(TorqueRate, ANewMotionKnowsNothingOfTheLast) {

@@ -15,6 +15,8 @@ using hal::StatusCode;
 // gives way each millisecond.
 constexpr std::int64_t kDriftNsPerState = 200;
 constexpr int kMostDatagramsPerRead = 256;
+constexpr std::uint64_t kMostMessageId =
+    1'000'000'000'000;  // 31 years of milliseconds; in ns there is room for it
 // States from before a recovery may come after its answer: two channels, no common order.
 constexpr int kMostStoppedStates = 100;
 constexpr int kMostStartingStates = 500;  // until a motion that was asked for shows
@@ -177,7 +179,7 @@ bool FrankaArm::TakeStates() noexcept {
       continue;
     }
     RobotState next;
-    if (size != kStateSize || !Decode(bytes, next)) {
+    if (size != kStateSize || !Decode(bytes, next) || next.message_id > kMostMessageId) {
       ++counters_.malformed;
       continue;
     }

@@ -20,11 +20,12 @@ bool AreSame(const Vector7& a, const Vector7& b) noexcept {
 }  // namespace
 
 bool TorqueRate::Limit(const Vector7& wish, const Vector7& tau_J_d, Vector7& command) noexcept {
-  ForgetWhatCameBefore(tau_J_d);
+  const Vector7 in_force = Known(tau_J_d);
+  ForgetWhatCameBefore(in_force);
   bool limited = false;
   for (std::size_t i = 0; i < wish.size(); ++i) {
-    double low = tau_J_d[i];
-    double high = tau_J_d[i];
+    double low = in_force[i];
+    double high = in_force[i];
     for (std::size_t k = 0; k < num_sent_; ++k) {
       low = std::min(low, sent_[k][i]);
       high = std::max(high, sent_[k][i]);
@@ -41,6 +42,17 @@ bool TorqueRate::Limit(const Vector7& wish, const Vector7& tau_J_d, Vector7& com
   }
   sent_[num_sent_++] = command;
   return limited;
+}
+
+// What is no number says nothing: the command that was sent last counts for it.
+Vector7 TorqueRate::Known(const Vector7& tau_J_d) const noexcept {
+  Vector7 known = tau_J_d;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (!std::isfinite(known[i])) {
+      known[i] = num_sent_ > 0 ? sent_[num_sent_ - 1][i] : 0.0;
+    }
+  }
+  return known;
 }
 
 // Commands are applied in the order in which they were sent: what is older than the one in force is done

@@ -21,12 +21,14 @@ class TorqueRate {
   void Clear() noexcept { num_sent_ = 0; }
 
   // The torque nearest to `wish` that is within a step of `tau_J_d`, which the answered state holds, and of
-  // what was sent since that was [Nm]. True when it is not `wish` itself. Real-time: yes.
+  // what was sent since that was [Nm]. True when it is not `wish` itself. Where `tau_J_d` is no number, what
+  // was sent last counts for it. Real-time: yes.
   bool Limit(const Vector7& wish, const Vector7& tau_J_d, Vector7& command) noexcept;
 
  private:
   static constexpr std::size_t kMost = 8;  // commands that may be on their way
 
+  [[nodiscard]] Vector7 Known(const Vector7& tau_J_d) const noexcept;
   void ForgetWhatCameBefore(const Vector7& tau_J_d) noexcept;
 
   Vector7 step_max_;
