@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 
 #include "fovea/config/input_error.hpp"
@@ -88,6 +90,17 @@ TEST_F(KeyTableTest, AnUnknownKeyGetsTheNearestKnownOne) {
 TEST_F(KeyTableTest, AssignmentsMustBeAssignments) {
   for (const char* text : {"", "=3", "servo.predict", "arm.model=", "arm.model=\"open", "a=[1,"}) {
     EXPECT_THAT(ErrorOf(text), testing::StartsWith("--set")) << text;
+  }
+}
+
+// A refusal is one line, and no words of a stranger's are orders to a terminal.
+TEST_F(KeyTableTest, WhatIsQuotedIsShownAndNotObeyed) {
+  for (const char* text : {"servo\n.predict", "\x1b[2J=1\r\n", "arm.model=\x7f\""}) {
+    const std::string error = ErrorOf(text);
+    EXPECT_THAT(error, testing::StartsWith("--set"));
+    EXPECT_TRUE(std::none_of(error.begin(), error.end(), [](unsigned char c) {
+      return std::iscntrl(c) != 0;
+    })) << error;
   }
 }
 
