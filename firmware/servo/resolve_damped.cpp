@@ -80,7 +80,9 @@ void DampedInverse::Factor(const DampingConfig& config) noexcept {
     factors_[i][i] = A[i][i];
     above[i][i] = A[i][i] - threshold2;
   }
-  damped_ = !(model::FactorLdlt<kRows>(factors_) & model::FactorLdlt<kRows>(above));
+  const bool has_factors = model::FactorLdlt<kRows>(factors_);
+  const bool is_above = model::FactorLdlt<kRows>(above);
+  damped_ = !(has_factors && is_above);
   if (!damped_) {
     return;
   }

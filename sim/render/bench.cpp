@@ -47,7 +47,8 @@ void AddTable(Bench& bench) {
   bench.planes.push_back({{kTableX, 0.0F, 0.0F},
                           size,
                           size,
-                          MakeTableTop(2048, kTableWidth, kTableDepth, 0.14, 0.0, 0.90, 0.95)});
+                          MakeTableTop(2048, static_cast<double>(kTableWidth),
+                                       static_cast<double>(kTableDepth), 0.14, 0.0, 0.90, 0.95)});
 
   const float below = -0.5F * kTableThickness;
   AddBox(bench, {kTableWidth, kTableDepth, kTableThickness}, At(kTableX, 0.0F, below - 0.001F),
