@@ -14,6 +14,7 @@
 #include "fovea/config/input_error.hpp"
 #include "fovea/config/program.hpp"
 #include "fovea/vision/target_detector.hpp"
+#include "hand_poses.hpp"
 #include "image_files.hpp"
 
 namespace fovea {
@@ -153,39 +154,14 @@ int FindIntrinsics(const CalibrateArguments& a) {
   return config::kDone;
 }
 
-// poses.csv: file,x,y,z,qw,qx,qy,qz of the hand in B, one line per image.
+// Those views of boards whose pictures the hand's poses name.
 std::vector<vision::HandView> HandViews(const std::string& folder,
                                         const std::vector<vision::BoardView>& boards) {
-  const fs::path path = fs::path(folder) / "poses.csv";
-  std::ifstream stream(path);
-  if (!stream) {
-    throw config::InputError(path.string() +
-                             ": no such file; it has a line file,x,y,z,qw,qx,qy,qz for each image");
-  }
   std::vector<vision::HandView> views;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    if (line.empty() || line[0] == '#') {
-      continue;
-    }
-    std::istringstream fields(line);
-    std::string file;
-    std::getline(fields, file, ',');
-    std::array<double, 7> v{};
-    bool good = true;
-    for (double& value : v) {
-      std::string field;
-      good = good && std::getline(fields, field, ',') && (std::istringstream(field) >> value) &&
-             std::isfinite(value);
-    }
-    const Eigen::Quaterniond q(v[3], v[4], v[5], v[6]);
-    if (!good || std::fabs(q.norm() - 1.0) > 1e-3) {
-      throw config::InputError(
-          fmt::format("{}:{}: must be file,x,y,z,qw,qx,qy,qz with a unit quaternion", path.string(), number));
-    }
+  for (const HandPose& pose : ReadHandPoses(fs::path(folder) / "poses.csv")) {
     for (const vision::BoardView& board : boards) {
-      if (board.name == file) {
-        views.push_back({{q.normalized().toRotationMatrix(), {v[0], v[1], v[2]}}, board});
+      if (board.name == pose.file) {
+        views.push_back({pose.X_BE, board});
       }
     }
   }

@@ -1,0 +1,65 @@
+// A robot's files: any bytes as its URDF, bare or named by an arm file, and as that arm file. What is taken
+// is an arm that the servo can compute with.
+#include <Eigen/LU>
+#include <cmath>
+#include <vector>
+
+#include "fovea/config/input_error.hpp"
+#include "fovea/robots/robot.hpp"
+#include "fuzz/bytes.hpp"
+#include "fuzz/fuzz.hpp"
+#include "fuzz/input_file.hpp"
+#include "support/places.hpp"
+
+using fovea::fuzz::Require;
+using namespace fovea;
+
+namespace {
+
+void Judge(const model::ArmModel& arm) {
+  Require(arm.num_joints >= 1 && arm.num_joints <= model::kMaxJoints, "joints");
+  for (int i = 0; i < arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& joint = arm.joints[k];
+    Require(std::isfinite(joint.q_min) && std::isfinite(joint.q_max) && joint.q_min < joint.q_max, "a range");
+    Require(arm.q_ready[k] >= joint.q_min && arm.q_ready[k] <= joint.q_max, "a posture in it");
+    for (const double most : {joint.dq_max, joint.ddq_max, joint.dddq_max, joint.tau_max, joint.dtau_max}) {
+      Require(std::isfinite(most) && most > 0.0, "limits");
+    }
+    Require(std::isfinite(joint.viscous) && joint.viscous >= 0.0 && std::isfinite(joint.coulomb) &&
+                joint.coulomb >= 0.0,
+            "friction");
+    Require(joint.X_PJ.R.allFinite() && joint.X_PJ.p.allFinite(), "a place");
+    Require(std::fabs(joint.X_PJ.R.determinant() - 1.0) < 1e-6, "a turn");
+    Require(std::isfinite(arm.links[k].mass) && arm.links[k].mass > 0.0, "a mass");
+  }
+  Require(arm.X_LnE.R.allFinite() && arm.X_LnE.p.allFinite(), "an end");
+}
+
+void Load(const std::filesystem::path& file) {
+  try {
+    Judge(robots::LoadRobot(file).model);
+  } catch (const config::InputError& error) {
+    Require(fuzz::IsOneLine(error.what()), "a refusal is one line");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const fuzz::InputFile urdf("arm.urdf");
+  static const fuzz::InputFile toml("arm.toml");
+  fuzz::Bytes input(data, size);
+  const std::uint8_t how = input.Byte();
+  const auto rest = input.Rest();
+  if (how % 2 == 0) {
+    Load(urdf.Write(rest));
+    return 0;
+  }
+  static const std::filesystem::path good = std::filesystem::path(test::RobotsFolder()) / "slider.urdf";
+  const std::string named = "urdf = \"" + good.string() + "\"\n";
+  std::vector<std::uint8_t> bytes(named.begin(), named.end());
+  bytes.insert(bytes.end(), rest.begin(), rest.end());
+  Load(toml.Write(bytes));
+  return 0;
+}

@@ -1,0 +1,33 @@
+// An input as a file, for code that reads files; one for the whole process, written anew for each input.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+
+#include "support/temp_folder.hpp"
+
+namespace fovea::fuzz {
+
+class InputFile {
+ public:
+  explicit InputFile(const std::string& name) : path_(folder_.path() / name) {}
+
+  const std::filesystem::path& Write(std::span<const std::uint8_t> bytes) const {
+    std::ofstream(path_, std::ios::binary | std::ios::trunc)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    return path_;
+  }
+
+ private:
+  test::TempFolder folder_;
+  std::filesystem::path path_;
+};
+
+// Whether what is said of an input is one line that says something.
+inline bool IsOneLine(const std::string& text) {
+  return !text.empty() && text.find('\n') == std::string::npos;
+}
+
+}  // namespace fovea::fuzz

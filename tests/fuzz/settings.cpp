@@ -1,0 +1,70 @@
+// The sections that scenarios and configurations of hardware share, as a TOML file and as an assignment.
+// Whatever stands there, it is refused in one line, or gives a configuration that the servo takes.
+#include "fovea/config/settings.hpp"
+
+#include <cmath>
+
+#include "fovea/config/camera_keys.hpp"
+#include "fovea/config/input_error.hpp"
+#include "fovea/config/load_keys.hpp"
+#include "fovea/config/servo_keys.hpp"
+#include "fovea/config/vision_keys.hpp"
+#include "fovea/servo/servo_task.hpp"
+#include "fuzz/fuzz.hpp"
+#include "fuzz/input_file.hpp"
+#include "support/panda.hpp"
+
+using fovea::fuzz::Require;
+using namespace fovea;
+
+namespace {
+
+struct Everything {
+  config::LoadSettings load;
+  config::CalibrationSettings camera;
+  config::VisionSettings vision;
+  config::TargetSettings target;
+  config::ServoSettings servo;
+  config::KeyTable keys;
+  Everything() {
+    camera.intrinsics = {640, 480, 500.0, 500.0, 319.5, 239.5};
+    config::AddLoadKeys(load, keys);
+    config::AddCalibrationKeys(camera, keys);
+    config::AddVisionKeys(vision, keys);
+    config::AddTargetKeys(target, keys);
+    config::AddServoKeys(servo, keys);
+  }
+
+  void Apply(const std::vector<config::Setting>& settings) {
+    for (const config::Setting& setting : settings) {
+      keys.Apply(setting);
+    }
+    const model::Load carried = config::MakeLoad(load);
+    Require(std::isfinite(carried.mass) && carried.mass >= 0.0, "a load has a mass");
+    const model::Pose X_EC = config::MakeMount(camera);
+    const servo::ServoConfig made =
+        config::MakeServoConfig(servo, test::Panda(), X_EC, config::MakeIntrinsics(camera), target);
+    servo::ServoTask task;
+    Require(task.Init(made).ok(), "a configuration that was made is taken");
+  }
+};
+
+template <typename Do>
+void Refused(Do&& take) {
+  try {
+    take();
+  } catch (const config::InputError& error) {
+    Require(fuzz::IsOneLine(error.what()), "a refusal is one line");
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const fuzz::InputFile file("settings.toml");
+  const auto& path = file.Write({data, size});
+  Refused([&] { Everything().Apply(config::ReadTomlFile(path)); });
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  Refused([&] { Everything().Apply({config::ParseAssignment(text)}); });
+  return 0;
+}
