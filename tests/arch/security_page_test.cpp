@@ -32,8 +32,12 @@ TEST(SecurityPage, NamesTestsThatThereAre) {
   for (std::sregex_iterator it(page.begin(), page.end(), suite), end; it != end; ++it) {
     const std::string name = (*it)[1];
     const std::string what = (*it)[2];
-    const std::regex there("(TEST(_F|_P)?\\(" + name + ",|class " + name + "\\()");
-    EXPECT_TRUE(std::regex_search(tests, there)) << name;
+    bool there = false;
+    for (const char* before : {"TEST(", "TEST_F(", "TEST_P(", "class "}) {
+      const char* after = std::string(before) == "class " ? "(" : ",";
+      there = there || tests.find(before + name + after) != std::string::npos;
+    }
+    EXPECT_TRUE(there) << name;
     EXPECT_TRUE(what == "*" || tests.find(what) != std::string::npos) << name << "." << what;
     ++suites;
   }
