@@ -99,7 +99,8 @@ inline HasRoom(has_room) {
   has_room = (written - seen_read LESS CAPACITY)
 }
 
-/*: void Push(const T& value) noexcept { */
+/*: void Push(const T& value) noexcept { Fill([&value](T& place) { place = value; }); } */
+/*: void Fill(const Make& fill) noexcept { */
 inline Push(value) {
   /*: const std::uint64_t at = written_.load(std::memory_order_relaxed); */
   at = written;
@@ -115,7 +116,7 @@ inline Push(value) {
 #ifdef WRITTEN_TOO_EARLY
     store_written(at + 1);
 #endif
-    /*: values_[at % values_.size()] = value; */
+    /*: fill(values_[at % values_.size()]); */
     touch(WRITER, at % CAPACITY, WRITE_OF(at % CAPACITY));
     first_half[at % CAPACITY] = value;
     second_half[at % CAPACITY] = value;
@@ -132,10 +133,12 @@ inline End(end) {
   end = seen_written
 }
 
+/*: struct Taken { std::atomic<std::uint64_t>& read; std::uint64_t next;
+      ~Taken() { read.store(next, std::memory_order_release); } }; */
 /*: std::size_t Drain(std::uint64_t end, Take&& take) { */
 inline Drain(end) {
   /*: const std::uint64_t begin = read_.load(std::memory_order_relaxed);
-      for (std::uint64_t next = begin; next != end; ++next) { */
+      for (std::uint64_t next = begin; next != end; ++next) { const Taken taken{read_, next + 1}; */
   /* Nobody else writes read_. */
   next = read;
   do
@@ -143,12 +146,12 @@ inline Drain(end) {
 #ifdef READ_TOO_EARLY
     store_read(next + 1);
 #endif
-    /*: take(values_[next % values_.size()]); */
+    /*: take(values_[next % values_.size()]); } */
     touch(READER, next % CAPACITY, READ_OF(next % CAPACITY));
     value = first_half[next % CAPACITY];
     assert(second_half[next % CAPACITY] == value); /* whole */
     assert(value == pushed[next]);                 /* each once, in order */
-    /*: read_.store(next + 1, std::memory_order_release); } */
+    /* Taken's end. */
 #ifndef READ_TOO_EARLY
     store_read(next + 1);
 #endif
