@@ -61,9 +61,16 @@ done 2> /dev/null
 }
 
 TEST(WireBench, AMotionThatEndsIsSaid) {
-  // Signals have their queue; then the stop button. A busy machine may have ended the motion before.
-  const ProgramResult run =
-      WithItsRobot("grep -q 'SigBlk:.*[2367abef]..$' /proc/$c/status", "kill -USR1 $c; wait $b");
+  // Signals have their queue; then the stop button, and once more where nobody took notice for ten seconds. A
+  // busy machine may have ended the motion before.
+  const ProgramResult run = WithItsRobot(
+      "readlink /proc/$c/exe | grep -q 'fovea-sim$' && grep -q 'SigBlk:.*[2367abef]..$' /proc/$c/status",
+      R"(for k in $(seq 500); do
+  [ $((k % 100)) = 1 ] && kill -USR1 $c 2> /dev/null
+  grep -q '^State:.[^Z]' /proc/$b/status 2> /dev/null || break
+  sleep 0.1
+done
+wait $b)");
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_EQ(run.out, "") << "no figures of a robot that stood";
   EXPECT_THAT(run.err, AnyOf(HasSubstr("(user stop)"), HasSubstr("(communication_constraints_violation)")));
