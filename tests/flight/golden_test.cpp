@@ -4,8 +4,11 @@
 
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "flight/recorded_run.hpp"
+#include "fovea/flight/log_ticks.hpp"
+#include "fovea/flight/messages.hpp"
 #include "support/places.hpp"
 #include "support/program.hpp"
 
@@ -71,6 +74,20 @@ TEST_P(GoldenLog, SaysWhatTheServoDoes) {
 
 INSTANTIATE_TEST_SUITE_P(Runs, GoldenLog, testing::Values(&Tour, &Triangle),
                          [](const auto& run) { return run.index == 0 ? "Tour" : "Triangle"; });
+
+// It was written before a disc's face had a limit: what a configuration lacks stays as it is by itself, and
+// what it has is read into the fields that it was written from.
+TEST(GoldenConfiguration, IsReadAsItWasWritten) {
+  std::optional<servo::ServoConfig> config;
+  flight::TickVisitor visitor;
+  visitor.on_configuration = [&config](const log::ServoConfiguration& message) {
+    config = flight::FromMessage(message);
+  };
+  flight::ReadTicks(SourceRoot() / "tests" / "flight" / "golden" / "triangle.mcap", visitor);
+  ASSERT_TRUE(config.has_value());
+  EXPECT_EQ(config->guard.view.face_cosine_min, 0.0);
+  EXPECT_EQ(config->guard.sight_clearance, Triangle().config.guard.sight_clearance);
+}
 
 // All of the modes are in it.
 TEST(GoldenTour, PassesThroughEveryMode) {

@@ -108,8 +108,8 @@ void GuardFields(Archive& a, T& g) noexcept {
   a(g.view.x_max);
   a(g.view.y_min);
   a(g.view.y_max);
-  a(g.view.face_cosine_min);
   a(g.sight_clearance);
+  a(g.view.face_cosine_min);
 }
 
 template <class Archive, class T>

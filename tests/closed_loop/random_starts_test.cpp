@@ -1,0 +1,62 @@
+// Starts from which the atlas once did not reach its goal, one for each reason that was mended.
+#include <gtest/gtest.h>
+
+#include "closed_loop/closed_loop.hpp"
+
+namespace fovea::test {
+namespace {
+
+using Assignments = std::vector<std::string>;
+
+const Assignments kTable{"safety.planes=[0,0,1,0.09]"};  // as the atlas tells it
+
+Assignments operator+(Assignments a, const Assignments& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+void ExpectReached(const sim::Summary& s) {
+  PrintResidual(s);
+  EXPECT_TRUE(s.converged) << s.verdict;
+  EXPECT_LE(s.final_error_px_rms.value_or(1e9), 0.5);
+  EXPECT_LE(s.final_error_mm.value_or(1e9), 1.0);
+  EXPECT_LE(s.final_error_deg.value_or(0.0), 0.3);
+  EXPECT_EQ(s.limit_violations, 0U);
+}
+
+// Joints that change speed each at its own pace threw the target out of the picture.
+class WideTurn : public testing::TestWithParam<Assignments> {};
+
+TEST_P(WideTurn, KeepsTheTargetInView) { ExpectReached(RunShipped("triangle", kTable + GetParam())); }
+
+INSTANTIATE_TEST_SUITE_P(
+    Starts, WideTurn,
+    testing::Values(Assignments{"arm.q_start=[2.3043,-1.0367,2.1821,-2.9143,-0.5586,1.0495,2.2187]",
+                                "target.position=[-0.1701,0.2993,0.8392]",
+                                "target.rpy_deg=[62.15,-16.28,141.97]", "run.seed=1572773331"},
+                    Assignments{"arm.q_start=[-0.4511,-1.1148,-1.4469,-2.3688,0.9815,2.1172,-2.3358]",
+                                "target.position=[0.2598,-0.575,0.5328]",
+                                "target.rpy_deg=[85.14,33.95,69.31]", "run.seed=1906482257"}));
+
+// The posture's pull turned the disc edge-on, where nothing finds it.
+TEST(EdgeOn, ADiscIsNotTurned) {
+  const Assignments start =
+      kTable + Assignments{"arm.q_start=[-2.7705,-1.3044,1.8399,-2.7133,-0.6047,1.2502,0.726]",
+                           "target.position=[-0.197,-0.1179,0.5561]", "target.rpy_deg=[-2.85,-10.34,29.46]",
+                           "run.seed=458361091"};
+  ExpectReached(RunShipped("circle", start));
+  const sim::Summary turned =
+      RunShipped("circle", start + Assignments{"safety.face_tilt_max=1.5707963267948966"});
+  EXPECT_FALSE(turned.converged) << "it needs no limit from here";
+}
+
+// Along the joints' limits the law comes nearer, and never arrives.
+TEST(CreepingUp, IsLeftToTheJoints) {
+  ExpectReached(RunShipped(
+      "square", kTable + Assignments{"arm.q_start=[0.4502,0.1945,0.1255,-2.8132,1.7986,0.8771,-1.3372]",
+                                     "target.position=[-0.158,0.6334,0.93]",
+                                     "target.rpy_deg=[36.39,21.04,-174.32]", "run.seed=998841373"}));
+}
+
+}  // namespace
+}  // namespace fovea::test
