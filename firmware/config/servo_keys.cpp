@@ -148,11 +148,16 @@ void AddGuardKeys(ServoSettings& settings, KeyTable& keys) {
       "the lines of the arm's own links stay so far from the lines of sight to it, or come no nearer; 0: "
       "they may");
   keys.Number(
+      "safety.hand_clearance", c.hand_clearance, 0.0, 10.0, "m",
+      "the hand's line stays so far from those of the arm's first links, or comes no nearer; 0: it may");
+  keys.Number(
       "safety.face_tilt_max", settings.face_tilt_max, 0.1, std::numbers::pi / 2.0, "rad",
       "a disc's face is turned away from the line of sight by no more than this, or no further; pi / 2: "
       "it may be seen edge-on");
-  keys.Numbers("safety.planes", settings.planes, 4, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
-               "planes n p >= d that the end effector stays above: n_x, n_y, n_z, d, the same again");
+  keys.Numbers(
+      "safety.planes", settings.planes, 4, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
+      "planes n p >= d that the end effector stays above, and the line of the arm's links from the elbow "
+      "on: n_x, n_y, n_z, d, the same again");
   keys.Numbers("safety.boxes", settings.boxes, 6, 6 * servo::Obstacles::kMost, -100.0, 100.0, "m",
                "boxes that it stays out of: low x, y, z, high x, y, z, the same again");
 }

@@ -101,7 +101,8 @@ std::uint64_t DigestOf(const servo::ServoConfig& config, const servo::ServoState
                        bool measured) noexcept {
   const hal::Mode mode = state.mode.mode;
   const bool tracks = mode == hal::Mode::kTrack || mode == hal::Mode::kCoast;
-  const bool seeks = tracks && servo::SeeksGoalPosture(config);
+  const bool seeks =
+      tracks && servo::SeeksGoalPosture(config) && (!servo::SeeksWhenIdle(config) || state.way.preferred);
   const auto counts = [&](Pace pace) {
     switch (pace) {
       case Pace::kTick: return true;

@@ -160,10 +160,16 @@ void GoalPostureFields(Archive& a, T& g) noexcept {
   a.Int(g.way.steps);
   a(g.way.length);
   a(g.way.barred);
+  a.Int(g.detour);
+  a.Int(g.detour_steps);
+  a(g.turned);
+  SizedEntries(a, g.q_via);
   a(g.random);
   a(g.nearest);
   a.Count(g.nearest_turn, 3);
+  a(g.nearest_detour);
   SizedEntries(a, g.q_nearest);
+  SizedEntries(a, g.q_nearest_via);
   a.Count(g.drops, std::numeric_limits<std::int32_t>::max());
   for (auto& q : FirstOf(g.q_dropped, g.drops)) {
     SizedEntries(a, q);
@@ -174,10 +180,12 @@ template <class Archive, class T>
 void WayFields(Archive& a, T& w) noexcept {
   GoalPostureFields(a, w.goal);
   a.Int(w.ticks_to_step);
+  a(w.chosen);
   a(w.by_joints);
   a(w.preferred);
   a(w.since_ns);
   a(w.held_ns);
+  a(w.sought_ns);
   a(w.idle_ns);
   a(w.least_off);
 }

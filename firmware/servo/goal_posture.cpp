@@ -33,6 +33,10 @@ constexpr int kRounds = 12;           // then it begins anew: limits, target or 
 constexpr int kTrialsForClear = 192;  // before a posture is taken that has no clear way to it
 constexpr double kBarred = 100.0;     // a way that is barred counts as so much longer [rad]
 constexpr double kSame = 0.2;         // postures no further apart are one [rad]
+constexpr int kDetours = 6;           // that are tried to a posture whose straight way is barred
+constexpr double kDetour = 1.5;       // how far off the posture is that one begins towards [rad]
+constexpr int kDetourSteps = 4;       // that it goes there, or up to
+constexpr int kDetourStepsMore = 11;  // so many more
 
 int TurnsOf(const features::TargetFeature& feature) noexcept {
   return feature.target == hal::FeatureKind::kSquare ? 4 : 1;
@@ -42,6 +46,10 @@ int TurnsOf(const features::TargetFeature& feature) noexcept {
 Pose CameraGoal(const features::TargetFeature& feature, const Pose& X_BO, int turn) noexcept {
   const Pose turned{X_BO.R * QuarterTurns(turn), X_BO.p};
   return turned * Pose{feature.R_CO_star, feature.p_CO_C_star}.Inverse();
+}
+
+Pose HandGoal(const ServoConfig& config, const Pose& X_BO, int turn) noexcept {
+  return CameraGoal(config.feature, X_BO, turn) * config.X_EC.Inverse();
 }
 
 // The turn `first`, then the others, the nearest to the camera's orientation first.
@@ -89,16 +97,32 @@ void Begin(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPostu
   }
 }
 
-// One step of Gauss-Newton towards the camera pose `X_BC_star`. A joint at its end rests where the step would
-// take it further. Returns how far off it was before.
-double Descend(const ServoConfig& config, const Pose& X_BC_star, const model::ArmPoses& poses,
-               VecN& q) noexcept {
+// What the camera is off its goal, and how the joints change that: J dq = off. A target whose orientation is
+// not seen leaves the camera free to turn about it: dp_CO/dt = -v + [p_CO]x w shall be p_CO* - p_CO.
+void OffGoal(const ServoConfig& config, const Pose& X_BO, int turn, const model::ArmPoses& poses, Vec6& off,
+             model::Mat6N& J) noexcept {
   const Pose X_BC = poses.X_BE * config.X_EC;
-  Vec6 off;
-  off.head<3>() = X_BC.R.transpose() * (X_BC_star.p - X_BC.p);
-  off.tail<3>() = model::RotationVector(X_BC.R.transpose() * X_BC_star.R);
-  model::Mat6N J;
   model::ComputeJacobian(config.arm, poses, config.X_EC, J);
+  if (config.feature.SeesOrientation()) {
+    const Pose X_BC_star = CameraGoal(config.feature, X_BO, turn);
+    off.head<3>() = X_BC.R.transpose() * (X_BC_star.p - X_BC.p);
+    off.tail<3>() = model::RotationVector(X_BC.R.transpose() * X_BC_star.R);
+  } else {
+    const model::Vec3 p_CO = X_BC.Inverse() * X_BO.p;
+    off.head<3>() = p_CO - config.feature.p_CO_C_star;
+    off.tail<3>().setZero();
+    J.topRows<3>() -= model::CrossMatrix(p_CO).lazyProduct(J.bottomRows<3>());
+    J.bottomRows<3>().setZero();
+  }
+}
+
+// One step of Gauss-Newton towards the goal. A joint at its end rests where the step would take it further.
+// Returns how far off it was before.
+double Descend(const ServoConfig& config, const Pose& X_BO, int turn, const model::ArmPoses& poses,
+               VecN& q) noexcept {
+  Vec6 off;
+  model::Mat6N J;
+  OffGoal(config, X_BO, turn, poses, off, J);
   VecN dq = VecN::Zero(q.size());
   for (int pass = 0; pass < kPasses; ++pass) {
     model::Mat6 JJT = J.lazyProduct(J.transpose());
@@ -137,14 +161,48 @@ bool WasDropped(const GoalPosture& goal) noexcept {
   return dropped;
 }
 
-// The way to a posture that reaches the goal has been tried.
+// A way to a posture that reaches the goal has been tried.
 void Note(GoalPosture& goal) noexcept {
   const double way = goal.way.length + (goal.way.barred ? kBarred : 0.0);
-  if (way < goal.nearest) {
+  const bool counts = goal.detour == 0 || !goal.way.barred;
+  if (counts && way < goal.nearest) {
     goal.nearest = way;
     goal.nearest_turn = goal.trial_turn;
+    goal.nearest_detour = goal.detour > 0;
     goal.q_nearest = goal.q;
+    goal.q_nearest_via = goal.q_via;
   }
+}
+
+// Another detour from `q`, towards a posture drawn about where the arm is.
+void BeginDetour(const ServoConfig& config, const VecN& q, GoalPosture& goal) noexcept {
+  ++goal.detour;
+  goal.turned = false;
+  goal.q_via = q;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const JointRange range = RoomOfJoint(config, i);
+    goal.q_via[i] = std::clamp(q[i] + kDetour * Draw(goal.random), range.least, range.most);
+  }
+  const double share = 0.5 * (1.0 + Draw(goal.random));
+  goal.detour_steps = kDetourSteps + static_cast<int>(share * kDetourStepsMore);
+  goal.way = WayTrial{};
+  goal.way.q = q;
+}
+
+// A step of the way that is tried. False when it is at its end, there or barred.
+bool TryOn(const ServoConfig& config, const Pose& X_BO, GoalPosture& goal) noexcept {
+  if (goal.detour == 0 || goal.turned) {
+    return StepOnWay(config, X_BO, goal.q, goal.way);
+  }
+  const bool goes_on = StepOnWay(config, X_BO, goal.q_via, goal.way);
+  if (goal.way.barred) {
+    return false;
+  }
+  if (!goes_on || goal.way.steps >= goal.detour_steps) {
+    goal.turned = true;
+    goal.q_via = goal.way.q;
+  }
+  return true;
 }
 
 // What has been found counts at once when it lies downhill, else when the round is over.
@@ -163,27 +221,25 @@ void NextTrial(const ServoConfig& config, GoalPosture& goal) noexcept {
   if (goal.nearest < HUGE_VAL && (goal.downhill || (round_over && enough))) {
     goal.found = true;
     goal.turn = goal.nearest_turn;
+    goal.detour = goal.nearest_detour ? 1 : 0;
     goal.q = goal.q_nearest;
+    goal.q_via = goal.q_nearest_via;
     goal.nearest = HUGE_VAL;
     goal.step = 0;
   }
 }
 
-// The square stays turned as it was: the camera would start to the side for nothing else.
-void BeginAnew(GoalPosture& goal) noexcept {
-  const int turn = goal.turn;
-  const std::uint32_t random = goal.random;
-  goal = GoalPosture{};
-  goal.turn = turn;
-  goal.random = random;
-}
-
 }  // namespace
+
+bool SeeksWhenIdle(const ServoConfig& config) noexcept {
+  return !config.feature.SeesOrientation() && !config.feature.hold_orientation;
+}
 
 bool SeeksGoalPosture(const ServoConfig& config) noexcept {
   const features::TargetFeature& feature = config.feature;
-  return config.arm.num_joints >= 6 && feature.SeesOrientation() &&
-         (feature.form == FeatureForm::kCorners || feature.form == FeatureForm::kPose);
+  const bool whole_pose = feature.SeesOrientation() &&
+                          (feature.form == FeatureForm::kCorners || feature.form == FeatureForm::kPose);
+  return config.arm.num_joints >= 6 && (whole_pose || SeeksWhenIdle(config));
 }
 
 Mat3 QuarterTurns(int turn) noexcept {
@@ -193,6 +249,14 @@ Mat3 QuarterTurns(int turn) noexcept {
   Mat3 R;
   R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
   return R;
+}
+
+void SeekAnew(GoalPosture& goal) noexcept {
+  const int turn = goal.turn;
+  const std::uint32_t random = goal.random;
+  goal = GoalPosture{};
+  goal.turn = turn;
+  goal.random = random;
 }
 
 void SeekClearerPosture(GoalPosture& goal) noexcept {
@@ -210,28 +274,34 @@ void DropGoalPosture(GoalPosture& goal) noexcept {
 
 void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) noexcept {
   if (goal.reached && !goal.found) {
-    if (!StepOnWay(config, X_BO, goal.q, goal.way)) {
+    if (!TryOn(config, X_BO, goal)) {
       Note(goal);
-      NextTrial(config, goal);
+      if (goal.way.barred && goal.detour < kDetours) {
+        BeginDetour(config, q, goal);
+      } else {
+        NextTrial(config, goal);
+      }
     }
     return;
   }
   if (!goal.begun && !goal.found) {
     Begin(config, X_BO, q, goal);
   }
-  const Pose X_BC_star = CameraGoal(config.feature, X_BO, goal.found ? goal.turn : goal.trial_turn);
-  const bool allowed = KeepsOut(config, (X_BC_star * config.X_EC.Inverse()).p);
-  if (!goal.found && !allowed) {
+  const int turn = goal.found ? goal.turn : goal.trial_turn;
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, goal.q, poses);
+  const bool turns_freely = !config.feature.SeesOrientation();
+  const Pose X_BE_star = turns_freely ? poses.X_BE : HandGoal(config, X_BO, turn);
+  const bool allowed = KeepsOut(config, X_BE_star.p);
+  if (!goal.found && !turns_freely && !allowed) {
     NextTrial(config, goal);
     return;
   }
-  model::ArmPoses poses;
-  model::ComputePoses(config.arm, goal.q, poses);
-  const double off = Descend(config, X_BC_star, poses, goal.q);
+  const double off = Descend(config, X_BO, turn, poses, goal.q);
   if (goal.found) {
     goal.step = off > kOff || !allowed ? goal.step + 1 : 0;
     if (!(off < kLost) || goal.step > kOffSteps) {
-      BeginAnew(goal);
+      SeekAnew(goal);
     }
     return;
   }
@@ -241,8 +311,11 @@ void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q,
     is_stuck = is_stuck || !(off < kComesNearer * goal.last_off);
     goal.last_off = off;
   }
-  if (off < kReached && IsRegular(config, poses) && IsInSight(config, poses, X_BO) && !WasDropped(goal)) {
+  if (off < kReached && allowed && IsRegular(config, poses) && IsInSight(config, poses, X_BO) &&
+      IsApart(config, poses) && !WasDropped(goal)) {
     goal.reached = true;
+    goal.detour = 0;
+    goal.q_via = q;
     goal.way = WayTrial{};
     goal.way.q = q;
   } else if (off < kReached || is_stuck) {

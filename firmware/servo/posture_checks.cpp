@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "fovea/servo/keep_apart.hpp"
 #include "fovea/servo/keep_sight.hpp"
 #include "fovea/servo/obstacle.hpp"
 #include "fovea/servo/singularity.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double kJointRoom = 0.06;       // inside the range that the reference keeps [rad, m]
 constexpr double kRadiusRoom = 0.003;     // inside the sphere that it keeps [m]
-constexpr double kSightRoom = 0.005;      // outside the clearance that it keeps [m]
+constexpr double kSightRoom = 0.005;      // outside the clearances that it keeps [m]
 constexpr double kSingularityRoom = 1.5;  // of the smallest singular value that the guard keeps
 
 constexpr double kSteepest = 0.2;  // cosine to a flat target's normal at which it is still made out
@@ -48,6 +49,12 @@ bool IsInSight(const ServoConfig& config, const model::ArmPoses& poses, const mo
   return clearance <= 0.0 ||
          ClearanceOfSight(config.arm, {poses, poses.X_BE * config.X_EC, config.feature.Outline(), X_BO}) >
              clearance + kSightRoom;
+}
+
+bool IsApart(const ServoConfig& config, const model::ArmPoses& poses) noexcept {
+  const double clearance = config.guard.hand_clearance;
+  return (clearance <= 0.0 || ClearanceOfHand(config.arm, poses) > clearance + kSightRoom) &&
+         ClearanceOfPlanes(config.arm, config.guard.obstacles, poses) > kSightRoom;
 }
 
 bool IsInView(const ServoConfig& config, const model::Pose& X_BC, const model::Pose& X_BO) noexcept {

@@ -5,6 +5,7 @@
 
 #include "fovea/servo/guard_motion.hpp"
 #include "fovea/servo/joint_pace.hpp"
+#include "fovea/servo/keep_apart.hpp"
 #include "fovea/servo/keep_face.hpp"
 #include "fovea/servo/keep_sight.hpp"
 #include "fovea/servo/null_space_wish.hpp"
@@ -17,6 +18,8 @@ namespace {
 using hal::Bit;
 using hal::Limit;
 using hal::LimitSet;
+
+constexpr double kWishFades = 0.5;
 
 // Rows, and what each stands for.
 struct NamedLimits {
@@ -44,14 +47,23 @@ void LimitApproach(const ServoConfig& config, const MotionScene& scene, MotionLi
   }
 }
 
-void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatch& watch,
-            NamedLimits& named) noexcept {
+// A wish is nothing to get into a singularity for: from half as deep again as the limit on it fades. (At the
+// limit it would take its joints' freedom from the task, by a gradient that leaps where two singular values
+// meet.)
+double ShareOfWish(double sigma, double sigma_min) noexcept {
+  return std::clamp((sigma / sigma_min - 1.0) / kWishFades, 0.0, 1.0);
+}
+
+void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatch& watch, NamedLimits& named,
+            double& wish) noexcept {
   MotionLimits& limits = named.limits;
   LimitJoints(config, scene.reference.q, limits);
   LimitOutwardMotion(config, scene.poses.X_BE.p, scene.J_E_B, scene.reference.dq, limits);
   named.NameNewRows(Limit::kWorkspace, 0);
   int rows = limits.num_rows;
   LimitApproach(config, scene, limits);
+  LimitArm(config.arm, config.guard.obstacles, scene.poses, limits);
+  LimitHand(config.guard.hand_clearance, config.arm, scene.poses, limits);
   named.NameNewRows(Limit::kObstacle, rows);
   if (scene.by_joints) {
     watch = SingularityWatch{};  // what it knew of the posture holds no longer
@@ -63,6 +75,7 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
     if (IsNear(singularity_config, scene.J, scene.reference.dq.lpNorm<1>(),
                2.0 * config.guard.workspace_radius, watch, singularity)) {
       LimitSingularity(singularity_config, singularity, limits);
+      wish = ShareOfWish(singularity.sigma, singularity_config.sigma_min);
       named.NameNewRows(Limit::kSingularity, rows);
     }
   }
@@ -107,14 +120,21 @@ LimitSet LimitsThatAct(const ServoConfig& config, const NamedLimits& named,
 void ResolveMotion(const ServoConfig& config, const MotionTask& task, const MotionScene& scene,
                    ResolvedMotion& motion) noexcept {
   NamedLimits named;
-  Gather(config, scene, motion.watch, named);
+  double wish = 1.0;
+  Gather(config, scene, motion.watch, named, wish);
   ConstrainedConfig constrained;
   constrained.damping.threshold = config.law.damping;
   if (scene.by_joints) {
     constrained.progress_weight = 1.0;
   }
   ConstrainedMotion resolved;
-  ResolveConstrained(constrained, task, named.limits, resolved);
+  if (wish < 1.0) {
+    MotionTask calmer = task;
+    calmer.dq_0 *= wish;
+    ResolveConstrained(constrained, calmer, named.limits, resolved);
+  } else {
+    ResolveConstrained(constrained, task, named.limits, resolved);
+  }
   motion.dq = resolved.limited.dq;
   motion.finite = resolved.limited.outcome != LimitOutcome::kNotFinite;
   motion.limits = LimitsThatAct(config, named, resolved.limited);

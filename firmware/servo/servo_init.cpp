@@ -97,6 +97,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.guard.cartesian_speed, 1e-3, huge, "safety.cartesian_speed"},
       {config.guard.singularity_min, 0.0, 1.0, "safety.singularity_min"},
       {config.guard.sight_clearance, 0.0, 10.0, "safety.sight_clearance"},
+      {config.guard.hand_clearance, 0.0, 10.0, "safety.hand_clearance"},
       {config.guard.view.face_cosine_min, 0.0, 1.0, "safety.face_tilt_max"},
       {config.move.speed, 1e-3, huge, "servo.move_speed"},
       {config.move.acceleration, 1e-3, huge, "servo.move_acceleration"},

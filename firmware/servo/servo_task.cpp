@@ -194,7 +194,7 @@ void ServoTask::ChooseTheWay() noexcept {
   sight.limits = state_.limits;
   sight.now_ns = state_.now_ns;
   sight.track_since_ns = state_.track_since_ns;
-  sight.is_told_apart = state_.predict.poses.num_branches == 1;
+  sight.is_told_apart = !config_.feature.SeesOrientation() || state_.predict.poses.num_branches == 1;
   ChooseWay(config_, sight, state_.way);
   if (state_.way.by_joints) {
     SteerByJoints(state_.way, state_.q, state_.prediction.seen, state_.J_C, config_.feature.p_CO_C_star,

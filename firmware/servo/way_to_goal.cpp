@@ -14,7 +14,7 @@ constexpr int kTicksToAStep = 4;  // what was found follows the target more slow
 // When the joints take over.
 constexpr double kLookS = 0.2;   // after which the target's pose is believed so far as to leave the law's way
 constexpr double kIdleS = 0.4;   // for so long the goal came no nearer
-constexpr double kNearer = 0.9;  // by this share
+constexpr double kNearer = 0.8;  // by this share
 constexpr double kThereM = 0.0015;  // a goal that is so near needs no other way
 constexpr double kThereRad = 0.006;
 constexpr double kMetrePerRad = 0.1;
@@ -24,8 +24,11 @@ constexpr double kBegins = 0.04;  // where some joint is further from the postur
 constexpr double kGain = 3.0;       // [1/s]
 constexpr double kSpeed = 1.8;      // of the fastest [rad/s]
 constexpr double kEnds = 0.015;     // where no joint is further off [rad]
+constexpr double kAtDetour = 0.15;  // so near the posture on the way is behind [rad]
 constexpr double kHeldShare = 0.1;  // of the wanted motion: limits that leave less hold it up,
 constexpr double kHeldS = 0.4;      // and for so long, another posture is looked for
+
+constexpr std::int64_t kSeekNs = 1'500'000'000;  // for so long the arm stands while a way is looked for
 
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 
@@ -33,7 +36,9 @@ bool IsLonger(std::int64_t ns, double s) noexcept { return static_cast<double>(n
 
 void NoteIdle(const ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
   const model::Mat3 R_CO = sight.X_CO.R * QuarterTurns(way.goal.turn);
-  const double turn = model::RotationVector(config.feature.R_CO_star.transpose() * R_CO).norm();
+  const bool turns_freely = !config.feature.SeesOrientation();
+  const double turn =
+      turns_freely ? 0.0 : model::RotationVector(config.feature.R_CO_star.transpose() * R_CO).norm();
   const double shift = (sight.X_CO.p - config.feature.p_CO_C_star).norm();
   const double off = shift + kMetrePerRad * turn;
   if (turn < kThereRad && shift < kThereM) {
@@ -62,6 +67,19 @@ void SeekOn(const ServoConfig& config, const WaySight& sight, WayToGoal& way) no
   }
 }
 
+// The first way on this track. True while the arm stands for it: the law may go where no way leads on.
+bool StandsToChoose(const WaySight& sight, WayToGoal& way) noexcept {
+  if (way.chosen || way.preferred || !sight.is_told_apart) {
+    return false;  // of poses that cannot be told apart, the law's motion tells
+  }
+  if (way.goal.found && !way.goal.clear && !way.goal.downhill && way.sought_ns <= kSeekNs) {
+    SeekClearerPosture(way.goal);
+  }
+  way.chosen = way.goal.found || way.sought_ns > kSeekNs;
+  way.by_joints = !way.chosen;
+  return !way.chosen;
+}
+
 }  // namespace
 
 void CountTick(bool holds, std::int64_t& ns) noexcept {
@@ -69,7 +87,16 @@ void CountTick(bool holds, std::int64_t& ns) noexcept {
 }
 
 void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
+  if (SeeksWhenIdle(config) && !way.preferred) {
+    NoteIdle(config, sight, way);
+    way.preferred = IsLonger(way.idle_ns, kIdleS);
+    return;
+  }
+  way.sought_ns = way.by_joints && !way.goal.found ? way.sought_ns + hal::kTickPeriodNs : 0;
   SeekOn(config, sight, way);
+  if (StandsToChoose(sight, way)) {
+    return;
+  }
   if (way.by_joints && way.goal.found && IsLonger(way.held_ns, kHeldS)) {
     DropGoalPosture(way.goal);
     way.since_ns = sight.now_ns;
@@ -81,6 +108,9 @@ void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way)
   }
   const double left = (way.goal.q - sight.q).lpNorm<Eigen::Infinity>();
   if (way.by_joints) {
+    if (way.goal.detour > 0 && (way.goal.q_via - sight.q).lpNorm<Eigen::Infinity>() < kAtDetour) {
+      way.goal.detour = 0;
+    }
     if (left < kEnds) {
       way.by_joints = false;
       way.since_ns = sight.now_ns;
@@ -95,6 +125,11 @@ void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way)
   const bool elsewhere =
       !way.preferred && !way.goal.downhill && IsLonger(sight.now_ns - sight.track_since_ns, kLookS);
   const bool idle = IsLonger(way.idle_ns, kIdleS);
+  if (idle && way.goal.downhill && !way.preferred) {
+    way.preferred = true;
+    SeekAnew(way.goal);  // it lay downhill from where the arm was; from here another one may
+    return;
+  }
   if (idle && way.goal.downhill && !way.goal.clear) {
     SeekClearerPosture(way.goal);  // the joints would get no further to this one than the law
     way.idle_ns = 0;
@@ -115,7 +150,8 @@ void SteerByJoints(const WayToGoal& way, const model::VecN& q, const features::T
                    const model::Mat6N& J_C, const model::Vec3& p_CO_C_star, MotionTask& task) noexcept {
   task.v.setZero(q.size());
   if (way.goal.found) {
-    task.v = kGain * WayInView(way.goal.q - q, seen, J_C, p_CO_C_star);
+    const model::VecN& there = way.goal.detour > 0 ? way.goal.q_via : way.goal.q;
+    task.v = kGain * WayInView(there - q, seen, J_C, p_CO_C_star);
   }
   const double fastest = task.v.lpNorm<Eigen::Infinity>();
   task.v *= fastest > kSpeed ? kSpeed / fastest : 1.0;
@@ -126,7 +162,7 @@ void SteerByJoints(const WayToGoal& way, const model::VecN& q, const features::T
 
 bool NoteHeld(const MotionTask& task, const model::VecN& dq, WayToGoal& way) noexcept {
   if (!way.goal.found) {
-    return true;  // while the next one is looked for, none is held up
+    return way.sought_ns > kSeekNs;
   }
   const bool held = dq.dot(task.v) < kHeldShare * task.v.squaredNorm();
   CountTick(held, way.held_ns);

@@ -58,5 +58,40 @@ TEST(CreepingUp, IsLeftToTheJoints) {
                                      "target.rpy_deg=[36.39,21.04,-174.32]", "run.seed=998841373"}));
 }
 
+// No straight way of the joints keeps the target in the picture and out of the arm's shade.
+TEST(OnlyByAnotherPosture, TheGoalIsReached) {
+  ExpectReached(RunShipped(
+      "triangle", kTable + Assignments{"arm.q_start=[-2.5214,-1.0664,0.1162,-2.5597,-0.4828,0.3145,-0.6362]",
+                                       "target.position=[0.3949,0.6875,0.3594]",
+                                       "target.rpy_deg=[-118.72,46.78,-47.34]", "run.seed=2049788278"}));
+}
+
+// The posture's pull, with the disc long at its goal, lets the elbow down on the table.
+TEST(ElbowOverTheTable, StaysOffIt) {
+  const Assignments start{"arm.q_start=[2.1031,1.5001,-1.0773,-2.8139,-2.1353,0.5257,-0.5922]",
+                          "target.position=[0.2627,0.5386,0.4850]", "target.rpy_deg=[-62.40,12.60,15.59]",
+                          "run.seed=1374156519"};
+  const sim::Summary s = RunShipped("circle", kTable + start);
+  ExpectReached(s);
+  EXPECT_EQ(s.contact_ticks, 0U);
+  EXPECT_FALSE(RunShipped("circle", start).converged) << "it needs no plane from here";
+}
+
+// The disc's law ends along the workspace and at a joint's end.
+TEST(AlongTheWorkspace, ADiscIsLeftToTheJointsToo) {
+  ExpectReached(RunShipped(
+      "circle", kTable + Assignments{"arm.q_start=[-2.3956,1.2114,-1.8414,-0.1733,-0.1007,0.1571,-0.4550]",
+                                     "target.position=[-0.1555,0.1822,0.3767]",
+                                     "target.rpy_deg=[109.18,-16.42,139.00]", "run.seed=211989553"}));
+}
+
+// The posture's pull took the arm to a singular posture, whose limit shook it.
+TEST(IntoASingularity, NoWishLeads) {
+  ExpectReached(RunShipped(
+      "square", kTable + Assignments{"arm.q_start=[-0.7687,0.4223,2.0693,-2.6271,0.3013,3.1874,-0.4641]",
+                                     "target.position=[0.0267,0.8067,0.0744]",
+                                     "target.rpy_deg=[-155.47,-14.63,44.89]", "run.seed=1220879638"}));
+}
+
 }  // namespace
 }  // namespace fovea::test

@@ -21,7 +21,7 @@ static_assert(sizeof(servo::PredictConfig) == 56);
 static_assert(sizeof(servo::LawConfig) == 160);
 static_assert(sizeof(servo::MoveConfig) == 64);
 static_assert(sizeof(servo::MotionLawConfig) == 216);
-static_assert(sizeof(servo::GuardConfig) == 464);
+static_assert(sizeof(servo::GuardConfig) == 472);
 static_assert(sizeof(servo::SafetyConfig) == 96);
 static_assert(sizeof(servo::MotionCommand) == 304);
 static_assert(sizeof(hal::ArmState) == 280);

@@ -26,11 +26,11 @@ static_assert(sizeof(servo::DiscChoice) == 1008);
 static_assert(sizeof(servo::PoseChoice) == 15704);
 static_assert(sizeof(servo::PredictState) == 58528);
 static_assert(sizeof(servo::ModeState) == 5);
-static_assert(sizeof(servo::WayToGoal) == 632);
+static_assert(sizeof(servo::WayToGoal) == 800);
 static_assert(sizeof(servo::ResolvedMotion) == 88);
 static_assert(sizeof(servo::MotionState) == 15784);
 static_assert(sizeof(servo::MotionLawState) == 232);
-static_assert(sizeof(servo::ServoState) == 80936);
+static_assert(sizeof(servo::ServoState) == 81104);
 
 using Buffer = std::vector<std::uint8_t>;
 

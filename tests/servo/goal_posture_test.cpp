@@ -210,5 +210,31 @@ TEST(GoalPostureTest, NoneIsFoundForAGoalOutsideTheWorkspace) {
   EXPECT_EQ(StepsUntilFound(config, X_BO, test::Ready(), goal), 0);
 }
 
+// A start that the atlas drew: straight ways to all postures lead out of the picture or behind the arm.
+TEST(GoalPostureTest, WhereNoStraightWayIsClearOneByAnotherPostureIsFound) {
+  ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  config.guard.view = {true, -0.55, 0.55, -0.41, 0.41};
+  VecN q(7);
+  q << -2.5214, -1.0664, 0.1162, -2.5597, -0.4828, 0.3145, -0.6362;
+  const Pose X_BO{model::RotationOf({0.0, 0.0, -0.8262}) * model::RotationOf({0.0, 0.8165, 0.0}) *
+                      model::RotationOf({-2.0721, 0.0, 0.0}),
+                  {0.3949, 0.6875, 0.3594}};
+  int detours = 0;
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    GoalPosture goal;
+    goal.random = seed;
+    ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+    EXPECT_TRUE(goal.clear);
+    detours += goal.detour;
+    const VecN second = goal.detour > 0 ? goal.q_via : q;
+    WayTrial way;
+    way.q = second;
+    while (StepOnWay(config, X_BO, goal.q, way)) {
+    }
+    EXPECT_FALSE(way.barred) << "from there it is straight on, seed " << seed;
+  }
+  EXPECT_GE(detours, 2) << "or the case is none";
+}
+
 }  // namespace
 }  // namespace fovea::servo

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <iostream>
+#include <vector>
 
 #include "fovea/features/triangle.hpp"
 #include "fovea/model/rotation.hpp"
@@ -65,9 +66,16 @@ TEST(KeepSightTest, TheClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
     const Vec3 p_BO = RandomTarget(random, posture);
     double least = 1e9;
     constexpr int kPoints = 400;
-    for (int i = -1; i < 4; ++i) {  // base to first joint, ..., to the fifth: the forearm ends there
-      const Vec3 from = i < 0 ? Vec3(Vec3::Zero()) : posture.poses.X_BL[static_cast<std::size_t>(i)].p;
-      const Vec3 to = posture.poses.X_BL[static_cast<std::size_t>(i + 1)].p;
+    // Base to first joint, ..., to the elbow, where the forearm steps aside (a_5) and goes on to the fifth.
+    std::vector<Vec3> line{Vec3::Zero()};
+    for (std::size_t i = 0; i < 4; ++i) {
+      line.push_back(posture.poses.X_BL[i].p);
+    }
+    line.push_back(posture.poses.X_BL[3] * Vec3(-0.0825, 0.0, 0.0));
+    line.push_back(posture.poses.X_BL[4].p);
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      const Vec3& from = line[i];
+      const Vec3& to = line[i + 1];
       for (int a = 0; a <= kPoints; ++a) {
         const Vec3 on_link = from + a / double{kPoints} * (to - from);
         for (int b = 0; b <= kPoints; ++b) {

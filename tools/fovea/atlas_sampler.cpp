@@ -32,7 +32,8 @@ constexpr double kAboveTable = 0.10;   // [m]
 constexpr double kArmRadius = 0.10;    // about the line through the joints [m]
 constexpr double kTargetClear = 0.15;  // of that line [m]
 constexpr double kThingClear = 0.01;   // of the lines of sight, and of the target [m]
-constexpr int kUpperLinks = 5;         // links up to the forearm, which hand and sight must pass by
+constexpr int kUpperLinks = 6;         // lines up to the forearm's, which the sight must pass by,
+constexpr int kTrunkLinks = 3;         // and up to the elbow, which the hand must
 constexpr int kMostDraws = 1'000'000;
 constexpr double kNear = 0.5;      // [rad]
 constexpr int kNearDescents = 16;  // from about the start, and from anywhere
@@ -129,8 +130,14 @@ Pose Sampler::DrawTarget(std::mt19937_64& engine) const {
 
 bool Sampler::InsideBarrier(const Posture& posture) const { return posture.poses.X_BE.p.norm() <= kRadius; }
 
+// Where the forearm's axis begins, beside the elbow joint (a_5 of the Panda's table).
+Vec3 Sampler::ForearmStart(const Posture& posture) const {
+  const Pose& X_BL4 = posture.poses.X_BL[3];
+  return X_BL4 * Vec3(arm_.joints[4].X_PJ.p.x(), 0.0, 0.0);
+}
+
 bool Sampler::AboveTable(const Posture& posture) const {
-  double lowest = std::min(posture.poses.X_BE.p.z(), posture.X_BC.p.z());
+  double lowest = std::min({posture.poses.X_BE.p.z(), posture.X_BC.p.z(), ForearmStart(posture).z()});
   for (int i = 3; i < arm_.num_joints; ++i) {  // what comes before stands on the table
     lowest = std::min(lowest, posture.poses.X_BL[static_cast<std::size_t>(i)].p.z());
   }
@@ -172,6 +179,9 @@ bool Sampler::ArmInTheWay(const Posture& posture, const Pose& X_BO) const {
   std::vector<Vec3> line{Vec3::Zero()};
   for (int i = 0; i < arm_.num_joints; ++i) {
     line.push_back(posture.poses.X_BL[static_cast<std::size_t>(i)].p);
+    if (i == 3) {
+      line.push_back(ForearmStart(posture));
+    }
   }
   line.push_back(posture.poses.X_BE.p);
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
@@ -185,7 +195,7 @@ bool Sampler::ArmInTheWay(const Posture& posture, const Pose& X_BO) const {
         return true;
       }
     }
-    const bool trunk = static_cast<int>(i) + 2 < kUpperLinks;
+    const bool trunk = static_cast<int>(i) < kTrunkLinks;
     if (trunk &&
         DistanceOfSegments(line[line.size() - 2], line.back(), line[i], line[i + 1]) < kTargetClear) {
       return true;

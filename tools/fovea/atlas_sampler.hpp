@@ -19,7 +19,7 @@ namespace fovea::atlas {
 
 enum class Rejection : std::uint8_t {
   kStartOutsideBarrier,  // the hand is outside the workspace
-  kStartBelowTable,      // elbow, wrist, hand or camera lower than 0.10 m above the table
+  kStartBelowTable,      // elbow, forearm, wrist, hand or camera lower than 0.10 m above the table
   kTargetNearEdge,       // its outline is not wholly 30 px inside the picture
   kTargetBelowTable,     // it is not wholly above the table
   kArmInTheWay,          // the arm stands in itself, in the target or in the line of sight
@@ -64,6 +64,7 @@ class Sampler {
   [[nodiscard]] model::VecN DrawPosture(std::mt19937_64& engine) const;
   [[nodiscard]] model::Pose DrawTarget(std::mt19937_64& engine) const;
   [[nodiscard]] bool InsideBarrier(const Posture& posture) const;
+  [[nodiscard]] model::Vec3 ForearmStart(const Posture& posture) const;
   [[nodiscard]] bool AboveTable(const Posture& posture) const;
   [[nodiscard]] bool InPicture(const model::Pose& X_CO) const;
   [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;

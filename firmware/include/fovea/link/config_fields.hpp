@@ -110,6 +110,7 @@ void GuardFields(Archive& a, T& g) noexcept {
   a(g.view.y_max);
   a(g.sight_clearance);
   a(g.view.face_cosine_min);
+  a(g.hand_clearance);
 }
 
 template <class Archive, class T>

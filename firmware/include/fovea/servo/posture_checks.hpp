@@ -26,6 +26,9 @@ struct JointRange {
 [[nodiscard]] bool IsInSight(const ServoConfig& config, const model::ArmPoses& poses,
                              const model::Pose& X_BO) noexcept;
 
+// Whether the hand is clear of the arm's own first links, and the arm of the planes. Real-time: yes.
+[[nodiscard]] bool IsApart(const ServoConfig& config, const model::ArmPoses& poses) noexcept;
+
 // Whether the target is in the picture, and a flat one not seen from beside or behind. Real-time: yes.
 [[nodiscard]] bool IsInView(const ServoConfig& config, const model::Pose& X_BC,
                             const model::Pose& X_BO) noexcept;

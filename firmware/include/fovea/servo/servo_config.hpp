@@ -106,6 +106,7 @@ struct GuardConfig {
   Obstacles obstacles;                  // which the end effector keeps out of
   ViewConfig view;                      // safety.keep_in_view, view_margin_px, face_tilt_max
   double sight_clearance = 0.08;        // of the links' lines from those to the target [m]; 0: any
+  double hand_clearance = 0.13;         // of the hand's line from those of the arm's first links [m]; 0: any
 };
 
 // [safety] limits on the torque, and when to stop altogether
