@@ -1,0 +1,129 @@
+// One episode after another: a target, what goes wrong meanwhile, what is asked of the servo, how it ended.
+//
+// All of it is drawn from a seed. After a fault the director does what a person would: waits until the arm
+// is at rest, resets it, and asks it to track again. Where the servo holds with a reason, or no target could
+// be seen, the arm is sent home.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "fovea/hal/record.hpp"
+#include "fovea/servo/servo_task.hpp"
+#include "sim/app/run_description.hpp"
+#include "sim/app/target_error.hpp"
+#include "sim/world/target_motion.hpp"
+#include "sim/world/world.hpp"
+#include "soak/judge.hpp"
+#include "soak/seam.hpp"
+
+namespace fovea::soak {
+
+enum class Ending : std::uint8_t {
+  kConverged,  // a target that stands, at its goal
+  kFollowed,   // one that moves
+  kHeld,       // the servo holds and says why
+  kUndefined,  // none of these, after all the time there is
+};
+inline constexpr std::array<const char*, 4> kEndingNames{"converged", "followed", "held", "undefined"};
+
+// What an undisturbed episode with a target that stands leaves, of each tenth of the run.
+struct Figures {
+  Tenths error_px;    // of the image, by the truth
+  Tenths speed;       // rms of the joints' true speeds at the goal [rad/s]
+  Tenths torque;      // rms of the commands there [Nm]
+  Tenths covariance;  // trace of the estimate's, of the position [m^2]
+  Tenths posture;     // the joints' distance from the ready posture [rad]
+};
+
+class Director final : public servo::MotionSource {
+ public:
+  Director(const sim::RunDescription& about, std::int64_t end_ns, std::uint64_t seed);
+
+  // The world has come to `now_ns` with `truth`; `record` is of the last tick, `state` what it left.
+  void Step(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record,
+            const servo::ServoState& state);
+
+  [[nodiscard]] Acting& acting() { return acting_; }
+  // What is asked of the servo in the next tick; once.
+  [[nodiscard]] servo::Request TakeRequest();
+  // What pulls at the joints [num_joints; Nm].
+  [[nodiscard]] const Eigen::VectorXd& pull() const { return pull_; }
+  [[nodiscard]] Eigen::Vector3d TargetAt(std::int64_t now_ns) const {
+    return sim::PositionAt(target_, now_ns - episode_ns_);
+  }
+  [[nodiscard]] const Eigen::Matrix3d& R_BO() const { return target_.R_BO; }
+  servo::MotionCommand At(std::int64_t now_ns) noexcept override;
+
+  [[nodiscard]] const std::array<std::uint64_t, kEndingNames.size()>& endings() const { return endings_; }
+  [[nodiscard]] const std::array<std::uint64_t, kTroubleNames.size()>& troubles() const { return troubles_; }
+  [[nodiscard]] const std::map<std::string, std::uint64_t>& faults() const { return faults_; }
+  [[nodiscard]] std::uint64_t recoveries() const { return recoveries_; }
+  [[nodiscard]] std::uint64_t ways_home() const { return ways_home_; }
+  [[nodiscard]] std::uint64_t ways_refused() const { return ways_refused_; }
+  [[nodiscard]] const Figures& figures() const { return figures_; }
+  // Of what should not have been, the first few in words.
+  [[nodiscard]] const std::vector<std::string>& complaints() const { return complaints_; }
+  [[nodiscard]] std::uint64_t num_complaints() const { return num_complaints_; }
+
+ private:
+  void Begin(std::int64_t now_ns, const sim::Truth& truth);
+  void LetTrouble(int ms);
+  void Recover(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record);
+  void GoHome(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record);
+  void Measure(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record,
+               const servo::ServoState& state);
+  void End(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record);
+  void Complain(std::int64_t now_ns, const std::string& what);
+  [[nodiscard]] bool DrawTarget(const sim::Truth& truth);
+  [[nodiscard]] bool IsInPicture(const sim::Truth& truth, const Eigen::Vector3d& p_BO) const;
+  [[nodiscard]] double Uniform(double low, double high);
+
+  const sim::RunDescription& about_;
+  const sim::TargetGoal goal_;
+  const Eigen::Matrix3d R_BO_still_;  // the scenario's own
+  const std::int64_t end_ns_;
+  std::mt19937_64 engine_;
+
+  // the episode
+  bool begun_ = false;
+  std::int64_t episode_ns_ = 0;
+  sim::TargetMotion target_;
+  Trouble trouble_ = Trouble::kNone;
+  int trouble_ms_ = 0;
+  double strength_ = 0.0;
+  Acting acting_;
+  Eigen::VectorXd pull_;
+  servo::Request request_ = servo::Request::kNone;
+
+  // the way home
+  bool goes_home_ = false;
+  std::int64_t home_ns_ = 0;
+  bool home_begun_ = false;
+
+  // what is measured in its last half second
+  Spread error_px_;
+  Spread speed2_;
+  Spread torque2_;
+  double covariance_ = 0.0;
+
+  // faults
+  hal::Mode mode_before_ = hal::Mode::kBoot;
+  std::int64_t fault_ns_ = 0;
+
+  std::array<std::uint64_t, kEndingNames.size()> endings_{};
+  std::array<std::uint64_t, kTroubleNames.size()> troubles_{};
+  std::map<std::string, std::uint64_t> faults_;
+  std::uint64_t recoveries_ = 0;
+  std::uint64_t ways_home_ = 0;
+  std::uint64_t ways_refused_ = 0;
+  Figures figures_;
+  std::vector<std::string> complaints_;
+  std::uint64_t num_complaints_ = 0;
+};
+
+}  // namespace fovea::soak

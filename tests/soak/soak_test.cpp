@@ -1,0 +1,67 @@
+// A minute and more of a soak, by the clock as it is and at the end of its range.
+#include "soak/soak.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+namespace fovea::soak {
+namespace {
+
+using testing::IsEmpty;
+
+SoakOptions Minutes(double minutes, const char* scenario = "ball") {
+  SoakOptions options;
+  options.scenario = scenario;
+  options.hours = minutes / 60.0;
+  return options;
+}
+
+void Print(const SoakResult& result) {
+  std::cout << result.ticks << " ticks, " << result.recoveries << " recoveries, grew by "
+            << result.resident_growth / 1024.0 << " KiB resident, " << result.heap_growth / 1024.0
+            << " KiB in use\n";
+}
+
+// The servo uses stamps for nothing but differences: with the clock 30 h before the end of its range, and
+// counters that pass 2^32, every torque is the same to the last bit.
+TEST(SoakTest, TwiceTheSameByAnyClock) {
+  const SoakResult early = RunSoak(Minutes(2.0));
+  Print(early);
+  EXPECT_THAT(early.failures, IsEmpty());
+  EXPECT_GT(early.recoveries, 0U);
+  EXPECT_EQ(early.ticks + early.missed_ticks, 120'000U);
+
+  SoakOptions options = Minutes(2.0);
+  options.late_clock = true;
+  const SoakResult late = RunSoak(options);
+  Print(late);
+  EXPECT_THAT(late.failures, IsEmpty());
+  EXPECT_EQ(late.digest, early.digest);
+}
+
+TEST(SoakTest, AnotherSeedIsAnotherRun) {
+  SoakOptions options = Minutes(0.5);
+  options.passes = 1;
+  const SoakResult one = RunSoak(options);
+  options.seed = 2;
+  EXPECT_NE(RunSoak(options).digest, one.digest);
+}
+
+TEST(SoakTest, AFlatTargetToo) {
+  const SoakResult result = RunSoak(Minutes(1.0, "square"));
+  Print(result);
+  EXPECT_THAT(result.failures, IsEmpty());
+}
+
+TEST(SoakTest, WithTheCamera) {
+  SoakOptions options = Minutes(0.5);
+  options.camera = true;
+  const SoakResult result = RunSoak(options);
+  Print(result);
+  EXPECT_THAT(result.failures, IsEmpty());
+}
+
+}  // namespace
+}  // namespace fovea::soak
