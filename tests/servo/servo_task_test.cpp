@@ -126,6 +126,19 @@ TEST_F(ServoTaskTest, AMeasurementFromTheFutureIsNoMeasurement) {
   EXPECT_EQ(outputs_.record.mode, Mode::kTrack);
 }
 
+TEST_F(ServoTaskTest, NorIsOneThatIsAFewTicksAhead) {
+  Run(500);
+  ASSERT_EQ(outputs_.record.mode, Mode::kTrack);
+  camera_on_ = false;
+  Run(20);
+  Tick([this](ServoInputs& inputs) {
+    inputs.has_feature = true;
+    inputs.feature = Measure();
+    inputs.feature.stamp_ns = inputs.arm.stamp_ns + 3 * hal::kTickPeriodNs;
+  });
+  EXPECT_GE(outputs_.record.feature_age_ns, 20 * hal::kTickPeriodNs);
+}
+
 TEST_F(ServoTaskTest, HoldsWithAReasonWhenTheGoalIsOutOfReach) {
   target_ = X_BC() * model::Vec3(0.0, 0.0, 1.15);  // seen, but 0.4 m before it is outside the workspace
   target_.x() += 0.6;

@@ -113,7 +113,11 @@ TEST(TargetFilterTest, IgnoresWhatIsNotNewer) {
   Update(config, StampOf(3), {0.5, 0, 0}, cov, filter);
   EXPECT_FALSE(Update(config, StampOf(3), {0.6, 0, 0}, cov, filter));
   EXPECT_FALSE(Update(config, StampOf(2), {0.6, 0, 0}, cov, filter));
+  // Not even where it says the same, and no gate would mind.
+  EXPECT_FALSE(Update(config, StampOf(3), {0.5, 0, 0}, cov, filter));
+  EXPECT_FALSE(Update(config, StampOf(2), {0.5, 0, 0}, cov, filter));
   EXPECT_EQ(filter.x[0].x(), 0.5);
+  EXPECT_EQ(filter.stamp_ns, StampOf(3));
   EXPECT_EQ(filter.accepted, 1);
 }
 

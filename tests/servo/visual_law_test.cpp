@@ -50,9 +50,11 @@ TEST(VisualLawTest, AsksForAnExponentialDecayInTheFeature) {
     const Scene s = RandomScene(random, config);
     VisualLawOutput out;
     const model::VecN dq_des = Unlimited(config, config.law, s.feature, s.J_C, s.q, out);
-    // What the joints then do to s, with the target's own share: ds/dt = lambda e.
+    // What the joints then do to s, with the target's own share: ds/dt = lambda e, and e is goal less actual.
     const Eigen::VectorXd ds = s.feature.L_s * (s.J_C * dq_des) + s.feature.ds_dt_target;
-    worst = std::max(worst, (ds - config.law.lambda * out.e).norm() / (config.law.lambda * out.e).norm());
+    const Eigen::VectorXd wanted = config.law.lambda * (s.feature.s_star - s.feature.s);
+    worst = std::max(worst, (ds - wanted).norm() / wanted.norm());
+    EXPECT_EQ(Eigen::VectorXd(out.e), Eigen::VectorXd(s.feature.s_star - s.feature.s));
   }
   std::cout << "worst departure from lambda e: " << worst << " relative (the damping's share)\n";
   EXPECT_LT(worst, 0.01);

@@ -1,0 +1,52 @@
+// What a carried load adds to the arm's dynamics, by the energy of a free body at the hand.
+#include "fovea/model/load.hpp"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "fovea/model/dynamics.hpp"
+#include "fovea/model/kinematics.hpp"
+#include "support/panda.hpp"
+#include "support/random_states.hpp"
+
+namespace fovea::model {
+namespace {
+
+TEST(LoadTest, WeighsAndIsSluggishWhereItIs) {
+  const ArmModel bare = test::Panda().model;
+  Load load;
+  load.mass = 1.7;
+  load.p_ECom = {0.03, -0.05, 0.11};
+  load.I_Com_E << 4e-3, 1e-3, 0.0, 1e-3, 5e-3, -5e-4, 0.0, -5e-4, 3e-3;
+  ArmModel loaded = bare;
+  Attach(load, loaded);
+
+  test::RandomStates random(31);
+  double worst = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    const VecN q = test::Ready() + random.Joints(bare, 0.5);
+    const VecN dq = random.Joints(bare, 0.5);
+    ArmPoses poses;
+    ComputePoses(bare, q, poses);
+    ArmDynamics without;
+    ArmDynamics with;
+    ComputeDynamics(bare, poses, dq, without);
+    ComputeDynamics(loaded, poses, dq, with);
+
+    Mat6N J;  // of the load's centre of mass, in its own axes
+    const Pose X_ECom{Mat3::Identity(), load.p_ECom};
+    ComputeJacobian(bare, poses, X_ECom, J);
+    const Eigen::MatrixXd v = J.topRows<3>();
+    const Eigen::MatrixXd w = J.bottomRows<3>();
+    const Eigen::MatrixXd M = load.mass * v.transpose() * v + w.transpose() * load.I_Com_E * w;
+    const Eigen::VectorXd g = -load.mass * v.transpose() * (poses.X_BE.R.transpose() * bare.g_B);
+    worst = std::max({worst, (with.M - without.M - M).cwiseAbs().maxCoeff(),
+                      (with.g - without.g - g).cwiseAbs().maxCoeff()});
+  }
+  std::cout << "worst difference: " << worst << " [kg m^2, Nm]\n";
+  EXPECT_LT(worst, 1e-12);
+}
+
+}  // namespace
+}  // namespace fovea::model
