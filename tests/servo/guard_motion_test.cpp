@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iostream>
 
+#include "fovea/servo/joint_pace.hpp"
 #include "support/panda.hpp"
 #include "support/random_states.hpp"
 #include "support/repetitions.hpp"
@@ -151,6 +152,45 @@ TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
       EXPECT_TRUE(last & hal::Bit(hal::Limit::kJointPosition)) << "and says why";
     }
   }
+}
+
+// The barriers brake in time, with the deceleration that is set: that a stop is proved behind them is for
+// what they cannot foresee, and brakes with all there is.
+TEST(GuardMotionTest, AJointBrakesBeforeItsEndAsGentlyAsItsBarrierSays) {
+  ServoConfig config = test::PandaConfig();
+  config.guard.workspace_radius = 10.0;
+  double most = 0.0;
+  for (int joint = 0; joint < 7; ++joint) {
+    for (const double sign : {-1.0, 1.0}) {
+      Walker walker(config, test::Ready());
+      model::VecN wish = model::VecN::Zero(7);
+      wish[joint] = sign * 10.0;
+      for (int tick = 0; tick < 5000; ++tick) {
+        walker.Step(wish);
+        most = std::max(most, -sign * walker.reference().ddq[joint] / PaceOf(config, joint).ddq_max);
+      }
+    }
+  }
+  std::cout << "brakes with " << most << " of the acceleration that there is, "
+            << config.guard.braking_fraction << " is set\n";
+  EXPECT_LT(most, 1.2 * config.guard.braking_fraction);
+}
+
+TEST(GuardMotionTest, TheHandIsNoFasterTowardsTheEdgeOfItsWorkspaceThanItsBarrierSays) {
+  const ServoConfig config = test::PandaConfig();
+  const GuardConfig& guard = config.guard;
+  Walker walker(config, test::Ready());
+  double most = 0.0;
+  for (int tick = 0; tick < 3000; ++tick) {
+    const model::Vec3 p = walker.p_BE();
+    walker.Step(walker.Towards(p.normalized()));
+    const double left = guard.workspace_radius - guard.workspace_margin - p.norm();
+    const double allowed = BarrierSpeed(left, guard.workspace_deceleration, SlowestReaction(config));
+    most = std::max(most, (walker.p_BE() - p).dot(p.normalized()) / kTick - allowed);
+  }
+  std::cout << "at most " << most << " m/s faster\n";
+  EXPECT_LT(most,
+            0.12);  // the jerk is limited; without the barrier it is 0.23, and the stop's proof catches it
 }
 
 TEST(GuardMotionTest, LetsAGentleWishThroughUnchanged) {

@@ -1,0 +1,201 @@
+"""Half an hour of robot time by the clock, on the wire: the hardware program against the served robot, an operator at
+both keyboards.
+
+  soak_wire.py FOVEA_SIM FOVEA_HW [--minutes 30] [--seed 1] [--json]
+
+The ball wanders. Again and again, drawn from the seed, the operator has the arm held and lets it track again, or presses
+the stop button, releases it and recovers. Looked at: that every fault is recovered from, that neither program's memory
+grows, that no tick takes from the heap, that what was counted on both sides adds up, and how far off the ball is in the
+end. Exit: 0 nothing was found, 1 something was, 2 it did not start."""
+
+import argparse
+import json
+import os
+import queue
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+PAGE = os.sysconf("SC_PAGESIZE")
+MOST_GROWTH = 4 << 20  # of either program, by the line that fits best [bytes]
+MOST_ERROR_PX = 5.0  # of a ball that wanders
+PATIENCE_S = 20.0
+
+
+class Program:
+    """One of the two, with what it says on standard error as it comes."""
+
+    def __init__(self, *command):
+        self.process = subprocess.Popen([str(part) for part in command], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True)
+        self.lines = queue.Queue()
+        self.said = ""
+        self.memory = []
+        threading.Thread(target=self.listen, daemon=True).start()
+        threading.Thread(target=self.take_answer, daemon=True).start()
+
+    def listen(self):
+        for line in self.process.stderr:
+            self.lines.put(line.strip())
+
+    def take_answer(self):
+        self.said = self.process.stdout.read()
+
+    def say(self, word):
+        self.process.stdin.write(word + "\n")
+        self.process.stdin.flush()
+
+    def wait_for(self, *words):
+        """The first line that begins with one of these; empty when none comes in time."""
+        end = time.monotonic() + PATIENCE_S
+        while (left := end - time.monotonic()) > 0:
+            try:
+                line = self.lines.get(timeout=left)
+            except queue.Empty:
+                break
+            if line.startswith(words):
+                return line
+        return ""
+
+    def forget(self):
+        while not self.lines.empty():
+            self.lines.get()
+
+    def sample(self, at_s):
+        try:
+            with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as statm:
+                self.memory.append((at_s, int(statm.read().split()[1]) * PAGE))
+        except (OSError, IndexError):
+            pass
+
+    def end(self):
+        """What it says of itself."""
+        self.process.send_signal(signal.SIGINT)
+        self.process.wait(timeout=30)
+        time.sleep(0.2)
+        return json.loads(self.said)
+
+
+def growth(samples):
+    """Of the line that fits best, after a tenth of the time [bytes]."""
+    if len(samples) < 10:
+        return 0.0
+    points = [point for point in samples if point[0] >= samples[0][0] + 0.1 * (samples[-1][0] - samples[0][0])]
+    x_mean = sum(x for x, _ in points) / len(points)
+    y_mean = sum(y for _, y in points) / len(points)
+    xx = sum((x - x_mean) ** 2 for x, _ in points)
+    return sum((x - x_mean) * (y - y_mean) for x, y in points) / xx * (points[-1][0] - points[0][0])
+
+
+def operate(server, hw, draw, end, complaints):
+    """What was done, and how often."""
+    done = {"held": 0, "stopped": 0, "recovered": 0}
+    begin = time.monotonic()
+    hw.wait_for("track")
+    while time.monotonic() < end:
+        pause_end = min(end, time.monotonic() + draw.uniform(5.0, 15.0))
+        while time.monotonic() < pause_end:
+            time.sleep(min(1.0, max(0.0, pause_end - time.monotonic())))
+            for program in (server, hw):
+                program.sample(time.monotonic() - begin)
+            if hw.process.poll() is not None or server.process.poll() is not None:
+                complaints.append("a program ended by itself")
+                return done
+        if time.monotonic() + PATIENCE_S > end:
+            continue
+        fault = ""
+        while not hw.lines.empty():  # a machine that is kept busy may miss deadlines
+            line = hw.lines.get()
+            fault = line if line.startswith("fault:") else "" if line.startswith(("hold", "track")) else fault
+        if fault:
+            done[fault] = done.get(fault, 0) + 1
+        elif draw.random() < 0.5:
+            hw.say("hold")
+            done["held"] += 1
+            if not hw.wait_for("hold"):
+                complaints.append("hold was asked for and did not come")
+            hw.say("track")
+        else:
+            server.say("s")
+            done["stopped"] += 1
+            fault = hw.wait_for("fault:")
+            if not fault:
+                complaints.append("the stop button was pressed and nobody took notice")
+            time.sleep(draw.uniform(0.2, 1.5))
+            server.say("s")
+            time.sleep(0.5)
+        if fault:
+            hw.say("recover")
+            if hw.wait_for("hold", "track"):
+                done["recovered"] += 1
+            else:
+                complaints.append("it was not recovered from a fault")
+            hw.say("track")
+    return done
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sim")
+    parser.add_argument("hw")
+    parser.add_argument("--minutes", type=float, default=30.0)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--json", action="store_true")
+    options = parser.parse_args()
+    complaints = []
+    server = Program(options.sim, "serve", "ball", "--fci-port", "0", "--json", "--pace", "real", "--late-ms", "3", "--seed",
+                     options.seed, "--set", "target.motion=wander", "--set", "target.speed=0.03", "--set",
+                     "target.path_radius=0.05")
+    hello = server.wait_for("")
+    if "127.0.0.1:" not in hello:
+        print(f"soak_wire: the robot is not served: {hello}", file=sys.stderr)
+        return 2
+    port = hello.split("127.0.0.1:")[1].split(",")[0]
+    begin = time.monotonic()
+    hw = Program(options.hw, "loopback", "--json", "--enable", "--track", "--set", f"robot.port={port}", "--set",
+                 "robot.time=computer", "--set", "camera.time=computer", "--set", "robot.state_timeout_ms=50", "--set",
+                 "safety.missed_ticks=20")
+    end = begin + 60.0 * options.minutes
+    done = operate(server, hw, random.Random(options.seed), end, complaints)
+    try:
+        robot_side, servo_side = None, None
+        servo_side = hw.end()
+        robot_side = server.end()
+    except (subprocess.TimeoutExpired, ValueError, OSError) as error:
+        complaints.append(f"a program did not say how it went: {error}")
+        for program in (hw, server):
+            program.process.kill()
+    figures = {"minutes": (time.monotonic() - begin) / 60.0, **done,
+               "growth_kib": {"fovea-sim": growth(server.memory) / 1024.0, "fovea-hw": growth(hw.memory) / 1024.0}}
+    for name, kib in figures["growth_kib"].items():
+        if kib * 1024.0 > MOST_GROWTH:
+            complaints.append(f"{name} grew by {kib:.0f} KiB")
+    if servo_side and robot_side:
+        robot = servo_side["robot"]
+        figures |= {"ticks": servo_side["ticks"], "missed_ticks": servo_side["missed_ticks"], "states": robot["states"],
+                    "commands": robot["commands"], "lost_states": robot["lost_states"],
+                    "missing_commands": robot_side["missing"], "frames_lost": servo_side["camera"]["lost"],
+                    "error_px": robot_side.get("error_px"), "mode": servo_side["mode"],
+                    "heap_allocations_in_tick": servo_side["heap_allocations_in_tick"]}
+        if servo_side["heap_allocations_in_tick"] != 0:
+            complaints.append(f"{servo_side['heap_allocations_in_tick']} heap calls in ticks")
+        if robot["commands"] > robot["states"] or robot["states"] > robot_side["states"]:
+            complaints.append(f"{robot_side['states']} states sent, {robot['states']} come, {robot['commands']} answered")
+        if servo_side["mode"] in ("track", "coast") and not (robot_side.get("error_px") or 1e9) <= MOST_ERROR_PX:
+            complaints.append(f"in the end the ball is {robot_side.get('error_px')} px off")
+        if servo_side["mode"] not in ("track", "coast", "hold"):
+            complaints.append(f"it ended in {servo_side['mode']}, {servo_side['fault']}")
+    figures |= {"good": not complaints, "failures": complaints}
+    if options.json:
+        print(json.dumps(figures, indent=2))
+    else:
+        for name, value in figures.items():
+            print(f"  {name:<26}{value}")
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
