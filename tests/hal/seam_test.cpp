@@ -134,6 +134,24 @@ TEST(EventsTest, EveryNameIsThereOnceAndEveryCauseHasAKey) {
   EXPECT_STREQ(Name(static_cast<Mode>(kNumModes)), "unknown") << "a mode that is not counted";
 }
 
+TEST(EventsTest, EveryReasonHasAName) {
+  std::set<std::string> names;
+  for (int i = 0; i <= static_cast<int>(HoldReason::kMotionRefused); ++i) {
+    EXPECT_TRUE(names.insert(Name(static_cast<HoldReason>(i))).second);
+  }
+  EXPECT_EQ(names.count("unknown"), 0U);
+}
+
+// Bytes of a line or a file may be none of an enumeration.
+TEST(EventsTest, WhatIsNoneIsUnknown) {
+  EXPECT_STREQ(Name(static_cast<HoldReason>(200)), "unknown");
+  EXPECT_STREQ(Name(static_cast<Fault>(200)), "unknown");
+  EXPECT_STREQ(Name(static_cast<Limit>(200)), "unknown");
+  EXPECT_STREQ(Key(static_cast<Fault>(200)), "");
+  EXPECT_STREQ(Key(static_cast<Limit>(200)), "");
+  EXPECT_STREQ(ToString(static_cast<StatusCode>(200)), "unknown status");
+}
+
 TEST(StatusTest, EveryCodeHasWords) {
   std::set<std::string> words;
   for (int i = 0; i <= static_cast<int>(StatusCode::kOutOfRange); ++i) {

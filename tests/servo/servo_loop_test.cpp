@@ -139,5 +139,12 @@ TEST_F(ServoLoopTest, CountsReadErrorsAndStopsWhenTold) {
   EXPECT_EQ(loop_.counters().ticks, 5U);
 }
 
+TEST_F(ServoLoopTest, CountsCommandsThatTheArmRefuses) {
+  arm_.write_status = hal::Status(hal::StatusCode::kDeviceFault);
+  EXPECT_TRUE(loop_.Run(3 * hal::kNsPerMs).ok());
+  EXPECT_EQ(loop_.counters().arm_write_errors, 3U);
+  EXPECT_EQ(loop_.counters().arm_read_errors, 0U);
+}
+
 }  // namespace
 }  // namespace fovea::servo

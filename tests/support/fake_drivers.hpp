@@ -13,7 +13,7 @@
 
 namespace fovea::test {
 
-// Answers with `state` and `read_status`; remembers what was written.
+// Answers with `state`, `read_status` and `write_status`; remembers what was written.
 class FakeArm final : public hal::Arm {
  public:
   explicit FakeArm(int num_joints, bool paces_loop = false) : Arm(num_joints, paces_loop) {
@@ -21,6 +21,7 @@ class FakeArm final : public hal::Arm {
   }
   hal::ArmState state;
   hal::Status read_status;
+  hal::Status write_status;
   std::function<void()> before_read;  // what the arm does while it is waited for; may be empty
   std::vector<hal::ArmCommand> written;
 
@@ -37,7 +38,7 @@ class FakeArm final : public hal::Arm {
   hal::Status DoWrite(const hal::ArmCommand& command) noexcept override {
     written.push_back(command);
     state.tau_applied = command.tau_cmd;
-    return hal::Status::Ok();
+    return write_status;
   }
 };
 
