@@ -86,6 +86,16 @@ TEST(StampMapper, StampsRiseAndNeverComeAfterTheirArrival) {
   }
 }
 
+// A camera that says the same again, or a moment before.
+TEST(StampMapper, WhatDoesNotRiseIsMadeToRise) {
+  StampMapper mapper(0);
+  const std::int64_t first_ns = mapper.Map(10 * kFrameNs, 10 * kFrameNs);
+  const std::int64_t again_ns = mapper.Map(10 * kFrameNs, 11 * kFrameNs);
+  const std::int64_t before_ns = mapper.Map(10 * kFrameNs - hal::kNsPerMs, 12 * kFrameNs);
+  EXPECT_EQ(again_ns, first_ns + 1);
+  EXPECT_GT(before_ns, again_ns);
+}
+
 // A camera that was unplugged counts from zero again.
 TEST(StampMapper, ADeviceThatStartsAnewIsLearntAnew) {
   StampMapper mapper(kTransportNs);

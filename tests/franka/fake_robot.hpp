@@ -96,6 +96,14 @@ class FakeRobot {
   }
   void SendDatagram(std::span<const std::byte> bytes) { EXPECT_TRUE(udp_.Send(bytes, client_udp_)); }
 
+  // A state that is later by `ms`, from another computer.
+  void SendForeignState(std::uint64_t ms) {
+    franka::RobotState later = state;
+    later.message_id += ms;
+    franka::UdpSocket elsewhere{franka::Endpoint{0x7F000002, 0}};
+    EXPECT_TRUE(elsewhere.Send(franka::Bytes(later), client_udp_));
+  }
+
   // The next command, or none within `patience`.
   std::optional<franka::RobotCommand> TakeCommand(std::chrono::milliseconds patience = kPatience) {
     std::array<std::byte, 2048> bytes;

@@ -67,10 +67,13 @@ TEST_F(FrankaArmTest, AStateComesThroughAsItIs) {
   EXPECT_EQ(state_.sequence, 1001U);
   EXPECT_EQ(state_.stamp_ns, 1001 * hal::kNsPerMs);
   EXPECT_EQ(clock_.NowNs(), state_.stamp_ns);
-  EXPECT_EQ(state_.q[6], 6.1);
-  EXPECT_EQ(state_.dq[6], 6.2);
-  EXPECT_EQ(state_.tau_meas[6], 6.3);
-  EXPECT_EQ(state_.tau_applied[6], 6.4);
+  for (std::size_t i = 0; i < 7; ++i) {  // each joint's own
+    const auto k = static_cast<double>(i);
+    EXPECT_EQ(state_.q[i], 0.1 + k);
+    EXPECT_EQ(state_.dq[i], 0.2 + k);
+    EXPECT_EQ(state_.tau_meas[i], 0.3 + k);
+    EXPECT_EQ(state_.tau_applied[i], 0.4 + k);
+  }
   EXPECT_EQ(state_.q[7], 0.0);
 }
 
@@ -167,6 +170,16 @@ TEST_F(FrankaArmTest, LostLateRepeatedShortAndForeignDatagramsAreCounted) {
   EXPECT_EQ(c.states, 3U);
 }
 
+// Whoever else is on the network: a state from another address is none.
+TEST_F(FrankaArmTest, AStateFromElsewhereIsNotTheRobots) {
+  ASSERT_TRUE(Next().ok());
+  const std::uint64_t newest = robot_.state.message_id - 1;
+  robot_.SendForeignState(100);
+  EXPECT_EQ(arm_->Read(state_).code(), StatusCode::kTimeout);
+  EXPECT_EQ(state_.sequence, newest);
+  EXPECT_EQ(arm_->counters().foreign, 1U);
+}
+
 TEST_F(FrankaArmTest, SilenceIsATimeoutThatLeavesTheStateAsItWas) {
   ASSERT_TRUE(Next().ok());
   const hal::ArmState before = state_;
@@ -191,6 +204,21 @@ TEST_F(FrankaArmTest, ARobotThatClosesIsGone) {
 TEST_F(FrankaArmTest, GarbageInMidMotionEndsTheConnection) {
   Start();
   robot_.SendRaw(std::vector<std::byte>(20, std::byte{0xFF}));
+  hal::Status status = hal::Status::Ok();
+  for (int k = 0; k < 20 && status.code() != StatusCode::kDisconnected; ++k) {
+    status = arm_->Read(state_);
+  }
+  EXPECT_STREQ(status.where(), "the robot sent what is no message");
+}
+
+// A message that says that it is longer than any is not waited for.
+TEST_F(FrankaArmTest, AMessageThatIsTooLongEndsTheConnection) {
+  Start();
+  franka::Header header;
+  header.command = franka::Command::kMove;
+  header.size = 5000;
+  const auto bytes = franka::Bytes(header);
+  robot_.SendRaw({bytes.begin(), bytes.end()});
   hal::Status status = hal::Status::Ok();
   for (int k = 0; k < 20 && status.code() != StatusCode::kDisconnected; ++k) {
     status = arm_->Read(state_);

@@ -183,6 +183,26 @@ TEST_F(RunLogTest, AFullDiskLeavesNothingUncounted) {
   EXPECT_EQ(log.dropped(), static_cast<std::uint64_t>(kAttachments));
 }
 
+// Nor do the ticks that nobody takes out of their ring any more.
+TEST_F(RunLogTest, TicksAfterAFullDiskAreCounted) {
+  if (!fs::exists("/dev/full")) {
+    GTEST_SKIP() << "no /dev/full here";
+  }
+  constexpr std::uint64_t kTicks = 100;
+  RunLog log(OneJoint("/dev/full"));
+  std::uint64_t added = 0;
+  while (!log.failed()) {
+    log.AddAttachment("a", "text/plain", std::string(100'000, 'x'));
+    ++added;
+  }
+  for (std::uint64_t i = 0; i < kTicks; ++i) {
+    log.AddTick(RecordAt(i));
+  }
+  EXPECT_THROW(log.Finish(), std::runtime_error);
+  std::cout << added << " attachments and " << kTicks << " ticks\n";
+  EXPECT_EQ(log.dropped(), added + kTicks);
+}
+
 // A disk that is full once a part of it is written: the file is readable up to there, and every tick is there
 // or counted, but for those of the last second before.
 TEST_F(RunLogTest, AFullDiskLeavesWhatWasWrittenBefore) {
