@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
 
 #include "fovea/model/dynamics.hpp"
@@ -41,8 +42,10 @@ TEST(LoadTest, WeighsAndIsSluggishWhereItIs) {
     const Eigen::MatrixXd w = J.bottomRows<3>();
     const Eigen::MatrixXd M = load.mass * v.transpose() * v + w.transpose() * load.I_Com_E * w;
     const Eigen::VectorXd g = -load.mass * v.transpose() * (poses.X_BE.R.transpose() * bare.g_B);
-    worst = std::max({worst, (with.M - without.M - M).cwiseAbs().maxCoeff(),
-                      (with.g - without.g - g).cwiseAbs().maxCoeff()});
+    const double off_M = (Eigen::MatrixXd(with.M) - Eigen::MatrixXd(without.M) - M).cwiseAbs().maxCoeff();
+    const double off_g = (Eigen::VectorXd(with.g) - Eigen::VectorXd(without.g) - g).cwiseAbs().maxCoeff();
+    ASSERT_TRUE(std::isfinite(off_M) && std::isfinite(off_g)) << with.M << without.M << M;
+    worst = std::max({worst, off_M, off_g});
   }
   std::cout << "worst difference: " << worst << " [kg m^2, Nm]\n";
   EXPECT_LT(worst, 1e-12);

@@ -13,12 +13,12 @@ namespace {
 using hal::Mode;
 
 constexpr int kEpisodeMs = 10'000;
-constexpr int kLongestMs = 30'000;    // for a way that takes long
-constexpr int kMeasuredMs = 500;      // at its end
-constexpr int kEachMs = 10;           // so often then
-constexpr double kThere_px = 1.0;     // a target that stands, at its goal
-constexpr double kFollowed_px = 5.0;  // one that moves, on the mean
-constexpr double kMarginPx = 30.0;    // about the outline of a new target
+constexpr int kLongestMs = 30'000;   // for a way that takes long
+constexpr int kMeasuredMs = 500;     // at its end
+constexpr int kEachMs = 10;          // so often then
+constexpr double kTherePx = 1.0;     // a target that stands, at its goal
+constexpr double kFollowedPx = 5.0;  // one that moves, on the mean
+constexpr double kMarginPx = 30.0;   // about the outline of a new target
 constexpr int kDraws = 300;
 constexpr int kRestMs = 1500;     // after a fault, until somebody comes
 constexpr double kAtRest = 0.01;  // [rad/s]
@@ -220,7 +220,7 @@ void Director::Measure(std::int64_t now_ns, const sim::Truth& truth, const hal::
 void Director::End(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record) {
   const bool moves = target_.kind != sim::MotionKind::kStill;
   Ending ending = Ending::kUndefined;
-  if (IsTracking(record.mode) && error_px_.mean < (moves ? kFollowed_px : kThere_px)) {
+  if (IsTracking(record.mode) && error_px_.mean < (moves ? kFollowedPx : kTherePx)) {
     ending = moves ? Ending::kFollowed : Ending::kConverged;
   } else if (record.mode == Mode::kHold && record.hold_reason != hal::HoldReason::kNotAsked) {
     ending = Ending::kHeld;

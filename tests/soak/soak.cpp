@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <stdexcept>
 #include <thread>
 

@@ -53,7 +53,7 @@ inline constexpr std::array<const char*, 15> kTroubleNames{
     case Trouble::kLongSilence: return 60;
     case Trouble::kNoNumber: return 4;
     case Trouble::kNoNumberLong: return 25;
-    case Trouble::kStall: return 1;
+    case Trouble::kStall:
     case Trouble::kLongStall: return 1;
     case Trouble::kPush: return 200;
     case Trouble::kShove: return 250;
