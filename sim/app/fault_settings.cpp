@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "fovea/config/input_error.hpp"
 
@@ -74,9 +75,47 @@ void AddBodyKeys(FaultSettings& f, config::KeyTable& keys) {
   keys.Numbers("faults.push", f.push, 1, hal::kMaxJoints, -1e4, 1e4, "Nm",
                "torques that push the joints from outside, one per joint; nothing does when not given");
   window("faults.push_s", f.push_s, "from the first time to the second");
+  window("faults.nothing_s", f.nothing_s,
+         "nothing goes wrong; summary.json says what the servo noticed, to compare a fault's run with");
+}
+
+struct Window {
+  const char* name;
+  const std::vector<double>& window_s;
+};
+
+std::array<Window, 18> WindowsOf(const FaultSettings& f) {
+  return {{{"camera_outage", f.camera_outage_s},
+           {"frame_loss", f.frame_loss_s},
+           {"freeze", f.freeze_s},
+           {"latency", f.latency_s},
+           {"glare", f.glare_s},
+           {"occluder", f.occluder_s},
+           {"wrong_detection", f.wrong_detection_s},
+           {"nan_detection", f.nan_detection_s},
+           {"encoder_stuck", f.encoder_stuck_s},
+           {"encoder_noise", f.encoder_noise_s},
+           {"encoder_nan", f.encoder_nan_s},
+           {"packet_loss", f.packet_loss_s},
+           {"clock_jump", f.clock_jump_s},
+           {"deadline_miss", f.deadline_miss_s},
+           {"torque_loss", f.torque_loss_s},
+           {"load", f.load_s},
+           {"push", f.push_s},
+           {"nothing", f.nothing_s}}};
 }
 
 }  // namespace
+
+std::vector<FaultWindow> FaultsOf(const FaultSettings& faults) {
+  std::vector<FaultWindow> met;
+  for (const Window& w : WindowsOf(faults)) {
+    if (w.window_s[1] > w.window_s[0]) {
+      met.push_back({w.name, w.window_s[0], w.window_s[1]});
+    }
+  }
+  return met;
+}
 
 void AddFaultKeys(FaultSettings& faults, config::KeyTable& keys) {
   AddEyeKeys(faults, keys);
@@ -84,29 +123,9 @@ void AddFaultKeys(FaultSettings& faults, config::KeyTable& keys) {
 }
 
 void CheckFaults(const FaultSettings& f, int num_joints) {
-  struct Window {
-    const char* key;
-    const std::vector<double>& window_s;
-  };
-  for (const Window& w : {Window{"camera_outage_s", f.camera_outage_s},
-                          {"frame_loss_s", f.frame_loss_s},
-                          {"freeze_s", f.freeze_s},
-                          {"latency_s", f.latency_s},
-                          {"glare_s", f.glare_s},
-                          {"occluder_s", f.occluder_s},
-                          {"wrong_detection_s", f.wrong_detection_s},
-                          {"nan_detection_s", f.nan_detection_s},
-                          {"encoder_stuck_s", f.encoder_stuck_s},
-                          {"encoder_noise_s", f.encoder_noise_s},
-                          {"encoder_nan_s", f.encoder_nan_s},
-                          {"packet_loss_s", f.packet_loss_s},
-                          {"clock_jump_s", f.clock_jump_s},
-                          {"deadline_miss_s", f.deadline_miss_s},
-                          {"torque_loss_s", f.torque_loss_s},
-                          {"load_s", f.load_s},
-                          {"push_s", f.push_s}}) {
+  for (const Window& w : WindowsOf(f)) {
     if (w.window_s[0] > w.window_s[1]) {
-      throw InputError(fmt::format("faults.{} = [{}, {}] is not allowed: it ends before it begins", w.key,
+      throw InputError(fmt::format("faults.{}_s = [{}, {}] is not allowed: it ends before it begins", w.name,
                                    w.window_s[0], w.window_s[1]));
     }
   }

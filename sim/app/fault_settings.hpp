@@ -50,7 +50,18 @@ struct FaultSettings {
   double load_mass = 1.0;
   std::vector<double> push;  // empty: nothing pushes
   std::vector<double> push_s{0.0, 0.0};
+  std::vector<double> nothing_s{0.0, 0.0};
 };
+
+// A fault that a run meets, by the name of its keys.
+struct FaultWindow {
+  const char* name;
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
+// Those of a run, in the order of the keys; `nothing` among them.
+std::vector<FaultWindow> FaultsOf(const FaultSettings& faults);
 
 void AddFaultKeys(FaultSettings& faults, config::KeyTable& keys);
 

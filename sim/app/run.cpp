@@ -145,6 +145,7 @@ class Run {
     verdict_config.tracking_bound_px = about_.scenario.run.tracking_bound_px;
     verdict_config.duration_s = about_.scenario.run.duration_s;
     verdict_config.workspace_radius = about_.servo.guard.workspace_radius;
+    verdict_config.faults = FaultsOf(about_.scenario.faults);
     verdict_ = std::make_unique<Verdict>(verdict_config);
     if (about_.theory) {
       theory_.emplace(*about_.theory);

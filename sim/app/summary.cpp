@@ -73,6 +73,23 @@ ordered_json ToJson(const TheoryResult& theory) {
   return json;
 }
 
+ordered_json ToJson(const std::vector<InjectedFault>& injected) {
+  ordered_json json = ordered_json::array();
+  for (const InjectedFault& fault : injected) {
+    json.push_back(
+        {{"name", fault.name}, {"from_s", fault.from_s}, {"to_s", fault.to_s}, {"noticed", fault.noticed}});
+  }
+  return json;
+}
+
+ordered_json ToJson(const RunEnd& end) {
+  return {{"mode", end.mode},
+          {"reason", end.reason},
+          {"brakes", end.brakes},
+          {"at_rest_since_s", OrNull(end.at_rest_since_s)},
+          {"goal_kept_since_s", OrNull(end.goal_kept_since_s)}};
+}
+
 std::string Poles(const TheoryFigures& f) {
   std::string text;
   for (const std::complex<double>& pole : f.poles) {
@@ -168,6 +185,8 @@ std::string ToJson(const Summary& s) {
   json["contact_ticks"] = s.contact_ticks;
   json["faults"] = faults;
   json["modes"] = modes;
+  json["injected"] = ToJson(s.injected);
+  json["end"] = ToJson(s.end);
   json["frames"] = s.frames;
   json["frames_detected"] = s.frames_detected;
   json["frames_lost"] = s.frames_lost;

@@ -26,6 +26,23 @@ struct ModeEvent {
   std::string reason;  // of Hold; "" otherwise
 };
 
+// A fault that was put into the run, and what the servo noticed from its beginning on.
+struct InjectedFault {
+  std::string name;  // of its keys
+  double from_s = 0.0;
+  double to_s = 0.0;
+  std::map<std::string, double> noticed;  // when first [s], by what; see NoticeBook
+};
+
+// How a run ended.
+struct RunEnd {
+  std::string mode;
+  std::string reason;  // of Hold; "" otherwise
+  bool brakes = false;
+  std::optional<double> at_rest_since_s;    // by truth: no joint moved faster since; none while one does
+  std::optional<double> goal_kept_since_s;  // by truth: within the bounds that decide over `converged`
+};
+
 struct Summary {
   std::string scenario;
   int seed = 0;
@@ -56,6 +73,8 @@ struct Summary {
   std::uint64_t contact_ticks = 0;                   // ticks in which the arm touched the table
   std::vector<FaultEvent> faults;
   std::vector<ModeEvent> modes;
+  std::vector<InjectedFault> injected;
+  RunEnd end;
 
   std::uint64_t frames = 0;
   std::uint64_t frames_detected = 0;

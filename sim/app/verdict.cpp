@@ -17,11 +17,12 @@ constexpr double kConvergedM = 0.002;
 constexpr double kConvergedDeg = 0.5;  // of a goal with an orientation
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kHomeBound = 1e-3;     // at home: no joint is further off [rad]
+constexpr double kAtRest = 0.01;        // a joint that is slower rests [rad/s, m/s]
 constexpr double kSettledShare = 0.02;  // settled: below this share of the first error, for good
 
 }  // namespace
 
-Verdict::Verdict(const VerdictConfig& config) : config_(config) {}
+Verdict::Verdict(const VerdictConfig& config) : config_(config), notices_(config.faults) {}
 
 void Verdict::AddTruth(const Truth& truth) {
   if (config_.has_eye) {
@@ -30,15 +31,21 @@ void Verdict::AddTruth(const Truth& truth) {
   }
 
   const double t_s = 1e-9 * static_cast<double>(truth.stamp_ns);
+  const bool rests = truth.dq.cwiseAbs().maxCoeff() < kAtRest;
+  at_rest_since_s_ = rests ? std::optional(at_rest_since_s_.value_or(t_s)) : std::nullopt;
   if (config_.circle && t_s >= config_.circle->lead_s) {
     const std::array<double, 3> p = config_.circle->At(t_s).p_BE;
     const double off = (truth.X_BE.translation() - Eigen::Vector3d(p[0], p[1], p[2])).norm();
     path2_ += off * off;
     path_most_ = std::max(path_most_, off);
     ++path_samples_;
+    NoteGoal(t_s, 1e3 * off <= config_.path_bound_mm);
   }
   home_error_ =
       (truth.q - model::ToVector(config_.arm.q_ready, config_.arm.num_joints)).cwiseAbs().maxCoeff();
+  if (config_.goes_home) {
+    NoteGoal(t_s, home_error_ <= kHomeBound);
+  }
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
     const double half = 0.5 * (joint.q_max - joint.q_min);
@@ -71,13 +78,22 @@ void Verdict::AddSample(const Sample& sample) {
   if (is_outside_) {
     last_outside_s_ = t_s;
   }
+  NoteGoal(t_s, config_.target_moves
+                    ? sample.error_px <= config_.tracking_bound_px
+                    : sample.error_px <= kConvergedPx && sample.error_C.norm() <= kConvergedM &&
+                          kDegPerRad * sample.error_rad <= kConvergedDeg);
   if (t_s > 0.5 * config_.duration_s) {
     second_half_px2_ += sample.error_px * sample.error_px;
     ++second_half_samples_;
   }
 }
 
+void Verdict::NoteGoal(double t_s, bool kept) {
+  goal_kept_since_s_ = kept ? std::optional(goal_kept_since_s_.value_or(t_s)) : std::nullopt;
+}
+
 void Verdict::AddRecord(const hal::TickRecord& record) {
+  notices_.Add(record);
   for (int i = 0; i < config_.arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config_.arm.joints[k];
@@ -121,6 +137,7 @@ void Verdict::Fill(Summary& summary) const {
   summary.contact_ticks = contact_ticks_;
   summary.faults = faults_;
   summary.modes = modes_;
+  FillEnd(summary);
   if (window_.empty()) {
     FillMotion(summary);
     return;
@@ -138,6 +155,17 @@ void Verdict::Fill(Summary& summary) const {
   } else if (summary.limit_violations > 0) {
     summary.verdict = fmt::format("converged, but in {} ticks a limit was passed", summary.limit_violations);
   }
+}
+
+void Verdict::FillEnd(Summary& summary) const {
+  summary.injected = notices_.Faults();
+  if (!modes_.empty()) {
+    summary.end.mode = modes_.back().mode;
+    summary.end.reason = modes_.back().reason;
+  }
+  summary.end.brakes = before_.command.engage_brakes;
+  summary.end.at_rest_since_s = at_rest_since_s_;
+  summary.end.goal_kept_since_s = goal_kept_since_s_;
 }
 
 // Without a target: what was commanded was followed, or not.

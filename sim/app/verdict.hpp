@@ -10,7 +10,9 @@
 #include "fovea/hal/record.hpp"
 #include "fovea/model/arm_model.hpp"
 #include "sim/app/commanded_motion.hpp"
+#include "sim/app/fault_settings.hpp"
 #include "sim/app/limit_book.hpp"
+#include "sim/app/notice_book.hpp"
 #include "sim/app/summary.hpp"
 #include "sim/app/target_error.hpp"
 #include "sim/render/pinhole.hpp"
@@ -29,7 +31,8 @@ struct VerdictConfig {
   double workspace_radius = 0.85;         // [m]
   std::optional<CommandedCircle> circle;  // that the end effector shall follow
   double path_bound_mm = 1.0;
-  bool goes_home = false;  // to arm.q_ready, where it shall stand at the end
+  bool goes_home = false;           // to arm.q_ready, where it shall stand at the end
+  std::vector<FaultWindow> faults;  // that the run meets
 };
 
 // AddTruth and AddRecord may be called by two threads: neither touches what the other does. Its size does not
@@ -53,6 +56,8 @@ class Verdict {
     double error_rad = 0.0;                             // of the orientation, where the goal has one
   };
   void AddSample(const Sample& sample);
+  void NoteGoal(double t_s, bool kept);
+  void FillEnd(Summary& summary) const;
   void FillMotion(Summary& summary) const;
   void FillStill(Summary& summary) const;
   void FillMoving(Summary& summary) const;
@@ -74,9 +79,12 @@ class Verdict {
   std::uint64_t contact_ticks_ = 0;
   double home_error_ = 0.0;  // largest of the joints', at the last truth [rad]
   Eigen::VectorXd tau_before_;
+  std::optional<double> at_rest_since_s_;
+  std::optional<double> goal_kept_since_s_;
 
   // from the records
   LimitBook reference_;
+  NoticeBook notices_;
   std::map<std::string, std::uint64_t> limit_ticks_;
   hal::TickRecord before_;
   bool has_record_ = false;

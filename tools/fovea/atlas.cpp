@@ -1,17 +1,16 @@
 #include "atlas.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <thread>
 
 #include "atlas_children.hpp"
 #include "atlas_figures.hpp"
+#include "atlas_files.hpp"
 #include "atlas_page.hpp"
+#include "atlas_progress.hpp"
 #include "atlas_rows.hpp"
 #include "atlas_sampler.hpp"
 #include "fovea/build_info.hpp"
@@ -52,58 +51,6 @@ void CheckAssignments(const std::vector<std::string>& assignments) {
   }
 }
 
-std::string Content(const fs::path& file) {
-  std::ostringstream content;
-  content << std::ifstream(file, std::ios::binary).rdbuf();
-  return content.str();
-}
-
-std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
-
-void WriteFile(const fs::path& file, const std::string& content) {
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream << content;
-  stream.close();
-  if (!stream) {
-    throw config::InputError(file.string() + ": cannot be written");
-  }
-}
-
-// How far it is, on standard error: a bar on a terminal, else a line for every tenth.
-class Progress {
- public:
-  Progress(std::string name, int runs) : name_(std::move(name)), runs_(runs) {}
-  ~Progress() { End(); }
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-
-  void Show(int done, int failed) {
-    constexpr int kWidth = 30;
-    const std::string figures = fmt::format("{} of {} runs, {} failed", done, runs_, failed);
-    if (is_terminal_) {
-      const auto filled = static_cast<std::size_t>(kWidth * done / runs_);
-      fmt::print(stderr, "\r{} [{}{}] {}\033[K", name_, std::string(filled, '#'),
-                 std::string(kWidth - filled, '.'), figures);
-    } else if (10 * done / runs_ > shown_tenth_) {
-      shown_tenth_ = 10 * done / runs_;
-      fmt::print(stderr, "{}: {}\n", name_, figures);
-    }
-    std::fflush(stderr);
-  }
-  void End() {
-    if (is_terminal_) {
-      fmt::print(stderr, "\r\033[K");
-      std::fflush(stderr);
-    }
-  }
-
- private:
-  std::string name_;
-  int runs_;
-  int shown_tenth_ = 0;
-  bool is_terminal_ = isatty(STDERR_FILENO) == 1;
-};
-
 class AtlasRun {
  public:
   explicit AtlasRun(const AtlasArguments& arguments)
@@ -125,10 +72,8 @@ class AtlasRun {
   }
 
   atlas::Figures Execute() {
-    const int cores = static_cast<int>(std::thread::hardware_concurrency());
-    const auto jobs =
-        static_cast<std::size_t>(arguments_.jobs > 0 ? arguments_.jobs : std::max(cores / 2, 1));
-    Progress progress("atlas " + arguments_.target, arguments_.runs);
+    const auto jobs = static_cast<std::size_t>(JobsOf(arguments_));
+    atlas::Progress progress("atlas " + arguments_.target, arguments_.runs);
     int next = 0;
     for (;;) {
       for (; next < arguments_.runs && children_.running() < jobs; ++next) {
@@ -147,8 +92,8 @@ class AtlasRun {
     }
     progress.End();
     const atlas::Figures figures = atlas::Summarise(heading_, scenario_, rows_->rows(), arguments_.runs);
-    WriteFile(out_ / "atlas.json", atlas::ToJson(figures));
-    WriteFile(out_ / "atlas.html", page_.Make(figures, rows_->rows()));
+    atlas::WriteFile(out_ / "atlas.json", atlas::ToJson(figures));
+    atlas::WriteFile(out_ / "atlas.html", page_.Make(figures, rows_->rows()));
     return figures;
   }
 
@@ -176,13 +121,14 @@ class AtlasRun {
     const int index = ended.tag;
     Row row;
     if (ended.exit_code == config::kDone || ended.exit_code == config::kGoalMissed) {
-      row = atlas::MakeRow(index, starts_[index], nlohmann::json::parse(Content(Printed(index))));
+      row = atlas::MakeRow(index, starts_[index], nlohmann::json::parse(atlas::Content(Printed(index))));
     } else if (ended.exit_code < 0) {
       row.index = index;
       row.start = starts_[index];
       row.verdict = fmt::format("the simulator broke off, or did not end within {} s", kRunLimit.count());
     } else {
-      throw std::runtime_error(fmt::format("run {}: {}", index, FirstLine(Content(Said(index)))));
+      throw std::runtime_error(
+          fmt::format("run {}: {}", index, atlas::FirstLine(atlas::Content(Said(index)))));
     }
     rows_->Add(row);
     starts_.erase(index);
@@ -208,14 +154,35 @@ class AtlasRun {
 
 }  // namespace
 
+int JobsOf(const AtlasArguments& arguments) {
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  return arguments.jobs > 0 ? arguments.jobs : std::max(cores / 2, 1);
+}
+
 CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
-  CLI::App* atlas = app.add_subcommand("atlas", "simulate many runs from random starts: how many converge");
-  atlas->add_option("--target", arguments.target, "what is looked at")
-      ->required()
-      ->check(CLI::IsMember({"sphere", "circle", "square", "triangle"}));
-  atlas->add_option("--runs", arguments.runs, "how many")
+  CLI::App* atlas = app.add_subcommand(
+      "atlas",
+      "simulate many runs: from random starts, how many converge; or with faults, what they come to");
+  CLI::Option_group* kind = atlas->add_option_group("of what");
+  CLI::Option* target = kind->add_option("--target", arguments.target, "random starts before this target")
+                            ->check(CLI::IsMember({"sphere", "circle", "square", "triangle"}));
+  CLI::Option* faults =
+      kind->add_flag("--faults", arguments.faults,
+                     "every fault, mild, medium and severe, in every mode of run and at every stage of it");
+  kind->require_option(1);
+  atlas->add_option("--runs", arguments.runs, "how many random starts")
       ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(faults);
+  atlas
+      ->add_option(
+          "--only", arguments.only,
+          "of --faults: cells whose names, as ball.approach.torque_loss.severe, have this in them; may "
+          "be repeated")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->excludes(target);
   atlas
       ->add_option("-j,--jobs", arguments.jobs,
                    "that run beside each other; one for every two cores when not given")
@@ -228,14 +195,22 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
                    "key=value for every run, over the scenario's own; may be repeated")
       ->take_all()
       ->expected(1)
-      ->allow_extra_args(false);
-  atlas->add_option("--out", arguments.out, "folder for the files; out/atlas-<target> when not given");
+      ->allow_extra_args(false)
+      ->excludes(faults);
+  atlas->add_option("--out", arguments.out,
+                    "folder for the files; out/atlas-<target>, or out/atlas-faults, when not given");
   atlas->add_flag("--resume", arguments.resume, "go on with the rows that are in the folder");
-  atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
+  CLI::Option* json = atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
+  atlas->add_flag("--markdown", arguments.markdown, "of --faults: print the page in sim/FAULTS.md instead")
+      ->excludes(target)
+      ->excludes(json);
   return atlas;
 }
 
 int Atlas(const AtlasArguments& arguments) {
+  if (arguments.faults) {
+    return FaultAtlas(arguments);
+  }
   CheckAssignments(arguments.assignments);
   AtlasRun run(arguments);
   const atlas::Figures figures = run.Execute();

@@ -1,4 +1,5 @@
-// fovea atlas: many simulated runs from random starts, and how many of them reach their goal.
+// fovea atlas: many simulated runs from random starts, and how many of them reach their goal; with --faults,
+// every fault in every mode and stage.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +9,10 @@
 namespace fovea {
 
 struct AtlasArguments {
-  std::string target = "sphere";
+  std::string target;
+  bool faults = false;
+  bool markdown = false;
+  std::vector<std::string> only;
   int runs = 200;
   int jobs = 0;  // 0: one for every two cores
   int seed = 1;
@@ -23,5 +27,10 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments);
 
 // Runs them and prints the figures; returns the program's exit code. Throws config::InputError.
 int Atlas(const AtlasArguments& arguments);
+// The same of --faults.
+int FaultAtlas(const AtlasArguments& arguments);
+
+// How many runs beside each other.
+int JobsOf(const AtlasArguments& arguments);
 
 }  // namespace fovea

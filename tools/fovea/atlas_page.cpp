@@ -163,7 +163,7 @@ AtlasPage::AtlasPage(const std::filesystem::path& folder) {
   }
 }
 
-std::string AtlasPage::Make(const Figures& figures, const std::map<int, Row>& rows) const {
+std::string AtlasPage::Wrap(const std::string& title, const std::string& main) const {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"><title>Fovea: atlas, "
@@ -171,10 +171,15 @@ std::string AtlasPage::Make(const Figures& figures, const std::map<int, Row>& ro
       "<body><header class=\"head\"><p class=\"brand\"><span class=\"brand-mark\" "
       "aria-hidden=\"true\"></span>Fovea "
       "<span class=\"brand-sub\">atlas of "
-      "runs</span></p><h1>{0}</h1></header>\n<main>{2}\n{3}\n{4}\n{5}\n{6}\n"
+      "runs</span></p><h1>{0}</h1></header>\n<main>{2}\n"
       "</main></body></html>\n",
-      Escaped(figures.heading.target), style_, Verdict(figures), Maps(rows, figures.runs),
-      FailureTable(figures), LimitTable(figures), SamplerTable(figures));
+      Escaped(title), style_, main);
+}
+
+std::string AtlasPage::Make(const Figures& figures, const std::map<int, Row>& rows) const {
+  return Wrap(figures.heading.target,
+              fmt::format("{}\n{}\n{}\n{}\n{}", Verdict(figures), Maps(rows, figures.runs),
+                          FailureTable(figures), LimitTable(figures), SamplerTable(figures)));
 }
 
 }  // namespace fovea::atlas

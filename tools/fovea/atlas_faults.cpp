@@ -1,0 +1,36 @@
+#include <fmt/format.h>
+
+#include "atlas.hpp"
+#include "atlas_files.hpp"
+#include "atlas_page.hpp"
+#include "fault_matrix.hpp"
+#include "fault_page.hpp"
+#include "fault_text.hpp"
+#include "fovea/config/program.hpp"
+#include "fovea/config/share_folder.hpp"
+
+namespace fovea {
+
+int FaultAtlas(const AtlasArguments& arguments) {
+  const atlas::AtlasPage page(config::ShareFolder() / "report");
+  matrix::MatrixOptions options;
+  options.seed = arguments.seed;
+  options.jobs = JobsOf(arguments);
+  options.resume = arguments.resume;
+  options.only = arguments.only;
+  options.out = arguments.out.empty() ? "out/atlas-faults" : arguments.out;
+  const matrix::Matrix matrix = matrix::RunMatrix(options);
+  const std::string json = matrix::ToJson(matrix);
+  atlas::WriteFile(options.out / "atlas.json", json);
+  atlas::WriteFile(options.out / "atlas.html", page.Wrap("faults", matrix::ToHtml(matrix)));
+  if (arguments.json) {
+    fmt::print("{}", json);
+  } else if (arguments.markdown) {
+    fmt::print("{}", matrix::ToMarkdown(matrix));
+  } else {
+    fmt::print("{}page: {}\n", matrix::ToTable(matrix), (options.out / "atlas.html").string());
+  }
+  return matrix::Sum(matrix).Failed() ? config::kGoalMissed : config::kDone;
+}
+
+}  // namespace fovea

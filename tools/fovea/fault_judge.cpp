@@ -1,0 +1,167 @@
+#include "fault_judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace fovea::matrix {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kTickS = 1e-3;
+constexpr double kRounding = 1e-9;  // passes no limit
+constexpr double kKeptS = 0.5;      // the goal is kept when it is for so long at the end
+
+bool IsLimit(const std::string& what) { return what.rfind("limit_", 0) == 0; }
+
+// "fault_arm_lost" as "arm_lost", "limit_torque" as "limit torque".
+std::string InWords(const std::string& what) {
+  for (const char* prefix : {"fault_", "mode_"}) {
+    if (what.rfind(prefix, 0) == 0) {
+      return what.substr(std::string(prefix).size());
+    }
+  }
+  return IsLimit(what) ? "limit " + what.substr(6) : what;
+}
+
+const json& InjectedAs(const std::string& name, const json& summary) {
+  for (const json& fault : summary.at("injected")) {
+    if (fault.at("name") == name) {
+      return fault;
+    }
+  }
+  throw std::runtime_error("a run's summary tells of no fault " + name);
+}
+
+// The modes from `onset_s` on, the one before not among them.
+std::vector<std::string> ModesSince(double onset_s, const json& summary) {
+  std::vector<std::string> modes;
+  for (const json& event : summary.at("modes")) {
+    if (event.at("t_s").get<double>() >= onset_s - 0.5 * kTickS) {
+      const std::string reason = event.at("reason");
+      modes.push_back(event.at("mode").get<std::string>() + (reason.empty() ? "" : " (" + reason + ")"));
+    }
+  }
+  return modes;
+}
+
+int TicksBetween(double from_s, double to_s) {
+  return static_cast<int>(std::lround((to_s - from_s) / kTickS));
+}
+
+// What is noticed with the fault and not, or later, without it. A limit that acts all the same without it
+// says nothing; nor does a mode that is only reached a little sooner.
+void FindNotice(const json& with, const json& without, Outcome& outcome) {
+  const double from_s = with.at("from_s");
+  std::optional<double> first_s;
+  for (const bool limits : {false, true}) {
+    for (const auto& [what, at_s] : with.at("noticed").items()) {
+      if (IsLimit(what) != limits || without.at("noticed").contains(what)) {
+        continue;
+      }
+      if (!first_s || at_s.get<double>() < *first_s) {
+        first_s = at_s.get<double>();
+        outcome.noticed_by = InWords(what);
+      }
+    }
+    if (first_s) {
+      outcome.ticks = TicksBetween(from_s, *first_s);
+      return;
+    }
+  }
+  // What keeps the arm from being sound and at rest shows only in that Boot goes on.
+  if (with.at("noticed").contains("mode_boot") && without.at("noticed").contains("mode_hold")) {
+    const double leaves_s = without.at("noticed").at("mode_hold");
+    if (!with.at("noticed").contains("mode_hold") ||
+        with.at("noticed").at("mode_hold").get<double>() > leaves_s + 0.5 * kTickS) {
+      outcome.noticed_by = "boot goes on";
+      outcome.ticks = TicksBetween(from_s, leaves_s);
+    }
+  }
+}
+
+std::string NewLimits(const json& with, const json& without) {
+  std::string names;
+  for (const auto& [what, at_s] : with.at("noticed").items()) {
+    if (IsLimit(what) && !without.at("noticed").contains(what)) {
+      names += (names.empty() ? "limit " : ", ") + what.substr(6);
+    }
+  }
+  return names;
+}
+
+// The modes that the fault led to, or, when they are those of the run without it, the limits.
+std::string ReactionOf(const json& run, const json& without_run, const json& with, const json& without) {
+  const double onset_s = with.at("from_s");
+  const std::vector<std::string> modes = ModesSince(onset_s, run);
+  if (modes == ModesSince(onset_s, without_run)) {
+    return NewLimits(with, without);
+  }
+  std::string words;
+  for (const std::string& mode : modes) {
+    words += (words.empty() ? "" : ", ") + mode;
+  }
+  return words.empty() ? "stays" : words;
+}
+
+void JudgeEnd(const json& run, const json& with, Outcome& outcome) {
+  const json& end = run.at("end");
+  const std::string mode = end.at("mode");
+  const std::string reason = end.at("reason");
+  const bool rests = end.at("at_rest_since_s").is_number();
+  const json& kept_since_s = end.at("goal_kept_since_s");
+  outcome.end_detail = reason.empty() ? mode : mode + " (" + reason + ")";
+  if (mode == "fault") {
+    outcome.end = end.at("brakes").get<bool>() && rests ? End::kSafeStop : End::kUndefined;
+  } else if (kept_since_s.is_number() && mode != "boot" &&
+             run.at("sim_time_s").get<double>() - kept_since_s.get<double>() >= kKeptS) {
+    outcome.end = End::kRecovered;
+    outcome.recovered_after_s = std::max(kept_since_s.get<double>() - with.at("to_s").get<double>(), 0.0);
+  } else {
+    outcome.end = mode == "hold" && rests ? End::kHeld : End::kUndefined;
+  }
+}
+
+}  // namespace
+
+const char* Name(End end) {
+  constexpr std::array kNames{"recovered", "safe stop", "held", "undefined"};
+  return kNames[static_cast<std::size_t>(end)];
+}
+
+const std::vector<std::string>& PhysicalLimits() {
+  static const std::vector<std::string> names{"joint_position", "joint_velocity", "torque", "torque_rate"};
+  return names;
+}
+
+Outcome Judge(const std::string& key, const json& run, const json& without_run) {
+  try {
+    const json& with = InjectedAs(key, run);
+    const json& without = InjectedAs("nothing", without_run);
+    if (std::fabs(with.at("from_s").get<double>() - without.at("from_s").get<double>()) > 0.5 * kTickS) {
+      throw std::runtime_error("the run beside it is of another stage");
+    }
+    Outcome outcome;
+    FindNotice(with, without, outcome);
+    outcome.reaction = ReactionOf(run, without_run, with, without);
+    outcome.limits = run.at("limits").get<std::map<std::string, double>>();
+    for (const std::string& limit : PhysicalLimits()) {
+      if (!(outcome.limits.at(limit) <= 1.0 + kRounding)) {
+        outcome.exceeded.push_back(limit);
+      }
+    }
+    outcome.contact_ticks = run.at("contact_ticks");
+    JudgeEnd(run, with, outcome);
+    return outcome;
+  } catch (const json::exception& error) {
+    throw std::runtime_error(fmt::format("fault {}: no summary of a run: {}", key, error.what()));
+  } catch (const std::out_of_range&) {
+    throw std::runtime_error(fmt::format("fault {}: a summary without the arm's limits", key));
+  }
+}
+
+}  // namespace fovea::matrix

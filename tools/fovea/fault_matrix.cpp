@@ -1,0 +1,161 @@
+#include "fault_matrix.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "fault_runs.hpp"
+#include "fovea/config/input_error.hpp"
+
+namespace fovea::matrix {
+namespace {
+
+constexpr double kLongestFaultS = 1.0;
+constexpr double kStopS = 1.5;  // a run in Fault goes on for so long; safety.brake_after_s is 1
+
+std::string DurationFor(const RunMode& mode, Stage stage, double fault_ends_s) {
+  const double after_s = stage == Stage::kFault ? kStopS : mode.recovery_s;
+  return fmt::format("run.duration_s={:.3f}", fault_ends_s + after_s);
+}
+
+// The cells that `only` asks for, in their order.
+std::vector<Cell> CellsOf(const std::vector<std::string>& only) {
+  std::vector<Cell> cells;
+  for (const RunMode& mode : RunModes()) {
+    for (const Fault& fault : Faults()) {
+      for (std::size_t severity = 0; severity < kSeverities.size(); ++severity) {
+        for (const Stage stage : kStages) {
+          Cell cell;
+          cell.mode = &mode;
+          cell.stage = stage;
+          cell.fault = &fault;
+          cell.severity = severity;
+          const std::string name = NameOf(cell);
+          const bool asked = only.empty() || std::any_of(only.begin(), only.end(), [&](const auto& part) {
+                               return name.find(part) != std::string::npos;
+                             });
+          if (asked && MakesSense(mode, stage, fault)) {
+            cells.push_back(cell);
+          }
+        }
+      }
+    }
+  }
+  if (cells.empty()) {
+    throw config::InputError("--only leaves no cell; they are named as in ball.approach.torque_loss.severe");
+  }
+  return cells;
+}
+
+std::string UndisturbedName(const RunMode& mode) { return mode.name; }
+std::string BesideName(const RunMode& mode, const StageSetup& setup) {
+  return fmt::format("{}.{}", mode.name, setup.name);
+}
+
+Outcome BrokeOff() {
+  Outcome outcome;
+  outcome.end_detail = "the simulator broke off";
+  return outcome;
+}
+
+}  // namespace
+
+std::string NameOf(const Cell& cell) {
+  return fmt::format("{}.{}.{}.{}", cell.mode->name, matrix::Name(cell.stage), cell.fault->key,
+                     kSeverities[cell.severity]);
+}
+
+Matrix RunMatrix(const MatrixOptions& options) {
+  Matrix matrix;
+  matrix.seed = options.seed;
+  matrix.cells = CellsOf(options.only);
+
+  std::map<std::string, Job> undisturbed;
+  for (const Cell& cell : matrix.cells) {
+    const std::string name = UndisturbedName(*cell.mode);
+    undisturbed[name] = {name, cell.mode->scenario, {}};
+  }
+  const auto jobs_of = [](const std::map<std::string, Job>& named) {
+    std::vector<Job> jobs;
+    jobs.reserve(named.size());
+    for (const auto& [name, job] : named) {
+      jobs.push_back(job);
+    }
+    return jobs;
+  };
+  Runs runs(options.out, options.seed, options.jobs, options.resume);
+  {
+    atlas::Progress progress("without a fault", static_cast<int>(undisturbed.size()));
+    runs.Execute(jobs_of(undisturbed), progress);
+  }
+
+  std::map<std::string, Job> beside;
+  std::vector<Job> with_fault;
+  with_fault.reserve(matrix.cells.size());
+  for (Cell& cell : matrix.cells) {
+    const RunMode& mode = *cell.mode;
+    const StageTimes times = TimesOf(mode, runs.SummaryOf(UndisturbedName(mode)));
+    const StageSetup setup = SetUp(times, cell.stage, cell.fault);
+    const FaultLevel& level = cell.fault->levels[cell.severity];
+    cell.onset_s = setup.onset_s;
+
+    Job without{BesideName(mode, setup), mode.scenario, setup.assignments};
+    without.assignments.push_back(Window("nothing", setup.onset_s, setup.onset_s + kLongestFaultS));
+    without.assignments.push_back(DurationFor(mode, cell.stage, setup.onset_s + kLongestFaultS));
+    beside[without.name] = without;
+
+    Job job{NameOf(cell), mode.scenario, setup.assignments};
+    for (const std::string& assignment : AssignmentsOf(*cell.fault, level, setup.onset_s)) {
+      job.assignments.push_back(assignment);
+    }
+    job.assignments.push_back(DurationFor(mode, cell.stage, setup.onset_s + level.lasts_s));
+    cell.command = CommandOf(job, options.seed);
+    with_fault.push_back(job);
+  }
+  {
+    atlas::Progress progress("stages", static_cast<int>(beside.size()));
+    runs.Execute(jobs_of(beside), progress);
+  }
+  {
+    atlas::Progress progress("faults", static_cast<int>(with_fault.size()));
+    runs.Execute(with_fault, progress);
+  }
+  matrix.runs = static_cast<int>(undisturbed.size() + beside.size() + with_fault.size());
+
+  for (Cell& cell : matrix.cells) {
+    const StageTimes times = TimesOf(*cell.mode, runs.SummaryOf(UndisturbedName(*cell.mode)));
+    const StageSetup setup = SetUp(times, cell.stage, cell.fault);
+    const nlohmann::json& summary = runs.SummaryOf(NameOf(cell));
+    cell.outcome = summary.is_null()
+                       ? BrokeOff()
+                       : Judge(cell.fault->key, summary, runs.SummaryOf(BesideName(*cell.mode, setup)));
+  }
+  return matrix;
+}
+
+Totals Sum(const Matrix& matrix) {
+  Totals totals;
+  for (const Cell& cell : matrix.cells) {
+    const Outcome& o = cell.outcome;
+    totals.exceeded += o.exceeded.empty() ? 0 : 1;
+    totals.undefined += o.end == End::kUndefined ? 1 : 0;
+    totals.recovered += o.end == End::kRecovered ? 1 : 0;
+    totals.stopped += o.end == End::kSafeStop ? 1 : 0;
+    totals.held += o.end == End::kHeld ? 1 : 0;
+    totals.touched += o.contact_ticks > 0 ? 1 : 0;
+    totals.noticed += o.ticks ? 1 : 0;
+    if (o.ticks && (totals.slowest == nullptr || *o.ticks > *totals.slowest->outcome.ticks)) {
+      totals.slowest = &cell;
+    }
+    for (const auto& [limit, used] : o.limits) {
+      const Cell*& worst = totals.worst_limits[limit];
+      if (worst == nullptr || used > worst->outcome.limits.at(limit)) {
+        worst = &cell;
+      }
+    }
+  }
+  return totals;
+}
+
+}  // namespace fovea::matrix
