@@ -61,14 +61,19 @@ GuardRow RowOf(hal::Fault fault) {
     case hal::Fault::kNone: return {"", ""};
     case hal::Fault::kArmLost:
       return {"an arm that answers with an error or not at all; until then the last command stays", kBrake};
-    case hal::Fault::kArmStale: return {"an arm whose stamps stand still or go back", kBrake};
+    case hal::Fault::kArmStale:
+      return {
+          "an arm whose stamps stand still or go back; a joint that takes torque while its encoder, alone, "
+          "does not change by a bit",
+          kBrake};
     case hal::Fault::kNonFiniteSensor:
       return {"a joint value that is no number; until then the last one that was", kBrake};
     case hal::Fault::kNonFiniteFeature: return {"a measurement that is no number", kStop};
     case hal::Fault::kNonFiniteControl: return {"a law or a torque that is no number", kStop};
     case hal::Fault::kDeadlineMissed: return {"deadlines missed in a row", kStop};
     case hal::Fault::kJointPosition: return {"a joint measured outside its range", kStop};
-    case hal::Fault::kJointVelocity: return {"a joint measured faster than it may be", kStop};
+    case hal::Fault::kJointVelocity:
+      return {"a joint measured faster than it may be; in Boot, than half of that", kStop};
     case hal::Fault::kNotFollowing: return {"a joint too far from its reference", kStop};
     case hal::Fault::kContact: return {"torque from outside, by the arm's momentum", kStop};
   }

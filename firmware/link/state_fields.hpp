@@ -56,6 +56,9 @@ void InputStateFields(Archive& a, T& s) noexcept {
   EachOf(a, s.q);
   EachOf(a, s.dq);
   EachOf(a, s.tau_applied);
+  for (auto& ticks : s.still_ticks) {
+    a.Int(ticks);
+  }
 }
 
 template <class Archive, class T>

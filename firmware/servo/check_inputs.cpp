@@ -1,9 +1,12 @@
 #include "fovea/servo/check_inputs.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fovea::servo {
 namespace {
+
+constexpr std::int32_t kStillTicksMost = 1'000'000;  // counted no further
 
 // Copies the finite values of `from`; a joint that is not finite keeps its last value. Returns the first
 // such joint, or -1.
@@ -20,9 +23,17 @@ std::int32_t CopyFinite(const hal::JointArray& from, int num_joints, hal::JointA
   return bad;
 }
 
+// Counts for how long each joint's position has been the same.
+void CountStill(const hal::JointArray& q, int num_joints, InputState& state) noexcept {
+  for (std::size_t k = 0; k < static_cast<std::size_t>(num_joints); ++k) {
+    std::int32_t& ticks = state.still_ticks[k];
+    ticks = q[k] == state.q[k] ? std::min(ticks + 1, kStillTicksMost) : 0;
+  }
+}
+
 // Takes in what the arm answered.
 InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, const hal::ArmState& arm,
-                  InputState& state) noexcept {
+                  double velocity_share, InputState& state) noexcept {
   const SafetyConfig& safety = config.safety;
   const int n = config.arm.num_joints;
   const bool answered = arm_status.ok() && arm.num_joints == n;
@@ -40,6 +51,7 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
   state.sequence = arm.sequence;
   state.bad_ticks = 0;
 
+  CountStill(arm.q, n, state);
   std::int32_t bad = CopyFinite(arm.q, n, state.q);
   if (const std::int32_t bad_dq = CopyFinite(arm.dq, n, state.dq); bad < 0) {
     bad = bad_dq;
@@ -64,7 +76,7 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
     if (state.q[k] < joint.q_min || state.q[k] > joint.q_max) {
       return {hal::Fault::kJointPosition, i};
     }
-    if (std::fabs(state.dq[k]) > joint.dq_max) {
+    if (std::fabs(state.dq[k]) > velocity_share * joint.dq_max) {
       return {hal::Fault::kJointVelocity, i};
     }
   }
@@ -74,8 +86,8 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
 }  // namespace
 
 InputCheck CheckInputs(const ServoConfig& config, const hal::Status& arm_status, const hal::ArmState& arm,
-                       std::int32_t missed_ticks, InputState& state) noexcept {
-  const InputCheck check = TakeIn(config, arm_status, arm, state);
+                       std::int32_t missed_ticks, double velocity_share, InputState& state) noexcept {
+  const InputCheck check = TakeIn(config, arm_status, arm, velocity_share, state);
   if (missed_ticks >= config.safety.missed_ticks) {
     return {hal::Fault::kDeadlineMissed, -1};
   }

@@ -13,6 +13,8 @@ namespace {
 constexpr double kTargetMovedM = 0.02;       // so far from where it was unreachable, and it is tried again
 constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as there
 constexpr double kSpeedsUp = 0.2;            // a stop in which a joint gains so much is none [rad/s, m/s]
+constexpr double kBootShare = 0.5;      // of a joint's velocity limit in Boot, where nothing shall move it
+constexpr double kHangingShare = 0.25;  // of a contact's torque, on a joint whose encoder hangs
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
@@ -29,6 +31,20 @@ bool IsFinite(const hal::FeatureMeasurement& feature) noexcept {
     }
   }
   return true;
+}
+
+// A joint's position is the same to the last bit, while other joints' are not: an arm that is held as a whole
+// is another matter. Where such a joint takes torque, it may run away unseen.
+bool EncoderHangs(const ServoConfig& config, const InputState& inputs, int joint) noexcept {
+  const auto hangs = [&](std::size_t k) { return inputs.still_ticks[k] >= config.safety.arm_lost_ticks; };
+  if (!hangs(static_cast<std::size_t>(joint))) {
+    return false;
+  }
+  bool all = true;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(config.arm.num_joints); ++k) {
+    all = all && hangs(k);
+  }
+  return !all;
 }
 
 }  // namespace
@@ -61,7 +77,8 @@ void ServoTask::Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept 
 
 void ServoTask::CheckArm(const ServoInputs& inputs, InputCheck& check) noexcept {
   const int n = config_.arm.num_joints;
-  check = CheckInputs(config_, inputs.arm_status, inputs.arm, inputs.missed_ticks, state_.inputs);
+  const double share = state_.mode.mode == hal::Mode::kBoot ? kBootShare : 1.0;
+  check = CheckInputs(config_, inputs.arm_status, inputs.arm, inputs.missed_ticks, share, state_.inputs);
   state_.q = model::ToVector(state_.inputs.q, n);
   state_.dq = model::ToVector(state_.inputs.dq, n);
   state_.tau_applied = model::ToVector(state_.inputs.tau_applied, n);
@@ -89,8 +106,10 @@ void ServoTask::CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::
   for (int i = 0; i < state_.contact.residual.size(); ++i) {
     const double most =
         config_.safety.contact_torque_fraction * config_.arm.joints[static_cast<std::size_t>(i)].tau_max;
-    if (!(std::fabs(state_.contact.residual[i]) <= most) && fault == hal::Fault::kNone) {
-      fault = hal::Fault::kContact;
+    const double pushed = std::fabs(state_.contact.residual[i]);
+    const bool hangs = EncoderHangs(config_, state_.inputs, i) && !(pushed <= kHangingShare * most);
+    if ((hangs || !(pushed <= most)) && fault == hal::Fault::kNone) {
+      fault = hangs ? hal::Fault::kArmStale : hal::Fault::kContact;
       joint = i;
     }
   }
@@ -318,7 +337,8 @@ void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
 
 void ServoTask::StopDamped() noexcept {
   // A damped stop needs true velocities; without them only the brakes are left.
-  const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0;
+  const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 ||
+                     state_.mode.fault == hal::Fault::kArmStale;
   const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
   // Nor does damping stop a joint whose motor is dead, or that is pushed: the arm gets faster again.
   const double speed = state_.dq.lpNorm<Eigen::Infinity>();

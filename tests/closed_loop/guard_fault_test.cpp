@@ -231,4 +231,54 @@ TEST(GuardFault, ADeadMotorUnderLoadIsFoundAndTheBrakesHold) {
   }
 }
 
+// The encoder of a joint hangs while the joint moves, or is about to: unseen, the joint would run through its
+// whole range within a second.
+TEST(GuardFault, AnEncoderThatHangsIsFoundBeforeTheJointRunsAway) {
+  const Eigen::VectorXd q_start = GuardSetup().world.q_start;
+  for (const double start_s : {0.05, 0.3, kStart, 0.8}) {
+    for (const int joint : {0, 1, 3}) {
+      GuardSetup setup;
+      Eigen::VectorXd goal = q_start;
+      goal[joint] += 0.6;
+      setup.motion = GoTo(0.1, goal);
+      setup.arm_faults.stuck = {{start_s, start_s + 1.0}, joint};
+      GuardBench bench(setup);
+      bench.RunUntil(3.0);
+      const int at = bench.FirstFault();
+      PrintFigures("joint " + std::to_string(joint + 1) + " hangs from " + std::to_string(start_s) +
+                       " s: " + hal::Name(bench.last().record.fault) + " at " + std::to_string(at) + " ms",
+                   bench);
+      if (start_s < 0.1) {  // later ones stop the joint as if it had hit something, which is `contact`
+        ASSERT_GE(at, 0);
+        const auto& found = bench.ticks()[static_cast<std::size_t>(at)].record;
+        EXPECT_EQ(found.fault, Fault::kArmStale);
+        EXPECT_EQ(found.fault_joint, joint);
+        EXPECT_TRUE(bench.last().record.command.engage_brakes);
+        EXPECT_EQ(bench.speeds().back(), 0.0);
+      }
+      EXPECT_LE(bench.figures().position, 1.0);
+      EXPECT_LE(bench.figures().velocity, 1.0);
+    }
+  }
+}
+
+// An arm that falls while it boots: its motor is weak, or it holds what nobody was told of. Nothing is asked
+// to move there, so it is stopped long before it is too fast.
+TEST(GuardFault, AnArmThatFallsInBootIsStoppedInsideItsLimits) {
+  for (const double lost : {0.5, 1.0}) {
+    GuardSetup setup;
+    setup.world.q_start << 1.0, 0.2, -0.6, -2.2, 0.4, 2.0, -0.6;
+    setup.world.torque_loss = {{0.01, 1.0}, 1, lost};
+    GuardBench bench(setup);
+    bench.RunUntil(1.5);
+    PrintFigures("joint 2 loses " + std::to_string(lost) + ": " + hal::Name(bench.last().record.fault) +
+                     " after " + std::to_string(bench.FirstFault()) + " ticks",
+                 bench);
+    EXPECT_EQ(bench.last().record.fault, Fault::kJointVelocity);
+    ExpectInsideLimits(bench);
+    EXPECT_EQ(bench.speeds().back(), 0.0);
+    EXPECT_TRUE(bench.last().record.command.engage_brakes);
+  }
+}
+
 }  // namespace fovea::test

@@ -19,7 +19,7 @@ namespace {
 
 // A field that is added to one of these and that a tick takes from the tick before must be added to what is
 // kept of the state (state_fields.hpp), and then here.
-static_assert(sizeof(servo::InputState) == 232);
+static_assert(sizeof(servo::InputState) == 264);
 static_assert(sizeof(servo::ContactState) == 680);
 static_assert(sizeof(servo::TargetFilter) == 736);
 static_assert(sizeof(servo::DiscChoice) == 1008);

@@ -1,6 +1,7 @@
 // Stage 0, inputs: what came from the arm is sound, or bridged for a stated time, or a fault.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "fovea/hal/arm.hpp"
@@ -19,6 +20,9 @@ struct InputState {
   hal::JointArray q{};       // last finite values
   hal::JointArray dq{};
   hal::JointArray tau_applied{};
+  // New states in a row in which a joint's position was the same to the last bit, as of an encoder that
+  // hangs.
+  std::array<std::int32_t, hal::kMaxJoints> still_ticks{};
 };
 
 struct InputCheck {
@@ -26,9 +30,10 @@ struct InputCheck {
   std::int32_t joint = -1;  // the joint at fault
 };
 
-// Takes in the arm's answer. `missed_ticks`: deadlines missed since the last tick. Real-time: yes.
+// Takes in the arm's answer. `missed_ticks`: deadlines missed since the last tick. `velocity_share`: of what
+// the arm allows, above which a joint is too fast. Real-time: yes.
 [[nodiscard]] InputCheck CheckInputs(const ServoConfig& config, const hal::Status& arm_status,
                                      const hal::ArmState& arm, std::int32_t missed_ticks,
-                                     InputState& state) noexcept;
+                                     double velocity_share, InputState& state) noexcept;
 
 }  // namespace fovea::servo

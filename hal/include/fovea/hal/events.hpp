@@ -30,7 +30,7 @@ enum class HoldReason : std::uint8_t {
 enum class Fault : std::uint8_t {
   kNone,
   kArmLost,           // the arm answered with an error, or not at all, for too long
-  kArmStale,          // the arm's stamps stand still or go back
+  kArmStale,          // the arm's stamps stand still or go back, or a joint's encoder hangs
   kNonFiniteSensor,   // a joint value stayed non-finite for too long
   kNonFiniteFeature,  // the vision task delivered a value that is not finite
   kNonFiniteControl,  // the control law produced a value that is not finite
