@@ -63,8 +63,8 @@ GuardRow RowOf(hal::Fault fault) {
       return {"an arm that answers with an error or not at all; until then the last command stays", kBrake};
     case hal::Fault::kArmStale:
       return {
-          "an arm whose stamps stand still or go back; a joint that takes torque while its encoder, alone, "
-          "does not change by a bit",
+          "an arm whose stamps stand still or go back; for `safety.non_finite_ticks`, a joint that takes "
+          "torque while its encoder, alone, does not change by a bit",
           kBrake};
     case hal::Fault::kNonFiniteSensor:
       return {"a joint value that is no number; until then the last one that was", kBrake};

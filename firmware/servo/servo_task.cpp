@@ -36,7 +36,7 @@ bool IsFinite(const hal::FeatureMeasurement& feature) noexcept {
 // A joint's position is the same to the last bit, while other joints' are not: an arm that is held as a whole
 // is another matter. Where such a joint takes torque, it may run away unseen.
 bool EncoderHangs(const ServoConfig& config, const InputState& inputs, int joint) noexcept {
-  const auto hangs = [&](std::size_t k) { return inputs.still_ticks[k] >= config.safety.arm_lost_ticks; };
+  const auto hangs = [&](std::size_t k) { return inputs.still_ticks[k] >= config.safety.non_finite_ticks; };
   if (!hangs(static_cast<std::size_t>(joint))) {
     return false;
   }

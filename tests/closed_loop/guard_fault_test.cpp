@@ -262,6 +262,18 @@ TEST(GuardFault, AnEncoderThatHangsIsFoundBeforeTheJointRunsAway) {
   }
 }
 
+// It hangs for 20 ms while the joint is fast: long enough for the law to push the joint past its speed limit,
+// had it been believed.
+TEST(GuardFault, AnEncoderThatHangsForAMomentIsNotBelieved) {
+  GuardSetup setup;
+  Eigen::VectorXd goal = setup.world.q_start;
+  goal[3] -= 0.1;
+  setup.motion = GoTo(0.1, goal);
+  setup.arm_faults.stuck = {{0.2, 0.22}, 3};
+  GuardBench bench(setup);
+  ExpectStop(bench, Fault::kArmStale, 200, setup.servo.safety.non_finite_ticks, 1);
+}
+
 // An arm that falls while it boots: its motor is weak, or it holds what nobody was told of. Nothing is asked
 // to move there, so it is stopped long before it is too fast.
 TEST(GuardFault, AnArmThatFallsInBootIsStoppedInsideItsLimits) {

@@ -12,11 +12,13 @@ namespace fovea::matrix {
 namespace {
 
 constexpr double kLongestFaultS = 1.0;
+constexpr double kGoalS = 0.8;  // and no shorter than so long after the goal that is reached without a fault
 constexpr double kStopS = 1.5;  // a run in Fault goes on for so long; safety.brake_after_s is 1
 
-std::string DurationFor(const RunMode& mode, Stage stage, double fault_ends_s) {
-  const double after_s = stage == Stage::kFault ? kStopS : mode.recovery_s;
-  return fmt::format("run.duration_s={:.3f}", fault_ends_s + after_s);
+std::string DurationFor(const RunMode& mode, Stage stage, double goal_s, double fault_ends_s) {
+  const double end_s = stage == Stage::kFault ? fault_ends_s + kStopS
+                                              : std::max(fault_ends_s + mode.recovery_s, goal_s + kGoalS);
+  return fmt::format("run.duration_s={:.3f}", end_s);
 }
 
 // The cells that `only` asks for, in their order.
@@ -102,14 +104,15 @@ Matrix RunMatrix(const MatrixOptions& options) {
 
     Job without{BesideName(mode, setup), mode.scenario, setup.assignments};
     without.assignments.push_back(Window("nothing", setup.onset_s, setup.onset_s + kLongestFaultS));
-    without.assignments.push_back(DurationFor(mode, cell.stage, setup.onset_s + kLongestFaultS));
+    without.assignments.push_back(
+        DurationFor(mode, cell.stage, times.goal_s, setup.onset_s + kLongestFaultS));
     beside[without.name] = without;
 
     Job job{NameOf(cell), mode.scenario, setup.assignments};
     for (const std::string& assignment : AssignmentsOf(*cell.fault, level, setup.onset_s)) {
       job.assignments.push_back(assignment);
     }
-    job.assignments.push_back(DurationFor(mode, cell.stage, setup.onset_s + level.lasts_s));
+    job.assignments.push_back(DurationFor(mode, cell.stage, times.goal_s, setup.onset_s + level.lasts_s));
     cell.command = CommandOf(job, options.seed);
     with_fault.push_back(job);
   }

@@ -63,6 +63,7 @@ StageTimes TimesOf(const RunMode& mode, const nlohmann::json& undisturbed) {
   times.boot_s = ToMs(0.5 * *boot_ends_s);
   times.approach_s = ToMs(*moves_s + mode.approach_share * (goal_s.get<double>() - *moves_s));
   times.tracking_s = ToMs(goal_s.get<double>() + mode.settled_s);
+  times.goal_s = goal_s.get<double>();
   return times;
 }
 

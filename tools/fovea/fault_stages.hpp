@@ -41,6 +41,7 @@ struct StageTimes {
   double boot_s = 0.0;
   double approach_s = 0.0;
   double tracking_s = 0.0;
+  double goal_s = 0.0;  // the goal is kept from then on
 };
 StageTimes TimesOf(const RunMode& mode, const nlohmann::json& undisturbed);
 

@@ -22,7 +22,9 @@ std::vector<std::string> Parts(const std::string& text, const std::string& separ
   return parts;
 }
 
-std::string Percent(double share) { return fmt::format("{:.0f} %", std::max(std::ceil(100.0 * share - 1e-7), 0.0)); }
+std::string Percent(double share) {
+  return fmt::format("{:.0f} %", std::max(std::ceil(100.0 * share - 1e-7), 0.0));
+}
 
 std::string Notice(const Outcome& o) {
   return o.ticks ? fmt::format("{} {}", o.noticed_by, *o.ticks) : std::string("-");

@@ -81,6 +81,7 @@ int main(int argc, char** argv) {
       "  fovea model panda\n"
       "  fovea features --target triangle --pose 0,0,0.4,1,0,0,0\n"
       "  fovea atlas --target sphere --runs 200 --jobs 2\n"
+      "  fovea atlas --faults --jobs 2\n"
       "  fovea detect --target circle photo.png\n"
       "  fovea calibrate intrinsics boards/ --out camera.toml\n"
       "Exit: 0 done, 1 an atlas missed its goal or a replay differs, 2 wrong usage or input.");
