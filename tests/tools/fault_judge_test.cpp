@@ -91,11 +91,18 @@ TEST_F(FaultJudge, WhatHappensWithoutTheFaultTooIsNoNotice) {
   EXPECT_EQ(Judged().noticed_by, "state_missing");
 }
 
-TEST_F(FaultJudge, ABootThatGoesOnIsANotice) {
+TEST_F(FaultJudge, AModeThatGoesOnIsANotice) {
   noticed() = {{"mode_boot", 2.0}, {"mode_hold", 2.6}};
   without_["injected"][0]["noticed"] = {{"mode_boot", 2.0}, {"mode_hold", 2.01}};
   EXPECT_EQ(Judged().noticed_by, "boot goes on");
   EXPECT_EQ(*Judged().ticks, 10);
+  noticed() = {{"mode_boot", 2.0}, {"mode_hold", 2.011}};
+  EXPECT_EQ(Judged().noticed_by, "") << "a tick later is no longer";
+  without_["injected"][0]["noticed"]["mode_track"] = 2.118;
+  EXPECT_EQ(Judged().noticed_by, "hold goes on");
+  EXPECT_EQ(*Judged().ticks, 118);
+  noticed()["mode_track"] = 2.118;
+  EXPECT_EQ(Judged().noticed_by, "");
 }
 
 TEST_F(FaultJudge, ASafeStopIsBrakedAndAtRest) {

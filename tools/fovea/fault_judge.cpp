@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace fovea::matrix {
 namespace {
@@ -13,8 +15,9 @@ namespace {
 using nlohmann::json;
 
 constexpr double kTickS = 1e-3;
-constexpr double kRounding = 1e-9;  // passes no limit
-constexpr double kKeptS = 0.5;      // the goal is kept when it is for so long at the end
+constexpr double kRounding = 1e-9;   // passes no limit
+constexpr double kGoesOnS = 1.5e-3;  // a mode goes on when it lasts longer by so much
+constexpr double kKeptS = 0.5;       // the goal is kept when it is for so long at the end
 
 bool IsLimit(const std::string& what) { return what.rfind("limit_", 0) == 0; }
 
@@ -73,13 +76,18 @@ void FindNotice(const json& with, const json& without, Outcome& outcome) {
       return;
     }
   }
-  // What keeps the arm from being sound and at rest shows only in that Boot goes on.
-  if (with.at("noticed").contains("mode_boot") && without.at("noticed").contains("mode_hold")) {
-    const double leaves_s = without.at("noticed").at("mode_hold");
-    if (!with.at("noticed").contains("mode_hold") ||
-        with.at("noticed").at("mode_hold").get<double>() > leaves_s + 0.5 * kTickS) {
-      outcome.noticed_by = "boot goes on";
+  // What keeps the arm from being sound and at rest, or the target from being found at all, shows only in
+  // that the mode goes on.
+  for (const auto& [mode, next] : {std::pair{"boot", "mode_hold"}, {"hold", "mode_track"}}) {
+    const json& then = without.at("noticed");
+    if (!with.at("noticed").contains(std::string("mode_") + mode) || !then.contains(next)) {
+      continue;
+    }
+    const double leaves_s = then.at(next);
+    if (with.at("noticed").value(next, std::numeric_limits<double>::infinity()) > leaves_s + kGoesOnS) {
+      outcome.noticed_by = fmt::format("{} goes on", mode);
       outcome.ticks = TicksBetween(from_s, leaves_s);
+      return;
     }
   }
 }

@@ -16,17 +16,25 @@ exceeds a limit of the arm's or ends in no defined state.
 constexpr const char* kHow = R"(
 A cell says, line by line:
 
-- what noticed the fault, and in how many ticks from its beginning: a guard (as in [GUARDS](../firmware/GUARDS.md)), a mode, a limit
-  that acts and would not have, or
-  - `state_missing`: a tick without a new state of the arm that could be taken,
-  - `target_not_found`: a picture was looked at and the target is not in it,
-  - `measurement_left_out`: a measurement that does not fit the target's motion, or comes too late,
-  - `boot goes on`: the arm is not sound and at rest when it should be; "-": by nothing, nor was there need to. A fault of the
-  camera can show only in the next picture, 20 to 75 ms on.
-- the reaction: modes gone through since then (each named once) that differ from those of the run without the fault, else limits; in
-  `fault` a damped stop, then brakes.
-- the end. *recovered*: the goal is kept again, at least for the last half second; after a time, counted from the fault's
-  end. *safe stop*: fault latched, brakes closed, at rest. *held*: in Hold, at rest. All else would be **UNDEFINED**.
+1. what noticed the fault, and in how many ticks from its beginning; "-": nothing did, nor was there need to;
+2. the reaction: the modes gone through since then, each named once, where they differ from those of the run without the fault,
+   else limits that act and would not have. The mode `fault` is a damped stop, or the torque fades, then brakes
+   ([GUARDS](../firmware/GUARDS.md));
+3. the end. *recovered*: the goal is kept again, for the last half second at least; the time is from the fault's end on.
+   *safe stop*: a fault is latched, the brakes closed, the arm at rest. *hold*: in Hold, for this reason, at rest. All else would be
+   **UNDEFINED**.
+
+| noticed by | that is |
+|---|---|
+| a guard's or a mode's name | the guard, as in [GUARDS](../firmware/GUARDS.md), latched the fault; the servo went into the mode |
+| `state_missing` | a tick without a new state of the arm that could be taken |
+| `target_not_found` | a picture was looked at and the target is not in it |
+| `measurement_left_out` | a measurement that does not fit the target's motion, or is too old |
+| `boot goes on`, `hold goes on` | the arm is not sound and at rest, or no target is found, when it would be without the fault |
+| `limit ...` | nothing else did; this limit acts and would not have |
+
+A fault of the camera can show only with the next picture, 40 to 75 ms on. What is noticed after as many ticks as the fault lasts was
+noticed when it ended.
 
 Last come the largest shares of the arm's own limits used in any of the row's runs, by the simulator's truth and the command in
 force, rounded up: position (from the middle of the range), velocity, torque and torque rate of the worst joint.
@@ -38,6 +46,12 @@ force, rounded up: position (from the middle of the range), velocity, torque and
 | tracking | once the goal is kept |
 | coasting | amid half a second for which the whole picture is hidden, on the way (where the fault is the occluder: in which the camera delivers nothing) |
 | fault | 20 ms into the damped stop after another fault, `deadline_missed`, that is latched |
+
+| mode of run | boot | approach | tracking | coasting | fault |
+|---|---|---|---|---|---|
+| `ball`, `ball-moving`: the servo is in | Boot | Track | Track | Coast | Fault |
+| `home` | Boot | Move | Hold | - | Fault |
+| `flange-circle` | Boot | Move, to a pose | Move, by setpoints | - | Fault |
 
 )";
 

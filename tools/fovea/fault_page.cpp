@@ -13,7 +13,8 @@ namespace {
 using bench::Escaped;
 
 constexpr const char* kStyle =
-    "<style>.matrix{overflow-x:auto}.matrix td{vertical-align:top;font-size:.8rem;line-height:1.35}"
+    "<style>main{max-width:110rem}.matrix{overflow-x:auto}.matrix .number{white-space:nowrap}.matrix "
+    "td{vertical-align:top;font-size:.8rem;line-height:1.35}"
     ".matrix th{vertical-align:top}.matrix .quiet{opacity:.55}.matrix .notice{font-weight:600}"
     ".matrix .stop{border-left:3px solid #b26a00}.matrix .held{border-left:3px solid #5c6bc0}"
     ".matrix .bad{border-left:3px solid #c62828;font-weight:700}"
