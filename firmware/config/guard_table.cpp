@@ -73,7 +73,10 @@ GuardRow RowOf(hal::Fault fault) {
     case hal::Fault::kDeadlineMissed: return {"deadlines missed in a row", kStop};
     case hal::Fault::kJointPosition: return {"a joint measured outside its range", kStop};
     case hal::Fault::kJointVelocity:
-      return {"a joint measured faster than it may be; in Boot, than half of that", kStop};
+      return {
+          "a joint measured faster than it may be, or 0.02 rad further than that allows from one state to "
+          "the next; in Boot, faster than half of that",
+          kStop};
     case hal::Fault::kNotFollowing: return {"a joint too far from its reference", kStop};
     case hal::Fault::kContact: return {"torque from outside, by the arm's momentum", kStop};
   }

@@ -6,6 +6,7 @@
 namespace fovea::servo {
 namespace {
 
+constexpr double kJump = 0.02;  // a position may be off by so much, beside what speed there is for [rad, m]
 constexpr std::int32_t kStillTicksMost = 1'000'000;  // counted no further
 
 // Copies the finite values of `from`; a joint that is not finite keeps its last value. Returns the first
@@ -46,6 +47,9 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
     }
     return {};
   }
+  const double elapsed_s =
+      state.has_state ? 1e-9 * static_cast<double>(arm.stamp_ns - state.stamp_ns) : HUGE_VAL;
+  const hal::JointArray q_before = state.q;
   state.has_state = true;
   state.stamp_ns = arm.stamp_ns;
   state.sequence = arm.sequence;
@@ -76,7 +80,8 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
     if (state.q[k] < joint.q_min || state.q[k] > joint.q_max) {
       return {hal::Fault::kJointPosition, i};
     }
-    if (std::fabs(state.dq[k]) > velocity_share * joint.dq_max) {
+    const bool jumps = std::fabs(state.q[k] - q_before[k]) > joint.dq_max * elapsed_s + kJump;
+    if (jumps || std::fabs(state.dq[k]) > velocity_share * joint.dq_max) {
       return {hal::Fault::kJointVelocity, i};
     }
   }

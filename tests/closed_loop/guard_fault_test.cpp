@@ -274,6 +274,18 @@ TEST(GuardFault, AnEncoderThatHangsForAMomentIsNotBelieved) {
   ExpectStop(bench, Fault::kArmStale, 200, setup.servo.safety.non_finite_ticks, 1);
 }
 
+// A slow joint, pushed too little to be found while its encoder hangs, is somewhere else when it works again:
+// nothing moves so fast, and what is done about that error would throw the light joints past their limits.
+TEST(GuardFault, AnEncoderThatJumpsIsNotBelieved) {
+  GuardSetup setup;
+  setup.arm_faults.stuck = {{0.3, 0.6}, 3};
+  setup.world.push.tau = 1.0 * Eigen::VectorXd::Unit(7, 3);
+  setup.world.push.window = {0.3, 0.6};
+  GuardBench bench(setup);
+  ExpectStop(bench, Fault::kJointVelocity, 600, 0, 0, PushedBy::kWorld);
+  EXPECT_LE(bench.figures().velocity, 1.0);
+}
+
 // An arm that falls while it boots: its motor is weak, or it holds what nobody was told of. Nothing is asked
 // to move there, so it is stopped long before it is too fast.
 TEST(GuardFault, AnArmThatFallsInBootIsStoppedInsideItsLimits) {

@@ -13,7 +13,7 @@ namespace {
 using bench::Escaped;
 
 constexpr const char* kStyle =
-    "<style>main{max-width:110rem}.matrix{overflow-x:auto}.matrix .number{white-space:nowrap}.matrix "
+    "<style>main,.head{max-width:110rem}.matrix{overflow-x:auto}.matrix .number{white-space:nowrap}.matrix "
     "td{vertical-align:top;font-size:.8rem;line-height:1.35}"
     ".matrix th{vertical-align:top}.matrix .quiet{opacity:.55}.matrix .notice{font-weight:600}"
     ".matrix .stop{border-left:3px solid #b26a00}.matrix .held{border-left:3px solid #5c6bc0}"
@@ -48,7 +48,8 @@ std::string Banner(const Matrix& matrix) {
       "<section id=\"verdict\"><div class=\"banner {}\"><div><p class=\"run-tag\">{} runs, seed {}</p><p "
       "class=\"verdict-word\">{} of {} cells sound</p><p class=\"verdict-sentence\">In {} a limit of the "
       "arm's was "
-      "exceeded; {} ended in no defined state.</p></div></div><ul>{}</ul></section>",
+      "exceeded; {} ended in no defined state.</p></div></div></section><section><h2>What all came "
+      "to</h2><ul>{}</ul></section>",
       t.Failed() ? "bad" : "good", matrix.runs, matrix.seed,
       std::count_if(matrix.cells.begin(), matrix.cells.end(),
                     [](const Cell& cell) { return !cell.outcome.Failed(); }),
