@@ -85,6 +85,12 @@ std::string ToMarkdown(const Matrix& matrix) {
   for (const std::string& line : TotalsInWords(matrix)) {
     text += "- " + line + "\n";
   }
+  if (matrix.cells.size() < NumCells()) {
+    text += fmt::format(
+        "- **a part of the matrix: {} of its {} cells; an empty cell, or a mode of run without a table, "
+        "was not run**\n",
+        matrix.cells.size(), NumCells());
+  }
   text += kHow + FaultList() + "\nLeft out:";
   for (const std::string& line : LeftOut()) {
     text += " " + line + ".";

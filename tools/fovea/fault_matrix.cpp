@@ -68,6 +68,8 @@ std::string NameOf(const Cell& cell) {
                      kSeverities[cell.severity]);
 }
 
+std::size_t NumCells() { return CellsOf({}).size(); }
+
 Matrix RunMatrix(const MatrixOptions& options) {
   Matrix matrix;
   matrix.seed = options.seed;

@@ -37,6 +37,9 @@ struct MatrixOptions {
   std::filesystem::path out;      // folder for the rows
 };
 
+// How many cells there are when none is left out by --only.
+std::size_t NumCells();
+
 // Runs them. InputError: `only` leaves none, or the folder cannot be written. std::runtime_error: a run
 // without a fault does not reach its goal.
 Matrix RunMatrix(const MatrixOptions& options);
