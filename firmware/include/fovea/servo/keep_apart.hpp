@@ -4,8 +4,8 @@
 // be, its elbow or wrist can still come down on the table. So the arm is taken as a line (arm_line.hpp), of
 // which its thickness is a part of the clearance. The hand is the line from the last joint to the end
 // effector, the trunk from the base to the third joint, at the elbow. How near they come are limits on the
-// motion like the others (motion_limits.hpp). From the elbow on, the fourth joint from the end, no part of the
-// line goes below a plane; the guard proves a stop for the end effector alone.
+// motion like the others (motion_limits.hpp). From the elbow on, the fourth joint from the end, no part of
+// the line goes below a plane; the guard proves a stop for the end effector alone.
 #pragma once
 
 #include "fovea/model/kinematics.hpp"

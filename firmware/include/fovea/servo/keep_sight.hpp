@@ -2,9 +2,9 @@
 // corner.
 //
 // With the hand where a target asks for it, another part of the arm may come between: the elbow, or the
-// forearm. They are taken as the arm's line (arm_line.hpp), of which their thickness is a part of the clearance;
-// the links between the last joints carry the camera and are never in its way. How near the links' lines come
-// to the line of sight is a limit on the motion like the others (motion_limits.hpp).
+// forearm. They are taken as the arm's line (arm_line.hpp), of which their thickness is a part of the
+// clearance; the links between the last joints carry the camera and are never in its way. How near the links'
+// lines come to the line of sight is a limit on the motion like the others (motion_limits.hpp).
 #pragma once
 
 #include "fovea/features/target_feature.hpp"
