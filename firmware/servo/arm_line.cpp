@@ -20,7 +20,7 @@ void ComputeArmLine(const model::ArmModel& arm, const model::ArmPoses& poses, Ar
     const bool last = i + 1 == arm.num_joints;
     const model::Vec3& next = last ? arm.X_LnE.p : arm.joints[k + 1].X_PJ.p;
     add(X_BL.p, i);
-    if (std::fabs(next.x()) > kCorner && std::hypot(next.y(), next.z()) > kCorner) {
+    if (std::fabs(next.x()) > kCorner && next.tail<2>().squaredNorm() > kCorner * kCorner) {
       add(X_BL.p + next.x() * X_BL.R.col(0), i);
     }
   }
