@@ -30,7 +30,7 @@ static_assert(sizeof(servo::WayToGoal) == 800);
 static_assert(sizeof(servo::ResolvedMotion) == 88);
 static_assert(sizeof(servo::MotionState) == 15784);
 static_assert(sizeof(servo::MotionLawState) == 232);
-static_assert(sizeof(servo::ServoState) == 81104);
+static_assert(sizeof(servo::ServoState) == 81136);
 
 using Buffer = std::vector<std::uint8_t>;
 
