@@ -124,17 +124,15 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
       fitter_.evidence().SideGoesOn(image, config_.intrinsics, corners, step)) {
     return;
   }
-  const CornerPoses found =
-      PosesOfCorners(fit.corners, config_.intrinsics, shape_, X_CO_ ? &*X_CO_ : nullptr);
+  CornerPoses found = PosesOfCorners(fit.corners, config_.intrinsics, shape_, X_CO_ ? &*X_CO_ : nullptr);
+  DropPosesOutOfReach(found);
   if (found.count == 0) {
     return;
   }
   const auto poses = std::span(found.pose).first(static_cast<std::size_t>(found.count));
   const CornerPose& pose = poses.front();
-  const double distance = pose.X_CO.p.norm();
   const double corner_sigma = std::sqrt(fit.corners.cov.trace() / static_cast<double>(n));
-  if (pose.off_px > (fit.whole ? kMaxOffPx : kMaxOffPartPx) + 3.0 * corner_sigma ||
-      distance < config_.distance_min || distance > config_.distance_max) {
+  if (pose.off_px > (fit.whole ? kMaxOffPx : kMaxOffPartPx) + 3.0 * corner_sigma) {
     return;
   }
   Detection d;
@@ -172,6 +170,16 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
   d.cov_uvr_px2 = uvr * fit.corners.cov * uvr.transpose();
   best = d;
   best_X_CO_ = pose.X_CO;
+}
+
+// Of three corners many poses may be true, of which the first need not be the one.
+void PolygonDetector::DropPosesOutOfReach(CornerPoses& found) const {
+  const auto out = [this](const CornerPose& pose) {
+    const double distance = pose.X_CO.p.norm();
+    return distance < config_.distance_min || distance > config_.distance_max;
+  };
+  const auto end = found.pose.begin() + found.count;
+  found.count = static_cast<int>(std::remove_if(found.pose.begin(), end, out) - found.pose.begin());
 }
 
 // s and cov_s: the corners in the normalised image, from `first` on.

@@ -153,5 +153,30 @@ TEST(FlatDetectorTest, ATiltedDiscsMiddleIsNotItsEllipses) {
   EXPECT_LT(off, 1e-9);
 }
 
+// Three corners fit up to six poses, of which one out of reach says nothing of the others.
+TEST(FlatDetectorTest, OfATrianglesPosesOnlyThoseInReachCount) {
+  const model::Pose X_CO{model::RotationOf({-0.001, 0.7353, -0.2209}), {-0.3394, -0.1787, 0.7283}};
+  const auto poses_within = [&](double distance_max) {
+    DetectorConfig config = ConfigOf(hal::FeatureKind::kTriangle);
+    config.distance_max = distance_max;
+    TargetDetector detector(config);
+    return detector.Detect(bench::Draw(SceneOf(config, X_CO, 3.0, 1)));
+  };
+  const Detection all = poses_within(3.0);
+  ASSERT_TRUE(all.found);
+  ASSERT_GT(all.pose[0].X_CO.p.norm(), 0.9) << "or the case is none";
+  const Detection d = poses_within(0.9);
+  ASSERT_TRUE(d.found);
+  EXPECT_LT(d.pose_count, all.pose_count);
+  double nearest_deg = 180.0;
+  for (int i = 0; i < d.pose_count; ++i) {
+    const model::Pose& pose = d.pose[static_cast<std::size_t>(i)].X_CO;
+    EXPECT_LE(pose.p.norm(), 0.9);
+    nearest_deg = std::min(nearest_deg, 57.3 * model::RotationVector(pose.R * X_CO.R.transpose()).norm());
+  }
+  EXPECT_LT(nearest_deg, 2.0);
+  EXPECT_FALSE(poses_within(0.3).found);
+}
+
 }  // namespace
 }  // namespace fovea::vision

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "atlas_bench.hpp"
+#include "atlas_way.hpp"
 #include "fovea/model/rotation.hpp"
 
 namespace fovea::atlas {
@@ -32,8 +33,14 @@ constexpr double kAboveTable = 0.10;   // [m]
 constexpr double kArmRadius = 0.10;    // about the line through the joints [m]
 constexpr double kTargetClear = 0.15;  // of that line [m]
 constexpr double kThingClear = 0.01;   // of the lines of sight, and of the target [m]
-constexpr int kUpperLinks = 6;         // lines up to the forearm's, which the sight must pass by,
-constexpr int kTrunkLinks = 3;         // and up to the elbow, which the hand must
+// And along a way, what the servo itself keeps.
+constexpr double kEdgeOnTheWayPx = 10.0;
+constexpr double kAboveTableOnTheWay = 0.09;  // [m]
+constexpr double kDepthOnTheWay = 0.05;       // [m]
+constexpr double kSteepest = 0.2;             // cosine between a flat target's normal and the line of sight
+constexpr double kRangeOnTheWay = 0.06;       // more of each joint's range, at either end [rad]
+constexpr int kUpperLinks = 6;                // lines up to the forearm's, which the sight must pass by,
+constexpr int kTrunkLinks = 3;                // and up to the elbow, which the hand must
 constexpr int kMostDraws = 1'000'000;
 constexpr double kNear = 0.5;      // [rad]
 constexpr int kNearDescents = 16;  // from about the start, and from anywhere
@@ -81,6 +88,9 @@ Mat3 RotationOfRpyDeg(const std::array<double, 3>& rpy_deg) {
 }
 
 }  // namespace
+
+const Sampler::Clear Sampler::kAtEnds{kArmRadius, kTargetClear, kTargetClear};
+const Sampler::Clear Sampler::kOnTheWay{0.08, 0.10, 0.13};
 
 Sampler::Sampler(const model::ArmModel& arm, const features::TargetFeature& feature)
     : arm_(arm), feature_(feature) {
@@ -136,22 +146,22 @@ Vec3 Sampler::ForearmStart(const Posture& posture) const {
   return X_BL4 * Vec3(arm_.joints[4].X_PJ.p.x(), 0.0, 0.0);
 }
 
-bool Sampler::AboveTable(const Posture& posture) const {
+bool Sampler::AboveTable(const Posture& posture, double height) const {
   double lowest = std::min({posture.poses.X_BE.p.z(), posture.X_BC.p.z(), ForearmStart(posture).z()});
   for (int i = 3; i < arm_.num_joints; ++i) {  // what comes before stands on the table
     lowest = std::min(lowest, posture.poses.X_BL[static_cast<std::size_t>(i)].p.z());
   }
-  return lowest >= kAboveTable;
+  return lowest >= height;
 }
 
 // A ball's outline along one axis of the picture lies between the tangents to it (exact, off axis too).
-bool Sampler::InPicture(const Pose& X_CO) const {
+bool Sampler::InPicture(const Pose& X_CO, double edge_px) const {
   const features::TargetOutline outline = feature_.Outline();
   const auto inside = [&](double across, double depth, double size_px) {
     const double at = std::atan2(across, depth);
     const double half = std::asin(std::min(outline.radius / std::hypot(across, depth), 1.0));
     const double most = FocalPx() * std::tan(std::fabs(at) + half);
-    return std::fabs(at) + half < 0.5 * std::numbers::pi && most <= 0.5 * (size_px - 1.0) - kEdgePx;
+    return std::fabs(at) + half < 0.5 * std::numbers::pi && most <= 0.5 * (size_px - 1.0) - edge_px;
   };
   for (int i = 0; i < outline.num_points; ++i) {
     const Vec3 p = X_CO * outline.p_OP[static_cast<std::size_t>(i)];
@@ -174,7 +184,7 @@ bool Sampler::TargetAboveTable(const Pose& X_BO) const {
 
 // The arm as a thick line from joint to joint: what hangs on the wrist keeps clear of what comes before, the
 // target of all of it, and the lines of sight of all but the wrist, where the camera sits.
-bool Sampler::ArmInTheWay(const Posture& posture, const Pose& X_BO) const {
+bool Sampler::ArmInTheWay(const Posture& posture, const Pose& X_BO, const Clear& clear) const {
   const features::TargetOutline outline = feature_.Outline();
   std::vector<Vec3> line{Vec3::Zero()};
   for (int i = 0; i < arm_.num_joints; ++i) {
@@ -185,19 +195,18 @@ bool Sampler::ArmInTheWay(const Posture& posture, const Pose& X_BO) const {
   }
   line.push_back(posture.poses.X_BE.p);
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    if (DistanceToSegment(X_BO.p, line[i], line[i + 1]) < kTargetClear) {
+    if (DistanceToSegment(X_BO.p, line[i], line[i + 1]) < clear.target) {
       return true;
     }
     const bool upper = static_cast<int>(i) < kUpperLinks;
     for (int k = 0; upper && k < outline.num_points; ++k) {
       const Vec3 p_BP = X_BO * outline.p_OP[static_cast<std::size_t>(k)];
-      if (DistanceOfSegments(posture.X_BC.p, p_BP, line[i], line[i + 1]) < kArmRadius) {
+      if (DistanceOfSegments(posture.X_BC.p, p_BP, line[i], line[i + 1]) < clear.sight) {
         return true;
       }
     }
     const bool trunk = static_cast<int>(i) < kTrunkLinks;
-    if (trunk &&
-        DistanceOfSegments(line[line.size() - 2], line.back(), line[i], line[i + 1]) < kTargetClear) {
+    if (trunk && DistanceOfSegments(line[line.size() - 2], line.back(), line[i], line[i + 1]) < clear.trunk) {
       return true;
     }
   }
@@ -230,7 +239,7 @@ Mat3 Sampler::NearestGoal(const Mat3& R_CO) const {
 
 // Gauss-Newton on the target's pose in the camera: with V the camera's twist, dp_CO/dt = -v + [p]x w and the
 // orientation turns by -w. A joint at its end rests where the step would take it further.
-bool Sampler::DescentFindsGoal(const VecN& q_start, const Pose& X_BO) const {
+std::optional<VecN> Sampler::DescentTo(const VecN& q_start, const Pose& X_BO) const {
   constexpr double kStepMost = 0.2;  // [rad]
   constexpr double kDamping = 1e-6;
   constexpr double kReached = 1e-5;  // [m, rad]
@@ -245,8 +254,9 @@ bool Sampler::DescentFindsGoal(const VecN& q_start, const Pose& X_BO) const {
       off.tail<3>() = model::RotationVector(X_CO.R * NearestGoal(X_CO.R).transpose());
     }
     if (off.norm() < kReached) {
-      return InsideBarrier(posture) && AboveTable(posture) && !ArmInTheWay(posture, X_BO) &&
-             !BenchInTheWay(posture, X_BO);
+      const bool stands = InsideBarrier(posture) && AboveTable(posture, kAboveTable) &&
+                          !ArmInTheWay(posture, X_BO, kAtEnds) && !BenchInTheWay(posture, X_BO);
+      return stands ? std::optional<VecN>(q) : std::nullopt;
     }
     model::Mat6N J_C;
     model::ComputeJacobian(arm_, posture.poses, X_EC_, J_C);
@@ -275,20 +285,74 @@ bool Sampler::DescentFindsGoal(const VecN& q_start, const Pose& X_BO) const {
     }
     q = (q + dq).cwiseMax(q_least_).cwiseMin(q_most_);
   }
-  return false;
+  return std::nullopt;
+}
+
+// What holds along a way: somewhat less than at its ends.
+bool Sampler::OnTheWay(const VecN& q, const Pose& X_BO) const {
+  const Posture posture = At(q);
+  const Pose X_CO = posture.X_BC.Inverse() * X_BO;
+  const bool faces = !feature_.SeesOrientation() || X_CO.R.col(2).dot(X_CO.p) > kSteepest * X_CO.p.norm();
+  return X_CO.p.z() > kDepthOnTheWay && faces && InPicture(X_CO, kEdgeOnTheWayPx) && InsideBarrier(posture) &&
+         AboveTable(posture, kAboveTableOnTheWay) && !ArmInTheWay(posture, X_BO, kOnTheWay) &&
+         !BenchInTheWay(posture, X_BO);
+}
+
+// A step of Gauss-Newton that takes the target's centre a third of the way to the picture's, when the target
+// is not wholly in it.
+VecN Sampler::PulledIntoView(const VecN& q, const Pose& X_BO) const {
+  constexpr double kShare = 1.0 / 3.0;
+  const Posture posture = At(q);
+  const Pose X_CO = posture.X_BC.Inverse() * X_BO;
+  if (!(X_CO.p.z() > kDepthOnTheWay) || InPicture(X_CO, kEdgeOnTheWayPx)) {
+    return q;
+  }
+  model::Mat6N J_C;
+  model::ComputeJacobian(arm_, posture.poses, X_EC_, J_C);
+  const Eigen::MatrixXd dp = -J_C.topRows<3>() + model::CrossMatrix(X_CO.p) * J_C.bottomRows<3>();
+  const double x = X_CO.p.x() / X_CO.p.z();
+  const double y = X_CO.p.y() / X_CO.p.z();
+  Eigen::MatrixXd A(2, q.size());
+  A.row(0) = (dp.row(0) - x * dp.row(2)) / X_CO.p.z();
+  A.row(1) = (dp.row(1) - y * dp.row(2)) / X_CO.p.z();
+  return q - A.transpose() * (A * A.transpose()).ldlt().solve(kShare * Eigen::Vector2d(x, y));
+}
+
+bool Sampler::WayLeadsOn(const VecN& q, const Pose& X_BO, std::uint64_t seed) const {
+  std::mt19937_64 engine(seed);
+  std::vector<VecN> goals;
+  const auto descend = [&](const VecN& from) {
+    if (const std::optional<VecN> goal = DescentTo(from, X_BO)) {
+      goals.push_back(*goal);
+    }
+  };
+  descend(q);
+  for (int i = 0; i < kNearDescents; ++i) {
+    const VecN near = q.unaryExpr([&](double joint) { return joint + Uniform(engine, -kNear, kNear); });
+    descend(near.cwiseMax(q_least_).cwiseMin(q_most_));
+  }
+  for (int i = 0; i < kFarDescents; ++i) {
+    descend(DrawPosture(engine));
+  }
+  WayProblem problem;
+  problem.least = q_least_.array() - kRangeOnTheWay;
+  problem.most = q_most_.array() + kRangeOnTheWay;
+  problem.is_allowed = [&](const VecN& at) { return OnTheWay(at, X_BO); };
+  problem.pull = [&](const VecN& at) { return PulledIntoView(at, X_BO); };
+  return WayExists(problem, q, goals, engine());
 }
 
 Sampler::Goal Sampler::FindGoal(std::mt19937_64& engine, const VecN& q, const Pose& X_BO) const {
-  bool found = DescentFindsGoal(q, X_BO);
+  bool found = DescentTo(q, X_BO).has_value();
   for (int i = 0; i < kNearDescents && !found; ++i) {
     const VecN near = q.unaryExpr([&](double joint) { return joint + Uniform(engine, -kNear, kNear); });
-    found = DescentFindsGoal(near.cwiseMax(q_least_).cwiseMin(q_most_), X_BO);
+    found = DescentTo(near.cwiseMax(q_least_).cwiseMin(q_most_), X_BO).has_value();
   }
   if (found) {
     return Goal::kNear;
   }
   for (int i = 0; i < kFarDescents && !found; ++i) {
-    found = DescentFindsGoal(DrawPosture(engine), X_BO);
+    found = DescentTo(DrawPosture(engine), X_BO).has_value();
   }
   return found ? Goal::kElsewhere : Goal::kNone;
 }
@@ -320,7 +384,7 @@ Start Sampler::Draw(std::uint64_t seed, int index) const {
       refuse(Rejection::kStartOutsideBarrier);
       continue;
     }
-    if (!AboveTable(posture)) {
+    if (!AboveTable(posture, kAboveTable)) {
       refuse(Rejection::kStartBelowTable);
       continue;
     }
@@ -333,7 +397,7 @@ Start Sampler::Draw(std::uint64_t seed, int index) const {
     }
     X_BO.R = RotationOfRpyDeg(start.rpy_deg);
     const Pose X_CO = posture.X_BC.Inverse() * X_BO;
-    if (!InPicture(X_CO)) {
+    if (!InPicture(X_CO, kEdgePx)) {
       refuse(Rejection::kTargetNearEdge);
       continue;
     }
@@ -341,7 +405,7 @@ Start Sampler::Draw(std::uint64_t seed, int index) const {
       refuse(Rejection::kTargetBelowTable);
       continue;
     }
-    if (ArmInTheWay(posture, X_BO)) {
+    if (ArmInTheWay(posture, X_BO, kAtEnds)) {
       refuse(Rejection::kArmInTheWay);
       continue;
     }
@@ -352,6 +416,11 @@ Start Sampler::Draw(std::uint64_t seed, int index) const {
     const Goal goal = FindGoal(engine, posture.q, X_BO);
     if (goal != Goal::kNear) {
       refuse(goal == Goal::kNone ? Rejection::kNoGoalPosture : Rejection::kGoalElsewhere);
+      continue;
+    }
+    // By numbers of its own, so that the next draws are what they were without it.
+    if (!WayLeadsOn(posture.q, X_BO, seed + static_cast<std::uint64_t>(index))) {
+      refuse(Rejection::kNoWay);
       continue;
     }
     start.q.assign(posture.q.begin(), posture.q.end());

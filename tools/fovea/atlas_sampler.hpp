@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -26,10 +27,12 @@ enum class Rejection : std::uint8_t {
   kThingInTheWay,        // a thing on the bench stands in the target or in a line of sight
   kNoGoalPosture,        // none was found that sees the target as it shall be and keeps all of the above
   kGoalElsewhere,        // one was found, but none downhill from within 0.5 rad of the start: another branch
+  kNoWay,  // no way from the start to any was found that sees the target all along (atlas_way.hpp)
 };
-inline constexpr std::array<const char*, 8> kRejectionNames{
-    "start_outside_barrier", "start_below_table", "target_near_edge", "target_below_table",
-    "arm_in_the_way",        "thing_in_the_way",  "no_goal_posture",  "goal_elsewhere"};
+inline constexpr std::array<const char*, 9> kRejectionNames{
+    "start_outside_barrier", "start_below_table", "target_near_edge",
+    "target_below_table",    "arm_in_the_way",    "thing_in_the_way",
+    "no_goal_posture",       "goal_elsewhere",    "no_way"};
 using Rejections = std::array<std::uint64_t, kRejectionNames.size()>;
 
 struct Start {
@@ -65,15 +68,26 @@ class Sampler {
   [[nodiscard]] model::Pose DrawTarget(std::mt19937_64& engine) const;
   [[nodiscard]] bool InsideBarrier(const Posture& posture) const;
   [[nodiscard]] model::Vec3 ForearmStart(const Posture& posture) const;
-  [[nodiscard]] bool AboveTable(const Posture& posture) const;
-  [[nodiscard]] bool InPicture(const model::Pose& X_CO) const;
+  [[nodiscard]] bool AboveTable(const Posture& posture, double height) const;
+  [[nodiscard]] bool InPicture(const model::Pose& X_CO, double edge_px) const;
   [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;
   [[nodiscard]] bool BenchInTheWay(const Posture& posture, const model::Pose& X_BO) const;
-  [[nodiscard]] bool ArmInTheWay(const Posture& posture, const model::Pose& X_BO) const;
+  // How far the arm's line keeps from what [m].
+  struct Clear {
+    double sight;
+    double target;
+    double trunk;
+  };
+  static const Clear kAtEnds;
+  static const Clear kOnTheWay;
+  [[nodiscard]] bool ArmInTheWay(const Posture& posture, const model::Pose& X_BO, const Clear& clear) const;
   enum class Goal : std::uint8_t { kNear, kElsewhere, kNone };
   [[nodiscard]] Goal FindGoal(std::mt19937_64& engine, const model::VecN& q, const model::Pose& X_BO) const;
-  // Whether a descent from `q` ends in a posture that has the target where it shall be.
-  [[nodiscard]] bool DescentFindsGoal(const model::VecN& q, const model::Pose& X_BO) const;
+  // The posture that has the target where it shall be in which a descent from `q` ends, or none.
+  [[nodiscard]] std::optional<model::VecN> DescentTo(const model::VecN& q, const model::Pose& X_BO) const;
+  [[nodiscard]] bool WayLeadsOn(const model::VecN& q, const model::Pose& X_BO, std::uint64_t seed) const;
+  [[nodiscard]] bool OnTheWay(const model::VecN& q, const model::Pose& X_BO) const;
+  [[nodiscard]] model::VecN PulledIntoView(const model::VecN& q, const model::Pose& X_BO) const;
   [[nodiscard]] model::Mat3 NearestGoal(const model::Mat3& R_CO) const;
   [[nodiscard]] double ErrorPx(const model::Pose& X_CO) const;
 

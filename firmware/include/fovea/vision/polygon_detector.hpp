@@ -29,6 +29,7 @@ class PolygonDetector {
 
  private:
   void Judge(const cv::Mat& image, const PolygonCandidate& start, Detection& best);
+  void DropPosesOutOfReach(CornerPoses& found) const;
   void SetCorners(const CornerFit& fit, int first, Detection& d) const;
   [[nodiscard]] double ColourShare(const cv::Mat& image, std::span<const ImagePoint> corners) const;
 
