@@ -14,7 +14,9 @@ constexpr int kTicksToAStep = 4;  // what was found follows the target more slow
 // When the joints take over.
 constexpr double kLookS = 0.2;   // after which the target's pose is believed so far as to leave the law's way
 constexpr double kIdleS = 0.4;   // for so long the goal came no nearer
-constexpr double kNearer = 0.8;  // by this share
+constexpr double kNearer = 0.8;  // by this share;
+constexpr double kIdleSureS = 1.0;  // where the law most often gets there, for so long
+constexpr double kNearerSure = 0.5;
 constexpr double kThereM = 0.0015;  // a goal that is so near needs no other way
 constexpr double kThereRad = 0.006;
 constexpr double kMetrePerRad = 0.1;
@@ -43,7 +45,7 @@ void NoteIdle(const ServoConfig& config, const WaySight& sight, WayToGoal& way) 
   const double off = shift + kMetrePerRad * turn;
   if (turn < kThereRad && shift < kThereM) {
     way.idle_ns = 0;
-  } else if (off < kNearer * way.least_off) {
+  } else if (off < (turns_freely ? kNearerSure : kNearer) * way.least_off) {
     way.least_off = off;
     way.idle_ns = 0;
   } else {
@@ -89,7 +91,7 @@ void CountTick(bool holds, std::int64_t& ns) noexcept {
 void ChooseWay(const ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
   if (SeeksWhenIdle(config) && !way.preferred) {
     NoteIdle(config, sight, way);
-    way.preferred = IsLonger(way.idle_ns, kIdleS);
+    way.preferred = IsLonger(way.idle_ns, kIdleSureS);
     return;
   }
   way.sought_ns = way.by_joints && !way.goal.found ? way.sought_ns + hal::kTickPeriodNs : 0;

@@ -231,7 +231,7 @@ TEST_F(WayToGoalTest, ForATargetThatMayBeSeenFromAllSidesOnlyOnceTheLawIsStuck) 
   X_BO_ = CameraAt(q_goal) * Pose{model::Mat3::Identity(), config_.feature.p_CO_C_star};
   Stand(test::Ready(), 2000);
   EXPECT_FALSE(way_.goal.begun || way_.goal.found);
-  Stand(test::Ready(), 900, hal::Bit(hal::Limit::kWorkspace));
+  Stand(test::Ready(), 1700, hal::Bit(hal::Limit::kWorkspace));
   ASSERT_TRUE(way_.goal.found);
   EXPECT_TRUE(way_.by_joints);
   const model::Vec3 p_CO = CameraAt(way_.goal.q).Inverse() * X_BO_.p;
