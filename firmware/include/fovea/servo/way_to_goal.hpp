@@ -1,15 +1,16 @@
 // Which way the arm takes to a target: the visual law's, or by the joints.
 //
-// The law takes each step that brings the feature nearer. That may end where a limit holds it, at a joint's end
-// or along the workspace, although another posture reaches the goal. So such a posture is looked for
-// (goal_posture.hpp): where the target leaves the hand no freedom all the while, for a disc or ball, that most
-// often lets the law find one, only once limits let the goal come no nearer.
+// The law takes each step that brings the feature nearer. That may end where a limit holds it, at a joint's
+// end or along the workspace, although another posture reaches the goal. So such a posture is looked for
+// (goal_posture.hpp): where the target leaves the hand no freedom all the while, for a disc or ball, that
+// most often lets the law find one, only once limits let the goal come no nearer.
 //
-// The law goes first where a posture lies downhill. Where none does, the arm stands until one is found to which
-// a way is clear, for a while at most. Where limits let the goal come no nearer, one is looked for from there.
-// To it the joints go, all at once, by way of another posture when that is how it was found, as straight as the
-// target's place in the picture and the limits let them. Near it the law takes over. All limits hold on both
-// ways, but for the guard of the hand's singularities, which a motion of the joints passes.
+// The law goes first where a posture lies downhill. Where none does, the arm stands until one is found to
+// which a way is clear, for a while at most. Where limits let the goal come no nearer, one is looked for from
+// there. To it the joints go, all at once, by way of another posture when that is how it was found, as
+// straight as the target's place in the picture and the limits let them. Near it the law takes over. All
+// limits hold on both ways, but for the guard of the hand's singularities, which a motion of the joints
+// passes.
 #pragma once
 
 #include <cmath>
