@@ -4,9 +4,9 @@
 
 namespace fovea::servo {
 
-void ComputeArmLine(const model::ArmModel& arm, const model::ArmPoses& poses, ArmLine& line) noexcept {
+ArmLine LineOfArm(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept {
   constexpr double kCorner = 0.01;  // a side step or a way along that is shorter makes none [m]
-  line.num_points = 0;
+  ArmLine line;
   const auto add = [&line](const model::Vec3& p_B, int joint) {
     const auto k = static_cast<std::size_t>(line.num_points);
     line.p_B[k] = p_B;
@@ -25,6 +25,7 @@ void ComputeArmLine(const model::ArmModel& arm, const model::ArmPoses& poses, Ar
     }
   }
   add(poses.X_BE.p, arm.num_joints - 1);
+  return line;
 }
 
 }  // namespace fovea::servo

@@ -311,8 +311,8 @@ void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q,
     is_stuck = is_stuck || !(off < kComesNearer * goal.last_off);
     goal.last_off = off;
   }
-  if (off < kReached && allowed && IsRegular(config, poses) && IsInSight(config, poses, X_BO) &&
-      IsApart(config, poses) && !WasDropped(goal)) {
+  if (off < kReached && allowed && IsRegular(config, poses) && IsArmClear(config, poses, X_BO) &&
+      !WasDropped(goal)) {
     goal.reached = true;
     goal.detour = 0;
     goal.q_via = q;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/servo/arm_line.hpp"
 #include "fovea/servo/obstacle.hpp"
 #include "fovea/servo/segments.hpp"
 
@@ -22,16 +21,19 @@ struct Nearest {
   int joint = -1;    // that carries the trunk's link; -1: the base
 };
 
-Nearest NearestTrunk(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept {
+Nearest NearestTrunk(const model::ArmModel& arm, const ArmLine& line) noexcept {
   Nearest nearest;
   if (arm.num_joints < kJointsLeast) {
     return nearest;
   }
-  ArmLine line;
-  ComputeArmLine(arm, poses, line);
-  const Vec3& wrist = poses.X_BL[static_cast<std::size_t>(arm.num_joints - 1)].p;
+  const auto last = static_cast<std::size_t>(line.num_points - 1);
+  std::size_t from = last;  // where the last link's line begins
+  while (line.joint[from - 1] == arm.num_joints - 1) {
+    --from;
+  }
+  const Vec3& wrist = line.p_B[from];
   for (std::size_t i = 0; line.joint[i] + 1 < kTrunkJoints; ++i) {
-    const SegmentPair pair = NearestOfSegments(wrist, poses.X_BE.p, line.p_B[i], line.p_B[i + 1]);
+    const SegmentPair pair = NearestOfSegments(wrist, line.p_B[last], line.p_B[i], line.p_B[i + 1]);
     if (pair.distance < nearest.pair.distance) {
       nearest = {pair, line.joint[i]};
     }
@@ -39,7 +41,7 @@ Nearest NearestTrunk(const model::ArmModel& arm, const model::ArmPoses& poses) n
   return nearest;
 }
 
-// Where the arm's line behind its elbow is nearest to a plane.
+// Where the arm's line from the elbow on is nearest to a plane.
 struct NearestPlane {
   Clearance clearance{HUGE_VAL, Vec3::UnitZ()};
   Vec3 p_BP = Vec3::Zero();  // the line's point [m]
@@ -47,13 +49,8 @@ struct NearestPlane {
 };
 
 NearestPlane NearestOfPlanes(const model::ArmModel& arm, const Obstacles& obstacles,
-                             const model::ArmPoses& poses) noexcept {
+                             const ArmLine& line) noexcept {
   NearestPlane nearest;
-  if (obstacles.num_planes == 0) {
-    return nearest;
-  }
-  ArmLine line;
-  ComputeArmLine(arm, poses, line);
   for (std::size_t k = 0; k + 1 < static_cast<std::size_t>(line.num_points); ++k) {  // but the end effector
     for (int i = 0; i < obstacles.num_planes && line.joint[k] >= arm.num_joints - kForearmJoints; ++i) {
       const Clearance clearance = ClearanceOf(obstacles, i, line.p_B[k]);
@@ -67,17 +64,17 @@ NearestPlane NearestOfPlanes(const model::ArmModel& arm, const Obstacles& obstac
 
 }  // namespace
 
-double ClearanceOfHand(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept {
-  return NearestTrunk(arm, poses).pair.distance;
+double ClearanceOfHand(const model::ArmModel& arm, const ArmLine& line) noexcept {
+  return NearestTrunk(arm, line).pair.distance;
 }
 
 void LimitHand(double clearance, const model::ArmModel& arm, const model::ArmPoses& poses,
-               MotionLimits& limits) noexcept {
+               const ArmLine& line, MotionLimits& limits) noexcept {
   constexpr double kTouch = 1e-6;  // lines that cross have no direction apart [m]
   if (clearance <= 0.0) {
     return;
   }
-  const Nearest nearest = NearestTrunk(arm, poses);
+  const Nearest nearest = NearestTrunk(arm, line);
   if (!(nearest.pair.distance > kTouch) || !std::isfinite(nearest.pair.distance)) {
     return;
   }
@@ -94,13 +91,13 @@ void LimitHand(double clearance, const model::ArmModel& arm, const model::ArmPos
 }
 
 double ClearanceOfPlanes(const model::ArmModel& arm, const Obstacles& obstacles,
-                         const model::ArmPoses& poses) noexcept {
-  return NearestOfPlanes(arm, obstacles, poses).clearance.distance;
+                         const ArmLine& line) noexcept {
+  return NearestOfPlanes(arm, obstacles, line).clearance.distance;
 }
 
 void LimitArm(const model::ArmModel& arm, const Obstacles& obstacles, const model::ArmPoses& poses,
-              MotionLimits& limits) noexcept {
-  const NearestPlane nearest = NearestOfPlanes(arm, obstacles, poses);
+              const ArmLine& line, MotionLimits& limits) noexcept {
+  const NearestPlane nearest = NearestOfPlanes(arm, obstacles, line);
   if (!std::isfinite(nearest.clearance.distance)) {
     return;
   }

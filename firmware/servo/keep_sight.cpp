@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/servo/arm_line.hpp"
 #include "fovea/servo/segments.hpp"
 
 namespace fovea::servo {
@@ -23,8 +22,7 @@ struct Nearest {
 
 // Of all links and all lines of sight.
 Nearest NearestLink(const model::ArmModel& arm, const Sight& sight) noexcept {
-  ArmLine line;
-  ComputeArmLine(arm, sight.poses, line);
+  const ArmLine& line = sight.line;
   Nearest nearest;
   for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
     const Vec3 p_BP = sight.X_BO * sight.outline.p_OP[k];

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kJointRoom = 0.06;       // inside the range that the reference keeps [rad, m]
 constexpr double kRadiusRoom = 0.003;     // inside the sphere that it keeps [m]
-constexpr double kSightRoom = 0.005;      // outside the clearances that it keeps [m]
+constexpr double kLineRoom = 0.005;       // outside the clearances that it keeps [m]
 constexpr double kSingularityRoom = 1.5;  // of the smallest singular value that the guard keeps
 
 constexpr double kSteepest = 0.2;  // cosine to a flat target's normal at which it is still made out
@@ -44,17 +44,15 @@ bool IsRegular(const ServoConfig& config, const model::ArmPoses& poses) noexcept
   return singularity.sigma > kSingularityRoom * config.guard.singularity_min;
 }
 
-bool IsInSight(const ServoConfig& config, const model::ArmPoses& poses, const model::Pose& X_BO) noexcept {
-  const double clearance = config.guard.sight_clearance;
-  return clearance <= 0.0 ||
-         ClearanceOfSight(config.arm, {poses, poses.X_BE * config.X_EC, config.feature.Outline(), X_BO}) >
-             clearance + kSightRoom;
-}
-
-bool IsApart(const ServoConfig& config, const model::ArmPoses& poses) noexcept {
-  const double clearance = config.guard.hand_clearance;
-  return (clearance <= 0.0 || ClearanceOfHand(config.arm, poses) > clearance + kSightRoom) &&
-         ClearanceOfPlanes(config.arm, config.guard.obstacles, poses) > kSightRoom;
+bool IsArmClear(const ServoConfig& config, const model::ArmPoses& poses, const model::Pose& X_BO) noexcept {
+  const GuardConfig& guard = config.guard;
+  const ArmLine line = LineOfArm(config.arm, poses);
+  const Sight sight{poses, line, poses.X_BE * config.X_EC, config.feature.Outline(), X_BO};
+  return ClearanceOfPlanes(config.arm, guard.obstacles, line) > kLineRoom &&
+         (guard.hand_clearance <= 0.0 ||
+          ClearanceOfHand(config.arm, line) > guard.hand_clearance + kLineRoom) &&
+         (guard.sight_clearance <= 0.0 ||
+          ClearanceOfSight(config.arm, sight) > guard.sight_clearance + kLineRoom);
 }
 
 bool IsInView(const ServoConfig& config, const model::Pose& X_BC, const model::Pose& X_BO) noexcept {

@@ -62,8 +62,9 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
   named.NameNewRows(Limit::kWorkspace, 0);
   int rows = limits.num_rows;
   LimitApproach(config, scene, limits);
-  LimitArm(config.arm, config.guard.obstacles, scene.poses, limits);
-  LimitHand(config.guard.hand_clearance, config.arm, scene.poses, limits);
+  const ArmLine line = LineOfArm(config.arm, scene.poses);
+  LimitArm(config.arm, config.guard.obstacles, scene.poses, line, limits);
+  LimitHand(config.guard.hand_clearance, config.arm, scene.poses, line, limits);
   named.NameNewRows(Limit::kObstacle, rows);
   if (scene.by_joints) {
     watch = SingularityWatch{};  // what it knew of the posture holds no longer
@@ -84,8 +85,8 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
     LimitView(config.guard.view, *scene.target, limits);
     const model::Pose X_BC = scene.poses.X_BE * config.X_EC;
     LimitSight(config.guard.sight_clearance, config.arm,
-               {scene.poses, X_BC, scene.target->outline, X_BC * scene.target->seen.X_CO}, scene.target->J_C,
-               limits);
+               {scene.poses, line, X_BC, scene.target->outline, X_BC * scene.target->seen.X_CO},
+               scene.target->J_C, limits);
     if (config.guard.view.enabled && !scene.target->normal_C.isZero()) {
       LimitTilt(config.guard.view.face_cosine_min, scene.target->seen.X_CO.p, scene.target->normal_C,
                 scene.target->J_C, limits);

@@ -24,7 +24,9 @@ model::ArmPoses PosesAt(const VecN& q) {
   return poses;
 }
 
-double HandClearance(const VecN& q) { return ClearanceOfHand(Arm(), PosesAt(q)); }
+ArmLine LineAt(const VecN& q) { return LineOfArm(Arm(), PosesAt(q)); }
+
+double HandClearance(const VecN& q) { return ClearanceOfHand(Arm(), LineAt(q)); }
 
 // A table, and a wall that leans over it.
 Obstacles Planes() {
@@ -35,7 +37,7 @@ Obstacles Planes() {
   return obstacles;
 }
 
-double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Arm(), Planes(), PosesAt(q)); }
+double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Arm(), Planes(), LineAt(q)); }
 
 // Points on the two lines, 2 mm apart and less.
 TEST(KeepApartTest, TheHandsClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
@@ -101,11 +103,11 @@ TEST(KeepApartTest, TheRowsAreHowFastHandAndArmComeNearer) {
     const VecN q = random.Position(Arm());
     const VecN dq = random.Joints(Arm(), 0.5);
     MotionLimits hand;
-    LimitHand(0.3, Arm(), PosesAt(q), hand);
+    LimitHand(0.3, Arm(), PosesAt(q), LineAt(q), hand);
     ExpectRow(hand, q, dq, HandClearance, worst_hand);
     EXPECT_NEAR(hand.rows[0].b, 1.5 * std::max(HandClearance(q) - 0.3, 0.0), 1e-12);
     MotionLimits arm;
-    LimitArm(Arm(), Planes(), PosesAt(q), arm);
+    LimitArm(Arm(), Planes(), PosesAt(q), LineAt(q), arm);
     ExpectRow(arm, q, dq, PlaneClearance, worst_arm);
     EXPECT_NEAR(arm.rows[0].b, 1.5 * std::max(PlaneClearance(q), 0.0), 1e-12);
     hands += HandClearance(q) < 0.3 ? 1 : 0;
@@ -122,14 +124,14 @@ TEST(KeepApartTest, TheRowsAreHowFastHandAndArmComeNearer) {
 TEST(KeepApartTest, NothingIsKeptWhereNothingIsAskedForOrNothingIsKnown) {
   MotionLimits limits;
   const VecN q = test::Ready();
-  LimitHand(0.0, Arm(), PosesAt(q), limits);
-  LimitArm(Arm(), Obstacles{}, PosesAt(q), limits);
-  LimitHand(0.13, Arm(), PosesAt(q * std::nan("")), limits);
-  LimitArm(Arm(), Planes(), PosesAt(q * std::nan("")), limits);
+  LimitHand(0.0, Arm(), PosesAt(q), LineAt(q), limits);
+  LimitArm(Arm(), Obstacles{}, PosesAt(q), LineAt(q), limits);
+  LimitHand(0.13, Arm(), PosesAt(q * std::nan("")), LineAt(q * std::nan("")), limits);
+  LimitArm(Arm(), Planes(), PosesAt(q * std::nan("")), LineAt(q * std::nan("")), limits);
   EXPECT_EQ(limits.num_rows, 0);
   model::ArmModel short_arm = Arm();
   short_arm.num_joints = 5;
-  EXPECT_EQ(ClearanceOfHand(short_arm, PosesAt(q)), HUGE_VAL);
+  EXPECT_EQ(ClearanceOfHand(short_arm, LineAt(q)), HUGE_VAL);
 }
 
 }  // namespace

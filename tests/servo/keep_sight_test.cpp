@@ -22,10 +22,12 @@ struct Posture {
   Posture(const ServoConfig& config, const VecN& q) {
     model::ComputePoses(config.arm, q, poses);
     X_BC = poses.X_BE * config.X_EC;
+    line = LineOfArm(config.arm, poses);
     model::ComputeJacobian(config.arm, poses, config.X_EC, J_C);
   }
 
   model::ArmPoses poses;
+  ArmLine line;
   model::Pose X_BC;
   model::Mat6N J_C;
 };
@@ -42,7 +44,7 @@ Vec3 RandomTarget(test::RandomStates& random, const Posture& posture) {
 
 // A target of one point, or a turned triangle.
 Sight SightOf(const Posture& posture, const Vec3& p_BO, bool triangle) {
-  Sight sight{posture.poses, posture.X_BC, {}, {model::RotationOf({0.3, -0.2, 0.9}), p_BO}};
+  Sight sight{posture.poses, posture.line, posture.X_BC, {}, {model::RotationOf({0.3, -0.2, 0.9}), p_BO}};
   sight.outline.num_points = triangle ? 3 : 1;
   sight.outline.p_OP[0].setZero();
   if (triangle) {

@@ -21,6 +21,6 @@ struct ArmLine {
 };
 
 // Real-time: yes.
-void ComputeArmLine(const model::ArmModel& arm, const model::ArmPoses& poses, ArmLine& line) noexcept;
+[[nodiscard]] ArmLine LineOfArm(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept;
 
 }  // namespace fovea::servo

@@ -9,27 +9,28 @@
 #pragma once
 
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/arm_line.hpp"
 #include "fovea/servo/motion_limits.hpp"
 
 namespace fovea::servo {
 
 // How far the hand's line is from the trunk's [m]; HUGE_VAL for an arm of fewer than 6 joints.
 // Real-time: yes.
-[[nodiscard]] double ClearanceOfHand(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept;
+[[nodiscard]] double ClearanceOfHand(const model::ArmModel& arm, const ArmLine& line) noexcept;
 
 // Adds the row that keeps the hand's line `clearance` [m] away from the trunk's; what is already nearer may
 // not come nearer still. None where `clearance` is 0, and none where the two cross: there is no way apart
 // then. Real-time: yes.
 void LimitHand(double clearance, const model::ArmModel& arm, const model::ArmPoses& poses,
-               MotionLimits& limits) noexcept;
+               const ArmLine& line, MotionLimits& limits) noexcept;
 
 // How far the arm's line from the elbow on, but for the end effector, is from the nearest plane [m]; HUGE_VAL
 // without planes. Real-time: yes.
 [[nodiscard]] double ClearanceOfPlanes(const model::ArmModel& arm, const Obstacles& obstacles,
-                                       const model::ArmPoses& poses) noexcept;
+                                       const ArmLine& line) noexcept;
 
 // Adds the row that keeps it above that plane; what is below may not go further. Real-time: yes.
 void LimitArm(const model::ArmModel& arm, const Obstacles& obstacles, const model::ArmPoses& poses,
-              MotionLimits& limits) noexcept;
+              const ArmLine& line, MotionLimits& limits) noexcept;
 
 }  // namespace fovea::servo

@@ -9,12 +9,14 @@
 
 #include "fovea/features/target_feature.hpp"
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/arm_line.hpp"
 #include "fovea/servo/motion_limits.hpp"
 
 namespace fovea::servo {
 
 struct Sight {
   const model::ArmPoses& poses;
+  const ArmLine& line;
   model::Pose X_BC;  // of the same posture
   features::TargetOutline outline;
   model::Pose X_BO;

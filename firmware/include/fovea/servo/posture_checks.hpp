@@ -22,12 +22,10 @@ struct JointRange {
 // Whether the posture is clear of the singularities that the guard keeps it from. Real-time: yes.
 [[nodiscard]] bool IsRegular(const ServoConfig& config, const model::ArmPoses& poses) noexcept;
 
-// Whether the arm's own links leave the target at `X_BO` in sight. Real-time: yes.
-[[nodiscard]] bool IsInSight(const ServoConfig& config, const model::ArmPoses& poses,
-                             const model::Pose& X_BO) noexcept;
-
-// Whether the hand is clear of the arm's own first links, and the arm of the planes. Real-time: yes.
-[[nodiscard]] bool IsApart(const ServoConfig& config, const model::ArmPoses& poses) noexcept;
+// Whether the arm's own links leave the target at `X_BO` in sight and the hand is clear of the first of them,
+// and of the planes what comes from the elbow on. Real-time: yes.
+[[nodiscard]] bool IsArmClear(const ServoConfig& config, const model::ArmPoses& poses,
+                              const model::Pose& X_BO) noexcept;
 
 // Whether the target is in the picture, and a flat one not seen from beside or behind. Real-time: yes.
 [[nodiscard]] bool IsInView(const ServoConfig& config, const model::Pose& X_BC,
