@@ -22,11 +22,12 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 
 constexpr int kTicks = 200;
+constexpr int kFirstFrame = 10;  // [tick]
 constexpr std::int64_t kStartNs = 5'000'000'000;
 
 class HwFilesTest : public testing::Test {
  protected:
-  // A run of 0.2 s with three frames of that size; what it says of its log. Once it goes on, the file
+  // A run of 0.2 s with frames of that size, three as a rule; what it says of its log. Once it goes on, the file
   // `removed` of its folder is gone.
   LogCounters Run(int width_px, int height_px, const std::string& removed = "") {
     HwFiles files(folder_.path(), config_, robot_, servo_, 0.0);
@@ -42,7 +43,7 @@ class HwFilesTest : public testing::Test {
       record.stamp_ns = kStartNs + tick * hal::kTickPeriodNs;
       record.arm.num_joints = record.command.num_joints = robot_.model.num_joints;
       files.AddRecord(entry);
-      if (tick % 70 == 10) {
+      if (tick >= kFirstFrame && (tick - kFirstFrame) % frame_period_ == 0) {
         hal::Frame frame;
         frame.stamp_ns = record.stamp_ns;
         frame.width_px = width_px;
@@ -81,7 +82,8 @@ class HwFilesTest : public testing::Test {
   }
 
   const test::TempFolder folder_;
-  const HwConfig config_ = LoadHwConfig("loopback", {});
+  int frame_period_ = 70;  // [tick]
+  HwConfig config_ = LoadHwConfig("loopback", {});
   const robots::Robot robot_ = LoadHwRobot(config_);
   const servo::ServoConfig servo_ = MakeHwServoConfig(config_, robot_);
 };
@@ -111,6 +113,15 @@ TEST_F(HwFilesTest, WithoutAFrameThereIsNoFilm) {
   EXPECT_EQ(log.film_frames_dropped, 0U);
   EXPECT_THAT(Files(), ElementsAre("log.mcap", "report.html", "summary.json"));
   ExpectLog({"summary.json"});
+}
+
+// No more pictures than are wished for, from the first on: of frames every 10 ms from the 10th on, at 20 Hz, those
+// at 10, 60, 110 and 160 ms.
+TEST_F(HwFilesTest, TheLogHasNoMorePicturesThanAreWishedFor) {
+  config_.log.picture_rate_hz = 20.0;
+  frame_period_ = 10;
+  const LogCounters log = Run(640, 480);
+  EXPECT_EQ(log.pictures + log.pictures_dropped, 4U);
 }
 
 }  // namespace

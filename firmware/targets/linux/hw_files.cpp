@@ -143,7 +143,9 @@ void HwFiles::KeepPicture(const hal::Frame& frame, const vision::Detection& dete
   if (frame.stamp_ns < next_picture_ns_ - period_ns / 10) {
     return;
   }
-  next_picture_ns_ = std::max(next_picture_ns_ + period_ns, frame.stamp_ns);
+  // The first picture begins the grid, and so does the first one after a gap.
+  const bool on_grid = frame.stamp_ns < next_picture_ns_ + period_ns;
+  next_picture_ns_ = (on_grid ? next_picture_ns_ : frame.stamp_ns) + period_ns;
   foxglove::ImageAnnotations annotations = goal_;
   log::AddDetection(config::MakeIntrinsics(config_.camera.calibration), detection, annotations);
   log_.Add(log::kAnnotationTopic, frame.stamp_ns, annotations);
