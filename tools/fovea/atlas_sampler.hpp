@@ -13,6 +13,7 @@
 #include <random>
 #include <vector>
 
+#include "atlas_checks.hpp"
 #include "fovea/features/target_feature.hpp"
 #include "fovea/model/kinematics.hpp"
 
@@ -58,42 +59,20 @@ class Sampler {
   [[nodiscard]] Start Draw(std::uint64_t seed, int index) const;
 
  private:
-  struct Posture {
-    model::VecN q;
-    model::ArmPoses poses;
-    model::Pose X_BC;
-  };
-  [[nodiscard]] Posture At(const model::VecN& q) const;
   [[nodiscard]] model::VecN DrawPosture(std::mt19937_64& engine) const;
   [[nodiscard]] model::Pose DrawTarget(std::mt19937_64& engine) const;
-  [[nodiscard]] bool InsideBarrier(const Posture& posture) const;
-  [[nodiscard]] model::Vec3 ForearmStart(const Posture& posture) const;
-  [[nodiscard]] bool AboveTable(const Posture& posture, double height) const;
-  [[nodiscard]] bool InPicture(const model::Pose& X_CO, double edge_px) const;
-  [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;
-  [[nodiscard]] bool BenchInTheWay(const Posture& posture, const model::Pose& X_BO) const;
-  // How far the arm's line keeps from what [m].
-  struct Clear {
-    double sight;
-    double target;
-    double trunk;
-  };
-  static const Clear kAtEnds;
-  static const Clear kOnTheWay;
-  [[nodiscard]] bool ArmInTheWay(const Posture& posture, const model::Pose& X_BO, const Clear& clear) const;
   enum class Goal : std::uint8_t { kNear, kElsewhere, kNone };
   [[nodiscard]] Goal FindGoal(std::mt19937_64& engine, const model::VecN& q, const model::Pose& X_BO) const;
   // The posture that has the target where it shall be in which a descent from `q` ends, or none.
   [[nodiscard]] std::optional<model::VecN> DescentTo(const model::VecN& q, const model::Pose& X_BO) const;
   [[nodiscard]] bool WayLeadsOn(const model::VecN& q, const model::Pose& X_BO, std::uint64_t seed) const;
-  [[nodiscard]] bool OnTheWay(const model::VecN& q, const model::Pose& X_BO) const;
   [[nodiscard]] model::VecN PulledIntoView(const model::VecN& q, const model::Pose& X_BO) const;
   [[nodiscard]] model::Mat3 NearestGoal(const model::Mat3& R_CO) const;
   [[nodiscard]] double ErrorPx(const model::Pose& X_CO) const;
 
   model::ArmModel arm_;
   features::TargetFeature feature_;
-  model::Pose X_EC_;
+  StartChecks checks_;
   model::VecN q_least_;  // the joints' range, less the margin
   model::VecN q_most_;
 };
