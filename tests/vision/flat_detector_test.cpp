@@ -174,7 +174,8 @@ TEST(FlatDetectorTest, OfATrianglesPosesOnlyThoseInReachCount) {
     EXPECT_LE(pose.p.norm(), 0.9);
     nearest_deg = std::min(nearest_deg, 57.3 * model::RotationVector(pose.R * X_CO.R.transpose()).norm());
   }
-  EXPECT_LT(nearest_deg, 2.0);
+  std::cout << "of a triangle's poses in reach the nearest is off by " << nearest_deg << " deg\n";
+  EXPECT_LT(nearest_deg, 0.3);
   EXPECT_FALSE(poses_within(0.3).found);
 }
 
