@@ -1,10 +1,19 @@
-"""The hardware program against the simulated robot, both by the clock:  loopback_real_pace_test.py FOVEA_SIM FOVEA_HW"""
+"""The hardware program against the simulated robot, both by the clock:  loopback_real_pace_test.py FOVEA_SIM FOVEA_HW
+
+Each run's log is replayed, without pictures: to encode them would take the time that the runs are measured by."""
+
+import tempfile
 
 import two_programs
 from two_programs import TwoPrograms
 
 
 class RealPace(TwoPrograms):
+    def recorded(self, port, *options, **more):
+        with tempfile.TemporaryDirectory() as temp:
+            return self.hardware(port, *options, "--out", temp, "--set", "log.film=false", "--set", "log.picture_rate_hz=0",
+                                 **more)
+
     def tracked_at_real_pace(self, lost_by_the_network, *options):
         """A run of 10 s by the clock, on a machine that kept it: what the client and the server say of it. Ticks that are
         lost beyond the share that the network takes are the machine's. So is a robot that began 20 steps late: it makes
@@ -12,7 +21,7 @@ class RealPace(TwoPrograms):
         that found 19 states waiting at once: it was kept from them, and the robot has stopped."""
         for _ in range(3):
             port = self.serve("--pace", "real", "--late-ms", "3", *options, camera=True)
-            s = self.hardware(port, "--track", "--seconds", "10", "--set", "robot.time=computer", "--set",
+            s = self.recorded(port, "--track", "--seconds", "10", "--set", "robot.time=computer", "--set",
                               "camera.time=computer", "--set", "robot.state_timeout_ms=50", "--set",
                               "safety.missed_ticks=20", camera=True, codes=(0, 1))
             truth = self.end_server()
@@ -45,7 +54,7 @@ class RealPace(TwoPrograms):
     def test_at_real_pace(self):
         port = self.serve("--pace", "real", "--late-ms", "3")
         # A busy machine may miss 20 ticks in a row; then it ends in a fault, and says so.
-        s = self.hardware(port, "--enable", "--seconds", "2", "--set", "robot.time=computer", "--set", "robot.state_timeout_ms=50",
+        s = self.recorded(port, "--enable", "--seconds", "2", "--set", "robot.time=computer", "--set", "robot.state_timeout_ms=50",
                           codes=(0, 1))
         print(f"\nreal pace: {s['robot']['states']} states, success rate {s['robot']['command_success_rate']}")
         self.assertEqual(s["heap_allocations_in_tick"], 0)

@@ -39,6 +39,8 @@ function run(program, ...args) {
 }
 const out = path.join(folder, "out");
 run(sim, "run", scenario, "--out", out);
+const replay = spawnSync(fovea, ["replay", out], { encoding: "utf8", timeout: 100_000 });
+assert.equal(replay.status, 0, replay.stdout + replay.stderr);
 const both = path.join(folder, "both.html");
 run(fovea, "report", out, out, "--out", both);
 
