@@ -1,17 +1,13 @@
-// Runs a program as a user would, and keeps what it said. Each log that it leaves is replayed, whatever the
-// test is of.
+// Runs a program as a user would, and keeps what it said.
 #pragma once
 
 #include <fcntl.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -28,8 +24,6 @@ struct ProgramResult {
   std::string out;
   std::string err;
 };
-
-inline void ExpectLogsReplayed(const std::vector<std::string>& arguments);
 
 // `arguments[0]` is the program, looked for in PATH. `environment` ("NAME=value") is added to this one's. A
 // program that does not end within `limit` is killed, and std::runtime_error thrown.
@@ -77,29 +71,7 @@ inline ProgramResult RunProgram(std::vector<std::string> arguments,
     text << std::ifstream(path).rdbuf();
     return text.str();
   };
-  ExpectLogsReplayed(arguments);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};
-}
-
-// The logs in the folder after --out, if these are arguments of one of our programs and have it: their
-// recorded inputs give the servo's recorded outputs again, to the last bit. `fovea` stands beside that
-// program.
-inline void ExpectLogsReplayed(const std::vector<std::string>& arguments) {
-  namespace fs = std::filesystem;
-  const auto program = std::find_if(arguments.begin(), arguments.end(), [](const std::string& argument) {
-    return fs::path(argument).filename().string().starts_with("fovea");
-  });
-  const auto out = std::find(program, arguments.end(), "--out");
-  if (out == arguments.end() || out + 1 == arguments.end() || !fs::is_directory(*(out + 1))) {
-    return;
-  }
-  for (const fs::directory_entry& file : fs::recursive_directory_iterator(*(out + 1))) {
-    if (file.path().filename() == "log.mcap") {
-      const ProgramResult replay =
-          RunProgram({fs::path(*program).replace_filename("fovea"), "replay", file.path()});
-      EXPECT_EQ(replay.exit_code, 0) << file.path() << ": " << replay.out << replay.err;
-    }
-  }
 }
 
 }  // namespace fovea::test

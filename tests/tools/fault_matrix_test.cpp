@@ -81,7 +81,8 @@ TEST_F(FaultMatrixTest, ThePageIsSound) {
   const std::string page = Content(test::SourceRoot() / "sim/FAULTS.md");
   EXPECT_THAT(page, HasSubstr(" 0 undefined; a limit of the arm's exceeded in 0\n"));
   EXPECT_THAT(page, testing::Not(HasSubstr("**UNDEFINED:")));
-  for (const char* mode : {"## `ball`", "## `home`", "## `flange-circle`"}) {
+  EXPECT_THAT(page, testing::Not(HasSubstr("a part of the matrix")));
+  for (const char* mode : {"## `ball`", "## `ball-moving`", "## `home`", "## `flange-circle`"}) {
     EXPECT_THAT(page, HasSubstr(mode));
   }
 }
