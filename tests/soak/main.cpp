@@ -36,7 +36,7 @@ class Progress {
 
  private:
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double next_ = 0.0;
+  double next_ = 0.001;  // before, nothing is known of what is left
 };
 
 std::string Counts(const std::map<std::string, std::uint64_t>& counts) {
