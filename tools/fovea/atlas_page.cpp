@@ -139,15 +139,17 @@ std::string FailureTable(const Figures& f) {
   std::string rows;
   for (const Failure& failure : f.failures) {
     rows += fmt::format(
-        "<tr><th scope=\"row\">{0}</th><td>{1}<code class=\"listing\" style=\"display:block\">{2}</code></td>"
-        "<td><a href=\"runs/{0:04}/eye-first.png\">first</a>, <a "
+        "<tr><th class=\"brief\" scope=\"row\">{0}</th><td>{1}<code class=\"listing\" "
+        "style=\"display:block\">{2}</code></td>"
+        "<td class=\"brief\"><a href=\"runs/{0:04}/eye-first.png\">first</a>, <a "
         "href=\"runs/{0:04}/eye-last.png\">last</a></td>"
         "</tr>",
         failure.index, Escaped(failure.verdict), Escaped(failure.command));
   }
   return fmt::format(
-      "<section><h2>Failures</h2><table><thead><tr><th>run</th><th>why, and how to repeat it</th>"
-      "<th>pictures</th></tr></thead><tbody>{}</tbody></table></section>",
+      "<section><h2>Failures</h2><table><thead><tr><th class=\"brief\">run</th><th>why, and how to repeat "
+      "it</th>"
+      "<th class=\"brief\">pictures</th></tr></thead><tbody>{}</tbody></table></section>",
       rows);
 }
 

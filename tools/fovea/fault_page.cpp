@@ -13,7 +13,8 @@ namespace {
 using bench::Escaped;
 
 constexpr const char* kStyle =
-    "<style>main,.head{max-width:110rem}.matrix{overflow-x:auto}.matrix .number{white-space:nowrap}.matrix "
+    "<style>main,.head{max-width:110rem}.matrix{overflow-x:auto;overflow-wrap:normal}.matrix "
+    ".number{white-space:nowrap}.matrix "
     "td{vertical-align:top;font-size:.8rem;line-height:1.35}"
     ".matrix th{vertical-align:top}.matrix .quiet{opacity:.55}.matrix .notice{font-weight:600}"
     ".matrix .stop{border-left:3px solid #b26a00}.matrix .held{border-left:3px solid #5c6bc0}"
@@ -27,6 +28,16 @@ const char* ClassOf(const Outcome& o) {
   return o.end == End::kRecovered ? "fine" : o.end == End::kSafeStop ? "stop" : "held";
 }
 
+// HTML that may be broken after each underscore.
+std::string Breakable(const std::string& name) {
+  std::string html;
+  for (const char c : Escaped(name)) {
+    html += c;
+    html += c == '_' ? "<wbr>" : "";
+  }
+  return html;
+}
+
 std::string CellHtml(const Cell* cell) {
   if (cell == nullptr) {
     return "<td></td>";
@@ -34,8 +45,8 @@ std::string CellHtml(const Cell* cell) {
   const Outcome& o = cell->outcome;
   return fmt::format("<td class=\"{}\" title=\"{}\"><span class=\"{}\">{}</span><br>{}<br>{}</td>",
                      ClassOf(o), Escaped(cell->command), o.ticks ? "notice" : "quiet",
-                     o.ticks ? Escaped(fmt::format("{}, {} ticks", o.noticed_by, *o.ticks)) : "not noticed",
-                     Escaped(ShortReaction(o)), Escaped(EndInWords(o)));
+                     o.ticks ? Breakable(fmt::format("{}, {} ticks", o.noticed_by, *o.ticks)) : "not noticed",
+                     Breakable(ShortReaction(o)), Escaped(EndInWords(o)));
 }
 
 std::string Banner(const Matrix& matrix) {
