@@ -96,6 +96,9 @@ def operate(server, hw, draw, end, complaints):
     begin = time.monotonic()
     hw.wait_for("track")
     while time.monotonic() < end:
+        share = (time.monotonic() - begin) / (end - begin)
+        print(f"{100.0 * share:.0f} %, {done['held']} held, {done['stopped']} stopped, {done['recovered']} recovered",
+              file=sys.stderr, flush=True)
         pause_end = min(end, time.monotonic() + draw.uniform(5.0, 15.0))
         while time.monotonic() < pause_end:
             time.sleep(min(1.0, max(0.0, pause_end - time.monotonic())))
