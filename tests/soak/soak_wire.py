@@ -32,6 +32,7 @@ class Program:
         self.process = subprocess.Popen([str(part) for part in command], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True)
         self.lines = queue.Queue()
+        self.fault = ""  # that it is in, in its own words
         self.said = ""
         self.memory = []
         threading.Thread(target=self.listen, daemon=True).start()
@@ -39,7 +40,10 @@ class Program:
 
     def listen(self):
         for line in self.process.stderr:
-            self.lines.put(line.strip())
+            line = line.strip()
+            if line.startswith(("fault:", "hold", "track")):
+                self.fault = line if line.startswith("fault:") else ""
+            self.lines.put(line)
 
     def take_answer(self):
         self.said = self.process.stdout.read()
@@ -107,20 +111,22 @@ def operate(server, hw, draw, end, complaints):
             if hw.process.poll() is not None or server.process.poll() is not None:
                 complaints.append("a program ended by itself")
                 return done
-        if time.monotonic() + PATIENCE_S > end:
-            continue
-        fault = ""
-        while not hw.lines.empty():  # a machine that is kept busy may miss deadlines
-            line = hw.lines.get()
-            fault = line if line.startswith("fault:") else "" if line.startswith(("hold", "track")) else fault
+        # A machine that is kept busy may miss deadlines, at any moment: that is a fault as any other, to be recovered from.
+        hw.forget()
+        fault = hw.fault
         if fault:
             done[fault] = done.get(fault, 0) + 1
+        elif time.monotonic() + PATIENCE_S > end:
+            continue  # what comes now would not be over in time
         elif draw.random() < 0.5:
             hw.say("hold")
             done["held"] += 1
-            if not hw.wait_for("hold"):
+            answer = hw.wait_for("hold", "fault:")
+            if not answer:
                 complaints.append("hold was asked for and did not come")
-            hw.say("track")
+            fault = answer if answer.startswith("fault:") else ""
+            if not fault:
+                hw.say("track")
         else:
             server.say("s")
             done["stopped"] += 1
@@ -131,6 +137,7 @@ def operate(server, hw, draw, end, complaints):
             server.say("s")
             time.sleep(0.5)
         if fault:
+            hw.forget()
             hw.say("recover")
             if hw.wait_for("hold", "track"):
                 done["recovered"] += 1
