@@ -27,8 +27,8 @@ constexpr std::int64_t kStartNs = 5'000'000'000;
 
 class HwFilesTest : public testing::Test {
  protected:
-  // A run of 0.2 s with frames of that size, three as a rule; what it says of its log. Once it goes on, the file
-  // `removed` of its folder is gone.
+  // A run of 0.2 s with frames of that size, three as a rule; what it says of its log. Once it goes on, the
+  // file `removed` of its folder is gone.
   LogCounters Run(int width_px, int height_px, const std::string& removed = "") {
     HwFiles files(folder_.path(), config_, robot_, servo_, 0.0);
     if (!removed.empty()) {
@@ -115,8 +115,8 @@ TEST_F(HwFilesTest, WithoutAFrameThereIsNoFilm) {
   ExpectLog({"summary.json"});
 }
 
-// No more pictures than are wished for, from the first on: of frames every 10 ms from the 10th on, at 20 Hz, those
-// at 10, 60, 110 and 160 ms.
+// No more pictures than are wished for, from the first on: of frames every 10 ms from the 10th on, at 20 Hz,
+// those at 10, 60, 110 and 160 ms.
 TEST_F(HwFilesTest, TheLogHasNoMorePicturesThanAreWishedFor) {
   config_.log.picture_rate_hz = 20.0;
   frame_period_ = 10;
