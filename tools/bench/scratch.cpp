@@ -11,8 +11,9 @@ namespace fovea::bench {
 namespace fs = std::filesystem;
 
 Scratch::Scratch() {
-  // mkdtemp replaces the six letters by others that make the name one of its own: its way of being called.
-  std::string name = (fs::temp_directory_path() / "fovea-bench-XXXXXX").string();
+  // mkdtemp replaces the last six letters, which it wants to be these, by others that make the name one of
+  // its own.
+  std::string name = (fs::temp_directory_path() / "fovea-bench-").string() + std::string(6, 'X');
   if (mkdtemp(name.data()) == nullptr) {
     throw std::runtime_error("no folder can be made in " + fs::temp_directory_path().string());
   }
