@@ -187,8 +187,10 @@ int Serve(const ServeArguments& arguments) {
     fmt::print("{}", sim::ToJson(summary));
   } else {
     const sim::FciServerCounters& c = summary.robot;
-    fmt::print("{} states, {} commands applied, {} missing, {} overruns; {} frames, {} dropped\n", c.states,
-               c.commands, c.missing, c.overruns, summary.frames_sent, summary.frames_dropped);
+    fmt::print(
+        "{} states, {} commands applied, {} missing, {} overruns, {} ms given up; {} frames, {} dropped\n",
+        c.states, c.commands, c.missing, c.overruns, c.given_up_ns / hal::kNsPerMs, summary.frames_sent,
+        summary.frames_dropped);
     if (summary.error_px) {
       fmt::print("in the end the target was {:.2f} px, {:.2f} mm off its goal\n", *summary.error_px,
                  *summary.error_mm);

@@ -167,6 +167,7 @@ std::string ToJson(const ServeSummary& s) {
                   {"unused", c.unused},
                   {"malformed", c.malformed},
                   {"overruns", c.overruns},
+                  {"given_up_ms", static_cast<double>(c.given_up_ns) / hal::kNsPerMs},
                   {"frames_sent", s.frames_sent},
                   {"frames_dropped", s.frames_dropped},
                   {"error_px", or_null(s.error_px)},

@@ -1,5 +1,7 @@
 #include "sim/wire/fci_server.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <ctime>
 #include <utility>
@@ -7,8 +9,9 @@
 namespace fovea::sim {
 namespace {
 
-constexpr std::int64_t kMostBehindNs =
-    50 * hal::kNsPerMs;  // further behind the clock, time is given up for lost
+// What the world is behind the clock it makes up for, as fast as it can: a robot's time does not stand still
+// for its client. Further behind, all of it is given up for lost.
+constexpr std::int64_t kMostBehindNs = hal::kNsPerSecond;
 constexpr std::int64_t kFirstPatienceNs = 100 * hal::kNsPerMs;
 constexpr std::int64_t kStopLookNs = 10 * hal::kNsPerMs;  // no wait without a look at `stop` is longer
 
@@ -63,7 +66,12 @@ void FciServer::AwaitTick() {
   next_tick_ns_ += hal::kTickPeriodNs;
   const std::int64_t now_ns = NowNs();
   counters_.overruns += now_ns > next_tick_ns_ ? 1U : 0U;
-  next_tick_ns_ = std::max(next_tick_ns_, now_ns - kMostBehindNs);
+  if (const std::int64_t lost_ns = now_ns - next_tick_ns_; lost_ns > kMostBehindNs) {
+    say_(fmt::format("this computer is too slow for the world: {:.3f} s are given up",
+                     static_cast<double>(lost_ns) / hal::kNsPerSecond));
+    counters_.given_up_ns += lost_ns;
+    next_tick_ns_ += lost_ns;
+  }
   ServeUntil(next_tick_ns_);
 }
 

@@ -41,6 +41,7 @@ struct FciServerCounters {
   std::uint64_t unused = 0;           // commands that came too late, or were overtaken
   std::uint64_t malformed = 0;        // datagrams that are no command
   std::uint64_t overruns = 0;         // steps that began a millisecond or more late
+  std::int64_t given_up_ns = 0;       // of the clock's time that the world did not go through
 };
 
 class FciServer {

@@ -144,6 +144,19 @@ TEST(LatchMapper, ADeviceThatStartsAnewIsLearntAnew) {
   EXPECT_EQ(mapper.restarts(), 1U);
 }
 
+TEST(LatchMapper, ADeviceThatIsSetIsLearntAnew) {
+  for (const std::int64_t step_ns : {150 * hal::kNsPerMs, -30 * hal::kNsPerMs}) {
+    LatchMapper mapper;
+    Device device{0.0, 1000 * hal::kNsPerSecond};
+    static_cast<void>(WorstNs(mapper, device, 0, 20));
+    const std::int64_t host_ns = kBeginNs + 20 * hal::kNsPerSecond;
+    const std::int64_t device_ns = device.Stamp(host_ns) + step_ns;
+    mapper.Add(host_ns - 1000, device_ns, host_ns + 1000);
+    EXPECT_EQ(mapper.Map(device_ns), host_ns);
+    EXPECT_EQ(mapper.restarts(), 1U);
+  }
+}
+
 TEST(LatchMapper, WhatIsNoStampSaysNothing) {
   LatchMapper mapper;
   for (const std::int64_t none_ns : {INT64_MAX, INT64_MIN, kMostStampNs + 1, -kMostStampNs - 1}) {

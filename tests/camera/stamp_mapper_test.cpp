@@ -110,6 +110,40 @@ TEST(StampMapper, ADeviceThatStartsAnewIsLearntAnew) {
   EXPECT_EQ(mapper.restarts(), 1U);
 }
 
+// A clock that is set, by less than a second: forwards it shows with the first picture, since none comes
+// before it can; backwards when all of a second were late.
+TEST(StampMapper, ADeviceThatIsSetIsLearntAnew) {
+  for (const std::int64_t step_ns : {150 * hal::kNsPerMs, -150 * hal::kNsPerMs, -30 * hal::kNsPerMs}) {
+    StampMapper mapper(kTransportNs);
+    Device device{20e-6, -77 * hal::kNsPerSecond};
+    double worst_ns = 0.0;
+    for (int k = 0; k < 30 * 60; ++k) {
+      const std::int64_t true_ns = k * kFrameNs;
+      device.offset_ns += k == 900 ? step_ns : 0;
+      const std::int64_t mapped_ns = mapper.Map(device.Stamp(true_ns), device.Arrival(true_ns));
+      const bool known = (k > 300 && k < 900) || k > (step_ns > 0 ? 960 : 960 + 32);
+      worst_ns = std::max(worst_ns, known ? std::fabs(static_cast<double>(mapped_ns - true_ns)) : 0.0);
+    }
+    std::cout << "set by " << 1e-6 * static_cast<double>(step_ns) << " ms: off by at most " << 1e-3 * worst_ns
+              << " us but for the two seconds after\n";
+    EXPECT_LT(worst_ns, 1e6);
+    EXPECT_EQ(mapper.restarts(), 1U);
+  }
+}
+
+// Pictures that a busy network brings late, for most of a second.
+TEST(StampMapper, ABusyNetworkIsNoNewClock) {
+  StampMapper mapper(kTransportNs);
+  const Device device{0.0, 0};
+  for (int k = 0; k < 30 * 60; ++k) {
+    const std::int64_t true_ns = k * kFrameNs;
+    const std::int64_t late_ns = k % 60 > 32 ? 60 * hal::kNsPerMs : 0;
+    const std::int64_t mapped_ns = mapper.Map(device.Stamp(true_ns), true_ns + kTransportNs + late_ns);
+    ASSERT_EQ(mapped_ns, true_ns) << k;
+  }
+  EXPECT_EQ(mapper.restarts(), 0U);
+}
+
 TEST(StampOfTicks, IsExactAndHasRoom) {
   EXPECT_EQ(StampOfTicks(123'456'789'012'345'678, 1.0), 123'456'789'012'345'678);
   EXPECT_EQ(StampOfTicks(10'000'000'000'000'001, 8.0), 80'000'000'000'000'008)

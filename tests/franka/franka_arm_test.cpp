@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "fovea/linux_rt/heap_counter.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
 #include "franka/fake_robot.hpp"
 
 namespace fovea::test {
@@ -391,6 +392,37 @@ TEST(FrankaArm, StampsFollowTheEarliestArrivals) {
   const double span_ms = static_cast<double>(state.stamp_ns - first_ns) * 1e-6;
   std::cout << "four states in " << span_ms << " ms of stamps\n";
   EXPECT_LT(span_ms, 3.01);
+}
+
+// A controller whose time stood still for 80 ms is believed again within a second, not at 0.2 ms a second.
+TEST(FrankaArm, AClockThatStoodStillIsLearntAnew) {
+  FakeRobot robot;
+  std::jthread other([&] { EXPECT_TRUE(robot.ServeSetUp()); });
+  franka::FrankaArm arm(ConfigFor(robot));
+  other.join();
+  hal::ArmState state;
+  const auto send = [&] {
+    robot.SendState();
+    ASSERT_TRUE(arm.Read(state).ok());
+  };
+  send();
+  std::this_thread::sleep_for(80ms);
+  const std::int64_t begin_ns = linux_rt::MonotonicNs();
+  constexpr int kStates = 1010;
+  double off_ms = 0.0;
+  for (int k = 0; k < kStates; ++k) {
+    const std::int64_t due_ns = begin_ns + k * hal::kNsPerMs;
+    std::this_thread::sleep_for(std::chrono::nanoseconds(due_ns - linux_rt::MonotonicNs()));
+    send();
+    off_ms = static_cast<double>(state.stamp_ns - due_ns) * 1e-6;
+    if (k == 500) {
+      std::cout << "half a second after: off by " << off_ms << " ms\n";
+      EXPECT_LT(off_ms, -60.0) << "so soon it may be the network";
+    }
+  }
+  std::cout << "a second after: off by " << off_ms << " ms\n";
+  EXPECT_GE(off_ms, 0.0);
+  EXPECT_LT(off_ms, 10.0);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@ namespace fovea::camera {
 namespace {
 
 constexpr std::int64_t kWorstTripNs = 5 * hal::kNsPerMs;
+constexpr std::int64_t kMostOffNs = 20 * hal::kNsPerMs;      // a reading is off by half its trip at most
 constexpr std::int64_t kBelievedNs = 2 * hal::kNsPerSecond;  // after a reading: 0.1 ms at 50 ppm
 constexpr std::int64_t kBelievedWithDriftNs = 10 * hal::kNsPerSecond;
 constexpr double kSurelyNs = 1e4;  // a shorter round trip than this says no more
@@ -24,7 +25,7 @@ void LatchMapper::Add(std::int64_t before_ns, std::int64_t device_ns, std::int64
   if (IsTooLate(device_ns)) {
     best_.Forget();
   }
-  best_.Add({device_ns, before_ns + trip_ns / 2 - device_ns, trip_ns}, line_);
+  best_.Add({device_ns, before_ns + trip_ns / 2 - device_ns, trip_ns}, line_, kMostOffNs, kMostOffNs);
   ++readings_;
   FitLine();
 }

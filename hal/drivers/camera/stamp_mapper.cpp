@@ -5,15 +5,32 @@
 #include <span>
 
 #include "fovea/camera/stamp.hpp"
+#include "fovea/hal/types.hpp"
 
 namespace fovea::camera {
+namespace {
+
+// No network lets pictures in this much sooner than ever before: the clock was set.
+constexpr std::int64_t kMostEarlyNs = 20 * hal::kNsPerMs;
+constexpr std::int64_t kMostLateNs = hal::kNsPerSecond;
+// One picture may be this late, all of a second are not.
+constexpr std::int64_t kLateNs = 20 * hal::kNsPerMs;
+constexpr std::size_t kLatePictures = 8;
+
+}  // namespace
 
 std::int64_t StampMapper::Map(std::int64_t device_ns, std::int64_t arrival_ns) {
   if (!IsStamp(device_ns)) {
     last_host_ns_ = std::max(arrival_ns - transport_ns_, last_host_ns_ + 1);
     return last_host_ns_;
   }
-  best_.Add({device_ns, arrival_ns - device_ns}, line_);
+  const Point point{device_ns, arrival_ns - device_ns};
+  if (IsSetAnew(point)) {
+    best_.StartAnew();
+    best_.Add(late_.least, line_, kMostEarlyNs, kMostLateNs);
+    line_ = {late_.least.device_ns, late_.least.excess_ns, 0.0};
+  }
+  best_.Add(point, line_, kMostEarlyNs, kMostLateNs);
   FitLine();
   const std::int64_t host_ns = device_ns + line_.At(device_ns) - transport_ns_;
   last_host_ns_ = std::max(std::min(host_ns, arrival_ns), last_host_ns_ + 1);
@@ -22,7 +39,24 @@ std::int64_t StampMapper::Map(std::int64_t device_ns, std::int64_t arrival_ns) {
 
 void StampMapper::Restart() {
   best_.Forget();
+  late_ = {};
   line_.drift = 0.0;
+}
+
+// Whether all of a second have come too late, by the line as it was.
+bool StampMapper::IsSetAnew(const Point& point) {
+  if (best_.all().empty() || point.excess_ns <= line_.At(point.device_ns) + kLateNs) {
+    late_ = {};
+    return false;
+  }
+  if (late_.count == 0) {
+    late_ = {0, point.device_ns, point};
+  }
+  ++late_.count;
+  if (point.excess_ns < late_.least.excess_ns) {
+    late_.least = point;
+  }
+  return late_.count >= kLatePictures && point.device_ns - late_.since_ns >= hal::kNsPerSecond;
 }
 
 // The edge of the lower hull above the middle of the known time: of all lines below the points it is the one

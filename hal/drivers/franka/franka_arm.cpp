@@ -14,6 +14,8 @@ using hal::StatusCode;
 // The robot's clock may run this much faster or slower than the computer's: what the estimate of their offset
 // gives way each millisecond.
 constexpr std::int64_t kDriftNsPerState = 200;
+constexpr std::int64_t kClockStepNs = 10 * hal::kNsPerMs;
+constexpr int kClockStepStates = 1000;  // in a row
 constexpr int kMostDatagramsPerRead = 256;
 constexpr std::uint64_t kMostMessageId =
     1'000'000'000'000;  // 31 years of milliseconds; in ns there is room for it
@@ -202,7 +204,7 @@ bool FrankaArm::TakeStates() noexcept {
 
 // The robot's time in the computer's. A datagram never comes before it is sent, so the smallest difference
 // seen is the nearest to the truth; the estimate gives way a little with each state, since the two clocks
-// drift.
+// drift. When all states of a second come far later than it allows, the robot's clock was set or stood still.
 std::int64_t FrankaArm::StampOf(std::uint64_t message_id, std::int64_t arrival_ns) noexcept {
   const std::int64_t robot_ns = static_cast<std::int64_t>(message_id) * hal::kNsPerMs;
   if (robot_time_ != nullptr) {
@@ -211,6 +213,15 @@ std::int64_t FrankaArm::StampOf(std::uint64_t message_id, std::int64_t arrival_n
   }
   const std::int64_t seen_ns = arrival_ns - robot_ns;
   robot_offset_ns_ = robot_offset_ns_ ? std::min(*robot_offset_ns_ + kDriftNsPerState, seen_ns) : seen_ns;
+  if (seen_ns <= *robot_offset_ns_ + kClockStepNs) {
+    late_states_ = {};
+  } else {
+    late_states_.least_ns = std::min(late_states_.least_ns, seen_ns);
+    if (++late_states_.count == kClockStepStates) {
+      robot_offset_ns_ = late_states_.least_ns;
+      late_states_ = {};
+    }
+  }
   return std::max(stamp_ns_ + 1, robot_ns + *robot_offset_ns_);
 }
 

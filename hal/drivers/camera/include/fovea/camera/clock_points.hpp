@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 
 #include "fovea/hal/types.hpp"
@@ -32,13 +31,14 @@ struct ClockLine {
 template <class Point, std::int64_t Point::*kKey>
 class ClockPoints {
  public:
-  // A device clock that goes back, or leaves `line` by more than a second, has started anew: what was known
-  // of it is forgotten. The point's time is a stamp (stamp.hpp).
-  void Add(const Point& point, const ClockLine& line) {
-    if (count_ > 0 && (point.device_ns < last_device_ns_ ||
-                       std::llabs(point.excess_ns - line.At(point.device_ns)) > kLostNs)) {
-      ++restarts_;
-      count_ = 0;
+  // A device clock that goes back, or whose point lies further below or above `line` than it can, was set
+  // anew: what was known of it is forgotten. The point's time is a stamp (stamp.hpp).
+  void Add(const Point& point, const ClockLine& line, std::int64_t most_below_ns,
+           std::int64_t most_above_ns) {
+    const std::int64_t off_ns = count_ > 0 ? point.excess_ns - line.At(point.device_ns) : 0;
+    if (count_ > 0 &&
+        (point.device_ns < last_device_ns_ || off_ns < -most_below_ns || off_ns > most_above_ns)) {
+      StartAnew();
     }
     last_device_ns_ = point.device_ns;
     if (count_ == 0 || point.device_ns - begin_ns_ >= hal::kNsPerSecond) {
@@ -53,6 +53,10 @@ class ClockPoints {
     }
   }
   void Forget() { count_ = 0; }
+  void StartAnew() {
+    ++restarts_;
+    count_ = 0;
+  }
 
   [[nodiscard]] std::span<const Point> all() const { return {points_.data(), count_}; }  // oldest first
   [[nodiscard]] bool enough_for_drift() const { return count_ >= kForDrift; }
@@ -62,7 +66,6 @@ class ClockPoints {
  private:
   static constexpr std::size_t kMost = 32;
   static constexpr std::size_t kForDrift = 8;
-  static constexpr std::int64_t kLostNs = hal::kNsPerSecond;
 
   std::array<Point, kMost> points_{};
   std::size_t count_ = 0;

@@ -6,6 +6,7 @@
 // measurements, 2002), here of the earliest arrival in each second of the last half minute.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "fovea/camera/clock_points.hpp"
@@ -19,7 +20,8 @@ class StampMapper {
 
   // The host's time of `device_ns`, which came at `arrival_ns` [ns]. Never later than its arrival, and later
   // than all before it. Of a stamp that is none (stamp.hpp) the arrival is taken. A device clock that goes
-  // back, or leaves the line by more than a second, has started anew: what was known of it is forgotten.
+  // back was set anew, and what was known of it is forgotten; so was one that leaves the line: at once when
+  // stamps come 20 ms before they can, or a second late; else when all of a second come 20 ms late.
   std::int64_t Map(std::int64_t device_ns, std::int64_t arrival_ns);
   void Restart();
 
@@ -33,11 +35,20 @@ class StampMapper {
     std::int64_t excess_ns = 0;  // arrival - stamp
   };
 
+  // The stamps that have come far too late since the last one that did not.
+  struct Late {
+    std::size_t count = 0;
+    std::int64_t since_ns = 0;  // by the device
+    Point least;
+  };
+
+  [[nodiscard]] bool IsSetAnew(const Point& point);
   void FitLine();
 
   std::int64_t transport_ns_;
   ClockPoints<Point, &Point::excess_ns> best_;  // the earliest of each second
   ClockLine line_;
+  Late late_;
   std::int64_t last_host_ns_ = INT64_MIN;
 };
 

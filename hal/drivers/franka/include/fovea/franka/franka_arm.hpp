@@ -128,6 +128,10 @@ class FrankaArm final : public hal::Arm {
   bool answered_ = true;  // the newest state
   std::int64_t stamp_ns_ = 0;
   std::optional<std::int64_t> robot_offset_ns_;  // from the robot's time to CLOCK_MONOTONIC
+  struct {
+    int count = 0;
+    std::int64_t least_ns = INT64_MAX;  // of their offsets
+  } late_states_;                       // in a row, later than that offset allows
 
   MotionPhase phase_ = MotionPhase::kIdle;
   const char* failure_ = "none";
