@@ -59,6 +59,26 @@ TEST(OutputFolderTest, WhatIsBegunIsPutInPlaceOrRemoved) {
   EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 2);
 }
 
+// What a run begins itself and then does not have cannot be put in place; it is said which file.
+TEST(OutputFolderTest, WhatIsNotThereOrCannotBeWrittenIsNamed) {
+  const test::TempFolder temp;
+  const OutputFolder folder(temp.path());
+  const auto refusal = [&folder](const std::vector<OutputFile>& files) -> std::string {
+    try {
+      folder.Replace(files, {});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal({{"film.mp4", std::nullopt}}),
+              testing::HasSubstr("film.mp4: cannot be written: No such file"));
+  fs::create_directory(temp.path() / ".x.json.partial");  // as a disk that takes nothing
+  EXPECT_THAT(refusal({{"y.json", "one"}, {"x.json", "one"}}),
+              testing::HasSubstr("x.json: cannot be written"));
+  EXPECT_FALSE(fs::exists(temp.path() / "y.json")) << "all or none";
+}
+
 TEST(OutputFolderTest, AFolderThatCannotBeIsRefusedAtOnce) {
   const test::TempFolder temp;
   std::ofstream(temp.path() / "file") << "x";

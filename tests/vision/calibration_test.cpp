@@ -1,11 +1,12 @@
 // Calibration recovers what the ray-cast pictures were made with.
 #include "fovea/vision/calibration.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <iostream>
+#include <opencv2/imgproc.hpp>
 
 #include "fovea/model/rotation.hpp"
 #include "fovea/vision/target_detector.hpp"
@@ -111,6 +112,80 @@ TEST(CalibrationTest, IntrinsicsAndLensComeBack) {
   EXPECT_THROW(SolveIntrinsics({views.begin(), views.begin() + 3}, kBoard, {640, 480}), CalibrationError);
   EXPECT_THROW(SolveIntrinsics(std::vector<BoardView>(5, views[1]), kBoard, {640, 480}), CalibrationError)
       << "all from one side";
+}
+
+// Each kind of useless views has its own line.
+TEST(CalibrationTest, ItIsSaidWhyViewsWillNotDo) {
+  const Intrinsics in{640, 480, 560.0, 560.0, 320.0, 240.0, {}};
+  const auto seen = [&in](const model::Pose& X_CO, const char* name) {
+    BoardView view;
+    view.name = name;
+    for (int id = 0; id < kBoard.columns * kBoard.rows; ++id) {
+      const cv::Point3f corner = CornerOf(kBoard, id);
+      const Vec3 p = X_CO * Vec3(corner.x, corner.y, 0.0);
+      view.corners.emplace_back(static_cast<float>(in.U(p)), static_cast<float>(in.V(p)));
+      view.ids.push_back(id);
+    }
+    return view;
+  };
+  const auto refusal = [](const std::vector<BoardView>& views) -> std::string {
+    try {
+      static_cast<void>(SolveIntrinsics(views, kBoard, {640, 480}));
+    } catch (const CalibrationError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  std::vector<BoardView> views;
+  for (const model::Pose& X_CO : Looks()) {
+    views.push_back(seen(X_CO, ("view " + std::to_string(views.size())).c_str()));
+  }
+  EXPECT_EQ(refusal(views), "");
+  std::vector<BoardView> wrong = views;
+  wrong[3] = seen(Look(0.9, 1.0, 0.3, 0.2, 0.0, 0.0), "another board");
+  for (cv::Point2f& corner : wrong[3].corners) {
+    corner.x += 25.0F * std::sin(corner.y);
+  }
+  EXPECT_THAT(refusal(wrong), testing::HasSubstr("the worst of them is another board"));
+  std::vector<BoardView> flat;
+  for (const double distance : {0.22, 0.24, 0.26, 0.28, 0.3, 0.32}) {
+    flat.push_back(seen(Look(0.02, 10.0 * distance, distance, distance, 0.0, 0.0), "flat"));
+  }
+  EXPECT_THAT(refusal(flat), testing::HasSubstr("from nearly the same side"));
+  std::vector<BoardView> few = views;
+  for (BoardView& view : few) {  // three corners of one row
+    view.corners.resize(3);
+    view.ids.resize(3);
+  }
+  EXPECT_THAT(refusal(few), testing::HasSubstr("do not determine a camera"));
+  EXPECT_THROW(SolveFocalLength({{60.0, 0.01, 0.0}, {59.99, 0.01, 0.15}}, 0.08, false), CalibrationError)
+      << "no more than noise";
+}
+
+TEST(CalibrationTest, ADrawnChessboardIsFoundWhereItWasDrawn) {
+  const cv::Mat drawn = DrawBoard(kBoard, 40);
+  cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(255));
+  cv::Mat gray(480, 640, CV_8UC1, cv::Scalar(255));
+  drawn.copyTo(gray(cv::Rect(100, 60, drawn.cols, drawn.rows)));
+  cv::cvtColor(gray, image, cv::COLOR_GRAY2BGR);
+  for (const cv::Mat& picture : {image, gray}) {
+    BoardView view;
+    ASSERT_TRUE(FindBoard(picture, kBoard, view));
+    ASSERT_EQ(view.corners.size(), 40U);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < view.corners.size(); ++i) {
+      const int id = view.ids[i];
+      const cv::Point2f there(139.5F + 40.0F * static_cast<float>(id % kBoard.columns),
+                              99.5F + 40.0F * static_cast<float>(id / kBoard.columns));
+      worst = std::max(worst, cv::norm(view.corners[i] - there));
+    }
+    std::cout << "corners off by at most " << worst << " px\n";
+    EXPECT_LT(worst, 0.05);
+  }
+  BoardView none;
+  EXPECT_FALSE(FindBoard(cv::Mat(480, 640, CV_8UC1, cv::Scalar(255)), kBoard, none));
+  EXPECT_NO_THROW(CheckBoard(kBoard)) << "no markers, no dictionary";
+  EXPECT_THROW(CheckBoard({8, 5, 0.02, 0.014, "9x9_50"}), CalibrationError);
 }
 
 Intrinsics IntrinsicsOf(const bench::PictureCamera& camera) {

@@ -207,6 +207,26 @@ std::string ErrorOf(const genicam::GenicamConfig& config) {
   }
 }
 
+TEST(GigeCamera, ItIsSetAsItsConfigurationSays) {
+  genicam::GenicamConfig client = Client();
+  client.device = "";  // the first one that answers
+  client.pixel_format = "";
+  client.rate_hz = 25.0;
+  client.exposure_us = 8000.0;
+  client.gain = 3.0;
+  client.packet_size = 0;  // as the network carries
+  for (const auto& [at, to_middle_ms] : {std::pair{genicam::StampAt::kStart, 4},
+                                         {genicam::StampAt::kMiddle, 0},
+                                         {genicam::StampAt::kEnd, -4}}) {
+    client.stamp_at = at;
+    Bench bench(client);
+    bench.Expose(hal::kNsPerSecond);
+    const hal::Frame frame = bench.Take();
+    EXPECT_EQ(frame.exposure_ns, 8 * hal::kNsPerMs);
+    EXPECT_EQ(frame.stamp_ns, hal::kNsPerSecond + to_middle_ms * hal::kNsPerMs);
+  }
+}
+
 TEST(GigeCamera, WhatCannotBeIsRefusedWithAReason) {
   genicam::GenicamConfig client = Client();
   EXPECT_NE(ErrorOf(client).find("camera 127.0.0.1: not found"), std::string::npos) << ErrorOf(client);
