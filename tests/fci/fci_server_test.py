@@ -73,36 +73,6 @@ class Connecting(Served):
         self.assertEqual(first.elbow[1], -1.0)
 
 
-class ByTheClock(Served):
-    """A computer that does not come to the simulated robot for a while."""
-
-    options = ["--pace", "real", "--json"]
-
-    def interrupt(self, how_long_s):
-        """What the robot's time is behind the clock's, afterwards [ms]."""
-        def behind():
-            return min(1e3 * time.monotonic() - self.client.newest().message_id for _ in range(20))
-
-        before = behind()
-        self.server.send_signal(signal.SIGSTOP)
-        time.sleep(how_long_s)
-        self.server.send_signal(signal.SIGCONT)
-        time.sleep(1.0)  # it has 50 times that to make up for
-        return behind() - before
-
-    def test_the_robots_time_goes_on_while_the_computer_is_away(self):
-        behind_ms = self.interrupt(0.4)
-        print(f"away for 400 ms: {behind_ms:.1f} ms behind")
-        self.assertLess(behind_ms, 200.0)
-
-    def test_what_it_gives_up_is_said(self):
-        behind_ms = self.interrupt(1.6)
-        said = [self.server.stderr.readline() for _ in range(2)][1]  # the first: that a client came
-        print(f"away for 1600 ms: {behind_ms:.1f} ms behind; {said}", end="")
-        self.assertRegex(said, r"this computer is too slow for the world: [0-9.]+ s are given up")
-        self.assertGreater(behind_ms, 1000.0)
-
-
 class FaultsOfTheBench(unittest.TestCase):
     """[faults] that act on the arm's body: at work from 1 s of the robot's time on."""
 
@@ -160,6 +130,8 @@ class FaultsOfTheBench(unittest.TestCase):
 
 
 class RealPace(Served):
+    """By the clock, also on a computer that does not come to the simulated robot for a while."""
+
     options = ["--pace", "real"]
 
     def test_a_thousand_states_in_a_second(self):
@@ -171,7 +143,31 @@ class RealPace(Served):
             count += 1
         rate = count / (time.monotonic() - begin)
         print(f"\n{rate:.1f} states/s, {last.message_id - first.message_id - count} lost")
-        self.assertLess(rate, 1100)  # not faster than its clock; slower only where the machine is
+        self.assertLess(rate, 1510)  # not faster than its clock, but for the second that it may make up for
+
+    def interrupt(self, how_long_s):
+        """What the robot's time is behind the clock's, afterwards [ms]."""
+        def behind():
+            return min(1e3 * time.monotonic() - self.client.newest().message_id for _ in range(20))
+
+        before = behind()
+        self.server.send_signal(signal.SIGSTOP)
+        time.sleep(how_long_s)
+        self.server.send_signal(signal.SIGCONT)
+        time.sleep(1.0)  # it has 50 times that to make up for
+        return behind() - before
+
+    def test_the_robots_time_goes_on_while_the_computer_is_away(self):
+        behind_ms = self.interrupt(0.4)
+        print(f"away for 400 ms: {behind_ms:.1f} ms behind")
+        self.assertLess(behind_ms, 200.0)
+
+    def test_what_it_gives_up_is_said(self):
+        behind_ms = self.interrupt(1.6)
+        said = [self.server.stderr.readline() for _ in range(2)][1]  # the first: that a client came
+        print(f"away for 1600 ms: {behind_ms:.1f} ms behind; {said}", end="")
+        self.assertRegex(said, r"this computer is too slow for the world: [0-9.]+ s are given up")
+        self.assertGreater(behind_ms, 1000.0)
 
 
 class Setters(Served):
