@@ -17,24 +17,25 @@ using google::protobuf::Message;
 using google::protobuf::Reflection;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // A field's value, one entry of it where it has several.
 struct Value {
   std::string text;
-  std::string bits;     // the same for the same value alone
-  double number = NAN;  // where it is one
+  std::string bits;       // the same for the same value alone
+  double number = kNone;  // where it is one
 };
 
 Value OfNumber(double number) {
   return {fmt::format("{}", number), std::to_string(std::bit_cast<std::uint64_t>(number)), number};
 }
-Value OfText(const std::string& text) { return {fmt::format("{} bytes", text.size()), text, NAN}; }
+Value OfText(const std::string& text) { return {fmt::format("{} bytes", text.size()), text, kNone}; }
 template <typename Integer>
 Value OfInteger(Integer value) {
   return {fmt::format("{}", value), fmt::format("{}", value), static_cast<double>(value)};
 }
 // A set of flags: no number.
-Value OfBits(std::uint32_t value) { return {fmt::format("{:#x}", value), fmt::format("{}", value), NAN}; }
+Value OfBits(std::uint32_t value) { return {fmt::format("{:#x}", value), fmt::format("{}", value), kNone}; }
 
 Value Get(const Message& m, const FieldDescriptor& f, int i) {
   const Reflection& r = *m.GetReflection();
@@ -52,15 +53,15 @@ Value Get(const Message& m, const FieldDescriptor& f, int i) {
       return OfInteger(many ? r.GetRepeatedUInt64(m, &f, i) : r.GetUInt64(m, &f));
     case FieldDescriptor::CPPTYPE_BOOL: {
       const bool value = many ? r.GetRepeatedBool(m, &f, i) : r.GetBool(m, &f);
-      return {value ? "true" : "false", value ? "1" : "0", NAN};
+      return {value ? "true" : "false", value ? "1" : "0", kNone};
     }
     case FieldDescriptor::CPPTYPE_ENUM: {
       const std::string& name = (many ? r.GetRepeatedEnum(m, &f, i) : r.GetEnum(m, &f))->name();
-      return {name, name, NAN};
+      return {name, name, kNone};
     }
     case FieldDescriptor::CPPTYPE_STRING:
       return OfText(many ? r.GetRepeatedString(m, &f, i) : r.GetString(m, &f));
-    default: return {"?", "", NAN};
+    default: return {"?", "", kNone};
   }
 }
 

@@ -1,6 +1,7 @@
 // One degree of freedom in Bullet beside its analytic answers (the exercises of part A).
 #include <cmath>
 #include <complex>
+#include <limits>
 
 #include "closed_loop/closed_loop.hpp"
 
@@ -9,15 +10,16 @@ namespace {
 
 constexpr double kOnePercent = 0.01;
 constexpr double kPoles = 0.05;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 sim::TheoryResult RunTheory(const std::string& name) {
   const sim::Summary s = RunShipped("theory/" + name);
   ExpectSound(s);
   EXPECT_TRUE(s.converged) << s.verdict;
   const sim::TheoryResult& t = s.theory.value();
-  std::cout << name << ": zeta " << t.run.zeta.value_or(NAN) << ", omega_n " << t.run.omega_n.value_or(NAN)
-            << ", settled after " << t.run.settle_time_s.value_or(NAN) << " s, e_ss " << t.run.e_ss
-            << " m, poles";
+  std::cout << name << ": zeta " << t.run.zeta.value_or(kNone) << ", omega_n "
+            << t.run.omega_n.value_or(kNone) << ", settled after " << t.run.settle_time_s.value_or(kNone)
+            << " s, e_ss " << t.run.e_ss << " m, poles";
   for (const std::complex<double>& pole : t.run.poles) {
     std::cout << ' ' << pole;
   }

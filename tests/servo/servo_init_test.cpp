@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ TEST(ServoInitTest, TakesTheDefaults) {
 
 TEST(ServoInitTest, RefusesAndNamesTheKey) {
   const double nan = std::nan("");
+  const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<Case> cases = {
       {"arm.num_joints", [](ServoConfig& c) { c.arm.num_joints = 0; }},
       {"arm.num_joints", [](ServoConfig& c) { c.arm.num_joints = 9; }},
@@ -50,9 +52,9 @@ TEST(ServoInitTest, RefusesAndNamesTheKey) {
       {"servo.lambda_near", [](ServoConfig& c) { c.law.lambda_near = -1.0; }},
       {"servo.posture", [=](ServoConfig& c) { c.law.q_posture[0] = nan; }},
       {"camera.mount_xyz", [=](ServoConfig& c) { c.X_EC.p.x() = nan; }},
-      {"joint position range", [](ServoConfig& c) { c.arm.joints[4].q_max = INFINITY; }},
+      {"joint position range", [=](ServoConfig& c) { c.arm.joints[4].q_max = infinity; }},
       {"joint velocity, acceleration or jerk limit",
-       [](ServoConfig& c) { c.arm.joints[2].dq_max = INFINITY; }},
+       [=](ServoConfig& c) { c.arm.joints[2].dq_max = infinity; }},
       {"safety.joint_position_margin",
        [](ServoConfig& c) { c.arm.joints[5].q_max = c.arm.joints[5].q_min + 0.03; }},
       {"servo.lambda", [=](ServoConfig& c) { c.law.lambda = nan; }},
