@@ -259,6 +259,67 @@ TEST_F(FrankaArmTest, AReflexStopsAllUntilRecoveryAndTheNewStartIsNoStep) {
   EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 1.0) << "one step from the 2 Nm that are in force";
 }
 
+// Of all that may be wrong then, that nobody but a person can help is the one to know.
+TEST_F(FrankaArmTest, ARobotThatNeedsAPersonSaysSoUntilItIsHelped) {
+  for (const auto& [answer, says] : {std::pair{2, "the robot needs a person to recover it"},
+                                     std::pair{1, "the robot cannot recover now"}}) {
+    SCOPED_TRACE(says);
+    Start();
+    robot_.ShowReflex(franka::Error::kJointPositionLimits);
+    EXPECT_STREQ(Next().where(), "joint_position_limits_violation");
+    arm_->AskRecovery();
+    EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
+    robot_.AnswerStatus(*robot_.Take(), answer);
+    std::this_thread::sleep_for(5ms);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_STREQ(Next().where(), says);
+    }
+    // Guided back by hand.
+    robot_.state.errors = {};
+    robot_.ShowIdle();
+    EXPECT_STREQ(Next().where(), says) << "until it is asked again";
+    arm_->AskRecovery();
+    EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
+    robot_.AnswerStatus(*robot_.Take(), 0);
+    std::this_thread::sleep_for(5ms);
+    EXPECT_TRUE(Next().ok());
+  }
+}
+
+TEST_F(FrankaArmTest, AMotionThatIsRefusedOrBrokenOffSaysWhy) {
+  const struct {
+    int answer;
+    const char* says;
+  } kRows[]{{2, "another motion took its place"},
+            {3, "the robot cannot move now"},
+            {4, "start at a singular pose"},
+            {5, "the robot refuses the motion's arguments"},
+            {7, "user stop"},
+            {9, "the robot broke the motion off"}};
+  for (const auto& row : kRows) {
+    Start();
+    robot_.ShowIdle();
+    robot_.AnswerStatus(move_, row.answer);
+    std::this_thread::sleep_for(5ms);
+    const hal::Status status = Next();
+    EXPECT_EQ(status.code(), StatusCode::kDeviceFault);
+    EXPECT_STREQ(status.where(), row.says);
+    arm_->AskRecovery();
+    EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
+    robot_.AnswerStatus(*robot_.Take(), 0);
+    std::this_thread::sleep_for(5ms);
+    EXPECT_TRUE(Next().ok());
+  }
+}
+
+TEST_F(FrankaArmTest, ARobotThatLeavesTheMotionByItselfIsAFault) {
+  Start();
+  robot_.ShowIdle();
+  const hal::Status status = Next();
+  EXPECT_EQ(status.code(), StatusCode::kDeviceFault);
+  EXPECT_STREQ(status.where(), "the robot left the motion");
+}
+
 TEST_F(FrankaArmTest, AUserStopSaysSo) {
   Start();
   robot_.ShowIdle();

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <string>
@@ -62,8 +63,8 @@ TEST_F(HeapCounterTest, SeesNothingOutsideTheRegionOrInOtherThreads) {
   EXPECT_EQ(CountedHeapCalls(), before);
   std::uint64_t other = 1;
   EXPECT_EQ(CallsIn([&] {
-              static double value = 0.0;
-              value += 1.0;
+              static std::atomic<int> value{0};
+              value.fetch_add(1);
             }),
             0U);
   std::thread thread([&] { other = CallsIn([] { Use(std::malloc(1)); }); });

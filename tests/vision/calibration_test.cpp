@@ -121,7 +121,7 @@ TEST(CalibrationTest, ItIsSaidWhyViewsWillNotDo) {
     BoardView view;
     view.name = name;
     for (int id = 0; id < kBoard.columns * kBoard.rows; ++id) {
-      const cv::Point3f corner = CornerOf(kBoard, id);
+      const cv::Point3d corner = CornerOf(kBoard, id);
       const Vec3 p = X_CO * Vec3(corner.x, corner.y, 0.0);
       view.corners.emplace_back(static_cast<float>(in.U(p)), static_cast<float>(in.V(p)));
       view.ids.push_back(id);
@@ -248,7 +248,7 @@ TEST(CalibrationTest, ACharucoBoardDoesAsMuchWithAPartOfIt) {
     BoardView view;
     ASSERT_TRUE(FindBoard(SeenBoard(kCharuco, in, X_CO, seed), kCharuco, view)) << "view " << seed;
     for (std::size_t i = 0; i < view.ids.size(); ++i) {
-      const cv::Point3f corner = CornerOf(kCharuco, view.ids[i]);
+      const cv::Point3d corner = CornerOf(kCharuco, view.ids[i]);
       const Vec3 p = X_CO * Vec3(corner.x, corner.y, 0.0);
       double u = in.U(p);
       double v = in.V(p);

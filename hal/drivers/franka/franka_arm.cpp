@@ -159,12 +159,17 @@ void FrankaArm::TakeAnswer(const Header& header, std::span<const std::byte> payl
     }
   } else if (header.command == Command::kAutomaticErrorRecovery && recovery_id_ == header.command_id) {
     recovery_id_.reset();
-    if (static_cast<RecoveryStatus>(answer.status) == RecoveryStatus::kSuccess) {
+    const auto status = static_cast<RecoveryStatus>(answer.status);
+    if (status == RecoveryStatus::kSuccess) {
       phase_ = MotionPhase::kIdle;
       failure_ = "none";
+      recovery_failure_ = nullptr;
       stopped_states_borne_ = kMostStoppedStates;
     } else {
-      Fail("the robot needs a person to recover it");
+      recovery_failure_ = status == RecoveryStatus::kManualRecoveryRequired
+                              ? "the robot needs a person to recover it"
+                              : "the robot cannot recover now";
+      Fail(recovery_failure_);
     }
   }
 }
@@ -233,7 +238,9 @@ void FrankaArm::FollowPhase() noexcept {
   const bool borne = stopped && stopped_states_borne_ > 0;
   stopped_states_borne_ = borne ? stopped_states_borne_ - 1 : 0;
   if (stopped && !borne) {
-    Fail(state_.robot_mode == RobotMode::kUserStopped ? "user stop" : FirstError(state_.errors));
+    Fail(state_.robot_mode == RobotMode::kUserStopped ? "user stop"
+         : recovery_failure_ != nullptr               ? recovery_failure_
+                                                      : FirstError(state_.errors));
   } else if (phase_ == MotionPhase::kStarting && move_started_ && moves &&
              state_.controller_mode == ControllerMode::kExternal) {
     phase_ = MotionPhase::kRunning;

@@ -135,6 +135,7 @@ class FrankaArm final : public hal::Arm {
 
   MotionPhase phase_ = MotionPhase::kIdle;
   const char* failure_ = "none";
+  const char* recovery_failure_ = nullptr;  // why the last recovery was none
   std::uint32_t move_id_ = 0;
   bool move_started_ = false;                 // the robot said so
   int starting_states_ = 0;                   // since it was asked to
