@@ -25,11 +25,7 @@ std::int64_t StampMapper::Map(std::int64_t device_ns, std::int64_t arrival_ns) {
     return last_host_ns_;
   }
   const Point point{device_ns, arrival_ns - device_ns};
-  if (IsSetAnew(point)) {
-    best_.StartAnew();
-    best_.Add(late_.least, line_, kMostEarlyNs, kMostLateNs);
-    line_ = {late_.least.device_ns, late_.least.excess_ns, 0.0};
-  }
+  LookForClockSetBack(point);
   best_.Add(point, line_, kMostEarlyNs, kMostLateNs);
   FitLine();
   const std::int64_t host_ns = device_ns + line_.At(device_ns) - transport_ns_;
@@ -43,11 +39,11 @@ void StampMapper::Restart() {
   line_.drift = 0.0;
 }
 
-// Whether all of a second have come too late, by the line as it was.
-bool StampMapper::IsSetAnew(const Point& point) {
+// By the line as it was. Of the pictures that were late the one that was least says what the clock shows now.
+void StampMapper::LookForClockSetBack(const Point& point) {
   if (best_.all().empty() || point.excess_ns <= line_.At(point.device_ns) + kLateNs) {
     late_ = {};
-    return false;
+    return;
   }
   if (late_.count == 0) {
     late_ = {0, point.device_ns, point};
@@ -56,7 +52,11 @@ bool StampMapper::IsSetAnew(const Point& point) {
   if (point.excess_ns < late_.least.excess_ns) {
     late_.least = point;
   }
-  return late_.count >= kLatePictures && point.device_ns - late_.since_ns >= hal::kNsPerSecond;
+  if (late_.count >= kLatePictures && point.device_ns - late_.since_ns >= hal::kNsPerSecond) {
+    best_.StartAnew();
+    best_.Add(late_.least, line_, kMostEarlyNs, kMostLateNs);
+    line_ = {late_.least.device_ns, late_.least.excess_ns, 0.0};
+  }
 }
 
 // The edge of the lower hull above the middle of the known time: of all lines below the points it is the one

@@ -42,7 +42,7 @@ class StampMapper {
     Point least;
   };
 
-  [[nodiscard]] bool IsSetAnew(const Point& point);
+  void LookForClockSetBack(const Point& point);
   void FitLine();
 
   std::int64_t transport_ns_;
