@@ -1,0 +1,103 @@
+// Sockets of the driver and of the simulated robot: what cannot be is one line that names the other end.
+#include "fovea/franka/sockets.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace fovea::franka {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr Endpoint kAny{0x7F000001, 0};
+constexpr std::int64_t kPatienceNs = 2'000'000'000;
+
+std::string ErrorOf(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const NetworkError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Sockets, WhatCannotBeIsNamed) {
+  const std::string name(300, 'x');  // longer than any: nobody needs to be asked
+  EXPECT_THAT(ErrorOf([&] { Resolve(name, 1337); }),
+              HasSubstr("\"" + name + "\" is no host that can be found"));
+  EXPECT_EQ(Resolve("127.0.0.1", 1337), (Endpoint{0x7F000001, 1337}));
+
+  const UdpSocket udp(kAny);
+  EXPECT_THAT(ErrorOf([&] {
+                UdpSocket second({kAny.ip, udp.port()});
+              }),
+              HasSubstr("cannot listen on 127.0.0.1:" + std::to_string(udp.port())));
+  EXPECT_THAT(ErrorOf([] {
+                TcpListener elsewhere({0xC0000201, 0});
+              }),
+              HasSubstr("cannot listen on 192.0.2.1:0"))
+      << "an address for documentation, of no computer's";
+
+  std::uint16_t left = 0;
+  {
+    const TcpListener listener(kAny);
+    left = listener.port();
+    EXPECT_THAT(ErrorOf([&] {
+                  TcpListener second({kAny.ip, left});
+                }),
+                HasSubstr("cannot listen on 127.0.0.1:" + std::to_string(left)));
+  }
+  EXPECT_THAT(ErrorOf([&] {
+                TcpConnection::Connect({kAny.ip, left}, 1000);
+              }),
+              HasSubstr("no connection to 127.0.0.1:" + std::to_string(left)));
+}
+
+TEST(Sockets, BothEndsKnowEachOtherAndWhenTheOtherIsGone) {
+  TcpListener listener(kAny);
+  EXPECT_FALSE(listener.Accept().has_value()) << "nobody has come yet";
+  TcpConnection client = TcpConnection::Connect({kAny.ip, listener.port()}, 1000);
+  const std::array waited{listener.fd(), -1};
+  WaitReadable(waited, kPatienceNs);
+  std::optional<TcpConnection> server = listener.Accept();
+  ASSERT_TRUE(server.has_value());
+  EXPECT_EQ(server->peer(), client.own());
+  EXPECT_EQ(client.peer(), server->own());
+
+  std::array<std::byte, 8> room{};
+  std::size_t size = 0;
+  EXPECT_EQ(server->Receive(room, size), Received::kNothing);
+  ASSERT_TRUE(client.Send(std::array{std::byte{7}, std::byte{9}}));
+  WaitReadable(std::array{server->fd()}, kPatienceNs);
+  ASSERT_EQ(server->Receive(std::span(room).first(1), size), Received::kSome);
+  EXPECT_EQ(size, 1U);
+  EXPECT_EQ(server->Receive(std::span(room).first(0), size), Received::kNothing) << "no room is no end";
+  client.Close();
+  WaitReadable(std::array{server->fd()}, kPatienceNs);
+  ASSERT_EQ(server->Receive(room, size), Received::kSome) << "what was sent before";
+  EXPECT_EQ(room[0], std::byte{9});
+  EXPECT_EQ(server->Receive(room, size), Received::kClosed);
+}
+
+// One who does not read: what there is no room for is not sent, and nobody waits.
+TEST(Sockets, AFullBufferIsSaid) {
+  TcpListener listener(kAny);
+  TcpConnection client = TcpConnection::Connect({kAny.ip, listener.port()}, 1000);
+  const std::vector<std::byte> much(1 << 20U);
+  std::size_t sent = 0;
+  std::size_t last = 1;
+  for (int k = 0; k < 1000 && last > 0; ++k) {
+    last = client.SendSome(much);
+    sent += last;
+  }
+  EXPECT_EQ(last, 0U) << sent << " bytes found a place";
+  EXPECT_FALSE(client.Send(much));
+}
+
+}  // namespace
+}  // namespace fovea::franka
