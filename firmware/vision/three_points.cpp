@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
 
 namespace fovea::vision {
 namespace {
@@ -56,6 +58,100 @@ Roots RootsOf(const std::array<double, 5>& c) {
   return roots;
 }
 
+// The cosines between the rays to three points, and the squares of the points' distances, as Grunert names
+// them.
+struct Triangle {
+  double ca, cb, cg;
+  double a2, b2, c2;
+};
+
+Vec3 Residual(const Triangle& t, const Vec3& d) {
+  return {d[1] * d[1] + d[2] * d[2] - 2.0 * d[1] * d[2] * t.ca - t.a2,
+          d[0] * d[0] + d[2] * d[2] - 2.0 * d[0] * d[2] * t.cb - t.b2,
+          d[0] * d[0] + d[1] * d[1] - 2.0 * d[0] * d[1] * t.cg - t.c2};
+}
+
+// Newton's method on the three laws of cosines, in the points' distances from the camera. Whether they hold
+// then.
+bool Polish(const Triangle& t, Vec3& d) {
+  constexpr int kNewtons = 8;
+  constexpr double kHolds = 1e-10;
+  Vec3 r = Residual(t, d);
+  for (int k = 0; k < kNewtons; ++k) {
+    Mat3 half_slope;
+    half_slope << 0.0, d[1] - d[2] * t.ca, d[2] - d[1] * t.ca,  //
+        d[0] - d[2] * t.cb, 0.0, d[2] - d[0] * t.cb,            //
+        d[0] - d[1] * t.cg, d[1] - d[0] * t.cg, 0.0;
+    const Vec3 next = d - 0.5 * (half_slope.inverse() * r);
+    const Vec3 r_next = Residual(t, next);
+    if (!(r_next.squaredNorm() < r.squaredNorm())) {
+      break;
+    }
+    d = next;
+    r = r_next;
+  }
+  return r.lpNorm<Eigen::Infinity>() < kHolds * (t.a2 + t.b2 + t.c2);
+}
+
+// The points' distances that go with the third one over the first, `v`.
+class Distances {
+ public:
+  explicit Distances(const Triangle& triangle) : t_(triangle) {}
+
+  void Add(double v) {
+    const double q = (t_.a2 - t_.c2) / t_.b2;
+    const double below = 2.0 * (t_.cg - v * t_.ca);
+    const double u = ((q - 1.0) * v * v - 2.0 * q * t_.cb * v + 1.0 + q) / below;
+    const double first2 = t_.b2 / (1.0 + v * v - 2.0 * v * t_.cb);
+    if (!(v > 0.0) || !(first2 > 0.0)) {
+      return;
+    }
+    const double first = std::sqrt(first2);
+    if (std::fabs(below) >= kLeastDivisor) {
+      Keep({first, u * first, v * first});
+      return;
+    }
+    // Of u, a quotient, little is left; the law of cosines between first and second has two answers, and both
+    // may be right: then this v comes twice.
+    const double root = std::sqrt(std::max(0.0, t_.cg * t_.cg - 1.0 + t_.c2 / first2));
+    bool found = false;
+    for (const double either : {t_.cg + root, t_.cg - root}) {
+      Vec3 d(first, either * first, v * first);
+      // Else it has become the answer to another v.
+      if (Polish(t_, d) && std::fabs(d[2] - v * d[0]) < kSameRatio * d[2]) {
+        found = true;
+        if (!Knows(d)) {
+          Keep(d);
+        }
+      }
+    }
+    if (!found) {
+      Keep({first, u * first, v * first});
+    }
+  }
+  [[nodiscard]] std::span<const Vec3> all() const { return std::span(kept_).first(count_); }
+
+ private:
+  static constexpr double kLeastDivisor = 0.01;
+  static constexpr double kSame = 1e-9;  // [m]
+  static constexpr double kSameRatio = 1e-4;
+
+  void Keep(const Vec3& d) {
+    if (count_ < kept_.size() && d.allFinite() && d.minCoeff() > 0.0) {
+      kept_[count_++] = d;
+    }
+  }
+  [[nodiscard]] bool Knows(const Vec3& d) const {
+    const auto known = all();
+    return std::any_of(known.begin(), known.end(),
+                       [&d](const Vec3& other) { return (d - other).norm() < kSame; });
+  }
+
+  const Triangle t_;
+  std::array<Vec3, 4> kept_;
+  std::size_t count_ = 0;
+};
+
 }  // namespace
 
 ThreePointPoses PosesOfThreePoints(const std::array<Vec3, 3>& points_O, const std::array<Vec3, 3>& rays_C) {
@@ -79,18 +175,14 @@ ThreePointPoses PosesOfThreePoints(const std::array<Vec3, 3>& points_O, const st
       (q - 1.0) * (q - 1.0) - 4.0 * c * ca * ca};
   const Mat3 R_O = AxesOf(points_O);
   const Vec3 middle_O = (points_O[0] + points_O[1] + points_O[2]) / 3.0;
-  ThreePointPoses poses;
   const Roots roots = RootsOf(quartic);
+  Distances distances({ca, cb, cg, a2, b2, c2});
   for (int i = 0; i < roots.count; ++i) {
-    const double v = roots.real[static_cast<std::size_t>(i)];
-    const double below = 2.0 * (cg - v * ca);
-    const double u = ((q - 1.0) * v * v - 2.0 * q * cb * v + 1.0 + q) / below;
-    const double first2 = b2 / (1.0 + v * v - 2.0 * v * cb);
-    if (!(v > 0.0) || !(u > 0.0) || !(first2 > 0.0) || !std::isfinite(u)) {
-      continue;
-    }
-    const double first = std::sqrt(first2);
-    const std::array<Vec3, 3> points_C{first * rays_C[0], u * first * rays_C[1], v * first * rays_C[2]};
+    distances.Add(roots.real[static_cast<std::size_t>(i)]);
+  }
+  ThreePointPoses poses;
+  for (const Vec3& d : distances.all()) {
+    const std::array<Vec3, 3> points_C{d[0] * rays_C[0], d[1] * rays_C[1], d[2] * rays_C[2]};
     model::Pose& X_CO = poses.X_CO[static_cast<std::size_t>(poses.count)];
     X_CO.R = AxesOf(points_C) * R_O.transpose();
     X_CO.p = (points_C[0] + points_C[1] + points_C[2]) / 3.0 - X_CO.R * middle_O;

@@ -24,11 +24,14 @@ class Chance {
  public:
   double Between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine_); }
   double Normal() { return normal_(engine_); }
+  // One draw after the other, so that every compiler draws the same.
   model::Pose Pose(double most_tilt) {
     const double about = Between(0.0, 6.28);
+    const double tilt = Between(0.0, most_tilt);
+    const double turn = Between(-3.1, 3.1);
     model::Pose X_CO;
-    X_CO.R = model::RotationOf(Between(0.0, most_tilt) * Vec3(std::cos(about), std::sin(about), 0.0)) *
-             model::RotationOf(Vec3(0.0, 0.0, Between(-3.1, 3.1)));
+    X_CO.R = model::RotationOf(tilt * Vec3(std::cos(about), std::sin(about), 0.0)) *
+             model::RotationOf(Vec3(0.0, 0.0, turn));
     X_CO.p.z() = Between(0.25, 0.9);
     X_CO.p.x() = X_CO.p.z() * Between(-0.3, 0.3);
     X_CO.p.y() = X_CO.p.z() * Between(-0.2, 0.2);
@@ -101,6 +104,35 @@ TEST(ThreePointsTest, FindsTheTruthAndWhatOpenCvFinds) {
   EXPECT_LT(worst_m, 1e-5);
   EXPECT_GT(of_opencv, kPoses);
   EXPECT_EQ(missed, 0);
+}
+
+// Where the second distance over the first is a quotient of nearly nothing by nearly nothing.
+TEST(ThreePointsTest, FindsTheTruthWhereTheFormulaHasNoFigures) {
+  Chance chance;
+  const std::array<Vec3, 3> points{Vec3(-0.047, 0.037, 0.0), Vec3(0.063, 0.027, 0.0),
+                                   Vec3(-0.017, -0.063, 0.0)};
+  int tried = 0;
+  double worst_m = 0.0;
+  while (tried < 100) {
+    const model::Pose X_CO = chance.Pose(0.9);
+    std::array<Vec3, 3> rays;
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      rays[k] = (X_CO * points[k]).normalized();
+    }
+    const double v = (X_CO * points[2]).norm() / (X_CO * points[0]).norm();
+    if (std::fabs(rays[0].dot(rays[1]) - v * rays[1].dot(rays[2])) > 2e-5) {
+      continue;
+    }
+    ++tried;
+    double nearest_m = 1e9;
+    const ThreePointPoses found = PosesOfThreePoints(points, rays);
+    for (const model::Pose& ours : std::span(found.X_CO).first(static_cast<std::size_t>(found.count))) {
+      nearest_m = std::min(nearest_m, (ours.p - X_CO.p).norm() + 0.05 * TurnBetween(ours.R, X_CO.R));
+    }
+    worst_m = std::max(worst_m, nearest_m);
+  }
+  std::cout << "the truth, at most " << worst_m << " m off, in " << tried << " poses\n";
+  EXPECT_LT(worst_m, 1e-5);
 }
 
 TEST(ThreePointsTest, ASquaresPosesAreIppesOrFitBetter) {
