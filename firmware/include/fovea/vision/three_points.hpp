@@ -2,7 +2,8 @@
 //
 // J. A. Grunert, Das Pothenotische Problem in erweiterter Gestalt (1841), as R. M. Haralick et al. have it,
 // Review and analysis of solutions of the three point perspective pose estimation problem (1994): the ratio
-// of two of the distances is a root of a polynomial of the fourth degree.
+// of two of the distances is a root of a polynomial of the fourth degree. The other ratio is a quotient then;
+// where it has no figures left, the laws of cosines themselves are solved.
 #pragma once
 
 #include <array>
