@@ -174,9 +174,10 @@ TEST(CalibrationTest, ADrawnChessboardIsFoundWhereItWasDrawn) {
     ASSERT_EQ(view.corners.size(), 40U);
     double worst = 0.0;
     for (std::size_t i = 0; i < view.corners.size(); ++i) {
-      const int id = view.ids[i];
-      const cv::Point2f there(139.5F + 40.0F * static_cast<float>(id % kBoard.columns),
-                              99.5F + 40.0F * static_cast<float>(id / kBoard.columns));
+      const int column = view.ids[i] % kBoard.columns;
+      const int row = view.ids[i] / kBoard.columns;
+      const cv::Point2f there(139.5F + 40.0F * static_cast<float>(column),
+                              99.5F + 40.0F * static_cast<float>(row));
       worst = std::max(worst, cv::norm(view.corners[i] - there));
     }
     std::cout << "corners off by at most " << worst << " px\n";
