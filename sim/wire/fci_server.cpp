@@ -1,9 +1,8 @@
 #include "sim/wire/fci_server.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <ctime>
+#include <string>
 #include <utility>
 
 namespace fovea::sim {
@@ -67,8 +66,8 @@ void FciServer::AwaitTick() {
   const std::int64_t now_ns = NowNs();
   counters_.overruns += now_ns > next_tick_ns_ ? 1U : 0U;
   if (const std::int64_t lost_ns = now_ns - next_tick_ns_; lost_ns > kMostBehindNs) {
-    say_(fmt::format("this computer is too slow for the world: {:.3f} s are given up",
-                     static_cast<double>(lost_ns) / hal::kNsPerSecond));
+    say_("this computer is too slow for the world: " + std::to_string(lost_ns / hal::kNsPerMs) +
+         " ms are given up");
     counters_.given_up_ns += lost_ns;
     next_tick_ns_ += lost_ns;
   }
