@@ -64,6 +64,38 @@ TEST(ServoInitTest, RefusesAndNamesTheKey) {
       {"safety.workspace_radius", [](ServoConfig& c) { c.guard.workspace_radius = 0.0; }},
       {"safety.torque_fraction", [](ServoConfig& c) { c.safety.torque_fraction = 1.1; }},
       {"safety.missed_ticks", [](ServoConfig& c) { c.safety.missed_ticks = 0; }},
+      {"servo.k_p", [](ServoConfig& c) { c.motion_law.k_p[3] = -1.0; }},
+      {"servo.k_v", [=](ServoConfig& c) { c.motion_law.k_v[3] = infinity; }},
+      {"joint friction or spring", [](ServoConfig& c) { c.arm.joints[1].coulomb = -0.1; }},
+      {"joint friction or spring", [=](ServoConfig& c) { c.arm.joints[1].spring = nan; }},
+      {"safety.planes or safety.boxes", [](ServoConfig& c) { c.guard.obstacles.num_planes = -1; }},
+      {"safety.planes or safety.boxes",
+       [](ServoConfig& c) { c.guard.obstacles.num_boxes = Obstacles::kMost + 1; }},
+      {"safety.planes",
+       [](ServoConfig& c) {
+         c.guard.obstacles.num_planes = 1;
+         c.guard.obstacles.planes[0].normal = model::Vec3(0.0, 0.0, 2.0);
+       }},
+      {"safety.planes",
+       [=](ServoConfig& c) {
+         c.guard.obstacles.num_planes = 1;
+         c.guard.obstacles.planes[0].distance = nan;
+       }},
+      {"safety.boxes",
+       [](ServoConfig& c) {
+         c.guard.obstacles.num_boxes = 1;
+         c.guard.obstacles.boxes[0] = {model::Vec3(0.0, 0.0, 0.0), model::Vec3(1.0, 0.0, 1.0)};
+       }},
+      {"safety.boxes",
+       [=](ServoConfig& c) {
+         c.guard.obstacles.num_boxes = 1;
+         c.guard.obstacles.boxes[0] = {model::Vec3(0.0, 0.0, 0.0), model::Vec3(1.0, infinity, 1.0)};
+       }},
+      {"servo.motion_law",
+       [](ServoConfig& c) {
+         c.arm.num_joints = 1;
+         c.motion_law.kind = MotionLawKind::kOperationalSpace;
+       }},
   };
   for (const Case& c : cases) {
     ServoConfig config = test::PandaConfig();
