@@ -21,6 +21,7 @@ import time
 
 PAGE = os.sysconf("SC_PAGESIZE")
 MOST_GROWTH = 4 << 20  # of either program, by the line that fits best [bytes]
+WARM_UP_S = 180.0
 MOST_ERROR_PX = 5.0  # of a ball that wanders
 PATIENCE_S = 20.0
 
@@ -84,10 +85,14 @@ class Program:
 
 
 def growth(samples):
-    """Of the line that fits best, after a tenth of the time [bytes]."""
-    if len(samples) < 10:
+    """Of the line that fits best, after a tenth of the time and three minutes, in which the renderer's and the
+    allocator's stores fill (by 4 MiB) [bytes]."""
+    if not samples:
         return 0.0
-    points = [point for point in samples if point[0] >= samples[0][0] + 0.1 * (samples[-1][0] - samples[0][0])]
+    warm_s = samples[0][0] + max(0.1 * (samples[-1][0] - samples[0][0]), WARM_UP_S)
+    points = [point for point in samples if point[0] >= warm_s]
+    if len(points) < 10:
+        return 0.0
     x_mean = sum(x for x, _ in points) / len(points)
     y_mean = sum(y for _, y in points) / len(points)
     xx = sum((x - x_mean) ** 2 for x, _ in points)
