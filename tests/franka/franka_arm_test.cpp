@@ -48,6 +48,14 @@ class FrankaArmTest : public testing::Test {
     ASSERT_EQ(arm_->phase(), MotionPhase::kRunning);
   }
 
+  // Recovery is asked for, and the robot's answer is there.
+  void AskRecovery(int answer) {
+    arm_->AskRecovery();
+    EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
+    robot_.AnswerStatus(*robot_.Take(), answer);
+    std::this_thread::sleep_for(5ms);
+  }
+
   FakeRobot robot_;
   franka::RobotClock clock_;
   std::unique_ptr<franka::FrankaArm> arm_;
@@ -267,10 +275,7 @@ TEST_F(FrankaArmTest, ARobotThatNeedsAPersonSaysSoUntilItIsHelped) {
     Start();
     robot_.ShowReflex(franka::Error::kJointPositionLimits);
     EXPECT_STREQ(Next().where(), "joint_position_limits_violation");
-    arm_->AskRecovery();
-    EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
-    robot_.AnswerStatus(*robot_.Take(), answer);
-    std::this_thread::sleep_for(5ms);
+    AskRecovery(answer);
     for (int k = 0; k < 3; ++k) {
       EXPECT_STREQ(Next().where(), says);
     }
@@ -278,10 +283,7 @@ TEST_F(FrankaArmTest, ARobotThatNeedsAPersonSaysSoUntilItIsHelped) {
     robot_.state.errors = {};
     robot_.ShowIdle();
     EXPECT_STREQ(Next().where(), says) << "until it is asked again";
-    arm_->AskRecovery();
-    EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
-    robot_.AnswerStatus(*robot_.Take(), 0);
-    std::this_thread::sleep_for(5ms);
+    AskRecovery(0);
     EXPECT_TRUE(Next().ok());
   }
 }
@@ -304,10 +306,7 @@ TEST_F(FrankaArmTest, AMotionThatIsRefusedOrBrokenOffSaysWhy) {
     const hal::Status status = Next();
     EXPECT_EQ(status.code(), StatusCode::kDeviceFault);
     EXPECT_STREQ(status.where(), row.says);
-    arm_->AskRecovery();
-    EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
-    robot_.AnswerStatus(*robot_.Take(), 0);
-    std::this_thread::sleep_for(5ms);
+    AskRecovery(0);
     EXPECT_TRUE(Next().ok());
   }
 }
