@@ -181,7 +181,7 @@ TEST(CalibrationTest, ADrawnChessboardIsFoundWhereItWasDrawn) {
       worst = std::max(worst, cv::norm(view.corners[i] - there));
     }
     std::cout << "corners off by at most " << worst << " px\n";
-    EXPECT_LT(worst, 0.05);
+    EXPECT_LT(worst, 1e-3);
   }
   BoardView none;
   EXPECT_FALSE(FindBoard(cv::Mat(480, 640, CV_8UC1, cv::Scalar(255)), kBoard, none));
