@@ -36,8 +36,12 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kTorqueRate:
       return {"change of a joint's torque command per tick, in every mode", "cut to the rate"};
     case hal::Limit::kObstacle:
-      return {"end effector before planes and boxes, in the tick and on the way of a stop",
-              "as at the workspace's boundary"};
+      return {
+          "hand, camera and tools (`safety.camera_radius`, `safety.tools`) before planes and boxes, links "
+          "from "
+          "the elbow on before planes (`safety.link_radius`), the hand before the arm's own first links "
+          "(`safety.hand_clearance`), in the tick and on the way of a stop",
+          "as at the workspace's boundary; an arm that stands inside when it starts stays in Boot"};
     case hal::Limit::kCartesianSpeed:
       return {"speed that is wished for the end effector", "the motion slows down as a whole"};
     case hal::Limit::kSingularity:
@@ -63,8 +67,10 @@ GuardRow RowOf(hal::Fault fault) {
       return {"an arm that answers with an error or not at all; until then the last command stays", kBrake};
     case hal::Fault::kArmStale:
       return {
-          "an arm whose stamps stand still or go back; for `safety.non_finite_ticks`, a joint that takes "
-          "torque while its encoder, alone, does not change by a bit",
+          "an arm whose stamps stand still or go back; for `safety.non_finite_ticks` and more, a joint whose "
+          "reading "
+          "stays within a step of its encoder (`safety.encoder_quantum`) although torque, or its velocity, "
+          "should have moved it by three",
           kBrake};
     case hal::Fault::kNonFiniteSensor:
       return {"a joint value that is no number; until then the last one that was", kBrake};

@@ -20,6 +20,7 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   if (access(folder_.c_str(), W_OK | X_OK) != 0) {
     throw InputError("--out " + folder_.string() + ": the folder cannot be written to");
   }
+  lock_.emplace(folder_);
 }
 
 OutputFolder::~OutputFolder() {
@@ -53,7 +54,11 @@ void OutputFolder::WritePartial(const OutputFile& file) const {
 }
 
 fs::path OutputFolder::Keep(const std::string& name, const std::vector<std::string>& all_names) const {
+  const std::lock_guard lock(placing_);
   std::error_code ignored;
+  if (!fs::exists(Partial(name), ignored)) {
+    return folder_ / name;
+  }
   for (const std::string& other : all_names) {
     fs::remove(folder_ / other, ignored);
   }
@@ -74,6 +79,7 @@ void OutputFolder::Replace(const std::vector<OutputFile>& files,
     }
     throw;
   }
+  const std::lock_guard lock(placing_);
   for (const std::string& name : all_names) {
     fs::remove(folder_ / name, ignored);
   }

@@ -13,7 +13,10 @@
 namespace fovea::config {
 namespace {
 
-void AddPredictKeys(servo::PredictConfig& c, KeyTable& keys) {
+constexpr int kMostTools = 6;
+
+void AddPredictKeys(ServoSettings& settings, KeyTable& keys) {
+  servo::PredictConfig& c = settings.config.predict;
   keys.Flag("servo.predict", c.enabled,
             "predict the target for every tick; false: hold the newest measurement as it came");
   keys.Number(
@@ -29,6 +32,29 @@ void AddPredictKeys(servo::PredictConfig& c, KeyTable& keys) {
                "measurements before the target counts as known");
   keys.Number("servo.stale_s", c.stale_s, 0.001, 10.0, "s", "without a measurement for so long: Coast");
   keys.Number("servo.coast_s", c.coast_s, 0.001, 60.0, "s", "without a measurement for so long: Hold");
+  keys.Number("servo.target_speed_max", c.target_speed_max, 0.0, 10.0, "m/s",
+              "the target is never taken to be faster, whatever is measured");
+  keys.Number("servo.target_acceleration_max", c.target_acceleration_max, 0.0, 100.0, "m/s^2",
+              "nor to accelerate harder");
+  keys.Number("servo.target_turn_max", c.target_turn_max, 0.0, 100.0, "rad/s", "nor to turn faster");
+  keys.Numbers(
+      "servo.target_region", settings.target_region, 6, 6, -100.0, 100.0, "m",
+      "a measurement that puts the target outside this box is refused: low x, y, z, high x, y, z, in "
+      "axes of the base");
+  keys.Number("servo.stuck_shift_px", settings.stuck_shift_px, 0.5, 1000.0, "px",
+              "a picture that stays the same within its noise, although the hand shifted the scene in it by "
+              "more than this, is no measurement");
+  keys.Number(
+      "servo.way_in_vain", c.way_in_vain, 0.001, 1000.0, "m",
+      "the camera has gone so far, and its error got no smaller: Hold, until Track is asked for anew");
+  keys.Number("servo.stamp_sigma", c.stamp_sigma, 0.0, 1.0, "s",
+              "how far the measurements' stamps may be off, as a standard deviation");
+  keys.Number("servo.mount_shift_sigma", c.mount_shift_sigma, 0.0, 1.0, "m",
+              "how far camera.mount_xyz may be off, as a standard deviation");
+  keys.Number("servo.mount_turn_sigma", c.mount_turn_sigma, 0.0, 1.0, "rad",
+              "how far the mount's orientation may be off, as a standard deviation");
+  keys.Number("servo.scale_sigma", c.scale_sigma, 0.0, 1.0, "",
+              "how far focal length and target size may be off, as a share; a standard deviation");
 }
 
 void AddLawKeys(ServoSettings& settings, KeyTable& keys) {
@@ -154,12 +180,20 @@ void AddGuardKeys(ServoSettings& settings, KeyTable& keys) {
       "safety.face_tilt_max", settings.face_tilt_max, 0.1, std::numbers::pi / 2.0, "rad",
       "a disc's face is turned away from the line of sight by no more than this, or no further; pi / 2: "
       "it may be seen edge-on");
+  keys.Number("safety.camera_radius", settings.camera_radius, 0.0, 1.0, "m",
+              "the camera is guarded as a capsule of this radius from the flange to its lens; 0: as nothing");
   keys.Numbers(
-      "safety.planes", settings.planes, 4, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
-      "planes n p >= d that the end effector stays above, and the line of the arm's links from the elbow "
-      "on: n_x, n_y, n_z, d, the same again");
-  keys.Numbers("safety.boxes", settings.boxes, 6, 6 * servo::Obstacles::kMost, -100.0, 100.0, "m",
-               "boxes that it stays out of: low x, y, z, high x, y, z, the same again");
+      "safety.tools", settings.tools, 0, 7 * kMostTools, -10.0, 10.0, "m",
+      "tools on the hand, guarded as capsules: x, y, z of one end, of the other, in axes of the flange, "
+      "radius, the same again");
+  keys.Number("safety.link_radius", c.link_radius, 0.0, 1.0, "m",
+              "the arm's links from the elbow on are so thick before a plane");
+  keys.Numbers(
+      "safety.planes", settings.planes, 0, 4 * servo::Obstacles::kMost, -100.0, 100.0, "m",
+      "planes n p >= d that hand, camera, tools and the arm's links from the elbow on stay above: n_x, n_y, "
+      "n_z, d, the same again");
+  keys.Numbers("safety.boxes", settings.boxes, 0, 6 * servo::Obstacles::kMost, -100.0, 100.0, "m",
+               "boxes that hand, camera and tools stay out of: low x, y, z, high x, y, z, the same again");
 }
 
 void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
@@ -177,6 +211,12 @@ void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
                "the arm must have been sound for so long before it is moved");
   keys.Number("safety.boot_velocity", c.boot_velocity, 1e-6, 1e3, "rad/s",
               "and every joint slower than this");
+  keys.Number("safety.stiction_fraction", c.stiction_fraction, 0.0, 10.0, "",
+              "share of a joint's Coulomb friction that may hold it still although torque changes");
+  keys.Number(
+      "safety.encoder_quantum", c.encoder_quantum, 0.0, 0.1, "rad",
+      "steps of a joint's reading; one that stays the same while torque should have moved the joint by "
+      "three of them: Fault");
   keys.Number("safety.setpoint_jump", c.setpoint_jump, 0.0, 1e3, "rad",
               "commanded setpoints start this close to where the arm stands, and go on so");
   keys.Number("safety.following_error", c.following_error, 1e-4, 10.0, "rad",
@@ -290,6 +330,40 @@ void SetObstacles(const ServoSettings& settings, servo::Obstacles& obstacles) {
   }
 }
 
+void SetPredict(const ServoSettings& settings, const vision::Intrinsics& in, servo::PredictConfig& c) {
+  const std::vector<double>& region = settings.target_region;
+  c.target_region = {{region[0], region[1], region[2]}, {region[3], region[4], region[5]}};
+  if (!(c.target_region.low.array() < c.target_region.high.array()).all()) {
+    throw InputError("servo.target_region: the low corner must be below the high corner");
+  }
+  if (in.f_u_px > 0.0) {  // a log without a camera has none
+    c.stuck_shift = settings.stuck_shift_px / in.f_u_px;
+  }
+}
+
+void SetHand(const ServoSettings& settings, const model::Pose& X_EC, servo::HandShape& hand) {
+  bool fits = true;
+  if (settings.camera_radius > 0.0) {
+    fits = hand.AddCapsule(model::Vec3::Zero(), X_EC.p, settings.camera_radius);
+  }
+  const std::vector<double>& t = settings.tools;
+  if (t.size() % 7 != 0) {
+    throw InputError(fmt::format("safety.tools has {} entries: seven for each tool are allowed", t.size()));
+  }
+  for (std::size_t i = 0; i < t.size(); i += 7) {
+    if (!(t[i + 6] > 0.0)) {
+      throw InputError("safety.tools: each radius must be above 0");
+    }
+    fits = fits && hand.AddCapsule({t[i], t[i + 1], t[i + 2]}, {t[i + 3], t[i + 4], t[i + 5]}, t[i + 6]);
+  }
+  if (!fits) {
+    throw InputError(
+        fmt::format("safety.tools and safety.camera_radius are not allowed: {} balls, each a radius from the "
+                    "next, must cover camera and tools; take larger radii",
+                    servo::HandShape::kMost));
+  }
+}
+
 void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, servo::MotionLawConfig& c) {
   for (const servo::MotionLawEntry& law : servo::kMotionLaws) {
     if (settings.motion_law == law.name) {
@@ -322,7 +396,7 @@ void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, ser
 void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
   AddLawKeys(settings, keys);
   AddMotionLawKeys(settings, keys);
-  AddPredictKeys(settings.config.predict, keys);
+  AddPredictKeys(settings, keys);
   AddMoveKeys(settings.config.move, keys);
   AddGuardKeys(settings, keys);
   AddFaultKeys(settings.config.safety, keys);
@@ -355,6 +429,8 @@ servo::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::
   }
   SetMotionLaw(settings, robot, config.motion_law);
   SetObstacles(settings, config.guard.obstacles);
+  SetHand(settings, X_EC, config.guard.hand);
+  SetPredict(settings, intrinsics, config.predict);
   CheckTogether(config);
   servo::ServoTask probe;
   if (const hal::Status status = probe.Init(config); !status.ok()) {

@@ -65,6 +65,9 @@ void Flatten(const toml::table& table, const std::string& prefix, const std::str
 
 std::vector<Setting> ReadTomlFile(const std::filesystem::path& path) {
   std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw InputError(path.string() + ": is a folder; a TOML file is allowed");
+  }
   if (!std::filesystem::is_regular_file(path, ignored)) {
     throw InputError(path.string() + ": no such file");
   }

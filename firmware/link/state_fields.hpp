@@ -56,8 +56,19 @@ void InputStateFields(Archive& a, T& s) noexcept {
   EachOf(a, s.q);
   EachOf(a, s.dq);
   EachOf(a, s.tau_applied);
-  for (auto& ticks : s.still_ticks) {
-    a.Int(ticks);
+}
+
+template <class Archive, class T>
+void EncoderWatchFields(Archive& a, T& w) noexcept {
+  a(w.drove);
+  for (auto& joint : w.joints) {
+    a(joint.mean);
+    a.Int(joint.ticks);
+    a(joint.q);
+    a(joint.q_reference);
+    a(joint.speed);
+    a(joint.way);
+    a(joint.travel);
   }
 }
 
@@ -304,11 +315,38 @@ void EachGroup(State& s, const Visit& visit) noexcept {
     a(s.contact.started);
     SizedEntries(a, s.contact.residual);
   });
+  visit(Pace::kTick, "encoder watch", [&s](auto& a) {
+    EncoderWatchFields(a, s.encoders);
+    a(s.blind);
+  });
   visit(Pace::kFollows, "momentum", [&s](auto& a) {
     SizedEntries(a, s.contact.M_before);
     SizedEntries(a, s.contact.p_before);
   });
   visit(Pace::kFollows, "joint history", [&s](auto& a) { servo::StateAccess::Fields(a, s.predict.history); });
+  visit(Pace::kMeasurement, "stuck picture", [&s](auto& a) {
+    a(s.predict.picture.started);
+    a(s.predict.picture.since_ns);
+    PoseFields(a, s.predict.picture.X_BC);
+    Entries(a, s.predict.picture.p_CO_C);
+  });
+  visit(Pace::kMeasurement, "last belief", [&s](auto& a) {
+    a(s.predict.belief.active);
+    a(s.predict.belief.stamp_ns);
+    PoseFields(a, s.predict.belief.motion.X_BO);
+    Entries(a, s.predict.belief.motion.v_BO_B);
+    Entries(a, s.predict.belief.motion.w_BO_B);
+  });
+  visit(Pace::kTick, "eye watch", [&s](auto& a) {
+    a(s.eye.has_last);
+    PoseFields(a, s.eye.X_BC_last);
+    Entries(a, s.eye.p_CO_C_last);
+    EachOf(a, s.eye.predicted);
+    EachOf(a, s.eye.seen);
+    a(s.eye.least_error);
+    a(s.eye.way);
+    a(s.eye.doubted);
+  });
   visit(Pace::kMeasurement, "target filter", [&s](auto& a) {
     TargetFilterFields(a, s.predict.filter);
     a(s.predict.has_accepted);
@@ -320,7 +358,10 @@ void EachGroup(State& s, const Visit& visit) noexcept {
   visit(Pace::kTick, "mode", [&s](auto& a) { ModeFields(a, s); });
   visit(Pace::kSeeking, "way to the goal", [&s](auto& a) { WayFields(a, s.way); });
   visit(Pace::kTick, "resolved motion", [&s](auto& a) { ResolvedFields(a, s.resolved); });
-  visit(Pace::kTick, "reference", [&s](auto& a) { ReferenceFields(a, s.reference); });
+  visit(Pace::kTick, "reference", [&s](auto& a) {
+    ReferenceFields(a, s.reference);
+    a(s.holds);
+  });
   visit(Pace::kMoving, "commanded motion", [&s](auto& a) { MotionStateFields(a, s.motion); });
   visit(Pace::kFollows, "planned motion", [&s](auto& a) { servo::StateAccess::PlanFields(a, s.motion); });
   visit(Pace::kTick, "limits", [&s](auto& a) { a(s.limits); });

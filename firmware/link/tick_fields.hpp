@@ -8,7 +8,7 @@
 namespace fovea::link {
 
 inline constexpr int kNumStatusCodes = 8;
-inline constexpr int kNumHoldReasons = 7;
+inline constexpr int kNumHoldReasons = 8;
 inline constexpr int kNumRequests = 4;
 inline constexpr int kNumMotionKinds = 6;
 inline constexpr int kNumFeatureKinds = 4;
@@ -28,6 +28,7 @@ template <class Archive, class T>
 void MeasurementFields(Archive& a, T& m) noexcept {
   a(m.stamp_ns);
   a(m.sequence);
+  a(m.same_for_ns);
   a.Choice(m.kind, kNumFeatureKinds);
   a(m.found);
   a(m.confidence);
@@ -82,6 +83,7 @@ void RecordFields(Archive& a, T& r) noexcept {
   a(r.tick);
   a(r.stamp_ns);
   a.Int(r.missed_ticks);
+  a.Choice(r.intake, hal::kNumIntakes);
   a.Choice(r.mode, hal::kNumModes);
   a.Choice(r.hold_reason, kNumHoldReasons);
   a.Choice(r.fault, hal::kNumFaults);

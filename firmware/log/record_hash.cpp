@@ -82,13 +82,14 @@ void RecordHash::Add(const hal::TickRecord& r) {
   write.All(r.tick, r.stamp_ns, r.missed_ticks);
   write.All(r.arm.stamp_ns, r.arm.sequence, r.arm.num_joints, r.arm.q, r.arm.dq, r.arm.tau_meas,
             r.arm.tau_applied);
-  write.All(r.has_feature, r.feature.stamp_ns, r.feature.sequence, r.feature.kind, r.feature.found,
+  write.All(r.has_feature, r.feature.stamp_ns, r.feature.sequence, r.feature.same_for_ns,
+            r.feature.kind, r.feature.found,
             r.feature.confidence, r.feature.dim, r.feature.s, r.feature.cov_s, r.feature.num_poses);
   for (const hal::FlatPose& pose :
        std::span(r.feature.poses).first(static_cast<std::size_t>(r.feature.num_poses))) {
     write.All(pose.p_CO_C, pose.q_CO, pose.first);
   }
-  write.All(r.mode, r.hold_reason, r.fault, r.fault_joint, r.limits_active);
+  write.All(r.intake, r.mode, r.hold_reason, r.fault, r.fault_joint, r.limits_active);
   write.All(r.target_known, r.feature_age_ns, r.p_BO, r.q_BO, r.v_BO);
   write.All(r.dim, r.s, r.s_star, r.e, r.V_BC_C_cmd);
   write.All(r.q_cmd, r.dq_cmd, r.ddq_cmd);

@@ -67,17 +67,21 @@ void RunLog::AddTruth(const TruthSample& sample) {
   truths_.Push(sample);
 }
 
-void RunLog::Push(Job job) {
+bool RunLog::Push(Job job) {
   {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return jobs_.size() < kMostJobs || failure_ != nullptr; });
-    if (failure_ != nullptr) {
-      ++lost_;  // why: Finish says it
-      return;
+    const auto has_room = [this] { return jobs_.size() < kMostJobs || failure_ != nullptr; };
+    if (!config_.may_drop) {
+      changed_.wait(lock, has_room);
+    }
+    if (!has_room() || failure_ != nullptr) {
+      ++lost_;  // a disk that hangs, or a failure: Finish says it
+      return false;
     }
     jobs_.push_back(std::move(job));
   }
   changed_.notify_all();
+  return true;
 }
 
 void RunLog::Add(const char* topic, std::int64_t time_ns, const google::protobuf::Message& message) {
@@ -108,7 +112,13 @@ void RunLog::AddImage(const hal::Frame& frame) {
     }
   }
   view.copyTo(picture);
-  Push([this, picture, stamp_ns = frame.stamp_ns](LogFile& file) { WriteImage(picture, stamp_ns, file); });
+  if (!Push([this, picture, stamp_ns = frame.stamp_ns](LogFile& file) {
+        WriteImage(picture, stamp_ns, file);
+      })) {
+    const std::lock_guard lock(mutex_);
+    spare_.push_back(picture);
+    --images_waiting_;
+  }
 }
 
 void RunLog::WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& file) {

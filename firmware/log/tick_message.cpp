@@ -31,9 +31,10 @@ To Same(From value) {
 
 // The message's enumerations have the numbers of the servo's.
 static_assert(static_cast<int>(hal::Mode::kMove) == MOVE);
-static_assert(static_cast<int>(hal::HoldReason::kMotionRefused) == MOTION_REFUSED);
+static_assert(static_cast<int>(hal::HoldReason::kEyeDoubted) == EYE_DOUBTED);
 static_assert(static_cast<int>(hal::Fault::kContact) == CONTACT && hal::kNumFaults == 11);
 static_assert(static_cast<int>(hal::FeatureKind::kTriangle) == Feature::TRIANGLE);
+static_assert(static_cast<int>(hal::Intake::kOutlier) == OUTLIER && hal::kNumIntakes == 9);
 
 }  // namespace
 
@@ -50,6 +51,7 @@ void ToMessage(const hal::TickRecord& r, Tick& m) {
   Put(r.arm.tau_meas, joints, *arm.mutable_tau_meas());
   Put(r.arm.tau_applied, joints, *arm.mutable_tau_applied());
   m.set_has_feature(r.has_feature);
+  m.set_intake(Same<Intake>(r.intake));
   m.set_mode(Same<Mode>(r.mode));
   m.set_hold_reason(Same<HoldReason>(r.hold_reason));
   m.set_fault(Same<FaultCause>(r.fault));
@@ -85,6 +87,7 @@ void ToMessage(const ReplayData& data, Tick& m) {
 void ToMessage(const hal::FeatureMeasurement& f, Feature& m) {
   m.set_stamp_ns(f.stamp_ns);
   m.set_sequence(f.sequence);
+  m.set_same_for_ns(f.same_for_ns);
   m.set_kind(Same<Feature::Kind>(f.kind));
   m.set_found(f.found);
   m.set_confidence(f.confidence);
@@ -108,6 +111,7 @@ hal::FeatureMeasurement FromMessage(const Feature& m) {
   hal::FeatureMeasurement f;
   f.stamp_ns = m.stamp_ns();
   f.sequence = m.sequence();
+  f.same_for_ns = m.same_for_ns();
   f.kind = Same<hal::FeatureKind>(m.kind());
   f.found = m.found();
   f.confidence = m.confidence();
@@ -148,6 +152,7 @@ hal::TickRecord FromMessage(const Tick& m, const hal::FeatureMeasurement& featur
   Get(m.arm().tau_applied(), r.arm.tau_applied);
   r.has_feature = m.has_feature();
   r.feature = feature;
+  r.intake = Same<hal::Intake>(m.intake());
   r.mode = Same<hal::Mode>(m.mode());
   r.hold_reason = Same<hal::HoldReason>(m.hold_reason());
   r.fault = Same<hal::Fault>(m.fault());

@@ -7,7 +7,7 @@ namespace fovea::servo {
 namespace {
 
 constexpr double kJump = 0.02;  // a position may be off by so much, beside what speed there is for [rad, m]
-constexpr std::int32_t kStillTicksMost = 1'000'000;  // counted no further
+constexpr int kBadTicksMost = 1'000'000'000;  // counted no further
 
 // Copies the finite values of `from`; a joint that is not finite keeps its last value. Returns the first
 // such joint, or -1.
@@ -24,24 +24,18 @@ std::int32_t CopyFinite(const hal::JointArray& from, int num_joints, hal::JointA
   return bad;
 }
 
-// Counts for how long each joint's position has been the same.
-void CountStill(const hal::JointArray& q, int num_joints, InputState& state) noexcept {
-  for (std::size_t k = 0; k < static_cast<std::size_t>(num_joints); ++k) {
-    std::int32_t& ticks = state.still_ticks[k];
-    ticks = q[k] == state.q[k] ? std::min(ticks + 1, kStillTicksMost) : 0;
-  }
-}
-
 // Takes in what the arm answered.
 InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, const hal::ArmState& arm,
-                  double velocity_share, InputState& state) noexcept {
+                  std::int32_t missed_ticks, double velocity_share, InputState& state) noexcept {
   const SafetyConfig& safety = config.safety;
   const int n = config.arm.num_joints;
   const bool answered = arm_status.ok() && arm.num_joints == n;
   const bool fresh = answered && (!state.has_state || arm.stamp_ns > state.stamp_ns);
   if (!fresh) {
     state.sound_ticks = 0;
-    state.bad_ticks += 1;
+    // What passed without a tick was silence too.
+    const int passed = static_cast<int>(std::clamp<std::int32_t>(missed_ticks, 0, kBadTicksMost));
+    state.bad_ticks = std::min(state.bad_ticks + 1 + passed, kBadTicksMost);
     if (state.bad_ticks >= safety.arm_lost_ticks) {
       return {answered ? hal::Fault::kArmStale : hal::Fault::kArmLost, -1};
     }
@@ -55,7 +49,6 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
   state.sequence = arm.sequence;
   state.bad_ticks = 0;
 
-  CountStill(arm.q, n, state);
   std::int32_t bad = CopyFinite(arm.q, n, state.q);
   if (const std::int32_t bad_dq = CopyFinite(arm.dq, n, state.dq); bad < 0) {
     bad = bad_dq;
@@ -92,8 +85,9 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
 
 InputCheck CheckInputs(const ServoConfig& config, const hal::Status& arm_status, const hal::ArmState& arm,
                        std::int32_t missed_ticks, double velocity_share, InputState& state) noexcept {
-  const InputCheck check = TakeIn(config, arm_status, arm, velocity_share, state);
-  if (missed_ticks >= config.safety.missed_ticks) {
+  const InputCheck check = TakeIn(config, arm_status, arm, missed_ticks, velocity_share, state);
+  // An arm that says nothing is late by itself; that the loop is shows in its next state.
+  if (state.bad_ticks == 0 && missed_ticks >= config.safety.missed_ticks) {
     return {hal::Fault::kDeadlineMissed, -1};
   }
   return check;

@@ -14,7 +14,9 @@ void ObserveContact(double gain, const model::ArmDynamics& dynamics, const model
     change += kPeriodS * (tau - dynamics.Cdq + state.residual);
     state.residual += gain * (p - state.p_before - change);
   } else {
-    state.residual.setZero(dq.size());
+    if (state.residual.size() != dq.size()) {
+      state.residual.setZero(dq.size());
+    }
     state.started = true;
   }
   state.M_before = dynamics.M;

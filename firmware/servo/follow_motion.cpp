@@ -44,7 +44,7 @@ hal::LimitSet Brake(const ServoConfig& config, Reference& reference) noexcept {
   model::LinearJacobian J_E_B;
   model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
   return GuardMotion(config, MotionWish::Velocity(model::VecN::Zero(config.arm.num_joints)), poses.X_BE.p,
-                     J_E_B, poses.X_BE.p, reference);
+                     J_E_B, poses, reference);
 }
 
 // `next` becomes the reference if nothing forbids it.
@@ -57,7 +57,7 @@ hal::LimitSet TakeReference(const ServoConfig& config, const Reference& next, Mo
     limits |= LimitsOfJoint(config, i, next);
   }
   if (limits == 0 && !state.refused) {
-    limits = LimitsPassed(config, next, reference.q, PosesOf(config, reference.q).X_BE.p);
+    limits = LimitsPassed(config, next, reference.q, PosesOf(config, reference.q));
   }
   state.refused = state.refused || limits != 0;
   if (state.refused) {

@@ -292,7 +292,7 @@ void SeekGoalPosture(const ServoConfig& config, const Pose& X_BO, const VecN& q,
   model::ComputePoses(config.arm, goal.q, poses);
   const bool turns_freely = !config.feature.SeesOrientation();
   const Pose X_BE_star = turns_freely ? poses.X_BE : HandGoal(config, X_BO, turn);
-  const bool allowed = KeepsOut(config, X_BE_star.p);
+  const bool allowed = KeepsOut(config, X_BE_star);
   if (!goal.found && !turns_freely && !allowed) {
     NextTrial(config, goal);
     return;

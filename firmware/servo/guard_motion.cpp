@@ -15,6 +15,8 @@ using hal::Limit;
 using hal::LimitSet;
 using model::LinearJacobian;
 
+constexpr double kSpeedShare =
+    0.97;  // of the hand's speed: joints that get there at different times go beyond
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 const model::Joint& JointOf(const ServoConfig& config, int i) noexcept {
@@ -41,10 +43,11 @@ LimitSet LimitVelocity(const ServoConfig& config, model::VecN& dq) noexcept {
 // Cartesian speed, the same way.
 LimitSet LimitSpeed(const ServoConfig& config, const LinearJacobian& J_E_B, model::VecN& dq) noexcept {
   const double speed = J_E_B.lazyProduct(dq).norm();
-  if (speed <= config.guard.cartesian_speed) {
+  const double most = kSpeedShare * config.guard.cartesian_speed;
+  if (speed <= most) {
     return 0;
   }
-  dq *= config.guard.cartesian_speed / speed;
+  dq *= most / speed;
   return Bit(Limit::kCartesianSpeed);
 }
 
@@ -142,7 +145,7 @@ double BarrierSpeed(double distance, double deceleration, double reaction_s) noe
 }
 
 LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
-                     const LinearJacobian& J_E_B, const model::Vec3& p_BE_reference,
+                     const LinearJacobian& J_E_B, const model::ArmPoses& reference_poses,
                      Reference& reference) noexcept {
   model::VecN dq = wish.dq;
   LimitSet limits = LimitVelocity(config, dq);
@@ -162,7 +165,7 @@ LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const mo
   for (int i = 0; i < kTries; ++i) {
     next = reference;
     acceleration_limits = LimitAcceleration(config, share * dq, share * ddq, next);
-    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, p_BE_reference) : 0;
+    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, reference_poses) : 0;
     if (passed == 0) {
       break;
     }

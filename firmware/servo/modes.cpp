@@ -29,14 +29,16 @@ constexpr std::array kEdges{
     From(Mode::kHold,   "track is asked for, the target seen", [](const F& f) { return f.asked && f.fresh; }, Mode::kTrack),
     From(Mode::kHold,   "a motion is commanded",              [](const F& f) { return !f.asked && f.motion; }, Mode::kMove),
     From(Mode::kHold,   "track is asked for, after a motion or none", [](const F& f) { return f.asked && f.hold_reason != HoldReason::kTargetLost; }, Mode::kHold, HoldReason::kNoTarget),
-    From(Mode::kHold,   "nothing is asked for",               [](const F& f) { return !f.asked && f.hold_reason != HoldReason::kMotionDone && f.hold_reason != HoldReason::kMotionRefused; }, Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kHold,   "nothing is asked for",               [](const F& f) { return !f.asked && f.hold_reason != HoldReason::kMotionDone && f.hold_reason != HoldReason::kMotionRefused && f.hold_reason != HoldReason::kEyeDoubted; }, Mode::kHold, HoldReason::kNotAsked),
     From(Mode::kHold,   "hold is asked for",                  [](const F& f) { return f.request == Request::kHold; }, Mode::kHold, HoldReason::kNotAsked),
 
     From(Mode::kTrack,  "track is asked for no more",         [](const F& f) { return !f.asked; },           Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kTrack,  "what is seen is nothing to steer by", [](const F& f) { return f.doubted; },         Mode::kHold, HoldReason::kEyeDoubted),
     From(Mode::kTrack,  "limits keep the arm from the goal",  [](const F& f) { return f.unreachable; },      Mode::kHold, HoldReason::kGoalUnreachable),
     From(Mode::kTrack,  "the target is lost",                 [](const F& f) { return f.lost; },             Mode::kHold, HoldReason::kTargetLost),
     From(Mode::kTrack,  "the target is not seen for a moment", [](const F& f) { return !f.fresh; },          Mode::kCoast),
     From(Mode::kCoast,  "track is asked for no more",         [](const F& f) { return !f.asked; },           Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kCoast,  "what is seen is nothing to steer by", [](const F& f) { return f.doubted; },         Mode::kHold, HoldReason::kEyeDoubted),
     From(Mode::kCoast,  "limits keep the arm from the goal",  [](const F& f) { return f.unreachable; },      Mode::kHold, HoldReason::kGoalUnreachable),
     From(Mode::kCoast,  "the target is lost",                 [](const F& f) { return f.lost; },             Mode::kHold, HoldReason::kTargetLost),
     From(Mode::kCoast,  "the target is seen again",           [](const F& f) { return f.fresh; },            Mode::kTrack),
@@ -67,6 +69,7 @@ ModeFacts FactsOf(const PredictConfig& config, const ModeInputs& inputs, const M
   f.lost = !inputs.target_known || inputs.feature_age_ns > Ns(config.coast_s);
   f.unreachable = inputs.goal_unreachable;
   f.moved = inputs.target_moved;
+  f.doubted = inputs.eye_doubted;
   f.motion = inputs.motion_asked && !state.motion_barred;
   f.refused = inputs.motion_refused;
   return f;
@@ -87,6 +90,10 @@ bool UpdateMode(const PredictConfig& config, const ModeInputs& inputs, ModeState
     state.fault = inputs.fault;  // the first cause stays
   } else if (state.mode != Mode::kFault) {
     state.fault = hal::Fault::kNone;
+  }
+  if (before == Mode::kFault || state.mode == Mode::kFault ||
+      (before != Mode::kHold && state.hold_reason == HoldReason::kEyeDoubted)) {
+    state.track_asked = false;  // a fault ends every wish: after it nothing moves until it is asked for anew
   }
   if (!inputs.motion_asked) {
     state.motion_barred = false;

@@ -1,5 +1,6 @@
 #include "fovea/servo/obstacle.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fovea::servo {
@@ -43,6 +44,37 @@ Clearance ClearanceOf(const Obstacles& obstacles, int i, const model::Vec3& p_B)
     return {plane.normal.dot(p_B) - plane.distance, plane.normal};
   }
   return ClearanceOf(obstacles.boxes[static_cast<std::size_t>(i - obstacles.num_planes)], p_B);
+}
+
+HandClearance ClearanceOf(const Obstacles& obstacles, int i, const HandShape& hand,
+                          const model::Pose& X_BE) noexcept {
+  HandClearance nearest{ClearanceOf(obstacles, i, X_BE.p), X_BE.p};
+  for (int k = 0; k < hand.num_balls; ++k) {
+    const HandShape::Ball& ball = hand.balls[static_cast<std::size_t>(k)];
+    const model::Vec3 p_BP = X_BE * ball.p_EP;
+    Clearance clearance = ClearanceOf(obstacles, i, p_BP);
+    clearance.distance -= ball.radius;
+    if (clearance.distance < nearest.clearance.distance) {
+      nearest = {clearance, p_BP};
+    }
+  }
+  return nearest;
+}
+
+bool HandShape::AddCapsule(const model::Vec3& p_EA, const model::Vec3& p_EB, double radius) noexcept {
+  const double length = (p_EB - p_EA).norm();
+  const int steps = std::max(1, static_cast<int>(std::ceil(length / radius)));
+  // Balls a radius apart cover the capsule when they are larger by what is between them.
+  const double step = length / steps;
+  for (int i = 0; i <= steps; ++i) {
+    if (num_balls >= kMost) {
+      return false;
+    }
+    const double share = static_cast<double>(i) / steps;
+    balls[static_cast<std::size_t>(num_balls++)] = {p_EA + share * (p_EB - p_EA),
+                                                    std::sqrt(radius * radius + 0.25 * step * step)};
+  }
+  return true;
 }
 
 }  // namespace fovea::servo

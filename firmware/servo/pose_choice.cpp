@@ -122,13 +122,13 @@ void Compare(const Polygon& polygon, const CornerView& view, PoseChoice& choice)
 
 }  // namespace
 
-bool UpdatePoses(const PredictConfig& config, const Polygon& polygon, const CornerView& view,
-                 PoseChoice& choice) noexcept {
+hal::Intake UpdatePoses(const PredictConfig& config, const Polygon& polygon, const CornerView& view,
+                        PoseChoice& choice) noexcept {
   if (choice.num_branches == 0) {
-    return Start(polygon, view, choice);
+    return Start(polygon, view, choice) ? hal::Intake::kTaken : hal::Intake::kWrongKind;
   }
   if (view.stamp_ns <= choice.stamp_ns) {
-    return false;  // no news
+    return hal::Intake::kTooOld;
   }
   const double gate2 = config.gate_sigma * config.gate_sigma;
   bool fits = false;
@@ -139,24 +139,24 @@ bool UpdatePoses(const PredictConfig& config, const Polygon& polygon, const Corn
   }
   if (!fits) {
     if (choice.rejected_in_row + 1 >= config.gate_rejects_max && Start(polygon, view, choice)) {
-      return true;
+      return hal::Intake::kTaken;
     }
     choice.rejected_in_row = std::min(choice.rejected_in_row + 1, config.gate_rejects_max);
-    return false;
+    return hal::Intake::kOutlier;
   }
   Compare(polygon, view, choice);
   choice.stamp_ns = view.stamp_ns;
   choice.rejected_in_row = 0;
   choice.accepted = std::min(choice.accepted + 1, config.accepted_min);
-  return true;
+  return hal::Intake::kTaken;
 }
 
-FlatMotion MotionAt(const PoseChoice& choice, std::int64_t now_ns) noexcept {
+FlatMotion MotionAt(const PredictConfig& config, const PoseChoice& choice, std::int64_t now_ns) noexcept {
   if (choice.is_still) {
     const PoseChoice::Branch& believed = choice.branches[static_cast<std::size_t>(choice.believed)];
     return {believed.X_BO_still, model::Vec3::Zero(), model::Vec3::Zero()};
   }
-  return MotionAt(choice.best(), now_ns);
+  return MotionAt(config, choice.best(), now_ns);
 }
 
 }  // namespace fovea::servo

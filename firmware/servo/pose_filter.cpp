@@ -1,7 +1,10 @@
 #include "fovea/servo/pose_filter.hpp"
 
+#include <cmath>
+
 #include "fovea/model/cholesky.hpp"
 #include "fovea/model/rotation.hpp"
+#include "fovea/servo/shortened.hpp"
 
 namespace fovea::servo {
 namespace {
@@ -63,19 +66,32 @@ bool ExpectAround(const Polygon& polygon, const model::Pose& X_CB, const model::
   return true;
 }
 
-// Adds what the camera's own pose is not known to.
-void AddCameraNoise(const Polygon& polygon, const model::Pose& X_CO, SeenCorners::Covariance& cov) noexcept {
+// How the corners move with the camera, as a twist of C; zero where a corner is not before it.
+CornerSlope SlopeByCamera(const Polygon& polygon, const model::Pose& X_CO) noexcept {
   CornerSlope by_camera(2 * polygon.num_corners, 6);
   for (int i = 0; i < polygon.num_corners; ++i) {
     features::ImagePoint point;
     if (!features::ComputePoint(X_CO * polygon.corners[static_cast<std::size_t>(i)], Vec3::Zero(), point)) {
-      return;
+      by_camera.setZero();
+      break;
     }
     by_camera.middleRows<2>(2 * i) = point.L;
   }
+  return by_camera;
+}
+
+// Adds what the camera's own pose is not known to.
+void AddCameraNoise(CornerSlope by_camera, SeenCorners::Covariance& cov) noexcept {
   by_camera.leftCols<3>() *= kCameraShiftSigma;
   by_camera.rightCols<3>() *= kCameraTurnSigma;
   cov += by_camera.lazyProduct(by_camera.transpose());
+}
+
+// The squared distance of `innovation` in standard deviations of `S`.
+double Distance2(SeenCorners::Covariance S, SeenCorners::Vector innovation) noexcept {
+  model::FactorCholesky(S);
+  model::SolveLower(S, innovation);
+  return innovation.squaredNorm();
 }
 
 void Advance(const PredictConfig& config, double dt, PoseFilter& f) noexcept {
@@ -187,11 +203,15 @@ bool UpdatePose(const PredictConfig& config, const Polygon& polygon, const Corne
   SeenCorners::Covariance S;
   InOrder(view.seen, NearestFirst(view.seen.xy, expected), innovation, S);
   innovation -= expected;
-  AddCameraNoise(polygon, view.X_CB * next.X_BO, S);
+  const CornerSlope by_camera = SlopeByCamera(polygon, view.X_CB * next.X_BO);
+  AddCameraNoise(by_camera, S);
   // With S = L L^T: the gain is Y^T L^-1 and takes Y^T Y off P, Y = L^-1 H P.
   Gain Y = H.lazyProduct(next.P.topRows<6>());
   S += Y.leftCols<6>().lazyProduct(H.transpose());
   S += bent;
+  const double gate2 = config.gate_sigma * config.gate_sigma;
+  const SeenCorners::Covariance S_noise = S;
+  const SeenCorners::Vector off_by = innovation;
   model::FactorCholesky(S);
   model::SolveLower(S, Y);
   model::SolveLower(S, innovation);
@@ -200,8 +220,11 @@ bool UpdatePose(const PredictConfig& config, const Polygon& polygon, const Corne
     return false;
   }
   distance2 = off;
-  if (off > config.gate_sigma * config.gate_sigma) {
-    return false;
+  if (off > gate2) {
+    const CornerSlope doubted = by_camera.lazyProduct(view.doubt);
+    if (!(Distance2(S_noise + doubted.lazyProduct(by_camera.transpose()), off_by) <= gate2)) {
+      return false;
+    }
   }
   const Eigen::Matrix<double, F::kDim, 1> correction = Y.transpose().lazyProduct(innovation);
   next.P -= Y.transpose().lazyProduct(Y);
@@ -211,16 +234,20 @@ bool UpdatePose(const PredictConfig& config, const Polygon& polygon, const Corne
   next.v_BO_B += correction.segment<3>(F::kVelocity);
   next.a_BO_B += correction.segment<3>(F::kAcceleration);
   next.w_BO_B += correction.segment<3>(F::kTurnRate);
+  next.v_BO_B = Shortened(next.v_BO_B, config.target_speed_max);
+  next.a_BO_B = Shortened(next.a_BO_B, config.target_acceleration_max);
+  next.w_BO_B = Shortened(next.w_BO_B, config.target_turn_max);
   next.stamp_ns = view.stamp_ns;
   filter = next;
   return true;
 }
 
-FlatMotion MotionAt(const PoseFilter& filter, std::int64_t now_ns) noexcept {
+FlatMotion MotionAt(const PredictConfig& config, const PoseFilter& filter, std::int64_t now_ns) noexcept {
   const double dt = Seconds(now_ns - filter.stamp_ns);
   const Mat3 R = model::RotationOf(filter.w_BO_B * dt).lazyProduct(filter.X_BO.R);
-  return {{R, filter.X_BO.p + dt * (filter.v_BO_B + 0.5 * dt * filter.a_BO_B)},
-          filter.v_BO_B + dt * filter.a_BO_B,
+  const Vec3 way = dt * (filter.v_BO_B + 0.5 * dt * filter.a_BO_B);
+  return {{R, filter.X_BO.p + Shortened(way, config.target_speed_max * std::fabs(dt))},
+          Shortened(filter.v_BO_B + dt * filter.a_BO_B, config.target_speed_max),
           filter.w_BO_B};
 }
 

@@ -92,7 +92,7 @@ hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint
                          e.tail<3>().norm() <= config.move.pose_error_max / kLength);
   if (refused) {
     return GuardMotion(config, MotionWish::Velocity(model::VecN::Zero(config.arm.num_joints)), poses.X_BE.p,
-                       J_E_B, poses.X_BE.p, reference);
+                       J_E_B, poses, reference);
   }
   // Where the reference is one tick late by itself, the feedback has nothing to take away.
   Vec6 V = setpoint.V_BE_B + config.move.pose_gain * (e - kPeriodS * setpoint.V_BE_B);
@@ -115,7 +115,7 @@ hal::LimitSet FollowPose(const ServoConfig& config, const PoseSetpoint& setpoint
   if (dq_before.size() == wish.dq.size()) {
     wish.ddq = (wish.dq - dq_before) / kPeriodS;
   }
-  return motion.limits | GuardMotion(config, wish, poses.X_BE.p, J_E_B, poses.X_BE.p, reference);
+  return motion.limits | GuardMotion(config, wish, poses.X_BE.p, J_E_B, poses, reference);
 }
 
 bool StandsAt(const ServoConfig& config, const model::Pose& X_BE, const Reference& reference) noexcept {

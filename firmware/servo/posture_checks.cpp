@@ -27,11 +27,12 @@ JointRange RoomOfJoint(const ServoConfig& config, Eigen::Index i) noexcept {
   return {joint.q_min + room, joint.q_max - room};
 }
 
-bool KeepsOut(const ServoConfig& config, const model::Vec3& p_BE) noexcept {
+bool KeepsOut(const ServoConfig& config, const model::Pose& X_BE) noexcept {
   const GuardConfig& guard = config.guard;
-  bool keeps = p_BE.norm() <= guard.workspace_radius - guard.workspace_margin - kRadiusRoom;
+  bool keeps = X_BE.p.norm() <= guard.workspace_radius - guard.workspace_margin - kRadiusRoom;
   for (int i = 0; i < CountObstacles(guard.obstacles); ++i) {
-    keeps = keeps && ClearanceOf(guard.obstacles, i, p_BE).distance > 2.0 * guard.workspace_margin;
+    keeps = keeps && ClearanceOf(guard.obstacles, i, guard.hand, X_BE).clearance.distance >
+                         2.0 * guard.workspace_margin;
   }
   return keeps;
 }
@@ -48,7 +49,7 @@ bool IsArmClear(const ServoConfig& config, const model::ArmPoses& poses, const m
   const GuardConfig& guard = config.guard;
   const ArmLine line = LineOfArm(config.arm, poses);
   const Sight sight{poses, line, poses.X_BE * config.X_EC, config.feature.Outline(), X_BO};
-  return ClearanceOfPlanes(config.arm, guard.obstacles, line) > kLineRoom &&
+  return ClearanceOfPlanes(config.arm, guard, line) > kLineRoom &&
          (guard.hand_clearance <= 0.0 ||
           ClearanceOfHand(config.arm, line) > guard.hand_clearance + kLineRoom) &&
          (guard.sight_clearance <= 0.0 ||

@@ -1,47 +1,11 @@
 #include "fovea/servo/predict.hpp"
 
+#include <algorithm>
+
+#include "fovea/model/rotation.hpp"
+#include "fovea/servo/measurement_doubt.hpp"
+
 namespace fovea::servo {
-
-const JointHistory::Entry& JointHistory::FromOldest(int i) const noexcept {
-  const int index = (newest_ + kCapacity - size_ + 1 + i) % kCapacity;
-  return entries_[static_cast<std::size_t>(index)];
-}
-
-void JointHistory::Push(std::int64_t stamp_ns, const model::VecN& q) noexcept {
-  newest_ = (newest_ + 1) % kCapacity;
-  entries_[static_cast<std::size_t>(newest_)] = {stamp_ns, q};
-  if (size_ < kCapacity) {
-    ++size_;
-  }
-}
-
-bool JointHistory::At(std::int64_t stamp_ns, model::VecN& q) const noexcept {
-  if (size_ == 0 || stamp_ns < FromOldest(0).stamp_ns) {
-    return false;
-  }
-  // The first entry later than the stamp, by bisection.
-  int low = 0;
-  int high = size_;
-  while (low < high) {
-    const int middle = (low + high) / 2;
-    if (FromOldest(middle).stamp_ns > stamp_ns) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
-  const Entry& before = FromOldest(low - 1);
-  if (low == size_) {
-    q = before.q;
-    return true;
-  }
-  const Entry& after = FromOldest(low);
-  const double share =
-      static_cast<double>(stamp_ns - before.stamp_ns) / static_cast<double>(after.stamp_ns - before.stamp_ns);
-  q = before.q + share * (after.q - before.q);
-  return true;
-}
-
 namespace {
 
 // As a camera-rate servo knows a flat target: of the measurement's poses the one nearest to the estimate;
@@ -58,85 +22,160 @@ void HoldNearest(const features::SeenCorners& seen, const model::Mat3& R_CO, mod
   }
 }
 
-// Whether the measurement was taken in.
-bool TakePose(const ServoConfig& config, const hal::FeatureMeasurement& measurement,
-              const model::Pose& X_BC_then, PredictState& state) noexcept {
-  CornerView view;
-  if (!config.feature.TakeCorners(measurement, view.seen)) {
-    return false;
+// A measurement, and where the camera was when it was true.
+struct Seen {
+  const hal::FeatureMeasurement& measurement;
+  model::Pose X_BC;
+  model::Mat6 doubt;  // of that pose, as a twist of C
+};
+
+hal::Intake TakePose(const ServoConfig& config, const Seen& seen, CornerView& view,
+                     PredictState& state) noexcept {
+  view.doubt = seen.doubt;
+  view.stamp_ns = seen.measurement.stamp_ns;
+  view.X_CB = seen.X_BC.Inverse();
+  const hal::Intake intake = UpdatePoses(config.predict, config.feature.corners, view, state.poses);
+  if (intake == hal::Intake::kTaken) {
+    HoldNearest(view.seen, view.X_CB.R * state.poses.best().X_BO.R, state.X_CO_meas);
   }
-  view.stamp_ns = measurement.stamp_ns;
-  view.X_CB = X_BC_then.Inverse();
-  if (!UpdatePoses(config.predict, config.feature.corners, view, state.poses)) {
-    return false;
-  }
-  HoldNearest(view.seen, view.X_CB.R * state.poses.best().X_BO.R, state.X_CO_meas);
-  return true;
+  return intake;
 }
 
-bool TakePosition(const ServoConfig& config, const hal::FeatureMeasurement& measurement,
-                  const model::Pose& X_BC_then, PredictState& state) noexcept {
-  features::LiftedTarget lifted;
-  if (!config.feature.Lift(measurement, lifted)) {
-    return false;
-  }
-  if (measurement.kind == hal::FeatureKind::kCircle && measurement.num_poses == 2) {
+hal::Intake TakePosition(const ServoConfig& config, const Seen& seen, features::LiftedTarget lifted,
+                         PredictState& state) noexcept {
+  const model::Mat3& R = seen.X_BC.R;
+  if (seen.measurement.kind == hal::FeatureKind::kCircle && seen.measurement.num_poses == 2) {
     bool changed = false;
-    const int chosen = ChooseDisc(measurement, X_BC_then, state.disc, changed);
-    const auto& p = measurement.poses[static_cast<std::size_t>(chosen)].p_CO_C;
+    const int chosen = ChooseDisc(seen.measurement, seen.X_BC, state.disc, changed);
+    const auto& p = seen.measurement.poses[static_cast<std::size_t>(chosen)].p_CO_C;
     lifted.p_CO_C = {p[0], p[1], p[2]};
     if (changed) {  // what was believed of the centre was of the other pose
       const int accepted = state.filter.accepted;
       state.filter = TargetFilter{};
-      (void)Update(config.predict, measurement.stamp_ns, X_BC_then * lifted.p_CO_C,
-                   X_BC_then.R * lifted.cov_p * X_BC_then.R.transpose(), state.filter);
-      state.filter.accepted = accepted;
+      const hal::Intake intake =
+          Update(config.predict,
+                 {seen.measurement.stamp_ns, seen.X_BC * lifted.p_CO_C, R * lifted.cov_p * R.transpose()},
+                 state.filter);
+      state.filter.accepted = std::max(accepted, 1);
       state.X_CO_meas.p = lifted.p_CO_C;
-      return true;
+      return intake;
     }
   }
-  const model::Mat3 cov_p = X_BC_then.R * lifted.cov_p * X_BC_then.R.transpose();
-  if (!Update(config.predict, measurement.stamp_ns, X_BC_then * lifted.p_CO_C, cov_p, state.filter)) {
-    return false;
+  // The camera's twist [v; w] moves the target's place by v + w x p_CO_C.
+  Eigen::Matrix<double, 3, 6> by_camera;
+  by_camera << model::Mat3::Identity(), -model::CrossMatrix(lifted.p_CO_C);
+  const model::Mat3 doubt_C = by_camera * seen.doubt * by_camera.transpose();
+  const MeasuredCentre centre{seen.measurement.stamp_ns, seen.X_BC * lifted.p_CO_C,
+                              R * lifted.cov_p * R.transpose(), R * doubt_C * R.transpose()};
+  const hal::Intake intake = Update(config.predict, centre, state.filter);
+  if (intake == hal::Intake::kTaken) {
+    state.X_CO_meas.p = lifted.p_CO_C;
   }
-  state.X_CO_meas.p = lifted.p_CO_C;
-  return true;
+  return intake;
 }
 
-// Takes in one measurement; leaves the state as it was when the measurement says nothing.
-void TakeIn(const ServoConfig& config, std::int64_t now_ns, const hal::FeatureMeasurement& measurement,
-            PredictState& state) noexcept {
-  if (measurement.stamp_ns > now_ns + hal::kTickPeriodNs) {
-    return;  // nothing can have been seen yet; a filter that believed it would refuse all that is true
+// Where corners are: by the likeliest pose that they allow, or else by what is believed.
+model::Vec3 PlaceOfCorners(const features::SeenCorners& seen, const model::Pose& X_BC,
+                           const PoseChoice& choice) noexcept {
+  return seen.num_branches > 0 ? seen.branches[0].X_CO.p : X_BC.Inverse() * choice.best().X_BO.p;
+}
+
+bool IsInside(const Box& box, const model::Vec3& p) noexcept {
+  return (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
+}
+
+bool IsKnown(const ServoConfig& config, const PredictState& state) noexcept {
+  const int accepted = config.feature.SeesOrientation() ? state.poses.accepted : state.filter.accepted;
+  return accepted >= config.predict.accepted_min;
+}
+
+// What the filters believe of the target at `now_ns`.
+FlatMotion BelievedMotion(const ServoConfig& config, const PredictState& state,
+                          std::int64_t now_ns) noexcept {
+  if (config.feature.SeesOrientation()) {
+    return MotionAt(config.predict, state.poses, now_ns);
   }
-  model::VecN q_then;
-  if (!state.history.At(measurement.stamp_ns, q_then)) {
-    return;
-  }
-  model::ArmPoses poses_then;
-  model::ComputePoses(config.arm, q_then, poses_then);
-  const model::Pose X_BC_then = poses_then.X_BE * config.X_EC;
-  const bool taken = config.feature.SeesOrientation() ? TakePose(config, measurement, X_BC_then, state)
-                                                      : TakePosition(config, measurement, X_BC_then, state);
-  if (taken) {
-    state.has_accepted = true;
-    state.accepted_stamp_ns = measurement.stamp_ns;
-  }
+  const TargetMotion motion = MotionAt(config.predict, state.filter, now_ns);
+  return {{model::Mat3::Identity(), motion.p_BO}, motion.v_BO, model::Vec3::Zero()};
+}
+
+// Where a target goes on to that moves as `belief` says, without acceleration.
+FlatMotion GoesOn(const LastBelief& belief, std::int64_t now_ns) noexcept {
+  const double dt = 1e-9 * static_cast<double>(now_ns - belief.stamp_ns);
+  FlatMotion motion = belief.motion;
+  motion.X_BO.p += dt * motion.v_BO_B;
+  motion.X_BO.R = model::RotationOf(motion.w_BO_B * dt).lazyProduct(motion.X_BO.R);
+  return motion;
 }
 
 }  // namespace
 
-Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::Pose& X_BC,
-                   const hal::FeatureMeasurement* measurement, PredictState& state) noexcept {
-  if (measurement != nullptr) {
-    TakeIn(config, now_ns, *measurement, state);
+hal::Intake TakeMeasurement(const ServoConfig& config, std::int64_t now_ns,
+                            const hal::FeatureMeasurement& measurement, PredictState& state,
+                            EyeWatch& eye) noexcept {
+  if (!measurement.found) {
+    return hal::Intake::kNotFound;
   }
+  if (measurement.stamp_ns > now_ns + hal::kTickPeriodNs) {
+    return hal::Intake::kFromFuture;  // a filter that believed it would refuse all that is true
+  }
+  const auto camera_at = [&](std::int64_t time_ns, model::Pose& X) {
+    return CameraPoseAt(state.history, config.arm, config.X_EC, time_ns, X);
+  };
+  model::Pose X_BC;
+  if (!camera_at(measurement.stamp_ns, X_BC)) {
+    return hal::Intake::kTooOld;
+  }
+  const bool is_flat = config.feature.SeesOrientation();
+  CornerView view;
+  features::LiftedTarget lifted;
+  if (is_flat ? !config.feature.TakeCorners(measurement, view.seen)
+              : !config.feature.Lift(measurement, lifted)) {
+    return hal::Intake::kWrongKind;
+  }
+  const model::Vec3 p_CO_C = is_flat ? PlaceOfCorners(view.seen, X_BC, state.poses) : lifted.p_CO_C;
+
+  WatchPicture(config.predict, X_BC, p_CO_C, eye);
+  PictureView picture{measurement.stamp_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
+  if (measurement.same_for_ns > 0) {
+    // Where the camera was then is not known any more: the hand's way counts from here on.
+    static_cast<void>(camera_at(picture.since_ns, picture.X_BC_since));
+  }
+  if (IsStuck(config.predict.stuck_shift, picture, state.picture)) {
+    return hal::Intake::kStuckPicture;
+  }
+  if (!IsInside(config.predict.target_region, X_BC * p_CO_C)) {
+    return hal::Intake::kOutOfRegion;
+  }
+
+  const bool was_known = IsKnown(config, state);
+  const LastBelief before{true, now_ns, BelievedMotion(config, state, now_ns)};
+  const Seen seen{measurement, X_BC, MeasurementDoubt(config, state.history, measurement.stamp_ns, X_BC)};
+  const hal::Intake intake =
+      is_flat ? TakePose(config, seen, view, state) : TakePosition(config, seen, lifted, state);
+  if (intake != hal::Intake::kTaken) {
+    return intake;
+  }
+  if (was_known && !IsKnown(config, state)) {
+    state.belief = before;
+  } else if (IsKnown(config, state)) {
+    state.belief.active = false;
+  }
+  if (!state.belief.active) {
+    state.has_accepted = true;
+    state.accepted_stamp_ns = measurement.stamp_ns;
+  }
+  return intake;
+}
+
+Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::Pose& X_BC,
+                   const PredictState& state) noexcept {
   Prediction prediction;
   if (!state.has_accepted) {
     return prediction;
   }
   const bool is_flat = config.feature.SeesOrientation();
-  prediction.known = (is_flat ? state.poses.accepted : state.filter.accepted) >= config.predict.accepted_min;
+  prediction.known = IsKnown(config, state) || state.belief.active;
   prediction.age_ns = now_ns - state.accepted_stamp_ns;
   if (!config.predict.enabled) {
     // As a camera-rate servo does it: the measurement counts until the next one comes.
@@ -147,17 +186,14 @@ Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::
     }
     return prediction;
   }
+  const FlatMotion motion =
+      state.belief.active ? GoesOn(state.belief, now_ns) : BelievedMotion(config, state, now_ns);
+  prediction.p_BO = motion.X_BO.p;
+  prediction.v_BO = motion.v_BO_B;
   if (is_flat) {
-    const FlatMotion motion = MotionAt(state.poses, now_ns);
-    prediction.p_BO = motion.X_BO.p;
     prediction.R_BO = motion.X_BO.R;
-    prediction.v_BO = motion.v_BO_B;
     prediction.seen.X_CO.R = X_BC.R.transpose() * motion.X_BO.R;
     prediction.seen.w_BO_C = X_BC.R.transpose() * motion.w_BO_B;
-  } else {
-    const TargetMotion motion = MotionAt(state.filter, now_ns);
-    prediction.p_BO = motion.p_BO;
-    prediction.v_BO = motion.v_BO;
   }
   prediction.seen.X_CO.p = X_BC.Inverse() * prediction.p_BO;
   prediction.seen.v_BO_C = X_BC.R.transpose() * prediction.v_BO;

@@ -40,10 +40,12 @@ void LimitApproach(const ServoConfig& config, const MotionScene& scene, MotionLi
   const int num_obstacles = CountObstacles(obstacles);
   const double reaction_s = num_obstacles > 0 ? SlowestReaction(config) : 0.0;
   for (int i = 0; i < num_obstacles; ++i) {
-    const Clearance clearance = ClearanceOf(obstacles, i, scene.poses.X_BE.p);
-    const double room = clearance.distance - 2.0 * config.guard.workspace_margin;
+    const HandClearance hand = ClearanceOf(obstacles, i, config.guard.hand, scene.poses.X_BE);
+    const double room = hand.clearance.distance - 2.0 * config.guard.workspace_margin;
     const double speed = BarrierSpeed(room, deceleration, reaction_s);
-    limits.AddRow(-scene.J_E_B.transpose().lazyProduct(clearance.away), speed);
+    model::LinearJacobian J;
+    model::ComputeLinearJacobian(config.arm, scene.poses, hand.p_BP, J);
+    limits.AddRow(-J.transpose().lazyProduct(hand.clearance.away), speed);
   }
 }
 
@@ -63,7 +65,7 @@ void Gather(const ServoConfig& config, const MotionScene& scene, SingularityWatc
   int rows = limits.num_rows;
   LimitApproach(config, scene, limits);
   const ArmLine line = LineOfArm(config.arm, scene.poses);
-  LimitArm(config.arm, config.guard.obstacles, scene.poses, line, limits);
+  LimitArm(config, scene.poses, line, limits);
   LimitHand(config.guard.hand_clearance, config.arm, scene.poses, line, limits);
   named.NameNewRows(Limit::kObstacle, rows);
   if (scene.by_joints) {

@@ -66,6 +66,15 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.predict.gate_sigma, 1.0, huge, "servo.gate_sigma"},
       {config.predict.stale_s, 1e-3, config.predict.coast_s, "servo.stale_s"},
       {config.predict.coast_s, 1e-3, 0.5 * huge, "servo.coast_s"},
+      {config.predict.target_speed_max, 0.0, huge, "servo.target_speed_max"},
+      {config.predict.target_acceleration_max, 0.0, huge, "servo.target_acceleration_max"},
+      {config.predict.target_turn_max, 0.0, huge, "servo.target_turn_max"},
+      {config.predict.stuck_shift, 1e-6, huge, "servo.stuck_shift_px"},
+      {config.predict.way_in_vain, 1e-3, huge, "servo.way_in_vain"},
+      {config.predict.stamp_sigma, 0.0, 1.0, "servo.stamp_sigma"},
+      {config.predict.mount_shift_sigma, 0.0, 1.0, "servo.mount_shift_sigma"},
+      {config.predict.mount_turn_sigma, 0.0, 1.0, "servo.mount_turn_sigma"},
+      {config.predict.scale_sigma, 0.0, 1.0, "servo.scale_sigma"},
       {config.law.lambda, 0.0, 20.0, "servo.lambda"},
       {config.law.lambda_near, 0.0, 20.0, "servo.lambda_near"},
       {config.law.lambda_slope, 0.0, huge, "servo.lambda_slope"},
@@ -98,6 +107,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.guard.singularity_min, 0.0, 1.0, "safety.singularity_min"},
       {config.guard.sight_clearance, 0.0, 10.0, "safety.sight_clearance"},
       {config.guard.hand_clearance, 0.0, 10.0, "safety.hand_clearance"},
+      {config.guard.link_radius, 0.0, 10.0, "safety.link_radius"},
       {config.guard.view.face_cosine_min, 0.0, 1.0, "safety.face_tilt_max"},
       {config.move.speed, 1e-3, huge, "servo.move_speed"},
       {config.move.acceleration, 1e-3, huge, "servo.move_acceleration"},
@@ -122,6 +132,8 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {static_cast<double>(config.safety.missed_ticks), 1.0, huge, "safety.missed_ticks"},
       {static_cast<double>(config.safety.boot_ticks), 1.0, huge, "safety.boot_ticks"},
       {config.safety.boot_velocity, 1e-6, huge, "safety.boot_velocity"},
+      {config.safety.stiction_fraction, 0.0, 10.0, "safety.stiction_fraction"},
+      {config.safety.encoder_quantum, 0.0, 0.1, "safety.encoder_quantum"},
       {config.safety.setpoint_jump, 0.0, huge, "safety.setpoint_jump"},
   };
   for (const Range& range : ranges) {
@@ -149,6 +161,11 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
   const ViewConfig& view = config.guard.view;
   if (view.enabled && !(view.x_min < view.x_max && view.y_min < view.y_max)) {
     return Status(StatusCode::kOutOfRange, "safety.view_margin_px");
+  }
+  const Box& region = config.predict.target_region;
+  if (!(region.low.array() < region.high.array()).all() || !region.low.allFinite() ||
+      !region.high.allFinite()) {
+    return Status(StatusCode::kOutOfRange, "servo.target_region");
   }
   if (!config.X_EC.p.allFinite() || !config.X_EC.R.allFinite()) {
     return Status(StatusCode::kNonFinite, "camera.mount_xyz");
@@ -188,6 +205,16 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
     const Box& box = obstacles.boxes[static_cast<std::size_t>(i)];
     if (!(box.low.array() < box.high.array()).all() || !box.low.allFinite() || !box.high.allFinite()) {
       return Status(StatusCode::kOutOfRange, "safety.boxes");
+    }
+  }
+  const HandShape& hand = config.guard.hand;
+  if (hand.num_balls < 0 || hand.num_balls > HandShape::kMost) {
+    return Status(StatusCode::kOutOfRange, "safety.tools");
+  }
+  for (int i = 0; i < hand.num_balls; ++i) {
+    const HandShape::Ball& ball = hand.balls[static_cast<std::size_t>(i)];
+    if (!ball.p_EP.allFinite() || !IsPositive(ball.radius)) {
+      return Status(StatusCode::kOutOfRange, "safety.tools");
     }
   }
   if (config.arm.num_joints < kMotionLaws[static_cast<std::size_t>(config.motion_law.kind)].joints_min) {

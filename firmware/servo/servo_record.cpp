@@ -12,6 +12,7 @@ void ServoTask::WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) 
   record.arm = inputs.arm;
   record.has_feature = inputs.has_feature;
   record.feature = inputs.feature;
+  record.intake = state_.intake;
 
   record.mode = state_.mode.mode;
   record.hold_reason = state_.mode.hold_reason;

@@ -5,6 +5,8 @@
 
 #include "fovea/features/hold_orientation.hpp"
 #include "fovea/servo/clamp_torque.hpp"
+#include "fovea/servo/keep_apart.hpp"
+#include "fovea/servo/obstacle.hpp"
 #include "fovea/servo/smooth_step.hpp"
 
 namespace fovea::servo {
@@ -13,8 +15,7 @@ namespace {
 constexpr double kTargetMovedM = 0.02;       // so far from where it was unreachable, and it is tried again
 constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as there
 constexpr double kSpeedsUp = 0.2;            // a stop in which a joint gains so much is none [rad/s, m/s]
-constexpr double kBootShare = 0.5;      // of a joint's velocity limit in Boot, where nothing shall move it
-constexpr double kHangingShare = 0.25;  // of a contact's torque, on a joint whose encoder hangs
+constexpr double kBootShare = 0.5;  // of a joint's velocity limit in Boot, where nothing shall move it
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
@@ -31,20 +32,6 @@ bool IsFinite(const hal::FeatureMeasurement& feature) noexcept {
     }
   }
   return true;
-}
-
-// A joint's position is the same to the last bit, while other joints' are not: an arm that is held as a whole
-// is another matter. Where such a joint takes torque, it may run away unseen.
-bool EncoderHangs(const ServoConfig& config, const InputState& inputs, int joint) noexcept {
-  const auto hangs = [&](std::size_t k) { return inputs.still_ticks[k] >= config.safety.non_finite_ticks; };
-  if (!hangs(static_cast<std::size_t>(joint))) {
-    return false;
-  }
-  bool all = true;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(config.arm.num_joints); ++k) {
-    all = all && hangs(k);
-  }
-  return !all;
 }
 
 }  // namespace
@@ -93,24 +80,40 @@ void ServoTask::ComputeModel() noexcept {
   model::ComputeLinearJacobian(config_.arm, state_.poses, state_.poses.X_BE.p, state_.J_E_B);
 }
 
-// While the servo drives the arm: in Boot the robot may hold it by itself, and a floating arm is there to be
-// pushed.
+// While the servo drives the arm; a floating arm is there to be pushed.
 void ServoTask::CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept {
-  const bool drives = state_.mode.mode != hal::Mode::kBoot && state_.mode.mode != hal::Mode::kFault &&
+  const bool sound = missed_ticks == 0 && state_.inputs.bad_ticks == 0 && state_.inputs.non_finite_ticks == 0;
+  const bool drives = state_.mode.mode != hal::Mode::kFault &&
+                      (state_.mode.mode != hal::Mode::kBoot || state_.holds) &&
                       state_.law_state.kind != MotionLawKind::kFloat;
-  if (!drives || missed_ticks > 0 || state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0) {
+  if (!sound || !drives) {
     state_.contact.started = false;
+  } else {
+    ObserveContact(config_.safety.contact_gain, state_.dynamics, state_.dq, state_.tau_applied,
+                   state_.contact);
+  }
+  if (!sound) {
     return;
   }
-  ObserveContact(config_.safety.contact_gain, state_.dynamics, state_.dq, state_.tau_applied, state_.contact);
-  for (int i = 0; i < state_.contact.residual.size(); ++i) {
+  const std::int32_t hangs = WatchEncoders(
+      config_, {state_.q, state_.dq, state_.dynamics, state_.contact.residual, state_.reference.q, drives},
+      state_.encoders);
+  state_.blind = hangs >= 0;
+  if (fault != hal::Fault::kNone) {
+    return;
+  }
+  if (state_.blind) {
+    fault = hal::Fault::kArmStale;
+    joint = hangs;
+    return;
+  }
+  for (int i = 0; drives && i < state_.contact.residual.size(); ++i) {
     const double most =
         config_.safety.contact_torque_fraction * config_.arm.joints[static_cast<std::size_t>(i)].tau_max;
-    const double pushed = std::fabs(state_.contact.residual[i]);
-    const bool hangs = EncoderHangs(config_, state_.inputs, i) && !(pushed <= kHangingShare * most);
-    if ((hangs || !(pushed <= most)) && fault == hal::Fault::kNone) {
-      fault = hangs ? hal::Fault::kArmStale : hal::Fault::kContact;
+    if (!(std::fabs(state_.contact.residual[i]) <= most)) {
+      fault = hal::Fault::kContact;
       joint = i;
+      return;
     }
   }
 }
@@ -120,29 +123,27 @@ void ServoTask::PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noe
   if (new_state) {
     state_.predict.history.Push(state_.now_ns, state_.q);
   }
-  const hal::FeatureMeasurement* measurement = nullptr;
-  if (inputs.has_feature) {
-    if (!IsFinite(inputs.feature)) {
-      if (fault == hal::Fault::kNone) {
-        fault = hal::Fault::kNonFiniteFeature;
-      }
-    } else {
-      measurement = &inputs.feature;
-    }
+  state_.intake = hal::Intake::kNone;
+  if (inputs.has_feature && IsFinite(inputs.feature)) {
+    state_.intake = TakeMeasurement(config_, state_.now_ns, inputs.feature, state_.predict, state_.eye);
+  } else if (inputs.has_feature && fault == hal::Fault::kNone) {
+    fault = hal::Fault::kNonFiniteFeature;
   }
-  state_.prediction = Predict(config_, state_.now_ns, state_.X_BC, measurement, state_.predict);
+  state_.prediction = Predict(config_, state_.now_ns, state_.X_BC, state_.predict);
 }
 
 void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept {
   ModeInputs mode_inputs;
   mode_inputs.request = inputs.request;
   mode_inputs.arm_ready = state_.inputs.sound_ticks >= config_.safety.boot_ticks &&
-                          state_.dq.lpNorm<Eigen::Infinity>() < config_.safety.boot_velocity;
+                          state_.dq.lpNorm<Eigen::Infinity>() < config_.safety.boot_velocity &&
+                          (state_.mode.mode != hal::Mode::kBoot || IsOutside());
   mode_inputs.target_known = state_.prediction.known;
   mode_inputs.feature_age_ns = state_.prediction.age_ns;
   mode_inputs.goal_unreachable =
       static_cast<double>(state_.blocked_ns) > config_.law.unreachable_s * kSecondNs;
   mode_inputs.target_moved = (state_.prediction.p_BO - state_.p_BO_unreachable).norm() > kTargetMovedM;
+  mode_inputs.eye_doubted = state_.eye.doubted;
   mode_inputs.motion_asked = inputs.motion.kind != MotionKind::kNone || state_.motion.IsUnderWay();
   mode_inputs.motion_refused = state_.motion.refused;
   mode_inputs.fault = check.fault;
@@ -161,15 +162,10 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
     state_.motion.refused = false;
   }
   ForgetMotion();
-  if (before == hal::Mode::kBoot && now == hal::Mode::kHold) {
-    // The reference starts as the arm is, which may still be settling, and Hold brings it to rest.
-    state_.reference.q = state_.q;
-    state_.reference.dq = state_.dq;
-    state_.reference.ddq.setZero();
-  }
   if (now == hal::Mode::kTrack && before == hal::Mode::kHold) {
     state_.track_since_ns = state_.now_ns;
     state_.blocked_ns = 0;
+    state_.eye = EyeWatch{};
     state_.way = WayToGoal{};
     state_.R_BC_held = state_.X_BC.R;
   }
@@ -181,10 +177,18 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   }
   if (now == hal::Mode::kBoot) {
     state_.inputs.sound_ticks = 0;
+    state_.holds = false;
+    state_.contact.residual.setZero(config_.arm.num_joints);
+    state_.encoders = EncoderWatch{};
     state_.fault_joint = -1;
     state_.give_up = false;
     state_.stop_speed = HUGE_VAL;
   }
+}
+
+// In Boot: whether the arm stands outside what it keeps out of. Within, nothing that it could do is proved.
+bool ServoTask::IsOutside() const noexcept {
+  return CountObstacles(config_.guard.obstacles) == 0 || ClearanceOfArm(config_, state_.poses) > 0.0;
 }
 
 // What the last resolution knew of the posture holds no longer once something else has moved the arm.
@@ -242,7 +246,7 @@ bool ServoTask::ComputeFeature() noexcept {
 void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   state_.limits = 0;
   const bool floats = state_.law_state.kind == MotionLawKind::kFloat;
-  if (state_.mode.mode == hal::Mode::kBoot || state_.mode.mode == hal::Mode::kFault || floats) {
+  if (state_.mode.mode == hal::Mode::kFault || floats) {
     state_.reference.q = state_.q;
     state_.reference.dq.setZero();
     state_.reference.ddq.setZero();
@@ -251,6 +255,16 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   }
   if (state_.inputs.bad_ticks > 0) {
     return;  // nothing new is known: the last command stays in force
+  }
+  if (state_.mode.mode == hal::Mode::kBoot && !state_.holds) {
+    if (state_.inputs.sound_ticks == 0) {
+      return;
+    }
+    // The servo takes the arm over where it is, as fast as it is, and brings it to rest.
+    state_.reference.q = state_.q;
+    state_.reference.dq = state_.dq;
+    state_.reference.ddq.setZero();
+    state_.holds = true;
   }
   if (state_.mode.mode == hal::Mode::kMove) {
     state_.limits = FollowMotion(config_, inputs.motion, state_.now_ns, state_.motion, state_.reference);
@@ -280,10 +294,14 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   }
   model::ArmPoses reference_poses;
   model::ComputePoses(config_.arm, state_.reference.q, reference_poses);
+  if (state_.mode.mode == hal::Mode::kBoot && !IsOutside()) {
+    state_.limits |= hal::Bit(hal::Limit::kObstacle);  // why Boot goes on
+  }
   state_.limits |= GuardMotion(config_, MotionWish::Velocity(dq_des), state_.poses.X_BE.p, state_.J_E_B,
-                               reference_poses.X_BE.p, state_.reference);
+                               reference_poses, state_.reference);
   CheckFollowing();
   NoteBlocked();
+  NoteSteering();
 }
 
 void ServoTask::CheckFollowing() noexcept {
@@ -311,6 +329,17 @@ void ServoTask::NoteBlocked() noexcept {
   CountTick(blocked, state_.blocked_ns);
 }
 
+// Whether steering by what is seen brings the goal nearer. A way by the joints may lead away from it at
+// first.
+void ServoTask::NoteSteering() noexcept {
+  if (!IsTracking(state_.mode.mode) || !state_.feature_valid || state_.way.by_joints) {
+    return;
+  }
+  const model::Vec6 V_BC_C = state_.J_C.lazyProduct(state_.reference.dq);
+  WatchSteering(config_.predict, state_.law.e.norm() / state_.feature.s_star.norm(), V_BC_C.head<3>().norm(),
+                state_.eye);
+}
+
 void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
   const MotionLawInputs law_inputs{config_.arm,      state_.poses, state_.dynamics,
                                    state_.reference, state_.q,     state_.dq};
@@ -320,9 +349,12 @@ void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
   }
   switch (state_.mode.mode) {
     case hal::Mode::kBoot:
-      state_.tau.setZero(config_.arm.num_joints);
-      state_.law_state.Reset(state_.law_state.kind, config_.arm.num_joints);
-      break;
+      if (!state_.holds) {
+        state_.tau.setZero(config_.arm.num_joints);
+        state_.law_state.Reset(state_.law_state.kind, config_.arm.num_joints);
+        break;
+      }
+      [[fallthrough]];
     case hal::Mode::kHold:
     case hal::Mode::kTrack:
     case hal::Mode::kCoast:
@@ -337,7 +369,7 @@ void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
 
 void ServoTask::StopDamped() noexcept {
   // A damped stop needs true velocities; without them only the brakes are left.
-  const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 ||
+  const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 || state_.blind ||
                      state_.mode.fault == hal::Fault::kArmStale;
   const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
   // Nor does damping stop a joint whose motor is dead, or that is pushed: the arm gets faster again.

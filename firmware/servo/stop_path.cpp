@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/keep_apart.hpp"
 #include "fovea/servo/obstacle.hpp"
 #include "fovea/servo/velocity_change.hpp"
 
@@ -41,11 +42,15 @@ StopPlan PlanAll(const ServoConfig& config, const Reference& reference) noexcept
 
 using PerJoint = std::array<double, model::kMaxJoints>;
 
-// How far the end effector goes at most per travel of each joint: its distance from the joint's axis, which
-// the lengths of the links between them bound; 1 for a joint that slides.
-PerJoint Levers(const model::ArmModel& arm) noexcept {
+// How far any point of arm and hand goes at most per travel of each joint: its distance from the joint's
+// axis, which the lengths of the links between them bound; 1 for a joint that slides.
+PerJoint Levers(const model::ArmModel& arm, const HandShape& hand) noexcept {
   PerJoint levers{};
-  double length = arm.X_LnE.p.norm();  // of the links from here to the end effector
+  double reach = 0.0;  // of what is bolted to the end effector
+  for (int i = 0; i < hand.num_balls; ++i) {
+    reach = std::max(reach, hand.balls[static_cast<std::size_t>(i)].p_EP.norm());
+  }
+  double length = arm.X_LnE.p.norm() + reach;  // of the links from here on
   for (int i = arm.num_joints - 1; i >= 0; --i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = arm.joints[k];
@@ -67,13 +72,13 @@ class StopWay {
       : config_(config),
         reference_(reference),
         plan_(PlanAll(config, reference)),
-        levers_(Levers(config.arm)) {}
+        levers_(Levers(config.arm, config.guard.hand)) {}
 
   // The ticks' own steps come on top of the continuous motion.
   [[nodiscard]] double Duration() const noexcept { return plan_.duration_s + kPeriodS; }
 
-  // Where the joints are `t` seconds into the stop, and how fast the end effector can be from then on at
-  // most.
+  // Where the joints are `t` seconds into the stop, and how fast a point of the arm can be from then on
+  // at most.
   double At(double t, model::VecN& q) const noexcept {
     double fastest = 0.0;
     for (int i = 0; i < q.size(); ++i) {
@@ -88,7 +93,7 @@ class StopWay {
     return fastest;
   }
 
-  // How far the end effector is at most from where it was with the joints at `q_now` when the stop begins.
+  // How far a point of the arm is at most from where it was with the joints at `q_now` when the stop begins.
   [[nodiscard]] double FirstStep(const model::VecN& q_now) const noexcept {
     double reach = 0.0;
     for (int i = 0; i < q_now.size(); ++i) {
@@ -105,48 +110,91 @@ class StopWay {
   PerJoint levers_;
 };
 
-// What bounds the end effector's point, each with its margin; what is already past one may only come back.
+// What bounds the arm, each with its margin; what is already past one may only come back.
 class Bounds {
  public:
-  Bounds(const GuardConfig& guard, const model::Vec3& p_now) noexcept
-      : obstacles_(guard.obstacles),
-        num_obstacles_(CountObstacles(guard.obstacles)),
-        radius_(std::max(guard.workspace_radius - guard.workspace_margin, p_now.norm()) + kSlack) {
+  Bounds(const ServoConfig& config, const model::ArmPoses& now) noexcept
+      : config_(config),
+        guard_(config.guard),
+        num_obstacles_(CountObstacles(guard_.obstacles)),
+        radius_(std::max(guard_.workspace_radius - guard_.workspace_margin, now.X_BE.p.norm()) + kSlack) {
+    clear_now_ = radius_ - now.X_BE.p.norm();
+    const auto keep = [this](double margin, double clearance) {
+      const double least = std::min(margin, clearance) - kSlack;
+      clear_now_ = std::min(clear_now_, clearance - least);
+      return least;
+    };
     for (int i = 0; i < num_obstacles_; ++i) {
-      const double clearance = ClearanceOf(obstacles_, i, p_now).distance;
-      least_[static_cast<std::size_t>(i)] = std::min(guard.workspace_margin, clearance) - kSlack;
+      least_[static_cast<std::size_t>(i)] = keep(guard_.workspace_margin, HandTo(i, now));
+    }
+    if (guard_.obstacles.num_planes > 0 || guard_.hand_clearance > 0.0) {
+      const ArmLine line = LineOfArm(config.arm, now);
+      least_of_links_ = keep(guard_.workspace_margin, ClearanceOfPlanes(config.arm, guard_, line));
+      const double apart = ClearanceOfHand(config.arm, line);
+      least_apart_ = std::min(guard_.hand_clearance - kSoft, apart) - kSlack;
+      if (guard_.hand_clearance > 0.0) {
+        clear_now_ = std::min(clear_now_, 0.5 * (apart - least_apart_));
+      }
     }
   }
 
-  // The distance to the nearest; below 0, and `passed` set, where it is passed.
-  double Clear(const model::Vec3& p, hal::LimitSet& passed) const noexcept {
-    double clear = radius_ - p.norm();
+  // As below, when the stop begins.
+  [[nodiscard]] double clear_now() const noexcept { return clear_now_; }
+
+  // The distance that any point may still go; below 0, and `passed` set, where a bound is passed.
+  double Clear(const model::ArmPoses& poses, hal::LimitSet& passed) const noexcept {
+    double clear = radius_ - poses.X_BE.p.norm();
     if (!(clear >= 0.0)) {
       passed = hal::Bit(hal::Limit::kWorkspace);
       return clear;
     }
-    for (int i = 0; i < num_obstacles_; ++i) {
-      const double left = ClearanceOf(obstacles_, i, p).distance - least_[static_cast<std::size_t>(i)];
+    const auto keep = [&](double left) {
       if (!(left >= 0.0)) {
         passed = hal::Bit(hal::Limit::kObstacle);
-        return left;
       }
       clear = std::min(clear, left);
+      return left >= 0.0;
+    };
+    for (int i = 0; i < num_obstacles_; ++i) {
+      if (!keep(HandTo(i, poses) - least_[static_cast<std::size_t>(i)])) {
+        return clear;
+      }
+    }
+    if (guard_.obstacles.num_planes > 0 || guard_.hand_clearance > 0.0) {
+      const ArmLine line = LineOfArm(config_.arm, poses);
+      if (!keep(ClearanceOfPlanes(config_.arm, guard_, line) - least_of_links_)) {
+        return clear;
+      }
+      if (guard_.hand_clearance > 0.0) {
+        keep(0.5 * (ClearanceOfHand(config_.arm, line) - least_apart_));  // both may move
+      }
     }
     return clear;
   }
 
  private:
-  const Obstacles& obstacles_;
+  // The rows of the resolution (keep_apart.hpp) are nearly on their boundary where the arm slides along it:
+  // the proof leaves them so much room [m].
+  static constexpr double kSoft = 0.01;
+
+  [[nodiscard]] double HandTo(int i, const model::ArmPoses& poses) const noexcept {
+    return ClearanceOf(guard_.obstacles, i, guard_.hand, poses.X_BE).clearance.distance;
+  }
+
+  const ServoConfig& config_;
+  const GuardConfig& guard_;
   int num_obstacles_;
   double radius_;
-  std::array<double, 2 * Obstacles::kMost> least_{};  // clearance of each that must be kept
+  std::array<double, 2 * Obstacles::kMost> least_{};  // clearance of the hand from each that must be kept
+  double clear_now_ = 0.0;
+  double least_of_links_ = 0.0;  // and of the links from the planes
+  double least_apart_ = 0.0;     // and of the hand from the arm's trunk
 };
 
 }  // namespace
 
 hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference, const model::VecN& q_now,
-                           const model::Vec3& p_now) noexcept {
+                           const model::ArmPoses& poses_now) noexcept {
   const GuardConfig& guard = config.guard;
   const StopWay way(config, reference);
   const double duration = way.Duration();
@@ -162,12 +210,12 @@ hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference
     }
   }
 
-  // The end effector's point: at points of time that are denser at the start, which is what will be gone for
-  // certain. None is looked at that the point cannot have reached a bound by.
-  const Bounds bounds(guard, p_now);
+  // Arm and hand: at points of time that are denser at the start, which is what will be gone for certain.
+  // None is looked at by which no point can have reached a bound.
+  const Bounds bounds(config, poses_now);
   hal::LimitSet passed = 0;
   double fastest = way.At(0.0, q);
-  double clear_until = (bounds.Clear(p_now, passed) - way.FirstStep(q_now)) / std::max(fastest, kSlack);
+  double clear_until = (bounds.clear_now() - way.FirstStep(q_now)) / std::max(fastest, kSlack);
   model::ArmPoses poses;
   for (int sample = 0; sample < kStopSamples; ++sample) {
     const double share = static_cast<double>(sample) / (kStopSamples - 1);
@@ -178,7 +226,7 @@ hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference
     fastest = way.At(t, q);
     model::ComputePoses(config.arm, q, poses);
     passed = 0;
-    const double clear = bounds.Clear(poses.X_BE.p, passed);
+    const double clear = bounds.Clear(poses, passed);
     if (passed != 0) {
       return passed;
     }

@@ -1,6 +1,9 @@
 #include "fovea/servo/target_filter.hpp"
 
 #include <Eigen/LU>  // inverse of a 3x3
+#include <cmath>
+
+#include "fovea/servo/shortened.hpp"
 
 namespace fovea::servo {
 namespace {
@@ -15,12 +18,12 @@ constexpr double kJerkTime = 0.1;                // the jerk's mean over this ti
 
 double Seconds(std::int64_t duration_ns) noexcept { return static_cast<double>(duration_ns) * 1e-9; }
 
-void StartAt(std::int64_t stamp_ns, const Vec3& p_BO, const Mat3& cov_B, TargetFilter& filter) noexcept {
+void StartAt(const MeasuredCentre& measured, TargetFilter& filter) noexcept {
   filter = TargetFilter{};
   filter.accepted = 1;
-  filter.stamp_ns = stamp_ns;
-  filter.x[0] = p_BO;
-  filter.P[0][0] = cov_B;
+  filter.stamp_ns = measured.stamp_ns;
+  filter.x[0] = measured.p_BO;
+  filter.P[0][0] = measured.cov_B;
   filter.P[1][1] = Mat3::Identity() * (kStartSpeedSigma * kStartSpeedSigma);
   filter.P[2][2] = Mat3::Identity() * (kStartAccelerationSigma * kStartAccelerationSigma);
 }
@@ -63,29 +66,30 @@ TargetFilter::TargetFilter() noexcept {
   }
 }
 
-bool Update(const PredictConfig& config, std::int64_t stamp_ns, const Vec3& p_BO, const Mat3& cov_B,
-            TargetFilter& filter) noexcept {
+hal::Intake Update(const PredictConfig& config, const MeasuredCentre& measured,
+                   TargetFilter& filter) noexcept {
   if (filter.accepted == 0) {
-    StartAt(stamp_ns, p_BO, cov_B, filter);
-    return true;
+    StartAt(measured, filter);
+    return hal::Intake::kTaken;
   }
-  if (stamp_ns <= filter.stamp_ns) {
-    return false;  // no news
+  if (measured.stamp_ns <= filter.stamp_ns) {
+    return hal::Intake::kTooOld;
   }
   TargetFilter next = filter;
-  Advance(Seconds(stamp_ns - filter.stamp_ns), config.target_jerk, next);
+  Advance(Seconds(measured.stamp_ns - filter.stamp_ns), config.target_jerk, next);
 
-  const Vec3 innovation = p_BO - next.x[0];
-  const Mat3 S = next.P[0][0] + cov_B;
+  const Vec3 innovation = measured.p_BO - next.x[0];
+  const Mat3 S = next.P[0][0] + measured.cov_B;
   const Mat3 S_inverse = S.inverse();
-  const double distance2 = innovation.dot(S_inverse * innovation);
-  if (!(distance2 <= config.gate_sigma * config.gate_sigma)) {
+  const double gate2 = config.gate_sigma * config.gate_sigma;
+  const auto fits = [&](const Mat3& inverse) { return innovation.dot(inverse * innovation) <= gate2; };
+  if (!fits(S_inverse) && !fits((S + measured.doubt_B).inverse())) {
     if (filter.rejected_in_row + 1 >= config.gate_rejects_max) {
-      StartAt(stamp_ns, p_BO, cov_B, filter);
-      return true;
+      StartAt(measured, filter);
+      return hal::Intake::kTaken;
     }
     ++filter.rejected_in_row;
-    return false;
+    return hal::Intake::kOutlier;
   }
   std::array<Mat3, kOrder> K;
   for (std::size_t i = 0; i < kOrder; ++i) {
@@ -103,18 +107,22 @@ bool Update(const PredictConfig& config, std::int64_t stamp_ns, const Vec3& p_BO
       }
     }
   }
-  next.stamp_ns = stamp_ns;
+  next.x[1] = Shortened(next.x[1], config.target_speed_max);
+  next.x[2] = Shortened(next.x[2], config.target_acceleration_max);
+  next.stamp_ns = measured.stamp_ns;
   next.rejected_in_row = 0;
   if (next.accepted < config.accepted_min) {
     ++next.accepted;
   }
   filter = next;
-  return true;
+  return hal::Intake::kTaken;
 }
 
-TargetMotion MotionAt(const TargetFilter& filter, std::int64_t now_ns) noexcept {
+TargetMotion MotionAt(const PredictConfig& config, const TargetFilter& filter, std::int64_t now_ns) noexcept {
   const double dt = Seconds(now_ns - filter.stamp_ns);
-  return {filter.x[0] + dt * (filter.x[1] + 0.5 * dt * filter.x[2]), filter.x[1] + dt * filter.x[2]};
+  const Vec3 way = dt * (filter.x[1] + 0.5 * dt * filter.x[2]);
+  return {filter.x[0] + Shortened(way, config.target_speed_max * std::fabs(dt)),
+          Shortened(filter.x[1] + dt * filter.x[2], config.target_speed_max)};
 }
 
 }  // namespace fovea::servo

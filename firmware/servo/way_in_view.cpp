@@ -35,7 +35,7 @@ bool StepOnWay(const ServoConfig& config, const model::Pose& X_BO, const model::
   model::ComputePoses(config.arm, way.q, poses);
   const model::Pose X_BC = poses.X_BE * config.X_EC;
   const bool clear =
-      IsInView(config, X_BC, X_BO) && KeepsOut(config, poses.X_BE.p) && IsArmClear(config, poses, X_BO);
+      IsInView(config, X_BC, X_BO) && KeepsOut(config, poses.X_BE) && IsArmClear(config, poses, X_BO);
   model::VecN step = q_goal - way.q;
   const double left = step.lpNorm<Eigen::Infinity>();
   way.barred = way.barred || (way.steps >= kStepsToTurnIn && !clear) || way.steps >= kStepsMost;

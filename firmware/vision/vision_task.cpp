@@ -2,29 +2,69 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <exception>
 #include <opencv2/core.hpp>
 
 namespace fovea::vision {
+namespace {
 
-VisionTask::VisionTask(const DetectorConfig& config) : intrinsics_(config.intrinsics), detector_(config) {
+constexpr int kMostCameraFaults = 100;  // pictures in a row; a camera that stopped says so without end
+
+bool HasSizeOf(const Intrinsics& intrinsics, const hal::Frame& frame) {
+  return frame.width_px == intrinsics.width_px && frame.height_px == intrinsics.height_px;
+}
+
+hal::FeatureMeasurement NothingFound(const hal::Frame& frame, hal::FeatureKind kind) {
+  hal::FeatureMeasurement measurement;
+  measurement.stamp_ns = frame.stamp_ns;
+  measurement.sequence = frame.sequence;
+  measurement.kind = kind;
+  return measurement;
+}
+
+}  // namespace
+
+VisionTask::VisionTask(const DetectorConfig& config) : config_(config), detector_(config) {
   // One thread, so that a run repeats to the bit and other threads keep their cores.
   cv::setNumThreads(1);
 }
 
-hal::Status VisionTask::Process(const hal::Frame& frame, hal::FeatureMeasurement& measurement) {
-  if (frame.width_px != intrinsics_.width_px || frame.height_px != intrinsics_.height_px) {
-    return hal::Status(hal::StatusCode::kInvalidArgument, "frame size");
+hal::Status VisionTask::Refuse(const char* where, const std::string& why) {
+  last_ = Detection{};
+  last_.kind = config_.kind;
+  if (++failures_.frames == 1) {
+    failures_.first = why;
+    std::replace(failures_.first.begin(), failures_.first.end(), '\n', ' ');
   }
-  const int type = frame.format == hal::PixelFormat::kMono8 ? CV_8UC1 : CV_8UC3;
+  return hal::Status(hal::StatusCode::kInvalidArgument, where);
+}
+
+void VisionTask::MissFrame(const hal::Status& status) {
+  static_cast<void>(
+      Refuse(status.where(), std::string(hal::ToString(status.code())) + " (" + status.where() + ")"));
+}
+
+hal::Status VisionTask::Process(const hal::Frame& frame, hal::FeatureMeasurement& measurement) {
+  if (!HasSizeOf(config_.intrinsics, frame)) {
+    return Refuse("frame size", "a frame of " + std::to_string(frame.width_px) + " x " +
+                                    std::to_string(frame.height_px) + " px; the camera is calibrated for " +
+                                    std::to_string(config_.intrinsics.width_px) + " x " +
+                                    std::to_string(config_.intrinsics.height_px));
+  }
+  const int type = CV_8UC(hal::BytesPerPixel(frame.format));
   // A view of the camera's pixels; OpenCV's type has no const.
   const cv::Mat image(frame.height_px, frame.width_px, type, const_cast<std::uint8_t*>(frame.pixels.data()),
                       static_cast<std::size_t>(frame.stride_bytes));
-  last_ = detector_.Detect(image);
+  const std::int64_t same_for_ns = picture_.Look(image, frame.stamp_ns);
+  try {
+    last_ = detector_.Detect(image);
+  } catch (const std::exception& error) {
+    detector_.Forget();
+    return Refuse("detection", error.what());
+  }
 
-  measurement = hal::FeatureMeasurement{};
-  measurement.stamp_ns = frame.stamp_ns;
-  measurement.sequence = frame.sequence;
-  measurement.kind = last_.kind;
+  measurement = NothingFound(frame, last_.kind);
+  measurement.same_for_ns = same_for_ns;
   measurement.found = last_.found;
   measurement.confidence = last_.confidence;
   if (last_.found) {
@@ -49,18 +89,33 @@ hal::Status VisionTask::Process(const hal::Frame& frame, hal::FeatureMeasurement
 hal::Status RunVision(hal::Camera& camera, VisionTask& task, hal::FeatureSink& sink,
                       const std::atomic<bool>& stop, const FrameObserver& observer) {
   constexpr std::int64_t kPollNs = 100'000'000;  // how often `stop` is looked at while no frame comes
+  std::vector<std::uint8_t> black;               // in place of a picture of another size
+  int faults = 0;                                // of the camera, in a row
   while (!stop.load(std::memory_order_relaxed)) {
     hal::Frame frame;
-    hal::Status status = camera.Acquire(frame, kPollNs);
+    const hal::Status status = camera.Acquire(frame, kPollNs);
     if (status.code() == hal::StatusCode::kTimeout) {
       continue;
     }
-    hal::FeatureMeasurement measurement;
-    if (status.ok()) {
-      status = task.Process(frame, measurement);
+    if (status.code() == hal::StatusCode::kDeviceFault && ++faults < kMostCameraFaults) {
+      task.MissFrame(status);
+      continue;
     }
     if (!status.ok()) {
       return status;
+    }
+    faults = 0;
+    hal::FeatureMeasurement measurement;
+    if (!task.Process(frame, measurement).ok()) {
+      measurement = NothingFound(frame, task.config().kind);
+      if (!HasSizeOf(task.config().intrinsics, frame)) {
+        frame.width_px = task.config().intrinsics.width_px;
+        frame.height_px = task.config().intrinsics.height_px;
+        frame.stride_bytes = frame.width_px * hal::BytesPerPixel(frame.format);
+        black.resize(static_cast<std::size_t>(frame.stride_bytes) *
+                     static_cast<std::size_t>(frame.height_px));
+        frame.pixels = black;
+      }
     }
     sink.Put(measurement);
     if (observer) {

@@ -39,6 +39,18 @@ constexpr std::array<Entry, kNumLimits> kLimitTable{{
     {"field_of_view", "safety.view_margin_px"},
 }};
 
+constexpr std::array<Entry, kNumIntakes> kIntakeTable{{
+    {"none", ""},
+    {"taken", ""},
+    {"not_found", ""},
+    {"wrong_kind", "target.kind"},
+    {"from_future", "camera.latency_ms"},
+    {"too_old", ""},
+    {"stuck_picture", "servo.stuck_shift_px"},
+    {"out_of_region", "servo.target_region"},
+    {"outlier", "servo.gate_sigma"},
+}};
+
 // What comes from a file or a line may be none of the enumeration.
 template <typename Table, typename Enumerator>
 Entry EntryOf(const Table& table, Enumerator which) noexcept {
@@ -69,13 +81,16 @@ const char* Name(HoldReason reason) noexcept {
     case HoldReason::kGoalUnreachable: return "goal_unreachable";
     case HoldReason::kMotionDone: return "motion_done";
     case HoldReason::kMotionRefused: return "motion_refused";
+    case HoldReason::kEyeDoubted: return "eye_doubted";
   }
   return "unknown";
 }
 
 const char* Name(Fault fault) noexcept { return EntryOf(kFaultTable, fault).name; }
 const char* Name(Limit limit) noexcept { return EntryOf(kLimitTable, limit).name; }
+const char* Name(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).name; }
 const char* Key(Fault fault) noexcept { return EntryOf(kFaultTable, fault).key; }
 const char* Key(Limit limit) noexcept { return EntryOf(kLimitTable, limit).key; }
+const char* Key(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).key; }
 
 }  // namespace fovea::hal

@@ -34,6 +34,16 @@ fs::path FindConfig(const std::string& name_or_path) {
                                name_or_path, fmt::join(names, ", ")));
 }
 
+// A read of the robot's state ends before the robot counts as lost.
+void CheckTimes(const HwConfig& config) {
+  const int most_ms = config.servo.config.safety.arm_lost_ticks;
+  if (config.robot.time == "computer" && config.robot.state_timeout_ms > most_ms) {
+    throw InputError(fmt::format(
+        "robot.state_timeout_ms = {} is not allowed: at most safety.arm_lost_ticks, which is {} ms",
+        config.robot.state_timeout_ms, most_ms));
+  }
+}
+
 }  // namespace
 
 config::KeyTable HwKeys(HwConfig& c) {
@@ -47,7 +57,8 @@ config::KeyTable HwKeys(HwConfig& c) {
   keys.Choice("robot.time", c.robot.time, {"computer", "robot"},
               "whose clock stamps are in; robot: of a simulated one in lockstep");
   keys.Number("robot.state_timeout_ms", c.robot.state_timeout_ms, 1.0, 10000.0, "ms",
-              "no state for so long is a tick without one; long for a robot in lockstep");
+              "no state for so long is a tick without one; at most safety.arm_lost_ticks with robot.time = "
+              "\"computer\", long for a robot in lockstep");
   keys.Number("robot.torque_step", c.robot.torque_step, 0.001, 1.0, "Nm",
               "a joint's torque changes by no more from one state to the next");
   auto& camera = c.camera;
@@ -85,12 +96,18 @@ config::KeyTable HwKeys(HwConfig& c) {
   keys.Number("robot.speed_scale", c.robot.speed_scale, 0.01, 1.0, "",
               "share of servo.lambda, servo.lambda_near, safety.joint_velocity_fraction and "
               "safety.cartesian_speed that is used");
-  keys.Number("input.dead_man_s", c.input.dead_man_s, 0.0, 3600.0, "s",
-              "no line from the operator for so long: the arm is held; 0: nobody need be there");
+  keys.Number(
+      "input.dead_man_s", c.input.dead_man_s, 0.0, 3600.0, "s",
+      "no line on standard input for so long, by the loop's clock: the arm is held until somebody asks "
+      "for motion anew; 0: nobody need be there");
   keys.Integer("loop.priority", c.loop.priority, 1, 98, "", "of the servo's thread, SCHED_FIFO");
   keys.Integer("loop.cpu", c.loop.cpu, -1, 1023, "", "the processor that it stays on; -1: any");
   keys.Number("check.seconds", c.check.seconds, 0.1, 3600.0, "s",
               "for so long --check measures how late a thread wakes up");
+  keys.Number(
+      "check.gravity_torque", c.check.gravity_torque, 0.1, 100.0, "Nm",
+      "a joint's torque at rest may be so far off the model's gravity; further, and motion is refused");
+  keys.Number("check.gravity_s", c.check.gravity_s, 0.01, 60.0, "s", "over so long at rest it is averaged");
   keys.Number("log.picture_rate_hz", c.log.picture_rate_hz, 0.0, 1000.0, "Hz",
               "with --out: at most so many pictures per second are kept in the log");
   keys.Flag("log.film", c.log.film, "with --out: what the eye saw, as camera.mp4 and in the report");
@@ -109,6 +126,7 @@ HwConfig LoadHwConfig(const std::string& name_or_path, const std::vector<std::st
   for (const std::string& assignment : assignments) {
     keys.Apply(config::ParseAssignment(assignment));
   }
+  CheckTimes(config);
   return config;
 }
 
@@ -138,6 +156,12 @@ servo::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot
   }
   return config::MakeServoConfig(settings, robot, config::MakeMount(config.camera.calibration),
                                  config::MakeIntrinsics(config.camera.calibration), config.target);
+}
+
+RestMean MakeRestMean(const HwConfig& config) {
+  constexpr double kStatesPerSecond = 1000.0;
+  return {std::max(1, static_cast<int>(kStatesPerSecond * config.check.gravity_s)),
+          config.servo.config.safety.boot_velocity};
 }
 
 franka::FrankaConfig MakeFrankaConfig(const HwConfig& config, bool allow_motion) {

@@ -11,6 +11,7 @@
 #include "fovea/config/vision_keys.hpp"
 #include "fovea/franka/franka_arm.hpp"
 #include "fovea/robots/robot.hpp"
+#include "gravity_check.hpp"
 
 namespace fovea::hw {
 
@@ -33,7 +34,7 @@ struct HwConfig {
   } robot;
 
   struct {
-    double dead_man_s = 0.0;
+    double dead_man_s = 5.0;
   } input;
 
   struct {
@@ -57,6 +58,8 @@ struct HwConfig {
 
   struct {
     double seconds = 10.0;
+    double gravity_torque = 2.0;  // [Nm]
+    double gravity_s = 0.5;
   } check;
 
   struct {
@@ -84,6 +87,9 @@ robots::Robot LoadHwRobot(const HwConfig& config);
 // The servo's configuration: with a camera as it is calibrated, without one for an arm that is held.
 // InputError.
 servo::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot);
+
+// Over so many states, and of an arm so still, gravity is compared.
+RestMean MakeRestMean(const HwConfig& config);
 
 // What the driver of the robot is told.
 franka::FrankaConfig MakeFrankaConfig(const HwConfig& config, bool allow_motion);

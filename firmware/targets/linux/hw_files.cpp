@@ -186,20 +186,23 @@ void HwFiles::Write(const HwSummary& summary) {
 
 void HwFiles::WriteAll(const HwSummary& summary) {
   const std::string summary_json = ToJson(summary);
-  if (!begun_) {  // nothing moved, and there is nothing to draw
-    folder_.Replace({{"summary.json", summary_json}}, kFileNames);
-    return;
+  const bool has_ticks = begun_;
+  if (has_ticks) {
+    log_.Add(log::kTickTimesTopic, last_ns_, log::TickTimesMessage(summary.ticks));
+  } else {  // ended before it moved; there is nothing to draw, and the log says what it was to be
+    Begin(0);
   }
-  log_.Add(log::kTickTimesTopic, last_ns_, log::TickTimesMessage(summary.ticks));
   log_.AddAttachment("summary.json", "application/json", summary_json);
   std::vector<config::OutputFile> files{{"log.mcap", std::nullopt}, {"summary.json", summary_json}};
   if (has_film_) {
     files.push_back({kFilmName, std::nullopt});
   }
   log_.Finish();
-  report::RunData run = report::ReadRun(log_path_);
-  run.source = "log.mcap";  // as it will be called
-  files.push_back({"report.html", page_.Make({run})});
+  if (has_ticks) {
+    report::RunData run = report::ReadRun(log_path_);
+    run.source = "log.mcap";  // as it will be called
+    files.push_back({"report.html", page_.Make({run})});
+  }
   folder_.Replace(files, kFileNames);
 }
 

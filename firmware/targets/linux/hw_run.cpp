@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
+#include <csignal>
 #include <exception>
 #include <limits>
 #include <optional>
 #include <thread>
 #include <utility>
 
+#include "await_leave.hpp"
 #include "fovea/flight/flight_recorder.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
@@ -17,121 +18,61 @@
 #include "fovea/linux_rt/signal_queue.hpp"
 #include "fovea/log/record_hash.hpp"
 #include "hw_files.hpp"
-#include "operator_input.hpp"
+#include "operator_thread.hpp"
+#include "run_watch.hpp"
 
 namespace fovea::hw {
 namespace {
 
 constexpr std::size_t kRingCapacity = 8192;  // records; eight seconds
-constexpr int kLookMs = 20;
+constexpr std::size_t kFindings = 16;
+constexpr std::chrono::milliseconds kLook{10};
+constexpr std::chrono::milliseconds kSayLast{300};  // before the summary counts what could not be said
 
-// Tells changes of mode, and faults, as they come by.
-class Watch {
- public:
-  Watch(HwSummary& summary, const std::function<void(const std::string&)>& say)
-      : summary_(summary), say_(say) {}
-
-  void Add(const hal::TickRecord& record) {
-    start_ns_ = start_ns_ < 0 ? record.stamp_ns : start_ns_;
-    if (awaited_ && record.arm.sequence != sequence_) {
-      awaited_ = false;
-      back_ = true;
-    }
-    sequence_ = record.arm.sequence;
-    if (record.has_feature) {
-      summary_.feature_ages.Add(record.stamp_ns - record.feature.stamp_ns);
-    }
-    if (record.mode != summary_.mode || record.fault != summary_.fault) {
-      summary_.mode = record.mode;
-      summary_.fault = record.fault;
-      const bool faulty = record.fault != hal::Fault::kNone;
-      Say(fmt::format("{}{}{}", hal::Name(record.mode), faulty ? ": " : "",
-                      faulty ? hal::Name(record.fault) : ""));
-      if (faulty) {
-        summary_.faults.push_back({Seconds(record), record.fault, record.fault_joint});
-      }
-    }
-    if (summary_.modes.empty() || record.mode != summary_.modes.back().mode ||
-        record.hold_reason != summary_.modes.back().reason) {
-      summary_.modes.push_back({Seconds(record), record.mode, record.hold_reason});
-    }
-  }
-  // Whether the arm's states come anew; true once after each AwaitArm.
-  bool ArmIsBack() { return std::exchange(back_, false); }
-  void AwaitArm() { awaited_ = true; }
-  void Say(const std::string& line) {
-    summary_.events.push_back(line);
-    say_(line);
-  }
-
- private:
-  [[nodiscard]] double Seconds(const hal::TickRecord& record) const {
-    return 1e-9 * static_cast<double>(record.stamp_ns - start_ns_);
-  }
-
-  HwSummary& summary_;
-  const std::function<void(const std::string&)>& say_;
-  std::int64_t start_ns_ = -1;  // of the first tick
-  std::uint64_t sequence_ = 0;  // of the arm's newest state
-  bool awaited_ = false;
-  bool back_ = false;
-};
+// A terminal that is gone ends the run as Ctrl-C does, unless it was to outlive it (nohup).
+bool HearsHangUp() {
+  struct sigaction action {};
+  return sigaction(SIGHUP, nullptr, &action) != 0 || action.sa_handler != SIG_IGN;
+}
 
 // Everything of one run, wired up. Members stand in the order in which one needs the other.
 class Session {
  public:
-  Session(const HwConfig& config, const HwRunOptions& options,
-          const std::function<void(const std::string&)>& say)
+  Session(const HwConfig& config, const HwRunOptions& options, const linux_rt::SignalQueue& signals,
+          Speaker& speaker)
       : config_(config),
         options_(options),
-        say_(say),
+        speaker_(speaker),
         robot_(LoadHwRobot(config)),
         servo_(MakeHwServoConfig(config, robot_)),
-        watch_(summary_, say),
+        watch_(summary_, speaker),
         by_robot_(config.robot.time == "robot"),
         clock_(by_robot_ ? static_cast<hal::Clock&>(robot_clock_) : monotonic_),
-        enabled_(options.enable || !options.allow_motion),
-        recorder_(task_, options.out.empty() ? nullptr : &task_, kRingCapacity) {
+        recorder_(task_, options.out.empty() ? nullptr : &task_, kRingCapacity),
+        operator_({.dead_man_s = config.input.dead_man_s, .allow_motion = options.allow_motion}, clock_,
+                  signals, control_) {
     // Checked by MakeServoConfig already; it is refused there, in words.
     static_cast<void>(task_.Init(servo_));
     summary_.config = config.name;
+    summary_.allow_motion = options.allow_motion;
     if (!options.out.empty()) {
       files_.emplace(options.out, config, robot_, servo_, options.duration_s);
     }
     if (config.HasCamera()) {
-      vision_.emplace(config, servo_.feature, clock_.NowNs(), features_,
-                      [this](const hal::Frame& frame, const vision::Detection& detection) {
-                        if (files_) {
-                          files_->AddFrame(frame, detection);
-                        }
-                      });
-      say(fmt::format("camera: {}", vision_->name()));
+      OpenCamera();
     }
   }
 
   HwSummary Execute() {
     std::jthread thread([this] { RunServo(); });
-    while (!connected_ && !done_) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    if (connected_) {
-      say_(fmt::format("connected to {}:{}{}", config_.robot.host, config_.robot.port,
-                       options_.allow_motion ? "" : ", without leave to move"));
-      if (!enabled_) {
-        say_("the robot holds by itself; \"enable\" lets the servo move it");
-      }
-    }
-    while (!done_) {
-      HearSignals();
-      HearOperator();
-      TakeRecords();
-      LookAtCamera();
-      if (watch_.ArmIsBack()) {  // before that the servo would find the same fault again
-        loop_->Ask(servo::Request::kReset);
-      }
+    while (!control_.done) {
+      std::this_thread::sleep_for(kLook);
+      Attend();
     }
     thread.join();
-    if (failure_) {
+    control_.closing_ns = linux_rt::MonotonicNs();
+    Attend();
+    if (failure_ && !control_.ended) {
       std::rethrow_exception(failure_);
     }
     Summarise();
@@ -139,92 +80,177 @@ class Session {
   }
 
  private:
+  void OpenCamera() {
+    try {
+      vision_.emplace(config_, servo_.feature, clock_.NowNs(), features_,
+                      [this](const hal::Frame& frame, const vision::Detection& detection) {
+                        if (files_) {
+                          files_->AddFrame(frame, detection);
+                        }
+                      });
+      speaker_.Say(fmt::format("camera: {}", vision_->name()));
+    } catch (const std::exception& error) {
+      if (!control_.ended) {
+        throw;
+      }
+      watch_.Say(error.what());
+    }
+  }
+
   // The real-time thread.
   void RunServo() {
     summary_.realtime_missing =
         linux_rt::MakeThreadRealtime({.fifo_priority = config_.loop.priority, .cpu = config_.loop.cpu});
     // Last of all: from now on the robot sends a state each millisecond.
     try {
-      arm_.emplace(MakeFrankaConfig(config_, options_.allow_motion), by_robot_ ? &robot_clock_ : nullptr);
+      if (!control_.ended) {
+        Connect();
+      }
     } catch (...) {
       failure_ = std::current_exception();
-      done_ = true;
-      return;
     }
+    if (control_.loop != nullptr) {
+      Serve();
+    }
+    control_.done = true;
+  }
+
+  void Connect() {
+    arm_.emplace(MakeFrankaConfig(config_, options_.allow_motion), by_robot_ ? &robot_clock_ : nullptr);
     loop_.emplace(recorder_, *arm_, clock_, features_, recorder_, meter_);
-    if (options_.track) {
-      loop_->Ask(servo::Request::kTrack);
-    }
-    connected_ = true;
-    hal::ArmState state;
-    while (!enabled_ && !ended_) {  // the states are read, so that the newest is at hand
-      if (!arm_->Read(state).ok()) {
-        static_cast<void>(clock_.WaitUntil(clock_.NowNs() + hal::kTickPeriodNs));
+    control_.arm = &*arm_;
+    control_.loop = &*loop_;
+    GiveLeave(config_.input.dead_man_s, clock_, control_);
+  }
+
+  void Serve() {
+    if (!options_.allow_motion ||
+        AwaitLeave(config_, robot_.model, options_.enable, *arm_, clock_, control_, findings_)) {
+      if (options_.track) {
+        loop_->Ask(servo::Request::kTrack);
       }
-    }
-    if (!ended_) {
-      const std::int64_t end_ns =
-          options_.duration_s > 0.0
-              ? clock_.NowNs() +
-                    static_cast<std::int64_t>(options_.duration_s * static_cast<double>(hal::kNsPerSecond))
-              : std::numeric_limits<std::int64_t>::max();
-      status_ = loop_->Run(end_ns);
+      RunLoop();
     }
     summary_.success_rate = arm_->robot_state().control_command_success_rate;
     arm_->Stop();
-    done_ = true;
   }
 
-  void End() {
-    watch_.Say("told to end");
-    ended_ = true;
-    loop_->Stop();
-  }
-
-  void Recover() {
-    watch_.Say("told to recover");
-    arm_->AskRecovery();
-    watch_.AwaitArm();
-  }
-
-  void HearSignals() {
-    const int signal = signals_.Next(kLookMs);
-    if (signal == SIGINT || signal == SIGTERM) {
-      End();
-    } else if (signal == SIGUSR1) {
-      Recover();
+  void RunLoop() {
+    if (control_.ended) {
+      return;
+    }
+    constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
+    const double duration_ns = options_.duration_s * static_cast<double>(hal::kNsPerSecond);
+    status_ =
+        loop_->Run(duration_ns > 0.0 ? clock_.NowNs() + static_cast<std::int64_t>(duration_ns) : kForEver);
+    if (status_.ok() && options_.allow_motion && !control_.ended) {
+      loop_->Finish();
+      status_ = loop_->Run(kForEver);
     }
   }
 
-  void HearOperator() {
-    while (const std::optional<Word> word = operator_.Next()) {
-      silence_told_ = false;
-      if (*word == Word::kEnable) {
-        enabled_ = true;
+  // The main thread: whatever came from the others.
+  void Attend() {
+    TellConnection();
+    findings_.Drain(findings_.End(), [this](const LeaveFinding& finding) {
+      Tell(finding, "enable");
+      if (finding.passed) {
         watch_.Say("enabled");
-      } else if (*word == Word::kTrack) {
-        loop_->Ask(servo::Request::kTrack);
-      } else if (*word == Word::kHold) {
-        loop_->Ask(servo::Request::kHold);
-      } else if (*word == Word::kRecover) {
-        Recover();
-      } else if (*word == Word::kEnd) {
-        End();
-      } else if (const std::string line = operator_.TakeUnknown(); !line.empty()) {
-        say_(fmt::format("\"{}\" is not known; enable, track, hold, recover, end", line));
+      }
+    });
+    TellLease();
+    operator_.Drain([this](const Heard& heard) { Tell(heard); });
+    TakeRecords();
+    LookAtCamera();
+    // Before that the servo would find the same fault again.
+    if (watch_.ArmIsBack() && summary_.fault != hal::Fault::kNone) {
+      look_.emplace(config_, robot_.model);
+    }
+  }
+
+  void TellConnection() {
+    if (connection_told_ || control_.loop == nullptr) {
+      return;
+    }
+    connection_told_ = true;
+    speaker_.Say(fmt::format("connected to {}:{}{}", config_.robot.host, config_.robot.port,
+                             options_.allow_motion ? "" : ", without leave to move"));
+    if (!options_.allow_motion) {
+      return;
+    }
+    if (!options_.enable) {
+      speaker_.Say("the robot holds by itself; \"enable\" lets the servo move it");
+    }
+    if (config_.input.dead_man_s > 0.0) {
+      speaker_.Say(
+          fmt::format("a line on standard input at least every {} s keeps the arm moving, else it is held; "
+                      "for a run that nobody watches: --set input.dead_man_s=0",
+                      config_.input.dead_man_s));
+    }
+  }
+
+  // `word` asks anew.
+  void Tell(const LeaveFinding& finding, const char* word) {
+    const std::string words = InWords(finding, config_.check.gravity_torque);
+    summary_.refusal = finding.passed ? "" : words;
+    if (finding.trouble == nullptr) {
+      summary_.gravity = finding.gravity;
+    }
+    watch_.Say(words);
+    if (!finding.passed) {
+      speaker_.Say(fmt::format("the robot holds by itself; set it right and type \"{}\" anew", word));
+    }
+  }
+
+  // Of a robot that recovered, and holds by itself: the servo gets it back when gravity is as before the
+  // start.
+  void LookBeforeReset(const hal::ArmState& state) {
+    const bool is_new = std::exchange(looked_at_, state.sequence) != state.sequence;
+    if (!look_ || !is_new) {
+      return;
+    }
+    if (const auto finding = look_->Add(hal::Status::Ok(), state)) {
+      look_.reset();
+      Tell(*finding, "recover");
+      if (finding->passed) {
+        loop_->Ask(servo::Request::kReset);
+        speaker_.Say("recovered: the servo holds; \"track\" asks for motion anew");
       }
     }
-    if (config_.input.dead_man_s > 0.0 && enabled_ && !silence_told_ &&
-        operator_.silent_s() > config_.input.dead_man_s) {
-      silence_told_ = true;
+  }
+
+  void TellLease() {
+    const std::uint64_t ends = control_.loop != nullptr ? loop_->lease_ends() : 0;
+    if (ends > lease_ends_told_) {
+      lease_ends_told_ = ends;
+      summary_.operator_silent = true;
       watch_.Say("the operator is silent: hold");
-      loop_->Ask(servo::Request::kHold);
+    }
+  }
+
+  void Tell(const Heard& heard) {
+    if (heard.word == Word::kAlive) {
+      if (heard.unknown.front() != 0) {
+        speaker_.Say(
+            fmt::format("\"{}\" is not known; enable, track, hold, recover, end", heard.unknown.data()));
+      }
+      return;
+    }
+    summary_.words.push_back({heard.stamp_ns, Name(heard.word)});
+    if (heard.word == Word::kTrack) {
+      summary_.operator_silent = false;
+    } else if (heard.word == Word::kRecover) {
+      watch_.Say("told to recover");
+      watch_.AwaitArm();
+    } else if (heard.word == Word::kEnd) {
+      watch_.Say("told to end");
     }
   }
 
   void TakeRecords() {
     const auto take = [this](const flight::FlightRecord& flown) {
-      watch_.Add(flown.record);
+      watch_.Add(flown.record, flown.record.tick >= loop_->finish_tick());
+      LookBeforeReset(flown.record.arm);
       hash_.Add(flown.record);
       if (files_) {
         files_->AddRecord(flown);
@@ -245,22 +271,23 @@ class Session {
   }
 
   void Summarise() {
-    TakeRecords();
     if (!status_.ok()) {
       watch_.Say(fmt::format("the loop ended: {} ({})", hal::ToString(status_.code()), status_.where()));
     }
-    if (arm_->phase() == franka::MotionPhase::kFailed) {
+    if (arm_ && arm_->phase() == franka::MotionPhase::kFailed) {
       watch_.Say(fmt::format("the robot: {}", arm_->failure()));
     }
     for (const std::string& line : summary_.realtime_missing) {
-      say_("real time: " + line);
+      speaker_.Say("real time: " + line);
     }
     if (vision_) {
       summary_.camera = vision_->Finish();
       summary_.seen = vision_->seen();
     }
-    summary_.loop = loop_->counters();
-    summary_.robot = arm_->counters();
+    if (loop_) {
+      summary_.loop = loop_->counters();
+      summary_.robot = arm_->counters();
+    }
     summary_.ticks = meter_.durations();
     summary_.heap_counted = linux_rt::HeapCounterActive();
     summary_.heap_calls = meter_.heap_calls();
@@ -273,30 +300,33 @@ class Session {
       for (const std::string& error : summary_.log->film_errors) {
         watch_.Say(error);
       }
+    }
+    speaker_.Wait(kSayLast);
+    summary_.lines_unsaid = speaker_.unsaid();
+    if (files_) {
       files_->Write(summary_);
     }
   }
 
   const HwConfig& config_;
   const HwRunOptions options_;
-  const std::function<void(const std::string&)>& say_;
+  Speaker& speaker_;
   const robots::Robot robot_;
   const servo::ServoConfig servo_;
   HwSummary summary_;
-  Watch watch_;
-  const linux_rt::SignalQueue signals_{SIGINT, SIGTERM, SIGUSR1};
-  OperatorInput operator_;
+  RunWatch watch_;
   servo::ServoTask task_;
   franka::RobotClock robot_clock_;
   linux_rt::MonotonicClock monotonic_;
   const bool by_robot_;
   hal::Clock& clock_;
-  std::atomic<bool> enabled_;
-  std::atomic<bool> connected_{false};  // arm_ and loop_ are there
-  std::atomic<bool> ended_{false};
-  std::atomic<bool> done_{false};
-  bool silence_told_ = false;
+  RunControl control_;
+  LeaveRing findings_{kFindings};
+  bool connection_told_ = false;
+  std::uint64_t lease_ends_told_ = 0;
   bool camera_failed_ = false;
+  std::optional<LeaveLook> look_;  // after a recovery
+  std::uint64_t looked_at_ = 0;    // the number of its newest state
   hal::FeatureMailbox features_;
   std::optional<HwFiles> files_;  // the vision thread uses it
   std::optional<HwVision> vision_;
@@ -307,13 +337,16 @@ class Session {
   std::optional<servo::ServoLoop> loop_;
   hal::Status status_;
   std::exception_ptr failure_;  // why there is no connection
+  OperatorThread operator_;     // last: it uses the loop, the arm and the clock
 };
 
 }  // namespace
 
-HwSummary Run(const HwConfig& config, const HwRunOptions& options,
-              const std::function<void(const std::string&)>& say) {
-  return Session(config, options, say).Execute();
+HwSummary Run(const HwConfig& config, const HwRunOptions& options, Speaker& speaker) {
+  // From here on a signal ends the run in order, and a reader that is gone ends nothing.
+  std::signal(SIGPIPE, SIG_IGN);
+  const linux_rt::SignalQueue signals{SIGINT, SIGTERM, SIGUSR1, HearsHangUp() ? SIGHUP : SIGINT};
+  return Session(config, options, signals, speaker).Execute();
 }
 
 }  // namespace fovea::hw

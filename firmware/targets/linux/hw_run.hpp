@@ -1,11 +1,11 @@
 // The servo on the robot, until somebody ends it.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "hw_config.hpp"
 #include "hw_summary.hpp"
+#include "speaker.hpp"
 
 namespace fovea::hw {
 
@@ -17,13 +17,14 @@ struct HwRunOptions {
   std::string out;          // the folder for log, report and summary; empty: none
 };
 
-// Connects, waits for the operator's leave (see operator_input.hpp) while the robot holds by itself, runs the
-// servo on a real-time thread, and ends in order: at "end", SIGINT, SIGTERM or after the duration the motion
-// is finished by the robot's own way before the connection is closed. "recover" or SIGUSR1 asks a robot that
-// stopped to recover, and the servo to start anew. An operator who is silent for longer than
-// input.dead_man_s has the arm held. Without a camera it is held where it stands. `say` gets a line for each
-// event. InputError (also of a folder that cannot be written to), NetworkError, CameraError.
-HwSummary Run(const HwConfig& config, const HwRunOptions& options,
-              const std::function<void(const std::string&)>& say);
+// Connects, waits for the operator's leave (see operator_input.hpp) while the robot holds by itself, compares
+// gravity with what the joints feel, runs the servo on a real-time thread, and ends in order: at "end",
+// SIGINT, SIGTERM, SIGHUP or after the duration the arm is brought to rest, and the motion is finished by the
+// robot's own way before the connection is closed; told a second time, at once. "recover" or SIGUSR1 asks a
+// robot that stopped to recover, and the servo to start anew. An operator who is silent for longer than
+// input.dead_man_s has the arm held. Without a camera it is held where it stands. Neither what `speaker` says
+// nor what is written delays any of this. InputError (also of a folder that cannot be written to),
+// NetworkError, CameraError.
+HwSummary Run(const HwConfig& config, const HwRunOptions& options, Speaker& speaker);
 
 }  // namespace fovea::hw

@@ -1,7 +1,10 @@
 #include "hw_summary.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "fovea/build_info.hpp"
@@ -12,6 +15,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kAtGoalPx = 3.0;  // a target seen within this of its goal is there
+constexpr const char* kUnknown =
+    "how far the camera truly is from its goal, in depth above all, is not known: a wrong focal length, "
+    "mount "
+    "or target size does not show in its own picture";
 
 Json ModesOf(const HwSummary& s) {
   Json modes = Json::array();
@@ -34,41 +41,127 @@ Json FaultsOf(const HwSummary& s) {
   return faults;
 }
 
-}  // namespace
+std::string LastSeen(const std::optional<SeenError>& seen) {
+  if (seen && seen->last_px) {
+    return fmt::format("the camera saw it {:.2f} px off its goal", *seen->last_px);
+  }
+  if (seen && seen->frames > 0 && seen->failures.frames == seen->frames) {
+    return fmt::format("none of the camera's {} pictures could be looked at ({})", seen->frames,
+                       seen->failures.first);
+  }
+  return "the camera never saw it";
+}
 
-void Judge(HwSummary& s) {
-  const std::string last = s.seen && s.seen->last_px
-                               ? fmt::format("the camera saw it {:.2f} px off its goal", *s.seen->last_px)
-                               : "the camera never saw it";
-  const hal::HoldReason reason =
-      s.mode == hal::Mode::kHold && !s.modes.empty() ? s.modes.back().reason : hal::HoldReason::kNone;
-  s.good = false;
+Json GravityOf(const HwSummary& s) {
+  if (!s.gravity) {
+    return nullptr;
+  }
+  return {{"torque_off_nm", s.gravity->worst_nm},
+          {"joint", s.gravity->joint + 1},
+          {"unknown_mass_kg", s.gravity->unknown_mass_kg}};
+}
+
+Json WordsOf(const HwSummary& s) {
+  Json words = Json::array();
+  for (const WordEvent& w : s.words) {
+    Json t_s = nullptr;
+    if (s.start_ns) {
+      t_s = 1e-9 * static_cast<double>(w.stamp_ns - *s.start_ns);
+    }
+    words.push_back({{"t_s", t_s}, {"word", w.word}});
+  }
+  return words;
+}
+
+bool HasTracked(const HwSummary& s) {
+  return std::any_of(s.modes.begin(), s.modes.end(), [](const ModeEvent& m) {
+    return m.mode == hal::Mode::kTrack || m.mode == hal::Mode::kCoast;
+  });
+}
+
+// Faults that it was recovered from, by name.
+std::string RecoveredFrom(const HwSummary& s) {
+  const std::size_t left = s.fault != hal::Fault::kNone && !s.faults.empty() ? 1 : 0;
+  std::map<std::string, int> counts;
+  for (std::size_t k = 0; k + left < s.faults.size(); ++k) {
+    ++counts[hal::Name(s.faults[k].fault)];
+  }
+  std::vector<std::string> words;
+  for (const auto& [name, count] : counts) {
+    words.push_back(count > 1 ? fmt::format("{} ({} times)", name, count) : name);
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+void JudgeEnd(HwSummary& s) {
+  const std::string last = LastSeen(s.seen);
+  const hal::HoldReason reason = s.hold_reason;
+  s.converged = false;
   if (s.fault != hal::Fault::kNone) {
     s.verdict = fmt::format("it ended in a fault: {}", hal::Name(s.fault));
+  } else if (!s.refusal.empty()) {
+    s.verdict = s.refusal;
+  } else if (s.loop.ticks == 0) {
+    s.verdict = "the servo was never told to begin";
+  } else if (s.mode == hal::Mode::kBoot) {
+    s.verdict = "it never left mode boot: the arm's states were not sound, or it did not come to rest";
+  } else if (s.seen && s.seen->frames_detected == 0) {
+    s.verdict = fmt::format("{}, in {} frames; it ended in mode {}", last, s.seen->frames, hal::Name(s.mode));
+  } else if (!s.allow_motion) {
+    s.converged = std::nullopt;
+    s.verdict = fmt::format("nothing was commanded; it ended without a fault, in mode {}", hal::Name(s.mode));
   } else if (s.mode == hal::Mode::kTrack || s.mode == hal::Mode::kCoast) {
-    s.good = s.mode == hal::Mode::kTrack && s.seen && s.seen->last_px && *s.seen->last_px <= kAtGoalPx;
+    s.converged = s.mode == hal::Mode::kTrack && s.seen && s.seen->last_px && *s.seen->last_px <= kAtGoalPx;
     s.verdict = fmt::format("it ended while it followed the target; at last {}", last);
   } else if (reason == hal::HoldReason::kNoTarget || reason == hal::HoldReason::kTargetLost ||
              reason == hal::HoldReason::kGoalUnreachable) {
     s.verdict =
         fmt::format("it was to follow the target, and held in the end ({}); {}", hal::Name(reason), last);
+  } else if (s.operator_silent && HasTracked(s)) {
+    s.verdict =
+        fmt::format("it was to follow the target, and was held since the operator was silent; {}", last);
   } else {
-    s.good = s.loop.ticks > 0;
-    s.verdict = s.good ? fmt::format("it ended without a fault, in mode {}", hal::Name(s.mode))
-                       : "the servo was never told to begin";
+    s.converged = std::nullopt;
+    s.verdict = fmt::format("it ended without a fault, in mode {}", hal::Name(s.mode));
+  }
+}
+
+}  // namespace
+
+void Judge(HwSummary& s) {
+  JudgeEnd(s);
+  if (const std::string recovered = RecoveredFrom(s); !recovered.empty()) {
+    s.verdict += "; recovered from " + recovered;
+  }
+  if (s.converged == true) {
+    s.verdict += fmt::format("; {}", kUnknown);
   }
 }
 
 std::string ToJson(const HwSummary& s) {
   Json json{
       {"config", s.config},
-      {"converged", s.good},
+      {"converged", s.converged ? Json(*s.converged) : Json(nullptr)},
       {"verdict", s.verdict},
+      {"final_error_px_rms", nullptr},
+      {"final_error_mm", nullptr},
+      {"final_error_lateral_mm", nullptr},
+      {"final_error_depth_mm", nullptr},
+      {"final_error_deg", nullptr},
+      {"unknown",
+       {{"final_error_px_rms", kUnknown}, {"final_error_mm", kUnknown}, {"final_error_deg", kUnknown}}},
       {"mode", hal::Name(s.mode)},
       {"fault", hal::Name(s.fault)},
       {"events", s.events},
+      {"start_ns", s.start_ns ? Json(*s.start_ns) : Json(nullptr)},
+      {"finish_t_s", s.finish_t_s ? Json(*s.finish_t_s) : Json(nullptr)},
       {"modes", ModesOf(s)},
       {"faults", FaultsOf(s)},
+      {"faults_recovered", s.faults.size() - (s.fault != hal::Fault::kNone && !s.faults.empty() ? 1U : 0U)},
+      {"gravity", GravityOf(s)},
+      {"words", WordsOf(s)},
+      {"dead_man_holds", s.loop.lease_ends},
+      {"lines_unsaid", s.lines_unsaid},
       {"ticks", s.loop.ticks},
       {"overruns", s.loop.overruns},
       {"missed_ticks", s.loop.missed_ticks},
@@ -108,20 +201,24 @@ std::string ToJson(const HwSummary& s) {
     json["film_errors"] = s.log->film_errors;
   }
   if (s.seen) {
-    json["camera"] = {{"frames", s.seen->frames},
-                      {"frames_detected", s.seen->frames_detected},
-                      {"seen_error_px", s.seen->last_px ? Json(*s.seen->last_px) : Json(nullptr)},
-                      {"feature_age_ms",
-                       {{"p50", 1e-6 * static_cast<double>(s.feature_ages.Percentile(0.5))},
-                        {"max", 1e-6 * static_cast<double>(s.feature_ages.max_ns())}}},
-                      {"incomplete", s.camera.incomplete},
-                      {"lost", s.camera.lost},
-                      {"overtaken", s.camera.overtaken},
-                      {"missing_packets", s.camera.missing_packets},
-                      {"stamped_by_clock", s.camera.stamped_by_clock},
-                      {"clock_refused", s.camera.clock_refused},
-                      {"disconnects", s.camera.disconnects},
-                      {"reconnects", s.camera.reconnects}};
+    json["camera"] = {
+        {"frames", s.seen->frames},
+        {"frames_detected", s.seen->frames_detected},
+        {"frames_failed", s.seen->failures.frames},
+        {"frame_failure", s.seen->failures.frames > 0 ? Json(s.seen->failures.first) : Json(nullptr)},
+        {"seen_error_px", s.seen->last_px ? Json(*s.seen->last_px) : Json(nullptr)},
+        {"measurements", s.measurements},
+        {"feature_age_ms",
+         {{"p50", 1e-6 * static_cast<double>(s.feature_ages.Percentile(0.5))},
+          {"max", 1e-6 * static_cast<double>(s.feature_ages.max_ns())}}},
+        {"incomplete", s.camera.incomplete},
+        {"lost", s.camera.lost},
+        {"overtaken", s.camera.overtaken},
+        {"missing_packets", s.camera.missing_packets},
+        {"stamped_by_clock", s.camera.stamped_by_clock},
+        {"clock_refused", s.camera.clock_refused},
+        {"disconnects", s.camera.disconnects},
+        {"reconnects", s.camera.reconnects}};
   }
   return json.dump(2) + "\n";
 }

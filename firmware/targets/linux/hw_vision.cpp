@@ -9,6 +9,11 @@
 #include "fovea/linux_rt/realtime.hpp"
 
 namespace fovea::hw {
+namespace {
+
+constexpr int kFailedIsSaid = 100;  // pictures in a row that could not be looked at
+
+}  // namespace
 
 HwVision::HwVision(const HwConfig& config, const features::TargetFeature& goal, std::int64_t start_ns,
                    hal::FeatureSink& features, vision::FrameObserver observer)
@@ -36,7 +41,8 @@ HwVision::HwVision(const HwConfig& config, const features::TargetFeature& goal, 
       failure = error.what();
     }
     const std::lock_guard lock(mutex_);
-    failure_ = failure;
+    failure_ = failure.empty() ? failure_ : failure;
+    seen_.failures = task_.failures();
   });
 }
 
@@ -50,6 +56,14 @@ HwVision::~HwVision() {
 void HwVision::Look(const vision::Detection& detection) {
   const std::lock_guard lock(mutex_);
   ++seen_.frames;
+  failed_in_a_row_ = task_.failures().frames > seen_.failures.frames ? failed_in_a_row_ + 1 : 0;
+  if (failed_in_a_row_ > 0) {
+    seen_.failures = task_.failures();
+  }
+  if (failed_in_a_row_ == kFailedIsSaid) {
+    failure_ =
+        fmt::format("its last {} pictures could not be looked at: {}", kFailedIsSaid, seen_.failures.first);
+  }
   if (detection.found) {
     ++seen_.frames_detected;
     const model::Vec3 p = detection.Middle();

@@ -17,7 +17,8 @@ namespace fovea::hw {
 struct SeenError {
   std::uint64_t frames = 0;
   std::uint64_t frames_detected = 0;
-  std::optional<double> last_px;  // of the newest picture with the target in it
+  std::optional<double> last_px;     // of the newest picture with the target in it
+  vision::FrameFailures failures{};  // frames that could not be looked at; they count as not found
 };
 
 class HwVision {
@@ -49,6 +50,7 @@ class HwVision {
   mutable std::mutex mutex_;
   SeenError seen_;
   std::string failure_;
+  int failed_in_a_row_ = 0;
   std::thread thread_;
 };
 

@@ -1,7 +1,10 @@
 // fovea-hw: the servo on the robot.
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <optional>
 
 #include "check.hpp"
 #include "fovea/build_info.hpp"
@@ -31,6 +34,20 @@ int Check(const hw::HwConfig& config, bool json) {
   return hw::AnyFails(rows) ? config::kGoalMissed : config::kDone;
 }
 
+// None when something went wrong, which is said.
+std::optional<hw::HwSummary> Serve(const hw::HwConfig& config, const Arguments& arguments) {
+  hw::Speaker speaker(STDERR_FILENO);
+  try {
+    return hw::Run(config,
+                   {!arguments.no_motion, arguments.enable || arguments.track, arguments.track,
+                    arguments.seconds, arguments.out},
+                   speaker);
+  } catch (const std::exception& error) {
+    speaker.Say(fmt::format("fovea-hw: {}", error.what()));
+    return std::nullopt;
+  }
+}
+
 int Run(const Arguments& arguments) {
   const hw::HwConfig config = hw::LoadHwConfig(arguments.config, arguments.assignments);
   if (arguments.check) {
@@ -39,13 +56,11 @@ int Run(const Arguments& arguments) {
   if (arguments.track && !config.HasCamera()) {
     throw config::InputError("--track is not allowed: camera.driver = \"none\"");
   }
-  const hw::HwSummary summary = hw::Run(config,
-                                        {!arguments.no_motion, arguments.enable || arguments.track,
-                                         arguments.track, arguments.seconds, arguments.out},
-                                        [](const std::string& line) {
-                                          fmt::print(stderr, "{}\n", line);
-                                          std::fflush(stderr);
-                                        });
+  const std::optional<hw::HwSummary> ended = Serve(config, arguments);
+  if (!ended) {
+    return config::kBadInput;
+  }
+  const hw::HwSummary& summary = *ended;
   if (arguments.json) {
     fmt::print("{}", hw::ToJson(summary));
   } else {
@@ -58,8 +73,9 @@ int Run(const Arguments& arguments) {
         "{}\n",
         summary.loop.ticks, summary.loop.overruns, summary.robot.states, summary.robot.lost_states,
         summary.robot.commands, 100.0 * summary.success_rate, hal::Name(summary.mode));
+    fmt::print("{}\n", summary.verdict);
   }
-  return summary.fault == hal::Fault::kNone ? config::kDone : config::kGoalMissed;
+  return summary.converged.value_or(true) ? config::kDone : config::kGoalMissed;
 }
 
 }  // namespace
@@ -73,8 +89,16 @@ int main(int argc, char** argv) {
       "  fovea-hw panda --check\n"
       "  fovea-hw panda --no-motion --seconds 10\n"
       "  fovea-sim serve ball --pace lockstep & fovea-hw loopback --track --seconds 8 --out out/hw\n"
-      "On standard input, a word a line: enable, track, hold, recover, end. SIGUSR1 recovers, SIGINT ends.\n"
-      "Exit: 0 done, 1 it ended in a fault or a check failed, 2 wrong usage or input.");
+      "On standard input, a word a line: enable, track, hold, recover, end. SIGUSR1 recovers; SIGINT, "
+      "SIGTERM "
+      "and SIGHUP end, a second time at once.\n"
+      "Dead man: with input.dead_man_s (5 s; 0 in loopback) without a line, the arm is held, with --enable "
+      "and "
+      "--track too. For a run that nobody watches: --set input.dead_man_s=0\n"
+      "Before it moves, gravity is compared with what the joints feel (check.gravity_torque).\n"
+      "Exit: 0 done; 1 it ended in a fault, motion was refused, the target was never seen or not brought to "
+      "its "
+      "goal, the servo never began, or a check failed; 2 wrong usage or input.");
   Arguments arguments;
   app.add_option("config", arguments.config, "a shipped configuration by name, or the path of a .toml")
       ->required();

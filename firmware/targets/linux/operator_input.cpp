@@ -15,12 +15,13 @@ constexpr std::array<std::pair<const char*, Word>, 5> kWords{{{"enable", Word::k
                                                               {"recover", Word::kRecover},
                                                               {"end", Word::kEnd}}};
 constexpr std::size_t kMostUnread = 4096;  // of a line that never ends
+constexpr int kMostReads = 32;             // in one call, of an input that never ends
 
 }  // namespace
 
 std::optional<Word> OperatorInput::Next() {
   std::size_t end = buffer_.find('\n');
-  while (end == std::string::npos && FillBuffer()) {
+  for (int reads = 0; end == std::string::npos && reads < kMostReads && FillBuffer(); ++reads) {
     end = buffer_.find('\n');
   }
   if (end == std::string::npos) {
@@ -28,7 +29,6 @@ std::optional<Word> OperatorInput::Next() {
   }
   const std::string line = buffer_.substr(0, end);
   buffer_.erase(0, end + 1);
-  last_ = std::chrono::steady_clock::now();
   for (const auto& [text, word] : kWords) {
     if (line == text) {
       return word;
@@ -39,21 +39,21 @@ std::optional<Word> OperatorInput::Next() {
 }
 
 bool OperatorInput::FillBuffer() {
-  pollfd wait{STDIN_FILENO, POLLIN, 0};
+  pollfd wait{fd_, POLLIN, 0};
   if (ended_ || poll(&wait, 1, 0) != 1) {
     return false;
   }
   std::array<char, 256> some{};
-  const auto got = read(STDIN_FILENO, some.data(), some.size());
-  ended_ = got <= 0 || buffer_.size() > kMostUnread;
-  if (!ended_) {
-    buffer_.append(some.data(), static_cast<std::size_t>(got));
+  const auto got = read(fd_, some.data(), some.size());
+  ended_ = got <= 0;
+  if (ended_) {
+    return false;
   }
-  return !ended_;
-}
-
-double OperatorInput::silent_s() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_).count();
+  if (buffer_.size() > kMostUnread) {
+    buffer_.clear();
+  }
+  buffer_.append(some.data(), static_cast<std::size_t>(got));
+  return true;
 }
 
 std::string OperatorInput::TakeUnknown() { return std::exchange(unknown_, {}); }

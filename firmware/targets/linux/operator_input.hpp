@@ -1,7 +1,8 @@
 // What the person at the keyboard says, a word a line on standard input.
 #pragma once
 
-#include <chrono>
+#include <unistd.h>
+
 #include <optional>
 #include <string>
 
@@ -18,20 +19,20 @@ enum class Word {
 
 class OperatorInput {
  public:
+  explicit OperatorInput(int fd = STDIN_FILENO) : fd_(fd) {}
+
   // The next word, if one was typed; never waits. An input that has ended, or is none, says nothing.
   std::optional<Word> Next();
-  // Since the last line, or since the start.
-  [[nodiscard]] double silent_s() const;
   // The last unknown line, once.
   std::string TakeUnknown();
 
  private:
   bool FillBuffer();
 
+  const int fd_;
   std::string buffer_;
   std::string unknown_;
   bool ended_ = false;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace fovea::hw

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "fovea/franka/brake.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 
 namespace fovea::franka {
@@ -17,6 +18,7 @@ constexpr std::int64_t kDriftNsPerState = 200;
 constexpr std::int64_t kClockStepNs = 10 * hal::kNsPerMs;
 constexpr int kClockStepStates = 1000;  // in a row
 constexpr int kMostDatagramsPerRead = 256;
+constexpr int kMostBrakingStates = 500;  // then the motion is finished, whatever still moves
 constexpr std::uint64_t kMostMessageId =
     1'000'000'000'000;  // 31 years of milliseconds; in ns there is room for it
 // States from before a recovery may come after its answer: two channels, no common order.
@@ -77,7 +79,10 @@ Status FrankaArm::DoWrite(const hal::ArmCommand& command) noexcept {
 
 // Once for each state of a motion.
 void FrankaArm::Answer(bool repeated) noexcept {
-  phase_ = phase_ == MotionPhase::kRunning && brakes_ ? MotionPhase::kFinishing : phase_;
+  if (phase_ == MotionPhase::kRunning && brakes_) {
+    phase_ = MotionPhase::kFinishing;
+    braking_states_ = kMostBrakingStates;
+  }
   if (answered_ || (phase_ != MotionPhase::kRunning && phase_ != MotionPhase::kFinishing)) {
     return;
   }
@@ -87,8 +92,11 @@ void FrankaArm::Answer(bool repeated) noexcept {
   command.q_c = state_.q_d;
   command.O_T_EE_c = state_.O_T_EE_d;
   command.elbow_c = state_.elbow_d;
-  command.motion_generation_finished = phase_ == MotionPhase::kFinishing ? 1 : 0;
-  const bool limited = torque_rate_.Limit(tau_wish_, state_.tau_J_d, command.tau_J_d);
+  const bool brakes = phase_ == MotionPhase::kFinishing && braking_states_ > 0 && Moves(state_.dq);
+  braking_states_ = brakes ? braking_states_ - 1 : 0;
+  command.motion_generation_finished = phase_ == MotionPhase::kFinishing && !brakes ? 1 : 0;
+  const bool limited =
+      torque_rate_.Limit(brakes ? BrakingTorque(state_.dq) : tau_wish_, state_.tau_J_d, command.tau_J_d);
   ++counters_.commands;
   counters_.repeated_commands += repeated ? 1U : 0U;
   counters_.rate_limited += limited ? 1U : 0U;

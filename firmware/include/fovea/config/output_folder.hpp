@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "fovea/config/folder_lock.hpp"
 
 namespace fovea::config {
 
@@ -15,7 +18,8 @@ struct OutputFile {
 
 class OutputFolder {
  public:
-  // Makes the folder, and makes sure that files can be written to it. InputError when they cannot.
+  // Makes the folder, holds it, and makes sure that files can be written to it. InputError when they cannot,
+  // or when another run holds it.
   explicit OutputFolder(const std::filesystem::path& folder);
   // Removes what was begun and not put in place.
   ~OutputFolder();
@@ -32,7 +36,7 @@ class OutputFolder {
 
   // Puts in place what was written to the path that Begin gave for `name`, as far as it goes, and takes away
   // what an earlier run left under `all_names`. For what shall outlive a Replace that cannot be. Returns its
-  // path.
+  // path. Any thread may call it, during a Replace too; once that has put `name` in place, nothing is done.
   std::filesystem::path Keep(const std::string& name, const std::vector<std::string>& all_names) const;
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
@@ -42,7 +46,9 @@ class OutputFolder {
   void WritePartial(const OutputFile& file) const;
 
   std::filesystem::path folder_;
+  std::optional<FolderLock> lock_;
   std::vector<std::string> begun_;
+  mutable std::mutex placing_;  // while names change
 };
 
 }  // namespace fovea::config

@@ -22,9 +22,13 @@ struct ServoSettings {
   bool keep_in_view = true;
   double view_margin_px = 10.0;
   double face_tilt_max = 1.05;  // [rad]
-  std::vector<double> posture;  // empty: the robot's ready posture
-  std::vector<double> planes;   // n_x, n_y, n_z, d of each
-  std::vector<double> boxes;    // low x, y, z, high x, y, z of each
+  double stuck_shift_px = 2.0;
+  std::vector<double> target_region{-3.0, -3.0, -3.0, 3.0, 3.0, 3.0};  // low x, y, z, high x, y, z [m]
+  std::vector<double> posture;                                         // empty: the robot's ready posture
+  double camera_radius = 0.03;                                         // [m]
+  std::vector<double> tools;   // capsules: p_EA, p_EB, radius of each [m]
+  std::vector<double> planes;  // n_x, n_y, n_z, d of each
+  std::vector<double> boxes;   // low x, y, z, high x, y, z of each
   std::string motion_law = "computed_torque";
   std::vector<double> k_p;  // per joint; empty: omega_n^2 times the inertia in the ready posture
   std::vector<double> k_v;  // per joint; empty: by zeta, from k_p and that inertia

@@ -33,6 +33,17 @@ void PredictFields(Archive& a, T& p) noexcept {
   a.Int(p.accepted_min);
   a(p.stale_s);
   a(p.coast_s);
+  a(p.target_speed_max);
+  a(p.target_acceleration_max);
+  a(p.target_turn_max);
+  Entries(a, p.target_region.low);
+  Entries(a, p.target_region.high);
+  a(p.stuck_shift);
+  a(p.stamp_sigma);
+  a(p.mount_shift_sigma);
+  a(p.mount_turn_sigma);
+  a(p.scale_sigma);
+  a(p.way_in_vain);
 }
 
 template <class Archive, class T>
@@ -111,6 +122,12 @@ void GuardFields(Archive& a, T& g) noexcept {
   a(g.sight_clearance);
   a(g.view.face_cosine_min);
   a(g.hand_clearance);
+  a.Count(g.hand.num_balls, servo::HandShape::kMost);
+  for (auto& ball : g.hand.balls) {
+    Entries(a, ball.p_EP);
+    a(ball.radius);
+  }
+  a(g.link_radius);
 }
 
 template <class Archive, class T>
@@ -129,6 +146,8 @@ void SafetyFields(Archive& a, T& s) noexcept {
   a(s.fault_damping);
   a(s.brake_velocity);
   a(s.brake_after_s);
+  a(s.encoder_quantum);
+  a(s.stiction_fraction);
 }
 
 // Calls `visit(name, fields)` for each part of `c` but the arm, in their order; `fields(archive)` goes

@@ -78,7 +78,8 @@ class RunLog {
   void AddTick(const hal::TickRecord& record, const ReplayData& data = {});
   // From one thread. Real-time when the log may drop.
   void AddTruth(const TruthSample& sample);
-  // From any thread that need not be real-time. For messages that are few and small: none is dropped.
+  // From any thread that need not be real-time. For messages that are few and small: none is dropped, unless
+  // a thousand wait for a disk that hangs, and the log may drop.
   void Add(const char* topic, std::int64_t time_ns, const google::protobuf::Message& message);
   // Copies the pixels; encoded as JPEG by the log's thread.
   void AddImage(const hal::Frame& frame);
@@ -103,7 +104,7 @@ class RunLog {
     ReplayData data;
   };
 
-  void Push(Job job);
+  bool Push(Job job);  // false: lost
   void WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& file);
   void WriteAll();
   bool WaitForMore();
@@ -126,7 +127,7 @@ class RunLog {
   std::vector<cv::Mat> spare_;      // pictures whose memory is used again
   bool closed_ = false;
   std::uint64_t dropped_images_ = 0;
-  std::uint64_t lost_ = 0;      // after the failure
+  std::uint64_t lost_ = 0;      // messages without a place, and all after the failure
   std::exception_ptr failure_;  // of the writing thread; after it the log takes everything and keeps nothing
   std::atomic<bool> failed_{false};
   std::thread thread_;

@@ -1,7 +1,6 @@
 // Stage 0, inputs: what came from the arm is sound, or bridged for a stated time, or a fault.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "fovea/hal/arm.hpp"
@@ -20,9 +19,6 @@ struct InputState {
   hal::JointArray q{};       // last finite values
   hal::JointArray dq{};
   hal::JointArray tau_applied{};
-  // New states in a row in which a joint's position was the same to the last bit, as of an encoder that
-  // hangs.
-  std::array<std::int32_t, hal::kMaxJoints> still_ticks{};
 };
 
 struct InputCheck {

@@ -13,7 +13,7 @@
 namespace fovea::servo {
 
 struct ContactState {
-  bool started = false;
+  bool started = false;  // false: what the next tick sees is the first; the residual stays as it is
   model::MatN M_before;  // of the tick before
   model::VecN p_before;  // its momentum [Nm s]
   model::VecN residual;  // [num_joints] torques from outside [Nm, N]

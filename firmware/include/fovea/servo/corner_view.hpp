@@ -13,6 +13,7 @@ struct CornerView {
   std::int64_t stamp_ns = 0;
   model::Pose X_CB;
   features::SeenCorners seen;
+  model::Mat6 doubt = model::Mat6::Zero();  // of the camera's pose, for the gate: measurement_doubt.hpp
 };
 
 // d(corners) / d(position, turn), both in axes of B: [2 n x 6].

@@ -35,10 +35,10 @@ struct MotionWish {
 };
 
 // Moves `reference` on by one tick towards `wish`. `p_BE` [m] is where the end effector is, `J_E_B`
-// [3 x num_joints] its linear Jacobian in axes of B, and `p_BE_reference` [m] where `reference` has it.
+// [3 x num_joints] its linear Jacobian in axes of B, and `reference_poses` where `reference` has the links.
 // Returns the limits that acted. Real-time: yes.
 hal::LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
-                          const model::LinearJacobian& J_E_B, const model::Vec3& p_BE_reference,
+                          const model::LinearJacobian& J_E_B, const model::ArmPoses& reference_poses,
                           Reference& reference) noexcept;
 
 }  // namespace fovea::servo

@@ -3,9 +3,10 @@
 // Folded up, an arm can run its hand into its shoulder or upper arm; and with the end effector where it may
 // be, its elbow or wrist can still come down on the table. So the arm is taken as a line (arm_line.hpp), of
 // which its thickness is a part of the clearance. The hand is the line from the last joint to the end
-// effector, the trunk from the base to the third joint, at the elbow. How near they come are limits on the
-// motion like the others (motion_limits.hpp). From the elbow on, the fourth joint from the end, no part of
-// the line goes below a plane; the guard proves a stop for the end effector alone.
+// effector, the trunk from the base to the third joint, at the elbow; and the forearm keeps off the base,
+// too. How near they come are limits on the motion like the others (motion_limits.hpp). From the elbow on,
+// the fourth joint from the end, no part of the line goes below a plane. The guard proves a stop before each
+// of these, too (stop_path.hpp).
 #pragma once
 
 #include "fovea/model/kinematics.hpp"
@@ -24,13 +25,18 @@ namespace fovea::servo {
 void LimitHand(double clearance, const model::ArmModel& arm, const model::ArmPoses& poses,
                const ArmLine& line, MotionLimits& limits) noexcept;
 
-// How far the arm's line from the elbow on, but for the end effector, is from the nearest plane [m]; HUGE_VAL
-// without planes. Real-time: yes.
-[[nodiscard]] double ClearanceOfPlanes(const model::ArmModel& arm, const Obstacles& obstacles,
+// How far the arm's links from the elbow on, but for the end effector, are from the nearest plane, with
+// guard.link_radius about their line [m]; HUGE_VAL without planes. Real-time: yes.
+[[nodiscard]] double ClearanceOfPlanes(const model::ArmModel& arm, const GuardConfig& guard,
                                        const ArmLine& line) noexcept;
 
-// Adds the row that keeps it above that plane; what is below may not go further. Real-time: yes.
-void LimitArm(const model::ArmModel& arm, const Obstacles& obstacles, const model::ArmPoses& poses,
-              const ArmLine& line, MotionLimits& limits) noexcept;
+// How far hand, camera, tools and links are from what they keep out of, at least [m]; HUGE_VAL where there is
+// nothing. Real-time: yes.
+[[nodiscard]] double ClearanceOfArm(const ServoConfig& config, const model::ArmPoses& poses) noexcept;
+
+// Adds the row that keeps the links above the plane that they are nearest to, with the speed from which they
+// can stop there; what is below may not go further. Real-time: yes.
+void LimitArm(const ServoConfig& config, const model::ArmPoses& poses, const ArmLine& line,
+              MotionLimits& limits) noexcept;
 
 }  // namespace fovea::servo

@@ -26,6 +26,7 @@ struct ModeInputs {
   std::int64_t feature_age_ns = 0;       // of the last accepted measurement
   bool goal_unreachable = false;         // limits kept the arm from the goal for too long
   bool target_moved = false;             // far enough from where it was unreachable to try again
+  bool eye_doubted = false;              // what is seen is nothing to steer by
   bool motion_asked = false;             // a motion is commanded, or not yet at its end
   bool motion_refused = false;           // the one of the tick before was
   hal::Fault fault = hal::Fault::kNone;  // found in this tick
@@ -50,6 +51,7 @@ struct ModeFacts {
   bool lost;   // or not for too long
   bool unreachable;
   bool moved;
+  bool doubted;
   bool motion;  // one that may move the arm
   bool refused;
 };

@@ -13,6 +13,14 @@ struct Clearance {
 // Of `p_B` [m] to plane or box `i`, planes first, 0 <= i < CountObstacles. Within a box the way out is
 // through its nearest face. Real-time: yes.
 [[nodiscard]] Clearance ClearanceOf(const Obstacles& obstacles, int i, const model::Vec3& p_B) noexcept;
+// Where the hand is nearest to plane or box `i`: its end effector's point, or a ball of `hand`, at `X_BE`.
+// Real-time: yes.
+struct HandClearance {
+  Clearance clearance;
+  model::Vec3 p_BP = model::Vec3::Zero();  // the hand's point, a ball's middle [m]
+};
+[[nodiscard]] HandClearance ClearanceOf(const Obstacles& obstacles, int i, const HandShape& hand,
+                                        const model::Pose& X_BE) noexcept;
 [[nodiscard]] inline int CountObstacles(const Obstacles& obstacles) noexcept {
   return obstacles.num_planes + obstacles.num_boxes;
 }

@@ -8,6 +8,7 @@
 // (pose_filter.hpp) speaks instead.
 #pragma once
 
+#include "fovea/hal/events.hpp"
 #include "fovea/servo/pose_filter.hpp"
 #include "fovea/servo/still_pose.hpp"
 
@@ -36,15 +37,16 @@ struct PoseChoice {
 };
 
 // Takes in a view. What fits no branch is an outlier and left out; after too many in a row the poses of that
-// view are begun anew. Returns whether it was taken in. Real-time: yes.
-bool UpdatePoses(const PredictConfig& config, const features::Polygon& polygon, const CornerView& view,
-                 PoseChoice& choice) noexcept;
+// view are begun anew. Real-time: yes.
+[[nodiscard]] hal::Intake UpdatePoses(const PredictConfig& config, const features::Polygon& polygon,
+                                      const CornerView& view, PoseChoice& choice) noexcept;
 
 // Where the believed pose is `now_ns`. Of a target that stands still it is the pose that fits all views: what
 // is wrong with the corners is wrong in the same way for as long as the camera stands, so that a filter would
 // take many views from there for much news, and forget the tilt that was seen so much better from aside.
 // Where arm, camera and corners do not agree to some tenths of a pixel, nothing counts as still, and the
 // filter speaks. Real-time: yes.
-[[nodiscard]] FlatMotion MotionAt(const PoseChoice& choice, std::int64_t now_ns) noexcept;
+[[nodiscard]] FlatMotion MotionAt(const PredictConfig& config, const PoseChoice& choice,
+                                  std::int64_t now_ns) noexcept;
 
 }  // namespace fovea::servo

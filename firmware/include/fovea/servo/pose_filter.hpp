@@ -49,17 +49,19 @@ struct PoseFilter {
                              const features::SeenCorners::Branch& branch, PoseFilter& filter) noexcept;
 
 // Takes in a view later than the filter's stamp; which of the corners is O's first is seen from where they
-// are expected. False, with `filter` untouched, when it is further off than the gate allows. `distance2`: the
-// squared innovation in standard deviations; large where none can be told. Real-time: yes.
+// are expected. False, with `filter` untouched, when it is further off than the gate and the view's doubt
+// allow; the target's motion stays within the configuration's bounds. `distance2`: the squared innovation in
+// standard deviations; large where none can be told. Real-time: yes.
 [[nodiscard]] bool UpdatePose(const PredictConfig& config, const features::Polygon& polygon,
                               const CornerView& view, PoseFilter& filter, double& distance2) noexcept;
 
 // Where the target is at `now_ns`, and how it moves. Real-time: yes.
 struct FlatMotion {
   model::Pose X_BO;
-  model::Vec3 v_BO_B;  // [m/s]
-  model::Vec3 w_BO_B;  // [rad/s]
+  model::Vec3 v_BO_B = model::Vec3::Zero();  // [m/s]
+  model::Vec3 w_BO_B = model::Vec3::Zero();  // [rad/s]
 };
-[[nodiscard]] FlatMotion MotionAt(const PoseFilter& filter, std::int64_t now_ns) noexcept;
+[[nodiscard]] FlatMotion MotionAt(const PredictConfig& config, const PoseFilter& filter,
+                                  std::int64_t now_ns) noexcept;
 
 }  // namespace fovea::servo

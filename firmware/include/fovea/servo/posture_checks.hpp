@@ -17,7 +17,7 @@ struct JointRange {
 
 // Whether the hand at `p_BE` [m] is inside the workspace and out of the obstacles, with some room.
 // Real-time: yes.
-[[nodiscard]] bool KeepsOut(const ServoConfig& config, const model::Vec3& p_BE) noexcept;
+[[nodiscard]] bool KeepsOut(const ServoConfig& config, const model::Pose& X_BE) noexcept;
 
 // Whether the posture is clear of the singularities that the guard keeps it from. Real-time: yes.
 [[nodiscard]] bool IsRegular(const ServoConfig& config, const model::ArmPoses& poses) noexcept;

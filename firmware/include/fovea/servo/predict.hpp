@@ -4,58 +4,46 @@
 // (the joints' history knows it), filtered there, and taken to the present by the target's own velocity.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "fovea/hal/feature.hpp"
 #include "fovea/model/kinematics.hpp"
 #include "fovea/servo/disc_choice.hpp"
+#include "fovea/servo/eye_watch.hpp"
+#include "fovea/servo/joint_history.hpp"
 #include "fovea/servo/pose_choice.hpp"
 #include "fovea/servo/servo_config.hpp"
+#include "fovea/servo/stuck_picture.hpp"
 #include "fovea/servo/target_filter.hpp"
 
 namespace fovea::servo {
 
-// Joint positions of the last half second, one entry per tick.
-class JointHistory {
- public:
-  static constexpr int kCapacity = 512;
-
-  void Push(std::int64_t stamp_ns, const model::VecN& q) noexcept;
-
-  // q at `stamp_ns`, interpolated between the two ticks around it. False when the history does not reach
-  // back so far; a stamp after the newest entry gives the newest. Real-time: yes, at most 9 steps of search.
-  [[nodiscard]] bool At(std::int64_t stamp_ns, model::VecN& q) const noexcept;
-
-  void Clear() noexcept { size_ = 0; }
-
- private:
-  friend struct StateAccess;  // writes and reads all of it: firmware/link/state_fields.hpp
-  struct Entry {
-    std::int64_t stamp_ns = 0;
-    model::VecN q;
-  };
-  [[nodiscard]] const Entry& FromOldest(int i) const noexcept;
-
-  std::array<Entry, kCapacity> entries_{};
-  int newest_ = kCapacity - 1;
-  int size_ = 0;
+// What was believed of the target when a filter had to start anew: the servo goes on by it, as it does while
+// the target is hidden, until the new filter knows enough.
+struct LastBelief {
+  bool active = false;
+  std::int64_t stamp_ns = 0;
+  FlatMotion motion;  // at that stamp
 };
 
 struct PredictState {
   JointHistory history;
+  StuckPicture picture;
   TargetFilter filter;  // of sphere and circle
   DiscChoice disc;      // of a circle
   PoseChoice poses;     // of square and triangle
+  LastBelief belief;
   bool has_accepted = false;
   std::int64_t accepted_stamp_ns = 0;  // of the last measurement that went into the filter
   // The last measurement itself, for servo.predict = false.
   model::Pose X_CO_meas;
 
+  // Forgets the target; what is known of arm and camera stays.
   void Reset() noexcept {
     filter = TargetFilter{};
     disc = DiscChoice{};
     poses = PoseChoice{};
+    belief = LastBelief{};
     has_accepted = false;
   }
 };
@@ -69,10 +57,13 @@ struct Prediction {
   features::TargetInCamera seen;               // now: pose and twist in axes of C
 };
 
-// Takes in `measurement` (null: none came) and predicts for `now_ns` with today's camera pose `X_BC`.
-// A measurement that names no such target, whose stamp the history does not reach, or that was not yet true
-// at `now_ns` is left out. Real-time: yes.
+// Takes in `measurement`, and says what became of it; `eye` watches it, too. Real-time: yes.
+[[nodiscard]] hal::Intake TakeMeasurement(const ServoConfig& config, std::int64_t now_ns,
+                                          const hal::FeatureMeasurement& measurement, PredictState& state,
+                                          EyeWatch& eye) noexcept;
+
+// Where the target is at `now_ns`, seen from today's camera pose `X_BC`. Real-time: yes.
 [[nodiscard]] Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::Pose& X_BC,
-                                 const hal::FeatureMeasurement* measurement, PredictState& state) noexcept;
+                                 const PredictState& state) noexcept;
 
 }  // namespace fovea::servo

@@ -11,6 +11,16 @@
 
 namespace fovea::servo {
 
+// Planes n p >= d and boxes, in B.
+struct Plane {
+  model::Vec3 normal = model::Vec3::UnitZ();  // of length 1
+  double distance = 0.0;                      // [m]
+};
+struct Box {
+  model::Vec3 low = model::Vec3::Zero();   // [m]
+  model::Vec3 high = model::Vec3::Zero();  // [m]
+};
+
 // [servo] where the feature is now
 struct PredictConfig {
   bool enabled = true;       // servo.predict; false: the newest measurement as it came, held
@@ -21,6 +31,25 @@ struct PredictConfig {
   int accepted_min = 3;      // measurements before the target counts as known
   double stale_s = 0.15;     // a measurement older than this is no longer fresh [s]
   double coast_s = 0.6;      // steer by prediction for so long after the last measurement [s]
+
+  // What no measurement can make the target be: its motion is cut down to this, and a place outside is
+  // refused.
+  double target_speed_max = 1.0;                                               // [m/s]
+  double target_acceleration_max = 5.0;                                        // [m/s^2]
+  double target_turn_max = 3.0;                                                // angular velocity [rad/s]
+  Box target_region{model::Vec3::Constant(-3.0), model::Vec3::Constant(3.0)};  // of its centre
+
+  // servo.stuck_shift_px in the normalised image: a picture that stays the same while the hand moved the
+  // scene in it by more than this is no measurement.
+  double stuck_shift = 0.0036;
+
+  double way_in_vain = 0.5;  // the camera may go so far without its error getting smaller [m]
+
+  // How wrong the calibration may be, standard deviations (measurement_doubt.hpp).
+  double stamp_sigma = 0.004;        // of the measurements' stamps against the arm's [s]
+  double mount_shift_sigma = 0.005;  // of the camera's place in the hand [m]
+  double mount_turn_sigma = 0.02;    // of its orientation [rad]
+  double scale_sigma = 0.02;         // of focal length and target size, as a share
 };
 
 // [servo] the interaction matrix that the law inverts: of now, of the goal, or the mean of both
@@ -64,21 +93,28 @@ struct MotionLawConfig {
   double change_s = 0.2;                  // time in which one law takes over from another [s]
 };
 
-// Planes n p >= d and boxes that the end effector's point p_BE keeps out of, in B.
-struct Plane {
-  model::Vec3 normal = model::Vec3::UnitZ();  // of length 1
-  double distance = 0.0;                      // [m]
-};
-struct Box {
-  model::Vec3 low = model::Vec3::Zero();   // [m]
-  model::Vec3 high = model::Vec3::Zero();  // [m]
-};
+// What the hand keeps out of.
 struct Obstacles {
   static constexpr int kMost = 4;  // of each
   int num_planes = 0;
   int num_boxes = 0;
   std::array<Plane, kMost> planes;
   std::array<Box, kMost> boxes;
+};
+
+// What is bolted to the hand, as balls: the camera from the flange to its lens, and tools.
+struct HandShape {
+  static constexpr int kMost = 24;
+  struct Ball {
+    model::Vec3 p_EP = model::Vec3::Zero();  // its middle, in axes of E [m]
+    double radius = 0.0;                     // [m]
+  };
+  int num_balls = 0;
+  std::array<Ball, kMost> balls;
+
+  // Adds a capsule from `p_EA` to `p_EB` [m in E] with `radius` [m] as balls that cover it. False, with only
+  // a part added, when there is no room.
+  [[nodiscard]] bool AddCapsule(const model::Vec3& p_EA, const model::Vec3& p_EB, double radius) noexcept;
 };
 
 // [safety] what the target is kept in: the picture less a margin, in the normalised image
@@ -103,7 +139,9 @@ struct GuardConfig {
   double workspace_deceleration = 2.0;  // for stopping before it [m/s^2]
   double cartesian_speed = 1.7;         // of the end effector [m/s]
   double singularity_min = 0.02;        // smallest singular value of the hand's Jacobian, 1 / 0.3 m
-  Obstacles obstacles;                  // which the end effector keeps out of
+  Obstacles obstacles;                  // which hand and arm keep out of
+  HandShape hand;                       // what moves with the end effector
+  double link_radius = 0.06;            // of the links from the elbow on, before planes [m]
   ViewConfig view;                      // safety.keep_in_view, view_margin_px, face_tilt_max
   double sight_clearance = 0.08;        // of the links' lines from those to the target [m]; 0: any
   double hand_clearance = 0.13;         // of the hand's line from those of the arm's first links [m]; 0: any
@@ -118,6 +156,8 @@ struct SafetyConfig {
   int missed_ticks = 20;                 // so many missed deadlines in a row: fault
   int boot_ticks = 20;                   // sound states in a row before Boot is over
   double boot_velocity = 0.05;           // and every joint slower than this [rad/s, m/s]
+  double stiction_fraction = 0.5;        // of a joint's Coulomb friction may hold it still, unseen
+  double encoder_quantum = 1e-4;         // a joint's reading changes in steps no larger than this [rad, m]
   double setpoint_jump = 1e-3;           // a stream of setpoints starts and goes on this close [rad, m]
   double following_error = 0.15;         // a joint further off its reference: fault [rad, m]
   double contact_torque_fraction = 0.2;  // pushed with more than this share of a joint's torque: fault

@@ -14,6 +14,8 @@
 #include "fovea/model/dynamics.hpp"
 #include "fovea/servo/check_inputs.hpp"
 #include "fovea/servo/contact.hpp"
+#include "fovea/servo/encoder_watch.hpp"
+#include "fovea/servo/eye_watch.hpp"
 #include "fovea/servo/follow_motion.hpp"
 #include "fovea/servo/guard_motion.hpp"
 #include "fovea/servo/modes.hpp"
@@ -62,13 +64,18 @@ struct ServoState {
   model::Mat6N J_C;
   model::LinearJacobian J_E_B;
 
+  // contact
   ContactState contact;
+  EncoderWatch encoders;
+  bool blind = false;  // a joint's encoder hangs
 
   // predict
+  hal::Intake intake = hal::Intake::kNone;  // of this tick's measurement
   PredictState predict;
   Prediction prediction;
 
   // modes
+  EyeWatch eye;
   ModeState mode;
   std::int32_t fault_joint = -1;
   std::int64_t mode_since_ns = 0;
@@ -86,6 +93,7 @@ struct ServoState {
   // guard
   ResolvedMotion resolved;
   Reference reference;
+  bool holds = false;  // in Boot: the reference stands where the arm was found
   MotionState motion;  // mode Move
   hal::LimitSet limits = 0;
 
@@ -135,9 +143,11 @@ class ServoTask final : public ServoStep {
   void ChooseTheWay() noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
   void CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept;
+  [[nodiscard]] bool IsOutside() const noexcept;
   void ForgetMotion() noexcept;
   void CheckFollowing() noexcept;
   void NoteBlocked() noexcept;
+  void NoteSteering() noexcept;
   void ComputeTorque(const ServoInputs& inputs) noexcept;
   void StopDamped() noexcept;
   void Clamp() noexcept;

@@ -6,17 +6,18 @@
 #pragma once
 
 #include "fovea/hal/events.hpp"
-#include "fovea/model/types.hpp"
+#include "fovea/model/kinematics.hpp"
 #include "fovea/servo/reference.hpp"
 #include "fovea/servo/servo_config.hpp"
 
 namespace fovea::servo {
 
-// The limits that a stop from `reference` would pass: the joints' range, the workspace, an obstacle, each
-// with its margin; 0 when it stays clear of all. What is already past one may only come back. `p_now` is p_BE
-// of the reference before [m], and `q_now` its joints. Real-time: yes, at most kStopSamples poses.
+// The limits that a stop from `reference` would pass: the joints' range, the workspace, an obstacle before
+// the hand or before the links, the arm itself, each with its margin; 0 when it stays clear of all. What is
+// already past one may only come back. `q_now` are the joints of the reference before, `poses_now` those of
+// its links. Real-time: yes, at most kStopSamples poses.
 inline constexpr int kStopSamples = 12;
 [[nodiscard]] hal::LimitSet LimitsPassed(const ServoConfig& config, const Reference& reference,
-                                         const model::VecN& q_now, const model::Vec3& p_now) noexcept;
+                                         const model::VecN& q_now, const model::ArmPoses& poses_now) noexcept;
 
 }  // namespace fovea::servo

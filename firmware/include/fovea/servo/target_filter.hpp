@@ -9,6 +9,7 @@
 #include <array>
 #include <cstdint>
 
+#include "fovea/hal/events.hpp"
 #include "fovea/model/types.hpp"
 #include "fovea/servo/servo_config.hpp"
 
@@ -28,17 +29,25 @@ struct TargetFilter {
   std::array<Block, kOrder> P;        // covariance of x, block by block
 };
 
-// Takes in the measured centre `p_BO` [m] in B, true at `stamp_ns`, with covariance `cov_B` [m^2]. An
-// outlier is left out; after too many in a row the filter starts anew there. Returns whether it was taken in.
-// Real-time: yes.
-bool Update(const PredictConfig& config, std::int64_t stamp_ns, const model::Vec3& p_BO,
-            const model::Mat3& cov_B, TargetFilter& filter) noexcept;
+// A target's centre as it was measured.
+struct MeasuredCentre {
+  std::int64_t stamp_ns = 0;                  // when it was true
+  model::Vec3 p_BO = model::Vec3::Zero();     // [m] in B
+  model::Mat3 cov_B = model::Mat3::Zero();    // of its noise [m^2]
+  model::Mat3 doubt_B = model::Mat3::Zero();  // what calibration may add to that, for the gate alone [m^2]
+};
 
-// Where the target is at `now_ns` [m], and how fast [m/s]. Real-time: yes.
+// Takes in a measurement. An outlier is left out; after too many in a row the filter starts anew there.
+// Velocity and acceleration stay within the configuration's bounds. Real-time: yes.
+[[nodiscard]] hal::Intake Update(const PredictConfig& config, const MeasuredCentre& measured,
+                                 TargetFilter& filter) noexcept;
+
+// Where the target is at `now_ns` [m], and how fast [m/s], within the same bounds. Real-time: yes.
 struct TargetMotion {
   model::Vec3 p_BO;
   model::Vec3 v_BO;
 };
-TargetMotion MotionAt(const TargetFilter& filter, std::int64_t now_ns) noexcept;
+[[nodiscard]] TargetMotion MotionAt(const PredictConfig& config, const TargetFilter& filter,
+                                    std::int64_t now_ns) noexcept;
 
 }  // namespace fovea::servo

@@ -6,7 +6,7 @@
 namespace fovea::hal {
 
 enum class Mode : std::uint8_t {
-  kBoot,   // waiting for a sound arm; the torque command is zero
+  kBoot,   // holding the arm where it was found, until it is sound and at rest
   kHold,   // standing where it stands
   kTrack,  // steering by the target as the camera sees it
   kCoast,  // steering by the target's prediction, since the camera does not see it
@@ -24,6 +24,7 @@ enum class HoldReason : std::uint8_t {
   kGoalUnreachable,  // limits kept the arm from the goal for longer than servo.unreachable_s
   kMotionDone,       // the commanded motion came to its end
   kMotionRefused,    // the commanded motion would have passed a limit, or was none
+  kEyeDoubted,       // the picture moves against the hand, or steering by it does not help: ask anew
 };
 
 // Causes of a fault, latched at the first.
@@ -41,6 +42,20 @@ enum class Fault : std::uint8_t {
   kContact,           // something pushes the arm harder than it may
 };
 inline constexpr int kNumFaults = 11;
+
+// What became of a measurement that the vision task handed over.
+enum class Intake : std::uint8_t {
+  kNone,          // none came in this tick
+  kTaken,         // it went into the estimate
+  kNotFound,      // the target is not in the picture
+  kWrongKind,     // it is of another target, or names no place before the camera
+  kFromFuture,    // its stamp is later than now
+  kTooOld,        // its stamp is older than the joints' history, or than the measurement before
+  kStuckPicture,  // the picture stayed the same although the hand moved the scene in it
+  kOutOfRegion,   // the target would be where it cannot be
+  kOutlier,       // too far from where the target is expected
+};
+inline constexpr int kNumIntakes = 9;
 
 // Limits that shape the motion or the torque. A limit that acts is no fault: it is reported.
 enum class Limit : std::uint8_t {
@@ -67,9 +82,11 @@ const char* Name(Mode mode) noexcept;
 const char* Name(HoldReason reason) noexcept;
 const char* Name(Fault fault) noexcept;
 const char* Name(Limit limit) noexcept;
+const char* Name(Intake intake) noexcept;
 
 // The configuration key that sets the threshold, "" when none does; static storage.
 const char* Key(Fault fault) noexcept;
 const char* Key(Limit limit) noexcept;
+const char* Key(Intake intake) noexcept;
 
 }  // namespace fovea::hal

@@ -22,6 +22,7 @@ struct TickRecord {
   ArmState arm;
   bool has_feature = false;    // a measurement was taken in this tick
   FeatureMeasurement feature;  // the last one taken
+  Intake intake = Intake::kNone;  // what became of it, in the tick that it came
 
   // Modes
   Mode mode = Mode::kBoot;

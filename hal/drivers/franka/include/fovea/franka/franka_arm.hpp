@@ -55,7 +55,7 @@ enum class MotionPhase : std::uint8_t {
   kIdle,       // the robot holds by itself
   kStarting,   // a motion is asked for
   kRunning,    // each state is answered
-  kFinishing,  // as before, with the word that this is the end
+  kFinishing,  // as before: slowed down to rest, then with the word that this is the end
   kFailed,     // the robot broke it off
 };
 
@@ -140,6 +140,7 @@ class FrankaArm final : public hal::Arm {
   bool move_started_ = false;                 // the robot said so
   int starting_states_ = 0;                   // since it was asked to
   bool brakes_ = false;                       // wished for
+  int braking_states_ = 0;                    // in which the arm may still be slowed down before the end
   std::optional<std::uint32_t> recovery_id_;  // of a recovery under way
   int stopped_states_borne_ = 0;              // that may still come after a recovery
   std::atomic<bool> recovery_asked_{false};

@@ -1,0 +1,134 @@
+#include "operator_thread.hpp"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "fovea/linux_rt/monotonic_clock.hpp"
+#include "fovea/linux_rt/realtime.hpp"
+
+namespace fovea::hw {
+namespace {
+
+constexpr int kLookMs = 5;
+constexpr std::size_t kRing = 256;
+// Files that are not written after this are given up with the next signal.
+constexpr std::int64_t kClosingNs = 5 * hal::kNsPerSecond;
+
+}  // namespace
+
+const char* Name(Word word) noexcept {
+  switch (word) {
+    case Word::kAlive: return "alive";
+    case Word::kEnable: return "enable";
+    case Word::kTrack: return "track";
+    case Word::kHold: return "hold";
+    case Word::kRecover: return "recover";
+    case Word::kEnd: return "end";
+  }
+  return "unknown";
+}
+
+void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) noexcept {
+  servo::ServoLoop* loop = control.loop;
+  if (dead_man_s <= 0.0 || loop == nullptr) {
+    return;
+  }
+  const std::int64_t now_ns = clock.NowNs();
+  if (now_ns >= control.leave_until_ns) {
+    loop->Ask(servo::Request::kNone);  // what was asked for before is forgotten, by a loop that waits too
+  }
+  const auto lasts_ns = static_cast<std::int64_t>(dead_man_s * static_cast<double>(hal::kNsPerSecond));
+  control.leave_until_ns = now_ns + lasts_ns;
+  loop->GiveLeave(now_ns + lasts_ns);
+}
+
+OperatorThread::OperatorThread(const Options& options, const hal::Clock& clock,
+                               const linux_rt::SignalQueue& signals, RunControl& control)
+    : options_(options),
+      clock_(clock),
+      signals_(signals),
+      control_(control),
+      input_(options.input_fd),
+      heard_(kRing),
+      thread_([this](const std::stop_token& stop) { HearAll(stop); }) {}
+
+void OperatorThread::HearAll(const std::stop_token& stop) {
+  pthread_setname_np(pthread_self(), "fovea-operator");
+  // Before all that may keep the machine busy, where that is granted; the servo's priority is higher.
+  static_cast<void>(linux_rt::MakeThreadRealtime({.fifo_priority = 1,
+                                                  .lock_memory = false,
+                                                  .stack_prefault_kib = 0,
+                                                  .keep_awake = false,
+                                                  .keep_memory = false}));
+  while (!stop.stop_requested()) {
+    HearSignal();
+    HearWords();
+  }
+}
+
+void OperatorThread::HearSignal() {
+  const int signal = signals_.Next(kLookMs);
+  if (signal == SIGUSR1) {
+    if (franka::FrankaArm* arm = control_.arm) {
+      arm->AskRecovery();
+    }
+    Note(Word::kRecover);
+  } else if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP) {
+    const std::int64_t closing_ns = control_.closing_ns;
+    if (closing_ns == 0) {
+      End();
+    } else if (linux_rt::MonotonicNs() - closing_ns > kClosingNs) {
+      std::_Exit(EXIT_FAILURE);  // a disk that hangs; the robot is let go of already
+    }
+  }
+}
+
+void OperatorThread::HearWords() {
+  while (const std::optional<Word> word = input_.Next()) {
+    GiveLeave(options_.dead_man_s, clock_, control_);
+    servo::ServoLoop* loop = control_.loop;
+    switch (*word) {
+      case Word::kEnable: control_.enable_asked = true; break;
+      case Word::kTrack:
+      case Word::kHold:
+        if (loop != nullptr) {
+          loop->Ask(*word == Word::kTrack ? servo::Request::kTrack : servo::Request::kHold);
+        }
+        break;
+      case Word::kRecover:
+        if (franka::FrankaArm* arm = control_.arm) {
+          arm->AskRecovery();
+        }
+        break;
+      case Word::kEnd: End(); continue;
+      case Word::kAlive: Note(Word::kAlive, input_.TakeUnknown()); continue;
+    }
+    Note(*word);
+  }
+}
+
+// In order the first time, at once the second.
+void OperatorThread::End() noexcept {
+  const bool again = control_.ended.exchange(true);
+  if (servo::ServoLoop* loop = control_.loop) {
+    if (again || !options_.allow_motion) {
+      loop->Stop();
+    } else {
+      loop->Finish();
+    }
+  }
+  Note(Word::kEnd);
+}
+
+void OperatorThread::Note(Word word, std::string_view unknown) noexcept {
+  heard_.Fill([&](Heard& place) {
+    place.stamp_ns = clock_.NowNs();
+    place.word = word;
+    place.unknown = {};
+    std::copy_n(unknown.begin(), std::min(unknown.size(), place.unknown.size() - 1), place.unknown.begin());
+  });
+}
+
+}  // namespace fovea::hw

@@ -1,0 +1,121 @@
+#include "speaker.hpp"
+
+#include <poll.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <condition_variable>
+#include <csignal>
+#include <deque>
+#include <mutex>
+#include <string_view>
+#include <thread>
+
+namespace fovea::hw {
+namespace {
+
+constexpr std::size_t kMostWaiting = 256;  // lines
+constexpr int kPollMs = 50;
+constexpr std::chrono::milliseconds kPatience{500};
+
+}  // namespace
+
+struct Speaker::Shared {
+  int fd = -1;
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<std::string> lines;  // the first is being said
+  std::uint64_t dropped = 0;
+  bool closed = false;     // no more lines
+  bool abandoned = false;  // nor patience with those that are there
+
+  bool IsAbandoned() {
+    const std::lock_guard lock(mutex);
+    return abandoned;
+  }
+
+  // False when it could not be said.
+  bool Write(std::string_view text) {
+    while (!text.empty() && !IsAbandoned()) {
+      pollfd room{fd, POLLOUT, 0};
+      if (poll(&room, 1, kPollMs) <= 0) {
+        continue;
+      }
+      // A pipe with room takes so much without making one wait.
+      const ssize_t written = write(fd, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
+      if (written >= 0) {
+        text.remove_prefix(static_cast<std::size_t>(written));
+      } else if (errno != EINTR && errno != EAGAIN) {
+        return false;
+      }
+    }
+    return text.empty();
+  }
+};
+
+Speaker::Speaker(int fd) : shared_(std::make_shared<Shared>()) {
+  shared_->fd = fd;
+  // Signals are for others: the thread takes over what is blocked here.
+  sigset_t all;
+  sigset_t before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  // Not to be joined: a write to a terminal that stands still may never return.
+  std::thread([shared = shared_] { SpeakAll(shared); }).detach();
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+Speaker::~Speaker() {
+  {
+    const std::lock_guard lock(shared_->mutex);
+    shared_->closed = true;
+  }
+  shared_->changed.notify_all();
+  Wait(kPatience);
+  const std::lock_guard lock(shared_->mutex);
+  shared_->abandoned = true;
+}
+
+void Speaker::Say(const std::string& line) {
+  {
+    const std::lock_guard lock(shared_->mutex);
+    if (shared_->lines.size() >= kMostWaiting) {
+      ++shared_->dropped;
+      return;
+    }
+    shared_->lines.push_back(line + "\n");
+  }
+  shared_->changed.notify_all();
+}
+
+void Speaker::Wait(std::chrono::milliseconds most) {
+  std::unique_lock lock(shared_->mutex);
+  shared_->changed.wait_for(lock, most, [this] { return shared_->lines.empty(); });
+}
+
+std::uint64_t Speaker::unsaid() const {
+  const std::lock_guard lock(shared_->mutex);
+  return shared_->dropped + shared_->lines.size();
+}
+
+void Speaker::SpeakAll(const std::shared_ptr<Shared>& shared) {
+  std::unique_lock lock(shared->mutex);
+  for (;;) {
+    shared->changed.wait(lock, [&] { return shared->closed || !shared->lines.empty(); });
+    if (shared->lines.empty() || shared->abandoned) {
+      return;
+    }
+    const std::string line = shared->lines.front();
+    lock.unlock();
+    const bool said = shared->Write(line);
+    lock.lock();
+    shared->lines.pop_front();
+    shared->dropped += said ? 0U : 1U;
+    shared->changed.notify_all();
+  }
+}
+
+}  // namespace fovea::hw

@@ -1,0 +1,39 @@
+// Ctrl-C as a wish to end: the first SIGINT or SIGTERM is noted, the second ends the process at once.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+#include "fovea/linux_rt/signal_queue.hpp"
+
+namespace fovea::linux_rt {
+
+class Interrupt {
+ public:
+  // Made before other threads are, which then leave these signals to it.
+  Interrupt();
+  ~Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  // From any thread: whether to end early. Real-time: yes.
+  [[nodiscard]] bool Came() const noexcept { return came_.load(std::memory_order_relaxed); }
+  // What is still done before the process ends at once, by the thread of the signals; empty: nothing. Returns
+  // when nobody does what was set before.
+  void SetLastAct(std::function<void()> act);
+
+ private:
+  void Watch();
+  [[noreturn]] void EndAtOnce(int signal);
+
+  const SignalQueue signals_;
+  std::atomic<bool> came_{false};
+  std::atomic<bool> done_{false};
+  std::mutex mutex_;
+  std::function<void()> last_act_;
+  std::thread thread_;
+};
+
+}  // namespace fovea::linux_rt

@@ -1,0 +1,52 @@
+#include "fovea/linux_rt/interrupt.hpp"
+
+#include <pthread.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <utility>
+
+namespace fovea::linux_rt {
+namespace {
+
+constexpr int kLookMs = 20;
+
+}  // namespace
+
+Interrupt::Interrupt() : signals_({SIGINT, SIGTERM}), thread_([this] { Watch(); }) {}
+
+Interrupt::~Interrupt() {
+  done_ = true;
+  thread_.join();
+}
+
+void Interrupt::SetLastAct(std::function<void()> act) {
+  const std::lock_guard lock(mutex_);
+  last_act_ = std::move(act);
+}
+
+void Interrupt::Watch() {
+  while (!done_) {
+    const int signal = signals_.Next(kLookMs);
+    if (signal > 0 && came_.exchange(true)) {
+      EndAtOnce(signal);
+    }
+  }
+}
+
+// As the signal itself would have ended it, so that a shell sees why.
+void Interrupt::EndAtOnce(int signal) {
+  const std::lock_guard lock(mutex_);
+  if (last_act_) {
+    last_act_();
+  }
+  std::signal(signal, SIG_DFL);
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, signal);
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+  raise(signal);
+  std::_Exit(128 + signal);
+}
+
+}  // namespace fovea::linux_rt
