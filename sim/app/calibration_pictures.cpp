@@ -9,6 +9,7 @@
 #include <optional>
 #include <random>
 
+#include "fovea/config/folder_lock.hpp"
 #include "fovea/config/input_error.hpp"
 #include "fovea/model/kinematics.hpp"
 #include "sim/app/board_plane.hpp"
@@ -206,6 +207,7 @@ CalibrationPictures TakeCalibrationPictures(const Scenario& scenario,
   if (error) {
     throw config::InputError(options.out.string() + ": the folder cannot be made: " + error.message());
   }
+  const config::FolderLock lock(options.out);
 
   CalibrationPictures taken;
   std::ofstream poses(options.out / "poses.csv", std::ios::trunc);

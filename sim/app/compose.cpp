@@ -8,6 +8,7 @@
 
 #include "fovea/config/input_error.hpp"
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/keep_apart.hpp"
 #include "sim/app/roll_pitch_yaw.hpp"
 #include "sim/camera/mix_bits.hpp"
 
@@ -101,6 +102,18 @@ void CheckStart(const Scenario& s, const robots::Robot& robot) {
   }
 }
 
+void CheckOutside(const Scenario& s, const servo::ServoConfig& servo) {
+  model::ArmPoses poses;
+  const Eigen::Map<const Eigen::VectorXd> q_start(s.arm.q_start.data(), servo.arm.num_joints);
+  model::ComputePoses(servo.arm, q_start, poses);
+  if (const double clearance = servo::ClearanceOfArm(servo, poses); !(clearance > 0.0)) {
+    throw InputError(
+        fmt::format("arm.q_start is not allowed: hand, camera, tools or links stand {:.3f} m inside what "
+                    "safety.planes and safety.boxes keep them out of",
+                    -clearance));
+  }
+}
+
 WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
   WorldConfig config;
   config.robot = robot;
@@ -113,8 +126,12 @@ WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
   config.X_EC = CameraMount(s);
   config.friction_compensation = s.arm.friction_compensation;
   config.encoder_noise = s.arm.encoder_noise;
+  config.encoder_quantum = s.arm.encoder_quantum;
   config.velocity_noise = s.arm.velocity_noise;
   config.target = MakeTargetMotion(s.target, SeedOf(s, RandomStream::kTarget));
+  if (s.camera.enabled) {
+    config.target_body = MakeTargetBody(MakeTargetShape(config::MakeTarget(s.target)));
+  }
   config.ball = MakeRollingBall(s.target);
   config.ball_push = ToVector(s.target.push);
   config.ball_push_s = s.target.push_s;

@@ -42,6 +42,9 @@ void SetFriction(const Scenario& scenario, robots::Robot& robot, SimRobot& sim_r
 void AddLoad(const model::Load& load, SimRobot& robot);
 // InputError when arm.q_start is outside the joints' range or the workspace.
 void CheckStart(const Scenario& scenario, const robots::Robot& robot);
+
+// InputError when the arm starts within what the servo keeps out of.
+void CheckOutside(const Scenario& scenario, const servo::ServoConfig& servo);
 // InputError when the lens of camera.k1, ... cannot be drawn.
 void CheckLens(const Scenario& scenario);
 // InputError when the target, standing at servo.goal, could not be seen.

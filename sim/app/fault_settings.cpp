@@ -6,6 +6,7 @@
 #include <array>
 
 #include "fovea/config/input_error.hpp"
+#include "sim/app/roll_pitch_yaw.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -15,6 +16,7 @@ using config::InputError;
 TimeWindow ToWindow(const std::vector<double>& window_s) { return {window_s[0], window_s[1]}; }
 
 std::int64_t NsOfMs(double ms) { return static_cast<std::int64_t>(ms * 1e6); }
+std::int64_t NsOfSeconds(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
 void AddEyeKeys(FaultSettings& f, config::KeyTable& keys) {
   const auto window = [&](const char* name, std::vector<double>& field, const char* meaning) {
@@ -27,6 +29,15 @@ void AddEyeKeys(FaultSettings& f, config::KeyTable& keys) {
   window(
       "faults.freeze_s", f.freeze_s,
       "the camera shows the same scene again and again, with new stamps, from the first time to the second");
+  keys.Flag("faults.freeze_pixels", f.freeze_pixels,
+            "then all its pixels stay equal; false: each picture has noise of its own");
+  window("faults.replay_s", f.replay_s, "the camera shows the scene as it was before, with new stamps");
+  keys.Number("faults.replay_delay_s", f.replay_delay_s, 0.0, 1e3, "s",
+              "so long before; the first scene where there is none so old");
+  window("faults.mirror_s", f.mirror_s, "the camera's pictures are mirrored, left is right");
+  window("faults.stamp_s", f.stamp_s, "the frames' stamps are off; the frames come when they would");
+  keys.Number("faults.stamp_ms", f.stamp_ms, -1e4, 1e4, "ms",
+              "by so much; above 0 a frame says that it is younger than it is");
   window("faults.latency_s", f.latency_s,
          "frames exposed from the first time to the second arrive later; those behind them wait");
   keys.Number("faults.latency_ms", f.latency_ms, 0.0, 1e4, "ms", "by so much, besides camera.latency_ms");
@@ -53,7 +64,8 @@ void AddBodyKeys(FaultSettings& f, config::KeyTable& keys) {
   };
   window("faults.encoder_stuck_s", f.encoder_stuck_s,
          "an encoder stays at its value from the first time to the second");
-  joint("faults.encoder_stuck_joint", f.encoder_stuck_joint);
+  keys.Integer("faults.encoder_stuck_joint", f.encoder_stuck_joint, 0, hal::kMaxJoints, "",
+               "which joint's, counted from 1; 0: all of them");
   window("faults.encoder_noise_s", f.encoder_noise_s, "a burst of noise on all encoders");
   keys.Number("faults.encoder_noise", f.encoder_noise, 0.0, 10.0, "rad",
               "its standard deviation on positions");
@@ -72,6 +84,10 @@ void AddBodyKeys(FaultSettings& f, config::KeyTable& keys) {
   keys.Number("faults.torque_loss", f.torque_loss, 0.0, 1.0, "", "share that does not arrive");
   window("faults.load_s", f.load_s, "a mass hangs at the end effector that nobody was told of");
   keys.Number("faults.load_mass", f.load_mass, 0.0, 100.0, "kg", "its mass");
+  window("faults.gravity_s", f.gravity_s,
+         "the arm's base leans, and the robot's own compensation of its weight does not know");
+  keys.Number("faults.gravity_tilt_deg", f.gravity_tilt_deg, -180.0, 180.0, "deg",
+              "by so much, about the base's x");
   keys.Numbers("faults.push", f.push, 1, hal::kMaxJoints, -1e4, 1e4, "Nm",
                "torques that push the joints from outside, one per joint; nothing does when not given");
   window("faults.push_s", f.push_s, "from the first time to the second");
@@ -84,10 +100,13 @@ struct Window {
   const std::vector<double>& window_s;
 };
 
-std::array<Window, 18> WindowsOf(const FaultSettings& f) {
+std::array<Window, 22> WindowsOf(const FaultSettings& f) {
   return {{{"camera_outage", f.camera_outage_s},
            {"frame_loss", f.frame_loss_s},
            {"freeze", f.freeze_s},
+           {"replay", f.replay_s},
+           {"mirror", f.mirror_s},
+           {"stamp", f.stamp_s},
            {"latency", f.latency_s},
            {"glare", f.glare_s},
            {"occluder", f.occluder_s},
@@ -101,6 +120,7 @@ std::array<Window, 18> WindowsOf(const FaultSettings& f) {
            {"deadline_miss", f.deadline_miss_s},
            {"torque_loss", f.torque_loss_s},
            {"load", f.load_s},
+           {"gravity", f.gravity_s},
            {"push", f.push_s},
            {"nothing", f.nothing_s}}};
 }
@@ -160,6 +180,7 @@ void CheckServedFaults(const FaultSettings& f) {
   };
   for (const Fault& fault : {Fault{"wrong_detection_s", f.wrong_detection_s, "the detector is the client's"},
                              {"nan_detection_s", f.nan_detection_s, "the detector is the client's"},
+                             {"stamp_s", f.stamp_s, "the client compares clocks itself"},
                              {"encoder_stuck_s", f.encoder_stuck_s, "a Panda keeps its encoders' faults"},
                              {"encoder_noise_s", f.encoder_noise_s, "arm.encoder_noise has a lasting one"},
                              {"encoder_nan_s", f.encoder_nan_s, "a Panda keeps its encoders' faults"},
@@ -192,6 +213,9 @@ FrameFaults MakeFrameFaults(const FaultSettings& f, std::uint64_t seed) {
   FrameFaults faults;
   faults.loss = {ToWindow(f.frame_loss_s), f.frame_loss};
   faults.freeze = ToWindow(f.freeze_s);
+  faults.freeze_pixels = f.freeze_pixels;
+  faults.replay = {ToWindow(f.replay_s), NsOfSeconds(f.replay_delay_s)};
+  faults.stamp = {ToWindow(f.stamp_s), NsOfMs(f.stamp_ms)};
   faults.late = {ToWindow(f.latency_s), NsOfMs(f.latency_ms)};
   faults.seed = seed;
   return faults;
@@ -212,6 +236,7 @@ PictureFaults MakePictureFaults(const FaultSettings& f) {
   faults.glare = {ToWindow(f.glare_s), f.glare_px[0], f.glare_px[1], f.glare_px[2]};
   faults.occluder = {ToWindow(f.occluder_s), f.occluder_px[0], f.occluder_px[1], f.occluder_px[2],
                      f.occluder_px[3]};
+  faults.mirror = ToWindow(f.mirror_s);
   return faults;
 }
 
@@ -220,6 +245,8 @@ void SetBenchFaults(const FaultSettings& f, WorldConfig& world) {
   world.push = {Eigen::Map<const Eigen::VectorXd>(f.push.data(), static_cast<Eigen::Index>(f.push.size())),
                 ToWindow(f.push_s)};
   world.torque_loss = {ToWindow(f.torque_loss_s), f.torque_loss_joint - 1, f.torque_loss};
+  world.base_tilt = {ToWindow(f.gravity_s),
+                     f.gravity_s[1] > f.gravity_s[0] ? kRadPerDeg * f.gravity_tilt_deg : 0.0};
   world.load = {ToWindow(f.load_s), f.load_s[1] > f.load_s[0] ? f.load_mass : 0.0};
 }
 

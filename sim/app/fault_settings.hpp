@@ -20,6 +20,12 @@ struct FaultSettings {
   std::vector<double> frame_loss_s{0.0, 0.0};
   double frame_loss = 0.5;
   std::vector<double> freeze_s{0.0, 0.0};
+  bool freeze_pixels = false;
+  std::vector<double> replay_s{0.0, 0.0};
+  double replay_delay_s = 1.0;
+  std::vector<double> mirror_s{0.0, 0.0};
+  std::vector<double> stamp_s{0.0, 0.0};
+  double stamp_ms = 8.0;
   std::vector<double> latency_s{0.0, 0.0};
   double latency_ms = 100.0;
   std::vector<double> glare_s{0.0, 0.0};
@@ -48,6 +54,8 @@ struct FaultSettings {
   double torque_loss = 1.0;
   std::vector<double> load_s{0.0, 0.0};
   double load_mass = 1.0;
+  std::vector<double> gravity_s{0.0, 0.0};
+  double gravity_tilt_deg = 5.0;
   std::vector<double> push;  // empty: nothing pushes
   std::vector<double> push_s{0.0, 0.0};
   std::vector<double> nothing_s{0.0, 0.0};

@@ -10,6 +10,7 @@
 #include "fovea/config/board_flags.hpp"
 #include "fovea/config/program.hpp"
 #include "fovea/config/share_folder.hpp"
+#include "fovea/linux_rt/interrupt.hpp"
 #include "sim/app/calibration_pictures.hpp"
 #include "sim/app/run.hpp"
 #include "sim/app/scenario.hpp"
@@ -66,6 +67,7 @@ sim::BoardConfig MakeBoard(const RunArguments& arguments, const sim::Scenario& s
 }
 
 int Run(const RunArguments& arguments) {
+  linux_rt::Interrupt interrupt;  // from here on Ctrl-C ends the run in order
   std::vector<std::string> assignments = arguments.assignments;
   if (arguments.seed >= 0) {
     assignments.push_back(fmt::format("run.seed={}", arguments.seed));
@@ -84,6 +86,7 @@ int Run(const RunArguments& arguments) {
   options.out = arguments.out.empty() ? "out/" + scenario.name : arguments.out;
   options.report = !arguments.no_report;
   options.trace = arguments.trace;
+  options.interrupt = &interrupt;
   const sim::Summary summary = sim::RunScenario(scenario, options);
   for (const std::string& error : summary.film_errors) {
     fmt::print(stderr, "fovea-sim: {}\n", error);
@@ -215,8 +218,8 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
   serve
       .add_option(
           "--most-speed", server.most_speed,
-          "in lockstep, of the robot's time against the clock's, so that a busy machine keeps up with "
-          "its pictures; 0: as fast as its client")
+          "of the robot's time against the clock's, so that a busy machine keeps up with its pictures; 0: in "
+          "lockstep as fast as its client, at real pace as the clock")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
   serve.add_option("--fci-port", server.at.port, "TCP port; 0 takes a free one and says which")
@@ -350,7 +353,8 @@ int main(int argc, char** argv) {
       "--line-from-s 0.1\n"
       "  fovea-sim serve ball --fci-port 1337\n"
       "  fovea-sim pictures --board 9x6 --square 0.025 --out out/boards\n"
-      "Exit: 0 the run reached its goal, 1 it did not, 2 wrong usage or input.");
+      "Ctrl-C ends a run early, with all its files; once more ends it at once, with its log up to there.\n"
+      "Exit: 0 the run reached its goal, 1 it did not or was interrupted, 2 wrong usage or input.");
 
   RunArguments arguments;
   CLI::App* run = app.add_subcommand("run", "simulate a scenario");

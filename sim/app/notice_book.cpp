@@ -34,9 +34,9 @@ void NoticeBook::Add(const hal::TickRecord& record) {
   if (record.missed_ticks > 0) {
     Note("missed_ticks");
   }
-  if (record.has_feature && !record.feature.found) {
+  if (record.intake == hal::Intake::kNotFound) {
     Note("target_not_found");
-  } else if (record.has_feature && record.feature_age_ns != record.stamp_ns - record.feature.stamp_ns) {
+  } else if (record.intake != hal::Intake::kNone && record.intake != hal::Intake::kTaken) {
     Note("measurement_left_out");
   }
 }

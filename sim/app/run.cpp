@@ -22,12 +22,13 @@
 #include "fovea/vision/vision_task.hpp"
 #include "sim/app/compose.hpp"
 #include "sim/app/eye.hpp"
+#include "sim/app/mode_watch.hpp"
 #include "sim/app/progress.hpp"
 #include "sim/app/run_description.hpp"
 #include "sim/app/run_files.hpp"
 #include "sim/app/run_trace.hpp"
 #include "sim/app/target_log.hpp"
-#include "sim/app/verdict.hpp"
+#include "sim/app/verdict_config.hpp"
 #include "sim/faults/faulty_arm.hpp"
 #include "sim/faults/faulty_detector.hpp"
 #include "sim/faults/frame_faults.hpp"
@@ -67,9 +68,8 @@ class Run {
       trace_.emplace(options_.trace, scenario.run.duration_s, scenario.camera.rate_hz, kRenderers);
     }
     if (HasEye()) {
-      // In lockstep no frame is ever lost: the world waits for each. A real camera keeps two.
-      eye_ =
-          std::make_unique<Eye>(about_, options_.pace == Pace::kReal ? 2 : 1024, trace_ ? &*trace_ : nullptr);
+      // Where the world waits for each frame none is ever lost. A real camera keeps two.
+      eye_ = std::make_unique<Eye>(about_, WaitsForFrames() ? 1024 : 2, trace_ ? &*trace_ : nullptr);
     }
     // After all that can be refused: what is refused leaves no folder.
     // A board that ticks by its own timer sees other inputs than the host does.
@@ -80,7 +80,17 @@ class Run {
         board_ ? static_cast<servo::ServoStep&>(*board_) : servo_,
         !board_ && files_->HasLog() ? &servo_ : nullptr, kRingCapacity);
     BuildWorld();
+    if (options_.interrupt != nullptr) {
+      options_.interrupt->SetLastAct([this] { files_->KeepLog(); });
+    }
   }
+  ~Run() {
+    if (options_.interrupt != nullptr) {
+      options_.interrupt->SetLastAct({});
+    }
+  }
+  Run(const Run&) = delete;
+  Run& operator=(const Run&) = delete;
 
   Summary Execute() {
     std::thread vision_thread;
@@ -119,7 +129,8 @@ class Run {
           fmt::format("the run broke off: {} ({})", hal::ToString(status.code()), status.where()));
     }
     Summary summary = Summarise();
-    progress_.Update(about_.scenario.run.duration_s, "drawing the pictures");
+    progress_.Update(about_.scenario.run.duration_s,
+                     interrupted_ ? "interrupted; once more ends at once" : "drawing the pictures");
     files_->Write(summary, world_->Look(), meter_.durations());
     return summary;
   }
@@ -131,22 +142,7 @@ class Run {
   }
 
   void BuildWorld() {
-    VerdictConfig verdict_config;
-    verdict_config.arm = about_.servo.arm;
-    verdict_config.pinhole = about_.pinhole;
-    verdict_config.goal = GoalOf(about_.servo.feature);
-    verdict_config.has_eye = HasEye();
-    if (about_.motion && std::holds_alternative<CommandedCircle>(*about_.motion)) {
-      verdict_config.circle = std::get<CommandedCircle>(*about_.motion);
-    }
-    verdict_config.goes_home = about_.motion && std::holds_alternative<CommandedHome>(*about_.motion);
-    verdict_config.path_bound_mm = about_.scenario.motion.bound_mm;
-    verdict_config.target_moves = KeepsMoving(about_.scenario.target);
-    verdict_config.tracking_bound_px = about_.scenario.run.tracking_bound_px;
-    verdict_config.duration_s = about_.scenario.run.duration_s;
-    verdict_config.workspace_radius = about_.servo.guard.workspace_radius;
-    verdict_config.faults = FaultsOf(about_.scenario.faults);
-    verdict_ = std::make_unique<Verdict>(verdict_config);
+    verdict_ = std::make_unique<Verdict>(MakeVerdictConfig(about_));
     if (about_.theory) {
       theory_.emplace(*about_.theory);
     }
@@ -179,7 +175,7 @@ class Run {
   }
 
   void ObserveTruth(const Truth& truth) {
-    verdict_->AddTruth(truth);
+    verdict_->AddTruth(truth, modes_.mode());
     files_->AddTruth(truth);
     if (theory_) {
       files_->AddTheory(theory_->Add(truth));
@@ -241,20 +237,31 @@ class Run {
       servo_.UseProbe(&ticks.emplace(trace_->servo(), meter_, *recorder_));
       world.emplace(trace_->servo(), stalling, "world");
     }
+    modes_.PassTo(ticks ? static_cast<hal::Recorder&>(*ticks) : *recorder_);
     servo::ServoLoop loop(*recorder_, *faulty_arm_, world ? static_cast<hal::Clock&>(*world) : stalling,
-                          mailbox_, ticks ? static_cast<hal::Recorder&>(*ticks) : *recorder_,
-                          ticks ? static_cast<hal::TickProbe&>(*ticks) : meter_);
+                          mailbox_, modes_, ticks ? static_cast<hal::TickProbe&>(*ticks) : meter_);
     if (motion_) {
       loop.UseMotion(*motion_);
     }
+    loop_ = &loop;
     const hal::Status status = loop.Run(EndNs());
+    loop_ = nullptr;
     counters_ = loop.counters();
     servo_.UseProbe(nullptr);
     return status;
   }
 
-  // What is due of the measurements goes to the servo.
+  [[nodiscard]] bool IsInterrupted() const {
+    return options_.interrupt != nullptr && options_.interrupt->Came();
+  }
+
+  // Between two ticks, on the servo's thread: what is due of the measurements goes to the servo.
   bool HandOver(std::int64_t now_ns, bool wait) {
+    if (IsInterrupted() && now_ns < EndNs()) {
+      interrupted_ = true;
+      loop_->Stop();  // after the tick in hand, which has its records
+      return true;
+    }
     if (!trace_) {
       return delay_.HandOver(now_ns, wait, mailbox_);
     }
@@ -285,17 +292,18 @@ class Run {
 
   hal::Status RunAtRealPace() {
     linux_rt::MonotonicClock monotonic;
+    hal::Clock& given = options_.clock != nullptr ? *options_.clock : monotonic;
     std::optional<trace::ClockTrace> sleep;
     if (trace_) {
-      sleep.emplace(trace_->servo(), monotonic, "sleep");
+      sleep.emplace(trace_->servo(), given, "sleep");
     }
     std::atomic<bool> done{false};
     hal::Status status;
     std::optional<RealPaceClock> clock;  // its time begins when the thread is ready
     std::jthread servo_thread([&] {      // joins, whatever is thrown below
       realtime_missing_ = linux_rt::MakeThreadRealtime({});
-      clock.emplace(*world_, sleep ? static_cast<hal::Clock&>(*sleep) : monotonic,
-                    [&](std::int64_t now_ns) { return HandOver(now_ns, /*wait=*/false); });
+      clock.emplace(*world_, sleep ? static_cast<hal::Clock&>(*sleep) : given,
+                    [&](std::int64_t now_ns) { return HandOver(now_ns, WaitsForFrames()); });
       status = RunLoop(*clock);
       done = true;
     });
@@ -322,6 +330,19 @@ class Run {
       s.theory = theory_->Finish();
       s.converged = s.converged && s.theory->agrees;
       s.verdict = s.converged || !s.theory->agrees ? s.theory->verdict : s.verdict;
+    }
+    s.frames_failed = vision_.failures().frames;
+    s.frame_failure = vision_.failures().first;
+    if (s.frames > 0 && s.frames_failed == s.frames) {
+      s.converged = false;
+      s.verdict = fmt::format("not converged: none of {} pictures could be looked at ({})", s.frames,
+                              s.frame_failure);
+    }
+    if (interrupted_) {
+      s.interrupted = true;
+      s.converged = false;
+      s.verdict = fmt::format("interrupted after {:.3f} s of {:g} s",
+                              static_cast<double>(world_->now_ns()) * 1e-9, about_.scenario.run.duration_s);
     }
     s.ticks = counters_.ticks;
     s.overruns = counters_.overruns;
@@ -354,6 +375,9 @@ class Run {
   }
 
   [[nodiscard]] bool HasEye() const { return about_.scenario.camera.enabled; }
+  [[nodiscard]] bool WaitsForFrames() const {
+    return options_.pace == Pace::kLockstep || options_.clock != nullptr;
+  }
 
   RunOptions options_;
   Progress progress_;
@@ -368,6 +392,7 @@ class Run {
   std::unique_ptr<Verdict> verdict_;
   std::optional<TheoryRun> theory_;
   std::optional<CommandedMotionSource> motion_;
+  ModeWatch modes_;  // for the verdict, which may not wait for the records
   std::unique_ptr<World> world_;
   std::unique_ptr<SimArm> arm_;
   std::unique_ptr<FaultyArm> faulty_arm_;
@@ -380,6 +405,8 @@ class Run {
   log::RecordHash hash_;
   TargetLog targets_;
   const std::atomic<bool> never_stop_{false};  // the vision thread ends when the camera closes
+  servo::ServoLoop* loop_ = nullptr;           // while it runs, for its own thread
+  bool interrupted_ = false;                   // before its end
   servo::LoopCounters counters_;
   hal::Mode mode_ = hal::Mode::kBoot;  // of the last record
   double recorded_s_ = 0.0;            // and its time

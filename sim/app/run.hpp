@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <functional>
 
+#include "fovea/hal/clock.hpp"
 #include "fovea/hal/record.hpp"
+#include "fovea/linux_rt/interrupt.hpp"
 #include "sim/app/scenario.hpp"
 #include "sim/app/summary.hpp"
 #include "sim/mcu/board_servo.hpp"
@@ -34,12 +36,16 @@ struct RunOptions {
   bool show_progress = true;
   std::filesystem::path trace;  // empty: none; else a file for the timeline of all threads
   RunObserver observer;
+  hal::Clock* clock =
+      nullptr;  // at real pace: in place of the computer's, and then the pictures are waited for
+  linux_rt::Interrupt* interrupt = nullptr;  // who may end the run early; it outlives the run
 };
 
 // Composes robot, bench, camera and servo, runs the scenario to its end, judges it against the truth, and
 // leaves its files in `options.out` (see RunFiles). Nothing is in place before the run is over. InputError:
-// the scenario cannot be run, or the files not be written. std::runtime_error: no EGL, or the renderer broke
-// during the run.
+// the scenario cannot be run, or the files not be written. A run that is interrupted leaves what any run
+// leaves; one that is ended at once leaves its log as far as it goes. std::runtime_error: no EGL, or the
+// renderer broke during the run.
 Summary RunScenario(const Scenario& scenario, const RunOptions& options);
 
 }  // namespace fovea::sim

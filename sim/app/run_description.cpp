@@ -65,6 +65,7 @@ RunDescription DescribeRun(const Scenario& scenario) {
   run.servo =
       config::MakeServoConfig(scenario.servo, run.robot, model::Pose{X_EC.linear(), X_EC.translation()},
                               run.intrinsics, scenario.target);
+  CheckOutside(scenario, run.servo);
   CheckGoal(scenario);
   CheckTimes(scenario);
   CheckFaults(scenario.faults, run.robot.model.num_joints);

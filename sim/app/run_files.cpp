@@ -12,9 +12,11 @@
 namespace fovea::sim {
 namespace {
 
+const std::string kLogName = "log.mcap";
+
 // All that any run leaves, for the next to take away.
 const std::vector<std::string> kFileNames{"eye-first.png", "eye-last.png", "bench.png",   "camera.mp4",
-                                          "scene.mp4",     "log.mcap",     "report.html", "summary.json"};
+                                          "scene.mp4",     kLogName,       "report.html", "summary.json"};
 
 }  // namespace
 
@@ -40,7 +42,7 @@ RunFiles::RunFiles(const RunDescription& about, const RunFilesConfig& config) : 
     scene_film_ = std::make_unique<SceneFilm>(
         SceneFilmConfig{folder_->Begin("scene.mp4"), about.scene, config.renderer_index, config.may_drop});
   }
-  log_ = std::make_unique<LogFeed>(about, folder_->Begin("log.mcap"), config.may_drop, config.replayable);
+  log_ = std::make_unique<LogFeed>(about, folder_->Begin(kLogName), config.may_drop, config.replayable);
 }
 
 void RunFiles::AddTruth(const Truth& truth) {
@@ -118,7 +120,13 @@ void RunFiles::Write(const Summary& summary, const Exposure& end, const linux_rt
     }
     // A disk that is full: what was recorded before is the more worth keeping.
     throw std::runtime_error(fmt::format("{}; the log is kept as far as it goes, in {}", error.what(),
-                                         folder_->Keep("log.mcap", kFileNames).string()));
+                                         folder_->Keep(kLogName, kFileNames).string()));
+  }
+}
+
+void RunFiles::KeepLog() const {
+  if (folder_ && log_) {
+    static_cast<void>(folder_->Keep(kLogName, kFileNames));
   }
 }
 
@@ -147,9 +155,9 @@ void RunFiles::WriteAll(const Summary& summary, const Exposure& end,
       files.push_back({"scene.mp4", std::nullopt});
     }
     log_->Finish(ticks, summary_json);
-    files.push_back({"log.mcap", std::nullopt});
+    files.push_back({kLogName, std::nullopt});
     report::RunData run = report::ReadRun(log_->path());
-    run.source = "log.mcap";  // as it will be called
+    run.source = kLogName;  // as it will be called
     files.push_back({"report.html", page_->Make({run})});
     files.push_back({"bench.png", bench.get()});
   }

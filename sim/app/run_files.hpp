@@ -57,6 +57,9 @@ class RunFiles {
   // Puts everything in place; `end` is the bench as it is at the end. Throws what went wrong with any of it;
   // then the folder is as it was, but for a log that could not be written on: it stands there alone.
   void Write(const Summary& summary, const Exposure& end, const linux_rt::DurationHistogram& ticks);
+  // From any thread, when the process ends before Write is done: the log stands there alone, as far as it
+  // goes.
+  void KeepLog() const;
 
  private:
   void WriteAll(const Summary& summary, const Exposure& end, const linux_rt::DurationHistogram& ticks);

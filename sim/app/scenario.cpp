@@ -35,6 +35,8 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
               "share of the joints' friction that the robot's own controller takes away");
   keys.Number("arm.encoder_noise", s.arm.encoder_noise, 0.0, 0.1, "rad",
               "standard deviation of measured positions");
+  keys.Number("arm.encoder_quantum", s.arm.encoder_quantum, 0.0, 0.1, "rad",
+              "measured positions are rounded to multiples of it, velocities are not; 0: none are");
   keys.Number("arm.velocity_noise", s.arm.velocity_noise, 0.0, 1.0, "rad/s",
               "standard deviation of measured velocities");
   keys.Choice("arm.integrator", s.arm.integrator, {"euler", "rk4"},

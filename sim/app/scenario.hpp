@@ -30,6 +30,7 @@ struct Scenario {
     bool stiction = false;
     double friction_compensation = 0.9;
     double encoder_noise = 1e-5;
+    double encoder_quantum = 0.0;
     double velocity_noise = 5e-4;
     std::string integrator = "euler";
     config::LoadSettings load;
@@ -86,7 +87,10 @@ struct Scenario {
     bool scene_video = false;
   } run;
 
-  Scenario() { servo.config.auto_track = true; }
+  Scenario() {
+    servo.config.auto_track = true;
+    servo.planes = {0.0, 0.0, 1.0, 0.01};  // the bench's table, and a centimetre
+  }
 };
 
 // The keys of all sections, bound to `scenario`, which must outlive the table.

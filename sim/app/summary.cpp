@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "fovea/hal/events.hpp"
+
 namespace fovea::sim {
 namespace {
 
@@ -82,6 +84,16 @@ ordered_json ToJson(const std::vector<InjectedFault>& injected) {
   return json;
 }
 
+ordered_json ToJson(const std::map<std::string, StandingMotion>& motions) {
+  ordered_json json = ordered_json::object();
+  for (const auto& [mode, motion] : motions) {
+    json[mode] = {{"most_mm", motion.most_mm},
+                  {"most_m_per_s", motion.most_m_per_s},
+                  {"gained_m_per_s", motion.gained_m_per_s}};
+  }
+  return json;
+}
+
 ordered_json ToJson(const RunEnd& end) {
   return {{"mode", end.mode},
           {"reason", end.reason},
@@ -109,6 +121,19 @@ class Table {
  private:
   std::string text_;
 };
+
+// "232 taken; 3 outlier"; what was not found stands in the row of the frames.
+std::string MeasurementsInWords(const std::map<std::string, std::uint64_t>& measurements) {
+  const std::string taken = hal::Name(hal::Intake::kTaken);
+  const auto of_taken = measurements.find(taken);
+  std::string words = fmt::format("{} taken", of_taken == measurements.end() ? 0 : of_taken->second);
+  for (const auto& [name, count] : measurements) {
+    if (name != taken && name != hal::Name(hal::Intake::kNotFound)) {
+      words += fmt::format("; {} {}", count, name);
+    }
+  }
+  return words;
+}
 
 }  // namespace
 
@@ -162,6 +187,7 @@ std::string ToJson(const Summary& s) {
   json["pace"] = s.pace;
   json["converged"] = s.converged;
   json["verdict"] = s.verdict;
+  json["interrupted"] = s.interrupted;
   json["settle_time_s"] = OrNull(s.settle_time_s);
   json["start_error_px"] = OrNull(s.start_error_px);
   json["final_error_px_rms"] = OrNull(s.final_error_px_rms);
@@ -180,15 +206,23 @@ std::string ToJson(const Summary& s) {
     json["theory"] = ToJson(*s.theory);
   }
   json["limits"] = s.limits;
+  json["clearances_m"] = s.clearances_m;
+  json["unjudged"] = s.unjudged;
   json["limit_violations"] = s.limit_violations;
+  json["violations"] = s.violations;
+  json["measurements"] = s.measurements;
   json["limit_ticks"] = s.limit_ticks;
   json["contact_ticks"] = s.contact_ticks;
+  json["contacts"] = {{"bench", s.contacts.bench}, {"target", s.contacts.target}, {"self", s.contacts.self}};
+  json["unwanted_motion"] = ToJson(s.unwanted_motion);
   json["faults"] = faults;
   json["modes"] = modes;
   json["injected"] = ToJson(s.injected);
   json["end"] = ToJson(s.end);
   json["frames"] = s.frames;
   json["frames_detected"] = s.frames_detected;
+  json["frames_failed"] = s.frames_failed;
+  json["frame_failure"] = s.frame_failure.empty() ? ordered_json(nullptr) : ordered_json(s.frame_failure);
   json["frames_lost"] = s.frames_lost;
   json["ticks"] = s.ticks;
   json["overruns"] = s.overruns;
@@ -237,13 +271,21 @@ std::string ToTable(const Summary& s) {
   }
   if (s.frames > 0) {
     table.Row("frames", fmt::format("{}, target found in {}", s.frames, s.frames_detected));
+    table.Row("measurements", MeasurementsInWords(s.measurements));
+  }
+  if (s.frames_failed > 0) {
+    table.Row("", fmt::format("{} could not be looked at: {}", s.frames_failed, s.frame_failure));
   }
   std::string limits;
   for (const auto& [name, used] : s.limits) {
     limits += fmt::format("{}{} {:.0f} %", limits.empty() ? "" : ", ", name, 100.0 * used);
   }
   table.Row("limits used", limits);
-  table.Row("limit violations", fmt::format("{}", s.limit_violations));
+  std::string violations;
+  for (const auto& [name, ticks] : s.violations) {
+    violations += fmt::format("{}{} {}", violations.empty() ? ": " : ", ", name, ticks);
+  }
+  table.Row("limit violations", fmt::format("{}{}", s.limit_violations, violations));
   table.Row("faults", s.faults.empty() ? "none" : "");
   for (const FaultEvent& f : s.faults) {
     table.Row("", fmt::format("{:.3f} s: {} ({}){}", f.t_s, f.name, f.detail,

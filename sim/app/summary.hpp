@@ -34,6 +34,20 @@ struct InjectedFault {
   std::map<std::string, double> noticed;  // when first [s], by what; see NoticeBook
 };
 
+// How far and how fast the hand moved in a mode in which the arm stands, from where that mode began.
+struct StandingMotion {
+  double most_mm = 0.0;
+  double most_m_per_s = 0.0;
+  double gained_m_per_s = 0.0;  // more than it had when the mode began
+};
+
+// Ticks in which the arm touched something.
+struct ContactTicks {
+  std::uint64_t bench = 0;
+  std::uint64_t target = 0;
+  std::uint64_t self = 0;
+};
+
 // How a run ended.
 struct RunEnd {
   std::string mode;
@@ -48,7 +62,8 @@ struct Summary {
   int seed = 0;
   std::string pace;
   bool converged = false;
-  std::string verdict;  // one sentence: converged, or why not
+  std::string verdict;       // one sentence: converged, or why not
+  bool interrupted = false;  // told to end before its end
 
   // Against the simulator's truth. Still targets: over the last 0.5 s.
   std::optional<double> settle_time_s;
@@ -67,10 +82,17 @@ struct Summary {
   std::optional<double> home_error_rad;  // largest of the joints', at the end of a way home
   std::optional<TheoryResult> theory;    // of a run beside its analytic answer
 
-  std::map<std::string, double> limits;              // largest used fraction of each
-  std::uint64_t limit_violations = 0;                // ticks with a fraction above 1
-  std::map<std::string, std::uint64_t> limit_ticks;  // ticks in which the servo's guard acted, by limit
-  std::uint64_t contact_ticks = 0;                   // ticks in which the arm touched the table
+  // What must hold, by the truth, and of the reference; see verdict_barriers.hpp.
+  std::map<std::string, double> limits;               // largest used fraction of each
+  std::map<std::string, double> clearances_m;         // least distance to each plane and box; below 0: within
+  std::map<std::string, double> unjudged;             // as `limits`, and may be above 1
+  std::uint64_t limit_violations = 0;                 // ticks in which anything was passed or touched
+  std::map<std::string, std::uint64_t> violations;    // the same of each that was
+  std::map<std::string, std::uint64_t> measurements;  // how many, by what became of them (hal::Intake)
+  std::map<std::string, std::uint64_t> limit_ticks;   // ticks in which the servo's guard acted, by limit
+  std::uint64_t contact_ticks = 0;  // ticks in which the arm touched bench, target or itself
+  ContactTicks contacts;
+  std::map<std::string, StandingMotion> unwanted_motion;  // by mode: boot, hold, fault
   std::vector<FaultEvent> faults;
   std::vector<ModeEvent> modes;
   std::vector<InjectedFault> injected;
@@ -78,6 +100,8 @@ struct Summary {
 
   std::uint64_t frames = 0;
   std::uint64_t frames_detected = 0;
+  std::uint64_t frames_failed = 0;  // that could not be looked at; they count as not found
+  std::string frame_failure;        // why the first of them
   std::uint64_t frames_lost = 0;
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0;
@@ -105,9 +129,10 @@ struct Summary {
   std::string version;
 };
 
-// Whether the run did what it was for: converged, and no limit passed on the way. The program's exit code.
+// Whether the run did what it was for: converged, no limit passed and nothing touched on the way. The
+// program's exit code.
 inline bool ReachedItsGoal(const Summary& summary) {
-  return summary.converged && summary.limit_violations == 0;
+  return summary.converged && summary.limit_violations == 0 && summary.contact_ticks == 0;
 }
 
 std::string ToJson(const Summary& summary);

@@ -1,5 +1,10 @@
 #include "sim/app/target_scene.hpp"
 
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -104,6 +109,32 @@ TargetShape MakeTargetShape(const features::TargetFeature& feature) {
     }
   }
   return shape;
+}
+
+Shape MakeTargetBody(const TargetShape& shape) {
+  constexpr float kThickness = 0.002F;
+  constexpr int kDiscCorners = 48;
+  Shape body;
+  if (shape.kind == TargetShape::Kind::kBall) {
+    body.kind = ShapeKind::kSphere;
+    body.size = {shape.radius, 0.0, 0.0};
+    return body;
+  }
+  std::vector<Eigen::Vector2d> corners = shape.corners;
+  for (int i = 0; shape.kind == TargetShape::Kind::kDisc && i < kDiscCorners; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kDiscCorners;
+    corners.emplace_back(shape.radius * std::cos(angle), shape.radius * std::sin(angle));
+  }
+  Mesh plate;
+  for (const Eigen::Vector2d& corner : corners) {
+    for (const float z : {0.0F, kThickness}) {
+      const Eigen::Vector3f position(static_cast<float>(corner.x()), static_cast<float>(corner.y()), z);
+      plate.vertices.push_back({position, Eigen::Vector3f::UnitZ(), Eigen::Vector3f::Zero()});
+    }
+  }
+  body.kind = ShapeKind::kMesh;
+  body.mesh = std::make_shared<const Mesh>(std::move(plate));
+  return body;
 }
 
 bool KeepsMoving(const TargetScene& scene) {

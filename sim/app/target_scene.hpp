@@ -7,6 +7,7 @@
 #include "fovea/config/target_keys.hpp"
 #include "sim/physics/rolling_ball.hpp"
 #include "sim/render/target_shape.hpp"
+#include "sim/robot/sim_robot.hpp"
 #include "sim/world/target_motion.hpp"
 
 namespace fovea::sim {
@@ -39,6 +40,8 @@ TargetMotion MakeTargetMotion(const TargetScene& scene, std::uint64_t seed);
 // The ball that is pushed, for a scene that has one. InputError: it is no sphere, or stands in the table.
 RollingBallConfig MakeRollingBall(const TargetScene& scene);
 TargetShape MakeTargetShape(const features::TargetFeature& feature);
+// What the arm could touch of it: a flat one is a plate of 2 mm behind its painted side.
+Shape MakeTargetBody(const TargetShape& shape);
 
 // Whether it is followed rather than come to: it moves all the time.
 bool KeepsMoving(const TargetScene& scene);

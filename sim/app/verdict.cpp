@@ -22,9 +22,10 @@ constexpr double kSettledShare = 0.02;  // settled: below this share of the firs
 
 }  // namespace
 
-Verdict::Verdict(const VerdictConfig& config) : config_(config), notices_(config.faults) {}
+Verdict::Verdict(const VerdictConfig& config)
+    : config_(config), barriers_(config.barriers), notices_(config.faults) {}
 
-void Verdict::AddTruth(const Truth& truth) {
+void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
   if (config_.has_eye) {
     const TargetError error = ErrorOf(truth, config_.pinhole, config_.goal);
     AddSample({truth.stamp_ns, error.error_px, error.error_C, error.error_rad.value_or(0.0)});
@@ -41,28 +42,18 @@ void Verdict::AddTruth(const Truth& truth) {
     ++path_samples_;
     NoteGoal(t_s, 1e3 * off <= config_.path_bound_mm);
   }
-  home_error_ =
-      (truth.q - model::ToVector(config_.arm.q_ready, config_.arm.num_joints)).cwiseAbs().maxCoeff();
+  const model::ArmModel& arm = config_.barriers.arm;
+  home_error_ = (truth.q - model::ToVector(arm.q_ready, arm.num_joints)).cwiseAbs().maxCoeff();
   if (config_.goes_home) {
     NoteGoal(t_s, home_error_ <= kHomeBound);
   }
-  for (int i = 0; i < config_.arm.num_joints; ++i) {
-    const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
-    const double half = 0.5 * (joint.q_max - joint.q_min);
-    const auto note = [&](hal::Limit limit, double fraction) {
-      motion_.Note(truth.stamp_ns, limit, fraction);
-    };
-    note(hal::Limit::kJointPosition, (truth.q[i] - 0.5 * (joint.q_max + joint.q_min)) / half);
-    note(hal::Limit::kJointVelocity, truth.dq[i] / joint.dq_max);
-    note(hal::Limit::kTorque, truth.tau_cmd[i] / joint.tau_max);
-    if (tau_before_.size() > 0) {
-      note(hal::Limit::kTorqueRate, (truth.tau_cmd[i] - tau_before_[i]) / (joint.dtau_max * kTickS));
-    }
-  }
-  motion_.Note(truth.stamp_ns, hal::Limit::kWorkspace,
-               truth.X_BE.translation().norm() / config_.workspace_radius);
-  contact_ticks_ += truth.contacts > 0 ? 1U : 0U;
-  tau_before_ = truth.tau_cmd;
+  barriers_.Add(truth, mode);
+  unwanted_.Add(truth, mode);
+  const Contacts& contacts = truth.contacts;
+  contact_ticks_ += contacts.Any() ? 1U : 0U;
+  contacts_.bench += contacts.bench > 0 ? 1U : 0U;
+  contacts_.target += contacts.target ? 1U : 0U;
+  contacts_.self += contacts.self ? 1U : 0U;
 }
 
 void Verdict::AddSample(const Sample& sample) {
@@ -94,14 +85,14 @@ void Verdict::NoteGoal(double t_s, bool kept) {
 
 void Verdict::AddRecord(const hal::TickRecord& record) {
   notices_.Add(record);
-  for (int i = 0; i < config_.arm.num_joints; ++i) {
+  for (int i = 0; i < config_.barriers.arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const model::Joint& joint = config_.arm.joints[k];
-    reference_.Note(record.stamp_ns, hal::Limit::kJointAcceleration, record.ddq_cmd[k] / joint.ddq_max);
+    const model::Joint& joint = config_.barriers.arm.joints[k];
+    reference_.Note(record.stamp_ns, reference_ddq_, record.ddq_cmd[k] / joint.ddq_max);
     // Only where the reference runs on; it starts anew at every stop of the servo.
     const auto runs = [](hal::Mode mode) { return mode != hal::Mode::kBoot && mode != hal::Mode::kFault; };
     if (has_record_ && runs(before_.mode) && runs(record.mode)) {
-      reference_.Note(record.stamp_ns, hal::Limit::kJointJerk,
+      reference_.Note(record.stamp_ns, reference_jerk_,
                       (record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * kTickS));
     }
   }
@@ -110,6 +101,9 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
     if ((record.limits_active & hal::Bit(limit)) != 0) {
       ++limit_ticks_[hal::Name(limit)];
     }
+  }
+  if (record.intake != hal::Intake::kNone) {
+    ++measurements_[hal::Name(record.intake)];
   }
   ever_known_ = ever_known_ || record.target_known;
   const double t_s = static_cast<double>(record.stamp_ns) * 1e-9;
@@ -127,14 +121,18 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
 }
 
 void Verdict::Fill(Summary& summary) const {
-  motion_.AddMost(summary.limits);
-  reference_.AddMost(summary.limits);
+  barriers_.book().AddTo(summary);
+  reference_.AddTo(summary);
+  const std::vector<std::int64_t>& by_truth_ns = barriers_.book().passed_ns();
   std::vector<std::int64_t> passed_ns;
-  std::set_union(motion_.passed_ns().begin(), motion_.passed_ns().end(), reference_.passed_ns().begin(),
+  std::set_union(by_truth_ns.begin(), by_truth_ns.end(), reference_.passed_ns().begin(),
                  reference_.passed_ns().end(), std::back_inserter(passed_ns));
   summary.limit_violations = passed_ns.size();
   summary.limit_ticks = limit_ticks_;
+  summary.measurements = measurements_;
   summary.contact_ticks = contact_ticks_;
+  summary.contacts = contacts_;
+  summary.unwanted_motion = unwanted_.by_mode();
   summary.faults = faults_;
   summary.modes = modes_;
   FillEnd(summary);
@@ -150,7 +148,10 @@ void Verdict::Fill(Summary& summary) const {
   } else {
     FillStill(summary);
   }
-  if (!summary.converged) {
+  if (summary.converged && contact_ticks_ > 0) {
+    summary.converged = false;
+    summary.verdict = Touched(summary);
+  } else if (!summary.converged) {
     summary.verdict = WhyNot(summary);
   } else if (summary.limit_violations > 0) {
     summary.verdict = fmt::format("converged, but in {} ticks a limit was passed", summary.limit_violations);
@@ -190,10 +191,11 @@ void Verdict::FillMotion(Summary& summary) const {
       return;
     }
   }
-  summary.verdict = !faults_.empty()    ? "a fault stopped the arm: " + faults_.front().name
-                    : refused           ? "the commanded motion was refused (see modes and limits)"
-                    : summary.converged ? "the commanded motion was followed"
-                                        : "a limit was passed";
+  summary.verdict = !faults_.empty()     ? "a fault stopped the arm: " + faults_.front().name
+                    : contact_ticks_ > 0 ? Touched(summary)
+                    : refused            ? "the commanded motion was refused (see modes and limits)"
+                    : summary.converged  ? "the commanded motion was followed"
+                                         : "a limit was passed";
 }
 
 void Verdict::FillStill(Summary& summary) const {
@@ -244,6 +246,15 @@ void Verdict::FillMoving(Summary& summary) const {
   }
 }
 
+std::string Verdict::Touched(const Summary& summary) {
+  const ContactTicks& c = summary.contacts;
+  return fmt::format("not converged: the arm touched {} in {} ticks",
+                     c.bench > 0    ? "the bench"
+                     : c.target > 0 ? "the target"
+                                    : "itself",
+                     summary.contact_ticks);
+}
+
 std::string Verdict::WhyNot(const Summary& summary) const {
   if (!faults_.empty()) {
     const FaultEvent& f = faults_.front();
@@ -254,6 +265,13 @@ std::string Verdict::WhyNot(const Summary& summary) const {
     return "not converged: the target was never found in view; the arm held still (see target.position, "
            "arm.q_start, [vision])";
   }
+  const auto future = measurements_.find(hal::Name(hal::Intake::kFromFuture));
+  if (!ever_known_ && future != measurements_.end()) {
+    return fmt::format(
+        "not converged: {} of {} measurements came with stamps from the future, and were left out (see "
+        "camera.latency_ms, the camera's clock)",
+        future->second, summary.frames);
+  }
   if (!ever_known_) {
     return fmt::format(
         "not converged: the target was found in {} frames, too few to be sure of it (see run.duration_s, "
@@ -261,6 +279,13 @@ std::string Verdict::WhyNot(const Summary& summary) const {
         summary.frames_detected);
   }
   if (!modes_.empty() && modes_.back().mode == hal::Name(hal::Mode::kHold)) {
+    if (modes_.back().reason == hal::Name(hal::HoldReason::kEyeDoubted)) {
+      return fmt::format(
+          "not converged: the picture moved against the hand, or steering by it did not help, so the arm "
+          "holds "
+          "since {:.3f} s (see camera.mount_xyz, camera.mount_rpy_deg, servo.way_in_vain)",
+          modes_.back().t_s);
+    }
     if (modes_.back().reason == hal::Name(hal::HoldReason::kGoalUnreachable)) {
       return fmt::format(
           "not converged: limits keep the arm from the goal, so it holds since {:.3f} s (see "

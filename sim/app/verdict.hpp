@@ -8,27 +8,27 @@
 #include <vector>
 
 #include "fovea/hal/record.hpp"
-#include "fovea/model/arm_model.hpp"
 #include "sim/app/commanded_motion.hpp"
 #include "sim/app/fault_settings.hpp"
 #include "sim/app/limit_book.hpp"
 #include "sim/app/notice_book.hpp"
 #include "sim/app/summary.hpp"
 #include "sim/app/target_error.hpp"
+#include "sim/app/unwanted_motion.hpp"
+#include "sim/app/verdict_barriers.hpp"
 #include "sim/render/pinhole.hpp"
 #include "sim/world/world.hpp"
 
 namespace fovea::sim {
 
 struct VerdictConfig {
-  model::ArmModel arm;
+  BarrierConfig barriers;
   Pinhole pinhole;
   TargetGoal goal;
   bool has_eye = true;  // false: there is no target to judge by
   bool target_moves = false;
   double tracking_bound_px = 3.0;
   double duration_s = 8.0;                // of the run
-  double workspace_radius = 0.85;         // [m]
   std::optional<CommandedCircle> circle;  // that the end effector shall follow
   double path_bound_mm = 1.0;
   bool goes_home = false;           // to arm.q_ready, where it shall stand at the end
@@ -41,7 +41,8 @@ class Verdict {
  public:
   explicit Verdict(const VerdictConfig& config);
 
-  void AddTruth(const Truth& truth);
+  // `mode`: the servo's, whose command was in force in this step.
+  void AddTruth(const Truth& truth, hal::Mode mode);
   void AddRecord(const hal::TickRecord& record);
 
   // When both are done: fills in everything that follows from truth and records. `summary` already says how
@@ -61,6 +62,7 @@ class Verdict {
   void FillMotion(Summary& summary) const;
   void FillStill(Summary& summary) const;
   void FillMoving(Summary& summary) const;
+  static std::string Touched(const Summary& summary);
   [[nodiscard]] std::string WhyNot(const Summary& summary) const;
 
   const VerdictConfig config_;
@@ -69,7 +71,8 @@ class Verdict {
   double path2_ = 0.0;  // sum of squares of the distance from the commanded circle [m^2]
   double path_most_ = 0.0;
   std::uint64_t path_samples_ = 0;
-  LimitBook motion_;
+  TruthBarriers barriers_;
+  UnwantedMotion unwanted_;
   std::deque<Sample> window_;       // of the last half second
   std::optional<double> first_px_;  // error at the start
   bool is_outside_ = false;         // the last sample was not settled
@@ -77,15 +80,18 @@ class Verdict {
   double second_half_px2_ = 0.0;  // sum of squares
   std::uint64_t second_half_samples_ = 0;
   std::uint64_t contact_ticks_ = 0;
+  ContactTicks contacts_;
   double home_error_ = 0.0;  // largest of the joints', at the last truth [rad]
-  Eigen::VectorXd tau_before_;
   std::optional<double> at_rest_since_s_;
   std::optional<double> goal_kept_since_s_;
 
   // from the records
   LimitBook reference_;
+  std::size_t reference_ddq_ = reference_.Add("joint_acceleration", LimitBook::Kind::kShare);
+  std::size_t reference_jerk_ = reference_.Add("joint_jerk", LimitBook::Kind::kShare);
   NoticeBook notices_;
   std::map<std::string, std::uint64_t> limit_ticks_;
+  std::map<std::string, std::uint64_t> measurements_;  // by what became of them
   hal::TickRecord before_;
   bool has_record_ = false;
   bool ever_known_ = false;

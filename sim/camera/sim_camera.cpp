@@ -106,7 +106,9 @@ void SimCamera::DrawUntilClosed(const Painter& painter) {
       return;
     }
     job->bgr.resize(pixels * 3);
-    sensor_.Expose(rgba, config_.width_px, job->exposure.sequence, job->bgr);
+    const Exposure& exposure = job->exposure;
+    sensor_.Expose(rgba, config_.width_px,
+                   exposure.pixels_of ? exposure.pixels_of->sequence : exposure.sequence, job->bgr);
     if (painter.picture_done) {
       painter.picture_done();
     }
@@ -140,7 +142,7 @@ hal::Status SimCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noe
     spare_buffers_.push_back(std::move(handed_out_));
     handed_out_ = std::move(job->bgr);
   }
-  frame.stamp_ns = job->exposure.stamp_ns;
+  frame.stamp_ns = job->exposure.stamp_ns + job->exposure.stamp_error_ns;
   frame.exposure_ns = config_.exposure_ns;
   frame.sequence = job->exposure.sequence;
   frame.width_px = config_.width_px;

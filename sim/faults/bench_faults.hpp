@@ -28,4 +28,11 @@ struct Load {
   double mass = 0.0;  // [kg]; 0: there is none
 };
 
+// The arm's base leans by `tilt` about its own x: the weight pulls aside, and the robot's controller
+// compensates for it as if the base stood upright.
+struct BaseTilt {
+  TimeWindow window;
+  double tilt = 0.0;  // [rad]
+};
+
 }  // namespace fovea::sim

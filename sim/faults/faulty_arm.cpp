@@ -27,11 +27,15 @@ hal::Status FaultyArm::DoRead(hal::ArmState& state) noexcept {
 void FaultyArm::Spoil(hal::ArmState& state) noexcept {
   const std::int64_t now_ns = state.stamp_ns;
   if (faults_.stuck.window.Contains(now_ns)) {
-    const auto k = static_cast<std::size_t>(faults_.stuck.joint);
-    stuck_at_ = is_stuck_ ? stuck_at_ : state.q[k];
+    stuck_at_ = is_stuck_ ? stuck_at_ : state.q;
     is_stuck_ = true;
-    state.q[k] = stuck_at_;
-    state.dq[k] = 0.0;
+    for (int joint = 0; joint < state.num_joints; ++joint) {
+      if (faults_.stuck.joint == joint || faults_.stuck.joint == kAllJoints) {
+        const auto k = static_cast<std::size_t>(joint);
+        state.q[k] = stuck_at_[k];
+        state.dq[k] = 0.0;
+      }
+    }
   }
   if (faults_.noise.window.Contains(now_ns)) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(state.num_joints); ++k) {

@@ -1,7 +1,8 @@
 // An arm whose states go wrong on the way to the servo: encoders, the stamps' clock, the line.
 //
-// The states of the arm behind it are spoiled in this order: a joint's encoder stands still, noise, a value
-// that is no number, stamps that are off; then the state as a whole may be lost. Commands pass as they are.
+// The states of the arm behind it are spoiled in this order: one joint's encoder or all stand still, noise, a
+// value that is no number, stamps that are off; then the state as a whole may be lost. Commands pass as they
+// are.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +13,12 @@
 
 namespace fovea::sim {
 
+inline constexpr int kAllJoints = -1;
+
 struct ArmFaults {
   struct {
     TimeWindow window;
-    int joint = 0;  // its position stays what it was when the window began, its velocity is 0
+    int joint = 0;  // or kAllJoints: positions stay what they were when the window began, velocities are 0
   } stuck;
   struct {
     TimeWindow window;
@@ -52,7 +55,7 @@ class FaultyArm final : public hal::Arm {
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
   bool is_stuck_ = false;
-  double stuck_at_ = 0.0;
+  hal::JointArray stuck_at_{};
 };
 
 }  // namespace fovea::sim

@@ -4,21 +4,41 @@
 
 namespace fovea::sim {
 
+// The newest scene that is as old as the replay wants it, within its window.
+const Exposure& FrameSpoiler::SceneFor(const Exposure& exposure) {
+  const auto& replay = faults_.replay;
+  if (static_cast<double>(exposure.stamp_ns) * 1e-9 >= replay.window.end_s) {
+    past_.clear();
+    return exposure;
+  }
+  past_.push_back(exposure);
+  while (past_.size() > 1 && past_[1].stamp_ns <= exposure.stamp_ns - replay.delay_ns) {
+    past_.pop_front();
+  }
+  return replay.window.Contains(exposure.stamp_ns) ? past_.front() : exposure;
+}
+
 std::optional<Exposure> FrameSpoiler::Spoil(const Exposure& exposure) {
+  Exposure taken = SceneFor(exposure);
   if (faults_.loss.window.Contains(exposure.stamp_ns) &&
       Chance(faults_.seed, exposure.sequence) < faults_.loss.share) {
     return std::nullopt;
   }
-  if (!faults_.freeze.Contains(exposure.stamp_ns)) {
-    return exposure;
+  if (faults_.freeze.Contains(exposure.stamp_ns)) {
+    if (!frozen_) {
+      frozen_ = taken;
+      frozen_->sequence = exposure.sequence;
+      frozen_->stamp_ns = exposure.stamp_ns;
+    }
+    taken = *frozen_;
+    if (faults_.freeze_pixels) {
+      taken.pixels_of = PixelSource{frozen_->sequence, frozen_->stamp_ns};
+    }
   }
-  if (!frozen_) {
-    frozen_ = exposure;
-  }
-  Exposure again = *frozen_;
-  again.sequence = exposure.sequence;
-  again.stamp_ns = exposure.stamp_ns;
-  return again;
+  taken.sequence = exposure.sequence;
+  taken.stamp_ns = exposure.stamp_ns;
+  taken.stamp_error_ns = faults_.stamp.window.Contains(exposure.stamp_ns) ? faults_.stamp.by_ns : 0;
+  return taken;
 }
 
 std::int64_t FrameSpoiler::DelayNs(std::int64_t stamp_ns) const {

@@ -9,6 +9,16 @@ namespace {
 constexpr std::uint8_t kDark = 18;   // of the occluder [gray levels]
 constexpr double kGlareFades = 1.5;  // the glare ends at so many of its radii
 
+void Mirror(int width_px, std::span<std::uint8_t> rgba) {
+  const std::size_t row = static_cast<std::size_t>(4) * static_cast<std::size_t>(width_px);
+  for (std::size_t begin = 0; begin < rgba.size(); begin += row) {
+    for (std::size_t left = begin, right = begin + row - 4; left < right; left += 4, right -= 4) {
+      const auto from = rgba.begin() + static_cast<std::ptrdiff_t>(left);
+      std::swap_ranges(from, from + 4, rgba.begin() + static_cast<std::ptrdiff_t>(right));
+    }
+  }
+}
+
 // The pixels of one axis from `from` to `to`, within 0 .. size.
 struct Pixels {
   Pixels(double from, double to, int size)
@@ -51,6 +61,9 @@ void SpoilPicture(const PictureFaults& faults, std::int64_t stamp_ns, int width_
                 const double light = std::clamp((far - distance) / (far - g.radius_px), 0.0, 1.0);
                 return static_cast<std::uint8_t>(std::lround(value + light * (255.0 - value)));
               });
+  }
+  if (faults.mirror.Contains(stamp_ns)) {
+    Mirror(width_px, rgba);
   }
 }
 

@@ -1,4 +1,5 @@
-// What stands before the lens: a glare that saturates a spot of the picture, a thing that hides a part of it.
+// What goes wrong with a picture: a glare that saturates a spot of it, a thing before the lens that hides a
+// part of it, a picture that is mirrored.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +22,12 @@ struct PictureFaults {
     double v_px = 0.0;
     double width_px = 0.0;
     double height_px = 0.0;
-  } occluder;  // dark, with sharp edges
+  } occluder;         // dark, with sharp edges
+  TimeWindow mirror;  // left and right are swapped
 };
 
 // Into a drawn picture `rgba` [pixels * 4] of `width_px` pixels per row, exposed at `stamp_ns`. The glare
-// comes last: light goes over everything. Called by many threads.
+// comes after the occluder: light goes over everything. Called by many threads.
 void SpoilPicture(const PictureFaults& faults, std::int64_t stamp_ns, int width_px,
                   std::span<std::uint8_t> rgba);
 

@@ -13,6 +13,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -102,6 +103,7 @@ struct BulletArm::Impl {
   std::unique_ptr<btMultiBody> body;
   std::vector<std::unique_ptr<btMultiBodyJointMotor>> stiction;  // per moving joint, or none
   Eigen::VectorXd coulomb;                                       // their largest torques
+  btVector3 upright_gravity = btVector3(0, 0, 0);                // in B while the base does not lean
   double last_dt = 1.0;
 
   SimRobot robot;
@@ -153,7 +155,8 @@ struct BulletArm::Impl {
     body->setHasSelfCollision(false);
     body->useRK4Integration(options.integrator == Integrator::kRungeKutta4);
     body->finalizeMultiDof();
-    world.setGravity(btVector3(0, 0, options.gravity ? -kGravity : 0.0));
+    upright_gravity = btVector3(0, 0, options.gravity ? -kGravity : 0.0);
+    world.setGravity(upright_gravity);
     world.addMultiBody(body.get());
     AddColliders();
     if (options.table) {
@@ -314,6 +317,11 @@ Eigen::VectorXd BulletArm::StictionTorque() const {
   return tau;
 }
 
+void BulletArm::TiltBase(double tilt) {
+  const double g = impl_->upright_gravity.length();
+  impl_->world.setGravity(btVector3(0, -g * std::sin(tilt), -g * std::cos(tilt)));
+}
+
 void BulletArm::SetLoad(double mass) { impl_->body->getLink(impl_->load).m_mass = mass; }
 
 void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
@@ -349,7 +357,7 @@ Eigen::VectorXd BulletArm::ForwardDynamics(const Eigen::VectorXd& tau) {
 
 Eigen::VectorXd BulletArm::GravityTorque() const {
   if (!impl_->gravity_torque) {
-    impl_->gravity_torque = WeightOnJoints(*impl_->body, impl_->robot, impl_->world.getGravity());
+    impl_->gravity_torque = WeightOnJoints(*impl_->body, impl_->robot, impl_->upright_gravity);
   }
   return *impl_->gravity_torque;
 }
@@ -372,6 +380,8 @@ double BulletArm::Energy() const {
   }
   return energy;
 }
+
+void BulletArm::FindContacts() { impl_->world.performDiscreteCollisionDetection(); }
 
 int BulletArm::Contacts() const {
   int contacts = 0;

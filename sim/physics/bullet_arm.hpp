@@ -47,13 +47,17 @@ class BulletArm {
   // GravityTorque gives knows nothing of it. Needs BulletArmOptions::may_be_loaded.
   void SetLoad(double mass);
 
+  // From now on the base leans by `tilt` [rad] about B's x, and the weight pulls aside; the torque that
+  // GravityTorque gives knows nothing of it.
+  void TiltBase(double tilt);
+
   // Moves on by `dt` [s] under the joint torques `tau` [Nm, N], gravity and contact.
   void Step(const Eigen::VectorXd& tau, double dt);
 
   // Joint accelerations at the present state under `tau`, gravity included, contact not; the state stays.
   [[nodiscard]] Eigen::VectorXd ForwardDynamics(const Eigen::VectorXd& tau);
 
-  // Joint torques that hold the arm at rest where it is, from the links' weights.
+  // Joint torques that hold the arm at rest where it is, from the links' weights on a base that is upright.
   [[nodiscard]] Eigen::VectorXd GravityTorque() const;
 
   // Pose of link `index` of the robot in B.
@@ -62,8 +66,10 @@ class BulletArm {
   // Kinetic and potential energy [J].
   [[nodiscard]] double Energy() const;
 
-  // Number of contact points with a gap below 0 after the last step.
+  // Number of contact points with the table whose gap is below 0 after the last step, or after SetState and
+  // FindContacts. The links meet nothing else: see LinkTouch.
   [[nodiscard]] int Contacts() const;
+  void FindContacts();
 
  private:
   struct Impl;

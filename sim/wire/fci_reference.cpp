@@ -146,6 +146,20 @@ MaybeError FciReference::Step(const RobotCommand& c) {
   return Error::kForceControlSafety;  // no such generator; Move refuses it
 }
 
+MaybeError FciReference::Finish() const {
+  using fci_limits::kRotation;
+  using fci_limits::kTranslation;
+  if (IsCartesian() &&
+      (cartesian_.V.head<3>().norm() > fci_limits::kRounding * kTranslation.acceleration * kDt ||
+       cartesian_.V.tail<3>().norm() > fci_limits::kRounding * kRotation.acceleration * kDt)) {
+    return Error::kCartesianVelocityDiscontinuity;
+  }
+  if (Beyond(joints_.dq / kDt, fci_limits::kDdq)) {
+    return IsCartesian() ? Error::kCartesianJointVelocityDiscontinuity : Error::kJointVelocityDiscontinuity;
+  }
+  return std::nullopt;
+}
+
 MaybeError FciReference::Extrapolate() {
   if (first_) {
     return std::nullopt;  // nothing has moved yet

@@ -43,6 +43,8 @@ class FciReference {
              const franka::Filters& filters);
   // One step of it; the error when the command is not allowed, and then nothing has moved.
   [[nodiscard]] std::optional<franka::Error> Step(const franka::RobotCommand& command);
+  // The error when it may not end here: it could not come to rest within one step.
+  [[nodiscard]] std::optional<franka::Error> Finish() const;
   // One step without a command.
   [[nodiscard]] std::optional<franka::Error> Extrapolate();
 

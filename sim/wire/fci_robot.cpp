@@ -15,6 +15,7 @@ using franka::MoveController;
 using franka::MoveStatus;
 using franka::RobotMode;
 
+constexpr double kStillSpeed = 0.05;    // a measured joint that moves no faster has come to rest [rad/s]
 constexpr int kPatienceForFirst = 200;  // states of a motion before its first command must have come
 
 ControllerMode Shown(MoveController controller) { return static_cast<ControllerMode>(controller); }
@@ -212,10 +213,7 @@ void FciRobot::ApplyCommand(const std::optional<franka::RobotCommand>& command) 
   commanded_ = true;
   CountCommand(true);
   if (command->motion_generation_finished != 0) {
-    CheckDeviation(move_.max_goal_deviation, Error::kMaxGoalPoseDeviation);
-    if (moving()) {
-      End(MoveStatus::kSuccess, RobotMode::kIdle);
-    }
+    FinishMotion();
     return;
   }
   if (const auto error = reference_.Step(*command)) {
@@ -224,6 +222,21 @@ void FciRobot::ApplyCommand(const std::optional<franka::RobotCommand>& command) 
   }
   if (move_.controller == MoveController::kExternal) {
     ApplyTorque(*command);
+  }
+}
+
+// Success at rest; a reflex in motion. What a client's own controller moves shows in what is measured alone.
+void FciRobot::FinishMotion() {
+  const bool external = move_.controller == MoveController::kExternal;
+  if (const auto error = reference_.Finish()) {
+    Reflex(*error);
+  } else if (external && measured_.dq.cwiseAbs().maxCoeff() > kStillSpeed) {
+    Reflex(Error::kJointVelocityDiscontinuity);
+  } else {
+    CheckDeviation(move_.max_goal_deviation, Error::kMaxGoalPoseDeviation);
+  }
+  if (moving()) {
+    End(MoveStatus::kSuccess, RobotMode::kIdle);
   }
 }
 

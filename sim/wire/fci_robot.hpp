@@ -59,6 +59,7 @@ class FciRobot {
  private:
   void ShowMounted(const SimRobot& robot);
   void ApplyCommand(const std::optional<franka::RobotCommand>& command);
+  void FinishMotion();
   void ApplyTorque(const franka::RobotCommand& command);
   void End(franka::MoveStatus status, franka::RobotMode mode);
   void Reflex(franka::Error error);

@@ -62,7 +62,7 @@ void FciServer::Run(const std::atomic<bool>& stop, const std::function<void(cons
 
 // The next millisecond by the clock.
 void FciServer::AwaitTick() {
-  next_tick_ns_ += hal::kTickPeriodNs;
+  next_tick_ns_ += static_cast<std::int64_t>(hal::kTickPeriodNs / ClockSpeed());
   const std::int64_t now_ns = NowNs();
   counters_.overruns += now_ns > next_tick_ns_ ? 1U : 0U;
   if (const std::int64_t lost_ns = now_ns - next_tick_ns_; lost_ns > kMostBehindNs) {
@@ -197,9 +197,16 @@ void FciServer::TakeDatagrams() {
   }
 }
 
-// The link's time: in lockstep the robot's own, in which delays then count.
+// The link's time, in which delays count: in lockstep the robot's own, else the clock's, as slow as the
+// robot's.
 std::int64_t FciServer::LinkNowNs() const {
-  return config_.lockstep ? static_cast<std::int64_t>(robot_.state().message_id) * hal::kNsPerMs : NowNs();
+  return config_.lockstep ? static_cast<std::int64_t>(robot_.state().message_id) * hal::kNsPerMs
+                          : static_cast<std::int64_t>(static_cast<double>(NowNs()) * ClockSpeed());
+}
+
+// Of the time at real pace against the clock's; at rest in lockstep it is the clock's.
+double FciServer::ClockSpeed() const {
+  return config_.lockstep || config_.most_speed == 0.0 ? 1.0 : config_.most_speed;
 }
 
 void FciServer::SendState() {
@@ -215,14 +222,14 @@ void FciServer::SendState() {
       static_cast<void>(udp_.Send(franka::Bytes(robot_.state()), *session_->state_endpoint()));
     }
   } else {
-    states_.Put(robot_.state(), NowNs());
+    states_.Put(robot_.state(), LinkNowNs());
     FlushStates();
   }
   session_->AnswerMoveEnd();
 }
 
 void FciServer::FlushStates() {
-  while (const auto state = states_.Take(NowNs())) {
+  while (const auto state = states_.Take(LinkNowNs())) {
     if (session_ && session_->state_endpoint()) {
       static_cast<void>(udp_.Send(franka::Bytes(*state), *session_->state_endpoint()));
     }

@@ -1,8 +1,8 @@
 // The robot on the network: one client at a time, a state each millisecond, and the two paces.
 //
-// Real pace: 1 ms by the clock; what has not come by then is lost. Lockstep: at rest the same, in a motion
-// the robot waits for the answer to its state, for as long as a client may reasonably take, and then steps at
-// once.
+// Real pace: 1 ms by the clock, or by one that is so much slower; what has not come by then is lost.
+// Lockstep: at rest the same, in a motion the robot waits for the answer to its state, for as long as a
+// client may reasonably take, and then steps at once.
 #pragma once
 
 #include <atomic>
@@ -22,8 +22,10 @@ namespace fovea::sim {
 struct FciServerConfig {
   franka::Endpoint at{0x7F000001, franka::kFciPort};  // loopback
   bool lockstep = false;
-  double most_speed = 0.0;  // in lockstep, of the robot's time against the clock's; 0: as fast as its client
-  int late_ms = 0;          // a command may answer a state that is this old
+  // Of the robot's time against the clock's. In lockstep at most, 0: as fast as its client; at real pace
+  // always, 0: as fast as the clock.
+  double most_speed = 0.0;
+  int late_ms = 0;  // a command may answer a state that is this old
   LinkFaults faults;
   std::uint64_t seed = 1;
   std::vector<std::byte> model_library;  // the file that LoadModelLibrary answers with; empty: there is none
@@ -86,6 +88,7 @@ class FciServer {
   void EndSession();
   [[nodiscard]] bool WaitsForAnswer() const;
   [[nodiscard]] std::int64_t LinkNowNs() const;
+  [[nodiscard]] double ClockSpeed() const;
 
   FciRobot& robot_;
   FciServerConfig config_;

@@ -32,7 +32,10 @@ BulletArmOptions WithLoad(BulletArmOptions options, const Load& load) {
 }  // namespace
 
 World::World(const WorldConfig& config)
-    : config_(config), arm_(config.robot, WithLoad(config.physics, config.load)), random_(config.seed) {
+    : config_(config),
+      arm_(config.robot, WithLoad(config.physics, config.load)),
+      touch_(config.robot, config.target_body),
+      random_(config.seed) {
   for (const SimLink& link : config_.robot.links) {
     if (link.dof >= 0) {
       joints_.push_back(&link);
@@ -83,8 +86,10 @@ void World::Step() {
       dq[i] = std::fabs(dq[i]) < kBrakeRest ? 0.0 : dq[i];
     }
     arm_.SetState(arm_.q() + dq * kStepS, dq);
+    arm_.FindContacts();
   } else {
     TakeUpLoad();
+    TiltBase();
     arm_.Step(JointTorque(), kStepS);
   }
   StepBall();
@@ -129,6 +134,13 @@ void World::TakeUpLoad() {
   }
 }
 
+void World::TiltBase() {
+  const BaseTilt& base = config_.base_tilt;
+  if (base.tilt != 0.0) {
+    arm_.TiltBase(base.window.Contains(now_ns_) ? base.tilt : 0.0);
+  }
+}
+
 // The command and what the robot's own controller adds against gravity, as far as the motors give it.
 Eigen::VectorXd World::MotorTorque() const {
   Eigen::VectorXd tau =
@@ -163,11 +175,24 @@ void World::RecordTruth() {
   truth_.q = arm_.q();
   truth_.dq = arm_.dq();
   truth_.tau_cmd = Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
-  truth_.X_BE = arm_.LinkPose(config_.robot.tip);
+  X_BL_.clear();
+  for (int i = 0; i < static_cast<int>(config_.robot.links.size()); ++i) {
+    X_BL_.push_back(arm_.LinkPose(i));
+  }
+  truth_.X_BE = X_BL_[static_cast<std::size_t>(config_.robot.tip)];
   truth_.X_BC = truth_.X_BE * config_.X_EC;
   truth_.p_BO = ball_ ? Eigen::Vector3d(ball_->X_BO().translation()) : PositionAt(config_.target, now_ns_);
   truth_.R_BO = ball_ ? Eigen::Matrix3d(ball_->X_BO().linear()) : OrientationAt(config_.target, now_ns_);
-  truth_.contacts = arm_.Contacts();
+  Eigen::Isometry3d X_BO = Eigen::Isometry3d::Identity();
+  X_BO.linear() = truth_.R_BO;
+  X_BO.translation() = truth_.p_BO;
+  touch_.Place(X_BL_, X_BO);
+  truth_.contacts = {arm_.Contacts(), touch_.Target(), touch_.Self()};
+}
+
+double World::Quantised(double q) const {
+  const double quantum = config_.encoder_quantum;
+  return quantum > 0.0 ? quantum * std::round(q / quantum) : q;
 }
 
 void World::MeasureState() {
@@ -177,7 +202,7 @@ void World::MeasureState() {
   const Eigen::VectorXd stiction = arm_.StictionTorque();
   for (int i = 0; i < arm_.num_dofs(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    measured_.q[k] = arm_.q()[i] + config_.encoder_noise * normal_(random_);
+    measured_.q[k] = Quantised(arm_.q()[i] + config_.encoder_noise * normal_(random_));
     measured_.dq[k] = arm_.dq()[i] + config_.velocity_noise * normal_(random_);
     measured_.tau_applied[k] = command_.tau_cmd[k];
     measured_.tau_meas[k] = motor[i] - FrictionLeft(i, arm_.dq()[i]) + stiction[i];
@@ -190,9 +215,7 @@ Exposure World::Look() const {
   exposure.X_BC = truth_.X_BC;
   exposure.p_BO = truth_.p_BO;
   exposure.R_BO = truth_.R_BO;
-  for (int i = 0; i < static_cast<int>(config_.robot.links.size()); ++i) {
-    exposure.X_BL.push_back(arm_.LinkPose(i));
-  }
+  exposure.X_BL = X_BL_;
   return exposure;
 }
 

@@ -11,6 +11,7 @@
 #include "fovea/hal/arm.hpp"
 #include "sim/faults/bench_faults.hpp"
 #include "sim/physics/bullet_arm.hpp"
+#include "sim/physics/link_touch.hpp"
 #include "sim/physics/rolling_ball.hpp"
 #include "sim/render/exposure.hpp"
 #include "sim/world/target_motion.hpp"
@@ -26,20 +27,31 @@ struct WorldConfig {
   JointPush push;
   TorqueLoss torque_loss;
   Load load;
+  BaseTilt base_tilt;
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
   double friction_compensation =
-      0.9;                      // share of the joints' friction that the robot's own controller takes away
-  bool stiction = false;        // Coulomb friction holds a joint at rest; else it is smooth about rest
-  double encoder_noise = 0.0;   // standard deviation of q [rad]
-  double velocity_noise = 0.0;  // standard deviation of dq [rad/s]
+      0.9;                       // share of the joints' friction that the robot's own controller takes away
+  bool stiction = false;         // Coulomb friction holds a joint at rest; else it is smooth about rest
+  double encoder_noise = 0.0;    // standard deviation of q [rad]
+  double encoder_quantum = 0.0;  // q is measured in multiples of it [rad, m]; 0: as fine as numbers are
+  double velocity_noise = 0.0;   // standard deviation of dq [rad/s]
   TargetMotion target;
-  RollingBallConfig ball;                               // a target that is pushed
+  std::optional<Shape> target_body;  // its shape in O, which links may touch; none: there is no target
+  RollingBallConfig ball;            // a target that is pushed
   Eigen::Vector3d ball_push = Eigen::Vector3d::Zero();  // impulse, in axes of B [N s]
   double ball_push_s = 0.0;                             // when
   double camera_rate_hz = 30.0;
   std::int64_t first_exposure_ns = 20'000'000;
   TimeWindow camera_outage;  // in which it delivers nothing
   std::uint64_t seed = 1;
+};
+
+// What the arm touches.
+struct Contacts {
+  int bench = 0;  // points at which links meet the table
+  bool target = false;
+  bool self = false;
+  [[nodiscard]] bool Any() const { return bench > 0 || target || self; }
 };
 
 // What really is, at one instant. For verdicts and logs; never for the servo.
@@ -52,7 +64,7 @@ struct Truth {
   Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
   Eigen::Vector3d p_BO = Eigen::Vector3d::Zero();
   Eigen::Matrix3d R_BO = Eigen::Matrix3d::Identity();
-  int contacts = 0;
+  Contacts contacts;
 };
 
 // One thread uses it.
@@ -84,6 +96,7 @@ class World {
  private:
   void Step();
   void MeasureState();
+  [[nodiscard]] double Quantised(double q) const;
   void RecordTruth();
   void ExposeIfDue();
   [[nodiscard]] Eigen::VectorXd JointTorque() const;
@@ -91,10 +104,13 @@ class World {
   [[nodiscard]] Eigen::VectorXd Pulls() const;
   [[nodiscard]] Eigen::VectorXd MotorTorque() const;
   void TakeUpLoad();
+  void TiltBase();
   void StepBall();
 
   WorldConfig config_;
   BulletArm arm_;
+  LinkTouch touch_;
+  std::vector<Eigen::Isometry3d> X_BL_;  // of all links, by RecordTruth
   std::optional<RollingBall> ball_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};

@@ -1,0 +1,24 @@
+// The mode that the servo is in, for who moves the world on: records of the ticks pass through.
+#pragma once
+
+#include "fovea/hal/record.hpp"
+
+namespace fovea::sim {
+
+// Used by the thread that runs the loop.
+class ModeWatch final : public hal::Recorder {
+ public:
+  void PassTo(hal::Recorder& next) { next_ = &next; }  // borrowed
+  void Record(const hal::TickRecord& record) noexcept override {
+    mode_ = record.mode;
+    next_->Record(record);
+  }
+  // Of the last tick.
+  [[nodiscard]] hal::Mode mode() const { return mode_; }
+
+ private:
+  hal::Recorder* next_ = nullptr;
+  hal::Mode mode_ = hal::Mode::kBoot;
+};
+
+}  // namespace fovea::sim
