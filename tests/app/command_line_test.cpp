@@ -227,6 +227,26 @@ TEST_F(CommandLineTest, OutputFolderThatCannotBeWritten) {
   EXPECT_THAT(result.err, AllOf(HasSubstr("--out " + file + "/out"), HasSubstr("cannot be made")));
 }
 
+// The first run stands still while the second one is tried, so that it is there whatever the machine does.
+TEST_F(CommandLineTest, TwoRunsIntoOneFolder) {
+  const ProgramResult result = RunProgram(
+      {"sh", "-c",
+       R"("$0" run ball --set run.duration_s=0.3 --seed 1 --json --out "$1" > /dev/null 2>&1 & first=$!
+until [ -e "$1/.log.mcap.partial" ]; do kill -0 $first || exit 9; sleep 0.02; done
+kill -STOP $first
+"$0" run ball --set run.duration_s=0.3 --seed 2 --no-report --out "$1"; second=$?
+kill -CONT $first; wait $first
+echo "first $? second $second")",
+       FOVEA_SIM_PROGRAM, Out()});
+  EXPECT_EQ(result.out, "first 1 second 2\n") << "0.3 s are too short to converge";
+  EXPECT_THAT(result.err, HasSubstr("fovea-sim: --out " + Out() + ": another run writes there"));
+  std::ifstream summary(Out() + "/summary.json");
+  EXPECT_EQ(nlohmann::json::parse(summary)["seed"], 1);
+  for (const char* file : {"report.html", "log.mcap", "camera.mp4", "eye-last.png"}) {
+    EXPECT_TRUE(fs::exists(fs::path(Out()) / file)) << file;
+  }
+}
+
 TEST_F(CommandLineTest, NoEgl) {
   EXPECT_THAT(Refusal({"ball"}, {"__EGL_VENDOR_LIBRARY_DIRS=/nonexistent"}),
               AllOf(HasSubstr("EGL"), HasSubstr("libgl1-mesa-dri")));

@@ -1,6 +1,8 @@
 // The small parts of a run that keep what its pictures need, however long it goes on.
 #include <gtest/gtest.h>
 
+#include "fovea/config/input_error.hpp"
+#include "sim/app/fault_settings.hpp"
 #include "sim/app/path.hpp"
 #include "sim/app/target_log.hpp"
 
@@ -34,6 +36,40 @@ TEST(TargetLogTest, FramesThatWereLostAreForgottenAndTheOthersKeepTheirTarget) {
   EXPECT_EQ(log.Take(3).p.x(), 3.0);
   EXPECT_EQ(log.Take(4).p.x(), 4.0);
   EXPECT_EQ(log.size(), 0U);
+}
+
+TEST(FaultSettingsTest, TheCamerasNewFaultsAndTheLeaningBaseReachTheirParts) {
+  FaultSettings f;
+  f.freeze_s = {1.0, 2.0};
+  f.freeze_pixels = true;
+  f.replay_s = {3.0, 4.0};
+  f.replay_delay_s = 0.5;
+  f.stamp_s = {5.0, 6.0};
+  f.stamp_ms = -60.0;
+  f.mirror_s = {7.0, 8.0};
+  f.gravity_s = {0.0, 9.0};
+  f.gravity_tilt_deg = 90.0;
+  f.encoder_stuck_s = {1.0, 2.0};
+  f.encoder_stuck_joint = 0;
+  const FrameFaults frames = MakeFrameFaults(f, 1);
+  EXPECT_TRUE(frames.freeze_pixels);
+  EXPECT_EQ(frames.replay.window.start_s, 3.0);
+  EXPECT_EQ(frames.replay.delay_ns, 500'000'000);
+  EXPECT_EQ(frames.stamp.window.end_s, 6.0);
+  EXPECT_EQ(frames.stamp.by_ns, -60'000'000);
+  EXPECT_EQ(MakePictureFaults(f).mirror.start_s, 7.0);
+  EXPECT_EQ(MakeArmFaults(f, 1).stuck.joint, kAllJoints);
+  WorldConfig world;
+  SetBenchFaults(f, world);
+  EXPECT_NEAR(world.base_tilt.tilt, 1.5707963267948966, 1e-15);
+  EXPECT_EQ(FaultsOf(f).size(), 6U);
+  EXPECT_NO_THROW(CheckFaults(f, 7));
+  EXPECT_THROW(CheckServedFaults(f), config::InputError) << "stamps and encoders are none of the bench's";
+  f.gravity_s = {0.0, 0.0};
+  SetBenchFaults(f, world);
+  EXPECT_EQ(world.base_tilt.tilt, 0.0);
+  f.mirror_s = {8.0, 7.0};
+  EXPECT_THROW(CheckFaults(f, 7), config::InputError);
 }
 
 }  // namespace

@@ -15,9 +15,8 @@ constexpr double kGoalZ = 0.4;
 class VerdictTest : public testing::Test {
  protected:
   VerdictTest() {
-    config_.arm = test::Panda().model;
+    config_.barriers.arm = test::Panda().model;
     config_.goal.p_CO_C_star = {0.0, 0.0, kGoalZ};
-    config_.workspace_radius = 0.85;
     config_.tracking_bound_px = 3.0;
   }
 
@@ -37,7 +36,7 @@ class VerdictTest : public testing::Test {
       if (change) {
         change(truth);
       }
-      verdict.AddTruth(truth);
+      verdict.AddTruth(truth, hal::Mode::kTrack);
     }
     for (const hal::TickRecord& record : records_) {
       verdict.AddRecord(record);
@@ -106,33 +105,33 @@ TEST_F(VerdictTest, AMovingTargetIsJudgedOverTheSecondHalf) {
 }
 
 TEST_F(VerdictTest, EveryLimitThatIsBrokenIsCounted) {
-  const auto violations = [&](const std::function<void(Truth&)>& change) {
-    return Judge(0.1, Still,
-                 [&](Truth& truth) {
-                   if (truth.stamp_ns == 50 * kMs) {
-                     change(truth);
-                   }
-                 })
-        .limit_violations;
+  // In one tick; how often it counts.
+  const auto violations = [&](const char* name, const std::function<void(Truth&)>& change) {
+    const Summary s = Judge(0.1, Still, [&](Truth& truth) {
+      if (truth.stamp_ns == 50 * kMs) {
+        change(truth);
+      }
+    });
+    EXPECT_EQ(s.limit_violations > 0, !s.violations.empty());
+    return s.violations.count(name) > 0 ? s.violations.at(name) : 0U;
   };
-  EXPECT_EQ(violations([](Truth&) {}), 0U);
-  EXPECT_EQ(violations([](Truth& t) { t.q[1] = 1.77; }), 1U);                    // +-1.7628 rad
-  EXPECT_EQ(violations([](Truth& t) { t.dq[6] = -2.62; }), 1U);                  // 2.61 rad/s
-  EXPECT_EQ(violations([](Truth& t) { t.tau_cmd[6] = 0.99; }), 0U);              // 1 Nm per tick
-  EXPECT_EQ(violations([](Truth& t) { t.tau_cmd[6] = 1.01; }), 2U);              // up, and down again
-  EXPECT_EQ(violations([](Truth& t) { t.X_BE.translation().x() = 0.86; }), 1U);  // 0.85 m
-  EXPECT_EQ(violations([](Truth& t) { t.tau_cmd[6] = -12.1; }), 2U);             // 12 Nm
+  EXPECT_EQ(violations("joint_position", [](Truth& t) { t.q[1] = 1.77; }), 1U);     // +-1.7628 rad
+  EXPECT_EQ(violations("joint_velocity", [](Truth& t) { t.dq[6] = -2.62; }), 1U);   // 2.61 rad/s
+  EXPECT_EQ(violations("torque_rate", [](Truth& t) { t.tau_cmd[6] = 0.99; }), 0U);  // 1 Nm per tick
+  EXPECT_EQ(violations("torque_rate", [](Truth& t) { t.tau_cmd[6] = 1.01; }), 2U);  // up, and down again
+  EXPECT_EQ(violations("workspace", [](Truth& t) { t.X_BE.translation().x() = 0.86; }), 1U);  // 0.85 m
+  EXPECT_EQ(violations("torque", [](Truth& t) { t.tau_cmd[6] = -12.1; }), 1U);                // 12 Nm
 }
 
 TEST_F(VerdictTest, APassedLimitIsNoSuccessAndATickCountsOnce) {
   hal::TickRecord record;
   record.stamp_ns = 50 * kMs;
-  record.ddq_cmd[0] = 2.0 * config_.arm.joints[0].ddq_max;
+  record.ddq_cmd[0] = 2.0 * config_.barriers.arm.joints[0].ddq_max;
   records_ = {record};
   // In the same tick the truth is beyond a limit too, and in one more.
   const Summary s = Judge(1.0, Still, [](Truth& truth) {
     if (truth.stamp_ns == 50 * kMs || truth.stamp_ns == 70 * kMs) {
-      truth.dq[6] = 2.62;
+      truth.q[1] = 1.77;
     }
   });
   EXPECT_TRUE(s.converged);
@@ -141,6 +140,22 @@ TEST_F(VerdictTest, APassedLimitIsNoSuccessAndATickCountsOnce) {
   EXPECT_FALSE(ReachedItsGoal(s));
   records_.clear();
   EXPECT_TRUE(ReachedItsGoal(Judge(1.0, Still)));
+}
+
+// Whatever is touched, and however well the target stands in the end.
+TEST_F(VerdictTest, AnyContactIsNoSuccess) {
+  for (const auto& [contacts, what] : {std::pair{Contacts{1, false, false}, "the bench"},
+                                       {Contacts{0, true, false}, "the target"},
+                                       {Contacts{0, false, true}, "itself"}}) {
+    const Summary s = Judge(1.0, Still, [&](Truth& truth) {
+      truth.contacts = truth.stamp_ns == 50 * kMs ? contacts : Contacts{};
+    });
+    EXPECT_FALSE(s.converged);
+    EXPECT_FALSE(ReachedItsGoal(s));
+    EXPECT_EQ(s.contact_ticks, 1U);
+    EXPECT_EQ(s.limit_violations, 1U);
+    EXPECT_EQ(s.verdict, std::string("not converged: the arm touched ") + what + " in 1 ticks");
+  }
 }
 
 TEST_F(VerdictTest, SeenTooSeldomIsNotTheSameAsNeverSeen) {

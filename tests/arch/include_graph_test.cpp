@@ -80,7 +80,8 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"firmware/vision", "(fovea/(hal|model|features|vision)/|Eigen/|opencv2/).*",
              "vision sees hal, features and OpenCV"},
         Rule{"firmware/config",
-             "fovea/(hal|model|features|servo|vision|config|robots)/.*|(fmt|toml\\+\\+|Eigen)/.*|unistd[.]h",
+             "fovea/(hal|model|features|servo|vision|config|robots)/.*|(fmt|toml\\+\\+|Eigen)/"
+             ".*|(unistd|fcntl|sys/file)[.]h",
              "nothing of the firmware sees the simulator"},
         Rule{"firmware/robots",
              "fovea/(hal|model|config|robots)/.*|urdf_chain[.]hpp|(fmt|urdf_parser|console_bridge)/.*|Eigen/"
@@ -108,17 +109,17 @@ INSTANTIATE_TEST_SUITE_P(
              "design is mathematics alone"},
         Rule{"firmware/targets/linux",
              "fovea/"
-             ".*|(check(_camera|_robot)?|frame_figures|operator_input|hw_(camera|config|files|run|scene|"
-             "summary|vision))[.]"
+             ".*|(await_leave|check(_camera|_robot)?|frame_figures|gravity_check|operator_(input|thread)|"
+             "run_watch|speaker|hw_(camera|config|files|run|scene|summary|vision))[.]"
              "hpp|(fmt|CLI|"
              "nlohmann|Eigen|foxglove)/"
-             ".*|(poll|unistd)[.]h",
+             ".*|(poll|pthread|unistd)[.]h",
              "the hardware target sees drivers and servo, not the simulator"},
         Rule{"tools/fovea",
              "(fovea|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys|tools/bench)/.*|[a-z_]+[.]h(pp)?",
              "works beside runs, without the simulator"},
         Rule{"tools/bench",
-             "(fovea|fmt|CLI|nlohmann|opencv2|Eigen|kdl|arpa|netinet|sys|linux)/.*|[a-z_]+[.]h(pp)?",
+             "(fovea|fmt|CLI|nlohmann|opencv2|Eigen|kdl|visp3|arpa|netinet|sys|linux)/.*|[a-z_]+[.]h(pp)?",
              "measures, without the simulator"},
         Rule{"firmware/include",
              "(fovea/"

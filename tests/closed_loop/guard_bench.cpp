@@ -39,6 +39,14 @@ GuardSetup::GuardSetup() : servo(PandaConfig()) {
   servo.auto_track = false;
 }
 
+void TellTheBench(servo::ServoConfig& servo) {
+  servo::GuardConfig& guard = servo.guard;
+  guard.obstacles.num_planes = 1;
+  guard.obstacles.planes[0] = {model::Vec3::UnitZ(), 0.01};
+  static_cast<void>(guard.hand.AddCapsule(model::Vec3::Zero(), servo.X_EC.p, 0.03));
+  guard.view = {true, -0.56, 0.56, -0.41, 0.41, 0.0};
+}
+
 GuardBench::GuardBench(GuardSetup setup)
     : setup_(std::move(setup)),
       world_(setup_.world),

@@ -35,6 +35,9 @@ struct GuardSetup {
   std::function<void(hal::FeatureMeasurement& measurement)> spoil;
 };
 
+// The servo is told its table, its camera and its picture, as every bench scenario tells it.
+void TellTheBench(servo::ServoConfig& servo);
+
 // A tick, and the time of the world when it came; stamps may be off.
 struct GuardTick {
   int ms = 0;

@@ -266,12 +266,13 @@ TEST(GuardFault, AnEncoderThatHangsIsFoundBeforeTheJointRunsAway) {
 // had it been believed.
 TEST(GuardFault, AnEncoderThatHangsForAMomentIsNotBelieved) {
   GuardSetup setup;
+  setup.servo.safety.encoder_quantum = 2e-5;  // these encoders are as fine as that
   Eigen::VectorXd goal = setup.world.q_start;
   goal[3] -= 0.1;
   setup.motion = GoTo(0.1, goal);
   setup.arm_faults.stuck = {{0.2, 0.22}, 3};
   GuardBench bench(setup);
-  ExpectStop(bench, Fault::kArmStale, 200, setup.servo.safety.non_finite_ticks, 1);
+  ExpectStop(bench, Fault::kArmStale, 200, setup.servo.safety.non_finite_ticks, 2);
 }
 
 // A slow joint, pushed too little to be found while its encoder hangs, is somewhere else when it works again:
@@ -279,15 +280,15 @@ TEST(GuardFault, AnEncoderThatHangsForAMomentIsNotBelieved) {
 TEST(GuardFault, AnEncoderThatJumpsIsNotBelieved) {
   GuardSetup setup;
   setup.arm_faults.stuck = {{0.3, 0.6}, 3};
-  setup.world.push.tau = 1.0 * Eigen::VectorXd::Unit(7, 3);
+  setup.world.push.tau = 0.5 * Eigen::VectorXd::Unit(7, 3);
   setup.world.push.window = {0.3, 0.6};
   GuardBench bench(setup);
   ExpectStop(bench, Fault::kJointVelocity, 600, 0, 0, PushedBy::kWorld);
   EXPECT_LE(bench.figures().velocity, 1.0);
 }
 
-// An arm that falls while it boots: its motor is weak, or it holds what nobody was told of. Nothing is asked
-// to move there, so it is stopped long before it is too fast.
+// An arm that falls while it boots: its motor is weak, or it holds what nobody was told of. The servo holds
+// it from the first state on, sees what pulls at it, and stops it long before it is too fast.
 TEST(GuardFault, AnArmThatFallsInBootIsStoppedInsideItsLimits) {
   for (const double lost : {0.5, 1.0}) {
     GuardSetup setup;
@@ -298,7 +299,7 @@ TEST(GuardFault, AnArmThatFallsInBootIsStoppedInsideItsLimits) {
     PrintFigures("joint 2 loses " + std::to_string(lost) + ": " + hal::Name(bench.last().record.fault) +
                      " after " + std::to_string(bench.FirstFault()) + " ticks",
                  bench);
-    EXPECT_EQ(bench.last().record.fault, Fault::kJointVelocity);
+    EXPECT_EQ(bench.last().record.fault, Fault::kContact);
     ExpectInsideLimits(bench);
     EXPECT_EQ(bench.speeds().back(), 0.0);
     EXPECT_TRUE(bench.last().record.command.engage_brakes);

@@ -59,7 +59,8 @@ int Named(const GuardBench& bench, Limit limit) {
   const int named = bench.FirstLimit(limit, kStartMs);
   PrintFigures(std::string(hal::Name(limit)) + ": named " + std::to_string(named - kStartMs) +
                    " ticks after the provocation began, mode " + hal::Name(bench.last().record.mode) + " " +
-                   hal::Name(bench.last().record.hold_reason) + ", at rest after " +
+                   hal::Name(bench.last().record.hold_reason) + ", fault " +
+                   hal::Name(bench.last().record.fault) + ", at rest after " +
                    std::to_string(bench.AtRest() - kStartMs),
                bench);
   return named;

@@ -37,7 +37,8 @@ TEST(Hold, ABallOutOfReachIsHeldBeforeWithReason) {
   // Seen from the start, but 1.15 m away from it the arm would have to be outside its narrow workspace or,
   // turned about, behind the wall.
   const sim::Summary s = RunShipped(
-      "ball", {"servo.goal=[0, 0, 1.15]", "safety.workspace_radius=0.79", "safety.planes=[1, 0, 0, 0.1]"},
+      "ball",
+      {"servo.goal=[0, 0, 1.15]", "safety.workspace_radius=0.79", "safety.boxes=[-2, -2, -1, 0.1, 2, 3]"},
       watch.Options(8.0));
   PrintResidual(s);
   EXPECT_FALSE(s.converged);

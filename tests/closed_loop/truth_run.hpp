@@ -10,7 +10,7 @@
 #include "fovea/servo/servo_loop.hpp"
 #include "sim/app/compose.hpp"
 #include "sim/app/run_description.hpp"
-#include "sim/app/verdict.hpp"
+#include "sim/app/verdict_config.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world_clock.hpp"
 #include "support/truth_eye.hpp"
@@ -23,7 +23,7 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
       : about_(sim::DescribeRun(sim::LoadScenario(name, assignments))),
         eye_(about_.servo.feature, about_.pinhole.f_px, sigma_px,
              static_cast<unsigned>(about_.scenario.run.seed)),
-        verdict_(MakeVerdictConfig()),
+        verdict_(sim::MakeVerdictConfig(about_)),
         world_(sim::MakeWorldConfig(about_.scenario, about_.scene.robot)) {}
 
   sim::Summary Execute() {
@@ -32,7 +32,7 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
     }
     const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);
     sim::Summary summary;
-    world_.OnStep([&](const sim::Truth& truth) { verdict_.AddTruth(truth); });
+    world_.OnStep([&](const sim::Truth& truth) { verdict_.AddTruth(truth, mode_); });
     world_.OnExposure([&](const sim::Exposure& exposure) {
       const Eigen::Isometry3d X_CB = exposure.X_BC.inverse();
       const model::Pose X_CO{X_CB.linear() * exposure.R_BO, X_CB * exposure.p_BO};
@@ -62,25 +62,17 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
   }
 
  private:
-  void Record(const hal::TickRecord& record) noexcept override { verdict_.AddRecord(record); }
+  void Record(const hal::TickRecord& record) noexcept override {
+    mode_ = record.mode;
+    verdict_.AddRecord(record);
+  }
   void Enter() noexcept override {}
   void Leave() noexcept override {}
-
-  sim::VerdictConfig MakeVerdictConfig() const {
-    sim::VerdictConfig config;
-    config.arm = about_.servo.arm;
-    config.pinhole = about_.pinhole;
-    config.goal = sim::GoalOf(about_.servo.feature);
-    config.target_moves = sim::KeepsMoving(about_.scenario.target);
-    config.tracking_bound_px = about_.scenario.run.tracking_bound_px;
-    config.duration_s = about_.scenario.run.duration_s;
-    config.workspace_radius = about_.servo.guard.workspace_radius;
-    return config;
-  }
 
   const sim::RunDescription about_;
   TruthEye eye_;
   sim::Verdict verdict_;
+  hal::Mode mode_ = hal::Mode::kBoot;  // of the last tick
   sim::World world_;
   servo::ServoTask task_;
   std::deque<hal::FeatureMeasurement> under_way_;

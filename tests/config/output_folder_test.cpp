@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
@@ -84,6 +87,48 @@ TEST(OutputFolderTest, AFolderThatCannotBeIsRefusedAtOnce) {
   std::ofstream(temp.path() / "file") << "x";
   EXPECT_THROW(OutputFolder(temp.path() / "file"), InputError);
   EXPECT_THROW(OutputFolder(temp.path() / "file" / "below"), InputError);
+}
+
+// The second run is refused, and what the first one writes stays whole.
+TEST(OutputFolderTest, IsHeldByOneRunAtATime) {
+  const test::TempFolder temp;
+  {
+    OutputFolder first(temp.path());
+    std::ofstream(first.Begin("log.mcap")) << "the first one's";
+    std::string refusal;
+    try {
+      const OutputFolder second(temp.path());
+    } catch (const InputError& error) {
+      refusal = error.what();
+    }
+    EXPECT_THAT(refusal, testing::AllOf(testing::HasSubstr("--out " + temp.path().string()),
+                                        testing::HasSubstr("another run writes there")));
+    first.Replace({{"log.mcap", std::nullopt}}, {"log.mcap"});
+    EXPECT_EQ(Read(temp.path() / "log.mcap"), "the first one's");
+  }
+  EXPECT_NO_THROW(OutputFolder(temp.path())) << "let go";
+}
+
+// A process that holds the folder, and is killed.
+TEST(OutputFolderTest, IsFreeWhenItsHolderIsKilled) {
+  const test::TempFolder temp;
+  int holds[2];
+  ASSERT_EQ(pipe(holds), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const OutputFolder folder(temp.path());
+    const bool said = write(holds[1], "x", 1) == 1;
+    pause();
+    _exit(said ? 0 : 1);
+  }
+  char word = 0;
+  ASSERT_EQ(read(holds[0], &word, 1), 1);
+  EXPECT_THROW(OutputFolder(temp.path()), InputError);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_NO_THROW(OutputFolder(temp.path()));
+  close(holds[0]);
+  close(holds[1]);
 }
 
 // What is kept stands alone: nothing of an earlier run beside it.

@@ -33,28 +33,24 @@ class Loopback(TwoPrograms):
         hw.communicate(timeout=60)
 
     def tracked(self, *options):
-        """A run of 8 s in lockstep, at half the clock's pace: what the client and the server say of it. The robot waits
-        for the servo, but nobody waits for the client's eye: a busy machine that kept it from a tenth of the pictures, or
-        let one be used 250 ms after it was taken, spoiled the run."""
-        for _ in range(3):
-            port = self.serve("--pace", "lockstep", "--most-speed", "0.5", *options, camera=True)
-            s = self.hardware(port, "--track", "--seconds", "8", camera=True, codes=(0, 1))
-            truth = self.end_server()
-            camera = s["camera"]
-            print(f"\n{truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; {camera['lost']} of {truth['frames_sent']} frames "
-                  f"lost, ages up to {camera['feature_age_ms']['max']:.0f} ms; success rate {s['robot']['command_success_rate']}")
-            self.assertEqual(s["heap_allocations_in_tick"], 0)
-            self.assertGreater(truth["frames_sent"], 200)
-            if camera["lost"] < 0.1 * truth["frames_sent"] and camera["feature_age_ms"]["max"] < 250:
-                return s, truth
-        self.skipTest("this machine kept the eye from its pictures in three attempts")
+        """A run of 8 s in lockstep, at a quarter of the clock's pace: what the client and the server say of it. The robot
+        waits for the servo; the client's eye has 130 ms for each picture, ten times what it takes."""
+        port = self.serve("--pace", "lockstep", "--most-speed", "0.25", *options, camera=True)
+        s = self.hardware(port, "--track", "--seconds", "8", camera=True, codes=(0, 1))
+        truth = self.end_server()
+        camera = s["camera"]
+        print(f"\n{truth['error_px']:.3f} px, {truth['error_mm']:.3f} mm off; {camera['lost']} of {truth['frames_sent']} frames "
+              f"lost, ages up to {camera['feature_age_ms']['max']:.0f} ms; success rate {s['robot']['command_success_rate']}")
+        self.assertEqual(s["heap_allocations_in_tick"], 0)
+        self.assertGreater(truth["frames_sent"], 200)
+        return s, truth
 
     def test_it_tracks_the_ball_in_lockstep(self):
         s, truth = self.tracked()
         self.assertEqual((s["mode"], s["fault"], s["converged"]), ("track", "none", True))
         self.assertLessEqual(truth["error_px"], 0.5)
         self.assertLessEqual(truth["error_mm"], 0.6)
-        self.assertGreater(s["camera"]["frames_detected"], 200)
+        self.assertGreaterEqual(s["camera"]["frames_detected"], 0.95 * s["camera"]["frames"])
 
     def test_its_log_and_report_say_what_was(self):
         with tempfile.TemporaryDirectory() as temp:
@@ -110,7 +106,7 @@ class Loopback(TwoPrograms):
         self.wait_for(hw, '"enabel" is not known; enable, track, hold, recover, end')
         time.sleep(0.5)
         self.say(hw, "end")
-        s = self.summary_of(hw)
+        s = self.summary_of(hw, code=1)  # the servo never began
         self.assertEqual((s["ticks"], s["robot"]["motions"], s["robot"]["commands"]), (0, 0, 0))
         self.assertGreater(s["robot"]["states"], 0)
 
@@ -140,7 +136,8 @@ class Loopback(TwoPrograms):
         with tempfile.TemporaryDirectory() as temp:
             port = self.serve("--pace", "real", "--late-ms", "3", "--loss", "0.02", camera=True)
             s = self.hardware(port, "--track", "--seconds", "3", "--out", temp, "--set", "robot.time=computer", "--set",
-                              "camera.time=computer", "--set", "robot.state_timeout_ms=50", camera=True, codes=(0, 1))
+                              "camera.time=computer", "--set", "robot.state_timeout_ms=50", "--set",
+                              "safety.arm_lost_ticks=1000", camera=True, codes=(0, 1))
             self.assertEqual((s["records_dropped"], s["log_entries_dropped"]), (0, 0))
 
     def test_a_silent_operator_has_the_arm_held(self):
@@ -344,6 +341,30 @@ class Loopback(TwoPrograms):
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn('--track is not allowed: camera.driver = "none"', done.stderr)
+
+    def test_an_arm_that_moves_is_slowed_down_before_its_motion_is_finished(self):
+        """The robot takes the end of a motion at speed for a fault of its client."""
+        port = self.serve("--pace", "lockstep", "--most-speed", "0.25", camera=True)
+        hw = self.operator(port, "--track", "--set", "camera.driver=genicam")
+        self.wait_for(hw, "track")
+        time.sleep(3)  # of the robot's time at most 0.75 s: on its way
+        hw.send_signal(signal.SIGINT)
+        out, _ = hw.communicate(timeout=30)
+        events = json.loads(out)["events"]
+        truth = self.end_server()
+        print(f"\nended {truth['error_px']:.1f} px off its goal: {events}")
+        self.assertGreater(truth["error_px"], 5.0)
+        self.assertEqual([event for event in events if "the robot" in event], [])
+
+    def test_wrong_usage_is_one_line(self):
+        with tempfile.TemporaryDirectory(suffix=".toml") as folder:
+            for words, says in [(["loopback", "--seconds", "nan"], "--seconds: nan is not allowed"),
+                                (["loopback", "--seconds=inf"], "--seconds"), (["loopback", "--second", "1"], "--seconds"),
+                                ([], "config is required"), ([folder], f"{folder}: is a folder")]:
+                done = subprocess.run([two_programs.HW, *words], timeout=20, capture_output=True, text=True)
+                self.assertEqual(done.returncode, 2)
+                self.assertRegex(done.stderr, r"\Afovea-hw: [^\n]*\n\Z")
+                self.assertIn(says, done.stderr)
 
     def test_unknown_configuration(self):
         done = subprocess.run([two_programs.HW, "loopbak"], timeout=20, capture_output=True, text=True)

@@ -17,7 +17,7 @@ servo::ServoConfig SomeConfig() {
   config.law.lambda = 1.0 / 3.0;
   config.law.unreachable_progress = 0.07;
   config.guard.obstacles.num_planes = 2;
-  config.safety.brake_after_s = 0.3;
+  config.safety.stiction_fraction = 0.3;
   config.arm.joints[6].spring = 4.5;
   return config;
 }
@@ -40,7 +40,7 @@ TEST(ServoConfigurationTest, AFieldThatALogDoesNotKnowHasItsDefault) {
   }
   const servo::ServoConfig back = FromMessage(message);
   EXPECT_EQ(back.law.unreachable_progress, servo::LawConfig{}.unreachable_progress);
-  EXPECT_EQ(back.safety.brake_after_s, servo::SafetyConfig{}.brake_after_s);
+  EXPECT_EQ(back.safety.stiction_fraction, servo::SafetyConfig{}.stiction_fraction);
   EXPECT_EQ(back.law.lambda, 1.0 / 3.0);
 }
 

@@ -197,6 +197,45 @@ TEST_F(FrankaArmTest, BrakesFinishTheMotionAndTheirReleaseStartsANewOne) {
   EXPECT_EQ(arm_->counters().motions, 2U);
 }
 
+// A robot takes the end of a motion at speed for a fault of its client.
+TEST_F(FrankaArmTest, AMovingArmIsSlowedDownBeforeItsMotionIsFinished) {
+  Start();
+  ASSERT_TRUE(Write(0.0).ok());
+  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 0);
+  robot_.state.dq = {0.5, 0.0, 0.0, -0.3, 0.0, 0.0, 0.0};
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.0, /*brakes=*/true).ok());
+  auto command = robot_.TakeCommand();
+  ASSERT_TRUE(command.has_value());
+  EXPECT_EQ(command->motion_generation_finished, 0);
+  EXPECT_LT(command->tau_J_d[0], 0.0) << "against the motion";
+  EXPECT_GT(command->tau_J_d[3], 0.0);
+  EXPECT_EQ(command->tau_J_d[1], 0.0);
+  robot_.state.dq = {0.015, 0.0, 0.0, -0.015, 0.0, 0.0, 0.0};
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.0, true).ok());
+  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "it has come to rest";
+  robot_.state.dq[0] = 0.1;  // what pushes it now is the robot's own
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.0, true).ok());
+  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "once said, it is said";
+}
+
+TEST_F(FrankaArmTest, AnArmThatNeverComesToRestIsFinishedAfterHalfASecond) {
+  Start();
+  ASSERT_TRUE(Write(0.0).ok());
+  ASSERT_TRUE(robot_.TakeCommand().has_value());
+  robot_.state.dq[0] = 0.5;
+  int braked = 0;
+  for (bool finished = false; !finished && braked < 1000;) {
+    ASSERT_TRUE(Next().ok());
+    ASSERT_TRUE(Write(0.0, /*brakes=*/true).ok());
+    finished = robot_.TakeCommand()->motion_generation_finished == 1;
+    braked += finished ? 0 : 1;
+  }
+  EXPECT_EQ(braked, 500);
+}
+
 TEST_F(FrankaArmTest, StopEndsTheMotionInOrder) {
   Start();
   std::jthread other([this] {

@@ -100,7 +100,17 @@ class Bytes {
 }
 const hash = createHash("sha256");
 const features = new Map(of("/servo/feature").map((entry) => [entry.time, entry.data]));
-let feature = { stamp_ns: 0, sequence: 0, kind: 0, found: false, confidence: 0, s: [], cov_s: [], poses: [] };
+let feature = {
+  stamp_ns: 0,
+  sequence: 0,
+  same_for_ns: 0,
+  kind: 0,
+  found: false,
+  confidence: 0,
+  s: [],
+  cov_s: [],
+  poses: [],
+};
 let taken = 0;
 for (const { time, data: t } of of("/servo/tick")) {
   assert.equal(BigInt(t.stamp_ns.toString()), time);
@@ -120,6 +130,7 @@ for (const { time, data: t } of of("/servo/tick")) {
   out.u8(t.has_feature ? 1 : 0);
   out.i64(feature.stamp_ns);
   out.u64(feature.sequence);
+  out.i64(feature.same_for_ns);
   out.u8(feature.kind);
   out.u8(feature.found ? 1 : 0);
   out.f64(feature.confidence);
@@ -135,6 +146,7 @@ for (const { time, data: t } of of("/servo/tick")) {
     out.f64s(pose.q_CO, 4);
     out.i32(pose.first);
   }
+  out.u8(t.intake);
   out.u8(t.mode);
   out.u8(t.hold_reason);
   out.u8(t.fault);

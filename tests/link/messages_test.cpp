@@ -17,18 +17,18 @@ namespace {
 
 // A field that is added to one of these must be added to what goes over the line, and then here.
 static_assert(sizeof(features::TargetFeature) == 224);
-static_assert(sizeof(servo::PredictConfig) == 56);
+static_assert(sizeof(servo::PredictConfig) == 176);
 static_assert(sizeof(servo::LawConfig) == 160);
 static_assert(sizeof(servo::MoveConfig) == 64);
 static_assert(sizeof(servo::MotionLawConfig) == 216);
-static_assert(sizeof(servo::GuardConfig) == 472);
-static_assert(sizeof(servo::SafetyConfig) == 96);
+static_assert(sizeof(servo::GuardConfig) == 1256);
+static_assert(sizeof(servo::SafetyConfig) == 112);
 static_assert(sizeof(servo::MotionCommand) == 304);
 static_assert(sizeof(hal::ArmState) == 280);
-static_assert(sizeof(hal::FeatureMeasurement) == 1008);
-static_assert(sizeof(hal::TickRecord) == 1952);
+static_assert(sizeof(hal::FeatureMeasurement) == 1016);
+static_assert(sizeof(hal::TickRecord) == 1960);
 static_assert(sizeof(LineCounters) == 24);
-static_assert(sizeof(Outputs) == 1952 + 4 * (kNumStages + 4) + sizeof(LineCounters));
+static_assert(sizeof(Outputs) == 1960 + 4 * (kNumStages + 4) + sizeof(LineCounters));
 
 std::array<std::uint8_t, kMaxPayload> storage;
 

@@ -19,18 +19,20 @@ namespace {
 
 // A field that is added to one of these and that a tick takes from the tick before must be added to what is
 // kept of the state (state_fields.hpp), and then here.
-static_assert(sizeof(servo::InputState) == 264);
+static_assert(sizeof(servo::InputState) == 232);
 static_assert(sizeof(servo::ContactState) == 680);
 static_assert(sizeof(servo::TargetFilter) == 736);
 static_assert(sizeof(servo::DiscChoice) == 1008);
 static_assert(sizeof(servo::PoseChoice) == 15704);
-static_assert(sizeof(servo::PredictState) == 58528);
+static_assert(sizeof(servo::PredictState) == 58824);
+static_assert(sizeof(servo::EncoderWatch) == 456);
+static_assert(sizeof(servo::EyeWatch) == 184);
 static_assert(sizeof(servo::ModeState) == 5);
 static_assert(sizeof(servo::WayToGoal) == 800);
 static_assert(sizeof(servo::ResolvedMotion) == 88);
 static_assert(sizeof(servo::MotionState) == 15784);
 static_assert(sizeof(servo::MotionLawState) == 232);
-static_assert(sizeof(servo::ServoState) == 81136);
+static_assert(sizeof(servo::ServoState) == 82056);
 
 using Buffer = std::vector<std::uint8_t>;
 

@@ -39,6 +39,8 @@ TEST(RecordHashTest, EveryFieldCounts) {
       [](hal::TickRecord& r) { r.feature.s[2] = 1e-300; },
       [](hal::TickRecord& r) { r.feature.cov_s[0] = 1e-300; },
       [](hal::TickRecord& r) { r.feature.num_poses = 1; },
+      [](hal::TickRecord& r) { r.feature.same_for_ns = 1; },
+      [](hal::TickRecord& r) { r.intake = hal::Intake::kOutlier; },
       [](hal::TickRecord& r) { r.feature.num_poses = 1, r.feature.poses[0].first = 1; },
       [](hal::TickRecord& r) { r.feature.num_poses = 1, r.feature.poses[0].p_CO_C[0] = 1e-300; },
       [](hal::TickRecord& r) { r.feature.num_poses = 1, r.feature.poses[0].q_CO[3] = 1e-300; },

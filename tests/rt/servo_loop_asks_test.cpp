@@ -85,5 +85,47 @@ TEST(ServoLoopAsks, FromAnotherThread) {
               step.tracks, kAsks);
 }
 
+// Leave that is given and runs out while the loop runs: no request is taken without it.
+TEST(ServoLoopAsks, LeaveFromAnotherThread) {
+  constexpr int kLeases = 1000;
+  constexpr int kPiece = 1000;  // ticks
+  CountingStep step;
+  test::FakeArm arm(7);
+  test::FakeClock clock;
+  hal::FeatureMailbox mailbox;
+  DeafRecorder recorder;
+  test::NoProbe probe;
+  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
+  loop.GiveLeave(0);
+  std::thread asker([&] {
+    for (int i = 0; i < kLeases; ++i) {
+      loop.Ask(Request::kTrack);  // nobody gave leave
+      std::this_thread::yield();
+    }
+    loop.GiveLeave(INT64_MAX - 1);
+    loop.Ask(Request::kReset);
+    const int enough = step.ticks.load(std::memory_order_relaxed) + 1000;
+    while (step.ticks.load(std::memory_order_relaxed) < enough) {
+      std::this_thread::yield();
+    }
+    loop.Finish();
+    while (loop.finish_tick() == ServoLoop::kNever) {
+      std::this_thread::yield();
+    }
+  });
+  hal::Status status = hal::Status::Ok();
+  while (loop.finish_tick() == ServoLoop::kNever && status.ok()) {
+    status = loop.Run(clock.now_ns + kPiece * hal::kTickPeriodNs);
+    arm.written.clear();
+    clock.deadlines_ns.clear();
+  }
+  asker.join();
+  EXPECT_TRUE(status.ok());
+  // The last of them may wait for the tick that has leave again.
+  EXPECT_LE(step.tracks, 1);
+  EXPECT_EQ(step.others, 1) << "who gives leave first and asks then is heard";
+  EXPECT_EQ(loop.lease_ends(), 1U);
+}
+
 }  // namespace
 }  // namespace fovea::servo

@@ -168,6 +168,7 @@ TEST(GoalPostureTest, NoneIsTakenInWhichTheHandIsBelowAPlaneOrTheArmHidesTheTarg
   model::ComputePoses(free.arm, q_goal, poses);
 
   ServoConfig below = free;
+  below.guard.link_radius = 0.0;  // the hand's own point is asked about
   below.guard.obstacles.num_planes = 1;
   below.guard.obstacles.planes[0] = {{0.0, 0.0, 1.0}, poses.X_BE.p.z() + 0.01};
   GoalPosture goal;

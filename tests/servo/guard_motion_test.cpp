@@ -31,7 +31,7 @@ class Walker {
   hal::LimitSet Step(const model::VecN& dq_des) {
     const Reference before = reference_;
     const hal::LimitSet limits =
-        GuardMotion(config_, MotionWish::Velocity(dq_des), poses_.X_BE.p, J_E_B_, poses_.X_BE.p, reference_);
+        GuardMotion(config_, MotionWish::Velocity(dq_des), poses_.X_BE.p, J_E_B_, poses_, reference_);
     for (int i = 0; i < reference_.q.size(); ++i) {
       const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
       const double half = 0.5 * (joint.q_max - joint.q_min) - config_.guard.joint_position_margin;
@@ -139,6 +139,7 @@ TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
     for (const double sign : {-1.0, 1.0}) {
       ServoConfig far = config;
       far.guard.workspace_radius = 10.0;  // this is about the joints alone
+      far.guard.hand_clearance = 0.0;
       Walker walker(far, test::Ready());
       model::VecN wish = model::VecN::Zero(7);
       wish[joint] = sign * 10.0;
@@ -159,6 +160,7 @@ TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
 TEST(GuardMotionTest, AJointBrakesBeforeItsEndAsGentlyAsItsBarrierSays) {
   ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 10.0;
+  config.guard.hand_clearance = 0.0;
   double most = 0.0;
   for (int joint = 0; joint < 7; ++joint) {
     for (const double sign : {-1.0, 1.0}) {

@@ -7,6 +7,8 @@
 #include <iostream>
 #include <vector>
 
+#include "fovea/servo/guard_motion.hpp"
+#include "fovea/servo/joint_pace.hpp"
 #include "support/panda.hpp"
 #include "support/random_states.hpp"
 
@@ -29,12 +31,20 @@ ArmLine LineAt(const VecN& q) { return LineOfArm(Arm(), PosesAt(q)); }
 double HandClearance(const VecN& q) { return ClearanceOfHand(Arm(), LineAt(q)); }
 
 // A table, and a wall that leans over it.
-Obstacles Planes() {
-  Obstacles obstacles;
+GuardConfig Planes() {
+  GuardConfig guard;
+  guard.link_radius = 0.05;
+  Obstacles& obstacles = guard.obstacles;
   obstacles.num_planes = 2;
   obstacles.planes[0] = {Vec3(0.0, 0.0, 1.0), 0.1};
   obstacles.planes[1] = {Vec3(-0.6, 0.0, -0.8), -0.7};
-  return obstacles;
+  return guard;
+}
+
+ServoConfig WithPlanes() {
+  ServoConfig config = test::PandaConfig();
+  config.guard = Planes();
+  return config;
 }
 
 double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Arm(), Planes(), LineAt(q)); }
@@ -55,6 +65,19 @@ TEST(KeepApartTest, TheHandsClearanceIsTheSmallestDistanceBetweenPointsOfTheLine
         for (int b = 0; b <= kPoints; ++b) {
           const Vec3 on_hand = poses.X_BL[6].p + b / double{kPoints} * (poses.X_BE.p - poses.X_BL[6].p);
           least = std::min(least, (on_hand - on_trunk).norm());
+        }
+      }
+    }
+    // The forearm, from the elbow on, against the base's column; both are thicker, by 5 cm.
+    const std::vector<Vec3> forearm{
+        poses.X_BL[3].p, poses.X_BL[3] * Vec3(-0.0825, 0.0, 0.0), poses.X_BL[4].p,
+        poses.X_BL[5].p, poses.X_BL[5] * Vec3(0.088, 0.0, 0.0),   poses.X_BL[6].p};
+    for (std::size_t i = 0; i + 1 < forearm.size(); ++i) {
+      for (int a = 0; a <= kPoints; ++a) {
+        const Vec3 on_arm = forearm[i] + a / double{kPoints} * (forearm[i + 1] - forearm[i]);
+        for (int b = 0; b <= kPoints; ++b) {
+          const Vec3 on_base = b / double{kPoints} * poses.X_BL[0].p;
+          least = std::min(least, (on_arm - on_base).norm() - 0.05);
         }
       }
     }
@@ -79,7 +102,7 @@ TEST(KeepApartTest, TheArmsClearanceIsThatOfItsLowestPointFromTheElbowOn) {
     for (const Vec3& p : points) {
       least = std::min({least, p.z() - 0.1, 0.7 - 0.6 * p.x() - 0.8 * p.z()});
     }
-    EXPECT_NEAR(PlaneClearance(q), least, 1e-12);
+    EXPECT_NEAR(PlaneClearance(q), least - Planes().link_radius, 1e-12);
   }
 }
 
@@ -107,9 +130,11 @@ TEST(KeepApartTest, TheRowsAreHowFastHandAndArmComeNearer) {
     ExpectRow(hand, q, dq, HandClearance, worst_hand);
     EXPECT_NEAR(hand.rows[0].b, 1.5 * std::max(HandClearance(q) - 0.3, 0.0), 1e-12);
     MotionLimits arm;
-    LimitArm(Arm(), Planes(), PosesAt(q), LineAt(q), arm);
+    LimitArm(WithPlanes(), PosesAt(q), LineAt(q), arm);
     ExpectRow(arm, q, dq, PlaneClearance, worst_arm);
-    EXPECT_NEAR(arm.rows[0].b, 1.5 * std::max(PlaneClearance(q), 0.0), 1e-12);
+    EXPECT_EQ(arm.rows[0].b,
+              BarrierSpeed(PlaneClearance(q) - 2.0 * WithPlanes().guard.workspace_margin,
+                           0.5 * WithPlanes().guard.workspace_deceleration, SlowestReaction(WithPlanes())));
     hands += HandClearance(q) < 0.3 ? 1 : 0;
     arms += PlaneClearance(q) < 0.0 ? 1 : 0;
   }
@@ -125,9 +150,9 @@ TEST(KeepApartTest, NothingIsKeptWhereNothingIsAskedForOrNothingIsKnown) {
   MotionLimits limits;
   const VecN q = test::Ready();
   LimitHand(0.0, Arm(), PosesAt(q), LineAt(q), limits);
-  LimitArm(Arm(), Obstacles{}, PosesAt(q), LineAt(q), limits);
+  LimitArm(test::PandaConfig(), PosesAt(q), LineAt(q), limits);
   LimitHand(0.13, Arm(), PosesAt(q * std::nan("")), LineAt(q * std::nan("")), limits);
-  LimitArm(Arm(), Planes(), PosesAt(q * std::nan("")), LineAt(q * std::nan("")), limits);
+  LimitArm(WithPlanes(), PosesAt(q * std::nan("")), LineAt(q * std::nan("")), limits);
   EXPECT_EQ(limits.num_rows, 0);
   model::ArmModel short_arm = Arm();
   short_arm.num_joints = 5;

@@ -123,6 +123,27 @@ TEST_F(ModesTest, AFaultLatchesFromAnywhereAndKeepsItsFirstCause) {
   }
 }
 
+// Whoever wanted the arm to move has to say so again once the fault is over.
+TEST_F(ModesTest, AFaultEndsEveryWish) {
+  ModeInputs fault = Seen(kFresh);
+  fault.fault = Fault::kNotFollowing;
+  ASSERT_EQ(After(In(Mode::kTrack), fault), Mode::kFault);
+  EXPECT_FALSE(last_.track_asked);
+  ModeInputs track = Seen(kFresh);
+  track.request = Request::kTrack;
+  ASSERT_EQ(After(last_, track), Mode::kFault);
+  EXPECT_FALSE(last_.track_asked) << "nor does a wish count that comes meanwhile";
+  ModeInputs reset = Seen(kFresh);
+  reset.request = Request::kReset;
+  ASSERT_EQ(After(last_, reset), Mode::kBoot);
+  ModeInputs ready = Seen(kFresh);
+  ready.arm_ready = true;
+  ASSERT_EQ(After(last_, ready), Mode::kHold);
+  EXPECT_EQ(last_.hold_reason, HoldReason::kNotAsked);
+  ASSERT_EQ(After(last_, ready), Mode::kHold);
+  EXPECT_EQ(After(last_, track), Mode::kTrack);
+}
+
 TEST_F(ModesTest, OnlyAResetWithoutAFaultLeavesFault) {
   ModeInputs reset;
   reset.request = Request::kReset;
@@ -176,7 +197,7 @@ TEST_F(ModesTest, AMotionThatWasStoppedStaysStopped) {
 std::vector<ModeInputs> AllInputs(std::int64_t stale_ns, std::int64_t lost_ns) {
   std::vector<ModeInputs> all;
   for (const Request request : {Request::kNone, Request::kTrack, Request::kHold, Request::kReset}) {
-    for (unsigned bits = 0; bits < 64; ++bits) {
+    for (unsigned bits = 0; bits < 128; ++bits) {
       for (const std::int64_t age : {std::int64_t{0}, stale_ns, lost_ns}) {
         for (const Fault fault : {Fault::kNone, Fault::kArmStale}) {
           ModeInputs inputs;
@@ -187,6 +208,7 @@ std::vector<ModeInputs> AllInputs(std::int64_t stale_ns, std::int64_t lost_ns) {
           inputs.target_moved = (bits & 8U) != 0;
           inputs.motion_asked = (bits & 16U) != 0;
           inputs.motion_refused = (bits & 32U) != 0;
+          inputs.eye_doubted = (bits & 64U) != 0;
           inputs.feature_age_ns = age;
           inputs.fault = fault;
           all.push_back(inputs);

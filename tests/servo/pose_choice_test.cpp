@@ -24,7 +24,8 @@ TEST(PoseChoiceTest, LeavesOutliersOutAndStartsAnew) {
   PoseChoice choice;
   int k = 0;
   const auto see = [&](const Pose& X_BO) {
-    return UpdatePoses(config, square, ViewOf(square, CameraAt(0.0), X_BO, k++, 0.05, draw), choice);
+    return UpdatePoses(config, square, ViewOf(square, CameraAt(0.0), X_BO, k++, 0.05, draw), choice) ==
+           hal::Intake::kTaken;
   };
   while (k < 30) {
     ASSERT_TRUE(see(kOnTable));
@@ -40,13 +41,12 @@ TEST(PoseChoiceTest, LeavesOutliersOutAndStartsAnew) {
   EXPECT_EQ(choice.accepted, 1);
   EXPECT_LT((choice.best().X_BO.p - elsewhere.p).norm(), 1e-3);
   EXPECT_TRUE(choice.best().w_BO_B.isZero());
-  EXPECT_FALSE(
-      UpdatePoses(config, square, ViewOf(square, CameraAt(0.0), elsewhere, k - 1, 0.05, draw), choice))
-      << "no news";
+  EXPECT_EQ(UpdatePoses(config, square, ViewOf(square, CameraAt(0.0), elsewhere, k - 1, 0.05, draw), choice),
+            hal::Intake::kTooOld);
   CornerView nothing = ViewOf(square, CameraAt(0.0), kOnTable, k, 0.05, draw);
   nothing.seen.num_branches = 0;
   PoseChoice empty;
-  EXPECT_FALSE(UpdatePoses(config, square, nothing, empty));
+  EXPECT_EQ(UpdatePoses(config, square, nothing, empty), hal::Intake::kWrongKind);
   EXPECT_EQ(empty.num_branches, 0);
 }
 
@@ -128,13 +128,13 @@ TEST(PoseChoiceTest, FindsTheTrueOneOfATrianglesPosesByMoving) {
     view.seen.num_branches = std::min<int>(static_cast<int>(all.size()), hal::kMaxPoses);
     std::copy_n(all.begin(), view.seen.num_branches, view.seen.branches.begin());
     most = std::max(most, view.seen.num_branches);
-    ASSERT_TRUE(UpdatePoses(config, triangle, view, choice));
+    ASSERT_EQ(UpdatePoses(config, triangle, view, choice), hal::Intake::kTaken);
     const auto off = [&] { return Between(choice.best().X_BO.R, X_BO.R).norm(); };
     first_was_wrong += off() > 0.05 ? 1 : 0;
     for (int k = 1; k <= 60; ++k) {
       view = ViewOf(triangle, camera(k * kFrameS), X_BO, k, 0.03, draw, k % 3);
       view.seen.num_branches = 0;
-      UpdatePoses(config, triangle, view, choice);
+      (void)UpdatePoses(config, triangle, view, choice);
       if (off() > 0.05) {
         last_wrong_s = std::max(last_wrong_s, k * kFrameS);
       }
@@ -184,11 +184,11 @@ TEST(PoseChoiceTest, WhatAllViewsSayOfAStillTargetOutweighsOnePlacesError) {
     if (k * kFrameS > 1.8) {
       view.seen.xy[0] += 0.25 / kFocalPx;
     }
-    UpdatePoses(config, square, view, choice);
+    (void)UpdatePoses(config, square, view, choice);
   }
   const double filter = Between(choice.best().X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi;
   const double all =
-      Between(MotionAt(choice, choice.stamp_ns).X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi;
+      Between(MotionAt(config, choice, choice.stamp_ns).X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi;
   std::cout << "off by: filter " << filter << " deg, all views " << all << " deg\n";
   EXPECT_TRUE(choice.is_still);
   EXPECT_GT(filter, 0.5);
@@ -209,9 +209,9 @@ TEST(PoseChoiceTest, ACameraThatCreepsSpoilsNoMean) {
     for (int k = 0; k < 150; ++k) {
       Pose X_BC = ComesOver(flat, k * kFrameS);
       X_BC.p.x() += speed * k * kFrameS;
-      UpdatePoses(config, square, ViewOf(square, X_BC, flat, k, 0.0, draw), choice);
+      (void)UpdatePoses(config, square, ViewOf(square, X_BC, flat, k, 0.0, draw), choice);
       if (k > 75) {
-        const Pose X_BO = MotionAt(choice, choice.stamp_ns).X_BO;
+        const Pose X_BO = MotionAt(config, choice, choice.stamp_ns).X_BO;
         worst_mm = std::max(worst_mm, 1e3 * (X_BO.p - flat.p).norm());
         worst_deg = std::max(worst_deg, Between(X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi);
       }
@@ -236,10 +236,10 @@ TEST(PoseChoiceTest, ATargetThatSetsOutIsStillNoMore) {
     const Pose X_BC = ComesOver(flat, k * kFrameS);
     Pose X_BO = flat;
     X_BO.p.x() += k < kSetsOut ? 0.0 : 0.05 * (k - kSetsOut) * kFrameS;  // [m], at 0.05 m/s
-    UpdatePoses(config, square, ViewOf(square, X_BC, X_BO, k, 0.03, draw), choice);
+    (void)UpdatePoses(config, square, ViewOf(square, X_BC, X_BO, k, 0.03, draw), choice);
     still_until = choice.is_still ? k : still_until;
     if (k >= 60) {
-      worst = std::max(worst, (MotionAt(choice, choice.stamp_ns).X_BO.p - X_BO.p).norm());
+      worst = std::max(worst, (MotionAt(config, choice, choice.stamp_ns).X_BO.p - X_BO.p).norm());
     }
   }
   std::cout << "still for " << still_until - kSetsOut << " frames more, off by at most " << 1e3 * worst

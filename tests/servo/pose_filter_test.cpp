@@ -32,7 +32,7 @@ TEST(PoseFilterTest, FollowsAConstantMotionExactly) {
       ASSERT_TRUE(UpdatePose(config, polygon, view, filter, distance2)) << k << ": " << distance2;
     }
     const std::int64_t now = 89 * kFrameNs + 70'000'000;
-    const FlatMotion motion = MotionAt(filter, now);
+    const FlatMotion motion = MotionAt(PredictConfig{}, filter, now);
     const Pose there = truth(1e-9 * static_cast<double>(now));
     const double off_m = (motion.X_BO.p - there.p).norm();
     const double off_rad = Between(motion.X_BO.R, there.R).norm();

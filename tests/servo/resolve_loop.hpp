@@ -145,7 +145,7 @@ inline Run Loop(const ServoConfig& config, const Start& start, const Resolve& re
     const model::VecN wish = resolve({config, feature, poses, J_C, J_E_B, reference});
     const double x = std::min(tick * kTickS / config.law.smooth_start_s, 1.0);
     const model::VecN dq_des = x * x * (3.0 - 2.0 * x) * wish;
-    GuardMotion(config, MotionWish::Velocity(dq_des), poses.X_BE.p, J_E_B, poses.X_BE.p, reference);
+    GuardMotion(config, MotionWish::Velocity(dq_des), poses.X_BE.p, J_E_B, poses, reference);
   }
   return run;
 }

@@ -7,6 +7,8 @@
 #include <iostream>
 
 #include "fovea/model/kinematics.hpp"
+#include "fovea/servo/keep_apart.hpp"
+#include "fovea/servo/obstacle.hpp"
 #include "fovea/servo/velocity_change.hpp"
 #include "support/panda.hpp"
 #include "support/random_states.hpp"
@@ -17,31 +19,31 @@ namespace {
 TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
   const ServoConfig config = test::PandaConfig();
   Reference reference{test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
-  const model::Vec3 kInside(0.5, 0.1, 0.4);
-  EXPECT_EQ(LimitsPassed(config, reference, reference.q, kInside), 0U);
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, reference.q, poses);
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, poses), 0U);
   // Joint 6 half a degree before its margin, at 1 rad/s.
   const model::Joint& joint = config.arm.joints[5];
   reference.q[5] = joint.q_max - config.guard.joint_position_margin - 0.01;
   reference.dq[5] = 1.0;
-  EXPECT_EQ(LimitsPassed(config, reference, reference.q, kInside), hal::Bit(hal::Limit::kJointPosition));
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, poses), hal::Bit(hal::Limit::kJointPosition));
   reference.dq[5] = -1.0;
-  EXPECT_EQ(LimitsPassed(config, reference, reference.q, kInside), 0U);
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, poses), 0U);
   // A workspace that ends a centimetre before the end effector, towards which joint 2 leans out.
   reference = {test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
-  model::ArmPoses poses;
   model::ComputePoses(config.arm, reference.q, poses);
   const double radius = poses.X_BE.p.norm();
   ServoConfig narrow = config;
   narrow.guard.workspace_radius = radius + narrow.guard.workspace_margin + 0.01;
   reference.dq[3] = 1.0;  // stretches the elbow
-  EXPECT_EQ(LimitsPassed(narrow, reference, reference.q, poses.X_BE.p), hal::Bit(hal::Limit::kWorkspace));
+  EXPECT_EQ(LimitsPassed(narrow, reference, reference.q, poses), hal::Bit(hal::Limit::kWorkspace));
   // The same with a plane and with a box a centimetre before it; away from them it may go.
   const model::Vec3& p = poses.X_BE.p;
   const model::Vec3 outward = p / radius;
   ServoConfig plane = config;
   plane.guard.obstacles.num_planes = 1;
   plane.guard.obstacles.planes[0] = {-outward, -(radius + plane.guard.workspace_margin + 0.01)};
-  EXPECT_EQ(LimitsPassed(plane, reference, reference.q, p), hal::Bit(hal::Limit::kObstacle));
+  EXPECT_EQ(LimitsPassed(plane, reference, reference.q, poses), hal::Bit(hal::Limit::kObstacle));
   ServoConfig box = config;
   box.guard.obstacles.num_boxes = 1;
   model::LinearJacobian J_E_B;
@@ -53,10 +55,10 @@ TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
   const model::Vec3 across = model::Vec3::Ones() - model::Vec3::Unit(axis);
   box.guard.obstacles.boxes[0] = {(face - across).cwiseMin(face + across + way),
                                   (face - across).cwiseMax(face + across + way)};
-  EXPECT_EQ(LimitsPassed(box, reference, reference.q, p), hal::Bit(hal::Limit::kObstacle));
+  EXPECT_EQ(LimitsPassed(box, reference, reference.q, poses), hal::Bit(hal::Limit::kObstacle));
   reference.dq[3] = -1.0;
-  EXPECT_EQ(LimitsPassed(plane, reference, reference.q, p), 0U);
-  EXPECT_EQ(LimitsPassed(box, reference, reference.q, p), 0U);
+  EXPECT_EQ(LimitsPassed(plane, reference, reference.q, poses), 0U);
+  EXPECT_EQ(LimitsPassed(box, reference, reference.q, poses), 0U);
 }
 
 // The same verdict as from all points of the way, near bounds and far from them.
@@ -65,6 +67,7 @@ TEST(LimitsPassedTest, LeavesOutNoPointThatMatters) {
   ServoConfig config = test::PandaConfig();
   config.guard.obstacles.num_planes = 1;
   config.guard.obstacles.planes[0] = {{0.0, 0.0, 1.0}, 0.1};
+  ASSERT_TRUE(config.guard.hand.AddCapsule(model::Vec3::Zero(), {0.05, 0.0, 0.15}, 0.03));
   int num_passed = 0;
   constexpr int kCases = 20'000;
   for (int k = 0; k < kCases; ++k) {
@@ -80,7 +83,7 @@ TEST(LimitsPassedTest, LeavesOutNoPointThatMatters) {
     model::ArmPoses poses;
     model::ComputePoses(config.arm, q_now, poses);
     const model::Vec3 p_now = poses.X_BE.p;
-    const hal::LimitSet passed = LimitsPassed(config, next, q_now, p_now);
+    const hal::LimitSet passed = LimitsPassed(config, next, q_now, poses);
     if (passed == hal::Bit(hal::Limit::kJointPosition)) {
       continue;
     }
@@ -97,7 +100,14 @@ TEST(LimitsPassedTest, LeavesOutNoPointThatMatters) {
     duration += 1e-3;
     const double boundary =
         std::max(config.guard.workspace_radius - config.guard.workspace_margin, p_now.norm()) + 1e-9;
-    const double height = std::min(0.1 + config.guard.workspace_margin, p_now.z()) - 1e-9;
+    const auto bounds = [&](const model::ArmPoses& at) {
+      const ArmLine line = LineOfArm(config.arm, at);
+      return std::array{ClearanceOf(config.guard.obstacles, 0, config.guard.hand, at.X_BE).clearance.distance,
+                        ClearanceOfPlanes(config.arm, config.guard, line), ClearanceOfHand(config.arm, line)};
+    };
+    const std::array least{config.guard.workspace_margin, config.guard.workspace_margin,
+                           config.guard.hand_clearance - 0.01};
+    const auto now = bounds(poses);
     bool expected = false;
     for (int sample = 0; sample < kStopSamples && !expected; ++sample) {
       const double share = static_cast<double>(sample) / (kStopSamples - 1);
@@ -106,7 +116,11 @@ TEST(LimitsPassedTest, LeavesOutNoPointThatMatters) {
         q[i] += stops[static_cast<std::size_t>(i)].At(duration * share * share).x;
       }
       model::ComputePoses(config.arm, q, poses);
-      expected = poses.X_BE.p.norm() > boundary || poses.X_BE.p.z() < height;
+      expected = poses.X_BE.p.norm() > boundary;
+      const auto then = bounds(poses);
+      for (std::size_t i = 0; i < then.size(); ++i) {
+        expected = expected || then[i] < std::min(least[i], now[i]) - 1e-9;
+      }
     }
     ASSERT_EQ(passed != 0, expected) << "case " << k;
     num_passed += expected ? 1 : 0;

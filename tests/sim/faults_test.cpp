@@ -61,6 +61,21 @@ TEST(FaultyArmTest, AStuckEncoderStaysAndSaysThatItIsAtRest) {
   }
 }
 
+TEST(FaultyArmTest, AllEncodersStuckTogetherWhileStampsGoOn) {
+  ArmFaults faults;
+  faults.stuck = {kWindow, kAllJoints};
+  const auto readings = ReadThrough(faults);
+  for (int tick = 0; tick < 100; ++tick) {
+    const hal::ArmState& state = readings[static_cast<std::size_t>(tick)].state;
+    EXPECT_EQ(state.q[0], InWindow(tick) ? 0.20 : 0.01 * tick) << tick;
+    EXPECT_EQ(state.q[1], 1.0);
+    EXPECT_EQ(state.dq[0], InWindow(tick) ? 0.0 : 10.0);
+    EXPECT_EQ(state.dq[1], InWindow(tick) ? 0.0 : 0.5);
+    EXPECT_EQ(state.stamp_ns, tick * kMs);
+    EXPECT_EQ(state.sequence, static_cast<std::uint64_t>(tick));
+  }
+}
+
 TEST(FaultyArmTest, ABurstOfNoiseHasItsDeviations) {
   ArmFaults faults;
   faults.noise = {{0.0, 1e3}, 2e-3, 0.1};
@@ -253,6 +268,64 @@ TEST_F(BenchFaultTest, AMotorThatGivesLess) {
   EXPECT_LT(off, 1e-8);
   EXPECT_NEAR(world.MeasuredState().tau_meas[1], 0.5 * reference.GravityTorque()[1], 0.05)
       << "the sensor on the link's side sees it";
+}
+
+// A base that leans: M ddq is the difference of the weight's torques, each from the masses and their levers.
+TEST_F(BenchFaultTest, ABaseThatLeansPullsTheArmAside) {
+  constexpr double kTilt = 0.1;
+  constexpr double kWeight = 9.81;
+  const model::VecN q = config_.q_start;
+  const model::VecN rest = model::VecN::Zero(7);
+  model::ArmPoses poses;
+  model::ArmDynamics dynamics;
+  model::ComputePoses(robot_.model, q, poses);
+  model::ComputeDynamics(robot_.model, poses, rest, dynamics);
+  // In the base's axes the weight turns by -kTilt about x.
+  const Eigen::Vector3d change(0.0, -kWeight * std::sin(kTilt), kWeight * (1.0 - std::cos(kTilt)));
+  Eigen::VectorXd tau = Eigen::VectorXd::Zero(7);
+  BulletArm arm(config_.robot, {});
+  arm.SetState(config_.q_start, Eigen::VectorXd::Zero(7));
+  const auto coms = [&](const Eigen::VectorXd& at) {  // mass times place, of all links
+    arm.SetState(at, Eigen::VectorXd::Zero(7));
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int i = 1; i < static_cast<int>(config_.robot.links.size()); ++i) {
+      const SimLink& link = config_.robot.links[static_cast<std::size_t>(i)];
+      sum += link.mass * (arm.LinkPose(i) * link.X_LCom.translation());
+    }
+    return sum;
+  };
+  constexpr double kTurn = 1e-5;
+  for (int joint = 0; joint < 7; ++joint) {
+    const Eigen::VectorXd turn = kTurn * Eigen::VectorXd::Unit(7, joint);
+    tau[joint] = change.dot(coms(config_.q_start + turn) - coms(config_.q_start - turn)) / (2.0 * kTurn);
+  }
+  const Eigen::VectorXd ddq = Eigen::MatrixXd(dynamics.M).ldlt().solve(tau);
+
+  config_.base_tilt = {{0.010, 0.020}, kTilt};
+  World world(config_);
+  world.AdvanceTo(10 * kMs);
+  EXPECT_LT(world.truth().dq.norm(), 1e-9) << "at rest before";
+  world.AdvanceTo(11 * kMs);
+  const double off = (1e3 * world.truth().dq - ddq).norm() / ddq.norm();
+  std::cout << "acceleration " << ddq.norm() << " rad/s^2, off by " << off << " of it\n";
+  EXPECT_LT(off, 1e-6);
+  world.AdvanceTo(20 * kMs);
+  const Eigen::VectorXd dq = world.truth().dq;
+  world.AdvanceTo(25 * kMs);
+  EXPECT_LT((world.truth().dq - dq).norm(), 0.05 * dq.norm()) << "upright again";
+}
+
+TEST_F(BenchFaultTest, ALoadFromTheStartActsInTheFirstStep) {
+  config_.load = {{0.0, 1.0}, 2.0};
+  World world(config_);
+  world.AdvanceTo(1 * kMs);
+  const Eigen::VectorXd first = world.truth().dq;
+  config_.load = {{0.010, 1.0}, 2.0};
+  World later(config_);
+  later.AdvanceTo(11 * kMs);
+  std::cout << "speed after a step " << first.norm() << " rad/s\n";
+  EXPECT_GT(first.norm(), 1e-3);
+  EXPECT_LT((first - later.truth().dq).norm(), 1e-9);
 }
 
 // A mass that nobody was told of: (M + m J^T J) ddq = m J^T g, from the servo's own model.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <iostream>
 #include <stdexcept>
 
 #include "fovea/hal/types.hpp"
@@ -183,6 +184,32 @@ TEST(WorldTest, FrictionSlowsAJointAndCompensationTakesItAway) {
   };
   EXPECT_GT(speed_after(1.0), 1.1 * speed_after(0.5));
   EXPECT_GT(speed_after(0.5), 1.1 * speed_after(0.0));
+}
+
+// Positions come in multiples of the quantum and are right to half of it; velocities are as they were.
+TEST(WorldTest, EncodersAreQuantised) {
+  WorldConfig config = PandaWorld();
+  config.dq_start = Eigen::VectorXd::Constant(7, 0.1);
+  World fine(config);
+  config.encoder_quantum = 1e-4;
+  World coarse(config);
+  int moved = 0;
+  double before = coarse.MeasuredState().q[0];
+  for (std::int64_t t = kMs; t <= 100 * kMs; t += kMs) {
+    fine.AdvanceTo(t);
+    coarse.AdvanceTo(t);
+    EXPECT_EQ(fine.truth().q, coarse.truth().q);
+    for (std::size_t k = 0; k < 7; ++k) {
+      const double q = coarse.MeasuredState().q[k];
+      EXPECT_NEAR(q / 1e-4, std::round(q / 1e-4), 1e-9);
+      EXPECT_LE(std::fabs(q - fine.MeasuredState().q[k]), 0.5e-4 + 1e-12);
+    }
+    EXPECT_EQ(coarse.MeasuredState().dq, fine.MeasuredState().dq);
+    moved += coarse.MeasuredState().q[0] != before ? 1 : 0;
+    before = coarse.MeasuredState().q[0];
+  }
+  std::cout << "joint 1 changed in " << moved << " of 100 ticks\n";
+  EXPECT_GT(moved, 20);
 }
 
 }  // namespace

@@ -262,8 +262,13 @@ void Director::Step(std::int64_t now_ns, const sim::Truth& truth, const hal::Tic
     Recover(now_ns, truth, record);
   } else if (mode_before_ == Mode::kFault) {
     ++recoveries_;
+    asks_again_ = !goes_home_;
   }
   mode_before_ = record.mode;
+  if (asks_again_ && record.mode == Mode::kHold) {  // a fault ends every wish
+    asks_again_ = false;
+    request_ = servo::Request::kTrack;
+  }
   if (goes_home_) {
     acting_.trouble = Trouble::kNone;
     pull_.setZero();

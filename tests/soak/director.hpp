@@ -113,6 +113,7 @@ class Director final : public servo::MotionSource {
 
   // faults
   hal::Mode mode_before_ = hal::Mode::kBoot;
+  bool asks_again_ = false;  // to track, once the servo holds after a recovery
   std::int64_t fault_ns_ = 0;
 
   std::array<std::uint64_t, kEndingNames.size()> endings_{};

@@ -180,7 +180,7 @@ def main():
     begin = time.monotonic()
     hw = Program(options.hw, "loopback", "--json", "--enable", "--track", "--set", f"robot.port={port}", "--set",
                  "robot.time=computer", "--set", "camera.time=computer", "--set", "robot.state_timeout_ms=50", "--set",
-                 "safety.missed_ticks=20")
+                 "safety.arm_lost_ticks=1000", "--set", "safety.missed_ticks=20")
     end = begin + 60.0 * options.minutes
     done = operate(server, hw, random.Random(options.seed), end, complaints)
     try:

@@ -59,6 +59,25 @@ TEST(HwConfigTest, ValuesThatDoNotFitEachOtherAreRefusedByName) {
   EXPECT_EQ(RefusalOf({}), "");
 }
 
+// A silent robot is given up after safety.arm_lost_ticks, and no single read lasts longer.
+TEST(HwConfigTest, AReadEndsBeforeTheRobotCountsAsLost) {
+  EXPECT_THAT(
+      RefusalOf({"robot.time=computer"}),
+      HasSubstr(
+          "robot.state_timeout_ms = 3000 is not allowed: at most safety.arm_lost_ticks, which is 20 ms"));
+  EXPECT_EQ(RefusalOf({"robot.time=computer", "robot.state_timeout_ms=20"}), "");
+  EXPECT_THAT(RefusalOf({"robot.time=computer", "robot.state_timeout_ms=20.5"}),
+              HasSubstr("state_timeout_ms = 20.5"));
+  EXPECT_EQ(RefusalOf({"robot.time=computer", "robot.state_timeout_ms=50", "safety.arm_lost_ticks=50"}), "");
+  EXPECT_EQ(LoadHwConfig("panda", {}).robot.state_timeout_ms, 2.0);
+}
+
+TEST(HwConfigTest, TheDeadManIsOnForARealRobot) {
+  EXPECT_EQ(HwConfig().input.dead_man_s, 5.0);
+  EXPECT_EQ(LoadHwConfig("panda", {}).input.dead_man_s, 5.0);
+  EXPECT_EQ(LoadHwConfig("loopback", {}).input.dead_man_s, 0.0);
+}
+
 TEST(HwConfigTest, AnUnknownConfigurationIsToldWhichThereAre) {
   try {
     static_cast<void>(LoadHwConfig("loop", {}));

@@ -105,6 +105,22 @@ TEST_F(HwFilesTest, AFilmThatFailsCostsNothingElse) {
   EXPECT_EQ(nlohmann::json::parse(stream)["film_errors"], log.film_errors);
 }
 
+// Ended before it moved: the log is whole, and says what was to be.
+TEST_F(HwFilesTest, WithoutATickThereAreLogAndSummary) {
+  {
+    HwFiles files(folder_.path(), config_, robot_, servo_, 0.0);
+    HwSummary summary;
+    summary.log = files.EndFilm();
+    files.Write(summary);
+  }
+  EXPECT_THAT(Files(), ElementsAre("log.mcap", "summary.json"));
+  std::vector<std::string> found;
+  log::McapVisitor visitor;
+  visitor.on_attachment = [&](const log::McapAttachment& a) { found.emplace_back(a.name); };
+  EXPECT_TRUE(log::ReadMcap(folder_.path() / "log.mcap", visitor).complete);
+  EXPECT_THAT(found, ElementsAre("summary.json"));
+}
+
 // The film takes frames of the calibrated size alone.
 TEST_F(HwFilesTest, WithoutAFrameThereIsNoFilm) {
   const LogCounters log = Run(320, 240);

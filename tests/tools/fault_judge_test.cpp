@@ -34,6 +34,8 @@ json Summary(const std::string& fault) {
         {"torque", 0.2},
         {"torque_rate", 1.0},
         {"workspace", 0.9}}},
+      {"violations", json::object()},
+      {"unwanted_motion", {{"boot", {{"most_mm", 0.1}, {"most_m_per_s", 0.01}, {"gained_m_per_s", 0.01}}}}},
       {"contact_ticks", 0},
       {"sim_time_s", 6.0}};
 }
@@ -159,9 +161,36 @@ TEST_F(FaultJudge, EachOfTheArmsLimitsCanBeExceeded) {
     run_["limits"][limit] = std::nan("");
     EXPECT_THAT(Judged().exceeded, ElementsAre(limit));
   }
-  run_ = Summary("freeze");
-  run_["limits"]["workspace"] = 1.2;  // the servo's own, not the arm's
-  EXPECT_FALSE(Judged().Failed());
+}
+
+// The servo's own barriers, and whatever is touched.
+TEST_F(FaultJudge, WhateverIsPassedByTheTruthFails) {
+  for (const char* name : {"workspace", "hand.planes[0]", "hand.boxes[1]", "cartesian_speed",
+                           "true_joint_acceleration", "contact_bench", "contact_target", "contact_self"}) {
+    run_ = Summary("freeze");
+    run_["violations"][name] = 1;
+    EXPECT_THAT(Judged().exceeded, ElementsAre(name));
+    EXPECT_TRUE(Judged().Failed());
+  }
+  run_["violations"] = {{"joint_velocity", 7}};
+  run_["limits"]["joint_velocity"] = 1.2;
+  EXPECT_THAT(Judged().exceeded, ElementsAre("joint_velocity")) << "once";
+}
+
+TEST_F(FaultJudge, AnArmThatMovesWhereItShouldStandFails) {
+  for (const StandBound& bound : kStandBounds) {
+    json& motion = run_["unwanted_motion"][bound.mode];
+    motion = {{"most_mm", bound.mm}, {"most_m_per_s", 9.0}, {"gained_m_per_s", bound.gained_m_per_s}};
+    EXPECT_FALSE(Judged().Failed()) << bound.mode;
+    EXPECT_EQ(Judged().moved.at(bound.mode).mm, bound.mm);
+    motion["most_mm"] = bound.mm + 1.0;
+    EXPECT_THAT(Judged().too_far, ElementsAre(testing::HasSubstr(bound.mode)));
+    EXPECT_TRUE(Judged().Failed());
+    motion["most_mm"] = 0.0;
+    motion["gained_m_per_s"] = bound.gained_m_per_s + 0.01;
+    EXPECT_TRUE(Judged().Failed());
+    motion["gained_m_per_s"] = 0.0;
+  }
 }
 
 TEST_F(FaultJudge, WhatIsNoSuchSummaryIsRefused) {
@@ -177,20 +206,37 @@ TEST_F(FaultJudge, WhatIsNoSuchSummaryIsRefused) {
   EXPECT_THROW((void)Judged(), std::runtime_error);
 }
 
-TEST(FaultTable, HasTheTwelveFaultsAndNoKeyTwice) {
-  std::vector<std::string> keys;
+TEST(FaultTable, HasItsFaultsAndNoCellTwice) {
+  std::vector<std::string> ids;
   for (const Fault& fault : Faults()) {
-    keys.emplace_back(fault.key);
+    ids.emplace_back(fault.id);
+    EXPECT_GE(fault.levels.size(), 3U);
+    EXPECT_LE(fault.levels.size(), kSeverities.size());
+    EXPECT_EQ(&FaultOf(fault.id), &fault);
     for (const FaultLevel& level : fault.levels) {
       EXPECT_GT(level.lasts_s, 0.0);
-      EXPECT_LE(level.lasts_s, 1.0) << "the runs beside are no longer";
+      EXPECT_TRUE(level.lasts_s <= 5.0 || level.lasts_s == kForever) << "the runs beside are no longer";
       EXPECT_STRNE(level.figures, "");
       EXPECT_STRNE(level.why, "");
     }
   }
-  EXPECT_THAT(keys, testing::UnorderedElementsAre("frame_loss", "freeze", "latency", "occluder", "glare",
-                                                  "wrong_detection", "encoder_stuck", "encoder_noise",
-                                                  "torque_loss", "packet_loss", "clock_jump", "load"));
+  EXPECT_THAT(
+      ids, testing::UnorderedElementsAre("frame_loss", "freeze", "freeze_pixels", "replay", "mirror", "stamp",
+                                         "latency", "occluder", "glare", "wrong_detection", "encoder_stuck",
+                                         "encoders_stuck", "encoder_noise", "torque_loss", "packet_loss",
+                                         "clock_jump", "load", "load_from_start", "gravity"));
+}
+
+TEST(FaultStages, WhatIsThereFromTheStartBeginsWithTheFirstTick) {
+  const RunMode& mode = RunModes()[0];
+  const Fault& load = FaultOf("load_from_start");
+  for (const Stage stage : kStages) {
+    EXPECT_EQ(MakesSense(mode, stage, load), stage == Stage::kBoot);
+  }
+  const StageSetup setup = matrix::SetUp(TimesOf(mode, Summary("nothing")), Stage::kBoot, &load);
+  EXPECT_EQ(setup.onset_s, 0.0);
+  EXPECT_NE(setup.name, matrix::SetUp(TimesOf(mode, Summary("nothing")), Stage::kBoot, &FaultOf("load")).name)
+      << "it has a run of its own beside it";
 }
 
 TEST(FaultStages, AreReadOffAnUndisturbedRun) {
@@ -200,8 +246,7 @@ TEST(FaultStages, AreReadOffAnUndisturbedRun) {
   EXPECT_NEAR(times.boot_s, 0.05, 1e-12);
   EXPECT_NEAR(times.approach_s, 0.1 + mode.approach_share * 1.4, 1e-12);
   EXPECT_NEAR(times.tracking_s, 1.5 + mode.settled_s, 1e-12);
-  const Fault& occluder = Faults()[3];
-  ASSERT_STREQ(occluder.key, "occluder");
+  const Fault& occluder = FaultOf("occluder");
   EXPECT_THAT(matrix::SetUp(times, Stage::kCoasting, &occluder).assignments, testing::SizeIs(1))
       << "the camera's outage";
   const StageSetup coasting = matrix::SetUp(times, Stage::kCoasting, &Faults()[0]);

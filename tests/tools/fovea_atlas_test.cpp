@@ -13,6 +13,8 @@
 #include "atlas_figures.hpp"
 #include "atlas_page.hpp"
 #include "atlas_sampler.hpp"
+#include "atlas_seed.hpp"
+#include "fovea/config/folder_lock.hpp"
 #include "fovea/config/target_keys.hpp"
 #include "support/panda.hpp"
 #include "support/program.hpp"
@@ -35,8 +37,9 @@ class AtlasTest : public testing::Test {
  protected:
   // Runs too short to reach anything, so that many fit into a test.
   static std::vector<std::string> Arguments(const std::string& out, const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{FOVEA_PROGRAM,         "atlas",  "--target", "sphere", "--set",
-                                       "run.duration_s=0.15", "--json", "--out",    out};
+    std::vector<std::string> arguments{
+        FOVEA_PROGRAM, "atlas", "--target", "sphere", "--set", "run.duration_s=0.15",
+        "--json",      "--out", out,        "--seed", "1"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   }
@@ -58,6 +61,7 @@ TEST_F(AtlasTest, IsTheSameHoweverManyJobsRunAndAfterAKill) {
   ASSERT_EQ(one.exit_code, 1) << one.err;  // runs this short fail
   const json figures = json::parse(one.out);
   EXPECT_EQ(figures["runs"], 3);
+  EXPECT_EQ(figures["seed_kind"], "tuning");
   EXPECT_EQ(figures["converged"], 0);
   EXPECT_EQ(figures["failures"].size(), 3U);
   EXPECT_EQ(Content(folder_.path() / "one" / "atlas.json"), one.out);
@@ -98,7 +102,9 @@ TEST_F(AtlasTest, IsTheSameHoweverManyJobsRunAndAfterAKill) {
   EXPECT_EQ(resumed.out, one.out);
   EXPECT_EQ(Content(rows).substr(0, before.size()), before) << "what was done is not done again";
 
-  const test::ProgramResult other = Atlas("killed", {"--runs", "3", "--seed", "2", "--resume"});
+  std::vector<std::string> of_another = Arguments(folder_.path() / "killed", {"--runs", "3", "--resume"});
+  *std::find(of_another.begin(), of_another.end(), "1") = "2";
+  const test::ProgramResult other = test::RunProgram(of_another);
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("rows of another"));
 }
@@ -116,12 +122,25 @@ TEST_F(AtlasTest, CommandsRepeatTheirRuns) {
   EXPECT_EQ(json::parse(again.out)["log_hash"], row["log_hash"]);
 }
 
+// The refusals of starts that are drawn alone are those of the runs from them.
+TEST_F(AtlasTest, DrawsTheStartsAlone) {
+  const json runs = json::parse(Atlas("runs", {"--runs", "2"}).out);
+  const test::ProgramResult draws = Atlas("draws", {"--runs", "2", "--draw-only"});
+  ASSERT_EQ(draws.exit_code, 0) << draws.err;
+  EXPECT_EQ(json::parse(draws.out)["sampler"], runs["sampler"]);
+  EXPECT_EQ(json::parse(draws.out)["starts"], 2);
+  EXPECT_FALSE(fs::exists(folder_.path() / "draws")) << "nothing is run";
+}
+
 TEST_F(AtlasTest, RefusesInOneLine) {
   ExpectRefused({"--set", "target.kind=circle"}, "the atlas sets target. itself");
   ExpectRefused({"--runs", "1", "--set", "servo.lamda=3"}, "did you mean servo.lambda");
   fs::create_directories(folder_.path() / "refused");
   std::ofstream(folder_.path() / "refused" / "rows.jsonl") << "{}\n";
   ExpectRefused({"--resume"}, "no row of an atlas");
+  const config::FolderLock another(folder_.path() / "refused");
+  ExpectRefused({}, "another run writes there");
+  EXPECT_EQ(Content(folder_.path() / "refused" / "rows.jsonl"), "{}\n");
   EXPECT_EQ(Atlas("refused", {"--runs", "0"}).exit_code, 2);
   EXPECT_EQ(Atlas("refused", {"--jobs", "0"}).exit_code, 2);
   EXPECT_EQ(test::RunProgram({FOVEA_PROGRAM, "atlas", "--target", "cube"}).exit_code, 2);
@@ -141,6 +160,59 @@ TEST(AtlasFigures, WilsonsIntervalIsWhatItSays) {
   }
   EXPECT_NEAR(atlas::Wilson95(200, 200)[1], 1.0, 1e-12);
   EXPECT_NEAR(atlas::Wilson95(0, 10)[0], 0.0, 1e-12);
+}
+
+// A start is refused for what nothing could be done about, never for being hard.
+TEST(AtlasSampler, RefusesForGeometryAndForWantOfAWayAlone) {
+  EXPECT_THAT(atlas::kRejectionNames,
+              testing::ElementsAreArray({"start_outside_barrier", "start_below_table", "target_near_edge",
+                                         "target_below_table", "arm_in_the_way", "thing_in_the_way",
+                                         "no_goal_posture", "no_way"}));
+}
+
+TEST(AtlasFigures, TheGoalIsOneMissInAThousand) {
+  atlas::Figures figures;
+  figures.runs = 1000;
+  figures.converged = 999;
+  EXPECT_TRUE(figures.ReachedGoal());
+  figures.converged = 998;
+  EXPECT_FALSE(figures.ReachedGoal());
+  figures.converged = 1000;
+  figures.limit_violations = 1;
+  EXPECT_FALSE(figures.ReachedGoal());
+}
+
+// The page, the table and the JSON of every target tell what was refused, and over which seed.
+TEST(AtlasFigures, RefusalsAndSeedAreTold) {
+  atlas::Figures figures;
+  figures.heading = {"circle", 7, {}, "0123456789abcdef"};
+  figures.runs = 10;
+  figures.rejections = {11, 12, 13, 14, 15, 16, 17, 18};
+  const json told = json::parse(atlas::ToJson(figures));
+  const std::string table = atlas::ToTable(figures);
+  const std::string page = atlas::AtlasPage(test::SourceRoot() / "firmware/report/page").Make(figures, {});
+  for (std::size_t i = 0; i < atlas::kRejectionNames.size(); ++i) {
+    const std::string name = atlas::kRejectionNames[i];
+    EXPECT_EQ(told["sampler"]["rejected"][name], 11 + i);
+    for (const std::string& text : {table, page}) {
+      EXPECT_THAT(text, HasSubstr(name));
+      EXPECT_THAT(text, HasSubstr(std::to_string(11 + i)));
+    }
+  }
+  EXPECT_EQ(told["seed_kind"], "tuning");
+  EXPECT_THAT(table, HasSubstr("tuning seed 7"));
+  EXPECT_THAT(page, HasSubstr("tuning seed 7"));
+}
+
+TEST(AtlasSeed, EachServoIsJudgedByStartsThatAreNew) {
+  const std::string hash = "0123456789abcdef";
+  EXPECT_EQ(atlas::JudgingSeed(hash), 1000 + 0x0123456);
+  EXPECT_NE(atlas::JudgingSeed("0123457789abcdef"), atlas::JudgingSeed(hash));
+  EXPECT_EQ(atlas::JudgingSeed("fffffffff"), 1000 + 0xfffffff);
+  EXPECT_STREQ(atlas::KindOfSeed(1, hash), "tuning");
+  EXPECT_STREQ(atlas::KindOfSeed(999, hash), "tuning");
+  EXPECT_STREQ(atlas::KindOfSeed(1000, hash), "given");
+  EXPECT_STREQ(atlas::KindOfSeed(1000 + 0x0123456, hash), "judging");
 }
 
 TEST(AtlasRows, ARunOfAnotherCameraIsNone) {

@@ -50,6 +50,13 @@ TEST(FoveaBench, TickHasItsFigures) {
   }
 }
 
+// It fails when the twists of both differ.
+TEST(FoveaBench, TheLawIsVispsAndBothAreTimed) {
+  const std::set<std::string> names = NamesOf(test::RunProgram({FOVEA_BENCH_VISP_PROGRAM, "--json"}));
+  EXPECT_EQ(names, (std::set<std::string>{"fovea_law_ns", "visp_steps_ns", "visp_control_law_ns",
+                                          "visp_steps_ratio", "visp_control_law_ratio"}));
+}
+
 std::string TextOf(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream(file).rdbuf();

@@ -61,7 +61,8 @@ TEST(FoveaModel, RefusesWhatItCannotRead) {
   EXPECT_THAT(Model({"nix"}).err, HasSubstr("\"nix\": no shipped arm of that name"));
   EXPECT_EQ(Model({"nix"}).exit_code, 2);
   EXPECT_THAT(Model({"panda", "--at", "1,2"}).err, HasSubstr("--at has 2 numbers: 7, 14 or 21 are allowed"));
-  EXPECT_THAT(Model({"panda", "--at", "nan,0,0,0,0,0,0"}).err, HasSubstr("finite numbers are allowed"));
+  EXPECT_THAT(Model({"panda", "--at", "nan,0,0,0,0,0,0"}).err,
+              HasSubstr("nan is not allowed: a finite number is"));
   EXPECT_EQ(Model({"panda", "--json", "--emit-cpp"}).exit_code, 2);
 }
 

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
+#include <iostream>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -196,6 +198,99 @@ TEST_F(VisionTaskTest, RunsUntilTheCameraEnds) {
   EXPECT_EQ(RunVision(camera, task_, sink, stop, {}).code(), hal::StatusCode::kDisconnected);
   const std::atomic<bool> stopped{true};
   EXPECT_EQ(RunVision(camera, task_, sink, stopped, {}).code(), hal::StatusCode::kClosed);
+}
+
+// One bad picture is one frame without the target: vision goes on, and says how many there were and why.
+TEST_F(VisionTaskTest, GoesOnAfterABadPicture) {
+  const cv::Mat image = test::RayCast({});
+  const cv::Mat small(240, 320, CV_8UC3, cv::Scalar::all(0));
+  test::FakeCamera camera;
+  for (std::uint64_t i = 0; i < 6; ++i) {
+    camera.frames.push_back(FrameOf(i == 3 ? small : image));
+    camera.frames.back().sequence = i;
+    camera.frames.back().stamp_ns = 1000 + static_cast<std::int64_t>(i);
+  }
+  // What no driver may hand over: the seam makes a fault of each.
+  camera.frames[1].pixels = camera.frames[1].pixels.first(5000);
+  camera.frames[2].stride_bytes = 7;
+  camera.frames[4].height_px = -480;
+  ListSink sink;
+  std::vector<bool> found;
+  const std::atomic<bool> stop{false};
+  const hal::Status end =
+      RunVision(camera, task_, sink, stop, [&](const hal::Frame& frame, const Detection& d) {
+        found.push_back(d.found);
+        EXPECT_EQ(frame.width_px, image.cols);
+        EXPECT_EQ(frame.height_px, image.rows);
+        EXPECT_GE(frame.pixels.size(), image.total() * image.elemSize());
+      });
+  EXPECT_EQ(end.code(), hal::StatusCode::kClosed);
+  EXPECT_EQ(found, (std::vector<bool>{true, false, true}));
+  const std::array<std::uint64_t, 3> sequences{0, 3, 5};
+  ASSERT_EQ(sink.list.size(), sequences.size()) << "the servo hears of each that has a stamp";
+  for (std::size_t i = 0; i < sequences.size(); ++i) {
+    EXPECT_EQ(sink.list[i].found, found[i]) << i;
+    EXPECT_EQ(sink.list[i].sequence, sequences[i]);
+    EXPECT_EQ(sink.list[i].stamp_ns, 1000 + static_cast<std::int64_t>(sequences[i]));
+  }
+  EXPECT_EQ(task_.failures().frames, 4U);
+  EXPECT_NE(task_.failures().first.find("(Frame geometry)"), std::string::npos) << task_.failures().first;
+}
+
+// A hundred faults in a row, or a camera that stopped by itself: that ends vision, and is said.
+TEST_F(VisionTaskTest, ACameraThatOnlyFailsIsReported) {
+  test::FakeCamera camera;
+  camera.after = hal::Status(hal::StatusCode::kDeviceFault, "camera picture");
+  ListSink sink;
+  const std::atomic<bool> stop{false};
+  EXPECT_EQ(RunVision(camera, task_, sink, stop, {}).code(), hal::StatusCode::kDeviceFault);
+  EXPECT_EQ(task_.failures().frames, 99U);
+  EXPECT_EQ(sink.list.size(), 0U);
+}
+
+// OpenCV without memory: what it throws is the first picture's, and the second is looked at.
+class NoMemory final : public cv::MatAllocator {
+ public:
+  cv::UMatData* allocate(int, const int*, int, void*, std::size_t*, cv::AccessFlag,
+                         cv::UMatUsageFlags) const override {
+    CV_Error(cv::Error::StsNoMem, "no memory\nfor this picture");
+  }
+  bool allocate(cv::UMatData*, cv::AccessFlag, cv::UMatUsageFlags) const override { return false; }
+  void deallocate(cv::UMatData*) const override {}
+};
+
+class CameraWithoutMemory final : public hal::Camera {
+ public:
+  explicit CameraWithoutMemory(hal::Frame frame) : frame_(frame) {}
+  ~CameraWithoutMemory() { cv::Mat::setDefaultAllocator(cv::Mat::getStdAllocator()); }
+
+ private:
+  hal::Status DoAcquire(hal::Frame& frame, std::int64_t) noexcept override {
+    cv::Mat::setDefaultAllocator(acquired_ == 0 ? &none_ : cv::Mat::getStdAllocator());
+    frame = frame_;
+    return ++acquired_ > 2 ? hal::Status(hal::StatusCode::kClosed) : hal::Status::Ok();
+  }
+  const hal::Frame frame_;
+  NoMemory none_;
+  int acquired_ = 0;
+};
+
+TEST_F(VisionTaskTest, GoesOnAfterAPictureOnWhichOpenCvBreaks) {
+  const cv::Mat image = test::RayCast({});
+  CameraWithoutMemory camera(FrameOf(image));
+  DetectorConfig config = Config();
+  config.by = FindBy::kHough;
+  VisionTask task(config);
+  ListSink sink;
+  const std::atomic<bool> stop{false};
+  EXPECT_EQ(RunVision(camera, task, sink, stop, {}).code(), hal::StatusCode::kClosed);
+  ASSERT_EQ(sink.list.size(), 2U);
+  EXPECT_FALSE(sink.list[0].found);
+  EXPECT_EQ(sink.list[0].sequence, 45U);
+  EXPECT_EQ(task.failures().frames, 1U) << "the second was looked at";
+  std::cout << "its words: " << task.failures().first << '\n';
+  EXPECT_NE(task.failures().first.find("no memory"), std::string::npos);
+  EXPECT_EQ(task.failures().first.find('\n'), std::string::npos) << "one line";
 }
 
 }  // namespace

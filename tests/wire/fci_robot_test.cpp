@@ -120,6 +120,10 @@ TEST_F(FciRobotTest, TorquesMoveAJointThatWay) {
   }
   EXPECT_GT(state().q[0], begin_.q[0] + 0.01);
   EXPECT_GT(state().dq[0], 0.05);
+  const franka::Vector7 q = state().q;
+  for (int k = 0; k < 600; ++k) {
+    robot().Step(Towards(q));
+  }
   Finish();
   for (int k = 0; k < 500; ++k) {
     robot().Step(std::nullopt);

@@ -1,0 +1,108 @@
+// Encoders that hang, and those that only stand still.
+#include "fovea/servo/encoder_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "support/panda.hpp"
+
+namespace fovea::servo {
+namespace {
+
+class EncoderWatchTest : public testing::Test {
+ protected:
+  EncoderWatchTest() {
+    model::ArmPoses poses;
+    model::ComputePoses(config_.arm, q_, poses);
+    model::ComputeDynamics(config_.arm, poses, dq_, dynamics_);
+  }
+  // Ticks until a joint is said to hang; -1: not within `most`.
+  int TicksUntil(int most) {
+    for (int tick = 1; tick <= most; ++tick) {
+      joint_ = WatchEncoders(config_, {q_, dq_, dynamics_, residual_, reference_, drives_}, watch_);
+      if (joint_ >= 0) {
+        return tick;
+      }
+    }
+    return -1;
+  }
+
+  ServoConfig config_ = test::PandaConfig();
+  model::VecN q_ = test::Ready();
+  model::VecN dq_ = model::VecN::Zero(7);
+  model::VecN residual_ = model::VecN::Zero(7);
+  model::VecN reference_ = test::Ready();
+  bool drives_ = true;
+  model::ArmDynamics dynamics_;
+  EncoderWatch watch_;
+  std::int32_t joint_ = -1;
+};
+
+TEST_F(EncoderWatchTest, AJointThatRestsUnderALoadIsSound) {
+  for (int tick = 0; tick < 600; ++tick) {  // a weight that nobody knows, taken up while the joint moves
+    residual_[1] += 0.03 * (30.0 - residual_[1]);
+    q_[1] += 1e-3;
+    ASSERT_EQ(TicksUntil(1), -1);
+  }
+  EXPECT_EQ(TicksUntil(20'000), -1);
+}
+
+TEST_F(EncoderWatchTest, TorqueThatShouldHaveMovedAJointTells) {
+  for (int joint = 0; joint < 7; ++joint) {
+    watch_ = EncoderWatch{};
+    residual_.setZero();
+    ASSERT_EQ(TicksUntil(100), -1);
+    residual_[joint] = -0.2 * config_.arm.joints[static_cast<std::size_t>(joint)].tau_max;
+    const int ticks = TicksUntil(1000);
+    std::cout << "joint " << joint + 1 << ": after " << ticks << " ticks\n";
+    EXPECT_EQ(joint_, joint);
+    EXPECT_GT(ticks, 0);
+    EXPECT_LE(ticks, 20);
+  }
+}
+
+TEST_F(EncoderWatchTest, FrictionMayHoldAJoint) {
+  ASSERT_EQ(TicksUntil(100), -1);
+  residual_[0] = 0.9 * (config_.safety.stiction_fraction * config_.arm.joints[0].coulomb +
+                        0.01 * config_.arm.joints[0].tau_max);
+  EXPECT_EQ(TicksUntil(10'000), -1);
+}
+
+TEST_F(EncoderWatchTest, AVelocityWithoutAWayTellsEvenWithoutTheObserver) {
+  drives_ = false;
+  dq_[3] = 0.4;
+  const int ticks = TicksUntil(1000);
+  std::cout << "after " << ticks << " ticks\n";
+  EXPECT_EQ(joint_, 3);
+  EXPECT_LE(ticks, 10);
+}
+
+// A light joint takes so little torque that the observer sees nothing: but its reference has gone on.
+TEST_F(EncoderWatchTest, AReferenceThatGoesOnTells) {
+  for (int joint = 0; joint < 7; ++joint) {
+    watch_ = EncoderWatch{};
+    reference_ = test::Ready();
+    ASSERT_EQ(TicksUntil(100), -1);
+    double gone = 0.0;
+    do {
+      gone += 3e-4;
+      reference_[joint] += 3e-4;
+    } while (TicksUntil(1) < 0 && gone < 1.0);
+    std::cout << "joint " << joint + 1 << ": after " << gone << " rad\n";
+    EXPECT_EQ(joint_, joint);
+    EXPECT_LT(gone, 0.08);
+  }
+}
+
+// What is read changes by a step of the encoder now and then: it works.
+TEST_F(EncoderWatchTest, AReadingThatChangesByAStepIsSound) {
+  for (int step = 0; step < 50; ++step) {
+    residual_[1] = step % 2 == 0 ? 1.5 : -1.5;
+    q_[1] += 1.01 * config_.safety.encoder_quantum;
+    ASSERT_EQ(TicksUntil(config_.safety.non_finite_ticks), -1) << step;
+  }
+}
+
+}  // namespace
+}  // namespace fovea::servo
