@@ -83,8 +83,14 @@ int main(int argc, char** argv) {
   CLI::App* wire_command = app.add_subcommand("wire",
                                               "The robot's network interface at real pace: states a second, "
                                               "and how evenly they come and are answered");
-  wire_command->add_option("--seconds", wire.seconds, "By the clock")
+  wire_command->add_option("--seconds", wire.seconds, "By the clock; in lockstep of the robot's time")
       ->check(CLI::Range(0.5, 100000.0))
+      ->capture_default_str();
+  wire_command
+      ->add_option("--pace", wire.pace,
+                   "real: the robot by the clock; lockstep: it waits for each answer, so that the counts "
+                   "are the same on any machine")
+      ->check(CLI::IsMember({"real", "lockstep"}))
       ->capture_default_str();
   wire_command->add_flag("--json", wire.json, "Print JSON");
 

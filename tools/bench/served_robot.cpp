@@ -58,13 +58,13 @@ std::uint16_t PortIn(const std::string& line) {
 
 }  // namespace
 
-ServedRobot::ServedRobot(const std::filesystem::path& program) {
+ServedRobot::ServedRobot(const std::filesystem::path& program, const std::string& pace) {
   std::array<int, 2> out{};
   if (pipe2(out.data(), O_CLOEXEC) != 0) {
     throw std::runtime_error("no pipe for " + program.string());
   }
   std::vector<std::string> words{
-      program.string(), "serve", "ball",      "--pace", "real", "--camera-serial", "",
+      program.string(), "serve", "ball",      "--pace", pace, "--camera-serial", "",
       "--fci-port",     "0",     "--late-ms", "3"};
   std::vector<char*> argv;
   argv.reserve(words.size() + 1);

@@ -5,14 +5,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace fovea::bench {
 
 class ServedRobot {
  public:
-  // The Panda of scenario `ball` at real pace, without its camera, on a free port of 127.0.0.1. Throws
+  // The Panda of scenario `ball` at this pace, without its camera, on a free port of 127.0.0.1. Throws
   // std::runtime_error when `program` does not start or does not say where it listens.
-  explicit ServedRobot(const std::filesystem::path& program);
+  ServedRobot(const std::filesystem::path& program, const std::string& pace);
   ~ServedRobot();
   ServedRobot(const ServedRobot&) = delete;
   ServedRobot& operator=(const ServedRobot&) = delete;

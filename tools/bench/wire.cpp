@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -19,6 +20,7 @@ namespace fovea::bench {
 namespace {
 
 constexpr double kStatesPerSecond = 1000.0;
+constexpr double kMostReserved = 1e6;  // states; more take what they need as they come
 
 // std::runtime_error unless `status` is a state that only has not come yet, or nothing is wrong.
 void CheckRobot(const hal::Status& status) {
@@ -27,16 +29,22 @@ void CheckRobot(const hal::Status& status) {
   }
 }
 
-// Each state as it comes, answered with torques that leave the arm where it is. std::runtime_error when the
-// motion is refused, or the robot breaks it off.
-std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds) {
+// Each state as it comes, answered with torques that leave the arm where it is, for `seconds` by the clock
+// or, in lockstep, of the robot's time, from the motion's begin on. std::runtime_error when the motion is
+// refused, or the robot breaks it off.
+std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds, bool lockstep) {
   linux_rt::MonotonicClock clock;
   std::vector<double> gaps_us;
-  gaps_us.reserve(static_cast<std::size_t>(1.1 * seconds * kStatesPerSecond));
-  const std::int64_t begin_ns = clock.NowNs();
+  gaps_us.reserve(static_cast<std::size_t>(std::min(1.1 * seconds * kStatesPerSecond, kMostReserved)));
+  std::int64_t begin_ns = clock.NowNs();
   std::int64_t last_ns = begin_ns;
-  const franka::FrankaCounters before = arm.counters();
-  while (1e-9 * static_cast<double>(last_ns - begin_ns) < seconds) {
+  std::uint64_t first_state = 0;
+  franka::FrankaCounters before;
+  const auto measured_s = [&] {
+    return lockstep ? static_cast<double>(arm.robot_state().message_id - first_state) / kStatesPerSecond
+                    : 1e-9 * static_cast<double>(last_ns - begin_ns);
+  };
+  for (bool moves = false; !moves || measured_s() < seconds;) {
     hal::ArmState state;
     if (const hal::Status status = arm.Read(state); !status.ok()) {
       CheckRobot(status);
@@ -51,6 +59,13 @@ std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds) {
     command.num_joints = state.num_joints;
     CheckRobot(arm.Write(command));
     const std::int64_t now_ns = clock.NowNs();
+    if (!moves && arm.phase() == franka::MotionPhase::kRunning) {  // from here on each state is answered
+      moves = true;
+      begin_ns = now_ns;
+      first_state = arm.robot_state().message_id;
+      before = arm.counters();
+      gaps_us.clear();
+    }
     gaps_us.push_back(1e-3 * static_cast<double>(now_ns - last_ns));
     last_ns = now_ns;
   }
@@ -70,12 +85,13 @@ std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds) {
 
 int RunWire(const WireArguments& arguments) {
   const std::filesystem::path program = SimulatorBeside("fovea-bench wire");
-  const ServedRobot robot(program);
+  const bool lockstep = arguments.pace == "lockstep";
+  const ServedRobot robot(program, arguments.pace);
   franka::FrankaConfig config;
   config.host = "127.0.0.1";
   config.port = robot.port();
   franka::FrankaArm arm(config);
-  const std::vector<Figure> figures = Measure(arm, arguments.seconds);
+  const std::vector<Figure> figures = Measure(arm, arguments.seconds, lockstep);
   fmt::print("{}", arguments.json ? ToJson(figures) + "\n" : ToTable(figures));
   return config::kDone;
 }

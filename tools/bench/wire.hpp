@@ -1,10 +1,13 @@
 // `fovea-bench wire`: the robot's network interface by the clock, its server and our client on this machine.
 #pragma once
 
+#include <string>
+
 namespace fovea::bench {
 
 struct WireArguments {
   double seconds = 10.0;
+  std::string pace = "real";
   bool json = false;
 };
 

@@ -13,7 +13,9 @@
 #include "atlas_progress.hpp"
 #include "atlas_rows.hpp"
 #include "atlas_sampler.hpp"
+#include "atlas_seed.hpp"
 #include "fovea/build_info.hpp"
+#include "fovea/config/folder_lock.hpp"
 #include "fovea/config/input_error.hpp"
 #include "fovea/config/program.hpp"
 #include "fovea/config/share_folder.hpp"
@@ -51,12 +53,33 @@ void CheckAssignments(const std::vector<std::string>& assignments) {
   }
 }
 
+atlas::Heading HeadingOf(const AtlasArguments& arguments) {
+  return {arguments.target,
+          static_cast<std::uint64_t>(arguments.seed.value_or(atlas::JudgingSeed(kServoLibraryHash))),
+          arguments.assignments, kServoLibraryHash};
+}
+
+int DrawOnly(const AtlasArguments& arguments) {
+  const atlas::Sampler sampler = MakeSampler(arguments.target);
+  atlas::Figures figures;
+  figures.heading = HeadingOf(arguments);
+  figures.scenario = ScenarioOf(arguments.target);
+  figures.runs = arguments.runs;
+  for (int index = 0; index < arguments.runs; ++index) {
+    const atlas::Start start = sampler.Draw(figures.heading.seed, index);
+    for (std::size_t i = 0; i < figures.rejections.size(); ++i) {
+      figures.rejections[i] += start.rejections[i];
+    }
+  }
+  fmt::print("{}", arguments.json ? atlas::DrawsAsJson(figures) : atlas::DrawsAsTable(figures));
+  return config::kDone;
+}
+
 class AtlasRun {
  public:
   explicit AtlasRun(const AtlasArguments& arguments)
       : arguments_(arguments),
-        heading_{arguments.target, static_cast<std::uint64_t>(arguments.seed), arguments.assignments,
-                 kServoLibraryHash},
+        heading_(HeadingOf(arguments)),
         scenario_(ScenarioOf(arguments_.target)),
         simulator_(bench::SimulatorBeside("fovea atlas")),
         sampler_(MakeSampler(arguments.target)),
@@ -68,6 +91,7 @@ class AtlasRun {
     if (error) {
       throw config::InputError(out_.string() + ": no folder can be made there");
     }
+    lock_.emplace(out_);
     rows_.emplace(out_ / "rows.jsonl", heading_, arguments.resume);
   }
 
@@ -147,6 +171,7 @@ class AtlasRun {
   const atlas::Sampler sampler_;
   const atlas::AtlasPage page_;
   const fs::path out_;
+  std::optional<config::FolderLock> lock_;
   std::optional<atlas::RowFile> rows_;
   std::map<int, atlas::Start> starts_;  // of the runs under way
   atlas::Children children_;
@@ -168,7 +193,7 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
                             ->check(CLI::IsMember({"sphere", "circle", "square", "triangle"}));
   CLI::Option* faults =
       kind->add_flag("--faults", arguments.faults,
-                     "every fault, mild, medium and severe, in every mode of run and at every stage of it");
+                     "every fault, from mild to extreme, in every mode of run and at every stage of it");
   kind->require_option(1);
   atlas->add_option("--runs", arguments.runs, "how many random starts")
       ->check(CLI::Range(1, 100000))
@@ -187,9 +212,14 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       ->add_option("-j,--jobs", arguments.jobs,
                    "that run beside each other; one for every two cores when not given")
       ->check(CLI::Range(1, 256));
-  atlas->add_option("--seed", arguments.seed, "of the starts and of all that is random in the runs")
-      ->check(CLI::Range(0, 2147483647))
-      ->capture_default_str();
+  atlas
+      ->add_option(
+          "--seed", arguments.seed,
+          fmt::format("of the starts and of all that is random in the runs. When not given: one that "
+                      "follows from the servo's own code, on whose starts nobody can have tuned it; "
+                      "those below {} are to tune on. Of --faults: 1",
+                      atlas::kFirstJudgingSeed))
+      ->check(CLI::Range(0, 2147483647));
   atlas
       ->add_option("--set", arguments.assignments,
                    "key=value for every run, over the scenario's own; may be repeated")
@@ -200,6 +230,10 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
   atlas->add_option("--out", arguments.out,
                     "folder for the files; out/atlas-<target>, or out/atlas-faults, when not given");
   atlas->add_flag("--resume", arguments.resume, "go on with the rows that are in the folder");
+  atlas
+      ->add_flag("--draw-only", arguments.draw_only,
+                 "draw the starts and run none: how many draws are refused, and why")
+      ->excludes(faults);
   CLI::Option* json = atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
   atlas->add_flag("--markdown", arguments.markdown, "of --faults: print the page in sim/FAULTS.md instead")
       ->excludes(target)
@@ -212,6 +246,9 @@ int Atlas(const AtlasArguments& arguments) {
     return FaultAtlas(arguments);
   }
   CheckAssignments(arguments.assignments);
+  if (arguments.draw_only) {
+    return DrawOnly(arguments);
+  }
   AtlasRun run(arguments);
   const atlas::Figures figures = run.Execute();
   if (arguments.json) {

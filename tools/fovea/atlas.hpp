@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,13 @@ struct AtlasArguments {
   bool faults = false;
   bool markdown = false;
   std::vector<std::string> only;
-  int runs = 200;
+  int runs = 1000;
   int jobs = 0;  // 0: one for every two cores
-  int seed = 1;
+  std::optional<int> seed;
   std::vector<std::string> assignments;
   std::string out;
   bool resume = false;
+  bool draw_only = false;
   bool json = false;
 };
 

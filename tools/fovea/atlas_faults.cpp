@@ -14,7 +14,7 @@ namespace fovea {
 int FaultAtlas(const AtlasArguments& arguments) {
   const atlas::AtlasPage page(config::ShareFolder() / "report");
   matrix::MatrixOptions options;
-  options.seed = arguments.seed;
+  options.seed = arguments.seed.value_or(1);
   options.jobs = JobsOf(arguments);
   options.resume = arguments.resume;
   options.only = arguments.only;

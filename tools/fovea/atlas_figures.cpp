@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "atlas_seed.hpp"
+
 namespace fovea::atlas {
 namespace {
 
@@ -43,6 +45,29 @@ std::uint64_t DrawsOf(const Figures& f) {
   return std::accumulate(f.rejections.begin(), f.rejections.end(), static_cast<std::uint64_t>(f.runs));
 }
 
+std::string SamplerLines(const Figures& f) {
+  std::string text;
+  text +=
+      Line("sampler", fmt::format("{} draws for {} starts that have a way; refused:", DrawsOf(f), f.runs));
+  for (std::size_t i = 0; i < f.rejections.size(); ++i) {
+    text += Line("", fmt::format("{:>9} {}: {}", f.rejections[i], kRejectionNames[i], kRejectionWords[i]));
+  }
+  return text;
+}
+
+Json SamplerJson(const Figures& f) {
+  Json rejections;
+  for (std::size_t i = 0; i < f.rejections.size(); ++i) {
+    rejections[kRejectionNames[i]] = f.rejections[i];
+  }
+  return {{"draws", DrawsOf(f)}, {"rejected", rejections}};
+}
+
+std::string TargetLine(const Figures& f) {
+  return Line("target", fmt::format("{}, scenario {}, {} seed {}", f.heading.target, f.scenario,
+                                    KindOfSeed(f.heading.seed, f.heading.servo), f.heading.seed));
+}
+
 }  // namespace
 
 std::array<double, 2> Wilson95(int converged, int runs) {
@@ -57,7 +82,7 @@ std::array<double, 2> Wilson95(int converged, int runs) {
 
 std::vector<std::string> AssignmentsOf(const Heading& heading, const Start& start) {
   // Told first, so that what the caller sets counts.
-  std::vector<std::string> assignments{"safety.planes=[0,0,1,0.09]"};
+  std::vector<std::string> assignments{"safety.planes=[0,0,1,0.03]"};
   assignments.insert(assignments.end(), heading.assignments.begin(), heading.assignments.end());
   std::vector<std::string> q;
   for (const double value : start.q) {
@@ -123,10 +148,6 @@ Figures Summarise(const Heading& heading, const std::string& scenario, const std
 }
 
 std::string ToJson(const Figures& f) {
-  Json rejections;
-  for (std::size_t i = 0; i < f.rejections.size(); ++i) {
-    rejections[kRejectionNames[i]] = f.rejections[i];
-  }
   Json failures = Json::array();
   for (const Failure& failure : f.failures) {
     failures.push_back({{"run", failure.index}, {"verdict", failure.verdict}, {"command", failure.command}});
@@ -135,6 +156,7 @@ std::string ToJson(const Figures& f) {
   json["target"] = f.heading.target;
   json["scenario"] = f.scenario;
   json["seed"] = f.heading.seed;
+  json["seed_kind"] = KindOfSeed(f.heading.seed, f.heading.servo);
   json["set"] = f.heading.assignments;
   json["runs"] = f.runs;
   json["converged"] = f.converged;
@@ -148,15 +170,14 @@ std::string ToJson(const Figures& f) {
   json["final_error_mm"] = ToJson(f.error_mm);
   json["final_error_deg"] = ToJson(f.error_deg);
   json["limits"] = f.limits;
-  json["sampler"] = {{"draws", DrawsOf(f)}, {"rejected", rejections}};
+  json["sampler"] = SamplerJson(f);
   json["failures"] = failures;
   json["servo"] = f.heading.servo;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string ToTable(const Figures& f) {
-  std::string text =
-      Line("target", fmt::format("{}, scenario {}, seed {}", f.heading.target, f.scenario, f.heading.seed));
+  std::string text = TargetLine(f);
   text += Line("converged", fmt::format("{} of {}: {:.1f} %, between {:.1f} and {:.1f} % (Wilson, 95 %)",
                                         f.converged, f.runs, f.runs > 0 ? 100.0 * f.converged / f.runs : 0.0,
                                         100.0 * f.wilson_95[0], 100.0 * f.wilson_95[1]));
@@ -172,16 +193,25 @@ std::string ToTable(const Figures& f) {
     limits += fmt::format("{}{} {:.1f} %", limits.empty() ? "" : ", ", name, 100.0 * used);
   }
   text += Line("limits used, at most", limits);
-  text += Line("touched the table", fmt::format("{} runs", f.contact_runs));
-  text += Line("sampler", fmt::format("{} draws for {} starts", DrawsOf(f), f.runs));
-  for (std::size_t i = 0; i < f.rejections.size(); ++i) {
-    text += Line("", fmt::format("{:>9} {}", f.rejections[i], kRejectionNames[i]));
-  }
+  text += Line("touched something", fmt::format("{} runs", f.contact_runs));
+  text += SamplerLines(f);
   for (const Failure& failure : f.failures) {
     text += Line(fmt::format("failure, run {}", failure.index), failure.verdict);
     text += Line("", failure.command);
   }
   return text;
 }
+
+std::string DrawsAsJson(const Figures& f) {
+  Json json;
+  json["target"] = f.heading.target;
+  json["seed"] = f.heading.seed;
+  json["seed_kind"] = KindOfSeed(f.heading.seed, f.heading.servo);
+  json["starts"] = f.runs;
+  json["sampler"] = SamplerJson(f);
+  return json.dump(2) + "\n";
+}
+
+std::string DrawsAsTable(const Figures& f) { return TargetLine(f) + SamplerLines(f); }
 
 }  // namespace fovea::atlas

@@ -11,7 +11,8 @@
 
 namespace fovea::atlas {
 
-inline constexpr double kGoalShare = 0.99;  // of the runs that shall converge
+// Of the runs that shall converge; every start has a way to its goal that an independent search found.
+inline constexpr double kGoalShare = 0.999;
 
 struct Failure {
   int index = 0;
@@ -32,7 +33,7 @@ struct Figures {
   int converged = 0;
   std::array<double, 2> wilson_95{};   // interval of the success rate
   std::uint64_t limit_violations = 0;  // ticks, over all runs
-  int contact_runs = 0;                // in which the arm touched the table
+  int contact_runs = 0;                // in which the arm touched bench, target or itself
   std::optional<Spread> settle_s;      // of those that converged
   std::optional<Spread> error_px;
   std::optional<Spread> error_mm;
@@ -58,5 +59,8 @@ std::vector<std::string> AssignmentsOf(const Heading& heading, const Start& star
 
 std::string ToJson(const Figures& figures);
 std::string ToTable(const Figures& figures);
+// The sampler's part alone, of starts that were drawn and not run.
+std::string DrawsAsJson(const Figures& figures);
+std::string DrawsAsTable(const Figures& figures);
 
 }  // namespace fovea::atlas

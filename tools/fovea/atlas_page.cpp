@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "atlas_map.hpp"
+#include "atlas_seed.hpp"
 #include "tools/bench/html_text.hpp"
 
 namespace fovea::atlas {
@@ -31,16 +32,18 @@ std::string SpreadTile(const char* name, const std::optional<Spread>& spread, co
 
 std::string Verdict(const Figures& f) {
   return fmt::format(
-      "<section id=\"verdict\"><div class=\"banner {}\"><div><p class=\"run-tag\">{} runs, seed {}, scenario "
+      "<section id=\"verdict\"><div class=\"banner {}\"><div><p class=\"run-tag\">{} runs, {} seed {}, "
+      "scenario "
       "{}</p><p class=\"verdict-word\">{} of {} converged</p><p class=\"verdict-sentence\">The rate lies "
       "between "
       "{:.1f} and {:.1f} % (Wilson, 95 %); limits were passed in {} ticks.</p></div></div><dl "
       "class=\"tiles\">"
       "{}{}{}{}</dl></section>",
-      f.ReachedGoal() ? "good" : "bad", f.runs, f.heading.seed, Escaped(f.scenario), f.converged, f.runs,
-      100.0 * f.wilson_95[0], 100.0 * f.wilson_95[1], f.limit_violations,
-      SpreadTile("Settled after", f.settle_s, "s"), SpreadTile("Image error", f.error_px, "px rms"),
-      SpreadTile("Position error", f.error_mm, "mm"), SpreadTile("Orientation error", f.error_deg, "deg"));
+      f.ReachedGoal() ? "good" : "bad", f.runs, KindOfSeed(f.heading.seed, f.heading.servo), f.heading.seed,
+      Escaped(f.scenario), f.converged, f.runs, 100.0 * f.wilson_95[0], 100.0 * f.wilson_95[1],
+      f.limit_violations, SpreadTile("Settled after", f.settle_s, "s"),
+      SpreadTile("Image error", f.error_px, "px rms"), SpreadTile("Position error", f.error_mm, "mm"),
+      SpreadTile("Orientation error", f.error_deg, "deg"));
 }
 
 // The smallest multiple of `cell` that is not below (with `sign` 1), or above (-1), all values.
@@ -123,11 +126,12 @@ std::string LimitTable(const Figures& f) {
 std::string SamplerTable(const Figures& f) {
   std::string rows;
   for (std::size_t i = 0; i < f.rejections.size(); ++i) {
-    rows += fmt::format("<tr><th scope=\"row\">{}</th><td class=\"number\">{}</td></tr>", kRejectionNames[i],
-                        f.rejections[i]);
+    rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"number\">{}</td></tr>",
+                        kRejectionNames[i], Escaped(kRejectionWords[i]), f.rejections[i]);
   }
   return fmt::format(
-      "<section><h2>Draws that were refused</h2><table><thead><tr><th>first reason</th><th class=\"number\">"
+      "<section><h2>Draws that were refused</h2><table><thead><tr><th>first reason</th><th></th><th "
+      "class=\"number\">"
       "draws</th></tr></thead><tbody>{}</tbody></table></section>",
       rows);
 }

@@ -170,8 +170,7 @@ VecN Sampler::PulledIntoView(const VecN& q, const Pose& X_BO) const {
   return q - A.transpose() * (A * A.transpose()).ldlt().solve(kShare * Eigen::Vector2d(x, y));
 }
 
-bool Sampler::WayLeadsOn(const VecN& q, const Pose& X_BO, std::uint64_t seed) const {
-  std::mt19937_64 engine(seed);
+std::vector<VecN> Sampler::FindGoals(const VecN& q, const Pose& X_BO, std::mt19937_64& engine) const {
   std::vector<VecN> goals;
   const auto descend = [&](const VecN& from) {
     if (const std::optional<VecN> goal = DescentTo(from, X_BO)) {
@@ -186,27 +185,17 @@ bool Sampler::WayLeadsOn(const VecN& q, const Pose& X_BO, std::uint64_t seed) co
   for (int i = 0; i < kFarDescents; ++i) {
     descend(DrawPosture(engine));
   }
+  return goals;
+}
+
+bool Sampler::WayLeadsOn(const VecN& q, const Pose& X_BO, const std::vector<VecN>& goals,
+                         std::uint64_t seed) const {
   WayProblem problem;
   problem.least = q_least_.array() - kRangeOnTheWay;
   problem.most = q_most_.array() + kRangeOnTheWay;
   problem.is_allowed = [&](const VecN& at) { return checks_.OnTheWay(checks_.At(at), X_BO); };
   problem.pull = [&](const VecN& at) { return PulledIntoView(at, X_BO); };
-  return WayExists(problem, q, goals, engine());
-}
-
-Sampler::Goal Sampler::FindGoal(std::mt19937_64& engine, const VecN& q, const Pose& X_BO) const {
-  bool found = DescentTo(q, X_BO).has_value();
-  for (int i = 0; i < kNearDescents && !found; ++i) {
-    const VecN near = q.unaryExpr([&](double joint) { return joint + Uniform(engine, -kNear, kNear); });
-    found = DescentTo(near.cwiseMax(q_least_).cwiseMin(q_most_), X_BO).has_value();
-  }
-  if (found) {
-    return Goal::kNear;
-  }
-  for (int i = 0; i < kFarDescents && !found; ++i) {
-    found = DescentTo(DrawPosture(engine), X_BO).has_value();
-  }
-  return found ? Goal::kElsewhere : Goal::kNone;
+  return WayExists(problem, q, goals, seed);
 }
 
 double Sampler::ErrorPx(const Pose& X_CO) const {
@@ -265,13 +254,12 @@ Start Sampler::Draw(std::uint64_t seed, int index) const {
       refuse(Rejection::kThingInTheWay);
       continue;
     }
-    const Goal goal = FindGoal(engine, posture.q, X_BO);
-    if (goal != Goal::kNear) {
-      refuse(goal == Goal::kNone ? Rejection::kNoGoalPosture : Rejection::kGoalElsewhere);
+    const std::vector<VecN> goals = FindGoals(posture.q, X_BO, engine);
+    if (goals.empty()) {
+      refuse(Rejection::kNoGoalPosture);
       continue;
     }
-    // By numbers of its own, so that the next draws are what they were without it.
-    if (!WayLeadsOn(posture.q, X_BO, seed + static_cast<std::uint64_t>(index))) {
+    if (!WayLeadsOn(posture.q, X_BO, goals, engine())) {
       refuse(Rejection::kNoWay);
       continue;
     }

@@ -4,7 +4,8 @@
 // 0.40 m). A draw: each joint uniform in its range less 5 degrees at each end; the target's centre uniform in
 // the picture, its depth uniform from 0.25 to 0.90 m; a flat target tilted against the picture by up to 45
 // degrees about any direction in it, and turned by any angle. The draw is refused for the first reason of
-// Rejection that holds.
+// Rejection that holds: geometry alone, or that the search for a way finds none. A draw is not refused for
+// being hard: what is left is all that can be reached, and the share that converges is of that.
 #pragma once
 
 #include <array>
@@ -27,13 +28,21 @@ enum class Rejection : std::uint8_t {
   kArmInTheWay,          // the arm stands in itself, in the target or in the line of sight
   kThingInTheWay,        // a thing on the bench stands in the target or in a line of sight
   kNoGoalPosture,        // none was found that sees the target as it shall be and keeps all of the above
-  kGoalElsewhere,        // one was found, but none downhill from within 0.5 rad of the start: another branch
   kNoWay,  // no way from the start to any was found that sees the target all along (atlas_way.hpp)
 };
-inline constexpr std::array<const char*, 9> kRejectionNames{
-    "start_outside_barrier", "start_below_table", "target_near_edge",
-    "target_below_table",    "arm_in_the_way",    "thing_in_the_way",
-    "no_goal_posture",       "goal_elsewhere",    "no_way"};
+inline constexpr std::array<const char*, 8> kRejectionNames{
+    "start_outside_barrier", "start_below_table", "target_near_edge", "target_below_table",
+    "arm_in_the_way",        "thing_in_the_way",  "no_goal_posture",  "no_way"};
+// The same for people, in their order.
+inline constexpr std::array<const char*, kRejectionNames.size()> kRejectionWords{
+    "hand outside the workspace (0.845 m: 1 mm inside what the servo keeps of 0.85 m)",
+    "elbow, forearm, wrist, hand or camera lower than 0.10 m above the table",
+    "the target's outline not wholly 30 px inside the picture",
+    "target in the table",
+    "the arm stands in itself, in the target or in the line of sight",
+    "a thing on the bench stands in the target or in the line of sight",
+    "no posture found that reaches the goal and keeps all that",
+    "one was found, but no way of the joints to any with the target in view and all that kept"};
 using Rejections = std::array<std::uint64_t, kRejectionNames.size()>;
 
 struct Start {
@@ -61,11 +70,14 @@ class Sampler {
  private:
   [[nodiscard]] model::VecN DrawPosture(std::mt19937_64& engine) const;
   [[nodiscard]] model::Pose DrawTarget(std::mt19937_64& engine) const;
-  enum class Goal : std::uint8_t { kNear, kElsewhere, kNone };
-  [[nodiscard]] Goal FindGoal(std::mt19937_64& engine, const model::VecN& q, const model::Pose& X_BO) const;
-  // The posture that has the target where it shall be in which a descent from `q` ends, or none.
+  // Postures that have the target where it shall be, in which descents from `q`, from about it and from
+  // anywhere end.
+  [[nodiscard]] std::vector<model::VecN> FindGoals(const model::VecN& q, const model::Pose& X_BO,
+                                                   std::mt19937_64& engine) const;
+  // The one in which a descent from `q` ends, or none.
   [[nodiscard]] std::optional<model::VecN> DescentTo(const model::VecN& q, const model::Pose& X_BO) const;
-  [[nodiscard]] bool WayLeadsOn(const model::VecN& q, const model::Pose& X_BO, std::uint64_t seed) const;
+  [[nodiscard]] bool WayLeadsOn(const model::VecN& q, const model::Pose& X_BO,
+                                const std::vector<model::VecN>& goals, std::uint64_t seed) const;
   [[nodiscard]] model::VecN PulledIntoView(const model::VecN& q, const model::Pose& X_BO) const;
   [[nodiscard]] model::Mat3 NearestGoal(const model::Mat3& R_CO) const;
   [[nodiscard]] double ErrorPx(const model::Pose& X_CO) const;

@@ -116,6 +116,39 @@ std::string ReactionOf(const json& run, const json& without_run, const json& wit
   return words.empty() ? "stays" : words;
 }
 
+// What the simulator's truth says was passed or touched; the arm's own limits once more by their shares.
+std::vector<std::string> ExceededIn(const json& run, const std::map<std::string, double>& limits) {
+  std::vector<std::string> exceeded;
+  for (const auto& [name, ticks] : run.at("violations").items()) {
+    if (ticks.get<std::uint64_t>() > 0) {
+      exceeded.push_back(name);
+    }
+  }
+  for (const std::string& limit : PhysicalLimits()) {
+    const bool known = std::find(exceeded.begin(), exceeded.end(), limit) != exceeded.end();
+    if (!known && !(limits.at(limit) <= 1.0 + kRounding)) {
+      exceeded.push_back(limit);
+    }
+  }
+  return exceeded;
+}
+
+void JudgeStanding(const json& run, Outcome& outcome) {
+  const json& motion = run.at("unwanted_motion");
+  for (const StandBound& bound : kStandBounds) {
+    if (!motion.contains(bound.mode)) {
+      continue;
+    }
+    const json& of_mode = motion.at(bound.mode);
+    const Moved moved{of_mode.at("most_mm"), of_mode.at("gained_m_per_s")};
+    outcome.moved[bound.mode] = moved;
+    if (!(moved.mm <= bound.mm) || !(moved.gained_m_per_s <= bound.gained_m_per_s)) {
+      outcome.too_far.push_back(
+          fmt::format("{} {:.0f} mm, {:.2f} m/s faster", bound.mode, moved.mm, moved.gained_m_per_s));
+    }
+  }
+}
+
 void JudgeEnd(const json& run, const json& with, Outcome& outcome) {
   const json& end = run.at("end");
   const std::string mode = end.at("mode");
@@ -157,11 +190,8 @@ Outcome Judge(const std::string& key, const json& run, const json& without_run) 
     FindNotice(with, without, outcome);
     outcome.reaction = ReactionOf(run, without_run, with, without);
     outcome.limits = run.at("limits").get<std::map<std::string, double>>();
-    for (const std::string& limit : PhysicalLimits()) {
-      if (!(outcome.limits.at(limit) <= 1.0 + kRounding)) {
-        outcome.exceeded.push_back(limit);
-      }
-    }
+    outcome.exceeded = ExceededIn(run, outcome.limits);
+    JudgeStanding(run, outcome);
     outcome.contact_ticks = run.at("contact_ticks");
     JudgeEnd(run, with, outcome);
     return outcome;

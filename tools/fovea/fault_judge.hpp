@@ -2,6 +2,7 @@
 // used, and how it ended.
 #pragma once
 
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,19 +19,39 @@ enum class End {
 };
 const char* Name(End end);
 
+// How far the hand may move in a mode in which the arm stands, from where that mode began, and how much
+// faster it may become than it was then. Hold and Fault begin in motion: what they may use is their way of
+// stopping.
+struct StandBound {
+  const char* mode;
+  double mm;
+  double gained_m_per_s;
+};
+inline constexpr std::array<StandBound, 3> kStandBounds{
+    {{"boot", 10.0, 0.1}, {"hold", 150.0, 0.1}, {"fault", 150.0, 0.25}}};
+
+struct Moved {
+  double mm = 0.0;
+  double gained_m_per_s = 0.0;
+};
+
 struct Outcome {
   std::string noticed_by;                // "": by nothing, nor was there need to
   std::optional<int> ticks;              // from the fault's beginning to then
   std::string reaction;                  // of the modes, or of limits; "": none
   std::map<std::string, double> limits;  // largest share used of each
-  std::vector<std::string> exceeded;     // of the arm's own limits
-  std::uint64_t contact_ticks = 0;
+  std::vector<std::string> exceeded;     // of all that must hold by the truth, contact included
+  std::map<std::string, Moved> moved;    // by the mode in which the arm should have stood
+  std::vector<std::string> too_far;      // in words: those beyond their bound
+  std::uint64_t contact_ticks = 0;       // with bench, target or itself
   End end = End::kUndefined;
   std::string end_detail;  // mode and reason at the end
   std::optional<double>
       recovered_after_s;  // from the fault's end until the goal is kept; 0: it was throughout
 
-  [[nodiscard]] bool Failed() const { return end == End::kUndefined || !exceeded.empty(); }
+  [[nodiscard]] bool Failed() const {
+    return end == End::kUndefined || !exceeded.empty() || !too_far.empty();
+  }
 };
 
 // The arm's own limits among those of a summary. They are taken from the simulator's truth and the command in

@@ -7,9 +7,10 @@ namespace {
 
 constexpr const char* kHead = R"(# What faults come to
 
-Printed by `fovea atlas --faults --markdown`: every fault of the simulator at three severities, in every mode of run, at
-every stage of it. Each cell is a run of its own, beside the same run without the fault. The command fails when one
-exceeds a limit of the arm's or ends in no defined state.
+Printed by `fovea atlas --faults --markdown`: every fault of the simulator at three or four severities, in every mode of
+run, at every stage of it. Each cell is a run of its own, beside the same run without the fault. The command fails when one
+passes anything that must hold (the arm's limits, the servo's barriers, contact), moves too far or too fast while the arm
+should stand, or ends in no defined state.
 
 )";
 
@@ -20,10 +21,16 @@ A cell says, line by line:
 2. the reaction: the modes gone through since then, each named once, where they differ from those of the run without the fault,
    else limits that act and would not have. The mode `fault` is a damped stop, or the torque fades, then brakes
    ([GUARDS](../firmware/GUARDS.md));
-3. the end. *recovered*: the goal is kept again, for the last half second at least; the time is from the fault's end on.
+3. the end. *recovered*: the goal is kept again, for the last half second at least; the time is from the fault's end on. Of a
+   fault that never ends: it is kept all the same.
    *safe stop*: a fault is latched, the brakes closed, the arm at rest. *hold*: in Hold, for this reason, at rest. All else would be
-   **UNDEFINED**.
+   **UNDEFINED**. **EXCEEDED** names what was passed, by the simulator's truth (`violations` in a run's summary.json); contact is
+   with bench, target or itself. **MOVED** says by how far the hand moved in Boot, Hold or Fault from where that mode began, and by
+   how much it became faster than it was then, where that is beyond the bound.
 
+)";
+
+constexpr const char* kWords = R"(
 | noticed by | that is |
 |---|---|
 | a guard's or a mode's name | the guard, as in [GUARDS](../firmware/GUARDS.md), latched the fault; the servo went into the mode |
@@ -41,7 +48,7 @@ force, rounded up: position (from the middle of the range), velocity, torque and
 
 | stage | the fault begins |
 |---|---|
-| boot | when half of Boot is over |
+| boot | when half of Boot is over; what is there from the start, with the first tick |
 | approach | on the way to the goal, while the arm moves |
 | tracking | once the goal is kept |
 | coasting | amid half a second for which the whole picture is hidden, on the way (where the fault is the occluder: in which the camera delivers nothing) |
@@ -55,6 +62,14 @@ force, rounded up: position (from the middle of the range), velocity, torque and
 
 )";
 
+std::string BoundList() {
+  std::string text = "| mode | the hand, from where it began | faster than it was then |\n|---|---|---|\n";
+  for (const StandBound& bound : kStandBounds) {
+    text += fmt::format("| {} | {:g} mm | {:g} m/s |\n", bound.mode, bound.mm, bound.gained_m_per_s);
+  }
+  return text;
+}
+
 std::string CellText(const Cell* cell) {
   if (cell == nullptr) {
     return "";
@@ -62,16 +77,19 @@ std::string CellText(const Cell* cell) {
   const Outcome& o = cell->outcome;
   const std::string notice = o.ticks ? fmt::format("`{}` {}", o.noticed_by, *o.ticks) : "-";
   const bool loud = o.Failed();
-  return fmt::format("{}<br>{}<br>{}{}{}{}", notice, ShortReaction(o), loud ? "**" : "", EndInWords(o),
-                     loud ? "**" : "", o.contact_ticks > 0 ? " (touched the table)" : "");
+  return fmt::format("{}<br>{}<br>{}{}{}", notice, ShortReaction(o), loud ? "**" : "", EndInWords(o),
+                     loud ? "**" : "");
 }
 
 std::string FaultList() {
-  std::string text = "| fault | key | mild | medium | severe |\n|---|---|---|---|---|\n";
+  std::string text = "| fault | key | mild | medium | severe | extreme |\n|---|---|---|---|---|---|\n";
   for (const Fault& fault : Faults()) {
     text += fmt::format("| {} | `faults.{}` |", fault.name, fault.key);
     for (const FaultLevel& level : fault.levels) {
       text += fmt::format(" {}: {} |", level.figures, level.why);
+    }
+    for (std::size_t i = fault.levels.size(); i < kSeverities.size(); ++i) {
+      text += " |";
     }
     text += "\n";
   }
@@ -91,7 +109,7 @@ std::string ToMarkdown(const Matrix& matrix) {
         "was not run**\n",
         matrix.cells.size(), NumCells());
   }
-  text += kHow + FaultList() + "\nLeft out:";
+  text += kHow + BoundList() + kWords + FaultList() + "\nLeft out:";
   for (const std::string& line : LeftOut()) {
     text += " " + line + ".";
   }

@@ -11,22 +11,31 @@
 namespace fovea::matrix {
 namespace {
 
-constexpr double kLongestFaultS = 1.0;
+constexpr double kLongestFaultS = 5.0;  // of those that end
 constexpr double kGoalS = 0.8;  // and no shorter than so long after the goal that is reached without a fault
 constexpr double kStopS = 1.5;  // a run in Fault goes on for so long; safety.brake_after_s is 1
 
-std::string DurationFor(const RunMode& mode, Stage stage, double goal_s, double fault_ends_s) {
-  const double end_s = stage == Stage::kFault ? fault_ends_s + kStopS
-                                              : std::max(fault_ends_s + mode.recovery_s, goal_s + kGoalS);
-  return fmt::format("run.duration_s={:.3f}", end_s);
+// Of a run whose fault lasts from `onset_s` on for `lasts_s`; one that never ends lasts as long as the run.
+double EndFor(const RunMode& mode, Stage stage, double goal_s, double onset_s, double lasts_s) {
+  const bool forever = lasts_s >= kForever;
+  if (stage == Stage::kFault) {
+    return onset_s + (forever ? 0.0 : lasts_s) + kStopS;
+  }
+  return std::max(onset_s + lasts_s + (forever ? 0.0 : mode.recovery_s), goal_s + kGoalS);
 }
+// Of the run without the fault: as long as the longest with one.
+double EndBeside(const RunMode& mode, Stage stage, double goal_s, double onset_s) {
+  return std::max(EndFor(mode, stage, goal_s, onset_s, kLongestFaultS),
+                  EndFor(mode, stage, goal_s, onset_s, kForever));
+}
+std::string Duration(double end_s) { return fmt::format("run.duration_s={:.3f}", end_s); }
 
 // The cells that `only` asks for, in their order.
 std::vector<Cell> CellsOf(const std::vector<std::string>& only) {
   std::vector<Cell> cells;
   for (const RunMode& mode : RunModes()) {
     for (const Fault& fault : Faults()) {
-      for (std::size_t severity = 0; severity < kSeverities.size(); ++severity) {
+      for (std::size_t severity = 0; severity < fault.levels.size(); ++severity) {
         for (const Stage stage : kStages) {
           Cell cell;
           cell.mode = &mode;
@@ -64,7 +73,7 @@ Outcome BrokeOff() {
 }  // namespace
 
 std::string NameOf(const Cell& cell) {
-  return fmt::format("{}.{}.{}.{}", cell.mode->name, matrix::Name(cell.stage), cell.fault->key,
+  return fmt::format("{}.{}.{}.{}", cell.mode->name, matrix::Name(cell.stage), cell.fault->id,
                      kSeverities[cell.severity]);
 }
 
@@ -106,15 +115,14 @@ Matrix RunMatrix(const MatrixOptions& options) {
 
     Job without{BesideName(mode, setup), mode.scenario, setup.assignments};
     without.assignments.push_back(Window("nothing", setup.onset_s, setup.onset_s + kLongestFaultS));
-    without.assignments.push_back(
-        DurationFor(mode, cell.stage, times.goal_s, setup.onset_s + kLongestFaultS));
+    without.assignments.push_back(Duration(EndBeside(mode, cell.stage, times.goal_s, setup.onset_s)));
     beside[without.name] = without;
 
     Job job{NameOf(cell), mode.scenario, setup.assignments};
     for (const std::string& assignment : AssignmentsOf(*cell.fault, level, setup.onset_s)) {
       job.assignments.push_back(assignment);
     }
-    job.assignments.push_back(DurationFor(mode, cell.stage, times.goal_s, setup.onset_s + level.lasts_s));
+    job.assignments.push_back(Duration(EndFor(mode, cell.stage, times.goal_s, setup.onset_s, level.lasts_s)));
     cell.command = CommandOf(job, options.seed);
     with_fault.push_back(job);
   }
@@ -144,6 +152,7 @@ Totals Sum(const Matrix& matrix) {
   for (const Cell& cell : matrix.cells) {
     const Outcome& o = cell.outcome;
     totals.exceeded += o.exceeded.empty() ? 0 : 1;
+    totals.moved += o.too_far.empty() ? 0 : 1;
     totals.undefined += o.end == End::kUndefined ? 1 : 0;
     totals.recovered += o.end == End::kRecovered ? 1 : 0;
     totals.stopped += o.end == End::kSafeStop ? 1 : 0;

@@ -20,7 +20,7 @@ struct Cell {
   std::string command;  // that repeats it
   Outcome outcome;
 };
-// "<mode>.<stage>.<fault's key>.<severity>"
+// "<mode>.<stage>.<fault's id>.<severity>"
 std::string NameOf(const Cell& cell);
 
 struct Matrix {
@@ -46,16 +46,17 @@ Matrix RunMatrix(const MatrixOptions& options);
 
 // What all cells come to.
 struct Totals {
-  int exceeded = 0;   // cells in which a limit of the arm's was exceeded
+  int exceeded = 0;   // cells in which anything that must hold was passed
+  int moved = 0;      // in which the arm moved further or faster than it may where it should stand
   int undefined = 0;  // that ended in no defined state
   int recovered = 0;
   int stopped = 0;
   int held = 0;
-  int touched = 0;  // in which the arm touched the table
+  int touched = 0;  // in which the arm touched bench, target or itself
   int noticed = 0;
   const Cell* slowest = nullptr;                    // to be noticed; none when nothing was
   std::map<std::string, const Cell*> worst_limits;  // the cell that used the most of each
-  [[nodiscard]] bool Failed() const { return exceeded > 0 || undefined > 0; }
+  [[nodiscard]] bool Failed() const { return exceeded > 0 || moved > 0 || undefined > 0; }
 };
 Totals Sum(const Matrix& matrix);
 

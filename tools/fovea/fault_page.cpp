@@ -58,13 +58,14 @@ std::string Banner(const Matrix& matrix) {
   return fmt::format(
       "<section id=\"verdict\"><div class=\"banner {}\"><div><p class=\"run-tag\">{} runs, seed {}</p><p "
       "class=\"verdict-word\">{} of {} cells sound</p><p class=\"verdict-sentence\">In {} a limit of the "
-      "arm's was "
-      "exceeded; {} ended in no defined state.</p></div></div></section><section><h2>What all came "
+      "arm's or of the servo's was "
+      "exceeded, in {} it moved when it should have stood; {} ended in no defined "
+      "state.</p></div></div></section><section><h2>What all came "
       "to</h2><ul>{}</ul></section>",
       t.Failed() ? "bad" : "good", matrix.runs, matrix.seed,
       std::count_if(matrix.cells.begin(), matrix.cells.end(),
                     [](const Cell& cell) { return !cell.outcome.Failed(); }),
-      matrix.cells.size(), t.exceeded, t.undefined, lines);
+      matrix.cells.size(), t.exceeded, t.moved, t.undefined, lines);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ constexpr std::chrono::seconds kRunLimit{900};  // of wall time; a run takes som
 // What the judge reads of a summary; the rest is not kept.
 json Excerpt(const json& summary) {
   json excerpt;
-  for (const char* key : {"verdict", "modes", "injected", "end", "limits", "contact_ticks", "sim_time_s"}) {
+  for (const char* key : {"verdict", "modes", "injected", "end", "limits", "violations", "unwanted_motion",
+                          "contact_ticks", "sim_time_s"}) {
     excerpt[key] = summary.at(key);
   }
   return excerpt;
@@ -56,6 +57,7 @@ Runs::Runs(const fs::path& folder, int seed, int jobs, bool resume)
   if (error) {
     throw config::InputError(folder_.string() + ": no folder can be made there");
   }
+  lock_.emplace(folder_);
   if (resume) {
     Read();
   }

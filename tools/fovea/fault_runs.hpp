@@ -5,11 +5,13 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "atlas_children.hpp"
 #include "atlas_progress.hpp"
+#include "fovea/config/folder_lock.hpp"
 
 namespace fovea::matrix {
 
@@ -41,6 +43,7 @@ class Runs {
   [[nodiscard]] std::filesystem::path File(const std::string& name, const char* ending) const;
 
   std::filesystem::path folder_;
+  std::optional<config::FolderLock> lock_;
   int seed_;
   std::size_t jobs_;
   std::filesystem::path simulator_;

@@ -31,6 +31,9 @@ const char* Name(Stage stage) {
 std::span<const RunMode> RunModes() { return kRunModes; }
 
 bool MakesSense(const RunMode& mode, Stage stage, const Fault& fault) {
+  if (fault.from_start && stage != Stage::kBoot) {
+    return false;
+  }
   return mode.has_eye || (!fault.is_the_eyes && stage != Stage::kCoasting);
 }
 
@@ -38,7 +41,10 @@ std::vector<std::string> LeftOut() {
   return {
       "`home` and `flange-circle` have no camera: what goes wrong with frames, pictures and detections "
       "cannot "
-      "reach them, and nothing is tracked that could be lost, so they do not coast"};
+      "reach them, and nothing is tracked that could be lost, so they do not coast",
+      "What is there from the start, a load or a base that leans, is in the column of Boot, in which it is "
+      "met, "
+      "and stays for the whole run"};
 }
 
 StageTimes TimesOf(const RunMode& mode, const nlohmann::json& undisturbed) {
@@ -71,7 +77,13 @@ StageSetup SetUp(const StageTimes& times, Stage stage, const Fault* fault) {
   StageSetup setup;
   setup.name = Name(stage);
   switch (stage) {
-    case Stage::kBoot: setup.onset_s = times.boot_s; break;
+    case Stage::kBoot:
+      setup.onset_s = times.boot_s;
+      if (fault != nullptr && fault->from_start) {
+        setup.name += "-start";
+        setup.onset_s = 0.0;
+      }
+      break;
     case Stage::kApproach: setup.onset_s = times.approach_s; break;
     case Stage::kTracking: setup.onset_s = times.tracking_s; break;
     case Stage::kCoasting: {

@@ -51,7 +51,8 @@ struct StageSetup {
   std::vector<std::string> assignments;
   double onset_s = 0.0;
 };
-// `fault`, where it is known: what hides the target in the stage `coasting` is not what comes then.
+// `fault`, where it is known: what hides the target in the stage `coasting` is not what comes then, and what
+// is there from the start comes before half of Boot is over.
 StageSetup SetUp(const StageTimes& times, Stage stage, const Fault* fault);
 
 }  // namespace fovea::matrix

@@ -23,7 +23,7 @@ std::vector<std::string> Parts(const std::string& text, const std::string& separ
 }
 
 std::string Percent(double share) {
-  return fmt::format("{:.0f} %", std::max(std::ceil(100.0 * share - 1e-7), 0.0));
+  return fmt::format("{:.0f} %", std::max(0.0, std::ceil(100.0 * share - 1e-7)));
 }
 
 std::string Notice(const Outcome& o) {
@@ -82,19 +82,22 @@ std::string EndInWords(const Outcome& o) {
   if (!o.exceeded.empty()) {
     words += fmt::format(" EXCEEDED {}", fmt::join(o.exceeded, ", "));
   }
+  if (!o.too_far.empty()) {
+    words += fmt::format(" MOVED {}", fmt::join(o.too_far, "; "));
+  }
   return words;
 }
 
 std::vector<std::string> TotalsInWords(const Matrix& matrix) {
   const Totals t = Sum(matrix);
   std::vector<std::string> lines{
-      fmt::format(
-          "{} cells: {} recovered, {} safe stops, {} held, {} undefined; a limit of the arm's exceeded in {}",
-          matrix.cells.size(), t.recovered, t.stopped, t.held, t.undefined, t.exceeded),
+      fmt::format("{} cells: {} recovered, {} safe stops, {} held, {} undefined; a limit exceeded in {}",
+                  matrix.cells.size(), t.recovered, t.stopped, t.held, t.undefined, t.exceeded),
+      fmt::format("the arm moved too far or too fast while it should have stood in {}", t.moved),
       fmt::format("noticed in {}, slowest after {} ticks ({})", t.noticed,
                   t.slowest != nullptr ? *t.slowest->outcome.ticks : 0,
                   t.slowest != nullptr ? NameOf(*t.slowest) : "-"),
-      fmt::format("the arm touched the table in {}", t.touched)};
+      fmt::format("the arm touched bench, target or itself in {}", t.touched)};
   for (const auto& [limit, cell] : t.worst_limits) {
     lines.push_back(
         fmt::format("{}: at most {} ({})", limit, Percent(cell->outcome.limits.at(limit)), NameOf(*cell)));
@@ -130,9 +133,13 @@ std::string ToJson(const Matrix& matrix) {
   Json cells = Json::array();
   for (const Cell& cell : matrix.cells) {
     const Outcome& o = cell.outcome;
+    Json moved = Json::object();
+    for (const auto& [mode, way] : o.moved) {
+      moved[mode] = {{"mm", way.mm}, {"gained_m_per_s", way.gained_m_per_s}};
+    }
     cells.push_back({{"mode", cell.mode->name},
                      {"stage", Name(cell.stage)},
-                     {"fault", cell.fault->key},
+                     {"fault", cell.fault->id},
                      {"severity", kSeverities[cell.severity]},
                      {"onset_s", cell.onset_s},
                      {"noticed_by", o.ticks ? Json(o.noticed_by) : Json(nullptr)},
@@ -140,6 +147,8 @@ std::string ToJson(const Matrix& matrix) {
                      {"reaction", o.reaction},
                      {"limits", o.limits},
                      {"exceeded", o.exceeded},
+                     {"moved", moved},
+                     {"too_far", o.too_far},
                      {"contact_ticks", o.contact_ticks},
                      {"end", Name(o.end)},
                      {"end_detail", o.end_detail},
@@ -154,7 +163,8 @@ std::string ToJson(const Matrix& matrix) {
   json["held"] = t.held;
   json["undefined"] = t.undefined;
   json["exceeded"] = t.exceeded;
-  json["touched_table"] = t.touched;
+  json["moved_too_far"] = t.moved;
+  json["touched"] = t.touched;
   json["slowest_ticks"] = t.slowest != nullptr ? Json(*t.slowest->outcome.ticks) : Json(nullptr);
   for (const auto& [limit, cell] : t.worst_limits) {
     json["worst_limits"][limit] = {{"share", cell->outcome.limits.at(limit)}, {"cell", NameOf(*cell)}};

@@ -25,7 +25,7 @@ std::vector<MatrixRow> RowsOf(const Matrix& matrix);
 
 // A cell's reaction, each mode said once.
 std::string ShortReaction(const Outcome& outcome);
-// "recovered 1.2 s", "safe stop", "held", "UNDEFINED"; with what was exceeded.
+// "recovered 1.2 s", "safe stop", "held", "UNDEFINED"; with what was exceeded and how far it moved.
 std::string EndInWords(const Outcome& outcome);
 // What all came to, in a sentence or two, each a line.
 std::vector<std::string> TotalsInWords(const Matrix& matrix);
