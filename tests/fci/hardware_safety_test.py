@@ -29,17 +29,19 @@ class Terminal:
     def __init__(self):
         self.reader, self.writer = os.pipe()
         self.rest = b""
+        self.heard = []
 
     def wait_for(self, *lines):
         """The first line that begins with one of `lines`."""
         while True:
             while b"\n" not in self.rest:
                 if not select.select([self.reader], [], [], PATIENCE_S)[0]:
-                    raise AssertionError(f"it did not say {lines}")
+                    raise AssertionError(f"it did not say {lines}; last: {self.heard[-8:]}")
                 self.rest += os.read(self.reader, PAGE)
             line, self.rest = self.rest.split(b"\n", 1)
-            if line.decode().startswith(lines):
-                return line.decode()
+            self.heard.append(line.decode())
+            if self.heard[-1].startswith(lines):
+                return self.heard[-1]
 
     def stop(self):
         """Fills the pipe by another description of it: the program's own stays one that waits."""
@@ -82,6 +84,16 @@ class HardwareSafety(TwoPrograms):
         hw.wait()
         for stream in (hw.stdin, hw.stdout):
             stream.close()
+
+    def recover(self, hw, terminal):
+        """Asks until it is done: the button's release may take its time. The refusals for a load, in words."""
+        refused = []
+        said = ""
+        while not said.startswith("gravity: "):
+            self.say(hw, "recover")
+            said = terminal.wait_for("motion is refused", "no recovery: ", "gravity: ")
+            refused += [said] if said.startswith("motion is refused") else []
+        return refused
 
     def folder(self):
         temp = tempfile.TemporaryDirectory()
@@ -321,12 +333,7 @@ class HardwareSafety(TwoPrograms):
             self.say(self.server, "s")
             terminal.wait_for("fault: arm_lost")
             self.say(self.server, "s")
-            time.sleep(0.3)
-            said = "motion is refused"
-            while said.startswith("motion is refused"):
-                self.say(hw, "recover")
-                said = terminal.wait_for("motion is refused", "gravity: ")
-                refused += [said] if said.startswith("motion is refused") else []
+            refused += self.recover(hw, terminal)
             terminal.wait_for("hold")
             if refused:
                 break
@@ -357,8 +364,7 @@ class HardwareSafety(TwoPrograms):
         self.say(self.server, "s")
         terminal.wait_for("fault: arm_lost")
         self.say(self.server, "s")
-        time.sleep(0.3)
-        self.say(hw, "recover")
+        self.recover(hw, terminal)
         terminal.wait_for("hold")
         self.say(hw, "end")
         s = self.summary_of(hw)

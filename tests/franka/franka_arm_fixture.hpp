@@ -47,8 +47,9 @@ class FrankaArmTest : public testing::Test {
     ASSERT_EQ(arm_->phase(), MotionPhase::kRunning);
   }
 
-  // Recovery is asked for, and the robot's answer is there.
+  // Recovery is asked for by one who knows that the motion is over, and the robot's answer is there.
   void AskRecovery(int answer) {
+    static_cast<void>(Write(0.0, /*brakes=*/true));
     arm_->AskRecovery();
     EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
     robot_.AnswerStatus(*robot_.Take(), answer);

@@ -31,6 +31,10 @@ TEST_F(FrankaArmTest, AReflexStopsAllUntilRecoveryAndTheNewStartIsNoStep) {
   EXPECT_TRUE(Next().ok());
   EXPECT_EQ(arm_->phase(), MotionPhase::kIdle);
 
+  ASSERT_TRUE(Write(5.0).ok());
+  EXPECT_EQ(arm_->counters().motions, 1U) << "a command as if the motion went on begins none";
+  ASSERT_TRUE(Next().ok());
+  ASSERT_TRUE(Write(0.0, /*brakes=*/true).ok());
   Start();
   ASSERT_TRUE(Write(-8.0).ok());
   EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 1.0) << "one step from the 2 Nm that are in force";

@@ -167,6 +167,9 @@ TEST(FciWire, WithoutAnyCommandTheRobotStopsAndRecoversWhenToldTo) {
   }
   EXPECT_EQ(status.code(), StatusCode::kDeviceFault);
   EXPECT_STREQ(status.where(), "communication_constraints_violation");
+  command.engage_brakes = true;  // it is known that the motion is over
+  static_cast<void>(arm.Write(command));
+  command.engage_brakes = false;
   arm.AskRecovery();
   for (int k = 0; k < 400 && arm.phase() != franka::MotionPhase::kIdle; ++k) {
     static_cast<void>(arm.Read(state));

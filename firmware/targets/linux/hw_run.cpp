@@ -161,6 +161,7 @@ class Session {
     TellLease();
     operator_.Drain([this](const Heard& heard) { Tell(heard); });
     TakeRecords();
+    LookAtRecovery();
     LookAtCamera();
     // Before that the servo would find the same fault again.
     if (watch_.ArmIsBack() && summary_.fault != hal::Fault::kNone) {
@@ -261,6 +262,12 @@ class Session {
         files_->AddKeyframe(keyframe);
       }
     });
+  }
+
+  void LookAtRecovery() {
+    if (const char* why = arm_ ? arm_->TakeRecoveryRefusal() : nullptr) {
+      watch_.Say(fmt::format("no recovery: {}; type \"recover\" anew", why));
+    }
   }
 
   void LookAtCamera() {

@@ -70,7 +70,8 @@ Status FrankaArm::DoWrite(const hal::ArmCommand& command) noexcept {
   }
   std::copy_n(command.tau_cmd.begin(), tau_wish_.size(), tau_wish_.begin());
   brakes_ = command.engage_brakes;
-  if (!brakes_ && phase_ == MotionPhase::kIdle && allow_motion_) {
+  broken_off_ = broken_off_ && !brakes_;
+  if (!brakes_ && !broken_off_ && phase_ == MotionPhase::kIdle && allow_motion_) {
     StartMotion();
   }
   Answer(/*repeated=*/false);
@@ -177,6 +178,7 @@ void FrankaArm::TakeAnswer(const Header& header, std::span<const std::byte> payl
       recovery_failure_ = status == RecoveryStatus::kManualRecoveryRequired
                               ? "the robot needs a person to recover it"
                               : "the robot cannot recover now";
+      recovery_refusal_.store(recovery_failure_, std::memory_order_relaxed);
       Fail(recovery_failure_);
     }
   }
@@ -263,6 +265,7 @@ void FrankaArm::FollowPhase() noexcept {
 
 void FrankaArm::Fail(const char* why) noexcept {
   phase_ = MotionPhase::kFailed;
+  broken_off_ = !brakes_;
   failure_ = why;
 }
 

@@ -3,7 +3,8 @@
 // The robot paces the loop: it sends a state each millisecond, and Read waits for it. The first Write that
 // does not ask for brakes starts a torque motion; from then on each state is answered once, by Write, or,
 // where none came, by the last command again. Brakes end the motion: the robot then holds by itself. So does
-// a reflex or a user stop; after that nothing moves until AskRecovery.
+// a reflex or a user stop; after that nothing moves until AskRecovery, nor before a Write has asked for
+// brakes: who has not, still commands as if its motion went on.
 //
 // What is sent stays within the torque rate from the answered state's tau_J_d: what the robot applies, not
 // what was sent before, so that neither a lost packet nor a new start is a step.
@@ -73,6 +74,11 @@ class FrankaArm final : public hal::Arm {
 
   // From any thread: the next Read asks the robot to recover from what stopped it. Real-time: yes.
   void AskRecovery() noexcept { recovery_asked_.store(true, std::memory_order_relaxed); }
+  // From any thread: why the robot did not recover when it was asked to; each refusal is told once, nullptr
+  // where there is none. Static storage. Real-time: yes.
+  [[nodiscard]] const char* TakeRecoveryRefusal() noexcept {
+    return recovery_refusal_.exchange(nullptr, std::memory_order_relaxed);
+  }
 
   // From the arm's thread, as all that follows. The newest state.
   [[nodiscard]] const RobotState& robot_state() const noexcept { return state_; }
@@ -140,10 +146,12 @@ class FrankaArm final : public hal::Arm {
   bool move_started_ = false;                 // the robot said so
   int starting_states_ = 0;                   // since it was asked to
   bool brakes_ = false;                       // wished for
+  bool broken_off_ = false;                   // a motion was, and no brakes were wished for since
   int braking_states_ = 0;                    // in which the arm may still be slowed down before the end
   std::optional<std::uint32_t> recovery_id_;  // of a recovery under way
   int stopped_states_borne_ = 0;              // that may still come after a recovery
   std::atomic<bool> recovery_asked_{false};
+  std::atomic<const char*> recovery_refusal_{nullptr};  // that nobody took yet
   Vector7 tau_wish_{};
   FrankaCounters counters_;
 };
