@@ -387,12 +387,13 @@ void ServoTask::StopDamped() noexcept {
 
 void ServoTask::Clamp() noexcept {
   // The rate counts from what the arm says is in force; when it says nothing that can be, from what was sent
-  // last.
+  // last. So it does behind closed brakes: what an arm then applies is its own way to hold itself.
   model::VecN in_force = state_.tau_applied;
   const bool told = state_.inputs.bad_ticks == 0 && state_.inputs.non_finite_ticks == 0;
+  const bool behind_brakes = state_.braked && state_.give_up;
   for (int i = 0; i < in_force.size(); ++i) {
     const double tau_max = config_.arm.joints[static_cast<std::size_t>(i)].tau_max;
-    if (!told || std::fabs(in_force[i]) > tau_max) {
+    if (!told || behind_brakes || std::fabs(in_force[i]) > tau_max) {
       in_force[i] = state_.tau_before[i];
     }
   }

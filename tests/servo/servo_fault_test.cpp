@@ -80,6 +80,26 @@ TEST_F(FaultTest, ArmLost) {
   ExpectResetWorks();
 }
 
+// A robot that recovered holds itself by torques of its own: they are no reason to take it over.
+TEST_F(FaultTest, BrakesStayClosedWhenTheArmHoldsItselfAgain) {
+  const auto silent = [](ServoInputs& inputs) { inputs.arm_status = hal::Status(hal::StatusCode::kTimeout); };
+  for (int ticks = 0; ticks < 200 && !outputs_.command().engage_brakes; ++ticks) {
+    Tick(silent);
+  }
+  ASSERT_EQ(outputs_.record.fault, Fault::kArmLost);
+  for (int ticks = 0; ticks < 100; ++ticks) {
+    Tick([](ServoInputs& inputs) { inputs.arm.tau_applied[1] = 30.0; });
+    ASSERT_TRUE(outputs_.command().engage_brakes) << "tick " << ticks;
+    ASSERT_EQ(outputs_.command().tau_cmd, hal::JointArray{}) << "tick " << ticks;
+  }
+  const hal::TickRecord& boot = Tick([](ServoInputs& inputs) {
+    inputs.arm.tau_applied[1] = 30.0;
+    inputs.request = Request::kReset;
+  });
+  EXPECT_EQ(boot.mode, Mode::kBoot);
+  EXPECT_GE(boot.command.tau_cmd[1], 29.0 - 1e-9) << "the take-over is no step";
+}
+
 TEST_F(FaultTest, ArmStale) {
   const hal::ArmState frozen = arm_->State();
   for (int i = 0; i <= config_.safety.arm_lost_ticks; ++i) {
