@@ -82,9 +82,9 @@ void RecordHash::Add(const hal::TickRecord& r) {
   write.All(r.tick, r.stamp_ns, r.missed_ticks);
   write.All(r.arm.stamp_ns, r.arm.sequence, r.arm.num_joints, r.arm.q, r.arm.dq, r.arm.tau_meas,
             r.arm.tau_applied);
-  write.All(r.has_feature, r.feature.stamp_ns, r.feature.sequence, r.feature.same_for_ns,
-            r.feature.kind, r.feature.found,
-            r.feature.confidence, r.feature.dim, r.feature.s, r.feature.cov_s, r.feature.num_poses);
+  write.All(r.has_feature, r.feature.stamp_ns, r.feature.sequence, r.feature.same_for_ns, r.feature.kind,
+            r.feature.found, r.feature.confidence, r.feature.dim, r.feature.s, r.feature.cov_s,
+            r.feature.num_poses);
   for (const hal::FlatPose& pose :
        std::span(r.feature.poses).first(static_cast<std::size_t>(r.feature.num_poses))) {
     write.All(pose.p_CO_C, pose.q_CO, pose.first);

@@ -63,8 +63,8 @@ struct HwSummary {
   std::optional<SeenError> seen;  // with a camera
   CameraCounters camera;
   std::map<std::string, std::uint64_t> measurements;  // how many, by what became of them (hal::Intake)
-  linux_rt::DurationHistogram feature_ages;  // from exposure to the tick that took the measurement
-  double success_rate = 0.0;                 // of commands, by the robot, before the end
+  linux_rt::DurationHistogram feature_ages;           // from exposure to the tick that took the measurement
+  double success_rate = 0.0;                          // of commands, by the robot, before the end
   // At the end, before the arm was brought to rest for it.
   hal::Mode mode = hal::Mode::kBoot;
   hal::HoldReason hold_reason = hal::HoldReason::kNone;

@@ -32,8 +32,8 @@ inline constexpr int kMaxPoses = 6;
 struct FeatureMeasurement {
   std::int64_t stamp_ns = 0;   // mid-exposure of the frame, monotonic, in the loop's Clock
   std::uint64_t sequence = 0;  // of the frame
-  // For how long the whole picture has been the same within its noise, this frame included [ns]; 0: it changed
-  // since the frame before, or nobody compared.
+  // For how long the whole picture has been the same within its noise, this frame included [ns]; 0: it
+  // changed since the frame before, or nobody compared.
   std::int64_t same_for_ns = 0;
   FeatureKind kind = FeatureKind::kSphere;
   bool found = false;                      // false: the frame was looked at and the target is not in it

@@ -20,8 +20,8 @@ struct TickRecord {
 
   // Inputs
   ArmState arm;
-  bool has_feature = false;    // a measurement was taken in this tick
-  FeatureMeasurement feature;  // the last one taken
+  bool has_feature = false;       // a measurement was taken in this tick
+  FeatureMeasurement feature;     // the last one taken
   Intake intake = Intake::kNone;  // what became of it, in the tick that it came
 
   // Modes
