@@ -221,6 +221,8 @@ void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
               "commanded setpoints start this close to where the arm stands, and go on so");
   keys.Number("safety.following_error", c.following_error, 1e-4, 10.0, "rad",
               "a joint further off its reference: Fault");
+  keys.Number("safety.motion_error", c.motion_error, 1e-5, 10.0, "rad",
+              "a joint further off a commanded motion, as a mean over a quarter of a second: Hold");
   keys.Number("safety.contact_torque_fraction", c.contact_torque_fraction, 0.001, 1e6, "",
               "pushed from outside with more than this share of a joint's torque: Fault");
   keys.Number("safety.contact_gain", c.contact_gain, 0.1, 300.0, "1/s",

@@ -226,6 +226,7 @@ void MotionStateFields(Archive& a, T& m) noexcept {
   PoseFields(a, m.X_BE);
   ResolvedFields(a, m.resolved);
   a(m.refused);
+  SizedEntries(a, m.off);
 }
 
 template <class Archive, class T>

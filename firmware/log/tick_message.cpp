@@ -31,7 +31,7 @@ To Same(From value) {
 
 // The message's enumerations have the numbers of the servo's.
 static_assert(static_cast<int>(hal::Mode::kMove) == MOVE);
-static_assert(static_cast<int>(hal::HoldReason::kEyeDoubted) == EYE_DOUBTED);
+static_assert(static_cast<int>(hal::HoldReason::kNotFollowed) == NOT_FOLLOWED);
 static_assert(static_cast<int>(hal::Fault::kContact) == CONTACT && hal::kNumFaults == 11);
 static_assert(static_cast<int>(hal::FeatureKind::kTriangle) == Feature::TRIANGLE);
 static_assert(static_cast<int>(hal::Intake::kOutlier) == OUTLIER && hal::kNumIntakes == 9);

@@ -38,13 +38,12 @@ model::ArmPoses PosesOf(const ServoConfig& config, const model::VecN& q) noexcep
   return poses;
 }
 
-// The reference slows down as fast as it may, and stays on its course as long as it can.
+// The reference slows down as fast as it may on its course.
 hal::LimitSet Brake(const ServoConfig& config, Reference& reference) noexcept {
   const model::ArmPoses poses = PosesOf(config, reference.q);
   model::LinearJacobian J_E_B;
   model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
-  return GuardMotion(config, MotionWish::Velocity(model::VecN::Zero(config.arm.num_joints)), poses.X_BE.p,
-                     J_E_B, poses, reference);
+  return GuardMotion(config, StopTogether(config, reference), poses.X_BE.p, J_E_B, poses, reference);
 }
 
 // `next` becomes the reference if nothing forbids it.

@@ -144,6 +144,24 @@ double BarrierSpeed(double distance, double deceleration, double reaction_s) noe
   return deceleration * (std::sqrt(reaction_s * reaction_s + 2.0 * distance / deceleration) - reaction_s);
 }
 
+MotionWish StopTogether(const ServoConfig& config, const Reference& reference) noexcept {
+  MotionWish wish = MotionWish::Velocity(model::VecN::Zero(reference.dq.size()));
+  double share = 0.0;  // of its velocity that the slowest to stop has left after this tick
+  for (int i = 0; i < reference.dq.size(); ++i) {
+    if (reference.dq[i] == 0.0) {
+      continue;
+    }
+    const JointPace pace = PaceOf(config, i);
+    const VelocityStep step = StepVelocity({reference.q[i], reference.dq[i], reference.ddq[i]}, 0.0, 0.0,
+                                           {0.0, pace.ddq_max, pace.dddq_max}, kPeriodS);
+    share = std::max(share, step.state.v / reference.dq[i]);
+  }
+  share = std::min(share, 1.0);
+  wish.dq = share * reference.dq;
+  wish.ddq = (wish.dq - reference.dq) / kPeriodS;
+  return wish;
+}
+
 LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
                      const LinearJacobian& J_E_B, const model::ArmPoses& reference_poses,
                      Reference& reference) noexcept {

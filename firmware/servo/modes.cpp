@@ -17,6 +17,12 @@ constexpr ModeEdge From(Mode from, const char* words, bool (*when)(const F&), Mo
   return {false, from, words, when, to, reason};
 }
 
+// Why a motion ended is said until something else is asked for.
+constexpr bool IsSaidOn(HoldReason reason) {
+  return reason == HoldReason::kMotionDone || reason == HoldReason::kMotionRefused ||
+         reason == HoldReason::kNotFollowed || reason == HoldReason::kEyeDoubted;
+}
+
 // The first that fits is taken.
 // clang-format off
 constexpr std::array kEdges{
@@ -29,7 +35,7 @@ constexpr std::array kEdges{
     From(Mode::kHold,   "track is asked for, the target seen", [](const F& f) { return f.asked && f.fresh; }, Mode::kTrack),
     From(Mode::kHold,   "a motion is commanded",              [](const F& f) { return !f.asked && f.motion; }, Mode::kMove),
     From(Mode::kHold,   "track is asked for, after a motion or none", [](const F& f) { return f.asked && f.hold_reason != HoldReason::kTargetLost; }, Mode::kHold, HoldReason::kNoTarget),
-    From(Mode::kHold,   "nothing is asked for",               [](const F& f) { return !f.asked && f.hold_reason != HoldReason::kMotionDone && f.hold_reason != HoldReason::kMotionRefused && f.hold_reason != HoldReason::kEyeDoubted; }, Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kHold,   "nothing is asked for",               [](const F& f) { return !f.asked && !IsSaidOn(f.hold_reason); }, Mode::kHold, HoldReason::kNotAsked),
     From(Mode::kHold,   "hold is asked for",                  [](const F& f) { return f.request == Request::kHold; }, Mode::kHold, HoldReason::kNotAsked),
 
     From(Mode::kTrack,  "track is asked for no more",         [](const F& f) { return !f.asked; },           Mode::kHold, HoldReason::kNotAsked),
@@ -46,6 +52,7 @@ constexpr std::array kEdges{
     From(Mode::kMove,   "hold is asked for",                  [](const F& f) { return f.request == Request::kHold; }, Mode::kHold, HoldReason::kNotAsked),
     From(Mode::kMove,   "track is asked for",                 [](const F& f) { return f.asked; },            Mode::kHold, HoldReason::kNoTarget),
     From(Mode::kMove,   "a limit forbids the motion",         [](const F& f) { return f.refused; },          Mode::kHold, HoldReason::kMotionRefused),
+    From(Mode::kMove,   "the arm does not follow the motion", [](const F& f) { return f.astray; },         Mode::kHold, HoldReason::kNotFollowed),
     From(Mode::kMove,   "the motion is done",                 [](const F& f) { return !f.motion; },          Mode::kHold, HoldReason::kMotionDone),
 };
 // clang-format on
@@ -72,6 +79,7 @@ ModeFacts FactsOf(const PredictConfig& config, const ModeInputs& inputs, const M
   f.doubted = inputs.eye_doubted;
   f.motion = inputs.motion_asked && !state.motion_barred;
   f.refused = inputs.motion_refused;
+  f.astray = inputs.motion_not_followed;
   return f;
 }
 

@@ -120,6 +120,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.safety.torque_fraction, 1e-3, 1.0, "safety.torque_fraction"},
       {config.safety.torque_rate_fraction, 1e-3, 1.0, "safety.torque_rate_fraction"},
       {config.safety.following_error, 1e-4, 10.0, "safety.following_error"},
+      {config.safety.motion_error, 1e-5, 10.0, "safety.motion_error"},
       {config.safety.contact_torque_fraction, 1e-3, huge, "safety.contact_torque_fraction"},
       {config.safety.contact_gain, 0.1, 300.0, "safety.contact_gain"},
       {config.safety.fault_damping, 0.1, 100.0, "safety.fault_damping"},
@@ -227,8 +228,9 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
   const int n = config.arm.num_joints;
   state_.mode.track_asked = config.auto_track;
   state_.law_state.Reset(config.motion_law.kind, n);
-  for (model::VecN* v : {&state_.q, &state_.dq, &state_.tau_applied, &state_.tau, &state_.tau_before,
-                         &state_.reference.q, &state_.reference.dq, &state_.reference.ddq}) {
+  for (model::VecN* v :
+       {&state_.q, &state_.dq, &state_.tau_applied, &state_.tau, &state_.tau_before, &state_.reference.q,
+        &state_.reference.dq, &state_.reference.ddq, &state_.motion.off}) {
     v->setZero(n);
   }
   return Status::Ok();

@@ -14,9 +14,12 @@ namespace {
 
 constexpr double kTargetMovedM = 0.02;       // so far from where it was unreachable, and it is tried again
 constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as there
-constexpr double kSpeedsUp = 0.2;            // a stop in which a joint gains so much is none [rad/s, m/s]
-constexpr double kBootShare = 0.5;  // of a joint's velocity limit in Boot, where nothing shall move it
+constexpr double kSpeedsUp = 0.2;   // a stop that is so much behind what it should be is none [rad/s, m/s]
+constexpr double kStopShare = 0.3;  // of safety.fault_damping: what it should be at least
+constexpr double kOffShare = 1e-3 / 0.25;  // of a tick in the mean by which a motion is not followed
+constexpr double kBootShare = 0.5;         // of a joint's velocity limit in Boot, where nothing shall move it
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
 
@@ -146,6 +149,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   mode_inputs.eye_doubted = state_.eye.doubted;
   mode_inputs.motion_asked = inputs.motion.kind != MotionKind::kNone || state_.motion.IsUnderWay();
   mode_inputs.motion_refused = state_.motion.refused;
+  mode_inputs.motion_not_followed = state_.motion.off.lpNorm<Eigen::Infinity>() > config_.safety.motion_error;
   mode_inputs.fault = check.fault;
 
   const hal::Mode before = state_.mode.mode;
@@ -160,6 +164,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   if (now != hal::Mode::kMove) {
     state_.motion.Stop();
     state_.motion.refused = false;
+    state_.motion.off.setZero(config_.arm.num_joints);
   }
   ForgetMotion();
   if (now == hal::Mode::kTrack && before == hal::Mode::kHold) {
@@ -269,9 +274,10 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   if (state_.mode.mode == hal::Mode::kMove) {
     state_.limits = FollowMotion(config_, inputs.motion, state_.now_ns, state_.motion, state_.reference);
     CheckFollowing();
+    state_.motion.off += kOffShare * (state_.reference.q - state_.q - state_.motion.off);
     return;
   }
-  model::VecN dq_des = model::VecN::Zero(config_.arm.num_joints);
+  MotionWish wish;
   if (IsTracking(state_.mode.mode) && state_.feature_valid) {
     const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
     const double since_s = static_cast<double>(state_.now_ns - since_ns) / kSecondNs;
@@ -289,16 +295,18 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
       LatchFault(hal::Fault::kNonFiniteControl, -1);
       return;
     }
-    dq_des = state_.resolved.dq;
+    wish = MotionWish::Velocity(state_.resolved.dq);
     state_.limits = state_.resolved.limits;
+  } else {
+    wish = StopTogether(config_, state_.reference);
   }
   model::ArmPoses reference_poses;
   model::ComputePoses(config_.arm, state_.reference.q, reference_poses);
   if (state_.mode.mode == hal::Mode::kBoot && !IsOutside()) {
     state_.limits |= hal::Bit(hal::Limit::kObstacle);  // why Boot goes on
   }
-  state_.limits |= GuardMotion(config_, MotionWish::Velocity(dq_des), state_.poses.X_BE.p, state_.J_E_B,
-                               reference_poses, state_.reference);
+  state_.limits |=
+      GuardMotion(config_, wish, state_.poses.X_BE.p, state_.J_E_B, reference_poses, state_.reference);
   CheckFollowing();
   NoteBlocked();
   NoteSteering();
@@ -372,9 +380,11 @@ void ServoTask::StopDamped() noexcept {
   const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 || state_.blind ||
                      state_.mode.fault == hal::Fault::kArmStale;
   const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
-  // Nor does damping stop a joint whose motor is dead, or that is pushed: the arm gets faster again.
+  // Nor does damping stop a joint whose motor is dead, or that is pushed: the arm gets faster again, or no
+  // slower.
   const double speed = state_.dq.lpNorm<Eigen::Infinity>();
-  state_.stop_speed = std::min(state_.stop_speed, speed);
+  const double falls = 1.0 - kStopShare * config_.safety.fault_damping * kPeriodS;
+  state_.stop_speed = std::min(falls * state_.stop_speed, speed);
   const bool in_vain = speed > state_.stop_speed + kSpeedsUp;
   if (blind || in_vain || since_s > config_.safety.brake_after_s || speed < config_.safety.brake_velocity) {
     state_.give_up = true;

@@ -82,6 +82,7 @@ const char* Name(HoldReason reason) noexcept {
     case HoldReason::kMotionDone: return "motion_done";
     case HoldReason::kMotionRefused: return "motion_refused";
     case HoldReason::kEyeDoubted: return "eye_doubted";
+    case HoldReason::kNotFollowed: return "not_followed";
   }
   return "unknown";
 }

@@ -88,6 +88,7 @@ ordered_json ToJson(const std::map<std::string, StandingMotion>& motions) {
   ordered_json json = ordered_json::object();
   for (const auto& [mode, motion] : motions) {
     json[mode] = {{"most_mm", motion.most_mm},
+                  {"beyond_stop_mm", motion.beyond_stop_mm},
                   {"most_m_per_s", motion.most_m_per_s},
                   {"gained_m_per_s", motion.gained_m_per_s}};
   }

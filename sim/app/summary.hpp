@@ -37,6 +37,7 @@ struct InjectedFault {
 // How far and how fast the hand moved in a mode in which the arm stands, from where that mode began.
 struct StandingMotion {
   double most_mm = 0.0;
+  double beyond_stop_mm = 0.0;  // of it, what no stop from the speed that it had explains
   double most_m_per_s = 0.0;
   double gained_m_per_s = 0.0;  // more than it had when the mode began
 };

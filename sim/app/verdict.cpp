@@ -23,7 +23,7 @@ constexpr double kSettledShare = 0.02;  // settled: below this share of the firs
 }  // namespace
 
 Verdict::Verdict(const VerdictConfig& config)
-    : config_(config), barriers_(config.barriers), notices_(config.faults) {}
+    : config_(config), barriers_(config.barriers), unwanted_(config.stop), notices_(config.faults) {}
 
 void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
   if (config_.has_eye) {
@@ -70,13 +70,23 @@ void Verdict::AddSample(const Sample& sample) {
     last_outside_s_ = t_s;
   }
   NoteGoal(t_s, config_.target_moves
-                    ? sample.error_px <= config_.tracking_bound_px
+                    ? WindowPx() <= config_.tracking_bound_px
                     : sample.error_px <= kConvergedPx && sample.error_C.norm() <= kConvergedM &&
                           kDegPerRad * sample.error_rad <= kConvergedDeg);
   if (t_s > 0.5 * config_.duration_s) {
     second_half_px2_ += sample.error_px * sample.error_px;
     ++second_half_samples_;
   }
+}
+
+// Of the image error over the window, as a root mean square: a target that moves is kept within its bound on the
+// whole, as the run's verdict asks.
+double Verdict::WindowPx() const {
+  double px2 = 0.0;
+  for (const Sample& sample : window_) {
+    px2 += sample.error_px * sample.error_px;
+  }
+  return std::sqrt(px2 / static_cast<double>(window_.size()));
 }
 
 void Verdict::NoteGoal(double t_s, bool kept) {

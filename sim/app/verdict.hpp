@@ -23,6 +23,7 @@ namespace fovea::sim {
 
 struct VerdictConfig {
   BarrierConfig barriers;
+  StopRules stop;
   Pinhole pinhole;
   TargetGoal goal;
   bool has_eye = true;  // false: there is no target to judge by
@@ -57,6 +58,7 @@ class Verdict {
     double error_rad = 0.0;                             // of the orientation, where the goal has one
   };
   void AddSample(const Sample& sample);
+  [[nodiscard]] double WindowPx() const;
   void NoteGoal(double t_s, bool kept);
   void FillEnd(Summary& summary) const;
   void FillMotion(Summary& summary) const;

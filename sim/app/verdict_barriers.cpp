@@ -58,15 +58,20 @@ void AddJoints(const model::ArmModel& arm, std::vector<TruthBarrier>& list) {
                ? 0.0
                : (step.now.tau_cmd[i] - step.before->tau_cmd[i]) / (joint.dtau_max * kStepS);
   });
-  // A legal step of the torque on a light wrist is more than the legal jerk: that is shown, not judged.
+  // No servo can help it that an arm falls whose motor is dead. A joint is too fast only where it would have
+  // been so without what disturbed it, too.
   list.push_back({"true_joint_acceleration", Kind::kShare, [arm](const TruthStep& step) -> Value {
                     if (!step.mean_ddq) {
                       return std::nullopt;
                     }
                     return LargestOf(arm, [&](const model::Joint& joint, int i) {
-                      return (*step.mean_ddq)[i] / joint.ddq_max;
+                      const double ddq = (*step.mean_ddq)[i];
+                      const double own =
+                          ddq - (step.mean_ddq_disturbed.size() > 0 ? step.mean_ddq_disturbed[i] : 0.0);
+                      return std::min(std::fabs(ddq), std::fabs(own)) / joint.ddq_max;
                     });
                   }});
+  // A legal step of the torque on a light wrist is more than the legal jerk: that is shown, not judged.
   list.push_back({"true_joint_jerk", Kind::kShown, [arm](const TruthStep& step) -> Value {
                     if (!step.ddq || !step.ddq_before) {
                       return std::nullopt;
@@ -140,15 +145,26 @@ TruthBarriers::TruthBarriers(const BarrierConfig& config) {
 void TruthBarriers::Add(const Truth& truth, hal::Mode mode) {
   if (mode == hal::Mode::kFault) {
     dq_.clear();
+    ddq_disturbed_.clear();
   }
   dq_.push_back(truth.dq);
+  ddq_disturbed_.push_back(truth.ddq_disturbed);
   if (dq_.size() > kMeanTicks + 1) {
     dq_.erase(dq_.begin());
+    ddq_disturbed_.erase(ddq_disturbed_.begin());
   }
-  TruthStep step{truth, before_ ? &*before_ : nullptr, {}, {}, {}};
+  TruthStep step{truth, before_ ? &*before_ : nullptr, {}, {}, {}, {}};
   const std::size_t n = dq_.size();
   if (n == kMeanTicks + 1) {
     step.mean_ddq = (dq_.back() - dq_.front()) / (kMeanTicks * kStepS);
+    for (std::size_t i = 1; i < n; ++i) {  // of the steps between them
+      if (ddq_disturbed_[i].size() > 0) {
+        if (step.mean_ddq_disturbed.size() == 0) {
+          step.mean_ddq_disturbed.setZero(truth.dq.size());
+        }
+        step.mean_ddq_disturbed += ddq_disturbed_[i] / kMeanTicks;
+      }
+    }
     step.ddq = (dq_[n - 1] - dq_[n - 2]) / kStepS;
     step.ddq_before = (dq_[n - 2] - dq_[n - 3]) / kStepS;
   }

@@ -32,6 +32,7 @@ struct TruthStep {
   // Joint accelerations: the mean over the last 10 ms, and those of this step and of the one before. Empty
   // where the servo was in Fault within that time.
   std::optional<Eigen::VectorXd> mean_ddq;
+  Eigen::VectorXd mean_ddq_disturbed;  // what of it disturbances alone did; no entries: nothing
   std::optional<Eigen::VectorXd> ddq;
   std::optional<Eigen::VectorXd> ddq_before;
 };
@@ -63,7 +64,8 @@ class TruthBarriers {
 
   std::vector<Listed> list_;
   LimitBook book_;
-  std::vector<Eigen::VectorXd> dq_;  // of the last steps outside Fault, newest last
+  std::vector<Eigen::VectorXd> dq_;             // of the last steps outside Fault, newest last
+  std::vector<Eigen::VectorXd> ddq_disturbed_;  // and what disturbances did in them
   std::optional<Truth> before_;
 };
 

@@ -9,6 +9,15 @@ VerdictConfig MakeVerdictConfig(const RunDescription& about) {
   VerdictConfig config;
   config.barriers = {about.servo.arm, guard.workspace_radius, guard.cartesian_speed, guard.obstacles,
                      guard.hand};
+  const int n = about.servo.arm.num_joints;
+  config.stop.brake_after_s = about.servo.safety.brake_after_s;
+  config.stop.ddq_max.resize(n);
+  config.stop.dddq_max.resize(n);
+  for (int i = 0; i < n; ++i) {
+    const model::Joint& joint = about.servo.arm.joints[static_cast<std::size_t>(i)];
+    config.stop.ddq_max[i] = guard.joint_acceleration_fraction * joint.ddq_max;
+    config.stop.dddq_max[i] = guard.joint_jerk_fraction * joint.dddq_max;
+  }
   config.pinhole = about.pinhole;
   config.goal = GoalOf(about.servo.feature);
   config.has_eye = about.scenario.camera.enabled;

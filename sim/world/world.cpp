@@ -79,6 +79,7 @@ void World::AdvanceTo(std::int64_t time_ns) {
 }
 
 void World::Step() {
+  truth_.ddq_disturbed.resize(0);
   if (command_.engage_brakes) {
     // The brakes stop each joint on its own, whatever hangs on it.
     Eigen::VectorXd dq = arm_.dq() * kBrakeDecay;
@@ -88,8 +89,11 @@ void World::Step() {
     arm_.SetState(arm_.q() + dq * kStepS, dq);
     arm_.FindContacts();
   } else {
-    TakeUpLoad();
-    TiltBase();
+    const double mass = config_.load.window.Contains(now_ns_) ? config_.load.mass : 0.0;
+    const double tilt = config_.base_tilt.window.Contains(now_ns_) ? config_.base_tilt.tilt : 0.0;
+    truth_.ddq_disturbed = AccelerationByDisturbance(mass, tilt);
+    TakeUpLoad(mass);
+    TiltBase(tilt);
     arm_.Step(JointTorque(), kStepS);
   }
   StepBall();
@@ -128,23 +132,42 @@ Eigen::VectorXd World::Pulls() const {
   return tau;
 }
 
-void World::TakeUpLoad() {
+void World::TakeUpLoad(double mass) {
   if (config_.load.mass > 0.0) {
-    arm_.SetLoad(config_.load.window.Contains(now_ns_) ? config_.load.mass : 0.0);
+    arm_.SetLoad(mass);
   }
 }
 
-void World::TiltBase() {
-  const BaseTilt& base = config_.base_tilt;
-  if (base.tilt != 0.0) {
-    arm_.TiltBase(base.window.Contains(now_ns_) ? base.tilt : 0.0);
+void World::TiltBase(double tilt) {
+  if (config_.base_tilt.tilt != 0.0) {
+    arm_.TiltBase(tilt);
   }
 }
 
-// The command and what the robot's own controller adds against gravity, as far as the motors give it.
+// By how much the next step's accelerations differ from those of the same arm, in the same state and under
+// the same commands, that nothing disturbs; empty where nothing does.
+Eigen::VectorXd World::AccelerationByDisturbance(double mass, double tilt) {
+  const Eigen::VectorXd disturbed = MotorTorque() + Pulls();
+  const Eigen::VectorXd wanted = WantedTorque();
+  if (mass == 0.0 && tilt == 0.0 && disturbed == wanted) {
+    return {};
+  }
+  TakeUpLoad(mass);
+  TiltBase(tilt);
+  const Eigen::VectorXd ddq = arm_.ForwardDynamics(WithFriction(disturbed));
+  TakeUpLoad(0.0);
+  TiltBase(0.0);
+  return ddq - arm_.ForwardDynamics(WithFriction(wanted));
+}
+
+// The command and what the robot's own controller adds against gravity.
+Eigen::VectorXd World::WantedTorque() const {
+  return arm_.GravityTorque() + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
+}
+
+// As far as the motors give it.
 Eigen::VectorXd World::MotorTorque() const {
-  Eigen::VectorXd tau =
-      arm_.GravityTorque() + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
+  Eigen::VectorXd tau = WantedTorque();
   if (config_.torque_loss.window.Contains(now_ns_)) {
     tau[config_.torque_loss.joint] *= 1.0 - config_.torque_loss.share;
   }
@@ -162,8 +185,9 @@ double World::FrictionLeft(int joint, double velocity) const {
 }
 
 // What acts on the joints: motors, what comes from outside, and what is left of friction.
-Eigen::VectorXd World::JointTorque() const {
-  Eigen::VectorXd tau = MotorTorque() + Pulls();
+Eigen::VectorXd World::JointTorque() const { return WithFriction(MotorTorque() + Pulls()); }
+
+Eigen::VectorXd World::WithFriction(Eigen::VectorXd tau) const {
   for (int i = 0; i < arm_.num_dofs(); ++i) {
     tau[i] -= FrictionLeft(i, arm_.dq()[i]);
   }

@@ -60,6 +60,9 @@ struct Truth {
   Eigen::VectorXd q;
   Eigen::VectorXd dq;
   Eigen::VectorXd tau_cmd;  // in force until now
+  // What injected disturbances alone added to the joints' accelerations in the last step [rad/s^2, m/s^2]:
+  // pushes, loads, a base that leans, motors that give too little. Empty where there was none.
+  Eigen::VectorXd ddq_disturbed;
   Eigen::Isometry3d X_BE = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
   Eigen::Vector3d p_BO = Eigen::Vector3d::Zero();
@@ -100,11 +103,14 @@ class World {
   void RecordTruth();
   void ExposeIfDue();
   [[nodiscard]] Eigen::VectorXd JointTorque() const;
+  [[nodiscard]] Eigen::VectorXd WithFriction(Eigen::VectorXd tau) const;
   [[nodiscard]] double FrictionLeft(int joint, double velocity) const;
   [[nodiscard]] Eigen::VectorXd Pulls() const;
+  [[nodiscard]] Eigen::VectorXd WantedTorque() const;
   [[nodiscard]] Eigen::VectorXd MotorTorque() const;
-  void TakeUpLoad();
-  void TiltBase();
+  void TakeUpLoad(double mass);
+  void TiltBase(double tilt);
+  [[nodiscard]] Eigen::VectorXd AccelerationByDisturbance(double mass, double tilt);
   void StepBall();
 
   WorldConfig config_;

@@ -136,8 +136,59 @@ TEST_F(VerdictBarriersTest, WhatIsNoNumberPasses) {
   EXPECT_EQ(s.violations.at("joint_velocity"), 1U);
 }
 
+// A motor that dies accelerates its joint: not the servo's doing, as long as what is left is within the
+// limit.
+TEST_F(VerdictBarriersTest, WhatADisturbanceDoesIsNotTheServosAcceleration) {
+  const auto with = [&](double ddq, double disturbed) {
+    double dq = 0.0;
+    return Judge([&, ddq, disturbed](auto k, Truth& t) {
+      const bool pulled = k > 20 && k <= 60;
+      dq += pulled ? 1e-3 * ddq : 0.0;
+      t.dq[0] = dq;
+      if (pulled) {
+        t.ddq_disturbed.setConstant(7, disturbed);
+      }
+    });
+  };
+  EXPECT_THAT(with(-40.0, -40.0).violations, IsEmpty());
+  EXPECT_NEAR(with(-40.0, -30.0).limits.at("true_joint_acceleration"), 10.0 / 15.0, 1e-9);
+  EXPECT_THAT(with(-40.0, -24.0).violations, ElementsAre(Pair("true_joint_acceleration", 31)));
+  EXPECT_THAT(with(16.0, -40.0).violations, ElementsAre(Pair("true_joint_acceleration", 31)))
+      << "against what pulls";
+  EXPECT_THAT(with(0.0, -40.0).violations, IsEmpty()) << "it is held";
+}
+
+StopRules Rules() {
+  StopRules rules;
+  rules.ddq_max.setConstant(7, 10.0);
+  rules.dddq_max.setConstant(7, 1000.0);
+  rules.brake_after_s = 0.3;
+  return rules;
+}
+
+TEST(UnwantedMotionTest, WhatAStopTakesIsToldApart) {
+  UnwantedMotion unwanted(Rules());
+  std::int64_t k = 0;
+  double x = 0.0;
+  const auto go = [&](hal::Mode mode, std::int64_t ticks, double speed) {
+    for (std::int64_t i = 0; i < ticks; ++i) {
+      x += 1e-3 * speed;
+      Truth truth = StandingAt(k++, {x, 0.0, 0.5});
+      truth.dq[2] = -2.0 * speed;
+      unwanted.Add(truth, mode);
+    }
+  };
+  go(hal::Mode::kTrack, 10, 1.0);
+  go(hal::Mode::kHold, 200, 1.0);  // 0.5 * 2 / 10 s and 0.02 s are a stop's
+  go(hal::Mode::kTrack, 10, 0.5);
+  go(hal::Mode::kFault, 400, 0.5);
+  EXPECT_NEAR(unwanted.by_mode().at("hold").most_mm, 200.0, 1e-9);
+  EXPECT_NEAR(unwanted.by_mode().at("hold").beyond_stop_mm, 200.0 - 120.0, 1e-9);
+  EXPECT_NEAR(unwanted.by_mode().at("fault").beyond_stop_mm, 200.0 - 150.0, 1e-9);
+}
+
 TEST(UnwantedMotionTest, IsFromWhereTheModeBegan) {
-  UnwantedMotion unwanted;
+  UnwantedMotion unwanted(Rules());
   std::int64_t k = 0;
   double x = 0.0;
   const auto go = [&](hal::Mode mode, std::int64_t ticks, double speed) {
@@ -156,6 +207,7 @@ TEST(UnwantedMotionTest, IsFromWhereTheModeBegan) {
   const auto& by_mode = unwanted.by_mode();
   ASSERT_EQ(by_mode.size(), 2U);
   EXPECT_NEAR(by_mode.at("boot").most_mm, 5.0, 1e-9);
+  EXPECT_NEAR(by_mode.at("boot").beyond_stop_mm, 5.0, 1e-9) << "it stands when it begins";
   EXPECT_NEAR(by_mode.at("boot").most_m_per_s, 0.1, 1e-9);
   EXPECT_NEAR(by_mode.at("boot").gained_m_per_s, 0.1, 1e-9);
   EXPECT_NEAR(by_mode.at("fault").most_mm, 28.0, 1e-9);

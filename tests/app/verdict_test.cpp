@@ -16,6 +16,8 @@ class VerdictTest : public testing::Test {
  protected:
   VerdictTest() {
     config_.barriers.arm = test::Panda().model;
+    config_.stop.ddq_max.setOnes(7);
+    config_.stop.dddq_max.setOnes(7);
     config_.goal.p_CO_C_star = {0.0, 0.0, kGoalZ};
     config_.tracking_bound_px = 3.0;
   }

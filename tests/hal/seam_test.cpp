@@ -136,7 +136,7 @@ TEST(EventsTest, EveryNameIsThereOnceAndEveryCauseHasAKey) {
 
 TEST(EventsTest, EveryReasonHasAName) {
   std::set<std::string> names;
-  for (int i = 0; i <= static_cast<int>(HoldReason::kEyeDoubted); ++i) {
+  for (int i = 0; i <= static_cast<int>(HoldReason::kNotFollowed); ++i) {
     EXPECT_TRUE(names.insert(Name(static_cast<HoldReason>(i))).second);
   }
   EXPECT_EQ(names.count("unknown"), 0U);

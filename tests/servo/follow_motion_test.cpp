@@ -227,6 +227,40 @@ TEST_F(FollowMotionTest, WhatIsNoMotionIsRefusedAndTheArmStops) {
   }
 }
 
+// Something hangs on the arm that nobody told the servo of: it sags, and a motion asked for again and again
+// would never come to its end. It ends when the arm is too far off on the whole; a push that passes does not
+// end it.
+TEST_F(FollowMotionTest, AnArmThatStaysOffItsMotionHolds) {
+  ServoConfig config = test::PandaConfig();
+  config.safety.motion_error = 1e-3;
+  const model::VecN ready = test::Ready();
+  const auto run = [&](double ddq, int ticks) {
+    Start(config, ready);
+    int moved = 0;
+    for (int i = 0; i < 2000; ++i) {
+      if (i < ticks) {
+        arm_->SetVelocity(arm_->dq() + 1e-3 * ddq * model::VecN::Unit(7, 1));
+      }
+      moved += Tick(JointGoal(ready)).mode == Mode::kMove ? 1 : 0;
+    }
+    const double off = (ready - arm_->q()).lpNorm<Eigen::Infinity>();
+    std::cout << "pulled by " << ddq << " rad/s^2 for " << ticks << " ms: off by " << off << " rad, "
+              << hal::Name(record().mode) << ", " << hal::Name(record().hold_reason) << " after " << moved
+              << " ms\n";
+    return off;
+  };
+  EXPECT_GT(run(2.0, 2000), 1e-3);
+  EXPECT_EQ(record().mode, Mode::kHold) << "what is asked for on and on is not taken up again";
+  EXPECT_EQ(record().hold_reason, HoldReason::kNotFollowed);
+  EXPECT_EQ(record().fault, hal::Fault::kNone);
+  Tick({});
+  EXPECT_EQ(Tick(JointGoal(ready)).mode, Mode::kMove) << "asked for anew it is";
+  run(2.0, 50);
+  EXPECT_EQ(record().mode, Mode::kMove);
+  EXPECT_LT(run(0.5, 2000), 1e-3);
+  EXPECT_EQ(record().mode, Mode::kMove);
+}
+
 // A goal in reach whose way leads out of the workspace is begun, stopped inside and refused.
 TEST_F(FollowMotionTest, AWayOutOfTheWorkspaceIsStopped) {
   ServoConfig config = test::PandaConfig();

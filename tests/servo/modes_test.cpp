@@ -175,10 +175,13 @@ TEST_F(ModesTest, AMotionThatWasStoppedStaysStopped) {
   motion.motion_asked = true;
   ModeInputs refused = motion;
   refused.motion_refused = true;
+  ModeInputs astray = motion;
+  astray.motion_not_followed = true;
   ModeInputs hold = motion;
   hold.request = Request::kHold;
-  for (const auto& [inputs, reason] :
-       {std::pair{refused, HoldReason::kMotionRefused}, {hold, HoldReason::kNotAsked}}) {
+  for (const auto& [inputs, reason] : {std::pair{refused, HoldReason::kMotionRefused},
+                                       {astray, HoldReason::kNotFollowed},
+                                       {hold, HoldReason::kNotAsked}}) {
     EXPECT_EQ(After(In(Mode::kMove, false), inputs), Mode::kHold);
     EXPECT_EQ(last_.hold_reason, reason);
     EXPECT_EQ(After(last_, motion), Mode::kHold) << "the stream that goes on is not taken up again";
@@ -197,7 +200,7 @@ TEST_F(ModesTest, AMotionThatWasStoppedStaysStopped) {
 std::vector<ModeInputs> AllInputs(std::int64_t stale_ns, std::int64_t lost_ns) {
   std::vector<ModeInputs> all;
   for (const Request request : {Request::kNone, Request::kTrack, Request::kHold, Request::kReset}) {
-    for (unsigned bits = 0; bits < 128; ++bits) {
+    for (unsigned bits = 0; bits < 256; ++bits) {
       for (const std::int64_t age : {std::int64_t{0}, stale_ns, lost_ns}) {
         for (const Fault fault : {Fault::kNone, Fault::kArmStale}) {
           ModeInputs inputs;
@@ -209,6 +212,7 @@ std::vector<ModeInputs> AllInputs(std::int64_t stale_ns, std::int64_t lost_ns) {
           inputs.motion_asked = (bits & 16U) != 0;
           inputs.motion_refused = (bits & 32U) != 0;
           inputs.eye_doubted = (bits & 64U) != 0;
+          inputs.motion_not_followed = (bits & 128U) != 0;
           inputs.feature_age_ns = age;
           inputs.fault = fault;
           all.push_back(inputs);

@@ -188,6 +188,26 @@ TEST_F(FaultTest, AFloatingArmMayBePushed) {
   }
 }
 
+// Damping brings an arm that something pulls at to a creep, not to rest: its brakes do not wait for the end
+// of the time.
+TEST_F(FaultTest, AStopThatIsPulledOnEndsInTheBrakes) {
+  ServoConfig config = test::PandaConfig();
+  config.safety.brake_after_s = 10.0;
+  for (const double ddq : {0.0, 5.0}) {
+    Start(config);
+    Run(500);
+    Tick([](ServoInputs& inputs) { inputs.arm.dq[2] = -2.2; });
+    int ticks = 0;
+    for (; ticks < 3000 && !outputs_.command().engage_brakes; ++ticks) {
+      arm_->SetVelocity(arm_->dq() + 1e-3 * ddq * model::VecN::Unit(7, 1));
+      Tick();
+    }
+    std::cout << "pulled by " << ddq << " rad/s^2: brakes after " << ticks << " ms\n";
+    EXPECT_TRUE(outputs_.command().engage_brakes);
+    EXPECT_LT(ticks, ddq > 0.0 ? 350 : 1000);
+  }
+}
+
 // Without that observer it is seen later, by its error.
 TEST_F(FaultTest, ArmDoesNotFollow) {
   ServoConfig config = test::PandaConfig();

@@ -266,6 +266,7 @@ TEST_F(BenchFaultTest, AMotorThatGivesLess) {
   const double off = (1e3 * world.truth().dq - ddq).norm() / ddq.norm();
   std::cout << "acceleration " << ddq.norm() << " rad/s^2, off by " << off << " of it\n";
   EXPECT_LT(off, 1e-8);
+  EXPECT_LT((world.truth().ddq_disturbed - ddq).norm(), 1e-6 * ddq.norm()) << "all of it is the fault's";
   EXPECT_NEAR(world.MeasuredState().tau_meas[1], 0.5 * reference.GravityTorque()[1], 0.05)
       << "the sensor on the link's side sees it";
 }
@@ -309,6 +310,7 @@ TEST_F(BenchFaultTest, ABaseThatLeansPullsTheArmAside) {
   const double off = (1e3 * world.truth().dq - ddq).norm() / ddq.norm();
   std::cout << "acceleration " << ddq.norm() << " rad/s^2, off by " << off << " of it\n";
   EXPECT_LT(off, 1e-6);
+  EXPECT_LT((world.truth().ddq_disturbed - ddq).norm(), 1e-6 * ddq.norm()) << "all of it is the fault's";
   world.AdvanceTo(20 * kMs);
   const Eigen::VectorXd dq = world.truth().dq;
   world.AdvanceTo(25 * kMs);
@@ -351,6 +353,7 @@ TEST_F(BenchFaultTest, ALoadPullsAndIsHeavyAsAPointAtTheHand) {
   const double off = (1e3 * world.truth().dq - ddq).norm() / ddq.norm();
   std::cout << "acceleration " << ddq.norm() << " rad/s^2, off by " << off << " of it\n";
   EXPECT_LT(off, 1e-8);
+  EXPECT_LT((world.truth().ddq_disturbed - ddq).norm(), 1e-6 * ddq.norm()) << "all of it is the fault's";
   // Let go: what speed it has it keeps, but for what turns with the posture.
   world.AdvanceTo(20 * kMs);
   const Eigen::VectorXd dq = world.truth().dq;

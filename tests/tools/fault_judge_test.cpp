@@ -35,7 +35,9 @@ json Summary(const std::string& fault) {
         {"torque_rate", 1.0},
         {"workspace", 0.9}}},
       {"violations", json::object()},
-      {"unwanted_motion", {{"boot", {{"most_mm", 0.1}, {"most_m_per_s", 0.01}, {"gained_m_per_s", 0.01}}}}},
+      {"unwanted_motion",
+       {{"boot",
+         {{"most_mm", 0.1}, {"beyond_stop_mm", 0.1}, {"most_m_per_s", 0.01}, {"gained_m_per_s", 0.01}}}}},
       {"contact_ticks", 0},
       {"sim_time_s", 6.0}};
 }
@@ -180,13 +182,16 @@ TEST_F(FaultJudge, WhateverIsPassedByTheTruthFails) {
 TEST_F(FaultJudge, AnArmThatMovesWhereItShouldStandFails) {
   for (const StandBound& bound : kStandBounds) {
     json& motion = run_["unwanted_motion"][bound.mode];
-    motion = {{"most_mm", bound.mm}, {"most_m_per_s", 9.0}, {"gained_m_per_s", bound.gained_m_per_s}};
+    motion = {{"most_mm", 300.0},
+              {"beyond_stop_mm", bound.beyond_stop_mm},
+              {"most_m_per_s", 9.0},
+              {"gained_m_per_s", bound.gained_m_per_s}};
     EXPECT_FALSE(Judged().Failed()) << bound.mode;
-    EXPECT_EQ(Judged().moved.at(bound.mode).mm, bound.mm);
-    motion["most_mm"] = bound.mm + 1.0;
+    EXPECT_EQ(Judged().moved.at(bound.mode).mm, 300.0);
+    motion["beyond_stop_mm"] = bound.beyond_stop_mm + 1.0;
     EXPECT_THAT(Judged().too_far, ElementsAre(testing::HasSubstr(bound.mode)));
     EXPECT_TRUE(Judged().Failed());
-    motion["most_mm"] = 0.0;
+    motion["beyond_stop_mm"] = 0.0;
     motion["gained_m_per_s"] = bound.gained_m_per_s + 0.01;
     EXPECT_TRUE(Judged().Failed());
     motion["gained_m_per_s"] = 0.0;

@@ -140,11 +140,12 @@ void JudgeStanding(const json& run, Outcome& outcome) {
       continue;
     }
     const json& of_mode = motion.at(bound.mode);
-    const Moved moved{of_mode.at("most_mm"), of_mode.at("gained_m_per_s")};
+    const Moved moved{of_mode.at("most_mm"), of_mode.at("beyond_stop_mm"), of_mode.at("gained_m_per_s")};
     outcome.moved[bound.mode] = moved;
-    if (!(moved.mm <= bound.mm) || !(moved.gained_m_per_s <= bound.gained_m_per_s)) {
-      outcome.too_far.push_back(
-          fmt::format("{} {:.0f} mm, {:.2f} m/s faster", bound.mode, moved.mm, moved.gained_m_per_s));
+    if (!(moved.beyond_stop_mm <= bound.beyond_stop_mm) || !(moved.gained_m_per_s <= bound.gained_m_per_s)) {
+      outcome.too_far.push_back(fmt::format("{} {:.0f} mm, {:.0f} beyond a stop, {:.2f} m/s faster",
+                                            bound.mode, moved.mm, moved.beyond_stop_mm,
+                                            moved.gained_m_per_s));
     }
   }
 }

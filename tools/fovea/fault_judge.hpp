@@ -19,19 +19,20 @@ enum class End {
 };
 const char* Name(End end);
 
-// How far the hand may move in a mode in which the arm stands, from where that mode began, and how much
-// faster it may become than it was then. Hold and Fault begin in motion: what they may use is their way of
-// stopping.
+// How far the hand may move in a mode in which the arm stands, from where that mode began, beyond what a stop
+// from the speed that it had then takes (UnwantedMotion); and how much faster it may become than it was.
+// Where something pulls or a motor dies, 0.25 m/s is what a free fall has after 25 ms: nobody notices sooner.
 struct StandBound {
   const char* mode;
-  double mm;
+  double beyond_stop_mm;
   double gained_m_per_s;
 };
 inline constexpr std::array<StandBound, 3> kStandBounds{
-    {{"boot", 10.0, 0.1}, {"hold", 150.0, 0.1}, {"fault", 150.0, 0.25}}};
+    {{"boot", 10.0, 0.25}, {"hold", 10.0, 0.1}, {"fault", 10.0, 0.25}}};
 
 struct Moved {
   double mm = 0.0;
+  double beyond_stop_mm = 0.0;
   double gained_m_per_s = 0.0;
 };
 

@@ -25,8 +25,12 @@ A cell says, line by line:
    fault that never ends: it is kept all the same.
    *safe stop*: a fault is latched, the brakes closed, the arm at rest. *hold*: in Hold, for this reason, at rest. All else would be
    **UNDEFINED**. **EXCEEDED** names what was passed, by the simulator's truth (`violations` in a run's summary.json); contact is
-   with bench, target or itself. **MOVED** says by how far the hand moved in Boot, Hold or Fault from where that mode began, and by
-   how much it became faster than it was then, where that is beyond the bound.
+   with bench, target or itself. **MOVED** says by how far the hand moved in Boot, Hold or Fault from where that mode began, how
+   much of it was more than a stop takes, and by how much it became faster than it was then, where that is beyond the bound.
+   A stop may take as far as the hand goes, at the speed that it has when the mode begins, in the time of the stop: in Hold half
+   of what the joint that takes longest needs at its largest deceleration, and twice its time to turn its acceleration round; in
+   Fault `safety.brake_after_s`. Of the joints' true acceleration, what a dead motor, a load or a push does by itself is not
+   counted: it has passed where a joint would have been too fast without that, too.
 
 )";
 
@@ -63,9 +67,12 @@ force, rounded up: position (from the middle of the range), velocity, torque and
 )";
 
 std::string BoundList() {
-  std::string text = "| mode | the hand, from where it began | faster than it was then |\n|---|---|---|\n";
+  std::string text =
+      "| mode | the hand, beyond what a stop takes | faster than it was at the mode's beginning "
+      "|\n|---|---|---|\n";
   for (const StandBound& bound : kStandBounds) {
-    text += fmt::format("| {} | {:g} mm | {:g} m/s |\n", bound.mode, bound.mm, bound.gained_m_per_s);
+    text +=
+        fmt::format("| {} | {:g} mm | {:g} m/s |\n", bound.mode, bound.beyond_stop_mm, bound.gained_m_per_s);
   }
   return text;
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLongestFaultS = 5.0;  // of those that end
 constexpr double kGoalS = 0.8;  // and no shorter than so long after the goal that is reached without a fault
-constexpr double kStopS = 1.5;  // a run in Fault goes on for so long; safety.brake_after_s is 1
+constexpr double kStopS = 1.5;  // a run in Fault goes on for so long; safety.brake_after_s is 0.3
 
 // Of a run whose fault lasts from `onset_s` on for `lasts_s`; one that never ends lasts as long as the run.
 double EndFor(const RunMode& mode, Stage stage, double goal_s, double onset_s, double lasts_s) {
@@ -166,6 +166,12 @@ Totals Sum(const Matrix& matrix) {
       const Cell*& worst = totals.worst_limits[limit];
       if (worst == nullptr || used > worst->outcome.limits.at(limit)) {
         worst = &cell;
+      }
+    }
+    for (const auto& [mode, way] : o.moved) {
+      const Cell*& furthest = totals.furthest[mode];
+      if (furthest == nullptr || way.beyond_stop_mm > furthest->outcome.moved.at(mode).beyond_stop_mm) {
+        furthest = &cell;
       }
     }
   }

@@ -56,6 +56,7 @@ struct Totals {
   int noticed = 0;
   const Cell* slowest = nullptr;                    // to be noticed; none when nothing was
   std::map<std::string, const Cell*> worst_limits;  // the cell that used the most of each
+  std::map<std::string, const Cell*> furthest;      // by mode: where the arm went furthest beyond a stop
   [[nodiscard]] bool Failed() const { return exceeded > 0 || moved > 0 || undefined > 0; }
 };
 Totals Sum(const Matrix& matrix);

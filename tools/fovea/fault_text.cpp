@@ -98,6 +98,11 @@ std::vector<std::string> TotalsInWords(const Matrix& matrix) {
                   t.slowest != nullptr ? *t.slowest->outcome.ticks : 0,
                   t.slowest != nullptr ? NameOf(*t.slowest) : "-"),
       fmt::format("the arm touched bench, target or itself in {}", t.touched)};
+  for (const auto& [mode, cell] : t.furthest) {
+    const Moved& way = cell->outcome.moved.at(mode);
+    lines.push_back(fmt::format("in {} the hand went at most {:.0f} mm, {:.0f} mm beyond a stop ({})", mode,
+                                way.mm, way.beyond_stop_mm, NameOf(*cell)));
+  }
   for (const auto& [limit, cell] : t.worst_limits) {
     lines.push_back(
         fmt::format("{}: at most {} ({})", limit, Percent(cell->outcome.limits.at(limit)), NameOf(*cell)));
@@ -135,7 +140,8 @@ std::string ToJson(const Matrix& matrix) {
     const Outcome& o = cell.outcome;
     Json moved = Json::object();
     for (const auto& [mode, way] : o.moved) {
-      moved[mode] = {{"mm", way.mm}, {"gained_m_per_s", way.gained_m_per_s}};
+      moved[mode] = {
+          {"mm", way.mm}, {"beyond_stop_mm", way.beyond_stop_mm}, {"gained_m_per_s", way.gained_m_per_s}};
     }
     cells.push_back({{"mode", cell.mode->name},
                      {"stage", Name(cell.stage)},

@@ -141,6 +141,7 @@ void SafetyFields(Archive& a, T& s) noexcept {
   a(s.boot_velocity);
   a(s.setpoint_jump);
   a(s.following_error);
+  a(s.motion_error);
   a(s.contact_torque_fraction);
   a(s.contact_gain);
   a(s.fault_damping);

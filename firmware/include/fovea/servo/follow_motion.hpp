@@ -24,6 +24,7 @@ struct MotionState {
   SynchronisedMove pose;    // position less goal, and the turn from the goal, both in axes of B
   ResolvedMotion resolved;  // what the last pose asked of the joints; its dq empty: none did
   bool refused = false;     // in the last tick
+  model::VecN off;          // reference less arm, as a mean [rad, m]; empty: none was followed
 
   // Whether a motion goes on after this tick without another command.
   [[nodiscard]] bool IsUnderWay() const noexcept { return goal.kind != MotionKind::kNone; }

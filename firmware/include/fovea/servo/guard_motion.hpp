@@ -34,6 +34,12 @@ struct MotionWish {
   }
 };
 
+// To bring `reference` to rest with all joints in step: each is slowed in the same proportion as the one that
+// takes longest, so that the hand stays on its course and gets slower all the way. (Each joint as hard as it
+// may would stop them one after the other; a hand that rests between two fast joints would then be thrown by
+// the one that is left.) Real-time: yes.
+[[nodiscard]] MotionWish StopTogether(const ServoConfig& config, const Reference& reference) noexcept;
+
 // Moves `reference` on by one tick towards `wish`. `p_BE` [m] is where the end effector is, `J_E_B`
 // [3 x num_joints] its linear Jacobian in axes of B, and `reference_poses` where `reference` has the links.
 // Returns the limits that acted. Real-time: yes.

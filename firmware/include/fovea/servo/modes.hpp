@@ -29,6 +29,7 @@ struct ModeInputs {
   bool eye_doubted = false;              // what is seen is nothing to steer by
   bool motion_asked = false;             // a motion is commanded, or not yet at its end
   bool motion_refused = false;           // the one of the tick before was
+  bool motion_not_followed = false;      // the arm is too far off it
   hal::Fault fault = hal::Fault::kNone;  // found in this tick
 };
 
@@ -54,6 +55,7 @@ struct ModeFacts {
   bool doubted;
   bool motion;  // one that may move the arm
   bool refused;
+  bool astray;  // the arm is too far off the motion
 };
 
 // One way from a mode to a mode. The first of the table whose `from` and `when` fit is taken; where none

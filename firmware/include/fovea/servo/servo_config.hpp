@@ -160,11 +160,12 @@ struct SafetyConfig {
   double encoder_quantum = 1e-4;         // a joint's reading changes in steps no larger than this [rad, m]
   double setpoint_jump = 1e-3;           // a stream of setpoints starts and goes on this close [rad, m]
   double following_error = 0.15;         // a joint further off its reference: fault [rad, m]
+  double motion_error = 0.05;            // and on the whole further in a commanded motion: Hold [rad, m]
   double contact_torque_fraction = 0.2;  // pushed with more than this share of a joint's torque: fault
   double contact_gain = 30.0;            // of the observer that sees it [1/s]
   double fault_damping = 10.0;           // of the damped stop [1/s]
   double brake_velocity = 0.02;          // brakes close when every joint is slower [rad/s, m/s]
-  double brake_after_s = 1.0;            // or after this time [s]
+  double brake_after_s = 0.3;            // or after this time [s]
 };
 
 // [servo] commanded motions of the end effector

@@ -101,7 +101,7 @@ struct ServoState {
   MotionLawState law_state;
   model::VecN tau;
   model::VecN tau_before;        // the command of the tick before
-  double stop_speed = HUGE_VAL;  // in Fault: the slowest that the fastest joint was since [rad/s, m/s]
+  double stop_speed = HUGE_VAL;  // in Fault: how slow the fastest joint should be by now [rad/s, m/s]
   bool give_up = false;          // in Fault: no torque any more
   bool braked = false;           // and the brakes, once it is gone
 };

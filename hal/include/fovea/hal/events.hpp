@@ -25,6 +25,7 @@ enum class HoldReason : std::uint8_t {
   kMotionDone,       // the commanded motion came to its end
   kMotionRefused,    // the commanded motion would have passed a limit, or was none
   kEyeDoubted,       // the picture moves against the hand, or steering by it does not help: ask anew
+  kNotFollowed,      // the arm was off the commanded motion by more than safety.motion_error
 };
 
 // Causes of a fault, latched at the first.
