@@ -62,6 +62,7 @@ template <class Archive, class T>
 void EncoderWatchFields(Archive& a, T& w) noexcept {
   a(w.drove);
   for (auto& joint : w.joints) {
+    a(joint.residual);
     a(joint.mean);
     a.Int(joint.ticks);
     a(joint.q);

@@ -7,7 +7,26 @@ namespace fovea::servo {
 namespace {
 
 constexpr double kJump = 0.02;  // a position may be off by so much, beside what speed there is for [rad, m]
+constexpr double kVelocityJump = 0.05;  // and a velocity, beside what torque there is for [rad/s, m/s]
+constexpr double kTorqueAtMost = 2.0;   // times what an arm may accelerate by: what pulls at it adds to it
 constexpr int kBadTicksMost = 1'000'000'000;  // counted no further
+
+// Keeps the last velocity of each joint whose measured one differs from it by more than anything that moves
+// an arm can do in `elapsed_s`. So it does when an encoder begins to hang. Returns the first such joint, or
+// -1.
+std::int32_t BridgeVelocityJumps(const model::ArmModel& arm, double elapsed_s,
+                                 const hal::JointArray& dq_before, hal::JointArray& dq) noexcept {
+  std::int32_t jumps = -1;
+  for (int i = 0; i < arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double most = kVelocityJump + kTorqueAtMost * arm.joints[k].ddq_max * elapsed_s;
+    if (std::fabs(dq[k] - dq_before[k]) > most) {
+      dq[k] = dq_before[k];
+      jumps = jumps < 0 ? i : jumps;
+    }
+  }
+  return jumps;
+}
 
 // Copies the finite values of `from`; a joint that is not finite keeps its last value. Returns the first
 // such joint, or -1.
@@ -43,7 +62,7 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
   }
   const double elapsed_s =
       state.has_state ? 1e-9 * static_cast<double>(arm.stamp_ns - state.stamp_ns) : HUGE_VAL;
-  const hal::JointArray q_before = state.q;
+  const InputState before = state;
   state.has_state = true;
   state.stamp_ns = arm.stamp_ns;
   state.sequence = arm.sequence;
@@ -64,20 +83,35 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
     }
     return {};
   }
-  state.non_finite_ticks = 0;
-  state.sound_ticks += 1;
-
   for (int i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config.arm.joints[k];
     if (state.q[k] < joint.q_min || state.q[k] > joint.q_max) {
       return {hal::Fault::kJointPosition, i};
     }
-    const bool jumps = std::fabs(state.q[k] - q_before[k]) > joint.dq_max * elapsed_s + kJump;
-    if (jumps || std::fabs(state.dq[k]) > velocity_share * joint.dq_max) {
+    const bool leaps = std::fabs(state.q[k] - before.q[k]) > joint.dq_max * elapsed_s + kJump;
+    if (leaps || std::fabs(state.dq[k]) > velocity_share * joint.dq_max) {
       return {hal::Fault::kJointVelocity, i};
     }
   }
+  const hal::JointArray dq = state.dq;
+  const double since_s = elapsed_s * (1.0 + state.non_finite_ticks);
+  const std::int32_t jumps =
+      before.has_state ? BridgeVelocityJumps(config.arm, since_s, before.dq, state.dq) : -1;
+  if (jumps >= 0) {
+    state.sound_ticks = 0;
+    state.non_finite_ticks += 1;
+    if (state.non_finite_ticks > safety.non_finite_ticks) {
+      const auto k = static_cast<std::size_t>(jumps);
+      const bool stays = std::fabs(state.q[k] - before.q[k]) < 0.5 * std::fabs(before.dq[k]) * elapsed_s;
+      state.non_finite_ticks = 0;
+      state.dq = dq;  // from now on this is how fast it is
+      return {stays ? hal::Fault::kArmStale : hal::Fault::kJointVelocity, jumps};
+    }
+    return {};
+  }
+  state.non_finite_ticks = 0;
+  state.sound_ticks += 1;
   return {};
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fovea/model/cholesky.hpp"
+
 namespace fovea::servo {
 namespace {
 
@@ -15,21 +17,57 @@ constexpr double kLeast = 1e-9;                 // where the encoder has no step
 constexpr double kTravelSlack = 1e-3;           // what noise of the velocities may add up to [rad, m]
 constexpr std::int32_t kTicksMost = 1'000'000;  // counted no further
 
+// What changed of what pushes the joints, each less its mean: as accelerations that the readings do not show.
+// Zero where friction may hold the joint. (Where joint i hangs and moves by ddq, the observer sees -M e_i
+// ddq.)
+void UnseenAcceleration(const ServoConfig& config, const WatchedJoints& now, EncoderWatch& watch,
+                        hal::JointArray& ddq) noexcept {
+  const int n = config.arm.num_joints;
+  const double gain = config.safety.contact_gain * kPeriodS;
+  model::VecN change = model::VecN::Zero(n);
+  hal::JointArray share{};  // of the change that friction leaves
+  bool any = false;
+  for (int i = 0; now.drives && i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& arm_joint = config.arm.joints[k];
+    EncoderWatch::Joint& joint = watch.joints[k];
+    // The observer comes to it with its own time constant, which is known: this is what it comes to.
+    const double pushed = now.residual[i] + (watch.drove ? (now.residual[i] - joint.residual) / gain : 0.0);
+    joint.residual = now.residual[i];
+    change[i] = joint.mean - pushed;
+    joint.mean += kMeanShare * (pushed - joint.mean);
+    const double free =
+        config.safety.stiction_fraction * arm_joint.coulomb + kTorqueShare * arm_joint.tau_max;
+    share[k] = std::max(1.0 - free / std::max(std::fabs(change[i]), kLeast), 0.0);
+    any = any || share[k] > 0.0;
+  }
+  ddq = {};
+  if (!any) {
+    return;
+  }
+  model::MatN M = now.dynamics.M;
+  model::FactorCholesky(M);
+  model::SolveCholesky(M, change);
+  for (int i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    ddq[k] = share[k] * change[i];
+  }
+}
+
 }  // namespace
 
 std::int32_t WatchEncoders(const ServoConfig& config, const WatchedJoints& now,
                            EncoderWatch& watch) noexcept {
   const double enough = kQuanta * config.safety.encoder_quantum;
+  hal::JointArray unseen{};
+  UnseenAcceleration(config, now, watch, unseen);
   std::int32_t hangs = -1;
   for (int i = 0; i < config.arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& arm_joint = config.arm.joints[k];
     EncoderWatch::Joint& joint = watch.joints[k];
-    const double pushed = now.drives ? now.residual[i] : joint.mean;
-    const double change = joint.mean - pushed;  // what moves it, less what did
-    joint.mean += kMeanShare * (pushed - joint.mean);
     if (joint.ticks == 0 || std::fabs(now.q[i] - joint.q) > config.safety.encoder_quantum) {
-      joint = {joint.mean, 1, now.q[i], now.q_reference[i], 0.0, 0.0, 0.0};
+      joint = {joint.residual, joint.mean, 1, now.q[i], now.q_reference[i], 0.0, 0.0, 0.0};
       continue;
     }
     if (!watch.drove) {
@@ -37,12 +75,10 @@ std::int32_t WatchEncoders(const ServoConfig& config, const WatchedJoints& now,
     }
     joint.ticks = std::min(joint.ticks + 1, kTicksMost);
     joint.travel += now.dq[i] * kPeriodS;
+    joint.speed = unseen[k] != 0.0 ? joint.speed + unseen[k] * kPeriodS : 0.0;
+    joint.way = unseen[k] != 0.0 ? joint.way + joint.speed * kPeriodS : 0.0;
     const double held = config.safety.stiction_fraction * arm_joint.coulomb;
-    const double free = held + kTorqueShare * arm_joint.tau_max;
     const double M = now.dynamics.M(i, i);
-    const double excess = std::max(std::fabs(change) - free, 0.0);
-    joint.speed = excess > 0.0 ? joint.speed + std::copysign(excess, change) / M * kPeriodS : 0.0;
-    joint.way = excess > 0.0 ? joint.way + joint.speed * kPeriodS : 0.0;
     const double omega_n = config.motion_law.omega_n;
     const double wished = now.drives ? std::fabs(now.q_reference[i] - joint.q_reference) : 0.0;
     const double gone =

@@ -17,6 +17,7 @@ using model::LinearJacobian;
 
 constexpr double kSpeedShare =
     0.97;  // of the hand's speed: joints that get there at different times go beyond
+constexpr double kSlow = 1e-3;  // a joint that is no faster stops by itself [rad/s, m/s]
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 const model::Joint& JointOf(const ServoConfig& config, int i) noexcept {
@@ -148,7 +149,7 @@ MotionWish StopTogether(const ServoConfig& config, const Reference& reference) n
   MotionWish wish = MotionWish::Velocity(model::VecN::Zero(reference.dq.size()));
   double share = 0.0;  // of its velocity that the slowest to stop has left after this tick
   for (int i = 0; i < reference.dq.size(); ++i) {
-    if (reference.dq[i] == 0.0) {
+    if (std::fabs(reference.dq[i]) < kSlow) {
       continue;
     }
     const JointPace pace = PaceOf(config, i);
@@ -157,8 +158,13 @@ MotionWish StopTogether(const ServoConfig& config, const Reference& reference) n
     share = std::max(share, step.state.v / reference.dq[i]);
   }
   share = std::min(share, 1.0);
-  wish.dq = share * reference.dq;
-  wish.ddq = (wish.dq - reference.dq) / kPeriodS;
+  for (int i = 0; i < reference.dq.size(); ++i) {
+    if (std::fabs(reference.dq[i]) >= kSlow) {
+      wish.dq[i] = share * reference.dq[i];
+      wish.ddq[i] = (wish.dq[i] - reference.dq[i]) / kPeriodS;
+    }
+  }
+  wish.stops = true;
   return wish;
 }
 
@@ -174,6 +180,9 @@ LimitSet GuardMotion(const ServoConfig& config, const MotionWish& wish, const mo
   limits |= LimitVelocity(config, dq);
   limits |= LimitSpeed(config, J_E_B, dq);
   const model::VecN ddq = limits == 0 ? wish.ddq : model::VecN::Zero(dq.size());
+  if (wish.stops && limits != 0) {
+    dq.setZero();
+  }
 
   // The largest share of the wish from which a stop is proved, found by halving; the last try is braking.
   constexpr int kTries = 5;

@@ -39,7 +39,7 @@ struct StandingMotion {
   double most_mm = 0.0;
   double beyond_stop_mm = 0.0;  // of it, what no stop from the speed that it had explains
   double most_m_per_s = 0.0;
-  double gained_m_per_s = 0.0;  // more than it had when the mode began
+  double gained_m_per_s = 0.0;  // more than it had, or was coming to, when the mode began
 };
 
 // Ticks in which the arm touched something.

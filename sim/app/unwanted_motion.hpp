@@ -2,9 +2,11 @@
 // Hold and Fault, from where each began.
 //
 // Hold and Fault may begin in motion. Some way is needed to stop then: at most as far as the hand goes in the
-// time of the stop at the speed that it had. What it went beyond that is told apart.
+// time of the stop at the speed that it had, or was coming to before its acceleration is turned round. What
+// it went, or got faster, beyond that is told apart.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,6 +37,8 @@ class UnwantedMotion {
 
  private:
   [[nodiscard]] double StopTime(hal::Mode mode, const Eigen::VectorXd& dq) const;
+  [[nodiscard]] double TurnTime(hal::Mode mode) const;
+  [[nodiscard]] double Acceleration() const;
 
   StopRules rules_;
   std::map<std::string, StandingMotion> by_mode_;
@@ -42,8 +46,8 @@ class UnwantedMotion {
   StandingMotion* now_ = nullptr;  // of the mode that lasts; none where the arm may move
   Eigen::Vector3d p_start_ = Eigen::Vector3d::Zero();
   double speed_start_ = 0.0;
-  double stop_mm_ = 0.0;  // what the stop from there may take
-  std::optional<Eigen::Vector3d> p_before_;
+  double stop_mm_ = 0.0;           // what the stop from there may take
+  std::deque<Eigen::Vector3d> p_;  // of the last steps, newest last
   double speed_before_ = 0.0;
 };
 

@@ -185,6 +185,15 @@ TEST(UnwantedMotionTest, WhatAStopTakesIsToldApart) {
   EXPECT_NEAR(unwanted.by_mode().at("hold").most_mm, 200.0, 1e-9);
   EXPECT_NEAR(unwanted.by_mode().at("hold").beyond_stop_mm, 200.0 - 120.0, 1e-9);
   EXPECT_NEAR(unwanted.by_mode().at("fault").beyond_stop_mm, 200.0 - 150.0, 1e-9);
+  EXPECT_NEAR(unwanted.by_mode().at("hold").gained_m_per_s, 0.0, 1e-9);
+  // While it accelerates by 5 m/s^2: 0.02 s to turn that round leave it 0.05 m/s faster.
+  UnwantedMotion accelerating(Rules());
+  x = 0.0;
+  for (std::int64_t i = 0; i <= 120; ++i) {
+    x += 1e-3 * 5e-3 * static_cast<double>(i);
+    accelerating.Add(StandingAt(i, {x, 0.0, 0.5}), i < 100 ? hal::Mode::kTrack : hal::Mode::kHold);
+  }
+  EXPECT_NEAR(accelerating.by_mode().at("hold").gained_m_per_s, 0.6 - 0.495 - 0.05, 1e-6);
 }
 
 TEST(UnwantedMotionTest, IsFromWhereTheModeBegan) {

@@ -106,6 +106,22 @@ TEST_F(VerdictTest, AMovingTargetIsJudgedOverTheSecondHalf) {
   EXPECT_NEAR(*s.tracking_error_px_rms, 3.1, 1e-9);
 }
 
+// A target that moves is kept while its error is within the bound over half a second: a sample beyond it is
+// none.
+TEST_F(VerdictTest, AMovingTargetIsKeptAsAMeanOverHalfASecond) {
+  config_.target_moves = true;
+  const double px = kGoalZ / config_.pinhole.f_px;
+  const Summary kept = Judge(3.0, [&](double t) {
+    const bool peak = std::fmod(t, 0.1) < 0.01;
+    return Eigen::Vector3d((t < 1.0 ? 50.0 : peak ? 5.0 : 1.0) * px, 0, 0);
+  });
+  ASSERT_TRUE(kept.end.goal_kept_since_s.has_value());
+  EXPECT_NEAR(*kept.end.goal_kept_since_s, 1.5, 0.02);
+  const Summary lost =
+      Judge(3.0, [&](double t) { return Eigen::Vector3d((t < 2.4 ? 1.0 : 3.1) * px, 0, 0); });
+  EXPECT_FALSE(lost.end.goal_kept_since_s.has_value());
+}
+
 TEST_F(VerdictTest, EveryLimitThatIsBrokenIsCounted) {
   // In one tick; how often it counts.
   const auto violations = [&](const char* name, const std::function<void(Truth&)>& change) {

@@ -249,7 +249,7 @@ TEST_F(FollowMotionTest, AnArmThatStaysOffItsMotionHolds) {
               << " ms\n";
     return off;
   };
-  EXPECT_GT(run(2.0, 2000), 1e-3);
+  EXPECT_GT(run(1.0, 2000), 1e-3);
   EXPECT_EQ(record().mode, Mode::kHold) << "what is asked for on and on is not taken up again";
   EXPECT_EQ(record().hold_reason, HoldReason::kNotFollowed);
   EXPECT_EQ(record().fault, hal::Fault::kNone);

@@ -206,8 +206,8 @@ TEST(GuardMotionTest, JointsThatStopTogetherDoNotThrowTheHand) {
   int latest = 0;
   for (int k = 0; k < test::Repetitions(300); ++k) {
     Walker together(config, test::Ready());
-    const model::VecN wish = random.Joints(config.arm, 2.0);
-    for (int tick = 0; tick < 150; ++tick) {
+    const model::VecN wish = random.Joints(config.arm, 1.5);
+    for (int tick = 0; tick < 450; ++tick) {  // so long that they have come to their speeds
       together.Step(wish);
     }
     Walker alone = together;
@@ -237,7 +237,7 @@ TEST(GuardMotionTest, JointsThatStopTogetherDoNotThrowTheHand) {
   std::cout << "the hand gains at most " << most_gained << " m/s, joint by joint " << most_gained_alone
             << " m/s; at rest at most " << latest << " ms later\n";
   EXPECT_LT(most_gained, 0.03);
-  EXPECT_GT(most_gained_alone, 0.1) << "else this shows nothing";
+  EXPECT_GT(most_gained_alone, 0.06) << "else this shows nothing";
   EXPECT_LE(latest, 30);
 }
 

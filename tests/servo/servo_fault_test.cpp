@@ -128,6 +128,45 @@ TEST_F(FaultTest, NonFiniteSensorIsBridgedThenLatched) {
   ExpectResetWorks();
 }
 
+// A velocity that no motor can have made in the time is no reading: bridged, then a fault. What it is called
+// follows from whether the joint went on.
+TEST_F(FaultTest, AVelocityThatJumpsIsBridgedThenLatched) {
+  const int bridged = config_.safety.non_finite_ticks;
+  for (const bool hangs : {true, false}) {
+    Start(config_);
+    Run(500);
+    ASSERT_EQ(outputs_.record.mode, Mode::kTrack);
+    Eigen::Index joint = 0;
+    ASSERT_GT(arm_->dq().cwiseAbs().maxCoeff(&joint), 0.1);
+    const auto k = static_cast<std::size_t>(joint);
+    const double q = arm_->State().q[k];
+    const auto spoil = [&](ServoInputs& inputs) {
+      inputs.arm.dq[k] = 0.0;
+      inputs.arm.q[k] = hangs ? q : inputs.arm.q[k];
+    };
+    for (int i = 0; i < bridged; ++i) {
+      const double before = outputs_.command().tau_cmd[k];
+      EXPECT_EQ(Tick(spoil).fault, Fault::kNone) << "tick " << i;
+      EXPECT_NEAR(outputs_.command().tau_cmd[k], before, 0.5) << "the law does not believe it";
+    }
+    Tick();
+    EXPECT_EQ(outputs_.record.fault, Fault::kNone) << "it was a moment";
+    for (int i = 0; i < 100; ++i) {
+      Tick();
+    }
+    const double there = arm_->State().q[k];
+    ASSERT_GT(std::fabs(arm_->dq()[joint]), 0.06);
+    for (int i = 0; i <= bridged; ++i) {
+      Tick([&](ServoInputs& inputs) {
+        inputs.arm.dq[k] += 0.5;
+        inputs.arm.q[k] = hangs ? there : inputs.arm.q[k];
+      });
+    }
+    EXPECT_EQ(outputs_.record.fault, hangs ? Fault::kArmStale : Fault::kJointVelocity);
+    EXPECT_EQ(outputs_.record.fault_joint, joint);
+  }
+}
+
 TEST_F(FaultTest, NonFiniteFeature) {
   Tick([&](ServoInputs& inputs) {
     inputs.has_feature = true;
@@ -196,7 +235,8 @@ TEST_F(FaultTest, AStopThatIsPulledOnEndsInTheBrakes) {
   for (const double ddq : {0.0, 5.0}) {
     Start(config);
     Run(500);
-    Tick([](ServoInputs& inputs) { inputs.arm.dq[2] = -2.2; });
+    Tick([&](ServoInputs& inputs) { inputs.missed_ticks = config.safety.missed_ticks; });
+    ASSERT_EQ(outputs_.record.fault, Fault::kDeadlineMissed);
     int ticks = 0;
     for (; ticks < 3000 && !outputs_.command().engage_brakes; ++ticks) {
       arm_->SetVelocity(arm_->dq() + 1e-3 * ddq * model::VecN::Unit(7, 1));

@@ -19,7 +19,8 @@ namespace fovea::servo {
 
 struct EncoderWatch {
   struct Joint {
-    double mean = 0.0;  // of the observer's residual [Nm, N]
+    double residual = 0.0;  // of the observer, in the tick before [Nm, N]
+    double mean = 0.0;      // of what pushes it [Nm, N]
     // Since its reading last changed
     std::int32_t ticks = 0;
     double q = 0.0;            // that reading [rad, m]

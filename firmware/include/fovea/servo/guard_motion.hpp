@@ -24,6 +24,8 @@ namespace fovea::servo {
 struct MotionWish {
   model::VecN dq;   // [num_joints]
   model::VecN ddq;  // [num_joints]
+  bool stops =
+      false;  // it leads to rest: where a limit acts, each joint brakes for itself, as hard as it may
 
   // A velocity to stay at, as far as anybody knows.
   static MotionWish Velocity(const model::VecN& dq) noexcept {
