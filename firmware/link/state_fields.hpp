@@ -53,6 +53,8 @@ void InputStateFields(Archive& a, T& s) noexcept {
   a.Int(s.bad_ticks);
   a.Int(s.sound_ticks);
   a.Int(s.non_finite_ticks);
+  a.Int(s.jumps);
+  a(s.jumped);
   EachOf(a, s.q);
   EachOf(a, s.dq);
   EachOf(a, s.tau_applied);
@@ -223,6 +225,7 @@ void ReferenceFields(Archive& a, T& r) noexcept {
 template <class Archive, class T>
 void MotionStateFields(Archive& a, T& m) noexcept {
   MotionFields(a, m.goal);
+  MotionFields(a, m.done);
   a(m.start_ns);
   PoseFields(a, m.X_BE);
   ResolvedFields(a, m.resolved);

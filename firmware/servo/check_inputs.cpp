@@ -83,6 +83,7 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
     }
     return {};
   }
+  state.non_finite_ticks = 0;
   for (int i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config.arm.joints[k];
@@ -95,22 +96,23 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
     }
   }
   const hal::JointArray dq = state.dq;
-  const double since_s = elapsed_s * (1.0 + state.non_finite_ticks);
+  const double since_s = elapsed_s * (1.0 + 0.5 * state.jumps);
   const std::int32_t jumps =
       before.has_state ? BridgeVelocityJumps(config.arm, since_s, before.dq, state.dq) : -1;
-  if (jumps >= 0) {
+  state.jumped = jumps >= 0;
+  state.jumps = std::max(state.jumps + (state.jumped ? 2 : -1), 0);
+  if (state.jumped) {
     state.sound_ticks = 0;
-    state.non_finite_ticks += 1;
-    if (state.non_finite_ticks > safety.non_finite_ticks) {
+    if (state.jumps > 2 * safety.non_finite_ticks) {
       const auto k = static_cast<std::size_t>(jumps);
       const bool stays = std::fabs(state.q[k] - before.q[k]) < 0.5 * std::fabs(before.dq[k]) * elapsed_s;
-      state.non_finite_ticks = 0;
+      state.jumps = 0;
+      state.jumped = false;
       state.dq = dq;  // from now on this is how fast it is
       return {stays ? hal::Fault::kArmStale : hal::Fault::kJointVelocity, jumps};
     }
     return {};
   }
-  state.non_finite_ticks = 0;
   state.sound_ticks += 1;
   return {};
 }

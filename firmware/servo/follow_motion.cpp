@@ -125,11 +125,27 @@ bool TakeGoal(const ServoConfig& config, const MotionCommand& command, std::int6
   return planned;
 }
 
+MotionCommand Resolved(const ServoConfig& config, const MotionCommand& asked) noexcept {
+  return asked.kind == MotionKind::kHome ? HomeOf(config.arm) : asked;
+}
+
+void Arrive(MotionState& state) noexcept {
+  state.done = state.goal;
+  state.Stop();
+}
+
 }  // namespace
+
+bool IsReached(const ServoConfig& config, const MotionCommand& asked, MotionState& state) noexcept {
+  if (state.done.kind != MotionKind::kNone && !SameGoal(Resolved(config, asked), state.done)) {
+    state.done.kind = MotionKind::kNone;
+  }
+  return state.done.kind != MotionKind::kNone;
+}
 
 hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& asked, std::int64_t now_ns,
                            MotionState& state, Reference& reference) noexcept {
-  const MotionCommand command = asked.kind == MotionKind::kHome ? HomeOf(config.arm) : asked;
+  const MotionCommand command = Resolved(config, asked);
   state.refused = false;
   switch (command.kind) {
     case MotionKind::kNone: break;
@@ -157,12 +173,12 @@ hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& asked
     state.joints.At(t, next);
     limits = TakeReference(config, next, state, reference);
     if (t >= state.joints.Duration()) {
-      state.Stop();
+      Arrive(state);
     }
   } else if (state.goal.kind == MotionKind::kPoseGoal) {
     limits = FollowPose(config, PoseAt(state.X_BE, state.pose, t), state.refused, state.resolved, reference);
     if (t >= state.pose.Duration() && StandsAt(config, state.X_BE, reference)) {
-      state.Stop();
+      Arrive(state);
     }
     state.refused = state.refused || t > state.pose.Duration() + kLateS;
   } else {

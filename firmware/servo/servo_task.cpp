@@ -85,7 +85,8 @@ void ServoTask::ComputeModel() noexcept {
 
 // While the servo drives the arm; a floating arm is there to be pushed.
 void ServoTask::CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept {
-  const bool sound = missed_ticks == 0 && state_.inputs.bad_ticks == 0 && state_.inputs.non_finite_ticks == 0;
+  const bool sound = missed_ticks == 0 && state_.inputs.bad_ticks == 0 &&
+                     state_.inputs.non_finite_ticks == 0 && !state_.inputs.jumped;
   const bool drives = state_.mode.mode != hal::Mode::kFault &&
                       (state_.mode.mode != hal::Mode::kBoot || state_.holds) &&
                       state_.law_state.kind != MotionLawKind::kFloat;
@@ -147,7 +148,9 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
       static_cast<double>(state_.blocked_ns) > config_.law.unreachable_s * kSecondNs;
   mode_inputs.target_moved = (state_.prediction.p_BO - state_.p_BO_unreachable).norm() > kTargetMovedM;
   mode_inputs.eye_doubted = state_.eye.doubted;
-  mode_inputs.motion_asked = inputs.motion.kind != MotionKind::kNone || state_.motion.IsUnderWay();
+  const bool asks =
+      inputs.motion.kind != MotionKind::kNone && !IsReached(config_, inputs.motion, state_.motion);
+  mode_inputs.motion_asked = asks || state_.motion.IsUnderWay();
   mode_inputs.motion_refused = state_.motion.refused;
   mode_inputs.motion_not_followed = state_.motion.off.lpNorm<Eigen::Infinity>() > config_.safety.motion_error;
   mode_inputs.fault = check.fault;
@@ -377,8 +380,8 @@ void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
 
 void ServoTask::StopDamped() noexcept {
   // A damped stop needs true velocities; without them only the brakes are left.
-  const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 || state_.blind ||
-                     state_.mode.fault == hal::Fault::kArmStale;
+  const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 ||
+                     state_.inputs.jumped || state_.blind || state_.mode.fault == hal::Fault::kArmStale;
   const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
   // Nor does damping stop a joint whose motor is dead, or that is pushed: the arm gets faster again, or no
   // slower.

@@ -14,6 +14,8 @@ namespace {
 using Kind = LimitBook::Kind;
 using Value = std::optional<double>;
 
+constexpr double kReboundLeft =
+    0.99;  // of what an arm springs back by, after a step: 2.5 time constants of the law
 constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 // From a point to the surface of plane or box, below 0 within [m]. (Not the servo's own: what it is judged by
@@ -59,16 +61,18 @@ void AddJoints(const model::ArmModel& arm, std::vector<TruthBarrier>& list) {
                : (step.now.tau_cmd[i] - step.before->tau_cmd[i]) / (joint.dtau_max * kStepS);
   });
   // No servo can help it that an arm falls whose motor is dead. A joint is too fast only where it would have
-  // been so without what disturbed it, too.
+  // been so, in the same direction, without what disturbed it: what works against the fall is no fault,
+  // and it springs back as it was pulled when it is let go.
   list.push_back({"true_joint_acceleration", Kind::kShare, [arm](const TruthStep& step) -> Value {
                     if (!step.mean_ddq) {
                       return std::nullopt;
                     }
                     return LargestOf(arm, [&](const model::Joint& joint, int i) {
                       const double ddq = (*step.mean_ddq)[i];
-                      const double own =
-                          ddq - (step.mean_ddq_disturbed.size() > 0 ? step.mean_ddq_disturbed[i] : 0.0);
-                      return std::min(std::fabs(ddq), std::fabs(own)) / joint.ddq_max;
+                      const auto of = [i](const Eigen::VectorXd& v) { return v.size() > 0 ? v[i] : 0.0; };
+                      const double own = ddq - of(step.mean_ddq_disturbed);
+                      const double counts = std::min(std::fabs(ddq), std::fabs(own)) - of(step.rebound);
+                      return ddq * own <= 0.0 ? 0.0 : std::max(counts, 0.0) / joint.ddq_max;
                     });
                   }});
   // A legal step of the torque on a light wrist is more than the legal jerk: that is shown, not judged.
@@ -153,7 +157,7 @@ void TruthBarriers::Add(const Truth& truth, hal::Mode mode) {
     dq_.erase(dq_.begin());
     ddq_disturbed_.erase(ddq_disturbed_.begin());
   }
-  TruthStep step{truth, before_ ? &*before_ : nullptr, {}, {}, {}, {}};
+  TruthStep step{truth, before_ ? &*before_ : nullptr, {}, {}, {}, {}, {}};
   const std::size_t n = dq_.size();
   if (n == kMeanTicks + 1) {
     step.mean_ddq = (dq_.back() - dq_.front()) / (kMeanTicks * kStepS);
@@ -167,6 +171,13 @@ void TruthBarriers::Add(const Truth& truth, hal::Mode mode) {
     }
     step.ddq = (dq_[n - 1] - dq_[n - 2]) / kStepS;
     step.ddq_before = (dq_[n - 2] - dq_[n - 3]) / kStepS;
+  }
+  if (truth.ddq_disturbed.size() > 0) {
+    const Eigen::VectorXd now = truth.ddq_disturbed.cwiseAbs();
+    rebound_ = rebound_.size() > 0 ? Eigen::VectorXd((kReboundLeft * rebound_).cwiseMax(now)) : now;
+  } else {
+    rebound_ *= kReboundLeft;
+    step.rebound = rebound_;
   }
   for (const Listed& listed : list_) {
     if (const std::optional<double> value = listed.barrier.value(step)) {

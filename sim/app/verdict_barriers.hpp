@@ -33,6 +33,7 @@ struct TruthStep {
   // where the servo was in Fault within that time.
   std::optional<Eigen::VectorXd> mean_ddq;
   Eigen::VectorXd mean_ddq_disturbed;  // what of it disturbances alone did; no entries: nothing
+  Eigen::VectorXd rebound;  // and what of it may be the springing back of what they did before; as above
   std::optional<Eigen::VectorXd> ddq;
   std::optional<Eigen::VectorXd> ddq_before;
 };
@@ -66,6 +67,7 @@ class TruthBarriers {
   LimitBook book_;
   std::vector<Eigen::VectorXd> dq_;             // of the last steps outside Fault, newest last
   std::vector<Eigen::VectorXd> ddq_disturbed_;  // and what disturbances did in them
+  Eigen::VectorXd rebound_;                     // of those that are over, fading; no entries: there was none
   std::optional<Truth> before_;
 };
 

@@ -153,9 +153,23 @@ TEST_F(VerdictBarriersTest, WhatADisturbanceDoesIsNotTheServosAcceleration) {
   EXPECT_THAT(with(-40.0, -40.0).violations, IsEmpty());
   EXPECT_NEAR(with(-40.0, -30.0).limits.at("true_joint_acceleration"), 10.0 / 15.0, 1e-9);
   EXPECT_THAT(with(-40.0, -24.0).violations, ElementsAre(Pair("true_joint_acceleration", 31)));
+  EXPECT_THAT(with(-40.0, -80.0).violations, IsEmpty()) << "it works against the fall";
   EXPECT_THAT(with(16.0, -40.0).violations, ElementsAre(Pair("true_joint_acceleration", 31)))
       << "against what pulls";
   EXPECT_THAT(with(0.0, -40.0).violations, IsEmpty()) << "it is held";
+  // Let go it springs back, and that fades.
+  const auto let_go = [&](std::int64_t at) {
+    double dq = 0.0;
+    return Judge([&, at](auto k, Truth& t) {
+      dq += k > at && k <= at + 15 ? 1e-3 * 20.0 : 0.0;
+      t.dq[0] = dq;
+      if (k <= 20) {
+        t.ddq_disturbed.setConstant(7, -10.0);
+      }
+    });
+  };
+  EXPECT_THAT(let_go(21).violations, IsEmpty());
+  EXPECT_THAT(let_go(85).violations, ElementsAre(Pair("true_joint_acceleration", 6)));
 }
 
 StopRules Rules() {

@@ -30,9 +30,9 @@ static_assert(sizeof(servo::EyeWatch) == 184);
 static_assert(sizeof(servo::ModeState) == 5);
 static_assert(sizeof(servo::WayToGoal) == 800);
 static_assert(sizeof(servo::ResolvedMotion) == 88);
-static_assert(sizeof(servo::MotionState) == 15856);
+static_assert(sizeof(servo::MotionState) == 16160);
 static_assert(sizeof(servo::MotionLawState) == 232);
-static_assert(sizeof(servo::ServoState) == 82192);
+static_assert(sizeof(servo::ServoState) == 82496);
 
 using Buffer = std::vector<std::uint8_t>;
 

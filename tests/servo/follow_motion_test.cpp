@@ -227,9 +227,8 @@ TEST_F(FollowMotionTest, WhatIsNoMotionIsRefusedAndTheArmStops) {
   }
 }
 
-// Something hangs on the arm that nobody told the servo of: it sags, and a motion asked for again and again
-// would never come to its end. It ends when the arm is too far off on the whole; a push that passes does not
-// end it.
+// Something hangs on the arm that nobody told the servo of, and it sags. The motion ends when the arm is too
+// far off on the whole; a push that passes does not end it.
 TEST_F(FollowMotionTest, AnArmThatStaysOffItsMotionHolds) {
   ServoConfig config = test::PandaConfig();
   config.safety.motion_error = 1e-3;
@@ -241,7 +240,7 @@ TEST_F(FollowMotionTest, AnArmThatStaysOffItsMotionHolds) {
       if (i < ticks) {
         arm_->SetVelocity(arm_->dq() + 1e-3 * ddq * model::VecN::Unit(7, 1));
       }
-      moved += Tick(JointGoal(ready)).mode == Mode::kMove ? 1 : 0;
+      moved += Tick(Joints(MotionKind::kJointSetpoint, ready)).mode == Mode::kMove ? 1 : 0;
     }
     const double off = (ready - arm_->q()).lpNorm<Eigen::Infinity>();
     std::cout << "pulled by " << ddq << " rad/s^2 for " << ticks << " ms: off by " << off << " rad, "
@@ -254,11 +253,39 @@ TEST_F(FollowMotionTest, AnArmThatStaysOffItsMotionHolds) {
   EXPECT_EQ(record().hold_reason, HoldReason::kNotFollowed);
   EXPECT_EQ(record().fault, hal::Fault::kNone);
   Tick({});
-  EXPECT_EQ(Tick(JointGoal(ready)).mode, Mode::kMove) << "asked for anew it is";
+  EXPECT_EQ(Tick(Joints(MotionKind::kJointSetpoint, ready)).mode, Mode::kMove) << "asked for anew it is";
   run(2.0, 50);
   EXPECT_EQ(record().mode, Mode::kMove);
   EXPECT_LT(run(0.5, 2000), 1e-3);
   EXPECT_EQ(record().mode, Mode::kMove);
+}
+
+// A goal may be asked for in every tick: reached, it is done, and not begun anew until something else was
+// asked for.
+TEST_F(FollowMotionTest, AGoalThatWasReachedIsDoneThoughItIsAskedForOn) {
+  const model::VecN ready = test::Ready();
+  model::VecN there = ready;
+  there[0] += 0.2;
+  MotionCommand home;
+  home.kind = MotionKind::kHome;
+  const auto ask = [&](const MotionCommand& command) {
+    int moved = 0;
+    for (int i = 0; i < 3000; ++i) {
+      moved += Tick(command).mode == Mode::kMove ? 1 : 0;
+    }
+    EXPECT_EQ(record().mode, Mode::kHold);
+    EXPECT_EQ(record().hold_reason, HoldReason::kMotionDone);
+    return moved;
+  };
+  EXPECT_GT(ask(JointGoal(there)), 100);
+  EXPECT_EQ(ask(JointGoal(there)), 0);
+  EXPECT_GT(ask(home), 100);
+  EXPECT_LT((Reference() - ready).norm(), 1e-9);
+  EXPECT_EQ(ask(home), 0);
+  EXPECT_GT(ask(Pose(MotionKind::kPoseGoal, PoseOf(there).p, model::RotationVector(PoseOf(there).R))), 100);
+  Tick({});
+  EXPECT_GT(ask(Pose(MotionKind::kPoseGoal, PoseOf(there).p, model::RotationVector(PoseOf(there).R))), 0)
+      << "asked for anew";
 }
 
 // A goal in reach whose way leads out of the workspace is begun, stopped inside and refused.

@@ -179,6 +179,19 @@ TEST_F(FaultJudge, WhateverIsPassedByTheTruthFails) {
   EXPECT_THAT(Judged().exceeded, ElementsAre("joint_velocity")) << "once";
 }
 
+TEST_F(FaultJudge, AMotionThatGoesOnWithAFaultThatNeverEndsIsNoUndefinedState) {
+  end()["mode"] = "move";
+  end()["goal_kept_since_s"] = nullptr;
+  run_["path_error_mm_max"] = 1.8;
+  EXPECT_EQ(Judged().end, End::kUndefined) << "the fault is over";
+  run_["injected"][0]["to_s"] = 6.0;
+  EXPECT_EQ(Judged().end, End::kGoesOn);
+  EXPECT_EQ(Judged().off_mm, 1.8);
+  EXPECT_FALSE(Judged().Failed());
+  run_["path_error_mm_max"] = nullptr;
+  EXPECT_EQ(Judged().end, End::kUndefined) << "it follows no way";
+}
+
 TEST_F(FaultJudge, AnArmThatMovesWhereItShouldStandFails) {
   for (const StandBound& bound : kStandBounds) {
     json& motion = run_["unwanted_motion"][bound.mode];

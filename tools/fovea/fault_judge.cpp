@@ -163,6 +163,10 @@ void JudgeEnd(const json& run, const json& with, Outcome& outcome) {
              run.at("sim_time_s").get<double>() - kept_since_s.get<double>() >= kKeptS) {
     outcome.end = End::kRecovered;
     outcome.recovered_after_s = std::max(kept_since_s.get<double>() - with.at("to_s").get<double>(), 0.0);
+  } else if (mode == "move" && run.at("path_error_mm_max").is_number() &&
+             with.at("to_s").get<double>() >= run.at("sim_time_s").get<double>()) {
+    outcome.end = End::kGoesOn;
+    outcome.off_mm = run.at("path_error_mm_max").get<double>();
   } else {
     outcome.end = mode == "hold" && rests ? End::kHeld : End::kUndefined;
   }
@@ -171,7 +175,7 @@ void JudgeEnd(const json& run, const json& with, Outcome& outcome) {
 }  // namespace
 
 const char* Name(End end) {
-  constexpr std::array kNames{"recovered", "safe stop", "held", "undefined"};
+  constexpr std::array kNames{"recovered", "safe stop", "held", "goes on", "undefined"};
   return kNames[static_cast<std::size_t>(end)];
 }
 

@@ -15,6 +15,7 @@ enum class End {
   kRecovered,  // the goal is kept again, for half a second at least
   kSafeStop,   // in Fault, brakes closed, at rest
   kHeld,       // in Hold, at rest
+  kGoesOn,     // the fault never ends, and the motion goes on with it, off its way within safety.motion_error
   kUndefined,  // none of these
 };
 const char* Name(End end);
@@ -46,7 +47,8 @@ struct Outcome {
   std::vector<std::string> too_far;      // in words: those beyond their bound
   std::uint64_t contact_ticks = 0;       // with bench, target or itself
   End end = End::kUndefined;
-  std::string end_detail;  // mode and reason at the end
+  std::string end_detail;        // mode and reason at the end
+  std::optional<double> off_mm;  // of a motion that goes on: the most that it was off its way
   std::optional<double>
       recovered_after_s;  // from the fault's end until the goal is kept; 0: it was throughout
 

@@ -157,6 +157,7 @@ Totals Sum(const Matrix& matrix) {
     totals.recovered += o.end == End::kRecovered ? 1 : 0;
     totals.stopped += o.end == End::kSafeStop ? 1 : 0;
     totals.held += o.end == End::kHeld ? 1 : 0;
+    totals.gone_on += o.end == End::kGoesOn ? 1 : 0;
     totals.touched += o.contact_ticks > 0 ? 1 : 0;
     totals.noticed += o.ticks ? 1 : 0;
     if (o.ticks && (totals.slowest == nullptr || *o.ticks > *totals.slowest->outcome.ticks)) {

@@ -52,6 +52,7 @@ struct Totals {
   int recovered = 0;
   int stopped = 0;
   int held = 0;
+  int gone_on = 0;
   int touched = 0;  // in which the arm touched bench, target or itself
   int noticed = 0;
   const Cell* slowest = nullptr;                    // to be noticed; none when nothing was

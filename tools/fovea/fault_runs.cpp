@@ -24,7 +24,7 @@ constexpr std::chrono::seconds kRunLimit{900};  // of wall time; a run takes som
 json Excerpt(const json& summary) {
   json excerpt;
   for (const char* key : {"verdict", "modes", "injected", "end", "limits", "violations", "unwanted_motion",
-                          "contact_ticks", "sim_time_s"}) {
+                          "contact_ticks", "sim_time_s", "path_error_mm_max"}) {
     excerpt[key] = summary.at(key);
   }
   return excerpt;

@@ -75,6 +75,8 @@ std::string EndInWords(const Outcome& o) {
     words = fmt::format("UNDEFINED: {}", o.end_detail);
   } else if (o.end == End::kHeld) {
     words = o.end_detail;
+  } else if (o.end == End::kGoesOn) {
+    words = fmt::format("goes on, {:.1f} mm off", *o.off_mm);
   }
   if (o.recovered_after_s && *o.recovered_after_s > 0.0) {
     words += fmt::format(" {:.1f} s", *o.recovered_after_s);
@@ -91,8 +93,9 @@ std::string EndInWords(const Outcome& o) {
 std::vector<std::string> TotalsInWords(const Matrix& matrix) {
   const Totals t = Sum(matrix);
   std::vector<std::string> lines{
-      fmt::format("{} cells: {} recovered, {} safe stops, {} held, {} undefined; a limit exceeded in {}",
-                  matrix.cells.size(), t.recovered, t.stopped, t.held, t.undefined, t.exceeded),
+      fmt::format(
+          "{} cells: {} recovered, {} safe stops, {} held, {} went on, {} undefined; a limit exceeded in {}",
+          matrix.cells.size(), t.recovered, t.stopped, t.held, t.gone_on, t.undefined, t.exceeded),
       fmt::format("the arm moved too far or too fast while it should have stood in {}", t.moved),
       fmt::format("noticed in {}, slowest after {} ticks ({})", t.noticed,
                   t.slowest != nullptr ? *t.slowest->outcome.ticks : 0,
@@ -158,6 +161,7 @@ std::string ToJson(const Matrix& matrix) {
                      {"contact_ticks", o.contact_ticks},
                      {"end", Name(o.end)},
                      {"end_detail", o.end_detail},
+                     {"off_mm", o.off_mm ? Json(*o.off_mm) : Json(nullptr)},
                      {"recovered_after_s", o.recovered_after_s ? Json(*o.recovered_after_s) : Json(nullptr)},
                      {"command", cell.command}});
   }
@@ -167,6 +171,7 @@ std::string ToJson(const Matrix& matrix) {
   json["recovered"] = t.recovered;
   json["safe_stops"] = t.stopped;
   json["held"] = t.held;
+  json["gone_on"] = t.gone_on;
   json["undefined"] = t.undefined;
   json["exceeded"] = t.exceeded;
   json["moved_too_far"] = t.moved;

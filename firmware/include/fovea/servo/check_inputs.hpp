@@ -11,13 +11,14 @@ namespace fovea::servo {
 
 struct InputState {
   bool has_state = false;
+  bool jumped = false;        // a velocity of this tick did: the last one before stands for it
   std::int64_t stamp_ns = 0;  // of the last sound state
   std::uint64_t sequence = 0;
-  int bad_ticks = 0;    // in a row without a new sound state
-  int sound_ticks = 0;  // in a row with one
-  int non_finite_ticks =
-      0;                // in a row with a joint value that is no number, or a velocity that no motor makes
-  hal::JointArray q{};  // last finite values
+  int bad_ticks = 0;         // in a row without a new sound state
+  int sound_ticks = 0;       // in a row with one
+  int non_finite_ticks = 0;  // in a row with a joint value that is no number
+  int jumps = 0;             // twice the ticks with a velocity that jumps, less those without
+  hal::JointArray q{};       // last finite values
   hal::JointArray dq{};
   hal::JointArray tau_applied{};
 };

@@ -18,6 +18,7 @@ namespace fovea::servo {
 
 struct MotionState {
   MotionCommand goal;  // the one under way, kNone when there is none
+  MotionCommand done;  // the last one that came to its end, while it is asked for on; else kNone
   std::int64_t start_ns = 0;
   JointMove joints;
   model::Pose X_BE;         // a pose goal's
@@ -30,6 +31,11 @@ struct MotionState {
   [[nodiscard]] bool IsUnderWay() const noexcept { return goal.kind != MotionKind::kNone; }
   void Stop() noexcept { goal.kind = MotionKind::kNone; }
 };
+
+// Whether `asked` is the goal that was reached, and has been asked for ever since: it is not begun again.
+// Another command makes `state` forget it. Real-time: yes.
+[[nodiscard]] bool IsReached(const ServoConfig& config, const MotionCommand& asked,
+                             MotionState& state) noexcept;
 
 // One tick of a commanded motion: moves `reference` on. Returns the limits that acted or forbade it; where
 // they, or a command that is none, forbid it, `state.refused` is set and the reference brakes.
