@@ -70,7 +70,9 @@ GuardRow RowOf(hal::Fault fault) {
           "an arm whose stamps stand still or go back; for `safety.non_finite_ticks` and more, a joint whose "
           "reading "
           "stays within a step of its encoder (`safety.encoder_quantum`) although torque, or its velocity, "
-          "should have moved it by three; one whose velocity jumps, and that stays where it is",
+          "should have moved it by three; one whose velocity jumps, and that stays where it is; one whose "
+          "velocity has flickered, and that repeats itself "
+          "to the last bit (`safety.frozen_ticks`)",
           kBrake};
     case hal::Fault::kNonFiniteSensor:
       return {"a joint value that is no number; until then the last one that was", kBrake};
@@ -81,8 +83,10 @@ GuardRow RowOf(hal::Fault fault) {
     case hal::Fault::kJointVelocity:
       return {
           "a joint measured faster than it may be, or 0.02 rad further than that allows from one state to "
-          "the next; in Boot, faster than half of that; a velocity that goes on to differ from the last by 0.05 "
-          "rad/s beyond what twice the joint's largest acceleration makes, for `safety.non_finite_ticks` the last "
+          "the next; in Boot, faster than half of that; a velocity that goes on to differ from the last by "
+          "0.02 "
+          "rad/s beyond what twice the joint's largest acceleration makes, for `safety.non_finite_ticks` the "
+          "last "
           "one is believed",
           kStop};
     case hal::Fault::kNotFollowing: return {"a joint too far from its reference", kStop};
@@ -103,8 +107,10 @@ std::string GuardTableAsMarkdown() {
       "one the "
       "servo coasts\n(`servo.stale_s`), then holds (`servo.coast_s`). A damped stop in which the arm gets "
       "faster "
-      "again, or slower\nby less than a third of what the damping should do, is given up for the brakes. A commanded "
-      "motion that the arm does\nnot follow ends in Hold (`safety.motion_error`). Each row is provoked in closed loop by `guard_test`.\n";
+      "again, or slower\nby less than a third of what the damping should do, is given up for the brakes. A "
+      "commanded "
+      "motion that the arm does\nnot follow ends in Hold (`safety.motion_error`). Each row is provoked in "
+      "closed loop by `guard_test`.\n";
   const auto head = [&](const char* title) {
     text +=
         fmt::format("\n## {}\n\n| name | watches | key | default | then |\n|---|---|---|---|---|\n", title);

@@ -217,6 +217,10 @@ void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
       "safety.encoder_quantum", c.encoder_quantum, 0.0, 0.1, "rad",
       "steps of a joint's reading; one that stays the same while torque should have moved the joint by "
       "three of them: Fault");
+  keys.Integer(
+      "safety.frozen_ticks", c.frozen_ticks, 0, 10000, "ms",
+      "a joint whose velocity has been seen to flicker repeats its reading to the last bit for so long: "
+      "Fault; 0: it may");
   keys.Number("safety.setpoint_jump", c.setpoint_jump, 0.0, 1e3, "rad",
               "commanded setpoints start this close to where the arm stands, and go on so");
   keys.Number("safety.following_error", c.following_error, 1e-4, 10.0, "rad",

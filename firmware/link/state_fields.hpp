@@ -72,6 +72,12 @@ void EncoderWatchFields(Archive& a, T& w) noexcept {
     a(joint.speed);
     a(joint.way);
     a(joint.travel);
+    a(joint.q_last);
+    a(joint.dq_last);
+    a(joint.change_last);
+    a.Int(joint.flickers);
+    a.Int(joint.same_ticks);
+    a(joint.is_noisy);
   }
 }
 

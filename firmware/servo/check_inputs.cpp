@@ -6,22 +6,24 @@
 namespace fovea::servo {
 namespace {
 
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kJump = 0.02;  // a position may be off by so much, beside what speed there is for [rad, m]
-constexpr double kVelocityJump = 0.05;  // and a velocity, beside what torque there is for [rad/s, m/s]
+constexpr double kVelocityJump = 0.02;  // and a velocity, beside what torque there is for [rad/s, m/s]
 constexpr double kTorqueAtMost = 2.0;   // times what an arm may accelerate by: what pulls at it adds to it
 constexpr int kBadTicksMost = 1'000'000'000;  // counted no further
 
-// Keeps the last velocity of each joint whose measured one differs from it by more than anything that moves
-// an arm can do in `elapsed_s`. So it does when an encoder begins to hang. Returns the first such joint, or
-// -1.
+// A measured velocity that differs from the last one by more than anything that moves an arm can do in
+// `elapsed_s` counts only as far as motors can in a tick. So it differs when an encoder begins to hang, or is
+// all noise. Returns the first such joint, or -1.
 std::int32_t BridgeVelocityJumps(const model::ArmModel& arm, double elapsed_s,
                                  const hal::JointArray& dq_before, hal::JointArray& dq) noexcept {
   std::int32_t jumps = -1;
   for (int i = 0; i < arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double most = kVelocityJump + kTorqueAtMost * arm.joints[k].ddq_max * elapsed_s;
-    if (std::fabs(dq[k] - dq_before[k]) > most) {
-      dq[k] = dq_before[k];
+    const double ddq = arm.joints[k].ddq_max;
+    const double change = dq[k] - dq_before[k];
+    if (std::fabs(change) > kVelocityJump + kTorqueAtMost * ddq * elapsed_s) {
+      dq[k] = dq_before[k] + std::copysign(ddq * kPeriodS, change);
       jumps = jumps < 0 ? i : jumps;
     }
   }
@@ -96,7 +98,8 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
     }
   }
   const hal::JointArray dq = state.dq;
-  const double since_s = elapsed_s * (1.0 + 0.5 * state.jumps);
+  // What was not believed may have been true in part.
+  const double since_s = elapsed_s * (1.0 + 0.25 * state.jumps);
   const std::int32_t jumps =
       before.has_state ? BridgeVelocityJumps(config.arm, since_s, before.dq, state.dq) : -1;
   state.jumped = jumps >= 0;

@@ -15,6 +15,8 @@ constexpr double kTorqueShare = 0.01;           // of its torque: what the model
 constexpr double kWishSlack = 0.01;             // what the law may be late by [rad, m]
 constexpr double kLeast = 1e-9;                 // where the encoder has no steps [rad, m]
 constexpr double kTravelSlack = 1e-3;           // what noise of the velocities may add up to [rad, m]
+constexpr double kFlicker = 1e-6;               // noise of velocities is more than this [rad/s, m/s]
+constexpr std::int32_t kFlickersMost = 100;     // by then a joint is one that flickers
 constexpr std::int32_t kTicksMost = 1'000'000;  // counted no further
 
 // What changed of what pushes the joints, each less its mean: as accelerations that the readings do not show.
@@ -54,6 +56,20 @@ void UnseenAcceleration(const ServoConfig& config, const WatchedJoints& now, Enc
   }
 }
 
+// Whether a joint that flickers has ceased to.
+bool HasFrozen(const ServoConfig& config, double q, double dq, EncoderWatch::Joint& joint) noexcept {
+  const double change = dq - joint.dq_last;
+  const bool is_up_and_down = change * joint.change_last < -kFlicker * kFlicker;
+  const bool same = change == 0.0 && q == joint.q_last;
+  joint.same_ticks = same ? std::min<std::int32_t>(joint.same_ticks + 1, kTicksMost) : 0;
+  joint.flickers = std::max<std::int32_t>(joint.flickers + (is_up_and_down ? 1 : -1), 0);
+  joint.is_noisy = joint.is_noisy || joint.flickers >= kFlickersMost;
+  joint.change_last = change != 0.0 ? change : joint.change_last;
+  joint.q_last = q;
+  joint.dq_last = dq;
+  return joint.is_noisy && config.safety.frozen_ticks > 0 && joint.same_ticks >= config.safety.frozen_ticks;
+}
+
 }  // namespace
 
 std::int32_t WatchEncoders(const ServoConfig& config, const WatchedJoints& now,
@@ -66,8 +82,14 @@ std::int32_t WatchEncoders(const ServoConfig& config, const WatchedJoints& now,
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& arm_joint = config.arm.joints[k];
     EncoderWatch::Joint& joint = watch.joints[k];
+    if (HasFrozen(config, now.q[i], now.dq[i], joint) && hangs < 0) {
+      hangs = i;
+    }
     if (joint.ticks == 0 || std::fabs(now.q[i] - joint.q) > config.safety.encoder_quantum) {
-      joint = {joint.residual, joint.mean, 1, now.q[i], now.q_reference[i], 0.0, 0.0, 0.0};
+      joint.ticks = 1;
+      joint.q = now.q[i];
+      joint.q_reference = now.q_reference[i];
+      joint.speed = joint.way = joint.travel = 0.0;
       continue;
     }
     if (!watch.drove) {

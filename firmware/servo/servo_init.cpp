@@ -130,6 +130,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {static_cast<double>(config.predict.accepted_min), 1.0, huge, "servo.accepted_min"},
       {static_cast<double>(config.safety.arm_lost_ticks), 1.0, huge, "safety.arm_lost_ticks"},
       {static_cast<double>(config.safety.non_finite_ticks), 0.0, huge, "safety.non_finite_ticks"},
+      {static_cast<double>(config.safety.frozen_ticks), 0.0, huge, "safety.frozen_ticks"},
       {static_cast<double>(config.safety.missed_ticks), 1.0, huge, "safety.missed_ticks"},
       {static_cast<double>(config.safety.boot_ticks), 1.0, huge, "safety.boot_ticks"},
       {config.safety.boot_velocity, 1e-6, huge, "safety.boot_velocity"},

@@ -148,9 +148,9 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
       static_cast<double>(state_.blocked_ns) > config_.law.unreachable_s * kSecondNs;
   mode_inputs.target_moved = (state_.prediction.p_BO - state_.p_BO_unreachable).norm() > kTargetMovedM;
   mode_inputs.eye_doubted = state_.eye.doubted;
-  const bool asks =
-      inputs.motion.kind != MotionKind::kNone && !IsReached(config_, inputs.motion, state_.motion);
-  mode_inputs.motion_asked = asks || state_.motion.IsUnderWay();
+  const bool reached = IsReached(config_, inputs.motion, state_.motion);
+  mode_inputs.motion_asked =
+      (inputs.motion.kind != MotionKind::kNone && !reached) || state_.motion.IsUnderWay();
   mode_inputs.motion_refused = state_.motion.refused;
   mode_inputs.motion_not_followed = state_.motion.off.lpNorm<Eigen::Infinity>() > config_.safety.motion_error;
   mode_inputs.fault = check.fault;

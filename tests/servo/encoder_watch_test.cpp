@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
 
 #include "support/panda.hpp"
+#include "support/random_states.hpp"
 
 namespace fovea::servo {
 namespace {
@@ -93,6 +95,25 @@ TEST_F(EncoderWatchTest, AReferenceThatGoesOnTells) {
     EXPECT_EQ(joint_, joint);
     EXPECT_LT(gone, 0.08);
   }
+}
+
+// A joint that rests, whose noise ceases: nothing pushed it, and yet its encoder hangs. One that never had
+// noise may stand still for ever, and so may one that only moved.
+TEST_F(EncoderWatchTest, ANoiseThatCeasesTells) {
+  test::RandomStates random(7);
+  for (int tick = 0; tick < 5000; ++tick) {
+    q_[2] += random.Uniform(-1e-6, 1e-6);
+    dq_[2] = random.Uniform(-1e-4, 1e-4);
+    q_[4] += 1e-6;
+    dq_[4] = 0.01 * std::sin(1e-2 * tick);
+    ASSERT_EQ(TicksUntil(1), -1) << tick;
+  }
+  dq_[4] = 0.0;
+  EXPECT_EQ(TicksUntil(1000), config_.safety.frozen_ticks);
+  EXPECT_EQ(joint_, 2);
+  config_.safety.frozen_ticks = 0;
+  dq_[2] = 0.0;
+  EXPECT_EQ(TicksUntil(10'000), -1);
 }
 
 // What is read changes by a step of the encoder now and then: it works.

@@ -198,14 +198,14 @@ TEST_F(FaultJudge, AnArmThatMovesWhereItShouldStandFails) {
     motion = {{"most_mm", 300.0},
               {"beyond_stop_mm", bound.beyond_stop_mm},
               {"most_m_per_s", 9.0},
-              {"gained_m_per_s", bound.gained_m_per_s}};
+              {"gained_m_per_s", bound.gained_by_eye_m_per_s}};
     EXPECT_FALSE(Judged().Failed()) << bound.mode;
     EXPECT_EQ(Judged().moved.at(bound.mode).mm, 300.0);
     motion["beyond_stop_mm"] = bound.beyond_stop_mm + 1.0;
     EXPECT_THAT(Judged().too_far, ElementsAre(testing::HasSubstr(bound.mode)));
     EXPECT_TRUE(Judged().Failed());
     motion["beyond_stop_mm"] = 0.0;
-    motion["gained_m_per_s"] = bound.gained_m_per_s + 0.01;
+    motion["gained_m_per_s"] = bound.gained_by_eye_m_per_s + 0.01;
     EXPECT_TRUE(Judged().Failed());
     motion["gained_m_per_s"] = 0.0;
   }

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "fault_table.hpp"
+
 namespace fovea::matrix {
 namespace {
 
@@ -133,7 +135,10 @@ std::vector<std::string> ExceededIn(const json& run, const std::map<std::string,
   return exceeded;
 }
 
-void JudgeStanding(const json& run, Outcome& outcome) {
+void JudgeStanding(const std::string& key, const json& run, Outcome& outcome) {
+  const bool is_the_eyes = std::any_of(Faults().begin(), Faults().end(), [&](const Fault& fault) {
+    return key == fault.key && fault.is_the_eyes;
+  });
   const json& motion = run.at("unwanted_motion");
   for (const StandBound& bound : kStandBounds) {
     if (!motion.contains(bound.mode)) {
@@ -141,8 +146,9 @@ void JudgeStanding(const json& run, Outcome& outcome) {
     }
     const json& of_mode = motion.at(bound.mode);
     const Moved moved{of_mode.at("most_mm"), of_mode.at("beyond_stop_mm"), of_mode.at("gained_m_per_s")};
+    const double most = is_the_eyes ? bound.gained_by_eye_m_per_s : bound.gained_m_per_s;
     outcome.moved[bound.mode] = moved;
-    if (!(moved.beyond_stop_mm <= bound.beyond_stop_mm) || !(moved.gained_m_per_s <= bound.gained_m_per_s)) {
+    if (!(moved.beyond_stop_mm <= bound.beyond_stop_mm) || !(moved.gained_m_per_s <= most)) {
       outcome.too_far.push_back(fmt::format("{} {:.0f} mm, {:.0f} beyond a stop, {:.2f} m/s faster",
                                             bound.mode, moved.mm, moved.beyond_stop_mm,
                                             moved.gained_m_per_s));
@@ -196,7 +202,7 @@ Outcome Judge(const std::string& key, const json& run, const json& without_run) 
     outcome.reaction = ReactionOf(run, without_run, with, without);
     outcome.limits = run.at("limits").get<std::map<std::string, double>>();
     outcome.exceeded = ExceededIn(run, outcome.limits);
-    JudgeStanding(run, outcome);
+    JudgeStanding(key, run, outcome);
     outcome.contact_ticks = run.at("contact_ticks");
     JudgeEnd(run, with, outcome);
     return outcome;

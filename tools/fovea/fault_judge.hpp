@@ -22,14 +22,16 @@ const char* Name(End end);
 
 // How far the hand may move in a mode in which the arm stands, from where that mode began, beyond what a stop
 // from the speed that it had then takes (UnwantedMotion); and how much faster it may become than it was.
-// Where something pulls or a motor dies, 0.25 m/s is what a free fall has after 25 ms: nobody notices sooner.
+// Where something pulls or a motor dies it may fall freely for 25 ms: nobody notices sooner. A fault of the
+// eye pulls at nothing.
 struct StandBound {
   const char* mode;
   double beyond_stop_mm;
   double gained_m_per_s;
+  double gained_by_eye_m_per_s;  // where the fault is the eye's
 };
 inline constexpr std::array<StandBound, 3> kStandBounds{
-    {{"boot", 10.0, 0.25}, {"hold", 10.0, 0.1}, {"fault", 10.0, 0.25}}};
+    {{"boot", 10.0, 0.25, 0.02}, {"hold", 10.0, 0.25, 0.1}, {"fault", 10.0, 0.25, 0.1}}};
 
 struct Moved {
   double mm = 0.0;

@@ -68,11 +68,12 @@ force, rounded up: position (from the middle of the range), velocity, torque and
 
 std::string BoundList() {
   std::string text =
-      "| mode | the hand, beyond what a stop takes | faster than it was at the mode's beginning "
-      "|\n|---|---|---|\n";
+      "| mode | the hand, beyond what a stop takes | faster than it was at the mode's beginning | by a fault "
+      "of the eye "
+      "|\n|---|---|---|---|\n";
   for (const StandBound& bound : kStandBounds) {
-    text +=
-        fmt::format("| {} | {:g} mm | {:g} m/s |\n", bound.mode, bound.beyond_stop_mm, bound.gained_m_per_s);
+    text += fmt::format("| {} | {:g} mm | {:g} m/s | {:g} m/s |\n", bound.mode, bound.beyond_stop_mm,
+                        bound.gained_m_per_s, bound.gained_by_eye_m_per_s);
   }
   return text;
 }

@@ -147,6 +147,7 @@ void SafetyFields(Archive& a, T& s) noexcept {
   a(s.fault_damping);
   a(s.brake_velocity);
   a(s.brake_after_s);
+  a.Int(s.frozen_ticks);
   a(s.encoder_quantum);
   a(s.stiction_fraction);
 }

@@ -11,7 +11,7 @@ namespace fovea::servo {
 
 struct InputState {
   bool has_state = false;
-  bool jumped = false;        // a velocity of this tick did: the last one before stands for it
+  bool jumped = false;        // a velocity of this tick did: it was not believed
   std::int64_t stamp_ns = 0;  // of the last sound state
   std::uint64_t sequence = 0;
   int bad_ticks = 0;         // in a row without a new sound state

@@ -7,6 +7,9 @@
 // is as good a reason to stop.
 //
 // A joint that stands still under a load that nobody knows has a residual, but one that does not change.
+//
+// A fourth thing needs no motion: most encoders have noise in their last bits. Where a joint's velocity has
+// been seen to flicker for long, readings that repeat to the last bit are none.
 #pragma once
 
 #include <array>
@@ -28,6 +31,13 @@ struct EncoderWatch {
     double speed = 0.0;        // that the torque has given it [rad/s, m/s]
     double way = 0.0;          // and how far it went [rad, m]
     double travel = 0.0;       // how far it went by its measured velocity [rad, m]
+    // Its noise
+    double q_last = 0.0;          // of the state before [rad, m]
+    double dq_last = 0.0;         // [rad/s, m/s]
+    double change_last = 0.0;     // of dq, in the last state in which it changed [rad/s, m/s]
+    std::int32_t flickers = 0;    // states in which dq went up after down, or down after up, less the others
+    std::int32_t same_ticks = 0;  // states in a row that repeat the one before to the last bit
+    bool is_noisy = false;        // it is one that flickers
   };
   bool drove = false;  // in the tick before
   std::array<Joint, hal::kMaxJoints> joints{};

@@ -157,6 +157,7 @@ struct SafetyConfig {
   int boot_ticks = 20;                   // sound states in a row before Boot is over
   double boot_velocity = 0.05;           // and every joint slower than this [rad/s, m/s]
   double stiction_fraction = 0.5;        // of a joint's Coulomb friction may hold it still, unseen
+  int frozen_ticks = 20;                 // a joint that flickers may repeat itself to the bit so often
   double encoder_quantum = 1e-4;         // a joint's reading changes in steps no larger than this [rad, m]
   double setpoint_jump = 1e-3;           // a stream of setpoints starts and goes on this close [rad, m]
   double following_error = 0.15;         // a joint further off its reference: fault [rad, m]
