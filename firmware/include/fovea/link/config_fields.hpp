@@ -141,15 +141,15 @@ void SafetyFields(Archive& a, T& s) noexcept {
   a(s.boot_velocity);
   a(s.setpoint_jump);
   a(s.following_error);
-  a(s.motion_error);
   a(s.contact_torque_fraction);
   a(s.contact_gain);
   a(s.fault_damping);
   a(s.brake_velocity);
   a(s.brake_after_s);
-  a.Int(s.frozen_ticks);
   a(s.encoder_quantum);
   a(s.stiction_fraction);
+  a(s.motion_error);
+  a.Int(s.frozen_ticks);
 }
 
 // Calls `visit(name, fields)` for each part of `c` but the arm, in their order; `fields(archive)` goes
