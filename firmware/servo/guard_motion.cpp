@@ -16,7 +16,7 @@ using hal::LimitSet;
 using model::LinearJacobian;
 
 constexpr double kSpeedShare =
-    0.97;  // of the hand's speed: joints that get there at different times go beyond
+    0.97;                       // of the hand's speed: joints that get there at different times go beyond
 constexpr double kSlow = 1e-3;  // a joint that is no faster stops by itself [rad/s, m/s]
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 

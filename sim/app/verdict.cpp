@@ -79,8 +79,8 @@ void Verdict::AddSample(const Sample& sample) {
   }
 }
 
-// Of the image error over the window, as a root mean square: a target that moves is kept within its bound on the
-// whole, as the run's verdict asks.
+// Of the image error over the window, as a root mean square: a target that moves is kept within its bound on
+// the whole, as the run's verdict asks.
 double Verdict::WindowPx() const {
   double px2 = 0.0;
   for (const Sample& sample : window_) {
