@@ -52,8 +52,9 @@ class FaultJudge : public testing::Test {
     end()["reason"] = reason;
     noticed().emplace("mode_" + mode, t_s);
   }
-  [[nodiscard]] Outcome Judged() const { return Judge("freeze", run_, without_); }
+  [[nodiscard]] Outcome Judged() const { return Judge("freeze", run_, without_, kept_s_); }
 
+  double kept_s_ = 0.5;
   json run_ = Summary("freeze");
   json without_ = Summary("nothing");
 };
@@ -147,6 +148,9 @@ TEST_F(FaultJudge, AllElseIsUndefined) {
   EXPECT_EQ(Judged().end, End::kUndefined);
   end()["goal_kept_since_s"] = 5.5;
   EXPECT_EQ(Judged().end, End::kRecovered);
+  end()["goal_kept_since_s"] = 5.9;
+  kept_s_ = 0.0;  // it is a mean over half a second itself
+  EXPECT_EQ(Judged().end, End::kRecovered);
   Mode(5.0, "boot");  // at the goal by chance: nothing keeps it there
   EXPECT_EQ(Judged().end, End::kUndefined);
 }
@@ -212,8 +216,8 @@ TEST_F(FaultJudge, AnArmThatMovesWhereItShouldStandFails) {
 }
 
 TEST_F(FaultJudge, WhatIsNoSuchSummaryIsRefused) {
-  EXPECT_THROW((void)Judge("glare", run_, without_), std::runtime_error);
-  EXPECT_THROW((void)Judge("freeze", run_, run_), std::runtime_error);
+  EXPECT_THROW((void)Judge("glare", run_, without_, kept_s_), std::runtime_error);
+  EXPECT_THROW((void)Judge("freeze", run_, run_, kept_s_), std::runtime_error);
   without_["injected"][0]["from_s"] = 1.0;
   EXPECT_THROW((void)Judged(), std::runtime_error);
   without_ = Summary("nothing");

@@ -19,7 +19,6 @@ using nlohmann::json;
 constexpr double kTickS = 1e-3;
 constexpr double kRounding = 1e-9;   // passes no limit
 constexpr double kGoesOnS = 1.5e-3;  // a mode goes on when it lasts longer by so much
-constexpr double kKeptS = 0.5;       // the goal is kept when it is for so long at the end
 
 bool IsLimit(const std::string& what) { return what.rfind("limit_", 0) == 0; }
 
@@ -156,7 +155,7 @@ void JudgeStanding(const std::string& key, const json& run, Outcome& outcome) {
   }
 }
 
-void JudgeEnd(const json& run, const json& with, Outcome& outcome) {
+void JudgeEnd(const json& run, const json& with, double kept_s, Outcome& outcome) {
   const json& end = run.at("end");
   const std::string mode = end.at("mode");
   const std::string reason = end.at("reason");
@@ -166,7 +165,7 @@ void JudgeEnd(const json& run, const json& with, Outcome& outcome) {
   if (mode == "fault") {
     outcome.end = end.at("brakes").get<bool>() && rests ? End::kSafeStop : End::kUndefined;
   } else if (kept_since_s.is_number() && mode != "boot" &&
-             run.at("sim_time_s").get<double>() - kept_since_s.get<double>() >= kKeptS) {
+             run.at("sim_time_s").get<double>() - kept_since_s.get<double>() >= kept_s) {
     outcome.end = End::kRecovered;
     outcome.recovered_after_s = std::max(kept_since_s.get<double>() - with.at("to_s").get<double>(), 0.0);
   } else if (mode == "move" && run.at("path_error_mm_max").is_number() &&
@@ -190,7 +189,7 @@ const std::vector<std::string>& PhysicalLimits() {
   return names;
 }
 
-Outcome Judge(const std::string& key, const json& run, const json& without_run) {
+Outcome Judge(const std::string& key, const json& run, const json& without_run, double kept_s) {
   try {
     const json& with = InjectedAs(key, run);
     const json& without = InjectedAs("nothing", without_run);
@@ -204,7 +203,7 @@ Outcome Judge(const std::string& key, const json& run, const json& without_run) 
     outcome.exceeded = ExceededIn(run, outcome.limits);
     JudgeStanding(key, run, outcome);
     outcome.contact_ticks = run.at("contact_ticks");
-    JudgeEnd(run, with, outcome);
+    JudgeEnd(run, with, kept_s, outcome);
     return outcome;
   } catch (const json::exception& error) {
     throw std::runtime_error(fmt::format("fault {}: no summary of a run: {}", key, error.what()));

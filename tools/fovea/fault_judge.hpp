@@ -64,7 +64,9 @@ struct Outcome {
 const std::vector<std::string>& PhysicalLimits();
 
 // Judges `run`, a summary with the fault `key` in `injected`, beside `without`, that of the same run with
-// `nothing` from the same time on. std::runtime_error when one of them is no such summary.
-Outcome Judge(const std::string& key, const nlohmann::json& run, const nlohmann::json& without);
+// `nothing` from the same time on. It has recovered when its goal is kept for `kept_s` at the end.
+// std::runtime_error when one of them is no such summary.
+Outcome Judge(const std::string& key, const nlohmann::json& run, const nlohmann::json& without,
+              double kept_s);
 
 }  // namespace fovea::matrix

@@ -142,7 +142,8 @@ Matrix RunMatrix(const MatrixOptions& options) {
     const nlohmann::json& summary = runs.SummaryOf(NameOf(cell));
     cell.outcome = summary.is_null()
                        ? BrokeOff()
-                       : Judge(cell.fault->key, summary, runs.SummaryOf(BesideName(*cell.mode, setup)));
+                       : Judge(cell.fault->key, summary, runs.SummaryOf(BesideName(*cell.mode, setup)),
+                               cell.mode->kept_s);
   }
   return matrix;
 }

@@ -14,10 +14,10 @@ constexpr double kInTheStopS = 0.02;  // so long after the latched fault the nex
 constexpr const char* kOccluder = "faults.occluder_px=[320, 240, 640, 480]";
 
 constexpr std::array kRunModes{
-    RunMode{"ball", "ball", "visual servo on a still target", true, 0.3, 0.5, 4.0},
-    RunMode{"ball-moving", "ball-moving", "visual servo on a moving target", true, 0.5, 1.0, 3.5},
-    RunMode{"home", "home", "joint way to the ready posture", false, 0.5, 0.5, 3.0},
-    RunMode{"flange-circle", "flange-circle", "flange control round a circle", false, 0.2, 1.5, 1.5}};
+    RunMode{"ball", "ball", "visual servo on a still target", true, 0.3, 0.5, 4.0, 0.5},
+    RunMode{"ball-moving", "ball-moving", "visual servo on a moving target", true, 0.5, 1.0, 3.5, 0.0},
+    RunMode{"home", "home", "joint way to the ready posture", false, 0.5, 0.5, 3.0, 0.5},
+    RunMode{"flange-circle", "flange-circle", "flange control round a circle", false, 0.2, 1.5, 1.5, 0.5}};
 
 double ToMs(double time_s) { return 1e-3 * std::round(1e3 * time_s); }
 

@@ -27,6 +27,7 @@ struct RunMode {
   double approach_share;  // of the way from the first motion to the goal, in time: where `approach` is
   double settled_s;       // `tracking` is so long after the goal was reached [s]
   double recovery_s;      // a run goes on for so long after the fault [s]
+  double kept_s;  // its goal is kept when it is for so long; a moving target's is a mean over 0.5 s itself
 };
 std::span<const RunMode> RunModes();
 
