@@ -185,10 +185,10 @@ void ProvokeTorque() {
   ExpectInsideLimits(bench);
 }
 
-// Encoders that jump by a milliradian: the law wants torque steps.
+// Velocities that jump, by no more than is believed: the law wants torque steps.
 void ProvokeTorqueRate() {
   GuardSetup setup;
-  setup.arm_faults.noise = {{kStart, kStart + 0.1}, 1e-3, 0.05};
+  setup.arm_faults.noise = {{kStart, kStart + 0.1}, 2e-4, 0.01};
   GuardBench bench(setup);
   bench.RunUntil(1.0);
   const int named = Named(bench, Limit::kTorqueRate);
