@@ -21,9 +21,8 @@ enum class End {
 const char* Name(End end);
 
 // How far the hand may move in a mode in which the arm stands, from where that mode began, beyond what a stop
-// from the speed that it had then takes (UnwantedMotion); and how much faster it may become than it was.
-// Where something pulls or a motor dies it may fall freely for 25 ms: nobody notices sooner. A fault of the
-// eye pulls at nothing.
+// from the speed that it had then takes (UnwantedMotion); and how much faster it may become than it was. In
+// Fault nothing holds the arm any more before its brakes do; but a fault of the eye pulls at nothing.
 struct StandBound {
   const char* mode;
   double beyond_stop_mm;
@@ -31,7 +30,7 @@ struct StandBound {
   double gained_by_eye_m_per_s;  // where the fault is the eye's
 };
 inline constexpr std::array<StandBound, 3> kStandBounds{
-    {{"boot", 10.0, 0.25, 0.02}, {"hold", 10.0, 0.25, 0.1}, {"fault", 10.0, 0.25, 0.1}}};
+    {{"boot", 10.0, 0.1, 0.02}, {"hold", 10.0, 0.1, 0.1}, {"fault", 10.0, 0.25, 0.1}}};
 
 struct Moved {
   double mm = 0.0;

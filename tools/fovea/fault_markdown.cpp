@@ -23,14 +23,17 @@ A cell says, line by line:
    ([GUARDS](../firmware/GUARDS.md));
 3. the end. *recovered*: the goal is kept again, for the last half second at least; the time is from the fault's end on. Of a
    fault that never ends: it is kept all the same.
-   *safe stop*: a fault is latched, the brakes closed, the arm at rest. *hold*: in Hold, for this reason, at rest. *goes on*: a load or a tilt that never ends, and the way is
-   followed all the same, off by so much at most (`safety.motion_error`). All else would be **UNDEFINED**. **EXCEEDED** names what was passed, by the simulator's truth (`violations` in a run's summary.json); contact is
-   with bench, target or itself. **MOVED** says by how far the hand moved in Boot, Hold or Fault from where that mode began, how
-   much of it was more than a stop takes, and by how much it became faster than it was then, where that is beyond the bound.
-   A stop may take as far as the hand goes, at the speed that it has when the mode begins, in the time of the stop: in Hold half
-   of what the joint that takes longest needs at its largest deceleration, and twice its time to turn its acceleration round; in
-   Fault `safety.brake_after_s`. Of the joints' true acceleration, what a dead motor, a load or a push does by itself is not
-   counted: it has passed where a joint would have been too fast without that, too.
+   *safe stop*: a fault is latched, the brakes closed, the arm at rest. *hold*: in Hold, for this reason, at rest. *goes on*: a
+   load or a tilt that never ends, and the way is followed all the same, off by so much at most (`safety.motion_error`). All
+   else would be **UNDEFINED**. **EXCEEDED** names what was passed, by the simulator's truth (`violations` in a run's
+   summary.json); contact is with bench, target or itself. **MOVED** says by how far the hand moved in Boot, Hold or Fault from
+   where that mode began, how much of it was more than a stop takes, and by how much it became faster than it was then, where
+   that is beyond the bound.
+
+A stop may take as far as the hand goes, at the speed that it has when the mode begins, in the time of the stop: in Hold half of
+what the joint that takes longest needs at its largest deceleration, and twice its time to turn its acceleration round; in Fault
+`safety.brake_after_s`. Of the joints' true acceleration, what a dead motor, a load or a push does by itself is not counted, nor the
+springing back when it is over: it has passed where a joint would have been too fast without that, too.
 
 )";
 
