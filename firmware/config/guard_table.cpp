@@ -84,10 +84,8 @@ GuardRow RowOf(hal::Fault fault) {
       return {
           "a joint measured faster than it may be, or 0.02 rad further than that allows from one state to "
           "the next; in Boot, faster than half of that; a velocity that goes on to differ from the last by "
-          "0.02 "
-          "rad/s beyond what twice the joint's largest acceleration makes, for `safety.non_finite_ticks` the "
-          "last "
-          "one is believed",
+          "0.02 rad/s beyond what twice the joint's largest acceleration makes: for "
+          "`safety.non_finite_ticks` it counts only as far as motors can",
           kStop};
     case hal::Fault::kNotFollowing: return {"a joint too far from its reference", kStop};
     case hal::Fault::kContact: return {"torque from outside, by the arm's momentum", kStop};

@@ -64,7 +64,9 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
   }
   const double elapsed_s =
       state.has_state ? 1e-9 * static_cast<double>(arm.stamp_ns - state.stamp_ns) : HUGE_VAL;
-  const InputState before = state;
+  const bool is_first = !state.has_state;
+  const hal::JointArray q_before = state.q;
+  const hal::JointArray dq_before = state.dq;
   state.has_state = true;
   state.stamp_ns = arm.stamp_ns;
   state.sequence = arm.sequence;
@@ -92,7 +94,7 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
     if (state.q[k] < joint.q_min || state.q[k] > joint.q_max) {
       return {hal::Fault::kJointPosition, i};
     }
-    const bool leaps = std::fabs(state.q[k] - before.q[k]) > joint.dq_max * elapsed_s + kJump;
+    const bool leaps = std::fabs(state.q[k] - q_before[k]) > joint.dq_max * elapsed_s + kJump;
     if (leaps || std::fabs(state.dq[k]) > velocity_share * joint.dq_max) {
       return {hal::Fault::kJointVelocity, i};
     }
@@ -100,19 +102,18 @@ InputCheck TakeIn(const ServoConfig& config, const hal::Status& arm_status, cons
   const hal::JointArray dq = state.dq;
   // What was not believed may have been true in part.
   const double since_s = elapsed_s * (1.0 + 0.25 * state.jumps);
-  const std::int32_t jumps =
-      before.has_state ? BridgeVelocityJumps(config.arm, since_s, before.dq, state.dq) : -1;
-  state.jumped = jumps >= 0;
+  const std::int32_t joint = is_first ? -1 : BridgeVelocityJumps(config.arm, since_s, dq_before, state.dq);
+  state.jumped = joint >= 0;
   state.jumps = std::max(state.jumps + (state.jumped ? 2 : -1), 0);
   if (state.jumped) {
     state.sound_ticks = 0;
     if (state.jumps > 2 * safety.non_finite_ticks) {
-      const auto k = static_cast<std::size_t>(jumps);
-      const bool stays = std::fabs(state.q[k] - before.q[k]) < 0.5 * std::fabs(before.dq[k]) * elapsed_s;
+      const auto k = static_cast<std::size_t>(joint);
+      const bool stays = std::fabs(state.q[k] - q_before[k]) < 0.5 * std::fabs(dq_before[k]) * elapsed_s;
       state.jumps = 0;
       state.jumped = false;
       state.dq = dq;  // from now on this is how fast it is
-      return {stays ? hal::Fault::kArmStale : hal::Fault::kJointVelocity, jumps};
+      return {stays ? hal::Fault::kArmStale : hal::Fault::kJointVelocity, joint};
     }
     return {};
   }

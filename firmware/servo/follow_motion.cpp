@@ -136,11 +136,10 @@ void Arrive(MotionState& state) noexcept {
 
 }  // namespace
 
-bool IsReached(const ServoConfig& config, const MotionCommand& asked, MotionState& state) noexcept {
-  if (state.done.kind != MotionKind::kNone && !SameGoal(Resolved(config, asked), state.done)) {
+void NoteAsked(const ServoConfig& config, const MotionCommand& asked, MotionState& state) noexcept {
+  if (state.HasArrived() && !SameGoal(Resolved(config, asked), state.done)) {
     state.done.kind = MotionKind::kNone;
   }
-  return state.done.kind != MotionKind::kNone;
 }
 
 hal::LimitSet FollowMotion(const ServoConfig& config, const MotionCommand& asked, std::int64_t now_ns,

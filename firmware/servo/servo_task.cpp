@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kTargetMovedM = 0.02;       // so far from where it was unreachable, and it is tried again
 constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as there
-constexpr double kSpeedsUp = 0.2;   // a stop that is so much behind what it should be is none [rad/s, m/s]
+constexpr double kBehind = 0.2;     // a stop that is so much behind what it should be is none [rad/s, m/s]
 constexpr double kStopShare = 0.3;  // of safety.fault_damping: what it should be at least
-constexpr double kOffShare = 1e-3 / 0.25;  // of a tick in the mean by which a motion is not followed
-constexpr double kBootShare = 0.5;         // of a joint's velocity limit in Boot, where nothing shall move it
+constexpr double kBootShare = 0.5;  // of a joint's velocity limit in Boot, where nothing shall move it
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr double kOffShare = kPeriodS / 0.25;  // of a tick in the mean by which a motion is not followed
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
 
@@ -148,9 +148,9 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
       static_cast<double>(state_.blocked_ns) > config_.law.unreachable_s * kSecondNs;
   mode_inputs.target_moved = (state_.prediction.p_BO - state_.p_BO_unreachable).norm() > kTargetMovedM;
   mode_inputs.eye_doubted = state_.eye.doubted;
-  const bool reached = IsReached(config_, inputs.motion, state_.motion);
-  mode_inputs.motion_asked =
-      (inputs.motion.kind != MotionKind::kNone && !reached) || state_.motion.IsUnderWay();
+  NoteAsked(config_, inputs.motion, state_.motion);
+  const bool asked = inputs.motion.kind != MotionKind::kNone && !state_.motion.HasArrived();
+  mode_inputs.motion_asked = asked || state_.motion.IsUnderWay();
   mode_inputs.motion_refused = state_.motion.refused;
   mode_inputs.motion_not_followed = state_.motion.off.lpNorm<Eigen::Infinity>() > config_.safety.motion_error;
   mode_inputs.fault = check.fault;
@@ -388,7 +388,7 @@ void ServoTask::StopDamped() noexcept {
   const double speed = state_.dq.lpNorm<Eigen::Infinity>();
   const double falls = 1.0 - kStopShare * config_.safety.fault_damping * kPeriodS;
   state_.stop_speed = std::min(falls * state_.stop_speed, speed);
-  const bool in_vain = speed > state_.stop_speed + kSpeedsUp;
+  const bool in_vain = speed > state_.stop_speed + kBehind;
   if (blind || in_vain || since_s > config_.safety.brake_after_s || speed < config_.safety.brake_velocity) {
     state_.give_up = true;
   }

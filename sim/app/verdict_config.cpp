@@ -1,5 +1,6 @@
 #include "sim/app/verdict_config.hpp"
 
+#include "fovea/servo/joint_pace.hpp"
 #include "sim/app/target_error.hpp"
 
 namespace fovea::sim {
@@ -14,9 +15,9 @@ VerdictConfig MakeVerdictConfig(const RunDescription& about) {
   config.stop.ddq_max.resize(n);
   config.stop.dddq_max.resize(n);
   for (int i = 0; i < n; ++i) {
-    const model::Joint& joint = about.servo.arm.joints[static_cast<std::size_t>(i)];
-    config.stop.ddq_max[i] = guard.joint_acceleration_fraction * joint.ddq_max;
-    config.stop.dddq_max[i] = guard.joint_jerk_fraction * joint.dddq_max;
+    const servo::JointPace pace = servo::PaceOf(about.servo, i);
+    config.stop.ddq_max[i] = pace.ddq_max;
+    config.stop.dddq_max[i] = pace.dddq_max;
   }
   config.pinhole = about.pinhole;
   config.goal = GoalOf(about.servo.feature);

@@ -180,29 +180,38 @@ StopRules Rules() {
   return rules;
 }
 
-TEST(UnwantedMotionTest, WhatAStopTakesIsToldApart) {
-  UnwantedMotion unwanted(Rules());
+// A hand that goes along x, joint 3 with it.
+struct Walk {
+  UnwantedMotion unwanted{Rules()};
   std::int64_t k = 0;
   double x = 0.0;
-  const auto go = [&](hal::Mode mode, std::int64_t ticks, double speed) {
+  double joint_share = 0.0;  // of the hand's speed [rad/m]
+
+  void Go(hal::Mode mode, std::int64_t ticks, double speed) {
     for (std::int64_t i = 0; i < ticks; ++i) {
       x += 1e-3 * speed;
       Truth truth = StandingAt(k++, {x, 0.0, 0.5});
-      truth.dq[2] = -2.0 * speed;
+      truth.dq[2] = joint_share * speed;
       unwanted.Add(truth, mode);
     }
-  };
-  go(hal::Mode::kTrack, 10, 1.0);
-  go(hal::Mode::kHold, 200, 1.0);  // 0.5 * 2 / 10 s and 0.02 s are a stop's
-  go(hal::Mode::kTrack, 10, 0.5);
-  go(hal::Mode::kFault, 400, 0.5);
+  }
+};
+
+TEST(UnwantedMotionTest, WhatAStopTakesIsToldApart) {
+  Walk walk;
+  walk.joint_share = -2.0;
+  walk.Go(hal::Mode::kTrack, 10, 1.0);
+  walk.Go(hal::Mode::kHold, 200, 1.0);  // 0.5 * 2 / 10 s and 0.02 s are a stop's
+  walk.Go(hal::Mode::kTrack, 10, 0.5);
+  walk.Go(hal::Mode::kFault, 400, 0.5);
+  const UnwantedMotion& unwanted = walk.unwanted;
   EXPECT_NEAR(unwanted.by_mode().at("hold").most_mm, 200.0, 1e-9);
   EXPECT_NEAR(unwanted.by_mode().at("hold").beyond_stop_mm, 200.0 - 120.0, 1e-9);
   EXPECT_NEAR(unwanted.by_mode().at("fault").beyond_stop_mm, 200.0 - 150.0, 1e-9);
   EXPECT_NEAR(unwanted.by_mode().at("hold").gained_m_per_s, 0.0, 1e-9);
   // While it accelerates by 5 m/s^2: 0.02 s to turn that round leave it 0.05 m/s faster.
   UnwantedMotion accelerating(Rules());
-  x = 0.0;
+  double x = 0.0;
   for (std::int64_t i = 0; i <= 120; ++i) {
     x += 1e-3 * 5e-3 * static_cast<double>(i);
     accelerating.Add(StandingAt(i, {x, 0.0, 0.5}), i < 100 ? hal::Mode::kTrack : hal::Mode::kHold);
@@ -211,23 +220,15 @@ TEST(UnwantedMotionTest, WhatAStopTakesIsToldApart) {
 }
 
 TEST(UnwantedMotionTest, IsFromWhereTheModeBegan) {
-  UnwantedMotion unwanted(Rules());
-  std::int64_t k = 0;
-  double x = 0.0;
-  const auto go = [&](hal::Mode mode, std::int64_t ticks, double speed) {
-    for (std::int64_t i = 0; i < ticks; ++i) {
-      x += 1e-3 * speed;
-      unwanted.Add(StandingAt(k++, {x, 0.0, 0.5}), mode);
-    }
-  };
-  go(hal::Mode::kBoot, 1, 0.0);
-  go(hal::Mode::kBoot, 50, 0.1);    // it falls by 5 mm
-  go(hal::Mode::kTrack, 100, 1.0);  // that is what it is for
-  go(hal::Mode::kFault, 20, 1.2);   // on by 24 mm, and faster at first
-  go(hal::Mode::kFault, 20, 0.2);   // and 4 mm
-  go(hal::Mode::kTrack, 10, 0.3);
-  go(hal::Mode::kFault, 10, 0.3);
-  const auto& by_mode = unwanted.by_mode();
+  Walk walk;
+  walk.Go(hal::Mode::kBoot, 1, 0.0);
+  walk.Go(hal::Mode::kBoot, 50, 0.1);    // it falls by 5 mm
+  walk.Go(hal::Mode::kTrack, 100, 1.0);  // that is what it is for
+  walk.Go(hal::Mode::kFault, 20, 1.2);   // on by 24 mm, and faster at first
+  walk.Go(hal::Mode::kFault, 20, 0.2);   // and 4 mm
+  walk.Go(hal::Mode::kTrack, 10, 0.3);
+  walk.Go(hal::Mode::kFault, 10, 0.3);
+  const auto& by_mode = walk.unwanted.by_mode();
   ASSERT_EQ(by_mode.size(), 2U);
   EXPECT_NEAR(by_mode.at("boot").most_mm, 5.0, 1e-9);
   EXPECT_NEAR(by_mode.at("boot").beyond_stop_mm, 5.0, 1e-9) << "it stands when it begins";

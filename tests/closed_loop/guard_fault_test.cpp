@@ -173,7 +173,7 @@ void ProvokeJointOutside() {
 void ProvokeJointTooFast() {
   const model::Joint& joint = Panda().model.joints[0];
   GuardBench bench(Pushed(-1.5, 7.0, 0.08));
-  ExpectStop(bench, Fault::kJointVelocity, 300, 77, 8, PushedBy::kWorld);
+  ExpectStop(bench, Fault::kJointVelocity, 300, 77, 4, PushedBy::kWorld);
   EXPECT_EQ(bench.FirstFault(),
             FirstPassed(bench, [&](const hal::ArmState& arm) { return arm.dq[0] > joint.dq_max; }));
 }

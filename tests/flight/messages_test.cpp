@@ -17,7 +17,7 @@ servo::ServoConfig SomeConfig() {
   config.law.lambda = 1.0 / 3.0;
   config.law.unreachable_progress = 0.07;
   config.guard.obstacles.num_planes = 2;
-  config.safety.stiction_fraction = 0.3;
+  config.safety.frozen_ticks = 7;
   config.arm.joints[6].spring = 4.5;
   return config;
 }
@@ -34,13 +34,16 @@ TEST(ServoConfigurationTest, ComesBackWhole) {
 TEST(ServoConfigurationTest, AFieldThatALogDoesNotKnowHasItsDefault) {
   log::ServoConfiguration message = ToMessage(SomeConfig());
   for (auto& section : *message.mutable_sections()) {
-    if (section.name() == "law" || section.name() == "safety") {
-      section.mutable_fields()->resize(section.fields().size() - sizeof(double));
+    std::string& fields = *section.mutable_fields();
+    if (section.name() == "law") {
+      fields.resize(fields.size() - sizeof(double));
+    } else if (section.name() == "safety") {
+      fields.resize(fields.size() - sizeof(std::int32_t));
     }
   }
   const servo::ServoConfig back = FromMessage(message);
   EXPECT_EQ(back.law.unreachable_progress, servo::LawConfig{}.unreachable_progress);
-  EXPECT_EQ(back.safety.stiction_fraction, servo::SafetyConfig{}.stiction_fraction);
+  EXPECT_EQ(back.safety.frozen_ticks, servo::SafetyConfig{}.frozen_ticks);
   EXPECT_EQ(back.law.lambda, 1.0 / 3.0);
 }
 

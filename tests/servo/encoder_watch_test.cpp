@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <iostream>
 
@@ -61,6 +62,30 @@ TEST_F(EncoderWatchTest, TorqueThatShouldHaveMovedAJointTells) {
     EXPECT_EQ(joint_, joint);
     EXPECT_GT(ticks, 0);
     EXPECT_LE(ticks, 20);
+  }
+}
+
+// The observer comes to a push with its own time constant, of which the watch knows: it is as soon as if the
+// push were seen at once.
+TEST_F(EncoderWatchTest, TheObserversDelayIsNoneOfTheWatch) {
+  const double share = 1e-3 * config_.safety.contact_gain;
+  for (int joint = 0; joint < 7; ++joint) {
+    const double pushed = -0.2 * config_.arm.joints[static_cast<std::size_t>(joint)].tau_max;
+    watch_ = EncoderWatch{};
+    residual_.setZero();
+    ASSERT_EQ(TicksUntil(100), -1);
+    int ticks = 0;
+    do {
+      residual_[joint] += share * (pushed - residual_[joint]);
+      ++ticks;
+    } while (TicksUntil(1) < 0 && ticks < 1000);
+    // Until a joint that is free had gone three quanta by it, at best.
+    const double M = 1.0 / dynamics_.M.inverse()(joint, joint);
+    const double way = 3.0 * config_.safety.encoder_quantum;
+    const double least = 1e3 * std::sqrt(2.0 * way * M / std::fabs(pushed));
+    std::cout << "joint " << joint + 1 << ": after " << ticks << " ticks, " << least << " at best\n";
+    EXPECT_EQ(joint_, joint);
+    EXPECT_LE(ticks, std::max(1.3 * least, 8.0));
   }
 }
 

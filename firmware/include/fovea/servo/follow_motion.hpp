@@ -25,17 +25,18 @@ struct MotionState {
   SynchronisedMove pose;    // position less goal, and the turn from the goal, both in axes of B
   ResolvedMotion resolved;  // what the last pose asked of the joints; its dq empty: none did
   bool refused = false;     // in the last tick
-  model::VecN off;          // reference less arm, as a mean [rad, m]; empty: none was followed
+  model::VecN off;          // reference less arm, as a mean [rad, m]; 0 where none is followed
 
   // Whether a motion goes on after this tick without another command.
   [[nodiscard]] bool IsUnderWay() const noexcept { return goal.kind != MotionKind::kNone; }
+  // Whether what is asked for was reached: it is not begun again.
+  [[nodiscard]] bool HasArrived() const noexcept { return done.kind != MotionKind::kNone; }
   void Stop() noexcept { goal.kind = MotionKind::kNone; }
 };
 
-// Whether `asked` is the goal that was reached, and has been asked for ever since: it is not begun again.
-// Another command makes `state` forget it. Real-time: yes.
-[[nodiscard]] bool IsReached(const ServoConfig& config, const MotionCommand& asked,
-                             MotionState& state) noexcept;
+// Before the modes: where `asked` is not the goal that was reached, and has been asked for ever since,
+// `state.done` is forgotten. Real-time: yes.
+void NoteAsked(const ServoConfig& config, const MotionCommand& asked, MotionState& state) noexcept;
 
 // One tick of a commanded motion: moves `reference` on. Returns the limits that acted or forbade it; where
 // they, or a command that is none, forbid it, `state.refused` is set and the reference brakes.
