@@ -39,8 +39,8 @@ void AddPredictKeys(ServoSettings& settings, KeyTable& keys) {
   keys.Number("servo.target_turn_max", c.target_turn_max, 0.0, 100.0, "rad/s", "nor to turn faster");
   keys.Numbers(
       "servo.target_region", settings.target_region, 6, 6, -100.0, 100.0, "m",
-      "a measurement that puts the target outside this box is refused: low x, y, z, high x, y, z, in "
-      "axes of the base");
+      "a measurement that puts the target outside this box is refused, and where none comes it is not "
+      "believed to leave it: low x, y, z, high x, y, z, in axes of the base");
   keys.Number("servo.stuck_shift_px", settings.stuck_shift_px, 0.5, 1000.0, "px",
               "a picture that stays the same within its noise, although the hand shifted the scene in it by "
               "more than this, is no measurement");

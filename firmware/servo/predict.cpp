@@ -84,6 +84,17 @@ bool IsInside(const Box& box, const model::Vec3& p) noexcept {
   return (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
 }
 
+// What is believed of the target stays in its region, and goes no further out of it.
+void KeepInside(const Box& box, FlatMotion& motion) noexcept {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    double& p = motion.X_BO.p[i];
+    double& v = motion.v_BO_B[i];
+    const double inside = std::clamp(p, box.low[i], box.high[i]);
+    v = (p - inside) * v > 0.0 ? 0.0 : v;
+    p = inside;
+  }
+}
+
 bool IsKnown(const ServoConfig& config, const PredictState& state) noexcept {
   const int accepted = config.feature.SeesOrientation() ? state.poses.accepted : state.filter.accepted;
   return accepted >= config.predict.accepted_min;
@@ -186,8 +197,9 @@ Prediction Predict(const ServoConfig& config, std::int64_t now_ns, const model::
     }
     return prediction;
   }
-  const FlatMotion motion =
+  FlatMotion motion =
       state.belief.active ? GoesOn(state.belief, now_ns) : BelievedMotion(config, state, now_ns);
+  KeepInside(config.predict.target_region, motion);
   prediction.p_BO = motion.X_BO.p;
   prediction.v_BO = motion.v_BO_B;
   if (is_flat) {

@@ -135,6 +135,33 @@ TEST_F(PredictTest, LeavesOutWhatSaysNothing) {
   }
 }
 
+// It goes out of its region, where it is not believed: nor is it thought to go on there by itself.
+TEST_F(PredictTest, NothingIsBelievedOutsideTheTargetsRegion) {
+  const auto target = [](double t) { return model::Vec3(0.55, 0.1 + 0.2 * t, 0.2 - 0.5 * t); };
+  config_.predict.target_region.low.z() = -0.05;
+  PredictState state;
+  double lowest = 1.0;
+  int refused = 0;
+  double v_y = 0.0;
+  for (int ms = 0; ms < 1000; ++ms) {
+    state.history.Push(ms * hal::kNsPerMs, JointsAt(0.0));
+    if (ms % 33 == 0) {
+      hal::FeatureMeasurement m = Measure(0.0, target(1e-3 * ms));
+      m.stamp_ns = ms * hal::kNsPerMs;
+      refused += TakeMeasurement(config_, m.stamp_ns, m, state, eye_) == hal::Intake::kOutOfRegion ? 1 : 0;
+    }
+    const Prediction p = Predict(config_, ms * hal::kNsPerMs, CameraAt(0.0), state);
+    if (p.known) {
+      lowest = std::min(lowest, p.p_BO.z());
+      EXPECT_TRUE(p.p_BO.z() > -0.05 || p.v_BO.z() >= 0.0);
+      v_y = p.v_BO.y();
+    }
+  }
+  EXPECT_EQ(lowest, -0.05);
+  EXPECT_GE(refused, 14);
+  EXPECT_NEAR(v_y, 0.2, 0.02) << "along its region's end it goes on";
+}
+
 TEST_F(PredictTest, KnowsTheTargetAfterEnoughMeasurements) {
   PredictState state;
   for (int ms = 0; ms < 400; ++ms) {

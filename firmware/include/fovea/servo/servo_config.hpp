@@ -79,7 +79,7 @@ inline constexpr int kNumMotionLaws = 5;
 
 struct MotionLawConfig {
   MotionLawKind kind = MotionLawKind::kComputedTorque;  // servo.motion_law
-  double omega_n = 25.0;                                // natural frequency of the joints' error [rad/s]
+  double omega_n = 35.0;                                // natural frequency of the joints' error [rad/s]
   double zeta = 1.0;                                    // its damping
   double integral = 0.0;                  // how fast an error that stays is made up for [1/s]; 0: not
   double integral_torque_fraction = 0.2;  // with at most this share of a joint's torque
@@ -163,7 +163,7 @@ struct SafetyConfig {
   double following_error = 0.15;         // a joint further off its reference: fault [rad, m]
   double motion_error = 0.05;            // and on the whole further in a commanded motion: Hold [rad, m]
   double contact_torque_fraction = 0.2;  // pushed with more than this share of a joint's torque: fault
-  double contact_gain = 30.0;            // of the observer that sees it [1/s]
+  double contact_gain = 60.0;            // of the observer that sees it [1/s]
   double fault_damping = 10.0;           // of the damped stop [1/s]
   double brake_velocity = 0.02;          // brakes close when every joint is slower [rad/s, m/s]
   double brake_after_s = 0.3;            // or after this time [s]
