@@ -200,9 +200,9 @@ void ProvokeContact() {
   const servo::SafetyConfig& safety = setup.servo.safety;
   const double most = safety.contact_torque_fraction * Panda().model.joints[1].tau_max;
   setup.world.push.tau = 1.5 * most * Eigen::VectorXd::Unit(7, 1);
-  setup.world.push.window = {kStart, kStart + 0.04};
-  GuardBench bench(setup);
   const double after_ms = 1e3 * std::log(3.0) / safety.contact_gain;
+  setup.world.push.window = {kStart, kStart + 1e-3 * (after_ms + 3.0)};
+  GuardBench bench(setup);
   std::cout << "expected after " << after_ms << " ticks\n";
   ExpectStop(bench, Fault::kContact, kStartMs, static_cast<int>(std::lround(after_ms)), 3);
   EXPECT_EQ(bench.ticks()[static_cast<std::size_t>(bench.FirstFault())].record.fault_joint, 1);

@@ -79,7 +79,7 @@ inline constexpr int kNumMotionLaws = 5;
 
 struct MotionLawConfig {
   MotionLawKind kind = MotionLawKind::kComputedTorque;  // servo.motion_law
-  double omega_n = 35.0;                                // natural frequency of the joints' error [rad/s]
+  double omega_n = 25.0;                                // natural frequency of the joints' error [rad/s]
   double zeta = 1.0;                                    // its damping
   double integral = 0.0;                  // how fast an error that stays is made up for [1/s]; 0: not
   double integral_torque_fraction = 0.2;  // with at most this share of a joint's torque
