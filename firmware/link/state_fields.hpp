@@ -325,6 +325,8 @@ void EachGroup(State& s, const Visit& visit) noexcept {
   visit(Pace::kTick, "contact", [&s](auto& a) {
     a(s.contact.started);
     SizedEntries(a, s.contact.residual);
+    SizedEntries(a, s.contact.load);
+    a(s.contact.carried);
   });
   visit(Pace::kTick, "encoder watch", [&s](auto& a) {
     EncoderWatchFields(a, s.encoders);

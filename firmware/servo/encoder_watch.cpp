@@ -87,6 +87,7 @@ std::int32_t WatchEncoders(const ServoConfig& config, const WatchedJoints& now,
     }
     if (joint.ticks == 0 || std::fabs(now.q[i] - joint.q) > config.safety.encoder_quantum) {
       joint.ticks = 1;
+      joint.mean = joint.residual;  // it lives: what pushes it until now is no secret
       joint.q = now.q[i];
       joint.q_reference = now.q_reference[i];
       joint.speed = joint.way = joint.travel = 0.0;

@@ -22,11 +22,11 @@ double Fade(const MotionLawConfig& config, const MotionLawState& state) noexcept
 
 // In the order of MotionLawKind.
 const std::array<MotionLawEntry, kNumMotionLaws> kMotionLaws{{
-    {MotionLawKind::kComputedTorque, "computed_torque", ComputedTorque, 1},
-    {MotionLawKind::kPd, "pd", PdLaw, 1},
-    {MotionLawKind::kJointImpedance, "joint_impedance", JointImpedance, 1},
-    {MotionLawKind::kOperationalSpace, "operational_space", OperationalSpace, 6},
-    {MotionLawKind::kFloat, "float", Float, 1},
+    {MotionLawKind::kComputedTorque, "computed_torque", ComputedTorque, 1, true},
+    {MotionLawKind::kPd, "pd", PdLaw, 1, false},
+    {MotionLawKind::kJointImpedance, "joint_impedance", JointImpedance, 1, false},
+    {MotionLawKind::kOperationalSpace, "operational_space", OperationalSpace, 6, true},
+    {MotionLawKind::kFloat, "float", Float, 1, false},
 }};
 
 void MotionLawState::Reset(MotionLawKind law, int num_joints) noexcept {

@@ -229,6 +229,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
   const int n = config.arm.num_joints;
   state_.mode.track_asked = config.auto_track;
   state_.law_state.Reset(config.motion_law.kind, n);
+  state_.contact.Reset(n, CarriesLoads());
   for (model::VecN* v :
        {&state_.q, &state_.dq, &state_.tau_applied, &state_.tau, &state_.tau_before, &state_.reference.q,
         &state_.reference.dq, &state_.reference.ddq, &state_.motion.off}) {

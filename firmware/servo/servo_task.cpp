@@ -186,7 +186,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   if (now == hal::Mode::kBoot) {
     state_.inputs.sound_ticks = 0;
     state_.holds = false;
-    state_.contact.residual.setZero(config_.arm.num_joints);
+    state_.contact.Reset(config_.arm.num_joints, CarriesLoads());
     state_.encoders = EncoderWatch{};
     state_.fault_joint = -1;
     state_.give_up = false;
@@ -372,10 +372,23 @@ void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
     case hal::Mode::kMove:
       if (state_.inputs.bad_ticks == 0) {
         MotionLaw(config_.motion_law, law_inputs, state_.law_state, state_.tau);
+        CarryLoad({config_.arm, state_.encoders, config_.safety.stiction_fraction, Stands()}, state_.contact,
+                  state_.tau);
       }
       break;
     case hal::Mode::kFault: StopDamped(); break;
   }
+}
+
+// Whether the law in force is one that holds the arm where it is, whatever hangs on it.
+bool ServoTask::CarriesLoads() const noexcept {
+  return config_.safety.carry_load && kMotionLaws[static_cast<std::size_t>(state_.law_state.kind)].carries;
+}
+
+// Whether the arm is to stand, and with what hangs on it.
+bool ServoTask::Stands() const noexcept {
+  const bool may_stand = state_.mode.mode == hal::Mode::kBoot || state_.mode.mode == hal::Mode::kHold;
+  return may_stand && CarriesLoads() && state_.reference.dq.isZero(0.0);
 }
 
 void ServoTask::StopDamped() noexcept {

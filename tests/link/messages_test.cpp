@@ -22,7 +22,7 @@ static_assert(sizeof(servo::LawConfig) == 160);
 static_assert(sizeof(servo::MoveConfig) == 64);
 static_assert(sizeof(servo::MotionLawConfig) == 216);
 static_assert(sizeof(servo::GuardConfig) == 1256);
-static_assert(sizeof(servo::SafetyConfig) == 128);
+static_assert(sizeof(servo::SafetyConfig) == 136);
 static_assert(sizeof(servo::MotionCommand) == 304);
 static_assert(sizeof(hal::ArmState) == 280);
 static_assert(sizeof(hal::FeatureMeasurement) == 1016);

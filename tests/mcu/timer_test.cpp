@@ -78,10 +78,11 @@ TEST(BoardByTimer, TooMuchJitterEndsInTheSafeState) {
 // A processor of 16 MIPS: a tick of 28 000 instructions takes two periods.
 TEST(BoardByTimer, ASlowProcessorMissesItsDeadlinesAndCountsThem) {
   const nlohmann::json run = OnTheBoard(
-      With(kHome, {"--servo-pace", "timer", "--instruction-ns", "64", "--set", "run.duration_s=0.301"}));
+      With(kHome, {"--servo-pace", "timer", "--instruction-ns", "64", "--set", "run.duration_s=0.3"}));
   EXPECT_GT(run["mcu"]["line"]["missed_ticks"], 50);
-  EXPECT_EQ(run["mcu"]["line"]["missed_ticks"], run["missed_ticks"]);
-  EXPECT_EQ(run["ticks"].get<int>() + run["missed_ticks"].get<int>(), 301);
+  // The run may end amid a tick, of three periods at most: one of the two has counted it then, or its misses.
+  EXPECT_NEAR(run["mcu"]["line"]["missed_ticks"].get<int>(), run["missed_ticks"].get<int>(), 3);
+  EXPECT_EQ(run["ticks"].get<int>() + run["missed_ticks"].get<int>(), 300);
   EXPECT_TRUE(run["faults"].empty()) << run["faults"];
 }
 

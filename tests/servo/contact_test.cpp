@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <span>
 
 #include "fovea/servo/motion_law.hpp"
 #include "support/ideal_arm.hpp"
@@ -22,6 +23,7 @@ model::VecN Observed(double push, double& worst_before) {
   MotionLawState law;
   law.Reset(MotionLawKind::kComputedTorque, 7);
   ContactState contact;
+  contact.Reset(7, true);
   model::VecN tau = model::VecN::Zero(7);
   worst_before = 0.0;
   for (int tick = 0; tick < 2000; ++tick) {
@@ -60,6 +62,104 @@ TEST(ContactTest, SeesWhatPushesAndNothingElse) {
   for (int i = 0; i < 7; ++i) {
     EXPECT_NEAR(r[i], 2.0, 0.005);
   }
+}
+
+// An arm that stands in the ready posture and is pushed with `push` on each joint from the start. It carries
+// that (`carries`) until `lays_down_s`.
+class PushedArm {
+ public:
+  PushedArm(double push, bool carries, double lays_down_s)
+      : push_(push), carries_(carries), lays_down_s_(lays_down_s) {
+    law_.Reset(MotionLawKind::kComputedTorque, 7);
+    contact_.Reset(7, true);
+    reference_.q = test::Ready();
+    reference_.dq.setZero(7);
+    reference_.ddq.setZero(7);
+  }
+
+  [[nodiscard]] bool IsTakenForHanging() const { return hangs_ >= 0; }
+
+  // Until `t_s`; what the joints are then off [rad].
+  model::VecN OffAt(double t_s) {
+    for (; 1e-3 * tick_ < t_s; ++tick_) {
+      model::ArmPoses poses;
+      model::ArmDynamics dynamics;
+      model::ComputePoses(config_.arm, arm_.q(), poses);
+      model::ComputeDynamics(config_.arm, poses, arm_.dq(), dynamics);
+      ObserveContact(config_.safety.contact_gain, dynamics, arm_.dq(), tau_, contact_);
+      hangs_ = WatchEncoders(config_, {arm_.q(), arm_.dq(), dynamics, contact_.residual, reference_.q, true},
+                             encoders_);
+      MotionLaw(config_.motion_law, {config_.arm, poses, dynamics, reference_, arm_.q(), arm_.dq()}, law_,
+                tau_);
+      if (carries_) {
+        const bool stands = 1e-3 * tick_ < lays_down_s_;
+        CarryLoad({config_.arm, encoders_, config_.safety.stiction_fraction, stands}, contact_, tau_);
+      }
+      hal::ArmCommand command;
+      command.num_joints = 7;
+      model::VecN acting = tau_;
+      acting.array() += push_;
+      command.tau_cmd = model::ToArray(acting);
+      arm_.Apply(command);
+      arm_.Step();
+    }
+    return arm_.q() - reference_.q;
+  }
+
+ private:
+  double push_;
+  bool carries_;
+  double lays_down_s_;
+  ServoConfig config_ = test::PandaConfig();
+  test::IdealArm arm_{config_.arm, test::Ready()};
+  MotionLawState law_;
+  Reference reference_;
+  ContactState contact_;
+  EncoderWatch encoders_;
+  model::VecN tau_ = model::VecN::Zero(7);
+  std::int32_t hangs_ = -1;
+  int tick_ = 0;
+};
+
+// By its springs alone it would go M^-1 push / omega_n^2. What friction may hold is left to the springs.
+TEST(CarryLoadTest, AnArmThatStandsGoesOnToStand) {
+  const ServoConfig config = test::PandaConfig();
+  const double push = 2.0;
+  const model::VecN sags = PushedArm(push, false, 0.0).OffAt(2.0);
+  const model::VecN stands = PushedArm(push, true, 1e9).OffAt(2.0);
+  double left = 0.0;
+  for (const model::Joint& joint : std::span(config.arm.joints).first(7)) {
+    left = std::max(left, config.safety.stiction_fraction * joint.coulomb / push);
+  }
+  std::cout << "off by its springs " << sags.norm() << " rad, when it is carried " << stands.norm()
+            << " rad; left to friction at most " << left << "\n";
+  EXPECT_GT(sags.norm(), 1e-3);
+  EXPECT_LT(left, 0.5);
+  EXPECT_LT(stands.norm(), (left + 0.01) * sags.norm());
+}
+
+// Nothing that friction may hold is carried: the two would hunt each other.
+TEST(CarryLoadTest, WhatFrictionMayHoldIsLeftToIt) {
+  const ServoConfig config = test::PandaConfig();
+  double least = HUGE_VAL;
+  for (const model::Joint& joint : std::span(config.arm.joints).first(7)) {
+    least = std::min(least, config.safety.stiction_fraction * joint.coulomb);
+  }
+  ASSERT_GT(least, 0.0);
+  EXPECT_EQ(PushedArm(0.5 * least, true, 1e9).OffAt(1.0), PushedArm(0.5 * least, false, 0.0).OffAt(1.0));
+}
+
+// When it is to move, what it carried goes to the springs within a quarter of a second, and is not dropped.
+TEST(CarryLoadTest, ALoadIsLaidDownAndNotDropped) {
+  PushedArm arm(2.0, true, 1.0);
+  const model::VecN carried = arm.OffAt(1.0);
+  const double all = (PushedArm(2.0, false, 0.0).OffAt(2.0) - carried).norm();
+  const double soon = (arm.OffAt(1.05) - carried).norm() / all;
+  const double in_the_end = (arm.OffAt(1.6) - carried).norm() / all;
+  std::cout << "of what the springs give way by: after 50 ms " << soon << ", in the end " << in_the_end
+            << "\n";
+  EXPECT_LT(soon, 0.1);
+  EXPECT_NEAR(in_the_end, 1.0, 0.01);
 }
 
 }  // namespace

@@ -128,6 +128,7 @@ TEST_F(FaultJudge, ASafeStopIsBrakedAndAtRest) {
   end()["at_rest_since_s"] = nullptr;
   EXPECT_EQ(Judged().end, End::kUndefined);
   EXPECT_TRUE(Judged().Failed());
+  EXPECT_FALSE(Judged().is_on_its_way) << "it was to be at rest by now";
 }
 
 TEST_F(FaultJudge, HeldIsInHoldAndAtRest) {
@@ -144,10 +145,15 @@ TEST_F(FaultJudge, AllElseIsUndefined) {
   end()["goal_kept_since_s"] = nullptr;  // it tracks, and misses
   EXPECT_EQ(Judged().end, End::kUndefined);
   EXPECT_TRUE(Judged().Failed());
+  EXPECT_TRUE(Judged().is_on_its_way);
   end()["goal_kept_since_s"] = 5.6;  // only just there
   EXPECT_EQ(Judged().end, End::kUndefined);
+  run_["injected"][0]["to_s"] = 6.0;
+  EXPECT_FALSE(Judged().is_on_its_way) << "the fault is not over: more time would be more of it";
+  run_["injected"][0]["to_s"] = 3.0;
   end()["goal_kept_since_s"] = 5.5;
   EXPECT_EQ(Judged().end, End::kRecovered);
+  EXPECT_FALSE(Judged().is_on_its_way);
   end()["goal_kept_since_s"] = 5.9;
   kept_s_ = 0.0;  // it is a mean over half a second itself
   EXPECT_EQ(Judged().end, End::kRecovered);

@@ -174,6 +174,8 @@ void JudgeEnd(const json& run, const json& with, double kept_s, Outcome& outcome
     outcome.off_mm = run.at("path_error_mm_max").get<double>();
   } else {
     outcome.end = mode == "hold" && rests ? End::kHeld : End::kUndefined;
+    outcome.is_on_its_way =
+        outcome.end == End::kUndefined && with.at("to_s").get<double>() < run.at("sim_time_s").get<double>();
   }
 }
 

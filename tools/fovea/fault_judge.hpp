@@ -49,6 +49,7 @@ struct Outcome {
   std::uint64_t contact_ticks = 0;       // with bench, target or itself
   End end = End::kUndefined;
   std::string end_detail;        // mode and reason at the end
+  bool is_on_its_way = false;    // undefined, the fault over and nothing latched: more time may tell
   std::optional<double> off_mm;  // of a motion that goes on: the most that it was off its way
   std::optional<double>
       recovered_after_s;  // from the fault's end until the goal is kept; 0: it was throughout

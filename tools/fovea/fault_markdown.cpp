@@ -30,6 +30,9 @@ A cell says, line by line:
    where that mode began, how much of it was more than a stop takes, and by how much it became faster than it was then, where
    that is beyond the bound.
 
+A run goes on for 1.5 to 4 s after its fault. One that is in no defined state then, without a fault that is latched, is run once more,
+the same and 6 s longer: that it takes long is told above, and what is stuck stays **UNDEFINED**.
+
 A stop may take as far as the hand goes, at the speed that it has when the mode begins, in the time of the stop: in Hold half of
 what the joint that takes longest needs at its largest deceleration, and twice its time to turn its acceleration round; in Fault
 `safety.brake_after_s`. Of the joints' true acceleration, what a dead motor, a load or a push does by itself is not counted, nor the

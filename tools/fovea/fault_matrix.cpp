@@ -14,6 +14,7 @@ namespace {
 constexpr double kLongestFaultS = 5.0;  // of those that end
 constexpr double kGoalS = 0.8;  // and no shorter than so long after the goal that is reached without a fault
 constexpr double kStopS = 1.5;  // a run in Fault goes on for so long; safety.brake_after_s is 0.3
+constexpr double kLongerS = 6.0;  // and one that is still on its way when its time is over
 
 // Of a run whose fault lasts from `onset_s` on for `lasts_s`; one that never ends lasts as long as the run.
 double EndFor(const RunMode& mode, Stage stage, double goal_s, double onset_s, double lasts_s) {
@@ -64,10 +65,40 @@ std::string BesideName(const RunMode& mode, const StageSetup& setup) {
   return fmt::format("{}.{}", mode.name, setup.name);
 }
 
+Job JobOf(const Cell& cell, const StageTimes& times, const StageSetup& setup) {
+  const FaultLevel& level = cell.fault->levels[cell.severity];
+  Job job{NameOf(cell), cell.mode->scenario, setup.assignments};
+  job.name += cell.longer_s > 0.0 ? ".longer" : "";
+  for (const std::string& assignment : AssignmentsOf(*cell.fault, level, setup.onset_s)) {
+    job.assignments.push_back(assignment);
+  }
+  const double end_s = EndFor(*cell.mode, cell.stage, times.goal_s, setup.onset_s, level.lasts_s);
+  job.assignments.push_back(Duration(end_s + cell.longer_s));
+  return job;
+}
+
 Outcome BrokeOff() {
   Outcome outcome;
   outcome.end_detail = "the simulator broke off";
   return outcome;
+}
+
+StageTimes TimesIn(const Runs& runs, const Cell& cell) {
+  return TimesOf(*cell.mode, runs.SummaryOf(UndisturbedName(*cell.mode)));
+}
+Job JobIn(const Runs& runs, const Cell& cell) {
+  const StageTimes times = TimesIn(runs, cell);
+  return JobOf(cell, times, SetUp(times, cell.stage, cell.fault));
+}
+
+void JudgeCell(const Runs& runs, int seed, Cell& cell) {
+  const Job job = JobIn(runs, cell);
+  const StageSetup setup = SetUp(TimesIn(runs, cell), cell.stage, cell.fault);
+  const nlohmann::json& summary = runs.SummaryOf(job.name);
+  cell.command = CommandOf(job, seed);
+  cell.outcome = summary.is_null() ? BrokeOff()
+                                   : Judge(cell.fault->key, summary,
+                                           runs.SummaryOf(BesideName(*cell.mode, setup)), cell.mode->kept_s);
 }
 
 }  // namespace
@@ -108,9 +139,8 @@ Matrix RunMatrix(const MatrixOptions& options) {
   with_fault.reserve(matrix.cells.size());
   for (Cell& cell : matrix.cells) {
     const RunMode& mode = *cell.mode;
-    const StageTimes times = TimesOf(mode, runs.SummaryOf(UndisturbedName(mode)));
+    const StageTimes times = TimesIn(runs, cell);
     const StageSetup setup = SetUp(times, cell.stage, cell.fault);
-    const FaultLevel& level = cell.fault->levels[cell.severity];
     cell.onset_s = setup.onset_s;
 
     Job without{BesideName(mode, setup), mode.scenario, setup.assignments};
@@ -118,13 +148,7 @@ Matrix RunMatrix(const MatrixOptions& options) {
     without.assignments.push_back(Duration(EndBeside(mode, cell.stage, times.goal_s, setup.onset_s)));
     beside[without.name] = without;
 
-    Job job{NameOf(cell), mode.scenario, setup.assignments};
-    for (const std::string& assignment : AssignmentsOf(*cell.fault, level, setup.onset_s)) {
-      job.assignments.push_back(assignment);
-    }
-    job.assignments.push_back(Duration(EndFor(mode, cell.stage, times.goal_s, setup.onset_s, level.lasts_s)));
-    cell.command = CommandOf(job, options.seed);
-    with_fault.push_back(job);
+    with_fault.push_back(JobOf(cell, times, setup));
   }
   {
     atlas::Progress progress("stages", static_cast<int>(beside.size()));
@@ -134,17 +158,24 @@ Matrix RunMatrix(const MatrixOptions& options) {
     atlas::Progress progress("faults", static_cast<int>(with_fault.size()));
     runs.Execute(with_fault, progress);
   }
-  matrix.runs = static_cast<int>(undisturbed.size() + beside.size() + with_fault.size());
-
+  std::vector<Job> longer;
   for (Cell& cell : matrix.cells) {
-    const StageTimes times = TimesOf(*cell.mode, runs.SummaryOf(UndisturbedName(*cell.mode)));
-    const StageSetup setup = SetUp(times, cell.stage, cell.fault);
-    const nlohmann::json& summary = runs.SummaryOf(NameOf(cell));
-    cell.outcome = summary.is_null()
-                       ? BrokeOff()
-                       : Judge(cell.fault->key, summary, runs.SummaryOf(BesideName(*cell.mode, setup)),
-                               cell.mode->kept_s);
+    JudgeCell(runs, options.seed, cell);
+    if (cell.outcome.is_on_its_way) {
+      cell.longer_s = kLongerS;
+      longer.push_back(JobIn(runs, cell));
+    }
   }
+  if (!longer.empty()) {
+    atlas::Progress progress("given longer", static_cast<int>(longer.size()));
+    runs.Execute(longer, progress);
+  }
+  for (Cell& cell : matrix.cells) {
+    if (cell.longer_s > 0.0) {
+      JudgeCell(runs, options.seed, cell);
+    }
+  }
+  matrix.runs = static_cast<int>(undisturbed.size() + beside.size() + with_fault.size() + longer.size());
   return matrix;
 }
 
@@ -161,6 +192,11 @@ Totals Sum(const Matrix& matrix) {
     totals.gone_on += o.end == End::kGoesOn ? 1 : 0;
     totals.touched += o.contact_ticks > 0 ? 1 : 0;
     totals.noticed += o.ticks ? 1 : 0;
+    totals.longer += cell.longer_s > 0.0 ? 1 : 0;
+    if (o.recovered_after_s &&
+        (totals.last == nullptr || *o.recovered_after_s > *totals.last->outcome.recovered_after_s)) {
+      totals.last = &cell;
+    }
     if (o.ticks && (totals.slowest == nullptr || *o.ticks > *totals.slowest->outcome.ticks)) {
       totals.slowest = &cell;
     }

@@ -17,7 +17,8 @@ struct Cell {
   const Fault* fault = nullptr;
   std::size_t severity = 0;  // of kSeverities
   double onset_s = 0.0;
-  std::string command;  // that repeats it
+  double longer_s = 0.0;  // its run goes on for so long beyond what it has as a rule
+  std::string command;    // that repeats it
   Outcome outcome;
 };
 // "<mode>.<stage>.<fault's id>.<severity>"
@@ -55,7 +56,9 @@ struct Totals {
   int gone_on = 0;
   int touched = 0;  // in which the arm touched bench, target or itself
   int noticed = 0;
+  int longer = 0;                                   // that were given more time
   const Cell* slowest = nullptr;                    // to be noticed; none when nothing was
+  const Cell* last = nullptr;                       // to recover; none when none did
   std::map<std::string, const Cell*> worst_limits;  // the cell that used the most of each
   std::map<std::string, const Cell*> furthest;      // by mode: where the arm went furthest beyond a stop
   [[nodiscard]] bool Failed() const { return exceeded > 0 || moved > 0 || undefined > 0; }

@@ -101,6 +101,12 @@ std::vector<std::string> TotalsInWords(const Matrix& matrix) {
                   t.slowest != nullptr ? *t.slowest->outcome.ticks : 0,
                   t.slowest != nullptr ? NameOf(*t.slowest) : "-"),
       fmt::format("the arm touched bench, target or itself in {}", t.touched)};
+  if (t.last != nullptr) {
+    lines.push_back(
+        fmt::format("the last to recover did {:.1f} s after the fault's end ({}); {} had not when "
+                    "their time was over, and were given longer",
+                    *t.last->outcome.recovered_after_s, NameOf(*t.last), t.longer));
+  }
   for (const auto& [mode, cell] : t.furthest) {
     const Moved& way = cell->outcome.moved.at(mode);
     lines.push_back(fmt::format("in {} the hand went at most {:.0f} mm, {:.0f} mm beyond a stop ({})", mode,
@@ -176,6 +182,7 @@ std::string ToJson(const Matrix& matrix) {
   json["exceeded"] = t.exceeded;
   json["moved_too_far"] = t.moved;
   json["touched"] = t.touched;
+  json["given_longer"] = t.longer;
   json["slowest_ticks"] = t.slowest != nullptr ? Json(*t.slowest->outcome.ticks) : Json(nullptr);
   for (const auto& [limit, cell] : t.worst_limits) {
     json["worst_limits"][limit] = {{"share", cell->outcome.limits.at(limit)}, {"cell", NameOf(*cell)}};

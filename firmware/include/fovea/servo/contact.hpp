@@ -9,18 +9,38 @@
 #pragma once
 
 #include "fovea/model/dynamics.hpp"
+#include "fovea/servo/encoder_watch.hpp"
 
 namespace fovea::servo {
 
 struct ContactState {
+  // `carries`: whether a load is carried from the first tick on.
+  void Reset(int num_joints, bool carries) noexcept;
+
   bool started = false;  // false: what the next tick sees is the first; the residual stays as it is
   model::MatN M_before;  // of the tick before
   model::VecN p_before;  // its momentum [Nm s]
   model::VecN residual;  // [num_joints] torques from outside [Nm, N]
+  model::VecN load;      // [num_joints] of them, what the servo carries where the arm stands [Nm, N]
+  double carried = 1.0;  // share of it that is carried now, 0 to 1
 };
 
 // One tick: `tau` [num_joints] was in force since the tick before. Real-time: yes.
 void ObserveContact(double gain, const model::ArmDynamics& dynamics, const model::VecN& dq,
                     const model::VecN& tau, ContactState& state) noexcept;
+
+// What CarryLoad goes by besides the observer.
+struct LoadInputs {
+  const model::ArmModel& arm;
+  const EncoderWatch& encoders;
+  double stiction = 0.0;  // share of a joint's Coulomb friction that may hold it by itself
+  bool stands = false;    // the arm is to stand; else what it carried is laid down
+};
+
+// Adds to `tau` [num_joints] what carries the push that the observer sees, so that an arm that stands goes on
+// to stand under a load that nobody told it of. What friction may hold is left to friction, or the two would
+// hunt each other. A joint whose reading does not change carries what it carried: were its encoder to hang,
+// each torque would call for the next. Real-time: yes.
+void CarryLoad(const LoadInputs& now, ContactState& state, model::VecN& tau) noexcept;
 
 }  // namespace fovea::servo

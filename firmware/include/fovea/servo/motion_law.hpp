@@ -50,6 +50,7 @@ struct MotionLawEntry {
   const char* name;  // as servo.motion_law has it
   void (*torque)(const MotionLawConfig&, const MotionLawInputs&, MotionLawState&, model::VecN&) noexcept;
   int joints_min;  // arms with fewer joints cannot be driven by it
+  bool carries;    // a load that nobody told it of, where the arm stands; else it gives way as its springs do
 };
 extern const std::array<MotionLawEntry, kNumMotionLaws> kMotionLaws;
 

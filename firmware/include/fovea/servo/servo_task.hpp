@@ -149,6 +149,8 @@ class ServoTask final : public ServoStep {
   void NoteBlocked() noexcept;
   void NoteSteering() noexcept;
   void ComputeTorque(const ServoInputs& inputs) noexcept;
+  [[nodiscard]] bool CarriesLoads() const noexcept;
+  [[nodiscard]] bool Stands() const noexcept;
   void StopDamped() noexcept;
   void Clamp() noexcept;
   void WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) const noexcept;
