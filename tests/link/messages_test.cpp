@@ -3,9 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <random>
+#include <string_view>
 #include <vector>
 
 #include "fovea/link/frame.hpp"
@@ -135,7 +136,7 @@ TEST(Messages, ComeBack) {
 
   Answer answer;
   answer.code = hal::StatusCode::kOutOfRange;
-  std::strcpy(answer.where.data(), "law.lambda");
+  std::ranges::copy(std::string_view("law.lambda"), answer.where.data());
   ExpectComesBack(answer);
   ExpectComesBack(Crash{6, 1, 2, 3, 4});
   ExpectComesBack(Provocation::kUsageFault);
