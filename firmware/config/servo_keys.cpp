@@ -231,9 +231,11 @@ void AddFaultKeys(servo::SafetyConfig& c, KeyTable& keys) {
               "pushed from outside with more than this share of a joint's torque: Fault");
   keys.Number("safety.contact_gain", c.contact_gain, 0.1, 300.0, "1/s",
               "of the observer that sees a push from the arm's momentum");
-  keys.Flag("safety.carry_load", c.carry_load,
-            "an arm that stands carries a load that nobody told it of; not by the laws that are springs (pd, "
-            "joint_impedance)");
+  keys.Number(
+      "safety.carried_torque_fraction", c.carried_torque_fraction, 0.0, 1.0, "",
+      "an arm that stands carries three quarters of a load that nobody told it of, with at most this share "
+      "of a joint's torque; not by the laws that are springs (pd, joint_impedance), nor beside "
+      "`servo.integral`; 0: nothing");
   keys.Number("safety.fault_damping", c.fault_damping, 0.1, 100.0, "1/s", "of the stop after a fault");
   keys.Number("safety.brake_velocity", c.brake_velocity, 1e-6, 10.0, "rad/s",
               "after a fault the brakes close when every joint is slower");

@@ -325,7 +325,6 @@ void EachGroup(State& s, const Visit& visit) noexcept {
   visit(Pace::kTick, "contact", [&s](auto& a) {
     a(s.contact.started);
     SizedEntries(a, s.contact.residual);
-    SizedEntries(a, s.contact.load);
     a(s.contact.carried);
   });
   visit(Pace::kTick, "encoder watch", [&s](auto& a) {

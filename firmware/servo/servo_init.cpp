@@ -122,6 +122,7 @@ Status ServoTask::Init(const ServoConfig& config) noexcept {
       {config.safety.following_error, 1e-4, 10.0, "safety.following_error"},
       {config.safety.motion_error, 1e-5, 10.0, "safety.motion_error"},
       {config.safety.contact_torque_fraction, 1e-3, huge, "safety.contact_torque_fraction"},
+      {config.safety.carried_torque_fraction, 0.0, 1.0, "safety.carried_torque_fraction"},
       {config.safety.contact_gain, 0.1, 300.0, "safety.contact_gain"},
       {config.safety.fault_damping, 0.1, 100.0, "safety.fault_damping"},
       {config.safety.brake_velocity, 1e-6, 10.0, "safety.brake_velocity"},

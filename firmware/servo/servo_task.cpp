@@ -5,6 +5,7 @@
 
 #include "fovea/features/hold_orientation.hpp"
 #include "fovea/servo/clamp_torque.hpp"
+#include "fovea/servo/friction.hpp"
 #include "fovea/servo/keep_apart.hpp"
 #include "fovea/servo/obstacle.hpp"
 #include "fovea/servo/smooth_step.hpp"
@@ -93,8 +94,8 @@ void ServoTask::CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::
   if (!sound || !drives) {
     state_.contact.started = false;
   } else {
-    ObserveContact(config_.safety.contact_gain, state_.dynamics, state_.dq, state_.tau_applied,
-                   state_.contact);
+    ObserveContact(config_.safety.contact_gain, state_.dynamics, state_.dq,
+                   state_.tau_applied - SpringTorque(config_.arm, state_.q), state_.contact);
   }
   if (!sound) {
     return;
@@ -372,17 +373,20 @@ void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
     case hal::Mode::kMove:
       if (state_.inputs.bad_ticks == 0) {
         MotionLaw(config_.motion_law, law_inputs, state_.law_state, state_.tau);
-        CarryLoad({config_.arm, state_.encoders, config_.safety.stiction_fraction, Stands()}, state_.contact,
-                  state_.tau);
+        CarryLoad(
+            {config_.arm, config_.safety.stiction_fraction, config_.safety.carried_torque_fraction, Stands()},
+            state_.contact, state_.tau);
       }
       break;
     case hal::Mode::kFault: StopDamped(); break;
   }
 }
 
-// Whether the law in force is one that holds the arm where it is, whatever hangs on it.
+// Whether the law in force is one that holds the arm where it is, whatever hangs on it, and does not learn
+// the load by itself.
 bool ServoTask::CarriesLoads() const noexcept {
-  return config_.safety.carry_load && kMotionLaws[static_cast<std::size_t>(state_.law_state.kind)].carries;
+  return config_.safety.carried_torque_fraction > 0.0 && config_.motion_law.integral == 0.0 &&
+         kMotionLaws[static_cast<std::size_t>(state_.law_state.kind)].carries;
 }
 
 // Whether the arm is to stand, and with what hangs on it.

@@ -17,7 +17,7 @@ servo::ServoConfig SomeConfig() {
   config.law.lambda = 1.0 / 3.0;
   config.law.unreachable_progress = 0.07;
   config.guard.obstacles.num_planes = 2;
-  config.safety.carry_load = false;
+  config.safety.carried_torque_fraction = 0.0;
   config.arm.joints[6].spring = 4.5;
   return config;
 }
@@ -38,12 +38,12 @@ TEST(ServoConfigurationTest, AFieldThatALogDoesNotKnowHasItsDefault) {
     if (section.name() == "law") {
       fields.resize(fields.size() - sizeof(double));
     } else if (section.name() == "safety") {
-      fields.resize(fields.size() - sizeof(std::uint8_t));
+      fields.resize(fields.size() - sizeof(double));
     }
   }
   const servo::ServoConfig back = FromMessage(message);
   EXPECT_EQ(back.law.unreachable_progress, servo::LawConfig{}.unreachable_progress);
-  EXPECT_EQ(back.safety.carry_load, servo::SafetyConfig{}.carry_load);
+  EXPECT_EQ(back.safety.carried_torque_fraction, servo::SafetyConfig{}.carried_torque_fraction);
   EXPECT_EQ(back.law.lambda, 1.0 / 3.0);
 }
 

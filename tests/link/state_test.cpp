@@ -20,7 +20,7 @@ namespace {
 // A field that is added to one of these and that a tick takes from the tick before must be added to what is
 // kept of the state (state_fields.hpp), and then here.
 static_assert(sizeof(servo::InputState) == 232);
-static_assert(sizeof(servo::ContactState) == 760);
+static_assert(sizeof(servo::ContactState) == 688);
 static_assert(sizeof(servo::TargetFilter) == 736);
 static_assert(sizeof(servo::DiscChoice) == 1008);
 static_assert(sizeof(servo::PoseChoice) == 15704);
@@ -32,7 +32,7 @@ static_assert(sizeof(servo::WayToGoal) == 800);
 static_assert(sizeof(servo::ResolvedMotion) == 88);
 static_assert(sizeof(servo::MotionState) == 16160);
 static_assert(sizeof(servo::MotionLawState) == 232);
-static_assert(sizeof(servo::ServoState) == 82896);
+static_assert(sizeof(servo::ServoState) == 82824);
 
 using Buffer = std::vector<std::uint8_t>;
 

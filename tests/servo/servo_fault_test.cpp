@@ -239,6 +239,39 @@ TEST_F(FaultTest, AFloatingArmMayBePushed) {
   }
 }
 
+// A law that is a spring is there to give way, and an integral learns the load by itself.
+TEST_F(FaultTest, OnlyALawThatHoldsTheArmCarriesALoad) {
+  ServoConfig config = test::PandaConfig();
+  config.safety.following_error = 1.0;  // springs give way far
+  camera_on_ = false;
+  const auto pushed_to = [&](MotionLawKind law, double integral, double carried) {
+    config.motion_law.kind = law;
+    config.motion_law.integral = integral;
+    config.safety.carried_torque_fraction = carried;
+    Start(config);
+    Run(300);
+    const double stood = arm_->q()[0];
+    for (int i = 0; i < 400; ++i) {
+      arm_->SetVelocity(arm_->dq() + 0.005 * model::VecN::Unit(7, 0));  // some 3 Nm
+      Tick();
+    }
+    EXPECT_EQ(outputs_.record.mode, Mode::kHold) << hal::Name(outputs_.record.fault);
+    return arm_->q()[0] - stood;
+  };
+  for (const MotionLawKind law : {MotionLawKind::kPd, MotionLawKind::kJointImpedance}) {
+    EXPECT_EQ(pushed_to(law, 0.0, 0.1), pushed_to(law, 0.0, 0.0));
+  }
+  for (const MotionLawKind law : {MotionLawKind::kComputedTorque, MotionLawKind::kOperationalSpace}) {
+    const double springs = pushed_to(law, 0.0, 0.0);
+    const double carried = pushed_to(law, 0.0, 0.1);
+    std::cout << "gives way by " << springs << " rad, with the load carried by " << carried << " rad\n";
+    EXPECT_GT(springs, 1e-3);
+    EXPECT_LT(carried, 0.6 * springs);
+    EXPECT_GT(carried, 0.0);
+    EXPECT_EQ(pushed_to(law, 2.0, 0.1), pushed_to(law, 2.0, 0.0));
+  }
+}
+
 // Damping brings an arm that something pulls at to a creep, not to rest: its brakes do not wait for the end
 // of the time.
 TEST_F(FaultTest, AStopThatIsPulledOnEndsInTheBrakes) {

@@ -150,7 +150,7 @@ void SafetyFields(Archive& a, T& s) noexcept {
   a(s.stiction_fraction);
   a(s.motion_error);
   a.Int(s.frozen_ticks);
-  a(s.carry_load);
+  a(s.carried_torque_fraction);
 }
 
 // Calls `visit(name, fields)` for each part of `c` but the arm, in their order; `fields(archive)` goes

@@ -9,7 +9,6 @@
 #pragma once
 
 #include "fovea/model/dynamics.hpp"
-#include "fovea/servo/encoder_watch.hpp"
 
 namespace fovea::servo {
 
@@ -21,26 +20,25 @@ struct ContactState {
   model::MatN M_before;  // of the tick before
   model::VecN p_before;  // its momentum [Nm s]
   model::VecN residual;  // [num_joints] torques from outside [Nm, N]
-  model::VecN load;      // [num_joints] of them, what the servo carries where the arm stands [Nm, N]
-  double carried = 1.0;  // share of it that is carried now, 0 to 1
+  double carried = 1.0;  // share of the load that is carried now, 0 to 1
 };
 
-// One tick: `tau` [num_joints] was in force since the tick before. Real-time: yes.
+// One tick: `tau` [num_joints] was in force since the tick before, less what the joints' springs pull.
+// Real-time: yes.
 void ObserveContact(double gain, const model::ArmDynamics& dynamics, const model::VecN& dq,
                     const model::VecN& tau, ContactState& state) noexcept;
 
 // What CarryLoad goes by besides the observer.
-struct LoadInputs {
+struct CarriedLoad {
   const model::ArmModel& arm;
-  const EncoderWatch& encoders;
-  double stiction = 0.0;  // share of a joint's Coulomb friction that may hold it by itself
-  bool stands = false;    // the arm is to stand; else what it carried is laid down
+  double stiction_fraction = 0.0;  // of a joint's Coulomb friction may hold it by itself
+  double torque_fraction = 0.0;    // of a joint's torque is carried at most
+  bool stands = false;             // the arm is to stand; else what it carried is laid down
 };
 
-// Adds to `tau` [num_joints] what carries the push that the observer sees, so that an arm that stands goes on
-// to stand under a load that nobody told it of. What friction may hold is left to friction, or the two would
-// hunt each other. A joint whose reading does not change carries what it carried: were its encoder to hang,
-// each torque would call for the next. Real-time: yes.
-void CarryLoad(const LoadInputs& now, ContactState& state, model::VecN& tau) noexcept;
+// Adds to `tau` [num_joints] what carries most of the push that the observer sees: an arm that stands gives
+// way less to a load that nobody told it of. What friction may hold is left to friction, or the two would
+// hunt each other. Real-time: yes.
+void CarryLoad(const CarriedLoad& load, ContactState& state, model::VecN& tau) noexcept;
 
 }  // namespace fovea::servo

@@ -164,7 +164,7 @@ struct SafetyConfig {
   double motion_error = 0.05;            // and on the whole further in a commanded motion: Hold [rad, m]
   double contact_torque_fraction = 0.2;  // pushed with more than this share of a joint's torque: fault
   double contact_gain = 60.0;            // of the observer that sees it [1/s]
-  bool carry_load = true;                // where the arm stands, what the observer sees is carried
+  double carried_torque_fraction = 0.1;  // where the arm stands, it carries what it sees with at most so much
   double fault_damping = 10.0;           // of the damped stop [1/s]
   double brake_velocity = 0.02;          // brakes close when every joint is slower [rad/s, m/s]
   double brake_after_s = 0.3;            // or after this time [s]
