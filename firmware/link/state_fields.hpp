@@ -69,6 +69,7 @@ void EncoderWatchFields(Archive& a, T& w) noexcept {
     a.Int(joint.ticks);
     a(joint.q);
     a(joint.q_reference);
+    a(joint.dq);
     a(joint.speed);
     a(joint.way);
     a(joint.travel);

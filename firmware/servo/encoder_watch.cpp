@@ -15,6 +15,7 @@ constexpr double kTorqueShare = 0.01;           // of its torque: what the model
 constexpr double kWishSlack = 0.01;             // what the law may be late by [rad, m]
 constexpr double kLeast = 1e-9;                 // where the encoder has no steps [rad, m]
 constexpr double kTravelSlack = 1e-3;           // what noise of the velocities may add up to [rad, m]
+constexpr double kShown = 0.5;                  // of the speed that a push gives a joint, seen: it lives
 constexpr double kFlicker = 1e-6;               // noise of velocities is more than this [rad/s, m/s]
 constexpr std::int32_t kFlickersMost = 100;     // by then a joint is one that flickers
 constexpr std::int32_t kTicksMost = 1'000'000;  // counted no further
@@ -56,6 +57,13 @@ void UnseenAcceleration(const ServoConfig& config, const WatchedJoints& now, Enc
   }
 }
 
+// Whether something has begun to push the joint, or ceased to, and its velocity shows that: it turns round
+// within a step of its encoder. What would be the unseen motion of a joint that hangs is, the other way
+// round, what the push does to one that lives.
+bool TurnsRound(const EncoderWatch::Joint& joint, double dq) noexcept {
+  return (joint.dq - dq) * joint.speed >= kShown * joint.speed * joint.speed;
+}
+
 // Whether a joint that flickers has ceased to.
 bool HasFrozen(const ServoConfig& config, double q, double dq, EncoderWatch::Joint& joint) noexcept {
   const double change = dq - joint.dq_last;
@@ -90,6 +98,7 @@ std::int32_t WatchEncoders(const ServoConfig& config, const WatchedJoints& now,
       joint.mean = joint.residual;  // it lives: what pushes it until now is no secret
       joint.q = now.q[i];
       joint.q_reference = now.q_reference[i];
+      joint.dq = now.dq[i];
       joint.speed = joint.way = joint.travel = 0.0;
       continue;
     }
@@ -98,14 +107,20 @@ std::int32_t WatchEncoders(const ServoConfig& config, const WatchedJoints& now,
     }
     joint.ticks = std::min(joint.ticks + 1, kTicksMost);
     joint.travel += now.dq[i] * kPeriodS;
-    joint.speed = unseen[k] != 0.0 ? joint.speed + unseen[k] * kPeriodS : 0.0;
-    joint.way = unseen[k] != 0.0 ? joint.way + joint.speed * kPeriodS : 0.0;
+    if (unseen[k] != 0.0) {
+      joint.speed += unseen[k] * kPeriodS;
+      joint.way += joint.speed * kPeriodS;
+    } else {
+      joint.dq = now.dq[i];
+      joint.speed = joint.way = 0.0;
+    }
     const double held = config.safety.stiction_fraction * arm_joint.coulomb;
     const double M = now.dynamics.M(i, i);
     const double omega_n = config.motion_law.omega_n;
     const double wished = now.drives ? std::fabs(now.q_reference[i] - joint.q_reference) : 0.0;
     const double gone =
-        std::max({std::fabs(joint.way) / (enough + kLeast), std::fabs(joint.travel) / (enough + kTravelSlack),
+        std::max({TurnsRound(joint, now.dq[i]) ? 0.0 : std::fabs(joint.way) / (enough + kLeast),
+                  std::fabs(joint.travel) / (enough + kTravelSlack),
                   wished / (enough + kWishSlack + held / (M * omega_n * omega_n))});
     if (gone > 1.0 && joint.ticks >= config.safety.non_finite_ticks && hangs < 0) {
       hangs = i;

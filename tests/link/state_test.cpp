@@ -25,14 +25,14 @@ static_assert(sizeof(servo::TargetFilter) == 736);
 static_assert(sizeof(servo::DiscChoice) == 1008);
 static_assert(sizeof(servo::PoseChoice) == 15704);
 static_assert(sizeof(servo::PredictState) == 58824);
-static_assert(sizeof(servo::EncoderWatch) == 840);
+static_assert(sizeof(servo::EncoderWatch) == 904);
 static_assert(sizeof(servo::EyeWatch) == 184);
 static_assert(sizeof(servo::ModeState) == 5);
 static_assert(sizeof(servo::WayToGoal) == 800);
 static_assert(sizeof(servo::ResolvedMotion) == 88);
 static_assert(sizeof(servo::MotionState) == 16160);
 static_assert(sizeof(servo::MotionLawState) == 232);
-static_assert(sizeof(servo::ServoState) == 82824);
+static_assert(sizeof(servo::ServoState) == 82888);
 
 using Buffer = std::vector<std::uint8_t>;
 

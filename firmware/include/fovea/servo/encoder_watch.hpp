@@ -28,6 +28,7 @@ struct EncoderWatch {
     std::int32_t ticks = 0;
     double q = 0.0;            // that reading [rad, m]
     double q_reference = 0.0;  // where the joint should have been then [rad, m]
+    double dq = 0.0;           // its velocity when that torque began [rad/s, m/s]
     double speed = 0.0;        // that the torque has given it [rad/s, m/s]
     double way = 0.0;          // and how far it went [rad, m]
     double travel = 0.0;       // how far it went by its measured velocity [rad, m]
