@@ -3,3 +3,5 @@
 s|^\( *\)// |\1/// |
 s|^\( *\)//$|\1///|
 s|\([;,{})]\) *// |\1  ///< |
+# Of pages that are not in the reference, the name alone.
+s/\[\([^]]*\)\]([^)]*\(README\|RESULTS\|DEPENDENCIES\|CONTRIBUTING\)\.md[^)]*)/\1/g

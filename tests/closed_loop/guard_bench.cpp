@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -118,10 +118,10 @@ void GuardBench::WatchReference(const hal::TickRecord& record) {
   model::ComputePoses(arm, q, poses);
   model::ComputeJacobian(arm, poses, model::Pose{}, J);
   Use(figures_.wished_speed, (J.topRows<3>() * model::ToVector(record.dq_cmd, arm.num_joints)).norm());
-  Eigen::MatrixXd scaled = J;
-  scaled.topRows<3>() /= kLength;
-  figures_.singular =
-      std::min(figures_.singular, Eigen::JacobiSVD<Eigen::MatrixXd>(scaled).singularValues().minCoeff());
+  J.topRows<3>() /= kLength;
+  const Eigen::Matrix<double, 6, 6> JJt = J * J.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> squares(JJt, Eigen::EigenvaluesOnly);
+  figures_.singular = std::min(figures_.singular, std::sqrt(std::max(squares.eigenvalues().minCoeff(), 0.0)));
 }
 
 void GuardBench::Recorder::Record(const hal::TickRecord& record) noexcept {
