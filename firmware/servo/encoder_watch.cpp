@@ -17,7 +17,7 @@ constexpr double kLeast = 1e-9;                 // where the encoder has no step
 constexpr double kTravelSlack = 1e-3;           // what noise of the velocities may add up to [rad, m]
 constexpr double kShown = 0.5;                  // of the speed that a push gives a joint, seen: it lives
 constexpr double kFlicker = 1e-6;               // noise of velocities is more than this [rad/s, m/s]
-constexpr std::int32_t kFlickersMost = 100;     // by then a joint is one that flickers
+constexpr std::int32_t kFlickersMost = 30;      // by then a joint is one that flickers: a tenth of a second
 constexpr std::int32_t kTicksMost = 1'000'000;  // counted no further
 
 // What changed of what pushes the joints, each less its mean: as accelerations that the readings do not show.
@@ -64,13 +64,19 @@ bool TurnsRound(const EncoderWatch::Joint& joint, double dq) noexcept {
   return (joint.dq - dq) * joint.speed >= kShown * joint.speed * joint.speed;
 }
 
-// Whether a joint that flickers has ceased to.
+// Whether a joint that flickers has ceased to. Only one that flickers at rest, and never repeats itself there,
+// does so for its noise: an encoder with steps flickers too, but while the joint moves, or now and then.
 bool HasFrozen(const ServoConfig& config, double q, double dq, EncoderWatch::Joint& joint) noexcept {
   const double change = dq - joint.dq_last;
   const bool is_up_and_down = change * joint.change_last < -kFlicker * kFlicker;
   const bool same = change == 0.0 && q == joint.q_last;
+  const bool rests = joint.ticks > 0 && std::fabs(q - joint.q) <= config.safety.encoder_quantum;
   joint.same_ticks = same ? std::min<std::int32_t>(joint.same_ticks + 1, kTicksMost) : 0;
-  joint.flickers = std::max<std::int32_t>(joint.flickers + (is_up_and_down ? 1 : -1), 0);
+  if (same) {
+    joint.flickers = 0;
+  } else if (rests) {
+    joint.flickers = std::max<std::int32_t>(joint.flickers + (is_up_and_down ? 1 : -1), 0);
+  }
   joint.is_noisy = joint.is_noisy || joint.flickers >= kFlickersMost;
   joint.change_last = change != 0.0 ? change : joint.change_last;
   joint.q_last = q;

@@ -230,6 +230,10 @@ HazardFigures RunCases(const Hazard& hazard, int cases, int jobs, std::uint64_t 
       f.worst_seed = seed + k;
     }
     f.speed_most = std::max(f.speed_most, o.speed);
+    if (o.velocity_share > f.joint_most) {
+      f.joint_most = o.velocity_share;
+      f.joint_seed = seed + k;
+    }
     ways.push_back(o.way_mm);
   }
   const auto at = [](auto& values, double share) {

@@ -54,6 +54,8 @@ struct HazardFigures {
   double way_most_mm = 0.0;
   double speed_most = 0.0;
   std::uint64_t worst_seed = 0;  // of the longest way
+  double joint_most = 0.0;       // of the fastest joint, as a share of its limit
+  std::uint64_t joint_seed = 0;
 };
 HazardFigures RunCases(const Hazard& hazard, int cases, int jobs, std::uint64_t seed,
                        const std::function<void(double share)>& on_progress);

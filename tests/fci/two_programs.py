@@ -79,13 +79,14 @@ class TwoPrograms(unittest.TestCase):
         hw.stdin.flush()
 
     def summary_of(self, hw, code=0):
-        out, _ = hw.communicate(timeout=20)
-        self.assertEqual(hw.returncode, code)
+        out, said = hw.communicate(timeout=20)
+        self.assertEqual(hw.returncode, code, f"{out}\n{said}")
         return json.loads(out)
 
-    def wait_for(self, process, line):
-        while True:
+    def wait_for(self, process, *lines):
+        """Reads until it has said each of the lines, in any order."""
+        missing = set(lines)
+        while missing:
             got = process.stderr.readline()
-            self.assertNotEqual(got, "", f"it ended before it said {line}")
-            if got.strip() == line:
-                return
+            self.assertNotEqual(got, "", f"it ended before it said {missing}")
+            missing.discard(got.strip())

@@ -166,6 +166,44 @@ TEST_F(EncoderWatchTest, ANoiseThatCeasesTells) {
   EXPECT_EQ(TicksUntil(10'000), -1);
 }
 
+// Noise at rest is known a fifth of a second after the start, before anything moves the arm.
+TEST_F(EncoderWatchTest, NoiseIsKnownSoon) {
+  test::RandomStates random(11);
+  for (int tick = 0; tick < 200; ++tick) {
+    for (int joint = 0; joint < 7; ++joint) {
+      q_[joint] += random.Uniform(-1e-6, 1e-6);
+      dq_[joint] = random.Uniform(-1e-4, 1e-4);
+    }
+    ASSERT_EQ(TicksUntil(1), -1) << tick;
+  }
+  for (const EncoderWatch::Joint& joint : watch_.joints) {
+    EXPECT_TRUE(joint.is_noisy || &joint - watch_.joints.data() >= 7);
+  }
+  EXPECT_EQ(TicksUntil(1000), config_.safety.frozen_ticks);
+}
+
+// An encoder with steps whose velocity is their difference flickers while its joint moves, and trembles by a
+// step now and then at rest. Then it stands still for ever: it has no noise that could cease.
+TEST_F(EncoderWatchTest, StepsThatFlickerAreNoNoise) {
+  const double quantum = config_.safety.encoder_quantum;
+  test::RandomStates random(12);
+  double true_q = q_[3];
+  double before = q_[3];
+  for (int tick = 0; tick < 20'000; ++tick) {
+    const bool moves = tick / 2000 % 2 == 0;
+    true_q += moves ? 0.37 * quantum : 0.0;
+    q_[3] = quantum * std::round((true_q + 0.4 * quantum * random.Uniform(-1.0, 1.0)) / quantum);
+    dq_[3] = (q_[3] - before) / 1e-3;
+    before = q_[3];
+    residual_[3] = reference_[3] = 0.0;
+    reference_[3] = q_[3];
+    ASSERT_EQ(TicksUntil(1), -1) << tick;
+    ASSERT_FALSE(watch_.joints[3].is_noisy) << tick;
+  }
+  dq_[3] = 0.0;
+  EXPECT_EQ(TicksUntil(10'000), -1);
+}
+
 // What is read changes by a step of the encoder now and then: it works.
 TEST_F(EncoderWatchTest, AReadingThatChangesByAStepIsSound) {
   for (int step = 0; step < 50; ++step) {

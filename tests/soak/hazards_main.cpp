@@ -13,14 +13,15 @@ using namespace fovea;
 constexpr const char* kHead =
     "| hazard | noticed, of all | after, 99 %; most | way of the hand, median; 99 %; most | fastest | at "
     "rest in the "
-    "end | touched; joint too fast |\n|---|---|---|---|---|---|---|\n";
+    "end | touched; joint too fast | fastest joint, of its limit |\n|---|---|---|---|---|---|---|---|\n";
 
 std::string RowOf(const test::Hazard& hazard, const test::HazardFigures& f) {
   return fmt::format(
       "| {} | {} of {} | {} ms; {} ms | {:.1f} mm; {:.0f} mm; {:.0f} mm (seed {}) | {:.2f} m/s | {} | {}; {} "
-      "|\n",
+      "| {:.0f} % (seed {}) |\n",
       hazard.what, f.noticed, f.cases, f.noticed_p99_ms, f.noticed_most_ms, f.way_p50_mm, f.way_p99_mm,
-      f.way_most_mm, f.worst_seed, f.speed_most, f.stand, f.touched, f.passed);
+      f.way_most_mm, f.worst_seed, f.speed_most, f.stand, f.touched, f.passed,
+      100.0 * f.joint_most, f.joint_seed);
 }
 
 }  // namespace

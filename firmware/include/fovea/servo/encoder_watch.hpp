@@ -8,8 +8,9 @@
 //
 // A joint that stands still under a load that nobody knows has a residual, but one that does not change.
 //
-// A fourth thing needs no motion: most encoders have noise in their last bits. Where a joint's velocity has
-// been seen to flicker for long, readings that repeat to the last bit are none.
+// A fourth thing needs no motion: most encoders have noise in their last bits. Where a joint at rest has been
+// seen to flicker for a tenth of a second without ever repeating itself, readings that repeat to the last bit
+// are none. That is known before the arm leaves Boot and finds its target.
 #pragma once
 
 #include <array>
@@ -36,7 +37,7 @@ struct EncoderWatch {
     double q_last = 0.0;          // of the state before [rad, m]
     double dq_last = 0.0;         // [rad/s, m/s]
     double change_last = 0.0;     // of dq, in the last state in which it changed [rad/s, m/s]
-    std::int32_t flickers = 0;    // states in which dq went up after down, or down after up, less the others
+    std::int32_t flickers = 0;    // at rest, states in which dq turned round, less those in which it did not
     std::int32_t same_ticks = 0;  // states in a row that repeat the one before to the last bit
     bool is_noisy = false;        // it is one that flickers
   };
