@@ -17,17 +17,17 @@ constexpr double kReturnSpeed = 0.02;   // but no faster [m/s]
 
 }  // namespace
 
-bool MotionLimits::AddRow(const model::VecN& a, double b) noexcept {
+void MotionLimits::AddRow(const model::VecN& a, double b) noexcept {
   if (num_rows >= kMaxRows) {
-    return false;
+    complete = false;
+    return;
   }
   rows[static_cast<std::size_t>(num_rows)] = {a, b};
   ++num_rows;
-  return true;
 }
 
 bool MotionLimits::KeptBy(const model::VecN& dq) const noexcept {
-  bool kept = true;
+  bool kept = complete;
   for (Eigen::Index i = 0; i < dq.size(); ++i) {
     kept = kept && dq[i] >= dq_min[i] && dq[i] <= dq_max[i];
   }
@@ -42,6 +42,7 @@ void LimitJoints(const ServoConfig& config, const model::VecN& q, MotionLimits& 
   const GuardConfig& guard = config.guard;
   const Eigen::Index n = q.size();
   limits.num_rows = 0;
+  limits.complete = true;
   limits.dq_min.resize(n);
   limits.dq_max.resize(n);
   for (int i = 0; i < n; ++i) {

@@ -30,10 +30,10 @@ struct Limits {
   std::array<LimitRow, MotionLimits::kMaxRows> rows;
   std::array<int, MotionLimits::kMaxRows> origin{};  // number of the row as it was given
   bool contradict = false;                           // a range that is empty, a row that no dq keeps
-  bool sound = true;                                 // false: something is not a number
+  bool sound;                                        // false: something is not a number, or left out
 
   explicit Limits(const MotionLimits& given) noexcept
-      : n(given.dq_min.size()), dq_min(given.dq_min), dq_max(given.dq_max) {
+      : n(given.dq_min.size()), dq_min(given.dq_min), dq_max(given.dq_max), sound(given.complete) {
     for (Eigen::Index i = 0; i < n; ++i) {
       sound = sound && !std::isnan(dq_min[i]) && !std::isnan(dq_max[i]);
       if (dq_min[i] > dq_max[i]) {
@@ -101,7 +101,7 @@ struct Limits {
   }
 };
 
-static_assert(kNumLimits <= 32, "one bit each");
+static_assert(kNumLimits <= 64, "one bit each");
 
 enum class Search : std::uint8_t { kDone, kGaveUp, kInfeasible };
 
@@ -116,7 +116,8 @@ Search FindNearest(const model::MatN& L, const Limits& limits, VecN& dq, ActiveS
     if (entering < 0) {
       double most = broken;
       for (int limit = 0; limit < kNumLimits; ++limit) {
-        if (!limits.Exists(limit) || (active.members >> static_cast<unsigned>(limit) & 1U) != 0) {
+        if (!limits.Exists(limit) ||
+            (active.members >> static_cast<unsigned>(limit) & std::uint64_t{1}) != 0) {
           continue;
         }
         const double passed = limits.Passed(limit, dq);

@@ -52,10 +52,10 @@ bool IsNear(const SingularityConfig& config, const model::Mat6N& J, double speed
   return !(singularity.sigma > near);
 }
 
-bool LimitSingularity(const SingularityConfig& config, const Singularity& singularity,
+void LimitSingularity(const SingularityConfig& config, const Singularity& singularity,
                       MotionLimits& limits) noexcept {
   const model::VecN a = -singularity.gradient;
-  return limits.AddRow(a, config.rate * std::max(singularity.sigma - config.sigma_min, 0.0));
+  limits.AddRow(a, config.rate * std::max(singularity.sigma - config.sigma_min, 0.0));
 }
 
 }  // namespace fovea::servo

@@ -70,12 +70,17 @@ TEST(MotionLimitsTest, TakesAsManyRowsAsItHasRoomFor) {
   LimitJoints(test::PandaConfig(), test::Ready(), limits);
   for (int k = 0; k < MotionLimits::kMaxRows; ++k) {
     EXPECT_TRUE(limits.KeptBy(model::VecN::Zero(7)));
-    EXPECT_TRUE(limits.AddRow(model::VecN::Ones(7), 1.0));
+    limits.AddRow(model::VecN::Ones(7), 1.0);
+    EXPECT_TRUE(limits.complete);
   }
-  EXPECT_FALSE(limits.AddRow(model::VecN::Ones(7), 1.0));
+  limits.AddRow(model::VecN::Ones(7), 1.0);
   EXPECT_EQ(limits.num_rows, MotionLimits::kMaxRows);
-  EXPECT_FALSE(limits.KeptBy(model::VecN::Ones(7) * 0.2));
+  EXPECT_FALSE(limits.KeptBy(model::VecN::Zero(7))) << "a limit that is left out is not kept";
+  LimitJoints(test::PandaConfig(), test::Ready(), limits);
+  EXPECT_TRUE(limits.KeptBy(model::VecN::Zero(7)));
   EXPECT_FALSE(limits.KeptBy(model::VecN::Constant(7, std::nan(""))));
+  limits.AddRow(model::VecN::Ones(7), 1.0);
+  EXPECT_FALSE(limits.KeptBy(model::VecN::Ones(7) * 0.2));
 }
 
 }  // namespace

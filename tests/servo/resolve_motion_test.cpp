@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "fovea/servo/keep_face.hpp"
 #include "support/panda.hpp"
 
 namespace fovea::servo {
@@ -69,6 +71,39 @@ TEST_F(NearASingularityTest, WhatWasKnownBeforeTheJointsMovedCountsNoMore) {
   motion_.watch.sigma = 5.0;  // far off, where the arm was before
   Resolve(true);
   EXPECT_NE(Resolve(false), 0U);
+}
+
+// With all limits in force at once none is left out: planes and boxes that are far off change nothing.
+TEST_F(NearASingularityTest, EveryPlaneAndBoxLeavesRoomForTheOtherLimits) {
+  config_.guard.view = {true, -0.6, 0.6, -0.5, 0.5, 0.5};
+  features::TargetOutline outline;
+  outline.p_OP.fill(model::Vec3::Zero());
+  outline.radius = 0.04;
+  ViewedTarget target{outline, {}, J_C_};
+  target.seen.X_CO.p = model::Vec3(0.0, 0.0, 0.4);
+  target.normal_C = model::Vec3(std::sqrt(1.0 - 0.51 * 0.51), 0.0, 0.51);  // nearly as tilted as it may be
+  MotionLimits tilt;
+  tilt.dq_min.setConstant(7, -1.0);
+  tilt.dq_max.setConstant(7, 1.0);
+  LimitTilt(0.5, target.seen.X_CO.p, target.normal_C, J_C_, tilt);
+  ASSERT_EQ(tilt.num_rows, 1);
+  task_.v = 0.3 * tilt.rows[0].a.normalized();
+  MotionScene scene{reference_, poses_, J_E_B_, J_C_};
+  scene.target = &target;
+
+  ResolveMotion(config_, task_, scene, motion_);
+  const VecN few = motion_.dq;
+  EXPECT_NE(motion_.limits & hal::Bit(hal::Limit::kFieldOfView), 0U);
+  EXPECT_TRUE(tilt.KeptBy(0.999 * few));
+
+  Obstacles& obstacles = config_.guard.obstacles;
+  obstacles.num_planes = obstacles.num_boxes = Obstacles::kMost;
+  obstacles.planes.fill({model::Vec3::UnitZ(), -9.0});
+  obstacles.boxes.fill({model::Vec3(8.0, 8.0, 8.0), model::Vec3(9.0, 9.0, 9.0)});
+  motion_ = {};
+  ResolveMotion(config_, task_, scene, motion_);
+  EXPECT_EQ(motion_.dq, few);
+  EXPECT_TRUE(tilt.KeptBy(0.999 * motion_.dq));
 }
 
 }  // namespace

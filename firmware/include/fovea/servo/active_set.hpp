@@ -17,7 +17,7 @@ struct ActiveSet {
   std::array<model::VecN, model::kMaxJoints> normal;
   std::array<model::VecN, model::kMaxJoints> Q;
   std::array<std::array<double, model::kMaxJoints>, model::kMaxJoints> R{};  // R[column][row]
-  std::uint32_t members = 0;                                                 // bit per limit
+  std::uint64_t members = 0;                                                 // bit per limit
 
   // Splits `normal` into its share along Q, `along`, and the rest, which it becomes.
   void Split(model::VecN& vector, std::array<double, model::kMaxJoints>& along) const noexcept {
@@ -53,14 +53,14 @@ struct ActiveSet {
     Q[k] = rest / length;
     R[k] = along;
     R[k][k] = length;
-    members |= 1U << static_cast<unsigned>(new_limit);
+    members |= std::uint64_t{1} << static_cast<unsigned>(new_limit);
     ++size;
   }
 
   void Drop(int index) noexcept {
     const int old_size = size;
     const auto dropped = static_cast<std::size_t>(index);
-    members &= ~(1U << static_cast<unsigned>(limit[dropped]));
+    members &= ~(std::uint64_t{1} << static_cast<unsigned>(limit[dropped]));
     size = index;
     for (std::size_t k = dropped + 1; k < static_cast<std::size_t>(old_size); ++k) {
       const model::VecN whitened = normal[k];

@@ -19,15 +19,17 @@ struct LimitRow {
 };
 
 struct MotionLimits {
-  static constexpr int kMaxRows = 16;
+  // Planes and boxes; workspace, arm before planes, hand before the arm, singularity; four sides of the
+  // picture, line of sight, tilt.
+  static constexpr int kMaxRows = 2 * Obstacles::kMost + 4 + 6;
 
   model::VecN dq_min;  // [num_joints]
   model::VecN dq_max;  // [num_joints]
   int num_rows = 0;
   std::array<LimitRow, kMaxRows> rows;  // a^T dq <= b
+  bool complete = true;                 // false: there was no room for a row, and no dq keeps the limits
 
-  // False, and nothing added, when there is no room.
-  bool AddRow(const model::VecN& a, double b) noexcept;
+  void AddRow(const model::VecN& a, double b) noexcept;
 
   // Whether `dq` [num_joints] keeps all of them. Not finite: no.
   [[nodiscard]] bool KeptBy(const model::VecN& dq) const noexcept;

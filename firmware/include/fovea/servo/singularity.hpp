@@ -42,7 +42,7 @@ bool IsNear(const SingularityConfig& config, const model::Mat6N& J, double speed
 
 // Adds the row  dsigma/dt >= -rate (sigma - sigma_min), or >= 0 where sigma is already below: standing still
 // is always allowed. False, and nothing added, when there is no room. Real-time: yes.
-bool LimitSingularity(const SingularityConfig& config, const Singularity& singularity,
+void LimitSingularity(const SingularityConfig& config, const Singularity& singularity,
                       MotionLimits& limits) noexcept;
 
 }  // namespace fovea::servo
