@@ -6,15 +6,15 @@
 #include <array>
 #include <sstream>
 
-#include "fovea/build_info.hpp"
-#include "fovea/config/board_flags.hpp"
-#include "fovea/config/program.hpp"
-#include "fovea/config/share_folder.hpp"
+#include "firmware/host/build_info.hpp"
+#include "firmware/host/config/board_flags.hpp"
+#include "firmware/host/config/program.hpp"
+#include "firmware/host/config/share_folder.hpp"
 #include "fovea/linux_rt/interrupt.hpp"
-#include "sim/app/calibration_pictures.hpp"
 #include "sim/app/run.hpp"
-#include "sim/app/scenario.hpp"
 #include "sim/app/serve.hpp"
+#include "sim/calibration/pictures.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace {
 
@@ -277,7 +277,7 @@ int TakePictures(const PictureArguments& arguments) {
   sim::CalibrationPicturesOptions options{config::MakeBoard(arguments.board), arguments.views, arguments.out};
   const sim::CalibrationPictures taken =
       sim::TakeCalibrationPictures(sim::LoadScenario(arguments.scenario, arguments.assignments), options);
-  const vision::Board& board = options.board;
+  const calibration::Board& board = options.board;
   std::string flags = fmt::format("--board {}x{} --square {}", board.columns, board.rows, board.square);
   if (board.HasMarkers()) {
     flags += fmt::format(" --marker {} --dictionary {}", board.marker, board.dictionary);

@@ -9,32 +9,32 @@
 #include <optional>
 #include <thread>
 
-#include "fovea/build_info.hpp"
-#include "fovea/flight/flight_recorder.hpp"
+#include "firmware/core/task/servo_loop.hpp"
+#include "firmware/host/build_info.hpp"
+#include "firmware/host/recording/flight/flight_recorder.hpp"
+#include "firmware/host/recording/log/record_hash.hpp"
+#include "firmware/host/recording/trace/tick_trace.hpp"
+#include "firmware/host/recording/trace/vision_trace.hpp"
+#include "firmware/vision/detect/vision_task.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
-#include "fovea/log/record_hash.hpp"
-#include "fovea/servo/servo_loop.hpp"
-#include "fovea/trace/tick_trace.hpp"
-#include "fovea/trace/vision_trace.hpp"
-#include "fovea/vision/vision_task.hpp"
-#include "sim/app/compose.hpp"
-#include "sim/app/eye.hpp"
-#include "sim/app/mode_watch.hpp"
-#include "sim/app/progress.hpp"
-#include "sim/app/run_description.hpp"
-#include "sim/app/run_files.hpp"
-#include "sim/app/run_trace.hpp"
-#include "sim/app/target_log.hpp"
-#include "sim/app/verdict_config.hpp"
 #include "sim/faults/faulty_arm.hpp"
 #include "sim/faults/faulty_detector.hpp"
 #include "sim/faults/frame_faults.hpp"
 #include "sim/faults/stalling_clock.hpp"
 #include "sim/mcu/board_servo.hpp"
 #include "sim/mcu/qemu.hpp"
+#include "sim/run/eye.hpp"
+#include "sim/run/files.hpp"
+#include "sim/run/progress.hpp"
+#include "sim/run/trace.hpp"
+#include "sim/scenario/compose.hpp"
+#include "sim/scenario/run_description.hpp"
+#include "sim/verdict/config.hpp"
+#include "sim/verdict/mode_watch.hpp"
+#include "sim/verdict/target_log.hpp"
 #include "sim/world/feature_delay.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world.hpp"
@@ -77,7 +77,7 @@ class Run {
     files_ = std::make_unique<RunFiles>(about_, RunFilesConfig{options_.out, options_.report, kRenderers,
                                                                options_.pace == Pace::kReal, replayable});
     recorder_ = std::make_unique<flight::FlightRecorder>(
-        board_ ? static_cast<servo::ServoStep&>(*board_) : servo_,
+        board_ ? static_cast<task::ServoStep&>(*board_) : servo_,
         !board_ && files_->HasLog() ? &servo_ : nullptr, kRingCapacity);
     BuildWorld();
     if (options_.interrupt != nullptr) {
@@ -238,8 +238,8 @@ class Run {
       world.emplace(trace_->servo(), stalling, "world");
     }
     modes_.PassTo(ticks ? static_cast<hal::Recorder&>(*ticks) : *recorder_);
-    servo::ServoLoop loop(*recorder_, *faulty_arm_, world ? static_cast<hal::Clock&>(*world) : stalling,
-                          mailbox_, modes_, ticks ? static_cast<hal::TickProbe&>(*ticks) : meter_);
+    task::ServoLoop loop(*recorder_, *faulty_arm_, world ? static_cast<hal::Clock&>(*world) : stalling,
+                         mailbox_, modes_, ticks ? static_cast<hal::TickProbe&>(*ticks) : meter_);
     if (motion_) {
       loop.UseMotion(*motion_);
     }
@@ -383,7 +383,7 @@ class Run {
   Progress progress_;
   const RunDescription about_;
   vision::VisionTask vision_;
-  servo::ServoTask servo_;
+  task::ServoTask servo_;
   std::unique_ptr<BoardServo> board_;  // instead of `servo_`
   const StallFault stall_;
   std::optional<RunTrace> trace_;
@@ -405,9 +405,9 @@ class Run {
   log::RecordHash hash_;
   TargetLog targets_;
   const std::atomic<bool> never_stop_{false};  // the vision thread ends when the camera closes
-  servo::ServoLoop* loop_ = nullptr;           // while it runs, for its own thread
+  task::ServoLoop* loop_ = nullptr;            // while it runs, for its own thread
   bool interrupted_ = false;                   // before its end
-  servo::LoopCounters counters_;
+  task::LoopCounters counters_;
   hal::Mode mode_ = hal::Mode::kBoot;  // of the last record
   double recorded_s_ = 0.0;            // and its time
   std::vector<std::string> realtime_missing_;

@@ -7,9 +7,9 @@
 #include "fovea/hal/clock.hpp"
 #include "fovea/hal/record.hpp"
 #include "fovea/linux_rt/interrupt.hpp"
-#include "sim/app/scenario.hpp"
-#include "sim/app/summary.hpp"
 #include "sim/mcu/board_servo.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/verdict/summary.hpp"
 #include "sim/world/world.hpp"
 
 namespace fovea::sim {

@@ -9,16 +9,16 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "fovea/config/input_error.hpp"
-#include "fovea/config/share_folder.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/share_folder.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
-#include "sim/app/compose.hpp"
-#include "sim/app/fault_settings.hpp"
-#include "sim/app/network_eye.hpp"
-#include "sim/app/run_description.hpp"
-#include "sim/app/serve_keys.hpp"
-#include "sim/app/target_error.hpp"
+#include "sim/run/network_eye.hpp"
+#include "sim/scenario/compose.hpp"
+#include "sim/scenario/fault_settings.hpp"
+#include "sim/scenario/run_description.hpp"
+#include "sim/scenario/serve_keys.hpp"
+#include "sim/verdict/target_error.hpp"
 
 namespace fovea::sim {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/app/scenario.hpp"
-#include "sim/wire/fci_server.hpp"
+#include "sim/panda/server.hpp"
+#include "sim/scenario/scenario.hpp"
 
 namespace fovea::sim {
 

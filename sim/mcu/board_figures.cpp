@@ -50,7 +50,7 @@ void BoardFigures::Fill(double instructions_per_count, BoardSummary& summary) co
     ticks.ticks = static_cast<std::uint64_t>(std::count_if(ticks_.begin(), ticks_.end(), is_meant));
     ticks.tick = spread(is_meant, [](const Tick& tick) { return tick.counts; });
     for (std::size_t i = 0; i < link::kNumStages; ++i) {
-      ticks.stages.emplace_back(servo::kStageNames[i],
+      ticks.stages.emplace_back(task::kStageNames[i],
                                 spread(is_meant, [i](const Tick& tick) { return tick.stage_counts[i]; }));
     }
     return ticks;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fovea/link/messages.hpp"
+#include "firmware/core/link/messages.hpp"
 #include "sim/mcu/board_summary.hpp"
 
 namespace fovea::sim {

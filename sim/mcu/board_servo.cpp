@@ -34,7 +34,7 @@ const char* NameOfException(std::uint32_t number) {
 }  // namespace
 
 BoardServo::BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& config, std::uint64_t seed,
-                       const servo::ServoConfig& servo, const model::Load& load)
+                       const config::ServoConfig& servo, const model::Load& load)
     : line_(std::move(line)),
       config_(config),
       torque_lost_ns_(servo.safety.arm_lost_ticks * hal::kTickPeriodNs),
@@ -49,7 +49,7 @@ BoardServo::BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& confi
   Start(servo, load);
 }
 
-void BoardServo::Start(const servo::ServoConfig& servo, const model::Load& load) {
+void BoardServo::Start(const config::ServoConfig& servo, const model::Load& load) {
   for (int attempt = 0; !Await(link::FrameKind::kHello, 0, kHelloTimeoutMs); ++attempt) {
     if (attempt == kHelloAttempts || !line_->Send(writer_.Encode({link::FrameKind::kHello, 0, {}}))) {
       throw std::runtime_error(failure_.empty() ? "the servo's board does not start" : failure_);
@@ -76,7 +76,7 @@ void BoardServo::Start(const servo::ServoConfig& servo, const model::Load& load)
   }
 }
 
-void BoardServo::Step(const servo::ServoInputs& inputs, servo::ServoOutputs& outputs) noexcept {
+void BoardServo::Step(const task::ServoInputs& inputs, task::ServoOutputs& outputs) noexcept {
   now_ns_ += (1 + inputs.missed_ticks) * hal::kTickPeriodNs;
   const bool ticked =
       failure_.empty() && (config_.by_timer ? ExchangeByTimer(inputs) : [&] {
@@ -127,7 +127,7 @@ bool BoardServo::Exchange(const link::Frame& frame) {
 
 // The state goes on its way; what has arrived by now is given to the board, and its timer runs to its next
 // tick.
-bool BoardServo::ExchangeByTimer(const servo::ServoInputs& inputs) {
+bool BoardServo::ExchangeByTimer(const task::ServoInputs& inputs) {
   ++sequence_;
   if (static_cast<double>(now_ns_ - hal::kTickPeriodNs) >= config_.line_from_s * 1e9) {
     up_.SetFaults(config_.line);

@@ -6,14 +6,14 @@
 #include <memory>
 #include <string>
 
+#include "firmware/core/link/frame.hpp"
+#include "firmware/core/link/messages.hpp"
+#include "firmware/core/task/servo_task.hpp"
 #include "fovea/hal/clock.hpp"
-#include "fovea/link/frame.hpp"
-#include "fovea/link/messages.hpp"
-#include "fovea/servo/servo_task.hpp"
+#include "sim/faults/link_faults.hpp"
 #include "sim/mcu/board_figures.hpp"
 #include "sim/mcu/board_line.hpp"
 #include "sim/mcu/board_summary.hpp"
-#include "sim/wire/link_faults.hpp"
 
 namespace fovea::sim {
 
@@ -27,19 +27,19 @@ struct BoardConfig {
   double line_from_s = 0.0;  // since the first tick; the line is perfect before
 };
 
-class BoardServo final : public servo::ServoStep {
+class BoardServo final : public task::ServoStep {
  public:
   // Configures the board's servo. `seed` is of what the line does; `servo` is the whole of the servo's
   // configuration, its arm with `load`. std::runtime_error when the board does not start, does not answer, or
   // refuses.
   BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& config, std::uint64_t seed,
-             const servo::ServoConfig& servo, const model::Load& load);
+             const config::ServoConfig& servo, const model::Load& load);
 
   // The record is that of the board's tick; its command is the one that is in force, which is an older one
   // when the line is late, and no further from the last than the arm's torque rate allows. Once the board has
   // failed, or no torque has come for as long as an arm may be silent (safety.arm_lost_ticks): no torque,
   // brakes.
-  void Step(const servo::ServoInputs& inputs, servo::ServoOutputs& outputs) noexcept override;
+  void Step(const task::ServoInputs& inputs, task::ServoOutputs& outputs) noexcept override;
 
   // Why it has failed, "" while it has not.
   [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
@@ -51,17 +51,17 @@ class BoardServo final : public servo::ServoStep {
  private:
   struct Up {
     std::uint32_t sequence = 0;
-    servo::ServoInputs inputs;
+    task::ServoInputs inputs;
   };
   struct Down {
     std::uint32_t sequence = 0;
     hal::ArmCommand command;
   };
 
-  void Start(const servo::ServoConfig& servo, const model::Load& load);
+  void Start(const config::ServoConfig& servo, const model::Load& load);
   [[nodiscard]] bool Await(link::FrameKind kind, std::uint32_t sequence, int timeout_ms);
   [[nodiscard]] bool Exchange(const link::Frame& frame);
-  [[nodiscard]] bool ExchangeByTimer(const servo::ServoInputs& inputs);
+  [[nodiscard]] bool ExchangeByTimer(const task::ServoInputs& inputs);
   void TakeTorque();
   void NoteCrash();
 

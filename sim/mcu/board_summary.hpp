@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/link/messages.hpp"
+#include "firmware/core/link/messages.hpp"
 
 namespace fovea::sim {
 

@@ -1,10 +1,10 @@
-// By the servo's own model (firmware/model), compiled in: the library goes over the wire and finds no file
-// where it is loaded.
+// By the servo's own model (firmware/core/model), compiled in: the library goes over the wire and finds no
+// file where it is loaded.
 #include "sim/model_library/panda_model.hpp"
 
 #include "emitted/panda.hpp"
-#include "fovea/model/dynamics.hpp"
-#include "fovea/model/load.hpp"
+#include "firmware/core/model/dynamics.hpp"
+#include "firmware/core/model/load.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // A robot as the simulator sees it: every link with its shapes, straight from the URDF.
 //
-// The servo's model is read from the same file by other code (firmware/robots); the two meet only in the
+// The servo's model is read from the same file by other code (firmware/host/robots); the two meet only in the
 // tests that compare them.
 #pragma once
 

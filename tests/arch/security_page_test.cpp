@@ -6,7 +6,7 @@
 #include <regex>
 #include <string>
 
-#include "arch/source_tree.hpp"
+#include "tests/arch/source_tree.hpp"
 
 namespace fovea {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "support/places.hpp"
+#include "tests/support/places.hpp"
 
 namespace fovea::test {
 

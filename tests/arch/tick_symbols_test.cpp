@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "arch/source_tree.hpp"
+#include "tests/arch/source_tree.hpp"
 
 namespace fovea {
 namespace {

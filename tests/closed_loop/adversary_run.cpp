@@ -1,4 +1,4 @@
-#include "closed_loop/adversary_run.hpp"
+#include "tests/closed_loop/adversary_run.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <deque>
 #include <utility>
 
-#include "closed_loop/guard_bench.hpp"
-#include "fovea/servo/keep_apart.hpp"
-#include "support/adversary.hpp"
+#include "firmware/core/barriers/keep_apart.hpp"
+#include "tests/closed_loop/guard_bench.hpp"
+#include "tests/support/adversary.hpp"
 
 namespace fovea::test {
 namespace {
@@ -34,7 +34,7 @@ class Run {
   }
 
   void Tick() {
-    servo::ServoInputs inputs;
+    task::ServoInputs inputs;
     inputs.arm = world_.MeasuredState();
     if (!under_way_.empty() && under_way_.front().first <= world_.now_ns()) {
       inputs.has_feature = true;
@@ -42,11 +42,11 @@ class Run {
       under_way_.pop_front();
     }
     if (outputs_.record.mode == hal::Mode::kFault) {
-      inputs.request = outputs_.command().engage_brakes ? servo::Request::kReset : servo::Request::kNone;
+      inputs.request = outputs_.command().engage_brakes ? task::Request::kReset : task::Request::kNone;
       asked_ = false;
     } else if (outputs_.record.mode == hal::Mode::kHold &&
                (!asked_ || outputs_.record.hold_reason == hal::HoldReason::kEyeDoubted)) {
-      inputs.request = servo::Request::kTrack;  // whatever the servo doubts
+      inputs.request = task::Request::kTrack;  // whatever the servo doubts
       asked_ = true;
     }
     const hal::Fault before = outputs_.record.fault;
@@ -114,7 +114,7 @@ class Run {
     p_before_ = p;
     model::ArmPoses poses;
     model::ComputePoses(arm, truth.q, poses);
-    const double clearance = servo::ClearanceOfArm(setup_.servo, poses);
+    const double clearance = barriers::ClearanceOfArm(setup_.servo, poses);
     figures_.lowest_mm = std::min(figures_.lowest_mm, 1e3 * clearance);
     if (clearance < 0.0) {
       passed_ = true;
@@ -131,8 +131,8 @@ class Run {
 
   GuardSetup setup_;
   sim::World world_;
-  servo::ServoTask task_;
-  servo::ServoOutputs outputs_;
+  task::ServoTask task_;
+  task::ServoOutputs outputs_;
   Adversary adversary_;
   std::deque<std::pair<std::int64_t, hal::FeatureMeasurement>> under_way_;
   bool asked_ = false;

@@ -4,8 +4,8 @@
 
 #include <iostream>
 
-#include "closed_loop/adversary_run.hpp"
-#include "closed_loop/guard_bench.hpp"
+#include "tests/closed_loop/adversary_run.hpp"
+#include "tests/closed_loop/guard_bench.hpp"
 
 namespace fovea::test {
 namespace {
@@ -135,12 +135,12 @@ TEST(Belief, NothingMovesAfterAFaultUntilItIsAskedFor) {
   bench.RunUntil(2.5);
   ASSERT_EQ(bench.last().record.mode, Mode::kFault);
   const Eigen::Vector3d before = bench.truth().X_BE.translation();
-  bench.Ask(servo::Request::kReset);
+  bench.Ask(task::Request::kReset);
   bench.RunUntil(4.5);
   EXPECT_EQ(bench.last().record.mode, Mode::kHold);
   std::cout << 1e3 * WayOfHand(bench, before) << " mm within 2 s of the recovery\n";
   EXPECT_LT(WayOfHand(bench, before), 1e-3);
-  bench.Ask(servo::Request::kTrack);
+  bench.Ask(task::Request::kTrack);
   bench.RunUntil(9.0);
   EXPECT_EQ(bench.last().record.mode, Mode::kTrack);
 }

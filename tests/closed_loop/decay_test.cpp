@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "closed_loop/closed_loop.hpp"
+#include "tests/closed_loop/closed_loop.hpp"
 
 namespace fovea::test {
 namespace {

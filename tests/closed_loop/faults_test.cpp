@@ -2,7 +2,7 @@
 // repeats to the last bit.
 #include <gmock/gmock.h>
 
-#include "closed_loop/closed_loop.hpp"
+#include "tests/closed_loop/closed_loop.hpp"
 
 namespace fovea::test {
 namespace {

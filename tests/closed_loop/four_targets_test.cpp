@@ -4,8 +4,8 @@
 
 #include <iostream>
 
-#include "closed_loop/closed_loop.hpp"
-#include "closed_loop/truth_run.hpp"
+#include "tests/closed_loop/closed_loop.hpp"
+#include "tests/closed_loop/truth_run.hpp"
 
 namespace fovea::test {
 namespace {

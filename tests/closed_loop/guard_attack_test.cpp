@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <iostream>
 
-#include "closed_loop/guard_bench.hpp"
-#include "support/random_states.hpp"
-#include "support/repetitions.hpp"
+#include "tests/closed_loop/guard_bench.hpp"
+#include "tests/support/random_states.hpp"
+#include "tests/support/repetitions.hpp"
 
 namespace fovea::test {
 namespace {

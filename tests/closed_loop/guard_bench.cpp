@@ -1,4 +1,4 @@
-#include "closed_loop/guard_bench.hpp"
+#include "tests/closed_loop/guard_bench.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iostream>
 
-#include "fovea/model/kinematics.hpp"
+#include "firmware/core/model/kinematics.hpp"
 
 namespace fovea::test {
 namespace {
@@ -39,8 +39,8 @@ GuardSetup::GuardSetup() : servo(PandaConfig()) {
   servo.auto_track = false;
 }
 
-void TellTheBench(servo::ServoConfig& servo) {
-  servo::GuardConfig& guard = servo.guard;
+void TellTheBench(config::ServoConfig& servo) {
+  config::GuardConfig& guard = servo.guard;
   guard.obstacles.num_planes = 1;
   guard.obstacles.planes[0] = {model::Vec3::UnitZ(), 0.01};
   static_cast<void>(guard.hand.AddCapsule(model::Vec3::Zero(), servo.X_EC.p, 0.03));
@@ -101,7 +101,7 @@ void GuardBench::WatchReference(const hal::TickRecord& record) {
     return;  // it is where the arm is
   }
   const model::ArmModel& arm = setup_.servo.arm;
-  const servo::GuardConfig& guard = setup_.servo.guard;
+  const config::GuardConfig& guard = setup_.servo.guard;
   const bool ran_on = !ticks_.empty() && runs(ticks_.back().record.mode);
   for (int i = 0; i < arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -129,10 +129,10 @@ void GuardBench::Recorder::Record(const hal::TickRecord& record) noexcept {
   bench.ticks_.push_back({Ms(bench.world_.now_ns()), record});
 }
 
-servo::MotionCommand GuardBench::Motion::At(std::int64_t) noexcept {
+moves::MotionCommand GuardBench::Motion::At(std::int64_t) noexcept {
   return bench.setup_.motion
              ? bench.setup_.motion(bench.world_.truth(), static_cast<double>(bench.world_.now_ns()) * 1e-9)
-             : servo::MotionCommand{};
+             : moves::MotionCommand{};
 }
 
 void GuardBench::See(const sim::Exposure& exposure) {
@@ -186,17 +186,17 @@ int GuardBench::AtRest() const {
   return static_cast<int>(speeds_.rend() - moved);
 }
 
-std::function<servo::MotionCommand(const sim::Truth&, double)> Attack(
+std::function<moves::MotionCommand(const sim::Truth&, double)> Attack(
     double start_s, std::function<Eigen::Vector3d(const sim::Truth&)> velocity) {
   return [start_s, velocity = std::move(velocity)](const sim::Truth& truth, double t_s) {
-    servo::MotionCommand command;
+    moves::MotionCommand command;
     if (t_s < start_s) {
       return command;
     }
     const Eigen::Vector3d v = velocity(truth);
     const Eigen::Vector3d p = truth.X_BE.translation() + kTickS * v;
     const Eigen::Quaterniond hand(truth.X_BE.linear());
-    command.kind = servo::MotionKind::kPoseSetpoint;
+    command.kind = moves::MotionKind::kPoseSetpoint;
     command.p_BE = {p.x(), p.y(), p.z()};
     command.quaternion_BE = {hand.w(), hand.x(), hand.y(), hand.z()};
     command.V_BE_B = {v.x(), v.y(), v.z(), 0.0, 0.0, 0.0};
@@ -204,12 +204,12 @@ std::function<servo::MotionCommand(const sim::Truth&, double)> Attack(
   };
 }
 
-std::function<servo::MotionCommand(const sim::Truth&, double)> GoTo(double start_s,
+std::function<moves::MotionCommand(const sim::Truth&, double)> GoTo(double start_s,
                                                                     const Eigen::VectorXd& q) {
   return [start_s, q](const sim::Truth&, double t_s) {
-    servo::MotionCommand command;
+    moves::MotionCommand command;
     if (t_s >= start_s) {
-      command.kind = servo::MotionKind::kJointGoal;
+      command.kind = moves::MotionKind::kJointGoal;
       std::copy(q.begin(), q.end(), command.q.begin());
     }
     return command;
@@ -219,7 +219,7 @@ std::function<servo::MotionCommand(const sim::Truth&, double)> GoTo(double start
 void ExpectInsideLimits(const GuardBench& bench, PushedBy by) {
   constexpr double kRounding = 1.0 + 1e-9;
   const GuardFigures& f = bench.figures();
-  const servo::SafetyConfig& safety = bench.config().safety;
+  const config::SafetyConfig& safety = bench.config().safety;
   EXPECT_LE(f.torque, safety.torque_fraction * kRounding);
   EXPECT_LE(f.torque_rate, safety.torque_rate_fraction * kRounding);
   EXPECT_LE(f.acceleration, kRounding);

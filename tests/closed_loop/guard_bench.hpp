@@ -9,26 +9,26 @@
 #include <utility>
 #include <vector>
 
-#include "fovea/servo/servo_loop.hpp"
+#include "firmware/core/task/servo_loop.hpp"
 #include "sim/faults/faulty_arm.hpp"
 #include "sim/faults/stalling_clock.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_clock.hpp"
-#include "support/fake_drivers.hpp"
-#include "support/panda.hpp"
+#include "tests/support/fake_drivers.hpp"
+#include "tests/support/panda.hpp"
 
 namespace fovea::test {
 
 // The Panda of the scenario `ball`: its noise, its friction, its start. Who provokes changes what is needed.
 struct GuardSetup {
   GuardSetup();
-  servo::ServoConfig servo;
+  config::ServoConfig servo;
   sim::WorldConfig world;
   sim::ArmFaults arm_faults;
   sim::StallFault stall;
   // What is commanded at the time t [s]; empty: nothing.
-  std::function<servo::MotionCommand(const sim::Truth& truth, double t_s)> motion;
+  std::function<moves::MotionCommand(const sim::Truth& truth, double t_s)> motion;
   // Where the target is in B [m]; the eye sees it 30 times a second, 40 ms late, with noise. Empty: no eye.
   std::function<Eigen::Vector3d(double t_s)> target;
   // The last word about a measurement.
@@ -36,7 +36,7 @@ struct GuardSetup {
 };
 
 // The servo is told its table, its camera and its picture, as every bench scenario tells it.
-void TellTheBench(servo::ServoConfig& servo);
+void TellTheBench(config::ServoConfig& servo);
 
 // A tick, and the time of the world when it came; stamps may be off.
 struct GuardTick {
@@ -66,14 +66,14 @@ class GuardBench {
   GuardBench& operator=(const GuardBench&) = delete;
 
   void RunUntil(double t_s);
-  void Ask(servo::Request request) { loop_.Ask(request); }
-  void Ask(servo::MotionLawKind law) { loop_.Ask(law); }
+  void Ask(task::Request request) { loop_.Ask(request); }
+  void Ask(config::MotionLawKind law) { loop_.Ask(law); }
 
   [[nodiscard]] const std::vector<GuardTick>& ticks() const { return ticks_; }
   [[nodiscard]] const GuardTick& last() const { return ticks_.back(); }
   [[nodiscard]] const GuardFigures& figures() const { return figures_; }
   [[nodiscard]] const sim::Truth& truth() const { return world_.truth(); }
-  [[nodiscard]] const servo::ServoConfig& config() const { return setup_.servo; }
+  [[nodiscard]] const config::ServoConfig& config() const { return setup_.servo; }
   // The fastest joint at each millisecond from 0 on [rad/s].
   [[nodiscard]] const std::vector<double>& speeds() const { return speeds_; }
 
@@ -95,9 +95,9 @@ class GuardBench {
     void Record(const hal::TickRecord& record) noexcept override;
     GuardBench& bench;
   };
-  struct Motion final : servo::MotionSource {
+  struct Motion final : moves::MotionSource {
     explicit Motion(GuardBench& owner) : bench(owner) {}
-    servo::MotionCommand At(std::int64_t now_ns) noexcept override;
+    moves::MotionCommand At(std::int64_t now_ns) noexcept override;
     GuardBench& bench;
   };
 
@@ -111,8 +111,8 @@ class GuardBench {
   Recorder recorder_;
   Motion motion_;
   NoProbe probe_;
-  servo::ServoTask task_;
-  servo::ServoLoop loop_;
+  task::ServoTask task_;
+  task::ServoLoop loop_;
   std::mt19937_64 random_{7};
   std::deque<std::pair<std::int64_t, hal::FeatureMeasurement>> under_way_;  // by the time when it is due
   std::vector<GuardTick> ticks_;
@@ -124,10 +124,10 @@ class GuardBench {
 
 // The motions that attack: from `start_s` on the hand shall go with `velocity(truth)` [m/s] in B from
 // wherever it is, turned as it is.
-std::function<servo::MotionCommand(const sim::Truth&, double)> Attack(
+std::function<moves::MotionCommand(const sim::Truth&, double)> Attack(
     double start_s, std::function<Eigen::Vector3d(const sim::Truth&)> velocity);
 // The joints shall come to rest at `q`.
-std::function<servo::MotionCommand(const sim::Truth&, double)> GoTo(double start_s, const Eigen::VectorXd& q);
+std::function<moves::MotionCommand(const sim::Truth&, double)> GoTo(double start_s, const Eigen::VectorXd& q);
 
 // What the arm may not pass, whatever is provoked: torque range and rate; and unless the provocation itself
 // moves the arm there: joint range, velocity, workspace and 1 mm.

@@ -7,8 +7,8 @@
 #include <iostream>
 #include <limits>
 
-#include "closed_loop/guard_bench.hpp"
-#include "closed_loop/guard_provocations.hpp"
+#include "tests/closed_loop/guard_bench.hpp"
+#include "tests/closed_loop/guard_provocations.hpp"
 
 namespace fovea::test {
 namespace {
@@ -56,10 +56,10 @@ void ExpectStop(GuardBench& bench, Fault fault, int begin_ms, int ticks, int tol
   EXPECT_EQ(bench.speeds().back(), 0.0);
   ExpectInsideLimits(bench, by);
 
-  bench.Ask(servo::Request::kTrack);
+  bench.Ask(task::Request::kTrack);
   bench.RunUntil(2.6);
   EXPECT_EQ(bench.last().record.mode, Mode::kFault) << "only a reset leaves it";
-  bench.Ask(servo::Request::kReset);
+  bench.Ask(task::Request::kReset);
   bench.RunUntil(2.7);
   EXPECT_EQ(bench.last().record.mode == Mode::kFault, bench.last().record.fault != Fault::kNone);
 }
@@ -128,7 +128,7 @@ namespace {
 // An arm that floats is pushed by joint 1 alone.
 GuardSetup Pushed(double q1, double tau, double for_s) {
   GuardSetup setup;
-  setup.servo.motion_law.kind = servo::MotionLawKind::kFloat;
+  setup.servo.motion_law.kind = config::MotionLawKind::kFloat;
   setup.world.q_start[0] = q1;
   setup.world.push.tau = tau * Eigen::VectorXd::Unit(7, 0);
   setup.world.push.window = {0.3, 0.3 + for_s};
@@ -156,7 +156,7 @@ void ProvokeNonFiniteControl() {
   GuardBench bench(setup);
   bench.RunUntil(kStart);
   ASSERT_EQ(bench.last().record.mode, Mode::kHold);
-  bench.Ask(servo::MotionLawKind::kComputedTorque);
+  bench.Ask(config::MotionLawKind::kComputedTorque);
   ExpectStop(bench, Fault::kNonFiniteControl, kStartMs, 0, 0);
 }
 
@@ -197,7 +197,7 @@ void ProvokeNotFollowing() {
 // 1 - exp(-K t) of the push.
 void ProvokeContact() {
   GuardSetup setup;
-  const servo::SafetyConfig& safety = setup.servo.safety;
+  const config::SafetyConfig& safety = setup.servo.safety;
   const double most = safety.contact_torque_fraction * Panda().model.joints[1].tau_max;
   setup.world.push.tau = 1.5 * most * Eigen::VectorXd::Unit(7, 1);
   const double after_ms = 1e3 * std::log(3.0) / safety.contact_gain;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <iostream>
 
-#include "closed_loop/guard_bench.hpp"
-#include "closed_loop/guard_provocations.hpp"
-#include "fovea/servo/joint_pace.hpp"
+#include "firmware/core/trajectory/joint_pace.hpp"
+#include "tests/closed_loop/guard_bench.hpp"
+#include "tests/closed_loop/guard_provocations.hpp"
 
 namespace fovea::test {
 namespace {
@@ -22,14 +22,14 @@ Eigen::Vector3d Outward(const sim::Truth& truth) { return truth.X_BE.translation
 // An attack that ends after 1.2 s.
 auto BriefAttack(const std::function<Eigen::Vector3d(const sim::Truth&)>& velocity) {
   return [attack = Attack(kStart, velocity)](const sim::Truth& truth, double t_s) {
-    return t_s < kStart + 1.2 ? attack(truth, t_s) : servo::MotionCommand{};
+    return t_s < kStart + 1.2 ? attack(truth, t_s) : moves::MotionCommand{};
   };
 }
 
 // The hand turns about its own axis at `rate` [rad/s], its point stays.
 auto Turn(double rate, const Eigen::Isometry3d& X_BE) {
   return [rate, X_BE](const sim::Truth&, double t_s) {
-    servo::MotionCommand command;
+    moves::MotionCommand command;
     if (t_s < kStart) {
       return command;
     }
@@ -37,7 +37,7 @@ auto Turn(double rate, const Eigen::Isometry3d& X_BE) {
     const Eigen::Quaterniond hand(Eigen::AngleAxisd(rate * (t_s - kStart), axis) * X_BE.linear());
     const Eigen::Vector3d p = X_BE.translation();
     const Eigen::Vector3d w = rate * axis;
-    command.kind = servo::MotionKind::kPoseSetpoint;
+    command.kind = moves::MotionKind::kPoseSetpoint;
     command.p_BE = {p.x(), p.y(), p.z()};
     command.quaternion_BE = {hand.w(), hand.x(), hand.y(), hand.z()};
     command.V_BE_B = {0.0, 0.0, 0.0, w.x(), w.y(), w.z()};
@@ -83,7 +83,7 @@ void ProvokeJointPosition() {
   const model::Joint& joint = bench.config().arm.joints[6];
   const double end = joint.q_max - bench.config().guard.joint_position_margin;
   // In time: where a joint of its speed must begin to brake.
-  const servo::JointPace pace = servo::PaceOf(bench.config(), 6);
+  const trajectory::JointPace pace = trajectory::PaceOf(bench.config(), 6);
   for (const GuardTick& tick : bench.ticks()) {
     EXPECT_LE(tick.record.q_cmd[6], end + 1e-9);
     if (tick.ms == named) {
@@ -105,12 +105,12 @@ void ProvokeJointVelocity() {
   setup.world.q_start[6] = -2.0;
   setup.servo.move.pose_error_max = 1e3;  // it lags behind, and goes on
   setup.motion = [turn = Turn(4.0, HandAt(setup.world.q_start))](const sim::Truth& truth, double t_s) {
-    return t_s < 1.3 ? turn(truth, t_s) : servo::MotionCommand{};
+    return t_s < 1.3 ? turn(truth, t_s) : moves::MotionCommand{};
   };
   GuardBench bench(setup);
   bench.RunUntil(2.0);
   EXPECT_EQ(Named(bench, Limit::kJointVelocity), kStartMs) << "in the tick in which it was wished";
-  const servo::ServoConfig& config = bench.config();
+  const config::ServoConfig& config = bench.config();
   double most = 0.0;
   for (const GuardTick& tick : bench.ticks()) {
     for (std::size_t i = 0; i < 7; ++i) {
@@ -133,7 +133,7 @@ void ProvokeByJerk(Limit limit, double GuardFigures::*used) {
   GuardSetup setup;
   setup.motion = [attack = Attack(kStart, [](const sim::Truth&) { return Eigen::Vector3d(0, 0.8, 0); })](
                      const sim::Truth& truth, double t_s) {
-    return t_s < 0.6 ? attack(truth, t_s) : servo::MotionCommand{};
+    return t_s < 0.6 ? attack(truth, t_s) : moves::MotionCommand{};
   };
   GuardBench bench(setup);
   bench.RunUntil(1.5);
@@ -230,7 +230,7 @@ void ProvokeCartesianSpeed() {
   setup.servo.move.pose_error_max = 1e3;
   setup.motion = [attack = Attack(kStart, [](const sim::Truth&) { return Eigen::Vector3d(0, 0.8, 0); })](
                      const sim::Truth& truth, double t_s) {
-    return t_s < 0.9 ? attack(truth, t_s) : servo::MotionCommand{};
+    return t_s < 0.9 ? attack(truth, t_s) : moves::MotionCommand{};
   };
   GuardBench bench(setup);
   bench.RunUntil(1.5);

@@ -5,8 +5,8 @@
 #include <array>
 #include <string>
 
-#include "closed_loop/guard_provocations.hpp"
 #include "fovea/hal/events.hpp"
+#include "tests/closed_loop/guard_provocations.hpp"
 
 namespace fovea::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "closed_loop/hazards.hpp"
+#include "tests/closed_loop/hazards.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,8 @@
 #include <random>
 #include <thread>
 
-#include "fovea/servo/keep_apart.hpp"
-#include "support/adversary.hpp"
+#include "firmware/core/barriers/keep_apart.hpp"
+#include "tests/support/adversary.hpp"
 
 namespace fovea::test {
 namespace {
@@ -130,7 +130,7 @@ HazardCase MakeCase(std::uint64_t seed) {
     setup.servo.auto_track = true;
     setup.world.seed = seed;
     TellTheBench(setup.servo);
-    const servo::GuardConfig& guard = setup.servo.guard;
+    const config::GuardConfig& guard = setup.servo.guard;
     for (Eigen::Index i = 0; i < 7; ++i) {
       setup.world.q_start[i] += chance.Uniform(-0.4, 0.4);
     }
@@ -141,9 +141,9 @@ HazardCase MakeCase(std::uint64_t seed) {
     const model::Vec3 ball =
         X_BC * model::Vec3(z * chance.Uniform(-0.35, 0.35), z * chance.Uniform(-0.25, 0.25), z);
     c.onset_s = chance.Uniform(0.25, 2.5);
-    if (servo::ClearanceOfArm(setup.servo, poses) > 0.05 &&
+    if (barriers::ClearanceOfArm(setup.servo, poses) > 0.05 &&
         poses.X_BE.p.norm() < guard.workspace_radius - 0.02 &&
-        servo::ClearanceOfHand(setup.servo.arm, servo::LineOfArm(setup.servo.arm, poses)) >
+        barriers::ClearanceOfHand(setup.servo.arm, barriers::LineOfArm(setup.servo.arm, poses)) >
             guard.hand_clearance &&
         ball.z() > 0.04 && ball.norm() < 0.9) {
       const Eigen::Vector3d p = ball;
@@ -163,7 +163,7 @@ HazardOutcome RunCase(const Hazard& hazard, std::uint64_t seed) {
   GuardBench bench(c.setup);
   bench.RunUntil(c.onset_s);
   if (c.holds) {
-    bench.Ask(servo::Request::kHold);
+    bench.Ask(task::Request::kHold);
   }
   const Eigen::Vector3d from = bench.truth().X_BE.translation();
   const std::size_t first_tick = bench.ticks().size();

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "closed_loop/guard_bench.hpp"
+#include "tests/closed_loop/guard_bench.hpp"
 
 namespace fovea::test {
 

@@ -1,7 +1,7 @@
 // What cannot be reached, is not there, or goes away: the arm stands still in Hold, and says why.
 #include <gmock/gmock.h>
 
-#include "closed_loop/closed_loop.hpp"
+#include "tests/closed_loop/closed_loop.hpp"
 
 namespace fovea::test {
 namespace {

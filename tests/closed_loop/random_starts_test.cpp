@@ -1,7 +1,7 @@
 // Starts from which the atlas once did not reach its goal, one for each reason that was mended.
 #include <gtest/gtest.h>
 
-#include "closed_loop/closed_loop.hpp"
+#include "tests/closed_loop/closed_loop.hpp"
 
 namespace fovea::test {
 namespace {

@@ -1,7 +1,7 @@
 // The shipped scenarios reach their goals.
 #include <algorithm>
 
-#include "closed_loop/closed_loop.hpp"
+#include "tests/closed_loop/closed_loop.hpp"
 
 namespace fovea::test {
 namespace {

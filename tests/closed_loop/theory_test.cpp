@@ -3,7 +3,7 @@
 #include <complex>
 #include <limits>
 
-#include "closed_loop/closed_loop.hpp"
+#include "tests/closed_loop/closed_loop.hpp"
 
 namespace fovea::test {
 namespace {

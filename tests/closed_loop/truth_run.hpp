@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "fovea/servo/servo_loop.hpp"
-#include "sim/app/compose.hpp"
-#include "sim/app/run_description.hpp"
-#include "sim/app/verdict_config.hpp"
+#include "firmware/core/task/servo_loop.hpp"
+#include "sim/scenario/compose.hpp"
+#include "sim/scenario/run_description.hpp"
+#include "sim/verdict/config.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world_clock.hpp"
-#include "support/truth_eye.hpp"
+#include "tests/support/truth_eye.hpp"
 
 namespace fovea::test {
 
@@ -49,7 +49,7 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
       }
       return true;
     });
-    servo::ServoLoop loop(task_, arm, clock, mailbox, *this, *this);
+    task::ServoLoop loop(task_, arm, clock, mailbox, *this, *this);
     const hal::Status status = loop.Run(static_cast<std::int64_t>(about_.scenario.run.duration_s * 1e9));
     clock.RethrowFailure();
     if (!status.ok()) {
@@ -74,7 +74,7 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
   sim::Verdict verdict_;
   hal::Mode mode_ = hal::Mode::kBoot;  // of the last tick
   sim::World world_;
-  servo::ServoTask task_;
+  task::ServoTask task_;
   std::deque<hal::FeatureMeasurement> under_way_;
 };
 

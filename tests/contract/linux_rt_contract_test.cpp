@@ -4,10 +4,10 @@
 #include <thread>
 #include <vector>
 
-#include "contract/clock_contract.hpp"
-#include "contract/recorder_contract.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/record_ring.hpp"
+#include "tests/contract/clock_contract.hpp"
+#include "tests/contract/recorder_contract.hpp"
 
 namespace fovea::test {
 namespace {

@@ -1,9 +1,6 @@
 // The simulator's drivers against the contracts.
 #include <memory>
 
-#include "contract/arm_contract.hpp"
-#include "contract/camera_contract.hpp"
-#include "contract/clock_contract.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "sim/camera/sim_camera.hpp"
 #include "sim/faults/faulty_arm.hpp"
@@ -11,7 +8,10 @@
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_clock.hpp"
-#include "support/places.hpp"
+#include "tests/contract/arm_contract.hpp"
+#include "tests/contract/camera_contract.hpp"
+#include "tests/contract/clock_contract.hpp"
+#include "tests/support/places.hpp"
 
 namespace fovea::test {
 namespace {

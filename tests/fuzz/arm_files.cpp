@@ -4,12 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include "fovea/config/input_error.hpp"
-#include "fovea/robots/robot.hpp"
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
-#include "fuzz/input_file.hpp"
-#include "support/places.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/robots/robot.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/input_file.hpp"
+#include "tests/support/places.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;

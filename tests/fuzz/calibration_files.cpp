@@ -3,12 +3,12 @@
 #include <cmath>
 #include <vector>
 
-#include "fovea/config/input_error.hpp"
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
-#include "fuzz/input_file.hpp"
-#include "tools/fovea/camera_file.hpp"
-#include "tools/fovea/hand_poses.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/input_file.hpp"
+#include "tools/fovea/calibrate/camera_file.hpp"
+#include "tools/fovea/calibrate/hand_poses.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;

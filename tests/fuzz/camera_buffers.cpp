@@ -10,8 +10,8 @@
 #include "fovea/camera/stamp.hpp"
 #include "fovea/camera/stamp_mapper.hpp"
 #include "fovea/hal/types.hpp"
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;

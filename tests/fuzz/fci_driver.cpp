@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "fovea/franka/franka_arm.hpp"
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <vector>
 
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
-#include "sim/wire/command_intake.hpp"
-#include "sim/wire/fci_robot.hpp"
-#include "sim/wire/fci_session.hpp"
-#include "support/places.hpp"
+#include "sim/panda/command_intake.hpp"
+#include "sim/panda/robot.hpp"
+#include "sim/panda/session.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/support/places.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;

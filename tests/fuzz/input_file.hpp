@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "support/temp_folder.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace fovea::fuzz {
 

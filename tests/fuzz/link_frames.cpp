@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <array>
 
-#include "fovea/link/frame.hpp"
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
+#include "firmware/core/link/frame.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea::link;

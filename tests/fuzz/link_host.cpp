@@ -5,10 +5,10 @@
 #include <memory>
 #include <stdexcept>
 
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
 #include "sim/mcu/board_servo.hpp"
-#include "support/panda.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/support/panda.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;
@@ -85,16 +85,16 @@ class AnyBoard final : public sim::BoardLine {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr int kTicks = 40;
-  static const servo::ServoConfig config = test::PandaConfig();
+  static const config::ServoConfig config = test::PandaConfig();
   fuzz::Bytes input(data, size);
   sim::BoardConfig board;
   const std::uint8_t seed = input.Byte();
   board.by_timer = seed % 2 == 1;
   board.line = {.loss = 0.1, .jitter_ms = 3.0};
   sim::BoardServo servo(std::make_unique<AnyBoard>(input), board, seed, config, model::Load{});
-  servo::ServoInputs inputs;
+  task::ServoInputs inputs;
   inputs.arm.num_joints = config.arm.num_joints;
-  servo::ServoOutputs outputs;
+  task::ServoOutputs outputs;
   for (int k = 0; k < kTicks; ++k) {
     inputs.arm.stamp_ns = k * hal::kTickPeriodNs;
     servo.Step(inputs, outputs);

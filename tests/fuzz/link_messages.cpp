@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "fovea/link/frame.hpp"
-#include "fovea/link/messages.hpp"
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
+#include "firmware/core/link/frame.hpp"
+#include "firmware/core/link/messages.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;
@@ -26,11 +26,11 @@ bool TakeAndGiveBack(Bytes bytes, Message& message) {
 }
 
 void TakeInputs(Bytes bytes) {
-  if (servo::ServoInputs in; TakeAndGiveBack(bytes, in)) {
+  if (task::ServoInputs in; TakeAndGiveBack(bytes, in)) {
     Require(in.arm.num_joints >= 0 && in.arm.num_joints <= hal::kMaxJoints, "joints");
     Require(in.feature.dim >= 0 && in.feature.dim <= hal::kMaxFeatureDim, "entries of s");
     Require(in.feature.num_poses >= 0 && in.feature.num_poses <= hal::kMaxPoses, "poses");
-    Require(static_cast<int>(in.law) < servo::kNumMotionLaws, "motion law");
+    Require(static_cast<int>(in.law) < config::kNumMotionLaws, "motion law");
   }
 }
 

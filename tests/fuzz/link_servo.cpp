@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "fovea/link/servo_server.hpp"
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
-#include "support/panda.hpp"
+#include "firmware/core/link/servo_server.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/support/panda.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;
@@ -49,15 +49,15 @@ class Judge final : public Board {
   std::uint32_t periods_ = 0;
 };
 
-const servo::ServoConfig& Config() {
-  static const servo::ServoConfig config = test::PandaConfig();
+const config::ServoConfig& Config() {
+  static const config::ServoConfig config = test::PandaConfig();
   return config;
 }
 
 // A sound state, with some of its bytes overwritten.
 std::vector<std::uint8_t> SpoiltInputs(fuzz::Bytes& input, std::int64_t stamp_ns) {
   std::array<std::uint8_t, kMaxPayload> storage;
-  servo::ServoInputs in;
+  task::ServoInputs in;
   in.arm.stamp_ns = stamp_ns;
   in.arm.num_joints = Config().arm.num_joints;
   std::copy_n(Config().arm.q_ready.begin(), in.arm.num_joints, in.arm.q.begin());

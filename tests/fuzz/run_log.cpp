@@ -3,11 +3,11 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "fovea/log/topics.hpp"
-#include "fovea/report/report.hpp"
-#include "fuzz/bytes.hpp"
-#include "fuzz/fuzz.hpp"
-#include "fuzz/input_file.hpp"
+#include "firmware/host/recording/log/topics.hpp"
+#include "firmware/host/report/report.hpp"
+#include "tests/fuzz/bytes.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/input_file.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;

@@ -1,18 +1,18 @@
 // The sections that scenarios and configurations of hardware share, as a TOML file and as an assignment.
 // Whatever stands there, it is refused in one line, or gives a configuration that the servo takes.
-#include "fovea/config/settings.hpp"
+#include "firmware/host/config/settings.hpp"
 
 #include <cmath>
 
-#include "fovea/config/camera_keys.hpp"
-#include "fovea/config/input_error.hpp"
-#include "fovea/config/load_keys.hpp"
-#include "fovea/config/servo_keys.hpp"
-#include "fovea/config/vision_keys.hpp"
-#include "fovea/servo/servo_task.hpp"
-#include "fuzz/fuzz.hpp"
-#include "fuzz/input_file.hpp"
-#include "support/panda.hpp"
+#include "firmware/core/task/servo_task.hpp"
+#include "firmware/host/config/camera_keys.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/load_keys.hpp"
+#include "firmware/host/config/servo_keys.hpp"
+#include "firmware/host/config/vision_keys.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#include "tests/fuzz/input_file.hpp"
+#include "tests/support/panda.hpp"
 
 using fovea::fuzz::Require;
 using namespace fovea;
@@ -42,9 +42,9 @@ struct Everything {
     const model::Load carried = config::MakeLoad(load);
     Require(std::isfinite(carried.mass) && carried.mass >= 0.0, "a load has a mass");
     const model::Pose X_EC = config::MakeMount(camera);
-    const servo::ServoConfig made =
+    const config::ServoConfig made =
         config::MakeServoConfig(servo, test::Panda(), X_EC, config::MakeIntrinsics(camera), target);
-    servo::ServoTask task;
+    task::ServoTask task;
     Require(task.Init(made).ok(), "a configuration that was made is taken");
   }
 };

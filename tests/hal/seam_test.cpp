@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fovea/hal/events.hpp"
-#include "support/fake_drivers.hpp"
+#include "tests/support/fake_drivers.hpp"
 
 namespace fovea::hal {
 namespace {

@@ -5,10 +5,10 @@
 #include <atomic>
 #include <thread>
 
-#include "fovea/servo/servo_loop.hpp"
-#include "support/fake_drivers.hpp"
+#include "firmware/core/task/servo_loop.hpp"
+#include "tests/support/fake_drivers.hpp"
 
-namespace fovea::servo {
+namespace fovea::task {
 namespace {
 
 // Counts what it is told.
@@ -20,8 +20,10 @@ class CountingStep final : public ServoStep {
     others += inputs.request == Request::kReset ? 1 : 0;
     last = inputs.request == Request::kNone ? last : inputs.request;
     laws += inputs.change_law ? 1 : 0;
-    wrong_laws +=
-        inputs.change_law && inputs.law != MotionLawKind::kPd && inputs.law != MotionLawKind::kFloat ? 1 : 0;
+    wrong_laws += inputs.change_law && inputs.law != config::MotionLawKind::kPd &&
+                          inputs.law != config::MotionLawKind::kFloat
+                      ? 1
+                      : 0;
     law = inputs.change_law ? inputs.law : law;
     ticks.fetch_add(1, std::memory_order_relaxed);
   }
@@ -30,7 +32,7 @@ class CountingStep final : public ServoStep {
   int laws = 0;
   int wrong_laws = 0;
   Request last = Request::kNone;
-  MotionLawKind law{};
+  config::MotionLawKind law{};
   std::atomic<int> ticks{0};
 };
 
@@ -52,11 +54,11 @@ TEST(ServoLoopAsks, FromAnotherThread) {
   std::thread asker([&] {
     for (int i = 0; i < kAsks; ++i) {
       loop.Ask(Request::kTrack);
-      loop.Ask(MotionLawKind::kPd);
+      loop.Ask(config::MotionLawKind::kPd);
       std::this_thread::yield();
     }
     loop.Ask(Request::kHold);
-    loop.Ask(MotionLawKind::kFloat);
+    loop.Ask(config::MotionLawKind::kFloat);
     // Both are on their way: in so many ticks one takes them.
     const int enough = step.ticks.load(std::memory_order_relaxed) + 1000;
     while (step.ticks.load(std::memory_order_relaxed) < enough) {
@@ -75,7 +77,7 @@ TEST(ServoLoopAsks, FromAnotherThread) {
   asker.join();
   EXPECT_TRUE(status.ok());
   EXPECT_EQ(step.last, Request::kHold);
-  EXPECT_EQ(step.law, MotionLawKind::kFloat);
+  EXPECT_EQ(step.law, config::MotionLawKind::kFloat);
   EXPECT_LE(step.tracks, kAsks);
   EXPECT_EQ(step.others, 0);
   EXPECT_GE(step.laws, 1);
@@ -128,4 +130,4 @@ TEST(ServoLoopAsks, LeaveFromAnotherThread) {
 }
 
 }  // namespace
-}  // namespace fovea::servo
+}  // namespace fovea::task

@@ -6,14 +6,14 @@
 #include <cstdlib>
 #include <functional>
 
-#include "fovea/flight/flight_recorder.hpp"
+#include "firmware/core/model/rotation.hpp"
+#include "firmware/core/task/servo_loop.hpp"
+#include "firmware/host/recording/flight/flight_recorder.hpp"
 #include "fovea/hal/types.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/record_ring.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
-#include "fovea/model/rotation.hpp"
-#include "fovea/servo/servo_loop.hpp"
-#include "support/panda.hpp"
+#include "tests/support/panda.hpp"
 
 namespace fovea {
 namespace {
@@ -79,7 +79,7 @@ class TickHeapTest : public testing::Test {
     mailbox_.Put(m);
   }
 
-  servo::ServoTask task_;
+  task::ServoTask task_;
   SteadyArm arm_;
   hal::FeatureMailbox mailbox_;
   linux_rt::RecordRing ring_{8192};
@@ -99,7 +99,7 @@ TEST_F(TickHeapTest, NoHeapCallInAnyMode) {
       arm_.state().q[2] = std::nan("");
     }
   });
-  servo::ServoLoop loop(task_, arm_, clock, mailbox_, ring_, meter_);
+  task::ServoLoop loop(task_, arm_, clock, mailbox_, ring_, meter_);
   ASSERT_TRUE(loop.Run(5 * hal::kNsPerSecond).ok());
   ring_.Drain([&](const hal::TickRecord& record) { modes_seen |= 1 << static_cast<int>(record.mode); });
   EXPECT_EQ(modes_seen, 0b11111) << "boot, hold, track, coast and fault were all run through";
@@ -108,15 +108,15 @@ TEST_F(TickHeapTest, NoHeapCallInAnyMode) {
 }
 
 // Goals of both kinds, and setpoints, a hundred of them in turn, each near where the arm stands.
-class BusySource final : public servo::MotionSource {
+class BusySource final : public moves::MotionSource {
  public:
-  servo::MotionCommand At(std::int64_t now_ns) noexcept override {
+  moves::MotionCommand At(std::int64_t now_ns) noexcept override {
     const std::int64_t ms = now_ns / hal::kNsPerMs;
-    servo::MotionCommand command;
+    moves::MotionCommand command;
     if (ms < 100 || ms % 400 > 350) {
       return command;  // now and then nothing: the arm comes to Hold
     }
-    command.kind = ms % 800 < 400 ? servo::MotionKind::kJointGoal : servo::MotionKind::kPoseGoal;
+    command.kind = ms % 800 < 400 ? moves::MotionKind::kJointGoal : moves::MotionKind::kPoseGoal;
     command.q = test::Panda().model.q_ready;
     command.q[static_cast<std::size_t>(ms / 50 % 7)] += 0.005;
     model::ArmPoses poses;
@@ -133,7 +133,7 @@ class BusySource final : public servo::MotionSource {
 };
 
 TEST_F(TickHeapTest, NoHeapCallInCommandedMotionsAndWithAnyLaw) {
-  servo::ServoConfig config = test::PandaConfig();
+  config::ServoConfig config = test::PandaConfig();
   config.auto_track = false;
   config.guard.obstacles.num_planes = 1;
   config.guard.obstacles.num_boxes = 1;
@@ -149,16 +149,17 @@ TEST_F(TickHeapTest, NoHeapCallInCommandedMotionsAndWithAnyLaw) {
   config.law.joint_limit_gain = 1.0;
   config.law.manipulability_gain = 0.05;
   ASSERT_TRUE(task_.Init(config).ok());
-  servo::ServoLoop* running = nullptr;
+  task::ServoLoop* running = nullptr;
   SteppingClock clock([&](std::int64_t now_ns) {
     arm_.Advance();
     const std::int64_t ms = now_ns / hal::kNsPerMs;
     if (ms % 300 == 0) {
-      running->Ask(servo::kMotionLaws[static_cast<std::size_t>(ms / 300 % servo::kNumMotionLaws)].kind);
+      running->Ask(
+          motion_laws::kMotionLaws[static_cast<std::size_t>(ms / 300 % config::kNumMotionLaws)].kind);
     }
   });
   BusySource source;
-  servo::ServoLoop loop(task_, arm_, clock, mailbox_, ring_, meter_);
+  task::ServoLoop loop(task_, arm_, clock, mailbox_, ring_, meter_);
   loop.UseMotion(source);
   running = &loop;
   ASSERT_TRUE(loop.Run(5 * hal::kNsPerSecond).ok());
@@ -180,7 +181,7 @@ TEST_F(TickHeapTest, NoHeapCallWithTheFlightRecorder) {
       PutFeature(now_ns);
     }
   });
-  servo::ServoLoop loop(recorder, arm_, clock, mailbox_, recorder, meter_);
+  task::ServoLoop loop(recorder, arm_, clock, mailbox_, recorder, meter_);
   ASSERT_TRUE(loop.Run(3 * hal::kNsPerSecond).ok());
   int records = 0;
   int keyframes = 0;
@@ -203,7 +204,7 @@ class AllocatingRecorder final : public hal::Recorder {
 TEST_F(TickHeapTest, AHeapCallInTheTickIsSeen) {
   SteppingClock clock([&](std::int64_t) { arm_.Advance(); });
   AllocatingRecorder recorder;
-  servo::ServoLoop loop(task_, arm_, clock, mailbox_, recorder, meter_);
+  task::ServoLoop loop(task_, arm_, clock, mailbox_, recorder, meter_);
   ASSERT_TRUE(loop.Run(10 * hal::kNsPerMs).ok());
   EXPECT_EQ(meter_.heap_calls(), 20U);
 }

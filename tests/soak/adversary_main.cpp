@@ -4,8 +4,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "closed_loop/adversary_run.hpp"
-#include "fovea/config/program.hpp"
+#include "firmware/host/config/program.hpp"
+#include "tests/closed_loop/adversary_run.hpp"
 
 int main(int argc, char** argv) {
   using namespace fovea;

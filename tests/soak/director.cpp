@@ -1,11 +1,11 @@
-#include "soak/director.hpp"
+#include "tests/soak/director.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/model/kinematics.hpp"
+#include "firmware/core/model/kinematics.hpp"
 
 namespace fovea::soak {
 namespace {
@@ -47,16 +47,16 @@ double Director::Uniform(double low, double high) {
   return low + (high - low) * static_cast<double>(engine_() >> 11U) * 0x1p-53;
 }
 
-servo::Request Director::TakeRequest() {
-  const servo::Request request = request_;
-  request_ = servo::Request::kNone;
+task::Request Director::TakeRequest() {
+  const task::Request request = request_;
+  request_ = task::Request::kNone;
   return request;
 }
 
-servo::MotionCommand Director::At(std::int64_t /*now_ns*/) noexcept {
-  servo::MotionCommand command;
+moves::MotionCommand Director::At(std::int64_t /*now_ns*/) noexcept {
+  moves::MotionCommand command;
   if (goes_home_ && home_begun_) {
-    command.kind = servo::MotionKind::kHome;
+    command.kind = moves::MotionKind::kHome;
   }
   return command;
 }
@@ -133,7 +133,7 @@ void Director::Begin(std::int64_t now_ns, const sim::Truth& truth) {
   acting_.joint = static_cast<int>(engine_() % kHeavyJoints);
   strength_ = Uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0;
   ++troubles_[static_cast<std::size_t>(trouble_)];
-  request_ = servo::Request::kTrack;
+  request_ = task::Request::kTrack;
   error_px_ = speed2_ = torque2_ = Spread{};
 }
 
@@ -154,11 +154,11 @@ void Director::LetTrouble(int ms) {
     } else if (trouble_ == Trouble::kLongStall) {
       acting_.stall_ticks = 2 * about_.servo.safety.missed_ticks;
     } else if (trouble_ == Trouble::kHoldAsked) {
-      request_ = servo::Request::kHold;
+      request_ = task::Request::kHold;
     }
   }
   if (ms == end_ms && trouble_ == Trouble::kHoldAsked) {
-    request_ = servo::Request::kTrack;
+    request_ = task::Request::kTrack;
   }
 }
 
@@ -173,17 +173,17 @@ void Director::Recover(std::int64_t now_ns, const sim::Truth& truth, const hal::
   const int since_ms = Ms(now_ns - fault_ns_);
   const bool rests = truth.dq.lpNorm<Eigen::Infinity>() < kAtRest;
   if (acting_.trouble == Trouble::kNone && since_ms >= kRestMs && rests && since_ms % 100 == 0) {
-    request_ = servo::Request::kReset;
+    request_ = task::Request::kReset;
   }
 }
 
 void Director::GoHome(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record) {
   if (!home_begun_) {
-    request_ = servo::Request::kHold;
+    request_ = task::Request::kHold;
     home_begun_ = record.mode == Mode::kHold && record.hold_reason == hal::HoldReason::kNotAsked;
     ways_home_ += home_begun_ ? 1U : 0U;
     if (home_begun_) {
-      request_ = servo::Request::kNone;
+      request_ = task::Request::kNone;
     }
   }
   const bool done = home_begun_ && record.mode == Mode::kHold &&
@@ -203,7 +203,7 @@ void Director::GoHome(std::int64_t now_ns, const sim::Truth& truth, const hal::T
 }
 
 void Director::Measure(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record,
-                       const servo::ServoState& state) {
+                       const task::ServoState& state) {
   sim::Truth seen;
   seen.X_BC = truth.X_BC;
   seen.p_BO = TargetAt(now_ns);
@@ -212,7 +212,7 @@ void Director::Measure(std::int64_t now_ns, const sim::Truth& truth, const hal::
   const int n = about_.servo.arm.num_joints;
   speed2_.Add(truth.dq.squaredNorm() / n);
   torque2_.Add(model::ToVector(record.command.tau_cmd, n).squaredNorm() / n);
-  const servo::PredictState& predict = state.predict;
+  const estimate::PredictState& predict = state.predict;
   covariance_ = about_.servo.feature.SeesOrientation() ? predict.poses.best().P.topLeftCorner<3, 3>().trace()
                                                        : predict.filter.P[0][0].trace();
 }
@@ -254,7 +254,7 @@ void Director::End(std::int64_t now_ns, const sim::Truth& truth, const hal::Tick
 }
 
 void Director::Step(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record,
-                    const servo::ServoState& state) {
+                    const task::ServoState& state) {
   if (!begun_ && !goes_home_) {
     Begin(now_ns, truth);
   }
@@ -267,7 +267,7 @@ void Director::Step(std::int64_t now_ns, const sim::Truth& truth, const hal::Tic
   mode_before_ = record.mode;
   if (asks_again_ && record.mode == Mode::kHold) {  // a fault ends every wish
     asks_again_ = false;
-    request_ = servo::Request::kTrack;
+    request_ = task::Request::kTrack;
   }
   if (goes_home_) {
     acting_.trouble = Trouble::kNone;

@@ -12,14 +12,14 @@
 #include <string>
 #include <vector>
 
+#include "firmware/core/task/servo_task.hpp"
 #include "fovea/hal/record.hpp"
-#include "fovea/servo/servo_task.hpp"
-#include "sim/app/run_description.hpp"
-#include "sim/app/target_error.hpp"
+#include "sim/scenario/run_description.hpp"
+#include "sim/verdict/target_error.hpp"
 #include "sim/world/target_motion.hpp"
 #include "sim/world/world.hpp"
-#include "soak/judge.hpp"
-#include "soak/seam.hpp"
+#include "tests/soak/judge.hpp"
+#include "tests/soak/seam.hpp"
 
 namespace fovea::soak {
 
@@ -40,24 +40,24 @@ struct Figures {
   Tenths posture;     // the joints' distance from the ready posture [rad]
 };
 
-class Director final : public servo::MotionSource {
+class Director final : public moves::MotionSource {
  public:
   Director(const sim::RunDescription& about, std::int64_t end_ns, std::uint64_t seed);
 
   // The world has come to `now_ns` with `truth`; `record` is of the last tick, `state` what it left.
   void Step(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record,
-            const servo::ServoState& state);
+            const task::ServoState& state);
 
   [[nodiscard]] Acting& acting() { return acting_; }
   // What is asked of the servo in the next tick; once.
-  [[nodiscard]] servo::Request TakeRequest();
+  [[nodiscard]] task::Request TakeRequest();
   // What pulls at the joints [num_joints; Nm].
   [[nodiscard]] const Eigen::VectorXd& pull() const { return pull_; }
   [[nodiscard]] Eigen::Vector3d TargetAt(std::int64_t now_ns) const {
     return sim::PositionAt(target_, now_ns - episode_ns_);
   }
   [[nodiscard]] const Eigen::Matrix3d& R_BO() const { return target_.R_BO; }
-  servo::MotionCommand At(std::int64_t now_ns) noexcept override;
+  moves::MotionCommand At(std::int64_t now_ns) noexcept override;
 
   [[nodiscard]] const std::array<std::uint64_t, kEndingNames.size()>& endings() const { return endings_; }
   [[nodiscard]] const std::array<std::uint64_t, kTroubleNames.size()>& troubles() const { return troubles_; }
@@ -76,7 +76,7 @@ class Director final : public servo::MotionSource {
   void Recover(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record);
   void GoHome(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record);
   void Measure(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record,
-               const servo::ServoState& state);
+               const task::ServoState& state);
   void End(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record);
   void Complain(std::int64_t now_ns, const std::string& what);
   [[nodiscard]] bool DrawTarget(const sim::Truth& truth);
@@ -98,7 +98,7 @@ class Director final : public servo::MotionSource {
   double strength_ = 0.0;
   Acting acting_;
   Eigen::VectorXd pull_;
-  servo::Request request_ = servo::Request::kNone;
+  task::Request request_ = task::Request::kNone;
 
   // the way home
   bool goes_home_ = false;

@@ -3,8 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "closed_loop/hazards.hpp"
-#include "fovea/config/program.hpp"
+#include "firmware/host/config/program.hpp"
+#include "tests/closed_loop/hazards.hpp"
 
 namespace {
 
@@ -20,8 +20,8 @@ std::string RowOf(const test::Hazard& hazard, const test::HazardFigures& f) {
       "| {} | {} of {} | {} ms; {} ms | {:.1f} mm; {:.0f} mm; {:.0f} mm (seed {}) | {:.2f} m/s | {} | {}; {} "
       "| {:.0f} % (seed {}) |\n",
       hazard.what, f.noticed, f.cases, f.noticed_p99_ms, f.noticed_most_ms, f.way_p50_mm, f.way_p99_mm,
-      f.way_most_mm, f.worst_seed, f.speed_most, f.stand, f.touched, f.passed,
-      100.0 * f.joint_most, f.joint_seed);
+      f.way_most_mm, f.worst_seed, f.speed_most, f.stand, f.touched, f.passed, 100.0 * f.joint_most,
+      f.joint_seed);
 }
 
 }  // namespace

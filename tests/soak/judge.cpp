@@ -1,4 +1,4 @@
-#include "soak/judge.hpp"
+#include "tests/soak/judge.hpp"
 
 #include <cmath>
 

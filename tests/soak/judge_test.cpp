@@ -1,5 +1,5 @@
 // What would leak or drift is found, and what only scatters is not.
-#include "soak/judge.hpp"
+#include "tests/soak/judge.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 
-#include "fovea/build_info.hpp"
-#include "fovea/config/program.hpp"
-#include "soak/soak.hpp"
+#include "firmware/host/build_info.hpp"
+#include "firmware/host/config/program.hpp"
+#include "tests/soak/soak.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "fovea/hal/arm.hpp"
 #include "fovea/hal/clock.hpp"
 #include "fovea/hal/feature.hpp"
-#include "soak/trouble.hpp"
+#include "tests/soak/trouble.hpp"
 
 namespace fovea::soak {
 

@@ -1,4 +1,4 @@
-#include "soak/soak.hpp"
+#include "tests/soak/soak.hpp"
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -14,19 +14,19 @@
 #include <stdexcept>
 #include <thread>
 
+#include "firmware/core/task/servo_loop.hpp"
+#include "firmware/vision/detect/vision_task.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
-#include "fovea/servo/servo_loop.hpp"
-#include "fovea/vision/vision_task.hpp"
-#include "sim/app/compose.hpp"
-#include "sim/app/eye.hpp"
-#include "sim/app/run_description.hpp"
 #include "sim/camera/mix_bits.hpp"
+#include "sim/run/eye.hpp"
+#include "sim/scenario/compose.hpp"
+#include "sim/scenario/run_description.hpp"
 #include "sim/world/feature_delay.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world_clock.hpp"
-#include "soak/director.hpp"
-#include "soak/seam.hpp"
-#include "support/truth_eye.hpp"
+#include "tests/soak/director.hpp"
+#include "tests/soak/seam.hpp"
+#include "tests/support/truth_eye.hpp"
 
 namespace fovea::soak {
 namespace {
@@ -127,7 +127,7 @@ class Pass {
     if (!task_.Init(about.servo).ok()) {
       throw std::logic_error("a servo configuration that was checked is refused");
     }
-    servo::ServoState state = task_.state();
+    task::ServoState state = task_.state();
     state.tick = start_.tick;
     task_.Restore(state);
     loop_.UseMotion(director_);
@@ -177,7 +177,7 @@ class Pass {
     }
     for (; stepped_ns_ < now_ns; stepped_ns_ += hal::kTickPeriodNs) {
       director_.Step(stepped_ns_ + hal::kTickPeriodNs, world_.truth(), digest_.last, task_.state());
-      if (const servo::Request request = director_.TakeRequest(); request != servo::Request::kNone) {
+      if (const task::Request request = director_.TakeRequest(); request != task::Request::kNone) {
         loop_.Ask(request);
       }
     }
@@ -233,7 +233,7 @@ class Pass {
 
   void Summarise(SoakResult& result) const {
     result.robot_s = static_cast<double>(end_ns_) * 1e-9;
-    const servo::LoopCounters& counters = loop_.counters();
+    const task::LoopCounters& counters = loop_.counters();
     result.ticks = counters.ticks;
     result.missed_ticks = counters.missed_ticks;
     for (std::size_t i = 0; i < kEndingNames.size(); ++i) {
@@ -324,8 +324,8 @@ class Pass {
   sim::LockstepClock lockstep_;
   SoakClock clock_;
   HeapProbe probe_;
-  servo::ServoTask task_;
-  servo::ServoLoop loop_;
+  task::ServoTask task_;
+  task::ServoLoop loop_;
   std::int64_t stepped_ns_ = 0;
   std::int64_t next_sample_ns_ = 0;
   std::vector<MemorySample> memory_;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "soak/judge.hpp"
+#include "tests/soak/judge.hpp"
 
 namespace fovea::soak {
 

@@ -1,5 +1,5 @@
 // A minute and more of a soak, by the clock as it is and at the end of its range.
-#include "soak/soak.hpp"
+#include "tests/soak/soak.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,8 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "firmware/core/model/dynamics.hpp"
 #include "fovea/hal/arm.hpp"
-#include "fovea/model/dynamics.hpp"
 
 namespace fovea::test {
 

@@ -3,10 +3,10 @@
 
 #include <string>
 
-#include "fovea/model/math.hpp"
-#include "fovea/robots/robot.hpp"
-#include "fovea/servo/servo_config.hpp"
-#include "support/places.hpp"
+#include "firmware/core/config/servo_config.hpp"
+#include "firmware/core/model/math.hpp"
+#include "firmware/host/robots/robot.hpp"
+#include "tests/support/places.hpp"
 
 namespace fovea::test {
 
@@ -23,8 +23,8 @@ inline model::Pose DefaultMount() {
   return X_EC;
 }
 
-inline servo::ServoConfig PandaConfig() {
-  servo::ServoConfig config;
+inline config::ServoConfig PandaConfig() {
+  config::ServoConfig config;
   config.arm = Panda().model;
   config.X_EC = DefaultMount();
   config.law.q_posture = config.arm.q_ready;

@@ -1,8 +1,8 @@
-#include "support/places.hpp"
+#include "tests/support/places.hpp"
 
 namespace fovea::test {
 
 std::filesystem::path SourceRoot() { return FOVEA_SOURCE_ROOT; }
-std::string RobotsFolder() { return (SourceRoot() / "firmware/robots/share").string(); }
+std::string RobotsFolder() { return (SourceRoot() / "firmware/host/robots/share").string(); }
 
 }  // namespace fovea::test

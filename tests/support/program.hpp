@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "support/temp_folder.hpp"
+#include "tests/support/temp_folder.hpp"
 
 namespace fovea::test {
 

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "fovea/model/arm_model.hpp"
+#include "firmware/core/model/arm_model.hpp"
 
 namespace fovea::test {
 

@@ -7,23 +7,23 @@
 #include <string>
 #include <vector>
 
-#include "fovea/features/square.hpp"
-#include "fovea/features/triangle.hpp"
-#include "fovea/servo/servo_task.hpp"
-#include "support/ideal_arm.hpp"
-#include "support/panda.hpp"
-#include "support/truth_eye.hpp"
+#include "firmware/core/features/square.hpp"
+#include "firmware/core/features/triangle.hpp"
+#include "firmware/core/task/servo_task.hpp"
+#include "tests/support/ideal_arm.hpp"
+#include "tests/support/panda.hpp"
+#include "tests/support/truth_eye.hpp"
 
 namespace fovea::test {
 
 struct ServoRun {
   std::string name;
-  servo::ServoConfig config;
-  std::vector<servo::ServoInputs> inputs;
+  config::ServoConfig config;
+  std::vector<task::ServoInputs> inputs;
 };
 
-inline servo::ServoConfig ConfigOf(hal::FeatureKind target, features::FeatureForm form) {
-  servo::ServoConfig config = PandaConfig();
+inline config::ServoConfig ConfigOf(hal::FeatureKind target, features::FeatureForm form) {
+  config::ServoConfig config = PandaConfig();
   config.feature.target = target;
   config.feature.form = form;
   if (target == hal::FeatureKind::kSquare) {
@@ -39,7 +39,7 @@ inline servo::ServoConfig ConfigOf(hal::FeatureKind target, features::FeatureFor
 
 // `change(tick, inputs)` has the last word on each tick's inputs.
 template <class Change>
-ServoRun RunOnIdealArm(const std::string& name, const servo::ServoConfig& config, int ticks, bool sees,
+ServoRun RunOnIdealArm(const std::string& name, const config::ServoConfig& config, int ticks, bool sees,
                        const Change& change) {
   constexpr int kFrameTicks = 33;
   constexpr std::int64_t kLatencyNs = 40 * hal::kNsPerMs;
@@ -56,12 +56,12 @@ ServoRun RunOnIdealArm(const std::string& name, const servo::ServoConfig& config
   IdealArm arm(config.arm, q);
   TruthEye eye(config.feature, 554.256, 0.05, 71);
   std::vector<hal::FeatureMeasurement> under_way;
-  servo::ServoTask task;
+  task::ServoTask task;
   EXPECT_TRUE(task.Init(config).ok());
-  servo::ServoOutputs outputs;
+  task::ServoOutputs outputs;
   run.inputs.reserve(static_cast<std::size_t>(ticks));
   for (int k = 0; k < ticks; ++k) {
-    servo::ServoInputs inputs;
+    task::ServoInputs inputs;
     inputs.arm = arm.State();
     if (sees && k % kFrameTicks == 0) {
       model::ComputePoses(config.arm, arm.q(), poses);
@@ -84,31 +84,31 @@ ServoRun RunOnIdealArm(const std::string& name, const servo::ServoConfig& config
 
 inline ServoRun TrackingRun(const std::string& name, hal::FeatureKind target, features::FeatureForm form,
                             int ticks) {
-  return RunOnIdealArm(name, ConfigOf(target, form), ticks, true, [](int, servo::ServoInputs&) {});
+  return RunOnIdealArm(name, ConfigOf(target, form), ticks, true, [](int, task::ServoInputs&) {});
 }
 
 // Goals of joints and of the hand, home, another law on the way, and a request.
 inline ServoRun CommandedRun(int ticks) {
-  servo::ServoConfig config = PandaConfig();
+  config::ServoConfig config = PandaConfig();
   config.auto_track = false;
-  return RunOnIdealArm("commanded", config, ticks, false, [&config](int k, servo::ServoInputs& inputs) {
+  return RunOnIdealArm("commanded", config, ticks, false, [&config](int k, task::ServoInputs& inputs) {
     if (k > 50 && k < 700) {
-      inputs.motion.kind = servo::MotionKind::kJointGoal;
+      inputs.motion.kind = moves::MotionKind::kJointGoal;
       inputs.motion.q = config.arm.q_ready;
       inputs.motion.q[2] += k < 400 ? 0.2 : -0.1;
     } else if (k > 900 && k < 1800) {
       model::ArmPoses poses;
       model::ComputePoses(config.arm, Ready(), poses);
-      inputs.motion.kind = servo::MotionKind::kPoseGoal;
+      inputs.motion.kind = moves::MotionKind::kPoseGoal;
       inputs.motion.p_BE = {poses.X_BE.p.x(), poses.X_BE.p.y() + 0.05, poses.X_BE.p.z()};
       inputs.motion.quaternion_BE = {0.0, 1.0, 0.0, 0.0};
     } else if (k >= 1800) {
-      inputs.motion.kind = servo::MotionKind::kHome;
+      inputs.motion.kind = moves::MotionKind::kHome;
     }
     inputs.change_law = k == 600;
-    inputs.law = servo::MotionLawKind::kPd;
+    inputs.law = config::MotionLawKind::kPd;
     if (k == 750) {
-      inputs.request = servo::Request::kHold;
+      inputs.request = task::Request::kHold;
     }
   });
 }
@@ -117,7 +117,7 @@ inline ServoRun CommandedRun(int ticks) {
 // is lost, and reset.
 inline ServoRun TroubledRun(int ticks) {
   return RunOnIdealArm("troubled", ConfigOf(hal::FeatureKind::kSphere, features::FeatureForm::kSphere), ticks,
-                       true, [ticks](int k, servo::ServoInputs& inputs) {
+                       true, [ticks](int k, task::ServoInputs& inputs) {
                          if ((k > 300 && k < 310) || (k > ticks - 300 && k < ticks - 200)) {
                            inputs.arm_status = hal::Status(hal::StatusCode::kTimeout, "arm");
                          }
@@ -127,7 +127,7 @@ inline ServoRun TroubledRun(int ticks) {
                          inputs.missed_ticks = k == 550 ? 3 : 0;
                          inputs.has_feature = inputs.has_feature && (k < 600 || k > 1500);
                          if (k == ticks - 150) {
-                           inputs.request = servo::Request::kReset;
+                           inputs.request = task::Request::kReset;
                          }
                        });
 }

@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <random>
 
-#include "fovea/features/target_feature.hpp"
+#include "firmware/core/features/target_feature.hpp"
 
 namespace fovea::test {
 

@@ -27,7 +27,7 @@ class Tidy(unittest.TestCase):
         self.addCleanup(temp.cleanup)
         self.root = pathlib.Path(temp.name).resolve() / "project"
         for name, text in ((".clang-tidy", ""), ("a.cpp", ""), ("b.cpp", ""), ("both.hpp", ""),
-                           ("tests/consumer/main.cpp", ""), ("bin/clang-tidy", CLANG_TIDY), ("bin/ninja", NINJA)):
+                           ("tests/consumer/project/main.cpp", ""), ("bin/clang-tidy", CLANG_TIDY), ("bin/ninja", NINJA)):
             self.write(name, text)
         for name in ("clang-tidy", "ninja"):
             (self.root / "bin" / name).chmod(0o755)
@@ -60,7 +60,7 @@ class Tidy(unittest.TestCase):
     def test_what_was_found_clean_is_not_asked_again(self):
         code, said = self.tidy()
         self.assertEqual(code, 0, said)
-        self.assertIn("not in build/release, so not looked at: tests/consumer/main.cpp", said)
+        self.assertIn("not in build/release, so not looked at: tests/consumer/project/main.cpp", said)
         self.assertIn("2 sources, 2 known to be clean", self.tidy()[1])
         self.write("b.cpp", "bad")
         code, said = self.tidy()
@@ -70,7 +70,7 @@ class Tidy(unittest.TestCase):
     def test_a_source_that_the_build_does_not_know_is_an_error(self):
         self.write("c.cpp", "")
         self.commit()
-        for arguments in ((), ("--since", "HEAD~1"), ("c.cpp",), ("tests/consumer/main.cpp",)):
+        for arguments in ((), ("--since", "HEAD~1"), ("c.cpp",), ("tests/consumer/project/main.cpp",)):
             code, said = self.tidy(*arguments)
             self.assertEqual(code, 2, f"{arguments}: {said}")
 

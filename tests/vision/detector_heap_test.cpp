@@ -5,10 +5,10 @@
 #include <iostream>
 #include <vector>
 
+#include "firmware/vision/detect/target_detector.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
-#include "fovea/vision/target_detector.hpp"
-#include "tools/bench/picture_target.hpp"
-#include "tools/bench/scenes.hpp"
+#include "tools/bench/vision/picture_target.hpp"
+#include "tools/bench/vision/scenes.hpp"
 
 namespace fovea::vision {
 namespace {

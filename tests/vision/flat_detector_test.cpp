@@ -6,10 +6,10 @@
 #include <iostream>
 #include <random>
 
-#include "fovea/model/rotation.hpp"
-#include "fovea/vision/outline.hpp"
-#include "fovea/vision/target_detector.hpp"
-#include "tools/bench/picture.hpp"
+#include "firmware/core/model/rotation.hpp"
+#include "firmware/vision/detect/target_detector.hpp"
+#include "firmware/vision/fit/outline.hpp"
+#include "tools/bench/vision/picture.hpp"
 
 namespace fovea::vision {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <vector>
 
-#include "fovea/vision/target_detector.hpp"
-#include "tools/bench/picture_target.hpp"
-#include "tools/bench/scenes.hpp"
+#include "firmware/vision/detect/target_detector.hpp"
+#include "tools/bench/vision/picture_target.hpp"
+#include "tools/bench/vision/scenes.hpp"
 
 namespace fovea::vision {
 namespace {

@@ -1,5 +1,5 @@
 // Outlines by another way: a ray through each of their points meets the target where it ends.
-#include "fovea/vision/outline.hpp"
+#include "firmware/vision/fit/outline.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <iostream>
 #include <random>
 
-#include "fovea/model/rotation.hpp"
+#include "firmware/core/model/rotation.hpp"
 
 namespace fovea::vision {
 namespace {

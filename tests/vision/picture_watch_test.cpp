@@ -1,5 +1,5 @@
 // Whether two pictures differ by more than their noise.
-#include "fovea/vision/picture_watch.hpp"
+#include "firmware/vision/detect/picture_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <random>
 
-#include "fovea/model/rotation.hpp"
-#include "fovea/vision/target_detector.hpp"
-#include "tools/bench/picture.hpp"
+#include "firmware/core/model/rotation.hpp"
+#include "firmware/vision/detect/target_detector.hpp"
+#include "tools/bench/vision/picture.hpp"
 
 namespace fovea::vision {
 namespace {

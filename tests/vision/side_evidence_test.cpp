@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "fovea/vision/polygon_fit.hpp"
-#include "fovea/vision/target_detector.hpp"
-#include "tools/bench/picture.hpp"
-#include "tools/bench/picture_target.hpp"
+#include "firmware/vision/detect/target_detector.hpp"
+#include "firmware/vision/fit/polygon_fit.hpp"
+#include "tools/bench/vision/picture.hpp"
+#include "tools/bench/vision/picture_target.hpp"
 
 namespace fovea::vision {
 namespace {

@@ -1,5 +1,5 @@
 // The ball detector on pictures whose truth is known.
-#include "fovea/vision/target_detector.hpp"
+#include "firmware/vision/detect/target_detector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <iostream>
 #include <random>
 
-#include "fovea/features/sphere.hpp"
-#include "support/ray_cast_ball.hpp"
+#include "firmware/core/features/sphere.hpp"
+#include "tests/support/ray_cast_ball.hpp"
 
 namespace fovea::vision {
 namespace {

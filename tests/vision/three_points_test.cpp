@@ -1,5 +1,5 @@
 // Poses of three and of four corners against OpenCV's P3P and IPPE.
-#include "fovea/vision/three_points.hpp"
+#include "firmware/vision/pose/three_points.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <random>
 #include <vector>
 
-#include "fovea/model/rotation.hpp"
-#include "fovea/vision/flat_pose.hpp"
+#include "firmware/core/model/rotation.hpp"
+#include "firmware/vision/pose/flat_pose.hpp"
 
 namespace fovea::vision {
 namespace {

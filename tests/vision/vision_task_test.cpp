@@ -1,5 +1,5 @@
 // What the detector must refuse, and how the vision task passes its verdicts on.
-#include "fovea/vision/vision_task.hpp"
+#include "firmware/vision/detect/vision_task.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "support/fake_drivers.hpp"
-#include "support/ray_cast_ball.hpp"
+#include "tests/support/fake_drivers.hpp"
+#include "tests/support/ray_cast_ball.hpp"
 
 namespace fovea::vision {
 namespace {

@@ -1,16 +1,16 @@
 // fovea-bench: figures. Each command prints a table, or with --json a list of {name, value, unit, goal}.
 #include <CLI/CLI.hpp>
 
-#include "compare.hpp"
-#include "fovea/build_info.hpp"
-#include "fovea/config/program.hpp"
-#include "jitter.hpp"
-#include "load.hpp"
-#include "mcu.hpp"
-#include "sim.hpp"
-#include "tick.hpp"
-#include "vision.hpp"
-#include "wire.hpp"
+#include "firmware/host/build_info.hpp"
+#include "firmware/host/config/program.hpp"
+#include "tools/bench/compare/compare.hpp"
+#include "tools/bench/jitter/jitter.hpp"
+#include "tools/bench/jitter/load.hpp"
+#include "tools/bench/mcu/mcu.hpp"
+#include "tools/bench/sim/sim.hpp"
+#include "tools/bench/tick/tick.hpp"
+#include "tools/bench/vision/vision.hpp"
+#include "tools/bench/wire/wire.hpp"
 
 int main(int argc, char** argv) {
   using namespace fovea;

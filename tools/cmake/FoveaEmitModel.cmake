@@ -1,7 +1,7 @@
 # fovea_emit_model(<target> <arm>...): the shipped arms' models as `fovea model --emit-cpp` writes them, for
 # `target` to include as "emitted/<arm>.hpp".
 function(fovea_emit_model target)
-  set(robots ${PROJECT_SOURCE_DIR}/firmware/robots/share)
+  set(robots ${PROJECT_SOURCE_DIR}/firmware/host/robots/share)
   file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/emitted)
   foreach(arm IN LISTS ARGN)
     add_custom_command(OUTPUT emitted/${arm}.hpp

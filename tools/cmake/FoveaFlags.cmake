@@ -17,6 +17,8 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 add_library(fovea_warnings INTERFACE)
+# Includes are written from the root: "firmware/core/task/servo_task.hpp".
+target_include_directories(fovea_warnings INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(fovea_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast
   -Woverloaded-virtual -Werror
@@ -45,22 +47,42 @@ if(FOVEA_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
-# fovea_add_library(<name> [TICK] [COMPONENT <core|host>] SOURCES <file>... [HEADERS <file>...]
+# fovea_add_library(<name> [TICK] [COMPONENT <core|host>] [SOURCES <file>...] [HEADERS <file>...] [API <file>...]
 #                   [PUBLIC <target>...] [PRIVATE <target>...])
-# HEADERS are the public ones, relative to the folder's include/. With COMPONENT the library is installed with
-# them, and belongs to that component of the CMake package.
+# HEADERS stand beside the sources and are included by their path from the root; API are those that an outside project
+# includes, relative to the folder's include/ or to firmware/include/. With COMPONENT the library is installed with all
+# of them, and belongs to that component of the CMake package.
 function(fovea_add_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "TICK" "COMPONENT" "SOURCES;HEADERS;PUBLIC;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "TICK" "COMPONENT" "SOURCES;HEADERS;API;PUBLIC;PRIVATE")
   add_library(${name} STATIC ${arg_SOURCES})
-  if(arg_HEADERS)
-    list(TRANSFORM arg_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/include/)
-    target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_CURRENT_SOURCE_DIR}/include FILES ${arg_HEADERS})
+  if(arg_API)
+    set(base ${CMAKE_CURRENT_SOURCE_DIR}/include)
+    if(NOT EXISTS ${base})
+      set(base ${PROJECT_SOURCE_DIR}/firmware/include)
+    endif()
+    list(TRANSFORM arg_API PREPEND ${base}/)
+    target_sources(${name} PUBLIC FILE_SET api TYPE HEADERS BASE_DIRS ${base} FILES ${arg_API})
   endif()
   if(arg_COMPONENT)
+    target_sources(${name} PUBLIC FILE_SET internal TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR})
     fovea_install(${name} ${arg_COMPONENT})
   endif()
+  fovea_add_sources(${name} HEADERS ${arg_HEADERS})
   target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:fovea_warnings>)
   if(arg_TICK)
     target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:fovea_tick>)
+  endif()
+endfunction()
+
+# fovea_add_sources(<name> [SOURCES <file>...] [HEADERS <file>...])
+# A room's part of the library <name>.
+function(fovea_add_sources name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;HEADERS")
+  if(arg_SOURCES)
+    target_sources(${name} PRIVATE ${arg_SOURCES})
+  endif()
+  if(arg_HEADERS)
+    list(TRANSFORM arg_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+    target_sources(${name} PUBLIC FILE_SET internal FILES ${arg_HEADERS})
   endif()
 endfunction()

@@ -4,19 +4,22 @@ include(CMakePackageConfigHelpers)
 
 set(FOVEA_PACKAGE_FOLDER ${CMAKE_INSTALL_LIBDIR}/cmake/fovea)
 
-# Installs a library with its public headers, as fovea::<name without fovea_> in <component> of the package.
+# Installs a library with its headers, as fovea::<name without fovea_> in <component> of the package.
 function(fovea_install target component)
   string(REPLACE "fovea_" "" export_name ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${export_name})
-  get_target_property(headers ${target} HEADER_SETS)
-  set(header_set)
-  if(headers)
-    set(header_set FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+  get_target_property(sets ${target} INTERFACE_HEADER_SETS)
+  set(header_sets)
+  if("api" IN_LIST sets)
+    list(APPEND header_sets FILE_SET api DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev)
+  endif()
+  if("internal" IN_LIST sets)
+    list(APPEND header_sets FILE_SET internal DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fovea/internal COMPONENT dev)
   endif()
   install(TARGETS ${target} EXPORT fovea-${component}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev
     OBJECTS DESTINATION ${CMAKE_INSTALL_LIBDIR}/fovea COMPONENT dev
-    ${header_set})
+    ${header_sets})
 endfunction()
 
 # Called once, when all targets are there.
@@ -30,7 +33,7 @@ function(fovea_install_package)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake
     ${PROJECT_SOURCE_DIR}/tools/cmake/fovea-config.cmake
     DESTINATION ${FOVEA_PACKAGE_FOLDER} COMPONENT dev)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/firmware/robots/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/robots
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/firmware/host/robots/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/robots
     COMPONENT data)
   fovea_debian_packages()
 endfunction()

@@ -9,7 +9,7 @@ endif()
 file(SHA256 ${SERVO} servo_hash)
 file(SHA256 ${LINK} link_hash)
 set(content "// Written by tools/cmake/WriteBuildInfo.cmake.
-#include \"fovea/build_info.hpp\"
+#include \"firmware/host/build_info.hpp\"
 
 namespace fovea {
 const char* const kGitRevision = \"${revision}\";

@@ -6,19 +6,19 @@
 #include <filesystem>
 #include <fstream>
 
-#include "atlas.hpp"
-#include "calibrate.hpp"
-#include "detect.hpp"
-#include "features.hpp"
-#include "fovea/build_info.hpp"
-#include "fovea/config/guard_table.hpp"
-#include "fovea/config/program.hpp"
-#include "fovea/config/share_folder.hpp"
-#include "fovea/flight/log_ticks.hpp"
-#include "fovea/report/report.hpp"
-#include "gains.hpp"
-#include "model.hpp"
-#include "replay.hpp"
+#include "firmware/host/build_info.hpp"
+#include "firmware/host/config/guard_table.hpp"
+#include "firmware/host/config/program.hpp"
+#include "firmware/host/config/share_folder.hpp"
+#include "firmware/host/recording/flight/log_ticks.hpp"
+#include "firmware/host/report/report.hpp"
+#include "tools/fovea/atlas/atlas.hpp"
+#include "tools/fovea/calibrate/calibrate.hpp"
+#include "tools/fovea/detect/detect.hpp"
+#include "tools/fovea/features/features.hpp"
+#include "tools/fovea/gains/gains.hpp"
+#include "tools/fovea/model/model.hpp"
+#include "tools/fovea/replay/replay.hpp"
 
 namespace {
 

@@ -1,5 +1,6 @@
 // fovea-mcu: the servo on a processor without an operating system, at the end of a serial line.
 #include "emitted/panda.hpp"
+#include "firmware/core/link/servo_server.hpp"
 #include "fovea/cortex_m7/faults.hpp"
 #include "fovea/cortex_m7/interrupts.hpp"
 #include "fovea/cortex_m7/program.hpp"
@@ -7,7 +8,6 @@
 #include "fovea/cortex_m7/stack.hpp"
 #include "fovea/cortex_m7/timers.hpp"
 #include "fovea/cortex_m7/uart.hpp"
-#include "fovea/link/servo_server.hpp"
 
 namespace {
 

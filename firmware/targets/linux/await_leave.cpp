@@ -1,4 +1,4 @@
-#include "await_leave.hpp"
+#include "firmware/targets/linux/await_leave.hpp"
 
 #include <fmt/format.h>
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "firmware/targets/linux/gravity_check.hpp"
+#include "firmware/targets/linux/hw_config.hpp"
+#include "firmware/targets/linux/operator_thread.hpp"
 #include "fovea/linux_rt/bounded_ring.hpp"
-#include "gravity_check.hpp"
-#include "hw_config.hpp"
-#include "operator_thread.hpp"
 
 namespace fovea::hw {
 

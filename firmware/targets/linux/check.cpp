@@ -1,4 +1,4 @@
-#include "check.hpp"
+#include "firmware/targets/linux/check.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "check_camera.hpp"
-#include "check_robot.hpp"
+#include "firmware/targets/linux/check_camera.hpp"
+#include "firmware/targets/linux/check_robot.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hw_config.hpp"
+#include "firmware/targets/linux/hw_config.hpp"
 
 namespace fovea::hw {
 

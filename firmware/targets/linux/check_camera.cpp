@@ -1,14 +1,14 @@
-#include "check_camera.hpp"
+#include "firmware/targets/linux/check_camera.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/targets/linux/frame_figures.hpp"
+#include "firmware/targets/linux/hw_camera.hpp"
 #include "fovea/camera/camera_error.hpp"
-#include "fovea/config/input_error.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
-#include "frame_figures.hpp"
-#include "hw_camera.hpp"
 
 namespace fovea::hw {
 namespace {

@@ -1,4 +1,4 @@
-#include "check_robot.hpp"
+#include "firmware/targets/linux/check_robot.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/core/model/kinematics.hpp"
+#include "firmware/targets/linux/gravity_check.hpp"
 #include "fovea/franka/panda_limits.hpp"
-#include "fovea/model/kinematics.hpp"
-#include "gravity_check.hpp"
 
 namespace fovea::hw {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "check.hpp"
+#include "firmware/targets/linux/check.hpp"
 
 namespace fovea::hw {
 

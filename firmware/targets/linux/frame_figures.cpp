@@ -1,4 +1,4 @@
-#include "frame_figures.hpp"
+#include "firmware/targets/linux/frame_figures.hpp"
 
 #include <algorithm>
 #include <cstddef>

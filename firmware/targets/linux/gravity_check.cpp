@@ -1,13 +1,13 @@
-#include "gravity_check.hpp"
+#include "firmware/targets/linux/gravity_check.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "fovea/model/dynamics.hpp"
-#include "fovea/model/kinematics.hpp"
-#include "fovea/model/load.hpp"
+#include "firmware/core/model/dynamics.hpp"
+#include "firmware/core/model/kinematics.hpp"
+#include "firmware/core/model/load.hpp"
 
 namespace fovea::hw {
 namespace {

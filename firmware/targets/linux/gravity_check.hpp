@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "firmware/core/model/arm_model.hpp"
 #include "fovea/hal/arm.hpp"
-#include "fovea/model/arm_model.hpp"
 
 namespace fovea::hw {
 

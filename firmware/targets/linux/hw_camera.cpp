@@ -1,4 +1,4 @@
-#include "hw_camera.hpp"
+#include "firmware/targets/linux/hw_camera.hpp"
 
 #include <fmt/format.h>
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
+#include "firmware/targets/linux/hw_config.hpp"
 #include "fovea/camera/recorded_camera.hpp"
 #include "fovea/genicam/genicam_camera.hpp"
 #include "fovea/v4l2/v4l2_camera.hpp"
-#include "hw_config.hpp"
 
 namespace fovea::hw {
 

@@ -1,12 +1,12 @@
-#include "hw_config.hpp"
+#include "firmware/targets/linux/hw_config.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-#include "fovea/config/input_error.hpp"
-#include "fovea/config/share_folder.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/share_folder.hpp"
 
 namespace fovea::hw {
 namespace {
@@ -146,7 +146,7 @@ robots::Robot LoadHwRobot(const HwConfig& config) {
   return robot;
 }
 
-servo::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot) {
+config::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot) {
   config::ServoSettings settings = config.servo;
   config::ScaleSpeed(config.robot.speed_scale, settings);
   if (!config.HasCamera()) {

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "fovea/config/camera_keys.hpp"
-#include "fovea/config/load_keys.hpp"
-#include "fovea/config/servo_keys.hpp"
-#include "fovea/config/vision_keys.hpp"
+#include "firmware/host/config/camera_keys.hpp"
+#include "firmware/host/config/load_keys.hpp"
+#include "firmware/host/config/servo_keys.hpp"
+#include "firmware/host/config/vision_keys.hpp"
+#include "firmware/host/robots/robot.hpp"
+#include "firmware/targets/linux/gravity_check.hpp"
 #include "fovea/franka/franka_arm.hpp"
-#include "fovea/robots/robot.hpp"
-#include "gravity_check.hpp"
 
 namespace fovea::hw {
 
@@ -86,7 +86,7 @@ robots::Robot LoadHwRobot(const HwConfig& config);
 
 // The servo's configuration: with a camera as it is calibrated, without one for an arm that is held.
 // InputError.
-servo::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot);
+config::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot);
 
 // Over so many states, and of an arm so still, gravity is compared.
 RestMean MakeRestMean(const HwConfig& config);

@@ -1,4 +1,4 @@
-#include "hw_files.hpp"
+#include "firmware/targets/linux/hw_files.hpp"
 
 #include <fmt/format.h>
 
@@ -6,20 +6,20 @@
 #include <stdexcept>
 #include <vector>
 
-#include "fovea/build_info.hpp"
-#include "fovea/config/share_folder.hpp"
-#include "fovea/film/complete_film.hpp"
-#include "fovea/film/target_curve.hpp"
-#include "fovea/flight/messages.hpp"
-#include "fovea/log/picture_messages.hpp"
-#include "fovea/log/record_hash.hpp"
-#include "fovea/log/run_messages.hpp"
-#include "fovea/log/topics.hpp"
+#include "firmware/host/build_info.hpp"
+#include "firmware/host/config/share_folder.hpp"
+#include "firmware/host/film/complete_film.hpp"
+#include "firmware/host/film/target_curve.hpp"
+#include "firmware/host/recording/flight/messages.hpp"
+#include "firmware/host/recording/log/picture_messages.hpp"
+#include "firmware/host/recording/log/record_hash.hpp"
+#include "firmware/host/recording/log/run_messages.hpp"
+#include "firmware/host/recording/log/topics.hpp"
+#include "firmware/targets/linux/hw_scene.hpp"
+#include "firmware/vision/fit/outline.hpp"
 #include "fovea/run.pb.h"
 #include "fovea/tick.pb.h"
-#include "fovea/vision/outline.hpp"
 #include "foxglove/scene.pb.h"
-#include "hw_scene.hpp"
 
 namespace fovea::hw {
 namespace {
@@ -58,7 +58,7 @@ double Reach(const features::TargetFeature& target) {
 }  // namespace
 
 HwFiles::HwFiles(const std::string& out, const HwConfig& config, const robots::Robot& robot,
-                 const servo::ServoConfig& servo, double duration_s)
+                 const config::ServoConfig& servo, double duration_s)
     : config_(config),
       robot_(robot),
       servo_(servo),

@@ -8,17 +8,17 @@
 #include <optional>
 #include <string>
 
-#include "fovea/config/output_folder.hpp"
-#include "fovea/film/eye_film.hpp"
-#include "fovea/flight/flight_recorder.hpp"
-#include "fovea/log/run_log.hpp"
-#include "fovea/report/report.hpp"
-#include "fovea/robots/robot.hpp"
-#include "fovea/servo/servo_config.hpp"
-#include "fovea/vision/detection.hpp"
+#include "firmware/core/config/servo_config.hpp"
+#include "firmware/host/config/output_folder.hpp"
+#include "firmware/host/film/eye_film.hpp"
+#include "firmware/host/recording/flight/flight_recorder.hpp"
+#include "firmware/host/recording/log/run_log.hpp"
+#include "firmware/host/report/report.hpp"
+#include "firmware/host/robots/robot.hpp"
+#include "firmware/targets/linux/hw_config.hpp"
+#include "firmware/targets/linux/hw_summary.hpp"
+#include "firmware/vision/detect/detection.hpp"
 #include "foxglove/image.pb.h"
-#include "hw_config.hpp"
-#include "hw_summary.hpp"
 
 namespace fovea::hw {
 
@@ -27,7 +27,7 @@ class HwFiles {
   // The arguments must outlive it. `duration_s`: 0 when nobody knows. InputError when nothing can be written
   // there; std::runtime_error when the report's page is not there.
   HwFiles(const std::string& out, const HwConfig& config, const robots::Robot& robot,
-          const servo::ServoConfig& servo, double duration_s);
+          const config::ServoConfig& servo, double duration_s);
 
   // From the thread that empties the recorder; the log begins with the first. Never waits.
   void AddRecord(const flight::FlightRecord& record);
@@ -49,7 +49,7 @@ class HwFiles {
 
   const HwConfig& config_;
   const robots::Robot& robot_;
-  const servo::ServoConfig& servo_;
+  const config::ServoConfig& servo_;
   const double duration_s_;
   const report::ReportPage page_;
   config::OutputFolder folder_;

@@ -1,4 +1,4 @@
-#include "hw_run.hpp"
+#include "firmware/targets/linux/hw_run.hpp"
 
 #include <fmt/format.h>
 
@@ -10,16 +10,16 @@
 #include <thread>
 #include <utility>
 
-#include "await_leave.hpp"
-#include "fovea/flight/flight_recorder.hpp"
+#include "firmware/host/recording/flight/flight_recorder.hpp"
+#include "firmware/host/recording/log/record_hash.hpp"
+#include "firmware/targets/linux/await_leave.hpp"
+#include "firmware/targets/linux/hw_files.hpp"
+#include "firmware/targets/linux/operator_thread.hpp"
+#include "firmware/targets/linux/run_watch.hpp"
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
-#include "fovea/log/record_hash.hpp"
-#include "hw_files.hpp"
-#include "operator_thread.hpp"
-#include "run_watch.hpp"
 
 namespace fovea::hw {
 namespace {
@@ -127,7 +127,7 @@ class Session {
     if (!options_.allow_motion ||
         AwaitLeave(config_, robot_.model, options_.enable, *arm_, clock_, control_, findings_)) {
       if (options_.track) {
-        loop_->Ask(servo::Request::kTrack);
+        loop_->Ask(task::Request::kTrack);
       }
       RunLoop();
     }
@@ -214,7 +214,7 @@ class Session {
       look_.reset();
       Tell(*finding, "recover");
       if (finding->passed) {
-        loop_->Ask(servo::Request::kReset);
+        loop_->Ask(task::Request::kReset);
         speaker_.Say("recovered: the servo holds; \"track\" asks for motion anew");
       }
     }
@@ -319,10 +319,10 @@ class Session {
   const HwRunOptions options_;
   Speaker& speaker_;
   const robots::Robot robot_;
-  const servo::ServoConfig servo_;
+  const config::ServoConfig servo_;
   HwSummary summary_;
   RunWatch watch_;
-  servo::ServoTask task_;
+  task::ServoTask task_;
   franka::RobotClock robot_clock_;
   linux_rt::MonotonicClock monotonic_;
   const bool by_robot_;
@@ -341,7 +341,7 @@ class Session {
   flight::FlightRecorder recorder_;
   linux_rt::TickMeter meter_;
   log::RecordHash hash_;
-  std::optional<servo::ServoLoop> loop_;
+  std::optional<task::ServoLoop> loop_;
   hal::Status status_;
   std::exception_ptr failure_;  // why there is no connection
   OperatorThread operator_;     // last: it uses the loop, the arm and the clock

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "hw_config.hpp"
-#include "hw_summary.hpp"
-#include "speaker.hpp"
+#include "firmware/targets/linux/hw_config.hpp"
+#include "firmware/targets/linux/hw_summary.hpp"
+#include "firmware/targets/linux/speaker.hpp"
 
 namespace fovea::hw {
 

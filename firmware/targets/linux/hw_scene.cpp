@@ -1,9 +1,9 @@
-#include "hw_scene.hpp"
+#include "firmware/targets/linux/hw_scene.hpp"
 
 #include <Eigen/Geometry>
 
-#include "fovea/log/scene_message.hpp"
-#include "fovea/log/topics.hpp"
+#include "firmware/host/recording/log/scene_message.hpp"
+#include "firmware/host/recording/log/topics.hpp"
 #include "foxglove/scene.pb.h"
 
 namespace fovea::hw {

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "fovea/features/target_feature.hpp"
-#include "fovea/log/run_log.hpp"
-#include "fovea/robots/robot.hpp"
+#include "firmware/core/features/target_feature.hpp"
+#include "firmware/host/recording/log/run_log.hpp"
+#include "firmware/host/robots/robot.hpp"
 
 namespace foxglove {
 class SceneUpdate;

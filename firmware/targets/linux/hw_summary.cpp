@@ -1,4 +1,4 @@
-#include "hw_summary.hpp"
+#include "firmware/targets/linux/hw_summary.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "fovea/build_info.hpp"
+#include "firmware/host/build_info.hpp"
 
 namespace fovea::hw {
 namespace {

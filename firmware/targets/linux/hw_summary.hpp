@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "firmware/core/task/servo_loop.hpp"
+#include "firmware/targets/linux/gravity_check.hpp"
+#include "firmware/targets/linux/hw_vision.hpp"
 #include "fovea/franka/franka_arm.hpp"
 #include "fovea/hal/events.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
-#include "fovea/servo/servo_loop.hpp"
-#include "gravity_check.hpp"
-#include "hw_vision.hpp"
 
 namespace fovea::hw {
 
@@ -58,7 +58,7 @@ struct HwSummary {
   std::vector<WordEvent> words;
   std::optional<std::int64_t> start_ns;  // of the servo's first tick, by the loop's clock
   std::uint64_t lines_unsaid = 0;        // that standard error did not take
-  servo::LoopCounters loop;
+  task::LoopCounters loop;
   franka::FrankaCounters robot;
   std::optional<SeenError> seen;  // with a camera
   CameraCounters camera;

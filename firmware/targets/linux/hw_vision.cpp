@@ -1,4 +1,4 @@
-#include "hw_vision.hpp"
+#include "firmware/targets/linux/hw_vision.hpp"
 
 #include <fmt/format.h>
 

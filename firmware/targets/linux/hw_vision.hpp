@@ -8,8 +8,8 @@
 #include <string>
 #include <thread>
 
-#include "fovea/vision/vision_task.hpp"
-#include "hw_camera.hpp"
+#include "firmware/targets/linux/hw_camera.hpp"
+#include "firmware/vision/detect/vision_task.hpp"
 
 namespace fovea::hw {
 

@@ -6,11 +6,11 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 
-#include "check.hpp"
-#include "fovea/build_info.hpp"
-#include "fovea/config/input_error.hpp"
-#include "fovea/config/program.hpp"
-#include "hw_run.hpp"
+#include "firmware/host/build_info.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/program.hpp"
+#include "firmware/targets/linux/check.hpp"
+#include "firmware/targets/linux/hw_run.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "operator_input.hpp"
+#include "firmware/targets/linux/operator_input.hpp"
 
 #include <poll.h>
 #include <unistd.h>

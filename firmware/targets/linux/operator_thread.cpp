@@ -1,4 +1,4 @@
-#include "operator_thread.hpp"
+#include "firmware/targets/linux/operator_thread.hpp"
 
 #include <pthread.h>
 
@@ -31,13 +31,13 @@ const char* Name(Word word) noexcept {
 }
 
 void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) noexcept {
-  servo::ServoLoop* loop = control.loop;
+  task::ServoLoop* loop = control.loop;
   if (dead_man_s <= 0.0 || loop == nullptr) {
     return;
   }
   const std::int64_t now_ns = clock.NowNs();
   if (now_ns >= control.leave_until_ns) {
-    loop->Ask(servo::Request::kNone);  // what was asked for before is forgotten, by a loop that waits too
+    loop->Ask(task::Request::kNone);  // what was asked for before is forgotten, by a loop that waits too
   }
   const auto lasts_ns = static_cast<std::int64_t>(dead_man_s * static_cast<double>(hal::kNsPerSecond));
   control.leave_until_ns = now_ns + lasts_ns;
@@ -88,13 +88,13 @@ void OperatorThread::HearSignal() {
 void OperatorThread::HearWords() {
   while (const std::optional<Word> word = input_.Next()) {
     GiveLeave(options_.dead_man_s, clock_, control_);
-    servo::ServoLoop* loop = control_.loop;
+    task::ServoLoop* loop = control_.loop;
     switch (*word) {
       case Word::kEnable: control_.enable_asked = true; break;
       case Word::kTrack:
       case Word::kHold:
         if (loop != nullptr) {
-          loop->Ask(*word == Word::kTrack ? servo::Request::kTrack : servo::Request::kHold);
+          loop->Ask(*word == Word::kTrack ? task::Request::kTrack : task::Request::kHold);
         }
         break;
       case Word::kRecover:
@@ -112,7 +112,7 @@ void OperatorThread::HearWords() {
 // In order the first time, at once the second.
 void OperatorThread::End() noexcept {
   const bool again = control_.ended.exchange(true);
-  if (servo::ServoLoop* loop = control_.loop) {
+  if (task::ServoLoop* loop = control_.loop) {
     if (again || !options_.allow_motion) {
       loop->Stop();
     } else {

@@ -7,19 +7,19 @@
 #include <string_view>
 #include <thread>
 
+#include "firmware/core/task/servo_loop.hpp"
+#include "firmware/targets/linux/operator_input.hpp"
 #include "fovea/franka/franka_arm.hpp"
 #include "fovea/hal/clock.hpp"
 #include "fovea/linux_rt/bounded_ring.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
-#include "fovea/servo/servo_loop.hpp"
-#include "operator_input.hpp"
 
 namespace fovea::hw {
 
 // What the threads of a run share: nobody waits for anybody.
 struct RunControl {
   // Null until there is a connection; what they point to outlives the operator's thread.
-  std::atomic<servo::ServoLoop*> loop{nullptr};
+  std::atomic<task::ServoLoop*> loop{nullptr};
   std::atomic<franka::FrankaArm*> arm{nullptr};
   std::atomic<bool> enable_asked{false};
   std::atomic<bool> ended{false};               // it was told to

@@ -1,4 +1,4 @@
-#include "run_watch.hpp"
+#include "firmware/targets/linux/run_watch.hpp"
 
 #include <fmt/format.h>
 

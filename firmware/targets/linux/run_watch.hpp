@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "hw_summary.hpp"
-#include "speaker.hpp"
+#include "firmware/targets/linux/hw_summary.hpp"
+#include "firmware/targets/linux/speaker.hpp"
 
 namespace fovea::hw {
 

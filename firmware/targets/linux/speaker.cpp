@@ -1,4 +1,4 @@
-#include "speaker.hpp"
+#include "firmware/targets/linux/speaker.hpp"
 
 #include <poll.h>
 #include <pthread.h>

@@ -9,7 +9,7 @@
 
 namespace fovea::hal {
 
-// What was seen, and what `s` and `cov_s` say of it; firmware/features has one file for each.
+// What was seen, and what `s` and `cov_s` say of it; firmware/core/features has one file for each.
 //
 // A flat target's frame O: origin in its middle (the mean of its corners), x to the right and y down as one
 // looks at its painted side, z into it; so a target that faces the camera squarely has R_CO = I.

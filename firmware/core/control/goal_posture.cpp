@@ -1,0 +1,328 @@
+#include "firmware/core/control/goal_posture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "firmware/core/control/posture_checks.hpp"
+#include "firmware/core/model/cholesky.hpp"
+#include "firmware/core/model/rotation.hpp"
+
+namespace fovea::control {
+namespace {
+
+using features::FeatureForm;
+using model::Mat3;
+using model::Pose;
+using model::Vec6;
+using model::VecN;
+
+constexpr double kStepMost = 0.2;  // [rad]
+constexpr double kDamping = 1e-6;
+constexpr double kReached = 2e-3;  // the rest follows, also of a target that moves [m, rad]
+constexpr double kOff = 0.01;      // a posture that was found and is further off than this is none any more,
+constexpr int kOffSteps = 25;      // after so many steps
+constexpr double kLost = 0.5;      // or this at once
+constexpr int kStepsMost = 100;
+constexpr int kStepsLooked = 8;       // a trial that comes no nearer in so many
+constexpr double kComesNearer = 0.8;  // than this share is given up
+constexpr int kPasses = 3;            // of joints found at the ends of their ranges, in one step
+constexpr double kSpread = 0.5;  // of the first round about the arm's posture, a step more each round [rad]
+constexpr int kTrialsInRound = 16;    // to each turn
+constexpr int kRounds = 12;           // then it begins anew: limits, target or arm may have moved
+constexpr int kTrialsForClear = 192;  // before a posture is taken that has no clear way to it
+constexpr double kBarred = 100.0;     // a way that is barred counts as so much longer [rad]
+constexpr double kSame = 0.2;         // postures no further apart are one [rad]
+constexpr int kDetours = 6;           // that are tried to a posture whose straight way is barred
+constexpr double kDetour = 1.5;       // how far off the posture is that one begins towards [rad]
+constexpr int kDetourSteps = 4;       // that it goes there, or up to
+constexpr int kDetourStepsMore = 11;  // so many more
+
+int TurnsOf(const features::TargetFeature& feature) noexcept {
+  return feature.target == hal::FeatureKind::kSquare ? 4 : 1;
+}
+
+// Where the camera shall be.
+Pose CameraGoal(const features::TargetFeature& feature, const Pose& X_BO, int turn) noexcept {
+  const Pose turned{X_BO.R * QuarterTurns(turn), X_BO.p};
+  return turned * Pose{feature.R_CO_star, feature.p_CO_C_star}.Inverse();
+}
+
+Pose HandGoal(const config::ServoConfig& config, const Pose& X_BO, int turn) noexcept {
+  return CameraGoal(config.feature, X_BO, turn) * config.X_EC.Inverse();
+}
+
+// The turn `first`, then the others, the nearest to the camera's orientation first.
+int TurnOfRank(const config::ServoConfig& config, const Pose& X_BO, const VecN& q, int first,
+               int rank) noexcept {
+  const int turns = TurnsOf(config.feature);
+  if (turns == 1) {
+    return 0;
+  }
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, q, poses);
+  const Pose X_BC = poses.X_BE * config.X_EC;
+  std::array<double, 4> likeness{};
+  for (int i = 0; i < 4; ++i) {
+    likeness[static_cast<std::size_t>(i)] = X_BC.R.cwiseProduct(CameraGoal(config.feature, X_BO, i).R).sum();
+  }
+  std::array<int, 4> order{0, 1, 2, 3};
+  std::swap(order[0], order[static_cast<std::size_t>(first)]);
+  std::sort(order.begin() + 1, order.end(), [&](int a, int b) {
+    return likeness[static_cast<std::size_t>(a)] > likeness[static_cast<std::size_t>(b)];
+  });
+  return order[static_cast<std::size_t>(rank)];
+}
+
+// Uniform in [-1, 1]: numbers of Numerical Recipes' quick generator.
+double Draw(std::uint32_t& state) noexcept {
+  state = state * 1664525U + 1013904223U;
+  return static_cast<double>(state >> 8U) * 0x1p-23 - 1.0;
+}
+
+void Begin(const config::ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) noexcept {
+  const int turns = TurnsOf(config.feature);
+  const int rank = goal.trial % turns;
+  goal.trial_turn = goal.trial < turns ? TurnOfRank(config, X_BO, q, goal.turn, rank) : rank;
+  const int round = goal.trial / (turns * kTrialsInRound);
+  goal.begun = true;
+  goal.step = 0;
+  goal.last_off = HUGE_VAL;
+  goal.q = q;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const JointRange range = RoomOfJoint(config, i);
+    if (goal.trial >= turns) {
+      goal.q[i] += kSpread * (1.0 + round) * Draw(goal.random);
+    }
+    goal.q[i] = std::clamp(goal.q[i], range.least, range.most);
+  }
+}
+
+// What the camera is off its goal, and how the joints change that: J dq = off. A target whose orientation is
+// not seen leaves the camera free to turn about it: dp_CO/dt = -v + [p_CO]x w shall be p_CO* - p_CO.
+void OffGoal(const config::ServoConfig& config, const Pose& X_BO, int turn, const model::ArmPoses& poses,
+             Vec6& off, model::Mat6N& J) noexcept {
+  const Pose X_BC = poses.X_BE * config.X_EC;
+  model::ComputeJacobian(config.arm, poses, config.X_EC, J);
+  if (config.feature.SeesOrientation()) {
+    const Pose X_BC_star = CameraGoal(config.feature, X_BO, turn);
+    off.head<3>() = X_BC.R.transpose() * (X_BC_star.p - X_BC.p);
+    off.tail<3>() = model::RotationVector(X_BC.R.transpose() * X_BC_star.R);
+  } else {
+    const model::Vec3 p_CO = X_BC.Inverse() * X_BO.p;
+    off.head<3>() = p_CO - config.feature.p_CO_C_star;
+    off.tail<3>().setZero();
+    J.topRows<3>() -= model::CrossMatrix(p_CO).lazyProduct(J.bottomRows<3>());
+    J.bottomRows<3>().setZero();
+  }
+}
+
+// One step of Gauss-Newton towards the goal. A joint at its end rests where the step would take it further.
+// Returns how far off it was before.
+double Descend(const config::ServoConfig& config, const Pose& X_BO, int turn, const model::ArmPoses& poses,
+               VecN& q) noexcept {
+  Vec6 off;
+  model::Mat6N J;
+  OffGoal(config, X_BO, turn, poses, off, J);
+  VecN dq = VecN::Zero(q.size());
+  for (int pass = 0; pass < kPasses; ++pass) {
+    model::Mat6 JJT = J.lazyProduct(J.transpose());
+    JJT.diagonal().array() += kDamping;
+    model::FactorCholesky(JJT);
+    Vec6 x = off;
+    model::SolveCholesky(JJT, x);
+    dq = J.transpose().lazyProduct(x);
+    const double largest = dq.lpNorm<Eigen::Infinity>();
+    dq *= largest > kStepMost ? kStepMost / largest : 1.0;
+    bool held = false;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const JointRange range = RoomOfJoint(config, i);
+      if ((q[i] >= range.most && dq[i] > 0.0) || (q[i] <= range.least && dq[i] < 0.0)) {
+        J.col(i).setZero();
+        held = true;
+      }
+    }
+    if (!held) {
+      break;
+    }
+  }
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const JointRange range = RoomOfJoint(config, i);
+    q[i] = std::clamp(q[i] + dq[i], range.least, range.most);
+  }
+  return off.norm();
+}
+
+bool WasDropped(const GoalPosture& goal) noexcept {
+  bool dropped = false;
+  for (int i = 0; i < std::min(goal.drops, GoalPosture::kDropsKept); ++i) {
+    const VecN& q_dropped = goal.q_dropped[static_cast<std::size_t>(i)];
+    dropped = dropped || (goal.q - q_dropped).lpNorm<Eigen::Infinity>() < kSame;
+  }
+  return dropped;
+}
+
+// A way to a posture that reaches the goal has been tried.
+void Note(GoalPosture& goal) noexcept {
+  const double way = goal.way.length + (goal.way.barred ? kBarred : 0.0);
+  const bool counts = goal.detour == 0 || !goal.way.barred;
+  if (counts && way < goal.nearest) {
+    goal.nearest = way;
+    goal.nearest_turn = goal.trial_turn;
+    goal.nearest_detour = goal.detour > 0;
+    goal.q_nearest = goal.q;
+    goal.q_nearest_via = goal.q_via;
+  }
+}
+
+// Another detour from `q`, towards a posture drawn about where the arm is.
+void BeginDetour(const config::ServoConfig& config, const VecN& q, GoalPosture& goal) noexcept {
+  ++goal.detour;
+  goal.turned = false;
+  goal.q_via = q;
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    const JointRange range = RoomOfJoint(config, i);
+    goal.q_via[i] = std::clamp(q[i] + kDetour * Draw(goal.random), range.least, range.most);
+  }
+  const double share = 0.5 * (1.0 + Draw(goal.random));
+  goal.detour_steps = kDetourSteps + static_cast<int>(share * kDetourStepsMore);
+  goal.way = WayTrial{};
+  goal.way.q = q;
+}
+
+// A step of the way that is tried. False when it is at its end, there or barred.
+bool TryOn(const config::ServoConfig& config, const Pose& X_BO, GoalPosture& goal) noexcept {
+  if (goal.detour == 0 || goal.turned) {
+    return StepOnWay(config, X_BO, goal.q, goal.way);
+  }
+  const bool goes_on = StepOnWay(config, X_BO, goal.q_via, goal.way);
+  if (goal.way.barred) {
+    return false;
+  }
+  if (!goes_on || goal.way.steps >= goal.detour_steps) {
+    goal.turned = true;
+    goal.q_via = goal.way.q;
+  }
+  return true;
+}
+
+// What has been found counts at once when it lies downhill, else when the round is over.
+void NextTrial(const config::ServoConfig& config, GoalPosture& goal) noexcept {
+  const int turns = TurnsOf(config.feature);
+  goal.downhill = goal.trial < turns;
+  goal.begun = false;
+  goal.reached = false;
+  ++goal.trial;
+  const bool round_over = goal.trial % (turns * kTrialsInRound) == 0;
+  if (goal.trial >= turns * kTrialsInRound * kRounds) {
+    goal.trial = 0;
+  }
+  goal.clear = goal.nearest < kBarred;
+  const bool enough = goal.clear || goal.trial == 0 || goal.trial >= kTrialsForClear;
+  if (goal.nearest < HUGE_VAL && (goal.downhill || (round_over && enough))) {
+    goal.found = true;
+    goal.turn = goal.nearest_turn;
+    goal.detour = goal.nearest_detour ? 1 : 0;
+    goal.q = goal.q_nearest;
+    goal.q_via = goal.q_nearest_via;
+    goal.nearest = HUGE_VAL;
+    goal.step = 0;
+  }
+}
+
+}  // namespace
+
+bool SeeksWhenIdle(const config::ServoConfig& config) noexcept {
+  return !config.feature.SeesOrientation() && !config.feature.hold_orientation;
+}
+
+bool SeeksGoalPosture(const config::ServoConfig& config) noexcept {
+  const features::TargetFeature& feature = config.feature;
+  const bool whole_pose = feature.SeesOrientation() &&
+                          (feature.form == FeatureForm::kCorners || feature.form == FeatureForm::kPose);
+  return config.arm.num_joints >= 6 && (whole_pose || SeeksWhenIdle(config));
+}
+
+Mat3 QuarterTurns(int turn) noexcept {
+  constexpr std::array<double, 4> kCos{1.0, 0.0, -1.0, 0.0};
+  const double c = kCos[static_cast<std::size_t>(turn & 3)];
+  const double s = kCos[static_cast<std::size_t>((turn + 3) & 3)];
+  Mat3 R;
+  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  return R;
+}
+
+void SeekAnew(GoalPosture& goal) noexcept {
+  const int turn = goal.turn;
+  const std::uint32_t random = goal.random;
+  goal = GoalPosture{};
+  goal.turn = turn;
+  goal.random = random;
+}
+
+void SeekClearerPosture(GoalPosture& goal) noexcept {
+  goal.found = false;
+  goal.begun = false;
+  goal.reached = false;
+  ++goal.trial;
+}
+
+void DropGoalPosture(GoalPosture& goal) noexcept {
+  goal.q_dropped[static_cast<std::size_t>(goal.drops % GoalPosture::kDropsKept)] = goal.q;
+  ++goal.drops;
+  SeekClearerPosture(goal);
+}
+
+void SeekGoalPosture(const config::ServoConfig& config, const Pose& X_BO, const VecN& q,
+                     GoalPosture& goal) noexcept {
+  if (goal.reached && !goal.found) {
+    if (!TryOn(config, X_BO, goal)) {
+      Note(goal);
+      if (goal.way.barred && goal.detour < kDetours) {
+        BeginDetour(config, q, goal);
+      } else {
+        NextTrial(config, goal);
+      }
+    }
+    return;
+  }
+  if (!goal.begun && !goal.found) {
+    Begin(config, X_BO, q, goal);
+  }
+  const int turn = goal.found ? goal.turn : goal.trial_turn;
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, goal.q, poses);
+  const bool turns_freely = !config.feature.SeesOrientation();
+  const Pose X_BE_star = turns_freely ? poses.X_BE : HandGoal(config, X_BO, turn);
+  const bool allowed = KeepsOut(config, X_BE_star);
+  if (!goal.found && !turns_freely && !allowed) {
+    NextTrial(config, goal);
+    return;
+  }
+  const double off = Descend(config, X_BO, turn, poses, goal.q);
+  if (goal.found) {
+    goal.step = off > kOff || !allowed ? goal.step + 1 : 0;
+    if (!(off < kLost) || goal.step > kOffSteps) {
+      SeekAnew(goal);
+    }
+    return;
+  }
+  ++goal.step;
+  bool is_stuck = goal.step >= kStepsMost;
+  if (goal.step % kStepsLooked == 1) {
+    is_stuck = is_stuck || !(off < kComesNearer * goal.last_off);
+    goal.last_off = off;
+  }
+  if (off < kReached && allowed && IsRegular(config, poses) && IsArmClear(config, poses, X_BO) &&
+      !WasDropped(goal)) {
+    goal.reached = true;
+    goal.detour = 0;
+    goal.q_via = q;
+    goal.way = WayTrial{};
+    goal.way.q = q;
+  } else if (off < kReached || is_stuck) {
+    NextTrial(config, goal);
+  }
+}
+
+}  // namespace fovea::control

@@ -1,0 +1,84 @@
+#include "firmware/core/control/posture_checks.hpp"
+
+#include <algorithm>
+
+#include "firmware/core/barriers/keep_apart.hpp"
+#include "firmware/core/barriers/keep_sight.hpp"
+#include "firmware/core/barriers/obstacle.hpp"
+#include "firmware/core/barriers/singularity.hpp"
+
+namespace fovea::control {
+namespace {
+
+constexpr double kJointRoom = 0.06;       // inside the range that the reference keeps [rad, m]
+constexpr double kRadiusRoom = 0.003;     // inside the sphere that it keeps [m]
+constexpr double kLineRoom = 0.005;       // outside the clearances that it keeps [m]
+constexpr double kSingularityRoom = 1.5;  // of the smallest singular value that the guard keeps
+
+constexpr double kSteepest = 0.2;  // cosine to a flat target's normal at which it is still made out
+constexpr double kNearest = 0.05;  // [m]
+
+}  // namespace
+
+JointRange RoomOfJoint(const config::ServoConfig& config, Eigen::Index i) noexcept {
+  const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+  const double room =
+      std::min(config.guard.joint_position_margin + kJointRoom, 0.5 * (joint.q_max - joint.q_min));
+  return {joint.q_min + room, joint.q_max - room};
+}
+
+bool KeepsOut(const config::ServoConfig& config, const model::Pose& X_BE) noexcept {
+  const config::GuardConfig& guard = config.guard;
+  bool keeps = X_BE.p.norm() <= guard.workspace_radius - guard.workspace_margin - kRadiusRoom;
+  for (int i = 0; i < barriers::CountObstacles(guard.obstacles); ++i) {
+    keeps = keeps && barriers::ClearanceOf(guard.obstacles, i, guard.hand, X_BE).clearance.distance >
+                         2.0 * guard.workspace_margin;
+  }
+  return keeps;
+}
+
+bool IsRegular(const config::ServoConfig& config, const model::ArmPoses& poses) noexcept {
+  model::Mat6N J;
+  model::ComputeJacobian(config.arm, poses, config.X_EC, J);
+  barriers::Singularity singularity;
+  barriers::ComputeSingularity(J, barriers::SingularityConfig{}.length, singularity);
+  return singularity.sigma > kSingularityRoom * config.guard.singularity_min;
+}
+
+bool IsArmClear(const config::ServoConfig& config, const model::ArmPoses& poses,
+                const model::Pose& X_BO) noexcept {
+  const config::GuardConfig& guard = config.guard;
+  const barriers::ArmLine line = barriers::LineOfArm(config.arm, poses);
+  const barriers::Sight sight{poses, line, poses.X_BE * config.X_EC, config.feature.Outline(), X_BO};
+  return barriers::ClearanceOfPlanes(config.arm, guard, line) > kLineRoom &&
+         (guard.hand_clearance <= 0.0 ||
+          barriers::ClearanceOfHand(config.arm, line) > guard.hand_clearance + kLineRoom) &&
+         (guard.sight_clearance <= 0.0 ||
+          barriers::ClearanceOfSight(config.arm, sight) > guard.sight_clearance + kLineRoom);
+}
+
+bool IsInView(const config::ServoConfig& config, const model::Pose& X_BC, const model::Pose& X_BO) noexcept {
+  const config::ViewConfig& view = config.guard.view;
+  const model::Pose X_CO = X_BC.Inverse() * X_BO;
+  const bool is_flat = config.feature.SeesOrientation();
+  if (is_flat && !(X_CO.R.col(2).dot(X_CO.p) > kSteepest * X_CO.p.norm())) {
+    return false;
+  }
+  const features::TargetOutline outline = config.feature.Outline();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(outline.num_points); ++i) {
+    const model::Vec3 p = X_CO * outline.p_OP[i];
+    if (!(p.z() > kNearest)) {
+      return false;
+    }
+    const double x = p.x() / p.z();
+    const double y = p.y() / p.z();
+    const double reach = outline.radius / p.z();
+    if (view.enabled && !(x - reach > view.x_min && x + reach < view.x_max && y - reach > view.y_min &&
+                          y + reach < view.y_max)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace fovea::control

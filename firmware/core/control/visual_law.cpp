@@ -1,0 +1,50 @@
+#include "firmware/core/control/visual_law.hpp"
+
+#include <cmath>
+
+#include "firmware/core/control/compress_task.hpp"
+
+namespace fovea::control {
+
+double GainAt(const config::LawConfig& config, double e) noexcept {
+  const double step = config.lambda_near - config.lambda;
+  if (config.lambda_near == 0.0 || step == 0.0) {
+    return config.lambda;
+  }
+  return config.lambda + step / (1.0 + config.lambda_slope * e / std::fabs(step));
+}
+
+void ChooseInteraction(const config::LawConfig& config, const features::InteractionMatrix& L_s_star,
+                       features::FeatureState& feature) noexcept {
+  switch (config.interaction) {
+    case config::Interaction::kCurrent: break;
+    case config::Interaction::kDesired: feature.L_s = L_s_star; break;
+    case config::Interaction::kMean: feature.L_s = 0.5 * (feature.L_s + L_s_star); break;
+  }
+}
+
+void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,
+               const features::FeatureState& feature, const model::Mat6N& J_C, const model::VecN& q,
+               VisualLawOutput& output) noexcept {
+  output.e = feature.s_star - feature.s;
+  output.ds_cmd = GainAt(config, output.e.norm()) * output.e - feature.ds_dt_target;
+  features::InteractionMatrix L = feature.L_s;
+  output.task.v = output.ds_cmd;
+  CompressTask(L, output.task.v);
+  output.task.J = L.lazyProduct(J_C);
+  output.task.dq_0 = FreeWish(config, arm, q, J_C);
+  output.task.weight.setOnes(q.size());
+}
+
+double Progress(const features::FeatureState& feature, const features::FeatureVector& ds_cmd,
+                const model::Mat6N& J_C, const model::VecN& dq) noexcept {
+  const double wanted2 = ds_cmd.squaredNorm();
+  if (wanted2 == 0.0) {
+    return 1.0;
+  }
+  const model::Vec6 V_BC_C = J_C.lazyProduct(dq);
+  const features::FeatureVector ds = feature.L_s.lazyProduct(V_BC_C);
+  return ds_cmd.dot(ds) / wanted2;
+}
+
+}  // namespace fovea::control

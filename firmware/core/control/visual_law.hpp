@@ -1,0 +1,49 @@
+// Stage 2, visual law: from the feature's error to the task that takes it away.
+//
+//   ds_cmd = lambda(|e|) e - ds/dt of the target's own motion          e = s_star - s
+//   J_s dq = ds_cmd                                               J_s = L_s J_C
+//
+// (Chaumette and Hutchinson, Visual servo control I and II, 2006 and 2007.) The joint velocities follow in
+// the next stage, where the limits are known (resolve_motion.hpp); what the feature leaves free goes to the
+// posture and its like.
+#pragma once
+
+#include "firmware/core/config/servo_config.hpp"
+#include "firmware/core/control/resolve_motion.hpp"
+#include "firmware/core/features/feature_state.hpp"
+
+namespace fovea::control {
+
+struct VisualLawOutput {
+  features::FeatureVector e;
+  features::FeatureVector ds_cmd;  // wanted ds/dt owing to the camera's motion
+  MotionTask task;                 // before smooth start and limits
+};
+
+// `J_C` [6 x num_joints] body Jacobian of the camera, `q` [num_joints]. Real-time: yes.
+void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,
+               const features::FeatureState& feature, const model::Mat6N& J_C, const model::VecN& q,
+               VisualLawOutput& output) noexcept;
+
+// The gain at an error of size `e`, in the feature's own measure [1/s]: from lambda_near at 0, where it
+// changes by lambda_slope, to lambda far off,
+//
+//   lambda(e) = lambda + (lambda_near - lambda) / (1 + lambda_slope e / |lambda_near - lambda|),
+//
+// fast near the goal and gentle far from it, or the other way round; constant while lambda_near is 0. (ViSP's
+// vpAdaptiveGain does the same by an exponential.) Real-time: yes.
+[[nodiscard]] double GainAt(const config::LawConfig& config, double e) noexcept;
+
+// Puts the matrix that the law shall invert into `feature.L_s`, as config.interaction says: its own, or with
+// that of the goal, `L_s_star`, of the same size. The one of the goal gives straighter ways in the image far
+// off and cannot be singular when the goal is not; the mean of both is right to second order (Malis,
+// Improving vision-based control using efficient second-order minimization techniques, 2004). Real-time: yes.
+void ChooseInteraction(const config::LawConfig& config, const features::InteractionMatrix& L_s_star,
+                       features::FeatureState& feature) noexcept;
+
+// Share of the wanted feature motion `ds_cmd` that the joint velocity `dq` brings about: its projection on
+// ds_cmd; 1 for all of it, 0 for none. 1 when nothing is wanted. Real-time: yes.
+[[nodiscard]] double Progress(const features::FeatureState& feature, const features::FeatureVector& ds_cmd,
+                              const model::Mat6N& J_C, const model::VecN& dq) noexcept;
+
+}  // namespace fovea::control

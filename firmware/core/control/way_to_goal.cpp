@@ -1,0 +1,174 @@
+#include "firmware/core/control/way_to_goal.hpp"
+
+#include <algorithm>
+
+#include "firmware/core/control/way_in_view.hpp"
+#include "firmware/core/model/rotation.hpp"
+
+namespace fovea::control {
+namespace {
+
+constexpr int kStepsInATick = 4;  // of the search for a posture;
+constexpr int kTicksToAStep = 4;  // what was found follows the target more slowly
+
+// When the joints take over.
+constexpr double kLookS = 0.2;   // after which the target's pose is believed so far as to leave the law's way
+constexpr double kIdleS = 0.4;   // for so long the goal came no nearer
+constexpr double kNearer = 0.8;  // by this share;
+constexpr double kIdleSureS = 1.0;  // where the law most often gets there, for so long
+constexpr double kNearerSure = 0.5;
+constexpr double kThereM = 0.0015;  // a goal that is so near needs no other way
+constexpr double kThereRad = 0.006;
+constexpr double kMetrePerRad = 0.1;
+constexpr double kBegins = 0.04;  // where some joint is further from the posture than this [rad]
+
+// How they go, and until when.
+constexpr double kGain = 3.0;       // [1/s]
+constexpr double kSpeed = 1.8;      // of the fastest [rad/s]
+constexpr double kEnds = 0.015;     // where no joint is further off [rad]
+constexpr double kAtDetour = 0.15;  // so near the posture on the way is behind [rad]
+constexpr double kHeldShare = 0.1;  // of the wanted motion: limits that leave less hold it up,
+constexpr double kHeldS = 0.4;      // and for so long, another posture is looked for
+
+constexpr std::int64_t kSeekNs = 1'500'000'000;  // for so long the arm stands while a way is looked for
+
+constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
+
+bool IsLonger(std::int64_t ns, double s) noexcept { return static_cast<double>(ns) > s * kSecondNs; }
+
+void NoteIdle(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
+  const model::Mat3 R_CO = sight.X_CO.R * QuarterTurns(way.goal.turn);
+  const bool turns_freely = !config.feature.SeesOrientation();
+  const double turn =
+      turns_freely ? 0.0 : model::RotationVector(config.feature.R_CO_star.transpose() * R_CO).norm();
+  const double shift = (sight.X_CO.p - config.feature.p_CO_C_star).norm();
+  const double off = shift + kMetrePerRad * turn;
+  if (turn < kThereRad && shift < kThereM) {
+    way.idle_ns = 0;
+  } else if (off < (turns_freely ? kNearerSure : kNearer) * way.least_off) {
+    way.least_off = off;
+    way.idle_ns = 0;
+  } else {
+    CountTick((sight.limits & kBarriers) != 0, way.idle_ns);
+  }
+}
+
+void SeekOn(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
+  const int turn = way.goal.turn;
+  if (way.goal.found) {
+    way.ticks_to_step = way.ticks_to_step > 0 ? way.ticks_to_step - 1 : kTicksToAStep - 1;
+  } else {
+    way.ticks_to_step = 0;
+  }
+  const int steps = way.goal.found ? 1 : kStepsInATick;
+  for (int i = 0; i < steps && way.ticks_to_step == 0; ++i) {
+    SeekGoalPosture(config, sight.X_BO, sight.q, way.goal);
+  }
+  if (way.goal.turn != turn) {
+    way.least_off = HUGE_VAL;  // it was another goal's
+  }
+}
+
+// The first way on this track. True while the arm stands for it: the law may go where no way leads on.
+bool StandsToChoose(const WaySight& sight, WayToGoal& way) noexcept {
+  if (way.chosen || way.preferred || !sight.is_told_apart) {
+    return false;  // of poses that cannot be told apart, the law's motion tells
+  }
+  if (way.goal.found && !way.goal.clear && !way.goal.downhill && way.sought_ns <= kSeekNs) {
+    SeekClearerPosture(way.goal);
+  }
+  way.chosen = way.goal.found || way.sought_ns > kSeekNs;
+  way.by_joints = !way.chosen;
+  return !way.chosen;
+}
+
+}  // namespace
+
+void CountTick(bool holds, std::int64_t& ns) noexcept {
+  ns = std::max<std::int64_t>(ns + (holds ? hal::kTickPeriodNs : -hal::kTickPeriodNs), 0);
+}
+
+void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
+  if (SeeksWhenIdle(config) && !way.preferred) {
+    NoteIdle(config, sight, way);
+    way.preferred = IsLonger(way.idle_ns, kIdleSureS);
+    return;
+  }
+  way.sought_ns = way.by_joints && !way.goal.found ? way.sought_ns + hal::kTickPeriodNs : 0;
+  SeekOn(config, sight, way);
+  if (StandsToChoose(sight, way)) {
+    return;
+  }
+  if (way.by_joints && way.goal.found && IsLonger(way.held_ns, kHeldS)) {
+    DropGoalPosture(way.goal);
+    way.since_ns = sight.now_ns;
+    way.held_ns = 0;
+  }
+  NoteIdle(config, sight, way);
+  if (!way.goal.found) {
+    return;
+  }
+  const double left = (way.goal.q - sight.q).lpNorm<Eigen::Infinity>();
+  if (way.by_joints) {
+    if (way.goal.detour > 0 && (way.goal.q_via - sight.q).lpNorm<Eigen::Infinity>() < kAtDetour) {
+      way.goal.detour = 0;
+    }
+    if (left < kEnds) {
+      way.by_joints = false;
+      way.since_ns = sight.now_ns;
+      way.idle_ns = 0;
+      way.least_off = HUGE_VAL;
+    }
+    return;
+  }
+  if (!sight.is_told_apart) {
+    return;  // or it would be the way to a pose that is not the target's
+  }
+  const bool elsewhere =
+      !way.preferred && !way.goal.downhill && IsLonger(sight.now_ns - sight.track_since_ns, kLookS);
+  const bool idle = IsLonger(way.idle_ns, kIdleS);
+  if (idle && way.goal.downhill && !way.preferred) {
+    way.preferred = true;
+    SeekAnew(way.goal);  // it lay downhill from where the arm was; from here another one may
+    return;
+  }
+  if (idle && way.goal.downhill && !way.goal.clear) {
+    SeekClearerPosture(way.goal);  // the joints would get no further to this one than the law
+    way.idle_ns = 0;
+    return;
+  }
+  if (elsewhere || idle) {
+    way.preferred = true;
+    way.held_ns = 0;
+    way.idle_ns = 0;
+    if (left > kBegins) {
+      way.by_joints = true;
+      way.since_ns = sight.now_ns;
+    }
+  }
+}
+
+void SteerByJoints(const WayToGoal& way, const model::VecN& q, const features::TargetInCamera& seen,
+                   const model::Mat6N& J_C, const model::Vec3& p_CO_C_star, MotionTask& task) noexcept {
+  task.v.setZero(q.size());
+  if (way.goal.found) {
+    const model::VecN& there = way.goal.detour > 0 ? way.goal.q_via : way.goal.q;
+    task.v = kGain * WayInView(there - q, seen, J_C, p_CO_C_star);
+  }
+  const double fastest = task.v.lpNorm<Eigen::Infinity>();
+  task.v *= fastest > kSpeed ? kSpeed / fastest : 1.0;
+  task.J.setIdentity(q.size(), q.size());
+  task.dq_0.setZero(q.size());
+  task.weight.setOnes(q.size());
+}
+
+bool NoteHeld(const MotionTask& task, const model::VecN& dq, WayToGoal& way) noexcept {
+  if (!way.goal.found) {
+    return way.sought_ns > kSeekNs;
+  }
+  const bool held = dq.dot(task.v) < kHeldShare * task.v.squaredNorm();
+  CountTick(held, way.held_ns);
+  return held;
+}
+
+}  // namespace fovea::control

@@ -1,0 +1,51 @@
+#include "firmware/core/estimate/contact.hpp"
+
+#include <algorithm>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr double kChangeS = 0.25;  // a load is taken up and laid down within so long
+// Of what the observer sees. Less than all: where a joint's reading does not follow its motion, the observer
+// sees the servo's own torque as a push. Were all of it carried, each torque would call for the next; so,
+// what is seen stays what it was. Against what is there the arm is stiffer by 1 / (1 - kShare).
+constexpr double kShare = 0.75;
+
+}  // namespace
+
+void ContactState::Reset(int num_joints, bool carries) noexcept {
+  started = false;
+  residual.setZero(num_joints);
+  carried = carries ? 1.0 : 0.0;
+}
+
+void ObserveContact(double gain, const model::ArmDynamics& dynamics, const model::VecN& dq,
+                    const model::VecN& tau, ContactState& state) noexcept {
+  const model::VecN p = dynamics.M.lazyProduct(dq);
+  if (state.started) {
+    model::VecN change = p - state.M_before.lazyProduct(dq);  // C^T dq over a tick, its other terms below
+    change += kPeriodS * (tau - dynamics.Cdq + state.residual);
+    state.residual += gain * (p - state.p_before - change);
+  } else {
+    state.started = true;
+  }
+  state.M_before = dynamics.M;
+  state.p_before = p;
+}
+
+void CarryLoad(const CarriedLoad& load, ContactState& state, model::VecN& tau) noexcept {
+  constexpr double kStep = kPeriodS / kChangeS;
+  state.carried = load.stands ? std::min(state.carried + kStep, 1.0) : std::max(state.carried - kStep, 0.0);
+  for (int i = 0; state.carried > 0.0 && i < tau.size(); ++i) {
+    const model::Joint& joint = load.arm.joints[static_cast<std::size_t>(i)];
+    const double free = load.stiction_fraction * joint.coulomb;
+    const double most = load.torque_fraction * joint.tau_max;
+    const double push = state.residual[i];
+    tau[i] -= state.carried * std::clamp(kShare * (push - std::clamp(push, -free, free)), -most, most);
+  }
+}
+
+}  // namespace fovea::estimate

@@ -1,0 +1,140 @@
+#include "firmware/core/estimate/encoder_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/core/model/cholesky.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr double kMeanShare = kPeriodS / 0.05;  // the mean forgets in 0.05 s
+constexpr double kQuanta = 3.0;                 // a joint that must have gone so many steps of its encoder
+constexpr double kTorqueShare = 0.01;           // of its torque: what the model may be wrong by in a moment
+constexpr double kWishSlack = 0.01;             // what the law may be late by [rad, m]
+constexpr double kLeast = 1e-9;                 // where the encoder has no steps [rad, m]
+constexpr double kTravelSlack = 1e-3;           // what noise of the velocities may add up to [rad, m]
+constexpr double kShown = 0.5;                  // of the speed that a push gives a joint, seen: it lives
+constexpr double kFlicker = 1e-6;               // noise of velocities is more than this [rad/s, m/s]
+constexpr std::int32_t kFlickersMost = 30;      // by then a joint is one that flickers: a tenth of a second
+constexpr std::int32_t kTicksMost = 1'000'000;  // counted no further
+
+// What changed of what pushes the joints, each less its mean: as accelerations that the readings do not show.
+// Zero where friction may hold the joint. (Where joint i hangs and moves by ddq, the observer sees -M e_i
+// ddq.)
+void UnseenAcceleration(const config::ServoConfig& config, const WatchedJoints& now, EncoderWatch& watch,
+                        hal::JointArray& ddq) noexcept {
+  const int n = config.arm.num_joints;
+  const double gain = config.safety.contact_gain * kPeriodS;
+  model::VecN change = model::VecN::Zero(n);
+  hal::JointArray share{};  // of the change that friction leaves
+  bool any = false;
+  for (int i = 0; now.drives && i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& arm_joint = config.arm.joints[k];
+    EncoderWatch::Joint& joint = watch.joints[k];
+    // The observer comes to it with its own time constant, which is known: this is what it comes to.
+    const double pushed = now.residual[i] + (watch.drove ? (now.residual[i] - joint.residual) / gain : 0.0);
+    joint.residual = now.residual[i];
+    change[i] = joint.mean - pushed;
+    joint.mean += kMeanShare * (pushed - joint.mean);
+    const double free =
+        config.safety.stiction_fraction * arm_joint.coulomb + kTorqueShare * arm_joint.tau_max;
+    share[k] = std::max(1.0 - free / std::max(std::fabs(change[i]), kLeast), 0.0);
+    any = any || share[k] > 0.0;
+  }
+  ddq = {};
+  if (!any) {
+    return;
+  }
+  model::MatN M = now.dynamics.M;
+  model::FactorCholesky(M);
+  model::SolveCholesky(M, change);
+  for (int i = 0; i < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    ddq[k] = share[k] * change[i];
+  }
+}
+
+// Whether something has begun to push the joint, or ceased to, and its velocity shows that: it turns round
+// within a step of its encoder. What would be the unseen motion of a joint that hangs is, the other way
+// round, what the push does to one that lives.
+bool TurnsRound(const EncoderWatch::Joint& joint, double dq) noexcept {
+  return (joint.dq - dq) * joint.speed >= kShown * joint.speed * joint.speed;
+}
+
+// Whether a joint that flickers has ceased to. Only one that flickers at rest, and never repeats itself
+// there, does so for its noise: an encoder with steps flickers too, but while the joint moves, or now and
+// then.
+bool HasFrozen(const config::ServoConfig& config, double q, double dq, EncoderWatch::Joint& joint) noexcept {
+  const double change = dq - joint.dq_last;
+  const bool is_up_and_down = change * joint.change_last < -kFlicker * kFlicker;
+  const bool same = change == 0.0 && q == joint.q_last;
+  const bool rests = joint.ticks > 0 && std::fabs(q - joint.q) <= config.safety.encoder_quantum;
+  joint.same_ticks = same ? std::min<std::int32_t>(joint.same_ticks + 1, kTicksMost) : 0;
+  if (same) {
+    joint.flickers = 0;
+  } else if (rests) {
+    joint.flickers = std::max<std::int32_t>(joint.flickers + (is_up_and_down ? 1 : -1), 0);
+  }
+  joint.is_noisy = joint.is_noisy || joint.flickers >= kFlickersMost;
+  joint.change_last = change != 0.0 ? change : joint.change_last;
+  joint.q_last = q;
+  joint.dq_last = dq;
+  return joint.is_noisy && config.safety.frozen_ticks > 0 && joint.same_ticks >= config.safety.frozen_ticks;
+}
+
+}  // namespace
+
+std::int32_t WatchEncoders(const config::ServoConfig& config, const WatchedJoints& now,
+                           EncoderWatch& watch) noexcept {
+  const double enough = kQuanta * config.safety.encoder_quantum;
+  hal::JointArray unseen{};
+  UnseenAcceleration(config, now, watch, unseen);
+  std::int32_t hangs = -1;
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& arm_joint = config.arm.joints[k];
+    EncoderWatch::Joint& joint = watch.joints[k];
+    if (HasFrozen(config, now.q[i], now.dq[i], joint) && hangs < 0) {
+      hangs = i;
+    }
+    if (joint.ticks == 0 || std::fabs(now.q[i] - joint.q) > config.safety.encoder_quantum) {
+      joint.ticks = 1;
+      joint.mean = joint.residual;  // it lives: what pushes it until now is no secret
+      joint.q = now.q[i];
+      joint.q_reference = now.q_reference[i];
+      joint.dq = now.dq[i];
+      joint.speed = joint.way = joint.travel = 0.0;
+      continue;
+    }
+    if (!watch.drove) {
+      joint.q_reference = now.q_reference[i];  // it begins here
+    }
+    joint.ticks = std::min(joint.ticks + 1, kTicksMost);
+    joint.travel += now.dq[i] * kPeriodS;
+    if (unseen[k] != 0.0) {
+      joint.speed += unseen[k] * kPeriodS;
+      joint.way += joint.speed * kPeriodS;
+    } else {
+      joint.dq = now.dq[i];
+      joint.speed = joint.way = 0.0;
+    }
+    const double held = config.safety.stiction_fraction * arm_joint.coulomb;
+    const double M = now.dynamics.M(i, i);
+    const double omega_n = config.motion_law.omega_n;
+    const double wished = now.drives ? std::fabs(now.q_reference[i] - joint.q_reference) : 0.0;
+    const double gone =
+        std::max({TurnsRound(joint, now.dq[i]) ? 0.0 : std::fabs(joint.way) / (enough + kLeast),
+                  std::fabs(joint.travel) / (enough + kTravelSlack),
+                  wished / (enough + kWishSlack + held / (M * omega_n * omega_n))});
+    if (gone > 1.0 && joint.ticks >= config.safety.non_finite_ticks && hangs < 0) {
+      hangs = i;
+    }
+  }
+  watch.drove = now.drives;
+  return hangs;
+}
+
+}  // namespace fovea::estimate

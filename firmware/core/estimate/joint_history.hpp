@@ -1,0 +1,45 @@
+// Where the joints were: positions of the last half second, one entry per tick.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/core/model/kinematics.hpp"
+
+namespace fovea::link {
+struct StateAccess;
+}
+
+namespace fovea::estimate {
+
+class JointHistory {
+ public:
+  static constexpr int kCapacity = 512;
+
+  void Push(std::int64_t stamp_ns, const model::VecN& q) noexcept;
+
+  // q at `stamp_ns`, interpolated between the two ticks around it. False when the history does not reach
+  // back so far; a stamp after the newest entry gives the newest. Real-time: yes, at most 9 steps of search.
+  [[nodiscard]] bool At(std::int64_t stamp_ns, model::VecN& q) const noexcept;
+
+  void Clear() noexcept { size_ = 0; }
+
+ private:
+  friend struct link::StateAccess;  // writes and reads all of it: firmware/core/link/state_fields.hpp
+  struct Entry {
+    std::int64_t stamp_ns = 0;
+    model::VecN q;
+  };
+  [[nodiscard]] const Entry& FromOldest(int i) const noexcept;
+
+  std::array<Entry, kCapacity> entries_{};
+  int newest_ = kCapacity - 1;
+  int size_ = 0;
+};
+
+// The pose of a camera at `X_EC` in the hand of `arm` at `stamp_ns`. False, with `X_BC` untouched, when the
+// history does not reach back so far. Real-time: yes.
+[[nodiscard]] bool CameraPoseAt(const JointHistory& history, const model::ArmModel& arm,
+                                const model::Pose& X_EC, std::int64_t stamp_ns, model::Pose& X_BC) noexcept;
+
+}  // namespace fovea::estimate

@@ -1,0 +1,255 @@
+#include "firmware/core/estimate/pose_filter.hpp"
+
+#include <cmath>
+
+#include "firmware/core/estimate/shortened.hpp"
+#include "firmware/core/model/cholesky.hpp"
+#include "firmware/core/model/rotation.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+using features::Polygon;
+using features::SeenCorners;
+using model::Mat3;
+using model::Vec3;
+
+constexpr double kStartSpeedSigma = 0.3;         // how fast a target may be when it is first seen [m/s]
+constexpr double kStartAccelerationSigma = 0.5;  // and how hard it may accelerate [m/s^2]
+constexpr double kStartTurnSigma = 0.5;          // and how fast it may turn [rad/s]
+constexpr double kStartPositionSigma = 1.0;      // how far off the corners' pose may be, where they say
+constexpr double kStartTiltSigma = 0.3;          // nothing of it [m, rad]
+constexpr double kMeanTime = 0.1;  // jerk and angular acceleration have their size as means over this [s]
+constexpr double kLeastVariance = 1e-16;  // of a pose, so that rounding leaves it one [m^2, rad^2]
+constexpr double kNoWay = 1e9;            // a distance that passes no gate
+
+using Rows6 = CornerSlope;
+using Gain = Eigen::Matrix<double, Eigen::Dynamic, PoseFilter::kDim, Eigen::ColMajor, 2 * Polygon::kMost,
+                           PoseFilter::kDim>;
+
+double Seconds(std::int64_t duration_ns) noexcept { return static_cast<double>(duration_ns) * 1e-9; }
+
+// What is expected of the corners of a pose that is only known to `P`: their mean, how they go with the
+// pose's errors, and as `bent` the covariance that this straight line does not explain. By points on all
+// sides at the distance where they have P's own covariance (Julier and Uhlmann, Unscented filtering and
+// nonlinear estimation, 2004): beside the cylinder through a triangle's corners its poses lie on a fold.
+bool ExpectAround(const Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,
+                  const model::Mat6& P, SeenCorners::Vector& mean, Rows6& H,
+                  SeenCorners::Covariance& bent) noexcept {
+  constexpr double kFar = 2.449489742783178;  // sqrt(6)
+  const int size = 2 * polygon.num_corners;
+  model::Mat6 L = P;
+  L.diagonal().array() += kLeastVariance;
+  model::FactorCholesky(L);
+  L.triangularView<Eigen::StrictlyUpper>().setZero();
+  std::array<SeenCorners::Vector, 12> at;
+  mean.setZero(size);
+  for (int i = 0; i < 12; ++i) {
+    const model::Vec6 off = (i < 6 ? kFar : -kFar) * L.col(i % 6);
+    const model::Pose moved{model::RotationOf(off.tail<3>()) * X_BO.R, X_BO.p + off.head<3>()};
+    if (!ExpectCorners(polygon, X_CB, moved, at[static_cast<std::size_t>(i)])) {
+      return false;
+    }
+    mean += at[static_cast<std::size_t>(i)] / 12.0;
+  }
+  H.resize(size, 6);
+  bent.setZero(size, size);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const SeenCorners::Vector slope = (at[i] - at[i + 6]) / (2.0 * kFar);
+    const SeenCorners::Vector bow = 0.5 * (at[i] + at[i + 6]) - mean;
+    H.col(static_cast<Eigen::Index>(i)) = slope;
+    bent += bow.lazyProduct(bow.transpose()) / 6.0;
+  }
+  Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 2 * Polygon::kMost> turned = H.transpose();
+  model::SolveLowerTransposed(L, turned);
+  H = turned.transpose();
+  return true;
+}
+
+// How the corners move with the camera, as a twist of C; zero where a corner is not before it.
+CornerSlope SlopeByCamera(const Polygon& polygon, const model::Pose& X_CO) noexcept {
+  CornerSlope by_camera(2 * polygon.num_corners, 6);
+  for (int i = 0; i < polygon.num_corners; ++i) {
+    features::ImagePoint point;
+    if (!features::ComputePoint(X_CO * polygon.corners[static_cast<std::size_t>(i)], Vec3::Zero(), point)) {
+      by_camera.setZero();
+      break;
+    }
+    by_camera.middleRows<2>(2 * i) = point.L;
+  }
+  return by_camera;
+}
+
+// Adds what the camera's own pose is not known to.
+void AddCameraNoise(CornerSlope by_camera, SeenCorners::Covariance& cov) noexcept {
+  by_camera.leftCols<3>() *= kCameraShiftSigma;
+  by_camera.rightCols<3>() *= kCameraTurnSigma;
+  cov += by_camera.lazyProduct(by_camera.transpose());
+}
+
+// The squared distance of `innovation` in standard deviations of `S`.
+double Distance2(SeenCorners::Covariance S, SeenCorners::Vector innovation) noexcept {
+  model::FactorCholesky(S);
+  model::SolveLower(S, innovation);
+  return innovation.squaredNorm();
+}
+
+void Advance(const config::PredictConfig& config, double dt, PoseFilter& f) noexcept {
+  using F = PoseFilter;
+  const Vec3 turn = f.w_BO_B * dt;
+  const Mat3 E = model::RotationOf(turn);
+  const Mat3 G = model::TurnRateMatrix(turn) * dt;
+  f.X_BO.p += dt * (f.v_BO_B + 0.5 * dt * f.a_BO_B);
+  f.v_BO_B += dt * f.a_BO_B;
+  f.X_BO.R = E * f.X_BO.R;
+  // P' = F P F^T + Q: the rows first, then the columns.
+  auto& P = f.P;
+  P.middleRows<3>(F::kPosition) +=
+      dt * P.middleRows<3>(F::kVelocity) + 0.5 * dt * dt * P.middleRows<3>(F::kAcceleration);
+  P.middleRows<3>(F::kVelocity) += dt * P.middleRows<3>(F::kAcceleration);
+  P.middleRows<3>(F::kTurn) = (E * P.middleRows<3>(F::kTurn) + G * P.middleRows<3>(F::kTurnRate)).eval();
+  P.middleCols<3>(F::kPosition) +=
+      dt * P.middleCols<3>(F::kVelocity) + 0.5 * dt * dt * P.middleCols<3>(F::kAcceleration);
+  P.middleCols<3>(F::kVelocity) += dt * P.middleCols<3>(F::kAcceleration);
+  P.middleCols<3>(F::kTurn) =
+      (P.middleCols<3>(F::kTurn) * E.transpose() + P.middleCols<3>(F::kTurnRate) * G.transpose()).eval();
+  const double j = config.target_jerk * config.target_jerk * kMeanTime;  // [m^2/s^5]
+  const double q = config.target_turn * config.target_turn * kMeanTime;  // [rad^2/s^3]
+  const double dt2 = dt * dt;
+  const double dt3 = dt2 * dt;
+  const auto add = [&P](int row, int col, double value) {
+    for (int i = 0; i < 3; ++i) {
+      P(row + i, col + i) += value;
+      if (row != col) {
+        P(col + i, row + i) += value;
+      }
+    }
+  };
+  add(F::kPosition, F::kPosition, j * dt3 * dt2 / 20.0);
+  add(F::kPosition, F::kVelocity, j * dt2 * dt2 / 8.0);
+  add(F::kPosition, F::kAcceleration, j * dt3 / 6.0);
+  add(F::kVelocity, F::kVelocity, j * dt3 / 3.0);
+  add(F::kVelocity, F::kAcceleration, j * dt2 / 2.0);
+  add(F::kAcceleration, F::kAcceleration, j * dt);
+  add(F::kTurn, F::kTurn, q * dt3 / 3.0);
+  add(F::kTurn, F::kTurnRate, q * dt2 / 2.0);
+  add(F::kTurnRate, F::kTurnRate, q * dt);
+}
+
+}  // namespace
+
+bool StartPose(const Polygon& polygon, const CornerView& view, const SeenCorners::Branch& branch,
+               PoseFilter& filter) noexcept {
+  constexpr int kRounds = 2;  // of Gauss-Newton: the branch is near
+  SeenCorners::Vector xy;
+  SeenCorners::Covariance L;
+  InOrder(view.seen, branch.first, xy, L);
+  model::FactorCholesky(L);
+  PoseFilter start;
+  start.stamp_ns = view.stamp_ns;
+  start.X_BO = view.X_CB.Inverse() * branch.X_CO;
+  model::Mat6 cov;
+  for (int round = 0; round <= kRounds; ++round) {
+    SeenCorners::Vector e;
+    Rows6 H;
+    if (!ExpectCorners(polygon, view.X_CB, start.X_BO, e)) {
+      return false;
+    }
+    SlopeOfCorners(polygon, view.X_CB, start.X_BO, H);
+    e = xy - e;
+    model::SolveLower(L, e);
+    model::SolveLower(L, H);
+    model::Mat6 information = H.transpose().lazyProduct(H);
+    information.diagonal().head<3>().array() += 1.0 / (kStartPositionSigma * kStartPositionSigma);
+    information.diagonal().tail<3>().array() += 1.0 / (kStartTiltSigma * kStartTiltSigma);
+    model::FactorCholesky(information);
+    if (round == kRounds) {
+      cov.setIdentity();
+      model::SolveCholesky(information, cov);
+      break;
+    }
+    model::Vec6 step = H.transpose().lazyProduct(e);
+    model::SolveCholesky(information, step);
+    start.X_BO.p += step.head<3>();
+    start.X_BO.R = model::RotationOf(step.tail<3>()) * start.X_BO.R;
+  }
+  start.P.topLeftCorner<6, 6>() = 0.5 * (cov + cov.transpose());
+  const auto spread = [&start](int part, double sigma) {
+    start.P.diagonal().segment<3>(part).fill(sigma * sigma);
+  };
+  spread(PoseFilter::kVelocity, kStartSpeedSigma);
+  spread(PoseFilter::kAcceleration, kStartAccelerationSigma);
+  spread(PoseFilter::kTurnRate, kStartTurnSigma);
+  if (!start.P.allFinite() || !start.X_BO.p.allFinite() || !start.X_BO.R.allFinite()) {
+    return false;
+  }
+  filter = start;
+  return true;
+}
+
+bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, const CornerView& view,
+                PoseFilter& filter, double& distance2) noexcept {
+  using F = PoseFilter;
+  distance2 = kNoWay;
+  PoseFilter next = filter;
+  Advance(config, Seconds(view.stamp_ns - filter.stamp_ns), next);
+  SeenCorners::Vector expected;
+  Rows6 H;
+  SeenCorners::Covariance bent;
+  if (!ExpectAround(polygon, view.X_CB, next.X_BO, next.P.topLeftCorner<6, 6>(), expected, H, bent)) {
+    return false;
+  }
+  SeenCorners::Vector innovation;
+  SeenCorners::Covariance S;
+  InOrder(view.seen, NearestFirst(view.seen.xy, expected), innovation, S);
+  innovation -= expected;
+  const CornerSlope by_camera = SlopeByCamera(polygon, view.X_CB * next.X_BO);
+  AddCameraNoise(by_camera, S);
+  // With S = L L^T: the gain is Y^T L^-1 and takes Y^T Y off P, Y = L^-1 H P.
+  Gain Y = H.lazyProduct(next.P.topRows<6>());
+  S += Y.leftCols<6>().lazyProduct(H.transpose());
+  S += bent;
+  const double gate2 = config.gate_sigma * config.gate_sigma;
+  const SeenCorners::Covariance S_noise = S;
+  const SeenCorners::Vector off_by = innovation;
+  model::FactorCholesky(S);
+  model::SolveLower(S, Y);
+  model::SolveLower(S, innovation);
+  const double off = innovation.squaredNorm();
+  if (!(off < kNoWay)) {
+    return false;
+  }
+  distance2 = off;
+  if (off > gate2) {
+    const CornerSlope doubted = by_camera.lazyProduct(view.doubt);
+    if (!(Distance2(S_noise + doubted.lazyProduct(by_camera.transpose()), off_by) <= gate2)) {
+      return false;
+    }
+  }
+  const Eigen::Matrix<double, F::kDim, 1> correction = Y.transpose().lazyProduct(innovation);
+  next.P -= Y.transpose().lazyProduct(Y);
+  next.P = (0.5 * (next.P + next.P.transpose())).eval();
+  next.X_BO.p += correction.segment<3>(F::kPosition);
+  next.X_BO.R = model::RotationOf(correction.segment<3>(F::kTurn)) * next.X_BO.R;
+  next.v_BO_B += correction.segment<3>(F::kVelocity);
+  next.a_BO_B += correction.segment<3>(F::kAcceleration);
+  next.w_BO_B += correction.segment<3>(F::kTurnRate);
+  next.v_BO_B = Shortened(next.v_BO_B, config.target_speed_max);
+  next.a_BO_B = Shortened(next.a_BO_B, config.target_acceleration_max);
+  next.w_BO_B = Shortened(next.w_BO_B, config.target_turn_max);
+  next.stamp_ns = view.stamp_ns;
+  filter = next;
+  return true;
+}
+
+FlatMotion MotionAt(const config::PredictConfig& config, const PoseFilter& filter,
+                    std::int64_t now_ns) noexcept {
+  const double dt = Seconds(now_ns - filter.stamp_ns);
+  const Mat3 R = model::RotationOf(filter.w_BO_B * dt).lazyProduct(filter.X_BO.R);
+  const Vec3 way = dt * (filter.v_BO_B + 0.5 * dt * filter.a_BO_B);
+  return {{R, filter.X_BO.p + Shortened(way, config.target_speed_max * std::fabs(dt))},
+          Shortened(filter.v_BO_B + dt * filter.a_BO_B, config.target_speed_max),
+          filter.w_BO_B};
+}
+
+}  // namespace fovea::estimate

@@ -1,0 +1,215 @@
+#include "firmware/core/estimate/predict.hpp"
+
+#include <algorithm>
+
+#include "firmware/core/estimate/measurement_doubt.hpp"
+#include "firmware/core/model/rotation.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+// As a camera-rate servo knows a flat target: of the measurement's poses the one nearest to the estimate;
+// where the corners allow none, the one before stays.
+void HoldNearest(const features::SeenCorners& seen, const model::Mat3& R_CO, model::Pose& X_CO) noexcept {
+  double nearest = -2.0;
+  for (int i = 0; i < seen.num_branches; ++i) {
+    const model::Pose& pose = seen.branches[static_cast<std::size_t>(i)].X_CO;
+    const double likeness = pose.R.cwiseProduct(R_CO).sum();  // 1 + 2 cos of the turn between them
+    if (likeness > nearest) {
+      nearest = likeness;
+      X_CO = pose;
+    }
+  }
+}
+
+// A measurement, and where the camera was when it was true.
+struct Seen {
+  const hal::FeatureMeasurement& measurement;
+  model::Pose X_BC;
+  model::Mat6 doubt;  // of that pose, as a twist of C
+};
+
+hal::Intake TakePose(const config::ServoConfig& config, const Seen& seen, CornerView& view,
+                     PredictState& state) noexcept {
+  view.doubt = seen.doubt;
+  view.stamp_ns = seen.measurement.stamp_ns;
+  view.X_CB = seen.X_BC.Inverse();
+  const hal::Intake intake = UpdatePoses(config.predict, config.feature.corners, view, state.poses);
+  if (intake == hal::Intake::kTaken) {
+    HoldNearest(view.seen, view.X_CB.R * state.poses.best().X_BO.R, state.X_CO_meas);
+  }
+  return intake;
+}
+
+hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, features::LiftedTarget lifted,
+                         PredictState& state) noexcept {
+  const model::Mat3& R = seen.X_BC.R;
+  if (seen.measurement.kind == hal::FeatureKind::kCircle && seen.measurement.num_poses == 2) {
+    bool changed = false;
+    const int chosen = ChooseDisc(seen.measurement, seen.X_BC, state.disc, changed);
+    const auto& p = seen.measurement.poses[static_cast<std::size_t>(chosen)].p_CO_C;
+    lifted.p_CO_C = {p[0], p[1], p[2]};
+    if (changed) {  // what was believed of the centre was of the other pose
+      const int accepted = state.filter.accepted;
+      state.filter = TargetFilter{};
+      const hal::Intake intake =
+          Update(config.predict,
+                 {seen.measurement.stamp_ns, seen.X_BC * lifted.p_CO_C, R * lifted.cov_p * R.transpose()},
+                 state.filter);
+      state.filter.accepted = std::max(accepted, 1);
+      state.X_CO_meas.p = lifted.p_CO_C;
+      return intake;
+    }
+  }
+  // The camera's twist [v; w] moves the target's place by v + w x p_CO_C.
+  Eigen::Matrix<double, 3, 6> by_camera;
+  by_camera << model::Mat3::Identity(), -model::CrossMatrix(lifted.p_CO_C);
+  const model::Mat3 doubt_C = by_camera * seen.doubt * by_camera.transpose();
+  const MeasuredCentre centre{seen.measurement.stamp_ns, seen.X_BC * lifted.p_CO_C,
+                              R * lifted.cov_p * R.transpose(), R * doubt_C * R.transpose()};
+  const hal::Intake intake = Update(config.predict, centre, state.filter);
+  if (intake == hal::Intake::kTaken) {
+    state.X_CO_meas.p = lifted.p_CO_C;
+  }
+  return intake;
+}
+
+// Where corners are: by the likeliest pose that they allow, or else by what is believed.
+model::Vec3 PlaceOfCorners(const features::SeenCorners& seen, const model::Pose& X_BC,
+                           const PoseChoice& choice) noexcept {
+  return seen.num_branches > 0 ? seen.branches[0].X_CO.p : X_BC.Inverse() * choice.best().X_BO.p;
+}
+
+bool IsInside(const config::Box& box, const model::Vec3& p) noexcept {
+  return (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
+}
+
+// What is believed of the target stays in its region, and goes no further out of it.
+void KeepInside(const config::Box& box, FlatMotion& motion) noexcept {
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    double& p = motion.X_BO.p[i];
+    double& v = motion.v_BO_B[i];
+    const double inside = std::clamp(p, box.low[i], box.high[i]);
+    v = (p - inside) * v > 0.0 ? 0.0 : v;
+    p = inside;
+  }
+}
+
+bool IsKnown(const config::ServoConfig& config, const PredictState& state) noexcept {
+  const int accepted = config.feature.SeesOrientation() ? state.poses.accepted : state.filter.accepted;
+  return accepted >= config.predict.accepted_min;
+}
+
+// What the filters believe of the target at `now_ns`.
+FlatMotion BelievedMotion(const config::ServoConfig& config, const PredictState& state,
+                          std::int64_t now_ns) noexcept {
+  if (config.feature.SeesOrientation()) {
+    return MotionAt(config.predict, state.poses, now_ns);
+  }
+  const TargetMotion motion = MotionAt(config.predict, state.filter, now_ns);
+  return {{model::Mat3::Identity(), motion.p_BO}, motion.v_BO, model::Vec3::Zero()};
+}
+
+// Where a target goes on to that moves as `belief` says, without acceleration.
+FlatMotion GoesOn(const LastBelief& belief, std::int64_t now_ns) noexcept {
+  const double dt = 1e-9 * static_cast<double>(now_ns - belief.stamp_ns);
+  FlatMotion motion = belief.motion;
+  motion.X_BO.p += dt * motion.v_BO_B;
+  motion.X_BO.R = model::RotationOf(motion.w_BO_B * dt).lazyProduct(motion.X_BO.R);
+  return motion;
+}
+
+}  // namespace
+
+hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_ns,
+                            const hal::FeatureMeasurement& measurement, PredictState& state,
+                            EyeWatch& eye) noexcept {
+  if (!measurement.found) {
+    return hal::Intake::kNotFound;
+  }
+  if (measurement.stamp_ns > now_ns + hal::kTickPeriodNs) {
+    return hal::Intake::kFromFuture;  // a filter that believed it would refuse all that is true
+  }
+  const auto camera_at = [&](std::int64_t time_ns, model::Pose& X) {
+    return CameraPoseAt(state.history, config.arm, config.X_EC, time_ns, X);
+  };
+  model::Pose X_BC;
+  if (!camera_at(measurement.stamp_ns, X_BC)) {
+    return hal::Intake::kTooOld;
+  }
+  const bool is_flat = config.feature.SeesOrientation();
+  CornerView view;
+  features::LiftedTarget lifted;
+  if (is_flat ? !config.feature.TakeCorners(measurement, view.seen)
+              : !config.feature.Lift(measurement, lifted)) {
+    return hal::Intake::kWrongKind;
+  }
+  const model::Vec3 p_CO_C = is_flat ? PlaceOfCorners(view.seen, X_BC, state.poses) : lifted.p_CO_C;
+
+  WatchPicture(config.predict, X_BC, p_CO_C, eye);
+  PictureView picture{measurement.stamp_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
+  if (measurement.same_for_ns > 0) {
+    // Where the camera was then is not known any more: the hand's way counts from here on.
+    static_cast<void>(camera_at(picture.since_ns, picture.X_BC_since));
+  }
+  if (IsStuck(config.predict.stuck_shift, picture, state.picture)) {
+    return hal::Intake::kStuckPicture;
+  }
+  if (!IsInside(config.predict.target_region, X_BC * p_CO_C)) {
+    return hal::Intake::kOutOfRegion;
+  }
+
+  const bool was_known = IsKnown(config, state);
+  const LastBelief before{true, now_ns, BelievedMotion(config, state, now_ns)};
+  const Seen seen{measurement, X_BC, MeasurementDoubt(config, state.history, measurement.stamp_ns, X_BC)};
+  const hal::Intake intake =
+      is_flat ? TakePose(config, seen, view, state) : TakePosition(config, seen, lifted, state);
+  if (intake != hal::Intake::kTaken) {
+    return intake;
+  }
+  if (was_known && !IsKnown(config, state)) {
+    state.belief = before;
+  } else if (IsKnown(config, state)) {
+    state.belief.active = false;
+  }
+  if (!state.belief.active) {
+    state.has_accepted = true;
+    state.accepted_stamp_ns = measurement.stamp_ns;
+  }
+  return intake;
+}
+
+Prediction Predict(const config::ServoConfig& config, std::int64_t now_ns, const model::Pose& X_BC,
+                   const PredictState& state) noexcept {
+  Prediction prediction;
+  if (!state.has_accepted) {
+    return prediction;
+  }
+  const bool is_flat = config.feature.SeesOrientation();
+  prediction.known = IsKnown(config, state) || state.belief.active;
+  prediction.age_ns = now_ns - state.accepted_stamp_ns;
+  if (!config.predict.enabled) {
+    // As a camera-rate servo does it: the measurement counts until the next one comes.
+    prediction.seen.X_CO = state.X_CO_meas;
+    prediction.p_BO = X_BC * state.X_CO_meas.p;
+    if (is_flat) {
+      prediction.R_BO = X_BC.R * state.X_CO_meas.R;
+    }
+    return prediction;
+  }
+  FlatMotion motion =
+      state.belief.active ? GoesOn(state.belief, now_ns) : BelievedMotion(config, state, now_ns);
+  KeepInside(config.predict.target_region, motion);
+  prediction.p_BO = motion.X_BO.p;
+  prediction.v_BO = motion.v_BO_B;
+  if (is_flat) {
+    prediction.R_BO = motion.X_BO.R;
+    prediction.seen.X_CO.R = X_BC.R.transpose() * motion.X_BO.R;
+    prediction.seen.w_BO_C = X_BC.R.transpose() * motion.w_BO_B;
+  }
+  prediction.seen.X_CO.p = X_BC.Inverse() * prediction.p_BO;
+  prediction.seen.v_BO_C = X_BC.R.transpose() * prediction.v_BO;
+  return prediction;
+}
+
+}  // namespace fovea::estimate

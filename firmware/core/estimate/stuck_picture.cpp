@@ -1,0 +1,47 @@
+#include "firmware/core/estimate/stuck_picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fovea::estimate {
+namespace {
+
+using model::Vec3;
+
+constexpr double kHalfPicture = 0.3;  // points about the target are this far off it in the normalised image
+constexpr double kNearest = 1e-3;     // a point nearer to the camera's plane shows nothing [m]
+
+// The furthest that points as far off as the target, and at rest in B, went in the picture on the camera's
+// way from `X_BC_then` to `X_BC`.
+double ShiftOfScene(const model::Pose& X_BC_then, const model::Pose& X_BC, const Vec3& p_CO_C) noexcept {
+  constexpr std::array<std::array<double, 2>, 5> kOff{
+      {{0.0, 0.0}, {kHalfPicture, 0.0}, {-kHalfPicture, 0.0}, {0.0, kHalfPicture}, {0.0, -kHalfPicture}}};
+  const model::Pose X_CnowCthen = X_BC.Inverse() * X_BC_then;
+  double most = 0.0;
+  for (const auto& off : kOff) {
+    const Vec3 then = p_CO_C + p_CO_C.z() * Vec3(off[0], off[1], 0.0);
+    const Vec3 now = X_CnowCthen * then;
+    if (then.z() < kNearest || now.z() < kNearest) {
+      return HUGE_VAL;  // it left the picture
+    }
+    most = std::max(most, (now.head<2>() / now.z() - then.head<2>() / then.z()).norm());
+  }
+  return most;
+}
+
+}  // namespace
+
+bool IsStuck(double stuck_shift, const PictureView& view, StuckPicture& picture) noexcept {
+  if (!picture.started || view.since_ns != picture.since_ns) {
+    picture = {true, view.since_ns, view.X_BC_since, view.p_CO_C};
+  }
+  if (ShiftOfScene(picture.X_BC, view.X_BC, picture.p_CO_C) <= stuck_shift) {
+    return false;
+  }
+  const double off_in_C = (view.p_CO_C - picture.p_CO_C).squaredNorm();
+  const double off_in_B = (view.X_BC * view.p_CO_C - picture.X_BC * picture.p_CO_C).squaredNorm();
+  return off_in_C < off_in_B;
+}
+
+}  // namespace fovea::estimate

@@ -1,0 +1,129 @@
+#include "firmware/core/estimate/target_filter.hpp"
+
+#include <Eigen/LU>  // inverse of a 3x3
+#include <cmath>
+
+#include "firmware/core/estimate/shortened.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+using model::Mat3;
+using model::Vec3;
+
+constexpr int kOrder = TargetFilter::kOrder;
+constexpr double kStartSpeedSigma = 0.3;         // how fast a target may be when it is first seen [m/s]
+constexpr double kStartAccelerationSigma = 0.5;  // and how hard it may accelerate [m/s^2]
+constexpr double kJerkTime = 0.1;                // the jerk's mean over this time has the configured size [s]
+
+double Seconds(std::int64_t duration_ns) noexcept { return static_cast<double>(duration_ns) * 1e-9; }
+
+void StartAt(const MeasuredCentre& measured, TargetFilter& filter) noexcept {
+  filter = TargetFilter{};
+  filter.accepted = 1;
+  filter.stamp_ns = measured.stamp_ns;
+  filter.x[0] = measured.p_BO;
+  filter.P[0][0] = measured.cov_B;
+  filter.P[1][1] = Mat3::Identity() * (kStartSpeedSigma * kStartSpeedSigma);
+  filter.P[2][2] = Mat3::Identity() * (kStartAccelerationSigma * kStartAccelerationSigma);
+}
+
+// Moves the estimate on by `dt` [s]: x' = F x, P' = F P F^T + Q, with jerk of spectral density q [m^2/s^5].
+void Advance(double dt, double jerk, TargetFilter& filter) noexcept {
+  const double F[kOrder][kOrder] = {{1.0, dt, 0.5 * dt * dt}, {0.0, 1.0, dt}, {0.0, 0.0, 1.0}};
+  const double q = jerk * jerk * kJerkTime;
+  const double dt2 = dt * dt;
+  const double dt3 = dt2 * dt;
+  const double Q[kOrder][kOrder] = {{q * dt3 * dt2 / 20.0, q * dt2 * dt2 / 8.0, q * dt3 / 6.0},
+                                    {q * dt2 * dt2 / 8.0, q * dt3 / 3.0, q * dt2 / 2.0},
+                                    {q * dt3 / 6.0, q * dt2 / 2.0, q * dt}};
+  const TargetFilter before = filter;
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    filter.x[i].setZero();
+    for (std::size_t k = i; k < kOrder; ++k) {
+      filter.x[i] += F[i][k] * before.x[k];
+    }
+    for (std::size_t j = 0; j < kOrder; ++j) {
+      Mat3 sum = Mat3::Identity() * Q[i][j];
+      for (std::size_t k = i; k < kOrder; ++k) {
+        for (std::size_t l = j; l < kOrder; ++l) {
+          sum += (F[i][k] * F[j][l]) * before.P[k][l];
+        }
+      }
+      filter.P[i][j] = sum;
+    }
+  }
+}
+
+}  // namespace
+
+TargetFilter::TargetFilter() noexcept {
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    x[i].setZero();
+    for (std::size_t j = 0; j < kOrder; ++j) {
+      P[i][j].setZero();
+    }
+  }
+}
+
+hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& measured,
+                   TargetFilter& filter) noexcept {
+  if (filter.accepted == 0) {
+    StartAt(measured, filter);
+    return hal::Intake::kTaken;
+  }
+  if (measured.stamp_ns <= filter.stamp_ns) {
+    return hal::Intake::kTooOld;
+  }
+  TargetFilter next = filter;
+  Advance(Seconds(measured.stamp_ns - filter.stamp_ns), config.target_jerk, next);
+
+  const Vec3 innovation = measured.p_BO - next.x[0];
+  const Mat3 S = next.P[0][0] + measured.cov_B;
+  const Mat3 S_inverse = S.inverse();
+  const double gate2 = config.gate_sigma * config.gate_sigma;
+  const auto fits = [&](const Mat3& inverse) { return innovation.dot(inverse * innovation) <= gate2; };
+  if (!fits(S_inverse) && !fits((S + measured.doubt_B).inverse())) {
+    if (filter.rejected_in_row + 1 >= config.gate_rejects_max) {
+      StartAt(measured, filter);
+      return hal::Intake::kTaken;
+    }
+    ++filter.rejected_in_row;
+    return hal::Intake::kOutlier;
+  }
+  std::array<Mat3, kOrder> K;
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    K[i] = next.P[i][0] * S_inverse;
+    next.x[i] += K[i] * innovation;
+  }
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    for (std::size_t j = i; j < kOrder; ++j) {
+      next.P[i][j] -= K[i] * S * K[j].transpose();
+      // Rounding must not make the covariance lean to one side over hours.
+      if (i == j) {
+        next.P[i][i] = 0.5 * (next.P[i][i] + next.P[i][i].transpose()).eval();
+      } else {
+        next.P[j][i] = next.P[i][j].transpose();
+      }
+    }
+  }
+  next.x[1] = Shortened(next.x[1], config.target_speed_max);
+  next.x[2] = Shortened(next.x[2], config.target_acceleration_max);
+  next.stamp_ns = measured.stamp_ns;
+  next.rejected_in_row = 0;
+  if (next.accepted < config.accepted_min) {
+    ++next.accepted;
+  }
+  filter = next;
+  return hal::Intake::kTaken;
+}
+
+TargetMotion MotionAt(const config::PredictConfig& config, const TargetFilter& filter,
+                      std::int64_t now_ns) noexcept {
+  const double dt = Seconds(now_ns - filter.stamp_ns);
+  const Vec3 way = dt * (filter.x[1] + 0.5 * dt * filter.x[2]);
+  return {filter.x[0] + Shortened(way, config.target_speed_max * std::fabs(dt)),
+          Shortened(filter.x[1] + dt * filter.x[2], config.target_speed_max)};
+}
+
+}  // namespace fovea::estimate

@@ -1,0 +1,53 @@
+// Kalman filter of a target's position, velocity and acceleration in the base frame: constant acceleration,
+// disturbed by white jerk. Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and
+// Navigation (2001), section 6.2.3.
+//
+// The acceleration is needed: a velocity that is 60 ms old is wrong by 60 ms of acceleration, and the law
+// divides that by lambda.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/core/config/servo_config.hpp"
+#include "firmware/core/model/types.hpp"
+#include "fovea/hal/events.hpp"
+
+namespace fovea::estimate {
+
+// Estimate at `stamp_ns`, the stamp of the last accepted measurement.
+struct TargetFilter {
+  static constexpr int kOrder = 3;  // position, velocity, acceleration
+  using Block = std::array<model::Mat3, kOrder>;
+
+  TargetFilter() noexcept;
+
+  int accepted = 0;  // measurements since the start; 0: nothing is known
+  int rejected_in_row = 0;
+  std::int64_t stamp_ns = 0;
+  std::array<model::Vec3, kOrder> x;  // p_BO [m] and its derivatives
+  std::array<Block, kOrder> P;        // covariance of x, block by block
+};
+
+// A target's centre as it was measured.
+struct MeasuredCentre {
+  std::int64_t stamp_ns = 0;                  // when it was true
+  model::Vec3 p_BO = model::Vec3::Zero();     // [m] in B
+  model::Mat3 cov_B = model::Mat3::Zero();    // of its noise [m^2]
+  model::Mat3 doubt_B = model::Mat3::Zero();  // what calibration may add to that, for the gate alone [m^2]
+};
+
+// Takes in a measurement. An outlier is left out; after too many in a row the filter starts anew there.
+// Velocity and acceleration stay within the configuration's bounds. Real-time: yes.
+[[nodiscard]] hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& measured,
+                                 TargetFilter& filter) noexcept;
+
+// Where the target is at `now_ns` [m], and how fast [m/s], within the same bounds. Real-time: yes.
+struct TargetMotion {
+  model::Vec3 p_BO;
+  model::Vec3 v_BO;
+};
+[[nodiscard]] TargetMotion MotionAt(const config::PredictConfig& config, const TargetFilter& filter,
+                                    std::int64_t now_ns) noexcept;
+
+}  // namespace fovea::estimate

@@ -1,0 +1,29 @@
+// The corners of a flat target in the normalised image: s = (x_1, y_1, x_2, y_2, ...), two entries each, no
+// unit. What square and triangle have in common: three corners control all six degrees of freedom away from
+// their singular poses, four do so everywhere that the target is not seen edge-on.
+//
+// Refused when a corner's Z is below kMinDepth.
+#pragma once
+
+#include <array>
+
+#include "firmware/core/features/point.hpp"
+
+namespace fovea::features {
+
+struct Polygon {
+  static constexpr int kMost = 4;
+
+  int num_corners = 0;
+  std::array<model::Vec3, kMost> corners{};  // in O, z = 0 [m]
+
+  // Their mean is the origin, as frame O wants it.
+  void Centre() noexcept;
+};
+
+// `state` of `polygon` at `target`, with the goal X_CO = `X_CO_star`. False, with `state` untouched, when it
+// is not wholly before the camera, here or at its goal, or an argument not finite. Real-time: yes.
+[[nodiscard]] bool ComputeCorners(const Polygon& polygon, const TargetInCamera& target,
+                                  const model::Pose& X_CO_star, FeatureState& state) noexcept;
+
+}  // namespace fovea::features

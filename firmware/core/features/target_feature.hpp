@@ -1,0 +1,98 @@
+// The targets, and the features that the servo can steer by: the closed list where a new one is entered.
+//
+//   target     feature     dim  controls                      file
+//   sphere     sphere       3   x, y, z                       sphere.hpp
+//              circle       3   x, y, z                       circle.hpp, the source's simple form
+//   circle     circle       3   x, y, z                       circle.hpp
+//   square     corners      8   all six                       polygon.hpp, square.hpp
+//              side         4   x, y, z, turn about the line of sight; from the centre
+//              corner_side  4   the same from the first corner
+//              pose         6   all six                       pose.hpp
+//   triangle   pose         6   all six
+//              corners      6   all six, up to four goals     polygon.hpp, triangle.hpp
+//
+// With hold_orientation three entries more, stacked below (hold_orientation.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/core/features/circle.hpp"
+#include "firmware/core/features/polygon.hpp"
+#include "firmware/core/features/pose.hpp"
+#include "firmware/core/features/sphere.hpp"
+#include "firmware/core/features/square.hpp"
+#include "fovea/hal/feature.hpp"
+
+namespace fovea::features {
+
+enum class FeatureForm : std::uint8_t { kSphere, kCircle, kCorners, kSide, kCornerSide, kPose };
+inline constexpr std::array<const char*, 6> kFormNames{"sphere", "circle",      "corners",
+                                                       "side",   "corner_side", "pose"};
+inline constexpr std::array<const char*, 4> kTargetNames{"sphere", "circle", "square", "triangle"};
+
+// A measurement of a sphere or circle, as a position.
+struct LiftedTarget {
+  model::Vec3 p_CO_C;  // [m]
+  model::Mat3 cov_p;   // in axes of C [m^2]
+};
+
+// A measurement of a square or triangle: hal/feature.hpp.
+struct SeenCorners {
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 2 * Polygon::kMost, 1>;
+  using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor,
+                                   2 * Polygon::kMost, 2 * Polygon::kMost>;
+  struct Branch {
+    model::Pose X_CO;
+    int first = 0;
+  };
+
+  Vector xy;       // [2 n] in the normalised image
+  Covariance cov;  // [2 n x 2 n]
+  int num_branches = 0;
+  std::array<Branch, hal::kMaxPoses> branches;
+};
+
+// What of the target shall stay in the picture: its corners, or a ball about its centre.
+struct TargetOutline {
+  int num_points = 1;
+  std::array<model::Vec3, Polygon::kMost> p_OP{};  // in O [m]
+  double radius = 0.0;                             // about each [m]
+};
+
+struct TargetFeature {
+  hal::FeatureKind target = hal::FeatureKind::kSphere;
+  FeatureForm form = FeatureForm::kSphere;
+  bool hold_orientation = false;  // servo.hold_orientation: keep the camera's, as it was when Track began
+
+  double radius = 0.04;                             // of sphere and circle [m]
+  double side = 0.10;                               // of the square [m]
+  Polygon corners;                                  // of square and triangle
+  model::Vec3 p_CO_C_star{0.0, 0.0, 0.40};          // where the target shall be, in C [m]
+  model::Mat3 R_CO_star = model::Mat3::Identity();  // and how it shall be turned
+
+  [[nodiscard]] bool SeesOrientation() const noexcept {
+    return target == hal::FeatureKind::kSquare || target == hal::FeatureKind::kTriangle;
+  }
+  // Whether `form` is a feature of `target`, and there is room for all that is stacked.
+  [[nodiscard]] bool IsListed() const noexcept;
+  [[nodiscard]] int Dim() const noexcept;
+  [[nodiscard]] TargetOutline Outline() const noexcept;
+
+  // s, s_star, L_s and the target's share for `seen`, without what is stacked. False, with `state` untouched,
+  // where the feature refuses. Real-time: yes.
+  [[nodiscard]] bool Compute(const TargetInCamera& seen, FeatureState& state) const noexcept;
+
+  // The same at the goal, with the target at rest. Real-time: yes.
+  [[nodiscard]] bool ComputeAtGoal(FeatureState& state) const noexcept;
+
+  // Of a sphere or circle. False when `measurement` is of another target, or names none before the camera.
+  // Real-time: yes.
+  [[nodiscard]] bool Lift(const hal::FeatureMeasurement& measurement, LiftedTarget& lifted) const noexcept;
+
+  // The same of a square or triangle; poses that are none before the camera are left out. Real-time: yes.
+  [[nodiscard]] bool TakeCorners(const hal::FeatureMeasurement& measurement,
+                                 SeenCorners& seen) const noexcept;
+};
+
+}  // namespace fovea::features

@@ -1,0 +1,204 @@
+#include "firmware/core/guard/guard_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/core/barriers/barrier_speed.hpp"
+#include "firmware/core/guard/stop_path.hpp"
+#include "firmware/core/trajectory/joint_pace.hpp"
+#include "firmware/core/trajectory/velocity_step.hpp"
+
+namespace fovea::guard {
+namespace {
+
+using hal::Bit;
+using hal::Limit;
+using hal::LimitSet;
+using model::LinearJacobian;
+
+constexpr double kSpeedShare =
+    0.97;                       // of the hand's speed: joints that get there at different times go beyond
+constexpr double kSlow = 1e-3;  // a joint that is no faster stops by itself [rad/s, m/s]
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+
+const model::Joint& JointOf(const config::ServoConfig& config, int i) noexcept {
+  return config.arm.joints[static_cast<std::size_t>(i)];
+}
+
+// Joint velocity: scaled as a whole, so that the direction of the motion stays.
+LimitSet LimitVelocity(const config::ServoConfig& config, model::VecN& dq) noexcept {
+  double scale = 1.0;
+  for (int i = 0; i < dq.size(); ++i) {
+    const double limit = config.guard.joint_velocity_fraction * JointOf(config, i).dq_max;
+    const double speed = std::fabs(dq[i]);
+    if (speed * scale > limit) {
+      scale = limit / speed;
+    }
+  }
+  if (scale == 1.0) {
+    return 0;
+  }
+  dq *= scale;
+  return Bit(Limit::kJointVelocity);
+}
+
+// Cartesian speed, the same way.
+LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E_B,
+                    model::VecN& dq) noexcept {
+  const double speed = J_E_B.lazyProduct(dq).norm();
+  const double most = kSpeedShare * config.guard.cartesian_speed;
+  if (speed <= most) {
+    return 0;
+  }
+  dq *= most / speed;
+  return Bit(Limit::kCartesianSpeed);
+}
+
+// Joint position: each joint on its own, since the others may still carry the task.
+LimitSet LimitJointPosition(const config::ServoConfig& config, const model::VecN& q,
+                            model::VecN& dq) noexcept {
+  const config::GuardConfig& guard = config.guard;
+  LimitSet limits = 0;
+  for (int i = 0; i < dq.size(); ++i) {
+    const model::Joint& joint = JointOf(config, i);
+    const trajectory::JointPace pace = trajectory::PaceOf(config, i);
+    const double up = barriers::BarrierSpeed(joint.q_max - guard.joint_position_margin - q[i],
+                                             pace.deceleration, pace.reaction_s);
+    const double down = barriers::BarrierSpeed(q[i] - joint.q_min - guard.joint_position_margin,
+                                               pace.deceleration, pace.reaction_s);
+    if (dq[i] > up) {
+      dq[i] = up;
+      limits |= Bit(Limit::kJointPosition);
+    } else if (dq[i] < -down) {
+      dq[i] = -down;
+      limits |= Bit(Limit::kJointPosition);
+    }
+  }
+  return limits;
+}
+
+// Workspace: the part of the motion that leads out of the sphere too fast is taken away.
+LimitSet LimitWorkspace(const config::ServoConfig& config, const model::Vec3& p_BE,
+                        const LinearJacobian& J_E_B, model::VecN& dq) noexcept {
+  const config::GuardConfig& guard = config.guard;
+  const double radius = p_BE.norm();
+  if (radius < 1e-6) {
+    return 0;  // at the centre every direction leads out, and none is near the boundary
+  }
+  LimitSet limits = 0;
+  const model::Vec3 outward = p_BE / radius;
+  const model::Vec3 v_E = J_E_B.lazyProduct(dq);
+  double v_out = v_E.dot(outward);
+  // Along the boundary the centripetal share v_t^2 / r of the deceleration is spent; at most half of it may
+  // be, so the rest still stops the outward motion.
+  const double v_t2 = (v_E - v_out * outward).squaredNorm();
+  const double v_t2_max = 0.5 * guard.workspace_deceleration * radius;
+  const double distance = guard.workspace_radius - guard.workspace_margin - radius;
+  double spent = v_t2;
+  if (v_t2 > v_t2_max && distance < v_t2 / (2.0 * guard.workspace_deceleration)) {
+    const double scale = std::sqrt(v_t2_max / v_t2);
+    dq *= scale;
+    v_out *= scale;
+    spent = v_t2_max;
+    limits |= Bit(Limit::kWorkspace);
+  }
+  const double deceleration =
+      std::max(guard.workspace_deceleration - spent / radius, 0.5 * guard.workspace_deceleration);
+  const double v_max = barriers::BarrierSpeed(distance, deceleration, trajectory::SlowestReaction(config));
+  if (v_out > v_max) {
+    // Smallest change of dq that brings the outward speed to v_max.
+    model::VecN a = model::VecN::Zero(dq.size());
+    double a2 = 0.0;
+    for (int i = 0; i < dq.size(); ++i) {
+      a[i] = J_E_B.col(i).dot(outward);
+      a2 += a[i] * a[i];
+    }
+    if (a2 > 1e-9) {
+      dq -= a * ((v_out - v_max) / a2);
+    }
+    limits |= Bit(Limit::kWorkspace);
+  }
+  return limits;
+}
+
+// Acceleration and jerk, joint by joint.
+LimitSet LimitAcceleration(const config::ServoConfig& config, const model::VecN& dq_des,
+                           const model::VecN& ddq_des, trajectory::Reference& reference) noexcept {
+  bool at_a_max = false;
+  bool at_j_max = false;
+  for (int i = 0; i < dq_des.size(); ++i) {
+    const trajectory::JointPace pace = trajectory::PaceOf(config, i);
+    const trajectory::VelocityStep step =
+        trajectory::StepVelocity({reference.q[i], reference.dq[i], reference.ddq[i]}, dq_des[i], ddq_des[i],
+                                 {0.0, pace.ddq_max, pace.dddq_max}, kPeriodS);
+    reference.q[i] = step.state.x;
+    reference.dq[i] = step.state.v;
+    reference.ddq[i] = step.state.a;
+    at_a_max = at_a_max || step.at_a_max;
+    at_j_max = at_j_max || step.at_j_max;
+  }
+  return (at_a_max ? Bit(Limit::kJointAcceleration) : 0) | (at_j_max ? Bit(Limit::kJointJerk) : 0);
+}
+
+}  // namespace
+
+MotionWish StopTogether(const config::ServoConfig& config, const trajectory::Reference& reference) noexcept {
+  MotionWish wish = MotionWish::Velocity(model::VecN::Zero(reference.dq.size()));
+  double share = 0.0;  // of its velocity that the slowest to stop has left after this tick
+  for (int i = 0; i < reference.dq.size(); ++i) {
+    if (std::fabs(reference.dq[i]) < kSlow) {
+      continue;
+    }
+    const trajectory::JointPace pace = trajectory::PaceOf(config, i);
+    const trajectory::VelocityStep step =
+        trajectory::StepVelocity({reference.q[i], reference.dq[i], reference.ddq[i]}, 0.0, 0.0,
+                                 {0.0, pace.ddq_max, pace.dddq_max}, kPeriodS);
+    share = std::max(share, step.state.v / reference.dq[i]);
+  }
+  share = std::min(share, 1.0);
+  for (int i = 0; i < reference.dq.size(); ++i) {
+    if (std::fabs(reference.dq[i]) >= kSlow) {
+      wish.dq[i] = share * reference.dq[i];
+      wish.ddq[i] = (wish.dq[i] - reference.dq[i]) / kPeriodS;
+    }
+  }
+  wish.stops = true;
+  return wish;
+}
+
+LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, const model::Vec3& p_BE,
+                     const LinearJacobian& J_E_B, const model::ArmPoses& reference_poses,
+                     trajectory::Reference& reference) noexcept {
+  model::VecN dq = wish.dq;
+  LimitSet limits = LimitVelocity(config, dq);
+  limits |= LimitJointPosition(config, reference.q, dq);
+  limits |= LimitWorkspace(config, p_BE, J_E_B, dq);
+  // The correction for the workspace may have set a joint on the move again: what it may not do is cut.
+  limits |= LimitJointPosition(config, reference.q, dq);
+  limits |= LimitVelocity(config, dq);
+  limits |= LimitSpeed(config, J_E_B, dq);
+  const model::VecN ddq = limits == 0 ? wish.ddq : model::VecN::Zero(dq.size());
+  if (wish.stops && limits != 0) {
+    dq.setZero();
+  }
+
+  // The largest share of the wish from which a stop is proved, found by halving; the last try is braking.
+  constexpr int kTries = 5;
+  double share = 1.0;
+  trajectory::Reference next;
+  LimitSet acceleration_limits = 0;
+  for (int i = 0; i < kTries; ++i) {
+    next = reference;
+    acceleration_limits = LimitAcceleration(config, share * dq, share * ddq, next);
+    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, reference_poses) : 0;
+    if (passed == 0) {
+      break;
+    }
+    limits |= passed;
+    share = i + 2 < kTries ? 0.5 * share : 0.0;
+  }
+  reference = next;
+  return limits | acceleration_limits;
+}
+
+}  // namespace fovea::guard

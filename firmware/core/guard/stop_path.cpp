@@ -1,0 +1,239 @@
+#include "firmware/core/guard/stop_path.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "firmware/core/barriers/keep_apart.hpp"
+#include "firmware/core/barriers/obstacle.hpp"
+#include "firmware/core/model/kinematics.hpp"
+#include "firmware/core/trajectory/velocity_change.hpp"
+
+namespace fovea::guard {
+namespace {
+
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr double kSlack = 1e-9;  // rounding is no step outward [m, rad]
+
+// A joint that stops after `distance` from q_now, given that it may go up to `limit` (or no further than it
+// already is).
+bool Within(double q, double q_now, double low, double high) noexcept {
+  return q <= std::max(high, q_now) + kSlack && q >= std::min(low, q_now) - kSlack;
+}
+
+struct StopPlan {
+  std::array<trajectory::VelocityChange, model::kMaxJoints> joints;
+  double duration_s = 0.0;
+};
+
+StopPlan PlanAll(const config::ServoConfig& config, const trajectory::Reference& reference) noexcept {
+  StopPlan plan;
+  for (int i = 0; i < reference.q.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& joint = config.arm.joints[k];
+    plan.joints[k] = trajectory::PlanVelocityChange(
+        reference.dq[i], reference.ddq[i], 0.0,
+        {joint.dq_max, config.guard.joint_acceleration_fraction * joint.ddq_max,
+         config.guard.joint_jerk_fraction * joint.dddq_max});
+    plan.duration_s = std::max(plan.duration_s, plan.joints[k].Duration());
+  }
+  return plan;
+}
+
+using PerJoint = std::array<double, model::kMaxJoints>;
+
+// How far any point of arm and hand goes at most per travel of each joint: its distance from the joint's
+// axis, which the lengths of the links between them bound; 1 for a joint that slides.
+PerJoint Levers(const model::ArmModel& arm, const config::HandShape& hand) noexcept {
+  PerJoint levers{};
+  double reach = 0.0;  // of what is bolted to the end effector
+  for (int i = 0; i < hand.num_balls; ++i) {
+    reach = std::max(reach, hand.balls[static_cast<std::size_t>(i)].p_EP.norm());
+  }
+  double length = arm.X_LnE.p.norm() + reach;  // of the links from here on
+  for (int i = arm.num_joints - 1; i >= 0; --i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& joint = arm.joints[k];
+    if (joint.type == model::JointType::kRevolute) {
+      levers[k] = length;
+    } else {
+      levers[k] = 1.0;
+      length += std::max(std::fabs(joint.q_min), std::fabs(joint.q_max));
+    }
+    length += joint.X_PJ.p.norm();
+  }
+  return levers;
+}
+
+// The stop, looked at from one point of time on.
+class StopWay {
+ public:
+  StopWay(const config::ServoConfig& config, const trajectory::Reference& reference) noexcept
+      : config_(config),
+        reference_(reference),
+        plan_(PlanAll(config, reference)),
+        levers_(Levers(config.arm, config.guard.hand)) {}
+
+  // The ticks' own steps come on top of the continuous motion.
+  [[nodiscard]] double Duration() const noexcept { return plan_.duration_s + kPeriodS; }
+
+  // Where the joints are `t` seconds into the stop, and how fast a point of the arm can be from then on
+  // at most.
+  double At(double t, model::VecN& q) const noexcept {
+    double fastest = 0.0;
+    for (int i = 0; i < q.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const trajectory::AxisState state = plan_.joints[k].At(t);
+      q[i] = reference_.q[i] + reference_.dq[i] * kPeriodS + state.x;
+      // A joint is never faster than now, or than when it has released its acceleration.
+      const double settled = trajectory::SettledVelocity(
+          state.v, state.a, config_.guard.joint_jerk_fraction * config_.arm.joints[k].dddq_max);
+      fastest += levers_[k] * std::max(std::fabs(state.v), std::fabs(settled));
+    }
+    return fastest;
+  }
+
+  // How far a point of the arm is at most from where it was with the joints at `q_now` when the stop begins.
+  [[nodiscard]] double FirstStep(const model::VecN& q_now) const noexcept {
+    double reach = 0.0;
+    for (int i = 0; i < q_now.size(); ++i) {
+      const double step = std::fabs(reference_.q[i] - q_now[i]) + std::fabs(reference_.dq[i]) * kPeriodS;
+      reach += levers_[static_cast<std::size_t>(i)] * step;
+    }
+    return reach;
+  }
+
+ private:
+  const config::ServoConfig& config_;
+  const trajectory::Reference& reference_;
+  StopPlan plan_;
+  PerJoint levers_;
+};
+
+// What bounds the arm, each with its margin; what is already past one may only come back.
+class Bounds {
+ public:
+  Bounds(const config::ServoConfig& config, const model::ArmPoses& now) noexcept
+      : config_(config),
+        guard_(config.guard),
+        num_obstacles_(barriers::CountObstacles(guard_.obstacles)),
+        radius_(std::max(guard_.workspace_radius - guard_.workspace_margin, now.X_BE.p.norm()) + kSlack) {
+    clear_now_ = radius_ - now.X_BE.p.norm();
+    const auto keep = [this](double margin, double clearance) {
+      const double least = std::min(margin, clearance) - kSlack;
+      clear_now_ = std::min(clear_now_, clearance - least);
+      return least;
+    };
+    for (int i = 0; i < num_obstacles_; ++i) {
+      least_[static_cast<std::size_t>(i)] = keep(guard_.workspace_margin, HandTo(i, now));
+    }
+    if (guard_.obstacles.num_planes > 0 || guard_.hand_clearance > 0.0) {
+      const barriers::ArmLine line = barriers::LineOfArm(config.arm, now);
+      least_of_links_ = keep(guard_.workspace_margin, barriers::ClearanceOfPlanes(config.arm, guard_, line));
+      const double apart = barriers::ClearanceOfHand(config.arm, line);
+      least_apart_ = std::min(guard_.hand_clearance - kSoft, apart) - kSlack;
+      if (guard_.hand_clearance > 0.0) {
+        clear_now_ = std::min(clear_now_, 0.5 * (apart - least_apart_));
+      }
+    }
+  }
+
+  // As below, when the stop begins.
+  [[nodiscard]] double clear_now() const noexcept { return clear_now_; }
+
+  // The distance that any point may still go; below 0, and `passed` set, where a bound is passed.
+  double Clear(const model::ArmPoses& poses, hal::LimitSet& passed) const noexcept {
+    double clear = radius_ - poses.X_BE.p.norm();
+    if (!(clear >= 0.0)) {
+      passed = hal::Bit(hal::Limit::kWorkspace);
+      return clear;
+    }
+    const auto keep = [&](double left) {
+      if (!(left >= 0.0)) {
+        passed = hal::Bit(hal::Limit::kObstacle);
+      }
+      clear = std::min(clear, left);
+      return left >= 0.0;
+    };
+    for (int i = 0; i < num_obstacles_; ++i) {
+      if (!keep(HandTo(i, poses) - least_[static_cast<std::size_t>(i)])) {
+        return clear;
+      }
+    }
+    if (guard_.obstacles.num_planes > 0 || guard_.hand_clearance > 0.0) {
+      const barriers::ArmLine line = barriers::LineOfArm(config_.arm, poses);
+      if (!keep(barriers::ClearanceOfPlanes(config_.arm, guard_, line) - least_of_links_)) {
+        return clear;
+      }
+      if (guard_.hand_clearance > 0.0) {
+        keep(0.5 * (barriers::ClearanceOfHand(config_.arm, line) - least_apart_));  // both may move
+      }
+    }
+    return clear;
+  }
+
+ private:
+  // The rows of the resolution (keep_apart.hpp) are nearly on their boundary where the arm slides along it:
+  // the proof leaves them so much room [m].
+  static constexpr double kSoft = 0.01;
+
+  [[nodiscard]] double HandTo(int i, const model::ArmPoses& poses) const noexcept {
+    return barriers::ClearanceOf(guard_.obstacles, i, guard_.hand, poses.X_BE).clearance.distance;
+  }
+
+  const config::ServoConfig& config_;
+  const config::GuardConfig& guard_;
+  int num_obstacles_;
+  double radius_;
+  std::array<double, 2 * config::Obstacles::kMost>
+      least_{};  // clearance of the hand from each that must be kept
+  double clear_now_ = 0.0;
+  double least_of_links_ = 0.0;  // and of the links from the planes
+  double least_apart_ = 0.0;     // and of the hand from the arm's trunk
+};
+
+}  // namespace
+
+hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::Reference& reference,
+                           const model::VecN& q_now, const model::ArmPoses& poses_now) noexcept {
+  const config::GuardConfig& guard = config.guard;
+  const StopWay way(config, reference);
+  const double duration = way.Duration();
+  model::VecN q = reference.q;
+
+  // Joints: a joint is furthest out where it stops, unless it still turns round before.
+  way.At(duration, q);
+  for (int i = 0; i < q.size(); ++i) {
+    const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+    if (!Within(q[i], q_now[i], joint.q_min + guard.joint_position_margin,
+                joint.q_max - guard.joint_position_margin)) {
+      return hal::Bit(hal::Limit::kJointPosition);
+    }
+  }
+
+  // Arm and hand: at points of time that are denser at the start, which is what will be gone for certain.
+  // None is looked at by which no point can have reached a bound.
+  const Bounds bounds(config, poses_now);
+  hal::LimitSet passed = 0;
+  double fastest = way.At(0.0, q);
+  double clear_until = (bounds.clear_now() - way.FirstStep(q_now)) / std::max(fastest, kSlack);
+  model::ArmPoses poses;
+  for (int sample = 0; sample < kStopSamples; ++sample) {
+    const double share = static_cast<double>(sample) / (kStopSamples - 1);
+    const double t = duration * share * share;
+    if (t < clear_until) {
+      continue;
+    }
+    fastest = way.At(t, q);
+    model::ComputePoses(config.arm, q, poses);
+    passed = 0;
+    const double clear = bounds.Clear(poses, passed);
+    if (passed != 0) {
+      return passed;
+    }
+    clear_until = t + clear / std::max(fastest, kSlack);
+  }
+  return 0;
+}
+
+}  // namespace fovea::guard

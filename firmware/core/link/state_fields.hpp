@@ -1,0 +1,376 @@
+// The fields of the servo's state that a tick takes from the tick before, in groups. What every tick computes
+// anew before it looks at it (poses, dynamics, Jacobians, the prediction, the law's task) is not among them.
+// A field that is added to a struct is added here; state_test.cpp knows the structs' sizes and says so.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "firmware/core/link/fields.hpp"
+#include "firmware/core/link/tick_fields.hpp"
+#include "firmware/core/task/servo_task.hpp"
+
+namespace fovea::link {
+
+// When a group can change, and its digest is worth taking.
+enum class Pace : std::uint8_t {
+  kTick,         // in every tick
+  kMeasurement,  // in a tick that takes a measurement
+  kSeeking,      // while a target is steered by for which a posture is looked for
+  kMoving,       // in mode Move
+  kFollows,      // follows from inputs and the other groups alone
+};
+
+// Of a size that is set at run time, up to its capacity.
+template <class Archive, class Matrix>
+void SizedEntries(Archive& a, Matrix& m) noexcept {
+  auto rows = static_cast<std::int32_t>(m.rows());
+  auto cols = static_cast<std::int32_t>(m.cols());
+  a.Count(rows, Matrix::MaxRowsAtCompileTime);
+  if constexpr (Matrix::ColsAtCompileTime == Eigen::Dynamic) {
+    a.Count(cols, Matrix::MaxColsAtCompileTime);
+  }
+  if constexpr (!std::is_const_v<Matrix>) {
+    m.resize(rows, cols);
+  }
+  Row(a, m.data(), static_cast<std::size_t>(m.size()));
+}
+
+// The first `count` of `values`: what stands behind them is never looked at.
+template <class Array>
+auto FirstOf(Array& values, int count) noexcept {
+  const int size = static_cast<int>(values.size());
+  return std::span(values).first(static_cast<std::size_t>(std::clamp(count, 0, size)));
+}
+
+template <class Archive, class T>
+void InputStateFields(Archive& a, T& s) noexcept {
+  a(s.has_state);
+  a(s.stamp_ns);
+  a(s.sequence);
+  a.Int(s.bad_ticks);
+  a.Int(s.sound_ticks);
+  a.Int(s.non_finite_ticks);
+  a.Int(s.jumps);
+  a(s.jumped);
+  EachOf(a, s.q);
+  EachOf(a, s.dq);
+  EachOf(a, s.tau_applied);
+}
+
+template <class Archive, class T>
+void EncoderWatchFields(Archive& a, T& w) noexcept {
+  a(w.drove);
+  for (auto& joint : w.joints) {
+    a(joint.residual);
+    a(joint.mean);
+    a.Int(joint.ticks);
+    a(joint.q);
+    a(joint.q_reference);
+    a(joint.dq);
+    a(joint.speed);
+    a(joint.way);
+    a(joint.travel);
+    a(joint.q_last);
+    a(joint.dq_last);
+    a(joint.change_last);
+    a.Int(joint.flickers);
+    a.Int(joint.same_ticks);
+    a(joint.is_noisy);
+  }
+}
+
+template <class Archive, class T>
+void ModeFields(Archive& a, T& s) noexcept {
+  a.Choice(s.mode.mode, hal::kNumModes);
+  a.Choice(s.mode.hold_reason, kNumHoldReasons);
+  a.Choice(s.mode.fault, hal::kNumFaults);
+  a(s.mode.track_asked);
+  a(s.mode.motion_barred);
+  a.Int(s.fault_joint);
+  a(s.mode_since_ns);
+  a(s.track_since_ns);
+  a(s.blocked_ns);
+  Entries(a, s.p_BO_unreachable);
+  Entries(a, s.R_BC_held);
+}
+
+template <class Archive, class T>
+void TargetFilterFields(Archive& a, T& f) noexcept {
+  a.Int(f.accepted);
+  a.Int(f.rejected_in_row);
+  a(f.stamp_ns);
+  for (auto& x : f.x) {
+    Entries(a, x);
+  }
+  for (auto& row : f.P) {
+    for (auto& block : row) {
+      Entries(a, block);
+    }
+  }
+}
+
+template <class Archive, class T>
+void DiscFields(Archive& a, T& d) noexcept {
+  a(d.started);
+  Entries(a, d.normal_B);
+  a.Count(d.count, estimate::DiscChoice::kMost);
+  a(d.step);
+  for (auto& view : FirstOf(d.views, d.count)) {
+    for (auto& normal : view.normal_B) {
+      Entries(a, normal);
+    }
+    Entries(a, view.ray_B);
+    a(view.weight);
+  }
+}
+
+template <class Archive, class T>
+void StillViewFields(Archive& a, T& view) noexcept {
+  PoseFields(a, view.X_CB);
+  SizedEntries(a, view.xy);
+  a(view.variance);
+  a.Int(view.frames);
+}
+
+template <class Archive, class T>
+void BranchFields(Archive& a, T& b) noexcept {
+  a(b.filter.stamp_ns);
+  PoseFields(a, b.filter.X_BO);
+  Entries(a, b.filter.v_BO_B);
+  Entries(a, b.filter.a_BO_B);
+  Entries(a, b.filter.w_BO_B);
+  Entries(a, b.filter.P);
+  PoseFields(a, b.X_BO_still);
+  a(b.misfit);
+  a(b.still_misfit);
+}
+
+template <class Archive, class T>
+void PoseChoiceFields(Archive& a, T& c) noexcept {
+  a.Count(c.num_branches, hal::kMaxPoses);
+  a.Count(c.believed, hal::kMaxPoses - 1);
+  a.Int(c.accepted);
+  a.Int(c.rejected_in_row);
+  a(c.stamp_ns);
+  a(c.is_still);
+  a.Count(c.views.count, estimate::StillViews::kMost);
+  a(c.views.step);
+  for (auto& view : FirstOf(c.views.views, c.views.count)) {
+    StillViewFields(a, view);
+  }
+  StillViewFields(a, c.views.here);
+  for (auto& branch : FirstOf(c.branches, c.num_branches)) {
+    BranchFields(a, branch);
+  }
+}
+
+template <class Archive, class T>
+void GoalPostureFields(Archive& a, T& g) noexcept {
+  a(g.found);
+  a(g.begun);
+  a(g.reached);
+  a(g.downhill);
+  a(g.clear);
+  a.Count(g.turn, 3);
+  a.Count(g.trial_turn, 3);
+  a.Int(g.trial);
+  a.Int(g.step);
+  a(g.last_off);
+  SizedEntries(a, g.q);
+  SizedEntries(a, g.way.q);
+  a.Int(g.way.steps);
+  a(g.way.length);
+  a(g.way.barred);
+  a.Int(g.detour);
+  a.Int(g.detour_steps);
+  a(g.turned);
+  SizedEntries(a, g.q_via);
+  a(g.random);
+  a(g.nearest);
+  a.Count(g.nearest_turn, 3);
+  a(g.nearest_detour);
+  SizedEntries(a, g.q_nearest);
+  SizedEntries(a, g.q_nearest_via);
+  a.Count(g.drops, std::numeric_limits<std::int32_t>::max());
+  for (auto& q : FirstOf(g.q_dropped, g.drops)) {
+    SizedEntries(a, q);
+  }
+}
+
+template <class Archive, class T>
+void WayFields(Archive& a, T& w) noexcept {
+  GoalPostureFields(a, w.goal);
+  a.Int(w.ticks_to_step);
+  a(w.chosen);
+  a(w.by_joints);
+  a(w.preferred);
+  a(w.since_ns);
+  a(w.held_ns);
+  a(w.sought_ns);
+  a(w.idle_ns);
+  a(w.least_off);
+}
+
+template <class Archive, class T>
+void ResolvedFields(Archive& a, T& r) noexcept {
+  SizedEntries(a, r.dq);
+  a(r.finite);
+  a(r.limits);
+  a(r.watch.sigma);
+}
+
+template <class Archive, class T>
+void ReferenceFields(Archive& a, T& r) noexcept {
+  SizedEntries(a, r.q);
+  SizedEntries(a, r.dq);
+  SizedEntries(a, r.ddq);
+}
+
+template <class Archive, class T>
+void MotionStateFields(Archive& a, T& m) noexcept {
+  MotionFields(a, m.goal);
+  MotionFields(a, m.done);
+  a(m.start_ns);
+  PoseFields(a, m.X_BE);
+  ResolvedFields(a, m.resolved);
+  a(m.refused);
+  SizedEntries(a, m.off);
+}
+
+template <class Archive, class T>
+void TorqueFields(Archive& a, T& s) noexcept {
+  SizedEntries(a, s.law_state.integral);
+  SizedEntries(a, s.law_state.cut);
+  a.Choice(s.law_state.kind, config::kNumMotionLaws);
+  SizedEntries(a, s.law_state.step);
+  a(s.law_state.since_change_s);
+  SizedEntries(a, s.tau);
+  a(s.stop_speed);
+  a(s.give_up);
+  a(s.braked);
+}
+
+// To what the state's classes keep to themselves.
+struct StateAccess {
+  // From the oldest entry; where the ring begins does not matter.
+  template <class Archive>
+  static void Fields(Archive& a, const estimate::JointHistory& history) noexcept {
+    a.Count(history.size_, estimate::JointHistory::kCapacity);
+    for (int i = 0; i < history.size_; ++i) {
+      const estimate::JointHistory::Entry& entry = history.FromOldest(i);
+      a(entry.stamp_ns);
+      link::SizedEntries(a, entry.q);
+    }
+  }
+  template <class Archive>
+  static void Fields(Archive& a, estimate::JointHistory& history) noexcept {
+    int size = 0;
+    a.Count(size, estimate::JointHistory::kCapacity);
+    history.Clear();
+    for (int i = 0; i < size; ++i) {
+      estimate::JointHistory::Entry entry;
+      a(entry.stamp_ns);
+      link::SizedEntries(a, entry.q);
+      history.Push(entry.stamp_ns, entry.q);
+    }
+  }
+
+  template <class Archive, class T>
+  static void MoveFields(Archive& a, T& move) noexcept {
+    a.Count(move.num_axes_, trajectory::SynchronisedMove::kMaxAxes);
+    a(move.duration_s_);
+    a(move.straight_);
+    for (auto& axis : move.moves_) {
+      for (auto& phase : axis.phases) {
+        a(phase.start_s);
+        a(phase.duration_s);
+        a(phase.jerk);
+        a(phase.start.x);
+        a(phase.start.v);
+        a(phase.start.a);
+      }
+      a.Count(axis.num_phases, trajectory::AxisMove::kMaxPhases);
+      a(axis.duration_s);
+      a(axis.goal_x);
+    }
+    link::EachOf(a, move.goal_);
+    link::EachOf(a, move.way_);
+  }
+  template <class Archive, class T>
+  static void PlanFields(Archive& a, T& motion) noexcept {
+    MoveFields(a, motion.joints.move_);
+    MoveFields(a, motion.pose);
+  }
+};
+
+// Calls `visit(pace, name, fields)` for each group of `state`, in their order; `fields(archive)` goes through
+// the group's fields.
+template <class State, class Visit>
+void EachGroup(State& s, const Visit& visit) noexcept {
+  visit(Pace::kTick, "tick", [&s](auto& a) {
+    a(s.tick);
+    a(s.now_ns);
+  });
+  visit(Pace::kTick, "inputs", [&s](auto& a) { InputStateFields(a, s.inputs); });
+  visit(Pace::kTick, "contact", [&s](auto& a) {
+    a(s.contact.started);
+    SizedEntries(a, s.contact.residual);
+    a(s.contact.carried);
+  });
+  visit(Pace::kTick, "encoder watch", [&s](auto& a) {
+    EncoderWatchFields(a, s.encoders);
+    a(s.blind);
+  });
+  visit(Pace::kFollows, "momentum", [&s](auto& a) {
+    SizedEntries(a, s.contact.M_before);
+    SizedEntries(a, s.contact.p_before);
+  });
+  visit(Pace::kFollows, "joint history", [&s](auto& a) { StateAccess::Fields(a, s.predict.history); });
+  visit(Pace::kMeasurement, "stuck picture", [&s](auto& a) {
+    a(s.predict.picture.started);
+    a(s.predict.picture.since_ns);
+    PoseFields(a, s.predict.picture.X_BC);
+    Entries(a, s.predict.picture.p_CO_C);
+  });
+  visit(Pace::kMeasurement, "last belief", [&s](auto& a) {
+    a(s.predict.belief.active);
+    a(s.predict.belief.stamp_ns);
+    PoseFields(a, s.predict.belief.motion.X_BO);
+    Entries(a, s.predict.belief.motion.v_BO_B);
+    Entries(a, s.predict.belief.motion.w_BO_B);
+  });
+  visit(Pace::kTick, "eye watch", [&s](auto& a) {
+    a(s.eye.has_last);
+    PoseFields(a, s.eye.X_BC_last);
+    Entries(a, s.eye.p_CO_C_last);
+    EachOf(a, s.eye.predicted);
+    EachOf(a, s.eye.seen);
+    a(s.eye.least_error);
+    a(s.eye.way);
+    a(s.eye.doubted);
+  });
+  visit(Pace::kMeasurement, "target filter", [&s](auto& a) {
+    TargetFilterFields(a, s.predict.filter);
+    a(s.predict.has_accepted);
+    a(s.predict.accepted_stamp_ns);
+    PoseFields(a, s.predict.X_CO_meas);
+  });
+  visit(Pace::kMeasurement, "disc choice", [&s](auto& a) { DiscFields(a, s.predict.disc); });
+  visit(Pace::kMeasurement, "pose choice", [&s](auto& a) { PoseChoiceFields(a, s.predict.poses); });
+  visit(Pace::kTick, "mode", [&s](auto& a) { ModeFields(a, s); });
+  visit(Pace::kSeeking, "way to the goal", [&s](auto& a) { WayFields(a, s.way); });
+  visit(Pace::kTick, "resolved motion", [&s](auto& a) { ResolvedFields(a, s.resolved); });
+  visit(Pace::kTick, "reference", [&s](auto& a) {
+    ReferenceFields(a, s.reference);
+    a(s.holds);
+  });
+  visit(Pace::kMoving, "commanded motion", [&s](auto& a) { MotionStateFields(a, s.motion); });
+  visit(Pace::kFollows, "planned motion", [&s](auto& a) { StateAccess::PlanFields(a, s.motion); });
+  visit(Pace::kTick, "limits", [&s](auto& a) { a(s.limits); });
+  visit(Pace::kTick, "torque", [&s](auto& a) { TorqueFields(a, s); });
+}
+
+}  // namespace fovea::link

@@ -1,0 +1,132 @@
+// The fields of a tick's inputs and outputs, in the order in which they go over the line.
+#pragma once
+
+#include "firmware/core/link/fields.hpp"
+#include "firmware/core/link/messages.hpp"
+#include "fovea/hal/events.hpp"
+
+namespace fovea::link {
+
+inline constexpr int kNumStatusCodes = 8;
+inline constexpr int kNumHoldReasons = 8;
+inline constexpr int kNumRequests = 4;
+inline constexpr int kNumMotionKinds = 6;
+inline constexpr int kNumFeatureKinds = 4;
+
+template <class Archive, class T>
+void ArmStateFields(Archive& a, T& s) noexcept {
+  a(s.stamp_ns);
+  a(s.sequence);
+  a.Count(s.num_joints, hal::kMaxJoints);
+  EachOf(a, s.q);
+  EachOf(a, s.dq);
+  EachOf(a, s.tau_meas);
+  EachOf(a, s.tau_applied);
+}
+
+template <class Archive, class T>
+void MeasurementFields(Archive& a, T& m) noexcept {
+  a(m.stamp_ns);
+  a(m.sequence);
+  a(m.same_for_ns);
+  a.Choice(m.kind, kNumFeatureKinds);
+  a(m.found);
+  a(m.confidence);
+  a.Count(m.dim, hal::kMaxFeatureDim);
+  EachOf(a, m.s);
+  EachOf(a, m.cov_s);
+  a.Count(m.num_poses, hal::kMaxPoses);
+  for (auto& pose : m.poses) {
+    EachOf(a, pose.p_CO_C);
+    EachOf(a, pose.q_CO);
+    a.Int(pose.first);
+  }
+}
+
+template <class Archive, class T>
+void MotionFields(Archive& a, T& m) noexcept {
+  a.Choice(m.kind, kNumMotionKinds);
+  if (m.kind == moves::MotionKind::kNone) {
+    return;
+  }
+  EachOf(a, m.q);
+  EachOf(a, m.dq);
+  EachOf(a, m.ddq);
+  EachOf(a, m.p_BE);
+  EachOf(a, m.quaternion_BE);
+  EachOf(a, m.V_BE_B);
+}
+
+// What is asked of the servo.
+template <class Archive, class T>
+void DemandFields(Archive& a, T& in) noexcept {
+  a.Choice(in.request, kNumRequests);
+  MotionFields(a, in.motion);
+  a(in.change_law);
+  a.Choice(in.law, config::kNumMotionLaws);
+}
+
+// But the status: its words stay with the driver that said them.
+template <class Archive, class T>
+void InputFields(Archive& a, T& in) noexcept {
+  ArmStateFields(a, in.arm);
+  a(in.has_feature);
+  if (in.has_feature) {
+    MeasurementFields(a, in.feature);
+  }
+  DemandFields(a, in);
+  a.Int(in.missed_ticks);
+}
+
+template <class Archive, class T>
+void RecordFields(Archive& a, T& r) noexcept {
+  a(r.tick);
+  a(r.stamp_ns);
+  a.Int(r.missed_ticks);
+  a.Choice(r.intake, hal::kNumIntakes);
+  a.Choice(r.mode, hal::kNumModes);
+  a.Choice(r.hold_reason, kNumHoldReasons);
+  a.Choice(r.fault, hal::kNumFaults);
+  a.Int(r.fault_joint);
+  a(r.limits_active);
+  a(r.target_known);
+  a(r.feature_age_ns);
+  EachOf(a, r.p_BO);
+  EachOf(a, r.q_BO);
+  EachOf(a, r.v_BO);
+  a.Count(r.dim, hal::kMaxFeatureDim);
+  EachOf(a, r.s);
+  EachOf(a, r.s_star);
+  EachOf(a, r.e);
+  EachOf(a, r.V_BC_C_cmd);
+  EachOf(a, r.q_cmd);
+  EachOf(a, r.dq_cmd);
+  EachOf(a, r.ddq_cmd);
+  a(r.command.state_sequence);
+  a.Count(r.command.num_joints, hal::kMaxJoints);
+  EachOf(a, r.command.tau_cmd);
+  a(r.command.engage_brakes);
+}
+
+template <class Archive, class T>
+void LineFields(Archive& a, T& line) noexcept {
+  a(line.damaged_frames);
+  a(line.late_frames);
+  a(line.silent_ticks);
+  a(line.missed_ticks);
+  a(line.lost_bytes);
+  a(line.unsent_frames);
+}
+
+template <class Archive, class T>
+void OutputFields(Archive& a, T& out) noexcept {
+  RecordFields(a, out.record);
+  EachOf(a, out.stage_counts);
+  a(out.tick_counts);
+  a(out.link_counts);
+  a(out.periods_passed);
+  a(out.stack_bytes);
+  LineFields(a, out.line);
+}
+
+}  // namespace fovea::link

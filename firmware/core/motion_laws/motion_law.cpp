@@ -1,0 +1,71 @@
+#include "firmware/core/motion_laws/motion_law.hpp"
+
+#include "firmware/core/motion_laws/motion_laws.hpp"
+#include "firmware/core/trajectory/smooth_step.hpp"
+
+namespace fovea::motion_laws {
+namespace {
+
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+
+void TorqueOf(config::MotionLawKind kind, const config::MotionLawConfig& config,
+              const MotionLawInputs& inputs, MotionLawState& state, model::VecN& tau) noexcept {
+  kMotionLaws[static_cast<std::size_t>(kind)].torque(config, inputs, state, tau);
+}
+
+// What is left of the step of the last change of laws.
+double Fade(const config::MotionLawConfig& config, const MotionLawState& state) noexcept {
+  return 1.0 - trajectory::SmoothStep(state.since_change_s / config.change_s);
+}
+
+}  // namespace
+
+// In the order of MotionLawKind.
+const std::array<MotionLawEntry, config::kNumMotionLaws> kMotionLaws{{
+    {config::MotionLawKind::kComputedTorque, "computed_torque", ComputedTorque, 1, true},
+    {config::MotionLawKind::kPd, "pd", PdLaw, 1, false},
+    {config::MotionLawKind::kJointImpedance, "joint_impedance", JointImpedance, 1, false},
+    {config::MotionLawKind::kOperationalSpace, "operational_space", OperationalSpace, 6, true},
+    {config::MotionLawKind::kFloat, "float", Float, 1, false},
+}};
+
+void MotionLawState::Reset(config::MotionLawKind law, int num_joints) noexcept {
+  kind = law;
+  integral.setZero(num_joints);
+  cut.setZero(num_joints);
+  step.setZero(num_joints);
+  since_change_s = 0.0;
+}
+
+void MotionLaw(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
+               model::VecN& tau) noexcept {
+  TorqueOf(state.kind, config, inputs, state, tau);
+  tau += Fade(config, state) * state.step;
+  if (state.since_change_s < config.change_s) {
+    state.since_change_s += kPeriodS;
+  }
+}
+
+void ChangeMotionLaw(const config::MotionLawConfig& config, const MotionLawInputs& inputs,
+                     config::MotionLawKind kind, MotionLawState& state) noexcept {
+  if (kind == state.kind) {
+    return;
+  }
+  model::VecN before;
+  model::VecN after;
+  TorqueOf(state.kind, config, inputs, state, before);
+  before += Fade(config, state) * state.step;
+  state.integral.setZero();  // what it held is in the step now
+  TorqueOf(kind, config, inputs, state, after);
+  state.kind = kind;
+  state.step = before - after;
+  state.since_change_s = 0.0;
+}
+
+void DampedStop(double damping, const model::ArmDynamics& dynamics, const model::VecN& dq,
+                model::VecN& tau) noexcept {
+  tau = dynamics.M.lazyProduct(dq);
+  tau *= -damping;
+}
+
+}  // namespace fovea::motion_laws

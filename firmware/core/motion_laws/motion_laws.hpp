@@ -1,0 +1,45 @@
+// The laws themselves; see kMotionLaws in motion_law.cpp. Each writes `tau` [num_joints] at the seam.
+#pragma once
+
+#include "firmware/core/motion_laws/motion_law.hpp"
+
+namespace fovea::motion_laws {
+
+// The partition law alpha/beta with matrices (Craig, Introduction to Robotics, ch. 10):
+//
+//   tau = alpha (ddq_ref + k_v' e' + k_p' e + k_i' integral of e) + beta                      e = q_ref - q
+//   alpha = M(q),  beta = C(q, dq) dq + friction + springs
+//
+// gives e'' + k_v' e' + k_p' e + ... = 0 in every joint, alike: k_p' = omega_n^2, k_v' = 2 zeta omega_n,
+// k_i' = integral k_p'. The integral stops growing in a joint whose torque the clamp cut, or whose share of
+// the torque is at its bound.
+void ComputedTorque(const config::MotionLawConfig& config, const MotionLawInputs& inputs,
+                    MotionLawState& state, model::VecN& tau) noexcept;
+
+// Each joint by itself: tau = k_p e + k_v e' + friction. With the arm's gravity compensation it is stable at
+// any posture (Takegaki and Arimoto, 1981), knows nothing of M, and follows a fast reference badly.
+void PdLaw(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
+           model::VecN& tau) noexcept;
+
+// A spring and a damper between each joint and its reference, the arm's own dynamics along the reference made
+// up for: tau = M ddq_ref + C dq + k_p e + k_v e' + friction + springs. Without k_v the damper follows the
+// inertia, 2 zeta sqrt(k_p M_ii). Soft where pushed (Hogan, Impedance control, 1985).
+void JointImpedance(const config::MotionLawConfig& config, const MotionLawInputs& inputs,
+                    MotionLawState& state, model::VecN& tau) noexcept;
+
+// The end effector's error by its own inertia, the posture in what is left (Khatib, A unified approach for
+// motion and force control: the operational space formulation, 1987):
+//
+//   tau = J^T Lambda (a_ref + k_v' (V_ref - V) + k_p' e_x - dJ/dt dq) + C dq
+//         + N^T M (ddq_ref + k_v' e' + k_p' e) + friction + springs
+//   Lambda = (J M^-1 J^T)^-1,  N^T = 1 - J^T Lambda J M^-1
+//
+// Lambda is damped, so that near a singularity it stays bounded. For arms of 6 joints and more.
+void OperationalSpace(const config::MotionLawConfig& config, const MotionLawInputs& inputs,
+                      MotionLawState& state, model::VecN& tau) noexcept;
+
+// No torque: the arm floats on its gravity compensation, to be led by hand.
+void Float(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
+           model::VecN& tau) noexcept;
+
+}  // namespace fovea::motion_laws

@@ -1,0 +1,194 @@
+#include "firmware/core/moves/follow_motion.hpp"
+
+#include <cmath>
+
+#include "firmware/core/guard/guard_motion.hpp"
+#include "firmware/core/guard/stop_path.hpp"
+#include "firmware/core/moves/pose_motion.hpp"
+
+namespace fovea::moves {
+namespace {
+
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr double kLateS = 1.0;  // the end effector is there so soon after its plan, or a limit keeps it away
+constexpr double kRounding = 1.0 + 1e-9;  // a plan that uses all of a limit may round above it
+
+bool Exceeds(double value, double limit) noexcept { return !(std::fabs(value) <= limit * kRounding); }
+
+hal::LimitSet LimitsOfJoint(const config::ServoConfig& config, int i,
+                            const trajectory::Reference& next) noexcept {
+  const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+  const config::GuardConfig& guard = config.guard;
+  hal::LimitSet limits = 0;
+  if (Exceeds(next.dq[i], guard.joint_velocity_fraction * joint.dq_max)) {
+    limits |= hal::Bit(hal::Limit::kJointVelocity);
+  }
+  if (Exceeds(next.ddq[i], guard.joint_acceleration_fraction * joint.ddq_max)) {
+    limits |= hal::Bit(hal::Limit::kJointAcceleration);
+  }
+  if (next.q[i] > joint.q_max - guard.joint_position_margin ||
+      next.q[i] < joint.q_min + guard.joint_position_margin) {
+    limits |= hal::Bit(hal::Limit::kJointPosition);
+  }
+  return limits;
+}
+
+model::ArmPoses PosesOf(const config::ServoConfig& config, const model::VecN& q) noexcept {
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, q, poses);
+  return poses;
+}
+
+// The reference slows down as fast as it may on its course.
+hal::LimitSet Brake(const config::ServoConfig& config, trajectory::Reference& reference) noexcept {
+  const model::ArmPoses poses = PosesOf(config, reference.q);
+  model::LinearJacobian J_E_B;
+  model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
+  return guard::GuardMotion(config, guard::StopTogether(config, reference), poses.X_BE.p, J_E_B, poses,
+                            reference);
+}
+
+// `next` becomes the reference if nothing forbids it.
+hal::LimitSet TakeReference(const config::ServoConfig& config, const trajectory::Reference& next,
+                            MotionState& state, trajectory::Reference& reference) noexcept {
+  hal::LimitSet limits = 0;
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    const double expected = reference.q[i] + reference.dq[i] * kPeriodS;
+    state.refused = state.refused || Exceeds(next.q[i] - expected, config.safety.setpoint_jump);
+    limits |= LimitsOfJoint(config, i, next);
+  }
+  if (limits == 0 && !state.refused) {
+    limits = guard::LimitsPassed(config, next, reference.q, PosesOf(config, reference.q));
+  }
+  state.refused = state.refused || limits != 0;
+  if (state.refused) {
+    return limits | Brake(config, reference);
+  }
+  reference = next;
+  return 0;
+}
+
+hal::LimitSet TakeSetpoint(const config::ServoConfig& config, const MotionCommand& command,
+                           MotionState& state, trajectory::Reference& reference) noexcept {
+  const int n = config.arm.num_joints;
+  trajectory::Reference next;
+  next.q = model::ToVector(command.q, n);
+  next.dq = model::ToVector(command.dq, n);
+  next.ddq = model::ToVector(command.ddq, n);
+  if (!next.q.allFinite() || !next.dq.allFinite() || !next.ddq.allFinite()) {
+    state.refused = true;
+    return Brake(config, reference);
+  }
+  return TakeReference(config, next, state, reference);
+}
+
+bool PlanJoints(const config::ServoConfig& config, const MotionCommand& command,
+                const trajectory::Reference& reference, MotionState& state) noexcept {
+  trajectory::JointMove::Limits limits;
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& joint = config.arm.joints[k];
+    limits[k] = {config.guard.joint_velocity_fraction * joint.dq_max,
+                 config.guard.joint_acceleration_fraction * joint.ddq_max,
+                 config.guard.joint_jerk_fraction * joint.dddq_max};
+  }
+  return state.joints.Plan(reference, model::ToVector(command.q, config.arm.num_joints), limits);
+}
+
+MotionCommand HomeOf(const model::ArmModel& arm) noexcept {
+  MotionCommand command;
+  command.kind = MotionKind::kJointGoal;
+  command.q = arm.q_ready;
+  return command;
+}
+
+bool SameGoal(const MotionCommand& a, const MotionCommand& b) noexcept {
+  return a.kind == b.kind && a.q == b.q && a.p_BE == b.p_BE && a.quaternion_BE == b.quaternion_BE;
+}
+
+// Plans for a goal that is not the one under way. False when it is none.
+bool TakeGoal(const config::ServoConfig& config, const MotionCommand& command, std::int64_t now_ns,
+              const trajectory::Reference& reference, MotionState& state) noexcept {
+  if (SameGoal(command, state.goal)) {
+    return true;
+  }
+  PoseSetpoint setpoint;
+  bool planned = false;
+  if (command.kind == MotionKind::kJointGoal) {
+    planned = PlanJoints(config, command, reference, state);
+  } else if (ToSetpoint(command, setpoint)) {
+    state.X_BE = setpoint.X_BE;
+    planned = PlanPose(config, state.X_BE, reference, state.pose);
+  }
+  if (planned) {
+    state.goal = command;
+    state.start_ns = now_ns;
+  }
+  return planned;
+}
+
+MotionCommand Resolved(const config::ServoConfig& config, const MotionCommand& asked) noexcept {
+  return asked.kind == MotionKind::kHome ? HomeOf(config.arm) : asked;
+}
+
+void Arrive(MotionState& state) noexcept {
+  state.done = state.goal;
+  state.Stop();
+}
+
+}  // namespace
+
+void NoteAsked(const config::ServoConfig& config, const MotionCommand& asked, MotionState& state) noexcept {
+  if (state.HasArrived() && !SameGoal(Resolved(config, asked), state.done)) {
+    state.done.kind = MotionKind::kNone;
+  }
+}
+
+hal::LimitSet FollowMotion(const config::ServoConfig& config, const MotionCommand& asked, std::int64_t now_ns,
+                           MotionState& state, trajectory::Reference& reference) noexcept {
+  const MotionCommand command = Resolved(config, asked);
+  state.refused = false;
+  switch (command.kind) {
+    case MotionKind::kNone: break;
+    case MotionKind::kJointSetpoint: state.Stop(); return TakeSetpoint(config, command, state, reference);
+    case MotionKind::kPoseSetpoint: {
+      state.Stop();
+      PoseSetpoint setpoint;
+      state.refused = !ToSetpoint(command, setpoint);
+      return FollowPose(config, setpoint, state.refused, state.resolved, reference);
+    }
+    case MotionKind::kHome:
+    case MotionKind::kJointGoal:
+    case MotionKind::kPoseGoal:
+      if (!TakeGoal(config, command, now_ns, reference, state)) {
+        state.Stop();
+        state.refused = true;
+        return Brake(config, reference);
+      }
+      break;
+  }
+  const double t = static_cast<double>(now_ns - state.start_ns) * 1e-9 + kPeriodS;
+  hal::LimitSet limits = 0;
+  if (state.goal.kind == MotionKind::kJointGoal) {
+    trajectory::Reference next;
+    state.joints.At(t, next);
+    limits = TakeReference(config, next, state, reference);
+    if (t >= state.joints.Duration()) {
+      Arrive(state);
+    }
+  } else if (state.goal.kind == MotionKind::kPoseGoal) {
+    limits = FollowPose(config, PoseAt(state.X_BE, state.pose, t), state.refused, state.resolved, reference);
+    if (t >= state.pose.Duration() && StandsAt(config, state.X_BE, reference)) {
+      Arrive(state);
+    }
+    state.refused = state.refused || t > state.pose.Duration() + kLateS;
+  } else {
+    return Brake(config, reference);
+  }
+  if (state.refused) {
+    state.Stop();
+  }
+  return limits;
+}
+
+}  // namespace fovea::moves

@@ -1,0 +1,80 @@
+// Modes and how one leads to another. The table of transitions is in modes.cpp, on one screen.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "firmware/core/config/servo_config.hpp"
+#include "fovea/hal/events.hpp"
+
+namespace fovea::task {
+
+// What the person, or the program above, asks of the servo; taken in at a tick.
+enum class Request : std::uint8_t {
+  kNone,
+  kTrack,  // steer by the target as soon as it is known
+  kHold,   // stand still
+  kReset,  // leave Fault for Boot
+};
+
+// What the mode depends on, as seen in this tick.
+struct ModeInputs {
+  Request request = Request::kNone;
+  bool arm_ready = false;  // enough sound states in a row, arm at rest
+  bool target_known = false;
+  std::int64_t feature_age_ns = 0;       // of the last accepted measurement
+  bool goal_unreachable = false;         // limits kept the arm from the goal for too long
+  bool target_moved = false;             // far enough from where it was unreachable to try again
+  bool eye_doubted = false;              // what is seen is nothing to steer by
+  bool motion_asked = false;             // a motion is commanded, or not yet at its end
+  bool motion_refused = false;           // the one of the tick before was
+  bool motion_not_followed = false;      // the arm is too far off it
+  hal::Fault fault = hal::Fault::kNone;  // found in this tick
+};
+
+struct ModeState {
+  hal::Mode mode = hal::Mode::kBoot;
+  hal::HoldReason hold_reason = hal::HoldReason::kNone;
+  hal::Fault fault = hal::Fault::kNone;  // latched
+  bool track_asked = false;
+  bool motion_barred = false;  // what is commanded now was stopped: only a new motion may move the arm
+};
+
+// What the table's conditions look at.
+struct ModeFacts {
+  Request request;
+  hal::HoldReason hold_reason;  // before this tick
+  bool fault;
+  bool ready;
+  bool asked;  // for Track
+  bool fresh;  // the target was seen a moment ago
+  bool lost;   // or not for too long
+  bool unreachable;
+  bool moved;
+  bool doubted;
+  bool motion;  // one that may move the arm
+  bool refused;
+  bool astray;  // the arm is too far off the motion
+};
+
+// One way from a mode to a mode. The first of the table whose `from` and `when` fit is taken; where none
+// fits, all stays as it is.
+struct ModeEdge {
+  bool from_any;
+  hal::Mode from;
+  const char* words;  // the condition, for people
+  bool (*when)(const ModeFacts&);
+  hal::Mode to;
+  hal::HoldReason reason;  // of Hold
+};
+std::span<const ModeEdge> ModeEdges() noexcept;
+
+// What the table sees of this tick's `inputs` in `state`.
+[[nodiscard]] ModeFacts FactsOf(const config::PredictConfig& config, const ModeInputs& inputs,
+                                const ModeState& state) noexcept;
+
+// One tick of the mode. True when the mode changed. Real-time: yes.
+bool UpdateMode(const config::PredictConfig& config, const ModeInputs& inputs, ModeState& state) noexcept;
+
+}  // namespace fovea::task

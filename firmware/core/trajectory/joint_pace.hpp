@@ -1,0 +1,42 @@
+// How fast a joint may speed up and brake, within its share of the arm's limits.
+#pragma once
+
+#include <algorithm>
+
+#include "firmware/core/config/servo_config.hpp"
+#include "fovea/hal/types.hpp"
+
+namespace fovea::trajectory {
+
+struct JointPace {
+  double ddq_max = 0.0;       // [rad/s^2]
+  double dddq_max = 0.0;      // [rad/s^3]
+  double ramp_s = 0.0;        // from no acceleration to ddq_max
+  double deceleration = 0.0;  // for stopping before a barrier [rad/s^2]
+  double reaction_s = 0.0;    // until it is there: a tick to see it, a tick to act, and the ramp
+};
+
+// Of joint `i`. Real-time: yes.
+[[nodiscard]] inline JointPace PaceOf(const config::ServoConfig& config, int i) noexcept {
+  constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+  const config::GuardConfig& guard = config.guard;
+  const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+  JointPace pace;
+  pace.dddq_max = guard.joint_jerk_fraction * joint.dddq_max;
+  pace.ddq_max = guard.joint_acceleration_fraction * joint.ddq_max;
+  pace.ramp_s = pace.ddq_max / pace.dddq_max;
+  pace.deceleration = guard.braking_fraction * pace.ddq_max;
+  pace.reaction_s = 2.0 * kPeriodS + pace.deceleration / pace.dddq_max;
+  return pace;
+}
+
+// The longest reaction over the joints: the arm as a whole brakes no sooner [s]. Real-time: yes.
+[[nodiscard]] inline double SlowestReaction(const config::ServoConfig& config) noexcept {
+  double slowest = 0.0;
+  for (int i = 0; i < config.arm.num_joints; ++i) {
+    slowest = std::max(slowest, PaceOf(config, i).reaction_s);
+  }
+  return slowest;
+}
+
+}  // namespace fovea::trajectory

@@ -1,0 +1,60 @@
+// Several axes from any state to rest at a goal, all of them arriving at the same time: the joints of an arm,
+// or the six coordinates of a pose.
+//
+// From rest the axes share one course along the straight line to the goal (phase synchronised): one move over
+// the line's length, limited by whichever axis reaches a limit first. From anywhere else no straight line
+// leads on; the slowest axis goes as fast as it can and every other takes as long (time synchronised). A new
+// goal may be taken at any time from the state that At() gives: the new move begins with exactly that.
+//
+// What an axis does: see axis_move.hpp.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "firmware/core/model/types.hpp"
+#include "firmware/core/trajectory/axis_move.hpp"
+
+namespace fovea::link {
+struct StateAccess;
+}
+
+namespace fovea::trajectory {
+
+// One axis's part: [m or rad, and per s, s^2, s^3]
+struct AxisTask {
+  AxisState start;
+  double goal_x = 0.0;
+  AxisLimits limits;
+};
+
+class SynchronisedMove {
+ public:
+  static constexpr int kMaxAxes = model::kMaxJoints;
+  using States = std::array<AxisState, kMaxAxes>;
+
+  // Plans anew. False, and the move stays as it was, when there are more than kMaxAxes tasks, a value is not
+  // finite or a limit is not greater than zero. Real-time: yes, some 10 us for 7 axes.
+  [[nodiscard]] bool Plan(std::span<const AxisTask> tasks) noexcept;
+
+  // Where all axes are `t` seconds after the start; at rest at the goal, to the bit, from Duration() on.
+  // Entries past the last axis are left alone. Real-time: yes.
+  void At(double t, States& states) const noexcept;
+
+  [[nodiscard]] int NumAxes() const noexcept { return num_axes_; }
+  [[nodiscard]] double Duration() const noexcept { return duration_s_; }
+
+ private:
+  friend struct link::StateAccess;  // writes and reads all of it: firmware/core/link/state_fields.hpp
+  void PlanLine(std::span<const AxisTask> tasks) noexcept;
+  void PlanTimes(std::span<const AxisTask> tasks) noexcept;
+
+  int num_axes_ = 0;
+  double duration_s_ = 0.0;
+  bool straight_ = false;
+  std::array<AxisMove, kMaxAxes> moves_;  // straight: the first only, from -1 to 0 along the line
+  std::array<double, kMaxAxes> goal_{};
+  std::array<double, kMaxAxes> way_{};  // straight: from start to goal
+};
+
+}  // namespace fovea::trajectory

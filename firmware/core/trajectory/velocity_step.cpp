@@ -1,0 +1,32 @@
+#include "firmware/core/trajectory/velocity_step.hpp"
+
+#include <cmath>
+
+namespace fovea::trajectory {
+
+VelocityStep StepVelocity(const AxisState& state, double v, double a, const AxisLimits& limits,
+                          double period_s) noexcept {
+  const double jerk_step = limits.j_max * period_s;
+  const double half = 0.5 * jerk_step;
+  double beside = (v - state.v) / period_s - a;  // the acceleration beside `a` that would do it in this tick
+  const double most = std::sqrt(half * half + 2.0 * jerk_step * std::fabs(beside)) - half;
+  if (std::fabs(beside) > most) {
+    beside = std::copysign(most, beside);
+  }
+  VelocityStep step;
+  double next = a + beside;
+  if (std::fabs(next) > limits.a_max) {
+    next = std::copysign(limits.a_max, next);
+    step.at_a_max = true;
+  }
+  if (const double change = next - state.a; std::fabs(change) > jerk_step) {
+    next = state.a + std::copysign(jerk_step, change);
+    step.at_j_max = true;
+  }
+  step.state.a = next;
+  step.state.v = state.v + next * period_s;
+  step.state.x = state.x + step.state.v * period_s;
+  return step;
+}
+
+}  // namespace fovea::trajectory

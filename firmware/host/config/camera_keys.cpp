@@ -1,0 +1,43 @@
+#include "firmware/host/config/camera_keys.hpp"
+
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/roll_pitch_yaw.hpp"
+
+namespace fovea::config {
+
+void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys) {
+  vision::Intrinsics& in = settings.intrinsics;
+  keys.Integer("camera.width_px", in.width_px, 32, 20000, "px", "of its pictures");
+  keys.Integer("camera.height_px", in.height_px, 32, 20000, "px", "of its pictures");
+  keys.Number("camera.f_u_px", in.f_u_px, 1.0, 1e6, "px", "focal length along u");
+  keys.Number("camera.f_v_px", in.f_v_px, 1.0, 1e6, "px", "focal length along v");
+  keys.Number("camera.c_u_px", in.c_u_px, -1e5, 1e5, "px", "principal point");
+  keys.Number("camera.c_v_px", in.c_v_px, -1e5, 1e5, "px", "principal point");
+  keys.Numbers("camera.lens", settings.lens, 5, 5, -1e3, 1e3, "", "distortion: k1, k2, p1, p2, k3");
+  keys.Number("camera.rms_px", settings.rms_px, 0.0, 1e3, "px",
+              "how well the views of the calibration fit, as `fovea calibrate intrinsics` says; 0: unknown");
+  keys.Number("camera.mount_rms_mm", settings.mount_rms_mm, 0.0, 1e3, "mm",
+              "how well those of the mounting agree, as `fovea calibrate hand-eye` says; 0: unknown");
+  keys.Numbers("camera.mount_xyz", settings.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
+  keys.Numbers("camera.mount_rpy_deg", settings.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
+               "orientation of C in E: roll, pitch, yaw about fixed axes");
+}
+
+vision::Intrinsics MakeIntrinsics(const CalibrationSettings& settings) {
+  vision::Intrinsics in = settings.intrinsics;
+  if (in.f_u_px <= 0.0 || in.f_v_px <= 0.0) {
+    throw InputError(
+        "camera.f_u_px and camera.f_v_px are needed: copy what `fovea calibrate intrinsics` writes into "
+        "[camera]");
+  }
+  const std::vector<double>& k = settings.lens;
+  in.lens = {k[0], k[1], k[2], k[3], k[4]};
+  return in;
+}
+
+model::Pose MakeMount(const CalibrationSettings& settings) {
+  const std::vector<double>& p = settings.mount_xyz;
+  return {RollPitchYaw(settings.mount_rpy_deg), model::Vec3(p[0], p[1], p[2])};
+}
+
+}  // namespace fovea::config

@@ -1,0 +1,29 @@
+// The keys of section [camera] that say what a real camera's pictures mean: its calibration, and where it is
+// mounted. What `fovea calibrate intrinsics` writes is read by them.
+#pragma once
+
+#include <vector>
+
+#include "firmware/core/model/types.hpp"
+#include "firmware/host/config/key_table.hpp"
+#include "firmware/vision/pose/intrinsics.hpp"
+
+namespace fovea::config {
+
+struct CalibrationSettings {
+  vision::Intrinsics intrinsics{640, 480, 0.0, 0.0, 319.5, 239.5};
+  std::vector<double> lens{0.0, 0.0, 0.0, 0.0, 0.0};
+  double rms_px = 0.0;                               // how well the views of the calibration fit; 0: unknown
+  double mount_rms_mm = 0.0;                         // and those of where it is mounted
+  std::vector<double> mount_xyz{0.0, 0.0, 0.0};      // p_EC [m]
+  std::vector<double> mount_rpy_deg{0.0, 0.0, 0.0};  // R_EC
+};
+
+// The settings must outlive the table.
+void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys);
+
+// InputError when there is no focal length.
+vision::Intrinsics MakeIntrinsics(const CalibrationSettings& settings);
+model::Pose MakeMount(const CalibrationSettings& settings);  // X_EC
+
+}  // namespace fovea::config

@@ -1,0 +1,193 @@
+#include "firmware/host/config/key_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "firmware/host/config/input_error.hpp"
+
+namespace fovea::config {
+namespace {
+
+// A number as a person writes it: 1e-06 stays, 0.30000000000000004 does not occur among defaults.
+std::string Plain(double value) { return fmt::format("{:g}", value); }
+
+std::string Range(double min, double max) { return fmt::format("{} to {}", Plain(min), Plain(max)); }
+
+[[noreturn]] void Refuse(const Setting& setting, const Key& key) {
+  const std::string unit = key.unit.empty() ? "" : " " + key.unit;
+  throw InputError(fmt::format("{}: {} = {} is not allowed: expected {}, {}{}", setting.where, setting.key,
+                               ToText(setting.value), key.kind, key.allowed, unit));
+}
+
+bool ToDouble(const Value& value, double& number) {
+  if (const auto* floating = std::get_if<double>(&value)) {
+    number = *floating;
+  } else if (const auto* integer = std::get_if<std::int64_t>(&value)) {
+    number = static_cast<double>(*integer);
+  } else {
+    return false;
+  }
+  return std::isfinite(number);
+}
+
+int EditDistance(const std::string& a, const std::string& b) {
+  std::vector<int> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    int diagonal = std::exchange(row[0], static_cast<int>(i) + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const int replace = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replace, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+void KeyTable::Add(Key key) { keys_.push_back(std::move(key)); }
+
+void KeyTable::Number(std::string name, double& field, double min, double max, std::string unit,
+                      std::string meaning) {
+  Key key{std::move(name), "a number", std::move(unit), Range(min, max), std::move(meaning),
+          Plain(field),    {}};
+  key.set = [key, &field, min, max](const Setting& setting) {
+    double number = 0.0;
+    if (!ToDouble(setting.value, number) || number < min || number > max) {
+      Refuse(setting, key);
+    }
+    field = number;
+  };
+  Add(std::move(key));
+}
+
+void KeyTable::Integer(std::string name, int& field, int min, int max, std::string unit,
+                       std::string meaning) {
+  Key key{std::move(name),
+          "a whole number",
+          std::move(unit),
+          fmt::format("{} to {}", min, max),
+          std::move(meaning),
+          fmt::format("{}", field),
+          {}};
+  key.set = [key, &field, min, max](const Setting& setting) {
+    const auto* integer = std::get_if<std::int64_t>(&setting.value);
+    if (integer == nullptr || *integer < min || *integer > max) {
+      Refuse(setting, key);
+    }
+    field = static_cast<int>(*integer);
+  };
+  Add(std::move(key));
+}
+
+void KeyTable::Flag(std::string name, bool& field, std::string meaning) {
+  Key key{std::move(name), "a flag", "", "true or false", std::move(meaning), field ? "true" : "false", {}};
+  key.set = [key, &field](const Setting& setting) {
+    const auto* flag = std::get_if<bool>(&setting.value);
+    if (flag == nullptr) {
+      Refuse(setting, key);
+    }
+    field = *flag;
+  };
+  Add(std::move(key));
+}
+
+void KeyTable::Text(std::string name, std::string& field, std::string meaning) {
+  Key key{std::move(name), "a text", "", "in quotes", std::move(meaning), fmt::format("\"{}\"", field), {}};
+  key.set = [key, &field](const Setting& setting) {
+    const auto* text = std::get_if<std::string>(&setting.value);
+    if (text == nullptr) {
+      Refuse(setting, key);
+    }
+    field = *text;
+  };
+  Add(std::move(key));
+}
+
+void KeyTable::Choice(std::string name, std::string& field, std::vector<std::string> choices,
+                      std::string meaning) {
+  Key key{std::move(name),
+          "one of",
+          "",
+          fmt::format("\"{}\"", fmt::join(choices, "\", \"")),
+          std::move(meaning),
+          fmt::format("\"{}\"", field),
+          {}};
+  key.set = [key, &field, choices](const Setting& setting) {
+    const auto* text = std::get_if<std::string>(&setting.value);
+    if (text == nullptr || std::find(choices.begin(), choices.end(), *text) == choices.end()) {
+      Refuse(setting, key);
+    }
+    field = *text;
+  };
+  Add(std::move(key));
+}
+
+void KeyTable::Numbers(std::string name, std::vector<double>& field, std::size_t size_min,
+                       std::size_t size_max, double min, double max, std::string unit, std::string meaning) {
+  const std::string count =
+      size_min == size_max ? fmt::format("{}", size_min) : fmt::format("{} to {}", size_min, size_max);
+  Key key{std::move(name),
+          "a list of " + count + " numbers",
+          std::move(unit),
+          "each " + Range(min, max),
+          std::move(meaning),
+          ToText(field),
+          {}};
+  key.set = [key, &field, size_min, size_max, min, max](const Setting& setting) {
+    const auto* numbers = std::get_if<std::vector<double>>(&setting.value);
+    if (numbers == nullptr || numbers->size() < size_min || numbers->size() > size_max) {
+      Refuse(setting, key);
+    }
+    for (const double number : *numbers) {
+      if (!std::isfinite(number) || number < min || number > max) {
+        Refuse(setting, key);
+      }
+    }
+    field = *numbers;
+  };
+  Add(std::move(key));
+}
+
+void KeyTable::Apply(const Setting& setting) const {
+  std::vector<std::string> names;
+  for (const Key& key : keys_) {
+    if (key.name == setting.key) {
+      key.set(setting);
+      return;
+    }
+    names.push_back(key.name);
+  }
+  const std::string nearest = Nearest(setting.key, names);
+  throw InputError(fmt::format("{}: unknown key {}{}", setting.where, setting.key,
+                               nearest.empty() ? std::string() : "; did you mean " + nearest + "?"));
+}
+
+std::map<std::string, std::string> KeyTable::Values() const {
+  std::map<std::string, std::string> values;
+  for (const Key& key : keys_) {
+    values[key.name] = key.default_text;
+  }
+  return values;
+}
+
+std::string Nearest(const std::string& name, const std::vector<std::string>& names) {
+  std::string best;
+  int best_distance = std::max(3, static_cast<int>(name.size()) / 3) + 1;
+  for (const std::string& candidate : names) {
+    const int distance = EditDistance(name, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+}  // namespace fovea::config

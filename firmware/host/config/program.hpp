@@ -1,0 +1,87 @@
+// What every program of the project does with its command line: exit codes, and errors on one line.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#include "firmware/host/config/number_options.hpp"
+
+namespace fovea::config {
+
+inline constexpr int kDone = 0;
+inline constexpr int kGoalMissed = 1;  // the run failed its own goal
+inline constexpr int kBadInput = 2;    // wrong usage or input
+
+// A library's words may have several lines.
+inline std::string OnOneLine(std::string text) {
+  text.erase(text.find_last_not_of(" \n\r\t") + 1);
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+  return text;
+}
+
+// What `app` takes: the names of its subcommands and options.
+inline std::string AllowedBy(const CLI::App& app) {
+  std::string names;
+  const auto add = [&names](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+  for (const CLI::App* command :
+       app.get_subcommands([](const CLI::App* a) { return !a->get_name().empty(); })) {
+    add(command->get_name());
+  }
+  for (const CLI::Option* option : app.get_options({})) {
+    if (!option->get_group().empty()) {
+      add(option->get_name());
+    }
+  }
+  return names;
+}
+
+// What is wrong with a command line, and what is allowed there.
+inline std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* command = &app;
+  while (!command->get_subcommands().empty()) {
+    command = command->get_subcommands().back();
+  }
+  const bool is_about_names = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
+                              dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  std::string what = OnOneLine(error.what());
+  if (what.find("not expected") == std::string::npos) {
+    for (const std::string& word : app.remaining(true)) {
+      what += "; not expected: " + OnOneLine(word);
+    }
+  }
+  return what + (is_about_names ? "; allowed: " + AllowedBy(*command) : "");
+}
+
+// Parses the command line into what `app` was given, then does `action`. Returns the program's exit code: of
+// the action, or kBadInput after one line on standard error that begins with the program's `name`.
+inline int RunProgram(const char* name, CLI::App& app, int argc, char** argv,
+                      const std::function<int()>& action) {
+  RefuseNonFinite(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+      return app.exit(error) == 0 ? kDone : kBadInput;
+    }
+    std::fprintf(stderr, "%s: %s\n", name, Explain(app, error).c_str());
+    return kBadInput;
+  }
+  try {
+    const int code = action();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      throw std::runtime_error("standard output cannot be written");
+    }
+    return code;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name, OnOneLine(error.what()).c_str());
+    return kBadInput;
+  }
+}
+
+}  // namespace fovea::config

@@ -1,0 +1,26 @@
+// The keys of section [vision], the same for the simulator and for hardware.
+#pragma once
+
+#include <string>
+
+#include "firmware/host/config/key_table.hpp"
+#include "firmware/host/config/target_keys.hpp"
+#include "firmware/vision/detect/detector_config.hpp"
+
+namespace fovea::config {
+
+// What the keys set, before camera and target are known.
+struct VisionSettings {
+  vision::DetectorConfig config;
+  std::string method = "colour";
+};
+
+// The settings must outlive the table.
+void AddVisionKeys(VisionSettings& settings, KeyTable& keys);
+
+// The detector's whole configuration. InputError: limits that leave nothing, a method that finds no such
+// target.
+vision::DetectorConfig MakeVisionConfig(const VisionSettings& settings, const vision::Intrinsics& intrinsics,
+                                        const TargetSettings& target);
+
+}  // namespace fovea::config

@@ -1,0 +1,51 @@
+// What the eye saw, as a film: each frame with detection, goal and time drawn in, encoded beside the run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "firmware/host/film/film_queue.hpp"
+#include "firmware/host/film/overlay.hpp"
+#include "firmware/host/film/video_file.hpp"
+#include "firmware/vision/detect/detection.hpp"
+#include "fovea/hal/camera.hpp"
+
+namespace fovea::film {
+
+struct EyeFilmConfig {
+  std::filesystem::path path;
+  vision::Intrinsics intrinsics;
+  Overlay::Curve goal;                                    // the target's outline at its goal
+  Eigen::Vector3d p_CO_C_star = Eigen::Vector3d::Zero();  // the goal [m]
+  bool may_drop = false;  // when encoding is slower than the camera: drop a frame (true) or wait (false)
+};
+
+class EyeFilm {
+ public:
+  explicit EyeFilm(const EyeFilmConfig& config);
+  // From the vision thread; copies the pixels. Its time is told from `begin_ns` on, of the clock that stamps
+  // frames. A frame of another size than the intrinsics' is left out.
+  void Add(const hal::Frame& frame, const vision::Detection& detection, std::int64_t begin_ns = 0);
+  // Encodes what is left and completes the file. Throws what went wrong at any time.
+  void Finish();
+  // Frames that found no place; and, when nobody adds any more, those that did: without one there is no film.
+  [[nodiscard]] std::uint64_t dropped() const { return queue_.dropped(); }
+  [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  [[nodiscard]] const std::filesystem::path& path() const { return config_.path; }
+
+ private:
+  struct Item {
+    cv::Mat page;  // the picture, with room for the legend below
+    std::int64_t time_ns = 0;
+    vision::Detection detection;
+  };
+  void Draw(Item& item) const;
+
+  const EyeFilmConfig config_;
+  cv::Mat legend_;  // what it says in every frame
+  std::uint64_t frames_ = 0;
+  VideoFile file_;
+  FilmQueue<Item> queue_;  // last: its thread uses the others
+};
+
+}  // namespace fovea::film

@@ -1,0 +1,61 @@
+// Keeps of every tick what a replay needs: the inputs, the outputs, a digest of the servo's state after it,
+// and each second the whole state before it.
+//
+// It stands around the servo, where the loop steps it, and is the loop's recorder. All goes through bounded
+// rings to one other thread. What finds no place is dropped and counted; the tick never waits.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "firmware/core/link/state.hpp"
+#include "firmware/core/task/servo_task.hpp"
+#include "fovea/hal/record.hpp"
+#include "fovea/linux_rt/bounded_ring.hpp"
+
+namespace fovea::flight {
+
+struct FlightRecord {
+  hal::TickRecord record;
+  link::Demand demand;
+  std::optional<std::uint64_t> state_digest;
+};
+
+struct Keyframe {
+  std::uint64_t tick = 0;  // the next one
+  task::ServoState state;  // before it
+};
+
+class FlightRecorder final : public task::ServoStep, public hal::Recorder {
+ public:
+  static constexpr std::uint64_t kKeyframeTicks = 1000;
+
+  // Room for `capacity` records [>= 1]. All are borrowed. `task`: the servo that `step` is, where its state
+  // can be looked at; null: it is on another processor, and there is neither digest nor keyframe.
+  FlightRecorder(task::ServoStep& step, const task::ServoTask* task, std::size_t capacity);
+
+  // From the real-time thread. Real-time: yes; a keyframe takes some 15 us.
+  void Step(const task::ServoInputs& inputs, task::ServoOutputs& outputs) noexcept override;
+  void Record(const hal::TickRecord& record) noexcept override;
+
+  // From one other thread: calls `take_keyframe(keyframe)` and `take(record)` for all that is there, the
+  // keyframe of a tick before its record.
+  template <typename Take, typename TakeKeyframe>
+  void Drain(Take&& take, TakeKeyframe&& take_keyframe) {
+    const std::uint64_t end = records_.End();
+    keyframes_.Drain(keyframes_.End(), take_keyframe);
+    records_.Drain(end, take);
+  }
+
+  // Records that found no place. (A keyframe that finds none is left out: the next one comes in a second.)
+  [[nodiscard]] std::uint64_t dropped() const noexcept { return records_.dropped(); }
+
+ private:
+  task::ServoStep& step_;
+  const task::ServoTask* task_;
+  link::Demand demand_;  // of the tick in hand
+  linux_rt::BoundedRing<FlightRecord> records_;
+  linux_rt::BoundedRing<Keyframe> keyframes_;
+};
+
+}  // namespace fovea::flight

@@ -1,0 +1,152 @@
+#include "firmware/host/recording/flight/messages.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "firmware/core/link/config_fields.hpp"
+#include "fovea/tick.pb.h"
+
+namespace fovea::flight {
+namespace {
+
+static_assert(link::kMaxDemand <= std::tuple_size_v<decltype(log::ReplayData::demand)>);
+
+constexpr std::size_t kMostSection = 8192;  // bytes of a part of the configuration
+
+// As link::FieldReader, but what stands after the last byte keeps the value that it has: a log that was
+// written before a field was added to the end of its list.
+class EarlierReader {
+ public:
+  explicit EarlierReader(link::Bytes bytes) : reader_(bytes) {}
+
+  template <class T>
+  void operator()(T& value) {
+    if (!reader_.Done()) {
+      reader_(value);
+    }
+  }
+  template <class Integer>
+  void Int(Integer& value) {
+    if (!reader_.Done()) {
+      reader_.Int(value);
+    }
+  }
+  template <class Integer>
+  void Count(Integer& value, int most) {
+    if (!reader_.Done()) {
+      reader_.Count(value, most);
+    }
+  }
+  template <class Enum>
+  void Choice(Enum& value, int count) {
+    if (!reader_.Done()) {
+      reader_.Choice(value, count);
+    }
+  }
+  [[nodiscard]] bool Done() const { return reader_.Done(); }
+
+ private:
+  link::FieldReader reader_;
+};
+
+link::Bytes BytesOf(const std::string& text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+// Calls `visit(name, fields)` for each part, the arm last.
+template <class Config, class Visit>
+void EachPart(Config& config, const Visit& visit) {
+  link::EachSection(config, visit);
+  visit("arm", [&config](auto& a) { link::ArmFields(a, config.arm); });
+}
+
+}  // namespace
+
+log::ReplayData ReplayDataOf(const FlightRecord& record) {
+  log::ReplayData data;
+  data.state_digest = record.state_digest;
+  if (!record.demand.IsPlain()) {
+    const link::Bytes bytes = link::Encode(record.demand, data.demand);
+    if (bytes.empty()) {
+      throw std::runtime_error(fmt::format("tick {}: a request that is none", record.record.tick));
+    }
+    data.demand_size = static_cast<std::uint32_t>(bytes.size());
+  }
+  return data;
+}
+
+log::Keyframe ToMessage(const Keyframe& keyframe) {
+  std::vector<std::uint8_t> storage(link::kMaxState);
+  const link::Bytes bytes = link::Encode(keyframe.state, storage);
+  log::Keyframe message;
+  message.set_tick(keyframe.tick);
+  message.set_state(bytes.data(), bytes.size());
+  return message;
+}
+
+log::ServoConfiguration ToMessage(const config::ServoConfig& config) {
+  log::ServoConfiguration message;
+  std::vector<std::uint8_t> storage(kMostSection);
+  EachPart(config, [&](const char* name, const auto& fields) {
+    link::FieldWriter writer(storage);
+    fields(writer);
+    log::ServoConfiguration::Section& section = *message.add_sections();
+    section.set_name(name);
+    section.set_fields(writer.written().data(), writer.written().size());
+  });
+  return message;
+}
+
+task::ServoInputs InputsOf(const log::Tick& message, const hal::FeatureMeasurement& feature) {
+  const hal::TickRecord record = log::FromMessage(message, feature);
+  task::ServoInputs inputs;
+  inputs.arm = record.arm;
+  inputs.has_feature = record.has_feature;
+  inputs.feature = feature;
+  inputs.missed_ticks = record.missed_ticks;
+  if (!message.demand().empty()) {
+    link::Demand demand;
+    if (!link::Decode(BytesOf(message.demand()), demand)) {
+      throw std::runtime_error(fmt::format("tick {}: its request cannot be read", record.tick));
+    }
+    const bool ok = demand.arm_status == hal::StatusCode::kOk;
+    inputs.arm_status = hal::Status(demand.arm_status, ok ? "" : "arm");
+    inputs.request = demand.request;
+    inputs.motion = demand.motion;
+    inputs.change_law = demand.change_law;
+    inputs.law = demand.law;
+  }
+  return inputs;
+}
+
+config::ServoConfig FromMessage(const log::ServoConfiguration& message) {
+  config::ServoConfig config;
+  for (const log::ServoConfiguration::Section& section : message.sections()) {
+    bool known = false;
+    EachPart(config, [&](const char* name, const auto& fields) {
+      if (section.name() == name) {
+        EarlierReader reader(BytesOf(section.fields()));
+        fields(reader);
+        known = reader.Done();
+      }
+    });
+    if (!known) {
+      throw std::runtime_error(fmt::format(
+          "the servo's configuration, part \"{}\": not as this program has it; the log is of a later one",
+          section.name()));
+    }
+  }
+  return config;
+}
+
+void FromMessage(const log::Keyframe& message, task::ServoState& state) {
+  if (!link::Decode(BytesOf(message.state()), state)) {
+    throw std::runtime_error(
+        fmt::format("the keyframe of tick {}: not as this program has it", message.tick()));
+  }
+}
+
+}  // namespace fovea::flight

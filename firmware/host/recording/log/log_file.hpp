@@ -1,0 +1,33 @@
+// An MCAP file of protobuf messages: each type's schema and each topic's channel made when first needed.
+#pragma once
+
+#include <google/protobuf/message.h>
+
+#include <map>
+#include <string>
+
+#include "firmware/host/recording/log/mcap_writer.hpp"
+
+namespace fovea::log {
+
+class LogFile {
+ public:
+  LogFile(const std::filesystem::path& path, const std::string& library) : writer_(path, library) {}
+
+  void Write(const std::string& topic, std::int64_t time_ns, const google::protobuf::Message& message) {
+    message.SerializeToString(&bytes_);
+    Write(topic, *message.GetDescriptor(), time_ns, bytes_);
+  }
+  // `bytes`: a serialised message of the given type.
+  void Write(const std::string& topic, const google::protobuf::Descriptor& type, std::int64_t time_ns,
+             std::string_view bytes);
+  McapWriter& writer() { return writer_; }
+
+ private:
+  McapWriter writer_;
+  std::map<std::string, std::uint16_t> schemas_;   // by the type's name
+  std::map<std::string, std::uint16_t> channels_;  // by topic
+  std::string bytes_;
+};
+
+}  // namespace fovea::log

@@ -1,0 +1,36 @@
+// What a log says once of its run: what it is about, how long its ticks took, what it was built from.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "firmware/core/features/target_feature.hpp"
+#include "firmware/core/model/arm_model.hpp"
+#include "firmware/vision/pose/intrinsics.hpp"
+#include "fovea/linux_rt/tick_meter.hpp"
+
+namespace fovea::log {
+
+class Setup;
+class TickTimes;
+
+// See Setup in firmware/host/recording/log/proto/fovea/run.proto.
+struct RunSetup {
+  std::string name;
+  std::vector<std::string> joint_names;  // [arm.num_joints]
+  model::ArmModel arm;
+  features::TargetFeature feature;
+  vision::Intrinsics intrinsics;
+  double lambda = 0.0;         // [1/s]
+  double target_radius = 0.0;  // of the ball that holds the target [m]; 0: there is no camera
+  bool target_moves = false;
+  double workspace_radius = 0.0;  // [m]
+  double duration_s = 0.0;        // 0: until it is told to end
+  std::int64_t start_ns = 0;      // the loop's clock when the run began
+};
+
+Setup SetupMessage(const RunSetup& setup);
+TickTimes TickTimesMessage(const linux_rt::DurationHistogram& ticks);
+
+}  // namespace fovea::log

@@ -1,0 +1,181 @@
+#include "firmware/host/recording/log/tick_message.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "fovea/tick.pb.h"
+
+namespace fovea::log {
+namespace {
+
+using Doubles = google::protobuf::RepeatedField<double>;
+
+template <std::size_t N>
+void Put(const std::array<double, N>& values, int count, Doubles& to) {
+  to.Clear();
+  to.Add(values.begin(), values.begin() + count);
+}
+
+template <std::size_t N>
+void Get(const Doubles& from, std::array<double, N>& values) {
+  if (static_cast<std::size_t>(from.size()) > N) {
+    throw std::runtime_error("the log holds more entries than the servo has");
+  }
+  std::copy(from.begin(), from.end(), values.begin());
+}
+
+template <typename To, typename From>
+To Same(From value) {
+  return static_cast<To>(static_cast<int>(value));
+}
+
+// The message's enumerations have the numbers of the servo's.
+static_assert(static_cast<int>(hal::Mode::kMove) == MOVE);
+static_assert(static_cast<int>(hal::HoldReason::kNotFollowed) == NOT_FOLLOWED);
+static_assert(static_cast<int>(hal::Fault::kContact) == CONTACT && hal::kNumFaults == 11);
+static_assert(static_cast<int>(hal::FeatureKind::kTriangle) == Feature::TRIANGLE);
+static_assert(static_cast<int>(hal::Intake::kOutlier) == OUTLIER && hal::kNumIntakes == 9);
+
+}  // namespace
+
+void ToMessage(const hal::TickRecord& r, Tick& m) {
+  m.set_tick(r.tick);
+  m.set_stamp_ns(r.stamp_ns);
+  m.set_missed_ticks(r.missed_ticks);
+  ArmState& arm = *m.mutable_arm();
+  arm.set_stamp_ns(r.arm.stamp_ns);
+  arm.set_sequence(r.arm.sequence);
+  const int joints = r.arm.num_joints;
+  Put(r.arm.q, joints, *arm.mutable_q());
+  Put(r.arm.dq, joints, *arm.mutable_dq());
+  Put(r.arm.tau_meas, joints, *arm.mutable_tau_meas());
+  Put(r.arm.tau_applied, joints, *arm.mutable_tau_applied());
+  m.set_has_feature(r.has_feature);
+  m.set_intake(Same<Intake>(r.intake));
+  m.set_mode(Same<Mode>(r.mode));
+  m.set_hold_reason(Same<HoldReason>(r.hold_reason));
+  m.set_fault(Same<FaultCause>(r.fault));
+  m.set_fault_joint(r.fault_joint);
+  m.set_limits_active(r.limits_active);
+  m.set_target_known(r.target_known);
+  m.set_feature_age_ns(r.feature_age_ns);
+  Put(r.p_BO, 3, *m.mutable_p_bo());
+  Put(r.q_BO, 4, *m.mutable_q_bo());
+  Put(r.v_BO, 3, *m.mutable_v_bo());
+  Put(r.s, r.dim, *m.mutable_s());
+  Put(r.s_star, r.dim, *m.mutable_s_star());
+  Put(r.e, r.dim, *m.mutable_e());
+  Put(r.V_BC_C_cmd, 6, *m.mutable_v_bc_c_cmd());
+  const int commanded = r.command.num_joints;
+  Put(r.q_cmd, commanded, *m.mutable_q_cmd());
+  Put(r.dq_cmd, commanded, *m.mutable_dq_cmd());
+  Put(r.ddq_cmd, commanded, *m.mutable_ddq_cmd());
+  ArmCommand& command = *m.mutable_command();
+  command.set_state_sequence(r.command.state_sequence);
+  Put(r.command.tau_cmd, commanded, *command.mutable_tau());
+  command.set_engage_brakes(r.command.engage_brakes);
+}
+
+void ToMessage(const ReplayData& data, Tick& m) {
+  m.set_demand(data.demand.data(), data.demand_size);
+  m.clear_state_digest();
+  if (data.state_digest) {
+    m.set_state_digest(*data.state_digest);
+  }
+}
+
+void ToMessage(const hal::FeatureMeasurement& f, Feature& m) {
+  m.set_stamp_ns(f.stamp_ns);
+  m.set_sequence(f.sequence);
+  m.set_same_for_ns(f.same_for_ns);
+  m.set_kind(Same<Feature::Kind>(f.kind));
+  m.set_found(f.found);
+  m.set_confidence(f.confidence);
+  Put(f.s, f.dim, *m.mutable_s());
+  m.clear_cov_s();
+  for (std::size_t row = 0; row < static_cast<std::size_t>(f.dim); ++row) {
+    for (std::size_t col = 0; col < static_cast<std::size_t>(f.dim); ++col) {
+      m.add_cov_s(f.cov_s[row * hal::kMaxFeatureDim + col]);
+    }
+  }
+  m.clear_poses();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(f.num_poses); ++i) {
+    FlatPose& pose = *m.add_poses();
+    Put(f.poses[i].p_CO_C, 3, *pose.mutable_p_co_c());
+    Put(f.poses[i].q_CO, 4, *pose.mutable_q_co());
+    pose.set_first(f.poses[i].first);
+  }
+}
+
+hal::FeatureMeasurement FromMessage(const Feature& m) {
+  hal::FeatureMeasurement f;
+  f.stamp_ns = m.stamp_ns();
+  f.sequence = m.sequence();
+  f.same_for_ns = m.same_for_ns();
+  f.kind = Same<hal::FeatureKind>(m.kind());
+  f.found = m.found();
+  f.confidence = m.confidence();
+  f.dim = m.s_size();
+  Get(m.s(), f.s);
+  if (m.cov_s_size() != f.dim * f.dim) {
+    throw std::runtime_error("the log holds a covariance of another size than its feature");
+  }
+  for (int row = 0; row < f.dim; ++row) {
+    for (int col = 0; col < f.dim; ++col) {
+      f.cov_s[static_cast<std::size_t>(row * hal::kMaxFeatureDim + col)] = m.cov_s(row * f.dim + col);
+    }
+  }
+  f.num_poses = m.poses_size();
+  if (f.num_poses > hal::kMaxPoses) {
+    throw std::runtime_error("the log holds more poses than the servo takes");
+  }
+  for (std::size_t i = 0; i < static_cast<std::size_t>(f.num_poses); ++i) {
+    const FlatPose& pose = m.poses(static_cast<int>(i));
+    Get(pose.p_co_c(), f.poses[i].p_CO_C);
+    Get(pose.q_co(), f.poses[i].q_CO);
+    f.poses[i].first = pose.first();
+  }
+  return f;
+}
+
+hal::TickRecord FromMessage(const Tick& m, const hal::FeatureMeasurement& feature) {
+  hal::TickRecord r;
+  r.tick = m.tick();
+  r.stamp_ns = m.stamp_ns();
+  r.missed_ticks = m.missed_ticks();
+  r.arm.stamp_ns = m.arm().stamp_ns();
+  r.arm.sequence = m.arm().sequence();
+  r.arm.num_joints = m.arm().q_size();
+  Get(m.arm().q(), r.arm.q);
+  Get(m.arm().dq(), r.arm.dq);
+  Get(m.arm().tau_meas(), r.arm.tau_meas);
+  Get(m.arm().tau_applied(), r.arm.tau_applied);
+  r.has_feature = m.has_feature();
+  r.feature = feature;
+  r.intake = Same<hal::Intake>(m.intake());
+  r.mode = Same<hal::Mode>(m.mode());
+  r.hold_reason = Same<hal::HoldReason>(m.hold_reason());
+  r.fault = Same<hal::Fault>(m.fault());
+  r.fault_joint = m.fault_joint();
+  r.limits_active = m.limits_active();
+  r.target_known = m.target_known();
+  r.feature_age_ns = m.feature_age_ns();
+  Get(m.p_bo(), r.p_BO);
+  Get(m.q_bo(), r.q_BO);
+  Get(m.v_bo(), r.v_BO);
+  r.dim = m.s_size();
+  Get(m.s(), r.s);
+  Get(m.s_star(), r.s_star);
+  Get(m.e(), r.e);
+  Get(m.v_bc_c_cmd(), r.V_BC_C_cmd);
+  Get(m.q_cmd(), r.q_cmd);
+  Get(m.dq_cmd(), r.dq_cmd);
+  Get(m.ddq_cmd(), r.ddq_cmd);
+  r.command.state_sequence = m.command().state_sequence();
+  r.command.num_joints = m.command().tau_size();
+  Get(m.command().tau(), r.command.tau_cmd);
+  r.command.engage_brakes = m.command().engage_brakes();
+  return r;
+}
+
+}  // namespace fovea::log

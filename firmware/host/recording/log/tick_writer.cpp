@@ -1,0 +1,112 @@
+#include "firmware/host/recording/log/tick_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include "firmware/core/model/kinematics.hpp"
+#include "firmware/core/model/rotation.hpp"
+#include "firmware/host/recording/log/stamp.hpp"
+#include "firmware/host/recording/log/tick_message.hpp"
+#include "firmware/host/recording/log/topics.hpp"
+#include "foxglove/log.pb.h"
+
+namespace fovea::log {
+namespace {
+
+constexpr std::int64_t kTransformPeriodNs = 20 * hal::kNsPerMs;  // 50 Hz: what an eye can follow
+
+void SetPosition(const model::Vec3& p, foxglove::Vector3& to) {
+  to.set_x(p.x());
+  to.set_y(p.y());
+  to.set_z(p.z());
+}
+
+void SetRotation(const model::Mat3& R, foxglove::Quaternion& to) {
+  const Eigen::Quaterniond q(R);
+  to.set_w(q.w());
+  to.set_x(q.x());
+  to.set_y(q.y());
+  to.set_z(q.z());
+}
+
+}  // namespace
+
+void TickWriter::Write(const hal::TickRecord& record, const ReplayData& data, LogFile& file) {
+  ToMessage(record, tick_);
+  ToMessage(data, tick_);
+  file.Write(kTickTopic, record.stamp_ns, tick_);
+  if (record.has_feature) {
+    ToMessage(record.feature, feature_);
+    file.Write(kFeatureTopic, record.stamp_ns, feature_);
+  }
+  WriteEvents(record, file);
+  mode_ = record.mode;
+  reason_ = record.hold_reason;
+  is_first_ = false;
+  if (record.stamp_ns >= next_transforms_ns_ && record.arm.num_joints == config_.arm.num_joints) {
+    next_transforms_ns_ = record.stamp_ns + kTransformPeriodNs;
+    WriteTransforms(record, file);
+  }
+}
+
+void TickWriter::WriteEvents(const hal::TickRecord& record, LogFile& file) const {
+  if (!is_first_ && record.mode == mode_ && record.hold_reason == reason_) {
+    return;
+  }
+  foxglove::Log line;
+  SetStamp(record.stamp_ns, *line.mutable_timestamp());
+  line.set_name("servo");
+  if (record.mode == hal::Mode::kFault) {
+    line.set_level(foxglove::Log::ERROR);
+    std::string text = fmt::format("fault: {}", hal::Name(record.fault));
+    if (record.fault_joint >= 0) {
+      text += fmt::format(", joint {}", record.fault_joint + 1);
+    }
+    if (*hal::Key(record.fault) != '\0') {
+      text += fmt::format("; see {}", hal::Key(record.fault));
+    }
+    line.set_message(text);
+  } else {
+    const bool reasoned = record.hold_reason != hal::HoldReason::kNone;
+    line.set_level(foxglove::Log::INFO);
+    line.set_message(fmt::format("mode: {}{}{}", hal::Name(record.mode), reasoned ? ", " : "",
+                                 reasoned ? hal::Name(record.hold_reason) : ""));
+  }
+  file.Write(kEventTopic, record.stamp_ns, line);
+}
+
+// Where the arm's own encoders say that its frames are.
+void TickWriter::WriteTransforms(const hal::TickRecord& record, LogFile& file) {
+  model::VecN q(record.arm.num_joints);
+  for (int i = 0; i < record.arm.num_joints; ++i) {
+    q[i] = record.arm.q[static_cast<std::size_t>(i)];
+  }
+  if (!q.allFinite()) {
+    return;
+  }
+  model::ArmPoses poses;
+  model::ComputePoses(config_.arm, q, poses);
+  transforms_.clear_transforms();
+  const auto add = [&](const std::string& name, const model::Pose& X_BF) {
+    foxglove::FrameTransform& transform = *transforms_.add_transforms();
+    SetStamp(record.stamp_ns, *transform.mutable_timestamp());
+    transform.set_parent_frame_id(kBaseFrame);
+    transform.set_child_frame_id(name);
+    SetPosition(X_BF.p, *transform.mutable_translation());
+    SetRotation(X_BF.R, *transform.mutable_rotation());
+  };
+  for (const LinkFrame& frame : config_.frames) {
+    const model::Pose X_BL =
+        frame.joint < 0 ? model::Pose{} : poses.X_BL[static_cast<std::size_t>(frame.joint)];
+    add(frame.name, X_BL * frame.X_LnF);
+  }
+  if (record.target_known) {
+    model::Pose X_BO{model::Mat3::Identity(), {record.p_BO[0], record.p_BO[1], record.p_BO[2]}};
+    static_cast<void>(model::RotationOfQuaternion(record.q_BO, X_BO.R));  // else as it was: not turned
+    add(kTargetFrame, X_BO);
+  }
+  file.Write(kTransformTopic, record.stamp_ns, transforms_);
+}
+
+}  // namespace fovea::log

@@ -1,0 +1,109 @@
+#include "firmware/host/recording/trace/trace.hpp"
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::trace {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kProcess = 1;
+
+// Chrome counts in microseconds; three decimals keep the nanoseconds.
+double Us(std::int64_t ns) { return static_cast<double>(ns) / 1000.0; }
+
+json Naming(const char* what, int thread, const std::string& name) {
+  return {{"ph", "M"}, {"name", what}, {"pid", kProcess}, {"tid", thread}, {"args", {{"name", name}}}};
+}
+
+json ToJson(const Event& event, int thread, std::int64_t start_ns) {
+  json entry{{"name", event.name}, {"pid", kProcess}, {"tid", thread}, {"ts", Us(event.begin_ns - start_ns)}};
+  if (event.end_ns > event.begin_ns) {
+    entry["ph"] = "X";
+    entry["dur"] = Us(event.end_ns - event.begin_ns);
+  } else {
+    entry["ph"] = "i";
+    entry["s"] = "t";
+  }
+  if (event.number >= 0) {
+    entry["args"] = {{"number", event.number}};
+  }
+  return entry;
+}
+
+// An arrow's end, bound to the span that it begins with.
+json ArrowOf(const Event& event, int thread, std::int64_t start_ns) {
+  const char* const phase = event.flow == Flow::kBegin ? "s" : event.flow == Flow::kStep ? "t" : "f";
+  json entry{{"name", "picture"},
+             {"cat", "picture"},
+             {"ph", phase},
+             {"id", event.number},
+             {"pid", kProcess},
+             {"tid", thread},
+             {"ts", Us(event.begin_ns - start_ns)}};
+  if (event.flow == Flow::kEnd) {
+    entry["bp"] = "e";
+  }
+  return entry;
+}
+
+}  // namespace
+
+std::int64_t NowNs() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
+}
+
+std::vector<Event> Track::Events() const {
+  std::vector<Event> events(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(count_));
+  std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
+    return a.begin_ns != b.begin_ns ? a.begin_ns < b.begin_ns : a.end_ns > b.end_ns;
+  });
+  return events;
+}
+
+Track& Trace::AddTrack(const std::string& name, std::size_t capacity) {
+  return *tracks_.emplace_back(std::make_unique<Track>(name, capacity));
+}
+
+void Trace::Write(const std::filesystem::path& file) const {
+  std::ofstream stream(file);
+  std::int64_t start_ns = std::numeric_limits<std::int64_t>::max();
+  std::uint64_t dropped = 0;
+  std::vector<std::vector<Event>> events;
+  for (const auto& track : tracks_) {
+    dropped += track->dropped();
+    events.push_back(track->Events());
+    if (!events.back().empty()) {
+      start_ns = std::min(start_ns, events.back().front().begin_ns);
+    }
+  }
+  // Event by event, so that a long run's file need not be in memory whole.
+  stream << "{\"displayTimeUnit\":\"ns\",\"otherData\":" << json{{"program", program_}, {"dropped", dropped}}
+         << ",\n\"traceEvents\":[\n"
+         << Naming("process_name", 0, program_);
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    const int thread = static_cast<int>(i) + 1;
+    stream << ",\n" << Naming("thread_name", thread, tracks_[i]->name());
+    for (const Event& event : events[i]) {
+      stream << ",\n" << ToJson(event, thread, start_ns);
+      if (event.flow != Flow::kNone) {
+        stream << ",\n" << ArrowOf(event, thread, start_ns);
+      }
+    }
+  }
+  stream << "\n]}\n";
+  if (!stream.flush()) {
+    throw std::runtime_error(file.string() + ": the trace cannot be written");
+  }
+}
+
+}  // namespace fovea::trace

@@ -1,0 +1,203 @@
+// RunData as the page's scripts read it; numbers by the thousand as base64 of little-endian float32.
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "firmware/host/report/report.hpp"
+
+namespace fovea::report {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::string Base64(std::string_view bytes) {
+  std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // and the 0 that OpenSSL puts after it
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                  reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+  text.pop_back();
+  return text;
+}
+
+std::string Base64(const std::vector<float>& values) {
+  return Base64(
+      std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
+}
+
+ordered_json Ticks(const RunData& run) {
+  const Envelope::Rows rows = run.ticks->rows();
+  const std::size_t joints = run.joints.size();
+  ordered_json ticks;
+  ticks["t_s"] = Base64(rows.t_s);
+  std::size_t column = 0;
+  for (const char* name : {"q", "dq", "tau", "tau_meas"}) {
+    ticks[name] = ordered_json::array();
+    for (std::size_t i = 0; i < joints; ++i) {
+      ticks[name].push_back(Base64(rows.columns[column++]));
+    }
+  }
+  const auto truth = [&](std::size_t which) {
+    return run.has_truth ? ordered_json(Base64(rows.columns[column + which])) : ordered_json(nullptr);
+  };
+  ticks["error_px"] = truth(RunData::kErrorPx);
+  ticks["error_mm"] = truth(RunData::kErrorMm);
+  ticks["predicted_px"] = Base64(rows.columns[column + RunData::kPredictedPx]);
+  return ticks;
+}
+
+ordered_json Frame(const RunData& run, const std::optional<EyeFrame>& frame) {
+  if (!frame) {
+    return nullptr;
+  }
+  ordered_json shapes = ordered_json::array();
+  for (const EyeFrame::Outline& outline : frame->outlines) {
+    shapes.push_back({{"role", outline.role}, {"points", outline.points_px}});
+  }
+  return {{"t_s", frame->t_s},
+          {"width_px", run.width_px},
+          {"height_px", run.height_px},
+          {"jpeg", Base64(std::string_view(frame->jpeg))},
+          {"shapes", shapes}};
+}
+
+constexpr double kLargestShown = 5.0;  // a workspace beyond it would leave the arm a dot [m]
+
+ordered_json Scene(const RunData& run) {
+  if (run.links.empty() || run.motion.t_s.empty()) {
+    return nullptr;
+  }
+  ordered_json links = ordered_json::array();
+  for (const SceneLink& link : run.links) {
+    ordered_json shapes = ordered_json::array();
+    for (const SceneShape& shape : link.shapes) {
+      ordered_json entry = {{"kind", shape.kind},
+                            {"size", shape.size},
+                            {"position", shape.position},
+                            {"quaternion", shape.quaternion},
+                            {"colour", shape.colour}};
+      if (!shape.vertices.empty()) {
+        entry["vertices"] = Base64(shape.vertices);
+      }
+      shapes.push_back(entry);
+    }
+    links.push_back({{"name", link.frame}, {"shapes", shapes}});
+  }
+  const auto is_known = [](const std::vector<float>& path) {
+    return std::any_of(path.begin(), path.end(), [](float value) { return std::isfinite(value); });
+  };
+  return {{"links", links},
+          {"t_s", Base64(run.motion.t_s)},
+          {"poses", Base64(run.motion.poses)},
+          {"camera_path", Base64(run.motion.camera_path)},
+          {"target_path",
+           is_known(run.motion.target_path) ? ordered_json(Base64(run.motion.target_path)) : nullptr},
+          {"target_turn",
+           is_known(run.motion.target_turn) ? ordered_json(Base64(run.motion.target_turn)) : nullptr},
+          {"workspace_radius",
+           run.workspace_radius > kLargestShown ? ordered_json(nullptr) : ordered_json(run.workspace_radius)},
+          {"table_z", 0.0}};
+}
+
+// Discarded when it is no JSON. What lies deeper than a summary does is left out: writing it goes as deep.
+ordered_json ParseFlat(const std::string& text) {
+  constexpr int kDeepest = 16;
+  return ordered_json::parse(
+      text, [](int depth, ordered_json::parse_event_t, ordered_json&) { return depth <= kDeepest; }, false);
+}
+
+// The keys as a TOML file would have them.
+std::string Configuration(const std::map<std::string, std::string>& keys) {
+  std::string text;
+  std::string section;
+  for (const auto& [name, value] : keys) {
+    const auto dot = name.find('.');
+    if (name.substr(0, dot) != section) {
+      section = name.substr(0, dot);
+      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section);
+    }
+    text += fmt::format("{} = {}\n", name.substr(dot + 1), value);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ToJson(const RunData& run) {
+  ordered_json json;
+  json["name"] = run.name;
+  json["source"] = std::filesystem::path(run.source).filename().string();
+  json["incomplete"] = run.complete ? ordered_json(nullptr) : ordered_json(run.why_incomplete);
+  json["summary"] = run.summary_json ? ParseFlat(*run.summary_json) : ordered_json(nullptr);
+  if (json["summary"].is_discarded()) {
+    json["summary"] = nullptr;
+  }
+  json["info"] = ordered_json::object();
+  for (const auto& [name, entries] : run.metadata) {
+    for (const auto& [key, value] : entries) {
+      if (name != "configuration") {
+        json["info"][name == "build" ? key : fmt::format("{} {}", name, key)] = value;
+      }
+    }
+  }
+  const auto keys = run.metadata.find("configuration");
+  json["config"] = keys == run.metadata.end() ? std::string() : Configuration(keys->second);
+  json["duration_s"] = run.duration_s;
+  json["lambda"] = run.lambda;
+  // Without a target the run had no eye.
+  json["target"] = run.target_radius == 0.0 ? ordered_json(nullptr)
+                                            : ordered_json({{"kind", run.target_kind},
+                                                            {"radius_m", run.target_radius},
+                                                            {"corners_m", run.target_corners},
+                                                            {"moves", run.target_moves}});
+  json["joints"] = ordered_json::array();
+  for (const JointInfo& joint : run.joints) {
+    json["joints"].push_back({{"name", joint.name},
+                              {"type", joint.prismatic ? "prismatic" : "revolute"},
+                              {"q_min", joint.q_min},
+                              {"q_max", joint.q_max},
+                              {"dq_max", joint.dq_max},
+                              {"tau_max", joint.tau_max}});
+  }
+  json["ticks"] = Ticks(run);
+  const Envelope::Rows measured = run.measured.rows();
+  json["measured"] = {{"t_s", Base64(measured.t_s)},
+                      {"error_px", Base64(measured.columns[RunData::kMeasuredPx])},
+                      {"age_ms", Base64(measured.columns[RunData::kAgeMs])},
+                      {"confidence", Base64(measured.columns[RunData::kConfidence])}};
+  json["theory"] = nullptr;
+  if (run.has_theory) {
+    const Envelope::Rows rows = run.theory.rows();
+    json["theory"] = {{"t_s", Base64(rows.t_s)},
+                      {"x", Base64(rows.columns[RunData::kTheoryX])},
+                      {"goal", Base64(rows.columns[RunData::kTheoryGoal])},
+                      {"analytic", Base64(rows.columns[RunData::kTheoryAnalytic])}};
+  }
+  json["modes"] = ordered_json::array();
+  for (const ModeChange& change : run.modes) {
+    json["modes"].push_back({{"t_s", change.t_s}, {"mode", change.mode}, {"reason", change.reason}});
+  }
+  json["faults"] = ordered_json::array();
+  for (const FaultNote& fault : run.faults) {
+    json["faults"].push_back(
+        {{"t_s", fault.t_s}, {"name", fault.name}, {"key", fault.key}, {"detail", fault.detail}});
+  }
+  json["limits_active"] = ordered_json::array();
+  for (const LimitSpans& limit : run.limits_active) {
+    json["limits_active"].push_back({{"name", limit.name}, {"spans", limit.spans_s}});
+  }
+  json["tick_times"] = run.tick_counts.empty()
+                           ? ordered_json(nullptr)
+                           : ordered_json({{"upper_us", run.tick_upper_us}, {"counts", run.tick_counts}});
+  json["frames"] =
+      run.first_frame
+          ? ordered_json({{"first", Frame(run, run.first_frame)}, {"last", Frame(run, run.last_frame)}})
+          : ordered_json(nullptr);
+  json["video"] = run.video ? ordered_json(Base64(std::string_view(*run.video))) : ordered_json(nullptr);
+  json["scene"] = Scene(run);
+  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+}
+
+}  // namespace fovea::report

@@ -1,0 +1,125 @@
+// A run as its log tells it, thinned to what a page can show.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/host/report/envelope.hpp"
+
+namespace fovea::report {
+
+struct JointInfo {
+  std::string name;
+  bool prismatic = false;
+  double q_min = 0.0;
+  double q_max = 0.0;
+  double dq_max = 0.0;
+  double tau_max = 0.0;
+};
+
+struct ModeChange {
+  double t_s = 0.0;
+  std::string mode;
+  std::string reason;
+};
+
+struct FaultNote {
+  double t_s = 0.0;
+  std::string name;
+  std::string key;
+  std::string detail;
+};
+
+struct LimitSpans {
+  std::string name;
+  std::vector<std::array<double, 2>> spans_s;  // from, to
+};
+
+// What the camera saw in one frame, and what was drawn on it.
+struct EyeFrame {
+  double t_s = 0.0;
+  std::string jpeg;
+  struct Outline {
+    std::string role;
+    std::vector<std::array<double, 2>> points_px;
+  };
+  std::vector<Outline> outlines;
+};
+
+struct SceneShape {
+  std::string kind;             // "box", "cylinder", "sphere", "mesh"
+  std::vector<double> size;     // box: x, y, z; cylinder: radius, length; sphere: radius [m]
+  std::vector<float> vertices;  // mesh: x, y, z of each corner of each triangle [m]
+  std::array<double, 3> position{};
+  std::array<double, 4> quaternion{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
+  std::array<double, 3> colour{};                        // as screens show it, 0 to 1
+};
+
+struct SceneLink {
+  std::string frame;
+  std::vector<SceneShape> shapes;
+};
+
+// Poses in B of all links, evenly in time.
+struct SceneMotion {
+  std::vector<float> t_s;          // [F]
+  std::vector<float> poses;        // [F * links * 7] x, y, z, qw, qx, qy, qz
+  std::vector<float> camera_path;  // [F * 3]
+  std::vector<float> target_path;  // [F * 3]; NaN where it is not known
+  std::vector<float> target_turn;  // [F * 4] w, x, y, z of its orientation in B, the same
+};
+
+struct RunData {
+  std::string source;  // the log's path
+  bool complete = false;
+  std::string why_incomplete;
+
+  // /setup
+  std::string name;
+  std::vector<JointInfo> joints;
+  double lambda = 0.0;
+  std::string target_kind;             // "sphere", "circle", "square", "triangle"
+  double target_radius = 0.0;          // of the ball that holds it [m]; 0: there is none
+  std::vector<double> target_corners;  // x, y of each in O [m]; none of what is round
+  bool target_moves = false;
+  double workspace_radius = 0.0;
+  double duration_s = 0.0;  // of the records that are there
+  int width_px = 0;
+  int height_px = 0;
+
+  std::map<std::string, std::map<std::string, std::string>> metadata;
+  std::optional<std::string> summary_json;
+  std::optional<std::string> video;
+
+  // Columns of `ticks`: q, dq, tau, tau_meas of each joint, then these.
+  enum TickColumn : std::uint8_t { kErrorPx, kErrorMm, kPredictedPx, kNumTickColumns };
+  std::optional<Envelope> ticks;
+  bool has_truth = false;
+  // Columns of `measured`.
+  enum MeasuredColumn : std::uint8_t { kMeasuredPx, kAgeMs, kConfidence, kNumMeasuredColumns };
+  Envelope measured{kNumMeasuredColumns, 1500};
+  // Columns of `theory`: a one-joint arm, its goal, and its analytic answer; empty for all other runs.
+  enum TheoryColumn : std::uint8_t { kTheoryX, kTheoryGoal, kTheoryAnalytic, kNumTheoryColumns };
+  Envelope theory{kNumTheoryColumns, 1500};
+  bool has_theory = false;
+  std::vector<ModeChange> modes;
+  std::vector<FaultNote> faults;
+  std::vector<LimitSpans> limits_active;
+  std::vector<double> tick_upper_us;
+  std::vector<std::uint64_t> tick_counts;
+  std::optional<EyeFrame> first_frame;
+  std::optional<EyeFrame> last_frame;
+  std::vector<SceneLink> links;
+  SceneMotion motion;
+};
+
+// Reads a log, or the log in a run's folder. One that was cut off is read as far as it goes.
+// std::runtime_error, naming the file: it cannot be read, is no MCAP file, or holds no run of Fovea's.
+RunData ReadRun(const std::filesystem::path& log_or_folder);
+
+}  // namespace fovea::report

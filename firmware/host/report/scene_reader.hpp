@@ -1,0 +1,38 @@
+// From a log's scene and transforms to links with shapes and their poses over time.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "firmware/host/report/run_data.hpp"
+#include "fovea/run.pb.h"
+#include "foxglove/geometry.pb.h"
+#include "foxglove/scene.pb.h"
+
+namespace fovea::report {
+
+class SceneReader {
+ public:
+  explicit SceneReader(RunData& run) : run_(run) {}
+
+  void AddScene(const foxglove::SceneUpdate& scene);
+  void AddTransforms(const foxglove::FrameTransforms& transforms, double t_s);
+  void AddTruth(const log::Truth& truth, double t_s);
+  // When all is read: the true target's poses take the place of the predicted one.
+  void Finish();
+
+ private:
+  void Thin();
+
+  RunData& run_;
+  std::map<std::string, std::size_t> link_of_frame_;
+  std::int64_t frames_seen_ = 0;
+  std::int64_t stride_ = 1;  // every so many frames are kept
+  std::vector<float> truth_t_s_;
+  std::vector<float> truth_X_;  // x, y, z, qw, qx, qy, qz of the target in B
+  std::int64_t truths_seen_ = 0;
+  std::int64_t truth_stride_ = 1;
+};
+
+}  // namespace fovea::report

@@ -1,0 +1,33 @@
+// From a robot's files to the plain ArmModel that the servo computes with. Outside the tick.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "firmware/core/model/arm_model.hpp"
+
+namespace fovea::robots {
+
+struct Robot {
+  std::string name;
+  std::filesystem::path root;            // its files lie in it; empty: anywhere
+  std::filesystem::path urdf;            // also what a simulator or a viewer reads shapes and friction from
+  std::string base_link;                 // frame B
+  std::string tip_link;                  // frame E
+  std::vector<std::string> joint_names;  // [num_joints] base to tip
+  model::ArmModel model;
+};
+
+// Reads an arm file (.toml: the URDF's name, base and tip links, and the limits that URDF has no words for),
+// or a bare .urdf, whose base is its root, whose tip is its only leaf, and whose acceleration, jerk and
+// torque-rate limits are derived from velocity and effort (see kDerived in robot.cpp). With a `root`, for an
+// arm that a stranger's file names, no file is read that does not lie in it, links followed.
+//
+// InputError, naming file, link or joint: file missing, malformed or outside `root`, unknown key, a chain
+// that the servo cannot drive (a loop, a second moving branch, no moving joint, more than kMaxJoints, a joint
+// type other than revolute, continuous, prismatic or fixed, a mimic joint), a moved link without inertia or
+// with one that no body can have, a missing or empty limit.
+Robot LoadRobot(const std::filesystem::path& file, const std::filesystem::path& root = {});
+
+}  // namespace fovea::robots

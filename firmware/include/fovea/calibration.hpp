@@ -1,0 +1,5 @@
+// Cameras and hand-eye, before any run.
+#pragma once
+
+#include "firmware/host/calibration/board.hpp"        // IWYU pragma: export
+#include "firmware/host/calibration/calibration.hpp"  // IWYU pragma: export

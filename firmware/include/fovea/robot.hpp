@@ -1,0 +1,4 @@
+// Arms from their files.
+#pragma once
+
+#include "firmware/host/robots/robot.hpp"  // IWYU pragma: export

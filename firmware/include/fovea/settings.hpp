@@ -1,0 +1,5 @@
+// Keys and values from files and command lines.
+#pragma once
+
+#include "firmware/host/config/key_table.hpp"  // IWYU pragma: export
+#include "firmware/host/config/settings.hpp"   // IWYU pragma: export

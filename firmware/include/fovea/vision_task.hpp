@@ -1,0 +1,4 @@
+// The camera-rate task: frames in, measurements out.
+#pragma once
+
+#include "firmware/vision/detect/vision_task.hpp"  // IWYU pragma: export

@@ -1,0 +1,68 @@
+// What a detector saw in one image.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "firmware/core/features/feature_state.hpp"
+#include "firmware/core/model/types.hpp"
+#include "fovea/hal/feature.hpp"
+
+namespace fovea::vision {
+
+struct ImagePoint {
+  double u_px = 0.0;
+  double v_px = 0.0;
+};
+
+// Where the sphere's or disc's outline, or a polygon's corners, are.
+struct Detection {
+  static constexpr int kOutlinePoints = 96;
+  static constexpr int kMaxCorners = 4;
+  using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, features::kMaxDim,
+                                   features::kMaxDim>;
+
+  hal::FeatureKind kind = hal::FeatureKind::kSphere;
+  bool found = false;
+  bool tracked = false;       // found where the last one led to expect it, without searching everywhere
+  double confidence = 0.0;    // 0 to 1
+  features::FeatureVector s;  // as hal/feature.hpp says of `kind`; empty when not found
+  Covariance cov_s;
+  // Of flat targets: the poses that the outline allows, as hal/feature.hpp has them, and of square and
+  // triangle the covariance of the first: position in axes of C [m], small rotation about axes of C [rad].
+  struct Pose {
+    model::Pose X_CO;
+    int first = 0;
+  };
+  int pose_count = 0;
+  std::array<Pose, hal::kMaxPoses> pose;
+  model::Mat6 cov_pose = model::Mat6::Zero();
+
+  // Of the outline, in pixels of an ideal lens.
+  double u_px = 0.0;  // its middle: the ellipse's, or the mean of the corners
+  double v_px = 0.0;
+  double radius_px = 0.0;                                 // of the circle with the outline's area
+  Eigen::Matrix3d cov_uvr_px2 = Eigen::Matrix3d::Zero();  // of these three [px^2]
+  double rms_px = 0.0;                                    // of the edge points about the outline
+  double contrast = 0.0;                                  // mean step across the edge [gray levels]
+  double seen = 0.0;                                      // share of the outline that is on an edge
+  int corner_count = 0;                                   // 0 for what is round
+  std::array<ImagePoint, kMaxCorners> corner{};           // in the order of O's corners
+  int outline_count = 0;                                  // for drawing; closed
+  std::array<ImagePoint, kOutlinePoints> outline{};
+
+  [[nodiscard]] std::span<const ImagePoint> Outline() const {
+    return {outline.data(), static_cast<std::size_t>(outline_count)};
+  }
+  [[nodiscard]] std::span<const ImagePoint> Corners() const {
+    return {corner.data(), static_cast<std::size_t>(corner_count)};
+  }
+  // A point before the camera in whose direction the target's middle is, in axes of C; only when found.
+  [[nodiscard]] model::Vec3 Middle() const {
+    return pose_count > 0                      ? pose[0].X_CO.p
+           : kind == hal::FeatureKind::kCircle ? model::Vec3(s[0], s[1], 1.0)
+                                               : model::Vec3(s.head<3>());
+  }
+};
+
+}  // namespace fovea::vision

@@ -1,0 +1,77 @@
+#include "firmware/vision/detect/picture_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fovea::vision {
+namespace {
+
+constexpr int kSide = 4;      // of a patch [px]
+constexpr int kSpacing = 16;  // from one to the next [px]
+constexpr std::size_t kPixels = kSide * kSide;
+constexpr double kSigmas = 6.0;         // R of noise alone is below this many standard deviations above 1
+constexpr double kMoreThanNoise = 1.3;  // differences larger by this factor are no noise
+
+}  // namespace
+
+void PictureWatch::TakePatches(const cv::Mat& image, std::vector<std::uint8_t>& patches) const {
+  const int channels = image.channels();
+  const int channel = channels == 3 ? 1 : 0;  // green
+  std::size_t k = 0;
+  const auto across = static_cast<std::size_t>((image.cols - kSide) / kSpacing + 1);
+  const auto down = static_cast<std::size_t>((image.rows - kSide) / kSpacing + 1);
+  patches.resize(across * down * kPixels);
+  for (int top = 0; top + kSide <= image.rows; top += kSpacing) {
+    for (int left = 0; left + kSide <= image.cols; left += kSpacing) {
+      for (int y = top; y < top + kSide; ++y) {
+        const std::uint8_t* row = image.ptr<std::uint8_t>(y) + left * channels + channel;
+        for (int x = 0; x < kSide; ++x) {
+          patches[k++] = row[x * channels];
+        }
+      }
+    }
+  }
+}
+
+bool PictureWatch::IsSame(const std::vector<std::uint8_t>& patches) {
+  if (patches.size() != first_.size()) {
+    return false;
+  }
+  std::int64_t of_patches = 0;  // sum of (sum d)^2
+  std::int64_t of_pixels = 0;   // sum of d^2
+  for (std::size_t k = 0; k < patches.size(); k += kPixels) {
+    int sum = 0;
+    int squares = 0;
+    for (std::size_t j = k; j < k + kPixels; ++j) {
+      const int d = int{patches[j]} - int{first_[j]};
+      sum += d;
+      squares += d * d;
+    }
+    of_patches += std::int64_t{sum} * sum;
+    of_pixels += squares;
+  }
+  if (of_pixels == 0) {
+    return true;
+  }
+  const auto count = static_cast<double>(patches.size() / kPixels);
+  const double mean_square = static_cast<double>(of_pixels) / static_cast<double>(patches.size());
+  least_ = least_ < 0.0 ? mean_square : std::min(least_, mean_square);
+  const double ratio = static_cast<double>(of_patches) / static_cast<double>(of_pixels);
+  return ratio <= 1.0 + kSigmas * std::sqrt(2.0 / count) && mean_square <= kMoreThanNoise * least_;
+}
+
+std::int64_t PictureWatch::Look(const cv::Mat& image, std::int64_t stamp_ns) {
+  if (image.cols < kSide || image.rows < kSide) {
+    return 0;
+  }
+  TakePatches(image, now_);
+  if (IsSame(now_)) {
+    return std::max<std::int64_t>(stamp_ns - first_stamp_ns_, 0);
+  }
+  std::swap(first_, now_);
+  first_stamp_ns_ = stamp_ns;
+  return 0;
+}
+
+}  // namespace fovea::vision

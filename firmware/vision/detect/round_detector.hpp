@@ -1,0 +1,59 @@
+// Sphere and disc: find (curve_finder.hpp, or the source's Hough transform), fit (curve_fit.hpp), judge.
+#pragma once
+
+#include <optional>
+
+#include "firmware/vision/detect/detection.hpp"
+#include "firmware/vision/detect/detector_config.hpp"
+#include "firmware/vision/find/colour_model.hpp"
+#include "firmware/vision/find/curve_finder.hpp"
+#include "firmware/vision/find/edge_map.hpp"
+#include "firmware/vision/find/hough_finder.hpp"
+#include "firmware/vision/fit/curve_fit.hpp"
+#include "firmware/vision/pose/flat_pose.hpp"
+
+namespace fovea::vision {
+
+// ConeCurve: a sphere. EllipseCurve: a disc.
+template <class Curve>
+class RoundDetector {
+ public:
+  explicit RoundDetector(const DetectorConfig& config);
+
+  // The best that is in `area` of the image, searched `factor` times smaller.
+  Detection Look(const cv::Mat& image, const cv::Rect& area, int factor);
+  // The same without a search: the outline that is expected is fitted at once, and counts when it is as
+  // trustworthy as the last. Not found when nothing is expected.
+  Detection LookAgain(const cv::Mat& image);
+  // What was found last was the target: the next image's is expected near it; or the target is lost.
+  void Keep();
+  void Forget() { last_.reset(); }
+
+ private:
+  void Judge(const cv::Mat& image, const Curve& start, Detection& best);
+  bool FeatureOf(const CurveFit<Curve>& fit, Detection& detection);
+  // The one nearest to the last image's first.
+  bool DiscOf(const EllipseCurve& curve, double round_below, std::array<DiscPose, 2>& poses) const;
+  [[nodiscard]] double ColourShare(const cv::Mat& image, const Ellipse& ellipse) const;
+
+  const DetectorConfig config_;
+  ColourModel colour_;
+  RoundLimits limits_;
+  EdgeMap map_;
+  CurveFinder<Curve> finder_;
+  HoughFinder hough_;
+  CurveFitter fitter_;
+  // What is known of a target beside its detection.
+  struct Known {
+    Curve curve;
+    Curve next;                                  // expected in the image after
+    model::Vec3 normal_C = model::Vec3::Zero();  // of the disc
+    double confidence = 0.0;
+    double contrast = 0.0;
+  };
+  std::optional<Known> last_;  // in the image before
+  Known best_;                 // of this one
+  model::Vec3 candidate_normal_ = model::Vec3::Zero();
+};
+
+}  // namespace fovea::vision

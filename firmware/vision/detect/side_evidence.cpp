@@ -1,0 +1,388 @@
+#include "firmware/vision/detect/side_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fovea::vision {
+namespace {
+
+constexpr double kDepthPx = 3.5;  // how far off the side colours are looked at, first
+constexpr int kDepths = 3;        // and so many pixels on
+constexpr double kClearPx = 1.5;  // and not nearer to another side than this
+constexpr int kReach = 2;         // neighbours whose mean a line takes, each way
+constexpr float kLike = 0.35F;    // colours nearer than this, of the target's contrast, are alike
+constexpr float kLikeGround = 0.2F;
+// In another light, a colour is the target's own times a factor, and but for so much of that.
+constexpr float kDarkest = 0.15F;
+constexpr float kBrightest = 6.0F;
+constexpr float kSameHue = 0.3F;
+constexpr float kColoured = 0.5F;  // saturation of a target of which that can be said
+constexpr double kEndPx = 12.0;    // a side that is not seen so near to its corner does not show it
+constexpr double kEndShare = 0.2;  // or this, of its length
+
+// The pixel there; false outside the image.
+bool ColourAt(const cv::Mat& image, const Intrinsics& in, double u, double v, Eigen::Vector3f& colour) {
+  in.Distort(u, v);
+  u += 0.5;
+  v += 0.5;
+  if (!(u >= 0.0 && v >= 0.0 && u < image.cols && v < image.rows)) {
+    return false;
+  }
+  const auto x = static_cast<int>(u);
+  const auto y = static_cast<int>(v);
+  const int channels = image.channels();
+  const std::uint8_t* pixel = image.ptr<std::uint8_t>(y) + x * channels;
+  if (channels == 3) {
+    colour = Eigen::Vector3f(pixel[0], pixel[1], pixel[2]);
+  } else {
+    colour = Eigen::Vector3f(pixel[0], 0.0F, 0.0F);
+  }
+  return true;
+}
+
+}  // namespace
+
+void SideEvidence::Look(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> corners,
+                        std::span<const ProfileLine> lines, std::span<const int> ends) {
+  lines_ = lines;
+  sides_count_ = static_cast<int>(corners.size());
+  channels_ = image.channels();
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const ImagePoint& a = corners[k];
+    const ImagePoint& b = corners[(k + 1) % corners.size()];
+    Side& side = sides_[k];
+    side = Side{};
+    side.from = k == 0 ? 0 : ends[k - 1];
+    side.to = ends[k];
+    side.length_px = std::hypot(b.u_px - a.u_px, b.v_px - a.v_px);
+    side.inward_u = (a.v_px - b.v_px) / side.length_px;
+    side.inward_v = (b.u_px - a.u_px) / side.length_px;
+    side.offset_px = side.inward_u * a.u_px + side.inward_v * a.v_px;
+  }
+  Sample(image, in);
+  Judge();
+  Describe();
+}
+
+// How far a point is inside all sides but `but` [px].
+double SideEvidence::DepthOf(int but, double u, double v) const {
+  double depth = 1e9;
+  for (int k = 0; k < sides_count_; ++k) {
+    const Side& side = sides_[static_cast<std::size_t>(k)];
+    if (k != but) {
+      depth = std::min(depth, side.inward_u * u + side.inward_v * v - side.offset_px);
+    }
+  }
+  return depth;
+}
+
+// Whether both the nearest and the furthest place within line i, of side `k`, are clear of the other sides.
+bool SideEvidence::IsInside(int k, int i) const {
+  const ProfileLine& l = lines_[static_cast<std::size_t>(i)];
+  const auto is_clear = [&](double depth) {
+    return DepthOf(k, l.u_px - depth * l.nu, l.v_px - depth * l.nv) > kClearPx;
+  };
+  return is_clear(kDepthPx) && is_clear(kDepthPx + kDepths - 1);
+}
+
+void SideEvidence::Sample(const cv::Mat& image, const Intrinsics& in) {
+  for (int k = 0; k < sides_count_; ++k) {
+    const Side& side = sides_[static_cast<std::size_t>(k)];
+    // What is clear of the other sides is convex: so are all places between two lines that are.
+    int first = side.from;
+    int last = side.to - 1;
+    while (first < side.to && !IsInside(k, first)) {
+      ++first;
+    }
+    while (last > first && !IsInside(k, last)) {
+      --last;
+    }
+    for (int i = side.from; i < side.to; ++i) {
+      const auto line = static_cast<std::size_t>(i);
+      const ProfileLine& l = lines_[line];
+      const bool is_inside = i >= first && i <= last;
+      Colour colour;
+      Colour within = Colour::Zero();
+      Colour without = Colour::Zero();
+      int count_in = 0;
+      int count_out = 0;
+      for (int d = 0; d < kDepths; ++d) {
+        const double depth = kDepthPx + d;
+        const double u = l.u_px - depth * l.nu;
+        const double v = l.v_px - depth * l.nv;
+        if ((is_inside || DepthOf(k, u, v) > kClearPx) && ColourAt(image, in, u, v, colour)) {
+          within += colour;
+          ++count_in;
+        }
+        if (ColourAt(image, in, l.u_px + depth * l.nu, l.v_px + depth * l.nv, colour)) {
+          without += colour;
+          ++count_out;
+        }
+      }
+      in_known_[line] = count_in > 0;
+      out_known_[line] = count_out == kDepths;
+      inside_[line] = within / static_cast<float>(std::max(count_in, 1));
+      outside_[line] = without / static_cast<float>(std::max(count_out, 1));
+    }
+  }
+  Smooth(inside_, in_known_);
+  Smooth(outside_, out_known_);
+}
+
+// Each line's colour to the mean of its neighbours' on the side.
+void SideEvidence::Smooth(std::array<Colour, Profiles::kMaxLines>& colours,
+                          const std::array<bool, Profiles::kMaxLines>& known) {
+  for (int k = 0; k < sides_count_; ++k) {
+    const Side& side = sides_[static_cast<std::size_t>(k)];
+    for (int i = side.from; i < side.to; ++i) {
+      Colour sum = Colour::Zero();
+      int count = 0;
+      for (int j = std::max(side.from, i - kReach); j <= std::min(side.to - 1, i + kReach); ++j) {
+        if (known[static_cast<std::size_t>(j)]) {
+          sum += colours[static_cast<std::size_t>(j)];
+          ++count;
+        }
+      }
+      smooth_[static_cast<std::size_t>(i)] = sum / static_cast<float>(std::max(count, 1));
+    }
+  }
+  colours = smooth_;
+}
+
+// Channel by channel, over those of lines `from` to before `to` that `counts` names; black when none.
+template <class Counts>
+SideEvidence::Colour SideEvidence::MedianOf(const std::array<Colour, Profiles::kMaxLines>& colours, int from,
+                                            int to, Counts counts) {
+  Colour median = Colour::Zero();
+  for (int c = 0; c < channels_; ++c) {
+    std::size_t count = 0;
+    for (int i = from; i < to; ++i) {
+      const auto line = static_cast<std::size_t>(i);
+      if (in_known_[line] && out_known_[line] && counts(i)) {
+        sorted_[count++] = colours[line][c];
+      }
+    }
+    if (count == 0) {
+      return median;
+    }
+    const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(sorted_.begin(), middle, sorted_.begin() + static_cast<std::ptrdiff_t>(count));
+    median[c] = *middle;
+  }
+  return median;
+}
+
+bool SideEvidence::IsTargets(const Colour& colour) const {
+  const auto contrast = static_cast<float>(contrast_);
+  if ((colour - target_).squaredNorm() < kLike * kLike * contrast * contrast) {
+    return true;
+  }
+  const float most = target_.maxCoeff();
+  if (!in_any_light_ || channels_ < 3 || !(most - target_.minCoeff() > kColoured * most)) {
+    return false;
+  }
+  const float light = colour.dot(target_) / target_.squaredNorm();
+  return light > kDarkest && light < kBrightest &&
+         (colour - light * target_).squaredNorm() <
+             kSameHue * kSameHue * light * light * target_.squaredNorm();
+}
+
+void SideEvidence::Judge() {
+  const int count = static_cast<int>(lines_.size());
+  const auto any = [](int /*i*/) { return true; };
+  const auto is_side = [this](int i) { return SaysOf(i) == Says::kSide; };
+  target_ = MedianOf(inside_, 0, count, any);
+  ground_ = MedianOf(outside_, 0, count, any);
+  for (int turn = 0; turn < 2; ++turn) {
+    const float contrast = (target_ - ground_).norm();
+    contrast_ = static_cast<double>(contrast);
+    const float ground2 = kLikeGround * kLikeGround * contrast * contrast;
+    for (int i = 0; i < count; ++i) {
+      const auto line = static_cast<std::size_t>(i);
+      if (!in_known_[line] || !out_known_[line]) {
+        says_[line] = Says::kUnknown;
+        continue;
+      }
+      if (IsTargets(inside_[line])) {
+        says_[line] = IsTargets(outside_[line]) ? Says::kNot : Says::kSide;
+      } else {
+        says_[line] = (inside_[line] - ground_).squaredNorm() < ground2 ? Says::kNot : Says::kHidden;
+      }
+    }
+    // The ground is what lies beside the sides, now that they are known.
+    ground_ = MedianOf(outside_, 0, count, is_side);
+  }
+}
+
+void SideEvidence::Describe() {
+  int known = 0;
+  int wrong = 0;
+  is_whole_ = true;
+  for (int k = 0; k < sides_count_; ++k) {
+    Side& side = sides_[static_cast<std::size_t>(k)];
+    int seen = 0;
+    int of_side = 0;
+    int first = side.to;
+    int last = side.from - 1;
+    for (int i = side.from; i < side.to; ++i) {
+      const Says says = SaysOf(i);
+      if (says == Says::kUnknown) {
+        continue;
+      }
+      ++of_side;
+      if (says == Says::kSide) {
+        ++seen;
+        first = std::min(first, i);
+        last = i;
+      } else {
+        wrong += says == Says::kNot ? 1 : 0;
+        is_whole_ = false;
+      }
+    }
+    known += of_side;
+    side.seen = of_side > 0 ? static_cast<double>(seen) / of_side : 0.0;
+    const double spacing_px = side.length_px / std::max(side.to - side.from, 1);
+    const double end_px = std::max(kEndPx, kEndShare * side.length_px);
+    side.ends[0] = seen > 0 && (first - side.from) * spacing_px < end_px;
+    side.ends[1] = seen > 0 && (side.to - 1 - last) * spacing_px < end_px;
+    FindClear(side, static_cast<int>(std::ceil(kBesidePx / spacing_px)));
+  }
+  against_ = known > 0 ? static_cast<double>(wrong) / known : 1.0;
+}
+
+// Lines of which nothing is known are as the next one that is known.
+void SideEvidence::FindClear(const Side& side, int beside) {
+  const auto is_clear = [&](int i) {
+    for (int off = 0; off < side.to - side.from; ++off) {
+      for (const int j : {i - off, i + off}) {
+        if (j >= side.from && j < side.to && SaysOf(j) != Says::kUnknown) {
+          return SaysOf(j) == Says::kSide;
+        }
+      }
+    }
+    return true;
+  };
+  int since = beside;  // lines since the last that is not
+  for (int i = side.from; i < side.to; ++i) {
+    since = is_clear(i) ? since + 1 : 0;
+    clear_[static_cast<std::size_t>(i)] = since > beside;
+  }
+  since = beside;
+  for (int i = side.to - 1; i >= side.from; --i) {
+    since = is_clear(i) ? since + 1 : 0;
+    clear_[static_cast<std::size_t>(i)] = clear_[static_cast<std::size_t>(i)] && since > beside;
+  }
+}
+
+bool SideEvidence::ExplainsBends(const std::array<bool, Profiles::kMaxLines>& off) {
+  constexpr int kFew = 2;  // are off by chance
+  const float like = kLikeGround * static_cast<float>(contrast_);
+  for (int k = 0; k < sides_count_; ++k) {
+    const Side& side = sides_[static_cast<std::size_t>(k)];
+    const auto is_off = [&](int i) { return off[static_cast<std::size_t>(i)]; };
+    const auto is_on = [&](int i) { return !is_off(i) && SaysOf(i) == Says::kSide; };
+    int count = 0;
+    for (int i = side.from; i < side.to; ++i) {
+      count += is_off(i) ? 1 : 0;
+    }
+    if (count > kFew && ((MedianOf(outside_, side.from, side.to, is_on) - ground_).norm() > like ||
+                         (MedianOf(outside_, side.from, side.to, is_off) - ground_).norm() < like)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+int SideEvidence::CornersHidden() const {
+  int hidden = 0;
+  for (int k = 0; k < sides_count_; ++k) {
+    const Side& ending = sides_[static_cast<std::size_t>((k + sides_count_ - 1) % sides_count_)];
+    const Side& beginning = sides_[static_cast<std::size_t>(k)];
+    hidden += ending.ends[1] && beginning.ends[0] ? 0 : 1;
+  }
+  return hidden;
+}
+
+// The step across the line through a corner along (du, dv), from `from` to before `to` beyond it: what is on
+// its right less what is on its left. False where that is outside the image.
+bool SideEvidence::StepBeyond(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
+                              double dv, int from, int to, Colour& step) {
+  constexpr int kNearest = 2;  // beside the line [px]
+  constexpr int kFurthest = 4;
+  step.setZero();
+  int pairs = 0;
+  for (int far = from; far < to; ++far) {
+    for (int aside = kNearest; aside <= kFurthest; ++aside) {
+      const double u = corner.u_px + far * du;
+      const double v = corner.v_px + far * dv;
+      Colour left;
+      Colour right;
+      if (ColourAt(image, in, u + aside * dv, v - aside * du, left) &&
+          ColourAt(image, in, u - aside * dv, v + aside * du, right)) {
+        step += right - left;
+        ++pairs;
+      }
+    }
+  }
+  step /= static_cast<float>(std::max(pairs, 1));
+  return 2 * pairs >= (to - from) * (kFurthest - kNearest + 1);
+}
+
+bool SideEvidence::SideGoesOn(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> corners,
+                              double least) const {
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const ImagePoint& a = corners[i];
+    const ImagePoint& b = corners[(i + 1) % corners.size()];
+    const double length = std::hypot(b.u_px - a.u_px, b.v_px - a.v_px);
+    const double du = (b.u_px - a.u_px) / length;
+    const double dv = (b.v_px - a.v_px) / length;
+    // Towards the end the inside is on the right, towards the begin on the left.
+    const Colour own = target_ - ground_;
+    if (GoesOn(image, in, b, du, dv, length, own, least) ||
+        GoesOn(image, in, a, -du, -dv, length, -own, least)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// `own`: the side's own step, from left to right as one looks along (du, dv) with v downwards.
+bool SideEvidence::GoesOn(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
+                          double dv, double length, const Colour& own, double least) {
+  constexpr int kFirst = 4;  // beyond the corner, which is blurred [px]
+  constexpr int kPart = 3;   // what merely crosses there is not in each part of the way
+  constexpr std::size_t kParts = 3;
+  constexpr double kFurthest = 0.6;  // of the side: where it may come out again behind something narrow
+  constexpr float kSame = 0.4F;
+  std::array<Colour, kParts> steps;
+  std::size_t known = 0;
+  const int last = std::max(kFirst, static_cast<int>(kFurthest * length)) + kPart * static_cast<int>(kParts);
+  for (int from = kFirst; from + kPart <= last; from += kPart) {
+    std::rotate(steps.begin(), steps.begin() + 1, steps.end());
+    if (!StepBeyond(image, in, corner, du, dv, from, from + kPart, steps.back())) {
+      return false;
+    }
+    if (++known < kParts) {
+      continue;
+    }
+    if (known == kParts) {
+      Colour mean = Colour::Zero();
+      for (const Colour& step : steps) {
+        mean += step / static_cast<float>(kParts);
+      }
+      const auto size = static_cast<double>(mean.norm());
+      if (size > least && std::all_of(steps.begin(), steps.end(), [&](const Colour& step) {
+            return static_cast<double>(step.dot(mean)) > 0.5 * least * size;
+          })) {
+        return true;
+      }
+    } else if (std::all_of(steps.begin(), steps.end(), [&](const Colour& step) {
+                 return (step - own).squaredNorm() < kSame * kSame * own.squaredNorm();
+               })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace fovea::vision

@@ -1,0 +1,16 @@
+// How much of what lies inside an outline has the target's colour.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <span>
+
+#include "firmware/vision/detect/detection.hpp"
+#include "firmware/vision/find/colour_model.hpp"
+
+namespace fovea::vision {
+
+// The share, 0 to 1, of `points` (places well inside the outline) that look like the target; 1 in a gray
+// image.
+double ColourShare(const cv::Mat& image, const ColourModel& colour, std::span<const ImagePoint> points);
+
+}  // namespace fovea::vision

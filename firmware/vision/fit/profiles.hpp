@@ -1,0 +1,145 @@
+// Brightness along short lines across an outline, and what it says of where the edge is.
+//
+// Along a line the brightness goes from the level inside to the level outside like a blurred step. The
+// outline is known to a pixel or so; how far the step is from there is the answer of the least-squares filter
+// for it, the derivative of the step, with both levels estimated too. That uses all that the pixels know (the
+// Cramer-Rao bound), where the place of the steepest gradient does not. The blur is the same for all lines
+// and is estimated from all of them; the levels from a line and, in noise, its neighbours. A blurred outline
+// of curvature k looks smaller by blur^2 k / 2, which is allowed for. How a ball's brightness falls off
+// towards its edge is fitted over all lines (shading.cpp) and taken off.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <opencv2/core.hpp>
+
+#include "firmware/vision/pose/intrinsics.hpp"
+
+namespace fovea::vision {
+
+// A line across the outline: from a point on it, outward. The point in ideal pixels.
+struct ProfileLine {
+  double u_px = 0.0;
+  double v_px = 0.0;
+  double nu = 0.0;  // unit vector
+  double nv = 0.0;
+  double curvature = 0.0;  // of the outline there [1/px]
+};
+
+class Profiles {
+ public:
+  static constexpr int kMaxLines = 256;
+  static constexpr int kHalf = 8;  // samples on each side, one per pixel
+  static constexpr int kSamples = 2 * kHalf + 1;
+
+  // What is known of one line's edge.
+  struct Edge {
+    bool valid = false;
+    double at_px = 0.0;  // along the line, from its point: where the step is
+    double info = 0.0;   // 1 / variance of at_px, but for the noise: contrast^2 times the filter's [1/px^2]
+    double contrast = 0.0;
+    double step = 0.0;      // level inside less level outside
+    double variance = 0.0;  // of its samples about the step [gray levels^2]
+  };
+
+  // Reads the image along `count` lines. `closed`: the last line and the first are neighbours.
+  void Read(const cv::Mat& image, const Intrinsics& in, const ProfileLine* lines, int count, bool closed);
+
+  // Measures all edges. `at_px[i]` is where the outline is thought to cross line i; `blur_px` the standard
+  // deviation of the blur; `weight[i]` how far line i was believed, 0 to 1.
+  void Measure(const std::array<double, kMaxLines>& at_px, const std::array<double, kMaxLines>& weight,
+               double blur_px);
+
+  // Fits how a ball's surface of outline radius `radius_px` darkens towards its edge.
+  void FitShading(const std::array<double, kMaxLines>& at_px, const std::array<double, kMaxLines>& weight,
+                  double radius_px, double blur_px);
+
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] const Edge& edge(int i) const { return edges_[static_cast<std::size_t>(i)]; }
+  // By how much the blur should change, from the last Measure [px].
+  [[nodiscard]] double blur_change_px() const { return blur_change_; }
+  [[nodiscard]] double noise() const {
+    return noise_;
+  }  // standard deviation of most lines' samples [gray levels]
+  [[nodiscard]] bool shaded() const { return shaded_; }  // the last FitShading found some
+  // The same where there is no edge, roughly: what the image's noise alone makes of it.
+  [[nodiscard]] double quiet() const { return quiet_; }
+
+ private:
+  void ProjectColours(bool closed);
+  void MeasureQuiet();
+
+  // A blurred step is the same for all lines, but for where it stands between two samples: it is made once
+  // for each of so many places there, which takes five sixths of the time out of Measure.
+  static constexpr int kPhases = 16;
+  static constexpr int kMostUsed = 2 * kHalf;
+  static constexpr int kPad = 5;  // zeros beside a line's samples, so that all windows are of one length
+
+  // Sums of products of a step's samples; p is 1 - q.
+  struct Sums {
+    double n = 0.0, q = 0.0, qq = 0.0;
+    double d = 0.0, dq = 0.0, dd = 0.0;
+    double b = 0.0, bq = 0.0, bb = 0.0;
+    double z = 0.0, zq = 0.0, zd = 0.0, zb = 0.0, zz = 0.0;
+    double p = 0.0, qp = 0.0, pp = 0.0;
+    double left = 0.0;  // of dd, beside the two levels
+  };
+  struct Step {
+    alignas(16) std::array<float, kMostUsed> used{};     // 1: near enough to the edge
+    alignas(16) std::array<float, kMostUsed> q{};        // the step, 1 inside to 0 outside
+    alignas(16) std::array<float, kMostUsed> density{};  // what moving it outward does
+    alignas(16) std::array<float, kMostUsed> wider{};    // what more blur does
+    alignas(16) std::array<float, kMostUsed> turn{};     // of a ball's surface, seen through the step
+    Sums whole;
+  };
+  // Least squares of the levels inside and outside.
+  struct Levels {
+    double qq = 0.0, qp = 0.0, pp = 0.0, yq = 0.0, yp = 0.0;
+    [[nodiscard]] double Det() const { return qq * pp - qp * qp; }
+    [[nodiscard]] double Inside(double det) const { return (pp * yq - qp * yp) / det; }
+    [[nodiscard]] double Outside(double det) const { return (qq * yp - qp * yq) / det; }
+    void Add(double w, const Levels& o) {
+      qq += w * o.qq;
+      qp += w * o.qp;
+      pp += w * o.pp;
+      yq += w * o.yq;
+      yp += w * o.yp;
+    }
+  };
+  // A line's samples y, less the shading, times the step's.
+  struct Line {
+    bool used = false;
+    double at_px = 0.0;  // where the step was put
+    const Sums* step = nullptr;
+    Levels levels;
+    double y = 0.0, yq = 0.0, yd = 0.0, yb = 0.0, yy = 0.0;
+  };
+
+  void MakeSteps(double blur_px);
+  static Sums Products(const Step& step, int from, int to);
+  void Multiply(std::size_t k, double at_px, double blur_px);
+
+  int count_ = 0;
+  bool closed_ = true;
+  bool gray_ = true;
+  bool shaded_ = false;
+  double radius_px_ = 0.0;
+  double noise_ = 1.0;
+  double quiet_ = 1.0;
+  double blur_change_ = 0.0;
+  std::array<ProfileLine, kMaxLines> lines_;
+  // Brightness along the colour step, less a level in common.
+  std::array<std::array<float, kPad + kSamples + kPad + 1>, kMaxLines> value_{};
+  std::array<std::array<float, 3 * kSamples>, kMaxLines> colour_;
+  Eigen::Vector3f surface_ = Eigen::Vector3f::Zero();  // colour inside, of length 1
+  std::array<double, kMaxLines> along_{};              // how much of it a line's colour step has
+  std::array<bool, kMaxLines> readable_{};
+  std::array<double, kMaxLines> shade_{};  // of each line: how much brighter where z is 1
+  int half_ = 0;                           // samples of a step, each way
+  std::array<Step, kPhases> steps_;
+  std::array<Line, kMaxLines> measured_;
+  std::array<Sums, kMaxLines> cut_;  // of a step whose window is longer than the line
+  std::array<Edge, kMaxLines> edges_;
+};
+
+}  // namespace fovea::vision

@@ -1,0 +1,45 @@
+#include "sim/run/eye.hpp"
+
+#include <cstdlib>
+#include <utility>
+
+#include "sim/scenario/compose.hpp"
+
+namespace fovea::sim {
+namespace {
+
+// Mesa's software renderer splits a picture over all cores by default. Here whole pictures run beside each
+// other, which wastes less; who sets the variable keeps their choice. (A GPU's driver does not look at it.)
+void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0); }
+
+}  // namespace
+
+Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
+    : faults_(MakePictureFaults(about.scenario.faults)), width_px_(about.pinhole.width_px) {
+  UseOneThreadPerRenderer();
+  std::vector<Painter> painters;
+  for (int i = 0; i < kRenderers; ++i) {  // one after the other: drivers set themselves up with the first
+    optics_.push_back(std::make_unique<Optics>(about.scene, about.pinhole, about.scenario.camera.lens,
+                                               Sampling::kPlain, i));
+    Optics* const optics = optics_.back().get();
+    Painter painter;
+    painter.draw = [this, optics](const Exposure& exposure, std::span<std::uint8_t> rgba) {
+      optics->Draw(exposure, rgba);
+      const std::int64_t taken_ns = exposure.pixels_of ? exposure.pixels_of->stamp_ns : exposure.stamp_ns;
+      SpoilPicture(faults_, taken_ns, width_px_, rgba);
+    };
+    painter.leave_thread = [optics] { optics->Release(); };
+    painters.push_back(trace != nullptr ? trace->Watched(std::move(painter), *optics, i)
+                                        : std::move(painter));
+  }
+  SimCameraConfig config;
+  config.width_px = about.pinhole.width_px;
+  config.height_px = about.pinhole.height_px;
+  config.exposure_ns = static_cast<std::int64_t>(about.scenario.camera.exposure_ms * 1e6);
+  config.queue = queue;
+  camera_ = std::make_unique<SimCamera>(
+      config, Sensor(about.scenario.camera.noise_sigma, SeedOf(about.scenario, RandomStream::kSensor)),
+      std::move(painters));
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,36 @@
+// The rendered camera of a run: a few renderers, each with a thread of its own, and the sensor behind them.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/camera/optics.hpp"
+#include "sim/camera/sim_camera.hpp"
+#include "sim/faults/picture_faults.hpp"
+#include "sim/run/trace.hpp"
+#include "sim/scenario/run_description.hpp"
+
+namespace fovea::sim {
+
+// Pictures that are drawn at the same time.
+inline constexpr int kRenderers = 2;
+
+class Eye {
+ public:
+  // `about` must outlive it, and `trace`, where there is one. `queue`: see SimCameraConfig. InputError,
+  // std::runtime_error: it cannot be drawn here.
+  Eye(const RunDescription& about, std::size_t queue, RunTrace* trace = nullptr);
+
+  [[nodiscard]] SimCamera& camera() { return *camera_; }
+  [[nodiscard]] const SimCamera& camera() const { return *camera_; }
+  [[nodiscard]] const std::string& driver_name() const { return optics_.front()->driver_name(); }
+
+ private:
+  const PictureFaults faults_;
+  const int width_px_;
+  std::vector<std::unique_ptr<Optics>> optics_;
+  std::unique_ptr<SimCamera> camera_;  // its threads use the optics
+};
+
+}  // namespace fovea::sim

@@ -1,0 +1,250 @@
+#include "sim/scenario/compose.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "firmware/core/barriers/keep_apart.hpp"
+#include "firmware/core/model/kinematics.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "sim/camera/mix_bits.hpp"
+#include "sim/scenario/roll_pitch_yaw.hpp"
+
+namespace fovea::sim {
+namespace {
+
+using config::InputError;
+
+Eigen::Vector3d ToVector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+Eigen::VectorXd ToVectorX(const std::vector<double>& v) {
+  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+}
+
+}  // namespace
+
+Eigen::Isometry3d CameraMount(const Scenario& s) {
+  Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
+  X_EC.linear() = RollPitchYaw(s.camera.mount_rpy_deg).toRotationMatrix();
+  X_EC.translation() = ToVector(s.camera.mount_xyz);
+  return X_EC;
+}
+
+void CheckSizes(const Scenario& s, const robots::Robot& robot) {
+  struct PerJoint {
+    const char* key;
+    const std::vector<double>& values;
+    bool may_be_empty;
+  };
+  for (const PerJoint& list : {PerJoint{"arm.q_start", s.arm.q_start, false},
+                               {"arm.dq_start", s.arm.dq_start, true},
+                               {"arm.spring", s.arm.spring, true},
+                               {"arm.viscous", s.arm.viscous, true},
+                               {"arm.coulomb", s.arm.coulomb, true},
+                               {"faults.push", s.faults.push, true},
+                               {"motion.from", s.motion.from, true},
+                               {"motion.velocity", s.motion.velocity, true},
+                               {"motion.amplitude", s.motion.amplitude, true}}) {
+    const bool fits = static_cast<int>(list.values.size()) == robot.model.num_joints;
+    if (!fits && !(list.values.empty() && list.may_be_empty)) {
+      throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", list.key,
+                                   list.values.size(), robot.name, robot.model.num_joints));
+    }
+  }
+}
+
+void SetFriction(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
+  for (int i = 0; i < robot.model.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    model::Joint& joint = robot.model.joints[k];
+    joint.spring = s.arm.spring.empty() ? 0.0 : s.arm.spring[k];
+    joint.viscous = s.arm.viscous.empty() ? joint.viscous : s.arm.viscous[k];
+    joint.coulomb = s.arm.coulomb.empty() ? joint.coulomb : s.arm.coulomb[k];
+    for (SimLink& link : sim_robot.links) {
+      if (link.dof == i) {
+        link.viscous = joint.viscous;
+        link.coulomb = joint.coulomb;
+      }
+    }
+  }
+}
+
+void AddLoad(const model::Load& load, SimRobot& robot) {
+  SimLink link;
+  link.name = "fovea/load";
+  link.parent = robot.tip;
+  link.mass = load.mass;
+  link.X_LCom.translation() = load.p_ECom;
+  link.I_Com = load.I_Com_E;
+  robot.links.push_back(link);
+}
+
+void CheckStart(const Scenario& s, const robots::Robot& robot) {
+  const std::vector<double>& q = s.arm.q_start;
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const model::Joint& joint = robot.model.joints[i];
+    if (q[i] < joint.q_min || q[i] > joint.q_max) {
+      throw InputError(fmt::format("arm.q_start[{}] = {} is not allowed: joint {} reaches from {} to {}", i,
+                                   q[i], i + 1, joint.q_min, joint.q_max));
+    }
+  }
+  model::ArmPoses poses;
+  const Eigen::Map<const Eigen::VectorXd> q_start(q.data(), robot.model.num_joints);
+  model::ComputePoses(robot.model, q_start, poses);
+  const config::GuardConfig& guard = s.servo.config.guard;
+  const double radius = poses.X_BE.p.norm();
+  if (radius > guard.workspace_radius - guard.workspace_margin) {
+    throw InputError(
+        fmt::format("arm.q_start is not allowed: the end effector is {:.3f} m from the base there, outside "
+                    "safety.workspace_radius = {} m less safety.workspace_margin = {} m",
+                    radius, guard.workspace_radius, guard.workspace_margin));
+  }
+}
+
+void CheckOutside(const Scenario& s, const config::ServoConfig& servo) {
+  model::ArmPoses poses;
+  const Eigen::Map<const Eigen::VectorXd> q_start(s.arm.q_start.data(), servo.arm.num_joints);
+  model::ComputePoses(servo.arm, q_start, poses);
+  if (const double clearance = barriers::ClearanceOfArm(servo, poses); !(clearance > 0.0)) {
+    throw InputError(
+        fmt::format("arm.q_start is not allowed: hand, camera, tools or links stand {:.3f} m inside what "
+                    "safety.planes and safety.boxes keep them out of",
+                    -clearance));
+  }
+}
+
+WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
+  WorldConfig config;
+  config.robot = robot;
+  config.physics.integrator =
+      s.arm.integrator == "rk4" ? Integrator::kRungeKutta4 : Integrator::kSemiImplicitEuler;
+  config.q_start = ToVectorX(s.arm.q_start);
+  config.dq_start = ToVectorX(s.arm.dq_start);
+  config.spring = ToVectorX(s.arm.spring);
+  config.stiction = s.arm.stiction;
+  config.X_EC = CameraMount(s);
+  config.friction_compensation = s.arm.friction_compensation;
+  config.encoder_noise = s.arm.encoder_noise;
+  config.encoder_quantum = s.arm.encoder_quantum;
+  config.velocity_noise = s.arm.velocity_noise;
+  config.target = MakeTargetMotion(s.target, SeedOf(s, RandomStream::kTarget));
+  if (s.camera.enabled) {
+    config.target_body = MakeTargetBody(MakeTargetShape(config::MakeTarget(s.target)));
+  }
+  config.ball = MakeRollingBall(s.target);
+  config.ball_push = ToVector(s.target.push);
+  config.ball_push_s = s.target.push_s;
+  config.camera_rate_hz = s.camera.rate_hz;
+  SetBenchFaults(s.faults, config);
+  config.seed = SeedOf(s, RandomStream::kEncoders);
+  return config;
+}
+
+CommandedMotion MakeMotion(const Scenario& s) {
+  const auto joints = [](const std::vector<double>& values) {
+    hal::JointArray array{};
+    std::copy(values.begin(), values.end(), array.begin());
+    return array;
+  };
+  const auto& m = s.motion;
+  if (m.kind == "circle") {
+    const Eigen::Vector3d normal = ToVector(m.normal).normalized();
+    const Eigen::Vector3d aside =
+        std::fabs(normal.z()) < 0.9 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();
+    CommandedCircle circle;
+    circle.centre = ToVector(m.centre);
+    circle.across = aside.cross(normal).normalized();
+    circle.down = -normal.cross(circle.across);
+    circle.hand = RollPitchYaw(m.hand_rpy_deg);
+    circle.radius = m.radius;
+    circle.rate_hz = m.rate_hz;
+    circle.lead_s = m.lead_s;
+    return circle;
+  }
+  if (m.kind == "home") {
+    return CommandedHome{};
+  }
+  return CommandedJoints{joints(m.from.empty() ? s.arm.q_start : m.from), joints(m.velocity),
+                         joints(m.amplitude), m.omega};
+}
+
+RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
+  RenderScene scene;
+  scene.bench = MakeBench(s.target.clutter);
+  scene.robot = robot;
+  scene.has_eye = s.camera.enabled;
+  scene.X_EC = CameraMount(s);
+  scene.target = MakeTargetShape(config::MakeTarget(s.target));
+  scene.target_R_BO = RollPitchYaw(s.target.rpy_deg).toRotationMatrix();
+  scene.target_colour = ToVector(s.target.colour).cast<float>();
+  scene.light = s.camera.light;
+  return scene;
+}
+
+std::uint64_t SeedOf(const Scenario& s, RandomStream stream) {
+  constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15U;  // so that seed 0 is not mixed to 0
+  return MixBits((static_cast<std::uint64_t>(s.run.seed) << 8U) + static_cast<std::uint64_t>(stream) +
+                 kGoldenRatio);
+}
+
+Pinhole MakeScenarioPinhole(const Scenario& s) {
+  return MakePinhole(s.camera.width_px, s.camera.height_px, s.camera.hfov_deg * kRadPerDeg);
+}
+
+void CheckLens(const Scenario& s) {
+  const Lens& lens = s.camera.lens;
+  try {
+    if (!lens.IsZero()) {
+      const LensMap map(lens, MakeScenarioPinhole(s));
+    }
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format(
+        "camera.k1, k2, p1, p2, k3 = {}, {}, {}, {}, {} is not allowed with camera.hfov_deg = {}: {}",
+        lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, s.camera.hfov_deg, error.what()));
+  }
+}
+
+void CheckGoal(const Scenario& s) {
+  const Pinhole pinhole = MakeScenarioPinhole(s);
+  const Eigen::Vector3d goal = ToVector(s.servo.goal);
+  const double u = pinhole.U(goal);
+  const double v = pinhole.V(goal);
+  if (!(u >= 0.0 && u <= pinhole.width_px - 1 && v >= 0.0 && v <= pinhole.height_px - 1)) {
+    throw InputError(fmt::format(
+        "servo.goal = [{}, {}, {}] is not allowed: it is at ({:.0f}, {:.0f}) px, outside the picture "
+        "of {} x {} px",
+        goal.x(), goal.y(), goal.z(), u, v, pinhole.width_px, pinhole.height_px));
+  }
+  const double near = s.vision.config.distance_min;
+  const double far = s.vision.config.distance_max;
+  if (goal.norm() < near || goal.norm() > far) {
+    throw InputError(
+        fmt::format("servo.goal = [{}, {}, {}] is not allowed: {:.3g} m off, where vision.distance_min and "
+                    "vision.distance_max let the target be from {} to {} m",
+                    goal.x(), goal.y(), goal.z(), goal.norm(), near, far));
+  }
+}
+
+void CheckTimes(const Scenario& s) {
+  const double period_ms = 1e3 / s.camera.rate_hz;
+  if (s.camera.exposure_ms > period_ms) {
+    throw InputError(
+        fmt::format("camera.exposure_ms = {} is not allowed: at camera.rate_hz = {} a frame has {:.3g} ms",
+                    s.camera.exposure_ms, s.camera.rate_hz, period_ms));
+  }
+  if (s.camera.latency_ms < 0.5 * s.camera.exposure_ms) {
+    throw InputError(fmt::format(
+        "camera.latency_ms = {} is not allowed: the second half of camera.exposure_ms = {} comes first",
+        s.camera.latency_ms, s.camera.exposure_ms));
+  }
+  const double stale_ms = 1e3 * s.servo.config.predict.stale_s;
+  if (s.camera.latency_ms >= stale_ms) {
+    throw InputError(fmt::format(
+        "camera.latency_ms = {} is not allowed: every measurement would be older than servo.stale_s = "
+        "{} s when it comes",
+        s.camera.latency_ms, s.servo.config.predict.stale_s));
+  }
+}
+
+}  // namespace fovea::sim

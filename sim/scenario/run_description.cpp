@@ -1,0 +1,82 @@
+#include "sim/scenario/run_description.hpp"
+
+#include <fmt/format.h>
+
+#include "firmware/host/config/input_error.hpp"
+
+#include "sim/scenario/compose.hpp"
+
+namespace fovea::sim {
+
+namespace {
+
+// InputError when there is no analytic answer to compare with.
+TheoryConfig MakeTheoryConfig(const Scenario& s, const RunDescription& run) {
+  const model::ArmModel& arm = run.servo.arm;
+  if (arm.num_joints != 1 || arm.joints[0].type != model::JointType::kPrismatic) {
+    throw config::InputError(fmt::format(
+        "theory.enabled = true is not allowed: it takes an arm with one prismatic joint, and \"{}\" is none",
+        run.robot.name));
+  }
+  constexpr double kLongest = 600.0;
+  if (s.run.duration_s > kLongest) {
+    throw config::InputError(fmt::format(
+        "run.duration_s = {} is not allowed: with theory.enabled at most {} s", s.run.duration_s, kLongest));
+  }
+  TheoryConfig theory;
+  theory.plant = {arm.links[0].mass, arm.joints[0].viscous, arm.joints[0].spring};
+  theory.coulomb = arm.joints[0].coulomb;
+  theory.law = run.servo.motion_law;
+  if (run.motion) {
+    if (!std::holds_alternative<CommandedJoints>(*run.motion)) {
+      throw config::InputError("theory.enabled = true is allowed with motion.kind = \"joints\" or none");
+    }
+    theory.motion = std::get<CommandedJoints>(*run.motion);
+  }
+  theory.push = s.faults.push.empty() ? 0.0 : s.faults.push[0];
+  theory.push_s = s.faults.push_s[0];
+  theory.fit_begin_s = s.theory.fit_s[0];
+  theory.fit_end_s = s.theory.fit_s[1];
+  return theory;
+}
+
+}  // namespace
+
+RunDescription DescribeRun(const Scenario& scenario) {
+  RunDescription run;
+  run.scenario = scenario;
+  run.robot = LoadScenarioRobot(scenario);
+  CheckSizes(scenario, run.robot);
+  SimRobot robot = LoadSimRobot(run.robot.urdf, run.robot.base_link, run.robot.tip_link, run.robot.root);
+  SetFriction(scenario, run.robot, robot);
+  const model::Load load = config::MakeLoad(scenario.arm.load);
+  if (load.mass > 0.0) {
+    model::Attach(load, run.robot.model);
+    AddLoad(load, robot);
+  }
+  CheckStart(scenario, run.robot);
+  const Eigen::Isometry3d X_EC = CameraMount(scenario);
+  run.pinhole = MakeScenarioPinhole(scenario);
+  run.intrinsics = {run.pinhole.width_px, run.pinhole.height_px, run.pinhole.f_px,
+                    run.pinhole.f_px,     run.pinhole.c_u_px,    run.pinhole.c_v_px};
+  const Lens& lens = scenario.camera.lens;
+  run.intrinsics.lens = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+  CheckLens(scenario);
+  run.servo =
+      config::MakeServoConfig(scenario.servo, run.robot, model::Pose{X_EC.linear(), X_EC.translation()},
+                              run.intrinsics, scenario.target);
+  CheckOutside(scenario, run.servo);
+  CheckGoal(scenario);
+  CheckTimes(scenario);
+  CheckFaults(scenario.faults, run.robot.model.num_joints);
+  run.scene = MakeRenderScene(scenario, robot);
+  if (scenario.motion.kind != "none") {
+    run.motion = MakeMotion(scenario);
+  }
+  if (scenario.theory.enabled) {
+    run.theory = MakeTheoryConfig(scenario, run);
+  }
+  return run;
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,226 @@
+#include "sim/scenario/scenario.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/inside_folder.hpp"
+#include "firmware/host/config/share_folder.hpp"
+
+namespace fovea::sim {
+namespace {
+
+namespace fs = std::filesystem;
+using config::InputError;
+
+void AddArmKeys(Scenario& s, config::KeyTable& keys) {
+  keys.Text("arm.model", s.arm.model,
+            "a shipped arm by name, or the path of an arm file or URDF: in the scenario's folder, or "
+            "anywhere with --set");
+  keys.Numbers("arm.q_start", s.arm.q_start, 1, model::kMaxJoints, -1e4, 1e4, "rad",
+               "joint positions at the start, one per joint");
+  keys.Numbers("arm.dq_start", s.arm.dq_start, 1, model::kMaxJoints, -100.0, 100.0, "rad/s",
+               "joint velocities at the start, one per joint; at rest when not given");
+  keys.Numbers("arm.spring", s.arm.spring, 1, model::kMaxJoints, 0.0, 1e6, "Nm/rad",
+               "springs that pull each joint to 0, one per joint, known to the servo; none when not given");
+  keys.Numbers("arm.viscous", s.arm.viscous, 1, model::kMaxJoints, 0.0, 1e6, "Nm s/rad",
+               "viscous friction, one per joint; the URDF's damping when not given");
+  keys.Numbers("arm.coulomb", s.arm.coulomb, 1, model::kMaxJoints, 0.0, 1e6, "Nm",
+               "Coulomb friction, one per joint; the URDF's friction when not given");
+  keys.Flag("arm.stiction", s.arm.stiction,
+            "Coulomb friction holds a joint at rest; false: it is smooth about standstill");
+  keys.Number("arm.friction_compensation", s.arm.friction_compensation, 0.0, 1.0, "",
+              "share of the joints' friction that the robot's own controller takes away");
+  keys.Number("arm.encoder_noise", s.arm.encoder_noise, 0.0, 0.1, "rad",
+              "standard deviation of measured positions");
+  keys.Number("arm.encoder_quantum", s.arm.encoder_quantum, 0.0, 0.1, "rad",
+              "measured positions are rounded to multiples of it, velocities are not; 0: none are");
+  keys.Number("arm.velocity_noise", s.arm.velocity_noise, 0.0, 1.0, "rad/s",
+              "standard deviation of measured velocities");
+  keys.Choice("arm.integrator", s.arm.integrator, {"euler", "rk4"},
+              "how the physics steps: semi-implicit Euler, or Runge-Kutta of order 4 at 3.5 times the cost");
+  config::AddLoadKeys(s.arm.load, keys);
+}
+
+void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
+  keys.Flag("camera.enabled", s.camera.enabled, "false: a run without eyes, for commanded motions");
+  keys.Integer("camera.width_px", s.camera.width_px, 64, 4096, "px", "picture width");
+  keys.Integer("camera.height_px", s.camera.height_px, 64, 4096, "px", "picture height");
+  keys.Number("camera.hfov_deg", s.camera.hfov_deg, 5.0, 150.0, "deg", "horizontal field of view");
+  keys.Number("camera.rate_hz", s.camera.rate_hz, 1.0, 240.0, "Hz", "frames per second");
+  keys.Number("camera.exposure_ms", s.camera.exposure_ms, 0.01, 100.0, "ms",
+              "exposure time; stamps are at its middle");
+  keys.Number("camera.latency_ms", s.camera.latency_ms, 0.0, 500.0, "ms",
+              "from mid-exposure until the feature reaches the servo");
+  keys.Number("camera.noise_sigma", s.camera.noise_sigma, 0.0, 60.0, "gray levels",
+              "standard deviation of read noise");
+  keys.Number("camera.light", s.camera.light, 0.01, 4.0, "",
+              "brightness of the picture; 1 is a well-lit bench");
+  keys.Number(
+      "camera.k1", s.camera.lens.k1, -2.0, 2.0, "",
+      "the lens' radial distortion, with k2 and k3; not 0: each picture takes some five times as long");
+  keys.Number("camera.k2", s.camera.lens.k2, -10.0, 10.0, "", "times r^4");
+  keys.Number("camera.p1", s.camera.lens.p1, -0.1, 0.1, "", "its tangential distortion, with p2");
+  keys.Number("camera.p2", s.camera.lens.p2, -0.1, 0.1, "", "along x");
+  keys.Number("camera.k3", s.camera.lens.k3, -50.0, 50.0, "", "times r^6");
+  keys.Numbers("camera.mount_xyz", s.camera.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
+  keys.Numbers("camera.mount_rpy_deg", s.camera.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
+               "roll, pitch, yaw of C in E, about fixed axes");
+}
+
+void AddRunKeys(Scenario& s, config::KeyTable& keys) {
+  keys.Text("run.description", s.run.description, "one line for `fovea-sim list`");
+  keys.Number("run.duration_s", s.run.duration_s, 0.1, 1e6, "s", "simulated time");
+  keys.Integer("run.seed", s.run.seed, 0, 2147483647, "", "of all that is random");
+  keys.Number("run.tracking_bound_px", s.run.tracking_bound_px, 0.01, 1e4, "px",
+              "a moving target counts as tracked below this error, rms over the second half");
+  keys.Flag("run.scene_video", s.run.scene_video,
+            "also film the bench from beside it, with the paths of camera and target: scene.mp4");
+}
+
+void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
+  constexpr std::size_t kMax = model::kMaxJoints;
+  keys.Choice(
+      "motion.kind", s.motion.kind, {"none", "joints", "circle", "home"},
+      "commanded motion; joints: from + velocity t + amplitude sin(omega t) for each joint; circle: of "
+      "the end effector; home: to the arm's ready posture");
+  keys.Numbers("motion.from", s.motion.from, 1, kMax, -1e4, 1e4, "rad",
+               "joint positions, one per joint; arm.q_start when not given");
+  keys.Numbers("motion.velocity", s.motion.velocity, 1, kMax, -100.0, 100.0, "rad/s",
+               "one per joint; 0 when not given");
+  keys.Numbers("motion.amplitude", s.motion.amplitude, 1, kMax, -100.0, 100.0, "rad",
+               "one per joint; 0 when not given");
+  keys.Number("motion.omega", s.motion.omega, 1e-3, 1e3, "rad/s", "angular frequency of the swing");
+  keys.Numbers("motion.centre", s.motion.centre, 3, 3, -5.0, 5.0, "m", "of the circle, in B");
+  keys.Numbers("motion.normal", s.motion.normal, 3, 3, -1.0, 1.0, "", "of its plane, in B");
+  keys.Numbers("motion.hand_rpy_deg", s.motion.hand_rpy_deg, 3, 3, -360.0, 360.0, "deg",
+               "roll, pitch, yaw of the end effector on it, about fixed axes of B");
+  keys.Number("motion.radius", s.motion.radius, 0.001, 2.0, "m", "of the circle");
+  keys.Number("motion.rate_hz", s.motion.rate_hz, 0.001, 10.0, "Hz", "turns per second");
+  keys.Number("motion.lead_s", s.motion.lead_s, 0.1, 1e3, "s", "time to come to its lowest point first");
+  keys.Number("motion.bound_mm", s.motion.bound_mm, 0.001, 1e3, "mm",
+              "the circle counts as followed when the end effector never is further off");
+  keys.Flag("theory.enabled", s.theory.enabled,
+            "judge a one-joint arm against its analytic response instead of a target");
+  keys.Numbers("theory.fit_s", s.theory.fit_s, 2, 2, 0.0, 1e6, "s",
+               "zeta, omega_n and poles are fitted from the first time to the second");
+}
+
+fs::path ShippedFolder() { return config::ShareFolder() / "scenarios"; }
+
+// "ball", "theory/open-loop".
+std::string ShippedName(const fs::path& file) {
+  return fs::relative(file, ShippedFolder()).replace_extension().generic_string();
+}
+
+fs::path FindScenario(const std::string& name_or_path) {
+  if (fs::path(name_or_path).extension() == ".toml") {
+    // A run's folder has the file's name.
+    if (const fs::path name = fs::path(name_or_path).stem(); name == "." || name == "..") {
+      throw InputError(fmt::format("{}: a scenario's file needs a name before .toml", name_or_path));
+    }
+    return name_or_path;
+  }
+  const fs::path shipped = ShippedFolder() / (name_or_path + ".toml");
+  if (fs::is_regular_file(shipped)) {
+    return shipped;
+  }
+  const std::vector<std::string> names = ShippedScenarios();
+  const std::string nearest = config::Nearest(name_or_path, names);
+  throw InputError(fmt::format("unknown scenario \"{}\"{}; shipped are {} (or give the path of a .toml)",
+                               name_or_path, nearest.empty() ? "" : "; did you mean " + nearest + "?",
+                               fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+config::KeyTable ScenarioKeys(Scenario& scenario) {
+  config::KeyTable keys;
+  AddArmKeys(scenario, keys);
+  AddCameraKeys(scenario, keys);
+  config::AddVisionKeys(scenario.vision, keys);
+  AddTargetSceneKeys(scenario.target, keys);
+  config::AddServoKeys(scenario.servo, keys);
+  AddMotionKeys(scenario, keys);
+  AddFaultKeys(scenario.faults, keys);
+  AddRunKeys(scenario, keys);
+  return keys;
+}
+
+std::string KeysAsMarkdown(const config::KeyTable& keys) {
+  std::string text =
+      "# Keys of a scenario\n\n"
+      "Printed by `fovea-sim keys --markdown`. A scenario names what differs from these defaults.\n";
+  std::string section;
+  for (const config::Key& key : keys.keys()) {
+    const auto dot = key.name.find('.');
+    if (key.name.substr(0, dot) != section) {
+      section = key.name.substr(0, dot);
+      text += fmt::format(
+          "\n## [{}]\n\n| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n", section);
+    }
+    text += fmt::format("| `{}` | `{}` | {} | {}: {} | {} |\n", key.name.substr(dot + 1), key.default_text,
+                        key.unit, key.kind, key.allowed, key.meaning);
+  }
+  return text;
+}
+
+std::vector<std::string> ShippedScenarios() {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::recursive_directory_iterator(ShippedFolder(), ignored)) {
+    if (entry.path().extension() == ".toml") {
+      names.push_back(ShippedName(entry.path()));
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Scenario LoadScenario(const std::string& name_or_path, const std::vector<std::string>& assignments) {
+  const fs::path file = FindScenario(name_or_path);
+  Scenario scenario;
+  const bool is_path = fs::path(name_or_path).extension() == ".toml";
+  scenario.name = is_path ? file.stem().string() : ShippedName(file);
+  scenario.folder = file.parent_path();
+  const config::KeyTable keys = ScenarioKeys(scenario);
+  for (const config::Setting& setting : config::ReadTomlFile(file)) {
+    keys.Apply(setting);
+  }
+  for (const std::string& assignment : assignments) {
+    const config::Setting setting = config::ParseAssignment(assignment);
+    keys.Apply(setting);
+    scenario.arm_is_the_users = scenario.arm_is_the_users || setting.key == "arm.model";
+  }
+  return scenario;
+}
+
+robots::Robot LoadScenarioRobot(const Scenario& scenario) {
+  const fs::path model = scenario.arm.model;
+  if (model.extension() == ".toml" || model.extension() == ".urdf") {
+    const fs::path beside = scenario.folder / model;
+    if (scenario.arm_is_the_users) {
+      return robots::LoadRobot(fs::exists(beside) ? beside : model);
+    }
+    const fs::path root = fs::absolute(scenario.folder / ".");
+    if (!config::IsInside(root, model)) {
+      throw InputError(fmt::format(
+          "arm.model = \"{}\" is not allowed: it lies outside {}, the scenario's folder (--set arm.model=... "
+          "names any arm)",
+          scenario.arm.model, root.lexically_normal().string()));
+    }
+    return robots::LoadRobot(beside, root);
+  }
+  const fs::path shipped = config::ShareFolder() / "robots" / (scenario.arm.model + ".toml");
+  if (model != model.filename() || !fs::is_regular_file(shipped)) {
+    throw InputError(
+        fmt::format("arm.model = \"{}\": no shipped arm of that name (or give the path of an arm file "
+                    ".toml or a .urdf)",
+                    scenario.arm.model));
+  }
+  return robots::LoadRobot(shipped);
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,49 @@
+// The target of a scenario: what it is, where it lies and how it moves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "firmware/host/config/target_keys.hpp"
+#include "sim/physics/rolling_ball.hpp"
+#include "sim/render/target_shape.hpp"
+#include "sim/robot/sim_robot.hpp"
+#include "sim/world/target_motion.hpp"
+
+namespace fovea::sim {
+
+struct TargetScene : config::TargetSettings {
+  std::vector<double> position{0.56, 0.14, 0.04};
+  std::vector<double> rpy_deg{180.0, 0.0, -90.0};
+  std::vector<double> colour{0.74, 0.07, 0.06};
+  std::string motion = "still";
+  double path_radius = 0.10;
+  double path_yaw_deg = 90.0;
+  double speed = 0.2;
+  std::vector<double> jump{0.0, -0.10, 0.0};
+  double jump_s = 4.0;
+  std::vector<double> push{0.0, -0.06, 0.0};
+  double push_s = 3.0;
+  double mass = 0.2;
+  double friction = 0.5;
+  double rolling_resistance = 0.001;
+  double air_damping = 0.05;
+  double turn_deg_s = 0.0;
+  bool clutter = false;
+};
+
+// The scene must outlive the table.
+void AddTargetSceneKeys(TargetScene& scene, config::KeyTable& keys);
+
+// `seed`: of what is random about it.
+TargetMotion MakeTargetMotion(const TargetScene& scene, std::uint64_t seed);
+// The ball that is pushed, for a scene that has one. InputError: it is no sphere, or stands in the table.
+RollingBallConfig MakeRollingBall(const TargetScene& scene);
+TargetShape MakeTargetShape(const features::TargetFeature& feature);
+// What the arm could touch of it: a flat one is a plate of 2 mm behind its painted side.
+Shape MakeTargetBody(const TargetShape& shape);
+
+// Whether it is followed rather than come to: it moves all the time.
+bool KeepsMoving(const TargetScene& scene);
+
+}  // namespace fovea::sim

@@ -1,0 +1,11 @@
+// What a run is judged by.
+#pragma once
+
+#include "sim/scenario/run_description.hpp"
+#include "sim/verdict/verdict.hpp"
+
+namespace fovea::sim {
+
+VerdictConfig MakeVerdictConfig(const RunDescription& about);
+
+}  // namespace fovea::sim

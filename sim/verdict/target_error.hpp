@@ -1,0 +1,77 @@
+// How far the target is from its goal, in truth.
+#pragma once
+
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "firmware/core/features/target_feature.hpp"
+#include "sim/render/pinhole.hpp"
+#include "sim/world/world.hpp"
+
+namespace fovea::sim {
+
+// Where the target shall be, as far as its feature says so.
+struct TargetGoal {
+  Eigen::Vector3d p_CO_C_star = Eigen::Vector3d::Zero();  // [m]
+  std::optional<Eigen::Matrix3d>
+      R_CO_star;  // none: the feature does not control the orientation, or not all of it
+  int turns = 1;  // of a full turn about O's z that nobody can tell from each other: 4 of a square
+  std::vector<Eigen::Vector3d> points{Eigen::Vector3d::Zero()};  // that are judged in the image, in O [m]
+};
+
+inline TargetGoal GoalOf(const features::TargetFeature& feature) {
+  TargetGoal goal;
+  goal.p_CO_C_star = feature.p_CO_C_star;
+  if (feature.form == features::FeatureForm::kCorners || feature.form == features::FeatureForm::kPose) {
+    goal.R_CO_star = feature.R_CO_star;
+    goal.turns = feature.target == hal::FeatureKind::kSquare ? 4 : 1;
+    const auto corners = feature.corners.corners.begin();
+    goal.points.assign(corners, corners + feature.corners.num_corners);
+  }
+  return goal;
+}
+
+struct TargetError {
+  // rms over the goal's points; infinite when one of them is behind the camera.
+  double error_px = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal less truth, in axes of C [m]
+  std::optional<double> error_rad;                    // of the orientation, where the goal has one
+};
+
+inline TargetError ErrorOf(const Truth& truth, const Pinhole& pinhole, const TargetGoal& goal) {
+  const Eigen::Isometry3d X_CB = truth.X_BC.inverse();
+  const Eigen::Vector3d p_CO_C = X_CB * truth.p_BO;
+  Eigen::Matrix3d R_CO = X_CB.linear() * truth.R_BO;
+  TargetError error;
+  error.error_C = goal.p_CO_C_star - p_CO_C;
+  if (goal.R_CO_star) {
+    const Eigen::Matrix3d R_CO_given = R_CO;
+    for (int turn = 0; turn < goal.turns; ++turn) {
+      const double angle = 2.0 * std::numbers::pi * turn / goal.turns;
+      const Eigen::Matrix3d R_CO_turned =
+          R_CO_given * Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+      const double off =
+          Eigen::AngleAxisd(Eigen::Matrix3d(*goal.R_CO_star * R_CO_turned.transpose())).angle();
+      if (!error.error_rad || off < *error.error_rad) {
+        error.error_rad = off;
+        R_CO = R_CO_turned;
+      }
+    }
+  }
+  double sum2 = 0.0;
+  for (const Eigen::Vector3d& p_OP : goal.points) {
+    const Eigen::Vector3d p = p_CO_C + R_CO * p_OP;
+    const Eigen::Vector3d p_star =
+        goal.p_CO_C_star + (goal.R_CO_star ? Eigen::Vector3d(*goal.R_CO_star * p_OP) : p_OP);
+    if (!(p.z() > 0.0)) {
+      return error;
+    }
+    sum2 += Eigen::Vector2d(pinhole.U(p) - pinhole.U(p_star), pinhole.V(p) - pinhole.V(p_star)).squaredNorm();
+  }
+  error.error_px = std::sqrt(sum2 / static_cast<double>(goal.points.size()));
+  return error;
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,79 @@
+#include "sim/verdict/unwanted_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr std::size_t kHalf = 5;  // steps of the time over which an acceleration is taken, half of it
+
+}  // namespace
+
+UnwantedMotion::UnwantedMotion(StopRules rules) : rules_(std::move(rules)) {}
+
+void UnwantedMotion::Add(const Truth& truth, hal::Mode mode) {
+  const Eigen::Vector3d p = truth.X_BE.translation();
+  const double speed = p_.empty() ? 0.0 : (p - p_.back()).norm() / kStepS;
+  if (mode != mode_) {
+    const bool stands = mode == hal::Mode::kBoot || mode == hal::Mode::kHold || mode == hal::Mode::kFault;
+    now_ = stands ? &by_mode_[hal::Name(mode)] : nullptr;
+    mode_ = mode;
+    p_start_ = p_.empty() ? p : p_.back();
+    speed_start_ = speed_before_ + 0.5 * Acceleration() * TurnTime(mode);
+    stop_mm_ = 1e3 * speed_start_ * StopTime(mode, truth.dq);
+  }
+  if (now_ != nullptr) {
+    const double way_mm = 1e3 * (p - p_start_).norm();
+    now_->most_mm = std::max(now_->most_mm, way_mm);
+    now_->beyond_stop_mm = std::max(now_->beyond_stop_mm, way_mm - stop_mm_);
+    now_->most_m_per_s = std::max(now_->most_m_per_s, speed);
+    now_->gained_m_per_s = std::max(now_->gained_m_per_s, speed - speed_start_);
+  }
+  p_.push_back(p);
+  if (p_.size() > 2 * kHalf + 1) {
+    p_.pop_front();
+  }
+  speed_before_ = speed;
+}
+
+// Of the hand, as a mean over the last 10 ms [m/s^2].
+double UnwantedMotion::Acceleration() const {
+  if (p_.size() < 2 * kHalf + 1) {
+    return 0.0;
+  }
+  constexpr double kHalfS = kHalf * kStepS;
+  return (p_[2 * kHalf] - 2.0 * p_[kHalf] + p_[0]).norm() / (kHalfS * kHalfS);
+}
+
+// Until the joints' accelerations are turned round. A fault's torques know no such limit.
+double UnwantedMotion::TurnTime(hal::Mode mode) const {
+  return mode == hal::Mode::kHold ? 2.0 * rules_.ddq_max.cwiseQuotient(rules_.dddq_max).maxCoeff() : 0.0;
+}
+
+// For so long an arm whose joints move by `dq` may go on at the speed that it has, where the servo is in
+// `mode` now. In Hold all joints stop in step with the one that takes longest, whose way at an even
+// deceleration is half of that; before, accelerations may have to be turned round.
+double UnwantedMotion::StopTime(hal::Mode mode, const Eigen::VectorXd& dq) const {
+  switch (mode) {
+    case hal::Mode::kHold: {
+      double longest_s = 0.0;
+      for (Eigen::Index i = 0; i < dq.size(); ++i) {
+        longest_s = std::max(longest_s, 0.5 * std::fabs(dq[i]) / rules_.ddq_max[i]);
+      }
+      return longest_s + TurnTime(mode);
+    }
+    case hal::Mode::kFault: return rules_.brake_after_s;
+    case hal::Mode::kBoot:  // begins at rest
+    case hal::Mode::kTrack:
+    case hal::Mode::kCoast:
+    case hal::Mode::kMove: break;
+  }
+  return 0.0;
+}
+
+}  // namespace fovea::sim

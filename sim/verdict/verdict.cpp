@@ -1,0 +1,320 @@
+#include "sim/verdict/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+namespace fovea::sim {
+namespace {
+
+constexpr double kTickS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+constexpr std::int64_t kWindowNs = hal::kNsPerSecond / 2;  // final_* are over this last part of a run
+constexpr double kConvergedPx = 1.0;                       // converged: no sample of it is further off
+constexpr double kConvergedM = 0.002;
+constexpr double kConvergedDeg = 0.5;  // of a goal with an orientation
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kHomeBound = 1e-3;     // at home: no joint is further off [rad]
+constexpr double kAtRest = 0.01;        // a joint that is slower rests [rad/s, m/s]
+constexpr double kSettledShare = 0.02;  // settled: below this share of the first error, for good
+
+}  // namespace
+
+Verdict::Verdict(const VerdictConfig& config)
+    : config_(config), barriers_(config.barriers), unwanted_(config.stop), notices_(config.faults) {}
+
+void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
+  if (config_.has_eye) {
+    const TargetError error = ErrorOf(truth, config_.pinhole, config_.goal);
+    AddSample({truth.stamp_ns, error.error_px, error.error_C, error.error_rad.value_or(0.0)});
+  }
+
+  const double t_s = 1e-9 * static_cast<double>(truth.stamp_ns);
+  const bool rests = truth.dq.cwiseAbs().maxCoeff() < kAtRest;
+  at_rest_since_s_ = rests ? std::optional(at_rest_since_s_.value_or(t_s)) : std::nullopt;
+  if (config_.circle && t_s >= config_.circle->lead_s) {
+    const std::array<double, 3> p = config_.circle->At(t_s).p_BE;
+    const double off = (truth.X_BE.translation() - Eigen::Vector3d(p[0], p[1], p[2])).norm();
+    path2_ += off * off;
+    path_most_ = std::max(path_most_, off);
+    ++path_samples_;
+    NoteGoal(t_s, 1e3 * off <= config_.path_bound_mm);
+  }
+  const model::ArmModel& arm = config_.barriers.arm;
+  home_error_ = (truth.q - model::ToVector(arm.q_ready, arm.num_joints)).cwiseAbs().maxCoeff();
+  if (config_.goes_home) {
+    NoteGoal(t_s, home_error_ <= kHomeBound);
+  }
+  barriers_.Add(truth, mode);
+  unwanted_.Add(truth, mode);
+  const Contacts& contacts = truth.contacts;
+  contact_ticks_ += contacts.Any() ? 1U : 0U;
+  contacts_.bench += contacts.bench > 0 ? 1U : 0U;
+  contacts_.target += contacts.target ? 1U : 0U;
+  contacts_.self += contacts.self ? 1U : 0U;
+}
+
+void Verdict::AddSample(const Sample& sample) {
+  if (!first_px_) {
+    first_px_ = sample.error_px;
+  }
+  window_.push_back(sample);
+  while (window_.front().stamp_ns <= sample.stamp_ns - kWindowNs) {
+    window_.pop_front();
+  }
+  const double t_s = static_cast<double>(sample.stamp_ns) * 1e-9;
+  is_outside_ = !(sample.error_px <= kSettledShare * *first_px_);
+  if (is_outside_) {
+    last_outside_s_ = t_s;
+  }
+  NoteGoal(t_s, config_.target_moves
+                    ? WindowPx() <= config_.tracking_bound_px
+                    : sample.error_px <= kConvergedPx && sample.error_C.norm() <= kConvergedM &&
+                          kDegPerRad * sample.error_rad <= kConvergedDeg);
+  if (t_s > 0.5 * config_.duration_s) {
+    second_half_px2_ += sample.error_px * sample.error_px;
+    ++second_half_samples_;
+  }
+}
+
+// Of the image error over the window, as a root mean square: a target that moves is kept within its bound on
+// the whole, as the run's verdict asks.
+double Verdict::WindowPx() const {
+  double px2 = 0.0;
+  for (const Sample& sample : window_) {
+    px2 += sample.error_px * sample.error_px;
+  }
+  return std::sqrt(px2 / static_cast<double>(window_.size()));
+}
+
+void Verdict::NoteGoal(double t_s, bool kept) {
+  goal_kept_since_s_ = kept ? std::optional(goal_kept_since_s_.value_or(t_s)) : std::nullopt;
+}
+
+void Verdict::AddRecord(const hal::TickRecord& record) {
+  notices_.Add(record);
+  for (int i = 0; i < config_.barriers.arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::Joint& joint = config_.barriers.arm.joints[k];
+    reference_.Note(record.stamp_ns, reference_ddq_, record.ddq_cmd[k] / joint.ddq_max);
+    // Only where the reference runs on; it starts anew at every stop of the servo.
+    const auto runs = [](hal::Mode mode) { return mode != hal::Mode::kBoot && mode != hal::Mode::kFault; };
+    if (has_record_ && runs(before_.mode) && runs(record.mode)) {
+      reference_.Note(record.stamp_ns, reference_jerk_,
+                      (record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * kTickS));
+    }
+  }
+  for (int i = 0; i < hal::kNumLimits; ++i) {
+    const auto limit = static_cast<hal::Limit>(i);
+    if ((record.limits_active & hal::Bit(limit)) != 0) {
+      ++limit_ticks_[hal::Name(limit)];
+    }
+  }
+  if (record.intake != hal::Intake::kNone) {
+    ++measurements_[hal::Name(record.intake)];
+  }
+  ever_known_ = ever_known_ || record.target_known;
+  const double t_s = static_cast<double>(record.stamp_ns) * 1e-9;
+  const bool is_hold = record.mode == hal::Mode::kHold;
+  if (!has_record_ || record.mode != before_.mode || (is_hold && record.hold_reason != before_.hold_reason)) {
+    modes_.push_back({t_s, hal::Name(record.mode), is_hold ? hal::Name(record.hold_reason) : ""});
+  }
+  if (record.fault != hal::Fault::kNone && (!has_record_ || before_.fault != record.fault)) {
+    const std::string detail = record.fault_joint >= 0 ? fmt::format("joint {}", record.fault_joint + 1)
+                                                       : std::string("no one joint");
+    faults_.push_back({t_s, hal::Name(record.fault), hal::Key(record.fault), detail});
+  }
+  before_ = record;
+  has_record_ = true;
+}
+
+void Verdict::Fill(Summary& summary) const {
+  barriers_.book().AddTo(summary);
+  reference_.AddTo(summary);
+  const std::vector<std::int64_t>& by_truth_ns = barriers_.book().passed_ns();
+  std::vector<std::int64_t> passed_ns;
+  std::set_union(by_truth_ns.begin(), by_truth_ns.end(), reference_.passed_ns().begin(),
+                 reference_.passed_ns().end(), std::back_inserter(passed_ns));
+  summary.limit_violations = passed_ns.size();
+  summary.limit_ticks = limit_ticks_;
+  summary.measurements = measurements_;
+  summary.contact_ticks = contact_ticks_;
+  summary.contacts = contacts_;
+  summary.unwanted_motion = unwanted_.by_mode();
+  summary.faults = faults_;
+  summary.modes = modes_;
+  FillEnd(summary);
+  if (window_.empty()) {
+    FillMotion(summary);
+    return;
+  }
+  if (std::isfinite(*first_px_)) {
+    summary.start_error_px = *first_px_;
+  }
+  if (config_.target_moves) {
+    FillMoving(summary);
+  } else {
+    FillStill(summary);
+  }
+  if (summary.converged && contact_ticks_ > 0) {
+    summary.converged = false;
+    summary.verdict = Touched(summary);
+  } else if (!summary.converged) {
+    summary.verdict = WhyNot(summary);
+  } else if (summary.limit_violations > 0) {
+    summary.verdict = fmt::format("converged, but in {} ticks a limit was passed", summary.limit_violations);
+  }
+}
+
+void Verdict::FillEnd(Summary& summary) const {
+  summary.injected = notices_.Faults();
+  if (!modes_.empty()) {
+    summary.end.mode = modes_.back().mode;
+    summary.end.reason = modes_.back().reason;
+  }
+  summary.end.brakes = before_.command.engage_brakes;
+  summary.end.at_rest_since_s = at_rest_since_s_;
+  summary.end.goal_kept_since_s = goal_kept_since_s_;
+}
+
+// Without a target: what was commanded was followed, or not.
+void Verdict::FillMotion(Summary& summary) const {
+  const bool refused = has_record_ && before_.hold_reason == hal::HoldReason::kMotionRefused;
+  summary.converged = faults_.empty() && !refused && summary.limit_violations == 0;
+  if (path_samples_ > 0) {
+    summary.path_error_mm_rms = 1e3 * std::sqrt(path2_ / static_cast<double>(path_samples_));
+    summary.path_error_mm_max = 1e3 * path_most_;
+  }
+  if (summary.converged && config_.circle && 1e3 * path_most_ > config_.path_bound_mm) {
+    summary.converged = false;
+    summary.verdict = fmt::format("the end effector was {:.2g} mm off its way, motion.bound_mm allows {}",
+                                  1e3 * path_most_, config_.path_bound_mm);
+    return;
+  }
+  if (config_.goes_home) {
+    summary.home_error_rad = home_error_;
+    if (summary.converged && home_error_ > kHomeBound) {
+      summary.converged = false;
+      summary.verdict = fmt::format("a joint is {:.2g} rad from the ready posture at the end", home_error_);
+      return;
+    }
+  }
+  summary.verdict = !faults_.empty()     ? "a fault stopped the arm: " + faults_.front().name
+                    : contact_ticks_ > 0 ? Touched(summary)
+                    : refused            ? "the commanded motion was refused (see modes and limits)"
+                    : summary.converged  ? "the commanded motion was followed"
+                                         : "a limit was passed";
+}
+
+void Verdict::FillStill(Summary& summary) const {
+  double px2 = 0.0;
+  double lateral2 = 0.0;
+  double depth2 = 0.0;
+  double worst_px = 0.0;
+  double worst_m = 0.0;
+  double turn2 = 0.0;
+  double worst_deg = 0.0;
+  for (const Sample& sample : window_) {
+    px2 += sample.error_px * sample.error_px;
+    lateral2 += sample.error_C.head<2>().squaredNorm();
+    depth2 += sample.error_C.z() * sample.error_C.z();
+    worst_px = std::max(worst_px, sample.error_px);
+    worst_m = std::max(worst_m, sample.error_C.norm());
+    turn2 += sample.error_rad * sample.error_rad;
+    worst_deg = std::max(worst_deg, kDegPerRad * sample.error_rad);
+  }
+  const auto n = static_cast<double>(window_.size());
+  if (std::isfinite(worst_px)) {
+    summary.final_error_px_rms = std::sqrt(px2 / n);
+  }
+  summary.final_error_mm = 1e3 * std::sqrt((lateral2 + depth2) / n);
+  summary.final_error_lateral_mm = 1e3 * std::sqrt(lateral2 / n);
+  summary.final_error_depth_mm = 1e3 * std::sqrt(depth2 / n);
+  if (config_.goal.R_CO_star) {
+    summary.final_error_deg = kDegPerRad * std::sqrt(turn2 / n);
+  }
+  summary.converged =
+      worst_px <= kConvergedPx && worst_m <= kConvergedM && worst_deg <= kConvergedDeg && faults_.empty();
+  if (!is_outside_ && last_outside_s_) {
+    summary.settle_time_s = *last_outside_s_ + kTickS;
+  }
+  if (summary.converged) {
+    summary.verdict = "converged: the target stands at its goal";
+  }
+}
+
+void Verdict::FillMoving(Summary& summary) const {
+  if (second_half_samples_ > 0 && std::isfinite(second_half_px2_)) {
+    summary.tracking_error_px_rms = std::sqrt(second_half_px2_ / static_cast<double>(second_half_samples_));
+    summary.converged = *summary.tracking_error_px_rms <= config_.tracking_bound_px && faults_.empty();
+  }
+  if (summary.converged) {
+    summary.verdict =
+        fmt::format("converged: the target is tracked within {:g} px", config_.tracking_bound_px);
+  }
+}
+
+std::string Verdict::Touched(const Summary& summary) {
+  const ContactTicks& c = summary.contacts;
+  return fmt::format("not converged: the arm touched {} in {} ticks",
+                     c.bench > 0    ? "the bench"
+                     : c.target > 0 ? "the target"
+                                    : "itself",
+                     summary.contact_ticks);
+}
+
+std::string Verdict::WhyNot(const Summary& summary) const {
+  if (!faults_.empty()) {
+    const FaultEvent& f = faults_.front();
+    return fmt::format("not converged: fault {} at {:.3f} s ({}){}", f.name, f.t_s, f.detail,
+                       f.key.empty() ? "" : ", see " + f.key);
+  }
+  if (!ever_known_ && summary.frames_detected == 0) {
+    return "not converged: the target was never found in view; the arm held still (see target.position, "
+           "arm.q_start, [vision])";
+  }
+  const auto future = measurements_.find(hal::Name(hal::Intake::kFromFuture));
+  if (!ever_known_ && future != measurements_.end()) {
+    return fmt::format(
+        "not converged: {} of {} measurements came with stamps from the future, and were left out (see "
+        "camera.latency_ms, the camera's clock)",
+        future->second, summary.frames);
+  }
+  if (!ever_known_) {
+    return fmt::format(
+        "not converged: the target was found in {} frames, too few to be sure of it (see run.duration_s, "
+        "servo.accepted_min)",
+        summary.frames_detected);
+  }
+  if (!modes_.empty() && modes_.back().mode == hal::Name(hal::Mode::kHold)) {
+    if (modes_.back().reason == hal::Name(hal::HoldReason::kEyeDoubted)) {
+      return fmt::format(
+          "not converged: the picture moved against the hand, or steering by it did not help, so the arm "
+          "holds "
+          "since {:.3f} s (see camera.mount_xyz, camera.mount_rpy_deg, servo.way_in_vain)",
+          modes_.back().t_s);
+    }
+    if (modes_.back().reason == hal::Name(hal::HoldReason::kGoalUnreachable)) {
+      return fmt::format(
+          "not converged: limits keep the arm from the goal, so it holds since {:.3f} s (see "
+          "target.position, servo.goal, safety.workspace_radius)",
+          modes_.back().t_s);
+    }
+    return fmt::format("not converged: the arm holds since {:.3f} s, reason {}", modes_.back().t_s,
+                       modes_.back().reason);
+  }
+  if (config_.target_moves) {
+    return fmt::format("not converged: tracking error {} px rms, bound {:g} px",
+                       summary.tracking_error_px_rms ? fmt::format("{:.2f}", *summary.tracking_error_px_rms)
+                                                     : std::string("infinite"),
+                       config_.tracking_bound_px);
+  }
+  return fmt::format(
+      "not converged: over the last {:g} s the target was not within {:g} px and {:g} mm{} of its goal",
+      1e-9 * static_cast<double>(kWindowNs), kConvergedPx, 1e3 * kConvergedM,
+      config_.goal.R_CO_star ? fmt::format(" and {:g} deg", kConvergedDeg) : std::string());
+}
+
+}  // namespace fovea::sim

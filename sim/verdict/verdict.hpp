@@ -1,0 +1,104 @@
+// Judges a run against the simulator's truth.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fovea/hal/record.hpp"
+#include "sim/render/pinhole.hpp"
+#include "sim/scenario/commanded_motion.hpp"
+#include "sim/scenario/fault_settings.hpp"
+#include "sim/verdict/barriers.hpp"
+#include "sim/verdict/limit_book.hpp"
+#include "sim/verdict/notice_book.hpp"
+#include "sim/verdict/summary.hpp"
+#include "sim/verdict/target_error.hpp"
+#include "sim/verdict/unwanted_motion.hpp"
+#include "sim/world/world.hpp"
+
+namespace fovea::sim {
+
+struct VerdictConfig {
+  BarrierConfig barriers;
+  StopRules stop;
+  Pinhole pinhole;
+  TargetGoal goal;
+  bool has_eye = true;  // false: there is no target to judge by
+  bool target_moves = false;
+  double tracking_bound_px = 3.0;
+  double duration_s = 8.0;                // of the run
+  std::optional<CommandedCircle> circle;  // that the end effector shall follow
+  double path_bound_mm = 1.0;
+  bool goes_home = false;           // to arm.q_ready, where it shall stand at the end
+  std::vector<FaultWindow> faults;  // that the run meets
+};
+
+// AddTruth and AddRecord may be called by two threads: neither touches what the other does. Its size does not
+// grow with the length of the run, but for ticks in which a limit was passed.
+class Verdict {
+ public:
+  explicit Verdict(const VerdictConfig& config);
+
+  // `mode`: the servo's, whose command was in force in this step.
+  void AddTruth(const Truth& truth, hal::Mode mode);
+  void AddRecord(const hal::TickRecord& record);
+
+  // When both are done: fills in everything that follows from truth and records. `summary` already says how
+  // many frames there were.
+  void Fill(Summary& summary) const;
+
+ private:
+  struct Sample {
+    std::int64_t stamp_ns = 0;
+    double error_px = 0.0;                              // infinite when the target is behind the camera
+    Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal less truth, in axes of C [m]
+    double error_rad = 0.0;                             // of the orientation, where the goal has one
+  };
+  void AddSample(const Sample& sample);
+  [[nodiscard]] double WindowPx() const;
+  void NoteGoal(double t_s, bool kept);
+  void FillEnd(Summary& summary) const;
+  void FillMotion(Summary& summary) const;
+  void FillStill(Summary& summary) const;
+  void FillMoving(Summary& summary) const;
+  static std::string Touched(const Summary& summary);
+  [[nodiscard]] std::string WhyNot(const Summary& summary) const;
+
+  const VerdictConfig config_;
+
+  // from the truth
+  double path2_ = 0.0;  // sum of squares of the distance from the commanded circle [m^2]
+  double path_most_ = 0.0;
+  std::uint64_t path_samples_ = 0;
+  TruthBarriers barriers_;
+  UnwantedMotion unwanted_;
+  std::deque<Sample> window_;       // of the last half second
+  std::optional<double> first_px_;  // error at the start
+  bool is_outside_ = false;         // the last sample was not settled
+  std::optional<double> last_outside_s_;
+  double second_half_px2_ = 0.0;  // sum of squares
+  std::uint64_t second_half_samples_ = 0;
+  std::uint64_t contact_ticks_ = 0;
+  ContactTicks contacts_;
+  double home_error_ = 0.0;  // largest of the joints', at the last truth [rad]
+  std::optional<double> at_rest_since_s_;
+  std::optional<double> goal_kept_since_s_;
+
+  // from the records
+  LimitBook reference_;
+  std::size_t reference_ddq_ = reference_.Add("joint_acceleration", LimitBook::Kind::kShare);
+  std::size_t reference_jerk_ = reference_.Add("joint_jerk", LimitBook::Kind::kShare);
+  NoticeBook notices_;
+  std::map<std::string, std::uint64_t> limit_ticks_;
+  std::map<std::string, std::uint64_t> measurements_;  // by what became of them
+  hal::TickRecord before_;
+  bool has_record_ = false;
+  bool ever_known_ = false;
+  std::vector<FaultEvent> faults_;
+  std::vector<ModeEvent> modes_;
+};
+
+}  // namespace fovea::sim

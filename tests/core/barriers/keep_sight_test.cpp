@@ -1,0 +1,139 @@
+// The arm's own links beside the line of sight: distances against a search, rows against differences.
+#include "firmware/core/barriers/keep_sight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <vector>
+
+#include "firmware/core/features/triangle.hpp"
+#include "firmware/core/model/rotation.hpp"
+#include "tests/support/panda.hpp"
+#include "tests/support/random_states.hpp"
+
+namespace fovea::barriers {
+namespace {
+
+using model::Vec3;
+using model::VecN;
+
+// The posture, and what hangs on it.
+struct Posture {
+  Posture(const config::ServoConfig& config, const VecN& q) {
+    model::ComputePoses(config.arm, q, poses);
+    X_BC = poses.X_BE * config.X_EC;
+    line = LineOfArm(config.arm, poses);
+    model::ComputeJacobian(config.arm, poses, config.X_EC, J_C);
+  }
+
+  model::ArmPoses poses;
+  ArmLine line;
+  model::Pose X_BC;
+  model::Mat6N J_C;
+};
+
+VecN RandomPosture(test::RandomStates& random, const config::ServoConfig& config) {
+  return test::Ready() + random.Joints(config.arm, 0.6);
+}
+
+// A target about the one that the camera looks for, and some far aside, so that links come between.
+Vec3 RandomTarget(test::RandomStates& random, const Posture& posture) {
+  const Vec3 p_C(random.Uniform(-0.4, 0.4), random.Uniform(-0.4, 0.4), random.Uniform(-0.2, 0.6));
+  return posture.X_BC * p_C;
+}
+
+// A target of one point, or a turned triangle.
+Sight SightOf(const Posture& posture, const Vec3& p_BO, bool triangle) {
+  Sight sight{posture.poses, posture.line, posture.X_BC, {}, {model::RotationOf({0.3, -0.2, 0.9}), p_BO}};
+  sight.outline.num_points = triangle ? 3 : 1;
+  sight.outline.p_OP[0].setZero();
+  if (triangle) {
+    sight.outline.p_OP = features::MakeTriangle(features::kDefaultTriangle).corners;
+  }
+  return sight;
+}
+
+double Clearance(const config::ServoConfig& config, const VecN& q, const Vec3& p_BO, bool triangle) {
+  const Posture posture(config, q);
+  return ClearanceOfSight(config.arm, SightOf(posture, p_BO, triangle));
+}
+
+// Points on the two lines, 2 mm apart and less.
+TEST(KeepSightTest, TheClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
+  const config::ServoConfig config = test::PandaConfig();
+  test::RandomStates random(71);
+  double worst = 0.0;
+  for (int k = 0; k < 40; ++k) {
+    const Posture posture(config, RandomPosture(random, config));
+    const Vec3 p_BO = RandomTarget(random, posture);
+    double least = 1e9;
+    constexpr int kPoints = 400;
+    // Base to first joint, ..., to the elbow, where the forearm steps aside (a_5) and goes on to the fifth.
+    std::vector<Vec3> line{Vec3::Zero()};
+    for (std::size_t i = 0; i < 4; ++i) {
+      line.push_back(posture.poses.X_BL[i].p);
+    }
+    line.push_back(posture.poses.X_BL[3] * Vec3(-0.0825, 0.0, 0.0));
+    line.push_back(posture.poses.X_BL[4].p);
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+      const Vec3& from = line[i];
+      const Vec3& to = line[i + 1];
+      for (int a = 0; a <= kPoints; ++a) {
+        const Vec3 on_link = from + a / double{kPoints} * (to - from);
+        for (int b = 0; b <= kPoints; ++b) {
+          const Vec3 on_sight = posture.X_BC.p + b / double{kPoints} * (p_BO - posture.X_BC.p);
+          least = std::min(least, (on_link - on_sight).norm());
+        }
+      }
+    }
+    const double clearance = ClearanceOfSight(config.arm, SightOf(posture, p_BO, false));
+    EXPECT_LT(clearance, least + 1e-12);
+    worst = std::max(worst, least - clearance);
+  }
+  std::cout << "the search finds up to " << 1e3 * worst << " mm more\n";
+  EXPECT_LT(worst, 0.002);
+}
+
+TEST(KeepSightTest, TheRowIsHowFastTheNearestLinkComesNearer) {
+  const config::ServoConfig config = test::PandaConfig();
+  test::RandomStates random(72);
+  double worst = 0.0;
+  int beyond = 0;
+  for (int k = 0; k < 300; ++k) {
+    const VecN q = RandomPosture(random, config);
+    const Posture posture(config, q);
+    const Vec3 p_BO = RandomTarget(random, posture);
+    const bool triangle = k % 2 == 0;
+    MotionLimits limits;
+    LimitSight(0.12, config.arm, SightOf(posture, p_BO, triangle), posture.J_C, limits);
+    ASSERT_EQ(limits.num_rows, 1);
+    const double clearance = Clearance(config, q, p_BO, triangle);
+    EXPECT_NEAR(limits.rows[0].b, 1.5 * std::max(clearance - 0.12, 0.0), 1e-12);
+    beyond += clearance < 0.12 ? 1 : 0;
+    const VecN dq = random.Joints(config.arm, 0.5);
+    constexpr double kDt = 1e-6;
+    const double rate =
+        (Clearance(config, q + kDt * dq, p_BO, triangle) - Clearance(config, q - kDt * dq, p_BO, triangle)) /
+        (2.0 * kDt);
+    worst = std::max(worst, std::abs(limits.rows[0].a.dot(dq) + rate));
+  }
+  std::cout << "off by at most " << worst << " m/s; " << beyond << " of 300 nearer than they shall be\n";
+  EXPECT_LT(worst, 1e-7);
+  EXPECT_GT(beyond, 20);
+}
+
+TEST(KeepSightTest, NothingIsKeptWhereNothingIsAskedForOrTheLinesCross) {
+  const config::ServoConfig config = test::PandaConfig();
+  const Posture posture(config, test::Ready());
+  const Vec3 ahead = posture.X_BC * Vec3(0.0, 0.0, 0.4);
+  MotionLimits limits;
+  LimitSight(0.0, config.arm, SightOf(posture, ahead, true), posture.J_C, limits);
+  EXPECT_EQ(limits.num_rows, 0);
+  LimitSight(0.12, config.arm, SightOf(posture, posture.poses.X_BL[2].p, false), posture.J_C, limits);
+  EXPECT_EQ(limits.num_rows, 0);
+  LimitSight(0.12, config.arm, SightOf(posture, ahead * std::nan(""), true), posture.J_C, limits);
+  EXPECT_EQ(limits.num_rows, 0);
+}
+
+}  // namespace
+}  // namespace fovea::barriers

@@ -1,0 +1,53 @@
+// Distances to planes and boxes, against a search over their surfaces.
+#include "firmware/core/barriers/obstacle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <iostream>
+#include <random>
+
+namespace fovea::barriers {
+namespace {
+
+TEST(ObstacleTest, APlaneIsAsFarAsItsEquationSays) {
+  config::Obstacles obstacles;
+  obstacles.num_planes = 1;
+  obstacles.planes[0] = {model::Vec3(0.0, 0.6, 0.8), 0.2};
+  const Clearance clearance = ClearanceOf(obstacles, 0, {1.0, 1.0, 1.0});
+  EXPECT_DOUBLE_EQ(clearance.distance, 1.2);
+  EXPECT_EQ(clearance.away, obstacles.planes[0].normal);
+  EXPECT_EQ(CountObstacles(obstacles), 1);
+}
+
+TEST(ObstacleTest, ABoxIsAsFarAsItsNearestPoint) {
+  config::Obstacles obstacles;
+  obstacles.num_boxes = 1;
+  config::Box& box = obstacles.boxes[0];
+  box = {{-0.1, -0.2, 0.0}, {0.3, 0.1, 0.5}};
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  double worst = 0.0;
+  int inside = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const model::Vec3 p(uniform(random), uniform(random), uniform(random));
+    const model::Vec3 nearest = p.cwiseMax(box.low).cwiseMin(box.high);
+    double expected = (p - nearest).norm();
+    if (expected == 0.0) {
+      expected = -std::min((p - box.low).minCoeff(), (box.high - p).minCoeff());
+      ++inside;
+    }
+    const Clearance clearance = ClearanceOf(obstacles, 0, p);
+    worst = std::max(worst, std::abs(clearance.distance - expected));
+    EXPECT_NEAR(clearance.away.norm(), 1.0, 1e-12);
+    // A step that way leads away by its length, within the box as well.
+    const double further = ClearanceOf(obstacles, 0, p + 1e-6 * clearance.away).distance;
+    EXPECT_NEAR(further - clearance.distance, 1e-6, 1e-9);
+  }
+  std::cout << "distances off by " << worst << " m, " << inside << " points within the box\n";
+  EXPECT_LT(worst, 1e-14);
+  EXPECT_GT(inside, 100);
+}
+
+}  // namespace
+}  // namespace fovea::barriers

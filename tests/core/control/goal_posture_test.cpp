@@ -1,0 +1,241 @@
+#include "firmware/core/control/goal_posture.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware/core/features/square.hpp"
+#include "firmware/core/features/triangle.hpp"
+#include "firmware/core/model/rotation.hpp"
+#include "tests/support/panda.hpp"
+
+namespace fovea::control {
+namespace {
+
+using model::Pose;
+using model::VecN;
+
+config::ServoConfig Config(hal::FeatureKind kind) {
+  config::ServoConfig config = test::PandaConfig();
+  config.feature.target = kind;
+  config.feature.form = features::FeatureForm::kPose;
+  config.feature.corners = kind == hal::FeatureKind::kSquare
+                               ? features::MakeSquare(0.08)
+                               : features::MakeTriangle(features::kDefaultTriangle);
+  return config;
+}
+
+Pose CameraAt(const config::ServoConfig& config, const VecN& q) {
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, q, poses);
+  return poses.X_BE * config.X_EC;
+}
+
+// Where the target is when the camera at `q` has it at its goal.
+Pose TargetFor(const config::ServoConfig& config, const VecN& q) {
+  return CameraAt(config, q) * Pose{config.feature.R_CO_star, config.feature.p_CO_C_star};
+}
+
+int StepsUntilFound(const config::ServoConfig& config, const Pose& X_BO, const VecN& q, GoalPosture& goal) {
+  for (int step = 1; step <= 20000; ++step) {
+    SeekGoalPosture(config, X_BO, q, goal);
+    if (goal.found) {
+      return step;
+    }
+  }
+  return 0;
+}
+
+void ExpectAtGoal(const config::ServoConfig& config, const Pose& X_BO, const GoalPosture& goal) {
+  const Pose X_CO = CameraAt(config, goal.q).Inverse() * X_BO;
+  EXPECT_LT((X_CO.p - config.feature.p_CO_C_star).norm(), 1e-3);
+  EXPECT_LT(
+      model::RotationVector(config.feature.R_CO_star.transpose() * X_CO.R * QuarterTurns(goal.turn)).norm(),
+      1e-3);
+  for (int i = 0; i < goal.q.size(); ++i) {
+    const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+    EXPECT_GT(goal.q[i], joint.q_min + config.guard.joint_position_margin) << i;
+    EXPECT_LT(goal.q[i], joint.q_max - config.guard.joint_position_margin) << i;
+  }
+}
+
+TEST(GoalPostureTest, OneThatIsNearIsFoundDownhillAndFollowsTheTarget) {
+  const config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  VecN q_goal = test::Ready();
+  q_goal[0] += 0.3;
+  q_goal[5] -= 0.2;
+  Pose X_BO = TargetFor(config, q_goal);
+  GoalPosture goal;
+  EXPECT_GT(StepsUntilFound(config, X_BO, test::Ready(), goal), 0);
+  EXPECT_TRUE(goal.downhill);
+  for (int i = 0; i < 50; ++i) {
+    X_BO.p.x() += 1e-3;
+    SeekGoalPosture(config, X_BO, test::Ready(), goal);
+  }
+  SeekGoalPosture(config, X_BO, test::Ready(), goal);
+  EXPECT_TRUE(goal.found);
+  ExpectAtGoal(config, X_BO, goal);
+}
+
+// The last joint at its upper end, the goal a third of a turn further: another posture, the long way round.
+TEST(GoalPostureTest, PastTheEndOfAJointTheWayRoundIsFound) {
+  const config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  VecN q = test::Ready();
+  q[6] = config.arm.joints[6].q_max - 0.1;
+  VecN q_goal = q;
+  q_goal[6] = q[6] + 2.0 - 2.0 * model::kPi;
+  const Pose X_BO = TargetFor(config, q_goal);
+  GoalPosture goal;
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  EXPECT_FALSE(goal.downhill);
+  SeekGoalPosture(config, X_BO, q, goal);
+  SeekGoalPosture(config, X_BO, q, goal);
+  ExpectAtGoal(config, X_BO, goal);
+}
+
+// One to which no way is clear is taken when all rounds have found no other.
+TEST(GoalPostureTest, OneWithABarredWayIsTakenLast) {
+  config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  VecN q = test::Ready();
+  q[6] = config.arm.joints[6].q_max - 0.1;
+  VecN q_goal = q;
+  q_goal[6] = q[6] + 2.0 - 2.0 * model::kPi;
+  const Pose X_BO = TargetFor(config, q_goal);
+  GoalPosture clear;
+  const int steps = StepsUntilFound(config, X_BO, q, clear);
+  ASSERT_GT(steps, 0);
+  EXPECT_TRUE(clear.clear);
+  config.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // the goal itself is not in there
+  GoalPosture barred;
+  EXPECT_GT(StepsUntilFound(config, X_BO, q, barred), 5 * steps);
+  EXPECT_TRUE(barred.found);
+  EXPECT_FALSE(barred.clear);
+}
+
+// The hand hangs beside the camera: turned by half a turn it would be outside the workspace, as it is not.
+TEST(GoalPostureTest, ASquareIsFacedFromASideThatTheHandReaches) {
+  const config::ServoConfig config = Config(hal::FeatureKind::kSquare);
+  const Pose half{QuarterTurns(2), model::Vec3::Zero()};
+  const auto hand_turned = [&](const VecN& q) {
+    return (CameraAt(config, q) * half * config.X_EC.Inverse()).p.norm();
+  };
+  VecN q = test::Ready();
+  for (int i = 0; i < 100 && hand_turned(q) < config.guard.workspace_radius + 0.01; ++i) {
+    q[3] += 0.015;  // stretches the arm
+    q[5] -= 0.005;
+  }
+  ASSERT_GT(hand_turned(q), config.guard.workspace_radius);
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, q, poses);
+  ASSERT_LT(poses.X_BE.p.norm(), config.guard.workspace_radius - 0.01);
+  const Pose X_BO = TargetFor(config, q) * half;
+  GoalPosture goal;
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  SeekGoalPosture(config, X_BO, q, goal);
+  SeekGoalPosture(config, X_BO, q, goal);
+  EXPECT_NE(goal.turn, 0);
+  ExpectAtGoal(config, X_BO, goal);
+}
+
+// Where the target jumps and another posture is looked for, first the same side is tried.
+TEST(GoalPostureTest, ASquareThatJumpsStaysTurnedAsItWas) {
+  const config::ServoConfig config = Config(hal::FeatureKind::kSquare);
+  const VecN q = test::Ready();
+  Pose X_BO = TargetFor(config, q) * Pose{QuarterTurns(3), model::Vec3::Zero()};
+  GoalPosture goal;
+  goal.turn = 1;
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  ASSERT_EQ(goal.turn, 1);
+  VecN q_after = q;
+  q_after[0] += 0.9;
+  X_BO = TargetFor(config, q_after) * Pose{QuarterTurns(3), model::Vec3::Zero()};
+  const std::uint32_t random = goal.random;
+  SeekGoalPosture(config, X_BO, q, goal);
+  ASSERT_FALSE(goal.found) << "lost";
+  EXPECT_EQ(goal.turn, 1);
+  EXPECT_EQ(goal.random, random);
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  EXPECT_EQ(goal.turn, 1);
+  SeekGoalPosture(config, X_BO, q, goal);
+  SeekGoalPosture(config, X_BO, q, goal);
+  ExpectAtGoal(config, X_BO, goal);
+}
+
+TEST(GoalPostureTest, NoneIsTakenInWhichTheHandIsBelowAPlaneOrTheArmHidesTheTarget) {
+  const config::ServoConfig free = Config(hal::FeatureKind::kTriangle);
+  VecN q_goal = test::Ready();
+  q_goal[0] += 0.3;
+  const Pose X_BO = TargetFor(free, q_goal);
+  model::ArmPoses poses;
+  model::ComputePoses(free.arm, q_goal, poses);
+
+  config::ServoConfig below = free;
+  below.guard.link_radius = 0.0;  // the hand's own point is asked about
+  below.guard.obstacles.num_planes = 1;
+  below.guard.obstacles.planes[0] = {{0.0, 0.0, 1.0}, poses.X_BE.p.z() + 0.01};
+  GoalPosture goal;
+  EXPECT_EQ(StepsUntilFound(below, X_BO, test::Ready(), goal), 0);
+  below.guard.obstacles.planes[0].distance -= 0.02;
+  goal = GoalPosture{};
+  EXPECT_GT(StepsUntilFound(below, X_BO, test::Ready(), goal), 0);
+
+  config::ServoConfig hidden = free;
+  hidden.guard.sight_clearance = 10.0;  // no posture is so clear
+  goal = GoalPosture{};
+  EXPECT_EQ(StepsUntilFound(hidden, X_BO, test::Ready(), goal), 0);
+
+  config::ServoConfig singular = free;
+  singular.guard.singularity_min = 1.0;  // nor so far from every singularity
+  goal = GoalPosture{};
+  EXPECT_EQ(StepsUntilFound(singular, X_BO, test::Ready(), goal), 0);
+}
+
+// A range that leaves no room at its ends is used in its middle.
+TEST(GoalPostureTest, AJointWithANarrowRangeStaysInIt) {
+  config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  VecN q_goal = test::Ready();
+  config.arm.joints[2].q_min = q_goal[2] - 0.05;
+  config.arm.joints[2].q_max = q_goal[2] + 0.05;
+  q_goal[0] += 0.3;
+  const Pose X_BO = TargetFor(config, q_goal);
+  VecN q = test::Ready();
+  q[2] += 0.03;
+  GoalPosture goal;
+  ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+  EXPECT_NEAR(goal.q[2], test::Ready()[2], 1e-12);
+}
+
+TEST(GoalPostureTest, NoneIsFoundForAGoalOutsideTheWorkspace) {
+  const config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  Pose X_BO = TargetFor(config, test::Ready());
+  X_BO.p.x() += 1.0;
+  GoalPosture goal;
+  EXPECT_EQ(StepsUntilFound(config, X_BO, test::Ready(), goal), 0);
+}
+
+// A start that the atlas drew: straight ways to all postures lead out of the picture or behind the arm.
+TEST(GoalPostureTest, WhereNoStraightWayIsClearOneByAnotherPostureIsFound) {
+  config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
+  config.guard.view = {true, -0.55, 0.55, -0.41, 0.41};
+  VecN q(7);
+  q << -2.5214, -1.0664, 0.1162, -2.5597, -0.4828, 0.3145, -0.6362;
+  const Pose X_BO{model::RotationOf({0.0, 0.0, -0.8262}) * model::RotationOf({0.0, 0.8165, 0.0}) *
+                      model::RotationOf({-2.0721, 0.0, 0.0}),
+                  {0.3949, 0.6875, 0.3594}};
+  int detours = 0;
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    GoalPosture goal;
+    goal.random = seed;
+    ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
+    EXPECT_TRUE(goal.clear);
+    detours += goal.detour;
+    const VecN second = goal.detour > 0 ? goal.q_via : q;
+    WayTrial way;
+    way.q = second;
+    while (StepOnWay(config, X_BO, goal.q, way)) {
+    }
+    EXPECT_FALSE(way.barred) << "from there it is straight on, seed " << seed;
+  }
+  EXPECT_GE(detours, 2) << "or the case is none";
+}
+
+}  // namespace
+}  // namespace fovea::control

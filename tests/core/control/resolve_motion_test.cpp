@@ -1,0 +1,110 @@
+#include "firmware/core/control/resolve_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/core/barriers/keep_face.hpp"
+#include "tests/support/panda.hpp"
+
+namespace fovea::control {
+namespace {
+
+using model::VecN;
+
+// Near a singular posture, and a task of the joints that leads further into it.
+class NearASingularityTest : public testing::Test {
+ protected:
+  NearASingularityTest() : config_(test::PandaConfig()), q_(test::Ready()) {
+    barriers::Singularity singularity;
+    for (int step = 0; step < 1000; ++step) {
+      model::ComputePoses(config_.arm, q_, poses_);
+      model::ComputeJacobian(config_.arm, poses_, config_.X_EC, J_C_);
+      barriers::ComputeSingularity(J_C_, barriers::SingularityConfig{}.length, singularity);
+      sigma_ = singularity.sigma;
+      if (sigma_ < 1.05 * config_.guard.singularity_min) {
+        break;
+      }
+      q_ -= 0.01 * singularity.gradient.normalized();
+      for (int i = 0; i < 7; ++i) {
+        const model::Joint& joint = config_.arm.joints[static_cast<std::size_t>(i)];
+        q_[i] = std::clamp(q_[i], joint.q_min + 0.1, joint.q_max - 0.1);
+      }
+    }
+    model::ComputeLinearJacobian(config_.arm, poses_, poses_.X_BE.p, J_E_B_);
+    reference_.q = q_;
+    reference_.dq.setZero(7);
+    reference_.ddq.setZero(7);
+    task_.v = -0.5 * singularity.gradient.normalized();
+    task_.J.setIdentity(7, 7);
+    task_.dq_0.setZero(7);
+    task_.weight.setOnes(7);
+  }
+
+  hal::LimitSet Resolve(bool by_joints) {
+    MotionScene scene{reference_, poses_, J_E_B_, J_C_};
+    scene.by_joints = by_joints;
+    ResolveMotion(config_, task_, scene, motion_);
+    return motion_.limits & hal::Bit(hal::Limit::kSingularity);
+  }
+
+  config::ServoConfig config_;
+  VecN q_;
+  double sigma_ = 0.0;
+  model::ArmPoses poses_;
+  model::Mat6N J_C_;
+  model::LinearJacobian J_E_B_;
+  trajectory::Reference reference_;
+  MotionTask task_;
+  ResolvedMotion motion_;
+};
+
+TEST_F(NearASingularityTest, TheLawIsHeldAndAMotionOfTheJointsIsNot) {
+  ASSERT_LT(sigma_, 1.05 * config_.guard.singularity_min);
+  EXPECT_NE(Resolve(false), 0U);
+  EXPECT_EQ(Resolve(true), 0U);
+  EXPECT_GT(motion_.dq.dot(VecN(task_.v)), 0.9 * task_.v.squaredNorm());
+}
+
+TEST_F(NearASingularityTest, WhatWasKnownBeforeTheJointsMovedCountsNoMore) {
+  motion_.watch.sigma = 5.0;  // far off, where the arm was before
+  Resolve(true);
+  EXPECT_NE(Resolve(false), 0U);
+}
+
+// With all limits in force at once none is left out: planes and boxes that are far off change nothing.
+TEST_F(NearASingularityTest, EveryPlaneAndBoxLeavesRoomForTheOtherLimits) {
+  config_.guard.view = {true, -0.6, 0.6, -0.5, 0.5, 0.5};
+  features::TargetOutline outline;
+  outline.p_OP.fill(model::Vec3::Zero());
+  outline.radius = 0.04;
+  barriers::ViewedTarget target{outline, {}, J_C_};
+  target.seen.X_CO.p = model::Vec3(0.0, 0.0, 0.4);
+  target.normal_C = model::Vec3(std::sqrt(1.0 - 0.51 * 0.51), 0.0, 0.51);  // nearly as tilted as it may be
+  barriers::MotionLimits tilt;
+  tilt.dq_min.setConstant(7, -1.0);
+  tilt.dq_max.setConstant(7, 1.0);
+  barriers::LimitTilt(0.5, target.seen.X_CO.p, target.normal_C, J_C_, tilt);
+  ASSERT_EQ(tilt.num_rows, 1);
+  task_.v = 0.3 * tilt.rows[0].a.normalized();
+  MotionScene scene{reference_, poses_, J_E_B_, J_C_};
+  scene.target = &target;
+
+  ResolveMotion(config_, task_, scene, motion_);
+  const VecN few = motion_.dq;
+  EXPECT_NE(motion_.limits & hal::Bit(hal::Limit::kFieldOfView), 0U);
+  EXPECT_TRUE(tilt.KeptBy(0.999 * few));
+
+  config::Obstacles& obstacles = config_.guard.obstacles;
+  obstacles.num_planes = obstacles.num_boxes = config::Obstacles::kMost;
+  obstacles.planes.fill({model::Vec3::UnitZ(), -9.0});
+  obstacles.boxes.fill({model::Vec3(8.0, 8.0, 8.0), model::Vec3(9.0, 9.0, 9.0)});
+  motion_ = {};
+  ResolveMotion(config_, task_, scene, motion_);
+  EXPECT_EQ(motion_.dq, few);
+  EXPECT_TRUE(tilt.KeptBy(0.999 * motion_.dq));
+}
+
+}  // namespace
+}  // namespace fovea::control

@@ -1,0 +1,86 @@
+// Eyes that cannot be steered by.
+#include "firmware/core/estimate/eye_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "firmware/core/model/types.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+using model::Vec3;
+
+// The camera goes along x at `hand(t)` [m/s] over a target at `target(t)` [m] that is seen through `eye`; how
+// far it went until that was doubted [m], or -1.
+template <class Hand, class Target, class Eye>
+double WayUntilDoubted(double duration_s, const Hand& hand, const Target& target, const Eye& eye) {
+  const config::PredictConfig config;
+  EyeWatch watch;
+  double x = 0.0;
+  double way = 0.0;
+  for (int k = 0; k < static_cast<int>(30.0 * duration_s); ++k) {
+    const double t = k / 30.0;
+    x += hand(t) / 30.0;
+    way += std::fabs(hand(t)) / 30.0;
+    const model::Pose X_BC{model::Mat3::Identity(), {x, 0.0, 0.0}};
+    WatchPicture(config, X_BC, eye(X_BC.Inverse() * Vec3(target(t), 0.02, 0.5)), watch);
+    if (watch.doubted) {
+      return way;
+    }
+  }
+  return -1.0;
+}
+
+const auto kTrue = [](const Vec3& p) { return p; };
+const auto kStill = [](double) { return 0.1; };
+
+TEST(EyeWatchTest, AMirroredPictureIsDoubted) {
+  const double way = WayUntilDoubted(
+      5.0, [](double) { return 0.3; }, kStill, [](const Vec3& p) { return Vec3(-p.x(), p.y(), p.z()); });
+  std::cout << "after " << 1e3 * way << " mm\n";
+  EXPECT_GT(way, 0.0);
+  EXPECT_LT(way, 0.2);
+}
+
+TEST(EyeWatchTest, ATargetAtRestOrFollowedIsNot) {
+  EXPECT_EQ(WayUntilDoubted(
+                20.0, [](double t) { return 0.4 * std::sin(3.0 * t); }, kStill, kTrue),
+            -1.0);
+  // Followed on a circle, 0.1 s behind.
+  EXPECT_EQ(WayUntilDoubted(
+                20.0, [](double t) { return 0.2 * std::cos(2.0 * (t - 0.1)); },
+                [](double t) { return 0.1 * std::sin(2.0 * t); }, kTrue),
+            -1.0);
+  // Caught up with from rest, in half a second.
+  EXPECT_EQ(WayUntilDoubted(
+                5.0, [](double t) { return 0.3 * std::min(1.0, 2.0 * t); }, [](double t) { return 0.3 * t; },
+                kTrue),
+            -1.0);
+}
+
+TEST(EyeWatchTest, SteeringThatDoesNotHelpIsDoubted) {
+  const config::PredictConfig config;
+  EyeWatch watch;
+  double way = 0.0;
+  while (!watch.doubted && way < 10.0) {
+    way += 0.5e-3;
+    WatchSteering(config, 0.6 + 0.1 * std::sin(10.0 * way), 0.5, watch);
+  }
+  std::cout << "after " << way << " m\n";
+  EXPECT_LT(way, 1.5);
+  // An error that falls, and one that stays small while a target is followed for hours.
+  EyeWatch sound;
+  for (int tick = 0; tick < 4000; ++tick) {
+    WatchSteering(config, std::exp(-1e-3 * tick), 0.5, sound);
+  }
+  for (int tick = 0; tick < 100'000; ++tick) {
+    WatchSteering(config, 0.1, 0.5, sound);
+  }
+  EXPECT_FALSE(sound.doubted);
+}
+
+}  // namespace
+}  // namespace fovea::estimate

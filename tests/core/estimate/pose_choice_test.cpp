@@ -1,0 +1,253 @@
+// Which of the poses that three corners allow is the true one; and where all views say that a still target
+// is.
+#include "firmware/core/estimate/pose_choice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <numbers>
+#include <vector>
+
+#include "firmware/core/features/square.hpp"
+#include "firmware/core/features/triangle.hpp"
+#include "tests/core/estimate/corner_views.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+// A detector that sees something else now and then.
+TEST(PoseChoiceTest, LeavesOutliersOutAndStartsAnew) {
+  config::PredictConfig config;
+  config.gate_rejects_max = 3;
+  const Polygon square = features::MakeSquare(0.08);
+  Draw draw(3);
+  PoseChoice choice;
+  int k = 0;
+  const auto see = [&](const Pose& X_BO) {
+    return UpdatePoses(config, square, ViewOf(square, CameraAt(0.0), X_BO, k++, 0.05, draw), choice) ==
+           hal::Intake::kTaken;
+  };
+  while (k < 30) {
+    ASSERT_TRUE(see(kOnTable));
+  }
+  const Pose elsewhere{kOnTable.R, kOnTable.p + Vec3(0.05, 0.0, 0.0)};
+  EXPECT_FALSE(see(elsewhere));
+  EXPECT_EQ(choice.stamp_ns, 29 * kFrameNs);
+  EXPECT_TRUE(see(kOnTable));
+  EXPECT_EQ(choice.rejected_in_row, 0);
+  EXPECT_FALSE(see(elsewhere));
+  EXPECT_FALSE(see(elsewhere));
+  EXPECT_TRUE(see(elsewhere)) << "three in a row";
+  EXPECT_EQ(choice.accepted, 1);
+  EXPECT_LT((choice.best().X_BO.p - elsewhere.p).norm(), 1e-3);
+  EXPECT_TRUE(choice.best().w_BO_B.isZero());
+  EXPECT_EQ(UpdatePoses(config, square, ViewOf(square, CameraAt(0.0), elsewhere, k - 1, 0.05, draw), choice),
+            hal::Intake::kTooOld);
+  CornerView nothing = ViewOf(square, CameraAt(0.0), kOnTable, k, 0.05, draw);
+  nothing.seen.num_branches = 0;
+  PoseChoice empty;
+  EXPECT_EQ(UpdatePoses(config, square, nothing, empty), hal::Intake::kWrongKind);
+  EXPECT_EQ(empty.num_branches, 0);
+}
+
+// Poses in which the triangle's corners look as in `xy`, in any order: Newton's method from many starts.
+std::vector<SeenCorners::Branch> AllPoses(const Polygon& triangle, const SeenCorners::Vector& xy,
+                                          Draw& draw) {
+  std::vector<SeenCorners::Branch> all;
+  for (int trial = 0; trial < 400; ++trial) {
+    const int first = trial % 3;
+    Pose X{Turned({0.0, 0.0, draw.Between(-3.1, 3.1)}), {0.0, 0.0, draw.Between(0.3, 0.7)}};
+    X.R = Turned(0.5 * Vec3(draw.Normal(), draw.Normal(), 0.0)) * X.R;
+    SeenCorners::Vector goal(6);
+    for (int i = 0; i < 3; ++i) {
+      goal.segment<2>(2 * i) = xy.segment<2>(2 * ((first + i) % 3));
+    }
+    SeenCorners::Vector e;
+    for (int round = 0; round < 40; ++round) {
+      const SeenCorners::Vector now = CornersOf(triangle, X);
+      e = goal - now;
+      Eigen::Matrix<double, 6, 6> J;
+      for (int k = 0; k < 6; ++k) {
+        Eigen::Matrix<double, 6, 1> d = Eigen::Matrix<double, 6, 1>::Zero();
+        d[k] = 1e-6;
+        J.col(k) = 1e6 * (CornersOf(triangle, {Turned(d.tail<3>()) * X.R, X.p + d.head<3>()}) - now);
+      }
+      // Held back a little, so that it ends at the nearest pose too where noise leaves none.
+      const Eigen::Matrix<double, 6, 6> normal =
+          J.transpose() * J + 1e-7 * Eigen::Matrix<double, 6, 6>::Identity();
+      Eigen::Matrix<double, 6, 1> step = normal.ldlt().solve(J.transpose() * e);
+      step *= std::min(1.0, 0.3 / std::max(step.norm(), 1e-9));
+      X.p += step.head<3>();
+      X.R = Turned(step.tail<3>()) * X.R;
+    }
+    bool good = e.norm() < 0.1 / kFocalPx && X.p.z() > 0.1 && X.R.col(2).dot(X.p) > 0.5 * X.p.norm();
+    for (const auto& other : all) {
+      good = good && (other.first != first || Between(other.X_CO.R, X.R).norm() > 0.01);
+    }
+    if (good) {
+      all.push_back({X, first});
+    }
+  }
+  return all;
+}
+
+// The camera comes over a still triangle, which lies any way. In the first image all poses stand side by
+// side, the most squarely seen one first; in the end the true one alone is left.
+TEST(PoseChoiceTest, FindsTheTrueOneOfATrianglesPosesByMoving) {
+  config::PredictConfig config;
+  const Polygon triangle = features::MakeTriangle(features::kDefaultTriangle);
+  Draw draw(7);
+  constexpr int kRuns = 60;
+  int right = 0;
+  int alone = 0;
+  int most = 0;
+  int first_was_wrong = 0;
+  double last_wrong_s = 0.0;
+  std::vector<double> nees;
+  for (int run = 0; run < kRuns; ++run) {
+    const Pose X_BO{Turned({3.14159265, 0.0, 0.0}) *
+                        Turned({0.12 * draw.Normal(), 0.12 * draw.Normal(), 0.0}) *
+                        Turned({0.0, 0.0, draw.Between(-3.1, 3.1)}),
+                    {0.5 + 0.03 * draw.Normal(), 0.03 * draw.Normal(), 0.02}};
+    const Vec3 aside(draw.Between(-0.12, 0.12), draw.Between(-0.12, 0.12), draw.Between(0.45, 0.6));
+    const auto camera = [&](double t) {
+      const double s = 1.0 - std::exp(-t * t / (0.2 + t));  // begins at rest
+      Pose X_BC;
+      X_BC.p = (1.0 - s) * (X_BO.p + aside) + s * (X_BO.p + Vec3(0.0, 0.0, 0.4));
+      const Vec3 z = (X_BO.p - X_BC.p).normalized();
+      X_BC.R.col(2) = z;
+      X_BC.R.col(0) = model::Cross(Vec3(0.0, -1.0, 0.0), z).normalized();
+      X_BC.R.col(1) = model::Cross(X_BC.R.col(2), X_BC.R.col(0));
+      return X_BC;
+    };
+    PoseChoice choice;
+    CornerView view = ViewOf(triangle, camera(0.0), X_BO, 0, 0.03, draw);
+    std::vector<SeenCorners::Branch> all = AllPoses(triangle, view.seen.xy, draw);
+    std::sort(all.begin(), all.end(),
+              [](const auto& a, const auto& b) { return a.X_CO.R(2, 2) > b.X_CO.R(2, 2); });
+    view.seen.num_branches = std::min<int>(static_cast<int>(all.size()), hal::kMaxPoses);
+    std::copy_n(all.begin(), view.seen.num_branches, view.seen.branches.begin());
+    most = std::max(most, view.seen.num_branches);
+    ASSERT_EQ(UpdatePoses(config, triangle, view, choice), hal::Intake::kTaken);
+    const auto off = [&] { return Between(choice.best().X_BO.R, X_BO.R).norm(); };
+    first_was_wrong += off() > 0.05 ? 1 : 0;
+    for (int k = 1; k <= 60; ++k) {
+      view = ViewOf(triangle, camera(k * kFrameS), X_BO, k, 0.03, draw, k % 3);
+      view.seen.num_branches = 0;
+      (void)UpdatePoses(config, triangle, view, choice);
+      if (off() > 0.05) {
+        last_wrong_s = std::max(last_wrong_s, k * kFrameS);
+      }
+    }
+    right += off() < 0.06 ? 1 : 0;
+    alone += choice.num_branches == 1 ? 1 : 0;
+    Eigen::Matrix<double, 6, 1> e;
+    e << X_BO.p - choice.best().X_BO.p, Between(X_BO.R, choice.best().X_BO.R);
+    const Eigen::Matrix<double, 6, 6> P = choice.best().P.topLeftCorner<6, 6>();
+    nees.push_back(e.dot(P.inverse() * e));
+  }
+  std::sort(nees.begin(), nees.end());
+  const double median = nees[nees.size() / 2];
+  std::cout << "up to " << most << " poses; the first one wrong in " << first_was_wrong
+            << ", the last wrong one believed for " << last_wrong_s << " s; right in the end " << right
+            << ", alone " << alone << " of " << kRuns << "; median normalised squared error " << median
+            << ", expected 5.3\n";
+  EXPECT_GE(most, 4);
+  EXPECT_GT(first_was_wrong, kRuns / 10);
+  EXPECT_GE(right, kRuns - 1) << "one is not told apart within two seconds";
+  EXPECT_GE(alone, 54);
+  EXPECT_LT(median, 7.0);
+}
+
+// From aside to straight above the target within two seconds, then at rest there.
+Pose ComesOver(const Pose& X_BO, double t) {
+  const double s = std::min(0.5 * t, 1.0);
+  Pose X_BC;
+  X_BC.p = X_BO.p + Vec3((1.0 - s) * 0.2, (1.0 - s) * -0.1, 0.4);
+  X_BC.R.col(2) = (X_BO.p - X_BC.p).normalized();
+  X_BC.R.col(0) = model::Cross(Vec3(0.0, -1.0, 0.0), X_BC.R.col(2)).normalized();
+  X_BC.R.col(1) = model::Cross(X_BC.R.col(2), X_BC.R.col(0));
+  return X_BC;
+}
+
+// What is wrong with the corners from above, a quarter of a pixel of one of them, is wrong in every frame:
+// for the filter it is much news, and the tilt goes. The views from aside know better.
+TEST(PoseChoiceTest, WhatAllViewsSayOfAStillTargetOutweighsOnePlacesError) {
+  const config::PredictConfig config;
+  const Polygon square = features::MakeSquare(0.08);
+  const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
+  Draw draw(3);
+  PoseChoice choice;
+  for (int k = 0; k < 300; ++k) {
+    const Pose X_BC = ComesOver(flat, k * kFrameS);
+    CornerView view = ViewOf(square, X_BC, flat, k, 0.1, draw);
+    if (k * kFrameS > 1.8) {
+      view.seen.xy[0] += 0.25 / kFocalPx;
+    }
+    (void)UpdatePoses(config, square, view, choice);
+  }
+  const double filter = Between(choice.best().X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi;
+  const double all =
+      Between(MotionAt(config, choice, choice.stamp_ns).X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi;
+  std::cout << "off by: filter " << filter << " deg, all views " << all << " deg\n";
+  EXPECT_TRUE(choice.is_still);
+  EXPECT_GT(filter, 0.5);
+  EXPECT_LT(all, 0.25);
+}
+
+// A camera that comes to rest by and by, as at the end of every approach: frames that look nearly alike are
+// not taken for frames from one place. Without noise all that is left of an error is the mean's.
+TEST(PoseChoiceTest, ACameraThatCreepsSpoilsNoMean) {
+  const config::PredictConfig config;
+  const Polygon square = features::MakeSquare(0.08);
+  const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
+  for (const double speed : {5e-3, 1e-3, 2e-4}) {  // [m/s]
+    Draw draw(5);
+    PoseChoice choice;
+    double worst_mm = 0.0;
+    double worst_deg = 0.0;
+    for (int k = 0; k < 150; ++k) {
+      Pose X_BC = ComesOver(flat, k * kFrameS);
+      X_BC.p.x() += speed * k * kFrameS;
+      (void)UpdatePoses(config, square, ViewOf(square, X_BC, flat, k, 0.0, draw), choice);
+      if (k > 75) {
+        const Pose X_BO = MotionAt(config, choice, choice.stamp_ns).X_BO;
+        worst_mm = std::max(worst_mm, 1e3 * (X_BO.p - flat.p).norm());
+        worst_deg = std::max(worst_deg, Between(X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi);
+      }
+    }
+    std::cout << 1e3 * speed << " mm/s: off by at most " << worst_mm << " mm, " << worst_deg << " deg\n";
+    EXPECT_TRUE(choice.is_still);
+    EXPECT_LT(worst_mm, 0.017);
+    EXPECT_LT(worst_deg, 0.006);
+  }
+}
+
+TEST(PoseChoiceTest, ATargetThatSetsOutIsStillNoMore) {
+  const config::PredictConfig config;
+  const Polygon square = features::MakeSquare(0.08);
+  const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
+  Draw draw(4);
+  PoseChoice choice;
+  double worst = 0.0;
+  int still_until = 0;
+  constexpr int kSetsOut = 120;
+  for (int k = 0; k < 240; ++k) {
+    const Pose X_BC = ComesOver(flat, k * kFrameS);
+    Pose X_BO = flat;
+    X_BO.p.x() += k < kSetsOut ? 0.0 : 0.05 * (k - kSetsOut) * kFrameS;  // [m], at 0.05 m/s
+    (void)UpdatePoses(config, square, ViewOf(square, X_BC, X_BO, k, 0.03, draw), choice);
+    still_until = choice.is_still ? k : still_until;
+    if (k >= 60) {
+      worst = std::max(worst, (MotionAt(config, choice, choice.stamp_ns).X_BO.p - X_BO.p).norm());
+    }
+  }
+  std::cout << "still for " << still_until - kSetsOut << " frames more, off by at most " << 1e3 * worst
+            << " mm\n";
+  EXPECT_GE(still_until, kSetsOut - 1);
+  EXPECT_LE(still_until, kSetsOut + 3);
+  EXPECT_LT(worst, 0.006);
+}
+
+}  // namespace
+}  // namespace fovea::estimate

@@ -1,0 +1,312 @@
+// From measurements that are old when they come to where the target is now.
+#include "firmware/core/estimate/predict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <utility>
+
+#include "firmware/core/model/rotation.hpp"
+#include "tests/support/panda.hpp"
+#include "tests/support/random_states.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+TEST(JointHistoryTest, InterpolatesBetweenTicksAndForgetsTheOldest) {
+  JointHistory history;
+  model::VecN q(7);
+  EXPECT_FALSE(history.At(0, q));
+  for (int i = 0; i < 2 * JointHistory::kCapacity + 17; ++i) {
+    history.Push(i * hal::kNsPerMs, model::VecN::Constant(7, i));
+  }
+  const int newest = 2 * JointHistory::kCapacity + 16;
+  const int oldest = newest - JointHistory::kCapacity + 1;
+  ASSERT_TRUE(history.At((newest - 3) * hal::kNsPerMs + 250'000, q));
+  EXPECT_NEAR(q[0], newest - 3 + 0.25, 1e-9);
+  ASSERT_TRUE(history.At((newest + 5) * hal::kNsPerMs, q));
+  EXPECT_EQ(q[6], newest);
+  ASSERT_TRUE(history.At(oldest * hal::kNsPerMs, q));
+  EXPECT_EQ(q[0], oldest);
+  EXPECT_FALSE(history.At(oldest * hal::kNsPerMs - 1, q));
+}
+
+class PredictTest : public testing::Test {
+ protected:
+  // The joints move all the time; the camera with them.
+  model::VecN JointsAt(double t) {
+    model::VecN q = test::Ready();
+    for (int i = 0; i < 7; ++i) {
+      q[i] += 0.15 * std::sin(1.3 * t + i);
+    }
+    return q;
+  }
+  model::Pose CameraAt(double t) {
+    model::ArmPoses poses;
+    model::ComputePoses(config_.arm, JointsAt(t), poses);
+    return poses.X_BE * config_.X_EC;
+  }
+  hal::FeatureMeasurement Measure(double t, const model::Vec3& p_BO) {
+    hal::FeatureMeasurement m;
+    m.stamp_ns = std::llround(t * 1e9);
+    m.found = true;
+    m.dim = 3;
+    const model::Vec3 s = (CameraAt(t).Inverse() * p_BO) / config_.feature.radius;
+    for (int i = 0; i < 3; ++i) {
+      m.s[static_cast<std::size_t>(i)] = s[i];
+      m.cov_s[static_cast<std::size_t>(i * hal::kMaxFeatureDim + i)] = 1e-8;
+    }
+    return m;
+  }
+
+  config::ServoConfig config_ = test::PandaConfig();
+  EyeWatch eye_;
+};
+
+// A target on a circle, a camera that moves, measurements 40 ms old at 30 Hz: the prediction is where the
+// target is now, and the newest measurement as it came is not.
+TEST_F(PredictTest, MakesUpForTheLatencyWhileCameraAndTargetMove) {
+  const auto target = [](double t) {
+    return model::Vec3(0.55 + 0.1 * std::cos(2.0 * t), 0.1 * std::sin(2.0 * t), 0.05);
+  };
+  PredictState state;
+  PredictState state_held;
+  config::ServoConfig held = config_;
+  held.predict.enabled = false;
+  double worst = 0.0;
+  double worst_held = 0.0;
+  constexpr int kLatencyMs = 40;
+  for (int ms = 0; ms < 4000; ++ms) {
+    const double t = 1e-3 * ms;
+    const std::int64_t now = ms * hal::kNsPerMs;
+    state.history.Push(now, JointsAt(t));
+    state_held.history.Push(now, JointsAt(t));
+    const bool arrives = ms >= kLatencyMs && (ms - kLatencyMs) % 33 == 0;
+    const hal::FeatureMeasurement m = Measure(t - 1e-3 * kLatencyMs, target(t - 1e-3 * kLatencyMs));
+    if (arrives) {
+      ASSERT_EQ(TakeMeasurement(config_, now, m, state, eye_), hal::Intake::kTaken);
+      ASSERT_EQ(TakeMeasurement(held, now, m, state_held, eye_), hal::Intake::kTaken);
+    }
+    const Prediction p = Predict(config_, now, CameraAt(t), state);
+    const Prediction h = Predict(held, now, CameraAt(t), state_held);
+    if (ms > 2000) {
+      ASSERT_TRUE(p.known);
+      const model::Vec3 truth = CameraAt(t).Inverse() * target(t);
+      worst = std::max(worst, (p.seen.X_CO.p - truth).norm());
+      worst_held = std::max(worst_held, (h.seen.X_CO.p - truth).norm());
+      EXPECT_GE(p.age_ns, kLatencyMs * hal::kNsPerMs);
+      EXPECT_LE(p.age_ns, (kLatencyMs + 33) * hal::kNsPerMs);
+      EXPECT_TRUE(h.seen.v_BO_C.isZero());
+    }
+  }
+  std::cout << "worst error " << 1e3 * worst << " mm predicted, " << 1e3 * worst_held << " mm held\n";
+  EXPECT_LT(worst, 0.5e-3);
+  EXPECT_GT(worst_held, 10e-3);
+}
+
+TEST_F(PredictTest, LeavesOutWhatSaysNothing) {
+  PredictState state;
+  for (int ms = 0; ms < 100; ++ms) {
+    state.history.Push(ms * hal::kNsPerMs, JointsAt(0.0));
+  }
+  const model::Pose X_BC = CameraAt(0.0);
+  const model::Vec3 target = X_BC * model::Vec3(0.02, 0.0, 0.4);
+  hal::FeatureMeasurement not_found = Measure(0.0, target);
+  not_found.found = false;
+  hal::FeatureMeasurement wrong_dim = Measure(0.0, target);
+  wrong_dim.dim = 2;
+  hal::FeatureMeasurement too_old = Measure(0.0, target);
+  too_old.stamp_ns = -hal::kNsPerSecond;
+  hal::FeatureMeasurement behind = Measure(0.0, target);
+  behind.s[2] = -10.0;
+  hal::FeatureMeasurement future = Measure(0.0, target);
+  future.stamp_ns = 120 * hal::kNsPerMs;
+  const hal::FeatureMeasurement elsewhere = Measure(0.0, X_BC * model::Vec3(0.0, 0.0, 6.0));
+  using hal::Intake;
+  for (const auto& [m, intake] :
+       {std::pair{not_found, Intake::kNotFound}, std::pair{wrong_dim, Intake::kWrongKind},
+        std::pair{too_old, Intake::kTooOld}, std::pair{behind, Intake::kWrongKind},
+        std::pair{future, Intake::kFromFuture}, std::pair{elsewhere, Intake::kOutOfRegion}}) {
+    EXPECT_EQ(TakeMeasurement(config_, 100 * hal::kNsPerMs, m, state, eye_), intake);
+    EXPECT_FALSE(Predict(config_, 100 * hal::kNsPerMs, X_BC, state).known);
+    EXPECT_FALSE(state.has_accepted);
+  }
+}
+
+// It goes out of its region, where it is not believed: nor is it thought to go on there by itself.
+TEST_F(PredictTest, NothingIsBelievedOutsideTheTargetsRegion) {
+  const auto target = [](double t) { return model::Vec3(0.55, 0.1 + 0.2 * t, 0.2 - 0.5 * t); };
+  config_.predict.target_region.low.z() = -0.05;
+  PredictState state;
+  double lowest = 1.0;
+  int refused = 0;
+  double v_y = 0.0;
+  for (int ms = 0; ms < 1000; ++ms) {
+    state.history.Push(ms * hal::kNsPerMs, JointsAt(0.0));
+    if (ms % 33 == 0) {
+      hal::FeatureMeasurement m = Measure(0.0, target(1e-3 * ms));
+      m.stamp_ns = ms * hal::kNsPerMs;
+      refused += TakeMeasurement(config_, m.stamp_ns, m, state, eye_) == hal::Intake::kOutOfRegion ? 1 : 0;
+    }
+    const Prediction p = Predict(config_, ms * hal::kNsPerMs, CameraAt(0.0), state);
+    if (p.known) {
+      lowest = std::min(lowest, p.p_BO.z());
+      EXPECT_TRUE(p.p_BO.z() > -0.05 || p.v_BO.z() >= 0.0);
+      v_y = p.v_BO.y();
+    }
+  }
+  EXPECT_EQ(lowest, -0.05);
+  EXPECT_GE(refused, 14);
+  EXPECT_NEAR(v_y, 0.2, 0.02) << "along its region's end it goes on";
+}
+
+TEST_F(PredictTest, KnowsTheTargetAfterEnoughMeasurements) {
+  PredictState state;
+  for (int ms = 0; ms < 400; ++ms) {
+    state.history.Push(ms * hal::kNsPerMs, JointsAt(0.0));
+  }
+  const model::Pose X_BC = CameraAt(0.0);
+  const model::Vec3 target = X_BC * model::Vec3(0.02, 0.0, 0.4);
+  for (int i = 1; i <= config_.predict.accepted_min; ++i) {
+    hal::FeatureMeasurement m = Measure(0.0, target);
+    m.stamp_ns = i * 33 * hal::kNsPerMs;
+    EXPECT_EQ(TakeMeasurement(config_, m.stamp_ns, m, state, eye_), hal::Intake::kTaken);
+    const Prediction p = Predict(config_, m.stamp_ns, X_BC, state);
+    EXPECT_EQ(p.known, i == config_.predict.accepted_min);
+  }
+}
+
+// A frozen picture: the measurement goes with the camera. The one that froze was true; all that follow once
+// the hand has moved on are none, by fresh noise or without; and when the camera works again, it is believed
+// again.
+TEST_F(PredictTest, APictureThatIsStuckIsNoMeasurement) {
+  const model::Vec3 target(0.55, 0.1, 0.05);
+  PredictState state;
+  int taken = 0;
+  int stuck = 0;
+  double fastest = 0.0;
+  hal::FeatureMeasurement frozen;
+  for (int ms = 0; ms < 3000; ++ms) {
+    const double t = 1e-3 * ms;
+    const std::int64_t now = ms * hal::kNsPerMs;
+    state.history.Push(now, JointsAt(t));
+    if (ms % 33 != 0) {
+      continue;
+    }
+    hal::FeatureMeasurement m = Measure(t, target);
+    const bool freezes = ms >= 990 && ms < 1980;
+    if (freezes) {
+      frozen = ms == 990 ? m : frozen;
+      const std::int64_t stamp_ns = m.stamp_ns;
+      m = frozen;
+      m.stamp_ns = stamp_ns;
+      m.same_for_ns = stamp_ns - frozen.stamp_ns;
+    }
+    const hal::Intake intake = TakeMeasurement(config_, now, m, state, eye_);
+    taken += intake == hal::Intake::kTaken ? 1 : 0;
+    stuck += intake == hal::Intake::kStuckPicture ? 1 : 0;
+    EXPECT_TRUE(freezes || intake == hal::Intake::kTaken) << ms;
+    fastest = std::max(fastest, ms > 300 ? Predict(config_, now, CameraAt(t), state).v_BO.norm() : 0.0);
+  }
+  std::cout << taken << " taken, " << stuck << " stuck; the target is thought to go at most " << fastest
+            << " m/s\n";
+  EXPECT_GE(stuck, 28);
+  EXPECT_LT(fastest, 0.02);
+}
+
+// The picture of a target at rest stays the same while the arm rests, however long.
+TEST_F(PredictTest, APictureThatStaysTheSameWhileTheArmRestsIsSound) {
+  PredictState state;
+  const model::Vec3 target = CameraAt(0.0) * model::Vec3(0.02, 0.0, 0.4);
+  for (int ms = 0; ms < 5000; ++ms) {
+    state.history.Push(ms * hal::kNsPerMs, JointsAt(0.0));
+    if (ms % 33 == 0) {
+      hal::FeatureMeasurement m = Measure(0.0, target);
+      m.stamp_ns = ms * hal::kNsPerMs;
+      m.same_for_ns = m.stamp_ns;
+      ASSERT_EQ(TakeMeasurement(config_, m.stamp_ns, m, state, eye_), hal::Intake::kTaken);
+    }
+  }
+}
+
+// A hand that starts and turns round at speed, as seen by noise of 0.1 mm: stamps or a mount that are off
+// make outliers of what was seen rightly, unless the filter knows that they may be.
+TEST_F(PredictTest, StampsAndMountThatAreOffAreNoOutliers) {
+  const auto joints_at = [](double t) {
+    model::VecN q = test::Ready();
+    for (int i = 0; i < 7; ++i) {
+      const double phase = std::fmod(t / 0.7 + 0.1 * i, 2.0);
+      q[i] += 0.25 * (phase < 1.0 ? phase : 2.0 - phase);  // to and fro at 0.36 rad/s
+    }
+    return q;
+  };
+  const model::Vec3 target(0.55, 0.1, 0.05);
+  config::ServoConfig blind = config_;
+  config_.predict.target_jerk = blind.predict.target_jerk = 0.2;
+  blind.predict.stamp_sigma = blind.predict.mount_shift_sigma = blind.predict.mount_turn_sigma =
+      blind.predict.scale_sigma = 0.0;
+  for (const bool by_mount : {false, true}) {
+    model::Pose X_EC = config_.X_EC;
+    if (by_mount) {
+      X_EC.R = X_EC.R * model::RotationOf({0.0, 5.0 * 0.0174533, 0.0});
+    }
+    std::array<int, 2> outliers{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const config::ServoConfig& config = k == 0 ? blind : config_;
+      PredictState state;
+      for (int ms = 0; ms < 6000; ++ms) {
+        state.history.Push(ms * hal::kNsPerMs, joints_at(1e-3 * ms));
+        if (ms % 33 != 0 || ms < 300) {
+          continue;
+        }
+        model::ArmPoses poses;
+        model::ComputePoses(config_.arm, joints_at(1e-3 * (by_mount ? ms : ms - 8)), poses);
+        const model::Vec3 s = ((poses.X_BE * X_EC).Inverse() * target) / config_.feature.radius;
+        hal::FeatureMeasurement m = Measure(0.0, target);
+        for (std::size_t i = 0; i < 3; ++i) {
+          m.s[i] = s[static_cast<Eigen::Index>(i)];
+          m.cov_s[i * hal::kMaxFeatureDim + i] = 6e-6;
+        }
+        m.stamp_ns = ms * hal::kNsPerMs;
+        outliers[k] += TakeMeasurement(config, m.stamp_ns, m, state, eye_) == hal::Intake::kOutlier ? 1 : 0;
+      }
+    }
+    std::cout << (by_mount ? "mount 5 deg off: " : "stamps 8 ms off: ") << outliers[0]
+              << " outliers by noise alone, " << outliers[1] << " with the doubt\n";
+    EXPECT_GT(outliers[0], 5);
+    EXPECT_EQ(outliers[1], 0);
+  }
+}
+
+// Three outliers in a row start the filter anew; the servo goes on by what was believed, and is not lost.
+TEST_F(PredictTest, AFilterThatStartsAnewCoasts) {
+  PredictState state;
+  const model::Vec3 target = CameraAt(0.0) * model::Vec3(0.02, 0.0, 0.4);
+  const model::Vec3 moved = target + model::Vec3(0.1, 0.0, 0.0);
+  std::int64_t newest_age_ns = 0;
+  for (int k = 0; k < 40; ++k) {
+    const std::int64_t now = k * 33 * hal::kNsPerMs;
+    for (int ms = 0; ms < 33; ++ms) {
+      state.history.Push(now - (32 - ms) * hal::kNsPerMs, JointsAt(0.0));
+    }
+    hal::FeatureMeasurement m = Measure(0.0, k < 20 ? target : moved);
+    m.stamp_ns = now;
+    (void)TakeMeasurement(config_, now, m, state, eye_);
+    const Prediction p = Predict(config_, now, CameraAt(0.0), state);
+    ASSERT_EQ(p.known, k + 1 >= config_.predict.accepted_min) << k;
+    if (k >= 20 && k < 24) {
+      EXPECT_LT((p.p_BO - target).norm(), 1e-4) << k;
+      newest_age_ns = std::max(newest_age_ns, p.age_ns);
+    }
+    if (k == 39) {
+      EXPECT_LT((p.p_BO - moved).norm(), 1e-3);
+      EXPECT_EQ(p.age_ns, 0);
+    }
+  }
+  EXPECT_EQ(newest_age_ns, 4 * 33 * hal::kNsPerMs) << "what is believed gets old";
+}
+
+}  // namespace
+}  // namespace fovea::estimate

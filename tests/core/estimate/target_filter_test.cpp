@@ -1,0 +1,169 @@
+#include "firmware/core/estimate/target_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+using hal::Intake;
+using model::Mat3;
+using model::Vec3;
+
+constexpr std::int64_t kFrameNs = 33'333'333;
+
+std::int64_t StampOf(int frame) { return frame * kFrameNs; }
+double TimeOf(int frame) { return static_cast<double>(StampOf(frame)) * 1e-9; }
+
+TEST(TargetFilterTest, FollowsAConstantAccelerationExactly) {
+  config::PredictConfig config;
+  TargetFilter filter;
+  const Vec3 p0(0.5, 0.1, 0.04), v0(0.1, -0.2, 0.0), a0(0.3, 0.1, -0.2);
+  const auto truth = [&](double t) { return Vec3(p0 + t * v0 + 0.5 * t * t * a0); };
+  const Mat3 cov = Mat3::Identity() * 1e-10;
+  for (int k = 0; k < 60; ++k) {
+    EXPECT_EQ(Update(config, {StampOf(k), truth(TimeOf(k)), cov}, filter), Intake::kTaken);
+  }
+  const std::int64_t now = StampOf(59) + 70 * hal::kNsPerMs;
+  const double t = static_cast<double>(now) * 1e-9;
+  const TargetMotion motion = MotionAt(config, filter, now);
+  std::cout << "70 ms ahead: position off by " << (motion.p_BO - truth(t)).norm() << " m, velocity by "
+            << (motion.v_BO - (v0 + t * a0)).norm() << " m/s\n";
+  EXPECT_LT((motion.p_BO - truth(t)).norm(), 1e-5);
+  EXPECT_LT((motion.v_BO - (v0 + t * a0)).norm(), 1e-4);
+}
+
+TEST(TargetFilterTest, CovarianceIsHonestForATargetOfItsOwnModel) {
+  // Normalised squared error of [p; v; a] over many runs: 9 on average when the covariance is true.
+  config::PredictConfig config;
+  config.target_speed_max = config.target_acceleration_max = 1e3;  // its own model has no bounds
+  std::mt19937_64 engine(11);
+  std::normal_distribution<double> normal;
+  const double sigma = 2e-4;
+  const double q = config.target_jerk * config.target_jerk * 0.1;
+  double sum = 0.0;
+  int count = 0;
+  for (int run = 0; run < 300; ++run) {
+    TargetFilter filter;
+    Vec3 p(0.5, 0.0, 0.1);
+    Vec3 v = 0.3 * Vec3(normal(engine), normal(engine), normal(engine));
+    Vec3 a = 0.5 * Vec3(normal(engine), normal(engine), normal(engine));
+    for (int k = 0; k < 40; ++k) {
+      const Vec3 noise(normal(engine), normal(engine), normal(engine));
+      (void)Update(config, {StampOf(k), p + sigma * noise, Mat3::Identity() * sigma * sigma}, filter);
+      if (k == 39) {
+        break;
+      }
+      // The target itself: white jerk in steps of 1 ms.
+      for (int ms = 0; ms < 33; ++ms) {
+        const double dt = static_cast<double>(kFrameNs) * 1e-9 / 33;
+        a += std::sqrt(q * dt) * Vec3(normal(engine), normal(engine), normal(engine));
+        v += dt * a;
+        p += dt * v;
+      }
+    }
+    ASSERT_EQ(filter.stamp_ns, StampOf(39));
+    Eigen::Matrix<double, 9, 1> e;
+    e << filter.x[0] - p, filter.x[1] - v, filter.x[2] - a;
+    Eigen::Matrix<double, 9, 9> P;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        P.block<3, 3>(3 * static_cast<int>(i), 3 * static_cast<int>(j)) = filter.P[i][j];
+      }
+    }
+    EXPECT_LT((P - P.transpose()).norm(), 1e-12 * P.norm());
+    sum += e.dot(P.inverse() * e);
+    ++count;
+  }
+  const double nees = sum / count;
+  std::cout << "mean normalised squared error " << nees << ", expected 9\n";
+  EXPECT_NEAR(nees, 9.0, 1.0);  // 300 runs: standard deviation 0.24
+}
+
+TEST(TargetFilterTest, LeavesOutlierOutAndStartsAnewWhenTheTargetMoved) {
+  config::PredictConfig config;
+  config.gate_rejects_max = 3;
+  TargetFilter filter;
+  const Vec3 p(0.5, 0.1, 0.04);
+  const Mat3 cov = Mat3::Identity() * 1e-8;
+  int k = 0;
+  for (; k < 30; ++k) {
+    (void)Update(config, {StampOf(k), p, cov}, filter);
+  }
+  const Vec3 far = p + Vec3(0.2, 0.0, 0.0);
+  EXPECT_EQ(Update(config, {StampOf(k++), far, cov}, filter), Intake::kOutlier);
+  EXPECT_LT((filter.x[0] - p).norm(), 1e-6) << "one outlier is left out";
+  EXPECT_EQ(Update(config, {StampOf(k++), p, cov}, filter), Intake::kTaken);
+  EXPECT_EQ(filter.rejected_in_row, 0);
+  EXPECT_EQ(Update(config, {StampOf(k++), far, cov}, filter), Intake::kOutlier);
+  EXPECT_EQ(Update(config, {StampOf(k++), far, cov}, filter), Intake::kOutlier);
+  EXPECT_EQ(Update(config, {StampOf(k++), far, cov}, filter), Intake::kTaken)
+      << "three in a row: it is there now";
+  EXPECT_LT((filter.x[0] - far).norm(), 1e-12);
+  EXPECT_EQ(filter.accepted, 1);
+}
+
+// What calibration may explain is no outlier, and moves the estimate as any other measurement does.
+TEST(TargetFilterTest, TheDoubtWidensTheGateAlone) {
+  config::PredictConfig config;
+  const Vec3 p(0.5, 0.1, 0.04);
+  const Mat3 cov = Mat3::Identity() * 1e-8;
+  TargetFilter filter;
+  for (int k = 0; k < 30; ++k) {
+    (void)Update(config, {StampOf(k), p, cov}, filter);
+  }
+  TargetFilter plain = filter;
+  const Vec3 off = p + Vec3(0.004, 0.0, 0.0);
+  EXPECT_EQ(Update(config, {StampOf(30), off, cov}, plain), Intake::kOutlier);
+  EXPECT_EQ(Update(config, {StampOf(30), off, cov, Mat3::Identity() * 1e-6}, filter), Intake::kTaken);
+  EXPECT_EQ(Update(config, {StampOf(31), p + Vec3(0.1, 0, 0), cov, Mat3::Identity() * 1e-6}, filter),
+            Intake::kOutlier);
+}
+
+// Whatever is measured: a target carried off by an adversary is never thought faster than it may be.
+TEST(TargetFilterTest, SpeedAndAccelerationStayWithinTheirBounds) {
+  config::PredictConfig config;
+  config.target_speed_max = 0.5;
+  config.target_acceleration_max = 2.0;
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> normal;
+  TargetFilter filter;
+  double fastest = 0.0;
+  double furthest = 0.0;
+  for (int k = 0; k < 20'000; ++k) {
+    const Vec3 p = Vec3(normal(engine), normal(engine), normal(engine)) * std::pow(10.0, normal(engine));
+    (void)Update(config, {StampOf(k), p, Mat3::Identity() * std::pow(10.0, -6.0 + normal(engine))}, filter);
+    const std::int64_t later = filter.stamp_ns + 600 * hal::kNsPerMs;
+    fastest = std::max(fastest, MotionAt(config, filter, later).v_BO.norm());
+    furthest = std::max(furthest, (MotionAt(config, filter, later).p_BO - filter.x[0]).norm());
+    ASSERT_LE(filter.x[2].norm(), config.target_acceleration_max * (1.0 + 1e-12));
+  }
+  std::cout << "at most " << fastest << " m/s, " << furthest << " m in 0.6 s\n";
+  EXPECT_LE(fastest, 0.5 * (1.0 + 1e-12));
+  EXPECT_LE(furthest, 0.3 * (1.0 + 1e-12));
+  EXPECT_GT(fastest, 0.49) << "the adversary does not try";
+}
+
+TEST(TargetFilterTest, IgnoresWhatIsNotNewer) {
+  config::PredictConfig config;
+  TargetFilter filter;
+  const Mat3 cov = Mat3::Identity() * 1e-8;
+  (void)Update(config, {StampOf(3), {0.5, 0, 0}, cov}, filter);
+  EXPECT_EQ(Update(config, {StampOf(3), {0.6, 0, 0}, cov}, filter), Intake::kTooOld);
+  EXPECT_EQ(Update(config, {StampOf(2), {0.6, 0, 0}, cov}, filter), Intake::kTooOld);
+  // Not even where it says the same, and no gate would mind.
+  EXPECT_EQ(Update(config, {StampOf(3), {0.5, 0, 0}, cov}, filter), Intake::kTooOld);
+  EXPECT_EQ(Update(config, {StampOf(2), {0.5, 0, 0}, cov}, filter), Intake::kTooOld);
+  EXPECT_EQ(filter.x[0].x(), 0.5);
+  EXPECT_EQ(filter.stamp_ns, StampOf(3));
+  EXPECT_EQ(filter.accepted, 1);
+}
+
+}  // namespace
+}  // namespace fovea::estimate

@@ -1,0 +1,137 @@
+// The shortest stop, by the derivatives of the way that it claims, and what the proof refuses.
+#include "firmware/core/guard/stop_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "firmware/core/barriers/keep_apart.hpp"
+#include "firmware/core/barriers/obstacle.hpp"
+#include "firmware/core/model/kinematics.hpp"
+#include "firmware/core/trajectory/velocity_change.hpp"
+#include "tests/support/panda.hpp"
+#include "tests/support/random_states.hpp"
+
+namespace fovea::guard {
+namespace {
+
+TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
+  const config::ServoConfig config = test::PandaConfig();
+  trajectory::Reference reference{test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, reference.q, poses);
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, poses), 0U);
+  // Joint 6 half a degree before its margin, at 1 rad/s.
+  const model::Joint& joint = config.arm.joints[5];
+  reference.q[5] = joint.q_max - config.guard.joint_position_margin - 0.01;
+  reference.dq[5] = 1.0;
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, poses), hal::Bit(hal::Limit::kJointPosition));
+  reference.dq[5] = -1.0;
+  EXPECT_EQ(LimitsPassed(config, reference, reference.q, poses), 0U);
+  // A workspace that ends a centimetre before the end effector, towards which joint 2 leans out.
+  reference = {test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
+  model::ComputePoses(config.arm, reference.q, poses);
+  const double radius = poses.X_BE.p.norm();
+  config::ServoConfig narrow = config;
+  narrow.guard.workspace_radius = radius + narrow.guard.workspace_margin + 0.01;
+  reference.dq[3] = 1.0;  // stretches the elbow
+  EXPECT_EQ(LimitsPassed(narrow, reference, reference.q, poses), hal::Bit(hal::Limit::kWorkspace));
+  // The same with a plane and with a box a centimetre before it; away from them it may go.
+  const model::Vec3& p = poses.X_BE.p;
+  const model::Vec3 outward = p / radius;
+  config::ServoConfig plane = config;
+  plane.guard.obstacles.num_planes = 1;
+  plane.guard.obstacles.planes[0] = {-outward, -(radius + plane.guard.workspace_margin + 0.01)};
+  EXPECT_EQ(LimitsPassed(plane, reference, reference.q, poses), hal::Bit(hal::Limit::kObstacle));
+  config::ServoConfig box = config;
+  box.guard.obstacles.num_boxes = 1;
+  model::LinearJacobian J_E_B;
+  model::ComputeLinearJacobian(config.arm, poses, p, J_E_B);
+  int axis = 0;
+  J_E_B.col(3).cwiseAbs().maxCoeff(&axis);
+  const model::Vec3 way = std::copysign(1.0, J_E_B(axis, 3)) * model::Vec3::Unit(axis);
+  const model::Vec3 face = p + (box.guard.workspace_margin + 0.01) * way;
+  const model::Vec3 across = model::Vec3::Ones() - model::Vec3::Unit(axis);
+  box.guard.obstacles.boxes[0] = {(face - across).cwiseMin(face + across + way),
+                                  (face - across).cwiseMax(face + across + way)};
+  EXPECT_EQ(LimitsPassed(box, reference, reference.q, poses), hal::Bit(hal::Limit::kObstacle));
+  reference.dq[3] = -1.0;
+  EXPECT_EQ(LimitsPassed(plane, reference, reference.q, poses), 0U);
+  EXPECT_EQ(LimitsPassed(box, reference, reference.q, poses), 0U);
+}
+
+// The same verdict as from all points of the way, near bounds and far from them.
+TEST(LimitsPassedTest, LeavesOutNoPointThatMatters) {
+  test::RandomStates random(9);
+  config::ServoConfig config = test::PandaConfig();
+  config.guard.obstacles.num_planes = 1;
+  config.guard.obstacles.planes[0] = {{0.0, 0.0, 1.0}, 0.1};
+  ASSERT_TRUE(config.guard.hand.AddCapsule(model::Vec3::Zero(), {0.05, 0.0, 0.15}, 0.03));
+  int num_passed = 0;
+  constexpr int kCases = 20'000;
+  for (int k = 0; k < kCases; ++k) {
+    model::VecN q_now = test::Ready();
+    trajectory::Reference next{q_now, model::VecN::Zero(7), model::VecN::Zero(7)};
+    for (int i = 0; i < 7; ++i) {
+      const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
+      q_now[i] += random.Uniform(-0.9, 0.9);
+      next.dq[i] = random.Uniform(-1.0, 1.0) * joint.dq_max;
+      next.ddq[i] = random.Uniform(-0.7, 0.7) * joint.ddq_max;
+      next.q[i] = q_now[i] + 1e-3 * next.dq[i];
+    }
+    model::ArmPoses poses;
+    model::ComputePoses(config.arm, q_now, poses);
+    const model::Vec3 p_now = poses.X_BE.p;
+    const hal::LimitSet passed = LimitsPassed(config, next, q_now, poses);
+    if (passed == hal::Bit(hal::Limit::kJointPosition)) {
+      continue;
+    }
+    double duration = 0.0;
+    std::array<trajectory::VelocityChange, 7> stops;
+    for (int i = 0; i < 7; ++i) {
+      const auto j = static_cast<std::size_t>(i);
+      const model::Joint& joint = config.arm.joints[j];
+      stops[j] = trajectory::PlanVelocityChange(
+          next.dq[i], next.ddq[i], 0.0,
+          {joint.dq_max, config.guard.joint_acceleration_fraction * joint.ddq_max,
+           config.guard.joint_jerk_fraction * joint.dddq_max});
+      duration = std::max(duration, stops[j].Duration());
+    }
+    duration += 1e-3;
+    const double boundary =
+        std::max(config.guard.workspace_radius - config.guard.workspace_margin, p_now.norm()) + 1e-9;
+    const auto bounds = [&](const model::ArmPoses& at) {
+      const barriers::ArmLine line = barriers::LineOfArm(config.arm, at);
+      return std::array{
+          barriers::ClearanceOf(config.guard.obstacles, 0, config.guard.hand, at.X_BE).clearance.distance,
+          barriers::ClearanceOfPlanes(config.arm, config.guard, line),
+          barriers::ClearanceOfHand(config.arm, line)};
+    };
+    const std::array least{config.guard.workspace_margin, config.guard.workspace_margin,
+                           config.guard.hand_clearance - 0.01};
+    const auto now = bounds(poses);
+    bool expected = false;
+    for (int sample = 0; sample < kStopSamples && !expected; ++sample) {
+      const double share = static_cast<double>(sample) / (kStopSamples - 1);
+      model::VecN q = next.q + 1e-3 * next.dq;
+      for (int i = 0; i < 7; ++i) {
+        q[i] += stops[static_cast<std::size_t>(i)].At(duration * share * share).x;
+      }
+      model::ComputePoses(config.arm, q, poses);
+      expected = poses.X_BE.p.norm() > boundary;
+      const auto then = bounds(poses);
+      for (std::size_t i = 0; i < then.size(); ++i) {
+        expected = expected || then[i] < std::min(least[i], now[i]) - 1e-9;
+      }
+    }
+    ASSERT_EQ(passed != 0, expected) << "case " << k;
+    num_passed += expected ? 1 : 0;
+  }
+  std::cout << num_passed << " of " << kCases << " pass a bound\n";
+  EXPECT_GT(num_passed, kCases / 10);
+  EXPECT_LT(num_passed, kCases * 9 / 10);
+}
+
+}  // namespace
+}  // namespace fovea::guard

@@ -1,0 +1,195 @@
+// Messages: what is sent comes back, and bytes that are no message are refused.
+#include "firmware/core/link/messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string_view>
+#include <vector>
+
+#include "firmware/core/link/frame.hpp"
+#include "tests/support/panda.hpp"
+#include "tests/support/repetitions.hpp"
+
+namespace fovea::link {
+namespace {
+
+// A field that is added to one of these must be added to what goes over the line, and then here.
+static_assert(sizeof(features::TargetFeature) == 224);
+static_assert(sizeof(config::PredictConfig) == 176);
+static_assert(sizeof(config::LawConfig) == 160);
+static_assert(sizeof(config::MoveConfig) == 64);
+static_assert(sizeof(config::MotionLawConfig) == 216);
+static_assert(sizeof(config::GuardConfig) == 1256);
+static_assert(sizeof(config::SafetyConfig) == 136);
+static_assert(sizeof(moves::MotionCommand) == 304);
+static_assert(sizeof(hal::ArmState) == 280);
+static_assert(sizeof(hal::FeatureMeasurement) == 1016);
+static_assert(sizeof(hal::TickRecord) == 1960);
+static_assert(sizeof(LineCounters) == 24);
+static_assert(sizeof(Outputs) == 1960 + 4 * (kNumStages + 4) + sizeof(LineCounters));
+
+std::array<std::uint8_t, kMaxPayload> storage;
+
+template <class Message>
+std::vector<std::uint8_t> BytesOf(const Message& message) {
+  const Bytes bytes = Encode(message, storage);
+  return {bytes.begin(), bytes.end()};
+}
+
+// Decoded bytes encode to the same bytes: each field went where it came from.
+template <class Message>
+void ExpectComesBack(const Message& message) {
+  const std::vector<std::uint8_t> bytes = BytesOf(message);
+  ASSERT_FALSE(bytes.empty());
+  Message back{};
+  ASSERT_TRUE(Decode(bytes, back));
+  EXPECT_EQ(BytesOf(back), bytes);
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_FALSE(Decode(Bytes(bytes).first(size), back)) << size << " of " << bytes.size();
+  }
+  std::vector<std::uint8_t> longer = bytes;
+  longer.push_back(0);
+  EXPECT_FALSE(Decode(longer, back));
+}
+
+class Values {
+ public:
+  explicit Values(unsigned seed) : engine_(seed) {}
+  double Number() { return std::uniform_real_distribution<double>(-9.0, 9.0)(engine_); }
+  template <class Array>
+  void Fill(Array& array) {
+    for (double& value : array) {
+      value = Number();
+    }
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+task::ServoInputs SomeInputs(Values& values) {
+  task::ServoInputs in;
+  in.arm_status = hal::Status(hal::StatusCode::kTimeout, "arm");
+  in.arm.stamp_ns = -123456789012345;
+  in.arm.sequence = 0xfedcba9876543210U;
+  in.arm.num_joints = 7;
+  values.Fill(in.arm.q);
+  values.Fill(in.arm.dq);
+  values.Fill(in.arm.tau_meas);
+  values.Fill(in.arm.tau_applied);
+  in.has_feature = true;
+  in.feature.stamp_ns = 77;
+  in.feature.sequence = 5;
+  in.feature.kind = hal::FeatureKind::kTriangle;
+  in.feature.found = true;
+  in.feature.confidence = std::nan("");
+  in.feature.dim = 6;
+  values.Fill(in.feature.s);
+  values.Fill(in.feature.cov_s);
+  in.feature.num_poses = 4;
+  for (hal::FlatPose& pose : in.feature.poses) {
+    values.Fill(pose.p_CO_C);
+    values.Fill(pose.q_CO);
+    pose.first = 2;
+  }
+  in.request = task::Request::kTrack;
+  in.motion.kind = moves::MotionKind::kPoseSetpoint;
+  values.Fill(in.motion.q);
+  values.Fill(in.motion.p_BE);
+  in.change_law = true;
+  in.law = config::MotionLawKind::kFloat;
+  in.missed_ticks = -3;
+  return in;
+}
+
+TEST(Messages, ComeBack) {
+  Values values(3);
+  ExpectComesBack(SomeInputs(values));
+  ExpectComesBack(task::ServoInputs{});
+
+  Configuration configuration;
+  configuration.servo = test::PandaConfig();
+  configuration.pacing = Pacing::kTimer;
+  configuration.arm_crc = 0xdeadbeef;
+  configuration.load.mass = 0.3;
+  configuration.servo.guard.obstacles.num_boxes = 3;
+  configuration.servo.law.lambda = 1.25;
+  ExpectComesBack(configuration);
+
+  Outputs outputs;
+  outputs.record.mode = hal::Mode::kMove;
+  outputs.record.fault = hal::Fault::kContact;
+  values.Fill(outputs.record.command.tau_cmd);
+  outputs.stage_counts[3] = 4711;
+  outputs.link_counts = 12;
+  outputs.periods_passed = 13;
+  outputs.line = {1, 2, 3, 4, 5, 6};
+  ExpectComesBack(outputs);
+  Outputs back;
+  ASSERT_TRUE(Decode(BytesOf(outputs), back));
+  EXPECT_EQ(back.line, outputs.line);
+  EXPECT_EQ(back.link_counts, outputs.link_counts);
+  EXPECT_EQ(back.periods_passed, outputs.periods_passed);
+
+  Answer answer;
+  answer.code = hal::StatusCode::kOutOfRange;
+  std::ranges::copy(std::string_view("law.lambda"), answer.where.data());
+  ExpectComesBack(answer);
+  ExpectComesBack(Crash{6, 1, 2, 3, 4});
+  ExpectComesBack(Provocation::kUsageFault);
+}
+
+TEST(Messages, CountsAndChoicesOutOfRangeAreRefused) {
+  task::ServoInputs in;
+  in.arm.num_joints = hal::kMaxJoints + 1;
+  EXPECT_TRUE(BytesOf(in).empty());
+  std::vector<std::uint8_t> bytes = BytesOf(task::ServoInputs{});
+  task::ServoInputs back;
+  bytes[0] = 200;  // no status
+  EXPECT_FALSE(Decode(bytes, back));
+  bytes[0] = 0;
+  ASSERT_TRUE(Decode(bytes, back));
+  bytes[1 + 16] = 9;  // joints
+  EXPECT_FALSE(Decode(bytes, back));
+  EXPECT_LE(back.arm.num_joints, hal::kMaxJoints);
+}
+
+// Whatever the bytes are, nothing that is decoded is out of its range.
+TEST(Messages, NoiseIsHarmless) {
+  std::mt19937 engine(7);
+  Values values(9);
+  const std::vector<std::uint8_t> sound = BytesOf(SomeInputs(values));
+  int taken = 0;
+  for (int k = 0; k < test::Repetitions(20'000); ++k) {
+    std::vector<std::uint8_t> bytes = sound;
+    for (int i = 0; i < 4; ++i) {
+      bytes[engine() % bytes.size()] = static_cast<std::uint8_t>(engine());
+    }
+    task::ServoInputs in;
+    taken += Decode(bytes, in) ? 1 : 0;
+    EXPECT_LE(in.arm.num_joints, hal::kMaxJoints);
+    EXPECT_GE(in.arm.num_joints, 0);
+    EXPECT_LE(in.feature.num_poses, hal::kMaxPoses);
+    EXPECT_LE(in.feature.dim, hal::kMaxFeatureDim);
+    EXPECT_LT(static_cast<int>(in.law), config::kNumMotionLaws);
+  }
+  EXPECT_GT(taken, 0);
+}
+
+TEST(Messages, AnArmsChecksumSeesEveryPart) {
+  const model::ArmModel arm = test::Panda().model;
+  model::ArmModel other = arm;
+  other.joints[6].coulomb = std::nextafter(other.joints[6].coulomb, 1e9);
+  EXPECT_NE(ArmCrc(other), ArmCrc(arm));
+  other = arm;
+  other.q_ready[0] += 1e-15;
+  EXPECT_NE(ArmCrc(other), ArmCrc(arm));
+  other = arm;
+  EXPECT_EQ(ArmCrc(other), ArmCrc(arm));
+}
+
+}  // namespace
+}  // namespace fovea::link

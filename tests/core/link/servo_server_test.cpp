@@ -1,0 +1,341 @@
+// The servo behind a serial line, without the processor: the same ticks, whatever the line does to the
+// frames.
+#include "firmware/core/link/servo_server.hpp"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "firmware/host/recording/log/record_hash.hpp"
+#include "tests/core/task/task_on_ideal_arm.hpp"
+
+namespace fovea::link {
+namespace {
+
+struct FakeBoard final : Board {
+  void Send(std::span<const std::uint8_t> bytes) noexcept override {
+    sent.insert(sent.end(), bytes.begin(), bytes.end());
+  }
+  std::uint32_t TimerCounts() noexcept override { return counts += 10; }
+  std::uint32_t StackBytes() noexcept override { return 1234; }
+  [[nodiscard]] LineLosses Lost() noexcept override { return lost; }
+  void RunTimer(bool on) noexcept override { timer_runs = on; }
+  [[nodiscard]] std::uint32_t Periods() noexcept override { return periods; }
+  void Provoke(Provocation /*what*/) noexcept override { ++provoked; }
+
+  std::vector<std::uint8_t> sent;
+  LineLosses lost;
+  bool timer_runs = false;
+  std::uint32_t periods = 0;
+  std::uint32_t counts = 0;
+  int provoked = 0;
+};
+
+class ServoServerTest : public task::ServoTaskTest {
+ protected:
+  void SetUp() override {
+    ServoTaskTest::SetUp();
+    arm_model_ = config_.arm;
+  }
+
+  void Give(const Frame& frame) { server_.Receive(writer_.Encode(frame)); }
+  // So many periods of the timer pass.
+  void Pass(std::uint32_t periods) {
+    board_.periods += periods;
+    server_.Poll();
+  }
+
+  // The last frame that the server sent since the last look.
+  bool Answered() {
+    bool any = false;
+    for (const std::uint8_t byte : board_.sent) {
+      any = reader_.Add(byte) || any;
+    }
+    board_.sent.clear();
+    return any;
+  }
+
+  Answer Configure(Pacing pacing, const std::function<void(Configuration&)>& change = {}) {
+    Configuration c;
+    c.pacing = pacing;
+    c.servo = config_;
+    c.arm_crc = ArmCrc(config_.arm);
+    if (change) {
+      change(c);
+    }
+    Give({FrameKind::kConfigure, 1, Encode(c, payload_)});
+    Answer answer;
+    EXPECT_TRUE(Answered());
+    EXPECT_EQ(reader_.frame().kind, FrameKind::kAnswer);
+    EXPECT_TRUE(Decode(reader_.frame().payload, answer));
+    return answer;
+  }
+
+  Outputs Taken() {
+    Outputs outputs;
+    EXPECT_TRUE(Answered());
+    EXPECT_EQ(reader_.frame().kind, FrameKind::kOutputs);
+    EXPECT_TRUE(Decode(reader_.frame().payload, outputs));
+    return outputs;
+  }
+
+  model::ArmModel arm_model_;
+  FakeBoard board_;
+  ServoServer server_{arm_model_, board_};
+  FrameWriter writer_;
+  FrameReader reader_;
+  std::array<std::uint8_t, kMaxPayload> payload_{};
+};
+
+TEST_F(ServoServerTest, SaysHelloWhenItIsAsked) {
+  server_.SayHello();
+  EXPECT_TRUE(Answered());
+  EXPECT_EQ(reader_.frame().kind, FrameKind::kHello);
+  Give({FrameKind::kHello, 0, {}});
+  EXPECT_TRUE(Answered());
+}
+
+// Tick by tick the same bits as the task that is called here.
+TEST_F(ServoServerTest, InLockstepItIsTheTask) {
+  ASSERT_EQ(Configure(Pacing::kLockstep).code, hal::StatusCode::kOk);
+  log::RecordHash here;
+  log::RecordHash there;
+  for (std::uint32_t k = 1; k <= 3000; ++k) {
+    task::ServoInputs given;
+    here.Add(Tick([&](task::ServoInputs& inputs) { given = inputs; }));
+    Give({FrameKind::kInputs, k, Encode(given, payload_)});
+    if (k % 7 == 0) {  // the frame came twice: answered twice, stepped once
+      Give({FrameKind::kInputs, k, Encode(given, payload_)});
+    }
+    Outputs outputs = Taken();
+    outputs.record.arm = given.arm;
+    outputs.record.has_feature = given.has_feature;
+    outputs.record.feature = given.feature;
+    there.Add(outputs.record);
+    EXPECT_EQ(outputs.stack_bytes, 1234U);
+    EXPECT_GT(outputs.tick_counts, 0U);
+  }
+  EXPECT_EQ(outputs_.record.mode, hal::Mode::kTrack);
+  EXPECT_EQ(there.Finish(), here.Finish());
+}
+
+// What the line took is told of a tick, not of what came before it was configured.
+TEST_F(ServoServerTest, ConfiguredAnewItTellsOfTheTicksSinceAlone) {
+  for (int run = 0; run < 2; ++run) {
+    for (int k = 0; k < 5; ++k) {
+      Give({FrameKind::kHello, 0, {}});
+    }
+    ASSERT_EQ(Configure(Pacing::kLockstep).code, hal::StatusCode::kOk);
+    std::array<std::uint32_t, 2> link_counts{};
+    for (std::uint32_t k = 0; k < 2; ++k) {
+      Give({FrameKind::kInputs, k, Encode(task::ServoInputs{}, payload_)});
+      link_counts.at(k) = Taken().link_counts;
+    }
+    EXPECT_GT(link_counts[0], 0U);
+    EXPECT_LE(link_counts[0], link_counts[1]) << "run " << run;
+  }
+}
+
+TEST_F(ServoServerTest, ACarriedLoadIsTheServosToo) {
+  model::Load load;
+  load.mass = 0.7;
+  load.p_ECom = {0.0, 0.02, 0.05};
+  const auto with_load = [&](Configuration& c) {
+    c.load = load;
+    model::ArmModel arm = config_.arm;
+    model::Attach(load, arm);
+    c.arm_crc = ArmCrc(arm);
+  };
+  EXPECT_EQ(Configure(Pacing::kLockstep, with_load).code, hal::StatusCode::kOk);
+}
+
+TEST_F(ServoServerTest, RefusesAndSaysWhat) {
+  Answer answer = Configure(Pacing::kLockstep, [](Configuration& c) { c.arm_crc ^= 1U; });
+  EXPECT_EQ(answer.code, hal::StatusCode::kInvalidArgument);
+  EXPECT_STREQ(answer.where.data(), "arm");
+  answer = Configure(Pacing::kLockstep, [](Configuration& c) { c.servo.law.lambda = -1.0; });
+  EXPECT_EQ(answer.code, hal::StatusCode::kOutOfRange);
+  EXPECT_NE(std::string(answer.where.data()).find("lambda"), std::string::npos) << answer.where.data();
+  // And does nothing before it is configured.
+  Give({FrameKind::kInputs, 1, Encode(task::ServoInputs{}, payload_)});
+  EXPECT_FALSE(Answered());
+}
+
+TEST_F(ServoServerTest, IsProvokedOnlyWhenItMayBe) {
+  Give({FrameKind::kProvoke, 1, Encode(Provocation::kUsageFault, payload_)});
+  Configure(Pacing::kLockstep);
+  Give({FrameKind::kProvoke, 1, Encode(Provocation::kUsageFault, payload_)});
+  EXPECT_EQ(board_.provoked, 0);
+  Configure(Pacing::kLockstep, [](Configuration& c) { c.may_provoke = true; });
+  Give({FrameKind::kProvoke, 1, Encode(Provocation::kUsageFault, payload_)});
+  EXPECT_EQ(board_.provoked, 1);
+}
+
+// By its own clock: a tick in each period, whether the host speaks or not.
+class ServoServerByTimerTest : public ServoServerTest {
+ protected:
+  void SetUp() override {
+    ServoServerTest::SetUp();
+    ASSERT_EQ(Configure(Pacing::kTimer).code, hal::StatusCode::kOk);
+  }
+
+  // The arm's state of this millisecond, through `line`; the server ticks, and the arm does what it says.
+  Outputs TickThrough(const std::function<void(std::span<const std::uint8_t>)>& line) {
+    task::ServoInputs inputs;
+    inputs.arm = arm_->State();
+    if (ticks_ % kFrameMs == 0) {
+      inputs.has_feature = true;
+      inputs.feature = Measure();
+    }
+    ++ticks_;
+    line(writer_.Encode({FrameKind::kInputs, static_cast<std::uint32_t>(ticks_), Encode(inputs, payload_)}));
+    Pass(1);
+    const Outputs outputs = Taken();
+    arm_->Apply(outputs.record.command);
+    arm_->Step();
+    return outputs;
+  }
+  static constexpr int kFrameMs = 33;
+};
+
+TEST_F(ServoServerByTimerTest, ConvergesOverALineThatLosesAndDamages) {
+  std::mt19937 engine(5);
+  Outputs outputs;
+  for (int k = 0; k < 8000; ++k) {
+    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) {
+      if (engine() % 100 < 3) {
+        return;  // lost
+      }
+      std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
+      if (engine() % 100 < 2) {
+        copy[engine() % copy.size()] ^= 0x10;
+      }
+      server_.Receive(copy);
+    });
+    ASSERT_EQ(outputs.record.fault, hal::Fault::kNone) << hal::Name(outputs.record.fault) << " at " << k;
+  }
+  std::cout << outputs.line.silent_ticks << " ticks without a state, " << outputs.line.damaged_frames
+            << " frames damaged, " << 1e3 * Error() << " mm from the goal\n";
+  EXPECT_EQ(outputs.record.mode, hal::Mode::kTrack);
+  EXPECT_GT(outputs.line.silent_ticks, 200U);
+  EXPECT_GT(outputs.line.damaged_frames, 50U);
+  EXPECT_LT(Error(), 1e-3);
+}
+
+TEST_F(ServoServerByTimerTest, ASilentLineIsAnArmThatIsLost) {
+  Outputs outputs;
+  for (int k = 0; k < 1500; ++k) {
+    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
+  }
+  ASSERT_EQ(outputs.record.mode, hal::Mode::kTrack);
+  int until_fault = 0;
+  for (int k = 0; k < 3000; ++k) {
+    outputs = TickThrough([](std::span<const std::uint8_t> /*bytes*/) {});
+    until_fault += outputs.record.fault == hal::Fault::kNone ? 1 : 0;
+  }
+  EXPECT_EQ(outputs.record.mode, hal::Mode::kFault);
+  EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
+  EXPECT_LE(until_fault, config_.safety.arm_lost_ticks);
+  EXPECT_TRUE(outputs.record.command.engage_brakes);
+  EXPECT_LT(arm_->dq().norm(), 1e-2);
+}
+
+TEST_F(ServoServerByTimerTest, AStormOfBadFramesIsNoBetter) {
+  Outputs outputs;
+  for (int k = 0; k < 1500; ++k) {
+    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
+  }
+  for (int k = 0; k < 3000; ++k) {
+    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) {
+      std::vector<std::uint8_t> copy(bytes.begin(), bytes.end());
+      copy[copy.size() / 2] ^= 0x55;
+      server_.Receive(copy);
+    });
+  }
+  EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
+  EXPECT_TRUE(outputs.record.command.engage_brakes);
+  EXPECT_GE(outputs.line.damaged_frames, 2900U);
+}
+
+// Two frames in one period: the newer state, and what the older one saw.
+TEST_F(ServoServerByTimerTest, AFrameThatIsOvertakenLeavesItsFeature) {
+  task::ServoInputs first;
+  first.arm = arm_->State();
+  first.has_feature = true;
+  first.feature = Measure();
+  task::ServoInputs second;
+  second.arm = arm_->State();
+  second.arm.sequence += 1;
+  Give({FrameKind::kInputs, 1, Encode(first, payload_)});
+  Give({FrameKind::kInputs, 2, Encode(second, payload_)});
+  Give({FrameKind::kInputs, 1, Encode(first, payload_)});  // late: it changes nothing
+  Pass(1);
+  const Outputs outputs = Taken();
+  EXPECT_EQ(reader_.frame().sequence, 2U);
+  EXPECT_EQ(outputs.record.command.state_sequence, second.arm.sequence);
+}
+
+// A frame that comes as late as an arm may be silent is none, however new it is.
+TEST_F(ServoServerByTimerTest, AStateThatIsTooOldIsLeftOut) {
+  const int most = config_.safety.arm_lost_ticks;
+  task::ServoInputs inputs;
+  inputs.arm = arm_->State();
+  std::uint32_t sequence = 0;
+  const auto tick = [&](int age_ms) {
+    inputs.arm.stamp_ns = (++ticks_ - age_ms) * hal::kTickPeriodNs;
+    Give({FrameKind::kInputs, ++sequence, Encode(inputs, payload_)});
+    Pass(1);
+    return Taken();
+  };
+  for (int k = 0; k < 100; ++k) {
+    tick(5);  // as on a line that always takes so long
+  }
+  EXPECT_EQ(tick(5 + most - 1).line.late_frames, 0U);
+  const Outputs outputs = tick(5 + most + 1);  // the clocks may drift
+  EXPECT_EQ(outputs.line.late_frames, 1U);
+  EXPECT_EQ(outputs.line.silent_ticks, 1U);
+}
+
+TEST_F(ServoServerByTimerTest, WhatWasLostAndMissedIsReported) {
+  board_.lost = {7, 2};
+  const Outputs outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
+  EXPECT_EQ(outputs.line.lost_bytes, 7U);
+  EXPECT_EQ(outputs.line.unsent_frames, 2U);
+  EXPECT_EQ(outputs.line.missed_ticks, 0U);
+  Pass(4);
+  const Outputs late = Taken();
+  EXPECT_EQ(late.line.missed_ticks, 3U);
+  EXPECT_EQ(late.record.missed_ticks, 3);
+  EXPECT_EQ(late.line.silent_ticks, 1U);
+}
+
+// The timer stands from a tick's end until the host says Go, which may be said twice.
+TEST_F(ServoServerTest, TheGateIsTheHosts) {
+  ASSERT_EQ(Configure(Pacing::kGated).code, hal::StatusCode::kOk);
+  EXPECT_FALSE(board_.timer_runs);
+  task::ServoInputs inputs;
+  inputs.arm = arm_->State();
+  Give({FrameKind::kInputs, 1, Encode(inputs, payload_)});
+  Pass(1);
+  EXPECT_FALSE(Answered());
+  Give({FrameKind::kGo, 1, {}});
+  Give({FrameKind::kGo, 1, {}});
+  EXPECT_TRUE(board_.timer_runs);
+  Pass(0);
+  const Outputs outputs = Taken();
+  EXPECT_EQ(outputs.line.silent_ticks, 0U);
+  EXPECT_FALSE(board_.timer_runs);
+  Give({FrameKind::kGo, 1, {}});  // the host did not hear the answer
+  EXPECT_FALSE(board_.timer_runs);
+  EXPECT_EQ(Taken().record.tick, outputs.record.tick);
+  Give({FrameKind::kGo, 2, {}});
+  Pass(1);
+  EXPECT_EQ(Taken().line.silent_ticks, 1U);
+}
+
+}  // namespace
+}  // namespace fovea::link

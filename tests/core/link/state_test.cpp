@@ -1,0 +1,207 @@
+// The servo's state as bytes: what goes on from them goes on as if nothing had been; and the digest sees what
+// differs.
+#include "firmware/core/link/state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <iostream>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "firmware/core/link/frame.hpp"
+#include "tests/support/servo_runs.hpp"
+
+namespace fovea::link {
+namespace {
+
+// A field that is added to one of these and that a tick takes from the tick before must be added to what is
+// kept of the state (state_fields.hpp), and then here.
+static_assert(sizeof(task::InputState) == 232);
+static_assert(sizeof(estimate::ContactState) == 688);
+static_assert(sizeof(estimate::TargetFilter) == 736);
+static_assert(sizeof(estimate::DiscChoice) == 1008);
+static_assert(sizeof(estimate::PoseChoice) == 15704);
+static_assert(sizeof(estimate::PredictState) == 58824);
+static_assert(sizeof(estimate::EncoderWatch) == 904);
+static_assert(sizeof(estimate::EyeWatch) == 184);
+static_assert(sizeof(task::ModeState) == 5);
+static_assert(sizeof(control::WayToGoal) == 800);
+static_assert(sizeof(control::ResolvedMotion) == 88);
+static_assert(sizeof(moves::MotionState) == 16160);
+static_assert(sizeof(motion_laws::MotionLawState) == 232);
+static_assert(sizeof(task::ServoState) == 82888);
+
+using Buffer = std::vector<std::uint8_t>;
+
+Buffer BytesOf(const task::ServoState& state) {
+  Buffer storage(kMaxState);
+  const Bytes bytes = Encode(state, storage);
+  EXPECT_FALSE(bytes.empty());
+  return {bytes.begin(), bytes.end()};
+}
+
+Buffer BytesOf(const hal::TickRecord& record) {
+  Buffer storage(kMaxPayload);
+  Outputs outputs;
+  outputs.record = record;
+  const Bytes bytes = Encode(outputs, storage);
+  EXPECT_FALSE(bytes.empty());
+  return {bytes.begin(), bytes.end()};
+}
+
+// At every 250th tick of every run, a servo that knows only the bytes of the state takes over, and gives what
+// the first one gives, to the last bit and to the run's end.
+TEST(State, AServoThatTakesItOverGoesOnToTheLastBit) {
+  constexpr std::size_t kEvery = 250;
+  for (const test::ServoRun& run : test::AllServoRuns()) {
+    task::ServoTask task;
+    ASSERT_TRUE(task.Init(run.config).ok());
+    std::vector<Buffer> records;
+    std::vector<std::uint64_t> digests;
+    std::vector<Buffer> keyframes;
+    task::ServoOutputs outputs;
+    for (std::size_t k = 0; k < run.inputs.size(); ++k) {
+      if (k % kEvery == 0) {
+        keyframes.push_back(BytesOf(task.state()));
+      }
+      task.Step(run.inputs[k], outputs);
+      records.push_back(BytesOf(outputs.record));
+      digests.push_back(DigestOf(run.config, task.state(), run.inputs[k].has_feature));
+    }
+    const Buffer end = BytesOf(task.state());
+    for (std::size_t i = 0; i < keyframes.size(); ++i) {
+      auto next = std::make_unique<task::ServoTask>();
+      ASSERT_TRUE(next->Init(run.config).ok());
+      auto state = std::make_unique<task::ServoState>(next->state());
+      ASSERT_TRUE(Decode(keyframes[i], *state));
+      EXPECT_EQ(BytesOf(*state), keyframes[i]);
+      next->Restore(*state);
+      for (std::size_t k = i * kEvery; k < run.inputs.size(); ++k) {
+        next->Step(run.inputs[k], outputs);
+        ASSERT_EQ(BytesOf(outputs.record), records[k])
+            << run.name << ", from " << i * kEvery << ", tick " << k;
+        ASSERT_EQ(DigestOf(run.config, next->state(), run.inputs[k].has_feature), digests[k])
+            << run.name << ", from " << i * kEvery << ", tick " << k;
+      }
+      ASSERT_EQ(BytesOf(next->state()), end) << run.name;
+    }
+    std::cout << run.name << ": " << end.size() << " bytes\n";
+  }
+}
+
+TEST(State, BytesThatAreNoneAreRefused) {
+  task::ServoTask task;
+  ASSERT_TRUE(task.Init(test::PandaConfig()).ok());
+  const Buffer bytes = BytesOf(task.state());
+  auto state = std::make_unique<task::ServoState>(task.state());
+  ASSERT_TRUE(Decode(bytes, *state));
+  for (std::size_t size = 0; size < bytes.size(); size += 97) {
+    EXPECT_FALSE(Decode(Bytes(bytes).first(size), *state)) << size;
+  }
+  Buffer longer = bytes;
+  longer.push_back(0);
+  EXPECT_FALSE(Decode(longer, *state));
+}
+
+// Any bit of what it covers changes the digest: bytes of the state's that decode are tried, all along it.
+// `left_out`: the groups that it does not cover at the end of `run`, in `mode`.
+void ExpectDigestToSeeAllBut(const std::set<std::string>& left_out, hal::Mode mode,
+                             const test::ServoRun& run) {
+  task::ServoTask task;
+  ASSERT_TRUE(task.Init(run.config).ok());
+  task::ServoOutputs outputs;
+  for (const task::ServoInputs& inputs : run.inputs) {
+    task.Step(inputs, outputs);
+  }
+  ASSERT_EQ(task.state().mode.mode, mode);
+  const std::uint64_t digest = DigestOf(run.config, task.state(), true);
+  const Buffer bytes = BytesOf(task.state());
+  Buffer storage_a(kMaxState);
+  Buffer storage_b(kMaxState);
+  auto state = std::make_unique<task::ServoState>(task.state());
+  EXPECT_EQ(FirstDifference(*state, task.state(), storage_a, storage_b), nullptr);
+  std::set<std::string> tried;
+  int seen = 0;
+  for (std::size_t i = 0; i < bytes.size(); i += 5) {
+    Buffer changed = bytes;
+    changed[i] ^= 1U;
+    *state = task.state();
+    if (!Decode(changed, *state)) {
+      continue;
+    }
+    const char* group = FirstDifference(task.state(), *state, storage_a, storage_b);
+    ASSERT_NE(group, nullptr) << i;
+    tried.insert(group);
+    if (state->way.preferred != task.state().way.preferred) {
+      continue;  // it decides whether its group is covered
+    }
+    const bool differs = DigestOf(run.config, *state, true) != digest;
+    seen += differs ? 1 : 0;
+    EXPECT_NE(differs, left_out.contains(group)) << "byte " << i << ", " << group;
+  }
+  std::cout << run.name << ": " << tried.size() << " groups, " << seen << " changes seen\n";
+  EXPECT_GE(tried.size(), 14U);
+  EXPECT_GT(seen, 350);
+  for (const std::string& group : left_out) {
+    EXPECT_TRUE(tried.contains(group)) << group;
+  }
+}
+
+TEST(State, TheDigestSeesEachFieldThatItCovers) {
+  using features::FeatureForm;
+  using hal::FeatureKind;
+  ExpectDigestToSeeAllBut({"joint history", "planned motion", "momentum", "commanded motion"},
+                          hal::Mode::kTrack,
+                          test::TrackingRun("square", FeatureKind::kSquare, FeatureForm::kCorners, 600));
+  ExpectDigestToSeeAllBut(
+      {"joint history", "planned motion", "momentum", "commanded motion", "way to the goal"},
+      hal::Mode::kTrack, test::TrackingRun("sphere", FeatureKind::kSphere, FeatureForm::kSphere, 600));
+  ExpectDigestToSeeAllBut({"joint history", "planned motion", "momentum", "way to the goal"},
+                          hal::Mode::kMove, test::CommandedRun(300));
+}
+
+// What leads outside of an array is no state.
+TEST(State, NumbersThatPointNowhereAreRefused) {
+  task::ServoTask task;
+  ASSERT_TRUE(task.Init(test::PandaConfig()).ok());
+  auto state = std::make_unique<task::ServoState>(task.state());
+  const auto is_refused = [&](const auto& change) {
+    *state = task.state();
+    change(*state);
+    Buffer storage(kMaxState);
+    return Encode(*state, storage).empty();
+  };
+  EXPECT_FALSE(is_refused([](task::ServoState&) {}));
+  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.goal.turn = 4; }));
+  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.goal.nearest_turn = -1; }));
+  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.goal.drops = -1; }));
+  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.predict.poses.believed = hal::kMaxPoses; }));
+}
+
+TEST(State, DemandsComeBack) {
+  Demand demand;
+  EXPECT_TRUE(demand.IsPlain());
+  demand.arm_status = hal::StatusCode::kDisconnected;
+  demand.request = task::Request::kReset;
+  demand.motion.kind = moves::MotionKind::kPoseSetpoint;
+  demand.motion.V_BE_B[5] = -0.0;
+  demand.change_law = true;
+  demand.law = config::MotionLawKind::kFloat;
+  EXPECT_FALSE(demand.IsPlain());
+  std::array<std::uint8_t, kMaxDemand> storage{};
+  const Bytes bytes = Encode(demand, storage);
+  ASSERT_FALSE(bytes.empty());
+  Demand back;
+  ASSERT_TRUE(Decode(bytes, back));
+  std::array<std::uint8_t, kMaxDemand> again{};
+  const Bytes same = Encode(back, again);
+  EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), same.begin(), same.end()));
+  EXPECT_EQ(back.arm_status, demand.arm_status);
+  EXPECT_FALSE(Decode(bytes.first(bytes.size() - 1), back));
+}
+
+}  // namespace
+}  // namespace fovea::link

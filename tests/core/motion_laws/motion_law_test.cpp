@@ -1,0 +1,287 @@
+// The partition law on an arm that obeys the model: each joint's error lives by e'' + k_v' e' + k_p' e = 0.
+#include "firmware/core/motion_laws/motion_law.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <optional>
+
+#include "firmware/core/model/kinematics.hpp"
+#include "firmware/core/motion_laws/friction.hpp"
+#include "tests/support/ideal_arm.hpp"
+#include "tests/support/panda.hpp"
+#include "tests/support/random_states.hpp"
+
+namespace fovea::motion_laws {
+namespace {
+
+hal::ArmCommand CommandOf(const model::VecN& tau) {
+  hal::ArmCommand command;
+  command.num_joints = static_cast<int>(tau.size());
+  command.tau_cmd = model::ToArray(tau);
+  return command;
+}
+
+// Lets the law drive the arm towards `reference(t)` for `ticks`; `each` sees every tick's state before it.
+class Loop {
+ public:
+  Loop(const config::ServoConfig& config, const model::VecN& q) : config_(config), arm_(config.arm, q) {
+    state_.Reset(config.motion_law.kind, config.arm.num_joints);
+  }
+
+  const model::VecN& Tick(const trajectory::Reference& reference, double push = 0.0) {
+    model::ComputePoses(config_.arm, arm_.q(), poses_);
+    model::ComputeDynamics(config_.arm, poses_, arm_.dq(), dynamics_);
+    const MotionLawInputs inputs{config_.arm, poses_, dynamics_, reference, arm_.q(), arm_.dq()};
+    if (change_) {
+      ChangeMotionLaw(config_.motion_law, inputs, *change_, state_);
+      change_.reset();
+    }
+    MotionLaw(config_.motion_law, inputs, state_, tau_);
+    model::VecN acting = tau_;
+    acting.array() += push;
+    arm_.Apply(CommandOf(acting));
+    arm_.Step();
+    return tau_;
+  }
+  void Change(config::MotionLawKind kind) { change_ = kind; }
+  test::IdealArm& arm() { return arm_; }
+  MotionLawState& state() { return state_; }
+  const model::ArmDynamics& dynamics() const { return dynamics_; }
+
+ private:
+  config::ServoConfig config_;
+  test::IdealArm arm_;
+  MotionLawState state_;
+  model::ArmPoses poses_;
+  model::ArmDynamics dynamics_;
+  model::VecN tau_;
+  std::optional<config::MotionLawKind> change_;
+};
+
+trajectory::Reference Standing(const model::VecN& q) {
+  trajectory::Reference r;
+  r.q = q;
+  r.dq.setZero(q.size());
+  r.ddq.setZero(q.size());
+  return r;
+}
+
+// The Panda with the stiffness and damping that the keys derive from omega_n and zeta.
+config::ServoConfig Config(config::MotionLawKind kind) {
+  config::ServoConfig config = test::PandaConfig();
+  config.motion_law.kind = kind;
+  model::ArmPoses poses;
+  model::ArmDynamics dynamics;
+  model::ComputePoses(config.arm, test::Ready(), poses);
+  model::ComputeDynamics(config.arm, poses, model::VecN::Zero(7), dynamics);
+  for (int i = 0; i < 7; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    config.motion_law.k_p[k] = dynamics.M(i, i) * config.motion_law.omega_n * config.motion_law.omega_n;
+    config.motion_law.k_v[k] = 2.0 * std::sqrt(config.motion_law.k_p[k] * dynamics.M(i, i));
+  }
+  return config;
+}
+
+// A swing of all joints that starts from rest at `q`.
+trajectory::Reference Swing(const model::VecN& q, double t) {
+  const double w = 2.0;
+  const model::VecN a = model::VecN::Constant(q.size(), 0.15);
+  trajectory::Reference r;
+  r.q = q + a * (1.0 - std::cos(w * t));
+  r.dq = a * (w * std::sin(w * t));
+  r.ddq = a * (w * w * std::cos(w * t));
+  return r;
+}
+
+TEST(MotionLawTest, ErrorsDecayCriticallyDampedInEveryJoint) {
+  const config::ServoConfig config = test::PandaConfig();
+  Loop loop(config, test::Ready());
+  model::VecN error(7);
+  error << 0.10, -0.08, 0.06, 0.05, -0.10, 0.07, 0.09;
+  const trajectory::Reference reference = Standing(test::Ready() + error);
+  const double w = config.motion_law.omega_n;
+  double worst = 0.0;
+  for (int tick = 0; tick < 600; ++tick) {
+    const double t = 1e-3 * tick;
+    // Critically damped from rest: e(t) = e0 (1 + w t) exp(-w t).
+    const model::VecN expected = error * ((1.0 + w * t) * std::exp(-w * t));
+    worst = std::max(worst, (reference.q - loop.arm().q() - expected).cwiseAbs().maxCoeff());
+    loop.Tick(reference);
+  }
+  std::cout << "worst departure from the analytic error: " << worst << " rad of "
+            << error.cwiseAbs().maxCoeff() << " rad\n";
+  EXPECT_LT(worst, 2e-3);  // the hold of 1 ms delays the loop
+}
+
+// The end effector's error decays alike in all six directions, whatever the arm's inertia.
+TEST(MotionLawTest, OperationalSpaceDecouplesTheEndEffector) {
+  const config::ServoConfig config = Config(config::MotionLawKind::kOperationalSpace);
+  Loop loop(config, test::Ready());
+  model::VecN error(7);
+  error << 0.03, -0.02, 0.02, 0.03, -0.03, 0.02, 0.04;
+  const trajectory::Reference reference = Standing(test::Ready() + error);
+  const auto position = [&](const model::VecN& q) {
+    model::ArmPoses poses;
+    model::ComputePoses(config.arm, q, poses);
+    return poses.X_BE.p;
+  };
+  const model::Vec3 e_0 = position(reference.q) - position(test::Ready());
+  const double w = config.motion_law.omega_n;
+  double worst = 0.0;
+  for (int tick = 0; tick < 600; ++tick) {
+    const double t = 1e-3 * tick;
+    const model::Vec3 expected = e_0 * ((1.0 + w * t) * std::exp(-w * t));
+    worst = std::max(worst, (position(reference.q) - position(loop.arm().q()) - expected).norm());
+    loop.Tick(reference);
+  }
+  std::cout << "worst departure from the analytic error: " << 1e3 * worst << " mm of " << 1e3 * e_0.norm()
+            << " mm; posture at the end off by " << (reference.q - loop.arm().q()).norm() << " rad\n";
+  EXPECT_LT(worst, 0.01 * e_0.norm());
+  EXPECT_LT((reference.q - loop.arm().q()).norm(), 1e-5) << "the posture follows in the null space";
+}
+
+TEST(MotionLawTest, EveryLawThatKnowsTheArmFollowsASwing) {
+  for (const config::MotionLawKind kind :
+       {config::MotionLawKind::kComputedTorque, config::MotionLawKind::kJointImpedance,
+        config::MotionLawKind::kOperationalSpace, config::MotionLawKind::kPd}) {
+    const config::ServoConfig config = Config(kind);
+    Loop loop(config, test::Ready());
+    double worst = 0.0;
+    for (int tick = 0; tick < 3000; ++tick) {
+      const trajectory::Reference reference = Swing(test::Ready(), 1e-3 * tick);
+      worst = std::max(worst, (reference.q - loop.arm().q()).cwiseAbs().maxCoeff());
+      loop.Tick(reference);
+    }
+    const MotionLawEntry& law = kMotionLaws[static_cast<std::size_t>(kind)];
+    EXPECT_EQ(law.kind, kind);
+    std::cout << law.name << " follows within " << worst << " rad\n";
+    EXPECT_LT(worst, kind == config::MotionLawKind::kPd ? 5e-3 : 2e-5);
+  }
+}
+
+// Pushed with a constant torque, an impedance gives way by tau / k_p.
+TEST(MotionLawTest, AnImpedanceIsAsSoftAsItSays) {
+  config::ServoConfig config = Config(config::MotionLawKind::kJointImpedance);
+  config.motion_law.k_p.fill(50.0);
+  Loop loop(config, test::Ready());
+  for (int tick = 0; tick < 6000; ++tick) {
+    loop.Tick(Standing(test::Ready()), 1.0);
+  }
+  const model::VecN given = loop.arm().q() - test::Ready();
+  std::cout << "gives way by " << given.transpose() << " rad\n";
+  for (int i = 0; i < 7; ++i) {
+    EXPECT_NEAR(given[i], 1.0 / 50.0, 1e-4);
+  }
+}
+
+TEST(MotionLawTest, TheIntegralStopsAtItsBoundAndWaitsForTheClamp) {
+  config::ServoConfig config = test::PandaConfig();
+  config.motion_law.integral = 5.0;
+  config.motion_law.integral_torque_fraction = 0.1;
+  Loop loop(config, test::Ready());
+  // Held fast away from its goal, as by a hand.
+  loop.arm().Jam();
+  const trajectory::Reference reference = Standing(test::Ready() + model::VecN::Constant(7, 0.05));
+  const double k_p = config.motion_law.omega_n * config.motion_law.omega_n;
+  for (int tick = 0; tick < 5000; ++tick) {
+    loop.Tick(reference);
+  }
+  for (int i = 0; i < 7; ++i) {
+    const double most = 0.1 * config.arm.joints[static_cast<std::size_t>(i)].tau_max;
+    const double torque =
+        config.motion_law.integral * k_p * loop.state().integral[i] * loop.dynamics().M(i, i);
+    EXPECT_NEAR(torque, most, 1e-9) << "joint " << i;
+  }
+  // While the clamp cuts the torque, the integral waits.
+  Loop cut(config, test::Ready());
+  cut.arm().Jam();
+  for (int tick = 0; tick < 100; ++tick) {
+    cut.state().cut.setConstant(7, 1.0);
+    cut.Tick(reference);
+  }
+  EXPECT_EQ(cut.state().integral.norm(), 0.0);
+}
+
+// From any law to any other, in motion and pushed: no step that the arm's rate limit would cut.
+TEST(MotionLawTest, LawsTakeOverWithoutAStep) {
+  double worst = 0.0;
+  for (const MotionLawEntry& from : kMotionLaws) {
+    for (const MotionLawEntry& to : kMotionLaws) {
+      config::ServoConfig config = Config(from.kind);
+      config.motion_law.integral = 1.0;
+      Loop loop(config, test::Ready());
+      model::VecN before = model::VecN::Zero(7);
+      for (int tick = 0; tick < 900; ++tick) {
+        if (tick == 400) {
+          loop.Change(to.kind);
+        }
+        // A floating arm is not pushed: it would be far away by then.
+        const bool floats = from.kind == config::MotionLawKind::kFloat;
+        const trajectory::Reference reference =
+            floats ? Standing(loop.arm().q()) : Swing(test::Ready(), 1e-3 * tick);
+        const model::VecN tau = loop.Tick(reference, floats ? 0.0 : 0.3);
+        if (tick > 10) {
+          for (int i = 0; i < 7; ++i) {
+            const double most = config.arm.joints[static_cast<std::size_t>(i)].dtau_max * 1e-3;
+            worst = std::max(worst, std::fabs(tau[i] - before[i]) / most);
+          }
+        }
+        before = tau;
+      }
+      EXPECT_EQ(loop.state().kind, to.kind);
+    }
+  }
+  std::cout << "largest step of a torque: " << worst << " of what the arm allows in a tick\n";
+  EXPECT_LT(worst, 1.0);
+}
+
+TEST(MotionLawTest, FrictionIsMadeUpForWithoutChatter) {
+  model::ArmModel arm = test::PandaConfig().arm;
+  for (model::Joint& joint : arm.joints) {
+    joint.viscous = 2.0;
+    joint.coulomb = 5.0;
+  }
+  config::MotionLawConfig config;
+  config.friction_compensation = 1.0;
+  trajectory::Reference reference = Standing(test::Ready());
+  const auto torque = [&](double wanted, double measured) {
+    reference.dq.setConstant(wanted);
+    return FrictionTorque(arm, config, reference, model::VecN::Constant(7, measured))[3];
+  };
+  EXPECT_NEAR(torque(0.5, 0.5), 2.0 * 0.5 + 5.0, 1e-4);
+  EXPECT_NEAR(torque(-0.5, -0.5), -2.0 * 0.5 - 5.0, 1e-4);
+  EXPECT_EQ(torque(0.0, 0.0), 0.0) << "what stands is left alone";
+  EXPECT_NEAR(torque(0.1, 0.0), 5.0, 1e-2) << "what shall turn round is torn off";
+  // Encoder noise at standstill does not throw the torque about.
+  for (const double noise : {-5e-4, 5e-4}) {
+    EXPECT_LT(std::fabs(torque(0.0, noise)), 0.01);
+  }
+}
+
+TEST(MotionLawTest, DampedStopTakesTheSpeedAwayExponentially) {
+  const config::ServoConfig config = test::PandaConfig();
+  test::IdealArm arm(config.arm, test::Ready());
+  model::VecN start(7);
+  start << 0.5, -0.4, 0.6, 0.5, -0.7, 0.4, 0.8;
+  arm.SetVelocity(start);
+  double energy_before = HUGE_VAL;
+  for (int tick = 0; tick < 500; ++tick) {
+    model::ArmPoses poses;
+    model::ArmDynamics dynamics;
+    model::ComputePoses(config.arm, arm.q(), poses);
+    model::ComputeDynamics(config.arm, poses, arm.dq(), dynamics);
+    const double energy = 0.5 * arm.dq().dot(dynamics.M * arm.dq());
+    EXPECT_LT(energy, energy_before) << "it never speeds up";
+    energy_before = energy;
+    model::VecN tau;
+    DampedStop(config.safety.fault_damping, dynamics, arm.dq(), tau);
+    arm.Apply(CommandOf(tau));
+    arm.Step();
+  }
+  EXPECT_LT(arm.dq().norm(), start.norm() * std::exp(-0.5 * config.safety.fault_damping) * 2.0);
+}
+
+}  // namespace
+}  // namespace fovea::motion_laws

@@ -1,0 +1,141 @@
+// Keys: the right ones are set, the wrong ones named with the file, the line and what is allowed; never by
+// half.
+#include "firmware/host/config/key_table.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "firmware/host/config/input_error.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace fovea::config {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class KeyTableTest : public testing::Test {
+ protected:
+  KeyTableTest() {
+    keys_.Number("camera.rate_hz", rate_, 1.0, 240.0, "Hz", "frames per second");
+    keys_.Integer("run.seed", seed_, 0, 100, "", "of all that is random");
+    keys_.Flag("servo.predict", predict_, "predict");
+    keys_.Text("arm.model", model_, "which arm");
+    keys_.Choice("target.motion", motion_, {"still", "circle"}, "how it moves");
+    keys_.Numbers("target.position", position_, 3, 3, -5.0, 5.0, "m", "where it is");
+  }
+  std::string ErrorOf(const std::string& assignment) {
+    try {
+      keys_.Apply(ParseAssignment(assignment));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  double rate_ = 30.0;
+  int seed_ = 1;
+  bool predict_ = true;
+  std::string model_ = "panda";
+  std::string motion_ = "still";
+  std::vector<double> position_{0.0, 0.0, 0.0};
+  KeyTable keys_;
+};
+
+TEST_F(KeyTableTest, SetsEveryKindOfValue) {
+  for (const char* assignment : {"camera.rate_hz=60", "run.seed=7", "servo.predict=false", "arm.model=ur5e",
+                                 "target.motion=\"circle\"", "target.position=[1, 2.5, -3]"}) {
+    EXPECT_EQ(ErrorOf(assignment), "accepted");
+  }
+  EXPECT_EQ(rate_, 60.0);
+  EXPECT_EQ(seed_, 7);
+  EXPECT_FALSE(predict_);
+  EXPECT_EQ(model_, "ur5e");
+  EXPECT_EQ(motion_, "circle");
+  EXPECT_THAT(position_, ElementsAre(1.0, 2.5, -3.0));
+}
+
+TEST_F(KeyTableTest, RefusesAndSaysWhatIsAllowed) {
+  struct Case {
+    const char* assignment;
+    const char* words;
+  };
+  for (const Case& c :
+       {Case{"camera.rate_hz=-3", "1 to 240 Hz"}, Case{"camera.rate_hz=nan", "a number"},
+        Case{"camera.rate_hz=inf", "1 to 240 Hz"}, Case{"camera.rate_hz=true", "a number"},
+        Case{"camera.rate_hz=[3]", "a number"}, Case{"run.seed=1.5", "a whole number"},
+        Case{"run.seed=101", "0 to 100"}, Case{"servo.predict=1", "true or false"},
+        Case{"arm.model=3", "a text"}, Case{"target.motion=spin", "\"still\", \"circle\""},
+        Case{"target.position=[1, 2]", "3 numbers"}, Case{"target.position=[1, 2, 9]", "-5 to 5 m"},
+        Case{"target.position=[1, 2, \"x\"]", "must be a number"},
+        Case{"target.position={a = 1}", "a table is no value"},
+        Case{"camera.rate_hz=3\nfoo=1", "more than one value"}}) {
+    EXPECT_THAT(ErrorOf(c.assignment), HasSubstr(c.words));
+  }
+  EXPECT_EQ(rate_, 30.0) << "nothing was changed";
+  EXPECT_EQ(seed_, 1);
+  EXPECT_THAT(position_, ElementsAre(0.0, 0.0, 0.0));
+}
+
+TEST_F(KeyTableTest, AnUnknownKeyGetsTheNearestKnownOne) {
+  EXPECT_THAT(ErrorOf("camera.rate=30"), HasSubstr("did you mean camera.rate_hz?"));
+  EXPECT_THAT(ErrorOf("servo.predikt=true"), HasSubstr("did you mean servo.predict?"));
+  EXPECT_THAT(ErrorOf("zzz=1"), testing::Not(HasSubstr("did you mean")));
+}
+
+TEST_F(KeyTableTest, AssignmentsMustBeAssignments) {
+  for (const char* text : {"", "=3", "servo.predict", "arm.model=", "arm.model=\"open", "a=[1,"}) {
+    EXPECT_THAT(ErrorOf(text), testing::StartsWith("--set")) << text;
+  }
+}
+
+// A refusal is one line, and no words of a stranger's are orders to a terminal.
+TEST_F(KeyTableTest, WhatIsQuotedIsShownAndNotObeyed) {
+  for (const char* text : {"servo\n.predict", "\x1b[2J=1\r\n", "arm.model=\x7f\""}) {
+    const std::string error = ErrorOf(text);
+    EXPECT_THAT(error, testing::StartsWith("--set"));
+    EXPECT_TRUE(std::none_of(error.begin(), error.end(), [](unsigned char c) {
+      return std::iscntrl(c) != 0;
+    })) << error;
+  }
+}
+
+TEST_F(KeyTableTest, DefaultsAndRangesAreToldFromTheFields) {
+  EXPECT_EQ(keys_.keys()[0].default_text, "30");
+  EXPECT_EQ(keys_.keys()[0].allowed, "1 to 240");
+  EXPECT_EQ(keys_.keys()[5].default_text, "[0, 0, 0]");
+}
+
+TEST(TomlFileTest, NamesFileAndLine) {
+  const test::TempFolder folder;
+  const auto file = folder.path() / "scenario.toml";
+  const auto error = [&](const std::string& toml) -> std::string {
+    std::ofstream(file) << toml;
+    try {
+      ReadTomlFile(file);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(error("[run]\nseed = = 3\n"), HasSubstr("scenario.toml:2: not TOML"));
+  EXPECT_THAT(error("[run]\nday = 2020-01-01\n"), HasSubstr("scenario.toml:2: run.day"));
+  EXPECT_THAT(error("a = [1, [2]]\n"), HasSubstr("scenario.toml:1"));
+  EXPECT_EQ(error(""), "accepted");
+  EXPECT_THROW(ReadTomlFile(folder.path() / "none.toml"), InputError);
+  EXPECT_THROW(ReadTomlFile(folder.path()), InputError);
+
+  std::ofstream(file) << "[camera]\nrate_hz = 60\n[camera.lens]\nf = 1.5\n";
+  const auto settings = ReadTomlFile(file);
+  ASSERT_EQ(settings.size(), 2U);
+  EXPECT_EQ(settings[0].key, "camera.lens.f");
+  EXPECT_EQ(settings[1].key, "camera.rate_hz");
+  EXPECT_THAT(settings[1].where, HasSubstr("scenario.toml:2"));
+}
+
+}  // namespace
+}  // namespace fovea::config

@@ -1,0 +1,203 @@
+// The container: what is written is read, wherever the file ends.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "firmware/host/recording/log/mcap_reader.hpp"
+#include "firmware/host/recording/log/mcap_writer.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace fovea::log {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Line {
+  std::string topic;
+  std::int64_t time_ns = 0;
+  std::string data;
+  bool operator==(const Line&) const = default;
+};
+
+struct Content {
+  std::vector<Line> messages;
+  std::map<std::string, std::string> attachments;
+  std::map<std::string, std::map<std::string, std::string>> metadata;
+  McapEnd end;
+};
+
+Content Read(const fs::path& path) {
+  Content content;
+  McapVisitor visitor;
+  visitor.on_message = [&](const McapMessage& m) {
+    content.messages.push_back({std::string(m.topic), m.time_ns, std::string(m.data)});
+  };
+  visitor.on_attachment = [&](const McapAttachment& a) {
+    content.attachments[std::string(a.name)] = std::string(a.data);
+  };
+  visitor.on_metadata = [&](std::string_view name, const std::map<std::string, std::string>& entries) {
+    content.metadata[std::string(name)] = entries;
+  };
+  content.end = ReadMcap(path, visitor);
+  return content;
+}
+
+std::string FileBytes(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class McapTest : public testing::Test {
+ protected:
+  // A file of several chunks, with everything in it.
+  void WriteSample() {
+    McapWriter writer(path_, "test");
+    const std::uint16_t schema = writer.AddSchema("a.Type", "descriptor");
+    const std::uint16_t first = writer.AddChannel(schema, "/first");
+    const std::uint16_t second = writer.AddChannel(schema, "/second");
+    std::mt19937 random(7);
+    for (int i = 0; i < 300; ++i) {
+      std::string data(random() % 200, '\0');
+      for (char& c : data) {
+        c = static_cast<char>(random() % 256);
+      }
+      const bool is_first = random() % 2 == 0;
+      const std::int64_t time = 1000 * i - static_cast<std::int64_t>(random() % 5000);  // not in order
+      writer.Write(is_first ? first : second, time, data);
+      written_.push_back({is_first ? "/first" : "/second", std::max<std::int64_t>(time, 0), data});
+      if (i % 60 == 59) {
+        writer.Flush();
+      }
+    }
+    writer.WriteMetadata("about", {{"key", "value"}, {"", ""}});
+    writer.WriteAttachment("film", "video/mp4", 5, std::string("\0\1\2", 3));
+    writer.Finish();
+  }
+
+  const test::TempFolder folder_;
+  const fs::path path_ = folder_.path() / "log.mcap";
+  std::vector<Line> written_;
+};
+
+TEST_F(McapTest, GivesBackWhatWasWritten) {
+  WriteSample();
+  const Content content = Read(path_);
+  EXPECT_TRUE(content.end.complete) << content.end.why;
+  EXPECT_EQ(content.messages, written_);
+  EXPECT_EQ(content.attachments.at("film"), std::string("\0\1\2", 3));
+  EXPECT_EQ(content.metadata.at("about").at("key"), "value");
+}
+
+// Cut off anywhere, the file gives the messages of all chunks that are whole, and says that it was cut off.
+TEST_F(McapTest, IsReadableUpToAnyCut) {
+  WriteSample();
+  const std::string bytes = FileBytes(path_);
+  std::size_t most = 0;
+  for (std::size_t size = 8; size + 8 < bytes.size(); size += 97) {
+    fs::resize_file(path_, size);
+    const Content content = Read(path_);
+    ASSERT_LE(content.messages.size(), written_.size());
+    for (std::size_t i = 0; i < content.messages.size(); ++i) {
+      ASSERT_EQ(content.messages[i], written_[i]);
+    }
+    most = std::max(most, content.messages.size());
+    ASSERT_FALSE(content.end.complete) << "cut at byte " << size << " of " << bytes.size();
+    ASSERT_NE(content.end.why.find(path_.string()), std::string::npos);
+    std::ofstream(path_, std::ios::binary) << bytes;
+  }
+  EXPECT_EQ(most, written_.size());
+}
+
+// A bit that fell over in a chunk's body is noticed; no such damage crashes the reader.
+TEST_F(McapTest, NoticesDamage) {
+  WriteSample();
+  const std::string bytes = FileBytes(path_);
+  std::mt19937 random(11);
+  int noticed = 0;
+  constexpr int kTries = 400;
+  for (int i = 0; i < kTries; ++i) {
+    std::string damaged = bytes;
+    damaged[8 + random() % (bytes.size() - 8)] ^= static_cast<char>(1U << (random() % 8));
+    std::ofstream(path_, std::ios::binary) << damaged;
+    const Content content = Read(path_);
+    noticed += content.end.complete ? 0 : 1;
+    // A chunk is taken whole, with its checksum right, or not at all.
+    if (content.messages != written_) {
+      EXPECT_FALSE(content.end.complete) << "damage at try " << i << " was not noticed";
+    }
+  }
+  // What is left are names, times and the index, which have no checksum of their own when read from the
+  // front.
+  EXPECT_GT(noticed, kTries * 8 / 10);
+}
+
+// A chunk that is no longer taken for one is missed: the summary says how many messages there were.
+TEST_F(McapTest, MissesAChunkThatIsPassedOver) {
+  WriteSample();
+  std::string bytes = FileBytes(path_);
+  const std::size_t header = 8;
+  std::uint64_t length = 0;
+  std::memcpy(&length, bytes.data() + header + 1, sizeof length);
+  const std::size_t chunk = header + 9 + length;
+  ASSERT_EQ(bytes[chunk], 0x06) << "the first chunk follows the header";
+  bytes[chunk] = 0x7F;  // a record that later versions may add
+  std::ofstream(path_, std::ios::binary) << bytes;
+  const Content content = Read(path_);
+  EXPECT_FALSE(content.end.complete);
+}
+
+TEST_F(McapTest, RefusesWhatIsNoLog) {
+  std::ofstream(path_) << "not a log at all";
+  EXPECT_THROW(Read(path_), std::runtime_error);
+  fs::remove(path_);
+  EXPECT_THROW(Read(path_), std::runtime_error);
+  EXPECT_THROW(Read(fs::temp_directory_path()), std::runtime_error);
+}
+
+TEST_F(McapTest, AFullDiskIsAnError) {
+  if (!fs::exists("/dev/full")) {
+    GTEST_SKIP() << "no /dev/full here";
+  }
+  EXPECT_THROW(
+      {
+        McapWriter writer("/dev/full", "test");
+        const std::uint16_t channel = writer.AddChannel(writer.AddSchema("a.Type", ""), "/first");
+        writer.Write(channel, 0, std::string(100'000, 'x'));
+        writer.Flush();
+        writer.Finish();
+      },
+      std::runtime_error);
+  EXPECT_THROW(McapWriter("/nowhere/at/all", "test"), std::runtime_error);
+}
+
+// A few bytes that say they were two gigabytes once get no memory for it.
+TEST_F(McapTest, AChunkThatCouldNotBeSoSmallIsDamage) {
+  const auto put = [](std::string& out, auto value) {
+    char bytes[sizeof value];
+    std::memcpy(bytes, &value, sizeof value);
+    out.append(bytes, sizeof value);
+  };
+  std::string chunk;
+  put(chunk, std::uint64_t{0});
+  put(chunk, std::uint64_t{0});
+  put(chunk, (std::uint64_t{1} << 31U) - 1U);  // as it was before it was packed
+  put(chunk, std::uint32_t{0});
+  put(chunk, std::uint32_t{4});
+  chunk += "zstd";
+  put(chunk, std::uint64_t{8});
+  chunk.append(8, 'x');
+  std::string file{"\x89MCAP0\r\n", 8};
+  file += '\x06';
+  put(file, std::uint64_t{chunk.size()});
+  std::ofstream(path_, std::ios::binary) << file + chunk;
+  const Content content = Read(path_);
+  EXPECT_FALSE(content.end.complete);
+  EXPECT_NE(content.end.why.find("impossible size"), std::string::npos) << content.end.why;
+}
+
+}  // namespace
+}  // namespace fovea::log

@@ -1,0 +1,386 @@
+// fovea-sim as its users type it: what it answers, what it refuses, with which words and which exit code.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "sim/render/mesh.hpp"
+#include "tests/support/mesh_files.hpp"
+#include "tests/support/places.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace fovea::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class CommandLineTest : public testing::Test {
+ protected:
+  static ProgramResult Sim(std::vector<std::string> arguments,
+                           const std::vector<std::string>& environment = {}) {
+    arguments.insert(arguments.begin(), FOVEA_SIM_PROGRAM);
+    return RunProgram(std::move(arguments), environment);
+  }
+  // What a run with these arguments says when it is refused: one line, exit code 2, no files.
+  std::string Refusal(std::vector<std::string> arguments, const std::vector<std::string>& environment = {}) {
+    const fs::path out = folder_.path() / "refused";
+    arguments.insert(arguments.begin(), "run");
+    arguments.insert(arguments.end(), {"--out", out.string()});
+    const ProgramResult result = Sim(std::move(arguments), environment);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_FALSE(fs::exists(out)) << "something was left behind";
+    // Of progress there may be a line before it; the answer itself is the last.
+    std::string line = result.err;
+    line.erase(line.find_last_not_of('\n') + 1);
+    return line.substr(line.find_last_of('\n') + 1);
+  }
+  std::string Write(const std::string& name, const std::string& text) {
+    const fs::path path = folder_.path() / name;
+    std::ofstream(path) << text;
+    return path;
+  }
+  std::string Out() { return folder_.path() / "out"; }
+
+  TempFolder folder_;
+};
+
+TEST_F(CommandLineTest, WhatGoesWithABoardIsRefusedWithout) {
+  const auto needs = [](const std::string& option, const std::string& choice) {
+    return HasSubstr(option + " goes with " + choice);
+  };
+  EXPECT_THAT(Refusal({"ball", "--servo-pace", "timer"}), needs("--servo-pace", "--servo mcu"));
+  EXPECT_THAT(Refusal({"ball", "--servo", "pc", "--instruction-ns", "64"}),
+              needs("--instruction-ns", "--servo mcu"));
+  EXPECT_THAT(Refusal({"ball", "--servo-image", FOVEA_SIM_PROGRAM}), needs("--servo-image", "--servo mcu"));
+  for (const char* option : {"--line-loss", "--line-delay-ms", "--line-jitter-ms", "--line-from-s"}) {
+    EXPECT_THAT(Refusal({"ball", option, "1"}), needs(option, "--servo-pace timer"));
+    EXPECT_THAT(Refusal({"ball", "--servo", "mcu", option, "1"}), needs(option, "--servo-pace timer"));
+  }
+  EXPECT_THAT(
+      Refusal({"ball", "--servo", "mcu", "--servo-pace", "timer", "--set", "faults.deadline_miss_s=[1, 2]"}),
+      AllOf(HasSubstr("faults.deadline_miss_s"), HasSubstr("--instruction-ns")));
+}
+
+// A camera that never says anything leaves no film and no pictures of what it saw; all else is there.
+TEST_F(CommandLineTest, ARunWithoutAnyFrame) {
+  const ProgramResult result = Sim({"run", "ball", "--set", "faults.camera_outage_s=[0,100]", "--set",
+                                    "run.duration_s=0.5", "--out", Out()});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, HasSubstr("the target was never found in view"));
+  for (const char* file : {"report.html", "log.mcap", "summary.json", "bench.png"}) {
+    EXPECT_TRUE(fs::exists(fs::path(Out()) / file)) << file;
+  }
+  for (const char* file : {"camera.mp4", "eye-first.png", "eye-last.png"}) {
+    EXPECT_FALSE(fs::exists(fs::path(Out()) / file)) << file;
+  }
+}
+
+TEST_F(CommandLineTest, UnknownScenario) {
+  EXPECT_THAT(Refusal({"bal"}), AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
+                                      HasSubstr("ball, ball-clutter, ball-dark, ball-eight, ball-jump, "
+                                                "ball-line, ball-moving, ball-occluded, ball-puma560, "
+                                                "ball-pushed, ball-ur5e, circle")));
+  EXPECT_THAT(Refusal({"nowhere/to/be.toml"}), HasSubstr("nowhere/to/be.toml"));
+}
+
+TEST_F(CommandLineTest, UnknownKey) {
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lamda=3"}),
+              AllOf(HasSubstr("servo.lamda"), HasSubstr("servo.lambda")));
+  const std::string file = Write("mine.toml", "[camera]\nrate_hz = 30\nspeed_hz = 3\n");
+  EXPECT_THAT(Refusal({file}), AllOf(HasSubstr("mine.toml:3"), HasSubstr("camera.speed_hz")));
+}
+
+TEST_F(CommandLineTest, ValueOutOfRange) {
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda=-1"}),
+              AllOf(HasSubstr("servo.lambda = -1"), HasSubstr("0 to 20 1/s")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda=nan"}), HasSubstr("0 to 20 1/s"));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda=fast"}), HasSubstr("servo.lambda"));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda"}), HasSubstr("key=value"));
+  EXPECT_THAT(Refusal({"ball", "--set", "target.motion=\"hop\""}),
+              AllOf(HasSubstr("\"still\""), HasSubstr("\"circle\"")));
+  const std::string file = Write("mine.toml", "[camera]\nrate_hz = 30000\n");
+  EXPECT_THAT(Refusal({file}), AllOf(HasSubstr("mine.toml:2"), HasSubstr("1 to 240 Hz")));
+}
+
+// Each value is allowed; together they are not.
+TEST_F(CommandLineTest, ValuesThatDoNotFitEachOther) {
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.q_start=[0, 0, 0]"}),
+              AllOf(HasSubstr("arm.q_start has 3 entries"), HasSubstr("has 7 joints")));
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.q_start=[0, 0, 0, 1, 0, 0, 0]"}),
+              AllOf(HasSubstr("arm.q_start[3] = 1"), HasSubstr("joint 4 reaches from -3.0718 to -0.0698")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.goal=[0, 0, 0.1]", "--set", "target.diameter=0.3"}),
+              AllOf(HasSubstr("servo.goal = [0, 0, 0.1]"), HasSubstr("radius of 0.15 m")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.goal=[0.3, 0, 0.4]"}),
+              AllOf(HasSubstr("servo.goal"), HasSubstr("outside the picture of 640 x 480 px")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.goal=[0, 0, 1.3]"}),
+              AllOf(HasSubstr("servo.goal"), HasSubstr("from 0.12 to 1.2 m")));
+  EXPECT_THAT(Refusal({"ball", "--set", "servo.stale_s=0.7"}),
+              AllOf(HasSubstr("servo.stale_s = 0.7"), HasSubstr("servo.coast_s, which is 0.6 s")));
+  EXPECT_THAT(Refusal({"ball", "--set", "camera.latency_ms=200"}),
+              AllOf(HasSubstr("camera.latency_ms = 200"), HasSubstr("servo.stale_s = 0.15 s")));
+  EXPECT_THAT(Refusal({"ball", "--set", "camera.exposure_ms=40"}),
+              AllOf(HasSubstr("camera.exposure_ms = 40"), HasSubstr("33.3 ms")));
+  EXPECT_THAT(Refusal({"ball", "--set", "faults.camera_outage_s=[3, 1]"}),
+              HasSubstr("ends before it begins"));
+  EXPECT_THAT(Refusal({"ball", "--set", "faults.load_s=[3, 1]"}),
+              AllOf(HasSubstr("faults.load_s = [3, 1]"), HasSubstr("ends before it begins")));
+  EXPECT_THAT(
+      Refusal({"ball-ur5e", "--set", "faults.encoder_nan_s=[1, 2]", "--set", "faults.encoder_nan_joint=7"}),
+      AllOf(HasSubstr("faults.encoder_nan_joint = 7"), HasSubstr("the arm has 6 joints")));
+  EXPECT_THAT(Refusal({"ball", "--set", "faults.occluder_px=[1, 2, 0, 4]"}),
+              HasSubstr("faults.occluder_px is not allowed: its size must be above 0 px"));
+  EXPECT_THAT(Refusal({"ball", "--set", "safety.workspace_radius=0.7"}),
+              AllOf(HasSubstr("arm.q_start"), HasSubstr("safety.workspace_radius = 0.7 m")));
+}
+
+TEST_F(CommandLineTest, TomlThatIsNone) {
+  EXPECT_THAT(Refusal({Write("mine.toml", "[camera\nrate_hz = 30\n")}), HasSubstr("mine.toml:1"));
+  EXPECT_THAT(Refusal({Write("mine.toml", "[[target]]\ndiameter = 0.1\n")}),
+              AllOf(HasSubstr("mine.toml:1"), HasSubstr("a section is written [name]")));
+}
+
+TEST_F(CommandLineTest, BrokenUrdf) {
+  const std::string broken = Write("broken.urdf", "<robot name=\"b\"><link name=\"a\"/>");
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"" + broken + "\""}), HasSubstr("broken.urdf"));
+  const std::string massless = Write(
+      "massless.urdf",
+      R"(<robot name="m"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>
+         <child link="b"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>)");
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"" + massless + "\""}),
+              AllOf(HasSubstr("massless.urdf"), HasSubstr("inertia")));
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"gone.urdf\""}), HasSubstr("gone.urdf"));
+  EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"pandaa\""}), HasSubstr("arm.model = \"pandaa\""));
+}
+
+// The Panda with a mesh at its last link.
+class MeshArmTest : public CommandLineTest {
+ protected:
+  MeshArmTest() {
+    std::ostringstream panda;
+    panda << std::ifstream(test::RobotsFolder() + "/panda.urdf").rdbuf();
+    urdf_ = panda.str();
+    fs::create_directory(folder_.path() / "meshes");
+    const sim::Mesh box = sim::MakeBox({0.08F, 0.08F, 0.05F}, 0.0F, Eigen::Vector3f::Ones());
+    WriteStlBinary(folder_.path() / "meshes" / "link.stl", box);
+    fs::copy_file(test::RobotsFolder() + "/panda.toml", folder_.path() / "panda.toml");
+  }
+  // Puts `mesh` in place of the first visual and the first collision geometry of link 7; the setting for it.
+  std::string Arm(const std::string& mesh) {
+    const auto link = urdf_.find("<link name=\"panda_link7\">");
+    std::string urdf = urdf_;
+    for (const char* tag : {"<visual>", "<collision>"}) {
+      const auto begin = urdf.find("<geometry>", urdf.find(tag, link));
+      const auto end = urdf.find("</geometry>", begin);
+      urdf.replace(begin, end - begin, "<geometry>" + mesh);
+    }
+    Write("panda.urdf", urdf);
+    return "arm.model=\"" + (folder_.path() / "panda.toml").string() + "\"";
+  }
+
+ private:
+  std::string urdf_;
+};
+
+TEST_F(MeshArmTest, ARunWithMeshes) {
+  const std::string arm = Arm("<mesh filename=\"meshes/link.stl\"/>");
+  const ProgramResult result = Sim(
+      {"run", "ball", "--set", arm, "--set", "run.duration_s=0.5", "--json", "--no-report", "--out", Out()});
+  ASSERT_EQ(result.exit_code, 1) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["ticks"], 500);
+  EXPECT_EQ(json["frames_detected"], json["frames"]);
+  EXPECT_EQ(json["contact_ticks"], 0);
+}
+
+TEST_F(MeshArmTest, AMeshThatCannotBeUsed) {
+  const auto refusal = [&](const std::string& mesh) { return Refusal({"ball", "--set", Arm(mesh)}); };
+  const std::string gone = refusal("<mesh filename=\"package://panda_description/gone.stl\"/>");
+  EXPECT_THAT(
+      gone, AllOf(HasSubstr("panda.urdf: link \"panda_link7\": mesh \"package://panda_description/gone.stl"),
+                  HasSubstr("ROS_PACKAGE_PATH")));
+  EXPECT_THAT(refusal("<mesh filename=\"meshes/gone.stl\"/>"), HasSubstr("meshes/gone.stl"));
+  EXPECT_THAT(refusal("<mesh filename=\"panda.toml\"/>"), HasSubstr(".stl, .dae and .obj"));
+  EXPECT_THAT(refusal("<mesh filename=\"meshes/link.stl\" scale=\"1 1 0\"/>"), HasSubstr("scale = 1 1 0"));
+  EXPECT_THAT(refusal("<mesh filename=\"meshes/link.stl\" scale=\"1 1\"/>"),
+              AllOf(HasSubstr("panda.urdf"), HasSubstr("scale"), HasSubstr("panda_link7")));
+  EXPECT_THAT(refusal("<mesh/>"),
+              AllOf(HasSubstr("panda.urdf"), HasSubstr("filename"), HasSubstr("panda_link7")));
+  EXPECT_THAT(refusal("<cone/>"),
+              AllOf(HasSubstr("panda.urdf"), HasSubstr("cone"), HasSubstr("panda_link7")));
+  Write("meshes/empty.dae", "");
+  EXPECT_THAT(refusal("<mesh filename=\"meshes/empty.dae\"/>"), HasSubstr("cannot be read"));
+}
+
+TEST_F(CommandLineTest, OutputFolderThatCannotBeWritten) {
+  const std::string file = Write("file", "something");
+  const ProgramResult result =
+      Sim({"run", "ball", "--set", "run.duration_s=0.1", "--no-report", "--out", file + "/out"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("--out " + file + "/out"), HasSubstr("cannot be made")));
+}
+
+// The first run stands still while the second one is tried, so that it is there whatever the machine does.
+TEST_F(CommandLineTest, TwoRunsIntoOneFolder) {
+  const ProgramResult result = RunProgram(
+      {"sh", "-c",
+       R"("$0" run ball --set run.duration_s=0.3 --seed 1 --json --out "$1" > /dev/null 2>&1 & first=$!
+until [ -e "$1/.log.mcap.partial" ]; do kill -0 $first || exit 9; sleep 0.02; done
+kill -STOP $first
+"$0" run ball --set run.duration_s=0.3 --seed 2 --no-report --out "$1"; second=$?
+kill -CONT $first; wait $first
+echo "first $? second $second")",
+       FOVEA_SIM_PROGRAM, Out()});
+  EXPECT_EQ(result.out, "first 1 second 2\n") << "0.3 s are too short to converge";
+  EXPECT_THAT(result.err, HasSubstr("fovea-sim: --out " + Out() + ": another run writes there"));
+  std::ifstream summary(Out() + "/summary.json");
+  EXPECT_EQ(nlohmann::json::parse(summary)["seed"], 1);
+  for (const char* file : {"report.html", "log.mcap", "camera.mp4", "eye-last.png"}) {
+    EXPECT_TRUE(fs::exists(fs::path(Out()) / file)) << file;
+  }
+}
+
+TEST_F(CommandLineTest, NoEgl) {
+  EXPECT_THAT(Refusal({"ball"}, {"__EGL_VENDOR_LIBRARY_DIRS=/nonexistent"}),
+              AllOf(HasSubstr("EGL"), HasSubstr("libgl1-mesa-dri")));
+}
+
+TEST_F(CommandLineTest, NobodyReadsWhatItSays) {
+  const auto shell = [&](const std::string& redirection) {
+    return RunProgram({"sh", "-c",
+                       std::string("\"$0\" run ball --set run.duration_s=0.1 --no-report --out \"$1\" ") +
+                           redirection,
+                       FOVEA_SIM_PROGRAM, Out()})
+        .exit_code;
+  };
+  EXPECT_EQ(shell("2>/dev/full"), 1) << "the progress is lost, the run is not";
+  EXPECT_EQ(shell("2>&-"), 1);
+  EXPECT_EQ(shell(">/dev/full"), 2) << "the result is lost, and that is said";
+}
+
+TEST_F(CommandLineTest, AScenarioOfAnyName) {
+  const std::string file = Write("b\xFF ll.toml", "[run]\nduration_s = 0.1\n");
+  const ProgramResult result = Sim({"run", file, "--json", "--no-report", "--out", Out()});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_TRUE(nlohmann::json::accept(result.out));
+}
+
+TEST_F(CommandLineTest, WrongUsage) {
+  EXPECT_EQ(Sim({}).exit_code, 2);
+  EXPECT_EQ(Sim({"fly"}).exit_code, 2);
+  EXPECT_EQ(Sim({"run"}).exit_code, 2);
+  const ProgramResult pace = Sim({"run", "ball", "--pace", "slow"});
+  EXPECT_EQ(pace.exit_code, 2);
+  EXPECT_THAT(pace.err, AllOf(HasSubstr("--pace"), HasSubstr("lockstep"), HasSubstr("real")));
+  EXPECT_EQ(Sim({"run", "ball", "--seed", "-3"}).exit_code, 2);
+}
+
+TEST_F(CommandLineTest, HelpShowsExamplesAndExitCodes) {
+  const ProgramResult help = Sim({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("Examples:"), HasSubstr("fovea-sim run ball"), HasSubstr("Exit: 0")));
+  EXPECT_THAT(Sim({"run", "--help"}).out, AllOf(HasSubstr("--set"), HasSubstr("--pace"), HasSubstr("--out")));
+  EXPECT_THAT(Sim({"--version"}).out, testing::StartsWith("fovea-sim 0."));
+}
+
+TEST_F(CommandLineTest, ListAndKeysSayWhatThereIs) {
+  const std::string list = Sim({"list"}).out;
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 23);
+  EXPECT_THAT(list, AllOf(HasSubstr("ball "), HasSubstr("ball-moving "), HasSubstr("ball-dark "),
+                          HasSubstr("ball-clutter "), HasSubstr("circle "), HasSubstr("flange-circle "),
+                          HasSubstr("theory/open-loop ")));
+  EXPECT_THAT(Sim({"keys"}).out,
+              HasSubstr("servo.lambda = 2\n    gain: the error decays like exp(-lambda t); "
+                        "a number: 0 to 20 1/s\n"));
+}
+
+// The table in the repository is what the program says; renew it with `fovea-sim keys --markdown`.
+TEST_F(CommandLineTest, TheTableOfKeysIsUpToDate) {
+  std::ostringstream table;
+  table << std::ifstream(test::SourceRoot() / "sim/scenarios/KEYS.md").rdbuf();
+  EXPECT_EQ(Sim({"keys", "--markdown"}).out, table.str());
+}
+
+// A run too short to converge: exit code 1, and files that are whole.
+TEST_F(CommandLineTest, ARunThatMissesItsGoal) {
+  const ProgramResult result = Sim(
+      {"run", "ball", "--set", "run.duration_s=0.3", "--seed", "9", "--json", "--no-report", "--out", Out()});
+  EXPECT_EQ(result.exit_code, 1);
+  const auto json = nlohmann::json::parse(result.out);
+  std::ifstream file(Out() + "/summary.json");
+  EXPECT_EQ(json, nlohmann::json::parse(file)) << "what is printed is what is written";
+  for (const char* key : {"scenario",
+                          "seed",
+                          "converged",
+                          "settle_time_s",
+                          "final_error_px_rms",
+                          "final_error_mm",
+                          "final_error_lateral_mm",
+                          "final_error_depth_mm",
+                          "final_error_deg",
+                          "tracking_error_px_rms",
+                          "limits",
+                          "limit_violations",
+                          "faults",
+                          "frames",
+                          "frames_detected",
+                          "ticks",
+                          "overruns",
+                          "heap_allocations_in_tick",
+                          "page_faults_in_loop",
+                          "tick_ns",
+                          "sim_time_s",
+                          "wall_time_s",
+                          "real_time_factor",
+                          "log_hash",
+                          "servo",
+                          "git"}) {
+    EXPECT_TRUE(json.contains(key)) << key;
+  }
+  for (const char* key : {"p50", "p99", "p999", "max"}) {
+    EXPECT_TRUE(json["tick_ns"].contains(key)) << key;
+  }
+  EXPECT_EQ(json["scenario"], "ball");
+  EXPECT_EQ(json["seed"], 9);
+  EXPECT_EQ(json["converged"], false);
+  EXPECT_EQ(json["ticks"], 300);
+  EXPECT_EQ(json["log_hash"].get<std::string>().size(), 64U);
+  EXPECT_THAT(json["verdict"].get<std::string>(), HasSubstr("not converged"));
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(Out())) {
+    names.push_back(entry.path().filename());
+  }
+  EXPECT_THAT(names, testing::UnorderedElementsAre("summary.json", "eye-first.png", "eye-last.png"));
+}
+
+TEST_F(CommandLineTest, ARefusedRunLeavesTheLastOnesFilesAlone) {
+  ASSERT_EQ(Sim({"run", "ball", "--set", "run.duration_s=0.1", "--no-report", "--out", Out()}).exit_code, 1);
+  const auto written = fs::last_write_time(Out() + "/summary.json");
+  EXPECT_EQ(Sim({"run", "ball", "--set", "servo.lambda=-1", "--out", Out()}).exit_code, 2);
+  EXPECT_EQ(fs::last_write_time(Out() + "/summary.json"), written);
+}
+
+// One core or two, this process or another: the same run.
+TEST_F(CommandLineTest, TheSameSeedIsTheSameRunOnOneCoreToo) {
+  const auto hash = [&](std::vector<std::string> before, const std::string& seed) {
+    before.insert(before.end(), {FOVEA_SIM_PROGRAM, "run", "ball", "--set", "run.duration_s=1.5", "--seed",
+                                 seed, "--json", "--no-report", "--out", Out()});
+    const ProgramResult result = RunProgram(before);
+    EXPECT_EQ(result.exit_code, 1) << result.err;
+    return nlohmann::json::parse(result.out)["log_hash"].get<std::string>();
+  };
+  const std::string first = hash({}, "1");
+  EXPECT_EQ(hash({}, "1"), first);
+  EXPECT_EQ(hash({"taskset", "-c", "0"}, "1"), first);
+  EXPECT_NE(hash({}, "2"), first);
+}
+
+}  // namespace
+}  // namespace fovea::test

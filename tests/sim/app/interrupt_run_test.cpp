@@ -1,0 +1,117 @@
+// Ctrl-C at any moment of a run leaves files that can be read. (Signals are sent when the run is where the
+// test wants it, however long it takes to get there.)
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "firmware/host/recording/log/mcap_reader.hpp"
+#include "firmware/host/recording/log/topics.hpp"
+#include "tests/support/program.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace fovea::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Starts a run, sends it `signals` at the moments that the shell script picks, and says how it ended.
+class InterruptTest : public testing::Test {
+ protected:
+  ProgramResult Interrupt(const std::string& script, const std::string& settings = "") {
+    return RunProgram({"sh", "-c",
+                       R"("$0" run ball --json --out "$1" )" + settings + R"( > "$1.json" 2> "$1.err" & run=$!
+)" + script + R"(
+wait $run; echo "ended with $?")",
+                       FOVEA_SIM_PROGRAM, Out()});
+  }
+  nlohmann::json Summary() {
+    std::ifstream file(Out() + "/summary.json");
+    return nlohmann::json::parse(file);
+  }
+  std::string Out() { return folder_.path() / "out"; }
+  // Ticks in the log, which is whole or cut off, and whether it is whole.
+  std::pair<int, bool> TicksInLog() {
+    int ticks = 0;
+    log::McapVisitor visitor;
+    visitor.on_message = [&](const log::McapMessage& message) {
+      ticks += message.topic == log::kTickTopic ? 1 : 0;
+    };
+    const log::McapEnd end = log::ReadMcap(Out() + "/log.mcap", visitor);
+    return {ticks, end.complete};
+  }
+  std::string Err() {
+    std::ostringstream text;
+    text << std::ifstream(Out() + ".err").rdbuf();
+    return text.str();
+  }
+
+  TempFolder folder_;
+};
+
+constexpr const char* kUntilItRuns =
+    R"(until [ -s "$1/.log.mcap.partial" ]; do kill -0 $run || exit 9; sleep 0.02; done)";
+
+TEST_F(InterruptTest, LeavesAReadableLogAndSummary) {
+  const ProgramResult result =
+      Interrupt(std::string(kUntilItRuns) + "\nkill -INT $run", "--set run.duration_s=600");
+  EXPECT_EQ(result.out, "ended with 1\n") << Err();
+  const nlohmann::json summary = Summary();
+  EXPECT_TRUE(summary["interrupted"]);
+  EXPECT_FALSE(summary["converged"]);
+  EXPECT_THAT(summary["verdict"].get<std::string>(), testing::HasSubstr("interrupted after"));
+  EXPECT_LT(summary["sim_time_s"], 600.0);
+  const auto [ticks, whole] = TicksInLog();
+  EXPECT_TRUE(whole);
+  EXPECT_EQ(ticks, summary["ticks"]);
+  EXPECT_TRUE(fs::exists(fs::path(Out()) / "report.html"));
+}
+
+// Before there is any folder: the run ends with its first tick.
+TEST_F(InterruptTest, WhileItPrepares) {
+  const ProgramResult result = Interrupt(
+      R"(until grep -q 'SigBlk:.*[2367abef]$' /proc/$run/status; do kill -0 $run || exit 9; done
+kill -INT $run)");
+  EXPECT_EQ(result.out, "ended with 1\n") << Err();
+  const nlohmann::json summary = Summary();
+  EXPECT_TRUE(summary["interrupted"]);
+  EXPECT_GE(summary["ticks"], 1);
+  const auto [ticks, whole] = TicksInLog();
+  EXPECT_TRUE(whole);
+  EXPECT_EQ(ticks, summary["ticks"]);
+}
+
+// While films and report are made the run itself is over, and is judged as any other.
+TEST_F(InterruptTest, WhileItsFilesAreWritten) {
+  const ProgramResult result = Interrupt(
+      R"(until [ -s "$1/.summary.json.partial" ] || grep -q drawing "$1.err"; do kill -0 $run || exit 9; done
+kill -INT $run)",
+      "--set run.duration_s=0.3");
+  EXPECT_EQ(result.out, "ended with 1\n") << Err();
+  const nlohmann::json summary = Summary();
+  EXPECT_FALSE(summary["interrupted"]);
+  EXPECT_EQ(summary["ticks"], 300);
+  EXPECT_EQ(TicksInLog(), std::pair(300, true));
+}
+
+// The second one ends it at once: the log stands alone, up to where it was cut.
+TEST_F(InterruptTest, TwiceEndsAtOnceAndKeepsTheLog) {
+  const std::string before = "of a run before";
+  fs::create_directories(Out());
+  std::ofstream(Out() + "/summary.json") << before;
+  const ProgramResult result = Interrupt(std::string(kUntilItRuns) + R"(
+until [ $(stat -c %s "$1/.log.mcap.partial") -gt 100000 ]; do kill -0 $run || exit 9; sleep 0.02; done
+kill -STOP $run; kill -INT $run; kill -TERM $run; kill -CONT $run)",
+                                         "--set run.duration_s=600");
+  EXPECT_EQ(result.out, "ended with 143\n") << Err();
+  const auto [ticks, whole] = TicksInLog();
+  EXPECT_FALSE(whole);
+  EXPECT_GT(ticks, 100);
+  EXPECT_FALSE(fs::exists(Out() + "/summary.json")) << "no figures of another run beside it";
+}
+
+}  // namespace
+}  // namespace fovea::test

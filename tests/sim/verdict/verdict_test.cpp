@@ -1,0 +1,204 @@
+// The judge, on runs made up for it: each bound is kept, and each is broken.
+#include "sim/verdict/verdict.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/panda.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+constexpr double kGoalZ = 0.4;
+
+class VerdictTest : public testing::Test {
+ protected:
+  VerdictTest() {
+    config_.barriers.arm = test::Panda().model;
+    config_.stop.ddq_max.setOnes(7);
+    config_.stop.dddq_max.setOnes(7);
+    config_.goal.p_CO_C_star = {0.0, 0.0, kGoalZ};
+    config_.tracking_bound_px = 3.0;
+  }
+
+  // A run of `duration_s` in which the target is `offset(t)` off its goal, in axes of C [m].
+  Summary Judge(double duration_s, const std::function<Eigen::Vector3d(double)>& offset,
+                const std::function<void(Truth&)>& change = {}) {
+    config_.duration_s = duration_s;
+    Verdict verdict(config_);
+    const auto ticks = static_cast<std::int64_t>(duration_s * 1e3);
+    for (std::int64_t k = 0; k <= ticks; ++k) {
+      Truth truth;
+      truth.stamp_ns = k * kMs;
+      truth.q = test::Ready();
+      truth.dq = truth.tau_cmd = Eigen::VectorXd::Zero(7);
+      truth.X_BE.translation() = Eigen::Vector3d(0.3, 0.0, 0.5);
+      truth.p_BO = config_.goal.p_CO_C_star + offset(static_cast<double>(k) * 1e-3);  // C is B here
+      if (change) {
+        change(truth);
+      }
+      verdict.AddTruth(truth, hal::Mode::kTrack);
+    }
+    for (const hal::TickRecord& record : records_) {
+      verdict.AddRecord(record);
+    }
+    Summary summary;
+    summary.frames_detected = frames_detected_;
+    verdict.Fill(summary);
+    return summary;
+  }
+  static Eigen::Vector3d Still(double) { return {0.0005, 0.0, 0.0}; }
+
+  VerdictConfig config_;
+  std::vector<hal::TickRecord> records_;
+  std::uint64_t frames_detected_ = 1;
+};
+
+TEST_F(VerdictTest, FiguresAreThoseOfTheLastHalfSecond) {
+  const Summary s = Judge(2.0, [](double t) {
+    return t < 1.5 ? Eigen::Vector3d(0.1, 0.0, 0.0) : Eigen::Vector3d(0.0003, 0.0004, 0.0012);
+  });
+  EXPECT_TRUE(s.converged);
+  EXPECT_NEAR(*s.start_error_px, config_.pinhole.f_px * 0.1 / 0.4, 1e-9);
+  EXPECT_NEAR(*s.final_error_px_rms, config_.pinhole.f_px * 0.0005 / 0.4012, 1e-9);
+  EXPECT_NEAR(*s.final_error_lateral_mm, 0.5, 1e-9);
+  EXPECT_NEAR(*s.final_error_depth_mm, 1.2, 1e-9);
+  EXPECT_NEAR(*s.final_error_mm, 1.3, 1e-9);
+  EXPECT_EQ(s.tracking_error_px_rms, std::nullopt);
+}
+
+TEST_F(VerdictTest, OneSampleTooFarOffInTheWindowIsNotConverged) {
+  const auto pixel_off = [&](double t) {
+    return Eigen::Vector3d(std::abs(t - 1.7) < 1e-6 ? 1.01 * kGoalZ / config_.pinhole.f_px : 0.0, 0.0, 0.0);
+  };
+  EXPECT_FALSE(Judge(2.0, pixel_off).converged);
+  const auto depth_off = [](double t) {
+    return Eigen::Vector3d(0.0, 0.0, std::abs(t - 1.7) < 1e-6 ? 0.00201 : 0.0);
+  };
+  const Summary s = Judge(2.0, depth_off);
+  EXPECT_FALSE(s.converged);
+  EXPECT_THAT(s.verdict, testing::HasSubstr("not converged"));
+}
+
+TEST_F(VerdictTest, SettleTimeIsThatOfTheLastReturn) {
+  const Summary s = Judge(4.0, [](double t) {
+    const bool peak = t > 2.4 && t < 2.6;
+    return Eigen::Vector3d(peak ? 0.01 : 0.1 * std::exp(-4.0 * t), 0.0, 0.0);
+  });
+  EXPECT_NEAR(*s.settle_time_s, 2.6, 1.5e-3);
+  EXPECT_EQ(Judge(1.0, [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); }).settle_time_s, std::nullopt);
+}
+
+TEST_F(VerdictTest, BehindTheCameraIsNoErrorInPixels) {
+  const Summary s = Judge(1.0, [](double) { return Eigen::Vector3d(0.0, 0.0, -0.8); });
+  EXPECT_FALSE(s.converged);
+  EXPECT_EQ(s.final_error_px_rms, std::nullopt);
+}
+
+TEST_F(VerdictTest, AMovingTargetIsJudgedOverTheSecondHalf) {
+  config_.target_moves = true;
+  const double px = kGoalZ / config_.pinhole.f_px;
+  EXPECT_TRUE(
+      Judge(2.0, [&](double t) { return Eigen::Vector3d((t < 0.99 ? 50 : 2.9) * px, 0, 0); }).converged);
+  const Summary s = Judge(2.0, [&](double) { return Eigen::Vector3d(3.1 * px, 0, 0); });
+  EXPECT_FALSE(s.converged);
+  EXPECT_NEAR(*s.tracking_error_px_rms, 3.1, 1e-9);
+}
+
+// A target that moves is kept while its error is within the bound over half a second: a sample beyond it is
+// none.
+TEST_F(VerdictTest, AMovingTargetIsKeptAsAMeanOverHalfASecond) {
+  config_.target_moves = true;
+  const double px = kGoalZ / config_.pinhole.f_px;
+  const Summary kept = Judge(3.0, [&](double t) {
+    const bool peak = std::fmod(t, 0.1) < 0.01;
+    return Eigen::Vector3d((t < 1.0 ? 50.0 : peak ? 5.0 : 1.0) * px, 0, 0);
+  });
+  ASSERT_TRUE(kept.end.goal_kept_since_s.has_value());
+  EXPECT_NEAR(*kept.end.goal_kept_since_s, 1.5, 0.02);
+  const Summary lost =
+      Judge(3.0, [&](double t) { return Eigen::Vector3d((t < 2.4 ? 1.0 : 3.1) * px, 0, 0); });
+  EXPECT_FALSE(lost.end.goal_kept_since_s.has_value());
+}
+
+TEST_F(VerdictTest, EveryLimitThatIsBrokenIsCounted) {
+  // In one tick; how often it counts.
+  const auto violations = [&](const char* name, const std::function<void(Truth&)>& change) {
+    const Summary s = Judge(0.1, Still, [&](Truth& truth) {
+      if (truth.stamp_ns == 50 * kMs) {
+        change(truth);
+      }
+    });
+    EXPECT_EQ(s.limit_violations > 0, !s.violations.empty());
+    return s.violations.count(name) > 0 ? s.violations.at(name) : 0U;
+  };
+  EXPECT_EQ(violations("joint_position", [](Truth& t) { t.q[1] = 1.77; }), 1U);     // +-1.7628 rad
+  EXPECT_EQ(violations("joint_velocity", [](Truth& t) { t.dq[6] = -2.62; }), 1U);   // 2.61 rad/s
+  EXPECT_EQ(violations("torque_rate", [](Truth& t) { t.tau_cmd[6] = 0.99; }), 0U);  // 1 Nm per tick
+  EXPECT_EQ(violations("torque_rate", [](Truth& t) { t.tau_cmd[6] = 1.01; }), 2U);  // up, and down again
+  EXPECT_EQ(violations("workspace", [](Truth& t) { t.X_BE.translation().x() = 0.86; }), 1U);  // 0.85 m
+  EXPECT_EQ(violations("torque", [](Truth& t) { t.tau_cmd[6] = -12.1; }), 1U);                // 12 Nm
+}
+
+TEST_F(VerdictTest, APassedLimitIsNoSuccessAndATickCountsOnce) {
+  hal::TickRecord record;
+  record.stamp_ns = 50 * kMs;
+  record.ddq_cmd[0] = 2.0 * config_.barriers.arm.joints[0].ddq_max;
+  records_ = {record};
+  // In the same tick the truth is beyond a limit too, and in one more.
+  const Summary s = Judge(1.0, Still, [](Truth& truth) {
+    if (truth.stamp_ns == 50 * kMs || truth.stamp_ns == 70 * kMs) {
+      truth.q[1] = 1.77;
+    }
+  });
+  EXPECT_TRUE(s.converged);
+  EXPECT_EQ(s.limit_violations, 2U);
+  EXPECT_EQ(s.verdict, "converged, but in 2 ticks a limit was passed");
+  EXPECT_FALSE(ReachedItsGoal(s));
+  records_.clear();
+  EXPECT_TRUE(ReachedItsGoal(Judge(1.0, Still)));
+}
+
+// Whatever is touched, and however well the target stands in the end.
+TEST_F(VerdictTest, AnyContactIsNoSuccess) {
+  for (const auto& [contacts, what] : {std::pair{Contacts{1, false, false}, "the bench"},
+                                       {Contacts{0, true, false}, "the target"},
+                                       {Contacts{0, false, true}, "itself"}}) {
+    const Summary s = Judge(1.0, Still, [&](Truth& truth) {
+      truth.contacts = truth.stamp_ns == 50 * kMs ? contacts : Contacts{};
+    });
+    EXPECT_FALSE(s.converged);
+    EXPECT_FALSE(ReachedItsGoal(s));
+    EXPECT_EQ(s.contact_ticks, 1U);
+    EXPECT_EQ(s.limit_violations, 1U);
+    EXPECT_EQ(s.verdict, std::string("not converged: the arm touched ") + what + " in 1 ticks");
+  }
+}
+
+TEST_F(VerdictTest, SeenTooSeldomIsNotTheSameAsNeverSeen) {
+  const auto far = [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); };
+  frames_detected_ = 0;
+  EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("never found in view"));
+  frames_detected_ = 2;
+  EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("found in 2 frames, too few"));
+}
+
+TEST_F(VerdictTest, AFaultIsNamedAndIsNoSuccess) {
+  hal::TickRecord record;
+  record.stamp_ns = 250 * kMs;
+  record.mode = hal::Mode::kFault;
+  record.fault = hal::Fault::kJointVelocity;
+  record.fault_joint = 3;
+  records_ = {record, record};
+  const Summary s = Judge(1.0, Still);
+  EXPECT_FALSE(s.converged);
+  ASSERT_EQ(s.faults.size(), 1U);
+  EXPECT_EQ(s.faults[0].name, "joint_velocity");
+  EXPECT_EQ(s.faults[0].detail, "joint 4");
+  EXPECT_DOUBLE_EQ(s.faults[0].t_s, 0.25);
+  EXPECT_THAT(s.verdict, testing::HasSubstr("joint_velocity"));
+}
+
+}  // namespace
+}  // namespace fovea::sim

@@ -1,0 +1,216 @@
+// The world: time, target, encoders, exposures, friction.
+#include "sim/world/world.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <stdexcept>
+
+#include "fovea/hal/types.hpp"
+#include "sim/world/world_clock.hpp"
+#include "tests/support/places.hpp"
+
+namespace fovea::sim {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+WorldConfig PandaWorld() {
+  WorldConfig config;
+  config.robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
+  config.q_start.resize(7);
+  config.q_start << 0.0, -0.7, 0.0, -2.2, 0.0, 1.6, 0.7;
+  return config;
+}
+
+TEST(TargetMotionTest, TheCircleIsRoundLevelAndAsFastAsAskedFor) {
+  TargetMotion motion{MotionKind::kCircle, {0.5, 0.1, 0.04}, 0.10, 0.2};
+  for (std::int64_t t = 0; t < 4'000 * kMs; t += 37 * kMs) {
+    const Eigen::Vector3d p = PositionAt(motion, t);
+    EXPECT_NEAR((p - motion.p_BO).norm(), 0.10, 1e-12);
+    EXPECT_EQ(p.z(), 0.04);
+    const Eigen::Vector3d v = (PositionAt(motion, t + 1000) - PositionAt(motion, t)) / 1e-6;
+    EXPECT_NEAR(v.norm(), 0.2, 1e-6);
+  }
+  motion.kind = MotionKind::kStill;
+  EXPECT_EQ(PositionAt(motion, 3'000 * kMs), motion.p_BO);
+}
+
+// Each stays within its reach and within its speed, comes near to both, and runs without a step.
+TEST(TargetMotionTest, EveryPathKeepsItsReachAndItsSpeed) {
+  TargetMotion motion{MotionKind::kStill, {0.5, 0.1, 0.2}, 0.12, 0.2};
+  motion.direction = Eigen::Vector3d(0.6, 0.8, 0.0);
+  const auto look = [&](MotionKind kind) {
+    motion.kind = kind;
+    double far = 0.0;
+    double fast = 0.0;
+    for (std::int64_t t = 0; t < 60'000 * kMs; t += 13 * kMs) {
+      far = std::max(far, (PositionAt(motion, t) - motion.p_BO).norm());
+      fast = std::max(fast, (PositionAt(motion, t + kMs) - PositionAt(motion, t)).norm() / 1e-3);
+    }
+    return std::pair(far, fast);
+  };
+  for (const MotionKind kind : {MotionKind::kLine, MotionKind::kEight}) {
+    const auto [far, fast] = look(kind);
+    EXPECT_NEAR(far, 0.12, 0.001);
+    EXPECT_NEAR(fast, 0.2, 0.002);
+  }
+  const auto [far, fast] = look(MotionKind::kWander);
+  EXPECT_LE(far, 0.12);
+  EXPECT_GT(far, 0.06);
+  EXPECT_LE(fast, 0.2);
+  EXPECT_GT(fast, 0.06);
+  // A pendulum of 0.12 m: its bob never nearer to the pivot nor further from it than that.
+  motion.kind = MotionKind::kPendulum;
+  const Eigen::Vector3d pivot = motion.p_BO + Eigen::Vector3d(0, 0, 0.12);
+  for (std::int64_t t = 0; t < 2'000 * kMs; t += 7 * kMs) {
+    EXPECT_NEAR((PositionAt(motion, t) - pivot).norm(), 0.12, 1e-12);
+  }
+}
+
+TEST(TargetMotionTest, JumpsAtItsTimeAndTurnsAboutItsNormal) {
+  TargetMotion motion;
+  motion.kind = MotionKind::kJump;
+  motion.jump = {0.0, -0.1, 0.0};
+  motion.jump_s = 2.0;
+  EXPECT_EQ(PositionAt(motion, 1'999 * kMs), motion.p_BO);
+  EXPECT_EQ(PositionAt(motion, 2'000 * kMs), Eigen::Vector3d(motion.p_BO + motion.jump));
+  motion.R_BO = Eigen::AngleAxisd(3.0, Eigen::Vector3d(0.6, 0.8, 0.0)).toRotationMatrix();
+  motion.turn_rate = 0.5;
+  const Eigen::Matrix3d R = OrientationAt(motion, 2'000 * kMs);
+  EXPECT_LT((R.col(2) - motion.R_BO.col(2)).norm(), 1e-12);
+  EXPECT_NEAR(R.col(0).dot(motion.R_BO.col(0)), std::cos(1.0), 1e-12);
+}
+
+TEST(WorldTest, EncodersHaveTheNoiseThatWasAskedFor) {
+  WorldConfig config = PandaWorld();
+  config.encoder_noise = 1e-5;
+  config.velocity_noise = 2e-3;
+  World world(config);
+  double q2 = 0.0;
+  double dq2 = 0.0;
+  int count = 0;
+  world.OnStep([&](const Truth& truth) {
+    for (int i = 0; i < 7; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      q2 += std::pow(world.MeasuredState().q[k] - truth.q[i], 2);
+      dq2 += std::pow(world.MeasuredState().dq[k] - truth.dq[i], 2);
+      ++count;
+    }
+  });
+  world.AdvanceTo(1'000 * kMs);
+  EXPECT_NEAR(std::sqrt(q2 / count), 1e-5, 3e-7);
+  EXPECT_NEAR(std::sqrt(dq2 / count), 2e-3, 6e-5);
+}
+
+TEST(WorldTest, TheSameSeedIsTheSameWorld) {
+  WorldConfig config = PandaWorld();
+  config.encoder_noise = 1e-5;
+  const auto run = [&](std::uint64_t seed) {
+    config.seed = seed;
+    World world(config);
+    world.AdvanceTo(100 * kMs);
+    return world.MeasuredState().q;
+  };
+  EXPECT_EQ(run(1), run(1));
+  EXPECT_NE(run(1), run(2));
+}
+
+TEST(WorldTest, TheCameraKeepsItsOwnTimeAndFallsSilentWhereItIsTold) {
+  WorldConfig config = PandaWorld();
+  config.camera_rate_hz = 30.0;
+  config.camera_outage = {0.5, 0.8};
+  World world(config);
+  std::vector<Exposure> exposures;
+  world.OnExposure([&](Exposure e) { exposures.push_back(std::move(e)); });
+  world.AdvanceTo(2'000 * kMs);
+  ASSERT_EQ(exposures.size(), 60U - 9U);
+  for (const Exposure& e : exposures) {
+    const double ideal_ns = 20e6 + static_cast<double>(e.sequence) * 1e9 / 30.0;
+    EXPECT_LE(std::fabs(static_cast<double>(e.stamp_ns) - ideal_ns), 0.5e6 + 1.0) << "no drift";
+    EXPECT_FALSE(e.stamp_ns >= 500 * kMs && e.stamp_ns < 800 * kMs);
+  }
+}
+
+// What those who look on throw does not pass through the loop: the clock closes, and gives it back when
+// asked.
+TEST(WorldClockTest, KeepsWhatIsThrownAndSaysThatItIsClosed) {
+  World world(PandaWorld());
+  LockstepClock clock(world, [](std::int64_t now_ns) -> bool {
+    if (now_ns == 2 * kMs) {
+      throw std::runtime_error("no more");
+    }
+    return true;
+  });
+  EXPECT_TRUE(clock.WaitUntil(kMs).ok());
+  EXPECT_NO_THROW(clock.RethrowFailure());
+  EXPECT_EQ(clock.WaitUntil(2 * kMs).code(), hal::StatusCode::kClosed);
+  EXPECT_THROW(clock.RethrowFailure(), std::runtime_error);
+}
+
+// A link of 40 kg mm^2 under friction that a step of 1 ms could turn round at full size.
+TEST(WorldTest, ALightLinkComesToRestUnderFriction) {
+  WorldConfig config;
+  config.robot = LoadSimRobot(test::RobotsFolder() + "/puma560.urdf", "puma560_base", "puma560_flange");
+  config.q_start.resize(6);
+  config.q_start << 0.2, 0.9, -3.75, 0.0, -0.3, 0.0;
+  config.friction_compensation = 0.0;
+  World world(config);
+  hal::ArmCommand command;
+  command.num_joints = 6;
+  command.tau_cmd[5] = 0.15;
+  world.Command(command);
+  world.AdvanceTo(100 * kMs);
+  EXPECT_GT(std::fabs(world.truth().dq[5]), 0.01) << "it was not moved";
+  command.tau_cmd[5] = 0.0;
+  world.Command(command);
+  world.AdvanceTo(1'100 * kMs);
+  EXPECT_LT(world.truth().dq.cwiseAbs().maxCoeff(), 1e-3);
+}
+
+// A joint under friction, and the same one whose controller takes all friction away.
+TEST(WorldTest, FrictionSlowsAJointAndCompensationTakesItAway) {
+  const auto speed_after = [](double compensation) {
+    WorldConfig config = PandaWorld();
+    config.friction_compensation = compensation;
+    World world(config);
+    hal::ArmCommand command;
+    command.num_joints = 7;
+    command.tau_cmd[0] = 2.0;
+    world.Command(command);
+    world.AdvanceTo(200 * kMs);
+    return world.truth().dq[0];
+  };
+  EXPECT_GT(speed_after(1.0), 1.1 * speed_after(0.5));
+  EXPECT_GT(speed_after(0.5), 1.1 * speed_after(0.0));
+}
+
+// Positions come in multiples of the quantum and are right to half of it; velocities are as they were.
+TEST(WorldTest, EncodersAreQuantised) {
+  WorldConfig config = PandaWorld();
+  config.dq_start = Eigen::VectorXd::Constant(7, 0.1);
+  World fine(config);
+  config.encoder_quantum = 1e-4;
+  World coarse(config);
+  int moved = 0;
+  double before = coarse.MeasuredState().q[0];
+  for (std::int64_t t = kMs; t <= 100 * kMs; t += kMs) {
+    fine.AdvanceTo(t);
+    coarse.AdvanceTo(t);
+    EXPECT_EQ(fine.truth().q, coarse.truth().q);
+    for (std::size_t k = 0; k < 7; ++k) {
+      const double q = coarse.MeasuredState().q[k];
+      EXPECT_NEAR(q / 1e-4, std::round(q / 1e-4), 1e-9);
+      EXPECT_LE(std::fabs(q - fine.MeasuredState().q[k]), 0.5e-4 + 1e-12);
+    }
+    EXPECT_EQ(coarse.MeasuredState().dq, fine.MeasuredState().dq);
+    moved += coarse.MeasuredState().q[0] != before ? 1 : 0;
+    before = coarse.MeasuredState().q[0];
+  }
+  std::cout << "joint 1 changed in " << moved << " of 100 ticks\n";
+  EXPECT_GT(moved, 20);
+}
+
+}  // namespace
+}  // namespace fovea::sim

@@ -1,0 +1,143 @@
+// What a run on hardware leaves in its folder, and what it costs that its film fails.
+#include "firmware/targets/linux/hw_files.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "firmware/host/recording/log/mcap_reader.hpp"
+#include "firmware/host/recording/log/topics.hpp"
+#include "firmware/targets/linux/hw_config.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace fovea::hw {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+constexpr int kTicks = 200;
+constexpr std::int64_t kStartNs = 5'000'000'000;
+
+class HwFilesTest : public testing::Test {
+ protected:
+  // A run of 0.2 s with frames of that size; what it says of its log. Once it goes on, the file `removed` of
+  // its folder is gone.
+  LogCounters Run(int width_px, int height_px, const std::string& removed = "") {
+    HwFiles files(folder_.path(), config_, robot_, servo_, 0.0);
+    if (!removed.empty()) {
+      EXPECT_TRUE(fs::remove(folder_.path() / removed));
+    }
+    const std::vector<std::uint8_t> pixels(
+        static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), 90);
+    for (int tick = 0; tick < kTicks; ++tick) {
+      flight::FlightRecord entry;
+      hal::TickRecord& record = entry.record;
+      record.tick = static_cast<std::uint64_t>(tick);
+      record.stamp_ns = kStartNs + tick * hal::kTickPeriodNs;
+      record.arm.num_joints = record.command.num_joints = robot_.model.num_joints;
+      files.AddRecord(entry);
+      if (frame_ticks_.contains(tick)) {
+        hal::Frame frame;
+        frame.stamp_ns = record.stamp_ns;
+        frame.width_px = width_px;
+        frame.height_px = height_px;
+        frame.stride_bytes = width_px;
+        frame.format = hal::PixelFormat::kMono8;
+        frame.pixels = pixels;
+        files.AddFrame(frame, {});
+      }
+    }
+    HwSummary summary;
+    summary.log = files.EndFilm();
+    files.Write(summary);
+    return *summary.log;
+  }
+  [[nodiscard]] std::set<std::string> Files() const {
+    std::set<std::string> names;
+    for (const fs::directory_entry& file : fs::directory_iterator(folder_.path())) {
+      names.insert(file.path().filename());
+    }
+    return names;
+  }
+  // Ticks and attachments of a log that is complete.
+  void ExpectLog(const std::vector<std::string>& attachments) const {
+    int ticks = 0;
+    std::vector<std::string> found;
+    log::McapVisitor visitor;
+    visitor.on_message = [&](const log::McapMessage& m) { ticks += m.topic == log::kTickTopic ? 1 : 0; };
+    visitor.on_attachment = [&](const log::McapAttachment& a) {
+      found.emplace_back(a.name);
+      EXPECT_FALSE(a.data.empty()) << a.name;
+    };
+    EXPECT_TRUE(log::ReadMcap(folder_.path() / "log.mcap", visitor).complete);
+    EXPECT_EQ(ticks, kTicks);
+    EXPECT_THAT(found, testing::UnorderedElementsAreArray(attachments));
+  }
+
+  const test::TempFolder folder_;
+  std::set<int> frame_ticks_{10, 80, 150};
+  HwConfig config_ = LoadHwConfig("loopback", {});
+  const robots::Robot robot_ = LoadHwRobot(config_);
+  const config::ServoConfig servo_ = MakeHwServoConfig(config_, robot_);
+};
+
+TEST_F(HwFilesTest, FilmLogReportAndSummaryAreThere) {
+  const LogCounters log = Run(640, 480);
+  EXPECT_THAT(log.film_errors, testing::IsEmpty());
+  EXPECT_EQ(log.pictures + log.pictures_dropped, 3U);
+  EXPECT_THAT(Files(), ElementsAre("camera.mp4", "log.mcap", "report.html", "summary.json"));
+  ExpectLog({"summary.json", "camera.mp4"});
+}
+
+TEST_F(HwFilesTest, AFilmThatFailsCostsNothingElse) {
+  const LogCounters log = Run(640, 480, ".camera.mp4.partial");
+  EXPECT_THAT(log.film_errors,
+              ElementsAre("camera.mp4: the film cannot be written: the index: No such file or directory"));
+  EXPECT_THAT(Files(), ElementsAre("log.mcap", "report.html", "summary.json"));
+  ExpectLog({"summary.json"});
+  std::ifstream stream(folder_.path() / "summary.json");
+  EXPECT_EQ(nlohmann::json::parse(stream)["film_errors"], log.film_errors);
+}
+
+// Ended before it moved: the log is whole, and says what was to be.
+TEST_F(HwFilesTest, WithoutATickThereAreLogAndSummary) {
+  {
+    HwFiles files(folder_.path(), config_, robot_, servo_, 0.0);
+    HwSummary summary;
+    summary.log = files.EndFilm();
+    files.Write(summary);
+  }
+  EXPECT_THAT(Files(), ElementsAre("log.mcap", "summary.json"));
+  std::vector<std::string> found;
+  log::McapVisitor visitor;
+  visitor.on_attachment = [&](const log::McapAttachment& a) { found.emplace_back(a.name); };
+  EXPECT_TRUE(log::ReadMcap(folder_.path() / "log.mcap", visitor).complete);
+  EXPECT_THAT(found, ElementsAre("summary.json"));
+}
+
+// The film takes frames of the calibrated size alone.
+TEST_F(HwFilesTest, WithoutAFrameThereIsNoFilm) {
+  const LogCounters log = Run(320, 240);
+  EXPECT_THAT(log.film_errors, testing::IsEmpty());
+  EXPECT_EQ(log.film_frames_dropped, 0U);
+  EXPECT_THAT(Files(), ElementsAre("log.mcap", "report.html", "summary.json"));
+  ExpectLog({"summary.json"});
+}
+
+// No more pictures than are wished for, neither at first nor after a gap: at 20 Hz those at 10, 130 and 180
+// ms.
+TEST_F(HwFilesTest, TheLogHasNoMorePicturesThanAreWishedFor) {
+  config_.log.picture_rate_hz = 20.0;
+  frame_ticks_ = {10, 20, 30, 40, 130, 140, 150, 160, 170, 180, 190};
+  const LogCounters log = Run(640, 480);
+  EXPECT_EQ(log.pictures + log.pictures_dropped, 3U);
+}
+
+}  // namespace
+}  // namespace fovea::hw

@@ -1,0 +1,110 @@
+// fovea detect and fovea calibrate as a user meets them, on ray-cast pictures.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/support/program.hpp"
+#include "tests/support/temp_folder.hpp"
+#include "tools/bench/vision/picture.hpp"
+
+namespace fovea {
+namespace {
+
+namespace fs = std::filesystem;
+
+class EyeProgramsTest : public testing::Test {
+ protected:
+  static test::ProgramResult Fovea(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), FOVEA_PROGRAM);
+    return test::RunProgram(arguments);
+  }
+  static void ExpectRefused(const test::ProgramResult& result, const std::string& says) {
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << "one line: " << result.err;
+  }
+  // A disc of 80 mm, `Z` away.
+  std::string Disc(const std::string& name, double Z) const {
+    bench::PictureScene scene;
+    scene.noise = 3.0;
+    bench::Body disc;
+    disc.shape = bench::Shape::kDisc;
+    disc.p.z() = Z;
+    disc.p.x() = 0.1 * Z;
+    scene.bodies.push_back(disc);
+    return Write(name, bench::Draw(scene));
+  }
+  std::string Write(const std::string& name, const cv::Mat& image) const {
+    const std::string path = folder_.path() / name;
+    cv::imwrite(path, image);
+    return path;
+  }
+  test::TempFolder folder_;
+};
+
+TEST_F(EyeProgramsTest, DetectSaysWhatIsInEachImage) {
+  const std::string disc = Disc("a.png", 0.4);
+  Write("b.png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(0)));
+  Write("c.png", cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(255)));
+  const test::ProgramResult result =
+      Fovea({"detect", "--target", "circle", folder_.path().string(), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json list = nlohmann::json::parse(result.out);
+  ASSERT_EQ(list.size(), 3U);
+  EXPECT_EQ(list[0]["file"], disc);
+  ASSERT_TRUE(list[0]["found"]);
+  const double u = list[0]["u_px"];
+  const double radius = list[0]["radius_px"];
+  const double sigma = std::sqrt(list[0]["cov"][0][0].get<double>());
+  std::cout << "u off " << u - (319.5 + 55.4256) << " px, sigma " << sigma << ", radius " << radius << "\n";
+  EXPECT_NEAR(u, 319.5 + 55.4256, 4.0 * sigma);
+  EXPECT_LT(sigma, 0.05);
+  EXPECT_NEAR(radius, 554.256 * 0.04 / 0.4, 0.05);
+  EXPECT_FALSE(list[1]["found"]);
+  EXPECT_EQ(list[1]["why"], "the image is black");
+  EXPECT_EQ(list[2]["why"], "the image is saturated");
+  for (const char* method : {"gray", "hough"}) {
+    const auto same = Fovea({"detect", "--target", "circle", "--method", method, disc, "--json"});
+    EXPECT_TRUE(nlohmann::json::parse(same.out)[0]["found"]) << method;
+  }
+}
+
+TEST_F(EyeProgramsTest, DetectRefusesWhatItCannotRead) {
+  ExpectRefused(Fovea({"detect", "--target", "circle", "nowhere.png"}), "nowhere.png: no such file");
+  ExpectRefused(Fovea({"detect", "--target", "circle", folder_.path().string()}), "no images");
+  const std::string text = folder_.path() / "text.png";
+  std::ofstream(text) << "no image";
+  ExpectRefused(Fovea({"detect", "--target", "circle", text}), "not an image");
+  ExpectRefused(Fovea({"detect", "--target", "circle", Write("small.png", cv::Mat(16, 16, CV_8UC1))}),
+                "16 x 16 px");
+  ExpectRefused(Fovea({"detect", "--target", "square", "--method", "hough", Disc("a.png", 0.4)}), "hough");
+  const std::string camera = folder_.path() / "camera.toml";
+  std::ofstream(camera) << "[camera]\nwidth_px = 320\nheight_px = 240\nf_u_px = 300.0\nf_v_px = 300.0\n"
+                           "c_u_px = 159.5\nc_v_px = 119.5\n";
+  ExpectRefused(Fovea({"detect", "--target", "circle", "--camera", camera, Disc("a.png", 0.4)}),
+                "320 x 240 px");
+}
+
+TEST_F(EyeProgramsTest, CalibrateFindsTheFocalLength) {
+  const test::ProgramResult result = Fovea({"calibrate", "focal", "--diameter", "0.08", "--delta-z", "0.15",
+                                            Disc("a.png", 0.3), Disc("b.png", 0.45), "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json found = nlohmann::json::parse(result.out);
+  std::cout << "f " << found["f_px"] << " +- " << found["sigma_px"] << " px\n";
+  EXPECT_NEAR(found["f_px"].get<double>(), 554.256, 4.0 * found["sigma_px"].get<double>());
+  EXPECT_LT(found["sigma_px"].get<double>(), 1.0);
+  ExpectRefused(Fovea({"calibrate", "focal", "--diameter", "0.08", "--delta-z", "0.15", Disc("b.png", 0.45),
+                       Disc("a.png", 0.3)}),
+                "smaller in each view");
+  ExpectRefused(Fovea({"calibrate", "intrinsics", folder_.path().string()}), "4 at least");
+  ExpectRefused(Fovea({"calibrate", "intrinsics", folder_.path().string(), "--board", "9by6"}), "9by6");
+}
+
+}  // namespace
+}  // namespace fovea

@@ -1,0 +1,275 @@
+// `fovea atlas`: the same figures however many jobs run, after a kill too; starts that are what they are said
+// to be; refusals in one line.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "firmware/host/config/folder_lock.hpp"
+#include "firmware/host/config/target_keys.hpp"
+#include "tests/support/panda.hpp"
+#include "tests/support/program.hpp"
+#include "tools/fovea/atlas/figures.hpp"
+#include "tools/fovea/atlas/page.hpp"
+#include "tools/fovea/atlas/sampler.hpp"
+#include "tools/fovea/atlas/seed.hpp"
+
+namespace fovea {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr double kRadPerDeg = 0.017453292519943295;
+
+std::string Content(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class AtlasTest : public testing::Test {
+ protected:
+  // Runs too short to reach anything, so that many fit into a test.
+  static std::vector<std::string> Arguments(const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        FOVEA_PROGRAM, "atlas", "--target", "sphere", "--set", "run.duration_s=0.15",
+        "--json",      "--out", out,        "--seed", "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+  test::ProgramResult Atlas(const std::string& folder, const std::vector<std::string>& more) const {
+    return test::RunProgram(Arguments(folder_.path() / folder, more), {}, std::chrono::seconds(300));
+  }
+  void ExpectRefused(const std::vector<std::string>& more, const std::string& says) const {
+    const test::ProgramResult result = Atlas("refused", more);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr(says));
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
+
+  const test::TempFolder folder_;
+};
+
+TEST_F(AtlasTest, IsTheSameHoweverManyJobsRunAndAfterAKill) {
+  const test::ProgramResult one = Atlas("one", {"--runs", "3", "-j", "1"});
+  ASSERT_EQ(one.exit_code, 1) << one.err;  // runs this short fail
+  const json figures = json::parse(one.out);
+  EXPECT_EQ(figures["runs"], 3);
+  EXPECT_EQ(figures["seed_kind"], "tuning");
+  EXPECT_EQ(figures["converged"], 0);
+  EXPECT_EQ(figures["failures"].size(), 3U);
+  EXPECT_EQ(Content(folder_.path() / "one" / "atlas.json"), one.out);
+  EXPECT_THAT(Content(folder_.path() / "one" / "atlas.html"), HasSubstr("0 of 3 converged"));
+
+  const test::ProgramResult two = Atlas("two", {"--runs", "3", "-j", "2"});
+  EXPECT_EQ(two.out, one.out);
+
+  // Killed once a run is done, with a row that was cut off.
+  std::vector<std::string> words = Arguments(folder_.path() / "killed", {"--runs", "3", "-j", "1"});
+  std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
+  for (std::string& word : words) {
+    argv.push_back(word.data());
+  }
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t pid = 0;
+  ASSERT_EQ(posix_spawn(&pid, argv[0], &actions, nullptr, argv.data(), environ), 0);
+  posix_spawn_file_actions_destroy(&actions);
+  const fs::path rows = folder_.path() / "killed" / "rows.jsonl";
+  const auto lines = [&] {
+    const std::string text = Content(rows);
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  for (int i = 0; i < 30000 && lines() < 2; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  kill(pid, SIGKILL);
+  waitpid(pid, nullptr, 0);
+  ASSERT_GE(lines(), 2);
+  const std::string before = Content(rows);
+  std::ofstream(rows, std::ios::app) << R"({"run":2,"start":{"q":[0.1)";
+  const test::ProgramResult resumed = Atlas("killed", {"--runs", "3", "-j", "1", "--resume"});
+  EXPECT_EQ(resumed.out, one.out);
+  EXPECT_EQ(Content(rows).substr(0, before.size()), before) << "what was done is not done again";
+
+  std::vector<std::string> of_another = Arguments(folder_.path() / "killed", {"--runs", "3", "--resume"});
+  *std::find(of_another.begin(), of_another.end(), "1") = "2";
+  const test::ProgramResult other = test::RunProgram(of_another);
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("rows of another"));
+}
+
+// The command beside a failure repeats it: to the last bit of its log.
+TEST_F(AtlasTest, CommandsRepeatTheirRuns) {
+  const test::ProgramResult atlas = Atlas("atlas", {"--runs", "1"});
+  const std::string command = json::parse(atlas.out)["failures"][0]["command"];
+  ASSERT_EQ(command.rfind("fovea-sim ", 0), 0U) << command;
+  const std::string shell = fs::path(FOVEA_PROGRAM).parent_path().string() + "/" + command +
+                            " --json --no-report --out " + (folder_.path() / "again").string();
+  const test::ProgramResult again = test::RunProgram({"sh", "-c", shell});
+  const std::string text = Content(folder_.path() / "atlas" / "rows.jsonl");
+  const json row = json::parse(text.substr(text.find('\n') + 1));
+  EXPECT_EQ(json::parse(again.out)["log_hash"], row["log_hash"]);
+}
+
+// The refusals of starts that are drawn alone are those of the runs from them.
+TEST_F(AtlasTest, DrawsTheStartsAlone) {
+  const json runs = json::parse(Atlas("runs", {"--runs", "2"}).out);
+  const test::ProgramResult draws = Atlas("draws", {"--runs", "2", "--draw-only"});
+  ASSERT_EQ(draws.exit_code, 0) << draws.err;
+  EXPECT_EQ(json::parse(draws.out)["sampler"], runs["sampler"]);
+  EXPECT_EQ(json::parse(draws.out)["starts"], 2);
+  EXPECT_FALSE(fs::exists(folder_.path() / "draws")) << "nothing is run";
+}
+
+TEST_F(AtlasTest, RefusesInOneLine) {
+  ExpectRefused({"--set", "target.kind=circle"}, "the atlas sets target. itself");
+  ExpectRefused({"--runs", "1", "--set", "servo.lamda=3"}, "did you mean servo.lambda");
+  fs::create_directories(folder_.path() / "refused");
+  std::ofstream(folder_.path() / "refused" / "rows.jsonl") << "{}\n";
+  ExpectRefused({"--resume"}, "no row of an atlas");
+  const config::FolderLock another(folder_.path() / "refused");
+  ExpectRefused({}, "another run writes there");
+  EXPECT_EQ(Content(folder_.path() / "refused" / "rows.jsonl"), "{}\n");
+  EXPECT_EQ(Atlas("refused", {"--runs", "0"}).exit_code, 2);
+  EXPECT_EQ(Atlas("refused", {"--jobs", "0"}).exit_code, 2);
+  EXPECT_EQ(test::RunProgram({FOVEA_PROGRAM, "atlas", "--target", "cube"}).exit_code, 2);
+  EXPECT_EQ(test::RunProgram({FOVEA_PROGRAM, "atlas"}).exit_code, 2);
+}
+
+// Each bound is the rate from which what was seen is 1.96 deviations off.
+TEST(AtlasFigures, WilsonsIntervalIsWhatItSays) {
+  for (const auto& [converged, runs] : {std::pair{198, 200}, {20, 24}, {1, 3}}) {
+    const std::array<double, 2> bounds = atlas::Wilson95(converged, runs);
+    const double seen = static_cast<double>(converged) / runs;
+    for (const double p : bounds) {
+      EXPECT_NEAR(std::fabs(seen - p) / std::sqrt(p * (1.0 - p) / runs), 1.959963984540054, 1e-9);
+    }
+    EXPECT_LT(bounds[0], seen);
+    EXPECT_GT(bounds[1], seen);
+  }
+  EXPECT_NEAR(atlas::Wilson95(200, 200)[1], 1.0, 1e-12);
+  EXPECT_NEAR(atlas::Wilson95(0, 10)[0], 0.0, 1e-12);
+}
+
+// A start is refused for what nothing could be done about, never for being hard.
+TEST(AtlasSampler, RefusesForGeometryAndForWantOfAWayAlone) {
+  EXPECT_THAT(atlas::kRejectionNames,
+              testing::ElementsAreArray({"start_outside_barrier", "start_below_table", "target_near_edge",
+                                         "target_below_table", "arm_in_the_way", "thing_in_the_way",
+                                         "no_goal_posture", "no_way"}));
+}
+
+TEST(AtlasFigures, TheGoalIsOneMissInAThousand) {
+  atlas::Figures figures;
+  figures.runs = 1000;
+  figures.converged = 999;
+  EXPECT_TRUE(figures.ReachedGoal());
+  figures.converged = 998;
+  EXPECT_FALSE(figures.ReachedGoal());
+  figures.converged = 1000;
+  figures.limit_violations = 1;
+  EXPECT_FALSE(figures.ReachedGoal());
+}
+
+// The page, the table and the JSON of every target tell what was refused, and over which seed.
+TEST(AtlasFigures, RefusalsAndSeedAreTold) {
+  atlas::Figures figures;
+  figures.heading = {"circle", 7, {}, "0123456789abcdef"};
+  figures.runs = 10;
+  figures.rejections = {11, 12, 13, 14, 15, 16, 17, 18};
+  const json told = json::parse(atlas::ToJson(figures));
+  const std::string table = atlas::ToTable(figures);
+  const std::string page =
+      atlas::AtlasPage(test::SourceRoot() / "firmware/host/report/page").Make(figures, {});
+  for (std::size_t i = 0; i < atlas::kRejectionNames.size(); ++i) {
+    const std::string name = atlas::kRejectionNames[i];
+    EXPECT_EQ(told["sampler"]["rejected"][name], 11 + i);
+    for (const std::string& text : {table, page}) {
+      EXPECT_THAT(text, HasSubstr(name));
+      EXPECT_THAT(text, HasSubstr(std::to_string(11 + i)));
+    }
+  }
+  EXPECT_EQ(told["seed_kind"], "tuning");
+  EXPECT_THAT(table, HasSubstr("tuning seed 7"));
+  EXPECT_THAT(page, HasSubstr("tuning seed 7"));
+}
+
+TEST(AtlasSeed, EachServoIsJudgedByStartsThatAreNew) {
+  const std::string hash = "0123456789abcdef";
+  EXPECT_EQ(atlas::JudgingSeed(hash), 1000 + 0x0123456);
+  EXPECT_NE(atlas::JudgingSeed("0123457789abcdef"), atlas::JudgingSeed(hash));
+  EXPECT_EQ(atlas::JudgingSeed("fffffffff"), 1000 + 0xfffffff);
+  EXPECT_STREQ(atlas::KindOfSeed(1, hash), "tuning");
+  EXPECT_STREQ(atlas::KindOfSeed(999, hash), "tuning");
+  EXPECT_STREQ(atlas::KindOfSeed(1000, hash), "given");
+  EXPECT_STREQ(atlas::KindOfSeed(1000 + 0x0123456, hash), "judging");
+}
+
+TEST(AtlasRows, ARunOfAnotherCameraIsNone) {
+  atlas::Start start;
+  start.error_px = 100.0;
+  json summary{{"converged", true},        {"verdict", ""},
+               {"limit_violations", 0},    {"contact_ticks", 0},
+               {"settle_time_s", 1.0},     {"final_error_px_rms", 0.1},
+               {"final_error_mm", 0.1},    {"final_error_deg", nullptr},
+               {"limits", json::object()}, {"log_hash", ""},
+               {"start_error_px", 100.2}};
+  EXPECT_TRUE(atlas::MakeRow(3, start, summary).converged);
+  summary["start_error_px"] = 101.0;
+  EXPECT_THROW(atlas::MakeRow(3, start, summary), std::runtime_error);
+}
+
+class Starts : public testing::TestWithParam<const char*> {};
+
+TEST_P(Starts, AreWhatTheyAreSaidToBe) {
+  config::TargetSettings settings;
+  settings.kind = GetParam();
+  const model::ArmModel& arm = test::Panda().model;
+  const features::TargetFeature feature = config::MakeTarget(settings);
+  const atlas::Sampler sampler(arm, feature);
+  double least_px = 1e9;
+  double least_rad = 1e9;
+  double most_radius = 0.0;
+  for (int index = 0; index < 60; ++index) {
+    const atlas::Start start = sampler.Draw(1, index);
+    model::VecN q(arm.num_joints);
+    for (int i = 0; i < arm.num_joints; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      q[i] = start.q[k];
+      least_rad = std::min({least_rad, q[i] - arm.joints[k].q_min, arm.joints[k].q_max - q[i]});
+    }
+    model::ArmPoses poses;
+    model::ComputePoses(arm, q, poses);
+    most_radius = std::max(most_radius, poses.X_BE.p.norm());
+    const model::Vec3 p_CO = (poses.X_BE * test::DefaultMount()).Inverse() * start.p_BO;
+    EXPECT_NEAR(p_CO.z(), start.depth, 1e-9);
+    EXPECT_NEAR(319.5 + 554.256 * p_CO.x() / p_CO.z(), start.u_px, 1e-3);
+    EXPECT_NEAR(239.5 + 554.256 * p_CO.y() / p_CO.z(), start.v_px, 1e-3);
+    least_px = std::min({least_px, start.u_px, 639.0 - start.u_px, start.v_px, 479.0 - start.v_px});
+    const atlas::Start again = sampler.Draw(1, index);
+    EXPECT_EQ(again.q, start.q);
+    EXPECT_EQ(again.run_seed, start.run_seed);
+    EXPECT_NE(sampler.Draw(2, index).q, start.q);
+  }
+  std::cout << "centre " << least_px << " px inside the picture, joints " << least_rad / kRadPerDeg
+            << " deg inside their range, hand up to " << most_radius << " m from the base\n";
+  EXPECT_GT(least_px, 30.0);
+  EXPECT_GE(least_rad, 5.0 * kRadPerDeg);
+  EXPECT_LE(most_radius, 0.848);
+}
+INSTANTIATE_TEST_SUITE_P(Targets, Starts, testing::Values("sphere", "circle", "square", "triangle"),
+                         [](const auto& kind) { return std::string(kind.param); });
+
+}  // namespace
+}  // namespace fovea

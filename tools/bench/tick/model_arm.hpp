@@ -1,0 +1,43 @@
+// An arm that obeys its model, M ddq + C dq = tau, and a camera that measures without error: what the
+// benchmarks close the servo's loop with, wherever it is built.
+#pragma once
+
+#include "firmware/core/task/servo_task.hpp"
+#include "fovea/hal/feature.hpp"
+
+namespace fovea::bench {
+
+inline constexpr int kLatencyTicks = 40;  // from exposure to the servo
+inline constexpr int kFrameTicks = 33;    // from one exposure to the next
+
+// Real-time: yes.
+class ModelArm {
+ public:
+  ModelArm(const model::ArmModel& arm, const model::VecN& q)
+      : arm_(arm), q_(q), dq_(model::VecN::Zero(q.size())), tau_(model::VecN::Zero(q.size())) {}
+
+  // One millisecond on, under `command`.
+  void Tick(const hal::ArmCommand& command) noexcept;
+
+  [[nodiscard]] hal::ArmState State() const noexcept;
+  [[nodiscard]] const model::VecN& q() const noexcept { return q_; }
+
+ private:
+  model::ArmModel arm_;
+  model::VecN q_;
+  model::VecN dq_;
+  model::VecN tau_;
+  std::uint64_t tick_ = 0;
+};
+
+// A servo for `arm` with the default camera mount, which tracks what it sees.
+config::ServoConfig DefaultConfig(const model::ArmModel& arm);
+
+// Where the camera is, in B.
+model::Pose CameraAt(const config::ServoConfig& config, const model::VecN& q);
+
+// What the camera sees now of a ball at `p_BO` [m] in B. Real-time: yes.
+hal::FeatureMeasurement Measure(const config::ServoConfig& config, const ModelArm& arm,
+                                const model::Vec3& p_BO);
+
+}  // namespace fovea::bench

@@ -1,0 +1,35 @@
+// The benchmark's classes of pictures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/bench/vision/picture.hpp"
+
+namespace fovea::bench {
+
+enum class TargetKind { kSphere, kCircle, kSquare, kTriangle };
+
+struct SceneClass {
+  std::string name;
+  double noise = 0.0;
+  double blur_px = 0.0;
+  double contrast_min = 80.0;  // of the target on the ground [gray levels]
+  double contrast_max = 140.0;
+  double hidden = 0.0;   // share of the outline that something else stands before
+  bool clutter = false;  // in colour, among things of another colour, shape or size
+  bool off_axis = false;
+  // Sphere and circle, when there is one: rms of the centre shall be at most this, or 1.3 times the bound.
+  double goal_px = 0.0;
+};
+const std::vector<SceneClass>& SceneClasses();
+
+// Sizes that the detector is told [m].
+inline constexpr double kDiameter = 0.08;
+inline constexpr double kSide = 0.08;
+const std::vector<Eigen::Vector2d>& TriangleCorners();
+
+// One picture of a class; the radius of the target's outline is from 12 to 150 px.
+PictureScene MakeScene(const SceneClass& scene_class, TargetKind kind, bool with_target, unsigned seed);
+
+}  // namespace fovea::bench

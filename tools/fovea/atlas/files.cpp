@@ -1,0 +1,27 @@
+#include "tools/fovea/atlas/files.hpp"
+
+#include <fstream>
+#include <sstream>
+
+#include "firmware/host/config/input_error.hpp"
+
+namespace fovea::atlas {
+
+std::string Content(const std::filesystem::path& file) {
+  std::ostringstream content;
+  content << std::ifstream(file, std::ios::binary).rdbuf();
+  return content.str();
+}
+
+std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+void WriteFile(const std::filesystem::path& file, const std::string& content) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream << content;
+  stream.close();
+  if (!stream) {
+    throw config::InputError(file.string() + ": cannot be written");
+  }
+}
+
+}  // namespace fovea::atlas

@@ -1,0 +1,34 @@
+#include "tools/fovea/atlas/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace fovea::atlas {
+
+Progress::Progress(std::string name, int runs)
+    : name_(std::move(name)), runs_(runs), is_terminal_(isatty(STDERR_FILENO) == 1) {}
+
+void Progress::Show(int done, int failed) {
+  constexpr int kWidth = 30;
+  const std::string figures = fmt::format("{} of {} runs, {} failed", done, runs_, failed);
+  if (is_terminal_) {
+    const auto filled = static_cast<std::size_t>(kWidth * done / runs_);
+    fmt::print(stderr, "\r{} [{}{}] {}\033[K", name_, std::string(filled, '#'),
+               std::string(kWidth - filled, '.'), figures);
+  } else if (10 * done / runs_ > shown_tenth_) {
+    shown_tenth_ = 10 * done / runs_;
+    fmt::print(stderr, "{}: {}\n", name_, figures);
+  }
+  std::fflush(stderr);
+}
+
+void Progress::End() {
+  if (is_terminal_) {
+    fmt::print(stderr, "\r\033[K");
+    std::fflush(stderr);
+  }
+}
+
+}  // namespace fovea::atlas

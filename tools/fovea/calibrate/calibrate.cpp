@@ -1,0 +1,283 @@
+#include "tools/fovea/calibrate/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <sstream>
+
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/program.hpp"
+#include "firmware/vision/detect/target_detector.hpp"
+#include "tools/fovea/calibrate/camera_file.hpp"
+#include "tools/fovea/calibrate/hand_poses.hpp"
+#include "tools/fovea/detect/image_files.hpp"
+
+namespace fovea {
+namespace {
+
+namespace fs = std::filesystem;
+
+int Focal(const CalibrateArguments& a) {
+  const std::vector<fs::path> files = ImageFiles(a.images);
+  std::vector<calibration::RadiusView> views;
+  std::vector<cv::Size> sizes;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const cv::Mat image = ReadImage(files[i]);
+    if (!sizes.empty() && image.size() != sizes.front()) {
+      throw config::InputError(fmt::format("{}: {} x {} px, but {} is of {} x {} px", files[i].string(),
+                                           image.cols, image.rows, files[0].string(), sizes[0].width,
+                                           sizes[0].height));
+    }
+    sizes.push_back(image.size());
+    vision::DetectorConfig config;
+    config.kind = a.target == "sphere" ? hal::FeatureKind::kSphere : hal::FeatureKind::kCircle;
+    config.by = vision::FindBy::kGray;
+    // The radius alone is asked for; it hardly depends on this focal length.
+    const double f = 0.5 * image.cols * std::sqrt(3.0);
+    config.intrinsics = {image.cols, image.rows, f, f, 0.5 * (image.cols - 1), 0.5 * (image.rows - 1), {}};
+    config.size = a.diameter;
+    config.radius_max_px = 0.75 * image.cols;
+    config.distance_min = 0.51 * a.diameter;
+    config.distance_max = 4.0 * f * a.diameter / config.radius_min_px;
+    const vision::Detection d = vision::TargetDetector(config).Detect(image);
+    if (!d.found) {
+      throw config::InputError(
+          fmt::format("{}: {}", files[i].string(),
+                      WhyNothing(image).value_or(fmt::format("no {} is in this image", a.target))));
+    }
+    views.push_back({d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), static_cast<double>(i) * a.delta_z});
+  }
+  const calibration::FocalLength r = calibration::SolveFocalLength(views, a.diameter, a.target == "sphere");
+  if (a.json) {
+    nlohmann::json radii = nlohmann::json::array();
+    for (const calibration::RadiusView& view : views) {
+      radii.push_back(view.radius_px);
+    }
+    fmt::print(
+        "{}\n",
+        nlohmann::json{
+            {"f_px", r.f_px}, {"sigma_px", r.sigma_px}, {"Z", r.Z}, {"rms_px", r.rms_px}, {"radii_px", radii}}
+            .dump(2));
+  } else {
+    fmt::print("focal length {:.3f} px +- {:.3f}; first view at {:.4f} m; radii fit to {:.4f} px rms\n",
+               r.f_px, r.sigma_px, r.Z, r.rms_px);
+  }
+  return config::kDone;
+}
+
+// What a folder's images show of the board.
+struct BoardFolder {
+  std::vector<calibration::BoardView> views;
+  cv::Size size;
+  std::string without;  // which images show none, and why; "" when all do
+};
+
+// All images must be of one size.
+BoardFolder ReadBoards(const std::string& folder, const calibration::Board& board) {
+  BoardFolder found;
+  for (const fs::path& file : ImageFiles({folder})) {
+    const cv::Mat image = ReadImage(file);
+    if (found.size.area() > 0 && image.size() != found.size) {
+      throw config::InputError(fmt::format("{}: {} x {} px, but the others are of {} x {} px", file.string(),
+                                           image.cols, image.rows, found.size.width, found.size.height));
+    }
+    found.size = image.size();
+    calibration::BoardView view;
+    view.name = file.filename().string();
+    const std::optional<std::string> nothing = WhyNothing(image);
+    if (!nothing && calibration::FindBoard(image, board, view)) {
+      found.views.push_back(view);
+      continue;
+    }
+    found.without += fmt::format("{}{}: {}", found.without.empty() ? "" : ", ", view.name,
+                                 nothing.value_or("no such board"));
+  }
+  return found;
+}
+
+// What `solve` makes of the views; when it refuses them, with the images that gave none.
+template <typename Solve>
+auto SolveBoards(const BoardFolder& found, const Solve& solve) {
+  try {
+    return solve();
+  } catch (const calibration::CalibrationError& error) {
+    if (found.without.empty()) {
+      throw;
+    }
+    throw calibration::CalibrationError(fmt::format("{} ({})", error.what(), found.without));
+  }
+}
+
+void SayWithout(const BoardFolder& found) {
+  if (!found.without.empty()) {
+    fmt::print("# without the board: {}\n", found.without);
+  }
+}
+
+int FindIntrinsics(const CalibrateArguments& a) {
+  const BoardFolder found = ReadBoards(a.folder, a.board);
+  const calibration::IntrinsicsResult r =
+      SolveBoards(found, [&] { return calibration::SolveIntrinsics(found.views, a.board, found.size); });
+  const vision::Intrinsics& in = r.intrinsics;
+  if (!a.out.empty()) {
+    std::ofstream stream(a.out, std::ios::trunc);
+    stream << CameraFileText(in, r.rms_px);
+    stream.close();
+    if (!stream) {
+      throw config::InputError(a.out + ": cannot be written");
+    }
+  }
+  if (a.json) {
+    fmt::print("{}\n", nlohmann::json{{"width_px", in.width_px},
+                                      {"height_px", in.height_px},
+                                      {"f_u_px", in.f_u_px},
+                                      {"f_v_px", in.f_v_px},
+                                      {"c_u_px", in.c_u_px},
+                                      {"c_v_px", in.c_v_px},
+                                      {"lens", {in.lens.k1, in.lens.k2, in.lens.p1, in.lens.p2, in.lens.k3}},
+                                      {"sigma_f_px", r.sigma_f_px},
+                                      {"sigma_c_px", r.sigma_c_px},
+                                      {"rms_px", r.rms_px},
+                                      {"views", r.views},
+                                      {"without_board", found.without}}
+                           .dump(2));
+  } else {
+    SayWithout(found);
+    fmt::print("{}# f +- {:.3f} px, c +- {:.3f} px, {} views fit to {:.4f} px rms\n",
+               CameraFileText(in, r.rms_px), r.sigma_f_px, r.sigma_c_px, r.views, r.rms_px);
+  }
+  return config::kDone;
+}
+
+// Those views of boards whose pictures the hand's poses name.
+std::vector<calibration::HandView> HandViews(const std::string& folder,
+                                             const std::vector<calibration::BoardView>& boards) {
+  std::vector<calibration::HandView> views;
+  for (const HandPose& pose : ReadHandPoses(fs::path(folder) / "poses.csv")) {
+    for (const calibration::BoardView& board : boards) {
+      if (board.name == pose.file) {
+        views.push_back({pose.X_BE, board});
+      }
+    }
+  }
+  return views;
+}
+
+int HandEye(const CalibrateArguments& a) {
+  const vision::Intrinsics in = ReadCameraFile(a.camera_file);
+  const BoardFolder found = ReadBoards(a.folder, a.board);
+  if (found.size != cv::Size(in.width_px, in.height_px)) {
+    throw config::InputError(fmt::format("{}: images of {} x {} px, but --camera {} is of {} x {} px",
+                                         a.folder, found.size.width, found.size.height, a.camera_file,
+                                         in.width_px, in.height_px));
+  }
+  const std::vector<calibration::HandView> views = HandViews(a.folder, found.views);
+  const calibration::HandEyeResult r =
+      SolveBoards(found, [&] { return calibration::SolveHandEye(views, a.board, in); });
+  const Eigen::Quaterniond q(r.X_EC.R);
+  if (a.json) {
+    fmt::print(
+        "{}\n",
+        nlohmann::json{{"X_EC", {r.X_EC.p.x(), r.X_EC.p.y(), r.X_EC.p.z(), q.w(), q.x(), q.y(), q.z()}},
+                       {"rms_mm", r.rms_mm},
+                       {"rms_deg", r.rms_deg},
+                       {"rms_px", r.rms_px},
+                       {"views", r.views},
+                       {"without_board", found.without}}
+            .dump(2));
+  } else {
+    SayWithout(found);
+    fmt::print("X_EC = {:.6f},{:.6f},{:.6f},{:.8f},{:.8f},{:.8f},{:.8f}\n", r.X_EC.p.x(), r.X_EC.p.y(),
+               r.X_EC.p.z(), q.w(), q.x(), q.y(), q.z());
+    fmt::print(
+        "# {} views agree on the board's pose to {:.3f} mm and {:.4f} deg rms, its corners fit to {:.4f} "
+        "px\n",
+        r.views, r.rms_mm, r.rms_deg, r.rms_px);
+  }
+  return config::kDone;
+}
+
+int WriteBoard(const CalibrateArguments& a) {
+  constexpr int kSquarePx = 120;
+  constexpr int kMarginPx = 60;
+  cv::Mat page;
+  cv::copyMakeBorder(calibration::DrawBoard(a.board, kSquarePx), page, kMarginPx, kMarginPx, kMarginPx,
+                     kMarginPx, cv::BORDER_CONSTANT, cv::Scalar(255));
+  bool written = false;
+  try {
+    written = cv::imwrite(a.out, page);
+  } catch (const cv::Exception&) {
+    written = false;
+  }
+  if (!written) {
+    throw config::InputError(a.out + ": cannot be written; a picture's name ends in .png");
+  }
+  fmt::print("{}: {} x {} px, {} of them a square of {} m\n", a.out, page.cols, page.rows, kSquarePx,
+             a.board.square);
+  return config::kDone;
+}
+
+}  // namespace
+
+CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
+  CLI::App* calibrate =
+      app.add_subcommand("calibrate", "focal length, intrinsics, and the camera's place on the hand");
+  calibrate->require_subcommand(1);
+  calibrate->footer(
+      "Examples:\n"
+      "  fovea calibrate focal --diameter 0.08 --delta-z 0.10 near.png far.png\n"
+      "  fovea calibrate board --board 8x5 --square 0.03 --marker 0.022 --out board.png\n"
+      "  fovea calibrate intrinsics boards/ --board 9x6 --square 0.025 --out camera.toml\n"
+      "  fovea calibrate intrinsics boards/ --board 8x5 --square 0.03 --marker 0.022 --out camera.toml\n"
+      "  fovea calibrate hand-eye boards/ --board 9x6 --square 0.025 --camera camera.toml\n"
+      "Exit: 0 done, 2 wrong usage or input.");
+  CLI::App* focal =
+      calibrate->add_subcommand("focal", "from views of one disc or ball, each further off by --delta-z");
+  focal->add_option("image", a.images, "two or more, the nearest first")->required();
+  focal->add_option("--diameter", a.diameter, "of the target [m]")->required()->check(CLI::PositiveNumber);
+  focal->add_option("--delta-z", a.delta_z, "from one view to the next [m]")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  focal->add_option("--target", a.target, "circle or sphere")
+      ->check(CLI::IsMember({"circle", "sphere"}))
+      ->capture_default_str();
+  CLI::App* board = calibrate->add_subcommand("board", "the board itself, as a picture to print");
+  CLI::App* intrinsics =
+      calibrate->add_subcommand("intrinsics", "with the lens, from views of a chessboard or ChArUco board");
+  CLI::App* hand_eye =
+      calibrate->add_subcommand("hand-eye", "X_EC, from views of a board and poses.csv beside them");
+  for (CLI::App* command : {intrinsics, hand_eye}) {
+    command->add_option("folder", a.folder, "of the images")->required();
+  }
+  for (CLI::App* command : {board, intrinsics, hand_eye}) {
+    config::AddBoardFlags(*command, a.board_flags);
+  }
+  board->add_option("--out", a.out, "the picture to write: .png")->required();
+  intrinsics->add_option("--out", a.out, "the camera file to write");
+  hand_eye->add_option("--camera", a.camera_file, "what `calibrate intrinsics --out` wrote")->required();
+  for (CLI::App* command : {focal, intrinsics, hand_eye}) {
+    command->add_flag("--json", a.json, "print JSON");
+  }
+  return calibrate;
+}
+
+int Calibrate(const CLI::App& calibrate, CalibrateArguments& a) {
+  cv::setNumThreads(1);
+  a.board = config::MakeBoard(a.board_flags);
+  try {
+    const std::string name = calibrate.get_subcommands().front()->get_name();
+    if (name == "focal") {
+      return Focal(a);
+    }
+    return name == "board" ? WriteBoard(a) : name == "intrinsics" ? FindIntrinsics(a) : HandEye(a);
+  } catch (const calibration::CalibrationError& error) {
+    throw config::InputError(fmt::format("{}: {}", a.folder.empty() ? "focal" : a.folder, error.what()));
+  }
+}
+
+}  // namespace fovea

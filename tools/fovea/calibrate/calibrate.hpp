@@ -1,0 +1,32 @@
+// fovea calibrate: focal length, intrinsics with lens, and where the camera sits on the hand.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "firmware/host/calibration/calibration.hpp"
+#include "firmware/host/config/board_flags.hpp"
+
+namespace fovea {
+
+struct CalibrateArguments {
+  double diameter = 0.0;  // focal
+  double delta_z = 0.0;
+  std::vector<std::string> images;
+  std::string target = "circle";
+  std::string folder;  // intrinsics, hand-eye
+  config::BoardFlags board_flags;
+  calibration::Board board;  // that they name
+  std::string camera_file;
+  std::string out;
+  bool json = false;
+};
+
+// The subcommand with its own four.
+CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& arguments);
+
+// Runs the one that was given; returns the program's exit code. Throws config::InputError.
+int Calibrate(const CLI::App& calibrate, CalibrateArguments& arguments);
+
+}  // namespace fovea

@@ -1,0 +1,37 @@
+#include "tools/fovea/calibrate/camera_file.hpp"
+
+#include <fmt/format.h>
+
+#include "firmware/host/config/camera_keys.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/key_table.hpp"
+
+namespace fovea {
+
+std::string CameraFileText(const vision::Intrinsics& in, double rms_px) {
+  return fmt::format(
+      "[camera]\nwidth_px = {}\nheight_px = {}\nf_u_px = {:.9g}\nf_v_px = {:.9g}\nc_u_px = {:.9g}\nc_v_px = "
+      "{:.9g}\n"
+      "lens = [{:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}]  # k1, k2, p1, p2, k3\n"
+      "rms_px = {:.4g}\n",
+      in.width_px, in.height_px, in.f_u_px, in.f_v_px, in.c_u_px, in.c_v_px, in.lens.k1, in.lens.k2,
+      in.lens.p1, in.lens.p2, in.lens.k3, rms_px);
+}
+
+vision::Intrinsics ReadCameraFile(const std::filesystem::path& path) {
+  config::CalibrationSettings settings;
+  settings.intrinsics = vision::Intrinsics{};
+  config::KeyTable keys;
+  config::AddCalibrationKeys(settings, keys);
+  for (const config::Setting& setting : config::ReadTomlFile(path)) {
+    keys.Apply(setting);
+  }
+  const vision::Intrinsics& in = settings.intrinsics;
+  if (in.width_px == 0 || in.height_px == 0 || in.f_u_px == 0.0 || in.f_v_px == 0.0) {
+    throw config::InputError(path.string() +
+                             ": camera.width_px, height_px, f_u_px, f_v_px, c_u_px and c_v_px are needed");
+  }
+  return config::MakeIntrinsics(settings);
+}
+
+}  // namespace fovea

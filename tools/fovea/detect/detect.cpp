@@ -1,0 +1,178 @@
+#include "tools/fovea/detect/detect.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/program.hpp"
+#include "firmware/vision/detect/target_detector.hpp"
+#include "tools/fovea/calibrate/camera_file.hpp"
+#include "tools/fovea/detect/image_files.hpp"
+
+namespace fovea {
+namespace {
+
+constexpr double kDefaultSize = 0.08;  // [m]; stands for nothing where no size is given
+
+vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
+                                 const std::optional<vision::Intrinsics>& camera, const std::string& file) {
+  vision::DetectorConfig config;
+  config.kind = a.target;
+  if (camera) {
+    if (camera->width_px != image.cols || camera->height_px != image.rows) {
+      throw config::InputError(fmt::format("{}: {} x {} px, but --camera {} is of {} x {} px", file,
+                                           image.cols, image.rows, a.camera_file, camera->width_px,
+                                           camera->height_px));
+    }
+    config.intrinsics = *camera;
+  } else {
+    const double f = a.focal_px > 0.0 ? a.focal_px : 0.5 * image.cols * std::sqrt(3.0);
+    config.intrinsics = {image.cols, image.rows, f, f, 0.5 * (image.cols - 1), 0.5 * (image.rows - 1), {}};
+  }
+  const std::string method = !a.method.empty() ? a.method : a.hue_deg >= 0.0 ? "colour" : "gray";
+  config.by = method == "colour"  ? vision::FindBy::kColour
+              : method == "hough" ? vision::FindBy::kHough
+                                  : vision::FindBy::kGray;
+  config.colour.hue_deg = std::max(a.hue_deg, 0.0);
+  config.hough = a.hough;
+  config.radius_min_px = a.radius_min_px;
+  config.radius_max_px = a.radius_max_px > 0.0 ? a.radius_max_px : 0.75 * std::max(image.cols, image.rows);
+  if (config.radius_min_px >= config.radius_max_px) {
+    throw config::InputError("--radius-min must be below --radius-max");
+  }
+  config.confidence_min = a.confidence_min;
+  config.size = a.size > 0.0 ? a.size : kDefaultSize;
+  // The outline's size is bounded by the radii alone; a distance can be anything.
+  config.distance_min = 0.51 * config.size;
+  config.distance_max = 4.0 * config.intrinsics.f_u_px * config.size / config.radius_min_px;
+  return config;
+}
+
+nlohmann::json ToJson(const std::string& file, const vision::Detection& d, double ms,
+                      const std::string& why) {
+  nlohmann::json entry{{"file", file},
+                       {"found", d.found},
+                       {"u_px", nullptr},
+                       {"v_px", nullptr},
+                       {"radius_px", nullptr},
+                       {"corners_px", nlohmann::json::array()},
+                       {"cov", nullptr},
+                       {"ms", ms},
+                       {"confidence", d.confidence},
+                       {"why", d.found ? nlohmann::json(nullptr) : nlohmann::json(why)}};
+  if (!d.found) {
+    return entry;
+  }
+  entry["u_px"] = d.u_px;
+  entry["v_px"] = d.v_px;
+  entry["radius_px"] = d.radius_px;
+  for (const vision::ImagePoint& corner : d.Corners()) {
+    entry["corners_px"].push_back({corner.u_px, corner.v_px});
+  }
+  entry["cov"] = nlohmann::json::array();
+  for (int row = 0; row < 3; ++row) {
+    entry["cov"].push_back({d.cov_uvr_px2(row, 0), d.cov_uvr_px2(row, 1), d.cov_uvr_px2(row, 2)});
+  }
+  return entry;
+}
+
+}  // namespace
+
+CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
+  CLI::App* detect = app.add_subcommand("detect", "find a target in images: where, how large, how surely");
+  detect->add_option("image", a.images, "images, or folders of them")->required();
+  detect->add_option("--target", a.target, "sphere, circle, square or triangle")
+      ->required()
+      ->transform(CLI::CheckedTransformer(kTargetKinds));
+  detect->add_option("--method", a.method, "colour, gray or hough; gray when no --hue is given")
+      ->check(CLI::IsMember({"colour", "gray", "hough"}));
+  detect->add_option("--hue", a.hue_deg, "of the target [deg]: 0 red, 120 green, 240 blue")
+      ->check(CLI::Range(0.0, 360.0));
+  detect->add_option("--camera", a.camera_file,
+                     "intrinsics, as `fovea calibrate intrinsics --out` writes them");
+  detect
+      ->add_option("--focal-px", a.focal_px,
+                   "focal length, when there is no --camera; else a field of 60 degrees")
+      ->check(CLI::PositiveNumber);
+  detect->add_option("--size", a.size, "diameter or side [m]")->check(CLI::PositiveNumber);
+  detect
+      ->add_option("--radius-min", a.radius_min_px,
+                   "smallest outline: radius of the circle with its area [px]")
+      ->check(CLI::Range(4.0, 1e5))
+      ->capture_default_str();
+  detect->add_option("--radius-max", a.radius_max_px, "largest outline [px]")->check(CLI::Range(4.0, 1e5));
+  detect->add_option("--confidence-min", a.confidence_min, "finds below it are refused")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  detect->add_option("--hough-blur", a.hough.blur_sigma_px, "method hough: Gaussian blur [px]")
+      ->check(CLI::Range(0.1, 10.0))
+      ->capture_default_str();
+  detect->add_option("--hough-canny", a.hough.canny_threshold, "method hough: threshold of edges")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  detect->add_option("--hough-votes", a.hough.votes, "method hough: a circle needs so many")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  detect->add_flag("--json", a.json,
+                   "a list of {file, found, u_px, v_px, radius_px, corners_px, cov, ms, ...}");
+  detect->footer(
+      "cov is of u, v and the radius [px^2].\n"
+      "Examples:\n"
+      "  fovea detect --target circle photo.png\n"
+      "  fovea detect --target sphere --hue 0 pictures/ --json\n"
+      "  fovea detect --target circle --method hough --hough-votes 40 photo.png\n"
+      "Exit: 0 done (found or not), 2 wrong usage or input.");
+  return detect;
+}
+
+int Detect(const DetectArguments& arguments) {
+  cv::setNumThreads(1);
+  const bool round =
+      arguments.target == hal::FeatureKind::kSphere || arguments.target == hal::FeatureKind::kCircle;
+  if (arguments.method == "hough" && !round) {
+    throw config::InputError("--method hough: finds spheres and circles alone");
+  }
+  std::optional<vision::Intrinsics> camera;
+  if (!arguments.camera_file.empty()) {
+    camera = ReadCameraFile(arguments.camera_file);
+  }
+  nlohmann::json list = nlohmann::json::array();
+  std::unique_ptr<vision::TargetDetector> detector;
+  cv::Size size;
+  for (const std::filesystem::path& path : ImageFiles(arguments.images)) {
+    const cv::Mat image = ReadImage(path);
+    if (!detector || image.size() != size) {
+      size = image.size();
+      detector = std::make_unique<vision::TargetDetector>(ConfigFor(arguments, image, camera, path.string()));
+      (void)detector->Detect(image);  // the first image of a size also allocates; it is not timed
+    }
+    detector->Forget();  // images may have nothing to do with one another
+    const auto start = std::chrono::steady_clock::now();
+    const vision::Detection d = detector->Detect(image);
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const std::string why = d.found ? "" : WhyNothing(image).value_or("no such target");
+    if (arguments.json) {
+      list.push_back(ToJson(path.string(), d, ms, why));
+    } else if (d.found) {
+      fmt::print(
+          "{}: at ({:.3f}, {:.3f}) px +- {:.3f}, radius {:.3f} px +- {:.3f}, confidence {:.2f}, {:.2f} ms\n",
+          path.string(), d.u_px, d.v_px, std::sqrt(0.5 * (d.cov_uvr_px2(0, 0) + d.cov_uvr_px2(1, 1))),
+          d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), d.confidence, ms);
+    } else {
+      fmt::print("{}: not found: {}, {:.2f} ms\n", path.string(), why, ms);
+    }
+  }
+  if (arguments.json) {
+    fmt::print("{}\n", list.dump(2));
+  }
+  return config::kDone;
+}
+
+}  // namespace fovea

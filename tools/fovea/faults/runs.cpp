@@ -1,0 +1,148 @@
+#include "tools/fovea/faults/runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "firmware/host/build_info.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/program.hpp"
+#include "tools/bench/common/shell.hpp"
+#include "tools/fovea/atlas/files.hpp"
+
+namespace fovea::matrix {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::chrono::seconds kRunLimit{900};  // of wall time; a run takes some seconds
+
+// What the judge reads of a summary; the rest is not kept.
+json Excerpt(const json& summary) {
+  json excerpt;
+  for (const char* key : {"verdict", "modes", "injected", "end", "limits", "violations", "unwanted_motion",
+                          "contact_ticks", "sim_time_s", "path_error_mm_max"}) {
+    excerpt[key] = summary.at(key);
+  }
+  return excerpt;
+}
+
+// Whether `row` is of `job`, by this servo.
+bool IsOf(const json& row, const Job& job, int seed) {
+  return row.at("servo") == kServoLibraryHash && row.at("seed") == seed &&
+         row.at("scenario") == job.scenario &&
+         row.at("set").get<std::vector<std::string>>() == job.assignments;
+}
+
+}  // namespace
+
+std::string CommandOf(const Job& job, int seed) {
+  std::string command = fmt::format("fovea-sim run {} --seed {}", job.scenario, seed);
+  for (const std::string& assignment : job.assignments) {
+    command += " --set " + bench::Quoted(assignment);
+  }
+  return command;
+}
+
+Runs::Runs(const fs::path& folder, int seed, int jobs, bool resume)
+    : folder_(folder),
+      seed_(seed),
+      jobs_(static_cast<std::size_t>(jobs)),
+      simulator_(bench::SimulatorBeside("fovea atlas --faults")) {
+  std::error_code error;
+  fs::create_directories(folder_ / "runs", error);
+  if (error) {
+    throw config::InputError(folder_.string() + ": no folder can be made there");
+  }
+  lock_.emplace(folder_);
+  if (resume) {
+    Read();
+  }
+  stream_.open(folder_ / "rows.jsonl", std::ios::binary | std::ios::trunc);
+  for (const auto& [name, row] : rows_) {
+    stream_ << row.dump() << '\n';
+  }
+  stream_ << std::flush;
+  if (!stream_) {
+    throw config::InputError((folder_ / "rows.jsonl").string() + ": cannot be written");
+  }
+}
+
+// A last line that was cut off is dropped.
+void Runs::Read() {
+  std::istringstream lines(atlas::Content(folder_ / "rows.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    const json row = json::parse(line, nullptr, /*allow_exceptions=*/false);
+    if (row.is_object() && row.contains("run")) {
+      rows_[row.at("run").get<std::string>()] = row;
+    }
+  }
+}
+
+fs::path Runs::File(const std::string& name, const char* ending) const {
+  return folder_ / "runs" / (name + ending);
+}
+
+void Runs::Execute(const std::vector<Job>& jobs, atlas::Progress& progress) {
+  std::vector<const Job*> left;
+  int done = 0;
+  for (const Job& job : jobs) {
+    const auto row = rows_.find(job.name);
+    if (row == rows_.end() || !IsOf(row->second, job, seed_)) {
+      left.push_back(&job);
+    } else {
+      ++done;
+    }
+  }
+  int broken = 0;
+  std::size_t next = 0;
+  for (;;) {
+    for (; next < left.size() && children_.running() < jobs_; ++next) {
+      const Job& job = *left[next];
+      std::vector<std::string> command{
+          simulator_,    "run",    job.scenario, "--seed",          std::to_string(seed_),
+          "--no-report", "--json", "--out",      File(job.name, "")};
+      for (const std::string& assignment : job.assignments) {
+        command.emplace_back("--set");
+        command.push_back(assignment);
+      }
+      children_.Start(static_cast<int>(next), command, File(job.name, ".json"), File(job.name, ".txt"),
+                      kRunLimit);
+    }
+    if (children_.running() == 0) {
+      return;
+    }
+    const atlas::Children::Ended ended = children_.WaitForOne();
+    const Job& job = *left[static_cast<std::size_t>(ended.tag)];
+    Finish(job, ended.exit_code);
+    broken += SummaryOf(job.name).is_null() ? 1 : 0;
+    progress.Show(++done, broken);
+  }
+}
+
+void Runs::Finish(const Job& job, int exit_code) {
+  json row{{"run", job.name}, {"scenario", job.scenario},   {"set", job.assignments},
+           {"seed", seed_},   {"servo", kServoLibraryHash}, {"summary", nullptr}};
+  if (exit_code == config::kDone || exit_code == config::kGoalMissed) {
+    row["summary"] = Excerpt(json::parse(atlas::Content(File(job.name, ".json"))));
+  } else if (exit_code >= 0) {
+    throw std::runtime_error(
+        fmt::format("{}: {}", job.name, atlas::FirstLine(atlas::Content(File(job.name, ".txt")))));
+  }
+  stream_ << row.dump() << '\n' << std::flush;
+  if (!stream_) {
+    throw std::runtime_error((folder_ / "rows.jsonl").string() + ": cannot be written");
+  }
+  rows_[job.name] = std::move(row);
+  std::error_code ignored;
+  fs::remove(File(job.name, ".json"), ignored);
+  fs::remove(File(job.name, ".txt"), ignored);
+  fs::remove_all(File(job.name, ""), ignored);
+}
+
+const json& Runs::SummaryOf(const std::string& name) const { return rows_.at(name).at("summary"); }
+
+}  // namespace fovea::matrix

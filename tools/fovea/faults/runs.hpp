@@ -1,0 +1,55 @@
+// The runs of a fault matrix: each by the simulator as a process of its own, its summary kept on disk.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/host/config/folder_lock.hpp"
+#include "tools/fovea/atlas/children.hpp"
+#include "tools/fovea/atlas/progress.hpp"
+
+namespace fovea::matrix {
+
+// A run by name; two of one name are one.
+struct Job {
+  std::string name;
+  std::string scenario;
+  std::vector<std::string> assignments;
+};
+
+// The shell command that repeats `job`.
+std::string CommandOf(const Job& job, int seed);
+
+class Runs {
+ public:
+  // Keeps its rows in `folder`/rows.jsonl; with `resume` those that are there count as done, where servo,
+  // seed and assignments are the same. InputError: it cannot be written.
+  Runs(const std::filesystem::path& folder, int seed, int jobs, bool resume);
+
+  // Runs what is not done yet. std::runtime_error: the simulator refuses one.
+  void Execute(const std::vector<Job>& jobs, atlas::Progress& progress);
+
+  // What a run said of itself; null when it broke off.
+  [[nodiscard]] const nlohmann::json& SummaryOf(const std::string& name) const;
+
+ private:
+  void Read();
+  void Finish(const Job& job, int exit_code);
+  [[nodiscard]] std::filesystem::path File(const std::string& name, const char* ending) const;
+
+  std::filesystem::path folder_;
+  std::optional<config::FolderLock> lock_;
+  int seed_;
+  std::size_t jobs_;
+  std::filesystem::path simulator_;
+  std::ofstream stream_;
+  std::map<std::string, nlohmann::json> rows_;
+  atlas::Children children_;
+};
+
+}  // namespace fovea::matrix

@@ -1,0 +1,30 @@
+// fovea features: what a target's feature controls, computed.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "firmware/host/config/target_keys.hpp"
+
+namespace fovea {
+
+struct FeaturesArguments {
+  config::TargetSettings target;
+  std::string feature = "auto";
+  bool hold_orientation = false;
+  std::string pose = "0,0,0.4,1,0,0,0";
+  std::string goal = "0,0,0.4,1,0,0,0";
+  double focal_px = 0.0;
+  bool tables = false;
+  bool sweep = false;
+  double span = 0.20;
+  bool json = false;
+};
+
+// The subcommand, which fills `arguments`.
+CLI::App* AddFeatures(CLI::App& app, FeaturesArguments& arguments);
+
+// Prints what was asked for; returns the program's exit code. Throws config::InputError.
+int Features(const FeaturesArguments& arguments);
+
+}  // namespace fovea

@@ -1,0 +1,131 @@
+#include "tools/fovea/model/emit.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <vector>
+
+namespace fovea {
+namespace {
+
+// Of any text, an identifier in lower or mixed case ("ur5e", "my_arm", "arm_3x" of "3x").
+std::string Identifier(const std::string& name) {
+  std::string id;
+  for (const char c : name) {
+    id += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+  }
+  return id.empty() || std::isdigit(static_cast<unsigned char>(id.front())) != 0 ? "arm_" + id : id;
+}
+
+// "MyArm" of "my_arm".
+std::string CamelCase(const std::string& id) {
+  std::string camel;
+  bool starts_word = true;
+  for (const char c : id) {
+    if (c != '_') {
+      camel += starts_word ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    }
+    starts_word = c == '_';
+  }
+  return camel;
+}
+
+// Hexadecimal, so that no digit is lost.
+std::string Number(double value) { return fmt::format("{:a}", value); }
+
+template <typename Matrix>
+std::string Row(const Matrix& matrix) {
+  std::string text;
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    for (Eigen::Index col = 0; col < matrix.cols(); ++col) {
+      text += (text.empty() ? "" : ", ") + Number(matrix(row, col));
+    }
+  }
+  return text;
+}
+
+std::string JointRow(const model::Joint& joint) {
+  std::string text = fmt::format("    {{{}, {{{}}}, {{{}}}, {{", joint.type == model::JointType::kPrismatic,
+                                 Row(joint.X_PJ.R), Row(joint.X_PJ.p));
+  const std::vector<double> values{joint.q_min,    joint.q_max,   joint.dq_max,   joint.ddq_max,
+                                   joint.dddq_max, joint.tau_max, joint.dtau_max, joint.viscous,
+                                   joint.coulomb,  joint.spring};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + Number(values[i]);
+  }
+  return text + "}";
+}
+
+}  // namespace
+
+std::string EmitModel(const robots::Robot& robot) {
+  const model::ArmModel& arm = robot.model;
+  const std::string id = Identifier(robot.name);
+  std::string text = fmt::format(
+      "// The arm \"{0}\", {1} joints from \"{2}\" to \"{3}\". Written by `fovea model {0} --emit-cpp`; not "
+      "to be\n"
+      "// changed by hand. Numbers are hexadecimal, exact to the last bit.\n"
+      "#pragma once\n\n"
+      "#include \"fovea/arm_model.hpp\"\n\n"
+      "namespace fovea::arms {{\n"
+      "namespace {0}_data {{\n\n"
+      "struct JointData {{\n"
+      "  bool prismatic;\n"
+      "  double R_PJ[9];  // row by row\n"
+      "  double p_PJ[3];\n"
+      "  double limits[10];  // q_min, q_max, dq, ddq, dddq, tau, dtau; viscous, coulomb, spring\n"
+      "  double mass;\n"
+      "  double p_LiCom[3];\n"
+      "  double I_Com_Li[9];  // row by row\n"
+      "  double q_ready;\n"
+      "}};\n\n"
+      "inline constexpr JointData kJoints[{1}] = {{\n",
+      id, arm.num_joints, robot.base_link, robot.tip_link);
+  for (int i = 0; i < arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const model::LinkInertia& link = arm.links[k];
+    text += fmt::format("{}, {}, {{{}}}, {{{}}}, {}}},\n", JointRow(arm.joints[k]), Number(link.mass),
+                        Row(link.p_LiCom), Row(link.I_Com_Li), Number(arm.q_ready[k]));
+  }
+  text += fmt::format(
+      "}};\n"
+      "inline constexpr double kFlangeR[9] = {{{1}}};\n"
+      "inline constexpr double kFlangeP[3] = {{{2}}};\n"
+      "inline constexpr double kGravity[3] = {{{3}}};\n\n"
+      "}}  // namespace {0}_data\n\n"
+      "// Makes `arm` that arm.\n"
+      "inline void Load{5}(model::ArmModel& arm) noexcept {{\n"
+      "  using namespace {0}_data;\n"
+      "  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;\n"
+      "  arm = model::ArmModel{{}};\n"
+      "  arm.num_joints = {4};\n"
+      "  for (int i = 0; i < arm.num_joints; ++i) {{\n"
+      "    const auto k = static_cast<std::size_t>(i);\n"
+      "    const JointData& data = kJoints[k];\n"
+      "    model::Joint& joint = arm.joints[k];\n"
+      "    joint.type = data.prismatic ? model::JointType::kPrismatic : model::JointType::kRevolute;\n"
+      "    joint.X_PJ = {{Eigen::Map<const RowMajor>(data.R_PJ), Eigen::Map<const "
+      "model::Vec3>(data.p_PJ)}};\n"
+      "    joint.q_min = data.limits[0];\n"
+      "    joint.q_max = data.limits[1];\n"
+      "    joint.dq_max = data.limits[2];\n"
+      "    joint.ddq_max = data.limits[3];\n"
+      "    joint.dddq_max = data.limits[4];\n"
+      "    joint.tau_max = data.limits[5];\n"
+      "    joint.dtau_max = data.limits[6];\n"
+      "    joint.viscous = data.limits[7];\n"
+      "    joint.coulomb = data.limits[8];\n"
+      "    joint.spring = data.limits[9];\n"
+      "    arm.links[k] = {{data.mass, Eigen::Map<const model::Vec3>(data.p_LiCom),\n"
+      "                    Eigen::Map<const RowMajor>(data.I_Com_Li)}};\n"
+      "    arm.q_ready[k] = data.q_ready;\n"
+      "  }}\n"
+      "  arm.X_LnE = {{Eigen::Map<const RowMajor>(kFlangeR), Eigen::Map<const model::Vec3>(kFlangeP)}};\n"
+      "  arm.g_B = Eigen::Map<const model::Vec3>(kGravity);\n"
+      "}}\n\n"
+      "}}  // namespace fovea::arms\n",
+      id, Row(arm.X_LnE.R), Row(arm.X_LnE.p), Row(arm.g_B), arm.num_joints, CamelCase(id));
+  return text;
+}
+
+}  // namespace fovea
