@@ -10,13 +10,11 @@
 #include <thread>
 
 #include "firmware/core/task/servo_loop.hpp"
-#include "firmware/host/build_info.hpp"
 #include "firmware/host/recording/flight/flight_recorder.hpp"
 #include "firmware/host/recording/log/record_hash.hpp"
 #include "firmware/host/recording/trace/tick_trace.hpp"
 #include "firmware/host/recording/trace/vision_trace.hpp"
 #include "firmware/vision/detect/vision_task.hpp"
-#include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
@@ -29,6 +27,7 @@
 #include "sim/run/eye.hpp"
 #include "sim/run/files.hpp"
 #include "sim/run/progress.hpp"
+#include "sim/run/run_figures.hpp"
 #include "sim/run/trace.hpp"
 #include "sim/scenario/compose.hpp"
 #include "sim/scenario/run_description.hpp"
@@ -44,6 +43,7 @@ namespace fovea::sim {
 namespace {
 
 constexpr std::size_t kRingCapacity = 4096;  // records; four seconds at 1 kHz
+
 // Everything of one run, wired up. Members stand in the order in which one needs the other.
 class Run {
  public:
@@ -322,55 +322,28 @@ class Run {
     s.scenario = about_.scenario.name;
     s.seed = about_.scenario.run.seed;
     s.pace = options_.pace == Pace::kReal ? "real" : "lockstep";
-    s.frames = files_->frames();
-    s.frames_detected = files_->frames_detected();
-    s.frames_lost = HasEye() ? eye_->camera().lost() : 0;
+    s.sim_time_s = static_cast<double>(world_->now_ns()) * 1e-9;
+    FillFiles(*files_, s);
     verdict_->Fill(s);
     if (theory_) {
-      s.theory = theory_->Finish();
-      s.converged = s.converged && s.theory->agrees;
-      s.verdict = s.converged || !s.theory->agrees ? s.theory->verdict : s.verdict;
+      FillTheory(theory_->Finish(), s);
     }
-    s.frames_failed = vision_.failures().frames;
-    s.frame_failure = vision_.failures().first;
-    if (s.frames > 0 && s.frames_failed == s.frames) {
-      s.converged = false;
-      s.verdict = fmt::format("not converged: none of {} pictures could be looked at ({})", s.frames,
-                              s.frame_failure);
-    }
+    FillFrameFailures(vision_.failures(), s);
     if (interrupted_) {
-      s.interrupted = true;
-      s.converged = false;
-      s.verdict = fmt::format("interrupted after {:.3f} s of {:g} s",
-                              static_cast<double>(world_->now_ns()) * 1e-9, about_.scenario.run.duration_s);
+      FillInterrupted(s.sim_time_s, about_.scenario.run.duration_s, s);
     }
-    s.ticks = counters_.ticks;
-    s.overruns = counters_.overruns;
-    s.missed_ticks = counters_.missed_ticks;
+    FillTicks(counters_, meter_, s);
+    s.frames_lost = HasEye() ? eye_->camera().lost() : 0;
     s.records_dropped = recorder_->dropped();
-    s.film_errors = files_->EndFilms();
-    s.film_frames_dropped = files_->film_frames_dropped();
-    s.log_entries_dropped = files_->log_entries_dropped();
-    if (linux_rt::HeapCounterActive()) {
-      s.heap_allocations_in_tick = meter_.heap_calls();
-    }
-    s.page_faults_in_loop = meter_.page_faults();
     if (board_) {
       s.mcu = board_->Summarise();
     }
-    s.tick_ns_p50 = meter_.durations().Percentile(0.5);
-    s.tick_ns_p99 = meter_.durations().Percentile(0.99);
-    s.tick_ns_p999 = meter_.durations().Percentile(0.999);
-    s.tick_ns_max = meter_.durations().max_ns();
-    s.sim_time_s = static_cast<double>(world_->now_ns()) * 1e-9;
     s.wall_time_s = wall_time_s_;
     s.real_time_factor = s.sim_time_s / s.wall_time_s;
     s.realtime_missing = realtime_missing_;
     s.renderer = HasEye() ? eye_->driver_name() : "nothing";
     s.log_hash = hash_.Finish();
-    s.servo = kServoLibraryHash;
-    s.git = kGitRevision;
-    s.version = kVersion;
+    FillBuild(s);
     return s;
   }
 

@@ -164,6 +164,12 @@ std::string KeysAsMarkdown(const config::KeyTable& keys) {
     text += fmt::format("| `{}` | `{}` | {} | {}: {} | {} |\n", key.name.substr(dot + 1), key.default_text,
                         key.unit, key.kind, key.allowed, key.meaning);
   }
+  text +=
+      "\n## Former names\n\nA scenario that has one of these is told of the other.\n\n| once | today "
+      "|\n|---|---|\n";
+  for (const auto& [former, today] : keys.successors()) {
+    text += fmt::format("| `{}` | `{}` |\n", former, today);
+  }
   return text;
 }
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/host/summary_format.hpp"
 #include "fovea/hal/events.hpp"
 
 namespace fovea::sim {
@@ -183,6 +184,7 @@ std::string ToJson(const Summary& s) {
     modes.push_back({{"t_s", m.t_s}, {"mode", m.mode}, {"reason", m.reason}});
   }
   ordered_json json;
+  json["format"] = kSummaryFormat;
   json["scenario"] = s.scenario;
   json["seed"] = s.seed;
   json["pace"] = s.pace;

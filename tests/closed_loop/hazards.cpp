@@ -9,7 +9,7 @@
 #include <random>
 #include <thread>
 
-#include "firmware/core/barriers/keep_apart.hpp"
+#include "firmware/core/barriers/self_clearance_barrier.hpp"
 #include "tests/support/adversary.hpp"
 
 namespace fovea::test {

@@ -46,7 +46,7 @@ TEST(EdgeOn, ADiscIsNotTurned) {
                            "run.seed=458361091"};
   ExpectReached(RunShipped("circle", start));
   const sim::Summary turned =
-      RunShipped("circle", start + Assignments{"safety.face_tilt_max=1.5707963267948966"});
+      RunShipped("circle", start + Assignments{"safety.disc_tilt_max=1.5707963267948966"});
   EXPECT_FALSE(turned.converged) << "it needs no limit from here";
 }
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "firmware/core/barriers/keep_apart.hpp"
-#include "firmware/core/barriers/keep_sight.hpp"
+#include "firmware/core/barriers/line_of_sight_barrier.hpp"
 #include "firmware/core/barriers/obstacle.hpp"
+#include "firmware/core/barriers/self_clearance_barrier.hpp"
 #include "firmware/core/barriers/singularity.hpp"
 
 namespace fovea::control {

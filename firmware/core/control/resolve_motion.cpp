@@ -4,10 +4,10 @@
 #include <array>
 
 #include "firmware/core/barriers/barrier_speed.hpp"
-#include "firmware/core/barriers/keep_apart.hpp"
-#include "firmware/core/barriers/keep_face.hpp"
-#include "firmware/core/barriers/keep_sight.hpp"
+#include "firmware/core/barriers/disc_tilt_barrier.hpp"
+#include "firmware/core/barriers/line_of_sight_barrier.hpp"
 #include "firmware/core/barriers/obstacle.hpp"
+#include "firmware/core/barriers/self_clearance_barrier.hpp"
 #include "firmware/core/barriers/singularity.hpp"
 #include "firmware/core/control/null_space_wish.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"
@@ -92,7 +92,7 @@ void Gather(const config::ServoConfig& config, const MotionScene& scene, barrier
                          {scene.poses, line, X_BC, scene.target->outline, X_BC * scene.target->seen.X_CO},
                          scene.target->J_C, limits);
     if (config.guard.view.enabled && !scene.target->normal_C.isZero()) {
-      barriers::LimitTilt(config.guard.view.face_cosine_min, scene.target->seen.X_CO.p,
+      barriers::LimitTilt(config.guard.view.disc_cosine_min, scene.target->seen.X_CO.p,
                           scene.target->normal_C, scene.target->J_C, limits);
     }
     named.NameNewRows(Limit::kFieldOfView, rows);

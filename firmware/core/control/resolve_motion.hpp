@@ -9,7 +9,7 @@
 // tests/core/control/resolve_compare.cpp.)
 #pragma once
 
-#include "firmware/core/barriers/keep_in_view.hpp"
+#include "firmware/core/barriers/field_of_view_barrier.hpp"
 #include "firmware/core/barriers/singularity.hpp"
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/control/resolve_constrained.hpp"

@@ -44,12 +44,12 @@ void NoteIdle(const config::ServoConfig& config, const WaySight& sight, WayToGoa
   const double shift = (sight.X_CO.p - config.feature.p_CO_C_star).norm();
   const double off = shift + kMetrePerRad * turn;
   if (turn < kThereRad && shift < kThereM) {
-    way.idle_ns = 0;
+    way.stalled_ns = 0;
   } else if (off < (turns_freely ? kNearerSure : kNearer) * way.least_off) {
     way.least_off = off;
-    way.idle_ns = 0;
+    way.stalled_ns = 0;
   } else {
-    CountTick((sight.limits & kBarriers) != 0, way.idle_ns);
+    CountTick((sight.limits & kBarriers) != 0, way.stalled_ns);
   }
 }
 
@@ -91,7 +91,7 @@ void CountTick(bool holds, std::int64_t& ns) noexcept {
 void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
   if (SeeksWhenIdle(config) && !way.preferred) {
     NoteIdle(config, sight, way);
-    way.preferred = IsLonger(way.idle_ns, kIdleSureS);
+    way.preferred = IsLonger(way.stalled_ns, kIdleSureS);
     return;
   }
   way.sought_ns = way.by_joints && !way.goal.found ? way.sought_ns + hal::kTickPeriodNs : 0;
@@ -116,7 +116,7 @@ void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGo
     if (left < kEnds) {
       way.by_joints = false;
       way.since_ns = sight.now_ns;
-      way.idle_ns = 0;
+      way.stalled_ns = 0;
       way.least_off = HUGE_VAL;
     }
     return;
@@ -126,7 +126,7 @@ void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGo
   }
   const bool elsewhere =
       !way.preferred && !way.goal.downhill && IsLonger(sight.now_ns - sight.track_since_ns, kLookS);
-  const bool idle = IsLonger(way.idle_ns, kIdleS);
+  const bool idle = IsLonger(way.stalled_ns, kIdleS);
   if (idle && way.goal.downhill && !way.preferred) {
     way.preferred = true;
     SeekAnew(way.goal);  // it lay downhill from where the arm was; from here another one may
@@ -134,13 +134,13 @@ void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGo
   }
   if (idle && way.goal.downhill && !way.goal.clear) {
     SeekClearerPosture(way.goal);  // the joints would get no further to this one than the law
-    way.idle_ns = 0;
+    way.stalled_ns = 0;
     return;
   }
   if (elsewhere || idle) {
     way.preferred = true;
     way.held_ns = 0;
-    way.idle_ns = 0;
+    way.stalled_ns = 0;
     if (left > kBegins) {
       way.by_joints = true;
       way.since_ns = sight.now_ns;

@@ -31,7 +31,7 @@ struct WayToGoal {
   std::int64_t since_ns = 0;   // when the way was last changed: it begins smoothly
   std::int64_t held_ns = 0;    // by the joints: how much longer limits have held them up than not
   std::int64_t sought_ns = 0;  // for how long the arm has stood while a posture is looked for
-  std::int64_t idle_ns =
+  std::int64_t stalled_ns =
       0;  // by the law: how much longer limits have acted than not since the goal came nearer
   double least_off = HUGE_VAL;  // how near it was [m], a turn counting a tenth of its angle
 };

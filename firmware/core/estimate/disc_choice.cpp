@@ -11,11 +11,11 @@ namespace {
 using model::Vec3;
 using View = DiscChoice::View;
 
-constexpr double kAspect = 7.0;        // of a half axis' share of noise: what a tilt must show [sigma]
-constexpr double kCalibration = 0.01;  // what arm, camera and lens are not known to [rad]
-constexpr double kRather = 12.0;       // so much less misfit, and another normal is believed [sigma^2]
-constexpr double kStill = 8.0;         // a disc whose best normal fits worse, per view, turns [sigma^2]
-constexpr double kOther = 0.15;        // normals nearer to each other than this are one [rad]
+constexpr double kAspect = 7.0;         // of a half axis' share of noise: what a tilt must show [sigma]
+constexpr double kCalibration = 0.01;   // what arm, camera and lens are not known to [rad]
+constexpr double kSwitchMargin = 12.0;  // so much less misfit, and another normal is believed [sigma^2]
+constexpr double kStill = 8.0;          // a disc whose best normal fits worse, per view, turns [sigma^2]
+constexpr double kOther = 0.15;         // normals nearer to each other than this are one [rad]
 constexpr int kRounds = 2;
 
 // Which of a view's normals is nearer to `normal`.
@@ -99,7 +99,7 @@ int ChooseDisc(const hal::FeatureMeasurement& measurement, const model::Pose& X_
   }
   const Vec3 before = choice.normal_B;
   Vec3 best = before;
-  double least = Fit(choice, view, best) - kRather;
+  double least = Fit(choice, view, best) - kSwitchMargin;
   for (const Vec3& seen : view.normal_B) {
     Vec3 normal = seen;
     const double misfit = Fit(choice, view, normal);

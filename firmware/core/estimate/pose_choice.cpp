@@ -10,10 +10,10 @@ namespace {
 using features::Polygon;
 using features::SeenCorners;
 
-constexpr double kGiveUp = 50.0;  // so much more misfit is no chance [sigma^2]
-constexpr double kRather = 6.0;   // so much less, and another branch is believed [sigma^2]
-constexpr double kStill = 4.0;    // a target whose best still pose fits worse is none, per entry [sigma^2]
-constexpr int kViewsToTell = 4;   // so many, from different places, before it counts as one that stands still
+constexpr double kGiveUp = 50.0;       // so much more misfit is no chance [sigma^2]
+constexpr double kSwitchMargin = 6.0;  // so much less, and another branch is believed [sigma^2]
+constexpr double kStill = 4.0;   // a target whose best still pose fits worse is none, per entry [sigma^2]
+constexpr int kViewsToTell = 4;  // so many, from different places, before it counts as one that stands still
 constexpr double kSameTurn = 0.02;  // branches nearer to each other than this are one [rad]
 constexpr double kSlip = 0.05;      // a filter that is further from the still pose may have slipped [rad]
 
@@ -57,7 +57,7 @@ bool Weed(PoseChoice& choice) noexcept {
     best = misfit(i) < misfit(best) ? i : best;
   }
   auto believed = static_cast<std::size_t>(choice.believed);
-  if (misfit(believed) > misfit(best) + kRather) {
+  if (misfit(believed) > misfit(best) + kSwitchMargin) {
     believed = best;
   }
   std::array<bool, hal::kMaxPoses> stays{};

@@ -15,7 +15,8 @@ struct Polygon {
   static constexpr int kMost = 4;
 
   int num_corners = 0;
-  std::array<model::Vec3, kMost> corners{};  // in O, z = 0 [m]
+  std::array<model::Vec3, kMost> corners{model::Vec3::Zero(), model::Vec3::Zero(), model::Vec3::Zero(),
+                                         model::Vec3::Zero()};  // in O, z = 0 [m]
 
   // Their mean is the origin, as frame O wants it.
   void Centre() noexcept;

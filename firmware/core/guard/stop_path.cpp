@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "firmware/core/barriers/keep_apart.hpp"
 #include "firmware/core/barriers/obstacle.hpp"
+#include "firmware/core/barriers/self_clearance_barrier.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/trajectory/velocity_change.hpp"
 
@@ -173,8 +173,8 @@ class Bounds {
   }
 
  private:
-  // The rows of the resolution (keep_apart.hpp) are nearly on their boundary where the arm slides along it:
-  // the proof leaves them so much room [m].
+  // The rows of the resolution (self_clearance_barrier.hpp) are nearly on their boundary where the arm slides
+  // along it: the proof leaves them so much room [m].
   static constexpr double kSoft = 0.01;
 
   [[nodiscard]] double HandTo(int i, const model::ArmPoses& poses) const noexcept {

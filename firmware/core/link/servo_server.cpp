@@ -223,7 +223,7 @@ void ServoServer::Step() noexcept {
   link_counts_ = board_.TimerCounts() - sends;
 }
 
-void ServoServer::Done(task::Stage stage) noexcept {
+void ServoServer::MarkStageEnd(task::Stage stage) noexcept {
   const std::uint32_t now = board_.TimerCounts();
   sent_.stage_counts[static_cast<std::size_t>(stage)] += now - stage_began_;
   stage_began_ = now;

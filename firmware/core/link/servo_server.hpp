@@ -47,7 +47,7 @@ class ServoServer final : private task::StageProbe {
   void Poll() noexcept;
 
  private:
-  void Done(task::Stage stage) noexcept override;
+  void MarkStageEnd(task::Stage stage) noexcept override;
   void Take(const Frame& frame) noexcept;
   void Configure(const Frame& frame) noexcept;
   void TakeInputs(const Frame& frame) noexcept;

@@ -210,7 +210,7 @@ void WayFields(Archive& a, T& w) noexcept {
   a(w.since_ns);
   a(w.held_ns);
   a(w.sought_ns);
-  a(w.idle_ns);
+  a(w.stalled_ns);
   a(w.least_off);
 }
 

@@ -22,11 +22,11 @@ double Fade(const config::MotionLawConfig& config, const MotionLawState& state) 
 
 // In the order of MotionLawKind.
 const std::array<MotionLawEntry, config::kNumMotionLaws> kMotionLaws{{
-    {config::MotionLawKind::kComputedTorque, "computed_torque", ComputedTorque, 1, true},
-    {config::MotionLawKind::kPd, "pd", PdLaw, 1, false},
-    {config::MotionLawKind::kJointImpedance, "joint_impedance", JointImpedance, 1, false},
-    {config::MotionLawKind::kOperationalSpace, "operational_space", OperationalSpace, 6, true},
-    {config::MotionLawKind::kFloat, "float", Float, 1, false},
+    {config::MotionLawKind::kComputedTorque, ComputedTorque, 1, true},
+    {config::MotionLawKind::kPd, PdLaw, 1, false},
+    {config::MotionLawKind::kJointImpedance, JointImpedance, 1, false},
+    {config::MotionLawKind::kOperationalSpace, OperationalSpace, 6, true},
+    {config::MotionLawKind::kFloat, Float, 1, false},
 }};
 
 void MotionLawState::Reset(config::MotionLawKind law, int num_joints) noexcept {

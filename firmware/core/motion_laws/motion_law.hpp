@@ -47,7 +47,6 @@ void ChangeMotionLaw(const config::MotionLawConfig& config, const MotionLawInput
 
 struct MotionLawEntry {
   config::MotionLawKind kind;
-  const char* name;  // as servo.motion_law has it
   void (*torque)(const config::MotionLawConfig&, const MotionLawInputs&, MotionLawState&,
                  model::VecN&) noexcept;
   int joints_min;  // arms with fewer joints cannot be driven by it

@@ -1,28 +1,18 @@
+// The tick, stage by stage, and what is known of the arm: from its sensors to the mode.
 #include "firmware/core/task/servo_task.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "firmware/core/barriers/keep_apart.hpp"
 #include "firmware/core/barriers/obstacle.hpp"
-#include "firmware/core/features/hold_orientation.hpp"
-#include "firmware/core/guard/clamp_torque.hpp"
+#include "firmware/core/barriers/self_clearance_barrier.hpp"
 #include "firmware/core/motion_laws/friction.hpp"
-#include "firmware/core/trajectory/smooth_step.hpp"
 
 namespace fovea::task {
 namespace {
 
-constexpr double kTargetMovedM = 0.02;       // so far from where it was unreachable, and it is tried again
-constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as there
-constexpr double kBehind = 0.2;     // a stop that is so much behind what it should be is none [rad/s, m/s]
-constexpr double kStopShare = 0.3;  // of safety.fault_damping: what it should be at least
-constexpr double kBootShare = 0.5;  // of a joint's velocity limit in Boot, where nothing shall move it
+constexpr double kTargetMovedM = 0.02;  // so far from where it was unreachable, and it is tried again
+constexpr double kBootShare = 0.5;      // of a joint's velocity limit in Boot, where nothing shall move it
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kOffShare = kPeriodS / 0.25;  // of a tick in the mean by which a motion is not followed
-
-bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
 
 bool IsFinite(const hal::FeatureMeasurement& feature) noexcept {
   for (std::size_t i = 0; i < feature.s.size(); ++i) {
@@ -44,25 +34,25 @@ void ServoTask::Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept 
   InputCheck check;
   state_.tau_before = state_.tau;
   CheckArm(inputs, check);
-  Done(Stage::kCheck);
+  MarkStageEnd(Stage::kCheck);
   ComputeModel();
-  Done(Stage::kModel);
+  MarkStageEnd(Stage::kModel);
   CheckContact(inputs.missed_ticks, check.fault, check.joint);
-  Done(Stage::kContact);
+  MarkStageEnd(Stage::kContact);
   PredictFeature(inputs, check.fault);
-  Done(Stage::kPredict);
+  MarkStageEnd(Stage::kPredict);
   ChooseMode(inputs, check);
-  Done(Stage::kModes);
+  MarkStageEnd(Stage::kModes);
   ComputeVisualLaw();
-  Done(Stage::kVisualLaw);
+  MarkStageEnd(Stage::kVisualLaw);
   MoveReference(inputs);
-  Done(Stage::kReference);
+  MarkStageEnd(Stage::kReference);
   ComputeTorque(inputs);
-  Done(Stage::kMotionLaw);
+  MarkStageEnd(Stage::kMotionLaw);
   Clamp();
-  Done(Stage::kClamp);
+  MarkStageEnd(Stage::kClamp);
   WriteRecord(inputs, outputs.record);
-  Done(Stage::kRecord);
+  MarkStageEnd(Stage::kRecord);
   ++state_.tick;
 }
 
@@ -207,240 +197,6 @@ bool ServoTask::IsOutside() const noexcept {
 void ServoTask::ForgetMotion() noexcept {
   state_.resolved = control::ResolvedMotion{};
   state_.motion.resolved = control::ResolvedMotion{};
-}
-
-void ServoTask::ComputeVisualLaw() noexcept {
-  state_.feature_valid = state_.prediction.known && ComputeFeature();
-  if (state_.feature_valid) {
-    control::ChooseInteraction(config_.law, goal_.L_s, state_.feature);
-    config::LawConfig law = config_.law;
-    if (state_.way.preferred && state_.way.goal.found) {
-      law.q_posture = model::ToArray(state_.way.goal.q);
-    }
-    control::VisualLaw(law, config_.arm, state_.feature, state_.J_C, state_.q, state_.law);
-    if (IsTracking(state_.mode.mode) && control::SeeksGoalPosture(config_)) {
-      ChooseTheWay();
-    }
-  }
-}
-
-void ServoTask::ChooseTheWay() noexcept {
-  control::WaySight sight{
-      {state_.prediction.R_BO, state_.prediction.p_BO}, state_.prediction.seen.X_CO, state_.q};
-  sight.limits = state_.limits;
-  sight.now_ns = state_.now_ns;
-  sight.track_since_ns = state_.track_since_ns;
-  sight.is_told_apart = !config_.feature.SeesOrientation() || state_.predict.poses.num_branches == 1;
-  control::ChooseWay(config_, sight, state_.way);
-  if (state_.way.by_joints) {
-    control::SteerByJoints(state_.way, state_.q, state_.prediction.seen, state_.J_C,
-                           config_.feature.p_CO_C_star, state_.law.task);
-  }
-}
-
-// The target's feature, and what is stacked below it.
-bool ServoTask::ComputeFeature() noexcept {
-  features::TargetInCamera seen = state_.prediction.seen;
-  if (state_.way.goal.turn != 0) {
-    seen.X_CO.R = seen.X_CO.R * control::QuarterTurns(state_.way.goal.turn);
-  }
-  if (!config_.feature.Compute(seen, state_.feature)) {
-    return false;
-  }
-  if (!config_.feature.hold_orientation) {
-    return true;
-  }
-  features::FeatureState held;
-  const features::HoldOrientation orientation{IsTracking(state_.mode.mode) ? state_.R_BC_held
-                                                                           : state_.X_BC.R};
-  return orientation.Compute(state_.X_BC.R, held) && features::Stack(held, state_.feature);
-}
-
-void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
-  state_.limits = 0;
-  const bool floats = state_.law_state.kind == config::MotionLawKind::kFloat;
-  if (state_.mode.mode == hal::Mode::kFault || floats) {
-    state_.reference.q = state_.q;
-    state_.reference.dq.setZero();
-    state_.reference.ddq.setZero();
-    ForgetMotion();
-    return;
-  }
-  if (state_.inputs.bad_ticks > 0) {
-    return;  // nothing new is known: the last command stays in force
-  }
-  if (state_.mode.mode == hal::Mode::kBoot && !state_.holds) {
-    if (state_.inputs.sound_ticks == 0) {
-      return;
-    }
-    // The servo takes the arm over where it is, as fast as it is, and brings it to rest.
-    state_.reference.q = state_.q;
-    state_.reference.dq = state_.dq;
-    state_.reference.ddq.setZero();
-    state_.holds = true;
-  }
-  if (state_.mode.mode == hal::Mode::kMove) {
-    state_.limits =
-        moves::FollowMotion(config_, inputs.motion, state_.now_ns, state_.motion, state_.reference);
-    CheckFollowing();
-    state_.motion.off += kOffShare * (state_.reference.q - state_.q - state_.motion.off);
-    return;
-  }
-  guard::MotionWish wish;
-  if (IsTracking(state_.mode.mode) && state_.feature_valid) {
-    const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
-    const double since_s = static_cast<double>(state_.now_ns - since_ns) / kSecondNs;
-    const double blend = trajectory::SmoothStep(since_s / config_.law.smooth_start_s);
-    state_.law.task.v *= blend;
-    state_.law.task.dq_0 *= blend;
-    barriers::ViewedTarget target{config_.feature.Outline(), state_.prediction.seen, state_.J_C};
-    if (state_.predict.disc.started) {
-      target.normal_C = state_.X_BC.R.transpose() * state_.predict.disc.normal_B;
-    }
-    control::ResolveMotion(
-        config_, state_.law.task,
-        {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, state_.way.by_joints},
-        state_.resolved);
-    if (!state_.resolved.finite || !state_.resolved.dq.allFinite()) {
-      LatchFault(hal::Fault::kNonFiniteControl, -1);
-      return;
-    }
-    wish = guard::MotionWish::Velocity(state_.resolved.dq);
-    state_.limits = state_.resolved.limits;
-  } else {
-    wish = guard::StopTogether(config_, state_.reference);
-  }
-  model::ArmPoses reference_poses;
-  model::ComputePoses(config_.arm, state_.reference.q, reference_poses);
-  if (state_.mode.mode == hal::Mode::kBoot && !IsOutside()) {
-    state_.limits |= hal::Bit(hal::Limit::kObstacle);  // why Boot goes on
-  }
-  state_.limits |=
-      guard::GuardMotion(config_, wish, state_.poses.X_BE.p, state_.J_E_B, reference_poses, state_.reference);
-  CheckFollowing();
-  NoteBlocked();
-  NoteSteering();
-}
-
-void ServoTask::CheckFollowing() noexcept {
-  const model::VecN following_error = state_.reference.q - state_.q;
-  for (int i = 0; i < following_error.size(); ++i) {
-    if (!(std::fabs(following_error[i]) <= config_.safety.following_error)) {
-      LatchFault(hal::Fault::kNotFollowing, i);
-      return;
-    }
-  }
-}
-
-// For how long limits have kept the arm from the goal.
-void ServoTask::NoteBlocked() noexcept {
-  const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
-  bool blocked = false;
-  if (steering && state_.way.by_joints) {
-    blocked = control::NoteHeld(state_.law.task, state_.reference.dq, state_.way);
-  } else if (steering && (state_.limits & control::kBarriers) != 0) {
-    blocked = state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
-              control::Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
-                  config_.law.unreachable_progress;
-  }
-  // Noise lets it through for a tick now and then: what counts is how often it is kept.
-  control::CountTick(blocked, state_.blocked_ns);
-}
-
-// Whether steering by what is seen brings the goal nearer. A way by the joints may lead away from it at
-// first.
-void ServoTask::NoteSteering() noexcept {
-  if (!IsTracking(state_.mode.mode) || !state_.feature_valid || state_.way.by_joints) {
-    return;
-  }
-  const model::Vec6 V_BC_C = state_.J_C.lazyProduct(state_.reference.dq);
-  estimate::WatchSteering(config_.predict, state_.law.e.norm() / state_.feature.s_star.norm(),
-                          V_BC_C.head<3>().norm(), state_.eye);
-}
-
-void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
-  const motion_laws::MotionLawInputs law_inputs{config_.arm,      state_.poses, state_.dynamics,
-                                                state_.reference, state_.q,     state_.dq};
-  const auto law = static_cast<std::size_t>(inputs.law);
-  if (inputs.change_law && config_.arm.num_joints >= motion_laws::kMotionLaws[law].joints_min) {
-    motion_laws::ChangeMotionLaw(config_.motion_law, law_inputs, inputs.law, state_.law_state);
-  }
-  switch (state_.mode.mode) {
-    case hal::Mode::kBoot:
-      if (!state_.holds) {
-        state_.tau.setZero(config_.arm.num_joints);
-        state_.law_state.Reset(state_.law_state.kind, config_.arm.num_joints);
-        break;
-      }
-      [[fallthrough]];
-    case hal::Mode::kHold:
-    case hal::Mode::kTrack:
-    case hal::Mode::kCoast:
-    case hal::Mode::kMove:
-      if (state_.inputs.bad_ticks == 0) {
-        motion_laws::MotionLaw(config_.motion_law, law_inputs, state_.law_state, state_.tau);
-        estimate::CarryLoad(
-            {config_.arm, config_.safety.stiction_fraction, config_.safety.carried_torque_fraction, Stands()},
-            state_.contact, state_.tau);
-      }
-      break;
-    case hal::Mode::kFault: StopDamped(); break;
-  }
-}
-
-// Whether the law in force is one that holds the arm where it is, whatever hangs on it, and does not learn
-// the load by itself.
-bool ServoTask::CarriesLoads() const noexcept {
-  return config_.safety.carried_torque_fraction > 0.0 && config_.motion_law.integral == 0.0 &&
-         motion_laws::kMotionLaws[static_cast<std::size_t>(state_.law_state.kind)].carries;
-}
-
-// Whether the arm is to stand, and with what hangs on it.
-bool ServoTask::Stands() const noexcept {
-  const bool may_stand = state_.mode.mode == hal::Mode::kBoot || state_.mode.mode == hal::Mode::kHold;
-  return may_stand && CarriesLoads() && state_.reference.dq.isZero(0.0);
-}
-
-void ServoTask::StopDamped() noexcept {
-  // A damped stop needs true velocities; without them only the brakes are left.
-  const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 ||
-                     state_.inputs.jumped || state_.blind || state_.mode.fault == hal::Fault::kArmStale;
-  const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
-  // Nor does damping stop a joint whose motor is dead, or that is pushed: the arm gets faster again, or no
-  // slower.
-  const double speed = state_.dq.lpNorm<Eigen::Infinity>();
-  const double falls = 1.0 - kStopShare * config_.safety.fault_damping * kPeriodS;
-  state_.stop_speed = std::min(falls * state_.stop_speed, speed);
-  const bool in_vain = speed > state_.stop_speed + kBehind;
-  if (blind || in_vain || since_s > config_.safety.brake_after_s || speed < config_.safety.brake_velocity) {
-    state_.give_up = true;
-  }
-  motion_laws::DampedStop(config_.safety.fault_damping, state_.dynamics, state_.dq, state_.tau);
-  if (state_.give_up) {
-    state_.tau.setZero();
-  }
-}
-
-void ServoTask::Clamp() noexcept {
-  // The rate counts from what the arm says is in force; when it says nothing that can be, from what was sent
-  // last. So it does behind closed brakes: what an arm then applies is its own way to hold itself.
-  model::VecN in_force = state_.tau_applied;
-  const bool told = state_.inputs.bad_ticks == 0 && state_.inputs.non_finite_ticks == 0;
-  const bool behind_brakes = state_.braked && state_.give_up;
-  for (int i = 0; i < in_force.size(); ++i) {
-    const double tau_max = config_.arm.joints[static_cast<std::size_t>(i)].tau_max;
-    if (!told || behind_brakes || std::fabs(in_force[i]) > tau_max) {
-      in_force[i] = state_.tau_before[i];
-    }
-  }
-  state_.law_state.cut = state_.tau;
-  const guard::ClampResult result = guard::ClampTorque(config_.arm, config_.safety, in_force, state_.tau);
-  state_.law_state.cut -= state_.tau;
-  state_.limits |= result.limits;
-  state_.braked = state_.give_up && (state_.tau.array() == 0.0).all();
-  if (!result.finite) {
-    LatchFault(hal::Fault::kNonFiniteControl, -1);
-  }
 }
 
 void ServoTask::LatchFault(hal::Fault fault, std::int32_t joint) noexcept {

@@ -146,7 +146,7 @@ class ServoTask final : public ServoStep {
   [[nodiscard]] bool IsOutside() const noexcept;
   void ForgetMotion() noexcept;
   void CheckFollowing() noexcept;
-  void NoteBlocked() noexcept;
+  void UpdateBlockedTime() noexcept;
   void NoteSteering() noexcept;
   void ComputeTorque(const ServoInputs& inputs) noexcept;
   [[nodiscard]] bool CarriesLoads() const noexcept;
@@ -155,9 +155,9 @@ class ServoTask final : public ServoStep {
   void Clamp() noexcept;
   void WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) const noexcept;
   void LatchFault(hal::Fault fault, std::int32_t joint) noexcept;
-  void Done(Stage stage) noexcept {
+  void MarkStageEnd(Stage stage) noexcept {
     if (probe_ != nullptr) {
-      probe_->Done(stage);
+      probe_->MarkStageEnd(stage);
     }
   }
 

@@ -28,7 +28,7 @@ class StageProbe {
  public:
   StageProbe(const StageProbe&) = delete;
   StageProbe& operator=(const StageProbe&) = delete;
-  virtual void Done(Stage stage) noexcept = 0;
+  virtual void MarkStageEnd(Stage stage) noexcept = 0;
 
  protected:
   StageProbe() noexcept = default;

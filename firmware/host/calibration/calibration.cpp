@@ -162,7 +162,8 @@ IntrinsicsResult SolveIntrinsics(const std::vector<BoardView>& views, const Boar
   return result;
 }
 
-HandEyeResult SolveHandEye(const std::vector<HandView>& views, const Board& board, const vision::Intrinsics& in) {
+HandEyeResult SolveHandEye(const std::vector<HandView>& views, const Board& board,
+                           const vision::Intrinsics& in) {
   CheckCount(views.size());
   // Two turns of the hand about axes that differ are needed.
   double across = 0.0;

@@ -52,7 +52,7 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kFieldOfView:
       return {
           "the target before the edge of the picture, less this margin; the arm's links beside the lines "
-          "of sight; a disc's face (safety.face_tilt_max)",
+          "of sight; a disc's face (safety.disc_tilt_max)",
           "only so fast towards it; the task slides along"};
   }
   return {"", ""};

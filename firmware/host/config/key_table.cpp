@@ -112,19 +112,28 @@ void KeyTable::Text(std::string name, std::string& field, std::string meaning) {
 
 void KeyTable::Choice(std::string name, std::string& field, std::vector<std::string> choices,
                       std::string meaning) {
+  const auto chosen =
+      static_cast<std::size_t>(std::find(choices.begin(), choices.end(), field) - choices.begin());
+  AddChoice(std::move(name), chosen, choices, std::move(meaning),
+            [&field, choices](std::size_t index) { field = choices[index]; });
+}
+
+void KeyTable::AddChoice(std::string name, std::size_t chosen, std::vector<std::string> choices,
+                         std::string meaning, std::function<void(std::size_t chosen)> set) {
   Key key{std::move(name),
           "one of",
           "",
           fmt::format("\"{}\"", fmt::join(choices, "\", \"")),
           std::move(meaning),
-          fmt::format("\"{}\"", field),
+          fmt::format("\"{}\"", choices.at(chosen)),
           {}};
-  key.set = [key, &field, choices](const Setting& setting) {
+  key.set = [key, choices, set = std::move(set)](const Setting& setting) {
     const auto* text = std::get_if<std::string>(&setting.value);
-    if (text == nullptr || std::find(choices.begin(), choices.end(), *text) == choices.end()) {
+    const auto found = text == nullptr ? choices.end() : std::find(choices.begin(), choices.end(), *text);
+    if (found == choices.end()) {
       Refuse(setting, key);
     }
-    field = *text;
+    set(static_cast<std::size_t>(found - choices.begin()));
   };
   Add(std::move(key));
 }
@@ -155,7 +164,19 @@ void KeyTable::Numbers(std::string name, std::vector<double>& field, std::size_t
   Add(std::move(key));
 }
 
+void KeyTable::Renamed(std::string former, std::string successor) {
+  successors_[std::move(former)] = std::move(successor);
+}
+
+const std::string& KeyTable::NameToday(const std::string& name) const {
+  const auto renamed = successors_.find(name);
+  return renamed == successors_.end() ? name : renamed->second;
+}
+
 void KeyTable::Apply(const Setting& setting) const {
+  if (const std::string& today = NameToday(setting.key); today != setting.key) {
+    throw InputError(fmt::format("{}: the key {} is called {} now", setting.where, setting.key, today));
+  }
   std::vector<std::string> names;
   for (const Key& key : keys_) {
     if (key.name == setting.key) {

@@ -32,22 +32,38 @@ class KeyTable {
   void Flag(std::string name, bool& field, std::string meaning);
   void Text(std::string name, std::string& field, std::string meaning);
   void Choice(std::string name, std::string& field, std::vector<std::string> choices, std::string meaning);
+  // An enumerator by its name: `names` in the order of the enumeration.
+  template <class Enum, class Names>
+  void Choice(std::string name, Enum& field, const Names& names, std::string meaning) {
+    AddChoice(std::move(name), static_cast<std::size_t>(field), {names.begin(), names.end()},
+              std::move(meaning), [&field](std::size_t chosen) { field = static_cast<Enum>(chosen); });
+  }
   // A list of `size_min` to `size_max` numbers.
   void Numbers(std::string name, std::vector<double>& field, std::size_t size_min, std::size_t size_max,
                double min, double max, std::string unit, std::string meaning);
 
-  // Sets one field, or throws InputError and leaves it: unknown key (with the nearest known one), wrong
-  // kind, out of range.
+  // A key that was called `former` until it got its name of today, `successor`, with the same meaning.
+  void Renamed(std::string former, std::string successor);
+
+  // Sets one field, or throws InputError and leaves it: unknown key (with the nearest known one), renamed
+  // key (with its name of today), wrong kind, out of range.
   void Apply(const Setting& setting) const;
+  // The name of today of a key, of any time, that somebody wrote down.
+  [[nodiscard]] const std::string& NameToday(const std::string& name) const;
 
   [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
+  // The names of today of those that were renamed, by their former ones.
+  [[nodiscard]] const std::map<std::string, std::string>& successors() const { return successors_; }
   // What each key's field held when the key was added, by the key's name.
   [[nodiscard]] std::map<std::string, std::string> Values() const;
 
  private:
   void Add(Key key);
+  void AddChoice(std::string name, std::size_t chosen, std::vector<std::string> choices, std::string meaning,
+                 std::function<void(std::size_t chosen)> set);
 
   std::vector<Key> keys_;
+  std::map<std::string, std::string> successors_;  // by the former name
 };
 
 // The entry of `names` that is fewest edits away from `name`; "" when none is near. For "did you mean".

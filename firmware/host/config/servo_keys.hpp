@@ -14,14 +14,13 @@ namespace fovea::config {
 
 // What the keys set, before robot, camera mount and target are known.
 struct ServoSettings {
-  config::ServoConfig config;
+  ServoConfig config;
   std::vector<double> goal{0.0, 0.0, 0.40};         // p_CO_C_star [m]
   std::vector<double> goal_rpy_deg{0.0, 0.0, 0.0};  // R_CO_star, of square and triangle
   std::string feature = "auto";                     // the target's usual one
-  std::string interaction = "current";
   bool keep_in_view = true;
   double view_margin_px = 10.0;
-  double face_tilt_max = 1.05;  // [rad]
+  double disc_tilt_max = 1.05;  // [rad]
   double stuck_shift_px = 2.0;
   std::vector<double> target_region{-3.0, -3.0, -3.0, 3.0, 3.0, 3.0};  // low x, y, z, high x, y, z [m]
   std::vector<double> posture;                                         // empty: the robot's ready posture
@@ -29,9 +28,8 @@ struct ServoSettings {
   std::vector<double> tools;   // capsules: p_EA, p_EB, radius of each [m]
   std::vector<double> planes;  // n_x, n_y, n_z, d of each
   std::vector<double> boxes;   // low x, y, z, high x, y, z of each
-  std::string motion_law = "computed_torque";
-  std::vector<double> k_p;  // per joint; empty: omega_n^2 times the inertia in the ready posture
-  std::vector<double> k_v;  // per joint; empty: by zeta, from k_p and that inertia
+  std::vector<double> k_p;     // per joint; empty: omega_n^2 times the inertia in the ready posture
+  std::vector<double> k_v;     // per joint; empty: by zeta, from k_p and that inertia
 };
 
 // The settings must outlive the table.
@@ -42,8 +40,8 @@ void ScaleSpeed(double scale, ServoSettings& settings);
 
 // The servo's whole configuration for `robot`, with the camera at `X_EC`. InputError: a posture that does not
 // fit the robot, a feature that is none of the target's, or anything that ServoTask::Init refuses.
-config::ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::Robot& robot,
-                                    const model::Pose& X_EC, const vision::Intrinsics& intrinsics,
-                                    const TargetSettings& target);
+ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::Robot& robot,
+                            const model::Pose& X_EC, const vision::Intrinsics& intrinsics,
+                            const TargetSettings& target);
 
 }  // namespace fovea::config

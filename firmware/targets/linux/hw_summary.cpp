@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/host/build_info.hpp"
+#include "firmware/host/summary_format.hpp"
 
 namespace fovea::hw {
 namespace {
@@ -140,6 +141,7 @@ void Judge(HwSummary& s) {
 
 std::string ToJson(const HwSummary& s) {
   Json json{
+      {"format", kSummaryFormat},
       {"config", s.config},
       {"converged", s.converged ? Json(*s.converged) : Json(nullptr)},
       {"verdict", s.verdict},

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/core/barriers/keep_face.hpp"
+#include "firmware/core/barriers/disc_tilt_barrier.hpp"
 #include "tests/support/panda.hpp"
 
 namespace fovea::control {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "firmware/core/barriers/keep_apart.hpp"
 #include "firmware/core/barriers/obstacle.hpp"
+#include "firmware/core/barriers/self_clearance_barrier.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/trajectory/velocity_change.hpp"
 #include "tests/support/panda.hpp"

@@ -17,13 +17,6 @@ namespace fovea::link {
 namespace {
 
 // A field that is added to one of these must be added to what goes over the line, and then here.
-static_assert(sizeof(features::TargetFeature) == 224);
-static_assert(sizeof(config::PredictConfig) == 176);
-static_assert(sizeof(config::LawConfig) == 160);
-static_assert(sizeof(config::MoveConfig) == 64);
-static_assert(sizeof(config::MotionLawConfig) == 216);
-static_assert(sizeof(config::GuardConfig) == 1256);
-static_assert(sizeof(config::SafetyConfig) == 136);
 static_assert(sizeof(moves::MotionCommand) == 304);
 static_assert(sizeof(hal::ArmState) == 280);
 static_assert(sizeof(hal::FeatureMeasurement) == 1016);

@@ -156,7 +156,8 @@ TEST(MotionLawTest, EveryLawThatKnowsTheArmFollowsASwing) {
     }
     const MotionLawEntry& law = kMotionLaws[static_cast<std::size_t>(kind)];
     EXPECT_EQ(law.kind, kind);
-    std::cout << law.name << " follows within " << worst << " rad\n";
+    std::cout << config::kMotionLawNames[static_cast<std::size_t>(law.kind)] << " follows within " << worst
+              << " rad\n";
     EXPECT_LT(worst, kind == config::MotionLawKind::kPd ? 5e-3 : 2e-5);
   }
 }

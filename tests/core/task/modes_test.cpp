@@ -184,8 +184,7 @@ TEST_F(ModesTest, AMotionThatWasStoppedStaysStopped) {
                                        {hold, HoldReason::kNotAsked}}) {
     EXPECT_EQ(After(In(Mode::kMove, false), inputs), Mode::kHold);
     EXPECT_EQ(last_.hold_reason, reason);
-    EXPECT_EQ(After(last_, motion), Mode::kHold)
-        << "the stream that goes on is not taken up again";
+    EXPECT_EQ(After(last_, motion), Mode::kHold) << "the stream that goes on is not taken up again";
     EXPECT_EQ(After(last_, motion), Mode::kHold);
     EXPECT_EQ(After(last_, ModeInputs{}), Mode::kHold);
     EXPECT_EQ(After(last_, motion), Mode::kMove) << "a new one is";

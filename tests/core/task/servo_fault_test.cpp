@@ -300,7 +300,7 @@ TEST_F(FaultTest, AStopThatIsPulledOnEndsInTheBrakes) {
 TEST_F(FaultTest, ArmDoesNotFollow) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.contact_torque_fraction = 1e3;
-  config.safety.non_finite_ticks = 100'000;  // nor does it count that the reading stays the same
+  config.safety.non_finite_ticks = 10'000;  // nor does it count that the reading stays the same
   Start(config);
   Run(500);
   arm_->Jam();

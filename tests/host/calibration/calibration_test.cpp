@@ -84,12 +84,12 @@ TEST(CalibrationTest, IntrinsicsAndLensComeBack) {
   const IntrinsicsResult r = SolveIntrinsics(views, kBoard, {640, 480});
   // The lens as a whole: where it puts points that the boards reached.
   const vision::Intrinsics truth{640,
-                         480,
-                         camera.f_px,
-                         camera.f_px,
-                         camera.c_u_px,
-                         camera.c_v_px,
-                         {camera.lens[0], camera.lens[1], camera.lens[2], camera.lens[3], 0.0}};
+                                 480,
+                                 camera.f_px,
+                                 camera.f_px,
+                                 camera.c_u_px,
+                                 camera.c_v_px,
+                                 {camera.lens[0], camera.lens[1], camera.lens[2], camera.lens[3], 0.0}};
   double worst = 0.0;
   for (int column = -4; column <= 4; ++column) {
     for (int row = -3; row <= 3; ++row) {

@@ -87,6 +87,14 @@ TEST_F(KeyTableTest, AnUnknownKeyGetsTheNearestKnownOne) {
   EXPECT_THAT(ErrorOf("zzz=1"), testing::Not(HasSubstr("did you mean")));
 }
 
+TEST_F(KeyTableTest, ARenamedKeyNamesItsSuccessorAndSetsNothing) {
+  keys_.Renamed("camera.frequency_hz", "camera.rate_hz");
+  EXPECT_THAT(ErrorOf("camera.frequency_hz=60"),
+              HasSubstr("the key camera.frequency_hz is called camera.rate_hz now"));
+  EXPECT_EQ(keys_.NameToday("camera.frequency_hz"), "camera.rate_hz");
+  EXPECT_EQ(keys_.NameToday("camera.rate_hz"), "camera.rate_hz");
+}
+
 TEST_F(KeyTableTest, AssignmentsMustBeAssignments) {
   for (const char* text : {"", "=3", "servo.predict", "arm.model=", "arm.model=\"open", "a=[1,"}) {
     EXPECT_THAT(ErrorOf(text), testing::StartsWith("--set")) << text;

@@ -26,5 +26,19 @@ TEST(ScenarioTest, EveryKeyThatAFaultOrLimitNamesExists) {
   }
 }
 
+TEST(ScenarioTest, EveryRenamedKeyHasASuccessorAndIsNoKeyItself) {
+  Scenario scenario;
+  const config::KeyTable table = ScenarioKeys(scenario);
+  std::set<std::string> keys;
+  for (const config::Key& key : table.keys()) {
+    keys.insert(key.name);
+  }
+  EXPECT_FALSE(table.successors().empty());
+  for (const auto& [former, today] : table.successors()) {
+    EXPECT_EQ(keys.count(former), 0U) << former;
+    EXPECT_EQ(keys.count(today), 1U) << today;
+  }
+}
+
 }  // namespace
 }  // namespace fovea::sim

@@ -78,7 +78,7 @@ class NotingClock final : public hal::Clock {
 class NotingStages final : public task::StageProbe {
  public:
   explicit NotingStages(NotingClock& clock) : clock_(clock) {}
-  void Done(task::Stage stage) noexcept override {
+  void MarkStageEnd(task::Stage stage) noexcept override {
     const std::int64_t now_ns = NowNs();
     const std::int64_t begin_ns = stage == task::Stage::kCheck ? clock_.woken_ns() : last_ns_;
     if (Period* const period = clock_.current(); period != nullptr) {

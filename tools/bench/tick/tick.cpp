@@ -88,7 +88,7 @@ std::vector<double> ReplayCold(const TickCase& c) {
 class StageTimer final : public task::StageProbe {
  public:
   void Begin() { last_ = Clock::now(); }
-  void Done(task::Stage stage) noexcept override {
+  void MarkStageEnd(task::Stage stage) noexcept override {
     const Clock::time_point now = Clock::now();
     ns_[static_cast<std::size_t>(stage)] = Ns(now - last_).count();
     last_ = now;

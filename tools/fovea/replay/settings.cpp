@@ -59,10 +59,14 @@ class Keys {
     const std::size_t of_servo = table_.keys().size();
     config::AddTargetKeys(target_, table_);
     table_.Number("robot.speed_scale", speed_scale_, 0.0, 1.0, "", "");
+    std::map<std::string, std::string> values;
+    for (const auto& [name, text] : recorded.keys) {
+      values[table_.NameToday(name)] = text;
+    }
     for (std::size_t i = 0; i < table_.keys().size(); ++i) {
       const config::Key& key = table_.keys()[i];
-      const auto text = recorded.keys.find(key.name);
-      if (text != recorded.keys.end() && text->second != key.default_text) {
+      const auto text = values.find(key.name);
+      if (text != values.end() && text->second != key.default_text) {
         table_.Apply(config::ParseAssignment(key.name + "=" + text->second));
       }
       if (i < of_servo) {

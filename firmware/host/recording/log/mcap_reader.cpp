@@ -6,6 +6,7 @@
 
 #include <fstream>
 
+#include "firmware/host/recording/log/log_format.hpp"
 #include "firmware/host/recording/log/mcap_format.hpp"
 
 namespace fovea::log {
@@ -207,6 +208,11 @@ class Reader {
       const std::string_view title = c.Text();
       return std::pair{title, c.Map()};
     });
+    if (name == kFormatRecord) {
+      if (const std::string why = WhyUnreadable(entries); !why.empty()) {
+        throw std::runtime_error(path_.string() + ": " + why);
+      }
+    }
     if (visitor_.on_metadata) {
       visitor_.on_metadata(name, entries);
     }

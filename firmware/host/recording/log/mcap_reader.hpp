@@ -35,7 +35,8 @@ struct McapEnd {
   std::string why;        // when not complete: what is wrong, and where
 };
 
-// std::runtime_error, naming the file: it cannot be opened, or is no MCAP file.
+// std::runtime_error, naming the file: it cannot be opened, is no MCAP file, or is a log of a format that
+// this program does not read (log_format.hpp).
 McapEnd ReadMcap(const std::filesystem::path& path, const McapVisitor& visitor);
 
 }  // namespace fovea::log

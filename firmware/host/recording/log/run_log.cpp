@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "firmware/host/recording/log/log_file.hpp"
+#include "firmware/host/recording/log/log_format.hpp"
 #include "firmware/host/recording/log/stamp.hpp"
 #include "firmware/host/recording/log/tick_writer.hpp"
 #include "firmware/host/recording/log/topics.hpp"
@@ -193,6 +194,7 @@ bool RunLog::WriteRound() {
 void RunLog::WriteAll() {
   linux_rt::MakeThreadYielding("fovea-log");
   try {
+    file_->writer().WriteMetadata(kFormatRecord, FormatEntries(config_.library));
     auto flushed = std::chrono::steady_clock::now();
     bool dirty = false;
     while (!WaitForMore()) {

@@ -8,7 +8,7 @@ void TickTrace::Enter() noexcept {
   begin_ns_ = last_ns_ = NowNs();
 }
 
-void TickTrace::Done(task::Stage stage) noexcept {
+void TickTrace::MarkStageEnd(task::Stage stage) noexcept {
   const std::int64_t now_ns = NowNs();
   track_.Add({task::kStageNames[static_cast<std::size_t>(stage)], last_ns_, now_ns, -1, Flow::kNone});
   last_ns_ = now_ns;

@@ -22,7 +22,7 @@ class TickTrace final : public hal::TickProbe, public task::StageProbe, public h
 
   void Enter() noexcept override;
   void Leave() noexcept override;
-  void Done(task::Stage stage) noexcept override;
+  void MarkStageEnd(task::Stage stage) noexcept override;
   void Record(const hal::TickRecord& record) noexcept override;
 
  private:

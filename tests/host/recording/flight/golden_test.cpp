@@ -85,7 +85,7 @@ TEST(GoldenConfiguration, IsReadAsItWasWritten) {
   };
   flight::ReadTicks(SourceRoot() / "tests/host/recording/flight/golden" / "triangle.mcap", visitor);
   ASSERT_TRUE(config.has_value());
-  EXPECT_EQ(config->guard.view.face_cosine_min, 0.0);
+  EXPECT_EQ(config->guard.view.disc_cosine_min, 0.0);
   EXPECT_EQ(config->guard.sight_clearance, Triangle().config.guard.sight_clearance);
 }
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <random>
 
+#include "firmware/host/recording/log/log_format.hpp"
 #include "firmware/host/recording/log/mcap_reader.hpp"
 #include "firmware/host/recording/log/mcap_writer.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -156,6 +157,33 @@ TEST_F(McapTest, RefusesWhatIsNoLog) {
   fs::remove(path_);
   EXPECT_THROW(Read(path_), std::runtime_error);
   EXPECT_THROW(Read(fs::temp_directory_path()), std::runtime_error);
+}
+
+// Both versions are named, of the log and of the program, and who wrote it.
+TEST_F(McapTest, RefusesALogOfAFormatThatItDoesNotKnow) {
+  const auto error = [this](const std::string& version) -> std::string {
+    {
+      McapWriter writer(path_, "test");
+      std::map<std::string, std::string> entries = FormatEntries("fovea 9.9.9");
+      entries["version"] = version;
+      writer.WriteMetadata(kFormatRecord, entries);
+      writer.Finish();
+    }
+    try {
+      Read(path_);
+    } catch (const std::runtime_error& e) {
+      return e.what();
+    }
+    return "read";
+  };
+  EXPECT_EQ(error(std::to_string(kOldestLogFormat)), "read");
+  EXPECT_EQ(error(std::to_string(kLogFormat)), "read");
+  for (const std::string& version :
+       {std::to_string(kLogFormat + 1), std::string("0"), std::string("2x"), std::string("")}) {
+    EXPECT_EQ(error(version), path_.string() + ": a log of format \"" + version +
+                                  "\", written by \"fovea 9.9.9\"; this program reads formats " +
+                                  std::to_string(kOldestLogFormat) + " to " + std::to_string(kLogFormat));
+  }
 }
 
 TEST_F(McapTest, AFullDiskIsAnError) {

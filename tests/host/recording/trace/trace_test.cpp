@@ -97,7 +97,7 @@ TEST(Trace, TickPassesOnWhatItIsTold) {
   TickTrace tick(track, probe, recorder);
   tick.Enter();
   for (std::size_t i = 0; i < task::kStageNames.size(); ++i) {
-    tick.Done(static_cast<task::Stage>(i));
+    tick.MarkStageEnd(static_cast<task::Stage>(i));
   }
   hal::TickRecord record;
   record.tick = 41;

@@ -1,4 +1,4 @@
-#include "firmware/core/barriers/keep_apart.hpp"
+#include "firmware/core/barriers/self_clearance_barrier.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "firmware/core/barriers/keep_in_view.hpp"
+#include "firmware/core/barriers/field_of_view_barrier.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // The arm's own links beside the line of sight: distances against a search, rows against differences.
-#include "firmware/core/barriers/keep_sight.hpp"
+#include "firmware/core/barriers/line_of_sight_barrier.hpp"
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ double Clearance(const config::ServoConfig& config, const VecN& q, const Vec3& p
 }
 
 // Points on the two lines, 2 mm apart and less.
-TEST(KeepSightTest, TheClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
+TEST(LineOfSightBarrierTest, TheClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(71);
   double worst = 0.0;
@@ -94,7 +94,7 @@ TEST(KeepSightTest, TheClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
   EXPECT_LT(worst, 0.002);
 }
 
-TEST(KeepSightTest, TheRowIsHowFastTheNearestLinkComesNearer) {
+TEST(LineOfSightBarrierTest, TheRowIsHowFastTheNearestLinkComesNearer) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(72);
   double worst = 0.0;
@@ -122,7 +122,7 @@ TEST(KeepSightTest, TheRowIsHowFastTheNearestLinkComesNearer) {
   EXPECT_GT(beyond, 20);
 }
 
-TEST(KeepSightTest, NothingIsKeptWhereNothingIsAskedForOrTheLinesCross) {
+TEST(LineOfSightBarrierTest, NothingIsKeptWhereNothingIsAskedForOrTheLinesCross) {
   const config::ServoConfig config = test::PandaConfig();
   const Posture posture(config, test::Ready());
   const Vec3 ahead = posture.X_BC * Vec3(0.0, 0.0, 0.4);

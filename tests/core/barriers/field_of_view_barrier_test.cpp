@@ -1,5 +1,5 @@
 // The target stays in the picture: rows against differences, and a motion that would lose it.
-#include "firmware/core/barriers/keep_in_view.hpp"
+#include "firmware/core/barriers/field_of_view_barrier.hpp"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ std::array<double, 4> Extent(const Scene& scene, const features::TargetInCamera&
 }
 
 // a dq is how fast the outermost corner moves with the camera.
-TEST(KeepInViewTest, EachRowIsTheRateOfTheOutermostCorner) {
+TEST(FieldOfViewBarrierTest, EachRowIsTheRateOfTheOutermostCorner) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(61);
   double worst = 0.0;
@@ -78,7 +78,7 @@ TEST(KeepInViewTest, EachRowIsTheRateOfTheOutermostCorner) {
   EXPECT_LT(worst, 1e-6);
 }
 
-TEST(KeepInViewTest, StandingStillIsAlwaysAllowedAndOutsideNothingGoesFurtherOut) {
+TEST(FieldOfViewBarrierTest, StandingStillIsAlwaysAllowedAndOutsideNothingGoesFurtherOut) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(62);
   for (int k = 0; k < 300; ++k) {
@@ -95,7 +95,7 @@ TEST(KeepInViewTest, StandingStillIsAlwaysAllowedAndOutsideNothingGoesFurtherOut
   }
 }
 
-TEST(KeepInViewTest, ASpheresOutlineCountsAndNothingIsSaidWhereNothingIsSeen) {
+TEST(FieldOfViewBarrierTest, ASpheresOutlineCountsAndNothingIsSaidWhereNothingIsSeen) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(63);
   Scene scene = RandomScene(random, config);

@@ -1,4 +1,4 @@
-#include "firmware/core/barriers/keep_face.hpp"
+#include "firmware/core/barriers/disc_tilt_barrier.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 namespace fovea::barriers {
 namespace {
 
-constexpr double kRate = 1.5;  // as keep_in_view.cpp has it [1/s]
+constexpr double kRate = 1.5;  // as field_of_view_barrier.cpp has it [1/s]
 
 }  // namespace
 

@@ -1,5 +1,5 @@
 // The arm beside itself and above planes: distances against a search, rows against differences.
-#include "firmware/core/barriers/keep_apart.hpp"
+#include "firmware/core/barriers/self_clearance_barrier.hpp"
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ config::ServoConfig WithPlanes() {
 double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Arm(), Planes(), LineAt(q)); }
 
 // Points on the two lines, 2 mm apart and less.
-TEST(KeepApartTest, TheHandsClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
+TEST(SelfClearanceBarrierTest, TheHandsClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
   test::RandomStates random(81);
   double worst = 0.0;
   for (int k = 0; k < 60; ++k) {
@@ -90,7 +90,7 @@ TEST(KeepApartTest, TheHandsClearanceIsTheSmallestDistanceBetweenPointsOfTheLine
   EXPECT_LT(worst, 0.002);
 }
 
-TEST(KeepApartTest, TheArmsClearanceIsThatOfItsLowestPointFromTheElbowOn) {
+TEST(SelfClearanceBarrierTest, TheArmsClearanceIsThatOfItsLowestPointFromTheElbowOn) {
   test::RandomStates random(82);
   for (int k = 0; k < 300; ++k) {
     const VecN q = random.Position(Arm());
@@ -117,7 +117,7 @@ void ExpectRow(const MotionLimits& limits, const VecN& q, const VecN& dq, const 
   worst = std::max(worst, std::abs(limits.rows[0].a.dot(dq) + rate));
 }
 
-TEST(KeepApartTest, TheRowsAreHowFastHandAndArmComeNearer) {
+TEST(SelfClearanceBarrierTest, TheRowsAreHowFastHandAndArmComeNearer) {
   test::RandomStates random(83);
   double worst_hand = 0.0;
   double worst_arm = 0.0;
@@ -147,7 +147,7 @@ TEST(KeepApartTest, TheRowsAreHowFastHandAndArmComeNearer) {
   EXPECT_GT(arms, 20);
 }
 
-TEST(KeepApartTest, NothingIsKeptWhereNothingIsAskedForOrNothingIsKnown) {
+TEST(SelfClearanceBarrierTest, NothingIsKeptWhereNothingIsAskedForOrNothingIsKnown) {
   MotionLimits limits;
   const VecN q = test::Ready();
   LimitHand(0.0, Arm(), PosesAt(q), LineAt(q), limits);

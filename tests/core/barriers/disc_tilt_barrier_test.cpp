@@ -1,5 +1,5 @@
 // A disc's face and the camera: the row against differences, and when there is none.
-#include "firmware/core/barriers/keep_face.hpp"
+#include "firmware/core/barriers/disc_tilt_barrier.hpp"
 
 #include <gtest/gtest.h>
 
@@ -34,7 +34,7 @@ struct Camera {
   model::Mat6N J_C;
 };
 
-TEST(KeepFaceTest, TheRowIsHowFastTheDiscTurnsAway) {
+TEST(DiscTiltBarrierTest, TheRowIsHowFastTheDiscTurnsAway) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(81);
   double worst = 0.0;
@@ -66,7 +66,7 @@ TEST(KeepFaceTest, TheRowIsHowFastTheDiscTurnsAway) {
   EXPECT_GT(beyond, 20);
 }
 
-TEST(KeepFaceTest, NothingIsKeptWhereAnyViewWillDoOrNothingIsKnown) {
+TEST(DiscTiltBarrierTest, NothingIsKeptWhereAnyViewWillDoOrNothingIsKnown) {
   const config::ServoConfig config = test::PandaConfig();
   const Camera camera(config, test::Ready());
   MotionLimits limits;

@@ -1,4 +1,4 @@
-#include "firmware/core/barriers/keep_sight.hpp"
+#include "firmware/core/barriers/line_of_sight_barrier.hpp"
 
 #include <algorithm>
 #include <cmath>

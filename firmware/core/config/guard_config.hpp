@@ -1,0 +1,145 @@
+// [safety] limits on the motion, as shares of the arm's own or in their units, and what stands around the
+// arm.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "firmware/core/config/fields.hpp"
+#include "firmware/core/config/predict_config.hpp"
+#include "firmware/core/model/types.hpp"
+
+namespace fovea::config {
+
+// n p >= d, in B.
+struct Plane {
+  model::Vec3 normal = model::Vec3::UnitZ();  // of length 1
+  double distance = 0.0;                      // [m]
+};
+
+// What the hand keeps out of.
+struct Obstacles {
+  static constexpr int kMost = 4;  // of each
+  int num_planes = 0;
+  int num_boxes = 0;
+  std::array<Plane, kMost> planes;
+  std::array<Box, kMost> boxes;
+};
+
+// What is bolted to the hand, as balls: the camera from the flange to its lens, and tools.
+struct HandShape {
+  static constexpr int kMost = 24;
+  struct Ball {
+    model::Vec3 p_EP = model::Vec3::Zero();  // its middle, in axes of E [m]
+    double radius = 0.0;                     // [m]
+  };
+  int num_balls = 0;
+  std::array<Ball, kMost> balls;
+
+  // Adds a capsule from `p_EA` to `p_EB` [m in E] with `radius` [m] as balls that cover it. False, with only
+  // a part added, when there is no room.
+  [[nodiscard]] bool AddCapsule(const model::Vec3& p_EA, const model::Vec3& p_EB, double radius) noexcept;
+};
+
+// What the target is kept in: the picture less a margin, in the normalised image.
+struct ViewConfig {
+  bool enabled = false;
+  double x_min = 0.0;
+  double x_max = 0.0;
+  double y_min = 0.0;
+  double y_max = 0.0;
+  double disc_cosine_min = 0.0;  // of a disc's tilt against the line of sight; 0: any
+};
+
+struct GuardConfig {
+  double joint_velocity_fraction = 0.8;
+  double joint_acceleration_fraction = 0.7;
+  double joint_jerk_fraction = 0.025;  // gentle: more asks for torque steps past their rate far out
+  double joint_position_margin = 0.02;
+  double braking_fraction = 0.5;
+  double workspace_radius = 0.85;
+  double workspace_margin = 0.002;
+  double workspace_deceleration = 2.0;
+  double cartesian_speed = 1.7;
+  double singularity_min = 0.02;
+  Obstacles obstacles;
+  HandShape hand;
+  double link_radius = 0.06;
+  ViewConfig view;
+  double sight_clearance = 0.08;
+  double hand_clearance = 0.13;
+};
+
+template <class Visitor, Struct<GuardConfig> Config>
+void Fields(Visitor& v, Config& c) noexcept {
+  constexpr const char* kShare = "share of the arm's own limit that the reference may use";
+  v.Number({"safety.joint_velocity_fraction", "", kShare}, c.joint_velocity_fraction, 0.001, 1.0);
+  v.Number({"safety.joint_acceleration_fraction", "", kShare}, c.joint_acceleration_fraction, 0.001, 1.0);
+  v.Number({"safety.joint_jerk_fraction", "", kShare}, c.joint_jerk_fraction, 0.001, 1.0);
+  v.Number({"safety.joint_position_margin", "rad", "the reference stays so far inside each joint's range"},
+           c.joint_position_margin, 0.0, 1.0);
+  v.Number({"safety.braking_fraction", "",
+            "share of the acceleration limit that stops a joint before the end of its range"},
+           c.braking_fraction, 0.001, 0.9);
+  v.Number({"safety.workspace_radius", "m", "the end effector stays in this sphere about the base"},
+           c.workspace_radius, 0.01, 1000.0);
+  v.Number({"safety.workspace_margin", "m", "the reference stays so far inside workspace, planes and boxes"},
+           c.workspace_margin, 0.0, 1.0);
+  v.Number({"safety.workspace_deceleration", "m/s^2", "with which the end effector stops before them"},
+           c.workspace_deceleration, 0.01, 100.0);
+  v.Number({"safety.cartesian_speed", "m/s", "of the end effector"}, c.cartesian_speed, 0.001, 100.0);
+  v.Number(
+      {"safety.singularity_min", "",
+       "the hand goes no nearer to a singular posture, but for a motion of the joints that ends clear of it: "
+       "smallest singular value of its Jacobian, a metre counted as 1 / 0.3 rad; 0: it may"},
+      c.singularity_min, 0.0, 1.0);
+  v.Count(
+      {"safety.planes", "m",
+       "planes n p >= d that hand, camera, tools and the arm's links from the elbow on stay above: n_x, n_y, "
+       "n_z, d, the same again"},
+      c.obstacles.num_planes, Obstacles::kMost);
+  v.Count({"safety.boxes", "m",
+           "boxes that hand, camera and tools stay out of: low x, y, z, high x, y, z, the same again"},
+          c.obstacles.num_boxes, Obstacles::kMost);
+  for (auto& plane : c.obstacles.planes) {
+    v.Derived({"safety.planes"}, plane.normal, -1.0, 1.0);
+    v.Derived({"safety.planes"}, plane.distance, -1e9, 1e9);
+  }
+  for (auto& box : c.obstacles.boxes) {
+    v.Derived({"safety.boxes"}, box.low, -1e9, 1e9);
+    v.Derived({"safety.boxes"}, box.high, -1e9, 1e9);
+  }
+  v.Derived({"safety.keep_in_view", "", "keep the target in the picture"}, c.view.enabled);
+  v.Derived({"safety.view_margin_px", "px", "the target's outline stays so far from the picture's edge"},
+            c.view.x_min, -1e6, 1e6);
+  v.Derived({"safety.view_margin_px"}, c.view.x_max, -1e6, 1e6);
+  v.Derived({"safety.view_margin_px"}, c.view.y_min, -1e6, 1e6);
+  v.Derived({"safety.view_margin_px"}, c.view.y_max, -1e6, 1e6);
+  v.Number({"safety.sight_clearance", "m",
+            "the lines of the arm's own links stay so far from the lines of sight to the target, or come no "
+            "nearer; "
+            "0: they may"},
+           c.sight_clearance, 0.0, 10.0);
+  v.Derived(
+      {"safety.disc_tilt_max", "rad",
+       "a disc's face is turned away from the line of sight by no more than this, or no further; pi / 2: it "
+       "may be seen edge-on"},
+      c.view.disc_cosine_min, 0.0, 1.0);
+  v.Number(
+      {"safety.hand_clearance", "m",
+       "the hand's line stays so far from those of the arm's first links, or comes no nearer; 0: it may"},
+      c.hand_clearance, 0.0, 10.0);
+  v.Count({"safety.tools", "m",
+           "tools on the hand, guarded as capsules: x, y, z of one end, of the other, in axes of the flange, "
+           "radius, "
+           "the same again"},
+          c.hand.num_balls, HandShape::kMost);
+  for (auto& ball : c.hand.balls) {
+    v.Derived({"safety.tools"}, ball.p_EP, -1e6, 1e6);
+    v.Derived({"safety.tools"}, ball.radius, 0.0, 1e6);
+  }
+  v.Number({"safety.link_radius", "m", "the arm's links from the elbow on are so thick before a plane"},
+           c.link_radius, 0.0, 1.0);
+}
+
+}  // namespace fovea::config

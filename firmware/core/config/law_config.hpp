@@ -1,0 +1,69 @@
+// [servo] the visual law: how the arm shall move to take the feature's error away.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "firmware/core/config/fields.hpp"
+#include "fovea/hal/types.hpp"
+
+namespace fovea::config {
+
+// The interaction matrix that the law inverts: of now, of the goal, or the mean of both.
+enum class Interaction : std::uint8_t { kCurrent, kDesired, kMean };
+inline constexpr std::array<const char*, 3> kInteractionNames{"current", "desired", "mean"};
+
+struct LawConfig {
+  double lambda = 2.0;
+  double lambda_near = 0.0;
+  double lambda_slope = 30.0;
+  Interaction interaction = Interaction::kCurrent;
+  double smooth_start_s = 0.25;
+  double damping = 0.05;
+  double posture_gain = 0.6;
+  double joint_limit_gain = 0.0;
+  double manipulability_gain = 0.0;
+  double free_speed = 0.3;
+  hal::JointArray q_posture{};
+  double unreachable_s = 1.0;
+  double unreachable_progress = 0.05;
+};
+
+template <class Visitor, Struct<LawConfig> Config>
+void Fields(Visitor& v, Config& c) noexcept {
+  v.Number({"servo.lambda", "1/s", "gain: the error decays like exp(-lambda t)"}, c.lambda, 0.0, 20.0);
+  v.Number({"servo.lambda_near", "1/s",
+            "gain near the goal, servo.lambda being that of large errors; 0: servo.lambda everywhere"},
+           c.lambda_near, 0.0, 20.0);
+  v.Number({"servo.lambda_slope", "1/s",
+            "how fast the gain changes with the feature's error at the goal, per unit of it"},
+           c.lambda_slope, 0.0, 1e6);
+  v.Choice({"servo.interaction", "",
+            "the interaction matrix that the law inverts: of now, of the goal, or the mean of both"},
+           c.interaction, kInteractionNames);
+  v.Number({"servo.smooth_start_s", "s", "the law is blended in over this time"}, c.smooth_start_s, 0.001,
+           10.0);
+  v.Number({"servo.damping", "",
+            "the task is damped in directions whose singular value is below this share of the rms one"},
+           c.damping, 1e-6, 1.0);
+  v.Number(
+      {"servo.posture_gain", "1/s", "pull of the posture in the directions that the feature leaves free"},
+      c.posture_gain, 0.0, 20.0);
+  v.Number({"servo.joint_limit_gain", "1/s",
+            "pull away from the ends of the joints' ranges in the free directions"},
+           c.joint_limit_gain, 0.0, 20.0);
+  v.Number(
+      {"servo.manipulability_gain", "rad^2/s", "pull towards more manipulability in the free directions"},
+      c.manipulability_gain, 0.0, 20.0);
+  v.Number({"servo.free_speed", "rad/s", "speed limit of these three pulls together"}, c.free_speed, 1e-6,
+           10.0);
+  v.PerJoint({"servo.posture", "rad", "that posture, one per joint; the arm's ready posture when not given"},
+             c.q_posture, -1e4, 1e4);
+  v.Number({"servo.unreachable_s", "s", "limits keep the arm from the goal for so long: Hold"},
+           c.unreachable_s, 0.001, 60.0);
+  v.Number({"servo.unreachable_progress", "",
+            "kept from the goal means that less than this share of the wanted motion is left"},
+           c.unreachable_progress, 0.0, 1.0);
+}
+
+}  // namespace fovea::config

@@ -1,0 +1,103 @@
+// The stages that decide what the motors do: the motion law, the damped stop and the clamp.
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/core/guard/clamp_torque.hpp"
+#include "firmware/core/task/servo_task.hpp"
+
+namespace fovea::task {
+namespace {
+
+constexpr double kBehind = 0.2;     // a stop that is so much behind what it should be is none [rad/s, m/s]
+constexpr double kStopShare = 0.3;  // of safety.fault_damping: what it should be at least
+constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+
+}  // namespace
+
+void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
+  const motion_laws::MotionLawInputs law_inputs{config_.arm,      state_.poses, state_.dynamics,
+                                                state_.reference, state_.q,     state_.dq};
+  const auto law = static_cast<std::size_t>(inputs.law);
+  if (inputs.change_law && config_.arm.num_joints >= motion_laws::kMotionLaws[law].joints_min) {
+    motion_laws::ChangeMotionLaw(config_.motion_law, law_inputs, inputs.law, state_.law_state);
+  }
+  switch (state_.mode.mode) {
+    case hal::Mode::kBoot:
+      if (!state_.holds) {
+        state_.tau.setZero(config_.arm.num_joints);
+        state_.law_state.Reset(state_.law_state.kind, config_.arm.num_joints);
+        break;
+      }
+      [[fallthrough]];
+    case hal::Mode::kHold:
+    case hal::Mode::kTrack:
+    case hal::Mode::kCoast:
+    case hal::Mode::kMove:
+      if (state_.inputs.bad_ticks == 0) {
+        motion_laws::MotionLaw(config_.motion_law, law_inputs, state_.law_state, state_.tau);
+        estimate::CarryLoad(
+            {config_.arm, config_.safety.stiction_fraction, config_.safety.carried_torque_fraction, Stands()},
+            state_.contact, state_.tau);
+      }
+      break;
+    case hal::Mode::kFault: StopDamped(); break;
+  }
+}
+
+// Whether the law in force is one that holds the arm where it is, whatever hangs on it, and does not learn
+// the load by itself.
+bool ServoTask::CarriesLoads() const noexcept {
+  return config_.safety.carried_torque_fraction > 0.0 && config_.motion_law.integral == 0.0 &&
+         motion_laws::kMotionLaws[static_cast<std::size_t>(state_.law_state.kind)].carries;
+}
+
+// Whether the arm is to stand, and with what hangs on it.
+bool ServoTask::Stands() const noexcept {
+  const bool may_stand = state_.mode.mode == hal::Mode::kBoot || state_.mode.mode == hal::Mode::kHold;
+  return may_stand && CarriesLoads() && state_.reference.dq.isZero(0.0);
+}
+
+void ServoTask::StopDamped() noexcept {
+  // A damped stop needs true velocities; without them only the brakes are left.
+  const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 ||
+                     state_.inputs.jumped || state_.blind || state_.mode.fault == hal::Fault::kArmStale;
+  const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
+  // Nor does damping stop a joint whose motor is dead, or that is pushed: the arm gets faster again, or no
+  // slower.
+  const double speed = state_.dq.lpNorm<Eigen::Infinity>();
+  const double falls = 1.0 - kStopShare * config_.safety.fault_damping * kPeriodS;
+  state_.stop_speed = std::min(falls * state_.stop_speed, speed);
+  const bool in_vain = speed > state_.stop_speed + kBehind;
+  if (blind || in_vain || since_s > config_.safety.brake_after_s || speed < config_.safety.brake_velocity) {
+    state_.give_up = true;
+  }
+  motion_laws::DampedStop(config_.safety.fault_damping, state_.dynamics, state_.dq, state_.tau);
+  if (state_.give_up) {
+    state_.tau.setZero();
+  }
+}
+
+void ServoTask::Clamp() noexcept {
+  // The rate counts from what the arm says is in force; when it says nothing that can be, from what was sent
+  // last. So it does behind closed brakes: what an arm then applies is its own way to hold itself.
+  model::VecN in_force = state_.tau_applied;
+  const bool told = state_.inputs.bad_ticks == 0 && state_.inputs.non_finite_ticks == 0;
+  const bool behind_brakes = state_.braked && state_.give_up;
+  for (int i = 0; i < in_force.size(); ++i) {
+    const double tau_max = config_.arm.joints[static_cast<std::size_t>(i)].tau_max;
+    if (!told || behind_brakes || std::fabs(in_force[i]) > tau_max) {
+      in_force[i] = state_.tau_before[i];
+    }
+  }
+  state_.law_state.cut = state_.tau;
+  const guard::ClampResult result = guard::ClampTorque(config_.arm, config_.safety, in_force, state_.tau);
+  state_.law_state.cut -= state_.tau;
+  state_.limits |= result.limits;
+  state_.braked = state_.give_up && (state_.tau.array() == 0.0).all();
+  if (!result.finite) {
+    LatchFault(hal::Fault::kNonFiniteControl, -1);
+  }
+}
+
+}  // namespace fovea::task

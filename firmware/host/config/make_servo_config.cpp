@@ -1,0 +1,205 @@
+// From the keys' settings, an arm, a mount and a target to the servo's configuration.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "firmware/core/motion_laws/motion_law.hpp"
+#include "firmware/core/task/servo_task.hpp"
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/roll_pitch_yaw.hpp"
+#include "firmware/host/config/servo_keys.hpp"
+
+namespace fovea::config {
+namespace {
+
+void SetFeature(const ServoSettings& settings, const TargetSettings& target,
+                features::TargetFeature& feature) {
+  const bool hold_orientation = feature.hold_orientation;
+  feature = MakeTarget(target);
+  feature.hold_orientation = hold_orientation;
+  feature.p_CO_C_star = model::Vec3(settings.goal[0], settings.goal[1], settings.goal[2]);
+  feature.R_CO_star = RollPitchYaw(settings.goal_rpy_deg);
+  if (settings.feature != "auto") {
+    const auto* form = std::find(features::kFormNames.begin(), features::kFormNames.end(), settings.feature);
+    feature.form = static_cast<features::FeatureForm>(form - features::kFormNames.begin());
+  }
+  if (!feature.IsListed()) {
+    throw InputError(fmt::format(
+        "servo.feature = \"{}\"{} is not allowed for target.kind = \"{}\": sphere has sphere and circle, "
+        "circle has circle, square has corners, side, corner_side and pose, triangle has pose and corners; "
+        "with "
+        "servo.hold_orientation no more than {} entries in all",
+        settings.feature, hold_orientation ? " with servo.hold_orientation" : "", target.kind,
+        features::kMaxDim));
+  }
+}
+
+ViewConfig MakeView(const ServoSettings& settings, const vision::Intrinsics& in) {
+  if (!(in.f_u_px > 0.0)) {
+    return {};  // a log without a camera
+  }
+  const double margin = settings.view_margin_px;
+  const auto side = [margin](double edge_px, double sign, double c_px, double f_px) {
+    return (edge_px - sign * margin - c_px) / f_px;
+  };
+  ViewConfig view;
+  view.enabled = settings.keep_in_view;
+  view.disc_cosine_min =
+      settings.disc_tilt_max < 0.5 * std::numbers::pi ? std::cos(settings.disc_tilt_max) : 0.0;
+  view.x_min = side(-0.5, -1.0, in.c_u_px, in.f_u_px);
+  view.x_max = side(in.width_px - 0.5, 1.0, in.c_u_px, in.f_u_px);
+  view.y_min = side(-0.5, -1.0, in.c_v_px, in.f_v_px);
+  view.y_max = side(in.height_px - 0.5, 1.0, in.c_v_px, in.f_v_px);
+  if (view.enabled && !(view.x_min < view.x_max && view.y_min < view.y_max)) {
+    throw InputError(
+        fmt::format("safety.view_margin_px = {} is not allowed: of a picture of {} x {} px nothing is left",
+                    margin, in.width_px, in.height_px));
+  }
+  return view;
+}
+
+// Values that are allowed each by itself and must fit each other.
+void CheckTogether(const ServoConfig& c) {
+  const model::Vec3& goal = c.feature.p_CO_C_star;
+  if (!c.feature.SeesOrientation() && goal.z() <= c.feature.radius) {
+    throw InputError(fmt::format(
+        "servo.goal = [{}, {}, {}] is not allowed: the target must be wholly before the camera, so "
+        "the third above its radius of {} m",
+        goal.x(), goal.y(), goal.z(), c.feature.radius));
+  }
+  if (c.predict.stale_s > c.predict.coast_s) {
+    throw InputError(fmt::format("servo.stale_s = {} is not allowed: at most servo.coast_s, which is {} s",
+                                 c.predict.stale_s, c.predict.coast_s));
+  }
+  if (c.guard.workspace_margin >= c.guard.workspace_radius) {
+    throw InputError(fmt::format(
+        "safety.workspace_margin = {} is not allowed: below safety.workspace_radius, which is {} m",
+        c.guard.workspace_margin, c.guard.workspace_radius));
+  }
+}
+
+void CheckSize(const char* key, const std::vector<double>& values, const robots::Robot& robot) {
+  if (!values.empty() && static_cast<int>(values.size()) != robot.model.num_joints) {
+    throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", key, values.size(),
+                                 robot.name, robot.model.num_joints));
+  }
+}
+
+void SetObstacles(const ServoSettings& settings, Obstacles& obstacles) {
+  const std::vector<double>& planes = settings.planes;
+  const std::vector<double>& boxes = settings.boxes;
+  if (planes.size() % 4 != 0) {
+    throw InputError(
+        fmt::format("safety.planes has {} entries: four for each plane are allowed", planes.size()));
+  }
+  if (boxes.size() % 6 != 0) {
+    throw InputError(fmt::format("safety.boxes has {} entries: six for each box are allowed", boxes.size()));
+  }
+  for (std::size_t i = 0; i < planes.size(); i += 4) {
+    const model::Vec3 normal(planes[i], planes[i + 1], planes[i + 2]);
+    const double length = normal.norm();
+    if (!(length > 1e-6)) {
+      throw InputError("safety.planes: a plane's normal must not be zero");
+    }
+    obstacles.planes[static_cast<std::size_t>(obstacles.num_planes++)] = {normal / length,
+                                                                          planes[i + 3] / length};
+  }
+  for (std::size_t i = 0; i < boxes.size(); i += 6) {
+    Box& box = obstacles.boxes[static_cast<std::size_t>(obstacles.num_boxes++)];
+    box.low = {boxes[i], boxes[i + 1], boxes[i + 2]};
+    box.high = {boxes[i + 3], boxes[i + 4], boxes[i + 5]};
+    if (!(box.low.array() < box.high.array()).all()) {
+      throw InputError("safety.boxes: each low corner must be below its high corner");
+    }
+  }
+}
+
+void SetPredict(const ServoSettings& settings, const vision::Intrinsics& in, PredictConfig& c) {
+  const std::vector<double>& region = settings.target_region;
+  c.target_region = {{region[0], region[1], region[2]}, {region[3], region[4], region[5]}};
+  if (!(c.target_region.low.array() < c.target_region.high.array()).all()) {
+    throw InputError("servo.target_region: the low corner must be below the high corner");
+  }
+  if (in.f_u_px > 0.0) {  // a log without a camera has none
+    c.stuck_shift = settings.stuck_shift_px / in.f_u_px;
+  }
+}
+
+void SetHand(const ServoSettings& settings, const model::Pose& X_EC, HandShape& hand) {
+  bool fits = true;
+  if (settings.camera_radius > 0.0) {
+    fits = hand.AddCapsule(model::Vec3::Zero(), X_EC.p, settings.camera_radius);
+  }
+  const std::vector<double>& t = settings.tools;
+  if (t.size() % 7 != 0) {
+    throw InputError(fmt::format("safety.tools has {} entries: seven for each tool are allowed", t.size()));
+  }
+  for (std::size_t i = 0; i < t.size(); i += 7) {
+    if (!(t[i + 6] > 0.0)) {
+      throw InputError("safety.tools: each radius must be above 0");
+    }
+    fits = fits && hand.AddCapsule({t[i], t[i + 1], t[i + 2]}, {t[i + 3], t[i + 4], t[i + 5]}, t[i + 6]);
+  }
+  if (!fits) {
+    throw InputError(
+        fmt::format("safety.tools and safety.camera_radius are not allowed: {} balls, each a radius from the "
+                    "next, must cover camera and tools; take larger radii",
+                    HandShape::kMost));
+  }
+}
+
+void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, MotionLawConfig& c) {
+  const int joints_min = motion_laws::kMotionLaws[static_cast<std::size_t>(c.kind)].joints_min;
+  if (robot.model.num_joints < joints_min) {
+    throw InputError(fmt::format(
+        "servo.motion_law = \"{}\" is not allowed: it takes {} joints, arm \"{}\" has {}",
+        kMotionLawNames[static_cast<std::size_t>(c.kind)], joints_min, robot.name, robot.model.num_joints));
+  }
+  CheckSize("servo.k_p", settings.k_p, robot);
+  CheckSize("servo.k_v", settings.k_v, robot);
+  model::ArmPoses poses;
+  model::ArmDynamics dynamics;
+  const model::VecN q = model::ToVector(robot.model.q_ready, robot.model.num_joints);
+  model::ComputePoses(robot.model, q, poses);
+  model::ComputeDynamics(robot.model, poses, model::VecN::Zero(q.size()), dynamics);
+  c.damp_by_inertia = settings.k_v.empty();
+  for (int i = 0; i < robot.model.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double inertia = dynamics.M(i, i);
+    c.k_p[k] = settings.k_p.empty() ? inertia * c.omega_n * c.omega_n : settings.k_p[k];
+    c.k_v[k] = settings.k_v.empty() ? 2.0 * c.zeta * std::sqrt(c.k_p[k] * inertia) : settings.k_v[k];
+  }
+}
+
+}  // namespace
+
+ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::Robot& robot,
+                            const model::Pose& X_EC, const vision::Intrinsics& intrinsics,
+                            const TargetSettings& target) {
+  ServoConfig config = settings.config;
+  config.arm = robot.model;
+  config.X_EC = X_EC;
+  SetFeature(settings, target, config.feature);
+  config.guard.view = MakeView(settings, intrinsics);
+  config.law.q_posture = robot.model.q_ready;
+  CheckSize("servo.posture", settings.posture, robot);
+  if (!settings.posture.empty()) {
+    for (std::size_t i = 0; i < settings.posture.size(); ++i) {
+      config.law.q_posture[i] = settings.posture[i];
+    }
+  }
+  SetMotionLaw(settings, robot, config.motion_law);
+  SetObstacles(settings, config.guard.obstacles);
+  SetHand(settings, X_EC, config.guard.hand);
+  SetPredict(settings, intrinsics, config.predict);
+  CheckTogether(config);
+  task::ServoTask probe;
+  if (const hal::Status status = probe.Init(config); !status.ok()) {
+    throw InputError(fmt::format("{}: {}", status.where(), hal::ToString(status.code())));
+  }
+  return config;
+}
+
+}  // namespace fovea::config
