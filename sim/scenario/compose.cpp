@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "firmware/core/barriers/self_clearance_barrier.hpp"
+#include "firmware/core/barriers/solid_barriers.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "sim/camera/mix_bits.hpp"

@@ -7,7 +7,7 @@
 #include <deque>
 #include <utility>
 
-#include "firmware/core/barriers/self_clearance_barrier.hpp"
+#include "firmware/core/barriers/solid_barriers.hpp"
 #include "tests/closed_loop/guard_bench.hpp"
 #include "tests/support/adversary.hpp"
 

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "firmware/core/barriers/self_clearance_barrier.hpp"
+#include "firmware/core/barriers/solid_barriers.hpp"
 #include "tests/support/adversary.hpp"
 
 namespace fovea::test {

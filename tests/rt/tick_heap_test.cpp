@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "firmware/core/model/rotation.hpp"
+#include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/core/task/servo_loop.hpp"
 #include "firmware/host/recording/flight/flight_recorder.hpp"
 #include "fovea/hal/types.hpp"

@@ -20,6 +20,9 @@ struct ArmLine {
   std::array<int, kMaxPoints> joint;  // whose link carries the point and the line to the next; -1: the base
 };
 
+// The last joints: the elbow's, and the wrist's three. What they carry is the forearm and the hand.
+inline constexpr int kForearmJoints = 4;
+
 // Real-time: yes.
 [[nodiscard]] ArmLine LineOfArm(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept;
 

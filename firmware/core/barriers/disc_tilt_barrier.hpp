@@ -7,16 +7,17 @@
 // it does.
 #pragma once
 
-#include "firmware/core/barriers/motion_limits.hpp"
+#include "firmware/core/barriers/barrier.hpp"
+#include "firmware/core/config/guard_config.hpp"
+#include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/model/types.hpp"
 
 namespace fovea::barriers {
 
-// Adds the row: what is left of n.r - cosine_min is used up no faster than exp(-rate t); `cosine_min` is that
-// of the largest tilt, 0 to 1. None where it is 0: any view will do. `p_CO_C` [m] the disc's centre, not at
-// the camera; `normal_C` of length 1, away from the camera as one looks at the disc's painted side; `J_C`
-// body Jacobian of the camera. Real-time: yes.
-void LimitTilt(double cosine_min, const model::Vec3& p_CO_C, const model::Vec3& normal_C,
-               const model::Mat6N& J_C, MotionLimits& limits) noexcept;
+// Its quantity is n.r, the cosine of the tilt, with the margin guard.view.disc_cosine_min. None where that is
+// 0: any view will do. `p_CO_C` [m] the disc's centre, not at the camera; `normal_C` of length 1, away from
+// the camera as one looks at the disc's painted side; `J_C` body Jacobian of the camera. Real-time: yes.
+[[nodiscard]] Barrier DiscTiltBarrier(const config::GuardConfig& guard, const model::Vec3& p_CO_C,
+                                      const model::Vec3& normal_C, const model::Mat6N& J_C) noexcept;
 
 }  // namespace fovea::barriers

@@ -5,8 +5,12 @@
 // target runs out of the picture by itself: its own motion counts, as far as the camera can make up for it.
 #pragma once
 
-#include "firmware/core/barriers/motion_limits.hpp"
+#include <array>
+
+#include "firmware/core/barriers/barrier.hpp"
+#include "firmware/core/config/guard_config.hpp"
 #include "firmware/core/features/target_feature.hpp"
+#include "firmware/core/model/kinematics.hpp"
 
 namespace fovea::barriers {
 
@@ -18,8 +22,10 @@ struct ViewedTarget {
   model::Vec3 normal_C = model::Vec3::Zero();  // of a disc, where it is known; else 0
 };
 
-// Adds at most four rows. None when the picture's limits are not enabled, or a point of the target is not
-// well before the camera. Real-time: yes.
-void LimitView(const config::ViewConfig& config, const ViewedTarget& target, MotionLimits& limits) noexcept;
+// One for each side of the picture; none of them when the picture's limits are not enabled, or a point of the
+// target is not well before the camera. Real-time: yes.
+using PictureBarriers = std::array<Barrier, 4>;
+[[nodiscard]] PictureBarriers FieldOfViewBarriers(const config::GuardConfig& guard,
+                                                  const ViewedTarget& target) noexcept;
 
 }  // namespace fovea::barriers

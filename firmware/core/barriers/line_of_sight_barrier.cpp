@@ -1,6 +1,5 @@
 #include "firmware/core/barriers/line_of_sight_barrier.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "firmware/core/barriers/segments.hpp"
@@ -11,7 +10,6 @@ namespace {
 using model::Vec3;
 
 constexpr int kHandJoints = 2;  // the last ones carry the camera: what lies between them is not in its way
-constexpr double kRate = 1.5;   // what is left may be used up no faster than exp(-rate t) [1/s]
 
 // Where a line of sight and a link's line are nearest to each other.
 struct Nearest {
@@ -42,27 +40,32 @@ double ClearanceOfSight(const model::ArmModel& arm, const Sight& sight) noexcept
   return NearestLink(arm, sight).pair.distance;
 }
 
-void LimitSight(double clearance, const model::ArmModel& arm, const Sight& sight, const model::Mat6N& J_C,
-                MotionLimits& limits) noexcept {
+Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight,
+                           const model::Mat6N& J_C) noexcept {
   constexpr double kTouch = 1e-6;  // lines that cross have no direction apart [m]
-  if (clearance <= 0.0) {
-    return;
+  Barrier barrier;
+  if (config.guard.sight_clearance <= 0.0) {
+    return barrier;
   }
-  const Nearest nearest = NearestLink(arm, sight);
+  const Nearest nearest = NearestLink(config.arm, sight);
   const SegmentPair& pair = nearest.pair;
   if (!(pair.distance > kTouch) || !std::isfinite(pair.distance)) {
-    return;
+    return barrier;
   }
   const Vec3 apart = (pair.on_first - pair.on_second) / pair.distance;
   // d/dt distance = apart . (v_sight - v_link); the line of sight turns about the target, which stays.
   const Vec3 apart_C = sight.X_BC.R.transpose() * apart;
-  model::VecN gradient = (1.0 - pair.s) * J_C.topRows<3>().transpose().lazyProduct(apart_C);
+  barrier.gradient = (1.0 - pair.s) * J_C.topRows<3>().transpose().lazyProduct(apart_C);
   model::LinearJacobian J_link;
-  model::ComputeLinearJacobian(arm, sight.poses, pair.on_second, J_link);
+  model::ComputeLinearJacobian(config.arm, sight.poses, pair.on_second, J_link);
   for (int i = 0; i <= nearest.joint; ++i) {
-    gradient[i] -= J_link.col(i).dot(apart);
+    barrier.gradient[i] -= J_link.col(i).dot(apart);
   }
-  limits.AddRow(-gradient, std::max(kRate * (pair.distance - clearance), 0.0));
+  barrier.name = hal::Limit::kFieldOfView;
+  barrier.value = pair.distance;
+  barrier.margin = config.guard.sight_clearance;
+  barrier.rate = config.guard.barrier_rate;
+  return barrier;
 }
 
 }  // namespace fovea::barriers

@@ -4,11 +4,12 @@
 // With the hand where a target asks for it, another part of the arm may come between: the elbow, or the
 // forearm. They are taken as the arm's line (arm_line.hpp), of which their thickness is a part of the
 // clearance; the links between the last joints carry the camera and are never in its way. How near the links'
-// lines come to the line of sight is a limit on the motion like the others (motion_limits.hpp).
+// lines come to the line of sight is a barrier like the others (barrier.hpp).
 #pragma once
 
 #include "firmware/core/barriers/arm_line.hpp"
-#include "firmware/core/barriers/motion_limits.hpp"
+#include "firmware/core/barriers/barrier.hpp"
+#include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/features/target_feature.hpp"
 #include "firmware/core/model/kinematics.hpp"
 
@@ -26,10 +27,10 @@ struct Sight {
 // [m]. Real-time: yes.
 [[nodiscard]] double ClearanceOfSight(const model::ArmModel& arm, const Sight& sight) noexcept;
 
-// Adds the row that keeps the nearest link's line `clearance` [m] away from the lines of sight; what is
-// already nearer may not come nearer still. None where `clearance` is 0, and none where the two cross: there
-// is no way apart then. `J_C`: body Jacobian of the camera. Real-time: yes.
-void LimitSight(double clearance, const model::ArmModel& arm, const Sight& sight, const model::Mat6N& J_C,
-                MotionLimits& limits) noexcept;
+// The same as a barrier, which keeps it guard.sight_clearance [m] at least; what is already nearer may not
+// come nearer still. None where the clearance is 0, and none where the two cross: there is no way apart then.
+// `J_C`: body Jacobian of the camera. Real-time: yes.
+[[nodiscard]] Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight,
+                                         const model::Mat6N& J_C) noexcept;
 
 }  // namespace fovea::barriers

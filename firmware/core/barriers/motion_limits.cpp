@@ -7,23 +7,29 @@
 #include "firmware/core/trajectory/joint_pace.hpp"
 
 namespace fovea::barriers {
-namespace {
-
-// The row's boundary lies inside the guard's, and pushes back: on the guard's own boundary its proof would
-// let nothing pass that moves along it, since every step along a sphere leads out of it.
-constexpr double kInsideGuard = 0.002;  // [m]
-constexpr double kReturnRate = 5.0;     // what is past the boundary goes back with this rate [1/s]
-constexpr double kReturnSpeed = 0.02;   // but no faster [m/s]
-
-}  // namespace
-
-void MotionLimits::AddRow(const model::VecN& a, double b) noexcept {
-  if (num_rows >= kMaxRows) {
-    complete = false;
+void MotionLimits::Add(const Barrier& barrier) noexcept {
+  if (barrier.value == HUGE_VAL) {
     return;
   }
-  rows[static_cast<std::size_t>(num_rows)] = {a, b};
-  ++num_rows;
+  if (LimitRow* row = NewRow()) {
+    row->a = -barrier.gradient;
+    row->b = barrier.SpeedMost();
+    row->name = barrier.name;
+  }
+}
+
+void MotionLimits::AddRow(const model::VecN& a, double b) noexcept {
+  if (LimitRow* row = NewRow()) {
+    *row = {a, b};
+  }
+}
+
+LimitRow* MotionLimits::NewRow() noexcept {
+  if (num_rows >= kMaxRows) {
+    complete = false;
+    return nullptr;
+  }
+  return &rows[static_cast<std::size_t>(num_rows++)];
 }
 
 bool MotionLimits::KeptBy(const model::VecN& dq) const noexcept {
@@ -66,29 +72,6 @@ void LimitAcceleration(const config::ServoConfig& config, const trajectory::Refe
     limits.dq_min[i] = std::clamp(reference.dq[i] - change, dq_min, dq_max);
     limits.dq_max[i] = std::clamp(reference.dq[i] + change, dq_min, dq_max);
   }
-}
-
-void LimitOutwardMotion(const config::ServoConfig& config, const model::Vec3& p_BE,
-                        const model::LinearJacobian& J_E_B, const model::VecN& dq,
-                        MotionLimits& limits) noexcept {
-  const config::GuardConfig& guard = config.guard;
-  const double radius = p_BE.norm();
-  if (radius < 1e-6) {
-    return;  // at the centre every direction leads out, and none is near the boundary
-  }
-  const model::Vec3 outward = p_BE / radius;
-  const model::Vec3 v_E = J_E_B.lazyProduct(dq);
-  const double v_out = v_E.dot(outward);
-  // Along the boundary the centripetal share of the deceleration is spent, at most half of it.
-  const double spent = (v_E - v_out * outward).squaredNorm() / radius;
-  const double deceleration =
-      std::max(guard.workspace_deceleration - spent, 0.5 * guard.workspace_deceleration);
-  const double distance = guard.workspace_radius - guard.workspace_margin - kInsideGuard - radius;
-  const double v_max = distance > 0.0
-                           ? BarrierSpeed(distance, deceleration, trajectory::SlowestReaction(config))
-                           : std::max(kReturnRate * distance, -kReturnSpeed);
-  const model::VecN a = J_E_B.transpose().lazyProduct(outward);
-  limits.AddRow(a, v_max);
 }
 
 double ScaleIntoRange(const MotionLimits& limits, model::VecN& dq) noexcept {

@@ -6,7 +6,11 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 
+#include "firmware/core/barriers/barrier.hpp"
+#include "firmware/core/barriers/field_of_view_barrier.hpp"
+#include "firmware/core/barriers/solid_barriers.hpp"
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/trajectory/reference.hpp"
@@ -16,12 +20,13 @@ namespace fovea::barriers {
 struct LimitRow {
   model::VecN a;  // [num_joints]
   double b = 0.0;
+  hal::Limit name = hal::Limit::kWorkspace;
 };
 
 struct MotionLimits {
-  // Planes and boxes; workspace, arm before planes, hand before the arm, singularity; four sides of the
-  // picture, line of sight, tilt.
-  static constexpr int kMaxRows = 2 * config::Obstacles::kMost + 4 + 6;
+  // What the arm can run into, the singularity; the picture's sides, line of sight, tilt.
+  static constexpr int kMaxRows =
+      SolidBarriers::kMost + 1 + static_cast<int>(std::tuple_size_v<PictureBarriers>) + 2;
 
   model::VecN dq_min;  // [num_joints]
   model::VecN dq_max;  // [num_joints]
@@ -29,10 +34,16 @@ struct MotionLimits {
   std::array<LimitRow, kMaxRows> rows;  // a^T dq <= b
   bool complete = true;                 // false: there was no room for a row, and no dq keeps the limits
 
+  // The barrier as a row; nothing where there is nothing to keep.
+  void Add(const Barrier& barrier) noexcept;
   void AddRow(const model::VecN& a, double b) noexcept;
 
   // Whether `dq` [num_joints] keeps all of them. Not finite: no.
   [[nodiscard]] bool KeptBy(const model::VecN& dq) const noexcept;
+
+ private:
+  // Null, and no longer complete, when there is no room.
+  [[nodiscard]] LimitRow* NewRow() noexcept;
 };
 
 // Sets the range of each joint by its velocity limit and, by BarrierSpeed, the end of its range of motion;
@@ -44,14 +55,6 @@ void LimitJoints(const config::ServoConfig& config, const model::VecN& q, Motion
 // leave the guard's jerk limit, which aims ahead, nothing to aim at.) Real-time: yes.
 void LimitAcceleration(const config::ServoConfig& config, const trajectory::Reference& reference,
                        MotionLimits& limits) noexcept;
-
-// Adds the workspace's row (THEORY B5): the end effector at `p_BE` [m], moving by `J_E_B` [3 x num_joints]
-// and at present with the joint velocities `dq`, may go outward only so fast. The boundary is the guard's
-// less 2 mm; past it the row asks for a slow way back, so standing still does not keep it there. Real-time:
-// yes.
-void LimitOutwardMotion(const config::ServoConfig& config, const model::Vec3& p_BE,
-                        const model::LinearJacobian& J_E_B, const model::VecN& dq,
-                        MotionLimits& limits) noexcept;
 
 // Scales `dq` as a whole until every joint is in its range, so that its direction stays; a joint whose range
 // excludes 0 is then put into it on its own. Rows are not looked at. Returns the scale. Real-time: yes.

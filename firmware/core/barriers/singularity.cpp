@@ -51,10 +51,14 @@ bool IsNear(const SingularityConfig& config, const model::Mat6N& J, double speed
   return !(singularity.sigma > near);
 }
 
-void LimitSingularity(const SingularityConfig& config, const Singularity& singularity,
-                      MotionLimits& limits) noexcept {
-  const model::VecN a = -singularity.gradient;
-  limits.AddRow(a, config.rate * std::max(singularity.sigma - config.sigma_min, 0.0));
+Barrier SingularityBarrier(const SingularityConfig& config, const Singularity& singularity) noexcept {
+  Barrier barrier;
+  barrier.name = hal::Limit::kSingularity;
+  barrier.value = singularity.sigma;
+  barrier.gradient = singularity.gradient;
+  barrier.margin = config.sigma_min;
+  barrier.rate = config.rate;
+  return barrier;
 }
 
 }  // namespace fovea::barriers

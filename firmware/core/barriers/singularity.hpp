@@ -8,7 +8,8 @@
 // 0.
 #pragma once
 
-#include "firmware/core/barriers/motion_limits.hpp"
+#include "firmware/core/barriers/barrier.hpp"
+#include "firmware/core/model/kinematics.hpp"
 
 namespace fovea::barriers {
 
@@ -40,9 +41,8 @@ struct SingularityWatch {
 bool IsNear(const SingularityConfig& config, const model::Mat6N& J, double speed, double reach,
             SingularityWatch& watch, Singularity& singularity) noexcept;
 
-// Adds the row  dsigma/dt >= -rate (sigma - sigma_min), or >= 0 where sigma is already below: standing still
-// is always allowed. False, and nothing added, when there is no room. Real-time: yes.
-void LimitSingularity(const SingularityConfig& config, const Singularity& singularity,
-                      MotionLimits& limits) noexcept;
+// Its quantity is sigma, with the margin sigma_min: standing still is always allowed. Real-time: yes.
+[[nodiscard]] Barrier SingularityBarrier(const SingularityConfig& config,
+                                         const Singularity& singularity) noexcept;
 
 }  // namespace fovea::barriers

@@ -68,6 +68,7 @@ struct GuardConfig {
   ViewConfig view;
   double sight_clearance = 0.08;
   double hand_clearance = 0.13;
+  double barrier_rate = 1.5;
 };
 
 template <class Visitor, Struct<GuardConfig> Config>
@@ -140,6 +141,10 @@ void Fields(Visitor& v, Config& c) noexcept {
   }
   v.Number({"safety.link_radius", "m", "the arm's links from the elbow on are so thick before a plane"},
            c.link_radius, 0.0, 1.0);
+  v.Number({"safety.barrier_rate", "1/s",
+            "what is left before the picture's edge, a line of sight, a disc's largest tilt and the hand's "
+            "clearance is used up no faster than exp(-rate t)"},
+           c.barrier_rate, 0.1, 20.0);
 }
 
 }  // namespace fovea::config

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/core/barriers/line_of_sight_barrier.hpp"
+#include "firmware/core/barriers/links_barrier.hpp"
 #include "firmware/core/barriers/obstacle.hpp"
 #include "firmware/core/barriers/self_clearance_barrier.hpp"
 #include "firmware/core/barriers/singularity.hpp"

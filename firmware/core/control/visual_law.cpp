@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "firmware/core/control/compress_task.hpp"
+#include "firmware/core/control/visual_laws.hpp"
 
 namespace fovea::control {
 
@@ -16,11 +17,7 @@ double GainAt(const config::LawConfig& config, double e) noexcept {
 
 void ChooseInteraction(const config::LawConfig& config, const features::InteractionMatrix& L_s_star,
                        features::FeatureState& feature) noexcept {
-  switch (config.interaction) {
-    case config::Interaction::kCurrent: break;
-    case config::Interaction::kDesired: feature.L_s = L_s_star; break;
-    case config::Interaction::kMean: feature.L_s = 0.5 * (feature.L_s + L_s_star); break;
-  }
+  kVisualLaws[static_cast<std::size_t>(config.interaction)](L_s_star, feature);
 }
 
 void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,

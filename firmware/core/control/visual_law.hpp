@@ -34,10 +34,8 @@ void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,
 // vpAdaptiveGain does the same by an exponential.) Real-time: yes.
 [[nodiscard]] double GainAt(const config::LawConfig& config, double e) noexcept;
 
-// Puts the matrix that the law shall invert into `feature.L_s`, as config.interaction says: its own, or with
-// that of the goal, `L_s_star`, of the same size. The one of the goal gives straighter ways in the image far
-// off and cannot be singular when the goal is not; the mean of both is right to second order (Malis,
-// Improving vision-based control using efficient second-order minimization techniques, 2004). Real-time: yes.
+// Puts the matrix that the law shall invert into `feature.L_s`, by the law that config.interaction names
+// (visual_laws.hpp). `L_s_star` is that of the goal, of the same size. Real-time: yes.
 void ChooseInteraction(const config::LawConfig& config, const features::InteractionMatrix& L_s_star,
                        features::FeatureState& feature) noexcept;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/core/barriers/barrier_speed.hpp"
+#include "firmware/core/barriers/workspace_barrier.hpp"
 #include "firmware/core/guard/stop_path.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"
 #include "firmware/core/trajectory/velocity_step.hpp"
@@ -80,41 +81,35 @@ LimitSet LimitJointPosition(const config::ServoConfig& config, const model::VecN
 // Workspace: the part of the motion that leads out of the sphere too fast is taken away.
 LimitSet LimitWorkspace(const config::ServoConfig& config, const model::Vec3& p_BE,
                         const LinearJacobian& J_E_B, model::VecN& dq) noexcept {
-  const config::GuardConfig& guard = config.guard;
   const double radius = p_BE.norm();
-  if (radius < 1e-6) {
-    return 0;  // at the centre every direction leads out, and none is near the boundary
-  }
-  LimitSet limits = 0;
   const model::Vec3 outward = p_BE / radius;
   const model::Vec3 v_E = J_E_B.lazyProduct(dq);
   double v_out = v_E.dot(outward);
-  // Along the boundary the centripetal share v_t^2 / r of the deceleration is spent; at most half of it may
-  // be, so the rest still stops the outward motion.
   const double v_t2 = (v_E - v_out * outward).squaredNorm();
-  const double v_t2_max = 0.5 * guard.workspace_deceleration * radius;
-  const double distance = guard.workspace_radius - guard.workspace_margin - radius;
-  double spent = v_t2;
-  if (v_t2 > v_t2_max && distance < v_t2 / (2.0 * guard.workspace_deceleration)) {
+  const barriers::Barrier edge = barriers::WorkspaceBarrier(config, p_BE, v_t2);
+  if (edge.value == HUGE_VAL) {
+    return 0;
+  }
+  LimitSet limits = 0;
+  // Along the edge at most half of the deceleration may be spent.
+  const double deceleration = config.guard.workspace_deceleration;
+  const double v_t2_max = 0.5 * deceleration * radius;
+  if (v_t2 > v_t2_max && edge.value - edge.margin < v_t2 / (2.0 * deceleration)) {
     const double scale = std::sqrt(v_t2_max / v_t2);
     dq *= scale;
     v_out *= scale;
-    spent = v_t2_max;
     limits |= Bit(Limit::kWorkspace);
   }
-  const double deceleration =
-      std::max(guard.workspace_deceleration - spent / radius, 0.5 * guard.workspace_deceleration);
-  const double v_max = barriers::BarrierSpeed(distance, deceleration, trajectory::SlowestReaction(config));
+  const double v_max = edge.SpeedMost();
   if (v_out > v_max) {
     // Smallest change of dq that brings the outward speed to v_max.
-    model::VecN a = model::VecN::Zero(dq.size());
+    const model::VecN gradient = barriers::WorkspaceGradient(J_E_B, outward);
     double a2 = 0.0;
     for (int i = 0; i < dq.size(); ++i) {
-      a[i] = J_E_B.col(i).dot(outward);
-      a2 += a[i] * a[i];
+      a2 += gradient[i] * gradient[i];
     }
     if (a2 > 1e-9) {
-      dq -= a * ((v_out - v_max) / a2);
+      dq += gradient * ((v_out - v_max) / a2);
     }
     limits |= Bit(Limit::kWorkspace);
   }

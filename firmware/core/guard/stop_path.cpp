@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "firmware/core/barriers/obstacle.hpp"
-#include "firmware/core/barriers/self_clearance_barrier.hpp"
+#include "firmware/core/barriers/solid_barriers.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/trajectory/velocity_change.hpp"
 
@@ -114,27 +113,13 @@ class StopWay {
 class Bounds {
  public:
   Bounds(const config::ServoConfig& config, const model::ArmPoses& now) noexcept
-      : config_(config),
-        guard_(config.guard),
-        num_obstacles_(barriers::CountObstacles(guard_.obstacles)),
-        radius_(std::max(guard_.workspace_radius - guard_.workspace_margin, now.X_BE.p.norm()) + kSlack) {
-    clear_now_ = radius_ - now.X_BE.p.norm();
-    const auto keep = [this](double margin, double clearance) {
-      const double least = std::min(margin, clearance) - kSlack;
-      clear_now_ = std::min(clear_now_, clearance - least);
-      return least;
-    };
-    for (int i = 0; i < num_obstacles_; ++i) {
-      least_[static_cast<std::size_t>(i)] = keep(guard_.workspace_margin, HandTo(i, now));
-    }
-    if (guard_.obstacles.num_planes > 0 || guard_.hand_clearance > 0.0) {
-      const barriers::ArmLine line = barriers::LineOfArm(config.arm, now);
-      least_of_links_ = keep(guard_.workspace_margin, barriers::ClearanceOfPlanes(config.arm, guard_, line));
-      const double apart = barriers::ClearanceOfHand(config.arm, line);
-      least_apart_ = std::min(guard_.hand_clearance - kSoft, apart) - kSlack;
-      if (guard_.hand_clearance > 0.0) {
-        clear_now_ = std::min(clear_now_, 0.5 * (apart - least_apart_));
-      }
+      : arm_(config.arm), solid_(config) {
+    const barriers::ArmLine line = barriers::LineOfArm(arm_, now);
+    for (int i = 0; i < solid_.size(); ++i) {
+      const double value = solid_.ValueOf(i, now, line);
+      const double least = std::min(solid_.StopMarginOf(i), value) - kSlack;
+      least_[static_cast<std::size_t>(i)] = least;
+      clear_now_ = std::min(clear_now_, solid_.ShareOf(i) * (value - least));
     }
   }
 
@@ -143,53 +128,24 @@ class Bounds {
 
   // The distance that any point may still go; below 0, and `passed` set, where a bound is passed.
   double Clear(const model::ArmPoses& poses, hal::LimitSet& passed) const noexcept {
-    double clear = radius_ - poses.X_BE.p.norm();
-    if (!(clear >= 0.0)) {
-      passed = hal::Bit(hal::Limit::kWorkspace);
-      return clear;
-    }
-    const auto keep = [&](double left) {
+    const barriers::ArmLine line = barriers::LineOfArm(arm_, poses);
+    double clear = HUGE_VAL;
+    for (int i = 0; i < solid_.size(); ++i) {
+      const double left = solid_.ValueOf(i, poses, line) - least_[static_cast<std::size_t>(i)];
+      clear = std::min(clear, solid_.ShareOf(i) * left);
       if (!(left >= 0.0)) {
-        passed = hal::Bit(hal::Limit::kObstacle);
-      }
-      clear = std::min(clear, left);
-      return left >= 0.0;
-    };
-    for (int i = 0; i < num_obstacles_; ++i) {
-      if (!keep(HandTo(i, poses) - least_[static_cast<std::size_t>(i)])) {
+        passed = hal::Bit(solid_.NameOf(i));
         return clear;
-      }
-    }
-    if (guard_.obstacles.num_planes > 0 || guard_.hand_clearance > 0.0) {
-      const barriers::ArmLine line = barriers::LineOfArm(config_.arm, poses);
-      if (!keep(barriers::ClearanceOfPlanes(config_.arm, guard_, line) - least_of_links_)) {
-        return clear;
-      }
-      if (guard_.hand_clearance > 0.0) {
-        keep(0.5 * (barriers::ClearanceOfHand(config_.arm, line) - least_apart_));  // both may move
       }
     }
     return clear;
   }
 
  private:
-  // The rows of the resolution (self_clearance_barrier.hpp) are nearly on their boundary where the arm slides
-  // along it: the proof leaves them so much room [m].
-  static constexpr double kSoft = 0.01;
-
-  [[nodiscard]] double HandTo(int i, const model::ArmPoses& poses) const noexcept {
-    return barriers::ClearanceOf(guard_.obstacles, i, guard_.hand, poses.X_BE).clearance.distance;
-  }
-
-  const config::ServoConfig& config_;
-  const config::GuardConfig& guard_;
-  int num_obstacles_;
-  double radius_;
-  std::array<double, 2 * config::Obstacles::kMost>
-      least_{};  // clearance of the hand from each that must be kept
-  double clear_now_ = 0.0;
-  double least_of_links_ = 0.0;  // and of the links from the planes
-  double least_apart_ = 0.0;     // and of the hand from the arm's trunk
+  const model::ArmModel& arm_;
+  barriers::SolidBarriers solid_;
+  std::array<double, barriers::SolidBarriers::kMost> least_{};  // value of each that must be kept
+  double clear_now_ = HUGE_VAL;
 };
 
 }  // namespace

@@ -92,8 +92,8 @@ void ModeFields(Archive& a, T& s) noexcept {
   a.Int(s.fault_joint);
   a(s.mode_since_ns);
   a(s.track_since_ns);
-  a(s.blocked_ns);
-  Entries(a, s.p_BO_unreachable);
+  a(s.reach.blocked_ns);
+  Entries(a, s.reach.p_BO_unreachable);
   Entries(a, s.R_BC_held);
 }
 
@@ -248,9 +248,8 @@ void TorqueFields(Archive& a, T& s) noexcept {
   SizedEntries(a, s.law_state.step);
   a(s.law_state.since_change_s);
   SizedEntries(a, s.tau);
-  a(s.stop_speed);
-  a(s.give_up);
-  a(s.braked);
+  a.Choice(s.stop.stage, guard::FaultStop::kNumStages);
+  a(s.stop.speed_due);
 }
 
 // To what the state's classes keep to themselves.

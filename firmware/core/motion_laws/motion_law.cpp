@@ -20,15 +20,6 @@ double Fade(const config::MotionLawConfig& config, const MotionLawState& state) 
 
 }  // namespace
 
-// In the order of MotionLawKind.
-const std::array<MotionLawEntry, config::kNumMotionLaws> kMotionLaws{{
-    {config::MotionLawKind::kComputedTorque, ComputedTorque, 1, true},
-    {config::MotionLawKind::kPd, PdLaw, 1, false},
-    {config::MotionLawKind::kJointImpedance, JointImpedance, 1, false},
-    {config::MotionLawKind::kOperationalSpace, OperationalSpace, 6, true},
-    {config::MotionLawKind::kFloat, Float, 1, false},
-}};
-
 void MotionLawState::Reset(config::MotionLawKind law, int num_joints) noexcept {
   kind = law;
   integral.setZero(num_joints);
@@ -60,12 +51,6 @@ void ChangeMotionLaw(const config::MotionLawConfig& config, const MotionLawInput
   state.kind = kind;
   state.step = before - after;
   state.since_change_s = 0.0;
-}
-
-void DampedStop(double damping, const model::ArmDynamics& dynamics, const model::VecN& dq,
-                model::VecN& tau) noexcept {
-  tau = dynamics.M.lazyProduct(dq);
-  tau *= -damping;
 }
 
 }  // namespace fovea::motion_laws

@@ -1,11 +1,10 @@
 // Stage 4, motion law: from the joints' reference to their torques. Several laws, chosen by servo.motion_law
-// and changed while the arm moves; each is a file in this folder and a line in kMotionLaws.
+// and changed while the arm moves; each is a file in this folder and a line in kMotionLaws (motion_laws.hpp).
 //
 // Gravity and motor friction are the arm's own affair at the seam. What friction it leaves to the servo, and
 // springs, are the laws' affair, as far as the configuration says.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "firmware/core/config/servo_config.hpp"
@@ -44,19 +43,5 @@ void MotionLaw(const config::MotionLawConfig& config, const MotionLawInputs& inp
 // whatever each of them asks. `inputs` as in the last call. Real-time: yes.
 void ChangeMotionLaw(const config::MotionLawConfig& config, const MotionLawInputs& inputs,
                      config::MotionLawKind kind, MotionLawState& state) noexcept;
-
-struct MotionLawEntry {
-  config::MotionLawKind kind;
-  void (*torque)(const config::MotionLawConfig&, const MotionLawInputs&, MotionLawState&,
-                 model::VecN&) noexcept;
-  int joints_min;  // arms with fewer joints cannot be driven by it
-  bool carries;    // a load that nobody told it of, where the arm stands; else it gives way as its springs do
-};
-extern const std::array<MotionLawEntry, config::kNumMotionLaws> kMotionLaws;
-
-// The damped stop of mode Fault: tau = -damping M dq, which takes the speed away like exp(-damping t).
-// Real-time: yes.
-void DampedStop(double damping, const model::ArmDynamics& dynamics, const model::VecN& dq,
-                model::VecN& tau) noexcept;
 
 }  // namespace fovea::motion_laws

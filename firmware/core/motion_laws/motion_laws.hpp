@@ -1,5 +1,7 @@
-// The laws themselves; see kMotionLaws in motion_law.cpp. Each writes `tau` [num_joints] at the seam.
+// The laws themselves, and their list. Each writes `tau` [num_joints] at the seam.
 #pragma once
+
+#include <array>
 
 #include "firmware/core/motion_laws/motion_law.hpp"
 
@@ -41,5 +43,22 @@ void OperationalSpace(const config::MotionLawConfig& config, const MotionLawInpu
 // No torque: the arm floats on its gravity compensation, to be led by hand.
 void Float(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
            model::VecN& tau) noexcept;
+
+struct MotionLawEntry {
+  config::MotionLawKind kind;
+  void (*torque)(const config::MotionLawConfig&, const MotionLawInputs&, MotionLawState&,
+                 model::VecN&) noexcept;
+  int joints_min;  // arms with fewer joints cannot be driven by it
+  bool carries;    // a load that nobody told it of, where the arm stands; else it gives way as its springs do
+};
+
+// In the order of MotionLawKind.
+inline constexpr std::array<MotionLawEntry, config::kNumMotionLaws> kMotionLaws{{
+    {config::MotionLawKind::kComputedTorque, ComputedTorque, 1, true},
+    {config::MotionLawKind::kPd, PdLaw, 1, false},
+    {config::MotionLawKind::kJointImpedance, JointImpedance, 1, false},
+    {config::MotionLawKind::kOperationalSpace, OperationalSpace, 6, true},
+    {config::MotionLawKind::kFloat, Float, 1, false},
+}};
 
 }  // namespace fovea::motion_laws

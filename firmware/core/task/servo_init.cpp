@@ -4,7 +4,7 @@
 
 #include "firmware/core/config/range_check.hpp"
 #include "firmware/core/features/hold_orientation.hpp"
-#include "firmware/core/motion_laws/motion_law.hpp"
+#include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/core/task/servo_task.hpp"
 
 namespace fovea::task {

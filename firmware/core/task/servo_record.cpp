@@ -49,7 +49,7 @@ void ServoTask::WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) 
   record.command.state_sequence = state_.inputs.sequence;
   record.command.num_joints = config_.arm.num_joints;
   record.command.tau_cmd = model::ToArray(state_.tau);
-  record.command.engage_brakes = state_.braked;
+  record.command.engage_brakes = state_.stop.stage == guard::FaultStop::Stage::kBraked;
 }
 
 }  // namespace fovea::task

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "firmware/core/features/hold_orientation.hpp"
+#include "firmware/core/guard/guard_motion.hpp"
+#include "firmware/core/task/enter_mode.hpp"
 #include "firmware/core/task/servo_task.hpp"
 #include "firmware/core/trajectory/smooth_step.hpp"
 
@@ -72,7 +74,7 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     state_.reference.q = state_.q;
     state_.reference.dq.setZero();
     state_.reference.ddq.setZero();
-    ForgetMotion();
+    ForgetMotion(state_);
     return;
   }
   if (state_.inputs.bad_ticks > 0) {
@@ -152,8 +154,7 @@ void ServoTask::UpdateBlockedTime() noexcept {
               control::Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
                   config_.law.unreachable_progress;
   }
-  // Noise lets it through for a tick now and then: what counts is how often it is kept.
-  control::CountTick(blocked, state_.blocked_ns);
+  control::UpdateBlockedTime(blocked, state_.reach);
 }
 
 // Whether steering by what is seen brings the goal nearer. A way by the joints may lead away from it at

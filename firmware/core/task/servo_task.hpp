@@ -4,23 +4,14 @@
 // outputs to the last bit, in the simulator, on the robot, and in a replay.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 
 #include "firmware/core/config/servo_config.hpp"
-#include "firmware/core/control/visual_law.hpp"
-#include "firmware/core/control/way_to_goal.hpp"
-#include "firmware/core/estimate/contact.hpp"
-#include "firmware/core/estimate/encoder_watch.hpp"
-#include "firmware/core/estimate/eye_watch.hpp"
-#include "firmware/core/estimate/predict.hpp"
 #include "firmware/core/features/feature_state.hpp"
-#include "firmware/core/guard/guard_motion.hpp"
-#include "firmware/core/model/dynamics.hpp"
-#include "firmware/core/motion_laws/motion_law.hpp"
 #include "firmware/core/moves/follow_motion.hpp"
 #include "firmware/core/task/check_inputs.hpp"
 #include "firmware/core/task/modes.hpp"
+#include "firmware/core/task/servo_state.hpp"
 #include "firmware/core/task/stage_probe.hpp"
 #include "fovea/hal/arm.hpp"
 #include "fovea/hal/record.hpp"
@@ -44,66 +35,6 @@ struct ServoInputs {
 struct ServoOutputs {
   hal::TickRecord record;
   [[nodiscard]] const hal::ArmCommand& command() const noexcept { return record.command; }
-};
-
-// Intermediate terms, grouped by the stage that computes them; each is overwritten in its turn.
-struct ServoState {
-  std::uint64_t tick = 0;
-
-  // check inputs
-  std::int64_t now_ns = 0;  // the time for which this tick computes
-  InputState inputs;
-  model::VecN q;            // [num_joints] sound
-  model::VecN dq;           // [num_joints] sound
-  model::VecN tau_applied;  // [num_joints] sound
-
-  // model
-  model::ArmPoses poses;
-  model::ArmDynamics dynamics;
-  model::Pose X_BC;
-  model::Mat6N J_C;
-  model::LinearJacobian J_E_B;
-
-  // contact
-  estimate::ContactState contact;
-  estimate::EncoderWatch encoders;
-  bool blind = false;  // a joint's encoder hangs
-
-  // predict
-  hal::Intake intake = hal::Intake::kNone;  // of this tick's measurement
-  estimate::PredictState predict;
-  estimate::Prediction prediction;
-
-  // modes
-  estimate::EyeWatch eye;
-  ModeState mode;
-  std::int32_t fault_joint = -1;
-  std::int64_t mode_since_ns = 0;
-  std::int64_t track_since_ns = 0;  // the last entry into Track from Hold
-  std::int64_t blocked_ns = 0;      // how much longer limits have kept the arm from the goal than not
-  model::Vec3 p_BO_unreachable = model::Vec3::Zero();
-
-  // visual law
-  bool feature_valid = false;
-  features::FeatureState feature;
-  model::Mat3 R_BC_held = model::Mat3::Identity();  // the camera's when Track began
-  control::VisualLawOutput law;
-  control::WayToGoal way;  // of a target that is steered by in all six degrees of freedom
-
-  // guard
-  control::ResolvedMotion resolved;
-  trajectory::Reference reference;
-  bool holds = false;         // in Boot: the reference stands where the arm was found
-  moves::MotionState motion;  // mode Move
-  hal::LimitSet limits = 0;
-
-  // motion law and clamp
-  motion_laws::MotionLawState law_state;
-  model::VecN tau;
-  model::VecN tau_before;        // the command of the tick before
-  double stop_speed = HUGE_VAL;  // in Fault: how slow the fastest joint should be by now [rad/s, m/s]
-  bool give_up = false;          // in Fault: no torque any more
-  bool braked = false;           // and the brakes, once it is gone
 };
 
 // One tick: here, or on another processor.
@@ -136,15 +67,14 @@ class ServoTask final : public ServoStep {
  private:
   void CheckArm(const ServoInputs& inputs, InputCheck& check) noexcept;
   void ComputeModel() noexcept;
+  void WatchForContact(std::int32_t missed_ticks, InputCheck& check) noexcept;
   void PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noexcept;
   void ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept;
   void ComputeVisualLaw() noexcept;
   [[nodiscard]] bool ComputeFeature() noexcept;
   void ChooseTheWay() noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
-  void CheckContact(std::int32_t missed_ticks, hal::Fault& fault, std::int32_t& joint) noexcept;
   [[nodiscard]] bool IsOutside() const noexcept;
-  void ForgetMotion() noexcept;
   void CheckFollowing() noexcept;
   void UpdateBlockedTime() noexcept;
   void NoteSteering() noexcept;

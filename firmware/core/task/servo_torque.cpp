@@ -1,17 +1,14 @@
 // The stages that decide what the motors do: the motion law, the damped stop and the clamp.
-#include <algorithm>
 #include <cmath>
 
 #include "firmware/core/guard/clamp_torque.hpp"
+#include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/core/task/servo_task.hpp"
 
 namespace fovea::task {
 namespace {
 
-constexpr double kBehind = 0.2;     // a stop that is so much behind what it should be is none [rad/s, m/s]
-constexpr double kStopShare = 0.3;  // of safety.fault_damping: what it should be at least
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 }  // namespace
 
@@ -59,23 +56,10 @@ bool ServoTask::Stands() const noexcept {
 }
 
 void ServoTask::StopDamped() noexcept {
-  // A damped stop needs true velocities; without them only the brakes are left.
   const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 ||
                      state_.inputs.jumped || state_.blind || state_.mode.fault == hal::Fault::kArmStale;
   const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
-  // Nor does damping stop a joint whose motor is dead, or that is pushed: the arm gets faster again, or no
-  // slower.
-  const double speed = state_.dq.lpNorm<Eigen::Infinity>();
-  const double falls = 1.0 - kStopShare * config_.safety.fault_damping * kPeriodS;
-  state_.stop_speed = std::min(falls * state_.stop_speed, speed);
-  const bool in_vain = speed > state_.stop_speed + kBehind;
-  if (blind || in_vain || since_s > config_.safety.brake_after_s || speed < config_.safety.brake_velocity) {
-    state_.give_up = true;
-  }
-  motion_laws::DampedStop(config_.safety.fault_damping, state_.dynamics, state_.dq, state_.tau);
-  if (state_.give_up) {
-    state_.tau.setZero();
-  }
+  guard::StopAfterFault(config_.safety, state_.dynamics, state_.dq, blind, since_s, state_.stop, state_.tau);
 }
 
 void ServoTask::Clamp() noexcept {
@@ -83,7 +67,7 @@ void ServoTask::Clamp() noexcept {
   // last. So it does behind closed brakes: what an arm then applies is its own way to hold itself.
   model::VecN in_force = state_.tau_applied;
   const bool told = state_.inputs.bad_ticks == 0 && state_.inputs.non_finite_ticks == 0;
-  const bool behind_brakes = state_.braked && state_.give_up;
+  const bool behind_brakes = state_.stop.stage == guard::FaultStop::Stage::kBraked;
   for (int i = 0; i < in_force.size(); ++i) {
     const double tau_max = config_.arm.joints[static_cast<std::size_t>(i)].tau_max;
     if (!told || behind_brakes || std::fabs(in_force[i]) > tau_max) {
@@ -94,7 +78,7 @@ void ServoTask::Clamp() noexcept {
   const guard::ClampResult result = guard::ClampTorque(config_.arm, config_.safety, in_force, state_.tau);
   state_.law_state.cut -= state_.tau;
   state_.limits |= result.limits;
-  state_.braked = state_.give_up && (state_.tau.array() == 0.0).all();
+  guard::CloseBrakes(state_.tau, state_.stop);
   if (!result.finite) {
     LatchFault(hal::Fault::kNonFiniteControl, -1);
   }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "firmware/core/motion_laws/motion_law.hpp"
+#include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/core/task/servo_task.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/roll_pitch_yaw.hpp"

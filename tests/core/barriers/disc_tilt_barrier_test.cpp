@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "firmware/core/barriers/motion_limits.hpp"
 #include "firmware/core/model/rotation.hpp"
 #include "tests/support/panda.hpp"
 #include "tests/support/random_states.hpp"
@@ -17,6 +18,12 @@ using model::Vec3;
 using model::VecN;
 
 constexpr double kCosineMin = 0.5;
+
+config::GuardConfig With(double cosine_min) {
+  config::GuardConfig guard;
+  guard.view.disc_cosine_min = cosine_min;
+  return guard;
+}
 
 struct Camera {
   Camera(const config::ServoConfig& config, const VecN& q) {
@@ -46,7 +53,7 @@ TEST(DiscTiltBarrierTest, TheRowIsHowFastTheDiscTurnsAway) {
     const Vec3 turn(random.Uniform(-1.2, 1.2), random.Uniform(-1.2, 1.2), 0.0);
     const Vec3 normal_C = model::RotationOf(turn).col(2);
     MotionLimits limits;
-    LimitTilt(kCosineMin, p_C, normal_C, camera.J_C, limits);
+    limits.Add(DiscTiltBarrier(With(kCosineMin), p_C, normal_C, camera.J_C));
     ASSERT_EQ(limits.num_rows, 1);
     const Vec3 p_BO = camera.X_BC * p_C;
     const Vec3 normal_B = camera.X_BC.R * normal_C;
@@ -70,9 +77,9 @@ TEST(DiscTiltBarrierTest, NothingIsKeptWhereAnyViewWillDoOrNothingIsKnown) {
   const config::ServoConfig config = test::PandaConfig();
   const Camera camera(config, test::Ready());
   MotionLimits limits;
-  LimitTilt(0.0, {0.0, 0.0, 0.4}, Vec3::UnitZ(), camera.J_C, limits);
-  LimitTilt(kCosineMin, Vec3::Zero(), Vec3::UnitZ(), camera.J_C, limits);
-  LimitTilt(kCosineMin, {0.0, std::nan(""), 0.4}, Vec3::UnitZ(), camera.J_C, limits);
+  limits.Add(DiscTiltBarrier(With(0.0), {0.0, 0.0, 0.4}, Vec3::UnitZ(), camera.J_C));
+  limits.Add(DiscTiltBarrier(With(kCosineMin), Vec3::Zero(), Vec3::UnitZ(), camera.J_C));
+  limits.Add(DiscTiltBarrier(With(kCosineMin), {0.0, std::nan(""), 0.4}, Vec3::UnitZ(), camera.J_C));
   EXPECT_EQ(limits.num_rows, 0);
 }
 

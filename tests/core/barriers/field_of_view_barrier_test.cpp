@@ -5,6 +5,7 @@
 
 #include <iostream>
 
+#include "firmware/core/barriers/motion_limits.hpp"
 #include "firmware/core/features/square.hpp"
 #include "tests/core/features/camera_steps.hpp"
 #include "tests/support/panda.hpp"
@@ -35,7 +36,11 @@ Scene RandomScene(test::RandomStates& random, const config::ServoConfig& config)
 
 MotionLimits Limits(const config::ViewConfig& view, const Scene& scene) {
   MotionLimits limits;
-  LimitView(view, {scene.outline, scene.seen, scene.J_C}, limits);
+  config::GuardConfig guard;
+  guard.view = view;
+  for (const Barrier& side : FieldOfViewBarriers(guard, {scene.outline, scene.seen, scene.J_C})) {
+    limits.Add(side);
+  }
   return limits;
 }
 

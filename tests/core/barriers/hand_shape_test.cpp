@@ -8,7 +8,7 @@
 #include <random>
 
 #include "firmware/core/barriers/obstacle.hpp"
-#include "firmware/core/barriers/self_clearance_barrier.hpp"
+#include "firmware/core/barriers/solid_barriers.hpp"
 #include "firmware/core/guard/stop_path.hpp"
 #include "firmware/core/model/rotation.hpp"
 #include "tests/support/panda.hpp"

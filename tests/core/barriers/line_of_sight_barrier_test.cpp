@@ -6,6 +6,7 @@
 #include <iostream>
 #include <vector>
 
+#include "firmware/core/barriers/motion_limits.hpp"
 #include "firmware/core/features/triangle.hpp"
 #include "firmware/core/model/rotation.hpp"
 #include "tests/support/panda.hpp"
@@ -53,6 +54,12 @@ Sight SightOf(const Posture& posture, const Vec3& p_BO, bool triangle) {
   return sight;
 }
 
+config::ServoConfig WithClearance(double clearance) {
+  config::ServoConfig config = test::PandaConfig();
+  config.guard.sight_clearance = clearance;
+  return config;
+}
+
 double Clearance(const config::ServoConfig& config, const VecN& q, const Vec3& p_BO, bool triangle) {
   const Posture posture(config, q);
   return ClearanceOfSight(config.arm, SightOf(posture, p_BO, triangle));
@@ -95,7 +102,7 @@ TEST(LineOfSightBarrierTest, TheClearanceIsTheSmallestDistanceBetweenPointsOfThe
 }
 
 TEST(LineOfSightBarrierTest, TheRowIsHowFastTheNearestLinkComesNearer) {
-  const config::ServoConfig config = test::PandaConfig();
+  const config::ServoConfig config = WithClearance(0.12);
   test::RandomStates random(72);
   double worst = 0.0;
   int beyond = 0;
@@ -105,7 +112,7 @@ TEST(LineOfSightBarrierTest, TheRowIsHowFastTheNearestLinkComesNearer) {
     const Vec3 p_BO = RandomTarget(random, posture);
     const bool triangle = k % 2 == 0;
     MotionLimits limits;
-    LimitSight(0.12, config.arm, SightOf(posture, p_BO, triangle), posture.J_C, limits);
+    limits.Add(LineOfSightBarrier(config, SightOf(posture, p_BO, triangle), posture.J_C));
     ASSERT_EQ(limits.num_rows, 1);
     const double clearance = Clearance(config, q, p_BO, triangle);
     EXPECT_NEAR(limits.rows[0].b, 1.5 * std::max(clearance - 0.12, 0.0), 1e-12);
@@ -123,15 +130,15 @@ TEST(LineOfSightBarrierTest, TheRowIsHowFastTheNearestLinkComesNearer) {
 }
 
 TEST(LineOfSightBarrierTest, NothingIsKeptWhereNothingIsAskedForOrTheLinesCross) {
-  const config::ServoConfig config = test::PandaConfig();
+  const config::ServoConfig config = WithClearance(0.12);
   const Posture posture(config, test::Ready());
   const Vec3 ahead = posture.X_BC * Vec3(0.0, 0.0, 0.4);
   MotionLimits limits;
-  LimitSight(0.0, config.arm, SightOf(posture, ahead, true), posture.J_C, limits);
+  limits.Add(LineOfSightBarrier(WithClearance(0.0), SightOf(posture, ahead, true), posture.J_C));
   EXPECT_EQ(limits.num_rows, 0);
-  LimitSight(0.12, config.arm, SightOf(posture, posture.poses.X_BL[2].p, false), posture.J_C, limits);
+  limits.Add(LineOfSightBarrier(config, SightOf(posture, posture.poses.X_BL[2].p, false), posture.J_C));
   EXPECT_EQ(limits.num_rows, 0);
-  LimitSight(0.12, config.arm, SightOf(posture, ahead * std::nan(""), true), posture.J_C, limits);
+  limits.Add(LineOfSightBarrier(config, SightOf(posture, ahead * std::nan(""), true), posture.J_C));
   EXPECT_EQ(limits.num_rows, 0);
 }
 

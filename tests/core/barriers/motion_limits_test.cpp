@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "firmware/core/barriers/workspace_barrier.hpp"
 #include "tests/support/panda.hpp"
 #include "tests/support/random_states.hpp"
 
@@ -53,7 +54,7 @@ TEST(MotionLimitsTest, TheWorkspaceRowBoundsTheOutwardSpeedAndAsksPastItForAWayB
     config.guard.workspace_radius = radius + config.guard.workspace_margin + 0.002 + ahead;
     MotionLimits limits;
     LimitJoints(config, test::Ready(), limits);
-    LimitOutwardMotion(config, poses.X_BE.p, J_E_B, model::VecN::Zero(7), limits);
+    limits.Add(WorkspaceRow(config, poses.X_BE.p, J_E_B, model::VecN::Zero(7)));
     ASSERT_EQ(limits.num_rows, 1);
     const LimitRow& row = limits.rows[0];
     const model::VecN dq = random.Joints(config.arm, 1.0);

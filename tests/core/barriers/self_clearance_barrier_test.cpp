@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "firmware/core/barriers/barrier_speed.hpp"
+#include "firmware/core/barriers/links_barrier.hpp"
+#include "firmware/core/barriers/motion_limits.hpp"
 #include "firmware/core/guard/guard_motion.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"
 #include "tests/support/panda.hpp"
@@ -45,6 +47,12 @@ config::GuardConfig Planes() {
 config::ServoConfig WithPlanes() {
   config::ServoConfig config = test::PandaConfig();
   config.guard = Planes();
+  return config;
+}
+
+config::ServoConfig WithHandClearance(double clearance) {
+  config::ServoConfig config = test::PandaConfig();
+  config.guard.hand_clearance = clearance;
   return config;
 }
 
@@ -127,11 +135,11 @@ TEST(SelfClearanceBarrierTest, TheRowsAreHowFastHandAndArmComeNearer) {
     const VecN q = random.Position(Arm());
     const VecN dq = random.Joints(Arm(), 0.5);
     MotionLimits hand;
-    LimitHand(0.3, Arm(), PosesAt(q), LineAt(q), hand);
+    hand.Add(SelfClearanceBarrier(WithHandClearance(0.3), PosesAt(q), LineAt(q)));
     ExpectRow(hand, q, dq, HandClearance, worst_hand);
     EXPECT_NEAR(hand.rows[0].b, 1.5 * std::max(HandClearance(q) - 0.3, 0.0), 1e-12);
     MotionLimits arm;
-    LimitArm(WithPlanes(), PosesAt(q), LineAt(q), arm);
+    arm.Add(LinksBarrier(WithPlanes(), PosesAt(q), LineAt(q)));
     ExpectRow(arm, q, dq, PlaneClearance, worst_arm);
     EXPECT_EQ(arm.rows[0].b, BarrierSpeed(PlaneClearance(q) - 2.0 * WithPlanes().guard.workspace_margin,
                                           0.5 * WithPlanes().guard.workspace_deceleration,
@@ -150,10 +158,11 @@ TEST(SelfClearanceBarrierTest, TheRowsAreHowFastHandAndArmComeNearer) {
 TEST(SelfClearanceBarrierTest, NothingIsKeptWhereNothingIsAskedForOrNothingIsKnown) {
   MotionLimits limits;
   const VecN q = test::Ready();
-  LimitHand(0.0, Arm(), PosesAt(q), LineAt(q), limits);
-  LimitArm(test::PandaConfig(), PosesAt(q), LineAt(q), limits);
-  LimitHand(0.13, Arm(), PosesAt(q * std::nan("")), LineAt(q * std::nan("")), limits);
-  LimitArm(WithPlanes(), PosesAt(q * std::nan("")), LineAt(q * std::nan("")), limits);
+  limits.Add(SelfClearanceBarrier(WithHandClearance(0.0), PosesAt(q), LineAt(q)));
+  limits.Add(LinksBarrier(test::PandaConfig(), PosesAt(q), LineAt(q)));
+  limits.Add(
+      SelfClearanceBarrier(WithHandClearance(0.13), PosesAt(q * std::nan("")), LineAt(q * std::nan(""))));
+  limits.Add(LinksBarrier(WithPlanes(), PosesAt(q * std::nan("")), LineAt(q * std::nan(""))));
   EXPECT_EQ(limits.num_rows, 0);
   model::ArmModel short_arm = Arm();
   short_arm.num_joints = 5;

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <functional>
 
+#include "firmware/core/barriers/workspace_barrier.hpp"
 #include "firmware/core/control/null_space_wish.hpp"
 #include "firmware/core/control/resolve_constrained.hpp"
 #include "firmware/core/control/resolve_motion.hpp"
@@ -191,7 +192,7 @@ inline model::VecN ByConstrained(const Scene& scene, const NullSpaceConfig& wish
   if (acceleration) {
     barriers::LimitAcceleration(scene.config, scene.reference, limits);
   }
-  barriers::LimitOutwardMotion(scene.config, scene.poses.X_BE.p, scene.J_E_B, scene.reference.dq, limits);
+  limits.Add(barriers::WorkspaceRow(scene.config, scene.poses.X_BE.p, scene.J_E_B, scene.reference.dq));
   ConstrainedMotion motion;
   ResolveConstrained(config, TaskOf(scene, wishes), limits, motion);
   return motion.limited.dq;

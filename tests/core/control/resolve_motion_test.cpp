@@ -85,7 +85,7 @@ TEST_F(NearASingularityTest, EveryPlaneAndBoxLeavesRoomForTheOtherLimits) {
   barriers::MotionLimits tilt;
   tilt.dq_min.setConstant(7, -1.0);
   tilt.dq_max.setConstant(7, 1.0);
-  barriers::LimitTilt(0.5, target.seen.X_CO.p, target.normal_C, J_C_, tilt);
+  tilt.Add(barriers::DiscTiltBarrier(config_.guard, target.seen.X_CO.p, target.normal_C, J_C_));
   ASSERT_EQ(tilt.num_rows, 1);
   task_.v = 0.3 * tilt.rows[0].a.normalized();
   MotionScene scene{reference_, poses_, J_E_B_, J_C_};

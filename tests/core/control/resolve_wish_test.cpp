@@ -216,7 +216,7 @@ TEST(SingularityTest, TheRowKeepsTheArmFromGoingDeeper) {
         double& depth = limited ? deepest : deepest_without;
         depth = std::min(depth, singularity.sigma);
         if (limited) {
-          barriers::LimitSingularity(limit, singularity, limits);
+          limits.Add(barriers::SingularityBarrier(limit, singularity));
         }
         ConstrainedMotion motion;
         ResolveConstrained(ConstrainedConfig{}, task, limits, motion);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "firmware/core/barriers/links_barrier.hpp"
 #include "firmware/core/barriers/obstacle.hpp"
 #include "firmware/core/barriers/self_clearance_barrier.hpp"
 #include "firmware/core/model/kinematics.hpp"

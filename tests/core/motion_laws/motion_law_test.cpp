@@ -9,6 +9,7 @@
 
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/motion_laws/friction.hpp"
+#include "firmware/core/motion_laws/motion_laws.hpp"
 #include "tests/support/ideal_arm.hpp"
 #include "tests/support/panda.hpp"
 #include "tests/support/random_states.hpp"
@@ -259,29 +260,6 @@ TEST(MotionLawTest, FrictionIsMadeUpForWithoutChatter) {
   for (const double noise : {-5e-4, 5e-4}) {
     EXPECT_LT(std::fabs(torque(0.0, noise)), 0.01);
   }
-}
-
-TEST(MotionLawTest, DampedStopTakesTheSpeedAwayExponentially) {
-  const config::ServoConfig config = test::PandaConfig();
-  test::IdealArm arm(config.arm, test::Ready());
-  model::VecN start(7);
-  start << 0.5, -0.4, 0.6, 0.5, -0.7, 0.4, 0.8;
-  arm.SetVelocity(start);
-  double energy_before = HUGE_VAL;
-  for (int tick = 0; tick < 500; ++tick) {
-    model::ArmPoses poses;
-    model::ArmDynamics dynamics;
-    model::ComputePoses(config.arm, arm.q(), poses);
-    model::ComputeDynamics(config.arm, poses, arm.dq(), dynamics);
-    const double energy = 0.5 * arm.dq().dot(dynamics.M * arm.dq());
-    EXPECT_LT(energy, energy_before) << "it never speeds up";
-    energy_before = energy;
-    model::VecN tau;
-    DampedStop(config.safety.fault_damping, dynamics, arm.dq(), tau);
-    arm.Apply(CommandOf(tau));
-    arm.Step();
-  }
-  EXPECT_LT(arm.dq().norm(), start.norm() * std::exp(-0.5 * config.safety.fault_damping) * 2.0);
 }
 
 }  // namespace

@@ -1,0 +1,81 @@
+#include "firmware/core/barriers/solid_barriers.hpp"
+
+#include <algorithm>
+
+#include "firmware/core/barriers/hand_barrier.hpp"
+#include "firmware/core/barriers/links_barrier.hpp"
+#include "firmware/core/barriers/obstacle.hpp"
+#include "firmware/core/barriers/self_clearance_barrier.hpp"
+#include "firmware/core/barriers/workspace_barrier.hpp"
+
+namespace fovea::barriers {
+namespace {
+
+// The rows of the resolution are nearly on their boundary where the arm slides along itself: the proof leaves
+// them so much room [m].
+constexpr double kSelfRoom = 0.01;
+
+}  // namespace
+
+SolidBarriers::SolidBarriers(const config::ServoConfig& config) noexcept
+    : config_(config),
+      num_hand_(CountObstacles(config.guard.obstacles)),
+      links_(config.guard.obstacles.num_planes > 0),
+      self_(config.guard.hand_clearance > 0.0) {}
+
+SolidBarriers::Kind SolidBarriers::KindOf(int i) const noexcept {
+  if (i <= num_hand_) {
+    return i == 0 ? Kind::kWorkspace : Kind::kHand;
+  }
+  return links_ && i == num_hand_ + 1 ? Kind::kLinks : Kind::kSelf;
+}
+
+hal::Limit SolidBarriers::NameOf(int i) const noexcept {
+  return KindOf(i) == Kind::kWorkspace ? hal::Limit::kWorkspace : hal::Limit::kObstacle;
+}
+
+double SolidBarriers::ValueOf(int i, const model::ArmPoses& poses, const ArmLine& line) const noexcept {
+  const config::GuardConfig& guard = config_.guard;
+  switch (KindOf(i)) {
+    case Kind::kWorkspace: return -poses.X_BE.p.norm();
+    case Kind::kHand: return ClearanceOf(guard.obstacles, i - 1, guard.hand, poses.X_BE).clearance.distance;
+    case Kind::kLinks: return ClearanceOfPlanes(config_.arm, guard, line);
+    case Kind::kSelf: break;
+  }
+  return ClearanceOfHand(config_.arm, line);
+}
+
+double SolidBarriers::StopMarginOf(int i) const noexcept {
+  const config::GuardConfig& guard = config_.guard;
+  switch (KindOf(i)) {
+    case Kind::kWorkspace: return -(guard.workspace_radius - guard.workspace_margin);
+    case Kind::kHand:
+    case Kind::kLinks: return guard.workspace_margin;
+    case Kind::kSelf: break;
+  }
+  return guard.hand_clearance - kSelfRoom;
+}
+
+Barrier SolidBarriers::RowOf(int i, const Scene& scene) const noexcept {
+  switch (KindOf(i)) {
+    case Kind::kWorkspace: return WorkspaceRow(config_, scene.poses.X_BE.p, scene.J_E_B, scene.dq);
+    case Kind::kHand: return HandBarrier(config_, i - 1, scene.poses);
+    case Kind::kLinks: return LinksBarrier(config_, scene.poses, scene.line);
+    case Kind::kSelf: break;
+  }
+  return SelfClearanceBarrier(config_, scene.poses, scene.line);
+}
+
+double ClearanceOfArm(const config::ServoConfig& config, const model::ArmPoses& poses) noexcept {
+  const SolidBarriers barriers(config);
+  const ArmLine line = LineOfArm(config.arm, poses);
+  double clearance = HUGE_VAL;
+  const int num_kept_out =
+      CountObstacles(config.guard.obstacles) + (config.guard.obstacles.num_planes > 0 ? 1 : 0);
+  for (int i = 1; i <= num_kept_out; ++i) {
+    clearance = std::min(clearance, barriers.ValueOf(i, poses, line));
+  }
+  return clearance;
+}
+
+}  // namespace fovea::barriers

@@ -1,0 +1,24 @@
+#include "firmware/core/control/reach_watch.hpp"
+
+#include "firmware/core/control/way_to_goal.hpp"
+#include "fovea/hal/types.hpp"
+
+namespace fovea::control {
+namespace {
+
+constexpr double kMovedM = 0.02;  // so far from where it was unreachable, and it is tried again
+constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
+
+}  // namespace
+
+void UpdateBlockedTime(bool blocked, ReachWatch& watch) noexcept { CountTick(blocked, watch.blocked_ns); }
+
+bool IsUnreachable(const config::LawConfig& config, const ReachWatch& watch) noexcept {
+  return static_cast<double>(watch.blocked_ns) > config.unreachable_s * kSecondNs;
+}
+
+bool HasMoved(const model::Vec3& p_BO, const ReachWatch& watch) noexcept {
+  return (p_BO - watch.p_BO_unreachable).norm() > kMovedM;
+}
+
+}  // namespace fovea::control

@@ -1,0 +1,41 @@
+// The visual laws: by which interaction matrix the feature's error is taken away. Chosen by
+// servo.interaction; each is a function here and a line in kVisualLaws.
+//
+// All share e, the gain and the target's own motion (visual_law.hpp); they differ in what they take for the
+// feature's change with the camera's motion.
+#pragma once
+
+#include <array>
+
+#include "firmware/core/config/law_config.hpp"
+#include "firmware/core/features/feature_state.hpp"
+
+namespace fovea::control {
+
+// Writes the matrix that the law inverts into `feature.L_s`, which holds that of now; `L_s_star` is that of
+// the goal, of the same size. Real-time: yes.
+using VisualLawFunction = void (*)(const features::InteractionMatrix& L_s_star,
+                                   features::FeatureState& feature) noexcept;
+
+// Of now: the classical law (Chaumette and Hutchinson, Visual servo control I, 2006).
+inline void CurrentInteraction(const features::InteractionMatrix& /*L_s_star*/,
+                               features::FeatureState& /*feature*/) noexcept {}
+
+// Of the goal: straighter ways in the image far off, and never singular where the goal is not.
+inline void DesiredInteraction(const features::InteractionMatrix& L_s_star,
+                               features::FeatureState& feature) noexcept {
+  feature.L_s = L_s_star;
+}
+
+// The mean of both: right to second order (Malis, Improving vision-based control using efficient second-order
+// minimization techniques, 2004).
+inline void MeanInteraction(const features::InteractionMatrix& L_s_star,
+                            features::FeatureState& feature) noexcept {
+  feature.L_s = 0.5 * (feature.L_s + L_s_star);
+}
+
+// In the order of config::Interaction.
+inline constexpr std::array<VisualLawFunction, config::kInteractionNames.size()> kVisualLaws{
+    CurrentInteraction, DesiredInteraction, MeanInteraction};
+
+}  // namespace fovea::control

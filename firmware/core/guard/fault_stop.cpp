@@ -1,0 +1,45 @@
+#include "firmware/core/guard/fault_stop.hpp"
+
+#include <algorithm>
+
+#include "fovea/hal/types.hpp"
+
+namespace fovea::guard {
+namespace {
+
+constexpr double kBehind = 0.2;     // a stop that is so much behind what it should be is none [rad/s, m/s]
+constexpr double kStopShare = 0.3;  // of safety.fault_damping: what it should be at least
+constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+
+}  // namespace
+
+void DampedStop(double damping, const model::ArmDynamics& dynamics, const model::VecN& dq,
+                model::VecN& tau) noexcept {
+  tau = dynamics.M.lazyProduct(dq);
+  tau *= -damping;
+}
+
+void StopAfterFault(const config::SafetyConfig& config, const model::ArmDynamics& dynamics,
+                    const model::VecN& dq, bool blind, double since_s, FaultStop& stop,
+                    model::VecN& tau) noexcept {
+  const double speed = dq.lpNorm<Eigen::Infinity>();
+  const double falls = 1.0 - kStopShare * config.fault_damping * kPeriodS;
+  stop.speed_due = std::min(falls * stop.speed_due, speed);
+  const bool in_vain = speed > stop.speed_due + kBehind;
+  if (stop.stage == FaultStop::Stage::kDamped &&
+      (blind || in_vain || since_s > config.brake_after_s || speed < config.brake_velocity)) {
+    stop.stage = FaultStop::Stage::kLetGo;
+  }
+  DampedStop(config.fault_damping, dynamics, dq, tau);
+  if (stop.stage != FaultStop::Stage::kDamped) {
+    tau.setZero();
+  }
+}
+
+void CloseBrakes(const model::VecN& tau, FaultStop& stop) noexcept {
+  if (stop.stage == FaultStop::Stage::kLetGo && (tau.array() == 0.0).all()) {
+    stop.stage = FaultStop::Stage::kBraked;
+  }
+}
+
+}  // namespace fovea::guard
