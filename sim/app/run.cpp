@@ -26,8 +26,8 @@
 #include "sim/mcu/qemu.hpp"
 #include "sim/run/eye.hpp"
 #include "sim/run/files.hpp"
+#include "sim/run/outcome.hpp"
 #include "sim/run/progress.hpp"
-#include "sim/run/run_figures.hpp"
 #include "sim/run/trace.hpp"
 #include "sim/scenario/compose.hpp"
 #include "sim/scenario/run_description.hpp"
@@ -323,7 +323,9 @@ class Run {
     s.seed = about_.scenario.run.seed;
     s.pace = options_.pace == Pace::kReal ? "real" : "lockstep";
     s.sim_time_s = static_cast<double>(world_->now_ns()) * 1e-9;
-    FillFiles(*files_, s);
+    s.frames = files_->frames();
+    s.frames_detected = files_->frames_detected();
+    run::FillBook(files_->EndFilms(), s);
     verdict_->Fill(s);
     if (theory_) {
       FillTheory(theory_->Finish(), s);
@@ -332,7 +334,7 @@ class Run {
     if (interrupted_) {
       FillInterrupted(s.sim_time_s, about_.scenario.run.duration_s, s);
     }
-    FillTicks(counters_, meter_, s);
+    run::FillTicks(counters_, meter_, s);
     s.frames_lost = HasEye() ? eye_->camera().lost() : 0;
     s.records_dropped = recorder_->dropped();
     if (board_) {
@@ -343,7 +345,6 @@ class Run {
     s.realtime_missing = realtime_missing_;
     s.renderer = HasEye() ? eye_->driver_name() : "nothing";
     s.log_hash = hash_.Finish();
-    FillBuild(s);
     return s;
   }
 

@@ -1,15 +1,14 @@
 // What a run leaves behind: films, log, report, pictures and summary, gathered while it goes on.
 #pragma once
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "firmware/host/config/output_folder.hpp"
-#include "firmware/host/film/eye_film.hpp"
-#include "firmware/host/report/report.hpp"
-#include "sim/run/log_feed.hpp"
+#include "firmware/host/run/run_book.hpp"
 #include "sim/run/path.hpp"
 #include "sim/run/pictures.hpp"
 #include "sim/run/scene_film.hpp"
@@ -42,17 +41,14 @@ class RunFiles {
   // From the vision thread. `X_CO`: where the target really was.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
 
-  // When the threads are done: completes the films. A film that fails is left out, and that is all; a line
-  // for each that says why.
-  std::vector<std::string> EndFilms();
+  // When the threads are done: completes the films, and says what was kept and what was not. A film that
+  // fails is left out, and that is all.
+  run::BookFigures EndFilms();
 
-  [[nodiscard]] bool HasLog() const { return log_ != nullptr; }
-  // When the threads are done: frames that the vision task got, and in how many it found the target; what
-  // found no place in films and log.
+  [[nodiscard]] bool HasLog() const { return book_.has_value(); }
+  // When the threads are done: frames that the vision task got, and in how many it found the target.
   [[nodiscard]] std::uint64_t frames() const { return frames_.frames(); }
   [[nodiscard]] std::uint64_t frames_detected() const { return frames_.detected(); }
-  [[nodiscard]] std::uint64_t film_frames_dropped() const;
-  [[nodiscard]] std::uint64_t log_entries_dropped() const { return log_ ? log_->dropped() : 0; }
 
   // Puts everything in place; `end` is the bench as it is at the end. Throws what went wrong with any of it;
   // then the folder is as it was, but for a log that could not be written on: it stands there alone.
@@ -62,17 +58,14 @@ class RunFiles {
   void KeepLog() const;
 
  private:
-  void WriteAll(const Summary& summary, const Exposure& end, const linux_rt::DurationHistogram& ticks);
-  [[nodiscard]] bool HasReport() const { return page_.has_value(); }
+  // The pictures of the eye, the film of the bench, and, where one is asked for, its picture.
+  std::vector<config::OutputFile> PicturesAndScene(std::future<std::string> bench);
 
   const RunDescription& about_;
-  std::optional<report::ReportPage> page_;
-  std::optional<config::OutputFolder> folder_;
-  std::unique_ptr<film::EyeFilm> eye_film_;
+  std::optional<run::RunBook> book_;            // with films, log and report
+  std::optional<config::OutputFolder> folder_;  // without
   std::unique_ptr<SceneFilm> scene_film_;
-  bool has_eye_film_ = false;  // and it is complete
-  bool has_scene_film_ = false;
-  std::unique_ptr<LogFeed> log_;
+  bool has_scene_film_ = false;  // and it is complete
   FrameKeeper frames_;
   Path camera_path_;
   Path target_path_;

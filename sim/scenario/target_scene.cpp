@@ -100,7 +100,7 @@ RollingBallConfig MakeRollingBall(const TargetScene& s) {
 TargetShape MakeTargetShape(const features::TargetFeature& feature) {
   TargetShape shape;
   shape.radius = feature.radius;
-  if (feature.target == hal::FeatureKind::kCircle) {
+  if (features::TraitsOf(feature.target).body == features::TargetBody::kDisc) {
     shape.kind = TargetShape::Kind::kDisc;
   } else if (feature.SeesOrientation()) {
     shape.kind = TargetShape::Kind::kPolygon;

@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "firmware/host/summary_format.hpp"
 #include "fovea/hal/events.hpp"
 
 namespace fovea::sim {
@@ -184,7 +183,7 @@ std::string ToJson(const Summary& s) {
     modes.push_back({{"t_s", m.t_s}, {"mode", m.mode}, {"reason", m.reason}});
   }
   ordered_json json;
-  json["format"] = kSummaryFormat;
+  run::BeginSummary(json);
   json["scenario"] = s.scenario;
   json["seed"] = s.seed;
   json["pace"] = s.pace;
@@ -227,26 +226,11 @@ std::string ToJson(const Summary& s) {
   json["frames_failed"] = s.frames_failed;
   json["frame_failure"] = s.frame_failure.empty() ? ordered_json(nullptr) : ordered_json(s.frame_failure);
   json["frames_lost"] = s.frames_lost;
-  json["ticks"] = s.ticks;
-  json["overruns"] = s.overruns;
-  json["missed_ticks"] = s.missed_ticks;
-  json["records_dropped"] = s.records_dropped;
-  json["film_frames_dropped"] = s.film_frames_dropped;
-  json["film_errors"] = s.film_errors;
-  json["log_entries_dropped"] = s.log_entries_dropped;
-  json["heap_allocations_in_tick"] = OrNull(s.heap_allocations_in_tick);
-  json["page_faults_in_loop"] = s.page_faults_in_loop;
-  json["tick_ns"] = {
-      {"p50", s.tick_ns_p50}, {"p99", s.tick_ns_p99}, {"p999", s.tick_ns_p999}, {"max", s.tick_ns_max}};
   json["sim_time_s"] = s.sim_time_s;
   json["wall_time_s"] = s.wall_time_s;
   json["real_time_factor"] = s.real_time_factor;
-  json["realtime_missing"] = s.realtime_missing;
   json["renderer"] = s.renderer;
-  json["log_hash"] = s.log_hash;
-  json["servo"] = s.servo;
-  json["git"] = s.git;
-  json["version"] = s.version;
+  run::AddFigures(s, json);
   // A scenario's file may have any name.
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/host/run/run_figures.hpp"
 #include "sim/mcu/board_summary.hpp"
 #include "sim/theory/run.hpp"
 
@@ -58,7 +59,7 @@ struct RunEnd {
   std::optional<double> goal_kept_since_s;  // by truth: within the bounds that decide over `converged`
 };
 
-struct Summary {
+struct Summary : run::RunFigures {
   std::string scenario;
   int seed = 0;
   std::string pace;
@@ -104,30 +105,11 @@ struct Summary {
   std::uint64_t frames_failed = 0;  // that could not be looked at; they count as not found
   std::string frame_failure;        // why the first of them
   std::uint64_t frames_lost = 0;
-  std::uint64_t ticks = 0;
-  std::uint64_t overruns = 0;
-  std::uint64_t missed_ticks = 0;
-  std::uint64_t records_dropped = 0;
-  std::uint64_t film_frames_dropped = 0;  // of both films
-  std::vector<std::string> film_errors;   // why one is not there that should be
-  std::uint64_t log_entries_dropped = 0;
-  std::optional<std::uint64_t> heap_allocations_in_tick;  // none when the counter is not active
-  std::uint64_t page_faults_in_loop = 0;
   std::optional<BoardSummary> mcu;  // of a servo on a board
-  std::int64_t tick_ns_p50 = 0;
-  std::int64_t tick_ns_p99 = 0;
-  std::int64_t tick_ns_p999 = 0;
-  std::int64_t tick_ns_max = 0;
   double sim_time_s = 0.0;
   double wall_time_s = 0.0;
   double real_time_factor = 0.0;
-  std::vector<std::string> realtime_missing;  // what the machine did not grant at real pace
-
   std::string renderer;
-  std::string log_hash;
-  std::string servo;
-  std::string git;
-  std::string version;
 };
 
 // Whether the run did what it was for: converged, no limit passed and nothing touched on the way. The

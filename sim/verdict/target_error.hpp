@@ -26,7 +26,7 @@ inline TargetGoal GoalOf(const features::TargetFeature& feature) {
   goal.p_CO_C_star = feature.p_CO_C_star;
   if (feature.form == features::FeatureForm::kCorners || feature.form == features::FeatureForm::kPose) {
     goal.R_CO_star = feature.R_CO_star;
-    goal.turns = feature.target == hal::FeatureKind::kSquare ? 4 : 1;
+    goal.turns = features::TraitsOf(feature.target).turns;
     const auto corners = feature.corners.corners.begin();
     goal.points.assign(corners, corners + feature.corners.num_corners);
   }

@@ -134,6 +134,11 @@ INSTANTIATE_TEST_SUITE_P(
              "[a-z]+[.]pb[.]h|"
              "(fmt|google|nlohmann|openssl)/.*",
              "a report is made of a log alone"},
+        Rule{"firmware/host/run",
+             "fovea/(hal|linux_rt)/.*|firmware/(core|vision|host/"
+             "(build_info|config|film|recording|report|run))"
+             "[./].*|(fmt|nlohmann)/.*|(fovea|foxglove)/[a-z]+[.]pb[.]h",
+             "what a run leaves is its servo, its pictures and their recording, whoever ran it"},
         Rule{"firmware/targets/cortex_m7", "fovea/cortex_m7/.*|firmware/core/.*|emitted/panda[.]hpp",
              "the processor's program sees its driver and the servo behind the line"},
         Rule{"firmware/targets/linux",

@@ -50,7 +50,7 @@ class DetectorHeapTest : public testing::Test {
     const char* scene = by == FindBy::kColour ? "clutter" : "noise-15";
     const cv::Mat with = PictureOf(scene, kind, true);
     const cv::Mat without = PictureOf(scene, kind, false);
-    TargetDetector detector(ConfigOf(kind, {}, by));
+    TargetDetector detector(bench::ConfigOf(kind, {}, by));
     std::uint64_t calls = 0;
     for (int round = 0; round < 2; ++round) {
       calls = HeapCallsOf([&] {

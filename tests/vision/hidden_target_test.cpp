@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr double kWrongPx = 2.0;  // further off than this is wrong
 
-DetectorConfig ByBrightness(TargetKind kind) { return ConfigOf(kind, {}, FindBy::kGray); }
+DetectorConfig ByBrightness(TargetKind kind) { return bench::ConfigOf(kind, {}, FindBy::kGray); }
 
 struct Score {
   int found = 0;

@@ -26,7 +26,7 @@ constexpr double kGround = 100.0;
 constexpr double kContrast = 80.0;
 constexpr double kLeast = 0.25 * kContrast;
 
-DetectorConfig Triangle() { return ConfigOf(bench::TargetKind::kTriangle, {}, FindBy::kGray); }
+DetectorConfig Triangle() { return bench::ConfigOf(bench::TargetKind::kTriangle, {}, FindBy::kGray); }
 
 bench::Body Plate(const std::vector<Vector2d>& corners, double distance, double level) {
   bench::Body body;

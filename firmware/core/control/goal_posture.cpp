@@ -39,7 +39,7 @@ constexpr int kDetourSteps = 4;       // that it goes there, or up to
 constexpr int kDetourStepsMore = 11;  // so many more
 
 int TurnsOf(const features::TargetFeature& feature) noexcept {
-  return feature.target == hal::FeatureKind::kSquare ? 4 : 1;
+  return features::TraitsOf(feature.target).turns;
 }
 
 // Where the camera shall be.

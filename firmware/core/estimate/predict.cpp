@@ -44,7 +44,8 @@ hal::Intake TakePose(const config::ServoConfig& config, const Seen& seen, Corner
 hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, features::LiftedTarget lifted,
                          PredictState& state) noexcept {
   const model::Mat3& R = seen.X_BC.R;
-  if (seen.measurement.kind == hal::FeatureKind::kCircle && seen.measurement.num_poses == 2) {
+  const bool is_disc = features::TraitsOf(config.feature.target).body == features::TargetBody::kDisc;
+  if (is_disc && seen.measurement.num_poses == 2) {
     bool changed = false;
     const int chosen = ChooseDisc(seen.measurement, seen.X_BC, state.disc, changed);
     const auto& p = seen.measurement.poses[static_cast<std::size_t>(chosen)].p_CO_C;

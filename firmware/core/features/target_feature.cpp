@@ -1,12 +1,12 @@
 #include "firmware/core/features/target_feature.hpp"
 
+#include <algorithm>
+
 #include "firmware/core/features/hold_orientation.hpp"
 #include "firmware/core/model/rotation.hpp"
 
 namespace fovea::features {
 namespace {
-
-using hal::FeatureKind;
 
 // `cov` [dim x dim] takes the measurement's covariance.
 template <typename Matrix>
@@ -21,19 +21,10 @@ void TakeCovariance(const hal::FeatureMeasurement& measurement, Matrix& cov) noe
 }  // namespace
 
 bool TargetFeature::IsListed() const noexcept {
-  bool listed = false;
-  switch (form) {
-    case FeatureForm::kSphere: listed = target == FeatureKind::kSphere; break;
-    case FeatureForm::kCircle:
-      listed = target == FeatureKind::kSphere || target == FeatureKind::kCircle;
-      break;
-    case FeatureForm::kCorners:
-      listed = (target == FeatureKind::kSquare && corners.num_corners == 4) ||
-               (target == FeatureKind::kTriangle && corners.num_corners == 3);
-      break;
-    case FeatureForm::kSide:
-    case FeatureForm::kCornerSide: listed = target == FeatureKind::kSquare; break;
-    case FeatureForm::kPose: listed = SeesOrientation() && corners.num_corners > 0; break;
+  const TargetTraits& traits = TraitsOf(target);
+  bool listed = std::find(traits.forms.begin(), traits.forms.end(), form) != traits.forms.end();
+  if (form == FeatureForm::kCorners || form == FeatureForm::kPose) {
+    listed = listed && corners.num_corners == traits.num_corners;
   }
   return listed && Dim() <= kMaxDim;
 }
@@ -92,7 +83,7 @@ bool TargetFeature::Lift(const hal::FeatureMeasurement& measurement, LiftedTarge
   const model::Vec3 s(measurement.s[0], measurement.s[1], measurement.s[2]);
   model::Mat3 cov_s;
   TakeCovariance(measurement, cov_s);
-  if (target == FeatureKind::kCircle) {
+  if (TraitsOf(target).body == TargetBody::kDisc) {
     return CircleFeature{2.0 * radius, 1.0, p_CO_C_star}.Lift(s, cov_s, lifted.p_CO_C, lifted.cov_p);
   }
   return SphereFeature{radius, p_CO_C_star}.Lift(s, cov_s, lifted.p_CO_C, lifted.cov_p);

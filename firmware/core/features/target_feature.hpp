@@ -1,4 +1,4 @@
-// The targets, and the features that the servo can steer by: the closed list where a new one is entered.
+// The features that the servo can steer by, for each target of target_traits.hpp.
 //
 //   target     feature     dim  controls                      file
 //   sphere     sphere       3   x, y, z                       sphere.hpp
@@ -22,14 +22,10 @@
 #include "firmware/core/features/pose.hpp"
 #include "firmware/core/features/sphere.hpp"
 #include "firmware/core/features/square.hpp"
+#include "firmware/core/features/target_traits.hpp"
 #include "fovea/hal/feature.hpp"
 
 namespace fovea::features {
-
-enum class FeatureForm : std::uint8_t { kSphere, kCircle, kCorners, kSide, kCornerSide, kPose };
-inline constexpr std::array<const char*, 6> kFormNames{"sphere", "circle",      "corners",
-                                                       "side",   "corner_side", "pose"};
-inline constexpr std::array<const char*, 4> kTargetNames{"sphere", "circle", "square", "triangle"};
 
 // A measurement of a sphere or circle, as a position.
 struct LiftedTarget {
@@ -71,9 +67,7 @@ struct TargetFeature {
   model::Vec3 p_CO_C_star{0.0, 0.0, 0.40};          // where the target shall be, in C [m]
   model::Mat3 R_CO_star = model::Mat3::Identity();  // and how it shall be turned
 
-  [[nodiscard]] bool SeesOrientation() const noexcept {
-    return target == hal::FeatureKind::kSquare || target == hal::FeatureKind::kTriangle;
-  }
+  [[nodiscard]] bool SeesOrientation() const noexcept { return TraitsOf(target).body == TargetBody::kPlate; }
   // Whether `form` is a feature of `target`, and there is room for all that is stacked.
   [[nodiscard]] bool IsListed() const noexcept;
   [[nodiscard]] int Dim() const noexcept;

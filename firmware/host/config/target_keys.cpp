@@ -51,21 +51,14 @@ features::TargetFeature MakeTarget(const TargetSettings& s) {
   feature.target = static_cast<hal::FeatureKind>(kind - features::kTargetNames.begin());
   feature.radius = 0.5 * s.diameter;
   feature.side = s.side;
-  switch (feature.target) {
-    case hal::FeatureKind::kSphere: feature.form = features::FeatureForm::kSphere; break;
-    case hal::FeatureKind::kCircle: feature.form = features::FeatureForm::kCircle; break;
-    case hal::FeatureKind::kSquare:
-      feature.form = features::FeatureForm::kCorners;
-      feature.corners = features::MakeSquare(s.side);
-      break;
-    case hal::FeatureKind::kTriangle: {
-      feature.form = features::FeatureForm::kPose;
-      std::array<double, 6> corners{};
-      std::copy(s.triangle.begin(), s.triangle.end(), corners.begin());
-      feature.corners = features::MakeTriangle(corners);
-      CheckTriangle(feature.corners);
-      break;
-    }
+  feature.form = features::TraitsOf(feature.target).form;
+  if (feature.target == hal::FeatureKind::kSquare) {
+    feature.corners = features::MakeSquare(s.side);
+  } else if (feature.target == hal::FeatureKind::kTriangle) {
+    std::array<double, 6> corners{};
+    std::copy(s.triangle.begin(), s.triangle.end(), corners.begin());
+    feature.corners = features::MakeTriangle(corners);
+    CheckTriangle(feature.corners);
   }
   return feature;
 }

@@ -52,7 +52,7 @@ vision::DetectorConfig MakeVisionConfig(const VisionSettings& settings, const vi
   config.by = settings.method == "gray"    ? vision::FindBy::kGray
               : settings.method == "hough" ? vision::FindBy::kHough
                                            : vision::FindBy::kColour;
-  const bool round = config.kind == hal::FeatureKind::kSphere || config.kind == hal::FeatureKind::kCircle;
+  const bool round = features::TraitsOf(config.kind).body != features::TargetBody::kPlate;
   if (config.by == vision::FindBy::kHough && !round) {
     throw InputError("vision.method = \"hough\" is not allowed: it finds spheres and circles alone");
   }

@@ -15,7 +15,7 @@ constexpr double kNearest = 1e-3;  // [m]
 
 Overlay::Curve TargetCurve(const vision::Intrinsics& in, const features::TargetFeature& target,
                            const model::Pose& X_CO) {
-  if (target.target == hal::FeatureKind::kSphere) {
+  if (features::TraitsOf(target.target).body == features::TargetBody::kBall) {
     return X_CO.p.z() > 1.1 * target.radius
                ? Overlay::CurveOf(in, features::ConeFromSphere(X_CO.p / target.radius))
                : Overlay::Curve();

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "firmware/targets/linux/check_camera.hpp"
-#include "firmware/targets/linux/check_robot.hpp"
+#include "firmware/targets/linux/robots/arm_drivers.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
@@ -79,7 +79,7 @@ std::vector<CheckRow> Check(const HwConfig& config) {
   Rows rows;
   const robots::Robot robot = LoadHwRobot(config);
   CheckComputer(config, rows);
-  CheckRobot(config, robot, rows);
+  ArmDriverOf(config).make(config)->Check(config, robot, rows);
   CheckCamera(config, rows);
   return rows;
 }

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "firmware/host/config/input_error.hpp"
+#include "firmware/targets/linux/cameras/camera_driver.hpp"
 #include "firmware/targets/linux/frame_figures.hpp"
-#include "firmware/targets/linux/hw_camera.hpp"
 #include "fovea/camera/camera_error.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 
@@ -115,19 +115,19 @@ void CheckLatency(const HwConfig& config, const FrameFigures& figures, bool by_c
 
 void CheckFrames(const HwConfig& config, Rows& rows) {
   linux_rt::MonotonicClock clock;
-  HwCamera camera(config, clock.NowNs());
-  rows.push_back({"camera", Verdict::kPass, camera.name(), ""});
+  const std::unique_ptr<CameraDriver> camera = OpenCamera(config, clock.NowNs());
+  rows.push_back({"camera", Verdict::kPass, camera->name(), ""});
   std::vector<Arrival> arrivals;
   std::uint64_t lost_before = 0;  // until the first frame came
   hal::Frame frame;
-  hal::Status status = camera.camera().Acquire(frame, kFirstNs);
+  hal::Status status = camera->camera().Acquire(frame, kFirstNs);
   const std::int64_t end_ns = clock.NowNs() + static_cast<std::int64_t>(config.check.seconds * kNsPerS);
   while (clock.NowNs() < end_ns && (status.ok() || status.code() == hal::StatusCode::kTimeout)) {
     if (status.ok()) {
-      lost_before = arrivals.empty() ? camera.counters().lost : lost_before;
+      lost_before = arrivals.empty() ? camera->counters().lost : lost_before;
       arrivals.push_back({frame.stamp_ns, clock.NowNs()});
     }
-    status = camera.camera().Acquire(frame, kPatienceNs);
+    status = camera->camera().Acquire(frame, kPatienceNs);
   }
   if (arrivals.size() < 2) {
     rows.push_back({"frames", Verdict::kFail,
@@ -135,7 +135,7 @@ void CheckFrames(const HwConfig& config, Rows& rows) {
                     "is it triggered by something else? a longer check.seconds; camera.exposure_ms"});
     return;
   }
-  CameraCounters counters = camera.counters();
+  CameraCounters counters = camera->counters();
   counters.lost -= lost_before;
   const FrameFigures figures = FiguresOf(arrivals);
   const vision::Intrinsics& in = config.camera.calibration.intrinsics;

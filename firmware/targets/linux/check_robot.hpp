@@ -1,14 +1,16 @@
-// What of the robot is as it should be; it is not moved.
+// Checks of a robot that every driver makes alike.
 #pragma once
 
-#include <vector>
-
 #include "firmware/targets/linux/check.hpp"
+#include "firmware/targets/linux/gravity_check.hpp"
 
 namespace fovea::hw {
 
-// Limits and kinematics of the model beside the robot's, its mode, its states, where it stands, what its
-// joints carry.
-void CheckRobot(const HwConfig& config, const robots::Robot& robot, std::vector<CheckRow>& rows);
+// What the robot's joints feel beside what the model says that they carry; `rests`: `mean` is there. Motion
+// is refused where this fails.
+CheckRow CheckGravity(const robots::Robot& robot, const RestMean& mean, bool rests, double allowed_nm);
+
+// Whether each joint stands inside its range, less `margin` [rad].
+CheckRow CheckRange(const robots::Robot& robot, const hal::ArmState& state, double margin);
 
 }  // namespace fovea::hw

@@ -7,12 +7,39 @@
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/share_folder.hpp"
+#include "firmware/targets/linux/cameras/camera_driver.hpp"
 
 namespace fovea::hw {
 namespace {
 
 namespace fs = std::filesystem;
 using config::InputError;
+
+constexpr const char* kDriverKey = "robot.driver";
+
+void AddDriverKey(HwConfig& config, config::KeyTable& keys) {
+  std::vector<std::string> names;
+  std::string meanings;
+  for (const ArmDriverEntry& driver : ArmDrivers()) {
+    names.emplace_back(driver.name);
+    meanings += fmt::format("{}{}: {}", meanings.empty() ? "" : "; ", driver.name, driver.meaning);
+  }
+  keys.Choice(kDriverKey, config.robot.driver, names, meanings);
+}
+
+void AddCameraDriverKeys(HwConfig& config, config::KeyTable& keys) {
+  std::vector<std::string> names{"none"};
+  std::string meanings;
+  std::string devices;
+  for (const CameraDriverEntry& driver : CameraDrivers()) {
+    names.emplace_back(driver.name);
+    meanings += fmt::format("{}: {}; ", driver.name, driver.meaning);
+    devices += fmt::format("{}{}: {}", devices.empty() ? "" : "; ", driver.name, driver.device);
+  }
+  keys.Choice("camera.driver", config.camera.driver, names,
+              meanings + "none: the arm is held where it stands");
+  keys.Text("camera.device", config.camera.device, devices);
+}
 
 fs::path Shipped() { return config::ShareFolder() / "hardware"; }
 
@@ -34,13 +61,14 @@ fs::path FindConfig(const std::string& name_or_path) {
                                name_or_path, fmt::join(names, ", ")));
 }
 
-// A read of the robot's state ends before the robot counts as lost.
-void CheckTimes(const HwConfig& config) {
-  const int most_ms = config.servo.config.safety.arm_lost_ticks;
-  if (config.robot.time == "computer" && config.robot.state_timeout_ms > most_ms) {
-    throw InputError(fmt::format(
-        "robot.state_timeout_ms = {} is not allowed: at most safety.arm_lost_ticks, which is {} ms",
-        config.robot.state_timeout_ms, most_ms));
+// The driver that `settings` name, and the keys that there are, follow from each other: it comes first.
+void ChooseDriver(const std::vector<config::Setting>& settings, HwConfig& config) {
+  config::KeyTable keys;
+  AddDriverKey(config, keys);
+  for (const config::Setting& setting : settings) {
+    if (setting.key == kDriverKey) {
+      keys.Apply(setting);
+    }
   }
 }
 
@@ -50,27 +78,10 @@ config::KeyTable HwKeys(HwConfig& c) {
   config::KeyTable keys;
   keys.Text("arm.model", c.arm.model, "a shipped arm by name, or the path of an arm file or URDF");
   config::AddLoadKeys(c.arm.load, keys);
-  keys.Text("robot.host", c.robot.host, "address of the robot's controller");
-  keys.Integer("robot.port", c.robot.port, 1, 65535, "", "its TCP port");
-  keys.Flag("robot.set_load", c.robot.set_load,
-            "tell the robot of arm.load_*; false: its own settings know of it already");
-  keys.Choice("robot.time", c.robot.time, {"computer", "robot"},
-              "whose clock stamps are in; robot: of a simulated one in lockstep");
-  keys.Number("robot.state_timeout_ms", c.robot.state_timeout_ms, 1.0, 10000.0, "ms",
-              "no state for so long is a tick without one; at most safety.arm_lost_ticks with robot.time = "
-              "\"computer\", long for a robot in lockstep");
-  keys.Number("robot.torque_step", c.robot.torque_step, 0.001, 1.0, "Nm",
-              "a joint's torque changes by no more from one state to the next");
+  AddDriverKey(c, keys);
+  ArmDriverOf(c).add_keys(c, keys);
   auto& camera = c.camera;
-  keys.Choice(
-      "camera.driver", camera.driver, {"none", "genicam", "v4l2", "recorded"},
-      "genicam: GigE Vision or USB3 Vision; v4l2: Video4Linux2; recorded: a folder of pictures, or a video; "
-      "none: the arm is "
-      "held where it stands");
-  keys.Text("camera.device", camera.device,
-            "genicam: serial number, name or address, \"\" for the first one found; v4l2: the device's path, "
-            "\"\" for "
-            "/dev/video0; recorded: the path");
+  AddCameraDriverKeys(c, keys);
   keys.Text("camera.pixel_format", camera.pixel_format,
             "Mono8, BayerRG8, BayerGR8, BayerGB8, BayerBG8, YUYV, RGB8 or BGR8; \"\": as the camera is set");
   keys.Number("camera.rate_hz", camera.rate_hz, 0.0, 1000.0, "Hz",
@@ -119,14 +130,16 @@ HwConfig LoadHwConfig(const std::string& name_or_path, const std::vector<std::st
   const fs::path file = FindConfig(name_or_path);
   HwConfig config;
   config.name = file.stem().string();
+  std::vector<config::Setting> settings = config::ReadTomlFile(file);
+  for (const std::string& assignment : assignments) {
+    settings.push_back(config::ParseAssignment(assignment));
+  }
+  ChooseDriver(settings, config);
   const config::KeyTable keys = HwKeys(config);
-  for (const config::Setting& setting : config::ReadTomlFile(file)) {
+  for (const config::Setting& setting : settings) {
     keys.Apply(setting);
   }
-  for (const std::string& assignment : assignments) {
-    keys.Apply(config::ParseAssignment(assignment));
-  }
-  CheckTimes(config);
+  ArmDriverOf(config).check_settings(config);
   return config;
 }
 
@@ -135,10 +148,11 @@ robots::Robot LoadHwRobot(const HwConfig& config) {
   const bool is_path = given.extension() == ".toml" || given.extension() == ".urdf";
   robots::Robot robot =
       robots::LoadRobot(is_path ? given : config::ShareFolder() / "robots" / (config.arm.model + ".toml"));
-  if (robot.model.num_joints != franka::kJoints) {
-    throw InputError(
-        fmt::format("arm.model = \"{}\" is not allowed: it has {} joints, the robot at robot.host has {}",
-                    config.arm.model, robot.model.num_joints, franka::kJoints));
+  const int num_joints = ArmDriverOf(config).num_joints;
+  if (robot.model.num_joints != num_joints) {
+    throw InputError(fmt::format(
+        "arm.model = \"{}\" is not allowed: it has {} joints, a robot of robot.driver = \"{}\" has {}",
+        config.arm.model, robot.model.num_joints, config.robot.driver, num_joints));
   }
   if (const model::Load load = config::MakeLoad(config.arm.load); load.mass > 0.0) {
     model::Attach(load, robot.model);
@@ -162,22 +176,6 @@ RestMean MakeRestMean(const HwConfig& config) {
   constexpr double kStatesPerSecond = 1000.0;
   return {std::max(1, static_cast<int>(kStatesPerSecond * config.check.gravity_s)),
           config.servo.config.safety.boot_velocity};
-}
-
-franka::FrankaConfig MakeFrankaConfig(const HwConfig& config, bool allow_motion) {
-  franka::FrankaConfig out;
-  out.host = config.robot.host;
-  out.port = static_cast<std::uint16_t>(config.robot.port);
-  out.allow_motion = allow_motion;
-  out.state_timeout_ns = static_cast<std::int64_t>(config.robot.state_timeout_ms * 1e6);
-  out.torque_step_max.fill(config.robot.torque_step);
-  if (config.robot.set_load) {
-    const model::Load load = config::MakeLoad(config.arm.load);
-    out.load.mass = load.mass;
-    Eigen::Map<model::Vec3>(out.load.F_x_Cload.data()) = load.p_ECom;
-    Eigen::Map<model::Mat3>(out.load.I_load.data()) = load.I_Com_E;
-  }
-  return out;
 }
 
 }  // namespace fovea::hw

@@ -11,7 +11,7 @@
 #include "firmware/host/config/vision_keys.hpp"
 #include "firmware/host/robots/robot.hpp"
 #include "firmware/targets/linux/gravity_check.hpp"
-#include "fovea/franka/franka_arm.hpp"
+#include "firmware/targets/linux/robots/arm_drivers.hpp"
 
 namespace fovea::hw {
 
@@ -24,12 +24,8 @@ struct HwConfig {
   } arm;
 
   struct {
-    std::string host = "172.16.0.2";  // as the maker ships it
-    int port = franka::kFciPort;
-    bool set_load = true;
-    std::string time = "computer";
-    double state_timeout_ms = 2.0;
-    double torque_step = 1.0;  // [Nm]
+    std::string driver = "fci5";
+    ArmDriverSettings of_driver;
     double speed_scale = 1.0;
   } robot;
 
@@ -74,7 +70,8 @@ struct HwConfig {
   [[nodiscard]] bool HasCamera() const { return camera.driver != "none"; }
 };
 
-// The keys of all sections, bound to `config`, which must outlive the table.
+// The keys of all sections, bound to `config`, which must outlive the table; of the robot those of
+// config.robot.driver, which must be one of the list.
 config::KeyTable HwKeys(HwConfig& config);
 
 // Reads a shipped configuration by name, or a .toml by path, then applies `assignments` ("key=value").
@@ -90,8 +87,5 @@ config::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robo
 
 // Over so many states, and of an arm so still, gravity is compared.
 RestMean MakeRestMean(const HwConfig& config);
-
-// What the driver of the robot is told.
-franka::FrankaConfig MakeFrankaConfig(const HwConfig& config, bool allow_motion);
 
 }  // namespace fovea::hw

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <exception>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -13,10 +14,9 @@
 #include "firmware/host/recording/flight/flight_recorder.hpp"
 #include "firmware/host/recording/log/record_hash.hpp"
 #include "firmware/targets/linux/await_leave.hpp"
-#include "firmware/targets/linux/hw_files.hpp"
+#include "firmware/targets/linux/hw_facts.hpp"
 #include "firmware/targets/linux/operator_thread.hpp"
 #include "firmware/targets/linux/run_watch.hpp"
-#include "fovea/linux_rt/heap_counter.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
@@ -46,8 +46,8 @@ class Session {
         robot_(LoadHwRobot(config)),
         servo_(MakeHwServoConfig(config, robot_)),
         watch_(summary_, speaker),
-        by_robot_(config.robot.time == "robot"),
-        clock_(by_robot_ ? static_cast<hal::Clock&>(robot_clock_) : monotonic_),
+        robot_link_(ArmDriverOf(config).make(config)),
+        clock_(robot_link_->robot_time() != nullptr ? *robot_link_->robot_time() : monotonic_),
         recorder_(task_, options.out.empty() ? nullptr : &task_, kRingCapacity),
         operator_({.dead_man_s = config.input.dead_man_s, .allow_motion = options.allow_motion}, clock_,
                   signals, control_) {
@@ -56,7 +56,7 @@ class Session {
     summary_.config = config.name;
     summary_.allow_motion = options.allow_motion;
     if (!options.out.empty()) {
-      files_.emplace(options.out, config, robot_, servo_, options.duration_s);
+      book_.emplace(options.out, FactsOf(config, robot_, servo_, options.duration_s), BookOptions(config));
     }
     if (config.HasCamera()) {
       OpenCamera();
@@ -84,8 +84,8 @@ class Session {
     try {
       vision_.emplace(config_, servo_.feature, clock_.NowNs(), features_,
                       [this](const hal::Frame& frame, const vision::Detection& detection) {
-                        if (files_) {
-                          files_->AddFrame(frame, detection);
+                        if (book_) {
+                          book_->AddFrame(frame, detection);
                         }
                       });
       speaker_.Say(fmt::format("camera: {}", vision_->name()));
@@ -116,9 +116,9 @@ class Session {
   }
 
   void Connect() {
-    arm_.emplace(MakeFrankaConfig(config_, options_.allow_motion), by_robot_ ? &robot_clock_ : nullptr);
+    arm_ = &robot_link_->Connect(options_.allow_motion);
     loop_.emplace(recorder_, *arm_, clock_, features_, recorder_, meter_);
-    control_.arm = &*arm_;
+    control_.arm = robot_link_.get();
     control_.loop = &*loop_;
     GiveLeave(config_.input.dead_man_s, clock_, control_);
   }
@@ -131,8 +131,8 @@ class Session {
       }
       RunLoop();
     }
-    summary_.success_rate = arm_->robot_state().control_command_success_rate;
-    arm_->Stop();
+    summary_.robot = robot_link_->figures();
+    robot_link_->Stop();
   }
 
   void RunLoop() {
@@ -174,7 +174,7 @@ class Session {
       return;
     }
     connection_told_ = true;
-    speaker_.Say(fmt::format("connected to {}:{}{}", config_.robot.host, config_.robot.port,
+    speaker_.Say(fmt::format("connected to {}{}", robot_link_->address(),
                              options_.allow_motion ? "" : ", without leave to move"));
     if (!options_.allow_motion) {
       return;
@@ -253,19 +253,20 @@ class Session {
       watch_.Add(flown.record, flown.record.tick >= loop_->finish_tick());
       LookBeforeReset(flown.record.arm);
       hash_.Add(flown.record);
-      if (files_) {
-        files_->AddRecord(flown);
+      if (book_) {
+        book_->AddRecord(flown);
       }
     };
     recorder_.Drain(take, [this](const flight::Keyframe& keyframe) {
-      if (files_) {
-        files_->AddKeyframe(keyframe);
+      if (book_) {
+        book_->AddKeyframe(keyframe);
       }
     });
   }
 
   void LookAtRecovery() {
-    if (const char* why = arm_ ? arm_->TakeRecoveryRefusal() : nullptr) {
+    ArmDriver* robot = control_.arm;
+    if (const char* why = robot != nullptr ? robot->TakeRecoveryRefusal() : nullptr) {
       watch_.Say(fmt::format("no recovery: {}; type \"recover\" anew", why));
     }
   }
@@ -281,8 +282,8 @@ class Session {
     if (!status_.ok()) {
       watch_.Say(fmt::format("the loop ended: {} ({})", hal::ToString(status_.code()), status_.where()));
     }
-    if (arm_ && arm_->phase() == franka::MotionPhase::kFailed) {
-      watch_.Say(fmt::format("the robot: {}", arm_->failure()));
+    if (const char* why = robot_link_->failure()) {
+      watch_.Say(fmt::format("the robot: {}", why));
     }
     for (const std::string& line : summary_.realtime_missing) {
       speaker_.Say("real time: " + line);
@@ -292,26 +293,25 @@ class Session {
       summary_.seen = vision_->seen();
     }
     if (loop_) {
-      summary_.loop = loop_->counters();
-      summary_.robot = arm_->counters();
+      run::FillTicks(loop_->counters(), meter_, summary_);
+      summary_.dead_man_holds = loop_->counters().lease_ends;
+      const double success_rate = summary_.robot.command_success_rate;  // before the end
+      summary_.robot = robot_link_->figures();
+      summary_.robot.command_success_rate = success_rate;
     }
-    summary_.ticks = meter_.durations();
-    summary_.heap_counted = linux_rt::HeapCounterActive();
-    summary_.heap_calls = meter_.heap_calls();
-    summary_.page_faults = meter_.page_faults();
     summary_.records_dropped = recorder_.dropped();
     summary_.log_hash = hash_.Finish();
     Judge(summary_);
-    if (files_) {
-      summary_.log = files_->EndFilm();
-      for (const std::string& error : summary_.log->film_errors) {
+    if (book_) {
+      run::FillBook(book_->EndFilm(), summary_);
+      for (const std::string& error : summary_.film_errors) {
         watch_.Say(error);
       }
     }
     speaker_.Wait(kSayLast);
     summary_.lines_unsaid = speaker_.unsaid();
-    if (files_) {
-      files_->Write(summary_);
+    if (book_) {
+      book_->Write(ToJson(summary_), meter_.durations());
     }
   }
 
@@ -323,9 +323,8 @@ class Session {
   HwSummary summary_;
   RunWatch watch_;
   task::ServoTask task_;
-  franka::RobotClock robot_clock_;
   linux_rt::MonotonicClock monotonic_;
-  const bool by_robot_;
+  const std::unique_ptr<ArmDriver> robot_link_;
   hal::Clock& clock_;
   RunControl control_;
   LeaveRing findings_{kFindings};
@@ -335,9 +334,9 @@ class Session {
   std::optional<LeaveLook> look_;  // after a recovery
   std::uint64_t looked_at_ = 0;    // the number of its newest state
   hal::FeatureMailbox features_;
-  std::optional<HwFiles> files_;  // the vision thread uses it
+  std::optional<run::RunBook> book_;  // the vision thread uses it
   std::optional<HwVision> vision_;
-  std::optional<franka::FrankaArm> arm_;
+  hal::Arm* arm_ = nullptr;  // once connected
   flight::FlightRecorder recorder_;
   linux_rt::TickMeter meter_;
   log::RecordHash hash_;

@@ -29,9 +29,10 @@ void AddRod(const Eigen::Vector3d& p, const Eigen::Vector3f& colour, foxglove::S
 
 void AddTarget(const features::TargetFeature& target, foxglove::SceneEntity& entity) {
   const Eigen::Vector3f colour(0.6F, 0.03F, 0.02F);
-  if (target.target == hal::FeatureKind::kSphere) {
+  const features::TargetBody body = features::TraitsOf(target.target).body;
+  if (body == features::TargetBody::kBall) {
     log::AddSphere(At(Eigen::Vector3d::Zero()), target.radius, colour, entity);
-  } else if (target.target == hal::FeatureKind::kCircle) {
+  } else if (body == features::TargetBody::kDisc) {
     log::AddCylinder(At(Eigen::Vector3d::Zero()), target.radius, kThickness, colour, entity);
   } else {
     foxglove::TriangleListPrimitive& plate = log::AddTriangles(At(Eigen::Vector3d::Zero()), entity);

@@ -7,9 +7,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "firmware/host/build_info.hpp"
-#include "firmware/host/summary_format.hpp"
-
 namespace fovea::hw {
 namespace {
 
@@ -102,7 +99,7 @@ void JudgeEnd(HwSummary& s) {
     s.verdict = fmt::format("it ended in a fault: {}", hal::Name(s.fault));
   } else if (!s.refusal.empty()) {
     s.verdict = s.refusal;
-  } else if (s.loop.ticks == 0) {
+  } else if (s.ticks == 0) {
     s.verdict = "the servo was never told to begin";
   } else if (s.mode == hal::Mode::kBoot) {
     s.verdict = "it never left mode boot: the arm's states were not sound, or it did not come to rest";
@@ -127,6 +124,15 @@ void JudgeEnd(HwSummary& s) {
   }
 }
 
+Json RobotOf(const RobotFigures& robot) {
+  Json json{{"states", robot.states}, {"lost_states", robot.lost_states}, {"commands", robot.commands}};
+  for (const auto& [name, count] : robot.counters) {
+    json[name] = count;
+  }
+  json["command_success_rate"] = robot.command_success_rate;
+  return json;
+}
+
 }  // namespace
 
 void Judge(HwSummary& s) {
@@ -140,8 +146,9 @@ void Judge(HwSummary& s) {
 }
 
 std::string ToJson(const HwSummary& s) {
-  Json json{
-      {"format", kSummaryFormat},
+  Json json;
+  run::BeginSummary(json);
+  json.update(Json{
       {"config", s.config},
       {"converged", s.converged ? Json(*s.converged) : Json(nullptr)},
       {"verdict", s.verdict},
@@ -162,46 +169,11 @@ std::string ToJson(const HwSummary& s) {
       {"faults_recovered", s.faults.size() - (s.fault != hal::Fault::kNone && !s.faults.empty() ? 1U : 0U)},
       {"gravity", GravityOf(s)},
       {"words", WordsOf(s)},
-      {"dead_man_holds", s.loop.lease_ends},
+      {"dead_man_holds", s.dead_man_holds},
       {"lines_unsaid", s.lines_unsaid},
-      {"ticks", s.loop.ticks},
-      {"overruns", s.loop.overruns},
-      {"missed_ticks", s.loop.missed_ticks},
-      {"records_dropped", s.records_dropped},
-      {"heap_allocations_in_tick", s.heap_counted ? Json(s.heap_calls) : Json(nullptr)},
-      {"page_faults_in_loop", s.page_faults},
-      {"tick_ns",
-       {{"p50", s.ticks.Percentile(0.5)},
-        {"p99", s.ticks.Percentile(0.99)},
-        {"p999", s.ticks.Percentile(0.999)},
-        {"max", s.ticks.max_ns()}}},
-      {"robot",
-       {{"states", s.robot.states},
-        {"lost_states", s.robot.lost_states},
-        {"late_states", s.robot.late_states},
-        {"duplicate_states", s.robot.duplicate_states},
-        {"skipped_states", s.robot.skipped_states},
-        {"malformed", s.robot.malformed},
-        {"foreign", s.robot.foreign},
-        {"commands", s.robot.commands},
-        {"repeated_commands", s.robot.repeated_commands},
-        {"rate_limited", s.robot.rate_limited},
-        {"timeouts", s.robot.timeouts},
-        {"motions", s.robot.motions},
-        {"command_success_rate", s.success_rate}}},
-      {"realtime_missing", s.realtime_missing},
-      {"log_hash", s.log_hash},
-      {"servo", kServoLibraryHash},
-      {"git", kGitRevision},
-      {"version", kVersion},
-  };
-  if (s.log) {
-    json["log_entries_dropped"] = s.log->ticks_dropped;
-    json["log_pictures"] = s.log->pictures;
-    json["log_pictures_dropped"] = s.log->pictures_dropped;
-    json["film_frames_dropped"] = s.log->film_frames_dropped;
-    json["film_errors"] = s.log->film_errors;
-  }
+      {"robot", RobotOf(s.robot)},
+  });
+  run::AddFigures(s, json);
   if (s.seen) {
     json["camera"] = {
         {"frames", s.seen->frames},

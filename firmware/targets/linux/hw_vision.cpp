@@ -19,7 +19,7 @@ HwVision::HwVision(const HwConfig& config, const features::TargetFeature& goal, 
                    hal::FeatureSink& features, vision::FrameObserver observer)
     : intrinsics_(config::MakeIntrinsics(config.camera.calibration)),
       p_CO_C_star_(goal.p_CO_C_star),
-      camera_(config, start_ns),
+      camera_(OpenCamera(config, start_ns)),
       task_(config::MakeVisionConfig(config.vision, intrinsics_, config.target)),
       observer_(std::move(observer)) {
   thread_ = std::thread([this, &features] {
@@ -27,7 +27,7 @@ HwVision::HwVision(const HwConfig& config, const features::TargetFeature& goal, 
     std::string failure;
     try {
       const hal::Status status =
-          vision::RunVision(camera_.camera(), task_, features, stop_,
+          vision::RunVision(camera_->camera(), task_, features, stop_,
                             [this](const hal::Frame& frame, const vision::Detection& detection) {
                               Look(detection);
                               if (observer_) {
@@ -87,7 +87,7 @@ CameraCounters HwVision::Finish() {
   if (thread_.joinable()) {
     thread_.join();
   }
-  return camera_.counters();
+  return camera_->counters();
 }
 
 }  // namespace fovea::hw

@@ -8,7 +8,8 @@
 #include <string>
 #include <thread>
 
-#include "firmware/targets/linux/hw_camera.hpp"
+#include "firmware/targets/linux/cameras/camera_driver.hpp"
+#include "firmware/targets/linux/hw_config.hpp"
 #include "firmware/vision/detect/vision_task.hpp"
 
 namespace fovea::hw {
@@ -33,7 +34,7 @@ class HwVision {
   [[nodiscard]] SeenError seen() const;
   // Why there are no measurements any more; "" while the camera works, or was only told to end.
   [[nodiscard]] std::string failure() const;
-  [[nodiscard]] std::string name() const { return camera_.name(); }
+  [[nodiscard]] std::string name() const { return camera_->name(); }
 
   // Ends the thread; then what the driver counted.
   CameraCounters Finish();
@@ -43,7 +44,7 @@ class HwVision {
 
   const vision::Intrinsics intrinsics_;
   const model::Vec3 p_CO_C_star_;
-  HwCamera camera_;
+  const std::unique_ptr<CameraDriver> camera_;
   vision::VisionTask task_;
   const vision::FrameObserver observer_;
   std::atomic<bool> stop_{false};

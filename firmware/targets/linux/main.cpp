@@ -71,8 +71,8 @@ int Run(const Arguments& arguments) {
     fmt::print(
         "{} ticks, {} overruns; {} states, {} lost; {} commands, {:.0f} % of the last 100 came; ended in "
         "{}\n",
-        summary.loop.ticks, summary.loop.overruns, summary.robot.states, summary.robot.lost_states,
-        summary.robot.commands, 100.0 * summary.success_rate, hal::Name(summary.mode));
+        summary.ticks, summary.overruns, summary.robot.states, summary.robot.lost_states,
+        summary.robot.commands, 100.0 * summary.robot.command_success_rate, hal::Name(summary.mode));
     fmt::print("{}\n", summary.verdict);
   }
   return summary.converged.value_or(true) ? config::kDone : config::kGoalMissed;

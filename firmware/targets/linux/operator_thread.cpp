@@ -71,7 +71,7 @@ void OperatorThread::HearAll(const std::stop_token& stop) {
 void OperatorThread::HearSignal() {
   const int signal = signals_.Next(kLookMs);
   if (signal == SIGUSR1) {
-    if (franka::FrankaArm* arm = control_.arm) {
+    if (ArmDriver* arm = control_.arm) {
       arm->AskRecovery();
     }
     Note(Word::kRecover);
@@ -98,7 +98,7 @@ void OperatorThread::HearWords() {
         }
         break;
       case Word::kRecover:
-        if (franka::FrankaArm* arm = control_.arm) {
+        if (ArmDriver* arm = control_.arm) {
           arm->AskRecovery();
         }
         break;

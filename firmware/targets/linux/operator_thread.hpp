@@ -9,7 +9,7 @@
 
 #include "firmware/core/task/servo_loop.hpp"
 #include "firmware/targets/linux/operator_input.hpp"
-#include "fovea/franka/franka_arm.hpp"
+#include "firmware/targets/linux/robots/arm_driver.hpp"
 #include "fovea/hal/clock.hpp"
 #include "fovea/linux_rt/bounded_ring.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
@@ -20,7 +20,7 @@ namespace fovea::hw {
 struct RunControl {
   // Null until there is a connection; what they point to outlives the operator's thread.
   std::atomic<task::ServoLoop*> loop{nullptr};
-  std::atomic<franka::FrankaArm*> arm{nullptr};
+  std::atomic<ArmDriver*> arm{nullptr};
   std::atomic<bool> enable_asked{false};
   std::atomic<bool> ended{false};               // it was told to
   std::atomic<bool> done{false};                // the servo's thread has nothing more to do

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "firmware/core/features/feature_state.hpp"
+#include "firmware/core/features/target_traits.hpp"
 #include "firmware/core/model/types.hpp"
 #include "fovea/hal/feature.hpp"
 
@@ -59,9 +60,10 @@ struct Detection {
   }
   // A point before the camera in whose direction the target's middle is, in axes of C; only when found.
   [[nodiscard]] model::Vec3 Middle() const {
-    return pose_count > 0                      ? pose[0].X_CO.p
-           : kind == hal::FeatureKind::kCircle ? model::Vec3(s[0], s[1], 1.0)
-                                               : model::Vec3(s.head<3>());
+    const bool is_disc = features::TraitsOf(kind).body == features::TargetBody::kDisc;
+    return pose_count > 0 ? pose[0].X_CO.p
+           : is_disc      ? model::Vec3(s[0], s[1], 1.0)
+                          : model::Vec3(s.head<3>());
   }
 };
 

@@ -14,11 +14,10 @@ constexpr double kSmallPx = 22.0;  // radius below which a reduction by four lea
 }  // namespace
 
 TargetDetector::AnyDetector TargetDetector::Make(const DetectorConfig& config) {
-  switch (config.kind) {
-    case hal::FeatureKind::kSphere: return AnyDetector(std::in_place_type<SphereDetector>, config);
-    case hal::FeatureKind::kCircle: return AnyDetector(std::in_place_type<DiscDetector>, config);
-    case hal::FeatureKind::kSquare:
-    case hal::FeatureKind::kTriangle: break;
+  switch (features::TraitsOf(config.kind).body) {
+    case features::TargetBody::kBall: return AnyDetector(std::in_place_type<SphereDetector>, config);
+    case features::TargetBody::kDisc: return AnyDetector(std::in_place_type<DiscDetector>, config);
+    case features::TargetBody::kPlate: break;
   }
   return AnyDetector(std::in_place_type<PolygonDetector>, config);
 }
@@ -45,7 +44,7 @@ cv::Rect TargetDetector::ExpectedArea(const cv::Mat& image) const {
   double u = last_.u_px + step_.u_px;
   double v = last_.v_px + step_.v_px;
   config_.intrinsics.Distort(u, v);
-  const bool round = config_.kind == hal::FeatureKind::kSphere;
+  const bool round = features::TraitsOf(config_.kind).body == features::TargetBody::kBall;
   const double reach = (round ? 1.2 : kReach) * (last_.radius_px + std::max(step_.radius_px, 0.0)) +
                        kRoomShare * last_.radius_px + kRoomPx;
   const int left = std::max(0, static_cast<int>(u - reach));

@@ -25,14 +25,15 @@ std::vector<ImagePoint> SphereOutline(const Intrinsics& intrinsics, const model:
 std::vector<ImagePoint> TargetOutline(const DetectorConfig& config, const model::Pose& X_CO) {
   constexpr double kNearest = 1e-3;  // [m]
   const double radius = 0.5 * config.size;
-  if (config.kind == hal::FeatureKind::kSphere) {
+  const features::TargetBody body = features::TraitsOf(config.kind).body;
+  if (body == features::TargetBody::kBall) {
     return X_CO.p.z() > 1.1 * radius
                ? SphereOutline(config.intrinsics, features::ConeFromSphere(X_CO.p / radius),
                                Detection::kOutlinePoints)
                : std::vector<ImagePoint>();
   }
   std::vector<Eigen::Vector2d> rim;
-  if (config.kind == hal::FeatureKind::kCircle) {
+  if (body == features::TargetBody::kDisc) {
     for (int i = 0; i < Detection::kOutlinePoints; ++i) {
       const double angle = 2.0 * std::numbers::pi * i / Detection::kOutlinePoints;
       rim.emplace_back(radius * std::cos(angle), radius * std::sin(angle));

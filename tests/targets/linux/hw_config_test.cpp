@@ -8,7 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "firmware/host/config/input_error.hpp"
-#include "firmware/targets/linux/hw_camera.hpp"
+#include "firmware/targets/linux/cameras/camera_driver.hpp"
 #include "fovea/camera/camera_error.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -69,7 +69,7 @@ TEST(HwConfigTest, AReadEndsBeforeTheRobotCountsAsLost) {
   EXPECT_THAT(RefusalOf({"robot.time=computer", "robot.state_timeout_ms=20.5"}),
               HasSubstr("state_timeout_ms = 20.5"));
   EXPECT_EQ(RefusalOf({"robot.time=computer", "robot.state_timeout_ms=50", "safety.arm_lost_ticks=50"}), "");
-  EXPECT_EQ(LoadHwConfig("panda", {}).robot.state_timeout_ms, 2.0);
+  EXPECT_EQ(std::get<FciDriver::Settings>(LoadHwConfig("panda", {}).robot.of_driver).state_timeout_ms, 2.0);
 }
 
 TEST(HwConfigTest, TheDeadManIsOnForARealRobot) {
@@ -103,17 +103,17 @@ TEST(HwConfigTest, PlanesBoxesAndPostureReachTheServo) {
   EXPECT_EQ(obstacles.planes[1].distance, -0.3);
   EXPECT_EQ(obstacles.boxes[0].high, model::Vec3(0.0, 0.0, 0.4));
   EXPECT_EQ(servo.law.q_posture[3], -1.9);
-  EXPECT_EQ(MakeFrankaConfig(LoadHwConfig("loopback", {"robot.set_load=true", "arm.load_mass=0.5"}), true)
-                .load.mass,
-            0.5);
-  EXPECT_EQ(MakeFrankaConfig(config, true).load.mass, 0.0) << "robot.set_load is false there";
+  EXPECT_EQ(
+      FrankaConfigOf(LoadHwConfig("loopback", {"robot.set_load=true", "arm.load_mass=0.5"}), true).load.mass,
+      0.5);
+  EXPECT_EQ(FrankaConfigOf(config, true).load.mass, 0.0) << "robot.set_load is false there";
 }
 
-TEST(HwCameraTest, EachDriverIsAskedForWhatTheConfigurationNames) {
+TEST(CameraDriverTest, EachDriverIsAskedForWhatTheConfigurationNames) {
   const test::TempFolder temp;
   const auto open = [&temp](std::vector<std::string> assignments) {
     assignments.push_back("camera.device=" + (temp.path() / "eye").string());
-    return HwCamera(LoadHwConfig("loopback", assignments), 5'000'000'000);
+    return OpenCamera(LoadHwConfig("loopback", assignments), 5'000'000'000);
   };
   EXPECT_THROW(open({"camera.driver=v4l2"}), camera::CameraError) << "no such device";
   EXPECT_THROW(open({"camera.driver=recorded"}), camera::CameraError) << "no such pictures";
@@ -122,18 +122,25 @@ TEST(HwCameraTest, EachDriverIsAskedForWhatTheConfigurationNames) {
   for (const char* name : {"1.png", "2.png"}) {
     cv::imwrite(temp.path() / "eye" / name, cv::Mat(48, 64, CV_8UC3, cv::Scalar(10, 20, 30)));
   }
-  HwCamera eye = open({"camera.driver=recorded", "camera.rate_hz=50", "camera.exposure_ms=4"});
-  EXPECT_THAT(eye.name(), HasSubstr("pictures from " + (temp.path() / "eye").string()));
+  const std::unique_ptr<CameraDriver> eye =
+      open({"camera.driver=recorded", "camera.rate_hz=50", "camera.exposure_ms=4"});
+  EXPECT_THAT(eye->name(), HasSubstr("pictures from " + (temp.path() / "eye").string()));
   hal::Frame frame;
-  ASSERT_TRUE(eye.camera().Acquire(frame, hal::kNsPerSecond).ok());
+  ASSERT_TRUE(eye->camera().Acquire(frame, hal::kNsPerSecond).ok());
   EXPECT_EQ(frame.width_px, 64);
   EXPECT_EQ(frame.exposure_ns, 4 * hal::kNsPerMs);
   const std::int64_t first_ns = frame.stamp_ns;
   EXPECT_GE(first_ns, 5'000'000'000);
-  ASSERT_TRUE(eye.camera().Acquire(frame, hal::kNsPerSecond).ok());
+  ASSERT_TRUE(eye->camera().Acquire(frame, hal::kNsPerSecond).ok());
   EXPECT_EQ(frame.stamp_ns - first_ns, 20 * hal::kNsPerMs);
-  const CameraCounters counters = eye.counters();
+  const CameraCounters counters = eye->counters();
   EXPECT_EQ(counters.lost + counters.incomplete + counters.disconnects, 0U);
+}
+
+TEST(HwConfigTest, AnUnknownDriverIsRefusedWithThoseThatThereAre) {
+  EXPECT_THAT(RefusalOf({"robot.driver=ur5"}), HasSubstr("expected one of, \"fci5\""));
+  EXPECT_THAT(RefusalOf({"camera.driver=film"}),
+              HasSubstr("expected one of, \"none\", \"genicam\", \"v4l2\", \"recorded\""));
 }
 
 }  // namespace

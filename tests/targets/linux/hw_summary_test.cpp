@@ -15,7 +15,7 @@ using hal::Mode;
 
 HwSummary Ended(Mode mode, HoldReason reason, std::optional<double> last_px) {
   HwSummary summary;
-  summary.loop.ticks = 4000;
+  summary.ticks = 4000;
   summary.mode = mode;
   summary.hold_reason = reason;
   summary.modes = {{.t_s = 0.0, .mode = Mode::kBoot}, {.t_s = 3.0, .mode = mode, .reason = reason}};
@@ -75,11 +75,11 @@ TEST(HwSummaryTest, AFaultIsNeverWellAndOneThatWasRecoveredFromIsTold) {
 TEST(HwSummaryTest, ARunThatNeverBeganWasNone) {
   HwSummary summary = Ended(Mode::kBoot, HoldReason::kNone, 0.2);
   EXPECT_EQ(summary.converged, false) << "it stayed in Boot";
-  summary.loop.ticks = 0;
+  summary.ticks = 0;
   Judge(summary);
   EXPECT_EQ(summary.converged, false);
   summary = Ended(Mode::kHold, HoldReason::kNotAsked, 0.2);
-  summary.loop.ticks = 0;
+  summary.ticks = 0;
   summary.refusal = "motion is refused: ...";
   Judge(summary);
   EXPECT_EQ(summary.converged, false);

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <opencv2/imgproc.hpp>
 
+#include "firmware/core/features/target_traits.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
 #include "tools/bench/vision/picture_target.hpp"
 
@@ -111,7 +112,7 @@ std::vector<std::unique_ptr<Contestant>> MakeContestants(TargetKind kind, const 
                                                          bool colour) {
   std::vector<std::unique_ptr<Contestant>> list;
   list.push_back(std::make_unique<Ours>(kind, camera, colour));
-  if (kind == TargetKind::kSphere || kind == TargetKind::kCircle) {
+  if (features::TraitsOf(kind).body != features::TargetBody::kPlate) {
     list.push_back(std::make_unique<Hough>());
     list.push_back(std::make_unique<ThresholdEllipse>());
   }

@@ -4,23 +4,9 @@
 #include <limits>
 
 namespace fovea::bench {
-namespace {
-
-hal::FeatureKind KindOf(TargetKind kind) {
-  switch (kind) {
-    case TargetKind::kSphere: return hal::FeatureKind::kSphere;
-    case TargetKind::kCircle: return hal::FeatureKind::kCircle;
-    case TargetKind::kSquare: return hal::FeatureKind::kSquare;
-    case TargetKind::kTriangle: break;
-  }
-  return hal::FeatureKind::kTriangle;
-}
-
-}  // namespace
-
 vision::DetectorConfig ConfigOf(TargetKind kind, const PictureCamera& camera, vision::FindBy by) {
   vision::DetectorConfig config;
-  config.kind = KindOf(kind);
+  config.kind = kind;
   config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
                        camera.f_px,     camera.c_u_px,    camera.c_v_px};
   config.by = by;

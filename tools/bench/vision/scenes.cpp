@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "firmware/core/features/target_traits.hpp"
+
 namespace fovea::bench {
 namespace {
 
@@ -69,7 +71,7 @@ Body MakeTarget(TargetKind kind, const PictureCamera& camera, bool off_axis, Cha
       reach = 1.9;
       break;
   }
-  const bool flat = kind == TargetKind::kSquare || kind == TargetKind::kTriangle;
+  const bool flat = features::TraitsOf(kind).body == features::TargetBody::kPlate;
   const double least = flat ? 20.0 : kRadiusMinPx;
   const double most = off_axis ? 80.0 : flat ? 100.0 : kRadiusMaxPx;
   const double radius_px = least * std::pow(most / least, chance.Between(0.0, 1.0));
@@ -131,7 +133,7 @@ void AddClutter(PictureScene& scene, TargetKind kind, Chance& chance) {
   const PictureCamera& camera = scene.camera;
   const TrueOutline target =
       scene.has_target ? OutlineOf(camera, scene.bodies.front()) : TrueOutline{-1e4, -1e4, 0.0, {}};
-  const bool is_round = kind == TargetKind::kSphere || kind == TargetKind::kCircle;
+  const bool is_round = features::TraitsOf(kind).body != features::TargetBody::kPlate;
   for (int i = 0; i < kThings; ++i) {
     Body body;
     const int sort = i % 3;

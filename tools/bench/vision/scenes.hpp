@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "fovea/hal/feature.hpp"
 #include "tools/bench/vision/picture.hpp"
 
 namespace fovea::bench {
 
-enum class TargetKind { kSphere, kCircle, kSquare, kTriangle };
+using TargetKind = hal::FeatureKind;
 
 struct SceneClass {
   std::string name;

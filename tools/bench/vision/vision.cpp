@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "firmware/core/features/target_traits.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/program.hpp"
 #include "tools/bench/common/figure.hpp"
@@ -91,15 +92,7 @@ void Judge(Contestant& contestant, const cv::Mat& image, const Truth* truth, Sco
   }
 }
 
-const char* NameOf(TargetKind kind) {
-  switch (kind) {
-    case TargetKind::kSphere: return "sphere";
-    case TargetKind::kCircle: return "circle";
-    case TargetKind::kSquare: return "square";
-    case TargetKind::kTriangle: break;
-  }
-  return "triangle";
-}
+const char* NameOf(TargetKind kind) { return features::TraitsOf(kind).name; }
 
 struct Row {
   std::string contestant;
@@ -129,7 +122,7 @@ void RunClass(const SceneClass& scenes, TargetKind kind, const VisionArguments& 
       Judge(*contestants[k], image, with_target ? &truth : nullptr, rows[k].score);
     }
   }
-  const bool is_round = kind == TargetKind::kSphere || kind == TargetKind::kCircle;
+  const bool is_round = features::TraitsOf(kind).body != features::TargetBody::kPlate;
   for (const Row& row : rows) {
     const Score& s = row.score;
     const double n = std::max(s.found, 1);

@@ -133,8 +133,7 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
 
 int Detect(const DetectArguments& arguments) {
   cv::setNumThreads(1);
-  const bool round =
-      arguments.target == hal::FeatureKind::kSphere || arguments.target == hal::FeatureKind::kCircle;
+  const bool round = features::TraitsOf(arguments.target).body != features::TargetBody::kPlate;
   if (arguments.method == "hough" && !round) {
     throw config::InputError("--method hough: finds spheres and circles alone");
   }

@@ -6,14 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "firmware/core/features/target_traits.hpp"
 #include "firmware/vision/detect/detector_config.hpp"
 
 namespace fovea {
 
-inline const std::map<std::string, hal::FeatureKind> kTargetKinds{{"sphere", hal::FeatureKind::kSphere},
-                                                                  {"circle", hal::FeatureKind::kCircle},
-                                                                  {"square", hal::FeatureKind::kSquare},
-                                                                  {"triangle", hal::FeatureKind::kTriangle}};
+inline const std::map<std::string, hal::FeatureKind> kTargetKinds = [] {
+  std::map<std::string, hal::FeatureKind> kinds;
+  for (const features::TargetTraits& target : features::kTargets) {
+    kinds[target.name] = target.kind;
+  }
+  return kinds;
+}();
 
 struct DetectArguments {
   std::vector<std::string> images;

@@ -18,16 +18,6 @@ using hal::FeatureKind;
 
 constexpr double kWrongPx = 2.0;
 
-bench::TargetKind BenchKind(FeatureKind kind) {
-  switch (kind) {
-    case FeatureKind::kSphere: return bench::TargetKind::kSphere;
-    case FeatureKind::kCircle: return bench::TargetKind::kCircle;
-    case FeatureKind::kSquare: return bench::TargetKind::kSquare;
-    case FeatureKind::kTriangle: break;
-  }
-  return bench::TargetKind::kTriangle;
-}
-
 vision::DetectorConfig ConfigFor(FeatureKind kind, const bench::PictureCamera& camera) {
   vision::DetectorConfig config;
   config.kind = kind;
@@ -55,7 +45,7 @@ std::vector<double> Ranges(const TargetFeature& feature) {
   std::vector<double> high;
   for (unsigned i = 0; i < kPoses; ++i) {
     const bench::PictureScene scene =
-        bench::MakeScene(bench::SceneClasses().front(), BenchKind(feature.target), true, i);
+        bench::MakeScene(bench::SceneClasses().front(), feature.target, true, i);
     const bench::Body& body = scene.bodies.front();
     const std::vector<double> s = FeatureAt(feature, {body.R, body.p});
     if (low.empty()) {
@@ -81,9 +71,10 @@ cv::Mat Portrait(const TargetFeature& feature, const model::Pose& X_CO, const be
   body.R = X_CO.R;
   body.radius = feature.radius;
   body.bgr = scene.ground_bgr.array() + Scatter::kContrast;
-  body.shape = feature.target == FeatureKind::kSphere   ? bench::Shape::kSphere
-               : feature.target == FeatureKind::kCircle ? bench::Shape::kDisc
-                                                        : bench::Shape::kPolygon;
+  const features::TargetBody shape = features::TraitsOf(feature.target).body;
+  body.shape = shape == features::TargetBody::kBall   ? bench::Shape::kSphere
+               : shape == features::TargetBody::kDisc ? bench::Shape::kDisc
+                                                      : bench::Shape::kPolygon;
   for (int i = 0; feature.SeesOrientation() && i < feature.corners.num_corners; ++i) {
     body.corners.emplace_back(feature.corners.corners[static_cast<std::size_t>(i)].head<2>());
   }
@@ -140,8 +131,7 @@ Search MeasureSearch(FeatureKind target, int per_class) {
   std::vector<double> ms;
   for (const bench::SceneClass& scenes : bench::SceneClasses()) {
     for (int i = 0; i < per_class && !scenes.clutter; ++i) {  // clutter is told apart by colour
-      const bench::PictureScene scene =
-          bench::MakeScene(scenes, BenchKind(target), true, static_cast<unsigned>(i));
+      const bench::PictureScene scene = bench::MakeScene(scenes, target, true, static_cast<unsigned>(i));
       const cv::Mat image = bench::Draw(scene);
       const bench::TrueOutline truth = bench::OutlineOf(camera, scene.bodies.front());
       detector.Forget();

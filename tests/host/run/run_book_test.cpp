@@ -1,5 +1,5 @@
-// What a run on hardware leaves in its folder, and what it costs that its film fails.
-#include "firmware/targets/linux/hw_files.hpp"
+// What a run leaves in its folder, and what it costs that its film fails.
+#include "firmware/host/run/run_book.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,10 +12,11 @@
 
 #include "firmware/host/recording/log/mcap_reader.hpp"
 #include "firmware/host/recording/log/topics.hpp"
-#include "firmware/targets/linux/hw_config.hpp"
+#include "firmware/host/run/run_figures.hpp"
+#include "tests/support/panda.hpp"
 #include "tests/support/temp_folder.hpp"
 
-namespace fovea::hw {
+namespace fovea::run {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,12 +25,12 @@ using testing::ElementsAre;
 constexpr int kTicks = 200;
 constexpr std::int64_t kStartNs = 5'000'000'000;
 
-class HwFilesTest : public testing::Test {
+class RunBookTest : public testing::Test {
  protected:
   // A run of 0.2 s with frames of that size; what it says of its log. Once it goes on, the file `removed` of
   // its folder is gone.
-  LogCounters Run(int width_px, int height_px, const std::string& removed = "") {
-    HwFiles files(folder_.path(), config_, robot_, servo_, 0.0);
+  BookFigures Run(int width_px, int height_px, const std::string& removed = "") {
+    RunBook files(folder_.path(), Facts(), options_);
     if (!removed.empty()) {
       EXPECT_TRUE(fs::remove(folder_.path() / removed));
     }
@@ -40,7 +41,7 @@ class HwFilesTest : public testing::Test {
       hal::TickRecord& record = entry.record;
       record.tick = static_cast<std::uint64_t>(tick);
       record.stamp_ns = kStartNs + tick * hal::kTickPeriodNs;
-      record.arm.num_joints = record.command.num_joints = robot_.model.num_joints;
+      record.arm.num_joints = record.command.num_joints = Facts().servo.arm.num_joints;
       files.AddRecord(entry);
       if (frame_ticks_.contains(tick)) {
         hal::Frame frame;
@@ -53,10 +54,26 @@ class HwFilesTest : public testing::Test {
         files.AddFrame(frame, {});
       }
     }
-    HwSummary summary;
-    summary.log = files.EndFilm();
-    files.Write(summary);
-    return *summary.log;
+    return End(files);
+  }
+  static BookFigures End(RunBook& book) {
+    const BookFigures figures = book.EndFilm();
+    RunFigures all;
+    FillBook(figures, all);
+    nlohmann::ordered_json summary;
+    BeginSummary(summary);
+    AddFigures(all, summary);
+    book.Write(summary.dump(), {});
+    return figures;
+  }
+  static RunFacts Facts() {
+    RunFacts facts;
+    facts.name = "test";
+    facts.servo = test::PandaConfig();
+    facts.joint_names = test::Panda().joint_names;
+    facts.intrinsics = {640, 480, 554.0, 554.0, 319.5, 239.5, {}};
+    facts.target_radius = 0.04;
+    return facts;
   }
   [[nodiscard]] std::set<std::string> Files() const {
     std::set<std::string> names;
@@ -82,21 +99,19 @@ class HwFilesTest : public testing::Test {
 
   const test::TempFolder folder_;
   std::set<int> frame_ticks_{10, 80, 150};
-  HwConfig config_ = LoadHwConfig("loopback", {});
-  const robots::Robot robot_ = LoadHwRobot(config_);
-  const config::ServoConfig servo_ = MakeHwServoConfig(config_, robot_);
+  RunBookOptions options_;
 };
 
-TEST_F(HwFilesTest, FilmLogReportAndSummaryAreThere) {
-  const LogCounters log = Run(640, 480);
+TEST_F(RunBookTest, FilmLogReportAndSummaryAreThere) {
+  const BookFigures log = Run(640, 480);
   EXPECT_THAT(log.film_errors, testing::IsEmpty());
   EXPECT_EQ(log.pictures + log.pictures_dropped, 3U);
   EXPECT_THAT(Files(), ElementsAre("camera.mp4", "log.mcap", "report.html", "summary.json"));
   ExpectLog({"summary.json", "camera.mp4"});
 }
 
-TEST_F(HwFilesTest, AFilmThatFailsCostsNothingElse) {
-  const LogCounters log = Run(640, 480, ".camera.mp4.partial");
+TEST_F(RunBookTest, AFilmThatFailsCostsNothingElse) {
+  const BookFigures log = Run(640, 480, ".camera.mp4.partial");
   EXPECT_THAT(log.film_errors,
               ElementsAre("camera.mp4: the film cannot be written: the index: No such file or directory"));
   EXPECT_THAT(Files(), ElementsAre("log.mcap", "report.html", "summary.json"));
@@ -106,12 +121,10 @@ TEST_F(HwFilesTest, AFilmThatFailsCostsNothingElse) {
 }
 
 // Ended before it moved: the log is whole, and says what was to be.
-TEST_F(HwFilesTest, WithoutATickThereAreLogAndSummary) {
+TEST_F(RunBookTest, WithoutATickThereAreLogAndSummary) {
   {
-    HwFiles files(folder_.path(), config_, robot_, servo_, 0.0);
-    HwSummary summary;
-    summary.log = files.EndFilm();
-    files.Write(summary);
+    RunBook files(folder_.path(), Facts(), options_);
+    End(files);
   }
   EXPECT_THAT(Files(), ElementsAre("log.mcap", "summary.json"));
   std::vector<std::string> found;
@@ -122,8 +135,8 @@ TEST_F(HwFilesTest, WithoutATickThereAreLogAndSummary) {
 }
 
 // The film takes frames of the calibrated size alone.
-TEST_F(HwFilesTest, WithoutAFrameThereIsNoFilm) {
-  const LogCounters log = Run(320, 240);
+TEST_F(RunBookTest, WithoutAFrameThereIsNoFilm) {
+  const BookFigures log = Run(320, 240);
   EXPECT_THAT(log.film_errors, testing::IsEmpty());
   EXPECT_EQ(log.film_frames_dropped, 0U);
   EXPECT_THAT(Files(), ElementsAre("log.mcap", "report.html", "summary.json"));
@@ -132,12 +145,12 @@ TEST_F(HwFilesTest, WithoutAFrameThereIsNoFilm) {
 
 // No more pictures than are wished for, neither at first nor after a gap: at 20 Hz those at 10, 130 and 180
 // ms.
-TEST_F(HwFilesTest, TheLogHasNoMorePicturesThanAreWishedFor) {
-  config_.log.picture_rate_hz = 20.0;
+TEST_F(RunBookTest, TheLogHasNoMorePicturesThanAreWishedFor) {
+  options_.picture_rate_hz = 20.0;
   frame_ticks_ = {10, 20, 30, 40, 130, 140, 150, 160, 170, 180, 190};
-  const LogCounters log = Run(640, 480);
+  const BookFigures log = Run(640, 480);
   EXPECT_EQ(log.pictures + log.pictures_dropped, 3U);
 }
 
 }  // namespace
-}  // namespace fovea::hw
+}  // namespace fovea::run

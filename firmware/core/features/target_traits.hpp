@@ -1,0 +1,78 @@
+// The kinds of targets, and what everybody else has to know of one: a line of a table for each.
+//
+// Who draws, looks for, logs or steers by a target asks the table, and no more than it says; a new kind that
+// is a plate with corners is another line here, and its own corners and pictures (firmware/README.md).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "fovea/hal/feature.hpp"
+
+namespace fovea::features {
+
+// What the servo can steer by; target_feature.hpp says of which target.
+enum class FeatureForm : std::uint8_t { kSphere, kCircle, kCorners, kSide, kCornerSide, kPose };
+inline constexpr std::array<const char*, 6> kFormNames{"sphere", "circle",      "corners",
+                                                       "side",   "corner_side", "pose"};
+
+// What it is as a thing: a ball, a flat disc, or a flat plate with corners.
+enum class TargetBody : std::uint8_t { kBall, kDisc, kPlate };
+
+struct TargetTraits {
+  hal::FeatureKind kind;
+  const char* name;  // as target.kind, logs and commands have it
+  TargetBody body;
+  int num_corners;   // of a plate; else 0
+  int turns;         // of a full turn about O's z that nobody can tell from each other: a square's 4
+  FeatureForm form;  // that is steered by when none is chosen
+  std::array<FeatureForm, 4> forms;  // all that it can be steered by; `form` fills the rest
+};
+
+// In the order of hal::FeatureKind.
+inline constexpr std::array<TargetTraits, 4> kTargets{{
+    {hal::FeatureKind::kSphere,
+     "sphere",
+     TargetBody::kBall,
+     0,
+     1,
+     FeatureForm::kSphere,
+     {FeatureForm::kSphere, FeatureForm::kCircle, FeatureForm::kSphere, FeatureForm::kSphere}},
+    {hal::FeatureKind::kCircle,
+     "circle",
+     TargetBody::kDisc,
+     0,
+     1,
+     FeatureForm::kCircle,
+     {FeatureForm::kCircle, FeatureForm::kCircle, FeatureForm::kCircle, FeatureForm::kCircle}},
+    {hal::FeatureKind::kSquare,
+     "square",
+     TargetBody::kPlate,
+     4,
+     4,
+     FeatureForm::kCorners,
+     {FeatureForm::kCorners, FeatureForm::kSide, FeatureForm::kCornerSide, FeatureForm::kPose}},
+    {hal::FeatureKind::kTriangle,
+     "triangle",
+     TargetBody::kPlate,
+     3,
+     1,
+     FeatureForm::kPose,
+     {FeatureForm::kPose, FeatureForm::kCorners, FeatureForm::kPose, FeatureForm::kPose}},
+}};
+
+// `kind` is one of the table. Real-time: yes.
+[[nodiscard]] constexpr const TargetTraits& TraitsOf(hal::FeatureKind kind) noexcept {
+  return kTargets[static_cast<std::size_t>(kind)];
+}
+
+inline constexpr std::array<const char*, kTargets.size()> kTargetNames = [] {
+  std::array<const char*, kTargets.size()> names{};
+  for (std::size_t i = 0; i < kTargets.size(); ++i) {
+    names[i] = kTargets[i].name;
+  }
+  return names;
+}();
+
+}  // namespace fovea::features

@@ -1,0 +1,55 @@
+#include "firmware/targets/linux/hw_facts.hpp"
+
+#include <algorithm>
+
+#include "firmware/targets/linux/hw_scene.hpp"
+
+namespace fovea::hw {
+namespace {
+
+constexpr std::size_t kRing = 8192;  // ticks that may wait for the disk: eight seconds
+constexpr std::size_t kMostImages = 32;
+
+// Of the ball about its centre that holds the target.
+double Reach(const features::TargetFeature& target) {
+  const features::TargetOutline outline = target.Outline();
+  double reach = 0.0;
+  for (int i = 0; i < outline.num_points; ++i) {
+    reach = std::max(reach, outline.p_OP[static_cast<std::size_t>(i)].norm() + outline.radius);
+  }
+  return reach;
+}
+
+}  // namespace
+
+run::RunFacts FactsOf(const HwConfig& config, const robots::Robot& robot, const config::ServoConfig& servo,
+                      double duration_s) {
+  run::RunFacts facts;
+  facts.name = config.name;
+  facts.robot = robot.name;
+  facts.joint_names = robot.joint_names;
+  facts.servo = servo;
+  facts.has_camera = config.HasCamera();
+  facts.duration_s = duration_s;
+  HwConfig values = config;
+  facts.keys = HwKeys(values).Values();
+  facts.frames = MakeLinkFrames(robot, config.HasCamera(), config::MakeMount(config.camera.calibration));
+  facts.scene = MakeSceneMessage(robot, config.HasCamera(), servo.feature);
+  if (config.HasCamera()) {
+    facts.intrinsics = config::MakeIntrinsics(config.camera.calibration);
+    facts.target_radius = Reach(servo.feature);
+  }
+  return facts;
+}
+
+run::RunBookOptions BookOptions(const HwConfig& config) {
+  run::RunBookOptions options;
+  options.may_drop = true;
+  options.ring = kRing;
+  options.most_images = kMostImages;
+  options.film = config.log.film;
+  options.picture_rate_hz = config.log.picture_rate_hz;
+  return options;
+}
+
+}  // namespace fovea::hw

@@ -1,0 +1,93 @@
+#include "firmware/targets/linux/robots/fci/fci_driver.hpp"
+
+#include <fmt/format.h>
+
+#include "firmware/host/config/input_error.hpp"
+#include "firmware/targets/linux/hw_config.hpp"
+#include "firmware/targets/linux/robots/fci/fci_check.hpp"
+
+namespace fovea::hw {
+namespace {
+
+const FciDriver::Settings& SettingsOf(const HwConfig& config) {
+  return std::get<FciDriver::Settings>(config.robot.of_driver);
+}
+
+}  // namespace
+
+void FciDriver::AddKeys(Settings& settings, config::KeyTable& keys) {
+  keys.Text("robot.host", settings.host, "address of the robot's controller");
+  keys.Integer("robot.port", settings.port, 1, 65535, "", "its TCP port");
+  keys.Flag("robot.set_load", settings.set_load,
+            "tell the robot of arm.load_*; false: its own settings know of it already");
+  keys.Choice("robot.time", settings.time, {"computer", "robot"},
+              "whose clock stamps are in; robot: of a simulated one in lockstep");
+  keys.Number("robot.state_timeout_ms", settings.state_timeout_ms, 1.0, 10000.0, "ms",
+              "no state for so long is a tick without one; at most safety.arm_lost_ticks with robot.time = "
+              "\"computer\", long for a robot in lockstep");
+  keys.Number("robot.torque_step", settings.torque_step, 0.001, 1.0, "Nm",
+              "a joint's torque changes by no more from one state to the next");
+}
+
+void FciDriver::CheckSettings(const HwConfig& config) {
+  const Settings& settings = SettingsOf(config);
+  const int most_ms = config.servo.config.safety.arm_lost_ticks;
+  if (settings.time == "computer" && settings.state_timeout_ms > most_ms) {
+    throw config::InputError(fmt::format(
+        "robot.state_timeout_ms = {} is not allowed: at most safety.arm_lost_ticks, which is {} ms",
+        settings.state_timeout_ms, most_ms));
+  }
+}
+
+FciDriver::FciDriver(const HwConfig& config)
+    : config_(config), settings_(SettingsOf(config)), by_robot_(settings_.time == "robot") {}
+
+std::string FciDriver::address() const { return fmt::format("{}:{}", settings_.host, settings_.port); }
+
+void FciDriver::Check(const HwConfig& config, const robots::Robot& robot, std::vector<CheckRow>& rows) {
+  CheckFciRobot(config, robot, rows);
+}
+
+hal::Arm& FciDriver::Connect(bool allow_motion) {
+  return arm_.emplace(FrankaConfigOf(config_, allow_motion), by_robot_ ? &robot_time_ : nullptr);
+}
+
+const char* FciDriver::failure() const noexcept {
+  return arm_ && arm_->phase() == franka::MotionPhase::kFailed ? arm_->failure() : nullptr;
+}
+
+RobotFigures FciDriver::figures() const {
+  const franka::FrankaCounters& c = arm_->counters();
+  return {c.states,
+          c.lost_states,
+          c.commands,
+          {{"late_states", c.late_states},
+           {"duplicate_states", c.duplicate_states},
+           {"skipped_states", c.skipped_states},
+           {"malformed", c.malformed},
+           {"foreign", c.foreign},
+           {"repeated_commands", c.repeated_commands},
+           {"rate_limited", c.rate_limited},
+           {"timeouts", c.timeouts},
+           {"motions", c.motions}},
+          arm_->robot_state().control_command_success_rate};
+}
+
+franka::FrankaConfig FrankaConfigOf(const HwConfig& config, bool allow_motion) {
+  const FciDriver::Settings& settings = SettingsOf(config);
+  franka::FrankaConfig out;
+  out.host = settings.host;
+  out.port = static_cast<std::uint16_t>(settings.port);
+  out.allow_motion = allow_motion;
+  out.state_timeout_ns = static_cast<std::int64_t>(settings.state_timeout_ms * 1e6);
+  out.torque_step_max.fill(settings.torque_step);
+  if (settings.set_load) {
+    const model::Load load = config::MakeLoad(config.arm.load);
+    out.load.mass = load.mass;
+    Eigen::Map<model::Vec3>(out.load.F_x_Cload.data()) = load.p_ECom;
+    Eigen::Map<model::Mat3>(out.load.I_load.data()) = load.I_Com_E;
+  }
+  return out;
+}
+
+}  // namespace fovea::hw

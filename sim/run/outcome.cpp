@@ -1,0 +1,29 @@
+#include "sim/run/outcome.hpp"
+
+#include <fmt/format.h>
+
+namespace fovea::sim {
+
+void FillFrameFailures(const vision::FrameFailures& failures, Summary& summary) {
+  summary.frames_failed = failures.frames;
+  summary.frame_failure = failures.first;
+  if (summary.frames > 0 && failures.frames == summary.frames) {
+    summary.converged = false;
+    summary.verdict = fmt::format("not converged: none of {} pictures could be looked at ({})",
+                                  summary.frames, failures.first);
+  }
+}
+
+void FillTheory(const TheoryResult& theory, Summary& summary) {
+  summary.theory = theory;
+  summary.converged = summary.converged && theory.agrees;
+  summary.verdict = summary.converged || !theory.agrees ? theory.verdict : summary.verdict;
+}
+
+void FillInterrupted(double at_s, double duration_s, Summary& summary) {
+  summary.interrupted = true;
+  summary.converged = false;
+  summary.verdict = fmt::format("interrupted after {:.3f} s of {:g} s", at_s, duration_s);
+}
+
+}  // namespace fovea::sim
