@@ -36,7 +36,7 @@ TEST(GuardAttack, TheBoundaryIsNeverPassed) {
   constexpr int kAttacks = Repetitions(120);
   for (int attack = 0; attack < kAttacks; ++attack) {
     GuardSetup setup;
-    setup.servo.move.pose_error_max = 1e3;
+    setup.servo.move.pose_error_max = 10.0;
     setup.world.q_start = Posture(random, setup.world.q_start);
     setup.world.physics.table = false;  // it stands in the way of some
     setup.world.seed = static_cast<std::uint64_t>(attack) + 1;

@@ -62,7 +62,8 @@ GuardBench::GuardBench(GuardSetup setup)
       motion_(*this),
       loop_(task_, faulty_arm_, stalling_, mailbox_, recorder_, probe_),
       p_before_(world_.truth().X_BE.translation()) {
-  EXPECT_TRUE(task_.Init(setup_.servo).ok());
+  const hal::Status status = task_.Init(setup_.servo);
+  EXPECT_TRUE(status.ok()) << status.where();
   world_.OnStep([this](const sim::Truth& truth) { Watch(truth); });
   world_.OnExposure([this](const sim::Exposure& exposure) { See(exposure); });
   loop_.UseMotion(motion_);

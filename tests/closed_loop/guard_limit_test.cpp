@@ -103,7 +103,7 @@ void ProvokeJointPosition() {
 void ProvokeJointVelocity() {
   GuardSetup setup;
   setup.world.q_start[6] = -2.0;
-  setup.servo.move.pose_error_max = 1e3;  // it lags behind, and goes on
+  setup.servo.move.pose_error_max = 10.0;  // it lags behind, and goes on
   setup.motion = [turn = Turn(4.0, HandAt(setup.world.q_start))](const sim::Truth& truth, double t_s) {
     return t_s < 1.3 ? turn(truth, t_s) : moves::MotionCommand{};
   };
@@ -152,7 +152,7 @@ void ProvokeJointJerk() { ProvokeByJerk(Limit::kJointJerk, &GuardFigures::jerk);
 // 1 m/s outward: it must be slowed down in time, and stands when the attack ends.
 void ProvokeWorkspace() {
   GuardSetup setup;
-  setup.servo.move.pose_error_max = 1e3;
+  setup.servo.move.pose_error_max = 10.0;
   setup.motion = BriefAttack([](const sim::Truth& truth) { return Outward(truth); });
   GuardBench bench(setup);
   bench.RunUntil(2.0);
@@ -206,7 +206,7 @@ void ProvokeTorqueRate() {
 void ProvokeObstacle() {
   constexpr double kHeight = 0.35;
   GuardSetup setup;
-  setup.servo.move.pose_error_max = 1e3;
+  setup.servo.move.pose_error_max = 10.0;
   setup.servo.guard.obstacles.num_planes = 1;
   setup.servo.guard.obstacles.planes[0] = {model::Vec3::UnitZ(), kHeight};
   setup.motion = BriefAttack([](const sim::Truth&) { return Eigen::Vector3d(0, 0, -1.0); });
@@ -227,7 +227,7 @@ void ProvokeCartesianSpeed() {
   constexpr double kSpeed = 0.3;
   GuardSetup setup;
   setup.servo.guard.cartesian_speed = kSpeed;
-  setup.servo.move.pose_error_max = 1e3;
+  setup.servo.move.pose_error_max = 10.0;
   setup.motion = [attack = Attack(kStart, [](const sim::Truth&) { return Eigen::Vector3d(0, 0.8, 0); })](
                      const sim::Truth& truth, double t_s) {
     return t_s < 0.9 ? attack(truth, t_s) : moves::MotionCommand{};
@@ -247,7 +247,7 @@ void ProvokeCartesianSpeed() {
 void ProvokeSingularity() {
   GuardSetup setup;
   setup.servo.guard.workspace_radius = 2.0;
-  setup.servo.move.pose_error_max = 1e3;
+  setup.servo.move.pose_error_max = 10.0;
   setup.motion = BriefAttack([](const sim::Truth& truth) { return Outward(truth); });
   GuardBench bench(setup);
   bench.RunUntil(2.0);
