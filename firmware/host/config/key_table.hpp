@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "firmware/host/config/settings.hpp"
@@ -34,9 +35,10 @@ class KeyTable {
   void Choice(std::string name, std::string& field, std::vector<std::string> choices, std::string meaning);
   // An enumerator by its name: `names` in the order of the enumeration.
   template <class Enum, class Names>
-  void Choice(std::string name, Enum& field, const Names& names, std::string meaning) {
-    AddChoice(std::move(name), static_cast<std::size_t>(field), {names.begin(), names.end()},
-              std::move(meaning), [&field](std::size_t chosen) { field = static_cast<Enum>(chosen); });
+  requires std::is_enum_v<Enum>
+  void Choice(const std::string& name, Enum& field, const Names& names, const std::string& meaning) {
+    AddChoice(name, static_cast<std::size_t>(field), {names.begin(), names.end()}, meaning,
+              [&field](std::size_t chosen) { field = static_cast<Enum>(chosen); });
   }
   // A list of `size_min` to `size_max` numbers.
   void Numbers(std::string name, std::vector<double>& field, std::size_t size_min, std::size_t size_max,

@@ -85,6 +85,7 @@ std::string RecoveredFrom(const HwSummary& s) {
     ++counts[hal::Name(s.faults[k].fault)];
   }
   std::vector<std::string> words;
+  words.reserve(counts.size());
   for (const auto& [name, count] : counts) {
     words.push_back(count > 1 ? fmt::format("{} ({} times)", name, count) : name);
   }

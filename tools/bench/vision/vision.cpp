@@ -105,6 +105,7 @@ void RunClass(const SceneClass& scenes, TargetKind kind, const VisionArguments& 
   const PictureCamera camera;
   const auto contestants = MakeContestants(kind, camera, scenes.clutter);
   std::vector<Row> rows;
+  rows.reserve(contestants.size());
   for (const auto& contestant : contestants) {
     rows.push_back({contestant->name(), {}});
   }
