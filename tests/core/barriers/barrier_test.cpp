@@ -40,7 +40,8 @@ TEST(BarrierTest, WithADecelerationItCanStillBeStopped) {
   Barrier barrier;
   barrier.deceleration = 2.0;
   barrier.reaction_s = 0.05;
-  for (double room = 0.001; room < 1.0; room *= 1.3) {
+  for (int k = 0; k <= 100; ++k) {
+    const double room = 0.01 * k;
     barrier.value = room;
     const double speed = barrier.SpeedMost();
     EXPECT_NEAR(speed * 0.05 + speed * speed / 4.0, room, 1e-12);
