@@ -147,8 +147,7 @@ HazardCase MakeCase(std::uint64_t seed) {
         barriers::ClearanceOfHand(setup.servo.arm, barriers::LineOfArm(setup.servo.arm, poses)) >
             guard.hand_clearance &&
         ball.z() > 0.04 && ball.norm() < 0.9) {
-      const Eigen::Vector3d p = ball;
-      setup.target = [p](double) { return p; };
+      setup.target = [ball](double) { return ball; };
       return c;
     }
   }
@@ -199,6 +198,7 @@ HazardFigures RunCases(const Hazard& hazard, int cases, int jobs, std::uint64_t 
   std::vector<HazardOutcome> outcomes(static_cast<std::size_t>(cases));
   std::atomic<int> next{0};
   std::vector<std::thread> threads;
+  threads.reserve(static_cast<std::size_t>(jobs));
   for (int job = 0; job < jobs; ++job) {
     threads.emplace_back([&] {
       for (int k = next++; k < cases; k = next++) {
