@@ -168,6 +168,7 @@ for (const { time, data: t } of of("/servo/tick")) {
   hash.update(Buffer.concat(out.parts));
 }
 assert.equal(summary.log_entries_dropped, 0);
+assert.equal(summary.log_pictures_dropped, 0);
 assert.equal(of("/servo/tick").length, summary.ticks);
 assert.equal(taken, features.size);
 assert.equal(hash.digest("hex"), summary.log_hash, "all values of all ticks");

@@ -8,7 +8,6 @@
 
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
-#include "firmware/vision/fit/outline.hpp"
 #include "tools/bench/vision/picture.hpp"
 
 namespace fovea::vision {

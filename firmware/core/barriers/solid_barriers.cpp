@@ -67,13 +67,11 @@ Barrier SolidBarriers::RowOf(int i, const Scene& scene) const noexcept {
 }
 
 double ClearanceOfArm(const config::ServoConfig& config, const model::ArmPoses& poses) noexcept {
-  const SolidBarriers barriers(config);
-  const ArmLine line = LineOfArm(config.arm, poses);
-  double clearance = HUGE_VAL;
-  const int num_kept_out =
-      CountObstacles(config.guard.obstacles) + (config.guard.obstacles.num_planes > 0 ? 1 : 0);
-  for (int i = 1; i <= num_kept_out; ++i) {
-    clearance = std::min(clearance, barriers.ValueOf(i, poses, line));
+  const config::GuardConfig& guard = config.guard;
+  double clearance = ClearanceOfPlanes(config.arm, guard, LineOfArm(config.arm, poses));
+  for (int i = 0; i < CountObstacles(guard.obstacles); ++i) {
+    clearance =
+        std::min(clearance, ClearanceOf(guard.obstacles, i, guard.hand, poses.X_BE).clearance.distance);
   }
   return clearance;
 }

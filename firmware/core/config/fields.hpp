@@ -2,7 +2,8 @@
 // struct.
 //
 //   template <class Visitor, Struct<MoveConfig> Config>
-//   void Fields(Visitor& v, Config& c) { v.Number({"servo.move_speed", "m/s", "..."}, c.speed, 0.001, 10.0);
+//   void Fields(Visitor& v, Config& c) {
+//     v.Number({"servo.move_speed", "m/s", "..."}, c.speed, 0.001, 10.0);
 //   }
 //
 // Keys and their documents, the checks of ServoTask::Init, the line to a board and the log all follow from
@@ -13,9 +14,8 @@
 //   Integer(field, int& value, min, max)
 //   Choice(field, enum& value, names)
 //   PerJoint(field, JointArray& value, min, max)   one number for each joint; a key that may be left out
-//   Derived(field, value, min, max)                follows from a key of that name in other units or another
-//   shape:
-//                                                  a number, a fixed matrix, or a flag
+//   Derived(field, value, min, max)                a number, a fixed matrix or a flag that follows from a key
+//                                                  of that name, which has other units or another shape
 //   Count(field, int& value, most)                 of what follows: 0 to `most`
 //
 // The order is that of the line and of logs: a field that is added stands at the end of its struct's list, so

@@ -118,8 +118,7 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Derived({"safety.view_margin_px"}, c.view.y_max, -1e6, 1e6);
   v.Number({"safety.sight_clearance", "m",
             "the lines of the arm's own links stay so far from the lines of sight to the target, or come no "
-            "nearer; "
-            "0: they may"},
+            "nearer; 0: they may"},
            c.sight_clearance, 0.0, 10.0);
   v.Derived(
       {"safety.disc_tilt_max", "rad",
@@ -132,8 +131,7 @@ void Fields(Visitor& v, Config& c) noexcept {
       c.hand_clearance, 0.0, 10.0);
   v.Count({"safety.tools", "m",
            "tools on the hand, guarded as capsules: x, y, z of one end, of the other, in axes of the flange, "
-           "radius, "
-           "the same again"},
+           "radius, the same again"},
           c.hand.num_balls, HandShape::kMost);
   for (auto& ball : c.hand.balls) {
     v.Derived({"safety.tools"}, ball.p_EP, -1e6, 1e6);

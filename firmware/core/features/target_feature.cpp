@@ -8,6 +8,20 @@
 namespace fovea::features {
 namespace {
 
+// TraitsOf finds a kind by its place; and a target that looks the same from more sides than one is turned to
+// its goal by quarters (control::QuarterTurns).
+static_assert([] {
+  for (std::size_t i = 0; i < kTargets.size(); ++i) {
+    const TargetTraits& target = kTargets[i];
+    const bool is_plate = target.body == TargetBody::kPlate;
+    if (static_cast<std::size_t>(target.kind) != i || (target.turns != 1 && target.turns != 4) ||
+        (target.num_corners > 0) != is_plate || target.num_corners > Polygon::kMost) {
+      return false;
+    }
+  }
+  return true;
+}());
+
 // `cov` [dim x dim] takes the measurement's covariance.
 template <typename Matrix>
 void TakeCovariance(const hal::FeatureMeasurement& measurement, Matrix& cov) noexcept {

@@ -6,6 +6,17 @@
 namespace fovea::motion_laws {
 namespace {
 
+static_assert(
+    [] {
+      for (std::size_t i = 0; i < kMotionLaws.size(); ++i) {
+        if (static_cast<std::size_t>(kMotionLaws[i].kind) != i) {
+          return false;
+        }
+      }
+      return true;
+    }(),
+    "a law is found by its place in the list");
+
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 void TorqueOf(config::MotionLawKind kind, const config::MotionLawConfig& config,

@@ -1,5 +1,6 @@
 // From the keys' settings, an arm, a mount and a target to the servo's configuration.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,25 @@
 namespace fovea::config {
 namespace {
 
+// "sphere has sphere and circle, circle has circle, ..."
+std::string FormsInWords() {
+  std::string words;
+  for (const features::TargetTraits& target : features::kTargets) {
+    std::vector<std::string> forms;
+    for (const features::FeatureForm form : target.forms) {
+      const std::string name = features::kFormNames[static_cast<std::size_t>(form)];
+      if (std::find(forms.begin(), forms.end(), name) == forms.end()) {
+        forms.push_back(name);
+      }
+    }
+    const std::string last = forms.back();
+    forms.pop_back();
+    words += fmt::format("{}{} has {}{}{}", words.empty() ? "" : ", ", target.name, fmt::join(forms, ", "),
+                         forms.empty() ? "" : " and ", last);
+  }
+  return words;
+}
+
 void SetFeature(const ServoSettings& settings, const TargetSettings& target,
                 features::TargetFeature& feature) {
   const bool hold_orientation = feature.hold_orientation;
@@ -26,13 +46,12 @@ void SetFeature(const ServoSettings& settings, const TargetSettings& target,
     feature.form = static_cast<features::FeatureForm>(form - features::kFormNames.begin());
   }
   if (!feature.IsListed()) {
-    throw InputError(fmt::format(
-        "servo.feature = \"{}\"{} is not allowed for target.kind = \"{}\": sphere has sphere and circle, "
-        "circle has circle, square has corners, side, corner_side and pose, triangle has pose and corners; "
-        "with "
-        "servo.hold_orientation no more than {} entries in all",
-        settings.feature, hold_orientation ? " with servo.hold_orientation" : "", target.kind,
-        features::kMaxDim));
+    throw InputError(
+        fmt::format("servo.feature = \"{}\"{} is not allowed for target.kind = \"{}\": {}; with "
+                    "servo.hold_orientation no "
+                    "more than {} entries in all",
+                    settings.feature, hold_orientation ? " with servo.hold_orientation" : "", target.kind,
+                    FormsInWords(), features::kMaxDim));
   }
 }
 

@@ -65,7 +65,7 @@ TEST(SolidBarriersTest, EachGradientIsTheChangeOfItsValueWithTheJoints) {
     }
   }
   std::cout << "off by at most " << worst << " m/s\n";
-  EXPECT_LT(worst, 1e-6);
+  EXPECT_LT(worst, 1e-7);
 }
 
 TEST(SolidBarriersTest, WhatIsNotAskedForIsNotInTheTable) {

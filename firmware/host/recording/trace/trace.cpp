@@ -23,7 +23,7 @@ json Naming(const char* what, int thread, const std::string& name) {
   return {{"ph", "M"}, {"name", what}, {"pid", kProcess}, {"tid", thread}, {"args", {{"name", name}}}};
 }
 
-json ToJson(const Event& event, int thread, std::int64_t start_ns) {
+json ToJson(const Span& event, int thread, std::int64_t start_ns) {
   json entry{{"name", event.name}, {"pid", kProcess}, {"tid", thread}, {"ts", Us(event.begin_ns - start_ns)}};
   if (event.end_ns > event.begin_ns) {
     entry["ph"] = "X";
@@ -39,7 +39,7 @@ json ToJson(const Event& event, int thread, std::int64_t start_ns) {
 }
 
 // An arrow's end, bound to the span that it begins with.
-json ArrowOf(const Event& event, int thread, std::int64_t start_ns) {
+json ArrowOf(const Span& event, int thread, std::int64_t start_ns) {
   const char* const phase = event.flow == Flow::kBegin ? "s" : event.flow == Flow::kStep ? "t" : "f";
   json entry{{"name", "picture"},
              {"cat", "picture"},
@@ -62,9 +62,9 @@ std::int64_t NowNs() noexcept {
   return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
 }
 
-std::vector<Event> Track::Events() const {
-  std::vector<Event> events(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(count_));
-  std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) {
+std::vector<Span> Track::Events() const {
+  std::vector<Span> events(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(count_));
+  std::stable_sort(events.begin(), events.end(), [](const Span& a, const Span& b) {
     return a.begin_ns != b.begin_ns ? a.begin_ns < b.begin_ns : a.end_ns > b.end_ns;
   });
   return events;
@@ -78,7 +78,7 @@ void Trace::Write(const std::filesystem::path& file) const {
   std::ofstream stream(file);
   std::int64_t start_ns = std::numeric_limits<std::int64_t>::max();
   std::uint64_t dropped = 0;
-  std::vector<std::vector<Event>> events;
+  std::vector<std::vector<Span>> events;
   for (const auto& track : tracks_) {
     dropped += track->dropped();
     events.push_back(track->Events());
@@ -93,7 +93,7 @@ void Trace::Write(const std::filesystem::path& file) const {
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const int thread = static_cast<int>(i) + 1;
     stream << ",\n" << Naming("thread_name", thread, tracks_[i]->name());
-    for (const Event& event : events[i]) {
+    for (const Span& event : events[i]) {
       stream << ",\n" << ToJson(event, thread, start_ns);
       if (event.flow != Flow::kNone) {
         stream << ",\n" << ArrowOf(event, thread, start_ns);

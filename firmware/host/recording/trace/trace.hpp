@@ -19,7 +19,7 @@ namespace fovea::trace {
 // The way of one picture through the threads; arrows join the spans that name the same picture.
 enum class Flow : std::uint8_t { kNone, kBegin, kStep, kEnd };
 
-struct Event {
+struct Span {
   const char* name = "";  // a literal
   std::int64_t begin_ns = 0;
   std::int64_t end_ns = 0;   // begin_ns: an instant
@@ -33,7 +33,7 @@ class Track {
   Track(std::string name, std::size_t capacity) : name_(std::move(name)) { events_.resize(capacity); }
 
   // From its own thread. Real-time: yes.
-  void Add(const Event& event) noexcept {
+  void Add(const Span& event) noexcept {
     if (count_ < events_.size()) {
       events_[count_++] = event;
     } else {
@@ -45,11 +45,11 @@ class Track {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
   // In order of their beginnings; of those that begin together the longest first.
-  [[nodiscard]] std::vector<Event> Events() const;
+  [[nodiscard]] std::vector<Span> Events() const;
 
  private:
   std::string name_;
-  std::vector<Event> events_;  // [capacity], touched
+  std::vector<Span> events_;  // [capacity], touched
   std::size_t count_ = 0;
   std::uint64_t dropped_ = 0;
 };

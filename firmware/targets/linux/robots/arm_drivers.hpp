@@ -13,7 +13,6 @@ namespace fovea::hw {
 template <class... Drivers>
 struct DriverList {
   using Settings = std::tuple<typename Drivers::Settings...>;
-  static constexpr std::size_t kSize = sizeof...(Drivers);
 };
 
 using ArmDriverList = DriverList<  // the first is the one that is not named

@@ -108,7 +108,7 @@ TEST(Trace, TickPassesOnWhatItIsTold) {
   EXPECT_EQ(probe.entered, 1);
   EXPECT_EQ(probe.left, 1);
   EXPECT_EQ(recorder.last, 41U);
-  const std::vector<Event> events = track.Events();
+  const std::vector<Span> events = track.Events();
   ASSERT_EQ(events.size(), kEventsPerTick);
   EXPECT_STREQ(events.front().name, "tick");
   EXPECT_EQ(events.front().number, 41);
