@@ -1,5 +1,7 @@
 # fovea_add_test(<name> SOURCES <file>... LIBS <target>... [LABELS <label>...] [TIMEOUT <s>] [LOCK <name>])
-# One executable; each of its tests is one test of ctest. Tests with the same LOCK never run at the same time.
+# One executable; each of its tests is one test of ctest. Its label is the executable's name, after the LABELS: `ctest -L
+# log_test` runs one program, `ctest -LE slow` leaves out "slow/closed_loop_test". (One label: of a list CMake's
+# gtest_discover_tests keeps the first.) Tests with the same LOCK never run at the same time.
 function(fovea_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT;LOCK" "SOURCES;LIBS;LABELS")
   if(NOT arg_TIMEOUT)
@@ -10,10 +12,10 @@ function(fovea_add_test name)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBS} fovea_test_places GTest::gmock GTest::gtest_main fovea_warnings)
-  set(properties TIMEOUT ${arg_TIMEOUT})
-  if(arg_LABELS)
-    list(APPEND properties LABELS ${arg_LABELS})
-  endif()
+  list(JOIN arg_LABELS / label)
+  string(APPEND label /${name})
+  string(REGEX REPLACE "^/" "" label ${label})
+  set(properties TIMEOUT ${arg_TIMEOUT} LABELS ${label})
   if(arg_LOCK)
     list(APPEND properties RESOURCE_LOCK ${arg_LOCK})
   endif()
