@@ -1,6 +1,6 @@
 # fovea_add_test(<name> SOURCES <file>... LIBS <target>... [LABELS <label>...] [TIMEOUT <s>] [LOCK <name>])
-# One executable; each of its tests is one test of ctest. Its label is the executable's name, after the LABELS: `ctest -L
-# log_test` runs one program, `ctest -LE slow` leaves out "slow/closed_loop_test". (One label: of a list CMake's
+# One executable; each of its tests is one test of ctest. Its label is the LABELS and the executable's name: `ctest -L
+# '^log_test$'` runs one program, `ctest -LE slow` leaves out "slow/closed_loop_test". (One label: of a list CMake's
 # gtest_discover_tests keeps the first.) Tests with the same LOCK never run at the same time.
 function(fovea_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT;LOCK" "SOURCES;LIBS;LABELS")
@@ -12,9 +12,8 @@ function(fovea_add_test name)
   endif()
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBS} fovea_test_places GTest::gmock GTest::gtest_main fovea_warnings)
+  list(APPEND arg_LABELS ${name})
   list(JOIN arg_LABELS / label)
-  string(APPEND label /${name})
-  string(REGEX REPLACE "^/" "" label ${label})
   set(properties TIMEOUT ${arg_TIMEOUT} LABELS ${label})
   if(arg_LOCK)
     list(APPEND properties RESOURCE_LOCK ${arg_LOCK})

@@ -28,7 +28,7 @@ RunTrace::RunTrace(std::filesystem::path file, double duration_s, double camera_
   constexpr double kVisionPerPicture = 3.0;  // wait, detect, log; and a wait that was in vain, now and then
   constexpr double kPartsOfPicture = 8.0;
   const double pictures = duration_s * camera_rate_hz;
-  const double per_tick = static_cast<double>(trace::kEventsPerTick) + kAroundTick;
+  const double per_tick = static_cast<double>(trace::kSpansPerTick) + kAroundTick;
   servo_ = &trace_.AddTrack("servo and world", Room(duration_s * kTickHz * per_tick + pictures));
   vision_ = &trace_.AddTrack("vision", Room(2.0 * kVisionPerPicture * pictures));
   for (int i = 0; i < renderers; ++i) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <numbers>
 #include <random>
 
 #include "firmware/core/features/square.hpp"
@@ -38,18 +39,23 @@ double OffSide(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - share * (b - a)).norm();
 }
 
-// How far from the target's edge a ray through the picture's point meets it [m].
-double OffOf(const TargetFeature& target, const model::Pose& X_CO, const vision::ImagePoint& point) {
+// Where a ray through the picture's point comes nearest to a ball's centre, or meets a flat target's plane,
+// in C [m].
+Vec3 MetBy(const TargetFeature& target, const model::Pose& X_CO, const vision::ImagePoint& point) {
   const Vec3 ray = kCamera.Ray(point.u_px, point.v_px).normalized();
-  const features::TargetBody body = features::TraitsOf(target.target).body;
-  if (body == features::TargetBody::kBall) {
-    return std::fabs((X_CO.p - X_CO.p.dot(ray) * ray).norm() - target.radius);
+  if (features::TraitsOf(target.target).body == features::TargetBody::kBall) {
+    return X_CO.p.dot(ray) * ray;
   }
   const Vec3 normal = X_CO.R.col(2);
-  const Vec3 p_O = X_CO.Inverse() * (normal.dot(X_CO.p) / normal.dot(ray) * ray);
-  if (body == features::TargetBody::kDisc) {
-    return std::fabs(p_O.norm() - target.radius);
+  return normal.dot(X_CO.p) / normal.dot(ray) * ray;
+}
+
+// How far that is from the target's edge [m].
+double OffOf(const TargetFeature& target, const model::Pose& X_CO, const Vec3& p_C) {
+  if (!target.SeesOrientation()) {
+    return std::fabs((p_C - X_CO.p).norm() - target.radius);
   }
+  const Vec3 p_O = X_CO.Inverse() * p_C;
   double least = HUGE_VAL;
   const auto n = static_cast<std::size_t>(target.corners.num_corners);
   for (std::size_t i = 0; i < n; ++i) {
@@ -58,23 +64,50 @@ double OffOf(const TargetFeature& target, const model::Pose& X_CO, const vision:
   return least;
 }
 
-TEST(TargetCurveTest, RaysThroughItMeetTheTargetsEdge) {
+// The length of what of the target ends in the picture [m]: of a ball, the circle that its cone touches.
+double Around(const TargetFeature& target, const model::Pose& X_CO) {
+  const int n = target.SeesOrientation() ? target.corners.num_corners : 0;
+  double around = 0.0;
+  for (int i = 0; i < n; ++i) {
+    const auto& corners = target.corners.corners;
+    around += (corners[static_cast<std::size_t>(i)] - corners[static_cast<std::size_t>((i + 1) % n)]).norm();
+  }
+  if (n > 0) {
+    return around;
+  }
+  const bool is_ball = features::TraitsOf(target.target).body == features::TargetBody::kBall;
+  const double sine = is_ball ? target.radius / X_CO.p.norm() : 0.0;
+  return 2.0 * std::numbers::pi * target.radius * std::sqrt(1.0 - sine * sine);
+}
+
+TEST(TargetCurveTest, RaysThroughItGoRoundTheTargetsEdge) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   for (const features::TargetTraits& traits : features::kTargets) {
     const TargetFeature target = Target(traits.kind);
     double worst = 0.0;
+    double least_share = 1.0;
     for (int i = 0; i < 200; ++i) {
       const model::Pose X_CO{model::RotationOf(Vec3(any(random), any(random), any(random))),
                              Vec3(0.1 * any(random), 0.1 * any(random), 0.45 + 0.2 * any(random))};
       const Overlay::Curve curve = TargetCurve(kCamera, target, X_CO);
       ASSERT_GE(curve.size(), 90U);
+      double way = 0.0;
+      Vec3 before = MetBy(target, X_CO, curve.back());
       for (const vision::ImagePoint& point : curve) {
-        worst = std::max(worst, OffOf(target, X_CO, point));
+        const Vec3 p_C = MetBy(target, X_CO, point);
+        worst = std::max(worst, OffOf(target, X_CO, p_C));
+        way += (p_C - before).norm();
+        before = p_C;
       }
+      const double share = way / Around(target, X_CO);
+      least_share = std::min(least_share, share);
+      ASSERT_LT(share, 1.0 + 1e-12) << "it goes back, or across";
     }
-    std::cout << traits.name << ": rays miss the edge by at most " << worst << " m\n";
+    std::cout << traits.name << ": rays miss the edge by at most " << worst << " m and go round at least "
+              << least_share << " of it\n";
     EXPECT_LT(worst, 1e-12);
+    EXPECT_GT(least_share, 0.9998);  // 96 chords of a circle: 1 - (pi / 96)^2 / 6
   }
 }
 

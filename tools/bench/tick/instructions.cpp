@@ -52,7 +52,7 @@ void RunCounted(const std::vector<TickCase>& cases, const std::string& mode, boo
     if (!scout.Init(c.config).ok() || !task.Init(c.config).ok()) {
       throw std::logic_error("a configuration that was run is refused");
     }
-    trace::Track track("servo", traced ? trace::kEventsPerTick * c.inputs.size() : 0);
+    trace::Track track("servo", traced ? trace::kSpansPerTick * c.inputs.size() : 0);
     Unwatched unwatched;
     trace::TickTrace tick_trace(track, unwatched, unwatched);
     if (traced) {

@@ -11,7 +11,7 @@
 namespace fovea::trace {
 
 // Spans of one tick, at most: itself, its stages, and from the last of them to its end.
-inline constexpr std::size_t kEventsPerTick = task::kStageNames.size() + 2;
+inline constexpr std::size_t kSpansPerTick = task::kStageNames.size() + 2;
 
 // Reading the arm counts as the first stage's; writing it, and the record, are "write".
 class TickTrace final : public hal::TickProbe, public task::StageProbe, public hal::Recorder {

@@ -23,32 +23,32 @@ json Naming(const char* what, int thread, const std::string& name) {
   return {{"ph", "M"}, {"name", what}, {"pid", kProcess}, {"tid", thread}, {"args", {{"name", name}}}};
 }
 
-json ToJson(const Span& event, int thread, std::int64_t start_ns) {
-  json entry{{"name", event.name}, {"pid", kProcess}, {"tid", thread}, {"ts", Us(event.begin_ns - start_ns)}};
-  if (event.end_ns > event.begin_ns) {
+json ToJson(const Span& span, int thread, std::int64_t start_ns) {
+  json entry{{"name", span.name}, {"pid", kProcess}, {"tid", thread}, {"ts", Us(span.begin_ns - start_ns)}};
+  if (span.end_ns > span.begin_ns) {
     entry["ph"] = "X";
-    entry["dur"] = Us(event.end_ns - event.begin_ns);
+    entry["dur"] = Us(span.end_ns - span.begin_ns);
   } else {
     entry["ph"] = "i";
     entry["s"] = "t";
   }
-  if (event.number >= 0) {
-    entry["args"] = {{"number", event.number}};
+  if (span.number >= 0) {
+    entry["args"] = {{"number", span.number}};
   }
   return entry;
 }
 
 // An arrow's end, bound to the span that it begins with.
-json ArrowOf(const Span& event, int thread, std::int64_t start_ns) {
-  const char* const phase = event.flow == Flow::kBegin ? "s" : event.flow == Flow::kStep ? "t" : "f";
+json ArrowOf(const Span& span, int thread, std::int64_t start_ns) {
+  const char* const phase = span.flow == Flow::kBegin ? "s" : span.flow == Flow::kStep ? "t" : "f";
   json entry{{"name", "picture"},
              {"cat", "picture"},
              {"ph", phase},
-             {"id", event.number},
+             {"id", span.number},
              {"pid", kProcess},
              {"tid", thread},
-             {"ts", Us(event.begin_ns - start_ns)}};
-  if (event.flow == Flow::kEnd) {
+             {"ts", Us(span.begin_ns - start_ns)}};
+  if (span.flow == Flow::kEnd) {
     entry["bp"] = "e";
   }
   return entry;
@@ -62,12 +62,12 @@ std::int64_t NowNs() noexcept {
   return now.tv_sec * hal::kNsPerSecond + now.tv_nsec;
 }
 
-std::vector<Span> Track::Events() const {
-  std::vector<Span> events(events_.begin(), events_.begin() + static_cast<std::ptrdiff_t>(count_));
-  std::stable_sort(events.begin(), events.end(), [](const Span& a, const Span& b) {
+std::vector<Span> Track::Spans() const {
+  std::vector<Span> spans(spans_.begin(), spans_.begin() + static_cast<std::ptrdiff_t>(count_));
+  std::stable_sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) {
     return a.begin_ns != b.begin_ns ? a.begin_ns < b.begin_ns : a.end_ns > b.end_ns;
   });
-  return events;
+  return spans;
 }
 
 Track& Trace::AddTrack(const std::string& name, std::size_t capacity) {
@@ -78,25 +78,25 @@ void Trace::Write(const std::filesystem::path& file) const {
   std::ofstream stream(file);
   std::int64_t start_ns = std::numeric_limits<std::int64_t>::max();
   std::uint64_t dropped = 0;
-  std::vector<std::vector<Span>> events;
+  std::vector<std::vector<Span>> spans;
   for (const auto& track : tracks_) {
     dropped += track->dropped();
-    events.push_back(track->Events());
-    if (!events.back().empty()) {
-      start_ns = std::min(start_ns, events.back().front().begin_ns);
+    spans.push_back(track->Spans());
+    if (!spans.back().empty()) {
+      start_ns = std::min(start_ns, spans.back().front().begin_ns);
     }
   }
-  // Event by event, so that a long run's file need not be in memory whole.
+  // Span by span, so that a long run's file need not be in memory whole.
   stream << "{\"displayTimeUnit\":\"ns\",\"otherData\":" << json{{"program", program_}, {"dropped", dropped}}
          << ",\n\"traceEvents\":[\n"
          << Naming("process_name", 0, program_);
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     const int thread = static_cast<int>(i) + 1;
     stream << ",\n" << Naming("thread_name", thread, tracks_[i]->name());
-    for (const Span& event : events[i]) {
-      stream << ",\n" << ToJson(event, thread, start_ns);
-      if (event.flow != Flow::kNone) {
-        stream << ",\n" << ArrowOf(event, thread, start_ns);
+    for (const Span& span : spans[i]) {
+      stream << ",\n" << ToJson(span, thread, start_ns);
+      if (span.flow != Flow::kNone) {
+        stream << ",\n" << ArrowOf(span, thread, start_ns);
       }
     }
   }

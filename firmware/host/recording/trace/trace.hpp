@@ -30,12 +30,12 @@ struct Span {
 // Of one thread, whose spans lie within or beside each other.
 class Track {
  public:
-  Track(std::string name, std::size_t capacity) : name_(std::move(name)) { events_.resize(capacity); }
+  Track(std::string name, std::size_t capacity) : name_(std::move(name)) { spans_.resize(capacity); }
 
   // From its own thread. Real-time: yes.
-  void Add(const Span& event) noexcept {
-    if (count_ < events_.size()) {
-      events_[count_++] = event;
+  void Add(const Span& span) noexcept {
+    if (count_ < spans_.size()) {
+      spans_[count_++] = span;
     } else {
       ++dropped_;
     }
@@ -45,11 +45,11 @@ class Track {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
   // In order of their beginnings; of those that begin together the longest first.
-  [[nodiscard]] std::vector<Span> Events() const;
+  [[nodiscard]] std::vector<Span> Spans() const;
 
  private:
   std::string name_;
-  std::vector<Span> events_;  // [capacity], touched
+  std::vector<Span> spans_;  // [capacity], touched
   std::size_t count_ = 0;
   std::uint64_t dropped_ = 0;
 };
@@ -58,7 +58,7 @@ class Trace {
  public:
   explicit Trace(std::string program) : program_(std::move(program)) {}
 
-  // A thread's track, with room for `capacity` events. It lives as long as the trace. Before the thread runs.
+  // A thread's track, with room for `capacity` spans. It lives as long as the trace. Before the thread runs.
   Track& AddTrack(const std::string& name, std::size_t capacity);
 
   // When all threads are done. std::runtime_error when the file cannot be written.

@@ -68,7 +68,7 @@ TEST(Trace, WhatFindsNoRoomIsCounted) {
     track.Add({"span", i, i + 1, -1, Flow::kNone});
   }
   EXPECT_EQ(track.dropped(), 3U);
-  EXPECT_EQ(track.Events().size(), 2U);
+  EXPECT_EQ(track.Spans().size(), 2U);
   EXPECT_EQ(WriteAndRead(trace)["otherData"]["dropped"], 3);
 }
 
@@ -108,14 +108,14 @@ TEST(Trace, TickPassesOnWhatItIsTold) {
   EXPECT_EQ(probe.entered, 1);
   EXPECT_EQ(probe.left, 1);
   EXPECT_EQ(recorder.last, 41U);
-  const std::vector<Span> events = track.Events();
-  ASSERT_EQ(events.size(), kEventsPerTick);
-  EXPECT_STREQ(events.front().name, "tick");
-  EXPECT_EQ(events.front().number, 41);
-  EXPECT_STREQ(events.back().name, "write");
-  EXPECT_EQ(events.back().number, 5);
-  EXPECT_EQ(events.back().flow, Flow::kEnd);
-  EXPECT_EQ(events.back().end_ns, events.front().end_ns);
+  const std::vector<Span> spans = track.Spans();
+  ASSERT_EQ(spans.size(), kSpansPerTick);
+  EXPECT_STREQ(spans.front().name, "tick");
+  EXPECT_EQ(spans.front().number, 41);
+  EXPECT_STREQ(spans.back().name, "write");
+  EXPECT_EQ(spans.back().number, 5);
+  EXPECT_EQ(spans.back().flow, Flow::kEnd);
+  EXPECT_EQ(spans.back().end_ns, spans.front().end_ns);
 }
 
 }  // namespace
