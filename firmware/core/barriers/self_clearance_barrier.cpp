@@ -9,10 +9,12 @@ namespace {
 
 using model::Vec3;
 
-constexpr int kTrunkJoints = 3;    // the base's line to the first joint, and on to the third, at the elbow
-constexpr int kJointsLeast = 6;    // fewer, and there is no such hand
-constexpr int kBaseJoints = 1;     // the base's line, and the first link's
-constexpr double kThicker = 0.05;  // forearm and base are thicker than hand and upper arm by so much [m]
+constexpr int kTrunkJoints = 3;  // the base's line to the first joint, and on to the third, at the elbow
+constexpr int kJointsLeast = 6;  // fewer, and there is no such hand
+constexpr int kBaseJoints = 1;   // the base's line, and the first link's
+// Thicker than hand and upper arm by so much [m]: the base, and forearm and base together.
+constexpr double kThickerBase = 0.02;
+constexpr double kThickerForearm = 0.05;
 
 struct Nearest {
   SegmentPair pair;  // first of what moves more
@@ -44,7 +46,8 @@ Nearest NearestTrunk(const model::ArmModel& arm, const ArmLine& line) noexcept {
     }
     const int most = is_hand ? kTrunkJoints : kBaseJoints + 1;
     for (std::size_t k = 0; line.joint[k] + 1 < most; ++k) {
-      Compare(line, i, k, is_hand ? 0.0 : kThicker, nearest);
+      const double thicker_hand = line.joint[k] < 0 ? kThickerBase : 0.0;
+      Compare(line, i, k, is_hand ? thicker_hand : kThickerForearm, nearest);
     }
   }
   return nearest;

@@ -73,7 +73,7 @@ TEST(SelfClearanceBarrierTest, TheHandsClearanceIsTheSmallestDistanceBetweenPoin
         const Vec3 on_trunk = trunk[i] + a / double{kPoints} * (trunk[i + 1] - trunk[i]);
         for (int b = 0; b <= kPoints; ++b) {
           const Vec3 on_hand = poses.X_BL[6].p + b / double{kPoints} * (poses.X_BE.p - poses.X_BL[6].p);
-          least = std::min(least, (on_hand - on_trunk).norm());
+          least = std::min(least, (on_hand - on_trunk).norm() - (i == 0 ? 0.02 : 0.0));  // a thicker base
         }
       }
     }
