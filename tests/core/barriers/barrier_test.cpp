@@ -8,7 +8,7 @@
 namespace fovea::barriers {
 namespace {
 
-TEST(BarrierTest, WithARateWhatIsLeftFallsNoFasterThanExponentially) {
+TEST(BarrierTest, RateLimitsTheApproachToExponentialDecay) {
   Barrier barrier;
   barrier.margin = 0.1;
   barrier.rate = 3.0;
@@ -22,7 +22,7 @@ TEST(BarrierTest, WithARateWhatIsLeftFallsNoFasterThanExponentially) {
   }
 }
 
-TEST(BarrierTest, ItsOwnDriftIsTakenOffAndStandingStillIsAlwaysAllowed) {
+TEST(BarrierTest, DriftLowersTheSpeedLimitButNotBelowZero) {
   Barrier barrier;
   barrier.value = 0.3;
   barrier.rate = 2.0;
@@ -36,7 +36,7 @@ TEST(BarrierTest, ItsOwnDriftIsTakenOffAndStandingStillIsAlwaysAllowed) {
 }
 
 // At its largest speed it is stopped by the deceleration, which comes a reaction late, before the margin.
-TEST(BarrierTest, WithADecelerationItCanStillBeStopped) {
+TEST(BarrierTest, SpeedLimitAllowsAStopBeforeTheMargin) {
   Barrier barrier;
   barrier.deceleration = 2.0;
   barrier.reaction_s = 0.05;
@@ -50,7 +50,7 @@ TEST(BarrierTest, WithADecelerationItCanStillBeStopped) {
   EXPECT_EQ(barrier.SpeedMost(), 0.0);
 }
 
-TEST(BarrierTest, WhatIsPastItsMarginGoesBackWhereItShall) {
+TEST(BarrierTest, ReturnRateDemandsARetreatPastTheMargin) {
   Barrier barrier;
   barrier.deceleration = 2.0;
   barrier.return_rate = 5.0;

@@ -41,7 +41,7 @@ struct Camera {
   model::Mat6N J_C;
 };
 
-TEST(DiscTiltBarrierTest, TheRowIsHowFastTheDiscTurnsAway) {
+TEST(DiscTiltBarrierTest, RowMatchesFiniteDifferenceOfTheTilt) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(81);
   double worst = 0.0;
@@ -73,7 +73,7 @@ TEST(DiscTiltBarrierTest, TheRowIsHowFastTheDiscTurnsAway) {
   EXPECT_GT(beyond, 20);
 }
 
-TEST(DiscTiltBarrierTest, NothingIsKeptWhereAnyViewWillDoOrNothingIsKnown) {
+TEST(DiscTiltBarrierTest, NoRowWithoutATiltLimitOrAKnownDisc) {
   const config::ServoConfig config = test::PandaConfig();
   const Camera camera(config, test::Ready());
   MotionLimits limits;

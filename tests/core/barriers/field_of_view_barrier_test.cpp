@@ -58,7 +58,7 @@ std::array<double, 4> Extent(const Scene& scene, const features::TargetInCamera&
 }
 
 // a dq is how fast the outermost corner moves with the camera.
-TEST(FieldOfViewBarrierTest, EachRowIsTheRateOfTheOutermostCorner) {
+TEST(FieldOfViewBarrierTest, RowsMatchFiniteDifferencesOfTheOutermostCorner) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(61);
   double worst = 0.0;
@@ -83,7 +83,7 @@ TEST(FieldOfViewBarrierTest, EachRowIsTheRateOfTheOutermostCorner) {
   EXPECT_LT(worst, 1e-6);
 }
 
-TEST(FieldOfViewBarrierTest, StandingStillIsAlwaysAllowedAndOutsideNothingGoesFurtherOut) {
+TEST(FieldOfViewBarrierTest, StandstillIsAllowedAndOutsideNoMotionGoesFurtherOut) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(62);
   for (int k = 0; k < 300; ++k) {
@@ -100,7 +100,7 @@ TEST(FieldOfViewBarrierTest, StandingStillIsAlwaysAllowedAndOutsideNothingGoesFu
   }
 }
 
-TEST(FieldOfViewBarrierTest, ASpheresOutlineCountsAndNothingIsSaidWhereNothingIsSeen) {
+TEST(FieldOfViewBarrierTest, RowsUseTheSphereOutlineAndNeedATargetInView) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(63);
   Scene scene = RandomScene(random, config);

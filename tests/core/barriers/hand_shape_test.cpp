@@ -18,7 +18,7 @@ namespace {
 
 using model::Vec3;
 
-TEST(HandShapeTest, TheBallsCoverTheCapsuleAndLittleMore) {
+TEST(HandShapeTest, SpheresCoverTheCapsuleWithLittleExcess) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   double most = 0.0;
@@ -44,13 +44,13 @@ TEST(HandShapeTest, TheBallsCoverTheCapsuleAndLittleMore) {
   EXPECT_LT(most, 1.12);
 }
 
-TEST(HandShapeTest, ThereIsNoRoomForMoreThanThereIs) {
+TEST(HandShapeTest, RefusesACapsuleBeyondItsCapacity) {
   config::HandShape hand;
   EXPECT_FALSE(hand.AddCapsule(Vec3::Zero(), Vec3(1.0, 0.0, 0.0), 0.01));
 }
 
 // The lens of a camera that is 0.2 m from the flange stood inside a box that the flange kept out of.
-TEST(HandShapeTest, TheCameraKeepsOutOfABoxThatTheFlangeDoesNotReach) {
+TEST(HandShapeTest, CameraIsKeptOutOfABoxTheFlangeDoesNotReach) {
   config::ServoConfig config = test::PandaConfig();
   model::ArmPoses poses;
   model::ComputePoses(config.arm, test::Ready(), poses);

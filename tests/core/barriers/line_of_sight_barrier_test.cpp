@@ -66,7 +66,7 @@ double Clearance(const config::ServoConfig& config, const VecN& q, const Vec3& p
 }
 
 // Points on the two lines, 2 mm apart and less.
-TEST(LineOfSightBarrierTest, TheClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
+TEST(LineOfSightBarrierTest, ClearanceIsTheSmallestDistanceBetweenTheLines) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(71);
   double worst = 0.0;
@@ -101,7 +101,7 @@ TEST(LineOfSightBarrierTest, TheClearanceIsTheSmallestDistanceBetweenPointsOfThe
   EXPECT_LT(worst, 0.002);
 }
 
-TEST(LineOfSightBarrierTest, TheRowIsHowFastTheNearestLinkComesNearer) {
+TEST(LineOfSightBarrierTest, RowMatchesFiniteDifferenceOfClearance) {
   const config::ServoConfig config = WithClearance(0.12);
   test::RandomStates random(72);
   double worst = 0.0;
@@ -129,7 +129,7 @@ TEST(LineOfSightBarrierTest, TheRowIsHowFastTheNearestLinkComesNearer) {
   EXPECT_GT(beyond, 20);
 }
 
-TEST(LineOfSightBarrierTest, NothingIsKeptWhereNothingIsAskedForOrTheLinesCross) {
+TEST(LineOfSightBarrierTest, NoRowWithoutAClearanceLimitOrWhereTheLinesCross) {
   const config::ServoConfig config = WithClearance(0.12);
   const Posture posture(config, test::Ready());
   const Vec3 ahead = posture.X_BC * Vec3(0.0, 0.0, 0.4);

@@ -12,7 +12,7 @@
 namespace fovea::barriers {
 namespace {
 
-TEST(MotionLimitsTest, RangesCloseAtTheEndsAndWithTheAcceleration) {
+TEST(MotionLimitsTest, VelocityRangesShrinkAtJointEndsAndWithAcceleration) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(531);
   MotionLimits limits;
@@ -41,7 +41,7 @@ TEST(MotionLimitsTest, RangesCloseAtTheEndsAndWithTheAcceleration) {
   EXPECT_LT(limits.dq_min[1], -0.1);
 }
 
-TEST(MotionLimitsTest, TheWorkspaceRowBoundsTheOutwardSpeedAndAsksPastItForAWayBack) {
+TEST(MotionLimitsTest, WorkspaceRowBoundsOutwardSpeedAndDemandsReturnFromOutside) {
   config::ServoConfig config = test::PandaConfig();
   model::ArmPoses poses;
   model::LinearJacobian J_E_B;
@@ -66,7 +66,7 @@ TEST(MotionLimitsTest, TheWorkspaceRowBoundsTheOutwardSpeedAndAsksPastItForAWayB
   }
 }
 
-TEST(MotionLimitsTest, TakesAsManyRowsAsItHasRoomFor) {
+TEST(MotionLimitsTest, RowBeyondItsCapacityMarksTheLimitsAsNotKept) {
   MotionLimits limits;
   LimitJoints(test::PandaConfig(), test::Ready(), limits);
   for (int k = 0; k < MotionLimits::kMaxRows; ++k) {

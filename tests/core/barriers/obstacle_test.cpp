@@ -10,7 +10,7 @@
 namespace fovea::barriers {
 namespace {
 
-TEST(ObstacleTest, APlaneIsAsFarAsItsEquationSays) {
+TEST(ObstacleTest, PlaneDistanceMatchesItsEquation) {
   config::Obstacles obstacles;
   obstacles.num_planes = 1;
   obstacles.planes[0] = {model::Vec3(0.0, 0.6, 0.8), 0.2};
@@ -20,7 +20,7 @@ TEST(ObstacleTest, APlaneIsAsFarAsItsEquationSays) {
   EXPECT_EQ(CountObstacles(obstacles), 1);
 }
 
-TEST(ObstacleTest, ABoxIsAsFarAsItsNearestPoint) {
+TEST(ObstacleTest, BoxDistanceIsThatOfItsNearestPoint) {
   config::Obstacles obstacles;
   obstacles.num_boxes = 1;
   config::Box& box = obstacles.boxes[0];

@@ -59,7 +59,7 @@ config::ServoConfig WithHandClearance(double clearance) {
 double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Arm(), Planes(), LineAt(q)); }
 
 // Points on the two lines, 2 mm apart and less.
-TEST(SelfClearanceBarrierTest, TheHandsClearanceIsTheSmallestDistanceBetweenPointsOfTheLines) {
+TEST(SelfClearanceBarrierTest, HandClearanceIsTheSmallestDistanceBetweenTheLines) {
   test::RandomStates random(81);
   double worst = 0.0;
   for (int k = 0; k < 60; ++k) {
@@ -98,7 +98,7 @@ TEST(SelfClearanceBarrierTest, TheHandsClearanceIsTheSmallestDistanceBetweenPoin
   EXPECT_LT(worst, 0.002);
 }
 
-TEST(SelfClearanceBarrierTest, TheArmsClearanceIsThatOfItsLowestPointFromTheElbowOn) {
+TEST(SelfClearanceBarrierTest, ArmClearanceIsThatOfItsLowestPointFromTheElbowOn) {
   test::RandomStates random(82);
   for (int k = 0; k < 300; ++k) {
     const VecN q = random.Position(Arm());
@@ -125,7 +125,7 @@ void ExpectRow(const MotionLimits& limits, const VecN& q, const VecN& dq, const 
   worst = std::max(worst, std::abs(limits.rows[0].a.dot(dq) + rate));
 }
 
-TEST(SelfClearanceBarrierTest, TheRowsAreHowFastHandAndArmComeNearer) {
+TEST(SelfClearanceBarrierTest, GradientMatchesFiniteDifferenceOfClearance) {
   test::RandomStates random(83);
   double worst_hand = 0.0;
   double worst_arm = 0.0;
@@ -155,7 +155,7 @@ TEST(SelfClearanceBarrierTest, TheRowsAreHowFastHandAndArmComeNearer) {
   EXPECT_GT(arms, 20);
 }
 
-TEST(SelfClearanceBarrierTest, NothingIsKeptWhereNothingIsAskedForOrNothingIsKnown) {
+TEST(SelfClearanceBarrierTest, NoRowWithoutAClearanceLimitOrKnownGeometry) {
   MotionLimits limits;
   const VecN q = test::Ready();
   limits.Add(SelfClearanceBarrier(WithHandClearance(0.0), PosesAt(q), LineAt(q)));

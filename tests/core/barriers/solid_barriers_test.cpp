@@ -39,7 +39,7 @@ struct Posture {
   model::LinearJacobian J_E_B;
 };
 
-TEST(SolidBarriersTest, EachGradientIsTheChangeOfItsValueWithTheJoints) {
+TEST(SolidBarriersTest, GradientsMatchFiniteDifferencesOfTheirValues) {
   const config::ServoConfig config = Crowded();
   const SolidBarriers solid(config);
   ASSERT_EQ(solid.size(), 1 + 3 + 1 + 1);
@@ -68,7 +68,7 @@ TEST(SolidBarriersTest, EachGradientIsTheChangeOfItsValueWithTheJoints) {
   EXPECT_LT(worst, 1e-7);
 }
 
-TEST(SolidBarriersTest, WhatIsNotAskedForIsNotInTheTable) {
+TEST(SolidBarriersTest, UnconfiguredBarriersAreNotInTheTable) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.obstacles = {};
   config.guard.hand_clearance = 0.0;
@@ -79,7 +79,7 @@ TEST(SolidBarriersTest, WhatIsNotAskedForIsNotInTheTable) {
   EXPECT_EQ(SolidBarriers(config).size(), SolidBarriers::kMost);
 }
 
-TEST(SolidBarriersTest, TheClearanceOfTheArmIsTheLeastOfHandAndLinks) {
+TEST(SolidBarriersTest, ArmClearanceIsTheSmallestOfHandAndLinks) {
   const config::ServoConfig config = Crowded();
   const SolidBarriers solid(config);
   test::RandomStates random(92);

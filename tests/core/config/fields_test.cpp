@@ -119,7 +119,7 @@ void Fields(Visitor& v, Config& c) {
   v.Flag({"b"}, c.also);
 }
 
-TEST(FieldListTest, AMissingMemberShows) {
+TEST(FieldListTest, MissingMemberIsDetected) {
   Short config;
   SeenBytes visitor(&config, sizeof(config));
   Fields(visitor, config);
@@ -169,7 +169,7 @@ class OutOfRange {
 };
 
 // Init refuses what is past the range that the key has, and names the key.
-TEST(FieldListTest, InitKeepsTheKeysRanges) {
+TEST(FieldListTest, InitRefusesValuesOutsideTheKeysRanges) {
   task::ServoTask task;
   int refused = 0;
   for (int target = 0;; ++target) {
@@ -188,7 +188,7 @@ TEST(FieldListTest, InitKeepsTheKeysRanges) {
   EXPECT_GT(refused, 90);
 }
 
-TEST(FieldListTest, NumbersThatAreNotFiniteAreRefused) {
+TEST(FieldListTest, NonFiniteNumbersAreRefused) {
   for (const double value : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     PredictConfig config;
     config.gate_sigma = value;

@@ -14,7 +14,7 @@ namespace {
 using features::FeatureVector;
 using features::InteractionMatrix;
 
-TEST(CompressTaskTest, HasTheSameSolutionAndTheSameSingularValues) {
+TEST(CompressTaskTest, KeepsTheSolutionAndTheSingularValues) {
   test::RandomStates random(4);
   double worst = 0.0;
   double worst_gram = 0.0;
@@ -42,7 +42,7 @@ TEST(CompressTaskTest, HasTheSameSolutionAndTheSameSingularValues) {
   EXPECT_LT(worst_gram, 1e-14);
 }
 
-TEST(CompressTaskTest, LeavesWhatIsSmallAndBearsWhatIsSingular) {
+TEST(CompressTaskTest, LeavesSmallTasksUnchangedAndStaysFiniteOnSingularOnes) {
   InteractionMatrix L = InteractionMatrix::Random(6, 6);
   FeatureVector v = FeatureVector::Random(6);
   const InteractionMatrix L_before = L;

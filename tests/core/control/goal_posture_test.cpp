@@ -57,7 +57,7 @@ void ExpectAtGoal(const config::ServoConfig& config, const Pose& X_BO, const Goa
   }
 }
 
-TEST(GoalPostureTest, OneThatIsNearIsFoundDownhillAndFollowsTheTarget) {
+TEST(GoalPostureTest, NearbyGoalIsFoundDownhillAndFollowsTheTarget) {
   const config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   VecN q_goal = test::Ready();
   q_goal[0] += 0.3;
@@ -76,7 +76,7 @@ TEST(GoalPostureTest, OneThatIsNearIsFoundDownhillAndFollowsTheTarget) {
 }
 
 // The last joint at its upper end, the goal a third of a turn further: another posture, the long way round.
-TEST(GoalPostureTest, PastTheEndOfAJointTheWayRoundIsFound) {
+TEST(GoalPostureTest, GoalBeyondAJointEndIsReachedTheOtherWayRound) {
   const config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   VecN q = test::Ready();
   q[6] = config.arm.joints[6].q_max - 0.1;
@@ -92,7 +92,7 @@ TEST(GoalPostureTest, PastTheEndOfAJointTheWayRoundIsFound) {
 }
 
 // One to which no way is clear is taken when all rounds have found no other.
-TEST(GoalPostureTest, OneWithABarredWayIsTakenLast) {
+TEST(GoalPostureTest, PostureWithABlockedPathIsTakenLast) {
   config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   VecN q = test::Ready();
   q[6] = config.arm.joints[6].q_max - 0.1;
@@ -111,7 +111,7 @@ TEST(GoalPostureTest, OneWithABarredWayIsTakenLast) {
 }
 
 // The hand hangs beside the camera: turned by half a turn it would be outside the workspace, as it is not.
-TEST(GoalPostureTest, ASquareIsFacedFromASideThatTheHandReaches) {
+TEST(GoalPostureTest, SquareIsFacedFromASideInReach) {
   const config::ServoConfig config = Config(hal::FeatureKind::kSquare);
   const Pose half{QuarterTurns(2), model::Vec3::Zero()};
   const auto hand_turned = [&](const VecN& q) {
@@ -136,7 +136,7 @@ TEST(GoalPostureTest, ASquareIsFacedFromASideThatTheHandReaches) {
 }
 
 // Where the target jumps and another posture is looked for, first the same side is tried.
-TEST(GoalPostureTest, ASquareThatJumpsStaysTurnedAsItWas) {
+TEST(GoalPostureTest, JumpingSquareKeepsItsGoalSide) {
   const config::ServoConfig config = Config(hal::FeatureKind::kSquare);
   const VecN q = test::Ready();
   Pose X_BO = TargetFor(config, q) * Pose{QuarterTurns(3), model::Vec3::Zero()};
@@ -159,7 +159,7 @@ TEST(GoalPostureTest, ASquareThatJumpsStaysTurnedAsItWas) {
   ExpectAtGoal(config, X_BO, goal);
 }
 
-TEST(GoalPostureTest, NoneIsTakenInWhichTheHandIsBelowAPlaneOrTheArmHidesTheTarget) {
+TEST(GoalPostureTest, RefusesPosturesBelowAPlaneOccludingOrSingular) {
   const config::ServoConfig free = Config(hal::FeatureKind::kTriangle);
   VecN q_goal = test::Ready();
   q_goal[0] += 0.3;
@@ -189,7 +189,7 @@ TEST(GoalPostureTest, NoneIsTakenInWhichTheHandIsBelowAPlaneOrTheArmHidesTheTarg
 }
 
 // A range that leaves no room at its ends is used in its middle.
-TEST(GoalPostureTest, AJointWithANarrowRangeStaysInIt) {
+TEST(GoalPostureTest, JointWithANarrowRangeStaysInItsMiddle) {
   config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   VecN q_goal = test::Ready();
   config.arm.joints[2].q_min = q_goal[2] - 0.05;
@@ -203,7 +203,7 @@ TEST(GoalPostureTest, AJointWithANarrowRangeStaysInIt) {
   EXPECT_NEAR(goal.q[2], test::Ready()[2], 1e-12);
 }
 
-TEST(GoalPostureTest, NoneIsFoundForAGoalOutsideTheWorkspace) {
+TEST(GoalPostureTest, FindsNoPostureForAGoalOutsideTheWorkspace) {
   const config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   Pose X_BO = TargetFor(config, test::Ready());
   X_BO.p.x() += 1.0;
@@ -212,7 +212,7 @@ TEST(GoalPostureTest, NoneIsFoundForAGoalOutsideTheWorkspace) {
 }
 
 // A start that the atlas drew: straight ways to all postures lead out of the picture or behind the arm.
-TEST(GoalPostureTest, WhereNoStraightWayIsClearOneByAnotherPostureIsFound) {
+TEST(GoalPostureTest, BlockedStraightPathsGiveADetourPosture) {
   config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   config.guard.view = {true, -0.55, 0.55, -0.41, 0.41};
   VecN q(7);

@@ -135,7 +135,7 @@ void ExpectOptimal(const Problem& p, const LimitedMotion& motion, double& worst_
   worst_residual = std::max(worst_residual, rest.norm() / size);
 }
 
-TEST(MoveIntoLimitsTest, FindsWhatAnExhaustiveSearchFinds) {
+TEST(MoveIntoLimitsTest, MatchesAnExhaustiveSearch) {
   test::RandomStates random(511);
   double worst = 0.0;
   int limited = 0;
@@ -166,7 +166,7 @@ TEST(MoveIntoLimitsTest, FindsWhatAnExhaustiveSearchFinds) {
   EXPECT_LT(worst, 1e-6);
 }
 
-TEST(MoveIntoLimitsTest, MeetsTheConditionsOfOptimality) {
+TEST(MoveIntoLimitsTest, MeetsTheOptimalityConditions) {
   test::RandomStates random(512);
   double worst_residual = 0.0;
   double worst_multiplier = 0.0;
@@ -202,7 +202,7 @@ TEST(MoveIntoLimitsTest, MeetsTheConditionsOfOptimality) {
 
 // Degenerate on purpose: rows that repeat each other or the ranges, no room at all, standing still as the
 // only point, sizes from 1e-12 to 1e200.
-TEST(MoveIntoLimitsTest, AnswersNastyInputWithinItsSteps) {
+TEST(MoveIntoLimitsTest, SolvesDegenerateInputWithinTheStepLimit) {
   test::RandomStates random(513);
   int counts[5] = {};
   int most_steps = 0;
@@ -251,7 +251,7 @@ TEST(MoveIntoLimitsTest, AnswersNastyInputWithinItsSteps) {
   EXPECT_EQ(counts[4], 0);
 }
 
-TEST(MoveIntoLimitsTest, SaysWhatIsNotFiniteAndWhatContradictsItself) {
+TEST(MoveIntoLimitsTest, ReportsNonFiniteAndInfeasibleInput) {
   test::RandomStates random(514);
   const double nan = std::nan("");
   const Problem sound = RandomProblem(random, 7, 4);

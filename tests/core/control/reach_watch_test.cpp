@@ -6,7 +6,7 @@
 namespace fovea::control {
 namespace {
 
-TEST(ReachWatchTest, IsUnreachableOnceLimitsKeptItForLongerThanTheKeySays) {
+TEST(ReachWatchTest, GoalIsUnreachableAfterTheConfiguredBlockedTime) {
   config::LawConfig config;
   config.unreachable_s = 0.5;
   ReachWatch watch;
@@ -19,7 +19,7 @@ TEST(ReachWatchTest, IsUnreachableOnceLimitsKeptItForLongerThanTheKeySays) {
 }
 
 // What counts is how often it is kept: nine ticks of ten are, so it takes 10 / 8 as long.
-TEST(ReachWatchTest, ATickThatLetsItThroughTakesOneOff) {
+TEST(ReachWatchTest, UnblockedTickTakesOneBlockedTickOff) {
   config::LawConfig config;
   config.unreachable_s = 0.4;
   ReachWatch watch;
@@ -31,7 +31,7 @@ TEST(ReachWatchTest, ATickThatLetsItThroughTakesOneOff) {
   EXPECT_NEAR(ticks, 500, 10);
 }
 
-TEST(ReachWatchTest, WhatIsFreeForLongDoesNotCountInAdvance) {
+TEST(ReachWatchTest, LongUnblockedTimeGivesNoCredit) {
   config::LawConfig config;
   config.unreachable_s = 0.1;
   ReachWatch watch;
@@ -44,7 +44,7 @@ TEST(ReachWatchTest, WhatIsFreeForLongDoesNotCountInAdvance) {
   EXPECT_TRUE(IsUnreachable(config, watch));
 }
 
-TEST(ReachWatchTest, ATargetThatMovedTwoCentimetresIsTriedAgain) {
+TEST(ReachWatchTest, TargetMovedByTwoCentimetresIsTriedAgain) {
   ReachWatch watch;
   watch.p_BO_unreachable = {0.5, 0.1, 0.2};
   EXPECT_FALSE(HasMoved({0.519, 0.1, 0.2}, watch));

@@ -32,7 +32,7 @@ barriers::MotionLimits Ranges(double size) {
   return limits;
 }
 
-TEST(ResolveConstrainedTest, TheNullSpacePaysFirstAndTheTaskKeepsItsDirection) {
+TEST(ResolveConstrainedTest, NullSpaceYieldsFirstAndTheTaskKeepsItsDirection) {
   test::RandomStates random(515);
   const ConstrainedConfig config;
   int free = 0;
@@ -73,7 +73,7 @@ TEST(ResolveConstrainedTest, TheNullSpacePaysFirstAndTheTaskKeepsItsDirection) {
 // A task that wants nothing gets nothing, however the wish dq_0 pulls against limits or through a direction
 // that is damped: else the arm would come to rest off its goal. (With the wish beside the task in one problem
 // of null_weight 0.04 the largest was 0.1 rad/s on the rms singular value, with damping alone 0.003.)
-TEST(ResolveConstrainedTest, AWishThatPullsAgainstALimitLeavesTheTaskAlone) {
+TEST(ResolveConstrainedTest, NullSpaceWishAgainstALimitLeavesTheTaskUnchanged) {
   test::RandomStates random(518);
   int limited = 0;
   int damped = 0;
@@ -102,7 +102,7 @@ TEST(ResolveConstrainedTest, AWishThatPullsAgainstALimitLeavesTheTaskAlone) {
 }
 
 // The wish, the Jacobian and the limits move on straight lines; halving the step halves the change.
-TEST(ResolveConstrainedTest, IsContinuous) {
+TEST(ResolveConstrainedTest, IsContinuousInWishJacobianAndLimits) {
   test::RandomStates random(516);
   double steps[2] = {0.0, 0.0};
   for (int way = 0; way < test::Repetitions(60); ++way) {

@@ -94,7 +94,7 @@ TEST(RowSvdTest, AgreesWithEigen) {
   EXPECT_LT(most_sweeps, barriers::RowSvd::kMaxSweeps);
 }
 
-TEST(ResolveDampedTest, IsTheWeightedPseudoInverseAwayFromSingularity) {
+TEST(ResolveDampedTest, EqualsTheWeightedPseudoInverseAwayFromSingularity) {
   test::RandomStates random(502);
   const DampingConfig config;
   double worst = 0.0;
@@ -132,7 +132,7 @@ TEST(ResolveDampedTest, IsTheWeightedPseudoInverseAwayFromSingularity) {
   EXPECT_LT(worst_null_space, 1e-13);
 }
 
-TEST(ResolveDampedTest, IsDampedAsItSaysAndBoundedForAnyRank) {
+TEST(ResolveDampedTest, DampingMatchesItsFormulaAndBoundsMotionForAnyRank) {
   test::RandomStates random(503);
   DampingConfig config;
   config.threshold = 0.5;  // damping acts often
@@ -186,7 +186,7 @@ TEST(ResolveDampedTest, IsDampedAsItSaysAndBoundedForAnyRank) {
 
 // Straight through the stretched elbow, which the joint's range ends just short of, and past the aligned
 // wrist.
-TEST(ResolveDampedTest, GoesSmoothlyThroughSingularPosturesOfThePanda) {
+TEST(ResolveDampedTest, IsSmoothThroughSingularPosturesOfThePanda) {
   const model::ArmModel& arm = test::PandaConfig().arm;
   test::RandomStates random(504);
   double largest = 0.0;
@@ -271,7 +271,7 @@ TEST(ResolveDampedTest, IsContinuousWhereDampingBegins) {
   EXPECT_LT(worst, 1e-11);
 }
 
-TEST(ResolveDampedTest, AnswersMoreThanOneWishAndHoldsForSmallThresholds) {
+TEST(ResolveDampedTest, SolvesSeveralWishesAccuratelyForSmallThresholds) {
   test::RandomStates random(508);
   for (const double threshold : {1e-1, 1e-3, 1e-5}) {
     DampingConfig config;
@@ -314,7 +314,7 @@ TEST(ResolveDampedTest, AnswersMoreThanOneWishAndHoldsForSmallThresholds) {
   }
 }
 
-TEST(ResolveDampedTest, SaysWhenThereIsNoFiniteResult) {
+TEST(ResolveDampedTest, ReportsANonFiniteResult) {
   test::RandomStates random(505);
   MotionTask task = RandomTask(random, 3, 7, false);
   task.J(1, 2) = std::nan("");

@@ -10,7 +10,7 @@
 namespace fovea::control {
 namespace {
 
-TEST(ResolveLoopTest, WithLimitsInsideMoreStartsReachTheirGoal) {
+TEST(ResolveLoopTest, LimitsInsideTheSolverLetMoreStartsReachTheirGoal) {
   constexpr double kLimitS = 8.0;
   const config::ServoConfig config = test::PandaConfig();
   const NullSpaceConfig wishes = resolve_loop::PostureOnly(config, NullSpaceConfig{}.speed_max);

@@ -14,9 +14,9 @@ namespace {
 using model::VecN;
 
 // Near a singular posture, and a task of the joints that leads further into it.
-class NearASingularityTest : public testing::Test {
+class ResolveMotionTest : public testing::Test {
  protected:
-  NearASingularityTest() : config_(test::PandaConfig()), q_(test::Ready()) {
+  ResolveMotionTest() : config_(test::PandaConfig()), q_(test::Ready()) {
     barriers::Singularity singularity;
     for (int step = 0; step < 1000; ++step) {
       model::ComputePoses(config_.arm, q_, poses_);
@@ -60,21 +60,21 @@ class NearASingularityTest : public testing::Test {
   ResolvedMotion motion_;
 };
 
-TEST_F(NearASingularityTest, TheLawIsHeldAndAMotionOfTheJointsIsNot) {
+TEST_F(ResolveMotionTest, SingularityLimitsTheLawButNotAJointMotion) {
   ASSERT_LT(sigma_, 1.05 * config_.guard.singularity_min);
   EXPECT_NE(Resolve(false), 0U);
   EXPECT_EQ(Resolve(true), 0U);
   EXPECT_GT(motion_.dq.dot(VecN(task_.v)), 0.9 * task_.v.squaredNorm());
 }
 
-TEST_F(NearASingularityTest, WhatWasKnownBeforeTheJointsMovedCountsNoMore) {
+TEST_F(ResolveMotionTest, JointMotionResetsTheSingularityEstimate) {
   motion_.watch.sigma = 5.0;  // far off, where the arm was before
   Resolve(true);
   EXPECT_NE(Resolve(false), 0U);
 }
 
 // With all limits in force at once none is left out: planes and boxes that are far off change nothing.
-TEST_F(NearASingularityTest, EveryPlaneAndBoxLeavesRoomForTheOtherLimits) {
+TEST_F(ResolveMotionTest, AllPlanesAndBoxesLeaveRoomForTheOtherLimits) {
   config_.guard.view = {true, -0.6, 0.6, -0.5, 0.5, 0.5};
   features::TargetOutline outline;
   outline.p_OP.fill(model::Vec3::Zero());

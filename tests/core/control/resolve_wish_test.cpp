@@ -50,7 +50,7 @@ double Difference(const F& f, const model::VecN& q, int i) {
   return (8.0 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12.0 * kStep);
 }
 
-TEST(ColumnChangeTest, IsTheJacobiansDerivative) {
+TEST(ColumnChangeTest, MatchesFiniteDifferencesOfTheJacobian) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(521);
   double worst = 0.0;
@@ -101,7 +101,7 @@ TEST(ManipulabilityGradientTest, StaysBoundedWhereTheArmIsSingular) {
   EXPECT_LT(largest, 40.0);
 }
 
-TEST(JointLimitWishTest, PushesInwardNearTheEndsOnlyAndSmoothly) {
+TEST(JointLimitWishTest, PushesSmoothlyInwardOnlyNearTheEnds) {
   const model::ArmModel& arm = test::PandaConfig().arm;
   constexpr double kOnset = 0.8;
   for (int i = 0; i < 7; ++i) {
@@ -127,7 +127,7 @@ TEST(JointLimitWishTest, PushesInwardNearTheEndsOnlyAndSmoothly) {
   }
 }
 
-TEST(NullSpaceWishTest, IsTheWeightedSumAndBounded) {
+TEST(NullSpaceWishTest, EqualsTheWeightedSumUpToTheSpeedLimit) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(523);
   NullSpaceConfig wishes;
@@ -189,7 +189,7 @@ TEST(SingularityTest, AgreesWithEigenAndFiniteDifferences) {
 }
 
 // Steers the hand anywhere for some seconds, with the singularity's row as the only defence.
-TEST(SingularityTest, TheRowKeepsTheArmFromGoingDeeper) {
+TEST(SingularityTest, RowKeepsTheSmallestSingularValueAboveItsLimit) {
   const config::ServoConfig config = test::PandaConfig();
   const barriers::SingularityConfig limit;
   test::RandomStates random(525);

@@ -43,7 +43,7 @@ model::VecN Unlimited(const config::ServoConfig& config, const config::LawConfig
   return motion.dq;
 }
 
-TEST(VisualLawTest, AsksForAnExponentialDecayInTheFeature) {
+TEST(VisualLawTest, CommandsExponentialDecayOfTheFeatureError) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(21);
   double worst = 0.0;
@@ -62,7 +62,7 @@ TEST(VisualLawTest, AsksForAnExponentialDecayInTheFeature) {
 }
 
 // Without damping the law is the pseudo-inverse with the posture in its null space.
-TEST(VisualLawTest, IsThePseudoInverseAndThePostureStaysInTheFreeDirections) {
+TEST(VisualLawTest, WithoutDampingEqualsThePseudoInversePlusNullSpacePosture) {
   config::ServoConfig config = test::PandaConfig();
   config.law.damping = 1e-9;
   test::RandomStates random(22);
@@ -110,7 +110,7 @@ TEST(VisualLawTest, StaysBoundedWhereTheTaskIsSingular) {
   }
 }
 
-TEST(ProgressTest, IsTheShareOfTheWantedMotion) {
+TEST(ProgressTest, EqualsTheAchievedShareOfTheCommandedMotion) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(24);
   const Scene s = RandomScene(random, config);
@@ -122,7 +122,7 @@ TEST(ProgressTest, IsTheShareOfTheWantedMotion) {
   EXPECT_EQ(Progress(s.feature, features::FeatureVector::Zero(3), s.J_C, dq_des), 1.0);
 }
 
-TEST(GainTest, GoesFromNearToFarWithItsSlope) {
+TEST(GainTest, ChangesFromNearToFarValueWithTheSetSlope) {
   config::LawConfig law;
   law.lambda = 1.5;
   EXPECT_EQ(GainAt(law, 0.0), 1.5) << "constant while lambda_near is 0";
@@ -142,7 +142,7 @@ TEST(GainTest, GoesFromNearToFarWithItsSlope) {
   }
 }
 
-TEST(InteractionTest, IsOfNowOfTheGoalOrTheMean) {
+TEST(InteractionTest, UsesCurrentGoalOrMeanMatrixAsConfigured) {
   config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(25);
   const Scene s = RandomScene(random, config);

@@ -45,7 +45,7 @@ VecN WayFrom(const config::ServoConfig& config, const VecN& q, const VecN& to_go
 }
 
 // Along the way d(x)/dt = -(x - x*), whatever the goal; and it is the way to the goal but for that.
-TEST(WayInViewTest, BringsTheTargetToItsPlaceAndChangesNothingElse) {
+TEST(WayInViewTest, TargetImageDecaysToItsGoalAndTheRestOfTheMotionStays) {
   const config::ServoConfig config = Config();
   test::RandomStates random(81);
   double worst = 0.0;
@@ -71,7 +71,7 @@ TEST(WayInViewTest, BringsTheTargetToItsPlaceAndChangesNothingElse) {
   EXPECT_LT(worst_rest, 1e-5);
 }
 
-TEST(WayInViewTest, ATargetBehindTheCameraChangesNothing) {
+TEST(WayInViewTest, TargetBehindTheCameraLeavesThePathUnchanged) {
   const config::ServoConfig config = Config();
   const Pose X_BO = CameraAt(config, test::Ready()) * Pose{model::Mat3::Identity(), {0.0, 0.0, -0.4}};
   const VecN to_goal = test::Ready();
@@ -90,7 +90,7 @@ WayTrial Try(const config::ServoConfig& config, const Pose& X_BO, const VecN& q,
 }
 
 // The last joint turns by a third: the target stays in the middle, and the way is about as long.
-TEST(WayInViewTest, AClearWayIsTriedToItsEnd) {
+TEST(WayInViewTest, ClearPathIsFollowedToItsEnd) {
   const config::ServoConfig config = Config();
   VecN q_goal = test::Ready();
   q_goal[6] -= 2.0;
@@ -101,7 +101,7 @@ TEST(WayInViewTest, AClearWayIsTriedToItsEnd) {
   EXPECT_LT((way.q - q_goal).lpNorm<Eigen::Infinity>(), 0.16);
 }
 
-TEST(WayInViewTest, AWayBelowAPlaneBehindTheArmOrOutOfThePictureIsBarred) {
+TEST(WayInViewTest, PathBelowAPlaneBehindTheArmOrOutOfViewIsBlocked) {
   config::ServoConfig config = Config();
   VecN q_goal = test::Ready();
   q_goal[0] += 0.5;

@@ -70,7 +70,7 @@ class WayToGoalTest : public testing::Test {
   bool told_apart_ = true;
 };
 
-TEST_F(WayToGoalTest, DownhillTheLawGoes) {
+TEST_F(WayToGoalTest, DownhillGoalIsLeftToTheVisualLaw) {
   VecN q_goal = test::Ready();
   q_goal[0] += 0.3;
   PutTargetFor(q_goal);
@@ -80,7 +80,7 @@ TEST_F(WayToGoalTest, DownhillTheLawGoes) {
   EXPECT_FALSE(way_.by_joints);
 }
 
-TEST_F(WayToGoalTest, APostureElsewhereIsGoneToByTheJoints) {
+TEST_F(WayToGoalTest, GoalInAnotherPostureIsReachedByJointMotion) {
   const VecN q = PutTargetPastTheEnd();
   Stand(q, 1000);
   ASSERT_TRUE(way_.goal.found);
@@ -96,7 +96,7 @@ TEST_F(WayToGoalTest, APostureElsewhereIsGoneToByTheJoints) {
   EXPECT_FALSE(way_.by_joints) << "there, the law takes over";
 }
 
-TEST_F(WayToGoalTest, NotBeforeTheTargetsPosesAreToldApart) {
+TEST_F(WayToGoalTest, JointMotionWaitsForAnUnambiguousTargetPose) {
   told_apart_ = false;
   const VecN q = PutTargetPastTheEnd();
   Stand(q, 1000);
@@ -104,7 +104,7 @@ TEST_F(WayToGoalTest, NotBeforeTheTargetsPosesAreToldApart) {
   EXPECT_FALSE(way_.by_joints);
 }
 
-TEST_F(WayToGoalTest, LimitsThatLetTheGoalComeNoNearerMakeItGoByTheJoints) {
+TEST_F(WayToGoalTest, LawBlockedByLimitsSwitchesToJointMotion) {
   VecN q_goal = test::Ready();
   q_goal[0] += 0.3;
   PutTargetFor(q_goal);
@@ -115,7 +115,7 @@ TEST_F(WayToGoalTest, LimitsThatLetTheGoalComeNoNearerMakeItGoByTheJoints) {
 }
 
 // The joints would get no further to it than the law.
-TEST_F(WayToGoalTest, ADownhillPostureWithABarredWayIsNotGoneToByTheJoints) {
+TEST_F(WayToGoalTest, DownhillPostureWithABlockedPathIsAbandoned) {
   VecN q_goal = test::Ready();
   q_goal[0] += 0.8;
   PutTargetFor(q_goal);
@@ -128,7 +128,7 @@ TEST_F(WayToGoalTest, ADownhillPostureWithABarredWayIsNotGoneToByTheJoints) {
   EXPECT_FALSE(way_.goal.found) << "another one is looked for";
 }
 
-TEST_F(WayToGoalTest, APostureThatLimitsHoldUpIsGivenUpForAnother) {
+TEST_F(WayToGoalTest, PostureBlockedByLimitsIsReplacedByAnother) {
   const VecN q = PutTargetPastTheEnd();
   Stand(q, 1000);
   ASSERT_TRUE(way_.by_joints);
@@ -160,7 +160,7 @@ TEST_F(WayToGoalTest, APostureThatLimitsHoldUpIsGivenUpForAnother) {
 
 // While it lies neither downhill nor clear, the arm stands and looks on: the law would go where no way leads
 // on.
-TEST_F(WayToGoalTest, TheArmStandsUntilAClearWayIsFound) {
+TEST_F(WayToGoalTest, ArmStandsUntilAClearPathIsFound) {
   const VecN q = PutTargetPastTheEnd();
   config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // no way keeps it in there
   Stand(q, 1000);
@@ -176,7 +176,7 @@ TEST_F(WayToGoalTest, TheArmStandsUntilAClearWayIsFound) {
   EXPECT_TRUE(way_.goal.clear);
 }
 
-TEST_F(WayToGoalTest, NotForEver) {
+TEST_F(WayToGoalTest, LawTakesOverWhenNoClearPathIsFoundInTime) {
   const VecN q = PutTargetPastTheEnd();
   config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};
   Stand(q, 1490);
@@ -185,7 +185,7 @@ TEST_F(WayToGoalTest, NotForEver) {
   EXPECT_FALSE(way_.by_joints) << "then the law may try";
 }
 
-TEST_F(WayToGoalTest, OneByWayOfAnotherPostureIsGoneToByThatFirst) {
+TEST_F(WayToGoalTest, DetourPostureIsVisitedBeforeTheGoal) {
   const VecN q = PutTargetPastTheEnd();
   Stand(q, 1000);
   ASSERT_TRUE(way_.by_joints);
@@ -207,7 +207,7 @@ TEST_F(WayToGoalTest, OneByWayOfAnotherPostureIsGoneToByThatFirst) {
 }
 
 // What lay downhill from the start may be far off by the time that the law gets stuck.
-TEST_F(WayToGoalTest, WhereTheLawGetsStuckAPostureIsLookedForFromThere) {
+TEST_F(WayToGoalTest, StuckLawStartsANewPostureSearchFromThere) {
   VecN q_goal = test::Ready();
   q_goal[0] += 0.3;
   PutTargetFor(q_goal);
@@ -223,7 +223,7 @@ TEST_F(WayToGoalTest, WhereTheLawGetsStuckAPostureIsLookedForFromThere) {
 }
 
 // A ball may be seen from all around: while the law gets on, nothing is looked for.
-TEST_F(WayToGoalTest, ForATargetThatMayBeSeenFromAllSidesOnlyOnceTheLawIsStuck) {
+TEST_F(WayToGoalTest, SphereStartsAPostureSearchOnlyOnceTheLawIsStuck) {
   config_.feature = features::TargetFeature{};
   ASSERT_TRUE(SeeksGoalPosture(config_));
   VecN q_goal = test::Ready();

@@ -55,7 +55,7 @@ model::VecN Observed(double push, double& worst_before) {
   return contact.residual;
 }
 
-TEST(ContactTest, SeesWhatPushesAndNothingElse) {
+TEST(ContactTest, ResidualEqualsThePushAndIsNearZeroWithoutOne) {
   double worst_before = 0.0;
   const model::VecN r = Observed(2.0, worst_before);
   std::cout << "in motion and untouched " << worst_before << " Nm at most; pushed with 2 Nm " << r.transpose()
@@ -164,7 +164,7 @@ double LeftToFriction(double push) {
 }
 
 // By its springs alone it would go M^-1 push / omega_n^2. What friction may hold is left to the springs.
-TEST(CarryLoadTest, GivesWayByAQuarterAndByWhatFrictionMayHold) {
+TEST(CarryLoadTest, PushedArmSagsByAQuarterPlusTheFrictionShare) {
   const double push = 1.5;
   const model::VecN sags = PushedArm(push, false, 0.0).OffAt(2.0);
   const model::VecN stands = PushedArm(push, true, 1e9).OffAt(2.0);
@@ -177,7 +177,7 @@ TEST(CarryLoadTest, GivesWayByAQuarterAndByWhatFrictionMayHold) {
 }
 
 // Nothing that friction may hold is carried: the two would hunt each other.
-TEST(CarryLoadTest, WhatFrictionMayHoldIsLeftToIt) {
+TEST(CarryLoadTest, LoadBelowStictionIsNotCarried) {
   const config::ServoConfig config = test::PandaConfig();
   double least = HUGE_VAL;
   for (const model::Joint& joint : std::span(config.arm.joints).first(7)) {
@@ -188,7 +188,7 @@ TEST(CarryLoadTest, WhatFrictionMayHoldIsLeftToIt) {
 }
 
 // When it is to move, what it carried goes to the springs within a quarter of a second, and is not dropped.
-TEST(CarryLoadTest, ALoadIsLaidDownAndNotDropped) {
+TEST(CarryLoadTest, CarriedLoadIsReleasedSlowly) {
   PushedArm arm(1.5, true, 1.0);
   const model::VecN carried = arm.OffAt(1.0);
   const double all = (PushedArm(1.5, false, 0.0).OffAt(2.0) - carried).norm();
@@ -201,7 +201,7 @@ TEST(CarryLoadTest, ALoadIsLaidDownAndNotDropped) {
 }
 
 // A hand between the arm and a wall is not pressed harder and harder.
-TEST(CarryLoadTest, NoMoreIsCarriedThanAllowed) {
+TEST(CarryLoadTest, CarriedTorqueIsCappedAtItsLimit) {
   const config::ServoConfig config = test::PandaConfig();
   const double most = config.safety.carried_torque_fraction;
   ASSERT_LE(most, 0.5 * config.safety.contact_torque_fraction);
@@ -220,7 +220,7 @@ TEST(CarryLoadTest, NoMoreIsCarriedThanAllowed) {
 
 // Where no reading follows the arm any more, each torque looks like a push. The torque stays what it was, for
 // as long as nobody notices.
-TEST(CarryLoadTest, WithEncodersThatHangItCarriesWhatItCarried) {
+TEST(CarryLoadTest, StuckEncodersFreezeTheCarriedTorque) {
   PushedArm arm(1.5, true, 1e9);
   arm.OffAt(1.5);
   const model::VecN before = arm.TorqueUntil(2.0);

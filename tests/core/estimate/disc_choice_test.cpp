@@ -37,7 +37,7 @@ hal::FeatureMeasurement See(const Vec3& n, const Vec3& p_BC, Pose& X_BC) {
 
 const Vec3 kNormal = Vec3(0.4, 0.1, -1.0).normalized();
 
-TEST(DiscChoiceTest, TheCamerasMotionTellsTheTruePose) {
+TEST(DiscChoiceTest, CameraMotionSelectsTheTruePose) {
   DiscChoice choice;
   bool changed = false;
   int changes = 0;
@@ -55,7 +55,7 @@ TEST(DiscChoiceTest, TheCamerasMotionTellsTheTruePose) {
   EXPECT_LT((choice.normal_B - kNormal).norm(), 1e-9);
 }
 
-TEST(DiscChoiceTest, WhatIsKnownStaysThroughAViewFromTheFront) {
+TEST(DiscChoiceTest, FrontalViewKeepsTheKnownPose) {
   DiscChoice choice;
   bool changed = false;
   Pose X_BC;
@@ -72,7 +72,7 @@ TEST(DiscChoiceTest, WhatIsKnownStaysThroughAViewFromTheFront) {
   }
 }
 
-TEST(DiscChoiceTest, ADiscThatTurnsIsFollowed) {
+TEST(DiscChoiceTest, TurningDiscIsFollowed) {
   DiscChoice choice;
   bool changed = false;
   Pose X_BC;
@@ -85,7 +85,7 @@ TEST(DiscChoiceTest, ADiscThatTurnsIsFollowed) {
   }
 }
 
-TEST(DiscChoiceTest, APoseThatIsNoneLeavesTheFirst) {
+TEST(DiscChoiceTest, InvalidSecondPoseSelectsTheFirst) {
   DiscChoice choice;
   bool changed = true;
   Pose X_BC;

@@ -42,7 +42,7 @@ class EncoderWatchTest : public testing::Test {
   std::int32_t joint_ = -1;
 };
 
-TEST_F(EncoderWatchTest, AJointThatRestsUnderALoadIsSound) {
+TEST_F(EncoderWatchTest, RestingJointUnderLoadIsSound) {
   for (int tick = 0; tick < 600; ++tick) {  // a weight that nobody knows, taken up while the joint moves
     residual_[1] += 0.03 * (30.0 - residual_[1]);
     q_[1] += 1e-3;
@@ -51,7 +51,7 @@ TEST_F(EncoderWatchTest, AJointThatRestsUnderALoadIsSound) {
   EXPECT_EQ(TicksUntil(20'000), -1);
 }
 
-TEST_F(EncoderWatchTest, TorqueThatShouldHaveMovedAJointTells) {
+TEST_F(EncoderWatchTest, UnbalancedTorqueWithoutMotionIsDetected) {
   for (int joint = 0; joint < 7; ++joint) {
     watch_ = EncoderWatch{};
     residual_.setZero();
@@ -67,7 +67,7 @@ TEST_F(EncoderWatchTest, TorqueThatShouldHaveMovedAJointTells) {
 
 // The observer comes to a push with its own time constant, of which the watch knows: it is as soon as if the
 // push were seen at once.
-TEST_F(EncoderWatchTest, TheObserversDelayIsNoneOfTheWatch) {
+TEST_F(EncoderWatchTest, ObserverDelayDoesNotDelayDetection) {
   const double share = 1e-3 * config_.safety.contact_gain;
   for (int joint = 0; joint < 7; ++joint) {
     const double pushed = -0.2 * config_.arm.joints[static_cast<std::size_t>(joint)].tau_max;
@@ -91,7 +91,7 @@ TEST_F(EncoderWatchTest, TheObserversDelayIsNoneOfTheWatch) {
 
 // A load is let go while the joint gives way to it: it goes on, turns round and comes back within one step of
 // its encoder. Its velocity tells that it lives; that of a joint that hangs stays the same.
-TEST_F(EncoderWatchTest, AJointThatTurnsRoundWithinAStepIsSound) {
+TEST_F(EncoderWatchTest, JointReversingWithinOneEncoderStepIsSound) {
   for (const bool lives : {true, false}) {
     watch_ = EncoderWatch{};
     residual_.setZero();
@@ -114,14 +114,14 @@ TEST_F(EncoderWatchTest, AJointThatTurnsRoundWithinAStepIsSound) {
   }
 }
 
-TEST_F(EncoderWatchTest, FrictionMayHoldAJoint) {
+TEST_F(EncoderWatchTest, TorqueWithinStictionIsSound) {
   ASSERT_EQ(TicksUntil(100), -1);
   residual_[0] = 0.9 * (config_.safety.stiction_fraction * config_.arm.joints[0].coulomb +
                         0.01 * config_.arm.joints[0].tau_max);
   EXPECT_EQ(TicksUntil(10'000), -1);
 }
 
-TEST_F(EncoderWatchTest, AVelocityWithoutAWayTellsEvenWithoutTheObserver) {
+TEST_F(EncoderWatchTest, VelocityWithoutMotionIsDetectedWithoutTheObserver) {
   drives_ = false;
   dq_[3] = 0.4;
   const int ticks = TicksUntil(1000);
@@ -131,7 +131,7 @@ TEST_F(EncoderWatchTest, AVelocityWithoutAWayTellsEvenWithoutTheObserver) {
 }
 
 // A light joint takes so little torque that the observer sees nothing: but its reference has gone on.
-TEST_F(EncoderWatchTest, AReferenceThatGoesOnTells) {
+TEST_F(EncoderWatchTest, AdvancingReferenceWithoutMotionIsDetected) {
   for (int joint = 0; joint < 7; ++joint) {
     watch_ = EncoderWatch{};
     reference_ = test::Ready();
@@ -149,7 +149,7 @@ TEST_F(EncoderWatchTest, AReferenceThatGoesOnTells) {
 
 // A joint that rests, whose noise ceases: nothing pushed it, and yet its encoder hangs. One that never had
 // noise may stand still for ever, and so may one that only moved.
-TEST_F(EncoderWatchTest, ANoiseThatCeasesTells) {
+TEST_F(EncoderWatchTest, CeasedEncoderNoiseIsDetected) {
   test::RandomStates random(7);
   for (int tick = 0; tick < 5000; ++tick) {
     q_[2] += random.Uniform(-1e-6, 1e-6);
@@ -167,7 +167,7 @@ TEST_F(EncoderWatchTest, ANoiseThatCeasesTells) {
 }
 
 // Noise at rest is known a fifth of a second after the start, before anything moves the arm.
-TEST_F(EncoderWatchTest, NoiseIsKnownSoon) {
+TEST_F(EncoderWatchTest, NoiseIsLearnedWithinAFifthOfASecond) {
   test::RandomStates random(11);
   for (int tick = 0; tick < 200; ++tick) {
     for (int joint = 0; joint < 7; ++joint) {
@@ -184,7 +184,7 @@ TEST_F(EncoderWatchTest, NoiseIsKnownSoon) {
 
 // An encoder with steps whose velocity is their difference flickers while its joint moves, and trembles by a
 // step now and then at rest. Then it stands still for ever: it has no noise that could cease.
-TEST_F(EncoderWatchTest, StepsThatFlickerAreNoNoise) {
+TEST_F(EncoderWatchTest, FlickeringStepsAreNotTakenForNoise) {
   const double quantum = config_.safety.encoder_quantum;
   test::RandomStates random(12);
   double true_q = q_[3];
@@ -205,7 +205,7 @@ TEST_F(EncoderWatchTest, StepsThatFlickerAreNoNoise) {
 }
 
 // What is read changes by a step of the encoder now and then: it works.
-TEST_F(EncoderWatchTest, AReadingThatChangesByAStepIsSound) {
+TEST_F(EncoderWatchTest, ReadingChangingByOneStepIsSound) {
   for (int step = 0; step < 50; ++step) {
     residual_[1] = step % 2 == 0 ? 1.5 : -1.5;
     q_[1] += 1.01 * config_.safety.encoder_quantum;

@@ -37,7 +37,7 @@ double WayUntilDoubted(double duration_s, const Hand& hand, const Target& target
 const auto kTrue = [](const Vec3& p) { return p; };
 const auto kStill = [](double) { return 0.1; };
 
-TEST(EyeWatchTest, AMirroredPictureIsDoubted) {
+TEST(EyeWatchTest, MirroredPictureIsDoubted) {
   const double way = WayUntilDoubted(
       5.0, [](double) { return 0.3; }, kStill, [](const Vec3& p) { return Vec3(-p.x(), p.y(), p.z()); });
   std::cout << "after " << 1e3 * way << " mm\n";
@@ -45,7 +45,7 @@ TEST(EyeWatchTest, AMirroredPictureIsDoubted) {
   EXPECT_LT(way, 0.2);
 }
 
-TEST(EyeWatchTest, ATargetAtRestOrFollowedIsNot) {
+TEST(EyeWatchTest, RestingOrTrackedTargetIsNotDoubted) {
   EXPECT_EQ(WayUntilDoubted(
                 20.0, [](double t) { return 0.4 * std::sin(3.0 * t); }, kStill, kTrue),
             -1.0);
@@ -61,7 +61,7 @@ TEST(EyeWatchTest, ATargetAtRestOrFollowedIsNot) {
             -1.0);
 }
 
-TEST(EyeWatchTest, SteeringThatDoesNotHelpIsDoubted) {
+TEST(EyeWatchTest, SteeringThatDoesNotReduceTheErrorIsDoubted) {
   const config::PredictConfig config;
   EyeWatch watch;
   double way = 0.0;

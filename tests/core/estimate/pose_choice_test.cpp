@@ -16,7 +16,7 @@ namespace fovea::estimate {
 namespace {
 
 // A detector that sees something else now and then.
-TEST(PoseChoiceTest, LeavesOutliersOutAndStartsAnew) {
+TEST(PoseChoiceTest, RejectsOutliersAndRestartsAfterSeveral) {
   config::PredictConfig config;
   config.gate_rejects_max = 3;
   const Polygon square = features::MakeSquare(0.08);
@@ -93,7 +93,7 @@ std::vector<SeenCorners::Branch> AllPoses(const Polygon& triangle, const SeenCor
 
 // The camera comes over a still triangle, which lies any way. In the first image all poses stand side by
 // side, the most squarely seen one first; in the end the true one alone is left.
-TEST(PoseChoiceTest, FindsTheTrueOneOfATrianglesPosesByMoving) {
+TEST(PoseChoiceTest, CameraMotionFindsTheTruePoseOfATriangle) {
   config::PredictConfig config;
   const Polygon triangle = features::MakeTriangle(features::kDefaultTriangle);
   Draw draw(7);
@@ -172,7 +172,7 @@ Pose ComesOver(const Pose& X_BO, double t) {
 
 // What is wrong with the corners from above, a quarter of a pixel of one of them, is wrong in every frame:
 // for the filter it is much news, and the tilt goes. The views from aside know better.
-TEST(PoseChoiceTest, WhatAllViewsSayOfAStillTargetOutweighsOnePlacesError) {
+TEST(PoseChoiceTest, AllViewsOfAStillTargetOutweighOneBiasedPlace) {
   const config::PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);
   const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
@@ -197,7 +197,7 @@ TEST(PoseChoiceTest, WhatAllViewsSayOfAStillTargetOutweighsOnePlacesError) {
 
 // A camera that comes to rest by and by, as at the end of every approach: frames that look nearly alike are
 // not taken for frames from one place. Without noise all that is left of an error is the mean's.
-TEST(PoseChoiceTest, ACameraThatCreepsSpoilsNoMean) {
+TEST(PoseChoiceTest, CreepingCameraDoesNotBiasTheMean) {
   const config::PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);
   const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
@@ -223,7 +223,7 @@ TEST(PoseChoiceTest, ACameraThatCreepsSpoilsNoMean) {
   }
 }
 
-TEST(PoseChoiceTest, ATargetThatSetsOutIsStillNoMore) {
+TEST(PoseChoiceTest, StartOfMotionEndsTheStillState) {
   const config::PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);
   const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};

@@ -48,7 +48,7 @@ TEST(PoseFilterTest, FollowsAConstantMotionExactly) {
 // covariance is true. The camera moves, the target turns and is pushed about as its model says. Over the
 // triangle the camera stays inside the cylinder through its corners: on it two of its poses are one, and
 // which one a target that moves anyhow went on to is not to be seen.
-TEST(PoseFilterTest, CovarianceIsHonestForATargetOfItsOwnModel) {
+TEST(PoseFilterTest, CovarianceIsConsistentForATargetOfItsModel) {
   config::PredictConfig config;
   config.target_jerk = 0.3;
   config.gate_sigma = 100.0;

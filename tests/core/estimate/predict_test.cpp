@@ -67,7 +67,7 @@ class PredictTest : public testing::Test {
 
 // A target on a circle, a camera that moves, measurements 40 ms old at 30 Hz: the prediction is where the
 // target is now, and the newest measurement as it came is not.
-TEST_F(PredictTest, MakesUpForTheLatencyWhileCameraAndTargetMove) {
+TEST_F(PredictTest, CompensatesLatencyWhileCameraAndTargetMove) {
   const auto target = [](double t) {
     return model::Vec3(0.55 + 0.1 * std::cos(2.0 * t), 0.1 * std::sin(2.0 * t), 0.05);
   };
@@ -106,7 +106,7 @@ TEST_F(PredictTest, MakesUpForTheLatencyWhileCameraAndTargetMove) {
   EXPECT_GT(worst_held, 10e-3);
 }
 
-TEST_F(PredictTest, LeavesOutWhatSaysNothing) {
+TEST_F(PredictTest, RejectsUnusableMeasurementsWithTheirReason) {
   PredictState state;
   for (int ms = 0; ms < 100; ++ms) {
     state.history.Push(ms * hal::kNsPerMs, JointsAt(0.0));
@@ -136,7 +136,7 @@ TEST_F(PredictTest, LeavesOutWhatSaysNothing) {
 }
 
 // It goes out of its region, where it is not believed: nor is it thought to go on there by itself.
-TEST_F(PredictTest, NothingIsBelievedOutsideTheTargetsRegion) {
+TEST_F(PredictTest, NothingIsAcceptedOrPredictedOutsideTheTargetRegion) {
   const auto target = [](double t) { return model::Vec3(0.55, 0.1 + 0.2 * t, 0.2 - 0.5 * t); };
   config_.predict.target_region.low.z() = -0.05;
   PredictState state;
@@ -181,7 +181,7 @@ TEST_F(PredictTest, KnowsTheTargetAfterEnoughMeasurements) {
 // A frozen picture: the measurement goes with the camera. The one that froze was true; all that follow once
 // the hand has moved on are none, by fresh noise or without; and when the camera works again, it is believed
 // again.
-TEST_F(PredictTest, APictureThatIsStuckIsNoMeasurement) {
+TEST_F(PredictTest, FrozenPictureIsRejected) {
   const model::Vec3 target(0.55, 0.1, 0.05);
   PredictState state;
   int taken = 0;
@@ -217,7 +217,7 @@ TEST_F(PredictTest, APictureThatIsStuckIsNoMeasurement) {
 }
 
 // The picture of a target at rest stays the same while the arm rests, however long.
-TEST_F(PredictTest, APictureThatStaysTheSameWhileTheArmRestsIsSound) {
+TEST_F(PredictTest, UnchangedPictureWithTheArmAtRestIsAccepted) {
   PredictState state;
   const model::Vec3 target = CameraAt(0.0) * model::Vec3(0.02, 0.0, 0.4);
   for (int ms = 0; ms < 5000; ++ms) {
@@ -233,7 +233,7 @@ TEST_F(PredictTest, APictureThatStaysTheSameWhileTheArmRestsIsSound) {
 
 // A hand that starts and turns round at speed, as seen by noise of 0.1 mm: stamps or a mount that are off
 // make outliers of what was seen rightly, unless the filter knows that they may be.
-TEST_F(PredictTest, StampsAndMountThatAreOffAreNoOutliers) {
+TEST_F(PredictTest, KnownStampAndMountErrorsAreNoOutliers) {
   const auto joints_at = [](double t) {
     model::VecN q = test::Ready();
     for (int i = 0; i < 7; ++i) {
@@ -281,7 +281,7 @@ TEST_F(PredictTest, StampsAndMountThatAreOffAreNoOutliers) {
 }
 
 // Three outliers in a row start the filter anew; the servo goes on by what was believed, and is not lost.
-TEST_F(PredictTest, AFilterThatStartsAnewCoasts) {
+TEST_F(PredictTest, RestartedFilterCoastsOnTheOldEstimate) {
   PredictState state;
   const model::Vec3 target = CameraAt(0.0) * model::Vec3(0.02, 0.0, 0.4);
   const model::Vec3 moved = target + model::Vec3(0.1, 0.0, 0.0);

@@ -39,7 +39,7 @@ TEST(TargetFilterTest, FollowsAConstantAccelerationExactly) {
   EXPECT_LT((motion.v_BO - (v0 + t * a0)).norm(), 1e-4);
 }
 
-TEST(TargetFilterTest, CovarianceIsHonestForATargetOfItsOwnModel) {
+TEST(TargetFilterTest, CovarianceIsConsistentForATargetOfItsModel) {
   // Normalised squared error of [p; v; a] over many runs: 9 on average when the covariance is true.
   config::PredictConfig config;
   config.target_speed_max = config.target_acceleration_max = 1e3;  // its own model has no bounds
@@ -86,7 +86,7 @@ TEST(TargetFilterTest, CovarianceIsHonestForATargetOfItsOwnModel) {
   EXPECT_NEAR(nees, 9.0, 1.0);  // 300 runs: standard deviation 0.24
 }
 
-TEST(TargetFilterTest, LeavesOutlierOutAndStartsAnewWhenTheTargetMoved) {
+TEST(TargetFilterTest, RejectsOutliersAndRestartsWhenTheTargetMoved) {
   config::PredictConfig config;
   config.gate_rejects_max = 3;
   TargetFilter filter;
@@ -110,7 +110,7 @@ TEST(TargetFilterTest, LeavesOutlierOutAndStartsAnewWhenTheTargetMoved) {
 }
 
 // What calibration may explain is no outlier, and moves the estimate as any other measurement does.
-TEST(TargetFilterTest, TheDoubtWidensTheGateAlone) {
+TEST(TargetFilterTest, CalibrationDoubtWidensOnlyTheGate) {
   config::PredictConfig config;
   const Vec3 p(0.5, 0.1, 0.04);
   const Mat3 cov = Mat3::Identity() * 1e-8;
@@ -150,7 +150,7 @@ TEST(TargetFilterTest, SpeedAndAccelerationStayWithinTheirBounds) {
   EXPECT_GT(fastest, 0.49) << "the adversary does not try";
 }
 
-TEST(TargetFilterTest, IgnoresWhatIsNotNewer) {
+TEST(TargetFilterTest, IgnoresMeasurementsThatAreNotNewer) {
   config::PredictConfig config;
   TargetFilter filter;
   const Mat3 cov = Mat3::Identity() * 1e-8;

@@ -14,14 +14,14 @@ namespace {
 using model::Mat3;
 using model::Vec3;
 
-TEST(CircleFeatureTest, InteractionMatrixIsTheDerivative) {
+TEST(CircleFeatureTest, InteractionMatrixMatchesFiniteDifferences) {
   const double worst = test::WorstDerivative(CircleFeature{}, 0.0, 41, 2000);
   std::cout << "worst relative difference over 2000 poses: " << worst << "\n";
   EXPECT_LT(worst, 1e-8);
 }
 
 // In pixels it is THEORY B3, whose left half is the source's getImageJacobianCFToFF.
-TEST(CircleFeatureTest, IsTheMatrixOfTheTheoryInPixels) {
+TEST(CircleFeatureTest, InteractionMatrixInPixelsEqualsTheoryB3) {
   test::RandomStates random(42);
   double worst = 0.0;
   for (int k = 0; k < 200; ++k) {
@@ -45,7 +45,7 @@ TEST(CircleFeatureTest, IsTheMatrixOfTheTheoryInPixels) {
   EXPECT_LT(worst, 1e-14);
 }
 
-TEST(CircleFeatureTest, LiftUndoesComputeAndCarriesTheCovariance) {
+TEST(CircleFeatureTest, LiftInvertsComputeAndMapsTheCovariance) {
   const CircleFeature feature{0.08, 1.0, {0.0, 0.0, 0.4}};
   TargetInCamera seen;
   seen.X_CO.p = {0.05, -0.08, 0.55};
@@ -71,7 +71,7 @@ TEST(CircleFeatureTest, LiftUndoesComputeAndCarriesTheCovariance) {
 }
 
 // What the simple form says of a sphere: 2 mm at 0.4 m, which is why the sphere has a feature of its own.
-TEST(CircleFeatureTest, TheSimpleDepthOfASphereIsHalfAPercentOff) {
+TEST(CircleFeatureTest, SimpleDepthFormulaOfASphereErrsByHalfAPercent) {
   const double f = 554.256;
   const double R = 0.04;
   const double Z = 0.4;
@@ -89,7 +89,7 @@ TEST(CircleFeatureTest, TheSimpleDepthOfASphereIsHalfAPercentOff) {
   EXPECT_NEAR(s.z() * R, Z, 1e-13);
 }
 
-TEST(CircleFeatureTest, RefusesWhatIsNoCircleBeforeTheCamera) {
+TEST(CircleFeatureTest, RefusesACircleNotInFrontOfTheCamera) {
   const double nan = std::nan("");
   const CircleFeature feature;
   FeatureState state;

@@ -38,7 +38,7 @@ const std::array<std::pair<FeatureKind, FeatureForm>, 9> kListed{{
 }};
 
 // The target's own turn is in it too: RandomView gives the target a velocity and a turn.
-TEST(FlatTargetTest, EveryInteractionMatrixIsTheDerivative) {
+TEST(FlatTargetTest, EveryInteractionMatrixMatchesFiniteDifferences) {
   for (const auto& [target, form] : kListed) {
     const double worst = test::WorstDerivative(Make(target, form), 0.6, 43, 1000);
     std::cout << kTargetNames[static_cast<std::size_t>(target)] << ", "
@@ -48,7 +48,7 @@ TEST(FlatTargetTest, EveryInteractionMatrixIsTheDerivative) {
   }
 }
 
-TEST(FlatTargetTest, TheListIsClosedAndKnowsItsDimensions) {
+TEST(FlatTargetTest, ListedFeaturesAreCompleteWithTheirDimensions) {
   int listed = 0;
   for (std::size_t target = 0; target < kTargetNames.size(); ++target) {
     for (std::size_t form = 0; form < kFormNames.size(); ++form) {
@@ -71,7 +71,7 @@ TEST(FlatTargetTest, TheListIsClosedAndKnowsItsDimensions) {
 }
 
 // Seen squarely from above, in numbers anyone can check.
-TEST(SquareFeatureTest, TheSourcesFourEntries) {
+TEST(SquareFeatureTest, FourEntriesMatchHandComputedValues) {
   SquareSideFeature feature;
   TargetInCamera seen;
   seen.X_CO.p = {0.02, -0.01, 0.5};
@@ -90,7 +90,7 @@ TEST(SquareFeatureTest, TheSourcesFourEntries) {
   EXPECT_NEAR(state.s[1], corner.y() / corner.z(), 1e-15);
 }
 
-TEST(SquareFeatureTest, TheErrorInAngleIsNeverMoreThanHalfATurn) {
+TEST(SquareFeatureTest, AngleErrorStaysWithinHalfATurn) {
   SquareSideFeature feature;
   feature.X_CO_star.R = test::Turned({0, 0, 3.0});
   TargetInCamera seen;
@@ -100,7 +100,7 @@ TEST(SquareFeatureTest, TheErrorInAngleIsNeverMoreThanHalfATurn) {
   EXPECT_NEAR(state.s_star[2] - state.s[2], 6.0 - 2.0 * model::kPi, 1e-12);
 }
 
-TEST(FlatTargetTest, RefusesWhatIsNotWhollyBeforeTheCamera) {
+TEST(FlatTargetTest, RefusesATargetNotFullyInFrontOfTheCamera) {
   const double nan = std::nan("");
   for (const auto& [target, form] : kListed) {
     const TargetFeature feature = Make(target, form);
@@ -129,7 +129,7 @@ TEST(FlatTargetTest, RefusesWhatIsNotWhollyBeforeTheCamera) {
   EXPECT_FALSE(square.Compute(edge_on, state)) << "no angle";
 }
 
-TEST(FlatTargetTest, TakesCornersAndThePosesThatAreSome) {
+TEST(FlatTargetTest, TakesCornersAndDropsInvalidPoses) {
   const TargetFeature feature = Make(FeatureKind::kTriangle, FeatureForm::kPose);
   hal::FeatureMeasurement m;
   m.found = true;

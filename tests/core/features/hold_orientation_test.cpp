@@ -12,7 +12,7 @@
 namespace fovea::features {
 namespace {
 
-TEST(HoldOrientationTest, InteractionMatrixIsTheDerivative) {
+TEST(HoldOrientationTest, InteractionMatrixMatchesFiniteDifferences) {
   test::RandomStates random(44);
   double worst = 0.0;
   for (int k = 0; k < 1000; ++k) {
@@ -31,7 +31,7 @@ TEST(HoldOrientationTest, InteractionMatrixIsTheDerivative) {
   EXPECT_LT(worst, 1e-8);
 }
 
-TEST(HoldOrientationTest, StackedBelowASphereItControlsAllSix) {
+TEST(HoldOrientationTest, StackedBelowASphereControlsSixDegreesOfFreedom) {
   FeatureState state;
   ASSERT_TRUE(SphereFeature{}.Compute({0.05, 0.02, 0.5}, {0.1, 0.0, 0.0}, state));
   EXPECT_EQ(Eigen::FullPivLU<Eigen::MatrixXd>(state.L_s).rank(), 3);
@@ -51,7 +51,7 @@ TEST(HoldOrientationTest, StackedBelowASphereItControlsAllSix) {
   EXPECT_EQ(state.s.size(), 6);
 }
 
-TEST(HoldOrientationTest, RefusesWhatIsNoOrientation) {
+TEST(HoldOrientationTest, RefusesANonFiniteOrientation) {
   FeatureState state;
   EXPECT_FALSE(HoldOrientation{}.Compute(model::Mat3::Identity() * std::nan(""), state));
 }

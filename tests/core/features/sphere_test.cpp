@@ -32,7 +32,7 @@ Vec3 AfterMotion(const Vec3& p_CO_C, const Vec6& V, double dt) {
   return R.transpose() * (p_CO_C - v);
 }
 
-TEST(SphereFeatureTest, InteractionMatrixIsTheDerivative) {
+TEST(SphereFeatureTest, InteractionMatrixMatchesFiniteDifferences) {
   test::RandomStates random(5);
   double worst = 0.0;
   for (int k = 0; k < 2000; ++k) {
@@ -53,7 +53,7 @@ TEST(SphereFeatureTest, InteractionMatrixIsTheDerivative) {
   EXPECT_LT(worst, 1e-8);
 }
 
-TEST(SphereFeatureTest, TheTargetsOwnMotionIsItsDerivative) {
+TEST(SphereFeatureTest, TargetMotionTermEqualsVelocityOverRadius) {
   SphereFeature feature;
   FeatureState state;
   const Vec3 velocity(0.1, -0.2, 0.05);
@@ -61,7 +61,7 @@ TEST(SphereFeatureTest, TheTargetsOwnMotionIsItsDerivative) {
   EXPECT_LT((state.ds_dt_target - velocity / feature.radius).norm(), 1e-15);
 }
 
-TEST(SphereFeatureTest, LiftUndoesCompute) {
+TEST(SphereFeatureTest, LiftInvertsCompute) {
   SphereFeature feature;
   const Vec3 p(0.03, 0.07, 0.55);
   FeatureState state;
@@ -106,7 +106,7 @@ TEST(SphereConeTest, RaysOfTheConeTouchTheSphere) {
   EXPECT_LT(worst, 1e-12);
 }
 
-TEST(SphereConeTest, GoesThereAndBackWithItsDerivative) {
+TEST(SphereConeTest, RoundTripIsExactAndDerivativeMatchesFiniteDifferences) {
   test::RandomStates random(7);
   double worst = 0.0;
   double worst_derivative = 0.0;
@@ -133,7 +133,7 @@ TEST(SphereConeTest, GoesThereAndBackWithItsDerivative) {
   EXPECT_LT(worst_derivative, 1e-6);
 }
 
-TEST(SphereFeatureTest, RefusesWhatIsNoSphereBeforeTheCamera) {
+TEST(SphereFeatureTest, RefusesASphereNotInFrontOfTheCamera) {
   const double nan = std::nan("");
   SphereFeature feature;
   FeatureState state;

@@ -72,7 +72,7 @@ TEST(TriangleTest, LosesRankOnTheCylinderThroughItsCorners) {
 
 // The source's claim, corrected: an equilateral triangle controls the turn about its normal as any other
 // does.
-TEST(TriangleTest, AnEquilateralOneIsWellFormedToo) {
+TEST(TriangleTest, EquilateralTriangleIsWellConditioned) {
   const double from_above = InverseCondition(Equilateral(), {0.0, 0.0, -0.4});
   const double aside = InverseCondition(Equilateral(), {0.15, 0.1, -0.4});
   std::cout << "equilateral, 1 / condition: from above " << from_above << ", from aside " << aside << "\n";
@@ -80,7 +80,7 @@ TEST(TriangleTest, AnEquilateralOneIsWellFormedToo) {
   EXPECT_GT(aside, 1e-3);
 }
 
-TEST(TriangleTest, ThreeDifferentSidesAboutTheMean) {
+TEST(TriangleTest, DefaultTriangleIsCentredWithThreeDifferentSides) {
   const Polygon t = MakeTriangle(kDefaultTriangle);
   EXPECT_LT((t.corners[0] + t.corners[1] + t.corners[2]).norm(), 1e-15);
   const double a = (t.corners[1] - t.corners[2]).norm();

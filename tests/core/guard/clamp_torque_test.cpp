@@ -11,7 +11,7 @@
 namespace fovea::guard {
 namespace {
 
-TEST(ClampTorqueTest, AnyWishEndsWithinRangeAndRate) {
+TEST(ClampTorqueTest, AnyTorqueIsClampedToRangeAndRate) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(41);
   const double odd[] = {std::nan(""), std::numeric_limits<double>::infinity(),
@@ -37,7 +37,7 @@ TEST(ClampTorqueTest, AnyWishEndsWithinRangeAndRate) {
   }
 }
 
-TEST(ClampTorqueTest, LeavesWhatIsWithinLimitsAlone) {
+TEST(ClampTorqueTest, LeavesATorqueWithinLimitsUnchanged) {
   const config::ServoConfig config = test::PandaConfig();
   model::VecN applied = model::VecN::Zero(7);
   model::VecN tau = model::VecN::Constant(7, 0.9);
@@ -60,7 +60,7 @@ TEST(ClampTorqueTest, NamesTheLimitThatActed) {
   EXPECT_NEAR(tau[0], 10.9, 1e-12);
 }
 
-TEST(ClampTorqueTest, FadesTowardsZeroWhenTheWishIsNoNumber) {
+TEST(ClampTorqueTest, NonFiniteTorqueFadesToZero) {
   const config::ServoConfig config = test::PandaConfig();
   model::VecN applied = model::VecN::Constant(7, 5.0);
   for (int tick = 0; tick < 10; ++tick) {
@@ -71,7 +71,7 @@ TEST(ClampTorqueTest, FadesTowardsZeroWhenTheWishIsNoNumber) {
   EXPECT_EQ(applied.norm(), 0.0);
 }
 
-TEST(ClampTorqueTest, ScalesWithItsFractions) {
+TEST(ClampTorqueTest, LimitsScaleWithTheirFractions) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.torque_fraction = 0.1;
   config.safety.torque_rate_fraction = 0.5;

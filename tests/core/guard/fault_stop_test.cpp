@@ -29,7 +29,7 @@ hal::ArmCommand CommandOf(const model::VecN& tau) {
   return command;
 }
 
-TEST(FaultStopTest, ADampedStopTakesTheSpeedAwayExponentially) {
+TEST(FaultStopTest, DampedStopDecaysTheSpeedExponentially) {
   const config::ServoConfig config = test::PandaConfig();
   test::IdealArm arm(config.arm, test::Ready());
   model::VecN start(7);
@@ -64,30 +64,30 @@ class FaultStopStageTest : public testing::Test {
   model::VecN tau_;
 };
 
-TEST_F(FaultStopStageTest, AMovingArmIsDampedUntilItIsSlow) {
+TEST_F(FaultStopStageTest, MovingArmIsDampedUntilSlow) {
   EXPECT_EQ(Tick(0.5), Stage::kDamped);
   EXPECT_GT(tau_.norm(), 0.0);
   EXPECT_EQ(Tick(0.99 * config_.safety.brake_velocity), Stage::kLetGo);
   EXPECT_EQ(tau_.norm(), 0.0);
 }
 
-TEST_F(FaultStopStageTest, WithoutVelocitiesNothingIsDamped) {
+TEST_F(FaultStopStageTest, WithoutVelocitiesDampingIsSkipped) {
   EXPECT_EQ(Tick(0.5, true), Stage::kLetGo);
   EXPECT_EQ(tau_.norm(), 0.0);
 }
 
-TEST_F(FaultStopStageTest, AStopThatTakesTooLongIsGivenUp) {
+TEST_F(FaultStopStageTest, DampingEndsAtTheTimeLimit) {
   EXPECT_EQ(Tick(0.5, false, config_.safety.brake_after_s), Stage::kDamped);
   EXPECT_EQ(Tick(0.5, false, config_.safety.brake_after_s + 1e-3), Stage::kLetGo);
 }
 
-TEST_F(FaultStopStageTest, AnArmThatGetsFasterAgainIsGivenUp) {
+TEST_F(FaultStopStageTest, DampingEndsWhenTheArmSpeedsUp) {
   EXPECT_EQ(Tick(0.5), Stage::kDamped);
   EXPECT_EQ(Tick(0.69), Stage::kDamped) << "noise of the velocities is none";
   EXPECT_EQ(Tick(0.72), Stage::kLetGo);
 }
 
-TEST_F(FaultStopStageTest, AnArmThatGetsNoSlowerIsGivenUp) {
+TEST_F(FaultStopStageTest, DampingEndsWhenTheArmDoesNotSlowDown) {
   int ticks = 0;
   while (Tick(1.0) == Stage::kDamped && ticks < 1000) {
     ++ticks;
@@ -96,7 +96,7 @@ TEST_F(FaultStopStageTest, AnArmThatGetsNoSlowerIsGivenUp) {
   EXPECT_NEAR(ticks, -std::log(0.8) / 3.0 * 1e3, 2.0);
 }
 
-TEST_F(FaultStopStageTest, TheBrakesCloseWhenTheTorqueIsGoneAndNothingOpensThemAgain) {
+TEST_F(FaultStopStageTest, BrakesCloseAtZeroTorqueAndStayClosed) {
   Tick(0.5, true);
   model::VecN sent = model::VecN::Constant(7, 3.0);
   CloseBrakes(sent, stop_);
@@ -110,7 +110,7 @@ TEST_F(FaultStopStageTest, TheBrakesCloseWhenTheTorqueIsGoneAndNothingOpensThemA
   EXPECT_EQ(stop_.stage, Stage::kBraked);
 }
 
-TEST_F(FaultStopStageTest, AnArmThatIsDampedToNoTorqueIsNotBraked) {
+TEST_F(FaultStopStageTest, ZeroTorqueWhileDampingDoesNotCloseTheBrakes) {
   Tick(0.5);
   CloseBrakes(model::VecN::Zero(7), stop_);
   EXPECT_EQ(stop_.stage, Stage::kDamped);

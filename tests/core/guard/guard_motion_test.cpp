@@ -91,7 +91,7 @@ void ExpectAllHeld(const Walker& walker, const config::ServoConfig& config) {
   EXPECT_LE(walker.radius, config.guard.workspace_radius + 1e-3);
 }
 
-TEST(GuardMotionTest, HoldsEveryLimitUnderRandomWishes) {
+TEST(GuardMotionTest, KeepsEveryLimitUnderRandomCommands) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(31);
   Walker walker(config, test::Ready());
@@ -159,7 +159,7 @@ TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
 
 // The barriers brake in time, with the deceleration that is set: that a stop is proved behind them is for
 // what they cannot foresee, and brakes with all there is.
-TEST(GuardMotionTest, AJointBrakesBeforeItsEndAsGentlyAsItsBarrierSays) {
+TEST(GuardMotionTest, JointBrakesBeforeItsEndWithTheBarriersDeceleration) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 10.0;
   config.guard.hand_clearance = 0.0;
@@ -181,7 +181,7 @@ TEST(GuardMotionTest, AJointBrakesBeforeItsEndAsGentlyAsItsBarrierSays) {
   EXPECT_LT(most, 1.2 * config.guard.braking_fraction);
 }
 
-TEST(GuardMotionTest, TheHandIsNoFasterTowardsTheEdgeOfItsWorkspaceThanItsBarrierSays) {
+TEST(GuardMotionTest, HandSpeedTowardsTheWorkspaceEdgeKeepsTheBarrier) {
   const config::ServoConfig config = test::PandaConfig();
   const config::GuardConfig& guard = config.guard;
   Walker walker(config, test::Ready());
@@ -201,7 +201,7 @@ TEST(GuardMotionTest, TheHandIsNoFasterTowardsTheEdgeOfItsWorkspaceThanItsBarrie
 
 // From random motions, with every limit in force: the hand is at rest no later than by each joint for itself,
 // and on its way no faster than it was. Joint by joint it would be: the comparison is printed.
-TEST(GuardMotionTest, JointsThatStopTogetherDoNotThrowTheHand) {
+TEST(GuardMotionTest, JointsStoppingTogetherDoNotSpeedUpTheHand) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(35);
   double most_gained = 0.0;
@@ -244,7 +244,7 @@ TEST(GuardMotionTest, JointsThatStopTogetherDoNotThrowTheHand) {
   EXPECT_LE(latest, 30);
 }
 
-TEST(GuardMotionTest, LetsAGentleWishThroughUnchanged) {
+TEST(GuardMotionTest, PassesAGentleCommandUnchanged) {
   const config::ServoConfig config = test::PandaConfig();
   Walker walker(config, test::Ready());
   const model::VecN wish = model::VecN::Constant(7, 0.05);
@@ -255,7 +255,7 @@ TEST(GuardMotionTest, LetsAGentleWishThroughUnchanged) {
   EXPECT_EQ(walker.Step(wish), 0U);
 }
 
-TEST(GuardMotionTest, ScalesTheVelocityWithoutTurningIt) {
+TEST(GuardMotionTest, ScalesTheVelocityWithoutChangingItsDirection) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 10.0;
   Walker walker(config, test::Ready());
@@ -269,7 +269,7 @@ TEST(GuardMotionTest, ScalesTheVelocityWithoutTurningIt) {
   EXPECT_NEAR(dq[0], config.guard.joint_velocity_fraction * config.arm.joints[0].dq_max, 1e-9);
 }
 
-TEST(GuardMotionTest, FromOutsideOnlyInwardIsLeft) {
+TEST(GuardMotionTest, OutsideTheWorkspaceOnlyInwardMotionIsAllowed) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 0.5;  // the arm stands outside it
   Walker walker(config, test::Ready());
@@ -285,7 +285,7 @@ TEST(GuardMotionTest, FromOutsideOnlyInwardIsLeft) {
   EXPECT_LT(walker.p_BE().norm(), start - 0.05);
 }
 
-TEST(BarrierSpeedTest, IsWhatCanStillBeStopped) {
+TEST(BarrierSpeedTest, SpeedLimitStopsExactlyAtTheBarrier) {
   for (const double distance : {1e-6, 1e-3, 0.05, 1.0}) {
     for (const double deceleration : {0.5, 3.0, 20.0}) {
       const double reaction = 0.02;

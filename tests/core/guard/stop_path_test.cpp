@@ -17,7 +17,7 @@
 namespace fovea::guard {
 namespace {
 
-TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
+TEST(LimitsPassedTest, NamesEveryLimitThatAStopWouldPass) {
   const config::ServoConfig config = test::PandaConfig();
   trajectory::Reference reference{test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
   model::ArmPoses poses;
@@ -63,7 +63,7 @@ TEST(LimitsPassedTest, NamesWhatAStopWouldPass) {
 }
 
 // The same verdict as from all points of the way, near bounds and far from them.
-TEST(LimitsPassedTest, LeavesOutNoPointThatMatters) {
+TEST(LimitsPassedTest, SampledStopGivesTheSameVerdictAsAllPoints) {
   test::RandomStates random(9);
   config::ServoConfig config = test::PandaConfig();
   config.guard.obstacles.num_planes = 1;

@@ -72,7 +72,7 @@ Read RandomFrame(Noise& noise) {
           noise.Bytes(noise.Below(noise.Below(3) == 0 ? kMaxPayload + 1 : 600))};
 }
 
-TEST(Crc32, IsThatOfZlib) {
+TEST(Crc32, MatchesZlib) {
   const std::string check = "123456789";
   EXPECT_EQ(Crc32({reinterpret_cast<const std::uint8_t*>(check.data()), check.size()}), 0xcbf43926U);
   Noise noise(3);
@@ -86,12 +86,12 @@ TEST(Crc32, IsThatOfZlib) {
 }
 
 // As PROTOCOL.md writes it down.
-TEST(Frame, LooksAsItIsSpecified) {
+TEST(Frame, EncodingMatchesTheProtocolPage) {
   EXPECT_EQ(Line({FrameKind::kHello, 0, {}}),
             (ByteVector{0x00, 0x03, 0x04, 0x01, 0x01, 0x01, 0x01, 0x05, 0x05, 0xca, 0x33, 0x17, 0x00}));
 }
 
-TEST(Frame, ComesBackAndHoldsNoZero) {
+TEST(Frame, RoundTripIsExactAndHoldsNoZeroByte) {
   Noise noise(5);
   FrameReader reader;
   const int count = test::Repetitions(3000);
@@ -105,7 +105,7 @@ TEST(Frame, ComesBackAndHoldsNoZero) {
   EXPECT_EQ(reader.counters(), (ReaderCounters{static_cast<std::uint32_t>(count), 0, 0}));
 }
 
-TEST(Frame, RunsOf254AreTheEdgeOfTheStuffing) {
+TEST(Frame, RoundTripIsExactAroundTheStuffingEdgeOf254Bytes) {
   FrameReader reader;
   for (std::size_t size = 240; size < 265; ++size) {
     for (const std::uint8_t last : {std::uint8_t{0}, std::uint8_t{7}}) {
@@ -116,7 +116,7 @@ TEST(Frame, RunsOf254AreTheEdgeOfTheStuffing) {
   }
 }
 
-TEST(Frame, TooLongIsRefusedAtBothEnds) {
+TEST(Frame, TooLongPayloadIsRefusedByWriterAndReader) {
   FrameWriter writer;
   const ByteVector payload(kMaxPayload + 1, 1);
   EXPECT_TRUE(writer.Encode({FrameKind::kInputs, 1, payload}).empty());
@@ -128,7 +128,7 @@ TEST(Frame, TooLongIsRefusedAtBothEnds) {
 }
 
 // Bits turned, bytes lost, doubled or put in: no frame that was not sent, and the one after it is read.
-TEST(Frame, DamageIsNoticedAndOver) {
+TEST(Frame, DamagedFrameIsDetectedAndTheNextIsRead) {
   Noise noise(11);
   FrameReader reader;
   std::uint32_t lost = 0;
@@ -156,7 +156,7 @@ TEST(Frame, DamageIsNoticedAndOver) {
   EXPECT_GE(reader.counters().damaged, lost);
 }
 
-TEST(Frame, NoiseIsNoFrame) {
+TEST(Frame, NoiseYieldsNoFrame) {
   Noise noise(13);
   FrameReader reader;
   for (int k = 0; k < test::Repetitions(2000); ++k) {
@@ -166,7 +166,7 @@ TEST(Frame, NoiseIsNoFrame) {
   EXPECT_GT(reader.counters().damaged, 0U);
 }
 
-TEST(Frame, OfAnotherVersionOrKindIsCounted) {
+TEST(Frame, UnknownVersionOrKindIsCounted) {
   FrameReader reader;
   Read frame{static_cast<FrameKind>(99), 1, {1, 2, 3}};
   EXPECT_TRUE(ReadAll(reader, Line(frame)).empty());

@@ -98,7 +98,7 @@ task::ServoInputs SomeInputs(Values& values) {
   return in;
 }
 
-TEST(Messages, ComeBack) {
+TEST(Messages, RoundTripKeepsEveryField) {
   Values values(3);
   ExpectComesBack(SomeInputs(values));
   ExpectComesBack(task::ServoInputs{});
@@ -135,7 +135,7 @@ TEST(Messages, ComeBack) {
   ExpectComesBack(Provocation::kUsageFault);
 }
 
-TEST(Messages, CountsAndChoicesOutOfRangeAreRefused) {
+TEST(Messages, CountsAndEnumsOutOfRangeAreRefused) {
   task::ServoInputs in;
   in.arm.num_joints = hal::kMaxJoints + 1;
   EXPECT_TRUE(BytesOf(in).empty());
@@ -151,7 +151,7 @@ TEST(Messages, CountsAndChoicesOutOfRangeAreRefused) {
 }
 
 // Whatever the bytes are, nothing that is decoded is out of its range.
-TEST(Messages, NoiseIsHarmless) {
+TEST(Messages, RandomBytesDecodeOnlyToValuesInRange) {
   std::mt19937 engine(7);
   Values values(9);
   const std::vector<std::uint8_t> sound = BytesOf(SomeInputs(values));
@@ -172,7 +172,7 @@ TEST(Messages, NoiseIsHarmless) {
   EXPECT_GT(taken, 0);
 }
 
-TEST(Messages, AnArmsChecksumSeesEveryPart) {
+TEST(Messages, ArmChecksumChangesWithItsParameters) {
   const model::ArmModel arm = test::Panda().model;
   model::ArmModel other = arm;
   other.joints[6].coulomb = std::nextafter(other.joints[6].coulomb, 1e9);

@@ -91,7 +91,7 @@ class ServoServerTest : public task::ServoTaskTest {
   std::array<std::uint8_t, kMaxPayload> payload_{};
 };
 
-TEST_F(ServoServerTest, SaysHelloWhenItIsAsked) {
+TEST_F(ServoServerTest, AnswersAHelloFrame) {
   server_.SayHello();
   EXPECT_TRUE(Answered());
   EXPECT_EQ(reader_.frame().kind, FrameKind::kHello);
@@ -100,7 +100,7 @@ TEST_F(ServoServerTest, SaysHelloWhenItIsAsked) {
 }
 
 // Tick by tick the same bits as the task that is called here.
-TEST_F(ServoServerTest, InLockstepItIsTheTask) {
+TEST_F(ServoServerTest, LockstepGivesTheSameBitsAsTheTask) {
   ASSERT_EQ(Configure(Pacing::kLockstep).code, hal::StatusCode::kOk);
   log::RecordHash here;
   log::RecordHash there;
@@ -124,7 +124,7 @@ TEST_F(ServoServerTest, InLockstepItIsTheTask) {
 }
 
 // What the line took is told of a tick, not of what came before it was configured.
-TEST_F(ServoServerTest, ConfiguredAnewItTellsOfTheTicksSinceAlone) {
+TEST_F(ServoServerTest, ReconfigurationResetsTheLinkCounts) {
   for (int run = 0; run < 2; ++run) {
     for (int k = 0; k < 5; ++k) {
       Give({FrameKind::kHello, 0, {}});
@@ -140,7 +140,7 @@ TEST_F(ServoServerTest, ConfiguredAnewItTellsOfTheTicksSinceAlone) {
   }
 }
 
-TEST_F(ServoServerTest, ACarriedLoadIsTheServosToo) {
+TEST_F(ServoServerTest, ConfiguredLoadReachesTheServo) {
   model::Load load;
   load.mass = 0.7;
   load.p_ECom = {0.0, 0.02, 0.05};
@@ -153,7 +153,7 @@ TEST_F(ServoServerTest, ACarriedLoadIsTheServosToo) {
   EXPECT_EQ(Configure(Pacing::kLockstep, with_load).code, hal::StatusCode::kOk);
 }
 
-TEST_F(ServoServerTest, RefusesAndSaysWhat) {
+TEST_F(ServoServerTest, RefusesABadConfigurationAndNamesTheKey) {
   Answer answer = Configure(Pacing::kLockstep, [](Configuration& c) { c.arm_crc ^= 1U; });
   EXPECT_EQ(answer.code, hal::StatusCode::kInvalidArgument);
   EXPECT_STREQ(answer.where.data(), "arm");
@@ -165,7 +165,7 @@ TEST_F(ServoServerTest, RefusesAndSaysWhat) {
   EXPECT_FALSE(Answered());
 }
 
-TEST_F(ServoServerTest, IsProvokedOnlyWhenItMayBe) {
+TEST_F(ServoServerTest, ProvocationNeedsPermission) {
   Give({FrameKind::kProvoke, 1, Encode(Provocation::kUsageFault, payload_)});
   Configure(Pacing::kLockstep);
   Give({FrameKind::kProvoke, 1, Encode(Provocation::kUsageFault, payload_)});
@@ -202,7 +202,7 @@ class ServoServerByTimerTest : public ServoServerTest {
   static constexpr int kFrameMs = 33;
 };
 
-TEST_F(ServoServerByTimerTest, ConvergesOverALineThatLosesAndDamages) {
+TEST_F(ServoServerByTimerTest, ConvergesOverALossyDamagingLine) {
   std::mt19937 engine(5);
   Outputs outputs;
   for (int k = 0; k < 8000; ++k) {
@@ -226,7 +226,7 @@ TEST_F(ServoServerByTimerTest, ConvergesOverALineThatLosesAndDamages) {
   EXPECT_LT(Error(), 1e-3);
 }
 
-TEST_F(ServoServerByTimerTest, ASilentLineIsAnArmThatIsLost) {
+TEST_F(ServoServerByTimerTest, SilentLineRaisesArmLost) {
   Outputs outputs;
   for (int k = 0; k < 1500; ++k) {
     outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
@@ -244,7 +244,7 @@ TEST_F(ServoServerByTimerTest, ASilentLineIsAnArmThatIsLost) {
   EXPECT_LT(arm_->dq().norm(), 1e-2);
 }
 
-TEST_F(ServoServerByTimerTest, AStormOfBadFramesIsNoBetter) {
+TEST_F(ServoServerByTimerTest, StormOfBadFramesRaisesArmLost) {
   Outputs outputs;
   for (int k = 0; k < 1500; ++k) {
     outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
@@ -262,7 +262,7 @@ TEST_F(ServoServerByTimerTest, AStormOfBadFramesIsNoBetter) {
 }
 
 // Two frames in one period: the newer state, and what the older one saw.
-TEST_F(ServoServerByTimerTest, AFrameThatIsOvertakenLeavesItsFeature) {
+TEST_F(ServoServerByTimerTest, OvertakenFrameStillDeliversItsFeature) {
   task::ServoInputs first;
   first.arm = arm_->State();
   first.has_feature = true;
@@ -280,7 +280,7 @@ TEST_F(ServoServerByTimerTest, AFrameThatIsOvertakenLeavesItsFeature) {
 }
 
 // A frame that comes as late as an arm may be silent is none, however new it is.
-TEST_F(ServoServerByTimerTest, AStateThatIsTooOldIsLeftOut) {
+TEST_F(ServoServerByTimerTest, TooOldStateIsIgnoredAndCounted) {
   const int most = config_.safety.arm_lost_ticks;
   task::ServoInputs inputs;
   inputs.arm = arm_->State();
@@ -300,7 +300,7 @@ TEST_F(ServoServerByTimerTest, AStateThatIsTooOldIsLeftOut) {
   EXPECT_EQ(outputs.line.silent_ticks, 1U);
 }
 
-TEST_F(ServoServerByTimerTest, WhatWasLostAndMissedIsReported) {
+TEST_F(ServoServerByTimerTest, ReportsLostBytesUnsentFramesAndMissedTicks) {
   board_.lost = {7, 2};
   const Outputs outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
   EXPECT_EQ(outputs.line.lost_bytes, 7U);
@@ -314,7 +314,7 @@ TEST_F(ServoServerByTimerTest, WhatWasLostAndMissedIsReported) {
 }
 
 // The timer stands from a tick's end until the host says Go, which may be said twice.
-TEST_F(ServoServerTest, TheGateIsTheHosts) {
+TEST_F(ServoServerTest, GatedTimerStandsUntilTheHostSaysGo) {
   ASSERT_EQ(Configure(Pacing::kGated).code, hal::StatusCode::kOk);
   EXPECT_FALSE(board_.timer_runs);
   task::ServoInputs inputs;

@@ -54,7 +54,7 @@ Buffer BytesOf(const hal::TickRecord& record) {
 
 // At every 250th tick of every run, a servo that knows only the bytes of the state takes over, and gives what
 // the first one gives, to the last bit and to the run's end.
-TEST(State, AServoThatTakesItOverGoesOnToTheLastBit) {
+TEST(ServoStateTest, RestoredServoContinuesBitExact) {
   constexpr std::size_t kEvery = 250;
   for (const test::ServoRun& run : test::AllServoRuns()) {
     task::ServoTask task;
@@ -92,7 +92,7 @@ TEST(State, AServoThatTakesItOverGoesOnToTheLastBit) {
   }
 }
 
-TEST(State, BytesThatAreNoneAreRefused) {
+TEST(ServoStateTest, BytesOfAnotherLengthAreRefused) {
   task::ServoTask task;
   ASSERT_TRUE(task.Init(test::PandaConfig()).ok());
   const Buffer bytes = BytesOf(task.state());
@@ -150,7 +150,7 @@ void ExpectDigestToSeeAllBut(const std::set<std::string>& left_out, hal::Mode mo
   }
 }
 
-TEST(State, TheDigestSeesEachFieldThatItCovers) {
+TEST(ServoStateTest, DigestChangesWithEachCoveredField) {
   using features::FeatureForm;
   using hal::FeatureKind;
   ExpectDigestToSeeAllBut({"joint history", "planned motion", "momentum", "commanded motion"},
@@ -164,7 +164,7 @@ TEST(State, TheDigestSeesEachFieldThatItCovers) {
 }
 
 // What leads outside of an array is no state.
-TEST(State, NumbersThatPointNowhereAreRefused) {
+TEST(ServoStateTest, IndicesOutOfRangeAreRefused) {
   task::ServoTask task;
   ASSERT_TRUE(task.Init(test::PandaConfig()).ok());
   auto state = std::make_unique<task::ServoState>(task.state());
@@ -181,7 +181,7 @@ TEST(State, NumbersThatPointNowhereAreRefused) {
   EXPECT_TRUE(is_refused([](task::ServoState& s) { s.predict.poses.believed = hal::kMaxPoses; }));
 }
 
-TEST(State, DemandsComeBack) {
+TEST(ServoStateTest, DemandRoundTripKeepsEveryField) {
   Demand demand;
   EXPECT_TRUE(demand.IsPlain());
   demand.arm_status = hal::StatusCode::kDisconnected;

@@ -14,7 +14,7 @@
 namespace fovea::model {
 namespace {
 
-TEST(LoadTest, WeighsAndIsSluggishWhereItIs) {
+TEST(LoadTest, LoadAddsItsWeightAndInertiaAtItsPosition) {
   const ArmModel bare = test::Panda().model;
   Load load;
   load.mass = 1.7;

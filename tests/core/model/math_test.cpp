@@ -29,14 +29,14 @@ TEST(SinCosTest, IsWithinItsStatedError) {
   }
 }
 
-TEST(SinCosTest, IsExactWhereItMustBe) {
+TEST(SinCosTest, IsExactAtZeroAndSymmetric) {
   EXPECT_EQ(SinCos(0.0).sin, 0.0);
   EXPECT_EQ(SinCos(0.0).cos, 1.0);
   EXPECT_EQ(SinCos(-1.0).sin, -SinCos(1.0).sin);
   EXPECT_EQ(SinCos(-1.0).cos, SinCos(1.0).cos);
 }
 
-TEST(SinCosTest, RefusesWhatIsNoAngle) {
+TEST(SinCosTest, NonFiniteOrTooLargeArgumentGivesNan) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double x : {1.0001e5, -1.0001e5, kInfinity, -kInfinity, std::nan("")}) {
     EXPECT_TRUE(std::isnan(SinCos(x).sin)) << x;
@@ -61,7 +61,7 @@ TEST(Atan2Test, IsWithinItsStatedError) {
   EXPECT_LT(worst, 4.5e-16L);
 }
 
-TEST(Atan2Test, KnowsAxesAndRefusesTheRest) {
+TEST(Atan2Test, IsExactOnTheAxesAndNanForNonFiniteInput) {
   EXPECT_EQ(Atan2(0.0, 0.0), 0.0);
   EXPECT_EQ(Atan2(0.0, 2.0), 0.0);
   EXPECT_EQ(Atan2(0.0, -2.0), kPi);

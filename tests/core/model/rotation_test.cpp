@@ -11,7 +11,7 @@
 namespace fovea::model {
 namespace {
 
-TEST(RotationTest, AgreesWithEigenAndComesBack) {
+TEST(RotationTest, MatchesEigenAndRoundTrips) {
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   double worst_matrix = 0.0;
@@ -46,7 +46,7 @@ TEST(RotationTest, AgreesWithEigenAndComesBack) {
   EXPECT_EQ(RotationVector(Mat3::Identity()).norm(), 0.0);
 }
 
-TEST(RotationTest, TurnRatesAreTheDerivative) {
+TEST(RotationTest, RotationVectorRatesMatchFiniteDifferences) {
   std::mt19937_64 random(8);
   std::normal_distribution<double> normal;
   const double h = 1e-6;

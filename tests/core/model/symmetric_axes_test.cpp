@@ -112,7 +112,7 @@ TEST(SymmetricAxesTest, AgreeWithEigenForAnySpectrum) {
   EXPECT_LT(worst.sweeps, SymmetricAxes::kMaxSweeps);
 }
 
-TEST(LdltTest, SolvesAndSaysWhatIsPositiveDefinite) {
+TEST(LdltTest, SolvesAndDetectsPositiveDefiniteness) {
   test::RandomStates random(612);
   double worst = 0.0;
   int positive = 0;

@@ -28,7 +28,7 @@ Pose Mount() {
   return X_EC;
 }
 
-TEST(TwistTest, TheCamerasVelocityIsTheHandsByBothJacobians) {
+TEST(TwistTest, CameraJacobianTwistMapsToTheHandJacobianTwist) {
   const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/panda.toml");
   test::RandomStates random(31);
   double worst = 0.0;
@@ -50,7 +50,7 @@ TEST(TwistTest, TheCamerasVelocityIsTheHandsByBothJacobians) {
 }
 
 // A hand that only turns moves its camera, and a camera that only turns moves the hand.
-TEST(TwistTest, TheLeverArmCounts) {
+TEST(TwistTest, RotationAloneMovesTheOtherFrameByTheLeverArm) {
   Vec6 V_BC_C = Vec6::Zero();
   V_BC_C[5] = 1.0;  // about the camera's axis
   Vec6 V_BE_B;
@@ -60,7 +60,7 @@ TEST(TwistTest, TheLeverArmCounts) {
   EXPECT_LT((V_BE_B - expected).norm(), 1e-15);
 }
 
-TEST(TwistTest, IsTheRateOfThePoses) {
+TEST(TwistTest, MatchesFiniteDifferencesOfPoses) {
   test::RandomStates random(32);
   double worst = 0.0;
   for (int k = 0; k < 500; ++k) {
@@ -87,7 +87,7 @@ TEST(TwistTest, IsTheRateOfThePoses) {
   EXPECT_LT(worst, 1e-8);
 }
 
-TEST(TwistTest, RefusesWhatIsNoPose) {
+TEST(TwistTest, RefusesAnInvalidPose) {
   Vec6 V = Vec6::Ones();
   const double nan = std::nan("");
   Vec6 out = Vec6::Constant(7.0);

@@ -143,7 +143,7 @@ TEST(MotionLawTest, OperationalSpaceDecouplesTheEndEffector) {
   EXPECT_LT((reference.q - loop.arm().q()).norm(), 1e-5) << "the posture follows in the null space";
 }
 
-TEST(MotionLawTest, EveryLawThatKnowsTheArmFollowsASwing) {
+TEST(MotionLawTest, ModelBasedLawsFollowASwing) {
   for (const config::MotionLawKind kind :
        {config::MotionLawKind::kComputedTorque, config::MotionLawKind::kJointImpedance,
         config::MotionLawKind::kOperationalSpace, config::MotionLawKind::kPd}) {
@@ -164,7 +164,7 @@ TEST(MotionLawTest, EveryLawThatKnowsTheArmFollowsASwing) {
 }
 
 // Pushed with a constant torque, an impedance gives way by tau / k_p.
-TEST(MotionLawTest, AnImpedanceIsAsSoftAsItSays) {
+TEST(MotionLawTest, ImpedanceYieldsByTorqueOverStiffness) {
   config::ServoConfig config = Config(config::MotionLawKind::kJointImpedance);
   config.motion_law.k_p.fill(50.0);
   Loop loop(config, test::Ready());
@@ -178,7 +178,7 @@ TEST(MotionLawTest, AnImpedanceIsAsSoftAsItSays) {
   }
 }
 
-TEST(MotionLawTest, TheIntegralStopsAtItsBoundAndWaitsForTheClamp) {
+TEST(MotionLawTest, IntegralStopsAtItsBoundAndPausesWhileClamped) {
   config::ServoConfig config = test::PandaConfig();
   config.motion_law.integral = 5.0;
   config.motion_law.integral_torque_fraction = 0.1;
@@ -207,7 +207,7 @@ TEST(MotionLawTest, TheIntegralStopsAtItsBoundAndWaitsForTheClamp) {
 }
 
 // From any law to any other, in motion and pushed: no step that the arm's rate limit would cut.
-TEST(MotionLawTest, LawsTakeOverWithoutAStep) {
+TEST(MotionLawTest, LawChangeCausesNoTorqueStep) {
   double worst = 0.0;
   for (const MotionLawEntry& from : kMotionLaws) {
     for (const MotionLawEntry& to : kMotionLaws) {
@@ -239,7 +239,7 @@ TEST(MotionLawTest, LawsTakeOverWithoutAStep) {
   EXPECT_LT(worst, 1.0);
 }
 
-TEST(MotionLawTest, FrictionIsMadeUpForWithoutChatter) {
+TEST(MotionLawTest, FrictionIsCompensatedWithoutChatter) {
   model::ArmModel arm = test::PandaConfig().arm;
   for (model::Joint& joint : arm.joints) {
     joint.viscous = 2.0;

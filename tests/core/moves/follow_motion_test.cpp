@@ -13,7 +13,7 @@ namespace {
 
 using hal::HoldReason;
 
-TEST_F(FollowMotionTest, AJointGoalIsReachedToTheBit) {
+TEST_F(FollowMotionTest, JointGoalIsReachedBitExact) {
   test::RandomStates random(5);
   for (int n = 0; n < 5; ++n) {
     const model::VecN goal = test::Ready() + random.Joints(config_.arm, 0.3);
@@ -27,7 +27,7 @@ TEST_F(FollowMotionTest, AJointGoalIsReachedToTheBit) {
   EXPECT_LE(most_, 1.0);
 }
 
-TEST_F(FollowMotionTest, AnotherGoalTakesEffectInTheSameTick) {
+TEST_F(FollowMotionTest, NewGoalTakesEffectInTheSameTick) {
   test::RandomStates random(6);
   Tick(JointGoal(test::Ready() + random.Joints(config_.arm, 0.3)));
   for (int n = 0; n < 30; ++n) {
@@ -47,7 +47,7 @@ TEST_F(FollowMotionTest, AnotherGoalTakesEffectInTheSameTick) {
   EXPECT_LE(most_, 1.0);
 }
 
-TEST_F(FollowMotionTest, APoseIsReachedOnAStraightLine) {
+TEST_F(FollowMotionTest, PoseGoalIsReachedOnAStraightLine) {
   const model::Pose start = PoseOf(arm_->q());
   const model::Vec3 goal = start.p + model::Vec3(0.05, -0.20, 0.08);
   const model::Mat3 R_goal = model::RotationOf({0.2, 0.1, -0.3}) * start.R;
@@ -69,7 +69,7 @@ TEST_F(FollowMotionTest, APoseIsReachedOnAStraightLine) {
   EXPECT_LE(most_, 1.0);
 }
 
-TEST_F(FollowMotionTest, TheFlangeFollowsACircle) {
+TEST_F(FollowMotionTest, FlangeFollowsACircle) {
   const model::Vec3 phi(3.14159265358979, 0.0, 0.0);  // the hand looks down
   constexpr double kRadius = 0.15;
   constexpr double kOmega = 2.0 * 3.14159265358979 * 0.5;
@@ -105,7 +105,7 @@ TEST_F(FollowMotionTest, TheFlangeFollowsACircle) {
   EXPECT_EQ(record().fault, hal::Fault::kNone);
 }
 
-TEST_F(FollowMotionTest, WhatIsNoMotionIsRefusedAndTheArmStops) {
+TEST_F(FollowMotionTest, InvalidMotionIsRefusedAndTheArmStops) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const model::VecN ready = test::Ready();
   std::vector<MotionCommand> bad(4, Joints(MotionKind::kJointSetpoint, ready));
@@ -133,7 +133,7 @@ TEST_F(FollowMotionTest, WhatIsNoMotionIsRefusedAndTheArmStops) {
 
 // Something hangs on the arm that nobody told the servo of, and it sags. The motion ends when the arm is too
 // far off on the whole; a push that passes does not end it.
-TEST_F(FollowMotionTest, AnArmThatStaysOffItsMotionHolds) {
+TEST_F(FollowMotionTest, PersistentMotionErrorEndsInHold) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.motion_error = 1e-3;
   const model::VecN ready = test::Ready();
@@ -166,7 +166,7 @@ TEST_F(FollowMotionTest, AnArmThatStaysOffItsMotionHolds) {
 
 // A goal may be asked for in every tick: reached, it is done, and not begun anew until something else was
 // asked for.
-TEST_F(FollowMotionTest, AGoalThatWasReachedIsDoneThoughItIsAskedForOn) {
+TEST_F(FollowMotionTest, ReachedGoalRequestedAgainIsNotRestarted) {
   const model::VecN ready = test::Ready();
   model::VecN there = ready;
   there[0] += 0.2;
@@ -192,7 +192,7 @@ TEST_F(FollowMotionTest, AGoalThatWasReachedIsDoneThoughItIsAskedForOn) {
       << "asked for anew";
 }
 
-TEST_F(FollowMotionTest, AHoldRequestStopsAMotionForGood) {
+TEST_F(FollowMotionTest, HoldRequestEndsAMotionForGood) {
   model::VecN goal = test::Ready();
   goal[0] += 1.0;
   Tick(JointGoal(goal));

@@ -15,7 +15,7 @@ using hal::HoldReason;
 using MoveLimitsTest = FollowMotionTest;
 
 // A goal in reach whose way leads out of the workspace is begun, stopped inside and refused.
-TEST_F(MoveLimitsTest, AWayOutOfTheWorkspaceIsStopped) {
+TEST_F(MoveLimitsTest, PathLeavingTheWorkspaceIsStoppedAndRefused) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 0.75;
   const model::VecN q = test::Ready();
@@ -39,7 +39,7 @@ TEST_F(MoveLimitsTest, AWayOutOfTheWorkspaceIsStopped) {
 }
 
 // A hand that is sent through a plane, and into a box, stops before them.
-TEST_F(MoveLimitsTest, ObstaclesAreNotEntered) {
+TEST_F(MoveLimitsTest, HandStopsBeforePlanesAndBoxes) {
   config::ServoConfig config = test::PandaConfig();
   config.move.pose_error_max = 0.2;  // it shall try for long
   const model::Vec3 p = PoseOf(test::Ready()).p;
@@ -77,7 +77,7 @@ TEST_F(MoveLimitsTest, ObstaclesAreNotEntered) {
   }
 }
 
-TEST_F(MoveLimitsTest, TheHandKeepsItsSpeed) {
+TEST_F(MoveLimitsTest, HandKeepsItsCartesianSpeedLimit) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.cartesian_speed = 0.15;
   Start(config, test::Ready());
@@ -102,7 +102,7 @@ TEST_F(MoveLimitsTest, TheHandKeepsItsSpeed) {
 }
 
 // Stretched out towards the boundary, with a workspace that would allow it: the elbow does not come straight.
-TEST_F(MoveLimitsTest, ASingularPostureIsNotEntered) {
+TEST_F(MoveLimitsTest, SingularPostureIsNotEntered) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 2.0;
   config.guard.singularity_min = 0.06;
@@ -131,7 +131,7 @@ TEST_F(MoveLimitsTest, ASingularPostureIsNotEntered) {
 }
 
 // Between two motions something else may have moved the arm.
-TEST_F(MoveLimitsTest, AfterAPauseTheSingularityIsLookedAtAnew) {
+TEST_F(MoveLimitsTest, PauseResetsTheSingularityEstimate) {
   const model::Pose start = PoseOf(arm_->q());
   Tick(Pose(MotionKind::kPoseGoal, start.p + model::Vec3(0.0, 0.05, 0.0), model::RotationVector(start.R)));
   EXPECT_GT(task_.state().motion.resolved.watch.sigma, 0.0);

@@ -18,7 +18,7 @@ class EnterModeTest : public testing::Test {
   std::unique_ptr<ServoState> state_ = std::make_unique<ServoState>();  // large
 };
 
-TEST_F(EnterModeTest, EveryChangeHasItsTimeAndForgetsWhatWasResolved) {
+TEST_F(EnterModeTest, EveryModeChangeSetsItsTimeAndResetsResolvedMotion) {
   for (int mode = 0; mode < hal::kNumModes; ++mode) {
     state_->now_ns = 1000 + mode;
     state_->resolved.watch.sigma = 0.5;
@@ -28,7 +28,7 @@ TEST_F(EnterModeTest, EveryChangeHasItsTimeAndForgetsWhatWasResolved) {
   }
 }
 
-TEST_F(EnterModeTest, TrackFromHoldIsANewTryAndFromCoastTheOldOne) {
+TEST_F(EnterModeTest, TrackFromHoldResetsTheAttemptAndFromCoastKeepsIt) {
   state_->now_ns = 50;
   state_->reach.blocked_ns = 7;
   state_->eye.doubted = true;
@@ -42,7 +42,7 @@ TEST_F(EnterModeTest, TrackFromHoldIsANewTryAndFromCoastTheOldOne) {
   EXPECT_EQ(state_->track_since_ns, 50);
 }
 
-TEST_F(EnterModeTest, HoldRemembersWhereTheTargetWasAndForgetsItOnlyWhenItIsLost) {
+TEST_F(EnterModeTest, HoldKeepsTheTargetUnlessItWasLost) {
   state_->prediction.p_BO = {0.4, 0.1, 0.2};
   state_->predict.has_accepted = true;
   state_->mode.hold_reason = hal::HoldReason::kGoalUnreachable;
@@ -54,7 +54,7 @@ TEST_F(EnterModeTest, HoldRemembersWhereTheTargetWasAndForgetsItOnlyWhenItIsLost
   EXPECT_FALSE(state_->predict.has_accepted);
 }
 
-TEST_F(EnterModeTest, BootTakesTheArmOverAnew) {
+TEST_F(EnterModeTest, BootResetsHoldInputsAndStop) {
   state_->holds = true;
   state_->inputs.sound_ticks = 99;
   state_->fault_joint = 3;

@@ -182,7 +182,7 @@ struct Case {
 
 class FourTargets : public testing::TestWithParam<Case> {};
 
-TEST_P(FourTargets, AStillOneStandsAtItsGoal) {
+TEST_P(FourTargets, StillTargetConvergesToItsGoal) {
   const Case& c = GetParam();
   TargetLoop loop(ConfigFor(c.target, c.form), 0.05);
   const Residual start = loop.Now();
@@ -199,7 +199,7 @@ TEST_P(FourTargets, AStillOneStandsAtItsGoal) {
 }
 
 // Round about at 0.075 m/s while it turns by up to 0.3 rad/s: with the prediction and without.
-TEST_P(FourTargets, AMovingOneIsFollowedAndPredictionIsWhatDoesIt) {
+TEST_P(FourTargets, PredictionCutsTheMovingTargetErrorFivefold) {
   const Case& c = GetParam();
   Residual followed[2];
   for (const bool predict : {false, true}) {
@@ -222,7 +222,7 @@ TEST_P(FourTargets, AMovingOneIsFollowedAndPredictionIsWhatDoesIt) {
 
 // Three corners look the same from up to four poses: by the corners alone the arm ends at another than the
 // goal.
-TEST(FourTargetsLaw, ATrianglesCornersDoNotTellItsPose) {
+TEST(FourTargetsLaw, TriangleCornersAloneLeaveThePoseAmbiguous) {
   TargetLoop loop(ConfigFor(FeatureKind::kTriangle, FeatureForm::kCorners), 0.05);
   loop.Run(6000);
   const Residual end = loop.Over(500);
@@ -233,7 +233,7 @@ TEST(FourTargetsLaw, ATrianglesCornersDoNotTellItsPose) {
 }
 
 // Every choice of the law closes the loop.
-TEST(FourTargetsLaw, GainInteractionAndHeldOrientationCloseTheLoopToo) {
+TEST(FourTargetsLaw, EveryGainInteractionAndOrientationChoiceConverges) {
   struct Way {
     const char* name;
     void (*set)(config::ServoConfig&);
@@ -268,7 +268,7 @@ TEST(FourTargetsLaw, GainInteractionAndHeldOrientationCloseTheLoopToo) {
 
 // A picture that ends just outside of where the square's corners are and shall be. By its pose the way there
 // bulges out of it; with the picture's edges as limits it bulges a third of that.
-TEST(FourTargetsLaw, KeepsTheTargetInThePicture) {
+TEST(FourTargetsLaw, FieldOfViewLimitsKeepTheSquareInThePicture) {
   double out[2] = {0.0, 0.0};  // how far a corner was outside, at most, in the normalised image
   for (const bool keep : {false, true}) {
     config::ServoConfig config = ConfigFor(FeatureKind::kSquare, FeatureForm::kPose);
@@ -291,7 +291,7 @@ TEST(FourTargetsLaw, KeepsTheTargetInThePicture) {
 }
 
 // The source's four entries: the square's turn comes right, its tilts stay what they happen to be.
-TEST(FourTargetsLaw, TheSidesFeatureControlsFour) {
+TEST(FourTargetsLaw, SideFeatureControlsFourDegreesOfFreedom) {
   for (const FeatureForm form : {FeatureForm::kSide, FeatureForm::kCornerSide}) {
     config::ServoConfig config = ConfigFor(FeatureKind::kSquare, form);
     config.law.damping = 0.02;
@@ -309,7 +309,7 @@ TEST(FourTargetsLaw, TheSidesFeatureControlsFour) {
 }
 
 // A ball alone does not see how the camera turns about it; with the orientation held it does not turn.
-TEST(FourTargetsLaw, ABallWithTheOrientationHeld) {
+TEST(FourTargetsLaw, HeldOrientationStopsRotationAboutABall) {
   for (const bool hold : {false, true}) {
     config::ServoConfig config = ConfigFor(FeatureKind::kSphere, FeatureForm::kSphere);
     config.feature.hold_orientation = hold;

@@ -50,7 +50,7 @@ class ModesTest : public testing::Test {
   ModeState last_;
 };
 
-TEST_F(ModesTest, BootWaitsForASoundArm) {
+TEST_F(ModesTest, BootWaitsForAReadyArm) {
   ModeInputs inputs;
   EXPECT_EQ(After(In(Mode::kBoot), inputs), Mode::kBoot);
   EXPECT_EQ(After(In(Mode::kBoot), Seen(kFresh)), Mode::kBoot);
@@ -75,7 +75,7 @@ TEST_F(ModesTest, HoldGoesToTrackWhenAskedAndSeen) {
   EXPECT_EQ(last_.hold_reason, HoldReason::kNoTarget);
 }
 
-TEST_F(ModesTest, TrackAndCoastFollowTheAgeOfTheFeature) {
+TEST_F(ModesTest, TrackCoastAndHoldFollowTheFeatureAge) {
   EXPECT_EQ(After(In(Mode::kTrack), Seen(kFresh)), Mode::kTrack);
   EXPECT_EQ(After(In(Mode::kTrack), Seen(Stale())), Mode::kCoast);
   EXPECT_EQ(After(In(Mode::kCoast), Seen(Stale())), Mode::kCoast);
@@ -88,7 +88,7 @@ TEST_F(ModesTest, TrackAndCoastFollowTheAgeOfTheFeature) {
   }
 }
 
-TEST_F(ModesTest, AHoldRequestStopsAndStays) {
+TEST_F(ModesTest, HoldRequestStopsTrackingAndLasts) {
   for (const Mode mode : {Mode::kTrack, Mode::kCoast}) {
     ModeInputs inputs = Seen(kFresh);
     inputs.request = Request::kHold;
@@ -98,7 +98,7 @@ TEST_F(ModesTest, AHoldRequestStopsAndStays) {
   }
 }
 
-TEST_F(ModesTest, AnUnreachableGoalHoldsUntilTheTargetMoves) {
+TEST_F(ModesTest, UnreachableGoalHoldsUntilTheTargetMoves) {
   for (const Mode mode : {Mode::kTrack, Mode::kCoast}) {
     ModeInputs inputs = Seen(kFresh);
     inputs.goal_unreachable = true;
@@ -111,7 +111,7 @@ TEST_F(ModesTest, AnUnreachableGoalHoldsUntilTheTargetMoves) {
   }
 }
 
-TEST_F(ModesTest, AFaultLatchesFromAnywhereAndKeepsItsFirstCause) {
+TEST_F(ModesTest, FaultLatchesFromEveryModeAndKeepsItsFirstCause) {
   for (const Mode mode : {Mode::kBoot, Mode::kHold, Mode::kTrack, Mode::kCoast}) {
     ModeInputs inputs = Seen(kFresh);
     inputs.fault = Fault::kNotFollowing;
@@ -124,7 +124,7 @@ TEST_F(ModesTest, AFaultLatchesFromAnywhereAndKeepsItsFirstCause) {
 }
 
 // Whoever wanted the arm to move has to say so again once the fault is over.
-TEST_F(ModesTest, AFaultEndsEveryWish) {
+TEST_F(ModesTest, FaultClearsTheTrackRequest) {
   ModeInputs fault = Seen(kFresh);
   fault.fault = Fault::kNotFollowing;
   ASSERT_EQ(After(In(Mode::kTrack), fault), Mode::kFault);
@@ -159,7 +159,7 @@ TEST_F(ModesTest, OnlyAResetWithoutAFaultLeavesFault) {
   }
 }
 
-TEST_F(ModesTest, ACommandedMotionIsFollowedUntilItsEnd) {
+TEST_F(ModesTest, CommandedMotionIsFollowedUntilItsEnd) {
   ModeInputs motion;
   motion.motion_asked = true;
   EXPECT_EQ(After(In(Mode::kHold, false), motion), Mode::kMove);
@@ -170,7 +170,7 @@ TEST_F(ModesTest, ACommandedMotionIsFollowedUntilItsEnd) {
   EXPECT_EQ(After(In(Mode::kHold, true), motion), Mode::kHold) << "not while track is asked for";
 }
 
-TEST_F(ModesTest, AMotionThatWasStoppedStaysStopped) {
+TEST_F(ModesTest, StoppedMotionIsNotResumed) {
   ModeInputs motion;
   motion.motion_asked = true;
   ModeInputs refused = motion;
@@ -270,7 +270,7 @@ TEST_F(ModesTest, NoWayFromFaultToMotionWithoutReset) {
 
 // From the start, with all inputs: every edge of the table is walked, none that is not in it, and motion
 // comes only from Hold, which comes only by way of Boot with the arm at rest.
-TEST_F(ModesTest, EveryEdgeIsWalkedAndNoOther) {
+TEST_F(ModesTest, ExactlyTheListedTransitionsOccur) {
   std::set<const ModeEdge*> walked;
   std::set<std::pair<Mode, Mode>> pairs;
   const auto allowed = [](Mode from, Mode to) {

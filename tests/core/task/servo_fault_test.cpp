@@ -58,7 +58,7 @@ class FaultTest : public ServoTaskTest {
   }
 };
 
-TEST_F(FaultTest, ArmLost) {
+TEST_F(FaultTest, SilentArmRaisesArmLost) {
   for (int i = 0; i < config_.safety.arm_lost_ticks; ++i) {
     EXPECT_EQ(outputs_.record.mode, Mode::kTrack) << "tick " << i;
     const hal::JointArray before = outputs_.command().tau_cmd;
@@ -107,7 +107,7 @@ TEST_F(FaultTest, BrakesStayClosedWhenTheArmHoldsItselfAgain) {
   EXPECT_GE(boot.command.tau_cmd[1], 29.0 - 1e-9) << "the take-over is no step";
 }
 
-TEST_F(FaultTest, ArmStale) {
+TEST_F(FaultTest, RepeatedStateRaisesArmStale) {
   const hal::ArmState frozen = arm_->State();
   for (int i = 0; i <= config_.safety.arm_lost_ticks; ++i) {
     Tick([&](ServoInputs& inputs) { inputs.arm = frozen; });
@@ -137,7 +137,7 @@ TEST_F(FaultTest, NonFiniteSensorIsBridgedThenLatched) {
 
 // A velocity that no motor can have made in the time is no reading: bridged, then a fault. What it is called
 // follows from whether the joint went on.
-TEST_F(FaultTest, AVelocityThatJumpsIsBridgedThenLatched) {
+TEST_F(FaultTest, JumpingVelocityIsBridgedThenLatched) {
   const int bridged = config_.safety.non_finite_ticks;
   for (const bool hangs : {true, false}) {
     Start(config_);
@@ -179,7 +179,7 @@ TEST_F(FaultTest, AVelocityThatJumpsIsBridgedThenLatched) {
   }
 }
 
-TEST_F(FaultTest, NonFiniteFeature) {
+TEST_F(FaultTest, NonFiniteFeatureRaisesItsFault) {
   Tick([&](ServoInputs& inputs) {
     inputs.has_feature = true;
     inputs.feature = Measure();
@@ -189,7 +189,7 @@ TEST_F(FaultTest, NonFiniteFeature) {
   ExpectResetWorks();
 }
 
-TEST_F(FaultTest, DeadlinesMissed) {
+TEST_F(FaultTest, RepeatedMissedDeadlinesRaiseDeadlineMissed) {
   Tick([](ServoInputs& inputs) { inputs.missed_ticks = 1; });
   EXPECT_EQ(outputs_.record.mode, Mode::kTrack) << "one miss is held by rule";
   Tick([this](ServoInputs& inputs) { inputs.missed_ticks = config_.safety.missed_ticks; });
@@ -197,13 +197,13 @@ TEST_F(FaultTest, DeadlinesMissed) {
   ExpectResetWorks();
 }
 
-TEST_F(FaultTest, JointOutsideItsRange) {
+TEST_F(FaultTest, JointOutsideItsRangeRaisesJointPosition) {
   Tick([](ServoInputs& inputs) { inputs.arm.q[5] = 3.76; });
   EXPECT_EQ(outputs_.record.fault_joint, 5);
   ExpectStopsAndStays(Fault::kJointPosition, 1500);
 }
 
-TEST_F(FaultTest, JointTooFast) {
+TEST_F(FaultTest, TooFastJointRaisesJointVelocity) {
   Tick([](ServoInputs& inputs) { inputs.arm.dq[2] = -2.2; });
   EXPECT_EQ(outputs_.record.fault_joint, 2);
   ExpectStopsAndStays(Fault::kJointVelocity, 1500);
@@ -211,7 +211,7 @@ TEST_F(FaultTest, JointTooFast) {
 
 // What jams the arm pushes it.
 // Held to the last bit of its encoders: they might as well hang, and the brakes are right for both.
-TEST_F(FaultTest, SomethingHoldsTheArm) {
+TEST_F(FaultTest, JammedArmRaisesArmStale) {
   arm_->Jam();
   int ticks = 0;
   while (outputs_.record.mode != Mode::kFault && ticks++ < 3000) {
@@ -222,7 +222,7 @@ TEST_F(FaultTest, SomethingHoldsTheArm) {
   ExpectStopsAndStays(Fault::kArmStale, 150);
 }
 
-TEST_F(FaultTest, AFloatingArmMayBePushed) {
+TEST_F(FaultTest, PushRaisesContactExceptUnderTheFloatLaw) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.contact_torque_fraction = 0.05;
   camera_on_ = false;
@@ -241,7 +241,7 @@ TEST_F(FaultTest, AFloatingArmMayBePushed) {
 }
 
 // A law that is a spring is there to give way, and an integral learns the load by itself.
-TEST_F(FaultTest, OnlyALawThatHoldsTheArmCarriesALoad) {
+TEST_F(FaultTest, OnlyPositionHoldingLawsCarryALoad) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.following_error = 1.0;  // springs give way far
   camera_on_ = false;
@@ -277,7 +277,7 @@ TEST_F(FaultTest, OnlyALawThatHoldsTheArmCarriesALoad) {
 
 // Damping brings an arm that something pulls at to a creep, not to rest: its brakes do not wait for the end
 // of the time.
-TEST_F(FaultTest, AStopThatIsPulledOnEndsInTheBrakes) {
+TEST_F(FaultTest, StopUnderAPullEndsInTheBrakes) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.brake_after_s = 10.0;
   for (const double ddq : {0.0, 5.0}) {
@@ -297,7 +297,7 @@ TEST_F(FaultTest, AStopThatIsPulledOnEndsInTheBrakes) {
 }
 
 // Without that observer it is seen later, by its error.
-TEST_F(FaultTest, ArmDoesNotFollow) {
+TEST_F(FaultTest, ArmOffItsReferenceRaisesNotFollowing) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.contact_torque_fraction = 1e3;
   config.safety.non_finite_ticks = 10'000;  // nor does it count that the reading stays the same

@@ -18,12 +18,12 @@ struct Case {
   std::function<void(config::ServoConfig&)> spoil;
 };
 
-TEST(ServoInitTest, TakesTheDefaults) {
+TEST(ServoInitTest, AcceptsTheDefaults) {
   ServoTask task;
   EXPECT_TRUE(task.Init(test::PandaConfig()).ok());
 }
 
-TEST(ServoInitTest, RefusesAndNamesTheKey) {
+TEST(ServoInitTest, RefusesABadValueAndNamesTheKey) {
   const double nan = std::nan("");
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<Case> cases = {

@@ -46,7 +46,7 @@ TEST_F(ServoLoopTest, LatenessWithinAPeriodIsNoMissAndDoesNotShiftTheGrid) {
   EXPECT_EQ(clock_.deadlines_ns.back(), 10 * hal::kNsPerMs);
 }
 
-TEST_F(ServoLoopTest, MissesAreCountedAndToldAndTheGridStays) {
+TEST_F(ServoLoopTest, MissedTicksAreCountedAndReportedAndTheGridStays) {
   clock_.late_ns = {0, 3'200'000, 0, 1'000'000};
   EXPECT_TRUE(loop_.Run(12 * hal::kNsPerMs).ok());
   EXPECT_EQ(loop_.counters().overruns, 2U);
@@ -61,7 +61,7 @@ TEST_F(ServoLoopTest, MissesAreCountedAndToldAndTheGridStays) {
 }
 
 // The last deadline is the end: what passes after it is no miss.
-TEST_F(ServoLoopTest, NothingIsMissedBeyondTheEnd) {
+TEST_F(ServoLoopTest, TimePastTheLastDeadlineIsNoMiss) {
   clock_.late_ns = {0, 0, 0, 0, 0, 0, 0, 0, 1'500'000, 3'200'000};
   EXPECT_TRUE(loop_.Run(10 * hal::kNsPerMs).ok());
   EXPECT_EQ(loop_.counters().ticks + loop_.counters().missed_ticks, 10U);
@@ -95,7 +95,7 @@ TEST_F(PacedLoopTest, TicksAtTheArmsPaceAndWaitsForNothingElse) {
   EXPECT_EQ(paced_.counters().ticks, 150'000U);
 }
 
-TEST_F(PacedLoopTest, AStallIsSeenInTheStampsOfTheArm) {
+TEST_F(PacedLoopTest, StallIsCountedFromTheArmsStamps) {
   period_ns_ = 999'000;
   int reads = 0;
   const auto usual = pacing_.before_read;
@@ -112,7 +112,7 @@ TEST_F(PacedLoopTest, AStallIsSeenInTheStampsOfTheArm) {
   EXPECT_EQ(recorder_.records[29'999].missed_ticks, 15);
 }
 
-TEST_F(PacedLoopTest, ASilentArmIsTickedForAndAnArmThatIsGoneDoesNotSpinTheLoop) {
+TEST_F(PacedLoopTest, SilentOrDisconnectedArmStillTicksAtTheLoopRate) {
   EXPECT_TRUE(paced_.Run(10 * hal::kNsPerMs).ok());
   pacing_.read_status = hal::Status(hal::StatusCode::kTimeout);
   EXPECT_TRUE(paced_.Run(15 * hal::kNsPerMs).ok());
@@ -125,7 +125,7 @@ TEST_F(PacedLoopTest, ASilentArmIsTickedForAndAnArmThatIsGoneDoesNotSpinTheLoop)
 }
 
 // Time-outs are times: however long a failed read lasts, the arm is lost after so many milliseconds.
-TEST_F(PacedLoopTest, ASilentArmIsLostByTheClockAndNotByReads) {
+TEST_F(PacedLoopTest, SilentArmIsLostByTimeAndNotByReadCount) {
   const int limit = test::PandaConfig().safety.arm_lost_ticks;
   for (const std::int64_t timeout_ms : {1, 2, 5, 7, 20, 40}) {
     test::FakeArm arm(7, /*paces_loop=*/true);
@@ -155,7 +155,7 @@ TEST_F(PacedLoopTest, ASilentArmIsLostByTheClockAndNotByReads) {
 }
 
 // What was counted while the arm was silent is not counted again when its stamps tell of it.
-TEST_F(PacedLoopTest, SilenceIsCountedOnce) {
+TEST_F(PacedLoopTest, SilenceIsNotCountedAgainFromStamps) {
   int reads = 0;
   pacing_.before_read = [&] {
     ++reads;
@@ -173,7 +173,7 @@ TEST_F(PacedLoopTest, SilenceIsCountedOnce) {
   EXPECT_EQ(recorder_.records.back().fault, hal::Fault::kNone);
 }
 
-TEST_F(ServoLoopTest, HandsTheNewestFeatureOnOnce) {
+TEST_F(ServoLoopTest, PassesTheNewestFeatureOnExactlyOnce) {
   hal::FeatureMeasurement m;
   m.sequence = 9;
   mailbox_.Put(m);
@@ -242,7 +242,7 @@ class LeaseTest : public testing::Test {
   ServoLoop loop_{step_, arm_, clock_, mailbox_, recorder_, probe_};
 };
 
-TEST_F(LeaseTest, WithoutOneNothingRunsOut) {
+TEST_F(LeaseTest, WithoutALeaseNoRequestExpires) {
   loop_.Ask(Request::kTrack);
   RunMs(100);
   EXPECT_EQ(step_.requests[0], Request::kTrack);
@@ -250,7 +250,7 @@ TEST_F(LeaseTest, WithoutOneNothingRunsOut) {
   EXPECT_EQ(loop_.counters().lease_ends, 0U);
 }
 
-TEST_F(LeaseTest, ThatRanOutAsksEachTickToHoldAndForgetsWhatIsAskedMeanwhile) {
+TEST_F(LeaseTest, ExpiredLeaseHoldsEveryTickAndDropsRequests) {
   loop_.GiveLeave(50 * hal::kNsPerMs);
   loop_.Ask(Request::kTrack);
   step_.before_next = [this](int ticks) {
@@ -276,7 +276,7 @@ TEST_F(LeaseTest, ThatRanOutAsksEachTickToHoldAndForgetsWhatIsAskedMeanwhile) {
   EXPECT_EQ(loop_.counters().lease_ends, 2U);
 }
 
-TEST_F(LeaseTest, ThatRanOutBreaksACommandedMotionOffForGood) {
+TEST_F(LeaseTest, ExpiredLeaseEndsACommandedMotionForGood) {
   loop_.UseMotion(source_);
   loop_.GiveLeave(50 * hal::kNsPerMs);
   source_.command.kind = moves::MotionKind::kHome;
@@ -293,7 +293,7 @@ TEST_F(LeaseTest, ThatRanOutBreaksACommandedMotionOffForGood) {
   EXPECT_EQ(step_.motions.back(), moves::MotionKind::kHome);
 }
 
-TEST_F(LeaseTest, ToFinishIsToHoldUntilTheArmRests) {
+TEST_F(LeaseTest, FinishHoldsUntilTheArmRests) {
   step_.mode = hal::Mode::kTrack;
   step_.speed = 0.5;
   step_.before_next = [this](int ticks) {
@@ -310,7 +310,7 @@ TEST_F(LeaseTest, ToFinishIsToHoldUntilTheArmRests) {
   EXPECT_EQ(step_.requests.size(), 31U);
 }
 
-TEST_F(LeaseTest, AnArmThatNeverRestsOrSaysNothingEndsTheRunToo) {
+TEST_F(LeaseTest, FinishEndsTheRunEvenWithoutRestOrStates) {
   step_.speed = 0.5;
   loop_.Finish();
   RunMs(5000);

@@ -89,7 +89,7 @@ TEST_F(ServoTaskTest, HoldsUntilAskedWhenAutoTrackIsOff) {
   EXPECT_LT(arm_->dq().norm(), 1e-3) << "and stands again";
 }
 
-TEST_F(ServoTaskTest, CoastsThroughAGapAndGivesUpAfterLong) {
+TEST_F(ServoTaskTest, CoastsThroughAShortGapAndHoldsAfterALongOne) {
   Run(500);
   ASSERT_EQ(outputs_.record.mode, Mode::kTrack);
   camera_on_ = false;
@@ -109,7 +109,7 @@ TEST_F(ServoTaskTest, CoastsThroughAGapAndGivesUpAfterLong) {
 }
 
 // A camera whose clock jumped: what it says of the future is left out, and does not stand in the way later.
-TEST_F(ServoTaskTest, AMeasurementFromTheFutureIsNoMeasurement) {
+TEST_F(ServoTaskTest, RejectsAMeasurementFromTheFuture) {
   Run(500);
   ASSERT_EQ(outputs_.record.mode, Mode::kTrack);
   camera_on_ = false;
@@ -126,7 +126,7 @@ TEST_F(ServoTaskTest, AMeasurementFromTheFutureIsNoMeasurement) {
   EXPECT_EQ(outputs_.record.mode, Mode::kTrack);
 }
 
-TEST_F(ServoTaskTest, NorIsOneThatIsAFewTicksAhead) {
+TEST_F(ServoTaskTest, RejectsAMeasurementAFewTicksAhead) {
   Run(500);
   ASSERT_EQ(outputs_.record.mode, Mode::kTrack);
   camera_on_ = false;
@@ -167,7 +167,7 @@ TEST_F(ServoTaskTest, CreepsAlongTheEdgeToAGoalThatIsJustInReach) {
 }
 
 // Whatever is thrown at it, in any order: the command stays finite, within range and within rate.
-TEST_F(ServoTaskTest, NothingOnTheInputsBreaksTheTorqueLimits) {
+TEST_F(ServoTaskTest, AnyInputKeepsTheTorqueLimits) {
   std::mt19937_64 engine(51);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const double odd[] = {std::nan(""), std::numeric_limits<double>::infinity(), 1e300, -1e300, 0.0, 1e6};

@@ -185,7 +185,7 @@ void CheckDuration(const Case& c, const AxisMove& move) {
   }
 }
 
-TEST(AxisMovePropertyTest, AMillionRandomMovesKeepTheirLimitsAndArrive) {
+TEST(AxisMovePropertyTest, MillionRandomMovesKeepTheirLimitsAndArrive) {
   test::RandomStates random(64);
   Residuals worst;
   int waited = 0;

@@ -56,7 +56,7 @@ TEST(AxisMoveTest, IsAsFastAsTheLinearProgramme) {
   EXPECT_LE(below_error, 5e-5);
 }
 
-TEST(AxisMoveTest, AtItsGoalItStays) {
+TEST(AxisMoveTest, StartAtTheGoalStaysThere) {
   const AxisMove move = PlanAxisMove({1.5, 0.0, 0.0}, 1.5, {1.0, 1.0, 1.0});
   EXPECT_EQ(move.Duration(), 0.0);
   const AxisMove longer = PlanAxisMove({1.5, 0.0, 0.0}, 1.5, {1.0, 1.0, 1.0}, 4.0);
@@ -65,7 +65,7 @@ TEST(AxisMoveTest, AtItsGoalItStays) {
   EXPECT_EQ(longer.At(2.0).v, 0.0);
 }
 
-TEST(AxisMoveTest, WhatItCannotStopBeforeItComesBackTo) {
+TEST(AxisMoveTest, OvershootsAndReturnsWhenItCannotStopInTime) {
   const AxisMove move = PlanAxisMove({0.0, 1.0, 0.0}, 0.1, {1.0, 1.0, 10.0});
   double furthest = 0.0;
   ForEachState(move, [&](const AxisState& state) { furthest = std::max(furthest, state.x); });
@@ -74,7 +74,7 @@ TEST(AxisMoveTest, WhatItCannotStopBeforeItComesBackTo) {
   EXPECT_LT(move.At(move.Duration() - 1e-3).v, 0.0);
 }
 
-TEST(AxisMoveTest, BeyondItsVelocityLimitItBrakesOnTowardsANearGoal) {
+TEST(AxisMoveTest, AboveTheVelocityLimitBrakesToANearGoalWithoutAPause) {
   const AxisLimits limits{1.0, 2.0, 20.0};
   const VelocityChange stop = PlanVelocityChange(2.0, 0.0, 0.0, limits);
   const AxisMove move = PlanAxisMove({0.0, 2.0, 0.0}, stop.Travel(), limits);
@@ -94,7 +94,7 @@ TEST(AxisMoveTest, TakesALongerTimeByCruisingSlower) {
   EXPECT_NEAR(move.At(0.5 * T).v, 2.0 / T, 0.1);
 }
 
-TEST(AxisMoveTest, EasesOffItsBrakesWhenTheGoalIsALittleFurther) {
+TEST(AxisMoveTest, EasesItsBrakingWhenTheGoalIsSlightlyFurther) {
   const AxisLimits limits{2.0, 1.0, 10.0};
   const AxisState start{0.0, 1.0, -1.0};
   const VelocityChange stop = PlanVelocityChange(start.v, start.a, 0.0, limits);

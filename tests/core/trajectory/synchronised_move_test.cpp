@@ -59,7 +59,7 @@ double LargestUse(const SynchronisedMove& move, const Tasks& tasks, int samples)
   return worst;
 }
 
-TEST(SynchronisedMoveTest, FromAnyStateAllArriveTogetherWithinTheirLimits) {
+TEST(SynchronisedMoveTest, AxesArriveTogetherWithinLimitsFromAnyState) {
   test::RandomStates random(65);
   SynchronisedMove move;
   SynchronisedMove::States states;
@@ -93,7 +93,7 @@ TEST(SynchronisedMoveTest, FromAnyStateAllArriveTogetherWithinTheirLimits) {
   EXPECT_EQ(early, 0);
 }
 
-TEST(SynchronisedMoveTest, FromRestItGoesStraight) {
+TEST(SynchronisedMoveTest, PathFromRestIsStraight) {
   test::RandomStates random(66);
   SynchronisedMove move;
   SynchronisedMove::States states;
@@ -130,7 +130,7 @@ TEST(SynchronisedMoveTest, FromRestItGoesStraight) {
   EXPECT_GE(least_use, 0.9) << "some axis is always near one of its limits";
 }
 
-TEST(SynchronisedMoveTest, RefusesWhatItCannotPlan) {
+TEST(SynchronisedMoveTest, RefusesInvalidTasksAndKeepsItsPlan) {
   test::RandomStates random(67);
   const Tasks good = DrawTasks(random, false);
   SynchronisedMove move;

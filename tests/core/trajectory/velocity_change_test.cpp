@@ -49,7 +49,7 @@ TEST(VelocityChangeTest, EndsAtItsVelocityWithinItsLimits) {
 }
 
 // Told by its positions alone.
-TEST(VelocityChangeTest, AStopComesToRestWithinItsLimits) {
+TEST(VelocityChangeTest, StopComesToRestWithinItsLimits) {
   test::RandomStates random(61);
   double worst_start = 0.0;
   double worst_end = 0.0;
@@ -86,13 +86,13 @@ TEST(VelocityChangeTest, AStopComesToRestWithinItsLimits) {
   EXPECT_LE(worst_jerk, 1.0 + 1e-3);
 }
 
-TEST(VelocityChangeTest, AStopFromRestIsNothing) {
+TEST(VelocityChangeTest, StopFromRestHasZeroDuration) {
   const VelocityChange stop = PlanVelocityChange(0.0, 0.0, 0.0, {1.0, 5.0, 500.0});
   EXPECT_EQ(stop.Duration(), 0.0);
   EXPECT_EQ(stop.At(1.0).x, 0.0);
 }
 
-TEST(VelocityChangeTest, NothingToChangeIsNothing) {
+TEST(VelocityChangeTest, EqualVelocitiesGiveZeroDuration) {
   const VelocityChange change = PlanVelocityChange(0.5, 0.0, 0.5, {1.0, 2.0, 3.0});
   EXPECT_EQ(change.Duration(), 0.0);
   EXPECT_EQ(change.Travel(), 0.0);

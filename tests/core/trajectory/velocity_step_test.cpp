@@ -16,7 +16,7 @@ namespace {
 constexpr double kPeriodS = 1e-3;
 constexpr AxisLimits kLimits{2.0, 10.0, 400.0};  // a joint of the Panda
 
-TEST(VelocityStepTest, AsFastAsTheOptimumWithinTheLimitsAndWithoutOvershoot) {
+TEST(VelocityStepTest, MatchesTheTimeOptimumWithinLimitsWithoutOvershoot) {
   test::RandomStates random(11);
   int latest = 0;
   double most_over = 0.0;
@@ -45,7 +45,7 @@ TEST(VelocityStepTest, AsFastAsTheOptimumWithinTheLimitsAndWithoutOvershoot) {
   EXPECT_LT(most_over, 0.15 * kLimits.j_max * kPeriodS * kPeriodS);  // of a jerk step for a tick: the grid's
 }
 
-TEST(VelocityStepTest, FollowsAVelocityThatGoesOnChanging) {
+TEST(VelocityStepTest, FollowsAChangingVelocity) {
   AxisState state;
   double worst = 0.0;
   for (int k = 0; k < 3000; ++k) {
@@ -59,7 +59,7 @@ TEST(VelocityStepTest, FollowsAVelocityThatGoesOnChanging) {
   EXPECT_LT(worst, 1e-12);
 }
 
-TEST(VelocityStepTest, SaysWhichLimitActed) {
+TEST(VelocityStepTest, ReportsTheLimitThatActed) {
   const VelocityStep idle = StepVelocity({0.0, 1.0, 0.0}, 1.0, 0.0, kLimits, kPeriodS);
   EXPECT_FALSE(idle.at_a_max || idle.at_j_max);
   const VelocityStep ramp = StepVelocity({0.0, 0.0, 0.0}, 1.0, 0.0, kLimits, kPeriodS);
