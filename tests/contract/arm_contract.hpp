@@ -38,7 +38,7 @@ class ArmContract : public testing::Test {
 
 TYPED_TEST_SUITE_P(ArmContract);
 
-TYPED_TEST_P(ArmContract, StatesAreWholeAndPlain) {
+TYPED_TEST_P(ArmContract, StatesAreFiniteAndZeroPastTheLastJoint) {
   const hal::ArmState state = this->Read();
   const int n = this->fixture_.arm().num_joints();
   EXPECT_GE(n, 1);
@@ -55,7 +55,7 @@ TYPED_TEST_P(ArmContract, StatesAreWholeAndPlain) {
   }
 }
 
-TYPED_TEST_P(ArmContract, StampsAndSequencesGoForwardWithTime) {
+TYPED_TEST_P(ArmContract, StampsAndSequencesIncrease) {
   hal::ArmState before = this->Read();
   for (int i = 0; i < 10; ++i) {
     this->fixture_.Advance();
@@ -66,7 +66,7 @@ TYPED_TEST_P(ArmContract, StampsAndSequencesGoForwardWithTime) {
   }
 }
 
-TYPED_TEST_P(ArmContract, TheCommandStaysInForceUntilTheNext) {
+TYPED_TEST_P(ArmContract, CommandStaysInForceUntilTheNext) {
   ASSERT_TRUE(this->fixture_.arm().Write(this->Command(0.5)).ok());
   for (int i = 0; i < 3; ++i) {
     this->fixture_.Advance();
@@ -77,7 +77,7 @@ TYPED_TEST_P(ArmContract, TheCommandStaysInForceUntilTheNext) {
   EXPECT_EQ(this->Read().tau_applied[0], -0.25);
 }
 
-TYPED_TEST_P(ArmContract, ARefusedCommandChangesNothing) {
+TYPED_TEST_P(ArmContract, RefusedCommandLeavesTheLastOneInForce) {
   ASSERT_TRUE(this->fixture_.arm().Write(this->Command(0.5)).ok());
   hal::ArmCommand wrong_size = this->Command(9.0);
   wrong_size.num_joints += 1;
@@ -103,7 +103,7 @@ TYPED_TEST_P(ArmContract, StandsStillUnderZeroTorque) {
   }
 }
 
-TYPED_TEST_P(ArmContract, ATorqueMovesItsJointThatWay) {
+TYPED_TEST_P(ArmContract, PositiveTorqueMovesItsJointForward) {
   const double start = this->Read().q[0];
   ASSERT_TRUE(this->fixture_.arm().Write(this->Command(4.0)).ok());
   for (int i = 0; i < 100; ++i) {
@@ -131,8 +131,8 @@ TYPED_TEST_P(ArmContract, BrakesStopTheArm) {
   EXPECT_NEAR(this->Read().q[0], stopped, 2e-4);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(ArmContract, StatesAreWholeAndPlain, StampsAndSequencesGoForwardWithTime,
-                            TheCommandStaysInForceUntilTheNext, ARefusedCommandChangesNothing,
-                            StandsStillUnderZeroTorque, ATorqueMovesItsJointThatWay, BrakesStopTheArm);
+REGISTER_TYPED_TEST_SUITE_P(ArmContract, StatesAreFiniteAndZeroPastTheLastJoint, StampsAndSequencesIncrease,
+                            CommandStaysInForceUntilTheNext, RefusedCommandLeavesTheLastOneInForce,
+                            StandsStillUnderZeroTorque, PositiveTorqueMovesItsJointForward, BrakesStopTheArm);
 
 }  // namespace fovea::test

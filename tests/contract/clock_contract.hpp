@@ -26,7 +26,7 @@ TYPED_TEST_P(ClockContract, NeverGoesBack) {
   }
 }
 
-TYPED_TEST_P(ClockContract, WaitsUntilTheDeadlineAndNoShorter) {
+TYPED_TEST_P(ClockContract, WaitsAtLeastUntilTheDeadline) {
   hal::Clock& clock = this->fixture_.clock();
   for (int i = 1; i <= 5; ++i) {
     const std::int64_t deadline = clock.NowNs() / hal::kNsPerMs * hal::kNsPerMs + i * hal::kNsPerMs;
@@ -45,7 +45,7 @@ TYPED_TEST_P(ClockContract, ReturnsAtOnceWhenTheDeadlineHasPassed) {
   EXPECT_GE(clock.NowNs(), now);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(ClockContract, NeverGoesBack, WaitsUntilTheDeadlineAndNoShorter,
+REGISTER_TYPED_TEST_SUITE_P(ClockContract, NeverGoesBack, WaitsAtLeastUntilTheDeadline,
                             ReturnsAtOnceWhenTheDeadlineHasPassed);
 
 }  // namespace fovea::test

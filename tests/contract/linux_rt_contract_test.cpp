@@ -30,7 +30,7 @@ struct RecordRingFixture {
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(RecordRing, RecorderContract, RecordRingFixture);
 
-TEST(RecordRingTest, TwoThreadsLoseNothingSilently) {
+TEST(RecordRingTest, TwoThreadsTakeOrCountEveryRecord) {
   constexpr std::uint64_t kCount = 200'000;
   linux_rt::RecordRing ring(128);
   std::atomic<bool> done{false};
@@ -63,7 +63,7 @@ TEST(RecordRingTest, TwoThreadsLoseNothingSilently) {
 }
 
 // Whoever cannot keep a record does not get it again.
-TEST(RecordRingTest, WhatIsInHandWhenTakingFailsIsGone) {
+TEST(RecordRingTest, RecordOfAThrowingTakeIsNotGivenAgain) {
   linux_rt::RecordRing ring(8);
   hal::TickRecord record;
   for (record.tick = 0; record.tick < 4; ++record.tick) {

@@ -37,7 +37,7 @@ TYPED_TEST_P(RecorderContract, KeepsEveryRecordInOrder) {
   EXPECT_EQ(this->fixture_.dropped(), 0U);
 }
 
-TYPED_TEST_P(RecorderContract, WhatItCannotTakeIsDroppedAndCounted) {
+TYPED_TEST_P(RecorderContract, RecordsWithoutRoomAreDroppedAndCounted) {
   constexpr std::uint64_t kMany = 100'000;
   for (std::uint64_t i = 0; i < kMany; ++i) {
     this->fixture_.recorder().Record(this->Make(i));
@@ -52,6 +52,7 @@ TYPED_TEST_P(RecorderContract, WhatItCannotTakeIsDroppedAndCounted) {
   EXPECT_EQ(this->fixture_.Taken().size(), 1U);
 }
 
-REGISTER_TYPED_TEST_SUITE_P(RecorderContract, KeepsEveryRecordInOrder, WhatItCannotTakeIsDroppedAndCounted);
+REGISTER_TYPED_TEST_SUITE_P(RecorderContract, KeepsEveryRecordInOrder,
+                            RecordsWithoutRoomAreDroppedAndCounted);
 
 }  // namespace fovea::test

@@ -10,7 +10,7 @@
 namespace fovea::cortex_m7 {
 namespace {
 
-TEST(ByteRingTest, RefusesWhatFindsNoPlace) {
+TEST(ByteRingTest, RefusesAByteWithoutRoom) {
   ByteRing<4> ring;
   EXPECT_TRUE(ring.Empty());
   for (std::uint8_t i = 0; i < 4; ++i) {
@@ -28,7 +28,7 @@ TEST(ByteRingTest, RefusesWhatFindsNoPlace) {
   EXPECT_EQ(byte, 3);  // untouched
 }
 
-TEST(ByteRingTest, TwoThreadsLoseNothingSilently) {
+TEST(ByteRingTest, TwoThreadsTakeOrRefuseEveryByte) {
   constexpr std::uint32_t kCount = 300'000;
   ByteRing<16> ring;
   std::atomic<bool> done{false};

@@ -45,7 +45,7 @@ TEST(FeatureMailboxTest, IsEmptyAtFirstAndAfterTaking) {
   EXPECT_FALSE(mailbox.Take(m));
 }
 
-TEST(FeatureMailboxTest, TheNewestWins) {
+TEST(FeatureMailboxTest, TakeReturnsTheNewest) {
   FeatureMailbox mailbox;
   for (std::uint64_t i = 1; i <= 5; ++i) {
     mailbox.Put(Make(i));
@@ -57,7 +57,7 @@ TEST(FeatureMailboxTest, TheNewestWins) {
 }
 
 // A stamp that was wrong once must not keep out what comes after it.
-TEST(FeatureMailboxTest, AStampFromTheFutureHoldsNothingUp) {
+TEST(FeatureMailboxTest, FutureStampDoesNotBlockLaterFeatures) {
   FeatureMailbox mailbox;
   FeatureMeasurement odd = Make(5);
   odd.stamp_ns = INT64_MAX;
@@ -68,7 +68,7 @@ TEST(FeatureMailboxTest, AStampFromTheFutureHoldsNothingUp) {
   EXPECT_EQ(m.sequence, 6U);
 }
 
-TEST(FeatureMailboxTest, TwoThreadsNeverSeeAHalf) {
+TEST(FeatureMailboxTest, TwoThreadsNeverSeeATornFeature) {
   constexpr std::uint64_t kCount = 300'000;
   FeatureMailbox mailbox;
   std::atomic<bool> done{false};

@@ -23,7 +23,7 @@ TEST(ArmTest, RefusesAnotherNumberOfJoints) {
   EXPECT_TRUE(arm.written.empty());
 }
 
-TEST(ArmTest, RefusesATorqueThatIsNoNumber) {
+TEST(ArmTest, RefusesANonFiniteTorque) {
   test::FakeArm arm(7);
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     ArmCommand command;
@@ -36,7 +36,7 @@ TEST(ArmTest, RefusesATorqueThatIsNoNumber) {
   EXPECT_TRUE(arm.written.empty());
 }
 
-TEST(ArmTest, PassesOnWhatASensorGarbled) {
+TEST(ArmTest, PassesNonFiniteReadingsOn) {
   test::FakeArm arm(7);
   arm.state.q[2] = std::nan("");
   ArmState state;
@@ -44,7 +44,7 @@ TEST(ArmTest, PassesOnWhatASensorGarbled) {
   EXPECT_TRUE(std::isnan(state.q[2]));
 }
 
-TEST(ArmTest, LeavesTheStateAloneOnAnError) {
+TEST(ArmTest, KeepsTheStateOnAnError) {
   test::FakeArm arm(7);
   arm.read_status = Status(StatusCode::kTimeout);
   ArmState state;
@@ -108,7 +108,7 @@ static_assert(!std::is_destructible_v<Arm> && !std::is_destructible_v<Camera> &&
               !std::is_destructible_v<FeatureSink> && !std::is_destructible_v<TickProbe>);
 static_assert(!std::is_copy_constructible_v<test::FakeArm>);
 
-TEST(EventsTest, EveryNameIsThereOnceAndEveryCauseHasAKey) {
+TEST(EventsTest, NamesAreUniqueAndEveryCauseHasAKey) {
   std::set<std::string> names;
   for (int i = 0; i < kNumFaults; ++i) {
     const auto fault = static_cast<Fault>(i);
@@ -134,7 +134,7 @@ TEST(EventsTest, EveryNameIsThereOnceAndEveryCauseHasAKey) {
   EXPECT_STREQ(Name(static_cast<Mode>(kNumModes)), "unknown") << "a mode that is not counted";
 }
 
-TEST(EventsTest, EveryReasonHasAName) {
+TEST(EventsTest, EveryHoldReasonHasAUniqueName) {
   std::set<std::string> names;
   for (int i = 0; i <= static_cast<int>(HoldReason::kNotFollowed); ++i) {
     EXPECT_TRUE(names.insert(Name(static_cast<HoldReason>(i))).second);
@@ -143,7 +143,7 @@ TEST(EventsTest, EveryReasonHasAName) {
 }
 
 // Bytes of a line or a file may be none of an enumeration.
-TEST(EventsTest, WhatIsNoneIsUnknown) {
+TEST(EventsTest, ValueOutOfRangeIsNamedUnknown) {
   EXPECT_STREQ(Name(static_cast<HoldReason>(200)), "unknown");
   EXPECT_STREQ(Name(static_cast<Fault>(200)), "unknown");
   EXPECT_STREQ(Name(static_cast<Limit>(200)), "unknown");
@@ -152,7 +152,7 @@ TEST(EventsTest, WhatIsNoneIsUnknown) {
   EXPECT_STREQ(ToString(static_cast<StatusCode>(200)), "unknown status");
 }
 
-TEST(StatusTest, EveryCodeHasWords) {
+TEST(StatusTest, EveryCodeHasUniqueWords) {
   std::set<std::string> words;
   for (int i = 0; i <= static_cast<int>(StatusCode::kOutOfRange); ++i) {
     EXPECT_TRUE(words.insert(ToString(static_cast<StatusCode>(i))).second);

@@ -41,7 +41,7 @@ class DeafRecorder final : public hal::Recorder {
   void Record(const hal::TickRecord& /*record*/) noexcept override {}
 };
 
-TEST(ServoLoopAsks, FromAnotherThread) {
+TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
   constexpr int kAsks = 1000;
   constexpr int kPiece = 1000;  // ticks
   CountingStep step;
@@ -88,7 +88,7 @@ TEST(ServoLoopAsks, FromAnotherThread) {
 }
 
 // Leave that is given and runs out while the loop runs: no request is taken without it.
-TEST(ServoLoopAsks, LeaveFromAnotherThread) {
+TEST(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
   constexpr int kLeases = 1000;
   constexpr int kPiece = 1000;  // ticks
   CountingStep step;

@@ -202,7 +202,7 @@ class AllocatingRecorder final : public hal::Recorder {
   }
 };
 
-TEST_F(TickHeapTest, AHeapCallInTheTickIsSeen) {
+TEST_F(TickHeapTest, HeapCallInTheTickIsCounted) {
   SteppingClock clock([&](std::int64_t) { arm_.Advance(); });
   AllocatingRecorder recorder;
   task::ServoLoop loop(task_, arm_, clock, mailbox_, recorder, meter_);

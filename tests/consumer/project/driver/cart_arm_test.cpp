@@ -94,7 +94,7 @@ INSTANTIATE_TYPED_TEST_SUITE_P(Cart, ArmContract, CartFixture);
 
 namespace {
 
-TEST(CartArmTest, OfManyStatesTheNewestCounts) {
+TEST(CartArmTest, ReadReturnsTheNewestOfManyStates) {
   Bench bench;
   for (int i = 0; i < 200; ++i) {  // more than the driver's buffer holds
     bench.cart.Advance();
@@ -104,7 +104,7 @@ TEST(CartArmTest, OfManyStatesTheNewestCounts) {
   EXPECT_EQ(state.sequence, 200U);
 }
 
-TEST(CartArmTest, AStateInTwoPartsIsPutTogether) {
+TEST(CartArmTest, StateReceivedInTwoPartsIsAssembled) {
   Bench bench;
   CartState next = bench.cart.state();
   next.count = 9;
@@ -118,7 +118,7 @@ TEST(CartArmTest, AStateInTwoPartsIsPutTogether) {
   EXPECT_EQ(state.sequence, 9U);
 }
 
-TEST(CartArmTest, SilenceAButtonAndALostLine) {
+TEST(CartArmTest, SilenceTimesOutStopButtonFaultsLostLineDisconnects) {
   Bench silent(/*timeout_ns=*/0);
   hal::ArmState state;
   static_cast<void>(silent.driver.Read(state));  // takes the first
@@ -150,7 +150,7 @@ class CartClock final : public hal::Clock {
   Cart& cart_;
 };
 
-TEST(CartArmTest, TheServoHoldsIt) {
+TEST(CartArmTest, ServoHoldsTheCartWithoutHeapCalls) {
   const robots::Robot robot = robots::LoadRobot(ARM_FILE);
   config::ServoConfig config;
   config.arm = robot.model;

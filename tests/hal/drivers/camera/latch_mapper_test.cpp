@@ -75,7 +75,7 @@ TEST(LatchMapper, WithoutJitterItIsExact) {
   EXPECT_LE(worst_ns, 2);  // what rounding leaves
 }
 
-TEST(LatchMapper, TheFirstReadingIsEnough) {
+TEST(LatchMapper, MapsAfterTheFirstReading) {
   LatchMapper mapper;
   EXPECT_FALSE(mapper.Map(0).has_value());
   mapper.Add(1000, 500'000, 3000);
@@ -85,7 +85,7 @@ TEST(LatchMapper, TheFirstReadingIsEnough) {
 
 // Quick readings at the beginning, then answers that are all too slow: with 50 ppm it is 3 ms off a minute
 // later.
-TEST(LatchMapper, AClockThatIsNotReadAnyMoreIsNotBelieved) {
+TEST(LatchMapper, ClockNotReadForTooLongIsNotUsed) {
   LatchMapper mapper;
   const Device device{50e-6, -77 * hal::kNsPerSecond};
   std::int64_t now_ns = kBeginNs;
@@ -113,7 +113,7 @@ TEST(LatchMapper, AClockThatIsNotReadAnyMoreIsNotBelieved) {
   EXPECT_EQ(mapper.restarts(), 0U);
 }
 
-TEST(LatchMapper, OfWhichTheDriftIsKnownIsBelievedForLonger) {
+TEST(LatchMapper, KnownDriftExtendsTheUsableTime) {
   LatchMapper mapper;
   Device device{50e-6, -77 * hal::kNsPerSecond};
   static_cast<void>(WorstNs(mapper, device, 0, 30));
@@ -126,7 +126,7 @@ TEST(LatchMapper, OfWhichTheDriftIsKnownIsBelievedForLonger) {
   EXPECT_FALSE(after(10.1).has_value());
 }
 
-TEST(LatchMapper, ASlowAnswerSaysNothing) {
+TEST(LatchMapper, SlowReadingIsIgnored) {
   LatchMapper mapper;
   mapper.Add(0, 1'000'000, 6 * hal::kNsPerMs);
   mapper.Add(10, 1'000'000, 5);
@@ -134,7 +134,7 @@ TEST(LatchMapper, ASlowAnswerSaysNothing) {
   EXPECT_EQ(mapper.readings(), 0U);
 }
 
-TEST(LatchMapper, ADeviceThatStartsAnewIsLearntAnew) {
+TEST(LatchMapper, RestartedDeviceClockIsLearnedAgain) {
   LatchMapper mapper;
   Device device{0.0, 1000 * hal::kNsPerSecond};
   static_cast<void>(WorstNs(mapper, device, 0, 20));
@@ -144,7 +144,7 @@ TEST(LatchMapper, ADeviceThatStartsAnewIsLearntAnew) {
   EXPECT_EQ(mapper.restarts(), 1U);
 }
 
-TEST(LatchMapper, ADeviceThatIsSetIsLearntAnew) {
+TEST(LatchMapper, SteppedDeviceClockIsLearnedAgain) {
   for (const std::int64_t step_ns : {150 * hal::kNsPerMs, -30 * hal::kNsPerMs}) {
     LatchMapper mapper;
     Device device{0.0, 1000 * hal::kNsPerSecond};
@@ -157,7 +157,7 @@ TEST(LatchMapper, ADeviceThatIsSetIsLearntAnew) {
   }
 }
 
-TEST(LatchMapper, WhatIsNoStampSaysNothing) {
+TEST(LatchMapper, InvalidStampIsIgnored) {
   LatchMapper mapper;
   for (const std::int64_t none_ns : {INT64_MAX, INT64_MIN, kMostStampNs + 1, -kMostStampNs - 1}) {
     mapper.Add(0, none_ns, 10);

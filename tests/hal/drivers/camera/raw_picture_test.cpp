@@ -25,7 +25,7 @@ std::vector<std::uint8_t> Bytes(std::size_t bytes_per_pixel, int padding = 0) {
 cv::Vec3b Middle(const cv::Mat& picture) { return picture.at<cv::Vec3b>(kHeight / 2, kWidth / 2); }
 
 // The first row and the second of each Bayer pattern, as GenICam's names say them.
-TEST(RawPicture, BayerPatternsAreReadAsTheirNamesSay) {
+TEST(RawPicture, BayerPatternsMatchTheirNames) {
   for (const auto& [name, pattern] :
        {std::pair{"BayerRG8", "RGGB"}, {"BayerGR8", "GRBG"}, {"BayerGB8", "GBRG"}, {"BayerBG8", "BGGR"}}) {
     std::vector<std::uint8_t> bytes = Bytes(1);
@@ -46,7 +46,7 @@ TEST(RawPicture, BayerPatternsAreReadAsTheirNamesSay) {
   }
 }
 
-TEST(RawPicture, ColoursKeepTheirOrder) {
+TEST(RawPicture, RgbAndBgrKeepTheirChannelOrder) {
   for (const char* name : {"RGB8", "BGR8"}) {
     std::vector<std::uint8_t> bytes = Bytes(3);
     for (std::size_t i = 0; i < bytes.size(); ++i) {
@@ -60,7 +60,7 @@ TEST(RawPicture, ColoursKeepTheirOrder) {
 }
 
 // ITU-R BT.601: the colour's luma and chroma, by its own formula.
-TEST(RawPicture, YuyvIsOfBt601) {
+TEST(RawPicture, YuyvIsConvertedByBt601) {
   const double b = kColour[0] / 255.0;
   const double g = kColour[1] / 255.0;
   const double r = kColour[2] / 255.0;
@@ -78,7 +78,7 @@ TEST(RawPicture, YuyvIsOfBt601) {
   }
 }
 
-TEST(RawPicture, RowsMayBePadded) {
+TEST(RawPicture, PaddedRowsAreUnpacked) {
   constexpr int kStride = kWidth + 5;
   std::vector<std::uint8_t> bytes = Bytes(1, 5);
   for (int v = 0; v < kHeight; ++v) {
@@ -94,7 +94,7 @@ TEST(RawPicture, RowsMayBePadded) {
   EXPECT_EQ(frame.width_px, kWidth);
 }
 
-TEST(RawPicture, ImpossibleOnesAreRefused) {
+TEST(RawPicture, ImpossibleGeometryIsRefused) {
   const std::vector<std::uint8_t> bytes = Bytes(1);
   cv::Mat out;
   EXPECT_FALSE(Unpack({RawFormat::kMono8, kWidth, kHeight + 1, kWidth, bytes}, out)) << "too few bytes";
@@ -107,7 +107,7 @@ TEST(RawPicture, ImpossibleOnesAreRefused) {
   EXPECT_FALSE(FormatOf("Mono12"));
 }
 
-TEST(FrameCounter, CountsOverTheEndOfA16BitNumber) {
+TEST(FrameCounter, CountsAcrossA16BitWrap) {
   FrameCounter counter(1, 65535);
   EXPECT_EQ(counter.Count(65534), 0U);
   EXPECT_EQ(counter.Count(65535), 1U);
@@ -120,7 +120,7 @@ TEST(FrameCounter, CountsOverTheEndOfA16BitNumber) {
   EXPECT_EQ(counter.lost(), 2U);
 }
 
-TEST(FrameCounter, CountsAllOf64Bits) {
+TEST(FrameCounter, CountsAcrossA64BitWrap) {
   FrameCounter counter;
   EXPECT_EQ(counter.Count(UINT64_MAX), 0U);
   EXPECT_EQ(counter.Count(1), 2U);
@@ -128,7 +128,7 @@ TEST(FrameCounter, CountsAllOf64Bits) {
   EXPECT_EQ(counter.Count(1), 3U);
 }
 
-TEST(FrameCounter, ANumberThatLiesIsTheNext) {
+TEST(FrameCounter, ImplausibleNumberCountsAsTheNextFrame) {
   FrameCounter counter;
   EXPECT_EQ(counter.Count(0), 0U);
   EXPECT_EQ(counter.Count(std::uint64_t{1} << 32U), std::uint64_t{1} << 32U) << "as many may get lost";
@@ -136,7 +136,7 @@ TEST(FrameCounter, ANumberThatLiesIsTheNext) {
   EXPECT_EQ(counter.Count(std::uint64_t{1} << 62U), (std::uint64_t{1} << 32U) + 2);
 }
 
-TEST(RawPicture, PaddingMakesRowsThatArePossible) {
+TEST(RawPicture, PaddingSetsOnlyPossibleStrides) {
   RawPicture raw{RawFormat::kBgr8, 4, 2, 0, {}};
   ASSERT_TRUE(SetPadding(5, raw));
   EXPECT_EQ(raw.stride_bytes, 17);

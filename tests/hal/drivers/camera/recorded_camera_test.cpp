@@ -56,7 +56,7 @@ TEST_F(RecordedCameraTest, PlaysAFolderInTheOrderOfItsNames) {
   EXPECT_EQ(camera.Acquire(frame, 0).code(), hal::StatusCode::kClosed);
 }
 
-TEST_F(RecordedCameraTest, PlaysAVideo) {
+TEST_F(RecordedCameraTest, PlaysAVideoAtItsOwnRate) {
   const fs::path path = folder_ / "film.avi";
   cv::VideoWriter writer(path.string(), cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25.0, {64, 48});
   ASSERT_TRUE(writer.isOpened());
@@ -74,7 +74,7 @@ TEST_F(RecordedCameraTest, PlaysAVideo) {
   EXPECT_EQ(camera.Acquire(frame, 0).code(), hal::StatusCode::kClosed);
 }
 
-TEST_F(RecordedCameraTest, KeepsItsTimes) {
+TEST_F(RecordedCameraTest, FrameNotYetDueTimesOut) {
   Write("a.png", 10);
   Write("b.png", 20);
   timespec now{};
@@ -85,7 +85,7 @@ TEST_F(RecordedCameraTest, KeepsItsTimes) {
   EXPECT_EQ(camera.Acquire(frame, hal::kNsPerMs).code(), hal::StatusCode::kTimeout) << "it is due in an hour";
 }
 
-TEST_F(RecordedCameraTest, APictureThatIsNoneOrOfAnotherSizeIsAFault) {
+TEST_F(RecordedCameraTest, BrokenOrDifferentlySizedPictureIsADeviceFault) {
   Write("a.png", 10);
   Write("b.png", 20, {16, 16});
   RecordedCamera other({.path = folder_, .wait = false});
@@ -98,7 +98,7 @@ TEST_F(RecordedCameraTest, APictureThatIsNoneOrOfAnotherSizeIsAFault) {
   EXPECT_EQ(broken.Acquire(frame, 0).code(), hal::StatusCode::kDeviceFault);
 }
 
-TEST_F(RecordedCameraTest, WhatCannotBePlayedIsRefusedWithAReason) {
+TEST_F(RecordedCameraTest, UnplayableSourceIsRefusedWithAReason) {
   EXPECT_NE(ErrorOf(folder_).find("there is no .png"), std::string::npos);
   EXPECT_NE(ErrorOf(folder_ / "none").find("no such folder or file"), std::string::npos);
   std::ofstream(folder_ / "film.mp4") << "no video";

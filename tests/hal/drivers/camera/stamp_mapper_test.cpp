@@ -87,7 +87,7 @@ TEST(StampMapper, StampsRiseAndNeverComeAfterTheirArrival) {
 }
 
 // A camera that says the same again, or a moment before.
-TEST(StampMapper, WhatDoesNotRiseIsMadeToRise) {
+TEST(StampMapper, RepeatedOrEarlierStampIsMadeToRise) {
   StampMapper mapper(0);
   const std::int64_t first_ns = mapper.Map(10 * kFrameNs, 10 * kFrameNs);
   const std::int64_t again_ns = mapper.Map(10 * kFrameNs, 11 * kFrameNs);
@@ -97,7 +97,7 @@ TEST(StampMapper, WhatDoesNotRiseIsMadeToRise) {
 }
 
 // A camera that was unplugged counts from zero again.
-TEST(StampMapper, ADeviceThatStartsAnewIsLearntAnew) {
+TEST(StampMapper, RestartedDeviceClockIsLearnedAgain) {
   StampMapper mapper(kTransportNs);
   Device device{0.0, 1000 * hal::kNsPerSecond};
   static_cast<void>(WorstNs(mapper, device, 0, 600));
@@ -112,7 +112,7 @@ TEST(StampMapper, ADeviceThatStartsAnewIsLearntAnew) {
 
 // A clock that is set, by less than a second: forwards it shows with the first picture, since none comes
 // before it can; backwards when all of a second were late.
-TEST(StampMapper, ADeviceThatIsSetIsLearntAnew) {
+TEST(StampMapper, SteppedDeviceClockIsLearnedAgain) {
   for (const std::int64_t step_ns : {150 * hal::kNsPerMs, -150 * hal::kNsPerMs, -30 * hal::kNsPerMs}) {
     StampMapper mapper(kTransportNs);
     Device device{20e-6, -77 * hal::kNsPerSecond};
@@ -132,7 +132,7 @@ TEST(StampMapper, ADeviceThatIsSetIsLearntAnew) {
 }
 
 // Pictures that a busy network brings late, for most of a second.
-TEST(StampMapper, ABusyNetworkIsNoNewClock) {
+TEST(StampMapper, BusyNetworkIsNotTakenForANewClock) {
   StampMapper mapper(kTransportNs);
   const Device device{0.0, 0};
   for (int k = 0; k < 30 * 60; ++k) {
@@ -144,7 +144,7 @@ TEST(StampMapper, ABusyNetworkIsNoNewClock) {
   EXPECT_EQ(mapper.restarts(), 0U);
 }
 
-TEST(StampOfTicks, IsExactAndHasRoom) {
+TEST(StampOfTicks, IsExactOrRefusedWhenOutOfRange) {
   EXPECT_EQ(StampOfTicks(123'456'789'012'345'678, 1.0), 123'456'789'012'345'678);
   EXPECT_EQ(StampOfTicks(10'000'000'000'000'001, 8.0), 80'000'000'000'000'008)
       << "125 MHz for two and a half years";
@@ -161,7 +161,7 @@ TEST(StampOfTicks, IsExactAndHasRoom) {
 }
 
 // A stamp that no clock shows: its arrival is taken, and what is known of the clock stays.
-TEST(StampMapper, WhatIsNoStampCountsAsItsArrival) {
+TEST(StampMapper, InvalidStampIsReplacedByTheArrival) {
   StampMapper mapper(kTransportNs);
   EXPECT_EQ(mapper.Map(kFrameNs, 2 * kFrameNs), 2 * kFrameNs - kTransportNs);
   std::int64_t arrival_ns = 2 * kFrameNs;

@@ -5,7 +5,7 @@
 namespace fovea::test {
 namespace {
 
-TEST_F(FrankaArmTest, AStateComesThroughAsItIs) {
+TEST_F(FrankaArmTest, StateIsPassedOnUnchanged) {
   for (std::size_t i = 0; i < 7; ++i) {
     const auto k = static_cast<double>(i);
     robot_.state.q[i] = 0.1 + k;
@@ -28,7 +28,7 @@ TEST_F(FrankaArmTest, AStateComesThroughAsItIs) {
   EXPECT_EQ(state_.q[7], 0.0);
 }
 
-TEST_F(FrankaArmTest, AMotionIsAskedForOnceAndEachOfItsStatesAnsweredOnce) {
+TEST_F(FrankaArmTest, MoveIsSentOnceAndEachStateAnsweredOnce) {
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(0.5).ok());
   EXPECT_EQ(arm_->phase(), MotionPhase::kStarting);
@@ -60,7 +60,7 @@ TEST_F(FrankaArmTest, AMotionIsAskedForOnceAndEachOfItsStatesAnsweredOnce) {
   EXPECT_EQ(arm_->counters().repeated_commands, 0U);
 }
 
-TEST_F(FrankaArmTest, TheTorqueRateIsTakenFromWhatTheRobotApplies) {
+TEST_F(FrankaArmTest, TorqueRateStartsFromTheAppliedTorque) {
   Start();
   ASSERT_TRUE(Write(10.0).ok());
   EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 1.0);
@@ -80,7 +80,7 @@ TEST_F(FrankaArmTest, TheTorqueRateIsTakenFromWhatTheRobotApplies) {
   EXPECT_EQ(arm_->counters().rate_limited, 4U);
 }
 
-TEST_F(FrankaArmTest, TheLastCommandAnswersWhatTheLoopLeftOpen) {
+TEST_F(FrankaArmTest, StateWithoutACommandIsAnsweredWithTheLastOne) {
   Start();
   ASSERT_TRUE(Write(0.5).ok());
   EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 0.5);
@@ -122,7 +122,7 @@ TEST_F(FrankaArmTest, LostLateRepeatedShortAndForeignDatagramsAreCounted) {
 }
 
 // Whoever else is on the network: a state from another address is none.
-TEST_F(FrankaArmTest, AStateFromElsewhereIsNotTheRobots) {
+TEST_F(FrankaArmTest, StateFromAnotherAddressIsIgnoredAndCounted) {
   ASSERT_TRUE(Next().ok());
   const std::uint64_t newest = robot_.state.message_id - 1;
   robot_.SendForeignState(100);
@@ -131,7 +131,7 @@ TEST_F(FrankaArmTest, AStateFromElsewhereIsNotTheRobots) {
   EXPECT_EQ(arm_->counters().foreign, 1U);
 }
 
-TEST_F(FrankaArmTest, SilenceIsATimeoutThatLeavesTheStateAsItWas) {
+TEST_F(FrankaArmTest, SilenceTimesOutAndKeepsTheState) {
   ASSERT_TRUE(Next().ok());
   const hal::ArmState before = state_;
   EXPECT_EQ(arm_->Read(state_).code(), StatusCode::kTimeout);
@@ -140,7 +140,7 @@ TEST_F(FrankaArmTest, SilenceIsATimeoutThatLeavesTheStateAsItWas) {
   EXPECT_TRUE(Next().ok()) << "and goes on";
 }
 
-TEST_F(FrankaArmTest, ARobotThatClosesIsGone) {
+TEST_F(FrankaArmTest, ClosedConnectionIsReportedAsDisconnected) {
   Start();
   robot_.Close();
   hal::Status status = hal::Status::Ok();
@@ -152,7 +152,7 @@ TEST_F(FrankaArmTest, ARobotThatClosesIsGone) {
   EXPECT_EQ(Write(0.0).code(), StatusCode::kDisconnected);
 }
 
-TEST_F(FrankaArmTest, GarbageInMidMotionEndsTheConnection) {
+TEST_F(FrankaArmTest, GarbageDuringAMotionEndsTheConnection) {
   Start();
   robot_.SendRaw(std::vector<std::byte>(20, std::byte{0xFF}));
   hal::Status status = hal::Status::Ok();
@@ -163,7 +163,7 @@ TEST_F(FrankaArmTest, GarbageInMidMotionEndsTheConnection) {
 }
 
 // A message that says that it is longer than any is not waited for.
-TEST_F(FrankaArmTest, AMessageThatIsTooLongEndsTheConnection) {
+TEST_F(FrankaArmTest, TooLongMessageEndsTheConnection) {
   Start();
   franka::Header header;
   header.command = franka::Command::kMove;
@@ -177,7 +177,7 @@ TEST_F(FrankaArmTest, AMessageThatIsTooLongEndsTheConnection) {
   EXPECT_STREQ(status.where(), "the robot sent what is no message");
 }
 
-TEST_F(FrankaArmTest, BrakesFinishTheMotionAndTheirReleaseStartsANewOne) {
+TEST_F(FrankaArmTest, BrakingFinishesTheMotionAndReleaseStartsANewOne) {
   Start();
   ASSERT_TRUE(Write(0.5).ok());
   EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 0);
@@ -198,7 +198,7 @@ TEST_F(FrankaArmTest, BrakesFinishTheMotionAndTheirReleaseStartsANewOne) {
 }
 
 // A robot takes the end of a motion at speed for a fault of its client.
-TEST_F(FrankaArmTest, AMovingArmIsSlowedDownBeforeItsMotionIsFinished) {
+TEST_F(FrankaArmTest, MovingArmIsSlowedDownBeforeItsMotionIsFinished) {
   Start();
   ASSERT_TRUE(Write(0.0).ok());
   EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 0);
@@ -221,7 +221,7 @@ TEST_F(FrankaArmTest, AMovingArmIsSlowedDownBeforeItsMotionIsFinished) {
   EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "once said, it is said";
 }
 
-TEST_F(FrankaArmTest, AnArmThatNeverComesToRestIsFinishedAfterHalfASecond) {
+TEST_F(FrankaArmTest, ArmThatNeverRestsIsFinishedAfterHalfASecond) {
   Start();
   ASSERT_TRUE(Write(0.0).ok());
   ASSERT_TRUE(robot_.TakeCommand().has_value());
@@ -236,7 +236,7 @@ TEST_F(FrankaArmTest, AnArmThatNeverComesToRestIsFinishedAfterHalfASecond) {
   EXPECT_EQ(braked, 500);
 }
 
-TEST_F(FrankaArmTest, StopEndsTheMotionInOrder) {
+TEST_F(FrankaArmTest, StopFinishesTheMotionAndDisconnects) {
   Start();
   std::jthread other([this] {
     for (int k = 0; k < 200; ++k) {
@@ -256,7 +256,7 @@ TEST_F(FrankaArmTest, StopEndsTheMotionInOrder) {
   EXPECT_EQ(arm_->Read(state_).code(), StatusCode::kDisconnected);
 }
 
-TEST_F(FrankaArmTest, TheLoopTakesNothingFromTheHeap) {
+TEST_F(FrankaArmTest, ReadAndWriteMakeNoHeapCalls) {
 #ifdef FOVEA_SANITIZED
   GTEST_SKIP() << "a sanitizer has the heap to itself";
 #endif
@@ -280,7 +280,7 @@ TEST_F(FrankaArmTest, TheLoopTakesNothingFromTheHeap) {
   EXPECT_EQ(arm_->phase(), MotionPhase::kFailed);
 }
 
-TEST(FrankaArm, WithoutLeaveToMoveNothingIsCommanded) {
+TEST(FrankaArm, WithoutAllowMotionNothingIsCommanded) {
   FakeRobot robot;
   franka::FrankaConfig config = ConfigFor(robot);
   config.allow_motion = false;

@@ -11,7 +11,7 @@ struct RobotClockFixture {
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(RobotClock, ClockContract, RobotClockFixture);
 
-TEST(RobotClockTest, ShowsTheNewestState) {
+TEST(RobotClockTest, OlderStateDoesNotTurnItBack) {
   franka::RobotClock clock;
   clock.Advance(7);
   clock.Advance(3);

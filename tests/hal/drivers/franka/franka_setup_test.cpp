@@ -20,7 +20,7 @@ std::string Refusal(FakeRobot& robot, const std::function<void()>& script) {
   return {};
 }
 
-TEST(FrankaSetUp, AsksForWhatTheConfigurationSays) {
+TEST(FrankaSetUp, SendsTheConfiguredSettings) {
   FakeRobot robot;
   franka::FrankaConfig config = ConfigFor(robot);
   config.load.mass = 0.7;
@@ -58,7 +58,7 @@ TEST(FrankaSetUp, AsksForWhatTheConfigurationSays) {
   EXPECT_EQ(arm.num_joints(), 7);
 }
 
-TEST(FrankaSetUp, NobodyListens) {
+TEST(FrankaSetUp, NoListenerIsReported) {
   franka::FrankaConfig config;
   config.host = "127.0.0.1";
   {
@@ -74,7 +74,7 @@ TEST(FrankaSetUp, NobodyListens) {
   }
 }
 
-TEST(FrankaSetUp, AHostThatIsNone) {
+TEST(FrankaSetUp, UnknownHostIsReported) {
   franka::FrankaConfig config;
   config.host = "no such host";
   try {
@@ -85,7 +85,7 @@ TEST(FrankaSetUp, AHostThatIsNone) {
   }
 }
 
-TEST(FrankaSetUp, AnotherVersion) {
+TEST(FrankaSetUp, AnotherProtocolVersionIsRefused) {
   FakeRobot robot;
   EXPECT_THAT(Refusal(robot,
                       [&] {
@@ -96,12 +96,12 @@ TEST(FrankaSetUp, AnotherVersion) {
               HasSubstr("it speaks version 4 of the Franka Control Interface, this driver version 5"));
 }
 
-TEST(FrankaSetUp, Silence) {
+TEST(FrankaSetUp, SilentRobotTimesOut) {
   FakeRobot robot;
   EXPECT_THAT(Refusal(robot, [&] { robot.Accept(); }), HasSubstr("no answer to Connect within 300 ms"));
 }
 
-TEST(FrankaSetUp, HalfAnAnswer) {
+TEST(FrankaSetUp, IncompleteAnswerTimesOut) {
   FakeRobot robot;
   EXPECT_THAT(Refusal(robot,
                       [&] {
@@ -114,7 +114,7 @@ TEST(FrankaSetUp, HalfAnAnswer) {
               HasSubstr("no whole answer to Connect within 300 ms"));
 }
 
-TEST(FrankaSetUp, Garbage) {
+TEST(FrankaSetUp, GarbageAnswerIsRefused) {
   FakeRobot robot;
   EXPECT_THAT(Refusal(robot,
                       [&] {
@@ -125,7 +125,7 @@ TEST(FrankaSetUp, Garbage) {
               HasSubstr("Connect was answered with what is no message"));
 }
 
-TEST(FrankaSetUp, AnAnswerOfTheWrongLength) {
+TEST(FrankaSetUp, AnswerOfTheWrongLengthIsRefused) {
   FakeRobot robot;
   EXPECT_THAT(Refusal(robot,
                       [&] {
@@ -135,7 +135,7 @@ TEST(FrankaSetUp, AnAnswerOfTheWrongLength) {
               HasSubstr("Connect was answered with 13 bytes; 15 are expected"));
 }
 
-TEST(FrankaSetUp, ClosedAtOnce) {
+TEST(FrankaSetUp, ConnectionClosedAtConnectIsReported) {
   FakeRobot robot;
   EXPECT_THAT(Refusal(robot,
                       [&] {
@@ -145,7 +145,7 @@ TEST(FrankaSetUp, ClosedAtOnce) {
               HasSubstr("it closed the connection at Connect; is another client in control?"));
 }
 
-TEST(FrankaSetUp, ARefusedSetter) {
+TEST(FrankaSetUp, RefusedSetterIsNamed) {
   FakeRobot robot;
   EXPECT_THAT(Refusal(robot,
                       [&] {
@@ -156,7 +156,7 @@ TEST(FrankaSetUp, ARefusedSetter) {
               HasSubstr("SetCollisionBehavior is refused: invalid argument"));
 }
 
-TEST(FrankaSetUp, NoStates) {
+TEST(FrankaSetUp, RobotSendingNoStatesIsReported) {
   FakeRobot robot;
   EXPECT_THAT(Refusal(robot,
                       [&] {
@@ -169,7 +169,7 @@ TEST(FrankaSetUp, NoStates) {
               HasSubstr("it sends no states to UDP port"));
 }
 
-TEST(FrankaSetUp, APortThatIsTaken) {
+TEST(FrankaSetUp, OccupiedPortIsReported) {
   const franka::TcpListener first(kLoopback);
   try {
     const franka::TcpListener second({kLoopback.ip, first.port()});

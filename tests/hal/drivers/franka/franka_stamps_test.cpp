@@ -41,7 +41,7 @@ TEST(FrankaArm, StampsFollowTheEarliestArrivals) {
 }
 
 // A controller whose time stood still for 80 ms is believed again within a second, not at 0.2 ms a second.
-TEST(FrankaArm, AClockThatStoodStillIsLearntAnew) {
+TEST(FrankaArm, StalledRobotClockIsLearnedAgain) {
   Connected connected;
   connected.Next();
   std::this_thread::sleep_for(80ms);

@@ -4,7 +4,7 @@
 namespace fovea::test {
 namespace {
 
-TEST_F(FrankaArmTest, AReflexStopsAllUntilRecoveryAndTheNewStartIsNoStep) {
+TEST_F(FrankaArmTest, ReflexStopsUntilRecoveryAndRestartIsWithoutAStep) {
   Start();
   ASSERT_TRUE(Write(0.5).ok());
   ASSERT_TRUE(robot_.TakeCommand().has_value());
@@ -41,7 +41,7 @@ TEST_F(FrankaArmTest, AReflexStopsAllUntilRecoveryAndTheNewStartIsNoStep) {
 }
 
 // Of all that may be wrong then, that nobody but a person can help is the one to know.
-TEST_F(FrankaArmTest, ARobotThatNeedsAPersonSaysSoUntilItIsHelped) {
+TEST_F(FrankaArmTest, ManualRecoveryIsReportedUntilItIsDone) {
   for (const auto& [answer, says] : {std::pair{2, "the robot needs a person to recover it"},
                                      std::pair{1, "the robot cannot recover now"}}) {
     SCOPED_TRACE(says);
@@ -61,7 +61,7 @@ TEST_F(FrankaArmTest, ARobotThatNeedsAPersonSaysSoUntilItIsHelped) {
   }
 }
 
-TEST_F(FrankaArmTest, AMotionThatIsRefusedOrBrokenOffSaysWhy) {
+TEST_F(FrankaArmTest, RefusedOrAbortedMotionReportsTheReason) {
   const struct {
     int answer;
     const char* says;
@@ -84,7 +84,7 @@ TEST_F(FrankaArmTest, AMotionThatIsRefusedOrBrokenOffSaysWhy) {
   }
 }
 
-TEST_F(FrankaArmTest, ARobotThatLeavesTheMotionByItselfIsAFault) {
+TEST_F(FrankaArmTest, RobotLeavingTheMotionIsADeviceFault) {
   Start();
   robot_.ShowIdle();
   const hal::Status status = Next();
@@ -92,7 +92,7 @@ TEST_F(FrankaArmTest, ARobotThatLeavesTheMotionByItselfIsAFault) {
   EXPECT_STREQ(status.where(), "the robot left the motion");
 }
 
-TEST_F(FrankaArmTest, AUserStopSaysSo) {
+TEST_F(FrankaArmTest, UserStopIsReported) {
   Start();
   robot_.ShowIdle();
   robot_.state.robot_mode = franka::RobotMode::kUserStopped;
@@ -101,7 +101,7 @@ TEST_F(FrankaArmTest, AUserStopSaysSo) {
   EXPECT_STREQ(status.where(), "user stop");
 }
 
-TEST_F(FrankaArmTest, ARefusedMotionSaysSo) {
+TEST_F(FrankaArmTest, RefusedMoveIsReported) {
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(0.0).ok());
   robot_.AnswerStatus(*robot_.Take(), 3);
@@ -111,7 +111,7 @@ TEST_F(FrankaArmTest, ARefusedMotionSaysSo) {
   EXPECT_STREQ(status.where(), "the robot cannot move now");
 }
 
-TEST_F(FrankaArmTest, AMotionThatNeverStartsIsGivenUp) {
+TEST_F(FrankaArmTest, MoveThatNeverStartsIsAFault) {
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(0.0).ok());
   hal::Status status = hal::Status::Ok();

@@ -77,7 +77,7 @@ constexpr Place kStateDoubles[] = {
 };
 
 // Every double of a state that holds its own offset is where the table has it.
-TEST(GoldenBytes, AStateHasEveryFieldAtItsOffset) {
+TEST(GoldenBytes, StateFieldsAreAtTheirOffsets) {
   std::vector<std::byte> bytes(2373, std::byte{0xEE});
   for (const Place& place : kStateDoubles) {
     for (std::size_t k = 0; k < place.count; ++k) {
@@ -148,7 +148,7 @@ TEST(GoldenBytes, AStateHasEveryFieldAtItsOffset) {
   EXPECT_EQ(std::vector<std::byte>(again.begin(), again.end()), bytes);
 }
 
-TEST(GoldenBytes, AShortStateIsNoState) {
+TEST(GoldenBytes, ShortStateIsRefused) {
   std::vector<std::byte> bytes(2372);
   RobotState s;
   s.message_id = 7;
@@ -156,7 +156,7 @@ TEST(GoldenBytes, AShortStateIsNoState) {
   EXPECT_EQ(s.message_id, 7U);
 }
 
-TEST(GoldenBytes, ACommandHasEveryFieldAtItsOffset) {
+TEST(GoldenBytes, CommandFieldsAreAtTheirOffsets) {
   RobotCommand c;
   c.message_id = 0x0102030405060708U;
   for (std::size_t k = 0; k < 7; ++k) {
@@ -184,7 +184,7 @@ TEST(GoldenBytes, ACommandHasEveryFieldAtItsOffset) {
   EXPECT_EQ(DoubleAt(bytes, 362), 36.0);
 }
 
-TEST(GoldenBytes, RequestsByteForByte) {
+TEST(GoldenBytes, RequestsMatchByteForByte) {
   EXPECT_EQ(Hex(MakeMessage(Command::kConnect, 0, ConnectRequest{5, 0xABCD})),
             "000000000000000010000000"
             "0500"
@@ -206,7 +206,7 @@ TEST(GoldenBytes, RequestsByteForByte) {
             "0400");
 }
 
-TEST(GoldenBytes, SizesOnTheWire) {
+TEST(GoldenBytes, MessageSizesMatchTheProtocol) {
   struct Row {
     Command command;
     std::size_t request;
@@ -226,7 +226,7 @@ TEST(GoldenBytes, SizesOnTheWire) {
   EXPECT_EQ(MakeMessage(Command::kGetCartesianLimit, 0, GetCartesianLimitAnswer{}).size(), 166U);
 }
 
-TEST(GoldenBytes, ErrorsByNumber) {
+TEST(GoldenBytes, ErrorNumbersMatchTheirNames) {
   EXPECT_STREQ(Name(static_cast<Error>(0)), "joint_position_limits_violation");
   EXPECT_EQ(static_cast<int>(Error::kJointReflex), 6);
   EXPECT_EQ(static_cast<int>(Error::kJointPositionStartPoseInvalid), 11);

@@ -26,7 +26,7 @@ std::string ErrorOf(const std::function<void()>& action) {
   return "";
 }
 
-TEST(Sockets, WhatCannotBeIsNamed) {
+TEST(Sockets, FailuresNameHostOrPort) {
   const std::string name(300, 'x');  // longer than any: nobody needs to be asked
   EXPECT_THAT(ErrorOf([&] { Resolve(name, 1337); }),
               HasSubstr("\"" + name + "\" is no host that can be found"));
@@ -58,7 +58,7 @@ TEST(Sockets, WhatCannotBeIsNamed) {
               HasSubstr("no connection to 127.0.0.1:" + std::to_string(left)));
 }
 
-TEST(Sockets, BothEndsKnowEachOtherAndWhenTheOtherIsGone) {
+TEST(Sockets, BothEndsExchangeBytesAndDetectTheClose) {
   TcpListener listener(kAny);
   EXPECT_FALSE(listener.Accept().has_value()) << "nobody has come yet";
   TcpConnection client = TcpConnection::Connect({kAny.ip, listener.port()}, 1000);
@@ -85,7 +85,7 @@ TEST(Sockets, BothEndsKnowEachOtherAndWhenTheOtherIsGone) {
 }
 
 // One who does not read: what there is no room for is not sent, and nobody waits.
-TEST(Sockets, AFullBufferIsSaid) {
+TEST(Sockets, SendToAFullBufferFailsWithoutWaiting) {
   TcpListener listener(kAny);
   TcpConnection client = TcpConnection::Connect({kAny.ip, listener.port()}, 1000);
   const std::vector<std::byte> much(1 << 20U);

@@ -63,7 +63,7 @@ double WorstStep(double loss, int late, double wish_size, int ticks) {
   return worst;
 }
 
-TEST(TorqueRate, NoStepIsTooLargeOnAnyNetwork) {
+TEST(TorqueRate, StepStaysWithinTheRateOnAnyNetwork) {
   for (const double loss : {0.0, 0.05, 0.5}) {
     for (const int late : {0, 3, 6}) {
       const double worst = WorstStep(loss, late, 30.0, 20'000);
@@ -73,7 +73,7 @@ TEST(TorqueRate, NoStepIsTooLargeOnAnyNetwork) {
   }
 }
 
-TEST(TorqueRate, OnAGoodNetworkTheWholeStepIsUsed) {
+TEST(TorqueRate, GoodNetworkUsesTheWholeStep) {
   TorqueRate rate(All(kStep));
   Vector7 tau = All(0.0);
   for (int t = 1; t <= 20; ++t) {
@@ -87,7 +87,7 @@ TEST(TorqueRate, OnAGoodNetworkTheWholeStepIsUsed) {
 }
 
 // A robot that says so must not be sent it.
-TEST(TorqueRate, WhatIsNoNumberIsNeverCommanded) {
+TEST(TorqueRate, NonFiniteTorqueIsNeverCommanded) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                            -std::numeric_limits<double>::infinity()}) {
     TorqueRate rate(All(kStep));
@@ -102,7 +102,7 @@ TEST(TorqueRate, WhatIsNoNumberIsNeverCommanded) {
   }
 }
 
-TEST(TorqueRate, ANewMotionKnowsNothingOfTheLast) {
+TEST(TorqueRate, ClearForgetsTheLastMotion) {
   TorqueRate rate(All(kStep));
   Vector7 command;
   rate.Limit(All(5.0), All(5.0), command);

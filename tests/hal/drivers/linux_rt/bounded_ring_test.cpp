@@ -35,10 +35,10 @@ bool IsWhole(const Story& story) {
   return story.last == story.number;
 }
 
-class BoundedRingOf : public testing::TestWithParam<std::size_t> {};
+class BoundedRingSizeTest : public testing::TestWithParam<std::size_t> {};
 
 // The reader now and then rests, so that the ring is full as often as it is empty.
-TEST_P(BoundedRingOf, TwoThreadsDropAndCount) {
+TEST_P(BoundedRingSizeTest, TwoThreadsTakeOrCountEveryItem) {
   constexpr std::uint64_t kCount = 100'000;
   BoundedRing<Story> ring(GetParam());
   std::atomic<bool> done{false};
@@ -91,7 +91,7 @@ TEST_P(BoundedRingOf, TwoThreadsDropAndCount) {
 }
 
 // As a log at lockstep pace: who waits for room loses nothing.
-TEST_P(BoundedRingOf, WhoWaitsForRoomLosesNothing) {
+TEST_P(BoundedRingSizeTest, WaitingWriterLosesNothing) {
   constexpr std::uint64_t kCount = 50'000;
   BoundedRing<Story> ring(GetParam());
   std::thread writer([&] {
@@ -121,10 +121,10 @@ TEST_P(BoundedRingOf, WhoWaitsForRoomLosesNothing) {
   EXPECT_EQ(ring.dropped(), 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, BoundedRingOf, testing::Values(1, 2, 3, 64));
+INSTANTIATE_TEST_SUITE_P(Sizes, BoundedRingSizeTest, testing::Values(1, 2, 3, 64));
 
 // What came after the mark waits for the next.
-TEST(BoundedRingTest, DrainsUpToTheMark) {
+TEST(BoundedRingTest, DrainsOnlyUpToTheMark) {
   BoundedRing<int> ring(4);
   ring.Push(1);
   ring.Push(2);

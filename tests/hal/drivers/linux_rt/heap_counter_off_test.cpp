@@ -3,4 +3,4 @@
 
 #include "fovea/linux_rt/heap_counter.hpp"
 
-TEST(HeapCounterOffTest, SaysThatItIsNotActive) { EXPECT_FALSE(fovea::linux_rt::HeapCounterActive()); }
+TEST(HeapCounterOffTest, ReportsThatItIsInactive) { EXPECT_FALSE(fovea::linux_rt::HeapCounterActive()); }

@@ -41,7 +41,7 @@ class HeapCounterTest : public testing::Test {
   }
 };
 
-TEST_F(HeapCounterTest, SeesEveryWayToTheHeap) {
+TEST_F(HeapCounterTest, CountsEveryAllocationFunction) {
   EXPECT_EQ(CallsIn([] { Use(std::malloc(10)); }), 2U);
   EXPECT_EQ(CallsIn([] { Use(std::calloc(2, 10)); }), 2U);
   EXPECT_EQ(CallsIn([] { Use(std::realloc(nullptr, 10)); }), 2U);
@@ -61,7 +61,7 @@ TEST_F(HeapCounterTest, SeesEveryWayToTheHeap) {
   EXPECT_GE(CallsIn([] { Look(std::string(100, 'x').data()); }), 2U);
 }
 
-TEST_F(HeapCounterTest, SeesNothingOutsideTheRegionOrInOtherThreads) {
+TEST_F(HeapCounterTest, IgnoresCallsOutsideTheRegionAndInOtherThreads) {
   const std::uint64_t before = CountedHeapCalls();
   Use(std::malloc(10));
   EXPECT_EQ(CountedHeapCalls(), before);
@@ -77,7 +77,7 @@ TEST_F(HeapCounterTest, SeesNothingOutsideTheRegionOrInOtherThreads) {
   EXPECT_EQ(CountedHeapCalls(), before);
 }
 
-TEST_F(HeapCounterTest, RefusesABadAlignmentAsTheStandardSays) {
+TEST_F(HeapCounterTest, BadAlignmentIsRefusedAsInTheStandard) {
   void* block = nullptr;
   EXPECT_EQ(posix_memalign(&block, 3, 10), EINVAL);
   EXPECT_EQ(block, nullptr);

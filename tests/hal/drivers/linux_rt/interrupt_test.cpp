@@ -15,7 +15,7 @@ void AwaitFirst(const Interrupt& interrupt) {
   }
 }
 
-TEST(Interrupt, TheFirstIsNotedAlone) {
+TEST(Interrupt, FirstSignalIsOnlyRecorded) {
   Interrupt interrupt;
   EXPECT_FALSE(interrupt.Came());
   kill(getpid(), SIGINT);
@@ -23,7 +23,7 @@ TEST(Interrupt, TheFirstIsNotedAlone) {
 }
 
 // In a child, which leaves the word of its last act in a pipe.
-TEST(Interrupt, TheSecondEndsTheProcessAfterItsLastAct) {
+TEST(Interrupt, SecondSignalRunsTheLastActionAndEndsTheProcess) {
   int words[2];
   ASSERT_EQ(pipe(words), 0);
   const pid_t child = fork();

@@ -13,7 +13,7 @@ namespace fovea::linux_rt {
 namespace {
 
 // Whatever the machine grants, each thing is either had or named.
-TEST(RealtimeTest, HasOrNamesEachThing) {
+TEST(RealtimeTest, ListsEachMissingPrivilege) {
   std::thread thread([] {
     const std::vector<std::string> missing = MakeThreadRealtime({.fifo_priority = 10, .lock_memory = true});
     int named = 0;
@@ -28,7 +28,7 @@ TEST(RealtimeTest, HasOrNamesEachThing) {
   munlockall();  // not for the rest of this process
 }
 
-TEST(RealtimeTest, StaysOnItsProcessorAndItsTimersHaveNoSlack) {
+TEST(RealtimeTest, ThreadStaysOnItsProcessorWithoutTimerSlack) {
   std::thread thread([] {
     const int here = sched_getcpu();
     MakeThreadRealtime({.fifo_priority = 10, .lock_memory = false, .cpu = here});
@@ -41,7 +41,7 @@ TEST(RealtimeTest, StaysOnItsProcessorAndItsTimersHaveNoSlack) {
   thread.join();
 }
 
-TEST(RealtimeTest, AProcessorThatIsNotThereIsNamed) {
+TEST(RealtimeTest, MissingProcessorIsNamed) {
   std::thread thread([] {
     const auto missing = MakeThreadRealtime({.fifo_priority = 10, .lock_memory = false, .cpu = 1000});
     const auto named = [](const std::string& line) {
@@ -52,7 +52,7 @@ TEST(RealtimeTest, AProcessorThatIsNotThereIsNamed) {
   thread.join();
 }
 
-TEST(RealtimeTest, YieldingLowersTheThreadAlone) {
+TEST(RealtimeTest, YieldingLowersThePriorityOfTheThreadOnly) {
   const int before = getpriority(PRIO_PROCESS, 0);
   std::thread thread([] {
     MakeThreadYielding("fovea-test");

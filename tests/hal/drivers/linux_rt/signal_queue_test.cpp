@@ -6,7 +6,7 @@
 namespace fovea::linux_rt {
 namespace {
 
-TEST(SignalQueue, HandsOutWhatCameAndThenNothing) {
+TEST(SignalQueue, EachSignalIsDeliveredOnce) {
   const SignalQueue queue({SIGUSR1, SIGUSR2});
   EXPECT_EQ(queue.Next(0), -1);
   pthread_kill(pthread_self(), SIGUSR2);
@@ -14,7 +14,7 @@ TEST(SignalQueue, HandsOutWhatCameAndThenNothing) {
   EXPECT_EQ(queue.Next(0), -1);
 }
 
-TEST(SignalQueue, LeavesTheMaskAsItWas) {
+TEST(SignalQueue, RestoresTheSignalMask) {
   sigset_t before;
   sigset_t after;
   pthread_sigmask(SIG_BLOCK, nullptr, &before);

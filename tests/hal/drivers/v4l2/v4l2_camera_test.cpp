@@ -44,7 +44,7 @@ std::string ErrorOf(ScriptedCamera& device, const v4l2::V4l2Config& config = Con
   }
 }
 
-TEST(V4l2Camera, SetsWhatItIsTold) {
+TEST(V4l2Camera, AppliesTheConfiguredSettings) {
   ScriptedCamera device;
   v4l2::V4l2Config config = Config();
   config.gain = 12;
@@ -83,7 +83,7 @@ TEST(V4l2Camera, StampsAreMidExposureWhereverTheKernelTakesThem) {
   }
 }
 
-TEST(V4l2Camera, FormatsComeAsTheSeamWantsThem) {
+TEST(V4l2Camera, FormatsAreConvertedForTheSeam) {
   for (const auto& [name, fourcc, format] : {std::tuple{"Mono8", V4L2_PIX_FMT_GREY, hal::PixelFormat::kMono8},
                                              {"BayerRG8", V4L2_PIX_FMT_SRGGB8, hal::PixelFormat::kBgr8},
                                              {"YUYV", V4L2_PIX_FMT_YUYV, hal::PixelFormat::kBgr8},
@@ -102,7 +102,7 @@ TEST(V4l2Camera, FormatsComeAsTheSeamWantsThem) {
   }
 }
 
-TEST(V4l2Camera, TheNewestWholePictureIsTaken) {
+TEST(V4l2Camera, TakesTheNewestCompletePicture) {
   ScriptedCamera device;
   v4l2::V4l2Camera camera(Config(), std::make_unique<ScriptedDevice>(device));
   device.Expose({.gray = 1, .sequence = 0});
@@ -121,7 +121,7 @@ TEST(V4l2Camera, TheNewestWholePictureIsTaken) {
   EXPECT_EQ(camera.counters().lost, 5U);
 }
 
-TEST(V4l2Camera, UnpluggedAndPluggedAgain) {
+TEST(V4l2Camera, ReconnectsAfterBeingUnplugged) {
   ScriptedCamera device;
   v4l2::V4l2Camera camera(Config(), std::make_unique<ScriptedDevice>(device));
   device.Expose({.gray = 1, .sequence = 41});
@@ -150,7 +150,7 @@ TEST(V4l2Camera, UnpluggedAndPluggedAgain) {
   EXPECT_EQ(lost.Acquire(frame, 0).code(), hal::StatusCode::kDisconnected);
 }
 
-TEST(V4l2Camera, WhatCannotBeIsRefusedWithAReason) {
+TEST(V4l2Camera, ImpossibleConfigurationIsRefusedWithAReason) {
   const auto refusal = [](void (*spoil)(ScriptedCamera&, v4l2::V4l2Config&)) {
     ScriptedCamera device;
     v4l2::V4l2Config config = Config();
@@ -179,7 +179,7 @@ TEST(V4l2Camera, WhatCannotBeIsRefusedWithAReason) {
             "camera /dev/video7: gives no buffers; is another program using it?: Device or resource busy");
 }
 
-TEST(V4l2Camera, ThereIsNoDeviceHere) {
+TEST(V4l2Camera, MissingDeviceThrowsCameraError) {
   for (const char* path : {"/dev/no-such-video", "/dev/null"}) {
     v4l2::V4l2Config config;
     config.path = path;
