@@ -66,19 +66,33 @@ class DetectorHeapTest : public testing::Test {
   }
 };
 
-TEST_F(DetectorHeapTest, SphereByBrightness) { EXPECT_EQ(CallsOf(TargetKind::kSphere, FindBy::kGray), 0U); }
-TEST_F(DetectorHeapTest, SphereByColour) { EXPECT_EQ(CallsOf(TargetKind::kSphere, FindBy::kColour), 0U); }
-TEST_F(DetectorHeapTest, DiscByBrightness) { EXPECT_EQ(CallsOf(TargetKind::kCircle, FindBy::kGray), 0U); }
-TEST_F(DetectorHeapTest, DiscByColour) { EXPECT_EQ(CallsOf(TargetKind::kCircle, FindBy::kColour), 0U); }
-TEST_F(DetectorHeapTest, SquareByBrightness) { EXPECT_EQ(CallsOf(TargetKind::kSquare, FindBy::kGray), 0U); }
-TEST_F(DetectorHeapTest, SquareByColour) { EXPECT_EQ(CallsOf(TargetKind::kSquare, FindBy::kColour), 0U); }
-TEST_F(DetectorHeapTest, TriangleByBrightness) {
+TEST_F(DetectorHeapTest, SphereByBrightnessMakesNoHeapCall) {
+  EXPECT_EQ(CallsOf(TargetKind::kSphere, FindBy::kGray), 0U);
+}
+TEST_F(DetectorHeapTest, SphereByColourMakesNoHeapCall) {
+  EXPECT_EQ(CallsOf(TargetKind::kSphere, FindBy::kColour), 0U);
+}
+TEST_F(DetectorHeapTest, DiscByBrightnessMakesNoHeapCall) {
+  EXPECT_EQ(CallsOf(TargetKind::kCircle, FindBy::kGray), 0U);
+}
+TEST_F(DetectorHeapTest, DiscByColourMakesNoHeapCall) {
+  EXPECT_EQ(CallsOf(TargetKind::kCircle, FindBy::kColour), 0U);
+}
+TEST_F(DetectorHeapTest, SquareByBrightnessMakesNoHeapCall) {
+  EXPECT_EQ(CallsOf(TargetKind::kSquare, FindBy::kGray), 0U);
+}
+TEST_F(DetectorHeapTest, SquareByColourMakesNoHeapCall) {
+  EXPECT_EQ(CallsOf(TargetKind::kSquare, FindBy::kColour), 0U);
+}
+TEST_F(DetectorHeapTest, TriangleByBrightnessMakesNoHeapCall) {
   EXPECT_EQ(CallsOf(TargetKind::kTriangle, FindBy::kGray), 0U);
 }
-TEST_F(DetectorHeapTest, TriangleByColour) { EXPECT_EQ(CallsOf(TargetKind::kTriangle, FindBy::kColour), 0U); }
+TEST_F(DetectorHeapTest, TriangleByColourMakesNoHeapCall) {
+  EXPECT_EQ(CallsOf(TargetKind::kTriangle, FindBy::kColour), 0U);
+}
 
 // The test's own proof.
-TEST_F(DetectorHeapTest, AVectorIsSeen) {
+TEST_F(DetectorHeapTest, HeapCallOfAVectorIsCounted) {
   EXPECT_EQ(HeapCallsOf([] {
               std::vector<EdgePoint> points(7);
               volatile const float* kept = &points[3].gu;

@@ -98,7 +98,7 @@ Errors MeasurePoses(hal::FeatureKind kind, double most_tilt, double most_turn, i
   return errors;
 }
 
-TEST(FlatDetectorTest, SquarePoses) {
+TEST(FlatDetectorTest, SquarePosesAreAccurate) {
   const Errors e = MeasurePoses(hal::FeatureKind::kSquare, 0.6, 0.7, 30);
   EXPECT_EQ(e.found, 30);
   EXPECT_EQ(e.right, 30);
@@ -107,7 +107,7 @@ TEST(FlatDetectorTest, SquarePoses) {
   EXPECT_LT(e.chi2, 1.0);
 }
 
-TEST(FlatDetectorTest, TrianglePoses) {
+TEST(FlatDetectorTest, TrianglePosesAreAccurate) {
   const Errors e = MeasurePoses(hal::FeatureKind::kTriangle, 0.25, 3.0, 30);
   EXPECT_EQ(e.found, 30);
   EXPECT_GE(e.right, 20) << "without a last pose, three points leave a choice";
@@ -115,7 +115,7 @@ TEST(FlatDetectorTest, TrianglePoses) {
   EXPECT_LT(e.chi2, 3.0);
 }
 
-TEST(FlatDetectorTest, ATiltedDiscsMiddleIsNotItsEllipses) {
+TEST(FlatDetectorTest, TiltedDiscCentreIsNotItsEllipseCentre) {
   const DetectorConfig config = ConfigOf(hal::FeatureKind::kCircle);
   double worst = 0.0;
   double worst_depth = 0.0;
@@ -153,7 +153,7 @@ TEST(FlatDetectorTest, ATiltedDiscsMiddleIsNotItsEllipses) {
 }
 
 // Three corners fit up to six poses, of which one out of reach says nothing of the others.
-TEST(FlatDetectorTest, OfATrianglesPosesOnlyThoseInReachCount) {
+TEST(FlatDetectorTest, TrianglePosesOutOfReachAreDropped) {
   const model::Pose X_CO{model::RotationOf({-0.001, 0.7353, -0.2209}), {-0.3394, -0.1787, 0.7283}};
   const auto poses_within = [&](double distance_max) {
     DetectorConfig config = ConfigOf(hal::FeatureKind::kTriangle);

@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Least{TargetKind::kSquare, {16, 12, 2}, {0.36, 0.46, 1.0}, 0.040},
                     Least{TargetKind::kTriangle, {17, 17, 16}, {0.054, 0.085, 0.43}, 0.165}));
 
-TEST_P(HiddenTargetTest, IsFoundRightlyOrRefused) {
+TEST_P(HiddenTargetTest, IsFoundCorrectlyOrNotAtAll) {
   const Least& least = GetParam();
   for (std::size_t i = 0; i < least.found.size(); ++i) {
     const Score score = Look(least.kind, 0.1 * (static_cast<double>(i) + 1.0), 20);
@@ -82,7 +82,7 @@ TEST_P(HiddenTargetTest, IsFoundRightlyOrRefused) {
 }
 
 // Out over the right border and back in over it; one detector sees all of it.
-TEST_P(HiddenTargetTest, LeavesThePictureAndComesBack) {
+TEST_P(HiddenTargetTest, IsLostOutsideThePictureAndFoundAgain) {
   const TargetKind kind = GetParam().kind;
   constexpr std::array<double, 14> kX{0.10, 0.15, 0.18, 0.20, 0.22, 0.24, 0.30,
                                       0.40, 0.30, 0.24, 0.22, 0.19, 0.14, 0.08};

@@ -51,7 +51,7 @@ TEST_P(PictureWatchTest, FreshNoiseIsNoChange) {
   }
 }
 
-TEST_P(PictureWatchTest, AShiftOfAPixelIsOne) {
+TEST_P(PictureWatchTest, OnePixelShiftIsAChange) {
   std::mt19937_64 engine(2);
   PictureWatch watch;
   EXPECT_EQ(watch.Look(Photo(Bench(40.0, 0.0), GetParam(), engine), 0), 0);
@@ -66,7 +66,7 @@ TEST_P(PictureWatchTest, AShiftOfAPixelIsOne) {
 INSTANTIATE_TEST_SUITE_P(Noise, PictureWatchTest, testing::Values(0.0, 1.0, 3.0, 6.0));
 
 // A slow drift adds up: the first picture of the row counts, not the one before.
-TEST(PictureWatch, ASlowDriftIsNoticedInTime) {
+TEST(PictureWatch, SlowDriftIsDetectedWithinTwoPixels) {
   std::mt19937_64 engine(3);
   PictureWatch watch;
   double longest_px = 0.0;
@@ -79,7 +79,7 @@ TEST(PictureWatch, ASlowDriftIsNoticedInTime) {
   EXPECT_LT(longest_px, 2.0);
 }
 
-TEST(PictureWatch, AnotherSizeAndGrayPicturesAreTaken) {
+TEST(PictureWatch, HandlesGrayPicturesAndChangesOfSize) {
   std::mt19937_64 engine(4);
   PictureWatch watch;
   const cv::Mat gray(30, 40, CV_8UC1, cv::Scalar(7));

@@ -111,13 +111,13 @@ class ShadedTargetTest : public testing::TestWithParam<hal::FeatureKind> {
   }
 };
 
-TEST_P(ShadedTargetTest, IsFoundWhereAShadowEndsOnIt) {
+TEST_P(ShadedTargetTest, IsFoundUnderAShadowEdge) {
   const Found found = Look(0.4, true, 40);
   EXPECT_GE(found.count, 36);
   EXPECT_LT(found.worst_px, 0.3);
 }
 
-TEST_P(ShadedTargetTest, IsFoundFromAside) {
+TEST_P(ShadedTargetTest, IsFoundAt66DegreesToTheLineOfSight) {
   const Found found = Look(1.15, false, 20);  // 66 degrees against the line of sight
   EXPECT_GE(found.count, 18);
   EXPECT_LT(found.worst_px, 0.3);

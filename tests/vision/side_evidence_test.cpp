@@ -113,19 +113,23 @@ int CountThatGoOn(double from, double to, double share) {
   return found;
 }
 
-TEST(SideEvidenceTest, ASideThatComesOutAgainGoesOn) { EXPECT_EQ(CountThatGoOn(0.25, 0.7, 1.0), 12); }
-
-TEST(SideEvidenceTest, WhatHasTheOppositeContrastIsNotItsSide) {
-  EXPECT_EQ(CountThatGoOn(0.25, 0.7, -1.0), 0);
+TEST(SideEvidenceTest, SideVisibleAgainBeyondTheCornerContinues) {
+  EXPECT_EQ(CountThatGoOn(0.25, 0.7, 1.0), 12);
 }
 
-TEST(SideEvidenceTest, WhatIsFarBeyondIsAnotherThing) { EXPECT_EQ(CountThatGoOn(0.65, 0.9, 1.0), 0); }
+TEST(SideEvidenceTest, OppositeContrastIsNotTheSameSide) { EXPECT_EQ(CountThatGoOn(0.25, 0.7, -1.0), 0); }
+
+TEST(SideEvidenceTest, EdgeFarBeyondTheCornerIsNotTheSameSide) {
+  EXPECT_EQ(CountThatGoOn(0.65, 0.9, 1.0), 0);
+}
 
 // Right at the corner any contrast tells: it is the edge of what hides.
-TEST(SideEvidenceTest, AnEdgeThatGoesOnAtTheCornerGoesOn) { EXPECT_EQ(CountThatGoOn(0.0, 0.4, -0.5), 12); }
+TEST(SideEvidenceTest, EdgeContinuingAtTheCornerCountsWithAnyContrast) {
+  EXPECT_EQ(CountThatGoOn(0.0, 0.4, -0.5), 12);
+}
 
 // A bar as bright as the ground leaves a piece of the triangle's own shape beside it.
-TEST(SideEvidenceTest, APieceBesideABarLikeTheGroundIsNotTheTarget) {
+TEST(SideEvidenceTest, PieceBesideAGroundColouredBarIsNotTheTarget) {
   constexpr double kWrongPx = 2.0;
   constexpr double kNear = 0.98;  // the bar's distance, in the triangle's
   constexpr double kThick = 0.12;
@@ -222,7 +226,7 @@ Crossed MakeCrossed(unsigned seed) {
 
 // Of each: whether the fit is the target's, and so the bends explained. A side of these gets another number
 // of lines as the fit moves its corners: what is off and what stands beside must be of the same lines.
-TEST(SideEvidenceTest, BendsAreExplainedWhereTheFitIsTheTargets) {
+TEST(SideEvidenceTest, BendsAreExplainedOnlyByACorrectFit) {
   constexpr std::array<unsigned, 6> kRight{285, 3143, 3878, 3928, 5960, 6141};
   constexpr std::array<unsigned, 4> kWrong{3160, 4228, 4653, 7080};
   const auto look = [](unsigned seed, bool right) {

@@ -72,14 +72,14 @@ Errors Measure(test::BallPicture picture, int count, FindBy by = FindBy::kColour
   return errors;
 }
 
-TEST(SphereDetectorTest, CleanPictures) {
+TEST(SphereDetectorTest, CleanPicturesAreMeasuredAccurately) {
   const Errors errors = Measure({}, 60);
   EXPECT_EQ(errors.found, 60);
   EXPECT_LT(std::sqrt(errors.lateral2 / 120), 0.007);
   EXPECT_LT(std::sqrt(errors.depth2 / 60), 0.0002);
 }
 
-TEST(SphereDetectorTest, ShadedBalls) {
+TEST(SphereDetectorTest, ShadedBallsAreMeasuredWithinTheirCovariance) {
   test::BallPicture picture;
   picture.shade = 0.7;
   const Errors errors = Measure(picture, 60);
@@ -90,7 +90,7 @@ TEST(SphereDetectorTest, ShadedBalls) {
   EXPECT_LT(errors.chi2 / 180, 1.5) << "the covariance promises too much";
 }
 
-TEST(SphereDetectorTest, NoisyPictures) {
+TEST(SphereDetectorTest, NoisyPicturesAreMeasuredWithinTheirCovariance) {
   test::BallPicture picture;
   picture.noise = 15.0;
   picture.grid = 4;
@@ -103,7 +103,7 @@ TEST(SphereDetectorTest, NoisyPictures) {
   EXPECT_GT(errors.chi2 / 180, 0.05) << "the covariance says nothing";
 }
 
-TEST(SphereDetectorTest, GrayPictures) {
+TEST(SphereDetectorTest, GrayPicturesAreMeasuredAccurately) {
   test::BallPicture picture;
   picture.ball_bgr = {200, 200, 200};
   picture.noise = 3.0;
@@ -114,7 +114,7 @@ TEST(SphereDetectorTest, GrayPictures) {
 
 // A ball on its way: steady, then a jump, then gone, then back somewhere else. Looked for from image to image
 // it is found where a search of each image for itself finds it.
-TEST(SphereDetectorTest, FromImageToImageAsInEachForItself) {
+TEST(SphereDetectorTest, TrackingFindsTheSameAsSearchingEachImage) {
   test::BallPicture picture;
   picture.noise = 5.0;
   picture.grid = 4;

@@ -58,7 +58,7 @@ std::vector<model::Pose> PosesOf(const std::vector<cv::Mat>& rotations,
 
 double TurnBetween(const Mat3& a, const Mat3& b) { return model::RotationVector(a * b.transpose()).norm(); }
 
-TEST(ThreePointsTest, FindsTheTruthAndWhatOpenCvFinds) {
+TEST(ThreePointsTest, FindsTheTruePoseAndEveryPoseOfOpenCv) {
   Chance chance;
   const std::array<Vec3, 3> points{Vec3(-0.047, 0.037, 0.0), Vec3(0.063, 0.027, 0.0),
                                    Vec3(-0.017, -0.063, 0.0)};
@@ -107,7 +107,7 @@ TEST(ThreePointsTest, FindsTheTruthAndWhatOpenCvFinds) {
 }
 
 // Where the second distance over the first is a quotient of nearly nothing by nearly nothing.
-TEST(ThreePointsTest, FindsTheTruthWhereTheFormulaHasNoFigures) {
+TEST(ThreePointsTest, FindsTheTruePoseWhereTheFormulaIsIllConditioned) {
   Chance chance;
   const std::array<Vec3, 3> points{Vec3(-0.047, 0.037, 0.0), Vec3(0.063, 0.027, 0.0),
                                    Vec3(-0.017, -0.063, 0.0)};
@@ -135,7 +135,7 @@ TEST(ThreePointsTest, FindsTheTruthWhereTheFormulaHasNoFigures) {
   EXPECT_LT(worst_m, 1e-10);
 }
 
-TEST(ThreePointsTest, ASquaresPosesAreIppesOrFitBetter) {
+TEST(ThreePointsTest, SquarePosesMatchIppeOrFitBetter) {
   Chance chance;
   const std::vector<Eigen::Vector2d> shape{{-0.04, -0.04}, {0.04, -0.04}, {0.04, 0.04}, {-0.04, 0.04}};
   const Intrinsics in{640, 480, 554.256, 554.256, 319.5, 239.5};

@@ -31,7 +31,7 @@ bool Finds(const cv::Mat& image) {
   return detector.Detect(image).found;
 }
 
-TEST(TargetDetectorTest, FindsNothingWhereNothingIs) {
+TEST(TargetDetectorTest, FindsNothingInEmptyPictures) {
   EXPECT_FALSE(Finds(Ground()));
   EXPECT_FALSE(Finds(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(0)))) << "black";
   EXPECT_FALSE(Finds(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(255)))) << "saturated";
@@ -42,7 +42,7 @@ TEST(TargetDetectorTest, FindsNothingWhereNothingIs) {
   EXPECT_FALSE(Finds(noise));
 }
 
-TEST(TargetDetectorTest, RefusesOtherShapesOtherColoursOtherSizes) {
+TEST(TargetDetectorTest, RefusesOtherShapesColoursAndSizes) {
   cv::Mat square = Ground();
   cv::rectangle(square, {250, 180}, {350, 280}, kRed, cv::FILLED, cv::LINE_AA);
   EXPECT_FALSE(Finds(square));
@@ -66,7 +66,7 @@ TEST(TargetDetectorTest, RefusesOtherShapesOtherColoursOtherSizes) {
   EXPECT_FALSE(Finds(half));
 }
 
-TEST(TargetDetectorTest, FindsThePartlyHiddenAndThePartlyOutOfView) {
+TEST(TargetDetectorTest, FindsPartlyHiddenAndPartlyOutOfViewTargets) {
   test::BallPicture picture;
   picture.noise = 3.0;
   cv::Mat image = test::RayCast(picture);
@@ -121,7 +121,7 @@ class VisionTaskTest : public testing::Test {
   VisionTask task_{Config()};
 };
 
-TEST_F(VisionTaskTest, PassesOnWhatWasSeenWithItsStamp) {
+TEST_F(VisionTaskTest, PassesTheFeatureOnWithItsStamp) {
   const cv::Mat image = test::RayCast({});
   hal::FeatureMeasurement m;
   ASSERT_TRUE(task_.Process(FrameOf(image), m).ok());
@@ -140,7 +140,7 @@ TEST_F(VisionTaskTest, PassesOnWhatWasSeenWithItsStamp) {
   EXPECT_EQ(m.stamp_ns, 123) << "the frame was looked at";
 }
 
-TEST_F(VisionTaskTest, TakesRowsWithGapsAndGrayFrames) {
+TEST_F(VisionTaskTest, AcceptsPaddedRowsAndGrayFrames) {
   const cv::Mat image = test::RayCast({});
   cv::Mat wide(image.rows, image.cols + 37, CV_8UC3, cv::Scalar::all(255));
   image.copyTo(wide.colRange(0, image.cols));
@@ -238,7 +238,7 @@ TEST_F(VisionTaskTest, GoesOnAfterABadPicture) {
 }
 
 // A hundred faults in a row, or a camera that stopped by itself: that ends vision, and is said.
-TEST_F(VisionTaskTest, ACameraThatOnlyFailsIsReported) {
+TEST_F(VisionTaskTest, CameraThatOnlyFailsIsReported) {
   test::FakeCamera camera;
   camera.after = hal::Status(hal::StatusCode::kDeviceFault, "camera picture");
   ListSink sink;
@@ -275,7 +275,7 @@ class CameraWithoutMemory final : public hal::Camera {
   int acquired_ = 0;
 };
 
-TEST_F(VisionTaskTest, GoesOnAfterAPictureOnWhichOpenCvBreaks) {
+TEST_F(VisionTaskTest, GoesOnAfterAnOpenCvException) {
   const cv::Mat image = test::RayCast({});
   CameraWithoutMemory camera(FrameOf(image));
   DetectorConfig config = Config();

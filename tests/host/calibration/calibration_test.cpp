@@ -73,7 +73,7 @@ std::vector<model::Pose> Looks() {
           Look(0.45, 5.0, -0.4, 0.28, -0.03, -0.02), Look(0.3, 4.0, 0.1, 0.22, 0.0, 0.015)};
 }
 
-TEST(CalibrationTest, IntrinsicsAndLensComeBack) {
+TEST(CalibrationTest, RecoversIntrinsicsAndLens) {
   const bench::PictureCamera camera = Camera();
   std::vector<BoardView> views;
   for (const model::Pose& X_CO : Looks()) {
@@ -115,7 +115,7 @@ TEST(CalibrationTest, IntrinsicsAndLensComeBack) {
 }
 
 // Each kind of useless views has its own line.
-TEST(CalibrationTest, ItIsSaidWhyViewsWillNotDo) {
+TEST(CalibrationTest, ReportsWhyViewsAreUseless) {
   const vision::Intrinsics in{640, 480, 560.0, 560.0, 320.0, 240.0, {}};
   const auto seen = [&in](const model::Pose& X_CO, const char* name) {
     BoardView view;
@@ -162,7 +162,7 @@ TEST(CalibrationTest, ItIsSaidWhyViewsWillNotDo) {
       << "no more than noise";
 }
 
-TEST(CalibrationTest, ADrawnChessboardIsFoundWhereItWasDrawn) {
+TEST(CalibrationTest, DrawnChessboardIsFoundWhereItWasDrawn) {
   const cv::Mat drawn = DrawBoard(kBoard, 40);
   cv::Mat image(480, 640, CV_8UC3, cv::Scalar::all(255));
   cv::Mat gray(480, 640, CV_8UC1, cv::Scalar(255));
@@ -233,7 +233,7 @@ cv::Mat SeenBoard(const Board& board, const vision::Intrinsics& in, const model:
 const Board kCharuco{8, 5, 0.02, 0.014, "5x5_100"};
 
 // Of a ChArUco board a part is enough, here with a third of it outside every picture.
-TEST(CalibrationTest, ACharucoBoardDoesAsMuchWithAPartOfIt) {
+TEST(CalibrationTest, PartlyVisibleCharucoBoardSuffices) {
   const bench::PictureCamera camera = Camera();
   const vision::Intrinsics in = IntrinsicsOf(camera);
   const model::Pose X_EC{model::RotationOf(Vec3(0.05, -0.03, 1.6)), Vec3(0.05, -0.01, 0.04)};
@@ -288,7 +288,7 @@ TEST(CalibrationTest, ACharucoBoardDoesAsMuchWithAPartOfIt) {
   EXPECT_FALSE(FindBoard(cv::Mat(480, 640, CV_8UC1, cv::Scalar(255)), kCharuco, none));
 }
 
-TEST(CalibrationTest, TheCamerasPlaceOnTheHandComesBack) {
+TEST(CalibrationTest, RecoversTheCameraPoseOnTheHand) {
   const bench::PictureCamera camera = Camera();
   const vision::Intrinsics in = IntrinsicsOf(camera);
   const model::Pose X_EC{model::RotationOf(Vec3(0.05, -0.03, 1.6)), Vec3(0.05, -0.01, 0.04)};
@@ -315,7 +315,7 @@ TEST(CalibrationTest, TheCamerasPlaceOnTheHandComesBack) {
   EXPECT_THROW(SolveHandEye(views, kBoard, in), CalibrationError) << "about one axis";
 }
 
-TEST(CalibrationTest, FocalLengthFromTwoDistancesAndFromMore) {
+TEST(CalibrationTest, FocalLengthIsFoundFromTwoOrMoreDistances) {
   // The formula of two views, exactly.
   const FocalLength two = SolveFocalLength({{60.0, 0.01, 0.0}, {40.0, 0.01, 0.15}}, 0.08, false);
   EXPECT_NEAR(two.f_px, 2.0 * 0.15 * 60.0 * 40.0 / (0.08 * 20.0), 1e-9);

@@ -59,7 +59,7 @@ TEST_F(KeyTableTest, SetsEveryKindOfValue) {
   EXPECT_THAT(position_, ElementsAre(1.0, 2.5, -3.0));
 }
 
-TEST_F(KeyTableTest, RefusesAndSaysWhatIsAllowed) {
+TEST_F(KeyTableTest, RefusesABadValueAndNamesWhatIsAllowed) {
   struct Case {
     const char* assignment;
     const char* words;
@@ -81,13 +81,13 @@ TEST_F(KeyTableTest, RefusesAndSaysWhatIsAllowed) {
   EXPECT_THAT(position_, ElementsAre(0.0, 0.0, 0.0));
 }
 
-TEST_F(KeyTableTest, AnUnknownKeyGetsTheNearestKnownOne) {
+TEST_F(KeyTableTest, UnknownKeySuggestsTheNearestKnownOne) {
   EXPECT_THAT(ErrorOf("camera.rate=30"), HasSubstr("did you mean camera.rate_hz?"));
   EXPECT_THAT(ErrorOf("servo.predikt=true"), HasSubstr("did you mean servo.predict?"));
   EXPECT_THAT(ErrorOf("zzz=1"), testing::Not(HasSubstr("did you mean")));
 }
 
-TEST_F(KeyTableTest, ARenamedKeyNamesItsSuccessorAndSetsNothing) {
+TEST_F(KeyTableTest, RenamedKeyNamesItsSuccessorAndSetsNothing) {
   keys_.Renamed("camera.frequency_hz", "camera.rate_hz");
   EXPECT_THAT(ErrorOf("camera.frequency_hz=60"),
               HasSubstr("the key camera.frequency_hz is called camera.rate_hz now"));
@@ -95,14 +95,14 @@ TEST_F(KeyTableTest, ARenamedKeyNamesItsSuccessorAndSetsNothing) {
   EXPECT_EQ(keys_.NameToday("camera.rate_hz"), "camera.rate_hz");
 }
 
-TEST_F(KeyTableTest, AssignmentsMustBeAssignments) {
+TEST_F(KeyTableTest, MalformedAssignmentIsRefused) {
   for (const char* text : {"", "=3", "servo.predict", "arm.model=", "arm.model=\"open", "a=[1,"}) {
     EXPECT_THAT(ErrorOf(text), testing::StartsWith("--set")) << text;
   }
 }
 
 // A refusal is one line, and no words of a stranger's are orders to a terminal.
-TEST_F(KeyTableTest, WhatIsQuotedIsShownAndNotObeyed) {
+TEST_F(KeyTableTest, ControlCharactersInErrorsAreEscaped) {
   for (const char* text : {"servo\n.predict", "\x1b[2J=1\r\n", "arm.model=\x7f\""}) {
     const std::string error = ErrorOf(text);
     EXPECT_THAT(error, testing::StartsWith("--set"));
@@ -112,13 +112,13 @@ TEST_F(KeyTableTest, WhatIsQuotedIsShownAndNotObeyed) {
   }
 }
 
-TEST_F(KeyTableTest, DefaultsAndRangesAreToldFromTheFields) {
+TEST_F(KeyTableTest, DefaultsAndRangesComeFromTheFields) {
   EXPECT_EQ(keys_.keys()[0].default_text, "30");
   EXPECT_EQ(keys_.keys()[0].allowed, "1 to 240");
   EXPECT_EQ(keys_.keys()[5].default_text, "[0, 0, 0]");
 }
 
-TEST(TomlFileTest, NamesFileAndLine) {
+TEST(TomlFileTest, ErrorsNameFileAndLine) {
   const test::TempFolder folder;
   const auto file = folder.path() / "scenario.toml";
   const auto error = [&](const std::string& toml) -> std::string {

@@ -24,7 +24,7 @@ std::string Read(const fs::path& path) {
   return text.str();
 }
 
-TEST(OutputFolderTest, WritesReplacesAndLeavesNothingElse) {
+TEST(OutputFolderTest, ReplaceWritesNewFilesAndRemovesOldOnes) {
   const test::TempFolder temp;
   const OutputFolder folder(temp.path() / "a" / "b");
   const std::vector<std::string> names{"x.json", "y.png"};
@@ -36,7 +36,7 @@ TEST(OutputFolderTest, WritesReplacesAndLeavesNothingElse) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
 }
 
-TEST(OutputFolderTest, AWriteThatFailsLeavesTheOldFiles) {
+TEST(OutputFolderTest, FailedWriteKeepsTheOldFiles) {
   const test::TempFolder temp;
   const OutputFolder folder(temp.path());
   const std::vector<std::string> names{"a.png", "b.png", "x.json"};
@@ -48,7 +48,7 @@ TEST(OutputFolderTest, AWriteThatFailsLeavesTheOldFiles) {
   EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 3);
 }
 
-TEST(OutputFolderTest, WhatIsBegunIsPutInPlaceOrRemoved) {
+TEST(OutputFolderTest, BegunFileIsPutInPlaceOrRemoved) {
   const test::TempFolder temp;
   {
     OutputFolder folder(temp.path());
@@ -63,7 +63,7 @@ TEST(OutputFolderTest, WhatIsBegunIsPutInPlaceOrRemoved) {
 }
 
 // What a run begins itself and then does not have cannot be put in place; it is said which file.
-TEST(OutputFolderTest, WhatIsNotThereOrCannotBeWrittenIsNamed) {
+TEST(OutputFolderTest, MissingOrUnwritableFileIsNamed) {
   const test::TempFolder temp;
   const OutputFolder folder(temp.path());
   const auto refusal = [&folder](const std::vector<OutputFile>& files) -> std::string {
@@ -82,7 +82,7 @@ TEST(OutputFolderTest, WhatIsNotThereOrCannotBeWrittenIsNamed) {
   EXPECT_FALSE(fs::exists(temp.path() / "y.json")) << "all or none";
 }
 
-TEST(OutputFolderTest, AFolderThatCannotBeIsRefusedAtOnce) {
+TEST(OutputFolderTest, ImpossibleFolderIsRefusedAtOnce) {
   const test::TempFolder temp;
   std::ofstream(temp.path() / "file") << "x";
   EXPECT_THROW(OutputFolder(temp.path() / "file"), InputError);
@@ -132,7 +132,7 @@ TEST(OutputFolderTest, IsFreeWhenItsHolderIsKilled) {
 }
 
 // What is kept stands alone: nothing of an earlier run beside it.
-TEST(OutputFolderTest, KeepsWhatWasBegunWhereTheRestCannotBe) {
+TEST(OutputFolderTest, KeepLeavesOnlyTheBegunFile) {
   const test::TempFolder temp;
   {
     OutputFolder folder(temp.path());

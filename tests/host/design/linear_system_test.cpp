@@ -11,7 +11,7 @@
 namespace fovea::design {
 namespace {
 
-TEST(LinearSystemTest, MovesLikeTheSecondOrderOne) {
+TEST(LinearSystemTest, ResponseMatchesTheSecondOrderSystem) {
   std::mt19937 random(21);
   double worst = 0.0;
   for (int i = 0; i < 200; ++i) {
@@ -31,7 +31,7 @@ TEST(LinearSystemTest, MovesLikeTheSecondOrderOne) {
 }
 
 // (s + 1)(s + 2)(s + 3): e = 3 exp(-t) - 3 exp(-2t) + exp(-3t) from e(0) = 1 at rest.
-TEST(LinearSystemTest, IntegralLoopOfKnownRoots) {
+TEST(LinearSystemTest, IntegralLoopHasItsKnownPolesAndResponse) {
   const Eigen::Matrix3d A = IntegralLoop(11.0, 6.0, 6.0);
   const std::vector<std::complex<double>> poles = Poles(A);
   ASSERT_EQ(poles.size(), 3U);
@@ -45,7 +45,7 @@ TEST(LinearSystemTest, IntegralLoopOfKnownRoots) {
 }
 
 // Routh: stable while k_i < k_v k_p.
-TEST(LinearSystemTest, IntegralGainHasItsEdge) {
+TEST(LinearSystemTest, IntegralLoopIsStableUpToTheRouthLimit) {
   EXPECT_LT(Poles(IntegralLoop(3.0, 2.0, 0.999 * 6.0)).front().real(), 0.0);
   EXPECT_GT(Poles(IntegralLoop(3.0, 2.0, 1.001 * 6.0)).front().real(), 0.0);
   EXPECT_NEAR(Poles(IntegralLoop(3.0, 2.0, 6.0)).front().imag(), std::sqrt(3.0), 1e-12);

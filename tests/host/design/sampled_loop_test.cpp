@@ -25,7 +25,7 @@ SampledLoop RandomLoop(std::mt19937& random, double most_delay_periods) {
   return loop;
 }
 
-TEST(SampledLoopTest, PeriodAgreesWithSimulation) {
+TEST(SampledLoopTest, OnePeriodMatchesTheSimulation) {
   std::mt19937 random(31);
   double worst = 0.0;
   for (int i = 0; i < 200; ++i) {
@@ -47,7 +47,7 @@ TEST(SampledLoopTest, PeriodAgreesWithSimulation) {
   EXPECT_LT(worst, 1e-7);
 }
 
-TEST(SampledLoopTest, HasOnePoleForEachForceUnderWay) {
+TEST(SampledLoopTest, HasOnePolePerDelayedForce) {
   const SecondOrder& plant = test::kExercise;
   const PdGains gains = DesignPd(plant, 16.0);
   EXPECT_EQ(Poles(SampledLoop{plant, gains, 1000.0, 0.0}).size(), 2U);
@@ -61,7 +61,7 @@ TEST(SampledLoopTest, HasOnePoleForEachForceUnderWay) {
   EXPECT_EQ(Poles(SampledLoop{plant, gains, 1000.0, 0.0031}).size(), 6U);
 }
 
-TEST(SampledLoopTest, WithoutGainsSamplesTheOpenLoop) {
+TEST(SampledLoopTest, WithoutGainsEqualsTheSampledOpenLoop) {
   const SecondOrder plant{2.0, 3.0, 50.0};
   const std::vector<std::complex<double>> z = Poles(SampledLoop{plant, {}, 100.0, 0.0});
   const auto s = Poles(plant);
@@ -72,7 +72,7 @@ TEST(SampledLoopTest, WithoutGainsSamplesTheOpenLoop) {
 }
 
 // Poles known by hand: x'' = u under whole-period sampling, z^2 - (2 - k_v - k_p / 2) z + 1 - k_v + k_p / 2.
-TEST(SampledLoopTest, DoubleIntegratorByHand) {
+TEST(SampledLoopTest, DoubleIntegratorPolesMatchHandComputation) {
   const double k_p = 0.08;
   const double k_v = 0.5;
   const std::vector<std::complex<double>> z = Poles(SampledLoop{{1.0, 0.0, 0.0}, {k_p, k_v}, 1.0, 0.0});
@@ -81,7 +81,7 @@ TEST(SampledLoopTest, DoubleIntegratorByHand) {
 }
 
 // The hold alone delays by half a period: the poles come nearer in proportion to the period.
-TEST(SampledLoopTest, PolesApproachTheContinuousOnes) {
+TEST(SampledLoopTest, PolesApproachTheContinuousOnesAtHighRates) {
   const SecondOrder plant{2.0, 3.0, 50.0};
   const PdGains gains = DesignPd(plant, 800.0, 0.5);
   const auto s = Poles(CloseLoop(plant, gains));
@@ -98,7 +98,7 @@ TEST(SampledLoopTest, PolesApproachTheContinuousOnes) {
   }
 }
 
-TEST(SampledLoopTest, CountsWhatTheEigenvaluesSay) {
+TEST(SampledLoopTest, StabilityCountAgreesWithTheEigenvalues) {
   std::mt19937 random(32);
   int stable = 0;
   int most = 0;
@@ -122,7 +122,7 @@ TEST(SampledLoopTest, CountsWhatTheEigenvaluesSay) {
   EXPECT_GT(most, 4);
 }
 
-TEST(SampledLoopTest, PoleOnTheCircleIsNotStable) {
+TEST(SampledLoopTest, PoleOnTheUnitCircleIsNotStable) {
   // Neither spring nor damping, and no regulator: z = 1, twice. A spring alone: a pair on the circle.
   EXPECT_FALSE(IsStable({{1.0, 0.0, 0.0}, {}, 1000.0, 0.0}));
   EXPECT_FALSE(IsStable({{1.0, 1.0, 0.0}, {}, 1000.0, 0.0}));

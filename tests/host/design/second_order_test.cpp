@@ -13,7 +13,7 @@
 namespace fovea::design {
 namespace {
 
-TEST(SecondOrderTest, OpenLoopOfTheExercise) {
+TEST(SecondOrderTest, ExerciseOpenLoopIsCriticallyDamped) {
   EXPECT_EQ(DampingRatio(test::kExercise), 1.0);
   EXPECT_EQ(NaturalFrequency(test::kExercise), 0.5);
   for (const std::complex<double>& pole : Poles(test::kExercise)) {
@@ -21,7 +21,7 @@ TEST(SecondOrderTest, OpenLoopOfTheExercise) {
   }
 }
 
-TEST(SecondOrderTest, RegulatorOfTheExercise) {
+TEST(SecondOrderTest, ExerciseRegulatorHasItsKnownGains) {
   const PdGains gains = DesignPd(test::kExercise, 16.0);
   EXPECT_EQ(gains.k_p, 12.0);
   EXPECT_EQ(gains.k_v, 16.0);
@@ -30,7 +30,7 @@ TEST(SecondOrderTest, RegulatorOfTheExercise) {
   EXPECT_EQ(NaturalFrequency(closed), 1.0);
 }
 
-TEST(SecondOrderTest, GainsGiveWhatWasAskedFor) {
+TEST(SecondOrderTest, GainsGiveTheRequestedStiffnessAndDamping) {
   std::mt19937 random(11);
   for (int i = 0; i < 1000; ++i) {
     const SecondOrder plant = test::RandomPlant(random);
@@ -42,7 +42,7 @@ TEST(SecondOrderTest, GainsGiveWhatWasAskedFor) {
   }
 }
 
-TEST(SecondOrderTest, PolesSolveTheirEquation) {
+TEST(SecondOrderTest, PolesSolveTheCharacteristicEquation) {
   double worst = 0.0;
   std::mt19937 random(12);
   for (int i = 0; i < 1000; ++i) {
@@ -58,7 +58,7 @@ TEST(SecondOrderTest, PolesSolveTheirEquation) {
 }
 
 // k = 0, b = 0, both, and poles so far apart that their sum hides the slow one.
-TEST(SecondOrderTest, PolesAtTheEdges) {
+TEST(SecondOrderTest, PolesOfDegenerateSystemsAreExact) {
   EXPECT_EQ(Poles({2.0, 4.0, 0.0}), (std::array<std::complex<double>, 2>{0.0, -2.0}));
   EXPECT_EQ(Poles({1.0, 0.0, 9.0}),
             (std::array<std::complex<double>, 2>{std::complex(0.0, 3.0), std::complex(0.0, -3.0)}));
@@ -99,7 +99,7 @@ TEST(SecondOrderTest, ResponseAgreesWithNumericalIntegration) {
   EXPECT_LT(worst, 1e-11) << "the numerical method's own error is about 3e-12";
 }
 
-TEST(SecondOrderTest, ResponseHasItsKnownValues) {
+TEST(SecondOrderTest, ResponseMatchesKnownValues) {
   constexpr double kPi = std::numbers::pi;
   const SecondOrder critical{1.0, 2.0, 1.0};
   EXPECT_DOUBLE_EQ(Response(critical, 1.0, 0.0, 0.0, 3.0), 4.0 * std::exp(-3.0));
@@ -123,11 +123,11 @@ TEST(SecondOrderTest, ResponseHasItsKnownValues) {
 }
 
 // The exercise's disturbance: under 8 N a loop of m k_p' = 16 N/m stands off by 0.5 m.
-TEST(SecondOrderTest, StandsOffUnderAConstantForce) {
+TEST(SecondOrderTest, ConstantForceLeavesForceOverStiffness) {
   EXPECT_NEAR(Response({16.0, 32.0, 16.0}, 0.0, 0.0, 8.0, 60.0), 0.5, 1e-15);
 }
 
-TEST(SecondOrderTest, SettlesAsKnownAtCriticalDamping) {
+TEST(SecondOrderTest, CriticalDampingSettlesAtTheKnownTime) {
   // (1 + y) exp(-y) = 0.02 at y = 5.8339...
   EXPECT_NEAR(*SettlingTime({16.0, 32.0, 16.0}), 5.833921701917394, 1e-12);
   EXPECT_NEAR(*SettlingTime(test::kExercise), 2.0 * 5.833921701917394, 1e-12);
@@ -135,7 +135,7 @@ TEST(SecondOrderTest, SettlesAsKnownAtCriticalDamping) {
   EXPECT_NEAR((1.0 + y) * std::exp(-y), 0.02, 1e-15);
 }
 
-TEST(SecondOrderTest, SettlesForGoodAndNotBefore) {
+TEST(SecondOrderTest, SettlingTimeIsTheLastEntryIntoTheBand) {
   std::mt19937 random(14);
   for (int i = 0; i < 200; ++i) {
     SecondOrder plant = test::RandomPlant(random);
@@ -154,7 +154,7 @@ TEST(SecondOrderTest, SettlesForGoodAndNotBefore) {
   }
 }
 
-TEST(SecondOrderTest, SaysWhatNeverSettles) {
+TEST(SecondOrderTest, SystemThatNeverSettlesHasNoSettlingTime) {
   EXPECT_FALSE(SettlingTime({1.0, 1.0, 0.0}));
   EXPECT_FALSE(SettlingTime({1.0, 0.0, 1.0}));
   EXPECT_FALSE(SettlingTime({1.0, -1.0, 1.0}));

@@ -68,7 +68,7 @@ std::vector<SampledLoop> Loops() {
   return loops;
 }
 
-TEST(StabilityEdgeTest, ExerciseAsComputedByHand) {
+TEST(StabilityEdgeTest, ExerciseEdgesMatchHandComputation) {
   const SampledLoop loop{test::kExercise, DesignPd(test::kExercise, 16.0), 1000.0, 0.0};
   // |L| = 1 at 1 rad/s, with a phase margin of pi - atan(4/3) + atan(3/4); the hold takes half a period of
   // it.
@@ -151,7 +151,7 @@ TEST(StabilityEdgeTest, DelayEdgeIsTheFirstOfSeveral) {
 
 // A stiff plant that its regulator softens: delays from 6.0 to 6.1 periods drive it, a little less or more
 // does not.
-TEST(StabilityEdgeTest, FindsAStretchOfLessThanTwoPercent) {
+TEST(StabilityEdgeTest, FindsAnUnstableDelayRangeOfLessThanTwoPercent) {
   const SampledLoop loop{{12.1043, 665.625, 3004.8}, {-2963.54, -646.537}, 22.7676, 0.0};
   const double edge = DelayEdge(loop).at.value();
   EXPECT_NEAR(edge * loop.rate_hz, 5.989, 0.001);
@@ -160,7 +160,7 @@ TEST(StabilityEdgeTest, FindsAStretchOfLessThanTwoPercent) {
   EXPECT_EQ(FateOf(WithDelay(loop, 1.03 * edge)), Fate::kDecays) << "or this test proves nothing";
 }
 
-TEST(StabilityEdgeTest, NothingBeforeTheGainEdgeIsUnstable) {
+TEST(StabilityEdgeTest, EveryGainBelowTheEdgeIsStable) {
   std::mt19937 random(42);
   for (int i = 0; i < 30; ++i) {
     const SampledLoop loop = RandomStableLoop(random);
@@ -173,7 +173,7 @@ TEST(StabilityEdgeTest, NothingBeforeTheGainEdgeIsUnstable) {
 }
 
 // Too much delay for these gains: the edge is the share of them that would do.
-TEST(StabilityEdgeTest, UnstableLoopIsToldHowMuchLessWouldDo) {
+TEST(StabilityEdgeTest, UnstableLoopHasAGainEdgeBelowOne) {
   const SampledLoop loop{test::kExercise, DesignPd(test::kExercise, 16.0), 100.0, 2.5};
   ASSERT_FALSE(IsStable(loop));
   const double edge = GainEdge(loop).at.value();
@@ -183,7 +183,7 @@ TEST(StabilityEdgeTest, UnstableLoopIsToldHowMuchLessWouldDo) {
   EXPECT_LT(*DelayEdge(loop).at, 2.5) << "counted from none";
 }
 
-TEST(StabilityEdgeTest, SaysWhereThereIsNone) {
+TEST(StabilityEdgeTest, LoopWithoutAnEdgeReportsNone) {
   // Gains too weak to make the loop's own plant unstable at any delay.
   const SampledLoop weak{{1.0, 2.0, 1.0}, {0.1, 0.1}, 100.0, 0.0};
   const StabilityEdge delay = DelayEdge(weak);

@@ -58,7 +58,7 @@ class EyeFilmTest : public testing::Test {
   test::TempFolder folder_;
 };
 
-TEST_F(EyeFilmTest, GrayFramesAreShownFromTheGivenBeginAndOthersOfAnotherSizeAreLeftOut) {
+TEST_F(EyeFilmTest, GrayFramesAreShownAndFramesOfAnotherSizeLeftOut) {
   EyeFilmConfig config;
   config.path = Path("gray.mp4");
   config.intrinsics = {kWidth, kHeight, 60.0, 60.0, 31.5, 23.5};
@@ -88,7 +88,7 @@ TEST_F(EyeFilmTest, GrayFramesAreShownFromTheGivenBeginAndOthersOfAnotherSizeAre
   EXPECT_EQ(count, 9);
 }
 
-TEST_F(EyeFilmTest, EveryFrameIsThereAtItsTimeWithItsLegend) {
+TEST_F(EyeFilmTest, EveryFrameAppearsAtItsTimeWithALegend) {
   Film("film.mp4");
   cv::VideoCapture film(Path("film.mp4"));
   ASSERT_TRUE(film.isOpened());
@@ -118,7 +118,7 @@ TEST_F(EyeFilmTest, EveryFrameIsThereAtItsTimeWithItsLegend) {
   EXPECT_GT(brightest, 150.0) << "no legend";
 }
 
-TEST_F(EyeFilmTest, TheSameFramesAreTheSameBytes) {
+TEST_F(EyeFilmTest, SameFramesGiveTheSameBytes) {
   Film("a.mp4");
   Film("b.mp4");
   EXPECT_GT(Bytes("a.mp4").size(), 1000U);
@@ -126,7 +126,7 @@ TEST_F(EyeFilmTest, TheSameFramesAreTheSameBytes) {
 }
 
 // Of a camera whose clock jumps: no film without the frames' own order.
-TEST_F(EyeFilmTest, FramesWhoseStampsAreEqualOrGoBackAreThereInTheirOrder) {
+TEST_F(EyeFilmTest, EqualOrBackwardStampsKeepTheFrameOrder) {
   constexpr std::int64_t kMs = 1'000'000;
   const std::vector<std::int64_t> stamps_ns{-5 * kMs, 0, 1, 2, 40 * kMs, 30 * kMs, 30 * kMs, 80 * kMs};
   VideoFile film(Path("film.mp4"), kWidth, kHeight);
@@ -147,7 +147,7 @@ TEST_F(EyeFilmTest, FramesWhoseStampsAreEqualOrGoBackAreThereInTheirOrder) {
 }
 
 // At real pace nobody waits for the film: what finds no place is counted, the rest is there.
-TEST_F(EyeFilmTest, FramesThatFindNoPlaceAreCounted) {
+TEST_F(EyeFilmTest, FramesWithoutRoomAreCounted) {
   constexpr std::uint64_t kMany = 300;
   EyeFilmConfig config;
   config.path = Path("film.mp4");
@@ -178,7 +178,7 @@ TEST_F(EyeFilmTest, FramesThatFindNoPlaceAreCounted) {
   EXPECT_EQ(film.frames(), count);
 }
 
-TEST_F(EyeFilmTest, AFileThatCannotBeMadeIsSaidAtOnce) {
+TEST_F(EyeFilmTest, UncreatableFileIsReportedAtOnce) {
   try {
     VideoFile film(Path("nowhere/film.mp4"), kWidth, kHeight);
     FAIL();

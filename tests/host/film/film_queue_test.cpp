@@ -11,7 +11,7 @@
 namespace fovea::film {
 namespace {
 
-TEST(FilmQueueTest, ASlowWorkerGetsEverythingInOrderFromOneWhoWaits) {
+TEST(FilmQueueTest, WaitingProducerLosesNothingToASlowWorker) {
   std::vector<int> seen;
   FilmQueue<int> queue(/*may_drop=*/false, [&seen](int& item) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -30,7 +30,7 @@ TEST(FilmQueueTest, ASlowWorkerGetsEverythingInOrderFromOneWhoWaits) {
   EXPECT_EQ(queue.dropped(), 0U);
 }
 
-TEST(FilmQueueTest, OneWhoMayDropIsNeverHeldUp) {
+TEST(FilmQueueTest, DroppingProducerNeverWaits) {
   std::promise<void> go_on;
   std::uint64_t seen = 0;
   FilmQueue<int> queue(/*may_drop=*/true, [&, wait = go_on.get_future().share()](int&) {
@@ -51,7 +51,7 @@ TEST(FilmQueueTest, OneWhoMayDropIsNeverHeldUp) {
   EXPECT_EQ(seen, put);
 }
 
-TEST(FilmQueueTest, WhatTheWorkThrowsComesOutAtTheEndAndHoldsNobodyUp) {
+TEST(FilmQueueTest, WorkerExceptionIsRethrownByFinishAndBlocksNobody) {
   FilmQueue<int> queue(/*may_drop=*/false, [](int&) { throw std::runtime_error("the disk is full"); });
   for (int i = 0; i < 100; ++i) {
     if (queue.Take()) {

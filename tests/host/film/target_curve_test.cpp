@@ -80,7 +80,7 @@ double Around(const TargetFeature& target, const model::Pose& X_CO) {
   return 2.0 * std::numbers::pi * target.radius * std::sqrt(1.0 - sine * sine);
 }
 
-TEST(TargetCurveTest, RaysThroughItGoRoundTheTargetsEdge) {
+TEST(TargetCurveTest, CurveFollowsTheTargetsEdge) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
   for (const features::TargetTraits& traits : features::kTargets) {
@@ -111,7 +111,7 @@ TEST(TargetCurveTest, RaysThroughItGoRoundTheTargetsEdge) {
   }
 }
 
-TEST(TargetCurveTest, ThereIsNoneOfWhatIsPartlyBehindTheCamera) {
+TEST(TargetCurveTest, NoCurveForATargetPartlyBehindTheCamera) {
   for (const features::TargetTraits& traits : features::kTargets) {
     const TargetFeature target = Target(traits.kind);
     model::Pose X_CO{model::RotationOf(Vec3(1.3, 0.0, 0.0)), Vec3(0.0, 0.0, -0.4)};

@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-TEST(EnvelopeTest, KeepsRowsAsTheyAreWhileTheyFit) {
+TEST(EnvelopeTest, KeepsRowsUnchangedWhileTheyFit) {
   Envelope envelope(2, 100);
   for (int i = 0; i < 100; ++i) {
     envelope.Add(i, {static_cast<float>(i), static_cast<float>(-i)});
@@ -55,7 +55,7 @@ TEST(EnvelopeTest, KeepsEveryPeak) {
   }
 }
 
-TEST(EnvelopeTest, PassesOverWhatIsNotThere) {
+TEST(EnvelopeTest, SkipsMissingValues) {
   Envelope envelope(1, 2);
   for (int i = 0; i < 64; ++i) {
     envelope.Add(i, {i % 2 == 0 ? kNone : static_cast<float>(i)});

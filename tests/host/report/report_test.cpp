@@ -104,7 +104,7 @@ class ReportTest : public testing::Test {
   const fs::path path_ = folder_ / "log.mcap";
 };
 
-TEST_F(ReportTest, TellsTheRunOfALog) {
+TEST_F(ReportTest, ShowsTheRunOfALog) {
   WriteLog("swing", true);
   const RunData run = ReadRun(folder_);
   EXPECT_TRUE(run.complete);
@@ -136,7 +136,7 @@ TEST_F(ReportTest, TellsTheRunOfALog) {
 }
 
 // What the servo and the eye say of a flat target is told in the same pixels as the truth, whatever s is.
-TEST_F(ReportTest, TellsTheErrorsOfFlatTargets) {
+TEST_F(ReportTest, ShowsFlatTargetErrorsInPixels) {
   const double c = std::cos(0.1);
   const double s = std::sin(0.1);
   const auto error_of = [&](const std::string& target, const std::string& form, const hal::TickRecord& r) {
@@ -188,7 +188,7 @@ TEST_F(ReportTest, TellsTheErrorsOfFlatTargets) {
 }
 
 // A target that turns is turned in the 3-D view: by the truth where there is one.
-TEST_F(ReportTest, TheTargetsOrientationReachesTheScene) {
+TEST_F(ReportTest, TargetOrientationReachesTheScene) {
   for (const bool truth : {false, true}) {
     log::RunLog log(Config(path_));
     log.Add(log::kSetupTopic, 0, Setup("turn"));
@@ -225,7 +225,7 @@ TEST_F(ReportTest, CountsTimeFromTheRunsStart) {
   EXPECT_FLOAT_EQ(static_cast<float>(measured.t_s[0]), 0.0F);
 }
 
-TEST_F(ReportTest, LeavesOutWhatTheLogDoesNotHold) {
+TEST_F(ReportTest, OmitsWhatTheLogDoesNotHold) {
   WriteLog("robot", false);
   const json data = json::parse(ToJson(ReadRun(path_)));
   EXPECT_TRUE(data["ticks"]["error_px"].is_null());
@@ -235,7 +235,7 @@ TEST_F(ReportTest, LeavesOutWhatTheLogDoesNotHold) {
   }
 }
 
-TEST_F(ReportTest, ShowsALogThatWasCutOff) {
+TEST_F(ReportTest, ShowsATruncatedLogAsIncomplete) {
   WriteLog("cut", true, 8000);
   fs::resize_file(path_, fs::file_size(path_) * 6 / 10);
   const RunData run = ReadRun(path_);
@@ -246,7 +246,7 @@ TEST_F(ReportTest, ShowsALogThatWasCutOff) {
   EXPECT_FALSE(json::parse(ToJson(run))["incomplete"].is_null());
 }
 
-TEST_F(ReportTest, RefusesWhatIsNoRun) {
+TEST_F(ReportTest, RefusesALogWithoutARun) {
   EXPECT_THROW(ReadRun(folder_ / "nothing.mcap"), std::runtime_error);
   std::ofstream(path_) << "no log";
   EXPECT_THROW(ReadRun(path_), std::runtime_error);
@@ -263,7 +263,7 @@ TEST_F(ReportTest, RefusesWhatIsNoRun) {
 }
 
 // A log of somebody else's may say anything of itself.
-TEST_F(ReportTest, ALogThatLiesIsRefusedOrShownAsFarAsItGoes) {
+TEST_F(ReportTest, InconsistentLogIsRefusedOrShownInPart) {
   const auto said = [this](const std::function<void(log::RunLog&)>& write) -> std::string {
     {
       log::RunLog log(Config(path_));
@@ -337,7 +337,7 @@ TEST_F(ReportTest, ALogThatLiesIsRefusedOrShownAsFarAsItGoes) {
 }
 
 // A name may hold anything; the page's own scripts too.
-TEST_F(ReportTest, NothingBreaksOutOfItsPlace) {
+TEST_F(ReportTest, NamesFromALogAreEscapedInThePage) {
   WriteLog("</script><!--<b>&", true);
   const std::string page = ReportPage(folder_ / "page").Make({ReadRun(path_), ReadRun(path_)});
   const auto count = [&page](const std::string& text) {
@@ -356,7 +356,7 @@ TEST_F(ReportTest, NothingBreaksOutOfItsPlace) {
   EXPECT_EQ(data["name"], "</script><!--<b>&");
 }
 
-TEST_F(ReportTest, NamesThePartThatIsNotThere) {
+TEST_F(ReportTest, MissingPagePartIsNamed) {
   Page("<!-- FOVEA:SCRIPT missing.js -->\n");
   try {
     ReportPage page(folder_ / "page");

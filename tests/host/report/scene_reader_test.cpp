@@ -26,7 +26,7 @@ void AddTransform(foxglove::FrameTransforms& transforms, const char* frame, doub
   transform->mutable_rotation()->set_w(1.0);
 }
 
-TEST(SceneReaderTest, EveryShapeIsTaken) {
+TEST(SceneReaderTest, EveryShapeIsRead) {
   foxglove::SceneUpdate scene;
   scene.add_entities()->set_frame_id(log::kTargetFrame);  // the page draws it itself
   foxglove::SceneEntity* entity = scene.add_entities();
@@ -71,7 +71,7 @@ TEST(SceneReaderTest, EveryShapeIsTaken) {
 }
 
 // However long a run is, its page stays as large; what is left is spread over all of it.
-TEST(SceneReaderTest, ALongRunIsThinned) {
+TEST(SceneReaderTest, LongRunIsThinnedEvenly) {
   RunData run;
   SceneReader reader(run);
   foxglove::SceneUpdate scene;
@@ -105,7 +105,7 @@ TEST(SceneReaderTest, ALongRunIsThinned) {
   EXPECT_GT(motion.t_s.back(), kFrames - 2.0F * apart);
 }
 
-TEST(SceneReaderTest, TruthOfAnotherShapeIsNotTaken) {
+TEST(SceneReaderTest, IncompleteTruthIsIgnored) {
   RunData run;
   SceneReader reader(run);
   foxglove::FrameTransforms transforms;

@@ -71,7 +71,7 @@ model::Pose FlangeByDh(const std::vector<DhRow>& rows, double base_height, const
   return X;
 }
 
-TEST(RobotTest, Ur5eAndPuma560AreWhereTheirParametersPutThem) {
+TEST(RobotTest, Ur5eAndPuma560PosesMatchTheirParameters) {
   constexpr double kHalfPi = 1.5707963267948966;
   struct Case {
     const char* file;
@@ -110,7 +110,7 @@ TEST(RobotTest, Ur5eAndPuma560AreWhereTheirParametersPutThem) {
   }
 }
 
-TEST(RobotTest, ABareUrdfGetsDerivedLimitsAndItsOnlyLeafAsTip) {
+TEST(RobotTest, BareUrdfGetsDerivedLimitsAndItsOnlyLeafAsTip) {
   const Robot robot = LoadRobot((test::SourceRoot() / "tests/core/model/mixed_arm.urdf").string());
   EXPECT_EQ(robot.tip_link, "tool");
   EXPECT_EQ(robot.model.num_joints, 4);
@@ -155,9 +155,9 @@ std::string ErrorOf(const std::string& urdf) {
   return "accepted";
 }
 
-TEST(RobotTest, TheGoodOneIsGood) { EXPECT_EQ(ErrorOf(GoodUrdf()), "accepted"); }
+TEST(RobotTest, AcceptsAGoodUrdf) { EXPECT_EQ(ErrorOf(GoodUrdf()), "accepted"); }
 
-TEST(RobotTest, RefusesWhatItCannotDrive) {
+TEST(RobotTest, RefusesAUrdfItCannotDrive) {
   const std::string good = GoodUrdf();
   const std::string inertia2 =
       R"(<link name="l2"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>)";
@@ -206,7 +206,7 @@ TEST(RobotTest, RefusesWhatItCannotDrive) {
 }
 
 // urdfdom refuses it before it hands anything over, and itself keeps the links of the ring for ever.
-TEST(RobotTest, RefusesARingWithoutARoot) {
+TEST(RobotTest, RefusesARingOfLinksWithoutARoot) {
 #ifdef __SANITIZE_ADDRESS__
   const __lsan::ScopedDisabler not_our_leak;
 #endif
@@ -231,7 +231,7 @@ TEST(RobotTest, RefusesMoreJointsThanItHolds) {
   EXPECT_THAT(ErrorOf(urdf.str()), HasSubstr("more than 8 moving joints"));
 }
 
-TEST(RobotTest, AnArmFileIsCheckedKeyByKey) {
+TEST(RobotTest, ArmFileErrorsNameKeyAndLine) {
   const test::TempFolder folder;
   std::ofstream(folder.path() / "arm.urdf") << GoodUrdf();
   const auto error = [&](const std::string& toml) -> std::string {

@@ -102,7 +102,7 @@ class RunBookTest : public testing::Test {
   RunBookOptions options_;
 };
 
-TEST_F(RunBookTest, FilmLogReportAndSummaryAreThere) {
+TEST_F(RunBookTest, RunWritesFilmLogReportAndSummary) {
   const BookFigures log = Run(640, 480);
   EXPECT_THAT(log.film_errors, testing::IsEmpty());
   EXPECT_EQ(log.pictures + log.pictures_dropped, 3U);
@@ -110,7 +110,7 @@ TEST_F(RunBookTest, FilmLogReportAndSummaryAreThere) {
   ExpectLog({"summary.json", "camera.mp4"});
 }
 
-TEST_F(RunBookTest, AFilmThatFailsCostsNothingElse) {
+TEST_F(RunBookTest, FailedFilmKeepsTheOtherFiles) {
   const BookFigures log = Run(640, 480, ".camera.mp4.partial");
   EXPECT_THAT(log.film_errors,
               ElementsAre("camera.mp4: the film cannot be written: the index: No such file or directory"));
@@ -121,7 +121,7 @@ TEST_F(RunBookTest, AFilmThatFailsCostsNothingElse) {
 }
 
 // Ended before it moved: the log is whole, and says what was to be.
-TEST_F(RunBookTest, WithoutATickThereAreLogAndSummary) {
+TEST_F(RunBookTest, RunWithoutATickWritesOnlyLogAndSummary) {
   {
     RunBook files(folder_.path(), Facts(), options_);
     End(files);
@@ -135,7 +135,7 @@ TEST_F(RunBookTest, WithoutATickThereAreLogAndSummary) {
 }
 
 // The film takes frames of the calibrated size alone.
-TEST_F(RunBookTest, WithoutAFrameThereIsNoFilm) {
+TEST_F(RunBookTest, RunWithoutAFrameWritesNoFilm) {
   const BookFigures log = Run(320, 240);
   EXPECT_THAT(log.film_errors, testing::IsEmpty());
   EXPECT_EQ(log.film_frames_dropped, 0U);
@@ -145,7 +145,7 @@ TEST_F(RunBookTest, WithoutAFrameThereIsNoFilm) {
 
 // No more pictures than are wished for, neither at first nor after a gap: at 20 Hz those at 10, 130 and 180
 // ms.
-TEST_F(RunBookTest, TheLogHasNoMorePicturesThanAreWishedFor) {
+TEST_F(RunBookTest, LogKeepsThePictureRateLimit) {
   options_.picture_rate_hz = 20.0;
   frame_ticks_ = {10, 20, 30, 40, 130, 140, 150, 160, 170, 180, 190};
   const BookFigures log = Run(640, 480);

@@ -8,12 +8,12 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-TEST(FrameFiguresTest, NothingCame) {
+TEST(FrameFiguresTest, FewerThanTwoFramesHaveZeroRate) {
   EXPECT_EQ(FiguresOf({}).rate_hz, 0.0);
   EXPECT_EQ(FiguresOf({{0, 40 * kMs}}).rate_hz, 0.0);
 }
 
-TEST(FrameFiguresTest, RateIsByStampsAndCountsGaps) {
+TEST(FrameFiguresTest, RateComesFromStampsIncludingGaps) {
   std::vector<Arrival> arrivals;
   for (const std::int64_t k : {0, 1, 2, 3, 5, 6, 7, 8, 9, 10}) {  // one is lost
     arrivals.push_back({k * 20 * kMs, (k * 20 + 30 + k % 2) * kMs});
@@ -24,7 +24,7 @@ TEST(FrameFiguresTest, RateIsByStampsAndCountsGaps) {
   EXPECT_EQ(figures.late, 0);
 }
 
-TEST(FrameFiguresTest, LateIsHalfAPeriodBeyondTheUsual) {
+TEST(FrameFiguresTest, FrameIsLateHalfAPeriodBeyondTheUsualLatency) {
   std::vector<Arrival> arrivals;
   for (std::int64_t k = 0; k < 20; ++k) {
     const std::int64_t more_ms = k == 7 ? 11 : k == 12 ? 9 : k == 15 ? 55 : 0;

@@ -23,7 +23,7 @@ hal::JointArray GravityOf(const model::ArmModel& arm, const hal::JointArray& q) 
   return model::ToArray(dynamics.g);
 }
 
-TEST(GravityCheckTest, AMassThatNobodyToldOfIsFoundAndTheModelsOwnIsNot) {
+TEST(GravityCheckTest, FindsAnUnknownMassAndNoneForTheModelsOwn) {
   const model::ArmModel arm = test::Panda().model;
   const hal::JointArray& q = arm.q_ready;
   const GravityFinding right = CompareGravity(arm, q, GravityOf(arm, q));
@@ -40,7 +40,7 @@ TEST(GravityCheckTest, AMassThatNobodyToldOfIsFoundAndTheModelsOwnIsNot) {
   }
 }
 
-TEST(GravityCheckTest, ATorqueThatIsNoNumberNeverPasses) {
+TEST(GravityCheckTest, NonFiniteTorqueNeverPasses) {
   const model::ArmModel arm = test::Panda().model;
   for (const double wrong : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     hal::JointArray tau = GravityOf(arm, arm.q_ready);
@@ -50,7 +50,7 @@ TEST(GravityCheckTest, ATorqueThatIsNoNumberNeverPasses) {
   }
 }
 
-TEST(RestMeanTest, ItsStatesAreInARowAtRest) {
+TEST(RestMeanTest, AveragesOnlyConsecutiveStatesAtRest) {
   RestMean mean(10, 0.05);
   hal::ArmState state;
   const auto add = [&](double speed, double tau, int times) {

@@ -32,7 +32,7 @@ std::string RefusalOf(const std::vector<std::string>& assignments) {
   return "";
 }
 
-TEST(HwConfigTest, ValuesThatDoNotFitEachOtherAreRefusedByName) {
+TEST(HwConfigTest, ContradictingValuesAreRefusedByName) {
   const struct {
     std::vector<std::string> assignments;
     const char* says;
@@ -60,7 +60,7 @@ TEST(HwConfigTest, ValuesThatDoNotFitEachOtherAreRefusedByName) {
 }
 
 // A silent robot is given up after safety.arm_lost_ticks, and no single read lasts longer.
-TEST(HwConfigTest, AReadEndsBeforeTheRobotCountsAsLost) {
+TEST(HwConfigTest, ReadTimeoutBeyondTheLostLimitIsRefused) {
   EXPECT_THAT(
       RefusalOf({"robot.time=computer"}),
       HasSubstr(
@@ -72,13 +72,13 @@ TEST(HwConfigTest, AReadEndsBeforeTheRobotCountsAsLost) {
   EXPECT_EQ(std::get<FciDriver::Settings>(LoadHwConfig("panda", {}).robot.of_driver).state_timeout_ms, 2.0);
 }
 
-TEST(HwConfigTest, TheDeadManIsOnForARealRobot) {
+TEST(HwConfigTest, DeadManIsOnByDefaultForARealRobot) {
   EXPECT_EQ(HwConfig().input.dead_man_s, 5.0);
   EXPECT_EQ(LoadHwConfig("panda", {}).input.dead_man_s, 5.0);
   EXPECT_EQ(LoadHwConfig("loopback", {}).input.dead_man_s, 0.0);
 }
 
-TEST(HwConfigTest, AnUnknownConfigurationIsToldWhichThereAre) {
+TEST(HwConfigTest, UnknownConfigurationListsTheShippedOnes) {
   try {
     static_cast<void>(LoadHwConfig("loop", {}));
     FAIL() << "there is no configuration of that name";
@@ -109,7 +109,7 @@ TEST(HwConfigTest, PlanesBoxesAndPostureReachTheServo) {
   EXPECT_EQ(FrankaConfigOf(config, true).load.mass, 0.0) << "robot.set_load is false there";
 }
 
-TEST(CameraDriverTest, EachDriverIsAskedForWhatTheConfigurationNames) {
+TEST(CameraDriverTest, OpensTheConfiguredDriverWithItsSettings) {
   const test::TempFolder temp;
   const auto open = [&temp](std::vector<std::string> assignments) {
     assignments.push_back("camera.device=" + (temp.path() / "eye").string());
@@ -137,7 +137,7 @@ TEST(CameraDriverTest, EachDriverIsAskedForWhatTheConfigurationNames) {
   EXPECT_EQ(counters.lost + counters.incomplete + counters.disconnects, 0U);
 }
 
-TEST(HwConfigTest, AnUnknownDriverIsRefusedWithThoseThatThereAre) {
+TEST(HwConfigTest, UnknownDriverIsRefusedWithTheAvailableOnes) {
   EXPECT_THAT(RefusalOf({"robot.driver=ur5"}), HasSubstr("expected one of, \"fci5\""));
   EXPECT_THAT(RefusalOf({"camera.driver=film"}),
               HasSubstr("expected one of, \"none\", \"genicam\", \"v4l2\", \"recorded\""));

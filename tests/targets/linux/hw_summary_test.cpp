@@ -24,19 +24,19 @@ HwSummary Ended(Mode mode, HoldReason reason, std::optional<double> last_px) {
   return summary;
 }
 
-TEST(HwSummaryTest, ATargetThatIsFollowedIsSeenAtItsGoal) {
+TEST(HwSummaryTest, TrackWithinTheErrorBoundIsConverged) {
   EXPECT_EQ(Ended(Mode::kTrack, HoldReason::kNone, 0.2).converged, true);
   EXPECT_EQ(Ended(Mode::kTrack, HoldReason::kNone, 3.1).converged, false);
   EXPECT_EQ(Ended(Mode::kTrack, HoldReason::kNone, std::nullopt).converged, false);
   EXPECT_EQ(Ended(Mode::kCoast, HoldReason::kNone, 0.2).converged, false);
 }
 
-TEST(HwSummaryTest, AHoldWhereNobodyAskedForMoreIsNoGoal) {
+TEST(HwSummaryTest, HoldWithoutARequestIsNotJudged) {
   EXPECT_EQ(Ended(Mode::kHold, HoldReason::kNotAsked, 100.0).converged, std::nullopt);
   EXPECT_EQ(Ended(Mode::kHold, HoldReason::kMotionDone, 100.0).converged, std::nullopt);
 }
 
-TEST(HwSummaryTest, AHoldForWantOfTheTargetMissesIt) {
+TEST(HwSummaryTest, HoldWithoutTargetIsNotConverged) {
   for (const HoldReason reason :
        {HoldReason::kNoTarget, HoldReason::kTargetLost, HoldReason::kGoalUnreachable}) {
     const HwSummary summary = Ended(Mode::kHold, reason, 0.2);
@@ -45,7 +45,7 @@ TEST(HwSummaryTest, AHoldForWantOfTheTargetMissesIt) {
   }
 }
 
-TEST(HwSummaryTest, AHoldForWantOfTheOperatorMissesItToo) {
+TEST(HwSummaryTest, HoldForASilentOperatorIsNotConverged) {
   HwSummary summary = Ended(Mode::kHold, HoldReason::kNotAsked, 0.2);
   summary.operator_silent = true;
   Judge(summary);
@@ -56,7 +56,7 @@ TEST(HwSummaryTest, AHoldForWantOfTheOperatorMissesItToo) {
   EXPECT_NE(summary.verdict.find("the operator was silent"), std::string::npos) << summary.verdict;
 }
 
-TEST(HwSummaryTest, AFaultIsNeverWellAndOneThatWasRecoveredFromIsTold) {
+TEST(HwSummaryTest, FaultIsNotConvergedAndARecoveryIsReported) {
   HwSummary summary = Ended(Mode::kTrack, HoldReason::kNone, 0.2);
   EXPECT_EQ(summary.verdict.find("recovered"), std::string::npos);
   summary.faults = {{.t_s = 1.0, .fault = hal::Fault::kContact}, {.t_s = 2.0, .fault = hal::Fault::kArmLost}};
@@ -72,7 +72,7 @@ TEST(HwSummaryTest, AFaultIsNeverWellAndOneThatWasRecoveredFromIsTold) {
   EXPECT_EQ(nlohmann::json::parse(ToJson(summary))["faults_recovered"], 1);
 }
 
-TEST(HwSummaryTest, ARunThatNeverBeganWasNone) {
+TEST(HwSummaryTest, RunThatNeverLeftBootIsNotConverged) {
   HwSummary summary = Ended(Mode::kBoot, HoldReason::kNone, 0.2);
   EXPECT_EQ(summary.converged, false) << "it stayed in Boot";
   summary.ticks = 0;
@@ -86,7 +86,7 @@ TEST(HwSummaryTest, ARunThatNeverBeganWasNone) {
   EXPECT_EQ(summary.verdict, summary.refusal);
 }
 
-TEST(HwSummaryTest, ATargetThatWasNeverSeenIsNeverWell) {
+TEST(HwSummaryTest, TargetNeverSeenIsNotConverged) {
   for (const Mode mode : {Mode::kHold, Mode::kTrack, Mode::kBoot}) {
     EXPECT_EQ(Ended(mode, HoldReason::kNotAsked, std::nullopt).converged, false);
   }
@@ -96,7 +96,7 @@ TEST(HwSummaryTest, ATargetThatWasNeverSeenIsNeverWell) {
   EXPECT_EQ(blind.converged, std::nullopt) << "there is no camera";
 }
 
-TEST(HwSummaryTest, WithoutLeaveToMoveNothingConverges) {
+TEST(HwSummaryTest, RunWithoutLeaveToMoveIsNotJudgedPastBoot) {
   for (const Mode mode : {Mode::kHold, Mode::kTrack}) {
     HwSummary summary = Ended(mode, HoldReason::kNotAsked, 0.2);
     summary.allow_motion = false;
@@ -110,7 +110,7 @@ TEST(HwSummaryTest, WithoutLeaveToMoveNothingConverges) {
 }
 
 // Nobody measured where the camera truly is.
-TEST(HwSummaryTest, WhatNeedsTheTruthIsUnknownAndSaysWhy) {
+TEST(HwSummaryTest, FiguresThatNeedTheTruthAreNullWithAReason) {
   const HwSummary summary = Ended(Mode::kTrack, HoldReason::kNone, 0.2);
   const auto json = nlohmann::json::parse(ToJson(summary));
   EXPECT_EQ(json["converged"], true);

@@ -43,7 +43,7 @@ TEST_F(OperatorInputTest, WordsComeInOrder) {
   EXPECT_EQ(input.Next(), std::nullopt);
 }
 
-TEST_F(OperatorInputTest, ALineThatNeverEndsMakesNobodyDeaf) {
+TEST_F(OperatorInputTest, EndlessLineDoesNotBlockLaterWords) {
   OperatorInput input(ends_[0]);
   for (int k = 0; k < 5; ++k) {
     Type(std::string(20'000, 'x'));

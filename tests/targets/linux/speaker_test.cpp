@@ -64,7 +64,7 @@ TEST_F(SpeakerTest, LinesComeWholeAndInOrder) {
   EXPECT_EQ(Read(), said);
 }
 
-TEST_F(SpeakerTest, AFullPipeDelaysNeitherWhoSpeaksNorTheEnd) {
+TEST_F(SpeakerTest, FullPipeDelaysNeitherSpeakerNorExit) {
   Fill();
   const auto begin = Clock::now();
   {
@@ -81,7 +81,7 @@ TEST_F(SpeakerTest, AFullPipeDelaysNeitherWhoSpeaksNorTheEnd) {
   EXPECT_LT(took, 5s);
 }
 
-TEST_F(SpeakerTest, AReaderThatIsBackHearsWhatWaited) {
+TEST_F(SpeakerTest, ReturningReaderGetsTheQueuedLines) {
   fcntl(ends_[1], F_SETPIPE_SZ, 4096);
   Speaker speaker(ends_[1]);
   for (int k = 0; k < 100; ++k) {
@@ -96,7 +96,7 @@ TEST_F(SpeakerTest, AReaderThatIsBackHearsWhatWaited) {
   EXPECT_EQ(speaker.unsaid(), 0U);
 }
 
-TEST_F(SpeakerTest, WithoutAReaderLinesAreCountedAndThatIsAll) {
+TEST_F(SpeakerTest, WithoutAReaderLinesAreOnlyCounted) {
   std::signal(SIGPIPE, SIG_IGN);
   CloseReader();
   Speaker speaker(ends_[1]);

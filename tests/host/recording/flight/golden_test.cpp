@@ -55,7 +55,7 @@ ServoRun Triangle() {
 
 class GoldenLog : public testing::TestWithParam<ServoRun (*)()> {};
 
-TEST_P(GoldenLog, SaysWhatTheServoDoes) {
+TEST_P(GoldenLog, ServoReproducesTheGoldenLog) {
   const ServoRun run = GetParam()();
   const fs::path log = SourceRoot() / "tests/host/recording/flight/golden" / (run.name + ".mcap");
   if (!fs::exists(log)) {
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Runs, GoldenLog, testing::Values(&Tour, &Triangle),
 
 // It was written before a disc's face had a limit: what a configuration lacks stays as it is by itself, and
 // what it has is read into the fields that it was written from.
-TEST(GoldenConfiguration, IsReadAsItWasWritten) {
+TEST(GoldenConfiguration, KeyMissingFromAnOldLogKeepsItsMeaning) {
   std::optional<config::ServoConfig> config;
   flight::TickVisitor visitor;
   visitor.on_configuration = [&config](const log::ServoConfiguration& message) {
@@ -104,7 +104,7 @@ TEST(GoldenTour, PassesThroughEveryMode) {
 }
 
 // --renew makes it whole again after a change, and keeps its inputs.
-TEST(GoldenLogRenewed, IsIdenticalAgain) {
+TEST(GoldenLogRenewed, RenewedLogReplaysIdentically) {
   const TempFolder folder;
   const std::string log = folder.path() / "log.mcap";
   ServoRun run = TrackingRun("sphere", hal::FeatureKind::kSphere, features::FeatureForm::kSphere, 700);

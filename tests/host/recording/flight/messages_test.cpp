@@ -22,7 +22,7 @@ config::ServoConfig SomeConfig() {
   return config;
 }
 
-TEST(ServoConfigurationTest, ComesBackWhole) {
+TEST(ServoConfigurationTest, RoundTripKeepsEveryField) {
   const log::ServoConfiguration message = ToMessage(SomeConfig());
   EXPECT_EQ(message.sections_size(), 10);
   const config::ServoConfig back = FromMessage(message);
@@ -31,7 +31,7 @@ TEST(ServoConfigurationTest, ComesBackWhole) {
   EXPECT_EQ(back.arm.joints[6].spring, 4.5);
 }
 
-TEST(ServoConfigurationTest, AFieldThatALogDoesNotKnowHasItsDefault) {
+TEST(ServoConfigurationTest, FieldMissingFromALogTakesItsDefault) {
   log::ServoConfiguration message = ToMessage(SomeConfig());
   for (auto& section : *message.mutable_sections()) {
     std::string& fields = *section.mutable_fields();
@@ -47,7 +47,7 @@ TEST(ServoConfigurationTest, AFieldThatALogDoesNotKnowHasItsDefault) {
   EXPECT_EQ(back.law.lambda, 1.0 / 3.0);
 }
 
-TEST(ServoConfigurationTest, WhatThisProgramDoesNotKnowIsRefused) {
+TEST(ServoConfigurationTest, UnknownOrTruncatedFieldsAreRefused) {
   log::ServoConfiguration later = ToMessage(SomeConfig());
   later.mutable_sections(4)->mutable_fields()->append(8, '\0');
   EXPECT_THROW(FromMessage(later), std::runtime_error);
@@ -59,7 +59,7 @@ TEST(ServoConfigurationTest, WhatThisProgramDoesNotKnowIsRefused) {
   EXPECT_THROW(FromMessage(cut), std::runtime_error);
 }
 
-TEST(MessageDifferenceTest, NamesEachFieldBitByBit) {
+TEST(MessageDifferenceTest, NamesEveryFieldThatDiffersInABit) {
   log::Tick a;
   a.set_tick(3);
   a.mutable_command()->add_tau(0.0);

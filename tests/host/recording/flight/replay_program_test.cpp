@@ -39,7 +39,7 @@ class ReplayProgramTest : public testing::Test {
   const fs::path log_ = folder_.path() / "log.mcap";
 };
 
-TEST_F(ReplayProgramTest, SaysThatItIsTheSame) {
+TEST_F(ReplayProgramTest, ReportsAnIdenticalReplay) {
   const ProgramResult result = Replay({});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.out, log_.string() +
@@ -48,7 +48,7 @@ TEST_F(ReplayProgramTest, SaysThatItIsTheSame) {
                             "bit-identical\n");
 }
 
-TEST_F(ReplayProgramTest, SaysWhatItWouldHaveDoneWithOtherSettings) {
+TEST_F(ReplayProgramTest, ReportsChangesUnderOtherSettings) {
   const std::string page = folder_.path() / "gain.html";
   const ProgramResult result =
       Replay({"--set", "servo.lambda=3", "--set", "servo.omega_n=30", "--json", "--out", page});
@@ -73,7 +73,7 @@ TEST_F(ReplayProgramTest, SaysWhatItWouldHaveDoneWithOtherSettings) {
   EXPECT_EQ(json::parse(same.out)["changes"].size(), 0U);
 }
 
-TEST_F(ReplayProgramTest, RefusesWhatItDoesNotKnow) {
+TEST_F(ReplayProgramTest, RefusesUnknownKeysOptionsAndFiles) {
   EXPECT_THAT(Refusal({"--set", "servo.lamda=3"}),
               HasSubstr("--set servo.lamda: a replay knows the keys of [servo] and [safety]; did you mean "
                         "servo.lambda?"));

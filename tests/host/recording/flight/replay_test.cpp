@@ -64,7 +64,7 @@ class ReplayTest : public testing::Test {
   const fs::path path_ = folder_.path() / "log.mcap";
 };
 
-TEST_F(ReplayTest, EveryKindOfRunIsTheSameToTheLastBit) {
+TEST_F(ReplayTest, EveryKindOfRunReplaysBitExact) {
   for (const test::ServoRun& run : test::AllServoRuns()) {
     ASSERT_EQ(test::RecordRun(run, path_), 0U);
     for (const double from_s : {0.0, 0.5, 1.5}) {
@@ -90,7 +90,7 @@ TEST_F(ReplayTest, EveryKindOfRunIsTheSameToTheLastBit) {
 }
 
 // Ticks that found no place in the ring are counted, and split the log at the next keyframe.
-TEST_F(ReplayTest, ALossSplitsTheLogAtTheNextKeyframe) {
+TEST_F(ReplayTest, LostTicksSplitTheLogAtTheNextKeyframe) {
   const test::ServoRun run = Sphere(3500);
   test::RecordedRunOptions options;
   options.ring = 100;
@@ -122,7 +122,7 @@ TEST_F(ReplayTest, ALossSplitsTheLogAtTheNextKeyframe) {
   }
 }
 
-TEST_F(ReplayTest, WhereverTheFileIsCutOffItIsReplayedUpToThere) {
+TEST_F(ReplayTest, TruncatedFileReplaysUpToTheCut) {
   test::RecordRun(Sphere(2600), path_);
   const auto size = fs::file_size(path_);
   std::uint64_t before = 0;
@@ -147,7 +147,7 @@ TEST_F(ReplayTest, WhereverTheFileIsCutOffItIsReplayedUpToThere) {
   EXPECT_GT(with_ticks, 0);
 }
 
-TEST_F(ReplayTest, AnOutputThatDiffersIsFoundAndNamed) {
+TEST_F(ReplayTest, DifferingOutputIsFoundAndNamed) {
   test::RecordRun(Sphere(1500), path_);
   const fs::path changed = Changed([](log::Tick& tick) {
     if (tick.tick() >= 1234) {
@@ -174,7 +174,7 @@ TEST_F(ReplayTest, AnOutputThatDiffersIsFoundAndNamed) {
 
 // One input bit of one tick: the outputs say so, or the digest does, and what it did to the state is named at
 // the next keyframe.
-TEST_F(ReplayTest, AnInputThatDiffersShowsInTheState) {
+TEST_F(ReplayTest, DifferingInputShowsInTheState) {
   test::RecordRun(Sphere(1500), path_);
   const fs::path changed = Changed([](log::Tick& tick) {
     if (tick.tick() == 995) {
@@ -191,7 +191,7 @@ TEST_F(ReplayTest, AnInputThatDiffersShowsInTheState) {
             << '\n';
 }
 
-TEST_F(ReplayTest, ATickThatIsMissingIsNoDifference) {
+TEST_F(ReplayTest, MissingTickIsNoDivergence) {
   test::RecordRun(Sphere(2500), path_);
   const ReplayResult result = Replay(Changed([](log::Tick& tick) { return tick.tick() != 321; }), Options());
   EXPECT_EQ(result.ticks_lost, 1U);
@@ -202,7 +202,7 @@ TEST_F(ReplayTest, ATickThatIsMissingIsNoDifference) {
 
 // Another gain, open loop: the outputs change from the first tick that tracks, and the arm's own path stays
 // the servo's, so that it finds no fault.
-TEST_F(ReplayTest, AnotherConfigurationSaysWhatItWouldHaveDone) {
+TEST_F(ReplayTest, AnotherConfigurationReportsItsChanges) {
   config::ServoConfig still = test::PandaConfig();
   still.law.posture_gain = 0.0;  // nothing else moves the hand
   const auto as_it_is = [](int, const task::ServoInputs&) {};
@@ -239,7 +239,7 @@ TEST_F(ReplayTest, AnotherConfigurationSaysWhatItWouldHaveDone) {
   EXPECT_TRUE(Replay(path_, same).Identical());
 }
 
-TEST_F(ReplayTest, ALogWithoutARecorderIsRefused) {
+TEST_F(ReplayTest, LogWithoutAFlightRecorderIsRefused) {
   log::McapWriter writer(path_, "test");
   writer.Finish();
   try {

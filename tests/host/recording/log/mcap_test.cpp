@@ -84,7 +84,7 @@ class McapTest : public testing::Test {
   std::vector<Line> written_;
 };
 
-TEST_F(McapTest, GivesBackWhatWasWritten) {
+TEST_F(McapTest, ReadsBackEverythingWritten) {
   WriteSample();
   const Content content = Read(path_);
   EXPECT_TRUE(content.end.complete) << content.end.why;
@@ -114,7 +114,7 @@ TEST_F(McapTest, IsReadableUpToAnyCut) {
 }
 
 // A bit that fell over in a chunk's body is noticed; no such damage crashes the reader.
-TEST_F(McapTest, NoticesDamage) {
+TEST_F(McapTest, DamagedChunkMakesTheLogIncomplete) {
   WriteSample();
   const std::string bytes = FileBytes(path_);
   std::mt19937 random(11);
@@ -137,7 +137,7 @@ TEST_F(McapTest, NoticesDamage) {
 }
 
 // A chunk that is no longer taken for one is missed: the summary says how many messages there were.
-TEST_F(McapTest, MissesAChunkThatIsPassedOver) {
+TEST_F(McapTest, SkippedChunkMakesTheLogIncomplete) {
   WriteSample();
   std::string bytes = FileBytes(path_);
   const std::size_t header = 8;
@@ -151,7 +151,7 @@ TEST_F(McapTest, MissesAChunkThatIsPassedOver) {
   EXPECT_FALSE(content.end.complete);
 }
 
-TEST_F(McapTest, RefusesWhatIsNoLog) {
+TEST_F(McapTest, RefusesAFileThatIsNoLog) {
   std::ofstream(path_) << "not a log at all";
   EXPECT_THROW(Read(path_), std::runtime_error);
   fs::remove(path_);
@@ -160,7 +160,7 @@ TEST_F(McapTest, RefusesWhatIsNoLog) {
 }
 
 // Both versions are named, of the log and of the program, and who wrote it.
-TEST_F(McapTest, RefusesALogOfAFormatThatItDoesNotKnow) {
+TEST_F(McapTest, RefusesAnUnknownFormatAndNamesBothVersions) {
   const auto error = [this](const std::string& version) -> std::string {
     {
       McapWriter writer(path_, "test");
@@ -186,7 +186,7 @@ TEST_F(McapTest, RefusesALogOfAFormatThatItDoesNotKnow) {
   }
 }
 
-TEST_F(McapTest, AFullDiskIsAnError) {
+TEST_F(McapTest, FullDiskThrows) {
   if (!fs::exists("/dev/full")) {
     GTEST_SKIP() << "no /dev/full here";
   }
@@ -203,7 +203,7 @@ TEST_F(McapTest, AFullDiskIsAnError) {
 }
 
 // A few bytes that say they were two gigabytes once get no memory for it.
-TEST_F(McapTest, AChunkThatCouldNotBeSoSmallIsDamage) {
+TEST_F(McapTest, ImplausibleUncompressedSizeIsDamage) {
   const auto put = [](std::string& out, auto value) {
     char bytes[sizeof value];
     std::memcpy(bytes, &value, sizeof value);

@@ -19,7 +19,7 @@ std::string HashOf(const std::function<void(hal::TickRecord&)>& change) {
   return hash.Finish();
 }
 
-TEST(RecordHashTest, EveryFieldCounts) {
+TEST(RecordHashTest, EveryFieldChangesTheHash) {
   const std::vector<std::function<void(hal::TickRecord&)>> changes = {
       [](hal::TickRecord&) {},
       [](hal::TickRecord& r) { r.tick = 1; },
@@ -72,7 +72,7 @@ TEST(RecordHashTest, EveryFieldCounts) {
   EXPECT_EQ(hashes.size(), changes.size());
 }
 
-TEST(RecordHashTest, TheSameIsTheSame) {
+TEST(RecordHashTest, EqualRecordsHaveEqualHashes) {
   const auto change = [](hal::TickRecord& r) { r.arm.q[0] = 0.3; };
   EXPECT_EQ(HashOf(change), HashOf(change));
   EXPECT_EQ(HashOf(change).size(), 64U);

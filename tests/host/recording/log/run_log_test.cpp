@@ -62,7 +62,7 @@ class RunLogTest : public testing::Test {
   const fs::path path_ = folder_.path() / "log.mcap";
 };
 
-TEST_F(RunLogTest, WaitsAndLosesNothingWhereItMayNotDrop) {
+TEST_F(RunLogTest, WithoutDroppingItWaitsAndLosesNothing) {
   constexpr std::uint64_t kTicks = 20'000;  // ten times what the ring holds
   RunLog log(OneJoint(path_));
   for (std::uint64_t i = 0; i < kTicks; ++i) {
@@ -79,7 +79,7 @@ TEST_F(RunLogTest, WaitsAndLosesNothingWhereItMayNotDrop) {
 }
 
 // Where it may drop, what is there and what was dropped make up the whole, and the writer never waits.
-TEST_F(RunLogTest, CountsWhatItDrops) {
+TEST_F(RunLogTest, DroppedTicksAreCounted) {
   constexpr std::uint64_t kTicks = 200'000;
   RunLogConfig config = OneJoint(path_);
   config.may_drop = true;
@@ -93,7 +93,7 @@ TEST_F(RunLogTest, CountsWhatItDrops) {
   EXPECT_EQ(ticks.size() + log.dropped(), kTicks);
 }
 
-TEST_F(RunLogTest, SaysModesAndFaultsInWords) {
+TEST_F(RunLogTest, WritesModesAndFaultsInWords) {
   RunLog log(OneJoint(path_));
   hal::TickRecord record = RecordAt(0);
   log.AddTick(record);
@@ -119,7 +119,7 @@ TEST_F(RunLogTest, SaysModesAndFaultsInWords) {
   EXPECT_EQ(words[2].rfind("fault: joint_velocity, joint 1", 0), 0U) << words[2];
 }
 
-TEST_F(RunLogTest, SaysWhereTheFramesAre) {
+TEST_F(RunLogTest, WritesTheFrameTransforms) {
   RunLog log(OneJoint(path_));
   hal::TickRecord record = RecordAt(0);
   record.arm.q[0] = 1.5707963267948966;
@@ -138,7 +138,7 @@ TEST_F(RunLogTest, SaysWhereTheFramesAre) {
 }
 
 // What was added is in the file a moment later, though nothing follows it and nobody completes it.
-TEST_F(RunLogTest, WhatWasAddedIsInTheFileSoon) {
+TEST_F(RunLogTest, AddedTicksReachTheFileSoon) {
   RunLog log(OneJoint(path_));
   std::size_t added = 0;
   for (int round = 0; round < 3; ++round) {
@@ -154,7 +154,7 @@ TEST_F(RunLogTest, WhatWasAddedIsInTheFileSoon) {
 }
 
 // A log that cannot be written any more says so at the end; until then it takes everything, and nobody waits.
-TEST_F(RunLogTest, AFullDiskHoldsNobodyUp) {
+TEST_F(RunLogTest, FullDiskBlocksNobodyAndFinishThrows) {
   if (!fs::exists("/dev/full")) {
     GTEST_SKIP() << "no /dev/full here";
   }
@@ -170,7 +170,7 @@ TEST_F(RunLogTest, AFullDiskHoldsNobodyUp) {
 }
 
 // What was to be written when it failed is counted, like what came after.
-TEST_F(RunLogTest, AFullDiskLeavesNothingUncounted) {
+TEST_F(RunLogTest, FullDiskCountsEveryLostAttachment) {
   if (!fs::exists("/dev/full")) {
     GTEST_SKIP() << "no /dev/full here";
   }
@@ -205,7 +205,7 @@ TEST_F(RunLogTest, TicksAfterAFullDiskAreCounted) {
 
 // A disk that is full once a part of it is written: the file is readable up to there, and every tick is there
 // or counted, but for those of the last second before.
-TEST_F(RunLogTest, AFullDiskLeavesWhatWasWrittenBefore) {
+TEST_F(RunLogTest, FullDiskKeepsTheLogReadableUpToThere) {
   constexpr std::uint64_t kTicks = 60'000;
   rlimit before{};
   getrlimit(RLIMIT_FSIZE, &before);
@@ -232,7 +232,7 @@ TEST_F(RunLogTest, AFullDiskLeavesWhatWasWrittenBefore) {
   EXPECT_LE(ticks.size() + log.dropped(), kTicks);
 }
 
-TEST_F(RunLogTest, AFileIsAttachedWithEveryByteOrRefused) {
+TEST_F(RunLogTest, FileIsAttachedByteExactOrRefused) {
   const std::string bytes("\0\r\n\xff film", 9);
   std::ofstream(folder_.path() / "film", std::ios::binary) << bytes;
   RunLog log(OneJoint(path_));
@@ -251,7 +251,7 @@ TEST_F(RunLogTest, AFileIsAttachedWithEveryByteOrRefused) {
   EXPECT_EQ(attachments, 1);
 }
 
-TEST_F(RunLogTest, AFileThatCannotBeMadeIsRefusedAtOnce) {
+TEST_F(RunLogTest, UncreatableFileIsRefusedAtOnce) {
   EXPECT_THROW(RunLog(OneJoint("/nowhere/log.mcap")), std::runtime_error);
 }
 

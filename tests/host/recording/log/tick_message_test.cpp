@@ -117,7 +117,7 @@ TEST(TickMessageTest, KeepsEveryBitOfRandomRecords) {
   }
 }
 
-TEST(TickMessageTest, RefusesMoreThanTheServoHas) {
+TEST(TickMessageTest, RefusesMoreEntriesThanTheServoHas) {
   Tick tick;
   for (int i = 0; i < hal::kMaxJoints + 1; ++i) {
     tick.mutable_arm()->add_q(0.0);

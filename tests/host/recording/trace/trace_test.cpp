@@ -23,7 +23,7 @@ json WriteAndRead(const Trace& trace) {
   return json::parse(stream);
 }
 
-TEST(Trace, WritesChromesFormat) {
+TEST(Trace, WritesTheChromeTraceFormat) {
   Trace trace("a program");
   Track& one = trace.AddTrack("one", 10);
   Track& two = trace.AddTrack("two", 10);
@@ -61,7 +61,7 @@ TEST(Trace, WritesChromesFormat) {
   EXPECT_EQ(arrows, (std::vector<std::string>{"s", "f"}));
 }
 
-TEST(Trace, WhatFindsNoRoomIsCounted) {
+TEST(Trace, SpansWithoutRoomAreCounted) {
   Trace trace("a program");
   Track& track = trace.AddTrack("one", 2);
   for (int i = 0; i < 5; ++i) {
@@ -72,7 +72,7 @@ TEST(Trace, WhatFindsNoRoomIsCounted) {
   EXPECT_EQ(WriteAndRead(trace)["otherData"]["dropped"], 3);
 }
 
-TEST(Trace, SaysWhatItCannotWrite) {
+TEST(Trace, UnwritableFileThrows) {
   EXPECT_THROW(Trace("a program").Write("/nowhere/to/be/trace.json"), std::runtime_error);
 }
 
@@ -90,7 +90,7 @@ class CountingRecorder final : public hal::Recorder {
   std::uint64_t last = 0;
 };
 
-TEST(Trace, TickPassesOnWhatItIsTold) {
+TEST(Trace, TickTraceForwardsToProbeAndRecorder) {
   Track track("servo", 100);
   CountingProbe probe;
   CountingRecorder recorder;
