@@ -52,7 +52,7 @@ class CommandLineTest : public testing::Test {
   TempFolder folder_;
 };
 
-TEST_F(CommandLineTest, WhatGoesWithABoardIsRefusedWithout) {
+TEST_F(CommandLineTest, BoardOptionWithoutABoardIsRefused) {
   const auto needs = [](const std::string& option, const std::string& choice) {
     return HasSubstr(option + " goes with " + choice);
   };
@@ -70,7 +70,7 @@ TEST_F(CommandLineTest, WhatGoesWithABoardIsRefusedWithout) {
 }
 
 // A camera that never says anything leaves no film and no pictures of what it saw; all else is there.
-TEST_F(CommandLineTest, ARunWithoutAnyFrame) {
+TEST_F(CommandLineTest, RunWithoutAnyFrameFailsAndWritesNoFilm) {
   const ProgramResult result = Sim({"run", "ball", "--set", "faults.camera_outage_s=[0,100]", "--set",
                                     "run.duration_s=0.5", "--out", Out()});
   EXPECT_EQ(result.exit_code, 1);
@@ -83,7 +83,7 @@ TEST_F(CommandLineTest, ARunWithoutAnyFrame) {
   }
 }
 
-TEST_F(CommandLineTest, UnknownScenario) {
+TEST_F(CommandLineTest, UnknownScenarioIsRefusedWithASuggestion) {
   EXPECT_THAT(Refusal({"bal"}), AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
                                       HasSubstr("ball, ball-clutter, ball-dark, ball-eight, ball-jump, "
                                                 "ball-line, ball-moving, ball-occluded, ball-puma560, "
@@ -91,14 +91,14 @@ TEST_F(CommandLineTest, UnknownScenario) {
   EXPECT_THAT(Refusal({"nowhere/to/be.toml"}), HasSubstr("nowhere/to/be.toml"));
 }
 
-TEST_F(CommandLineTest, UnknownKey) {
+TEST_F(CommandLineTest, UnknownKeyIsRefusedWithASuggestion) {
   EXPECT_THAT(Refusal({"ball", "--set", "servo.lamda=3"}),
               AllOf(HasSubstr("servo.lamda"), HasSubstr("servo.lambda")));
   const std::string file = Write("mine.toml", "[camera]\nrate_hz = 30\nspeed_hz = 3\n");
   EXPECT_THAT(Refusal({file}), AllOf(HasSubstr("mine.toml:3"), HasSubstr("camera.speed_hz")));
 }
 
-TEST_F(CommandLineTest, ValueOutOfRange) {
+TEST_F(CommandLineTest, ValueOutOfRangeIsRefusedWithItsRange) {
   EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda=-1"}),
               AllOf(HasSubstr("servo.lambda = -1"), HasSubstr("0 to 20 1/s")));
   EXPECT_THAT(Refusal({"ball", "--set", "servo.lambda=nan"}), HasSubstr("0 to 20 1/s"));
@@ -111,7 +111,7 @@ TEST_F(CommandLineTest, ValueOutOfRange) {
 }
 
 // Each value is allowed; together they are not.
-TEST_F(CommandLineTest, ValuesThatDoNotFitEachOther) {
+TEST_F(CommandLineTest, ContradictingValuesAreRefused) {
   EXPECT_THAT(Refusal({"ball", "--set", "arm.q_start=[0, 0, 0]"}),
               AllOf(HasSubstr("arm.q_start has 3 entries"), HasSubstr("has 7 joints")));
   EXPECT_THAT(Refusal({"ball", "--set", "arm.q_start=[0, 0, 0, 1, 0, 0, 0]"}),
@@ -141,13 +141,13 @@ TEST_F(CommandLineTest, ValuesThatDoNotFitEachOther) {
               AllOf(HasSubstr("arm.q_start"), HasSubstr("safety.workspace_radius = 0.7 m")));
 }
 
-TEST_F(CommandLineTest, TomlThatIsNone) {
+TEST_F(CommandLineTest, BrokenTomlIsRefusedWithItsLine) {
   EXPECT_THAT(Refusal({Write("mine.toml", "[camera\nrate_hz = 30\n")}), HasSubstr("mine.toml:1"));
   EXPECT_THAT(Refusal({Write("mine.toml", "[[target]]\ndiameter = 0.1\n")}),
               AllOf(HasSubstr("mine.toml:1"), HasSubstr("a section is written [name]")));
 }
 
-TEST_F(CommandLineTest, BrokenUrdf) {
+TEST_F(CommandLineTest, BrokenUrdfIsRefused) {
   const std::string broken = Write("broken.urdf", "<robot name=\"b\"><link name=\"a\"/>");
   EXPECT_THAT(Refusal({"ball", "--set", "arm.model=\"" + broken + "\""}), HasSubstr("broken.urdf"));
   const std::string massless = Write(
@@ -189,7 +189,7 @@ class MeshArmTest : public CommandLineTest {
   std::string urdf_;
 };
 
-TEST_F(MeshArmTest, ARunWithMeshes) {
+TEST_F(MeshArmTest, RunWithMeshesFindsTheTargetInEveryFrame) {
   const std::string arm = Arm("<mesh filename=\"meshes/link.stl\"/>");
   const ProgramResult result = Sim(
       {"run", "ball", "--set", arm, "--set", "run.duration_s=0.5", "--json", "--no-report", "--out", Out()});
@@ -200,7 +200,7 @@ TEST_F(MeshArmTest, ARunWithMeshes) {
   EXPECT_EQ(json["contact_ticks"], 0);
 }
 
-TEST_F(MeshArmTest, AMeshThatCannotBeUsed) {
+TEST_F(MeshArmTest, UnusableMeshIsRefusedWithAReason) {
   const auto refusal = [&](const std::string& mesh) { return Refusal({"ball", "--set", Arm(mesh)}); };
   const std::string gone = refusal("<mesh filename=\"package://panda_description/gone.stl\"/>");
   EXPECT_THAT(
@@ -219,7 +219,7 @@ TEST_F(MeshArmTest, AMeshThatCannotBeUsed) {
   EXPECT_THAT(refusal("<mesh filename=\"meshes/empty.dae\"/>"), HasSubstr("cannot be read"));
 }
 
-TEST_F(CommandLineTest, OutputFolderThatCannotBeWritten) {
+TEST_F(CommandLineTest, UnwritableOutputFolderIsRefused) {
   const std::string file = Write("file", "something");
   const ProgramResult result =
       Sim({"run", "ball", "--set", "run.duration_s=0.1", "--no-report", "--out", file + "/out"});
@@ -228,7 +228,7 @@ TEST_F(CommandLineTest, OutputFolderThatCannotBeWritten) {
 }
 
 // The first run stands still while the second one is tried, so that it is there whatever the machine does.
-TEST_F(CommandLineTest, TwoRunsIntoOneFolder) {
+TEST_F(CommandLineTest, SecondRunIntoTheSameFolderIsRefused) {
   const ProgramResult result = RunProgram(
       {"sh", "-c",
        R"("$0" run ball --set run.duration_s=0.3 --seed 1 --json --out "$1" > /dev/null 2>&1 & first=$!
@@ -247,12 +247,12 @@ echo "first $? second $second")",
   }
 }
 
-TEST_F(CommandLineTest, NoEgl) {
+TEST_F(CommandLineTest, MissingEglIsRefusedWithAHint) {
   EXPECT_THAT(Refusal({"ball"}, {"__EGL_VENDOR_LIBRARY_DIRS=/nonexistent"}),
               AllOf(HasSubstr("EGL"), HasSubstr("libgl1-mesa-dri")));
 }
 
-TEST_F(CommandLineTest, NobodyReadsWhatItSays) {
+TEST_F(CommandLineTest, LostProgressIsToleratedAndALostResultFails) {
   const auto shell = [&](const std::string& redirection) {
     return RunProgram({"sh", "-c",
                        std::string("\"$0\" run ball --set run.duration_s=0.1 --no-report --out \"$1\" ") +
@@ -265,14 +265,14 @@ TEST_F(CommandLineTest, NobodyReadsWhatItSays) {
   EXPECT_EQ(shell(">/dev/full"), 2) << "the result is lost, and that is said";
 }
 
-TEST_F(CommandLineTest, AScenarioOfAnyName) {
+TEST_F(CommandLineTest, ScenarioNameWithInvalidBytesGivesValidJson) {
   const std::string file = Write("b\xFF ll.toml", "[run]\nduration_s = 0.1\n");
   const ProgramResult result = Sim({"run", file, "--json", "--no-report", "--out", Out()});
   EXPECT_EQ(result.exit_code, 1) << result.err;
   EXPECT_TRUE(nlohmann::json::accept(result.out));
 }
 
-TEST_F(CommandLineTest, WrongUsage) {
+TEST_F(CommandLineTest, WrongUsageExitsWith2) {
   EXPECT_EQ(Sim({}).exit_code, 2);
   EXPECT_EQ(Sim({"fly"}).exit_code, 2);
   EXPECT_EQ(Sim({"run"}).exit_code, 2);
@@ -290,7 +290,7 @@ TEST_F(CommandLineTest, HelpShowsExamplesAndExitCodes) {
   EXPECT_THAT(Sim({"--version"}).out, testing::StartsWith("fovea-sim 0."));
 }
 
-TEST_F(CommandLineTest, ListAndKeysSayWhatThereIs) {
+TEST_F(CommandLineTest, ListAndKeysShowScenariosAndKeys) {
   const std::string list = Sim({"list"}).out;
   EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 23);
   EXPECT_THAT(list, AllOf(HasSubstr("ball "), HasSubstr("ball-moving "), HasSubstr("ball-dark "),
@@ -302,14 +302,14 @@ TEST_F(CommandLineTest, ListAndKeysSayWhatThereIs) {
 }
 
 // The table in the repository is what the program says; renew it with `fovea-sim keys --markdown`.
-TEST_F(CommandLineTest, TheTableOfKeysIsUpToDate) {
+TEST_F(CommandLineTest, TableOfKeysIsUpToDate) {
   std::ostringstream table;
   table << std::ifstream(test::SourceRoot() / "sim/scenarios/KEYS.md").rdbuf();
   EXPECT_EQ(Sim({"keys", "--markdown"}).out, table.str());
 }
 
 // A run too short to converge: exit code 1, and files that are whole.
-TEST_F(CommandLineTest, ARunThatMissesItsGoal) {
+TEST_F(CommandLineTest, RunThatMissesItsGoalExitsWith1AndWritesItsFiles) {
   const ProgramResult result = Sim(
       {"run", "ball", "--set", "run.duration_s=0.3", "--seed", "9", "--json", "--no-report", "--out", Out()});
   EXPECT_EQ(result.exit_code, 1);
@@ -360,7 +360,7 @@ TEST_F(CommandLineTest, ARunThatMissesItsGoal) {
   EXPECT_THAT(names, testing::UnorderedElementsAre("summary.json", "eye-first.png", "eye-last.png"));
 }
 
-TEST_F(CommandLineTest, ARefusedRunLeavesTheLastOnesFilesAlone) {
+TEST_F(CommandLineTest, RefusedRunKeepsTheFilesOfTheLastOne) {
   ASSERT_EQ(Sim({"run", "ball", "--set", "run.duration_s=0.1", "--no-report", "--out", Out()}).exit_code, 1);
   const auto written = fs::last_write_time(Out() + "/summary.json");
   EXPECT_EQ(Sim({"run", "ball", "--set", "servo.lambda=-1", "--out", Out()}).exit_code, 2);
@@ -368,7 +368,7 @@ TEST_F(CommandLineTest, ARefusedRunLeavesTheLastOnesFilesAlone) {
 }
 
 // One core or two, this process or another: the same run.
-TEST_F(CommandLineTest, TheSameSeedIsTheSameRunOnOneCoreToo) {
+TEST_F(CommandLineTest, SameSeedGivesTheSameRunOnOneCore) {
   const auto hash = [&](std::vector<std::string> before, const std::string& seed) {
     before.insert(before.end(), {FOVEA_SIM_PROGRAM, "run", "ball", "--set", "run.duration_s=1.5", "--seed",
                                  seed, "--json", "--no-report", "--out", Out()});

@@ -67,7 +67,7 @@ class FlightLogTest : public testing::Test {
   const fs::path out_ = folder_.path() / "out";
 };
 
-TEST_F(FlightLogTest, LockstepRunsAreReplayedToTheLastBit) {
+TEST_F(FlightLogTest, LockstepRunReplaysBitExact) {
   const std::string brief = "run.duration_s=1.6";
   ExpectIdentical({"ball", "--set", brief});
   ExpectIdentical({"ball", "--set", brief, "--set", "faults.packet_loss_s=[0.2, 1]", "--set",
@@ -86,7 +86,7 @@ TEST_F(FlightLogTest, LockstepRunsAreReplayedToTheLastBit) {
 
 // The keys that a log names are those that it was recorded with, whatever the scenario: what was set as it is
 // set again changes nothing, and something else does.
-TEST_F(FlightLogTest, WhatWasSetAnywayChangesNothing) {
+TEST_F(FlightLogTest, ReplayWithTheRecordedSettingsHasNoChanges) {
   for (const char* scenario : {"ball", "square", "home"}) {
     ASSERT_NE(RunProgram(RunOf({scenario, "--set", "run.duration_s=0.6", "--set", "servo.omega_n=23.456789",
                                 "--set", "safety.workspace_radius=0.8512345"}))
@@ -99,13 +99,13 @@ TEST_F(FlightLogTest, WhatWasSetAnywayChangesNothing) {
   }
 }
 
-TEST_F(FlightLogTest, ARunAtRealPaceIsReplayedToTheLastBit) {
+TEST_F(FlightLogTest, RealPaceRunReplaysBitExact) {
   ExpectIdentical({"ball", "--pace", "real", "--set", "run.duration_s=3"});
 }
 
 // Killed by what cannot be caught, while it writes: all that was in the file before the kill is replayed, and
 // the report is made of it.
-TEST_F(FlightLogTest, AKilledRunIsReplayedUpToTheKill) {
+TEST_F(FlightLogTest, KilledRunReplaysUpToTheKill) {
   std::vector<std::string> arguments = RunOf({"ball", "--pace", "real", "--set", "run.duration_s=600"});
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
@@ -145,7 +145,7 @@ TEST_F(FlightLogTest, AKilledRunIsReplayedUpToTheKill) {
 }
 
 // Nothing waits for a disk that takes no more; the run goes on to its end, says so, and leaves the log alone.
-TEST_F(FlightLogTest, AFullDiskLeavesTheLogUpToThere) {
+TEST_F(FlightLogTest, FullDiskKeepsTheLogUpToThere) {
   fs::create_directories(out_);
   std::vector<std::string> arguments = RunOf({"ball", "--set", "run.duration_s=4"});
   std::vector<std::string> all{"sh", "-c", "trap '' XFSZ; ulimit -f 8192; exec \"$@\"", "sh"};

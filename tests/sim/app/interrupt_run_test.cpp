@@ -55,7 +55,7 @@ wait $run; echo "ended with $?")",
 constexpr const char* kUntilItRuns =
     R"(until [ -s "$1/.log.mcap.partial" ]; do kill -0 $run || exit 9; sleep 0.02; done)";
 
-TEST_F(InterruptTest, LeavesAReadableLogAndSummary) {
+TEST_F(InterruptTest, InterruptedRunLeavesReadableLogAndSummary) {
   const ProgramResult result =
       Interrupt(std::string(kUntilItRuns) + "\nkill -INT $run", "--set run.duration_s=600");
   EXPECT_EQ(result.out, "ended with 1\n") << Err();
@@ -71,7 +71,7 @@ TEST_F(InterruptTest, LeavesAReadableLogAndSummary) {
 }
 
 // Before there is any folder: the run ends with its first tick.
-TEST_F(InterruptTest, WhileItPrepares) {
+TEST_F(InterruptTest, InterruptWhilePreparingLeavesLogAndSummary) {
   const ProgramResult result = Interrupt(
       R"(until grep -q 'SigBlk:.*[2367abef]$' /proc/$run/status; do kill -0 $run || exit 9; done
 kill -INT $run)");
@@ -85,7 +85,7 @@ kill -INT $run)");
 }
 
 // While films and report are made the run itself is over, and is judged as any other.
-TEST_F(InterruptTest, WhileItsFilesAreWritten) {
+TEST_F(InterruptTest, InterruptWhileWritingFilesKeepsTheResult) {
   const ProgramResult result = Interrupt(
       R"(until [ -s "$1/.summary.json.partial" ] || grep -q drawing "$1.err"; do kill -0 $run || exit 9; done
 kill -INT $run)",
@@ -98,7 +98,7 @@ kill -INT $run)",
 }
 
 // The second one ends it at once: the log stands alone, up to where it was cut.
-TEST_F(InterruptTest, TwiceEndsAtOnceAndKeepsTheLog) {
+TEST_F(InterruptTest, SecondInterruptEndsAtOnceAndKeepsTheLog) {
   const std::string before = "of a run before";
   fs::create_directories(Out());
   std::ofstream(Out() + "/summary.json") << before;

@@ -20,7 +20,7 @@ Scenario Carrying(double mass, const std::vector<double>& inertia) {
   return scenario;
 }
 
-TEST(LoadTest, TheServoAndThePhysicsCarryTheSame) {
+TEST(LoadTest, ServoAndPhysicsCarryTheSameLoad) {
   const RunDescription run = DescribeRun(Carrying(1.7, {0.012, 0.015, 0.010, 0.001, -0.002, 0.003}));
   const RunDescription empty = DescribeRun(Carrying(0.0, {0.0, 0.0, 0.0}));
   const model::ArmModel& arm = run.servo.arm;
@@ -53,7 +53,7 @@ TEST(LoadTest, TheServoAndThePhysicsCarryTheSame) {
   EXPECT_GT(most_weight, 5.0);
 }
 
-TEST(LoadTest, ALoadThatNoBodyCanBeIsRefused) {
+TEST(LoadTest, LoadWithImpossibleInertiaIsRefused) {
   EXPECT_NO_THROW(DescribeRun(Carrying(1.0, {0.0, 0.0, 0.0}))) << "a point mass";
   EXPECT_THROW(DescribeRun(Carrying(1.0, {0.001, 0.001, 0.003})), config::InputError);
   EXPECT_THROW(DescribeRun(Carrying(1.0, {0.001, 0.001, 0.001, 0.002, 0.0, 0.0})), config::InputError);

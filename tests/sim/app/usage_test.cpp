@@ -34,7 +34,7 @@ class UsageTest : public testing::Test {
   TempFolder folder_;
 };
 
-TEST_F(UsageTest, SaysWhatIsAllowed) {
+TEST_F(UsageTest, WrongUsageNamesWhatIsAllowed) {
   const std::string commands = "allowed: run, serve, pictures, list, keys";
   EXPECT_THAT(Refusal({}), HasSubstr(commands));
   EXPECT_THAT(Refusal({"fly"}), AllOf(HasSubstr("fly"), HasSubstr(commands)));
@@ -46,7 +46,7 @@ TEST_F(UsageTest, SaysWhatIsAllowed) {
 }
 
 // CLI11's ranges let NaN pass.
-TEST_F(UsageTest, ANumberMustBeFinite) {
+TEST_F(UsageTest, NonFiniteNumberIsRefused) {
   for (const char* number : {"nan", "-nan", "inf", "-inf", "1e999"}) {
     for (const char* option : {"--line-loss", "--line-delay-ms", "--line-from-s"}) {
       const std::string given = std::string(option) + "=" + number;
@@ -65,7 +65,7 @@ TEST_F(UsageTest, ANumberMustBeFinite) {
   EXPECT_THAT(Refusal({"run", file}), AllOf(HasSubstr("mine.toml:2"), HasSubstr("run.duration_s = nan")));
 }
 
-TEST_F(UsageTest, AFolderThatIsNamedLikeAFile) {
+TEST_F(UsageTest, FolderInPlaceOfATomlFileIsRefused) {
   const fs::path folder = folder_.path() / "x.toml";
   fs::create_directory(folder);
   EXPECT_EQ(Refusal({"run", folder}),

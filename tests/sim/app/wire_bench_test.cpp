@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 
 // In lockstep the robot waits for its client: the counts are the same on any machine.
-TEST(WireBench, HasItsFigures) {
+TEST(WireBench, ReportsEveryFigure) {
   const ProgramResult run =
       RunProgram({FOVEA_BENCH_PROGRAM, "wire", "--pace", "lockstep", "--seconds", "1", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -46,7 +46,7 @@ done 2> /dev/null
                      FOVEA_BENCH_PROGRAM});
 }
 
-TEST(WireBench, AMotionThatEndsIsSaid) {
+TEST(WireBench, EndedMotionFailsWithItsReason) {
   // Signals have their queue, as the mask of the thread that serves says; then the stop button, and once more
   // where nobody took notice for ten seconds.
   const ProgramResult run = WithItsRobot(
@@ -63,7 +63,7 @@ wait $b)");
   EXPECT_THAT(run.err, HasSubstr("(user stop)"));
 }
 
-TEST(WireBench, ItsRobotIsNotLeftBehind) {
+TEST(WireBench, RobotProcessEndsWithTheBench) {
   const ProgramResult run =
       WithItsRobot("readlink /proc/$c/exe | grep -q 'fovea-sim$'", R"(kill -KILL $b || exit 3
 for k in $(seq 600); do

@@ -75,7 +75,7 @@ class CalibrationLoopTest : public testing::TestWithParam<BoardCase> {
   TempFolder folder_;
 };
 
-TEST_P(CalibrationLoopTest, WhatTheScenarioSaysComesBack) {
+TEST_P(CalibrationLoopTest, RecoversTheScenariosCalibration) {
   const BoardCase& board = GetParam();
   const ProgramResult taken = Pictures(Out(), Joined(board.flags, board.lens));
   ASSERT_EQ(taken.exit_code, 0) << taken.err;
@@ -141,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& board) { return std::string(board.param.name); });
 
 // Without a lens; and what cannot be calibrated from.
-TEST_F(CalibrationLoopTest, FocalLengthAndRefusals) {
+TEST_F(CalibrationLoopTest, FindsTheFocalLengthAndRefusesBadInput) {
   const std::vector<std::string> board{"--board", "9x6", "--square", "0.025"};
   const ProgramResult taken = Pictures(Out(), Joined(board, {"--views", "5"}));
   ASSERT_EQ(taken.exit_code, 0) << taken.err;

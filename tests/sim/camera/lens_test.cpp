@@ -17,7 +17,7 @@ namespace {
 
 const Lens kLens{-0.20, 0.06, 0.0015, -0.001, 0.01};
 
-TEST(LensTest, IsOpenCvsAndComesBack) {
+TEST(LensTest, MatchesOpenCvAndRoundTrips) {
   const Pinhole pinhole = MakePinhole(640, 480, 1.047);
   const cv::Matx33d K(pinhole.f_px, 0.0, pinhole.c_u_px, 0.0, pinhole.f_px, pinhole.c_v_px, 0.0, 0.0, 1.0);
   std::vector<cv::Point3d> points;
@@ -46,14 +46,14 @@ TEST(LensTest, IsOpenCvsAndComesBack) {
 }
 
 // A lens that folds the picture over puts two points onto one.
-TEST(LensTest, OneThatFoldsThePictureIsRefused) {
+TEST(LensTest, LensThatFoldsThePictureIsRefused) {
   const Pinhole wide = MakePinhole(640, 480, 1.9);
   EXPECT_THROW(LensMap({-0.9, 0.0, 0.0, 0.0, 0.0}, wide), std::invalid_argument);
   EXPECT_THROW(LensMap({-0.5, 0.0, 0.0, 0.0, 0.0}, MakePinhole(64, 48, 2.6)), std::invalid_argument);
 }
 
 // A picture of brightness a + b u + c v, resampled, has each pixel's own ideal place in it.
-TEST(LensTest, ResamplesWhereTheFormulaSays) {
+TEST(LensTest, ResamplesByTheLensFormula) {
   const Pinhole pinhole = MakePinhole(160, 120, 1.0);
   const LensMap map(kLens, pinhole);
   const Pinhole& wide = map.wide();
@@ -83,7 +83,7 @@ TEST(LensTest, ResamplesWhereTheFormulaSays) {
 }
 
 // A ball near the corners, through the lens and back: where the detector has it against where it is.
-TEST(LensTest, TheDetectorUndoesIt) {
+TEST(LensTest, DetectorUndoesTheLens) {
   RenderScene scene;
   scene.bench = MakeBench(/*clutter=*/false);
   const Pinhole pinhole = MakePinhole(640, 480, 1.047);

@@ -21,7 +21,7 @@ std::vector<std::uint8_t> Expose(double sigma, std::uint64_t seed, std::uint64_t
   return bgr;
 }
 
-TEST(SensorTest, NoiseHasItsMeanAndItsDeviation) {
+TEST(SensorTest, NoiseHasZeroMeanAndTheSetDeviation) {
   const std::vector<std::uint8_t> bgr = Expose(7.0, 1, 0);
   double sum = 0.0;
   double sum2 = 0.0;
@@ -36,7 +36,7 @@ TEST(SensorTest, NoiseHasItsMeanAndItsDeviation) {
   EXPECT_NEAR(std::sqrt(sum2 / n), std::sqrt(49.0 + 1.0 / 12.0), 0.1);  // and that of rounding
 }
 
-TEST(SensorTest, NoNoiseIsNoChange) {
+TEST(SensorTest, ZeroNoiseLeavesPixelsUnchanged) {
   const std::vector<std::uint8_t> bgr = Expose(0.0, 1, 0);
   EXPECT_EQ(bgr[0], 140);
   EXPECT_EQ(bgr[1], 120);
@@ -44,7 +44,7 @@ TEST(SensorTest, NoNoiseIsNoChange) {
   EXPECT_TRUE(std::equal(bgr.begin() + 3, bgr.end(), bgr.begin()));
 }
 
-TEST(SensorTest, SeedAndFrameSayWhichNoise) {
+TEST(SensorTest, NoiseDependsOnSeedAndFrame) {
   const auto first = Expose(3.0, 1, 5);
   EXPECT_EQ(first, Expose(3.0, 1, 5));
   EXPECT_NE(first, Expose(3.0, 2, 5));
@@ -52,7 +52,7 @@ TEST(SensorTest, SeedAndFrameSayWhichNoise) {
 }
 
 // Neighbouring rows and frames read one table: they must not read it at the same place.
-TEST(SensorTest, RowsAndFramesAreNotCorrelated) {
+TEST(SensorTest, NoiseOfRowsAndFramesIsUncorrelated) {
   const auto a = Expose(7.0, 1, 0);
   const auto b = Expose(7.0, 1, 1);
   const auto correlation = [](const std::uint8_t* p, const std::uint8_t* q, std::size_t count) {

@@ -67,7 +67,7 @@ TEST(SimCameraTest, FramesKeepTheirOrderWhenALaterPictureIsReadyFirst) {
 }
 
 // Whether pictures are slow to draw or nobody takes them: two wait, the rest is lost, the newest are kept.
-TEST(SimCameraTest, LosesTheOldestAndCountsItWhenTheyAreSlowToDraw) {
+TEST(SimCameraTest, SlowDrawingDropsAndCountsTheOldestFrames) {
   std::latch all_exposed(1);
   const auto draw = [&](const Exposure& exposure, std::span<std::uint8_t> rgba) {
     all_exposed.wait();
@@ -82,7 +82,7 @@ TEST(SimCameraTest, LosesTheOldestAndCountsItWhenTheyAreSlowToDraw) {
   ExpectTheNewestOf(6, camera);
 }
 
-TEST(SimCameraTest, LosesTheOldestAndCountsItWhenNobodyTakesThem) {
+TEST(SimCameraTest, UntakenFramesDropAndCountTheOldest) {
   std::counting_semaphore<> drawn(0);
   const auto draw = [&](const Exposure& exposure, std::span<std::uint8_t> rgba) {
     Fill(exposure, rgba);
@@ -97,7 +97,7 @@ TEST(SimCameraTest, LosesTheOldestAndCountsItWhenNobodyTakesThem) {
   ExpectTheNewestOf(6, camera);
 }
 
-TEST(SimCameraTest, APainterThatFailsIsADeviceFaultWithItsWords) {
+TEST(SimCameraTest, FailingPainterIsADeviceFaultWithItsMessage) {
   const auto fail = [](const Exposure&, std::span<std::uint8_t>) {
     throw std::runtime_error("the driver is gone");
   };

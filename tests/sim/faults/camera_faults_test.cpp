@@ -57,7 +57,7 @@ std::vector<std::vector<std::uint8_t>> PixelsOf(const std::vector<Exposure>& tak
   return pictures;
 }
 
-TEST(FrozenPictureTest, HasNoiseOfItsOwnOrIsTheSameToTheBit) {
+TEST(FrozenPictureTest, FrozenSceneHasFreshNoiseUnlessPixelsFreezeToo) {
   for (const bool pixels : {false, true}) {
     FrameFaults faults;
     faults.freeze = {0.050, 0.100};
@@ -75,7 +75,7 @@ TEST(FrozenPictureTest, HasNoiseOfItsOwnOrIsTheSameToTheBit) {
 }
 
 // What comes before the lens after the picture has frozen is not in it.
-TEST(FrozenPictureTest, KeepsWhatStoodBeforeTheLensThen) {
+TEST(FrozenPictureTest, FrozenPixelsKeepTheOcclusionOfThatMoment) {
   FrameFaults faults;
   faults.freeze = {0.050, 0.100};
   faults.freeze_pixels = true;
@@ -87,7 +87,7 @@ TEST(FrozenPictureTest, KeepsWhatStoodBeforeTheLensThen) {
   EXPECT_FALSE(taken[10].pixels_of);
 }
 
-TEST(ReplayTest, ShowsTheSceneAsItWasSoLongAgo) {
+TEST(ReplayFaultTest, ShowsTheSceneOfTheSetTimeAgo) {
   FrameFaults faults;
   faults.replay = {{0.100, 0.200}, 35 * kMs};
   const std::vector<Exposure> taken = TakeAll(faults, 30);
@@ -97,7 +97,7 @@ TEST(ReplayTest, ShowsTheSceneAsItWasSoLongAgo) {
   }
 }
 
-TEST(ReplayTest, BeginsWithTheFirstSceneWhereNoneIsSoOld) {
+TEST(ReplayFaultTest, ShowsTheFirstSceneWhenNoneIsOldEnough) {
   FrameFaults faults;
   faults.replay = {{0.0, 0.100}, 50 * kMs};
   const std::vector<Exposure> taken = TakeAll(faults, 12);
@@ -106,7 +106,7 @@ TEST(ReplayTest, BeginsWithTheFirstSceneWhereNoneIsSoOld) {
   }
 }
 
-TEST(StampFaultTest, IsInTheFrameAndNowhereElse) {
+TEST(StampFaultTest, ShiftsOnlyTheStampOfTheFrame) {
   for (const std::int64_t by_ns : {-60 * kMs, 8 * kMs}) {
     FrameFaults faults;
     faults.stamp = {{0.050, 0.100}, by_ns};
@@ -147,7 +147,7 @@ TEST(MirrorTest, SwapsLeftAndRightWithinItsWindow) {
 }
 
 // A glare at the left of the lens is at the right of a mirrored picture.
-TEST(MirrorTest, IsTheCamerasAndNotTheLenss) {
+TEST(MirrorTest, MirrorsGlareOnTheLensToo) {
   constexpr int kWidth = 64;
   PictureFaults faults;
   faults.mirror = {0.0, 1.0};

@@ -48,7 +48,7 @@ std::vector<Reading> ReadThrough(const ArmFaults& faults) {
 bool InWindow(int tick) { return tick >= 20 && tick < 50; }
 constexpr TimeWindow kWindow{0.020, 0.050};
 
-TEST(FaultyArmTest, AStuckEncoderStaysAndSaysThatItIsAtRest) {
+TEST(FaultyArmTest, StuckEncoderKeepsItsReadingWithZeroVelocity) {
   ArmFaults faults;
   faults.stuck = {kWindow, 0};
   const auto readings = ReadThrough(faults);
@@ -76,7 +76,7 @@ TEST(FaultyArmTest, AllEncodersStuckTogetherWhileStampsGoOn) {
   }
 }
 
-TEST(FaultyArmTest, ABurstOfNoiseHasItsDeviations) {
+TEST(FaultyArmTest, NoiseBurstHasTheSetDeviations) {
   ArmFaults faults;
   faults.noise = {{0.0, 1e3}, 2e-3, 0.1};
   test::FakeArm inner(7);
@@ -101,7 +101,7 @@ TEST(FaultyArmTest, ABurstOfNoiseHasItsDeviations) {
   EXPECT_NEAR(dq_rms, 0.1, 2e-3);
 }
 
-TEST(FaultyArmTest, ANumberThatIsNone) {
+TEST(FaultyArmTest, NanReadingOccursOnlyWithinItsWindow) {
   ArmFaults faults;
   faults.not_a_number = {kWindow, 1};
   const auto readings = ReadThrough(faults);
@@ -110,7 +110,7 @@ TEST(FaultyArmTest, ANumberThatIsNone) {
   }
 }
 
-TEST(FaultyArmTest, StampsThatAreOff) {
+TEST(FaultyArmTest, StampsJumpOnlyWithinTheirWindow) {
   ArmFaults faults;
   faults.clock_jump = {kWindow, -7 * kMs};
   const auto readings = ReadThrough(faults);
@@ -120,7 +120,7 @@ TEST(FaultyArmTest, StampsThatAreOff) {
   }
 }
 
-TEST(FaultyArmTest, StatesAreLostByChanceAndTheSameForTheSameSeed) {
+TEST(FaultyArmTest, StateLossRepeatsForTheSameSeed) {
   const auto lost = [](std::uint64_t seed, double share) {
     ArmFaults faults;
     faults.packet_loss = {kWindow, share};
@@ -143,7 +143,7 @@ TEST(FaultyArmTest, StatesAreLostByChanceAndTheSameForTheSameSeed) {
   EXPECT_NE(lost(1, 0.5), lost(2, 0.5));
 }
 
-TEST(StallingClockTest, WaitsPastTheTicksThatItSwallows) {
+TEST(StallingClockTest, WaitsPastTheSwallowedTicks) {
   test::FakeClock inner;
   StallingClock clock(inner, {kWindow, 1.0, 1});
   ASSERT_TRUE(clock.WaitUntil(19 * kMs).ok());
@@ -154,7 +154,7 @@ TEST(StallingClockTest, WaitsPastTheTicksThatItSwallows) {
   EXPECT_EQ(clock.NowNs(), 51 * kMs);
 }
 
-TEST(FrameSpoilerTest, LosesFreezesAndDelays) {
+TEST(FrameSpoilerTest, LosesFreezesAndDelaysFramesWithinTheirWindows) {
   FrameFaults faults;
   faults.loss = {{1.0, 2.0}, 0.5};
   faults.freeze = {3.0, 4.0};
@@ -181,7 +181,7 @@ TEST(FrameSpoilerTest, LosesFreezesAndDelays) {
   EXPECT_NEAR(lost, 50, 15);
 }
 
-TEST(FaultyDetectorTest, ShiftsWhatItFoundAndSpoilsIt) {
+TEST(FaultyDetectorTest, ShiftsAndSpoilsOnlyFoundFeatures) {
   struct Last final : hal::FeatureSink {
     void Put(const hal::FeatureMeasurement& m) noexcept override { measurement = m; }
     hal::FeatureMeasurement measurement;
@@ -207,7 +207,7 @@ TEST(FaultyDetectorTest, ShiftsWhatItFoundAndSpoilsIt) {
   EXPECT_EQ(said(1.5), m.s) << "what is not found cannot be wrong";
 }
 
-TEST(PictureFaultsTest, GlareAndOccluderAreWhereTheyShouldBe) {
+TEST(PictureFaultsTest, GlareAndOccluderAppearAtTheirPlaces) {
   constexpr int kWidth = 64;
   constexpr int kHeight = 48;
   PictureFaults faults;
@@ -251,7 +251,7 @@ class BenchFaultTest : public testing::Test {
 };
 
 // The motor of joint 2 gives half: the other half of what holds the arm is missing, all else is as it was.
-TEST_F(BenchFaultTest, AMotorThatGivesLess) {
+TEST_F(BenchFaultTest, WeakMotorAcceleratesTheArmByTheMissingTorque) {
   BulletArm reference(config_.robot, {});
   reference.SetState(config_.q_start, Eigen::VectorXd::Zero(7));
   Eigen::VectorXd tau = reference.GravityTorque();
@@ -272,7 +272,7 @@ TEST_F(BenchFaultTest, AMotorThatGivesLess) {
 }
 
 // A base that leans: M ddq is the difference of the weight's torques, each from the masses and their levers.
-TEST_F(BenchFaultTest, ABaseThatLeansPullsTheArmAside) {
+TEST_F(BenchFaultTest, TiltedBaseAcceleratesTheArmAsComputed) {
   constexpr double kTilt = 0.1;
   constexpr double kWeight = 9.81;
   const model::VecN q = config_.q_start;
@@ -317,7 +317,7 @@ TEST_F(BenchFaultTest, ABaseThatLeansPullsTheArmAside) {
   EXPECT_LT((world.truth().dq - dq).norm(), 0.05 * dq.norm()) << "upright again";
 }
 
-TEST_F(BenchFaultTest, ALoadFromTheStartActsInTheFirstStep) {
+TEST_F(BenchFaultTest, LoadFromTheStartActsInTheFirstStep) {
   config_.load = {{0.0, 1.0}, 2.0};
   World world(config_);
   world.AdvanceTo(1 * kMs);
@@ -331,7 +331,7 @@ TEST_F(BenchFaultTest, ALoadFromTheStartActsInTheFirstStep) {
 }
 
 // A mass that nobody was told of: (M + m J^T J) ddq = m J^T g, from the servo's own model.
-TEST_F(BenchFaultTest, ALoadPullsAndIsHeavyAsAPointAtTheHand) {
+TEST_F(BenchFaultTest, LoadActsAsAPointMassAtTheHand) {
   constexpr double kMass = 2.0;
   const model::VecN q = config_.q_start;
   const model::VecN rest = model::VecN::Zero(7);

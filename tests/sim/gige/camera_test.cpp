@@ -93,7 +93,7 @@ struct GenicamFixture : Bench {
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(Genicam, CameraContract, GenicamFixture);
 
-TEST(GigeCamera, FramesAreWhatTheEyeSaw) {
+TEST(GigeCamera, FramesMatchThePicturesOfTheEye) {
   Bench bench;
   EXPECT_EQ(bench.driver->width_px(), kWidth);
   EXPECT_NE(bench.driver->name().find("test"), std::string::npos);
@@ -139,7 +139,7 @@ TEST(GigeCamera, AllFormatsShowTheSamePicture) {
   }
 }
 
-TEST(GigeCamera, APictureLeavesWhenItsTransportIsOver) {
+TEST(GigeCamera, PictureIsSentAfterItsTransportTime) {
   Bench bench(Client(), 40 * hal::kNsPerMs);
   bench.Expose(hal::kNsPerSecond);
   hal::Frame frame;
@@ -151,7 +151,7 @@ TEST(GigeCamera, APictureLeavesWhenItsTransportIsOver) {
   EXPECT_EQ(bench.Take().stamp_ns, hal::kNsPerSecond);
 }
 
-TEST(GigeCamera, TheNewestOfSeveralIsTaken) {
+TEST(GigeCamera, TakesTheNewestOfSeveral) {
   Bench bench;
   for (int k = 0; k < 4; ++k) {
     bench.Expose((k + 1) * hal::kNsPerMs);
@@ -165,7 +165,7 @@ TEST(GigeCamera, TheNewestOfSeveralIsTaken) {
   EXPECT_GE(counters.overtaken, 1U);
 }
 
-TEST(GigeCamera, ACameraThatIsUnpluggedIsTimeoutsUntilItIsBack) {
+TEST(GigeCamera, UnpluggedCameraTimesOutUntilItIsBack) {
   Bench bench;
   bench.Expose(hal::kNsPerSecond);
   const std::uint64_t before = bench.Take().sequence;
@@ -184,7 +184,7 @@ TEST(GigeCamera, ACameraThatIsUnpluggedIsTimeoutsUntilItIsBack) {
   EXPECT_EQ(bench.driver->counters().reconnects, 1U);
 }
 
-TEST(GigeCamera, WithoutReconnectionALossIsSaid) {
+TEST(GigeCamera, WithoutReconnectionALossIsReported) {
   genicam::GenicamConfig client = Client();
   client.reconnect = false;
   Bench bench(client);
@@ -207,7 +207,7 @@ std::string ErrorOf(const genicam::GenicamConfig& config) {
   }
 }
 
-TEST(GigeCamera, ItIsSetAsItsConfigurationSays) {
+TEST(GigeCamera, AppliesTheConfiguredSettings) {
   genicam::GenicamConfig client = Client();
   client.device = "";  // the first one that answers
   client.pixel_format = "";
@@ -227,7 +227,7 @@ TEST(GigeCamera, ItIsSetAsItsConfigurationSays) {
   }
 }
 
-TEST(GigeCamera, WhatCannotBeIsRefusedWithAReason) {
+TEST(GigeCamera, ImpossibleConfigurationIsRefusedWithAReason) {
   genicam::GenicamConfig client = Client();
   EXPECT_NE(ErrorOf(client).find("camera 127.0.0.1: not found"), std::string::npos) << ErrorOf(client);
   Bench bench;

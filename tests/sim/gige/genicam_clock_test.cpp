@@ -130,7 +130,7 @@ Outcome TakePictures(const std::string& features, bool another_clock = false, in
 // wait.
 double Soonest(const Outcome& outcome) { return outcome.off_ms.at(0); }
 
-TEST(GenicamClock, ACameraThatCanBeAskedNeedsNoTransportTime) {
+TEST(GenicamClock, ReadableCameraClockNeedsNoTransportTime) {
   for (const char* features : {kSfnc1, kSfnc2}) {
     const Outcome outcome = TakePictures(features);
     std::cout << "stamps are off by " << Soonest(outcome) << " ms, the camera's way is 40 ms; "
@@ -142,14 +142,14 @@ TEST(GenicamClock, ACameraThatCanBeAskedNeedsNoTransportTime) {
   }
 }
 
-TEST(GenicamClock, WithoutTheFeatureTheArrivalsAreAllThereIs) {
+TEST(GenicamClock, WithoutTheLatchFeatureStampsComeFromArrivals) {
   const Outcome outcome = TakePictures("");
   std::cout << "stamps are off by " << Soonest(outcome) << " ms\n";
   EXPECT_EQ(outcome.counters.stamped_by_clock, 0U);
   EXPECT_LT(Soonest(outcome), -35.0) << "the transport time that nobody told it of";
 }
 
-TEST(GenicamClock, AClockThatIsNotThePicturesIsNotBelieved) {
+TEST(GenicamClock, ClockOtherThanThePicturesIsNotUsed) {
   const Outcome outcome = TakePictures(kSfnc2, /*another_clock=*/true);
   EXPECT_EQ(outcome.counters.stamped_by_clock, 0U);
   EXPECT_GT(outcome.counters.clock_refused, 0U);

@@ -63,7 +63,7 @@ class BoardServoTest : public task::ServoTaskTest {
   std::unique_ptr<BoardServo> servo_;
 };
 
-TEST_F(BoardServoTest, OverAPerfectLineItIsTheTaskAtEitherPace) {
+TEST_F(BoardServoTest, PerfectLineGivesTheTasksBitsAtEitherPace) {
   log::RecordHash here;
   for (int k = 0; k < 2500; ++k) {
     here.Add(Tick());
@@ -101,7 +101,7 @@ TEST_F(BoardServoTest, ConvergesThroughJitterAndLoss) {
   EXPECT_LT(Error(), 1e-3);
 }
 
-TEST_F(BoardServoTest, TheSameSeedIsTheSameRun) {
+TEST_F(BoardServoTest, RunRepeatsForTheSameSeedOnly) {
   std::vector<std::string> hashes;
   for (const std::uint64_t seed : {5U, 5U, 6U}) {
     SetUp();
@@ -114,7 +114,7 @@ TEST_F(BoardServoTest, TheSameSeedIsTheSameRun) {
   EXPECT_NE(hashes[0], hashes[2]);
 }
 
-TEST_F(BoardServoTest, TooMuchJitterEndsInTheSafeState) {
+TEST_F(BoardServoTest, TooMuchJitterRaisesArmLostAndStops) {
   Connect(ByTimer({.delay_ms = 0.2, .jitter_ms = 80.0}, 1.2));
   BoardRun(1200);
   ASSERT_EQ(outputs_.record.mode, hal::Mode::kTrack);
@@ -134,7 +134,7 @@ TEST_F(BoardServoTest, TooMuchJitterEndsInTheSafeState) {
   EXPECT_LT(arm_->dq().norm(), 1e-2);
 }
 
-TEST_F(BoardServoTest, ALineThatGivesNoTorquesAnyMoreClosesTheBrakes) {
+TEST_F(BoardServoTest, LineWithoutTorquesClosesTheBrakes) {
   Connect(ByTimer({.loss = 1.0}, 1.2));
   BoardRun(1200);
   ASSERT_EQ(outputs_.record.mode, hal::Mode::kTrack);
@@ -148,7 +148,7 @@ TEST_F(BoardServoTest, ALineThatGivesNoTorquesAnyMoreClosesTheBrakes) {
   ExpectBrakes();
 }
 
-TEST_F(BoardServoTest, ATickThatTakesTooLongIsAMissedOne) {
+TEST_F(BoardServoTest, TooLongTickCountsAsMissed) {
   Connect(ByTimer());
   BoardRun(1200);
   ASSERT_EQ(outputs_.record.mode, hal::Mode::kTrack);
@@ -170,7 +170,7 @@ TEST_F(BoardServoTest, ATickThatTakesTooLongIsAMissedOne) {
   EXPECT_EQ(outputs_.record.mode, hal::Mode::kFault);
 }
 
-TEST_F(BoardServoTest, ABoardThatVanishesClosesTheBrakes) {
+TEST_F(BoardServoTest, VanishedBoardClosesTheBrakes) {
   for (const bool by_timer : {false, true}) {
     SetUp();
     ticks_ = 0;
@@ -187,7 +187,7 @@ TEST_F(BoardServoTest, ABoardThatVanishesClosesTheBrakes) {
   }
 }
 
-TEST_F(BoardServoTest, ABoardThatRefusesSaysWhat) {
+TEST_F(BoardServoTest, ArmOtherThanTheBoardsIsRefusedByName) {
   config_.arm.joints[2].coulomb += 0.1;
   auto line = std::make_unique<test::ServerLine>(test::Panda().model);
   try {

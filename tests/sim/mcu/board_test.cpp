@@ -101,7 +101,7 @@ class BoardTest : public testing::Test {
   std::uint32_t goes_ = 0;
 };
 
-TEST(McuImage, HoldsNoHeapAndNoStream) {
+TEST(McuImage, ContainsNoHeapOrStreamSymbols) {
   const std::string symbols = test::OutputOf("arm-none-eabi-nm -C '" FOVEA_MCU_IMAGE "'");
   ASSERT_NE(symbols.find("fovea::task::ServoTask::Step"), std::string::npos) << "no symbols were read";
   for (const char* forbidden : {"malloc", "calloc", "realloc", " free", "operator new", "operator delete",
@@ -111,7 +111,7 @@ TEST(McuImage, HoldsNoHeapAndNoStream) {
 }
 
 // What fovea-bench mcu prints of it.
-TEST(McuImage, ItsModulesAddUpToItsSections) {
+TEST(McuImage, ModuleSizesAddUpToTheSections) {
   const bench::LinkMap map = bench::ReadLinkMap(FOVEA_MCU_MAP);
   bench::ModuleBytes sum;
   for (const auto& [module, bytes] : map.modules) {
@@ -125,7 +125,7 @@ TEST(McuImage, ItsModulesAddUpToItsSections) {
   EXPECT_FALSE(map.modules.contains("other"));
 }
 
-TEST_F(BoardTest, ALineThatFallsSilentIsAnArmThatIsLost) {
+TEST_F(BoardTest, SilentLineRaisesArmLost) {
   Configure(link::Pacing::kGated);
   link::Outputs outputs = Boot();
   std::uint32_t until_fault = 0;
@@ -140,7 +140,7 @@ TEST_F(BoardTest, ALineThatFallsSilentIsAnArmThatIsLost) {
   ExpectBrakes(outputs);
 }
 
-TEST_F(BoardTest, AStormOfBadChecksumsEndsTheSameWay) {
+TEST_F(BoardTest, StormOfBadChecksumsRaisesArmLost) {
   Configure(link::Pacing::kGated);
   link::Outputs outputs = Boot();
   std::uint32_t ticks = 0;
@@ -161,7 +161,7 @@ TEST_F(BoardTest, AStormOfBadChecksumsEndsTheSameWay) {
 }
 
 // The timer that nobody holds: the board goes on, whether the host speaks or not.
-TEST_F(BoardTest, ByItsOwnTimerItTicksForItself) {
+TEST_F(BoardTest, OwnTimerTicksWithoutTheHost) {
   Configure(link::Pacing::kTimer);
   const std::uint64_t first = Outputs().record.tick;
   link::Outputs outputs;
@@ -173,7 +173,7 @@ TEST_F(BoardTest, ByItsOwnTimerItTicksForItself) {
   EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
 }
 
-TEST_F(BoardTest, FloatingPointWithoutItsUnitIsReportedAndTheLastThingItDoes) {
+TEST_F(BoardTest, DisabledFloatingPointUnitReportsACrashAndStops) {
   Configure(link::Pacing::kLockstep);
   SendState(1);
   static_cast<void>(Outputs());

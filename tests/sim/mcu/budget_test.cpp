@@ -13,7 +13,7 @@
 namespace fovea {
 namespace {
 
-TEST(McuBudget, IsPrintedAndCompared) {
+TEST(McuBudget, BenchReportsAndComparesTheBudget) {
   const test::ProgramResult run = test::RunProgram({FOVEA_BENCH_PROGRAM, "mcu", "--seconds", "0.4", "--json"},
                                                    {}, std::chrono::seconds(300));
   ASSERT_EQ(run.exit_code, 0) << run.err;

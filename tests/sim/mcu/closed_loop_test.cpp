@@ -19,7 +19,7 @@ void PrintTo(const McuCase& c, std::ostream* out) { *out << c.name; }
 
 class McuLoop : public testing::TestWithParam<McuCase> {};
 
-TEST_P(McuLoop, IsTheComputersToTheLastBit) {
+TEST_P(McuLoop, RunMatchesTheComputerBitExact) {
   const nlohmann::json here = test::RunSim(GetParam().arguments, "pc");
   const nlohmann::json there = test::RunSim(GetParam().arguments, "mcu");
   ASSERT_TRUE(here.is_object() && there.is_object());

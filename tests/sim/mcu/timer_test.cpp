@@ -28,7 +28,7 @@ nlohmann::json OnTheBoard(const Words& words) {
   return summary;
 }
 
-TEST(BoardByTimer, OverAPerfectLineItIsTheComputersToTheLastBit) {
+TEST(BoardByTimer, PerfectLineMatchesTheComputerBitExact) {
   const Words run = With(kHome, {"--set", "run.duration_s=0.3"});
   const nlohmann::json here = test::RunSim(run, "pc");
   const nlohmann::json there = OnTheBoard(With(run, kByTimer));
@@ -54,7 +54,7 @@ TEST(BoardByTimer, ConvergesThroughJitterAndLoss) {
 }
 
 // Twice the same with jitter, though nothing here is as quick as the time before.
-TEST(BoardByTimer, TheSameSeedIsTheSameRun) {
+TEST(BoardByTimer, RunRepeatsForTheSameSeed) {
   const Words run = With(With(kHome, kByTimer),
                          {"--line-jitter-ms", "3", "--line-from-s", "0.05", "--set", "run.duration_s=0.25"});
   const nlohmann::json once = OnTheBoard(run);
@@ -64,7 +64,7 @@ TEST(BoardByTimer, TheSameSeedIsTheSameRun) {
   EXPECT_GT(once["mcu"]["line"]["late_frames"], 0);
 }
 
-TEST(BoardByTimer, TooMuchJitterEndsInTheSafeState) {
+TEST(BoardByTimer, TooMuchJitterRaisesArmLostAndStops) {
   const nlohmann::json run =
       OnTheBoard(With(With(kHome, kByTimer),
                       {"--line-jitter-ms", "100", "--line-from-s", "0.3", "--set", "run.duration_s=0.5"}));
@@ -76,7 +76,7 @@ TEST(BoardByTimer, TooMuchJitterEndsInTheSafeState) {
 }
 
 // A processor of 16 MIPS: a tick of 28 000 instructions takes two periods.
-TEST(BoardByTimer, ASlowProcessorMissesItsDeadlinesAndCountsThem) {
+TEST(BoardByTimer, SlowProcessorMissesAndCountsItsDeadlines) {
   const nlohmann::json run = OnTheBoard(
       With(kHome, {"--servo-pace", "timer", "--instruction-ns", "64", "--set", "run.duration_s=0.3"}));
   EXPECT_GT(run["mcu"]["line"]["missed_ticks"], 50);

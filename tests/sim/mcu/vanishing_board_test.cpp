@@ -11,7 +11,7 @@
 namespace fovea::sim {
 namespace {
 
-TEST(VanishingBoard, ClosesTheBrakesAndSaysSo) {
+TEST(VanishingBoard, ClosesTheBrakesAndIsReported) {
   const Scenario scenario =
       LoadScenario("ball", {"camera.enabled=false", "motion.kind=home", "run.duration_s=2"});
   RunOptions options;

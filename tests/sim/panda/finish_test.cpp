@@ -49,7 +49,7 @@ class FinishTest : public FciRobotTest {
   }
 };
 
-TEST_F(FinishTest, JointsAtSpeed) {
+TEST_F(FinishTest, FinishWithMovingJointsIsAReflex) {
   for (const double speed : {0.3, 0.5}) {
     for (const auto generator : {MoveGenerator::kJointPosition, MoveGenerator::kJointVelocity}) {
       Move(MoveController::kJointImpedance, generator);
@@ -64,7 +64,7 @@ TEST_F(FinishTest, JointsAtSpeed) {
   }
 }
 
-TEST_F(FinishTest, AHandAtSpeed) {
+TEST_F(FinishTest, FinishWithAMovingHandIsAReflex) {
   for (const auto generator : {MoveGenerator::kCartesianPosition, MoveGenerator::kCartesianVelocity}) {
     Move(MoveController::kCartesianImpedance, generator);
     FinishAtSpeed([&](int k, RobotCommand& c) {
@@ -78,7 +78,7 @@ TEST_F(FinishTest, AHandAtSpeed) {
 }
 
 // The hand stands still while the elbow swings about it.
-TEST_F(FinishTest, AnElbowAtSpeed) {
+TEST_F(FinishTest, FinishWithAMovingElbowIsAReflex) {
   Move(MoveController::kJointImpedance, MoveGenerator::kCartesianPosition);
   FinishAtSpeed([&](int k, RobotCommand& c) {
     c.valid_elbow = 1;
@@ -88,7 +88,7 @@ TEST_F(FinishTest, AnElbowAtSpeed) {
 }
 
 // A client with a controller of its own commands no speed: what is measured counts.
-TEST_F(FinishTest, AnArmThatTheClientsTorquesLeftMoving) {
+TEST_F(FinishTest, FinishOfATorqueMotionAtSpeedIsAReflex) {
   for (const double speed : {0.3, 0.5}) {
     PullUpTo(speed);
     RobotCommand c = Still();
@@ -99,7 +99,7 @@ TEST_F(FinishTest, AnArmThatTheClientsTorquesLeftMoving) {
   }
 }
 
-TEST_F(FinishTest, AnArmThatTheClientsTorquesBroughtToRest) {
+TEST_F(FinishTest, FinishOfATorqueMotionAtRestSucceeds) {
   PullUpTo(0.5);
   const franka::Vector7 q = state().q;
   for (int k = 0; k < 1000; ++k) {
@@ -114,7 +114,7 @@ TEST_F(FinishTest, AnArmThatTheClientsTorquesBroughtToRest) {
 }
 
 // As this project's driver ends a motion: damping first, then the word.
-TEST_F(FinishTest, AnArmThatTheDriverSlowsDown) {
+TEST_F(FinishTest, FinishAfterTheDriverSlowedTheArmSucceeds) {
   PullUpTo(0.5);
   int states = 0;
   for (; franka::Moves(state().dq) && states < 500; ++states) {

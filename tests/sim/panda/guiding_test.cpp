@@ -36,7 +36,7 @@ class GuidingTest : public FciRobotTest {
   }
 };
 
-TEST_F(GuidingTest, TheHandGoesWhereItIsPulledAndStaysThere) {
+TEST_F(GuidingTest, GuidedHandFollowsThePullAndStaysThere) {
   const franka::Vector3 way = Guide({0.0, 10.0, 0.0}, 500);
   EXPECT_EQ(state().robot_mode, RobotMode::kIdle);
   EXPECT_GT(way[1], 0.05);
@@ -48,7 +48,7 @@ TEST_F(GuidingTest, TheHandGoesWhereItIsPulledAndStaysThere) {
   EXPECT_GT(state().O_T_EE[13] - begin_.O_T_EE[13], 0.05) << "and does not spring back";
 }
 
-TEST_F(GuidingTest, WithoutTheButtonAPullOnlyBendsIt) {
+TEST_F(GuidingTest, WithoutTheButtonAPullOnlyBendsTheArm) {
   begin_ = state();
   robot().PullHand({0.0, 10.0, 0.0});
   Wait(800);
@@ -56,7 +56,7 @@ TEST_F(GuidingTest, WithoutTheButtonAPullOnlyBendsIt) {
   EXPECT_LT(std::fabs(Way()[1]), 0.01);
 }
 
-TEST_F(GuidingTest, WithoutAPullTheGuidedArmStays) {
+TEST_F(GuidingTest, GuidedArmWithoutAPullStays) {
   const franka::Vector3 way = Guide({0.0, 0.0, 0.0}, 2000);
   EXPECT_LT(std::hypot(way[0], way[1], way[2]), 5e-3);
 }
@@ -75,7 +75,7 @@ TEST_F(GuidingTest, LockedAxesAreHeld) {
 }
 
 // A hand that is locked, and something that pushes the elbow aside.
-struct ElbowPanda : GuidingTest {
+struct ElbowGuidingTest : GuidingTest {
   static sim::WorldConfig Pushed() {
     sim::WorldConfig config = WirePandaWorld();
     config.push.tau = Eigen::VectorXd::Zero(7);
@@ -83,7 +83,7 @@ struct ElbowPanda : GuidingTest {
     config.push.window = {0, hal::kNsPerSecond};
     return config;
   }
-  ElbowPanda() : GuidingTest(Pushed()) {}
+  ElbowGuidingTest() : GuidingTest(Pushed()) {}
 
   double ElbowWay(std::uint8_t nullspace) {
     Allow({0, 0, 0, 0, 0, 0}, nullspace);
@@ -96,19 +96,19 @@ struct ElbowPanda : GuidingTest {
   }
 };
 
-TEST_F(ElbowPanda, AFreeElbowGivesWay) {
+TEST_F(ElbowGuidingTest, FreeElbowFollowsThePull) {
   const double way = ElbowWay(1);
   std::cout << "joint 3 went by " << way << " rad\n";
   EXPECT_GT(way, 0.1);
 }
 
-TEST_F(ElbowPanda, ALockedElbowIsHeld) {
+TEST_F(ElbowGuidingTest, LockedElbowIsHeld) {
   const double way = ElbowWay(0);
   std::cout << "joint 3 went by " << way << " rad\n";
   EXPECT_LT(way, 0.1);
 }
 
-TEST_F(GuidingTest, NothingElseGoesOnMeanwhile) {
+TEST_F(GuidingTest, GuidingRefusesMotionAndRecovery) {
   robot().PressGuiding(true);
   EXPECT_EQ(robot().Move({}), franka::MoveStatus::kNotPossible);
   EXPECT_EQ(robot().Recover(), RecoveryStatus::kNotPossible);
@@ -118,13 +118,13 @@ TEST_F(GuidingTest, NothingElseGoesOnMeanwhile) {
   EXPECT_EQ(state().robot_mode, RobotMode::kUserStopped);
 }
 
-TEST_F(GuidingTest, InAMotionTheButtonDoesNothing) {
+TEST_F(GuidingTest, ButtonDuringAMotionHasNoEffect) {
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);
   robot().PressGuiding(true);
   EXPECT_EQ(state().robot_mode, RobotMode::kMove);
 }
 
-TEST_F(GuidingTest, AStoppedRobotMayBeGuidedAndIsStoppedAfterwards) {
+TEST_F(GuidingTest, StoppedRobotCanBeGuidedAndIsStoppedAfterwards) {
   robot().UserStop(true);
   EXPECT_GT(Guide({0.0, 10.0, 0.0}, 400)[1], 0.03);
   EXPECT_EQ(state().robot_mode, RobotMode::kUserStopped);
@@ -134,7 +134,7 @@ TEST_F(GuidingTest, AStoppedRobotMayBeGuidedAndIsStoppedAfterwards) {
   EXPECT_EQ(state().robot_mode, RobotMode::kIdle);
 }
 
-TEST_F(GuidingTest, TooFastIsAReflex) {
+TEST_F(GuidingTest, GuidingTooFastIsAReflex) {
   robot().PressGuiding(true);
   robot().PullHand({0.0, 150.0, 0.0});
   Wait(500);
@@ -145,7 +145,7 @@ TEST_F(GuidingTest, TooFastIsAReflex) {
 }
 
 // An arm whose joint 4 is 5 mrad past its end: guided farther out, it stops again; guided in, it recovers.
-struct OutsidePanda : GuidingTest {
+struct OutOfRangeGuidingTest : GuidingTest {
   // Pulled by `force_B` until the robot lets go or so many steps are over.
   void Pull(const Eigen::Vector3d& force_B, int steps) {
     robot().PressGuiding(true);
@@ -159,7 +159,7 @@ struct OutsidePanda : GuidingTest {
   }
 };
 
-TEST_F(OutsidePanda, OutwardsIsTheWrongDirectionAndInwardsTheWayBack) {
+TEST_F(OutOfRangeGuidingTest, OutwardGuidingIsAnErrorAndInwardGuidingRecovers) {
   Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
   RunUntilItStops(4000, [&](int k) {
     franka::Vector7 goal = begin_.q;
@@ -180,7 +180,7 @@ TEST_F(OutsidePanda, OutwardsIsTheWrongDirectionAndInwardsTheWayBack) {
   EXPECT_EQ(state().errors, franka::ErrorFlags{});
 }
 
-TEST_F(OutsidePanda, GuidedPastTheEndOfARangeItStops) {
+TEST_F(OutOfRangeGuidingTest, GuidingPastAJointEndIsAReflex) {
   Move(MoveController::kJointImpedance, MoveGenerator::kJointPosition);
   Run(2000, [&](int k, franka::RobotCommand& c) { c.q_c[3] -= 0.85 * Fade(k, 2000); });
   begin_.q_d = state().q_d;

@@ -43,7 +43,7 @@ class ImpedanceTest : public FciRobotTest {
   }
 };
 
-TEST_F(ImpedanceTest, OfTheJoints) {
+TEST_F(ImpedanceTest, QuarterJointStiffnessBendsFourTimesAsFar) {
   SetCollisionsFrom(80.0, 80.0);
   const double stiff = BentWithJointStiffness(1.0);
   const double soft = BentWithJointStiffness(0.25);
@@ -54,7 +54,7 @@ TEST_F(ImpedanceTest, OfTheJoints) {
 }
 
 // The same stiffness in all directions, since they are those of K. What the hand turns by comes on top.
-TEST_F(ImpedanceTest, OfTheHand) {
+TEST_F(ImpedanceTest, HandYieldsByForceOverCartesianStiffness) {
   SetCollisionsFrom(80.0, 80.0);
   const double stiff = BentWithCartesianStiffness(2000.0);
   const double soft = BentWithCartesianStiffness(500.0);
@@ -64,7 +64,7 @@ TEST_F(ImpedanceTest, OfTheHand) {
 }
 
 // A low-pass of cutoff f lags a steady motion by 1 / (2 pi f).
-TEST_F(ImpedanceTest, AFilterLetsTheReferenceLag) {
+TEST_F(ImpedanceTest, FilterLagsTheReferenceByItsTimeConstant) {
   const auto lag = [&](double cutoff_hz) {
     franka::Filters filters;
     filters.joint_position = cutoff_hz;

@@ -11,7 +11,7 @@ using franka::RecoveryStatus;
 using franka::RobotCommand;
 using franka::RobotMode;
 
-TEST_F(FciRobotTest, TorquesPastAJointsRangeAreALimitThatOnlyAPersonRecoversFrom) {
+TEST_F(FciRobotTest, TorqueMotionPastAJointRangeNeedsManualRecovery) {
   Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
   RunUntilItStops(4000, [&](int k) {
     franka::Vector7 goal = begin_.q;
@@ -23,7 +23,7 @@ TEST_F(FciRobotTest, TorquesPastAJointsRangeAreALimitThatOnlyAPersonRecoversFrom
   EXPECT_EQ(robot().Recover(), RecoveryStatus::kManualRecoveryRequired);
 }
 
-TEST_F(FciRobotTest, TheHandsOwnSpeedIsWatched) {
+TEST_F(FciRobotTest, TooFastHandIsAReflex) {
   Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
   // Joints 1 and 7 turn the hand together, each of them slowly enough.
   RunUntilItStops(2000, [&](int k) {
@@ -37,7 +37,7 @@ TEST_F(FciRobotTest, TheHandsOwnSpeedIsWatched) {
   EXPECT_EQ(robot().Recover(), RecoveryStatus::kSuccess);
 }
 
-TEST_F(FciRobotTest, APullAtAJointIsAJointReflex) {
+TEST_F(FciRobotTest, PullAboveTheJointThresholdIsAJointReflex) {
   SetCollisionsFrom(15.0, 1e3);
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);
   robot().PullHand({0.0, 60.0, 0.0});
@@ -50,7 +50,7 @@ TEST_F(FciRobotTest, APullAtAJointIsAJointReflex) {
   EXPECT_EQ(robot().Recover(), RecoveryStatus::kSuccess);
 }
 
-TEST_F(FciRobotTest, APullThatNoJointMindsMayBeACartesianReflex) {
+TEST_F(FciRobotTest, PullAboveOnlyTheCartesianThresholdIsACartesianReflex) {
   SetCollisionsFrom(100.0, 20.0);
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);
   robot().PullHand({0.0, 0.0, -30.0});
@@ -59,7 +59,7 @@ TEST_F(FciRobotTest, APullThatNoJointMindsMayBeACartesianReflex) {
   ExpectReflex(Error::kCartesianReflex);
 }
 
-TEST_F(FciRobotTest, AContactIsShownBelowACollision) {
+TEST_F(FciRobotTest, PullBelowTheCollisionThresholdIsShownAsAContact) {
   SetCollisionsFrom(100.0, 100.0);
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);
   robot().PullHand({0.0, 60.0, 0.0});
@@ -74,7 +74,7 @@ TEST_F(FciRobotTest, AContactIsShownBelowACollision) {
   EXPECT_NEAR(state().O_F_ext_hat_K[1], 60.0, 1.0);
 }
 
-TEST_F(FciRobotTest, MoreTorqueThanAJointGivesIsOutOfItsRange) {
+TEST_F(FciRobotTest, TorqueAboveTheJointRangeIsAReflex) {
   SetCollisionsFrom(1e3, 1e3);
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);
   RunUntilItStops(3000, [&](int k) {
@@ -84,7 +84,7 @@ TEST_F(FciRobotTest, MoreTorqueThanAJointGivesIsOutOfItsRange) {
   ExpectReflex(Error::kTauJRange);
 }
 
-TEST_F(FciRobotTest, ALoopThatIsNotStableIsFoundOut) {
+TEST_F(FciRobotTest, UnstableControlLoopIsAReflex) {
   Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
   RunUntilItStops(3000, [&](int k) {
     RobotCommand c = Towards(begin_.q);
@@ -99,7 +99,7 @@ TEST_F(FciRobotTest, ALoopThatIsNotStableIsFoundOut) {
   EXPECT_EQ(robot().Recover(), RecoveryStatus::kSuccess);
 }
 
-TEST_F(FciRobotTest, ItStopsBeforeItMeetsItself) {
+TEST_F(FciRobotTest, StopsBeforeItMeetsItself) {
   Move(MoveController::kJointImpedance, MoveGenerator::kJointPosition);
   const franka::Vector7 folded{0.0, 0.634, 0.530, -2.946, 0.113, 0.627, 0.7};
   RunUntilItStops(4000, [&](int k) {
@@ -122,17 +122,17 @@ TEST_F(FciRobotTest, ItStopsBeforeItMeetsItself) {
 }
 
 // A wall 5 cm to the left of the hand.
-struct WalledPanda : FciRobotTest {
+struct VirtualWallTest : FciRobotTest {
   static sim::CartesianWall Wall() {
     sim::CartesianWall wall;
     wall.X_BW.translation() = Eigen::Vector3d(0.1, 0.05, 0.3);
     wall.size = {0.6, 0.5, 0.6};
     return wall;
   }
-  WalledPanda() : FciRobotTest({Wall()}) {}
+  VirtualWallTest() : FciRobotTest({Wall()}) {}
 };
 
-TEST_F(WalledPanda, ItDoesNotGoPastAWall) {
+TEST_F(VirtualWallTest, RobotStopsAtAWall) {
   ASSERT_TRUE(robot().Wall(0).has_value());
   EXPECT_FALSE(robot().Wall(1).has_value());
   EXPECT_FALSE(robot().Wall(-1).has_value());

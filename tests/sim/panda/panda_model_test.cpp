@@ -32,7 +32,7 @@ class PandaModel : public testing::Test {
   std::uniform_real_distribution<double> even_{-2.0, 2.0};
 };
 
-TEST_F(PandaModel, DynamicsAreThoseOfTheUrdfWithItsLoad) {
+TEST_F(PandaModel, DynamicsMatchTheUrdfWithItsLoad) {
   model::Load load;
   load.mass = 0.7;
   load.p_ECom = {0.01, -0.02, 0.05};
@@ -66,7 +66,7 @@ TEST_F(PandaModel, DynamicsAreThoseOfTheUrdfWithItsLoad) {
   EXPECT_EQ(worst, 0.0) << "it is the same model, to the last bit";
 }
 
-TEST_F(PandaModel, PosesAreThoseOfTheUrdf) {
+TEST_F(PandaModel, PosesMatchTheUrdf) {
   const Vector7 q = Random();
   model::ArmPoses poses;
   model::ComputePoses(panda_.model, q, poses);
@@ -83,7 +83,7 @@ TEST_F(PandaModel, PosesAreThoseOfTheUrdf) {
 }
 
 // The Jacobian of the end effector against differences of its pose, and in its own axes.
-TEST_F(PandaModel, JacobiansAreDerivativesOfPoses) {
+TEST_F(PandaModel, JacobiansMatchFiniteDifferencesOfPoses) {
   const Vector7 q = Random();
   Matrix4 tool = Matrix4::Identity();
   tool.topLeftCorner<3, 3>() << 0, -1, 0, 1, 0, 0, 0, 0, 1;

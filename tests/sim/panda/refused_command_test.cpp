@@ -21,7 +21,7 @@ struct Refused {
 };
 class RefusedCommand : public FciRobotTest, public testing::WithParamInterface<Refused> {};
 
-TEST_P(RefusedCommand, IsAReflexOfItsOwnKind) {
+TEST_P(RefusedCommand, RaisesTheReflexOfItsKind) {
   Move(GetParam().controller, GetParam().generator);
   for (int k = 1; k <= 4000 && robot().moving(); ++k) {
     RobotCommand c = Still();

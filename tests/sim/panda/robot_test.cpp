@@ -17,7 +17,7 @@ using franka::RobotCommand;
 using franka::RobotMode;
 using franka::RobotState;
 
-TEST_F(FciRobotTest, AtRestItHoldsAndShowsItself) {
+TEST_F(FciRobotTest, IdleRobotHoldsItsPosition) {
   const RobotState first = state();
   for (int k = 0; k < 500; ++k) {
     robot().Step(std::nullopt);
@@ -81,7 +81,7 @@ TEST_F(FciRobotTest, PosesAreReached) {
   Finish();
 }
 
-TEST_F(FciRobotTest, AnElbowIsMovedWhileTheHandStays) {
+TEST_F(FciRobotTest, ElbowIsMovedWhileTheHandStays) {
   Move(MoveController::kJointImpedance, MoveGenerator::kCartesianPosition);
   Run(1500, [&](int k, RobotCommand& c) {
     c.valid_elbow = 1;
@@ -108,7 +108,7 @@ TEST_F(FciRobotTest, TwistsAreFollowed) {
   EXPECT_NEAR(state().O_T_EE[13] - begin_.O_T_EE[13], way, 2e-3);
 }
 
-TEST_F(FciRobotTest, TorquesMoveAJointThatWay) {
+TEST_F(FciRobotTest, TorqueMovesItsJointForward) {
   Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
   for (int k = 1; k <= 200; ++k) {
     RobotCommand c = Still();
@@ -131,7 +131,7 @@ TEST_F(FciRobotTest, TorquesMoveAJointThatWay) {
   EXPECT_LT(Off(state().dq, {}), 5e-3) << "afterwards it comes to rest by itself";
 }
 
-TEST_F(FciRobotTest, NineteenLostCommandsAreBridgedAndTwentyStopIt) {
+TEST_F(FciRobotTest, NineteenLostCommandsAreBridgedAndTwentyStopTheMotion) {
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);
   robot().Step(Still());
   for (int k = 0; k < 19; ++k) {
@@ -149,7 +149,7 @@ TEST_F(FciRobotTest, NineteenLostCommandsAreBridgedAndTwentyStopIt) {
   EXPECT_EQ(Reason(), "communication_constraints_violation");
 }
 
-TEST_F(FciRobotTest, AMotionGoesOnAtConstantAccelerationOverALostCommand) {
+TEST_F(FciRobotTest, LostCommandIsBridgedAtConstantAcceleration) {
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);
   for (int k = 1; k <= 100; ++k) {
     RobotCommand c = Still();
@@ -162,7 +162,7 @@ TEST_F(FciRobotTest, AMotionGoesOnAtConstantAccelerationOverALostCommand) {
   EXPECT_NEAR(state().ddq_d[0], 2.0, 1e-9);
 }
 
-TEST_F(FciRobotTest, AMotionThatNobodyCommandsIsGivenUp) {
+TEST_F(FciRobotTest, UncommandedMotionIsACommunicationError) {
   Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
   for (int k = 0; k < 300; ++k) {
     robot().Step(std::nullopt);
@@ -170,7 +170,7 @@ TEST_F(FciRobotTest, AMotionThatNobodyCommandsIsGivenUp) {
   EXPECT_EQ(Reason(), "communication_constraints_violation");
 }
 
-TEST_F(FciRobotTest, TheUserStopsItAndLetsItGo) {
+TEST_F(FciRobotTest, UserStopAbortsAndItsReleaseAllowsMotion) {
   Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
   robot().Step(Still());
   robot().UserStop(true);
@@ -182,7 +182,7 @@ TEST_F(FciRobotTest, TheUserStopsItAndLetsItGo) {
   EXPECT_EQ(robot().Move({}), MoveStatus::kMotionStarted);
 }
 
-TEST_F(FciRobotTest, StopMoveAndAbandon) {
+TEST_F(FciRobotTest, StopMovePreemptsAndAbandonReturnsToIdle) {
   EXPECT_EQ(robot().StopMove(), franka::StopStatus::kNotPossible);
   Move(MoveController::kJointImpedance, MoveGenerator::kJointPosition);
   EXPECT_EQ(robot().StopMove(), franka::StopStatus::kSuccess);
@@ -193,7 +193,7 @@ TEST_F(FciRobotTest, StopMoveAndAbandon) {
   EXPECT_FALSE(robot().TakeMoveEnd().has_value());
 }
 
-TEST_F(FciRobotTest, WhatMoveRefuses) {
+TEST_F(FciRobotTest, MoveRefusesInvalidAndSecondRequests) {
   franka::MoveRequest request;
   request.controller = static_cast<MoveController>(3);
   EXPECT_EQ(robot().Move(request), MoveStatus::kInvalidArgument);
@@ -207,7 +207,7 @@ TEST_F(FciRobotTest, WhatMoveRefuses) {
   EXPECT_EQ(robot().Move({}), MoveStatus::kNotPossible) << "one at a time";
 }
 
-TEST_F(FciRobotTest, ADeviationFromThePathIsAReflex) {
+TEST_F(FciRobotTest, DeviationFromThePathIsAReflex) {
   franka::MoveRequest request;
   request.controller = MoveController::kJointImpedance;
   request.generator = MoveGenerator::kJointVelocity;
@@ -217,7 +217,7 @@ TEST_F(FciRobotTest, ADeviationFromThePathIsAReflex) {
   EXPECT_EQ(Reason(), "max_path_pose_deviation_violation");
 }
 
-TEST_F(FciRobotTest, AGoalThatIsNotReachedIsAReflex) {
+TEST_F(FciRobotTest, UnreachedGoalIsAReflex) {
   franka::MoveRequest request;
   request.controller = MoveController::kJointImpedance;
   request.generator = MoveGenerator::kJointVelocity;

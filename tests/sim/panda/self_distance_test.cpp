@@ -38,7 +38,7 @@ double Least(const sim::SimRobot& robot, const Eigen::Isometry3d& X_BThird) {
   return sim::SelfDistance(robot).Least(X_BL);
 }
 
-TEST(SelfDistance, OfCapsulesIsWhatGeometrySays) {
+TEST(SelfDistance, CapsuleDistanceMatchesGeometry) {
   const sim::SimRobot robot = Two(Link(-1, -1, 0.5, 0.1), Link(2, 2, 0.3, 0.05));
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   X.translation() = Eigen::Vector3d(1.0, 0.0, 0.0);
@@ -54,20 +54,20 @@ TEST(SelfDistance, OfCapsulesIsWhatGeometrySays) {
   EXPECT_NEAR(Least(robot, X), 0.4 - 0.15, 1e-12) << "an end at an end";
 }
 
-TEST(SelfDistance, ASphereIsACapsuleWithoutALength) {
+TEST(SelfDistance, CapsuleOfZeroLengthIsASphere) {
   const sim::SimRobot robot = Two(Link(-1, -1, 0.0, 0.1), Link(2, 2, 0.0, 0.2));
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   X.translation() = Eigen::Vector3d(0.3, 0.0, 0.4);
   EXPECT_NEAR(Least(robot, X), 0.2, 1e-12);
 }
 
-TEST(SelfDistance, NeighboursDoNotCount) {
+TEST(SelfDistance, NeighbouringLinksAreIgnored) {
   sim::SimRobot robot = Two(Link(-1, -1, 0.5, 0.1), Link(2, 2, 0.3, 0.05));
   robot.links[3].parent = 1;  // one link less between
   EXPECT_TRUE(std::isinf(Least(robot, Eigen::Isometry3d::Identity())));
 }
 
-TEST(SelfDistance, ThePandaAtItsReadyPostureIsFarFromItself) {
+TEST(SelfDistance, PandaInItsReadyPostureIsFarFromItself) {
   const sim::WorldConfig config = WirePandaWorld();
   const sim::Chain chain(config.robot);
   const double gap = sim::SelfDistance(config.robot).Least(chain.LinkPoses(config.q_start));

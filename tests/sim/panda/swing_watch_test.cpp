@@ -36,13 +36,13 @@ TEST(SwingWatch, FastAndWideSwingsAreUnstable) {
   EXPECT_LT(after, 250);
 }
 
-TEST(SwingWatch, SlowOrSmallOnesAreNot) {
+TEST(SwingWatch, SlowOrSmallSwingsAreNotUnstable) {
   EXPECT_EQ(UnstableAfter(2.0, 5.0, 5e-4), -1) << "a motion to and fro";
   EXPECT_EQ(UnstableAfter(0.1, 25.0, 5e-4), -1);
   EXPECT_EQ(UnstableAfter(0.0, 1.0, 0.02), -1) << "noise";
 }
 
-TEST(SwingWatch, ANewMotionBeginsAnew) {
+TEST(SwingWatch, NewMotionResetsTheWatch) {
   SwingWatch watch;
   for (int k = 0; k < 20; ++k) {
     const bool unstable = watch.Step(Joints::Constant(k % 2 == 0 ? 0.5 : -0.5));

@@ -115,7 +115,7 @@ TEST(ServoOnTheWire, HoldsAndMovesThePandaInLockstep) {
   EXPECT_EQ(served.panda().robot.state().robot_mode, franka::RobotMode::kIdle) << "an orderly stop";
 }
 
-TEST(ServoOnTheWire, StillComesThereOverABadNetwork) {
+TEST(ServoOnTheWire, ReachesItsGoalOverABadNetwork) {
   sim::FciServerConfig config = Lockstep();
   config.faults.loss = 0.05;
   config.faults.jitter_ms = 2.0;
@@ -141,7 +141,7 @@ TEST(ServoOnTheWire, StillComesThereOverABadNetwork) {
   servo.arm.Stop();
 }
 
-TEST(FciWire, WithoutAnyCommandTheRobotStopsAndRecoversWhenToldTo) {
+TEST(FciWire, UncommandedRobotStopsAndRecoversOnRequest) {
   ServedPanda served(Lockstep());
   franka::FrankaConfig config = served.ClientConfig();
   config.state_timeout_ns = 20 * hal::kNsPerMs;  // some states will not come
@@ -182,7 +182,7 @@ TEST(FciWire, WithoutAnyCommandTheRobotStopsAndRecoversWhenToldTo) {
 }
 
 // States that come, and are always the same one: the number stands still, and so does all else.
-TEST(ServoOnTheWire, ARobotThatHangsIsGivenUp) {
+TEST(ServoOnTheWire, HungRobotRaisesArmLostAndClosesTheBrakes) {
   ServedPanda served(Lockstep());
   ServoOnWire servo(served, 20 * hal::kNsPerMs);
   GoSlowly motion(servo.q_start);
@@ -213,7 +213,7 @@ TEST(ServoOnTheWire, ARobotThatHangsIsGivenUp) {
       << "once it went on, the motion ended in order";
 }
 
-TEST(FciWire, TheStopButtonIsAUserStop) {
+TEST(FciWire, StopButtonIsReportedAsAUserStop) {
   ServedPanda served(Lockstep());
   franka::FrankaArm arm(served.ClientConfig());
   StartMotion(arm);
@@ -229,7 +229,7 @@ TEST(FciWire, TheStopButtonIsAUserStop) {
   EXPECT_STREQ(status.where(), "user stop");
 }
 
-TEST(FciWire, ASecondClientIsRefusedAndTheFirstGoesOn) {
+TEST(FciWire, SecondClientIsRefusedAndTheFirstGoesOn) {
   ServedPanda served(Lockstep());
   franka::FrankaArm first(served.ClientConfig());
   StartMotion(first);
@@ -251,7 +251,7 @@ TEST(FciWire, ASecondClientIsRefusedAndTheFirstGoesOn) {
   second.join();
 }
 
-TEST(FciWire, AClientThatVanishesLeavesTheRobotHolding) {
+TEST(FciWire, VanishedClientLeavesTheRobotHolding) {
   ServedPanda served(Lockstep());
   {
     franka::FrankaArm arm(served.ClientConfig());
@@ -263,7 +263,7 @@ TEST(FciWire, AClientThatVanishesLeavesTheRobotHolding) {
 }
 
 // Bytes that are no client's do not disturb the robot.
-TEST(FciWire, GarbageIsSentAway) {
+TEST(FciWire, ConnectionSendingGarbageIsClosed) {
   ServedPanda served(Lockstep());
   const franka::Endpoint at{0x7F000001, served.port()};
   const std::vector<std::vector<std::byte>> kinds{
@@ -283,7 +283,7 @@ TEST(FciWire, GarbageIsSentAway) {
   StartMotion(arm);
 }
 
-TEST(FciWire, AtRealPaceAThousandStatesComeInASecond) {
+TEST(FciWire, RealPaceSendsAThousandStatesPerSecond) {
   ServedPanda served(sim::FciServerConfig{});
   franka::FrankaArm arm(served.ClientConfig());
   hal::ArmState state;

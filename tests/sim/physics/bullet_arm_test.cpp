@@ -26,7 +26,7 @@ class BulletArmTest : public testing::TestWithParam<const char*> {
 };
 
 // tau = ID(q, dq, ddq) put into Bullet must give back ddq.
-TEST_P(BulletArmTest, ForwardDynamicsClosesOnOurInverseDynamics) {
+TEST_P(BulletArmTest, ForwardDynamicsInvertsOurInverseDynamics) {
   const model::ArmModel& arm = robot_.model;
   BulletArm bullet(sim_robot_, {.table = false});
   double worst_relative = 0.0;
@@ -60,7 +60,7 @@ TEST_P(BulletArmTest, ForwardDynamicsClosesOnOurInverseDynamics) {
 }
 
 // A camera that shows where the arm was a millisecond ago lies by a fifth of a millimetre at 0.2 m/s.
-TEST_P(BulletArmTest, LinksAreWhereTheJointsArePutAfterEachStep) {
+TEST_P(BulletArmTest, LinkPosesMatchTheJointsAfterEachStep) {
   const model::ArmModel& arm = robot_.model;
   BulletArm bullet(sim_robot_, {.table = false});
   bullet.SetState(random_.Position(arm), random_.Joints(arm, 1.0));
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Arms, BulletArmTest,
                                          "/../../../../tests/core/model/mixed_arm.urdf"));
 
 // A free swing without gravity: the energy must stay. The figures say which integrator to take.
-TEST(BulletArmEnergyTest, FreeSwingDrift) {
+TEST(BulletArmEnergyTest, FreeSwingKeepsItsEnergy) {
   const std::string panda = test::RobotsFolder() + "/panda.urdf";
   const SimRobot robot = LoadSimRobot(panda, "panda_base", "panda_flange");
   for (const Integrator integrator : {Integrator::kSemiImplicitEuler, Integrator::kRungeKutta4}) {

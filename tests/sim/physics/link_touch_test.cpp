@@ -66,7 +66,7 @@ TEST_F(LinkTouchTest, LinksOverlapWhereTheirCapsulesDo) {
   EXPECT_GT(near, 30);
 }
 
-TEST_F(LinkTouchTest, TheTargetIsTouchedByAnyLink) {
+TEST_F(LinkTouchTest, AnyLinkCanTouchTheTarget) {
   constexpr double kRadius = 0.04;
   LinkTouch touch(robot_, Ball(kRadius));
   const std::vector<Eigen::Isometry3d> X_BL = Poses(test::Ready());
@@ -88,7 +88,7 @@ TEST_F(LinkTouchTest, TheTargetIsTouchedByAnyLink) {
   EXPECT_FALSE(touch.Self());
 }
 
-TEST_F(LinkTouchTest, CostsLittleBesideAStepOfPhysics) {
+TEST_F(LinkTouchTest, PrintsItsCostBesideAStepOfPhysics) {
   LinkTouch touch(robot_, Ball(0.04));
   const std::vector<Eigen::Isometry3d> X_BL = Poses(test::Ready());
   const auto us = [](auto work) {

@@ -29,7 +29,7 @@ TEST(RollingBall, LiesStillUntilItIsPushed) {
 }
 
 // P / m at first; mu g until it rolls with 5/7 of that; then 5/7 c g / R, and at rest for good.
-TEST(RollingBall, SlidesRollsAndStopsAsTheClosedForm) {
+TEST(RollingBall, SlideRollAndStopMatchTheClosedForm) {
   const RollingBallConfig config = OnTheTable();
   RollingBall ball(config);
   for (int i = 0; i < 100; ++i) {
@@ -70,7 +70,7 @@ TEST(RollingBall, SlidesRollsAndStopsAsTheClosedForm) {
   EXPECT_NEAR(rest.z(), config.radius, 1e-4);
 }
 
-TEST(RollingBall, RepeatsToTheBit) {
+TEST(RollingBall, SamePushRepeatsBitExact) {
   const auto end = [] {
     RollingBall ball(OnTheTable());
     ball.Push({0.02, -0.05, 0.0});

@@ -132,26 +132,26 @@ class RenderPlateTest : public ::testing::Test {
   std::unique_ptr<SceneRenderer> bright_;
 };
 
-TEST_F(RenderPlateTest, ASquareCoversWhatItShould) {
+TEST_F(RenderPlateTest, SquareCoversItsProjectedPixels) {
   scene_.target.kind = TargetShape::Kind::kPolygon;
   scene_.target.corners = {{-0.05, -0.05}, {0.05, -0.05}, {0.05, 0.05}, {-0.05, 0.05}};
   Compare("square");
 }
 
-TEST_F(RenderPlateTest, ATriangleCoversWhatItShould) {
+TEST_F(RenderPlateTest, TriangleCoversItsProjectedPixels) {
   scene_.target.kind = TargetShape::Kind::kPolygon;
   scene_.target.corners = {{-0.06, 0.022}, {0.06, 0.022}, {-0.015, -0.044}};
   Compare("triangle");
 }
 
-TEST_F(RenderPlateTest, ADiscCoversWhatItShould) {
+TEST_F(RenderPlateTest, DiscCoversItsProjectedPixels) {
   scene_.target.kind = TargetShape::Kind::kDisc;
   scene_.target.radius = 0.04;
   Compare("disc");
 }
 
 // From behind nothing is painted.
-TEST_F(RenderPlateTest, APlateTurnedAwayIsNotSeen) {
+TEST_F(RenderPlateTest, PlateTurnedAwayIsInvisible) {
   scene_.target.kind = TargetShape::Kind::kDisc;
   Eigen::Isometry3d X_CO = Eigen::Isometry3d::Identity();
   X_CO.linear() = Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()).toRotationMatrix();

@@ -57,7 +57,7 @@ class RenderTest : public ::testing::Test {
   Exposure exposure_;
 };
 
-TEST_F(RenderTest, ABallIsSeenWhereItIs) {
+TEST_F(RenderTest, BallIsRenderedAtItsPosition) {
   SceneRenderer renderer(scene_, pinhole_, {});
   std::mt19937 engine(1);
   const auto uniform = [&](double a, double b) {
@@ -91,7 +91,7 @@ TEST_F(RenderTest, ABallIsSeenWhereItIs) {
   EXPECT_LT(worst_depth, 0.0005);
 }
 
-TEST_F(RenderTest, WhatStandsBeforeTheBallHidesIt) {
+TEST_F(RenderTest, ObjectInFrontHidesTheBall) {
   SceneRenderer renderer(scene_, pinhole_, {});
   exposure_.p_BO = exposure_.X_BC * Eigen::Vector3d(0.0, 0.0, 0.3);
   ASSERT_TRUE(Detect(Draw(renderer)).found);
@@ -111,7 +111,7 @@ TEST_F(RenderTest, TwoRenderersDrawTheSameBytes) {
 
 // What is left out because a table hides it would not have been seen: from above the bench, from its edge and
 // from beside it, the same bytes.
-TEST_F(RenderTest, LeavingOutWhatIsHiddenIsTheSamePicture) {
+TEST_F(RenderTest, SkippingHiddenGeometryGivesTheSamePicture) {
   SceneRenderer renderer(scene_, pinhole_, {});
   SceneRenderer whole(scene_, pinhole_, {.skip_hidden = false}, 1);
   std::mt19937 engine(3);
@@ -141,7 +141,7 @@ TEST_F(RenderTest, LeavingOutWhatIsHiddenIsTheSamePicture) {
 }
 
 // From h above a plane, straight down, the picture's corners meet it at h times their rays.
-TEST(Cover, KnowsWhatATableHides) {
+TEST(Cover, VisiblePartOfATableMatchesTheViewRays) {
   const Pinhole pinhole = MakePinhole(640, 480, 1.0471975511965976);
   TexturedPlane plane;
   plane.size = {1.6F, 1.3F};
@@ -163,7 +163,7 @@ TEST(Cover, KnowsWhatATableHides) {
   EXPECT_FALSE(SeenOver(plane, pinhole, Eigen::Translation3f(0.0F, 0.0F, 0.5F) * level).has_value());
 }
 
-TEST_F(RenderTest, LessLightIsADarkerPicture) {
+TEST_F(RenderTest, BrightnessIsProportionalToTheLight) {
   exposure_.p_BO = exposure_.X_BC * Eigen::Vector3d(0.0, 0.0, 0.3);
   const auto mean = [&](double light) {
     scene_.light = light;

@@ -113,7 +113,7 @@ class MeshFileTest : public testing::Test {
   const Vector3d size_{0.1, 0.2, 0.3};
 };
 
-TEST_F(MeshFileTest, EveryFormatIsReadWhereItWasWritten) {
+TEST_F(MeshFileTest, EveryFormatReadsBackTheWrittenMesh) {
   const Mesh solid = Tetrahedron();
   test::WriteStlText(File("a.stl"), solid);
   test::WriteStlBinary(File("b.STL"), solid);
@@ -134,7 +134,7 @@ TEST_F(MeshFileTest, ScaleStretchesAndMirrorsWithoutTurningTheSurfaceInsideOut) 
 }
 
 // What ROS's viewers show: coordinates as they are written, lengths in the file's unit.
-TEST_F(MeshFileTest, ColladaCountsItsUnitAndIsNotTurnedByItsUpAxis) {
+TEST_F(MeshFileTest, ColladaUsesItsUnitAndIgnoresItsUpAxis) {
   for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
     const std::string axis = std::string("<up_axis>") + up + "</up_axis>";
     test::WriteDae(File("a.dae"), Tetrahedron(), axis);
@@ -148,7 +148,7 @@ TEST_F(MeshFileTest, ColladaCountsItsUnitAndIsNotTurnedByItsUpAxis) {
   ExpectTetrahedron(LoadMeshFile(File("a.dae"), kOne), {-0.2, 0.1, -0.3}, kRed, "turned node");
 }
 
-TEST_F(MeshFileTest, NormalsAreTheFilesOwnOrMadeWithSharpEdges) {
+TEST_F(MeshFileTest, NormalsComeFromTheFileOrKeepSharpEdges) {
   const Mesh ball = MakeSphere(0.1F, 24, kGrey);
   // Against the ball itself, at the corners of all triangles but the poles' folded ones.
   const auto worst = [](const Mesh& mesh) {
@@ -184,7 +184,7 @@ TEST_F(MeshFileTest, ObjMaterialsColourTheirParts) {
 }
 
 // Of a stranger's, none are read from elsewhere, and no device from anywhere.
-TEST_F(MeshFileTest, AnObjsColoursComeFromFilesInTheFolderThatItMayUse) {
+TEST_F(MeshFileTest, ObjMaterialsAreReadOnlyFromTheAllowedFolder) {
   fs::create_directory(File("own"));
   std::ofstream(File("paint.mtl")) << "newmtl blue\nKd 0.1 0.2 0.9\n";
   fs::copy_file(File("paint.mtl"), File("own/paint.mtl"));
@@ -208,7 +208,7 @@ TEST_F(MeshFileTest, AnObjsColoursComeFromFilesInTheFolderThatItMayUse) {
   }
 }
 
-TEST_F(MeshFileTest, WhatCannotBeUsedIsRefusedWithTheReason) {
+TEST_F(MeshFileTest, UnusableFileIsRefusedWithTheReason) {
   const Mesh solid = Tetrahedron();
   test::WriteStlBinary(File("good.stl"), solid);
   EXPECT_EQ(Refusal(File("good.stl")), "accepted");
@@ -240,7 +240,7 @@ TEST_F(MeshFileTest, WhatCannotBeUsedIsRefusedWithTheReason) {
 }
 
 // On such a list assimp's reader does not come back.
-TEST_F(MeshFileTest, AColladaListWithSomethingElseThanNumbersIsRefused) {
+TEST_F(MeshFileTest, ColladaListWithNonNumbersIsRefused) {
   test::WriteDae(File("a.dae"), Tetrahedron(), "<up_axis>Z_UP</up_axis>");
   std::ostringstream good;
   good << std::ifstream(File("a.dae")).rdbuf();
@@ -310,7 +310,7 @@ TEST_F(MeshFileTest, PackagesAreFoundAboveTheUrdfAndInTheEnvironment) {
 }
 
 // Fewer points, the same solid: all corners of a box, and of a ball nearly all it reaches.
-TEST(HullPointsTest, KeepsCornersAndStaysCloseToWhatIsRound) {
+TEST(HullPointsTest, KeepsBoxCornersAndStaysCloseToABall) {
   const std::vector<Vector3d> box = HullPoints(MakeBox({0.2F, 0.3F, 0.4F}, 0.0F, kGrey));
   EXPECT_EQ(box.size(), 8U);
   for (const Vector3d& p : box) {
@@ -330,7 +330,7 @@ TEST(HullPointsTest, KeepsCornersAndStaysCloseToWhatIsRound) {
   EXPECT_LT(worst, 0.01);
 }
 
-TEST(SimplifyTest, ADenseMeshCastsNearlyTheSameShadowWithFewTriangles) {
+TEST(SimplifyTest, DenseMeshKeepsItsShadowWithFewTriangles) {
   const Mesh dense = MakeSphere(0.06F, 300, kGrey);
   const Mesh simple = Simplify(dense, 0.004F);
   double worst = 0.0;

@@ -110,7 +110,7 @@ Residual Compare(const cv::Mat& a, const cv::Mat& b) {
           static_cast<double>(cv::countNonZero(difference > 8)) / static_cast<double>(difference.total())};
 }
 
-TEST_F(MeshRobotTest, ABoxOfTrianglesLooksLikeABox) {
+TEST_F(MeshRobotTest, BoxMeshIsRenderedLikeABox) {
   const cv::Mat box = Draw(Slider(kBox, kBox));
   const Residual nothing = Compare(box, Draw(Slider("<sphere radius=\"0.001\"/>", kBox)));
   // The renderer's own triangles, rounded edges and all; as a box they would cast a shadow with sharp
@@ -133,7 +133,7 @@ TEST_F(MeshRobotTest, ABoxOfTrianglesLooksLikeABox) {
   EXPECT_LT(sharp.share, 0.02);
 }
 
-TEST_F(MeshRobotTest, TheUrdfsColourGoesBeforeTheFilesOwn) {
+TEST_F(MeshRobotTest, UrdfColourOverridesTheColourOfTheFile) {
   test::WriteDae(Path("box.dae"), MakeBox(kSize, 0.0F, Vector3f::Ones()), "<up_axis>Z_UP</up_axis>");
   const SimRobot own = Slider(MeshTag("box.dae"), kBox, "");
   EXPECT_TRUE(own.links[1].visuals[0].mesh->vertices[0].colour.isApprox(Vector3f(0.8F, 0.1F, 0.2F), 1e-5F));
@@ -145,7 +145,7 @@ TEST_F(MeshRobotTest, TheUrdfsColourGoesBeforeTheFilesOwn) {
   EXPECT_GT(cv::norm(Draw(given), Draw(own), cv::NORM_INF), 50.0);
 }
 
-TEST_F(MeshRobotTest, AMeshTouchesTheTableWhereItsHullDoes) {
+TEST_F(MeshRobotTest, MeshTouchesTheTableWhereItsHullDoes) {
   test::WriteStlText(Path("box.stl"), MakeBox(kSize, 0.0F, Vector3f::Ones()));
   const double box = TouchHeight(Slider(kBox, kBox));
   const double mesh = TouchHeight(Slider(kBox, MeshTag("box.stl")));
@@ -156,7 +156,7 @@ TEST_F(MeshRobotTest, AMeshTouchesTheTableWhereItsHullDoes) {
 }
 
 // A link dropped onto the table comes to lie on it.
-TEST_F(MeshRobotTest, AMeshIsHeldByTheTable) {
+TEST_F(MeshRobotTest, DroppedMeshComesToRestOnTheTable) {
   test::WriteStlText(Path("box.stl"), MakeBox(kSize, 0.0F, Vector3f::Ones()));
   BulletArm arm(Slider(kBox, MeshTag("box.stl")), {});
   arm.SetState(Eigen::VectorXd::Constant(1, 0.17), Eigen::VectorXd::Zero(1));
@@ -169,7 +169,7 @@ TEST_F(MeshRobotTest, AMeshIsHeldByTheTable) {
 }
 
 // What costs time with every frame stays small: no edge is smoothed, and few triangles cast the shadow.
-TEST_F(MeshRobotTest, ADenseMeshIsDrawnWithoutItsDetail) {
+TEST_F(MeshRobotTest, DenseMeshIsDrawnWithoutEdgesAndWithASimpleShadow) {
   const Mesh dense = MakeSphere(0.14F, 450, Vector3f::Ones());
   test::WriteStlBinary(Path("dense.stl"), dense);
   const SimRobot robot = Slider(MeshTag("dense.stl"), MeshTag("dense.stl"));
@@ -184,7 +184,7 @@ TEST_F(MeshRobotTest, ADenseMeshIsDrawnWithoutItsDetail) {
   EXPECT_LT(shadow, dense.num_triangles() / 4);
 }
 
-TEST_F(MeshRobotTest, AnErrorNamesUrdfLinkAndMesh) {
+TEST_F(MeshRobotTest, ErrorNamesUrdfLinkAndMesh) {
   const auto refusal = [&](const std::string& visual, const std::string& collision) -> std::string {
     try {
       Slider(visual, collision);

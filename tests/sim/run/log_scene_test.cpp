@@ -24,7 +24,7 @@ const Eigen::Isometry3d kMount =
 
 class LogSceneTest : public testing::TestWithParam<const char*> {};
 
-TEST_P(LogSceneTest, EveryLinkStandsWhereThePhysicsHasIt) {
+TEST_P(LogSceneTest, EveryLinkMatchesItsPhysicsPose) {
   const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/" + GetParam() + ".toml");
   const SimRobot sim_robot = LoadSimRobot(robot.urdf, robot.base_link, robot.tip_link);
   const std::vector<log::LinkFrame> frames = MakeLinkFrames(sim_robot, robot.model, kMount);
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Arms, LogSceneTest, testing::Values("panda", "ur5e", "p
 
 // The target's frame has its orientation, so a plate stands in it as it is: not turned a second time. A
 // disc's frame has none, so it lies as the scenario has it.
-TEST(LogSceneTargetTest, APlateIsTurnedByItsFrameAlone) {
+TEST(LogSceneTargetTest, PlateIsTurnedOnlyByItsFrame) {
   RenderScene scene;
   scene.target_R_BO = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
   const auto target_of = [&scene] {
@@ -77,7 +77,7 @@ TEST(LogSceneTargetTest, APlateIsTurnedByItsFrameAlone) {
 }
 
 // Links may be called as our own frames seem to be.
-TEST(LogSceneNamesTest, NoLinkIsTakenForAFrameOfOurs) {
+TEST(LogSceneNamesTest, LinkNamesDoNotCollideWithOurFrames) {
   const test::TempFolder folder;
   const auto urdf = folder.path() / "arm.urdf";
   std::ofstream(urdf)

@@ -9,7 +9,7 @@
 namespace fovea::sim {
 namespace {
 
-TEST(PathTest, StaysSmallEvenAndWhole) {
+TEST(PathTest, LongPathIsThinnedEvenlyToItsEnd) {
   Path path;
   constexpr std::int64_t kTicks = 3'000'000;  // 50 minutes
   for (std::int64_t k = 0; k <= kTicks; ++k) {
@@ -26,7 +26,7 @@ TEST(PathTest, StaysSmallEvenAndWhole) {
   EXPECT_GT(points.back().x(), static_cast<double>(kTicks) - 2.0 * step) << "the end is missing";
 }
 
-TEST(TargetLogTest, FramesThatWereLostAreForgottenAndTheOthersKeepTheirTarget) {
+TEST(TargetLogTest, LostFramesAreForgottenAndOthersKeepTheirTarget) {
   TargetLog log;
   for (std::uint64_t i = 0; i < 5; ++i) {
     log.Put(i, {model::Mat3::Identity(), model::Vec3::Constant(static_cast<double>(i))});
@@ -38,7 +38,7 @@ TEST(TargetLogTest, FramesThatWereLostAreForgottenAndTheOthersKeepTheirTarget) {
   EXPECT_EQ(log.size(), 0U);
 }
 
-TEST(FaultSettingsTest, TheCamerasNewFaultsAndTheLeaningBaseReachTheirParts) {
+TEST(FaultSettingsTest, CameraFaultsAndBaseTiltReachTheirParts) {
   FaultSettings f;
   f.freeze_s = {1.0, 2.0};
   f.freeze_pixels = true;

@@ -42,7 +42,7 @@ int Count(const cv::Mat& bgr, const cv::Scalar& colour) {
   return cv::countNonZero(mask);
 }
 
-TEST_F(SceneFilmTest, EveryExposureIsThereWithThePathsSoFar) {
+TEST_F(SceneFilmTest, EveryExposureAppearsWithThePathsSoFar) {
   const Summary with = Run(true);
   cv::VideoCapture film(Film());
   ASSERT_TRUE(film.isOpened());
@@ -83,7 +83,7 @@ TEST_F(SceneFilmTest, EveryExposureIsThereWithThePathsSoFar) {
 }
 
 // However dark the eye's picture is, the reader sees the bench.
-TEST_F(SceneFilmTest, IsShownInFullLight) {
+TEST_F(SceneFilmTest, FilmIsBrightWhenTheSceneIsDark) {
   RunOptions options;
   options.out = folder_.path();
   options.show_progress = false;
@@ -95,7 +95,7 @@ TEST_F(SceneFilmTest, IsShownInFullLight) {
 }
 
 // What is worth more than a film stays, and says why there is none.
-TEST_F(SceneFilmTest, FilmsThatFailCostNothingElse) {
+TEST_F(SceneFilmTest, FailedFilmsKeepTheOtherFiles) {
   RunOptions options;
   options.out = folder_.path();
   options.show_progress = false;

@@ -87,7 +87,7 @@ std::map<std::string, int> CountByName(const std::vector<json>& spans) {
 
 class TracedRun : public testing::TestWithParam<const char*> {};
 
-TEST_P(TracedRun, EveryTickIsThereWithinItsThread) {
+TEST_P(TracedRun, EveryTickIsTracedWithinItsThread) {
   const Timeline timeline = TimelineOf({"--pace", GetParam(), "--set", "run.duration_s=1"});
   EXPECT_EQ(timeline.dropped, 0U);
   std::set<std::string> threads;
@@ -144,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(Paces, TracedRun, testing::Values("real", "lockstep"),
                          [](const auto& pace) { return std::string(pace.param); });
 
 // Who looks on changes nothing.
-TEST(TraceTest, TheRunIsTheSame) {
+TEST(TraceTest, TracingDoesNotChangeTheRun) {
   const TempFolder folder;
   const Timeline traced = TimelineOf({"--set", "run.duration_s=0.5"});
   const ProgramResult plain = RunProgram({FOVEA_SIM_PROGRAM, "run", "ball", "--set", "run.duration_s=0.5",
@@ -154,7 +154,7 @@ TEST(TraceTest, TheRunIsTheSame) {
 
 // Each share is one; those of one thread are not more than the whole, those of the eye not more than its
 // threads.
-TEST(TraceTest, BenchSaysWhatTheTimeGoesTo) {
+TEST(TraceTest, BenchReportsTheTimeShares) {
   const ProgramResult run =
       RunProgram({FOVEA_BENCH_PROGRAM, "sim", "--shares", "--seconds", "0.5", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -174,7 +174,7 @@ TEST(TraceTest, BenchSaysWhatTheTimeGoesTo) {
   EXPECT_LE(value["share_render"] + value["share_read_back"] + value["share_sensor"], 2.0);
 }
 
-TEST(TraceTest, RefusesWhatCannotBeWritten) {
+TEST(TraceTest, UnwritableTraceFileIsRefused) {
   const TempFolder folder;
   const ProgramResult run = RunProgram(
       {FOVEA_SIM_PROGRAM, "run", "ball", "--trace", "/nowhere/to/be/t.json", "--out", folder.path() / "out"});

@@ -23,9 +23,9 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 // A folder with a scenario, and an arm with a mesh both in it and beside it.
-class StrangersScenario : public testing::Test {
+class UntrustedScenario : public testing::Test {
  protected:
-  StrangersScenario() {
+  UntrustedScenario() {
     std::ostringstream panda;
     panda << std::ifstream(test::RobotsFolder() + "/panda.urdf").rdbuf();
     urdf_ = panda.str();
@@ -69,7 +69,7 @@ class StrangersScenario : public testing::Test {
   std::string urdf_;
 };
 
-TEST_F(StrangersScenario, AnArmInItsFolderIsTaken) {
+TEST_F(UntrustedScenario, ArmInItsFolderIsAccepted) {
   EXPECT_EQ(SaidOfArm("panda"), "");
   EXPECT_EQ(SaidOfArm("arm/panda.toml"), "");
   EXPECT_EQ(SaidOfArm("./arm/../arm/panda.toml"), "");
@@ -79,7 +79,7 @@ TEST_F(StrangersScenario, AnArmInItsFolderIsTaken) {
   }
 }
 
-TEST_F(StrangersScenario, AnArmOutsideItIsNot) {
+TEST_F(UntrustedScenario, ArmOutsideItsFolderIsRefused) {
   fs::create_symlink(Outside("panda.toml"), Own("linked.toml"));
   fs::create_directory_symlink(Outside(""), Own("linked"));
   for (const std::string& model :
@@ -92,7 +92,7 @@ TEST_F(StrangersScenario, AnArmOutsideItIsNot) {
   EXPECT_THAT(SaidOfArm("../robots/panda"), HasSubstr("no shipped arm of that name"));
 }
 
-TEST_F(StrangersScenario, AnArmFileNamesNoUrdfOutsideIt) {
+TEST_F(UntrustedScenario, UrdfOutsideItsFolderIsRefused) {
   std::ofstream(Own("far.toml")) << "urdf = \"../outside/panda.urdf\"\n";
   EXPECT_THAT(SaidOfArm("far.toml"),
               AllOf(HasSubstr("urdf = \"../outside/panda.urdf\" is not allowed"), HasSubstr("outside")));
@@ -101,7 +101,7 @@ TEST_F(StrangersScenario, AnArmFileNamesNoUrdfOutsideIt) {
   EXPECT_THAT(SaidOfArm("far.toml"), HasSubstr("is not allowed"));
 }
 
-TEST_F(StrangersScenario, AMeshOutsideItIsNotRead) {
+TEST_F(UntrustedScenario, MeshOutsideItsFolderIsRefused) {
   fs::create_symlink(Outside("link.stl"), Own("arm/linked.stl"));
   for (const std::string& mesh : {std::string("../../outside/link.stl"), Outside("link.stl").string(),
                                   "file://" + Outside("link.stl").string(), std::string("linked.stl"),
@@ -114,7 +114,7 @@ TEST_F(StrangersScenario, AMeshOutsideItIsNotRead) {
 }
 
 // The environment is the user's.
-TEST_F(StrangersScenario, ThePackagesOfTheUserAreRead) {
+TEST_F(UntrustedScenario, MeshInAPackageOfTheUserIsRead) {
   setenv("ROS_PACKAGE_PATH", folder_.path().c_str(), 1);
   EXPECT_EQ(SaidOfMesh("package://outside/link.stl"), "");
   EXPECT_THAT(
@@ -123,13 +123,13 @@ TEST_F(StrangersScenario, ThePackagesOfTheUserAreRead) {
   unsetenv("ROS_PACKAGE_PATH");
 }
 
-TEST_F(StrangersScenario, WhatTheUserTypesMayLieAnywhere) {
+TEST_F(UntrustedScenario, PathTypedByTheUserMayLieAnywhere) {
   EXPECT_EQ(Said("", {"arm.model=\"" + Outside("panda.toml").string() + "\""}), "");
   EXPECT_EQ(Said("[arm]\nmodel = \"../outside/panda.toml\"\n", {"arm.model=panda"}), "");
 }
 
 // A run's folder has the file's name.
-TEST_F(StrangersScenario, ItsNameIsNoFolderAbove) {
+TEST_F(UntrustedScenario, NameThatIsAParentFolderIsRefused) {
   for (const char* name : {"..toml", "...toml"}) {
     std::ofstream(Own(name)) << "";
     try {

@@ -54,7 +54,7 @@ class VerdictBarriersTest : public testing::Test {
   BarrierConfig config_;
 };
 
-TEST_F(VerdictBarriersTest, AnArmThatStandsClearPassesNone) {
+TEST_F(VerdictBarriersTest, ArmClearOfAllBarriersViolatesNone) {
   const Summary s = Judge([](auto, Truth&) {});
   EXPECT_EQ(s.limit_violations, 0U);
   EXPECT_THAT(s.violations, IsEmpty());
@@ -64,7 +64,7 @@ TEST_F(VerdictBarriersTest, AnArmThatStandsClearPassesNone) {
 }
 
 // The flange keeps out; the camera that is bolted to it does not.
-TEST_F(VerdictBarriersTest, TheCameraBelowAPlaneOrInABoxIsCounted) {
+TEST_F(VerdictBarriersTest, CameraBelowAPlaneOrInABoxIsCounted) {
   ASSERT_TRUE(config_.hand.AddCapsule(model::Vec3::Zero(), {0.15, 0.0, -0.25}, 0.03));
   const Summary s = Judge([](auto, Truth&) {});  // it stands at (0.45, 0, 0.25)
   EXPECT_NEAR(s.clearances_m.at("hand.planes[0]"), 0.12, 0.005);
@@ -72,7 +72,7 @@ TEST_F(VerdictBarriersTest, TheCameraBelowAPlaneOrInABoxIsCounted) {
   EXPECT_EQ(s.violations.at("hand.boxes[0]"), 101U);
 }
 
-TEST_F(VerdictBarriersTest, TheHandBelowAPlaneOrInABoxIsCounted) {
+TEST_F(VerdictBarriersTest, HandBelowAPlaneOrInABoxIsCounted) {
   const Summary below = Judge([](auto k, Truth& t) { t.X_BE.translation().z() -= 0.0045 * double(k); });
   EXPECT_NEAR(below.clearances_m.at("hand.planes[0]"), -0.05, 1e-12);
   EXPECT_THAT(below.violations, ElementsAre(Pair("cartesian_speed", 100), Pair("hand.planes[0]", 12)));
@@ -87,7 +87,7 @@ TEST_F(VerdictBarriersTest, TheHandBelowAPlaneOrInABoxIsCounted) {
   EXPECT_EQ(within.violations.at("hand.boxes[0]"), 50U);
 }
 
-TEST_F(VerdictBarriersTest, TheHandsSpeedIsCounted) {
+TEST_F(VerdictBarriersTest, HandAboveItsSpeedLimitIsCounted) {
   const auto at = [&](double speed) {
     return Judge([speed](auto k, Truth& t) { t.X_BE.translation().y() = 1e-3 * speed * double(k); });
   };
@@ -107,7 +107,7 @@ TEST_F(VerdictBarriersTest, EveryKindOfContactIsCounted) {
 }
 
 // 15 rad/s^2 are joint 1's. A shorter peak is no passing; in Fault nothing is, nor 10 ms after.
-TEST_F(VerdictBarriersTest, TheTrueAccelerationIsAMeanOverTenMilliseconds) {
+TEST_F(VerdictBarriersTest, TrueAccelerationIsAveragedOverTenMilliseconds) {
   const auto with = [&](double ddq, std::int64_t ticks, hal::Mode mode) {
     double dq = 0.0;
     return Judge(
@@ -125,20 +125,20 @@ TEST_F(VerdictBarriersTest, TheTrueAccelerationIsAMeanOverTenMilliseconds) {
   EXPECT_THAT(with(60.0, 3, hal::Mode::kFault).violations, IsEmpty());
 }
 
-TEST_F(VerdictBarriersTest, TheTrueJerkIsShownAndNotJudged) {
+TEST_F(VerdictBarriersTest, TrueJerkIsShownAndNotJudged) {
   const Summary s = Judge([](auto k, Truth& t) { t.dq[0] = k > 50 ? 0.1 : 0.0; });
   EXPECT_THAT(s.violations, IsEmpty());
   EXPECT_NEAR(s.unjudged.at("true_joint_jerk"), 100.0 / (config_.arm.joints[0].dddq_max * 1e-3), 1e-9);
 }
 
-TEST_F(VerdictBarriersTest, WhatIsNoNumberPasses) {
+TEST_F(VerdictBarriersTest, NonFiniteVelocityIsAViolation) {
   const Summary s = Judge([](auto k, Truth& t) { t.dq[3] = k == 7 ? std::nan("") : 0.0; }, hal::Mode::kFault);
   EXPECT_EQ(s.violations.at("joint_velocity"), 1U);
 }
 
 // A motor that dies accelerates its joint: not the servo's doing, as long as what is left is within the
 // limit.
-TEST_F(VerdictBarriersTest, WhatADisturbanceDoesIsNotTheServosAcceleration) {
+TEST_F(VerdictBarriersTest, AccelerationByADisturbanceIsNoViolation) {
   const auto with = [&](double ddq, double disturbed) {
     double dq = 0.0;
     return Judge([&, ddq, disturbed](auto k, Truth& t) {
@@ -197,7 +197,7 @@ struct Walk {
   }
 };
 
-TEST(UnwantedMotionTest, WhatAStopTakesIsToldApart) {
+TEST(UnwantedMotionTest, StoppingDistanceIsSubtracted) {
   Walk walk;
   walk.joint_share = -2.0;
   walk.Go(hal::Mode::kTrack, 10, 1.0);
@@ -219,7 +219,7 @@ TEST(UnwantedMotionTest, WhatAStopTakesIsToldApart) {
   EXPECT_NEAR(accelerating.by_mode().at("hold").gained_m_per_s, 0.6 - 0.495 - 0.05, 1e-6);
 }
 
-TEST(UnwantedMotionTest, IsFromWhereTheModeBegan) {
+TEST(UnwantedMotionTest, IsMeasuredFromTheStartOfTheMode) {
   Walk walk;
   walk.Go(hal::Mode::kBoot, 1, 0.0);
   walk.Go(hal::Mode::kBoot, 50, 0.1);    // it falls by 5 mm

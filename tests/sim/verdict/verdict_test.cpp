@@ -55,7 +55,7 @@ class VerdictTest : public testing::Test {
   std::uint64_t frames_detected_ = 1;
 };
 
-TEST_F(VerdictTest, FiguresAreThoseOfTheLastHalfSecond) {
+TEST_F(VerdictTest, FiguresAreOfTheLastHalfSecond) {
   const Summary s = Judge(2.0, [](double t) {
     return t < 1.5 ? Eigen::Vector3d(0.1, 0.0, 0.0) : Eigen::Vector3d(0.0003, 0.0004, 0.0012);
   });
@@ -90,13 +90,13 @@ TEST_F(VerdictTest, SettleTimeIsThatOfTheLastReturn) {
   EXPECT_EQ(Judge(1.0, [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); }).settle_time_s, std::nullopt);
 }
 
-TEST_F(VerdictTest, BehindTheCameraIsNoErrorInPixels) {
+TEST_F(VerdictTest, TargetBehindTheCameraHasNoPixelError) {
   const Summary s = Judge(1.0, [](double) { return Eigen::Vector3d(0.0, 0.0, -0.8); });
   EXPECT_FALSE(s.converged);
   EXPECT_EQ(s.final_error_px_rms, std::nullopt);
 }
 
-TEST_F(VerdictTest, AMovingTargetIsJudgedOverTheSecondHalf) {
+TEST_F(VerdictTest, MovingTargetIsJudgedOverTheSecondHalf) {
   config_.target_moves = true;
   const double px = kGoalZ / config_.pinhole.f_px;
   EXPECT_TRUE(
@@ -108,7 +108,7 @@ TEST_F(VerdictTest, AMovingTargetIsJudgedOverTheSecondHalf) {
 
 // A target that moves is kept while its error is within the bound over half a second: a sample beyond it is
 // none.
-TEST_F(VerdictTest, AMovingTargetIsKeptAsAMeanOverHalfASecond) {
+TEST_F(VerdictTest, MovingTargetIsKeptByItsMeanErrorOverHalfASecond) {
   config_.target_moves = true;
   const double px = kGoalZ / config_.pinhole.f_px;
   const Summary kept = Judge(3.0, [&](double t) {
@@ -122,7 +122,7 @@ TEST_F(VerdictTest, AMovingTargetIsKeptAsAMeanOverHalfASecond) {
   EXPECT_FALSE(lost.end.goal_kept_since_s.has_value());
 }
 
-TEST_F(VerdictTest, EveryLimitThatIsBrokenIsCounted) {
+TEST_F(VerdictTest, EveryExceededLimitIsCounted) {
   // In one tick; how often it counts.
   const auto violations = [&](const char* name, const std::function<void(Truth&)>& change) {
     const Summary s = Judge(0.1, Still, [&](Truth& truth) {
@@ -141,7 +141,7 @@ TEST_F(VerdictTest, EveryLimitThatIsBrokenIsCounted) {
   EXPECT_EQ(violations("torque", [](Truth& t) { t.tau_cmd[6] = -12.1; }), 1U);                // 12 Nm
 }
 
-TEST_F(VerdictTest, APassedLimitIsNoSuccessAndATickCountsOnce) {
+TEST_F(VerdictTest, ExceededLimitFailsTheRunAndCountsOncePerTick) {
   hal::TickRecord record;
   record.stamp_ns = 50 * kMs;
   record.ddq_cmd[0] = 2.0 * config_.barriers.arm.joints[0].ddq_max;
@@ -161,7 +161,7 @@ TEST_F(VerdictTest, APassedLimitIsNoSuccessAndATickCountsOnce) {
 }
 
 // Whatever is touched, and however well the target stands in the end.
-TEST_F(VerdictTest, AnyContactIsNoSuccess) {
+TEST_F(VerdictTest, AnyContactFailsTheRun) {
   for (const auto& [contacts, what] : {std::pair{Contacts{1, false, false}, "the bench"},
                                        {Contacts{0, true, false}, "the target"},
                                        {Contacts{0, false, true}, "itself"}}) {
@@ -176,7 +176,7 @@ TEST_F(VerdictTest, AnyContactIsNoSuccess) {
   }
 }
 
-TEST_F(VerdictTest, SeenTooSeldomIsNotTheSameAsNeverSeen) {
+TEST_F(VerdictTest, SeenTooSeldomAndNeverSeenHaveDifferentVerdicts) {
   const auto far = [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); };
   frames_detected_ = 0;
   EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("never found in view"));
@@ -184,7 +184,7 @@ TEST_F(VerdictTest, SeenTooSeldomIsNotTheSameAsNeverSeen) {
   EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("found in 2 frames, too few"));
 }
 
-TEST_F(VerdictTest, AFaultIsNamedAndIsNoSuccess) {
+TEST_F(VerdictTest, FaultFailsTheRunAndIsNamed) {
   hal::TickRecord record;
   record.stamp_ns = 250 * kMs;
   record.mode = hal::Mode::kFault;

@@ -27,7 +27,7 @@ class FeatureDelayTest : public ::testing::Test {
   hal::FeatureMailbox mailbox_;
 };
 
-TEST_F(FeatureDelayTest, NothingComesBeforeItIsDue) {
+TEST_F(FeatureDelayTest, MeasurementIsHeldUntilItIsDue) {
   delay_.Expect(1, 40'000'000);
   delay_.Put(Measurement(1));
   EXPECT_TRUE(delay_.HandOver(39'000'000, true, mailbox_));
@@ -49,7 +49,7 @@ TEST_F(FeatureDelayTest, LockstepWaitsForALateMeasurement) {
   vision.join();
 }
 
-TEST_F(FeatureDelayTest, RealPaceGoesOnAndHandsItOverWhenItComes) {
+TEST_F(FeatureDelayTest, RealPaceHandsALateMeasurementOverWhenItComes) {
   delay_.Expect(1, 40'000'000);
   EXPECT_TRUE(delay_.HandOver(40'000'000, false, mailbox_));
   EXPECT_EQ(Taken(), -1);
@@ -59,7 +59,7 @@ TEST_F(FeatureDelayTest, RealPaceGoesOnAndHandsItOverWhenItComes) {
 }
 
 // A frame that the camera lost has no measurement, ever; a later one tells.
-TEST_F(FeatureDelayTest, AFrameThatWasLostHoldsNothingUp) {
+TEST_F(FeatureDelayTest, LostFrameDoesNotBlockLaterOnes) {
   delay_.Expect(1, 40'000'000);
   delay_.Expect(2, 70'000'000);
   delay_.Put(Measurement(2));
@@ -68,7 +68,7 @@ TEST_F(FeatureDelayTest, AFrameThatWasLostHoldsNothingUp) {
 }
 
 // The frame that is waited for is lost while it is waited for, and nothing else is expected.
-TEST_F(FeatureDelayTest, AFrameThatIsLostWhileItIsWaitedForEndsTheWaiting) {
+TEST_F(FeatureDelayTest, FrameLostWhileAwaitedEndsTheWait) {
   delay_.Expect(1, 40'000'000);
   std::thread vision([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -79,7 +79,7 @@ TEST_F(FeatureDelayTest, AFrameThatIsLostWhileItIsWaitedForEndsTheWaiting) {
   vision.join();
 }
 
-TEST_F(FeatureDelayTest, AVisionThatEndedEndsTheWaiting) {
+TEST_F(FeatureDelayTest, EndOfVisionEndsTheWait) {
   delay_.Expect(1, 40'000'000);
   delay_.Close();
   EXPECT_FALSE(delay_.HandOver(40'000'000, true, mailbox_));

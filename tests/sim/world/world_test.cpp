@@ -24,7 +24,7 @@ WorldConfig PandaWorld() {
   return config;
 }
 
-TEST(TargetMotionTest, TheCircleIsRoundLevelAndAsFastAsAskedFor) {
+TEST(TargetMotionTest, CircleIsLevelWithTheSetRadiusAndSpeed) {
   TargetMotion motion{MotionKind::kCircle, {0.5, 0.1, 0.04}, 0.10, 0.2};
   for (std::int64_t t = 0; t < 4'000 * kMs; t += 37 * kMs) {
     const Eigen::Vector3d p = PositionAt(motion, t);
@@ -38,7 +38,7 @@ TEST(TargetMotionTest, TheCircleIsRoundLevelAndAsFastAsAskedFor) {
 }
 
 // Each stays within its reach and within its speed, comes near to both, and runs without a step.
-TEST(TargetMotionTest, EveryPathKeepsItsReachAndItsSpeed) {
+TEST(TargetMotionTest, EveryPathKeepsItsReachAndSpeed) {
   TargetMotion motion{MotionKind::kStill, {0.5, 0.1, 0.2}, 0.12, 0.2};
   motion.direction = Eigen::Vector3d(0.6, 0.8, 0.0);
   const auto look = [&](MotionKind kind) {
@@ -83,7 +83,7 @@ TEST(TargetMotionTest, JumpsAtItsTimeAndTurnsAboutItsNormal) {
   EXPECT_NEAR(R.col(0).dot(motion.R_BO.col(0)), std::cos(1.0), 1e-12);
 }
 
-TEST(WorldTest, EncodersHaveTheNoiseThatWasAskedFor) {
+TEST(WorldTest, EncodersHaveTheSetNoise) {
   WorldConfig config = PandaWorld();
   config.encoder_noise = 1e-5;
   config.velocity_noise = 2e-3;
@@ -104,7 +104,7 @@ TEST(WorldTest, EncodersHaveTheNoiseThatWasAskedFor) {
   EXPECT_NEAR(std::sqrt(dq2 / count), 2e-3, 6e-5);
 }
 
-TEST(WorldTest, TheSameSeedIsTheSameWorld) {
+TEST(WorldTest, WorldRepeatsForTheSameSeedOnly) {
   WorldConfig config = PandaWorld();
   config.encoder_noise = 1e-5;
   const auto run = [&](std::uint64_t seed) {
@@ -117,7 +117,7 @@ TEST(WorldTest, TheSameSeedIsTheSameWorld) {
   EXPECT_NE(run(1), run(2));
 }
 
-TEST(WorldTest, TheCameraKeepsItsOwnTimeAndFallsSilentWhereItIsTold) {
+TEST(WorldTest, CameraKeepsItsRateAndItsOutage) {
   WorldConfig config = PandaWorld();
   config.camera_rate_hz = 30.0;
   config.camera_outage = {0.5, 0.8};
@@ -135,7 +135,7 @@ TEST(WorldTest, TheCameraKeepsItsOwnTimeAndFallsSilentWhereItIsTold) {
 
 // What those who look on throw does not pass through the loop: the clock closes, and gives it back when
 // asked.
-TEST(WorldClockTest, KeepsWhatIsThrownAndSaysThatItIsClosed) {
+TEST(WorldClockTest, ObserverExceptionClosesTheClockAndIsRethrownOnRequest) {
   World world(PandaWorld());
   LockstepClock clock(world, [](std::int64_t now_ns) -> bool {
     if (now_ns == 2 * kMs) {
@@ -150,7 +150,7 @@ TEST(WorldClockTest, KeepsWhatIsThrownAndSaysThatItIsClosed) {
 }
 
 // A link of 40 kg mm^2 under friction that a step of 1 ms could turn round at full size.
-TEST(WorldTest, ALightLinkComesToRestUnderFriction) {
+TEST(WorldTest, LightLinkComesToRestUnderFriction) {
   WorldConfig config;
   config.robot = LoadSimRobot(test::RobotsFolder() + "/puma560.urdf", "puma560_base", "puma560_flange");
   config.q_start.resize(6);
@@ -170,7 +170,7 @@ TEST(WorldTest, ALightLinkComesToRestUnderFriction) {
 }
 
 // A joint under friction, and the same one whose controller takes all friction away.
-TEST(WorldTest, FrictionSlowsAJointAndCompensationTakesItAway) {
+TEST(WorldTest, FrictionCompensationRestoresTheSpeedOfAJoint) {
   const auto speed_after = [](double compensation) {
     WorldConfig config = PandaWorld();
     config.friction_compensation = compensation;
