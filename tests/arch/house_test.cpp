@@ -25,7 +25,7 @@ std::size_t LinesOf(const fs::path& file) {
   return lines;
 }
 
-TEST(House, NoFileIsLongerThanOneReadsAtAGo) {
+TEST(SourceTree, NoFileExceedsTheLineLimit) {
   std::size_t longest = 0;
   for (const char* tree : kTrees) {
     for (const fs::path& file : test::SourcesIn(tree)) {
@@ -38,7 +38,7 @@ TEST(House, NoFileIsLongerThanOneReadsAtAGo) {
   EXPECT_GT(longest, 100U);
 }
 
-TEST(House, NoRoomHoldsMoreThanOneCanOverlook) {
+TEST(SourceTree, NoFolderExceedsTheFileLimit) {
   std::map<fs::path, std::set<std::string>> rooms;
   for (const char* tree : kTrees) {
     for (const fs::path& file : test::SourcesIn(tree)) {
@@ -68,7 +68,7 @@ std::string NamespaceOf(const fs::path& file) {
   return last;
 }
 
-TEST(House, NamespacesAreRooms) {
+TEST(SourceTree, NamespacesMatchTheirFolders) {
   for (const char* folder : {"firmware/core", "firmware/host", "firmware/vision"}) {
     for (const fs::path& file : test::SourcesIn(folder)) {
       const std::string space = NamespaceOf(file);

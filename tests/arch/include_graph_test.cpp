@@ -31,7 +31,7 @@ std::string NameOf(const testing::TestParamInfo<Rule>& rule) {
 
 class IncludeRule : public testing::TestWithParam<Rule> {};
 
-TEST_P(IncludeRule, Holds) {
+TEST_P(IncludeRule, EveryIncludeIsAllowed) {
   const Rule& rule = GetParam();
   const std::regex allowed(rule.allowed);
   const auto files = test::SourcesIn(rule.folder);

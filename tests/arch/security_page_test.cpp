@@ -16,7 +16,7 @@ std::string Text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-TEST(SecurityPage, NamesTestsThatThereAre) {
+TEST(SecurityPage, NamesOnlyExistingTests) {
   const std::filesystem::path root = test::SourceRoot();
   const std::string page = Text(root / "firmware/SECURITY.md");
   std::string tests;

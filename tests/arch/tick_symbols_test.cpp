@@ -27,7 +27,7 @@ std::set<std::string> Symbols(const std::string& options) {
   return symbols;
 }
 
-TEST(TickSymbolsTest, NeedsNothingButPlainMemory) {
+TEST(TickSymbolsTest, TickCallsOnlyAllowedSymbols) {
 #ifdef FOVEA_SANITIZED
   GTEST_SKIP() << "a sanitizer adds calls of its own";
 #endif
@@ -47,7 +47,7 @@ TEST(TickSymbolsTest, NeedsNothingButPlainMemory) {
 }
 
 // The hardware target's libraries carry no simulator along.
-TEST(LinkTest, AProgramOfFirmwareLibrariesNeedsNoBulletAndNoEgl) {
+TEST(SharedLibrariesTest, FirmwareProgramNeedsNoBulletOrEgl) {
   const std::string needed = test::OutputOf("readelf -d '" FOVEA_FIRMWARE_PROGRAM "' | grep NEEDED");
   ASSERT_NE(needed.find("libopencv_imgproc"), std::string::npos) << "readelf must have been there";
   for (const char* name : {"Bullet", "LinearMath", "libEGL", "libepoxy", "libGL"}) {

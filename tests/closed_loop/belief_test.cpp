@@ -29,7 +29,7 @@ double WayOfHand(const GuardBench& bench, const Eigen::Vector3d& from) {
 }
 
 // The picture freezes on the way, with fresh noise and fresh stamps, for a while or for ever.
-TEST(Belief, AFrozenPictureStopsTheArm) {
+TEST(SensorFault, FrozenPictureStopsTheArm) {
   for (const double lasts_s : {0.2, 1.0, 5.0, 100.0}) {
     GuardSetup setup = Tracking();
     hal::FeatureMeasurement frozen;
@@ -69,7 +69,7 @@ TEST(Belief, AFrozenPictureStopsTheArm) {
 }
 
 // All encoders stand still while stamps go on, and velocities read zero.
-TEST(Belief, EncodersThatAllHangAreNoticed) {
+TEST(SensorFault, AllEncodersStuckRaisesAFault) {
   for (const int joint : {-1, 0, 1, 3, 5}) {
     GuardSetup setup = Tracking();
     setup.arm_faults.stuck = {{kOnsetS, 100.0}, joint};
@@ -91,7 +91,7 @@ TEST(Belief, EncodersThatAllHangAreNoticed) {
 
 // Encoders with steps, under a load that nobody was told of: a joint reads the same for a while, and is
 // sound.
-TEST(Belief, QuantisedEncodersUnderALoadAreSound) {
+TEST(SensorFault, QuantisedEncodersUnderLoadRaiseNoFault) {
   for (const double load : {0.0, 0.3, 1.0}) {
     GuardSetup setup = Tracking();
     setup.world.encoder_noise = 0.0;
@@ -108,7 +108,7 @@ TEST(Belief, QuantisedEncodersUnderALoadAreSound) {
 }
 
 // From the first state on the servo holds the arm where it finds it, whatever hangs on it.
-TEST(Belief, BootHoldsTheArmWhereItIs) {
+TEST(SensorFault, BootHoldsTheArmUnderAnUnknownLoad) {
   for (const double load : {0.0, 0.3, 0.7, 1.5, 3.0}) {
     GuardSetup setup;
     setup.world.load = {{0.0, 100.0}, load};
@@ -128,7 +128,7 @@ TEST(Belief, BootHoldsTheArmWhereItIs) {
 }
 
 // A fault ends the wish to track: after it has been recovered from, nothing moves until it is asked for anew.
-TEST(Belief, NothingMovesAfterAFaultUntilItIsAskedFor) {
+TEST(SensorFault, AfterAFaultNothingMovesUntilTrackIsRequested) {
   GuardSetup setup = Tracking();
   setup.arm_faults.packet_loss = {{kOnsetS, kOnsetS + 0.1}, 1.0};
   GuardBench bench(setup);
@@ -147,7 +147,7 @@ TEST(Belief, NothingMovesAfterAFaultUntilItIsAskedFor) {
 
 // No stream of measurements leads past a limit, into the table or the arm itself, or to a fault. Ten hours of
 // it: fovea-adversary --hours 10.
-TEST(Belief, NoMeasurementsLeadPastALimit) {
+TEST(SensorFault, AdversarialMeasurementsExceedNoLimit) {
   for (const std::uint64_t seed : {11U, 12U, 13U}) {
     const AdversaryFigures figures = RunAdversary(120.0, seed, {});
     std::cout << InWords(figures);

@@ -45,7 +45,7 @@ Decay Measure(double lambda) {
   return decay;
 }
 
-TEST(Decay, IsTheExponentialOfItsGain) {
+TEST(Decay, ErrorFollowsTheExponentialOfTheGain) {
   for (const double lambda : {1.0, 2.0, 3.0}) {
     const Decay decay = Measure(lambda);
     EXPECT_LT(decay.worst, 0.10);

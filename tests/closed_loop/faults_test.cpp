@@ -13,9 +13,9 @@ struct Case {
 };
 
 // Each from 0.6 s, in full approach, on for at most 1.8 s; 5 s in all.
-class Passing : public testing::TestWithParam<Case> {};
+class TransientFault : public testing::TestWithParam<Case> {};
 
-TEST_P(Passing, IsRiddenOut) {
+TEST_P(TransientFault, RunStillConverges) {
   std::vector<std::string> assignments = GetParam().assignments;
   assignments.emplace_back("run.duration_s=5");
   const sim::Summary s = RunShipped("ball", assignments);
@@ -27,7 +27,7 @@ TEST_P(Passing, IsRiddenOut) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Faults, Passing,
+    Faults, TransientFault,
     testing::Values(Case{"FrameLoss", {"faults.frame_loss_s=[0.6, 2.4]", "faults.frame_loss=0.6"}},
                     Case{"Freeze", {"faults.freeze_s=[0.6, 0.8]"}},
                     Case{"Latency", {"faults.latency_s=[0.6, 2.4]", "faults.latency_ms=60"}},
@@ -54,7 +54,7 @@ std::string HashOf(int seed) {
   return s.log_hash;
 }
 
-TEST(Faults, TheSameSeedIsTheSameRunAndAnotherIsAnother) {
+TEST(InjectedFaults, RunRepeatsForTheSameSeedOnly) {
   const std::string first = HashOf(3);
   EXPECT_EQ(HashOf(3), first);
   EXPECT_NE(HashOf(4), first);

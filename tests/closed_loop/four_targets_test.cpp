@@ -19,7 +19,7 @@ void Print(const sim::Summary& s) {
 
 class StillTarget : public testing::TestWithParam<const char*> {};
 
-TEST_P(StillTarget, StandsAtItsGoal) {
+TEST_P(StillTarget, ConvergesToTheGoal) {
   const sim::Summary s = RunByTruth(GetParam());
   Print(s);
   EXPECT_TRUE(s.converged);
@@ -40,7 +40,7 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, StillTarget,
 
 // Starts from which the law that goes downhill ends at a limit: a triangle that needs another posture, and a
 // square of whose four goals the nearest lies outside the workspace.
-TEST(FarGoal, IsReachedByAnotherPosture) {
+TEST(FarGoal, TriangleIsReachedByAnotherPosture) {
   const sim::Summary s = RunByTruth(
       "triangle", {"arm.q_start=[-0.1256,1.1934,-2.1153,-1.6094,0.3756,1.2153,-2.4184]",
                    "target.position=[-0.3945,-0.3287,0.0338]", "target.rpy_deg=[-155.83,2.12,67.80]"});
@@ -49,7 +49,7 @@ TEST(FarGoal, IsReachedByAnotherPosture) {
   EXPECT_EQ(s.limit_violations, 0U);
 }
 
-TEST(FarGoal, OfASquareIsTheOneOfFourThatCanBeReached) {
+TEST(FarGoal, SquareTakesTheReachableOneOfItsFourGoals) {
   const sim::Summary s = RunByTruth(
       "square", {"arm.q_start=[-1.8973,-1.4749,-1.2370,-2.7403,0.0384,2.4767,1.1987]",
                  "target.position=[-0.4333,-0.8067,0.5195]", "target.rpy_deg=[107.25,16.49,-9.21]"});
@@ -60,7 +60,7 @@ TEST(FarGoal, OfASquareIsTheOneOfFourThatCanBeReached) {
 
 class MovingTarget : public testing::TestWithParam<const char*> {};
 
-TEST_P(MovingTarget, IsFollowedAndPredictionIsWhatDoesIt) {
+TEST_P(MovingTarget, PredictionCutsTheTrackingErrorFivefold) {
   const sim::Summary with = RunByTruth(GetParam());
   const sim::Summary without = RunByTruth(GetParam(), {"servo.predict=false"});
   Print(with);
@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, MovingTarget, testing::Values("ball-moving",
                          });
 
 // A square that goes round and turns: all six degrees of freedom in motion.
-TEST(MovingSquare, IsFollowedInAllSix) {
+TEST(MovingSquare, IsTrackedInAllSixDegreesOfFreedom) {
   const sim::Summary s =
       RunByTruth("square", {"target.motion=circle", "target.path_radius=0.06", "target.speed=0.1",
                             "target.turn_deg_s=8", "run.duration_s=10", "run.tracking_bound_px=5"});

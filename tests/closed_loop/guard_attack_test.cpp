@@ -29,7 +29,7 @@ Eigen::VectorXd Posture(RandomStates& random, const Eigen::VectorXd& q_start) {
 
 enum class Way { kTowards, kAlong, kAslant, kFromSide };
 
-TEST(GuardAttack, TheBoundaryIsNeverPassed) {
+TEST(GuardAttack, HandNeverCrossesTheWorkspaceBoundary) {
   RandomStates random(41);
   GuardFigures worst;
   int reached = 0;
@@ -75,7 +75,7 @@ TEST(GuardAttack, TheBoundaryIsNeverPassed) {
 }
 
 // The eye leads it there: a target that runs away at 1 m/s, on every side.
-TEST(GuardAttack, ATargetThatRunsAwayDrawsNothingAcross) {
+TEST(GuardAttack, RunawayTargetDoesNotDrawTheHandAcrossTheBoundary) {
   double furthest = 0.0;
   int reached = 0;
   constexpr int kTargets = 16;

@@ -210,7 +210,7 @@ void ProvokeContact() {
 
 // The motor of a joint that bears the arm gives nothing any more: no damping stops that joint, the brakes
 // must.
-TEST(GuardFault, ADeadMotorUnderLoadIsFoundAndTheBrakesHold) {
+TEST(GuardFault, DeadMotorUnderLoadFaultsAndTheBrakesHold) {
   for (const int joint : {1, 3}) {
     GuardSetup setup;
     setup.world.torque_loss = {{kStart, kNever}, joint, 1.0};
@@ -233,7 +233,7 @@ TEST(GuardFault, ADeadMotorUnderLoadIsFoundAndTheBrakesHold) {
 
 // The encoder of a joint hangs while the joint moves, or is about to: unseen, the joint would run through its
 // whole range within a second.
-TEST(GuardFault, AnEncoderThatHangsIsFoundBeforeTheJointRunsAway) {
+TEST(GuardFault, StuckEncoderFaultsBeforeTheJointRunsAway) {
   const Eigen::VectorXd q_start = GuardSetup().world.q_start;
   for (const double start_s : {0.05, 0.3, kStart, 0.8}) {
     for (const int joint : {0, 1, 3}) {
@@ -264,7 +264,7 @@ TEST(GuardFault, AnEncoderThatHangsIsFoundBeforeTheJointRunsAway) {
 
 // It hangs for 20 ms while the joint is fast: long enough for the law to push the joint past its speed limit,
 // had it been believed.
-TEST(GuardFault, AnEncoderThatHangsForAMomentIsNotBelieved) {
+TEST(GuardFault, BrieflyStuckEncoderStopsTheArmAsStale) {
   GuardSetup setup;
   setup.servo.safety.encoder_quantum = 2e-5;  // these encoders are as fine as that
   Eigen::VectorXd goal = setup.world.q_start;
@@ -277,7 +277,7 @@ TEST(GuardFault, AnEncoderThatHangsForAMomentIsNotBelieved) {
 
 // A slow joint, pushed too little to be found while its encoder hangs, is somewhere else when it works again:
 // nothing moves so fast, and what is done about that error would throw the light joints past their limits.
-TEST(GuardFault, AnEncoderThatJumpsIsNotBelieved) {
+TEST(GuardFault, EncoderJumpKeepsJointsWithinTheirSpeedLimits) {
   GuardSetup setup;
   setup.servo.safety.frozen_ticks = 0;  // else its noise, which ceases, gives it away at once
   setup.arm_faults.stuck = {{0.3, 0.6}, 3};
@@ -290,7 +290,7 @@ TEST(GuardFault, AnEncoderThatJumpsIsNotBelieved) {
 
 // An arm that falls while it boots: its motor is weak, or it holds what nobody was told of. The servo holds
 // it from the first state on, sees what pulls at it, and stops it long before it is too fast.
-TEST(GuardFault, AnArmThatFallsInBootIsStoppedInsideItsLimits) {
+TEST(GuardFault, ArmFallingInBootIsStoppedWithinItsLimits) {
   for (const double lost : {0.5, 1.0}) {
     GuardSetup setup;
     setup.world.q_start << 1.0, 0.2, -0.6, -2.2, 0.4, 2.0, -0.6;

@@ -16,7 +16,7 @@ namespace fovea::sim {
 namespace {
 
 // Its lines are as near as it ever lets them come, wherever the links' capsules touch.
-TEST(GuardShape, NoLinksTouchWhereTheGuardLetsTheArmGo) {
+TEST(GuardShape, NoLinksTouchInPosturesTheGuardAllows) {
   const SimRobot robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
   const SelfDistance distance(robot);
   BulletArm placed(robot, {});

@@ -53,7 +53,7 @@ void Provoke(const std::array<Provocation<Row>, kSize>& provocations, Row row) {
 }
 
 class GuardLimits : public testing::TestWithParam<int> {};
-TEST_P(GuardLimits, ActsInTimeAndIsNotPassed) { Provoke(kLimits, static_cast<hal::Limit>(GetParam())); }
+TEST_P(GuardLimits, ActsInTimeAndIsNotExceeded) { Provoke(kLimits, static_cast<hal::Limit>(GetParam())); }
 INSTANTIATE_TEST_SUITE_P(Row, GuardLimits, testing::Range(0, hal::kNumLimits), [](const auto& row) {
   return std::string(hal::Name(static_cast<hal::Limit>(row.param)));
 });

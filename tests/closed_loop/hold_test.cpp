@@ -32,7 +32,7 @@ class RestWatch {
 
 constexpr double kAtRest = 0.005;  // [rad/s]; what encoder noise leaves
 
-TEST(Hold, ABallOutOfReachIsHeldBeforeWithReason) {
+TEST(Hold, UnreachableBallEndsInHoldWithAReason) {
   RestWatch watch;
   // Seen from the start, but 1.15 m away from it the arm would have to be outside its narrow workspace or,
   // turned about, behind the wall.
@@ -49,7 +49,7 @@ TEST(Hold, ABallOutOfReachIsHeldBeforeWithReason) {
   ExpectSound(s);
 }
 
-TEST(Hold, ABallBeyondTheWorkspaceIsHeldBeforeAtTheBarrier) {
+TEST(Hold, BallBeyondTheWorkspaceEndsInHoldAtTheBarrier) {
   RestWatch watch;
   const sim::Summary s = RunShipped(
       "ball", {"target.position=[1.4, 0.1, 0.04]", "arm.q_start=[0.1, -0.2, 0, -1.9, 0, 2.2, 0.785]"},
@@ -63,7 +63,7 @@ TEST(Hold, ABallBeyondTheWorkspaceIsHeldBeforeAtTheBarrier) {
   ExpectSound(s);
 }
 
-TEST(Hold, TheWayHomeEndsInTheReadyPostureAtRest) {
+TEST(Hold, HomeMotionEndsAtRestInTheReadyPosture) {
   RestWatch watch;
   const sim::Summary s = RunShipped("home", {}, watch.Options(4.0));
   ASSERT_TRUE(s.home_error_rad.has_value());
@@ -75,14 +75,14 @@ TEST(Hold, TheWayHomeEndsInTheReadyPostureAtRest) {
   ExpectSound(s);
 }
 
-TEST(Hold, AWayHomeThatALimitForbidsIsNoSuccess) {
+TEST(Hold, HomeMotionBlockedByABoxIsRefusedAndNotConverged) {
   const sim::Summary s = RunShipped("home", {"safety.boxes=[0.2, -0.1, 0.4, 0.4, 0.1, 0.8]"});
   EXPECT_FALSE(s.converged);
   EXPECT_EQ(LastReason(s), "motion_refused");
   EXPECT_EQ(s.limit_violations, 0U);
 }
 
-TEST(Hold, ABallThatIsNeverInViewMovesNothing) {
+TEST(Hold, BallNeverInViewLeavesTheArmAtRest) {
   RestWatch watch;
   const sim::Summary s =
       RunShipped("ball", {"target.position=[-0.5, 0.6, 0.04]", "run.duration_s=2"}, watch.Options(2.0));
@@ -95,7 +95,7 @@ TEST(Hold, ABallThatIsNeverInViewMovesNothing) {
   ExpectSound(s);
 }
 
-TEST(Hold, ACameraThatFallsSilentIsCoastedOverThenHeldThenTakenUpAgain) {
+TEST(Hold, LongCameraOutageCoastsThenHoldsThenTracksAgain) {
   RestWatch watch;
   const sim::Summary s = RunShipped("ball", {"faults.camera_outage_s=[0.8, 3.0]"}, watch.Options(8.0));
   PrintResidual(s);
@@ -109,7 +109,7 @@ TEST(Hold, ACameraThatFallsSilentIsCoastedOverThenHeldThenTakenUpAgain) {
   ExpectSound(s);
 }
 
-TEST(Hold, AShortSilenceIsCoastedOver) {
+TEST(Hold, ShortCameraOutageIsBridgedByCoast) {
   const sim::Summary s = RunShipped("ball-moving", {"faults.camera_outage_s=[5.0, 5.4]"});
   PrintResidual(s);
   std::vector<std::string> modes;

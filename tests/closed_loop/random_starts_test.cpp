@@ -39,7 +39,7 @@ INSTANTIATE_TEST_SUITE_P(
                                 "target.rpy_deg=[85.14,33.95,69.31]", "run.seed=1906482257"}));
 
 // The posture's pull turned the disc edge-on, where nothing finds it.
-TEST(EdgeOn, ADiscIsNotTurned) {
+TEST(RandomStarts, PosturePullDoesNotTurnTheDiscEdgeOn) {
   const Assignments start =
       kTable + Assignments{"arm.q_start=[-2.7705,-1.3044,1.8399,-2.7133,-0.6047,1.2502,0.726]",
                            "target.position=[-0.197,-0.1179,0.5561]", "target.rpy_deg=[-2.85,-10.34,29.46]",
@@ -51,7 +51,7 @@ TEST(EdgeOn, ADiscIsNotTurned) {
 }
 
 // Along the joints' limits the law comes nearer, and never arrives.
-TEST(CreepingUp, IsLeftToTheJoints) {
+TEST(RandomStarts, LawCreepingAlongJointLimitsSwitchesToJointMotion) {
   ExpectReached(RunShipped(
       "square", kTable + Assignments{"arm.q_start=[0.4502,0.1945,0.1255,-2.8132,1.7986,0.8771,-1.3372]",
                                      "target.position=[-0.158,0.6334,0.93]",
@@ -59,7 +59,7 @@ TEST(CreepingUp, IsLeftToTheJoints) {
 }
 
 // No straight way of the joints keeps the target in the picture and out of the arm's shade.
-TEST(OnlyByAnotherPosture, TheGoalIsReached) {
+TEST(RandomStarts, GoalIsReachedThroughAnotherPosture) {
   ExpectReached(RunShipped(
       "triangle", kTable + Assignments{"arm.q_start=[-2.5214,-1.0664,0.1162,-2.5597,-0.4828,0.3145,-0.6362]",
                                        "target.position=[0.3949,0.6875,0.3594]",
@@ -67,7 +67,7 @@ TEST(OnlyByAnotherPosture, TheGoalIsReached) {
 }
 
 // The posture's pull, with the disc long at its goal, lets the elbow down on the table.
-TEST(ElbowOverTheTable, StaysOffIt) {
+TEST(RandomStarts, ElbowStaysOffTheTable) {
   const Assignments start{"arm.q_start=[2.1031,1.5001,-1.0773,-2.8139,-2.1353,0.5257,-0.5922]",
                           "target.position=[0.2627,0.5386,0.4850]", "target.rpy_deg=[-62.40,12.60,15.59]",
                           "run.seed=1374156519"};
@@ -79,7 +79,7 @@ TEST(ElbowOverTheTable, StaysOffIt) {
 }
 
 // The disc's law ends along the workspace and at a joint's end.
-TEST(AlongTheWorkspace, ADiscIsLeftToTheJointsToo) {
+TEST(RandomStarts, DiscStuckAtTheWorkspaceEdgeIsReachedByJointMotion) {
   ExpectReached(RunShipped(
       "circle", kTable + Assignments{"arm.q_start=[-2.3956,1.2114,-1.8414,-0.1733,-0.1007,0.1571,-0.4550]",
                                      "target.position=[-0.1555,0.1822,0.3767]",
@@ -87,7 +87,7 @@ TEST(AlongTheWorkspace, ADiscIsLeftToTheJointsToo) {
 }
 
 // The posture's pull took the arm to a singular posture, whose limit shook it.
-TEST(IntoASingularity, NoWishLeads) {
+TEST(RandomStarts, PosturePullDoesNotLeadIntoASingularity) {
   ExpectReached(RunShipped(
       "square", kTable + Assignments{"arm.q_start=[-0.7687,0.4223,2.0693,-2.6271,0.3013,3.1874,-0.4641]",
                                      "target.position=[0.0267,0.8067,0.0744]",

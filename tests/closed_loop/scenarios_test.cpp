@@ -8,7 +8,7 @@ namespace {
 
 class StillBall : public testing::TestWithParam<const char*> {};
 
-TEST_P(StillBall, StandsAtItsGoal) {
+TEST_P(StillBall, ConvergesToTheGoal) {
   const sim::Summary s = RunShipped(GetParam());
   PrintResidual(s);
   EXPECT_TRUE(s.converged);
@@ -30,7 +30,7 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, StillBall,
                          });
 
 // Half a second without sight: the arm goes on by prediction and comes no later.
-TEST(OccludedBall, IsComeToByPrediction) {
+TEST(OccludedBall, IsReachedByPrediction) {
   const sim::Summary s = RunShipped("ball-occluded");
   PrintResidual(s);
   EXPECT_TRUE(s.converged);
@@ -43,7 +43,7 @@ TEST(OccludedBall, IsComeToByPrediction) {
 
 // Pushed by 0.06 Ns once the arm stands over it, the ball rolls 0.11 m and stops; it is lost for three frames
 // at most, while the filter learns that it has been moved.
-TEST(PushedBall, IsFollowedToWhereItStops) {
+TEST(PushedBall, IsTrackedUntilItStops) {
   sim::RunOptions options;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
   Eigen::Vector3d last = Eigen::Vector3d::Zero();
@@ -72,7 +72,7 @@ TEST(PushedBall, IsFollowedToWhereItStops) {
 }
 
 // Without its colour the ball is found by its roundness; so it is on a bench where nothing else is round.
-TEST(GrayBall, StandsAtItsGoal) {
+TEST(GrayBall, ConvergesToTheGoal) {
   const sim::Summary s = RunShipped("ball", {"vision.method=gray"});
   PrintResidual(s);
   EXPECT_TRUE(s.converged);
@@ -81,7 +81,7 @@ TEST(GrayBall, StandsAtItsGoal) {
   ExpectSound(s);
 }
 
-TEST(MovingBall, IsFollowedAndPredictionIsWhatDoesIt) {
+TEST(MovingBall, PredictionCutsTheTrackingErrorFivefold) {
   const sim::Summary with = RunShipped("ball-moving");
   const sim::Summary without = RunShipped("ball-moving", {"servo.predict=false"});
   PrintResidual(with);
@@ -135,7 +135,7 @@ TEST(RealPace, ConvergesAndReportsItsOverruns) {
 
 // By the computer's own clock, however late it wakes the loop: what is counted fits together, no limit is
 // passed.
-TEST(RealPace, AccountsForItsTicksByTheClock) {
+TEST(RealPace, TicksAndMissesMatchTheClock) {
   sim::RunOptions options;
   options.pace = sim::Pace::kReal;
   const sim::Summary s = RunShipped("ball", {"run.duration_s=1.5"}, options);

@@ -46,17 +46,17 @@ void ExpectCriticallyDamped(const sim::TheoryResult& t, double omega_n) {
 }
 
 // 16 kg, 16 N s/m, 4 N/m.
-TEST(Theory, OpenLoopIsCriticallyDampedAtHalfARadian) { ExpectCriticallyDamped(RunTheory("open-loop"), 0.5); }
-
-TEST(Theory, PdRegulatorHasTheStiffnessThatWasAskedFor) {
-  ExpectCriticallyDamped(RunTheory("pd-regulator"), 1.0);
+TEST(Theory, OpenLoopIsCriticallyDampedAtHalfARadianPerSecond) {
+  ExpectCriticallyDamped(RunTheory("open-loop"), 0.5);
 }
 
-TEST(Theory, PartitionLawHasItsPolesAgainstDryFriction) {
+TEST(Theory, PdRegulatorHasTheRequestedStiffness) { ExpectCriticallyDamped(RunTheory("pd-regulator"), 1.0); }
+
+TEST(Theory, PartitionLawKeepsItsPolesUnderDryFriction) {
   ExpectCriticallyDamped(RunTheory("trajectory-friction"), 1.0);
 }
 
-TEST(Theory, ReversalsAgainstDryFrictionLeaveMillimetres) {
+TEST(Theory, ReversalsUnderDryFrictionErrByMillimetresOnly) {
   const sim::TheoryResult t = RunTheory("trajectory-reversal");
   std::cout << "largest error at the turns: " << 1e3 * t.error_max << " mm\n";
   EXPECT_LT(t.error_max, 1.5e-3);
@@ -66,13 +66,13 @@ TEST(Theory, ReversalsAgainstDryFrictionLeaveMillimetres) {
   EXPECT_GT(bare.error_max, 0.2);
 }
 
-TEST(Theory, AConstantForceLeavesHalfAMetre) {
+TEST(Theory, ConstantForceWithoutIntegralLeavesHalfAMetreOfError) {
   const sim::TheoryResult t = RunTheory("disturbance");
   EXPECT_NEAR(t.run.e_ss, 0.5, kOnePercent * 0.5);
   ExpectCriticallyDamped(t, 1.0);
 }
 
-TEST(Theory, AnIntegralTakesItAway) {
+TEST(Theory, IntegralRemovesTheErrorOfAConstantForce) {
   const sim::TheoryResult t = RunTheory("disturbance-integral");
   EXPECT_LT(std::fabs(t.run.e_ss), 1e-6);
   ASSERT_EQ(t.analytic.poles.size(), 3U);
@@ -80,7 +80,7 @@ TEST(Theory, AnIntegralTakesItAway) {
   EXPECT_LT(t.residual_max, 3e-4);
 }
 
-TEST(Theory, LessThanStictionMovesNothing) {
+TEST(Theory, ForceBelowStictionMovesNothing) {
   const sim::TheoryResult t = RunTheory("disturbance-stiction");
   EXPECT_EQ(t.run.e_ss, 0.0);
   EXPECT_EQ(t.residual_max, 0.0);
@@ -90,7 +90,7 @@ TEST(Theory, LessThanStictionMovesNothing) {
   EXPECT_GT(std::fabs(moved.run.e_ss), 0.01);
 }
 
-TEST(Theory, OnlyAOneJointArmHasAnAnalyticAnswer) {
+TEST(Theory, TheoryForAMultiJointArmIsRefused) {
   EXPECT_THROW(RunShipped("ball", {"theory.enabled=true"}), std::runtime_error);
 }
 

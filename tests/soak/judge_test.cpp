@@ -26,14 +26,14 @@ std::vector<MemorySample> Day(const Grow& growth) {
   return samples;
 }
 
-TEST(MemoryJudgeTest, SeesALeakOfAHundredthOfAByteATick) {
+TEST(MemoryJudgeTest, DetectsALeakOfAHundredthOfAByteATick) {
   const Growth growth = JudgeMemory(Day([](double share) { return 0.01 * 86.4e6 * share; }), kMost);
   std::cout << "grew by " << growth.bytes / kKiB << " KiB\n";
   EXPECT_TRUE(growth.leaks);
   EXPECT_NEAR(growth.bytes, 0.9 * 0.01 * 86.4e6, 20.0 * kKiB);
 }
 
-TEST(MemoryJudgeTest, WarmUpAndScatterAreNone) {
+TEST(MemoryJudgeTest, WarmUpAndScatterAreNoLeak) {
   const auto warm_up = [](double share) { return 4e6 * std::min(1.0, share / 0.05); };
   const Growth growth = JudgeMemory(Day(warm_up), kMost);
   std::cout << "grew by " << growth.bytes / kKiB << " KiB\n";
@@ -55,7 +55,7 @@ Tenths Ten(int each, double by) {
   return tenths;
 }
 
-TEST(DriftJudgeTest, SeesAFigureThatMovesAndNotOneThatScatters) {
+TEST(DriftJudgeTest, DetectsADriftingFigureButNotAScatteringOne) {
   const Drift moves = JudgeDrift(Ten(300, 0.2), 0.02);
   const Drift scatters = JudgeDrift(Ten(300, 0.0), 0.02);
   std::cout << "moves: " << moves.sigmas << " sigma, scatters: " << scatters.sigmas << " sigma\n";
@@ -63,18 +63,18 @@ TEST(DriftJudgeTest, SeesAFigureThatMovesAndNotOneThatScatters) {
   EXPECT_FALSE(scatters.drifts);
 }
 
-TEST(DriftJudgeTest, WhatIsSurelyMovedBySoLittleIsNone) {
+TEST(DriftJudgeTest, SignificantButTinyShiftIsNoDrift) {
   EXPECT_TRUE(JudgeDrift(Ten(100'000, 0.01), 0.0).drifts);
   EXPECT_FALSE(JudgeDrift(Ten(100'000, 0.01), 0.02).drifts);
 }
 
-TEST(DriftJudgeTest, AFigureThatIsNoNumberDrifts) {
+TEST(DriftJudgeTest, NonFiniteFigureCountsAsDrift) {
   Tenths tenths = Ten(20, 0.0);
   tenths.back().Add(std::nan(""));
   EXPECT_TRUE(JudgeDrift(tenths, 0.02).drifts);
 }
 
-TEST(DriftJudgeTest, AFewValuesTellNothing) { EXPECT_FALSE(JudgeDrift(Ten(7, 100.0), 0.02).drifts); }
+TEST(DriftJudgeTest, TooFewValuesShowNoDrift) { EXPECT_FALSE(JudgeDrift(Ten(7, 100.0), 0.02).drifts); }
 
 TEST(SpreadTest, HasMeanAndDeviation) {
   Spread spread;

@@ -26,7 +26,7 @@ void Print(const SoakResult& result) {
 
 // The servo uses stamps for nothing but differences: with the clock 30 h before the end of its range, and
 // counters that pass 2^32, every torque is the same to the last bit.
-TEST(SoakTest, TwiceTheSameByAnyClock) {
+TEST(SoakTest, RunIsBitExactUnderALateClock) {
   const SoakResult early = RunSoak(Minutes(2.0));
   Print(early);
   EXPECT_THAT(early.failures, IsEmpty());
@@ -41,7 +41,7 @@ TEST(SoakTest, TwiceTheSameByAnyClock) {
   EXPECT_EQ(late.digest, early.digest);
 }
 
-TEST(SoakTest, AnotherSeedIsAnotherRun) {
+TEST(SoakTest, AnotherSeedGivesAnotherRun) {
   SoakOptions options = Minutes(0.5);
   options.passes = 1;
   const SoakResult one = RunSoak(options);
@@ -49,13 +49,13 @@ TEST(SoakTest, AnotherSeedIsAnotherRun) {
   EXPECT_NE(RunSoak(options).digest, one.digest);
 }
 
-TEST(SoakTest, AFlatTargetToo) {
+TEST(SoakTest, FlatTargetRunHasNoFailures) {
   const SoakResult result = RunSoak(Minutes(1.0, "square"));
   Print(result);
   EXPECT_THAT(result.failures, IsEmpty());
 }
 
-TEST(SoakTest, WithTheCamera) {
+TEST(SoakTest, CameraRunHasNoFailures) {
   SoakOptions options = Minutes(0.5);
   options.camera = true;
   const SoakResult result = RunSoak(options);

@@ -35,7 +35,7 @@ std::vector<std::vector<double>> ExponentialBlocks(int blocks, int size, double 
   return list;
 }
 
-TEST(BenchStatistics, PercentilesOfAnExponential) {
+TEST(BenchStatistics, PercentilesMatchAnExponential) {
   const std::vector<double> values = ExponentialGrid(1'000'000);
   for (const double p : {0.5, 0.99, 0.999, 0.9999}) {
     const double exact = -std::log(1.0 - p);
@@ -52,7 +52,7 @@ TEST(BenchStatistics, EveryRoundCallsWithEveryCaseOnce) {
   EXPECT_EQ(calls, std::vector<int>(7, 5));
 }
 
-TEST(BenchStatistics, ADurationIsOfOneCase) {
+TEST(BenchStatistics, MeanDurationIsPerCase) {
   const std::vector<int> cases(2);
   const double ns = MeanNs(cases, [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
   EXPECT_GE(ns, 1e6);
@@ -60,7 +60,7 @@ TEST(BenchStatistics, ADurationIsOfOneCase) {
 
 // The deviation of an exponential's sample percentile p is sqrt(p / (1 - p) / n), of its logarithm that over
 // the percentile; two of them are as independent as their samples.
-TEST(BenchStatistics, IntervalIsAsWideAsTheoryHasIt) {
+TEST(BenchStatistics, IntervalWidthMatchesTheory) {
   constexpr int kBlocks = 200;
   constexpr int kSize = 100;
   constexpr double p = 0.9;
@@ -95,14 +95,14 @@ TEST(BenchStatistics, DisturbedPairsCancel) {
   EXPECT_EQ(same.high, 1.0);
 }
 
-TEST(BenchStatistics, RatioOfNothing) {
+TEST(BenchStatistics, RatioOfEmptySamplesIsZero) {
   EXPECT_EQ(RatioOfPercentiles({}, {{1.0}}, 0.5).value, 0.0);
   EXPECT_EQ(RatioOfPercentiles({{1.0}}, {{0.0}}, 0.5).value, 0.0);
   // A block without a partner does not count.
   EXPECT_EQ(RatioOfPercentiles({{4.0}, {100.0}}, {{2.0}}, 0.5).value, 2.0);
 }
 
-TEST(BenchStatistics, HistogramHoldsAllOnce) {
+TEST(BenchStatistics, HistogramCountsEveryValueOnce) {
   const std::vector<double> values{0.3, 1.0, 1.1, 7.9, 8.0, 1000.0};
   const LogHistogram histogram = CountByLog(values);
   std::int64_t sum = 0;
@@ -120,7 +120,7 @@ TEST(BenchStatistics, HistogramHoldsAllOnce) {
   EXPECT_TRUE(CountByLog({}).bins.empty());
 }
 
-TEST(BenchStatistics, ReadsWhatCyclictestWrites) {
+TEST(BenchStatistics, ReadsTheOutputOfCyclictest) {
   const auto us = ReadCyclictest(
       R"({"num_threads": 1, "thread": {"0": {"histogram": {"18": 2, "111": 1}, "cycles": 3, "min": 18}}})");
   ASSERT_TRUE(us.has_value());

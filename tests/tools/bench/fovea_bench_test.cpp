@@ -40,7 +40,7 @@ std::set<std::string> NamesOf(const test::ProgramResult& run) {
   return names;
 }
 
-TEST(FoveaBench, TickHasItsFigures) {
+TEST(FoveaBench, TickReportsEveryFigure) {
   const std::set<std::string> names = NamesOf(Bench({"tick", "--runs", "1", "--json"}));
   for (const char* name : {"model_ns", "model_kdl_ns", "visual_law_ns", "tick_ns_p50", "tick_cold_ns_p50",
                            "tick_random_ns_max", "tick_commanded_ns_p50", "tick_boot_ns_p50",
@@ -51,7 +51,7 @@ TEST(FoveaBench, TickHasItsFigures) {
 }
 
 // It fails when the twists of both differ.
-TEST(FoveaBench, TheLawIsVispsAndBothAreTimed) {
+TEST(FoveaBench, LawMatchesVispAndBothAreTimed) {
   const std::set<std::string> names = NamesOf(test::RunProgram({FOVEA_BENCH_VISP_PROGRAM, "--json"}));
   EXPECT_EQ(names, (std::set<std::string>{"fovea_law_ns", "visp_steps_ns", "visp_control_law_ns",
                                           "visp_steps_ratio", "visp_control_law_ratio"}));
@@ -63,7 +63,7 @@ std::string TextOf(const std::filesystem::path& file) {
   return text.str();
 }
 
-TEST(FoveaBench, JitterHasItsFigures) {
+TEST(FoveaBench, JitterReportsEveryFigure) {
   const test::TempFolder folder;
   const test::ProgramResult run =
       Bench({"jitter", "--seconds", "1", "--policy", "other", "--out", folder.path() / "j", "--json"});
@@ -101,7 +101,7 @@ TEST(FoveaBench, JitterHopsAddUp) {
   EXPECT_GE(value["hop_exposure_us_min"] + value["hop_arrival_us_min"], 5500.0);  // the camera's own
 }
 
-TEST(FoveaBench, JitterPageNeedsNothingElse) {
+TEST(FoveaBench, JitterPageIsSelfContained) {
   const test::TempFolder folder;
   const std::string trace = folder.path() / "trace.json";
   const test::ProgramResult run =
@@ -133,7 +133,7 @@ TEST(FoveaBench, JitterPageNeedsNothingElse) {
   }
 }
 
-TEST(FoveaBench, CompareTellsMoreFromLess) {
+TEST(FoveaBench, CompareFailsOnlyAboveTheAllowedRatio) {
   const test::TempFolder folder;
   const auto write = [&](const char* name, double a) {
     const std::string file = folder.path() / name;
@@ -155,7 +155,7 @@ TEST(FoveaBench, CompareTellsMoreFromLess) {
 }
 
 // With all that is shipped but the simulator, each of those that run it says so before it writes anything.
-TEST(FoveaBench, WhatNeedsTheSimulatorSaysWhereItIsNot) {
+TEST(FoveaBench, CommandWithoutTheSimulatorNamesTheMissingProgram) {
   const test::TempFolder folder;
   const std::filesystem::path bin = folder.path() / "bin";
   std::filesystem::create_directories(bin);
@@ -182,7 +182,7 @@ TEST(FoveaBench, WhatNeedsTheSimulatorSaysWhereItIsNot) {
   }
 }
 
-TEST(FoveaBench, RefusesWhatItDoesNotKnow) {
+TEST(FoveaBench, RefusesUnknownCommandsAndOptions) {
   EXPECT_EQ(Bench({"nix"}).exit_code, 2);
   EXPECT_EQ(Bench({"jitter", "--load", "nix"}).exit_code, 2);
   const test::ProgramResult run = Bench({"tick", "--robot", "nix"});

@@ -44,7 +44,7 @@ Linker script and memory map
  .debug_info    0x00000000     0x4000 lib/libfovea_servo.a(servo_task.cpp.obj)
 )";
 
-TEST(LinkMap, AddsUpByModule) {
+TEST(LinkMap, SizesAddUpByModule) {
   const test::TempFolder folder;
   const auto file = folder.path() / "image.map";
   std::ofstream(file) << kMap;
@@ -61,7 +61,7 @@ TEST(LinkMap, AddsUpByModule) {
   EXPECT_EQ(map.modules.at("stacks").ram, 0x100U);
 }
 
-TEST(LinkMap, RefusesWhatIsNone) {
+TEST(LinkMap, MissingMapFileIsRefused) {
   const test::TempFolder folder;
   EXPECT_THROW(ReadLinkMap(folder.path() / "none.map"), std::runtime_error);
 }

@@ -27,7 +27,7 @@ bool IsInOne(const Vec3& p_B, double clear) {
 }
 
 // Of the simulator's bench, within the table.
-TEST(AtlasBenchTest, AllThatStandsOnTheTableIsKnown) {
+TEST(AtlasBenchTest, EveryObjectOnTheTableIsInTheAtlas) {
   constexpr double kSlack = 0.002;
   int high = 0;
   for (const sim::Mesh& thing : sim::MakeBench(false).things) {
@@ -43,7 +43,7 @@ TEST(AtlasBenchTest, AllThatStandsOnTheTableIsKnown) {
   EXPECT_GT(high, 100);
 }
 
-TEST(AtlasBenchTest, ASegmentMeetsAThingWhereAPointOfItIsInside) {
+TEST(AtlasBenchTest, SegmentMeetsAnObjectThatHoldsOneOfItsPoints) {
   test::RandomStates random(91);
   int met = 0;
   for (int k = 0; k < 2000; ++k) {

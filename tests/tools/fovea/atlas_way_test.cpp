@@ -28,7 +28,7 @@ WayProblem Wall(double gap) {
   return problem;
 }
 
-TEST(AtlasWayTest, IsFoundThroughAGapAndNotThroughAWall) {
+TEST(AtlasWayTest, PathIsFoundThroughAGapAndNotThroughAWall) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     EXPECT_TRUE(WayExists(Wall(0.5), At(-1.0, -2.0), {At(1.0, -2.0)}, seed)) << seed;
   }
@@ -39,7 +39,7 @@ TEST(AtlasWayTest, IsFoundThroughAGapAndNotThroughAWall) {
 }
 
 // Along a curve that random postures never meet: only by being pulled onto it.
-TEST(AtlasWayTest, PosturesThatArePulledStayWhereTheyAreAllowed) {
+TEST(AtlasWayTest, PulledPosturesStayOnTheAllowedCurve) {
   WayProblem problem = Wall(0.5);
   problem.is_allowed = [](const VecN& q) { return std::fabs(q[1] - std::sin(q[0])) < 1e-6; };
   problem.draws = 500;
@@ -50,7 +50,7 @@ TEST(AtlasWayTest, PosturesThatArePulledStayWhereTheyAreAllowed) {
   EXPECT_TRUE(WayExists(problem, start, {goal}, 1));
 }
 
-TEST(AtlasWayTest, ThereIsNoneFromOrToWhatIsNotAllowed) {
+TEST(AtlasWayTest, NoPathFromOrToAForbiddenPosture) {
   EXPECT_FALSE(WayExists(Wall(0.5), At(0.0, 0.0), {At(1.0, 0.0)}, 1));
   EXPECT_FALSE(WayExists(Wall(0.5), At(1.0, 0.0), {At(0.0, 0.0)}, 1));
   EXPECT_FALSE(WayExists(Wall(0.5), At(1.0, 0.0), {}, 1));

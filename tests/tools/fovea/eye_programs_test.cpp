@@ -48,7 +48,7 @@ class EyeProgramsTest : public testing::Test {
   test::TempFolder folder_;
 };
 
-TEST_F(EyeProgramsTest, DetectSaysWhatIsInEachImage) {
+TEST_F(EyeProgramsTest, DetectReportsEachImage) {
   const std::string disc = Disc("a.png", 0.4);
   Write("b.png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(0)));
   Write("c.png", cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(255)));
@@ -75,7 +75,7 @@ TEST_F(EyeProgramsTest, DetectSaysWhatIsInEachImage) {
   }
 }
 
-TEST_F(EyeProgramsTest, DetectRefusesWhatItCannotRead) {
+TEST_F(EyeProgramsTest, DetectRefusesAnUnreadableImage) {
   ExpectRefused(Fovea({"detect", "--target", "circle", "nowhere.png"}), "nowhere.png: no such file");
   ExpectRefused(Fovea({"detect", "--target", "circle", folder_.path().string()}), "no images");
   const std::string text = folder_.path() / "text.png";

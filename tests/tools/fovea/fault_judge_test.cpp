@@ -59,7 +59,7 @@ class FaultJudge : public testing::Test {
   json without_ = Summary("nothing");
 };
 
-TEST_F(FaultJudge, WhatNothingNoticedIsRiddenOut) {
+TEST_F(FaultJudge, UndetectedFaultWithoutEffectCountsAsRecovered) {
   const Outcome o = Judged();
   EXPECT_EQ(o.noticed_by, "");
   EXPECT_FALSE(o.ticks.has_value());
@@ -69,7 +69,7 @@ TEST_F(FaultJudge, WhatNothingNoticedIsRiddenOut) {
   EXPECT_FALSE(o.Failed());
 }
 
-TEST_F(FaultJudge, TheFirstThatNoticedIsSaidAndWhatCameOfIt) {
+TEST_F(FaultJudge, ReportsTheFirstDetectionAndTheOutcome) {
   noticed()["measurement_left_out"] = 2.04;
   Mode(2.19, "coast");
   Mode(2.7, "track");
@@ -82,7 +82,7 @@ TEST_F(FaultJudge, TheFirstThatNoticedIsSaidAndWhatCameOfIt) {
   EXPECT_NEAR(*o.recovered_after_s, 1.25, 1e-12);
 }
 
-TEST_F(FaultJudge, WhatHappensWithoutTheFaultTooIsNoNotice) {
+TEST_F(FaultJudge, EventAlsoWithoutTheFaultIsNoDetection) {
   for (json* summary : {&run_, &without_}) {
     (*summary)["injected"][0]["noticed"]["limit_joint_jerk"] = 2.1;
     (*summary)["injected"][0]["noticed"]["target_not_found"] = 2.0;
@@ -96,7 +96,7 @@ TEST_F(FaultJudge, WhatHappensWithoutTheFaultTooIsNoNotice) {
   EXPECT_EQ(Judged().noticed_by, "state_missing");
 }
 
-TEST_F(FaultJudge, AModeThatGoesOnIsANotice) {
+TEST_F(FaultJudge, ProlongedModeIsADetection) {
   noticed() = {{"mode_boot", 2.0}, {"mode_hold", 2.6}};
   without_["injected"][0]["noticed"] = {{"mode_boot", 2.0}, {"mode_hold", 2.01}};
   EXPECT_EQ(Judged().noticed_by, "boot goes on");
@@ -110,7 +110,7 @@ TEST_F(FaultJudge, AModeThatGoesOnIsANotice) {
   EXPECT_EQ(Judged().noticed_by, "");
 }
 
-TEST_F(FaultJudge, ASafeStopIsBrakedAndAtRest) {
+TEST_F(FaultJudge, SafeStopNeedsBrakesAndRest) {
   noticed()["fault_arm_lost"] = 2.019;
   Mode(2.019, "fault");
   end()["brakes"] = true;
@@ -131,7 +131,7 @@ TEST_F(FaultJudge, ASafeStopIsBrakedAndAtRest) {
   EXPECT_FALSE(Judged().is_on_its_way) << "it was to be at rest by now";
 }
 
-TEST_F(FaultJudge, HeldIsInHoldAndAtRest) {
+TEST_F(FaultJudge, HeldNeedsHoldAndRest) {
   Mode(2.6, "hold", "target_lost");
   end()["goal_kept_since_s"] = nullptr;
   end()["at_rest_since_s"] = 2.9;
@@ -141,7 +141,7 @@ TEST_F(FaultJudge, HeldIsInHoldAndAtRest) {
   EXPECT_EQ(Judged().end, End::kUndefined);
 }
 
-TEST_F(FaultJudge, AllElseIsUndefined) {
+TEST_F(FaultJudge, EveryOtherEndIsUndefined) {
   end()["goal_kept_since_s"] = nullptr;  // it tracks, and misses
   EXPECT_EQ(Judged().end, End::kUndefined);
   EXPECT_TRUE(Judged().Failed());
@@ -161,7 +161,7 @@ TEST_F(FaultJudge, AllElseIsUndefined) {
   EXPECT_EQ(Judged().end, End::kUndefined);
 }
 
-TEST_F(FaultJudge, EachOfTheArmsLimitsCanBeExceeded) {
+TEST_F(FaultJudge, ExceedingAnyArmLimitFails) {
   for (const std::string& limit : PhysicalLimits()) {
     run_ = Summary("freeze");
     run_["limits"][limit] = 1.0 + 1e-10;
@@ -176,7 +176,7 @@ TEST_F(FaultJudge, EachOfTheArmsLimitsCanBeExceeded) {
 }
 
 // The servo's own barriers, and whatever is touched.
-TEST_F(FaultJudge, WhateverIsPassedByTheTruthFails) {
+TEST_F(FaultJudge, AnyViolationByTheTruthFails) {
   for (const char* name : {"workspace", "hand.planes[0]", "hand.boxes[1]", "cartesian_speed",
                            "true_joint_acceleration", "contact_bench", "contact_target", "contact_self"}) {
     run_ = Summary("freeze");
@@ -189,7 +189,7 @@ TEST_F(FaultJudge, WhateverIsPassedByTheTruthFails) {
   EXPECT_THAT(Judged().exceeded, ElementsAre("joint_velocity")) << "once";
 }
 
-TEST_F(FaultJudge, AMotionThatGoesOnWithAFaultThatNeverEndsIsNoUndefinedState) {
+TEST_F(FaultJudge, MotionUnderAPermanentFaultIsNotUndefined) {
   end()["mode"] = "move";
   end()["goal_kept_since_s"] = nullptr;
   run_["path_error_mm_max"] = 1.8;
@@ -202,7 +202,7 @@ TEST_F(FaultJudge, AMotionThatGoesOnWithAFaultThatNeverEndsIsNoUndefinedState) {
   EXPECT_EQ(Judged().end, End::kUndefined) << "it follows no way";
 }
 
-TEST_F(FaultJudge, AnArmThatMovesWhereItShouldStandFails) {
+TEST_F(FaultJudge, MotionWhereTheArmShouldStandFails) {
   for (const StandBound& bound : kStandBounds) {
     json& motion = run_["unwanted_motion"][bound.mode];
     motion = {{"most_mm", 300.0},
@@ -221,7 +221,7 @@ TEST_F(FaultJudge, AnArmThatMovesWhereItShouldStandFails) {
   }
 }
 
-TEST_F(FaultJudge, WhatIsNoSuchSummaryIsRefused) {
+TEST_F(FaultJudge, IncompleteOrMismatchedSummaryIsRefused) {
   EXPECT_THROW((void)Judge("glare", run_, without_, kept_s_), std::runtime_error);
   EXPECT_THROW((void)Judge("freeze", run_, run_, kept_s_), std::runtime_error);
   without_["injected"][0]["from_s"] = 1.0;
@@ -234,7 +234,7 @@ TEST_F(FaultJudge, WhatIsNoSuchSummaryIsRefused) {
   EXPECT_THROW((void)Judged(), std::runtime_error);
 }
 
-TEST(FaultTable, HasItsFaultsAndNoCellTwice) {
+TEST(FaultTable, ListsEveryFaultAndNoCellTwice) {
   std::vector<std::string> ids;
   for (const Fault& fault : Faults()) {
     ids.emplace_back(fault.id);
@@ -255,7 +255,7 @@ TEST(FaultTable, HasItsFaultsAndNoCellTwice) {
                                          "clock_jump", "load", "load_from_start", "gravity"));
 }
 
-TEST(FaultStages, WhatIsThereFromTheStartBeginsWithTheFirstTick) {
+TEST(FaultStages, FaultFromTheStartBeginsWithTheFirstTick) {
   const RunMode& mode = RunModes()[0];
   const Fault& load = FaultOf("load_from_start");
   for (const Stage stage : kStages) {
@@ -267,7 +267,7 @@ TEST(FaultStages, WhatIsThereFromTheStartBeginsWithTheFirstTick) {
       << "it has a run of its own beside it";
 }
 
-TEST(FaultStages, AreReadOffAnUndisturbedRun) {
+TEST(FaultStages, StageTimesComeFromAnUndisturbedRun) {
   json summary = Summary("nothing");
   const RunMode& mode = RunModes()[0];
   const StageTimes times = TimesOf(mode, summary);

@@ -35,7 +35,7 @@ class FaultMatrixTest : public testing::Test {
 
 // An arm that is silent for 0.1 s, at each stage of its way home. The page's row is what it says today; renew
 // the page with `fovea atlas --faults --markdown` where the servo was meant to change.
-TEST_F(FaultMatrixTest, ARowOfThePageIsWhatTheCommandSays) {
+TEST_F(FaultMatrixTest, PageRowMatchesTheCommandOutput) {
   std::vector<std::string> only{"--markdown"};
   for (const char* stage : {"boot", "approach", "tracking", "fault"}) {
     only.insert(only.end(), {"--only", std::string("home.") + stage + ".packet_loss.severe"});
@@ -59,7 +59,7 @@ TEST_F(FaultMatrixTest, ARowOfThePageIsWhatTheCommandSays) {
   }
 }
 
-TEST_F(FaultMatrixTest, RefusesInOneLine) {
+TEST_F(FaultMatrixTest, RefusesBadOptionsInOneLine) {
   const test::ProgramResult none = Faults({"--only", "ball.lunch"});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.err, HasSubstr("--only leaves no cell"));

@@ -43,7 +43,7 @@ bool Has(const Json& list, const std::string& words) {
   return std::find(list.begin(), list.end(), words) != list.end();
 }
 
-TEST(FeaturesProgramTest, ASphereLeavesItsThreeTurnsFree) {
+TEST(FeaturesProgramTest, SphereLeavesThreeRotationsFree) {
   const Json json = Study({"--target", "sphere", "--pose", "0.05,0.02,0.5,1,0,0,0"});
   ExpectFree(json, 3);
   EXPECT_TRUE(Has(json["free"], "turn about the line of sight"));
@@ -53,7 +53,7 @@ TEST(FeaturesProgramTest, ASphereLeavesItsThreeTurnsFree) {
   ExpectFree(Study({"--target", "sphere", "--hold-orientation"}), 0);
 }
 
-TEST(FeaturesProgramTest, TheSquareBySourceAndByItsCorners) {
+TEST(FeaturesProgramTest, SquareSideControlsFourAndCornersControlSix) {
   const Json side = Study({"--target", "square", "--feature", "side", "--focal", "500"});
   ExpectFree(side, 2);
   EXPECT_NEAR(side["s_px"][3].get<double>(), 500 * 0.1 / 0.4, 1e-9);
@@ -64,7 +64,7 @@ TEST(FeaturesProgramTest, TheSquareBySourceAndByItsCorners) {
 }
 
 // The source's claim about the equilateral triangle, corrected, and where the rank is lost in truth.
-TEST(FeaturesProgramTest, TheTrianglesRankOnAndOffItsCylinder) {
+TEST(FeaturesProgramTest, TriangleLosesRankOnlyOnItsCylinder) {
   const std::string equilateral = "0,-0.06,0.0519615242270663,0.03,-0.0519615242270663,0.03";
   // Alike to the eye, and no good for a detector, which is why a scenario refuses it.
   const test::ProgramResult refused =
@@ -101,7 +101,7 @@ TEST(FeaturesProgramTest, TheTrianglesRankOnAndOffItsCylinder) {
   EXPECT_EQ(row("square, corners")["scatter_per_level"].size(), 8U);
 }
 
-TEST(FeaturesProgramTest, TheSweepShowsTheCylinder) {
+TEST(FeaturesProgramTest, SweepShowsTheSingularCylinder) {
   const Json sweep = Study({"--target", "triangle", "--feature", "corners", "--sweep", "--span", "0.1"});
   double best = 1e300;
   double worst = 0.0;
@@ -121,7 +121,7 @@ TEST(FeaturesProgramTest, TheSweepShowsTheCylinder) {
   EXPECT_EQ(std::count(drawn.out.begin(), drawn.out.end(), '\n'), 33);
 }
 
-TEST(FeaturesProgramTest, RefusesInOneLine) {
+TEST(FeaturesProgramTest, RefusesBadOptionsInOneLine) {
   const auto refused = [](const std::vector<std::string>& arguments, const std::string& says) {
     const test::ProgramResult result = Features(arguments);
     EXPECT_EQ(result.exit_code, 2);

@@ -56,7 +56,7 @@ class AtlasTest : public testing::Test {
   const test::TempFolder folder_;
 };
 
-TEST_F(AtlasTest, IsTheSameHoweverManyJobsRunAndAfterAKill) {
+TEST_F(AtlasTest, ResultIsTheSameForAnyJobCountAndAfterAKill) {
   const test::ProgramResult one = Atlas("one", {"--runs", "3", "-j", "1"});
   ASSERT_EQ(one.exit_code, 1) << one.err;  // runs this short fail
   const json figures = json::parse(one.out);
@@ -110,7 +110,7 @@ TEST_F(AtlasTest, IsTheSameHoweverManyJobsRunAndAfterAKill) {
 }
 
 // The command beside a failure repeats it: to the last bit of its log.
-TEST_F(AtlasTest, CommandsRepeatTheirRuns) {
+TEST_F(AtlasTest, FailureCommandRepeatsItsRunBitExact) {
   const test::ProgramResult atlas = Atlas("atlas", {"--runs", "1"});
   const std::string command = json::parse(atlas.out)["failures"][0]["command"];
   ASSERT_EQ(command.rfind("fovea-sim ", 0), 0U) << command;
@@ -123,7 +123,7 @@ TEST_F(AtlasTest, CommandsRepeatTheirRuns) {
 }
 
 // The refusals of starts that are drawn alone are those of the runs from them.
-TEST_F(AtlasTest, DrawsTheStartsAlone) {
+TEST_F(AtlasTest, DrawsStartsWithoutRunningThem) {
   const json runs = json::parse(Atlas("runs", {"--runs", "2"}).out);
   const test::ProgramResult draws = Atlas("draws", {"--runs", "2", "--draw-only"});
   ASSERT_EQ(draws.exit_code, 0) << draws.err;
@@ -132,7 +132,7 @@ TEST_F(AtlasTest, DrawsTheStartsAlone) {
   EXPECT_FALSE(fs::exists(folder_.path() / "draws")) << "nothing is run";
 }
 
-TEST_F(AtlasTest, RefusesInOneLine) {
+TEST_F(AtlasTest, RefusesBadOptionsInOneLine) {
   ExpectRefused({"--set", "target.kind=circle"}, "the atlas sets target. itself");
   ExpectRefused({"--runs", "1", "--set", "servo.lamda=3"}, "did you mean servo.lambda");
   fs::create_directories(folder_.path() / "refused");
@@ -148,7 +148,7 @@ TEST_F(AtlasTest, RefusesInOneLine) {
 }
 
 // Each bound is the rate from which what was seen is 1.96 deviations off.
-TEST(AtlasFigures, WilsonsIntervalIsWhatItSays) {
+TEST(AtlasFigures, WilsonIntervalMatchesItsDefinition) {
   for (const auto& [converged, runs] : {std::pair{198, 200}, {20, 24}, {1, 3}}) {
     const std::array<double, 2> bounds = atlas::Wilson95(converged, runs);
     const double seen = static_cast<double>(converged) / runs;
@@ -163,14 +163,14 @@ TEST(AtlasFigures, WilsonsIntervalIsWhatItSays) {
 }
 
 // A start is refused for what nothing could be done about, never for being hard.
-TEST(AtlasSampler, RefusesForGeometryAndForWantOfAWayAlone) {
+TEST(AtlasSampler, RefusesStartsOnlyForGeometryOrAMissingPath) {
   EXPECT_THAT(atlas::kRejectionNames,
               testing::ElementsAreArray({"start_outside_barrier", "start_below_table", "target_near_edge",
                                          "target_below_table", "arm_in_the_way", "thing_in_the_way",
                                          "no_goal_posture", "no_way"}));
 }
 
-TEST(AtlasFigures, TheGoalIsOneMissInAThousand) {
+TEST(AtlasFigures, GoalAllowsOneMissInAThousand) {
   atlas::Figures figures;
   figures.runs = 1000;
   figures.converged = 999;
@@ -183,7 +183,7 @@ TEST(AtlasFigures, TheGoalIsOneMissInAThousand) {
 }
 
 // The page, the table and the JSON of every target tell what was refused, and over which seed.
-TEST(AtlasFigures, RefusalsAndSeedAreTold) {
+TEST(AtlasFigures, RefusalsAndSeedAreReported) {
   atlas::Figures figures;
   figures.heading = {"circle", 7, {}, "0123456789abcdef"};
   figures.runs = 10;
@@ -205,7 +205,7 @@ TEST(AtlasFigures, RefusalsAndSeedAreTold) {
   EXPECT_THAT(page, HasSubstr("tuning seed 7"));
 }
 
-TEST(AtlasSeed, EachServoIsJudgedByStartsThatAreNew) {
+TEST(AtlasSeed, EachServoHashHasItsOwnJudgingSeed) {
   const std::string hash = "0123456789abcdef";
   EXPECT_EQ(atlas::JudgingSeed(hash), 1000 + 0x0123456);
   EXPECT_NE(atlas::JudgingSeed("0123457789abcdef"), atlas::JudgingSeed(hash));
@@ -216,7 +216,7 @@ TEST(AtlasSeed, EachServoIsJudgedByStartsThatAreNew) {
   EXPECT_STREQ(atlas::KindOfSeed(1000 + 0x0123456, hash), "judging");
 }
 
-TEST(AtlasRows, ARunOfAnotherCameraIsNone) {
+TEST(AtlasRows, RunOfAnotherCameraIsRefused) {
   atlas::Start start;
   start.error_px = 100.0;
   json summary{{"converged", true},        {"verdict", ""},
@@ -230,9 +230,9 @@ TEST(AtlasRows, ARunOfAnotherCameraIsNone) {
   EXPECT_THROW(atlas::MakeRow(3, start, summary), std::runtime_error);
 }
 
-class Starts : public testing::TestWithParam<const char*> {};
+class AtlasStarts : public testing::TestWithParam<const char*> {};
 
-TEST_P(Starts, AreWhatTheyAreSaidToBe) {
+TEST_P(AtlasStarts, DrawnStartsMatchTheirDescription) {
   config::TargetSettings settings;
   settings.kind = GetParam();
   const model::ArmModel& arm = test::Panda().model;
@@ -268,7 +268,7 @@ TEST_P(Starts, AreWhatTheyAreSaidToBe) {
   EXPECT_GE(least_rad, 5.0 * kRadPerDeg);
   EXPECT_LE(most_radius, 0.848);
 }
-INSTANTIATE_TEST_SUITE_P(Targets, Starts, testing::Values("sphere", "circle", "square", "triangle"),
+INSTANTIATE_TEST_SUITE_P(Targets, AtlasStarts, testing::Values("sphere", "circle", "square", "triangle"),
                          [](const auto& kind) { return std::string(kind.param); });
 
 }  // namespace

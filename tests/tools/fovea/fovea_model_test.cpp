@@ -24,7 +24,7 @@ test::ProgramResult Model(std::vector<std::string> arguments) {
   return test::RunProgram(arguments);
 }
 
-TEST(FoveaModel, TorqueIsMassTimesAccelerationPlusTheRest) {
+TEST(FoveaModel, TorqueEqualsMassTimesAccelerationPlusBias) {
   const test::ProgramResult run =
       Model({"panda", "--json", "--at", "0.1,-0.5,0.2,-2,0.3,1.7,0.4,1,-1,0.5,2,-2,1,3,5,-5,4,3,2,1,-1"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -49,7 +49,7 @@ TEST(FoveaModel, TorqueIsMassTimesAccelerationPlusTheRest) {
   EXPECT_LT(worst, 5e-14);
 }
 
-TEST(FoveaModel, TheReadyPostureAtRestWhenNothingIsSaid) {
+TEST(FoveaModel, DefaultStateIsTheReadyPostureAtRest) {
   const test::ProgramResult run = Model({"panda"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("p = (0.3069, 0.0000, 0.5903) m"));
@@ -57,7 +57,7 @@ TEST(FoveaModel, TheReadyPostureAtRestWhenNothingIsSaid) {
   EXPECT_THAT(run.out, testing::Not(HasSubstr("BAD")));
 }
 
-TEST(FoveaModel, RefusesWhatItCannotRead) {
+TEST(FoveaModel, RefusesUnknownArmsAndBadNumbers) {
   EXPECT_THAT(Model({"nix"}).err, HasSubstr("\"nix\": no shipped arm of that name"));
   EXPECT_EQ(Model({"nix"}).exit_code, 2);
   EXPECT_THAT(Model({"panda", "--at", "1,2"}).err, HasSubstr("--at has 2 numbers: 7, 14 or 21 are allowed"));
@@ -91,7 +91,7 @@ void ExpectSame(const model::ArmModel& emitted, const model::ArmModel& read) {
   EXPECT_EQ(emitted.g_B, read.g_B);
 }
 
-TEST(FoveaModel, TheEmittedModelIsTheArmToTheLastBit) {
+TEST(FoveaModel, EmittedModelEqualsTheArmBitExact) {
   const auto read = [](const char* name) {
     return robots::LoadRobot(test::RobotsFolder() + "/" + name + ".toml").model;
   };

@@ -66,7 +66,7 @@ class FoveaProgramTest : public testing::Test {
   const test::TempFolder folder_;
 };
 
-TEST_F(FoveaProgramTest, PutsTheReportBesideTheLog) {
+TEST_F(FoveaProgramTest, ReportIsWrittenBesideTheLog) {
   const fs::path run = MakeRun("swing");
   for (const fs::path& given : {run, run / "log.mcap"}) {
     fs::remove(run / "report.html");
@@ -77,7 +77,7 @@ TEST_F(FoveaProgramTest, PutsTheReportBesideTheLog) {
   }
 }
 
-TEST_F(FoveaProgramTest, LaysTwoRunsBesideEachOther) {
+TEST_F(FoveaProgramTest, ReportComparesTwoRuns) {
   const fs::path out = folder_.path() / "both.html";
   const test::ProgramResult result =
       Fovea({"report", MakeRun("one").string(), MakeRun("two").string(), "--out", out.string()});
@@ -87,7 +87,7 @@ TEST_F(FoveaProgramTest, LaysTwoRunsBesideEachOther) {
   EXPECT_NE(page.find("<title>one and two"), std::string::npos);
 }
 
-TEST_F(FoveaProgramTest, SaysWhatIsNoLog) {
+TEST_F(FoveaProgramTest, ReportRefusesAFileThatIsNoLog) {
   ExpectRefused(Fovea({"report", "nothing.mcap"}), "nothing.mcap: no such file");
   ExpectRefused(Fovea({"report", folder_.path().string()}), "log.mcap: no such file");
   const fs::path text = folder_.path() / "text.mcap";
@@ -95,13 +95,13 @@ TEST_F(FoveaProgramTest, SaysWhatIsNoLog) {
   ExpectRefused(Fovea({"report", text.string()}), "text.mcap: not an MCAP file");
 }
 
-TEST_F(FoveaProgramTest, SaysWhereItCannotWrite) {
+TEST_F(FoveaProgramTest, ReportRefusesAnUnwritablePath) {
   const test::ProgramResult result =
       Fovea({"report", MakeRun("swing").string(), "--out", "/nowhere/report.html"});
   ExpectRefused(result, "/nowhere/report.html: cannot be written");
 }
 
-TEST_F(FoveaProgramTest, DesignsTheGainsOfTheExercise) {
+TEST_F(FoveaProgramTest, GainsOfTheExerciseMatchTheKnownValues) {
   const test::ProgramResult result = Gains();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   for (const char* says : {"zeta 1, omega_n 0.5 rad/s", "-0.5, -0.5 1/s", "k_p 12 N/m, k_v 16 N s/m",
@@ -160,7 +160,7 @@ TEST_F(FoveaProgramTest, GainsAsJsonHaveStableNames) {
   EXPECT_TRUE(json["notes"].empty());
 }
 
-TEST_F(FoveaProgramTest, GainsSayWhatIsUnusual) {
+TEST_F(FoveaProgramTest, GainsReportUnstableNegativeAndUndampedLoops) {
   const test::ProgramResult unstable = Gains({"--delay-ms", "1900"});
   EXPECT_EQ(unstable.exit_code, 1) << "the goal is missed";
   EXPECT_NE(unstable.out.find("UNSTABLE"), std::string::npos);
@@ -179,7 +179,7 @@ TEST_F(FoveaProgramTest, GainsSayWhatIsUnusual) {
   EXPECT_EQ(json["notes"].size(), 1U);
 }
 
-TEST_F(FoveaProgramTest, GainsNameTheFlagThatIsWrong) {
+TEST_F(FoveaProgramTest, GainsNameTheWrongFlag) {
   ExpectRefused(Gains({"--damping-ratio", "0"}), "--damping-ratio 0: must be a number above 0");
   ExpectRefused(Gains({"--damping-ratio", "nan"}), "--damping-ratio: nan is not allowed");
   ExpectRefused(Gains({"--rate-hz", "inf"}), "--rate-hz: inf is not allowed");
@@ -215,7 +215,7 @@ TEST_F(FoveaProgramTest, HelpShowsExamples) {
 }
 
 // The table in the repository is what the program says; renew it with `fovea guards`.
-TEST_F(FoveaProgramTest, TheTableOfGuardsIsUpToDateAndWhole) {
+TEST_F(FoveaProgramTest, TableOfGuardsIsUpToDateAndComplete) {
   std::ifstream stream(test::SourceRoot() / "firmware/GUARDS.md");
   const std::string table{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_EQ(Fovea({"guards"}).out, table);
