@@ -17,12 +17,12 @@ class Errors(Served):
         wish = [k * (g - q) - d * v for k, d, g, q, v in zip(stiffness, damping, goal, s.q, s.dq)]
         return [min(max(w, last - 1.0), last + 1.0) for w, last in zip(wish, s.tau_J_d)]
 
-    def test_torque_step(self):
+    def test_torque_step_raises_torque_discontinuity(self):
         self.provoke(fci.EXTERNAL, fci.JOINT_VELOCITY,
                      lambda k, s: {"tau": [0, 0, 0, 0, 0, 0, 1.5 + s.tau_J_d[6]] if k >= 3 else s.tau_J_d},
                      "controller_torque_discontinuity")
 
-    def test_joint_motions(self):
+    def test_invalid_joint_motions_raise_their_errors(self):
         self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_POSITION,
                      lambda k, s: {"q_c": [v + 0.1 for v in s.q_d]},
                      "joint_position_motion_generator_start_pose_invalid")
@@ -36,12 +36,12 @@ class Errors(Served):
                      lambda k, s: {"dq_c": [2.3 * fade(k, 800)] + [0.0] * 6},
                      "joint_motion_generator_velocity_limits")
 
-    def test_joint_limit(self):
+    def test_joint_motion_past_a_limit_raises_position_limits(self):
         self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY,
                      lambda k, s: {"dq_c": [0.0] * 5 + [0.8 * fade(k, 400), 0.0]},
                      "joint_motion_generator_position_limits")
 
-    def test_cartesian_motions(self):
+    def test_invalid_cartesian_motions_raise_their_errors(self):
         def shifted(s, by):
             pose = list(s.O_T_EE_d)
             pose[12] += by
@@ -62,7 +62,7 @@ class Errors(Served):
                      lambda k, s: {"O_dP_EE_c": [9e-3 * (k % 2), 0, 0, 0, 0, 0]},
                      "cartesian_motion_generator_acceleration_discontinuity")
 
-    def test_elbow(self):
+    def test_invalid_elbows_raise_their_errors(self):
         def pose_and_elbow(elbow):
             return lambda k, s: {"O_T_EE_c": s.O_T_EE_d, "elbow_c": elbow(k, s)}
         for elbow, error in [
@@ -72,7 +72,7 @@ class Errors(Served):
             self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_POSITION, pose_and_elbow(elbow),
                          f"cartesian_motion_generator_{error}")
 
-    def test_cartesian_limits(self):
+    def test_cartesian_motion_past_a_limit_raises_its_error(self):
         self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_VELOCITY,
                      lambda k, s: {"O_dP_EE_c": [0, 0, 0, 0, 0, 2.7 * fade(k, 600)]},
                      "cartesian_motion_generator_velocity_limits")
@@ -80,7 +80,7 @@ class Errors(Served):
                      lambda k, s: {"O_dP_EE_c": [0, 0, 0, 0, 0, 1.0 * fade(k, 400)]},
                      "cartesian_motion_generator_joint_position_limits")
 
-    def test_cartesian_motions_that_the_joints_cannot_follow(self):
+    def test_cartesian_motion_too_fast_for_the_joints_raises_joint_errors(self):
         # The elbow is held, so that joint 1 has to do it.
         self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_VELOCITY,
                      lambda k, s: {"O_dP_EE_c": [0, 3e-3 if k > 5 else 0.0, 0, 0, 0, 0], "elbow_c": s.elbow_d},
@@ -102,7 +102,7 @@ class Errors(Served):
         self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_VELOCITY, round_the_base,
                      "cartesian_motion_generator_joint_velocity_limits")
 
-    def test_deviations(self):
+    def test_pose_deviation_past_its_bound_is_a_reflex(self):
         for path, goal, error in [((1e-9, 3.0, 6.0), (10.0, 3.0, 6.0), "max_path_pose_deviation"),
                                   ((10.0, 3.0, 6.0), (1e-9, 3.0, 6.0), "max_goal_pose_deviation")]:
             self.client.start(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY, path=path, goal=goal)
@@ -114,20 +114,20 @@ class Errors(Served):
             time.sleep(0.1)
             self.assertEqual(self.client.recover(), 0)
 
-    def test_joint_speed(self):
+    def test_too_fast_joint_raises_joint_velocity(self):
         def torque(k, s):
             tau = list(s.tau_J_d)
             tau[0] += min(0.9 * k, 60.0)
             return {"tau": tau}
         self.provoke(fci.EXTERNAL, fci.JOINT_VELOCITY, torque, "joint_velocity")
 
-    def test_hand_speed(self):
+    def test_too_fast_hand_raises_cartesian_velocity(self):
         def torque(k, s):
             turn = 3e-6 * k * k
             return {"tau": self.pulled_to([s.q[0] + turn, *s.q[1:6], s.q[6] - turn])}
         self.provoke(fci.EXTERNAL, fci.JOINT_VELOCITY, torque, "cartesian_velocity")
 
-    def test_instability(self):
+    def test_unstable_loop_raises_instability_detection(self):
         def torque(k, s):
             tau = self.pulled_to(s.q)
             now = self.client.last
@@ -136,13 +136,13 @@ class Errors(Served):
             return {"tau": tau}
         self.provoke(fci.EXTERNAL, fci.JOINT_VELOCITY, torque, "instability_detection")
 
-    def test_self_collision(self):
+    def test_motion_towards_itself_raises_self_collision_avoidance(self):
         goal = [0.0, 0.634, 0.530, -2.946, 0.113, 0.627, 0.7]
         self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_POSITION,
                      lambda k, s: {"q_c": [a + fade(k, 3000) * (b - a) for a, b in zip(s.q_d, goal)]},
                      "self_collision_avoidance")
 
-    def test_collisions(self):
+    def test_pull_at_the_hand_raises_the_reflex_of_its_threshold(self):
         """Somebody pulls at the hand."""
         def pulled(torques, forces, error):
             self.assertEqual(self.client.set(fci.SET_COLLISION_BEHAVIOR, *([torques] * 28), *([forces] * 24)), 0)
@@ -157,7 +157,7 @@ class Errors(Served):
         pulled(10.0, 1000.0, "joint_reflex")
         pulled(100.0, 20.0, "cartesian_reflex")
 
-    def test_torque_range(self):
+    def test_pull_past_the_torque_range_raises_tau_j_range(self):
         self.assertEqual(self.client.set(fci.SET_COLLISION_BEHAVIOR, *([1000.0] * 52)), 0)
 
         def pull(k, s):
@@ -166,7 +166,7 @@ class Errors(Served):
             return {}
         self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY, pull, "tau_j_range")
 
-    def test_a_joints_end_and_the_way_back_by_hand(self):
+    def test_joint_past_its_end_recovers_only_by_guiding_inwards(self):
         self.provoke(fci.EXTERNAL, fci.JOINT_VELOCITY,
                      lambda k, s: {"tau": self.pulled_to([*s.q[:3], s.q[3] - 5e-4 * k, *s.q[4:]])},
                      "joint_position_limits", recovery=2)
@@ -189,14 +189,14 @@ class Errors(Served):
         self.assertEqual(self.client.recover(), 0)
         self.assertEqual(self.client.newest().errors, [])
 
-    def test_the_table_is_felt(self):
+    def test_contact_with_the_table_is_a_cartesian_reflex(self):
         """The arm leans forward until the hand is on the table with more than the threshold."""
         self.assertEqual(self.client.set(fci.SET_COLLISION_BEHAVIOR, *([100.0] * 28), *([10.0] * 6), *([20.0] * 6),
                                          *([10.0] * 6), *([20.0] * 6)), 0)
         self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY,
                      lambda k, s: {"dq_c": [0, 0.6 * fade(k, 500), 0, 0, 0, 0, 0]}, "cartesian_reflex")
 
-    def test_silence_stops_it_after_20_states(self):
+    def test_silence_stops_the_robot_after_20_states(self):
         self.client.start(fci.EXTERNAL, fci.JOINT_VELOCITY)
         tau = self.client.last.tau_J_d
         for _ in range(10):
@@ -210,7 +210,7 @@ class Errors(Served):
         self.assertEqual(self.client.move_end(), 6)
         self.assertEqual(self.client.recover(), 0)
 
-    def test_user_stop(self):
+    def test_user_stop_aborts_the_motion(self):
         self.client.start(fci.EXTERNAL, fci.JOINT_VELOCITY)
         tau = self.client.last.tau_J_d
         self.client.step(tau=tau)

@@ -16,15 +16,15 @@ import served
 from served import Served, fade
 
 
-class Strangers(Served):
+class UntrustedClients(Served):
     """What somebody on the network can do who should not."""
 
-    def test_none_but_this_computer_reaches_it(self):
+    def test_listens_on_loopback_only(self):
         found = listening.sockets_of(self.server.pid)
         self.assertEqual({address for _, address, _ in found}, {"127.0.0.1"}, found)
         self.assertEqual({protocol for protocol, _, _ in found}, {"tcp", "udp"})
 
-    def test_one_who_reads_no_answers_is_let_go(self):
+    def test_client_that_reads_no_answers_is_dropped(self):
         machine = {"x86_64": 0, "aarch64": 3}[platform.machine()]
         self.client.tcp.settimeout(5)
         with self.assertRaises(OSError):  # broken off by the other end, long before this is a gigabyte
@@ -36,7 +36,7 @@ class Strangers(Served):
         self.client = fci.Client(self.port)  # and the next one is served
         self.client.state()
 
-    def test_garbage_ends_the_connection_and_nothing_else(self):
+    def test_garbage_ends_only_its_connection(self):
         for garbage in (b"\xff" * 12, struct.pack("<III", 1, 0, 0xFFFFFFFF), struct.pack("<III", 99, 0, 12),
                         struct.pack("<III", fci.MOVE, 0, 13) + b"x"):
             self.client.tcp.sendall(garbage)
@@ -73,7 +73,7 @@ class Connecting(Served):
         self.assertEqual(first.elbow[1], -1.0)
 
 
-class FaultsOfTheBench(unittest.TestCase):
+class BenchFaults(unittest.TestCase):
     """[faults] that act on the arm's body: at work from 1 s of the robot's time on."""
 
     def states(self, *assignments):
@@ -96,20 +96,20 @@ class FaultsOfTheBench(unittest.TestCase):
             self.assertEqual(server.wait(timeout=10), 0)
             server.stderr.close()
 
-    def test_a_push(self):
+    def test_push_appears_as_external_torque(self):
         before, after = self.states("faults.push=[0,0,0,5,0,0,0]", "faults.push_s=[1,1e6]")
         print(f"\npushed by 5 Nm: {before.tau_ext_hat_filtered[3]:.3f}, then {after.tau_ext_hat_filtered[3]:.3f} Nm")
         self.assertLess(abs(before.tau_ext_hat_filtered[3]), 0.3)
         self.assertAlmostEqual(abs(after.tau_ext_hat_filtered[3]), 5.0, delta=0.5)
 
-    def test_a_load_that_nobody_was_told_of(self):
+    def test_unknown_load_raises_the_measured_torques(self):
         before, after = self.states("faults.load_mass=1", "faults.load_s=[1,1e6]")
         more = max(abs(a - b) for a, b in zip(after.tau_J, before.tau_J))
         print(f"\n1 kg at the hand: up to {more:.2f} Nm more")
         self.assertGreater(more, 2.0)
         self.assertLess(more, 10.0)
 
-    def test_a_motor_that_gives_less(self):
+    def test_weak_motor_lets_its_joint_sink(self):
         before, after = self.states("faults.torque_loss=0.5", "faults.torque_loss_joint=4",
                                     "faults.torque_loss_s=[1,1e6]")
         felt = after.tau_ext_hat_filtered[3] - before.tau_ext_hat_filtered[3]
@@ -119,7 +119,7 @@ class FaultsOfTheBench(unittest.TestCase):
         self.assertLess((after.q[3] - before.q[3]) * before.tau_J[3], 0.0)
         self.assertLess(felt * before.tau_J[3], -0.3 * before.tau_J[3] ** 2)
 
-    def test_what_is_none_of_the_bench_is_refused(self):
+    def test_fault_that_serve_cannot_inject_is_refused(self):
         for key in ("wrong_detection", "nan_detection", "encoder_stuck", "encoder_noise", "encoder_nan",
                     "packet_loss", "clock_jump", "deadline_miss"):
             done = subprocess.run([served.PROGRAM, "serve", "ball", "--fci-port", "0", "--camera-serial", "", "--set",
@@ -134,7 +134,7 @@ class RealPace(Served):
 
     options = ["--pace", "real"]
 
-    def test_a_thousand_states_in_a_second(self):
+    def test_states_come_no_faster_than_the_clock(self):
         first = self.client.newest()
         begin = time.monotonic()
         count = 0
@@ -157,12 +157,12 @@ class RealPace(Served):
         time.sleep(1.0)  # it has 50 times that to make up for
         return behind() - before
 
-    def test_the_robots_time_goes_on_while_the_computer_is_away(self):
+    def test_robot_time_catches_up_after_a_short_pause(self):
         behind_ms = self.interrupt(0.4)
         print(f"away for 400 ms: {behind_ms:.1f} ms behind")
         self.assertLess(behind_ms, 200.0)
 
-    def test_what_it_gives_up_is_said(self):
+    def test_time_given_up_after_a_long_pause_is_reported(self):
         behind_ms = self.interrupt(1.6)
         said = [self.server.stderr.readline() for _ in range(2)][1]  # the first: that a client came
         print(f"away for 1600 ms: {behind_ms:.1f} ms behind; {said}", end="")
@@ -184,10 +184,10 @@ class Setters(Served):
         self.assertEqual(self.client.set(fci.SET_EE_TO_K, *tool), 0)
         self.assertEqual(self.client.newest().EE_T_K, tool)
 
-    def test_a_frame_that_is_none_is_an_invalid_argument(self):
+    def test_invalid_frame_is_an_invalid_argument(self):
         self.assertEqual(self.client.set(fci.SET_NE_TO_EE, *([2.0] * 16)), 2)
 
-    def test_a_load_that_is_not_there_is_felt_as_a_push_upwards(self):
+    def test_declared_but_absent_load_is_felt_as_a_push_upwards(self):
         self.assertEqual(self.client.set(fci.SET_LOAD, 0.5, 0, 0, 0.05, 0.001, 0, 0, 0, 0.001, 0, 0, 0, 0.001), 0)
         for _ in range(400):
             state = self.client.state()
@@ -195,7 +195,7 @@ class Setters(Served):
         self.assertEqual(state.F_x_Cload, [0, 0, 0.05])
         self.assertAlmostEqual(state.O_F_ext_hat_K[2], 0.5 * 9.81, delta=0.5)
 
-    def test_all_others_are_taken(self):
+    def test_other_setters_accept_valid_and_refuse_invalid_values(self):
         c = self.client
         self.assertEqual(c.set(fci.SET_COLLISION_BEHAVIOR, *([20.0] * 28), *([25.0] * 24)), 0)
         self.assertEqual(c.set(fci.SET_JOINT_IMPEDANCE, *([2000.0] * 7)), 0)
@@ -206,19 +206,19 @@ class Setters(Served):
         self.assertEqual(c.set(fci.SET_FILTERS, 100, 100, 100, 100, 100), 0)
         self.assertEqual(c.set(fci.SET_FILTERS, 0, 100, 100, 100, 100), 2)
 
-    def test_a_cartesian_limit(self):
+    def test_cartesian_limit_request_is_answered(self):
         answer = self.client.request(fci.GET_CARTESIAN_LIMIT, struct.pack("<i", 0))
         self.assertEqual(len(answer), 154)
         self.assertEqual(answer[0], 0)
         self.assertEqual(self.client.request(fci.GET_CARTESIAN_LIMIT, struct.pack("<i", -1))[0], 2)
 
-    def test_nothing_is_set_in_a_motion(self):
+    def test_setter_is_refused_during_a_motion(self):
         self.client.start(fci.EXTERNAL, fci.JOINT_VELOCITY)
         self.assertEqual(self.client.set(fci.SET_JOINT_IMPEDANCE, *([2000.0] * 7)), 1)
 
 
 class ModelLibrary(Served):
-    def test_it_is_loaded_and_agrees_with_the_robot(self):
+    def test_loaded_library_agrees_with_the_robot(self):
         machine = {"x86_64": 0, "aarch64": 3}[platform.machine()]
         answer = self.client.request(fci.LOAD_MODEL_LIBRARY, bytes([machine, 0]))
         self.assertEqual(answer[0], 0)
@@ -246,7 +246,7 @@ class ModelLibrary(Served):
         library.M_NE(doubles(s.q), doubles([0.0] * 9), ctypes.c_double(0), doubles([0.0] * 3), mass)
         self.assertGreater(min(mass[8 * i] for i in range(7)), 0)
 
-    def test_another_machines_is_not_there(self):
+    def test_library_for_another_machine_is_refused(self):
         self.assertEqual(self.client.request(fci.LOAD_MODEL_LIBRARY, bytes([1, 0])), b"\x01")
         self.assertEqual(self.client.request(fci.LOAD_MODEL_LIBRARY, bytes([0, 1])), b"\x01")
 
@@ -255,7 +255,7 @@ class Motions(Served):
     def start(self, controller, generator):
         return self.client.start(controller, generator)
 
-    def test_joint_positions(self):
+    def test_joint_positions_are_followed(self):
         for controller in (fci.JOINT_IMPEDANCE, fci.CARTESIAN_IMPEDANCE):
             q = self.start(controller, fci.JOINT_POSITION).q_d
             for k in range(1, 1301):
@@ -269,7 +269,7 @@ class Motions(Served):
             self.assertEqual(self.client.finish(q_c=goal), 0)
             self.assertEqual(self.client.last.control_command_success_rate, 0.0)
 
-    def test_joint_velocities(self):
+    def test_joint_velocities_are_followed(self):
         q = self.start(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY).q_d
         way = 0.0
         for k in range(1, 1001):
@@ -280,7 +280,7 @@ class Motions(Served):
         self.assertAlmostEqual(state.q[0] - q[0], way, delta=1e-3)
         self.assertEqual(self.client.finish(), 0)
 
-    def test_poses_and_the_elbow(self):
+    def test_poses_and_elbow_are_followed(self):
         first = self.start(fci.JOINT_IMPEDANCE, fci.CARTESIAN_POSITION)
         for k in range(1, 1301):
             pose = list(first.O_T_EE_d)
@@ -292,7 +292,7 @@ class Motions(Served):
         self.assertAlmostEqual(state.elbow[0], elbow[0], delta=1e-3)
         self.assertEqual(self.client.finish(O_T_EE_c=pose, elbow_c=elbow), 0)
 
-    def test_twists(self):
+    def test_twists_are_followed(self):
         first = self.start(fci.CARTESIAN_IMPEDANCE, fci.CARTESIAN_VELOCITY)
         for k in range(1, 1001):
             v = 0.1 * (fade(k, 300) - fade(max(k - 600, 0), 300))
@@ -301,7 +301,7 @@ class Motions(Served):
         self.assertAlmostEqual(state.O_T_EE[13] - first.O_T_EE[13], 0.06, delta=2e-3)
         self.assertEqual(self.client.finish(), 0)
 
-    def test_torques(self):
+    def test_torques_move_the_joint(self):
         first = self.start(fci.EXTERNAL, fci.JOINT_VELOCITY)
         q = first.q
         for k in range(1, 1001):
@@ -315,14 +315,14 @@ class Motions(Served):
         self.assertGreater(s.q[0] - q[0], 0.05)
         self.assertEqual(self.client.finish(tau=s.tau_J_d), 0)
 
-    def test_a_motion_is_stopped(self):
+    def test_stop_move_ends_a_motion(self):
         self.start(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY)
         self.client.step()
         self.assertEqual(self.client.request(fci.STOP_MOVE)[0], 0)
         self.assertEqual(self.client.move_end(), 2)
         self.assertEqual(self.client.request(fci.STOP_MOVE)[0], 1)
 
-    def test_a_second_motion_at_once_is_not_possible(self):
+    def test_second_motion_at_once_is_refused(self):
         self.start(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY)
         answer = self.client.request(fci.MOVE, struct.pack("<II6d", 0, 1, *([1.0] * 6)))
         self.assertEqual(answer, b"\x03")
@@ -331,7 +331,7 @@ class Motions(Served):
 class Walls(Served):
     options = ["--pace", "lockstep", "--wall", "0.1,0.05,0.3,0.6,0.5,0.6"]
 
-    def test_a_wall_is_told_and_kept_from(self):
+    def test_wall_is_reported_and_stops_the_hand(self):
         answer = self.client.request(fci.GET_CARTESIAN_LIMIT, struct.pack("<i", 0))
         size, frame = struct.unpack_from("<3d", answer, 1), struct.unpack_from("<16d", answer, 25)
         self.assertEqual((answer[0], size, frame[12:15], answer[153]), (0, (0.6, 0.5, 0.6), (0.1, 0.05, 0.3), 1))
@@ -348,13 +348,13 @@ class Walls(Served):
         self.wait_for(lambda s: s.robot_mode == fci.REFLEX)
         self.assertEqual(self.client.recover(), 0)
 
-    def test_a_port_that_is_taken(self):
+    def test_occupied_port_is_refused_in_one_line(self):
         done = subprocess.run([served.PROGRAM, "serve", "ball", "--fci-port", str(self.port), "--camera-serial", ""],
                               timeout=20, capture_output=True, text=True)
         self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
         self.assertIn(f"cannot listen on 127.0.0.1:{self.port}: Address already in use", done.stderr)
 
-    def test_a_wall_that_is_none_is_refused(self):
+    def test_malformed_wall_is_refused(self):
         for wall in ("1,2,3", "0,0,0,1,1,0", "0,0,0,1,1,x", "0;0;0;1;1;1"):
             done = subprocess.run([served.PROGRAM, "serve", "ball", "--fci-port", "0", "--wall", wall], timeout=20,
                                   capture_output=True, text=True)
@@ -363,7 +363,7 @@ class Walls(Served):
 
 
 class Guiding(Served):
-    def test_the_hand_goes_along_the_axes_that_are_free(self):
+    def test_guided_hand_moves_along_the_free_axis(self):
         self.assertEqual(self.client.set(fci.SET_GUIDING_MODE, 0, 1, 0, 0, 0, 0, 0, form="<7B"), 0)
         first = self.client.newest()
         self.type("f 10 10 10")

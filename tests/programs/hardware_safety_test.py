@@ -118,7 +118,7 @@ class HardwareSafety(TwoPrograms):
 
     # A terminal that stands still.
 
-    def test_the_dead_man_holds_the_arm_while_nobody_reads_what_is_said(self):
+    def test_dead_man_holds_the_arm_while_output_is_unread(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "0.5", camera=True)
         hw, terminal = self.start(port, "--track", "--seconds", "6", "--set", "input.dead_man_s=4", camera=True)
         terminal.stop()
@@ -136,7 +136,7 @@ class HardwareSafety(TwoPrograms):
         self.assertIn("the operator was silent", s["verdict"])
         self.assertFalse(s["converged"])
 
-    def test_words_and_signals_act_while_nobody_reads_what_is_said(self):
+    def test_words_and_signals_act_while_output_is_unread(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "0.5", camera=True)
         out = self.folder()
         hw, terminal = self.start(port, "--track", "--out", str(out), "--set", "log.film=false", "--set",
@@ -161,7 +161,7 @@ class HardwareSafety(TwoPrograms):
         self.assertLess(took_s, 20.0)
         self.check_files(out, s)
 
-    def test_a_dead_man_that_held_needs_to_be_asked_anew(self):
+    def test_after_a_dead_man_hold_tracking_needs_a_new_request(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1", camera=True)
         hw, terminal = self.start(port, "--track", "--set", "input.dead_man_s=2", camera=True)
         terminal.wait_for("track")
@@ -178,7 +178,7 @@ class HardwareSafety(TwoPrograms):
         first_s = self.since(s, "hold", self.since(s, "track"))
         self.assertEqual([m["mode"] for m in s["modes"] if first_s < m["t_s"] < asked_s - 0.02], [])
 
-    def test_a_log_that_hangs_keeps_nobody(self):
+    def test_hanging_log_does_not_keep_the_robot(self):
         """Its file is a pipe that nobody reads."""
         port = self.serve("--pace", "lockstep", "--most-speed", "1")
         out = self.folder()
@@ -243,7 +243,7 @@ class HardwareSafety(TwoPrograms):
             self.check_files(out, s)
             self.end_server()
 
-    def test_ctrl_c_a_moment_after_the_start(self):
+    def test_ctrl_c_just_after_the_start_leaves_whole_files_or_none(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1")
         for wait_s in (0.02, 0.05, 0.1, 0.2, 0.4, 0.8):
             out = self.folder()
@@ -257,7 +257,7 @@ class HardwareSafety(TwoPrograms):
             else:
                 self.check_files(out, json.loads(text))
 
-    def test_a_terminal_that_is_gone_ends_it_in_order(self):
+    def test_closed_terminal_ends_or_continues_the_run_without_a_fault(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1")
         hw, terminal = self.start(port, "--enable")
         terminal.wait_for("hold")
@@ -277,7 +277,7 @@ class HardwareSafety(TwoPrograms):
         self.assertEqual((s["mode"], s["fault"]), ("hold", "none"))
         self.assertGreater(s["lines_unsaid"], 0)
 
-    def test_the_arm_is_at_rest_before_its_motion_is_finished(self):
+    def test_arm_is_at_rest_before_its_motion_is_finished(self):
         """Told to end while it is under way, it holds first."""
         port = self.serve("--pace", "lockstep", "--most-speed", "0.5", camera=True)
         out = self.folder()
@@ -290,7 +290,7 @@ class HardwareSafety(TwoPrograms):
 
     # A load that nobody told of.
 
-    def test_a_load_that_nobody_told_of_is_refused_before_anything_moves(self):
+    def test_unknown_load_is_refused_before_anything_moves(self):
         for mass in (0.7, 0.0):
             load = ["--set", "faults.load_s=[0,100]", "--set", f"faults.load_mass={mass}"] if mass else []
             port = self.serve("--pace", "lockstep", "--most-speed", "1", *load)
@@ -306,7 +306,7 @@ class HardwareSafety(TwoPrograms):
                 self.assertGreater(s["robot"]["commands"], 0)
             self.end_server()
 
-    def test_a_load_that_is_taken_off_may_be_followed_by_another_enable(self):
+    def test_enable_succeeds_once_the_unknown_load_is_removed(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1", "--set", "faults.load_s=[0,5]", "--set",
                           "faults.load_mass=0.7")
         hw, terminal = self.start(port)
@@ -323,7 +323,7 @@ class HardwareSafety(TwoPrograms):
         self.assertGreater(refused, 0)
         self.assertEqual((s["mode"], s["fault"], s["converged"]), ("hold", "none", None))
 
-    def test_a_load_that_comes_while_the_robot_is_stopped_is_refused_before_it_goes_on(self):
+    def test_unknown_load_added_during_a_stop_refuses_recovery(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1", "--set", "faults.load_s=[3,9]", "--set",
                           "faults.load_mass=0.7")
         hw, terminal = self.start(port, "--enable")
@@ -345,19 +345,19 @@ class HardwareSafety(TwoPrograms):
 
     # What a run is judged by.
 
-    def test_a_dry_run_is_neither_good_nor_bad(self):
+    def test_run_without_motion_is_not_judged(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1")
         s = self.hardware(port, "--no-motion", "--seconds", "0.5", codes=(0,))
         self.assertIsNone(s["converged"])
         self.assertIn("nothing was commanded", s["verdict"])
 
-    def test_a_target_that_was_never_seen_is_no_success(self):
+    def test_target_never_seen_is_not_converged(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1", "--set", "faults.camera_outage_s=[0,1e6]", camera=True)
         s = self.hardware(port, "--enable", "--seconds", "1", camera=True, codes=(1,))
         self.assertIs(s["converged"], False)
         self.assertIn("the camera never saw it, in ", s["verdict"])
 
-    def test_a_fault_that_was_recovered_from_is_told(self):
+    def test_recovered_fault_is_reported(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1")
         hw, terminal = self.start(port, "--enable")
         terminal.wait_for("hold")

@@ -41,7 +41,7 @@ class RealPace(TwoPrograms):
         self.assertGreater(s["robot"]["lost_states"], 100)
         self.assertLess(s["robot"]["command_success_rate"], 1.0)
 
-    def test_what_it_says_at_the_clocks_own_pace_is_true(self):
+    def test_convergence_reported_at_real_pace_agrees_with_the_truth(self):
         """By the computer's clock, whose stamps the client makes itself. A busy machine may spoil the run; then the client
         must not say that it reached its goal, and where it says so, the truth agrees."""
         port = self.serve("--pace", "real", "--late-ms", "3", camera=True)
@@ -55,7 +55,7 @@ class RealPace(TwoPrograms):
         at_goal = truth["error_px"] <= 3.0 and truth["error_mm"] <= 5.0
         self.assertTrue(at_goal or not s["converged"], s["verdict"])
 
-    def test_at_real_pace(self):
+    def test_real_pace_run_receives_states_without_heap_calls(self):
         port = self.serve("--pace", "real", "--late-ms", "3")
         # A busy machine may miss 20 ticks in a row; then it ends in a fault, and says so.
         s = self.recorded(port, "--enable", "--seconds", "2", "--set", "robot.time=computer", "--set", "robot.state_timeout_ms=50", "--set", "safety.arm_lost_ticks=1000",

@@ -16,7 +16,7 @@ READERS = pathlib.Path(__file__).parent.parent / "js"
 
 
 class Loopback(TwoPrograms):
-    def test_none_but_this_computer_reaches_either(self):
+    def test_both_programs_listen_on_loopback_only(self):
         port = self.serve("--pace", "lockstep", camera=True)
         # Aravis' stand-in for a camera answers who calls into the network for cameras; nothing else leaves loopback.
         calls = {("udp", "255.255.255.255", 3956)}
@@ -52,7 +52,7 @@ class Loopback(TwoPrograms):
         self.assertLessEqual(truth["error_mm"], 0.6)
         self.assertGreaterEqual(s["camera"]["frames_detected"], 0.95 * s["camera"]["frames"])
 
-    def test_its_log_and_report_say_what_was(self):
+    def test_log_and_report_match_the_run(self):
         with tempfile.TemporaryDirectory() as temp:
             out = pathlib.Path(temp) / "a" / "b"
             port = self.serve("--pace", "lockstep", "--most-speed", "0.5", camera=True)
@@ -74,7 +74,7 @@ class Loopback(TwoPrograms):
                                       text=True)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
-    def test_without_a_film(self):
+    def test_film_switched_off_leaves_no_film(self):
         with tempfile.TemporaryDirectory() as temp:
             (pathlib.Path(temp) / "camera.mp4").write_text("of another run")
             port = self.serve("--pace", "lockstep", camera=True)
@@ -83,7 +83,7 @@ class Loopback(TwoPrograms):
             self.assertEqual({file.name for file in pathlib.Path(temp).iterdir()},
                              {"log.mcap", "report.html", "summary.json"})
 
-    def test_a_folder_that_cannot_be_written_to_is_refused_before_anything_moves(self):
+    def test_unwritable_folder_is_refused_before_anything_moves(self):
         with tempfile.NamedTemporaryFile() as file:
             done = subprocess.run([two_programs.HW, "loopback", "--set", "robot.port=1", "--set", "camera.driver=none", "--out",
                                    file.name], timeout=20, capture_output=True, text=True)
@@ -98,7 +98,7 @@ class Loopback(TwoPrograms):
         self.assertLessEqual(truth["error_px"], 0.5)
         self.assertLessEqual(truth["error_mm"], 0.6)
 
-    def test_nothing_moves_until_the_operator_says_so(self):
+    def test_nothing_moves_until_the_operator_enables(self):
         port = self.serve("--pace", "lockstep")
         hw = self.operator(port)
         self.wait_for(hw, 'the robot holds by itself; "enable" lets the servo move it')
@@ -110,7 +110,7 @@ class Loopback(TwoPrograms):
         self.assertEqual((s["ticks"], s["robot"]["motions"], s["robot"]["commands"]), (0, 0, 0))
         self.assertGreater(s["robot"]["states"], 0)
 
-    def test_a_run_with_an_operator_is_replayed_to_the_last_bit(self):
+    def test_run_with_an_operator_replays_bit_exact(self):
         """Words that are typed, the stop button and a recovery: all of it reaches the servo as it did."""
         with tempfile.TemporaryDirectory() as temp:
             port = self.serve("--pace", "lockstep", "--loss", "0.02")
@@ -132,7 +132,7 @@ class Loopback(TwoPrograms):
             self.assertEqual((s["records_dropped"], s["log_entries_dropped"]), (0, 0))
             self.replay(temp, s)
 
-    def test_a_run_at_real_pace_is_replayed_to_the_last_bit(self):
+    def test_real_pace_run_drops_no_records(self):
         with tempfile.TemporaryDirectory() as temp:
             port = self.serve("--pace", "real", "--late-ms", "3", "--loss", "0.02", camera=True)
             s = self.hardware(port, "--track", "--seconds", "3", "--out", temp, "--set", "robot.time=computer", "--set",
@@ -140,7 +140,7 @@ class Loopback(TwoPrograms):
                               "safety.arm_lost_ticks=1000", camera=True, codes=(0, 1))
             self.assertEqual((s["records_dropped"], s["log_entries_dropped"]), (0, 0))
 
-    def test_a_silent_operator_has_the_arm_held(self):
+    def test_silent_operator_makes_the_arm_hold(self):
         port = self.serve("--pace", "lockstep")
         hw = self.operator(port, "--set", "input.dead_man_s=0.3")
         self.say(hw, "enable")
@@ -164,13 +164,13 @@ class Loopback(TwoPrograms):
         self.assertEqual(s["robot"]["command_success_rate"], 1.0)
         self.assertGreater(s["robot"]["commands"], 2900)
 
-    def test_without_leave_to_move(self):
+    def test_no_motion_option_commands_nothing(self):
         port = self.serve("--pace", "lockstep")
         s = self.hardware(port, "--seconds", "1", "--no-motion")
         self.assertEqual((s["robot"]["commands"], s["robot"]["motions"]), (0, 0))
         self.assertGreater(s["robot"]["states"], 0)
 
-    def test_its_servo_is_the_simulators(self):
+    def test_both_programs_link_the_same_servo(self):
         """Both programs say which servo library they were linked with; and that file is there once."""
         port = self.serve("--pace", "lockstep")
         hardware = self.hardware(port, "--seconds", "0.2", "--no-motion")["servo"]
@@ -183,7 +183,7 @@ class Loopback(TwoPrograms):
         self.assertEqual(hardware, hashlib.sha256(libraries[0].read_bytes()).hexdigest())
         self.assertEqual(hardware, json.loads(done.stdout)["servo"])
 
-    def test_a_user_stop_is_reported_and_recovered_from_when_told_to(self):
+    def test_user_stop_is_reported_and_recovered_from_on_request(self):
         port = self.serve("--pace", "lockstep")
         hw = self.operator(port, "--enable")
         try:
@@ -199,7 +199,7 @@ class Loopback(TwoPrograms):
             s = self.summary_of(hw)
         self.assertEqual(s["robot"]["motions"], 2)
 
-    def test_a_robot_that_hangs_is_given_up_and_recovered_when_told_to(self):
+    def test_hung_robot_raises_arm_lost_and_recovers_on_request(self):
         """Its states are one and the same from then on: number, time, joints."""
         port = self.serve("--pace", "lockstep")
         hw = self.operator(port, "--enable", "--set", "robot.state_timeout_ms=20")
@@ -218,7 +218,7 @@ class Loopback(TwoPrograms):
         self.assertGreater(s["robot"]["duplicate_states"], 100)
         self.assertEqual(s["robot"]["motions"], 2)
 
-    def test_the_pre_flight(self):
+    def test_pre_flight_passes_the_robot_and_fails_a_wrong_load(self):
         port = self.serve("--pace", "real")
         done = subprocess.run([two_programs.HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
                                "check.seconds=0.5"], timeout=60, capture_output=True, text=True)
@@ -246,7 +246,7 @@ class Loopback(TwoPrograms):
         self.assertIn(done.returncode, (0, 1), done.stderr)
         return {row["what"]: row for row in json.loads(done.stdout)}, done.returncode
 
-    def test_the_pre_flight_of_the_camera(self):
+    def test_pre_flight_judges_the_camera(self):
         port = self.serve("--pace", "real", camera=True)
         rows, _ = self.rows(port, "--set", "camera.rms_px=0.05", "--set", "camera.mount_rms_mm=0.3")
         print("\n" + "; ".join(f"{what}: {rows[what]['found']}" for what in ("camera's rate", "frames", "latency")))
@@ -270,7 +270,7 @@ class Loopback(TwoPrograms):
                             "--set", "camera.time=device")
         self.assertEqual((rows["mounting"]["verdict"], rows["latency"]["verdict"]), ("fail", "warn"))
 
-    def test_the_pre_flight_of_a_camera_with_faults(self):
+    def test_pre_flight_fails_on_lost_frames(self):
         """[faults] of the scenario that is served."""
         def frames(*assignments):
             options = [word for assignment in assignments for word in ("--set", assignment)]
@@ -288,7 +288,7 @@ class Loopback(TwoPrograms):
         self.assertEqual(rows["frames"]["verdict"], "fail")
         self.assertGreater(lost, 0.2 * (came + lost))
 
-    def test_pictures_that_come_late_are_old_when_they_are_used(self):
+    def test_late_pictures_raise_the_feature_age(self):
         ages = []
         for options in ([], ["--set", "faults.latency_ms=60", "--set", "faults.latency_s=[0,1e6]"]):
             port = self.serve("--pace", "lockstep", "--most-speed", "0.5", *options, camera=True)
@@ -299,7 +299,7 @@ class Loopback(TwoPrograms):
         self.assertGreaterEqual(ages[0], 39.0)
         self.assertGreaterEqual(ages[1], 99.0)
 
-    def test_the_pre_flight_finds_an_arm_that_is_not_the_robot(self):
+    def test_pre_flight_fails_on_an_arm_model_that_differs_from_the_robot(self):
         port = self.serve("--pace", "real")
         with tempfile.TemporaryDirectory() as temp:
             share = pathlib.Path(two_programs.HW).parent.parent / "share" / "fovea" / "robots"
@@ -320,31 +320,31 @@ class Loopback(TwoPrograms):
         self.assertEqual(rows["limits"]["verdict"], "fail")
         self.assertEqual(rows["camera"]["verdict"], "warn")
 
-    def test_the_pre_flight_without_a_robot(self):
+    def test_pre_flight_fails_without_a_robot(self):
         done = subprocess.run([two_programs.HW, "loopback", "--check", "--set", "robot.port=1", "--set", "check.seconds=0.1"],
                               timeout=60, capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn("no connection", done.stdout)
 
-    def test_no_camera(self):
+    def test_missing_camera_is_refused(self):
         done = subprocess.run([two_programs.HW, "loopback", "--set", "robot.port=1"], timeout=60, capture_output=True,
                               text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("fovea-hw: camera 127.0.0.1: not found", done.stderr)
 
-    def test_no_robot(self):
+    def test_missing_robot_is_refused(self):
         done = subprocess.run([two_programs.HW, "loopback", "--set", "robot.port=1", "--set", "camera.driver=none"], timeout=20,
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("fovea-hw: robot 127.0.0.1:1: no connection", done.stderr)
 
-    def test_tracking_needs_a_camera(self):
+    def test_tracking_without_a_camera_is_refused(self):
         done = subprocess.run([two_programs.HW, "loopback", "--track", "--set", "camera.driver=none"], timeout=20,
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn('--track is not allowed: camera.driver = "none"', done.stderr)
 
-    def test_an_arm_that_moves_is_slowed_down_before_its_motion_is_finished(self):
+    def test_moving_arm_is_slowed_down_before_its_motion_is_finished(self):
         """The robot takes the end of a motion at speed for a fault of its client."""
         port = self.serve("--pace", "lockstep", "--most-speed", "0.25", camera=True)
         hw = self.operator(port, "--track", "--set", "camera.driver=genicam")
@@ -358,7 +358,7 @@ class Loopback(TwoPrograms):
         self.assertGreater(truth["error_px"], 5.0)
         self.assertEqual([event for event in events if "the robot" in event], [])
 
-    def test_wrong_usage_is_one_line(self):
+    def test_wrong_usage_is_refused_in_one_line(self):
         with tempfile.TemporaryDirectory(suffix=".toml") as folder:
             for words, says in [(["loopback", "--seconds", "nan"], "--seconds: nan is not allowed"),
                                 (["loopback", "--seconds=inf"], "--seconds"), (["loopback", "--second", "1"], "--seconds"),
@@ -368,7 +368,7 @@ class Loopback(TwoPrograms):
                 self.assertRegex(done.stderr, r"\Afovea-hw: [^\n]*\n\Z")
                 self.assertIn(says, done.stderr)
 
-    def test_unknown_configuration(self):
+    def test_unknown_configuration_lists_the_shipped_ones(self):
         done = subprocess.run([two_programs.HW, "loopbak"], timeout=20, capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn("shipped are loopback, panda", done.stderr)

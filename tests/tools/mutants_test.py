@@ -50,24 +50,24 @@ class Mutants(unittest.TestCase):
                               env={**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}"})
         return done.returncode, done.stdout + done.stderr
 
-    def test_one_that_is_noticed_is_good_and_named(self):
+    def test_detected_mutant_passes_and_names_its_test(self):
         code, said = self.mutants([DROPPED])
         self.assertEqual(code, 0, said)
         self.assertIn("dropped: noticed by Limit.Holds", said)
         self.assertIn("1 of 1 mistakes were noticed", said)
         self.assertEqual((self.root / "source.sh").read_text(), SOURCE)
 
-    def test_one_that_lives_is_not(self):
+    def test_surviving_mutant_fails(self):
         code, said = self.mutants([DROPPED, ("alive", "unwatched=4", "unwatched=5")])
         self.assertEqual(code, 1, said)
         self.assertIn("1 of 2 mistakes were noticed; not: alive", said)
 
-    def test_each_is_taken_back_before_the_next(self):
+    def test_each_mutant_is_reverted_before_the_next(self):
         code, said = self.mutants([DROPPED, ("alive", "unwatched=4", "unwatched=5"), ("again", "limit=3", "limit=1")])
         self.assertEqual(code, 1, said)
         self.assertIn("2 of 3 mistakes were noticed; not: alive", said)
 
-    def test_one_that_cannot_be_made_or_does_not_compile_is_not(self):
+    def test_mutant_that_does_not_apply_or_compile_fails(self):
         code, said = self.mutants([("gone", "limit=7", "limit=9"), ("broken", "limit=3", "syntax")])
         self.assertEqual(code, 1, said)
         self.assertIn("gone: ITS OLD LINE STANDS 0 TIMES", said)
@@ -80,13 +80,13 @@ class Mutants(unittest.TestCase):
         self.assertIn("1 of 2 mistakes can be made", said)
         self.assertFalse((self.root / "build").exists())
 
-    def test_tests_that_fail_without_any_say_nothing(self):
+    def test_failing_tests_without_a_mutant_are_an_error(self):
         self.write("source.sh", SOURCE.replace("limit=3\n", "limit=2 # limit=3\n"))
         code, said = self.mutants([DROPPED])
         self.assertEqual(code, 2, said)
         self.assertIn("without any mistake Limit.Holds fails", said)
 
-    def test_the_table_names_who_noticed(self):
+    def test_table_names_the_test_that_detected_the_mutant(self):
         code, said = self.mutants([DROPPED], "--table")
         self.assertEqual(code, 1, said)
         self.assertIn("| dropped | m | `source.sh` | **none**: not made yet |", said)

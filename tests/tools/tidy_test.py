@@ -57,7 +57,7 @@ class Tidy(unittest.TestCase):
                                    "XDG_CACHE_HOME": str(self.root / "build/cache")})
         return done.returncode, done.stdout + done.stderr
 
-    def test_what_was_found_clean_is_not_asked_again(self):
+    def test_clean_source_is_not_checked_again(self):
         code, said = self.tidy()
         self.assertEqual(code, 0, said)
         self.assertIn("not in build/release, so not looked at: tests/consumer/project/main.cpp", said)
@@ -67,14 +67,14 @@ class Tidy(unittest.TestCase):
         self.assertEqual(code, 1, said)
         self.assertIn("2 sources, 1 known to be clean", said)
 
-    def test_a_source_that_the_build_does_not_know_is_an_error(self):
+    def test_source_unknown_to_the_build_is_an_error(self):
         self.write("c.cpp", "")
         self.commit()
         for arguments in ((), ("--since", "HEAD~1"), ("c.cpp",), ("tests/consumer/project/main.cpp",)):
             code, said = self.tidy(*arguments)
             self.assertEqual(code, 2, f"{arguments}: {said}")
 
-    def test_a_header_that_changed_is_judged_in_one_source(self):
+    def test_changed_header_is_checked_in_one_source(self):
         self.write("both.hpp", "int x;")
         self.commit()
         code, said = self.tidy("--since", "HEAD~1")
@@ -82,7 +82,7 @@ class Tidy(unittest.TestCase):
         self.assertIn("1 sources, 0 known to be clean", said)
         self.assertIn("no source changed", self.tidy("--since", "HEAD")[1])
 
-    def test_a_base_that_is_no_commit_is_refused_but_for_one_before_the_first(self):
+    def test_unknown_base_commit_is_refused_except_before_the_first(self):
         code, said = self.tidy("--since", "mian")
         self.assertEqual(code, 2)
         self.assertIn("--since mian: there is no such commit", said)
@@ -91,7 +91,7 @@ class Tidy(unittest.TestCase):
             self.assertEqual(code, 0, said)
             self.assertIn("2 sources", said)
 
-    def test_sources_left_when_the_time_is_up_are_a_failure_unless_it_was_told_so(self):
+    def test_sources_left_at_timeout_fail_unless_partial(self):
         code, said = self.tidy("--minutes", "0")
         self.assertEqual(code, 1, said)
         self.assertIn("2 of 2 sources were not looked at: the time was up", said)
