@@ -86,16 +86,35 @@ class Mutants(unittest.TestCase):
         self.assertEqual(code, 2, said)
         self.assertIn("without any mistake Limit.Holds fails", said)
 
-    def test_table_names_the_test_that_detected_the_mutant(self):
-        code, said = self.mutants([DROPPED], "--table")
-        self.assertEqual(code, 1, said)
-        self.assertIn("| dropped | m | `source.sh` | **none**: not made yet |", said)
-        self.mutants([DROPPED])
+    def test_table_of_the_list_alone_claims_no_result(self):
         code, said = self.mutants([DROPPED], "--table")
         self.assertEqual(code, 0, said)
-        self.assertIn("| dropped | m | `source.sh` | `Limit.Holds` |", said)
+        self.assertIn("`mutants.toml` lists 1.", said)
+        self.assertIn("## Recorded runs\n\nNone.\n", said)
+        self.assertIn("| dropped | m | `source.sh` | `a_test`: `*` |\n", said)
+        self.assertNotIn("failed in the last run", said)
+        self.assertFalse((self.root / "build").exists())
+
+    def test_table_shows_the_recorded_runs(self):
+        run = '[[run]]\ndate = "2026-01-02"\ncommit = "abc"\nlisted = 3\nmade = 2\ndetected = 1\n'
+        self.write("tests/mutants/runs.toml", run)
+        self.assertIn("| 2026-01-02 | `abc` | 3 | 2 | 1 |", self.mutants([DROPPED], "--table")[1])
+        self.write("tests/mutants/runs.toml", run.replace("made = 2\n", ""))
+        code, said = self.mutants([DROPPED], "--table")
+        self.assertEqual(code, 2, said)
+        self.assertIn("run 1: made is missing", said)
+
+    def test_table_names_the_test_that_detected_the_mutant(self):
+        self.assertIn("listed = 1\nmade = 1\ndetected = 1\n", self.mutants([DROPPED])[1])
+        code, said = self.mutants([DROPPED], "--table")
+        self.assertEqual(code, 0, said)
+        self.assertIn("| dropped | m | `source.sh` | `a_test`: `*` | `Limit.Holds` |", said)
         # What was found of it says nothing of another mistake of that name.
-        self.assertEqual(self.mutants([("dropped", "limit=3", "limit=1")], "--table")[0], 1)
+        self.assertNotIn("Limit.Holds", self.mutants([("dropped", "limit=3", "limit=1")], "--table")[1])
+        self.mutants([("alive", "unwatched=4", "unwatched=5")])
+        code, said = self.mutants([("alive", "unwatched=4", "unwatched=5"), DROPPED], "--table")
+        self.assertEqual(code, 1, said)
+        self.assertIn("| **none**: lives: no test noticed |", said)
 
     def test_wrong_usage_is_refused(self):
         self.assertEqual(self.mutants([DROPPED], "--only", "nothing")[0], 2)
