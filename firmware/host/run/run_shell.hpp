@@ -72,6 +72,9 @@ class RunShell {
   // Null where there is no log.
   [[nodiscard]] RunBook* book() { return folder_.book(); }
 
+  // When the servo's thread is done: what the machine did not grant it.
+  [[nodiscard]] const std::vector<std::string>& realtime_missing() const { return realtime_missing_; }
+
   // When the threads are done and all records are taken, once each and in this order. Fill completes the film
   // and says everything that RunFigures has. Write as RunFolder's.
   void Fill(RunFigures& figures);
