@@ -22,6 +22,7 @@ TEST(FciDriverTest, SuccessRateIsThatBeforeStop) {
   hal::Arm& arm = driver.Connect(/*allow_motion=*/true);
   set_up.join();
   hal::ArmState state;
+  robot.SendState();
   ASSERT_TRUE(arm.Read(state).ok());
   hal::ArmCommand command;
   command.num_joints = 7;
