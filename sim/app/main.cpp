@@ -254,7 +254,8 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
   serve.add_option("--jitter-ms", server.faults.jitter_ms, "up to this much more")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
-  serve.add_flag("--json", arguments.json, "print the counters as JSON at the end");
+  serve.add_option("--out", arguments.options.out, "the folder for summary.json; none when not given");
+  serve.add_flag("--json", arguments.json, "print summary.json at the end");
   serve.footer(
       "What may be typed, a word a line: s presses the stop button, and again releases it; g the enabling\n"
       "button at the hand, which lets a person guide it; f X Y Z pulls at the hand from now on [N]; h hangs\n"

@@ -1,16 +1,22 @@
 #include "sim/app/serve.hpp"
 
 #include <fmt/format.h>
+
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <iterator>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <span>
 #include <thread>
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/share_folder.hpp"
+#include "firmware/host/run/run_figures.hpp"
+#include "firmware/host/run/run_folder.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
 #include "sim/run/network_eye.hpp"
@@ -18,6 +24,7 @@
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/scenario/run_description.hpp"
 #include "sim/scenario/serve_keys.hpp"
+#include "sim/verdict/contact_count.hpp"
 #include "sim/verdict/target_error.hpp"
 
 namespace fovea::sim {
@@ -73,6 +80,17 @@ void CheckIsPanda(const RunDescription& about) {
   }
 }
 
+void FillError(const TargetError& error, ServeSummary& summary) {
+  constexpr double kMmPerM = 1e3;
+  summary.error_px = error.error_px;
+  summary.error_mm = kMmPerM * error.error_C.norm();
+  summary.error_lateral_mm = kMmPerM * error.error_C.head<2>().norm();
+  summary.error_depth_mm = kMmPerM * std::fabs(error.error_C.z());
+  if (error.error_rad) {
+    summary.error_deg = *error.error_rad * 180.0 / std::numbers::pi;
+  }
+}
+
 }  // namespace
 
 ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const Say& say) {
@@ -94,7 +112,10 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
     eye.emplace(about, world, options.address, options.camera_serial, config.lockstep);
     config.after_step = [&eye] { eye->Advance(); };
   }
+  ContactCount contacts;
+  world.OnStep([&contacts](const Truth& truth) { contacts.Add(truth.contacts); });
   FciServer server(robot, config);
+  run::RunFolder folder({options.out, std::nullopt, {}});  // after all else that can be refused
   say(fmt::format("serving scenario {} at {}:{}, {} pace", scenario.name, options.address, server.port(),
                   config.lockstep ? "lockstep" : "real"));
   if (eye) {
@@ -102,6 +123,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
                     about.pinhole.width_px, about.pinhole.height_px));
   }
 
+  ServeSummary summary;
   std::atomic<bool> stop{false};
   std::exception_ptr failure;
   std::mutex saying;
@@ -112,7 +134,8 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   std::jthread thread([&] {
     try {
       if (!config.lockstep) {
-        for (const std::string& line : linux_rt::MakeThreadRealtime({})) {
+        summary.realtime_missing = linux_rt::MakeThreadRealtime({});
+        for (const std::string& line : summary.realtime_missing) {
           say_from_any("real time: " + line);
         }
       }
@@ -138,18 +161,22 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   if (failure) {
     std::rethrow_exception(failure);
   }
-  ServeSummary summary;
+  summary.scenario = scenario.name;
+  summary.seed = scenario.run.seed;
+  summary.pace = config.lockstep ? "lockstep" : "real";
+  summary.sim_time_s = static_cast<double>(world.now_ns()) * 1e-9;
   summary.robot = server.counters();
+  summary.contact_ticks = contacts.any();
+  summary.contacts = contacts.by_what();
   if (eye) {
     if (!eye->fault().empty()) {
       throw std::runtime_error("the camera broke: " + eye->fault());
     }
     summary.frames_sent = eye->sent();
     summary.frames_dropped = eye->dropped();
-    const TargetError error = ErrorOf(world.truth(), about.pinhole, GoalOf(about.servo.feature));
-    summary.error_px = error.error_px;
-    summary.error_mm = 1e3 * error.error_C.norm();
+    FillError(ErrorOf(world.truth(), about.pinhole, GoalOf(about.servo.feature)), summary);
   }
+  folder.Write(ToJson(summary));
   return summary;
 }
 
@@ -159,20 +186,35 @@ std::string ToJson(const ServeSummary& s) {
     return value ? Json(*value) : Json(nullptr);
   };
   const FciServerCounters& c = s.robot;
-  const Json json{{"clients", c.clients},
-                  {"refused_clients", c.refused_clients},
-                  {"states", c.states},
-                  {"commands", c.commands},
-                  {"missing", c.missing},
-                  {"unused", c.unused},
-                  {"malformed", c.malformed},
-                  {"overruns", c.overruns},
-                  {"given_up_ms", static_cast<double>(c.given_up_ns) / hal::kNsPerMs},
-                  {"frames_sent", s.frames_sent},
-                  {"frames_dropped", s.frames_dropped},
-                  {"error_px", or_null(s.error_px)},
-                  {"error_mm", or_null(s.error_mm)}};
-  return json.dump(2) + "\n";
+  Json json;
+  run::BeginSummary(json);
+  json.update(Json{
+      {"scenario", s.scenario},
+      {"seed", s.seed},
+      {"pace", s.pace},
+      {"sim_time_s", s.sim_time_s},
+      {"clients", c.clients},
+      {"refused_clients", c.refused_clients},
+      {"states", c.states},
+      {"commands", c.commands},
+      {"missing", c.missing},
+      {"unused", c.unused},
+      {"malformed", c.malformed},
+      {"overruns", c.overruns},
+      {"given_up_ms", static_cast<double>(c.given_up_ns) / hal::kNsPerMs},
+      {"frames_sent", s.frames_sent},
+      {"frames_dropped", s.frames_dropped},
+      {"error_px", or_null(s.error_px)},
+      {"error_mm", or_null(s.error_mm)},
+      {"error_lateral_mm", or_null(s.error_lateral_mm)},
+      {"error_depth_mm", or_null(s.error_depth_mm)},
+      {"error_deg", or_null(s.error_deg)},
+      {"contact_ticks", s.contact_ticks},
+      {"contacts", {{"bench", s.contacts.bench}, {"target", s.contacts.target}, {"self", s.contacts.self}}},
+      {"realtime_missing", s.realtime_missing}});
+  run::AddBuild(json);
+  // A scenario's file may have any name.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace fovea::sim

@@ -1,14 +1,14 @@
-// What a run leaves behind: films, log, report, pictures and summary, gathered while it goes on.
+// What only a simulated run leaves behind, gathered while it goes on: the truth in its log, pictures, the
+// film of its bench. Log, report and summary are the run's shell's.
 #pragma once
 
 #include <future>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "firmware/host/config/output_folder.hpp"
-#include "firmware/host/run/run_book.hpp"
+#include "firmware/host/run/run_shell.hpp"
 #include "sim/run/path.hpp"
 #include "sim/run/pictures.hpp"
 #include "sim/run/scene_film.hpp"
@@ -25,45 +25,35 @@ struct RunFilesConfig {
   bool replayable = true;     // the servo's inputs are those that are recorded
 };
 
+// Of the shell that RunFiles is then made with.
+run::RunFolderConfig FolderOf(const RunDescription& about, const RunFilesConfig& config);
+
 class RunFiles {
  public:
-  // `about` must outlive it. InputError when nothing can be written there; std::runtime_error when the
-  // report's page is not there.
-  RunFiles(const RunDescription& about, const RunFilesConfig& config);
+  // `about` and `shell` must outlive it. std::runtime_error: the bench cannot be drawn here.
+  RunFiles(const RunDescription& about, const RunFilesConfig& config, run::RunShell& shell);
 
   // From the thread that advances the world.
   void AddTruth(const Truth& truth);
   void AddExposure(const Exposure& exposure);
   void AddTheory(const TheorySample& sample);
-  // From the thread that empties the recorder.
-  void AddRecord(const flight::FlightRecord& record);
-  void AddKeyframe(const flight::Keyframe& keyframe);
   // From the vision thread. `X_CO`: where the target really was.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
 
-  // When the threads are done: completes the films, and says what was kept and what was not. A film that
-  // fails is left out, and that is all.
-  run::BookFigures EndFilms();
+  // When the threads are done: completes the bench's film, and says what was kept of it and of the frames. A
+  // film that fails is left out, and that is all.
+  void Fill(Summary& summary);
 
-  [[nodiscard]] bool HasLog() const { return book_.has_value(); }
-  // When the threads are done: frames that the vision task got, and in how many it found the target.
-  [[nodiscard]] std::uint64_t frames() const { return frames_.frames(); }
-  [[nodiscard]] std::uint64_t frames_detected() const { return frames_.detected(); }
-
-  // Puts everything in place; `end` is the bench as it is at the end. Throws what went wrong with any of it;
-  // then the folder is as it was, but for a log that could not be written on: it stands there alone.
-  void Write(const Summary& summary, const Exposure& end, const linux_rt::DurationHistogram& ticks);
-  // From any thread, when the process ends before Write is done: the log stands there alone, as far as it
-  // goes.
-  void KeepLog() const;
+  // After the shell's Fill: puts everything in place, as RunShell::Write; `end` is the bench as it is at the
+  // end.
+  void Write(const Summary& summary, const Exposure& end);
 
  private:
   // The pictures of the eye, the film of the bench, and, where one is asked for, its picture.
   std::vector<config::OutputFile> PicturesAndScene(std::future<std::string> bench);
 
   const RunDescription& about_;
-  std::optional<run::RunBook> book_;            // with films, log and report
-  std::optional<config::OutputFolder> folder_;  // without
+  run::RunShell& shell_;
   std::unique_ptr<SceneFilm> scene_film_;
   bool has_scene_film_ = false;  // and it is complete
   FrameKeeper frames_;

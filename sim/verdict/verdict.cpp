@@ -49,11 +49,7 @@ void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
   }
   barriers_.Add(truth, mode);
   unwanted_.Add(truth, mode);
-  const Contacts& contacts = truth.contacts;
-  contact_ticks_ += contacts.Any() ? 1U : 0U;
-  contacts_.bench += contacts.bench > 0 ? 1U : 0U;
-  contacts_.target += contacts.target ? 1U : 0U;
-  contacts_.self += contacts.self ? 1U : 0U;
+  contacts_.Add(truth.contacts);
 }
 
 void Verdict::AddSample(const Sample& sample) {
@@ -140,8 +136,8 @@ void Verdict::Fill(Summary& summary) const {
   summary.limit_violations = passed_ns.size();
   summary.limit_ticks = limit_ticks_;
   summary.measurements = measurements_;
-  summary.contact_ticks = contact_ticks_;
-  summary.contacts = contacts_;
+  summary.contact_ticks = contacts_.any();
+  summary.contacts = contacts_.by_what();
   summary.unwanted_motion = unwanted_.by_mode();
   summary.faults = faults_;
   summary.modes = modes_;
@@ -158,7 +154,7 @@ void Verdict::Fill(Summary& summary) const {
   } else {
     FillStill(summary);
   }
-  if (summary.converged && contact_ticks_ > 0) {
+  if (summary.converged && contacts_.any() > 0) {
     summary.converged = false;
     summary.verdict = Touched(summary);
   } else if (!summary.converged) {
@@ -201,11 +197,11 @@ void Verdict::FillMotion(Summary& summary) const {
       return;
     }
   }
-  summary.verdict = !faults_.empty()     ? "a fault stopped the arm: " + faults_.front().name
-                    : contact_ticks_ > 0 ? Touched(summary)
-                    : refused            ? "the commanded motion was refused (see modes and limits)"
-                    : summary.converged  ? "the commanded motion was followed"
-                                         : "a limit was passed";
+  summary.verdict = !faults_.empty()      ? "a fault stopped the arm: " + faults_.front().name
+                    : contacts_.any() > 0 ? Touched(summary)
+                    : refused             ? "the commanded motion was refused (see modes and limits)"
+                    : summary.converged   ? "the commanded motion was followed"
+                                          : "a limit was passed";
 }
 
 void Verdict::FillStill(Summary& summary) const {

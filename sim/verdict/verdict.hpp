@@ -12,6 +12,7 @@
 #include "sim/scenario/commanded_motion.hpp"
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/verdict/barriers.hpp"
+#include "sim/verdict/contact_count.hpp"
 #include "sim/verdict/limit_book.hpp"
 #include "sim/verdict/notice_book.hpp"
 #include "sim/verdict/summary.hpp"
@@ -81,8 +82,7 @@ class Verdict {
   std::optional<double> last_outside_s_;
   double second_half_px2_ = 0.0;  // sum of squares
   std::uint64_t second_half_samples_ = 0;
-  std::uint64_t contact_ticks_ = 0;
-  ContactTicks contacts_;
+  ContactCount contacts_;
   double home_error_ = 0.0;  // largest of the joints', at the last truth [rad]
   std::optional<double> at_rest_since_s_;
   std::optional<double> goal_kept_since_s_;

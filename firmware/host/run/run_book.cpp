@@ -23,7 +23,6 @@ namespace {
 const std::string kLog = "log.mcap";
 const std::string kFilm = "camera.mp4";
 const std::string kReport = "report.html";
-const std::string kSummary = "summary.json";
 
 log::RunLogConfig LogConfig(const RunFacts& facts, const RunBookOptions& options,
                             const std::filesystem::path& path) {

@@ -57,6 +57,8 @@ struct RunBookOptions {
 
 class RunBook {
  public:
+  static constexpr const char* kSummary = "summary.json";
+
   // Holds the folder `out`. InputError when nothing can be written there; std::runtime_error when the
   // report's page is not there.
   RunBook(const std::filesystem::path& out, RunFacts facts, RunBookOptions options);

@@ -59,6 +59,10 @@ void AddFigures(const RunFigures& figures, nlohmann::ordered_json& json) {
                      {"max", figures.tick_ns_max}};
   json["realtime_missing"] = figures.realtime_missing;
   json["log_hash"] = figures.log_hash;
+  AddBuild(json);
+}
+
+void AddBuild(nlohmann::ordered_json& json) {
   json["servo"] = kServoLibraryHash;
   json["git"] = kGitRevision;
   json["version"] = kVersion;

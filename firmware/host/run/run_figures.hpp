@@ -50,7 +50,9 @@ void FillBook(const BookFigures& book, RunFigures& figures);
 
 // The first field of every summary.json: the version of its fields.
 void BeginSummary(nlohmann::ordered_json& json);
-// The fields above, by their names there, and what the program was built from.
+// The fields above, by their names there, and AddBuild's.
 void AddFigures(const RunFigures& figures, nlohmann::ordered_json& json);
+// The last fields: what the program was built from.
+void AddBuild(nlohmann::ordered_json& json);
 
 }  // namespace fovea::run

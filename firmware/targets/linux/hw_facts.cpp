@@ -20,8 +20,6 @@ double Reach(const features::TargetFeature& target) {
   return reach;
 }
 
-}  // namespace
-
 run::RunFacts FactsOf(const HwConfig& config, const robots::Robot& robot, const config::ServoConfig& servo,
                       double duration_s) {
   run::RunFacts facts;
@@ -42,14 +40,22 @@ run::RunFacts FactsOf(const HwConfig& config, const robots::Robot& robot, const 
   return facts;
 }
 
-run::RunBookOptions BookOptions(const HwConfig& config) {
-  run::RunBookOptions options;
-  options.may_drop = true;
-  options.ring = kRing;
-  options.most_images = kMostImages;
-  options.film = config.log.film;
-  options.picture_rate_hz = config.log.picture_rate_hz;
-  return options;
+}  // namespace
+
+run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot,
+                              const config::ServoConfig& servo, const std::string& out, double duration_s) {
+  run::RunFolderConfig folder;
+  if (out.empty()) {
+    return folder;
+  }
+  folder.out = out;
+  folder.facts = FactsOf(config, robot, servo, duration_s);
+  folder.options.may_drop = true;
+  folder.options.ring = kRing;
+  folder.options.most_images = kMostImages;
+  folder.options.film = config.log.film;
+  folder.options.picture_rate_hz = config.log.picture_rate_hz;
+  return folder;
 }
 
 }  // namespace fovea::hw

@@ -1,17 +1,17 @@
 // What a run on hardware is about, for what it leaves behind.
 #pragma once
 
+#include <string>
+
 #include "firmware/host/robots/robot.hpp"
-#include "firmware/host/run/run_book.hpp"
+#include "firmware/host/run/run_folder.hpp"
 #include "firmware/targets/linux/hw_config.hpp"
 
 namespace fovea::hw {
 
-// `duration_s`: 0 when nobody knows.
-run::RunFacts FactsOf(const HwConfig& config, const robots::Robot& robot, const config::ServoConfig& servo,
-                      double duration_s);
-
-// Nobody waits for a disk.
-run::RunBookOptions BookOptions(const HwConfig& config);
+// What it leaves in the folder `out`; empty: nothing. Nobody waits for a disk. `duration_s`: 0 when nobody
+// knows.
+run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot,
+                              const config::ServoConfig& servo, const std::string& out, double duration_s);
 
 }  // namespace fovea::hw

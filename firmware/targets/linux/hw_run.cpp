@@ -11,8 +11,7 @@
 #include <thread>
 #include <utility>
 
-#include "firmware/host/recording/flight/flight_recorder.hpp"
-#include "firmware/host/recording/log/record_hash.hpp"
+#include "firmware/host/run/run_shell.hpp"
 #include "firmware/targets/linux/await_leave.hpp"
 #include "firmware/targets/linux/hw_facts.hpp"
 #include "firmware/targets/linux/operator_thread.hpp"
@@ -24,7 +23,7 @@
 namespace fovea::hw {
 namespace {
 
-constexpr std::size_t kRingCapacity = 8192;  // records; eight seconds
+constexpr std::size_t kRecords = 8192;  // that may wait: eight seconds at 1 kHz
 constexpr std::size_t kFindings = 16;
 constexpr std::chrono::milliseconds kLook{10};
 constexpr std::chrono::milliseconds kSayLast{300};  // before the summary counts what could not be said
@@ -48,16 +47,14 @@ class Session {
         watch_(summary_, speaker),
         robot_link_(ArmDriverOf(config).make(config)),
         clock_(robot_link_->robot_time() != nullptr ? *robot_link_->robot_time() : monotonic_),
-        recorder_(task_, options.out.empty() ? nullptr : &task_, kRingCapacity),
+        shell_(task_, &task_, kRecords, FolderOf(config, robot_, servo_, options.out, options.duration_s)),
         operator_({.dead_man_s = config.input.dead_man_s, .allow_motion = options.allow_motion}, clock_,
                   signals, control_) {
     // Checked by MakeServoConfig already; it is refused there, in words.
     static_cast<void>(task_.Init(servo_));
     summary_.config = config.name;
     summary_.allow_motion = options.allow_motion;
-    if (!options.out.empty()) {
-      book_.emplace(options.out, FactsOf(config, robot_, servo_, options.duration_s), BookOptions(config));
-    }
+    shell_.OnRecord([this](const flight::FlightRecord& flown) { Observe(flown.record); });
     if (config.HasCamera()) {
       OpenCamera();
     }
@@ -82,11 +79,9 @@ class Session {
  private:
   void OpenCamera() {
     try {
-      vision_.emplace(config_, servo_.feature, clock_.NowNs(), features_,
+      vision_.emplace(config_, servo_.feature, clock_.NowNs(), shell_.features(),
                       [this](const hal::Frame& frame, const vision::Detection& detection) {
-                        if (book_) {
-                          book_->AddFrame(frame, detection);
-                        }
+                        shell_.AddFrame(frame, detection);
                       });
       speaker_.Say(fmt::format("camera: {}", vision_->name()));
     } catch (const std::exception& error) {
@@ -99,8 +94,7 @@ class Session {
 
   // The real-time thread.
   void RunServo() {
-    summary_.realtime_missing =
-        linux_rt::MakeThreadRealtime({.fifo_priority = config_.loop.priority, .cpu = config_.loop.cpu});
+    shell_.MakeThreadRealtime({.fifo_priority = config_.loop.priority, .cpu = config_.loop.cpu});
     // Last of all: from now on the robot sends a state each millisecond.
     try {
       if (!control_.ended) {
@@ -117,9 +111,9 @@ class Session {
 
   void Connect() {
     arm_ = &robot_link_->Connect(options_.allow_motion);
-    loop_.emplace(recorder_, *arm_, clock_, features_, recorder_, meter_);
+    task::ServoLoop& loop = shell_.BeginLoop(*arm_, clock_);
     control_.arm = robot_link_.get();
-    control_.loop = &*loop_;
+    control_.loop = &loop;
     GiveLeave(config_.input.dead_man_s, clock_, control_);
   }
 
@@ -127,25 +121,24 @@ class Session {
     if (!options_.allow_motion ||
         AwaitLeave(config_, robot_.model, options_.enable, *arm_, clock_, control_, findings_)) {
       if (options_.track) {
-        loop_->Ask(task::Request::kTrack);
+        shell_.loop()->Ask(task::Request::kTrack);
       }
-      RunLoop();
+      RunLoop(*shell_.loop());
     }
-    summary_.robot = robot_link_->figures();
     robot_link_->Stop();
   }
 
-  void RunLoop() {
+  void RunLoop(task::ServoLoop& loop) {
     if (control_.ended) {
       return;
     }
     constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
     const double duration_ns = options_.duration_s * static_cast<double>(hal::kNsPerSecond);
     status_ =
-        loop_->Run(duration_ns > 0.0 ? clock_.NowNs() + static_cast<std::int64_t>(duration_ns) : kForEver);
+        loop.Run(duration_ns > 0.0 ? clock_.NowNs() + static_cast<std::int64_t>(duration_ns) : kForEver);
     if (status_.ok() && options_.allow_motion && !control_.ended) {
-      loop_->Finish();
-      status_ = loop_->Run(kForEver);
+      loop.Finish();
+      status_ = loop.Run(kForEver);
     }
   }
 
@@ -160,7 +153,7 @@ class Session {
     });
     TellLease();
     operator_.Drain([this](const Heard& heard) { Tell(heard); });
-    TakeRecords();
+    shell_.TakeRecords();
     LookAtRecovery();
     LookAtCamera();
     // Before that the servo would find the same fault again.
@@ -214,14 +207,15 @@ class Session {
       look_.reset();
       Tell(*finding, "recover");
       if (finding->passed) {
-        loop_->Ask(task::Request::kReset);
+        shell_.loop()->Ask(task::Request::kReset);
         speaker_.Say("recovered: the servo holds; \"track\" asks for motion anew");
       }
     }
   }
 
   void TellLease() {
-    const std::uint64_t ends = control_.loop != nullptr ? loop_->lease_ends() : 0;
+    const task::ServoLoop* loop = control_.loop;
+    const std::uint64_t ends = loop != nullptr ? loop->lease_ends() : 0;
     if (ends > lease_ends_told_) {
       lease_ends_told_ = ends;
       summary_.operator_silent = true;
@@ -248,20 +242,9 @@ class Session {
     }
   }
 
-  void TakeRecords() {
-    const auto take = [this](const flight::FlightRecord& flown) {
-      watch_.Add(flown.record, flown.record.tick >= loop_->finish_tick());
-      LookBeforeReset(flown.record.arm);
-      hash_.Add(flown.record);
-      if (book_) {
-        book_->AddRecord(flown);
-      }
-    };
-    recorder_.Drain(take, [this](const flight::Keyframe& keyframe) {
-      if (book_) {
-        book_->AddKeyframe(keyframe);
-      }
-    });
+  void Observe(const hal::TickRecord& record) {
+    watch_.Add(record, record.tick >= shell_.loop()->finish_tick());
+    LookBeforeReset(record.arm);
   }
 
   void LookAtRecovery() {
@@ -279,40 +262,32 @@ class Session {
   }
 
   void Summarise() {
+    // Said before any file is waited for.
     if (!status_.ok()) {
       watch_.Say(fmt::format("the loop ended: {} ({})", hal::ToString(status_.code()), status_.where()));
     }
     if (const char* why = robot_link_->failure()) {
       watch_.Say(fmt::format("the robot: {}", why));
     }
-    for (const std::string& line : summary_.realtime_missing) {
+    for (const std::string& line : shell_.realtime_missing()) {
       speaker_.Say("real time: " + line);
     }
     if (vision_) {
       summary_.camera = vision_->Finish();
       summary_.seen = vision_->seen();
     }
-    if (loop_) {
-      run::FillTicks(loop_->counters(), meter_, summary_);
-      summary_.dead_man_holds = loop_->counters().lease_ends;
-      const double success_rate = summary_.robot.command_success_rate;  // before the end
+    if (const task::ServoLoop* loop = shell_.loop()) {
+      summary_.dead_man_holds = loop->lease_ends();
       summary_.robot = robot_link_->figures();
-      summary_.robot.command_success_rate = success_rate;
     }
-    summary_.records_dropped = recorder_.dropped();
-    summary_.log_hash = hash_.Finish();
+    shell_.Fill(summary_);
     Judge(summary_);
-    if (book_) {
-      run::FillBook(book_->EndFilm(), summary_);
-      for (const std::string& error : summary_.film_errors) {
-        watch_.Say(error);
-      }
+    for (const std::string& error : summary_.film_errors) {
+      watch_.Say(error);
     }
     speaker_.Wait(kSayLast);
     summary_.lines_unsaid = speaker_.unsaid();
-    if (book_) {
-      book_->Write(ToJson(summary_), meter_.durations());
-    }
+    shell_.Write(ToJson(summary_));
   }
 
   const HwConfig& config_;
@@ -333,14 +308,9 @@ class Session {
   bool camera_failed_ = false;
   std::optional<LeaveLook> look_;  // after a recovery
   std::uint64_t looked_at_ = 0;    // the number of its newest state
-  hal::FeatureMailbox features_;
-  std::optional<run::RunBook> book_;  // the vision thread uses it
-  std::optional<HwVision> vision_;
-  hal::Arm* arm_ = nullptr;  // once connected
-  flight::FlightRecorder recorder_;
-  linux_rt::TickMeter meter_;
-  log::RecordHash hash_;
-  std::optional<task::ServoLoop> loop_;
+  run::RunShell shell_;
+  std::optional<HwVision> vision_;  // its thread uses the shell
+  hal::Arm* arm_ = nullptr;         // once connected
   hal::Status status_;
   std::exception_ptr failure_;  // why there is no connection
   OperatorThread operator_;     // last: it uses the loop, the arm and the clock

@@ -32,7 +32,8 @@ struct RobotFigures {
   std::uint64_t commands = 0;     // sent
   // What the driver counts beside these, by its name in summary.json.
   std::vector<std::pair<std::string, std::uint64_t>> counters;
-  double command_success_rate = 0.0;  // of the last commands, by the robot
+  // Of the last commands, by the robot; of those before Stop, once that was called.
+  double command_success_rate = 0.0;
 };
 
 class ArmDriver {

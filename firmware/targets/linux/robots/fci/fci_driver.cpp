@@ -52,6 +52,12 @@ hal::Arm& FciDriver::Connect(bool allow_motion) {
   return arm_.emplace(FrankaConfigOf(config_, allow_motion), by_robot_ ? &robot_time_ : nullptr);
 }
 
+// The robot counts over its last states, and while a motion is ended it sends some that want no command.
+void FciDriver::Stop() noexcept {
+  success_rate_ = arm_->robot_state().control_command_success_rate;
+  arm_->Stop();
+}
+
 const char* FciDriver::failure() const noexcept {
   return arm_ && arm_->phase() == franka::MotionPhase::kFailed ? arm_->failure() : nullptr;
 }
@@ -70,7 +76,7 @@ RobotFigures FciDriver::figures() const {
            {"rate_limited", c.rate_limited},
            {"timeouts", c.timeouts},
            {"motions", c.motions}},
-          arm_->robot_state().control_command_success_rate};
+          success_rate_.value_or(arm_->robot_state().control_command_success_rate)};
 }
 
 franka::FrankaConfig FrankaConfigOf(const HwConfig& config, bool allow_motion) {

@@ -36,7 +36,7 @@ class FciDriver final : public ArmDriver {
   [[nodiscard]] std::string address() const override;
   void Check(const HwConfig& config, const robots::Robot& robot, std::vector<CheckRow>& rows) override;
   hal::Arm& Connect(bool allow_motion) override;
-  void Stop() noexcept override { arm_->Stop(); }
+  void Stop() noexcept override;
   void AskRecovery() noexcept override { arm_->AskRecovery(); }
   [[nodiscard]] const char* TakeRecoveryRefusal() noexcept override {
     return arm_ ? arm_->TakeRecoveryRefusal() : nullptr;
@@ -50,6 +50,7 @@ class FciDriver final : public ArmDriver {
   const bool by_robot_;
   franka::RobotClock robot_time_;
   std::optional<franka::FrankaArm> arm_;
+  std::optional<double> success_rate_;  // when Stop was told to end the motion
 };
 
 // What the robot is told.

@@ -1,0 +1,82 @@
+#include "sim/run/sim_vision.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "firmware/host/recording/trace/vision_trace.hpp"
+#include "fovea/linux_rt/realtime.hpp"
+#include "sim/scenario/compose.hpp"
+#include "sim/scenario/fault_settings.hpp"
+
+namespace fovea::sim {
+
+SimVision::SimVision(const RunDescription& about, Observer observer)
+    : about_(about),
+      observer_(std::move(observer)),
+      task_(config::MakeVisionConfig(about.scenario.vision, about.intrinsics, about.scenario.target)),
+      detector_(delay_, MakeDetectorFaults(about.scenario.faults,
+                                           SeedOf(about.scenario, RandomStream::kDetectorFaults))),
+      frame_faults_(
+          MakeFrameFaults(about.scenario.faults, SeedOf(about.scenario, RandomStream::kFrameFaults))) {}
+
+SimVision::~SimVision() { End(); }
+
+void SimVision::Open(std::size_t queue, RunTrace* trace) {
+  trace_ = trace;
+  eye_.emplace(about_, queue, trace);
+}
+
+void SimVision::Begin() {
+  thread_ = std::thread([this] { Run(); });
+}
+
+void SimVision::End() {
+  if (thread_.joinable()) {
+    eye_->camera().Close();
+    thread_.join();
+  }
+}
+
+void SimVision::Run() {
+  linux_rt::MakeThreadYielding("fovea-vision");
+  std::optional<trace::VisionTrace> traced;
+  if (trace_ != nullptr) {
+    traced.emplace(trace_->vision(), eye_->camera(), detector_);
+  }
+  try {
+    const hal::Status status =
+        vision::RunVision(traced ? static_cast<hal::Camera&>(*traced) : eye_->camera(), task_,
+                          traced ? static_cast<hal::FeatureSink&>(*traced) : detector_, never_stop_,
+                          [this](const hal::Frame& frame, const vision::Detection& detection) {
+                            observer_(frame, detection, targets_.Take(frame.sequence));
+                          });
+    static_cast<void>(status);  // an orderly end, or a fault that the camera keeps the words for
+  } catch (...) {
+    failure_ = std::current_exception();
+  }
+  delay_.Close();
+}
+
+bool SimVision::Expose(const Exposure& exposure) {
+  std::optional<Exposure> taken = frame_faults_.Spoil(exposure);
+  if (!taken) {
+    return false;
+  }
+  const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);
+  targets_.Put(exposure.sequence,
+               {exposure.X_BC.linear().transpose() * exposure.R_BO, exposure.X_BC.inverse() * exposure.p_BO});
+  delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns + frame_faults_.DelayNs(exposure.stamp_ns));
+  eye_->camera().Expose(*std::move(taken));
+  return true;
+}
+
+void SimVision::RethrowFailure() const {
+  if (failure_) {
+    std::rethrow_exception(failure_);
+  }
+  if (eye_ && !eye_->camera().fault().empty()) {
+    throw std::runtime_error("the camera broke during the run: " + eye_->camera().fault());
+  }
+}
+
+}  // namespace fovea::sim

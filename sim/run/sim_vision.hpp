@@ -1,0 +1,75 @@
+// The eye of a simulated run: from an exposure to a measurement that is due. Rendered camera, vision task on
+// a thread of its own, the faults of frames and detector, and the modelled latency.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "firmware/vision/detect/vision_task.hpp"
+#include "sim/faults/faulty_detector.hpp"
+#include "sim/faults/frame_faults.hpp"
+#include "sim/run/eye.hpp"
+#include "sim/run/trace.hpp"
+#include "sim/scenario/run_description.hpp"
+#include "sim/verdict/target_log.hpp"
+#include "sim/world/feature_delay.hpp"
+
+namespace fovea::sim {
+
+class SimVision {
+ public:
+  // Called by the vision thread for each frame; `X_CO`: where the target really was.
+  using Observer = std::function<void(const hal::Frame& frame, const vision::Detection& detection,
+                                      const model::Pose& X_CO)>;
+
+  // `about` must outlive it. InputError: the detector cannot be as [vision] says.
+  SimVision(const RunDescription& about, Observer observer);
+  ~SimVision();
+  SimVision(const SimVision&) = delete;
+  SimVision& operator=(const SimVision&) = delete;
+
+  // Where the scenario has a camera: opens it. `queue`: see SimCameraConfig. `trace`: of the run, or null; it
+  // must outlive this. InputError, std::runtime_error: it cannot be drawn here.
+  void Open(std::size_t queue, RunTrace* trace);
+  // Once it is open: the vision thread begins.
+  void Begin();
+  // Closes the camera, and waits for the vision thread. Nothing is done where there is none.
+  void End();
+
+  // From the world's thread. The shutter opens; false: the frame is lost.
+  bool Expose(const Exposure& exposure);
+  // What is due goes to `servo`; see FeatureDelay.
+  bool HandOver(std::int64_t now_ns, bool wait, hal::FeatureSink& servo) {
+    return delay_.HandOver(now_ns, wait, servo);
+  }
+
+  // All that follows after End. What the vision thread threw; std::runtime_error: the camera broke.
+  void RethrowFailure() const;
+  [[nodiscard]] const vision::FrameFailures& failures() const { return task_.failures(); }
+  [[nodiscard]] std::uint64_t frames_lost() const { return eye_ ? eye_->camera().lost() : 0; }
+  // Who draws; "nothing" where there is no camera.
+  [[nodiscard]] std::string renderer() const { return eye_ ? eye_->driver_name() : "nothing"; }
+
+ private:
+  void Run();
+
+  const RunDescription& about_;
+  const Observer observer_;
+  vision::VisionTask task_;
+  FeatureDelay delay_;
+  FaultyDetector detector_;
+  FrameSpoiler frame_faults_;
+  TargetLog targets_;
+  RunTrace* trace_ = nullptr;
+  std::optional<Eye> eye_;
+  const std::atomic<bool> never_stop_{false};  // the thread ends when the camera closes
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace fovea::sim
