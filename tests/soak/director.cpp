@@ -213,8 +213,9 @@ void Director::Measure(std::int64_t now_ns, const sim::Truth& truth, const hal::
   speed2_.Add(truth.dq.squaredNorm() / n);
   torque2_.Add(model::ToVector(record.command.tau_cmd, n).squaredNorm() / n);
   const estimate::PredictState& predict = state.predict;
-  covariance_ = about_.servo.feature.SeesOrientation() ? predict.poses.best().P.topLeftCorner<3, 3>().trace()
-                                                       : predict.filter.P[0][0].trace();
+  covariance_ = about_.servo.feature.SeesOrientation()
+                    ? predict.hypotheses.plate.best().filter.P.topLeftCorner<3, 3>().trace()
+                    : predict.filter.P[0][0].trace();
 }
 
 void Director::End(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record) {

@@ -8,20 +8,6 @@
 namespace fovea::estimate {
 namespace {
 
-// As a camera-rate servo knows a flat target: of the measurement's poses the one nearest to the estimate;
-// where the corners allow none, the one before stays.
-void HoldNearest(const features::SeenCorners& seen, const model::Mat3& R_CO, model::Pose& X_CO) noexcept {
-  double nearest = -2.0;
-  for (int i = 0; i < seen.num_branches; ++i) {
-    const model::Pose& pose = seen.branches[static_cast<std::size_t>(i)].X_CO;
-    const double likeness = pose.R.cwiseProduct(R_CO).sum();  // 1 + 2 cos of the turn between them
-    if (likeness > nearest) {
-      nearest = likeness;
-      X_CO = pose;
-    }
-  }
-}
-
 // A measurement, and where the camera was when it was true.
 struct Seen {
   const hal::FeatureMeasurement& measurement;
@@ -34,11 +20,12 @@ hal::Intake TakePose(const config::ServoConfig& config, const Seen& seen, Corner
   view.doubt = seen.doubt;
   view.stamp_ns = seen.measurement.stamp_ns;
   view.X_CB = seen.X_BC.Inverse();
-  const hal::Intake intake = UpdatePoses(config.predict, config.feature.corners, view, state.poses);
-  if (intake == hal::Intake::kTaken) {
-    HoldNearest(view.seen, view.X_CB.R * state.poses.best().X_BO.R, state.X_CO_meas);
+  const Verdict verdict = TakeView(config.predict, config.feature.corners, view, state.hypotheses);
+  // Where the corners allow no pose, the one before stays.
+  if (verdict.intake == hal::Intake::kTaken && verdict.pose >= 0) {
+    state.X_CO_meas = view.seen.branches[static_cast<std::size_t>(verdict.pose)].X_CO;
   }
-  return intake;
+  return verdict.intake;
 }
 
 hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, features::LiftedTarget lifted,
@@ -46,11 +33,10 @@ hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, fe
   const model::Mat3& R = seen.X_BC.R;
   const bool is_disc = features::TraitsOf(config.feature.target).body == features::TargetBody::kDisc;
   if (is_disc && seen.measurement.num_poses == 2) {
-    bool changed = false;
-    const int chosen = ChooseDisc(seen.measurement, seen.X_BC, state.disc, changed);
-    const auto& p = seen.measurement.poses[static_cast<std::size_t>(chosen)].p_CO_C;
+    const Verdict verdict = TakeView(seen.measurement, seen.X_BC, state.hypotheses);
+    const auto& p = seen.measurement.poses[static_cast<std::size_t>(verdict.pose)].p_CO_C;
     lifted.p_CO_C = {p[0], p[1], p[2]};
-    if (changed) {  // what was believed of the centre was of the other pose
+    if (verdict.changed) {  // what was believed of the centre was of the other pose
       const int accepted = state.filter.accepted;
       state.filter = TargetFilter{};
       const hal::Intake intake =
@@ -77,8 +63,9 @@ hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, fe
 
 // Where corners are: by the likeliest pose that they allow, or else by what is believed.
 model::Vec3 PlaceOfCorners(const features::SeenCorners& seen, const model::Pose& X_BC,
-                           const PoseChoice& choice) noexcept {
-  return seen.num_branches > 0 ? seen.branches[0].X_CO.p : X_BC.Inverse() * choice.best().X_BO.p;
+                           const PoseHypotheses& hypotheses) noexcept {
+  return seen.num_branches > 0 ? seen.branches[0].X_CO.p
+                               : X_BC.Inverse() * hypotheses.plate.best().filter.X_BO.p;
 }
 
 bool IsInside(const config::Box& box, const model::Vec3& p) noexcept {
@@ -96,8 +83,8 @@ void KeepInside(const config::Box& box, FlatMotion& motion) noexcept {
   }
 }
 
-bool IsKnown(const config::ServoConfig& config, const PredictState& state) noexcept {
-  const int accepted = config.feature.SeesOrientation() ? state.poses.accepted : state.filter.accepted;
+bool HasEnough(const config::ServoConfig& config, const PredictState& state) noexcept {
+  const int accepted = config.feature.SeesOrientation() ? state.hypotheses.accepted : state.filter.accepted;
   return accepted >= config.predict.accepted_min;
 }
 
@@ -105,7 +92,7 @@ bool IsKnown(const config::ServoConfig& config, const PredictState& state) noexc
 FlatMotion BelievedMotion(const config::ServoConfig& config, const PredictState& state,
                           std::int64_t now_ns) noexcept {
   if (config.feature.SeesOrientation()) {
-    return MotionAt(config.predict, state.poses, now_ns);
+    return MotionAt(config.predict, state.hypotheses, now_ns);
   }
   const TargetMotion motion = MotionAt(config.predict, state.filter, now_ns);
   return {{model::Mat3::Identity(), motion.p_BO}, motion.v_BO, model::Vec3::Zero()};
@@ -118,6 +105,19 @@ FlatMotion GoesOn(const LastBelief& belief, std::int64_t now_ns) noexcept {
   motion.X_BO.p += dt * motion.v_BO_B;
   motion.X_BO.R = model::RotationOf(motion.w_BO_B * dt).lazyProduct(motion.X_BO.R);
   return motion;
+}
+
+// What is known of the target once a measurement was taken. `has_enough`: the filter, now; `before`: what was
+// believed until then.
+void NoteTaken(bool has_enough, const LastBelief& before, PredictState& state) noexcept {
+  if (has_enough) {
+    state.knowledge = Knowledge::kKnown;
+  } else if (state.knowledge == Knowledge::kKnown) {
+    state.knowledge = Knowledge::kBegunAnew;
+    state.belief = before;
+  } else if (state.knowledge == Knowledge::kNone) {
+    state.knowledge = Knowledge::kTooLittle;
+  }
 }
 
 }  // namespace
@@ -145,7 +145,7 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
               : !config.feature.Lift(measurement, lifted)) {
     return hal::Intake::kWrongKind;
   }
-  const model::Vec3 p_CO_C = is_flat ? PlaceOfCorners(view.seen, X_BC, state.poses) : lifted.p_CO_C;
+  const model::Vec3 p_CO_C = is_flat ? PlaceOfCorners(view.seen, X_BC, state.hypotheses) : lifted.p_CO_C;
 
   WatchPicture(config.predict, X_BC, p_CO_C, eye);
   PictureView picture{measurement.stamp_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
@@ -160,21 +160,15 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
     return hal::Intake::kOutOfRegion;
   }
 
-  const bool was_known = IsKnown(config, state);
-  const LastBelief before{true, now_ns, BelievedMotion(config, state, now_ns)};
+  const LastBelief before{now_ns, BelievedMotion(config, state, now_ns)};
   const Seen seen{measurement, X_BC, MeasurementDoubt(config, state.history, measurement.stamp_ns, X_BC)};
   const hal::Intake intake =
       is_flat ? TakePose(config, seen, view, state) : TakePosition(config, seen, lifted, state);
   if (intake != hal::Intake::kTaken) {
     return intake;
   }
-  if (was_known && !IsKnown(config, state)) {
-    state.belief = before;
-  } else if (IsKnown(config, state)) {
-    state.belief.active = false;
-  }
-  if (!state.belief.active) {
-    state.has_accepted = true;
+  NoteTaken(HasEnough(config, state), before, state);
+  if (state.knowledge != Knowledge::kBegunAnew) {
     state.accepted_stamp_ns = measurement.stamp_ns;
   }
   return intake;
@@ -183,11 +177,11 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
 Prediction Predict(const config::ServoConfig& config, std::int64_t now_ns, const model::Pose& X_BC,
                    const PredictState& state) noexcept {
   Prediction prediction;
-  if (!state.has_accepted) {
+  if (state.knowledge == Knowledge::kNone) {
     return prediction;
   }
   const bool is_flat = config.feature.SeesOrientation();
-  prediction.known = IsKnown(config, state) || state.belief.active;
+  prediction.known = state.knowledge != Knowledge::kTooLittle;
   prediction.age_ns = now_ns - state.accepted_stamp_ns;
   if (!config.predict.enabled) {
     // As a camera-rate servo does it: the measurement counts until the next one comes.
@@ -198,8 +192,8 @@ Prediction Predict(const config::ServoConfig& config, std::int64_t now_ns, const
     }
     return prediction;
   }
-  FlatMotion motion =
-      state.belief.active ? GoesOn(state.belief, now_ns) : BelievedMotion(config, state, now_ns);
+  FlatMotion motion = state.knowledge == Knowledge::kBegunAnew ? GoesOn(state.belief, now_ns)
+                                                               : BelievedMotion(config, state, now_ns);
   KeepInside(config.predict.target_region, motion);
   prediction.p_BO = motion.X_BO.p;
   prediction.v_BO = motion.v_BO_B;

@@ -7,10 +7,9 @@
 #include <cstdint>
 
 #include "firmware/core/config/servo_config.hpp"
-#include "firmware/core/estimate/disc_choice.hpp"
 #include "firmware/core/estimate/eye_watch.hpp"
 #include "firmware/core/estimate/joint_history.hpp"
-#include "firmware/core/estimate/pose_choice.hpp"
+#include "firmware/core/estimate/pose_hypotheses.hpp"
 #include "firmware/core/estimate/stuck_picture.hpp"
 #include "firmware/core/estimate/target_filter.hpp"
 #include "firmware/core/model/kinematics.hpp"
@@ -18,10 +17,18 @@
 
 namespace fovea::estimate {
 
-// What was believed of the target when a filter had to start anew: the servo goes on by it, as it does while
-// the target is hidden, until the new filter knows enough.
+// What measurements say of the target so far.
+enum class Knowledge : std::uint8_t {
+  kNone,       // none was taken
+  kTooLittle,  // too few were
+  kKnown,
+  kBegunAnew,  // the filter had to start anew and has too few; what was believed before goes on till then,
+               // as it does while the target is hidden
+};
+inline constexpr int kNumKnowledge = 4;
+
+// What was believed of the target when its filter had to start anew.
 struct LastBelief {
-  bool active = false;
   std::int64_t stamp_ns = 0;
   FlatMotion motion;  // at that stamp
 };
@@ -29,22 +36,20 @@ struct LastBelief {
 struct PredictState {
   JointHistory history;
   StuckPicture picture;
-  TargetFilter filter;  // of sphere and circle
-  DiscChoice disc;      // of a circle
-  PoseChoice poses;     // of square and triangle
-  LastBelief belief;
-  bool has_accepted = false;
-  std::int64_t accepted_stamp_ns = 0;  // of the last measurement that went into the filter
+  TargetFilter filter;        // of sphere and circle
+  PoseHypotheses hypotheses;  // of circle, square and triangle
+  Knowledge knowledge = Knowledge::kNone;
+  LastBelief belief;                   // of kBegunAnew
+  std::int64_t accepted_stamp_ns = 0;  // of the last measurement that went into what is believed
   // The last measurement itself, for servo.predict = false.
   model::Pose X_CO_meas;
 
   // Forgets the target; what is known of arm and camera stays.
   void Reset() noexcept {
     filter = TargetFilter{};
-    disc = DiscChoice{};
-    poses = PoseChoice{};
+    hypotheses = PoseHypotheses{};
+    knowledge = Knowledge::kNone;
     belief = LastBelief{};
-    has_accepted = false;
   }
 };
 

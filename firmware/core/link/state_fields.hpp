@@ -113,22 +113,16 @@ void TargetFilterFields(Archive& a, T& f) noexcept {
 }
 
 template <class Archive, class T>
-void DiscFields(Archive& a, T& d) noexcept {
-  a(d.started);
-  Entries(a, d.normal_B);
-  a.Count(d.count, estimate::DiscChoice::kMost);
-  a(d.step);
-  for (auto& view : FirstOf(d.views, d.count)) {
-    for (auto& normal : view.normal_B) {
-      Entries(a, normal);
-    }
-    Entries(a, view.ray_B);
-    a(view.weight);
+void DiscViewFields(Archive& a, T& view) noexcept {
+  for (auto& normal : view.normal_B) {
+    Entries(a, normal);
   }
+  Entries(a, view.ray_B);
+  a(view.weight);
 }
 
 template <class Archive, class T>
-void StillViewFields(Archive& a, T& view) noexcept {
+void PlateViewFields(Archive& a, T& view) noexcept {
   PoseFields(a, view.X_CB);
   SizedEntries(a, view.xy);
   a(view.variance);
@@ -136,35 +130,47 @@ void StillViewFields(Archive& a, T& view) noexcept {
 }
 
 template <class Archive, class T>
-void BranchFields(Archive& a, T& b) noexcept {
-  a(b.filter.stamp_ns);
-  PoseFields(a, b.filter.X_BO);
-  Entries(a, b.filter.v_BO_B);
-  Entries(a, b.filter.a_BO_B);
-  Entries(a, b.filter.w_BO_B);
-  Entries(a, b.filter.P);
-  PoseFields(a, b.X_BO_still);
-  a(b.misfit);
-  a(b.still_misfit);
+void PlatePoseFields(Archive& a, T& pose) noexcept {
+  a(pose.filter.stamp_ns);
+  PoseFields(a, pose.filter.X_BO);
+  Entries(a, pose.filter.v_BO_B);
+  Entries(a, pose.filter.a_BO_B);
+  Entries(a, pose.filter.w_BO_B);
+  Entries(a, pose.filter.P);
+  PoseFields(a, pose.X_BO_still);
+  a(pose.motion_misfit);
 }
 
+template <class Archive, class Set>
+void HypothesisSetFields(Archive& a, Set& set) noexcept {
+  a.Count(set.count, Set::kMost);
+  a.Count(set.believed, Set::kMost - 1);
+  a.Choice(set.stillness, estimate::kNumStillness);
+  a.Count(set.views.count, decltype(set.views)::kMost);
+  a(set.views.step);
+}
+
+// The misfits to the still pose are computed anew before they are looked at.
 template <class Archive, class T>
-void PoseChoiceFields(Archive& a, T& c) noexcept {
-  a.Count(c.num_branches, hal::kMaxPoses);
-  a.Count(c.believed, hal::kMaxPoses - 1);
-  a.Int(c.accepted);
-  a.Int(c.rejected_in_row);
-  a(c.stamp_ns);
-  a(c.is_still);
-  a.Count(c.views.count, estimate::StillViews::kMost);
-  a(c.views.step);
-  for (auto& view : FirstOf(c.views.views, c.views.count)) {
-    StillViewFields(a, view);
+void PoseHypothesesFields(Archive& a, T& h) noexcept {
+  HypothesisSetFields(a, h.disc);
+  for (auto& view : FirstOf(h.disc.views.views, h.disc.views.count)) {
+    DiscViewFields(a, view);
   }
-  StillViewFields(a, c.views.here);
-  for (auto& branch : FirstOf(c.branches, c.num_branches)) {
-    BranchFields(a, branch);
+  for (auto& normal : FirstOf(h.disc.all, h.disc.count)) {
+    Entries(a, normal.normal_B);
   }
+  HypothesisSetFields(a, h.plate);
+  for (auto& view : FirstOf(h.plate.views.views, h.plate.views.count)) {
+    PlateViewFields(a, view);
+  }
+  for (auto& pose : FirstOf(h.plate.all, h.plate.count)) {
+    PlatePoseFields(a, pose);
+  }
+  PlateViewFields(a, h.plate_mean);
+  a.Int(h.accepted);
+  a.Int(h.rejected_in_row);
+  a(h.stamp_ns);
 }
 
 template <class Archive, class T>
@@ -334,8 +340,9 @@ void EachGroup(State& s, const Visit& visit) noexcept {
     PoseFields(a, s.predict.picture.X_BC);
     Entries(a, s.predict.picture.p_CO_C);
   });
-  visit(Pace::kMeasurement, "last belief", [&s](auto& a) {
-    a(s.predict.belief.active);
+  visit(Pace::kMeasurement, "knowledge", [&s](auto& a) {
+    a.Choice(s.predict.knowledge, estimate::kNumKnowledge);
+    a(s.predict.accepted_stamp_ns);
     a(s.predict.belief.stamp_ns);
     PoseFields(a, s.predict.belief.motion.X_BO);
     Entries(a, s.predict.belief.motion.v_BO_B);
@@ -353,12 +360,10 @@ void EachGroup(State& s, const Visit& visit) noexcept {
   });
   visit(Pace::kMeasurement, "target filter", [&s](auto& a) {
     TargetFilterFields(a, s.predict.filter);
-    a(s.predict.has_accepted);
-    a(s.predict.accepted_stamp_ns);
     PoseFields(a, s.predict.X_CO_meas);
   });
-  visit(Pace::kMeasurement, "disc choice", [&s](auto& a) { DiscFields(a, s.predict.disc); });
-  visit(Pace::kMeasurement, "pose choice", [&s](auto& a) { PoseChoiceFields(a, s.predict.poses); });
+  visit(Pace::kMeasurement, "pose hypotheses",
+        [&s](auto& a) { PoseHypothesesFields(a, s.predict.hypotheses); });
   visit(Pace::kTick, "mode", [&s](auto& a) { ModeFields(a, s); });
   visit(Pace::kSeeking, "way to the goal", [&s](auto& a) { WayFields(a, s.way); });
   visit(Pace::kTick, "resolved motion", [&s](auto& a) { ResolvedFields(a, s.resolved); });

@@ -41,7 +41,7 @@ void ServoTask::ChooseTheWay() noexcept {
   sight.limits = state_.limits;
   sight.now_ns = state_.now_ns;
   sight.track_since_ns = state_.track_since_ns;
-  sight.is_told_apart = !config_.feature.SeesOrientation() || state_.predict.poses.num_branches == 1;
+  sight.is_told_apart = !config_.feature.SeesOrientation() || state_.predict.hypotheses.plate.count == 1;
   control::ChooseWay(config_, sight, state_.way);
   if (state_.way.by_joints) {
     control::SteerByJoints(state_.way, state_.q, state_.prediction.seen, state_.J_C,
@@ -105,8 +105,9 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     state_.law.task.v *= blend;
     state_.law.task.dq_0 *= blend;
     barriers::ViewedTarget target{config_.feature.Outline(), state_.prediction.seen, state_.J_C};
-    if (state_.predict.disc.started) {
-      target.normal_C = state_.X_BC.R.transpose() * state_.predict.disc.normal_B;
+    const auto& disc = state_.predict.hypotheses.disc;
+    if (disc.count > 0) {
+      target.normal_C = state_.X_BC.R.transpose() * disc.best().normal_B;
     }
     control::ResolveMotion(
         config_, state_.law.task,

@@ -131,7 +131,7 @@ TEST_F(PredictTest, RejectsUnusableMeasurementsWithTheirReason) {
         std::pair{future, Intake::kFromFuture}, std::pair{elsewhere, Intake::kOutOfRegion}}) {
     EXPECT_EQ(TakeMeasurement(config_, 100 * hal::kNsPerMs, m, state, eye_), intake);
     EXPECT_FALSE(Predict(config_, 100 * hal::kNsPerMs, X_BC, state).known);
-    EXPECT_FALSE(state.has_accepted);
+    EXPECT_EQ(state.knowledge, Knowledge::kNone);
   }
 }
 

@@ -22,9 +22,8 @@ namespace {
 static_assert(sizeof(task::InputState) == 232);
 static_assert(sizeof(estimate::ContactState) == 688);
 static_assert(sizeof(estimate::TargetFilter) == 736);
-static_assert(sizeof(estimate::DiscChoice) == 1008);
-static_assert(sizeof(estimate::PoseChoice) == 15704);
-static_assert(sizeof(estimate::PredictState) == 58824);
+static_assert(sizeof(estimate::PoseHypotheses) == 16792);
+static_assert(sizeof(estimate::PredictState) == 58896);
 static_assert(sizeof(estimate::EncoderWatch) == 904);
 static_assert(sizeof(estimate::EyeWatch) == 184);
 static_assert(sizeof(task::ModeState) == 5);
@@ -32,7 +31,7 @@ static_assert(sizeof(control::WayToGoal) == 800);
 static_assert(sizeof(control::ResolvedMotion) == 88);
 static_assert(sizeof(moves::MotionState) == 16160);
 static_assert(sizeof(motion_laws::MotionLawState) == 232);
-static_assert(sizeof(task::ServoState) == 82888);
+static_assert(sizeof(task::ServoState) == 82960);
 
 using Buffer = std::vector<std::uint8_t>;
 
@@ -178,7 +177,7 @@ TEST(ServoStateTest, IndicesOutOfRangeAreRefused) {
   EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.goal.turn = 4; }));
   EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.goal.nearest_turn = -1; }));
   EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.goal.drops = -1; }));
-  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.predict.poses.believed = hal::kMaxPoses; }));
+  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.predict.hypotheses.plate.believed = hal::kMaxPoses; }));
 }
 
 TEST(ServoStateTest, DemandRoundTripKeepsEveryField) {

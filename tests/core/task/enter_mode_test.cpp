@@ -44,14 +44,14 @@ TEST_F(EnterModeTest, TrackFromHoldResetsTheAttemptAndFromCoastKeepsIt) {
 
 TEST_F(EnterModeTest, HoldKeepsTheTargetUnlessItWasLost) {
   state_->prediction.p_BO = {0.4, 0.1, 0.2};
-  state_->predict.has_accepted = true;
+  state_->predict.knowledge = estimate::Knowledge::kKnown;
   state_->mode.hold_reason = hal::HoldReason::kGoalUnreachable;
   Enter(hal::Mode::kTrack, hal::Mode::kHold);
   EXPECT_EQ(state_->reach.p_BO_unreachable, state_->prediction.p_BO);
-  EXPECT_TRUE(state_->predict.has_accepted);
+  EXPECT_EQ(state_->predict.knowledge, estimate::Knowledge::kKnown);
   state_->mode.hold_reason = hal::HoldReason::kTargetLost;
   Enter(hal::Mode::kTrack, hal::Mode::kHold);
-  EXPECT_FALSE(state_->predict.has_accepted);
+  EXPECT_EQ(state_->predict.knowledge, estimate::Knowledge::kNone);
 }
 
 TEST_F(EnterModeTest, BootResetsHoldInputsAndStop) {

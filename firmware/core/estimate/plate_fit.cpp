@@ -1,4 +1,4 @@
-#include "firmware/core/estimate/still_pose.hpp"
+#include "firmware/core/estimate/plate_fit.hpp"
 
 #include <algorithm>
 
@@ -23,14 +23,9 @@ double WeightOf(double variance, int frames) noexcept {
   return 1.0 / (variance / frames + kCalibration * kCalibration);
 }
 
-StillViews::View ViewOf(const CornerView& view) noexcept {
-  const double variance = view.seen.cov.trace() / static_cast<double>(view.seen.xy.size());
-  return {view.X_CB, view.seen.xy, variance, 1};
-}
-
 // How far the corners of a view are from where `X_BO` has them, in the polygon's order. False when one is
 // not before the camera.
-bool OffFrom(const Polygon& polygon, const StillViews::View& view, const model::Pose& X_BO,
+bool OffFrom(const Polygon& polygon, const PlateView& view, const model::Pose& X_BO,
              SeenCorners::Vector& e) noexcept {
   SeenCorners::Vector expected;
   if (!ExpectCorners(polygon, view.X_CB, X_BO, expected)) {
@@ -46,19 +41,19 @@ bool OffFrom(const Polygon& polygon, const StillViews::View& view, const model::
 }
 
 // Whether the camera has stayed where `view` was taken from.
-bool IsFromHere(const StillViews::View& view, const model::Pose& X_CB) noexcept {
+bool IsFromHere(const PlateView& view, const model::Pose& X_CB) noexcept {
   const model::Pose moved = X_CB * view.X_CB.Inverse();
   return moved.p.norm() < kHereM && model::RotationVector(moved.R).norm() < kHereRad;
 }
 
-// Makes `view` the mean of itself and of `newest`, taken from the same place.
-void Average(const CornerView& newest, StillViews::View& view) noexcept {
-  view.frames = std::min(view.frames + 1, kFramesMost);
-  const auto n = static_cast<int>(view.xy.size() / 2);
-  const int first = NearestFirst(newest.seen.xy, view.xy);
+// Makes `mean` the mean of itself and of `newest`, taken from the same place.
+void Average(const PlateView& newest, PlateView& mean) noexcept {
+  mean.frames = std::min(mean.frames + 1, kFramesMost);
+  const auto n = static_cast<int>(mean.xy.size() / 2);
+  const int first = NearestFirst(newest.xy, mean.xy);
   for (int i = 0; i < n; ++i) {
-    view.xy.segment<2>(2 * i) +=
-        (newest.seen.xy.segment<2>(2 * ((first + i) % n)) - view.xy.segment<2>(2 * i)) / view.frames;
+    mean.xy.segment<2>(2 * i) +=
+        (newest.xy.segment<2>(2 * ((first + i) % n)) - mean.xy.segment<2>(2 * i)) / mean.frames;
   }
 }
 
@@ -69,7 +64,7 @@ struct Fit {
 };
 
 // One view's share; false when a corner is not before the camera.
-bool AddTo(Fit& fit, const Polygon& polygon, const StillViews::View& view, const model::Pose& X_BO) noexcept {
+bool AddTo(Fit& fit, const Polygon& polygon, const PlateView& view, const model::Pose& X_BO) noexcept {
   SeenCorners::Vector e;
   if (!OffFrom(polygon, view, X_BO, e)) {
     return false;
@@ -84,60 +79,48 @@ bool AddTo(Fit& fit, const Polygon& polygon, const StillViews::View& view, const
 
 }  // namespace
 
-void AddView(const CornerView& view, StillViews& views) noexcept {
-  if (views.count > 0 && IsFromHere(views.here, view.X_CB)) {
-    Average(view, views.here);
-  } else {
-    views.here = ViewOf(view);
-  }
-  if (views.count > 0) {
-    const model::Pose& last = views.views[static_cast<std::size_t>(views.count - 1)].X_CB;
-    if (!((last.Inverse().p - view.X_CB.Inverse().p).norm() >= views.step)) {
-      return;
-    }
-  }
-  if (views.count == StillViews::kMost) {
-    for (std::size_t i = 1; 2 * i < StillViews::kMost; ++i) {
-      views.views[i] = views.views[2 * i];
-    }
-    views.count = StillViews::kMost / 2;
-    views.step *= 2.0;
-  }
-  views.views[static_cast<std::size_t>(views.count++)] = ViewOf(view);
+PlateView SeePlate(const CornerView& view) noexcept {
+  const double variance = view.seen.cov.trace() / static_cast<double>(view.seen.xy.size());
+  return {view.X_CB, view.seen.xy, variance, 1};
 }
 
-double MisfitOf(const Polygon& polygon, const StillViews& views, const CornerView& newest,
+void TakeIntoMean(const PlateView& newest, PlateView& mean) noexcept {
+  if (IsFromHere(mean, newest.X_CB)) {
+    Average(newest, mean);
+  } else {
+    mean = newest;
+  }
+}
+
+double MisfitOf(const Polygon& polygon, std::span<const PlateView> views, const PlateView& newest,
                 const model::Pose& X_BO) noexcept {
   double misfit = 0.0;
-  const auto add = [&](const StillViews::View& view) {
+  const auto add = [&](const PlateView& view) {
     SeenCorners::Vector e;
     const bool seen = OffFrom(polygon, view, X_BO, e);
     misfit = seen ? misfit + WeightOf(view.variance, view.frames) * e.squaredNorm() : kNoWay;
     return misfit < kNoWay;
   };
-  bool fits = add(ViewOf(newest));
-  for (std::size_t i = 0; fits && i < static_cast<std::size_t>(views.count); ++i) {
-    fits = add(views.views[i]);
-  }
+  const bool fits = add(newest) && std::all_of(views.begin(), views.end(), add);
   return fits ? misfit : kNoWay;
 }
 
-bool FitStill(const Polygon& polygon, const StillViews& views, model::Pose& X_BO) noexcept {
+void FitPose(const Polygon& polygon, std::span<const PlateView> views, const PlateView& mean,
+             model::Pose& X_BO) noexcept {
   Fit fit;
-  bool seen = AddTo(fit, polygon, views.here, X_BO);
-  for (std::size_t i = 0; seen && i < static_cast<std::size_t>(views.count); ++i) {
-    seen = AddTo(fit, polygon, views.views[i], X_BO);
+  const auto add = [&](const PlateView& view) { return AddTo(fit, polygon, view, X_BO); };
+  if (!add(mean) || !std::all_of(views.begin(), views.end(), add)) {
+    return;
   }
   fit.information.diagonal().head<3>().array() += 1.0 / (kStepM * kStepM);
   fit.information.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
   model::FactorCholesky(fit.information);
   model::SolveCholesky(fit.information, fit.right);
-  if (!seen || !fit.right.allFinite()) {
-    return false;
+  if (!fit.right.allFinite()) {
+    return;
   }
   X_BO.p += fit.right.head<3>();
   X_BO.R = model::RotationOf(fit.right.tail<3>()) * X_BO.R;
-  return true;
 }
 
 }  // namespace fovea::estimate

@@ -1,6 +1,6 @@
 // Which of the poses that three corners allow is the true one; and where all views say that a still target
 // is.
-#include "firmware/core/estimate/pose_choice.hpp"
+#include "firmware/core/estimate/pose_hypotheses.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,38 +16,39 @@ namespace fovea::estimate {
 namespace {
 
 // A detector that sees something else now and then.
-TEST(PoseChoiceTest, RejectsOutliersAndRestartsAfterSeveral) {
+TEST(PlateHypothesesTest, RejectsOutliersAndRestartsAfterSeveral) {
   config::PredictConfig config;
   config.gate_rejects_max = 3;
   const Polygon square = features::MakeSquare(0.08);
   Draw draw(3);
-  PoseChoice choice;
+  PoseHypotheses hypotheses;
   int k = 0;
   const auto see = [&](const Pose& X_BO) {
-    return UpdatePoses(config, square, ViewOf(square, CameraAt(0.0), X_BO, k++, 0.05, draw), choice) ==
-           hal::Intake::kTaken;
+    return TakeView(config, square, ViewOf(square, CameraAt(0.0), X_BO, k++, 0.05, draw), hypotheses)
+               .intake == hal::Intake::kTaken;
   };
   while (k < 30) {
     ASSERT_TRUE(see(kOnTable));
   }
   const Pose elsewhere{kOnTable.R, kOnTable.p + Vec3(0.05, 0.0, 0.0)};
   EXPECT_FALSE(see(elsewhere));
-  EXPECT_EQ(choice.stamp_ns, 29 * kFrameNs);
+  EXPECT_EQ(hypotheses.stamp_ns, 29 * kFrameNs);
   EXPECT_TRUE(see(kOnTable));
-  EXPECT_EQ(choice.rejected_in_row, 0);
+  EXPECT_EQ(hypotheses.rejected_in_row, 0);
   EXPECT_FALSE(see(elsewhere));
   EXPECT_FALSE(see(elsewhere));
   EXPECT_TRUE(see(elsewhere)) << "three in a row";
-  EXPECT_EQ(choice.accepted, 1);
-  EXPECT_LT((choice.best().X_BO.p - elsewhere.p).norm(), 1e-3);
-  EXPECT_TRUE(choice.best().w_BO_B.isZero());
-  EXPECT_EQ(UpdatePoses(config, square, ViewOf(square, CameraAt(0.0), elsewhere, k - 1, 0.05, draw), choice),
+  EXPECT_EQ(hypotheses.accepted, 1);
+  EXPECT_LT((hypotheses.plate.best().filter.X_BO.p - elsewhere.p).norm(), 1e-3);
+  EXPECT_TRUE(hypotheses.plate.best().filter.w_BO_B.isZero());
+  EXPECT_EQ(TakeView(config, square, ViewOf(square, CameraAt(0.0), elsewhere, k - 1, 0.05, draw), hypotheses)
+                .intake,
             hal::Intake::kTooOld);
   CornerView nothing = ViewOf(square, CameraAt(0.0), kOnTable, k, 0.05, draw);
   nothing.seen.num_branches = 0;
-  PoseChoice empty;
-  EXPECT_EQ(UpdatePoses(config, square, nothing, empty), hal::Intake::kWrongKind);
-  EXPECT_EQ(empty.num_branches, 0);
+  PoseHypotheses empty;
+  EXPECT_EQ(TakeView(config, square, nothing, empty).intake, hal::Intake::kWrongKind);
+  EXPECT_EQ(empty.plate.count, 0);
 }
 
 // Poses in which the triangle's corners look as in `xy`, in any order: Newton's method from many starts.
@@ -93,7 +94,7 @@ std::vector<SeenCorners::Branch> AllPoses(const Polygon& triangle, const SeenCor
 
 // The camera comes over a still triangle, which lies any way. In the first image all poses stand side by
 // side, the most squarely seen one first; in the end the true one alone is left.
-TEST(PoseChoiceTest, CameraMotionFindsTheTruePoseOfATriangle) {
+TEST(PlateHypothesesTest, CameraMotionFindsTheTruePoseOfATriangle) {
   config::PredictConfig config;
   const Polygon triangle = features::MakeTriangle(features::kDefaultTriangle);
   Draw draw(7);
@@ -120,7 +121,7 @@ TEST(PoseChoiceTest, CameraMotionFindsTheTruePoseOfATriangle) {
       X_BC.R.col(1) = model::Cross(X_BC.R.col(2), X_BC.R.col(0));
       return X_BC;
     };
-    PoseChoice choice;
+    PoseHypotheses hypotheses;
     CornerView view = ViewOf(triangle, camera(0.0), X_BO, 0, 0.03, draw);
     std::vector<SeenCorners::Branch> all = AllPoses(triangle, view.seen.xy, draw);
     std::sort(all.begin(), all.end(),
@@ -128,22 +129,23 @@ TEST(PoseChoiceTest, CameraMotionFindsTheTruePoseOfATriangle) {
     view.seen.num_branches = std::min<int>(static_cast<int>(all.size()), hal::kMaxPoses);
     std::copy_n(all.begin(), view.seen.num_branches, view.seen.branches.begin());
     most = std::max(most, view.seen.num_branches);
-    ASSERT_EQ(UpdatePoses(config, triangle, view, choice), hal::Intake::kTaken);
-    const auto off = [&] { return Between(choice.best().X_BO.R, X_BO.R).norm(); };
+    ASSERT_EQ(TakeView(config, triangle, view, hypotheses).intake, hal::Intake::kTaken);
+    const auto off = [&] { return Between(hypotheses.plate.best().filter.X_BO.R, X_BO.R).norm(); };
     first_was_wrong += off() > 0.05 ? 1 : 0;
     for (int k = 1; k <= 60; ++k) {
       view = ViewOf(triangle, camera(k * kFrameS), X_BO, k, 0.03, draw, k % 3);
       view.seen.num_branches = 0;
-      (void)UpdatePoses(config, triangle, view, choice);
+      (void)TakeView(config, triangle, view, hypotheses);
       if (off() > 0.05) {
         last_wrong_s = std::max(last_wrong_s, k * kFrameS);
       }
     }
     right += off() < 0.06 ? 1 : 0;
-    alone += choice.num_branches == 1 ? 1 : 0;
+    alone += hypotheses.plate.count == 1 ? 1 : 0;
     Eigen::Matrix<double, 6, 1> e;
-    e << X_BO.p - choice.best().X_BO.p, Between(X_BO.R, choice.best().X_BO.R);
-    const Eigen::Matrix<double, 6, 6> P = choice.best().P.topLeftCorner<6, 6>();
+    e << X_BO.p - hypotheses.plate.best().filter.X_BO.p,
+        Between(X_BO.R, hypotheses.plate.best().filter.X_BO.R);
+    const Eigen::Matrix<double, 6, 6> P = hypotheses.plate.best().filter.P.topLeftCorner<6, 6>();
     nees.push_back(e.dot(P.inverse() * e));
   }
   std::sort(nees.begin(), nees.end());
@@ -172,63 +174,64 @@ Pose ComesOver(const Pose& X_BO, double t) {
 
 // What is wrong with the corners from above, a quarter of a pixel of one of them, is wrong in every frame:
 // for the filter it is much news, and the tilt goes. The views from aside know better.
-TEST(PoseChoiceTest, AllViewsOfAStillTargetOutweighOneBiasedPlace) {
+TEST(PlateHypothesesTest, AllViewsOfAStillTargetOutweighOneBiasedPlace) {
   const config::PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);
   const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
   Draw draw(3);
-  PoseChoice choice;
+  PoseHypotheses hypotheses;
   for (int k = 0; k < 300; ++k) {
     const Pose X_BC = ComesOver(flat, k * kFrameS);
     CornerView view = ViewOf(square, X_BC, flat, k, 0.1, draw);
     if (k * kFrameS > 1.8) {
       view.seen.xy[0] += 0.25 / kFocalPx;
     }
-    (void)UpdatePoses(config, square, view, choice);
+    (void)TakeView(config, square, view, hypotheses);
   }
-  const double filter = Between(choice.best().X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi;
-  const double all =
-      Between(MotionAt(config, choice, choice.stamp_ns).X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi;
+  const double filter =
+      Between(hypotheses.plate.best().filter.X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi;
+  const double all = Between(MotionAt(config, hypotheses, hypotheses.stamp_ns).X_BO.R, flat.R).norm() *
+                     180.0 / std::numbers::pi;
   std::cout << "off by: filter " << filter << " deg, all views " << all << " deg\n";
-  EXPECT_TRUE(choice.is_still);
+  EXPECT_EQ(hypotheses.plate.stillness, Stillness::kStill);
   EXPECT_GT(filter, 0.5);
   EXPECT_LT(all, 0.25);
 }
 
 // A camera that comes to rest by and by, as at the end of every approach: frames that look nearly alike are
 // not taken for frames from one place. Without noise all that is left of an error is the mean's.
-TEST(PoseChoiceTest, CreepingCameraDoesNotBiasTheMean) {
+TEST(PlateHypothesesTest, CreepingCameraDoesNotBiasTheMean) {
   const config::PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);
   const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
   for (const double speed : {5e-3, 1e-3, 2e-4}) {  // [m/s]
     Draw draw(5);
-    PoseChoice choice;
+    PoseHypotheses hypotheses;
     double worst_mm = 0.0;
     double worst_deg = 0.0;
     for (int k = 0; k < 150; ++k) {
       Pose X_BC = ComesOver(flat, k * kFrameS);
       X_BC.p.x() += speed * k * kFrameS;
-      (void)UpdatePoses(config, square, ViewOf(square, X_BC, flat, k, 0.0, draw), choice);
+      (void)TakeView(config, square, ViewOf(square, X_BC, flat, k, 0.0, draw), hypotheses);
       if (k > 75) {
-        const Pose X_BO = MotionAt(config, choice, choice.stamp_ns).X_BO;
+        const Pose X_BO = MotionAt(config, hypotheses, hypotheses.stamp_ns).X_BO;
         worst_mm = std::max(worst_mm, 1e3 * (X_BO.p - flat.p).norm());
         worst_deg = std::max(worst_deg, Between(X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi);
       }
     }
     std::cout << 1e3 * speed << " mm/s: off by at most " << worst_mm << " mm, " << worst_deg << " deg\n";
-    EXPECT_TRUE(choice.is_still);
+    EXPECT_EQ(hypotheses.plate.stillness, Stillness::kStill);
     EXPECT_LT(worst_mm, 0.017);
     EXPECT_LT(worst_deg, 0.006);
   }
 }
 
-TEST(PoseChoiceTest, StartOfMotionEndsTheStillState) {
+TEST(PlateHypothesesTest, StartOfMotionEndsTheStillState) {
   const config::PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);
   const Pose flat{Turned({3.14159265, 0.0, 0.0}), {0.5, 0.03, 0.02}};
   Draw draw(4);
-  PoseChoice choice;
+  PoseHypotheses hypotheses;
   double worst = 0.0;
   int still_until = 0;
   constexpr int kSetsOut = 120;
@@ -236,10 +239,10 @@ TEST(PoseChoiceTest, StartOfMotionEndsTheStillState) {
     const Pose X_BC = ComesOver(flat, k * kFrameS);
     Pose X_BO = flat;
     X_BO.p.x() += k < kSetsOut ? 0.0 : 0.05 * (k - kSetsOut) * kFrameS;  // [m], at 0.05 m/s
-    (void)UpdatePoses(config, square, ViewOf(square, X_BC, X_BO, k, 0.03, draw), choice);
-    still_until = choice.is_still ? k : still_until;
+    (void)TakeView(config, square, ViewOf(square, X_BC, X_BO, k, 0.03, draw), hypotheses);
+    still_until = hypotheses.plate.stillness == Stillness::kStill ? k : still_until;
     if (k >= 60) {
-      worst = std::max(worst, (MotionAt(config, choice, choice.stamp_ns).X_BO.p - X_BO.p).norm());
+      worst = std::max(worst, (MotionAt(config, hypotheses, hypotheses.stamp_ns).X_BO.p - X_BO.p).norm());
     }
   }
   std::cout << "still for " << still_until - kSetsOut << " frames more, off by at most " << 1e3 * worst

@@ -1,4 +1,4 @@
-#include "firmware/core/estimate/disc_choice.hpp"
+#include "firmware/core/estimate/pose_hypotheses.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,63 +37,62 @@ hal::FeatureMeasurement See(const Vec3& n, const Vec3& p_BC, Pose& X_BC) {
 
 const Vec3 kNormal = Vec3(0.4, 0.1, -1.0).normalized();
 
-TEST(DiscChoiceTest, CameraMotionSelectsTheTruePose) {
-  DiscChoice choice;
-  bool changed = false;
+TEST(DiscHypothesesTest, CameraMotionSelectsTheTruePose) {
+  PoseHypotheses hypotheses;
   int changes = 0;
   Pose X_BC;
   const hal::FeatureMeasurement first = See(kNormal, {0.0, 0.0, 0.0}, X_BC);
-  EXPECT_EQ(ChooseDisc(first, X_BC, choice, changed), 0) << "one view does not tell: the eye's first counts";
-  int chosen = 0;
+  EXPECT_EQ(TakeView(first, X_BC, hypotheses).pose, 0) << "one view does not tell: the eye's first counts";
+  Verdict verdict;
   for (int i = 1; i <= 30; ++i) {
     const hal::FeatureMeasurement m = See(kNormal, {0.005 * i, -0.004 * i, 0.0}, X_BC);
-    chosen = ChooseDisc(m, X_BC, choice, changed);
-    changes += changed ? 1 : 0;
+    verdict = TakeView(m, X_BC, hypotheses);
+    changes += verdict.changed ? 1 : 0;
   }
-  EXPECT_EQ(chosen, 1);
+  EXPECT_EQ(verdict.pose, 1);
   EXPECT_EQ(changes, 1);
-  EXPECT_LT((choice.normal_B - kNormal).norm(), 1e-9);
+  EXPECT_EQ(hypotheses.disc.count, 1);
+  EXPECT_EQ(hypotheses.disc.stillness, Stillness::kStill);
+  EXPECT_LT((hypotheses.disc.best().normal_B - kNormal).norm(), 1e-9);
 }
 
-TEST(DiscChoiceTest, FrontalViewKeepsTheKnownPose) {
-  DiscChoice choice;
-  bool changed = false;
+TEST(DiscHypothesesTest, FrontalViewKeepsTheKnownPose) {
+  PoseHypotheses hypotheses;
   Pose X_BC;
   // Past the normal itself, where both poses are one and change places.
   for (int i = 0; i <= 60; ++i) {
     const double along = 0.02 * i;
     const Vec3 p_BC = Vec3(0.0, 0.0, -0.5) - 0.5 * (kNormal + Vec3(0.0, 0.6 - along, 0.0)).normalized();
     const hal::FeatureMeasurement m = See(kNormal, p_BC, X_BC);
-    (void)ChooseDisc(m, X_BC, choice, changed);
+    const Verdict verdict = TakeView(m, X_BC, hypotheses);
     if (i > 20) {
-      EXPECT_LT((choice.normal_B - kNormal).norm(), 0.02) << i;
-      EXPECT_FALSE(changed) << i;
+      EXPECT_LT((hypotheses.disc.best().normal_B - kNormal).norm(), 0.02) << i;
+      EXPECT_FALSE(verdict.changed) << i;
     }
   }
 }
 
-TEST(DiscChoiceTest, TurningDiscIsFollowed) {
-  DiscChoice choice;
-  bool changed = false;
+TEST(DiscHypothesesTest, TurningDiscIsFollowed) {
+  PoseHypotheses hypotheses;
   Pose X_BC;
   for (int i = 0; i <= 90; ++i) {
     const double angle = 0.02 * i;  // in all 103 degrees about the vertical
     const Vec3 n = Vec3(0.5 * std::cos(angle), 0.5 * std::sin(angle), -1.0).normalized();
     hal::FeatureMeasurement m = See(n, {0.1, 0.0, 0.0}, X_BC);
     std::swap(m.poses[0], m.poses[1]);  // begun rightly
-    EXPECT_EQ(ChooseDisc(m, X_BC, choice, changed), 0) << i;
+    EXPECT_EQ(TakeView(m, X_BC, hypotheses).pose, 0) << i;
   }
 }
 
-TEST(DiscChoiceTest, InvalidSecondPoseSelectsTheFirst) {
-  DiscChoice choice;
-  bool changed = true;
+TEST(DiscHypothesesTest, InvalidSecondPoseSelectsTheFirst) {
+  PoseHypotheses hypotheses;
   Pose X_BC;
   hal::FeatureMeasurement m = See(kNormal, {0.0, 0.0, 0.0}, X_BC);
   m.poses[1].q_CO = {0.0, 0.0, 0.0, 0.0};
-  EXPECT_EQ(ChooseDisc(m, X_BC, choice, changed), 0);
-  EXPECT_FALSE(changed);
-  EXPECT_FALSE(choice.started);
+  const Verdict verdict = TakeView(m, X_BC, hypotheses);
+  EXPECT_EQ(verdict.pose, 0);
+  EXPECT_FALSE(verdict.changed);
+  EXPECT_EQ(hypotheses.disc.count, 0);
 }
 
 }  // namespace

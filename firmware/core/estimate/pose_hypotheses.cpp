@@ -1,0 +1,179 @@
+#include "firmware/core/estimate/pose_hypotheses.hpp"
+
+#include <algorithm>
+
+#include "firmware/core/model/rotation.hpp"
+
+namespace fovea::estimate {
+namespace {
+
+using features::Polygon;
+using features::SeenCorners;
+
+constexpr double kSameNormal = 0.15;  // normals no further from each other than this are one [rad]
+constexpr double kSameTurn = 0.02;    // poses nearer to each other than this are one [rad]
+constexpr double kSlip = 0.05;        // a filter that is further from the still pose may have slipped [rad]
+
+double TurnBetween(const model::Pose& a, const model::Pose& b) noexcept {
+  return model::RotationVector(a.R.lazyProduct(b.R.transpose())).norm();
+}
+
+// Of the view's poses the one that is turned most nearly as `R_CO`; -1: it has none.
+int Nearest(const SeenCorners& seen, const model::Mat3& R_CO) noexcept {
+  double nearest = -2.0;
+  int pose = -1;
+  for (int i = 0; i < seen.num_branches; ++i) {
+    // 1 + 2 cos of the turn between them
+    const double likeness = seen.branches[static_cast<std::size_t>(i)].X_CO.R.cwiseProduct(R_CO).sum();
+    if (likeness > nearest) {
+      nearest = likeness;
+      pose = i;
+    }
+  }
+  return pose;
+}
+
+Verdict TakenBy(const CornerView& view, const PoseHypotheses& hypotheses, bool changed) noexcept {
+  const model::Mat3& R_BO = hypotheses.plate.best().filter.X_BO.R;
+  return {hal::Intake::kTaken, Nearest(view.seen, view.X_CB.R * R_BO), changed};
+}
+
+// Begins anew with the poses of `view`. False, with nothing changed, when it has none.
+bool Start(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypotheses) noexcept {
+  PoseHypotheses start;
+  for (int i = 0; i < view.seen.num_branches; ++i) {
+    PlatePose& plate = start.plate.all[static_cast<std::size_t>(start.plate.count)];
+    if (StartPose(polygon, view, view.seen.branches[static_cast<std::size_t>(i)], plate.filter)) {
+      plate.X_BO_still = plate.filter.X_BO;
+      ++start.plate.count;
+    }
+  }
+  if (start.plate.count == 0) {
+    return false;
+  }
+  start.plate_mean = SeePlate(view);
+  start.plate.views.Keep(start.plate_mean);
+  start.accepted = 1;
+  start.stamp_ns = view.stamp_ns;
+  hypotheses = start;
+  return true;
+}
+
+// Where two poses are one, a filter may slip from one to the other. The views from elsewhere tell.
+void CatchSlip(const Polygon& polygon, const CornerView& view, const PlateView& newest,
+               PoseHypotheses& hypotheses) noexcept {
+  const auto views = hypotheses.plate.views.kept();
+  PlatePose& left = hypotheses.plate.best();
+  SeenCorners::Vector expected;
+  if (hypotheses.plate.count == 1 && TurnBetween(left.filter.X_BO, left.X_BO_still) > kSlip &&
+      MisfitOf(polygon, views, newest, left.filter.X_BO) > left.still_misfit + PlatePose::kRule.give_up &&
+      ExpectCorners(polygon, view.X_CB, left.X_BO_still, expected)) {
+    const SeenCorners::Branch still{view.X_CB * left.X_BO_still, NearestFirst(view.seen.xy, expected)};
+    (void)StartPose(polygon, view, still, left.filter);
+  }
+}
+
+// Takes what all views say together, and keeps the hypotheses that it allows. True when another one is
+// believed.
+bool Compare(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypotheses) noexcept {
+  auto& plate = hypotheses.plate;
+  const PlateView newest = SeePlate(view);
+  TakeIntoMean(newest, hypotheses.plate_mean);
+  plate.views.Keep(newest);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(plate.count); ++i) {
+    PlatePose& pose = plate.all[i];
+    FitPose(polygon, plate.views.kept(), hypotheses.plate_mean, pose.X_BO_still);
+    pose.still_misfit = MisfitOf(polygon, plate.views.kept(), newest, pose.X_BO_still);
+  }
+  const bool changed = plate.Choose(static_cast<double>((plate.views.count + 1) * newest.xy.size()));
+  if (plate.stillness == Stillness::kMoving) {
+    plate.views.Forget();
+    plate.views.Keep(newest);
+    hypotheses.plate_mean = newest;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(plate.count); ++i) {
+      plate.all[i].X_BO_still = plate.all[i].filter.X_BO;
+    }
+  } else {
+    CatchSlip(polygon, view, newest, hypotheses);
+  }
+  return changed;
+}
+
+}  // namespace
+
+bool DiscNormal::IsSame(const DiscNormal& other) const noexcept {
+  return !((normal_B - other.normal_B).norm() > kSameNormal);
+}
+
+bool PlatePose::IsSame(const PlatePose& other) const noexcept {
+  return TurnBetween(X_BO_still, other.X_BO_still) < kSameTurn;
+}
+
+Verdict TakeView(const hal::FeatureMeasurement& measurement, const model::Pose& X_BC,
+                 PoseHypotheses& hypotheses) noexcept {
+  DiscView view;
+  if (!SeeDisc(measurement, X_BC, view)) {
+    return {.pose = 0};
+  }
+  auto& disc = hypotheses.disc;
+  if (disc.count == 0) {
+    disc.all[0].normal_B = view.normal_B[0];
+  }
+  const DiscNormal before = disc.all[0];
+  disc.all[1].normal_B = view.normal_B[0];
+  disc.all[2].normal_B = view.normal_B[1];
+  disc.count = 3;
+  for (DiscNormal& normal : disc.all) {
+    normal.still_misfit = FitNormal(disc.views.kept(), view, normal.normal_B);
+  }
+  (void)disc.Choose(static_cast<double>(disc.views.count + 1));
+  DiscNormal& best = disc.best();
+  if (disc.stillness == Stillness::kMoving) {
+    disc.views.count = 0;  // their step stays
+    best.normal_B = view.normal_B[static_cast<std::size_t>(Nearer(view, before.normal_B))];
+  }
+  disc.views.Keep(view);
+  return {hal::Intake::kTaken, Nearer(view, best.normal_B), !before.IsSame(best)};
+}
+
+Verdict TakeView(const config::PredictConfig& config, const Polygon& polygon, const CornerView& view,
+                 PoseHypotheses& hypotheses) noexcept {
+  auto& plate = hypotheses.plate;
+  if (plate.count == 0) {
+    return Start(polygon, view, hypotheses) ? TakenBy(view, hypotheses, false)
+                                            : Verdict{hal::Intake::kWrongKind};
+  }
+  if (view.stamp_ns <= hypotheses.stamp_ns) {
+    return {hal::Intake::kTooOld};
+  }
+  const double gate2 = config.gate_sigma * config.gate_sigma;
+  bool fits = false;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(plate.count); ++i) {
+    double distance2 = 0.0;
+    fits = UpdatePose(config, polygon, view, plate.all[i].filter, distance2) || fits;
+    plate.all[i].motion_misfit += std::min(distance2, gate2);
+  }
+  if (!fits) {
+    if (hypotheses.rejected_in_row + 1 >= config.gate_rejects_max && Start(polygon, view, hypotheses)) {
+      return TakenBy(view, hypotheses, true);
+    }
+    hypotheses.rejected_in_row = std::min(hypotheses.rejected_in_row + 1, config.gate_rejects_max);
+    return {hal::Intake::kOutlier};
+  }
+  const bool changed = Compare(polygon, view, hypotheses);
+  hypotheses.stamp_ns = view.stamp_ns;
+  hypotheses.rejected_in_row = 0;
+  hypotheses.accepted = std::min(hypotheses.accepted + 1, config.accepted_min);
+  return TakenBy(view, hypotheses, changed);
+}
+
+FlatMotion MotionAt(const config::PredictConfig& config, const PoseHypotheses& hypotheses,
+                    std::int64_t now_ns) noexcept {
+  const PlatePose& believed = hypotheses.plate.best();
+  if (hypotheses.plate.stillness == Stillness::kStill) {
+    return {believed.X_BO_still, model::Vec3::Zero(), model::Vec3::Zero()};
+  }
+  return MotionAt(config, believed.filter, now_ns);
+}
+
+}  // namespace fovea::estimate
