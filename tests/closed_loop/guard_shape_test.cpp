@@ -15,7 +15,7 @@
 namespace fovea::sim {
 namespace {
 
-// Its lines are as near as it ever lets them come, wherever the links' capsules touch.
+// Its bodies are nearer than it ever lets them come, wherever the simulator's links touch.
 TEST(GuardShape, NoLinksTouchInPosturesTheGuardAllows) {
   const SimRobot robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
   const SelfDistance distance(robot);
@@ -39,7 +39,7 @@ TEST(GuardShape, NoLinksTouchInPosturesTheGuardAllows) {
     ++touching;
     model::ArmPoses poses;
     model::ComputePoses(config.arm, q, poses);
-    const double clearance = barriers::ClearanceOfHand(config.arm, barriers::LineOfArm(config.arm, poses));
+    const double clearance = barriers::SelfClearance(config.arm, poses);
     most = std::max(most, clearance);
     EXPECT_LT(clearance, stops_at) << "at " << q.transpose();
   }

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "firmware/core/barriers/segments.hpp"
+#include "firmware/core/model/segments.hpp"
 
 namespace fovea::barriers {
 namespace {
@@ -13,7 +13,7 @@ constexpr int kHandJoints = 2;  // the last ones carry the camera: what lies bet
 
 // Where a line of sight and a link's line are nearest to each other.
 struct Nearest {
-  SegmentPair pair;          // the line of sight from the camera, the link's from its joint
+  model::SegmentPair pair;   // the line of sight from the camera, the link's from its joint
   int joint = -1;            // that carries the link; -1: the base
   Vec3 p_BP = Vec3::Zero();  // the target's point that is looked at [m]
 };
@@ -25,7 +25,8 @@ Nearest NearestLink(const model::ArmModel& arm, const Sight& sight) noexcept {
   for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
     const Vec3 p_BP = sight.X_BO * sight.outline.p_OP[k];
     for (std::size_t i = 0; line.joint[i] + 1 < arm.num_joints - kHandJoints; ++i) {
-      const SegmentPair pair = NearestOfSegments(sight.X_BC.p, p_BP, line.p_B[i], line.p_B[i + 1]);
+      const model::SegmentPair pair =
+          model::NearestOfSegments(sight.X_BC.p, p_BP, line.p_B[i], line.p_B[i + 1]);
       if (pair.distance < nearest.pair.distance) {
         nearest = {pair, line.joint[i], p_BP};
       }
@@ -48,7 +49,7 @@ Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight
     return barrier;
   }
   const Nearest nearest = NearestLink(config.arm, sight);
-  const SegmentPair& pair = nearest.pair;
+  const model::SegmentPair& pair = nearest.pair;
   if (!(pair.distance > kTouch) || !std::isfinite(pair.distance)) {
     return barrier;
   }

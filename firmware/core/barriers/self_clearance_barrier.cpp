@@ -2,52 +2,58 @@
 
 #include <cmath>
 
-#include "firmware/core/barriers/segments.hpp"
+#include "firmware/core/model/segments.hpp"
 
 namespace fovea::barriers {
 namespace {
 
+using model::ArmShape;
 using model::Vec3;
 
-constexpr int kTrunkJoints = 3;  // the base's line to the first joint, and on to the third, at the elbow
-constexpr int kJointsLeast = 6;  // fewer, and there is no such hand
-constexpr int kBaseJoints = 1;   // the base's line, and the first link's
-// Thicker than hand and upper arm by so much [m]: the base, and forearm and base together.
-constexpr double kThickerBase = 0.02;
-constexpr double kThickerForearm = 0.05;
-
-struct Nearest {
-  SegmentPair pair;  // first of what moves more
-  double distance = HUGE_VAL;
-  int first_joint = -1;   // that carries the first line
-  int second_joint = -1;  // and the second; -1: the base
+// A capsule's axis in B [m], and the ball about its middle that holds the capsule.
+struct Placed {
+  Vec3 a = Vec3::Zero();
+  Vec3 b = Vec3::Zero();
+  Vec3 middle = Vec3::Zero();
+  double reach = 0.0;
 };
 
-// Takes lines `i` and `k` where they are nearer than what was, `thicker` [m] taken off.
-void Compare(const ArmLine& line, std::size_t i, std::size_t k, double thicker, Nearest& nearest) noexcept {
-  const SegmentPair pair = NearestOfSegments(line.p_B[i], line.p_B[i + 1], line.p_B[k], line.p_B[k + 1]);
-  if (pair.distance - thicker < nearest.distance) {
-    nearest = {pair, pair.distance - thicker, line.joint[i], line.joint[k]};
-  }
+struct Nearest {
+  model::SegmentPair axes;  // first of the body that is further from the base
+  double gap = HUGE_VAL;
+  ArmShape::Pair pair;
+};
+
+Placed PlaceBody(const model::Capsule& body, const model::Pose& X_BL) noexcept {
+  Placed placed;
+  placed.a = X_BL * body.p_LA;
+  placed.b = X_BL * body.p_LB;
+  placed.middle = 0.5 * (placed.a + placed.b);
+  placed.reach = 0.5 * (placed.b - placed.a).norm() + body.radius;
+  return placed;
 }
 
-// The hand against the trunk, and the forearm against the base.
-Nearest NearestTrunk(const model::ArmModel& arm, const ArmLine& line) noexcept {
-  Nearest nearest;
-  if (arm.num_joints < kJointsLeast) {
-    return nearest;
+Nearest NearestPair(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept {
+  const ArmShape& shape = arm.shape;
+  std::array<Placed, ArmShape::kMostBodies> placed;
+  placed[0] = PlaceBody(shape.bodies[0], model::Pose{});
+  for (std::size_t i = 0; i < static_cast<std::size_t>(arm.num_joints); ++i) {
+    placed[i + 1] = PlaceBody(shape.bodies[i + 1], poses.X_BL[i]);
   }
-  const auto last = static_cast<std::size_t>(line.num_points - 1);
-  for (std::size_t i = 0; i < last; ++i) {
-    const int joint = line.joint[i];
-    const bool is_hand = joint == arm.num_joints - 1;
-    if (joint < arm.num_joints - kForearmJoints) {
+  Nearest nearest;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(shape.num_pairs); ++k) {
+    const auto far = static_cast<std::size_t>(shape.pairs[k].far);
+    const auto near = static_cast<std::size_t>(shape.pairs[k].near);
+    // Bodies whose balls are further apart than what was found already need no closer look.
+    const double apart = nearest.gap + placed[far].reach + placed[near].reach;
+    if (apart > 0.0 && (placed[far].middle - placed[near].middle).squaredNorm() > apart * apart) {
       continue;
     }
-    const int most = is_hand ? kTrunkJoints : kBaseJoints + 1;
-    for (std::size_t k = 0; line.joint[k] + 1 < most; ++k) {
-      const double thicker_hand = line.joint[k] < 0 ? kThickerBase : 0.0;
-      Compare(line, i, k, is_hand ? thicker_hand : kThickerForearm, nearest);
+    const model::SegmentPair axes =
+        model::NearestOfSegments(placed[far].a, placed[far].b, placed[near].a, placed[near].b);
+    const double gap = axes.distance - shape.bodies[far].radius - shape.bodies[near].radius;
+    if (gap < nearest.gap) {
+      nearest = {axes, gap, shape.pairs[k]};
     }
   }
   return nearest;
@@ -55,37 +61,36 @@ Nearest NearestTrunk(const model::ArmModel& arm, const ArmLine& line) noexcept {
 
 }  // namespace
 
-double ClearanceOfHand(const model::ArmModel& arm, const ArmLine& line) noexcept {
-  return NearestTrunk(arm, line).distance;
+double SelfClearance(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept {
+  return NearestPair(arm, poses).gap;
 }
 
-Barrier SelfClearanceBarrier(const config::ServoConfig& config, const model::ArmPoses& poses,
-                             const ArmLine& line) noexcept {
-  constexpr double kTouch = 1e-6;  // lines that cross have no direction apart [m]
+Barrier SelfClearanceBarrier(const config::ServoConfig& config, const model::ArmPoses& poses) noexcept {
+  constexpr double kTouch = 1e-6;  // axes that cross have no direction apart [m]
   const model::ArmModel& arm = config.arm;
   Barrier barrier;
-  if (config.guard.hand_clearance <= 0.0) {
+  if (config.guard.self_clearance <= 0.0) {
     return barrier;
   }
-  const Nearest nearest = NearestTrunk(arm, line);
-  if (!(nearest.pair.distance > kTouch) || !std::isfinite(nearest.distance)) {
+  const Nearest nearest = NearestPair(arm, poses);
+  if (!std::isfinite(nearest.gap) || !(nearest.axes.distance > kTouch)) {
     return barrier;
   }
-  // d/dt distance = apart . (v_first - v_second).
-  const Vec3 apart = (nearest.pair.on_first - nearest.pair.on_second) / nearest.pair.distance;
+  // d/dt gap = apart . (v_first - v_second).
+  const Vec3 apart = (nearest.axes.on_first - nearest.axes.on_second) / nearest.axes.distance;
   barrier.gradient = model::VecN::Zero(arm.num_joints);
   model::LinearJacobian J;
-  model::ComputeLinearJacobian(arm, poses, nearest.pair.on_first, J);
-  for (int i = 0; i <= nearest.first_joint; ++i) {
+  model::ComputeLinearJacobian(arm, poses, nearest.axes.on_first, J);
+  for (int i = 0; i < nearest.pair.far; ++i) {
     barrier.gradient[i] = J.col(i).dot(apart);
   }
-  model::ComputeLinearJacobian(arm, poses, nearest.pair.on_second, J);
-  for (int i = 0; i <= nearest.second_joint; ++i) {
+  model::ComputeLinearJacobian(arm, poses, nearest.axes.on_second, J);
+  for (int i = 0; i < nearest.pair.near; ++i) {
     barrier.gradient[i] -= J.col(i).dot(apart);
   }
   barrier.name = hal::Limit::kObstacle;
-  barrier.value = nearest.distance;
-  barrier.margin = config.guard.hand_clearance;
+  barrier.value = nearest.gap;
+  barrier.margin = config.guard.self_clearance;
   barrier.rate = config.guard.barrier_rate;
   return barrier;
 }

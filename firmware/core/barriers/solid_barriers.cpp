@@ -21,7 +21,7 @@ SolidBarriers::SolidBarriers(const config::ServoConfig& config) noexcept
     : config_(config),
       num_hand_(CountObstacles(config.guard.obstacles)),
       links_(config.guard.obstacles.num_planes > 0),
-      self_(config.guard.hand_clearance > 0.0) {}
+      self_(config.guard.self_clearance > 0.0) {}
 
 SolidBarriers::Kind SolidBarriers::KindOf(int i) const noexcept {
   if (i <= num_hand_) {
@@ -42,7 +42,7 @@ double SolidBarriers::ValueOf(int i, const model::ArmPoses& poses, const ArmLine
     case Kind::kLinks: return ClearanceOfPlanes(config_.arm, guard, line);
     case Kind::kSelf: break;
   }
-  return ClearanceOfHand(config_.arm, line);
+  return SelfClearance(config_.arm, poses);
 }
 
 double SolidBarriers::StopMarginOf(int i) const noexcept {
@@ -53,7 +53,7 @@ double SolidBarriers::StopMarginOf(int i) const noexcept {
     case Kind::kLinks: return guard.workspace_margin;
     case Kind::kSelf: break;
   }
-  return guard.hand_clearance - kSelfRoom;
+  return std::max(guard.self_clearance - kSelfRoom, 0.0);
 }
 
 Barrier SolidBarriers::RowOf(int i, const Scene& scene) const noexcept {
@@ -63,7 +63,7 @@ Barrier SolidBarriers::RowOf(int i, const Scene& scene) const noexcept {
     case Kind::kLinks: return LinksBarrier(config_, scene.poses, scene.line);
     case Kind::kSelf: break;
   }
-  return SelfClearanceBarrier(config_, scene.poses, scene.line);
+  return SelfClearanceBarrier(config_, scene.poses);
 }
 
 double ClearanceOfArm(const config::ServoConfig& config, const model::ArmPoses& poses) noexcept {

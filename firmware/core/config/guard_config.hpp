@@ -67,7 +67,7 @@ struct GuardConfig {
   double link_radius = 0.06;
   ViewConfig view;
   double sight_clearance = 0.08;
-  double hand_clearance = 0.13;
+  double self_clearance = 0.02;
   double barrier_rate = 1.5;
 };
 
@@ -125,10 +125,9 @@ void Fields(Visitor& v, Config& c) noexcept {
        "a disc's face is turned away from the line of sight by no more than this, or no further; pi / 2: it "
        "may be seen edge-on"},
       c.view.disc_cosine_min, 0.0, 1.0);
-  v.Number(
-      {"safety.hand_clearance", "m",
-       "the hand's line stays so far from those of the arm's first links, or comes no nearer; 0: it may"},
-      c.hand_clearance, 0.0, 10.0);
+  v.Number({"safety.self_clearance", "m",
+            "the arm's links stay so far from each other, or come no nearer; 0: they may touch"},
+           c.self_clearance, 0.0, 10.0);
   v.Count({"safety.tools", "m",
            "tools on the hand, guarded as capsules: x, y, z of one end, of the other, in axes of the flange, "
            "radius, the same again"},
@@ -140,8 +139,8 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Number({"safety.link_radius", "m", "the arm's links from the elbow on are so thick before a plane"},
            c.link_radius, 0.0, 1.0);
   v.Number({"safety.barrier_rate", "1/s",
-            "what is left before the picture's edge, a line of sight, a disc's largest tilt and the hand's "
-            "clearance is used up no faster than exp(-rate t)"},
+            "what is left before the picture's edge, a line of sight, a disc's largest tilt and between the "
+            "arm's links is used up no faster than exp(-rate t)"},
            c.barrier_rate, 0.1, 20.0);
 }
 

@@ -52,8 +52,8 @@ bool IsArmClear(const config::ServoConfig& config, const model::ArmPoses& poses,
   const barriers::ArmLine line = barriers::LineOfArm(config.arm, poses);
   const barriers::Sight sight{poses, line, poses.X_BE * config.X_EC, config.feature.Outline(), X_BO};
   return barriers::ClearanceOfPlanes(config.arm, guard, line) > kLineRoom &&
-         (guard.hand_clearance <= 0.0 ||
-          barriers::ClearanceOfHand(config.arm, line) > guard.hand_clearance + kLineRoom) &&
+         (guard.self_clearance <= 0.0 ||
+          barriers::SelfClearance(config.arm, poses) > guard.self_clearance + kLineRoom) &&
          (guard.sight_clearance <= 0.0 ||
           barriers::ClearanceOfSight(config.arm, sight) > guard.sight_clearance + kLineRoom);
 }

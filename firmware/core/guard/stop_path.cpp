@@ -52,6 +52,8 @@ PerJoint Levers(const model::ArmModel& arm, const config::HandShape& hand) noexc
   double length = arm.X_LnE.p.norm() + reach;  // of the links from here on
   for (int i = arm.num_joints - 1; i >= 0; --i) {
     const auto k = static_cast<std::size_t>(i);
+    const model::Capsule& body = arm.shape.bodies[k + 1];
+    length = std::max({length, body.p_LA.norm(), body.p_LB.norm()});
     const model::Joint& joint = arm.joints[k];
     if (joint.type == model::JointType::kRevolute) {
       levers[k] = length;

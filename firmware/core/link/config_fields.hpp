@@ -96,6 +96,16 @@ void ArmFields(Archive& a, T& arm) noexcept {
   PoseFields(a, arm.X_LnE);
   Entries(a, arm.g_B);
   EachOf(a, arm.q_ready);
+  for (auto& body : arm.shape.bodies) {
+    Entries(a, body.p_LA);
+    Entries(a, body.p_LB);
+    a(body.radius);
+  }
+  a.Count(arm.shape.num_pairs, model::ArmShape::kMostPairs);
+  for (auto& pair : arm.shape.pairs) {
+    a.Count(pair.near, model::ArmShape::kMostBodies - 1);
+    a.Count(pair.far, model::ArmShape::kMostBodies - 1);
+  }
 }
 
 }  // namespace fovea::link

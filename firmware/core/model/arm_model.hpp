@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 
+#include "firmware/core/model/arm_shape.hpp"
 #include "firmware/core/model/types.hpp"
 
 namespace fovea::model {
@@ -43,6 +44,7 @@ struct ArmModel {
   Pose X_LnE;                 // end effector E (flange) in the last link's frame
   Vec3 g_B{0.0, 0.0, -9.81};  // gravity in B [m/s^2]
   hal::JointArray q_ready{};  // a posture far from limits and singularities
+  ArmShape shape;
 };
 
 }  // namespace fovea::model

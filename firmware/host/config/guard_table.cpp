@@ -38,9 +38,8 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kObstacle:
       return {
           "hand, camera and tools (`safety.camera_radius`, `safety.tools`) before planes and boxes, links "
-          "from "
-          "the elbow on before planes (`safety.link_radius`), the hand before the arm's own first links "
-          "(`safety.hand_clearance`), in the tick and on the way of a stop",
+          "from the elbow on before planes (`safety.link_radius`), the arm's links before each other "
+          "(`safety.self_clearance`), in the tick and on the way of a stop",
           "as at the workspace's boundary; an arm that stands inside when it starts stays in Boot"};
     case hal::Limit::kCartesianSpeed:
       return {"speed that is wished for the end effector", "the motion slows down as a whole"};

@@ -77,6 +77,7 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
               "the camera is guarded as a capsule of this radius from the flange to its lens; 0: as nothing");
   Fields(fields, c.safety);
   keys.Renamed("safety.face_tilt_max", "safety.disc_tilt_max");
+  keys.Renamed("safety.hand_clearance", "safety.self_clearance");
 }
 
 void ScaleSpeed(double scale, ServoSettings& settings) {

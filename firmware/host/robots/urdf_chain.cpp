@@ -12,6 +12,7 @@
 
 #include "firmware/core/model/load.hpp"
 #include "firmware/host/config/input_error.hpp"
+#include "firmware/host/robots/arm_shape.hpp"
 
 namespace fovea::robots {
 namespace {
@@ -93,7 +94,8 @@ class ChainReader {
     model::ArmModel& arm = robot_.model;
     // Pose of the current URDF link in the frame of the last moving link (or B before the first).
     Pose X_PU;
-    AddBodies(base_, nullptr, Pose{}, chain);
+    std::vector<Capsules> shapes(1);
+    AddBodies(base_, nullptr, shapes.back(), Pose{}, chain);
     for (const auto& joint : chain) {
       X_PU = X_PU * ToPose(joint->parent_to_joint_origin_transform);
       const urdf::LinkConstSharedPtr child = urdf_->getLink(joint->child_link_name);
@@ -105,17 +107,20 @@ class ChainReader {
       AddJoint(*joint, type, X_PU * X_UL);
       X_PU = X_UL.Inverse();
       Bodies bodies;
-      AddBodies(child, &bodies, X_PU, chain);
+      AddBodies(child, &bodies, shapes.emplace_back(), X_PU, chain);
       arm.links[static_cast<std::size_t>(arm.num_joints - 1)] = Merge(bodies, joint->name);
     }
     if (arm.num_joints == 0) {
       Fail(fmt::format("no moving joint between links \"{}\" and \"{}\"", robot_.base_link, robot_.tip_link));
     }
     arm.X_LnE = X_PU;
+    SetShape(shapes, arm);
   }
 
  private:
-  using Bodies = std::vector<model::LinkInertia>;  // all in the moving link's frame
+  // All in the moving link's frame.
+  using Bodies = std::vector<model::LinkInertia>;
+  using Capsules = std::vector<model::Capsule>;
 
   [[noreturn]] void Fail(const std::string& what) const { throw InputError(file_ + ": " + what); }
 
@@ -259,8 +264,11 @@ class ChainReader {
 
   // The bodies of `link` and of all that is fixed to it; `X_LU` is its pose in the moving link's frame.
   // `bodies` is null for the base, which does not move.
-  void AddBodies(const urdf::LinkConstSharedPtr& link, Bodies* bodies, const Pose& X_LU,
+  void AddBodies(const urdf::LinkConstSharedPtr& link, Bodies* bodies, Capsules& shapes, const Pose& X_LU,
                  const std::vector<urdf::JointConstSharedPtr>& chain) const {
+    for (const auto& collision : link->collision_array) {
+      AddShape(*link, *collision, X_LU, shapes);
+    }
     if (bodies != nullptr && link->inertial) {
       const urdf::Inertial& inertial = *link->inertial;
       const Pose X_LC = X_LU * ToPose(inertial.origin);
@@ -273,13 +281,33 @@ class ChainReader {
     }
     for (const auto& joint : link->child_joints) {
       if (joint->type == urdf::Joint::FIXED) {
-        AddBodies(urdf_->getLink(joint->child_link_name), bodies,
+        AddBodies(urdf_->getLink(joint->child_link_name), bodies, shapes,
                   X_LU * ToPose(joint->parent_to_joint_origin_transform), chain);
       } else if (std::find(chain.begin(), chain.end(), joint) == chain.end()) {
         Fail(fmt::format("joint \"{}\" moves a branch beside the chain from \"{}\" to \"{}\"", joint->name,
                          robot_.base_link, robot_.tip_link));
       }
     }
+  }
+
+  void AddShape(const urdf::Link& link, const urdf::Collision& collision, const Pose& X_LU,
+                Capsules& shapes) const {
+    if (!collision.geometry || collision.geometry->type == urdf::Geometry::MESH) {
+      return;  // a simulator's matter
+    }
+    const Pose X_LS = X_LU * ToPose(collision.origin);
+    model::Capsule shape;
+    if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(collision.geometry.get())) {
+      shape = CapsuleOfCylinder(X_LS, cylinder->length, cylinder->radius);
+    } else if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(collision.geometry.get())) {
+      shape = {X_LS.p, X_LS.p, sphere->radius};
+    } else if (const auto* box = dynamic_cast<const urdf::Box*>(collision.geometry.get())) {
+      shape = CapsuleOfBox(X_LS, ToVec3(box->dim));
+    }
+    if (!(shape.radius > 0.0) || !shape.p_LA.allFinite() || !shape.p_LB.allFinite()) {
+      Fail(fmt::format("link \"{}\": <collision>: sizes must be finite and above 0", link.name));
+    }
+    shapes.push_back(shape);
   }
 
   // A rigid body has a positive mass, and principal moments that are positive and obey the triangle

@@ -31,7 +31,7 @@ model::ArmPoses PosesAt(const VecN& q) {
 
 ArmLine LineAt(const VecN& q) { return LineOfArm(Arm(), PosesAt(q)); }
 
-double HandClearance(const VecN& q) { return ClearanceOfHand(Arm(), LineAt(q)); }
+double Gap(const VecN& q) { return SelfClearance(Arm(), PosesAt(q)); }
 
 // A table, and a wall that leans over it.
 config::GuardConfig Planes() {
@@ -50,49 +50,45 @@ config::ServoConfig WithPlanes() {
   return config;
 }
 
-config::ServoConfig WithHandClearance(double clearance) {
+config::ServoConfig WithSelfClearance(double clearance) {
   config::ServoConfig config = test::PandaConfig();
-  config.guard.hand_clearance = clearance;
+  config.guard.self_clearance = clearance;
   return config;
 }
 
 double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Arm(), Planes(), LineAt(q)); }
 
-// Points on the two lines, 2 mm apart and less.
-TEST(SelfClearanceBarrierTest, HandClearanceIsTheSmallestDistanceBetweenTheLines) {
+// Points on the two axes of each pair, 1 mm apart and less.
+TEST(SelfClearanceBarrierTest, GapIsTheSmallestFoundByASearchOverAllPairs) {
   test::RandomStates random(81);
+  const model::ArmShape& shape = Arm().shape;
+  ASSERT_GT(shape.num_pairs, 5);
   double worst = 0.0;
   for (int k = 0; k < 60; ++k) {
     const VecN q = random.Position(Arm());
     const model::ArmPoses poses = PosesAt(q);
-    const std::vector<Vec3> trunk{Vec3::Zero(), poses.X_BL[0].p, poses.X_BL[1].p, poses.X_BL[2].p};
+    const auto on_axis = [&](int body, double share) -> Vec3 {
+      const model::Capsule& capsule = shape.bodies[static_cast<std::size_t>(body)];
+      const Vec3 p_L = capsule.p_LA + share * (capsule.p_LB - capsule.p_LA);
+      return body == 0 ? p_L : Vec3(poses.X_BL[static_cast<std::size_t>(body - 1)] * p_L);
+    };
     double least = 1e9;
-    constexpr int kPoints = 400;
-    for (std::size_t i = 0; i + 1 < trunk.size(); ++i) {
+    constexpr int kPoints = 200;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(shape.num_pairs); ++i) {
+      const auto [near, far] = shape.pairs[i];
+      const double radii = shape.bodies[static_cast<std::size_t>(near)].radius +
+                           shape.bodies[static_cast<std::size_t>(far)].radius;
       for (int a = 0; a <= kPoints; ++a) {
-        const Vec3 on_trunk = trunk[i] + a / double{kPoints} * (trunk[i + 1] - trunk[i]);
         for (int b = 0; b <= kPoints; ++b) {
-          const Vec3 on_hand = poses.X_BL[6].p + b / double{kPoints} * (poses.X_BE.p - poses.X_BL[6].p);
-          least = std::min(least, (on_hand - on_trunk).norm() - (i == 0 ? 0.02 : 0.0));  // a thicker base
+          const double distance =
+              (on_axis(near, a / double{kPoints}) - on_axis(far, b / double{kPoints})).norm();
+          least = std::min(least, distance - radii);
         }
       }
     }
-    // The forearm, from the elbow on, against the base's column; both are thicker, by 5 cm.
-    const std::vector<Vec3> forearm{
-        poses.X_BL[3].p, poses.X_BL[3] * Vec3(-0.0825, 0.0, 0.0), poses.X_BL[4].p,
-        poses.X_BL[5].p, poses.X_BL[5] * Vec3(0.088, 0.0, 0.0),   poses.X_BL[6].p};
-    for (std::size_t i = 0; i + 1 < forearm.size(); ++i) {
-      for (int a = 0; a <= kPoints; ++a) {
-        const Vec3 on_arm = forearm[i] + a / double{kPoints} * (forearm[i + 1] - forearm[i]);
-        for (int b = 0; b <= kPoints; ++b) {
-          const Vec3 on_base = b / double{kPoints} * poses.X_BL[0].p;
-          least = std::min(least, (on_arm - on_base).norm() - 0.05);
-        }
-      }
-    }
-    const double clearance = HandClearance(q);
-    EXPECT_LT(clearance, least + 1e-12);
-    worst = std::max(worst, least - clearance);
+    const double gap = Gap(q);
+    EXPECT_LT(gap, least + 1e-12);
+    worst = std::max(worst, least - gap);
   }
   std::cout << "the search finds up to " << 1e3 * worst << " mm more\n";
   EXPECT_LT(worst, 0.002);
@@ -127,46 +123,45 @@ void ExpectRow(const MotionLimits& limits, const VecN& q, const VecN& dq, const 
 
 TEST(SelfClearanceBarrierTest, GradientMatchesFiniteDifferenceOfClearance) {
   test::RandomStates random(83);
-  double worst_hand = 0.0;
+  double worst_self = 0.0;
   double worst_arm = 0.0;
-  int hands = 0;
+  int selves = 0;
   int arms = 0;
   for (int k = 0; k < 300; ++k) {
     const VecN q = random.Position(Arm());
     const VecN dq = random.Joints(Arm(), 0.5);
-    MotionLimits hand;
-    hand.Add(SelfClearanceBarrier(WithHandClearance(0.3), PosesAt(q), LineAt(q)));
-    ExpectRow(hand, q, dq, HandClearance, worst_hand);
-    EXPECT_NEAR(hand.rows[0].b, 1.5 * std::max(HandClearance(q) - 0.3, 0.0), 1e-12);
+    MotionLimits self;
+    self.Add(SelfClearanceBarrier(WithSelfClearance(0.2), PosesAt(q)));
+    ExpectRow(self, q, dq, Gap, worst_self);
+    EXPECT_NEAR(self.rows[0].b, 1.5 * std::max(Gap(q) - 0.2, 0.0), 1e-12);
     MotionLimits arm;
     arm.Add(LinksBarrier(WithPlanes(), PosesAt(q), LineAt(q)));
     ExpectRow(arm, q, dq, PlaneClearance, worst_arm);
     EXPECT_EQ(arm.rows[0].b, BarrierSpeed(PlaneClearance(q) - 2.0 * WithPlanes().guard.workspace_margin,
                                           0.5 * WithPlanes().guard.workspace_deceleration,
                                           trajectory::SlowestReaction(WithPlanes())));
-    hands += HandClearance(q) < 0.3 ? 1 : 0;
+    selves += Gap(q) < 0.2 ? 1 : 0;
     arms += PlaneClearance(q) < 0.0 ? 1 : 0;
   }
-  std::cout << "off by at most " << worst_hand << ", " << worst_arm << " m/s; " << hands << " and " << arms
+  std::cout << "off by at most " << worst_self << ", " << worst_arm << " m/s; " << selves << " and " << arms
             << " of 300 nearer than they shall be\n";
-  EXPECT_LT(worst_hand, 1e-7);
+  EXPECT_LT(worst_self, 1e-7);
   EXPECT_LT(worst_arm, 1e-7);
-  EXPECT_GT(hands, 20);
+  EXPECT_GT(selves, 20);
   EXPECT_GT(arms, 20);
 }
 
 TEST(SelfClearanceBarrierTest, NoRowWithoutAClearanceLimitOrKnownGeometry) {
   MotionLimits limits;
   const VecN q = test::Ready();
-  limits.Add(SelfClearanceBarrier(WithHandClearance(0.0), PosesAt(q), LineAt(q)));
+  limits.Add(SelfClearanceBarrier(WithSelfClearance(0.0), PosesAt(q)));
   limits.Add(LinksBarrier(test::PandaConfig(), PosesAt(q), LineAt(q)));
-  limits.Add(
-      SelfClearanceBarrier(WithHandClearance(0.13), PosesAt(q * std::nan("")), LineAt(q * std::nan(""))));
+  limits.Add(SelfClearanceBarrier(WithSelfClearance(0.13), PosesAt(q * std::nan(""))));
   limits.Add(LinksBarrier(WithPlanes(), PosesAt(q * std::nan("")), LineAt(q * std::nan(""))));
   EXPECT_EQ(limits.num_rows, 0);
-  model::ArmModel short_arm = Arm();
-  short_arm.num_joints = 5;
-  EXPECT_EQ(ClearanceOfHand(short_arm, LineAt(q)), HUGE_VAL);
+  model::ArmModel without_pairs = Arm();
+  without_pairs.shape.num_pairs = 0;
+  EXPECT_EQ(SelfClearance(without_pairs, PosesAt(q)), HUGE_VAL);
 }
 
 }  // namespace

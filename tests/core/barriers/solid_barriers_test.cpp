@@ -24,7 +24,7 @@ config::ServoConfig Crowded() {
   obstacles.num_boxes = 1;
   obstacles.boxes[0] = {Vec3(0.3, -0.2, 0.0), Vec3(0.5, 0.2, 0.3)};
   EXPECT_TRUE(config.guard.hand.AddCapsule(Vec3::Zero(), Vec3(0.05, 0.0, 0.04), 0.03));
-  config.guard.hand_clearance = 0.13;
+  config.guard.self_clearance = 0.02;
   return config;
 }
 
@@ -71,11 +71,11 @@ TEST(SolidBarriersTest, GradientsMatchFiniteDifferencesOfTheirValues) {
 TEST(SolidBarriersTest, UnconfiguredBarriersAreNotInTheTable) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.obstacles = {};
-  config.guard.hand_clearance = 0.0;
+  config.guard.self_clearance = 0.0;
   EXPECT_EQ(SolidBarriers(config).size(), 1);
   config::Obstacles& obstacles = config.guard.obstacles;
   obstacles.num_planes = obstacles.num_boxes = config::Obstacles::kMost;
-  config.guard.hand_clearance = 0.1;
+  config.guard.self_clearance = 0.1;
   EXPECT_EQ(SolidBarriers(config).size(), SolidBarriers::kMost);
 }
 

@@ -49,6 +49,7 @@ class Walker {
       EXPECT_NEAR(reference_.dq[i] - before.dq[i], reference_.ddq[i] * kTick, 1e-12);
     }
     Update();
+    Use(speed, (J_E_B_.lazyProduct(reference_.dq)).norm() / config_.guard.cartesian_speed);
     radius = std::max(radius, poses_.X_BE.p.norm());
     all_limits |= limits;
     return limits;
@@ -63,8 +64,9 @@ class Walker {
   [[nodiscard]] const model::Vec3& p_BE() const { return poses_.X_BE.p; }
   [[nodiscard]] const trajectory::Reference& reference() const { return reference_; }
 
-  double position = 0.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0;  // largest use of each limit
-  double radius = 0.0;                                                    // largest |p_BE|
+  double position = 0.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0,
+         speed = 0.0;   // largest use of each limit
+  double radius = 0.0;  // largest |p_BE|
   hal::LimitSet all_limits = 0;
 
  private:
@@ -82,12 +84,13 @@ class Walker {
 
 void ExpectAllHeld(const Walker& walker, const config::ServoConfig& config) {
   std::cout << "largest use: position " << walker.position << ", velocity " << walker.velocity
-            << ", acceleration " << walker.acceleration << ", jerk " << walker.jerk << ", |p_BE| "
-            << walker.radius << " m\n";
+            << ", acceleration " << walker.acceleration << ", jerk " << walker.jerk << ", hand's speed "
+            << walker.speed << ", |p_BE| " << walker.radius << " m\n";
   EXPECT_LE(walker.position, 1.0 + 1e-3);
   EXPECT_LE(walker.velocity, 1.0 + 0.01);  // braking at full jerk may end a hair later
   EXPECT_LE(walker.acceleration, 1.0 + 1e-9);
   EXPECT_LE(walker.jerk, 1.0 + 1e-9);
+  EXPECT_LE(walker.speed, 1.0);
   EXPECT_LE(walker.radius, config.guard.workspace_radius + 1e-3);
 }
 
@@ -141,7 +144,7 @@ TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
     for (const double sign : {-1.0, 1.0}) {
       config::ServoConfig far = config;
       far.guard.workspace_radius = 10.0;  // this is about the joints alone
-      far.guard.hand_clearance = 0.0;
+      far.guard.self_clearance = 0.0;
       Walker walker(far, test::Ready());
       model::VecN wish = model::VecN::Zero(7);
       wish[joint] = sign * 10.0;
@@ -162,7 +165,7 @@ TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
 TEST(GuardMotionTest, JointBrakesBeforeItsEndWithTheBarriersDeceleration) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 10.0;
-  config.guard.hand_clearance = 0.0;
+  config.guard.self_clearance = 0.0;
   double most = 0.0;
   for (int joint = 0; joint < 7; ++joint) {
     for (const double sign : {-1.0, 1.0}) {

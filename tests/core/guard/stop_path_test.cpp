@@ -107,10 +107,10 @@ TEST(LimitsPassedTest, SampledStopGivesTheSameVerdictAsAllPoints) {
       return std::array{
           barriers::ClearanceOf(config.guard.obstacles, 0, config.guard.hand, at.X_BE).clearance.distance,
           barriers::ClearanceOfPlanes(config.arm, config.guard, line),
-          barriers::ClearanceOfHand(config.arm, line)};
+          barriers::SelfClearance(config.arm, at)};
     };
     const std::array least{config.guard.workspace_margin, config.guard.workspace_margin,
-                           config.guard.hand_clearance - 0.01};
+                           config.guard.self_clearance - 0.01};
     const auto now = bounds(poses);
     bool expected = false;
     for (int sample = 0; sample < kStopSamples && !expected; ++sample) {

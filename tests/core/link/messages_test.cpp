@@ -181,6 +181,9 @@ TEST(Messages, ArmChecksumChangesWithItsParameters) {
   other.q_ready[0] += 1e-15;
   EXPECT_NE(ArmCrc(other), ArmCrc(arm));
   other = arm;
+  other.shape.bodies[7].radius += 1e-15;
+  EXPECT_NE(ArmCrc(other), ArmCrc(arm));
+  other = arm;
   EXPECT_EQ(ArmCrc(other), ArmCrc(arm));
 }
 

@@ -89,6 +89,16 @@ void ExpectSame(const model::ArmModel& emitted, const model::ArmModel& read) {
   }
   ExpectSame(emitted.X_LnE, read.X_LnE);
   EXPECT_EQ(emitted.g_B, read.g_B);
+  for (std::size_t k = 0; k < read.shape.bodies.size(); ++k) {
+    EXPECT_EQ(emitted.shape.bodies[k].p_LA, read.shape.bodies[k].p_LA);
+    EXPECT_EQ(emitted.shape.bodies[k].p_LB, read.shape.bodies[k].p_LB);
+    EXPECT_EQ(emitted.shape.bodies[k].radius, read.shape.bodies[k].radius);
+  }
+  ASSERT_EQ(emitted.shape.num_pairs, read.shape.num_pairs);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(read.shape.num_pairs); ++k) {
+    EXPECT_EQ(emitted.shape.pairs[k].near, read.shape.pairs[k].near);
+    EXPECT_EQ(emitted.shape.pairs[k].far, read.shape.pairs[k].far);
+  }
 }
 
 TEST(FoveaModel, EmittedModelEqualsTheArmBitExact) {

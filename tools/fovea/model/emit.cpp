@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <vector>
 
@@ -56,6 +57,23 @@ std::string JointRow(const model::Joint& joint) {
   return text + "}";
 }
 
+std::string BodyRows(const model::ArmModel& arm) {
+  std::string text;
+  for (std::size_t k = 0; k <= static_cast<std::size_t>(arm.num_joints); ++k) {
+    const model::Capsule& body = arm.shape.bodies[k];
+    text += fmt::format("    {{{}, {}, {}}},\n", Row(body.p_LA), Row(body.p_LB), Number(body.radius));
+  }
+  return text;
+}
+
+std::string PairRows(const model::ArmShape& shape) {
+  std::string text;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(shape.num_pairs); ++k) {
+    text += fmt::format("{}{{{}, {}}}", k == 0 ? "" : ", ", shape.pairs[k].near, shape.pairs[k].far);
+  }
+  return text.empty() ? "{0, 0}" : text;
+}
+
 }  // namespace
 
 std::string EmitModel(const robots::Robot& robot) {
@@ -66,6 +84,7 @@ std::string EmitModel(const robots::Robot& robot) {
       "to be\n"
       "// changed by hand. Numbers are hexadecimal, exact to the last bit.\n"
       "#pragma once\n\n"
+      "#include <iterator>\n\n"
       "#include \"fovea/arm_model.hpp\"\n\n"
       "namespace fovea::arms {{\n"
       "namespace {0}_data {{\n\n"
@@ -87,8 +106,13 @@ std::string EmitModel(const robots::Robot& robot) {
     text += fmt::format("{}, {}, {{{}}}, {{{}}}, {}}},\n", JointRow(arm.joints[k]), Number(link.mass),
                         Row(link.p_LiCom), Row(link.I_Com_Li), Number(arm.q_ready[k]));
   }
+  const std::string bodies = BodyRows(arm);
+  const std::string pairs = PairRows(arm.shape);
   text += fmt::format(
       "}};\n"
+      "// A capsule about the base, and about each link: its ends and its radius.\n"
+      "inline constexpr double kBodies[{7}][7] = {{\n{6}}};\n"
+      "inline constexpr int kPairs[{9}][2] = {{{8}}};\n"
       "inline constexpr double kFlangeR[9] = {{{1}}};\n"
       "inline constexpr double kFlangeP[3] = {{{2}}};\n"
       "inline constexpr double kGravity[3] = {{{3}}};\n\n"
@@ -122,9 +146,18 @@ std::string EmitModel(const robots::Robot& robot) {
       "  }}\n"
       "  arm.X_LnE = {{Eigen::Map<const RowMajor>(kFlangeR), Eigen::Map<const model::Vec3>(kFlangeP)}};\n"
       "  arm.g_B = Eigen::Map<const model::Vec3>(kGravity);\n"
+      "  for (std::size_t k = 0; k < std::size(kBodies); ++k) {{\n"
+      "    arm.shape.bodies[k] = {{Eigen::Map<const model::Vec3>(kBodies[k]),\n"
+      "                           Eigen::Map<const model::Vec3>(kBodies[k] + 3), kBodies[k][6]}};\n"
+      "  }}\n"
+      "  arm.shape.num_pairs = {10};\n"
+      "  for (std::size_t k = 0; k < {10}; ++k) {{\n"
+      "    arm.shape.pairs[k] = {{kPairs[k][0], kPairs[k][1]}};\n"
+      "  }}\n"
       "}}\n\n"
       "}}  // namespace fovea::arms\n",
-      id, Row(arm.X_LnE.R), Row(arm.X_LnE.p), Row(arm.g_B), arm.num_joints, CamelCase(id));
+      id, Row(arm.X_LnE.R), Row(arm.X_LnE.p), Row(arm.g_B), arm.num_joints, CamelCase(id), bodies,
+      arm.num_joints + 1, pairs, std::max(arm.shape.num_pairs, 1), arm.shape.num_pairs);
   return text;
 }
 

@@ -101,6 +101,7 @@ std::string RecordHash::Finish() { return digest_->Finish(); }
 
 std::string HashOfModel(const model::ArmModel& model) {
   std::vector<std::uint8_t> bytes;
+  bytes.reserve(sizeof model);
   Writer write(bytes);
   write.All(std::int32_t{model.num_joints});
   for (std::size_t i = 0; i < static_cast<std::size_t>(model.num_joints); ++i) {
@@ -118,6 +119,15 @@ std::string HashOfModel(const model::ArmModel& model) {
   write.Matrix(model.X_LnE.R);
   write.Matrix(model.X_LnE.p);
   write.Matrix(model.g_B);
+  for (const model::Capsule& body : model.shape.bodies) {
+    write.Matrix(body.p_LA);
+    write.Matrix(body.p_LB);
+    write(body.radius);
+  }
+  write.All(std::int32_t{model.shape.num_pairs});
+  for (const model::ArmShape::Pair& pair : model.shape.pairs) {
+    write.All(pair.near, pair.far);
+  }
   RecordHash::Digest digest;
   digest.Add(bytes);
   return digest.Finish();

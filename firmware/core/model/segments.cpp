@@ -1,10 +1,8 @@
-#include "firmware/core/barriers/segments.hpp"
+#include "firmware/core/model/segments.hpp"
 
 #include <algorithm>
 
-namespace fovea::barriers {
-
-using model::Vec3;
+namespace fovea::model {
 
 SegmentPair NearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, const Vec3& q2) noexcept {
   constexpr double kPoint = 1e-12;  // [m^2]
@@ -37,4 +35,4 @@ SegmentPair NearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2, co
   return nearest;
 }
 
-}  // namespace fovea::barriers
+}  // namespace fovea::model
