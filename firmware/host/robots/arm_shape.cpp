@@ -103,6 +103,9 @@ Capsule CapsuleOfBox(const model::Pose& X_LS, const Vec3& size) {
 }
 
 Capsule Hold(const std::vector<Capsule>& parts) {
+  if (parts.size() == 1) {
+    return parts.front();
+  }
   std::vector<Vec3> ends;
   for (const Capsule& part : parts) {
     ends.push_back(part.p_LA);
