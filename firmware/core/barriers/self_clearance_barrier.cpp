@@ -1,6 +1,9 @@
 #include "firmware/core/barriers/self_clearance_barrier.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
 
 #include "firmware/core/model/segments.hpp"
 
@@ -12,10 +15,10 @@ using model::Vec3;
 
 // A capsule's axis in B [m], and the ball about its middle that holds the capsule.
 struct Placed {
-  Vec3 a = Vec3::Zero();
-  Vec3 b = Vec3::Zero();
-  Vec3 middle = Vec3::Zero();
-  double reach = 0.0;
+  Vec3 a;
+  Vec3 b;
+  Vec3 middle;
+  double reach;
 };
 
 struct Nearest {
@@ -35,15 +38,22 @@ Placed PlaceBody(const model::Capsule& body, const model::Pose& X_BL) noexcept {
 
 Nearest NearestPair(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept {
   const ArmShape& shape = arm.shape;
+  const std::span<const ArmShape::Pair> pairs =
+      std::span(shape.pairs).first(static_cast<std::size_t>(shape.num_pairs));
+  std::uint32_t used = 0;  // a bit for each body that is in a pair
+  for (const ArmShape::Pair& pair : pairs) {
+    used |= (1U << static_cast<unsigned>(pair.near)) | (1U << static_cast<unsigned>(pair.far));
+  }
   std::array<Placed, ArmShape::kMostBodies> placed;
-  placed[0] = PlaceBody(shape.bodies[0], model::Pose{});
-  for (std::size_t i = 0; i < static_cast<std::size_t>(arm.num_joints); ++i) {
-    placed[i + 1] = PlaceBody(shape.bodies[i + 1], poses.X_BL[i]);
+  for (std::size_t k = 0; k <= static_cast<std::size_t>(arm.num_joints); ++k) {
+    if (((used >> k) & 1U) != 0) {
+      placed[k] = PlaceBody(shape.bodies[k], k == 0 ? model::Pose{} : poses.X_BL[k - 1]);
+    }
   }
   Nearest nearest;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(shape.num_pairs); ++k) {
-    const auto far = static_cast<std::size_t>(shape.pairs[k].far);
-    const auto near = static_cast<std::size_t>(shape.pairs[k].near);
+  for (const ArmShape::Pair& pair : pairs) {
+    const auto far = static_cast<std::size_t>(pair.far);
+    const auto near = static_cast<std::size_t>(pair.near);
     // Bodies whose balls are further apart than what was found already need no closer look.
     const double apart = nearest.gap + placed[far].reach + placed[near].reach;
     if (apart > 0.0 && (placed[far].middle - placed[near].middle).squaredNorm() > apart * apart) {
@@ -53,7 +63,7 @@ Nearest NearestPair(const model::ArmModel& arm, const model::ArmPoses& poses) no
         model::NearestOfSegments(placed[far].a, placed[far].b, placed[near].a, placed[near].b);
     const double gap = axes.distance - shape.bodies[far].radius - shape.bodies[near].radius;
     if (gap < nearest.gap) {
-      nearest = {axes, gap, shape.pairs[k]};
+      nearest = {axes, gap, pair};
     }
   }
   return nearest;

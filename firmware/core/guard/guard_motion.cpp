@@ -17,11 +17,8 @@ using hal::Limit;
 using hal::LimitSet;
 using model::LinearJacobian;
 
-// Of the hand's speed: what is wished, and what the reference may reach. Joints that get to their wishes at
-// different times take the hand beyond the one on the way, and the arm is not where the reference is.
-constexpr double kSpeedShare = 0.97;
-constexpr double kSpeedShareMost = 0.98;
-constexpr double kSlow = 1e-3;  // a joint that is no faster stops by itself [rad/s, m/s]
+constexpr double kSpeedShare = 0.96;  // of the hand's speed that is wished; the proof of a stop allows more
+constexpr double kSlow = 1e-3;        // a joint that is no faster stops by itself [rad/s, m/s]
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 const model::Joint& JointOf(const config::ServoConfig& config, int i) noexcept {
@@ -55,16 +52,6 @@ LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E
   }
   dq *= most / speed;
   return Bit(Limit::kCartesianSpeed);
-}
-
-// Whether the step from `reference` to `next` makes the hand too fast; one that is too fast may only get
-// slower.
-LimitSet SpeedPassed(const config::ServoConfig& config, const LinearJacobian& J_E_B,
-                     const trajectory::Reference& reference, const trajectory::Reference& next) noexcept {
-  const double most = kSpeedShareMost * config.guard.cartesian_speed;
-  const double speed2 = J_E_B.lazyProduct(next.dq).squaredNorm();
-  const bool passed = speed2 > most * most && speed2 > J_E_B.lazyProduct(reference.dq).squaredNorm();
-  return passed ? Bit(Limit::kCartesianSpeed) : 0;
 }
 
 // Joint position: each joint on its own, since the others may still carry the task.
@@ -197,11 +184,7 @@ LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, 
   for (int i = 0; i < kTries; ++i) {
     next = reference;
     acceleration_limits = LimitAcceleration(config, share * dq, share * ddq, next);
-    LimitSet passed = 0;
-    if (share > 0.0) {
-      passed = SpeedPassed(config, J_E_B, reference, next) |
-               LimitsPassed(config, next, reference.q, reference_poses);
-    }
+    const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, reference_poses) : 0;
     if (passed == 0) {
       break;
     }

@@ -12,6 +12,8 @@ namespace fovea::guard {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
+// Of the hand's speed at the points of a stop that are looked at: between them it can be 3 % more.
+constexpr double kSpeedShareMost = 0.97;
 constexpr double kSlack = 1e-9;  // rounding is no step outward [m, rad]
 
 // A joint that stops after `distance` from q_now, given that it may go up to `limit` (or no further than it
@@ -78,14 +80,15 @@ class StopWay {
   // The ticks' own steps come on top of the continuous motion.
   [[nodiscard]] double Duration() const noexcept { return plan_.duration_s + kPeriodS; }
 
-  // Where the joints are `t` seconds into the stop, and how fast a point of the arm can be from then on
-  // at most.
-  double At(double t, model::VecN& q) const noexcept {
+  // Where the joints are `t` seconds into the stop, and how fast; and how fast a point of the arm can be from
+  // then on at most.
+  double At(double t, model::VecN& q, model::VecN& dq) const noexcept {
     double fastest = 0.0;
     for (int i = 0; i < q.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       const trajectory::AxisState state = plan_.joints[k].At(t);
       q[i] = reference_.q[i] + reference_.dq[i] * kPeriodS + state.x;
+      dq[i] = state.v;
       // A joint is never faster than now, or than when it has released its acceleration.
       const double settled = trajectory::SettledVelocity(
           state.v, state.a, config_.guard.joint_jerk_fraction * config_.arm.joints[k].dddq_max);
@@ -114,41 +117,39 @@ class StopWay {
 // What bounds the arm, each with its margin; what is already past one may only come back.
 class Bounds {
  public:
-  Bounds(const config::ServoConfig& config, const model::ArmPoses& now) noexcept
-      : arm_(config.arm), solid_(config) {
-    const barriers::ArmLine line = barriers::LineOfArm(arm_, now);
+  static constexpr int kMost = barriers::SolidBarriers::kMost;
+
+  Bounds(const config::ServoConfig& config, const model::ArmPoses& now) noexcept : solid_(config) {
+    const barriers::ArmLine line = barriers::LineOfArm(config.arm, now);
     for (int i = 0; i < solid_.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
       const double value = solid_.ValueOf(i, now, line);
-      const double least = std::min(solid_.StopMarginOf(i), value) - kSlack;
-      least_[static_cast<std::size_t>(i)] = least;
-      clear_now_ = std::min(clear_now_, solid_.ShareOf(i) * (value - least));
+      least_[k] = std::min(solid_.StopMarginOf(i), value) - kSlack;
+      clear_now_[k] = solid_.ShareOf(i) * (value - least_[k]);
     }
   }
 
-  // As below, when the stop begins.
-  [[nodiscard]] double clear_now() const noexcept { return clear_now_; }
-
-  // The distance that any point may still go; below 0, and `passed` set, where a bound is passed.
-  double Clear(const model::ArmPoses& poses, hal::LimitSet& passed) const noexcept {
-    const barriers::ArmLine line = barriers::LineOfArm(arm_, poses);
-    double clear = HUGE_VAL;
-    for (int i = 0; i < solid_.size(); ++i) {
-      const double left = solid_.ValueOf(i, poses, line) - least_[static_cast<std::size_t>(i)];
-      clear = std::min(clear, solid_.ShareOf(i) * left);
-      if (!(left >= 0.0)) {
-        passed = hal::Bit(solid_.NameOf(i));
-        return clear;
-      }
-    }
-    return clear;
+  [[nodiscard]] int size() const noexcept { return solid_.size(); }
+  [[nodiscard]] hal::LimitSet LimitOf(int i) const noexcept { return hal::Bit(solid_.NameOf(i)); }
+  // The distance that any point may still go before bound `i`, when the stop begins.
+  [[nodiscard]] double ClearNow(int i) const noexcept { return clear_now_[static_cast<std::size_t>(i)]; }
+  // The same with the links at `poses`; below 0 where it is passed.
+  [[nodiscard]] double Clear(int i, const model::ArmPoses& poses,
+                             const barriers::ArmLine& line) const noexcept {
+    return solid_.ShareOf(i) * (solid_.ValueOf(i, poses, line) - least_[static_cast<std::size_t>(i)]);
   }
 
  private:
-  const model::ArmModel& arm_;
   barriers::SolidBarriers solid_;
-  std::array<double, barriers::SolidBarriers::kMost> least_{};  // value of each that must be kept
-  double clear_now_ = HUGE_VAL;
+  std::array<double, kMost> least_{};  // value of each that must be kept
+  std::array<double, kMost> clear_now_{};
 };
+
+double HandSpeed(const model::ArmModel& arm, const model::ArmPoses& poses, const model::VecN& dq) noexcept {
+  model::LinearJacobian J;
+  model::ComputeLinearJacobian(arm, poses, poses.X_BE.p, J);
+  return J.lazyProduct(dq).norm();
+}
 
 }  // namespace
 
@@ -158,9 +159,10 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
   const StopWay way(config, reference);
   const double duration = way.Duration();
   model::VecN q = reference.q;
+  model::VecN dq = reference.dq;
 
   // Joints: a joint is furthest out where it stops, unless it still turns round before.
-  way.At(duration, q);
+  way.At(duration, q, dq);
   for (int i = 0; i < q.size(); ++i) {
     const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
     if (!Within(q[i], q_now[i], joint.q_min + guard.joint_position_margin,
@@ -170,26 +172,45 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
   }
 
   // Arm and hand: at points of time that are denser at the start, which is what will be gone for certain.
-  // None is looked at by which no point can have reached a bound.
+  // No bound is looked at before some point can have reached it.
   const Bounds bounds(config, poses_now);
-  hal::LimitSet passed = 0;
-  double fastest = way.At(0.0, q);
-  double clear_until = (bounds.clear_now() - way.FirstStep(q_now)) / std::max(fastest, kSlack);
+  std::array<double, Bounds::kMost> clear_until{};
+  const double fastest_now = std::max(way.At(0.0, q, dq), kSlack);
+  const double first_step = way.FirstStep(q_now);
+  const double speed_most = kSpeedShareMost * guard.cartesian_speed;
+  // While any point could be faster than the hand may, each sample counts.
+  double first_due = fastest_now > speed_most ? 0.0 : HUGE_VAL;
+  for (int i = 0; i < bounds.size(); ++i) {
+    double& until = clear_until[static_cast<std::size_t>(i)];
+    until = (bounds.ClearNow(i) - first_step) / fastest_now;
+    first_due = std::min(first_due, until);
+  }
   model::ArmPoses poses;
   for (int sample = 0; sample < kStopSamples; ++sample) {
     const double share = static_cast<double>(sample) / (kStopSamples - 1);
     const double t = duration * share * share;
-    if (t < clear_until) {
+    if (t < first_due) {
       continue;
     }
-    fastest = way.At(t, q);
+    const double fastest = std::max(way.At(t, q, dq), kSlack);
     model::ComputePoses(config.arm, q, poses);
-    passed = 0;
-    const double clear = bounds.Clear(poses, passed);
-    if (passed != 0) {
-      return passed;
+    const bool may_be_fast = fastest > speed_most;
+    if (may_be_fast && HandSpeed(config.arm, poses, dq) > speed_most) {
+      return hal::Bit(hal::Limit::kCartesianSpeed);
     }
-    clear_until = t + clear / std::max(fastest, kSlack);
+    const barriers::ArmLine line = barriers::LineOfArm(config.arm, poses);
+    first_due = may_be_fast ? t : HUGE_VAL;
+    for (int i = 0; i < bounds.size(); ++i) {
+      double& until = clear_until[static_cast<std::size_t>(i)];
+      if (!(t < until)) {
+        const double clear = bounds.Clear(i, poses, line);
+        if (!(clear >= 0.0)) {
+          return bounds.LimitOf(i);
+        }
+        until = t + clear / fastest;
+      }
+      first_due = std::min(first_due, until);
+    }
   }
   return 0;
 }

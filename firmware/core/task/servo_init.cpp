@@ -45,6 +45,26 @@ Status CheckArmModel(const model::ArmModel& arm) noexcept {
   return Status::Ok();
 }
 
+// A body that is not finite would pass for one that is far from everything.
+Status CheckArmShape(const model::ArmModel& arm) noexcept {
+  for (const model::Capsule& body : arm.shape.bodies) {
+    if (!body.p_LA.allFinite() || !body.p_LB.allFinite() || !(body.radius >= 0.0) ||
+        !std::isfinite(body.radius)) {
+      return Status(StatusCode::kOutOfRange, "arm.shape.bodies");
+    }
+  }
+  if (arm.shape.num_pairs < 0 || arm.shape.num_pairs > model::ArmShape::kMostPairs) {
+    return Status(StatusCode::kInvalidArgument, "arm.shape.num_pairs");
+  }
+  for (int k = 0; k < arm.shape.num_pairs; ++k) {
+    const model::ArmShape::Pair& pair = arm.shape.pairs[static_cast<std::size_t>(k)];
+    if (!(0 <= pair.near && pair.near < pair.far && pair.far <= arm.num_joints)) {
+      return Status(StatusCode::kInvalidArgument, "arm.shape.pairs");
+    }
+  }
+  return Status::Ok();
+}
+
 // The feature at its goal, into `goal`, with what is stacked below it.
 Status ComputeGoal(const features::TargetFeature& feature, features::FeatureState& goal) noexcept {
   if (!(feature.p_CO_C_star.z() >= feature.radius)) {
@@ -117,6 +137,9 @@ Status CheckTogether(const config::ServoConfig& config) noexcept {
 
 Status ServoTask::Init(const config::ServoConfig& config) noexcept {
   if (const Status status = CheckArmModel(config.arm); !status.ok()) {
+    return status;
+  }
+  if (const Status status = CheckArmShape(config.arm); !status.ok()) {
     return status;
   }
   config::RangeCheck ranges;

@@ -42,7 +42,8 @@ GuardRow RowOf(hal::Limit limit) {
           "(`safety.self_clearance`), in the tick and on the way of a stop",
           "as at the workspace's boundary; an arm that stands inside when it starts stays in Boot"};
     case hal::Limit::kCartesianSpeed:
-      return {"speed that is wished for the end effector", "the motion slows down as a whole"};
+      return {"speed of the end effector, as it is wished and on the way of a stop",
+              "the motion slows down as a whole"};
     case hal::Limit::kSingularity:
       return {
           "smallest singular value of the hand's Jacobian",

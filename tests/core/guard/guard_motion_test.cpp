@@ -108,6 +108,25 @@ TEST(GuardMotionTest, KeepsEveryLimitUnderRandomCommands) {
   ExpectAllHeld(walker, config);
 }
 
+// Joints get to what is wished for at different times: on the way the hand would be faster than before and
+// after.
+TEST(GuardMotionTest, HandKeepsItsSpeedLimitUnderRandomWishes) {
+  config::ServoConfig config = test::PandaConfig();
+  config.guard.cartesian_speed = 0.3;
+  test::RandomStates random(32);
+  Walker walker(config, test::Ready());
+  model::VecN wish = model::VecN::Zero(7);
+  for (int tick = 0; tick < test::Repetitions(200'000); ++tick) {
+    if (tick % 97 == 0) {
+      wish = random.Joints(config.arm, 3.0);
+    }
+    walker.Step(wish);
+  }
+  ExpectAllHeld(walker, config);
+  EXPECT_GT(walker.speed, 0.9) << "the attack must be one";
+  EXPECT_NE(walker.all_limits & hal::Bit(hal::Limit::kCartesianSpeed), 0U);
+}
+
 // THEORY B5: towards the boundary, along it, and aslant, at 1 m/s, from many places.
 TEST(GuardMotionTest, AttacksOnTheWorkspaceStopInsideIt) {
   const config::ServoConfig config = test::PandaConfig();

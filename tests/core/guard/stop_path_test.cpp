@@ -116,11 +116,17 @@ TEST(LimitsPassedTest, SampledStopGivesTheSameVerdictAsAllPoints) {
     for (int sample = 0; sample < kStopSamples && !expected; ++sample) {
       const double share = static_cast<double>(sample) / (kStopSamples - 1);
       model::VecN q = next.q + 1e-3 * next.dq;
+      model::VecN dq = next.dq;
       for (int i = 0; i < 7; ++i) {
-        q[i] += stops[static_cast<std::size_t>(i)].At(duration * share * share).x;
+        const trajectory::AxisState state = stops[static_cast<std::size_t>(i)].At(duration * share * share);
+        q[i] += state.x;
+        dq[i] = state.v;
       }
       model::ComputePoses(config.arm, q, poses);
-      expected = poses.X_BE.p.norm() > boundary;
+      model::LinearJacobian J;
+      model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J);
+      const bool too_fast = (J * dq).norm() > 0.97 * config.guard.cartesian_speed;
+      expected = poses.X_BE.p.norm() > boundary || too_fast;
       const auto then = bounds(poses);
       for (std::size_t i = 0; i < then.size(); ++i) {
         expected = expected || then[i] < std::min(least[i], now[i]) - 1e-9;

@@ -35,6 +35,18 @@ TEST(ServoInitTest, RefusesABadValueAndNamesTheKey) {
       {"joint torque limit", [=](config::ServoConfig& c) { c.arm.joints[2].dtau_max = nan; }},
       {"link inertia", [](config::ServoConfig& c) { c.arm.links[6].mass = 0.0; }},
       {"joint frame", [=](config::ServoConfig& c) { c.arm.joints[0].X_PJ.p.x() = nan; }},
+      {"arm.shape.bodies", [=](config::ServoConfig& c) { c.arm.shape.bodies[5].radius = nan; }},
+      {"arm.shape.bodies", [](config::ServoConfig& c) { c.arm.shape.bodies[5].radius = -0.05; }},
+      {"arm.shape.bodies", [=](config::ServoConfig& c) { c.arm.shape.bodies[0].p_LB.z() = infinity; }},
+      {"arm.shape.num_pairs", [](config::ServoConfig& c) { c.arm.shape.num_pairs = 22; }},
+      {"arm.shape.pairs",
+       [](config::ServoConfig& c) {
+         c.arm.shape.pairs[0] = {1, 8};
+       }},
+      {"arm.shape.pairs",
+       [](config::ServoConfig& c) {
+         c.arm.shape.pairs[0] = {5, 5};
+       }},
       {"target.diameter", [](config::ServoConfig& c) { c.feature.radius = 0.0; }},
       {"servo.goal", [](config::ServoConfig& c) { c.feature.p_CO_C_star.z() = -0.4; }},
       {"servo.goal", [=](config::ServoConfig& c) { c.feature.p_CO_C_star.x() = nan; }},
@@ -96,6 +108,7 @@ TEST(ServoInitTest, RefusesABadValueAndNamesTheKey) {
       {"servo.motion_law",
        [](config::ServoConfig& c) {
          c.arm.num_joints = 1;
+         c.arm.shape.num_pairs = 0;
          c.motion_law.kind = config::MotionLawKind::kOperationalSpace;
        }},
   };

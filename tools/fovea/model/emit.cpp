@@ -151,7 +151,7 @@ std::string EmitModel(const robots::Robot& robot) {
       "                           Eigen::Map<const model::Vec3>(kBodies[k] + 3), kBodies[k][6]}};\n"
       "  }}\n"
       "  arm.shape.num_pairs = {10};\n"
-      "  for (std::size_t k = 0; k < {10}; ++k) {{\n"
+      "  for (std::size_t k = 0; k < static_cast<std::size_t>(arm.shape.num_pairs); ++k) {{\n"
       "    arm.shape.pairs[k] = {{kPairs[k][0], kPairs[k][1]}};\n"
       "  }}\n"
       "}}\n\n"
