@@ -1,5 +1,6 @@
 #include "firmware/targets/linux/speaker.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <unistd.h>
@@ -24,7 +25,18 @@ constexpr std::chrono::milliseconds kPatience{500};
 }  // namespace
 
 struct Speaker::Shared {
-  int fd = -1;
+  // A descriptor of its own: when the thread outlives the speaker, the number that was given may by then be
+  // another file's.
+  explicit Shared(int given) : fd(fcntl(given, F_DUPFD_CLOEXEC, 0)) {}
+  ~Shared() {
+    if (fd >= 0) {
+      close(fd);
+    }
+  }
+  Shared(const Shared&) = delete;
+  Shared& operator=(const Shared&) = delete;
+
+  const int fd;
   std::mutex mutex;
   std::condition_variable changed;
   std::deque<std::string> lines;  // the first is being said
@@ -39,7 +51,7 @@ struct Speaker::Shared {
 
   // False when it could not be said.
   bool Write(std::string_view text) {
-    while (!text.empty() && !IsAbandoned()) {
+    while (fd >= 0 && !text.empty() && !IsAbandoned()) {
       pollfd room{fd, POLLOUT, 0};
       if (poll(&room, 1, kPollMs) <= 0) {
         continue;
@@ -56,8 +68,7 @@ struct Speaker::Shared {
   }
 };
 
-Speaker::Speaker(int fd) : shared_(std::make_shared<Shared>()) {
-  shared_->fd = fd;
+Speaker::Speaker(int fd) : shared_(std::make_shared<Shared>(fd)) {
   // Signals are for others: the thread takes over what is blocked here.
   sigset_t all;
   sigset_t before;
