@@ -74,6 +74,19 @@ class Loopback(TwoPrograms):
                                       text=True)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
+    def test_serve_leaves_summary_json_in_its_out_folder(self):
+        with tempfile.TemporaryDirectory() as temp:
+            out = pathlib.Path(temp) / "served"
+            port = self.serve("--pace", "lockstep", "--out", str(out))
+            s = self.hardware(port, "--seconds", "0.5", "--enable")
+            truth = self.end_server()
+            self.assertEqual({file.name for file in out.iterdir()}, {"summary.json"})
+            self.assertEqual(json.loads((out / "summary.json").read_text()), truth)
+            self.assertEqual((truth["scenario"], truth["pace"], truth["contact_ticks"]), ("ball", "lockstep", 0))
+            self.assertGreater(truth["commands"], 400)
+            for key in ("format", "servo", "version"):
+                self.assertEqual(truth[key], s[key], key)
+
     def test_film_switched_off_leaves_no_film(self):
         with tempfile.TemporaryDirectory() as temp:
             (pathlib.Path(temp) / "camera.mp4").write_text("of another run")
