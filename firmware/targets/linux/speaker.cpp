@@ -1,6 +1,5 @@
 #include "firmware/targets/linux/speaker.hpp"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
 #include <unistd.h>
@@ -27,7 +26,7 @@ constexpr std::chrono::milliseconds kPatience{500};
 struct Speaker::Shared {
   // A descriptor of its own: when the thread outlives the speaker, the number that was given may by then be
   // another file's.
-  explicit Shared(int given) : fd(fcntl(given, F_DUPFD_CLOEXEC, 0)) {}
+  explicit Shared(int given) : fd(dup(given)) {}
   ~Shared() {
     if (fd >= 0) {
       close(fd);
