@@ -9,6 +9,7 @@
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
 #include "tools/bench/vision/picture.hpp"
+#include "tools/bench/vision/scenes.hpp"
 
 namespace fovea::vision {
 namespace {
@@ -19,7 +20,7 @@ using model::Vec3;
 DetectorConfig ConfigOf(hal::FeatureKind kind) {
   const bench::PictureCamera camera;
   DetectorConfig config;
-  config.kind = kind;
+  config.LookFor(bench::TargetOf(kind));
   config.by = FindBy::kGray;
   config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
                        camera.f_px,     camera.c_u_px,    camera.c_v_px};

@@ -11,6 +11,7 @@
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
 #include "tools/bench/vision/picture.hpp"
+#include "tools/bench/vision/scenes.hpp"
 
 namespace fovea::vision {
 namespace {
@@ -22,7 +23,7 @@ class ShadedTargetTest : public testing::TestWithParam<hal::FeatureKind> {
   static DetectorConfig Config() {
     const bench::PictureCamera camera;
     DetectorConfig config;
-    config.kind = GetParam();
+    config.LookFor(bench::TargetOf(GetParam()));
     config.by = FindBy::kColour;
     config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
                          camera.f_px,     camera.c_u_px,    camera.c_v_px};

@@ -168,7 +168,7 @@ TEST(ThreePointsTest, SquarePosesMatchIppeOrFitBetter) {
       }
       return std::sqrt(sum2 / 4.0);
     };
-    const CornerPoses ours = PosesOfCorners(fit, in, shape, nullptr);
+    const CornerPoses ours = PosesOfCorners(fit, in, shape, 4, nullptr);
     const auto poses = std::span(ours.pose).first(static_cast<std::size_t>(ours.count));
     double least_px = 1e9;
     for (const CornerPose& pose : poses) {
@@ -195,6 +195,66 @@ TEST(ThreePointsTest, SquarePosesMatchIppeOrFitBetter) {
   EXPECT_EQ(worse, 0);
   EXPECT_GE(seconds, 50);
   EXPECT_LE(missed, 2) << "but where the corners hardly tell the tilt, and a search ends anywhere";
+}
+
+// Whichever corner the finder names first: the pose is the true one, or one of its equal turns.
+TEST(PosesOfCornersTest, EqualTurnsAreOneAndOthersAreToldApart) {
+  const double r = 0.05;
+  const double h = r * std::sqrt(0.75);
+  const Intrinsics in{640, 480, 554.256, 554.256, 319.5, 239.5};
+  struct Case {
+    const char* name;
+    std::vector<Eigen::Vector2d> shape;
+    int turns;
+  };
+  for (const Case& c : {Case{"square", {{-r, -r}, {r, -r}, {r, r}, {-r, r}}, 4},
+                        Case{"rectangle", {{-r, -0.6 * r}, {r, -0.6 * r}, {r, 0.6 * r}, {-r, 0.6 * r}}, 2},
+                        Case{"kite", {{-r, -0.8 * r}, {0.9 * r, -0.5 * r}, {r, r}, {-0.9 * r, 0.3 * r}}, 1},
+                        Case{"equilateral triangle", {{0.0, -r}, {h, 0.5 * r}, {-h, 0.5 * r}}, 3}}) {
+    Chance chance;
+    const auto n = static_cast<int>(c.shape.size());
+    double worst_rad = 0.0;
+    double worst_px = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      const model::Pose X_CO = chance.Pose(0.5);
+      const int shift = i % n;
+      CornerFit fit;
+      fit.count = n;
+      fit.cov = CornerFit::Covariance::Identity(2 * n, 2 * n) * 1e-4;
+      const auto pixel = [&](const model::Pose& pose, int k) {
+        const Eigen::Vector2d& corner = c.shape[static_cast<std::size_t>(k)];
+        const Vec3 p = pose * Vec3(corner.x(), corner.y(), 0.0);
+        return Eigen::Vector2d(in.U(p), in.V(p));
+      };
+      for (int k = 0; k < n; ++k) {
+        const Eigen::Vector2d at = pixel(X_CO, (k + shift) % n);
+        fit.corner[static_cast<std::size_t>(k)] = {at.x(), at.y()};
+      }
+      const CornerPoses found = PosesOfCorners(fit, in, c.shape, c.turns, nullptr);
+      ASSERT_GT(found.count, 0) << c.name;
+      double nearest_rad = 1e9;
+      for (const CornerPose& pose : std::span(found.pose).first(static_cast<std::size_t>(found.count))) {
+        for (int turn = 0; turn < c.turns; ++turn) {
+          const Mat3 R = X_CO.R * model::RotationOf({0.0, 0.0, 2.0 * M_PI * turn / c.turns});
+          nearest_rad = std::min(nearest_rad, TurnBetween(pose.X_CO.R, R));
+        }
+        for (int k = 0; k < n; ++k) {
+          const ImagePoint& seen = fit.corner[static_cast<std::size_t>((pose.first + k) % n)];
+          const Eigen::Vector2d off = pixel(pose.X_CO, k) - Eigen::Vector2d(seen.u_px, seen.v_px);
+          worst_px = std::max(worst_px, off.norm());
+        }
+      }
+      worst_rad = std::max(worst_rad, nearest_rad);
+      const CornerPoses tracked = PosesOfCorners(fit, in, c.shape, c.turns, &X_CO);
+      ASSERT_GT(tracked.count, 0) << c.name;
+      EXPECT_LT(TurnBetween(tracked.pose[0].X_CO.R, X_CO.R), 1e-6) << c.name << ": as it was before";
+      EXPECT_EQ(tracked.pose[0].first, (n - shift) % n) << c.name;
+    }
+    std::cout << c.name << ": the truth, at most " << worst_rad << " rad off; corners at most " << worst_px
+              << " px off\n";
+    EXPECT_LT(worst_rad, 1e-6) << c.name;
+    EXPECT_LT(worst_px, 0.2) << c.name;
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // fovea-bench: figures. Each command prints a table, or with --json a list of {name, value, unit, goal}.
 #include <CLI/CLI.hpp>
 
+#include "firmware/core/features/target_traits.hpp"
 #include "firmware/host/build_info.hpp"
 #include "firmware/host/config/program.hpp"
 #include "tools/bench/compare/compare.hpp"
@@ -95,10 +96,12 @@ int main(int argc, char** argv) {
   wire_command->add_flag("--json", wire.json, "Print JSON");
 
   bench::VisionArguments vision;
+  std::vector<std::string> targets(features::kTargetNames.begin(), features::kTargetNames.end());
+  targets.emplace_back("all");
   CLI::App* vision_command = app.add_subcommand(
       "vision", "How often, how well and how fast targets are found in pictures of known truth");
   vision_command->add_option("--target", vision.target, "Which target")
-      ->check(CLI::IsMember({"all", "sphere", "circle", "square", "triangle"}))
+      ->check(CLI::IsMember(targets))
       ->capture_default_str();
   vision_command->add_option("--class", vision.only, "One class of pictures; all when not given");
   vision_command->add_option("--pictures", vision.pictures, "Of each class; a third without a target")

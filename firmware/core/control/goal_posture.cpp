@@ -6,6 +6,7 @@
 
 #include "firmware/core/control/posture_checks.hpp"
 #include "firmware/core/model/cholesky.hpp"
+#include "firmware/core/model/math.hpp"
 #include "firmware/core/model/rotation.hpp"
 
 namespace fovea::control {
@@ -44,7 +45,7 @@ int TurnsOf(const features::TargetFeature& feature) noexcept {
 
 // Where the camera shall be.
 Pose CameraGoal(const features::TargetFeature& feature, const Pose& X_BO, int turn) noexcept {
-  const Pose turned{X_BO.R * QuarterTurns(turn), X_BO.p};
+  const Pose turned{X_BO.R * EqualTurn(turn, TurnsOf(feature)), X_BO.p};
   return turned * Pose{feature.R_CO_star, feature.p_CO_C_star}.Inverse();
 }
 
@@ -62,11 +63,12 @@ int TurnOfRank(const config::ServoConfig& config, const Pose& X_BO, const VecN& 
   model::ArmPoses poses;
   model::ComputePoses(config.arm, q, poses);
   const Pose X_BC = poses.X_BE * config.X_EC;
-  std::array<double, 4> likeness{};
-  for (int i = 0; i < 4; ++i) {
+  std::array<double, features::Polygon::kMost> likeness{};
+  likeness.fill(-HUGE_VAL);  // of turns that it does not have: last
+  for (int i = 0; i < turns; ++i) {
     likeness[static_cast<std::size_t>(i)] = X_BC.R.cwiseProduct(CameraGoal(config.feature, X_BO, i).R).sum();
   }
-  std::array<int, 4> order{0, 1, 2, 3};
+  std::array<int, features::Polygon::kMost> order{0, 1, 2, 3};
   std::swap(order[0], order[static_cast<std::size_t>(first)]);
   std::sort(order.begin() + 1, order.end(), [&](int a, int b) {
     return likeness[static_cast<std::size_t>(a)] > likeness[static_cast<std::size_t>(b)];
@@ -243,12 +245,18 @@ bool SeeksGoalPosture(const config::ServoConfig& config) noexcept {
   return config.arm.num_joints >= 6 && (whole_pose || SeeksWhenIdle(config));
 }
 
-Mat3 QuarterTurns(int turn) noexcept {
-  constexpr std::array<double, 4> kCos{1.0, 0.0, -1.0, 0.0};
-  const double c = kCos[static_cast<std::size_t>(turn & 3)];
-  const double s = kCos[static_cast<std::size_t>((turn + 3) & 3)];
+Mat3 EqualTurn(int turn, int turns) noexcept {
+  model::SinCosResult by{0.0, 1.0};
+  if (4 * turn % turns == 0) {
+    constexpr std::array<double, 4> kCos{1.0, 0.0, -1.0, 0.0};
+    const int quarters = 4 * turn / turns;
+    by.cos = kCos[static_cast<std::size_t>(quarters & 3)];
+    by.sin = kCos[static_cast<std::size_t>((quarters + 3) & 3)];
+  } else {
+    by = model::SinCos(2.0 * model::kPi * turn / turns);
+  }
   Mat3 R;
-  R << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  R << by.cos, -by.sin, 0.0, by.sin, by.cos, 0.0, 0.0, 0.0, 1.0;
   return R;
 }
 

@@ -28,7 +28,7 @@ struct GoalPosture {
   bool reached = false;        // the trial has reached the goal, and the way there is tried
   bool downhill = false;       // the posture was found from where the arm was
   bool clear = false;          // the way to it was, when it was found
-  int turn = 0;                // quarter turns of the target about its z, for which the last posture found is
+  int turn = 0;                // the target's equal turn about its z for which the last posture found is
   int trial_turn = 0;          // and for which the trial is
   int trial = 0;               // that is under way, or led to the posture
   int step = 0;                // of the trial; of a posture that was found, how long it has been off the goal
@@ -72,7 +72,7 @@ void SeekClearerPosture(GoalPosture& goal) noexcept;
 // The posture cannot be reached: goes on with the next trial, for another one. Real-time: yes.
 void DropGoalPosture(GoalPosture& goal) noexcept;
 
-// `turn` quarter turns about z. Real-time: yes.
-[[nodiscard]] model::Mat3 QuarterTurns(int turn) noexcept;
+// The `turn`-th of `turns` equal turns about z; exact where they are quarters. Real-time: yes.
+[[nodiscard]] model::Mat3 EqualTurn(int turn, int turns) noexcept;
 
 }  // namespace fovea::control

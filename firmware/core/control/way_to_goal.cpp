@@ -37,7 +37,8 @@ constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 bool IsLonger(std::int64_t ns, double s) noexcept { return static_cast<double>(ns) > s * kSecondNs; }
 
 void NoteIdle(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
-  const model::Mat3 R_CO = sight.X_CO.R * QuarterTurns(way.goal.turn);
+  const int turns = features::TraitsOf(config.feature.target).turns;
+  const model::Mat3 R_CO = sight.X_CO.R * EqualTurn(way.goal.turn, turns);
   const bool turns_freely = !config.feature.SeesOrientation();
   const double turn =
       turns_freely ? 0.0 : model::RotationVector(config.feature.R_CO_star.transpose() * R_CO).norm();

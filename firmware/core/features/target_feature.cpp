@@ -8,13 +8,13 @@
 namespace fovea::features {
 namespace {
 
-// TraitsOf finds a kind by its place; and a target that looks the same from more sides than one is turned to
-// its goal by quarters (control::QuarterTurns).
+// TraitsOf finds a kind by its place. A plate that looks the same after a turn has its corners on each other.
 static_assert([] {
   for (std::size_t i = 0; i < kTargets.size(); ++i) {
     const TargetTraits& target = kTargets[i];
     const bool is_plate = target.body == TargetBody::kPlate;
-    if (static_cast<std::size_t>(target.kind) != i || (target.turns != 1 && target.turns != 4) ||
+    if (static_cast<std::size_t>(target.kind) != i || target.turns < 1 ||
+        (is_plate ? target.num_corners % target.turns != 0 : target.turns != 1) ||
         (target.num_corners > 0) != is_plate || target.num_corners > Polygon::kMost) {
       return false;
     }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 
 #include "fovea/hal/feature.hpp"
 
@@ -25,7 +26,8 @@ struct TargetTraits {
   const char* name;  // as target.kind, logs and commands have it
   TargetBody body;
   int num_corners;   // of a plate; else 0
-  int turns;         // of a full turn about O's z that nobody can tell from each other: a square's 4
+  int turns;         // of a full turn about O's z that nobody can tell from each other: a square's 4.
+                     // Of a plate they divide num_corners
   FeatureForm form;  // that is steered by when none is chosen
   std::array<FeatureForm, 4> forms;  // all that it can be steered by; `form` fills the rest
 };
@@ -65,6 +67,16 @@ inline constexpr std::array<TargetTraits, 4> kTargets{{
 // `kind` is one of the table. Real-time: yes.
 [[nodiscard]] constexpr const TargetTraits& TraitsOf(hal::FeatureKind kind) noexcept {
   return kTargets[static_cast<std::size_t>(kind)];
+}
+
+// The one of that name; null where there is none.
+[[nodiscard]] constexpr const TargetTraits* FindTraits(std::string_view name) noexcept {
+  for (const TargetTraits& target : kTargets) {
+    if (name == target.name) {
+      return &target;
+    }
+  }
+  return nullptr;
 }
 
 inline constexpr std::array<const char*, kTargets.size()> kTargetNames = [] {

@@ -1,6 +1,7 @@
 // The fields of a tick's inputs and outputs, in the order in which they go over the line.
 #pragma once
 
+#include "firmware/core/features/target_traits.hpp"
 #include "firmware/core/link/fields.hpp"
 #include "firmware/core/link/messages.hpp"
 #include "fovea/hal/events.hpp"
@@ -11,7 +12,7 @@ inline constexpr int kNumStatusCodes = 8;
 inline constexpr int kNumHoldReasons = 8;
 inline constexpr int kNumRequests = 4;
 inline constexpr int kNumMotionKinds = 6;
-inline constexpr int kNumFeatureKinds = 4;
+inline constexpr int kNumFeatureKinds = static_cast<int>(features::kTargets.size());
 
 template <class Archive, class T>
 void ArmStateFields(Archive& a, T& s) noexcept {

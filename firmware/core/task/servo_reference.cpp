@@ -53,7 +53,8 @@ void ServoTask::ChooseTheWay() noexcept {
 bool ServoTask::ComputeFeature() noexcept {
   features::TargetInCamera seen = state_.prediction.seen;
   if (state_.way.goal.turn != 0) {
-    seen.X_CO.R = seen.X_CO.R * control::QuarterTurns(state_.way.goal.turn);
+    const int turns = features::TraitsOf(config_.feature.target).turns;
+    seen.X_CO.R = seen.X_CO.R * control::EqualTurn(state_.way.goal.turn, turns);
   }
   if (!config_.feature.Compute(seen, state_.feature)) {
     return false;

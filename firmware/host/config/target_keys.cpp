@@ -10,10 +10,12 @@
 namespace fovea::config {
 namespace {
 
+using features::Polygon;
+
 constexpr double kDifferent = 0.05;  // sides differ by this share of the longest, at least
 constexpr double kFlat = 0.1;        // the height over the longest side is this share of it, at least
 
-void CheckTriangle(const features::Polygon& triangle) {
+void CheckTriangle(const Polygon& triangle) {
   const auto& c = triangle.corners;
   std::array<double, 3> sides{(c[0] - c[1]).norm(), (c[1] - c[2]).norm(), (c[2] - c[0]).norm()};
   std::sort(sides.begin(), sides.end());
@@ -33,6 +35,28 @@ void CheckTriangle(const features::Polygon& triangle) {
   }
 }
 
+Polygon SquareOf(const TargetSettings& s) { return features::MakeSquare(s.side); }
+
+Polygon TriangleOf(const TargetSettings& s) {
+  std::array<double, 6> corners{};
+  std::copy(s.triangle.begin(), s.triangle.end(), corners.begin());
+  const Polygon triangle = features::MakeTriangle(corners);
+  CheckTriangle(triangle);
+  return triangle;
+}
+
+// The corners of each plate, from its keys; null for what is round. In the order of features::kTargets.
+using MakeCorners = Polygon (*)(const TargetSettings& settings);
+constexpr std::array<MakeCorners, features::kTargets.size()> kCorners{nullptr, nullptr, SquareOf, TriangleOf};
+static_assert([] {
+  for (std::size_t i = 0; i < kCorners.size(); ++i) {
+    if ((kCorners[i] != nullptr) != (features::kTargets[i].body == features::TargetBody::kPlate)) {
+      return false;
+    }
+  }
+  return true;
+}());
+
 }  // namespace
 
 void AddTargetKeys(TargetSettings& s, KeyTable& keys) {
@@ -47,18 +71,13 @@ void AddTargetKeys(TargetSettings& s, KeyTable& keys) {
 
 features::TargetFeature MakeTarget(const TargetSettings& s) {
   features::TargetFeature feature;
-  const auto* kind = std::find(features::kTargetNames.begin(), features::kTargetNames.end(), s.kind);
-  feature.target = static_cast<hal::FeatureKind>(kind - features::kTargetNames.begin());
+  const features::TargetTraits& traits = *features::FindTraits(s.kind);
+  feature.target = traits.kind;
   feature.radius = 0.5 * s.diameter;
   feature.side = s.side;
-  feature.form = features::TraitsOf(feature.target).form;
-  if (feature.target == hal::FeatureKind::kSquare) {
-    feature.corners = features::MakeSquare(s.side);
-  } else if (feature.target == hal::FeatureKind::kTriangle) {
-    std::array<double, 6> corners{};
-    std::copy(s.triangle.begin(), s.triangle.end(), corners.begin());
-    feature.corners = features::MakeTriangle(corners);
-    CheckTriangle(feature.corners);
+  feature.form = traits.form;
+  if (const MakeCorners make = kCorners[static_cast<std::size_t>(traits.kind)]; make != nullptr) {
+    feature.corners = make(s);
   }
   return feature;
 }

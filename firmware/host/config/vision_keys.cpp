@@ -44,11 +44,7 @@ vision::DetectorConfig MakeVisionConfig(const VisionSettings& settings, const vi
                                         const TargetSettings& target) {
   vision::DetectorConfig config = settings.config;
   config.intrinsics = intrinsics;
-  config.kind = MakeTarget(target).target;
-  config.size = config.kind == hal::FeatureKind::kSquare ? target.side : target.diameter;
-  for (std::size_t i = 0; i < config.triangle.size(); ++i) {
-    config.triangle[i] = {target.triangle[2 * i], target.triangle[2 * i + 1]};
-  }
+  config.LookFor(MakeTarget(target));
   config.by = settings.method == "gray"    ? vision::FindBy::kGray
               : settings.method == "hough" ? vision::FindBy::kHough
                                            : vision::FindBy::kColour;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "firmware/core/features/target_traits.hpp"
 #include "firmware/core/model/math.hpp"
 #include "firmware/core/model/rotation.hpp"
 
@@ -43,7 +44,8 @@ ImageError::ImageError(const log::Setup& setup) : f_px_(setup.f_px()) {
     static_cast<void>(model::RotationOfQuaternion({q[0], q[1], q[2], q[3]}, X_CO_star_.R));
   }
   if (form_ == Form::kCorners || form_ == Form::kPose) {
-    turns_ = setup.target() == "square" ? 4 : 1;
+    const features::TargetTraits* traits = features::FindTraits(setup.target());
+    turns_ = traits != nullptr ? traits->turns : 1;
     points_.clear();
     for (int i = 0; i + 1 < setup.corners_size(); i += 2) {
       points_.emplace_back(setup.corners(i), setup.corners(i + 1), 0.0);
@@ -99,11 +101,16 @@ float ImageError::OfTick(const log::Tick& tick) const {
 float ImageError::OfMeasurement(const log::Feature& feature) const {
   const Doubles& s = feature.s();
   double off = kNone;
-  if (feature.found() && feature.kind() == log::Feature::CIRCLE && s.size() >= 3) {
+  const auto kind = static_cast<std::size_t>(feature.kind());
+  if (!feature.found() || kind >= features::kTargets.size()) {
+    return static_cast<float>(off);
+  }
+  const features::TargetBody body = features::kTargets[kind].body;
+  if (body == features::TargetBody::kDisc && s.size() >= 3) {
     off = std::sqrt(Apart2({s[0], s[1], 1.0}, X_CO_star_.p));
-  } else if (feature.found() && feature.kind() == log::Feature::SPHERE && s.size() >= 3) {
+  } else if (body == features::TargetBody::kBall && s.size() >= 3) {
     off = std::sqrt(Apart2(ThreeOf(s, 0), X_CO_star_.p));
-  } else if (feature.found() && feature.poses_size() > 0 && feature.poses(0).p_co_c_size() == 3 &&
+  } else if (feature.poses_size() > 0 && feature.poses(0).p_co_c_size() == 3 &&
              feature.poses(0).q_co_size() == 4) {
     // All poses look alike in the picture.
     const Doubles& q = feature.poses(0).q_co();

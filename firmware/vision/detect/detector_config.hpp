@@ -1,9 +1,7 @@
 // What is looked for, and how.
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
-
+#include "firmware/core/features/target_feature.hpp"
 #include "firmware/vision/find/colour_model.hpp"
 #include "firmware/vision/pose/intrinsics.hpp"
 #include "fovea/hal/feature.hpp"
@@ -39,15 +37,19 @@ struct DetectorConfig {
   ColourConfig colour;
   HoughConfig hough;
   EdgeNoise edge_noise;
-  double size = 0.08;  // sphere's and disc's diameter, square's side [m]
-  // The triangle's corners in O [m]; they are taken about their mean.
-  std::array<Eigen::Vector2d, 3> triangle{Eigen::Vector2d{-0.05, 0.04}, Eigen::Vector2d{0.06, 0.03},
-                                          Eigen::Vector2d{-0.02, -0.06}};
+  double size = 0.08;          // a ball's and a disc's diameter [m]
+  features::Polygon corners;   // a plate's: about their mean, turning from x to y
   double distance_min = 0.12;  // a target can only be this near [m]
   double distance_max = 1.20;  // or this far [m]: smaller things are something else
   double radius_min_px = 8.0;  // nor are smaller outlines looked for: radius of the circle with their area
   double radius_max_px = 400.0;
   double confidence_min = 0.5;  // finds below it are refused, 0 to 1
+
+  void LookFor(const features::TargetFeature& target) {
+    kind = target.target;
+    size = 2.0 * target.radius;
+    corners = target.corners;
+  }
 };
 
 }  // namespace fovea::vision

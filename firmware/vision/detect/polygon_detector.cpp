@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "firmware/vision/find/colour_share.hpp"
 
@@ -42,26 +43,16 @@ bool IsTargets(const PolygonFit& fit) {
   if (!fit.whole && fit.corners.cov.diagonal().maxCoeff() > sigma * sigma) {
     return false;  // a corner that is so little known may be anywhere
   }
-  // Of a square, four sides that are not all its own fit no pose.
+  // Four sides that are not all the target's own fit no pose of it.
   return fit.rms_px < scatter && (fit.whole || fit.bends_explained || fit.corners.count > 3);
 }
 
 }  // namespace
 
 std::vector<Eigen::Vector2d> CornersOf(const DetectorConfig& config) {
-  if (config.kind == hal::FeatureKind::kSquare) {
-    const double h = 0.5 * config.size;
-    return {{-h, -h}, {h, -h}, {h, h}, {-h, h}};
-  }
-  std::vector<Eigen::Vector2d> corners(config.triangle.begin(), config.triangle.end());
-  const Eigen::Vector2d mean = (corners[0] + corners[1] + corners[2]) / 3.0;
-  for (Eigen::Vector2d& corner : corners) {
-    corner -= mean;
-  }
-  const Eigen::Vector2d a = corners[1] - corners[0];
-  const Eigen::Vector2d b = corners[2] - corners[0];
-  if (a.x() * b.y() - a.y() * b.x() < 0.0) {
-    std::swap(corners[1], corners[2]);
+  std::vector<Eigen::Vector2d> corners;
+  for (int i = 0; i < config.corners.num_corners; ++i) {
+    corners.emplace_back(config.corners.corners[static_cast<std::size_t>(i)].head<2>());
   }
   return corners;
 }
@@ -69,8 +60,12 @@ std::vector<Eigen::Vector2d> CornersOf(const DetectorConfig& config) {
 PolygonDetector::PolygonDetector(const DetectorConfig& config)
     : config_(config),
       shape_(CornersOf(config)),
+      turns_(features::TraitsOf(config.kind).turns),
       colour_(config.colour),
       fitter_(config.edge_noise, config.by == FindBy::kColour) {
+  if (static_cast<int>(shape_.size()) != features::TraitsOf(config.kind).num_corners) {
+    throw std::invalid_argument("the detector's corners are not those of its kind of target");
+  }
   double area = 0.0;
   double side = 1e9;
   for (std::size_t i = 0; i < shape_.size(); ++i) {
@@ -124,7 +119,8 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
       fitter_.evidence().SideGoesOn(image, config_.intrinsics, corners, step)) {
     return;
   }
-  CornerPoses found = PosesOfCorners(fit.corners, config_.intrinsics, shape_, X_CO_ ? &*X_CO_ : nullptr);
+  CornerPoses found =
+      PosesOfCorners(fit.corners, config_.intrinsics, shape_, turns_, X_CO_ ? &*X_CO_ : nullptr);
   DropPosesOutOfReach(found);
   if (found.count == 0) {
     return;

@@ -1,4 +1,4 @@
-// Square and triangle: find (polygon_finder.hpp), fit (polygon_fit.hpp), pose (flat_pose.hpp), judge.
+// Plates with corners: find (polygon_finder.hpp), fit (polygon_fit.hpp), pose (flat_pose.hpp), judge.
 #pragma once
 
 #include <optional>
@@ -19,6 +19,7 @@ std::vector<Eigen::Vector2d> CornersOf(const DetectorConfig& config);
 
 class PolygonDetector {
  public:
+  // std::invalid_argument: corners that are not as many as its kind of target has.
   explicit PolygonDetector(const DetectorConfig& config);
 
   // The best that is in `area` of the image, searched `factor` times smaller.
@@ -35,6 +36,7 @@ class PolygonDetector {
 
   const DetectorConfig config_;
   const std::vector<Eigen::Vector2d> shape_;
+  const int turns_;  // of the target that look alike
   ColourModel colour_;
   PolygonLimits limits_;
   EdgeMap map_;

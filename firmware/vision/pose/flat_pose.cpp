@@ -151,6 +151,7 @@ void FindPoses(const CornerFit& fit, const Intrinsics& in, FlatShape shape, cons
     const ImagePoint& c = fit.corner[static_cast<std::size_t>(at[i])];
     rays[i] = in.Ray(c.u_px, c.v_px).normalized();
   }
+  const int begin = found.count;
   const ThreePointPoses starts = PosesOfThreePoints(object, rays);
   for (int i = 0; i < starts.count; ++i) {
     found.Add(Refine(fit, at, in, shape, starts.X_CO[static_cast<std::size_t>(i)]));
@@ -159,22 +160,22 @@ void FindPoses(const CornerFit& fit, const Intrinsics& in, FlatShape shape, cons
     found.Add(Refine(fit, at, in, shape, *last));
   }
   // Four corners have a second pose near the first's mirror image about the line of sight.
-  for (int i = 0, count = fit.count == 4 ? found.count : 0; i < count; ++i) {
+  for (int i = begin, count = fit.count == 4 ? found.count : 0; i < count; ++i) {
     found.Add(Refine(fit, at, in, shape, Mirrored(found.poses[static_cast<std::size_t>(i)].pose.X_CO)));
   }
 }
 
-// A square's quarter turns are one to it: of the four the most likely.
+// Equal turns are one to a target with `count` corners: of them the most likely.
 template <class Cost>
-void TurnSquare(const Cost& cost, CornerPose& pose) {
+void ChooseTurn(const Cost& cost, int count, int turns, CornerPose& pose) {
   const CornerPose found = pose;
   double best = cost(pose.X_CO.R);
-  for (int quarters = 1; quarters < 4; ++quarters) {
-    const Mat3 R = found.X_CO.R * model::RotationOf(Vec3(0.0, 0.0, 0.5 * std::numbers::pi * quarters));
+  for (int turn = 1; turn < turns; ++turn) {
+    const Mat3 R = found.X_CO.R * model::RotationOf(Vec3(0.0, 0.0, 2.0 * std::numbers::pi * turn / turns));
     if (cost(R) < best) {
       best = cost(R);
       pose.X_CO.R = R;
-      pose.first = (found.first + quarters) % 4;
+      pose.first = (found.first + turn * count / turns) % count;
     }
   }
 }
@@ -225,7 +226,7 @@ bool PosesOfDisc(const Eigen::Matrix3d& conic, const Intrinsics& in, double diam
   return true;
 }
 
-CornerPoses PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape shape,
+CornerPoses PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape shape, int turns,
                            const model::Pose* last) {
   CornerPoses poses;
   const int n = fit.count;
@@ -233,7 +234,7 @@ CornerPoses PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape
     return poses;
   }
   Found found;
-  for (int first = 0; first < (n == 3 ? n : 1); ++first) {
+  for (int first = 0; first < n / turns; ++first) {
     FindPoses(fit, in, shape, last, first, found);
   }
   const auto all = std::span(found.poses).first(static_cast<std::size_t>(found.count));
@@ -245,9 +246,7 @@ CornerPoses PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape
     return last != nullptr ? AngleBetween(last->R, R) : Unlikeness(R);
   };
   for (Refined& r : all) {
-    if (n == 4) {
-      TurnSquare(cost, r.pose);
-    }
+    ChooseTurn(cost, n, turns, r.pose);
   }
   std::sort(all.begin(), all.end(),
             [&](const Refined& a, const Refined& b) { return cost(a.pose.X_CO.R) < cost(b.pose.X_CO.R); });

@@ -3,6 +3,9 @@
 // Each outline has several poses: a disc two, a square two (and four by its quarter turns, which are one to
 // it), a triangle up to four, and others with its corners taken for each other. Of a disc the one nearest to
 // the last is kept; those of corners are all named, for one image does not tell them apart.
+//
+// A plate that looks the same after a k-th of a full turn (features::TargetTraits::turns) has k poses for
+// one: the most likely of them is named.
 #pragma once
 
 #include <Eigen/Core>
@@ -53,10 +56,10 @@ struct CornerPoses {
 // Corners of the target in O [m], z = 0, about their mean, in the order that turns like the image's corners.
 using FlatShape = std::span<const Eigen::Vector2d>;
 
-// The poses of a square or triangle whose corners are `fit`, at most hal::kMaxPoses: first the one nearest to
-// `last`, its pose in the image before; or, when that is null, the one that faces the camera most squarely,
-// then the least turned about the view axis.
-CornerPoses PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape shape,
+// The poses of a plate that looks the same after each of `turns` equal turns and whose corners are `fit`, at
+// most hal::kMaxPoses: first the one nearest to `last`, its pose in the image before; or, when that is null,
+// the one that faces the camera most squarely, then the least turned about the view axis.
+CornerPoses PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape shape, int turns,
                            const model::Pose* last);
 
 }  // namespace fovea::vision

@@ -47,9 +47,10 @@ int StepsUntilFound(const config::ServoConfig& config, const Pose& X_BO, const V
 void ExpectAtGoal(const config::ServoConfig& config, const Pose& X_BO, const GoalPosture& goal) {
   const Pose X_CO = CameraAt(config, goal.q).Inverse() * X_BO;
   EXPECT_LT((X_CO.p - config.feature.p_CO_C_star).norm(), 1e-3);
-  EXPECT_LT(
-      model::RotationVector(config.feature.R_CO_star.transpose() * X_CO.R * QuarterTurns(goal.turn)).norm(),
-      1e-3);
+  EXPECT_LT(model::RotationVector(config.feature.R_CO_star.transpose() * X_CO.R *
+                                  EqualTurn(goal.turn, features::TraitsOf(config.feature.target).turns))
+                .norm(),
+            1e-3);
   for (int i = 0; i < goal.q.size(); ++i) {
     const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
     EXPECT_GT(goal.q[i], joint.q_min + config.guard.joint_position_margin) << i;
@@ -110,10 +111,22 @@ TEST(GoalPostureTest, PostureWithABlockedPathIsTakenLast) {
   EXPECT_FALSE(barred.clear);
 }
 
+TEST(GoalPostureTest, EqualTurnsMakeAFullTurn) {
+  for (int turns = 1; turns <= 4; ++turns) {
+    model::Mat3 R = model::Mat3::Identity();
+    for (int turn = 0; turn < turns; ++turn) {
+      EXPECT_LT((EqualTurn(turn, turns) - R).norm(), 3e-15) << turn << " of " << turns;
+      R = R * EqualTurn(1, turns);
+    }
+    EXPECT_LT((R - model::Mat3::Identity()).norm(), 3e-15) << turns;
+  }
+  EXPECT_EQ(EqualTurn(1, 2), EqualTurn(2, 4)) << "exact";
+}
+
 // The hand hangs beside the camera: turned by half a turn it would be outside the workspace, as it is not.
 TEST(GoalPostureTest, SquareIsFacedFromASideInReach) {
   const config::ServoConfig config = Config(hal::FeatureKind::kSquare);
-  const Pose half{QuarterTurns(2), model::Vec3::Zero()};
+  const Pose half{EqualTurn(2, 4), model::Vec3::Zero()};
   const auto hand_turned = [&](const VecN& q) {
     return (CameraAt(config, q) * half * config.X_EC.Inverse()).p.norm();
   };
@@ -139,14 +152,14 @@ TEST(GoalPostureTest, SquareIsFacedFromASideInReach) {
 TEST(GoalPostureTest, JumpingSquareKeepsItsGoalSide) {
   const config::ServoConfig config = Config(hal::FeatureKind::kSquare);
   const VecN q = test::Ready();
-  Pose X_BO = TargetFor(config, q) * Pose{QuarterTurns(3), model::Vec3::Zero()};
+  Pose X_BO = TargetFor(config, q) * Pose{EqualTurn(3, 4), model::Vec3::Zero()};
   GoalPosture goal;
   goal.turn = 1;
   ASSERT_GT(StepsUntilFound(config, X_BO, q, goal), 0);
   ASSERT_EQ(goal.turn, 1);
   VecN q_after = q;
   q_after[0] += 0.9;
-  X_BO = TargetFor(config, q_after) * Pose{QuarterTurns(3), model::Vec3::Zero()};
+  X_BO = TargetFor(config, q_after) * Pose{EqualTurn(3, 4), model::Vec3::Zero()};
   const std::uint32_t random = goal.random;
   SeekGoalPosture(config, X_BO, q, goal);
   ASSERT_FALSE(goal.found) << "lost";

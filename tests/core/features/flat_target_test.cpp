@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <iostream>
+#include <set>
+#include <utility>
 
 #include "firmware/core/features/square.hpp"
 #include "firmware/core/features/target_feature.hpp"
@@ -21,25 +23,24 @@ TargetFeature Make(FeatureKind target, FeatureForm form) {
   feature.target = target;
   feature.form = form;
   feature.corners =
-      target == FeatureKind::kTriangle ? MakeTriangle(kDefaultTriangle) : MakeSquare(feature.side);
+      TraitsOf(target).num_corners == 3 ? MakeTriangle(kDefaultTriangle) : MakeSquare(feature.side);
   return feature;
 }
 
-const std::array<std::pair<FeatureKind, FeatureForm>, 9> kListed{{
-    {FeatureKind::kSphere, FeatureForm::kSphere},
-    {FeatureKind::kSphere, FeatureForm::kCircle},
-    {FeatureKind::kCircle, FeatureForm::kCircle},
-    {FeatureKind::kSquare, FeatureForm::kCorners},
-    {FeatureKind::kSquare, FeatureForm::kSide},
-    {FeatureKind::kSquare, FeatureForm::kCornerSide},
-    {FeatureKind::kSquare, FeatureForm::kPose},
-    {FeatureKind::kTriangle, FeatureForm::kPose},
-    {FeatureKind::kTriangle, FeatureForm::kCorners},
-}};
+// Each target by each of its features.
+std::set<std::pair<FeatureKind, FeatureForm>> Listed() {
+  std::set<std::pair<FeatureKind, FeatureForm>> listed;
+  for (const TargetTraits& target : kTargets) {
+    for (const FeatureForm form : target.forms) {
+      listed.emplace(target.kind, form);
+    }
+  }
+  return listed;
+}
 
 // The target's own turn is in it too: RandomView gives the target a velocity and a turn.
 TEST(FlatTargetTest, EveryInteractionMatrixMatchesFiniteDifferences) {
-  for (const auto& [target, form] : kListed) {
+  for (const auto& [target, form] : Listed()) {
     const double worst = test::WorstDerivative(Make(target, form), 0.6, 43, 1000);
     std::cout << kTargetNames[static_cast<std::size_t>(target)] << ", "
               << kFormNames[static_cast<std::size_t>(form)] << ": worst relative difference over 1000 poses "
@@ -67,7 +68,7 @@ TEST(FlatTargetTest, ListedFeaturesAreCompleteWithTheirDimensions) {
       EXPECT_EQ(feature.IsListed(), state.s.size() + 3 <= kMaxDim);
     }
   }
-  EXPECT_EQ(listed, static_cast<int>(kListed.size()));
+  EXPECT_EQ(listed, static_cast<int>(Listed().size()));
 }
 
 // Seen squarely from above, in numbers anyone can check.
@@ -102,7 +103,7 @@ TEST(SquareFeatureTest, AngleErrorStaysWithinHalfATurn) {
 
 TEST(FlatTargetTest, RefusesATargetNotFullyInFrontOfTheCamera) {
   const double nan = std::nan("");
-  for (const auto& [target, form] : kListed) {
+  for (const auto& [target, form] : Listed()) {
     const TargetFeature feature = Make(target, form);
     FeatureState state;
     state.s = FeatureVector::Constant(3, 7.0);

@@ -33,7 +33,7 @@ vision::DetectorConfig DetectorFor(const features::TargetFeature& feature) {
   config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
                        camera.f_px,     camera.c_u_px,    camera.c_v_px};
   config.by = vision::FindBy::kGray;
-  config.size = 2.0 * feature.radius;
+  config.LookFor(feature);
   return config;
 }
 

@@ -2,34 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <random>
 #include <stdexcept>
 
-#include "firmware/core/features/target_feature.hpp"
-#include "firmware/core/features/triangle.hpp"
 #include "firmware/core/model/rotation.hpp"
+#include "firmware/host/config/target_keys.hpp"
 #include "tools/bench/common/spread.hpp"
 
 namespace fovea::bench {
 namespace {
 
-using features::FeatureForm;
-using hal::FeatureKind;
-
 constexpr int kPlaces = 500;
 constexpr int kRounds = 41;
-
-struct Listed {
-  FeatureKind target;
-  FeatureForm form;
-};
-constexpr Listed kListed[] = {
-    {FeatureKind::kSphere, FeatureForm::kSphere},    {FeatureKind::kSphere, FeatureForm::kCircle},
-    {FeatureKind::kCircle, FeatureForm::kCircle},    {FeatureKind::kSquare, FeatureForm::kCorners},
-    {FeatureKind::kSquare, FeatureForm::kSide},      {FeatureKind::kSquare, FeatureForm::kCornerSide},
-    {FeatureKind::kSquare, FeatureForm::kPose},      {FeatureKind::kTriangle, FeatureForm::kPose},
-    {FeatureKind::kTriangle, FeatureForm::kCorners},
-};
 
 // 0.35 to 0.65 m off, in the picture, tilted and turned by some 10 degrees.
 std::vector<features::TargetInCamera> RandomPlaces() {
@@ -44,14 +29,21 @@ std::vector<features::TargetInCamera> RandomPlaces() {
   return places;
 }
 
-features::TargetFeature MakeFeature(const Listed& listed) {
-  features::TargetFeature feature;
-  feature.target = listed.target;
-  feature.form = listed.form;
-  feature.corners = listed.target == FeatureKind::kTriangle
-                        ? features::MakeTriangle(features::kDefaultTriangle)
-                        : features::MakeSquare(feature.side);
-  return feature;
+// Each target by each of its features.
+std::vector<features::TargetFeature> AllFeatures() {
+  std::vector<features::TargetFeature> all;
+  for (const features::TargetTraits& target : features::kTargets) {
+    config::TargetSettings settings;
+    settings.kind = target.name;
+    features::TargetFeature feature = config::MakeTarget(settings);
+    for (auto form = target.forms.begin(); form != target.forms.end(); ++form) {
+      if (std::find(target.forms.begin(), form, *form) == form) {  // the first fills the rest
+        feature.form = *form;
+        all.push_back(feature);
+      }
+    }
+  }
+  return all;
 }
 
 double ComputeNs(const features::TargetFeature& feature,
@@ -72,14 +64,12 @@ double ComputeNs(const features::TargetFeature& feature,
 std::vector<Figure> FeatureSpeed() {
   const std::vector<features::TargetInCamera> places = RandomPlaces();
   std::vector<Figure> figures;
-  for (const Listed& listed : kListed) {
-    const features::TargetFeature feature = MakeFeature(listed);
+  for (const features::TargetFeature& feature : AllFeatures()) {
     if (!feature.IsListed()) {
       throw std::logic_error("a feature that is timed is not listed");
     }
-    const std::string name =
-        fmt::format("interaction_{}_{}_ns", features::kTargetNames[static_cast<std::size_t>(listed.target)],
-                    features::kFormNames[static_cast<std::size_t>(listed.form)]);
+    const std::string name = fmt::format("interaction_{}_{}_ns", features::TraitsOf(feature.target).name,
+                                         features::kFormNames[static_cast<std::size_t>(feature.form)]);
     figures.push_back({name, ComputeNs(feature, places), "ns", {}});
   }
   return figures;

@@ -6,14 +6,10 @@
 namespace fovea::bench {
 vision::DetectorConfig ConfigOf(TargetKind kind, const PictureCamera& camera, vision::FindBy by) {
   vision::DetectorConfig config;
-  config.kind = kind;
+  config.LookFor(TargetOf(kind));
   config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
                        camera.f_px,     camera.c_u_px,    camera.c_v_px};
   config.by = by;
-  config.size = kind == TargetKind::kSquare ? kSide : kDiameter;
-  for (std::size_t i = 0; i < config.triangle.size(); ++i) {
-    config.triangle[i] = TriangleCorners()[i];
-  }
   config.distance_min = 0.10;
   config.distance_max = 2.2;
   return config;

@@ -2,11 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
 
-#include "firmware/core/features/target_traits.hpp"
+#include "firmware/host/config/target_keys.hpp"
 
 namespace fovea::bench {
 namespace {
@@ -16,6 +17,9 @@ using Eigen::Vector3d;
 
 constexpr double kRadiusMinPx = 12.0;
 constexpr double kRadiusMaxPx = 150.0;
+constexpr double kDiameter = 0.08;  // of ball and disc [m]
+constexpr double kSide = 0.08;      // of the square [m]
+constexpr std::array<double, 6> kTriangle{-0.05, 0.04, -0.02, -0.06, 0.06, 0.03};
 
 class Chance {
  public:
@@ -37,39 +41,66 @@ Eigen::Matrix3d Turn(Chance& chance, double most_tilt) {
       .toRotationMatrix();
 }
 
-std::vector<Vector2d> SquareCorners(double side) {
-  const double h = 0.5 * side;
-  return {{-h, -h}, {h, -h}, {h, h}, {-h, h}};
+// How large a plate is drawn: `radius` of the circle with its area [m], `reach` of its furthest corner, in
+// radii, and `clutter`, the radius that stands for its size among clutter [m].
+struct PlateSize {
+  double radius;
+  double reach;
+  double clutter;
+};
+
+PlateSize SizeOf(const features::TargetFeature& target) {
+  // The published figures are of pictures that were drawn with these.
+  struct Drawn {
+    TargetKind kind;
+    PlateSize size;
+  };
+  static const Drawn kDrawn[] = {
+      {TargetKind::kSquare, {kSide / std::sqrt(std::numbers::pi), 1.4, kSide / 1.6}},
+      {TargetKind::kTriangle, {0.0416, 1.9, 0.0416}},
+  };
+  for (const Drawn& drawn : kDrawn) {
+    if (drawn.kind == target.target) {
+      return drawn.size;
+    }
+  }
+  const std::vector<Vector2d> corners = CornersOf(target);
+  double twice_area = 0.0;
+  double furthest = 0.0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vector2d& a = corners[i];
+    const Vector2d& b = corners[(i + 1) % corners.size()];
+    twice_area += a.x() * b.y() - a.y() * b.x();
+    furthest = std::max(furthest, a.norm());
+  }
+  const double radius = std::sqrt(0.5 * twice_area / std::numbers::pi);
+  return {radius, 1.1 * furthest / radius, radius};
 }
 
 Body MakeTarget(TargetKind kind, const PictureCamera& camera, bool off_axis, Chance& chance) {
+  const features::TargetFeature target = TargetOf(kind);
   Body body;
-  double radius = 0.5 * kDiameter;
+  double radius = target.radius;
   double reach = 1.0;  // of the furthest point of the outline, in radii
-  switch (kind) {
-    case TargetKind::kSphere:
+  switch (features::TraitsOf(kind).body) {
+    case features::TargetBody::kBall:
       body.radius = radius;
       body.shade = off_axis ? 0.4 : 0.0;
       break;
-    case TargetKind::kCircle:
+    case features::TargetBody::kDisc:
       body.shape = Shape::kDisc;
       body.radius = radius;
       body.R = Turn(chance, 0.9);
       break;
-    case TargetKind::kSquare:
+    case features::TargetBody::kPlate: {
+      const PlateSize size = SizeOf(target);
       body.shape = Shape::kPolygon;
-      body.corners = SquareCorners(kSide);
+      body.corners = CornersOf(target);
       body.R = Turn(chance, 0.7);
-      radius = kSide / std::sqrt(std::numbers::pi);
-      reach = 1.4;
+      radius = size.radius;
+      reach = size.reach;
       break;
-    case TargetKind::kTriangle:
-      body.shape = Shape::kPolygon;
-      body.corners = TriangleCorners();
-      body.R = Turn(chance, 0.7);
-      radius = 0.0416;
-      reach = 1.9;
-      break;
+    }
   }
   const bool flat = features::TraitsOf(kind).body == features::TargetBody::kPlate;
   const double least = flat ? 20.0 : kRadiusMinPx;
@@ -127,6 +158,13 @@ Body MakeOccluder(const PictureCamera& camera, const Body& target, double hidden
   return body;
 }
 
+// Its corners, as large as if `radius` were its size.
+void AddScaled(const features::TargetFeature& plate, double radius, std::vector<Vector2d>& corners) {
+  for (const Vector2d& corner : CornersOf(plate)) {
+    corners.emplace_back(corner * (radius / SizeOf(plate).clutter));
+  }
+}
+
 // Things that differ from the target in colour, shape or size, not before it.
 void AddClutter(PictureScene& scene, TargetKind kind, Chance& chance) {
   constexpr int kThings = 9;
@@ -134,6 +172,9 @@ void AddClutter(PictureScene& scene, TargetKind kind, Chance& chance) {
   const TrueOutline target =
       scene.has_target ? OutlineOf(camera, scene.bodies.front()) : TrueOutline{-1e4, -1e4, 0.0, {}};
   const bool is_round = features::TraitsOf(kind).body != features::TargetBody::kPlate;
+  const bool is_triangle = features::TraitsOf(kind).num_corners == 3;
+  const features::TargetFeature triangle = TargetOf(TargetKind::kTriangle);
+  const features::TargetFeature plate = is_round ? triangle : TargetOf(kind);
   for (int i = 0; i < kThings; ++i) {
     Body body;
     const int sort = i % 3;
@@ -156,21 +197,16 @@ void AddClutter(PictureScene& scene, TargetKind kind, Chance& chance) {
       body.radius = radius;
     } else {
       body.shape = Shape::kPolygon;
-      // Of another shape than the target's: a long bar, or the other polygon.
+      // The target's own shape, in another colour; or another one: a long bar, or a triangle.
       if (sort == 0) {
-        body.corners = kind == TargetKind::kSquare ? SquareCorners(1.6 * radius) : TriangleCorners();
-        for (Vector2d& corner : body.corners) {
-          corner *= kind == TargetKind::kSquare ? 1.0 : radius / 0.0416;
-        }
-      } else if (kind == TargetKind::kTriangle || (is_round && chance.Coin())) {
+        AddScaled(plate, radius, body.corners);
+      } else if (is_triangle || (is_round && chance.Coin())) {
         body.corners = {{-1.6 * radius, -0.4 * radius},
                         {1.6 * radius, -0.4 * radius},
                         {1.6 * radius, 0.4 * radius},
                         {-1.6 * radius, 0.4 * radius}};
       } else {
-        for (const Vector2d& corner : TriangleCorners()) {
-          body.corners.emplace_back(corner * (radius / 0.0416));
-        }
+        AddScaled(triangle, radius, body.corners);
       }
       body.R = Turn(chance, 0.3);
     }
@@ -195,15 +231,20 @@ const std::vector<SceneClass>& SceneClasses() {
   return classes;
 }
 
-const std::vector<Vector2d>& TriangleCorners() {
-  static const std::vector<Vector2d> corners = [] {
-    std::vector<Vector2d> list{{-0.05, 0.04}, {-0.02, -0.06}, {0.06, 0.03}};
-    const Vector2d mean = (list[0] + list[1] + list[2]) / 3.0;
-    for (Vector2d& corner : list) {
-      corner -= mean;
-    }
-    return list;
-  }();
+features::TargetFeature TargetOf(TargetKind kind) {
+  config::TargetSettings settings;
+  settings.kind = features::TraitsOf(kind).name;
+  settings.diameter = kDiameter;
+  settings.side = kSide;
+  settings.triangle.assign(kTriangle.begin(), kTriangle.end());
+  return config::MakeTarget(settings);
+}
+
+std::vector<Vector2d> CornersOf(const features::TargetFeature& target) {
+  std::vector<Vector2d> corners;
+  for (int i = 0; i < target.corners.num_corners; ++i) {
+    corners.emplace_back(target.corners.corners[static_cast<std::size_t>(i)].head<2>());
+  }
   return corners;
 }
 

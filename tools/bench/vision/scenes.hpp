@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fovea/hal/feature.hpp"
+#include "firmware/core/features/target_feature.hpp"
 #include "tools/bench/vision/picture.hpp"
 
 namespace fovea::bench {
@@ -25,10 +25,9 @@ struct SceneClass {
 };
 const std::vector<SceneClass>& SceneClasses();
 
-// Sizes that the detector is told [m].
-inline constexpr double kDiameter = 0.08;
-inline constexpr double kSide = 0.08;
-const std::vector<Eigen::Vector2d>& TriangleCorners();
+// The target of each kind, as the detector is told of it.
+features::TargetFeature TargetOf(TargetKind kind);
+std::vector<Eigen::Vector2d> CornersOf(const features::TargetFeature& target);
 
 // One picture of a class; the radius of the target's outline is from 12 to 150 px.
 PictureScene MakeScene(const SceneClass& scene_class, TargetKind kind, bool with_target, unsigned seed);

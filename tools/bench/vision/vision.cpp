@@ -181,13 +181,13 @@ int RunVision(const VisionArguments& arguments) {
   }
   std::vector<Figure> figures;
   bool any = false;
-  for (const TargetKind kind :
-       {TargetKind::kSphere, TargetKind::kCircle, TargetKind::kSquare, TargetKind::kTriangle}) {
+  for (const features::TargetTraits& target : features::kTargets) {
+    const TargetKind kind = target.kind;
     if (arguments.target != "all" && arguments.target != NameOf(kind)) {
       continue;
     }
     for (const SceneClass& scenes : SceneClasses()) {
-      const bool fits = !scenes.off_axis || kind == TargetKind::kSphere;
+      const bool fits = !scenes.off_axis || target.body == features::TargetBody::kBall;
       if (fits && (arguments.only.empty() || arguments.only == scenes.name)) {
         RunClass(scenes, kind, arguments, figures);
         any = true;

@@ -190,7 +190,8 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       "simulate many runs: from random starts, how many converge; or with faults, what they come to");
   CLI::Option_group* kind = atlas->add_option_group("of what");
   CLI::Option* target = kind->add_option("--target", arguments.target, "random starts before this target")
-                            ->check(CLI::IsMember({"sphere", "circle", "square", "triangle"}));
+                            ->check(CLI::IsMember(std::vector<std::string>(features::kTargetNames.begin(),
+                                                                           features::kTargetNames.end())));
   CLI::Option* faults =
       kind->add_flag("--faults", arguments.faults,
                      "every fault, from mild to extreme, in every mode of run and at every stage of it");

@@ -86,12 +86,13 @@ Pose Sampler::DrawTarget(std::mt19937_64& engine) const {
   return X_CO;
 }
 
-// The goal's orientation; of a square the one of four that is nearest.
+// The goal's orientation; of those that look alike the one that is nearest.
 Mat3 Sampler::NearestGoal(const Mat3& R_CO) const {
   const int turns = features::TraitsOf(feature_.target).turns;
   Mat3 nearest = feature_.R_CO_star;
   for (int turn = 1; turn < turns; ++turn) {
-    const Mat3 other = feature_.R_CO_star * model::RotationOf({0.0, 0.0, 0.5 * std::numbers::pi * turn});
+    const Mat3 other =
+        feature_.R_CO_star * model::RotationOf({0.0, 0.0, 2.0 * std::numbers::pi * turn / turns});
     if ((other.transpose() * R_CO).trace() > (nearest.transpose() * R_CO).trace()) {
       nearest = other;
     }

@@ -1,6 +1,7 @@
 #include "tools/fovea/detect/detect.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +12,7 @@
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/program.hpp"
+#include "firmware/host/config/target_keys.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
 #include "tools/fovea/calibrate/camera_file.hpp"
 #include "tools/fovea/detect/image_files.hpp"
@@ -23,7 +25,10 @@ constexpr double kDefaultSize = 0.08;  // [m]; stands for nothing where no size 
 vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
                                  const std::optional<vision::Intrinsics>& camera, const std::string& file) {
   vision::DetectorConfig config;
-  config.kind = a.target;
+  config::TargetSettings target;
+  target.kind = features::TraitsOf(a.target).name;
+  target.diameter = target.side = a.size > 0.0 ? a.size : kDefaultSize;
+  config.LookFor(config::MakeTarget(target));
   if (camera) {
     if (camera->width_px != image.cols || camera->height_px != image.rows) {
       throw config::InputError(fmt::format("{}: {} x {} px, but --camera {} is of {} x {} px", file,
@@ -47,7 +52,6 @@ vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
     throw config::InputError("--radius-min must be below --radius-max");
   }
   config.confidence_min = a.confidence_min;
-  config.size = a.size > 0.0 ? a.size : kDefaultSize;
   // The outline's size is bounded by the radii alone; a distance can be anything.
   config.distance_min = 0.51 * config.size;
   config.distance_max = 4.0 * config.intrinsics.f_u_px * config.size / config.radius_min_px;
@@ -87,7 +91,7 @@ nlohmann::json ToJson(const std::string& file, const vision::Detection& d, doubl
 CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
   CLI::App* detect = app.add_subcommand("detect", "find a target in images: where, how large, how surely");
   detect->add_option("image", a.images, "images, or folders of them")->required();
-  detect->add_option("--target", a.target, "sphere, circle, square or triangle")
+  detect->add_option("--target", a.target, fmt::format("{}", fmt::join(features::kTargetNames, ", ")))
       ->required()
       ->transform(CLI::CheckedTransformer(kTargetKinds));
   detect->add_option("--method", a.method, "colour, gray or hough; gray when no --hue is given")

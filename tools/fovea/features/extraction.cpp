@@ -18,9 +18,9 @@ using hal::FeatureKind;
 
 constexpr double kWrongPx = 2.0;
 
-vision::DetectorConfig ConfigFor(FeatureKind kind, const bench::PictureCamera& camera) {
+vision::DetectorConfig ConfigFor(const TargetFeature& target, const bench::PictureCamera& camera) {
   vision::DetectorConfig config;
-  config.kind = kind;
+  config.LookFor(target);
   config.by = vision::FindBy::kGray;
   config.intrinsics = {camera.width_px, camera.height_px, camera.f_px,
                        camera.f_px,     camera.c_u_px,    camera.c_v_px};
@@ -121,12 +121,7 @@ std::optional<model::Pose> PoseIn(const vision::Detection& d, const TargetFeatur
 
 Search MeasureSearch(FeatureKind target, int per_class) {
   const bench::PictureCamera camera;
-  vision::DetectorConfig config = ConfigFor(target, camera);
-  config.size = target == FeatureKind::kSquare ? bench::kSide : bench::kDiameter;
-  for (std::size_t i = 0; i < config.triangle.size(); ++i) {
-    config.triangle[i] = bench::TriangleCorners()[i];
-  }
-  vision::TargetDetector detector(config);
+  vision::TargetDetector detector(ConfigFor(bench::TargetOf(target), camera));
   int found = 0;
   std::vector<double> ms;
   for (const bench::SceneClass& scenes : bench::SceneClasses()) {
@@ -149,12 +144,7 @@ Search MeasureSearch(FeatureKind target, int per_class) {
 
 Scatter MeasureScatter(const TargetFeature& feature, const model::Pose& X_CO) {
   const bench::PictureCamera camera;
-  vision::DetectorConfig config = ConfigFor(feature.target, camera);
-  config.size = feature.target == FeatureKind::kSquare ? feature.side : 2.0 * feature.radius;
-  for (std::size_t i = 0; feature.target == FeatureKind::kTriangle && i < config.triangle.size(); ++i) {
-    config.triangle[i] = feature.corners.corners[i].head<2>();
-  }
-  vision::TargetDetector detector(config);
+  vision::TargetDetector detector(ConfigFor(feature, camera));
   const cv::Mat portrait = Portrait(feature, X_CO, camera);
   cv::RNG random(1);
   cv::Mat noise(portrait.size(), CV_16SC1);

@@ -203,7 +203,9 @@ CLI::App* AddFeatures(CLI::App& app, FeaturesArguments& arguments) {
       "what a target's feature controls: s, L_s, rank, condition, the motions that it does not see");
   std::vector<std::string> forms(features::kFormNames.begin(), features::kFormNames.end());
   forms.emplace_back("auto");
-  command->add_option("--target", arguments.target.kind, "sphere, circle, square or triangle")
+  command
+      ->add_option("--target", arguments.target.kind,
+                   fmt::format("{}", fmt::join(features::kTargetNames, ", ")))
       ->check(CLI::IsMember(
           std::vector<std::string>(features::kTargetNames.begin(), features::kTargetNames.end())))
       ->capture_default_str();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "firmware/core/features/target_traits.hpp"
 #include "fovea/tick.pb.h"
 
 namespace fovea::log {
@@ -33,7 +34,7 @@ To Same(From value) {
 static_assert(static_cast<int>(hal::Mode::kMove) == MOVE);
 static_assert(static_cast<int>(hal::HoldReason::kNotFollowed) == NOT_FOLLOWED);
 static_assert(static_cast<int>(hal::Fault::kContact) == CONTACT && hal::kNumFaults == 11);
-static_assert(static_cast<int>(hal::FeatureKind::kTriangle) == Feature::TRIANGLE);
+static_assert(features::kTargets.size() == Feature::Kind_ARRAYSIZE);
 static_assert(static_cast<int>(hal::Intake::kOutlier) == OUTLIER && hal::kNumIntakes == 9);
 
 }  // namespace
