@@ -9,7 +9,7 @@
 namespace fovea::link {
 
 inline constexpr int kNumStatusCodes = 8;
-inline constexpr int kNumHoldReasons = 8;
+inline constexpr int kNumHoldReasons = static_cast<int>(hal::HoldReason::kNotFollowed) + 1;
 inline constexpr int kNumRequests = 4;
 inline constexpr int kNumMotionKinds = 6;
 inline constexpr int kNumFeatureKinds = static_cast<int>(features::kTargets.size());

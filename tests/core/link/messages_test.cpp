@@ -114,6 +114,7 @@ TEST(Messages, RoundTripKeepsEveryField) {
 
   Outputs outputs;
   outputs.record.mode = hal::Mode::kMove;
+  outputs.record.hold_reason = hal::HoldReason::kNotFollowed;
   outputs.record.fault = hal::Fault::kContact;
   values.Fill(outputs.record.command.tau_cmd);
   outputs.stage_counts[3] = 4711;
