@@ -58,7 +58,7 @@ sim::BoardConfig MakeBoard(const RunArguments& arguments, const sim::Scenario& s
   if (!board.by_timer) {
     RefuseGiven(arguments.of_timer, "--servo-pace timer");
   }
-  if (board.by_timer && scenario.faults.deadline_miss_s[1] > scenario.faults.deadline_miss_s[0]) {
+  if (board.by_timer && scenario.faults.stall.window.Begins()) {
     throw config::InputError(
         "faults.deadline_miss_s: not with --servo-pace timer, whose ticks are the board's own; a slow board "
         "(--instruction-ns) misses some");

@@ -42,7 +42,7 @@ class Run {
       : options_(options),
         progress_(scenario.name, scenario.run.duration_s, !options.show_progress),
         about_(Prepare(scenario, progress_)),
-        stall_(MakeStallFault(scenario.faults, SeedOf(scenario, RandomStream::kStalls))),
+        stall_(Seeded(scenario.faults.stall, SeedOf(scenario, RandomStream::kStalls))),
         vision_(about_, [this](const hal::Frame& frame, const vision::Detection& detection,
                                const model::Pose& X_CO) { files_->AddFrame(frame, detection, X_CO); }) {
     if (!servo_.Init(about_.servo).ok()) {
@@ -144,7 +144,7 @@ class Run {
     });
     arm_ = std::make_unique<SimArm>(*world_);
     faulty_arm_ = std::make_unique<FaultyArm>(
-        *arm_, MakeArmFaults(faults, SeedOf(about_.scenario, RandomStream::kArmFaults)));
+        *arm_, Seeded(faults.arm, SeedOf(about_.scenario, RandomStream::kArmFaults)));
   }
 
   void ObserveTruth(const Truth& truth) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fovea/hal/clock.hpp"
-#include "sim/faults/time_window.hpp"
+#include "sim/faults/fault_fields.hpp"
 
 namespace fovea::sim {
 
@@ -11,6 +11,13 @@ struct StallFault {
   double share = 1.0;  // of the ticks in it that are swallowed
   std::uint64_t seed = 1;
 };
+
+template <class Visitor, config::Struct<StallFault> Fault>
+void Fields(Visitor& v, Fault& f) {
+  v.Window({"deadline_miss", "s", "the servo's computer swallows ticks"}, f.window,
+           "the ticks are the client's");
+  v.Number({"deadline_miss", "", "share of them, by chance"}, f.share, 0.0, 1.0);
+}
 
 class StallingClock final : public hal::Clock {
  public:

@@ -13,6 +13,7 @@ struct TimeWindow {
     const double time_s = static_cast<double>(time_ns) * 1e-9;
     return time_s >= start_s && time_s < end_s;
   }
+  [[nodiscard]] bool Begins() const noexcept { return end_s > start_s; }
 };
 
 }  // namespace fovea::sim

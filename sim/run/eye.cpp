@@ -15,7 +15,7 @@ void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);
 }  // namespace
 
 Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
-    : faults_(MakePictureFaults(about.scenario.faults)), width_px_(about.pinhole.width_px) {
+    : faults_(about.scenario.faults.picture), width_px_(about.pinhole.width_px) {
   UseOneThreadPerRenderer();
   std::vector<Painter> painters;
   for (int i = 0; i < kRenderers; ++i) {  // one after the other: drivers set themselves up with the first

@@ -34,7 +34,7 @@ NetworkEye::NetworkEye(const RunDescription& about, World& world, const std::str
     : world_(world),
       lockstep_(lockstep),
       eye_(about, kQueue),
-      faults_(MakeFrameFaults(about.scenario.faults, SeedOf(about.scenario, RandomStream::kFrameFaults))),
+      faults_(Seeded(about.scenario.faults.frames, SeedOf(about.scenario, RandomStream::kFrameFaults))),
       on_the_way_(kMostNews) {
   gige_ = std::make_unique<GigeCamera>(eye_.camera(), MakeGigeConfig(about, address, serial));
   world.OnExposure([this](const Exposure& exposure) {

@@ -14,10 +14,10 @@ SimVision::SimVision(const RunDescription& about, Observer observer)
     : about_(about),
       observer_(std::move(observer)),
       task_(config::MakeVisionConfig(about.scenario.vision, about.intrinsics, about.scenario.target)),
-      detector_(delay_, MakeDetectorFaults(about.scenario.faults,
-                                           SeedOf(about.scenario, RandomStream::kDetectorFaults))),
+      detector_(delay_, Seeded(about.scenario.faults.detector,
+                               SeedOf(about.scenario, RandomStream::kDetectorFaults))),
       frame_faults_(
-          MakeFrameFaults(about.scenario.faults, SeedOf(about.scenario, RandomStream::kFrameFaults))) {}
+          Seeded(about.scenario.faults.frames, SeedOf(about.scenario, RandomStream::kFrameFaults))) {}
 
 SimVision::~SimVision() { End(); }
 

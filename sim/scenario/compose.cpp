@@ -34,22 +34,23 @@ Eigen::Isometry3d CameraMount(const Scenario& s) {
 void CheckSizes(const Scenario& s, const robots::Robot& robot) {
   struct PerJoint {
     const char* key;
-    const std::vector<double>& values;
+    std::size_t size;
     bool may_be_empty;
   };
-  for (const PerJoint& list : {PerJoint{"arm.q_start", s.arm.q_start, false},
-                               {"arm.dq_start", s.arm.dq_start, true},
-                               {"arm.spring", s.arm.spring, true},
-                               {"arm.viscous", s.arm.viscous, true},
-                               {"arm.coulomb", s.arm.coulomb, true},
-                               {"faults.push", s.faults.push, true},
-                               {"motion.from", s.motion.from, true},
-                               {"motion.velocity", s.motion.velocity, true},
-                               {"motion.amplitude", s.motion.amplitude, true}}) {
-    const bool fits = static_cast<int>(list.values.size()) == robot.model.num_joints;
-    if (!fits && !(list.values.empty() && list.may_be_empty)) {
-      throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", list.key,
-                                   list.values.size(), robot.name, robot.model.num_joints));
+  for (const PerJoint& list :
+       {PerJoint{"arm.q_start", s.arm.q_start.size(), false},
+        {"arm.dq_start", s.arm.dq_start.size(), true},
+        {"arm.spring", s.arm.spring.size(), true},
+        {"arm.viscous", s.arm.viscous.size(), true},
+        {"arm.coulomb", s.arm.coulomb.size(), true},
+        {"faults.push", static_cast<std::size_t>(s.faults.bench.push.tau.size()), true},
+        {"motion.from", s.motion.from.size(), true},
+        {"motion.velocity", s.motion.velocity.size(), true},
+        {"motion.amplitude", s.motion.amplitude.size(), true}}) {
+    const bool fits = static_cast<int>(list.size) == robot.model.num_joints;
+    if (!fits && !(list.size == 0 && list.may_be_empty)) {
+      throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", list.key, list.size,
+                                   robot.name, robot.model.num_joints));
     }
   }
 }
@@ -136,7 +137,7 @@ WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
   config.ball_push = ToVector(s.target.push);
   config.ball_push_s = s.target.push_s;
   config.camera_rate_hz = s.camera.rate_hz;
-  SetBenchFaults(s.faults, config);
+  static_cast<BenchFaults&>(config) = s.faults.bench;
   config.seed = SeedOf(s, RandomStream::kEncoders);
   return config;
 }

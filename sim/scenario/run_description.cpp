@@ -33,8 +33,9 @@ TheoryConfig MakeTheoryConfig(const Scenario& s, const RunDescription& run) {
     }
     theory.motion = std::get<CommandedJoints>(*run.motion);
   }
-  theory.push = s.faults.push.empty() ? 0.0 : s.faults.push[0];
-  theory.push_s = s.faults.push_s[0];
+  const JointPush& push = s.faults.bench.push;
+  theory.push = push.tau.size() > 0 ? push.tau[0] : 0.0;
+  theory.push_s = push.window.start_s;
   theory.fit_begin_s = s.theory.fit_s[0];
   theory.fit_end_s = s.theory.fit_s[1];
   return theory;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/host/design/linear_system.hpp"
 
 namespace fovea::sim {
@@ -58,16 +59,16 @@ TheoryLoop LoopOf(const TheoryConfig& config) {
   const config::MotionLawConfig& law = config.law;
   TheoryLoop loop;
   loop.d = -config.push / plant.mass;
-  switch (law.kind) {
-    case config::MotionLawKind::kFloat:
+  switch (motion_laws::kMotionLaws[static_cast<std::size_t>(law.kind)].error) {
+    case motion_laws::ErrorDynamics::kPlant:
       loop.c_1 = plant.damping / plant.mass;
       loop.c_0 = plant.stiffness / plant.mass;
       break;
-    case config::MotionLawKind::kPd:
+    case motion_laws::ErrorDynamics::kSprings:
       loop.c_1 = (plant.damping + law.k_v[0]) / plant.mass;
       loop.c_0 = (plant.stiffness + law.k_p[0]) / plant.mass;
       break;
-    default:  // the plant's own forces are made up for
+    case motion_laws::ErrorDynamics::kUnit:
       loop.c_1 = 2.0 * law.zeta * law.omega_n;
       loop.c_0 = law.omega_n * law.omega_n;
       loop.c_i = law.integral * loop.c_0;

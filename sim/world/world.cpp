@@ -25,7 +25,7 @@ double OwnInertia(const SimLink& link) {
 }
 
 BulletArmOptions WithLoad(BulletArmOptions options, const Load& load) {
-  options.may_be_loaded = options.may_be_loaded || load.mass > 0.0;
+  options.may_be_loaded = options.may_be_loaded || load.window.Begins();
   return options;
 }
 
@@ -133,13 +133,13 @@ Eigen::VectorXd World::Pulls() const {
 }
 
 void World::TakeUpLoad(double mass) {
-  if (config_.load.mass > 0.0) {
+  if (config_.load.window.Begins()) {
     arm_.SetLoad(mass);
   }
 }
 
 void World::TiltBase(double tilt) {
-  if (config_.base_tilt.tilt != 0.0) {
+  if (config_.base_tilt.window.Begins()) {
     arm_.TiltBase(tilt);
   }
 }

@@ -18,16 +18,13 @@
 
 namespace fovea::sim {
 
-struct WorldConfig {
+// What goes wrong on the bench is part of it.
+struct WorldConfig : BenchFaults {
   SimRobot robot;
   BulletArmOptions physics;
   Eigen::VectorXd q_start;   // [num_dofs]
   Eigen::VectorXd dq_start;  // [num_dofs]; empty: at rest
   Eigen::VectorXd spring;    // [num_dofs] pulls each joint to 0 [Nm/rad, N/m]; empty: none does
-  JointPush push;
-  TorqueLoss torque_loss;
-  Load load;
-  BaseTilt base_tilt;
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
   double friction_compensation =
       0.9;                       // share of the joints' friction that the robot's own controller takes away
@@ -42,7 +39,6 @@ struct WorldConfig {
   double ball_push_s = 0.0;                             // when
   double camera_rate_hz = 30.0;
   std::int64_t first_exposure_ns = 20'000'000;
-  TimeWindow camera_outage;  // in which it delivers nothing
   std::uint64_t seed = 1;
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 
 #include "firmware/core/motion_laws/motion_law.hpp"
 
@@ -44,21 +45,29 @@ void OperationalSpace(const config::MotionLawConfig& config, const MotionLawInpu
 void Float(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
            model::VecN& tau) noexcept;
 
+// What a joint's error obeys where nothing else is at work; a run against theory is judged by it.
+enum class ErrorDynamics : std::uint8_t {
+  kPlant,    // the joint's own inertia, friction and spring
+  kSprings,  // those, and k_p and k_v
+  kUnit,     // those are made up for: e'' + 2 zeta omega_n e' + omega_n^2 e = 0, and the integral's share
+};
+
 struct MotionLawEntry {
   config::MotionLawKind kind;
   void (*torque)(const config::MotionLawConfig&, const MotionLawInputs&, MotionLawState&,
                  model::VecN&) noexcept;
   int joints_min;  // arms with fewer joints cannot be driven by it
   bool carries;    // a load that nobody told it of, where the arm stands; else it gives way as its springs do
+  ErrorDynamics error = ErrorDynamics::kUnit;
 };
 
 // In the order of MotionLawKind.
 inline constexpr std::array<MotionLawEntry, config::kNumMotionLaws> kMotionLaws{{
     {config::MotionLawKind::kComputedTorque, ComputedTorque, 1, true},
-    {config::MotionLawKind::kPd, PdLaw, 1, false},
+    {config::MotionLawKind::kPd, PdLaw, 1, false, ErrorDynamics::kSprings},
     {config::MotionLawKind::kJointImpedance, JointImpedance, 1, false},
     {config::MotionLawKind::kOperationalSpace, OperationalSpace, 6, true},
-    {config::MotionLawKind::kFloat, Float, 1, false},
+    {config::MotionLawKind::kFloat, Float, 1, false, ErrorDynamics::kPlant},
 }};
 
 }  // namespace fovea::motion_laws

@@ -55,33 +55,45 @@ void KeyTable::Add(Key key) { keys_.push_back(std::move(key)); }
 
 void KeyTable::Number(std::string name, double& field, double min, double max, std::string unit,
                       std::string meaning) {
+  Number(std::move(name), field, min, max, std::move(unit), std::move(meaning),
+         [&field](double number) { field = number; });
+}
+
+void KeyTable::Number(std::string name, double value, double min, double max, std::string unit,
+                      std::string meaning, std::function<void(double)> set) {
   Key key{std::move(name), "a number", std::move(unit), Range(min, max), std::move(meaning),
-          Plain(field),    {}};
-  key.set = [key, &field, min, max](const Setting& setting) {
+          Plain(value),    {}};
+  key.set = [key, min, max, set = std::move(set)](const Setting& setting) {
     double number = 0.0;
     if (!ToDouble(setting.value, number) || number < min || number > max) {
       Refuse(setting, key);
     }
-    field = number;
+    set(number);
   };
   Add(std::move(key));
 }
 
 void KeyTable::Integer(std::string name, int& field, int min, int max, std::string unit,
                        std::string meaning) {
+  Integer(std::move(name), field, min, max, std::move(unit), std::move(meaning),
+          [&field](int number) { field = number; });
+}
+
+void KeyTable::Integer(std::string name, int value, int min, int max, std::string unit, std::string meaning,
+                       std::function<void(int)> set) {
   Key key{std::move(name),
           "a whole number",
           std::move(unit),
           fmt::format("{} to {}", min, max),
           std::move(meaning),
-          fmt::format("{}", field),
+          fmt::format("{}", value),
           {}};
-  key.set = [key, &field, min, max](const Setting& setting) {
+  key.set = [key, min, max, set = std::move(set)](const Setting& setting) {
     const auto* integer = std::get_if<std::int64_t>(&setting.value);
     if (integer == nullptr || *integer < min || *integer > max) {
       Refuse(setting, key);
     }
-    field = static_cast<int>(*integer);
+    set(static_cast<int>(*integer));
   };
   Add(std::move(key));
 }
@@ -140,6 +152,13 @@ void KeyTable::AddChoice(std::string name, std::size_t chosen, std::vector<std::
 
 void KeyTable::Numbers(std::string name, std::vector<double>& field, std::size_t size_min,
                        std::size_t size_max, double min, double max, std::string unit, std::string meaning) {
+  Numbers(std::move(name), field, size_min, size_max, min, max, std::move(unit), std::move(meaning),
+          [&field](const std::vector<double>& numbers) { field = numbers; });
+}
+
+void KeyTable::Numbers(std::string name, const std::vector<double>& values, std::size_t size_min,
+                       std::size_t size_max, double min, double max, std::string unit, std::string meaning,
+                       std::function<void(const std::vector<double>&)> set) {
   const std::string count =
       size_min == size_max ? fmt::format("{}", size_min) : fmt::format("{} to {}", size_min, size_max);
   Key key{std::move(name),
@@ -147,9 +166,9 @@ void KeyTable::Numbers(std::string name, std::vector<double>& field, std::size_t
           std::move(unit),
           "each " + Range(min, max),
           std::move(meaning),
-          ToText(field),
+          ToText(values),
           {}};
-  key.set = [key, &field, size_min, size_max, min, max](const Setting& setting) {
+  key.set = [key, size_min, size_max, min, max, set = std::move(set)](const Setting& setting) {
     const auto* numbers = std::get_if<std::vector<double>>(&setting.value);
     if (numbers == nullptr || numbers->size() < size_min || numbers->size() > size_max) {
       Refuse(setting, key);
@@ -159,7 +178,7 @@ void KeyTable::Numbers(std::string name, std::vector<double>& field, std::size_t
         Refuse(setting, key);
       }
     }
-    field = *numbers;
+    set(*numbers);
   };
   Add(std::move(key));
 }

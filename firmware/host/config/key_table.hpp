@@ -30,6 +30,11 @@ class KeyTable {
  public:
   void Number(std::string name, double& field, double min, double max, std::string unit, std::string meaning);
   void Integer(std::string name, int& field, int min, int max, std::string unit, std::string meaning);
+  // The same of a field that holds the value in another unit or form: `set` puts it there.
+  void Number(std::string name, double value, double min, double max, std::string unit, std::string meaning,
+              std::function<void(double)> set);
+  void Integer(std::string name, int value, int min, int max, std::string unit, std::string meaning,
+               std::function<void(int)> set);
   void Flag(std::string name, bool& field, std::string meaning);
   void Text(std::string name, std::string& field, std::string meaning);
   void Choice(std::string name, std::string& field, std::vector<std::string> choices, std::string meaning);
@@ -43,6 +48,9 @@ class KeyTable {
   // A list of `size_min` to `size_max` numbers.
   void Numbers(std::string name, std::vector<double>& field, std::size_t size_min, std::size_t size_max,
                double min, double max, std::string unit, std::string meaning);
+  void Numbers(std::string name, const std::vector<double>& values, std::size_t size_min,
+               std::size_t size_max, double min, double max, std::string unit, std::string meaning,
+               std::function<void(const std::vector<double>&)> set);
 
   // A key that was called `former` until it got its name of today, `successor`, with the same meaning.
   void Renamed(std::string former, std::string successor);

@@ -40,35 +40,39 @@ TEST(TargetLogTest, LostFramesAreForgottenAndOthersKeepTheirTarget) {
 
 TEST(FaultSettingsTest, CameraFaultsAndBaseTiltReachTheirParts) {
   FaultSettings f;
-  f.freeze_s = {1.0, 2.0};
-  f.freeze_pixels = true;
-  f.replay_s = {3.0, 4.0};
-  f.replay_delay_s = 0.5;
-  f.stamp_s = {5.0, 6.0};
-  f.stamp_ms = -60.0;
-  f.mirror_s = {7.0, 8.0};
-  f.gravity_s = {0.0, 9.0};
-  f.gravity_tilt_deg = 90.0;
-  f.encoder_stuck_s = {1.0, 2.0};
-  f.encoder_stuck_joint = 0;
-  const FrameFaults frames = MakeFrameFaults(f, 1);
-  EXPECT_TRUE(frames.freeze_pixels);
-  EXPECT_EQ(frames.replay.window.start_s, 3.0);
-  EXPECT_EQ(frames.replay.delay_ns, 500'000'000);
-  EXPECT_EQ(frames.stamp.window.end_s, 6.0);
-  EXPECT_EQ(frames.stamp.by_ns, -60'000'000);
-  EXPECT_EQ(MakePictureFaults(f).mirror.start_s, 7.0);
-  EXPECT_EQ(MakeArmFaults(f, 1).stuck.joint, kAllJoints);
-  WorldConfig world;
-  SetBenchFaults(f, world);
-  EXPECT_NEAR(world.base_tilt.tilt, 1.5707963267948966, 1e-15);
+  config::KeyTable keys;
+  AddFaultKeys(f, keys);
+  for (const char* assignment :
+       {"faults.freeze_s=[1, 2]", "faults.freeze_pixels=true", "faults.replay_s=[3, 4]",
+        "faults.replay_delay_s=0.5", "faults.stamp_s=[5, 6]", "faults.stamp_ms=-60", "faults.mirror_s=[7, 8]",
+        "faults.gravity_s=[0, 9]", "faults.gravity_tilt_deg=90", "faults.encoder_stuck_s=[1, 2]",
+        "faults.encoder_stuck_joint=0", "faults.encoder_nan_joint=3", "faults.wrong_detection_shift=[0, -2]",
+        "faults.push=[1, 2, 3]", "faults.glare_px=[1, 2, 3]"}) {
+    keys.Apply(config::ParseAssignment(assignment));
+  }
+  EXPECT_TRUE(f.frames.freeze_pixels);
+  EXPECT_EQ(f.frames.replay.window.start_s, 3.0);
+  EXPECT_EQ(f.frames.replay.delay_ns, 500'000'000);
+  EXPECT_EQ(f.frames.stamp.window.end_s, 6.0);
+  EXPECT_EQ(f.frames.stamp.by_ns, -60'000'000);
+  EXPECT_EQ(f.picture.mirror.start_s, 7.0);
+  EXPECT_EQ(f.picture.glare.radius_px, 3.0);
+  EXPECT_EQ(f.arm.stuck.joint, kAllJoints);
+  EXPECT_EQ(f.arm.not_a_number.joint, 2);
+  EXPECT_EQ(f.detector.wrong.shift[0], 0.0) << "the default's first entry is gone";
+  EXPECT_EQ(f.detector.wrong.shift[1], -2.0);
+  EXPECT_EQ(f.bench.push.tau, Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_NEAR(f.bench.base_tilt.tilt, 1.5707963267948966, 1e-15);
   EXPECT_EQ(FaultsOf(f).size(), 6U);
   EXPECT_NO_THROW(CheckFaults(f, 7));
   EXPECT_THROW(CheckServedFaults(f), config::InputError) << "stamps and encoders are none of the bench's";
-  f.gravity_s = {0.0, 0.0};
-  SetBenchFaults(f, world);
-  EXPECT_EQ(world.base_tilt.tilt, 0.0);
-  f.mirror_s = {8.0, 7.0};
+  f.picture.mirror = {8.0, 7.0};
+  EXPECT_THROW(CheckFaults(f, 7), config::InputError);
+  f.picture.mirror = {7.0, 8.0};
+  f.arm.not_a_number = {{0.0, 1.0}, 6};
+  EXPECT_NO_THROW(CheckFaults(f, 7));
+  EXPECT_THROW(CheckFaults(f, 6), config::InputError) << "no such joint";
+  f.picture.occluder.height_px = 0.0;
   EXPECT_THROW(CheckFaults(f, 7), config::InputError);
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "tools/fovea/faults/stages.hpp"
 #include "tools/fovea/faults/table.hpp"
@@ -248,11 +249,12 @@ TEST(FaultTable, ListsEveryFaultAndNoCellTwice) {
       EXPECT_STRNE(level.why, "");
     }
   }
-  EXPECT_THAT(
-      ids, testing::UnorderedElementsAre("frame_loss", "freeze", "freeze_pixels", "replay", "mirror", "stamp",
-                                         "latency", "occluder", "glare", "wrong_detection", "encoder_stuck",
-                                         "encoders_stuck", "encoder_noise", "torque_loss", "packet_loss",
-                                         "clock_jump", "load", "load_from_start", "gravity"));
+  EXPECT_EQ(std::set<std::string>(ids.begin(), ids.end()).size(), ids.size());
+  EXPECT_THAT(ids,
+              testing::IsSupersetOf({"frame_loss", "freeze", "freeze_pixels", "replay", "mirror", "stamp",
+                                     "latency", "occluder", "glare", "wrong_detection", "encoder_stuck",
+                                     "encoders_stuck", "encoder_noise", "torque_loss", "packet_loss",
+                                     "clock_jump", "load", "load_from_start", "gravity"}));
 }
 
 TEST(FaultStages, FaultFromTheStartBeginsWithTheFirstTick) {
