@@ -45,7 +45,7 @@ struct BenchFaults {
   JointPush push;
 };
 
-template <class Visitor, config::Struct<BenchFaults> Faults>
+template <class Visitor, Struct<BenchFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
   v.Window({"camera_outage", "s", "the camera delivers nothing from the first time to the second"},
            f.camera_outage);

@@ -1,6 +1,6 @@
 // One list of keys for each struct of faults: what sets them stands once, beside the struct.
 //
-//   template <class Visitor, config::Struct<PictureFaults> Faults>
+//   template <class Visitor, Struct<PictureFaults> Faults>
 //   void Fields(Visitor& v, Faults& f) {
 //     v.Window({"mirror", "s", "the camera's pictures are mirrored, left is right"}, f.mirror);
 //   }
@@ -22,10 +22,21 @@
 //   Size(field, double value)               must be above 0; adds no key
 #pragma once
 
-#include "firmware/core/config/fields.hpp"
+#include <concepts>
+#include <type_traits>
+
 #include "sim/faults/time_window.hpp"
 
 namespace fovea::sim {
+
+struct FaultField {
+  const char* key;
+  const char* unit = "";     // "" when it has none
+  const char* meaning = "";  // for people; "" where other text explains the key
+};
+
+template <class T, class S>
+concept Struct = std::same_as<std::remove_const_t<T>, S>;
 
 inline constexpr int kAllJoints = -1;
 

@@ -38,7 +38,7 @@ struct ArmFaults {
   std::uint64_t seed = 1;
 };
 
-template <class Visitor, config::Struct<ArmFaults> Faults>
+template <class Visitor, Struct<ArmFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
   constexpr const char* kKept = "a Panda keeps its encoders' faults";
   v.Window({"encoder_stuck", "s", "an encoder stays at its value from the first time to the second"},

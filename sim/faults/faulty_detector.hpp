@@ -19,7 +19,7 @@ struct DetectorFaults {
   std::uint64_t seed = 1;
 };
 
-template <class Visitor, config::Struct<DetectorFaults> Faults>
+template <class Visitor, Struct<DetectorFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
   constexpr const char* kInstead = "the detector is the client's";
   v.Window({"wrong_detection", "s", "the detector is wrong about where the target is"}, f.wrong.window,

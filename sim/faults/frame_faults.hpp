@@ -32,7 +32,7 @@ struct FrameFaults {
   std::uint64_t seed = 1;
 };
 
-template <class Visitor, config::Struct<FrameFaults> Faults>
+template <class Visitor, Struct<FrameFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
   v.Window({"frame_loss", "s", "frames get lost from the first time to the second"}, f.loss.window);
   v.Number({"frame_loss", "", "share of them, by chance"}, f.loss.share, 0.0, 1.0);

@@ -26,7 +26,7 @@ struct PictureFaults {
   TimeWindow mirror;  // left and right are swapped
 };
 
-template <class Visitor, config::Struct<PictureFaults> Faults>
+template <class Visitor, Struct<PictureFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
   v.Window({"mirror", "s", "the camera's pictures are mirrored, left is right"}, f.mirror);
   v.Window({"glare", "s", "a glare saturates a spot of the picture"}, f.glare.window);

@@ -12,7 +12,7 @@ struct StallFault {
   std::uint64_t seed = 1;
 };
 
-template <class Visitor, config::Struct<StallFault> Fault>
+template <class Visitor, Struct<StallFault> Fault>
 void Fields(Visitor& v, Fault& f) {
   v.Window({"deadline_miss", "s", "the servo's computer swallows ticks"}, f.window,
            "the ticks are the client's");

@@ -11,11 +11,11 @@
 namespace fovea::sim {
 namespace {
 
-using config::Field;
 using config::InputError;
+using Field = FaultField;
 
 // All lists, in the order of the keys.
-template <class Visitor, config::Struct<FaultSettings> Settings>
+template <class Visitor, Struct<FaultSettings> Settings>
 void Fields(Visitor& v, Settings& f) {
   Fields(v, f.bench);
   Fields(v, f.frames);

@@ -130,10 +130,10 @@ INSTANTIATE_TEST_SUITE_P(
              "(Eigen|fmt|opencv2|libavcodec|libavformat|libavutil)/.*",
              "a film is made of frames and detections alone"},
         Rule{"firmware/host/report",
-             "fovea/hal/.*|firmware/(core/model|host/(recording/log|report))/.*|(fovea|foxglove)/"
-             "[a-z]+[.]pb[.]h|"
+             "fovea/hal/.*|firmware/(core/model|host/(recording/log|report))/.*|"
+             "firmware/core/features/target_traits[.]hpp|(fovea|foxglove)/[a-z]+[.]pb[.]h|"
              "(fmt|google|nlohmann|openssl)/.*",
-             "a report is made of a log alone"},
+             "a report is made of a log alone, and knows the kinds of targets in it"},
         Rule{"firmware/host/run",
              "fovea/(hal|linux_rt)/.*|firmware/(core|vision|host/"
              "(build_info|config|film|recording|report|run))"
