@@ -18,7 +18,7 @@ std::string Text(const std::filesystem::path& path) {
 
 TEST(SecurityPage, NamesOnlyExistingTests) {
   const std::filesystem::path root = test::SourceRoot();
-  const std::string page = Text(root / "firmware/SECURITY.md");
+  const std::string page = Text(root / "SECURITY.md");
   std::string tests;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "tests")) {
     const std::string extension = entry.path().extension().string();

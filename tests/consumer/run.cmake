@@ -14,8 +14,21 @@ execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK_DIR}/build COMMAND_ERROR
 execute_process(COMMAND ${WORK_DIR}/build/consumer ${WORK_DIR}/prefix/share/fovea/robots/panda.toml
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK_DIR}/build/driver/cart_arm_test COMMAND_ERROR_IS_FATAL ANY)
+# The same by pkg-config.
+file(GLOB_RECURSE pc ${WORK_DIR}/prefix/*/fovea.pc)
+get_filename_component(pc_folder ${pc} DIRECTORY)
+set(ENV{PKG_CONFIG_PATH} ${pc_folder})
+execute_process(COMMAND sh -c "${CXX} -std=c++20 -O1 $0 $(pkg-config --cflags --libs fovea) -o $1 && $1"
+  ${SOURCE_DIR}/../pkg_config.cpp ${WORK_DIR}/pkg_config COMMAND_ERROR_IS_FATAL ANY)
+# What else is installed for others: the log's messages, completion.
+foreach(file share/fovea/proto/fovea/tick.proto share/fovea/proto/foxglove/image.proto
+        share/bash-completion/completions/fovea-sim share/zsh/site-functions/_fovea)
+  if(NOT EXISTS ${WORK_DIR}/prefix/${file})
+    message(FATAL_ERROR "${file} is not installed")
+  endif()
+endforeach()
 # What is installed must not know where it was built.
-file(GLOB_RECURSE package ${WORK_DIR}/prefix/*.cmake)
+file(GLOB_RECURSE package ${WORK_DIR}/prefix/*.cmake ${WORK_DIR}/prefix/*.pc)
 foreach(file IN LISTS package)
   file(READ ${file} text)
   if(text MATCHES "${BUILD_DIR}" OR text MATCHES "${SOURCE_DIR}")

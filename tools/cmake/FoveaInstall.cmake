@@ -33,6 +33,18 @@ function(fovea_install_package)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake
     ${PROJECT_SOURCE_DIR}/tools/cmake/fovea-config.cmake
     DESTINATION ${FOVEA_PACKAGE_FOLDER} COMPONENT dev)
+  # Found from where the file itself is, so that an installation can be moved.
+  file(RELATIVE_PATH FOVEA_PREFIX_OF_PC /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+  configure_file(${PROJECT_SOURCE_DIR}/tools/cmake/fovea.pc.in ${CMAKE_CURRENT_BINARY_DIR}/fovea.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fovea.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/firmware/host/recording/log/proto/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/proto
+    COMPONENT data FILES_MATCHING PATTERN "*.proto")
+  foreach(program fovea fovea-sim fovea-hw fovea-bench)
+    install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/fovea.bash RENAME ${program}
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
+  endforeach()
+  install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/_fovea DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions
+    COMPONENT runtime)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/firmware/host/robots/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/robots
     COMPONENT data)
   fovea_debian_packages()

@@ -6,9 +6,13 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "firmware/host/config/help_text.hpp"
+#include "firmware/host/config/key_table.hpp"
 #include "firmware/host/config/number_options.hpp"
 
 namespace fovea::config {
@@ -26,16 +30,15 @@ inline std::string OnOneLine(std::string text) {
 }
 
 // What `app` takes: the names of its subcommands and options.
-inline std::string AllowedBy(const CLI::App& app) {
-  std::string names;
-  const auto add = [&names](const std::string& name) { names += (names.empty() ? "" : ", ") + name; };
+inline std::vector<std::string> NamesAllowedBy(const CLI::App& app) {
+  std::vector<std::string> names;
   for (const CLI::App* command :
        app.get_subcommands([](const CLI::App* a) { return !a->get_name().empty(); })) {
-    add(command->get_name());
+    names.push_back(command->get_name());
   }
   for (const CLI::Option* option : app.get_options({})) {
     if (!option->get_group().empty()) {
-      add(option->get_name());
+      names.push_back(option->get_name());
     }
   }
   return names;
@@ -47,6 +50,7 @@ inline std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
   while (!command->get_subcommands().empty()) {
     command = command->get_subcommands().back();
   }
+  const std::vector<std::string> names = NamesAllowedBy(*command);
   const bool is_about_names = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr ||
                               dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   std::string what = OnOneLine(error.what());
@@ -55,7 +59,19 @@ inline std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
       what += "; not expected: " + OnOneLine(word);
     }
   }
-  return what + (is_about_names ? "; allowed: " + AllowedBy(*command) : "");
+  if (!is_about_names) {
+    return what;
+  }
+  for (const std::string& word : app.remaining(true)) {
+    if (const std::string nearest = Nearest(word, names); !nearest.empty()) {
+      what += "; did you mean " + nearest + "?";
+    }
+  }
+  std::string allowed;
+  for (const std::string& name : names) {
+    allowed += (allowed.empty() ? "" : ", ") + name;
+  }
+  return what + "; allowed: " + allowed;
 }
 
 // Parses the command line into what `app` was given, then does `action`. Returns the program's exit code: of
@@ -67,7 +83,10 @@ inline int RunProgram(const char* name, CLI::App& app, int argc, char** argv,
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-      return app.exit(error) == 0 ? kDone : kBadInput;
+      std::ostringstream help;
+      const bool done = app.exit(error, help, help) == 0;
+      std::fputs(FormatHelp(help.str(), HelpStyleOfOutput()).c_str(), stdout);
+      return done ? kDone : kBadInput;
     }
     std::fprintf(stderr, "%s: %s\n", name, Explain(app, error).c_str());
     return kBadInput;

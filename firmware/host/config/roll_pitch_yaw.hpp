@@ -1,6 +1,8 @@
 // Orientations as configurations write them.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -14,6 +16,18 @@ inline model::Mat3 RollPitchYaw(const std::vector<double>& degrees) {
   const model::Mat3 roll = model::RotationOf({to_rad * degrees[0], 0.0, 0.0});
   const model::Mat3 pitch = model::RotationOf({0.0, to_rad * degrees[1], 0.0});
   return model::RotationOf({0.0, 0.0, to_rad * degrees[2]}) * pitch * roll;
+}
+
+// The same back: roll, pitch, yaw [deg] of `R`, pitch from -90 to 90. Where pitch is 90 either way only the
+// sum or the difference of the others counts, and roll is 0.
+inline std::array<double, 3> RollPitchYawOf(const model::Mat3& R) {
+  const double to_deg = 180.0 / std::numbers::pi;
+  const double level = std::hypot(R(0, 0), R(1, 0));
+  const double pitch = std::atan2(-R(2, 0), level);
+  if (level < 1e-9) {
+    return {0.0, to_deg * pitch, to_deg * std::atan2(-R(0, 1), R(1, 1))};
+  }
+  return {to_deg * std::atan2(R(2, 1), R(2, 2)), to_deg * pitch, to_deg * std::atan2(R(1, 0), R(0, 0))};
 }
 
 }  // namespace fovea::config

@@ -12,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "firmware/host/config/camera_keys.hpp"
+#include "firmware/host/config/settings.hpp"
 #include "firmware/vision/pose/intrinsics.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -114,6 +116,31 @@ TEST_P(CalibrationLoopTest, RecoversTheScenariosCalibration) {
             << found["sigma_f_px"] << "), c " << c_px << " px, the picture at most " << picture_px
             << " px, rms " << found["rms_px"] << " px; X_EC off " << off_mm << " mm, " << off_deg
             << " deg, the views agree to " << hand["rms_mm"] << " mm, " << hand["rms_deg"] << " deg\n";
+  // The same written into a configuration of hardware, as it is read from there.
+  const std::string cell = folder_.path() / "cell.toml";
+  std::ofstream(cell)
+      << "[robot]\nhost = \"192.168.1.2\"\n\n[camera]  # on the flange\nmount_xyz = [0, 0, 0]\n";
+  ASSERT_EQ(
+      Fovea(Joined({"calibrate", "intrinsics", Out().string(), "--write", cell}, board.flags)).exit_code, 0);
+  const ProgramResult written = Fovea(
+      Joined({"calibrate", "hand-eye", Out().string(), "--camera", camera, "--write", cell}, board.flags));
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  EXPECT_THAT(written.out, HasSubstr("[camera]\nmount_xyz = ["));
+  config::CalibrationSettings settings;
+  config::KeyTable keys;
+  config::AddCalibrationKeys(settings, keys);
+  for (const config::Setting& setting : config::ReadTomlFile(cell)) {
+    if (setting.key.starts_with("camera.")) {
+      keys.Apply(setting);
+    }
+  }
+  const model::Pose mount = config::MakeMount(settings);
+  const Eigen::Isometry3d found_mount = ToPose(hand["X_EC"]);
+  EXPECT_LT((mount.p - found_mount.translation()).norm(), 2e-6);
+  EXPECT_LT((mount.R - found_mount.linear()).norm(), 1e-6);
+  EXPECT_NEAR(settings.intrinsics.f_u_px, in.f_u_px, 1e-6);
+  EXPECT_NEAR(settings.lens[1], in.lens.k2, 1e-6);
+
   EXPECT_LT(f_px, board.f_px);
   EXPECT_LT(c_px, board.c_px);
   EXPECT_LT(picture_px, board.picture_px);

@@ -75,6 +75,51 @@ TEST_F(EyeProgramsTest, DetectReportsEachImage) {
   }
 }
 
+TEST_F(EyeProgramsTest, DetectSaysWhatKeptItFromATarget) {
+  const std::string disc = Disc("a.png", 0.4);
+  const std::string empty = Write("empty.png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(128)));
+  const auto why = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"detect", "--json", "--target", "circle"});
+    return nlohmann::json::parse(Fovea(arguments).out)[0]["why"].get<std::string>();
+  };
+  EXPECT_THAT(why({disc, "--confidence-min", "1"}), testing::HasSubstr("below --confidence-min 1.00"));
+  EXPECT_THAT(why({disc, "--confidence-min", "1"}), testing::HasSubstr("at (374.9, 239.5) px"));
+  EXPECT_EQ(why({disc, "--radius-max", "20"}), "no outline of a circle with a radius of 8 to 20 px");
+  EXPECT_EQ(why({empty}), "no outline of a circle with a radius of 8 to 480 px");
+}
+
+TEST_F(EyeProgramsTest, DetectDrawsWhatItFound) {
+  const std::string disc = Disc("a.png", 0.4);
+  const std::string marked = folder_.path() / "new" / "marked";
+  ASSERT_EQ(Fovea({"detect", "--target", "circle", "--marked", marked, disc}).exit_code, 0);
+  const cv::Mat picture = cv::imread(marked + "/a-marked.png");
+  ASSERT_EQ(picture.size(), cv::Size(640, 480));
+  // The outline, 55 px to the right of the middle, in the marks' blue; beside it nothing is drawn.
+  const cv::Vec3b on = picture.at<cv::Vec3b>(240, 375 + 55);
+  EXPECT_GT(on[0], on[2] + 60) << on;
+  const cv::Vec3b beside = picture.at<cv::Vec3b>(240, 375 + 70);
+  EXPECT_EQ(beside[0], beside[2]) << beside;
+}
+
+TEST_F(EyeProgramsTest, HelpIsTextThatFitsIntoATerminal) {
+  for (const std::vector<std::string>& command :
+       std::vector<std::vector<std::string>>{{}, {"atlas"}, {"detect"}, {"calibrate", "board"}}) {
+    std::vector<std::string> arguments = command;
+    arguments.emplace_back("--help");
+    std::istringstream help(Fovea(arguments).out);
+    for (std::string line; std::getline(help, line);) {
+      EXPECT_LE(line.size(), 100U) << line;
+      EXPECT_TRUE(std::all_of(line.begin(), line.end(), [](unsigned char c) { return c >= 0x20; })) << line;
+    }
+  }
+}
+
+TEST_F(EyeProgramsTest, MistypedCommandGetsTheNearestOne) {
+  const test::ProgramResult result = Fovea({"atlus"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, testing::HasSubstr("did you mean atlas?; allowed: report, replay"));
+}
+
 TEST_F(EyeProgramsTest, DetectRefusesAnUnreadableImage) {
   ExpectRefused(Fovea({"detect", "--target", "circle", "nowhere.png"}), "nowhere.png: no such file");
   ExpectRefused(Fovea({"detect", "--target", "circle", folder_.path().string()}), "no images");

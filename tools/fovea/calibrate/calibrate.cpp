@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,8 @@
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/program.hpp"
+#include "firmware/host/config/roll_pitch_yaw.hpp"
+#include "firmware/host/config/toml_edit.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
 #include "tools/fovea/calibrate/camera_file.hpp"
 #include "tools/fovea/calibrate/hand_poses.hpp"
@@ -119,6 +122,14 @@ void SayWithout(const BoardFolder& found) {
   }
 }
 
+// The lines that a configuration takes.
+void PrintSection(const std::vector<config::NewValue>& values) {
+  fmt::print("[camera]\n");
+  for (const config::NewValue& value : values) {
+    fmt::print("{} = {}\n", value.key, value.value);
+  }
+}
+
 int FindIntrinsics(const CalibrateArguments& a) {
   const BoardFolder found = ReadBoards(a.folder, a.board);
   const calibration::IntrinsicsResult r =
@@ -131,6 +142,9 @@ int FindIntrinsics(const CalibrateArguments& a) {
     if (!stream) {
       throw config::InputError(a.out + ": cannot be written");
     }
+  }
+  if (!a.write.empty()) {
+    config::WriteValues(a.write, "camera", CameraValues(in, r.rms_px));
   }
   if (a.json) {
     fmt::print("{}\n", nlohmann::json{{"width_px", in.width_px},
@@ -180,6 +194,14 @@ int HandEye(const CalibrateArguments& a) {
   const calibration::HandEyeResult r =
       SolveBoards(found, [&] { return calibration::SolveHandEye(views, a.board, in); });
   const Eigen::Quaterniond q(r.X_EC.R);
+  const std::array<double, 3> rpy_deg = config::RollPitchYawOf(r.X_EC.R);
+  const std::vector<config::NewValue> mount{
+      {"mount_xyz", fmt::format("[{:.6f}, {:.6f}, {:.6f}]", r.X_EC.p.x(), r.X_EC.p.y(), r.X_EC.p.z())},
+      {"mount_rpy_deg", fmt::format("[{:.5f}, {:.5f}, {:.5f}]", rpy_deg[0], rpy_deg[1], rpy_deg[2])},
+      {"mount_rms_mm", fmt::format("{:.4g}", r.rms_mm)}};
+  if (!a.write.empty()) {
+    config::WriteValues(a.write, "camera", mount);
+  }
   if (a.json) {
     fmt::print(
         "{}\n",
@@ -192,12 +214,11 @@ int HandEye(const CalibrateArguments& a) {
             .dump(2));
   } else {
     SayWithout(found);
-    fmt::print("X_EC = {:.6f},{:.6f},{:.6f},{:.8f},{:.8f},{:.8f},{:.8f}\n", r.X_EC.p.x(), r.X_EC.p.y(),
-               r.X_EC.p.z(), q.w(), q.x(), q.y(), q.z());
     fmt::print(
         "# {} views agree on the board's pose to {:.3f} mm and {:.4f} deg rms, its corners fit to {:.4f} "
         "px\n",
         r.views, r.rms_mm, r.rms_deg, r.rms_px);
+    PrintSection(mount);
   }
   return config::kDone;
 }
@@ -235,6 +256,7 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
       "  fovea calibrate intrinsics boards/ --board 9x6 --square 0.025 --out camera.toml\n"
       "  fovea calibrate intrinsics boards/ --board 8x5 --square 0.03 --marker 0.022 --out camera.toml\n"
       "  fovea calibrate hand-eye boards/ --board 9x6 --square 0.025 --camera camera.toml\n"
+      "  fovea calibrate hand-eye boards/ --board 9x6 --square 0.025 --camera camera.toml --write cell.toml\n"
       "Exit: 0 done, 2 wrong usage or input.");
   CLI::App* focal =
       calibrate->add_subcommand("focal", "from views of one disc or ball, each further off by --delta-z");
@@ -259,6 +281,11 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
   }
   board->add_option("--out", a.out, "the picture to write: .png")->required();
   intrinsics->add_option("--out", a.out, "the camera file to write");
+  for (CLI::App* command : {intrinsics, hand_eye}) {
+    command->add_option(
+        "--write", a.write,
+        "a configuration (.toml) whose [camera] takes the result; the rest of it stays as it is");
+  }
   hand_eye->add_option("--camera", a.camera_file, "what `calibrate intrinsics --out` wrote")->required();
   for (CLI::App* command : {focal, intrinsics, hand_eye}) {
     command->add_flag("--json", a.json, "print JSON");

@@ -20,6 +20,7 @@ struct CalibrateArguments {
   calibration::Board board;  // that they name
   std::string camera_file;
   std::string out;
+  std::string write;  // a configuration to write the result into; empty: none
   bool json = false;
 };
 

@@ -8,14 +8,25 @@
 
 namespace fovea {
 
+std::vector<config::NewValue> CameraValues(const vision::Intrinsics& in, double rms_px) {
+  const auto number = [](double value) { return fmt::format("{:.9g}", value); };
+  return {{"width_px", fmt::format("{}", in.width_px)},
+          {"height_px", fmt::format("{}", in.height_px)},
+          {"f_u_px", number(in.f_u_px)},
+          {"f_v_px", number(in.f_v_px)},
+          {"c_u_px", number(in.c_u_px)},
+          {"c_v_px", number(in.c_v_px)},
+          {"lens", fmt::format("[{:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}]  # k1, k2, p1, p2, k3", in.lens.k1,
+                               in.lens.k2, in.lens.p1, in.lens.p2, in.lens.k3)},
+          {"rms_px", fmt::format("{:.4g}", rms_px)}};
+}
+
 std::string CameraFileText(const vision::Intrinsics& in, double rms_px) {
-  return fmt::format(
-      "[camera]\nwidth_px = {}\nheight_px = {}\nf_u_px = {:.9g}\nf_v_px = {:.9g}\nc_u_px = {:.9g}\nc_v_px = "
-      "{:.9g}\n"
-      "lens = [{:.9g}, {:.9g}, {:.9g}, {:.9g}, {:.9g}]  # k1, k2, p1, p2, k3\n"
-      "rms_px = {:.4g}\n",
-      in.width_px, in.height_px, in.f_u_px, in.f_v_px, in.c_u_px, in.c_v_px, in.lens.k1, in.lens.k2,
-      in.lens.p1, in.lens.p2, in.lens.k3, rms_px);
+  std::string text = "[camera]\n";
+  for (const config::NewValue& value : CameraValues(in, rms_px)) {
+    text += fmt::format("{} = {}\n", value.key, value.value);
+  }
+  return text;
 }
 
 vision::Intrinsics ReadCameraFile(const std::filesystem::path& path) {

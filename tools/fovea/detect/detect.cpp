@@ -8,7 +8,10 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <optional>
+#include <stdexcept>
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/program.hpp"
@@ -26,7 +29,7 @@ vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
                                  const std::optional<vision::Intrinsics>& camera, const std::string& file) {
   vision::DetectorConfig config;
   config::TargetSettings target;
-  target.kind = features::TraitsOf(a.target).name;
+  target.kind = a.target;
   target.diameter = target.side = a.size > 0.0 ? a.size : kDefaultSize;
   config.LookFor(config::MakeTarget(target));
   if (camera) {
@@ -86,15 +89,71 @@ nlohmann::json ToJson(const std::string& file, const vision::Detection& d, doubl
   return entry;
 }
 
+// What kept `image` from showing the target, where `detector` found none.
+std::string WhyNotFound(const DetectArguments& a, const cv::Mat& image, vision::DetectorConfig config) {
+  if (const std::optional<std::string> nothing = WhyNothing(image)) {
+    return *nothing;
+  }
+  config.confidence_min = 0.0;
+  const vision::Detection best = vision::TargetDetector(config).Detect(image);
+  if (best.found) {
+    return fmt::format(
+        "the best outline, at ({:.1f}, {:.1f}) px with a radius of {:.1f} px, has a confidence of {:.2f}, "
+        "below "
+        "--confidence-min {:.2f}",
+        best.u_px, best.v_px, best.radius_px, best.confidence, a.confidence_min);
+  }
+  return fmt::format("no outline of a {} with a radius of {:.0f} to {:.0f} px", a.target,
+                     config.radius_min_px, config.radius_max_px);
+}
+
+// The image in colour, with what was found.
+void WriteMarked(const std::filesystem::path& folder, const std::filesystem::path& image_file,
+                 const cv::Mat& image, const vision::Detection& detection) {
+  constexpr int kShift = 4;  // OpenCV draws at sixteenths of a pixel
+  const cv::Scalar kBlue(255, 128, 0);
+  const auto point = [](const vision::ImagePoint& p) {
+    return cv::Point(static_cast<int>(std::lround(p.u_px * (1 << kShift))),
+                     static_cast<int>(std::lround(p.v_px * (1 << kShift))));
+  };
+  cv::Mat marked;
+  if (image.channels() == 1) {
+    cv::cvtColor(image, marked, cv::COLOR_GRAY2BGR);
+  } else {
+    marked = image.clone();
+  }
+  if (detection.found) {
+    std::vector<cv::Point> outline;
+    for (const vision::ImagePoint& p : detection.Outline()) {
+      outline.push_back(point(p));
+    }
+    cv::polylines(marked, outline, true, kBlue, 2, cv::LINE_AA, kShift);
+    for (const vision::ImagePoint& p : detection.Corners()) {
+      cv::circle(marked, point(p), 4 << kShift, kBlue, 2, cv::LINE_AA, kShift);
+    }
+    cv::drawMarker(marked, cv::Point(cvRound(detection.u_px), cvRound(detection.v_px)), kBlue,
+                   cv::MARKER_CROSS, 12, 2, cv::LINE_AA);
+  }
+  const std::filesystem::path file = folder / (image_file.stem().string() + "-marked.png");
+  if (!cv::imwrite(file.string(), marked)) {
+    throw std::runtime_error(file.string() + ": cannot be written");
+  }
+}
+
 }  // namespace
 
 CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
   CLI::App* detect = app.add_subcommand("detect", "find a target in images: where, how large, how surely");
   detect->add_option("image", a.images, "images, or folders of them")->required();
-  detect->add_option("--target", a.target, fmt::format("{}", fmt::join(features::kTargetNames, ", ")))
+  detect->add_option("--target", a.target, "what to look for")
       ->required()
-      ->transform(CLI::CheckedTransformer(kTargetKinds));
-  detect->add_option("--method", a.method, "colour, gray or hough; gray when no --hue is given")
+      ->check(CLI::IsMember(
+          std::vector<std::string>(features::kTargetNames.begin(), features::kTargetNames.end())));
+  detect
+      ->add_option(
+          "--method", a.method,
+          "edges of the target's colour, of brightness, or OpenCV's Hough transform; gray when no --hue is "
+          "given")
       ->check(CLI::IsMember({"colour", "gray", "hough"}));
   detect->add_option("--hue", a.hue_deg, "of the target [deg]: 0 red, 120 green, 240 blue")
       ->check(CLI::Range(0.0, 360.0));
@@ -123,6 +182,8 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
   detect->add_option("--hough-votes", a.hough.votes, "method hough: a circle needs so many")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  detect->add_option("--marked", a.marked,
+                     "folder for a copy of each image with the outline and corners that were found drawn in");
   detect->add_flag("--json", a.json,
                    "a list of {file, found, u_px, v_px, radius_px, corners_px, cov, ms, ...}");
   detect->footer(
@@ -130,6 +191,7 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
       "Examples:\n"
       "  fovea detect --target circle photo.png\n"
       "  fovea detect --target sphere --hue 0 pictures/ --json\n"
+      "  fovea detect --target square --marked marked/ photo.png\n"
       "  fovea detect --target circle --method hough --hough-votes 40 photo.png\n"
       "Exit: 0 done (found or not), 2 wrong usage or input.");
   return detect;
@@ -137,7 +199,7 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
 
 int Detect(const DetectArguments& arguments) {
   cv::setNumThreads(1);
-  const bool round = features::TraitsOf(arguments.target).body != features::TargetBody::kPlate;
+  const bool round = features::FindTraits(arguments.target)->body != features::TargetBody::kPlate;
   if (arguments.method == "hough" && !round) {
     throw config::InputError("--method hough: finds spheres and circles alone");
   }
@@ -145,14 +207,19 @@ int Detect(const DetectArguments& arguments) {
   if (!arguments.camera_file.empty()) {
     camera = ReadCameraFile(arguments.camera_file);
   }
+  if (!arguments.marked.empty()) {
+    std::filesystem::create_directories(arguments.marked);
+  }
   nlohmann::json list = nlohmann::json::array();
   std::unique_ptr<vision::TargetDetector> detector;
+  vision::DetectorConfig config;
   cv::Size size;
   for (const std::filesystem::path& path : ImageFiles(arguments.images)) {
     const cv::Mat image = ReadImage(path);
     if (!detector || image.size() != size) {
       size = image.size();
-      detector = std::make_unique<vision::TargetDetector>(ConfigFor(arguments, image, camera, path.string()));
+      config = ConfigFor(arguments, image, camera, path.string());
+      detector = std::make_unique<vision::TargetDetector>(config);
       (void)detector->Detect(image);  // the first image of a size also allocates; it is not timed
     }
     detector->Forget();  // images may have nothing to do with one another
@@ -160,7 +227,10 @@ int Detect(const DetectArguments& arguments) {
     const vision::Detection d = detector->Detect(image);
     const double ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    const std::string why = d.found ? "" : WhyNothing(image).value_or("no such target");
+    const std::string why = d.found ? "" : WhyNotFound(arguments, image, config);
+    if (!arguments.marked.empty()) {
+      WriteMarked(arguments.marked, path, image, d);
+    }
     if (arguments.json) {
       list.push_back(ToJson(path.string(), d, ms, why));
     } else if (d.found) {

@@ -2,26 +2,16 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <map>
 #include <string>
 #include <vector>
 
-#include "firmware/core/features/target_traits.hpp"
 #include "firmware/vision/detect/detector_config.hpp"
 
 namespace fovea {
 
-inline const std::map<std::string, hal::FeatureKind> kTargetKinds = [] {
-  std::map<std::string, hal::FeatureKind> kinds;
-  for (const features::TargetTraits& target : features::kTargets) {
-    kinds[target.name] = target.kind;
-  }
-  return kinds;
-}();
-
 struct DetectArguments {
   std::vector<std::string> images;
-  hal::FeatureKind target = hal::FeatureKind::kSphere;
+  std::string target;  // by its name
   std::string method;  // empty: by colour when a hue is given, else gray
   double hue_deg = -1.0;
   std::string camera_file;
@@ -31,6 +21,7 @@ struct DetectArguments {
   double radius_max_px = 0.0;  // 0: what fits into the image
   double confidence_min = 0.5;
   vision::HoughConfig hough;
+  std::string marked;  // folder for pictures with what was found drawn in; empty: none
   bool json = false;
 };
 

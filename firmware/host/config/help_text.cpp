@@ -1,0 +1,77 @@
+#include "firmware/host/config/help_text.hpp"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <sstream>
+
+namespace fovea::config {
+namespace {
+
+constexpr std::size_t kDescriptionColumn = 30;  // as CLI11 writes options and sub-commands
+
+// Where the rest of a line that is too long begins.
+std::size_t RestColumn(const std::string& line) {
+  const std::size_t first = line.find_first_not_of(' ');
+  const bool is_described = first > 0 && line.size() > kDescriptionColumn &&
+                            line[kDescriptionColumn - 1] == ' ' && line[kDescriptionColumn] != ' ';
+  if (first >= kDescriptionColumn || is_described) {
+    return kDescriptionColumn;
+  }
+  return first == 0 ? 0 : first + 2;
+}
+
+bool IsHeading(const std::string& line) {
+  return line.size() > 1 && std::isupper(static_cast<unsigned char>(line.front())) != 0 &&
+         line.back() == ':' && line.find(". ") == std::string::npos;
+}
+
+void AppendLine(std::string line, std::size_t width, std::string& text) {
+  const std::size_t column = RestColumn(line);
+  while (line.size() > width) {
+    std::size_t space = line.rfind(' ', width);
+    if (space == std::string::npos || space <= column) {
+      space = line.find(' ', std::max(width, column + 1));  // a word that is longer than the line
+    }
+    if (space == std::string::npos) {
+      break;
+    }
+    text.append(line, 0, space).append("\n");
+    const std::size_t next = line.find_first_not_of(' ', space);
+    line = next == std::string::npos ? std::string() : std::string(column, ' ') + line.substr(next);
+  }
+  text.append(line).append("\n");
+}
+
+}  // namespace
+
+HelpStyle HelpStyleOfOutput() {
+  HelpStyle style;
+  if (isatty(STDOUT_FILENO) != 1) {
+    return style;
+  }
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
+    style.width = std::clamp<std::size_t>(size.ws_col, 60, 100);
+  }
+  style.bold_headings = std::getenv("NO_COLOR") == nullptr;
+  return style;
+}
+
+std::string FormatHelp(const std::string& text, const HelpStyle& style) {
+  std::string formatted;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (style.bold_headings && IsHeading(line)) {
+      formatted.append("\033[1m").append(line).append("\033[0m\n");
+    } else {
+      AppendLine(line, style.width, formatted);
+    }
+  }
+  return formatted;
+}
+
+}  // namespace fovea::config

@@ -1,0 +1,72 @@
+// Help fits into a terminal, and nothing of it is lost.
+#include "firmware/host/config/help_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+
+namespace fovea::config {
+namespace {
+
+std::string Formatted(const std::string& text, std::size_t width) {
+  return FormatHelp(text, {.width = width, .bold_headings = false});
+}
+
+TEST(FormatHelpTest, KeepsLinesThatFit) {
+  const std::string text = "Usage: fovea [OPTIONS]\n\nOptions:\n  -h,--help                   Print this\n";
+  EXPECT_EQ(Formatted(text, 60), text);
+}
+
+TEST(FormatHelpTest, IndentsTheRestOfADescriptionToItsColumn) {
+  EXPECT_EQ(Formatted("  --seed UINT                 of all that is random, in every run of it\n", 60),
+            "  --seed UINT                 of all that is random, in\n"
+            "                              every run of it\n");
+}
+
+TEST(FormatHelpTest, IndentsTheRestOfALineByTwoMore) {
+  EXPECT_EQ(Formatted("  fovea report out/slow out/fast --out comparison.html\n", 40),
+            "  fovea report out/slow out/fast --out\n"
+            "    comparison.html\n");
+  EXPECT_EQ(Formatted("Exit: 0 done, 1 goal missed, 2 wrong usage or input.\n", 40),
+            "Exit: 0 done, 1 goal missed, 2 wrong\n"
+            "usage or input.\n");
+}
+
+TEST(FormatHelpTest, KeepsAWordThatIsLongerThanTheLine) {
+  const std::string word(80, 'x');
+  EXPECT_EQ(Formatted("  --only TEXT                 " + word + " more\n", 60),
+            "  --only TEXT                 " + word + "\n" + std::string(30, ' ') + "more\n");
+  EXPECT_EQ(Formatted(word + "\n", 60), word + "\n");
+}
+
+TEST(FormatHelpTest, LosesNoWordAtAnyWidth) {
+  const std::string text =
+      "Fovea's tools beside its runs: reports and replays of logs.\n\nOptions:\n"
+      "  -j,--jobs INT:INT in [1 - 256]\n                              that run beside each other; one for "
+      "every two cores when not given\n  fovea atlas --faults --jobs 2 --only ball.approach\n";
+  const auto words = [](const std::string& of) {
+    std::istringstream stream(of);
+    std::string all;
+    for (std::string word; stream >> word;) {
+      all += word + " ";
+    }
+    return all;
+  };
+  for (std::size_t width = 60; width <= 100; ++width) {
+    const std::string formatted = Formatted(text, width);
+    EXPECT_EQ(words(formatted), words(text));
+    std::istringstream lines(formatted);
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), width) << line;
+    }
+  }
+}
+
+TEST(FormatHelpTest, MakesHeadingsBoldWhereAsked) {
+  EXPECT_EQ(FormatHelp("Options:\n  --json\nExit: 0 done.\n", {.width = 80, .bold_headings = true}),
+            "\033[1mOptions:\033[0m\n  --json\nExit: 0 done.\n");
+}
+
+}  // namespace
+}  // namespace fovea::config

@@ -1,0 +1,58 @@
+# Completion of fovea, fovea-sim, fovea-hw and fovea-bench for bash. Options, sub-commands and choices are read from each
+# program's own --help, scenarios from `fovea-sim list`, keys from `fovea-sim keys`: nothing is listed here twice.
+
+# What --help of "$@" says, one word a line: `commands`, `options`, or the choices of the option $1.
+_fovea_help() {
+  local what=$1
+  shift
+  "$@" --help 2> /dev/null | awk -v what="$what" '
+    /^[A-Z].*:$/ { part = $0 }
+    what == "commands" && part == "Subcommands:" && /^  [a-z]/ { print $1 }
+    what == "options" && /^ +(-[a-zA-Z],)?--/ {
+      name = $1
+      sub(/^-[a-zA-Z],/, "", name)
+      sub(/[^-a-zA-Z].*$/, "", name)
+      print name
+    }
+    what ~ /^--/ && match($1, what "$|" what "[^-a-z]") && match($0, /\{[^}]*\}/) {
+      choices = substr($0, RSTART + 1, RLENGTH - 2)
+      gsub(/,/, "\n", choices)
+      print choices
+    }'
+}
+
+_fovea() {
+  local program=$1 word=$2 previous=$3
+  local -a call=("$program") found
+  local w choices
+  COMPREPLY=()
+  # The sub-commands typed so far, the one that the cursor is in not counted.
+  for w in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
+    if _fovea_help commands "${call[@]}" | grep -qxF -- "$w"; then
+      call+=("$w")
+    fi
+  done
+  if [ "$previous" = --set ]; then
+    mapfile -t found < <(compgen -W "$(fovea-sim keys 2> /dev/null | sed -n 's/^\([a-z][^ ]*\) = .*/\1=/p')" -- "$word")
+    compopt -o nospace 2> /dev/null
+  elif [[ $word == -* ]]; then
+    mapfile -t found < <(compgen -W "$(_fovea_help options "${call[@]}")" -- "$word")
+  elif [[ $previous == --* ]] && choices=$(_fovea_help "$previous" "${call[@]}") && [ -n "$choices" ]; then
+    mapfile -t found < <(compgen -W "$choices" -- "$word")
+  else
+    local names
+    names=$(_fovea_help commands "${call[@]}")
+    case "${call[*]##*/}" in
+      'fovea-sim run' | 'fovea-sim serve') names=$(fovea-sim list 2> /dev/null | awk '{ print $1 }') ;;
+      fovea-hw) names='loopback panda' ;;
+    esac
+    mapfile -t found < <(
+      compgen -W "$names" -- "$word"
+      compgen -f -- "$word"
+    )
+    compopt -o filenames 2> /dev/null
+  fi
+  COMPREPLY=("${found[@]}")
+}
+
+complete -F _fovea fovea fovea-sim fovea-hw fovea-bench
