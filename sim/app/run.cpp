@@ -93,7 +93,7 @@ class Run {
     if (about_.motion) {
       motion_.emplace(*about_.motion);
     }
-    const auto begin = std::chrono::steady_clock::now();
+    const Instant begin = std::chrono::steady_clock::now();
     hal::Status status;
     std::exception_ptr failure;
     try {
@@ -101,7 +101,7 @@ class Run {
     } catch (...) {
       failure = std::current_exception();
     }
-    wall_time_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    wall_time_s_ = SecondsSince(begin);
     vision_.End();
     shell_->TakeRecords();
     if (trace_) {
@@ -116,13 +116,20 @@ class Run {
           fmt::format("the run broke off: {} ({})", hal::ToString(status.code()), status.where()));
     }
     Summary summary = Summarise();
+    summary.preparing_s = std::chrono::duration<double>(begin - made_).count();
     progress_.Update(about_.scenario.run.duration_s,
                      interrupted_ ? "interrupted; once more ends at once" : "drawing the pictures");
+    const Instant simulated = std::chrono::steady_clock::now();
     files_->Write(summary, world_->Look());
+    summary.writing_s = SecondsSince(simulated);
     return summary;
   }
 
  private:
+  using Instant = std::chrono::steady_clock::time_point;
+  static double SecondsSince(Instant begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
   static RunDescription Prepare(const Scenario& scenario, Progress& progress) {
     progress.Update(0.0, "preparing");
     return DescribeRun(scenario);
@@ -292,6 +299,7 @@ class Run {
     return options_.pace == Pace::kLockstep || options_.clock != nullptr;
   }
 
+  const Instant made_ = std::chrono::steady_clock::now();
   RunOptions options_;
   Progress progress_;
   const RunDescription about_;

@@ -227,6 +227,7 @@ std::string ToJson(const Summary& s) {
   json["frame_failure"] = s.frame_failure.empty() ? ordered_json(nullptr) : ordered_json(s.frame_failure);
   json["frames_lost"] = s.frames_lost;
   json["sim_time_s"] = s.sim_time_s;
+  json["preparing_s"] = s.preparing_s;
   json["wall_time_s"] = s.wall_time_s;
   json["real_time_factor"] = s.real_time_factor;
   json["renderer"] = s.renderer;
@@ -290,6 +291,8 @@ std::string ToTable(const Summary& s) {
   table.Row("overruns", fmt::format("{} of {} ticks", s.overruns, s.ticks));
   table.Row("speed", fmt::format("{:.1f} s in {:.2f} s: {:.1f} times real time, rendered by {}", s.sim_time_s,
                                  s.wall_time_s, s.real_time_factor, s.renderer));
+  table.Row("time taken", fmt::format("{:.2f} s to prepare, {:.2f} s to simulate, {:.2f} s to write the files",
+                                      s.preparing_s, s.wall_time_s, s.writing_s));
   for (const std::string& missing : s.realtime_missing) {
     table.Row("not real-time", missing);
   }

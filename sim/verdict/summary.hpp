@@ -107,7 +107,9 @@ struct Summary : run::RunFigures {
   std::uint64_t frames_lost = 0;
   std::optional<BoardSummary> mcu;  // of a servo on a board
   double sim_time_s = 0.0;
-  double wall_time_s = 0.0;
+  double preparing_s = 0.0;  // wall time before the first tick
+  double wall_time_s = 0.0;  // from the first tick to the last
+  double writing_s = 0.0;    // and after it, for pictures, film and report; known when they are written
   double real_time_factor = 0.0;
   std::string renderer;
 };

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "fovea/servo_loop.hpp"
+#include "fovea/servo_task.hpp"
 
 int main() {
   const auto servo = std::make_unique<fovea::task::ServoTask>();
