@@ -39,7 +39,7 @@ TEST(GuardShape, NoLinksTouchInPosturesTheGuardAllows) {
     ++touching;
     model::ArmPoses poses;
     model::ComputePoses(config.arm, q, poses);
-    const double clearance = barriers::SelfClearance(config.arm, poses);
+    const double clearance = barriers::SelfClearance(config.arm, barriers::PlaceBodies(config.arm, poses));
     most = std::max(most, clearance);
     EXPECT_LT(clearance, stops_at) << "at " << q.transpose();
   }

@@ -144,8 +144,9 @@ HazardCase MakeCase(std::uint64_t seed) {
     c.onset_s = chance.Uniform(0.25, 2.5);
     if (barriers::ClearanceOfArm(setup.servo, poses) > 0.05 &&
         poses.X_BE.p.norm() < guard.workspace_radius - 0.02 &&
-        barriers::SelfClearance(setup.servo.arm, poses) > guard.self_clearance && ball.z() > 0.04 &&
-        ball.norm() < 0.9) {
+        barriers::SelfClearance(setup.servo.arm, barriers::PlaceBodies(setup.servo.arm, poses)) >
+            guard.self_clearance &&
+        ball.z() > 0.04 && ball.norm() < 0.9) {
       setup.target = [ball](double) { return ball; };
       return c;
     }

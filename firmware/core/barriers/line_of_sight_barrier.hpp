@@ -2,12 +2,11 @@
 // corner.
 //
 // With the hand where a target asks for it, another part of the arm may come between: the elbow, or the
-// forearm. They are taken as the arm's line (arm_line.hpp), of which their thickness is a part of the
-// clearance; the links between the last joints carry the camera and are never in its way. How near the links'
-// lines come to the line of sight is a barrier like the others (barrier.hpp).
+// forearm. The hand, and the links with at most ArmShape::kNeighbours joints between them and it, are never
+// in its way. How near the others come to the line of sight is a barrier like the others (barrier.hpp).
 #pragma once
 
-#include "firmware/core/barriers/arm_line.hpp"
+#include "firmware/core/barriers/arm_bodies.hpp"
 #include "firmware/core/barriers/barrier.hpp"
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/features/target_feature.hpp"
@@ -17,15 +16,14 @@ namespace fovea::barriers {
 
 struct Sight {
   const model::ArmPoses& poses;
-  const ArmLine& line;
+  const ArmBodies& bodies;
   model::Pose X_BC;  // of the same posture
   features::TargetOutline outline;
   model::Pose X_BO;
 };
 
-// How far the nearest link's line is from the nearest line of sight, of the links up to the forearm's end
-// [m]. Real-time: yes.
-[[nodiscard]] double ClearanceOfSight(const model::ArmModel& arm, const Sight& sight) noexcept;
+// How far the nearest link is from the nearest line of sight [m]. Real-time: yes.
+[[nodiscard]] double ClearanceOfSight(const Sight& sight) noexcept;
 
 // The same as a barrier, which keeps it guard.sight_clearance [m] at least; what is already nearer may not
 // come nearer still. None where the clearance is 0, and none where the two cross: there is no way apart then.

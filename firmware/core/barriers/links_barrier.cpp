@@ -10,23 +10,25 @@ namespace {
 
 using model::Vec3;
 
-// Where the arm's line from the elbow on is nearest to a plane.
+// Where the links are nearest to a plane.
 struct NearestPlane {
   Clearance clearance{HUGE_VAL, Vec3::UnitZ()};
-  Vec3 p_BP = Vec3::Zero();  // the line's point [m]
-  int joint = -1;            // that carries it
+  Vec3 p_BP = Vec3::Zero();  // a point on the axis of the body that is nearest [m]
+  int body = -1;
 };
 
-NearestPlane NearestOfPlanes(const model::ArmModel& arm, const config::GuardConfig& guard,
-                             const ArmLine& line) noexcept {
+NearestPlane NearestOfPlanes(const config::GuardConfig& guard, const ArmBodies& bodies) noexcept {
   const config::Obstacles& obstacles = guard.obstacles;
   NearestPlane nearest;
-  for (std::size_t k = 0; k + 1 < static_cast<std::size_t>(line.num_points); ++k) {  // but the end effector
-    for (int i = 0; i < obstacles.num_planes && line.joint[k] >= arm.num_joints - kForearmJoints; ++i) {
-      Clearance clearance = ClearanceOf(obstacles, i, line.p_B[k]);
-      clearance.distance -= guard.link_radius;
-      if (clearance.distance < nearest.clearance.distance) {
-        nearest = {clearance, line.p_B[k], line.joint[k]};
+  for (int k = model::ArmShape::kNeighbours + 1; k < bodies.size; ++k) {
+    const PlacedCapsule& body = bodies.body[static_cast<std::size_t>(k)];
+    for (int i = 0; i < obstacles.num_planes; ++i) {
+      for (const Vec3& end : {body.p_BA, body.p_BB}) {
+        Clearance clearance = ClearanceOf(obstacles, i, end);
+        clearance.distance -= body.radius;
+        if (clearance.distance < nearest.clearance.distance) {
+          nearest = {clearance, end, k};
+        }
       }
     }
   }
@@ -35,15 +37,14 @@ NearestPlane NearestOfPlanes(const model::ArmModel& arm, const config::GuardConf
 
 }  // namespace
 
-double ClearanceOfPlanes(const model::ArmModel& arm, const config::GuardConfig& guard,
-                         const ArmLine& line) noexcept {
-  return NearestOfPlanes(arm, guard, line).clearance.distance;
+double ClearanceOfPlanes(const config::GuardConfig& guard, const ArmBodies& bodies) noexcept {
+  return NearestOfPlanes(guard, bodies).clearance.distance;
 }
 
 Barrier LinksBarrier(const config::ServoConfig& config, const model::ArmPoses& poses,
-                     const ArmLine& line) noexcept {
+                     const ArmBodies& bodies) noexcept {
   const model::ArmModel& arm = config.arm;
-  const NearestPlane nearest = NearestOfPlanes(arm, config.guard, line);
+  const NearestPlane nearest = NearestOfPlanes(config.guard, bodies);
   Barrier barrier;
   if (!std::isfinite(nearest.clearance.distance)) {
     return barrier;
@@ -51,12 +52,12 @@ Barrier LinksBarrier(const config::ServoConfig& config, const model::ArmPoses& p
   model::LinearJacobian J;
   model::ComputeLinearJacobian(arm, poses, nearest.p_BP, J);
   barrier.gradient = model::VecN::Zero(arm.num_joints);
-  for (int i = 0; i <= nearest.joint; ++i) {
+  for (int i = 0; i < nearest.body; ++i) {
     barrier.gradient[i] = J.col(i).dot(nearest.clearance.away);
   }
   barrier.name = hal::Limit::kObstacle;
   barrier.value = nearest.clearance.distance;
-  barrier.margin = 2.0 * config.guard.workspace_margin;
+  barrier.margin = config.guard.link_clearance + 2.0 * config.guard.workspace_margin;
   barrier.deceleration = 0.5 * config.guard.workspace_deceleration;
   barrier.reaction_s = trajectory::SlowestReaction(config);
   return barrier;

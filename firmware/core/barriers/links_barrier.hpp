@@ -1,25 +1,23 @@
-// The arm's links stay above the planes that its end effector stays above.
+// The arm's links stay above the planes that its hand stays above.
 //
-// With the end effector where it may be, the elbow or the wrist can still come down on the table. So the arm
-// is taken as a line (arm_line.hpp) with guard.link_radius about it: from the elbow on, the fourth joint from
-// the end, no part of it goes below a plane.
+// With the hand where it may be, the elbow or the wrist can still come down on the table. No link does that
+// has more than ArmShape::kNeighbours joints between it and the base; those nearer to the base cannot reach
+// what the base stands on, and stand beside a wall as the base does.
 #pragma once
 
-#include "firmware/core/barriers/arm_line.hpp"
+#include "firmware/core/barriers/arm_bodies.hpp"
 #include "firmware/core/barriers/barrier.hpp"
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/model/kinematics.hpp"
 
 namespace fovea::barriers {
 
-// How far the arm's links from the elbow on, but for the end effector, are from the nearest plane, with
-// guard.link_radius about their line [m]; HUGE_VAL without planes. Real-time: yes.
-[[nodiscard]] double ClearanceOfPlanes(const model::ArmModel& arm, const config::GuardConfig& guard,
-                                       const ArmLine& line) noexcept;
+// How far the arm's links are from the nearest plane [m]; HUGE_VAL without planes. Real-time: yes.
+[[nodiscard]] double ClearanceOfPlanes(const config::GuardConfig& guard, const ArmBodies& bodies) noexcept;
 
-// The same as a barrier: the links come nearer with the speed from which they can stop; what is below may not
-// go further. Real-time: yes.
+// The same as a barrier, which keeps it guard.link_clearance [m] and more: the links come nearer with the
+// speed from which they can stop; what is nearer may not go further. Real-time: yes.
 [[nodiscard]] Barrier LinksBarrier(const config::ServoConfig& config, const model::ArmPoses& poses,
-                                   const ArmLine& line) noexcept;
+                                   const ArmBodies& bodies) noexcept;
 
 }  // namespace fovea::barriers

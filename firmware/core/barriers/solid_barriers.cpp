@@ -34,23 +34,23 @@ hal::Limit SolidBarriers::NameOf(int i) const noexcept {
   return KindOf(i) == Kind::kWorkspace ? hal::Limit::kWorkspace : hal::Limit::kObstacle;
 }
 
-double SolidBarriers::ValueOf(int i, const model::ArmPoses& poses, const ArmLine& line) const noexcept {
+double SolidBarriers::ValueOf(int i, const model::ArmPoses& poses, const ArmBodies& bodies) const noexcept {
   const config::GuardConfig& guard = config_.guard;
   switch (KindOf(i)) {
     case Kind::kWorkspace: return -poses.X_BE.p.norm();
     case Kind::kHand: return ClearanceOf(guard.obstacles, i - 1, guard.hand, poses.X_BE).clearance.distance;
-    case Kind::kLinks: return ClearanceOfPlanes(config_.arm, guard, line);
+    case Kind::kLinks: return ClearanceOfPlanes(guard, bodies);
     case Kind::kSelf: break;
   }
-  return SelfClearance(config_.arm, poses);
+  return SelfClearance(config_.arm, bodies);
 }
 
 double SolidBarriers::StopMarginOf(int i) const noexcept {
   const config::GuardConfig& guard = config_.guard;
   switch (KindOf(i)) {
     case Kind::kWorkspace: return -(guard.workspace_radius - guard.workspace_margin);
-    case Kind::kHand:
-    case Kind::kLinks: return guard.workspace_margin;
+    case Kind::kHand: return guard.workspace_margin;
+    case Kind::kLinks: return guard.link_clearance + guard.workspace_margin;
     case Kind::kSelf: break;
   }
   return std::max(guard.self_clearance - kSelfRoom, 0.0);
@@ -60,15 +60,15 @@ Barrier SolidBarriers::RowOf(int i, const Scene& scene) const noexcept {
   switch (KindOf(i)) {
     case Kind::kWorkspace: return WorkspaceRow(config_, scene.poses.X_BE.p, scene.J_E_B, scene.dq);
     case Kind::kHand: return HandBarrier(config_, i - 1, scene.poses);
-    case Kind::kLinks: return LinksBarrier(config_, scene.poses, scene.line);
+    case Kind::kLinks: return LinksBarrier(config_, scene.poses, scene.bodies);
     case Kind::kSelf: break;
   }
-  return SelfClearanceBarrier(config_, scene.poses);
+  return SelfClearanceBarrier(config_, scene.poses, scene.bodies);
 }
 
 double ClearanceOfArm(const config::ServoConfig& config, const model::ArmPoses& poses) noexcept {
   const config::GuardConfig& guard = config.guard;
-  double clearance = ClearanceOfPlanes(config.arm, guard, LineOfArm(config.arm, poses));
+  double clearance = ClearanceOfPlanes(guard, PlaceBodies(config.arm, poses));
   for (int i = 0; i < CountObstacles(guard.obstacles); ++i) {
     clearance =
         std::min(clearance, ClearanceOf(guard.obstacles, i, guard.hand, poses.X_BE).clearance.distance);

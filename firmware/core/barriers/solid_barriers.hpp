@@ -5,7 +5,7 @@
 // other knows too.
 #pragma once
 
-#include "firmware/core/barriers/arm_line.hpp"
+#include "firmware/core/barriers/arm_bodies.hpp"
 #include "firmware/core/barriers/barrier.hpp"
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/model/kinematics.hpp"
@@ -20,9 +20,10 @@ class SolidBarriers {
 
   [[nodiscard]] int size() const noexcept { return num_hand_ + (links_ ? 1 : 0) + (self_ ? 1 : 0) + 1; }
   [[nodiscard]] hal::Limit NameOf(int i) const noexcept;
-  // h of barrier `i` [m], 0 <= i < size(), with the arm's links at `poses`; `line`: its line there.
+  // h of barrier `i` [m], 0 <= i < size(), with the arm's links at `poses`; `bodies`: what it
+  // fills there.
   // Real-time: yes.
-  [[nodiscard]] double ValueOf(int i, const model::ArmPoses& poses, const ArmLine& line) const noexcept;
+  [[nodiscard]] double ValueOf(int i, const model::ArmPoses& poses, const ArmBodies& bodies) const noexcept;
   // The least h that a stop must keep [m].
   [[nodiscard]] double StopMarginOf(int i) const noexcept;
   // How much of h is left at least for each metre that every point of the arm may still go: 1, or half of it
@@ -33,7 +34,7 @@ class SolidBarriers {
   // velocities at present. Real-time: yes.
   struct Scene {
     const model::ArmPoses& poses;
-    const ArmLine& line;
+    const ArmBodies& bodies;
     const model::LinearJacobian& J_E_B;
     const model::VecN& dq;
   };

@@ -64,9 +64,9 @@ struct GuardConfig {
   double singularity_min = 0.02;
   Obstacles obstacles;
   HandShape hand;
-  double link_radius = 0.06;
+  double link_clearance = 0.01;
   ViewConfig view;
-  double sight_clearance = 0.08;
+  double sight_clearance = 0.02;
   double self_clearance = 0.02;
   double barrier_rate = 1.5;
 };
@@ -116,10 +116,11 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Derived({"safety.view_margin_px"}, c.view.x_max, -1e6, 1e6);
   v.Derived({"safety.view_margin_px"}, c.view.y_min, -1e6, 1e6);
   v.Derived({"safety.view_margin_px"}, c.view.y_max, -1e6, 1e6);
-  v.Number({"safety.sight_clearance", "m",
-            "the lines of the arm's own links stay so far from the lines of sight to the target, or come no "
-            "nearer; 0: they may"},
-           c.sight_clearance, 0.0, 10.0);
+  v.Number(
+      {"safety.sight_clearance", "m",
+       "the arm's own links stay so far from the lines of sight to the target, or come no nearer; 0: they "
+       "may"},
+      c.sight_clearance, 0.0, 10.0);
   v.Derived(
       {"safety.disc_tilt_max", "rad",
        "a disc's face is turned away from the line of sight by no more than this, or no further; pi / 2: it "
@@ -136,8 +137,8 @@ void Fields(Visitor& v, Config& c) noexcept {
     v.Derived({"safety.tools"}, ball.p_EP, -1e6, 1e6);
     v.Derived({"safety.tools"}, ball.radius, 0.0, 1e6);
   }
-  v.Number({"safety.link_radius", "m", "the arm's links from the elbow on are so thick before a plane"},
-           c.link_radius, 0.0, 1.0);
+  v.Number({"safety.link_clearance", "m", "the arm's links stay so far from planes"}, c.link_clearance, 0.0,
+           1.0);
   v.Number({"safety.barrier_rate", "1/s",
             "what is left before the picture's edge, a line of sight, a disc's largest tilt and between the "
             "arm's links is used up no faster than exp(-rate t)"},

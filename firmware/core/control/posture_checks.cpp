@@ -49,13 +49,13 @@ bool IsRegular(const config::ServoConfig& config, const model::ArmPoses& poses) 
 bool IsArmClear(const config::ServoConfig& config, const model::ArmPoses& poses,
                 const model::Pose& X_BO) noexcept {
   const config::GuardConfig& guard = config.guard;
-  const barriers::ArmLine line = barriers::LineOfArm(config.arm, poses);
-  const barriers::Sight sight{poses, line, poses.X_BE * config.X_EC, config.feature.Outline(), X_BO};
-  return barriers::ClearanceOfPlanes(config.arm, guard, line) > kLineRoom &&
+  const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, poses);
+  const barriers::Sight sight{poses, bodies, poses.X_BE * config.X_EC, config.feature.Outline(), X_BO};
+  return barriers::ClearanceOfPlanes(guard, bodies) > guard.link_clearance + kLineRoom &&
          (guard.self_clearance <= 0.0 ||
-          barriers::SelfClearance(config.arm, poses) > guard.self_clearance + kLineRoom) &&
+          barriers::SelfClearance(config.arm, bodies) > guard.self_clearance + kLineRoom) &&
          (guard.sight_clearance <= 0.0 ||
-          barriers::ClearanceOfSight(config.arm, sight) > guard.sight_clearance + kLineRoom);
+          barriers::ClearanceOfSight(sight) > guard.sight_clearance + kLineRoom);
 }
 
 bool IsInView(const config::ServoConfig& config, const model::Pose& X_BC, const model::Pose& X_BO) noexcept {

@@ -28,10 +28,10 @@ double ShareOfWish(double sigma, double sigma_min) noexcept {
 void Gather(const config::ServoConfig& config, const MotionScene& scene, barriers::SingularityWatch& watch,
             barriers::MotionLimits& limits, double& wish) noexcept {
   barriers::LimitJoints(config, scene.reference.q, limits);
-  const barriers::ArmLine line = barriers::LineOfArm(config.arm, scene.poses);
+  const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, scene.poses);
   const barriers::SolidBarriers solid(config);
   for (int i = 0; i < solid.size(); ++i) {
-    limits.Add(solid.RowOf(i, {scene.poses, line, scene.J_E_B, scene.reference.dq}));
+    limits.Add(solid.RowOf(i, {scene.poses, bodies, scene.J_E_B, scene.reference.dq}));
   }
   if (scene.by_joints) {
     watch = barriers::SingularityWatch{};  // what it knew of the posture holds no longer
@@ -51,7 +51,7 @@ void Gather(const config::ServoConfig& config, const MotionScene& scene, barrier
     }
     const model::Pose X_BC = scene.poses.X_BE * config.X_EC;
     limits.Add(barriers::LineOfSightBarrier(
-        config, {scene.poses, line, X_BC, scene.target->outline, X_BC * scene.target->seen.X_CO},
+        config, {scene.poses, bodies, X_BC, scene.target->outline, X_BC * scene.target->seen.X_CO},
         scene.target->J_C));
     if (config.guard.view.enabled && !scene.target->normal_C.isZero()) {
       limits.Add(barriers::DiscTiltBarrier(config.guard, scene.target->seen.X_CO.p, scene.target->normal_C,

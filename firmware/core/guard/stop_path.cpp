@@ -120,10 +120,10 @@ class Bounds {
   static constexpr int kMost = barriers::SolidBarriers::kMost;
 
   Bounds(const config::ServoConfig& config, const model::ArmPoses& now) noexcept : solid_(config) {
-    const barriers::ArmLine line = barriers::LineOfArm(config.arm, now);
+    const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, now);
     for (int i = 0; i < solid_.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
-      const double value = solid_.ValueOf(i, now, line);
+      const double value = solid_.ValueOf(i, now, bodies);
       least_[k] = std::min(solid_.StopMarginOf(i), value) - kSlack;
       clear_now_[k] = solid_.ShareOf(i) * (value - least_[k]);
     }
@@ -135,8 +135,8 @@ class Bounds {
   [[nodiscard]] double ClearNow(int i) const noexcept { return clear_now_[static_cast<std::size_t>(i)]; }
   // The same with the links at `poses`; below 0 where it is passed.
   [[nodiscard]] double Clear(int i, const model::ArmPoses& poses,
-                             const barriers::ArmLine& line) const noexcept {
-    return solid_.ShareOf(i) * (solid_.ValueOf(i, poses, line) - least_[static_cast<std::size_t>(i)]);
+                             const barriers::ArmBodies& bodies) const noexcept {
+    return solid_.ShareOf(i) * (solid_.ValueOf(i, poses, bodies) - least_[static_cast<std::size_t>(i)]);
   }
 
  private:
@@ -198,12 +198,12 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
     if (may_be_fast && HandSpeed(config.arm, poses, dq) > speed_most) {
       return hal::Bit(hal::Limit::kCartesianSpeed);
     }
-    const barriers::ArmLine line = barriers::LineOfArm(config.arm, poses);
+    const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, poses);
     first_due = may_be_fast ? t : HUGE_VAL;
     for (int i = 0; i < bounds.size(); ++i) {
       double& until = clear_until[static_cast<std::size_t>(i)];
       if (!(t < until)) {
-        const double clear = bounds.Clear(i, poses, line);
+        const double clear = bounds.Clear(i, poses, bodies);
         if (!(clear >= 0.0)) {
           return bounds.LimitOf(i);
         }

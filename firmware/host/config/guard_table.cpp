@@ -38,7 +38,7 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kObstacle:
       return {
           "hand, camera and tools (`safety.camera_radius`, `safety.tools`) before planes and boxes, links "
-          "from the elbow on before planes (`safety.link_radius`), the arm's links before each other "
+          "before planes (`safety.link_clearance`), the arm's links before each other "
           "(`safety.self_clearance`), in the tick and on the way of a stop",
           "as at the workspace's boundary; an arm that stands inside when it starts stays in Boot"};
     case hal::Limit::kCartesianSpeed:

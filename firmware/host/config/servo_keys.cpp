@@ -78,6 +78,7 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
   Fields(fields, c.safety);
   keys.Renamed("safety.face_tilt_max", "safety.disc_tilt_max");
   keys.Renamed("safety.hand_clearance", "safety.self_clearance");
+  keys.Renamed("safety.link_radius", "safety.link_clearance");
 }
 
 void ScaleSpeed(double scale, ServoSettings& settings) {

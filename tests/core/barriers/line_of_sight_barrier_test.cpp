@@ -23,12 +23,12 @@ struct Posture {
   Posture(const config::ServoConfig& config, const VecN& q) {
     model::ComputePoses(config.arm, q, poses);
     X_BC = poses.X_BE * config.X_EC;
-    line = LineOfArm(config.arm, poses);
+    bodies = PlaceBodies(config.arm, poses);
     model::ComputeJacobian(config.arm, poses, config.X_EC, J_C);
   }
 
   model::ArmPoses poses;
-  ArmLine line;
+  ArmBodies bodies;
   model::Pose X_BC;
   model::Mat6N J_C;
 };
@@ -45,7 +45,7 @@ Vec3 RandomTarget(test::RandomStates& random, const Posture& posture) {
 
 // A target of one point, or a turned triangle.
 Sight SightOf(const Posture& posture, const Vec3& p_BO, bool triangle) {
-  Sight sight{posture.poses, posture.line, posture.X_BC, {}, {model::RotationOf({0.3, -0.2, 0.9}), p_BO}};
+  Sight sight{posture.poses, posture.bodies, posture.X_BC, {}, {model::RotationOf({0.3, -0.2, 0.9}), p_BO}};
   sight.outline.num_points = triangle ? 3 : 1;
   sight.outline.p_OP[0].setZero();
   if (triangle) {
@@ -62,11 +62,11 @@ config::ServoConfig WithClearance(double clearance) {
 
 double Clearance(const config::ServoConfig& config, const VecN& q, const Vec3& p_BO, bool triangle) {
   const Posture posture(config, q);
-  return ClearanceOfSight(config.arm, SightOf(posture, p_BO, triangle));
+  return ClearanceOfSight(SightOf(posture, p_BO, triangle));
 }
 
-// Points on the two lines, 2 mm apart and less.
-TEST(LineOfSightBarrierTest, ClearanceIsTheSmallestDistanceBetweenTheLines) {
+// Points on the line of sight and on the links' axes, 2 mm apart and less.
+TEST(LineOfSightBarrierTest, ClearanceIsTheSmallestFoundByASearchOverAllLinks) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(71);
   double worst = 0.0;
@@ -75,25 +75,20 @@ TEST(LineOfSightBarrierTest, ClearanceIsTheSmallestDistanceBetweenTheLines) {
     const Vec3 p_BO = RandomTarget(random, posture);
     double least = 1e9;
     constexpr int kPoints = 400;
-    // Base to first joint, ..., to the elbow, where the forearm steps aside (a_5) and goes on to the fifth.
-    std::vector<Vec3> line{Vec3::Zero()};
-    for (std::size_t i = 0; i < 4; ++i) {
-      line.push_back(posture.poses.X_BL[i].p);
-    }
-    line.push_back(posture.poses.X_BL[3] * Vec3(-0.0825, 0.0, 0.0));
-    line.push_back(posture.poses.X_BL[4].p);
-    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-      const Vec3& from = line[i];
-      const Vec3& to = line[i + 1];
+    // The base, and the links of the first four joints; those of the last three carry the camera.
+    for (std::size_t i = 0; i <= 4; ++i) {
+      const model::Capsule& link = config.arm.shape.bodies[i];
+      const Vec3 from = i == 0 ? link.p_LA : posture.poses.X_BL[i - 1] * link.p_LA;
+      const Vec3 to = i == 0 ? link.p_LB : posture.poses.X_BL[i - 1] * link.p_LB;
       for (int a = 0; a <= kPoints; ++a) {
         const Vec3 on_link = from + a / double{kPoints} * (to - from);
         for (int b = 0; b <= kPoints; ++b) {
           const Vec3 on_sight = posture.X_BC.p + b / double{kPoints} * (p_BO - posture.X_BC.p);
-          least = std::min(least, (on_link - on_sight).norm());
+          least = std::min(least, (on_link - on_sight).norm() - link.radius);
         }
       }
     }
-    const double clearance = ClearanceOfSight(config.arm, SightOf(posture, p_BO, false));
+    const double clearance = ClearanceOfSight(SightOf(posture, p_BO, false));
     EXPECT_LT(clearance, least + 1e-12);
     worst = std::max(worst, least - clearance);
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <iostream>
-#include <vector>
 
 #include "firmware/core/barriers/barrier_speed.hpp"
 #include "firmware/core/barriers/links_barrier.hpp"
@@ -29,14 +28,14 @@ model::ArmPoses PosesAt(const VecN& q) {
   return poses;
 }
 
-ArmLine LineAt(const VecN& q) { return LineOfArm(Arm(), PosesAt(q)); }
+ArmBodies BodiesAt(const VecN& q) { return PlaceBodies(Arm(), PosesAt(q)); }
 
-double Gap(const VecN& q) { return SelfClearance(Arm(), PosesAt(q)); }
+double Gap(const VecN& q) { return SelfClearance(Arm(), BodiesAt(q)); }
 
 // A table, and a wall that leans over it.
 config::GuardConfig Planes() {
   config::GuardConfig guard;
-  guard.link_radius = 0.05;
+  guard.link_clearance = 0.05;
   config::Obstacles& obstacles = guard.obstacles;
   obstacles.num_planes = 2;
   obstacles.planes[0] = {Vec3(0.0, 0.0, 1.0), 0.1};
@@ -56,7 +55,7 @@ config::ServoConfig WithSelfClearance(double clearance) {
   return config;
 }
 
-double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Arm(), Planes(), LineAt(q)); }
+double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Planes(), BodiesAt(q)); }
 
 // Points on the two axes of each pair, 1 mm apart and less.
 TEST(SelfClearanceBarrierTest, GapIsTheSmallestFoundByASearchOverAllPairs) {
@@ -94,20 +93,23 @@ TEST(SelfClearanceBarrierTest, GapIsTheSmallestFoundByASearchOverAllPairs) {
   EXPECT_LT(worst, 0.002);
 }
 
-TEST(SelfClearanceBarrierTest, ArmClearanceIsThatOfItsLowestPointFromTheElbowOn) {
+// Points on the axes of all links but the first two, and below them on their surfaces.
+TEST(LinksBarrierTest, ClearanceIsTheSmallestFoundByASearchOverAllLinks) {
   test::RandomStates random(82);
   for (int k = 0; k < 300; ++k) {
     const VecN q = random.Position(Arm());
     const model::ArmPoses poses = PosesAt(q);
-    std::vector<Vec3> points{poses.X_BL[3] * Vec3(-0.0825, 0.0, 0.0)};
-    for (std::size_t i = 3; i < 7; ++i) {
-      points.push_back(poses.X_BL[i].p);
-    }
     double least = 1e9;
-    for (const Vec3& p : points) {
-      least = std::min({least, p.z() - 0.1, 0.7 - 0.6 * p.x() - 0.8 * p.z()});
+    constexpr int kPoints = 50;
+    for (std::size_t i = 2; i < 7; ++i) {
+      const model::Capsule& capsule = Arm().shape.bodies[i + 1];
+      for (int a = 0; a <= kPoints; ++a) {
+        const Vec3 p = poses.X_BL[i] * (capsule.p_LA + a / double{kPoints} * (capsule.p_LB - capsule.p_LA));
+        least =
+            std::min({least, p.z() - 0.1 - capsule.radius, 0.7 - 0.6 * p.x() - 0.8 * p.z() - capsule.radius});
+      }
     }
-    EXPECT_NEAR(PlaneClearance(q), least - Planes().link_radius, 1e-12);
+    EXPECT_NEAR(PlaneClearance(q), least, 1e-12);
   }
 }
 
@@ -131,17 +133,18 @@ TEST(SelfClearanceBarrierTest, GradientMatchesFiniteDifferenceOfClearance) {
     const VecN q = random.Position(Arm());
     const VecN dq = random.Joints(Arm(), 0.5);
     MotionLimits self;
-    self.Add(SelfClearanceBarrier(WithSelfClearance(0.2), PosesAt(q)));
+    self.Add(SelfClearanceBarrier(WithSelfClearance(0.2), PosesAt(q), BodiesAt(q)));
     ExpectRow(self, q, dq, Gap, worst_self);
     EXPECT_NEAR(self.rows[0].b, 1.5 * std::max(Gap(q) - 0.2, 0.0), 1e-12);
     MotionLimits arm;
-    arm.Add(LinksBarrier(WithPlanes(), PosesAt(q), LineAt(q)));
+    arm.Add(LinksBarrier(WithPlanes(), PosesAt(q), BodiesAt(q)));
     ExpectRow(arm, q, dq, PlaneClearance, worst_arm);
-    EXPECT_EQ(arm.rows[0].b, BarrierSpeed(PlaneClearance(q) - 2.0 * WithPlanes().guard.workspace_margin,
-                                          0.5 * WithPlanes().guard.workspace_deceleration,
-                                          trajectory::SlowestReaction(WithPlanes())));
+    EXPECT_EQ(arm.rows[0].b,
+              BarrierSpeed(PlaneClearance(q) - 0.05 - 2.0 * WithPlanes().guard.workspace_margin,
+                           0.5 * WithPlanes().guard.workspace_deceleration,
+                           trajectory::SlowestReaction(WithPlanes())));
     selves += Gap(q) < 0.2 ? 1 : 0;
-    arms += PlaneClearance(q) < 0.0 ? 1 : 0;
+    arms += PlaneClearance(q) < 0.05 ? 1 : 0;
   }
   std::cout << "off by at most " << worst_self << ", " << worst_arm << " m/s; " << selves << " and " << arms
             << " of 300 nearer than they shall be\n";
@@ -154,14 +157,15 @@ TEST(SelfClearanceBarrierTest, GradientMatchesFiniteDifferenceOfClearance) {
 TEST(SelfClearanceBarrierTest, NoRowWithoutAClearanceLimitOrKnownGeometry) {
   MotionLimits limits;
   const VecN q = test::Ready();
-  limits.Add(SelfClearanceBarrier(WithSelfClearance(0.0), PosesAt(q)));
-  limits.Add(LinksBarrier(test::PandaConfig(), PosesAt(q), LineAt(q)));
-  limits.Add(SelfClearanceBarrier(WithSelfClearance(0.13), PosesAt(q * std::nan(""))));
-  limits.Add(LinksBarrier(WithPlanes(), PosesAt(q * std::nan("")), LineAt(q * std::nan(""))));
+  limits.Add(SelfClearanceBarrier(WithSelfClearance(0.0), PosesAt(q), BodiesAt(q)));
+  limits.Add(LinksBarrier(test::PandaConfig(), PosesAt(q), BodiesAt(q)));
+  const VecN nowhere = q * std::nan("");
+  limits.Add(SelfClearanceBarrier(WithSelfClearance(0.13), PosesAt(nowhere), BodiesAt(nowhere)));
+  limits.Add(LinksBarrier(WithPlanes(), PosesAt(nowhere), BodiesAt(nowhere)));
   EXPECT_EQ(limits.num_rows, 0);
   model::ArmModel without_pairs = Arm();
   without_pairs.shape.num_pairs = 0;
-  EXPECT_EQ(SelfClearance(without_pairs, PosesAt(q)), HUGE_VAL);
+  EXPECT_EQ(SelfClearance(without_pairs, BodiesAt(q)), HUGE_VAL);
 }
 
 }  // namespace

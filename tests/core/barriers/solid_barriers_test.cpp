@@ -31,11 +31,11 @@ config::ServoConfig Crowded() {
 struct Posture {
   Posture(const config::ServoConfig& config, const VecN& q) {
     model::ComputePoses(config.arm, q, poses);
-    line = LineOfArm(config.arm, poses);
+    bodies = PlaceBodies(config.arm, poses);
     model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
   }
   model::ArmPoses poses;
-  ArmLine line;
+  ArmBodies bodies;
   model::LinearJacobian J_E_B;
 };
 
@@ -54,12 +54,12 @@ TEST(SolidBarriersTest, GradientsMatchFiniteDifferencesOfTheirValues) {
     const Posture before(config, q - kDt * dq);
     const Posture after(config, q + kDt * dq);
     for (int i = 0; i < solid.size(); ++i) {
-      const Barrier row = solid.RowOf(i, {now.poses, now.line, now.J_E_B, dq});
-      EXPECT_EQ(row.value, solid.ValueOf(i, now.poses, now.line));
+      const Barrier row = solid.RowOf(i, {now.poses, now.bodies, now.J_E_B, dq});
+      EXPECT_EQ(row.value, solid.ValueOf(i, now.poses, now.bodies));
       EXPECT_EQ(row.name, solid.NameOf(i));
       EXPECT_GE(row.margin, solid.StopMarginOf(i)) << "the proof of a stop must not come before the row";
       const double rate =
-          (solid.ValueOf(i, after.poses, after.line) - solid.ValueOf(i, before.poses, before.line)) /
+          (solid.ValueOf(i, after.poses, after.bodies) - solid.ValueOf(i, before.poses, before.bodies)) /
           (2.0 * kDt);
       worst = std::max(worst, std::abs(row.gradient.dot(dq) - rate));
     }

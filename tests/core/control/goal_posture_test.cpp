@@ -181,12 +181,11 @@ TEST(GoalPostureTest, RefusesPosturesBelowAPlaneOccludingOrSingular) {
   model::ComputePoses(free.arm, q_goal, poses);
 
   config::ServoConfig below = free;
-  below.guard.link_radius = 0.0;  // the hand's own point is asked about
   below.guard.obstacles.num_planes = 1;
   below.guard.obstacles.planes[0] = {{0.0, 0.0, 1.0}, poses.X_BE.p.z() + 0.01};
   GoalPosture goal;
   EXPECT_EQ(StepsUntilFound(below, X_BO, test::Ready(), goal), 0);
-  below.guard.obstacles.planes[0].distance -= 0.02;
+  below.guard.obstacles.planes[0].distance -= 0.15;  // and the last link's radius
   goal = GoalPosture{};
   EXPECT_GT(StepsUntilFound(below, X_BO, test::Ready(), goal), 0);
 

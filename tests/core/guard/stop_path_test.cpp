@@ -103,13 +103,13 @@ TEST(LimitsPassedTest, SampledStopGivesTheSameVerdictAsAllPoints) {
     const double boundary =
         std::max(config.guard.workspace_radius - config.guard.workspace_margin, p_now.norm()) + 1e-9;
     const auto bounds = [&](const model::ArmPoses& at) {
-      const barriers::ArmLine line = barriers::LineOfArm(config.arm, at);
+      const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, at);
       return std::array{
           barriers::ClearanceOf(config.guard.obstacles, 0, config.guard.hand, at.X_BE).clearance.distance,
-          barriers::ClearanceOfPlanes(config.arm, config.guard, line),
-          barriers::SelfClearance(config.arm, at)};
+          barriers::ClearanceOfPlanes(config.guard, bodies), barriers::SelfClearance(config.arm, bodies)};
     };
-    const std::array least{config.guard.workspace_margin, config.guard.workspace_margin,
+    const std::array least{config.guard.workspace_margin,
+                           config.guard.link_clearance + config.guard.workspace_margin,
                            config.guard.self_clearance - 0.01};
     const auto now = bounds(poses);
     bool expected = false;
