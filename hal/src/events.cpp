@@ -37,6 +37,7 @@ constexpr std::array<Entry, kNumLimits> kLimitTable{{
     {"cartesian_speed", "safety.cartesian_speed"},
     {"singularity", "safety.singularity_min"},
     {"field_of_view", "safety.view_margin_px"},
+    {"rotation_speed", "safety.rotation_speed"},
 }};
 
 constexpr std::array<Entry, kNumIntakes> kIntakeTable{{

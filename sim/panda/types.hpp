@@ -60,7 +60,7 @@ inline const Joints kTau = OfEachJoint<&franka::PandaJoint::tau_max>();
 inline constexpr double kTorqueStep =
     franka::kPandaTorqueRate * kFciStepS;  // from one state to the next [Nm]
 inline constexpr RateLimits kTranslation{franka::kPandaHandSpeed, 13.0, 6500.0};
-inline constexpr RateLimits kRotation{2.5, 25.0, 12500.0};
+inline constexpr RateLimits kRotation{franka::kPandaHandRotation, 25.0, 12500.0};
 inline constexpr RateLimits kElbow{2.175, 10.0, 5000.0};
 inline constexpr double kBeyond =
     2e-3;  // a measured joint may be this far outside, on its way along a limit [rad]

@@ -76,6 +76,8 @@ void AddRunKeys(Scenario& s, config::KeyTable& keys) {
   keys.Integer("run.seed", s.run.seed, 0, 2147483647, "", "of all that is random");
   keys.Number("run.tracking_bound_px", s.run.tracking_bound_px, 0.01, 1e4, "px",
               "a moving target counts as tracked below this error, rms over the second half");
+  keys.Number("run.tracking_bound_mm", s.run.tracking_bound_mm, 0.01, 1e4, "mm",
+              "and with the camera no further from where it should be, in the same way");
   keys.Flag("run.scene_video", s.run.scene_video,
             "also film the bench from beside it, with the paths of camera and target: scene.mp4");
 }

@@ -99,6 +99,14 @@ void AddHand(const BarrierConfig& config, std::vector<TruthBarrier>& list) {
          const Eigen::Vector3d way = step.now.X_BE.translation() - step.before->X_BE.translation();
          return way.norm() / (most * kStepS);
        }});
+  list.push_back(
+      {"rotation_speed", Kind::kShare, [most = config.rotation_speed](const TruthStep& step) -> Value {
+         if (step.before == nullptr) {
+           return std::nullopt;
+         }
+         const Eigen::AngleAxisd turn(step.before->X_BE.linear().transpose() * step.now.X_BE.linear());
+         return std::fabs(turn.angle()) / (most * kStepS);
+       }});
   const auto keep_out = [&](const char* name, int i, const auto& thing) {
     list.push_back({fmt::format("hand.{}[{}]", name, i), Kind::kClearance,
                     [thing, hand = config.hand](const TruthStep& step) -> Value {
@@ -172,12 +180,16 @@ void TruthBarriers::Add(const Truth& truth, hal::Mode mode) {
     step.ddq = (dq_[n - 1] - dq_[n - 2]) / kStepS;
     step.ddq_before = (dq_[n - 2] - dq_[n - 3]) / kStepS;
   }
+  // Of what disturbs just now only what it is less than before counts as over.
+  rebound_ *= kReboundLeft;
+  step.rebound = rebound_;
   if (truth.ddq_disturbed.size() > 0) {
     const Eigen::VectorXd now = truth.ddq_disturbed.cwiseAbs();
-    rebound_ = rebound_.size() > 0 ? Eigen::VectorXd((kReboundLeft * rebound_).cwiseMax(now)) : now;
-  } else {
-    rebound_ *= kReboundLeft;
-    step.rebound = rebound_;
+    if (rebound_.size() == 0) {
+      rebound_.setZero(now.size());
+    }
+    step.rebound = (rebound_ - now).cwiseMax(0.0);
+    rebound_ = rebound_.cwiseMax(now);
   }
   for (const Listed& listed : list_) {
     if (const std::optional<double> value = listed.barrier.value(step)) {

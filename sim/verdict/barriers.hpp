@@ -21,6 +21,7 @@ struct BarrierConfig {
   model::ArmModel arm;
   double workspace_radius = 0.85;  // [m]
   double cartesian_speed = 1.7;    // of the hand [m/s]
+  double rotation_speed = 2.5;     // and of its turn [rad/s]
   config::Obstacles obstacles;     // that the hand keeps out of
   config::HandShape hand;          // what moves with it, beside its point
 };

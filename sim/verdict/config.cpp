@@ -8,8 +8,8 @@ namespace fovea::sim {
 VerdictConfig MakeVerdictConfig(const RunDescription& about) {
   const config::GuardConfig& guard = about.servo.guard;
   VerdictConfig config;
-  config.barriers = {about.servo.arm, guard.workspace_radius, guard.cartesian_speed, guard.obstacles,
-                     guard.hand};
+  config.barriers = {about.servo.arm,      guard.workspace_radius, guard.cartesian_speed,
+                     guard.rotation_speed, guard.obstacles,        guard.hand};
   const int n = about.servo.arm.num_joints;
   config.stop.brake_after_s = about.servo.safety.brake_after_s;
   config.stop.ddq_max.resize(n);
@@ -22,6 +22,7 @@ VerdictConfig MakeVerdictConfig(const RunDescription& about) {
   config.pinhole = about.pinhole;
   config.goal = GoalOf(about.servo.feature);
   config.has_eye = about.scenario.camera.enabled;
+  config.has_motion = about.motion.has_value();
   if (about.motion && std::holds_alternative<CommandedCircle>(*about.motion)) {
     config.circle = std::get<CommandedCircle>(*about.motion);
   }
@@ -29,6 +30,7 @@ VerdictConfig MakeVerdictConfig(const RunDescription& about) {
   config.path_bound_mm = about.scenario.motion.bound_mm;
   config.target_moves = KeepsMoving(about.scenario.target);
   config.tracking_bound_px = about.scenario.run.tracking_bound_px;
+  config.tracking_bound_mm = about.scenario.run.tracking_bound_mm;
   config.duration_s = about.scenario.run.duration_s;
   config.faults = FaultsOf(about.scenario.faults);
   return config;

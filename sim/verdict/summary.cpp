@@ -198,6 +198,7 @@ std::string ToJson(const Summary& s) {
   json["final_error_depth_mm"] = OrNull(s.final_error_depth_mm);
   json["final_error_deg"] = OrNull(s.final_error_deg);
   json["tracking_error_px_rms"] = OrNull(s.tracking_error_px_rms);
+  json["tracking_error_mm_rms"] = OrNull(s.tracking_error_mm_rms);
   json["path_error_mm_rms"] = OrNull(s.path_error_mm_rms);
   json["path_error_mm_max"] = OrNull(s.path_error_mm_max);
   json["home_error_rad"] = OrNull(s.home_error_rad);
@@ -248,7 +249,8 @@ std::string ToTable(const Summary& s) {
   } else if (s.home_error_rad) {
     table.Row("off home", fmt::format("{:.2g} rad, the joint that is furthest", *s.home_error_rad));
   } else if (s.tracking_error_px_rms) {
-    table.Row("tracking error", Figure(s.tracking_error_px_rms, "px rms"));
+    table.Row("tracking error", fmt::format("{}, {}", Figure(s.tracking_error_px_rms, "px rms"),
+                                            Figure(s.tracking_error_mm_rms, "mm rms")));
   } else {
     table.Row("image error", fmt::format("{} at the start, {} at the end", Figure(s.start_error_px, "px"),
                                          Figure(s.final_error_px_rms, "px rms")));
@@ -291,8 +293,9 @@ std::string ToTable(const Summary& s) {
   table.Row("overruns", fmt::format("{} of {} ticks", s.overruns, s.ticks));
   table.Row("speed", fmt::format("{:.1f} s in {:.2f} s: {:.1f} times real time, rendered by {}", s.sim_time_s,
                                  s.wall_time_s, s.real_time_factor, s.renderer));
-  table.Row("time taken", fmt::format("{:.2f} s to prepare, {:.2f} s to simulate, {:.2f} s to write the files",
-                                      s.preparing_s, s.wall_time_s, s.writing_s));
+  table.Row("time taken",
+            fmt::format("{:.2f} s to prepare, {:.2f} s to simulate, {:.2f} s to write the files",
+                        s.preparing_s, s.wall_time_s, s.writing_s));
   for (const std::string& missing : s.realtime_missing) {
     table.Row("not real-time", missing);
   }

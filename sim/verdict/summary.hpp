@@ -76,6 +76,7 @@ struct Summary : run::RunFigures {
   std::optional<double> final_error_depth_mm;
   std::optional<double> final_error_deg;  // none for a sphere, which has no orientation
   // Moving targets: over the second half.
+  std::optional<double> tracking_error_mm_rms;
   std::optional<double> tracking_error_px_rms;
 
   // Commanded circles: of the end effector, from the circle's start on.

@@ -71,6 +71,7 @@ void Verdict::AddSample(const Sample& sample) {
                           kDegPerRad * sample.error_rad <= kConvergedDeg);
   if (t_s > 0.5 * config_.duration_s) {
     second_half_px2_ += sample.error_px * sample.error_px;
+    second_half_m2_ += sample.error_C.squaredNorm();
     ++second_half_samples_;
   }
 }
@@ -177,8 +178,14 @@ void Verdict::FillEnd(Summary& summary) const {
 
 // Without a target: what was commanded was followed, or not.
 void Verdict::FillMotion(Summary& summary) const {
-  const bool refused = has_record_ && before_.hold_reason == hal::HoldReason::kMotionRefused;
-  summary.converged = faults_.empty() && !refused && summary.limit_violations == 0;
+  const auto was_held_for = [this](hal::HoldReason reason) {
+    return std::any_of(modes_.begin(), modes_.end(),
+                       [reason](const ModeEvent& event) { return event.reason == hal::Name(reason); });
+  };
+  const bool refused = was_held_for(hal::HoldReason::kMotionRefused);
+  const bool abandoned = was_held_for(hal::HoldReason::kNotFollowed);
+  const bool unseen = config_.circle && path_samples_ == 0;
+  summary.converged = faults_.empty() && !refused && !abandoned && !unseen && summary.limit_violations == 0;
   if (path_samples_ > 0) {
     summary.path_error_mm_rms = 1e3 * std::sqrt(path2_ / static_cast<double>(path_samples_));
     summary.path_error_mm_max = 1e3 * path_most_;
@@ -200,8 +207,12 @@ void Verdict::FillMotion(Summary& summary) const {
   summary.verdict = !faults_.empty()      ? "a fault stopped the arm: " + faults_.front().name
                     : contacts_.any() > 0 ? Touched(summary)
                     : refused             ? "the commanded motion was refused (see modes and limits)"
-                    : summary.converged   ? "the commanded motion was followed"
-                                          : "a limit was passed";
+                    : abandoned           ? "the arm was off the commanded motion, which was given up (see "
+                                            "safety.motion_error)"
+                    : unseen ? "the run ended before the circle began (see run.duration_s, motion.lead_s)"
+                    : summary.converged ? config_.has_motion ? "the commanded motion was followed"
+                                                             : "no motion was commanded, and the arm stood"
+                                        : "a limit was passed";
 }
 
 void Verdict::FillStill(Summary& summary) const {
@@ -243,12 +254,15 @@ void Verdict::FillStill(Summary& summary) const {
 
 void Verdict::FillMoving(Summary& summary) const {
   if (second_half_samples_ > 0 && std::isfinite(second_half_px2_)) {
-    summary.tracking_error_px_rms = std::sqrt(second_half_px2_ / static_cast<double>(second_half_samples_));
-    summary.converged = *summary.tracking_error_px_rms <= config_.tracking_bound_px && faults_.empty();
+    const auto n = static_cast<double>(second_half_samples_);
+    summary.tracking_error_px_rms = std::sqrt(second_half_px2_ / n);
+    summary.tracking_error_mm_rms = 1e3 * std::sqrt(second_half_m2_ / n);
+    summary.converged = *summary.tracking_error_px_rms <= config_.tracking_bound_px &&
+                        *summary.tracking_error_mm_rms <= config_.tracking_bound_mm && faults_.empty();
   }
   if (summary.converged) {
-    summary.verdict =
-        fmt::format("converged: the target is tracked within {:g} px", config_.tracking_bound_px);
+    summary.verdict = fmt::format("converged: the target is tracked within {:g} px and {:g} mm",
+                                  config_.tracking_bound_px, config_.tracking_bound_mm);
   }
 }
 
@@ -302,10 +316,12 @@ std::string Verdict::WhyNot(const Summary& summary) const {
                        modes_.back().reason);
   }
   if (config_.target_moves) {
-    return fmt::format("not converged: tracking error {} px rms, bound {:g} px",
-                       summary.tracking_error_px_rms ? fmt::format("{:.2f}", *summary.tracking_error_px_rms)
-                                                     : std::string("infinite"),
-                       config_.tracking_bound_px);
+    const auto figure = [](const std::optional<double>& error) {
+      return error ? fmt::format("{:.2f}", *error) : std::string("infinite");
+    };
+    return fmt::format("not converged: tracking error {} px rms, bound {:g} px, and {} mm rms, bound {:g} mm",
+                       figure(summary.tracking_error_px_rms), config_.tracking_bound_px,
+                       figure(summary.tracking_error_mm_rms), config_.tracking_bound_mm);
   }
   return fmt::format(
       "not converged: over the last {:g} s the target was not within {:g} px and {:g} mm{} of its goal",

@@ -30,7 +30,9 @@ struct VerdictConfig {
   bool has_eye = true;  // false: there is no target to judge by
   bool target_moves = false;
   double tracking_bound_px = 3.0;
+  double tracking_bound_mm = 20.0;
   double duration_s = 8.0;                // of the run
+  bool has_motion = true;                 // one is commanded; counts without an eye
   std::optional<CommandedCircle> circle;  // that the end effector shall follow
   double path_bound_mm = 1.0;
   bool goes_home = false;           // to arm.q_ready, where it shall stand at the end
@@ -80,7 +82,8 @@ class Verdict {
   std::optional<double> first_px_;  // error at the start
   bool is_outside_ = false;         // the last sample was not settled
   std::optional<double> last_outside_s_;
-  double second_half_px2_ = 0.0;  // sum of squares
+  double second_half_px2_ = 0.0;  // sums of squares: of the image error [px^2],
+  double second_half_m2_ = 0.0;   // and of the way to the goal [m^2]
   std::uint64_t second_half_samples_ = 0;
   ContactCount contacts_;
   double home_error_ = 0.0;  // largest of the joints', at the last truth [rad]

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 #include <utility>
 
 #include "firmware/core/barriers/solid_barriers.hpp"
@@ -112,6 +113,10 @@ class Run {
       Use("cartesian_speed", (p - p_before_).norm() / kTickS / setup_.servo.guard.cartesian_speed);
     }
     p_before_ = p;
+    const Eigen::Matrix3d R = truth.X_BE.linear();
+    Use("rotation_speed", Eigen::AngleAxisd(R_before_.value_or(R).transpose() * R).angle() / kTickS /
+                              setup_.servo.guard.rotation_speed);
+    R_before_ = R;
     model::ArmPoses poses;
     model::ComputePoses(arm, truth.q, poses);
     const double clearance = barriers::ClearanceOfArm(setup_.servo, poses);
@@ -139,6 +144,7 @@ class Run {
   bool passed_ = false;
   Eigen::VectorXd tau_before_;
   Eigen::VectorXd p_before_;
+  std::optional<Eigen::Matrix3d> R_before_;
   AdversaryFigures figures_;
 };
 

@@ -61,7 +61,8 @@ GuardBench::GuardBench(GuardSetup setup)
       recorder_(*this),
       motion_(*this),
       loop_(task_, faulty_arm_, stalling_, mailbox_, recorder_, probe_),
-      p_before_(world_.truth().X_BE.translation()) {
+      p_before_(world_.truth().X_BE.translation()),
+      R_before_(world_.truth().X_BE.linear()) {
   const hal::Status status = task_.Init(setup_.servo);
   EXPECT_TRUE(status.ok()) << status.where();
   world_.OnStep([this](const sim::Truth& truth) { Watch(truth); });
@@ -93,6 +94,9 @@ void GuardBench::Watch(const sim::Truth& truth) {
   Use(f.speed, (p - p_before_).norm() / kTickS);
   f.lowest = std::min(f.lowest, p.z());
   p_before_ = p;
+  const Eigen::Matrix3d R = truth.X_BE.linear();
+  Use(f.turn, Eigen::AngleAxisd(R_before_.transpose() * R).angle() / kTickS);
+  R_before_ = R;
   speeds_.push_back(truth.dq.cwiseAbs().maxCoeff());
 }
 
@@ -118,6 +122,8 @@ void GuardBench::WatchReference(const hal::TickRecord& record) {
   model::Mat6N J;
   model::ComputePoses(arm, q, poses);
   model::ComputeJacobian(arm, poses, model::Pose{}, J);
+  Use(figures_.wished_turn,
+      model::AngularVelocity(arm, poses, model::ToVector(record.dq_cmd, arm.num_joints)).norm());
   Use(figures_.wished_speed, (J.topRows<3>() * model::ToVector(record.dq_cmd, arm.num_joints)).norm());
   J.topRows<3>() /= kLength;
   const Eigen::Matrix<double, 6, 6> JJt = J * J.transpose();

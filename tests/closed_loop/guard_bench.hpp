@@ -57,6 +57,8 @@ struct GuardFigures {
   double acceleration = 0.0;  // of the reference, of what the guard allows it
   double jerk = 0.0;          // the same
   double wished_speed = 0.0;  // of the end effector as the reference moves it [m/s]
+  double turn = 0.0;          // of the end effector [rad/s]
+  double wished_turn = 0.0;   // as the reference turns it
 };
 
 class GuardBench {
@@ -120,6 +122,7 @@ class GuardBench {
   GuardFigures figures_;
   Eigen::VectorXd tau_before_;
   Eigen::Vector3d p_before_;
+  Eigen::Matrix3d R_before_;
 };
 
 // The motions that attack: from `start_s` on the hand shall go with `velocity(truth)` [m/s] in B from

@@ -243,6 +243,28 @@ void ProvokeCartesianSpeed() {
   ExpectInsideLimits(bench);
 }
 
+// The hand shall turn about its own axis, faster than it may.
+void ProvokeRotationSpeed() {
+  constexpr double kTurn = 0.6;
+  GuardSetup setup;
+  setup.servo.guard.rotation_speed = kTurn;
+  setup.servo.move.pose_error_max = 10.0;
+  setup.world.q_start[6] = -1.0;
+  setup.motion = [turn = Turn(1.5, HandAt(setup.world.q_start))](const sim::Truth& truth, double t_s) {
+    return t_s < 1.3 ? turn(truth, t_s) : moves::MotionCommand{};
+  };
+  GuardBench bench(setup);
+  bench.RunUntil(2.0);
+  EXPECT_EQ(Named(bench, Limit::kRotationSpeed), kStartMs) << "in the tick in which it was wished";
+  std::cout << "reference " << bench.figures().wished_turn << " rad/s, hand " << bench.figures().turn
+            << " rad/s\n";
+  EXPECT_GT(bench.figures().wished_turn, 0.95 * kTurn);
+  EXPECT_LE(bench.figures().wished_turn, kTurn);
+  EXPECT_LE(bench.figures().turn, 1.05 * kTurn);
+  EXPECT_TRUE(StandsInHold(bench));
+  ExpectInsideLimits(bench);
+}
+
 // Outward at 1 m/s with the boundary out of reach, until the elbow is all but straight.
 void ProvokeSingularity() {
   GuardSetup setup;

@@ -15,6 +15,7 @@ void ProvokeObstacle();
 void ProvokeCartesianSpeed();
 void ProvokeSingularity();
 void ProvokeFieldOfView();
+void ProvokeRotationSpeed();
 
 // Faults: latched in time, the arm stops and stays.
 void ProvokeArmLost();

@@ -29,6 +29,7 @@ constexpr std::array kLimits{
     Provocation<hal::Limit>{hal::Limit::kCartesianSpeed, ProvokeCartesianSpeed},
     Provocation<hal::Limit>{hal::Limit::kSingularity, ProvokeSingularity},
     Provocation<hal::Limit>{hal::Limit::kFieldOfView, ProvokeFieldOfView},
+    Provocation<hal::Limit>{hal::Limit::kRotationSpeed, ProvokeRotationSpeed},
 };
 
 constexpr std::array kFaults{

@@ -69,6 +69,7 @@ struct GuardConfig {
   double sight_clearance = 0.02;
   double self_clearance = 0.02;
   double barrier_rate = 1.5;
+  double rotation_speed = 2.5;
 };
 
 template <class Visitor, Struct<GuardConfig> Config>
@@ -96,8 +97,8 @@ void Fields(Visitor& v, Config& c) noexcept {
       c.singularity_min, 0.0, 1.0);
   v.Count(
       {"safety.planes", "m",
-       "planes n p >= d that hand, camera, tools and the arm's links from the elbow on stay above: n_x, n_y, "
-       "n_z, d, the same again"},
+       "planes n p >= d that hand, camera, tools and the arm's links stay above: n_x, n_y, n_z, d, the same "
+       "again"},
       c.obstacles.num_planes, Obstacles::kMost);
   v.Count({"safety.boxes", "m",
            "boxes that hand, camera and tools stay out of: low x, y, z, high x, y, z, the same again"},
@@ -143,6 +144,7 @@ void Fields(Visitor& v, Config& c) noexcept {
             "what is left before the picture's edge, a line of sight, a disc's largest tilt and between the "
             "arm's links is used up no faster than exp(-rate t)"},
            c.barrier_rate, 0.1, 20.0);
+  v.Number({"safety.rotation_speed", "rad/s", "of the end effector"}, c.rotation_speed, 0.001, 100.0);
 }
 
 }  // namespace fovea::config

@@ -42,16 +42,21 @@ LimitSet LimitVelocity(const config::ServoConfig& config, model::VecN& dq) noexc
   return Bit(Limit::kJointVelocity);
 }
 
-// Cartesian speed, the same way.
+// The hand's speed, the same way: of its point, and of its turn.
 LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E_B,
-                    model::VecN& dq) noexcept {
+                    const model::ArmPoses& poses, model::VecN& dq) noexcept {
+  LimitSet limits = 0;
   const double speed = J_E_B.lazyProduct(dq).norm();
-  const double most = kSpeedShare * config.guard.cartesian_speed;
-  if (speed <= most) {
-    return 0;
+  if (const double most = kSpeedShare * config.guard.cartesian_speed; speed > most) {
+    dq *= most / speed;
+    limits |= Bit(Limit::kCartesianSpeed);
   }
-  dq *= most / speed;
-  return Bit(Limit::kCartesianSpeed);
+  const double turn = model::AngularVelocity(config.arm, poses, dq).norm();
+  if (const double most = kSpeedShare * config.guard.rotation_speed; turn > most) {
+    dq *= most / turn;
+    limits |= Bit(Limit::kRotationSpeed);
+  }
+  return limits;
 }
 
 // Joint position: each joint on its own, since the others may still carry the task.
@@ -170,7 +175,7 @@ LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, 
   // The correction for the workspace may have set a joint on the move again: what it may not do is cut.
   limits |= LimitJointPosition(config, reference.q, dq);
   limits |= LimitVelocity(config, dq);
-  limits |= LimitSpeed(config, J_E_B, dq);
+  limits |= LimitSpeed(config, J_E_B, reference_poses, dq);
   const model::VecN ddq = limits == 0 ? wish.ddq : model::VecN::Zero(dq.size());
   if (wish.stops && limits != 0) {
     dq.setZero();

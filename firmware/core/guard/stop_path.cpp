@@ -12,7 +12,7 @@ namespace fovea::guard {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-// Of the hand's speed at the points of a stop that are looked at: between them it can be 3 % more.
+// Of the hand's speeds at the points of a stop that are looked at: between them it can be 3 % more.
 constexpr double kSpeedShareMost = 0.97;
 constexpr double kSlack = 1e-9;  // rounding is no step outward [m, rad]
 
@@ -80,10 +80,16 @@ class StopWay {
   // The ticks' own steps come on top of the continuous motion.
   [[nodiscard]] double Duration() const noexcept { return plan_.duration_s + kPeriodS; }
 
-  // Where the joints are `t` seconds into the stop, and how fast; and how fast a point of the arm can be from
-  // then on at most.
-  double At(double t, model::VecN& q, model::VecN& dq) const noexcept {
-    double fastest = 0.0;
+  // How fast a point of the arm can be from some time on at most [m/s], and how fast its hand can turn
+  // [rad/s].
+  struct Most {
+    double speed = 0.0;
+    double turn = 0.0;
+  };
+
+  // Where the joints are `t` seconds into the stop, and how fast; and what can come from then on.
+  Most At(double t, model::VecN& q, model::VecN& dq) const noexcept {
+    Most most;
     for (int i = 0; i < q.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       const trajectory::AxisState state = plan_.joints[k].At(t);
@@ -92,9 +98,12 @@ class StopWay {
       // A joint is never faster than now, or than when it has released its acceleration.
       const double settled = trajectory::SettledVelocity(
           state.v, state.a, config_.guard.joint_jerk_fraction * config_.arm.joints[k].dddq_max);
-      fastest += levers_[k] * std::max(std::fabs(state.v), std::fabs(settled));
+      const double speed = std::max(std::fabs(state.v), std::fabs(settled));
+      most.speed += levers_[k] * speed;
+      most.turn += config_.arm.joints[k].type == model::JointType::kRevolute ? speed : 0.0;
     }
-    return fastest;
+    most.speed = std::max(most.speed, kSlack);
+    return most;
   }
 
   // How far a point of the arm is at most from where it was with the joints at `q_now` when the stop begins.
@@ -175,14 +184,15 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
   // No bound is looked at before some point can have reached it.
   const Bounds bounds(config, poses_now);
   std::array<double, Bounds::kMost> clear_until{};
-  const double fastest_now = std::max(way.At(0.0, q, dq), kSlack);
+  const StopWay::Most most_now = way.At(0.0, q, dq);
   const double first_step = way.FirstStep(q_now);
   const double speed_most = kSpeedShareMost * guard.cartesian_speed;
-  // While any point could be faster than the hand may, each sample counts.
-  double first_due = fastest_now > speed_most ? 0.0 : HUGE_VAL;
+  const double turn_most = kSpeedShareMost * guard.rotation_speed;
+  // While any point could be faster than the hand may, or turn faster, each sample counts.
+  double first_due = most_now.speed > speed_most || most_now.turn > turn_most ? 0.0 : HUGE_VAL;
   for (int i = 0; i < bounds.size(); ++i) {
     double& until = clear_until[static_cast<std::size_t>(i)];
-    until = (bounds.ClearNow(i) - first_step) / fastest_now;
+    until = (bounds.ClearNow(i) - first_step) / most_now.speed;
     first_due = std::min(first_due, until);
   }
   model::ArmPoses poses;
@@ -192,14 +202,18 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
     if (t < first_due) {
       continue;
     }
-    const double fastest = std::max(way.At(t, q, dq), kSlack);
+    const StopWay::Most most = way.At(t, q, dq);
     model::ComputePoses(config.arm, q, poses);
-    const bool may_be_fast = fastest > speed_most;
+    const bool may_be_fast = most.speed > speed_most;
     if (may_be_fast && HandSpeed(config.arm, poses, dq) > speed_most) {
       return hal::Bit(hal::Limit::kCartesianSpeed);
     }
+    const bool may_turn_fast = most.turn > turn_most;
+    if (may_turn_fast && model::AngularVelocity(config.arm, poses, dq).norm() > turn_most) {
+      return hal::Bit(hal::Limit::kRotationSpeed);
+    }
     const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, poses);
-    first_due = may_be_fast ? t : HUGE_VAL;
+    first_due = may_be_fast || may_turn_fast ? t : HUGE_VAL;
     for (int i = 0; i < bounds.size(); ++i) {
       double& until = clear_until[static_cast<std::size_t>(i)];
       if (!(t < until)) {
@@ -207,7 +221,7 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
         if (!(clear >= 0.0)) {
           return bounds.LimitOf(i);
         }
-        until = t + clear / fastest;
+        until = t + clear / most.speed;
       }
       first_due = std::min(first_due, until);
     }

@@ -13,10 +13,10 @@
 namespace fovea::guard {
 
 // The limits that a stop from `reference` would pass: the joints' range, the workspace, an obstacle before
-// the hand or before the links, the arm itself, each with its margin, and the hand's speed, which joints that
-// stop one after the other can take beyond what it is; 0 when it stays clear of all. What is already past one
-// may only come back. `q_now` are the joints of the reference before, `poses_now` those of
-// its links. Real-time: yes, at most kStopSamples poses.
+// the hand or before the links, the arm itself, each with its margin, and the hand's speed and that
+// of its turn, which joints that stop one after the other can take beyond what they are; 0 when it stays
+// clear of all. What is already past one may only come back. `q_now` are the joints of the reference before,
+// `poses_now` those of its links. Real-time: yes, at most kStopSamples poses.
 inline constexpr int kStopSamples = 12;
 [[nodiscard]] hal::LimitSet LimitsPassed(const config::ServoConfig& config,
                                          const trajectory::Reference& reference, const model::VecN& q_now,

@@ -64,6 +64,17 @@ void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const V
   }
 }
 
+Vec3 AngularVelocity(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept {
+  Vec3 w_B = Vec3::Zero();
+  for (int i = 0; i < model.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (model.joints[k].type == JointType::kRevolute) {
+      w_B += dq[i] * poses.X_BL[k].R.col(2);
+    }
+  }
+  return w_B;
+}
+
 void ComputeBaseJacobian(const ArmModel& model, const ArmPoses& poses, Mat6N& J_B) noexcept {
   J_B.resize(6, model.num_joints);
   for (int i = 0; i < model.num_joints; ++i) {

@@ -36,6 +36,10 @@ void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const V
 // linear first, of E's origin, in axes of B. Real-time: yes.
 [[nodiscard]] Vec6 BiasAcceleration(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept;
 
+// How the end effector turns while the joints move with `dq`: its angular velocity in axes of B [rad/s].
+// Real-time: yes.
+[[nodiscard]] Vec3 AngularVelocity(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept;
+
 // dJ_j/dq_k for body Jacobian columns `J_j`, `J_k` (any fixed frame of the end effector): the Lie bracket
 // [J_j, J_k] for k > j, since joint k carries the frame past joint j's axis; zero otherwise. Real-time: yes.
 [[nodiscard]] inline Vec6 ColumnChange(const Mat6N& J, int j, int k) noexcept {

@@ -44,6 +44,9 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kCartesianSpeed:
       return {"speed of the end effector, as it is wished and on the way of a stop",
               "the motion slows down as a whole"};
+    case hal::Limit::kRotationSpeed:
+      return {"speed at which the end effector turns, as it is wished and on the way of a stop",
+              "the motion slows down as a whole"};
     case hal::Limit::kSingularity:
       return {
           "smallest singular value of the hand's Jacobian",

@@ -86,6 +86,7 @@ void ScaleSpeed(double scale, ServoSettings& settings) {
   settings.config.law.lambda_near *= scale;
   settings.config.guard.joint_velocity_fraction *= scale;
   settings.config.guard.cartesian_speed *= scale;
+  settings.config.guard.rotation_speed *= scale;
 }
 
 }  // namespace fovea::config

@@ -104,9 +104,10 @@ config::KeyTable HwKeys(HwConfig& c) {
   config::AddCalibrationKeys(camera.calibration, keys);
   config::AddVisionKeys(c.vision, keys);
   config::AddTargetKeys(c.target, keys);
-  keys.Number("robot.speed_scale", c.robot.speed_scale, 0.01, 1.0, "",
-              "share of servo.lambda, servo.lambda_near, safety.joint_velocity_fraction and "
-              "safety.cartesian_speed that is used");
+  keys.Number(
+      "robot.speed_scale", c.robot.speed_scale, 0.01, 1.0, "",
+      "share of servo.lambda, servo.lambda_near, safety.joint_velocity_fraction, safety.cartesian_speed and "
+      "safety.rotation_speed that is used");
   keys.Number(
       "input.dead_man_s", c.input.dead_man_s, 0.0, 3600.0, "s",
       "no line on standard input for so long, by the loop's clock: the arm is held until somebody asks "

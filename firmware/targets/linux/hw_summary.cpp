@@ -77,6 +77,17 @@ bool HasTracked(const HwSummary& s) {
   });
 }
 
+// Whether the eye was doubted when it came to the Hold that it ended in: the end itself, and a word, leave
+// another reason behind it.
+bool EndedInDoubt(const HwSummary& s) {
+  for (auto m = s.modes.rbegin(); m != s.modes.rend() && m->mode == hal::Mode::kHold; ++m) {
+    if (m->reason == hal::HoldReason::kEyeDoubted) {
+      return true;
+    }
+  }
+  return false;
+}
+
 // Faults that it was recovered from, by name.
 std::string RecoveredFrom(const HwSummary& s) {
   const std::size_t left = s.fault != hal::Fault::kNone && !s.faults.empty() ? 1 : 0;
@@ -116,6 +127,9 @@ void JudgeEnd(HwSummary& s) {
              reason == hal::HoldReason::kGoalUnreachable) {
     s.verdict =
         fmt::format("it was to follow the target, and held in the end ({}); {}", hal::Name(reason), last);
+  } else if (s.mode == hal::Mode::kHold && EndedInDoubt(s)) {
+    s.verdict = fmt::format("it was to follow the target, and held in the end ({}); {}",
+                            hal::Name(hal::HoldReason::kEyeDoubted), last);
   } else if (s.operator_silent && HasTracked(s)) {
     s.verdict =
         fmt::format("it was to follow the target, and was held since the operator was silent; {}", last);

@@ -50,6 +50,8 @@ class Walker {
     }
     Update();
     Use(speed, (J_E_B_.lazyProduct(reference_.dq)).norm() / config_.guard.cartesian_speed);
+    Use(turn,
+        model::AngularVelocity(config_.arm, poses_, reference_.dq).norm() / config_.guard.rotation_speed);
     radius = std::max(radius, poses_.X_BE.p.norm());
     all_limits |= limits;
     return limits;
@@ -64,8 +66,8 @@ class Walker {
   [[nodiscard]] const model::Vec3& p_BE() const { return poses_.X_BE.p; }
   [[nodiscard]] const trajectory::Reference& reference() const { return reference_; }
 
-  double position = 0.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0,
-         speed = 0.0;   // largest use of each limit
+  double position = 0.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0, speed = 0.0,
+         turn = 0.0;    // largest use of each limit
   double radius = 0.0;  // largest |p_BE|
   hal::LimitSet all_limits = 0;
 
@@ -85,12 +87,13 @@ class Walker {
 void ExpectAllHeld(const Walker& walker, const config::ServoConfig& config) {
   std::cout << "largest use: position " << walker.position << ", velocity " << walker.velocity
             << ", acceleration " << walker.acceleration << ", jerk " << walker.jerk << ", hand's speed "
-            << walker.speed << ", |p_BE| " << walker.radius << " m\n";
+            << walker.speed << ", its turn " << walker.turn << ", |p_BE| " << walker.radius << " m\n";
   EXPECT_LE(walker.position, 1.0 + 1e-3);
   EXPECT_LE(walker.velocity, 1.0 + 0.01);  // braking at full jerk may end a hair later
   EXPECT_LE(walker.acceleration, 1.0 + 1e-9);
   EXPECT_LE(walker.jerk, 1.0 + 1e-9);
   EXPECT_LE(walker.speed, 1.0);
+  EXPECT_LE(walker.turn, 1.0);
   EXPECT_LE(walker.radius, config.guard.workspace_radius + 1e-3);
 }
 
@@ -125,6 +128,25 @@ TEST(GuardMotionTest, HandKeepsItsSpeedLimitUnderRandomWishes) {
   ExpectAllHeld(walker, config);
   EXPECT_GT(walker.speed, 0.9) << "the attack must be one";
   EXPECT_NE(walker.all_limits & hal::Bit(hal::Limit::kCartesianSpeed), 0U);
+}
+
+TEST(GuardMotionTest, HandKeepsItsRotationLimitUnderRandomWishes) {
+  for (const double most : {0.5, 1.2, 2.5}) {
+    config::ServoConfig config = test::PandaConfig();
+    config.guard.rotation_speed = most;
+    test::RandomStates random(33);
+    Walker walker(config, test::Ready());
+    model::VecN wish = model::VecN::Zero(7);
+    for (int tick = 0; tick < test::Repetitions(100'000); ++tick) {
+      if (tick % 97 == 0) {
+        wish = random.Joints(config.arm, 3.0);
+      }
+      walker.Step(wish);
+    }
+    ExpectAllHeld(walker, config);
+    EXPECT_GT(walker.turn, 0.9) << "the attack must be one";
+    EXPECT_NE(walker.all_limits & hal::Bit(hal::Limit::kRotationSpeed), 0U);
+  }
 }
 
 // THEORY B5: towards the boundary, along it, and aslant, at 1 m/s, from many places.

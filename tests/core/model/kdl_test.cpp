@@ -106,6 +106,10 @@ TEST_P(KdlTest, PosesAndJacobianAgree) {
     model::Mat6N J_B;
     model::ComputeBaseJacobian(arm, poses, J_B);
     worst_jacobian = std::max(worst_jacobian, (J_kdl.data - J_B).cwiseAbs().maxCoeff());
+    const model::VecN dq = random_.Joints(arm, 1.0);
+    worst_jacobian = std::max(
+        worst_jacobian,
+        (J_kdl.data.bottomRows<3>() * dq - model::AngularVelocity(arm, poses, dq)).cwiseAbs().maxCoeff());
     J_kdl.changeBase(X_BE.M.Inverse());  // KDL's is in axes of B, ours in axes of E
     for (int r = 0; r < 3; ++r) {
       worst_pose = std::max(worst_pose, std::abs(X_BE.p[r] - poses.X_BE.p[r]));

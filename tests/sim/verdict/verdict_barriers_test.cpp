@@ -96,6 +96,17 @@ TEST_F(VerdictBarriersTest, HandAboveItsSpeedLimitIsCounted) {
   EXPECT_THAT(at(1.71).violations, ElementsAre(Pair("cartesian_speed", 100)));
 }
 
+TEST_F(VerdictBarriersTest, HandTurningFasterThanItMayIsCounted) {
+  const auto at = [&](double turn) {
+    return Judge([turn](auto k, Truth& t) {
+      t.X_BE.linear() = Eigen::AngleAxisd(1e-3 * turn * double(k), Eigen::Vector3d(0.6, 0.0, 0.8)).matrix();
+    });
+  };
+  EXPECT_THAT(at(2.49).violations, IsEmpty());
+  EXPECT_NEAR(at(2.49).limits.at("rotation_speed"), 2.49 / 2.5, 1e-6);
+  EXPECT_THAT(at(2.51).violations, ElementsAre(Pair("rotation_speed", 100)));
+}
+
 TEST_F(VerdictBarriersTest, EveryKindOfContactIsCounted) {
   const auto touches = [&](const Contacts& contacts) {
     return Judge([&](auto k, Truth& t) { t.contacts = k == 30 || k == 31 ? contacts : Contacts{}; });
@@ -158,17 +169,20 @@ TEST_F(VerdictBarriersTest, AccelerationByADisturbanceIsNoViolation) {
       << "against what pulls";
   EXPECT_THAT(with(0.0, -40.0).violations, IsEmpty()) << "it is held";
   // Let go it springs back, and that fades.
-  const auto let_go = [&](std::int64_t at) {
+  const auto let_go = [&](std::int64_t at, double beside = 0.0) {
     double dq = 0.0;
-    return Judge([&, at](auto k, Truth& t) {
+    return Judge([&, at, beside](auto k, Truth& t) {
       dq += k > at && k <= at + 15 ? 1e-3 * 20.0 : 0.0;
       t.dq[0] = dq;
       if (k <= 20) {
         t.ddq_disturbed.setConstant(7, -10.0);
+      } else if (beside != 0.0) {
+        t.ddq_disturbed.setConstant(7, beside);
       }
     });
   };
   EXPECT_THAT(let_go(21).violations, IsEmpty());
+  EXPECT_THAT(let_go(21, -1e-6).violations, IsEmpty()) << "what goes on beside it changes nothing";
   EXPECT_THAT(let_go(85).violations, ElementsAre(Pair("true_joint_acceleration", 6)));
 }
 

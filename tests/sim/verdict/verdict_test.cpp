@@ -108,6 +108,47 @@ TEST_F(VerdictTest, MovingTargetIsJudgedOverTheSecondHalf) {
 
 // A target that moves is kept while its error is within the bound over half a second: a sample beyond it is
 // none.
+// The middle of the picture says nothing of the way to the target.
+TEST_F(VerdictTest, MovingTargetIsJudgedInDepthToo) {
+  config_.target_moves = true;
+  config_.tracking_bound_mm = 20.0;
+  const auto behind = [](double m) { return [m](double) { return Eigen::Vector3d(0.0, 0.0, m); }; };
+  const Summary near = Judge(2.0, behind(0.019));
+  EXPECT_TRUE(near.converged);
+  EXPECT_NEAR(*near.tracking_error_px_rms, 0.0, 1e-9);
+  EXPECT_NEAR(*near.tracking_error_mm_rms, 19.0, 1e-9);
+  const Summary far = Judge(2.0, behind(0.12));
+  EXPECT_FALSE(far.converged);
+  EXPECT_THAT(far.verdict, testing::HasSubstr("120.00 mm rms, bound 20 mm"));
+}
+
+// Without an eye: a motion that was given up, or was never begun, was not followed.
+TEST_F(VerdictTest, MotionThatWasGivenUpOrNeverBegunIsNotFollowed) {
+  config_.has_eye = false;
+  hal::TickRecord record;
+  record.mode = hal::Mode::kMove;
+  records_ = {record};
+  const auto judge = [this] { return Judge(1.0, Still); };
+  EXPECT_TRUE(judge().converged);
+  EXPECT_EQ(judge().verdict, "the commanded motion was followed");
+  for (const hal::HoldReason reason : {hal::HoldReason::kNotFollowed, hal::HoldReason::kMotionRefused}) {
+    record.mode = hal::Mode::kHold;
+    record.hold_reason = reason;
+    records_ = {records_.front(), record};
+    record.hold_reason = hal::HoldReason::kNotAsked;  // what came later takes nothing back
+    records_.push_back(record);
+    EXPECT_FALSE(judge().converged) << hal::Name(reason);
+  }
+  records_.resize(1);
+  config_.circle = CommandedCircle{};
+  config_.circle->lead_s = 5.0;
+  EXPECT_FALSE(judge().converged);
+  EXPECT_THAT(judge().verdict, testing::HasSubstr("before the circle began"));
+  config_.circle.reset();
+  config_.has_motion = false;
+  EXPECT_EQ(judge().verdict, "no motion was commanded, and the arm stood");
+}
+
 TEST_F(VerdictTest, MovingTargetIsKeptByItsMeanErrorOverHalfASecond) {
   config_.target_moves = true;
   const double px = kGoalZ / config_.pinhole.f_px;

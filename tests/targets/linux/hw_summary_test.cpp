@@ -45,6 +45,21 @@ TEST(HwSummaryTest, HoldWithoutTargetIsNotConverged) {
   }
 }
 
+// The end of the run leaves another reason behind the one that the arm held for.
+TEST(HwSummaryTest, HoldWithADoubtedEyeIsNotConverged) {
+  HwSummary summary = Ended(Mode::kHold, HoldReason::kNotAsked, 318.9);
+  summary.modes.insert(summary.modes.end() - 1,
+                       {{.t_s = 1.0, .mode = Mode::kTrack},
+                        {.t_s = 2.0, .mode = Mode::kHold, .reason = HoldReason::kEyeDoubted}});
+  Judge(summary);
+  EXPECT_EQ(summary.converged, false);
+  EXPECT_NE(summary.verdict.find("eye_doubted"), std::string::npos) << summary.verdict;
+  // Tracking since then, and a hold that was asked for: nobody's doubt.
+  summary.modes.insert(summary.modes.end() - 1, {.t_s = 2.5, .mode = Mode::kTrack});
+  Judge(summary);
+  EXPECT_EQ(summary.converged, std::nullopt);
+}
+
 TEST(HwSummaryTest, HoldForASilentOperatorIsNotConverged) {
   HwSummary summary = Ended(Mode::kHold, HoldReason::kNotAsked, 0.2);
   summary.operator_silent = true;

@@ -71,8 +71,9 @@ enum class Limit : std::uint8_t {
   kCartesianSpeed,  // of the end effector
   kSingularity,     // a posture in which a direction of the end effector is lost
   kFieldOfView,     // the target at the edge of the picture
+  kRotationSpeed,   // of the end effector
 };
-inline constexpr int kNumLimits = 11;
+inline constexpr int kNumLimits = 12;
 
 // One bit per Limit: those which acted in a tick.
 using LimitSet = std::uint32_t;

@@ -63,6 +63,13 @@ CheckRow CheckLimits(const HwConfig& config, const robots::Robot& robot) {
                         franka::kPandaHandSpeed),
             "set safety.cartesian_speed below the robot's"};
   }
+  if (const double speed = config.robot.speed_scale * config.servo.config.guard.rotation_speed;
+      broken({"", speed, franka::kPandaHandRotation, 1.0})) {
+    return {"limits", Verdict::kFail,
+            fmt::format("the hand's rotation: {:.6g} rad/s allowed, {:.6g} of the robot", speed,
+                        franka::kPandaHandRotation),
+            "set safety.rotation_speed below the robot's"};
+  }
   return {"limits", Verdict::kPass, "ranges, speeds, torques and their rates are inside the robot's", ""};
 }
 

@@ -27,5 +27,6 @@ inline constexpr std::array<PandaJoint, kJoints> kPandaJoints{{
 }};
 inline constexpr double kPandaTorqueRate = 1000.0;  // of each joint [Nm/s]
 inline constexpr double kPandaHandSpeed = 1.7;      // [m/s]
+inline constexpr double kPandaHandRotation = 2.5;   // [rad/s]
 
 }  // namespace fovea::franka
