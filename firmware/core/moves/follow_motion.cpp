@@ -1,5 +1,6 @@
 #include "firmware/core/moves/follow_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware/core/guard/guard_motion.hpp"
@@ -82,6 +83,35 @@ hal::LimitSet TakeSetpoint(const config::ServoConfig& config, const MotionComman
   return TakeReference(config, next, state, reference);
 }
 
+// How much of the joints' `limits` a move to `q_goal` may use so that the hand keeps its own: all joints
+// arriving together, it goes nearly straight in the joints' space. Of the hand's speeds some is left for a
+// stop on the way, in which it may get faster.
+double ShareOfSpeed(const config::ServoConfig& config, const model::VecN& q, const model::VecN& q_goal,
+                    const trajectory::JointMove::Limits& limits) noexcept {
+  constexpr int kSamples = 12;
+  constexpr double kShareOfHand = 0.85;
+  const model::VecN way = q_goal - q;
+  double duration_s = 0.0;
+  for (int i = 0; i < way.size(); ++i) {
+    duration_s = std::max(duration_s, std::fabs(way[i]) / limits[static_cast<std::size_t>(i)].v_max);
+  }
+  if (!(duration_s > 0.0) || !std::isfinite(duration_s)) {
+    return 1.0;
+  }
+  const model::VecN dq = way / duration_s;
+  double share = 1.0;
+  for (int k = 0; k <= kSamples; ++k) {
+    const model::ArmPoses poses = PosesOf(config, q + way * (static_cast<double>(k) / kSamples));
+    model::LinearJacobian J_E_B;
+    model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
+    const double speed = J_E_B.lazyProduct(dq).norm();
+    const double turn = model::AngularVelocity(config.arm, poses, dq).norm();
+    share = std::min({share, kShareOfHand * config.guard.cartesian_speed / std::max(speed, 1e-9),
+                      kShareOfHand * config.guard.rotation_speed / std::max(turn, 1e-9)});
+  }
+  return share;
+}
+
 bool PlanJoints(const config::ServoConfig& config, const MotionCommand& command,
                 const trajectory::Reference& reference, MotionState& state) noexcept {
   trajectory::JointMove::Limits limits;
@@ -92,7 +122,12 @@ bool PlanJoints(const config::ServoConfig& config, const MotionCommand& command,
                  config.guard.joint_acceleration_fraction * joint.ddq_max,
                  config.guard.joint_jerk_fraction * joint.dddq_max};
   }
-  return state.joints.Plan(reference, model::ToVector(command.q, config.arm.num_joints), limits);
+  const model::VecN q_goal = model::ToVector(command.q, config.arm.num_joints);
+  const double share = ShareOfSpeed(config, reference.q, q_goal, limits);
+  for (trajectory::AxisLimits& limit : limits) {
+    limit.v_max *= share;
+  }
+  return state.joints.Plan(reference, q_goal, limits);
 }
 
 MotionCommand HomeOf(const model::ArmModel& arm) noexcept {

@@ -101,6 +101,35 @@ TEST_F(MoveLimitsTest, HandKeepsItsCartesianSpeedLimit) {
   EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused) << "it cannot keep up, and says so";
 }
 
+// A goal of the joints is planned so that the hand keeps its speeds on the way, and is not given up for them.
+TEST_F(MoveLimitsTest, JointGoalKeepsTheSpeedsOfTheHandAndArrives) {
+  config::ServoConfig config = test::PandaConfig();
+  config.guard.cartesian_speed = 0.4;
+  config.guard.rotation_speed = 0.9;
+  config.guard.workspace_radius = 10.0;
+  config.guard.self_clearance = 0.0;
+  test::RandomStates random(51);
+  double fastest = 0.0;
+  double most_turn = 0.0;
+  for (int goal = 0; goal < 40; ++goal) {
+    Start(config, test::Ready());
+    Tick(JointGoal(test::Ready() + random.Joints(config.arm, 0.6)));
+    model::Pose before = PoseOf(Reference());
+    for (int tick = 0; tick < 20'000 && record().mode == Mode::kMove; ++tick) {
+      Tick({});
+      const model::Pose now = PoseOf(Reference());
+      fastest = std::max(fastest, (now.p - before.p).norm() / 1e-3);
+      most_turn = std::max(most_turn, model::RotationVector(before.R.transpose() * now.R).norm() / 1e-3);
+      before = now;
+    }
+    EXPECT_EQ(record().hold_reason, HoldReason::kMotionDone) << hal::Name(record().hold_reason);
+  }
+  std::cout << "fastest " << fastest << " m/s of 0.4, " << most_turn << " rad/s of 0.9\n";
+  EXPECT_LE(fastest, 0.4);
+  EXPECT_LE(most_turn, 0.9);
+  EXPECT_GT(std::max(fastest / 0.4, most_turn / 0.9), 0.75) << "the goals must be far";
+}
+
 // Stretched out towards the boundary, with a workspace that would allow it: the elbow does not come straight.
 TEST_F(MoveLimitsTest, SingularPostureIsNotEntered) {
   config::ServoConfig config = test::PandaConfig();
