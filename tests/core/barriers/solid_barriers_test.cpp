@@ -87,7 +87,7 @@ TEST(SolidBarriersTest, ArmClearanceIsTheSmallestOfHandAndLinks) {
     const Posture at(config, random.Position(config.arm));
     double least = HUGE_VAL;
     for (int i = 1; i < 5; ++i) {
-      least = std::min(least, solid.ValueOf(i, at.poses, at.line));
+      least = std::min(least, solid.ValueOf(i, at.poses, at.bodies));
     }
     EXPECT_EQ(ClearanceOfArm(config, at.poses), least);
   }

@@ -1,4 +1,5 @@
 // fovea detect and fovea calibrate as a user meets them, on ray-cast pictures.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <sstream>
 
 #include "tests/support/program.hpp"
 #include "tests/support/temp_folder.hpp"
