@@ -19,7 +19,7 @@ Fovea.ticks = (function () {
     const what = `${suffix(run) ? `Run${suffix(run)}: the` : "The"} longest tick took ${number(longest.us, 4)} µs, beyond the budget of 1 ms.`;
     return isLockstep(run)
       ? {
-          text: `${what} In lockstep the simulated clock waits for the servo: no tick can overrun, and a long one says only that this computer was busy with something else.`,
+          text: `${what} In lockstep the simulated clock waits for the servo: no tick can overrun, however long this computer takes for it.`,
           alarm: false,
         }
       : { text: `${what} The clock did not wait: the next tick began late.`, alarm: true };

@@ -52,7 +52,14 @@ Fovea.timelineRows = (function () {
     const add = (name, of, more) =>
       runs.forEach((run) => rows.push({ name: name + suffix(run), spans: of(run), empty: "none", ...more }));
     add("mode", spansOfModes, { empty: "not in the log" });
-    add("injected faults", spansOfInjected);
+    for (const run of runs) {
+      const names = Array.from(new Set(injectedOf(run).map((f) => f.name))).join(", ");
+      rows.push({
+        name: `injected faults${suffix(run)}${names && `: ${names}`}`,
+        spans: spansOfInjected(run),
+        empty: "none",
+      });
+    }
     const faults = (run) =>
       run.faults.map((f) => ({
         from: f.t_s,

@@ -63,7 +63,7 @@ Fovea.bands = (function () {
       const top = box.y + k * height;
       const at = (t) => Math.min(box.x + box.w, Math.max(box.x, xOf(t)));
       for (const { from, to, mode } of modesOf(run)) {
-        ctx.globalAlpha = mode === "fault" ? 0.14 : 0.24;
+        ctx.globalAlpha = mode === "fault" ? 0.12 : 0.2;
         ctx.fillStyle = theme.colour(MODES[mode] ? MODES[mode].colour : "--axis");
         ctx.fillRect(at(from), top, at(to) - at(from), height);
       }
