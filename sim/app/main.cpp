@@ -8,6 +8,7 @@
 
 #include "firmware/host/build_info.hpp"
 #include "firmware/host/config/board_flags.hpp"
+#include "firmware/host/config/command_line.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/config/share_folder.hpp"
 #include "fovea/linux_rt/interrupt.hpp"
@@ -38,6 +39,7 @@ struct RunArguments {
   std::string trace;
   bool no_report = false;
   bool json = false;
+  std::string command;  // all of them, as they were typed
 };
 
 // `options` are of `choice` alone: InputError when one is given.
@@ -86,6 +88,7 @@ int Run(const RunArguments& arguments) {
   options.out = arguments.out.empty() ? "out/" + scenario.name : arguments.out;
   options.report = !arguments.no_report;
   options.trace = arguments.trace;
+  options.command = arguments.command;
   options.interrupt = &interrupt;
   const sim::Summary summary = sim::RunScenario(scenario, options);
   for (const std::string& error : summary.film_errors) {
@@ -358,6 +361,7 @@ int main(int argc, char** argv) {
       "Exit: 0 the run reached its goal, 1 it did not or was interrupted, 2 wrong usage or input.");
 
   RunArguments arguments;
+  arguments.command = config::CommandLine(argc, argv);
   CLI::App* run = app.add_subcommand("run", "simulate a scenario");
   run->add_option("scenario", arguments.scenario, "a shipped scenario by name, or the path of a .toml")
       ->required();

@@ -65,7 +65,7 @@ class Run {
     // A board that ticks by its own timer sees other inputs than the host does.
     const bool replayable = !board_ || !options_.board.by_timer;
     const RunFilesConfig files{options_.out, options_.report, kRenderers, options_.pace == Pace::kReal,
-                               replayable};
+                               replayable,   options_.command};
     shell_.emplace(board_ ? static_cast<task::ServoStep&>(*board_) : servo_, board_ ? nullptr : &servo_,
                    kRecords, FolderOf(about_, files));
     shell_->OnRecord([this](const flight::FlightRecord& flown) { ObserveRecord(flown.record); });

@@ -33,6 +33,7 @@ struct RunOptions {
   BoardConfig board;          // with a servo_image
   std::filesystem::path out;  // empty: no files
   bool report = true;         // films, log, report and the bench's picture too
+  std::string command;        // the command line, for the log; "" when there was none
   bool show_progress = true;
   std::filesystem::path trace;  // empty: none; else a file for the timeline of all threads
   RunObserver observer;

@@ -18,6 +18,7 @@ run::RunFolderConfig FolderOf(const RunDescription& about, const RunFilesConfig&
   folder.out = config.out;
   if (config.report && !config.out.empty()) {
     folder.facts = FactsOf(about);
+    folder.facts->command = config.command;
   }
   folder.options.more_files = kMoreFiles;
   folder.options.may_drop = config.may_drop;

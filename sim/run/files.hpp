@@ -23,6 +23,7 @@ struct RunFilesConfig {
   int renderer_index = 0;     // the first that the run itself does not use; see SceneRenderer
   bool may_drop = false;      // at real pace: nobody waits for a film or a log
   bool replayable = true;     // the servo's inputs are those that are recorded
+  std::string command;        // that began the run; "" when there was none
 };
 
 // Of the shell that RunFiles is then made with.

@@ -23,6 +23,8 @@ run::RunFacts FactsOf(const RunDescription& about) {
   facts.duration_s = about.scenario.run.duration_s;
   Scenario scenario = about.scenario;
   facts.keys = ScenarioKeys(scenario).Values();
+  Scenario defaults;
+  facts.default_keys = ScenarioKeys(defaults).Values();
   facts.frames = MakeLinkFrames(about.scene.robot, about.servo.arm, about.scene.X_EC);
   facts.scene = MakeSceneMessage(about.scene);
   return facts;

@@ -1,10 +1,22 @@
 // Opens a report as a person would, wide and narrow, and on paper: every part is drawn, nothing is fetched, nothing
 // is complained of, nothing sticks out. Leaves pictures of what it saw.
-//   node open_report.mjs REPORT.html FOLDER [theory|hardware]
+//   node open_report.mjs REPORT.html FOLDER [theory|hardware|circle|faults]
 import assert from "node:assert/strict";
 import path from "node:path";
 
 import { openPage, plotsDrawn, sideways, withBrowser } from "./browser.mjs";
+import {
+  checkBands,
+  checkCurves,
+  checkFeatures,
+  checkFrames,
+  checkFreePlot,
+  checkInjected,
+  checkPaper,
+  checkPathError,
+  checkTimeline,
+  checkWords,
+} from "./report_parts.mjs";
 
 const [report, folder] = process.argv.slice(2, 4);
 const name = path.basename(report, ".html");
@@ -20,25 +32,19 @@ async function changes(place, what, act) {
   assert.fail(what);
 }
 
-// A run without a camera has no eye; a run beside theory has a section for it. Of hardware there is no truth,
-// and the page says so.
-const hardware = process.argv[4] === "hardware";
-const kind = hardware ? "eye" : (process.argv[4] ?? "eye");
-const parts = [
-  "verdict",
-  ...(kind === "eye" ? ["eye", "error"] : [kind]),
-  "path",
-  "joints",
-  "timeline",
-  "ticks",
-  "config",
-];
+// A run without a camera has no eye; a run beside theory has a section for it, and so has one that goes round a
+// circle. Of hardware there is no truth, and the page says so. `faults`: a run that lost frames on purpose.
+const asked = process.argv[4] ?? "eye";
+const hardware = asked === "hardware";
+const kind = ["hardware", "faults"].includes(asked) ? "eye" : asked;
+const own = { eye: ["eye", "error", "components", "features"], theory: ["theory"], circle: ["way"] }[kind];
+const parts = ["verdict", ...own, "path", "velocity", "joints", "timeline", "free", "ticks", "config", "about"];
 await withBrowser(async (context) => {
   for (const [width, height] of [
     [1280, 900],
     [400, 800],
   ]) {
-    const { page, said, asked } = await openPage(context, report, [width, height], parts);
+    const { page, said, asked: fetched } = await openPage(context, report, [width, height], parts);
     const seen = await page.evaluate(() => {
       const videos = [...document.querySelectorAll("video")];
       // How far a path is drawn beside the points that it goes through.
@@ -57,6 +63,7 @@ await withBrowser(async (context) => {
           return drawn.isEmpty() ? 0 : drawn.min.distanceTo(through.min) + drawn.max.distanceTo(through.max);
         });
       return {
+        runs: Fovea.runs.length,
         astray: Math.max(0, ...astray),
         marks: Object.fromEntries(
           ["ticks", "timeline"].map((id) => [
@@ -80,7 +87,7 @@ await withBrowser(async (context) => {
     await page.evaluate(() => window.scrollTo(0, 0));
     await page.screenshot({ path: path.join(folder, `${name}-${width}.png`), fullPage: true });
     assert.deepEqual(said, [], "the console is silent");
-    assert.deepEqual(asked, [], "nothing is fetched");
+    assert.deepEqual(fetched, [], "nothing is fetched");
     assert.ok(seen.words > 100);
     assert.ok(seen.astray < 0.02, "paths go where the log has them");
     assert.ok(seen.plots.path >= 1 && seen.plots.joints >= 3, "plots are drawn");
@@ -93,14 +100,31 @@ await withBrowser(async (context) => {
         "the film can be played",
       );
     } else {
-      assert.ok(seen.plots[kind] >= 2, "the response is drawn over the analytic one, and what is between them");
+      if (kind === "theory")
+        assert.ok(seen.plots.theory >= 2, "the response is drawn over the analytic one, and what is between them");
       assert.equal(seen.images + seen.videos.length, 0, "nothing was seen");
     }
     assert.ok(seen.marks.ticks >= 10 && seen.marks.timeline >= 3, "histogram and time axis are drawn");
     assert.equal(seen.sideways, 0, "nothing sticks out to the side");
     assert.equal(seen.absent.length, hardware ? 1 : 0, "nothing is missing from a whole run");
     assert.ok(seen.absent.every((words) => /the log holds no truth/.test(words)));
+    const curved = kind === "eye" ? ["error", "components"] : own;
+    await checkBands(page, [...curved, "velocity", "joints", "timeline", "free"]);
+    await checkCurves(page, "velocity", 2);
+    await checkWords(page, hardware ? /^fovea-hw / : /^fovea-sim run /);
+    if (kind === "eye") {
+      await checkCurves(page, "components", 3);
+      await checkFeatures(page);
+      const frames = seen.runs === 1 ? await checkFrames(page) : null;
+      if (asked === "faults") {
+        assert.ok(frames.lost > 0, "frames were lost, and are counted");
+        await checkInjected(page);
+      }
+    }
+    if (kind === "circle") await checkPathError(page);
     if (width === 1280) {
+      await checkTimeline(page);
+      await checkPaper(page);
       if (kind === "eye") {
         await changes(page.locator("#error canvas").first(), "a logarithmic scale changes the plot", () =>
           page.locator("#error").getByText("Logarithmic").click(),
@@ -114,7 +138,9 @@ await withBrowser(async (context) => {
         await page.mouse.move(box.x + 0.7 * box.width, box.y + 0.55 * box.height, { steps: 5 });
         await page.mouse.up();
       });
-      await page.pdf({ path: path.join(folder, `${name}.pdf`), format: "A4", printBackground: true });
+      const pdf = await page.pdf({ path: path.join(folder, `${name}.pdf`), format: "A4", printBackground: true });
+      console.log(`on paper: ${pdf.toString("latin1").match(/\/Type \/Page\b/g).length} pages`);
+      await checkFreePlot(page);
     }
     await page.close();
   }

@@ -27,6 +27,10 @@ std::string Base64(const std::vector<float>& values) {
       std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
 }
 
+bool IsKnown(const std::vector<float>& values) {
+  return std::any_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
+}
+
 ordered_json Ticks(const RunData& run) {
   const Envelope::Rows rows = run.ticks->rows();
   const std::size_t joints = run.joints.size();
@@ -45,7 +49,38 @@ ordered_json Ticks(const RunData& run) {
   ticks["error_px"] = truth(RunData::kErrorPx);
   ticks["error_mm"] = truth(RunData::kErrorMm);
   ticks["predicted_px"] = Base64(rows.columns[column + RunData::kPredictedPx]);
+  // Null where there are no numbers.
+  const auto known = [&](std::size_t which) {
+    const std::vector<float>& values = rows.columns[column + which];
+    return IsKnown(values) ? ordered_json(Base64(values)) : ordered_json(nullptr);
+  };
+  const auto list = [&](std::size_t first, std::size_t count) {
+    ordered_json values = ordered_json::array();
+    for (std::size_t i = 0; i < count; ++i) {
+      values.push_back(known(first + i));
+    }
+    return values;
+  };
+  ticks["path_error_mm"] = known(RunData::kPathErrorMm);
+  ticks["twist_cmd"] = list(RunData::kTwistCmd, 6);
+  ticks["twist_meas"] = list(RunData::kTwistMeas, 6);
+  ticks["e"] = list(RunData::kError, hal::kMaxFeatureDim);
   return ticks;
+}
+
+ordered_json Spans(const std::vector<FrameSpan>& spans) {
+  ordered_json list = ordered_json::array();
+  for (const FrameSpan& span : spans) {
+    list.push_back({{"from_s", span.from_s}, {"to_s", span.to_s}, {"frames", span.frames}});
+  }
+  return list;
+}
+
+ordered_json FeaturePathOf(const PixelPath& path) {
+  if (path.t_s.empty()) {
+    return nullptr;
+  }
+  return {{"goal_px", Base64(path.goal_px)}, {"t_s", Base64(path.t_s)}, {"px", Base64(path.px)}};
 }
 
 ordered_json Frame(const RunData& run, const std::optional<EyeFrame>& frame) {
@@ -85,17 +120,14 @@ ordered_json Scene(const RunData& run) {
     }
     links.push_back({{"name", link.frame}, {"shapes", shapes}});
   }
-  const auto is_known = [](const std::vector<float>& path) {
-    return std::any_of(path.begin(), path.end(), [](float value) { return std::isfinite(value); });
-  };
   return {{"links", links},
           {"t_s", Base64(run.motion.t_s)},
           {"poses", Base64(run.motion.poses)},
           {"camera_path", Base64(run.motion.camera_path)},
           {"target_path",
-           is_known(run.motion.target_path) ? ordered_json(Base64(run.motion.target_path)) : nullptr},
+           IsKnown(run.motion.target_path) ? ordered_json(Base64(run.motion.target_path)) : nullptr},
           {"target_turn",
-           is_known(run.motion.target_turn) ? ordered_json(Base64(run.motion.target_turn)) : nullptr},
+           IsKnown(run.motion.target_turn) ? ordered_json(Base64(run.motion.target_turn)) : nullptr},
           {"workspace_radius",
            run.workspace_radius > kLargestShown ? ordered_json(nullptr) : ordered_json(run.workspace_radius)},
           {"table_z", 0.0}};
@@ -123,6 +155,23 @@ std::string Configuration(const std::map<std::string, std::string>& keys) {
   return text;
 }
 
+// Null when the log does not say what the defaults were.
+ordered_json ChangedKeys(const RunData& run) {
+  const auto keys = run.metadata.find("configuration");
+  const auto defaults = run.metadata.find("defaults");
+  if (keys == run.metadata.end() || defaults == run.metadata.end()) {
+    return nullptr;
+  }
+  ordered_json changed = ordered_json::array();
+  for (const auto& [key, text] : defaults->second) {
+    const auto used = keys->second.find(key);
+    if (used != keys->second.end()) {
+      changed.push_back({{"key", key}, {"value", used->second}, {"default", text}});
+    }
+  }
+  return changed;
+}
+
 }  // namespace
 
 std::string ToJson(const RunData& run) {
@@ -137,11 +186,15 @@ std::string ToJson(const RunData& run) {
   json["info"] = ordered_json::object();
   for (const auto& [name, entries] : run.metadata) {
     for (const auto& [key, value] : entries) {
-      if (name != "configuration") {
+      if (name != "configuration" && name != "defaults" && name != "run") {
         json["info"][name == "build" ? key : fmt::format("{} {}", name, key)] = value;
       }
     }
   }
+  json["changed"] = ChangedKeys(run);
+  const auto about = run.metadata.find("run");
+  const bool has_command = about != run.metadata.end() && about->second.count("command") == 1;
+  json["command"] = has_command ? ordered_json(about->second.at("command")) : ordered_json(nullptr);
   const auto keys = run.metadata.find("configuration");
   json["config"] = keys == run.metadata.end() ? std::string() : Configuration(keys->second);
   json["duration_s"] = run.duration_s;
@@ -175,6 +228,16 @@ std::string ToJson(const RunData& run) {
                       {"goal", Base64(rows.columns[RunData::kTheoryGoal])},
                       {"analytic", Base64(rows.columns[RunData::kTheoryAnalytic])}};
   }
+  json["error_components"] = ordered_json::array();
+  for (const ErrorComponent& component : run.error_components) {
+    json["error_components"].push_back({{"name", component.name}, {"unit", component.unit}});
+  }
+  json["width_px"] = run.width_px;
+  json["height_px"] = run.height_px;
+  json["feature_path"] = FeaturePathOf(run.feature_path);
+  json["frames_taken"] = run.frames_taken;
+  json["lost"] = Spans(run.lost);
+  json["not_found"] = Spans(run.not_found);
   json["modes"] = ordered_json::array();
   for (const ModeChange& change : run.modes) {
     json["modes"].push_back({{"t_s", change.t_s}, {"mode", change.mode}, {"reason", change.reason}});

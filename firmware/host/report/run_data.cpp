@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -10,6 +11,9 @@
 #include "firmware/host/recording/log/mcap_reader.hpp"
 #include "firmware/host/recording/log/tick_message.hpp"
 #include "firmware/host/recording/log/topics.hpp"
+#include "firmware/host/report/arm_motion.hpp"
+#include "firmware/host/report/feature_path.hpp"
+#include "firmware/host/report/frame_losses.hpp"
 #include "firmware/host/report/image_error.hpp"
 #include "firmware/host/report/scene_reader.hpp"
 #include "fovea/hal/record.hpp"
@@ -41,7 +45,8 @@ std::int64_t Apart(std::int64_t a, std::int64_t b) {
 
 class Reader {
  public:
-  explicit Reader(RunData& run) : run_(run), scene_(run) {}
+  explicit Reader(RunData& run)
+      : run_(run), scene_(run), feature_path_(run.feature_path), frame_losses_(run) {}
 
   void Take(const log::McapMessage& message) {
     const std::string_view topic = message.topic;
@@ -57,6 +62,8 @@ class Reader {
       TakeFeature(Parse<log::Feature>(message), message.time_ns);
     } else if (topic == log::kSetupTopic) {
       TakeSetup(Parse<log::Setup>(message));
+    } else if (topic == log::kConfigurationTopic) {
+      TakeConfiguration(Parse<log::ServoConfiguration>(message));
     } else if (topic == log::kImageTopic) {
       TakeImage(message);
     } else if (topic == log::kAnnotationTopic) {
@@ -119,7 +126,18 @@ class Reader {
     open_limits_.resize(run_.limits_active.size());
     setup_ = setup;
     image_error_ = ImageError(setup);
+    feature_path_.Begin(setup);
+    run_.error_components = ErrorComponentsOf(setup);
     run_.ticks.emplace(4 * run_.joints.size() + RunData::kNumTickColumns, kMostBuckets);
+  }
+
+  // A later program's: what needs the arm's model is left out.
+  void TakeConfiguration(const log::ServoConfiguration& configuration) {
+    try {
+      arm_motion_ = ArmMotion(configuration);
+    } catch (const std::runtime_error&) {
+      arm_motion_ = ArmMotion();
+    }
   }
 
   void TakeTick(const log::Tick& tick) {
@@ -147,11 +165,28 @@ class Reader {
         row.values.push_back(i < values->size() ? static_cast<float>((*values)[i]) : kNone);
       }
     }
-    row.values.push_back(kNone);
-    row.values.push_back(kNone);
-    row.values.push_back(tick.target_known() ? image_error_.OfTick(tick) : kNone);
+    const std::size_t at = row.values.size();
+    row.values.resize(at + RunData::kNumTickColumns, kNone);
+    TakeServo(tick, &row.values[at]);
     waiting_.push_back(std::move(row));
     Join(false);
+  }
+
+  // Into `columns` [kNumTickColumns], all but the truth.
+  void TakeServo(const log::Tick& tick, float* columns) const {
+    const auto put = [columns](const auto& values, int most, int at) {
+      for (int i = 0; i < std::min(values.size(), most); ++i) {
+        columns[at + i] = static_cast<float>(values[i]);
+      }
+    };
+    if (tick.target_known()) {
+      columns[RunData::kPredictedPx] = image_error_.OfTick(tick);
+      put(tick.e(), hal::kMaxFeatureDim, RunData::kError);
+    }
+    put(tick.v_bc_c_cmd(), 6, RunData::kTwistCmd);
+    const ArmMotion::OfTick motion = arm_motion_.At(tick);
+    columns[RunData::kPathErrorMm] = motion.path_error_mm;
+    std::copy(motion.V_BC_C.begin(), motion.V_BC_C.end(), columns + RunData::kTwistMeas);
   }
 
   void NoteEvents(const log::Tick& tick, double t_s) {
@@ -202,6 +237,8 @@ class Reader {
   }
 
   void TakeFeature(const log::Feature& feature, std::int64_t taken_ns) {
+    frame_losses_.Add(feature, Seconds(feature.stamp_ns()));
+    feature_path_.Add(feature, Seconds(feature.stamp_ns()));
     run_.measured.Add(Seconds(feature.stamp_ns()),
                       {image_error_.OfMeasurement(feature),
                        static_cast<float>(1e-6 * static_cast<double>(Apart(taken_ns, feature.stamp_ns()))),
@@ -260,6 +297,9 @@ class Reader {
   SceneReader scene_;
   log::Setup setup_;
   ImageError image_error_;
+  ArmMotion arm_motion_;
+  FeaturePath feature_path_;
+  FrameLosses frame_losses_;
   std::deque<Row> waiting_;
   std::deque<log::Truth> truths_;
   std::vector<std::optional<double>> open_limits_;  // since when each acts

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "firmware/host/report/envelope.hpp"
+#include "firmware/host/report/error_components.hpp"
+#include "fovea/hal/types.hpp"
 
 namespace fovea::report {
 
@@ -49,6 +51,20 @@ struct EyeFrame {
     std::vector<std::array<double, 2>> points_px;
   };
   std::vector<Outline> outlines;
+};
+
+// Frames one after the other that have something in common.
+struct FrameSpan {
+  double from_s = 0.0;
+  double to_s = 0.0;
+  std::uint64_t frames = 0;
+};
+
+// Points in the picture over time.
+struct PixelPath {
+  std::vector<float> goal_px;  // [2 N] u, v of each point's goal; NaN: not in the picture
+  std::vector<float> t_s;      // [F]
+  std::vector<float> px;       // [F * 2 N]; NaN: not found
 };
 
 struct SceneShape {
@@ -97,8 +113,18 @@ struct RunData {
   std::optional<std::string> video;
 
   // Columns of `ticks`: q, dq, tau, tau_meas of each joint, then these.
-  enum TickColumn : std::uint8_t { kErrorPx, kErrorMm, kPredictedPx, kNumTickColumns };
+  enum TickColumn : std::uint8_t {
+    kErrorPx,
+    kErrorMm,
+    kPredictedPx,
+    kPathErrorMm,
+    kTwistCmd,                   // V_BC_C_cmd, 6 columns
+    kTwistMeas = kTwistCmd + 6,  // the same by the measured joints
+    kError = kTwistMeas + 6,     // e, as error_components has them
+    kNumTickColumns = kError + hal::kMaxFeatureDim
+  };
   std::optional<Envelope> ticks;
+  std::vector<ErrorComponent> error_components;
   bool has_truth = false;
   // Columns of `measured`.
   enum MeasuredColumn : std::uint8_t { kMeasuredPx, kAgeMs, kConfidence, kNumMeasuredColumns };
@@ -107,6 +133,10 @@ struct RunData {
   enum TheoryColumn : std::uint8_t { kTheoryX, kTheoryGoal, kTheoryAnalytic, kNumTheoryColumns };
   Envelope theory{kNumTheoryColumns, 1500};
   bool has_theory = false;
+  PixelPath feature_path;
+  std::uint64_t frames_taken = 0;    // of which a measurement reached the servo
+  std::vector<FrameSpan> lost;       // between two of them, of which none did
+  std::vector<FrameSpan> not_found;  // in which the target was not found
   std::vector<ModeChange> modes;
   std::vector<FaultNote> faults;
   std::vector<LimitSpans> limits_active;

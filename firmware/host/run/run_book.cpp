@@ -53,6 +53,18 @@ log::RunSetup SetupOf(const RunFacts& facts, std::int64_t start_ns) {
   return setup;
 }
 
+// Of the keys that have another value.
+std::map<std::string, std::string> DefaultsThatDiffer(const RunFacts& facts) {
+  std::map<std::string, std::string> differing;
+  for (const auto& [key, text] : facts.default_keys) {
+    const auto used = facts.keys.find(key);
+    if (used != facts.keys.end() && used->second != text) {
+      differing.emplace(key, text);
+    }
+  }
+  return differing;
+}
+
 }  // namespace
 
 std::vector<std::string> RunBook::AllFiles(const std::vector<std::string>& more) {
@@ -90,6 +102,10 @@ RunBook::RunBook(const std::filesystem::path& out, RunFacts facts, RunBookOption
 void RunBook::Begin(std::int64_t start_ns) {
   start_ns_ = start_ns;
   log_.AddMetadata("configuration", facts_.keys);
+  log_.AddMetadata("defaults", DefaultsThatDiffer(facts_));
+  if (!facts_.command.empty()) {
+    log_.AddMetadata("run", {{"command", facts_.command}});
+  }
   log_.AddMetadata("build", BuildEntries());
   log_.AddMetadata("robot", {{"name", facts_.robot}, {"model", log::HashOfModel(facts_.servo.arm)}});
   log_.Add(log::kSetupTopic, start_ns, log::SetupMessage(SetupOf(facts_, start_ns)));

@@ -38,10 +38,12 @@ struct RunFacts {
   vision::Intrinsics intrinsics;  // where there is a camera
   double target_radius = 0.0;     // of the ball that holds the target [m]; 0: there is none
   bool target_moves = false;
-  double duration_s = 0.0;                  // 0: when nobody knows
-  std::map<std::string, std::string> keys;  // every key of the run, and its value
-  std::vector<log::LinkFrame> frames;       // of the arm
-  foxglove::SceneUpdate scene;              // as a log's viewer draws it
+  double duration_s = 0.0;                          // 0: when nobody knows
+  std::map<std::string, std::string> keys;          // every key of the run, and its value
+  std::map<std::string, std::string> default_keys;  // and its default
+  std::string command;                              // the command line that began it; "" when there was none
+  std::vector<log::LinkFrame> frames;               // of the arm
+  foxglove::SceneUpdate scene;                      // as a log's viewer draws it
 };
 
 struct RunBookOptions {

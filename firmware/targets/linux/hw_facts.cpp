@@ -31,6 +31,10 @@ run::RunFacts FactsOf(const HwConfig& config, const robots::Robot& robot, const 
   facts.duration_s = duration_s;
   HwConfig values = config;
   facts.keys = HwKeys(values).Values();
+  HwConfig defaults;
+  facts.default_keys = HwKeys(defaults).Values();
+  defaults.robot.driver = config.robot.driver;
+  facts.default_keys.merge(HwKeys(defaults).Values());  // those of the driver that is used
   facts.frames = MakeLinkFrames(robot, config.HasCamera(), config::MakeMount(config.camera.calibration));
   facts.scene = MakeSceneMessage(robot, config.HasCamera(), servo.feature);
   if (config.HasCamera()) {
@@ -43,13 +47,15 @@ run::RunFacts FactsOf(const HwConfig& config, const robots::Robot& robot, const 
 }  // namespace
 
 run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot,
-                              const config::ServoConfig& servo, const std::string& out, double duration_s) {
+                              const config::ServoConfig& servo, const std::string& out, double duration_s,
+                              const std::string& command) {
   run::RunFolderConfig folder;
   if (out.empty()) {
     return folder;
   }
   folder.out = out;
   folder.facts = FactsOf(config, robot, servo, duration_s);
+  folder.facts->command = command;
   folder.options.may_drop = true;
   folder.options.ring = kRing;
   folder.options.most_images = kMostImages;

@@ -10,8 +10,9 @@
 namespace fovea::hw {
 
 // What it leaves in the folder `out`; empty: nothing. Nobody waits for a disk. `duration_s`: 0 when nobody
-// knows.
+// knows. `command`: the command line, for the log.
 run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot,
-                              const config::ServoConfig& servo, const std::string& out, double duration_s);
+                              const config::ServoConfig& servo, const std::string& out, double duration_s,
+                              const std::string& command);
 
 }  // namespace fovea::hw

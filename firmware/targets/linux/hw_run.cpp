@@ -47,7 +47,8 @@ class Session {
         watch_(summary_, speaker),
         robot_link_(ArmDriverOf(config).make(config)),
         clock_(robot_link_->robot_time() != nullptr ? *robot_link_->robot_time() : monotonic_),
-        shell_(task_, &task_, kRecords, FolderOf(config, robot_, servo_, options.out, options.duration_s)),
+        shell_(task_, &task_, kRecords,
+               FolderOf(config, robot_, servo_, options.out, options.duration_s, options.command)),
         operator_({.dead_man_s = config.input.dead_man_s, .allow_motion = options.allow_motion}, clock_,
                   signals, control_) {
     // Checked by MakeServoConfig already; it is refused there, in words.

@@ -15,6 +15,7 @@ struct HwRunOptions {
   bool track = false;       // and steers by the target; needs a camera
   double duration_s = 0.0;  // of the servo, by the loop's clock; 0: until it is told to end
   std::string out;          // the folder for log, report and summary; empty: none
+  std::string command;      // the command line, for the log; "" when there was none
 };
 
 // Connects, waits for the operator's leave (see operator_input.hpp) while the robot holds by itself, compares

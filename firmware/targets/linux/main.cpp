@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "firmware/host/build_info.hpp"
+#include "firmware/host/config/command_line.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/targets/linux/check.hpp"
@@ -26,6 +27,7 @@ struct Arguments {
   bool json = false;
   double seconds = 0.0;
   std::string out;
+  std::string command;  // all of them, as they were typed
 };
 
 int Check(const hw::HwConfig& config, bool json) {
@@ -40,7 +42,7 @@ std::optional<hw::HwSummary> Serve(const hw::HwConfig& config, const Arguments& 
   try {
     return hw::Run(config,
                    {!arguments.no_motion, arguments.enable || arguments.track, arguments.track,
-                    arguments.seconds, arguments.out},
+                    arguments.seconds, arguments.out, arguments.command},
                    speaker);
   } catch (const std::exception& error) {
     speaker.Say(fmt::format("fovea-hw: {}", error.what()));
@@ -100,6 +102,7 @@ int main(int argc, char** argv) {
       "its "
       "goal, the servo never began, or a check failed; 2 wrong usage or input.");
   Arguments arguments;
+  arguments.command = config::CommandLine(argc, argv);
   app.add_option("config", arguments.config, "a shipped configuration by name, or the path of a .toml")
       ->required();
   app.add_option("--set", arguments.assignments, "key=value, over the configuration's own; may be repeated")

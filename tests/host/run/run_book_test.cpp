@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
@@ -68,6 +69,9 @@ class RunBookTest : public testing::Test {
   }
   static RunFacts Facts() {
     RunFacts facts;
+    facts.keys = {{"a.b", "1"}, {"a.c", "2"}, {"d.e", "3"}};
+    facts.default_keys = {{"a.b", "1"}, {"a.c", "5"}, {"of.another", "6"}};
+    facts.command = "fovea-sim run test";
     facts.name = "test";
     facts.servo = test::PandaConfig();
     facts.joint_names = test::Panda().joint_names;
@@ -108,6 +112,18 @@ TEST_F(RunBookTest, RunWritesFilmLogReportAndSummary) {
   EXPECT_EQ(log.pictures + log.pictures_dropped, 3U);
   EXPECT_THAT(Files(), ElementsAre("camera.mp4", "log.mcap", "report.html", "summary.json"));
   ExpectLog({"summary.json", "camera.mp4"});
+}
+
+TEST_F(RunBookTest, LogNamesCommandAndDefaultsThatDiffer) {
+  Run(640, 480);
+  std::map<std::string, std::map<std::string, std::string>> found;
+  log::McapVisitor visitor;
+  visitor.on_metadata = [&](std::string_view name, const std::map<std::string, std::string>& entries) {
+    found[std::string(name)] = entries;
+  };
+  EXPECT_TRUE(log::ReadMcap(folder_.path() / "log.mcap", visitor).complete);
+  EXPECT_EQ(found["run"]["command"], "fovea-sim run test");
+  EXPECT_EQ(found["defaults"], (std::map<std::string, std::string>{{"a.c", "5"}}));
 }
 
 TEST_F(RunBookTest, FailedFilmKeepsTheOtherFiles) {

@@ -1,7 +1,7 @@
 // Two runs side by side: the table of figures with their difference.
 
 Fovea.compare = (function () {
-  const { el, number, words, fixed } = Fovea;
+  const { el, number } = Fovea;
 
   // Which run is better, in words, where that is clear.
   function better(a, b) {
@@ -102,54 +102,5 @@ Fovea.compare = (function () {
     return lines;
   }
 
-  // The largest used share of every limit, as bars; one bar for each run.
-  function limitBars(runs) {
-    const names = Array.from(
-      new Set(runs.flatMap((run) => Object.keys((run.summary && run.summary.limits) || {}))),
-    ).sort();
-    if (!names.length) return null;
-    const bar = (run, name) => {
-      const share = run.summary && run.summary.limits ? run.summary.limits[name] : undefined;
-      const ticks = run.summary && run.summary.limit_ticks ? run.summary.limit_ticks[name] : 0;
-      if (!Number.isFinite(share)) return null;
-      const over = share > 1 + 1e-6;
-      const text = `${fixed(100 * share, 0)} %${over ? ", over the limit" : ""}${ticks ? ` · held the motion back for ${ticks} ticks` : ""}`;
-      return el(
-        "div",
-        { class: `share run-${run.index}` },
-        el(
-          "div",
-          { class: "share-track", "aria-hidden": "true" },
-          el("div", {
-            class: over ? "share-fill over" : "share-fill",
-            style: `width:${Math.min(100, 100 * share).toFixed(1)}%`,
-          }),
-        ),
-        el("span", { class: "share-text", text: (runs.length > 1 ? `${run.letter}: ` : "") + text }),
-      );
-    };
-    return el(
-      "div",
-      { class: "shares" },
-      el("h3", { text: "Largest used share of each limit" }),
-      el(
-        "dl",
-        {},
-        names.map((name) =>
-          el(
-            "div",
-            { class: "share-row" },
-            el("dt", { text: words(name) }),
-            el(
-              "dd",
-              {},
-              runs.map((run) => bar(run, name)),
-            ),
-          ),
-        ),
-      ),
-    );
-  }
-
-  return { table, diff, limitBars };
+  return { table, diff };
 })();

@@ -3,30 +3,6 @@
 Fovea.config = (function () {
   const { el, words } = Fovea;
 
-  function copyButton(text) {
-    const button = el("button", { type: "button", class: "copy no-print", text: "Copy" });
-    button.addEventListener("click", () => {
-      const say = (ok) => {
-        button.textContent = ok ? "Copied" : "Select and copy by hand";
-        setTimeout(() => {
-          button.textContent = "Copy";
-        }, 2000);
-      };
-      const byHand = () => {
-        const area = el("textarea", { class: "offscreen", "aria-hidden": "true" });
-        area.value = text;
-        document.body.append(area);
-        area.select();
-        const ok = document.execCommand("copy");
-        area.remove();
-        say(ok);
-      };
-      if (navigator.clipboard && isSecureContext) navigator.clipboard.writeText(text).then(() => say(true), byHand);
-      else byHand();
-    });
-    return button;
-  }
-
   const listing = (text) => el("pre", { class: "listing", tabindex: "0" }, el("code", { text }));
 
   function whole(run, several) {
@@ -34,10 +10,45 @@ Fovea.config = (function () {
     const lines = run.config.split("\n").length;
     return el(
       "details",
-      { open: !several && lines < 40 },
+      { class: "folded-on-paper", open: !several && lines < 40 },
       el("summary", { text: `${several ? `Run ${run.letter}: all` : "Effective configuration"} (${lines} lines)` }),
-      el("div", { class: "copy-box" }, copyButton(run.config), listing(run.config)),
+      el("div", { class: "copy-box" }, Fovea.copyButton(run.config), listing(run.config)),
     );
+  }
+
+  // The keys whose value is not the default; a log of before does not say.
+  function changedKeys(run, several) {
+    if (!run.changed) return null;
+    const title = `Keys that differ from their defaults${several ? `, run ${run.letter}` : ""}`;
+    if (!run.changed.length) return el("p", { text: `${title}: none.` });
+    const heads = ["Key", "Value", "Default"];
+    return [
+      el("h3", { text: title }),
+      el(
+        "div",
+        { class: "scroll" },
+        el(
+          "table",
+          { class: "keys" },
+          el(
+            "thead",
+            {},
+            el(
+              "tr",
+              {},
+              heads.map((text) => el("th", { scope: "col", text })),
+            ),
+          ),
+          el(
+            "tbody",
+            {},
+            run.changed.map(({ key, value, default: was }) =>
+              el("tr", {}, el("th", { scope: "row", text: key }), el("td", { text: value }), el("td", { text: was })),
+            ),
+          ),
+        ),
+      ),
+    ];
   }
 
   function changes(runs) {
@@ -66,7 +77,12 @@ Fovea.config = (function () {
     return [
       el("h3", { text: "Lines that differ" }),
       block(short),
-      el("details", {}, el("summary", { text: "All lines, with the differences marked" }), block(lines)),
+      el(
+        "details",
+        { class: "folded-on-paper" },
+        el("summary", { text: "All lines, with the differences marked" }),
+        block(lines),
+      ),
     ];
   }
 
@@ -120,7 +136,7 @@ Fovea.config = (function () {
       );
     });
     return [
-      el("div", { class: "facts-head" }, el("h3", { text: "Versions and hashes" }), copyButton(text)),
+      el("div", { class: "facts-head" }, el("h3", { text: "Versions and hashes" }), Fovea.copyButton(text)),
       el("dl", { class: "facts" }, rows),
     ];
   }
@@ -129,7 +145,11 @@ Fovea.config = (function () {
     const body = document.querySelector("#config .body");
     const several = runs.length > 1;
     if (several && runs.every((run) => run.config)) body.append(...[changes(runs)].flat());
-    body.append(...runs.map((run) => whole(run, several)), ...[versions(runs)].flat());
+    body.append(
+      ...runs.flatMap((run) => changedKeys(run, several) || []),
+      ...runs.map((run) => whole(run, several)),
+      ...[versions(runs)].flat(),
+    );
     Fovea.drawn("config");
   }
 

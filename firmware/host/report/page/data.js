@@ -33,13 +33,18 @@ Fovea.decode = function (run) {
   const list = (value) => (Array.isArray(value) ? value : []);
   const ticks = run.ticks || {};
   run.ticks = {};
-  for (const key of ["t_s", "error_px", "error_mm", "predicted_px"]) run.ticks[key] = Fovea.floats(ticks[key]);
-  for (const key of ["q", "dq", "tau", "tau_meas"]) run.ticks[key] = list(ticks[key]).map(Fovea.floats);
+  for (const key of ["t_s", "error_px", "error_mm", "predicted_px", "path_error_mm"])
+    run.ticks[key] = Fovea.floats(ticks[key]);
+  for (const key of ["q", "dq", "tau", "tau_meas", "twist_cmd", "twist_meas", "e"])
+    run.ticks[key] = list(ticks[key]).map(Fovea.floats);
   const measured = run.measured || {};
   run.measured = {};
   for (const key of ["t_s", "error_px", "age_ms", "confidence"]) run.measured[key] = Fovea.floats(measured[key]);
   if (run.theory) for (const key of ["t_s", "x", "goal", "analytic"]) run.theory[key] = Fovea.floats(run.theory[key]);
-  for (const key of ["modes", "faults", "limits_active", "joints"]) run[key] = list(run[key]);
+  if (run.feature_path)
+    for (const key of ["goal_px", "t_s", "px"]) run.feature_path[key] = Fovea.floats(run.feature_path[key]);
+  for (const key of ["modes", "faults", "limits_active", "joints", "error_components", "lost", "not_found"])
+    run[key] = list(run[key]);
   run.info = run.info || {};
   run.has_eye = !!run.target;
   run.target = run.target || {};
@@ -116,6 +121,24 @@ Fovea.valueAt = function (times, values, t, reach) {
   let index = Fovea.indexAt(times, t);
   if (index + 1 < times.length && (index < 0 || times[index + 1] - t < t - times[index])) index++;
   return index >= 0 && Math.abs(times[index] - t) <= reach ? values[index] : NaN;
+};
+
+// How many frames of `spans` there are.
+Fovea.frameCount = (spans) => spans.reduce((sum, span) => sum + span.frames, 0);
+
+// What the target is called. Null of a run without an eye.
+Fovea.targetWord = (run) =>
+  run.has_eye ? { sphere: "ball", circle: "disc" }[run.target.kind] || Fovea.words(run.target.kind) : null;
+
+// The value of a key of the configuration, as text; null when it is not there.
+Fovea.setting = function (run, key) {
+  const [section, name] = key.split(".");
+  let here = false;
+  for (const line of String(run.config || "").split("\n")) {
+    if (line.startsWith("[")) here = line === `[${section}]`;
+    else if (here && line.startsWith(`${name} = `)) return line.slice(name.length + 3);
+  }
+  return null;
 };
 
 Fovea.hasNumbers = (values) => !!values && values.some(Number.isFinite);

@@ -178,7 +178,7 @@ Fovea.joints = (function () {
 
   function draw(runs) {
     const body = document.querySelector("#joints .body");
-    const bars = Fovea.compare.limitBars(runs);
+    const bars = Fovea.limits.bars(runs);
     if (bars) body.append(bars);
     if (!runs[0].joints.length) {
       body.append(Fovea.absent("The log does not describe the joints."));
@@ -249,6 +249,8 @@ Fovea.joints = (function () {
     });
     bar.append(el("label", {}, box, " fit to the data"), Fovea.zoomBar());
     body.append(bar);
+    const key = Fovea.bands.legend(runs);
+    if (key) body.append(key);
     const missing = [];
     for (const key of ["q", "dq", "tau"]) {
       const first = settings(runs, key === "tau" ? torque : key, physical, only, fit);

@@ -6,10 +6,16 @@
     ["eye", "eye"],
     ["theory", "theory"],
     ["error", "error"],
+    ["components", "components"],
+    ["features", "featurePath"],
+    ["way", "pathError"],
+    ["velocity", "velocity"],
     ["joints", "joints"],
     ["timeline", "timeline"],
+    ["free", "freePlot"],
     ["ticks", "ticks"],
     ["config", "config"],
+    ["about", "footer"],
     ["path", "armView"],
   ];
 
@@ -44,7 +50,8 @@
       return;
     }
     if (!Fovea.runs.some((run) => run.theory)) dropSection("theory");
-    if (!Fovea.runs.some((run) => run.has_eye)) ["eye", "error"].forEach(dropSection);
+    if (!Fovea.runs.some((run) => run.has_eye)) ["eye", "error", "components", "features"].forEach(dropSection);
+    if (!Fovea.runs.some(Fovea.pathError.isShown)) dropSection("way");
     Fovea.clock.duration = Math.max(0.001, ...Fovea.runs.map((run) => run.duration_s));
     Fovea.clock.span = [0, Fovea.clock.duration];
     const waiting = sections.slice();

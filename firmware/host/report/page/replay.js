@@ -62,7 +62,7 @@
       `A, solid: as it was recorded in ${recorded.title}. B, dashed: with ${other.settings.join(", ")}.`;
     Fovea.clock.duration = Math.max(0.001, recorded.t_s[recorded.t_s.length - 1] || 0);
     Fovea.clock.span = [0, Fovea.clock.duration];
-    body("motion").append(el("div", { class: "toolbar" }, Fovea.zoomBar()));
+    body("motion").append(el("div", { class: "toolbar" }, Fovea.zoomBar()), Fovea.bands.legend(Fovea.runs) || "");
     plot(
       body("motion"),
       "speed of the camera that is asked for [m/s]",

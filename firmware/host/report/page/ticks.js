@@ -10,6 +10,21 @@ Fovea.ticks = (function () {
     ["max", "max"],
   ];
 
+  const isLockstep = (run) => !!run.summary && run.summary.pace === "lockstep";
+
+  // What a longest tick beyond the budget means; null when there is none.
+  function longestWords(run) {
+    const longest = percentiles(run).find((mark) => mark.name.endsWith("max"));
+    if (!longest || longest.us <= BUDGET_US) return null;
+    const what = `${suffix(run) ? `Run${suffix(run)}: the` : "The"} longest tick took ${number(longest.us, 4)} µs, beyond the budget of 1 ms.`;
+    return isLockstep(run)
+      ? {
+          text: `${what} In lockstep the simulated clock waits for the servo: no tick can overrun, however long this computer takes for it.`,
+          alarm: false,
+        }
+      : { text: `${what} The clock did not wait: the next tick began late.`, alarm: true };
+  }
+
   const usable = (run) =>
     run.tick_times && Array.isArray(run.tick_times.counts) && run.tick_times.counts.some((c) => c > 0);
 
@@ -89,7 +104,7 @@ Fovea.ticks = (function () {
           flip ? at - 4 : at + 4,
           down,
           `${mark.name}${suffix(run)} ${number(mark.us, 3)} µs`,
-          "mark-text",
+          !isLockstep(run) && mark.us > BUDGET_US ? "mark-text over" : "mark-text",
           flip ? "end" : "start",
         );
       }),
@@ -159,6 +174,8 @@ Fovea.ticks = (function () {
           : null,
       ),
     );
+    for (const words of shown.map(longestWords).filter(Boolean))
+      body.append(el("p", { class: words.alarm ? "hint over" : "hint", text: words.text }));
     const missing = runs.filter((run) => !usable(run));
     if (missing.length) body.append(Fovea.absent(`Run ${missing[0].letter} holds no tick times.`));
     const repaint = () => paint(drawing, shown, Math.max(240, frame.clientWidth));
@@ -168,5 +185,5 @@ Fovea.ticks = (function () {
     Fovea.drawn("ticks");
   }
 
-  return { draw };
+  return { draw, isLockstep };
 })();

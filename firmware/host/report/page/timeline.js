@@ -3,86 +3,7 @@
 Fovea.timeline = (function () {
   const { el, svg, clock, words, suffix } = Fovea;
 
-  const MODES = {
-    boot: "getting ready",
-    hold: "standing still and waiting",
-    track: "steering to the target",
-    coast: "steering on the prediction alone",
-    move: "following a commanded motion",
-    fault: "stopped by a fault",
-  };
-  const modeWords = (m) => (MODES[m.mode] || words(m.mode)) + (m.reason ? ` (${words(m.reason)})` : "");
-
-  const spansOfModes = (run) =>
-    run.modes.map((m, i) => ({
-      from: m.t_s,
-      to: i + 1 < run.modes.length ? run.modes[i + 1].t_s : run.duration_s,
-      kind: m.mode,
-      label: MODES[m.mode] ? m.mode : words(m.mode),
-      say: modeWords(m),
-    }));
-
-  // Runs of pictures in which the target was not found.
-  function lostSpans(run) {
-    const { t_s: times, error_px: errors } = run.measured;
-    if (!times || !errors) return null;
-    const spans = [];
-    for (let i = 0; i < times.length; i++) {
-      if (Number.isFinite(errors[i])) continue;
-      let end = i;
-      while (end + 1 < times.length && !Number.isFinite(errors[end + 1])) end++;
-      const to = end + 1 < times.length ? times[end + 1] : Math.min(run.duration_s, times[end] + 0.03);
-      spans.push({
-        from: times[i],
-        to,
-        kind: "lost",
-        label: "",
-        say: `target not found in ${Fovea.plural(end - i + 1, "picture")}`,
-      });
-      i = end;
-    }
-    return spans;
-  }
-
-  // All rows of the drawing: {name, spans, empty}.
-  function rowsOf(runs) {
-    const rows = [];
-    for (const run of runs)
-      rows.push({ name: "mode" + suffix(run), spans: spansOfModes(run), empty: "no modes in the log" });
-    for (const run of runs) {
-      rows.push({
-        name: "faults" + suffix(run),
-        empty: "none",
-        marks: true,
-        spans: run.faults.map((f) => ({
-          from: f.t_s,
-          to: f.t_s,
-          kind: "mark",
-          label: words(f.name),
-          say: `fault: ${words(f.name)}${f.key ? `, setting ${f.key}` : ""}${f.detail ? `, ${f.detail}` : ""}`,
-        })),
-      });
-    }
-    for (const run of runs) {
-      const spans = run.has_eye && lostSpans(run);
-      if (spans) rows.push({ name: "pictures without target" + suffix(run), spans, empty: "none" });
-    }
-    const names = Array.from(new Set(runs.flatMap((run) => run.limits_active.map((l) => l.name)))).sort();
-    for (const name of names) {
-      for (const run of runs) {
-        const active = run.limits_active.find((l) => l.name === name);
-        const spans = ((active && active.spans) || []).map(([from, to]) => ({
-          from,
-          to,
-          kind: "limit",
-          label: "",
-          say: `limit at work: ${words(name)}`,
-        }));
-        rows.push({ name: `limit at work: ${words(name)}${suffix(run)}`, spans, empty: "never" });
-      }
-    }
-    return rows;
-  }
+  const { rowsOf, isQuiet, sayAt, modeSay } = Fovea.timelineRows;
 
   const LEFT = 52;
   const RIGHT = 12;
@@ -154,50 +75,11 @@ Fovea.timeline = (function () {
     }
   }
 
-  // What is going on at time t, in words.
-  function sayAt(runs, t) {
-    return runs.map((run) => {
-      const parts = [];
-      const at = (spans, slack = 0) => spans.filter((s) => s.from - slack <= t && t <= s.to + slack);
-      const mode = spansOfModes(run)
-        .filter((s) => s.from <= t)
-        .pop();
-      parts.push(mode ? mode.say : "no mode");
-      parts.push(...at(lostSpans(run) || []).map((s) => s.say));
-      for (const limit of run.limits_active)
-        if (
-          at(
-            (limit.spans || []).map(([from, to]) => ({ from, to })),
-            0.0005,
-          ).length
-        )
-          parts.push(`limit at work: ${words(limit.name)}`);
-      for (const f of run.faults)
-        if (Math.abs(f.t_s - t) < (clock.span[1] - clock.span[0]) / 80)
-          parts.push(`fault: ${words(f.name)}${f.detail ? `, ${f.detail}` : ""}`);
-      return (runs.length > 1 ? `Run ${run.letter}: ` : "") + parts.join("; ");
-    });
-  }
-
-  function legend(runs) {
-    const present = Object.keys(MODES).filter((mode) => runs.some((run) => run.modes.some((m) => m.mode === mode)));
-    const swatch = (mode) =>
-      svg(
-        "svg",
-        { viewBox: "0 0 22 12", "aria-hidden": "true" },
-        svg("g", { class: "span " + mode }, svg("rect", { width: 22, height: 12, rx: 2 })),
-      );
-    return el(
-      "ul",
-      { class: "mode-legend" },
-      present.map((mode) => el("li", {}, swatch(mode), el("span", { text: `${mode}: ${MODES[mode]}` }))),
-    );
-  }
-
   function asTable(run) {
     const events = run.modes
-      .map((m) => [m.t_s, "mode", modeWords(m)])
+      .map((m) => [m.t_s, "mode", modeSay(m)])
       .concat(run.faults.map((f) => [f.t_s, "fault", [words(f.name), f.key, f.detail].filter(Boolean).join(", ")]))
+      .concat(Fovea.bands.injectedOf(run).map((f) => [f.from, "injected", `${f.name}, until ${f.to.toFixed(3)} s`]))
       .sort((a, b) => a[0] - b[0]);
     if (!events.length) return null;
     return el(
@@ -235,10 +117,29 @@ Fovea.timeline = (function () {
     );
   }
 
+  // One line for all rows in which nothing happens, and a button that shows them.
+  function foldLine(quiet, onChange) {
+    const limits = quiet.filter((row) => row.limit).map((row) => row.limit);
+    const others = quiet.filter((row) => !row.limit).map((row) => `${row.name}: ${row.empty}`);
+    const parts = limits.length ? [...others, `never at work: ${limits.join(", ")}`] : others;
+    const words = (on) => (on ? "Fold these rows" : `Show ${Fovea.plural(quiet.length, "more row")}`);
+    const button = el("button", { type: "button", class: "no-print", "aria-expanded": "false", text: words(false) });
+    button.addEventListener("click", () => {
+      const on = button.getAttribute("aria-expanded") !== "true";
+      button.setAttribute("aria-expanded", String(on));
+      button.textContent = words(on);
+      onChange(on);
+    });
+    return el("div", { class: "quiet-rows" }, el("p", { text: `${parts.join("; ")}.` }), button);
+  }
+
   function draw(runs) {
     const body = document.querySelector("#timeline .body");
     const rows = rowsOf(runs);
-    if (!rows.some((row) => row.spans.length)) {
+    const quiet = rows.filter(isQuiet);
+    let unfolded = false;
+    const shownRows = () => (unfolded ? rows : rows.filter((row) => !isQuiet(row)));
+    if (quiet.length === rows.length) {
       body.append(Fovea.absent("The log holds no modes, no faults and no limits at work."));
       return Fovea.drawn("timeline");
     }
@@ -265,7 +166,20 @@ Fovea.timeline = (function () {
     const said = el("div", { class: "said" });
     body.append(
       el("div", { class: "toolbar" }, Fovea.zoomBar()),
-      el("figure", { class: "plot" }, frame, el("p", { class: "axis-x", text: "time [s]" }), legend(runs), said),
+      el(
+        "figure",
+        { class: "plot" },
+        frame,
+        el("p", { class: "axis-x", text: "time [s]" }),
+        quiet.length
+          ? foldLine(quiet, (on) => {
+              unfolded = on;
+              repaint();
+            })
+          : null,
+        Fovea.bands.legend(runs),
+        said,
+      ),
     );
     let x = null;
     const move = () => {
@@ -281,7 +195,7 @@ Fovea.timeline = (function () {
       said.append(...lines.map((text) => el("p", { text })));
     };
     const repaint = () => {
-      x = paint(drawing, rows, Math.max(240, frame.clientWidth));
+      x = paint(drawing, shownRows(), Math.max(240, frame.clientWidth));
       move();
     };
     const timeAt = (px) =>

@@ -1,7 +1,7 @@
 // The head of the page: one verdict in words for each run, and the figures that carry it.
 
 Fovea.verdict = (function () {
-  const { el, svg, number, fixed, words, plural } = Fovea;
+  const { el, svg, number, words, plural } = Fovea;
 
   const MARKS = {
     good: "M5 12.5 10 17.5 19 7",
@@ -62,15 +62,13 @@ Fovea.verdict = (function () {
       note: (s.faults || run.faults).map((f) => words(f.name)).join(", ") || "none",
       count: true,
     });
-    if (run.has_eye)
-      add("lost", "Frames without target", s.frames_lost, "", {
-        note: Number.isFinite(s.frames) ? `of ${s.frames} frames` : "",
-        count: true,
-      });
+    list.push(...frameFigures(run));
     if (s.robot)
       add("states", "States lost", s.robot.lost_states, "", { note: `of ${s.robot.states} of the robot`, count: true });
     add("overruns", "Overruns of the tick", s.overruns, "", {
-      note: Number.isFinite(s.ticks) ? `in ${s.ticks} ticks, ${s.missed_ticks || 0} missed` : "",
+      note: Number.isFinite(s.ticks)
+        ? `in ${s.ticks} ticks, ${s.missed_ticks || 0} missed${Fovea.ticks.isLockstep(run) ? "; in lockstep the simulated clock waits for the servo, so that no tick can overrun" : ""}`
+        : "",
       count: true,
     });
     add("heap", "Heap calls in the tick", s.heap_allocations_in_tick, "", { note: "should be none", count: true });
@@ -79,6 +77,32 @@ Fovea.verdict = (function () {
       note: Number.isFinite(s.wall_time_s) ? `${number(s.sim_time_s)} s simulated in ${number(s.wall_time_s)} s` : "",
     });
     return list;
+  }
+
+  // Counted in the log, as the time axis has them, so that the two never contradict each other.
+  function frameFigures(run) {
+    if (!run.has_eye || !Number.isFinite(run.frames_taken)) return [];
+    const placed = Fovea.frameCount(run.lost);
+    const counted = run.summary ? run.summary.frames_lost || 0 : 0;
+    const more = counted > placed ? `; the log says of ${placed} of them when` : "";
+    const of = `of ${Fovea.plural(run.frames_taken, "frame")} that reached the servo`;
+    const figure = { unit: "", count: true, better: "low" };
+    return [
+      {
+        key: "lost",
+        label: "Frames lost",
+        value: Math.max(placed, counted),
+        note: `that never reached the servo, beside ${run.frames_taken} that did${more}`,
+        ...figure,
+      },
+      {
+        key: "not_found",
+        label: "Frames without target",
+        value: Fovea.frameCount(run.not_found),
+        note: of,
+        ...figure,
+      },
+    ];
   }
 
   // What the log itself still tells when there is no summary.
@@ -108,6 +132,7 @@ Fovea.verdict = (function () {
       better: "low",
       note: run.faults.map((f) => words(f.name)).join(", ") || "none in the log",
     });
+    list.push(...frameFigures(run));
     list.push({ key: "length", label: "Length of the log", value: run.duration_s, unit: "s", note: "", better: null });
     return list;
   }
@@ -119,7 +144,7 @@ Fovea.verdict = (function () {
 
   function mostUsed(limits) {
     const top = Object.entries(limits || {}).sort((a, b) => b[1] - a[1])[0];
-    return top ? `most used: ${words(top[0])}, ${fixed(100 * top[1], 0)} %` : "";
+    return top ? `most used: ${words(top[0])}, ${Fovea.limits.percent(top[1])} ${Fovea.limits.ofWhat(top[0])}` : "";
   }
 
   function show(figure) {
@@ -145,7 +170,7 @@ Fovea.verdict = (function () {
   }
 
   function tiles(run) {
-    const alarming = (f) => f.count && f.value > 0 && f.key !== "lost";
+    const alarming = (f) => f.count && f.value > 0 && !["lost", "not_found"].includes(f.key);
     return el(
       "dl",
       { class: "tiles" },

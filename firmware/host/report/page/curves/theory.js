@@ -79,6 +79,8 @@ Fovea.theory = (function () {
       });
     }
     body.append(el("div", { class: "toolbar" }, Fovea.zoomBar()));
+    const key = Fovea.bands.legend(runs);
+    if (key) body.append(key);
     plots.create(body, { label: "position of the joint [m]", series, height: 260 });
     plots.create(body, { label: "error: goal less actual [m]", series: errors, height: 260, includeZero: true });
     plots.create(body, { label: "simulated less theory [mm]", series: apart, height: 170, includeZero: true });

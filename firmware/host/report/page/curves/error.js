@@ -85,6 +85,8 @@ Fovea.error = (function () {
           Fovea.zoomBar(),
         ),
       );
+      const key = Fovea.bands.legend(runs);
+      if (key) body.append(key);
       scaled.push({
         list: series,
         plot: plots.create(

@@ -1,14 +1,24 @@
 // What all drawings share: the pointed-at time, the visible span of time, and the colours of the page.
 
+// Callbacks that are called together. Each can be taken back by what `listen` returns.
+Fovea.callbacks = function () {
+  const callbacks = new Set();
+  return {
+    listen(callback) {
+      callbacks.add(callback);
+      return () => callbacks.delete(callback);
+    },
+    tell: (...what) => callbacks.forEach((callback) => callback(...what)),
+  };
+};
+
 Fovea.clock = (function () {
-  const listeners = [];
+  const { listen, tell } = Fovea.callbacks();
   const clock = {
     duration: 1,
     time: null, // the shared time [s], null when nothing is pointed at
     span: [0, 1], // the visible span of time [s]
-    listen(callback) {
-      listeners.push(callback);
-    },
+    listen,
     setTime(time, source) {
       clock.time = time === null ? null : Math.min(clock.duration, Math.max(0, time));
       tell("time", source);
@@ -35,9 +45,6 @@ Fovea.clock = (function () {
       clock.setSpan(centre - half, centre + half);
     },
   };
-  function tell(what, source) {
-    listeners.forEach((callback) => callback(what, source));
-  }
   return clock;
 })();
 
@@ -60,29 +67,25 @@ Fovea.timeKeys = function (event) {
 };
 
 Fovea.theme = (function () {
-  const listeners = [];
+  const { listen, tell } = Fovea.callbacks();
   const theme = {
     // The value of a custom property of the page, for what is painted on a canvas.
     colour: (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim(),
-    listen(callback) {
-      listeners.push(callback);
-    },
-    tell() {
-      listeners.forEach((callback) => callback());
-    },
+    listen,
+    tell,
     printing: false,
   };
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", theme.tell);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => tell());
   const print = (on) => () => {
     if (theme.printing === on) return;
     theme.printing = on;
     document.documentElement.classList.toggle("printing", on);
-    const folded = document.querySelectorAll(on ? "details:not([open])" : "details.opened-for-print");
+    const folded = document.querySelectorAll(on ? "details:not([open], .folded-on-paper)" : "details.opened-for-print");
     folded.forEach((node) => {
       node.open = on;
       node.classList.toggle("opened-for-print", on);
     });
-    theme.tell();
+    tell();
   };
   addEventListener("beforeprint", print(true));
   addEventListener("afterprint", print(false));

@@ -114,9 +114,15 @@ Fovea.plots = (function () {
     const now = el("span", { class: "now" });
     const legend = el("ul", { class: "legend" });
     const caption = el("figcaption", {}, el("span", { class: "plot-label", text: state.label }), now);
-    host.append(
-      el("figure", { class: "plot" }, caption, frame, el("p", { class: "axis-x", text: "time [s]" }), legend),
+    const figure = el(
+      "figure",
+      { class: "plot" },
+      caption,
+      frame,
+      el("p", { class: "axis-x", text: "time [s]" }),
+      legend,
     );
+    host.append(figure);
     let graph = null;
     let outputs = [];
     let visible = [];
@@ -190,8 +196,9 @@ Fovea.plots = (function () {
       };
     }
 
-    // Lines across the plot, such as limits.
+    // The shading of the run, and lines across the plot, such as limits.
     function underlay(ctx, box, g) {
+      Fovea.bands.paint(ctx, box, (t) => g.toDomXCoord(t));
       for (const line of state.lines) {
         const y = Math.round(g.toDomYCoord(line.value));
         if (!(y >= box.y - 1 && y <= box.y + box.h + 1)) continue;
@@ -274,21 +281,29 @@ Fovea.plots = (function () {
 
     build();
     Fovea.pointer(glass, brush, (x) => graph.toDataXCoord(x + graph.getArea().x));
-    clock.listen((what) => {
-      if (what === "span") graph.updateOptions({ dateWindow: clock.span.slice() });
-      moveCursor();
-    });
-    new ResizeObserver(() => {
+    const watch = new ResizeObserver(() => {
       if (!theme.printing && area.clientWidth) graph.resize();
-    }).observe(area);
-    theme.listen(() => {
-      graph.updateOptions(styles(), true);
-      graph.resize();
-      graph.updateOptions({});
-      if (theme.printing) keepStill();
     });
+    watch.observe(area);
+    const endings = [
+      () => watch.disconnect(),
+      clock.listen((what) => {
+        if (what === "span") graph.updateOptions({ dateWindow: clock.span.slice() });
+        moveCursor();
+      }),
+      theme.listen(() => {
+        graph.updateOptions(styles(), true);
+        graph.resize();
+        graph.updateOptions({});
+        if (theme.printing) keepStill();
+      }),
+    ];
     return {
-      graph: () => graph,
+      remove() {
+        endings.forEach((end) => end());
+        graph.destroy();
+        figure.remove();
+      },
       change(more) {
         Object.assign(state, more);
         if (more.label) caption.firstChild.textContent = more.label;

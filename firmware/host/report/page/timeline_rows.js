@@ -1,0 +1,114 @@
+// The rows of the time axis: modes, faults, injected faults, frames and limits; and what is going on, in words.
+
+Fovea.timelineRows = (function () {
+  const { clock, words, suffix } = Fovea;
+  const { MODES, modeWords, modesOf, injectedOf } = Fovea.bands;
+
+  const modeSay = (m) => modeWords(m.mode) + (m.reason ? ` (${words(m.reason)})` : "");
+
+  const spansOfModes = (run) =>
+    modesOf(run).map((m) => ({
+      from: m.from,
+      to: m.to,
+      kind: m.mode,
+      label: MODES[m.mode] ? m.mode : words(m.mode),
+      say: modeSay(m),
+    }));
+
+  const spansOfInjected = (run) =>
+    injectedOf(run).map((f) => ({
+      from: f.from,
+      to: f.to,
+      kind: "injected",
+      label: f.name,
+      say: `injected fault: ${f.name}, from ${f.from.toFixed(3)} to ${f.to.toFixed(3)} s`,
+    }));
+
+  const spansOfFrames = (spans, say) =>
+    spans.map((span) => ({
+      from: span.from_s,
+      to: Math.max(span.to_s, span.from_s + 0.005),
+      kind: "lost",
+      label: "",
+      say: `${say} ${Fovea.plural(span.frames, "frame")}`,
+    }));
+  const spansOfLost = (run) => spansOfFrames(run.lost, "the servo never got");
+  const spansOfNotFound = (run) => spansOfFrames(run.not_found, "target not found in");
+
+  const spansOfLimit = (run, name) => {
+    const active = run.limits_active.find((l) => l.name === name);
+    return ((active && active.spans) || []).map(([from, to]) => ({
+      from,
+      to,
+      kind: "limit",
+      label: "",
+      say: `limit at work: ${words(name)}`,
+    }));
+  };
+
+  // All rows of the drawing: {name, spans, empty, marks, limit}.
+  function rowsOf(runs) {
+    const rows = [];
+    const add = (name, of, more) =>
+      runs.forEach((run) => rows.push({ name: name + suffix(run), spans: of(run), empty: "none", ...more }));
+    add("mode", spansOfModes, { empty: "not in the log" });
+    for (const run of runs) {
+      const names = Array.from(new Set(injectedOf(run).map((f) => f.name))).join(", ");
+      rows.push({
+        name: `injected faults${suffix(run)}${names && `: ${names}`}`,
+        spans: spansOfInjected(run),
+        empty: "none",
+      });
+    }
+    const faults = (run) =>
+      run.faults.map((f) => ({
+        from: f.t_s,
+        to: f.t_s,
+        kind: "mark",
+        label: words(f.name),
+        say: `fault: ${words(f.name)}${f.key ? `, setting ${f.key}` : ""}${f.detail ? `, ${f.detail}` : ""}`,
+      }));
+    add("faults", faults, { marks: true });
+    for (const run of runs.filter((run) => run.has_eye))
+      rows.push(
+        { name: "frames lost" + suffix(run), spans: spansOfLost(run), empty: "none" },
+        { name: "frames without target" + suffix(run), spans: spansOfNotFound(run), empty: "none" },
+      );
+    const names = Array.from(new Set(runs.flatMap((run) => run.limits_active.map((l) => l.name)))).sort();
+    for (const name of names)
+      runs.forEach((run) =>
+        rows.push({
+          name: `limit at work: ${words(name)}${suffix(run)}`,
+          limit: words(name) + suffix(run),
+          spans: spansOfLimit(run, name),
+          empty: "never",
+        }),
+      );
+    return rows;
+  }
+
+  const isQuiet = (row) => !row.spans.length;
+
+  // What is going on at time t, a line for each run.
+  function sayAt(runs, t) {
+    return runs.map((run) => {
+      const at = (spans, slack = 0) => spans.filter((s) => s.from - slack <= t && t <= s.to + slack).map((s) => s.say);
+      const mode = spansOfModes(run)
+        .filter((s) => s.from <= t)
+        .pop();
+      const parts = [
+        mode ? mode.say : "no mode",
+        ...at(spansOfInjected(run)),
+        ...at(spansOfLost(run)),
+        ...at(spansOfNotFound(run)),
+        ...run.limits_active.flatMap((limit) => at(spansOfLimit(run, limit.name), 0.0005).slice(0, 1)),
+      ];
+      for (const f of run.faults)
+        if (Math.abs(f.t_s - t) < (clock.span[1] - clock.span[0]) / 80)
+          parts.push(`fault: ${words(f.name)}${f.detail ? `, ${f.detail}` : ""}`);
+      return (runs.length > 1 ? `Run ${run.letter}: ` : "") + parts.join("; ");
+    });
+  }
+
+  return { rowsOf, isQuiet, sayAt, modeSay };
+})();
