@@ -23,9 +23,9 @@ inline std::string QuotedForShell(std::string_view word) {
 
 // The program by its name alone, and all its arguments.
 inline std::string CommandLine(int argc, const char* const* argv) {
-  std::string text;
-  for (int i = 0; i < argc; ++i) {
-    text += i == 0 ? std::filesystem::path(argv[0]).filename().string() : " " + QuotedForShell(argv[i]);
+  std::string text = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : std::string();
+  for (int i = 1; i < argc; ++i) {
+    text.append(" ").append(QuotedForShell(argv[i]));
   }
   return text;
 }
