@@ -1,5 +1,6 @@
 #include "firmware/core/barriers/links_barrier.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "firmware/core/barriers/obstacle.hpp"
@@ -9,6 +10,8 @@ namespace fovea::barriers {
 namespace {
 
 using model::Vec3;
+
+constexpr int kOuterLinks = 4;  // that planes are for
 
 // Where the links are nearest to a plane.
 struct NearestPlane {
@@ -20,7 +23,7 @@ struct NearestPlane {
 NearestPlane NearestOfPlanes(const config::GuardConfig& guard, const ArmBodies& bodies) noexcept {
   const config::Obstacles& obstacles = guard.obstacles;
   NearestPlane nearest;
-  for (int k = model::ArmShape::kNeighbours + 1; k < bodies.size; ++k) {
+  for (int k = std::max(bodies.size - kOuterLinks, 1); k < bodies.size; ++k) {
     const PlacedCapsule& body = bodies.body[static_cast<std::size_t>(k)];
     for (int i = 0; i < obstacles.num_planes; ++i) {
       for (const Vec3& end : {body.p_BA, body.p_BB}) {

@@ -1,8 +1,8 @@
 // The arm's links stay above the planes that its hand stays above.
 //
-// With the hand where it may be, the elbow or the wrist can still come down on the table. No link does that
-// has more than ArmShape::kNeighbours joints between it and the base; those nearer to the base cannot reach
-// what the base stands on, and stand beside a wall as the base does.
+// With the hand where it may be, the elbow or the wrist can still come down on the table. None of the last
+// four links does: of an arm with six or seven joints these are forearm, wrist and hand. The links before
+// them cannot reach what the base stands on, and stand beside a wall as the base does.
 #pragma once
 
 #include "firmware/core/barriers/arm_bodies.hpp"

@@ -17,7 +17,7 @@ using hal::Limit;
 using hal::LimitSet;
 using model::LinearJacobian;
 
-constexpr double kSpeedShare = 0.96;  // of the hand's speed that is wished; the proof of a stop allows more
+constexpr double kSpeedShare = 0.93;  // of the hand's speeds that is wished; the proof of a stop allows more
 constexpr double kSlow = 1e-3;        // a joint that is no faster stops by itself [rad/s, m/s]
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 

@@ -12,8 +12,8 @@ namespace fovea::guard {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-// Of the hand's speeds at the points of a stop that are looked at: between them it can be 3 % more.
-constexpr double kSpeedShareMost = 0.97;
+// Of the hand's speeds at the points of a stop that are looked at: between them it can be 6 % more.
+constexpr double kSpeedShareMost = 0.94;
 constexpr double kSlack = 1e-9;  // rounding is no step outward [m, rad]
 
 // A joint that stops after `distance` from q_now, given that it may go up to `limit` (or no further than it

@@ -18,7 +18,6 @@ struct Capsule {
 struct ArmShape {
   static constexpr int kMostBodies = kMaxJoints + 1;
   static constexpr int kNeighbours = 2;  // bodies with at most so many joints between them are always near
-  static constexpr int kOuterBodies = 4;  // the last ones: of six or seven joints forearm, wrist and hand
   static constexpr int kMostPairs = (kMaxJoints - kNeighbours) * (kMaxJoints - kNeighbours + 1) / 2;
 
   // Two bodies; `far` is further from the base.

@@ -56,6 +56,7 @@ TEST(HandShapeTest, CameraIsKeptOutOfABoxTheFlangeDoesNotReach) {
   model::ComputePoses(config.arm, test::Ready(), poses);
   const Vec3 p_EC(0.0, 0.0, 0.2);
   const Vec3 lens = poses.X_BE * p_EC;
+  config.guard.rotation_speed = 100.0;  // this is about the box alone
   config.guard.obstacles.num_boxes = 1;
   config.guard.obstacles.boxes[0] = {lens - Vec3(0.05, 0.05, 0.1), lens + Vec3(0.05, 0.05, -0.06)};
   const trajectory::Reference reference{test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};

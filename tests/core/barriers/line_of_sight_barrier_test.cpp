@@ -131,7 +131,7 @@ TEST(LineOfSightBarrierTest, NoRowWithoutAClearanceLimitOrWhereTheLinesCross) {
   MotionLimits limits;
   limits.Add(LineOfSightBarrier(WithClearance(0.0), SightOf(posture, ahead, true), posture.J_C));
   EXPECT_EQ(limits.num_rows, 0);
-  limits.Add(LineOfSightBarrier(config, SightOf(posture, posture.poses.X_BL[2].p, false), posture.J_C));
+  limits.Add(LineOfSightBarrier(config, SightOf(posture, posture.bodies.body[3].middle, false), posture.J_C));
   EXPECT_EQ(limits.num_rows, 0);
   limits.Add(LineOfSightBarrier(config, SightOf(posture, ahead * std::nan(""), true), posture.J_C));
   EXPECT_EQ(limits.num_rows, 0);
