@@ -139,10 +139,11 @@ TEST(SelfClearanceBarrierTest, GradientMatchesFiniteDifferenceOfClearance) {
     MotionLimits arm;
     arm.Add(LinksBarrier(WithPlanes(), PosesAt(q), BodiesAt(q)));
     ExpectRow(arm, q, dq, PlaneClearance, worst_arm);
-    EXPECT_DOUBLE_EQ(arm.rows[0].b,
-                     BarrierSpeed(PlaneClearance(q) - 0.05 - 2.0 * WithPlanes().guard.workspace_margin,
-                                  0.5 * WithPlanes().guard.workspace_deceleration,
-                                  trajectory::SlowestReaction(WithPlanes())));
+    EXPECT_NEAR(arm.rows[0].b,
+                BarrierSpeed(PlaneClearance(q) - 0.05 - 2.0 * WithPlanes().guard.workspace_margin,
+                             0.5 * WithPlanes().guard.workspace_deceleration,
+                             trajectory::SlowestReaction(WithPlanes())),
+                1e-12);
     selves += Gap(q) < 0.2 ? 1 : 0;
     arms += PlaneClearance(q) < 0.05 ? 1 : 0;
   }
