@@ -390,7 +390,6 @@ int main(int argc, char** argv) {
   bool markdown = false;
   CLI::App* keys = app.add_subcommand("keys", "every key of a scenario: default, meaning, range, unit");
   keys->add_flag("--markdown", markdown, "as the table in sim/scenarios/KEYS.md");
-
   return config::RunProgram("fovea-sim", app, argc, argv, [&] {
     return run->parsed()        ? Run(arguments)
            : serve->parsed()    ? Serve(serve_arguments)

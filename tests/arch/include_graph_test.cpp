@@ -109,12 +109,12 @@ INSTANTIATE_TEST_SUITE_P(
              "(fovea/(hal|linux_rt)|firmware/(core|vision|host)|Eigen|unsupported/Eigen|opencv2)/.*|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|"
              "(CLI|console_bridge|fmt|google|libavcodec|libavformat|libavutil|nlohmann|openssl|toml\\+\\+|"
-             "urdf_parser)/.*|(fcntl|unistd|sys/file|zlib|zstd)[.]h",
+             "urdf_parser)/.*|(fcntl|unistd|sys/file|sys/ioctl|zlib|zstd)[.]h",
              "the host's part sees core, vision and libraries, no driver of a device and no simulator"},
         Rule{"firmware/host/config",
              "fovea/hal/.*|firmware/(core|vision|host/(calibration|config|robots))/"
              ".*|(CLI|fmt|toml\\+\\+|Eigen)/.*|"
-             "(unistd|fcntl|sys/file)[.]h",
+             "(unistd|fcntl|sys/file|sys/ioctl)[.]h",
              "keys are of servo and vision"},
         Rule{"firmware/host/robots",
              "firmware/(core/model|host/(config|robots))/.*|(fmt|urdf_parser|console_bridge|Eigen)/.*",
@@ -130,10 +130,10 @@ INSTANTIATE_TEST_SUITE_P(
              "(Eigen|fmt|opencv2|libavcodec|libavformat|libavutil)/.*",
              "a film is made of frames and detections alone"},
         Rule{"firmware/host/report",
-             "fovea/hal/.*|firmware/(core/model|host/(recording/log|report))/.*|"
+             "fovea/hal/.*|firmware/(core/(config|link|model)|host/(recording|report))/.*|"
              "firmware/core/features/target_traits[.]hpp|(fovea|foxglove)/[a-z]+[.]pb[.]h|"
              "(fmt|google|nlohmann|openssl)/.*",
-             "a report is made of a log alone, and knows the kinds of targets in it"},
+             "a report is made of a log alone, and knows the kinds of arms and targets in it"},
         Rule{"firmware/host/run",
              "fovea/(hal|linux_rt)/.*|firmware/(core|vision|host/"
              "(build_info|config|film|recording|report|run))"

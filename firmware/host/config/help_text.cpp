@@ -34,7 +34,14 @@ void AppendLine(std::string line, std::size_t width, std::string& text) {
   while (line.size() > width) {
     std::size_t space = line.rfind(' ', width);
     if (space == std::string::npos || space <= column) {
-      space = line.find(' ', std::max(width, column + 1));  // a word that is longer than the line
+      // A word that is longer than the line: a list of choices is broken behind a comma.
+      if (const std::size_t comma = line.rfind(',', width - 1);
+          comma != std::string::npos && comma > column) {
+        text.append(line, 0, comma + 1).append("\n");
+        line = std::string(column, ' ') + line.substr(comma + 1);
+        continue;
+      }
+      space = line.find(' ', std::max(width, column + 1));
     }
     if (space == std::string::npos) {
       break;

@@ -15,8 +15,9 @@ struct HelpStyle {
 // unless the environment's NO_COLOR is set; 100 characters and plain text where it is no terminal.
 HelpStyle HelpStyleOfOutput();
 
-// `text` with each line broken between words so that it fits into style.width; a word that is longer stays
-// whole. What follows a break is indented to the column of its description, or by two more than its line.
+// `text` with each line broken between words so that it fits into style.width; a word that is longer is
+// broken behind commas, and stays whole where it has none. What follows a break is indented to the column of
+// its description, or by two more than its line.
 std::string FormatHelp(const std::string& text, const HelpStyle& style);
 
 }  // namespace fovea::config

@@ -40,6 +40,12 @@ TEST(FormatHelpTest, KeepsAWordThatIsLongerThanTheLine) {
   EXPECT_EQ(Formatted(word + "\n", 60), word + "\n");
 }
 
+TEST(FormatHelpTest, BreaksALongListOfChoicesBehindCommas) {
+  EXPECT_EQ(
+      Formatted("  --dictionary TEXT:{4x4_50,4x4_100,4x4_250,5x5_50,5x5_100,5x5_250} of the board\n", 40),
+      "  --dictionary\n    TEXT:{4x4_50,4x4_100,4x4_250,5x5_50,\n    5x5_100,5x5_250} of the board\n");
+}
+
 TEST(FormatHelpTest, LosesNoWordAtAnyWidth) {
   const std::string text =
       "Fovea's tools beside its runs: reports and replays of logs.\n\nOptions:\n"

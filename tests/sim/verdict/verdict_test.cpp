@@ -112,6 +112,10 @@ TEST_F(VerdictTest, MovingTargetIsJudgedOverTheSecondHalf) {
 TEST_F(VerdictTest, MovingTargetIsJudgedInDepthToo) {
   config_.target_moves = true;
   config_.tracking_bound_mm = 20.0;
+  hal::TickRecord seen;
+  seen.mode = hal::Mode::kTrack;
+  seen.target_known = true;
+  records_ = {seen};
   const auto behind = [](double m) { return [m](double) { return Eigen::Vector3d(0.0, 0.0, m); }; };
   const Summary near = Judge(2.0, behind(0.019));
   EXPECT_TRUE(near.converged);

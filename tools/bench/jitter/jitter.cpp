@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/config/share_folder.hpp"
+#include "firmware/host/report/page_style.hpp"
 #include "firmware/host/robots/robot.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "tools/bench/jitter/cyclictest.hpp"
@@ -77,16 +77,11 @@ void Measure(const JitterArguments& arguments, EyeChain& eye, const config::Serv
 }
 
 void WriteFiles(const fs::path& folder, const JitterResult& result) {
-  const fs::path style_file = config::ShareFolder() / "report" / "report.css";
-  std::ostringstream style;
-  style << std::ifstream(style_file).rdbuf();
-  if (style.str().empty()) {
-    throw std::runtime_error(style_file.string() + ": cannot be read");
-  }
+  const std::string style = report::PageStyle(config::ShareFolder() / "report");
   std::error_code error;
   fs::create_directories(folder, error);
   std::ofstream page(folder / "jitter.html");
-  page << JitterPage(result, style.str());
+  page << JitterPage(result, style);
   std::ofstream figures(folder / "jitter.json");
   figures << ToJson(JitterFigures(result)) << "\n";
   if (!page.flush() || !figures.flush()) {

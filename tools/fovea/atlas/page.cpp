@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
 
+#include "firmware/host/report/page_style.hpp"
 #include "tools/bench/common/html_text.hpp"
 #include "tools/fovea/atlas/map.hpp"
 #include "tools/fovea/atlas/seed.hpp"
@@ -159,15 +157,7 @@ std::string FailureTable(const Figures& f) {
 
 }  // namespace
 
-AtlasPage::AtlasPage(const std::filesystem::path& folder) {
-  const std::filesystem::path file = folder / "report.css";
-  std::ostringstream style;
-  style << std::ifstream(file).rdbuf();
-  style_ = style.str();
-  if (style_.empty()) {
-    throw std::runtime_error(file.string() + ": cannot be read");
-  }
-}
+AtlasPage::AtlasPage(const std::filesystem::path& folder) : style_(report::PageStyle(folder)) {}
 
 std::string AtlasPage::Wrap(const std::string& title, const std::string& main) const {
   return fmt::format(

@@ -86,7 +86,7 @@ TEST(GoldenConfiguration, KeyMissingFromAnOldLogKeepsItsMeaning) {
   flight::ReadTicks(SourceRoot() / "tests/host/recording/flight/golden" / "triangle.mcap", visitor);
   ASSERT_TRUE(config.has_value());
   EXPECT_EQ(config->guard.view.disc_cosine_min, 0.0);
-  EXPECT_EQ(config->guard.sight_clearance, Triangle().config.guard.sight_clearance);
+  EXPECT_EQ(config->guard.workspace_margin, Triangle().config.guard.workspace_margin);
 }
 
 // All of the modes are in it.

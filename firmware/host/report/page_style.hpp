@@ -1,0 +1,29 @@
+// The look of all our pages, which is the report's.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace fovea::report {
+
+// The text of the style sheets in `folder`, the report's page, for another page to be put into whole.
+// std::runtime_error, naming the file, when one cannot be read.
+inline std::string PageStyle(const std::filesystem::path& folder) {
+  std::string style;
+  for (const char* part :
+       {"page.css", "figures.css", "plots.css", "parts.css", "time.css", "config.css", "paper.css"}) {
+    const std::filesystem::path file = folder / "style" / part;
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    if (text.str().empty()) {
+      throw std::runtime_error(file.string() + ": cannot be read");
+    }
+    style += text.str();
+  }
+  return style;
+}
+
+}  // namespace fovea::report
