@@ -66,7 +66,7 @@ struct GuardConfig {
   HandShape hand;
   double link_clearance = 0.01;
   ViewConfig view;
-  double sight_clearance = 0.02;
+  double sight_clearance = 0.01;
   double self_clearance = 0.02;
   double barrier_rate = 1.5;
   double rotation_speed = 2.5;
