@@ -27,6 +27,8 @@ export async function withBrowser(look) {
       "--enable-unsafe-swiftshader",
     ],
   });
+  // Drawn by a software renderer, on a machine that is busy with the other tests.
+  context.setDefaultTimeout(120_000);
   try {
     await look(context);
   } finally {
@@ -53,7 +55,7 @@ export async function openPage(context, file, [width, height], parts) {
   await page.goto(url);
   for (const part of parts) {
     await page.locator(`#${part}`).scrollIntoViewIfNeeded();
-    await page.locator(`#${part}[data-drawn="true"]`).waitFor({ state: "attached", timeout: 30_000 });
+    await page.locator(`#${part}[data-drawn="true"]`).waitFor({ state: "attached", timeout: 120_000 });
   }
   return { page, said, asked };
 }

@@ -67,7 +67,7 @@ await withBrowser(async (context) => {
     await page.goto(url);
     for (const part of ["verdict", "path", "joints", "timeline", "ticks", "config"]) {
       await page.locator(`#${part}`).scrollIntoViewIfNeeded();
-      await page.locator(`#${part}[data-drawn="true"]`).waitFor({ state: "attached", timeout: 30_000 });
+      await page.locator(`#${part}[data-drawn="true"]`).waitFor({ state: "attached", timeout: 120_000 });
     }
     assert.deepEqual(asked, [], "the page asks nobody");
     const seen = await page.evaluate(async (where) => {

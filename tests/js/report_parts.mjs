@@ -68,7 +68,7 @@ async function checkFreePlot(page) {
   const plots = await page.locator("#free .plot").count();
   assert.equal(plots, 2, "one plot for each unit");
   await page.reload();
-  await page.locator('#free[data-drawn="true"]').waitFor({ state: "attached", timeout: 30_000 });
+  await page.locator('#free[data-drawn="true"]').waitFor({ state: "attached", timeout: 120_000 });
   assert.equal(await page.evaluate(() => location.hash), hash);
   await checkCurves(page, "free", 2);
   await page.locator("#free").getByText("Choose none").click();
