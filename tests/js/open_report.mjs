@@ -110,7 +110,7 @@ await withBrowser(async (context) => {
     assert.ok(seen.absent.every((words) => /the log holds no truth/.test(words)));
     const curved = kind === "eye" ? ["error", "components"] : own;
     await checkBands(page, [...curved, "velocity", "joints", "timeline", "free"]);
-    await checkCurves(page, "velocity", 2);
+    await checkCurves(page, "velocity", 2, kind === "theory");
     await checkWords(page, hardware ? /^fovea-hw / : /^fovea-sim run /);
     if (kind === "eye") {
       await checkCurves(page, "components", 3);

@@ -26,11 +26,16 @@ function curvePixels(page, id) {
   }, id);
 }
 
-async function checkCurves(page, id, least) {
+// `covered`: curves lie on each other, as those of an arm of one joint do, of which most stand at 0.
+async function checkCurves(page, id, least, covered = false) {
   await page.locator(`#${id}`).scrollIntoViewIfNeeded();
   const curves = await curvePixels(page, id);
   assert.ok(curves.length >= least, `#${id}: ${curves.length} curves, at least ${least} are there`);
-  for (const { name, count } of curves) assert.ok(count > 15, `#${id}: the curve "${name}" is drawn (${count} pixels)`);
+  const drawn = ({ count }) => count > 15;
+  if (covered) assert.ok(curves.some(drawn), `#${id}: a curve is drawn`);
+  else
+    for (const curve of curves)
+      assert.ok(drawn(curve), `#${id}: the curve "${curve.name}" is drawn (${curve.count} pixels)`);
   return curves.length;
 }
 
