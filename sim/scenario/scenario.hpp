@@ -84,7 +84,7 @@ struct Scenario {
     double duration_s = 8.0;
     int seed = 1;
     double tracking_bound_px = 3.0;
-    double tracking_bound_mm = 20.0;
+    double tracking_bound_mm = 5.0;
     bool scene_video = false;
   } run;
 

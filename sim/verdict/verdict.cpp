@@ -178,41 +178,52 @@ void Verdict::FillEnd(Summary& summary) const {
 
 // Without a target: what was commanded was followed, or not.
 void Verdict::FillMotion(Summary& summary) const {
-  const auto was_held_for = [this](hal::HoldReason reason) {
-    return std::any_of(modes_.begin(), modes_.end(),
-                       [reason](const ModeEvent& event) { return event.reason == hal::Name(reason); });
-  };
-  const bool refused = was_held_for(hal::HoldReason::kMotionRefused);
-  const bool abandoned = was_held_for(hal::HoldReason::kNotFollowed);
-  const bool unseen = config_.circle && path_samples_ == 0;
-  summary.converged = faults_.empty() && !refused && !abandoned && !unseen && summary.limit_violations == 0;
   if (path_samples_ > 0) {
     summary.path_error_mm_rms = 1e3 * std::sqrt(path2_ / static_cast<double>(path_samples_));
     summary.path_error_mm_max = 1e3 * path_most_;
   }
-  if (summary.converged && config_.circle && 1e3 * path_most_ > config_.path_bound_mm) {
-    summary.converged = false;
-    summary.verdict = fmt::format("the end effector was {:.2g} mm off its way, motion.bound_mm allows {}",
-                                  1e3 * path_most_, config_.path_bound_mm);
-    return;
-  }
   if (config_.goes_home) {
     summary.home_error_rad = home_error_;
-    if (summary.converged && home_error_ > kHomeBound) {
-      summary.converged = false;
-      summary.verdict = fmt::format("a joint is {:.2g} rad from the ready posture at the end", home_error_);
-      return;
-    }
   }
-  summary.verdict = !faults_.empty()      ? "a fault stopped the arm: " + faults_.front().name
-                    : contacts_.any() > 0 ? Touched(summary)
-                    : refused             ? "the commanded motion was refused (see modes and limits)"
-                    : abandoned           ? "the arm was off the commanded motion, which was given up (see "
-                                            "safety.motion_error)"
-                    : unseen ? "the run ended before the circle began (see run.duration_s, motion.lead_s)"
-                    : summary.converged ? config_.has_motion ? "the commanded motion was followed"
-                                                             : "no motion was commanded, and the arm stood"
-                                        : "a limit was passed";
+  const std::string why_not = WhyNotFollowed(summary);
+  summary.converged = why_not.empty();
+  summary.verdict = !why_not.empty()     ? why_not
+                    : config_.has_motion ? "the commanded motion was followed"
+                                         : "no motion was commanded, and the arm stood";
+}
+
+// "" where it was.
+std::string Verdict::WhyNotFollowed(const Summary& summary) const {
+  const auto was_held_for = [this](hal::HoldReason reason) {
+    return std::any_of(modes_.begin(), modes_.end(),
+                       [reason](const ModeEvent& event) { return event.reason == hal::Name(reason); });
+  };
+  if (!faults_.empty()) {
+    return "a fault stopped the arm: " + faults_.front().name;
+  }
+  if (contacts_.any() > 0) {
+    return Touched(summary);
+  }
+  if (was_held_for(hal::HoldReason::kMotionRefused)) {
+    return "the commanded motion was refused (see modes and limits)";
+  }
+  if (was_held_for(hal::HoldReason::kNotFollowed)) {
+    return "the arm was off the commanded motion, which was given up (see safety.motion_error)";
+  }
+  if (config_.circle && path_samples_ == 0) {
+    return "the run ended before the circle began (see run.duration_s, motion.lead_s)";
+  }
+  if (summary.limit_violations > 0) {
+    return "a limit was passed";
+  }
+  if (config_.circle && 1e3 * path_most_ > config_.path_bound_mm) {
+    return fmt::format("the end effector was {:.2g} mm off its way, motion.bound_mm allows {}",
+                       1e3 * path_most_, config_.path_bound_mm);
+  }
+  if (config_.goes_home && home_error_ > kHomeBound) {
+    return fmt::format("a joint is {:.2g} rad from the ready posture at the end", home_error_);
+  }
+  return "";
 }
 
 void Verdict::FillStill(Summary& summary) const {
@@ -302,8 +313,7 @@ std::string Verdict::WhyNot(const Summary& summary) const {
     if (modes_.back().reason == hal::Name(hal::HoldReason::kEyeDoubted)) {
       return fmt::format(
           "not converged: the picture moved against the hand, or steering by it did not help, so the arm "
-          "holds "
-          "since {:.3f} s (see camera.mount_xyz, camera.mount_rpy_deg, servo.way_in_vain)",
+          "holds since {:.3f} s (see camera.mount_xyz, camera.mount_rpy_deg, servo.way_in_vain)",
           modes_.back().t_s);
     }
     if (modes_.back().reason == hal::Name(hal::HoldReason::kGoalUnreachable)) {

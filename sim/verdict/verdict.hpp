@@ -30,7 +30,7 @@ struct VerdictConfig {
   bool has_eye = true;  // false: there is no target to judge by
   bool target_moves = false;
   double tracking_bound_px = 3.0;
-  double tracking_bound_mm = 20.0;
+  double tracking_bound_mm = 5.0;
   double duration_s = 8.0;                // of the run
   bool has_motion = true;                 // one is commanded; counts without an eye
   std::optional<CommandedCircle> circle;  // that the end effector shall follow
@@ -66,6 +66,7 @@ class Verdict {
   void FillEnd(Summary& summary) const;
   void FillMotion(Summary& summary) const;
   void FillStill(Summary& summary) const;
+  [[nodiscard]] std::string WhyNotFollowed(const Summary& summary) const;
   void FillMoving(Summary& summary) const;
   static std::string Touched(const Summary& summary);
   [[nodiscard]] std::string WhyNot(const Summary& summary) const;

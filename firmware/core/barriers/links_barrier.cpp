@@ -11,8 +11,6 @@ namespace {
 
 using model::Vec3;
 
-constexpr int kOuterLinks = 4;  // that planes are for
-
 // Where the links are nearest to a plane.
 struct NearestPlane {
   Clearance clearance{HUGE_VAL, Vec3::UnitZ()};

@@ -12,6 +12,8 @@
 
 namespace fovea::barriers {
 
+inline constexpr int kOuterLinks = 4;  // that planes are for
+
 // How far the arm's links are from the nearest plane [m]; HUGE_VAL without planes. Real-time: yes.
 [[nodiscard]] double ClearanceOfPlanes(const config::GuardConfig& guard, const ArmBodies& bodies) noexcept;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "firmware/core/barriers/solid_barriers.hpp"
 #include "firmware/core/model/kinematics.hpp"
@@ -212,12 +213,15 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
     if (may_turn_fast && model::AngularVelocity(config.arm, poses, dq).norm() > turn_most) {
       return hal::Bit(hal::Limit::kRotationSpeed);
     }
-    const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, poses);
+    std::optional<barriers::ArmBodies> bodies;  // placed where a bound asks for them
     first_due = may_be_fast || may_turn_fast ? t : HUGE_VAL;
     for (int i = 0; i < bounds.size(); ++i) {
       double& until = clear_until[static_cast<std::size_t>(i)];
       if (!(t < until)) {
-        const double clear = bounds.Clear(i, poses, bodies);
+        if (!bodies) {
+          bodies = barriers::PlaceBodies(config.arm, poses);
+        }
+        const double clear = bounds.Clear(i, poses, *bodies);
         if (!(clear >= 0.0)) {
           return bounds.LimitOf(i);
         }

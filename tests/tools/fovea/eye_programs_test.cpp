@@ -125,6 +125,15 @@ TEST_F(EyeProgramsTest, MistypedCommandGetsTheNearestOne) {
   EXPECT_THAT(result.err, testing::HasSubstr("did you mean atlas?; allowed: report, replay"));
 }
 
+TEST_F(EyeProgramsTest, DetectRefusesTwoImagesOfOneMarkedName) {
+  const std::string disc = Disc("a.png", 0.4);
+  std::filesystem::copy_file(disc, folder_.path() / "a.jpg");
+  const std::filesystem::path marked = folder_.path() / "marked";
+  ExpectRefused(Fovea({"detect", "--target", "circle", "--marked", marked, disc, folder_.path() / "a.jpg"}),
+                "a-marked.png; images need different names");
+  EXPECT_FALSE(std::filesystem::exists(marked)) << "nothing is half done";
+}
+
 TEST_F(EyeProgramsTest, DetectRefusesAnUnreadableImage) {
   ExpectRefused(Fovea({"detect", "--target", "circle", "nowhere.png"}), "nowhere.png: no such file");
   ExpectRefused(Fovea({"detect", "--target", "circle", folder_.path().string()}), "no images");

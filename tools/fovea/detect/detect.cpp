@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -99,17 +100,35 @@ std::string WhyNotFound(const DetectArguments& a, const cv::Mat& image, vision::
   if (best.found) {
     return fmt::format(
         "the best outline, at ({:.1f}, {:.1f}) px with a radius of {:.1f} px, has a confidence of {:.2f}, "
-        "below "
-        "--confidence-min {:.2f}",
+        "below --confidence-min {:.2f}",
         best.u_px, best.v_px, best.radius_px, best.confidence, a.confidence_min);
   }
   return fmt::format("no outline of a {} with a radius of {:.0f} to {:.0f} px", a.target,
                      config.radius_min_px, config.radius_max_px);
 }
 
+std::filesystem::path MarkedFile(const std::filesystem::path& folder,
+                                 const std::filesystem::path& image_file) {
+  return folder / (image_file.stem().string() + "-marked.png");
+}
+
+// config::InputError: two of the images would be marked in one file.
+void CheckMarkedFiles(const std::filesystem::path& folder,
+                      const std::vector<std::filesystem::path>& image_files) {
+  std::map<std::filesystem::path, std::filesystem::path> written;
+  for (const std::filesystem::path& image_file : image_files) {
+    const auto [other, is_new] = written.emplace(MarkedFile(folder, image_file), image_file);
+    if (!is_new) {
+      throw config::InputError(
+          fmt::format("--marked: {} and {} would both be drawn in {}; images need different names",
+                      other->second.string(), image_file.string(), other->first.string()));
+    }
+  }
+}
+
 // The image in colour, with what was found.
-void WriteMarked(const std::filesystem::path& folder, const std::filesystem::path& image_file,
-                 const cv::Mat& image, const vision::Detection& detection) {
+void WriteMarked(const std::filesystem::path& file, const cv::Mat& image,
+                 const vision::Detection& detection) {
   constexpr int kShift = 4;  // OpenCV draws at sixteenths of a pixel
   const cv::Scalar kBlue(255, 128, 0);
   const auto point = [](const vision::ImagePoint& p) {
@@ -134,7 +153,6 @@ void WriteMarked(const std::filesystem::path& folder, const std::filesystem::pat
     cv::drawMarker(marked, cv::Point(cvRound(detection.u_px), cvRound(detection.v_px)), kBlue,
                    cv::MARKER_CROSS, 12, 2, cv::LINE_AA);
   }
-  const std::filesystem::path file = folder / (image_file.stem().string() + "-marked.png");
   if (!cv::imwrite(file.string(), marked)) {
     throw std::runtime_error(file.string() + ": cannot be written");
   }
@@ -207,14 +225,16 @@ int Detect(const DetectArguments& arguments) {
   if (!arguments.camera_file.empty()) {
     camera = ReadCameraFile(arguments.camera_file);
   }
+  const std::vector<std::filesystem::path> image_files = ImageFiles(arguments.images);
   if (!arguments.marked.empty()) {
+    CheckMarkedFiles(arguments.marked, image_files);
     std::filesystem::create_directories(arguments.marked);
   }
   nlohmann::json list = nlohmann::json::array();
   std::unique_ptr<vision::TargetDetector> detector;
   vision::DetectorConfig config;
   cv::Size size;
-  for (const std::filesystem::path& path : ImageFiles(arguments.images)) {
+  for (const std::filesystem::path& path : image_files) {
     const cv::Mat image = ReadImage(path);
     if (!detector || image.size() != size) {
       size = image.size();
@@ -229,7 +249,7 @@ int Detect(const DetectArguments& arguments) {
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     const std::string why = d.found ? "" : WhyNotFound(arguments, image, config);
     if (!arguments.marked.empty()) {
-      WriteMarked(arguments.marked, path, image, d);
+      WriteMarked(MarkedFile(arguments.marked, path), image, d);
     }
     if (arguments.json) {
       list.push_back(ToJson(path.string(), d, ms, why));

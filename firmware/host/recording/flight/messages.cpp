@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "firmware/core/barriers/links_barrier.hpp"
 #include "firmware/core/link/config_fields.hpp"
+#include "firmware/host/recording/log/log_format.hpp"
 #include "fovea/tick.pb.h"
 
 namespace fovea::flight {
@@ -63,6 +66,30 @@ void EachPart(Config& config, const Visit& visit) {
   visit("arm", [&config](auto& a) { link::ArmFields(a, config.arm); });
 }
 
+// The largest radius of the bodies from `first` to before `end` [m].
+double LargestRadius(const model::ArmModel& arm, int first, int end) {
+  double largest = 0.0;
+  for (int k = std::max(first, 0); k < end; ++k) {
+    largest = std::max(largest, arm.shape.bodies[static_cast<std::size_t>(k)].radius);
+  }
+  return largest;
+}
+
+// Clearances of a log before format 3 count from the lines between the joints. This takes the links' radii
+// off them, so that the arm is kept no farther away than it was.
+void CountFromCapsules(config::ServoConfig& config) {
+  constexpr double kLeastSight = 1e-3;  // 0 would switch the barrier off [m]
+  const model::ArmModel& arm = config.arm;
+  const int bodies = arm.num_joints + 1;
+  config.guard.link_clearance =
+      std::max(config.guard.link_clearance - LargestRadius(arm, bodies - barriers::kOuterLinks, bodies), 0.0);
+  if (config.guard.sight_clearance > 0.0) {
+    config.guard.sight_clearance = std::max(
+        config.guard.sight_clearance - LargestRadius(arm, 0, bodies - model::ArmShape::kNeighbours - 1),
+        kLeastSight);
+  }
+}
+
 }  // namespace
 
 log::ReplayData ReplayDataOf(const FlightRecord& record) {
@@ -89,6 +116,7 @@ log::Keyframe ToMessage(const Keyframe& keyframe) {
 
 log::ServoConfiguration ToMessage(const config::ServoConfig& config) {
   log::ServoConfiguration message;
+  message.set_format(log::kLogFormat);
   std::vector<std::uint8_t> storage(kMostSection);
   EachPart(config, [&](const char* name, const auto& fields) {
     link::FieldWriter writer(storage);
@@ -138,6 +166,9 @@ config::ServoConfig FromMessage(const log::ServoConfiguration& message) {
           "the servo's configuration, part \"{}\": not as this program has it; the log is of a later one",
           section.name()));
     }
+  }
+  if (message.format() < 3) {
+    CountFromCapsules(config);
   }
   return config;
 }

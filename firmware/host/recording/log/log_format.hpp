@@ -2,6 +2,9 @@
 //
 //   1  no format record
 //   2  the format record; the key safety.face_tilt_max is called safety.disc_tilt_max
+//   3  safety.link_clearance and safety.sight_clearance count from the surface of the arm's links; before,
+//   the first was
+//      called safety.link_radius, and both counted from the lines between the joints
 //
 // It rises when a program that knows the former one would misread the log. A field at the end of its list,
 // or another topic, needs no new version.
@@ -12,7 +15,7 @@
 
 namespace fovea::log {
 
-inline constexpr int kLogFormat = 2;        // written
+inline constexpr int kLogFormat = 3;        // written
 inline constexpr int kOldestLogFormat = 1;  // read
 
 inline constexpr const char* kFormatRecord = "format";  // the metadata record's name

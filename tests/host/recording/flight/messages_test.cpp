@@ -47,6 +47,33 @@ TEST(ServoConfigurationTest, FieldMissingFromALogTakesItsDefault) {
   EXPECT_EQ(back.law.lambda, 1.0 / 3.0);
 }
 
+// Before format 3 clearances counted from the lines between the joints.
+TEST(ServoConfigurationTest, ClearancesOfAnOlderLogCountFromTheLinksSurface) {
+  config::ServoConfig old = SomeConfig();
+  ASSERT_EQ(old.arm.num_joints, 7);
+  for (model::Capsule& body : old.arm.shape.bodies) {
+    body.radius = 0.02;
+  }
+  old.arm.shape.bodies[1].radius = 0.05;  // near the base: lines of sight ask it, planes do not
+  old.arm.shape.bodies[5].radius = 0.04;  // the other way round
+  const auto read = [&old](double planes, double sight, bool in_older_log) {
+    old.guard.link_clearance = planes;
+    old.guard.sight_clearance = sight;
+    log::ServoConfiguration message = ToMessage(old);
+    if (in_older_log) {
+      message.clear_format();
+    }
+    return FromMessage(message).guard;
+  };
+  EXPECT_DOUBLE_EQ(read(0.06, 0.08, true).link_clearance, 0.02);
+  EXPECT_DOUBLE_EQ(read(0.06, 0.08, true).sight_clearance, 0.03);
+  EXPECT_EQ(read(0.03, 0.03, true).link_clearance, 0.0);
+  EXPECT_GT(read(0.03, 0.03, true).sight_clearance, 0.0) << "0 would switch it off";
+  EXPECT_EQ(read(0.03, 0.0, true).sight_clearance, 0.0) << "it was switched off";
+  EXPECT_EQ(read(0.06, 0.08, false).link_clearance, 0.06);
+  EXPECT_EQ(read(0.06, 0.08, false).sight_clearance, 0.08);
+}
+
 TEST(ServoConfigurationTest, UnknownOrTruncatedFieldsAreRefused) {
   log::ServoConfiguration later = ToMessage(SomeConfig());
   later.mutable_sections(4)->mutable_fields()->append(8, '\0');
