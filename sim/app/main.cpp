@@ -312,7 +312,7 @@ void AddPictures(CLI::App& pictures, PictureArguments& arguments) {
   pictures.footer(
       "The arm is placed at each view, not driven there.\n"
       "Example:\n"
-      "  fovea-sim pictures --board 8x5 --square 0.03 --marker 0.022 --set camera.k1=-0.12");
+      "  fovea-sim pictures --board 8x5 --square 0.03 --marker 0.022 --set camera.lens=[-0.12,0,0,0,0]");
 }
 
 int List() {

@@ -154,7 +154,7 @@ Eigen::Isometry3d ViewOf(const Look& look, const Eigen::Matrix3d& R_down, const 
       }
       const Eigen::Vector2d xy = Distort(lens, p.head<2>() / p.z());
       const double u = pinhole.f_px * xy.x() + pinhole.c_u_px;
-      const double v = pinhole.f_px * xy.y() + pinhole.c_v_px;
+      const double v = pinhole.F_v() * xy.y() + pinhole.c_v_px;
       inside = inside && u > kNearestPx && u < pinhole.width_px - 1 - kNearestPx && v > kNearestPx &&
                v < pinhole.height_px - 1 - kNearestPx;
     }
@@ -167,11 +167,12 @@ Eigen::Isometry3d ViewOf(const Look& look, const Eigen::Matrix3d& R_down, const 
 void WriteTruth(const RunDescription& about, const calibration::Board& board, const fs::path& path) {
   const Eigen::Isometry3d& X_EC = about.scene.X_EC;
   const Eigen::Quaterniond q(X_EC.linear());
-  const Lens& lens = about.scenario.camera.lens;
+  const Lens lens = MakeScenarioLens(about.scenario);
   std::ofstream stream(path, std::ios::trunc);
   stream << nlohmann::ordered_json{{"width_px", about.pinhole.width_px},
                                    {"height_px", about.pinhole.height_px},
-                                   {"f_px", about.pinhole.f_px},
+                                   {"f_u_px", about.pinhole.f_px},
+                                   {"f_v_px", about.pinhole.F_v()},
                                    {"c_u_px", about.pinhole.c_u_px},
                                    {"c_v_px", about.pinhole.c_v_px},
                                    {"lens", {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3}},
@@ -201,7 +202,7 @@ CalibrationPictures TakeCalibrationPictures(const Scenario& scenario,
   Photographer photographer(scenario);
   const RunDescription& about = photographer.about();
   const Pinhole& pinhole = about.pinhole;
-  const Lens& lens = scenario.camera.lens;
+  const Lens lens = MakeScenarioLens(scenario);
   std::error_code error;
   fs::create_directories(options.out / "focal", error);
   if (error) {

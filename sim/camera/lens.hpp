@@ -1,5 +1,6 @@
-// A lens that is not ideal: it moves what a pinhole would see. Pictures are resampled from a larger and finer
-// one of the pinhole's, as a sensor behind such a lens would collect them.
+// A camera that is not ideal: its lens moves what a pinhole would see, its sensor is not centred or has
+// pixels that are not square. Pictures are resampled from a larger and finer one of a plain pinhole, as such
+// a sensor would collect them.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,6 +29,11 @@ Eigen::Vector2d Distort(const Lens& lens, const Eigen::Vector2d& xy);
 // The ideal point that the lens puts at `xy`. False when none is, or the lens has folded the picture before
 // it.
 [[nodiscard]] bool Undistort(const Lens& lens, const Eigen::Vector2d& xy, Eigen::Vector2d& ideal);
+
+// Whether the picture of a plain pinhole must be resampled.
+inline bool NeedsLensMap(const Lens& lens, const Pinhole& pinhole) {
+  return !lens.IsZero() || !pinhole.IsPlain();
+}
 
 class LensMap {
  public:

@@ -4,8 +4,9 @@ namespace fovea::sim {
 namespace {
 
 std::optional<LensMap> MakeLensMap(const Lens& lens, const Pinhole& pinhole, Sampling sampling) {
-  return lens.IsZero() && sampling == Sampling::kPlain ? std::nullopt
-                                                       : std::make_optional<LensMap>(lens, pinhole);
+  return !NeedsLensMap(lens, pinhole) && sampling == Sampling::kPlain
+             ? std::nullopt
+             : std::make_optional<LensMap>(lens, pinhole);
 }
 
 }  // namespace

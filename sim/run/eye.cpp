@@ -19,7 +19,7 @@ Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
   UseOneThreadPerRenderer();
   std::vector<Painter> painters;
   for (int i = 0; i < kRenderers; ++i) {  // one after the other: drivers set themselves up with the first
-    optics_.push_back(std::make_unique<Optics>(about.scene, about.pinhole, about.scenario.camera.lens,
+    optics_.push_back(std::make_unique<Optics>(about.scene, about.pinhole, MakeScenarioLens(about.scenario),
                                                Sampling::kPlain, i));
     Optics* const optics = optics_.back().get();
     Painter painter;

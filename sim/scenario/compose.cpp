@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -190,19 +191,45 @@ std::uint64_t SeedOf(const Scenario& s, RandomStream stream) {
 }
 
 Pinhole MakeScenarioPinhole(const Scenario& s) {
-  return MakePinhole(s.camera.width_px, s.camera.height_px, s.camera.hfov_deg * kRadPerDeg);
+  const auto& c = s.camera;
+  Pinhole pinhole = MakePinhole(c.width_px, c.height_px, c.hfov_deg * kRadPerDeg);
+  const std::array<double, 4> given{c.f_u_px, c.f_v_px, c.c_u_px, c.c_v_px};
+  if (given == std::array<double, 4>{}) {
+    return pinhole;
+  }
+  if (std::count(given.begin(), given.end(), 0.0) > 0) {
+    throw InputError(fmt::format(
+        "camera.f_u_px, f_v_px, c_u_px, c_v_px = {}, {}, {}, {} is not allowed: all four, or none", c.f_u_px,
+        c.f_v_px, c.c_u_px, c.c_v_px));
+  }
+  if (c.c_u_px > c.width_px - 1 || c.c_v_px > c.height_px - 1) {
+    throw InputError(
+        fmt::format("camera.c_u_px, c_v_px = {}, {} is not allowed: outside the picture of {} x {} px",
+                    c.c_u_px, c.c_v_px, c.width_px, c.height_px));
+  }
+  pinhole.f_px = c.f_u_px;
+  pinhole.c_u_px = c.c_u_px;
+  pinhole.c_v_px = c.c_v_px;
+  pinhole.aspect = c.f_v_px / c.f_u_px;
+  return pinhole;
+}
+
+Lens MakeScenarioLens(const Scenario& s) {
+  const std::vector<double>& k = s.camera.lens;
+  return {k[0], k[1], k[2], k[3], k[4]};
 }
 
 void CheckLens(const Scenario& s) {
-  const Lens& lens = s.camera.lens;
+  const Lens lens = MakeScenarioLens(s);
+  const Pinhole pinhole = MakeScenarioPinhole(s);
   try {
-    if (!lens.IsZero()) {
-      const LensMap map(lens, MakeScenarioPinhole(s));
+    if (NeedsLensMap(lens, pinhole)) {
+      const LensMap map(lens, pinhole);
     }
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format(
-        "camera.k1, k2, p1, p2, k3 = {}, {}, {}, {}, {} is not allowed with camera.hfov_deg = {}: {}",
-        lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, s.camera.hfov_deg, error.what()));
+        "camera.lens = [{}, {}, {}, {}, {}] is not allowed with focal lengths of {:.6g} and {:.6g} px: {}",
+        lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, pinhole.f_px, pinhole.F_v(), error.what()));
   }
 }
 

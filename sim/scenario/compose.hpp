@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 
+#include "sim/camera/lens.hpp"
 #include "sim/render/pinhole.hpp"
 #include "sim/render/scene_renderer.hpp"
 #include "sim/robot/sim_robot.hpp"
@@ -15,7 +16,9 @@ namespace fovea::sim {
 
 // X_EC.
 Eigen::Isometry3d CameraMount(const Scenario& scenario);
+// std::runtime_error: intrinsics that are not whole, or that lie outside the picture.
 Pinhole MakeScenarioPinhole(const Scenario& scenario);
+Lens MakeScenarioLens(const Scenario& scenario);
 WorldConfig MakeWorldConfig(const Scenario& scenario, const SimRobot& robot);
 RenderScene MakeRenderScene(const Scenario& scenario, const SimRobot& robot);
 // What [motion] commands; of interest when motion.kind says so.

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/inside_folder.hpp"
@@ -58,13 +59,20 @@ void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
               "standard deviation of read noise");
   keys.Number("camera.light", s.camera.light, 0.01, 4.0, "",
               "brightness of the picture; 1 is a well-lit bench");
-  keys.Number(
-      "camera.k1", s.camera.lens.k1, -2.0, 2.0, "",
-      "the lens' radial distortion, with k2 and k3; not 0: each picture takes some five times as long");
-  keys.Number("camera.k2", s.camera.lens.k2, -10.0, 10.0, "", "times r^4");
-  keys.Number("camera.p1", s.camera.lens.p1, -0.1, 0.1, "", "its tangential distortion, with p2");
-  keys.Number("camera.p2", s.camera.lens.p2, -0.1, 0.1, "", "along x");
-  keys.Number("camera.k3", s.camera.lens.k3, -50.0, 50.0, "", "times r^6");
+  keys.Numbers("camera.lens", s.camera.lens, 5, 5, -1e3, 1e3, "",
+               "distortion of Brown's model: k1, k2, p1, p2, k3; the servo knows it");
+  for (const char* former : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
+    keys.Renamed(former, "camera.lens");
+  }
+  keys.Number("camera.f_u_px", s.camera.f_u_px, 0.0, 1e6, "px",
+              "focal length along u, with the next three in place of hfov_deg; 0: hfov_deg counts");
+  keys.Number("camera.f_v_px", s.camera.f_v_px, 0.0, 1e6, "px", "focal length along v");
+  keys.Number("camera.c_u_px", s.camera.c_u_px, 0.0, 4095.0, "px", "principal point");
+  keys.Number("camera.c_v_px", s.camera.c_v_px, 0.0, 4095.0, "px", "principal point");
+  keys.Number("camera.rms_px", s.camera.rms_px, 0.0, 1e3, "px",
+              "as `fovea calibrate intrinsics` writes it; has no effect in simulation");
+  keys.Number("camera.mount_rms_mm", s.camera.mount_rms_mm, 0.0, 1e3, "mm",
+              "as `fovea calibrate hand-eye` writes it; has no effect in simulation");
   keys.Numbers("camera.mount_xyz", s.camera.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
   keys.Numbers("camera.mount_rpy_deg", s.camera.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
                "roll, pitch, yaw of C in E, about fixed axes");
@@ -194,13 +202,20 @@ Scenario LoadScenario(const std::string& name_or_path, const std::vector<std::st
   scenario.name = is_path ? file.stem().string() : ShippedName(file);
   scenario.folder = file.parent_path();
   const config::KeyTable keys = ScenarioKeys(scenario);
+  std::set<std::string> given;
   for (const config::Setting& setting : config::ReadTomlFile(file)) {
     keys.Apply(setting);
+    given.insert(setting.key);
   }
   for (const std::string& assignment : assignments) {
     const config::Setting setting = config::ParseAssignment(assignment);
     keys.Apply(setting);
+    given.insert(setting.key);
     scenario.arm_is_the_users = scenario.arm_is_the_users || setting.key == "arm.model";
+  }
+  if (given.contains("target.colour") && !given.contains("vision.hue_deg")) {
+    scenario.vision.config.colour.hue_deg =
+        HueOfColour(scenario.target.colour).value_or(scenario.vision.config.colour.hue_deg);
   }
   return scenario;
 }

@@ -9,7 +9,6 @@
 #include "firmware/host/config/load_keys.hpp"
 #include "firmware/host/config/servo_keys.hpp"
 #include "firmware/host/config/vision_keys.hpp"
-#include "sim/camera/lens.hpp"
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/scenario/target_scene.hpp"
 
@@ -41,12 +40,18 @@ struct Scenario {
     int width_px = 640;
     int height_px = 480;
     double hfov_deg = 60.0;
+    double f_u_px = 0.0;  // 0: from hfov_deg, and the axis in the middle
+    double f_v_px = 0.0;
+    double c_u_px = 0.0;
+    double c_v_px = 0.0;
     double rate_hz = 30.0;
     double exposure_ms = 5.0;
     double latency_ms = 40.0;
     double noise_sigma = 3.0;
     double light = 1.0;
-    Lens lens;
+    std::vector<double> lens{0.0, 0.0, 0.0, 0.0, 0.0};  // k1, k2, p1, p2, k3
+    double rms_px = 0.0;
+    double mount_rms_mm = 0.0;
     std::vector<double> mount_xyz{0.05, 0.0, 0.04};
     std::vector<double> mount_rpy_deg{0.0, 0.0, 90.0};
   } camera;

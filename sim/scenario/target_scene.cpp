@@ -30,7 +30,8 @@ void AddTargetSceneKeys(TargetScene& s, config::KeyTable& keys) {
       "target.rpy_deg", s.rpy_deg, 3, 3, -360.0, 360.0, "deg",
       "roll, pitch, yaw of a flat one about fixed axes of B; its frame: x right and y down on its painted "
       "side, z into it");
-  keys.Numbers("target.colour", s.colour, 3, 3, 0.0, 1.0, "", "red, green, blue");
+  keys.Numbers("target.colour", s.colour, 3, 3, 0.0, 1.0, "",
+               "red, green, blue; vision.hue_deg follows it unless it is set, too");
   keys.Choice(
       "target.motion", s.motion, {kMotionNames.begin(), kMotionNames.end()},
       "how it moves; circle and eight lie level, the pendulum swings by 0.5 rad, wander goes here and "
@@ -135,6 +136,20 @@ Shape MakeTargetBody(const TargetShape& shape) {
   body.kind = ShapeKind::kMesh;
   body.mesh = std::make_shared<const Mesh>(std::move(plate));
   return body;
+}
+
+// As in HSV. (Smith, Color gamut transform pairs, 1978.)
+std::optional<double> HueOfColour(const std::vector<double>& rgb) {
+  const auto [low, high] = std::minmax_element(rgb.begin(), rgb.end());
+  const double range = *high - *low;
+  if (!(range > 0.0)) {
+    return std::nullopt;
+  }
+  const auto strongest = high - rgb.begin();
+  const double next = rgb[static_cast<std::size_t>((strongest + 1) % 3)];
+  const double last = rgb[static_cast<std::size_t>((strongest + 2) % 3)];
+  const double hue = 120.0 * static_cast<double>(strongest) + 60.0 * (next - last) / range;
+  return hue < 0.0 ? hue + 360.0 : hue;
 }
 
 bool KeepsMoving(const TargetScene& scene) {

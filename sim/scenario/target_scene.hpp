@@ -1,6 +1,7 @@
 // The target of a scenario: what it is, where it lies and how it moves.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ RollingBallConfig MakeRollingBall(const TargetScene& scene);
 TargetShape MakeTargetShape(const features::TargetFeature& feature);
 // What the arm could touch of it: a flat one is a plate of 2 mm behind its painted side.
 Shape MakeTargetBody(const TargetShape& shape);
+
+// Hue of a colour {red, green, blue}, each from 0 to 1 [deg]: 0 red, 120 green, 240 blue; nothing for a gray.
+std::optional<double> HueOfColour(const std::vector<double>& rgb);
 
 // Whether it is followed rather than come to: it moves all the time.
 bool KeepsMoving(const TargetScene& scene);

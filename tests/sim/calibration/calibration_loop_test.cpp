@@ -28,7 +28,7 @@ using testing::HasSubstr;
 struct BoardCase {
   const char* name;
   std::vector<std::string> flags;
-  std::vector<std::string> lens;  // --set of it
+  std::vector<std::string> lens;  // --set of it, and of what else the camera has of its own
   // Bounds on what is found.
   double f_px, c_px, picture_px, rms_px, X_mm, X_deg;
 };
@@ -55,8 +55,8 @@ class CalibrationLoopTest : public testing::TestWithParam<BoardCase> {
   static json Read(const fs::path& path) { return json::parse(std::ifstream(path)); }
   static vision::Intrinsics ToIntrinsics(const json& from) {
     vision::Intrinsics in;
-    in.f_u_px = from.value("f_u_px", from.value("f_px", 0.0));
-    in.f_v_px = from.value("f_v_px", from.value("f_px", 0.0));
+    in.f_u_px = from["f_u_px"];
+    in.f_v_px = from["f_v_px"];
     in.c_u_px = from["c_u_px"];
     in.c_v_px = from["c_v_px"];
     const json& lens = from["lens"];
@@ -116,6 +116,23 @@ TEST_P(CalibrationLoopTest, RecoversTheScenariosCalibration) {
             << found["sigma_f_px"] << "), c " << c_px << " px, the picture at most " << picture_px
             << " px, rms " << found["rms_px"] << " px; X_EC off " << off_mm << " mm, " << off_deg
             << " deg, the views agree to " << hand["rms_mm"] << " mm, " << hand["rms_deg"] << " deg\n";
+  // The same written into a scenario: that camera is simulated, and the servo knows it.
+  const std::string scenario = folder_.path() / "mine.toml";
+  fs::copy_file(SourceRoot() / "sim/scenarios/ball.toml", scenario);
+  for (const std::vector<std::string>& what :
+       {std::vector<std::string>{"intrinsics", Out().string()},
+        std::vector<std::string>{"hand-eye", Out().string(), "--camera", camera}}) {
+    const ProgramResult put =
+        Fovea(Joined(Joined({"calibrate"}, what), Joined({"--write", scenario}, board.flags)));
+    ASSERT_EQ(put.exit_code, 0) << put.err;
+  }
+  const ProgramResult run = RunProgram(
+      {FOVEA_SIM_PROGRAM, "run", scenario, "--no-report", "--out", (folder_.path() / "run").string()}, {},
+      kLimit);
+  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+  const json summary = Read(folder_.path() / "run" / "summary.json");
+  std::cout << "a run with that camera ends " << summary["final_error_px_rms"] << " px off\n";
+  EXPECT_LT(summary["final_error_px_rms"].get<double>(), 0.3);
   // The same written into a configuration of hardware, as it is read from there.
   const std::string cell = folder_.path() / "cell.toml";
   std::ofstream(cell)
@@ -149,8 +166,7 @@ TEST_P(CalibrationLoopTest, RecoversTheScenariosCalibration) {
   EXPECT_LT(off_deg, board.X_deg);
 }
 
-const std::vector<std::string> kLens{"--set", "camera.k1=-0.18", "--set", "camera.k2=0.06",
-                                     "--set", "camera.p1=0.001", "--set", "camera.p2=-0.0015"};
+const std::vector<std::string> kLens{"--set", "camera.lens=[-0.18, 0.06, 0.001, -0.0015, 0]"};
 INSTANTIATE_TEST_SUITE_P(
     Boards, CalibrationLoopTest,
     testing::Values(
@@ -164,7 +180,19 @@ INSTANTIATE_TEST_SUITE_P(
                   0.5,
                   0.075,
                   0.3,
-                  0.035}),
+                  0.035},
+        // As real ones are: pixels that are not quite square, an axis beside the middle.
+        BoardCase{
+            "own_sensor",
+            {"--board", "8x5", "--square", "0.03", "--marker", "0.022"},
+            {"--set", "camera.f_u_px=571.3", "--set", "camera.f_v_px=566.9", "--set", "camera.c_u_px=301.7",
+             "--set", "camera.c_v_px=252.2", "--set", "camera.lens=[-0.1, 0.03, 0.0005, 0.001, 0]"},
+            0.3,
+            0.4,
+            0.5,
+            0.075,
+            0.3,
+            0.035}),
     [](const auto& board) { return std::string(board.param.name); });
 
 // Without a lens; and what cannot be calibrated from.
@@ -179,7 +207,7 @@ TEST_F(CalibrationLoopTest, FindsTheFocalLengthAndRefusesBadInput) {
                                      near.string(), far.string(), "--json"});
   ASSERT_EQ(focal.exit_code, 0) << focal.err;
   const json found = json::parse(focal.out);
-  const double f_px = Read(Out() / "truth.json")["f_px"];
+  const double f_px = Read(Out() / "truth.json")["f_u_px"];
   const double off_px = found["f_px"].get<double>() - f_px;
   std::cout << "f off " << off_px << " px (sigma " << found["sigma_px"] << ") of " << f_px << "\n";
   EXPECT_LT(std::fabs(off_px), 3.0 * found["sigma_px"].get<double>());
@@ -220,7 +248,8 @@ TEST_F(CalibrationLoopTest, FindsTheFocalLengthAndRefusesBadInput) {
   ExpectRefused(intrinsics(Out(), {"--board", "20x20", "--marker", "0.015", "--dictionary", "4x4_50"}),
                 "the board has 220 markers");
   ExpectRefused(Pictures(folder_.path() / "wide", {"--board", "40x6", "--square", "0.025"}), "--board 40x6");
-  ExpectRefused(Pictures(folder_.path() / "folded", {"--set", "camera.k1=-2"}), "the lens folds the picture");
+  ExpectRefused(Pictures(folder_.path() / "folded", {"--set", "camera.lens=[-2, 0, 0, 0, 0]"}),
+                "the lens folds the picture");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The lens: its formula against OpenCV's, what it lays on the sensor against where a ball must be seen, and
-// the detector behind it, which is told the same lens.
+// The lens and the sensor: its formula against OpenCV's, what it lays on the sensor against where a ball must
+// be seen, and the detector behind it, which is told the same lens.
 #include "sim/camera/lens.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <iostream>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
 
 #include "firmware/vision/detect/target_detector.hpp"
 #include "sim/camera/optics.hpp"
@@ -53,9 +54,13 @@ TEST(LensTest, LensThatFoldsThePictureIsRefused) {
 }
 
 // A picture of brightness a + b u + c v, resampled, has each pixel's own ideal place in it.
-TEST(LensTest, ResamplesByTheLensFormula) {
-  const Pinhole pinhole = MakePinhole(160, 120, 1.0);
-  const LensMap map(kLens, pinhole);
+class SensorTest : public testing::TestWithParam<std::tuple<Lens, Pinhole>> {};
+
+TEST_P(SensorTest, ResamplesByTheCamerasFormula) {
+  const auto& [lens, pinhole] = GetParam();
+  ASSERT_TRUE(NeedsLensMap(lens, pinhole));
+  const LensMap map(lens, pinhole);
+  EXPECT_TRUE(map.wide().IsPlain());
   const Pinhole& wide = map.wide();
   const auto pixels = static_cast<std::size_t>(wide.width_px) * static_cast<std::size_t>(wide.height_px);
   std::vector<std::uint8_t> from(4 * pixels);
@@ -70,7 +75,7 @@ TEST(LensTest, ResamplesByTheLensFormula) {
   for (int v = 0; v < 120; ++v) {
     for (int u = 0; u < 160; ++u) {
       Eigen::Vector2d ideal;
-      ASSERT_TRUE(Undistort(kLens, {(u - pinhole.c_u_px) / pinhole.f_px, (v - pinhole.c_v_px) / pinhole.f_px},
+      ASSERT_TRUE(Undistort(lens, {(u - pinhole.c_u_px) / pinhole.f_px, (v - pinhole.c_v_px) / pinhole.F_v()},
                             ideal));
       const auto at = 4 * static_cast<std::size_t>(160 * v + u);
       worst =
@@ -80,6 +85,20 @@ TEST(LensTest, ResamplesByTheLensFormula) {
   }
   std::cout << "off by " << worst << " gray levels of 255, which the picture rounds to whole ones\n";
   EXPECT_LT(worst, 1.6);
+}
+
+// A sensor of its own: pixels that are not square, an axis beside the middle.
+Pinhole OwnSensor() { return {160, 120, 146.0, 71.2, 66.1, 1.03}; }
+
+INSTANTIATE_TEST_SUITE_P(Cameras, SensorTest,
+                         testing::Values(std::tuple(kLens, MakePinhole(160, 120, 1.0)),
+                                         std::tuple(Lens{}, OwnSensor()), std::tuple(kLens, OwnSensor())));
+
+TEST(LensTest, PlainCameraNeedsNoResampling) {
+  EXPECT_FALSE(NeedsLensMap({}, MakePinhole(160, 120, 1.0)));
+  Pinhole beside = MakePinhole(160, 120, 1.0);
+  beside.c_v_px += 0.5;
+  EXPECT_TRUE(NeedsLensMap({}, beside));
 }
 
 // A ball near the corners, through the lens and back: where the detector has it against where it is.

@@ -5,7 +5,9 @@
 
 #include <set>
 
+#include "firmware/host/config/input_error.hpp"
 #include "fovea/hal/events.hpp"
+#include "sim/scenario/compose.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -38,6 +40,41 @@ TEST(ScenarioTest, EveryRenamedKeyHasASuccessorAndIsNoKeyItself) {
     EXPECT_EQ(keys.count(former), 0U) << former;
     EXPECT_EQ(keys.count(today), 1U) << today;
   }
+}
+
+TEST(ScenarioTest, HueFollowsTheTargetsColourUnlessItIsSet) {
+  const auto hue = [](const std::vector<std::string>& assignments) {
+    return LoadScenario("ball", assignments).vision.config.colour.hue_deg;
+  };
+  EXPECT_EQ(hue({}), 0.0);
+  EXPECT_NEAR(hue({"target.colour=[0.1, 0.1, 0.8]"}), 240.0, 1e-9);
+  EXPECT_NEAR(hue({"target.colour=[0.1, 0.8, 0.1]"}), 120.0, 1e-9);
+  EXPECT_NEAR(hue({"target.colour=[0.8, 0.45, 0.1]"}), 30.0, 1e-9);
+  EXPECT_NEAR(hue({"target.colour=[0.8, 0.1, 0.45]"}), 330.0, 1e-9);
+  EXPECT_NEAR(hue({"target.colour=[0.1, 0.1, 0.8]", "vision.hue_deg=30"}), 30.0, 1e-9);
+  EXPECT_EQ(hue({"target.colour=[0.5, 0.5, 0.5]"}), 0.0) << "gray has none";
+}
+
+TEST(ScenarioTest, IntrinsicsAreTakenWholeOrRefused) {
+  const auto pinhole = [](const std::vector<std::string>& assignments) {
+    return MakeScenarioPinhole(LoadScenario("ball", assignments));
+  };
+  EXPECT_TRUE(pinhole({}).IsPlain());
+  const std::vector<std::string> all{"camera.f_u_px=571.3", "camera.f_v_px=566.9", "camera.c_u_px=301.7",
+                                     "camera.c_v_px=252.2"};
+  const Pinhole own = pinhole(all);
+  EXPECT_FALSE(own.IsPlain());
+  EXPECT_EQ(own.f_px, 571.3);
+  EXPECT_DOUBLE_EQ(own.F_v(), 566.9);
+  EXPECT_EQ(own.c_v_px, 252.2);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::vector<std::string> some = all;
+    some.erase(some.begin() + static_cast<std::ptrdiff_t>(i));
+    EXPECT_THROW(pinhole(some), config::InputError) << "without " << all[i];
+  }
+  std::vector<std::string> outside = all;
+  outside.emplace_back("camera.c_u_px=640");
+  EXPECT_THROW(pinhole(outside), config::InputError);
 }
 
 }  // namespace

@@ -43,9 +43,9 @@ atlas::Sampler MakeSampler(const std::string& target) {
 // What the sampler decides or builds upon stays as it is.
 void CheckAssignments(const std::vector<std::string>& assignments) {
   for (const std::string& assignment : assignments) {
-    for (const char* own :
-         {"arm.model", "arm.q_start", "camera.enabled", "camera.width_px", "camera.height_px",
-          "camera.hfov_deg", "camera.mount_", "target.", "servo.goal", "run.seed"}) {
+    for (const char* own : {"arm.model", "arm.q_start", "camera.enabled", "camera.width_px",
+                            "camera.height_px", "camera.hfov_deg", "camera.f_", "camera.c_", "camera.mount_",
+                            "target.", "servo.goal", "run.seed"}) {
       if (assignment.rfind(own, 0) == 0) {
         throw config::InputError(fmt::format("--set {}: the atlas sets {} itself", assignment, own));
       }
