@@ -22,7 +22,8 @@ execute_process(COMMAND sh -c "${CXX} -std=c++20 -O1 $0 $(pkg-config --cflags --
   ${SOURCE_DIR}/../pkg_config.cpp ${WORK_DIR}/pkg_config COMMAND_ERROR_IS_FATAL ANY)
 # What else is installed for others: the log's messages, completion.
 foreach(file share/fovea/proto/fovea/tick.proto share/fovea/proto/foxglove/image.proto
-        share/bash-completion/completions/fovea-sim share/zsh/site-functions/_fovea)
+        share/bash-completion/completions/fovea-sim share/zsh/site-functions/_fovea
+        share/zsh/vendor-completions/_fovea)
   if(NOT EXISTS ${WORK_DIR}/prefix/${file})
     message(FATAL_ERROR "${file} is not installed")
   endif()

@@ -43,8 +43,11 @@ function(fovea_install_package)
     install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/fovea.bash RENAME ${program}
       DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
   endforeach()
-  install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/_fovea DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions
-    COMPONENT runtime)
+  # Debian's zsh looks into vendor-completions of /usr; others, and Debian's in /usr/local, into site-functions.
+  foreach(folder site-functions vendor-completions)
+    install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/_fovea DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${folder}
+      COMPONENT runtime)
+  endforeach()
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/firmware/host/robots/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/robots
     COMPONENT data)
   fovea_debian_packages()

@@ -21,8 +21,20 @@ _fovea_help() {
     }'
 }
 
+# The keys that --set of "$@" knows. fovea-hw and a replay share only those of the servo with the simulator.
+_fovea_keys() {
+  local sim=$1 sections='[a-z]'
+  shift
+  case "${*##*/}" in
+    fovea-hw | 'fovea replay') sections='\(servo\|safety\)\.' ;;
+  esac
+  "$sim" keys 2> /dev/null | sed -n "s/^\($sections[^ ]*\) = .*/\1=/p"
+}
+
 _fovea() {
-  local program=$1 word=$2 previous=$3
+  local program=${1/#'~/'/$HOME/} word=$2 previous=$3
+  # The simulator that stands beside the program.
+  local sim=${program%"${program##*/}"}fovea-sim
   local -a call=("$program") found
   local w choices
   COMPREPLY=()
@@ -33,7 +45,7 @@ _fovea() {
     fi
   done
   if [ "$previous" = --set ]; then
-    mapfile -t found < <(compgen -W "$(fovea-sim keys 2> /dev/null | sed -n 's/^\([a-z][^ ]*\) = .*/\1=/p')" -- "$word")
+    mapfile -t found < <(compgen -W "$(_fovea_keys "$sim" "${call[@]}")" -- "$word")
     compopt -o nospace 2> /dev/null
   elif [[ $word == -* ]]; then
     mapfile -t found < <(compgen -W "$(_fovea_help options "${call[@]}")" -- "$word")
@@ -43,7 +55,7 @@ _fovea() {
     local names
     names=$(_fovea_help commands "${call[@]}")
     case "${call[*]##*/}" in
-      'fovea-sim run' | 'fovea-sim serve') names=$(fovea-sim list 2> /dev/null | awk '{ print $1 }') ;;
+      'fovea-sim run' | 'fovea-sim serve' | 'fovea-sim pictures') names=$("$sim" list 2> /dev/null | awk '{ print $1 }') ;;
       fovea-hw) names='loopback panda' ;;
     esac
     mapfile -t found < <(
