@@ -21,16 +21,13 @@ Fovea.compare = (function () {
 
   function row(label, unit, a, b) {
     const verdict = better(a, b);
-    const cell = (figure, wins) =>
-      el("td", { class: wins ? "number wins" : "number", text: figure ? Fovea.verdict.show(figure) : "–" });
-    return el(
-      "tr",
-      {},
-      el("th", { scope: "row" }, label, unit ? el("span", { class: "unit", text: ` [${unit}]` }) : null),
+    const cell = (figure, wins) => ({ class: wins ? "wins" : null, of: figure ? Fovea.verdict.show(figure) : "–" });
+    return [
+      [label, unit ? el("span", { class: "unit", text: ` [${unit}]` }) : null],
       cell(a, verdict.startsWith("A")),
       cell(b, verdict.startsWith("B")),
-      el("td", { class: "number" }, difference(a, b), el("span", { class: "better", text: verdict })),
-    );
+      [difference(a, b), el("span", { class: "better", text: verdict })],
+    ];
   }
 
   function table(runs) {
@@ -52,28 +49,8 @@ Fovea.compare = (function () {
       });
       if (a || b) rows.push(row(label, "µs", a, b));
     }
-    return el(
-      "table",
-      { class: "figures" },
-      el("caption", { text: "Figures of both runs" }),
-      el(
-        "thead",
-        {},
-        el(
-          "tr",
-          {},
-          ["Figure", "A", "B", "B − A"].map((text, i) =>
-            el(
-              "th",
-              { scope: "col", class: i ? "number" : "" },
-              text,
-              i === 3 ? el("span", { class: "better" }) : null,
-            ),
-          ),
-        ),
-      ),
-      el("tbody", {}, rows),
-    );
+    const heads = ["Figure", "A", "B", ["B − A", el("span", { class: "better" })]];
+    return Fovea.table(heads, rows, { class: "figures", caption: "Figures of both runs", number: (i) => i > 0 });
   }
 
   // Lines of two texts as [{side: ' ' | 'A' | 'B', text}], by the longest common subsequence.

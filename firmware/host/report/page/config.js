@@ -21,34 +21,8 @@ Fovea.config = (function () {
     if (!run.changed) return null;
     const title = `Keys that differ from their defaults${several ? `, run ${run.letter}` : ""}`;
     if (!run.changed.length) return el("p", { text: `${title}: none.` });
-    const heads = ["Key", "Value", "Default"];
-    return [
-      el("h3", { text: title }),
-      el(
-        "div",
-        { class: "scroll" },
-        el(
-          "table",
-          { class: "keys" },
-          el(
-            "thead",
-            {},
-            el(
-              "tr",
-              {},
-              heads.map((text) => el("th", { scope: "col", text })),
-            ),
-          ),
-          el(
-            "tbody",
-            {},
-            run.changed.map(({ key, value, default: was }) =>
-              el("tr", {}, el("th", { scope: "row", text: key }), el("td", { text: value }), el("td", { text: was })),
-            ),
-          ),
-        ),
-      ),
-    ];
+    const rows = run.changed.map(({ key, value, default: was }) => [key, value, was]);
+    return [el("h3", { text: title }), Fovea.table(["Key", "Value", "Default"], rows, { class: "keys", scroll: true })];
   }
 
   function changes(runs) {

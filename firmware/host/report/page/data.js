@@ -78,6 +78,35 @@ Fovea.fill = function (node, attributes, children) {
   return node;
 };
 
+// A table with a line of `heads` over `rows`, which are lists of cells or {class, cells}. A head or a cell is text, a node,
+// a list of both, or {class, of: one of these}. `number`: whether column i holds numbers. `named`: the first cell of a
+// row is its heading. `scroll`: it may be wider than the page. More attributes are the table's.
+Fovea.table = function (heads, rows, { caption, number, named = true, scroll = false, ...attributes } = {}) {
+  const { el } = Fovea;
+  const cell = (tag, scope, value, i) => {
+    const { class: own, of } = value && value.of !== undefined ? value : { of: value };
+    const names = [number && number(i) ? "number" : null, own].filter(Boolean);
+    return el(tag, { class: names.join(" ") || null, scope }, [of].flat());
+  };
+  const line = (row) =>
+    el(
+      "tr",
+      { class: row.class },
+      (row.cells || row).map((value, i) =>
+        named && i === 0 ? cell("th", "row", value, i) : cell("td", null, value, i),
+      ),
+    );
+  const top = heads.map((value, i) => cell("th", "col", value, i));
+  const table = el(
+    "table",
+    attributes,
+    caption ? el("caption", { text: caption }) : null,
+    el("thead", {}, el("tr", {}, top)),
+    el("tbody", {}, rows.map(line)),
+  );
+  return scroll ? el("div", { class: "scroll" }, table) : table;
+};
+
 Fovea.absent = (words) => Fovea.el("p", { class: "absent", text: words });
 
 // A number in words with about `digits` significant digits, never in scientific notation.

@@ -115,31 +115,27 @@ Fovea.joints = (function () {
           : Number.isFinite(limit) && limit > 0
             ? `${number(size, 3)} of ${plain(limit)} (${fixed((100 * size) / limit, 0)} %)`
             : number(size, 3);
-      return el("td", { class: size !== null && size > limit ? "number over" : "number", text });
+      return { class: size !== null && size > limit ? "over" : null, of: text };
     };
     const rows = run.joints.map((joint, i) => {
       const q = extremes(run.ticks.q[i]);
       const dq = extremes(run.ticks.dq[i]);
       const tau = extremes(run.ticks.tau[i]);
       const margin = q && Number.isFinite(joint.q_min) ? Math.min(q.low - joint.q_min, joint.q_max - q.high) : null;
-      return el(
-        "tr",
-        {},
-        el(
-          "th",
-          { scope: "row" },
+      return [
+        [
           el("span", { class: "joint-dot", style: `background:var(--joint-${i + 1})`, "aria-hidden": "true" }),
           `${i + 1} `,
           el("span", { class: "quiet", text: joint.name }),
-        ),
-        el("td", {
-          class: margin !== null && margin < 0 ? "number over" : "number",
-          text: q ? `${number(q.low, 3)} … ${number(q.high, 3)}` : "–",
-        }),
-        el("td", { class: "number", text: number(margin, 3) }),
+        ],
+        {
+          class: margin !== null && margin < 0 ? "over" : null,
+          of: q ? `${number(q.low, 3)} … ${number(q.high, 3)}` : "–",
+        },
+        number(margin, 3),
         cell(dq && dq.size, joint.dq_max),
         cell(tau && tau.size, joint.tau_max),
-      );
+      ];
     });
     const slides = run.joints.some((j) => j.type === "prismatic");
     const turn = slides ? "rad or m" : "rad";
@@ -154,25 +150,7 @@ Fovea.joints = (function () {
       "details",
       { class: "peaks" },
       el("summary", { text: `Peaks and limits of every joint in numbers${suffix(run) && ", run" + suffix(run)}` }),
-
-      el(
-        "div",
-        { class: "scroll" },
-        el(
-          "table",
-          {},
-          el(
-            "thead",
-            {},
-            el(
-              "tr",
-              {},
-              heads.map((text, i) => el("th", { scope: "col", class: i ? "number" : "", text })),
-            ),
-          ),
-          el("tbody", {}, rows),
-        ),
-      ),
+      Fovea.table(heads, rows, { number: (i) => i > 0, scroll: true }),
     );
   }
 

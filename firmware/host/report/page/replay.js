@@ -35,24 +35,7 @@
 
   // The columns `words` are text, the others numbers.
   function table(heads, words, rows) {
-    const cells = (tag, list) =>
-      list.map((text, i) =>
-        el(tag, { class: words.includes(i) ? "" : "number", text, scope: tag === "th" ? "col" : null }),
-      );
-    return el(
-      "div",
-      { class: "scroll" },
-      el(
-        "table",
-        {},
-        el("thead", {}, el("tr", {}, cells("th", heads))),
-        el(
-          "tbody",
-          {},
-          rows.map((row) => el("tr", {}, cells("td", row))),
-        ),
-      ),
-    );
+    return Fovea.table(heads, rows, { number: (i) => !words.includes(i), named: false, scroll: true });
   }
 
   function draw() {

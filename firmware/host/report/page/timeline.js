@@ -86,33 +86,10 @@ Fovea.timeline = (function () {
       "details",
       {},
       el("summary", { text: `Modes and faults as a list${suffix(run) && ", run" + suffix(run)}` }),
-      el(
-        "table",
-        {},
-        el(
-          "thead",
-          {},
-          el(
-            "tr",
-            {},
-            ["Time [s]", "What", "In words"].map((text, i) =>
-              el("th", { scope: "col", class: i ? "" : "number time", text }),
-            ),
-          ),
-        ),
-        el(
-          "tbody",
-          {},
-          events.map(([t, what, say]) =>
-            el(
-              "tr",
-              { class: what },
-              el("td", { class: "number", text: t.toFixed(3) }),
-              el("td", { text: what }),
-              el("td", { text: say }),
-            ),
-          ),
-        ),
+      Fovea.table(
+        [{ class: "time", of: "Time [s]" }, "What", "In words"],
+        events.map(([t, what, say]) => ({ class: what, cells: [t.toFixed(3), what, say] })),
+        { number: (i) => i === 0, named: false },
       ),
     );
   }

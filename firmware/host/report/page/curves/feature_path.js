@@ -152,33 +152,11 @@ Fovea.featurePath = (function () {
     const pair = (p) => (p && isSeen(p) ? `${fixed(p[0], 1)}, ${fixed(p[1], 1)}` : "–");
     const rows = points.map((point) => {
       const found = ends(run, point);
-      return el(
-        "tr",
-        {},
-        el("th", { scope: "row", text: point.name + suffix(run) }),
-        [found && found[0], found && found[1], point.goal].map((p) => el("td", { class: "number", text: pair(p) })),
-        el("td", { class: "number", text: found ? number(offGoal(run, points, found[1]), 2) : "–" }),
-      );
+      const off = found ? number(offGoal(run, points, found[1]), 2) : "–";
+      return [point.name + suffix(run), pair(found && found[0]), pair(found && found[1]), pair(point.goal), off];
     });
     const heads = ["Feature", "Start u, v [px]", "End u, v [px]", "Goal u, v [px]", "End to goal [px]"];
-    return el(
-      "div",
-      { class: "scroll" },
-      el(
-        "table",
-        {},
-        el(
-          "thead",
-          {},
-          el(
-            "tr",
-            {},
-            heads.map((text, i) => el("th", { scope: "col", class: i ? "number" : "", text })),
-          ),
-        ),
-        el("tbody", {}, rows),
-      ),
-    );
+    return Fovea.table(heads, rows, { number: (i) => i > 0, scroll: true });
   }
 
   function draw(runs) {

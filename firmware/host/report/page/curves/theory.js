@@ -20,34 +20,13 @@ Fovea.theory = (function () {
       ["error that stays", "e_ss", "m"],
     ].map(([name, key, unit]) => [name, figures[key], figures.analytic[key], unit]);
     const cell = (value, unit) => (Number.isFinite(value) ? `${number(value, 4)} ${unit}`.trim() : "–");
-    const table = el(
-      "table",
+    const table = Fovea.table(
+      ["", "simulated", "theory"],
+      [
+        ...rows.map(([name, run_value, analytic, unit]) => [name, cell(run_value, unit), cell(analytic, unit)]),
+        ["poles [1/s]", poles(figures.poles), poles(figures.analytic.poles)],
+      ],
       { class: "figures" },
-      el(
-        "thead",
-        {},
-        el("tr", {}, el("th", { text: "" }), el("th", { text: "simulated" }), el("th", { text: "theory" })),
-      ),
-      el(
-        "tbody",
-        {},
-        rows.map(([name, run_value, analytic, unit]) =>
-          el(
-            "tr",
-            {},
-            el("th", { scope: "row", text: name }),
-            el("td", { text: cell(run_value, unit) }),
-            el("td", { text: cell(analytic, unit) }),
-          ),
-        ),
-        el(
-          "tr",
-          {},
-          el("th", { scope: "row", text: "poles [1/s]" }),
-          el("td", { text: poles(figures.poles) }),
-          el("td", { text: poles(figures.analytic.poles) }),
-        ),
-      ),
     );
     const words = `The two positions are at most ${number(1000 * figures.residual_max)} mm apart, ${number(
       1000 * figures.residual_rms,
