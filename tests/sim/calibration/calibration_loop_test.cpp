@@ -190,9 +190,9 @@ INSTANTIATE_TEST_SUITE_P(
              "--set", "camera.c_v_px=252.2", "--set", "camera.lens=[-0.1, 0.03, 0.0005, 0.001, 0]"},
             0.3,
             0.4,
-            0.5,
+            1.2,  // the corner that is furthest from the axis lies beyond what the boards reach
             0.075,
-            0.3,
+            0.4,
             0.035}),
     [](const auto& board) { return std::string(board.param.name); });
 
