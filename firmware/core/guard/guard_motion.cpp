@@ -17,8 +17,10 @@ using hal::Limit;
 using hal::LimitSet;
 using model::LinearJacobian;
 
-constexpr double kSpeedShare = 0.93;  // of the hand's speeds that is wished; the proof of a stop allows more
-constexpr double kSlow = 1e-3;        // a joint that is no faster stops by itself [rad/s, m/s]
+// Of the hand's speed and turn that is wished; the proof of a stop allows more.
+constexpr double kSpeedShare = 0.93;
+constexpr double kTurnShare = 0.89;
+constexpr double kSlow = 1e-3;  // a joint that is no faster stops by itself [rad/s, m/s]
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 const model::Joint& JointOf(const config::ServoConfig& config, int i) noexcept {
@@ -52,7 +54,7 @@ LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E
     limits |= Bit(Limit::kCartesianSpeed);
   }
   const double turn = model::AngularVelocity(config.arm, poses, dq).norm();
-  if (const double most = kSpeedShare * config.guard.rotation_speed; turn > most) {
+  if (const double most = kTurnShare * config.guard.rotation_speed; turn > most) {
     dq *= most / turn;
     limits |= Bit(Limit::kRotationSpeed);
   }

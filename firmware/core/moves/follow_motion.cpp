@@ -89,7 +89,8 @@ hal::LimitSet TakeSetpoint(const config::ServoConfig& config, const MotionComman
 double ShareOfSpeed(const config::ServoConfig& config, const model::VecN& q, const model::VecN& q_goal,
                     const trajectory::JointMove::Limits& limits) noexcept {
   constexpr int kSamples = 12;
-  constexpr double kShareOfHand = 0.85;
+  constexpr double kShareOfSpeed = 0.85;
+  constexpr double kShareOfTurn = 0.81;
   const model::VecN way = q_goal - q;
   double duration_s = 0.0;
   for (int i = 0; i < way.size(); ++i) {
@@ -106,8 +107,8 @@ double ShareOfSpeed(const config::ServoConfig& config, const model::VecN& q, con
     model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
     const double speed = J_E_B.lazyProduct(dq).norm();
     const double turn = model::AngularVelocity(config.arm, poses, dq).norm();
-    share = std::min({share, kShareOfHand * config.guard.cartesian_speed / std::max(speed, 1e-9),
-                      kShareOfHand * config.guard.rotation_speed / std::max(turn, 1e-9)});
+    share = std::min({share, kShareOfSpeed * config.guard.cartesian_speed / std::max(speed, 1e-9),
+                      kShareOfTurn * config.guard.rotation_speed / std::max(turn, 1e-9)});
   }
   return share;
 }

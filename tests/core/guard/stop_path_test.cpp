@@ -127,7 +127,7 @@ TEST(LimitsPassedTest, SampledStopGivesTheSameVerdictAsAllPoints) {
       model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J);
       const bool too_fast =
           (J * dq).norm() > 0.94 * config.guard.cartesian_speed ||
-          model::AngularVelocity(config.arm, poses, dq).norm() > 0.94 * config.guard.rotation_speed;
+          model::AngularVelocity(config.arm, poses, dq).norm() > 0.90 * config.guard.rotation_speed;
       expected = poses.X_BE.p.norm() > boundary || too_fast;
       const auto then = bounds(poses);
       for (std::size_t i = 0; i < then.size(); ++i) {
