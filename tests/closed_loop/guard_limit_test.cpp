@@ -261,7 +261,7 @@ void ProvokeRotationSpeed() {
   EXPECT_EQ(Named(bench, Limit::kRotationSpeed), kStartMs) << "in the tick in which it was wished";
   std::cout << "reference " << bench.figures().wished_turn << " rad/s, hand " << bench.figures().turn
             << " rad/s\n";
-  EXPECT_GT(bench.figures().wished_turn, 0.9 * kTurn);
+  EXPECT_GT(bench.figures().wished_turn, 0.88 * kTurn);
   EXPECT_LE(bench.figures().wished_turn, kTurn);
   EXPECT_LE(bench.figures().turn, 1.05 * kTurn);
   EXPECT_TRUE(StandsInHold(bench));

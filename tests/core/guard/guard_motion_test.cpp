@@ -246,7 +246,8 @@ TEST(GuardMotionTest, HandSpeedTowardsTheWorkspaceEdgeKeepsTheBarrier) {
 // From random motions, with every limit in force: the hand is at rest no later than by each joint for itself,
 // and on its way no faster than it was. Joint by joint it would be: the comparison is printed.
 TEST(GuardMotionTest, JointsStoppingTogetherDoNotSpeedUpTheHand) {
-  const config::ServoConfig config = test::PandaConfig();
+  config::ServoConfig config = test::PandaConfig();
+  config.guard.rotation_speed = 100.0;  // the joints shall come to their speeds
   test::RandomStates random(35);
   double most_gained = 0.0;
   double most_gained_alone = 0.0;
@@ -301,6 +302,7 @@ TEST(GuardMotionTest, PassesAGentleCommandUnchanged) {
 
 TEST(GuardMotionTest, ScalesTheVelocityWithoutChangingItsDirection) {
   config::ServoConfig config = test::PandaConfig();
+  config.guard.rotation_speed = 100.0;  // the joints' own limits shall act
   config.guard.workspace_radius = 10.0;
   Walker walker(config, test::Ready());
   model::VecN wish(7);
