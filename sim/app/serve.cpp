@@ -97,7 +97,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   const RunDescription about = DescribeRun(scenario);
   CheckIsPanda(about);
   CheckServedFaults(scenario.faults);
-  const linux_rt::SignalQueue signals({SIGINT, SIGTERM, SIGUSR1});
+  const linux_rt::SignalQueue signals({SIGINT, SIGTERM, SIGHUP, SIGUSR1});
   World world(MakeWorldConfig(scenario, about.scene.robot));
   FciRobot robot(world, about.scene.robot, options.walls);
   FciServerConfig config = options.server;
@@ -149,7 +149,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   Person person(server, say_from_any);
   while (!stop) {
     const int signal = signals.Next(kLookMs);
-    stop = stop || signal == SIGINT || signal == SIGTERM;
+    stop = stop || signal == SIGINT || signal == SIGTERM || signal == SIGHUP;
     if (signal == SIGUSR1) {
       person.PressStop();
     }

@@ -43,7 +43,7 @@ struct ServeSummary {
   std::vector<std::string> realtime_missing;  // what the machine did not grant at real pace
 };
 
-// Serves the scenario's arm as a Panda, and its camera, until SIGINT or SIGTERM; SIGUSR1 presses the
+// Serves the scenario's arm as a Panda, and its camera, until SIGINT, SIGTERM or SIGHUP; SIGUSR1 presses the
 // stop button, and again releases it; so does a line on standard input, which does more (serve_keys.hpp).
 // `say` gets a line for each thing that a
 // person may want to know. Leaves summary.json in `options.out`, by the code that any run leaves its own

@@ -57,6 +57,14 @@ void CheckSizes(const Scenario& s, const robots::Robot& robot) {
 }
 
 void SetFriction(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
+  constexpr double kRounding = 1e-9;
+  const double servo = s.servo.config.motion_law.friction_compensation;
+  if (servo + s.arm.friction_compensation > 1.0 + kRounding) {
+    throw InputError(
+        fmt::format("servo.friction_compensation = {} is not allowed with arm.friction_compensation = {}: "
+                    "together at most 1, since more drives the joints",
+                    servo, s.arm.friction_compensation));
+  }
   for (int i = 0; i < robot.model.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     model::Joint& joint = robot.model.joints[k];
@@ -82,6 +90,30 @@ void AddLoad(const model::Load& load, SimRobot& robot) {
   robot.links.push_back(link);
 }
 
+// InputError: a joint or the hand begins faster than it may.
+void CheckStartSpeed(const Eigen::VectorXd& dq, const model::ArmModel& arm, const model::ArmPoses& poses,
+                     const config::GuardConfig& guard) {
+  for (int i = 0; i < arm.num_joints; ++i) {
+    const double most = guard.joint_velocity_fraction * arm.joints[static_cast<std::size_t>(i)].dq_max;
+    if (std::fabs(dq[i]) > most) {
+      throw InputError(
+          fmt::format("arm.dq_start[{}] = {} is not allowed: joint {} may have {:.3g}, "
+                      "safety.joint_velocity_fraction of its limit",
+                      i, dq[i], i + 1, most));
+    }
+  }
+  model::LinearJacobian J;
+  model::ComputeLinearJacobian(arm, poses, poses.X_BE.p, J);
+  const double speed = J.lazyProduct(dq).norm();
+  const double turn = model::AngularVelocity(arm, poses, dq).norm();
+  if (speed > guard.cartesian_speed || turn > guard.rotation_speed) {
+    throw InputError(
+        fmt::format("arm.dq_start is not allowed: the hand begins with {:.3g} m/s and {:.3g} rad/s, "
+                    "safety.cartesian_speed is {} m/s, safety.rotation_speed {} rad/s",
+                    speed, turn, guard.cartesian_speed, guard.rotation_speed));
+  }
+}
+
 void CheckStart(const Scenario& s, const robots::Robot& robot) {
   const std::vector<double>& q = s.arm.q_start;
   for (std::size_t i = 0; i < q.size(); ++i) {
@@ -91,10 +123,13 @@ void CheckStart(const Scenario& s, const robots::Robot& robot) {
                                    q[i], i + 1, joint.q_min, joint.q_max));
     }
   }
+  const config::GuardConfig& guard = s.servo.config.guard;
   model::ArmPoses poses;
   const Eigen::Map<const Eigen::VectorXd> q_start(q.data(), robot.model.num_joints);
   model::ComputePoses(robot.model, q_start, poses);
-  const config::GuardConfig& guard = s.servo.config.guard;
+  if (!s.arm.dq_start.empty()) {
+    CheckStartSpeed(ToVectorX(s.arm.dq_start), robot.model, poses, guard);
+  }
   const double radius = poses.X_BE.p.norm();
   if (radius > guard.workspace_radius - guard.workspace_margin) {
     throw InputError(

@@ -51,6 +51,8 @@ struct ViewConfig {
   double disc_cosine_min = 0.0;  // of a disc's tilt against the line of sight; 0: any
 };
 
+inline constexpr double kLeastRotationSpeed = 0.05;  // below it noise alone exceeds the limit [rad/s]
+
 struct GuardConfig {
   double joint_velocity_fraction = 0.8;
   double joint_acceleration_fraction = 0.7;
@@ -74,15 +76,16 @@ struct GuardConfig {
 
 template <class Visitor, Struct<GuardConfig> Config>
 void Fields(Visitor& v, Config& c) noexcept {
+  // The rest is for what the arm itself adds: it follows its reference with an error.
   constexpr const char* kShare = "share of the arm's own limit that the reference may use";
-  v.Number({"safety.joint_velocity_fraction", "", kShare}, c.joint_velocity_fraction, 0.001, 1.0);
-  v.Number({"safety.joint_acceleration_fraction", "", kShare}, c.joint_acceleration_fraction, 0.001, 1.0);
-  v.Number({"safety.joint_jerk_fraction", "", kShare}, c.joint_jerk_fraction, 0.001, 1.0);
+  v.Number({"safety.joint_velocity_fraction", "", kShare}, c.joint_velocity_fraction, 0.001, 0.95);
+  v.Number({"safety.joint_acceleration_fraction", "", kShare}, c.joint_acceleration_fraction, 0.001, 0.8);
+  v.Number({"safety.joint_jerk_fraction", "", kShare}, c.joint_jerk_fraction, 0.001, 0.1);
   v.Number({"safety.joint_position_margin", "rad", "the reference stays so far inside each joint's range"},
            c.joint_position_margin, 0.0, 1.0);
   v.Number({"safety.braking_fraction", "",
             "share of the acceleration limit that stops a joint before the end of its range"},
-           c.braking_fraction, 0.001, 0.9);
+           c.braking_fraction, 0.001, 0.8);
   v.Number({"safety.workspace_radius", "m", "the end effector stays in this sphere about the base"},
            c.workspace_radius, 0.01, 1000.0);
   v.Number({"safety.workspace_margin", "m", "the reference stays so far inside workspace, planes and boxes"},
@@ -144,7 +147,8 @@ void Fields(Visitor& v, Config& c) noexcept {
             "what is left before the picture's edge, a line of sight, a disc's largest tilt and between the "
             "arm's links is used up no faster than exp(-rate t)"},
            c.barrier_rate, 0.1, 20.0);
-  v.Number({"safety.rotation_speed", "rad/s", "of the end effector"}, c.rotation_speed, 0.001, 100.0);
+  v.Number({"safety.rotation_speed", "rad/s", "of the end effector"}, c.rotation_speed, kLeastRotationSpeed,
+           100.0);
 }
 
 }  // namespace fovea::config

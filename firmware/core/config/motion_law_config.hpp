@@ -24,7 +24,7 @@ struct MotionLawConfig {
   hal::JointArray k_v{};
   bool damp_by_inertia = true;  // joint_impedance: damping from zeta and the inertia, not k_v
   double friction_compensation = 0.0;
-  double friction_width = 1e-3;
+  double friction_width = 0.05;
   double friction_slow = 0.02;
   double operational_damping = 1e-3;
   double change_s = 0.2;
@@ -35,9 +35,10 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Choice(
       {"servo.motion_law", "", "how the joints follow their reference; float: not at all, to be led by hand"},
       c.kind, kMotionLawNames);
-  v.Number({"servo.omega_n", "rad/s", "natural frequency of the joints' error"}, c.omega_n, 0.1, 300.0);
+  v.Number({"servo.omega_n", "rad/s", "natural frequency of the joints' error"}, c.omega_n, 0.1, 80.0);
   v.Number({"servo.zeta", "", "damping of the joints' error"}, c.zeta, 0.1, 10.0);
-  v.Number({"servo.integral", "1/s", "computed_torque: how fast an error that stays is made up for; 0: not"},
+  v.Number({"servo.integral", "1/s",
+            "computed_torque: how fast an error that stays is made up for, at most zeta omega_n; 0: not"},
            c.integral, 0.0, 100.0);
   v.Number({"servo.integral_torque_fraction", "", "bound of the integral, as a share of a joint's torque"},
            c.integral_torque_fraction, 0.0, 1.0);
@@ -51,8 +52,9 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Number({"servo.friction_compensation", "",
             "share of the joints' friction that the servo makes up for, where the robot does not"},
            c.friction_compensation, 0.0, 1.0);
-  v.Number({"servo.friction_width", "rad/s", "the sign of a speed is smooth within this"}, c.friction_width,
-           1e-9, 10.0);
+  v.Number({"servo.friction_width", "rad/s",
+            "the sign of a speed is smooth within this; narrow: a joint jerks where it turns round"},
+           c.friction_width, 1e-9, 10.0);
   v.Number({"servo.friction_slow", "rad/s", "below this speed the sign of the wanted speed counts"},
            c.friction_slow, 1e-9, 10.0);
   v.Number({"servo.operational_damping", "",

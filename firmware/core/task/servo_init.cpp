@@ -117,6 +117,10 @@ Status CheckTogether(const config::ServoConfig& config) noexcept {
   if (!(config.predict.stale_s <= config.predict.coast_s)) {
     return Status(StatusCode::kOutOfRange, "servo.stale_s");
   }
+  // Half of what makes the joints' error grow (Routh), so that the gain may be twice as large as believed.
+  if (!(config.motion_law.integral <= config.motion_law.zeta * config.motion_law.omega_n)) {
+    return Status(StatusCode::kOutOfRange, "servo.integral");
+  }
   if (!IsSound(config.predict.target_region)) {
     return Status(StatusCode::kOutOfRange, "servo.target_region");
   }

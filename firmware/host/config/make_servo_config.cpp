@@ -92,6 +92,12 @@ void CheckTogether(const ServoConfig& c) {
     throw InputError(fmt::format("servo.stale_s = {} is not allowed: at most servo.coast_s, which is {} s",
                                  c.predict.stale_s, c.predict.coast_s));
   }
+  if (const double most = c.motion_law.zeta * c.motion_law.omega_n; c.motion_law.integral > most) {
+    throw InputError(fmt::format(
+        "servo.integral = {} is not allowed: at most servo.zeta times servo.omega_n, which is {:g} "
+        "1/s; at twice that the joints' error grows",
+        c.motion_law.integral, most));
+  }
   if (c.guard.workspace_margin >= c.guard.workspace_radius) {
     throw InputError(fmt::format(
         "safety.workspace_margin = {} is not allowed: below safety.workspace_radius, which is {} m",

@@ -1,5 +1,6 @@
 #include "firmware/host/config/servo_keys.hpp"
 
+#include <algorithm>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -86,7 +87,8 @@ void ScaleSpeed(double scale, ServoSettings& settings) {
   settings.config.law.lambda_near *= scale;
   settings.config.guard.joint_velocity_fraction *= scale;
   settings.config.guard.cartesian_speed *= scale;
-  settings.config.guard.rotation_speed *= scale;
+  double& turn = settings.config.guard.rotation_speed;
+  turn = std::max(scale * turn, std::min(turn, config::kLeastRotationSpeed));
 }
 
 }  // namespace fovea::config

@@ -5,6 +5,8 @@
 
 #include <toml++/toml.h>
 
+#include <fstream>
+
 #include "firmware/host/config/input_error.hpp"
 
 namespace fovea::config {
@@ -61,6 +63,28 @@ void Flatten(const toml::table& table, const std::string& prefix, const std::str
   }
 }
 
+// The parser takes a key of any depth, a.a.a and so on, and the depth of its recursion with it.
+constexpr std::size_t kLongestLine = 10'000;  // bytes
+
+// The file's text. InputError: a line that is too long.
+std::string TextOf(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string text;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    if (line.size() > kLongestLine) {
+      throw InputError(fmt::format("{}:{}: a line of {} bytes; at most {} are allowed", path.string(), number,
+                                   line.size(), kLongestLine));
+    }
+    text += line;
+    text += '\n';
+  }
+  if (stream.bad() || !stream.eof()) {
+    throw InputError(path.string() + ": cannot be read");
+  }
+  return text;
+}
+
 }  // namespace
 
 std::vector<Setting> ReadTomlFile(const std::filesystem::path& path) {
@@ -73,7 +97,7 @@ std::vector<Setting> ReadTomlFile(const std::filesystem::path& path) {
   }
   std::vector<Setting> settings;
   try {
-    const toml::table table = toml::parse_file(path.string());
+    const toml::table table = toml::parse(TextOf(path), path.string());
     Flatten(table, "", path.string(), settings);
   } catch (const toml::parse_error& error) {
     throw InputError(

@@ -28,12 +28,6 @@ constexpr std::size_t kFindings = 16;
 constexpr std::chrono::milliseconds kLook{10};
 constexpr std::chrono::milliseconds kSayLast{300};  // before the summary counts what could not be said
 
-// A terminal that is gone ends the run as Ctrl-C does, unless it was to outlive it (nohup).
-bool HearsHangUp() {
-  struct sigaction action {};
-  return sigaction(SIGHUP, nullptr, &action) != 0 || action.sa_handler != SIG_IGN;
-}
-
 // Everything of one run, wired up. Members stand in the order in which one needs the other.
 class Session {
  public:
@@ -322,7 +316,7 @@ class Session {
 HwSummary Run(const HwConfig& config, const HwRunOptions& options, Speaker& speaker) {
   // From here on a signal ends the run in order, and a reader that is gone ends nothing.
   std::signal(SIGPIPE, SIG_IGN);
-  const linux_rt::SignalQueue signals{SIGINT, SIGTERM, SIGUSR1, HearsHangUp() ? SIGHUP : SIGINT};
+  const linux_rt::SignalQueue signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   return Session(config, options, signals, speaker).Execute();
 }
 

@@ -13,7 +13,7 @@ constexpr int kLookMs = 20;
 
 }  // namespace
 
-Interrupt::Interrupt() : signals_({SIGINT, SIGTERM}), thread_([this] { Watch(); }) {}
+Interrupt::Interrupt() : signals_({SIGINT, SIGTERM, SIGHUP}), thread_([this] { Watch(); }) {}
 
 Interrupt::~Interrupt() {
   done_ = true;

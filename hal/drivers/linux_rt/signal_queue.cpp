@@ -5,11 +5,21 @@
 #include <ctime>
 
 namespace fovea::linux_rt {
+namespace {
+
+bool IsIgnored(int number) {
+  struct sigaction action {};
+  return sigaction(number, nullptr, &action) == 0 && action.sa_handler == SIG_IGN;
+}
+
+}  // namespace
 
 SignalQueue::SignalQueue(std::initializer_list<int> numbers) {
   sigemptyset(&set_);
   for (const int number : numbers) {
-    sigaddset(&set_, number);
+    if (number != SIGHUP || !IsIgnored(SIGHUP)) {
+      sigaddset(&set_, number);
+    }
   }
   pthread_sigmask(SIG_BLOCK, &set_, &before_);
 }

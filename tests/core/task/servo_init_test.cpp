@@ -72,7 +72,14 @@ TEST(ServoInitTest, RefusesABadValueAndNamesTheKey) {
        [](config::ServoConfig& c) { c.arm.joints[5].q_max = c.arm.joints[5].q_min + 0.03; }},
       {"servo.lambda", [=](config::ServoConfig& c) { c.law.lambda = nan; }},
       {"servo.stale_s", [](config::ServoConfig& c) { c.predict.stale_s = 2.0 * c.predict.coast_s; }},
-      {"servo.omega_n", [](config::ServoConfig& c) { c.motion_law.omega_n = 1000.0; }},
+      {"servo.omega_n", [](config::ServoConfig& c) { c.motion_law.omega_n = 81.0; }},
+      {"servo.integral",
+       [](config::ServoConfig& c) {
+         c.motion_law.integral = 1.01 * c.motion_law.zeta * c.motion_law.omega_n;
+       }},
+      {"safety.joint_acceleration_fraction",
+       [](config::ServoConfig& c) { c.guard.joint_acceleration_fraction = 0.9; }},
+      {"safety.rotation_speed", [](config::ServoConfig& c) { c.guard.rotation_speed = 0.04; }},
       {"safety.joint_velocity_fraction",
        [](config::ServoConfig& c) { c.guard.joint_velocity_fraction = 1.5; }},
       {"safety.workspace_radius", [](config::ServoConfig& c) { c.guard.workspace_radius = 0.0; }},

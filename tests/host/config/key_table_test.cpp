@@ -145,5 +145,25 @@ TEST(TomlFileTest, ErrorsNameFileAndLine) {
   EXPECT_THAT(settings[1].where, HasSubstr("scenario.toml:2"));
 }
 
+// The parser would take it, and as much stack as it is deep.
+TEST(ReadTomlFile, LineThatIsTooLongIsRefused) {
+  const test::TempFolder folder;
+  const std::filesystem::path file = folder.path() / "deep.toml";
+  std::string key = "a";
+  for (int k = 0; k < 40'000; ++k) {
+    key += ".a";
+  }
+  for (const std::string& line : {key + " = 1", "[" + key + "]"}) {
+    std::ofstream(file) << "[camera]\n" << line << "\n";
+    try {
+      ReadTomlFile(file);
+      ADD_FAILURE() << "accepted";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("deep.toml:2: a line of 8000"));
+      EXPECT_THAT(error.what(), HasSubstr("at most 10000 are allowed"));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace fovea::config

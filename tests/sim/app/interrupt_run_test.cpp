@@ -55,9 +55,12 @@ wait $run; echo "ended with $?")",
 constexpr const char* kUntilItRuns =
     R"(until [ -s "$1/.log.mcap.partial" ]; do kill -0 $run || exit 9; sleep 0.02; done)";
 
-TEST_F(InterruptTest, InterruptedRunLeavesReadableLogAndSummary) {
+// Ctrl-C, and a terminal that is gone.
+class InterruptBy : public InterruptTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(InterruptBy, InterruptedRunLeavesReadableLogAndSummary) {
   const ProgramResult result =
-      Interrupt(std::string(kUntilItRuns) + "\nkill -INT $run", "--set run.duration_s=600");
+      Interrupt(std::string(kUntilItRuns) + "\nkill -" + GetParam() + " $run", "--set run.duration_s=600");
   EXPECT_EQ(result.out, "ended with 1\n") << Err();
   const nlohmann::json summary = Summary();
   EXPECT_TRUE(summary["interrupted"]);
@@ -69,6 +72,8 @@ TEST_F(InterruptTest, InterruptedRunLeavesReadableLogAndSummary) {
   EXPECT_EQ(ticks, summary["ticks"]);
   EXPECT_TRUE(fs::exists(fs::path(Out()) / "report.html"));
 }
+INSTANTIATE_TEST_SUITE_P(Signals, InterruptBy, testing::Values("INT", "HUP"),
+                         [](const auto& name) { return std::string(name.param); });
 
 // Before there is any folder: the run ends with its first tick.
 TEST_F(InterruptTest, InterruptWhilePreparingLeavesLogAndSummary) {

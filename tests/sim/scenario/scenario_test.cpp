@@ -8,6 +8,7 @@
 #include "firmware/host/config/input_error.hpp"
 #include "fovea/hal/events.hpp"
 #include "sim/scenario/compose.hpp"
+#include "sim/scenario/run_description.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -75,6 +76,22 @@ TEST(ScenarioTest, IntrinsicsAreTakenWholeOrRefused) {
   std::vector<std::string> outside = all;
   outside.emplace_back("camera.c_u_px=640");
   EXPECT_THROW(pinhole(outside), config::InputError);
+}
+
+TEST(ScenarioTest, StartFasterThanALimitIsRefused) {
+  const auto describe = [](const std::string& dq) {
+    DescribeRun(LoadScenario("ball", {"arm.dq_start=" + dq}));
+  };
+  EXPECT_NO_THROW(describe("[0.1, 0.1, 0, 0, 0, 0, 0]"));
+  EXPECT_THROW(describe("[2, 2, 2, 2, 2, 2, 2]"), config::InputError) << "a joint";
+  EXPECT_THROW(describe("[1.2, 0, 1.2, 0, 1.2, 0, 0]"), config::InputError) << "the hand";
+}
+
+TEST(ScenarioTest, MoreFrictionCompensationThanFrictionIsRefused) {
+  const auto describe = [](const std::vector<std::string>& keys) { DescribeRun(LoadScenario("ball", keys)); };
+  EXPECT_NO_THROW(describe({"servo.friction_compensation=0.1", "arm.friction_compensation=0.9"}));
+  EXPECT_THROW(describe({"servo.friction_compensation=0.2", "arm.friction_compensation=0.9"}),
+               config::InputError);
 }
 
 }  // namespace

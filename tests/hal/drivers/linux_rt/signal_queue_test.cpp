@@ -23,5 +23,21 @@ TEST(SignalQueue, RestoresTheSignalMask) {
   EXPECT_EQ(sigismember(&before, SIGUSR1), sigismember(&after, SIGUSR1));
 }
 
+// A terminal that is gone ends a program, but not one that was started to outlive it.
+TEST(SignalQueue, HangUpIsLeftOutWhereItIsIgnored) {
+  {
+    const SignalQueue queue({SIGHUP});
+    pthread_kill(pthread_self(), SIGHUP);
+    EXPECT_EQ(queue.Next(500), SIGHUP);
+  }
+  std::signal(SIGHUP, SIG_IGN);
+  {
+    const SignalQueue queue({SIGHUP, SIGUSR1});
+    pthread_kill(pthread_self(), SIGHUP);
+    EXPECT_EQ(queue.Next(0), -1);
+  }
+  std::signal(SIGHUP, SIG_DFL);
+}
+
 }  // namespace
 }  // namespace fovea::linux_rt

@@ -1,4 +1,4 @@
-// Ctrl-C as a wish to end: the first SIGINT or SIGTERM is noted, the second ends the process at once.
+// Ctrl-C as a wish to end: the first SIGINT, SIGTERM or SIGHUP is noted, the second ends the process at once.
 #pragma once
 
 #include <atomic>

@@ -7,7 +7,8 @@
 namespace fovea::linux_rt {
 
 // While one lives, the signals that it names come to Next and to nobody else. Made before other threads are,
-// which then block them too.
+// which then block them too. SIGHUP is left out where the process ignores it, since it shall outlive its
+// terminal (nohup).
 class SignalQueue {
  public:
   SignalQueue(std::initializer_list<int> numbers);
