@@ -247,6 +247,7 @@ TEST(MotionLawTest, FrictionIsCompensatedWithoutChatter) {
   }
   config::MotionLawConfig config;
   config.friction_compensation = 1.0;
+  config.friction_width = 1e-3;
   trajectory::Reference reference = Standing(test::Ready());
   const auto torque = [&](double wanted, double measured) {
     reference.dq.setConstant(wanted);
