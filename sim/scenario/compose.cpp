@@ -27,8 +27,8 @@ Eigen::VectorXd ToVectorX(const std::vector<double>& v) {
 
 Eigen::Isometry3d CameraMount(const Scenario& s) {
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
-  X_EC.linear() = RollPitchYaw(s.camera.mount_rpy_deg).toRotationMatrix();
-  X_EC.translation() = ToVector(s.camera.mount_xyz);
+  X_EC.linear() = RollPitchYaw(s.camera.calibration.mount_rpy_deg).toRotationMatrix();
+  X_EC.translation() = ToVector(s.camera.calibration.mount_xyz);
   return X_EC;
 }
 
@@ -56,7 +56,7 @@ void CheckSizes(const Scenario& s, const robots::Robot& robot) {
   }
 }
 
-void SetFriction(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
+void CheckFriction(const Scenario& s) {
   constexpr double kRounding = 1e-9;
   const double servo = s.servo.config.motion_law.friction_compensation;
   if (servo + s.arm.friction_compensation > 1.0 + kRounding) {
@@ -65,6 +65,9 @@ void SetFriction(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
                     "together at most 1, since more drives the joints",
                     servo, s.arm.friction_compensation));
   }
+}
+
+void SetFriction(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
   for (int i = 0; i < robot.model.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     model::Joint& joint = robot.model.joints[k];
@@ -226,31 +229,32 @@ std::uint64_t SeedOf(const Scenario& s, RandomStream stream) {
 }
 
 Pinhole MakeScenarioPinhole(const Scenario& s) {
-  const auto& c = s.camera;
-  Pinhole pinhole = MakePinhole(c.width_px, c.height_px, c.hfov_deg * kRadPerDeg);
-  const std::array<double, 4> given{c.f_u_px, c.f_v_px, c.c_u_px, c.c_v_px};
+  const vision::Intrinsics& in = s.camera.calibration.intrinsics;
+  Pinhole pinhole = MakePinhole(in.width_px, in.height_px, s.camera.hfov_deg * kRadPerDeg);
+  const std::array<double, 4> given{in.f_u_px, in.f_v_px, in.c_u_px, in.c_v_px};
   if (given == std::array<double, 4>{}) {
     return pinhole;
   }
   if (std::count(given.begin(), given.end(), 0.0) > 0) {
     throw InputError(fmt::format(
-        "camera.f_u_px, f_v_px, c_u_px, c_v_px = {}, {}, {}, {} is not allowed: all four, or none", c.f_u_px,
-        c.f_v_px, c.c_u_px, c.c_v_px));
+        "camera.f_u_px, f_v_px, c_u_px, c_v_px = {}, {}, {}, {} is not allowed: all four, or none", in.f_u_px,
+        in.f_v_px, in.c_u_px, in.c_v_px));
   }
-  if (c.c_u_px > c.width_px - 1 || c.c_v_px > c.height_px - 1) {
+  const auto is_in = [](double px, int size_px) { return px >= 0.0 && px <= size_px - 1; };
+  if (!is_in(in.c_u_px, in.width_px) || !is_in(in.c_v_px, in.height_px)) {
     throw InputError(
         fmt::format("camera.c_u_px, c_v_px = {}, {} is not allowed: outside the picture of {} x {} px",
-                    c.c_u_px, c.c_v_px, c.width_px, c.height_px));
+                    in.c_u_px, in.c_v_px, in.width_px, in.height_px));
   }
-  pinhole.f_px = c.f_u_px;
-  pinhole.c_u_px = c.c_u_px;
-  pinhole.c_v_px = c.c_v_px;
-  pinhole.aspect = c.f_v_px / c.f_u_px;
+  pinhole.f_px = in.f_u_px;
+  pinhole.c_u_px = in.c_u_px;
+  pinhole.c_v_px = in.c_v_px;
+  pinhole.aspect = in.f_v_px / in.f_u_px;
   return pinhole;
 }
 
 Lens MakeScenarioLens(const Scenario& s) {
-  const std::vector<double>& k = s.camera.lens;
+  const std::vector<double>& k = s.camera.calibration.lens;
   return {k[0], k[1], k[2], k[3], k[4]};
 }
 

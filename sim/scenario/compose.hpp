@@ -39,6 +39,8 @@ std::uint64_t SeedOf(const Scenario& scenario, RandomStream stream);
 
 // InputError when a list has not one entry per joint.
 void CheckSizes(const Scenario& scenario, const robots::Robot& robot);
+// InputError: robot and servo make up for more friction than there is.
+void CheckFriction(const Scenario& scenario);
 // Springs and friction as the scenario has them, for the servo's model and for the physics.
 void SetFriction(const Scenario& scenario, robots::Robot& robot, SimRobot& sim_robot);
 // The physics' arm carries `load` too, which the servo's model knows of.

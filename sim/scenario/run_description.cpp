@@ -49,6 +49,7 @@ RunDescription DescribeRun(const Scenario& scenario) {
   run.robot = LoadScenarioRobot(scenario);
   CheckSizes(scenario, run.robot);
   SimRobot robot = LoadSimRobot(run.robot.urdf, run.robot.base_link, run.robot.tip_link, run.robot.root);
+  CheckFriction(scenario);
   SetFriction(scenario, run.robot, robot);
   const model::Load load = config::MakeLoad(scenario.arm.load);
   if (load.mass > 0.0) {

@@ -47,9 +47,12 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
 
 void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
   keys.Flag("camera.enabled", s.camera.enabled, "false: a run without eyes, for commanded motions");
-  keys.Integer("camera.width_px", s.camera.width_px, 64, 4096, "px", "picture width");
-  keys.Integer("camera.height_px", s.camera.height_px, 64, 4096, "px", "picture height");
-  keys.Number("camera.hfov_deg", s.camera.hfov_deg, 5.0, 150.0, "deg", "horizontal field of view");
+  config::AddCalibrationKeys(s.camera.calibration, keys, {64, 4096});
+  for (const char* former : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
+    keys.Renamed(former, "camera.lens");
+  }
+  keys.Number("camera.hfov_deg", s.camera.hfov_deg, 5.0, 150.0, "deg",
+              "horizontal field of view, where camera.f_u_px and the three beside it are not given");
   keys.Number("camera.rate_hz", s.camera.rate_hz, 1.0, 240.0, "Hz", "frames per second");
   keys.Number("camera.exposure_ms", s.camera.exposure_ms, 0.01, 100.0, "ms",
               "exposure time; stamps are at its middle");
@@ -59,23 +62,6 @@ void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
               "standard deviation of read noise");
   keys.Number("camera.light", s.camera.light, 0.01, 4.0, "",
               "brightness of the picture; 1 is a well-lit bench");
-  keys.Numbers("camera.lens", s.camera.lens, 5, 5, -1e3, 1e3, "",
-               "distortion of Brown's model: k1, k2, p1, p2, k3; the servo knows it");
-  for (const char* former : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
-    keys.Renamed(former, "camera.lens");
-  }
-  keys.Number("camera.f_u_px", s.camera.f_u_px, 0.0, 1e6, "px",
-              "focal length along u, with the next three in place of hfov_deg; 0: hfov_deg counts");
-  keys.Number("camera.f_v_px", s.camera.f_v_px, 0.0, 1e6, "px", "focal length along v");
-  keys.Number("camera.c_u_px", s.camera.c_u_px, 0.0, 4095.0, "px", "principal point");
-  keys.Number("camera.c_v_px", s.camera.c_v_px, 0.0, 4095.0, "px", "principal point");
-  keys.Number("camera.rms_px", s.camera.rms_px, 0.0, 1e3, "px",
-              "as `fovea calibrate intrinsics` writes it; has no effect in simulation");
-  keys.Number("camera.mount_rms_mm", s.camera.mount_rms_mm, 0.0, 1e3, "mm",
-              "as `fovea calibrate hand-eye` writes it; has no effect in simulation");
-  keys.Numbers("camera.mount_xyz", s.camera.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
-  keys.Numbers("camera.mount_rpy_deg", s.camera.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
-               "roll, pitch, yaw of C in E, about fixed axes");
 }
 
 void AddRunKeys(Scenario& s, config::KeyTable& keys) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/host/config/camera_keys.hpp"
 #include "firmware/host/config/key_table.hpp"
 #include "firmware/host/config/load_keys.hpp"
 #include "firmware/host/config/servo_keys.hpp"
@@ -37,23 +38,16 @@ struct Scenario {
 
   struct {
     bool enabled = true;
-    int width_px = 640;
-    int height_px = 480;
     double hfov_deg = 60.0;
-    double f_u_px = 0.0;  // 0: from hfov_deg, and the axis in the middle
-    double f_v_px = 0.0;
-    double c_u_px = 0.0;
-    double c_v_px = 0.0;
     double rate_hz = 30.0;
     double exposure_ms = 5.0;
     double latency_ms = 40.0;
     double noise_sigma = 3.0;
     double light = 1.0;
-    std::vector<double> lens{0.0, 0.0, 0.0, 0.0, 0.0};  // k1, k2, p1, p2, k3
-    double rms_px = 0.0;
-    double mount_rms_mm = 0.0;
-    std::vector<double> mount_xyz{0.05, 0.0, 0.04};
-    std::vector<double> mount_rpy_deg{0.0, 0.0, 90.0};
+    // As `fovea calibrate` writes it. How well its views fit has no effect here.
+    config::CalibrationSettings calibration{.intrinsics = {640, 480, 0.0, 0.0, 0.0, 0.0},
+                                            .mount_xyz = {0.05, 0.0, 0.04},
+                                            .mount_rpy_deg = {0.0, 0.0, 90.0}};
   } camera;
 
   TargetScene target;

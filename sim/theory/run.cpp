@@ -59,7 +59,7 @@ TheoryLoop LoopOf(const TheoryConfig& config) {
   const config::MotionLawConfig& law = config.law;
   TheoryLoop loop;
   loop.d = -config.push / plant.mass;
-  switch (motion_laws::kMotionLaws[static_cast<std::size_t>(law.kind)].error) {
+  switch (motion_laws::EntryOf(law.kind).error) {
     case motion_laws::ErrorDynamics::kPlant:
       loop.c_1 = plant.damping / plant.mass;
       loop.c_0 = plant.stiffness / plant.mass;

@@ -262,8 +262,8 @@ void ProvokeRotationSpeed() {
   std::cout << "reference " << bench.figures().wished_turn << " rad/s, hand " << bench.figures().turn
             << " rad/s\n";
   EXPECT_GT(bench.figures().wished_turn, 0.88 * kTurn);
-  EXPECT_LE(bench.figures().wished_turn, kTurn);
-  EXPECT_LE(bench.figures().turn, 1.05 * kTurn);
+  EXPECT_LE(bench.figures().wished_turn, 0.9 * kTurn);
+  EXPECT_LE(bench.figures().turn, kTurn);
   EXPECT_TRUE(StandsInHold(bench));
   ExpectInsideLimits(bench);
 }

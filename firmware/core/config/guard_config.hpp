@@ -51,7 +51,9 @@ struct ViewConfig {
   double disc_cosine_min = 0.0;  // of a disc's tilt against the line of sight; 0: any
 };
 
-inline constexpr double kLeastRotationSpeed = 0.05;  // below it noise alone exceeds the limit [rad/s]
+// Below these, what the true hand moves beside its reference passes the limit by itself [m/s, rad/s].
+inline constexpr double kLeastCartesianSpeed = 0.01;
+inline constexpr double kLeastRotationSpeed = 0.2;
 
 struct GuardConfig {
   double joint_velocity_fraction = 0.8;
@@ -92,7 +94,8 @@ void Fields(Visitor& v, Config& c) noexcept {
            c.workspace_margin, 0.0, 1.0);
   v.Number({"safety.workspace_deceleration", "m/s^2", "with which the end effector stops before them"},
            c.workspace_deceleration, 0.01, 100.0);
-  v.Number({"safety.cartesian_speed", "m/s", "of the end effector"}, c.cartesian_speed, 0.001, 100.0);
+  v.Number({"safety.cartesian_speed", "m/s", "of the end effector"}, c.cartesian_speed, kLeastCartesianSpeed,
+           100.0);
   v.Number(
       {"safety.singularity_min", "",
        "the hand goes no nearer to a singular posture, but for a motion of the joints that ends clear of it: "

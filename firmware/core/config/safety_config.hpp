@@ -27,12 +27,17 @@ struct SafetyConfig {
   double carried_torque_fraction = 0.1;
 };
 
+// With less, the arm cannot follow what the guard allows the reference: it swings about it and passes the
+// joints' limits. Who wants less torque lowers the guard's shares of acceleration and jerk.
+inline constexpr double kLeastTorqueShare = 0.3;
+inline constexpr double kLeastTorqueRateShare = 0.5;
+
 template <class Visitor, Struct<SafetyConfig> Config>
 void Fields(Visitor& v, Config& c) noexcept {
-  v.Number({"safety.torque_fraction", "", "share of the arm's torque range in use"}, c.torque_fraction, 0.001,
-           1.0);
+  v.Number({"safety.torque_fraction", "", "share of the arm's torque range in use"}, c.torque_fraction,
+           kLeastTorqueShare, 1.0);
   v.Number({"safety.torque_rate_fraction", "", "share of the arm's torque rate in use"},
-           c.torque_rate_fraction, 0.001, 1.0);
+           c.torque_rate_fraction, kLeastTorqueRateShare, 1.0);
   v.Integer({"safety.arm_lost_ticks", "ms", "without a new state for so long: Fault"}, c.arm_lost_ticks, 1,
             10000);
   v.Integer({"safety.non_finite_ticks", "ms",

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "firmware/core/barriers/solid_barriers.hpp"
 #include "firmware/core/model/kinematics.hpp"
@@ -216,15 +215,12 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
     if (may_turn_fast && model::AngularVelocity(config.arm, poses, dq).norm() > turn_most) {
       return hal::Bit(hal::Limit::kRotationSpeed);
     }
-    std::optional<barriers::ArmBodies> bodies;  // placed where a bound asks for them
+    const barriers::ArmBodies bodies = barriers::PlaceBodies(config.arm, poses);
     first_due = may_be_fast || may_turn_fast ? t : HUGE_VAL;
     for (int i = 0; i < bounds.size(); ++i) {
       double& until = clear_until[static_cast<std::size_t>(i)];
       if (!(t < until)) {
-        if (!bodies) {
-          bodies = barriers::PlaceBodies(config.arm, poses);
-        }
-        const double clear = bounds.Clear(i, poses, *bodies);
+        const double clear = bounds.Clear(i, poses, bodies);
         if (!(clear >= 0.0)) {
           return bounds.LimitOf(i);
         }

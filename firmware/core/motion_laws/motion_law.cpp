@@ -21,7 +21,7 @@ constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 void TorqueOf(config::MotionLawKind kind, const config::MotionLawConfig& config,
               const MotionLawInputs& inputs, MotionLawState& state, model::VecN& tau) noexcept {
-  kMotionLaws[static_cast<std::size_t>(kind)].torque(config, inputs, state, tau);
+  EntryOf(kind).torque(config, inputs, state, tau);
 }
 
 // What is left of the step of the last change of laws.
@@ -37,6 +37,30 @@ void MotionLawState::Reset(config::MotionLawKind law, int num_joints) noexcept {
   cut.setZero(num_joints);
   step.setZero(num_joints);
   since_change_s = 0.0;
+}
+
+Fitness FitnessOf(const config::MotionLawConfig& config, const model::ArmModel& arm,
+                  config::MotionLawKind kind) noexcept {
+  const MotionLawEntry& law = EntryOf(kind);
+  if (arm.num_joints < law.joints_min) {
+    return {Unfit::kTooFewJoints};
+  }
+  model::ArmPoses poses;
+  model::ArmDynamics dynamics;
+  model::ComputePoses(arm, model::ToVector(arm.q_ready, arm.num_joints), poses);
+  model::ComputeDynamics(arm, poses, model::VecN::Zero(arm.num_joints), dynamics);
+  Fitness fastest;
+  for (int i = 0; i < arm.num_joints; ++i) {
+    const double damping = law.has_springs ? config.k_v[static_cast<std::size_t>(i)] / dynamics.M(i, i)
+                                           : 2.0 * config.zeta * config.omega_n;
+    if (!(damping <= fastest.damping)) {
+      fastest = {Unfit::kNone, i, damping};
+    }
+  }
+  if (!(fastest.damping <= law.damping_most)) {
+    fastest.why = Unfit::kDampedTooFast;
+  }
+  return fastest;
 }
 
 void MotionLaw(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,

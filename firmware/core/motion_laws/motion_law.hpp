@@ -34,6 +34,19 @@ struct MotionLawState {
   void Reset(config::MotionLawKind law, int num_joints) noexcept;
 };
 
+// Why the law `kind` may not drive an arm with the gains of a configuration.
+enum class Unfit : std::uint8_t { kNone, kTooFewJoints, kDampedTooFast };
+
+struct Fitness {
+  Unfit why = Unfit::kNone;
+  int joint = -1;        // kDampedTooFast: the joint, from 0
+  double damping = 0.0;  // its damping over its inertia at the ready posture [1/s]
+};
+
+// Not for the tick: it makes the arm's dynamics.
+[[nodiscard]] Fitness FitnessOf(const config::MotionLawConfig& config, const model::ArmModel& arm,
+                                config::MotionLawKind kind) noexcept;
+
 // Torques at the seam `tau` [num_joints] by the law that `state` names, and its step if there was a change.
 // Real-time: yes.
 void MotionLaw(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,

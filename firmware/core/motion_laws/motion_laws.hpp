@@ -52,6 +52,12 @@ enum class ErrorDynamics : std::uint8_t {
   kUnit,     // those are made up for: e'' + 2 zeta omega_n e' + omega_n^2 e = 0, and the integral's share
 };
 
+// A joint's damping, k_v over its inertia, that a loop of 1 kHz with a period of delay bears is 1000 1/s (z =
+// -1); these laws are allowed less than half. Springs know nothing of how the joints' inertias couple: at
+// some postures a direction is ten times as light as a joint by itself. [1/s]
+inline constexpr double kDampingMost = 400.0;
+inline constexpr double kSpringDampingMost = 75.0;
+
 struct MotionLawEntry {
   config::MotionLawKind kind;
   void (*torque)(const config::MotionLawConfig&, const MotionLawInputs&, MotionLawState&,
@@ -59,15 +65,22 @@ struct MotionLawEntry {
   int joints_min;  // arms with fewer joints cannot be driven by it
   bool carries;    // a load that nobody told it of, where the arm stands; else it gives way as its springs do
   ErrorDynamics error = ErrorDynamics::kUnit;
+  double damping_most = kDampingMost;
+  bool has_springs = false;  // by k_p and k_v, one per joint; else all joints by omega_n and zeta
 };
 
 // In the order of MotionLawKind.
 inline constexpr std::array<MotionLawEntry, config::kNumMotionLaws> kMotionLaws{{
     {config::MotionLawKind::kComputedTorque, ComputedTorque, 1, true},
-    {config::MotionLawKind::kPd, PdLaw, 1, false, ErrorDynamics::kSprings},
-    {config::MotionLawKind::kJointImpedance, JointImpedance, 1, false},
+    {config::MotionLawKind::kPd, PdLaw, 1, false, ErrorDynamics::kSprings, kSpringDampingMost, true},
+    {config::MotionLawKind::kJointImpedance, JointImpedance, 1, false, ErrorDynamics::kUnit,
+     kSpringDampingMost, true},
     {config::MotionLawKind::kOperationalSpace, OperationalSpace, 6, true},
     {config::MotionLawKind::kFloat, Float, 1, false, ErrorDynamics::kPlant},
 }};
+
+[[nodiscard]] inline const MotionLawEntry& EntryOf(config::MotionLawKind kind) noexcept {
+  return kMotionLaws[static_cast<std::size_t>(kind)];
+}
 
 }  // namespace fovea::motion_laws

@@ -130,9 +130,12 @@ Status CheckTogether(const config::ServoConfig& config) noexcept {
       return Status(StatusCode::kOutOfRange, "safety.joint_position_margin");
     }
   }
-  if (config.arm.num_joints <
-      motion_laws::kMotionLaws[static_cast<std::size_t>(config.motion_law.kind)].joints_min) {
-    return Status(StatusCode::kInvalidArgument, "servo.motion_law");
+  switch (motion_laws::FitnessOf(config.motion_law, config.arm, config.motion_law.kind).why) {
+    case motion_laws::Unfit::kNone: break;
+    case motion_laws::Unfit::kTooFewJoints: return Status(StatusCode::kInvalidArgument, "servo.motion_law");
+    case motion_laws::Unfit::kDampedTooFast:
+      return Status(StatusCode::kOutOfRange,
+                    motion_laws::EntryOf(config.motion_law.kind).has_springs ? "servo.k_v" : "servo.zeta");
   }
   return CheckGuard(config.guard);
 }
@@ -164,6 +167,10 @@ Status ServoTask::Init(const config::ServoConfig& config) noexcept {
   std::construct_at(&state_);  // no other one for a moment: it is large, and a stack may be small
   const int n = config.arm.num_joints;
   state_.mode.track_asked = config.auto_track;
+  for (const motion_laws::MotionLawEntry& law : motion_laws::kMotionLaws) {
+    may_drive_[static_cast<std::size_t>(law.kind)] =
+        motion_laws::FitnessOf(config.motion_law, config.arm, law.kind).why == motion_laws::Unfit::kNone;
+  }
   state_.law_state.Reset(config.motion_law.kind, n);
   state_.contact.Reset(n, CarriesLoads());
   for (model::VecN* v :

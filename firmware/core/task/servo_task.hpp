@@ -92,7 +92,8 @@ class ServoTask final : public ServoStep {
   }
 
   config::ServoConfig config_;
-  features::FeatureState goal_;  // the feature at its goal
+  features::FeatureState goal_;                           // the feature at its goal
+  std::array<bool, config::kNumMotionLaws> may_drive_{};  // laws that fit the arm and the gains
   ServoState state_;
   StageProbe* probe_ = nullptr;
 };

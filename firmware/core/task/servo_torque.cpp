@@ -15,8 +15,7 @@ constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
   const motion_laws::MotionLawInputs law_inputs{config_.arm,      state_.poses, state_.dynamics,
                                                 state_.reference, state_.q,     state_.dq};
-  const auto law = static_cast<std::size_t>(inputs.law);
-  if (inputs.change_law && config_.arm.num_joints >= motion_laws::kMotionLaws[law].joints_min) {
+  if (inputs.change_law && may_drive_[static_cast<std::size_t>(inputs.law)]) {
     motion_laws::ChangeMotionLaw(config_.motion_law, law_inputs, inputs.law, state_.law_state);
   }
   switch (state_.mode.mode) {
@@ -46,7 +45,7 @@ void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
 // the load by itself.
 bool ServoTask::CarriesLoads() const noexcept {
   return config_.safety.carried_torque_fraction > 0.0 && config_.motion_law.integral == 0.0 &&
-         motion_laws::kMotionLaws[static_cast<std::size_t>(state_.law_state.kind)].carries;
+         motion_laws::EntryOf(state_.law_state.kind).carries;
 }
 
 // Whether the arm is to stand, and with what hangs on it.

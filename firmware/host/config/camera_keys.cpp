@@ -5,10 +5,10 @@
 
 namespace fovea::config {
 
-void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys) {
+void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys, PictureRange range) {
   vision::Intrinsics& in = settings.intrinsics;
-  keys.Integer("camera.width_px", in.width_px, 32, 20000, "px", "of its pictures");
-  keys.Integer("camera.height_px", in.height_px, 32, 20000, "px", "of its pictures");
+  keys.Integer("camera.width_px", in.width_px, range.least, range.most, "px", "of its pictures");
+  keys.Integer("camera.height_px", in.height_px, range.least, range.most, "px", "of its pictures");
   keys.Number("camera.f_u_px", in.f_u_px, 1.0, 1e6, "px", "focal length along u");
   keys.Number("camera.f_v_px", in.f_v_px, 1.0, 1e6, "px", "focal length along v");
   keys.Number("camera.c_u_px", in.c_u_px, -1e5, 1e5, "px", "principal point");

@@ -19,8 +19,14 @@ struct CalibrationSettings {
   std::vector<double> mount_rpy_deg{0.0, 0.0, 0.0};  // R_EC
 };
 
+// Pictures are so wide and so high [px].
+struct PictureRange {
+  int least = 32;
+  int most = 20'000;
+};
+
 // The settings must outlive the table.
-void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys);
+void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys, PictureRange range = {});
 
 // InputError when there is no focal length.
 vision::Intrinsics MakeIntrinsics(const CalibrationSettings& settings);

@@ -176,12 +176,6 @@ void SetHand(const ServoSettings& settings, const model::Pose& X_EC, HandShape& 
 }
 
 void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, MotionLawConfig& c) {
-  const int joints_min = motion_laws::kMotionLaws[static_cast<std::size_t>(c.kind)].joints_min;
-  if (robot.model.num_joints < joints_min) {
-    throw InputError(fmt::format(
-        "servo.motion_law = \"{}\" is not allowed: it takes {} joints, arm \"{}\" has {}",
-        kMotionLawNames[static_cast<std::size_t>(c.kind)], joints_min, robot.name, robot.model.num_joints));
-  }
   CheckSize("servo.k_p", settings.k_p, robot);
   CheckSize("servo.k_v", settings.k_v, robot);
   model::ArmPoses poses;
@@ -195,6 +189,24 @@ void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, Mot
     const double inertia = dynamics.M(i, i);
     c.k_p[k] = settings.k_p.empty() ? inertia * c.omega_n * c.omega_n : settings.k_p[k];
     c.k_v[k] = settings.k_v.empty() ? 2.0 * c.zeta * std::sqrt(c.k_p[k] * inertia) : settings.k_v[k];
+  }
+  const motion_laws::MotionLawEntry& law = motion_laws::EntryOf(c.kind);
+  const char* name = kMotionLawNames[static_cast<std::size_t>(c.kind)];
+  const motion_laws::Fitness fitness = motion_laws::FitnessOf(c, robot.model, c.kind);
+  switch (fitness.why) {
+    case motion_laws::Unfit::kNone: break;
+    case motion_laws::Unfit::kTooFewJoints:
+      throw InputError(
+          fmt::format("servo.motion_law = \"{}\" is not allowed: it takes {} joints, arm \"{}\" has {}", name,
+                      law.joints_min, robot.name, robot.model.num_joints));
+    case motion_laws::Unfit::kDampedTooFast:
+      throw InputError(
+          fmt::format("{} is not allowed: joint {} is damped at {:.0f} 1/s, which is {}, and motion law "
+                      "\"{}\" bears {:g} 1/s",
+                      law.has_springs ? "servo.k_v (or servo.zeta, servo.omega_n, servo.k_p, which make it)"
+                                      : "servo.zeta with servo.omega_n",
+                      fitness.joint + 1, fitness.damping,
+                      law.has_springs ? "k_v over its inertia" : "2 zeta omega_n", name, law.damping_most));
   }
 }
 

@@ -86,9 +86,10 @@ void ScaleSpeed(double scale, ServoSettings& settings) {
   settings.config.law.lambda *= scale;
   settings.config.law.lambda_near *= scale;
   settings.config.guard.joint_velocity_fraction *= scale;
-  settings.config.guard.cartesian_speed *= scale;
+  double& speed = settings.config.guard.cartesian_speed;
   double& turn = settings.config.guard.rotation_speed;
-  turn = std::max(scale * turn, std::min(turn, config::kLeastRotationSpeed));
+  speed = std::max(scale * speed, kLeastCartesianSpeed);  // as Init allows
+  turn = std::max(scale * turn, kLeastRotationSpeed);
 }
 
 }  // namespace fovea::config

@@ -66,16 +66,20 @@ void Flatten(const toml::table& table, const std::string& prefix, const std::str
 // The parser takes a key of any depth, a.a.a and so on, and the depth of its recursion with it.
 constexpr std::size_t kLongestLine = 10'000;  // bytes
 
+void CheckLine(const std::string& line, const std::string& where) {
+  if (line.size() > kLongestLine) {
+    throw InputError(
+        fmt::format("{}: a line of {} bytes; at most {} are allowed", where, line.size(), kLongestLine));
+  }
+}
+
 // The file's text. InputError: a line that is too long.
 std::string TextOf(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string text;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
-    if (line.size() > kLongestLine) {
-      throw InputError(fmt::format("{}:{}: a line of {} bytes; at most {} are allowed", path.string(), number,
-                                   line.size(), kLongestLine));
-    }
+    CheckLine(line, fmt::format("{}:{}", path.string(), number));
     text += line;
     text += '\n';
   }
@@ -113,6 +117,7 @@ Setting ParseAssignment(const std::string& text) {
   }
   const std::string key = text.substr(0, equals);
   const std::string value = text.substr(equals + 1);
+  CheckLine(value, "--set " + key);
   try {
     const toml::table table = toml::parse("value = " + value);
     if (table.size() != 1) {

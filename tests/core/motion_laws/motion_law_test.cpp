@@ -239,6 +239,33 @@ TEST(MotionLawTest, LawChangeCausesNoTorqueStep) {
   EXPECT_LT(worst, 1.0);
 }
 
+// Each law by its own bound, springs by the joint that is damped fastest.
+TEST(MotionLawTest, GainsThatDampTooFastDoNotFit) {
+  for (const auto& [kind, most] : {std::pair{config::MotionLawKind::kComputedTorque, 400.0},
+                                   {config::MotionLawKind::kOperationalSpace, 400.0},
+                                   {config::MotionLawKind::kPd, 75.0},
+                                   {config::MotionLawKind::kJointImpedance, 75.0}}) {
+    for (const double share : {0.99, 1.01}) {
+      config::ServoConfig config = Config(kind);
+      config.motion_law.zeta = 0.5 * share * most / config.motion_law.omega_n;
+      for (double& k_v : config.motion_law.k_v) {
+        k_v *= config.motion_law.zeta;
+      }
+      const Fitness fitness = FitnessOf(config.motion_law, config.arm, kind);
+      EXPECT_EQ(fitness.why, share < 1.0 ? Unfit::kNone : Unfit::kDampedTooFast);
+      EXPECT_NEAR(fitness.damping, share * most, 1e-9);
+    }
+  }
+  config::ServoConfig config = Config(config::MotionLawKind::kPd);
+  config.motion_law.k_v[4] *= 2.0;
+  const Fitness fitness = FitnessOf(config.motion_law, config.arm, config::MotionLawKind::kPd);
+  EXPECT_EQ(fitness.why, Unfit::kDampedTooFast);
+  EXPECT_EQ(fitness.joint, 4);
+  config.arm.num_joints = 5;
+  EXPECT_EQ(FitnessOf(config.motion_law, config.arm, config::MotionLawKind::kOperationalSpace).why,
+            Unfit::kTooFewJoints);
+}
+
 TEST(MotionLawTest, FrictionIsCompensatedWithoutChatter) {
   model::ArmModel arm = test::PandaConfig().arm;
   for (model::Joint& joint : arm.joints) {

@@ -77,9 +77,19 @@ TEST(ServoInitTest, RefusesABadValueAndNamesTheKey) {
        [](config::ServoConfig& c) {
          c.motion_law.integral = 1.01 * c.motion_law.zeta * c.motion_law.omega_n;
        }},
+      {"servo.zeta",
+       [](config::ServoConfig& c) {
+         c.motion_law.omega_n = 80.0;
+         c.motion_law.zeta = 2.6;  // 416 1/s
+       }},
+      {"servo.k_v",
+       [](config::ServoConfig& c) {
+         c.motion_law.kind = config::MotionLawKind::kPd;
+         c.motion_law.k_v[6] = 1.0;  // on 0.005 kg m^2
+       }},
       {"safety.joint_acceleration_fraction",
        [](config::ServoConfig& c) { c.guard.joint_acceleration_fraction = 0.9; }},
-      {"safety.rotation_speed", [](config::ServoConfig& c) { c.guard.rotation_speed = 0.04; }},
+      {"safety.rotation_speed", [](config::ServoConfig& c) { c.guard.rotation_speed = 0.19; }},
       {"safety.joint_velocity_fraction",
        [](config::ServoConfig& c) { c.guard.joint_velocity_fraction = 1.5; }},
       {"safety.workspace_radius", [](config::ServoConfig& c) { c.guard.workspace_radius = 0.0; }},

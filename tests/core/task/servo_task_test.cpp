@@ -214,6 +214,23 @@ TEST_F(ServoTaskTest, AnyInputKeepsTheTorqueLimits) {
   }
 }
 
+// Gains that one law bears are too fast for another: it does not take over.
+TEST_F(ServoTaskTest, LawThatTheGainsDoNotFitDoesNotTakeOver) {
+  for (const double k_v : {0.1, 1.0}) {  // on 0.005 kg m^2: 20 and 204 1/s
+    config::ServoConfig config = test::PandaConfig();
+    config.motion_law.k_v[6] = k_v;
+    Start(config);
+    Run(200);
+    const auto ask = [](ServoInputs& inputs) {
+      inputs.change_law = true;
+      inputs.law = config::MotionLawKind::kPd;
+    };
+    Tick(ask);
+    EXPECT_EQ(task_.state().law_state.kind,
+              k_v < 0.5 ? config::MotionLawKind::kPd : config::MotionLawKind::kComputedTorque);
+  }
+}
+
 TEST_F(ServoTaskTest, TheSameInputsGiveTheSameBits) {
   std::vector<ServoInputs> inputs;
   std::vector<hal::TickRecord> first;

@@ -163,6 +163,7 @@ TEST(ReadTomlFile, LineThatIsTooLongIsRefused) {
       EXPECT_THAT(error.what(), HasSubstr("at most 10000 are allowed"));
     }
   }
+  EXPECT_THROW(ParseAssignment("x={" + key + "=1}"), InputError);
 }
 
 }  // namespace

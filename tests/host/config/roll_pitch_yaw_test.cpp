@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <iostream>
 #include <random>
 
 namespace fovea::config {
@@ -36,7 +37,8 @@ TEST(RollPitchYaw, AnglesOfARotationGiveTheRotationBack) {
     EXPECT_LE(std::abs(back[1]), 90.0);
     worst = std::max(worst, (RollPitchYaw({back.begin(), back.end()}) - R).norm());
   }
-  EXPECT_LT(worst, 1e-8) << worst;
+  std::cout << "off by at most " << worst << '\n';
+  EXPECT_LT(worst, 1e-12);
 }
 
 TEST(RollPitchYaw, AnglesWithinTheirRangesComeBackAsTheyWere) {

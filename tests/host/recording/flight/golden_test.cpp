@@ -89,6 +89,18 @@ TEST(GoldenConfiguration, KeyMissingFromAnOldLogKeepsItsMeaning) {
   EXPECT_EQ(config->guard.workspace_margin, Triangle().config.guard.workspace_margin);
 }
 
+// A renewed log keeps the configuration that it was written with, unless a format's change converts it.
+TEST(GoldenConfiguration, TourHasTheConfigurationOfToday) {
+  std::string logged;
+  flight::TickVisitor visitor;
+  visitor.on_configuration = [&logged](const log::ServoConfiguration& message) {
+    logged = message.SerializeAsString();
+  };
+  flight::ReadTicks(SourceRoot() / "tests/host/recording/flight/golden" / "tour.mcap", visitor);
+  EXPECT_EQ(logged, flight::ToMessage(Tour().config).SerializeAsString())
+      << "remove the log and run this test, which writes it";
+}
+
 // All of the modes are in it.
 TEST(GoldenTour, PassesThroughEveryMode) {
   const ServoRun run = Tour();

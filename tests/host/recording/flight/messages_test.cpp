@@ -68,7 +68,7 @@ TEST(ServoConfigurationTest, ClearancesOfAnOlderLogCountFromTheLinksSurface) {
   EXPECT_DOUBLE_EQ(read(0.06, 0.08, true).link_clearance, 0.02);
   EXPECT_DOUBLE_EQ(read(0.06, 0.08, true).sight_clearance, 0.03);
   EXPECT_EQ(read(0.03, 0.03, true).link_clearance, 0.0);
-  EXPECT_GT(read(0.03, 0.03, true).sight_clearance, 0.0) << "0 would switch it off";
+  EXPECT_EQ(read(0.03, 0.03, true).sight_clearance, 1e-3) << "0 would switch it off";
   EXPECT_EQ(read(0.03, 0.0, true).sight_clearance, 0.0) << "it was switched off";
   EXPECT_EQ(read(0.06, 0.08, false).link_clearance, 0.06);
   EXPECT_EQ(read(0.06, 0.08, false).sight_clearance, 0.08);
