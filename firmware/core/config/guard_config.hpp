@@ -2,6 +2,7 @@
 // arm.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -51,7 +52,10 @@ struct ViewConfig {
   double disc_cosine_min = 0.0;  // of a disc's tilt against the line of sight; 0: any
 };
 
-// Below these, what the true hand moves beside its reference passes the limit by itself [m/s, rad/s].
+// What the true hand moves beside its reference, as light joints that turn round stick and catch up
+// [m/s, rad/s]; and the least limits, of which that much leaves something.
+inline constexpr double kSpeedBeside = 0.005;
+inline constexpr double kTurnBeside = 0.08;
 inline constexpr double kLeastCartesianSpeed = 0.01;
 inline constexpr double kLeastRotationSpeed = 0.2;
 
@@ -75,6 +79,19 @@ struct GuardConfig {
   double barrier_rate = 1.5;
   double rotation_speed = 2.5;
 };
+
+// The largest shares of the hand's limits that a reference may use. Of its speed: a stop's proof looks at
+// points, between which it can be 6 % more. Of its turn: the true hand turned 6 % faster.
+inline constexpr double kSpeedShareMost = 0.94;
+inline constexpr double kTurnShareMost = 0.90;
+
+// The limits that these shares are of [m/s, rad/s]: low ones leave room for what the hand moves beside.
+inline double SpeedLimitOfReference(const GuardConfig& c) noexcept {
+  return std::min(c.cartesian_speed, (c.cartesian_speed - kSpeedBeside) / kSpeedShareMost);
+}
+inline double TurnLimitOfReference(const GuardConfig& c) noexcept {
+  return std::min(c.rotation_speed, (c.rotation_speed - kTurnBeside) / kTurnShareMost);
+}
 
 template <class Visitor, Struct<GuardConfig> Config>
 void Fields(Visitor& v, Config& c) noexcept {

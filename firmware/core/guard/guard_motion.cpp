@@ -49,12 +49,12 @@ LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E
                     const model::ArmPoses& poses, model::VecN& dq) noexcept {
   LimitSet limits = 0;
   const double speed = J_E_B.lazyProduct(dq).norm();
-  if (const double most = kSpeedShare * config.guard.cartesian_speed; speed > most) {
+  if (const double most = kSpeedShare * config::SpeedLimitOfReference(config.guard); speed > most) {
     dq *= most / speed;
     limits |= Bit(Limit::kCartesianSpeed);
   }
   const double turn = model::AngularVelocity(config.arm, poses, dq).norm();
-  if (const double most = kTurnShare * config.guard.rotation_speed; turn > most) {
+  if (const double most = kTurnShare * config::TurnLimitOfReference(config.guard); turn > most) {
     dq *= most / turn;
     limits |= Bit(Limit::kRotationSpeed);
   }

@@ -12,11 +12,6 @@ namespace fovea::guard {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-// Of the hand's speeds at the points of a stop that are looked at: between them it can be 6 % more.
-constexpr double kSpeedShareMost = 0.94;
-// Of its turn: light wrist joints that turn round stick for a moment, and the hand turned 6 % faster than its
-// reference.
-constexpr double kTurnShareMost = 0.90;
 constexpr double kSlack = 1e-9;  // rounding is no step outward [m, rad]
 
 // A joint that stops after `distance` from q_now, given that it may go up to `limit` (or no further than it
@@ -189,8 +184,8 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
   std::array<double, Bounds::kMost> clear_until{};
   const StopWay::Most most_now = way.At(0.0, q, dq);
   const double first_step = way.FirstStep(q_now);
-  const double speed_most = kSpeedShareMost * guard.cartesian_speed;
-  const double turn_most = kTurnShareMost * guard.rotation_speed;
+  const double speed_most = config::kSpeedShareMost * config::SpeedLimitOfReference(guard);
+  const double turn_most = config::kTurnShareMost * config::TurnLimitOfReference(guard);
   // While any point could be faster than the hand may, or turn faster, each sample counts.
   double first_due = most_now.speed > speed_most || most_now.turn > turn_most ? 0.0 : HUGE_VAL;
   for (int i = 0; i < bounds.size(); ++i) {

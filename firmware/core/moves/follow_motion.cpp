@@ -107,8 +107,9 @@ double ShareOfSpeed(const config::ServoConfig& config, const model::VecN& q, con
     model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J_E_B);
     const double speed = J_E_B.lazyProduct(dq).norm();
     const double turn = model::AngularVelocity(config.arm, poses, dq).norm();
-    share = std::min({share, kShareOfSpeed * config.guard.cartesian_speed / std::max(speed, 1e-9),
-                      kShareOfTurn * config.guard.rotation_speed / std::max(turn, 1e-9)});
+    share =
+        std::min({share, kShareOfSpeed * config::SpeedLimitOfReference(config.guard) / std::max(speed, 1e-9),
+                  kShareOfTurn * config::TurnLimitOfReference(config.guard) / std::max(turn, 1e-9)});
   }
   return share;
 }

@@ -81,7 +81,7 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   if (state_.inputs.bad_ticks > 0) {
     return;  // nothing new is known: the last command stays in force
   }
-  if (state_.mode.mode == hal::Mode::kBoot && !state_.holds) {
+  if (!state_.holds) {
     if (state_.inputs.sound_ticks == 0) {
       return;
     }

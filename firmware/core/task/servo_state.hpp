@@ -69,7 +69,7 @@ struct ServoState {
   // guard
   control::ResolvedMotion resolved;
   trajectory::Reference reference;
-  bool holds = false;         // in Boot: the reference stands where the arm was found
+  bool holds = false;         // the reference started where the arm was found
   moves::MotionState motion;  // mode Move
   hal::LimitSet limits = 0;
 

@@ -46,6 +46,18 @@ TEST_F(ServoTaskTest, TheErrorDecaysExponentially) {
   EXPECT_LT(worst, 0.10);
 }
 
+// Boot may be over within the tick that finds the arm sound: its reference starts where the arm is all the same.
+TEST_F(ServoTaskTest, BootOfOneTickHoldsTheArmWhereItIs) {
+  config::ServoConfig config = test::PandaConfig();
+  config.safety.boot_ticks = 1;
+  Start(config);
+  for (int tick = 0; tick < 50; ++tick) {
+    EXPECT_EQ(Tick().fault, hal::Fault::kNone);
+    EXPECT_LT((task_.state().reference.q - task_.state().q).lpNorm<Eigen::Infinity>(), 1e-3);
+  }
+  EXPECT_EQ(outputs_.record.mode, Mode::kHold);
+}
+
 // An arm that still drifts when Boot finds it at rest is braked within the limits, not stopped at once.
 TEST_F(ServoTaskTest, TakesOverADriftingArmWithoutAStep) {
   camera_on_ = false;
