@@ -167,11 +167,14 @@ void ProvokeWorkspace() {
   ExpectInsideLimits(bench);
 }
 
-// A motion that needs more torque than is allowed for it.
+// A motion that needs more torque than is allowed for it, by an arm whose motors are weak.
 void ProvokeTorque() {
-  constexpr double kFraction = 0.05;
+  constexpr double kFraction = 0.5;
   GuardSetup setup;
   setup.servo.safety.torque_fraction = kFraction;
+  for (model::Joint& joint : setup.servo.arm.joints) {
+    joint.tau_max *= 0.1;
+  }
   Eigen::VectorXd goal = setup.world.q_start;
   goal[0] += 1.0;
   goal[1] += 0.3;
@@ -248,7 +251,7 @@ void ProvokeCartesianSpeed() {
 
 // The hand shall turn about its own axis, faster than it may.
 void ProvokeRotationSpeed() {
-  constexpr double kTurn = 0.6;
+  constexpr double kTurn = 1.0;
   GuardSetup setup;
   setup.servo.guard.rotation_speed = kTurn;
   setup.servo.move.pose_error_max = 10.0;

@@ -125,10 +125,12 @@ std::int32_t WatchEncoders(const config::ServoConfig& config, const WatchedJoint
     const double M = now.dynamics.M(i, i);
     const double omega_n = config.motion_law.omega_n;
     const double wished = now.drives ? std::fabs(now.q_reference[i] - joint.q_reference) : 0.0;
+    // A step of the reference that is allowed is no motion that the joint has already made.
+    const double late = std::max(kWishSlack, config.safety.setpoint_jump);
     const double gone =
         std::max({TurnsRound(joint, now.dq[i]) ? 0.0 : std::fabs(joint.way) / (enough + kLeast),
                   std::fabs(joint.travel) / (enough + kTravelSlack),
-                  wished / (enough + kWishSlack + held / (M * omega_n * omega_n))});
+                  wished / (enough + late + held / (M * omega_n * omega_n))});
     if (gone > 1.0 && joint.ticks >= config.safety.non_finite_ticks && hangs < 0) {
       hangs = i;
     }

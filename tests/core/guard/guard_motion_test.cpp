@@ -144,7 +144,8 @@ TEST(GuardMotionTest, HandKeepsItsRotationLimitUnderRandomWishes) {
       walker.Step(wish);
     }
     ExpectAllHeld(walker, config);
-    EXPECT_GT(walker.turn, 0.9) << "the attack must be one";
+    EXPECT_GT(walker.turn * most, 0.9 * config::TurnLimitOfReference(config.guard))
+        << "the attack must be one";
     EXPECT_NE(walker.all_limits & hal::Bit(hal::Limit::kRotationSpeed), 0U);
   }
 }
