@@ -9,6 +9,7 @@
 #include "firmware/host/build_info.hpp"
 #include "firmware/host/config/board_flags.hpp"
 #include "firmware/host/config/command_line.hpp"
+#include "firmware/host/config/key_text.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/config/share_folder.hpp"
 #include "fovea/linux_rt/interrupt.hpp"
@@ -330,14 +331,7 @@ int List() {
 int Keys(bool markdown) {
   sim::Scenario scenario;
   const config::KeyTable keys = sim::ScenarioKeys(scenario);
-  if (markdown) {
-    fmt::print("{}", sim::KeysAsMarkdown(keys));
-    return kDone;
-  }
-  for (const config::Key& key : keys.keys()) {
-    fmt::print("{} = {}\n    {}; {}: {}{}{}\n", key.name, key.default_text, key.meaning, key.kind,
-               key.allowed, key.unit.empty() ? "" : " ", key.unit);
-  }
+  fmt::print("{}", markdown ? sim::KeysAsMarkdown(keys) : config::KeysAsText(keys));
   return kDone;
 }
 

@@ -1,5 +1,6 @@
 # Completion of fovea, fovea-sim, fovea-hw and fovea-bench for bash. Options, sub-commands and choices are read from each
-# program's own --help, scenarios from `fovea-sim list`, keys from `fovea-sim keys`: nothing is listed here twice.
+# program's own --help, scenarios from `fovea-sim list`, keys from `fovea-sim keys` and `fovea-hw CONFIG --keys`: nothing is
+# listed here twice.
 
 # What --help of "$@" says, one word a line: `commands`, `options`, or the choices of the option $1.
 _fovea_help() {
@@ -21,20 +22,26 @@ _fovea_help() {
     }'
 }
 
-# The keys that --set of "$@" knows. fovea-hw and a replay share only those of the servo with the simulator.
+# The keys that --set of "$@" knows. Those of fovea-hw depend on its configuration, the first word typed behind it. A replay
+# knows those of the servo.
 _fovea_keys() {
-  local sim=$1 sections='[a-z]'
+  local folder=$1 sections='[a-z]'
+  local -a ask=("${folder}fovea-sim" keys)
   shift
   case "${*##*/}" in
-    fovea-hw | 'fovea replay') sections='\(servo\|safety\)\.' ;;
+    fovea-hw) ask=("$1" "${COMP_WORDS[1]}" --keys) ;;
+    'fovea replay')
+      ask=("${folder}fovea-hw" loopback --keys)
+      sections='\(servo\|safety\)\.'
+      ;;
   esac
-  "$sim" keys 2> /dev/null | sed -n "s/^\($sections[^ ]*\) = .*/\1=/p"
+  "${ask[@]}" 2> /dev/null | sed -n "s/^\($sections[^ ]*\) = .*/\1=/p"
 }
 
 _fovea() {
   local program=${1/#'~/'/$HOME/} word=$2 previous=$3
-  # The simulator that stands beside the program.
-  local sim=${program%"${program##*/}"}fovea-sim
+  # Where the other programs stand.
+  local folder=${program%"${program##*/}"}
   local -a call=("$program") found
   local w choices
   COMPREPLY=()
@@ -45,7 +52,7 @@ _fovea() {
     fi
   done
   if [ "$previous" = --set ]; then
-    mapfile -t found < <(compgen -W "$(_fovea_keys "$sim" "${call[@]}")" -- "$word")
+    mapfile -t found < <(compgen -W "$(_fovea_keys "$folder" "${call[@]}")" -- "$word")
     compopt -o nospace 2> /dev/null
   elif [[ $word == -* ]]; then
     mapfile -t found < <(compgen -W "$(_fovea_help options "${call[@]}")" -- "$word")
@@ -55,7 +62,7 @@ _fovea() {
     local names
     names=$(_fovea_help commands "${call[@]}")
     case "${call[*]##*/}" in
-      'fovea-sim run' | 'fovea-sim serve' | 'fovea-sim pictures') names=$("$sim" list 2> /dev/null | awk '{ print $1 }') ;;
+      'fovea-sim run' | 'fovea-sim serve' | 'fovea-sim pictures') names=$("${folder}fovea-sim" list 2> /dev/null | awk '{ print $1 }') ;;
       fovea-hw) names='loopback panda' ;;
     esac
     mapfile -t found < <(

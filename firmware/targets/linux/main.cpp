@@ -9,6 +9,7 @@
 #include "firmware/host/build_info.hpp"
 #include "firmware/host/config/command_line.hpp"
 #include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/key_text.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/targets/linux/check.hpp"
 #include "firmware/targets/linux/hw_run.hpp"
@@ -21,6 +22,7 @@ struct Arguments {
   std::string config;
   std::vector<std::string> assignments;
   bool check = false;
+  bool keys = false;
   bool no_motion = false;
   bool enable = false;
   bool track = false;
@@ -51,7 +53,11 @@ std::optional<hw::HwSummary> Serve(const hw::HwConfig& config, const Arguments& 
 }
 
 int Run(const Arguments& arguments) {
-  const hw::HwConfig config = hw::LoadHwConfig(arguments.config, arguments.assignments);
+  hw::HwConfig config = hw::LoadHwConfig(arguments.config, arguments.assignments);
+  if (arguments.keys) {
+    fmt::print("{}", config::KeysAsText(hw::HwKeys(config)));
+    return config::kDone;
+  }
   if (arguments.check) {
     return Check(config, arguments.json);
   }
@@ -89,6 +95,7 @@ int main(int argc, char** argv) {
   app.footer(
       "Examples:\n"
       "  fovea-hw panda --check\n"
+      "  fovea-hw panda --keys\n"
       "  fovea-hw panda --no-motion --seconds 10\n"
       "  fovea-sim serve ball --pace lockstep & fovea-hw loopback --track --seconds 8 --out out/hw\n"
       "On standard input, a word a line: enable, track, hold, recover, end. SIGUSR1 recovers; SIGINT, "
@@ -111,6 +118,8 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_flag("--check", arguments.check,
                "look at computer and robot, move nothing, and say what is to be done");
+  app.add_flag("--keys", arguments.keys,
+               "print every key that the configuration takes: its value there, meaning, range, unit");
   app.add_flag("--no-motion", arguments.no_motion, "read states, command nothing");
   app.add_flag("--enable", arguments.enable,
                "the arm may move from the start; else when \"enable\" is typed");

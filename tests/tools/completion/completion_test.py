@@ -91,6 +91,12 @@ class Tools:
     def test_configurations_of_the_robot(self):
         self.assertEqual(self.complete("fovea-hw loop"), ["loopback"])
 
+    def test_keys_of_the_robot_and_of_a_replay(self):
+        for line in ["fovea-hw panda --set ", "fovea replay out --set "]:
+            self.assertEqual(self.complete(f"{line}servo.lambda_n"), ["servo.lambda_near="])
+            self.assertEqual([key for key in self.complete(f"{line}f") if "=" in key], [], "no simulated faults")
+        self.assertEqual(self.complete("fovea-hw panda --set robot.speed_s"), ["robot.speed_scale="])
+
     def test_options_of_a_program_by_its_path(self):
         self.assertEqual(self.complete(f"{BIN}/fovea-hw --no-m"), ["--no-motion"])
 
@@ -111,10 +117,6 @@ class Simulator:
     def test_keys(self):
         self.assertEqual(self.complete("fovea-sim run ball --set servo.lambda_n"), ["servo.lambda_near="])
 
-    def test_keys_of_other_programs(self):
-        for line in ["fovea-hw panda --set ", "fovea replay out --set "]:
-            self.assertEqual(self.complete(f"{line}servo.lambda_n"), ["servo.lambda_near="])
-            self.assertEqual([key for key in self.complete(f"{line}f") if "=" in key], [], "no simulated faults")
 
     def test_keys_of_a_program_off_the_path(self):
         self.assertEqual(self.complete(f"{BIN}/fovea-sim run ball --set servo.lambda_n", PATH="/usr/bin:/bin"),
