@@ -131,8 +131,9 @@ class Run {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
   static RunDescription Prepare(const Scenario& scenario, Progress& progress) {
+    RunDescription about = DescribeRun(scenario);  // what is refused is all that is printed
     progress.Update(0.0, "preparing");
-    return DescribeRun(scenario);
+    return about;
   }
 
   void BuildWorld() {

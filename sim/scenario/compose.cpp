@@ -189,6 +189,9 @@ CommandedMotion MakeMotion(const Scenario& s) {
   };
   const auto& m = s.motion;
   if (m.kind == "circle") {
+    if (!(ToVector(m.normal).norm() > 0.0)) {
+      throw config::InputError("motion.normal = [0, 0, 0] is not allowed: a plane's normal must not be zero");
+    }
     const Eigen::Vector3d normal = ToVector(m.normal).normalized();
     const Eigen::Vector3d aside =
         std::fabs(normal.z()) < 0.9 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitX();

@@ -67,6 +67,9 @@ InputCheck TakeIn(const config::ServoConfig& config, const hal::Status& arm_stat
   const bool is_first = !state.has_state;
   const hal::JointArray q_before = state.q;
   const hal::JointArray dq_before = state.dq;
+  // Ticks without a state and ticks that the computer swallowed are one silence, where one follows the other.
+  const bool was_lost =
+      state.bad_ticks > 0 && std::int64_t{state.bad_ticks} + missed_ticks >= safety.arm_lost_ticks;
   state.has_state = true;
   state.stamp_ns = arm.stamp_ns;
   state.sequence = arm.sequence;
@@ -88,6 +91,10 @@ InputCheck TakeIn(const config::ServoConfig& config, const hal::Status& arm_stat
     return {};
   }
   state.non_finite_ticks = 0;
+  if (was_lost) {
+    state.sound_ticks = 0;
+    return {hal::Fault::kArmLost, -1};
+  }
   for (int i = 0; i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config.arm.joints[k];

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "firmware/core/guard/motor_need.hpp"
 #include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/core/task/servo_task.hpp"
 #include "firmware/host/config/input_error.hpp"
@@ -97,6 +98,12 @@ void CheckTogether(const ServoConfig& c) {
         "servo.integral = {} is not allowed: at most servo.zeta times servo.omega_n, which is {:g} "
         "1/s; at twice that the joints' error grows",
         c.motion_law.integral, most));
+  }
+  if (const guard::MotorNeed need = guard::LargestMotorNeed(c); !(need.torque <= need.allowed)) {
+    throw InputError(fmt::format(
+        "arm.load_mass, safety.joint_acceleration_fraction and safety.torque_fraction do not fit: with the "
+        "load, joint {} takes {:.3g} to accelerate as it may, and its motor may give {:.3g} (Nm, N)",
+        need.joint + 1, need.torque, need.allowed));
   }
   if (c.guard.workspace_margin >= c.guard.workspace_radius) {
     throw InputError(fmt::format(

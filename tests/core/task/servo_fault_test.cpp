@@ -87,6 +87,24 @@ TEST_F(FaultTest, SilentArmRaisesArmLost) {
   ExpectResetWorks();
 }
 
+// States that were lost, and then ticks that were, each for less than is allowed: one silence.
+TEST_F(FaultTest, LostStatesAndMissedTicksInARowRaiseArmLost) {
+  const auto lose_then_miss = [this](int lost, int missed) {
+    for (int i = 0; i < lost; ++i) {
+      Tick([](ServoInputs& inputs) { inputs.arm_status = hal::Status(hal::StatusCode::kTimeout); });
+    }
+    Tick([missed](ServoInputs& inputs) { inputs.missed_ticks = missed; });
+  };
+  const int most = config_.safety.arm_lost_ticks;
+  lose_then_miss(most / 2, most - most / 2 - 1);
+  EXPECT_EQ(outputs_.record.fault, Fault::kNone);
+  Run(50);
+  lose_then_miss(most / 2, most - most / 2);
+  EXPECT_EQ(outputs_.record.fault, Fault::kArmLost);
+  ExpectStopsAndStays(Fault::kArmLost, 1500);
+  ExpectResetWorks();
+}
+
 // A robot that recovered holds itself by torques of its own: they are no reason to take it over.
 TEST_F(FaultTest, BrakesStayClosedWhenTheArmHoldsItselfAgain) {
   const auto silent = [](ServoInputs& inputs) { inputs.arm_status = hal::Status(hal::StatusCode::kTimeout); };

@@ -89,6 +89,10 @@ TEST(ServoInitTest, RefusesABadValueAndNamesTheKey) {
        }},
       {"safety.joint_acceleration_fraction",
        [](config::ServoConfig& c) { c.guard.joint_acceleration_fraction = 0.9; }},
+      {"safety.torque_fraction",
+       [](config::ServoConfig& c) {
+         c.arm.joints[5].tau_max = 0.02;  // it takes more to accelerate the hand
+       }},
       {"safety.rotation_speed", [](config::ServoConfig& c) { c.guard.rotation_speed = 0.19; }},
       {"safety.joint_velocity_fraction",
        [](config::ServoConfig& c) { c.guard.joint_velocity_fraction = 1.5; }},
