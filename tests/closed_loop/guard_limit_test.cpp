@@ -167,17 +167,27 @@ void ProvokeWorkspace() {
   ExpectInsideLimits(bench);
 }
 
-// A motion that needs more torque than is allowed for it, by an arm whose motors are weak.
+// A motion that needs more torque than is allowed for it, by an arm whose motors accelerate each joint by
+// itself as the guard allows, but not against each other.
 void ProvokeTorque() {
   constexpr double kFraction = 0.5;
   GuardSetup setup;
   setup.servo.safety.torque_fraction = kFraction;
-  for (model::Joint& joint : setup.servo.arm.joints) {
-    joint.tau_max *= 0.1;
+  model::ArmModel& arm = setup.servo.arm;
+  model::ArmPoses poses;
+  model::ArmDynamics dynamics;
+  model::ComputePoses(arm, model::ToVector(arm.q_ready, arm.num_joints), poses);
+  model::ComputeDynamics(arm, poses, model::VecN::Zero(arm.num_joints), dynamics);
+  for (int i = 0; i < arm.num_joints; ++i) {
+    model::Joint& joint = arm.joints[static_cast<std::size_t>(i)];
+    const double need = dynamics.M(i, i) * setup.servo.guard.joint_acceleration_fraction * joint.ddq_max;
+    joint.tau_max = 1.01 * need / kFraction;
   }
   Eigen::VectorXd goal = setup.world.q_start;
   goal[0] += 1.0;
   goal[1] += 0.3;
+  goal[3] -= 0.5;
+  goal[5] += 0.5;
   setup.motion = GoTo(kStart, goal);
   GuardBench bench(setup);
   bench.RunUntil(3.0);
