@@ -154,7 +154,7 @@ Eigen::Isometry3d ViewOf(const Look& look, const Eigen::Matrix3d& R_down, const 
       }
       const Eigen::Vector2d xy = Distort(lens, p.head<2>() / p.z());
       const double u = pinhole.f_px * xy.x() + pinhole.c_u_px;
-      const double v = pinhole.F_v() * xy.y() + pinhole.c_v_px;
+      const double v = pinhole.FocalV() * xy.y() + pinhole.c_v_px;
       inside = inside && u > kNearestPx && u < pinhole.width_px - 1 - kNearestPx && v > kNearestPx &&
                v < pinhole.height_px - 1 - kNearestPx;
     }
@@ -172,7 +172,7 @@ void WriteTruth(const RunDescription& about, const calibration::Board& board, co
   stream << nlohmann::ordered_json{{"width_px", about.pinhole.width_px},
                                    {"height_px", about.pinhole.height_px},
                                    {"f_u_px", about.pinhole.f_px},
-                                   {"f_v_px", about.pinhole.F_v()},
+                                   {"f_v_px", about.pinhole.FocalV()},
                                    {"c_u_px", about.pinhole.c_u_px},
                                    {"c_v_px", about.pinhole.c_v_px},
                                    {"lens", {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3}},

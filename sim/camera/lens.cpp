@@ -70,7 +70,7 @@ LensMap::LensMap(const Lens& lens, const Pinhole& pinhole) {
     const std::size_t row = pixel / width;
     const double u = static_cast<double>(column) + (i % 2 == 0 ? -0.25 : 0.25);
     const double v = static_cast<double>(row) + (i % kPoints < 2 ? -0.25 : 0.25);
-    const Eigen::Vector2d xy((u - pinhole.c_u_px) / pinhole.f_px, (v - pinhole.c_v_px) / pinhole.F_v());
+    const Eigen::Vector2d xy((u - pinhole.c_u_px) / pinhole.f_px, (v - pinhole.c_v_px) / pinhole.FocalV());
     if (!Undistort(lens, xy, ideal[i])) {
       throw std::invalid_argument("the lens folds the picture before its edge");
     }

@@ -14,14 +14,14 @@ struct Pinhole {
   double c_v_px = 239.5;
   double aspect = 1.0;  // f_v / f_u
 
-  [[nodiscard]] double F_v() const { return aspect * f_px; }
+  [[nodiscard]] double FocalV() const { return aspect * f_px; }
   // Square pixels, and the axis in the middle of the picture: what SceneRenderer draws.
   [[nodiscard]] bool IsPlain() const {
     return aspect == 1.0 && c_u_px == 0.5 * (width_px - 1) && c_v_px == 0.5 * (height_px - 1);
   }
   // Where a point before the camera is seen [px]; `p_C` in axes of C [m].
   [[nodiscard]] double U(const Eigen::Vector3d& p_C) const { return f_px * p_C.x() / p_C.z() + c_u_px; }
-  [[nodiscard]] double V(const Eigen::Vector3d& p_C) const { return F_v() * p_C.y() / p_C.z() + c_v_px; }
+  [[nodiscard]] double V(const Eigen::Vector3d& p_C) const { return FocalV() * p_C.y() / p_C.z() + c_v_px; }
 };
 
 // A camera with the given horizontal field of view [rad], its axis in the middle of the picture.

@@ -271,7 +271,7 @@ void CheckLens(const Scenario& s) {
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format(
         "camera.lens = [{}, {}, {}, {}, {}] is not allowed with focal lengths of {:.6g} and {:.6g} px: {}",
-        lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, pinhole.f_px, pinhole.F_v(), error.what()));
+        lens.k1, lens.k2, lens.p1, lens.p2, lens.k3, pinhole.f_px, pinhole.FocalV(), error.what()));
   }
 }
 

@@ -60,7 +60,7 @@ RunDescription DescribeRun(const Scenario& scenario) {
   const Eigen::Isometry3d X_EC = CameraMount(scenario);
   run.pinhole = MakeScenarioPinhole(scenario);
   run.intrinsics = {run.pinhole.width_px, run.pinhole.height_px, run.pinhole.f_px,
-                    run.pinhole.F_v(),    run.pinhole.c_u_px,    run.pinhole.c_v_px};
+                    run.pinhole.FocalV(), run.pinhole.c_u_px,    run.pinhole.c_v_px};
   const Lens lens = MakeScenarioLens(scenario);
   run.intrinsics.lens = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
   CheckLens(scenario);

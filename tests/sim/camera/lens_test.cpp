@@ -75,8 +75,8 @@ TEST_P(SensorTest, ResamplesByTheCamerasFormula) {
   for (int v = 0; v < 120; ++v) {
     for (int u = 0; u < 160; ++u) {
       Eigen::Vector2d ideal;
-      ASSERT_TRUE(Undistort(lens, {(u - pinhole.c_u_px) / pinhole.f_px, (v - pinhole.c_v_px) / pinhole.F_v()},
-                            ideal));
+      ASSERT_TRUE(Undistort(
+          lens, {(u - pinhole.c_u_px) / pinhole.f_px, (v - pinhole.c_v_px) / pinhole.FocalV()}, ideal));
       const auto at = 4 * static_cast<std::size_t>(160 * v + u);
       worst =
           std::max({worst, std::fabs(to[at] - 255.0 * (wide.f_px * ideal.x() + wide.c_u_px) / wide.width_px),

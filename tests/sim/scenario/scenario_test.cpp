@@ -66,7 +66,7 @@ TEST(ScenarioTest, IntrinsicsAreTakenWholeOrRefused) {
   const Pinhole own = pinhole(all);
   EXPECT_FALSE(own.IsPlain());
   EXPECT_EQ(own.f_px, 571.3);
-  EXPECT_DOUBLE_EQ(own.F_v(), 566.9);
+  EXPECT_DOUBLE_EQ(own.FocalV(), 566.9);
   EXPECT_EQ(own.c_v_px, 252.2);
   for (std::size_t i = 0; i < all.size(); ++i) {
     std::vector<std::string> some = all;
