@@ -108,35 +108,33 @@ int Run(const RunArguments& arguments) {
 
 void AddBoard(CLI::App& run, RunArguments& arguments) {
   run.add_option("--servo", arguments.servo,
-                 "where the servo runs: pc, in this program; mcu, on a Cortex-M7 that QEMU emulates")
+                 "pc: the servo runs in this program; mcu: on a Cortex-M7 in QEMU")
       ->check(CLI::IsMember({"pc", "mcu"}));
   arguments.of_board = {
-      run.add_option("--servo-image", arguments.servo_image, "of --servo mcu; the shipped one when not given")
+      run.add_option("--servo-image", arguments.servo_image,
+                     "with --servo mcu: the image file; default: the shipped one")
           ->check(CLI::ExistingFile),
-      run.add_option(
-             "--servo-pace", arguments.servo_pace,
-             "of --servo mcu. lockstep: a state, a tick; timer: by the board's own 1 kHz, in virtual time, "
-             "whether a state has come or not")
+      run.add_option("--servo-pace", arguments.servo_pace,
+                     "with --servo mcu. lockstep: one tick per state; timer: ticks at the board's own 1 kHz "
+                     "in virtual time, with or without a new state")
           ->check(CLI::IsMember({"lockstep", "timer"})),
-      run.add_option(
-             "--instruction-ns", arguments.board.instruction_ns,
-             "of --servo mcu: how long its processor takes for each; a slow one misses ticks of its timer")
+      run.add_option("--instruction-ns", arguments.board.instruction_ns,
+                     "with --servo mcu: time of one instruction [ns]; a slow processor misses ticks")
           ->check(CLI::IsMember({1, 2, 4, 8, 16, 32, 64}))
           ->capture_default_str()};
   sim::LinkFaults& line = arguments.board.line;
   arguments.of_timer = {
-      run.add_option("--line-loss", line.loss,
-                     "of --servo-pace timer: share of states and of torques that get lost")
+      run.add_option("--line-loss", line.loss, "with --servo-pace timer: share of lost states and torques")
           ->check(CLI::Range(0.0, 1.0))
           ->capture_default_str(),
-      run.add_option("--line-delay-ms", line.delay_ms,
-                     "of every state and torque; what comes between two ticks is there at the second")
+      run.add_option("--line-delay-ms", line.delay_ms, "delay of every state and torque [ms]")
           ->check(CLI::Range(0.0, 1000.0))
           ->capture_default_str(),
       run.add_option("--line-jitter-ms", line.jitter_ms, "up to this much more, by the run's seed")
           ->check(CLI::Range(0.0, 1000.0))
           ->capture_default_str(),
-      run.add_option("--line-from-s", arguments.board.line_from_s, "of the run: the line is perfect before")
+      run.add_option("--line-from-s", arguments.board.line_from_s,
+                     "time [s] from which the line is bad; before, it is perfect")
           ->check(CLI::NonNegativeNumber)
           ->capture_default_str()};
 }
@@ -214,56 +212,55 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
-  serve.add_option("--seed", arguments.seed, "of all that is random")->check(CLI::Range(0, 2147483647));
+  serve.add_option("--seed", arguments.seed, "seed of all random numbers")->check(CLI::Range(0, 2147483647));
   serve
       .add_option("--pace", arguments.pace,
-                  "real: 1 ms by the clock; lockstep: a motion waits for its client")
+                  "real: 1 ms by the clock; lockstep: the robot waits for its client")
       ->check(CLI::IsMember({"lockstep", "real"}));
   serve
-      .add_option(
-          "--most-speed", server.most_speed,
-          "of the robot's time against the clock's, so that a busy machine keeps up with its pictures; 0: in "
-          "lockstep as fast as its client, at real pace as the clock")
+      .add_option("--most-speed", server.most_speed,
+                  "largest speed of the robot's time relative to the clock, for busy machines; 0: no limit "
+                  "in lockstep, 1 at real pace")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
-  serve.add_option("--fci-port", server.at.port, "TCP port; 0 takes a free one and says which")
+  serve.add_option("--fci-port", server.at.port, "TCP port; 0: take a free port and print it")
       ->capture_default_str();
-  serve
-      .add_option("--address", arguments.options.address,
-                  "where to listen; 0.0.0.0 is every network there is")
+  serve.add_option("--address", arguments.options.address, "address to listen on; 0.0.0.0: all networks")
       ->capture_default_str();
   serve
       .add_option("--camera-serial", arguments.options.camera_serial,
                   "serial number of the GigE Vision camera; \"\": no camera")
       ->capture_default_str();
   serve
-      .add_option("--wall", arguments.walls,
-                  "X,Y,Z,DX,DY,DZ: a cuboid that the end effector may not enter, a corner and its edges [m]; "
-                  "may be repeated")
+      .add_option(
+          "--wall", arguments.walls,
+          "X,Y,Z,DX,DY,DZ: a forbidden cuboid for the end effector: corner and edges [m]; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
-  serve.add_option("--late-ms", server.late_ms, "a command may answer a state that is this old")
+  serve.add_option("--late-ms", server.late_ms, "largest age of the state that a command answers [ms]")
       ->check(CLI::Range(0, 19))
       ->capture_default_str();
   const auto share = [&](const char* name, double& value, const char* what) {
     serve.add_option(name, value, what)->check(CLI::Range(0.0, 1.0))->capture_default_str();
   };
-  share("--loss", server.faults.loss, "share of datagrams that the network loses");
-  share("--duplicate", server.faults.duplicate, "share that comes twice");
-  share("--reorder", server.faults.reorder, "share that is overtaken");
-  serve.add_option("--delay-ms", server.faults.delay_ms, "of every datagram; in lockstep of commands alone")
+  share("--loss", server.faults.loss, "share of lost datagrams");
+  share("--duplicate", server.faults.duplicate, "share of duplicated datagrams");
+  share("--reorder", server.faults.reorder, "share of reordered datagrams");
+  serve
+      .add_option("--delay-ms", server.faults.delay_ms,
+                  "delay of every datagram [ms]; in lockstep only of commands")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
   serve.add_option("--jitter-ms", server.faults.jitter_ms, "up to this much more")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
-  serve.add_option("--out", arguments.options.out, "the folder for summary.json; none when not given");
+  serve.add_option("--out", arguments.options.out, "folder for summary.json; without it, write no file");
   serve.add_flag("--json", arguments.json, "print summary.json at the end");
   serve.footer(
-      "What may be typed, a word a line: s presses the stop button, and again releases it; g the enabling\n"
-      "button at the hand, which lets a person guide it; f X Y Z pulls at the hand from now on [N]; h hangs\n"
-      "the robot: the same state again and again.\n"
+      "Type one command per line: s presses or releases the stop button; g presses or releases the enabling\n"
+      "button for hand guiding; f X Y Z pulls the hand with this force [N]; h freezes the robot: it repeats\n"
+      "one state.\n"
       "Examples:\n"
       "  fovea-sim serve ball --fci-port 1337\n"
       "  fovea-sim serve ball --pace lockstep --loss 0.05 --jitter-ms 2 --late-ms 3\n"
@@ -298,20 +295,22 @@ int TakePictures(const PictureArguments& arguments) {
 }
 
 void AddPictures(CLI::App& pictures, PictureArguments& arguments) {
-  pictures.add_option("scenario", arguments.scenario, "whose arm and camera; a shipped one or a .toml")
+  pictures
+      .add_option("scenario", arguments.scenario,
+                  "scenario with the arm and camera: a shipped name or a .toml")
       ->capture_default_str();
   pictures.add_option("--set", arguments.assignments, "key=value, over the scenario's own; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
   config::AddBoardFlags(pictures, arguments.board);
-  pictures.add_option("--views", arguments.views, "of the board")
+  pictures.add_option("--views", arguments.views, "number of views of the board")
       ->check(CLI::Range(4, 60))
       ->capture_default_str();
   pictures.add_option("--out", arguments.out, "folder for pictures, poses.csv and truth.json")
       ->capture_default_str();
   pictures.footer(
-      "The arm is placed at each view, not driven there.\n"
+      "The arm is placed at each view without motion.\n"
       "Example:\n"
       "  fovea-sim pictures --board 8x5 --square 0.03 --marker 0.022 --set camera.lens=[-0.12,0,0,0,0]");
 }
@@ -338,7 +337,8 @@ int Keys(bool markdown) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Fovea's simulator: a Bullet arm, an EGL camera in its hand, and the servo that steers it."};
+  CLI::App app{
+      "Fovea's simulator: an arm in Bullet, a camera rendered by EGL, and the servo that controls them."};
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("fovea-sim {} {}", kVersion, kGitRevision));
   app.footer(
@@ -351,7 +351,7 @@ int main(int argc, char** argv) {
       "--line-from-s 0.1\n"
       "  fovea-sim serve ball --fci-port 1337\n"
       "  fovea-sim pictures --board 9x6 --square 0.025 --out out/boards\n"
-      "Ctrl-C ends a run early, with all its files; once more ends it at once, with its log up to there.\n"
+      "Ctrl-C ends a run early and writes all files. A second Ctrl-C ends at once and keeps the log.\n"
       "Exit: 0 the run reached its goal, 1 it did not or was interrupted, 2 wrong usage or input.");
 
   RunArguments arguments;
@@ -363,26 +363,27 @@ int main(int argc, char** argv) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
-  run->add_option("--seed", arguments.seed, "of all that is random")->check(CLI::Range(0, 2147483647));
+  run->add_option("--seed", arguments.seed, "seed of all random numbers")->check(CLI::Range(0, 2147483647));
   run->add_option("--pace", arguments.pace,
                   "lockstep: as fast as it goes, repeatable; real: 1 ms by the clock")
       ->check(CLI::IsMember({"lockstep", "real"}));
   AddBoard(*run, arguments);
-  run->add_option("--out", arguments.out, "folder for the files; out/<scenario> when not given");
+  run->add_option("--out", arguments.out, "folder for the files; default: out/<scenario>");
   run->add_option("--trace", arguments.trace,
-                  "file for a timeline of all threads, for ui.perfetto.dev or chrome://tracing");
-  run->add_flag("--no-report", arguments.no_report, "leave out what takes long to draw");
+                  "write a timeline of all threads for ui.perfetto.dev or chrome://tracing");
+  run->add_flag("--no-report", arguments.no_report, "write no report and no pictures");
   run->add_flag("--json", arguments.json, "print summary.json instead of the table");
   ServeArguments serve_arguments;
-  CLI::App* serve = app.add_subcommand("serve", "the scenario's Panda on the network, until interrupted");
+  CLI::App* serve =
+      app.add_subcommand("serve", "simulate the scenario's Panda as a network robot, until interrupted");
   AddServe(*serve, serve_arguments);
   PictureArguments picture_arguments;
-  CLI::App* pictures = app.add_subcommand(
-      "pictures", "of a board from many sides, to calibrate the scenario's camera with `fovea calibrate`");
+  CLI::App* pictures =
+      app.add_subcommand("pictures", "render a calibration board from many views, for `fovea calibrate`");
   AddPictures(*pictures, picture_arguments);
-  CLI::App* list = app.add_subcommand("list", "shipped scenarios, one line each");
+  CLI::App* list = app.add_subcommand("list", "list the shipped scenarios");
   bool markdown = false;
-  CLI::App* keys = app.add_subcommand("keys", "every key of a scenario: default, meaning, range, unit");
+  CLI::App* keys = app.add_subcommand("keys", "list every key of a scenario: default, meaning, range, unit");
   keys->add_flag("--markdown", markdown, "as the table in sim/scenarios/KEYS.md");
   return config::RunProgram("fovea-sim", app, argc, argv, [&] {
     return run->parsed()        ? Run(arguments)

@@ -67,7 +67,7 @@ void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
 void AddRunKeys(Scenario& s, config::KeyTable& keys) {
   keys.Text("run.description", s.run.description, "one line for `fovea-sim list`");
   keys.Number("run.duration_s", s.run.duration_s, 0.1, 1e6, "s", "simulated time");
-  keys.Integer("run.seed", s.run.seed, 0, 2147483647, "", "of all that is random");
+  keys.Integer("run.seed", s.run.seed, 0, 2147483647, "", "seed of all random numbers");
   keys.Number("run.tracking_bound_px", s.run.tracking_bound_px, 0.01, 1e4, "px",
               "a moving target counts as tracked below this error, rms over the second half");
   keys.Number("run.tracking_bound_mm", s.run.tracking_bound_mm, 0.01, 1e4, "mm",

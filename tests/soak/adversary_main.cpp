@@ -12,8 +12,8 @@ int main(int argc, char** argv) {
   CLI::App app{"Fovea under measurements that freeze, repeat, mirror, jump and run away."};
   double hours = 0.1;
   std::uint64_t seed = 1;
-  app.add_option("--hours", hours, "of robot time")->check(CLI::Range(1e-4, 1000.0));
-  app.add_option("--seed", seed, "of the tricks");
+  app.add_option("--hours", hours, "hours of robot time")->check(CLI::Range(1e-4, 1000.0));
+  app.add_option("--seed", seed, "seed of the attacks");
   app.footer("Example:\n  fovea-adversary --hours 10 --seed 7");
   return config::RunProgram("fovea-adversary", app, argc, argv, [&] {
     double next = 0.05;

@@ -32,9 +32,9 @@ int main(int argc, char** argv) {
   int jobs = 1;
   std::uint64_t seed = 1;
   std::vector<std::string> only;
-  app.add_option("--cases", cases, "of each hazard")->check(CLI::Range(1, 1'000'000));
+  app.add_option("--cases", cases, "number of cases per hazard")->check(CLI::Range(1, 1'000'000));
   app.add_option("--jobs", jobs, "threads; no figure depends on them")->check(CLI::Range(1, 64));
-  app.add_option("--seed", seed, "of the first case");
+  app.add_option("--seed", seed, "seed of the first case");
   app.add_option("--only", only, "hazards by name");
   app.footer(
       "Example:\n  fovea-hazards --cases 10000 --jobs 2\nExit: 1 when the arm touched something or a joint "

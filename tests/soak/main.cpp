@@ -109,24 +109,26 @@ void PrintJson(const soak::SoakOptions& o, const soak::SoakResult& r) {
 
 int main(int argc, char** argv) {
   CLI::App app{
-      "Hours of robot time in one process: random targets, faults and recoveries, twice. Nothing may leak, "
-      "drift, overflow, take from the heap in a tick, end undefined, or differ the second time."};
+      "Soak test: hours of robot time in one process, with random targets, faults and recoveries, run twice. "
+      "It fails on a leak, drift, overflow, heap use in a tick, undefined end, or a difference between the "
+      "runs."};
   soak::SoakOptions options;
-  app.add_option("scenario", options.scenario, "whose arm, camera, kind of target and servo")
+  app.add_option("scenario", options.scenario, "scenario with the arm, camera, kind of target and servo")
       ->capture_default_str();
   app.add_option("--set", options.assignments, "key=value, over the scenario's own; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
-  app.add_option("--hours", options.hours, "of robot time")
+  app.add_option("--hours", options.hours, "hours of robot time")
       ->check(CLI::Range(0.001, 28.0))
       ->capture_default_str();
   app.add_flag("--camera", options.camera,
-               "pictures are drawn and looked at; else what is seen comes from the truth, with noise");
-  app.add_option("--seed", options.seed, "of all that is random")->capture_default_str();
-  app.add_flag("--late-clock", options.late_clock,
-               "the clock begins 30 h before 2^63 ns, and ticks, states and frames pass 2^32 half-way");
-  app.add_option("--passes", options.passes, "how often the same is run; all must agree to the last bit")
+               "render and detect images; without it, measurements are ground truth with noise");
+  app.add_option("--seed", options.seed, "seed of all random numbers")->capture_default_str();
+  app.add_flag(
+      "--late-clock", options.late_clock,
+      "start the clock 30 h before 2^63 ns; counters of ticks, states and frames pass 2^32 half-way");
+  app.add_option("--passes", options.passes, "number of identical runs; all must be bit-identical")
       ->check(CLI::Range(1, 10))
       ->capture_default_str();
   bool json = false;
@@ -137,7 +139,7 @@ int main(int argc, char** argv) {
       "  fovea-soak --hours 24 --late-clock --json > soak.json\n"
       "  fovea-soak square --hours 1 --seed 7\n"
       "  fovea-soak --camera --hours 1\n"
-      "Exit: 0 nothing was found, 1 something was, 2 wrong usage or input.");
+      "Exit: 0 passed, 1 failed, 2 wrong usage or input.");
   return config::RunProgram("fovea-soak", app, argc, argv, [&] {
     Progress progress;
     options.progress = [&progress](double share) { progress.Show(share); };

@@ -15,7 +15,7 @@
 
 int main(int argc, char** argv) {
   using namespace fovea;
-  CLI::App app{"Fovea's benchmarks: each prints figures, with their goals where there are any."};
+  CLI::App app{"Fovea's benchmarks. Each prints its figures, and their goals if it has any."};
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("fovea-bench ") + kVersion + " " + kGitRevision);
   app.footer(
@@ -26,8 +26,8 @@ int main(int argc, char** argv) {
       "or input.");
 
   bench::TickArguments tick;
-  CLI::App* tick_command =
-      app.add_subcommand("tick", "What one tick of the servo costs: by input, by stage, by mode; beside KDL");
+  CLI::App* tick_command = app.add_subcommand(
+      "tick", "measure the time of one servo tick by input, stage and mode, and compare with KDL");
   tick_command->add_option("--robot", tick.robot, "A shipped arm")->capture_default_str();
   tick_command->add_option("--runs", tick.runs, "Random closed loops in which the worst input is searched")
       ->check(CLI::Range(0, 10000))
@@ -41,9 +41,8 @@ int main(int argc, char** argv) {
 
   bench::JitterArguments jitter;
   CLI::App* jitter_command = app.add_subcommand("jitter",
-                                                "Does this machine hold 1 kHz: the servo's loop by the "
-                                                "clock, beside a thread that only sleeps and, where it "
-                                                "is installed, cyclictest");
+                                                "measure whether this machine keeps 1 kHz: the servo loop, a "
+                                                "thread that only sleeps, and cyclictest if installed");
   jitter_command->add_option("--seconds", jitter.seconds, "Of each kind, in blocks of a second in turns")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
@@ -62,9 +61,8 @@ int main(int argc, char** argv) {
   jitter_command->add_flag("--json", jitter.json, "Print JSON");
 
   bench::SimArguments sim;
-  CLI::App* sim_command = app.add_subcommand("sim",
-                                             "What a simulated run's time goes to, and how much faster than "
-                                             "the clock it is, by picture size and rate");
+  CLI::App* sim_command = app.add_subcommand(
+      "sim", "measure the simulator's speed by image size and rate, and where its time goes");
   sim_command->add_option("--seconds", sim.seconds, "Simulated, of each run")
       ->check(CLI::Range(0.5, 1000.0))
       ->capture_default_str();
@@ -73,17 +71,16 @@ int main(int argc, char** argv) {
 
   bench::McuArguments mcu;
   CLI::App* mcu_command = app.add_subcommand("mcu",
-                                             "What the servo takes of a Cortex-M7: instructions by stage and "
-                                             "by mode, counted in QEMU; stack, flash and RAM");
+                                             "count the servo's instructions on a Cortex-M7 in QEMU by stage "
+                                             "and mode, and its stack, flash and RAM");
   mcu_command->add_option("--seconds", mcu.seconds, "Simulated, of ball; of square a quarter")
       ->check(CLI::Range(0.4, 1000.0))
       ->capture_default_str();
   mcu_command->add_flag("--json", mcu.json, "Print JSON");
 
   bench::WireArguments wire;
-  CLI::App* wire_command = app.add_subcommand("wire",
-                                              "The robot's network interface at real pace: states a second, "
-                                              "and how evenly they come and are answered");
+  CLI::App* wire_command = app.add_subcommand(
+      "wire", "measure the robot's network interface at real pace: states per second, jitter, response time");
   wire_command->add_option("--seconds", wire.seconds, "By the clock; in lockstep of the robot's time")
       ->check(CLI::Range(0.5, 100000.0))
       ->capture_default_str();
@@ -98,8 +95,8 @@ int main(int argc, char** argv) {
   bench::VisionArguments vision;
   std::vector<std::string> targets(features::kTargetNames.begin(), features::kTargetNames.end());
   targets.emplace_back("all");
-  CLI::App* vision_command = app.add_subcommand(
-      "vision", "How often, how well and how fast targets are found in pictures of known truth");
+  CLI::App* vision_command =
+      app.add_subcommand("vision", "measure detection rate, accuracy and time on images with ground truth");
   vision_command->add_option("--target", vision.target, "Which target")
       ->check(CLI::IsMember(targets))
       ->capture_default_str();
@@ -111,7 +108,7 @@ int main(int argc, char** argv) {
   vision_command->add_flag("--json", vision.json, "Print JSON");
 
   bench::CompareArguments compare;
-  CLI::App* compare_command = app.add_subcommand("compare", "The ratios of two files that --json printed");
+  CLI::App* compare_command = app.add_subcommand("compare", "print the ratios of two --json files");
   compare_command->add_option("old", compare.old_file)->required();
   compare_command->add_option("new", compare.new_file)->required();
   compare_command

@@ -64,11 +64,7 @@ int Report(const ReportArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
-      "Fovea's tools beside its runs: reports and replays of logs, design of gains, models of arms, what "
-      "features "
-      "control, "
-      "what the eye sees, calibration."};
+  CLI::App app{"Fovea's tools for logs, gains, arm models, image features, detection and calibration."};
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("fovea {} {}", kVersion, kGitRevision));
   app.footer(
@@ -87,12 +83,12 @@ int main(int argc, char** argv) {
       "Exit: 0 done, 1 an atlas missed its goal or a replay differs, 2 wrong usage or input.");
 
   ReportArguments arguments;
-  CLI::App* report = app.add_subcommand("report", "make the report of a log, or of two beside each other");
+  CLI::App* report = app.add_subcommand("report", "write the HTML report of a log, or compare two logs");
   report->add_option("log", arguments.logs, "a log.mcap, or the folder of a run; one or two")
       ->required()
       ->expected(1, 2);
   report->add_option("--out", arguments.out,
-                     "the file to write; report.html beside the log, or comparison.html for two");
+                     "the file to write; default: report.html beside the log, or comparison.html for two");
 
   ReplayArguments replay_arguments;
   const CLI::App* replay = AddReplay(app, replay_arguments);
@@ -108,8 +104,7 @@ int main(int argc, char** argv) {
   const CLI::App* model = AddModel(app, model_arguments);
   FeaturesArguments features_arguments;
   const CLI::App* features = AddFeatures(app, features_arguments);
-  const CLI::App* guards =
-      app.add_subcommand("guards", "what the servo watches, as the table in firmware/GUARDS.md");
+  const CLI::App* guards = app.add_subcommand("guards", "print the table of guards in firmware/GUARDS.md");
 
   return config::RunProgram("fovea", app, argc, argv, [&] {
     if (guards->parsed()) {

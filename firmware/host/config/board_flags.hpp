@@ -26,7 +26,7 @@ inline void AddBoardFlags(CLI::App& command, BoardFlags& flags) {
       .add_option("--marker", flags.board.marker, "side of a ChArUco board's markers [m]; 0: a chessboard")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  command.add_option("--dictionary", flags.board.dictionary, "of its markers")
+  command.add_option("--dictionary", flags.board.dictionary, "dictionary of the markers")
       ->check(CLI::IsMember(std::vector<std::string>(calibration::kDictionaryNames.begin(),
                                                      calibration::kDictionaryNames.end())))
       ->capture_default_str();

@@ -37,7 +37,7 @@ void AddVisionKeys(VisionSettings& settings, KeyTable& keys) {
   keys.Number("vision.radius_max_px", c.radius_max_px, 8.0, 2000.0, "px", "largest outline that is searched");
   keys.Number("vision.distance_min", c.distance_min, 0.01, 100.0, "m", "a target nearer than this is none");
   keys.Number("vision.distance_max", c.distance_max, 0.01, 100.0, "m", "nor one further off");
-  keys.Number("vision.confidence_min", c.confidence_min, 0.0, 1.0, "", "finds below it are refused");
+  keys.Number("vision.confidence_min", c.confidence_min, 0.0, 1.0, "", "reject detections below it");
 }
 
 vision::DetectorConfig MakeVisionConfig(const VisionSettings& settings, const vision::Intrinsics& intrinsics,

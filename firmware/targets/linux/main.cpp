@@ -89,8 +89,7 @@ int Run(const Arguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{
-      "Fovea on hardware: the servo with a Franka Emika Panda as its arm, and a camera in its hand."};
+  CLI::App app{"Fovea on hardware: servo a Franka Emika Panda with a camera on its hand."};
   app.set_version_flag("--version", fmt::format("fovea-hw {} {}", kVersion, kGitRevision));
   app.footer(
       "Examples:\n"
@@ -117,17 +116,17 @@ int main(int argc, char** argv) {
       ->expected(1)
       ->allow_extra_args(false);
   app.add_flag("--check", arguments.check,
-               "look at computer and robot, move nothing, and say what is to be done");
+               "check computer, robot and camera without motion, and print what to fix");
   app.add_flag("--keys", arguments.keys,
                "print every key that the configuration takes: its value there, meaning, range, unit");
   app.add_flag("--no-motion", arguments.no_motion, "read states, command nothing");
-  app.add_flag("--enable", arguments.enable,
-               "the arm may move from the start; else when \"enable\" is typed");
-  app.add_flag("--track", arguments.track, "and steers by the target, as if \"track\" were typed");
-  app.add_option("--seconds", arguments.seconds, "end after this time; until a signal when not given")
+  app.add_flag("--enable", arguments.enable, "enable motion from the start; without it, type \"enable\"");
+  app.add_flag("--track", arguments.track,
+               "enable motion and track the target from the start; without it, type \"track\"");
+  app.add_option("--seconds", arguments.seconds, "end after this time; without it, run until a signal")
       ->check(CLI::Range(0.0, 1e6));
   app.add_option("--out", arguments.out,
-                 "the folder for log.mcap, report.html and summary.json; none when not given");
+                 "folder for log.mcap, report.html and summary.json; without it, write no files");
   app.add_flag("--json", arguments.json, "print the summary as JSON");
   return config::RunProgram("fovea-hw", app, argc, argv, [&] { return Run(arguments); });
 }

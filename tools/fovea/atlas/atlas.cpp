@@ -186,40 +186,37 @@ int JobsOf(const AtlasArguments& arguments) {
 
 CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
   CLI::App* atlas = app.add_subcommand(
-      "atlas",
-      "simulate many runs: from random starts, how many converge; or with faults, what they come to");
+      "atlas", "simulate many runs: the convergence rate from random starts, or the outcome of every fault");
   CLI::Option_group* kind = atlas->add_option_group("of what");
-  CLI::Option* target = kind->add_option("--target", arguments.target, "random starts before this target")
+  CLI::Option* target = kind->add_option("--target", arguments.target, "random starts with this target")
                             ->check(CLI::IsMember(std::vector<std::string>(features::kTargetNames.begin(),
                                                                            features::kTargetNames.end())));
-  CLI::Option* faults =
-      kind->add_flag("--faults", arguments.faults,
-                     "every fault, from mild to extreme, in every mode of run and at every stage of it");
+  CLI::Option* faults = kind->add_flag("--faults", arguments.faults,
+                                       "every fault, mild to extreme, in every kind of run, at every stage");
   kind->require_option(1);
-  atlas->add_option("--runs", arguments.runs, "how many random starts")
+  atlas->add_option("--runs", arguments.runs, "number of random starts")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str()
       ->excludes(faults);
   atlas
-      ->add_option(
-          "--only", arguments.only,
-          "of --faults: cells whose names, as ball.approach.torque_loss.severe, have this in them; may "
-          "be repeated")
+      ->add_option("--only", arguments.only,
+                   "with --faults: only cells whose name (such as ball.approach.torque_loss.severe) contains "
+                   "this; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false)
       ->excludes(target);
   atlas
       ->add_option("-j,--jobs", arguments.jobs,
-                   "that run beside each other; one for every two cores when not given")
+                   "number of runs in parallel; default: one for every two cores")
       ->check(CLI::Range(1, 256));
   atlas
       ->add_option(
           "--seed", arguments.seed,
-          fmt::format("of the starts and of all that is random in the runs. When not given: one that "
-                      "follows from the servo's own code, on whose starts nobody can have tuned it; "
-                      "those below {} are to tune on. Of --faults: 1",
-                      atlas::kFirstJudgingSeed))
+          fmt::format(
+              "seed of the starts and runs. Seeds below {} are for tuning. Default: a seed derived from "
+              "the servo's code, so that nobody has tuned on its starts; with --faults: 1",
+              atlas::kFirstJudgingSeed))
       ->check(CLI::Range(0, 2147483647));
   atlas
       ->add_option("--set", arguments.assignments,
@@ -229,14 +226,14 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       ->allow_extra_args(false)
       ->excludes(faults);
   atlas->add_option("--out", arguments.out,
-                    "folder for the files; out/atlas-<target>, or out/atlas-faults, when not given");
-  atlas->add_flag("--resume", arguments.resume, "go on with the rows that are in the folder");
+                    "folder for the files; default: out/atlas-<target> or out/atlas-faults");
+  atlas->add_flag("--resume", arguments.resume, "continue with the rows in the folder");
   atlas
       ->add_flag("--draw-only", arguments.draw_only,
-                 "draw the starts and run none: how many draws are refused, and why")
+                 "draw the starts without running them; print how many are refused, and why")
       ->excludes(faults);
   CLI::Option* json = atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
-  atlas->add_flag("--markdown", arguments.markdown, "of --faults: print the page in sim/FAULTS.md instead")
+  atlas->add_flag("--markdown", arguments.markdown, "with --faults: print the page sim/FAULTS.md")
       ->excludes(target)
       ->excludes(json);
   return atlas;

@@ -247,7 +247,7 @@ int WriteBoard(const CalibrateArguments& a) {
 
 CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
   CLI::App* calibrate =
-      app.add_subcommand("calibrate", "focal length, intrinsics, and the camera's place on the hand");
+      app.add_subcommand("calibrate", "calibrate a camera: focal length, intrinsics, hand-eye pose");
   calibrate->require_subcommand(1);
   calibrate->footer(
       "Examples:\n"
@@ -258,8 +258,8 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
       "  fovea calibrate hand-eye boards/ --board 9x6 --square 0.025 --camera camera.toml\n"
       "  fovea calibrate hand-eye boards/ --board 9x6 --square 0.025 --camera camera.toml --write cell.toml\n"
       "Exit: 0 done, 2 wrong usage or input.");
-  CLI::App* focal =
-      calibrate->add_subcommand("focal", "from views of one disc or ball, each further off by --delta-z");
+  CLI::App* focal = calibrate->add_subcommand(
+      "focal", "calibrate the focal length from views of one disc or ball, each --delta-z further away");
   focal->add_option("image", a.images, "two or more, the nearest first")->required();
   focal->add_option("--diameter", a.diameter, "of the target [m]")->required()->check(CLI::PositiveNumber);
   focal->add_option("--delta-z", a.delta_z, "from one view to the next [m]")
@@ -268,13 +268,13 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
   focal->add_option("--target", a.target, "circle or sphere")
       ->check(CLI::IsMember({"circle", "sphere"}))
       ->capture_default_str();
-  CLI::App* board = calibrate->add_subcommand("board", "the board itself, as a picture to print");
-  CLI::App* intrinsics =
-      calibrate->add_subcommand("intrinsics", "with the lens, from views of a chessboard or ChArUco board");
+  CLI::App* board = calibrate->add_subcommand("board", "write the board as an image to print");
+  CLI::App* intrinsics = calibrate->add_subcommand(
+      "intrinsics", "calibrate intrinsics and lens from views of a chessboard or ChArUco board");
   CLI::App* hand_eye =
-      calibrate->add_subcommand("hand-eye", "X_EC, from views of a board and poses.csv beside them");
+      calibrate->add_subcommand("hand-eye", "calibrate X_EC from views of a board and their poses.csv");
   for (CLI::App* command : {intrinsics, hand_eye}) {
-    command->add_option("folder", a.folder, "of the images")->required();
+    command->add_option("folder", a.folder, "folder with the images")->required();
   }
   for (CLI::App* command : {board, intrinsics, hand_eye}) {
     config::AddBoardFlags(*command, a.board_flags);
@@ -284,7 +284,7 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
   for (CLI::App* command : {intrinsics, hand_eye}) {
     command->add_option(
         "--write", a.write,
-        "a configuration (.toml) whose [camera] takes the result; the rest of it stays as it is");
+        "write the result into [camera] of this configuration (.toml); the rest is unchanged");
   }
   hand_eye->add_option("--camera", a.camera_file, "what `calibrate intrinsics --out` wrote")->required();
   for (CLI::App* command : {focal, intrinsics, hand_eye}) {

@@ -161,7 +161,7 @@ void WriteMarked(const std::filesystem::path& file, const cv::Mat& image,
 }  // namespace
 
 CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
-  CLI::App* detect = app.add_subcommand("detect", "find a target in images: where, how large, how surely");
+  CLI::App* detect = app.add_subcommand("detect", "detect a target in images: position, size, confidence");
   detect->add_option("image", a.images, "images, or folders of them")->required();
   detect->add_option("--target", a.target, "what to look for")
       ->required()
@@ -170,8 +170,7 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
   detect
       ->add_option(
           "--method", a.method,
-          "edges of the target's colour, of brightness, or OpenCV's Hough transform; gray when no --hue is "
-          "given")
+          "edges in colour, edges in brightness, or OpenCV's Hough transform; default: gray without --hue")
       ->check(CLI::IsMember({"colour", "gray", "hough"}));
   detect->add_option("--hue", a.hue_deg, "of the target [deg]: 0 red, 120 green, 240 blue")
       ->check(CLI::Range(0.0, 360.0));
@@ -179,7 +178,7 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
                      "intrinsics, as `fovea calibrate intrinsics --out` writes them");
   detect
       ->add_option("--focal-px", a.focal_px,
-                   "focal length, when there is no --camera; else a field of 60 degrees")
+                   "focal length [px] without --camera; default: a field of view of 60 degrees")
       ->check(CLI::PositiveNumber);
   detect->add_option("--size", a.size, "diameter or side [m]")->check(CLI::PositiveNumber);
   detect
@@ -188,7 +187,7 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
       ->check(CLI::Range(4.0, 1e5))
       ->capture_default_str();
   detect->add_option("--radius-max", a.radius_max_px, "largest outline [px]")->check(CLI::Range(4.0, 1e5));
-  detect->add_option("--confidence-min", a.confidence_min, "finds below it are refused")
+  detect->add_option("--confidence-min", a.confidence_min, "reject detections below it")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   detect->add_option("--hough-blur", a.hough.blur_sigma_px, "method hough: Gaussian blur [px]")
@@ -197,11 +196,11 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
   detect->add_option("--hough-canny", a.hough.canny_threshold, "method hough: threshold of edges")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  detect->add_option("--hough-votes", a.hough.votes, "method hough: a circle needs so many")
+  detect->add_option("--hough-votes", a.hough.votes, "method hough: votes that a circle needs")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   detect->add_option("--marked", a.marked,
-                     "folder for a copy of each image with the outline and corners that were found drawn in");
+                     "folder for a copy of each image with the detected outline and corners");
   detect->add_flag("--json", a.json,
                    "a list of {file, found, u_px, v_px, radius_px, corners_px, cov, ms, ...}");
   detect->footer(

@@ -199,8 +199,7 @@ int PrintSweep(const FeaturesArguments& arguments) {
 
 CLI::App* AddFeatures(CLI::App& app, FeaturesArguments& arguments) {
   CLI::App* command = app.add_subcommand(
-      "features",
-      "what a target's feature controls: s, L_s, rank, condition, the motions that it does not see");
+      "features", "analyse a target's image feature: s, L_s, rank, condition number, unobservable motions");
   std::vector<std::string> forms(features::kFormNames.begin(), features::kFormNames.end());
   forms.emplace_back("auto");
   command
@@ -209,10 +208,11 @@ CLI::App* AddFeatures(CLI::App& app, FeaturesArguments& arguments) {
       ->check(CLI::IsMember(
           std::vector<std::string>(features::kTargetNames.begin(), features::kTargetNames.end())))
       ->capture_default_str();
-  command->add_option("--feature", arguments.feature, "as servo.feature; auto: the target's usual one")
+  command->add_option("--feature", arguments.feature, "as servo.feature; auto: the target's default feature")
       ->check(CLI::IsMember(forms))
       ->capture_default_str();
-  command->add_flag("--hold-orientation", arguments.hold_orientation, "stack the held orientation below it");
+  command->add_flag("--hold-orientation", arguments.hold_orientation,
+                    "also hold the orientation (stacked below the feature)");
   command->add_option("--pose", arguments.pose, "X_CO as x,y,z,qw,qx,qy,qz [m]")->capture_default_str();
   command->add_option("--goal", arguments.goal, "X_CO that is wanted")->capture_default_str();
   command->add_option("--diameter", arguments.target.diameter, "of a sphere or circle [m]")
@@ -224,15 +224,15 @@ CLI::App* AddFeatures(CLI::App& app, FeaturesArguments& arguments) {
   command->add_option("--triangle", arguments.target.triangle, "corners x1,y1,x2,y2,x3,y3 [m]")
       ->delimiter(',')
       ->expected(6);
-  command->add_option("--focal", arguments.focal_px, "focal length, to have s in pixels too [px]")
+  command->add_option("--focal", arguments.focal_px, "focal length [px], to print s in pixels too")
       ->check(CLI::Range(0.0, 1e6));
   command->add_flag("--tables", arguments.tables,
-                    "all targets beside each other: computed, and measured on pictures");
-  command->add_flag("--sweep", arguments.sweep, "draw the condition number over camera positions");
-  command->add_option("--span", arguments.span, "of the sweep, to each side [m]")
+                    "print the tables of all targets: computed and measured on images");
+  command->add_flag("--sweep", arguments.sweep, "plot the condition number over camera positions");
+  command->add_option("--span", arguments.span, "half width of the sweep [m]")
       ->check(CLI::Range(0.001, 10.0))
       ->capture_default_str();
-  command->add_flag("--json", arguments.json, "for a machine");
+  command->add_flag("--json", arguments.json, "print JSON");
   command->footer(
       "Examples:\n"
       "  fovea features --target sphere --pose 0.05,0,0.4,1,0,0,0\n"

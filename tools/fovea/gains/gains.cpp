@@ -244,7 +244,7 @@ void PrintTable(const Design& design) {
 
 CLI::App* AddGains(CLI::App& app, GainsArguments& arguments) {
   CLI::App* gains = app.add_subcommand(
-      "gains", "design a PD regulator for m x'' + b x' + k x = f, and find how much gain and delay it bears");
+      "gains", "design a PD regulator for m x'' + b x' + k x = f, and report its stability margins");
   const auto number = [&](const char* flag, double& value, const char* meaning) {
     return gains->add_option(flag, value, meaning)->check(CLI::Number);
   };

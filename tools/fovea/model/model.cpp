@@ -200,12 +200,13 @@ void PrintTable(const robots::Robot& robot, const State& s, const std::vector<Mo
 
 CLI::App* AddModel(CLI::App& app, ModelArguments& arguments) {
   CLI::App* model = app.add_subcommand(
-      "model", "kinematics and dynamics of an arm: poses, Jacobian, M, C dq, g, torques; limits; checks");
+      "model",
+      "print an arm's kinematics and dynamics: poses, Jacobian, M, C dq, g, torques, limits, checks");
   model->add_option("urdf", arguments.robot, "a shipped arm by name, or the path of an arm file or URDF")
       ->required();
   model
       ->add_option("--at", arguments.at,
-                   "q, or q,dq, or q,dq,ddq: comma-separated; the ready posture when not given")
+                   "q, or q,dq, or q,dq,ddq, comma-separated; default: the ready posture")
       ->delimiter(',')
       ->allow_extra_args(false);
   CLI::Option* json =

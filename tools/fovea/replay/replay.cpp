@@ -32,19 +32,19 @@ void WritePage(const std::filesystem::path& out, const std::string& page) {
 
 const CLI::App* AddReplay(CLI::App& app, ReplayArguments& arguments) {
   CLI::App* replay = app.add_subcommand(
-      "replay", "put a log's recorded inputs through the servo again: the same to the bit?");
+      "replay", "verify bit-exact replay: run the servo on a log's recorded inputs and compare");
   replay->add_option("log", arguments.log, "a log.mcap, or the folder of a run")->required();
   replay->add_option("--from", arguments.from_s, "begin at the first keyframe at or after this time [s]")
       ->check(CLI::NonNegativeNumber);
   replay
       ->add_option("--set", arguments.settings,
-                   "key=value of [servo] or [safety]: what it would have done with that, open loop")
+                   "key=value of [servo] or [safety]: replay open loop with another value")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   replay->add_option("--out", arguments.out,
-                     "with --set: the page to write; replay.html beside the log when not given");
+                     "with --set: the page to write; default: replay.html beside the log");
   replay->add_flag("--renew", arguments.renew,
-                   "write the log anew with the outputs that this servo gives: for a golden log");
+                   "rewrite the log with the outputs of this servo (for golden logs)");
   replay->add_flag("--json", arguments.json, "print JSON");
   replay->footer(
       "Examples:\n"
