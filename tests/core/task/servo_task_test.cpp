@@ -46,7 +46,8 @@ TEST_F(ServoTaskTest, TheErrorDecaysExponentially) {
   EXPECT_LT(worst, 0.10);
 }
 
-// Boot may be over within the tick that finds the arm sound: its reference starts where the arm is all the same.
+// Boot may be over within the tick that finds the arm sound: its reference starts where the arm is all the
+// same.
 TEST_F(ServoTaskTest, BootOfOneTickHoldsTheArmWhereItIs) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.boot_ticks = 1;
