@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 
+#include "firmware/core/model/ready_inertia.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"
 #include "tests/closed_loop/guard_bench.hpp"
 #include "tests/closed_loop/guard_provocations.hpp"
@@ -174,13 +175,10 @@ void ProvokeTorque() {
   GuardSetup setup;
   setup.servo.safety.torque_fraction = kFraction;
   model::ArmModel& arm = setup.servo.arm;
-  model::ArmPoses poses;
-  model::ArmDynamics dynamics;
-  model::ComputePoses(arm, model::ToVector(arm.q_ready, arm.num_joints), poses);
-  model::ComputeDynamics(arm, poses, model::VecN::Zero(arm.num_joints), dynamics);
+  const model::VecN inertia = model::InertiaAtReady(arm);
   for (int i = 0; i < arm.num_joints; ++i) {
     model::Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    const double need = dynamics.M(i, i) * setup.servo.guard.joint_acceleration_fraction * joint.ddq_max;
+    const double need = inertia[i] * setup.servo.guard.joint_acceleration_fraction * joint.ddq_max;
     joint.tau_max = 1.01 * need / kFraction;
   }
   Eigen::VectorXd goal = setup.world.q_start;

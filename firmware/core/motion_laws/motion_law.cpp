@@ -1,5 +1,6 @@
 #include "firmware/core/motion_laws/motion_law.hpp"
 
+#include "firmware/core/model/ready_inertia.hpp"
 #include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/core/trajectory/smooth_step.hpp"
 
@@ -45,13 +46,10 @@ Fitness FitnessOf(const config::MotionLawConfig& config, const model::ArmModel& 
   if (arm.num_joints < law.joints_min) {
     return {Unfit::kTooFewJoints};
   }
-  model::ArmPoses poses;
-  model::ArmDynamics dynamics;
-  model::ComputePoses(arm, model::ToVector(arm.q_ready, arm.num_joints), poses);
-  model::ComputeDynamics(arm, poses, model::VecN::Zero(arm.num_joints), dynamics);
+  const model::VecN inertia = model::InertiaAtReady(arm);
   Fitness fastest;
   for (int i = 0; i < arm.num_joints; ++i) {
-    const double damping = law.has_springs ? config.k_v[static_cast<std::size_t>(i)] / dynamics.M(i, i)
+    const double damping = law.has_springs ? config.k_v[static_cast<std::size_t>(i)] / inertia[i]
                                            : 2.0 * config.zeta * config.omega_n;
     if (!(damping <= fastest.damping)) {
       fastest = {Unfit::kNone, i, damping};

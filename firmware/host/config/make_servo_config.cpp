@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "firmware/core/guard/motor_need.hpp"
+#include "firmware/core/model/ready_inertia.hpp"
 #include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/core/task/servo_task.hpp"
 #include "firmware/host/config/input_error.hpp"
@@ -185,15 +186,11 @@ void SetHand(const ServoSettings& settings, const model::Pose& X_EC, HandShape& 
 void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, MotionLawConfig& c) {
   CheckSize("servo.k_p", settings.k_p, robot);
   CheckSize("servo.k_v", settings.k_v, robot);
-  model::ArmPoses poses;
-  model::ArmDynamics dynamics;
-  const model::VecN q = model::ToVector(robot.model.q_ready, robot.model.num_joints);
-  model::ComputePoses(robot.model, q, poses);
-  model::ComputeDynamics(robot.model, poses, model::VecN::Zero(q.size()), dynamics);
+  const model::VecN M_ii = model::InertiaAtReady(robot.model);
   c.damp_by_inertia = settings.k_v.empty();
   for (int i = 0; i < robot.model.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double inertia = dynamics.M(i, i);
+    const double inertia = M_ii[i];
     c.k_p[k] = settings.k_p.empty() ? inertia * c.omega_n * c.omega_n : settings.k_p[k];
     c.k_v[k] = settings.k_v.empty() ? 2.0 * c.zeta * std::sqrt(c.k_p[k] * inertia) : settings.k_v[k];
   }

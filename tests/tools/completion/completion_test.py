@@ -117,7 +117,6 @@ class Simulator:
     def test_keys(self):
         self.assertEqual(self.complete("fovea-sim run ball --set servo.lambda_n"), ["servo.lambda_near="])
 
-
     def test_keys_of_a_program_off_the_path(self):
         self.assertEqual(self.complete(f"{BIN}/fovea-sim run ball --set servo.lambda_n", PATH="/usr/bin:/bin"),
                          ["servo.lambda_near="])
