@@ -175,7 +175,7 @@ void ProvokeTorque() {
   GuardSetup setup;
   setup.servo.safety.torque_fraction = kFraction;
   model::ArmModel& arm = setup.servo.arm;
-  const model::VecN inertia = model::InertiaAtReady(arm);
+  const model::VecN inertia = model::InertiaAtReady(arm).held;
   for (int i = 0; i < arm.num_joints; ++i) {
     model::Joint& joint = arm.joints[static_cast<std::size_t>(i)];
     const double need = inertia[i] * setup.servo.guard.joint_acceleration_fraction * joint.ddq_max;

@@ -6,7 +6,7 @@ namespace fovea::guard {
 
 MotorNeed LargestMotorNeed(const config::ServoConfig& config) noexcept {
   const model::ArmModel& arm = config.arm;
-  const model::VecN inertia = model::InertiaAtReady(arm);
+  const model::VecN inertia = model::InertiaAtReady(arm).held;
   MotorNeed largest;
   for (int i = 0; i < arm.num_joints; ++i) {
     const model::Joint& joint = arm.joints[static_cast<std::size_t>(i)];

@@ -46,7 +46,7 @@ Fitness FitnessOf(const config::MotionLawConfig& config, const model::ArmModel& 
   if (arm.num_joints < law.joints_min) {
     return {Unfit::kTooFewJoints};
   }
-  const model::VecN inertia = model::InertiaAtReady(arm);
+  const model::VecN inertia = model::InertiaAtReady(arm).held;
   Fitness fastest;
   for (int i = 0; i < arm.num_joints; ++i) {
     const double damping = law.has_springs ? config.k_v[static_cast<std::size_t>(i)] / inertia[i]

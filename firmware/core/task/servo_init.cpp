@@ -5,6 +5,7 @@
 #include "firmware/core/config/range_check.hpp"
 #include "firmware/core/features/hold_orientation.hpp"
 #include "firmware/core/guard/motor_need.hpp"
+#include "firmware/core/model/ready_inertia.hpp"
 #include "firmware/core/motion_laws/motion_laws.hpp"
 #include "firmware/core/task/servo_task.hpp"
 
@@ -137,6 +138,9 @@ Status CheckTogether(const config::ServoConfig& config) noexcept {
     case motion_laws::Unfit::kDampedTooFast:
       return Status(StatusCode::kOutOfRange,
                     motion_laws::EntryOf(config.motion_law.kind).has_springs ? "servo.k_v" : "servo.zeta");
+  }
+  if (!(model::InertiaAtReady(config.arm).coupling.maxCoeff() <= model::kCouplingMost)) {
+    return Status(StatusCode::kOutOfRange, "arm.load_mass");
   }
   if (const guard::MotorNeed need = guard::LargestMotorNeed(config); !(need.torque <= need.allowed)) {
     return Status(StatusCode::kOutOfRange, "safety.torque_fraction");

@@ -106,6 +106,14 @@ void CheckTogether(const ServoConfig& c) {
         "load, joint {} takes {:.3g} to accelerate as it may, and its motor may give {:.3g} (Nm, N)",
         need.joint + 1, need.torque, need.allowed));
   }
+  int joint = 0;
+  if (const double coupling = model::InertiaAtReady(c.arm).coupling.maxCoeff(&joint);
+      !(coupling <= model::kCouplingMost)) {
+    throw InputError(fmt::format(
+        "arm.load_mass at arm.load_com is not allowed: it ties joint {} to the others, which makes it {:.0f} "
+        "times as heavy while they are held; at most {:g} times",
+        joint + 1, coupling, model::kCouplingMost));
+  }
   if (c.guard.workspace_margin >= c.guard.workspace_radius) {
     throw InputError(fmt::format(
         "safety.workspace_margin = {} is not allowed: below safety.workspace_radius, which is {} m",
@@ -186,7 +194,7 @@ void SetHand(const ServoSettings& settings, const model::Pose& X_EC, HandShape& 
 void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, MotionLawConfig& c) {
   CheckSize("servo.k_p", settings.k_p, robot);
   CheckSize("servo.k_v", settings.k_v, robot);
-  const model::VecN M_ii = model::InertiaAtReady(robot.model);
+  const model::VecN M_ii = model::InertiaAtReady(robot.model).held;
   c.damp_by_inertia = settings.k_v.empty();
   for (int i = 0; i < robot.model.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);

@@ -120,6 +120,9 @@ TEST_F(CommandLineTest, ContradictingValuesAreRefused) {
               AllOf(HasSubstr("servo.goal = [0, 0, 0.1]"), HasSubstr("radius of 0.15 m")));
   EXPECT_THAT(Refusal({"home", "--set", "arm.load_mass=3", "--set", "arm.load_com=[0, 0, 1]"}),
               AllOf(HasSubstr("arm.load_mass"), HasSubstr("joint 6")));
+  EXPECT_THAT(
+      Refusal({"ball-puma560", "--set", "arm.load_mass=5", "--set", "arm.load_com=[0.29, 0.531, 0.182]"}),
+      AllOf(HasSubstr("arm.load_com"), HasSubstr("at most 200 times")));
   EXPECT_THAT(Refusal({"flange-circle", "--set", "motion.normal=[0, 0, 0]"}), HasSubstr("motion.normal"));
   EXPECT_THAT(Refusal({"ball", "--set", "servo.goal=[0.3, 0, 0.4]"}),
               AllOf(HasSubstr("servo.goal"), HasSubstr("outside the picture of 640 x 480 px")));
