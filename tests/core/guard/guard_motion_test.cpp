@@ -146,6 +146,8 @@ TEST(GuardMotionTest, HandKeepsItsRotationLimitUnderRandomWishes) {
     ExpectAllHeld(walker, config);
     EXPECT_GT(walker.turn * most, 0.9 * config::TurnLimitOfReference(config.guard))
         << "the attack must be one";
+    // Between the points that a stop's proof looks at.
+    EXPECT_LT(walker.turn * most, 1.05 * config::kTurnShareMost * config::TurnLimitOfReference(config.guard));
     EXPECT_NE(walker.all_limits & hal::Bit(hal::Limit::kRotationSpeed), 0U);
   }
 }
