@@ -1,7 +1,7 @@
 # fovea_add_test(<name> SOURCES <file>... LIBS <target>... [LABELS <label>...] [TIMEOUT <s>] [LOCK <name>])
-# One executable; each of its tests is one test of ctest. Its label is the LABELS and the executable's name: `ctest -L
-# '^log_test$'` runs one program, `ctest -LE slow` leaves out "slow/closed_loop_test". (One label: of a list CMake's
-# gtest_discover_tests keeps the first.) Tests with the same LOCK never run at the same time.
+# Adds one executable. Each of its tests is one ctest test, labelled LABELS/name: `ctest -L '^log_test$'` runs one
+# program, `ctest -LE slow` leaves out "slow/closed_loop_test". (One label, because gtest_discover_tests keeps only the
+# first of a list.) Tests with the same LOCK never run at the same time.
 function(fovea_add_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT;LOCK" "SOURCES;LIBS;LABELS")
   if(NOT arg_TIMEOUT)
@@ -18,6 +18,6 @@ function(fovea_add_test name)
   if(arg_LOCK)
     list(APPEND properties RESOURCE_LOCK ${arg_LOCK})
   endif()
-  # On a busy machine a sanitized program needs more than the usual five seconds to say what its tests are.
+  # On a busy machine a sanitized program needs more than the default five seconds to list its tests.
   gtest_discover_tests(${name} DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120 NO_PRETTY_VALUES PROPERTIES ${properties})
 endfunction()

@@ -1,7 +1,7 @@
-# Plain comments to Doxygen's, in headers only: a line that is a comment becomes ///, one behind code ///<.
+# Turns plain comments in headers into Doxygen comments: a comment line becomes ///, a comment after code becomes ///<.
 1s|^// \(.*\)$|/// @file\n/// \1|
 s|^\( *\)// |\1/// |
 s|^\( *\)//$|\1///|
 s|\([;,{})]\) *// |\1  ///< |
-# Of pages that are not in the reference, the name alone.
+# A link to a page that is not in the reference becomes plain text.
 s/\[\([^]]*\)\]([^)]*\(README\|RESULTS\|DEPENDENCIES\|CONTRIBUTING\)\.md[^)]*)/\1/g

@@ -1,4 +1,4 @@
-// What this program was built from. Written by the build (tools/cmake/WriteBuildInfo.cmake).
+// Build information of this program. The build generates the values (tools/cmake/WriteBuildInfo.cmake).
 #pragma once
 
 #include <map>
@@ -7,13 +7,13 @@
 namespace fovea {
 
 extern const char* const kGitRevision;       // git describe --always --dirty; "" outside a checkout
-extern const char* const kServoLibraryHash;  // SHA-256 of the servo library that is linked in
-extern const char* const kLinkLibraryHash;   // and of the one that keeps its state
+extern const char* const kServoLibraryHash;  // SHA-256 of the linked servo library
+extern const char* const kLinkLibraryHash;   // SHA-256 of the linked library that encodes the servo's state
 extern const char* const kVersion;
 extern const char* const kCompiler;  // name and version
-extern const char* const kFlags;     // that the servo's libraries were compiled with
+extern const char* const kFlags;     // compiler flags of the servo's libraries
 
-// The same by name, as a log has it.
+// The same values by name, as a log stores them.
 inline std::map<std::string, std::string> BuildEntries() {
   return {{"version", kVersion},
           {"git", kGitRevision},

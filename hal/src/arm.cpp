@@ -1,4 +1,4 @@
-// The checks that every arm driver gets for free: arguments on the way in, the joint count on the way out.
+// The checks common to all arm drivers: arguments on the way in, the joint count on the way out.
 #include "fovea/hal/arm.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The checks that every camera driver gets for free: arguments in, geometry out.
+// The checks common to all camera drivers: arguments on the way in, geometry on the way out.
 #include "fovea/hal/camera.hpp"
 
 namespace fovea::hal {

@@ -1,4 +1,4 @@
-// One table per enumeration: the name and the key stand beside each other.
+// One table per enumeration, with name and key side by side.
 #include "fovea/hal/events.hpp"
 
 #include <array>
@@ -52,7 +52,7 @@ constexpr std::array<Entry, kNumIntakes> kIntakeTable{{
     {"outlier", "servo.gate_sigma"},
 }};
 
-// What comes from a file or a line may be none of the enumeration.
+// A value from a file or a link may be outside the enumeration.
 template <typename Table, typename Enumerator>
 Entry EntryOf(const Table& table, Enumerator which) noexcept {
   const auto k = static_cast<std::size_t>(which);

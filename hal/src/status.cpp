@@ -5,7 +5,7 @@ namespace fovea::hal {
 const char* ToString(StatusCode code) noexcept {
   switch (code) {
     case StatusCode::kOk: return "ok";
-    case StatusCode::kTimeout: return "nothing came in time";
+    case StatusCode::kTimeout: return "nothing arrived in time";
     case StatusCode::kClosed: return "closed";
     case StatusCode::kDisconnected: return "disconnected";
     case StatusCode::kDeviceFault: return "the device reports a fault";

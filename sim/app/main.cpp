@@ -34,20 +34,20 @@ struct RunArguments {
   std::string servo_image;
   std::string servo_pace = "lockstep";
   sim::BoardConfig board;
-  std::vector<const CLI::Option*> of_board;  // that go with --servo mcu alone
-  std::vector<const CLI::Option*> of_timer;  // and with --servo-pace timer
+  std::vector<const CLI::Option*> of_board;  // require --servo mcu
+  std::vector<const CLI::Option*> of_timer;  // require --servo-pace timer
   std::string out;
   std::string trace;
   bool no_report = false;
   bool json = false;
-  std::string command;  // all of them, as they were typed
+  std::string command;  // the command line as typed
 };
 
-// `options` are of `choice` alone: InputError when one is given.
+// Throws InputError if one of `options` is given: they require `choice`.
 void RefuseGiven(const std::vector<const CLI::Option*>& options, const std::string& choice) {
   for (const CLI::Option* option : options) {
     if (option->count() > 0) {
-      throw config::InputError(fmt::format("{} goes with {}", option->get_name(), choice));
+      throw config::InputError(fmt::format("{} requires {}", option->get_name(), choice));
     }
   }
 }
@@ -63,14 +63,14 @@ sim::BoardConfig MakeBoard(const RunArguments& arguments, const sim::Scenario& s
   }
   if (board.by_timer && scenario.faults.stall.window.Begins()) {
     throw config::InputError(
-        "faults.deadline_miss_s: not with --servo-pace timer, whose ticks are the board's own; a slow board "
-        "(--instruction-ns) misses some");
+        "faults.deadline_miss_s is not allowed with --servo-pace timer: the board itself times the ticks; "
+        "for missed ticks use a slower board (--instruction-ns)");
   }
   return board;
 }
 
 int Run(const RunArguments& arguments) {
-  linux_rt::Interrupt interrupt;  // from here on Ctrl-C ends the run in order
+  linux_rt::Interrupt interrupt;  // from here on, Ctrl-C ends the run early and writes all files
   std::vector<std::string> assignments = arguments.assignments;
   if (arguments.seed >= 0) {
     assignments.push_back(fmt::format("run.seed={}", arguments.seed));
@@ -80,7 +80,7 @@ int Run(const RunArguments& arguments) {
   options.pace = arguments.pace == "real" ? sim::Pace::kReal : sim::Pace::kLockstep;
   if (arguments.servo == "mcu") {
     if (options.pace == sim::Pace::kReal) {
-      throw config::InputError("--servo mcu goes with --pace lockstep");
+      throw config::InputError("--servo mcu requires --pace lockstep");
     }
     options.servo_image = arguments.servo_image.empty() ? config::ShareFolder() / "fovea-mcu.elf"
                                                         : std::filesystem::path(arguments.servo_image);
@@ -130,11 +130,12 @@ void AddBoard(CLI::App& run, RunArguments& arguments) {
       run.add_option("--line-delay-ms", line.delay_ms, "delay of every state and torque [ms]")
           ->check(CLI::Range(0.0, 1000.0))
           ->capture_default_str(),
-      run.add_option("--line-jitter-ms", line.jitter_ms, "up to this much more, by the run's seed")
+      run.add_option("--line-jitter-ms", line.jitter_ms,
+                     "largest additional random delay [ms], by the run's seed")
           ->check(CLI::Range(0.0, 1000.0))
           ->capture_default_str(),
       run.add_option("--line-from-s", arguments.board.line_from_s,
-                     "time [s] from which the line is bad; before, it is perfect")
+                     "time from which the line has faults [s]; before, it is perfect")
           ->check(CLI::NonNegativeNumber)
           ->capture_default_str()};
 }
@@ -149,7 +150,7 @@ struct ServeArguments {
   sim::ServeOptions options;
 };
 
-// "x,y,z,dx,dy,dz": a corner and the edges from there on [m].
+// Parses "x,y,z,dx,dy,dz": a corner and the edge lengths from that corner [m].
 sim::CartesianWall ParseWall(const std::string& text) {
   std::istringstream words(text);
   std::array<double, 6> v{};
@@ -165,7 +166,7 @@ sim::CartesianWall ParseWall(const std::string& text) {
   if (words.fail() || !commas || words.peek() != std::istringstream::traits_type::eof() ||
       std::any_of(v.begin() + 3, v.end(), [](double edge) { return !(edge > 0.0); })) {
     throw config::InputError(fmt::format(
-        "--wall {} is not allowed: it is X,Y,Z,DX,DY,DZ, a corner and three edges above 0 [m]", text));
+        "--wall {} is not allowed: expected X,Y,Z,DX,DY,DZ, a corner and three edges above 0 [m]", text));
   }
   sim::CartesianWall wall;
   wall.X_BW.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
@@ -197,8 +198,7 @@ int Serve(const ServeArguments& arguments) {
         c.states, c.commands, c.missing, c.overruns, c.given_up_ns / hal::kNsPerMs, summary.frames_sent,
         summary.frames_dropped);
     if (summary.error_px) {
-      fmt::print("in the end the target was {:.2f} px, {:.2f} mm off its goal\n", *summary.error_px,
-                 *summary.error_mm);
+      fmt::print("final target error: {:.2f} px, {:.2f} mm\n", *summary.error_px, *summary.error_mm);
     }
   }
   return kDone;
@@ -208,7 +208,7 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
   sim::FciServerConfig& server = arguments.options.server;
   serve.add_option("scenario", arguments.scenario, "a shipped scenario by name, or the path of a .toml")
       ->required();
-  serve.add_option("--set", arguments.assignments, "key=value, over the scenario's own; may be repeated")
+  serve.add_option("--set", arguments.assignments, "key=value, overrides the scenario; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
@@ -252,7 +252,7 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
                   "delay of every datagram [ms]; in lockstep only of commands")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
-  serve.add_option("--jitter-ms", server.faults.jitter_ms, "up to this much more")
+  serve.add_option("--jitter-ms", server.faults.jitter_ms, "largest additional random delay [ms]")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
   serve.add_option("--out", arguments.options.out, "folder for summary.json; without it, write no file");
@@ -285,7 +285,7 @@ int TakePictures(const PictureArguments& arguments) {
     flags += fmt::format(" --marker {} --dictionary {}", board.marker, board.dictionary);
   }
   fmt::print(
-      "{0} views of the board in {1}, {2} of a disc in {1}/focal; what they show in {1}/truth.json. Now:\n"
+      "{0} views of the board in {1}, {2} of a disc in {1}/focal; true values in {1}/truth.json. Next:\n"
       "  fovea calibrate intrinsics {1} {3} --out {1}/camera.toml\n"
       "  fovea calibrate hand-eye {1} {3} --camera {1}/camera.toml\n"
       "  fovea calibrate focal --diameter {4} --delta-z {5} {1}/{6} {1}/{7}\n",
@@ -299,7 +299,7 @@ void AddPictures(CLI::App& pictures, PictureArguments& arguments) {
       .add_option("scenario", arguments.scenario,
                   "scenario with the arm and camera: a shipped name or a .toml")
       ->capture_default_str();
-  pictures.add_option("--set", arguments.assignments, "key=value, over the scenario's own; may be repeated")
+  pictures.add_option("--set", arguments.assignments, "key=value, overrides the scenario; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
@@ -359,13 +359,13 @@ int main(int argc, char** argv) {
   CLI::App* run = app.add_subcommand("run", "simulate a scenario");
   run->add_option("scenario", arguments.scenario, "a shipped scenario by name, or the path of a .toml")
       ->required();
-  run->add_option("--set", arguments.assignments, "key=value, over the scenario's own; may be repeated")
+  run->add_option("--set", arguments.assignments, "key=value, overrides the scenario; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
   run->add_option("--seed", arguments.seed, "seed of all random numbers")->check(CLI::Range(0, 2147483647));
   run->add_option("--pace", arguments.pace,
-                  "lockstep: as fast as it goes, repeatable; real: 1 ms by the clock")
+                  "lockstep: as fast as possible, repeatable; real: 1 ms by the clock")
       ->check(CLI::IsMember({"lockstep", "real"}));
   AddBoard(*run, arguments);
   run->add_option("--out", arguments.out, "folder for the files; default: out/<scenario>");

@@ -33,9 +33,9 @@
 namespace fovea::sim {
 namespace {
 
-constexpr std::size_t kRecords = 4096;  // that may wait: four seconds at 1 kHz
+constexpr std::size_t kRecords = 4096;  // capacity of the record queue: four seconds at 1 kHz
 
-// Everything of one run, wired up. Members stand in the order in which one needs the other.
+// One run with all its parts. The declaration order of the members matters: later ones use earlier ones.
 class Run {
  public:
   Run(const Scenario& scenario, const RunOptions& options)
@@ -46,7 +46,7 @@ class Run {
         vision_(about_, [this](const hal::Frame& frame, const vision::Detection& detection,
                                const model::Pose& X_CO) { files_->AddFrame(frame, detection, X_CO); }) {
     if (!servo_.Init(about_.servo).ok()) {
-      throw std::logic_error("a servo configuration that was checked is refused");
+      throw std::logic_error("the servo refuses a configuration that passed the check");
     }
     if (!options_.servo_image.empty()) {
       board_ = std::make_unique<BoardServo>(
@@ -58,11 +58,11 @@ class Run {
       trace_.emplace(options_.trace, scenario.run.duration_s, scenario.camera.rate_hz, kRenderers);
     }
     if (HasEye()) {
-      // Where the world waits for each frame none is ever lost. A real camera keeps two.
+      // If the world waits for each frame, no frame is lost. A real camera buffers two.
       vision_.Open(WaitsForFrames() ? 1024 : 2, trace_ ? &*trace_ : nullptr);
     }
-    // After all that can be refused: what is refused leaves no folder.
-    // A board that ticks by its own timer sees other inputs than the host does.
+    // The folder is created last, so that a refused run leaves none.
+    // A board that ticks by its own timer sees other inputs than the host: its log cannot be replayed.
     const bool replayable = !board_ || !options_.board.by_timer;
     const RunFilesConfig files{options_.out, options_.report, kRenderers, options_.pace == Pace::kReal,
                                replayable,   options_.command};
@@ -113,12 +113,12 @@ class Run {
     vision_.RethrowFailure();
     if (!status.ok()) {
       throw std::runtime_error(
-          fmt::format("the run broke off: {} ({})", hal::ToString(status.code()), status.where()));
+          fmt::format("the run failed: {} ({})", hal::ToString(status.code()), status.where()));
     }
     Summary summary = Summarise();
     summary.preparing_s = std::chrono::duration<double>(begin - made_).count();
     progress_.Update(about_.scenario.run.duration_s,
-                     interrupted_ ? "interrupted; once more ends at once" : "drawing the pictures");
+                     interrupted_ ? "interrupted; Ctrl-C again ends at once" : "drawing the pictures");
     const Instant simulated = std::chrono::steady_clock::now();
     files_->Write(summary, world_->Look());
     summary.writing_s = SecondsSince(simulated);
@@ -131,7 +131,7 @@ class Run {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
   static RunDescription Prepare(const Scenario& scenario, Progress& progress) {
-    RunDescription about = DescribeRun(scenario);  // what is refused is all that is printed
+    RunDescription about = DescribeRun(scenario);  // before any progress: an error is the only output
     progress.Update(0.0, "preparing");
     return about;
   }
@@ -177,13 +177,13 @@ class Run {
     }
   }
 
-  // The main thread at real pace; in lockstep the servo's, between two ticks.
+  // Called by the main thread at real pace; in lockstep by the servo's thread, between two ticks.
   void TakeRecords() {
     shell_->TakeRecords();
     progress_.Update(shell_->now_s(), hal::Name(shell_->mode()));
   }
 
-  // Runs the servo by `clock` to the run's end, watched by a timeline where one is asked for.
+  // Runs the servo by `clock` to the run's end. Records a timeline if one is requested.
   hal::Status RunLoop(hal::Clock& clock) {
     std::optional<BoardClock> board_clock;
     if (board_) {
@@ -209,11 +209,11 @@ class Run {
     return options_.interrupt != nullptr && options_.interrupt->Came();
   }
 
-  // Between two ticks, on the servo's thread: what is due of the measurements goes to the servo.
+  // Passes the measurements that are due to the servo. Called between two ticks, on the servo's thread.
   bool HandOver(std::int64_t now_ns, bool wait) {
     if (IsInterrupted() && now_ns < EndNs()) {
       interrupted_ = true;
-      shell_->loop()->Stop();  // after the tick in hand, which has its records
+      shell_->loop()->Stop();  // after the current tick, which is still recorded
       return true;
     }
     if (!trace_) {
@@ -253,7 +253,7 @@ class Run {
     std::atomic<bool> done{false};
     hal::Status status;
     std::optional<RealPaceClock> clock;  // its time begins when the thread is ready
-    std::jthread servo_thread([&] {      // joins, whatever is thrown below
+    std::jthread servo_thread([&] {      // joins even if the code below throws
       shell_->MakeThreadRealtime({});
       clock.emplace(*world_, sleep ? static_cast<hal::Clock&>(*sleep) : given,
                     [&](std::int64_t now_ns) { return HandOver(now_ns, WaitsForFrames()); });
@@ -310,15 +310,15 @@ class Run {
   std::optional<RunTrace> trace_;
   std::optional<run::RunShell> shell_;
   std::unique_ptr<RunFiles> files_;
-  SimVision vision_;  // its thread uses the three above
+  SimVision vision_;  // its thread uses trace_, shell_ and files_
   std::unique_ptr<Verdict> verdict_;
   std::optional<TheoryRun> theory_;
   std::optional<CommandedMotionSource> motion_;
-  ModeWatch modes_;  // for the verdict, which may not wait for the records
+  ModeWatch modes_;  // for the verdict, which cannot wait for the records
   std::unique_ptr<World> world_;
   std::unique_ptr<SimArm> arm_;
   std::unique_ptr<FaultyArm> faulty_arm_;
-  bool interrupted_ = false;  // before its end
+  bool interrupted_ = false;  // before the end of the run
   double wall_time_s_ = 0.0;
 };
 

@@ -15,12 +15,12 @@
 namespace fovea::sim {
 
 enum class Pace {
-  kLockstep,  // virtual time, as fast as it goes, bit-reproducible
+  kLockstep,  // virtual time, as fast as possible, bit-reproducible
   kReal,      // the servo on a real-time thread, 1 ms by the clock
 };
 
-// Who looks on while it runs. `on_truth` is called by the thread that advances the world, `on_record` by the
-// one that called RunScenario, in order of the ticks; in lockstep that is one thread. Either may be empty.
+// Callbacks during a run, in order of the ticks. The thread that advances the world calls `on_truth`; the
+// caller's thread of RunScenario calls `on_record`. In lockstep both are one thread. Either may be empty.
 struct RunObserver {
   std::function<void(const Truth&)> on_truth;
   std::function<void(const hal::TickRecord&)> on_record;
@@ -29,24 +29,23 @@ struct RunObserver {
 struct RunOptions {
   Pace pace = Pace::kLockstep;
   std::filesystem::path
-      servo_image;            // the servo runs on an emulated board, from this file; empty: in this process
-  BoardConfig board;          // with a servo_image
+      servo_image;            // the image of an emulated board that runs the servo; empty: in this process
+  BoardConfig board;          // used with a servo_image
   std::filesystem::path out;  // empty: no files
-  bool report = true;         // films, log, report and the bench's picture too
-  std::string command;        // the command line, for the log; "" when there was none
+  bool report = true;         // also write films, log, report and the bench's picture
+  std::string command;        // the command line, for the log; "" if none
   bool show_progress = true;
-  std::filesystem::path trace;  // empty: none; else a file for the timeline of all threads
+  std::filesystem::path trace;  // file for the timeline of all threads; empty: none
   RunObserver observer;
   hal::Clock* clock =
-      nullptr;  // at real pace: in place of the computer's, and then the pictures are waited for
-  linux_rt::Interrupt* interrupt = nullptr;  // who may end the run early; it outlives the run
+      nullptr;  // at real pace: replaces the computer's clock; the servo then waits for the pictures
+  linux_rt::Interrupt* interrupt = nullptr;  // can end the run early; must outlive the run
 };
 
 // Composes robot, bench, camera and servo, runs the scenario to its end, judges it against the truth, and
-// leaves its files in `options.out` (see RunFiles). Nothing is in place before the run is over. InputError:
-// the scenario cannot be run, or the files not be written. A run that is interrupted leaves what any run
-// leaves; one that is ended at once leaves its log as far as it goes. std::runtime_error: no EGL, or the
-// renderer broke during the run.
+// writes its files to `options.out` (see RunFiles). The files appear there only after the run. An interrupted
+// run writes the same files as any run; one that ends at once keeps its log up to that time. InputError: the
+// scenario cannot be run, or the files cannot be written. std::runtime_error: EGL or the renderer fails.
 Summary RunScenario(const Scenario& scenario, const RunOptions& options);
 
 }  // namespace fovea::sim

@@ -34,7 +34,7 @@ constexpr int kLookMs = 50;
 
 using Say = std::function<void(const std::string&)>;
 
-// What stands at the bench for a person: buttons, a hand, and a plug to pull.
+// A person at the bench: presses the buttons, pulls the hand, makes the robot hang.
 class Person {
  public:
   Person(FciServer& server, const Say& say) : server_(server), say_(say) {}
@@ -47,10 +47,10 @@ class Person {
       case ServeKey::Kind::kPull: server_.PullHand(key.force_B); break;
       case ServeKey::Kind::kHang:
         server_.Hang(hangs_ = !hangs_);
-        say_(hangs_ ? "the robot hangs" : "the robot goes on");
+        say_(hangs_ ? "the robot hangs" : "the robot continues");
         break;
       case ServeKey::Kind::kUnknown:
-        say_("not known; s (stop), g (guide), f X Y Z (pull at the hand, N), h (hang)");
+        say_("unknown command; use s (stop), g (guide), f X Y Z (pull the hand [N]), h (hang)");
         break;
     }
   }
@@ -63,7 +63,7 @@ class Person {
   bool hangs_ = false;
 };
 
-// Empty when it is not there.
+// Empty if the file is missing.
 std::vector<std::byte> ReadModelLibrary() {
   std::ifstream file(config::ShareFolder() / "model_library" / "panda.so", std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -74,8 +74,7 @@ std::vector<std::byte> ReadModelLibrary() {
 void CheckIsPanda(const RunDescription& about) {
   if (about.robot.name != "panda" || about.servo.arm.num_joints != franka::kJoints) {
     throw config::InputError(fmt::format(
-        "arm.model = \"{}\" is not allowed: the Franka Control Interface is a Panda's, so `serve` takes "
-        "\"panda\"",
+        "arm.model = \"{}\" is not allowed: `serve` speaks the Franka Control Interface and needs \"panda\"",
         about.scenario.arm.model));
   }
 }
@@ -105,7 +104,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   config.seed = static_cast<std::uint64_t>(scenario.run.seed);
   config.model_library = ReadModelLibrary();
   if (config.model_library.empty()) {
-    say("no model library beside this program: LoadModelLibrary will be answered with an error");
+    say("model library not found: LoadModelLibrary returns an error");
   }
   std::optional<NetworkEye> eye;
   if (scenario.camera.enabled && !options.camera_serial.empty()) {
@@ -115,7 +114,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   ContactCount contacts;
   world.OnStep([&contacts](const Truth& truth) { contacts.Add(truth.contacts); });
   FciServer server(robot, config);
-  run::RunFolder folder({options.out, std::nullopt, {}});  // after all else that can be refused
+  run::RunFolder folder({options.out, std::nullopt, {}});  // last: a refused scenario leaves no folder
   say(fmt::format("serving scenario {} at {}:{}, {} pace", scenario.name, options.address, server.port(),
                   config.lockstep ? "lockstep" : "real"));
   if (eye) {
@@ -170,7 +169,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   summary.contacts = contacts.by_what();
   if (eye) {
     if (!eye->fault().empty()) {
-      throw std::runtime_error("the camera broke: " + eye->fault());
+      throw std::runtime_error("the camera failed: " + eye->fault());
     }
     summary.frames_sent = eye->sent();
     summary.frames_dropped = eye->dropped();
@@ -213,7 +212,7 @@ std::string ToJson(const ServeSummary& s) {
       {"contacts", {{"bench", s.contacts.bench}, {"target", s.contacts.target}, {"self", s.contacts.self}}},
       {"realtime_missing", s.realtime_missing}});
   run::AddBuild(json);
-  // A scenario's file may have any name.
+  // Replaces invalid UTF-8: a scenario's file name may hold any bytes.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

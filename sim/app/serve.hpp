@@ -15,15 +15,15 @@
 namespace fovea::sim {
 
 struct ServeOptions {
-  std::string address = "127.0.0.1";    // where to listen; loopback unless told otherwise
-  std::string camera_serial = "fovea";  // of the GigE Vision camera; empty: there is none
-  std::vector<CartesianWall> walls;     // which the end effector may not enter
-  FciServerConfig server;               // all but its address, of which the port counts
+  std::string address = "127.0.0.1";    // address to listen on
+  std::string camera_serial = "fovea";  // of the GigE Vision camera; empty: no camera
+  std::vector<CartesianWall> walls;     // cuboids that the end effector may not enter
+  FciServerConfig server;               // `at.port` is used; `at.ip` comes from `address`
   std::filesystem::path out;            // for summary.json; empty: no files
 };
 
-// What was served, and how the bench stood in the end. The servo is the client's, and so are its ticks, their
-// log and their report; the truth is known here alone, and the client's summary has null for it.
+// What was served, and the true state of the bench at the end. The client runs the servo and writes the log
+// and the report of its ticks. Only the server knows the truth; the client's summary has null for it.
 struct ServeSummary {
   std::string scenario;
   int seed = 0;
@@ -31,28 +31,26 @@ struct ServeSummary {
   double sim_time_s = 0.0;  // of the robot
   FciServerCounters robot;
   std::uint64_t frames_sent = 0;
-  std::uint64_t frames_dropped = 0;  // never drawn: what draws and sends was half a second behind the robot
-  // At the end, against the simulator's truth; none without a camera.
-  std::optional<double> error_px;  // infinite when the target is behind it
+  std::uint64_t frames_dropped = 0;  // never drawn: the drawing thread was half a second behind the robot
+  // Final errors by the simulator's truth; none without a camera.
+  std::optional<double> error_px;  // infinite if the target is behind the camera
   std::optional<double> error_mm;
   std::optional<double> error_lateral_mm;
   std::optional<double> error_depth_mm;
   std::optional<double> error_deg;  // none for a sphere, which has no orientation
-  std::uint64_t contact_ticks = 0;  // in which the arm touched bench, target or itself
+  std::uint64_t contact_ticks = 0;  // ticks in which the arm touched bench, target or itself
   ContactTicks contacts;
-  std::vector<std::string> realtime_missing;  // what the machine did not grant at real pace
+  std::vector<std::string> realtime_missing;  // at real pace: missing real-time privileges
 };
 
-// Serves the scenario's arm as a Panda, and its camera, until SIGINT, SIGTERM or SIGHUP; SIGUSR1 presses the
-// stop button, and again releases it; so does a line on standard input, which does more (serve_keys.hpp).
-// `say` gets a line for each thing that a
-// person may want to know. Leaves summary.json in `options.out`, by the code that any run leaves its own
-// with. InputError: a scenario that cannot be served, a folder that cannot be written to. std::runtime_error:
-// a port is taken, no picture can be drawn.
+// Serves the scenario's arm as a Panda, and its camera, until SIGINT, SIGTERM or SIGHUP. SIGUSR1 presses and
+// releases the stop button. Lines on standard input do this and more (serve_keys.hpp). Calls `say` with each
+// message for the person. Writes summary.json to `options.out`. InputError: the scenario cannot be served, or
+// the folder cannot be written. std::runtime_error: a port is in use, or no picture can be drawn.
 ServeSummary Serve(const Scenario& scenario, const ServeOptions& options,
                    const std::function<void(const std::string&)>& say);
 
-// As a JSON object: summary.json.
+// The JSON text of summary.json.
 std::string ToJson(const ServeSummary& summary);
 
 }  // namespace fovea::sim

@@ -10,11 +10,11 @@ namespace fovea::sim {
 namespace {
 
 constexpr int kTexturePx = 2048;
-constexpr int kFewestPx = 40;      // per square: markers' bits want some texels each
-constexpr double kLargest = 0.60;  // the paper's side that still lies on the bench [m]
-constexpr double kPaper = 0.003;   // its height over the table [m]
-constexpr double kBlack = 0.08;    // what black paint and white paper send back
-constexpr double kWhite = 0.78;
+constexpr int kFewestPx = 40;      // per square: each bit of a marker needs several texels
+constexpr double kLargest = 0.60;  // longest side of the paper that fits on the bench [m]
+constexpr double kPaper = 0.003;   // height of the paper above the table [m]
+constexpr double kBlack = 0.08;    // reflectance of black paint
+constexpr double kWhite = 0.78;    // and of white paper
 
 }  // namespace
 
@@ -24,8 +24,8 @@ BoardPlane MakeBoardPlane(const calibration::Board& board, const Eigen::Vector3d
   const double side = board.square * kTexturePx / std::max(square_px, 1);
   if (square_px < kFewestPx || side > kLargest) {
     throw config::InputError(fmt::format(
-        "--board {}x{} --square {} is not allowed: on the bench there is room for {} m of squares and "
-        "paper, of at most {} squares",
+        "--board {}x{} --square {} is not allowed: the board with its paper may be at most {} m wide, with "
+        "at most {} squares per side",
         board.columns, board.rows, board.square, kLargest, kTexturePx / kFewestPx - 2));
   }
   const cv::Mat drawn = calibration::DrawBoard(board, square_px);
@@ -42,7 +42,7 @@ BoardPlane MakeBoardPlane(const calibration::Board& board, const Eigen::Vector3d
   for (int row = 0; row < drawn.rows; ++row) {
     for (int column = 0; column < drawn.cols; ++column) {
       const double share = drawn.at<std::uint8_t>(row, column) / 255.0;
-      // The texture's rows go with y of B, the board's against it.
+      // The texture's rows run along +y of B, the board's rows along -y.
       const auto at = 4 * (static_cast<std::size_t>(kTexturePx - 1 - top - row) * kTexturePx +
                            static_cast<std::size_t>(left + column));
       std::fill_n(texture.rgba.begin() + static_cast<std::ptrdiff_t>(at), 3,

@@ -1,5 +1,4 @@
-// A calibration board as the renderer has it: a textured plane that lies on the bench, a hand's breadth of
-// paper about it.
+// A calibration board for the renderer: a textured plane on the bench with a paper margin around the squares.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,11 +12,11 @@ namespace fovea::sim {
 struct BoardPlane {
   TexturedPlane plane;
   Eigen::Vector3d middle_B = Eigen::Vector3d::Zero();
-  std::array<Eigen::Vector3d, 4> outline_B;  // of its squares
+  std::array<Eigen::Vector3d, 4> outline_B;  // corners of the area of its squares
 };
 
-// Columns along x of B, rows against y: as one reads it from above. `middle_B` is on the table's top.
-// InputError when its squares would be too fine to draw, or it would hang over.
+// The board is readable from above: columns along +x of B, rows along -y. `middle_B` is on the table's top.
+// InputError: the squares are too fine to draw, or the board does not fit on the bench.
 BoardPlane MakeBoardPlane(const calibration::Board& board, const Eigen::Vector3d& middle_B);
 
 }  // namespace fovea::sim

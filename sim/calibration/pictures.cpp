@@ -26,11 +26,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const Eigen::Vector3d kMiddle(0.50, 0.0, 0.0);  // where boards and discs lie [m]
-constexpr double kNearestPx = 6.0;              // a board's edge to the picture's
+const Eigen::Vector3d kMiddle(0.50, 0.0, 0.0);  // centre of boards and discs, in B [m]
+constexpr double kNearestPx = 6.0;              // least distance of the board's corners to the picture's edge
 
-// Where the camera shall look from: tilted by `tilt` towards `azimuth`, turned by `roll` about its axis, the
-// board's middle at `xy` of the normalised image [rad].
+// A view of the camera [rad]: rotated by `tilt` about the horizontal axis at `azimuth`, and by `roll` about
+// the optical axis. The board's centre appears at `xy` of the normalised image.
 struct Look {
   double tilt = 0.0;
   double azimuth = 0.0;
@@ -38,15 +38,15 @@ struct Look {
   Eigen::Vector2d xy = Eigen::Vector2d::Zero();
 };
 
-// Ever other ones: tilted by up to 43 degrees to all sides, the board about the whole picture.
+// View `i`. The views tilt by up to 43 degrees to all sides and spread the board over the whole picture.
 Look LookOf(int i, const Pinhole& pinhole) {
   constexpr double kGoldenDeg = 137.508;
   Look look;
   look.tilt = i == 0 ? 0.0 : kRadPerDeg * (16.0 + 9.0 * (i % 4));
   look.azimuth = kRadPerDeg * kGoldenDeg * i;
   look.roll = kRadPerDeg * (37 * i % 81 - 40);
-  const double aside = i == 0 ? 0.0 : i % 3 == 0 ? 0.28 : 0.12;  // some reach into the corners
-  const int quarter = i + i / 3;  // not always the same one for those that reach
+  const double aside = i == 0 ? 0.0 : i % 3 == 0 ? 0.28 : 0.12;  // every third view reaches into a corner
+  const int quarter = i + i / 3;                                 // such views cycle through all corners
   const double around = kRadPerDeg * (90.0 * quarter + 45.0);
   look.xy = aside / pinhole.f_px *
             Eigen::Vector2d(pinhole.width_px * std::cos(around), pinhole.height_px * std::sin(around));
@@ -63,12 +63,12 @@ class Photographer {
         arm_(about_.scene.robot, {}),
         q_start_(
             Eigen::Map<const Eigen::VectorXd>(scenario.arm.q_start.data(), about_.servo.arm.num_joints)) {
-    exposure_.p_BO = Eigen::Vector3d(0.0, 0.0, -10.0);  // nowhere
+    exposure_.p_BO = Eigen::Vector3d(0.0, 0.0, -10.0);  // out of sight
   }
 
   const RunDescription& about() const { return about_; }
 
-  // The camera's turn when it looks straight down, with the hand turned as little as can be.
+  // R_BC of a camera that looks straight down, with the yaw of the start posture: the hand turns little.
   Eigen::Matrix3d Down() const {
     const Eigen::Matrix3d R = (chain_.TipPose(q_start_) * about_.scene.X_EC).linear();
     const double yaw = std::atan2(R(1, 0), R(0, 0));
@@ -79,7 +79,7 @@ class Photographer {
     return down;
   }
 
-  // False when the arm does not come there.
+  // False if the arm cannot reach the pose.
   bool PlaceCamera(const Eigen::Isometry3d& X_BC) {
     const std::optional<Eigen::VectorXd> q =
         PlaceHand(chain_, about_.servo.arm, q_start_, X_BC * about_.scene.X_EC.inverse());
@@ -112,7 +112,7 @@ class Photographer {
     }
   }
 
-  // Where the arm's own encoders say that the hand is, by the servo's model.
+  // The hand's pose by the noisy encoders and the servo's model.
   model::Pose HandByEncoders() {
     std::normal_distribution<double> noise(0.0, std::max(about_.scenario.arm.encoder_noise, 1e-15));
     model::VecN q = q_;
@@ -135,7 +135,7 @@ class Photographer {
   Exposure exposure_;
 };
 
-// The camera's pose from which the board fills the picture, all of it inside.
+// The nearest X_BC with the look's orientation from which the whole board is inside the picture.
 Eigen::Isometry3d ViewOf(const Look& look, const Eigen::Matrix3d& R_down, const BoardPlane& board,
                          const Pinhole& pinhole, const Lens& lens) {
   Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
@@ -196,7 +196,7 @@ void WriteTruth(const RunDescription& about, const calibration::Board& board, co
 CalibrationPictures TakeCalibrationPictures(const Scenario& scenario,
                                             const CalibrationPicturesOptions& options) {
   if (!scenario.camera.enabled) {
-    throw config::InputError("camera.enabled = false is not allowed: there is no eye to calibrate");
+    throw config::InputError("camera.enabled = false is not allowed: there is no camera to calibrate");
   }
   const BoardPlane board = MakeBoardPlane(options.board, kMiddle);
   Photographer photographer(scenario);
@@ -212,13 +212,13 @@ CalibrationPictures TakeCalibrationPictures(const Scenario& scenario,
 
   CalibrationPictures taken;
   std::ofstream poses(options.out / "poses.csv", std::ios::trunc);
-  poses << "# file, and the hand in B: x,y,z [m],qw,qx,qy,qz\n";
+  poses << "# file, pose of the hand in B: x,y,z [m],qw,qx,qy,qz\n";
   const Eigen::Matrix3d R_down = photographer.Down();
   {
     RenderScene scene = about.scene;
     scene.bench.planes.insert(scene.bench.planes.begin(), board.plane);
     Optics optics(scene, pinhole, lens, Sampling::kFine);
-    const int most = 4 * options.views;  // places to try
+    const int most = 4 * options.views;  // views to try
     for (int i = 0; i < most && static_cast<int>(taken.boards.size()) < options.views; ++i) {
       if (!photographer.PlaceCamera(ViewOf(LookOf(i, pinhole), R_down, board, pinhole, lens))) {
         continue;
@@ -237,7 +237,7 @@ CalibrationPictures TakeCalibrationPictures(const Scenario& scenario,
     throw config::InputError((options.out / "poses.csv").string() + ": cannot be written");
   }
   if (static_cast<int>(taken.boards.size()) < options.views) {
-    throw config::InputError(fmt::format("--views {} is not allowed: the arm comes to {} of the places",
+    throw config::InputError(fmt::format("--views {} is not allowed: the arm can reach only {} views",
                                          options.views, taken.boards.size()));
   }
 
@@ -254,7 +254,7 @@ CalibrationPictures TakeCalibrationPictures(const Scenario& scenario,
     Eigen::Isometry3d X_BC = X_BO;
     X_BC.translation().z() += depth;
     if (!photographer.PlaceCamera(X_BC)) {
-      throw config::InputError("the arm does not come over the disc; arm.q_start is where it starts from");
+      throw config::InputError("the arm cannot reach the views of the disc; try another arm.q_start");
     }
     photographer.Take(optics, options.out / name);
     taken.discs.emplace_back(name);

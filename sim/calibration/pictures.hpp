@@ -1,6 +1,5 @@
-// Pictures to calibrate the simulated camera with: a board on the bench from many sides, with the hand's
-// poses, and a disc from two distances. The arm is placed, not driven: what a calibration needs is where it
-// stood.
+// Renders pictures for the calibration of the simulated camera: a board on the bench from many sides, with
+// the hand's poses, and a disc from two distances. The arm is placed without motion: only its poses matter.
 #pragma once
 
 #include <filesystem>
@@ -19,14 +18,14 @@ struct CalibrationPicturesOptions {
 };
 
 struct CalibrationPictures {
-  std::vector<std::string> boards;  // the pictures in `out`, in order; poses.csv says where the hand was
-  std::vector<std::string> discs;   // in `out`, the nearer one first
+  std::vector<std::string> boards;  // pictures of the board in `out`, in the order of poses.csv
+  std::vector<std::string> discs;   // pictures of the disc in `out`, the nearer one first
   double disc_diameter = 0.08;      // [m]
-  double disc_delta_z = 0.15;       // between the two [m]
+  double disc_delta_z = 0.15;       // distance between the two camera positions [m]
 };
 
-// Writes the pictures, poses.csv, and truth.json: what a calibration shall find. InputError: a scenario
-// without an eye, a board that does not lie on the bench, an arm that does not come to enough places.
+// Writes the pictures, poses.csv and truth.json (the true values that a calibration must find). InputError:
+// the scenario has no camera, the board does not fit on the bench, or the arm cannot reach enough views.
 CalibrationPictures TakeCalibrationPictures(const Scenario& scenario,
                                             const CalibrationPicturesOptions& options);
 

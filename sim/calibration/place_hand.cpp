@@ -8,9 +8,9 @@ namespace fovea::sim {
 std::optional<Eigen::VectorXd> PlaceHand(const Chain& chain, const model::ArmModel& limits, Eigen::VectorXd q,
                                          const Eigen::Isometry3d& X_BE) {
   constexpr int kRounds = 300;
-  constexpr double kThere = 1e-9;        // [m, rad]
-  constexpr double kFarthest = 0.2;      // what one step may go [m, rad]
-  constexpr double kFromTheEnds = 0.05;  // of each joint's range [rad, m]
+  constexpr double kThere = 1e-9;        // accepted error [m, rad]
+  constexpr double kFarthest = 0.2;      // largest step [m, rad]
+  constexpr double kFromTheEnds = 0.05;  // margin to each joint's limits [rad, m]
   Jacobian J;
   for (int round = 0; round < kRounds; ++round) {
     const Eigen::Isometry3d X_now = chain.TipPose(q, J);
@@ -20,7 +20,7 @@ std::optional<Eigen::VectorXd> PlaceHand(const Chain& chain, const model::ArmMod
     if (off.norm() < kThere) {
       return q;
     }
-    // Damped while far, so that it does not jump about; not at all near the end, which it comes to squarely.
+    // Damping prevents jumps far from the goal. It vanishes near the goal, for quadratic convergence.
     const double damping = 1e-2 * std::min(1.0, off.squaredNorm());
     off *= std::min(1.0, kFarthest / off.norm());
     const Eigen::Matrix<double, 6, 6> A =

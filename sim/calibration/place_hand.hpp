@@ -1,4 +1,4 @@
-// Joints that bring the hand to a pose, for pictures that are taken from given places.
+// Inverse kinematics for pictures from given camera poses.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,8 +9,8 @@
 
 namespace fovea::sim {
 
-// From `q` on, by damped Gauss-Newton steps inside the joints' range, until the hand of `chain` stands at
-// `X_BE` to a nanometre and a nanoradian; none when it does not come there.
+// Joint positions that place the hand of `chain` at `X_BE`, to a nanometre and a nanoradian. Takes damped
+// Gauss-Newton steps from `q` inside the joints' range. None if it does not converge.
 std::optional<Eigen::VectorXd> PlaceHand(const Chain& chain, const model::ArmModel& limits, Eigen::VectorXd q,
                                          const Eigen::Isometry3d& X_BE);
 

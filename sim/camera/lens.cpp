@@ -9,16 +9,17 @@
 namespace fovea::sim {
 namespace {
 
-constexpr double kFiner = 2.0;  // pixels of the wide picture per pixel of the sensor, each way
+constexpr double kFiner = 2.0;  // pixels of the wide picture per pixel of the sensor, along each axis
 constexpr int kWidestPx = 8192;
-constexpr double kMarginPx = 2.0;  // of the wide picture, for its last pixels' neighbours
+constexpr double kMarginPx = 2.0;  // of the wide picture, for the neighbours of its outermost points
 
 Eigen::Matrix2d Slope(const Lens& l, const Eigen::Vector2d& xy) {
   const double x = xy.x();
   const double y = xy.y();
   const double r2 = xy.squaredNorm();
   const double radial = 1.0 + r2 * (l.k1 + r2 * (l.k2 + r2 * l.k3));
-  const double d_radial = 2.0 * (l.k1 + r2 * (2.0 * l.k2 + r2 * 3.0 * l.k3));  // over x and y: times x and y
+  const double d_radial =
+      2.0 * (l.k1 + r2 * (2.0 * l.k2 + r2 * 3.0 * l.k3));  // times x (y): derivative by x (y)
   Eigen::Matrix2d slope;
   slope(0, 0) = radial + d_radial * x * x + 2.0 * l.p1 * y + 6.0 * l.p2 * x;
   slope(0, 1) = d_radial * x * y + 2.0 * l.p1 * x + 2.0 * l.p2 * y;
@@ -39,8 +40,8 @@ Eigen::Vector2d Distort(const Lens& l, const Eigen::Vector2d& xy) {
 }
 
 bool Undistort(const Lens& lens, const Eigen::Vector2d& xy, Eigen::Vector2d& ideal) {
-  constexpr int kSteps = 8;    // from the middle outwards, so that no fold is jumped over
-  constexpr int kRounds = 12;  // of Newton's method at each
+  constexpr int kSteps = 8;    // from the centre outwards, so that the search cannot jump over a fold
+  constexpr int kRounds = 12;  // Newton iterations per step
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
   for (int step = 1; step <= kSteps; ++step) {
     const Eigen::Vector2d goal = xy * step / kSteps;
@@ -76,10 +77,10 @@ LensMap::LensMap(const Lens& lens, const Pinhole& pinhole) {
     }
     reach = reach.cwiseMax(ideal[i].cwiseAbs());
   }
-  // About the middle, as the renderer's own test of what is in view has it.
+  // Centred on the optical axis: the renderer's visibility test needs that.
   const Eigen::Vector2d half = (kFiner * pinhole.f_px * reach).array().ceil() + kMarginPx;
   if (!(half.maxCoeff() * 2.0 < kWidestPx)) {
-    throw std::invalid_argument("the lens looks too far aside to be drawn");
+    throw std::invalid_argument("the lens has a field of view too wide to be drawn");
   }
   wide_.width_px = 2 * static_cast<int>(half.x());
   wide_.height_px = 2 * static_cast<int>(half.y());

@@ -1,6 +1,5 @@
-// A camera that is not ideal: its lens moves what a pinhole would see, its sensor is not centred or has
-// pixels that are not square. Pictures are resampled from a larger and finer one of a plain pinhole, as such
-// a sensor would collect them.
+// A camera that is not ideal: its lens distorts the picture, its sensor is off-centre or has pixels that are
+// not square. Its pictures are resampled from a larger and finer picture of a plain pinhole camera.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,11 +22,11 @@ struct Lens {
   [[nodiscard]] bool IsZero() const { return k1 == 0.0 && k2 == 0.0 && p1 == 0.0 && p2 == 0.0 && k3 == 0.0; }
 };
 
-// Where the lens puts the ideal point `xy` of the normalised image.
+// Image of the ideal point `xy` through the lens. Both are in the normalised image.
 Eigen::Vector2d Distort(const Lens& lens, const Eigen::Vector2d& xy);
 
-// The ideal point that the lens puts at `xy`. False when none is, or the lens has folded the picture before
-// it.
+// Inverse of Distort: the ideal point whose image is `xy`. False if there is none, or if the lens folds the
+// picture between the centre and `xy`.
 [[nodiscard]] bool Undistort(const Lens& lens, const Eigen::Vector2d& xy, Eigen::Vector2d& ideal);
 
 // Whether the picture of a plain pinhole must be resampled.
@@ -37,20 +36,19 @@ inline bool NeedsLensMap(const Lens& lens, const Pinhole& pinhole) {
 
 class LensMap {
  public:
-  // std::invalid_argument: the lens folds the picture, or brings in more than a renderer can draw.
+  // std::invalid_argument: the lens folds the picture, or sees a wider field than the renderer can draw.
   LensMap(const Lens& lens, const Pinhole& pinhole);
 
   // The pinhole to render for Apply.
   [[nodiscard]] const Pinhole& wide() const { return wide_; }
-  // From a picture of `wide` [pixels * 4] to the sensor's [pixels * 4]: each pixel the mean over four points
-  // in it.
+  // Resamples a picture of `wide` [pixels * 4] to the sensor [pixels * 4]: four points per pixel, averaged.
   void Apply(std::span<const std::uint8_t> from, std::span<std::uint8_t> to) const;
 
  private:
-  // Between which four pixels of the wide picture a point lies.
+  // The four pixels of the wide picture around a point, and their weights.
   struct Place {
-    std::int32_t top_left = 0;  // the first one's number
-    std::uint8_t right = 0;     // shares of 256
+    std::int32_t top_left = 0;  // index of the first pixel
+    std::uint8_t right = 0;     // weights [1/256]
     std::uint8_t down = 0;
   };
   static constexpr int kPoints = 4;  // per pixel

@@ -1,4 +1,4 @@
-// From any number to one that looks like chance: the finaliser of SplitMix64 (Steele, Lea and Flood, Fast
+// Hashes a number to a pseudorandom number: the finaliser of SplitMix64 (Steele, Lea and Flood, Fast
 // splittable pseudorandom number generators, 2014).
 #pragma once
 

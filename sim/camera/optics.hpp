@@ -1,5 +1,4 @@
-// What the camera's lens lays on its sensor: the scene through the renderer, and through the lens where that
-// is not ideal.
+// The picture on the sensor: renders the scene, then resamples it through the lens if the lens is not ideal.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +14,14 @@
 namespace fovea::sim {
 
 enum class Sampling : std::uint8_t {
-  kPlain,  // a ray per pixel; through a lens that is not ideal kFine all the same
-  kFine,   // the mean over each pixel of a picture of twice the resolution, at four times the cost
+  kPlain,  // one ray per pixel; a lens that is not ideal uses kFine anyway
+  kFine,   // each pixel is a mean over a picture of twice the resolution, at four times the cost
 };
 
-// One thread at a time, as SceneRenderer.
+// One thread at a time may use it, as with SceneRenderer.
 class Optics {
  public:
-  // As SceneRenderer; std::invalid_argument as LensMap.
+  // Throws as SceneRenderer; std::invalid_argument as LensMap.
   Optics(const RenderScene& scene, const Pinhole& pinhole, const Lens& lens, Sampling sampling,
          int index = 0);
 
@@ -36,7 +35,7 @@ class Optics {
  private:
   const std::optional<LensMap> lens_;
   SceneRenderer renderer_;
-  std::vector<std::uint8_t> wide_;  // what the pinhole before the lens sees
+  std::vector<std::uint8_t> wide_;  // the pinhole picture that the lens resamples
 };
 
 }  // namespace fovea::sim

@@ -30,7 +30,7 @@ void Sensor::Expose(std::span<const std::uint8_t> rgba, int width_px, std::uint6
     const std::int8_t* noise = noise_.data() + start;
     const std::uint8_t* in = rgba.data() + row * width * 4;
     std::uint8_t* out = bgr.data() + row * width * 3;
-    // Two plain passes over the row: the second is one that a compiler turns into vector instructions.
+    // Two simple passes over the row, so that the compiler vectorises the second one.
     for (std::size_t x = 0; x < width; ++x) {
       out[3 * x + 0] = in[4 * x + 2];
       out[3 * x + 1] = in[4 * x + 1];

@@ -1,4 +1,4 @@
-// The image sensor: what the light leaves in the pixels.
+// The image sensor.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,13 @@
 
 namespace fovea::sim {
 
-// Adds read noise of a given standard deviation to a rendered picture, the same for the same seed and frame.
-//
-// Noise is drawn once into a long table; each row of each frame reads the table from a place of its own.
+// Adds Gaussian read noise to a rendered picture. Equal seed and frame number give equal noise. A long table
+// holds the noise; each row of each frame reads it from another start.
 class Sensor {
  public:
   Sensor(double noise_sigma, std::uint64_t seed);
 
-  // From `rgba` [pixels * 4] to `bgr` [pixels * 3], `width_px` pixels per row.
+  // Converts `rgba` [pixels * 4] to `bgr` [pixels * 3] and adds noise. `width_px` pixels per row.
   void Expose(std::span<const std::uint8_t> rgba, int width_px, std::uint64_t frame,
               std::span<std::uint8_t> bgr) const;
 

@@ -33,7 +33,7 @@ void SimCamera::Expose(Exposure exposure) {
   changed_.notify_all();
 }
 
-// What is being drawn cannot be taken out of a painter's hands.
+// A picture that a painter is drawing cannot be dropped.
 void SimCamera::LoseOldest() {
   const auto oldest = std::find_if(jobs_.begin(), jobs_.end(),
                                    [](const auto& job) { return job->progress != Progress::kDrawing; });
@@ -138,7 +138,7 @@ hal::Status SimCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noe
     }
     job = jobs_.front();
     jobs_.pop_front();
-    // The frame before is given up now; its buffer serves again.
+    // The previous frame is no longer valid. Its buffer is reused.
     spare_buffers_.push_back(std::move(handed_out_));
     handed_out_ = std::move(job->bgr);
   }

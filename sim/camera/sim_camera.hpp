@@ -1,7 +1,7 @@
-// The simulated camera behind the seam: exposures of the world go in, frames come out, in order.
+// The simulated camera as a hal::Camera: takes exposures of the world, delivers frames in the same order.
 //
-// Drawing a picture is the most that a simulation computes, and one picture does not depend on another: each
-// of a few worker threads draws one, and the frames are handed out in the order of their exposure.
+// Drawing the pictures is most of a simulation's work, and pictures are independent. Several worker threads
+// draw one picture each; frames are delivered in the order of their exposures.
 #pragma once
 
 #include <condition_variable>
@@ -21,14 +21,14 @@
 
 namespace fovea::sim {
 
-// What draws an exposure. All functions are called by one and the same thread.
+// Draws exposures. One thread calls all functions of a painter.
 struct Painter {
-  // Into an RGBA picture of the camera's size, top row first. May throw: the camera then reports a device
-  // fault and keeps the message.
+  // Draws into an RGBA picture of the camera's size, top row first. May throw: the camera then reports a
+  // device fault and keeps the message.
   std::function<void(const Exposure& exposure, std::span<std::uint8_t> rgba)> draw;
-  // The sensor has made its picture of it; may be empty.
+  // Called after the sensor has made its picture; may be empty.
   std::function<void()> picture_done = nullptr;
-  // The thread is about to end; may be empty.
+  // Called before the thread ends; may be empty.
   std::function<void()> leave_thread = nullptr;
 };
 
@@ -36,7 +36,7 @@ struct SimCameraConfig {
   int width_px = 640;
   int height_px = 480;
   std::int64_t exposure_ns = 5'000'000;
-  // Exposures that may wait to be drawn and taken; when more come, the oldest is lost, as in a real camera.
+  // Largest number of exposures that wait. The next one then drops the oldest, as in a real camera.
   std::size_t queue = 2;
 };
 
@@ -46,14 +46,14 @@ class SimCamera final : public hal::Camera {
   SimCamera(const SimCameraConfig& config, Sensor sensor, std::vector<Painter> painters);
   ~SimCamera();
 
-  // From the simulation's thread.
+  // Called by the simulation's thread.
   void Expose(Exposure exposure);
-  // From any thread: no exposure will follow. What was exposed is still drawn and handed out; then Acquire
-  // answers kClosed.
+  // Announces that no exposure will follow. Waiting exposures are still drawn and delivered; then Acquire
+  // returns kClosed. Called by any thread.
   void Close();
 
   [[nodiscard]] std::uint64_t lost() const;
-  // Why the camera is in a device fault; "" when it is not.
+  // Reason for the camera's device fault; "" if there is none.
   [[nodiscard]] std::string fault() const;
 
  private:

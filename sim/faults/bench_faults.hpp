@@ -1,4 +1,4 @@
-// What goes wrong with the arm itself; physics (World) does as it says.
+// Faults of the bench: the arm's body and the camera's outage. World applies them.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,36 +9,36 @@
 
 namespace fovea::sim {
 
-// Something that pulls at the joints for a while.
+// External torques on the joints.
 struct JointPush {
-  Eigen::VectorXd tau;  // [num_dofs] torques [Nm, N]; empty: nothing does
+  Eigen::VectorXd tau;  // [num_dofs] torques [Nm, N]; empty: none
   TimeWindow window;
 };
 
-// A motor that gives less than it should, of the command and of what its own controller adds; the arm reports
-// the command as in force all the same.
+// A motor that delivers less torque, both of the command and of the robot controller's own part. The arm
+// still reports the full command as active.
 struct TorqueLoss {
   TimeWindow window;
   int joint = 0;
   double share = 1.0;
 };
 
-// A mass at the end effector's frame that nobody told the robot's controller or the servo of. It has the
-// hand's velocity when it is taken up.
+// A mass at the end effector's frame, unknown to the robot's controller and to the servo. It has the hand's
+// velocity when it is attached.
 struct Load {
   TimeWindow window;
   double mass = 1.0;  // [kg]
 };
 
-// The arm's base leans by `tilt` about its own x: the weight pulls aside, and the robot's controller
-// compensates for it as if the base stood upright.
+// The arm's base is tilted by `tilt` about its x axis. The robot's controller still compensates gravity as if
+// the base were upright.
 struct BaseTilt {
   TimeWindow window;
   double tilt = 5.0 * std::numbers::pi / 180.0;  // [rad]
 };
 
 struct BenchFaults {
-  TimeWindow camera_outage;  // in which the camera delivers nothing
+  TimeWindow camera_outage;  // the camera delivers nothing
   TorqueLoss torque_loss;
   Load load;
   BaseTilt base_tilt;
@@ -49,23 +49,21 @@ template <class Visitor, Struct<BenchFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
   v.Window({"camera_outage", "s", "the camera delivers nothing from the first time to the second"},
            f.camera_outage);
-  v.Window(
-      {"torque_loss", "s", "a joint's motor gives less than it should, of the command and against gravity"},
-      f.torque_loss.window);
-  v.Joint({"torque_loss_joint", "", "which joint's, counted from 1"}, f.torque_loss.joint,
+  v.Window({"torque_loss", "s", "a joint's motor delivers less torque, of the command and against gravity"},
+           f.torque_loss.window);
+  v.Joint({"torque_loss_joint", "", "joint with the weak motor, counted from 1"}, f.torque_loss.joint,
           f.torque_loss.window, 1);
-  v.Number({"torque_loss", "", "share that does not arrive"}, f.torque_loss.share, 0.0, 1.0);
-  v.Window({"load", "s", "a mass hangs at the end effector that nobody was told of"}, f.load.window);
-  v.Number({"load_mass", "kg", "its mass"}, f.load.mass, 0.0, 100.0);
+  v.Number({"torque_loss", "", "lost share of the torque"}, f.torque_loss.share, 0.0, 1.0);
+  v.Window({"load", "s", "a mass hangs at the end effector, unknown to robot and servo"}, f.load.window);
+  v.Number({"load_mass", "kg", "mass of this load"}, f.load.mass, 0.0, 100.0);
   v.Window(
-      {"gravity", "s", "the arm's base leans, and the robot's own compensation of its weight does not know"},
+      {"gravity", "s", "the arm's base is tilted; the robot's own gravity compensation ignores the tilt"},
       f.base_tilt.window);
-  v.Scaled({"gravity_tilt_deg", "deg", "by so much, about the base's x"}, f.base_tilt.tilt,
+  v.Scaled({"gravity_tilt_deg", "deg", "tilt about the base's x axis"}, f.base_tilt.tilt,
            std::numbers::pi / 180.0, -180.0, 180.0);
-  v.List(
-      {"push", "Nm", "torques that push the joints from outside, one per joint; nothing does when not given"},
-      f.push.tau, hal::kMaxJoints, -1e4, 1e4);
-  v.Window({"push", "s", "from the first time to the second"}, f.push.window);
+  v.List({"push", "Nm", "external torques on the joints, one per joint; default: none"}, f.push.tau,
+         hal::kMaxJoints, -1e4, 1e4);
+  v.Window({"push", "s", "the external torques act from the first time to the second"}, f.push.window);
 }
 
 }  // namespace fovea::sim

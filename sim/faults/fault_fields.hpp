@@ -1,24 +1,23 @@
-// One list of keys for each struct of faults: what sets them stands once, beside the struct.
+// Each struct of faults has one list of its keys, beside the struct:
 //
 //   template <class Visitor, Struct<PictureFaults> Faults>
 //   void Fields(Visitor& v, Faults& f) {
 //     v.Window({"mirror", "s", "the camera's pictures are mirrored, left is right"}, f.mirror);
 //   }
 //
-// The keys of [faults], their checks, the list of what a run meets and what `serve` refuses all follow from
-// it (sim/scenario/fault_settings.cpp). A visitor has these, with `value` const or not; a field's key is
-// without its "faults.":
+// The keys of [faults], their checks, the list of a run's faults and the refusals of `serve` come from this
+// list (sim/scenario/fault_settings.cpp). A visitor has the functions below; `value` may be const. A field's
+// key omits "faults.":
 //
-//   Window(field, window, not_served)       a fault, its name the key, which is faults.<name>_s.
-//   `not_served`:
-//                                           why `serve` cannot have it, null where it can
+//   Window(field, window, not_served)       a fault; its key is faults.<name>_s. `not_served`: the reason why
+//                                           `serve` refuses it, null if `serve` has it
 //   Number(field, double& value, min, max)
-//   Scaled(field, value, unit, min, max)    a number in the key's unit; `value` is in `unit`s of it
+//   Scaled(field, value, unit, min, max)    a number in the key's unit; `value` is `unit` times this number
 //   Flag(field, bool& value)
 //   Joint(field, int& value, window, least) counted from 1 in the key and from 0 in `value`; `least` 0: key 0
-//                                           is kAllJoints. Checked where `window` begins
+//                                           is kAllJoints. Checked if `window` begins
 //   List(field, values, most, min, max)     1 to `most` numbers
-//   Numbers(field, min, max, double&...)    as many numbers as there are
+//   Numbers(field, min, max, double&...)    one number per reference
 //   Size(field, double value)               must be above 0; adds no key
 #pragma once
 
@@ -31,8 +30,8 @@ namespace fovea::sim {
 
 struct FaultField {
   const char* key;
-  const char* unit = "";     // "" when it has none
-  const char* meaning = "";  // for people; "" where other text explains the key
+  const char* unit = "";     // "" if it has none
+  const char* meaning = "";  // help text of the key; "" if another entry explains it
 };
 
 template <class T, class S>

@@ -16,7 +16,7 @@ hal::Status FaultyArm::DoRead(hal::ArmState& state) noexcept {
   }
   const bool lost = faults_.packet_loss.window.Contains(read.stamp_ns) &&
                     Chance(faults_.seed, read.sequence) < faults_.packet_loss.share;
-  Spoil(read);  // even of a state that is lost: what comes after it shall not depend on that
+  Spoil(read);  // also for a lost state, so that later states do not depend on the loss
   if (lost) {
     return hal::Status(hal::StatusCode::kTimeout, "sim arm");
   }

@@ -1,4 +1,4 @@
-// A detector that now and then says what is not there: its measurements on their way to the servo.
+// Injects wrong measurements between the detector and the servo.
 #pragma once
 
 #include <array>
@@ -12,29 +12,29 @@ namespace fovea::sim {
 struct DetectorFaults {
   struct {
     TimeWindow window;
-    double share = 1.0;                                  // of the measurements that are wrong
+    double share = 1.0;                                  // share of wrong measurements
     std::array<double, hal::kMaxFeatureDim> shift{1.0};  // added to s, in its units
   } wrong;
-  TimeWindow not_a_number;  // s[0] is none
+  TimeWindow not_a_number;  // s[0] is NaN
   std::uint64_t seed = 1;
 };
 
 template <class Visitor, Struct<DetectorFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
-  constexpr const char* kInstead = "the detector is the client's";
+  constexpr const char* kInstead = "the client runs the detector";
   v.Window({"wrong_detection", "s", "the detector is wrong about where the target is"}, f.wrong.window,
            kInstead);
   v.Number({"wrong_detection", "", "share of the measurements that are wrong, by chance"}, f.wrong.share, 0.0,
            1.0);
   v.List({"wrong_detection_shift", "units of s",
-          "by how much, entry by entry; a sphere's s is its centre in radii"},
+          "shift of s, one number per entry; a sphere's s is its centre in radii"},
          f.wrong.shift, hal::kMaxFeatureDim, -1e6, 1e6);
-  v.Window({"nan_detection", "s", "the detector gives a value that is no number"}, f.not_a_number, kInstead);
+  v.Window({"nan_detection", "s", "the detector reports NaN"}, f.not_a_number, kInstead);
 }
 
 class FaultyDetector final : public hal::FeatureSink {
  public:
-  // `sink` is borrowed: where the measurements go on to.
+  // `sink` receives the measurements. It is borrowed.
   FaultyDetector(hal::FeatureSink& sink, const DetectorFaults& faults) : sink_(sink), faults_(faults) {}
   void Put(const hal::FeatureMeasurement& measurement) noexcept override;
 

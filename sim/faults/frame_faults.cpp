@@ -4,7 +4,7 @@
 
 namespace fovea::sim {
 
-// The newest scene that is as old as the replay wants it, within its window.
+// Within the replay's window: the newest scene that is at least `delay_ns` old. Otherwise `exposure` itself.
 const Exposure& FrameSpoiler::SceneFor(const Exposure& exposure) {
   const auto& replay = faults_.replay;
   if (static_cast<double>(exposure.stamp_ns) * 1e-9 >= replay.window.end_s) {

@@ -1,5 +1,4 @@
-// What a network or a line does to datagrams: loses, delays, shuffles and repeats them. By seed, so that it
-// can be repeated.
+// Faults of a network or serial line: loses, delays, reorders and duplicates datagrams. Repeatable by seed.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +11,11 @@
 namespace fovea::sim {
 
 struct LinkFaults {
-  double loss = 0.0;       // share that is lost
-  double duplicate = 0.0;  // share that comes twice
-  double reorder = 0.0;    // share that is held back so long that the next overtakes it
+  double loss = 0.0;       // share of lost datagrams
+  double duplicate = 0.0;  // share of duplicated datagrams
+  double reorder = 0.0;    // share of datagrams delayed so that the next one overtakes them
   double delay_ms = 0.0;
-  double jitter_ms = 0.0;  // up to this much is added, evenly spread
+  double jitter_ms = 0.0;  // largest additional delay, uniformly distributed
 };
 
 class FaultDice {
@@ -48,7 +47,7 @@ class FaultDice {
   std::uniform_real_distribution<double> even_{0.0, 1.0};
 };
 
-// One way of the link.
+// One direction of the link.
 template <typename Datagram>
 class FaultyLink {
  public:
@@ -65,7 +64,7 @@ class FaultyLink {
     }
   }
 
-  // The earliest of those that have arrived by `now_ns`.
+  // Takes the earliest of the datagrams that are due by `now_ns`.
   [[nodiscard]] std::optional<Datagram> Take(std::int64_t now_ns) {
     auto earliest = on_the_way_.end();
     for (auto at = on_the_way_.begin(); at != on_the_way_.end(); ++at) {

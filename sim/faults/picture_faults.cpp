@@ -6,8 +6,8 @@
 namespace fovea::sim {
 namespace {
 
-constexpr std::uint8_t kDark = 18;   // of the occluder [gray levels]
-constexpr double kGlareFades = 1.5;  // the glare ends at so many of its radii
+constexpr std::uint8_t kDark = 18;   // brightness of the occluder [gray levels]
+constexpr double kGlareFades = 1.5;  // the glare ends at this multiple of its radius
 
 void Mirror(int width_px, std::span<std::uint8_t> rgba) {
   const std::size_t row = static_cast<std::size_t>(4) * static_cast<std::size_t>(width_px);

@@ -1,5 +1,5 @@
-// What goes wrong with a picture: a glare that saturates a spot of it, a thing before the lens that hides a
-// part of it, a picture that is mirrored.
+// Faults of a picture: a glare that saturates a spot of it, an object in front of the lens that hides a part
+// of it, mirroring.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct PictureFaults {
     TimeWindow window;
     double u_px = 320.0;
     double v_px = 240.0;
-    double radius_px = 60.0;  // white within, and half as far again it fades out
+    double radius_px = 60.0;  // white inside; fades to nothing at 1.5 times this radius
   } glare;
   struct {
     TimeWindow window;
@@ -40,8 +40,8 @@ void Fields(Visitor& v, Faults& f) {
   v.Size({"occluder_px"}, f.occluder.height_px);
 }
 
-// Into a drawn picture `rgba` [pixels * 4] of `width_px` pixels per row, exposed at `stamp_ns`. The glare
-// comes after the occluder: light goes over everything. Called by many threads.
+// Adds the faults to a picture `rgba` [pixels * 4] of `width_px` pixels per row, exposed at `stamp_ns`. The
+// glare comes after the occluder: light covers everything. Called by many threads.
 void SpoilPicture(const PictureFaults& faults, std::int64_t stamp_ns, int width_px,
                   std::span<std::uint8_t> rgba);
 

@@ -1,4 +1,4 @@
-// A clock whose waits end too late: the computer swallows ticks.
+// A clock whose waits end too late, so that the servo misses ticks.
 #pragma once
 
 #include "fovea/hal/clock.hpp"
@@ -8,15 +8,15 @@ namespace fovea::sim {
 
 struct StallFault {
   TimeWindow window;
-  double share = 1.0;  // of the ticks in it that are swallowed
+  double share = 1.0;  // share of missed ticks in the window
   std::uint64_t seed = 1;
 };
 
 template <class Visitor, Struct<StallFault> Fault>
 void Fields(Visitor& v, Fault& f) {
-  v.Window({"deadline_miss", "s", "the servo's computer swallows ticks"}, f.window,
-           "the ticks are the client's");
-  v.Number({"deadline_miss", "", "share of them, by chance"}, f.share, 0.0, 1.0);
+  v.Window({"deadline_miss", "s", "the servo's computer misses ticks"}, f.window,
+           "the client times the ticks");
+  v.Number({"deadline_miss", "", "share of missed ticks, at random"}, f.share, 0.0, 1.0);
 }
 
 class StallingClock final : public hal::Clock {
@@ -26,7 +26,7 @@ class StallingClock final : public hal::Clock {
 
  private:
   [[nodiscard]] std::int64_t DoNowNs() const noexcept override { return clock_.NowNs(); }
-  // The wait for a tick that is swallowed ends at the next one that is not.
+  // A wait for a missed tick ends at the next tick that is not missed.
   hal::Status DoWaitUntil(std::int64_t deadline_ns) noexcept override;
 
   hal::Clock& clock_;

@@ -1,4 +1,4 @@
-// From when until when a fault lasts.
+// The time interval in which a fault acts.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@ namespace fovea::sim {
 
 struct TimeWindow {
   double start_s = 0.0;
-  double end_s = 0.0;  // the first moment after it; not after start_s: it never begins
+  double end_s = 0.0;  // exclusive; the fault never acts unless this is after start_s
 
   [[nodiscard]] bool Contains(std::int64_t time_ns) const noexcept {
     const double time_s = static_cast<double>(time_ns) * 1e-9;

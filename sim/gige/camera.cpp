@@ -13,21 +13,21 @@
 namespace fovea::sim {
 namespace {
 
-// Aravis looks after its control port between pictures only, so no wait for one is longer than a client's
-// patience with an answer.
+// Aravis serves its control port only between pictures. A wait for a picture must therefore be shorter than a
+// client's timeout for an answer.
 constexpr std::chrono::milliseconds kFillPatience{300};
 constexpr std::chrono::seconds kLeavePatience{2};
 constexpr std::uint32_t kLookPeriodUs = 1000;
 constexpr std::size_t kMostSerial = 15;
 
-// Aravis shares the port with whoever has it already, and then neither gets all that comes.
+// Aravis would share a port that is already in use; then both users miss packets.
 void CheckPortIsFree(const GigeCameraConfig& config) {
   constexpr std::uint16_t kControlPort = 3956;
   try {
     const franka::UdpSocket trial({franka::Resolve(config.address, 0).ip, kControlPort});
   } catch (const franka::NetworkError& error) {
     throw std::runtime_error("camera \"" + config.serial + "\": " + error.what() +
-                             "; GigE Vision has this port for all cameras");
+                             "; every GigE Vision camera needs this port");
   }
 }
 
@@ -55,7 +55,7 @@ GigeCamera::GigeCamera(hal::Camera& eye, const GigeCameraConfig& config)
   aravis_->server = arv_gv_fake_camera_new(config.address.c_str(), config.serial.c_str());
   if (aravis_->server == nullptr || arv_gv_fake_camera_is_running(aravis_->server) == FALSE) {
     throw std::runtime_error("camera \"" + config.serial + "\": " + config.address +
-                             " is the address of no interface of this computer");
+                             " is not an address of this computer");
   }
   aravis_->registers = arv_gv_fake_camera_get_fake_camera(aravis_->server);
   constexpr double kUsPerS = 1e6;
@@ -120,11 +120,11 @@ void GigeCamera::Advance(std::int64_t now_ns, bool wait) {
 }
 
 void GigeCamera::Fill(void* buffer, std::uint32_t pixel_format) {
-  // The world's own time says when a picture leaves, so Aravis shall look for one as often as it can.
+  // The world's time decides when a picture leaves, so Aravis polls for pictures as often as it can.
   aravis_->Set(ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US, kLookPeriodUs);
   auto* const target = static_cast<ArvBuffer*>(buffer);
   std::unique_lock lock(mutex_);
-  if (on_its_way_) {  // the last one has left by now
+  if (on_its_way_) {  // the last picture has left by now
     on_its_way_ = false;
     ++sent_;
     while (!expected_.empty() && expected_.front().stamp_ns <= frame_.stamp_ns) {
@@ -134,20 +134,20 @@ void GigeCamera::Fill(void* buffer, std::uint32_t pixel_format) {
   }
   const bool taken = TakeDue(lock);
   on_its_way_ = taken;
-  lock.unlock();  // frame_ is this thread's alone, and the robot must not wait for its pixels
-  // The buffer's own memory, which nobody else looks at meanwhile; nothing is "received" in it yet.
+  lock.unlock();  // only this thread uses frame_, and the robot must not wait for its pixels
+  // The buffer's own memory; no other thread uses it now. Its `received` size is not set yet.
   std::size_t received = 0;
   auto* const data = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(target, &received)));
-  // Without a new picture the old one leaves again, with the number and the stamp that it had; before the
-  // first there is a black one with number 0, which GigE Vision keeps for trials.
+  // Without a new picture, the last one is sent again with the same number and stamp. Before the first, a
+  // black picture with number 0 is sent; GigE Vision reserves 0 for test packets.
   FillPixels(frame_, arv_buffer_get_image_width(target), arv_buffer_get_image_height(target), pixel_format,
              {data, arv_fake_camera_get_payload(aravis_->registers)});
   arv_buffer_set_timestamp(target, static_cast<guint64>(frame_.stamp_ns));
-  constexpr std::uint64_t kNumbers = 65535;  // 1 to this, as GigE Vision counts
+  constexpr std::uint64_t kNumbers = 65535;  // GigE Vision numbers frames from 1 to this
   arv_buffer_set_frame_id(target, frame_.pixels.empty() ? 0 : frame_.sequence % kNumbers + 1);
 }
 
-// The next picture that is due, into frame_; false when none is in time.
+// Takes the next picture that is due into frame_. False if none comes in time.
 bool GigeCamera::TakeDue(std::unique_lock<std::mutex>& lock) {
   const auto end = std::chrono::steady_clock::now() + kFillPatience;
   while (changed_.wait_until(lock, end, [this] { return closed_ || IsDue(); }) && !closed_) {
@@ -160,9 +160,9 @@ bool GigeCamera::TakeDue(std::unique_lock<std::mutex>& lock) {
     if (!status.ok()) {
       return false;
     }
-    frame_ = frame;  // its pixels stay as they are until the next Acquire
+    frame_ = frame;  // its pixels stay valid until the next Acquire
     while (!expected_.empty() && expected_.front().stamp_ns < frame.stamp_ns) {
-      expected_.pop_front();  // the eye lost it
+      expected_.pop_front();  // lost by eye_
     }
     if (frame.stamp_ns >= wanted_ns) {
       return true;

@@ -1,7 +1,7 @@
-// The simulated camera on the network: a GigE Vision camera, by Aravis' own stand-in for one.
+// The simulated camera on the network: a GigE Vision camera, built on Aravis' fake camera.
 //
-// A picture leaves when it is due: the world says what its time is, and a frame waits until its transport is
-// over. GigE Vision's control port is fixed (UDP 3956), so one such camera lives at an address.
+// A picture is sent when the world's time reaches its stamp plus its transport time. GigE Vision's control
+// port is fixed (UDP 3956), so an address can have only one such camera.
 #pragma once
 
 #include <condition_variable>
@@ -22,21 +22,21 @@ struct GigeCameraConfig {
   int height_px = 480;
   double rate_hz = 30.0;
   std::int64_t exposure_ns = 5'000'000;
-  std::int64_t transport_ns = 40'000'000;  // from the stamp until the picture leaves
+  std::int64_t transport_ns = 40'000'000;  // from the stamp until the picture is sent
 };
 
 class GigeCamera {
  public:
-  // `eye` gives the pictures (BGR8, of that size) and outlives this. std::runtime_error: the address is none
-  // of this computer's, the port is taken, or the serial number is empty or too long.
+  // `eye` supplies the pictures (BGR8, of the configured size) and must outlive this. std::runtime_error: the
+  // address is not of this computer, the port is in use, or the serial number is empty or too long.
   GigeCamera(hal::Camera& eye, const GigeCameraConfig& config);
   ~GigeCamera();
 
-  // From the thread that advances the world: the eye gets an exposure, when this says that somebody wants it.
-  // It leaves `late_ns` later than others; those behind it wait.
+  // Announces an exposure of `stamp_ns`. Returns whether a client is streaming; only then the caller exposes.
+  // The picture leaves `late_ns` later than usual; the next ones wait for it. Called by the world's thread.
   [[nodiscard]] bool Expect(std::int64_t stamp_ns, std::int64_t late_ns = 0);
-  // From the same: the world's time is `now_ns`, and what is due may leave. With `wait`, and while somebody
-  // takes the pictures, returns when all that is due has left; after two seconds what has not is given up.
+  // Sets the world's time to `now_ns`; pictures that are due may leave. With `wait`, and while a client is
+  // streaming, returns when they have left; drops them after two seconds. Called by the world's thread.
   void Advance(std::int64_t now_ns, bool wait);
 
   [[nodiscard]] bool streaming() const;
@@ -60,11 +60,11 @@ class GigeCamera {
     std::int64_t stamp_ns = 0;
     std::int64_t due_ns = 0;
   };
-  std::deque<Expected> expected_;  // what has not left yet, oldest first
+  std::deque<Expected> expected_;  // not sent yet, oldest first
   std::uint64_t sent_ = 0;
-  hal::Frame frame_;                // the last one that was taken from the eye
-  bool on_its_way_ = false;         // frame_ was filled in, and leaves
-  std::unique_ptr<Aravis> aravis_;  // last: its thread uses all of the above
+  hal::Frame frame_;                // the last frame from eye_
+  bool on_its_way_ = false;         // Aravis is sending frame_
+  std::unique_ptr<Aravis> aravis_;  // declared last: its thread uses all members above
 };
 
 }  // namespace fovea::sim

@@ -9,7 +9,7 @@
 namespace fovea::sim {
 namespace {
 
-// Which of blue (0), green (1) and red (2) each pixel of a 2 x 2 block shows, row by row.
+// The colour of each pixel in a 2 x 2 block, row by row: blue (0), green (1) or red (2).
 using Mosaic = std::array<std::size_t, 4>;
 
 Mosaic MosaicOf(std::uint32_t pixel_format) {
@@ -26,7 +26,7 @@ bool IsBayer(std::uint32_t pixel_format) {
          pixel_format == ARV_PIXEL_FORMAT_BAYER_GB_8 || pixel_format == ARV_PIXEL_FORMAT_BAYER_BG_8;
 }
 
-// ITU-R BT.601, in 1/256.
+// Luma by ITU-R BT.601; weights in 1/256.
 std::uint8_t Luma(const std::uint8_t* bgr) {
   return static_cast<std::uint8_t>((29U * bgr[0] + 150U * bgr[1] + 77U * bgr[2] + 128U) >> 8U);
 }

@@ -1,4 +1,4 @@
-// A rendered picture as a GigE Vision camera sends it.
+// Converts a rendered picture to a pixel format of GigE Vision.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace fovea::sim {
 
-// The top left `width_px` x `height_px` of `frame` (BGR8) in the format with GigE Vision's number
-// `pixel_format`: Mono8, RGB8, BGR8, or one of the four 8-bit Bayer patterns; black where the frame has
-// nothing, or for any other format.
+// Writes the top left `width_px` x `height_px` pixels of `frame` (BGR8) to `out`, in GigE Vision's format
+// number `pixel_format`: Mono8, RGB8, BGR8, or one of the four 8-bit Bayer patterns. All black for any other
+// format, or if `frame` or `out` is too small.
 void FillPixels(const hal::Frame& frame, int width_px, int height_px, std::uint32_t pixel_format,
                 std::span<std::uint8_t> out);
 

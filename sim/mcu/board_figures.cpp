@@ -8,7 +8,7 @@
 namespace fovea::sim {
 namespace {
 
-constexpr std::size_t kManyTicks = 100'000;  // room for their figures: the loop is not to wait for memory
+constexpr std::size_t kManyTicks = 100'000;  // reserved, so that the loop does not allocate
 
 InstructionSpread SpreadOf(std::vector<std::uint32_t> counts, double instructions_per_count) {
   if (counts.empty()) {

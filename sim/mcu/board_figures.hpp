@@ -1,4 +1,4 @@
-// Collects what each tick on a board took.
+// Collects the cost of each tick on a board.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@ class BoardFigures {
  public:
   BoardFigures();
 
-  // No heap for the first hundred thousand ticks.
+  // Does not allocate for the first hundred thousand ticks.
   void Add(const link::Outputs& outputs);
-  // Counts and instructions of all ticks so far; the rest is as it was.
+  // Fills in the counts and instructions of all ticks so far. Keeps the other fields of `summary`.
   void Fill(double instructions_per_count, BoardSummary& summary) const;
 
  private:

@@ -13,12 +13,12 @@ class BoardLine {
   BoardLine& operator=(const BoardLine&) = delete;
   virtual ~BoardLine() = default;
 
-  // False when the board is gone.
+  // False if the board is gone.
   virtual bool Send(std::span<const std::uint8_t> bytes) noexcept = 0;
-  // What has come into `bytes`, after at most `timeout_ms`; none when nothing came.
+  // Receives into `bytes` for at most `timeout_ms`. Returns the received part; empty if nothing came.
   [[nodiscard]] virtual std::span<const std::uint8_t> Receive(std::span<std::uint8_t> bytes,
                                                               int timeout_ms) noexcept = 0;
-  // Known once it was sent to or received from.
+  // Whether the last Send or Receive found the board gone.
   [[nodiscard]] virtual bool gone() const noexcept = 0;
 };
 

@@ -11,15 +11,15 @@
 namespace fovea::sim {
 namespace {
 
-constexpr int kHelloTimeoutMs = 1'000;  // until it is asked whether it is there
+constexpr int kHelloTimeoutMs = 1'000;  // wait for the board's hello before the host asks for one
 constexpr int kHelloAttempts = 20;
 constexpr int kConfigureTimeoutMs = 20'000;
 constexpr int kAnswerTimeoutMs = 2'000;
-constexpr int kAttempts = 10;          // frames may be damaged; the board steps once however often one comes
+constexpr int kAttempts = 10;          // frames may be damaged; the board steps once for repeated frames
 constexpr double kTimerPeriodNs = 40;  // of the board's counter, 25 MHz
 constexpr double kTickSeconds = 1e-9 * static_cast<double>(hal::kTickPeriodNs);
-constexpr double kRounding = 1.0 + 1e-9;  // a step as large as it may be is left as it is, to the last bit
-constexpr std::uint64_t kWayBack = 1;     // its own stream of chance
+constexpr double kRounding = 1.0 + 1e-9;  // tolerance: a step of exactly the limit stays bit-equal
+constexpr std::uint64_t kWayBack = 1;     // the way back has its own random seed
 
 const char* NameOfException(std::uint32_t number) {
   switch (number) {
@@ -106,7 +106,7 @@ void BoardServo::Step(const task::ServoInputs& inputs, task::ServoOutputs& outpu
   outputs.record.feature = inputs.feature;
 }
 
-// True with the answer to `frame` in `answer_`.
+// Sends `frame` and waits. True if `answer_` holds the answer to it.
 bool BoardServo::Exchange(const link::Frame& frame) {
   const std::span<const std::uint8_t> bytes = writer_.Encode(frame);
   for (int attempt = 0; attempt < kAttempts && failure_.empty(); ++attempt) {
@@ -120,12 +120,12 @@ bool BoardServo::Exchange(const link::Frame& frame) {
     }
   }
   if (failure_.empty()) {
-    failure_ = "the servo's board answers no more";
+    failure_ = "the servo's board does not answer any more";
   }
   return false;
 }
 
-// The state goes on its way; what has arrived by now is given to the board, and its timer runs to its next
+// Puts the state on the line. Sends the board the states that have arrived, and runs its timer to the next
 // tick.
 bool BoardServo::ExchangeByTimer(const task::ServoInputs& inputs) {
   ++sequence_;
@@ -145,7 +145,7 @@ bool BoardServo::ExchangeByTimer(const task::ServoInputs& inputs) {
   return true;
 }
 
-// The newest torque that has come; without one the last is held, for a while.
+// Takes the newest torque that has arrived. Without one, holds the last torque for a limited time.
 void BoardServo::TakeTorque() {
   bool any = false;
   const hal::ArmCommand before = in_force_.command;
@@ -157,7 +157,7 @@ void BoardServo::TakeTorque() {
     }
   }
   ticks_without_torque_ += any ? 0U : 1U;
-  // After one that was lost, the next is two steps away.
+  // After a lost torque, the next one may differ by two steps: limit it to one.
   for (std::size_t i = 0; i < torque_step_.size(); ++i) {
     double& torque = in_force_.command.tau_cmd[i];
     torque = std::clamp(torque, before.tau_cmd[i] - torque_step_[i], before.tau_cmd[i] + torque_step_[i]);
@@ -173,7 +173,7 @@ std::int64_t BoardServo::OverrunNs() const noexcept {
   return passed > 1 ? (passed - 1) * hal::kTickPeriodNs : 0;
 }
 
-// True with such a frame in the reader.
+// Waits for such a frame. True if `reader_` holds it.
 bool BoardServo::Await(link::FrameKind kind, std::uint32_t sequence, int timeout_ms) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(timeout_ms);
   while (failure_.empty() && !line_->gone()) {

@@ -1,4 +1,4 @@
-// The servo on a board: a tick here is a frame there and a frame back.
+// The servo on a board, from the host's side: each tick sends a frame to the board and receives one.
 #pragma once
 
 #include <array>
@@ -18,34 +18,32 @@
 namespace fovea::sim {
 
 struct BoardConfig {
-  int instruction_ns = 64;  // of the board's time, each: for the figures
-  // The board ticks by its own timer, in virtual time: it stands while the host computes.
+  int instruction_ns = 64;  // the board's time per instruction, for the figures
+  // The board ticks by its own timer, in virtual time. This time stands still while the host computes.
   bool by_timer = false;
-  // By the timer: what the line does to states and to torques on their way. What comes between two ticks is
-  // there at the second.
+  // With the timer: faults of the line, for states and torques. A tick uses what arrived before it.
   LinkFaults line;
-  double line_from_s = 0.0;  // since the first tick; the line is perfect before
+  double line_from_s = 0.0;  // start of the line's faults, since the first tick
 };
 
 class BoardServo final : public task::ServoStep {
  public:
-  // Configures the board's servo. `seed` is of what the line does; `servo` is the whole of the servo's
-  // configuration, its arm with `load`. std::runtime_error when the board does not start, does not answer, or
-  // refuses.
+  // Configures the board's servo. `seed` is for the line's faults; `servo` is the servo's whole
+  // configuration, whose arm includes `load`. std::runtime_error: the board does not start, does not answer,
+  // or refuses the configuration.
   BoardServo(std::unique_ptr<BoardLine> line, const BoardConfig& config, std::uint64_t seed,
              const config::ServoConfig& servo, const model::Load& load);
 
-  // The record is that of the board's tick; its command is the one that is in force, which is an older one
-  // when the line is late, and no further from the last than the arm's torque rate allows. Once the board has
-  // failed, or no torque has come for as long as an arm may be silent (safety.arm_lost_ticks): no torque,
-  // brakes.
+  // Returns the record of the board's tick. Its command is the active one: an older one if the line is late,
+  // and limited by the arm's torque rate. If the board has failed, or no torque has arrived for
+  // safety.arm_lost_ticks, the command has no torque and closes the brakes.
   void Step(const task::ServoInputs& inputs, task::ServoOutputs& outputs) noexcept override;
 
-  // Why it has failed, "" while it has not.
+  // Why the board failed; "" if it did not.
   [[nodiscard]] const std::string& failure() const noexcept { return failure_; }
-  // By how much the last tick was longer than its period [ns], in whole periods.
+  // Excess of the last tick over its period [ns], in whole periods.
   [[nodiscard]] std::int64_t OverrunNs() const noexcept;
-  // Of all ticks so far.
+  // Figures of all ticks so far.
   [[nodiscard]] BoardSummary Summarise() const;
 
  private:
@@ -72,25 +70,25 @@ class BoardServo final : public task::ServoStep {
   link::FrameReader reader_;
   std::array<std::uint8_t, link::kMaxPayload> payload_{};
   std::array<std::uint8_t, 4096> received_{};
-  std::span<const std::uint8_t> left_;  // of `received_`, not looked at yet
+  std::span<const std::uint8_t> left_;  // unread part of `received_`
   std::uint32_t sequence_ = 0;
   link::Outputs answer_;
   BoardFigures figures_;
   std::uint64_t frames_sent_again_ = 0;
   std::uint64_t ticks_without_torque_ = 0;
   std::string failure_;
-  std::string stopped_;  // why the brakes were closed though the board ticks
+  std::string stopped_;  // why the brakes were closed although the board ticks
 
-  // By the timer
+  // Used only with the timer
   FaultyLink<Up> up_;
   FaultyLink<Down> down_;
   std::int64_t now_ns_ = 0;
-  std::int64_t torque_ns_ = 0;  // when `in_force_` came
+  std::int64_t torque_ns_ = 0;  // arrival of `in_force_`
   Down in_force_;
-  hal::JointArray torque_step_{};  // most from one tick to the next, by the arm's torque rate [Nm]
+  hal::JointArray torque_step_{};  // largest change per tick, by the arm's torque rate [Nm]
 };
 
-// The loop's clock where a board ticks by its timer: a tick that took longer than its period delays the next.
+// The loop's clock for a board with its own timer: a tick longer than its period delays the next tick.
 class BoardClock final : public hal::Clock {
  public:
   // Both are borrowed.

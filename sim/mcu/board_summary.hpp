@@ -10,7 +10,7 @@
 
 namespace fovea::sim {
 
-// Instructions of one tick each.
+// Instructions per tick.
 struct InstructionSpread {
   std::uint32_t min = 0;
   std::uint32_t p50 = 0;
@@ -18,24 +18,24 @@ struct InstructionSpread {
 };
 
 struct BoardTicks {
-  std::string mode;  // "" : of all modes
+  std::string mode;  // "": all modes
   std::uint64_t ticks = 0;
   InstructionSpread tick;
-  std::vector<std::pair<std::string, InstructionSpread>> stages;  // in their order
+  std::vector<std::pair<std::string, InstructionSpread>> stages;  // in execution order
 };
 
 struct BoardSummary {
   bool by_timer = false;
-  int instruction_ns = 0;               // of the board's time, each
-  double instructions_per_count = 0.0;  // of the timer that they are read from: what they are rounded by
+  int instruction_ns = 0;               // the board's time per instruction
+  double instructions_per_count = 0.0;  // of the board's timer: the resolution of the instruction figures
   BoardTicks all;
-  std::vector<BoardTicks> modes;           // those that there were, in their order
-  InstructionSpread link;                  // a tick's frame taken in, and the one before it sent
-  std::uint32_t stack_bytes = 0;           // the deepest
-  link::LineCounters line;                 // what the board counted
-  std::uint64_t frames_sent_again = 0;     // by the host, which heard no answer
-  std::string stopped;                     // why the host closed the brakes, "" when it did not
-  std::uint64_t ticks_without_torque = 0;  // by the timer: no new one had come, the last was held
+  std::vector<BoardTicks> modes;           // modes that occurred, in order of hal::Mode
+  InstructionSpread link;                  // to receive a tick's frame and send the previous answer
+  std::uint32_t stack_bytes = 0;           // deepest use of the stack
+  link::LineCounters line;                 // counters of the board
+  std::uint64_t frames_sent_again = 0;     // repeated by the host because no answer came
+  std::string stopped;                     // why the host closed the brakes; "" if it did not
+  std::uint64_t ticks_without_torque = 0;  // with the timer: no new torque came, the last one was held
 };
 
 }  // namespace fovea::sim

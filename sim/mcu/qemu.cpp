@@ -23,17 +23,17 @@ namespace {
 
 constexpr const char* kProgram = "qemu-system-arm";
 
-// The emulator's threads take turns, several times for each byte: on one processor that is quickest.
+// The emulator's threads alternate several times per byte. This is fastest on one processor.
 void StayOnOneProcessor() {
   if (const int cpu = sched_getcpu(); cpu >= 0) {
     cpu_set_t one;
     CPU_ZERO(&one);
     CPU_SET(static_cast<std::size_t>(cpu), &one);
-    sched_setaffinity(0, sizeof(one), &one);  // where that is not allowed, they stay as they are
+    sched_setaffinity(0, sizeof(one), &one);  // on failure nothing changes
   }
 }
 
-// In the child: becomes QEMU, or says why not through `report`.
+// In the child process: executes QEMU, or writes errno to `report`.
 [[noreturn]] void Become(std::vector<std::string> arguments, int line, int report, pid_t parent) {
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
@@ -41,7 +41,7 @@ void StayOnOneProcessor() {
     argv.push_back(argument.data());
   }
   argv.push_back(nullptr);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // no emulator is left behind
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // the emulator ends with its parent
   StayOnOneProcessor();
   // The socket stays open across exec, by the number that the arguments name.
   if (getppid() == parent && dup2(line, line + 1) == line + 1) {
@@ -57,15 +57,15 @@ void StayOnOneProcessor() {
 Qemu::Qemu(const QemuConfig& config) {
   if (!std::filesystem::exists(config.image)) {
     throw std::runtime_error(
-        fmt::format("no image {}; `cmake --build --preset mcu` makes it", config.image.string()));
+        fmt::format("image {} not found; `cmake --build --preset mcu` builds it", config.image.string()));
   }
   std::array<int, 2> line{};
   std::array<int, 2> report{};
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, line.data()) != 0 ||
       pipe2(report.data(), O_CLOEXEC) != 0) {
-    throw std::runtime_error(fmt::format("no line to {}: {}", kProgram, std::strerror(errno)));
+    throw std::runtime_error(fmt::format("cannot open a line to {}: {}", kProgram, std::strerror(errno)));
   }
-  // Without sleep, time that the board spends waiting is skipped.
+  // sleep=off skips the time that the board spends waiting.
   const std::vector<std::string> arguments{
       kProgram,
       "-M",

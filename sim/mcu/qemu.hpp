@@ -1,4 +1,4 @@
-// A board that is emulated: QEMU as a process of ours, and its serial port as a stream of bytes.
+// An emulated board: runs QEMU as a child process, with its serial port as a stream of bytes.
 #pragma once
 
 #include <sys/types.h>
@@ -13,15 +13,15 @@ namespace fovea::sim {
 
 struct QemuConfig {
   std::filesystem::path image;  // the ELF file
-  int instruction_ns = 64;      // of the board's time, each: a power of two
-  bool real_time = false;       // the board's time is held to the clock; else it goes as fast as it can
+  int instruction_ns = 64;      // the board's time per instruction: a power of two
+  bool real_time = false;       // true: the board's time follows the clock; false: as fast as possible
 };
 
 class Qemu final : public BoardLine {
  public:
   // std::runtime_error: no such image, no qemu-system-arm, or it does not start.
   explicit Qemu(const QemuConfig& config);
-  ~Qemu() override;  // ends it
+  ~Qemu() override;  // ends the emulator
 
   bool Send(std::span<const std::uint8_t> bytes) noexcept override;
   [[nodiscard]] std::span<const std::uint8_t> Receive(std::span<std::uint8_t> bytes,

@@ -1,5 +1,4 @@
-// By the servo's own model (firmware/core/model), compiled in: the library goes over the wire and finds no
-// file where it is loaded.
+// Uses the servo's own model (firmware/core/model), compiled in: a client needs no other file to load it.
 #include "sim/model_library/panda_model.hpp"
 
 #include "emitted/panda.hpp"
@@ -71,7 +70,7 @@ void WriteJacobian(const double* q, int frame, const double* F_T_EE, bool in_fra
   }
 }
 
-constexpr double kAnyPosture[kJoints] = {};  // the first joint's Jacobians are the same in all
+constexpr double kAnyPosture[kJoints] = {};  // the first joint's Jacobians do not depend on it
 
 }  // namespace
 

@@ -1,6 +1,5 @@
-// The C functions of the model library that the robot hands out on LoadModelLibrary: kinematics and dynamics
-// of a Panda. Arrays are column-major; Jacobians are [6 x 7], linear first; "load" is all that the flange
-// carries.
+// The C functions of the model library that the robot sends on LoadModelLibrary: kinematics and dynamics of a
+// Panda. Arrays are column-major; Jacobians are [6 x 7], linear first; "load" is everything on the flange.
 #pragma once
 
 extern "C" {
@@ -27,7 +26,7 @@ void O_J_J7(const double* q, double* jacobian);
 void O_J_J8(const double* q, double* jacobian);
 void O_J_J9(const double* q, const double* F_T_EE, double* jacobian);
 
-// The same, in axes of the frame itself.
+// The same Jacobians, in axes of the frame itself.
 void Ji_J_J1(double* jacobian);
 void Ji_J_J2(const double* q, double* jacobian);
 void Ji_J_J3(const double* q, double* jacobian);

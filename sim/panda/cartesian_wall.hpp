@@ -1,4 +1,4 @@
-// A cuboid that the end effector may not enter, as GetCartesianLimit tells it.
+// A cuboid that the end effector may not enter, as GetCartesianLimit reports it.
 #pragma once
 
 #include "sim/panda/types.hpp"
@@ -6,8 +6,8 @@
 namespace fovea::sim {
 
 struct CartesianWall {
-  Eigen::Isometry3d X_BW = Eigen::Isometry3d::Identity();  // a corner, with axes along the edges
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();          // along those axes [m]
+  Eigen::Isometry3d X_BW = Eigen::Isometry3d::Identity();  // frame W at a corner, axes along the edges
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();          // edge lengths along the axes of W [m]
 
   // Whether the point `p_B` [m, in B] is inside.
   [[nodiscard]] bool Holds(const Eigen::Vector3d& p_B) const {

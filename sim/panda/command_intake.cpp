@@ -8,7 +8,7 @@ void CommandIntake::Put(const franka::RobotCommand& command) {
     ++refused_;
     return;
   }
-  refused_ += newest_ ? 1U : 0U;  // overtaken before its turn
+  refused_ += newest_ ? 1U : 0U;  // the older one was overtaken
   newest_ = command;
 }
 

@@ -1,7 +1,6 @@
-// A spring and a damper that act for a whole millisecond on a light wrist would throw it over to the other
-// side. So both are taken at the end of the step, where the arm's inertia will have let it come (backward
-// Euler): what x the arm accelerates more than its reference solves (M + D dt + K dt^2) x = K (e + e' dt) + D
-// e'.
+// A stiff spring and damper, constant over a whole millisecond, would make a light wrist overshoot. Both are
+// therefore evaluated at the end of the step (backward Euler). The acceleration x beyond that of the
+// reference solves  (M + D dt + K dt^2) x = K (e + e' dt) + D e'.
 #include "sim/panda/controller.hpp"
 
 #include <Eigen/Cholesky>
@@ -13,28 +12,28 @@ namespace fovea::sim {
 namespace {
 
 constexpr double kDampingRatio = 1.0;
-constexpr double kPostureStiffness = 10.0;  // of what a Cartesian impedance leaves free [Nm/rad]
+constexpr double kPostureStiffness = 10.0;  // in the null space of a Cartesian impedance [Nm/rad]
 
-// Of a guided hand's axes that are not free.
+// Stiffness of a guided hand along its locked axes.
 constexpr double kLockedTranslation = 3000.0;  // [N/m]
 constexpr double kLockedRotation = 300.0;      // [Nm/rad]
-// And how much the free ones resist.
+// Damping along its free axes.
 constexpr double kFreeTranslation = 20.0;  // [N s/m]
 constexpr double kFreeRotation = 1.0;      // [Nm s/rad]
-constexpr double kFreePosture = 0.25;      // as the damping of a posture of this stiffness [Nm/rad]
+constexpr double kFreePosture = 0.25;      // a free posture is damped as for this stiffness [Nm/rad]
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Matrix67 = Eigen::Matrix<double, 6, 7>;
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 
-// The torque for stiffness `K` and damping `D` of the joints, which pull with `pull` = K (e + e' dt) + D e'.
+// The torque for the joints' stiffness `K` and damping `D`, with `pull` = K (e + e' dt) + D e'.
 Joints AtEndOfStep(const FciMeasured& arm, const JointReference& reference, const Matrix7& K,
                    const Matrix7& D, const Joints& pull) {
   const Matrix7 A = arm.M + D * kFciStepS + K * (kFciStepS * kFciStepS);
   return arm.M * (reference.ddq + A.ldlt().solve(pull)) + arm.Cdq;
 }
 
-// The flange's Jacobian moved to a frame at `arm` [m, in B] from it.
+// The flange's Jacobian for a point at `arm` [m, in B] from the flange.
 Matrix67 MovedTo(const Jacobian& J, const Eigen::Vector3d& arm) {
   Matrix67 moved = J;
   for (int i = 0; i < 7; ++i) {
@@ -43,14 +42,14 @@ Matrix67 MovedTo(const Jacobian& J, const Eigen::Vector3d& arm) {
   return moved;
 }
 
-// Springs at a frame K, along its axes and about them.
+// Springs and dampers at a frame K, along and about its axes.
 struct Spring {
   Twist K;                        // [N/m, Nm/rad]
-  Twist D_least = Twist::Zero();  // damping, where the stiffness asks for less
-  double posture = 0.0;           // stiffness of what they leave free [Nm/rad]
+  Twist D_least = Twist::Zero();  // minimum damping [N s/m, Nm s/rad]
+  double posture = 0.0;           // stiffness of the posture in the null space [Nm/rad]
 };
 
-// Between K, at F_T_K on the flange, and where the reference has it.
+// Torque of `spring` between K, at F_T_K on the flange, and the reference pose of K.
 Joints SpringTorque(const Chain& chain, const FciMeasured& arm, const JointReference& reference,
                     const Eigen::Isometry3d& F_T_K, const Spring& spring) {
   Jacobian J_E;
@@ -62,7 +61,7 @@ Joints SpringTorque(const Chain& chain, const FciMeasured& arm, const JointRefer
   const Eigen::Isometry3d X_Kd = X_BEd * F_T_K;
   const Matrix67 J_d = MovedTo(J_Ed, X_Kd.translation() - X_BEd.translation());
 
-  // In axes of K, where the stiffness is given.
+  // Rotates to the axes of K: the stiffness is given in them.
   Matrix6 to_K = Matrix6::Zero();
   to_K.topLeftCorner<3, 3>() = X_K.linear().transpose();
   to_K.bottomRightCorner<3, 3>() = X_K.linear().transpose();
@@ -80,7 +79,7 @@ Joints SpringTorque(const Chain& chain, const FciMeasured& arm, const JointRefer
       (2.0 * kDampingRatio * K.cwiseProduct(Twist(inertia.diagonal())).cwiseSqrt()).cwiseMax(spring.D_least);
   const Twist wrench = K.cwiseProduct(to_K * (error + rate * kFciStepS)) + D.cwiseProduct(to_K * rate);
 
-  // What moves the arm without moving K (Khatib 1987).
+  // Null space: torques that do not accelerate K (Khatib 1987).
   const double as_stiff = std::max(spring.posture, kFreePosture);
   const Joints posture_damping = 2.0 * std::sqrt(as_stiff) * arm.M.diagonal().cwiseSqrt();
   const Joints posture =
@@ -118,7 +117,7 @@ Joints GuidingTorque(const Chain& chain, const FciMeasured& arm, const Joints& b
     spring.K[k] = mode.axes[i] != 0 ? 0.0 : locked;
     spring.D_least[k] = translation ? kFreeTranslation : kFreeRotation;
   }
-  Eigen::Isometry3d F_T_K = F_T_EE;  // with its axes along O's
+  Eigen::Isometry3d F_T_K = F_T_EE;  // with axes parallel to O
   F_T_K.linear() = chain.TipPose(arm.q).linear().transpose();
   return SpringTorque(chain, arm, {begin, Joints::Zero(), Joints::Zero()}, F_T_K, spring);
 }

@@ -7,7 +7,7 @@
 
 namespace fovea::sim {
 
-// What a controller sees of the arm at one instant.
+// The arm's measured state, input of the controllers.
 struct FciMeasured {
   Joints q = Joints::Zero();
   Joints dq = Joints::Zero();
@@ -15,19 +15,18 @@ struct FciMeasured {
   Joints Cdq = Joints::Zero();
 };
 
-// Springs and dampers between each joint and its reference, and what the reference's acceleration takes.
+// Springs and dampers between each joint and its reference, plus the torque for the reference's acceleration.
 [[nodiscard]] Joints JointImpedanceTorque(const FciMeasured& arm, const JointReference& reference,
                                           const franka::JointImpedance& stiffness);
 
-// Springs and dampers between the stiffness frame K (at F_T_K on the flange) and where the reference has it;
-// the posture that is left free is held weakly.
+// Springs and dampers between the stiffness frame K (at F_T_K on the flange) and its reference pose. A weak
+// spring holds the posture in the null space.
 [[nodiscard]] Joints CartesianImpedanceTorque(const Chain& chain, const FciMeasured& arm,
                                               const JointReference& reference, const Eigen::Isometry3d& F_T_K,
                                               const franka::CartesianImpedance& stiffness);
 
-// What leaves the end effector (at F_T_EE on the flange) to a hand that guides it: no spring along the axes
-// of O, or about them, that `mode` frees, and a stiff one to where `begin` has it along the others; the elbow
-// is held or free as `mode` says.
+// Lets a person guide the end effector (at F_T_EE on the flange). The axes of O that `mode` frees have no
+// spring; stiff springs hold the others at the pose of `begin`. `mode` also frees or holds the elbow.
 [[nodiscard]] Joints GuidingTorque(const Chain& chain, const FciMeasured& arm, const Joints& begin,
                                    const Eigen::Isometry3d& F_T_EE, const franka::GuidingMode& mode);
 

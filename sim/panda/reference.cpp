@@ -15,17 +15,17 @@ using franka::RobotCommand;
 using MaybeError = std::optional<Error>;
 
 constexpr double kDt = kFciStepS;
-constexpr double kStartTolerance = 0.01;  // first command from where the robot is [rad, m]
+constexpr double kStartTolerance = 0.01;  // largest distance of the first command from the robot [rad, m]
 constexpr int kMostIterations = 20;
 constexpr double kSolved = 1e-12;  // [m, rad]
 
-// What is left of a step when it is let through a first-order low pass; at 1000 Hz all of it.
+// Share of a step that a first-order low pass lets through in one period; all of it at 1000 Hz.
 double FilterShare(double cutoff_hz) {
   const double w = 2.0 * std::numbers::pi * cutoff_hz * kDt;
   return cutoff_hz >= 1000.0 ? 1.0 : w / (1.0 + w);
 }
 
-// The turn from R_0 to R_1 as a vector in the axes that both are given in.
+// The rotation vector from R_0 to R_1, in the common base frame of both.
 Eigen::Vector3d Turn(const Eigen::Matrix3d& R_0, const Eigen::Matrix3d& R_1) {
   const Eigen::AngleAxisd turn(R_1 * R_0.transpose());
   return turn.angle() * turn.axis();
@@ -180,7 +180,7 @@ MaybeError FciReference::Extrapolate() {
 MaybeError FciReference::StepJoints(const Joints& q, const Joints& dq) {
   const Joints ddq = (dq - joints_.dq) / kDt;
   const Joints dddq = (ddq - joints_.ddq) / kDt;
-  // Where it could come to rest at the earliest counts: past that point a stop would end outside.
+  // Checks where the joint could stop at the earliest, so that a stop does not end outside its range.
   const Joints q_rest = q + dq.cwiseProduct(dq.cwiseAbs()).cwiseQuotient(2.0 * fci_limits::kDdq);
   if (!q_rest.allFinite() || ((q_rest.cwiseMax(q) - fci_limits::kQMax).array() > 0.0).any() ||
       ((fci_limits::kQMin - q_rest.cwiseMin(q)).array() > 0.0).any()) {
@@ -234,7 +234,7 @@ MaybeError FciReference::StepPose(const Eigen::Isometry3d& X_next, const Twist& 
 
   const std::optional<Joints> q = Solve(X_next, elbow ? std::optional((*elbow)[0]) : std::nullopt);
   if (!q) {
-    return Error::kCartesianJointVelocityLimits;  // no joint speed gets there
+    return Error::kCartesianJointVelocityLimits;  // no solution near the present joints
   }
   if (const MaybeError error = StepJoints(*q, (*q - joints_.q) / kDt)) {
     switch (*error) {
@@ -252,8 +252,8 @@ MaybeError FciReference::StepPose(const Eigen::Isometry3d& X_next, const Twist& 
   return std::nullopt;
 }
 
-// Joint positions near the present ones with the end effector at `X_goal`, and joint 3 at `elbow` where one
-// is given; else the nearest. Newton's method.
+// Joint positions near the present ones that place the end effector at `X_goal`, and joint 3 at `elbow` if
+// given; otherwise by minimum-norm steps. Newton's method.
 std::optional<Joints> FciReference::Solve(const Eigen::Isometry3d& X_goal,
                                           const std::optional<double>& elbow) const {
   Eigen::VectorXd q = joints_.q;
@@ -261,7 +261,7 @@ std::optional<Joints> FciReference::Solve(const Eigen::Isometry3d& X_goal,
   for (int k = 0; k < kMostIterations; ++k) {
     const Eigen::Isometry3d X_BE = chain_.TipPose(q, J);
     const Eigen::Isometry3d X = X_BE * F_T_EE_;
-    // To the velocity of EE's origin.
+    // Moves J to the origin of EE.
     const Eigen::Vector3d arm = X.translation() - X_BE.translation();
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
       J.col(i).head<3>() += J.col(i).tail<3>().cross(arm);

@@ -1,8 +1,7 @@
-// Where the robot's own controller wants the arm: what a motion generator commands, checked, or a way to
+// The reference of the robot's own controllers: the checked commands of a motion generator, or a path to
 // rest.
 //
-// Each command is a step of 1 ms. A command that is missing is replaced: the motion goes on at constant
-// acceleration.
+// Each command is a step of 1 ms. For a missing command, the motion continues at constant acceleration.
 #pragma once
 
 #include <optional>
@@ -21,31 +20,31 @@ struct JointReference {
   Joints ddq = Joints::Zero();
 };
 
-// The same of the end effector EE and of the elbow, in O.
+// The same for the end effector EE and for the elbow, in O.
 struct CartesianReference {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   Twist V = Twist::Zero();
   Twist A = Twist::Zero();
   Eigen::Vector3d elbow = Eigen::Vector3d::Zero();  // angle of joint 3, its velocity, its acceleration
-  double elbow_sign = -1.0;                         // of joint 4
+  double elbow_sign = -1.0;                         // sign of joint 4
 };
 
 class FciReference {
  public:
   explicit FciReference(const Chain& chain) : chain_(chain) {}
 
-  // Holds `q`, which moves with `dq` for now: comes to rest from there as fast as the joints may.
+  // Comes to rest from `q` and `dq` as fast as the joints' acceleration limits allow.
   void Hold(const Joints& q, const Joints& dq);
   void StepToRest();
 
-  // A motion begins, with the end effector's frame at F_T_EE for all its length.
+  // Begins a motion. The end effector's frame stays at F_T_EE for the whole motion.
   void Begin(franka::MoveGenerator generator, const Eigen::Isometry3d& F_T_EE,
              const franka::Filters& filters);
-  // One step of it; the error when the command is not allowed, and then nothing has moved.
+  // Takes one step. Returns the error of a command that is not allowed; the reference then stays unchanged.
   [[nodiscard]] std::optional<franka::Error> Step(const franka::RobotCommand& command);
-  // The error when it may not end here: it could not come to rest within one step.
+  // Returns the error if the motion may not end here: it could not come to rest within one step.
   [[nodiscard]] std::optional<franka::Error> Finish() const;
-  // One step without a command.
+  // Takes one step without a command.
   [[nodiscard]] std::optional<franka::Error> Extrapolate();
 
   [[nodiscard]] const JointReference& joints() const { return joints_; }
@@ -64,7 +63,7 @@ class FciReference {
   franka::MoveGenerator generator_ = franka::MoveGenerator::kJointVelocity;
   franka::Filters filters_;
   Eigen::Isometry3d F_T_EE_ = Eigen::Isometry3d::Identity();
-  bool first_ = true;  // no command of this motion has come
+  bool first_ = true;  // no command of this motion has arrived
   bool elbow_given_ = false;
   JointReference joints_;
   CartesianReference cartesian_;

@@ -15,8 +15,8 @@ using franka::MoveController;
 using franka::MoveStatus;
 using franka::RobotMode;
 
-constexpr double kStillSpeed = 0.05;    // a measured joint that moves no faster has come to rest [rad/s]
-constexpr int kPatienceForFirst = 200;  // states of a motion before its first command must have come
+constexpr double kStillSpeed = 0.05;    // a measured joint is at rest up to this speed [rad/s]
+constexpr int kPatienceForFirst = 200;  // the first command of a motion must arrive within this many states
 
 ControllerMode Shown(MoveController controller) { return static_cast<ControllerMode>(controller); }
 MotionGeneratorMode Shown(franka::MoveGenerator generator) {
@@ -36,7 +36,7 @@ FciRobot::FciRobot(World& world, const SimRobot& robot, std::vector<CartesianWal
   Show();
 }
 
-// What the flange carries for good is the end effector, which the robot's own gravity compensation knows of.
+// The links fixed to the flange are the end effector. The robot's own gravity compensation includes it.
 void FciRobot::ShowMounted(const SimRobot& robot) {
   for (const SimLink& link : robot.links) {
     if (link.parent == robot.tip && link.mass > 0.0) {
@@ -140,7 +140,7 @@ void FciRobot::UserStop(bool pressed) {
 
 std::optional<MoveStatus> FciRobot::TakeMoveEnd() { return std::exchange(move_end_, std::nullopt); }
 
-// The motion is over; the arm comes to rest from where it is.
+// Ends a motion or guiding. The arm comes to rest from its present state.
 void FciRobot::End(MoveStatus status, RobotMode mode) {
   if (moving()) {
     move_end_ = status;
@@ -225,7 +225,7 @@ void FciRobot::ApplyCommand(const std::optional<franka::RobotCommand>& command) 
   }
 }
 
-// Success at rest; a reflex in motion. What a client's own controller moves shows in what is measured alone.
+// Success at rest, a reflex in motion. With a client's own controller, only the measured speed shows motion.
 void FciRobot::FinishMotion() {
   const bool external = move_.controller == MoveController::kExternal;
   if (const auto error = reference_.Finish()) {
@@ -274,7 +274,7 @@ Joints FciRobot::ControllerTorque() const {
   return JointImpedanceTorque(measured_, reference_.joints(), settings_.joint_impedance);
 }
 
-// What holds the load that the robot was told of, whether one is there or not.
+// The gravity torque of the load given by SetLoad, whether or not that load exists.
 Joints FciRobot::LoadTorque() const {
   const Eigen::Vector3d arm = X_BE_.linear() * ToVector(settings_.load.F_x_Cload);
   Joints tau;

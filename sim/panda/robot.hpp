@@ -1,7 +1,7 @@
-// The simulated Panda as its network interface shows it: modes, motions, errors, and the controllers inside.
+// The simulated Panda behind its network interface: modes, motions, errors and internal controllers.
 //
-// No socket here: requests and commands come as plain data, a millisecond at a time. What the robot feels
-// from outside is taken from the physics: what its motion needs beyond its own command.
+// Has no socket: requests and commands are plain data, one step per millisecond. External torques are
+// computed from the physics: the torques that the motion needs beyond the command.
 #pragma once
 
 #include <array>
@@ -22,38 +22,38 @@ namespace fovea::sim {
 
 class FciRobot {
  public:
-  // `robot` is the arm in `world`, of seven joints, with what it carries as links of its own; both outlive
-  // this. The end effector may not enter `walls`.
+  // `robot` is the arm in `world`: seven joints, and fixed links for its tools. Both must outlive this. The
+  // end effector may not enter `walls`.
   FciRobot(World& world, const SimRobot& robot, std::vector<CartesianWall> walls = {});
 
   [[nodiscard]] franka::SetterStatus Set(franka::Command command, std::span<const std::byte> payload);
-  // The wall that GetCartesianLimit calls `id`.
+  // The wall with number `id` of GetCartesianLimit.
   [[nodiscard]] std::optional<CartesianWall> Wall(int id) const;
-  // kMotionStarted, or why not.
+  // Returns kMotionStarted, or the reason for a refusal.
   [[nodiscard]] franka::MoveStatus Move(const franka::MoveRequest& request);
   [[nodiscard]] franka::StopStatus StopMove();
   [[nodiscard]] franka::RecoveryStatus Recover();
-  // The client is gone: a motion ends, the robot holds.
+  // The client disconnected: ends a motion; the robot holds its position.
   void Abandon();
-  // The stop button: pressed, all stops; released, the robot is idle and without error, and joints that were
-  // outside their limits have been put back by hand.
+  // The stop button. Pressed: the robot stops. Released: the robot is idle without errors; a joint outside
+  // its limits counts as moved back by hand.
   void UserStop(bool pressed);
 
-  // The enabling button at the hand. Pressed while the robot is idle, user stopped or stopped by a reflex, it
-  // leaves the hand to who guides it, as SetGuidingMode says; let go, the robot holds there, in the mode that
-  // it came from. In a motion the button does nothing.
+  // The enabling button at the hand. Pressed while the robot is idle, user stopped or stopped by a reflex: a
+  // person can guide the hand as SetGuidingMode allows. Released: the robot holds there, in its previous
+  // mode. The button has no effect in a motion.
   void PressGuiding(bool pressed);
-  // Somebody pulls at the end effector with `force_B` [N, in axes of B] from now on.
+  // From now on, a person pulls at the end effector with `force_B` [N, in axes of B].
   void PullHand(const Eigen::Vector3d& force_B) { hand_force_B_ = force_B; }
 
-  // One millisecond, under `command` or, in a motion, without one.
+  // Steps one millisecond. `command` is empty outside a motion, or if the command is missing.
   void Step(const std::optional<franka::RobotCommand>& command);
 
   [[nodiscard]] const franka::RobotState& state() const { return state_; }
   [[nodiscard]] bool moving() const { return state_.robot_mode == franka::RobotMode::kMove; }
-  // Whether a command of the present motion has come.
+  // Whether a command of the present motion has arrived.
   [[nodiscard]] bool commanded() const { return commanded_; }
-  // How the last motion ended, once.
+  // The end status of the last motion; returned only once.
   [[nodiscard]] std::optional<franka::MoveStatus> TakeMoveEnd();
 
  private:
@@ -90,9 +90,9 @@ class FciRobot {
   franka::RobotState state_;
   std::optional<franka::MoveStatus> move_end_;
   bool commanded_ = false;
-  int missing_ = 0;               // commands in a row
+  int missing_ = 0;               // missing commands in a row
   int waited_ = 0;                // states of this motion before its first command
-  std::array<bool, 100> came_{};  // of the last states of a motion: whether a command came
+  std::array<bool, 100> came_{};  // whether a command came, for the last states of the motion
   std::size_t next_came_ = 0;
 
   SelfDistance self_distance_;
@@ -100,15 +100,15 @@ class FciRobot {
   SwingWatch swing_watch_;  // of the present motion
   Eigen::Vector3d hand_force_B_ = Eigen::Vector3d::Zero();
   struct Guiding {
-    franka::RobotMode from = franka::RobotMode::kIdle;  // the mode that it came from
+    franka::RobotMode from = franka::RobotMode::kIdle;  // previous mode
     Joints q_begin = Joints::Zero();
-    double beyond = 0.0;   // how far a joint has been outside, at the least [rad]
-    bool in_wall = false;  // since it began
+    double beyond = 0.0;   // least distance of a joint outside its range since guiding began [rad]
+    bool in_wall = false;  // the hand has been inside a wall since guiding began
   };
   Guiding guiding_;
 
   FciMeasured measured_;
-  Joints tau_ = Joints::Zero();  // in force, gravity and load excluded
+  Joints tau_ = Joints::Zero();  // active command, without gravity and load
   Joints tau_ext_ = Joints::Zero();
   Jacobian J_;
   Eigen::Isometry3d X_BE_ = Eigen::Isometry3d::Identity();

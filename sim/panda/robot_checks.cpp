@@ -1,4 +1,4 @@
-// What the arm does, against what it may do.
+// Checks the measured motion against the robot's limits.
 #include <algorithm>
 #include <cmath>
 
@@ -10,8 +10,8 @@ namespace {
 using franka::Error;
 using franka::MoveController;
 
-constexpr double kMeasuredMargin = 1.05;  // a measured speed may be this much over what may be commanded
-constexpr double kNearItself = 0.01;      // links that would come nearer than this are about to collide [m]
+constexpr double kMeasuredMargin = 1.05;  // limit of a measured speed, relative to that of a commanded one
+constexpr double kNearItself = 0.01;      // a predicted gap between links below this is a collision [m]
 
 template <typename Flags>
 bool Any(const Flags& flags) {
@@ -30,7 +30,7 @@ void FciRobot::CheckDeviation(const franka::Vector3& most, Error error) {
   }
 }
 
-// How far the worst of the joints is outside its range [rad]; negative: all are inside.
+// Largest distance of a joint outside its range [rad]; negative: all are inside.
 double FciRobot::JointsBeyond() const {
   return std::max((measured_.q - fci_limits::kQMax).maxCoeff(), (fci_limits::kQMin - measured_.q).maxCoeff());
 }
@@ -41,7 +41,7 @@ bool FciRobot::IsInWall() const {
                      [&](const CartesianWall& wall) { return wall.Holds(p_BEE); });
 }
 
-// Whether two links are on their way to each other and could not stop in time.
+// Whether two links approach each other and can no longer stop in time.
 bool FciRobot::MeetsItself() const {
   const Joints& dq = measured_.dq;
   const Joints q_rest = measured_.q + dq.cwiseProduct(dq.cwiseAbs()).cwiseQuotient(2.0 * fci_limits::kDdq);
@@ -84,7 +84,7 @@ void FciRobot::CheckMotion() {
   }
 }
 
-// What was outside its limits when guiding began may come back, but go no farther.
+// A joint or hand outside its limits when guiding began may move back, but not farther out.
 void FciRobot::CheckGuiding() {
   const double beyond = JointsBeyond();
   const bool in_wall = IsInWall();

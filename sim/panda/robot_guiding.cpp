@@ -1,4 +1,4 @@
-// A hand at the robot: its pull, and the button that lets it guide.
+// Hand guiding: a person's pull, and the enabling button.
 #include <algorithm>
 
 #include "sim/panda/robot.hpp"
@@ -19,7 +19,7 @@ void FciRobot::PressGuiding(bool pressed) {
   }
 }
 
-// The hand's pull as torques on the joints.
+// Applies the person's pull as torques on the joints.
 void FciRobot::PullAtJoints() {
   Joints tau = Joints::Zero();
   if (hand_force_B_ != Eigen::Vector3d::Zero()) {

@@ -1,4 +1,4 @@
-// What the robot measures and shows.
+// The robot's measurements and the state that it reports.
 #include <cmath>
 #include <numbers>
 
@@ -7,8 +7,8 @@
 namespace fovea::sim {
 namespace {
 
-constexpr double kForceFilterHz = 30.0;  // of the external torques
-constexpr double kStill = 1e-3;          // an acceleration of the reference below this is none [rad/s^2]
+constexpr double kForceFilterHz = 30.0;  // low pass of the external torques
+constexpr double kStill = 1e-3;          // below this the reference does not accelerate [rad/s^2]
 
 template <std::size_t n>
 void Flag(const std::array<double, n>& force, const std::array<double, n>& threshold,
@@ -20,7 +20,7 @@ void Flag(const std::array<double, n>& force, const std::array<double, n>& thres
 
 }  // namespace
 
-// The arm's sensors, and what its motion says about forces from outside.
+// Reads the arm's sensors and estimates external forces from the motion.
 void FciRobot::Measure(const Joints& q_before, const Joints& dq_before) {
   const hal::ArmState& sensed = world_.MeasuredState();
   measured_.q = Eigen::Map<const Joints>(sensed.q.data());
@@ -34,7 +34,7 @@ void FciRobot::Measure(const Joints& q_before, const Joints& dq_before) {
   FeelForces(q_before, dq_before);
 }
 
-// Torques from outside, in the sense of: M ddq + C dq = tau + tau_ext. The physics steps by semi-implicit
+// External torques tau_ext, defined by M ddq + C dq = tau + tau_ext. The physics steps by semi-implicit
 // Euler, so this holds with M and C of the step's beginning.
 void FciRobot::FeelForces(const Joints& q_before, const Joints& dq_before) {
   const Joints ddq = (Joints(world_.truth().dq) - dq_before) / kFciStepS;
@@ -44,7 +44,7 @@ void FciRobot::FeelForces(const Joints& q_before, const Joints& dq_before) {
   tau_ext_ += w / (1.0 + w) * (tau_ext - tau_ext_);
   state_.tau_ext_hat_filtered = ToArray(tau_ext_);
 
-  // The force at K that would be felt so: least squares.
+  // The wrench at K that explains these torques, by least squares.
   const Eigen::Isometry3d X_BK = X_BE_ * F_T_EE() * ToPose(settings_.EE_T_K.pose);
   Eigen::Matrix<double, 6, 7> J = J_;
   for (int i = 0; i < franka::kJoints; ++i) {

@@ -7,12 +7,12 @@
 namespace fovea::sim {
 namespace {
 
-constexpr std::size_t kNeighbours = 2;  // links that many joints apart are always near
+constexpr std::size_t kNeighbours = 2;  // links at most this many joints apart are always close
 
-// Of the segments a_0 b_0 and a_1 b_1 (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
+// Distance of two segments a_0 b_0 and a_1 b_1 (Ericson, Real-Time Collision Detection, 2005, section 5.1.9).
 double SegmentDistance(const Eigen::Vector3d& a_0, const Eigen::Vector3d& b_0, const Eigen::Vector3d& a_1,
                        const Eigen::Vector3d& b_1) {
-  constexpr double kPoint = 1e-12;  // a segment of less than this squared is a point
+  constexpr double kPoint = 1e-12;  // a segment with a squared length below this is a point [m^2]
   const Eigen::Vector3d d_0 = b_0 - a_0;
   const Eigen::Vector3d d_1 = b_1 - a_1;
   const Eigen::Vector3d r = a_0 - a_1;

@@ -1,4 +1,4 @@
-// How near an arm's links come to each other: the capsules about their collision shapes.
+// Distance between an arm's links, by capsules around their collision shapes.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@ namespace fovea::sim {
 
 class SelfDistance {
  public:
-  // Cylinders and spheres of `robot` count; boxes and meshes do not. Links that are joined, or have one link
-  // between them, cannot but be near, and are not looked at.
+  // Uses the cylinders and spheres of `robot`; ignores boxes and meshes. Skips pairs of links with at most
+  // two joints between them: these are always close.
   explicit SelfDistance(const SimRobot& robot);
 
-  // The least gap between two links when the links' frames are at `X_BL` [m]; negative: they overlap.
+  // The least gap between two links [m]; negative: they overlap. `X_BL`: poses of the links' frames.
   [[nodiscard]] double Least(const std::vector<Eigen::Isometry3d>& X_BL) const;
 
  private:

@@ -8,11 +8,11 @@
 namespace fovea::sim {
 namespace {
 
-// What the world is behind the clock it makes up for, as fast as it can: a robot's time does not stand still
-// for its client. Further behind, all of it is given up for lost.
+// A world behind the clock catches up as fast as it can: a robot's time does not wait for its client. A
+// larger delay than this is skipped.
 constexpr std::int64_t kMostBehindNs = hal::kNsPerSecond;
 constexpr std::int64_t kFirstPatienceNs = 100 * hal::kNsPerMs;
-constexpr std::int64_t kStopLookNs = 10 * hal::kNsPerMs;  // no wait without a look at `stop` is longer
+constexpr std::int64_t kStopLookNs = 10 * hal::kNsPerMs;  // longest wait between two checks of `stop`
 
 std::int64_t NowNs() {
   timespec now{};
@@ -60,7 +60,7 @@ void FciServer::Run(const std::atomic<bool>& stop, const std::function<void(cons
   }
 }
 
-// The next millisecond by the clock.
+// Waits for the next millisecond of the clock.
 void FciServer::AwaitTick() {
   next_tick_ns_ += static_cast<std::int64_t>(hal::kTickPeriodNs / ClockSpeed());
   const std::int64_t now_ns = NowNs();
@@ -74,7 +74,7 @@ void FciServer::AwaitTick() {
   ServeUntil(next_tick_ns_);
 }
 
-// What a person does at the robot.
+// Passes a person's inputs to the robot.
 void FciServer::TakeHandInput() {
   if (const bool pressed = stop_button_.load(std::memory_order_relaxed); pressed != stop_pressed_) {
     stop_pressed_ = pressed;
@@ -90,7 +90,7 @@ void FciServer::TakeHandInput() {
   robot_.PullHand(hand_force_B_);
 }
 
-// Steps the robot with what has come.
+// Steps the robot with the commands that have arrived.
 void FciServer::Tick() {
   while (const auto command = commands_.Take(LinkNowNs())) {
     intake_.Put(*command);
@@ -108,13 +108,13 @@ void FciServer::Tick() {
   }
 }
 
-// In lockstep, when the state is on its way to the client.
+// True in lockstep, in a motion, if the state was sent to the client.
 bool FciServer::WaitsForAnswer() const {
   return config_.lockstep && session_ && robot_.moving() && !state_lost_;
 }
 
 void FciServer::AwaitCommands() {
-  // A client may pass over the first states of a motion.
+  // A client may skip the first states of a motion.
   const std::int64_t patience_ns = !robot_.commanded() ? kFirstPatienceNs
                                    : impatient_        ? hal::kTickPeriodNs
                                                        : config_.patience_ns;
@@ -136,9 +136,9 @@ void FciServer::ServeUntil(std::int64_t time_ns) {
   } while (NowNs() < time_ns);
 }
 
-// Waits for something to come, and takes it.
+// Waits until something arrives or `until_ns`, then handles what has arrived.
 void FciServer::Poll(std::int64_t until_ns) {
-  constexpr std::int64_t kFlushNs = 200'000;  // a delayed state leaves no later than this after its time
+  constexpr std::int64_t kFlushNs = 200'000;  // a delayed state leaves at most this late
   const bool delays =
       config_.faults.delay_ms > 0.0 || config_.faults.jitter_ms > 0.0 || config_.faults.reorder > 0.0;
   const std::int64_t left_ns = until_ns - NowNs();
@@ -147,7 +147,7 @@ void FciServer::Poll(std::int64_t until_ns) {
   if (session_ && !session_->Serve()) {
     EndSession();
   }
-  AcceptClient();  // after the look at the one that is there: it may have gone
+  AcceptClient();  // last, because the present client may have disconnected
   if (session_ && session_->TakeMotionStart()) {
     intake_.Begin(robot_.state().message_id);
     commands_.Clear();
@@ -162,7 +162,7 @@ void FciServer::AcceptClient() {
     return;
   }
   if (session_) {
-    ++counters_.refused_clients;  // one at a time; the connection closes here
+    ++counters_.refused_clients;  // only one client at a time; the connection closes here
     say_("a second client was refused");
     return;
   }
@@ -171,7 +171,7 @@ void FciServer::AcceptClient() {
   states_.Clear();
   commands_.Clear();
   session_.emplace(robot_, std::move(*client), config_.model_library);
-  say_("a client came");
+  say_("a client connected");
 }
 
 void FciServer::EndSession() {
@@ -197,14 +197,13 @@ void FciServer::TakeDatagrams() {
   }
 }
 
-// The link's time, in which delays count: in lockstep the robot's own, else the clock's, as slow as the
-// robot's.
+// Time base of the link's delays: in lockstep the robot's time, else the clock scaled by ClockSpeed.
 std::int64_t FciServer::LinkNowNs() const {
   return config_.lockstep ? static_cast<std::int64_t>(robot_.state().message_id) * hal::kNsPerMs
                           : static_cast<std::int64_t>(static_cast<double>(NowNs()) * ClockSpeed());
 }
 
-// Of the time at real pace against the clock's; at rest in lockstep it is the clock's.
+// Speed of the robot's time relative to the clock; 1 in lockstep (at rest).
 double FciServer::ClockSpeed() const {
   return config_.lockstep || config_.most_speed == 0.0 ? 1.0 : config_.most_speed;
 }
@@ -216,7 +215,7 @@ void FciServer::SendState() {
   }
   ++counters_.states;
   if (config_.lockstep) {
-    // A state that were delayed would only delay its answer; so delays count for commands alone.
+    // A delayed state would only delay its answer, so delays apply to commands only.
     state_lost_ = state_dice_.Loses();
     for (int copies = state_lost_ ? 0 : (state_dice_.Repeats() ? 2 : 1); copies > 0; --copies) {
       static_cast<void>(udp_.Send(franka::Bytes(robot_.state()), *session_->state_endpoint()));

@@ -9,7 +9,7 @@ using franka::Header;
 
 namespace {
 
-constexpr std::size_t kMostToSend = 64 << 10;  // bytes that may wait, besides a model library
+constexpr std::size_t kMostToSend = 64 << 10;  // unsent bytes allowed in addition to a model library
 
 }  // namespace
 
@@ -34,7 +34,7 @@ bool FciSession::Serve() {
         }
         break;
       case franka::MessageStream::Next::kClosed: end_reason_ = "it closed the connection"; return false;
-      case franka::MessageStream::Next::kGarbage: end_reason_ = "it sent what is no message"; return false;
+      case franka::MessageStream::Next::kGarbage: end_reason_ = "it sent an invalid message"; return false;
     }
   }
 }
@@ -51,7 +51,7 @@ void FciSession::Send(std::span<const std::byte> bytes) {
   Flush();
 }
 
-// Sends what the connection takes; the rest waits for the next time.
+// Sends as much as the connection takes. The rest waits for the next call.
 void FciSession::Flush() {
   const std::size_t sent = client_.SendSome(to_send_);
   to_send_.erase(to_send_.begin(), to_send_.begin() + static_cast<std::ptrdiff_t>(sent));
@@ -106,7 +106,7 @@ bool FciSession::DoConnect(const Header& header, std::span<const std::byte> payl
   franka::ConnectRequest request;
   if (!franka::Decode(payload, request) || request.version != franka::kVersion) {
     Answer(header, franka::ConnectAnswer{franka::ConnectStatus::kIncompatibleVersion, franka::kVersion});
-    end_reason_ = "it speaks another version";
+    end_reason_ = "it uses another protocol version";
     return false;
   }
   Answer(header, franka::ConnectAnswer{});
@@ -121,7 +121,7 @@ void FciSession::DoLoadModel(const Header& header, std::span<const std::byte> pa
 #elif defined(__aarch64__)
   constexpr std::uint8_t kArchitecture = 3;
 #else
-  constexpr std::uint8_t kArchitecture = 255;  // one that the interface has no figure for
+  constexpr std::uint8_t kArchitecture = 255;  // the interface has no number for it
 #endif
   constexpr std::uint8_t kLinux = 0;
   franka::LoadModelRequest request;

@@ -1,4 +1,4 @@
-// The robot's side of one client's TCP connection: takes requests, has the robot do them, answers.
+// The robot's side of one client's TCP connection: receives requests, executes them on the robot, answers.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,17 @@ namespace fovea::sim {
 
 class FciSession {
  public:
-  // `model_library` is what LoadModelLibrary answers with; empty: there is none. It outlives the session.
+  // `model_library` is the file sent on LoadModelLibrary; empty: none. It must outlive the session.
   FciSession(FciRobot& robot, franka::TcpConnection client, const std::vector<std::byte>& model_library);
 
-  // Takes all requests that are there. False when the session is over: closed, of another version, or
-  // garbage.
+  // Handles all requests that have arrived. False if the session is over; end_reason() says why.
   [[nodiscard]] bool Serve();
-  // Sends the second answer to Move when a motion has ended. After the state that shows it was sent.
+  // Sends the second answer to Move if a motion has ended. Call it after sending the state that shows it.
   void AnswerMoveEnd();
 
-  // Where states go; none before Connect.
+  // Destination of the states; none before Connect.
   [[nodiscard]] const std::optional<franka::Endpoint>& state_endpoint() const { return state_endpoint_; }
-  // Whether a motion was started by the last Serve, once.
+  // Whether the last Serve started a motion; true only once per motion.
   [[nodiscard]] bool TakeMotionStart();
   [[nodiscard]] int fd() const { return client_.fd(); }
   [[nodiscard]] const char* end_reason() const { return end_reason_; }

@@ -11,8 +11,8 @@ namespace {
 using franka::Command;
 using franka::SetterStatus;
 
-constexpr double kRigid = 1e-5;  // how far a pose may be from rigid
-// Stiffer than this the discrete controller of a light wrist is not stable.
+constexpr double kRigid = 1e-5;  // tolerance for a rigid pose and a symmetric inertia
+// Above this stiffness, the discrete controller of a light wrist is unstable.
 constexpr double kMaxJointStiffness = 14250.0;  // [Nm/rad]
 constexpr double kMinTranslational = 10.0;      // [N/m]
 constexpr double kMaxTranslational = 3000.0;

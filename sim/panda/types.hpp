@@ -1,4 +1,4 @@
-// The interface's plain arrays as matrices, and back; and the limits that it enforces (Panda).
+// Converts the interface's arrays to matrices and back. Holds the Panda's limits that the interface enforces.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -22,7 +22,7 @@ std::array<double, static_cast<std::size_t>(n)> ToArray(const Eigen::Matrix<doub
   return values;
 }
 inline Eigen::Isometry3d ToPose(const franka::Matrix4& values) {
-  return Eigen::Isometry3d(Eigen::Map<const Eigen::Matrix4d>(values.data()));  // column-major, both
+  return Eigen::Isometry3d(Eigen::Map<const Eigen::Matrix4d>(values.data()));  // both are column-major
 }
 inline franka::Matrix4 ToArray(const Eigen::Isometry3d& pose) {
   franka::Matrix4 values;
@@ -32,7 +32,7 @@ inline franka::Matrix4 ToArray(const Eigen::Isometry3d& pose) {
 
 inline constexpr double kFciStepS = 1e-3;
 
-// Position, velocity, acceleration and jerk of something, and how large they may be.
+// Largest velocity, acceleration and jerk.
 struct RateLimits {
   double velocity;
   double acceleration;
@@ -41,7 +41,7 @@ struct RateLimits {
 
 namespace fci_limits {
 
-// The same limit of each joint.
+// Collects one limit of all joints.
 template <double franka::PandaJoint::*kMember>
 Joints OfEachJoint() {
   Joints values;
@@ -63,9 +63,9 @@ inline constexpr RateLimits kTranslation{franka::kPandaHandSpeed, 13.0, 6500.0};
 inline constexpr RateLimits kRotation{franka::kPandaHandRotation, 25.0, 12500.0};
 inline constexpr RateLimits kElbow{2.175, 10.0, 5000.0};
 inline constexpr double kBeyond =
-    2e-3;  // a measured joint may be this far outside, on its way along a limit [rad]
+    2e-3;  // tolerance of a measured joint outside its range, for motion along a limit [rad]
 inline constexpr int kMissingToStop = 20;
-// Rounding in a command's third difference over 1 ms, and in ours.
+// Tolerance for rounding in the client's and our own third differences over 1 ms.
 inline constexpr double kRounding = 1.001;
 
 }  // namespace fci_limits

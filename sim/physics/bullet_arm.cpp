@@ -41,7 +41,7 @@ Eigen::Isometry3d ToEigen(const btTransform& t) {
   return X;
 }
 
-// A body's frame as Bullet wants it: at the centre of mass, along the principal axes of inertia.
+// A body's frame in Bullet's convention: at the centre of mass, along the principal axes of inertia.
 struct PrincipalBody {
   Eigen::Isometry3d X_LP = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d X_PL = Eigen::Isometry3d::Identity();
@@ -65,7 +65,7 @@ PrincipalBody Diagonalise(const SimLink& link) {
   return body;
 }
 
-// Bullet's world without what it prepares for soft bodies: where the links would be between two steps.
+// Bullet's world without the predicted link poses between two steps, which only soft bodies need.
 class RigidWorld final : public btMultiBodyDynamicsWorld {
  public:
   using btMultiBodyDynamicsWorld::btMultiBodyDynamicsWorld;
@@ -76,8 +76,8 @@ class RigidWorld final : public btMultiBodyDynamicsWorld {
   }
 };
 
-// The table: all below z = 0. Bullet's own plane says that it is everywhere, and each link would be asked in
-// each step whether it touches.
+// The table: the half-space below z = 0. Bullet's own plane has an infinite bounding box, so each step would
+// test each link for contact.
 class TablePlane final : public btStaticPlaneShape {
  public:
   TablePlane() : btStaticPlaneShape(btVector3(0, 0, 1), 0.0) {}
@@ -91,7 +91,7 @@ class TablePlane final : public btStaticPlaneShape {
 }  // namespace
 
 struct BulletArm::Impl {
-  // Bullet's parts, in the order in which one needs the other.
+  // Bullet's parts. Later ones use earlier ones.
   btDefaultCollisionConfiguration collision_configuration;
   btCollisionDispatcher dispatcher{&collision_configuration};
   btDbvtBroadphase broadphase;
@@ -101,18 +101,18 @@ struct BulletArm::Impl {
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders;
   std::unique_ptr<btCollisionObject> table;
   std::unique_ptr<btMultiBody> body;
-  std::vector<std::unique_ptr<btMultiBodyJointMotor>> stiction;  // per moving joint, or none
-  Eigen::VectorXd coulomb;                                       // their largest torques
-  btVector3 upright_gravity = btVector3(0, 0, 0);                // in B while the base does not lean
+  std::vector<std::unique_ptr<btMultiBodyJointMotor>> stiction;  // one per moving joint; empty: no stiction
+  Eigen::VectorXd coulomb;                                       // largest torques of `stiction`
+  btVector3 upright_gravity = btVector3(0, 0, 0);                // in B, for a base that is not tilted
   double last_dt = 1.0;
 
   SimRobot robot;
   std::vector<PrincipalBody> principal;  // per link of the robot
   std::vector<int> dof_link;             // link index of each moving joint
-  int load = -1;                         // Bullet's link that is the load; -1: there is none
+  int load = -1;                         // Bullet's link for the load; -1: none
   Eigen::VectorXd q;
   Eigen::VectorXd dq;
-  std::optional<Eigen::VectorXd> gravity_torque;  // at q, once somebody asked for it
+  std::optional<Eigen::VectorXd> gravity_torque;  // at q; computed on the first request
 
   btAlignedObjectArray<btScalar> scratch_r;
   btAlignedObjectArray<btVector3> scratch_v;
@@ -200,7 +200,7 @@ struct BulletArm::Impl {
     dof_link[static_cast<std::size_t>(link.dof)] = i;
   }
 
-  // A fixed link without mass, for now, in the tip's frame.
+  // Adds the load as a fixed link in the tip's frame. It has no mass until SetLoad.
   void AddLoad() {
     const Eigen::Isometry3d X_PaL = principal[static_cast<std::size_t>(robot.tip)].X_PL;
     body->setupFixed(load, 0.0, btVector3(0, 0, 0), robot.tip - 1,
@@ -208,7 +208,7 @@ struct BulletArm::Impl {
                      ToBullet(Eigen::Vector3d(X_PaL.translation())), btVector3(0, 0, 0));
   }
 
-  // The base stands on the table for good: it has no collider.
+  // The base always stands on the table, so it has no collider.
   void AddColliders() {
     for (int i = 0; i < static_cast<int>(robot.links.size()) - 1; ++i) {
       const auto k = static_cast<std::size_t>(i + 1);
@@ -230,7 +230,7 @@ struct BulletArm::Impl {
     }
   }
 
-  // Bullet solves constraints only of bodies that have a collider; this one touches nothing.
+  // Bullet solves constraints only for bodies with a collider. This collider touches nothing.
   void AddEmptyCollider() {
     shapes.push_back(std::make_unique<btEmptyShape>());
     auto collider = std::make_unique<btMultiBodyLinkCollider>(body.get(), 0);
@@ -292,7 +292,7 @@ void BulletArm::SetState(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) {
   impl_->ReadState();
 }
 
-// A motor that wants standstill and has no more torque than this is Coulomb's friction.
+// Models Coulomb friction by a motor with target speed 0 and at most this torque.
 void BulletArm::SetStiction(const Eigen::VectorXd& coulomb) {
   Impl& m = *impl_;
   m.coulomb = coulomb;
@@ -331,7 +331,7 @@ void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
   impl_->last_dt = dt;
   impl_->ApplyTorque(tau);
   impl_->world.stepSimulation(dt, 0);
-  // Bullet's poses are those of the step's beginning, but for the colliders'.
+  // Except for the colliders, Bullet's poses are still those of the step's beginning.
   impl_->body->forwardKinematics(impl_->scratch_q, impl_->scratch_v);
   impl_->ReadState();
 }
@@ -345,7 +345,7 @@ Eigen::VectorXd BulletArm::ForwardDynamics(const Eigen::VectorXd& tau) {
   for (int i = 0; i < m.body->getNumLinks(); ++i) {
     m.body->addLinkForce(i, m.world.getGravity() * m.body->getLinkMass(i));
   }
-  // Bullet's function answers with velocities moved on by dt; a dt of 1 makes the change the acceleration.
+  // Bullet's function integrates the velocities over dt. With dt = 1 their change is the acceleration.
   m.body->computeAccelerationsArticulatedBodyAlgorithmMultiDof(1.0, m.scratch_r, m.scratch_v, m.scratch_m,
                                                                false, false, false);
   m.ReadState();

@@ -1,7 +1,7 @@
-// The arm as a Bullet multi-body: torques in, motion out. Knows the truth.
+// The arm as a Bullet multi-body: torques in, true motion out.
 //
-// Bullet's defaults that would falsify an arm are off: linear and angular damping, sleeping, the clamp at
-// 100 rad/s. Double precision.
+// Bullet's defaults that would distort an arm's motion are off: linear and angular damping, sleeping, the
+// speed limit of 100 rad/s. Double precision.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -20,7 +20,7 @@ struct BulletArmOptions {
   Integrator integrator = Integrator::kSemiImplicitEuler;
   bool table = true;  // a fixed plane at z = 0 of B, which the arm's collision shapes can touch
   bool gravity = true;
-  bool may_be_loaded = false;  // SetLoad will be called; without it physics has one body less to step
+  bool may_be_loaded = false;  // SetLoad may be called; adds a body to the physics
 };
 
 class BulletArm {
@@ -37,27 +37,26 @@ class BulletArm {
   [[nodiscard]] const Eigen::VectorXd& q() const;
   [[nodiscard]] const Eigen::VectorXd& dq() const;
 
-  // From now on friction of `coulomb` [Nm, N] >= 0 in each joint: it takes away what speed it can, and holds
-  // a joint at rest that no more than this pulls at.
+  // Adds Coulomb friction of `coulomb` [Nm, N] >= 0 to each joint: it slows a moving joint, and holds a joint
+  // at rest against any smaller torque.
   void SetStiction(const Eigen::VectorXd& coulomb);
-  // That friction's torque on the joints in the last step [Nm, N].
+  // Torque of that friction in the last step [Nm, N].
   [[nodiscard]] Eigen::VectorXd StictionTorque() const;
 
-  // From now on a point of `mass` [kg] >= 0 hangs at the robot's tip, with its velocity; the torque that
-  // GravityTorque gives knows nothing of it. Needs BulletArmOptions::may_be_loaded.
+  // Attaches a point of `mass` [kg] >= 0 to the robot's tip, with the tip's velocity. GravityTorque ignores
+  // it. Needs BulletArmOptions::may_be_loaded.
   void SetLoad(double mass);
 
-  // From now on the base leans by `tilt` [rad] about B's x, and the weight pulls aside; the torque that
-  // GravityTorque gives knows nothing of it.
+  // Tilts the base by `tilt` [rad] about B's x axis, which rotates gravity. GravityTorque ignores the tilt.
   void TiltBase(double tilt);
 
-  // Moves on by `dt` [s] under the joint torques `tau` [Nm, N], gravity and contact.
+  // Advances by `dt` [s] under the joint torques `tau` [Nm, N], gravity and contact.
   void Step(const Eigen::VectorXd& tau, double dt);
 
-  // Joint accelerations at the present state under `tau`, gravity included, contact not; the state stays.
+  // Joint accelerations at the present state under `tau` and gravity, without contact. Keeps the state.
   [[nodiscard]] Eigen::VectorXd ForwardDynamics(const Eigen::VectorXd& tau);
 
-  // Joint torques that hold the arm at rest where it is, from the links' weights on a base that is upright.
+  // Joint torques that compensate the links' weights at the present position, for an upright base.
   [[nodiscard]] Eigen::VectorXd GravityTorque() const;
 
   // Pose of link `index` of the robot in B.
@@ -66,8 +65,8 @@ class BulletArm {
   // Kinetic and potential energy [J].
   [[nodiscard]] double Energy() const;
 
-  // Number of contact points with the table whose gap is below 0 after the last step, or after SetState and
-  // FindContacts. The links meet nothing else: see LinkTouch.
+  // Number of contact points with the table (negative gap, or a contact impulse) after the last step, or
+  // after SetState and FindContacts. The physics has no other contacts; see LinkTouch.
   [[nodiscard]] int Contacts() const;
   void FindContacts();
 

@@ -17,7 +17,7 @@ std::unique_ptr<btCollisionShape> MakeHull(const Mesh& mesh) {
   for (const Eigen::Vector3d& point : HullPoints(mesh)) {
     hull->addPoint(ToBullet(point), /*recalculateLocalAabb=*/false);
   }
-  hull->setMargin(0.0);  // Bullet's own would make it 40 mm larger all round
+  hull->setMargin(0.0);  // Bullet's default would enlarge it by 40 mm on all sides
   hull->recalcLocalAabb();
   return hull;
 }

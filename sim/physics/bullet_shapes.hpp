@@ -1,4 +1,4 @@
-// A link's solids as Bullet collides them.
+// Bullet's collision shapes of a link.
 #pragma once
 
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
@@ -9,7 +9,7 @@
 
 namespace fovea::sim {
 
-// In the shape's own frame S. A cylinder becomes a capsule, a mesh the hull of its points.
+// In the shape's own frame S. A cylinder becomes a capsule, a mesh its convex hull.
 std::unique_ptr<btCollisionShape> MakeBulletShape(const Shape& shape);
 
 }  // namespace fovea::sim

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kDirections = 512;
 
-// Evenly over the sphere: steps of the golden angle about z, equal steps along it.
+// Direction `i` of kDirections, evenly over the sphere: golden-angle steps about z, equal steps along z.
 Eigen::Vector3f Direction(int i) {
   const double z = 1.0 - (2.0 * i + 1.0) / kDirections;
   const double r = std::sqrt(1.0 - z * z);

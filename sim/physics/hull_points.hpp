@@ -1,4 +1,4 @@
-// Few points whose convex hull is, nearly, that of many: what a collision with a mesh is computed with.
+// Reduces a mesh to few points with nearly the same convex hull, for collisions.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@
 
 namespace fovea::sim {
 
-// The vertices of `mesh` that lie farthest out, in the mesh's frame [m]: all corners of a solid with few, and
-// of any other at most 512, whose hull lies inside the mesh's own by some 0.5 % of its radius.
+// The outermost vertices of `mesh` in its own frame [m], at most 512. A solid with few corners keeps them
+// all; otherwise the hull lies inside the mesh's hull by about 0.5 % of its radius.
 std::vector<Eigen::Vector3d> HullPoints(const Mesh& mesh);
 
 }  // namespace fovea::sim

@@ -14,7 +14,7 @@
 namespace fovea::sim {
 namespace {
 
-constexpr int kNeighbours = 2;  // links that many joints apart are always near
+constexpr int kNeighbours = 2;  // links at most this many joints apart are always close
 
 btTransform ToBullet(const Eigen::Isometry3d& X) {
   const Eigen::Quaterniond q(Eigen::Matrix3d(X.linear()));
@@ -32,13 +32,13 @@ struct Overlap final : btCollisionWorld::ContactResultCallback {
   }
 };
 
-// What can touch: the shapes of a link, or of the target, as one.
+// The shapes of one link, or of the target, as one body.
 struct Body {
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   btCompoundShape compound;
   btCollisionObject object;
   std::size_t link = 0;
-  int rank = 0;  // moving joints between the base and it
+  int rank = 0;  // moving joints between the base and the link
   btVector3 low, high;
 
   explicit Body(const std::vector<Shape>& parts) {
@@ -68,7 +68,7 @@ struct LinkTouch::Impl {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
-  btCollisionWorld world{&dispatcher, &broadphase, &configuration};  // without objects: pairs are asked about
+  btCollisionWorld world{&dispatcher, &broadphase, &configuration};  // has no objects: only pair tests
   std::vector<std::unique_ptr<Body>> links;
   std::unique_ptr<Body> target;
 

@@ -1,8 +1,6 @@
-// Whether an arm's links touch each other, or the target: by their collision shapes, whatever physics does
-// about it.
+// Detects contacts of an arm's links with each other and with the target, by their collision shapes.
 //
-// The bodies of physics meet the table alone: links pass through each other and through a target, as if
-// nothing were there. That they would have touched is found here.
+// The physics lets links collide only with the table; they pass through each other and through the target.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,18 +14,18 @@ namespace fovea::sim {
 
 class LinkTouch {
  public:
-  // `target`: its shape in its own frame O; none: there is no target.
+  // `target`: the target's shape in its own frame O; empty: no target.
   LinkTouch(const SimRobot& robot, const std::optional<Shape>& target);
   ~LinkTouch();
   LinkTouch(const LinkTouch&) = delete;
   LinkTouch& operator=(const LinkTouch&) = delete;
 
-  // The links are at `X_BL` (one per link of the robot), the target at `X_BO`.
+  // Sets the poses of the links (`X_BL`, one per link of the robot) and of the target (`X_BO`).
   void Place(const std::vector<Eigen::Isometry3d>& X_BL, const Eigen::Isometry3d& X_BO);
 
-  // Two links overlap. Links with at most two joints between them cannot but be near, and are not looked at.
+  // Whether two links overlap. Skips links with at most two joints between them, which are always close.
   [[nodiscard]] bool Self() const;
-  // A link overlaps the target.
+  // Whether a link overlaps the target.
   [[nodiscard]] bool Target() const;
 
  private:

@@ -34,7 +34,7 @@ struct RollingBall::Impl {
       : ball_shape(config.radius),
         table(BodyInfo(0.0, table_shape, Eigen::Vector3d::Zero())),
         ball(BodyInfo(config.mass, ball_shape, config.p_BO)) {
-    // Bullet multiplies the two frictions, and each one's rolling resistance by the other's friction.
+    // Bullet multiplies the two frictions, and each body's rolling resistance by the other body's friction.
     table.setFriction(1.0);
     ball.setFriction(config.friction);
     ball.setRollingFriction(config.rolling_resistance);

@@ -7,7 +7,7 @@
 namespace fovea::sim {
 namespace {
 
-// What hangs on a link with the link itself: its mass, and that times its centre of mass in B [kg, kg m].
+// A link and all links beyond it: their mass [kg], and mass times centre of mass in B [kg m].
 struct Weight {
   double mass = 0.0;
   btVector3 moment = btVector3(0, 0, 0);

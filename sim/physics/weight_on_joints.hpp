@@ -1,4 +1,4 @@
-// How an arm's weight pulls at its joints, in Bullet's own poses.
+// Gravity torques of an arm, from Bullet's link poses.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,9 +10,8 @@ class btVector3;
 
 namespace fovea::sim {
 
-// What the joints must give so that `robot`, of which link i + 1 is link i of `body`, hangs still where
-// `body` is: [num_dofs] Nm, N for a joint that slides. `g` [m/s^2], frame B. What `body` has beyond the
-// robot's links, a load, does not count.
+// Joint torques that compensate gravity at the pose of `body`: [num_dofs] Nm, or N for a prismatic joint.
+// Link i of `body` is link i + 1 of `robot`. Ignores further links of `body` (a load). `g` in B [m/s^2].
 Eigen::VectorXd WeightOnJoints(const btMultiBody& body, const SimRobot& robot, const btVector3& g);
 
 }  // namespace fovea::sim

@@ -23,7 +23,7 @@ Isometry3f At(float x, float y, float z, float yaw = 0.0F) {
   return Isometry3f(Eigen::Translation3f(x, y, z) * Eigen::AngleAxisf(yaw, Vector3f::UnitZ()));
 }
 
-// On the table: z is the height of the thing's middle.
+// Adds a solid to the bench. `X`: pose of its centre in B.
 void AddBox(Bench& bench, const Vector3f& size, const Isometry3f& X, const Vector3f& colour) {
   bench.things.emplace_back().Append(MakeBox(size, kBevel, colour), X);
 }
@@ -62,7 +62,7 @@ void AddTable(Bench& bench) {
   }
 }
 
-// Things that lie on any bench; none is red, none is a ball.
+// Ordinary things on the bench; none is red, none is a ball.
 void AddTools(Bench& bench) {
   AddBox(bench, {0.22F, 0.16F, 0.11F}, At(0.02F, 0.50F, 0.055F, 0.25F), kInstrument);  // power supply
   AddBox(bench, {0.004F, 0.13F, 0.08F}, At(0.125F, 0.527F, 0.058F, 0.25F), kDark);     // its front
@@ -101,7 +101,7 @@ void AddClutter(Bench& bench) {
 
 Bench MakeBench(bool clutter) {
   Bench bench;
-  AddTable(bench);  // before the room: what is near is drawn first
+  AddTable(bench);  // before the room: near planes are drawn first
   AddRoom(bench);
   AddTools(bench);
   if (clutter) {

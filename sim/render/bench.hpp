@@ -1,4 +1,4 @@
-// What stands in the lab: table, floor, walls, the things on the bench. Data only, in frame B.
+// The lab: table, floor, walls and the things on the bench. Data only, in frame B.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,15 +9,15 @@
 
 namespace fovea::sim {
 
-// A level rectangle, seen from above.
+// A horizontal rectangle, visible from above.
 struct TexturedPlane {
   Eigen::Vector3f centre_B = Eigen::Vector3f::Zero();
   Eigen::Vector2f size = Eigen::Vector2f::Ones();  // along x and y [m]
-  Eigen::Vector2f tile = Eigen::Vector2f::Ones();  // what one repetition of the texture covers [m]
+  Eigen::Vector2f tile = Eigen::Vector2f::Ones();  // size of one repetition of the texture [m]
   Texture texture;
 };
 
-// A ball; drawn by its exact outline, not by triangles.
+// A ball, drawn by its exact outline, not by triangles.
 struct Ball {
   Eigen::Vector3f p_B = Eigen::Vector3f::Zero();
   float radius = 0.04F;
@@ -26,12 +26,12 @@ struct Ball {
 
 struct Bench {
   std::vector<TexturedPlane> planes;  // near ones first
-  std::vector<Mesh> things;           // all that has no texture and does not move
+  std::vector<Mesh> things;           // static things without a texture
   std::vector<Ball> balls;
 };
 
-// The lab bench. `clutter`: things of the target's colour and others of its shape stand about; each differs
-// from a red ball of 80 mm in colour, shape or size.
+// The lab bench. `clutter` adds things of the target's colour and things of its shape; each differs from a
+// red ball of 80 mm in colour, shape or size.
 Bench MakeBench(bool clutter);
 
 }  // namespace fovea::sim

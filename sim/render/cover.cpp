@@ -4,10 +4,10 @@ namespace fovea::sim {
 namespace {
 
 constexpr float kMargin =
-    0.02F;  // to the sides [m]: the surface's own edge is drawn over more than it covers
-constexpr float kMarginPx = 2.0F;    // of the picture
-constexpr float kBeneath = 0.03F;    // a pixel between two tiles may show what the surface lies on [m]
-constexpr float kLeastDown = 0.05F;  // of a ray's direction; flatter ones are taken to miss
+    0.02F;  // margin to the surface's edges [m]: smoothed edges are drawn larger than they are
+constexpr float kMarginPx = 2.0F;    // margin around the picture
+constexpr float kBeneath = 0.03F;    // a pixel between two tiles may show the slab below the surface [m]
+constexpr float kLeastDown = 0.05F;  // least downward component of a ray; a flatter ray counts as a miss
 
 }  // namespace
 
@@ -19,8 +19,8 @@ Box FindBox(const Mesh& mesh) {
   return box;
 }
 
-// All rays lie within the four of the picture's corners, and what can be seen within the pyramid from the eye
-// to where these meet the plane.
+// All rays lie between the rays of the picture's four corners. All that is visible lies in the pyramid from
+// the eye to the points where these four meet the plane.
 std::optional<Box> SeenOver(const TexturedPlane& plane, const Pinhole& pinhole,
                             const Eigen::Isometry3f& X_BC) {
   const Eigen::Vector3f eye = X_BC.translation();

@@ -1,5 +1,5 @@
-// What a level surface hides. Where the whole picture shows nothing but a table and what stands on it,
-// neither the floor nor walls need be drawn; the picture is the same.
+// Finds what a horizontal surface hides. If the whole picture shows only a table and the things on it, floor
+// and walls need not be drawn; the picture is the same.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,12 +12,11 @@ namespace fovea::sim {
 
 using Box = Eigen::AlignedBox3f;  // in B
 
-// Holds all vertices of a mesh.
+// The bounding box of a mesh.
 Box FindBox(const Mesh& mesh);
 
-// A box that holds all that can be seen of the bench, and of things before it, when every ray of the picture
-// meets the upper side of `plane`, 20 mm inside its edges or more; nothing when one does not. It
-// reaches 30 mm below the plane, to what that lies on.
+// A box that contains everything visible, if every ray of the picture meets the upper side of `plane` at
+// least 20 mm inside its edges; otherwise none. The box reaches 30 mm below the plane, to include its slab.
 std::optional<Box> SeenOver(const TexturedPlane& plane, const Pinhole& pinhole,
                             const Eigen::Isometry3f& X_BC);
 

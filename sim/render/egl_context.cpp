@@ -20,7 +20,7 @@ bool Has(const char* extensions, const char* name) {
   return extensions != nullptr && std::string(extensions).find(name) != std::string::npos;
 }
 
-// Displays that could render, the best first: GPUs, then software.
+// Displays that may be able to render, by kind.
 struct Displays {
   std::vector<void*> gpu;
   std::vector<void*> software;

@@ -1,4 +1,4 @@
-// An OpenGL context without a window, by EGL: on a GPU where there is one, in software where there is none.
+// An OpenGL context without a window, by EGL: on a GPU if there is one, else in software.
 #pragma once
 
 #include <string>
@@ -8,10 +8,9 @@ namespace fovea::sim {
 
 class EglContext {
  public:
-  // The `index`-th context of this program, counted from 0. A GPU is taken where there is one. Mesa's
-  // software renderer draws for one context of a display at a time, so each of the first contexts takes a
-  // software display of its own as far as there are some. std::runtime_error with one line when no OpenGL 3.3
-  // core context can be had. The context is not current anywhere yet.
+  // Creates context number `index` of this program, counted from 0; it is not yet current on any thread.
+  // Prefers a GPU. Mesa's software renderer draws for one context per display at a time, so the first
+  // contexts use different software displays if possible. std::runtime_error: no OpenGL 3.3 core context.
   explicit EglContext(int index);
   ~EglContext();
   EglContext(const EglContext&) = delete;
@@ -21,7 +20,7 @@ class EglContext {
   void MakeCurrent();
   void Release();
 
-  // The name of what renders; needs the context to be current.
+  // The name of the renderer. The context must be current.
   [[nodiscard]] std::string RendererName() const;
 
  private:

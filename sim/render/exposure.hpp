@@ -1,4 +1,4 @@
-// The world at one exposure: all that is needed to draw what the camera saw.
+// The world at one exposure: everything needed to draw the camera's picture.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -24,7 +24,7 @@ struct Exposure {
 
   // Faults of the camera.
   std::optional<PixelSource> pixels_of;  // the pixels are those of this frame, noise included
-  std::int64_t stamp_error_ns = 0;       // the frame says stamp_ns plus this
+  std::int64_t stamp_error_ns = 0;       // the frame's stamp is stamp_ns plus this
 };
 
 }  // namespace fovea::sim

@@ -11,14 +11,14 @@ namespace fovea::sim {
 
 class GlProgram {
  public:
-  // std::runtime_error with the compiler's words when the sources do not compile.
+  // std::runtime_error with the compiler's message if the sources do not compile or link.
   GlProgram(const std::string& vertex_source, const std::string& fragment_source);
   ~GlProgram();
   GlProgram(const GlProgram&) = delete;
   GlProgram& operator=(const GlProgram&) = delete;
 
   void Use() const { glUseProgram(program_); }
-  // For the program in use. A uniform that the compiler found unused is passed over.
+  // Sets a uniform of the program in use. Ignores a uniform that the compiler removed as unused.
   void Set(const char* name, int value) const { glUniform1i(Location(name), value); }
   void Set(const char* name, float value) const { glUniform1f(Location(name), value); }
   void Set(const char* name, const Eigen::Vector2f& v) const { glUniform2fv(Location(name), 1, v.data()); }

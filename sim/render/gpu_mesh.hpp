@@ -1,4 +1,4 @@
-// A mesh in the driver's memory. The OpenGL context is current wherever one is made, drawn or destroyed.
+// A mesh in the driver's memory. The OpenGL context must be current to create, draw or destroy it.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -24,7 +24,7 @@ class GpuMesh {
   GLsizei num_indices_ = 0;
 };
 
-// Throws std::runtime_error naming `what` when the bound framebuffer is not complete.
+// std::runtime_error naming `what`: the bound framebuffer is not complete.
 void CheckFramebuffer(const char* what);
 
 }  // namespace fovea::sim

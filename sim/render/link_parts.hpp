@@ -1,4 +1,4 @@
-// What a link of the robot looks like, solid by solid.
+// The visible parts of a robot's link, as meshes.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,12 +10,12 @@
 
 namespace fovea::sim {
 
-// A link's solids and, on the tip link, the camera at `X_LC` (null: there is none); each by itself.
+// One mesh for each of the link's solids, and one for the camera at `X_LC` (null: no camera on this link).
 std::vector<Mesh> MakeParts(const SimLink& link, const Eigen::Isometry3f* X_LC, Detail detail);
 
 Mesh Join(const std::vector<Mesh>& parts);
 
-// Found part by part, so that a dense one does not cost the others theirs.
+// Finds edges part by part, so that a part with too many triangles does not remove the edges of the others.
 std::vector<MeshEdge> FindAllEdges(const std::vector<Mesh>& parts);
 
 }  // namespace fovea::sim

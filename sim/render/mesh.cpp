@@ -9,14 +9,14 @@
 namespace fovea::sim {
 namespace {
 
-// A mesh with more triangles than these casts the shadow of a coarser one, whose cells are half a texel of
-// the eye's shadow map [m].
+// A mesh with more triangles than this casts the shadow of a coarser mesh. Its cells [m] are half a texel of
+// the camera's shadow map.
 constexpr std::size_t kFewTriangles = 2000;
 constexpr float kShadowCell = 0.004F;
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-// The outline of a solid of revolution: radius and height with the normal's own two parts.
+// A point on the outline of a solid of revolution: radius, height, and the normal's two components.
 struct RingPoint {
   float radius;
   float z;
@@ -24,8 +24,8 @@ struct RingPoint {
   float normal_z;
 };
 
-// Turns `outline`, given from the bottom up, about z. Equal neighbours in place but not in normal make a
-// sharp edge.
+// Revolves `outline`, given from the bottom up, about z. Two neighbours at the same place with different
+// normals make a sharp edge.
 Mesh Revolve(const std::vector<RingPoint>& outline, int segments, const Eigen::Vector3f& colour) {
   Mesh mesh;
   for (const RingPoint& p : outline) {
@@ -97,8 +97,7 @@ Mesh MakeSphere(float radius, int segments, const Eigen::Vector3f& colour) {
   return Revolve(outline, segments, colour);
 }
 
-// Each face is a grid whose outer cells are bent round the edge: the points of a smaller box plus `bevel`
-// along the normal.
+// Each face is a grid whose outer cells bend around the edge: a smaller box, moved out by `bevel`.
 Mesh MakeBox(const Eigen::Vector3f& size, float bevel, const Eigen::Vector3f& colour) {
   Mesh mesh;
   const float b = std::min(bevel, 0.3F * size.minCoeff());
@@ -108,8 +107,8 @@ Mesh MakeBox(const Eigen::Vector3f& size, float bevel, const Eigen::Vector3f& co
       const int u = (axis + 1) % 3;
       const int v = (axis + 2) % 3;
       const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
-      // Four lines each way: edge, start of the flat, end of the flat, edge. At an edge the normal leans by
-      // 45 degrees to meet the neighbouring face.
+      // Four lines each way: edge, start of the flat part, its end, edge. At an edge the normal leans by 45
+      // degrees towards the neighbouring face.
       for (int j = 0; j < 4; ++j) {
         for (int i = 0; i < 4; ++i) {
           const float lean_u = i == 0 ? -1.0F : i == 3 ? 1.0F : 0.0F;

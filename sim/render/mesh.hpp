@@ -1,4 +1,4 @@
-// What is drawn of simple solids and of the robot's shapes, as triangles built on the CPU.
+// Triangle meshes of simple solids and of the robot's shapes, built on the CPU.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,19 +8,18 @@
 
 namespace fovea::sim {
 
-// A ball that holds all vertices of a mesh.
+// A bounding sphere of a mesh.
 struct Bounds {
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();
   float radius = 0.0F;
 };
 Bounds FindBounds(const Mesh& mesh);
 
-// Sizes are full extents [m]; `bevel` rounds the edges, so that they catch light (0: sharp).
-// All about the origin.
+// Solids centred at the origin. Sizes are full extents [m]; `bevel` rounds the edges [m] (0: sharp).
 Mesh MakeBox(const Eigen::Vector3f& size, float bevel, const Eigen::Vector3f& colour);
 Mesh MakeCylinder(float radius, float length, float bevel, int segments, const Eigen::Vector3f& colour);
 Mesh MakeSphere(float radius, int segments, const Eigen::Vector3f& colour);
-// A robot's shape: with rounded edges that catch light, or as few triangles as a shadow needs.
+// A robot's shape: with rounded edges for the picture, or with few triangles for its shadow.
 enum class Detail { kPicture, kShadow };
 Mesh MakeShape(const Shape& shape, Detail detail);
 

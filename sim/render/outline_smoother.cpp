@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Corners nearer than this are one [m].
+// Corners closer than this are merged [m].
 constexpr float kWeld = 1e-5F;
 
 constexpr std::size_t kMostTriangles = 20'000;
@@ -28,7 +28,7 @@ std::vector<MeshEdge> FindEdges(const Mesh& mesh) {
   if (mesh.num_triangles() > kMostTriangles) {
     return {};
   }
-  // A triangle knows its edges in the direction of its own turn; its neighbour knows them in the other.
+  // A triangle has its edges in its own winding order; its neighbour has them in the opposite direction.
   std::map<std::pair<Corner, Corner>, MeshEdge> half_edges;
   std::vector<MeshEdge> edges;
   for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
@@ -37,7 +37,7 @@ std::vector<MeshEdge> FindEdges(const Mesh& mesh) {
                                             &mesh.vertices[mesh.indices[t + 2]]};
     const Vector3f normal = (v[1]->position - v[0]->position).cross(v[2]->position - v[0]->position);
     if (normal.norm() < 1e-14F) {
-      continue;  // folded flat: a pole of a solid of revolution
+      continue;  // no area: at a pole of a solid of revolution
     }
     for (std::size_t i = 0; i < 3; ++i) {
       const Vertex& from = *v[i];
@@ -93,7 +93,7 @@ void OutlineSmoother::Add(const std::vector<MeshEdge>& edges, const Eigen::Isome
     const float out = a_seen ? 1.0F : -1.0F;
     const HemVertex a{from, to, normal, edge.colour, {out, 0.0F}};
     const HemVertex b{from, to, normal, edge.colour, {out, 1.0F}};
-    // Seen from its other end, out is the other way.
+    // From the other end of the edge, the outward side is reversed.
     const HemVertex c{to, from, normal, edge.colour, {-out, 0.0F}};
     const HemVertex d{to, from, normal, edge.colour, {-out, 1.0F}};
     vertices_.insert(vertices_.end(), {a, b, c, c, b, d});

@@ -1,4 +1,4 @@
-// The simulated camera's geometry: u = f_u X / Z + c_u, v = f_v Y / Z + c_v, pixel centres at whole numbers.
+// The simulated camera's geometry: u = f_u X / Z + c_u, v = f_v Y / Z + c_v, pixel centres at integers.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,16 +15,16 @@ struct Pinhole {
   double aspect = 1.0;  // f_v / f_u
 
   [[nodiscard]] double FocalV() const { return aspect * f_px; }
-  // Square pixels, and the axis in the middle of the picture: what SceneRenderer draws.
+  // True for square pixels and an optical axis in the middle of the picture. SceneRenderer draws only these.
   [[nodiscard]] bool IsPlain() const {
     return aspect == 1.0 && c_u_px == 0.5 * (width_px - 1) && c_v_px == 0.5 * (height_px - 1);
   }
-  // Where a point before the camera is seen [px]; `p_C` in axes of C [m].
+  // Pixel coordinates of a point in front of the camera [px]; `p_C` in C [m].
   [[nodiscard]] double U(const Eigen::Vector3d& p_C) const { return f_px * p_C.x() / p_C.z() + c_u_px; }
   [[nodiscard]] double V(const Eigen::Vector3d& p_C) const { return FocalV() * p_C.y() / p_C.z() + c_v_px; }
 };
 
-// A camera with the given horizontal field of view [rad], its axis in the middle of the picture.
+// A camera with horizontal field of view `hfov` [rad] and its optical axis in the middle of the picture.
 inline Pinhole MakePinhole(int width_px, int height_px, double hfov) {
   return {width_px, height_px, 0.5 * width_px / std::tan(0.5 * hfov), 0.5 * (width_px - 1),
           0.5 * (height_px - 1)};

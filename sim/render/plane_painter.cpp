@@ -17,10 +17,10 @@ using Eigen::Vector4f;
 using Rectangle = Eigen::AlignedBox2f;
 
 constexpr float kTileSize = 0.10F;   // [m]
-constexpr float kLargePlane = 4.0F;  // from this size on a plane is one tile [m]
+constexpr float kLargePlane = 4.0F;  // a plane of this size or larger is one tile [m]
 constexpr int kPaintedShadowMapPx = 2048;
-constexpr float kDarkenedReach = 4.0F;  // how far a ball darkens what it stands on, in its radii
-constexpr float kShadowMargin = 0.03F;  // for the shadow's soft edge [m]
+constexpr float kDarkenedReach = 4.0F;  // a ball darkens its ground up to this distance, in radii
+constexpr float kShadowMargin = 0.03F;  // width of the shadow's soft edge [m]
 
 const char* const kHead = "#version 330 core\n";
 const char* const kPaintHead = "#version 330 core\n#define SHADOW_TAPS 16\n#define SHADOW_SPREAD 6.0\n";
@@ -42,7 +42,7 @@ GLuint UploadTexture(const Texture& from) {
 
 Vector2f LowCorner(const TexturedPlane& plane) { return plane.centre_B.head<2>() - 0.5F * plane.size; }
 
-// Offset and scale from x, y of B to the texture.
+// Offset and scale that map x, y of B to texture coordinates.
 Vector4f TextureOfXy(const TexturedPlane& plane, const Vector2f& tile) {
   const Vector2f scale = tile.cwiseInverse();
   const Vector2f offset = -LowCorner(plane).cwiseProduct(scale);
@@ -55,7 +55,7 @@ void SetShadowOfXy(const GlProgram& program, const Matrix4f& map_of_B, float z) 
   program.Set("u_shadow_y", Vector3f(map_of_B.block<3, 1>(0, 1)));
 }
 
-// Where the sun's rays through a thing may meet the plane at `z`, soft edge included.
+// Rectangle around the shadow of a thing on the plane at `z`, including its soft edge.
 Rectangle ShadowOn(float z, const MovingBounds& thing) {
   Rectangle shadow;
   for (int corner = 0; corner < 8; ++corner) {
@@ -105,7 +105,7 @@ PlanePainter::~PlanePainter() {
   glDeleteBuffers(1, &tile_buffer_);
 }
 
-// Draws the whole plane, seen straight from above, into a texture of its own: colour times light.
+// Draws the whole plane, viewed from above, into a new texture: colour times light.
 GLuint PlanePainter::PaintLight(const TexturedPlane& plane, const ShadowMap& shadow) const {
   const GlProgram program(std::string(kPaintHead) + shaders::kPlaneVertex,
                           std::string(kPaintHead) + shaders::kShadow + shaders::kPaintFragment);

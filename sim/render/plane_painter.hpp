@@ -1,7 +1,7 @@
-// Draws the bench's level surfaces, which fill most of every picture, as cheaply as a software renderer can.
+// Draws the bench's horizontal surfaces, which fill most of each picture, at low cost in a software renderer.
 //
-// Light and the shadows of all that stands still are painted into the textures once. Per picture a surface is
-// split into tiles: only those that a moving thing's shadow may touch look the shadow map up.
+// Light and static shadows are painted into the textures once. For each picture, a surface is split into
+// tiles. Only tiles that a moving shadow may touch use the shadow map.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -17,7 +17,7 @@
 
 namespace fovea::sim {
 
-// A box that holds a moving thing, and where it is.
+// The bounding box of a moving thing, and its pose.
 struct MovingBounds {
   Eigen::Isometry3f X_BL = Eigen::Isometry3f::Identity();
   Box box_L;
@@ -25,7 +25,7 @@ struct MovingBounds {
 
 class PlanePainter {
  public:
-  // Paints the light into the textures of `planes`; `draw_static` draws what stands still. `shadow_head` is
+  // Paints the light into the textures of `planes`; `draw_static` draws all static things. `shadow_head` is
   // the GLSL preamble that sets the quality of the moving shadows.
   PlanePainter(const std::vector<TexturedPlane>& planes, const std::string& shadow_head,
                const ShadowMap::DrawAll& draw_static);
@@ -33,8 +33,8 @@ class PlanePainter {
   PlanePainter(const PlanePainter&) = delete;
   PlanePainter& operator=(const PlanePainter&) = delete;
 
-  // Draws all planes into the bound frame. `moving` are the things whose shadows are in `shadow`, the target
-  // among them; the target also darkens what it stands on. Planes below `bottom` [m] are hidden.
+  // Draws all planes into the bound frame. `moving`: the things whose shadows are in `shadow`, including the
+  // target. The target also darkens the ground under it. Skips planes below `bottom` [m], which are hidden.
   void Draw(const Eigen::Matrix4f& clip_of_B, float gain, const ShadowMap& shadow, const Ball& target,
             const std::vector<MovingBounds>& moving, float bottom) const;
 
@@ -46,7 +46,7 @@ class PlanePainter {
     int rows = 1;
   };
   [[nodiscard]] GLuint PaintLight(const TexturedPlane& plane, const ShadowMap& shadow) const;
-  // Sorts the tiles of `plane` into those in the light and those that a moving shadow may touch.
+  // Sorts the tiles of `plane` into lit tiles and tiles that a moving shadow may touch.
   void SortTiles(const Plane& plane, const Ball& target, const std::vector<MovingBounds>& moving) const;
   void DrawTiles(const std::vector<Eigen::Vector2f>& tiles) const;
 
@@ -55,9 +55,9 @@ class PlanePainter {
   GLuint vertex_array_ = 0;
   GLuint tile_buffer_ = 0;
   std::vector<Plane> planes_;
-  mutable std::vector<Eigen::Vector2f> lit_tiles_;  // their lower corners, reused from picture to picture
+  mutable std::vector<Eigen::Vector2f> lit_tiles_;  // lower corners of the tiles; memory reused
   mutable std::vector<Eigen::Vector2f> shaded_tiles_;
-  mutable std::vector<Eigen::AlignedBox2f> darkened_;  // where these lie
+  mutable std::vector<Eigen::AlignedBox2f> darkened_;  // areas that may be darkened
 };
 
 }  // namespace fovea::sim

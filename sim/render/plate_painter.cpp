@@ -14,8 +14,8 @@ using Eigen::Vector3f;
 using Eigen::Vector4f;
 
 constexpr int kDiscPoints = 48;
-constexpr float kMarginPx = 3.0F;    // of the rectangle that is looked at
-constexpr float kEdgeOnCos = 0.02F;  // a plate seen flatter than this is not painted
+constexpr float kMarginPx = 3.0F;    // margin of the drawn rectangle
+constexpr float kEdgeOnCos = 0.02F;  // a plate viewed at a flatter angle is not drawn
 
 std::vector<Vector3f> OutlineOf(const TargetShape& shape) {
   std::vector<Vector3f> outline;
@@ -32,7 +32,7 @@ std::vector<Vector3f> OutlineOf(const TargetShape& shape) {
   return outline;
 }
 
-// A fan, seen from both sides.
+// A triangle fan, visible from both sides.
 Mesh MakeFan(const std::vector<Vector3f>& outline) {
   Mesh mesh;
   for (const Vector3f& p : outline) {

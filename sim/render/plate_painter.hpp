@@ -1,4 +1,4 @@
-// Draws a flat target by its exact outline, not by triangles: each pixel by the share of it that is covered.
+// Draws a flat target by its exact outline, not by triangles: each pixel by its covered share.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -22,20 +22,20 @@ class PlatePainter {
   PlatePainter(const PlatePainter&) = delete;
   PlatePainter& operator=(const PlatePainter&) = delete;
 
-  // For the light's uniforms, before Draw.
+  // Set its light uniforms before Draw.
   [[nodiscard]] const GlProgram& program() const { return program_; }
-  // The plate at `X_CO` over what is behind it, with `colour`. Nothing when its painted side is turned away,
-  // or a part of it is beside or behind the camera.
+  // Draws the plate at `X_CO` over its background, in `colour`. Draws nothing if its painted side faces away,
+  // or if a part of it is beside or behind the camera.
   void Draw(const Eigen::Isometry3f& X_CO, const Eigen::Isometry3f& X_BC, const Pinhole& pinhole,
             const Eigen::Matrix4f& clip_of_C, const Eigen::Vector3f& colour) const;
-  // What casts its shadow, in O.
+  // The mesh that casts its shadow, in O.
   [[nodiscard]] const GpuMesh& caster() const { return *caster_; }
 
  private:
   const TargetShape shape_;
   GlProgram program_;
   std::unique_ptr<GpuMesh> caster_;
-  std::vector<Eigen::Vector3f> outline_;  // in O; of a disc points close together on it
+  std::vector<Eigen::Vector3f> outline_;  // in O; for a disc, closely spaced points
   GLuint no_vertices_ = 0;
 };
 

@@ -38,7 +38,7 @@ Eigen::Vector4f OutlineRectangle(const Eigen::Vector3f& p_C, float radius, float
   Eigen::Vector4f rectangle;
   const float z = p_C.z();
   for (int axis = 0; axis < 2; ++axis) {
-    // In this plane two rays touch the ball: x with |x Z - c| = R sqrt(1 + x^2), a quadratic in x.
+    // In this plane, two rays are tangent to the ball: |x Z - c| = R sqrt(1 + x^2), a quadratic in x.
     const float c = p_C[axis];
     const float along = std::sqrt(std::max(c * c + z * z - radius * radius, 0.0F));
     const float a = (c * z - radius * along) / (z * z - radius * radius);

@@ -1,4 +1,4 @@
-// From the pinhole camera to OpenGL's conventions, in one place.
+// Converts the pinhole camera to OpenGL's conventions. No other file does so.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -10,18 +10,18 @@ namespace fovea::sim {
 inline constexpr float kNear = 0.02F;  // [m]
 inline constexpr float kFar = 12.0F;   // [m]
 
-// OpenGL's clip space for a camera in axes of C. Its row 0 is the picture's top row, so nothing is turned
-// over on the way out; seen from OpenGL the world is mirrored, and front faces run clockwise.
+// OpenGL's clip space for a camera in axes of C. Row 0 is the picture's top row, so the picture needs no
+// flip. For OpenGL the world is therefore mirrored: front faces are clockwise.
 Eigen::Matrix4f ClipOfC(const Pinhole& pinhole);
 
 // (a, b) such that the depth buffer holds a + b / Z.
 Eigen::Vector2f WindowDepth(const Eigen::Matrix4f& clip_of_C);
 
-// Whether a ball of `radius` about `p_C` can be in the picture.
+// Whether a ball of `radius` at `p_C` can be visible in the picture.
 bool InView(const Pinhole& pinhole, const Eigen::Vector3f& p_C, float radius);
 
-// The rectangle round the outline of a ball at `p_C`, in normalised image coordinates (x min, y min, x max,
-// y max), widened by `margin`. The ball is before the camera.
+// The rectangle around the outline of a ball at `p_C`, widened by `margin`: x min, y min, x max, y max in the
+// normalised image. The ball must be in front of the camera.
 Eigen::Vector4f OutlineRectangle(const Eigen::Vector3f& p_C, float radius, float margin);
 
 }  // namespace fovea::sim

@@ -31,7 +31,7 @@ using Eigen::Matrix4f;
 using Eigen::Vector3f;
 using Eigen::Vector4f;
 
-// A thing that does not move, and where it is, so that what is out of view need not be drawn.
+// A static thing, with its bounds to skip it when it is out of view.
 struct Thing {
   std::unique_ptr<GpuMesh> mesh;
   std::vector<MeshEdge> edges;
@@ -39,13 +39,13 @@ struct Thing {
   Box box;
 };
 
-// A link as it looks and as it casts its shadow.
+// A link's meshes for the picture and for its shadow.
 struct Link {
   std::unique_ptr<GpuMesh> mesh;
   std::unique_ptr<GpuMesh> shadow;
   std::vector<MeshEdge> edges;
   Bounds bounds;
-  std::vector<Box> shapes;  // tighter: one for each of its solids
+  std::vector<Box> shapes;  // tighter bounds: one box per solid
 };
 
 }  // namespace
@@ -59,12 +59,12 @@ struct SceneRenderer::Impl {
   std::unique_ptr<OutlineSmoother> smoother;
   std::unique_ptr<ShadowMap> shadow;
   std::unique_ptr<PlanePainter> planes;
-  std::unique_ptr<PlatePainter> plate;  // none when the target is a ball, or none is there
+  std::unique_ptr<PlatePainter> plate;  // null if the target is a ball, or there is none
   std::vector<Thing> things;
   std::vector<Link> links;
   std::unique_ptr<GpuMesh> unit_ball;
-  GLuint no_vertices = 0;    // for balls, which are drawn from their numbers alone
-  GLuint frame[2] = {0, 0};  // drawn into (perhaps multisampled), resolved
+  GLuint no_vertices = 0;    // for balls, which are drawn from uniforms only
+  GLuint frame[2] = {0, 0};  // drawn into (may be multisampled), resolved
   GLuint buffers[3] = {0, 0, 0};
   RenderWatch watch;
 
@@ -195,7 +195,7 @@ struct SceneRenderer::Impl {
     program.Set("u_shadow", 1);
   }
 
-  // The box in which all lies that can be seen; nothing when there is no such box.
+  // The box that contains everything visible; none if there is no such box.
   std::optional<Box> Seen(const Isometry3f& X_BC) const {
     for (const TexturedPlane& plane : scene.bench.planes) {
       if (const std::optional<Box> seen = SeenOver(plane, pinhole, X_BC); seen && quality.skip_hidden) {
@@ -271,7 +271,7 @@ struct SceneRenderer::Impl {
     glDisable(GL_BLEND);
   }
 
-  // Last, over what is behind them, by the share of each pixel that they cover; far ones first.
+  // Drawn last, over their background, by the covered share of each pixel; far balls first.
   void DrawBalls(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_C) const {
     const Isometry3f X_CB = X_BC.inverse();
     std::vector<Ball> balls = scene.bench.balls;
@@ -317,8 +317,8 @@ struct SceneRenderer::Impl {
     glActiveTexture(GL_TEXTURE1);
     glBindTexture(GL_TEXTURE_2D, shadow->texture());
     glActiveTexture(GL_TEXTURE0);
-    // The table first: it fills most of the eye's picture and hides what is under it.
-    glDisable(GL_CULL_FACE);  // tiles and balls' rectangles have no outside
+    // The table first: it fills most of the camera's picture and hides everything below it.
+    glDisable(GL_CULL_FACE);  // tiles and the balls' rectangles have no back side
     const std::optional<Box> seen = Seen(X_BC);
     DrawPlanes(exposure, clip_of_B, seen);
     Tell("planes");
@@ -345,7 +345,7 @@ struct SceneRenderer::Impl {
     Tell("read-back");
   }
 
-  // A driver draws when it likes; who watches wants each part done.
+  // Waits until the driver has finished the part, so that a watcher can time it.
   void Tell(const char* part) const {
     if (watch) {
       glFinish();

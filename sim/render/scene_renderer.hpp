@@ -1,4 +1,4 @@
-// Draws the bench, the robot and the target as a pinhole camera at a given pose sees them.
+// Draws the bench, the robot and the target for a pinhole camera at a given pose.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,32 +18,32 @@
 namespace fovea::sim {
 
 struct RenderQuality {
-  int samples = 0;  // per pixel, for the edges of meshes; 0 or 1: one. Balls are exact anyway.
+  int samples = 0;  // per pixel, for the edges of meshes; 0 or 1: one. Balls are always exact.
   int shadow_map_px = 256;
-  int shadow_taps = 1;         // 1 to 16; each smooths over four texels
-  float shadow_spread = 1.6F;  // of the taps, in texels of the shadow map
-  bool skip_hidden = true;     // what a table hides wholly is not drawn; the picture is the same
+  int shadow_taps = 1;         // 1 to 16 samples; each averages four texels
+  float shadow_spread = 1.6F;  // radius of the samples, in texels of the shadow map
+  bool skip_hidden = true;     // does not draw what a table hides completely; the picture is the same
 };
 
 struct RenderScene {
   Bench bench;
   SimRobot robot;
-  Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();  // where the camera's housing sits on the tip link
-  bool has_eye = true;  // false: neither the camera's housing nor its target are there
+  Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();  // pose of the camera on the tip link
+  bool has_eye = true;                                     // false: no camera housing and no target
   TargetShape target;
   Eigen::Matrix3d target_R_BO = Eigen::Matrix3d::Identity();  // at the start
   Eigen::Vector3f target_colour{0.74F, 0.07F, 0.06F};
   double light = 1.0;  // brightness; 1: a well-lit room and a well-set camera
 };
 
-// Told by Draw when a part of it is done, and how it is called.
+// Draw calls it after each part of its work, with the part's name.
 using RenderWatch = std::function<void(const char* part)>;
 
-// One thread at a time; the first call on a thread takes the OpenGL context there, and Release gives it up.
+// One thread at a time. The first call on a thread takes the OpenGL context; Release releases it.
 class SceneRenderer {
  public:
-  // `index` counts the renderers that work at the same time, from 0 (see EglContext). std::runtime_error with
-  // one line when there is no EGL or the driver cannot do it.
+  // `index` numbers the renderers that work at the same time, from 0 (see EglContext). std::runtime_error
+  // (one line): there is no EGL, or the driver cannot draw.
   SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality,
                 int index = 0);
   ~SceneRenderer();
@@ -53,7 +53,7 @@ class SceneRenderer {
   // Draws `exposure` as seen from `X_BC` into `rgba` [height * width * 4], top row first.
   void Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba);
 
-  // Before the first Draw: each then ends its parts one by one, which makes it a little slower.
+  // Call it before the first Draw. Draw then finishes each part separately, which makes it a little slower.
   void Watch(RenderWatch watch);
 
   void Release();

@@ -1,10 +1,10 @@
-// The renderer's programs. Lengths in metres, positions in frame B (suffix _B) or C (suffix _C).
+// The renderer's shaders. Lengths in metres, positions in frame B (suffix _B) or C (suffix _C).
 #pragma once
 
 namespace fovea::sim::shaders {
 
-// Meshes are lit at their vertices and shadowed at their pixels: in software every operation per pixel is
-// paid 300 000 times. The figures of the light come from light.hpp.
+// Meshes are lit per vertex and shadowed per pixel: a software renderer executes each pixel operation 300 000
+// times. The light's values come from light.hpp.
 inline constexpr const char* kLight = R"glsl(
 uniform vec3 u_sun_B;        // unit vector towards the light
 uniform vec3 u_sun_light;
@@ -13,7 +13,7 @@ uniform vec3 u_sky_from_below;
 uniform vec3 u_eye_B;
 uniform float u_gain;        // brightness of the light times the camera's gain
 uniform mat4 u_shadow_of_B;  // B to the shadow map, 0 to 1
-uniform float u_shadow_lift;  // off the surface, so that it does not shade itself [m]
+uniform float u_shadow_lift;  // offset from the surface against self-shadowing [m]
 
 vec3 Sky(vec3 n_B) { return mix(u_sky_from_below, u_sky_from_above, 0.5 * n_B.z + 0.5); }
 vec3 Sun(vec3 n_B) { return u_sun_light * max(dot(n_B, u_sun_B), 0.0); }
@@ -25,7 +25,7 @@ float Shine(vec3 p_B, vec3 n_B) {
 vec3 InShadowMap(vec3 p_B, vec3 n_B) { return (u_shadow_of_B * vec4(p_B + u_shadow_lift * n_B, 1.0)).xyz; }
 )glsl";
 
-// SHADOW_TAPS and SHADOW_SPREAD are put before it.
+// Needs a preamble that defines SHADOW_TAPS and SHADOW_SPREAD.
 inline constexpr const char* kShadow = R"glsl(
 uniform sampler2DShadow u_shadow;
 uniform float u_shadow_texel;
@@ -50,8 +50,8 @@ layout(location = 1) in vec3 a_normal;
 layout(location = 2) in vec3 a_colour;
 uniform mat4 u_clip_of_B;
 uniform mat4 u_B_of_mesh;
-out vec3 sky;  // light that reaches the pixel in any case, times the surface's colour
-out vec3 sun;  // light that a shadow takes away
+out vec3 sky;  // light that shadows do not remove, times the surface's colour
+out vec3 sun;  // light that a shadow removes
 out vec3 in_shadow_map;
 void main() {
   vec4 p = u_B_of_mesh * vec4(a_position, 1.0);
@@ -87,7 +87,7 @@ out float cover;
 void main() {
   vec4 here = u_clip_of_B * vec4(a_position, 1.0);
   vec4 there = u_clip_of_B * vec4(a_other, 1.0);
-  // Along the edge on the screen; the sign of w keeps an end behind the eye from turning it round.
+  // Direction of the edge on the screen; sign(w) keeps it correct if an end is behind the eye.
   vec2 along = (there.xy * here.w - here.xy * there.w) * u_half_size_px * sign(there.w);
   vec2 out_px = normalize(along + vec2(1e-9, 0.0)).yx * vec2(-1.0, 1.0) * a_hem.x;
   here.xy += a_hem.y * out_px / u_half_size_px * here.w;
@@ -108,8 +108,7 @@ out vec4 pixel;
 void main() { pixel = vec4(sky + sun * Lit(in_shadow_map), cover); }
 )glsl";
 
-// A tile of a level surface. All that varies over it is linear in x and y of B, so these two are all that is
-// handed from vertex to pixel.
+// A tile of a horizontal surface. Everything is linear in x and y of B, so only these two are interpolated.
 inline constexpr const char* kPlaneVertex = R"glsl(
 layout(location = 0) in vec2 a_low;  // the tile's corner
 uniform vec2 u_tile_size;
@@ -122,14 +121,14 @@ void main() {
 }
 )glsl";
 
-// Once: colour times light, with the shadows of all that stands still.
+// Run once: colour times light, with the shadows of static things.
 inline constexpr const char* kPaintFragment = R"glsl(
 in vec2 xy_B;
 uniform sampler2D u_texture;
 uniform vec4 u_uv_of_xy;  // offset, scale
 uniform vec3 u_sky;
 uniform vec3 u_sun;
-uniform vec3 u_shadow_0;  // place in the shadow map: u_shadow_0 + x u_shadow_x + y u_shadow_y
+uniform vec3 u_shadow_0;  // position in the shadow map: u_shadow_0 + x u_shadow_x + y u_shadow_y
 uniform vec3 u_shadow_x;
 uniform vec3 u_shadow_y;
 out vec4 pixel;
@@ -139,7 +138,7 @@ void main() {
 }
 )glsl";
 
-// Per picture: the painted surface,
+// Per picture, tiles without a moving shadow: the painted surface.
 inline constexpr const char* kLitPlaneFragment = R"glsl(
 in vec2 xy_B;
 uniform sampler2D u_texture;
@@ -149,7 +148,7 @@ out vec4 pixel;
 void main() { pixel = vec4(texture(u_texture, u_uv_of_xy.xy + u_uv_of_xy.zw * xy_B).rgb * u_gain, 1.0); }
 )glsl";
 
-// and where moving things are near, their shadows, and the sky that the target takes from what it stands on.
+// Per picture, other tiles: adds the shadows of moving things, and the sky light that the target hides.
 inline constexpr const char* kShadedPlaneFragment = R"glsl(
 in vec2 xy_B;
 uniform sampler2D u_texture;
@@ -183,9 +182,8 @@ inline constexpr const char* kShadowFragment = R"glsl(
 void main() {}
 )glsl";
 
-// A ball is drawn on a rectangle about its outline; each pixel's ray decides. A ray d touches the ball where
-// |d x c| = R |d|; the distance to that outline in pixels, to first order, gives the share of the pixel that
-// the ball covers.
+// A ball is drawn on a rectangle around its outline, pixel by pixel. A ray d is tangent to the ball if
+// |d x c| = R |d|. The first-order distance to this outline in pixels gives the covered share of the pixel.
 inline constexpr const char* kBallVertex = R"glsl(
 uniform vec4 u_rectangle;  // in normalised image coordinates: x min, y min, x max, y max
 uniform mat4 u_clip_of_C;
@@ -211,14 +209,14 @@ void main() {
   float R2 = u_ball_C.w * u_ball_C.w;
   vec3 m = cross(d, c);
   float d2 = dot(d, d);
-  float inside = R2 * d2 - dot(m, m);  // above 0 where the ray meets the ball
+  float inside = R2 * d2 - dot(m, m);  // above 0 if the ray meets the ball
   // Its slope along x and y of the image: d/dd (R2 d.d - |d x c|^2) = 2 (R2 d - c x (d x c)).
   vec2 slope = 2.0 * (R2 * d - cross(c, m)).xy;
   float per_px = u_f_px * inversesqrt(dot(slope, slope));
   float cover = clamp(inside * per_px + 0.5, 0.0, 1.0);
   if (cover <= 0.0) discard;
-  // Of a pixel that is partly covered, the brightness of that part: the normal's component towards the eye grows
-  // with the root of the depth, and has its mean over 0 to w at 4/9 w.
+  // A partly covered pixel gets the mean brightness of its covered part. The normal's component towards the
+  // eye grows with the root of the depth; over 0 to w, it takes its mean value at 4/9 w.
   inside = max(inside, 4.0 / 9.0 * cover / per_px);
   float t = (dot(d, c) - sqrt(inside)) / d2;
   vec3 p_C = t * d;
@@ -231,14 +229,14 @@ void main() {
 }
 )glsl";
 
-// A flat plate, on the ball's rectangle: a polygon by the lines of its edges in the image, a disc by the cone
-// of rays to its rim, |(n.p) d - (n.d) p| = R |n.d| for its normal n and centre p; each by the distance to
-// its outline in pixels, to first order.
+// A flat plate, drawn on a rectangle like the ball. A polygon uses the lines of its edges in the image. A
+// disc uses the cone of rays to its rim: |(n.p) d - (n.d) p| = R |n.d|, with normal n and centre p. Both use
+// the distance to the outline in pixels, to first order.
 inline constexpr const char* kPlateFragment = R"glsl(
 in vec2 xy;
 uniform vec3 u_normal_C;   // into the plate
 uniform vec3 u_centre_C;
-uniform float u_radius;    // of a disc
+uniform float u_radius;    // for a disc
 uniform int u_num_edges;   // 0: a disc
 uniform vec3 u_edges[4];   // distance inside = edge . (x, y, 1), in the normalised image
 uniform vec3 u_colour;

@@ -11,8 +11,8 @@ namespace {
 using Eigen::Matrix4f;
 using Eigen::Vector3f;
 
-constexpr float kHalfSize = 1.05F;  // the map covers a square of twice this about the centre [m]
-constexpr float kHalfDepth = 2.0F;  // and this much towards the sun and away from it [m]
+constexpr float kHalfSize = 1.05F;  // half side of the square that the map covers around the centre [m]
+constexpr float kHalfDepth = 2.0F;  // covered depth towards the sun and away from it [m]
 const Vector3f kCentre_B(0.40F, 0.0F, 0.25F);
 
 // Orthographic, looking along -sun.

@@ -1,6 +1,6 @@
-// The bench as the sun sees it: what is nearest to the light at each place is lit, the rest is in shadow.
+// Depth map of the bench from the sun: the nearest surface is lit, everything behind it is in shadow.
 //
-// What does not move is drawn once and copied under what does.
+// Static things are drawn once; moving things are drawn onto a copy.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -15,9 +15,9 @@ namespace fovea::sim {
 
 class ShadowMap {
  public:
-  // Draws one mesh at a place in B.
+  // Draws one mesh at a pose in B.
   using DrawAt = std::function<void(const GpuMesh& mesh, const Eigen::Matrix4f& B_of_mesh)>;
-  // Calls DrawAt for all that casts a shadow.
+  // Calls DrawAt for each thing that casts a shadow.
   using DrawAll = std::function<void(const DrawAt& draw)>;
 
   explicit ShadowMap(int size_px);
@@ -30,7 +30,7 @@ class ShadowMap {
 
   [[nodiscard]] GLuint texture() const { return maps_[1]; }
   [[nodiscard]] int size_px() const { return size_px_; }
-  [[nodiscard]] float texel_m() const;  // what one texel covers [m]
+  [[nodiscard]] float texel_m() const;  // size of one texel [m]
   // From B to the map: x, y from 0 to 1, z the depth to compare.
   [[nodiscard]] const Eigen::Matrix4f& map_of_B() const { return map_of_B_; }
 
@@ -39,7 +39,7 @@ class ShadowMap {
 
   int size_px_;
   GlProgram program_;
-  GLuint frames_[2] = {0, 0};  // what does not move; all
+  GLuint frames_[2] = {0, 0};  // static things; all things
   GLuint maps_[2] = {0, 0};
   Eigen::Matrix4f clip_of_B_;
   Eigen::Matrix4f map_of_B_;

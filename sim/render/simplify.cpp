@@ -9,7 +9,7 @@ namespace fovea::sim {
 Mesh Simplify(const Mesh& mesh, float cell) {
   Mesh simple;
   std::map<std::array<long, 3>, std::uint32_t> cells;
-  std::vector<std::uint32_t> merged;  // for each vertex of `mesh`, the one that stands for it
+  std::vector<std::uint32_t> merged;  // for each vertex of `mesh`, the vertex that replaces it
   std::vector<float> counts;
   merged.reserve(mesh.vertices.size());
   for (const Vertex& v : mesh.vertices) {

@@ -1,5 +1,5 @@
-// What the target looks like to the renderer. Flat ones are painted plates: frame O with x to the right and y
-// down as one looks at the painted side, z into it.
+// The target's shape for the renderer. Flat targets are painted plates. Looking at the painted side, frame O
+// has x right, y down and z into the plate.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ struct TargetShape {
   double radius = 0.04;                  // of ball and disc [m]
   std::vector<Eigen::Vector2d> corners;  // of a convex polygon, in order [m]
 
-  // About its centre [m].
+  // Largest distance of its outline from its centre [m].
   [[nodiscard]] double Reach() const {
     double reach = kind == Kind::kPolygon ? 0.0 : radius;
     for (const Eigen::Vector2d& corner : corners) {

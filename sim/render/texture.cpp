@@ -7,7 +7,7 @@
 namespace fovea::sim {
 namespace {
 
-// 0 to 1, without pattern, for a grid point.
+// A pseudorandom number from 0 to 1 for a grid point.
 float Hash(int x, int y, std::uint32_t seed) {
   std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9E3779B1U +
                     static_cast<std::uint32_t>(y) * 0x85EBCA77U + seed * 0xC2B2AE3DU;
@@ -21,7 +21,7 @@ float Hash(int x, int y, std::uint32_t seed) {
 
 float Fade(float t) { return t * t * (3.0F - 2.0F * t); }
 
-// Smooth noise with one wave per unit; repeats after `period` units when that is above 0.
+// Smooth noise with one wave per unit. Repeats after `period` units if that is above 0.
 float Noise(float x, float y, std::uint32_t seed, int period = 0) {
   const float fx = std::floor(x);
   const float fy = std::floor(y);
@@ -73,7 +73,7 @@ Colour Birch(float x, float y) {
   return Mix({0.64F, 0.52F, 0.37F}, {0.80F, 0.69F, 0.52F}, tone);
 }
 
-// 1 on a line of the ruling, 0 off it, with soft edges. `pitch` and `half_width` in metres.
+// 1 on a ruled line, 0 beside it, with soft edges. `pitch` and `half_width` in metres.
 float Line(float x, float pitch, float half_width, float soft) {
   const float d = std::fabs(x - pitch * std::round(x / pitch));
   return 1.0F - std::clamp((d - half_width) / soft, 0.0F, 1.0F);

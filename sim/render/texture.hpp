@@ -1,4 +1,4 @@
-// Surfaces of the bench, computed: the same on every machine, and nobody's picture.
+// Computed textures of the bench: equal on every machine, without third-party pictures.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ struct Texture {
   std::vector<std::uint8_t> rgba;  // [height * width * 4]
 };
 
-// The table's top, as a whole: light birch with a dark mat, ruled every 50 mm, where the arm works.
+// The whole table top: light birch, with a dark mat in the arm's working area, ruled every 10 mm and 50 mm.
 // `width_m` and `depth_m` are the table's size; the mat's centre and size are in the table's own frame.
 Texture MakeTableTop(int size_px, double width_m, double depth_m, double mat_x, double mat_y,
                      double mat_width, double mat_depth);
 
-// A floor of large grey tiles; repeats.
+// A floor of large grey tiles. The texture repeats.
 Texture MakeFloor(int size_px);
 
 }  // namespace fovea::sim

@@ -3,7 +3,7 @@
 namespace fovea::sim {
 
 Chain::Chain(const SimRobot& robot) : robot_(robot) {
-  for (SimLink& link : robot_.links) {  // only the masses are of interest here
+  for (SimLink& link : robot_.links) {  // shapes are not needed here
     link.visuals.clear();
     link.collisions.clear();
   }
@@ -26,7 +26,7 @@ std::vector<Chain::Moved> Chain::Poses(const Eigen::VectorXd& q) const {
   return moved;
 }
 
-// [v; w] of the point `p_B` of `link` by the joints below it.
+// The Jacobian [v; w] of the point `p_B` of `link`, by the joints between base and link.
 Jacobian Chain::PointJacobian(const std::vector<Moved>& links, int link, const Eigen::Vector3d& p_B) const {
   Jacobian J = Jacobian::Zero(6, robot_.num_dofs);
   for (int k = link; k >= 0; k = robot_.links[static_cast<std::size_t>(k)].parent) {
@@ -104,7 +104,7 @@ Eigen::VectorXd Chain::CoriolisTorque(const Eigen::VectorXd& q, const Eigen::Vec
     if (link.mass == 0.0) {
       continue;
     }
-    // The link's force and moment about its centre of mass act on all joints below.
+    // The link's inertial force and moment at its centre of mass load all joints towards the base.
     const Eigen::Isometry3d X_BCom = links[k].X_BL * link.X_LCom;
     const Eigen::Vector3d c = X_BCom.translation() - links[k].X_BL.translation();
     const Eigen::Matrix3d I_B = X_BCom.linear() * link.I_Com * X_BCom.linear().transpose();

@@ -1,7 +1,7 @@
-// Kinematics and dynamics of a simulated arm at any joint position, as the robot's own controller needs them.
+// Kinematics and dynamics of a simulated arm at any joint position, for the robot's own controller.
 //
-// From the URDF alone, like the physics, and apart from the servo's model: the two meet only in tests. Link
-// Jacobians for M, recursive Newton-Euler for C dq (Siciliano et al., Robotics, 2009, ch. 7).
+// Uses only the URDF, like the physics, and shares no code with the servo's model; tests compare the two.
+// Link Jacobians for M, recursive Newton-Euler for C dq (Siciliano et al., Robotics, 2009, ch. 7).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -19,7 +19,7 @@ class Chain {
 
   [[nodiscard]] int num_dofs() const { return robot_.num_dofs; }
 
-  // Pose of the tip E in B at `q`, and with `J` its Jacobian: [v; w] of E's origin, in axes of B.
+  // Pose of the tip E in B at `q`. `J` becomes its Jacobian: [v; w] of E's origin, in axes of B.
   [[nodiscard]] Eigen::Isometry3d TipPose(const Eigen::VectorXd& q) const;
   [[nodiscard]] Eigen::Isometry3d TipPose(const Eigen::VectorXd& q, Jacobian& J) const;
 
@@ -34,7 +34,7 @@ class Chain {
  private:
   struct Moved {
     Eigen::Isometry3d X_BL;
-    Eigen::Vector3d axis;  // of its joint, in B
+    Eigen::Vector3d axis;  // joint axis, in B
   };
   [[nodiscard]] std::vector<Moved> Poses(const Eigen::VectorXd& q) const;
   [[nodiscard]] Jacobian PointJacobian(const std::vector<Moved>& links, int link,

@@ -28,7 +28,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 const Vector3f kGrey(0.7F, 0.7F, 0.7F);
-constexpr float kSmoothBelowDeg = 40.0F;  // an edge that bends more is sharp
+constexpr float kSmoothBelowDeg = 40.0F;  // an edge with a larger angle is sharp
 
 [[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
 
@@ -39,11 +39,10 @@ std::string LowerExtension(const std::filesystem::path& file) {
   return extension;
 }
 
-// The first line of what the importer says.
+// The first line of the importer's message.
 std::string OneLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-// Whole numbers are all that Collada's lists of corners hold; at anything else in one, assimp's reader stays
-// where it is for good.
+// Collada's index lists may hold only whole numbers. Anything else makes assimp's reader loop forever.
 void CheckColladaLists(const std::filesystem::path& file) {
   std::ostringstream content;
   content << std::ifstream(file, std::ios::binary).rdbuf();
@@ -59,7 +58,7 @@ void CheckColladaLists(const std::filesystem::path& file) {
       }
       const auto wrong = text.find_first_not_of("0123456789+- \t\r\n", begin + 1);
       if (wrong != std::string::npos && text[wrong] != '<') {
-        Fail(fmt::format("cannot be read: in <{}>, where only whole numbers may stand, byte {} is none", name,
+        Fail(fmt::format("cannot be read: <{}> may hold only whole numbers; byte {} is not part of one", name,
                          wrong));
       }
     }
@@ -79,7 +78,7 @@ Eigen::Affine3d ToAffine(const aiMatrix4x4& m) {
 Vector3f ColourOf(const aiMaterial& material) {
   aiString name;
   aiColor3D colour;
-  // What the importer makes up where a file has no material says nothing.
+  // Ignores the default material that the importer adds if a file has none.
   if (material.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS &&
       std::string(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME) {
     return kGrey;
@@ -91,7 +90,7 @@ Vector3f ColourOf(const aiMaterial& material) {
   return rgb.allFinite() ? rgb.cwiseMax(0.0F).cwiseMin(1.0F) : kGrey;
 }
 
-// Files alone are opened, no devices, and none but `file_` outside `root_`.
+// Opens only regular files, no devices; outside `root_` only `file_`.
 class OwnFiles final : public Assimp::DefaultIOSystem {
  public:
   OwnFiles(std::filesystem::path file, std::filesystem::path root)
@@ -131,8 +130,8 @@ class Collector {
       Fail(fmt::format("more than {} triangles", kMostMeshTriangles));
     }
     const Vector3f colour = ColourOf(*scene_.mMaterials[part.mMaterialIndex]);
-    const double turn = X.linear().determinant() < 0.0 ? -1.0 : 1.0;  // a mirror turns the triangles round
-    // Normals stand on their surface, whatever happens to lengths: by the cofactors, not the matrix.
+    const double turn = X.linear().determinant() < 0.0 ? -1.0 : 1.0;  // mirroring reverses the triangles
+    // Normals use the cofactor matrix: they stay perpendicular to their surface under any scaling.
     const Eigen::Matrix3d cofactors = Cofactors(X.linear()) * turn;
     const auto base = static_cast<std::uint32_t>(mesh_.vertices.size());
     for (unsigned i = 0; i < part.mNumVertices; ++i) {
@@ -167,14 +166,14 @@ class Collector {
     return length > 0.0 && std::isfinite(length) ? Vector3f((v / length).cast<float>()) : Vector3f::Zero();
   }
 
-  // Some files hold normals of length 0: there, the mean of the triangles about the vertex.
+  // Replaces normals of length 0, which some files have, by the mean of the adjacent triangles' normals.
   void MakeMissingNormals(std::uint32_t base) {
     const auto missing = [this](std::uint32_t i) { return mesh_.vertices[i].normal.squaredNorm() < 0.5F; };
     std::vector<Vector3d> sums(mesh_.vertices.size() - base, Vector3d::Zero());
     for (std::size_t t = 0; t < mesh_.indices.size(); t += 3) {
       const std::uint32_t* corner = &mesh_.indices[t];
       if (corner[0] < base) {
-        continue;  // of an earlier part
+        continue;  // belongs to an earlier part
       }
       const Vector3d a = mesh_.vertices[corner[0]].position.cast<double>();
       const Vector3d b = mesh_.vertices[corner[1]].position.cast<double>();
@@ -201,7 +200,7 @@ Mesh LoadMeshFile(const std::filesystem::path& file, const Vector3d& scale,
                   const std::filesystem::path& root) {
   const std::string extension = LowerExtension(file);
   if (extension != ".stl" && extension != ".dae" && extension != ".obj") {
-    Fail(fmt::format("\"{}\" is not a mesh that is read; .stl, .dae and .obj are", extension));
+    Fail(fmt::format("\"{}\" is not supported; mesh formats are .stl, .dae and .obj", extension));
   }
   if (!scale.allFinite() || (scale.array() == 0.0).any()) {
     Fail(fmt::format("scale = {} {} {} is not allowed: finite numbers other than 0", scale.x(), scale.y(),
@@ -211,7 +210,7 @@ Mesh LoadMeshFile(const std::filesystem::path& file, const Vector3d& scale,
     CheckColladaLists(file);
   }
   Assimp::Importer importer;
-  importer.SetIOHandler(new OwnFiles(file, root));  // which it deletes
+  importer.SetIOHandler(new OwnFiles(file, root));  // the importer deletes it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, kSmoothBelowDeg);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -227,7 +226,7 @@ Mesh LoadMeshFile(const std::filesystem::path& file, const Vector3d& scale,
   collector.Add(*scene->mRootNode, Eigen::Affine3d(Eigen::Scaling(scale)));
   Mesh mesh = std::move(collector).Take();
   if (mesh.indices.empty()) {
-    Fail("no triangles in it");
+    Fail("the file has no triangles");
   }
   return mesh;
 }

@@ -1,4 +1,4 @@
-// Mesh files as URDFs name them (STL, Collada, Wavefront), read through assimp.
+// Reads mesh files of URDFs (STL, Collada, Wavefront) with assimp.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,22 +9,20 @@
 
 namespace fovea::sim {
 
-inline constexpr std::size_t kMostMeshTriangles = 1'000'000;  // of one file
+inline constexpr std::size_t kMostMeshTriangles = 1'000'000;  // per file
 
-// Reads a .stl (text or binary), .dae or .obj. All that is in the file becomes one mesh, each part where the
-// file puts it; `scale` (URDF's, per axis, not 0; a negative one mirrors) turns the file's units into metres.
+// Reads a .stl (text or binary), .dae or .obj. All parts of the file become one mesh, at their poses in the
+// file. `scale` (from the URDF, per axis, not 0; negative mirrors) converts the file's units to metres.
 //
-// Collada: lengths are multiplied by the file's <unit>; <up_axis> does not turn anything: coordinates count
-// as they are written, as ROS's viewers take them. Normals: the file's own, flat or smooth; STL's follow from
-// its corners, as the format prescribes; where there are none they are made, smooth across edges of less than
-// 40 degrees. Colours: the diffuse colour of each part's material, grey where there is none. Textures are not
-// read.
+// Collada: applies the file's <unit> to lengths and ignores <up_axis>, as ROS's viewers do. Normals: those of
+// the file; for STL those of the triangles, as the format prescribes; missing ones are computed, smooth
+// across edges below 40 degrees. Colours: each material's diffuse colour, else grey. Textures are not read.
 //
-// std::runtime_error with one line, without naming the file: another format, not readable, no triangles, more
-// than kMostMeshTriangles, a coordinate that is not finite, a scale that is 0 or not finite.
+// std::runtime_error with one line, without the file's name: unsupported format, not readable, no triangles,
+// more than kMostMeshTriangles, a coordinate that is not finite, a scale that is 0 or not finite.
 //
-// An .obj has its colours in files that it names itself. They must be files, and with a `root` lie in it,
-// links followed; else it has no colours.
+// An .obj names other files that hold its colours. They must be regular files and, with a `root`, lie inside
+// it after links are followed; otherwise the mesh has no colours.
 Mesh LoadMeshFile(const std::filesystem::path& file, const Eigen::Vector3d& scale,
                   const std::filesystem::path& root = {});
 

@@ -43,7 +43,7 @@ std::vector<fs::path> Entries(const char* variable) {
   return entries;
 }
 
-// Folders that may be the package, the nearest first; with a `root`, of those above the URDF the ones in it.
+// Candidate folders of the package, the nearest first. Those above the URDF must lie inside `root`, if given.
 std::vector<fs::path> PackageFolders(const fs::path& urdf, const std::string& name, const fs::path& root) {
   std::vector<fs::path> folders;
   const fs::path start = fs::absolute(urdf).lexically_normal().parent_path();
@@ -83,7 +83,7 @@ fs::path FindInPackage(const fs::path& urdf, const std::string& name, const std:
     Fail(fmt::format("no such file: {}", there_is));
   }
   Fail(fmt::format(
-      "no folder of package \"{}\": looked above {}, in ROS_PACKAGE_PATH and in AMENT_PREFIX_PATH/share",
+      "no folder of package \"{}\": searched above {}, in ROS_PACKAGE_PATH and in AMENT_PREFIX_PATH/share",
       name, fs::absolute(urdf).lexically_normal().parent_path().string()));
 }
 
@@ -92,7 +92,7 @@ fs::path FindAnywhere(const fs::path& urdf, const std::string& filename, const f
     const std::string path = filename.substr(std::string(kPackage).size());
     const auto slash = path.find('/');
     if (slash == std::string::npos || slash == 0 || slash + 1 == path.size()) {
-      Fail("a package's file is written package://name/path");
+      Fail("a package URL has the form package://name/path");
     }
     return FindInPackage(urdf, path.substr(0, slash), path.substr(slash + 1), root);
   }
@@ -100,10 +100,10 @@ fs::path FindAnywhere(const fs::path& urdf, const std::string& filename, const f
   if (StartsWith(filename, kFile)) {
     file = filename.substr(std::string(kFile).size());
     if (!file.is_absolute()) {
-      Fail("a file's URL is written file:///absolute/path");
+      Fail("a file URL has the form file:///absolute/path");
     }
   } else if (filename.find("://") != std::string::npos) {
-    Fail("only package:// and file:// URLs and paths are read");
+    Fail("only package:// and file:// URLs, and paths, are supported");
   }
   if (file.is_relative()) {
     file = urdf.parent_path() / file;
@@ -114,7 +114,8 @@ fs::path FindAnywhere(const fs::path& urdf, const std::string& filename, const f
   return file;
 }
 
-// In one of the user's packages its own links may lead anywhere, a stranger's ".." may not.
+// Whether the path of `file` lies in one of the user's packages. Links inside a package may lead anywhere; a
+// ".." in the path may not leave the package.
 bool IsUsersPackage(const fs::path& file) {
   const fs::path plain = fs::absolute(file).lexically_normal();
   for (const char* variable : {"ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"}) {
@@ -140,7 +141,7 @@ bool LiesIn(const fs::path& folder, const fs::path& file) {
 fs::path FindMeshFile(const fs::path& urdf, const std::string& filename, const fs::path& root) {
   const fs::path file = FindAnywhere(urdf, filename, root);
   if (!root.empty() && !LiesIn(root, file) && !(StartsWith(filename, kPackage) && IsUsersPackage(file))) {
-    Fail(fmt::format("it lies outside {}, the folder of what names it",
+    Fail(fmt::format("it lies outside {}, the folder of the file that names it",
                      fs::absolute(root).lexically_normal().string()));
   }
   return file;

@@ -1,7 +1,6 @@
-// A robot as the simulator sees it: every link with its shapes, straight from the URDF.
+// The simulator's robot: all links with their shapes, read from the URDF.
 //
-// The servo's model is read from the same file by other code (firmware/host/robots); the two meet only in the
-// tests that compare them.
+// Other code (firmware/host/robots) reads the servo's model from the same file; tests compare the two.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -16,14 +15,14 @@ namespace fovea::sim {
 
 enum class ShapeKind { kBox, kCylinder, kSphere, kMesh };
 
-// A solid in its link's frame; box: size = full extents; cylinder: about z, size = (radius, length, -);
-// sphere: size = (radius, -, -); mesh: its triangles, at their size and with their colours.
+// A solid in its link's frame. Box: size = full extents. Cylinder along z: size = (radius, length, -).
+// Sphere: size = (radius, -, -). Mesh: triangles with their own size and colours.
 struct Shape {
   ShapeKind kind = ShapeKind::kBox;
   Eigen::Isometry3d X_LS = Eigen::Isometry3d::Identity();
   Eigen::Vector3d size = Eigen::Vector3d::Zero();  // [m]
   Eigen::Vector3f colour{0.7F, 0.7F, 0.7F};        // linear RGB, 0 to 1
-  std::shared_ptr<const Mesh> mesh;                // of kMesh, in S; not changed by anyone
+  std::shared_ptr<const Mesh> mesh;                // for kMesh, in S
 };
 
 enum class SimJointKind { kFixed, kRevolute, kPrismatic };
@@ -50,10 +49,9 @@ struct SimRobot {
   int tip = -1;  // index of the link whose frame is E
 };
 
-// Reads `urdf` from `base_link` on, and the mesh files that it names (mesh_path.hpp says where they may be,
-// mesh_file.hpp what they may hold, and both what a `root` is). A mesh has the colour of its URDF material,
-// or those of its file. std::runtime_error with one line, naming the URDF, the link and the mesh, when it
-// cannot be simulated.
+// Reads `urdf` from `base_link` on, and its mesh files. mesh_path.hpp and mesh_file.hpp describe their
+// locations, contents and `root`. A mesh has the colour of its URDF material, otherwise those of its file.
+// std::runtime_error with one line that names the URDF, the link and the mesh: the robot cannot be simulated.
 SimRobot LoadSimRobot(const std::filesystem::path& urdf, const std::string& base_link,
                       const std::string& tip_link, const std::filesystem::path& root = {});
 

@@ -1,4 +1,4 @@
-// Triangles in space: what is drawn of a solid, and what the simulator reads from a mesh file.
+// A triangle mesh: drawn for a solid, or read from a mesh file.
 #pragma once
 
 #include <Eigen/Geometry>

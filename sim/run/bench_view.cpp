@@ -11,8 +11,8 @@ Pinhole MakeBenchPinhole(int width_px, int height_px) {
   return MakePinhole(width_px, height_px, /*hfov=*/0.80);
 }
 
-// Someone stands at the bench's front corner and looks at what happens over the mat.
-// A tall arm makes them step back and look up, a wide one step back.
+// Looks from the bench's front corner at the space above the mat. For a tall arm the viewpoint is farther
+// back and higher; for a wide arm it is farther back.
 BenchView MakeBenchView(const Exposure& exposure, const Pinhole& pinhole) {
   double top = 0.0;
   double reach = 0.0;
@@ -20,7 +20,7 @@ BenchView MakeBenchView(const Exposure& exposure, const Pinhole& pinhole) {
     top = std::max(top, X_BL.translation().z());
     reach = std::max(reach, X_BL.translation().head<2>().norm());
   }
-  const double taller = std::max(0.0, top - 0.75);  // than what stands well in the picture [m]
+  const double taller = std::max(0.0, top - 0.75);  // excess over the height that fits the picture [m]
   const double wider = std::max(0.0, reach - 0.9);
   const Eigen::Vector3d look_at(0.30, 0.02, 0.33 + 0.4 * taller);
   const Eigen::Vector3d eye = look_at + (1.0 + taller + wider) * Eigen::Vector3d(1.42, -1.30, 0.69);

@@ -8,8 +8,8 @@
 namespace fovea::sim {
 namespace {
 
-// Mesa's software renderer splits a picture over all cores by default. Here whole pictures run beside each
-// other, which wastes less; who sets the variable keeps their choice. (A GPU's driver does not look at it.)
+// By default, Mesa's software renderer splits a picture over all cores. Whole pictures in parallel are more
+// efficient. Keeps a value that the user has set; a GPU's driver ignores the variable.
 void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0); }
 
 }  // namespace
@@ -18,7 +18,7 @@ Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
     : faults_(about.scenario.faults.picture), width_px_(about.pinhole.width_px) {
   UseOneThreadPerRenderer();
   std::vector<Painter> painters;
-  for (int i = 0; i < kRenderers; ++i) {  // one after the other: drivers set themselves up with the first
+  for (int i = 0; i < kRenderers; ++i) {  // one after the other: the first initialises the driver
     optics_.push_back(std::make_unique<Optics>(about.scene, about.pinhole, MakeScenarioLens(about.scenario),
                                                Sampling::kPlain, i));
     Optics* const optics = optics_.back().get();

@@ -1,4 +1,4 @@
-// The rendered camera of a run: a few renderers, each with a thread of its own, and the sensor behind them.
+// The rendered camera of a run: several renderers, each with its own thread, and the sensor.
 #pragma once
 
 #include <memory>
@@ -13,13 +13,13 @@
 
 namespace fovea::sim {
 
-// Pictures that are drawn at the same time.
+// Number of pictures that are drawn at the same time.
 inline constexpr int kRenderers = 2;
 
 class Eye {
  public:
-  // `about` must outlive it, and `trace`, where there is one. `queue`: see SimCameraConfig. InputError,
-  // std::runtime_error: it cannot be drawn here.
+  // `about` and `trace` (may be null) must outlive it. `queue`: see SimCameraConfig. InputError,
+  // std::runtime_error: this computer cannot draw it.
   Eye(const RunDescription& about, std::size_t queue, RunTrace* trace = nullptr);
 
   [[nodiscard]] SimCamera& camera() { return *camera_; }

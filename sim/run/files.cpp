@@ -8,7 +8,7 @@ namespace {
 
 const std::string kSceneFilm = "scene.mp4";
 
-// What a simulated run leaves beside what any run does.
+// Files of a simulated run, in addition to those of any run.
 const std::vector<std::string> kMoreFiles{"eye-first.png", "eye-last.png", "bench.png", kSceneFilm};
 
 }  // namespace
@@ -23,7 +23,7 @@ run::RunFolderConfig FolderOf(const RunDescription& about, const RunFilesConfig&
   folder.options.more_files = kMoreFiles;
   folder.options.may_drop = config.may_drop;
   folder.options.replayable = config.replayable;
-  folder.options.begin_ns = 0;  // of the world's clock
+  folder.options.begin_ns = 0;  // in the world's time
   return folder;
 }
 
@@ -74,7 +74,7 @@ void RunFiles::Fill(Summary& summary) {
 }
 
 void RunFiles::Write(const Summary& summary, const Exposure& end) {
-  // The bench takes longest to draw; the rest is written meanwhile.
+  // The bench's picture takes longest; the other files are written in the meantime.
   std::future<std::string> bench;
   if (shell_.book() != nullptr) {
     bench = std::async(std::launch::async, [&] {

@@ -1,5 +1,5 @@
-// What only a simulated run leaves behind, gathered while it goes on: the truth in its log, pictures, the
-// film of its bench. Log, report and summary are the run's shell's.
+// The files that only a simulated run has: the truth in its log, pictures, the film of the bench. RunShell
+// writes log, report and summary.
 #pragma once
 
 #include <future>
@@ -19,44 +19,43 @@ namespace fovea::sim {
 
 struct RunFilesConfig {
   std::filesystem::path out;  // empty: no files
-  bool report = true;         // films, log, report and the bench's picture too
-  int renderer_index = 0;     // the first that the run itself does not use; see SceneRenderer
-  bool may_drop = false;      // at real pace: nobody waits for a film or a log
-  bool replayable = true;     // the servo's inputs are those that are recorded
-  std::string command;        // that began the run; "" when there was none
+  bool report = true;         // also write films, log, report and the bench's picture
+  int renderer_index = 0;     // the first index that the run itself does not use; see SceneRenderer
+  bool may_drop = false;      // at real pace: the run does not wait for film or log
+  bool replayable = true;     // the recorded inputs are those of the servo
+  std::string command;        // command line of the run; "" if none
 };
 
-// Of the shell that RunFiles is then made with.
+// The folder for the RunShell of these RunFiles.
 run::RunFolderConfig FolderOf(const RunDescription& about, const RunFilesConfig& config);
 
 class RunFiles {
  public:
-  // `about` and `shell` must outlive it. std::runtime_error: the bench cannot be drawn here.
+  // `about` and `shell` must outlive it. std::runtime_error: this computer cannot draw the bench.
   RunFiles(const RunDescription& about, const RunFilesConfig& config, run::RunShell& shell);
 
-  // From the thread that advances the world.
+  // Called by the thread that advances the world.
   void AddTruth(const Truth& truth);
   void AddExposure(const Exposure& exposure);
   void AddTheory(const TheorySample& sample);
-  // From the vision thread. `X_CO`: where the target really was.
+  // Called by the vision thread. `X_CO`: the target's true pose.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
 
-  // When the threads are done: completes the bench's film, and says what was kept of it and of the frames. A
-  // film that fails is left out, and that is all.
+  // Completes the bench's film and fills in the counts of its frames and the camera's. Call it after the
+  // threads have ended. A film that fails is left out; the run continues.
   void Fill(Summary& summary);
 
-  // After the shell's Fill: puts everything in place, as RunShell::Write; `end` is the bench as it is at the
-  // end.
+  // Writes all files by RunShell::Write. Call it after the shell's Fill. `end`: the bench at the end.
   void Write(const Summary& summary, const Exposure& end);
 
  private:
-  // The pictures of the eye, the film of the bench, and, where one is asked for, its picture.
+  // The pictures of the camera, the film of the bench, and the bench's picture if `bench` is valid.
   std::vector<config::OutputFile> PicturesAndScene(std::future<std::string> bench);
 
   const RunDescription& about_;
   run::RunShell& shell_;
   std::unique_ptr<SceneFilm> scene_film_;
-  bool has_scene_film_ = false;  // and it is complete
+  bool has_scene_film_ = false;  // the film is complete
   FrameKeeper frames_;
   Path camera_path_;
   Path target_path_;

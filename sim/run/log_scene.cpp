@@ -33,7 +33,7 @@ Eigen::Isometry3d At(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
-// The log's target frame turns with what shows its turn; a disc is shown as it lies at the start.
+// The log's target frame has no orientation for a disc, so the disc is drawn in its initial orientation.
 void AddTarget(const RenderScene& scene, foxglove::SceneEntity& entity) {
   const TargetShape& target = scene.target;
   if (target.kind == TargetShape::Kind::kBall) {
@@ -62,7 +62,7 @@ void AddTarget(const RenderScene& scene, foxglove::SceneEntity& entity) {
 
 std::vector<log::LinkFrame> MakeLinkFrames(const SimRobot& robot, const model::ArmModel& arm,
                                            const Eigen::Isometry3d& X_EC) {
-  // Where all frames are when every joint is at 0, once by the robot's links and once by the servo's model.
+  // All frames with every joint at 0, by the robot's links and by the servo's model.
   model::VecN q(arm.num_joints);
   q.setZero();
   model::ArmPoses poses;

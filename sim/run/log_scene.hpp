@@ -1,4 +1,4 @@
-// The bench as a log's viewer draws it, and the frames that its parts move with.
+// The bench for a log viewer, and the frames of its moving parts.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,8 @@ class SceneUpdate;
 
 namespace fovea::sim {
 
-// A frame for each link of `robot`, by its name, as it moves with the joints of `arm` (the servo's model of
-// the same robot), and the camera's.
+// The frame of each link of `robot`, by its name, relative to the joint of `arm` that moves it, and the
+// camera's frame. `arm` is the servo's model of the same robot.
 std::vector<log::LinkFrame> MakeLinkFrames(const SimRobot& robot, const model::ArmModel& arm,
                                            const Eigen::Isometry3d& X_EC);
 

@@ -9,7 +9,7 @@
 namespace fovea::sim {
 namespace {
 
-// More than are exposed within a transport time.
+// More than the exposures within one transport time.
 constexpr std::size_t kQueue = 8;
 constexpr std::size_t kMostNews = 512;  // half a second of the robot's time
 
@@ -77,8 +77,8 @@ void NetworkEye::Take(const News& news, bool wait) {
   gige_->Advance(news.now_ns, wait);
 }
 
-// Threads that draw and send pictures are at times kept from the processor while they hold a lock. The
-// robot's thread must not wait for them, this one may.
+// The threads that draw and send pictures may be preempted while they hold a lock. The robot's thread must
+// not wait for them; this thread may.
 void NetworkEye::Run() {
   while (!closed_) {
     there_.acquire();

@@ -1,5 +1,4 @@
-// The scenario's camera on the network: what the eye sees, as a GigE Vision camera sends it, with the
-// faults that it has.
+// The scenario's camera as a GigE Vision camera: sends the rendered pictures, with injected faults.
 #pragma once
 
 #include <atomic>
@@ -20,26 +19,26 @@ namespace fovea::sim {
 
 class NetworkEye {
  public:
-  // `about` must outlive it, and it must outlive what `world` does next. With `lockstep` the world waits for
-  // pictures that are due to leave; without it, for nothing: a thread of the eye's own takes exposures to
-  // those that draw and send them. std::runtime_error: no picture can be drawn here, or GigeCamera refuses.
+  // `about` must outlive it; it must outlive the last step of `world`. With `lockstep` the world waits for
+  // pictures that are due to leave. Without, the world never waits: another thread passes the exposures to
+  // the threads that draw and send. std::runtime_error: this computer cannot draw, or GigeCamera refuses.
   NetworkEye(const RunDescription& about, World& world, const std::string& address, const std::string& serial,
              bool lockstep);
   ~NetworkEye();
 
-  // After each step of the world, by its thread.
+  // Call it after each step of the world, on the world's thread.
   void Advance();
   [[nodiscard]] std::uint64_t sent() const { return gige_->sent(); }
-  // Exposures that found no place on their way to those that draw them. By the world's thread, or after it.
+  // Exposures that were dropped before drawing. Call it on the world's thread, or after that has ended.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
-  // Why there are no pictures any more; "" while there are.
+  // Why the camera failed; "" if it did not.
   [[nodiscard]] std::string fault() const { return eye_.camera().fault(); }
 
  private:
-  // What one millisecond brought.
+  // The events of one millisecond.
   struct News {
     std::int64_t now_ns = 0;
-    std::int64_t late_ns = 0;  // of the exposure
+    std::int64_t late_ns = 0;  // additional delay of the exposure
     std::optional<Exposure> exposure;
   };
   void Take(const News& news, bool wait);
@@ -50,12 +49,12 @@ class NetworkEye {
   Eye eye_;
   FrameSpoiler faults_;
   std::unique_ptr<GigeCamera> gige_;
-  News news_;                  // of the present millisecond; of the world's thread
-  std::uint64_t dropped_ = 0;  // of the world's thread
+  News news_;                  // of the present millisecond; used by the world's thread
+  std::uint64_t dropped_ = 0;  // used by the world's thread
   linux_rt::BoundedRing<News> on_the_way_;
   std::counting_semaphore<> there_{0};
   std::atomic<bool> closed_{false};
-  std::thread courier_;  // last: it uses the others
+  std::thread courier_;  // declared last: it uses the other members
 };
 
 }  // namespace fovea::sim

@@ -9,8 +9,8 @@ void FillFrameFailures(const vision::FrameFailures& failures, Summary& summary) 
   summary.frame_failure = failures.first;
   if (summary.frames > 0 && failures.frames == summary.frames) {
     summary.converged = false;
-    summary.verdict = fmt::format("not converged: none of {} pictures could be looked at ({})",
-                                  summary.frames, failures.first);
+    summary.verdict =
+        fmt::format("not converged: vision failed on all {} pictures ({})", summary.frames, failures.first);
   }
 }
 

@@ -1,4 +1,4 @@
-// What decides over a run beside the truth: its pictures, its theory, an early end.
+// Adjusts a run's verdict for failed pictures, the analytic answer and an early end.
 #pragma once
 
 #include "firmware/vision/detect/vision_task.hpp"
@@ -6,9 +6,9 @@
 
 namespace fovea::sim {
 
-// Where no picture could be looked at, the run has not converged, whatever the truth says.
+// If vision failed on all pictures, the run has not converged, whatever the truth is.
 void FillFrameFailures(const vision::FrameFailures& failures, Summary& summary);
-// Where the run's answer is known, the run has converged only if it agrees with it.
+// A run with an analytic answer has converged only if it agrees with that answer.
 void FillTheory(const TheoryResult& theory, Summary& summary);
 void FillInterrupted(double at_s, double duration_s, Summary& summary);
 

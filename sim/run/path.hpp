@@ -1,4 +1,4 @@
-// Where something went, for a picture: evenly in time, and never more points than a picture can show.
+// A path for a picture: points evenly spaced in time, at most as many as a picture can show.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@ namespace fovea::sim {
 
 class Path {
  public:
-  // Called in order, as often as one likes; keeps what the picture needs.
+  // Adds a point, in order of time. Keeps only as many points as the picture needs.
   void Add(std::int64_t stamp_ns, const Eigen::Vector3d& p_B) {
     if (stamp_ns < next_ns_) {
       return;
@@ -28,8 +28,8 @@ class Path {
   [[nodiscard]] const std::vector<Eigen::Vector3d>& points() const { return points_; }
 
  private:
-  static constexpr std::size_t kMostPoints = 4000;  // even, so that the newest outlasts a halving
-  std::int64_t step_ns_ = 16'000'000;  // between points, at least; doubled when there are too many
+  static constexpr std::size_t kMostPoints = 4000;  // even, so that halving keeps the newest point
+  std::int64_t step_ns_ = 16'000'000;  // least time between points; doubled when there are too many
   std::int64_t next_ns_ = 0;
   std::vector<Eigen::Vector3d> points_;
 };

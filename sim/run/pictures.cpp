@@ -14,7 +14,7 @@
 namespace fovea::sim {
 namespace {
 
-constexpr int kScale = 2;      // of the eye's pictures
+constexpr int kScale = 2;      // magnification of the camera's pictures
 constexpr int kLegendPx = 84;  // height of the strip below them
 std::string ToPng(const cv::Mat& image) {
   std::vector<unsigned char> bytes;
@@ -65,7 +65,7 @@ std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
   const auto write = [&page](const std::string& text, int x, int y, const cv::Scalar& colour) {
     film::DrawText(page, text, x, y, 0.7, colour);
   };
-  write(fmt::format("t = {:.3f} s   its middle {:.1f} px off", static_cast<double>(frame.stamp_ns) * 1e-9,
+  write(fmt::format("t = {:.3f} s   centre error {:.1f} px", static_cast<double>(frame.stamp_ns) * 1e-9,
                     error_px),
         20, top, film::kTruthColour);
   write("dashed: true outline", 20, bottom, film::kTruthColour);
@@ -86,7 +86,7 @@ std::string DrawBenchPicture(const RenderScene& scene, const Exposure& exposure,
   const BenchView view =
       MakeBenchView(exposure, MakeBenchPinhole(kSuperSampling * kWidth, kSuperSampling * kHeight));
   RenderScene bright = scene;
-  bright.light = 1.0;  // the eye may be dark, the reader is not
+  bright.light = 1.0;  // full light, even if the camera's picture is dark
   SceneRenderer renderer(bright, view.pinhole, {0, 2048, 16, 2.5F});
   cv::Mat rgba(view.pinhole.height_px, view.pinhole.width_px, CV_8UC4);
   renderer.Draw(exposure, view.X_BV, {rgba.data, rgba.total() * 4});

@@ -1,4 +1,4 @@
-// The pictures that a run leaves: what the eye saw first and last, and the bench from a third person's view.
+// The pictures of a run: the camera's first and last frame, and a third-person view of the bench.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,18 +14,18 @@
 
 namespace fovea::sim {
 
-// A frame that was kept, with what was seen in it.
+// A kept frame with its detection.
 struct KeptFrame {
   cv::Mat bgr;
   std::int64_t stamp_ns = 0;
   vision::Detection detection;
-  model::Pose X_CO;  // where the target really was
+  model::Pose X_CO;  // the target's true pose
 };
 
-// Keeps the first frame of a run and the newest. Called by the vision thread; read when that has ended.
+// Keeps the first and the newest frame of a run. The vision thread calls Keep; read the rest after its end.
 class FrameKeeper {
  public:
-  // `X_CO`: where the target really was.
+  // `X_CO`: the target's true pose.
   void Keep(const hal::Frame& frame, const vision::Detection& detection, const model::Pose& X_CO);
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] std::uint64_t detected() const { return detected_; }
@@ -43,8 +43,8 @@ class FrameKeeper {
 std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& intrinsics,
                            const features::TargetFeature& target);
 
-// The bench as someone standing beside it sees it, with the paths of camera and target drawn in; as PNG.
-// `camera_path` and `target_path` are points in B [m].
+// The bench viewed from beside it, with the paths of camera and target, as PNG. `camera_path` and
+// `target_path` are points in B [m].
 std::string DrawBenchPicture(const RenderScene& scene, const Exposure& exposure,
                              const std::vector<Eigen::Vector3d>& camera_path,
                              const std::vector<Eigen::Vector3d>& target_path);

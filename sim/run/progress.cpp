@@ -14,7 +14,7 @@ constexpr auto kBarInterval = std::chrono::milliseconds(80);
 constexpr int kLineStepPercent = 25;
 constexpr int kBarWidth = 30;
 
-// Nobody listening is no reason to stop.
+// Ignores write errors: the run continues without a reader.
 void Say(const std::string& text) {
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);

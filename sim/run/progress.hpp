@@ -1,4 +1,4 @@
-// Shows how far a run is: a bar on a terminal, a line now and then elsewhere. On standard error.
+// Shows the progress of a run on standard error: a bar on a terminal, otherwise a line for each quarter.
 #pragma once
 
 #include <chrono>
@@ -14,7 +14,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // Cheap unless it is time to show something. `note` says what is going on.
+  // Cheap unless it is time for an output. `note` describes the current activity.
   void Update(double now_s, const char* note);
 
  private:

@@ -14,8 +14,7 @@ constexpr int kLegendPx = 28;  // height of the strip below the picture
 constexpr int kWidth = SceneFilmConfig::kWidthPx;
 constexpr int kPictureHeight = SceneFilmConfig::kHeightPx - kLegendPx;
 constexpr int kPathPx = 2;
-// Little more than the eye's own, since each frame is drawn while the run goes on; coarse shadows are soft
-// ones.
+// Hardly better than the camera's quality, because frames are drawn during the run.
 constexpr RenderQuality kQuality{/*samples=*/0, /*shadow_map_px=*/512, /*shadow_taps=*/1,
                                  /*shadow_spread=*/1.6F};
 

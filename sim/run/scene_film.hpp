@@ -1,5 +1,5 @@
-// The run as someone beside the bench sees it, as a film: each exposure of the eye drawn a second time, with
-// the paths of camera and target so far and the time. Drawn and encoded beside the run.
+// A film of the run, viewed from beside the bench: each exposure drawn a second time, with the paths of
+// camera and target so far, and the time. Another thread draws and encodes it during the run.
 #pragma once
 
 #include <cstdint>
@@ -19,27 +19,27 @@ struct SceneFilmConfig {
   static constexpr int kHeightPx = 600;  // with the legend below the picture
 
   std::filesystem::path path;
-  RenderScene scene;       // shown in full light, however dark the eye's picture is
+  RenderScene scene;       // drawn in full light, even if the camera's picture is dark
   int renderer_index = 0;  // see SceneRenderer
   bool may_drop = false;   // when drawing is slower than the camera: drop a frame (true) or wait (false)
 };
 
 class SceneFilm {
  public:
-  // std::runtime_error with one line when there is no EGL, or no such file.
+  // std::runtime_error with one line: there is no EGL, or the file cannot be written.
   explicit SceneFilm(const SceneFilmConfig& config);
 
-  // From the thread that advances the world; copies a few poses.
+  // Copies a few poses. Called by the thread that advances the world.
   void Add(const Exposure& exposure);
-  // Draws and encodes what is left and completes the file. Throws what went wrong at any time.
+  // Draws and encodes the remaining frames and completes the file. Throws any error that occurred before.
   void Finish();
-  // Frames that found no place.
+  // Frames dropped because the queue was full.
   [[nodiscard]] std::uint64_t dropped() const { return queue_.dropped(); }
 
  private:
   void Draw(const Exposure& exposure);
 
-  // Used by the queue's thread alone.
+  // Used only by the queue's thread.
   film::VideoFile file_;
   SceneRenderer renderer_;
   std::optional<BenchView> view_;  // from the first frame on
@@ -48,7 +48,7 @@ class SceneFilm {
   cv::Mat rgba_;
   cv::Mat page_;
 
-  film::FilmQueue<Exposure> queue_;  // last: its thread uses the others
+  film::FilmQueue<Exposure> queue_;  // declared last: its thread uses the other members
 };
 
 }  // namespace fovea::sim

@@ -50,7 +50,7 @@ void SimVision::Run() {
                           [this](const hal::Frame& frame, const vision::Detection& detection) {
                             observer_(frame, detection, targets_.Take(frame.sequence));
                           });
-    static_cast<void>(status);  // an orderly end, or a fault that the camera keeps the words for
+    static_cast<void>(status);  // a normal end, or a fault whose message the camera keeps
   } catch (...) {
     failure_ = std::current_exception();
   }
@@ -75,7 +75,7 @@ void SimVision::RethrowFailure() const {
     std::rethrow_exception(failure_);
   }
   if (eye_ && !eye_->camera().fault().empty()) {
-    throw std::runtime_error("the camera broke during the run: " + eye_->camera().fault());
+    throw std::runtime_error("the camera failed during the run: " + eye_->camera().fault());
   }
 }
 

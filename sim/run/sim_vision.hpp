@@ -1,5 +1,5 @@
-// The eye of a simulated run: from an exposure to a measurement that is due. Rendered camera, vision task on
-// a thread of its own, the faults of frames and detector, and the modelled latency.
+// The vision of a simulated run, from an exposure to a measurement that is due: rendered camera, vision task
+// on its own thread, faults of frames and detector, and the modelled latency.
 #pragma once
 
 #include <atomic>
@@ -23,36 +23,37 @@ namespace fovea::sim {
 
 class SimVision {
  public:
-  // Called by the vision thread for each frame; `X_CO`: where the target really was.
+  // Called by the vision thread for each frame. `X_CO`: the target's true pose.
   using Observer = std::function<void(const hal::Frame& frame, const vision::Detection& detection,
                                       const model::Pose& X_CO)>;
 
-  // `about` must outlive it. InputError: the detector cannot be as [vision] says.
+  // `about` must outlive it. InputError: the detector cannot be set up as [vision] demands.
   SimVision(const RunDescription& about, Observer observer);
   ~SimVision();
   SimVision(const SimVision&) = delete;
   SimVision& operator=(const SimVision&) = delete;
 
-  // Where the scenario has a camera: opens it. `queue`: see SimCameraConfig. `trace`: of the run, or null; it
-  // must outlive this. InputError, std::runtime_error: it cannot be drawn here.
+  // Opens the camera; call it only if the scenario has one. `queue`: see SimCameraConfig. `trace`: may be
+  // null; must outlive this. InputError, std::runtime_error: this computer cannot draw it.
   void Open(std::size_t queue, RunTrace* trace);
-  // Once it is open: the vision thread begins.
+  // Starts the vision thread. Call it after Open.
   void Begin();
-  // Closes the camera, and waits for the vision thread. Nothing is done where there is none.
+  // Closes the camera and waits for the vision thread, if it runs.
   void End();
 
-  // From the world's thread. The shutter opens; false: the frame is lost.
+  // Takes an exposure. False if the frame is lost. Called by the world's thread.
   bool Expose(const Exposure& exposure);
-  // What is due goes to `servo`; see FeatureDelay.
+  // Passes due measurements to `servo`; see FeatureDelay.
   bool HandOver(std::int64_t now_ns, bool wait, hal::FeatureSink& servo) {
     return delay_.HandOver(now_ns, wait, servo);
   }
 
-  // All that follows after End. What the vision thread threw; std::runtime_error: the camera broke.
+  // Rethrows an exception of the vision thread; std::runtime_error: the camera failed. Call this and the
+  // functions below only after End.
   void RethrowFailure() const;
   [[nodiscard]] const vision::FrameFailures& failures() const { return task_.failures(); }
   [[nodiscard]] std::uint64_t frames_lost() const { return eye_ ? eye_->camera().lost() : 0; }
-  // Who draws; "nothing" where there is no camera.
+  // Name of the renderer; "nothing" without a camera.
   [[nodiscard]] std::string renderer() const { return eye_ ? eye_->driver_name() : "nothing"; }
 
  private:

@@ -12,7 +12,7 @@ namespace fovea::sim {
 namespace {
 
 constexpr double kTickHz = 1000.0;
-constexpr double kMostEvents = 8e6;  // of one track: 320 MB
+constexpr double kMostEvents = 8e6;  // per track: 320 MB
 constexpr double kSpare = 1000.0;
 
 std::size_t Room(double events) { return static_cast<std::size_t>(std::min(events + kSpare, kMostEvents)); }
@@ -24,8 +24,8 @@ RunTrace::RunTrace(std::filesystem::path file, double duration_s, double camera_
   if (!std::ofstream(file_)) {
     throw config::InputError("--trace " + file_.string() + ": cannot be written");
   }
-  constexpr double kAroundTick = 3.0;        // the world, the records and the wait in it
-  constexpr double kVisionPerPicture = 3.0;  // wait, detect, log; and a wait that was in vain, now and then
+  constexpr double kAroundTick = 3.0;        // world, records, wait for vision
+  constexpr double kVisionPerPicture = 3.0;  // wait, detect, log; doubled below for waits without a picture
   constexpr double kPartsOfPicture = 8.0;
   const double pictures = duration_s * camera_rate_hz;
   const double per_tick = static_cast<double>(trace::kSpansPerTick) + kAroundTick;
@@ -38,7 +38,7 @@ RunTrace::RunTrace(std::filesystem::path file, double duration_s, double camera_
 
 Painter RunTrace::Watched(Painter painter, Optics& optics, int renderer) {
   trace::Track& track = *renderers_[static_cast<std::size_t>(renderer)];
-  const auto last_ns = std::make_shared<std::int64_t>(0);  // both functions run in the painter's thread
+  const auto last_ns = std::make_shared<std::int64_t>(0);  // both functions run on the painter's thread
   optics.Watch([&track, last_ns](const char* part) {
     const std::int64_t now_ns = trace::NowNs();
     track.Add({part, *last_ns, now_ns, -1, trace::Flow::kNone});

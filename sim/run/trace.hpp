@@ -1,4 +1,4 @@
-// The timeline of a run: which thread did what, when.
+// The timeline of a run's threads.
 #pragma once
 
 #include <filesystem>
@@ -13,17 +13,15 @@ namespace fovea::sim {
 
 class RunTrace {
  public:
-  // With room for a run of `duration_s` and the pictures of so many renderers. InputError when `file` cannot
-  // be written.
+  // Reserves space for a run of `duration_s` with this many renderers. InputError: `file` cannot be written.
   RunTrace(std::filesystem::path file, double duration_s, double camera_rate_hz, int renderers);
 
   [[nodiscard]] trace::Track& servo() { return *servo_; }
   [[nodiscard]] trace::Track& vision() { return *vision_; }
-  // A painter that does what `painter` does; each picture, its parts and the sensor stand on a track of its
-  // own.
+  // Wraps `painter`. Records each picture, its parts and the sensor's work on the renderer's own track.
   [[nodiscard]] Painter Watched(Painter painter, Optics& optics, int renderer);
 
-  // When all threads are done. std::runtime_error as Trace::Write.
+  // Call it after all threads have ended. std::runtime_error as Trace::Write.
   void Write() const { trace_.Write(file_); }
 
  private:

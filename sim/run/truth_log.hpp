@@ -1,4 +1,4 @@
-// What only a simulated run's log has: what the run is about, by its scenario, and what is true.
+// The parts of the log that only a simulated run has: the facts of its scenario, and the truth.
 #pragma once
 
 #include "firmware/host/recording/log/run_log.hpp"
@@ -11,11 +11,11 @@ namespace fovea::sim {
 
 run::RunFacts FactsOf(const RunDescription& about);
 
-// From the thread that advances the world.
+// The thread that advances the world calls LogTruth and LogTheory.
 void LogTruth(const RunDescription& about, const Truth& truth, log::RunLog& log);
 void LogTheory(const TheorySample& sample, log::RunLog& log);
 
-// The target's true outline on a picture; `X_CO`: where it really was.
+// The target's true outline on a picture. `X_CO`: its true pose.
 foxglove::ImageAnnotations TruthOnPicture(const RunDescription& about, const model::Pose& X_CO);
 
 }  // namespace fovea::sim

@@ -22,7 +22,7 @@ moves::MotionCommand CommandedCircle::At(double t_s) const noexcept {
   moves::MotionCommand command;
   const double t = t_s - lead_s;
   command.kind = t < 0.0 ? moves::MotionKind::kPoseGoal : moves::MotionKind::kPoseSetpoint;
-  // The angle comes up to speed by a smooth step, whose integral this is.
+  // The angular rate rises by a smooth step over one second; the angle is its integral.
   const double omega = 2.0 * std::numbers::pi * rate_hz;
   double angle = 0.0;
   double rate = 0.0;

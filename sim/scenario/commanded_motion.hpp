@@ -1,4 +1,4 @@
-// Motions as a scenario commands them, as a source for the servo's loop.
+// The commanded motions of a scenario, as a source for the servo's loop.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,13 +18,13 @@ struct CommandedJoints {
   [[nodiscard]] moves::MotionCommand At(double t_s) const noexcept;
 };
 
-// The end effector goes to the circle's lowest point (seen along `normal`, in B) until lead_s, then round it,
-// coming up to speed within a second.
+// The end effector moves to the circle's lowest point until lead_s. Then it follows the circle, at full speed
+// after one second.
 struct CommandedCircle {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();   // p_B [m]
-  Eigen::Vector3d across = Eigen::Vector3d::UnitY();  // two directions that span its plane
+  Eigen::Vector3d across = Eigen::Vector3d::UnitY();  // two unit vectors that span its plane, in B
   Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
-  Eigen::Quaterniond hand = Eigen::Quaterniond::Identity();  // R_BE throughout
+  Eigen::Quaterniond hand = Eigen::Quaterniond::Identity();  // R_BE, constant
   double radius = 0.15;                                      // [m]
   double rate_hz = 0.5;
   double lead_s = 3.0;
@@ -32,7 +32,7 @@ struct CommandedCircle {
   [[nodiscard]] moves::MotionCommand At(double t_s) const noexcept;
 };
 
-// The joints go to the arm's ready posture.
+// The joints move to the arm's ready posture.
 struct CommandedHome {
   [[nodiscard]] moves::MotionCommand At(double t_s) const noexcept;
 };

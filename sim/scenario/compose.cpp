@@ -62,7 +62,7 @@ void CheckFriction(const Scenario& s) {
   if (servo + s.arm.friction_compensation > 1.0 + kRounding) {
     throw InputError(
         fmt::format("servo.friction_compensation = {} is not allowed with arm.friction_compensation = {}: "
-                    "together at most 1, since more drives the joints",
+                    "their sum may be at most 1, because more would drive the joints",
                     servo, s.arm.friction_compensation));
   }
 }
@@ -93,15 +93,15 @@ void AddLoad(const model::Load& load, SimRobot& robot) {
   robot.links.push_back(link);
 }
 
-// InputError: a joint or the hand begins faster than it may.
+// InputError: a joint or the hand starts faster than its limit.
 void CheckStartSpeed(const Eigen::VectorXd& dq, const model::ArmModel& arm, const model::ArmPoses& poses,
                      const config::GuardConfig& guard) {
   for (int i = 0; i < arm.num_joints; ++i) {
     const double most = guard.joint_velocity_fraction * arm.joints[static_cast<std::size_t>(i)].dq_max;
     if (std::fabs(dq[i]) > most) {
       throw InputError(
-          fmt::format("arm.dq_start[{}] = {} is not allowed: joint {} may have {:.3g}, "
-                      "safety.joint_velocity_fraction of its limit",
+          fmt::format("arm.dq_start[{}] = {} is not allowed: joint {} may start with at most {:.3g}, by "
+                      "safety.joint_velocity_fraction",
                       i, dq[i], i + 1, most));
     }
   }
@@ -111,7 +111,7 @@ void CheckStartSpeed(const Eigen::VectorXd& dq, const model::ArmModel& arm, cons
   const double turn = model::AngularVelocity(arm, poses, dq).norm();
   if (speed > guard.cartesian_speed || turn > guard.rotation_speed) {
     throw InputError(
-        fmt::format("arm.dq_start is not allowed: the hand begins with {:.3g} m/s and {:.3g} rad/s, "
+        fmt::format("arm.dq_start is not allowed: the hand starts with {:.3g} m/s and {:.3g} rad/s; "
                     "safety.cartesian_speed is {} m/s, safety.rotation_speed {} rad/s",
                     speed, turn, guard.cartesian_speed, guard.rotation_speed));
   }
@@ -136,8 +136,8 @@ void CheckStart(const Scenario& s, const robots::Robot& robot) {
   const double radius = poses.X_BE.p.norm();
   if (radius > guard.workspace_radius - guard.workspace_margin) {
     throw InputError(
-        fmt::format("arm.q_start is not allowed: the end effector is {:.3f} m from the base there, outside "
-                    "safety.workspace_radius = {} m less safety.workspace_margin = {} m",
+        fmt::format("arm.q_start is not allowed: the end effector is {:.3f} m from the base, beyond "
+                    "safety.workspace_radius = {} m minus safety.workspace_margin = {} m",
                     radius, guard.workspace_radius, guard.workspace_margin));
   }
 }
@@ -148,8 +148,8 @@ void CheckOutside(const Scenario& s, const config::ServoConfig& servo) {
   model::ComputePoses(servo.arm, q_start, poses);
   if (const double clearance = barriers::ClearanceOfArm(servo, poses); !(clearance > 0.0)) {
     throw InputError(
-        fmt::format("arm.q_start is not allowed: hand, camera, tools or links stand {:.3f} m inside what "
-                    "safety.planes and safety.boxes keep them out of",
+        fmt::format("arm.q_start is not allowed: hand, camera, tools or links are {:.3f} m inside a solid of "
+                    "safety.planes or safety.boxes",
                     -clearance));
   }
 }
@@ -226,7 +226,7 @@ RenderScene MakeRenderScene(const Scenario& s, const SimRobot& robot) {
 }
 
 std::uint64_t SeedOf(const Scenario& s, RandomStream stream) {
-  constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15U;  // so that seed 0 is not mixed to 0
+  constexpr std::uint64_t kGoldenRatio = 0x9E3779B97F4A7C15U;  // so that seed 0 does not hash to 0
   return MixBits((static_cast<std::uint64_t>(s.run.seed) << 8U) + static_cast<std::uint64_t>(stream) +
                  kGoldenRatio);
 }
@@ -240,8 +240,8 @@ Pinhole MakeScenarioPinhole(const Scenario& s) {
   }
   if (std::count(given.begin(), given.end(), 0.0) > 0) {
     throw InputError(fmt::format(
-        "camera.f_u_px, f_v_px, c_u_px, c_v_px = {}, {}, {}, {} is not allowed: all four, or none", in.f_u_px,
-        in.f_v_px, in.c_u_px, in.c_v_px));
+        "camera.f_u_px, f_v_px, c_u_px, c_v_px = {}, {}, {}, {} is not allowed: set all four or none",
+        in.f_u_px, in.f_v_px, in.c_u_px, in.c_v_px));
   }
   const auto is_in = [](double px, int size_px) { return px >= 0.0 && px <= size_px - 1; };
   if (!is_in(in.c_u_px, in.width_px) || !is_in(in.c_v_px, in.height_px)) {
@@ -290,8 +290,8 @@ void CheckGoal(const Scenario& s) {
   const double far = s.vision.config.distance_max;
   if (goal.norm() < near || goal.norm() > far) {
     throw InputError(
-        fmt::format("servo.goal = [{}, {}, {}] is not allowed: {:.3g} m off, where vision.distance_min and "
-                    "vision.distance_max let the target be from {} to {} m",
+        fmt::format("servo.goal = [{}, {}, {}] is not allowed: its distance is {:.3g} m; vision.distance_min "
+                    "and vision.distance_max allow {} to {} m",
                     goal.x(), goal.y(), goal.z(), goal.norm(), near, far));
   }
 }
@@ -300,19 +300,19 @@ void CheckTimes(const Scenario& s) {
   const double period_ms = 1e3 / s.camera.rate_hz;
   if (s.camera.exposure_ms > period_ms) {
     throw InputError(
-        fmt::format("camera.exposure_ms = {} is not allowed: at camera.rate_hz = {} a frame has {:.3g} ms",
+        fmt::format("camera.exposure_ms = {} is not allowed: at camera.rate_hz = {} the period is {:.3g} ms",
                     s.camera.exposure_ms, s.camera.rate_hz, period_ms));
   }
   if (s.camera.latency_ms < 0.5 * s.camera.exposure_ms) {
     throw InputError(fmt::format(
-        "camera.latency_ms = {} is not allowed: the second half of camera.exposure_ms = {} comes first",
+        "camera.latency_ms = {} is not allowed: it must be at least half of camera.exposure_ms = {}",
         s.camera.latency_ms, s.camera.exposure_ms));
   }
   const double stale_ms = 1e3 * s.servo.config.predict.stale_s;
   if (s.camera.latency_ms >= stale_ms) {
     throw InputError(fmt::format(
         "camera.latency_ms = {} is not allowed: every measurement would be older than servo.stale_s = "
-        "{} s when it comes",
+        "{} s when it arrives",
         s.camera.latency_ms, s.servo.config.predict.stale_s));
   }
 }

@@ -1,4 +1,4 @@
-// From a scenario's keys to what the simulator is made of, and the checks that need more than one key.
+// Builds the simulator's parts from a scenario's keys, and checks keys against each other.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,17 +14,17 @@
 
 namespace fovea::sim {
 
-// X_EC.
+// Pose X_EC of the camera on the end effector.
 Eigen::Isometry3d CameraMount(const Scenario& scenario);
-// std::runtime_error: intrinsics that are not whole, or that lie outside the picture.
+// InputError: incomplete intrinsics, or a principal point outside the picture.
 Pinhole MakeScenarioPinhole(const Scenario& scenario);
 Lens MakeScenarioLens(const Scenario& scenario);
 WorldConfig MakeWorldConfig(const Scenario& scenario, const SimRobot& robot);
 RenderScene MakeRenderScene(const Scenario& scenario, const SimRobot& robot);
-// What [motion] commands; of interest when motion.kind says so.
+// The motion of [motion]. Call it only if motion.kind is not "none".
 CommandedMotion MakeMotion(const Scenario& scenario);
 
-// Each consumer of random numbers has a generator of its own.
+// Each consumer of random numbers has its own generator.
 enum class RandomStream : std::uint8_t {
   kEncoders,
   kSensor,
@@ -37,24 +37,24 @@ enum class RandomStream : std::uint8_t {
 };
 std::uint64_t SeedOf(const Scenario& scenario, RandomStream stream);
 
-// InputError when a list has not one entry per joint.
+// InputError: a list does not have one entry per joint.
 void CheckSizes(const Scenario& scenario, const robots::Robot& robot);
-// InputError: robot and servo make up for more friction than there is.
+// InputError: robot and servo together compensate more friction than there is.
 void CheckFriction(const Scenario& scenario);
-// Springs and friction as the scenario has them, for the servo's model and for the physics.
+// Sets the scenario's springs and friction in the servo's model and in the physics.
 void SetFriction(const Scenario& scenario, robots::Robot& robot, SimRobot& sim_robot);
-// The physics' arm carries `load` too, which the servo's model knows of.
+// Adds `load` to the arm of the physics; the servo's model includes it separately.
 void AddLoad(const model::Load& load, SimRobot& robot);
-// InputError when arm.q_start is outside the joints' range or the workspace.
+// InputError: arm.q_start is outside the joints' range or the workspace, or arm.dq_start is too fast.
 void CheckStart(const Scenario& scenario, const robots::Robot& robot);
 
-// InputError when the arm starts within what the servo keeps out of.
+// InputError: the arm starts inside a solid that the servo must avoid.
 void CheckOutside(const Scenario& scenario, const config::ServoConfig& servo);
-// InputError when the lens of camera.k1, ... cannot be drawn.
+// InputError: camera.lens cannot be drawn.
 void CheckLens(const Scenario& scenario);
-// InputError when the target, standing at servo.goal, could not be seen.
+// InputError: a target at servo.goal would be invisible.
 void CheckGoal(const Scenario& scenario);
-// InputError when exposure, latency, frame rate or stale limit contradict each other.
+// InputError: exposure, latency, frame rate or stale limit contradict each other.
 void CheckTimes(const Scenario& scenario);
 
 }  // namespace fovea::sim

@@ -24,14 +24,14 @@ void Fields(Visitor& v, Settings& f) {
   Fields(v, f.arm);
   Fields(v, f.stall);
   v.Window({"nothing", "s",
-            "nothing goes wrong; summary.json says what the servo noticed, to compare a fault's run with"},
+            "no fault: a reference run; summary.json lists what the servo noticed, for comparison"},
            f.nothing);
 }
 
 std::string KeyOf(const Field& field) { return std::string("faults.") + field.key; }
 std::string WindowKeyOf(const Field& field) { return KeyOf(field) + "_s"; }
 
-// Adds the keys. What is bound in other units than the key's has its default printed from the field.
+// Adds the keys. If a field has another unit than its key, the key's default is converted from the field.
 class FaultKeys {
  public:
   explicit FaultKeys(config::KeyTable& keys) : keys_(keys) {}
@@ -78,7 +78,7 @@ class FaultKeys {
   void Size(const Field& /*field*/, double /*value*/) {}
 
  private:
-  // The entries that are not given are 0.
+  // Missing entries are 0.
   template <std::size_t kSize>
   static void Take(const std::vector<double>& numbers, std::array<double, kSize>& values) {
     values.fill(0.0);
@@ -91,7 +91,7 @@ class FaultKeys {
   config::KeyTable& keys_;
 };
 
-// Reads the lists and does nothing: others replace what they look at.
+// Reads the lists and does nothing. Derived classes replace the functions that they need.
 class FaultReader {
  public:
   void Window(const Field& /*field*/, const TimeWindow& /*window*/, const char* /*not_served*/ = nullptr) {}

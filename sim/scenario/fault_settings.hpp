@@ -1,4 +1,4 @@
-// [faults]: what goes wrong in a run, when, and how badly; by script, and by run.seed where it is random.
+// [faults]: the faults of a run with their times and sizes. Random faults depend on run.seed.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace fovea::sim {
 
-// What each part of the simulator is told of its faults; sim/faults has their keys beside them.
+// The faults of each part of the simulator. Their keys are beside the structs, in sim/faults.
 struct FaultSettings {
   BenchFaults bench;
   FrameFaults frames;
@@ -22,33 +22,32 @@ struct FaultSettings {
   DetectorFaults detector;
   ArmFaults arm;
   StallFault stall;
-  TimeWindow nothing;  // nothing goes wrong
+  TimeWindow nothing;  // no fault: a reference run
 };
 
-// The same faults by another seed of what is random in them.
+// The same faults with another seed.
 template <class Faults>
 Faults Seeded(Faults faults, std::uint64_t seed) {
   faults.seed = seed;
   return faults;
 }
 
-// A fault that a run meets, by the name of its keys.
+// A fault of a run, by the name of its keys.
 struct FaultWindow {
   const char* name;
   double from_s = 0.0;
   double to_s = 0.0;
 };
 
-// Those of a run, in the order of the keys; `nothing` among them.
+// The faults of a run, in the order of the keys; includes `nothing`.
 std::vector<FaultWindow> FaultsOf(const FaultSettings& faults);
 
 void AddFaultKeys(FaultSettings& faults, config::KeyTable& keys);
 
-// InputError when a window ends before it begins, or a joint is none of the arm's.
+// InputError: a window ends before it begins, the arm has no such joint, or a size is not above 0.
 void CheckFaults(const FaultSettings& faults, int num_joints);
 
-// InputError when a fault is at work that lies between arm, detector and servo: none of the bench's, which is
-// all that `serve` has.
+// InputError: a fault that acts between arm, detector and servo is set. `serve` has only the bench's faults.
 void CheckServedFaults(const FaultSettings& faults);
 
 }  // namespace fovea::sim

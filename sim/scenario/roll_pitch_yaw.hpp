@@ -1,5 +1,5 @@
-// Orientations as a scenario writes them. (Not those of firmware/host/config: what the truth is made of
-// shares no code with what is judged by it.)
+// Orientations in a scenario. Does not use the code of firmware/host/config: the truth must share no code
+// with the servo that it judges.
 #pragma once
 
 #include <Eigen/Geometry>

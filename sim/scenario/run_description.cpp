@@ -10,12 +10,12 @@ namespace fovea::sim {
 
 namespace {
 
-// InputError when there is no analytic answer to compare with.
+// InputError: there is no analytic response to compare with.
 TheoryConfig MakeTheoryConfig(const Scenario& s, const RunDescription& run) {
   const model::ArmModel& arm = run.servo.arm;
   if (arm.num_joints != 1 || arm.joints[0].type != model::JointType::kPrismatic) {
     throw config::InputError(fmt::format(
-        "theory.enabled = true is not allowed: it takes an arm with one prismatic joint, and \"{}\" is none",
+        "theory.enabled = true is not allowed with arm \"{}\": it needs an arm with one prismatic joint",
         run.robot.name));
   }
   constexpr double kLongest = 600.0;
@@ -29,7 +29,8 @@ TheoryConfig MakeTheoryConfig(const Scenario& s, const RunDescription& run) {
   theory.law = run.servo.motion_law;
   if (run.motion) {
     if (!std::holds_alternative<CommandedJoints>(*run.motion)) {
-      throw config::InputError("theory.enabled = true is allowed with motion.kind = \"joints\" or none");
+      throw config::InputError(
+          "theory.enabled = true is allowed only with motion.kind = \"joints\" or \"none\"");
     }
     theory.motion = std::get<CommandedJoints>(*run.motion);
   }

@@ -1,4 +1,4 @@
-// What a run is of: everything that follows from its scenario, checked and ready. Made once, then only read.
+// Everything that a run derives from its scenario, complete and checked. Constant after DescribeRun.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,12 @@ struct RunDescription {
   config::ServoConfig servo;
   RenderScene scene;
   Pinhole pinhole;
-  vision::Intrinsics intrinsics;  // of the same camera, as the vision task has them
+  vision::Intrinsics intrinsics;  // of the same camera, for the vision task
   std::optional<CommandedMotion> motion;
   std::optional<TheoryConfig> theory;
 };
 
-// InputError when the scenario cannot be run.
+// InputError: the scenario cannot be run.
 RunDescription DescribeRun(const Scenario& scenario);
 
 }  // namespace fovea::sim

@@ -31,13 +31,13 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
   keys.Numbers("arm.coulomb", s.arm.coulomb, 1, model::kMaxJoints, 0.0, 1e6, "Nm",
                "Coulomb friction, one per joint; the URDF's friction when not given");
   keys.Flag("arm.stiction", s.arm.stiction,
-            "Coulomb friction holds a joint at rest; false: it is smooth about standstill");
+            "true: Coulomb friction holds a joint at rest; false: it is smooth around zero speed");
   keys.Number("arm.friction_compensation", s.arm.friction_compensation, 0.0, 1.0, "",
-              "share of the joints' friction that the robot's own controller takes away");
+              "share of the joints' friction that the robot's own controller compensates");
   keys.Number("arm.encoder_noise", s.arm.encoder_noise, 0.0, 0.1, "rad",
               "standard deviation of measured positions");
   keys.Number("arm.encoder_quantum", s.arm.encoder_quantum, 0.0, 0.1, "rad",
-              "measured positions are rounded to multiples of it, velocities are not; 0: none are");
+              "measured positions are rounded to multiples of it, velocities are not; 0: no rounding");
   keys.Number("arm.velocity_noise", s.arm.velocity_noise, 0.0, 1.0, "rad/s",
               "standard deviation of measured velocities");
   keys.Choice("arm.integrator", s.arm.integrator, {"euler", "rk4"},
@@ -46,13 +46,13 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
 }
 
 void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
-  keys.Flag("camera.enabled", s.camera.enabled, "false: a run without eyes, for commanded motions");
+  keys.Flag("camera.enabled", s.camera.enabled, "false: a run without camera, for commanded motions");
   config::AddCalibrationKeys(s.camera.calibration, keys, {64, 4096});
   for (const char* former : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
     keys.Renamed(former, "camera.lens");
   }
   keys.Number("camera.hfov_deg", s.camera.hfov_deg, 5.0, 150.0, "deg",
-              "horizontal field of view, where camera.f_u_px and the three beside it are not given");
+              "horizontal field of view, if camera.f_u_px, f_v_px, c_u_px and c_v_px are not given");
   keys.Number("camera.rate_hz", s.camera.rate_hz, 1.0, 240.0, "Hz", "frames per second");
   keys.Number("camera.exposure_ms", s.camera.exposure_ms, 0.01, 100.0, "ms",
               "exposure time; stamps are at its middle");
@@ -71,9 +71,9 @@ void AddRunKeys(Scenario& s, config::KeyTable& keys) {
   keys.Number("run.tracking_bound_px", s.run.tracking_bound_px, 0.01, 1e4, "px",
               "a moving target counts as tracked below this error, rms over the second half");
   keys.Number("run.tracking_bound_mm", s.run.tracking_bound_mm, 0.01, 1e4, "mm",
-              "and with the camera no further from where it should be, in the same way");
+              "a moving target counts as tracked only if this error is also met, rms over the second half");
   keys.Flag("run.scene_video", s.run.scene_video,
-            "also film the bench from beside it, with the paths of camera and target: scene.mp4");
+            "also film the bench with the paths of camera and target: scene.mp4");
 }
 
 void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
@@ -88,16 +88,16 @@ void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
                "one per joint; 0 when not given");
   keys.Numbers("motion.amplitude", s.motion.amplitude, 1, kMax, -100.0, 100.0, "rad",
                "one per joint; 0 when not given");
-  keys.Number("motion.omega", s.motion.omega, 1e-3, 1e3, "rad/s", "angular frequency of the swing");
-  keys.Numbers("motion.centre", s.motion.centre, 3, 3, -5.0, 5.0, "m", "of the circle, in B");
-  keys.Numbers("motion.normal", s.motion.normal, 3, 3, -1.0, 1.0, "", "of its plane, in B");
+  keys.Number("motion.omega", s.motion.omega, 1e-3, 1e3, "rad/s", "angular frequency of the sine");
+  keys.Numbers("motion.centre", s.motion.centre, 3, 3, -5.0, 5.0, "m", "centre of the circle, in B");
+  keys.Numbers("motion.normal", s.motion.normal, 3, 3, -1.0, 1.0, "", "normal of the circle's plane, in B");
   keys.Numbers("motion.hand_rpy_deg", s.motion.hand_rpy_deg, 3, 3, -360.0, 360.0, "deg",
-               "roll, pitch, yaw of the end effector on it, about fixed axes of B");
-  keys.Number("motion.radius", s.motion.radius, 0.001, 2.0, "m", "of the circle");
+               "roll, pitch, yaw of the end effector on the circle, about fixed axes of B");
+  keys.Number("motion.radius", s.motion.radius, 0.001, 2.0, "m", "radius of the circle");
   keys.Number("motion.rate_hz", s.motion.rate_hz, 0.001, 10.0, "Hz", "turns per second");
-  keys.Number("motion.lead_s", s.motion.lead_s, 0.1, 1e3, "s", "time to come to its lowest point first");
+  keys.Number("motion.lead_s", s.motion.lead_s, 0.1, 1e3, "s", "time to reach the circle's lowest point");
   keys.Number("motion.bound_mm", s.motion.bound_mm, 0.001, 1e3, "mm",
-              "the circle counts as followed when the end effector never is further off");
+              "the circle counts as followed if the end effector's error never exceeds this");
   keys.Flag("theory.enabled", s.theory.enabled,
             "judge a one-joint arm against its analytic response instead of a target");
   keys.Numbers("theory.fit_s", s.theory.fit_s, 2, 2, 0.0, 1e6, "s",
@@ -106,14 +106,14 @@ void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
 
 fs::path ShippedFolder() { return config::ShareFolder() / "scenarios"; }
 
-// "ball", "theory/open-loop".
+// E.g. "ball" or "theory/open-loop".
 std::string ShippedName(const fs::path& file) {
   return fs::relative(file, ShippedFolder()).replace_extension().generic_string();
 }
 
 fs::path FindScenario(const std::string& name_or_path) {
   if (fs::path(name_or_path).extension() == ".toml") {
-    // A run's folder has the file's name.
+    // The file's name becomes the name of the run's folder.
     if (const fs::path name = fs::path(name_or_path).stem(); name == "." || name == "..") {
       throw InputError(fmt::format("{}: a scenario's file needs a name before .toml", name_or_path));
     }
@@ -148,7 +148,8 @@ config::KeyTable ScenarioKeys(Scenario& scenario) {
 std::string KeysAsMarkdown(const config::KeyTable& keys) {
   std::string text =
       "# Keys of a scenario\n\n"
-      "Printed by `fovea-sim keys --markdown`. A scenario names what differs from these defaults.\n";
+      "Printed by `fovea-sim keys --markdown`. A scenario contains only keys that differ from these "
+      "defaults.\n";
   std::string section;
   for (const config::Key& key : keys.keys()) {
     const auto dot = key.name.find('.');
@@ -161,8 +162,8 @@ std::string KeysAsMarkdown(const config::KeyTable& keys) {
                         key.unit, key.kind, key.allowed, key.meaning);
   }
   text +=
-      "\n## Former names\n\nA scenario that has one of these is told of the other.\n\n| once | today "
-      "|\n|---|---|\n";
+      "\n## Former names\n\nA former name is refused; the message names the present one.\n\n"
+      "| former | present |\n|---|---|\n";
   for (const auto& [former, today] : keys.successors()) {
     text += fmt::format("| `{}` | `{}` |\n", former, today);
   }

@@ -17,8 +17,8 @@ namespace fovea::sim {
 
 struct Scenario {
   std::string name;
-  std::filesystem::path folder;   // of its file; a relative arm.model is looked for there first
-  bool arm_is_the_users = false;  // arm.model was assigned, and may lie anywhere; else in `folder`
+  std::filesystem::path folder;   // of its file; a relative arm.model is searched there first
+  bool arm_is_the_users = false;  // arm.model comes from --set and may lie anywhere; otherwise in `folder`
 
   struct {
     std::string model = "panda";
@@ -89,22 +89,22 @@ struct Scenario {
 
   Scenario() {
     servo.config.auto_track = true;
-    servo.planes = {0.0, 0.0, 1.0, 0.01};  // the bench's table, and a centimetre
-    servo.target_region[2] = -0.1;         // no target is under it; a calibration may be wrong by so much
+    servo.planes = {0.0, 0.0, 1.0, 0.01};  // the bench's table, plus 1 cm
+    servo.target_region[2] = -0.1;         // no target is below the table; 0.1 m covers calibration errors
   }
 };
 
 // The keys of all sections, bound to `scenario`, which must outlive the table.
 config::KeyTable ScenarioKeys(Scenario& scenario);
 
-// A table of each section's keys.
+// One table per section.
 std::string KeysAsMarkdown(const config::KeyTable& keys);
 
-// Names of the shipped scenarios, in order.
+// Names of the shipped scenarios, in alphabetical order.
 std::vector<std::string> ShippedScenarios();
 
 // Reads a shipped scenario by name, or a .toml by path, then applies `assignments` ("key=value") in order.
-// InputError when either is wrong.
+// InputError: the scenario or an assignment is wrong.
 Scenario LoadScenario(const std::string& name_or_path, const std::vector<std::string>& assignments);
 
 // The robot that arm.model names: a shipped one, or a path to an arm file or URDF.

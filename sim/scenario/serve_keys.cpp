@@ -41,7 +41,7 @@ std::optional<ServeKey> ServeKeys::Next() {
 }
 
 bool ServeKeys::FillBuffer() {
-  constexpr std::size_t kMostUnread = 4096;  // of a line that never ends
+  constexpr std::size_t kMostUnread = 4096;  // longest line
   pollfd wait{STDIN_FILENO, POLLIN, 0};
   if (closed_ || poll(&wait, 1, 0) != 1) {
     return false;

@@ -1,4 +1,4 @@
-// What a person types at `fovea-sim serve`, a word a line.
+// The commands that a person types into `fovea-sim serve`, one per line.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,22 +9,22 @@ namespace fovea::sim {
 
 struct ServeKey {
   enum class Kind {
-    kStop,     // "s": the stop button, pressed or released
-    kGuide,    // "g": the enabling button at the hand, pressed or released
-    kPull,     // "f X Y Z": a pull at the hand from now on [N, in axes of the base]
-    kHang,     // "h": the robot hangs, or goes on
+    kStop,     // "s": press or release the stop button
+    kGuide,    // "g": press or release the enabling button at the hand
+    kPull,     // "f X Y Z": pull the hand from now on [N, in axes of the base]
+    kHang,     // "h": make the robot hang, or continue
     kUnknown,  // anything else
   };
   Kind kind = Kind::kUnknown;
-  Eigen::Vector3d force_B = Eigen::Vector3d::Zero();  // of kPull
+  Eigen::Vector3d force_B = Eigen::Vector3d::Zero();  // for kPull
 };
 
 [[nodiscard]] ServeKey ParseServeKey(const std::string& line);
 
-// Standard input, never waited for. What cannot be read, or has ended, is not looked at again.
+// Reads standard input without waiting. Stops reading after an error, the end of input or an endless line.
 class ServeKeys {
  public:
-  // The next line that was typed.
+  // The next typed line; none if there is no complete line.
   [[nodiscard]] std::optional<ServeKey> Next();
 
  private:

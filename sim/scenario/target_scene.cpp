@@ -25,36 +25,39 @@ constexpr std::array<const char*, 8> kMotionNames{"still",    "circle", "line", 
 
 void AddTargetSceneKeys(TargetScene& s, config::KeyTable& keys) {
   config::AddTargetKeys(s, keys);
-  keys.Numbers("target.position", s.position, 3, 3, -5.0, 5.0, "m", "its centre in B, or its path's middle");
+  keys.Numbers("target.position", s.position, 3, 3, -5.0, 5.0, "m",
+               "its centre in B, or the centre of its path");
   keys.Numbers(
       "target.rpy_deg", s.rpy_deg, 3, 3, -360.0, 360.0, "deg",
-      "roll, pitch, yaw of a flat one about fixed axes of B; its frame: x right and y down on its painted "
+      "roll, pitch, yaw of a flat target about fixed axes of B; its frame: x right and y down on its painted "
       "side, z into it");
   keys.Numbers("target.colour", s.colour, 3, 3, 0.0, 1.0, "",
-               "red, green, blue; vision.hue_deg follows it unless it is set, too");
+               "red, green, blue; also sets vision.hue_deg, unless that key is given");
   keys.Choice(
       "target.motion", s.motion, {kMotionNames.begin(), kMotionNames.end()},
-      "how it moves; circle and eight lie level, the pendulum swings by 0.5 rad, wander goes here and "
-      "there by run.seed; pushed: a ball that lies on the table and rolls, by physics");
-  keys.Number("target.path_radius", s.path_radius, 0.001, 2.0, "m",
-              "of the circle; how far line, eight and wander go from the middle; the pendulum's length");
+      "how it moves; circle and eight: horizontal; pendulum: swings by 0.5 rad; wander: smooth random path "
+      "by run.seed; pushed: a ball on the table that rolls, by physics");
+  keys.Number(
+      "target.path_radius", s.path_radius, 0.001, 2.0, "m",
+      "radius of the circle; half length of line and eight; largest distance of wander from its centre; "
+      "length of the pendulum");
   keys.Number("target.path_yaw_deg", s.path_yaw_deg, -360.0, 360.0, "deg",
               "direction of line, eight and pendulum in B: 0 along x, 90 along y");
-  keys.Number("target.speed", s.speed, 0.0, 5.0, "m/s", "along its path; the largest that it comes to");
-  keys.Numbers("target.jump", s.jump, 3, 3, -1.0, 1.0, "m", "by how much it jumps");
-  keys.Number("target.jump_s", s.jump_s, 0.0, 1e6, "s", "and when");
+  keys.Number("target.speed", s.speed, 0.0, 5.0, "m/s", "largest speed along the path");
+  keys.Numbers("target.jump", s.jump, 3, 3, -1.0, 1.0, "m", "displacement of the jump, in B");
+  keys.Number("target.jump_s", s.jump_s, 0.0, 1e6, "s", "time of the jump");
   keys.Numbers("target.push", s.push, 3, 3, -100.0, 100.0, "N s",
                "impulse of the push through a ball's centre, in B");
-  keys.Number("target.push_s", s.push_s, 0.0, 1e6, "s", "and when it comes");
-  keys.Number("target.mass", s.mass, 1e-3, 100.0, "kg", "of a ball that is pushed");
-  keys.Number("target.friction", s.friction, 0.0, 10.0, "", "between it and the table");
+  keys.Number("target.push_s", s.push_s, 0.0, 1e6, "s", "time of the push");
+  keys.Number("target.mass", s.mass, 1e-3, 100.0, "kg", "mass of a pushed ball");
+  keys.Number("target.friction", s.friction, 0.0, 10.0, "", "friction of a pushed ball with the table");
   keys.Number("target.rolling_resistance", s.rolling_resistance, 0.0, 1.0, "m",
-              "the torque against its rolling is the normal force times this");
+              "the torque against the ball's rolling is the normal force times this");
   keys.Number("target.air_damping", s.air_damping, 0.0, 0.999, "1/s",
-              "share of its speed that the air takes");
+              "share of the ball's speed lost to the air");
   keys.Number("target.turn_deg_s", s.turn_deg_s, -360.0, 360.0, "deg/s",
-              "a flat one turns about its normal meanwhile");
-  keys.Flag("target.clutter", s.clutter, "put things about that resemble it");
+              "turn rate of a flat target about its normal");
+  keys.Flag("target.clutter", s.clutter, "add similar things to the bench");
 }
 
 TargetMotion MakeTargetMotion(const TargetScene& s, std::uint64_t seed) {
@@ -138,7 +141,7 @@ Shape MakeTargetBody(const TargetShape& shape) {
   return body;
 }
 
-// As in HSV. (Smith, Color gamut transform pairs, 1978.)
+// The hue of HSV. (Smith, Color gamut transform pairs, 1978.)
 std::optional<double> HueOfColour(const std::vector<double>& rgb) {
   const auto [low, high] = std::minmax_element(rgb.begin(), rgb.end());
   const double range = *high - *low;

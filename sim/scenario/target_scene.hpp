@@ -1,4 +1,4 @@
-// The target of a scenario: what it is, where it lies and how it moves.
+// The target of a scenario: its shape, pose and motion.
 #pragma once
 
 #include <optional>
@@ -36,18 +36,18 @@ struct TargetScene : config::TargetSettings {
 // The scene must outlive the table.
 void AddTargetSceneKeys(TargetScene& scene, config::KeyTable& keys);
 
-// `seed`: of what is random about it.
+// `seed`: for a random motion.
 TargetMotion MakeTargetMotion(const TargetScene& scene, std::uint64_t seed);
-// The ball that is pushed, for a scene that has one. InputError: it is no sphere, or stands in the table.
+// The pushed ball, if the scene has one. InputError: the target is no sphere, or it is inside the table.
 RollingBallConfig MakeRollingBall(const TargetScene& scene);
 TargetShape MakeTargetShape(const features::TargetFeature& feature);
-// What the arm could touch of it: a flat one is a plate of 2 mm behind its painted side.
+// The target's collision shape. A flat target is a plate, 2 mm thick, behind its painted side.
 Shape MakeTargetBody(const TargetShape& shape);
 
-// Hue of a colour {red, green, blue}, each from 0 to 1 [deg]: 0 red, 120 green, 240 blue; nothing for a gray.
+// Hue of a colour {red, green, blue}, each from 0 to 1 [deg]: 0 red, 120 green, 240 blue; none for gray.
 std::optional<double> HueOfColour(const std::vector<double>& rgb);
 
-// Whether it is followed rather than come to: it moves all the time.
+// Whether the target moves all the time. The verdict then judges tracking.
 bool KeepsMoving(const TargetScene& scene);
 
 }  // namespace fovea::sim

@@ -19,11 +19,11 @@ constexpr std::int64_t kStartNs = hal::kTickPeriodNs;  // the servo's first tick
 constexpr std::size_t kStride = 50;                    // steps of the fitted transition
 constexpr double kSettledShare = 0.02;
 constexpr std::size_t kEndSamples = 500;   // the end is the mean of the last half second
-constexpr double kStill = 5e-3;            // a response that stays within this says nothing [m]
+constexpr double kStill = 5e-3;            // a response below this is too small to be fitted [m]
 constexpr std::size_t kOneSecond = 1000;   // in samples
 constexpr double kFigureTolerance = 0.01;  // relative: zeta, omega_n, settling time, e_ss
 constexpr double kPoleTolerance = 0.05;    // relative
-constexpr double kErrorTolerance = 0.002;  // of a run whose analytic error is 0 [m]
+constexpr double kErrorTolerance = 0.002;  // absolute, if the analytic error is 0 [m]
 
 Eigen::Matrix4d TransitionOf(const TheoryLoop& loop) {
   Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
@@ -37,8 +37,8 @@ Eigen::Matrix4d TransitionOf(const TheoryLoop& loop) {
   return transition;
 }
 
-// Poles of a loop of second order from the trace and determinant of its transition over `t`: the sum and the
-// product of a double root keep their digits where the roots do not.
+// omega_n and zeta of a second-order loop, from the sum and the product of its poles. For a double pole, both
+// are accurate although the single poles are not.
 void SetSecondOrder(double sum, double product, TheoryFigures& figures) {
   figures.omega_n = std::sqrt(product);
   figures.zeta = -sum / (2.0 * *figures.omega_n);
@@ -75,7 +75,7 @@ TheoryLoop LoopOf(const TheoryConfig& config) {
       break;
   }
   if (std::fabs(config.push) <= config.coulomb) {
-    loop.d = 0.0;  // friction holds against it
+    loop.d = 0.0;  // friction holds the joint
   }
   return loop;
 }
@@ -126,7 +126,7 @@ void TheoryRun::Fit(const std::vector<State>& states, TheoryFigures& figures) co
       before(row, i) = entry(states[k], i);
       after(row, i) = entry(states[k + kStride], i);
     }
-    before(row, n) = 1.0;  // a constant force, the push or what friction leaves
+    before(row, n) = 1.0;  // a constant force: the push, or uncompensated friction
     most = std::max(most, std::fabs(states[k].e));
   }
   if (most < kStill || before.rows() < 10) {
@@ -223,7 +223,7 @@ TheoryResult TheoryRun::Finish() const {
   check(Near(result.run.settle_time_s, result.analytic.settle_time_s, kFigureTolerance), "the settling time");
   check(std::fabs(result.run.e_ss - result.analytic.e_ss) <=
             std::max(kFigureTolerance * std::fabs(result.analytic.e_ss), kErrorTolerance),
-        "the error that stays");
+        "the steady-state error");
   bool poles_near = result.run.poles.size() == result.analytic.poles.size();
   for (std::size_t i = 0; poles_near && i < result.run.poles.size(); ++i) {
     const std::complex<double> pole = result.analytic.poles[i];

@@ -1,9 +1,9 @@
-// A run of a one-joint arm beside its analytic answer: mass, damper, spring and a linear law have one.
+// Compares a run of a one-joint arm (mass, damper, spring, linear law) with its analytic response.
 //
 // With e = goal - actual, the loop is  e'' + c_1 e' + c_0 e + c_i (integral of e) = -f / m  under a constant
-// force f. The analytic response starts in the state of the run after its first tick and is stepped by its
-// exact transition over 1 ms. What the run itself shows is fitted: the transition of (e, e') over 50 ms that
-// explains it best has the loop's poles as logarithms of its eigenvalues.
+// force f. The analytic response starts in the run's state after its first tick and advances by its exact
+// transition over 1 ms. The run's poles are fitted: the least-squares transition of (e, e') over 50 ms has
+// the eigenvalues exp(pole * 50 ms).
 #pragma once
 
 #include <complex>
@@ -22,7 +22,7 @@ namespace fovea::sim {
 struct TheoryConfig {
   design::SecondOrder plant;
   double coulomb = 0.0;                   // friction of the plant [N]
-  config::MotionLawConfig law;            // k_p[0], k_v[0] are those of pd
+  config::MotionLawConfig law;            // pd uses k_p[0], k_v[0]
   std::optional<CommandedJoints> motion;  // none: the goal is 0
   double push = 0.0;                      // constant force from push_s on [N]
   double push_s = 0.0;                    // [s]
@@ -39,20 +39,19 @@ struct TheoryLoop {
 };
 TheoryLoop LoopOf(const TheoryConfig& config);
 
-// What a response says of its loop. No zeta and omega_n for a loop with an integral, none of anything where
-// nothing moves.
+// Figures of a response. A loop with an integral has no zeta and omega_n; without motion, there is only e_ss.
 struct TheoryFigures {
   std::optional<double> zeta;
   std::optional<double> omega_n;
-  std::optional<double> settle_time_s;  // until it stays within 2 % of its largest departure from its end
-  double e_ss = 0.0;                    // goal less actual at the end [m]
+  std::optional<double> settle_time_s;  // until it stays within 2 % of its largest deviation from the end
+  double e_ss = 0.0;                    // goal minus actual at the end [m]
   std::vector<std::complex<double>> poles;
 };
 
 struct TheoryResult {
   TheoryFigures run;
   TheoryFigures analytic;
-  double residual_rms = 0.0;  // simulated less analytic position [m]
+  double residual_rms = 0.0;  // simulated minus analytic position [m]
   double residual_max = 0.0;
   double error_max = 0.0;  // largest |e| after the first second [m]
   bool agrees = false;
@@ -70,7 +69,7 @@ class TheoryRun {
  public:
   explicit TheoryRun(const TheoryConfig& config);
 
-  // Each step of the world, in order; returns where the joint is, shall be, and would be by theory.
+  // Takes each step of the world, in order. Returns the joint's actual, goal and analytic positions.
   TheorySample Add(const Truth& truth);
   [[nodiscard]] TheoryResult Finish() const;
 
@@ -85,7 +84,7 @@ class TheoryRun {
 
   TheoryConfig config_;
   TheoryLoop loop_;
-  Eigen::Matrix4d transition_;  // of (integral, e, e', 1 when pushed) over a step
+  Eigen::Matrix4d transition_;  // of (integral, e, e', 1 if pushed) over one step
   std::vector<std::int64_t> stamps_ns_;
   std::vector<State> run_;
   std::vector<State> analytic_;

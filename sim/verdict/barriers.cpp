@@ -15,11 +15,11 @@ using Kind = LimitBook::Kind;
 using Value = std::optional<double>;
 
 constexpr double kReboundLeft =
-    0.99;  // of what an arm springs back by, after a step: 2.5 time constants of the law
+    0.99;  // share of an arm's rebound left per step; decays with 2.5 time constants of the law
 constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
-// From a point to the surface of plane or box, below 0 within [m]. (Not the servo's own: what it is judged by
-// shares no code with it.)
+// Signed distance from a point to the surface of a plane or box [m]; negative inside. Does not use the
+// servo's function: the verdict must share no code with the servo.
 double Distance(const config::Plane& plane, const Eigen::Vector3d& p) {
   return plane.normal.dot(p) - plane.distance;
 }
@@ -29,7 +29,7 @@ double Distance(const config::Box& box, const Eigen::Vector3d& p) {
   return outside > 0.0 ? outside : off.maxCoeff();
 }
 
-// The largest of the joints' shares, each of joint i by `share`(joint, i).
+// The largest absolute value of `share`(joint, i) over all joints; NaN if one is NaN.
 template <typename Share>
 double LargestOf(const model::ArmModel& arm, Share share) {
   double largest = 0.0;
@@ -60,9 +60,9 @@ void AddJoints(const model::ArmModel& arm, std::vector<TruthBarrier>& list) {
                ? 0.0
                : (step.now.tau_cmd[i] - step.before->tau_cmd[i]) / (joint.dtau_max * kStepS);
   });
-  // No servo can help it that an arm falls whose motor is dead. A joint is too fast only where it would have
-  // been so, in the same direction, without what disturbed it: what works against the fall is no fault,
-  // and it springs back as it was pulled when it is let go.
+  // The servo is not responsible for disturbances, e.g. a fall with a dead motor. An acceleration counts only
+  // as far as it also exists, in the same direction, without the disturbance: a reaction against the fall
+  // does not count. The rebound after a disturbance does not count either.
   list.push_back({"true_joint_acceleration", Kind::kShare, [arm](const TruthStep& step) -> Value {
                     if (!step.mean_ddq) {
                       return std::nullopt;
@@ -75,7 +75,7 @@ void AddJoints(const model::ArmModel& arm, std::vector<TruthBarrier>& list) {
                       return ddq * own <= 0.0 ? 0.0 : std::max(counts, 0.0) / joint.ddq_max;
                     });
                   }});
-  // A legal step of the torque on a light wrist is more than the legal jerk: that is shown, not judged.
+  // Reported, but not judged: a legal torque step on a light wrist exceeds the jerk limit.
   list.push_back({"true_joint_jerk", Kind::kShown, [arm](const TruthStep& step) -> Value {
                     if (!step.ddq || !step.ddq_before) {
                       return std::nullopt;
@@ -169,7 +169,7 @@ void TruthBarriers::Add(const Truth& truth, hal::Mode mode) {
   const std::size_t n = dq_.size();
   if (n == kMeanTicks + 1) {
     step.mean_ddq = (dq_.back() - dq_.front()) / (kMeanTicks * kStepS);
-    for (std::size_t i = 1; i < n; ++i) {  // of the steps between them
+    for (std::size_t i = 1; i < n; ++i) {  // the kMeanTicks steps between the n velocities
       if (ddq_disturbed_[i].size() > 0) {
         if (step.mean_ddq_disturbed.size() == 0) {
           step.mean_ddq_disturbed.setZero(truth.dq.size());
@@ -180,7 +180,7 @@ void TruthBarriers::Add(const Truth& truth, hal::Mode mode) {
     step.ddq = (dq_[n - 1] - dq_[n - 2]) / kStepS;
     step.ddq_before = (dq_[n - 2] - dq_[n - 3]) / kStepS;
   }
-  // Of what disturbs just now only what it is less than before counts as over.
+  // A rebound comes from past disturbances: the present disturbance is subtracted.
   rebound_ *= kReboundLeft;
   step.rebound = rebound_;
   if (truth.ddq_disturbed.size() > 0) {

@@ -1,7 +1,7 @@
-// What must hold in a run, by the simulator's truth: one list, each entry with a name and a value.
+// The conditions that a run must satisfy by the simulator's truth: one list of names and values.
 //
-// To judge something more, add a line to the list in verdict_barriers.cpp: what it is called, of what kind it
-// is (LimitBook::Kind), and how its value follows from a step.
+// To add a condition, add an entry to the list in barriers.cpp: its name, its kind (LimitBook::Kind), and how
+// its value follows from a step.
 #pragma once
 
 #include <functional>
@@ -21,20 +21,20 @@ struct BarrierConfig {
   model::ArmModel arm;
   double workspace_radius = 0.85;  // [m]
   double cartesian_speed = 1.7;    // of the hand [m/s]
-  double rotation_speed = 2.5;     // and of its turn [rad/s]
-  config::Obstacles obstacles;     // that the hand keeps out of
-  config::HandShape hand;          // what moves with it, beside its point
+  double rotation_speed = 2.5;     // of the hand [rad/s]
+  config::Obstacles obstacles;     // that the hand must avoid
+  config::HandShape hand;          // camera and tools that move with the hand
 };
 
-// A step of physics as the barriers see it.
+// One step of the physics, input of the barriers.
 struct TruthStep {
   const Truth& now;
-  const Truth* before = nullptr;  // a step earlier; none at the start
-  // Joint accelerations: the mean over the last 10 ms, and those of this step and of the one before. Empty
-  // where the servo was in Fault within that time.
+  const Truth* before = nullptr;  // the previous step; null at the start
+  // Joint accelerations: the mean over the last 10 ms, that of this step, and that of the previous one. Empty
+  // if the servo was in Fault within the last 10 ms.
   std::optional<Eigen::VectorXd> mean_ddq;
-  Eigen::VectorXd mean_ddq_disturbed;  // what of it disturbances alone did; no entries: nothing
-  Eigen::VectorXd rebound;  // and what of it may be the springing back of what they did before; as above
+  Eigen::VectorXd mean_ddq_disturbed;  // its part caused by disturbances; size 0: none
+  Eigen::VectorXd rebound;             // its possible part due to past disturbances; size 0: none
   std::optional<Eigen::VectorXd> ddq;
   std::optional<Eigen::VectorXd> ddq_before;
 };
@@ -42,18 +42,18 @@ struct TruthStep {
 struct TruthBarrier {
   std::string name;
   LimitBook::Kind kind;
-  std::function<std::optional<double>(const TruthStep&)> value;  // none: it does not apply to this step
+  std::function<std::optional<double>(const TruthStep&)> value;  // none if it does not apply to this step
 };
 
-// The list.
+// The list of all conditions.
 std::vector<TruthBarrier> MakeTruthBarriers(const BarrierConfig& config);
 
-// Notes all of them, step by step. One thread uses it.
+// Evaluates all conditions, step by step. Only one thread may use it.
 class TruthBarriers {
  public:
   explicit TruthBarriers(const BarrierConfig& config);
 
-  // In order, one for each step of 1 ms. `mode`: the servo's, whose command was in force in this step.
+  // Call it in order, once per step of 1 ms. `mode`: mode of the servo that commanded this step.
   void Add(const Truth& truth, hal::Mode mode);
   [[nodiscard]] const LimitBook& book() const { return book_; }
 
@@ -67,8 +67,8 @@ class TruthBarriers {
   std::vector<Listed> list_;
   LimitBook book_;
   std::vector<Eigen::VectorXd> dq_;             // of the last steps outside Fault, newest last
-  std::vector<Eigen::VectorXd> ddq_disturbed_;  // and what disturbances did in them
-  Eigen::VectorXd rebound_;                     // of those that are over, fading; no entries: there was none
+  std::vector<Eigen::VectorXd> ddq_disturbed_;  // effect of disturbances in these steps
+  Eigen::VectorXd rebound_;                     // decaying effect of past disturbances; size 0: none
   std::optional<Truth> before_;
 };
 

@@ -1,4 +1,4 @@
-// What a run is judged by.
+// Builds the verdict's configuration from a run's description.
 #pragma once
 
 #include "sim/scenario/run_description.hpp"

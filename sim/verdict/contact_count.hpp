@@ -1,4 +1,4 @@
-// Ticks in which the arm touched something, by the simulator's truth.
+// Counts the ticks in which the arm touched something, by the simulator's truth.
 #pragma once
 
 #include "sim/verdict/summary.hpp"

@@ -6,9 +6,9 @@
 namespace fovea::sim {
 namespace {
 
-constexpr double kTolerance = 1e-9;  // rounding passes nothing
+constexpr double kTolerance = 1e-9;  // for rounding
 
-// The larger, the worse; and how large it may be.
+// A measure of a value: the larger, the worse. Allowed is its largest value without a violation.
 double Badness(LimitBook::Kind kind, double value) {
   return kind == LimitBook::Kind::kClearance ? -value : std::fabs(value);
 }

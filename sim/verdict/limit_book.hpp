@@ -1,4 +1,4 @@
-// How near a run came to each thing that must hold, and when it went past it.
+// Records for each condition of a run how close it came to its bound, and when it exceeded it.
 #pragma once
 
 #include <cstdint>
@@ -9,24 +9,24 @@
 
 namespace fovea::sim {
 
-// Stamps do not go back. One thread uses it.
+// Stamps must not decrease. Only one thread may use it.
 class LimitBook {
  public:
   enum class Kind : std::uint8_t {
-    kShare,      // the share of a limit that is used: passed above 1, the sign does not count
-    kClearance,  // a distance [m]: passed below 0
-    kEvent,      // passed above 0
-    kShown,      // as kShare, and never passed: it is reported alone
+    kShare,      // used share of a limit, by absolute value: a violation above 1
+    kClearance,  // a distance [m]: a violation below 0
+    kEvent,      // a violation above 0
+    kShown,      // as kShare, but only reported: never a violation
   };
 
-  // What is noted under the number that it returns.
+  // Adds an entry. Returns its number for Note.
   std::size_t Add(std::string name, Kind kind);
-  // A value that is no number passes.
+  // Records a value. NaN is a violation.
   void Note(std::int64_t stamp_ns, std::size_t entry, double value);
 
-  // The largest share and the least clearance of each, and in how many ticks it was passed.
+  // Adds the largest share or least clearance of each entry, and its ticks with a violation.
   void AddTo(Summary& summary) const;
-  // When anything was passed; each stamp once, in order.
+  // Stamps with any violation; each stamp once, in order.
   [[nodiscard]] const std::vector<std::int64_t>& passed_ns() const { return passed_ns_; }
 
  private:

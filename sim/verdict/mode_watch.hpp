@@ -1,4 +1,4 @@
-// The mode that the servo is in, for who moves the world on: records of the ticks pass through.
+// Reads the servo's mode from the tick records that pass through, for the code that advances the world.
 #pragma once
 
 #include "fovea/hal/record.hpp"
@@ -13,7 +13,7 @@ class ModeWatch final : public hal::Recorder {
     mode_ = record.mode;
     next_->Record(record);
   }
-  // Of the last tick.
+  // The mode of the last tick.
   [[nodiscard]] hal::Mode mode() const { return mode_; }
 
  private:

@@ -1,5 +1,4 @@
-// What the servo noticed since a fault began: faults, modes, limits, measurements and states that it did
-// without.
+// Records what the servo noticed since a fault began: faults, modes, limits, missing measurements and states.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +11,23 @@
 
 namespace fovea::sim {
 
-// By the names under which it is noted:
+// Names of the events:
 //   fault_<name>          a fault is latched
 //   mode_<name>           the servo is in this mode
 //   limit_<name>          this limit acts
-//   state_missing         a tick without a new state of the arm that could be taken
+//   state_missing         a tick without a new, usable state of the arm
 //   missed_ticks          deadlines were missed
-//   target_not_found      a frame was looked at and the target is not in it
-//   measurement_left_out  a measurement was not taken in
-// Times are the run's, counted in ticks: the arm's own stamps may be at fault. One thread uses it.
+//   target_not_found      the target was not found in a frame
+//   measurement_left_out  a measurement was rejected
+// Times count the run's ticks, because the arm's own stamps may be faulty. Only one thread may use it.
 class NoticeBook {
  public:
   explicit NoticeBook(const std::vector<FaultWindow>& faults);
 
-  // In order of the ticks.
+  // Call it in the order of the ticks.
   void Add(const hal::TickRecord& record);
 
-  // The faults and what was noticed from the beginning of each on, when first.
+  // The faults, each with the events since its beginning and their first times.
   [[nodiscard]] const std::vector<InjectedFault>& Faults() const { return faults_; }
 
  private:
@@ -37,7 +36,7 @@ class NoticeBook {
   std::vector<InjectedFault> faults_;
   std::int64_t missed_ticks_ = 0;  // so far
   double now_s_ = 0.0;
-  std::uint64_t state_before_ = 0;  // the sequence of the last state that was taken
+  std::uint64_t state_before_ = 0;  // sequence of the last used state
 };
 
 }  // namespace fovea::sim

@@ -123,7 +123,7 @@ class Table {
   std::string text_;
 };
 
-// "232 taken; 3 outlier"; what was not found stands in the row of the frames.
+// E.g. "232 taken; 3 outlier". Omits targets not found, which the row of the frames shows.
 std::string MeasurementsInWords(const std::map<std::string, std::uint64_t>& measurements) {
   const std::string taken = hal::Name(hal::Intake::kTaken);
   const auto of_taken = measurements.find(taken);
@@ -148,8 +148,8 @@ void AddTheory(const TheoryResult& theory, Table& table) {
   row("omega_n", Figure(theory.run.omega_n, "rad/s"), Figure(theory.analytic.omega_n, "rad/s"));
   row("poles [1/s]", Poles(theory.run), Poles(theory.analytic));
   row("settled after", Figure(theory.run.settle_time_s, "s"), Figure(theory.analytic.settle_time_s, "s"));
-  row("error that stays", Figure(theory.run.e_ss, "m"), Figure(theory.analytic.e_ss, "m"));
-  table.Row("from theory",
+  row("steady-state error", Figure(theory.run.e_ss, "m"), Figure(theory.analytic.e_ss, "m"));
+  table.Row("deviation",
             fmt::format("{:.2g} m rms, {:.2g} m at most", theory.residual_rms, theory.residual_max));
   table.Row("largest error", fmt::format("{:.3g} m after the first second", theory.error_max));
 }
@@ -157,14 +157,14 @@ void AddTheory(const TheoryResult& theory, Table& table) {
 void AddBoard(const BoardSummary& board, Table& table) {
   table.Row(
       "servo's processor",
-      fmt::format("Cortex-M7: {} to {} instructions a tick, {} in the middle; stack {:.1f} KiB",
+      fmt::format("Cortex-M7: {} to {} instructions per tick, median {}; stack {:.1f} KiB",
                   board.all.tick.min, board.all.tick.max, board.all.tick.p50, board.stack_bytes / 1024.0));
   if (board.by_timer) {
-    table.Row("its ticks",
-              fmt::format("by its timer, {} ns an instruction; {} without a state, {} missed",
+    table.Row("board ticks",
+              fmt::format("by its own timer, {} ns per instruction; {} without a state, {} missed",
                           board.instruction_ns, board.line.silent_ticks, board.line.missed_ticks));
-    table.Row("its line", fmt::format("{} states late, {} ticks without a new torque", board.line.late_frames,
-                                      board.ticks_without_torque));
+    table.Row("line", fmt::format("{} states late, {} ticks without a new torque", board.line.late_frames,
+                                  board.ticks_without_torque));
   }
   if (!board.stopped.empty()) {
     table.Row("", board.stopped + ": the brakes were closed");
@@ -233,7 +233,7 @@ std::string ToJson(const Summary& s) {
   json["real_time_factor"] = s.real_time_factor;
   json["renderer"] = s.renderer;
   run::AddFigures(s, json);
-  // A scenario's file may have any name.
+  // Replaces invalid UTF-8: a scenario's file name may hold any bytes.
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
@@ -244,10 +244,10 @@ std::string ToTable(const Summary& s) {
   if (s.theory) {
     AddTheory(*s.theory, table);
   } else if (s.path_error_mm_max) {
-    table.Row("off the way", fmt::format("{} rms, {} at most", Figure(s.path_error_mm_rms, "mm"),
-                                         Figure(s.path_error_mm_max, "mm")));
+    table.Row("path error", fmt::format("{} rms, {} at most", Figure(s.path_error_mm_rms, "mm"),
+                                        Figure(s.path_error_mm_max, "mm")));
   } else if (s.home_error_rad) {
-    table.Row("off home", fmt::format("{:.2g} rad, the joint that is furthest", *s.home_error_rad));
+    table.Row("joint error", fmt::format("{:.2g} rad, largest of all joints", *s.home_error_rad));
   } else if (s.tracking_error_px_rms) {
     table.Row("tracking error", fmt::format("{}, {}", Figure(s.tracking_error_px_rms, "px rms"),
                                             Figure(s.tracking_error_mm_rms, "mm rms")));
@@ -264,7 +264,7 @@ std::string ToTable(const Summary& s) {
     table.Row("measurements", MeasurementsInWords(s.measurements));
   }
   if (s.frames_failed > 0) {
-    table.Row("", fmt::format("{} could not be looked at: {}", s.frames_failed, s.frame_failure));
+    table.Row("", fmt::format("vision failed on {}: {}", s.frames_failed, s.frame_failure));
   }
   std::string limits;
   for (const auto& [name, used] : s.limits) {

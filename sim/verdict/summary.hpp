@@ -1,4 +1,4 @@
-// What a run came to: figures for a machine (summary.json) and for a person (a table).
+// The results of a run, as JSON (summary.json) and as a table for a person.
 #pragma once
 
 #include <cstdint>
@@ -27,20 +27,20 @@ struct ModeEvent {
   std::string reason;  // of Hold; "" otherwise
 };
 
-// A fault that was put into the run, and what the servo noticed from its beginning on.
+// An injected fault, and what the servo noticed since its beginning.
 struct InjectedFault {
   std::string name;  // of its keys
   double from_s = 0.0;
   double to_s = 0.0;
-  std::map<std::string, double> noticed;  // when first [s], by what; see NoticeBook
+  std::map<std::string, double> noticed;  // first time [s] of each event; see NoticeBook
 };
 
-// How far and how fast the hand moved in a mode in which the arm stands, from where that mode began.
+// How far and how fast the hand moved in a mode in which the arm must stand still, since the mode's start.
 struct StandingMotion {
   double most_mm = 0.0;
-  double beyond_stop_mm = 0.0;  // of it, what no stop from the speed that it had explains
+  double beyond_stop_mm = 0.0;  // part that a stop from the initial speed does not explain
   double most_m_per_s = 0.0;
-  double gained_m_per_s = 0.0;  // more than it had, or was coming to, when the mode began
+  double gained_m_per_s = 0.0;  // excess over the initial speed; see UnwantedMotion
 };
 
 // Ticks in which the arm touched something.
@@ -55,8 +55,8 @@ struct RunEnd {
   std::string mode;
   std::string reason;  // of Hold; "" otherwise
   bool brakes = false;
-  std::optional<double> at_rest_since_s;    // by truth: no joint moved faster since; none while one does
-  std::optional<double> goal_kept_since_s;  // by truth: within the bounds that decide over `converged`
+  std::optional<double> at_rest_since_s;    // by truth: since then every joint is at rest; none if one moves
+  std::optional<double> goal_kept_since_s;  // by truth: since then within the bounds of `converged`
 };
 
 struct Summary : run::RunFigures {
@@ -65,7 +65,7 @@ struct Summary : run::RunFigures {
   std::string pace;
   bool converged = false;
   std::string verdict;       // one sentence: converged, or why not
-  bool interrupted = false;  // told to end before its end
+  bool interrupted = false;  // ended early on request
 
   // Against the simulator's truth. Still targets: over the last 0.5 s.
   std::optional<double> settle_time_s;
@@ -79,19 +79,19 @@ struct Summary : run::RunFigures {
   std::optional<double> tracking_error_mm_rms;
   std::optional<double> tracking_error_px_rms;
 
-  // Commanded circles: of the end effector, from the circle's start on.
+  // Commanded circles: errors of the end effector since the circle's start.
   std::optional<double> path_error_mm_rms;
   std::optional<double> path_error_mm_max;
-  std::optional<double> home_error_rad;  // largest of the joints', at the end of a way home
-  std::optional<TheoryResult> theory;    // of a run beside its analytic answer
+  std::optional<double> home_error_rad;  // largest joint error at the end of a home motion
+  std::optional<TheoryResult> theory;    // comparison with the analytic response
 
-  // What must hold, by the truth, and of the reference; see verdict_barriers.hpp.
-  std::map<std::string, double> limits;               // largest used fraction of each
-  std::map<std::string, double> clearances_m;         // least distance to each plane and box; below 0: within
-  std::map<std::string, double> unjudged;             // as `limits`, and may be above 1
-  std::uint64_t limit_violations = 0;                 // ticks in which anything was passed or touched
-  std::map<std::string, std::uint64_t> violations;    // the same of each that was
-  std::map<std::string, std::uint64_t> measurements;  // how many, by what became of them (hal::Intake)
+  // Conditions on the truth and on the reference; see barriers.hpp.
+  std::map<std::string, double> limits;             // largest used share of each
+  std::map<std::string, double> clearances_m;       // least distance to each plane and box; negative: inside
+  std::map<std::string, double> unjudged;           // as `limits`, but may be above 1
+  std::uint64_t limit_violations = 0;               // ticks with any violation or contact
+  std::map<std::string, std::uint64_t> violations;  // ticks with a violation, per condition
+  std::map<std::string, std::uint64_t> measurements;  // number of measurements, by hal::Intake
   std::map<std::string, std::uint64_t> limit_ticks;   // ticks in which the servo's guard acted, by limit
   std::uint64_t contact_ticks = 0;  // ticks in which the arm touched bench, target or itself
   ContactTicks contacts;
@@ -103,20 +103,19 @@ struct Summary : run::RunFigures {
 
   std::uint64_t frames = 0;
   std::uint64_t frames_detected = 0;
-  std::uint64_t frames_failed = 0;  // that could not be looked at; they count as not found
-  std::string frame_failure;        // why the first of them
+  std::uint64_t frames_failed = 0;  // frames on which vision failed; they count as not found
+  std::string frame_failure;        // reason for the first of them
   std::uint64_t frames_lost = 0;
-  std::optional<BoardSummary> mcu;  // of a servo on a board
+  std::optional<BoardSummary> mcu;  // for a servo on a board
   double sim_time_s = 0.0;
   double preparing_s = 0.0;  // wall time before the first tick
   double wall_time_s = 0.0;  // from the first tick to the last
-  double writing_s = 0.0;    // and after it, for pictures, film and report; known when they are written
+  double writing_s = 0.0;    // after the last tick, for pictures, film and report; set after they are written
   double real_time_factor = 0.0;
   std::string renderer;
 };
 
-// Whether the run did what it was for: converged, no limit passed and nothing touched on the way. The
-// program's exit code.
+// Whether the run converged without a limit violation and without a contact. Decides the program's exit code.
 inline bool ReachedItsGoal(const Summary& summary) {
   return summary.converged && summary.limit_violations == 0 && summary.contact_ticks == 0;
 }

@@ -1,4 +1,4 @@
-// How far the target is from its goal, in truth.
+// The target's true error to its goal.
 #pragma once
 
 #include <limits>
@@ -12,13 +12,12 @@
 
 namespace fovea::sim {
 
-// Where the target shall be, as far as its feature says so.
+// The target's goal, as far as its feature defines it.
 struct TargetGoal {
   Eigen::Vector3d p_CO_C_star = Eigen::Vector3d::Zero();  // [m]
-  std::optional<Eigen::Matrix3d>
-      R_CO_star;  // none: the feature does not control the orientation, or not all of it
-  int turns = 1;  // of a full turn about O's z that nobody can tell from each other: 4 of a square
-  std::vector<Eigen::Vector3d> points{Eigen::Vector3d::Zero()};  // that are judged in the image, in O [m]
+  std::optional<Eigen::Matrix3d> R_CO_star;  // none if the feature does not control the full orientation
+  int turns = 1;  // number of indistinguishable orientations about O's z, e.g. 4 for a square
+  std::vector<Eigen::Vector3d> points{Eigen::Vector3d::Zero()};  // judged in the image, in O [m]
 };
 
 inline TargetGoal GoalOf(const features::TargetFeature& feature) {
@@ -34,10 +33,10 @@ inline TargetGoal GoalOf(const features::TargetFeature& feature) {
 }
 
 struct TargetError {
-  // rms over the goal's points; infinite when one of them is behind the camera.
+  // rms over the goal's points; infinite if one of them is behind the camera.
   double error_px = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal less truth, in axes of C [m]
-  std::optional<double> error_rad;                    // of the orientation, where the goal has one
+  Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal minus truth, in axes of C [m]
+  std::optional<double> error_rad;                    // of the orientation, if the goal has one
 };
 
 inline TargetError ErrorOf(const Truth& truth, const Pinhole& pinhole, const TargetGoal& goal) {

@@ -1,4 +1,4 @@
-// Where the target really was in each frame that is still under way from the shutter to the detector.
+// Keeps the target's true pose for each frame between its exposure and its detection.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@ namespace fovea::sim {
 
 class TargetLog {
  public:
-  // From the simulation's thread, before the camera hears of the exposure.
+  // Called by the simulation's thread, before the camera gets the exposure.
   void Put(std::uint64_t sequence, const model::Pose& X_CO) {
     const std::lock_guard lock(mutex_);
     under_way_[sequence] = X_CO;
   }
-  // From the vision thread, once for each frame that it got: the target's pose X_CO. Frames before it, which
-  // were lost, are forgotten.
+  // Returns the target's pose X_CO for a frame. Called by the vision thread, once per received frame. Removes
+  // all earlier frames, which were lost.
   model::Pose Take(std::uint64_t sequence) {
     const std::lock_guard lock(mutex_);
     const auto found = under_way_.find(sequence);

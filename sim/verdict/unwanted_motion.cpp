@@ -10,7 +10,7 @@ namespace fovea::sim {
 namespace {
 
 constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr std::size_t kHalf = 5;  // steps of the time over which an acceleration is taken, half of it
+constexpr std::size_t kHalf = 5;  // half of the steps over which an acceleration is computed
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void UnwantedMotion::Add(const Truth& truth, hal::Mode mode) {
   speed_before_ = speed;
 }
 
-// Of the hand, as a mean over the last 10 ms [m/s^2].
+// The hand's mean acceleration over the last 10 ms [m/s^2].
 double UnwantedMotion::Acceleration() const {
   if (p_.size() < 2 * kHalf + 1) {
     return 0.0;
@@ -50,14 +50,14 @@ double UnwantedMotion::Acceleration() const {
   return (p_[2 * kHalf] - 2.0 * p_[kHalf] + p_[0]).norm() / (kHalfS * kHalfS);
 }
 
-// Until the joints' accelerations are turned round. A fault's torques know no such limit.
+// Time to reverse the joints' accelerations under the jerk limit. In Fault, torques have no such limit: 0.
 double UnwantedMotion::TurnTime(hal::Mode mode) const {
   return mode == hal::Mode::kHold ? 2.0 * rules_.ddq_max.cwiseQuotient(rules_.dddq_max).maxCoeff() : 0.0;
 }
 
-// For so long an arm whose joints move by `dq` may go on at the speed that it has, where the servo is in
-// `mode` now. In Hold all joints stop in step with the one that takes longest, whose way at an even
-// deceleration is half of that; before, accelerations may have to be turned round.
+// Allowed time of a stop at constant speed, for joint velocities `dq` at the start of `mode`. In Hold, all
+// joints stop together with the slowest one; at constant deceleration it travels half as far as at constant
+// speed. The time to reverse the accelerations comes first.
 double UnwantedMotion::StopTime(hal::Mode mode, const Eigen::VectorXd& dq) const {
   switch (mode) {
     case hal::Mode::kHold: {
@@ -68,7 +68,7 @@ double UnwantedMotion::StopTime(hal::Mode mode, const Eigen::VectorXd& dq) const
       return longest_s + TurnTime(mode);
     }
     case hal::Mode::kFault: return rules_.brake_after_s;
-    case hal::Mode::kBoot:  // begins at rest
+    case hal::Mode::kBoot:  // starts at rest
     case hal::Mode::kTrack:
     case hal::Mode::kCoast:
     case hal::Mode::kMove: break;

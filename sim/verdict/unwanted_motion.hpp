@@ -1,9 +1,9 @@
-// How far and how fast the hand moved while the arm should have stood, by the simulator's truth: in Boot,
-// Hold and Fault, from where each began.
+// Measures how far and how fast the hand moves while the arm must stand still (Boot, Hold, Fault), by the
+// simulator's truth, from the start of each mode.
 //
-// Hold and Fault may begin in motion. Some way is needed to stop then: at most as far as the hand goes in the
-// time of the stop at the speed that it had, or was coming to before its acceleration is turned round. What
-// it went, or got faster, beyond that is told apart.
+// Hold and Fault may start in motion. A stop then needs some distance: at most the stop's time times the
+// initial speed. The initial speed includes the gain until the acceleration is reversed. Distance and speed
+// beyond that are reported separately.
 #pragma once
 
 #include <deque>
@@ -17,22 +17,22 @@
 
 namespace fovea::sim {
 
-// How an arm may stop.
+// Limits of the servo's stops.
 struct StopRules {
-  Eigen::VectorXd ddq_max;     // of Hold: [num_joints], rad/s^2, m/s^2
+  Eigen::VectorXd ddq_max;     // in Hold: [num_joints], rad/s^2, m/s^2
   Eigen::VectorXd dddq_max;    // [num_joints], rad/s^3, m/s^3
-  double brake_after_s = 0.0;  // in Fault the brakes are closed after this time at the latest
+  double brake_after_s = 0.0;  // in Fault, the brakes close after at most this time
 };
 
-// One thread uses it.
+// Only one thread may use it.
 class UnwantedMotion {
  public:
   explicit UnwantedMotion(StopRules rules);
 
-  // In order, one for each step of 1 ms. `mode`: the servo's, whose command was in force in this step.
+  // Call it in order, once per step of 1 ms. `mode`: mode of the servo that commanded this step.
   void Add(const Truth& truth, hal::Mode mode);
 
-  // By the mode's name; those in which the servo never was are not there.
+  // By the mode's name. Contains only modes that occurred.
   [[nodiscard]] const std::map<std::string, StandingMotion>& by_mode() const { return by_mode_; }
 
  private:
@@ -43,11 +43,11 @@ class UnwantedMotion {
   StopRules rules_;
   std::map<std::string, StandingMotion> by_mode_;
   std::optional<hal::Mode> mode_;
-  StandingMotion* now_ = nullptr;  // of the mode that lasts; none where the arm may move
+  StandingMotion* now_ = nullptr;  // of the present mode; null if the arm may move
   Eigen::Vector3d p_start_ = Eigen::Vector3d::Zero();
   double speed_start_ = 0.0;
-  double stop_mm_ = 0.0;           // what the stop from there may take
-  std::deque<Eigen::Vector3d> p_;  // of the last steps, newest last
+  double stop_mm_ = 0.0;           // allowed distance of the stop
+  std::deque<Eigen::Vector3d> p_;  // hand positions of the last steps, newest last
   double speed_before_ = 0.0;
 };
 

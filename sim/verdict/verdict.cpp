@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kTickS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr std::int64_t kWindowNs = hal::kNsPerSecond / 2;  // final_* are over this last part of a run
-constexpr double kConvergedPx = 1.0;                       // converged: no sample of it is further off
+constexpr double kConvergedPx = 1.0;                       // largest error of a converged run in this part
 constexpr double kConvergedM = 0.002;
-constexpr double kConvergedDeg = 0.5;  // of a goal with an orientation
+constexpr double kConvergedDeg = 0.5;  // for a goal with an orientation
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kHomeBound = 1e-3;     // at home: no joint is further off [rad]
-constexpr double kAtRest = 0.01;        // a joint that is slower rests [rad/s, m/s]
-constexpr double kSettledShare = 0.02;  // settled: below this share of the first error, for good
+constexpr double kHomeBound = 1e-3;     // largest joint error at home [rad]
+constexpr double kAtRest = 0.01;        // a joint below this speed is at rest [rad/s, m/s]
+constexpr double kSettledShare = 0.02;  // settled: stays below this share of the first error
 
 }  // namespace
 
@@ -76,8 +76,7 @@ void Verdict::AddSample(const Sample& sample) {
   }
 }
 
-// Of the image error over the window, as a root mean square: a target that moves is kept within its bound on
-// the whole, as the run's verdict asks.
+// Image error, rms over the window. For a moving target, the bound applies to the rms, as in the verdict.
 double Verdict::WindowPx() const {
   double px2 = 0.0;
   for (const Sample& sample : window_) {
@@ -96,7 +95,7 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config_.barriers.arm.joints[k];
     reference_.Note(record.stamp_ns, reference_ddq_, record.ddq_cmd[k] / joint.ddq_max);
-    // Only where the reference runs on; it starts anew at every stop of the servo.
+    // Only while the reference continues: it restarts after Boot and Fault.
     const auto runs = [](hal::Mode mode) { return mode != hal::Mode::kBoot && mode != hal::Mode::kFault; };
     if (has_record_ && runs(before_.mode) && runs(record.mode)) {
       reference_.Note(record.stamp_ns, reference_jerk_,
@@ -120,7 +119,7 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
   }
   if (record.fault != hal::Fault::kNone && (!has_record_ || before_.fault != record.fault)) {
     const std::string detail = record.fault_joint >= 0 ? fmt::format("joint {}", record.fault_joint + 1)
-                                                       : std::string("no one joint");
+                                                       : std::string("no single joint");
     faults_.push_back({t_s, hal::Name(record.fault), hal::Key(record.fault), detail});
   }
   before_ = record;
@@ -161,7 +160,8 @@ void Verdict::Fill(Summary& summary) const {
   } else if (!summary.converged) {
     summary.verdict = WhyNot(summary);
   } else if (summary.limit_violations > 0) {
-    summary.verdict = fmt::format("converged, but in {} ticks a limit was passed", summary.limit_violations);
+    summary.verdict =
+        fmt::format("converged, but a limit was exceeded in {} ticks", summary.limit_violations);
   }
 }
 
@@ -176,7 +176,7 @@ void Verdict::FillEnd(Summary& summary) const {
   summary.end.goal_kept_since_s = goal_kept_since_s_;
 }
 
-// Without a target: what was commanded was followed, or not.
+// Verdict of a run without a target: whether the commanded motion was followed.
 void Verdict::FillMotion(Summary& summary) const {
   if (path_samples_ > 0) {
     summary.path_error_mm_rms = 1e3 * std::sqrt(path2_ / static_cast<double>(path_samples_));
@@ -189,10 +189,10 @@ void Verdict::FillMotion(Summary& summary) const {
   summary.converged = why_not.empty();
   summary.verdict = !why_not.empty()     ? why_not
                     : config_.has_motion ? "the commanded motion was followed"
-                                         : "no motion was commanded, and the arm stood";
+                                         : "no motion was commanded, and the arm stood still";
 }
 
-// "" where it was.
+// "" if the motion was followed.
 std::string Verdict::WhyNotFollowed(const Summary& summary) const {
   const auto was_held_for = [this](hal::HoldReason reason) {
     return std::any_of(modes_.begin(), modes_.end(),
@@ -208,16 +208,16 @@ std::string Verdict::WhyNotFollowed(const Summary& summary) const {
     return "the commanded motion was refused (see modes and limits)";
   }
   if (was_held_for(hal::HoldReason::kNotFollowed)) {
-    return "the arm was off the commanded motion, which was given up (see safety.motion_error)";
+    return "the arm did not follow the commanded motion, which was stopped (see safety.motion_error)";
   }
   if (config_.circle && path_samples_ == 0) {
     return "the run ended before the circle began (see run.duration_s, motion.lead_s)";
   }
   if (summary.limit_violations > 0) {
-    return "a limit was passed";
+    return "a limit was exceeded";
   }
   if (config_.circle && 1e3 * path_most_ > config_.path_bound_mm) {
-    return fmt::format("the end effector was {:.2g} mm off its way, motion.bound_mm allows {}",
+    return fmt::format("the end effector's path error was {:.2g} mm; motion.bound_mm allows {}",
                        1e3 * path_most_, config_.path_bound_mm);
   }
   if (config_.goes_home && home_error_ > kHomeBound) {
@@ -299,21 +299,22 @@ std::string Verdict::WhyNot(const Summary& summary) const {
   const auto future = measurements_.find(hal::Name(hal::Intake::kFromFuture));
   if (!ever_known_ && future != measurements_.end()) {
     return fmt::format(
-        "not converged: {} of {} measurements came with stamps from the future, and were left out (see "
+        "not converged: {} of {} measurements had stamps from the future and were rejected (see "
         "camera.latency_ms, the camera's clock)",
         future->second, summary.frames);
   }
   if (!ever_known_) {
     return fmt::format(
-        "not converged: the target was found in {} frames, too few to be sure of it (see run.duration_s, "
+        "not converged: the target was found in {} frames, too few to accept it (see run.duration_s, "
         "servo.accepted_min)",
         summary.frames_detected);
   }
   if (!modes_.empty() && modes_.back().mode == hal::Name(hal::Mode::kHold)) {
     if (modes_.back().reason == hal::Name(hal::HoldReason::kEyeDoubted)) {
       return fmt::format(
-          "not converged: the picture moved against the hand, or steering by it did not help, so the arm "
-          "holds since {:.3f} s (see camera.mount_xyz, camera.mount_rpy_deg, servo.way_in_vain)",
+          "not converged: the image motion contradicts the hand's motion, or servoing did not reduce the "
+          "error; the arm holds since {:.3f} s (see camera.mount_xyz, camera.mount_rpy_deg, "
+          "servo.way_in_vain)",
           modes_.back().t_s);
     }
     if (modes_.back().reason == hal::Name(hal::HoldReason::kGoalUnreachable)) {

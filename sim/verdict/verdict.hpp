@@ -27,38 +27,38 @@ struct VerdictConfig {
   StopRules stop;
   Pinhole pinhole;
   TargetGoal goal;
-  bool has_eye = true;  // false: there is no target to judge by
+  bool has_eye = true;  // false: there is no target to judge
   bool target_moves = false;
   double tracking_bound_px = 3.0;
   double tracking_bound_mm = 5.0;
   double duration_s = 8.0;                // of the run
-  bool has_motion = true;                 // one is commanded; counts without an eye
-  std::optional<CommandedCircle> circle;  // that the end effector shall follow
+  bool has_motion = true;                 // a motion is commanded; used without a camera
+  std::optional<CommandedCircle> circle;  // that the end effector must follow
   double path_bound_mm = 1.0;
-  bool goes_home = false;           // to arm.q_ready, where it shall stand at the end
-  std::vector<FaultWindow> faults;  // that the run meets
+  bool goes_home = false;           // the arm must be at arm.q_ready at the end
+  std::vector<FaultWindow> faults;  // of the run
 };
 
-// AddTruth and AddRecord may be called by two threads: neither touches what the other does. Its size does not
-// grow with the length of the run, but for ticks in which a limit was passed.
+// Two threads may call AddTruth and AddRecord: they share no data. Memory does not grow with the length of
+// the run, except for ticks with a violation.
 class Verdict {
  public:
   explicit Verdict(const VerdictConfig& config);
 
-  // `mode`: the servo's, whose command was in force in this step.
+  // `mode`: mode of the servo that commanded this step.
   void AddTruth(const Truth& truth, hal::Mode mode);
   void AddRecord(const hal::TickRecord& record);
 
-  // When both are done: fills in everything that follows from truth and records. `summary` already says how
-  // many frames there were.
+  // Fills in everything that follows from truth and records. Call it after both threads have ended, and after
+  // the number of frames is in `summary`.
   void Fill(Summary& summary) const;
 
  private:
   struct Sample {
     std::int64_t stamp_ns = 0;
-    double error_px = 0.0;                              // infinite when the target is behind the camera
-    Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal less truth, in axes of C [m]
-    double error_rad = 0.0;                             // of the orientation, where the goal has one
+    double error_px = 0.0;                              // infinite if the target is behind the camera
+    Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal minus truth, in axes of C [m]
+    double error_rad = 0.0;                             // of the orientation, if the goal has one
   };
   void AddSample(const Sample& sample);
   [[nodiscard]] double WindowPx() const;
@@ -83,11 +83,11 @@ class Verdict {
   std::optional<double> first_px_;  // error at the start
   bool is_outside_ = false;         // the last sample was not settled
   std::optional<double> last_outside_s_;
-  double second_half_px2_ = 0.0;  // sums of squares: of the image error [px^2],
-  double second_half_m2_ = 0.0;   // and of the way to the goal [m^2]
+  double second_half_px2_ = 0.0;  // sum of squares of the image error [px^2]
+  double second_half_m2_ = 0.0;   // sum of squares of the position error [m^2]
   std::uint64_t second_half_samples_ = 0;
   ContactCount contacts_;
-  double home_error_ = 0.0;  // largest of the joints', at the last truth [rad]
+  double home_error_ = 0.0;  // largest joint error to arm.q_ready, at the last step [rad]
   std::optional<double> at_rest_since_s_;
   std::optional<double> goal_kept_since_s_;
 
@@ -97,7 +97,7 @@ class Verdict {
   std::size_t reference_jerk_ = reference_.Add("joint_jerk", LimitBook::Kind::kShare);
   NoticeBook notices_;
   std::map<std::string, std::uint64_t> limit_ticks_;
-  std::map<std::string, std::uint64_t> measurements_;  // by what became of them
+  std::map<std::string, std::uint64_t> measurements_;  // count by hal::Intake
   hal::TickRecord before_;
   bool has_record_ = false;
   bool ever_known_ = false;

@@ -5,7 +5,7 @@ namespace fovea::sim {
 void FeatureDelay::Put(const hal::FeatureMeasurement& measurement) noexcept {
   {
     const std::lock_guard lock(mutex_);
-    // Frames come in order: what was expected before this one and has no measurement was lost on the way.
+    // Frames come in order: an earlier one that still has no measurement was lost.
     std::erase_if(expected_, [&](const Expected& expected) {
       return expected.sequence < measurement.sequence && !expected.measurement;
     });

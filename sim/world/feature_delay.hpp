@@ -1,9 +1,8 @@
-// Keeps each measurement until its modelled latency has passed, then hands it to the servo.
+// Keeps each measurement until its modelled latency has passed, then passes it to the servo.
 //
-// The latency of exposure, read-out, transport and processing is a figure of the scenario, not of this
-// computer. In lockstep the world waits for a measurement that is due and not there yet, so that a run does
-// not depend on how fast rendering and detection were; in real time it does not wait, and a late measurement
-// is handed over when it comes.
+// The scenario sets the latency of exposure, read-out, transport and processing, independent of this
+// computer. In lockstep, the world waits for a measurement that is due, so that a run does not depend on the
+// speed of rendering and detection. In real time, a late measurement is passed on when it arrives.
 #pragma once
 
 #include <condition_variable>
@@ -18,16 +17,16 @@ namespace fovea::sim {
 
 class FeatureDelay final : public hal::FeatureSink {
  public:
-  // From the vision thread.
+  // Called by the vision thread.
   void Put(const hal::FeatureMeasurement& measurement) noexcept override;
 
-  // From the simulation's thread: frame `sequence` was exposed; its measurement is due at `due_ns`.
+  // Announces frame `sequence`, whose measurement is due at `due_ns`. Called by the simulation's thread.
   void Expect(std::uint64_t sequence, std::int64_t due_ns);
-  // Hands over all that is due at `now_ns`. With `wait`, first waits for those which are due; returns false
-  // when the vision side was closed while it waited.
+  // Passes all measurements due at `now_ns` to `servo`. With `wait`, waits for those that are due. Returns
+  // false if a due measurement is missing and the vision side is closed.
   bool HandOver(std::int64_t now_ns, bool wait, hal::FeatureSink& servo);
 
-  // From any thread: nothing more will be put.
+  // Announces that no measurement will follow. Called by any thread.
   void Close();
 
  private:

@@ -1,4 +1,4 @@
-// The simulated arm behind the seam.
+// The simulated arm as a hal::Arm.
 #pragma once
 
 #include "fovea/hal/arm.hpp"

@@ -12,15 +12,14 @@ constexpr double kPendulumSwing = 0.5;  // largest angle of a pendulum [rad]
 
 Eigen::Vector3d Aside(const Eigen::Vector3d& direction) { return Eigen::Vector3d::UnitZ().cross(direction); }
 
-// Along each axis two swings of periods that have nothing to do with each other, from the seed; together they
-// are never further out than `reach`, nor faster than `speed`.
+// A sum of two sines per axis, with random periods from the seed. It stays within `reach` and below `speed`.
 Eigen::Vector3d Wander(const TargetMotion& motion, double t) {
   std::mt19937_64 engine(motion.seed);
   const auto uniform = [&engine](double low, double high) {
     return low + (high - low) * static_cast<double>(engine() >> 11U) * 0x1p-53;
   };
   const double size = motion.reach / std::sqrt(3.0);
-  const double fastest = motion.speed / motion.reach;  // angular frequency of the faster swing [rad/s]
+  const double fastest = motion.speed / motion.reach;  // upper bound of the angular frequencies [rad/s]
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     const double slow = fastest * uniform(0.3, 0.6);
@@ -51,7 +50,7 @@ Eigen::Vector3d PositionAt(const TargetMotion& motion, std::int64_t time_ns) {
       return motion.p_BO + motion.reach * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
     case MotionKind::kLine: return motion.p_BO + motion.reach * std::sin(angle) * motion.direction;
     case MotionKind::kEight: {
-      // Gerono's: fastest in the middle, by the factor sqrt(2) of one swing alone.
+      // Gerono's lemniscate: fastest at its centre, sqrt(2) times as fast as one sine alone.
       const double a = angle / std::numbers::sqrt2;
       return motion.p_BO + motion.reach * (std::sin(a) * motion.direction +
                                            std::sin(a) * std::cos(a) * Aside(motion.direction));

@@ -1,4 +1,4 @@
-// Where the target is at any time, as the scenario wants it.
+// The target's pose as a function of time, by the scenario.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -8,26 +8,26 @@ namespace fovea::sim {
 
 enum class MotionKind {
   kStill,
-  kCircle,    // level, of radius `reach`
-  kLine,      // to and fro along `direction`, `reach` each way, fastest in the middle
-  kEight,     // level, of half length `reach` along `direction` and half width reach / 2
-  kPendulum,  // on a string of length `reach` above its lowest place, in the plane of `direction`
-  kWander,    // here and there, smoothly, within `reach`, by `seed`
+  kCircle,    // horizontal, of radius `reach`
+  kLine,      // back and forth along `direction`, `reach` each way, fastest in the middle
+  kEight,     // horizontal figure of eight: half length `reach` along `direction`, half width reach / 2
+  kPendulum,  // on a string of length `reach` above its lowest point, in the vertical plane of `direction`
+  kWander,    // smooth random path within `reach`, by `seed`
   kJump,      // by `jump`, at once
-  kPushed,    // a ball on the table that physics moves (World), from `p_BO` on
+  kPushed,    // a ball on the table, moved by the physics (World) from `p_BO` on
 };
 
 struct TargetMotion {
   MotionKind kind = MotionKind::kStill;
-  Eigen::Vector3d p_BO = Eigen::Vector3d::Zero();        // where it rests, or the middle of its path [m]
+  Eigen::Vector3d p_BO = Eigen::Vector3d::Zero();        // position at rest, or centre of the path [m]
   double reach = 0.0;                                    // [m]
-  double speed = 0.0;                                    // along its path, the largest that it comes to [m/s]
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  // of length 1; level for all but the line
+  double speed = 0.0;                                    // largest speed along the path [m/s]
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  // unit vector; horizontal except for the line
   Eigen::Vector3d jump = Eigen::Vector3d::Zero();        // [m]
-  double jump_s = 0.0;                                   // when
+  double jump_s = 0.0;                                   // time of the jump
   std::uint64_t seed = 1;
   Eigen::Matrix3d R_BO = Eigen::Matrix3d::Identity();  // at the start
-  double turn_rate = 0.0;                              // about its own z from then on [rad/s]
+  double turn_rate = 0.0;                              // about its own z, from the start on [rad/s]
 };
 
 // The target's centre in B [m].

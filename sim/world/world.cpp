@@ -11,10 +11,10 @@ namespace {
 
 constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kStictionSpeed = 0.02;  // Coulomb friction reaches its full size beyond this [rad/s, m/s]
-constexpr double kBrakeDecay = 0.8;      // an engaged brake leaves this share of the speed per step
-constexpr double kBrakeRest = 1e-3;      // and below this speed it holds [rad/s]
+constexpr double kBrakeDecay = 0.8;      // share of the speed that an engaged brake leaves per step
+constexpr double kBrakeRest = 1e-3;      // below this speed an engaged brake holds the joint [rad/s]
 
-// The inertia of a link alone about its own joint [kg m^2, kg].
+// The inertia of a single link about its own joint [kg m^2, kg].
 double OwnInertia(const SimLink& link) {
   if (link.joint == SimJointKind::kPrismatic) {
     return link.mass;
@@ -39,8 +39,8 @@ World::World(const WorldConfig& config)
   for (const SimLink& link : config_.robot.links) {
     if (link.dof >= 0) {
       joints_.push_back(&link);
-      // On a light link the full friction within one step would throw the speed over to the other side. Its
-      // two parts together take no more than all the speed out of a step.
+      // On a light link, the full friction of one step would reverse the speed. Each of its two parts
+      // therefore removes at most half of the speed per step.
       const double left = 1.0 - config_.friction_compensation;
       const double most = 0.5 * OwnInertia(link) / kStepS;  // damping of one part [N m s/rad, N s/m]
       viscous_.push_back(std::min(left * link.viscous, most));
@@ -81,7 +81,7 @@ void World::AdvanceTo(std::int64_t time_ns) {
 void World::Step() {
   truth_.ddq_disturbed.resize(0);
   if (command_.engage_brakes) {
-    // The brakes stop each joint on its own, whatever hangs on it.
+    // The brakes stop each joint separately, whatever its load.
     Eigen::VectorXd dq = arm_.dq() * kBrakeDecay;
     for (Eigen::Index i = 0; i < dq.size(); ++i) {
       dq[i] = std::fabs(dq[i]) < kBrakeRest ? 0.0 : dq[i];
@@ -117,7 +117,7 @@ void World::StepBall() {
   ball_->Step(kStepS);
 }
 
-// Springs, and what pushes the joints from outside.
+// Torques of the springs and of external pushes.
 Eigen::VectorXd World::Pulls() const {
   Eigen::VectorXd tau = Eigen::VectorXd::Zero(arm_.num_dofs());
   if (config_.spring.size() > 0) {
@@ -144,8 +144,8 @@ void World::TiltBase(double tilt) {
   }
 }
 
-// By how much the next step's accelerations differ from those of the same arm, in the same state and under
-// the same commands, that nothing disturbs; empty where nothing does.
+// Difference of the next step's accelerations to those of an undisturbed arm, in the same state and under the
+// same command. Empty if there is no disturbance.
 Eigen::VectorXd World::AccelerationByDisturbance(double mass, double tilt) {
   const Eigen::VectorXd disturbed = MotorTorque() + Pulls();
   const Eigen::VectorXd wanted = WantedTorque();
@@ -160,12 +160,12 @@ Eigen::VectorXd World::AccelerationByDisturbance(double mass, double tilt) {
   return ddq - arm_.ForwardDynamics(WithFriction(wanted));
 }
 
-// The command and what the robot's own controller adds against gravity.
+// The command plus the gravity compensation of the robot's own controller.
 Eigen::VectorXd World::WantedTorque() const {
   return arm_.GravityTorque() + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
 }
 
-// As far as the motors give it.
+// The part of the wanted torque that the motors deliver.
 Eigen::VectorXd World::MotorTorque() const {
   Eigen::VectorXd tau = WantedTorque();
   if (config_.torque_loss.window.Contains(now_ns_)) {
@@ -174,7 +174,7 @@ Eigen::VectorXd World::MotorTorque() const {
   return tau;
 }
 
-// What the robot's own controller leaves of a joint's friction [N m, N], but for what physics does about it.
+// The joint friction that the robot's controller does not compensate [N m, N], without that of BulletArm.
 double World::FrictionLeft(int joint, double velocity) const {
   const auto k = static_cast<std::size_t>(joint);
   if (config_.stiction) {
@@ -184,7 +184,7 @@ double World::FrictionLeft(int joint, double velocity) const {
                                       std::tanh(velocity / stiction_speed_[k]);
 }
 
-// What acts on the joints: motors, what comes from outside, and what is left of friction.
+// All torques on the joints: motors, springs, external pushes and the remaining friction.
 Eigen::VectorXd World::JointTorque() const { return WithFriction(MotorTorque() + Pulls()); }
 
 Eigen::VectorXd World::WithFriction(Eigen::VectorXd tau) const {
@@ -243,7 +243,7 @@ Exposure World::Look() const {
   return exposure;
 }
 
-// Exposures are centred on the step nearest to their time on the camera's own clock.
+// Exposes at the step nearest to the frame's time by the camera's own clock. Its stamp is mid-exposure.
 void World::ExposeIfDue() {
   const double period_ns = static_cast<double>(hal::kNsPerSecond) / config_.camera_rate_hz;
   const auto due_ns = config_.first_exposure_ns +

@@ -1,4 +1,4 @@
-// The simulated bench: arm, target and time. It moves in steps of 1 ms and knows the truth.
+// The simulated bench: arm, target and time, in steps of 1 ms. It holds the true state.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -18,46 +18,46 @@
 
 namespace fovea::sim {
 
-// What goes wrong on the bench is part of it.
+// Includes the faults of the bench.
 struct WorldConfig : BenchFaults {
   SimRobot robot;
   BulletArmOptions physics;
   Eigen::VectorXd q_start;   // [num_dofs]
   Eigen::VectorXd dq_start;  // [num_dofs]; empty: at rest
-  Eigen::VectorXd spring;    // [num_dofs] pulls each joint to 0 [Nm/rad, N/m]; empty: none does
+  Eigen::VectorXd spring;    // [num_dofs] pulls each joint to 0 [Nm/rad, N/m]; empty: no springs
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
   double friction_compensation =
-      0.9;                       // share of the joints' friction that the robot's own controller takes away
-  bool stiction = false;         // Coulomb friction holds a joint at rest; else it is smooth about rest
+      0.9;                       // share of the joints' friction that the robot's own controller compensates
+  bool stiction = false;         // true: Coulomb friction holds a joint at rest; false: smooth around rest
   double encoder_noise = 0.0;    // standard deviation of q [rad]
-  double encoder_quantum = 0.0;  // q is measured in multiples of it [rad, m]; 0: as fine as numbers are
+  double encoder_quantum = 0.0;  // q is measured in multiples of it [rad, m]; 0: not rounded
   double velocity_noise = 0.0;   // standard deviation of dq [rad/s]
   TargetMotion target;
-  std::optional<Shape> target_body;  // its shape in O, which links may touch; none: there is no target
-  RollingBallConfig ball;            // a target that is pushed
+  std::optional<Shape> target_body;  // the target's shape in O, for contacts with links; empty: no target
+  RollingBallConfig ball;            // used for a pushed target
   Eigen::Vector3d ball_push = Eigen::Vector3d::Zero();  // impulse, in axes of B [N s]
-  double ball_push_s = 0.0;                             // when
+  double ball_push_s = 0.0;                             // time of the push
   double camera_rate_hz = 30.0;
   std::int64_t first_exposure_ns = 20'000'000;
   std::uint64_t seed = 1;
 };
 
-// What the arm touches.
+// The arm's contacts.
 struct Contacts {
-  int bench = 0;  // points at which links meet the table
+  int bench = 0;  // contact points of links with the table
   bool target = false;
   bool self = false;
   [[nodiscard]] bool Any() const { return bench > 0 || target || self; }
 };
 
-// What really is, at one instant. For verdicts and logs; never for the servo.
+// The true state at one instant. For verdicts and logs, never for the servo.
 struct Truth {
   std::int64_t stamp_ns = 0;
   Eigen::VectorXd q;
   Eigen::VectorXd dq;
-  Eigen::VectorXd tau_cmd;  // in force until now
-  // What injected disturbances alone added to the joints' accelerations in the last step [rad/s^2, m/s^2]:
-  // pushes, loads, a base that leans, motors that give too little. Empty where there was none.
+  Eigen::VectorXd tau_cmd;  // command of the last step
+  // Share of the joints' accelerations in the last step caused by disturbances [rad/s^2, m/s^2]: pushes,
+  // springs, loads, a tilted base, weak motors. Empty if there was none.
   Eigen::VectorXd ddq_disturbed;
   Eigen::Isometry3d X_BE = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
@@ -66,25 +66,25 @@ struct Truth {
   Contacts contacts;
 };
 
-// One thread uses it.
+// Only one thread may use it.
 class World {
  public:
   explicit World(const WorldConfig& config);
 
-  // Called once per step, after it, and once at the start.
+  // Calls `callback` at once, and then after each step.
   void OnStep(std::function<void(const Truth&)> callback);
-  // Called when the shutter opens; in the thread that advances the world.
+  // Calls `callback` at each exposure, on the thread that advances the world.
   void OnExposure(std::function<void(Exposure)> callback);
 
-  // Steps until the world's time is `time_ns` (a multiple of 1 ms, or the next one below).
+  // Steps until the world's time is `time_ns`, rounded down to a multiple of 1 ms.
   void AdvanceTo(std::int64_t time_ns);
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
 
-  // The arm's side of the seam.
+  // Measurements and commands for SimArm.
   [[nodiscard]] const hal::ArmState& MeasuredState() const { return measured_; }
   void Command(const hal::ArmCommand& command) { command_ = command; }
 
-  // From now on somebody pulls at the joints with `tau` [num_dofs; Nm, N], beside what WorldConfig says.
+  // Applies lasting external torques `tau` [num_dofs; Nm, N] to the joints, in addition to WorldConfig's.
   void PullAt(const Eigen::VectorXd& tau) { pulled_ = tau; }
 
   [[nodiscard]] const Truth& truth() const { return truth_; }
@@ -117,12 +117,12 @@ class World {
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
   std::vector<const SimLink*> joints_;  // moving links, base to tip
-  std::vector<double> viscous_;         // damping left to each [N m s/rad, N s/m]
-  std::vector<double> stiction_speed_;  // of each: below it Coulomb friction is not at its full size
+  std::vector<double> viscous_;         // uncompensated damping of each [N m s/rad, N s/m]
+  std::vector<double> stiction_speed_;  // speed scale of each joint's smooth Coulomb friction [rad/s, m/s]
   std::int64_t now_ns_ = 0;
   std::uint64_t next_frame_ = 0;
   hal::ArmCommand command_;
-  Eigen::VectorXd pulled_;  // by PullAt; empty: nobody does
+  Eigen::VectorXd pulled_;  // torques of PullAt; empty: none
   hal::ArmState measured_;
   Truth truth_;
   std::function<void(const Truth&)> on_step_;

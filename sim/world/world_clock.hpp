@@ -1,4 +1,4 @@
-// The two paces. Both are the loop's clock; waiting for the next tick is where the world moves on.
+// The loop's clocks for the two paces. The wait for the next tick advances the world.
 #pragma once
 
 #include <exception>
@@ -9,18 +9,18 @@
 
 namespace fovea::sim {
 
-// Called after the world has moved on to `now_ns`, between ticks; false closes the clock.
+// Called between ticks, after the world has advanced to `now_ns`. Returning false closes the clock.
 using AfterAdvance = std::function<bool(std::int64_t now_ns)>;
 
-// Moves the world on. What the world or those who look on throw must not pass through the loop: it is kept,
-// the clock says kClosed, and whoever runs the loop asks for it afterwards.
+// Advances the world. An exception of the world or of a callback must not pass through the loop: it is
+// stored, the clock returns kClosed, and the loop's caller rethrows it afterwards.
 class WorldStepper {
  public:
   WorldStepper(World& world, AfterAdvance after_advance);
 
   hal::Status AdvanceTo(std::int64_t time_ns) noexcept;
   [[nodiscard]] std::int64_t now_ns() const noexcept { return world_.now_ns(); }
-  // Throws what was kept; nothing when all went well.
+  // Rethrows the stored exception, if any.
   void RethrowFailure() const;
 
  private:
@@ -29,7 +29,7 @@ class WorldStepper {
   std::exception_ptr failure_;
 };
 
-// Virtual time, as fast as the machine goes: bit-reproducible.
+// Virtual time, as fast as the machine can: bit-reproducible.
 class LockstepClock final : public hal::Clock {
  public:
   LockstepClock(World& world, AfterAdvance after_advance);
@@ -42,8 +42,8 @@ class LockstepClock final : public hal::Clock {
   WorldStepper stepper_;
 };
 
-// Real time: sleeps on `clock`, then brings the world up to it. A tick that comes late finds the world as
-// far on as a real one would be, the last command in force meanwhile. Time 0 is when it was made.
+// Real time: sleeps on `clock`, then advances the world to its time. After a late tick, the world is as far
+// as a real one; the last command acted in the meantime. Time 0 is the construction of this clock.
 class RealPaceClock final : public hal::Clock {
  public:
   RealPaceClock(World& world, hal::Clock& clock, AfterAdvance after_advance);

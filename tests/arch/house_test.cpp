@@ -1,5 +1,4 @@
-// The house stays one that a stranger can live in: short files, small rooms, and a namespace that is the
-// room's name.
+// Keeps the tree easy to read: short files, small folders, and namespaces named after their folder.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -12,7 +11,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostLines = 400;
-constexpr std::size_t kMostSources = 25;  // of one folder; a header and its source are one
+constexpr std::size_t kMostSources = 25;  // per folder; a header and its source count as one
 
 const char* const kTrees[] = {"hal", "firmware", "sim", "tools", "tests"};
 
@@ -54,7 +53,7 @@ TEST(SourceTree, NoFolderExceedsTheFileLimit) {
   EXPECT_GT(fullest, 5U);
 }
 
-// The first namespace that a file opens below fovea; "" where it opens none.
+// The last namespace that a file opens below fovea; "" if it opens none.
 std::string NamespaceOf(const fs::path& file) {
   static const std::regex kNamespace(R"(^namespace fovea::(\w+)(::\w+)? \{)");
   std::ifstream in(file);
@@ -62,7 +61,7 @@ std::string NamespaceOf(const fs::path& file) {
   std::string last;
   for (std::string line; std::getline(in, line);) {
     if (std::regex_search(line, match, kNamespace)) {
-      last = match[1];  // what a header declares of others stands before its own
+      last = match[1];  // forward declarations of other modules stand before the file's own namespace
     }
   }
   return last;

@@ -1,4 +1,4 @@
-// The arrows of the design point one way, proved from what each file includes.
+// Checks from the #include lines that dependencies between folders point one way only.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace fovea {
 namespace {
 
-// Sources below `folder` may include what matches `allowed`, and the standard library.
+// Sources below `folder` may include headers that match `allowed`, and the standard library.
 struct Rule {
   std::string folder;
   std::string allowed;
@@ -45,7 +45,7 @@ TEST_P(IncludeRule, EveryIncludeIsAllowed) {
   }
 }
 
-// The rooms of the core, each with those that it may see besides itself, hal and Eigen.
+// Matches hal, Eigen and the core modules that match `rooms`.
 std::string Rooms(const char* rooms) {
   return std::string("fovea/hal/.*|Eigen/.*|firmware/core/(") + rooms + ")/.*";
 }
@@ -53,8 +53,8 @@ std::string Rooms(const char* rooms) {
 INSTANTIATE_TEST_SUITE_P(
     Hal, IncludeRule,
     testing::Values(
-        Rule{"hal/include", "fovea/hal/.*", "the contract depends on the standard library alone"},
-        Rule{"hal/src", "fovea/hal/.*", "the contract depends on the standard library alone"},
+        Rule{"hal/include", "fovea/hal/.*", "the contract depends only on the standard library"},
+        Rule{"hal/src", "fovea/hal/.*", "the contract depends only on the standard library"},
         Rule{"hal/drivers/linux_rt", "fovea/(hal|linux_rt)/.*|(sys/|fcntl|malloc|sched|unistd|pthread).*",
              "a driver depends on the contract and on its device"},
         Rule{"hal/drivers/camera", "fovea/(hal|linux_rt|camera)/.*|opencv2/.*",
@@ -76,103 +76,105 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Core, IncludeRule,
     testing::Values(
-        Rule{"firmware/core", Rooms("[a-z_]+"), "the core sees hal and Eigen alone"},
-        Rule{"firmware/core/model", Rooms("model"), "the model sees no other room"},
-        Rule{"firmware/core/features", Rooms("model|features"), "a feature sees the model alone"},
-        Rule{"firmware/core/config", Rooms("model|features|config"), "settings are data"},
+        Rule{"firmware/core", Rooms("[a-z_]+"), "the core depends only on hal and Eigen"},
+        Rule{"firmware/core/model", Rooms("model"), "the model depends on no other module"},
+        Rule{"firmware/core/features", Rooms("model|features"), "a feature depends only on the model"},
+        Rule{"firmware/core/config", Rooms("model|features|config"), "the configuration is plain data"},
         Rule{"firmware/core/trajectory", Rooms("model|features|config|trajectory"),
-             "motions of axes know neither target nor barriers"},
+             "axis motions depend on neither target nor barriers"},
         Rule{"firmware/core/barriers", Rooms("model|features|config|trajectory|barriers"),
-             "a barrier knows no law"},
+             "a barrier depends on no control law"},
         Rule{"firmware/core/estimate", Rooms("model|features|config|estimate"),
-             "what is estimated does not depend on what is done"},
+             "an estimate does not depend on the control law"},
         Rule{"firmware/core/guard", Rooms("model|features|config|trajectory|barriers|guard"),
-             "the proof of a stop knows no wish"},
+             "the proof of a stop does not depend on the control law"},
         Rule{"firmware/core/control", Rooms("model|features|config|trajectory|barriers|control"),
-             "a law knows neither estimate nor guard"},
+             "a law depends on neither estimate nor guard"},
         Rule{"firmware/core/motion_laws", Rooms("model|features|config|trajectory|motion_laws"),
-             "a motion law follows a reference"},
+             "a motion law only follows a reference"},
         Rule{"firmware/core/moves", Rooms("model|features|config|trajectory|barriers|control|guard|moves"),
              "commanded motions pass the same limits as the law"},
-        Rule{"firmware/core/task", Rooms("[a-km-z][a-z_]+"), "the task sees every room but the line"},
-        Rule{"firmware/core/link", Rooms("[a-z_]+"), "both ends of the line see the servo and no system"}),
+        Rule{"firmware/core/task", Rooms("(?!link/)[a-z_]+"),
+             "the task depends on every module except the link"},
+        Rule{"firmware/core/link", Rooms("[a-z_]+"),
+             "both ends of the link depend on the servo and on no operating system"}),
     NameOf);
 
 INSTANTIATE_TEST_SUITE_P(
     Firmware, IncludeRule,
     testing::Values(
         Rule{"firmware/include", "firmware/(core|vision|host)/.*",
-             "the outside sees no driver and no target"},
+             "public headers expose no driver and no hardware target"},
         Rule{"firmware/vision", "fovea/hal/.*|firmware/(core|vision)/.*|(Eigen|opencv2)/.*",
-             "vision sees core and OpenCV"},
+             "vision depends only on core and OpenCV"},
         Rule{"firmware/host",
              "(fovea/(hal|linux_rt)|firmware/(core|vision|host)|Eigen|unsupported/Eigen|opencv2)/.*|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|"
              "(CLI|console_bridge|fmt|google|libavcodec|libavformat|libavutil|nlohmann|openssl|toml\\+\\+|"
              "urdf_parser)/.*|(fcntl|unistd|sys/file|sys/ioctl|zlib|zstd)[.]h",
-             "the host's part sees core, vision and libraries, no driver of a device and no simulator"},
+             "the host part depends on core, vision and libraries, on no device driver and no simulator"},
         Rule{"firmware/host/config",
              "fovea/hal/.*|firmware/(core|vision|host/(calibration|config|robots))/"
              ".*|(CLI|fmt|toml\\+\\+|Eigen)/.*|"
              "(unistd|fcntl|sys/file|sys/ioctl)[.]h",
-             "keys are of servo and vision"},
+             "keys configure servo and vision only"},
         Rule{"firmware/host/robots",
              "firmware/(core/model|host/(config|robots))/.*|(fmt|urdf_parser|console_bridge|Eigen)/.*",
-             "an arm comes from its files"},
+             "an arm is read from its files only"},
         Rule{"firmware/host/design", "firmware/host/design/.*|(unsupported/)?Eigen/.*",
-             "design is mathematics alone"},
+             "gain design is mathematics only"},
         Rule{"firmware/host/recording",
              "(fovea/(hal|linux_rt)|firmware/(core|vision|host/recording)|Eigen|opencv2|fmt|google|nlohmann|"
              "openssl)/.*|(fovea|foxglove)/[a-z]+[.]pb[.]h|(zlib|zstd)[.]h",
-             "what is recorded is the servo and its pictures"},
+             "a recording contains only the servo and its pictures"},
         Rule{"firmware/host/film",
              "fovea/(hal|linux_rt)/.*|firmware/(core|vision|host/film)/.*|"
              "(Eigen|fmt|opencv2|libavcodec|libavformat|libavutil)/.*",
-             "a film is made of frames and detections alone"},
+             "a film is made only of frames and detections"},
         Rule{"firmware/host/report",
              "fovea/hal/.*|firmware/(core/(config|link|model)|host/(recording|report))/.*|"
              "firmware/core/features/target_traits[.]hpp|(fovea|foxglove)/[a-z]+[.]pb[.]h|"
              "(fmt|google|nlohmann|openssl)/.*",
-             "a report is made of a log alone, and knows the kinds of arms and targets in it"},
+             "a report is made only from a log, and knows the kinds of arms and targets in it"},
         Rule{"firmware/host/run",
              "fovea/(hal|linux_rt)/.*|firmware/(core|vision|host/"
              "(build_info|config|film|recording|report|run))"
              "[./].*|(fmt|nlohmann)/.*|(fovea|foxglove)/[a-z]+[.]pb[.]h",
-             "what a run leaves is its servo, its pictures and their recording, whoever ran it"},
+             "a run's files come from servo, pictures and recording, whichever program runs it"},
         Rule{"firmware/targets/cortex_m7", "fovea/cortex_m7/.*|firmware/core/.*|emitted/panda[.]hpp",
-             "the processor's program sees its driver and the servo behind the line"},
+             "the processor's program depends on its driver and on the servo behind the link"},
         Rule{"firmware/targets/linux",
              "(fovea|firmware|fmt|CLI|nlohmann|Eigen|foxglove)/.*|(poll|pthread|unistd)[.]h",
-             "the hardware target sees drivers and servo, not the simulator"}),
+             "the hardware target depends on drivers and servo, not on the simulator"}),
     NameOf);
 
 INSTANTIATE_TEST_SUITE_P(
     Sim, IncludeRule,
     testing::Values(
         Rule{"sim/camera", "fovea/hal/.*|sim/(camera|render)/.*|Eigen/.*",
-             "the simulated world sees hal, not the firmware"},
+             "the simulated world depends on hal, not on the firmware"},
         Rule{"sim/faults", "fovea/hal/.*|sim/(camera|faults|render)/.*|Eigen/.*",
-             "the simulated world sees hal, not the firmware"},
+             "the simulated world depends on hal, not on the firmware"},
         Rule{"sim/physics", "sim/(physics|robot)/.*|Eigen/.*|Bullet.*",
-             "physics sees Bullet and the robot alone"},
+             "physics depends only on Bullet and the robot"},
         Rule{"sim/render", "sim/(render|robot)/.*|(Eigen|epoxy|fmt)/.*",
-             "rendering sees no physics and no servo"},
+             "rendering depends on neither physics nor servo"},
         Rule{"sim/robot", "sim/robot/.*|(Eigen|assimp|fmt|urdf_parser)/.*",
-             "the simulated robot comes from its URDF and its meshes alone"},
+             "the simulated robot is read only from its URDF and its meshes"},
         Rule{"sim/model_library", "firmware/core/model/.*|sim/model_library/.*|emitted/panda[.]hpp",
-             "what the robot hands out is the servo's model and nothing else"},
+             "the robot's model library contains only the servo's model"},
         Rule{"sim/mcu",
              "fovea/hal/.*|firmware/core/.*|sim/(mcu/.*|faults/link_faults[.]hpp)|fmt/.*|sys/.*|"
              "(fcntl|poll|sched|signal|unistd)[.]h",
-             "the host's end of a board's line sees the messages, and nothing of the simulated world"},
+             "the host end of the board's link depends on the messages, not on the simulated world"},
         Rule{
             "sim/panda",
             "fovea/(hal|linux_rt|franka)/.*|sim/(panda|robot|world)/.*|sim/faults/link_faults[.]hpp|Eigen/.*",
-            "the robot's other end of the wire sees its messages and the simulator"},
+            "the robot's network end depends on its messages and on the simulator"},
         Rule{"sim/gige", "fovea/(hal|linux_rt)/.*|fovea/franka/sockets[.]hpp|sim/gige/.*|arv[.]h",
-             "the camera's other end of the wire sees frames alone"},
+             "the camera's network end depends only on frames"},
         Rule{"sim/world", "fovea/hal/.*|sim/(world|physics|render|robot|faults)/.*|Eigen/.*",
-             "the simulated world sees hal, not the firmware"}),
+             "the simulated world depends on hal, not on the firmware"}),
     NameOf);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -180,11 +182,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Rule{"tools/fovea",
              "(fovea|firmware|tools|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/.*|[a-z_]+[.]h",
-             "works beside runs, without the simulator"},
+             "the programs work on recorded runs, without the simulator"},
         Rule{"tools/bench",
              "(fovea|firmware|tools|fmt|CLI|nlohmann|opencv2|Eigen|kdl|visp3|arpa|netinet|sys|linux)/.*|"
              "[a-z_]+[.]h",
-             "measures, without the simulator"}),
+             "the benchmarks run without the simulator"}),
     NameOf);
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the page on security says that holds a bound is there: tests and fuzz targets by their names.
+// Checks that every test and every fuzz target that SECURITY.md names exists.
 #include <gtest/gtest.h>
 
 #include <fstream>

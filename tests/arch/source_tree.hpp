@@ -1,4 +1,4 @@
-// Reads the project's own sources and runs a tool on its libraries, for tests of its shape.
+// Reads the project's own sources and runs tools on its libraries, for tests of the tree's structure.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ inline std::vector<std::filesystem::path> SourcesIn(const std::string& folder) {
   return files;
 }
 
-// What a file includes, without quotes or brackets.
+// The headers that a file includes, without quotes or brackets.
 inline std::vector<std::string> IncludesOf(const std::filesystem::path& file) {
   static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
   std::vector<std::string> includes;

@@ -1,5 +1,5 @@
-// What runs in the tick calls nothing that could allocate, lock, throw or enter the system: proved from the
-// symbols that its libraries need. They would link on bare metal.
+// Checks that the code of the tick calls nothing that could allocate, lock, throw or make a system call.
+// Reads the symbols that the tick's libraries need: these libraries would link on bare metal.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -33,7 +33,7 @@ TEST(TickSymbolsTest, TickCallsOnlyAllowedSymbols) {
 #endif
   const std::set<std::string> defined = Symbols("--defined-only");
   const std::set<std::string> needed = Symbols("--undefined-only");
-  ASSERT_GT(defined.size(), 50U) << "nm must have been there";
+  ASSERT_GT(defined.size(), 50U) << "nm printed no symbols: is it installed?";
   const std::set<std::string> allowed = {"memcpy",
                                          "memset",
                                          "memmove",
@@ -46,10 +46,11 @@ TEST(TickSymbolsTest, TickCallsOnlyAllowedSymbols) {
   }
 }
 
-// The hardware target's libraries carry no simulator along.
+// The hardware target's libraries do not need the simulator's.
 TEST(SharedLibrariesTest, FirmwareProgramNeedsNoBulletOrEgl) {
   const std::string needed = test::OutputOf("readelf -d '" FOVEA_FIRMWARE_PROGRAM "' | grep NEEDED");
-  ASSERT_NE(needed.find("libopencv_imgproc"), std::string::npos) << "readelf must have been there";
+  ASSERT_NE(needed.find("libopencv_imgproc"), std::string::npos)
+      << "readelf printed no OpenCV library: is it installed?";
   for (const char* name : {"Bullet", "LinearMath", "libEGL", "libepoxy", "libGL"}) {
     EXPECT_EQ(needed.find(name), std::string::npos) << name;
   }

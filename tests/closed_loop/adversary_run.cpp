@@ -23,7 +23,7 @@ class Run {
  public:
   explicit Run(std::uint64_t seed) : setup_(Setup(seed)), world_(setup_.world), adversary_(seed) {
     if (!task_.Init(setup_.servo).ok()) {
-      throw std::logic_error("the configuration is refused");
+      throw std::logic_error("Init refuses the configuration");
     }
     world_.OnStep([this](const sim::Truth& truth) { Watch(truth); });
     world_.OnExposure([this](const sim::Exposure& exposure) {
@@ -47,7 +47,7 @@ class Run {
       asked_ = false;
     } else if (outputs_.record.mode == hal::Mode::kHold &&
                (!asked_ || outputs_.record.hold_reason == hal::HoldReason::kEyeDoubted)) {
-      inputs.request = task::Request::kTrack;  // whatever the servo doubts
+      inputs.request = task::Request::kTrack;  // even if the servo doubts its measurements
       asked_ = true;
     }
     const hal::Fault before = outputs_.record.fault;
@@ -166,9 +166,8 @@ AdversaryFigures RunAdversary(double duration_s, std::uint64_t seed,
 
 std::string InWords(const AdversaryFigures& f) {
   std::string text = fmt::format(
-      "{:.3f} h of robot time, {:.1f} % of it tracking; {} ticks with contact, {} with a limit passed; at "
-      "least {:.1f} mm "
-      "from what is kept out of; the target fed forward at up to {:.2f} m/s\nlimits used:",
+      "{:.3f} h of robot time, {:.1f} % of it tracking; {} ticks with contact, {} ticks beyond a limit; "
+      "smallest clearance {:.1f} mm; fastest target fed forward {:.2f} m/s\nlargest share of each limit:",
       f.hours, 1e-3 * static_cast<double>(f.tracking_ticks) / (36.0 * f.hours), f.contact_ticks,
       f.passed_ticks, f.lowest_mm, f.fastest_target);
   for (const auto& [name, most] : f.most) {
@@ -181,7 +180,7 @@ std::string InWords(const AdversaryFigures& f) {
   for (const auto& [name, count] : f.faults) {
     text += fmt::format("\nfault {}: {} times", name, count);
   }
-  return text + (f.first.empty() ? "" : "\nfirst: " + f.first) + "\n";
+  return text + (f.first.empty() ? "" : "\nfirst event: " + f.first) + "\n";
 }
 
 }  // namespace fovea::test

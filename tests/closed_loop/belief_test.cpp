@@ -1,4 +1,4 @@
-// When the world is not as believed: eyes that lie, encoders that hang, loads that nobody knows of.
+// The servo's assumptions are wrong: false measurements, encoders that hang, unknown loads.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ double WayOfHand(const GuardBench& bench, const Eigen::Vector3d& from) {
   return (bench.truth().X_BE.translation() - from).norm();
 }
 
-// The picture freezes on the way, with fresh noise and fresh stamps, for a while or for ever.
+// The picture freezes on the way to the goal, with fresh noise and fresh stamps, for a while or for good.
 TEST(SensorFault, FrozenPictureStopsTheArm) {
   for (const double lasts_s : {0.2, 1.0, 5.0, 100.0}) {
     GuardSetup setup = Tracking();
@@ -63,12 +63,12 @@ TEST(SensorFault, FrozenPictureStopsTheArm) {
       EXPECT_LT(way, 0.25);
     } else if (lasts_s < 2.0) {
       const Eigen::Vector3d p = bench.truth().X_BC.inverse() * Eigen::Vector3d(0.55, 0.1, 0.04);
-      EXPECT_LT((p - Eigen::Vector3d(0.0, 0.0, 0.4)).norm(), 5e-3) << "it goes on";
+      EXPECT_LT((p - Eigen::Vector3d(0.0, 0.0, 0.4)).norm(), 5e-3) << "the arm goes on to its goal";
     }
   }
 }
 
-// All encoders stand still while stamps go on, and velocities read zero.
+// All encoders, or one, hang: stamps go on, velocities read zero.
 TEST(SensorFault, AllEncodersStuckRaisesAFault) {
   for (const int joint : {-1, 0, 1, 3, 5}) {
     GuardSetup setup = Tracking();
@@ -89,8 +89,7 @@ TEST(SensorFault, AllEncodersStuckRaisesAFault) {
   }
 }
 
-// Encoders with steps, under a load that nobody was told of: a joint reads the same for a while, and is
-// sound.
+// Encoders with coarse steps, under an unknown load: a joint reads the same for a while although it is sound.
 TEST(SensorFault, QuantisedEncodersUnderLoadRaiseNoFault) {
   for (const double load : {0.0, 0.3, 1.0}) {
     GuardSetup setup = Tracking();
@@ -101,13 +100,13 @@ TEST(SensorFault, QuantisedEncodersUnderLoadRaiseNoFault) {
     bench.RunUntil(6.0);
     const Eigen::Vector3d p = bench.truth().X_BC.inverse() * Eigen::Vector3d(0.55, 0.1, 0.04);
     std::cout << load << " kg: " << hal::Name(bench.last().record.fault) << ", "
-              << 1e3 * (p - Eigen::Vector3d(0.0, 0.0, 0.4)).norm() << " mm off its goal\n";
+              << 1e3 * (p - Eigen::Vector3d(0.0, 0.0, 0.4)).norm() << " mm from the goal\n";
     EXPECT_EQ(bench.FirstFault(), -1);
     EXPECT_LT((p - Eigen::Vector3d(0.0, 0.0, 0.4)).norm(), 5e-3);
   }
 }
 
-// From the first state on the servo holds the arm where it finds it, whatever hangs on it.
+// From the first state on, the servo holds the arm where it is, whatever load it carries.
 TEST(SensorFault, BootHoldsTheArmUnderAnUnknownLoad) {
   for (const double load : {0.0, 0.3, 0.7, 1.5, 3.0}) {
     GuardSetup setup;
@@ -123,11 +122,11 @@ TEST(SensorFault, BootHoldsTheArmUnderAnUnknownLoad) {
                              hal::Name(bench.last().record.mode), hal::Name(bench.last().record.fault)),
                  bench);
     EXPECT_LT(furthest, 0.002 + 0.012 * load);
-    EXPECT_LE(bench.figures().velocity, load < 2.0 ? 0.2 : 0.6) << "3 kg are noticed as a push";
+    EXPECT_LE(bench.figures().velocity, load < 2.0 ? 0.2 : 0.6) << "a load of 3 kg counts as a push";
   }
 }
 
-// A fault ends the wish to track: after it has been recovered from, nothing moves until it is asked for anew.
+// A fault cancels the request to track: after recovery the arm moves only when asked again.
 TEST(SensorFault, AfterAFaultNothingMovesUntilTrackIsRequested) {
   GuardSetup setup = Tracking();
   setup.arm_faults.packet_loss = {{kOnsetS, kOnsetS + 0.1}, 1.0};
@@ -145,14 +144,14 @@ TEST(SensorFault, AfterAFaultNothingMovesUntilTrackIsRequested) {
   EXPECT_EQ(bench.last().record.mode, Mode::kTrack);
 }
 
-// No stream of measurements leads past a limit, into the table or the arm itself, or to a fault. Ten hours of
-// it: fovea-adversary --hours 10.
+// No stream of measurements leads past a limit, into the table or the arm itself, or to a fault. A longer
+// run: fovea-adversary --hours 10.
 TEST(SensorFault, AdversarialMeasurementsExceedNoLimit) {
   for (const std::uint64_t seed : {11U, 12U, 13U}) {
     const AdversaryFigures figures = RunAdversary(120.0, seed, {});
     std::cout << InWords(figures);
     EXPECT_TRUE(figures.Sound());
-    EXPECT_GT(figures.tracking_ticks, 20'000) << "it was hardly ever misled";
+    EXPECT_GT(figures.tracking_ticks, 20'000) << "too little tracking to be misled";
     EXPECT_LE(figures.fastest_target, 1.0 + 1e-9);
   }
 }

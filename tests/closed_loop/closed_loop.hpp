@@ -12,7 +12,7 @@
 
 namespace fovea::test {
 
-// Runs a shipped scenario with `assignments` over it; writes no files.
+// Runs a shipped scenario with its keys changed by `assignments`; writes no files.
 inline sim::Summary RunShipped(const std::string& name, const std::vector<std::string>& assignments = {},
                                sim::RunOptions options = {}) {
   options.report = false;
@@ -23,14 +23,14 @@ inline sim::Summary RunShipped(const std::string& name, const std::vector<std::s
 inline std::string LastMode(const sim::Summary& s) { return s.modes.empty() ? "" : s.modes.back().mode; }
 inline std::string LastReason(const sim::Summary& s) { return s.modes.empty() ? "" : s.modes.back().reason; }
 
-// What must be true of every run that meets no fault.
+// Requirements for every run without a latched fault.
 inline void ExpectSound(const sim::Summary& s) {
   EXPECT_EQ(s.limit_violations, 0U);
   EXPECT_EQ(s.contact_ticks, 0U);
   EXPECT_TRUE(s.faults.empty());
   EXPECT_EQ(s.records_dropped, 0U);
 #if defined(FOVEA_SANITIZED)
-  EXPECT_FALSE(linux_rt::HeapCounterActive()) << "a sanitizer has the heap to itself";
+  EXPECT_FALSE(linux_rt::HeapCounterActive()) << "a sanitizer replaces the heap";
 #else
   ASSERT_TRUE(s.heap_allocations_in_tick.has_value()) << "the heap counter is not active";
   EXPECT_EQ(*s.heap_allocations_in_tick, 0U);

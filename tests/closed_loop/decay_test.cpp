@@ -1,5 +1,5 @@
-// The control law's promise: with constant gain and after the smooth start the error decays like
-// exp(-lambda t) within 10 %. Nothing is switched off for it: noise, friction and every limit are as shipped.
+// With constant gain and after the smooth start the error decays like exp(-lambda t), within 10 %. Noise,
+// friction and every limit act as shipped.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,12 +11,11 @@ namespace {
 
 struct Decay {
   double worst = 0.0;       // largest relative distance from the exponential
-  double duration_s = 0.0;  // how long the comparison went on
+  double duration_s = 0.0;  // length of the comparison
 };
 
-// Compares the true error of a run, from 0.5 s of Track on and down to 3 % of what it was at the start, with
-// the exponential that begins there. Half a second covers the smooth start and the settling of the joints'
-// own loop.
+// Compares the true error with the exponential, from 0.5 s after Track begins until the error is 3 % of its
+// start. Half a second covers the smooth start and the settling of the joints' own loop.
 Decay Measure(double lambda) {
   std::map<std::int64_t, double> error;  // |p_CO_C* - p_CO_C| by time, from the simulator's truth
   std::int64_t track_ns = -1;
@@ -49,7 +48,7 @@ TEST(Decay, ErrorFollowsTheExponentialOfTheGain) {
   for (const double lambda : {1.0, 2.0, 3.0}) {
     const Decay decay = Measure(lambda);
     EXPECT_LT(decay.worst, 0.10);
-    EXPECT_GT(decay.duration_s * lambda, 1.0) << "the comparison covers too little to say anything";
+    EXPECT_GT(decay.duration_s * lambda, 1.0) << "the comparison is too short";
   }
 }
 

@@ -1,5 +1,4 @@
-// Whole runs with faults by script and by seed: what passes is ridden out, what lasts is latched, and a run
-// repeats to the last bit.
+// Whole runs with injected faults: the servo rides out transient ones. The same seed repeats a run exactly.
 #include <gmock/gmock.h>
 
 #include "tests/closed_loop/closed_loop.hpp"
@@ -12,7 +11,7 @@ struct Case {
   std::vector<std::string> assignments;
 };
 
-// Each from 0.6 s, in full approach, on for at most 1.8 s; 5 s in all.
+// Each begins at 0.6 s or later, during the approach, and lasts at most 1.8 s. The run lasts 5 s.
 class TransientFault : public testing::TestWithParam<Case> {};
 
 TEST_P(TransientFault, RunStillConverges) {

@@ -1,5 +1,5 @@
-// The scenarios of all targets and motions on the simulated arm, with friction and encoder noise, seen by the
-// truth plus 0.05 px: what is left is the servo's own.
+// Scenarios of all targets and motions on the simulated arm, with friction and encoder noise. Measurements
+// are the truth plus 0.05 px of noise: the error that remains is the servo's own.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -38,8 +38,8 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, StillTarget,
                            return name;
                          });
 
-// Starts from which the law that goes downhill ends at a limit: a triangle that needs another posture, and a
-// square of whose four goals the nearest lies outside the workspace.
+// From these starts the visual law, which goes downhill, ends at a limit: a triangle that needs another
+// posture, and a square whose nearest of four goals lies outside the workspace.
 TEST(FarGoal, TriangleIsReachedByAnotherPosture) {
   const sim::Summary s = RunByTruth(
       "triangle", {"arm.q_start=[-0.1256,1.1934,-2.1153,-1.6094,0.3756,1.2153,-2.4184]",
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, MovingTarget, testing::Values("ball-moving",
                            return name;
                          });
 
-// A square that goes round and turns: all six degrees of freedom in motion.
+// A square that moves on a circle and turns: all six degrees of freedom move.
 TEST(MovingSquare, IsTrackedInAllSixDegreesOfFreedom) {
   const sim::Summary s =
       RunByTruth("square", {"target.motion=circle", "target.path_radius=0.06", "target.speed=0.1",

@@ -1,4 +1,4 @@
-// Attacks on the workspace's boundary in Bullet: 1 m/s towards it, along it and aslant, from every side.
+// Attacks on the workspace boundary in Bullet: 1 m/s towards it, along it and obliquely, from every side.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 constexpr double kBoundary = 0.85;
 constexpr double kSlack = 1e-3;
 
-// Postures all round the base, each a little different, the hand well inside.
+// A random posture in any direction from the base, with the hand at least 5 cm inside the boundary.
 Eigen::VectorXd Posture(RandomStates& random, const Eigen::VectorXd& q_start) {
   while (true) {
     Eigen::VectorXd q = q_start + Eigen::VectorXd(random.Joints(Panda().model, 0.3));
@@ -38,7 +38,7 @@ TEST(GuardAttack, HandNeverCrossesTheWorkspaceBoundary) {
     GuardSetup setup;
     setup.servo.move.pose_error_max = 10.0;
     setup.world.q_start = Posture(random, setup.world.q_start);
-    setup.world.physics.table = false;  // it stands in the way of some
+    setup.world.physics.table = false;  // it would block some attacks
     setup.world.seed = static_cast<std::uint64_t>(attack) + 1;
     const Eigen::Vector3d side = Eigen::Vector3d(random.Vector(1.0)).normalized();
     const auto way = static_cast<Way>(attack % 4);
@@ -68,13 +68,13 @@ TEST(GuardAttack, HandNeverCrossesTheWorkspaceBoundary) {
     EXPECT_EQ(bench.FirstFault(), -1) << "attack " << attack << ": " << hal::Name(bench.last().record.fault);
   }
   std::cout << kAttacks << " attacks, " << reached << " reached the last centimetre; furthest |p_BE| "
-            << worst.radius << " m, fastest " << worst.speed << " m/s; used at most: joint velocity "
+            << worst.radius << " m, fastest " << worst.speed << " m/s; largest shares: joint velocity "
             << worst.velocity << ", torque " << worst.torque << ", its rate " << worst.torque_rate << '\n';
   EXPECT_LE(worst.radius, kBoundary + kSlack);
-  EXPECT_GT(reached, kAttacks / 2) << "the attacks must be attacks";
+  EXPECT_GT(reached, kAttacks / 2) << "too few attacks reach the boundary";
 }
 
-// The eye leads it there: a target that runs away at 1 m/s, on every side.
+// The camera leads the hand there: a target that runs away at 1 m/s in every direction.
 TEST(GuardAttack, RunawayTargetDoesNotDrawTheHandAcrossTheBoundary) {
   double furthest = 0.0;
   int reached = 0;
@@ -96,8 +96,8 @@ TEST(GuardAttack, RunawayTargetDoesNotDrawTheHandAcrossTheBoundary) {
     ExpectInsideLimits(bench);
     EXPECT_EQ(bench.FirstFault(), -1) << hal::Name(bench.last().record.fault);
   }
-  std::cout << kTargets << " targets, " << reached << " drew the hand to the last two centimetres; furthest "
-            << furthest << " m\n";
+  std::cout << kTargets << " targets, " << reached
+            << " drew the hand into the last two centimetres; furthest " << furthest << " m\n";
   EXPECT_LE(furthest, kBoundary + kSlack);
   EXPECT_GT(reached, 3);
 }

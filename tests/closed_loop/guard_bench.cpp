@@ -13,7 +13,7 @@ namespace fovea::test {
 namespace {
 
 constexpr double kTickS = 1e-3;
-constexpr double kLength = 0.3;   // that a metre counts as much as a radian for [m]
+constexpr double kLength = 0.3;   // lever arm that converts radians to metres [m]
 constexpr double kAtRest = 0.01;  // [rad/s]
 constexpr std::int64_t kLatencyNs = 40 * hal::kNsPerMs;
 
@@ -103,7 +103,7 @@ void GuardBench::Watch(const sim::Truth& truth) {
 void GuardBench::WatchReference(const hal::TickRecord& record) {
   const auto runs = [](hal::Mode mode) { return mode != hal::Mode::kBoot && mode != hal::Mode::kFault; };
   if (!runs(record.mode)) {
-    return;  // it is where the arm is
+    return;  // the reference is where the arm is
   }
   const model::ArmModel& arm = setup_.servo.arm;
   const config::GuardConfig& guard = setup_.servo.guard;

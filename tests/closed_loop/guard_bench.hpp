@@ -1,5 +1,5 @@
-// The servo's loop with the arm in Bullet and no camera: what the guard watches is provoked here, and the arm
-// is watched, tick by tick, from the simulator's truth.
+// The servo's loop with the arm in Bullet, without a camera. Tests provoke what the guard watches, and check
+// the arm tick by tick against the simulator's truth.
 #pragma once
 
 #include <cstdint>
@@ -20,45 +20,45 @@
 
 namespace fovea::test {
 
-// The Panda of the scenario `ball`: its noise, its friction, its start. Who provokes changes what is needed.
+// The Panda of the scenario `ball` with its noise, friction and start. Each test changes what it needs.
 struct GuardSetup {
   GuardSetup();
   config::ServoConfig servo;
   sim::WorldConfig world;
   sim::ArmFaults arm_faults;
   sim::StallFault stall;
-  // What is commanded at the time t [s]; empty: nothing.
+  // The motion commanded at time t [s]; empty: none.
   std::function<moves::MotionCommand(const sim::Truth& truth, double t_s)> motion;
-  // Where the target is in B [m]; the eye sees it 30 times a second, 40 ms late, with noise. Empty: no eye.
+  // The target's position in B [m], measured 30 times a second, 40 ms late, noisy. Empty: no target.
   std::function<Eigen::Vector3d(double t_s)> target;
-  // The last word about a measurement.
+  // Changes each measurement; may be empty.
   std::function<void(hal::FeatureMeasurement& measurement)> spoil;
 };
 
-// The servo is told its table, its camera and its picture, as every bench scenario tells it.
+// Configures the plane of the table, the shape of the camera and its view, as every bench scenario does.
 void TellTheBench(config::ServoConfig& servo);
 
-// A tick, and the time of the world when it came; stamps may be off.
+// The record of a tick, and the time of the world; stamps in the record may be wrong.
 struct GuardTick {
   int ms = 0;
   hal::TickRecord record;
 };
 
-// The most that the arm really did, as shares of the arm's own limits.
+// The extremes of a run. Shares are of the limits of the arm model.
 struct GuardFigures {
-  double torque = 0.0;       // of its range
-  double torque_rate = 0.0;  // of what it may change per tick
-  double position = 0.0;     // of half the joints' range, from its middle
-  double velocity = 0.0;
+  double torque = 0.0;        // share of its range
+  double torque_rate = 0.0;   // share of the change allowed per tick
+  double position = 0.0;      // share of half the range, from its middle
+  double velocity = 0.0;      // share
   double radius = 0.0;        // |p_BE| [m]
   double speed = 0.0;         // of the end effector [m/s]
-  double lowest = 1e9;        // p_BE's z [m]
-  double singular = 1e9;      // smallest singular value of the hand's Jacobian, 1 / 0.3 m
-  double acceleration = 0.0;  // of the reference, of what the guard allows it
-  double jerk = 0.0;          // the same
-  double wished_speed = 0.0;  // of the end effector as the reference moves it [m/s]
+  double lowest = 1e9;        // smallest z of p_BE [m]
+  double singular = 1e9;      // smallest singular value of the Jacobian, linear rows / 0.3 m
+  double acceleration = 0.0;  // of the reference, share of what the guard allows
+  double jerk = 0.0;          // of the reference, share of what the guard allows
+  double wished_speed = 0.0;  // of the end effector in the reference [m/s]
   double turn = 0.0;          // of the end effector [rad/s]
-  double wished_turn = 0.0;   // as the reference turns it
+  double wished_turn = 0.0;   // of the end effector in the reference [rad/s]
 };
 
 class GuardBench {
@@ -79,11 +79,10 @@ class GuardBench {
   // The fastest joint at each millisecond from 0 on [rad/s].
   [[nodiscard]] const std::vector<double>& speeds() const { return speeds_; }
 
-  // World times [ms] of the first tick, from `from_ms` on, in which the limit acted or the fault stood; -1:
-  // never.
+  // World time [ms] of the first tick, from `from_ms` on, with the limit active or in mode Fault; -1: none.
   [[nodiscard]] int FirstLimit(hal::Limit limit, int from_ms = 0) const;
   [[nodiscard]] int FirstFault() const;
-  // When every joint was slower than 0.01 rad/s for good [ms].
+  // The time after which every joint stays slower than 0.01 rad/s [ms].
   [[nodiscard]] int AtRest() const;
 
  private:
@@ -116,7 +115,7 @@ class GuardBench {
   task::ServoTask task_;
   task::ServoLoop loop_;
   std::mt19937_64 random_{7};
-  std::deque<std::pair<std::int64_t, hal::FeatureMeasurement>> under_way_;  // by the time when it is due
+  std::deque<std::pair<std::int64_t, hal::FeatureMeasurement>> under_way_;  // with the time of delivery
   std::vector<GuardTick> ticks_;
   std::vector<double> speeds_;
   GuardFigures figures_;
@@ -125,15 +124,15 @@ class GuardBench {
   Eigen::Matrix3d R_before_;
 };
 
-// The motions that attack: from `start_s` on the hand shall go with `velocity(truth)` [m/s] in B from
-// wherever it is, turned as it is.
+// An attack: from `start_s` on, commands the hand to move at `velocity(truth)` [m/s] in B from where it is,
+// without turning.
 std::function<moves::MotionCommand(const sim::Truth&, double)> Attack(
     double start_s, std::function<Eigen::Vector3d(const sim::Truth&)> velocity);
-// The joints shall come to rest at `q`.
+// From `start_s` on, commands the joint goal `q`.
 std::function<moves::MotionCommand(const sim::Truth&, double)> GoTo(double start_s, const Eigen::VectorXd& q);
 
-// What the arm may not pass, whatever is provoked: torque range and rate; and unless the provocation itself
-// moves the arm there: joint range, velocity, workspace and 1 mm.
+// Limits that hold in every test: torque range and rate, acceleration and jerk of the reference. Unless the
+// world itself pushes the arm, also joint range, velocity, and workspace within 1 mm.
 enum class PushedBy { kServo, kWorld };
 void ExpectInsideLimits(const GuardBench& bench, PushedBy by = PushedBy::kServo);
 void PrintFigures(const std::string& what, const GuardBench& bench);

@@ -1,5 +1,5 @@
-// Faults in closed loop: each is provoked while the arm in Bullet moves, latched after a stated number of
-// ticks, and the arm comes to rest, its brakes close, and nothing but a reset moves it again.
+// Faults in closed loop. Each is provoked while the arm in Bullet moves, and must be latched after a stated
+// number of ticks. The arm must come to rest, its brakes close, and only a reset ends the fault.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 using hal::Fault;
 using hal::Mode;
 
-constexpr double kStart = 0.5;  // when what provokes begins [s]
+constexpr double kStart = 0.5;  // when the provocation begins [s]
 constexpr int kStartMs = 500;
 constexpr double kNever = 1e6;
 
@@ -30,7 +30,7 @@ GuardSetup Moving() {
   return setup;
 }
 
-// Runs the fault out, and checks that it came `ticks` after `begin_ms` and that the arm stopped.
+// Checks that the fault comes `ticks` after `begin_ms`, that the arm stops, and that only a reset frees it.
 void ExpectStop(GuardBench& bench, Fault fault, int begin_ms, int ticks, int tolerance,
                 PushedBy by = PushedBy::kServo) {
   bench.RunUntil(2.5);
@@ -47,18 +47,19 @@ void ExpectStop(GuardBench& bench, Fault fault, int begin_ms, int ticks, int tol
                                    [](const GuardTick& tick) { return tick.record.command.engage_brakes; });
   ASSERT_NE(braked, bench.ticks().end()) << "the brakes never closed";
   PrintFigures(std::string(hal::Name(fault)) + ": latched " + std::to_string(at - begin_ms) +
-                   " ticks after it began at " + std::to_string(speed) + " rad/s, fastest after that " +
-                   std::to_string(*fastest) + " rad/s, at rest " + std::to_string(bench.AtRest() - at) +
-                   " and brakes " + std::to_string(braked->ms - at) + " ticks after the fault",
+                   " ticks after the provocation, at " + std::to_string(speed) +
+                   " rad/s; fastest after that " + std::to_string(*fastest) + " rad/s, at rest " +
+                   std::to_string(bench.AtRest() - at) + " and brakes " + std::to_string(braked->ms - at) +
+                   " ticks after the fault",
                bench);
-  EXPECT_LE(*fastest, 1.05 * speed + 0.05) << "it must not speed up";
+  EXPECT_LE(*fastest, 1.05 * speed + 0.05) << "the arm must not speed up";
   EXPECT_LT(bench.AtRest() - at, 700);
   EXPECT_EQ(bench.speeds().back(), 0.0);
   ExpectInsideLimits(bench, by);
 
   bench.Ask(task::Request::kTrack);
   bench.RunUntil(2.6);
-  EXPECT_EQ(bench.last().record.mode, Mode::kFault) << "only a reset leaves it";
+  EXPECT_EQ(bench.last().record.mode, Mode::kFault) << "only a reset ends a fault";
   bench.Ask(task::Request::kReset);
   bench.RunUntil(2.7);
   EXPECT_EQ(bench.last().record.mode == Mode::kFault, bench.last().record.fault != Fault::kNone);
@@ -88,7 +89,7 @@ void ProvokeNonFiniteSensor() {
   EXPECT_EQ(bench.ticks()[static_cast<std::size_t>(bench.FirstFault())].record.fault_joint, 3);
 }
 
-// The arm follows a target when the detector says something that is no number.
+// The arm tracks a target when the detector reports NaN.
 void ProvokeNonFiniteFeature() {
   GuardSetup setup;
   setup.servo.auto_track = true;
@@ -104,10 +105,10 @@ void ProvokeNonFiniteFeature() {
     return tick.record.has_feature && std::isnan(tick.record.feature.s[1]);
   });
   ASSERT_NE(said, bench.ticks().end());
-  EXPECT_EQ(said->ms, bench.FirstFault()) << "in the tick that was told";
+  EXPECT_EQ(said->ms, bench.FirstFault()) << "in the tick that receives NaN";
 }
 
-// The computer is away for 30 ticks, the last command stays in force; for half of that it goes on.
+// The computer stalls for 30 ticks, the last command stays in force: a fault. One tick below the limit: none.
 void ProvokeDeadlineMissed() {
   GuardSetup setup = Moving();
   setup.stall.window = {kStart, kStart + 0.030};
@@ -125,7 +126,7 @@ void ProvokeDeadlineMissed() {
 
 namespace {
 
-// An arm that floats is pushed by joint 1 alone.
+// A floating arm, pushed at joint 1 only.
 GuardSetup Pushed(double q1, double tau, double for_s) {
   GuardSetup setup;
   setup.servo.motion_law.kind = config::MotionLawKind::kFloat;
@@ -135,7 +136,7 @@ GuardSetup Pushed(double q1, double tau, double for_s) {
   return setup;
 }
 
-// When joint 1 was measured past its limit for the first time [ms]; the fault must come in that very tick.
+// World time [ms] of the first state in which `passed` holds; -1: never. The fault must come in that tick.
 template <typename Passed>
 int FirstPassed(const GuardBench& bench, Passed passed) {
   const auto found = std::find_if(bench.ticks().begin(), bench.ticks().end(),
@@ -145,9 +146,9 @@ int FirstPassed(const GuardBench& bench, Passed passed) {
 
 }  // namespace
 
-// A model with friction so absurd that a law which makes up for it overflows where a joint moves: a defect as
-// such, since no finite input brings the shipped laws to it. The arm floats and was pushed when that law
-// comes.
+// A model with friction so large that a law which compensates it overflows once a joint moves. This stands
+// for a defect of a law: no finite input makes the shipped laws overflow. The arm floats, and moves when the
+// law is switched.
 void ProvokeNonFiniteControl() {
   GuardSetup setup = Pushed(-1.5, 4.0, 0.05);
   setup.servo.motion_law.friction_compensation = 1.0;
@@ -166,7 +167,7 @@ void ProvokeJointOutside() {
   ExpectStop(bench, Fault::kJointPosition, 300, 160, 40, PushedBy::kWorld);
   EXPECT_EQ(bench.FirstFault(),
             FirstPassed(bench, [&](const hal::ArmState& arm) { return arm.q[0] > joint.q_max; }));
-  std::cout << "stopped " << bench.truth().q[0] - joint.q_max << " rad past the end\n";
+  std::cout << "stopped " << bench.truth().q[0] - joint.q_max << " rad past its end\n";
   EXPECT_LT(bench.truth().q[0], joint.q_max + 0.12);
 }
 
@@ -178,7 +179,7 @@ void ProvokeJointTooFast() {
             FirstPassed(bench, [&](const hal::ArmState& arm) { return arm.dq[0] > joint.dq_max; }));
 }
 
-// The motor of joint 1 gives nothing while the joint is to speed up; what would see it sooner is off.
+// The motor of joint 1 gives no torque. The contact check, which would notice this sooner, is off.
 void ProvokeNotFollowing() {
   GuardSetup setup = Moving();
   setup.servo.safety.contact_torque_fraction = 1e3;
@@ -190,11 +191,11 @@ void ProvokeNotFollowing() {
   const auto off = std::find_if(bench.ticks().begin(), bench.ticks().end(), [&](const GuardTick& tick) {
     return std::fabs(tick.record.q_cmd[0] - tick.record.arm.q[0]) > setup.servo.safety.following_error;
   });
-  EXPECT_EQ(off->ms, bench.FirstFault()) << "in the tick in which it was off";
+  EXPECT_EQ(off->ms, bench.FirstFault()) << "in the first tick beyond following_error";
 }
 
-// Joint 2 of an arm that stands is pushed with 1.5 times the torque that it may be: the observer's answer is
-// 1 - exp(-K t) of the push.
+// Joint 2 of a standing arm is pushed with 1.5 times the allowed external torque. The observer's share of the
+// push is 1 - exp(-K t).
 void ProvokeContact() {
   GuardSetup setup;
   const config::SafetyConfig& safety = setup.servo.safety;
@@ -208,8 +209,7 @@ void ProvokeContact() {
   EXPECT_EQ(bench.ticks()[static_cast<std::size_t>(bench.FirstFault())].record.fault_joint, 1);
 }
 
-// The motor of a joint that bears the arm gives nothing any more: no damping stops that joint, the brakes
-// must.
+// The motor of a joint that carries the arm fails: damping cannot stop that joint, only the brakes can.
 TEST(GuardFault, DeadMotorUnderLoadFaultsAndTheBrakesHold) {
   for (const int joint : {1, 3}) {
     GuardSetup setup;
@@ -220,19 +220,20 @@ TEST(GuardFault, DeadMotorUnderLoadFaultsAndTheBrakesHold) {
     ASSERT_GE(at, kStartMs);
     const double speed = bench.speeds()[static_cast<std::size_t>(at)];
     const double fastest = *std::max_element(bench.speeds().begin() + at, bench.speeds().end());
-    PrintFigures("joint " + std::to_string(joint + 1) + " dead: " + hal::Name(bench.last().record.fault) +
-                     " latched " + std::to_string(at - kStartMs) + " ticks after it at " +
-                     std::to_string(speed) + " rad/s, fastest " + std::to_string(fastest) +
-                     " rad/s, at rest " + std::to_string(bench.AtRest() - at) + " ticks after the fault",
+    PrintFigures("joint " + std::to_string(joint + 1) +
+                     " without torque: " + hal::Name(bench.last().record.fault) + " latched " +
+                     std::to_string(at - kStartMs) + " ticks later at " + std::to_string(speed) +
+                     " rad/s, fastest " + std::to_string(fastest) + " rad/s, at rest " +
+                     std::to_string(bench.AtRest() - at) + " ticks after the fault",
                  bench);
     EXPECT_LT(bench.AtRest() - at, 150);
-    EXPECT_LT(fastest, speed + 2.4) << "so much until the torque is gone and the brakes close";
+    EXPECT_LT(fastest, speed + 2.4) << "the gain until the torque has faded and the brakes close";
     EXPECT_EQ(bench.speeds().back(), 0.0);
   }
 }
 
-// The encoder of a joint hangs while the joint moves, or is about to: unseen, the joint would run through its
-// whole range within a second.
+// The encoder of a joint hangs while the joint moves or is about to. Undetected, the joint would run through
+// its whole range within a second.
 TEST(GuardFault, StuckEncoderFaultsBeforeTheJointRunsAway) {
   const Eigen::VectorXd q_start = GuardSetup().world.q_start;
   for (const double start_s : {0.05, 0.3, kStart, 0.8}) {
@@ -248,7 +249,7 @@ TEST(GuardFault, StuckEncoderFaultsBeforeTheJointRunsAway) {
       PrintFigures("joint " + std::to_string(joint + 1) + " hangs from " + std::to_string(start_s) +
                        " s: " + hal::Name(bench.last().record.fault) + " at " + std::to_string(at) + " ms",
                    bench);
-      if (start_s < 0.1) {  // later ones stop the joint as if it had hit something, which is `contact`
+      if (start_s < 0.1) {  // later, the joint stops as if it had hit something: `contact`
         ASSERT_GE(at, 0);
         const auto& found = bench.ticks()[static_cast<std::size_t>(at)].record;
         EXPECT_EQ(found.fault, Fault::kArmStale);
@@ -262,11 +263,11 @@ TEST(GuardFault, StuckEncoderFaultsBeforeTheJointRunsAway) {
   }
 }
 
-// It hangs for 20 ms while the joint is fast: long enough for the law to push the joint past its speed limit,
-// had it been believed.
+// The encoder hangs for 20 ms while the joint is fast. If the servo believed it, the law would push the joint
+// past its speed limit.
 TEST(GuardFault, BrieflyStuckEncoderStopsTheArmAsStale) {
   GuardSetup setup;
-  setup.servo.safety.encoder_quantum = 2e-5;  // these encoders are as fine as that
+  setup.servo.safety.encoder_quantum = 2e-5;  // the resolution of these encoders
   Eigen::VectorXd goal = setup.world.q_start;
   goal[3] -= 0.1;
   setup.motion = GoTo(0.1, goal);
@@ -275,11 +276,11 @@ TEST(GuardFault, BrieflyStuckEncoderStopsTheArmAsStale) {
   ExpectStop(bench, Fault::kArmStale, 200, setup.servo.safety.non_finite_ticks, 2);
 }
 
-// A slow joint, pushed too little to be found while its encoder hangs, is somewhere else when it works again:
-// nothing moves so fast, and what is done about that error would throw the light joints past their limits.
+// An encoder hangs while a push too weak to be noticed moves its joint. When it works again, the position
+// jumps faster than any joint moves. Correcting that error would throw the light joints past their limits.
 TEST(GuardFault, EncoderJumpKeepsJointsWithinTheirSpeedLimits) {
   GuardSetup setup;
-  setup.servo.safety.frozen_ticks = 0;  // else its noise, which ceases, gives it away at once
+  setup.servo.safety.frozen_ticks = 0;  // otherwise the missing noise reveals it at once
   setup.arm_faults.stuck = {{0.3, 0.6}, 3};
   setup.world.push.tau = 0.5 * Eigen::VectorXd::Unit(7, 3);
   setup.world.push.window = {0.3, 0.6};
@@ -288,8 +289,8 @@ TEST(GuardFault, EncoderJumpKeepsJointsWithinTheirSpeedLimits) {
   EXPECT_LE(bench.figures().velocity, 1.0);
 }
 
-// An arm that falls while it boots: its motor is weak, or it holds what nobody was told of. The servo holds
-// it from the first state on, sees what pulls at it, and stops it long before it is too fast.
+// The arm falls in Boot because a motor is weak. The servo holds the arm from the first state on, notices the
+// external torque, and stops the arm long before it is too fast.
 TEST(GuardFault, ArmFallingInBootIsStoppedWithinItsLimits) {
   for (const double lost : {0.5, 1.0}) {
     GuardSetup setup;
@@ -297,8 +298,9 @@ TEST(GuardFault, ArmFallingInBootIsStoppedWithinItsLimits) {
     setup.world.torque_loss = {{0.01, 1.0}, 1, lost};
     GuardBench bench(setup);
     bench.RunUntil(1.5);
-    PrintFigures("joint 2 loses " + std::to_string(lost) + ": " + hal::Name(bench.last().record.fault) +
-                     " after " + std::to_string(bench.FirstFault()) + " ticks",
+    PrintFigures("joint 2 loses " + std::to_string(lost) +
+                     " of its torque: " + hal::Name(bench.last().record.fault) + " after " +
+                     std::to_string(bench.FirstFault()) + " ticks",
                  bench);
     EXPECT_EQ(bench.last().record.fault, Fault::kContact);
     ExpectInsideLimits(bench);

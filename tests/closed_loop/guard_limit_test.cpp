@@ -1,4 +1,4 @@
-// Limits in closed loop: each is provoked, named in time, and never passed by the arm in Bullet.
+// Limits in closed loop: each is provoked, reported in time, and never exceeded by the arm in Bullet.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 using hal::Limit;
 using hal::Mode;
 
-constexpr double kStart = 0.3;  // provocations begin here: Boot is over [s]
+constexpr double kStart = 0.3;  // provocations begin here, after Boot [s]
 constexpr int kStartMs = 300;
 
 Eigen::Vector3d Outward(const sim::Truth& truth) { return truth.X_BE.translation().normalized(); }
@@ -27,7 +27,7 @@ auto BriefAttack(const std::function<Eigen::Vector3d(const sim::Truth&)>& veloci
   };
 }
 
-// The hand turns about its own axis at `rate` [rad/s], its point stays.
+// The hand turns about its own z axis at `rate` [rad/s] and keeps its position.
 auto Turn(double rate, const Eigen::Isometry3d& X_BE) {
   return [rate, X_BE](const sim::Truth&, double t_s) {
     moves::MotionCommand command;
@@ -55,10 +55,10 @@ Eigen::Isometry3d HandAt(const Eigen::VectorXd& q) {
   return X_BE;
 }
 
-// Prints when the limit was named after that; -1: never.
+// Returns and prints when the limit was first reported after kStart [ms]; -1: never.
 int Named(const GuardBench& bench, Limit limit) {
   const int named = bench.FirstLimit(limit, kStartMs);
-  PrintFigures(std::string(hal::Name(limit)) + ": named " + std::to_string(named - kStartMs) +
+  PrintFigures(std::string(hal::Name(limit)) + ": reported " + std::to_string(named - kStartMs) +
                    " ticks after the provocation began, mode " + hal::Name(bench.last().record.mode) + " " +
                    hal::Name(bench.last().record.hold_reason) + ", fault " +
                    hal::Name(bench.last().record.fault) + ", at rest after " +
@@ -73,7 +73,7 @@ bool StandsInHold(const GuardBench& bench) {
 
 }  // namespace
 
-// Joint 7 turns the hand towards the end of its range; nothing can take that over.
+// Joint 7 turns the hand towards the end of its range. No other joint can take over.
 void ProvokeJointPosition() {
   GuardSetup setup;
   setup.world.q_start[6] = 2.2;
@@ -83,35 +83,35 @@ void ProvokeJointPosition() {
   const int named = Named(bench, Limit::kJointPosition);
   const model::Joint& joint = bench.config().arm.joints[6];
   const double end = joint.q_max - bench.config().guard.joint_position_margin;
-  // In time: where a joint of its speed must begin to brake.
+  // In time: where a joint at this speed must begin to brake.
   const trajectory::JointPace pace = trajectory::PaceOf(bench.config(), 6);
   for (const GuardTick& tick : bench.ticks()) {
     EXPECT_LE(tick.record.q_cmd[6], end + 1e-9);
     if (tick.ms == named) {
       const double speed = tick.record.dq_cmd[6];
       const double way = speed * pace.reaction_s + 0.5 * speed * speed / pace.deceleration;
-      std::cout << "it was " << end - tick.record.q_cmd[6] << " rad before the end, and needs " << way
-                << '\n';
+      std::cout << "the limit acted " << end - tick.record.q_cmd[6] << " rad before the end; braking needs "
+                << way << '\n';
       EXPECT_NEAR(end - tick.record.q_cmd[6], way, 0.1 * way);
     }
   }
   EXPECT_TRUE(StandsInHold(bench));
   EXPECT_EQ(bench.last().record.hold_reason, hal::HoldReason::kMotionRefused);
-  EXPECT_GT(bench.truth().q[6], end - 0.05) << "it went to the end";
+  EXPECT_GT(bench.truth().q[6], end - 0.05) << "the joint reaches its end";
   ExpectInsideLimits(bench);
 }
 
 void ProvokeJointVelocity() {
   GuardSetup setup;
   setup.world.q_start[6] = -2.0;
-  setup.servo.move.pose_error_max = 10.0;    // it lags behind, and goes on
-  setup.servo.guard.rotation_speed = 100.0;  // the joints alone shall limit the turn
+  setup.servo.move.pose_error_max = 10.0;    // the hand may lag behind
+  setup.servo.guard.rotation_speed = 100.0;  // only the joints limit the turn
   setup.motion = [turn = Turn(4.0, HandAt(setup.world.q_start))](const sim::Truth& truth, double t_s) {
     return t_s < 1.3 ? turn(truth, t_s) : moves::MotionCommand{};
   };
   GuardBench bench(setup);
   bench.RunUntil(2.0);
-  EXPECT_EQ(Named(bench, Limit::kJointVelocity), kStartMs) << "in the tick in which it was wished";
+  EXPECT_EQ(Named(bench, Limit::kJointVelocity), kStartMs) << "in the tick of the command";
   const config::ServoConfig& config = bench.config();
   double most = 0.0;
   for (const GuardTick& tick : bench.ticks()) {
@@ -122,7 +122,7 @@ void ProvokeJointVelocity() {
     }
   }
   std::cout << "the reference used " << most << " of the speed allowed\n";
-  EXPECT_LE(most, 1.0 + 1e-4) << "braking at full jerk ends a hair later";
+  EXPECT_LE(most, 1.0 + 1e-4) << "braking at full jerk ends slightly later";
   EXPECT_GT(most, 0.99);
   EXPECT_TRUE(StandsInHold(bench));
   ExpectInsideLimits(bench);
@@ -130,7 +130,7 @@ void ProvokeJointVelocity() {
 
 namespace {
 
-// A hand at rest shall go sideways at 0.8 m/s from one tick to the next.
+// A hand at rest is commanded to move sideways at 0.8 m/s from one tick to the next.
 void ProvokeByJerk(Limit limit, double GuardFigures::*used) {
   GuardSetup setup;
   setup.motion = [attack = Attack(kStart, [](const sim::Truth&) { return Eigen::Vector3d(0, 0.8, 0); })](
@@ -139,7 +139,7 @@ void ProvokeByJerk(Limit limit, double GuardFigures::*used) {
   };
   GuardBench bench(setup);
   bench.RunUntil(1.5);
-  EXPECT_EQ(Named(bench, limit), kStartMs) << "in the tick in which it was wished";
+  EXPECT_EQ(Named(bench, limit), kStartMs) << "in the tick of the command";
   std::cout << "the reference used " << bench.figures().*used << " of what is allowed\n";
   EXPECT_GT(bench.figures().*used, 0.999);
   EXPECT_TRUE(StandsInHold(bench));
@@ -151,7 +151,7 @@ void ProvokeByJerk(Limit limit, double GuardFigures::*used) {
 void ProvokeJointAcceleration() { ProvokeByJerk(Limit::kJointAcceleration, &GuardFigures::acceleration); }
 void ProvokeJointJerk() { ProvokeByJerk(Limit::kJointJerk, &GuardFigures::jerk); }
 
-// 1 m/s outward: it must be slowed down in time, and stands when the attack ends.
+// 1 m/s outward: the guard must slow the hand down in time. The hand stands when the attack ends.
 void ProvokeWorkspace() {
   GuardSetup setup;
   setup.servo.move.pose_error_max = 10.0;
@@ -160,16 +160,16 @@ void ProvokeWorkspace() {
   bench.RunUntil(2.0);
   const int named = Named(bench, Limit::kWorkspace);
   EXPECT_GE(named, kStartMs);
-  EXPECT_LT(named, kStartMs + 50) << "the hand is 68 mm before it";
+  EXPECT_LT(named, kStartMs + 50) << "the hand starts 68 mm inside it";
   EXPECT_TRUE(StandsInHold(bench));
   const double boundary = bench.config().guard.workspace_radius;
-  EXPECT_GT(bench.figures().radius, boundary - 0.01) << "the attack must be one";
+  EXPECT_GT(bench.figures().radius, boundary - 0.01) << "the attack must come close to the limit";
   EXPECT_LE(bench.figures().radius, boundary + 1e-3);
   ExpectInsideLimits(bench);
 }
 
-// A motion that needs more torque than is allowed for it, by an arm whose motors accelerate each joint by
-// itself as the guard allows, but not against each other.
+// A motion that needs more torque than allowed. Each motor can accelerate its own joint as the guard allows,
+// but not against the other joints.
 void ProvokeTorque() {
   constexpr double kFraction = 0.5;
   GuardSetup setup;
@@ -197,7 +197,7 @@ void ProvokeTorque() {
   ExpectInsideLimits(bench);
 }
 
-// Velocities that jump, by no more than is believed: the law wants torque steps.
+// Measured velocities jump by no more than the servo accepts: the law asks for torque steps.
 void ProvokeTorqueRate() {
   GuardSetup setup;
   setup.arm_faults.noise = {{kStart, kStart + 0.1}, 2e-4, 0.01};
@@ -232,7 +232,7 @@ void ProvokeObstacle() {
   EXPECT_GE(bench.figures().lowest, kHeight - 1e-3);
   // The last link's capsule, which reaches 34 mm beyond the flange, keeps its clearance.
   EXPECT_LT(bench.figures().lowest, kHeight + 0.034 + bench.config().guard.link_clearance + 0.01)
-      << "the attack must be one";
+      << "the attack must come close to the limit";
   EXPECT_TRUE(StandsInHold(bench));
   ExpectInsideLimits(bench);
 }
@@ -248,7 +248,7 @@ void ProvokeCartesianSpeed() {
   };
   GuardBench bench(setup);
   bench.RunUntil(1.5);
-  EXPECT_EQ(Named(bench, Limit::kCartesianSpeed), kStartMs) << "in the tick in which it was wished";
+  EXPECT_EQ(Named(bench, Limit::kCartesianSpeed), kStartMs) << "in the tick of the command";
   std::cout << "reference " << bench.figures().wished_speed << " m/s\n";
   EXPECT_GT(bench.figures().wished_speed, 0.9 * kSpeed);
   EXPECT_LE(bench.figures().wished_speed, 1.02 * kSpeed);
@@ -257,7 +257,7 @@ void ProvokeCartesianSpeed() {
   ExpectInsideLimits(bench);
 }
 
-// The hand shall turn about its own axis, faster than it may.
+// The hand is commanded to turn about its own axis faster than allowed.
 void ProvokeRotationSpeed() {
   constexpr double kTurn = 1.0;
   GuardSetup setup;
@@ -269,7 +269,7 @@ void ProvokeRotationSpeed() {
   };
   GuardBench bench(setup);
   bench.RunUntil(2.0);
-  EXPECT_EQ(Named(bench, Limit::kRotationSpeed), kStartMs) << "in the tick in which it was wished";
+  EXPECT_EQ(Named(bench, Limit::kRotationSpeed), kStartMs) << "in the tick of the command";
   std::cout << "reference " << bench.figures().wished_turn << " rad/s, hand " << bench.figures().turn
             << " rad/s\n";
   EXPECT_GT(bench.figures().wished_turn, 0.88 * kTurn);
@@ -279,7 +279,7 @@ void ProvokeRotationSpeed() {
   ExpectInsideLimits(bench);
 }
 
-// Outward at 1 m/s with the boundary out of reach, until the elbow is all but straight.
+// Outward at 1 m/s with the boundary out of reach, until the elbow is almost straight.
 void ProvokeSingularity() {
   GuardSetup setup;
   setup.servo.guard.workspace_radius = 2.0;
@@ -291,7 +291,8 @@ void ProvokeSingularity() {
   EXPECT_GT(named, kStartMs);
   std::cout << "smallest singular value " << bench.figures().singular << '\n';
   EXPECT_GE(bench.figures().singular, 0.95 * bench.config().guard.singularity_min);
-  EXPECT_LT(bench.figures().singular, 3.0 * bench.config().guard.singularity_min) << "the attack must be one";
+  EXPECT_LT(bench.figures().singular, 3.0 * bench.config().guard.singularity_min)
+      << "the attack must come close to the limit";
   EXPECT_TRUE(StandsInHold(bench));
   ExpectInsideLimits(bench);
 }
@@ -315,9 +316,9 @@ void ProvokeFieldOfView() {
   EXPECT_GT(bench.FirstLimit(Limit::kFieldOfView), 0);
   const Eigen::Vector3d p = (bench.truth().X_BE * X_EC).inverse() * p_BO;
   const double edge = (p.x() + setup.servo.feature.radius) / p.z();
-  std::cout << "the ball's edge stands at " << edge << ", the picture's at " << kEdge << '\n';
+  std::cout << "the ball's edge is at " << edge << ", the picture's at " << kEdge << '\n';
   EXPECT_LT(edge, kEdge + 0.005);
-  EXPECT_GT(edge, kEdge - 0.02) << "the attack must be one";
+  EXPECT_GT(edge, kEdge - 0.02) << "the attack must come close to the limit";
   EXPECT_EQ(bench.last().record.hold_reason, hal::HoldReason::kGoalUnreachable);
   EXPECT_TRUE(StandsInHold(bench));
   ExpectInsideLimits(bench);

@@ -1,9 +1,9 @@
-// One provocation for each row of firmware/GUARDS.md; guard_table_test.cpp walks the rows.
+// One provocation for each row of firmware/GUARDS.md; guard_table_test.cpp runs them all.
 #pragma once
 
 namespace fovea::test {
 
-// Limits: named in time, nothing passed, the arm stands in the end.
+// Limits: reported in time, never exceeded, the arm stands at the end.
 void ProvokeJointPosition();
 void ProvokeJointVelocity();
 void ProvokeJointAcceleration();
@@ -17,7 +17,7 @@ void ProvokeSingularity();
 void ProvokeFieldOfView();
 void ProvokeRotationSpeed();
 
-// Faults: latched in time, the arm stops and stays.
+// Faults: latched in time, the arm stops and stays at rest.
 void ProvokeArmLost();
 void ProvokeArmStale();
 void ProvokeNonFiniteSensor();

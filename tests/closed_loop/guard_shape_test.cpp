@@ -1,4 +1,4 @@
-// What the guard believes of the arm's shape against what it is.
+// Compares the guard's model of the arm's shape with the simulator's links.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,14 +15,14 @@
 namespace fovea::sim {
 namespace {
 
-// Its bodies are nearer than it ever lets them come, wherever the simulator's links touch.
+// Wherever the simulator's links touch, the guard's bodies are closer than the guard ever lets them come.
 TEST(GuardShape, NoLinksTouchInPosturesTheGuardAllows) {
   const SimRobot robot = LoadSimRobot(test::RobotsFolder() + "/panda.urdf", "panda_base", "panda_flange");
   const SelfDistance distance(robot);
   BulletArm placed(robot, {});
   const config::ServoConfig config = test::PandaConfig();
   const barriers::SolidBarriers solid(config);
-  const double stops_at = solid.StopMarginOf(solid.size() - 1);  // the arm itself is the last
+  const double stops_at = solid.StopMarginOf(solid.size() - 1);  // the last barrier: the arm against itself
   test::RandomStates random(20261125);
   std::vector<Eigen::Isometry3d> X_BL(robot.links.size());
   int touching = 0;
@@ -43,8 +43,8 @@ TEST(GuardShape, NoLinksTouchInPosturesTheGuardAllows) {
     most = std::max(most, clearance);
     EXPECT_LT(clearance, stops_at) << "at " << q.transpose();
   }
-  std::cout << touching << " of 2000000 random postures touch; the guard sees at most " << 1e3 * most
-            << " mm there, and stops at " << 1e3 * stops_at << " mm\n";
+  std::cout << touching << " of 2000000 random postures touch; the guard's clearance there is at most "
+            << 1e3 * most << " mm, and it stops at " << 1e3 * stops_at << " mm\n";
   EXPECT_GT(touching, 500);
 }
 

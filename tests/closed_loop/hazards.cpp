@@ -17,7 +17,7 @@ namespace fovea::test {
 namespace {
 
 constexpr double kForEver = 1e6;
-constexpr double kStands = 0.02;  // every joint slower [rad/s]
+constexpr double kStands = 0.02;  // at rest: every joint is slower [rad/s]
 
 class Chance {
  public:
@@ -31,7 +31,7 @@ class Chance {
   std::mt19937_64 random_;
 };
 
-// Measurements from the hazard's beginning on are what `spoil` makes of them.
+// From the hazard's beginning on, `spoil` changes each measurement.
 void Spoil(HazardCase& c,
            std::function<void(hal::FeatureMeasurement&, const hal::FeatureMeasurement& first)> spoil) {
   const auto onset_ns = static_cast<std::int64_t>(c.onset_s * 1e9);
@@ -106,22 +106,22 @@ void BootWithLoad(HazardCase& c) {
 void AskForHold(HazardCase& c) { c.holds = true; }
 
 constexpr std::array kHazards{
-    Hazard{"hold", "the person, the dead man's lease or a signal asks for a stop", 1.5, AskForHold},
+    Hazard{"hold", "the operator, the dead man's lease or a signal requests a stop", 1.5, AskForHold},
     Hazard{"frozen-picture", "the camera repeats one picture, with fresh noise and fresh stamps", 3.0,
            FreezePicture},
-    Hazard{"replayed", "it shows what was up to 2 s ago, with fresh stamps", 3.0, Replay},
-    Hazard{"mirrored", "its pictures are mirrored", 3.0, Mirror},
-    Hazard{"wrong-stamps", "its stamps are off by up to 60 ms, either way", 3.0, OffStamps},
-    Hazard{"frozen-encoders", "all encoders stand still, stamps go on", 1.5, FreezeEncoders},
-    Hazard{"frozen-encoder", "one encoder stands still", 1.5, FreezeEncoder},
-    Hazard{"silent-arm", "no state comes any more", 1.5, Silence},
+    Hazard{"replayed", "the camera repeats pictures up to 2 s old, with fresh stamps", 3.0, Replay},
+    Hazard{"mirrored", "the camera's pictures are mirrored", 3.0, Mirror},
+    Hazard{"wrong-stamps", "the camera's stamps are wrong by up to +-60 ms", 3.0, OffStamps},
+    Hazard{"frozen-encoders", "all encoders hang, stamps go on", 1.5, FreezeEncoders},
+    Hazard{"frozen-encoder", "one encoder hangs", 1.5, FreezeEncoder},
+    Hazard{"silent-arm", "the arm sends no more states", 1.5, Silence},
     Hazard{"stalled-computer", "the servo's computer hangs for up to 0.3 s", 1.5, Stall},
     Hazard{"weak-motor", "a joint's motor gives 0 to 70 % of its torque", 1.5, LoseTorque},
-    Hazard{"load-taken-up", "0.1 to 3 kg hang on the hand that nobody was told of", 1.5, TakeUpLoad},
-    Hazard{"load-from-start", "0.1 to 1.5 kg hang there from the start; nothing is asked for", 1.5,
+    Hazard{"load-taken-up", "the hand picks up an unknown load of 0.1 to 3 kg", 1.5, TakeUpLoad},
+    Hazard{"load-from-start", "an unknown load of 0.1 to 1.5 kg from the start; no motion is requested", 1.5,
            BootWithLoad}};
 
-// A start and a target by chance: refused for geometry alone.
+// A random start and target. Only their geometry may reject them.
 HazardCase MakeCase(std::uint64_t seed) {
   Chance chance(seed);
   for (;;) {

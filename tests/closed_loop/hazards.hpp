@@ -1,5 +1,5 @@
-// What goes wrong with eye, arm, line or person, in thousands of random cases each, and how far the arm goes
-// until it stands: the figures of firmware/SAFETY.md.
+// Hazards of camera, arm, line, computer and person, each in thousands of random cases: how far the arm moves
+// until it stands. These are the figures of firmware/SAFETY.md.
 #pragma once
 
 #include <cstdint>
@@ -12,48 +12,48 @@
 
 namespace fovea::test {
 
-// A case: where the arm starts and the target lies, when the hazard begins, and a source of chance for more.
+// A case: the arm's start, the target's position, when the hazard begins, and a seed for further values.
 struct HazardCase {
   GuardSetup setup;
   double onset_s = 1.0;
   std::uint64_t seed = 1;
-  bool holds = false;  // the person asks for a stop at `onset_s`
+  bool holds = false;  // the operator requests Hold at `onset_s`
 };
 
 struct Hazard {
   const char* name;  // for the command line
-  const char* what;  // for people
-  double watched_s;  // for so long after its beginning
+  const char* what;  // for the table
+  double watched_s;  // from its beginning [s]
   void (*inject)(HazardCase& hazard_case);
 };
 std::span<const Hazard> Hazards();
 
-// One case; lengths in mm, shares of the arm's own limits.
+// The outcome of one case. Shares are of the limits of the arm model.
 struct HazardOutcome {
-  bool noticed = false;         // a fault, a mode left, or a measurement refused
-  int noticed_ms = 0;           // after its beginning
-  double way_mm = 0.0;          // the furthest that the hand was from where it was when the hazard began
-  double speed = 0.0;           // its fastest since then [m/s]
-  double velocity_share = 0.0;  // of the worst joint since the start
-  bool stands = false;          // at the end
-  bool touched = false;
+  bool noticed = false;         // by a fault, a change of mode or a refused measurement
+  int noticed_ms = 0;           // after the hazard began
+  double way_mm = 0.0;          // largest distance of the hand from where it was when the hazard began
+  double speed = 0.0;           // of the hand, the largest since then [m/s]
+  double velocity_share = 0.0;  // of a joint's velocity limit, the largest since the start
+  bool stands = false;          // at rest at the end
+  bool touched = false;         // contact since the hazard began
 };
 HazardOutcome RunCase(const Hazard& hazard, std::uint64_t seed);
 
-// Of `cases` cases, by `jobs` threads, whose number changes no figure.
+// Runs `cases` cases in `jobs` threads. The number of threads changes no figure.
 struct HazardFigures {
   int cases = 0;
   int noticed = 0;
   int stand = 0;
   int touched = 0;
-  int passed = 0;  // a joint faster than it may be
+  int passed = 0;  // cases with a joint above its velocity limit
   int noticed_p99_ms = 0;
   int noticed_most_ms = 0;
   double way_p50_mm = 0.0;
   double way_p99_mm = 0.0;
   double way_most_mm = 0.0;
   double speed_most = 0.0;
-  std::uint64_t worst_seed = 0;  // of the longest way
+  std::uint64_t worst_seed = 0;  // of the case with the longest way
   double joint_most = 0.0;       // of the fastest joint, as a share of its limit
   std::uint64_t joint_seed = 0;
 };

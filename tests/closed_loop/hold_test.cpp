@@ -1,4 +1,4 @@
-// What cannot be reached, is not there, or goes away: the arm stands still in Hold, and says why.
+// A target that is unreachable, absent or lost: the arm stands still in Hold and reports the reason.
 #include <gmock/gmock.h>
 
 #include "tests/closed_loop/closed_loop.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// The fastest that the end effector's joints moved in the last half second of a run [rad/s].
+// Keeps the largest joint speed of a run, and of its last half second [rad/s].
 class RestWatch {
  public:
   sim::RunOptions Options(double duration_s) {
@@ -30,12 +30,12 @@ class RestWatch {
   double at_the_end_ = 0.0;
 };
 
-constexpr double kAtRest = 0.005;  // [rad/s]; what encoder noise leaves
+constexpr double kAtRest = 0.005;  // [rad/s]; above what encoder noise causes
 
 TEST(Hold, UnreachableBallEndsInHoldWithAReason) {
   RestWatch watch;
-  // Seen from the start, but 1.15 m away from it the arm would have to be outside its narrow workspace or,
-  // turned about, behind the wall.
+  // The ball is visible from the start. To be 1.15 m away from it the arm would have to leave its small
+  // workspace or, turned round, stand behind the wall.
   const sim::Summary s = RunShipped(
       "ball",
       {"servo.goal=[0, 0, 1.15]", "safety.workspace_radius=0.79", "safety.boxes=[-2, -2, -1, 0.1, 2, 3]"},
@@ -57,7 +57,7 @@ TEST(Hold, BallBeyondTheWorkspaceEndsInHoldAtTheBarrier) {
   PrintResidual(s);
   EXPECT_FALSE(s.converged);
   EXPECT_EQ(LastReason(s), "goal_unreachable");
-  EXPECT_GT(s.limits.at("workspace"), 0.98) << "it was not the barrier that kept it";
+  EXPECT_GT(s.limits.at("workspace"), 0.98) << "the barrier did not stop the arm";
   EXPECT_LE(s.limits.at("workspace"), 1.0);
   EXPECT_LT(watch.at_the_end(), kAtRest);
   ExpectSound(s);
@@ -67,10 +67,10 @@ TEST(Hold, HomeMotionEndsAtRestInTheReadyPosture) {
   RestWatch watch;
   const sim::Summary s = RunShipped("home", {}, watch.Options(4.0));
   ASSERT_TRUE(s.home_error_rad.has_value());
-  std::cout << "off home by " << *s.home_error_rad << " rad; fastest joint " << watch.fastest() << " rad/s\n";
+  std::cout << "home error " << *s.home_error_rad << " rad; fastest joint " << watch.fastest() << " rad/s\n";
   EXPECT_TRUE(s.converged) << s.verdict;
   EXPECT_LT(*s.home_error_rad, 2e-5);
-  EXPECT_GT(watch.fastest(), 1.0) << "it did not have to go far";
+  EXPECT_GT(watch.fastest(), 1.0) << "the motion is too short";
   EXPECT_LT(watch.at_the_end(), kAtRest);
   ExpectSound(s);
 }

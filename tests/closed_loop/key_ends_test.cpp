@@ -1,4 +1,4 @@
-// Keys at the ends of what is allowed: whether the task is done or refused, the true arm keeps its limits.
+// Keys at the ends of their ranges: whether the task is done or refused, the true arm keeps its limits.
 #include "tests/closed_loop/closed_loop.hpp"
 
 namespace fovea::test {

@@ -1,8 +1,8 @@
-// Keys of the servo and its safety drawn together from what is allowed, half of them at an end of it: whether
-// the configuration is refused or runs, the true arm keeps its limits.
+// Random keys of `servo` and `safety`, drawn together from their ranges, half of them at an end of the range.
+// Whether the configuration is refused or runs, the true arm keeps its limits.
 //
-// Where the law follows closely: springs, or gains below these, let the arm swing about a reference that
-// keeps the limits (SAFETY.md states by how much), so those keys are not drawn.
+// The keys of springs are not drawn, and gains have the lower bounds below: otherwise the arm swings about a
+// reference that keeps the limits (SAFETY.md states by how much).
 #include <cmath>
 #include <cstdio>
 #include <random>
@@ -64,7 +64,7 @@ class KeyDraw {
     switch (std::uniform_int_distribution<int>(0, 3)(engine_)) {
       case 0: return range.least;
       case 1: return range.most;
-      case 2: {  // every order of magnitude alike
+      case 2: {  // every order of magnitude equally likely
         const double least = std::max(range.least, 1e-5 * range.most);
         return std::exp(uniform(std::log(least), std::log(range.most)));
       }
@@ -98,7 +98,7 @@ TEST(RandomKeysTest, TrueArmKeepsItsLimitsOrTheKeysAreRefused) {
     }
   }
   std::cout << draw.size() << " keys; " << refused << " of " << runs << " configurations refused\n";
-  EXPECT_LT(refused, runs / 4) << "else this shows little";
+  EXPECT_LT(refused, runs / 4) << "too many configurations are refused";
 }
 
 }  // namespace

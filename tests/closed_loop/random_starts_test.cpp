@@ -1,4 +1,4 @@
-// Starts from which the atlas once did not reach its goal, one for each reason that was mended.
+// Starts from which `fovea atlas` once did not reach the goal: one for each cause, all fixed.
 #include <gtest/gtest.h>
 
 #include "tests/closed_loop/closed_loop.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 using Assignments = std::vector<std::string>;
 
-const Assignments kTable{"safety.planes=[0,0,1,0.03]"};  // as the atlas tells it
+const Assignments kTable{"safety.planes=[0,0,1,0.03]"};  // as `fovea atlas` sets it
 
 Assignments operator+(Assignments a, const Assignments& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -24,7 +24,7 @@ void ExpectReached(const sim::Summary& s) {
   EXPECT_EQ(s.limit_violations, 0U);
 }
 
-// Joints that change speed each at its own pace threw the target out of the picture.
+// When each joint changed speed at its own pace, the target left the picture.
 class WideTurn : public testing::TestWithParam<Assignments> {};
 
 TEST_P(WideTurn, KeepsTheTargetInView) { ExpectReached(RunShipped("triangle", kTable + GetParam())); }
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(
                                 "target.position=[0.2598,-0.575,0.5328]",
                                 "target.rpy_deg=[85.14,33.95,69.31]", "run.seed=1906482257"}));
 
-// The posture's pull turned the disc edge-on, where nothing finds it.
+// The pull towards the posture turned the disc edge-on, where the detector cannot find it.
 TEST(RandomStarts, PosturePullDoesNotTurnTheDiscEdgeOn) {
   const Assignments start =
       kTable + Assignments{"arm.q_start=[-2.7705,-1.3044,1.8399,-2.7133,-0.6047,1.2502,0.726]",
@@ -47,10 +47,10 @@ TEST(RandomStarts, PosturePullDoesNotTurnTheDiscEdgeOn) {
   ExpectReached(RunShipped("circle", start));
   const sim::Summary turned =
       RunShipped("circle", start + Assignments{"safety.disc_tilt_max=1.5707963267948966"});
-  EXPECT_FALSE(turned.converged) << "it needs no limit from here";
+  EXPECT_FALSE(turned.converged) << "this start does not need the limit";
 }
 
-// Along the joints' limits the law comes nearer, and never arrives.
+// Along the joint limits the law comes ever nearer and never arrives.
 TEST(RandomStarts, LawCreepingAlongJointLimitsSwitchesToJointMotion) {
   ExpectReached(RunShipped(
       "square", kTable + Assignments{"arm.q_start=[0.4502,0.1945,0.1255,-2.8132,1.7986,0.8771,-1.3372]",
@@ -58,7 +58,7 @@ TEST(RandomStarts, LawCreepingAlongJointLimitsSwitchesToJointMotion) {
                                      "target.rpy_deg=[36.39,21.04,-174.32]", "run.seed=998841373"}));
 }
 
-// No straight way of the joints keeps the target in the picture and out of the arm's shade.
+// No straight joint path keeps the target in the picture and unhidden by the arm.
 TEST(RandomStarts, GoalIsReachedThroughAnotherPosture) {
   ExpectReached(RunShipped(
       "triangle", kTable + Assignments{"arm.q_start=[-2.5214,-1.0664,0.1162,-2.5597,-0.4828,0.3145,-0.6362]",
@@ -66,7 +66,7 @@ TEST(RandomStarts, GoalIsReachedThroughAnotherPosture) {
                                        "target.rpy_deg=[-118.72,46.78,-47.34]", "run.seed=2049788278"}));
 }
 
-// The posture's pull, with the disc long at its goal, lets the elbow down on the table.
+// Once the disc has long been at its goal, the pull towards the posture lowers the elbow onto the table.
 TEST(RandomStarts, ElbowStaysOffTheTable) {
   const Assignments start{"arm.q_start=[2.1031,1.5001,-1.0773,-2.8139,-2.1353,0.5257,-0.5922]",
                           "target.position=[0.2627,0.5386,0.4850]", "target.rpy_deg=[-62.40,12.60,15.59]",
@@ -75,10 +75,10 @@ TEST(RandomStarts, ElbowStaysOffTheTable) {
   ExpectReached(s);
   EXPECT_EQ(s.contact_ticks, 0U);
   EXPECT_FALSE(RunShipped("circle", Assignments{"safety.planes=[]"} + start).converged)
-      << "it needs no plane from here";
+      << "this start does not need the plane";
 }
 
-// The disc's law ends along the workspace and at a joint's end.
+// The visual law of the disc gets stuck at the workspace boundary and at a joint's end.
 TEST(RandomStarts, DiscStuckAtTheWorkspaceEdgeIsReachedByJointMotion) {
   ExpectReached(RunShipped(
       "circle", kTable + Assignments{"arm.q_start=[-2.3956,1.2114,-1.8414,-0.1733,-0.1007,0.1571,-0.4550]",
@@ -86,7 +86,7 @@ TEST(RandomStarts, DiscStuckAtTheWorkspaceEdgeIsReachedByJointMotion) {
                                      "target.rpy_deg=[109.18,-16.42,139.00]", "run.seed=211989553"}));
 }
 
-// The posture's pull took the arm to a singular posture, whose limit shook it.
+// The pull towards the posture took the arm to a singular posture, where the limit made it shake.
 TEST(RandomStarts, PosturePullDoesNotLeadIntoASingularity) {
   ExpectReached(RunShipped(
       "square", kTable + Assignments{"arm.q_start=[-0.7687,0.4223,2.0693,-2.6271,0.3013,3.1874,-0.4641]",

@@ -29,7 +29,7 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, StillBall,
                            return name;
                          });
 
-// Half a second without sight: the arm goes on by prediction and comes no later.
+// Half a second without sight: the arm goes on by prediction and arrives no later.
 TEST(OccludedBall, IsReachedByPrediction) {
   const sim::Summary s = RunShipped("ball-occluded");
   PrintResidual(s);
@@ -41,8 +41,8 @@ TEST(OccludedBall, IsReachedByPrediction) {
   ExpectSound(s);
 }
 
-// Pushed by 0.06 Ns once the arm stands over it, the ball rolls 0.11 m and stops; it is lost for three frames
-// at most, while the filter learns that it has been moved.
+// A push of 0.06 Ns, once the arm stands over the ball, makes it roll 0.11 m. The filter may reject up to
+// three frames until it follows the ball.
 TEST(PushedBall, IsTrackedUntilItStops) {
   sim::RunOptions options;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();
@@ -71,7 +71,7 @@ TEST(PushedBall, IsTrackedUntilItStops) {
   ExpectSound(s);
 }
 
-// Without its colour the ball is found by its roundness; so it is on a bench where nothing else is round.
+// Without colour the detector finds the ball by its roundness, on a bench where nothing else is round.
 TEST(GrayBall, ConvergesToTheGoal) {
   const sim::Summary s = RunShipped("ball", {"vision.method=gray"});
   PrintResidual(s);
@@ -93,8 +93,7 @@ TEST(MovingBall, PredictionCutsTheTrackingErrorFivefold) {
   ExpectSound(without);
 }
 
-// Time that jumps to each deadline, and every 500th time 3.2 ms past it, as a machine that wakes the loop
-// late.
+// Time jumps to each deadline, and every 500th time 3.2 ms past it, like a computer that wakes the loop late.
 class LateClock final : public hal::Clock {
  public:
   std::uint64_t late_waits = 0;
@@ -113,7 +112,7 @@ class LateClock final : public hal::Clock {
   int waits_ = 0;
 };
 
-// How busy the machine is does not matter here: the lateness is the clock's, and what it costs is exact.
+// The computer's load does not matter here: only this clock makes the loop late, so the counts are exact.
 TEST(RealPace, ConvergesAndReportsItsOverruns) {
   LateClock clock;
   sim::RunOptions options;
@@ -133,8 +132,7 @@ TEST(RealPace, ConvergesAndReportsItsOverruns) {
   ExpectSound(s);
 }
 
-// By the computer's own clock, however late it wakes the loop: what is counted fits together, no limit is
-// passed.
+// With the computer's clock, however late it wakes the loop: counts are consistent, no limit is exceeded.
 TEST(RealPace, TicksAndMissesMatchTheClock) {
   sim::RunOptions options;
   options.pace = sim::Pace::kReal;
@@ -144,7 +142,7 @@ TEST(RealPace, TicksAndMissesMatchTheClock) {
   EXPECT_GT(s.ticks, 0U);
   EXPECT_LE(s.ticks + s.missed_ticks, 1500U);
   EXPECT_LE(s.overruns, s.missed_ticks);
-  EXPECT_GE(s.wall_time_s, 1.49) << "not faster than its clock";
+  EXPECT_GE(s.wall_time_s, 1.49) << "not faster than the clock";
   EXPECT_EQ(s.limit_violations, 0U);
 }
 

@@ -1,4 +1,4 @@
-// One degree of freedom in Bullet beside its analytic answers (the exercises of part A).
+// One degree of freedom in Bullet, compared with its analytic answers (the exercises of part A).
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -23,7 +23,7 @@ sim::TheoryResult RunTheory(const std::string& name) {
   for (const std::complex<double>& pole : t.run.poles) {
     std::cout << ' ' << pole;
   }
-  std::cout << "; from theory " << 1e3 * t.residual_rms << " mm rms, " << 1e3 * t.residual_max
+  std::cout << "; differs from theory by " << 1e3 * t.residual_rms << " mm rms, " << 1e3 * t.residual_max
             << " mm at most\n";
   return t;
 }
@@ -37,7 +37,7 @@ void ExpectPoles(const sim::TheoryFigures& figures, const std::vector<std::compl
 
 // A critically damped loop of natural frequency `omega_n` [rad/s].
 void ExpectCriticallyDamped(const sim::TheoryResult& t, double omega_n) {
-  constexpr double kSettled = 5.8339;  // 2 % of a step, times omega_n
+  constexpr double kSettled = 5.8339;  // settling time to 2 % of a step, times omega_n
   EXPECT_NEAR(t.run.zeta.value(), 1.0, kOnePercent);
   EXPECT_NEAR(t.run.omega_n.value(), omega_n, kOnePercent * omega_n);
   EXPECT_NEAR(t.run.settle_time_s.value(), kSettled / omega_n, kOnePercent * kSettled / omega_n);
@@ -58,9 +58,9 @@ TEST(Theory, PartitionLawKeepsItsPolesUnderDryFriction) {
 
 TEST(Theory, ReversalsUnderDryFrictionErrByMillimetresOnly) {
   const sim::TheoryResult t = RunTheory("trajectory-reversal");
-  std::cout << "largest error at the turns: " << 1e3 * t.error_max << " mm\n";
+  std::cout << "largest error at the reversals: " << 1e3 * t.error_max << " mm\n";
   EXPECT_LT(t.error_max, 1.5e-3);
-  // Without the reference's sign at standstill, or without any compensation, it is hundreds of times that.
+  // Without compensation, or if it ignored the reference's sign at standstill: hundreds of times larger.
   const sim::TheoryResult bare =
       RunShipped("theory/trajectory-reversal", {"servo.friction_compensation=0"}).theory.value();
   EXPECT_GT(bare.error_max, 0.2);
@@ -84,7 +84,7 @@ TEST(Theory, ForceBelowStictionMovesNothing) {
   const sim::TheoryResult t = RunTheory("disturbance-stiction");
   EXPECT_EQ(t.run.e_ss, 0.0);
   EXPECT_EQ(t.residual_max, 0.0);
-  // The same push where friction is less than it.
+  // The same push with less friction than force.
   const sim::TheoryResult moved =
       RunShipped("theory/disturbance-stiction", {"arm.coulomb=[7]"}).theory.value();
   EXPECT_GT(std::fabs(moved.run.e_ss), 0.01);

@@ -1,6 +1,5 @@
-// A shipped scenario without renderer and detector: physics, servo and judge as they are, the eye told the
-// truth with noise of a size in pixels. What a feature, the filter and the law do is seen in a tenth of the
-// time.
+// A shipped scenario without renderer and detector: physics, servo and verdict are the real ones,
+// measurements are the truth plus noise given in pixels. Ten times faster than the whole run.
 #pragma once
 
 #include <deque>
@@ -28,7 +27,7 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
 
   sim::Summary Execute() {
     if (!task_.Init(about_.servo).ok()) {
-      throw std::logic_error("a servo configuration that was checked is refused");
+      throw std::logic_error("Init refuses a configuration that was already checked");
     }
     const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);
     sim::Summary summary;
@@ -53,7 +52,7 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
     const hal::Status status = loop.Run(static_cast<std::int64_t>(about_.scenario.run.duration_s * 1e9));
     clock.RethrowFailure();
     if (!status.ok()) {
-      throw std::runtime_error("the run broke off");
+      throw std::runtime_error("the run was aborted");
     }
     summary.scenario = about_.scenario.name;
     summary.seed = about_.scenario.run.seed;

@@ -1,4 +1,4 @@
-// What `pkg-config fovea` says is enough to compile and link the servo with.
+// The flags from `pkg-config fovea` are enough to compile and link the servo.
 #include <cstdio>
 #include <memory>
 
@@ -6,8 +6,8 @@
 
 int main() {
   const auto servo = std::make_unique<fovea::task::ServoTask>();
-  // A configuration without an arm is refused: it is the library's own code that says so.
+  // The library's own code must refuse a configuration without an arm.
   const bool refused = !servo->Init(fovea::config::ServoConfig{}).ok();
-  std::printf("%s\n", refused ? "refused" : "taken");
+  std::printf("%s\n", refused ? "refused" : "accepted");
   return refused ? 0 : 1;
 }

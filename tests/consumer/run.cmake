@@ -1,4 +1,4 @@
-# Installs BUILD_DIR into a folder of its own, builds the project beside this file against that, and runs what it makes.
+# Installs BUILD_DIR into its own folder, builds the project SOURCE_DIR against it, and runs the programs built.
 foreach(name BUILD_DIR WORK_DIR SOURCE_DIR GENERATOR CXX)
   if(NOT ${name})
     message(FATAL_ERROR "${name} is not set")
@@ -14,13 +14,13 @@ execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK_DIR}/build COMMAND_ERROR
 execute_process(COMMAND ${WORK_DIR}/build/consumer ${WORK_DIR}/prefix/share/fovea/robots/panda.toml
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${WORK_DIR}/build/driver/cart_arm_test COMMAND_ERROR_IS_FATAL ANY)
-# The same by pkg-config.
+# Builds and runs pkg_config.cpp with the flags from pkg-config.
 file(GLOB_RECURSE pc ${WORK_DIR}/prefix/*/fovea.pc)
 get_filename_component(pc_folder ${pc} DIRECTORY)
 set(ENV{PKG_CONFIG_PATH} ${pc_folder})
 execute_process(COMMAND sh -c "${CXX} -std=c++20 -O1 $0 $(pkg-config --cflags --libs fovea) -o $1 && $1"
   ${SOURCE_DIR}/../pkg_config.cpp ${WORK_DIR}/pkg_config COMMAND_ERROR_IS_FATAL ANY)
-# What else is installed for others: the log's messages, completion.
+# Other installed files: the log's messages, shell completion.
 foreach(file share/fovea/proto/fovea/tick.proto share/fovea/proto/foxglove/image.proto
         share/bash-completion/completions/fovea-sim share/zsh/site-functions/_fovea
         share/zsh/vendor-completions/_fovea)
@@ -28,12 +28,12 @@ foreach(file share/fovea/proto/fovea/tick.proto share/fovea/proto/foxglove/image
     message(FATAL_ERROR "${file} is not installed")
   endif()
 endforeach()
-# What is installed must not know where it was built.
+# No installed package file may contain the path of the build or of the source.
 file(GLOB_RECURSE package ${WORK_DIR}/prefix/*.cmake ${WORK_DIR}/prefix/*.pc)
 foreach(file IN LISTS package)
   file(READ ${file} text)
   if(text MATCHES "${BUILD_DIR}" OR text MATCHES "${SOURCE_DIR}")
-    message(FATAL_ERROR "${file} names the folder that it was built in")
+    message(FATAL_ERROR "${file} contains the path of the build or of the source")
   endif()
 endforeach()
 file(REMOVE_RECURSE ${WORK_DIR})

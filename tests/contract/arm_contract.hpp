@@ -1,9 +1,8 @@
-// What every arm driver must do, whatever stands behind it. A driver's test makes a fixture
+// Requirements for every arm driver, real or simulated. A test of a driver defines a fixture
 //
 //   struct MyArmFixture {
 //     hal::Arm& arm();
 //     void Advance();              // one period of the arm's own time passes
-//     static constexpr const char* kName = ...;
 //   };
 //   INSTANTIATE_TYPED_TEST_SUITE_P(My, ArmContract, MyArmFixture);
 #pragma once
@@ -90,7 +89,7 @@ TYPED_TEST_P(ArmContract, RefusedCommandLeavesTheLastOneInForce) {
 }
 
 TYPED_TEST_P(ArmContract, StandsStillUnderZeroTorque) {
-  // Gravity and friction are the arm's own affair.
+  // The arm itself compensates gravity and friction.
   ASSERT_TRUE(this->fixture_.arm().Write(this->Command(0.0)).ok());
   const hal::ArmState before = this->Read();
   for (int i = 0; i < 200; ++i) {

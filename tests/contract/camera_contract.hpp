@@ -1,5 +1,5 @@
-// What every camera must do. A fixture has `hal::Camera& camera()`, `void Expose(std::int64_t stamp_ns)`,
-// which makes it take one picture, and `void Close()`.
+// Requirements for every camera driver. A fixture has `hal::Camera& camera()`, `void Expose(std::int64_t
+// stamp_ns)`, which takes one picture, and `void Close()`.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TYPED_TEST_P(CameraContract, PixelsStayUntilTheNextAcquire) {
   const std::vector<std::uint8_t> before(frame.pixels.begin(), frame.pixels.end());
   this->fixture_.Expose(hal::kNsPerMs);
   this->fixture_.Expose(2 * hal::kNsPerMs);
-  // Time enough for a driver that works ahead to draw into a buffer that is not its own any more.
+  // Long enough for a driver that works ahead to overwrite a buffer that it no longer owns.
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_TRUE(std::equal(before.begin(), before.end(), frame.pixels.begin()));
 }

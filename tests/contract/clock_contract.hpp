@@ -1,4 +1,4 @@
-// What every clock must do. A fixture has `hal::Clock& clock()`.
+// Requirements for every clock. A fixture has `hal::Clock& clock()`.
 #pragma once
 
 #include <gtest/gtest.h>

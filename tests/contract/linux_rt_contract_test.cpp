@@ -1,4 +1,4 @@
-// The drivers of linux_rt against the contracts.
+// Tests the linux_rt drivers against their contracts.
 #include <atomic>
 #include <stdexcept>
 #include <thread>
@@ -62,7 +62,7 @@ TEST(RecordRingTest, TwoThreadsTakeOrCountEveryRecord) {
   EXPECT_GT(taken, 0U);
 }
 
-// Whoever cannot keep a record does not get it again.
+// If `take` throws, its record counts as taken and is not given again.
 TEST(RecordRingTest, RecordOfAThrowingTakeIsNotGivenAgain) {
   linux_rt::RecordRing ring(8);
   hal::TickRecord record;

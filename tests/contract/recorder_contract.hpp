@@ -1,5 +1,5 @@
-// What every recorder must do. A fixture has `hal::Recorder& recorder()`, `std::vector<hal::TickRecord>
-// Taken()`, which returns what has arrived since the last call, and `std::uint64_t dropped()`.
+// Requirements for every recorder. A fixture has `hal::Recorder& recorder()`, `std::vector<hal::TickRecord>
+// Taken()`, which returns the records since the last call, and `std::uint64_t dropped()`.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TYPED_TEST_P(RecorderContract, RecordsWithoutRoomAreDroppedAndCounted) {
   for (std::size_t i = 1; i < taken.size(); ++i) {
     ASSERT_GT(taken[i].tick, taken[i - 1].tick);
   }
-  // It goes on once there is room.
+  // Recording continues once there is room.
   this->fixture_.recorder().Record(this->Make(kMany));
   EXPECT_EQ(this->fixture_.Taken().size(), 1U);
 }

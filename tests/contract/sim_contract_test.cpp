@@ -1,4 +1,4 @@
-// The simulator's drivers against the contracts.
+// Tests the simulator's drivers against their contracts.
 #include <memory>
 
 #include "fovea/linux_rt/monotonic_clock.hpp"
@@ -39,7 +39,7 @@ struct LockstepClockFixture {
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(LockstepClock, ClockContract, LockstepClockFixture);
 
-// The decorators of faults are drivers, too.
+// The fault decorators are drivers, too.
 struct FaultyArmFixture {
   sim::World world{PandaWorld()};
   sim::SimArm inner{world};
@@ -65,7 +65,7 @@ struct RealPaceClockFixture {
 };
 INSTANTIATE_TYPED_TEST_SUITE_P(RealPaceClock, ClockContract, RealPaceClockFixture);
 
-// Two painters that fill the picture with the exposure's number.
+// Two painters. Each fills the picture with the sequence number of the exposure.
 struct SimCameraFixture {
   static sim::Painter Painter() {
     return {[](const sim::Exposure& exposure, std::span<std::uint8_t> rgba) {

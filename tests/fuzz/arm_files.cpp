@@ -1,5 +1,5 @@
-// A robot's files: any bytes as its URDF, bare or named by an arm file, and as that arm file. What is taken
-// is an arm that the servo can compute with.
+// Robot files: any bytes as a URDF, read directly or named by an arm file, and any bytes in the arm file
+// itself. The servo must be able to compute with every arm that is accepted.
 #include <Eigen/LU>
 #include <cmath>
 #include <vector>
@@ -17,37 +17,40 @@ using namespace fovea;
 namespace {
 
 void Judge(const model::ArmModel& arm) {
-  Require(arm.num_joints >= 1 && arm.num_joints <= model::kMaxJoints, "joints");
+  Require(arm.num_joints >= 1 && arm.num_joints <= model::kMaxJoints, "the number of joints is in its range");
   for (int i = 0; i < arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = arm.joints[k];
-    Require(std::isfinite(joint.q_min) && std::isfinite(joint.q_max) && joint.q_min < joint.q_max, "a range");
-    Require(arm.q_ready[k] >= joint.q_min && arm.q_ready[k] <= joint.q_max, "a posture in it");
+    Require(std::isfinite(joint.q_min) && std::isfinite(joint.q_max) && joint.q_min < joint.q_max,
+            "a joint's range is finite and not empty");
+    Require(arm.q_ready[k] >= joint.q_min && arm.q_ready[k] <= joint.q_max,
+            "the ready posture is in the joint ranges");
     for (const double most : {joint.dq_max, joint.ddq_max, joint.dddq_max, joint.tau_max, joint.dtau_max}) {
-      Require(std::isfinite(most) && most > 0.0, "limits");
+      Require(std::isfinite(most) && most > 0.0, "limits are finite and positive");
     }
     Require(std::isfinite(joint.viscous) && joint.viscous >= 0.0 && std::isfinite(joint.coulomb) &&
                 joint.coulomb >= 0.0,
-            "friction");
-    Require(joint.X_PJ.R.allFinite() && joint.X_PJ.p.allFinite(), "a place");
-    Require(std::fabs(joint.X_PJ.R.determinant() - 1.0) < 1e-6, "a turn");
-    Require(std::isfinite(arm.links[k].mass) && arm.links[k].mass > 0.0, "a mass");
+            "friction is finite and not negative");
+    Require(joint.X_PJ.R.allFinite() && joint.X_PJ.p.allFinite(), "a joint's frame is finite");
+    Require(std::fabs(joint.X_PJ.R.determinant() - 1.0) < 1e-6, "a joint's rotation has determinant 1");
+    Require(std::isfinite(arm.links[k].mass) && arm.links[k].mass > 0.0,
+            "a link's mass is finite and positive");
   }
-  Require(arm.X_LnE.R.allFinite() && arm.X_LnE.p.allFinite(), "an end");
+  Require(arm.X_LnE.R.allFinite() && arm.X_LnE.p.allFinite(), "the flange's frame is finite");
 }
 
 void Load(const std::filesystem::path& file) {
   try {
     Judge(robots::LoadRobot(file).model);
   } catch (const config::InputError& error) {
-    Require(fuzz::IsOneLine(error.what()), "a refusal is one line");
+    Require(fuzz::IsOneLine(error.what()), "an error message is one line");
   }
 }
 
 }  // namespace
 
-// A ring of links that it refuses itself, urdfdom keeps for ever: some hundred bytes of a program that ends
-// then. What it hands over is ours to free, and freed (RobotTest).
+// urdfdom leaks some hundred bytes when it refuses a ring of links; this program ends soon after. We free
+// every model that urdfdom returns (RobotTest).
 extern "C" const char* __lsan_default_suppressions() { return "leak:liburdfdom_model.so\n"; }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

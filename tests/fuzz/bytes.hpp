@@ -1,4 +1,4 @@
-// An input as the choices that a harness makes.
+// Turns an input's bytes into the choices of a harness.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ class Bytes {
   Bytes(const std::uint8_t* data, std::size_t size) : left_(data, size) {}
 
   [[nodiscard]] bool empty() const { return left_.empty(); }
-  // 0 when there are none left.
+  // 0 at the end of the input.
   std::uint8_t Byte() {
     const std::span<const std::uint8_t> one = Take(1);
     return one.empty() ? std::uint8_t{0} : one.front();
@@ -25,7 +25,7 @@ class Bytes {
     }
     return word;
   }
-  // At most `size` of them.
+  // At most `size` bytes.
   std::span<const std::uint8_t> Take(std::size_t size) {
     const std::span<const std::uint8_t> taken = left_.first(std::min(size, left_.size()));
     left_ = left_.subspan(taken.size());

@@ -1,5 +1,4 @@
-// What a camera says of its pictures: formats, sizes, paddings, numbers and stamps, of which any may be
-// anything.
+// Arbitrary camera data: formats, sizes, paddings, frame numbers and stamps.
 #include <limits>
 #include <optional>
 #include <vector>
@@ -19,7 +18,7 @@ using namespace fovea;
 namespace {
 
 std::uint64_t Long(fuzz::Bytes& input) {
-  // Small ones often, and any.
+  // Often a 32-bit value, sometimes any 64-bit value.
   const std::uint8_t how = input.Byte();
   const std::uint64_t value = how % 4 == 0 ? std::uint64_t{input.Word()} << 32U | input.Word() : input.Word();
   return how % 8 == 1 ? ~value : value;
@@ -36,7 +35,7 @@ void TakePicture(fuzz::Bytes& input) {
   const int height_px = Size(input);
   const int padding = Size(input);
   const std::span<const std::uint8_t> given = input.Take(std::size_t{256} * input.Byte());
-  // A copy of its own, so that a byte beyond it shows.
+  // Copied, so that AddressSanitizer detects a read past the end.
   const std::vector<std::uint8_t> bytes(given.begin(), given.end());
   camera::RawPicture raw{format, width_px, height_px, 0, bytes};
   cv::Mat out;
@@ -45,11 +44,11 @@ void TakePicture(fuzz::Bytes& input) {
   }
   Require(raw.stride_bytes >= width_px, "a row holds its pixels");
   if (camera::Unpack(raw, out)) {
-    Require(out.cols == width_px && out.rows == height_px, "a picture has the size that it said");
+    Require(out.cols == width_px && out.rows == height_px, "a picture has its declared size");
     const hal::Frame frame = camera::FrameOf(out);
     Require(frame.pixels.size() >= static_cast<std::size_t>(frame.stride_bytes) *
                                        (static_cast<std::size_t>(frame.height_px) - 1U),
-            "a frame has its pixels");
+            "a frame's buffer holds all its pixels");
   }
 }
 
@@ -65,24 +64,24 @@ void TakeStamps(fuzz::Bytes& input) {
     const auto device_ns = static_cast<std::int64_t>(Long(input));
     now_ns += input.Word();
     const std::int64_t host_ns = stamps.Map(device_ns, now_ns);
-    Require(host_ns > last_ns, "stamps rise");
+    Require(host_ns > last_ns, "stamps increase");
     last_ns = host_ns;
     const auto ticks = static_cast<std::int64_t>(Long(input));
     const std::uint8_t trip = input.Byte();
     const double ns_per_tick = trip % 4 == 0 ? 1e9 / (1.0 + trip) : 1.0;
     if (const auto reading_ns = camera::StampOfTicks(ticks, ns_per_tick)) {
-      Require(camera::IsStamp(*reading_ns), "a stamp is one");
+      Require(camera::IsStamp(*reading_ns), "a converted stamp is in range");
       latches.Add(now_ns - trip * 1000, *reading_ns, now_ns);
       last_reading_ns = reading_ns;
     }
     const bool is_known = latches.Map(device_ns).has_value();
     const bool may_be = camera::IsStamp(device_ns) && last_reading_ns;
     Require(!is_known || (may_be && device_ns - *last_reading_ns <= 10 * hal::kNsPerSecond),
-            "a clock is believed for ten seconds at most");
+            "a clock reading is used for at most ten seconds");
     Require(is_known || !may_be || device_ns - *last_reading_ns > 2 * hal::kNsPerSecond,
-            "a clock that was just read is known");
+            "a recent clock reading gives a host time");
     const std::uint64_t number = numbers.Count(Long(input));
-    Require(first || number > last_number, "numbers rise");
+    Require(first || number > last_number, "frame numbers increase");
     last_number = number;
   }
 }

@@ -1,6 +1,5 @@
-// A robot at the other end of the wire that says anything: while it is set up, in its states and in its
-// answers. The driver refuses it in one line or goes on; what it commands are finite torques that keep their
-// rate.
+// A robot that sends arbitrary bytes: during the set-up, as states and as answers. The driver refuses them
+// with a one-line error or goes on. Its torque commands stay finite.
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -31,7 +30,7 @@ class AnyRobot {
 
   [[nodiscard]] std::uint16_t port() const { return listener_.port(); }
 
-  // Answers what the driver asks first; wrongly where the input says so.
+  // Answers the driver's requests during the set-up; wrongly where the input says so.
   void ServeSetUp() {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
     for (int answered = 0; answered < 5 && std::chrono::steady_clock::now() < end;) {
@@ -85,7 +84,7 @@ class AnyRobot {
     }
   }
 
-  // So that the driver need not wait for the end of a motion.
+  // Closed here, so that the driver does not wait for the end of a motion.
   void Close() { tcp_.Close(); }
 
   void JudgeCommands() {
@@ -95,9 +94,9 @@ class AnyRobot {
     while (udp_.Receive(bytes, size, from)) {
       RobotCommand command;
       Require(size == kCommandSize && Decode(std::span<const std::byte>(bytes).first(size), command),
-              "a command has its length");
+              "a command has the right length");
       for (const double torque : command.tau_J_d) {
-        Require(std::isfinite(torque), "a torque is a number");
+        Require(std::isfinite(torque), "a torque is finite");
       }
     }
   }
@@ -168,7 +167,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (int step = 0; step < kMostSteps && !input.empty(); ++step) {
       robot.Step();
       if (arm.Read(state).ok()) {
-        Require(state.num_joints == kJoints, "a state has the robot's joints");
+        Require(state.num_joints == kJoints, "a state has the robot's number of joints");
       }
       const std::uint8_t wish = input.Byte();
       command.tau_cmd[wish % kJoints] = wish - 128.0;
@@ -182,7 +181,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     robot.Close();
   } catch (const NetworkError& error) {
     const std::string words = error.what();
-    Require(!words.empty() && words.find('\n') == std::string::npos, "a refusal is one line");
+    Require(!words.empty() && words.find('\n') == std::string::npos, "an error message is one line");
   }
   return 0;
 }

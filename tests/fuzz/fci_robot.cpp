@@ -1,5 +1,5 @@
-// A client of the simulated robot that sends anything: requests whole and broken, and commands with any
-// numbers. The robot's state stays one of numbers, and it goes on.
+// A client that sends arbitrary data to the simulated robot: valid and broken requests, and commands with any
+// numbers. The robot's state stays finite, and the robot goes on.
 #include <sys/socket.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ const sim::WorldConfig& PandaWorld() {
   return config;
 }
 
-// Both ends of a connection.
+// Both ends of one connection.
 struct Line {
   Line() {
     int ends[2];
@@ -45,12 +45,12 @@ struct Line {
 void Judge(const franka::RobotState& state) {
   for (const auto& values : {state.q, state.dq, state.tau_J, state.q_d, state.dq_d, state.tau_J_d}) {
     for (const double value : values) {
-      Require(std::isfinite(value), "a state is of numbers");
+      Require(std::isfinite(value), "the robot's state is finite");
     }
   }
 }
 
-// A command that would be taken, with some of its bytes overwritten.
+// A valid command with some bytes overwritten.
 franka::RobotCommand SpoiltCommand(fuzz::Bytes& input, const franka::RobotState& state) {
   franka::RobotCommand command;
   command.message_id = state.message_id;

@@ -1,7 +1,7 @@
-// What each file of this folder gives: one input, whatever it is, taken in by the code that has to bear it.
+// Entry point that each harness of this folder defines: runs the code under test on one input of any content.
 //
-// clang's libFuzzer calls it with inputs of its own making (preset fuzz); replay.cpp with those that are kept
-// in corpus/, in every build. What must not happen ends the process.
+// clang's libFuzzer calls it with generated inputs (preset fuzz); replay.cpp calls it in every build with the
+// inputs kept in corpus/. A failed requirement aborts the process.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +13,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace fovea::fuzz {
 
-// As an assertion, in every build.
+// An assertion that is active in every build.
 inline void Require(bool holds, const char* what) {
   if (!holds) {
-    std::fprintf(stderr, "not so: %s\n", what);
+    std::fprintf(stderr, "requirement failed: %s\n", what);
     std::abort();
   }
 }

@@ -1,4 +1,4 @@
-// An input as a file, for code that reads files; one for the whole process, written anew for each input.
+// Writes an input to a file for code that reads files. One file per process, overwritten for each input.
 #pragma once
 
 #include <filesystem>
@@ -25,7 +25,7 @@ class InputFile {
   std::filesystem::path path_;
 };
 
-// Whether what is said of an input is one line that says something.
+// Whether an error message is one non-empty line.
 inline bool IsOneLine(const std::string& text) {
   return !text.empty() && text.find('\n') == std::string::npos;
 }

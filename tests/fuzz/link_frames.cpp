@@ -1,4 +1,4 @@
-// Frames: any bytes on the line, and any payload through a frame and back.
+// Link frames: arbitrary bytes on the line, and arbitrary payloads written and read back.
 #include <algorithm>
 #include <array>
 
@@ -11,24 +11,24 @@ using namespace fovea::link;
 
 namespace {
 
-// What a reader took for a frame is one: a writer makes a line of it from which the same is read.
+// A frame that the reader accepted is written and read back unchanged.
 void RequireComesBack(const Frame& frame) {
   FrameWriter writer;
   FrameReader reader;
   const std::span<const std::uint8_t> line = writer.Encode(frame);
-  Require(line.size() >= 2 && line.front() == 0 && line.back() == 0, "a frame stands between zeros");
-  Require(std::count(line.begin(), line.end(), 0) == 2, "a frame holds no zero");
+  Require(line.size() >= 2 && line.front() == 0 && line.back() == 0, "a frame is delimited by zeros");
+  Require(std::count(line.begin(), line.end(), 0) == 2, "a frame contains no zero between its delimiters");
   bool whole = false;
   for (const std::uint8_t byte : line) {
-    Require(!whole, "a frame ends with its last byte");
+    Require(!whole, "a frame is complete only at its last byte");
     whole = reader.Add(byte);
   }
-  Require(whole, "a frame that was written is read");
+  Require(whole, "a written frame is read");
   const Frame& back = reader.frame();
   Require(
       back.kind == frame.kind && back.sequence == frame.sequence &&
           std::equal(back.payload.begin(), back.payload.end(), frame.payload.begin(), frame.payload.end()),
-      "a frame comes back as it was");
+      "a frame is unchanged after writing and reading");
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FrameReader reader;
   for (std::size_t i = 0; i < size; ++i) {
     if (reader.Add(data[i])) {
-      Require(reader.frame().payload.size() <= kMaxPayload, "a payload has its bound");
+      Require(reader.frame().payload.size() <= kMaxPayload, "a payload has at most kMaxPayload bytes");
       RequireComesBack(reader.frame());
     }
   }

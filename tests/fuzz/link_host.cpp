@@ -1,5 +1,5 @@
-// The host's end: a board that answers anything. Whatever comes, a tick ends, with brakes once the board has
-// failed.
+// The host's end of the link: a board that sends arbitrary answers. Every tick
+// ends; after the board has failed the brakes are engaged.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -15,7 +15,7 @@ using namespace fovea;
 
 namespace {
 
-// Says hello, answers the configuration, and then what the input holds; it is gone when that is at its end.
+// Sends hello and the configuration answer, then frames made from the input; gone at the input's end.
 class AnyBoard final : public sim::BoardLine {
  public:
   explicit AnyBoard(fuzz::Bytes& input) : input_(input) { Put(link::FrameKind::kHello, 0, {}); }
@@ -99,12 +99,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     inputs.arm.stamp_ns = k * hal::kTickPeriodNs;
     servo.Step(inputs, outputs);
     if (!servo.failure().empty()) {
-      Require(outputs.record.command.engage_brakes, "a board that failed closes the brakes");
+      Require(outputs.record.command.engage_brakes, "a failed board engages the brakes");
       for (const double torque : outputs.record.command.tau_cmd) {
-        Require(torque == 0.0, "and gives no torque");
+        Require(torque == 0.0, "a failed board commands zero torque");
       }
     }
   }
-  Require(servo.Summarise().all.ticks <= kTicks, "a tick is counted once");
+  Require(servo.Summarise().all.ticks <= kTicks, "each tick is counted at most once");
   return 0;
 }

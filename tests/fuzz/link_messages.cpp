@@ -1,5 +1,5 @@
-// Messages: any bytes as any of them. What is taken encodes to the same bytes, and nothing in it is out of
-// its range.
+// Messages: arbitrary bytes decoded as each message type. An accepted message
+// encodes to the same bytes, and its values are in range.
 #include <algorithm>
 #include <array>
 
@@ -21,24 +21,28 @@ bool TakeAndGiveBack(Bytes bytes, Message& message) {
     return false;
   }
   const Bytes back = Encode(message, storage);
-  Require(std::equal(back.begin(), back.end(), bytes.begin(), bytes.end()), "a message encodes as it came");
+  Require(std::equal(back.begin(), back.end(), bytes.begin(), bytes.end()),
+          "a decoded message encodes to the same bytes");
   return true;
 }
 
 void TakeInputs(Bytes bytes) {
   if (task::ServoInputs in; TakeAndGiveBack(bytes, in)) {
-    Require(in.arm.num_joints >= 0 && in.arm.num_joints <= hal::kMaxJoints, "joints");
-    Require(in.feature.dim >= 0 && in.feature.dim <= hal::kMaxFeatureDim, "entries of s");
-    Require(in.feature.num_poses >= 0 && in.feature.num_poses <= hal::kMaxPoses, "poses");
-    Require(static_cast<int>(in.law) < config::kNumMotionLaws, "motion law");
+    Require(in.arm.num_joints >= 0 && in.arm.num_joints <= hal::kMaxJoints,
+            "the number of joints is in its range");
+    Require(in.feature.dim >= 0 && in.feature.dim <= hal::kMaxFeatureDim,
+            "the dimension of s is in its range");
+    Require(in.feature.num_poses >= 0 && in.feature.num_poses <= hal::kMaxPoses,
+            "the number of poses is in its range");
+    Require(static_cast<int>(in.law) < config::kNumMotionLaws, "the motion law is known");
   }
 }
 
 void TakeAnswer(Bytes bytes) {
   Answer answer;
-  if (Decode(bytes, answer)) {  // its words are cut where their room ends: not byte by byte the same
-    Require(answer.where.back() == '\0', "words end");
-    Require(hal::ToString(answer.code) != nullptr, "a status has a name");
+  if (Decode(bytes, answer)) {  // `where` may be truncated, so the bytes are not compared
+    Require(answer.where.back() == '\0', "the text `where` ends with a zero");
+    Require(hal::ToString(answer.code) != nullptr, "a status code has a name");
   }
 }
 

@@ -1,5 +1,5 @@
-// The servo's end: frames of any kind with any payload, whole and broken, in any order, its timer in between.
-// Whatever comes, it holds to its torques' range and goes on ticking.
+// The servo's end of the link: frames of any kind with any payload, valid and broken, in any order, with
+// timer periods in between. The servo keeps its torques within their limits and goes on ticking.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -22,15 +22,16 @@ class Judge final : public Board {
   void Send(std::span<const std::uint8_t> bytes) noexcept override {
     for (const std::uint8_t byte : bytes) {
       if (reader_.Add(byte) && reader_.frame().kind == FrameKind::kOutputs) {
-        Require(Decode(reader_.frame().payload, outputs_), "outputs are a message");
+        Require(Decode(reader_.frame().payload, outputs_), "outputs decode as a message");
         for (int i = 0; i < arm_.num_joints; ++i) {
           const auto k = static_cast<std::size_t>(i);
           Require(std::fabs(outputs_.record.command.tau_cmd[k]) <= arm_.joints[k].tau_max,
-                  "a torque has its range");
+                  "a torque is within its limit");
         }
       }
     }
-    Require(reader_.counters().damaged == 0 && reader_.counters().unknown == 0, "what is sent is a frame");
+    Require(reader_.counters().damaged == 0 && reader_.counters().unknown == 0,
+            "the servo sends only valid frames");
   }
   [[nodiscard]] std::uint32_t TimerCounts() noexcept override { return counts_ += 10; }
   [[nodiscard]] std::uint32_t StackBytes() noexcept override { return 0; }
@@ -54,7 +55,7 @@ const config::ServoConfig& Config() {
   return config;
 }
 
-// A sound state, with some of its bytes overwritten.
+// A valid state with some bytes overwritten.
 std::vector<std::uint8_t> SpoiltInputs(fuzz::Bytes& input, std::int64_t stamp_ns) {
   std::array<std::uint8_t, kMaxPayload> storage;
   task::ServoInputs in;

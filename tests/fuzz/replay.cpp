@@ -1,5 +1,5 @@
-// Without libFuzzer: gives each file of the folders and files that it is called with to the harness that it
-// is linked with.
+// Replacement for libFuzzer's main: passes each file named on the
+// command line, or in a folder named there, to the harness.
 #include <algorithm>
 #include <exception>
 #include <filesystem>
@@ -28,6 +28,6 @@ int main(int argc, char** argv) {
     const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   }
-  std::fprintf(stderr, "%zu inputs taken\n", files.size());
+  std::fprintf(stderr, "%zu inputs replayed\n", files.size());
   return files.empty() ? 1 : 0;
 }

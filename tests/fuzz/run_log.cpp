@@ -1,5 +1,5 @@
-// A log from elsewhere, as the report reads it: any bytes as a file, as the records of one, or as the
-// messages in it. It is refused in one line, or becomes a run whose every part the page can show.
+// A log from an untrusted source, as the report reads it: arbitrary bytes as a file, as its records, or as
+// the messages in it. It is refused with a one-line error, or it becomes a run that the page can show.
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -90,9 +90,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       how == 0 ? file.Write(input.Rest()) : file.Write(Compose(input, how == 1).bytes());
   try {
     const std::string json = report::ToJson(report::ReadRun(path));
-    Require(nlohmann::json::accept(json), "what the page reads is JSON");
+    Require(nlohmann::json::accept(json), "the report's data is valid JSON");
   } catch (const std::runtime_error& error) {
-    Require(fuzz::IsOneLine(error.what()), "a refusal is one line");
+    Require(fuzz::IsOneLine(error.what()), "an error message is one line");
   }
   return 0;
 }

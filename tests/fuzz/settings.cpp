@@ -1,5 +1,5 @@
-// The sections that scenarios and configurations of hardware share, as a TOML file and as an assignment.
-// Whatever stands there, it is refused in one line, or gives a configuration that the servo takes.
+// The key sections shared by scenarios and hardware configurations, as a TOML file and as an assignment. Any
+// text is refused with a one-line error, or it gives a configuration that the servo accepts.
 #include "firmware/host/config/settings.hpp"
 
 #include <cmath>
@@ -40,12 +40,12 @@ struct Everything {
       keys.Apply(setting);
     }
     const model::Load carried = config::MakeLoad(load);
-    Require(std::isfinite(carried.mass) && carried.mass >= 0.0, "a load has a mass");
+    Require(std::isfinite(carried.mass) && carried.mass >= 0.0, "a load's mass is finite and not negative");
     const model::Pose X_EC = config::MakeMount(camera);
     const config::ServoConfig made =
         config::MakeServoConfig(servo, test::Panda(), X_EC, config::MakeIntrinsics(camera), target);
     task::ServoTask task;
-    Require(task.Init(made).ok(), "a configuration that was made is taken");
+    Require(task.Init(made).ok(), "the servo accepts every configuration that was made");
   }
 };
 
@@ -54,7 +54,7 @@ void Refused(Do&& take) {
   try {
     take();
   } catch (const config::InputError& error) {
-    Require(fuzz::IsOneLine(error.what()), "a refusal is one line");
+    Require(fuzz::IsOneLine(error.what()), "an error message is one line");
   }
 }
 

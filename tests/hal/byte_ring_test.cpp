@@ -1,5 +1,5 @@
-// The ring between a board's interrupt and its main program, here between two threads of this computer.
-// tests/models/byte_ring.pml is the same by every order of the steps, and across the counters' wrap.
+// The ring between a board's interrupt and its main program, tested here with two threads.
+// tests/models/byte_ring.pml checks the same for every order of the steps, also when the counters wrap.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -39,7 +39,7 @@ TEST(ByteRingTest, TwoThreadsTakeOrRefuseEveryByte) {
     for (std::uint32_t i = 0; i < kCount; ++i) {
       const bool has_room = ring.Room() > 0;
       if (ring.Put(next)) {
-        ++next;  // so that a byte lost, doubled or out of order shows
+        ++next;  // so that a lost, doubled or misplaced byte is detected
       } else {
         ++refused;
         broken += has_room ? 1U : 0U;
@@ -74,7 +74,7 @@ TEST(ByteRingTest, TwoThreadsTakeOrRefuseEveryByte) {
   }
   EXPECT_TRUE(in_order);
   EXPECT_TRUE(empty_is_true);
-  EXPECT_EQ(broken, 0U) << "there was room and the byte was refused";
+  EXPECT_EQ(broken, 0U) << "a byte was refused although there was room";
   EXPECT_EQ(taken + refused, kCount);
   EXPECT_GT(taken, 0U);
 }

@@ -1,4 +1,4 @@
-// The hand-over from camera to servo: the newest wins, never half-written.
+// Hand-over from camera to servo: the newest measurement wins and is never torn.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -9,7 +9,7 @@
 namespace fovea::hal {
 namespace {
 
-// A measurement in which every number tells the same story, so that a mixture would show.
+// A measurement with the same number in all fields, so that a torn one is detected.
 FeatureMeasurement Make(std::uint64_t sequence) {
   FeatureMeasurement m;
   m.sequence = sequence;
@@ -56,7 +56,7 @@ TEST(FeatureMailboxTest, TakeReturnsTheNewest) {
   EXPECT_FALSE(mailbox.Take(m));
 }
 
-// A stamp that was wrong once must not keep out what comes after it.
+// A wrong stamp in the future must not block later features.
 TEST(FeatureMailboxTest, FutureStampDoesNotBlockLaterFeatures) {
   FeatureMailbox mailbox;
   FeatureMeasurement odd = Make(5);
@@ -100,7 +100,7 @@ TEST(FeatureMailboxTest, TwoThreadsNeverSeeATornFeature) {
   writer.join();
   EXPECT_TRUE(whole);
   EXPECT_TRUE(forward);
-  EXPECT_EQ(last, kCount);  // the last one is never lost
+  EXPECT_EQ(last, kCount);  // the newest is never lost
   EXPECT_GT(taken, 0U);
 }
 

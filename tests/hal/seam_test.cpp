@@ -1,5 +1,5 @@
-// What the seam's base classes promise for every driver: arguments are checked on the way in, impossible
-// answers on the way out, and nothing is half done.
+// Promises of the seam's base classes for every driver: arguments and results
+// are checked, and an error leaves the outputs unchanged.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -52,7 +52,7 @@ TEST(ArmTest, KeepsTheStateOnAnError) {
   EXPECT_EQ(arm.Read(state).code(), StatusCode::kTimeout);
   EXPECT_EQ(state.stamp_ns, 42);
   arm.read_status = Status::Ok();
-  arm.state.num_joints = 5;  // a driver that contradicts itself
+  arm.state.num_joints = 5;  // differs from the driver's own number of joints
   EXPECT_EQ(arm.Read(state).code(), StatusCode::kDeviceFault);
   EXPECT_EQ(state.stamp_ns, 42);
 }
@@ -102,7 +102,7 @@ TEST_F(CameraTest, RefusesANegativeTimeout) {
   EXPECT_EQ(camera_.frames.size(), 1U);
 }
 
-// Nothing deletes a driver through the seam.
+// No code deletes a driver through the seam.
 static_assert(!std::is_destructible_v<Arm> && !std::is_destructible_v<Camera> &&
               !std::is_destructible_v<Clock> && !std::is_destructible_v<Recorder> &&
               !std::is_destructible_v<FeatureSink> && !std::is_destructible_v<TickProbe>);
@@ -113,7 +113,7 @@ TEST(EventsTest, NamesAreUniqueAndEveryCauseHasAKey) {
   for (int i = 0; i < kNumFaults; ++i) {
     const auto fault = static_cast<Fault>(i);
     EXPECT_TRUE(names.insert(Name(fault)).second) << Name(fault);
-    // What is not finite is a fault at once: no key softens it.
+    // A non-finite value is an immediate fault: no key can soften it.
     const bool has_no_key =
         fault == Fault::kNone || fault == Fault::kNonFiniteFeature || fault == Fault::kNonFiniteControl;
     EXPECT_EQ(std::string(Key(fault)).empty(), has_no_key) << Name(fault);
@@ -131,7 +131,7 @@ TEST(EventsTest, NamesAreUniqueAndEveryCauseHasAKey) {
     EXPECT_TRUE(names.insert(Name(mode)).second) << Name(mode);
   }
   EXPECT_EQ(names.count("unknown"), 0U);
-  EXPECT_STREQ(Name(static_cast<Mode>(kNumModes)), "unknown") << "a mode that is not counted";
+  EXPECT_STREQ(Name(static_cast<Mode>(kNumModes)), "unknown") << "a mode out of range";
 }
 
 TEST(EventsTest, EveryHoldReasonHasAUniqueName) {
@@ -142,7 +142,7 @@ TEST(EventsTest, EveryHoldReasonHasAUniqueName) {
   EXPECT_EQ(names.count("unknown"), 0U);
 }
 
-// Bytes of a line or a file may be none of an enumeration.
+// A value decoded from a line or a file may be out of the enumeration's range.
 TEST(EventsTest, ValueOutOfRangeIsNamedUnknown) {
   EXPECT_STREQ(Name(static_cast<HoldReason>(200)), "unknown");
   EXPECT_STREQ(Name(static_cast<Fault>(200)), "unknown");

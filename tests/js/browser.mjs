@@ -1,4 +1,4 @@
-// Pages in a browser, as a person would open them: what they fetch, and what they complain of.
+// Opens pages in a browser as a user does; reports what they fetch and their console errors.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import os from "node:os";
@@ -7,10 +7,10 @@ import { pathToFileURL } from "node:url";
 
 import { chromium } from "playwright-core";
 
-// Calls `look(context)` with a browser that is gone afterwards.
+// Calls `look(context)` with a browser, and closes the browser afterwards.
 export async function withBrowser(look) {
   const program = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(fs.existsSync);
-  assert.ok(program, "Chromium is there (tools/install test)");
+  assert.ok(program, "Chromium is installed (tools/install test)");
   const home = fs.mkdtempSync(path.join(os.tmpdir(), "fovea-report-"));
   const context = await chromium.launchPersistentContext(home, {
     executablePath: program,
@@ -27,7 +27,7 @@ export async function withBrowser(look) {
       "--enable-unsafe-swiftshader",
     ],
   });
-  // Drawn by a software renderer, on a machine that is busy with the other tests.
+  // A software renderer draws the page, on a machine that is busy with other tests.
   context.setDefaultTimeout(120_000);
   try {
     await look(context);
@@ -37,8 +37,8 @@ export async function withBrowser(look) {
   }
 }
 
-// The file opened in a window of that size, each of its `parts` looked at until it is drawn. `said`: what its
-// console says; `asked`: what it fetches.
+// Opens the file in a window of that size and scrolls to each of its `parts` until it is drawn. Returns the page, its
+// console messages (`said`) and the URLs that it requested (`asked`).
 export async function openPage(context, file, [width, height], parts) {
   const url = pathToFileURL(path.resolve(file)).href;
   const page = await context.newPage();
@@ -60,7 +60,7 @@ export async function openPage(context, file, [width, height], parts) {
   return { page, said, asked };
 }
 
-// How many plots of the page's part `id` are drawn: those whose pixels differ.
+// Number of drawn plots in the page's part `id`, that is, plots whose pixels differ.
 export function plotsDrawn(page, id) {
   return page.evaluate((part) => {
     const drawn = (canvas) => {
@@ -76,7 +76,7 @@ export function plotsDrawn(page, id) {
   }, id);
 }
 
-// By how much it sticks out to the side [px].
+// Horizontal overflow of the page [px].
 export function sideways(page) {
   return page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 }

@@ -1,5 +1,5 @@
-// A run in which every name is somebody's attempt at the page: scenario, arm, joints, configuration. The report shows
-// them as words, runs nothing of them, asks nobody for anything, and could not if it tried.
+// A run whose names (scenario, arm, joints, configuration) all contain injected HTML. The report must show them as
+// text, must run no script from them and must send no request, even if told to.
 //   node hostile_report.mjs FOVEA_SIM FOVEA ROBOTS FOLDER
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
@@ -18,7 +18,7 @@ const escaped = (text) => text.replace(/[&<>"]/g, (c) => `&#${c.charCodeAt(0)};`
 fs.rmSync(folder, { recursive: true, force: true });
 const own = path.join(folder, "theirs");
 fs.mkdirSync(own, { recursive: true });
-// An arm whose joints, tip and file have such names.
+// An arm with such names for its joints, tip and file.
 let urdf = fs.readFileSync(path.join(robots, "panda.urdf"), "utf8");
 urdf = urdf.replaceAll(`"panda_joint1"`, `"${escaped(bait)}"`).replaceAll(`"panda_joint2"`, `"${escaped(scripts)}"`);
 urdf = urdf.replaceAll(`"panda_flange"`, `"${escaped(bait)}flange"`);
@@ -28,7 +28,7 @@ const arm = fs
   .readFileSync(path.join(robots, "panda.toml"), "utf8")
   .replace("panda_flange", `${bait.replaceAll('"', '\\"')}flange`);
 fs.writeFileSync(path.join(own, `${bait}.toml`), arm);
-// A file's name holds no slash; a description may.
+// A file name cannot contain a slash; a description can.
 const scenario = path.join(own, `${bait}run.toml`);
 const text = [`[arm]`, `model = '${bait}.toml'`, `[run]`, `description = '${scripts}'`, `duration_s = 0.3`];
 fs.writeFileSync(scenario, text.join("\n"));
@@ -44,7 +44,7 @@ assert.equal(replay.status, 0, replay.stdout + replay.stderr);
 const both = path.join(folder, "both.html");
 run(fovea, "report", out, out, "--out", both);
 
-// Somebody to ask.
+// A server that the page could contact.
 let calls = 0;
 const listener = http.createServer((_, answer) => {
   calls += 1;
@@ -69,7 +69,7 @@ await withBrowser(async (context) => {
       await page.locator(`#${part}`).scrollIntoViewIfNeeded();
       await page.locator(`#${part}[data-drawn="true"]`).waitFor({ state: "attached", timeout: 120_000 });
     }
-    assert.deepEqual(asked, [], "the page asks nobody");
+    assert.deepEqual(asked, [], "the page sends no request");
     const seen = await page.evaluate(async (where) => {
       const image = new Image();
       await Promise.all([
@@ -86,14 +86,14 @@ await withBrowser(async (context) => {
         baits: document.querySelectorAll("[onerror], img[src='x'], b").length,
       };
     }, there);
-    assert.equal(seen.stolen, null, "nothing of a run's names was run");
-    assert.equal(seen.baits, 0, "nor became a part of the page");
-    assert.ok(seen.title.includes(bait) && seen.words.includes(bait), "they are shown as they are");
-    assert.ok(seen.words.includes(scripts), "a joint's and a description's too");
+    assert.equal(seen.stolen, null, "no script from a name was run");
+    assert.equal(seen.baits, 0, "no name became a page element");
+    assert.ok(seen.title.includes(bait) && seen.words.includes(bait), "names are shown unchanged");
+    assert.ok(seen.words.includes(scripts), "also those of a joint and a description");
     assert.deepEqual(trouble, []);
-    assert.equal(calls, 0, "not even when it is told to");
+    assert.equal(calls, 0, "the page sends no request even if told to");
     await page.close();
   }
 });
 listener.close();
-console.log("names are words");
+console.log("all names are shown as text");

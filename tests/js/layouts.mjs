@@ -1,8 +1,8 @@
-// Every stream and field that a layout shows is in the log; every panel is placed once.
+// Checks that the log has every stream and field that a layout shows, and that every panel is placed once.
 import assert from "node:assert/strict";
 import fs from "node:fs";
 
-// The values that `path` ("arm.q[0]") names in a message; undefined when there is no such field.
+// The value at `path` ("arm.q[0]") in a message; undefined if there is no such field.
 function lookUp(message, path) {
   let value = message;
   for (const step of path.split(".")) {
@@ -15,7 +15,7 @@ function lookUp(message, path) {
   return value;
 }
 
-// `byTopic`: topic to [{data}] with decoded messages. Returns how many fields were looked up.
+// `byTopic`: topic to [{data}] with decoded messages. Returns the number of checked fields.
 export function checkLayouts(folder, byTopic) {
   let looked = 0;
   const check = (topic, field, where) => {

@@ -1,5 +1,5 @@
-// Opens the page of a replay as a person would, wide and narrow: every part is drawn, both runs are there, nothing
-// is fetched, nothing is complained of, nothing sticks out. Leaves pictures of what it saw.
+// Opens the page of a replay in a wide and a narrow window. Checks that every part is drawn, that both runs are there,
+// that nothing is fetched, that the console is silent and that nothing overflows. Saves screenshots.
 //   node open_replay.mjs REPLAY.html FOLDER
 import assert from "node:assert/strict";
 import path from "node:path";
@@ -25,10 +25,10 @@ await withBrowser(async (context) => {
     console.log(`${size[0]} px: ${JSON.stringify(runs)}, ${modes.length} modes, ${changes.length} changes`);
     assert.deepEqual(said, [], "the console is silent");
     assert.deepEqual(asked, [], "nothing is fetched");
-    assert.equal(await sideways(page), 0, "nothing sticks out to the side");
-    assert.ok((await plotsDrawn(page, "motion")) >= 2, "what is asked of the hand is drawn");
-    assert.ok((await plotsDrawn(page, "joints")) >= 2, "and of the joints");
-    assert.equal(runs.length, 2, "what was recorded, and what it would have done");
+    assert.equal(await sideways(page), 0, "nothing overflows to the side");
+    assert.ok((await plotsDrawn(page, "motion")) >= 2, "the commands to the hand are drawn");
+    assert.ok((await plotsDrawn(page, "joints")) >= 2, "the commands to the joints are drawn");
+    assert.equal(runs.length, 2, "the recorded run and the replayed one");
     assert.ok(runs.every((run) => run.ticks > 100 && run.joints >= 1));
     assert.deepEqual(runs[0], runs[1]);
     assert.match(await page.locator("#subtitle").innerText(), /B, dashed: with \S+=/, "the settings are named");
@@ -45,4 +45,4 @@ await withBrowser(async (context) => {
     await page.close();
   }
 });
-console.log("the replay can be read");
+console.log("the replay page is complete");

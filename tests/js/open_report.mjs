@@ -1,5 +1,5 @@
-// Opens a report as a person would, wide and narrow, and on paper: every part is drawn, nothing is fetched, nothing
-// is complained of, nothing sticks out. Leaves pictures of what it saw.
+// Opens a report in a wide and a narrow window, and on paper. Checks that every part is drawn, that nothing is fetched,
+// that the console is silent and that nothing overflows. Saves screenshots.
 //   node open_report.mjs REPORT.html FOLDER [theory|hardware|circle|faults]
 import assert from "node:assert/strict";
 import path from "node:path";
@@ -21,7 +21,7 @@ import {
 const [report, folder] = process.argv.slice(2, 4);
 const name = path.basename(report, ".html");
 
-// What `act` does is to be seen in `place`.
+// Checks that `act` changes the pixels of `place`.
 async function changes(place, what, act) {
   await place.scrollIntoViewIfNeeded();
   const before = await place.evaluate((canvas) => canvas.toDataURL());
@@ -32,8 +32,8 @@ async function changes(place, what, act) {
   assert.fail(what);
 }
 
-// A run without a camera has no eye; a run beside theory has a section for it, and so has one that goes round a
-// circle. Of hardware there is no truth, and the page says so. `faults`: a run that lost frames on purpose.
+// A run without a camera has no "eye" sections. Theory and circle runs have a section of their own. A hardware run has
+// no ground truth, and the page says so. `faults`: a run with injected frame loss.
 const asked = process.argv[4] ?? "eye";
 const hardware = asked === "hardware";
 const kind = ["hardware", "faults"].includes(asked) ? "eye" : asked;
@@ -47,7 +47,7 @@ await withBrowser(async (context) => {
     const { page, said, asked: fetched } = await openPage(context, report, [width, height], parts);
     const seen = await page.evaluate(() => {
       const videos = [...document.querySelectorAll("video")];
-      // How far a path is drawn beside the points that it goes through.
+      // Distance between a drawn path and the points that it must pass.
       const astray = Fovea.runs
         .filter((run) => run.scene)
         .flatMap((run) => [run.scene.camera_path, run.scene.target_path])
@@ -89,7 +89,7 @@ await withBrowser(async (context) => {
     assert.deepEqual(said, [], "the console is silent");
     assert.deepEqual(fetched, [], "nothing is fetched");
     assert.ok(seen.words > 100);
-    assert.ok(seen.astray < 0.02, "paths go where the log has them");
+    assert.ok(seen.astray < 0.02, "paths are where the log has them");
     assert.ok(seen.plots.path >= 1 && seen.plots.joints >= 3, "plots are drawn");
     if (kind === "eye") {
       assert.ok(seen.plots.error >= 1, "the error is drawn");
@@ -101,12 +101,12 @@ await withBrowser(async (context) => {
       );
     } else {
       if (kind === "theory")
-        assert.ok(seen.plots.theory >= 2, "the response is drawn over the analytic one, and what is between them");
-      assert.equal(seen.images + seen.videos.length, 0, "nothing was seen");
+        assert.ok(seen.plots.theory >= 2, "the response, the analytic one and their difference are drawn");
+      assert.equal(seen.images + seen.videos.length, 0, "no camera");
     }
     assert.ok(seen.marks.ticks >= 10 && seen.marks.timeline >= 3, "histogram and time axis are drawn");
-    assert.equal(seen.sideways, 0, "nothing sticks out to the side");
-    assert.equal(seen.absent.length, hardware ? 1 : 0, "nothing is missing from a whole run");
+    assert.equal(seen.sideways, 0, "nothing overflows to the side");
+    assert.equal(seen.absent.length, hardware ? 1 : 0, "a complete run lacks nothing");
     assert.ok(seen.absent.every((words) => /the log holds no truth/.test(words)));
     const curved = kind === "eye" ? ["error", "components"] : own;
     await checkBands(page, [...curved, "velocity", "joints", "timeline", "free"]);
@@ -117,7 +117,7 @@ await withBrowser(async (context) => {
       await checkFeatures(page);
       const frames = seen.runs === 1 ? await checkFrames(page) : null;
       if (asked === "faults") {
-        assert.ok(frames.lost > 0, "frames were lost, and are counted");
+        assert.ok(frames.lost > 0, "lost frames are counted");
         await checkInjected(page);
       }
     }
@@ -131,7 +131,7 @@ await withBrowser(async (context) => {
         );
       }
       const scene = page.locator("#path canvas");
-      await changes(scene, "dragging turns the bench", async () => {
+      await changes(scene, "dragging rotates the 3-D view", async () => {
         const box = await scene.boundingBox();
         await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
         await page.mouse.down();
@@ -145,4 +145,4 @@ await withBrowser(async (context) => {
     await page.close();
   }
 });
-console.log("the report can be read");
+console.log("the report is complete");

@@ -1,7 +1,7 @@
-// Reads a run's log.mcap with readers that are not ours, and holds it against the run's summary.json: every value of
-// every tick by the fingerprint that the run itself took, the rest by counts and by what it must be.
+// Reads a run's log.mcap with independent readers and compares it with the run's summary.json: the ticks by the hash
+// that the run itself computed, the rest by counts and by expected values.
 //   node read_log.mjs FOLDER [hardware]
-// Of hardware there is no truth, and only as many pictures as were wished for.
+// A hardware run has no ground truth, and no more pictures than configured.
 import assert from "node:assert/strict";
 import { createHash } from "node:crypto";
 import fs from "node:fs";
@@ -20,16 +20,16 @@ const summary = JSON.parse(fs.readFileSync(path.join(folder, "summary.json"), "u
 const bytes = fs.readFileSync(file);
 const decompressHandlers = await loadDecompressHandlers();
 
-// Front to back, with all checksums.
+// Sequentially, with all checksums.
 let streamed = 0;
 const stream = new McapStreamReader({ decompressHandlers, validateCrcs: true });
 stream.append(bytes);
 for (let record = stream.nextRecord(); record; record = stream.nextRecord()) {
   streamed += record.type === "Message" ? 1 : 0;
 }
-assert.ok(stream.done(), "the file ends where it should");
+assert.ok(stream.done(), "the file is complete");
 
-// By its index.
+// By the index.
 const reader = await McapIndexedReader.Initialize({
   readable: {
     size: async () => BigInt(bytes.length),
@@ -42,12 +42,12 @@ for (const [id, schema] of reader.schemasById) {
   assert.equal(schema.encoding, "protobuf");
   types.set(id, protobufFromBinaryDescriptor(schema.data).lookupType(schema.name));
 }
-console.log(`${compareWithOfficial(types)} of the messages are Foxglove's own, field by field`);
+console.log(`${compareWithOfficial(types)} message types match Foxglove's definitions, field by field`);
 
 const byTopic = new Map();
 let last = 0n;
 for await (const message of reader.readMessages({ validateCrcs: true })) {
-  assert.ok(message.logTime >= last, "the index gives messages in order of time");
+  assert.ok(message.logTime >= last, "the index gives messages in time order");
   last = message.logTime;
   const channel = reader.channelsById.get(message.channelId);
   const entries = byTopic.get(channel.topic) ?? [];
@@ -116,7 +116,7 @@ for (const { time, data: t } of of("/servo/tick")) {
   assert.equal(BigInt(t.stamp_ns.toString()), time);
   if (t.has_feature) {
     feature = features.get(time);
-    assert.ok(feature, `the measurement that tick ${t.tick} took`);
+    assert.ok(feature, `the log has the measurement of tick ${t.tick}`);
     ++taken;
   }
   const out = new Bytes();
@@ -172,9 +172,9 @@ if (simulated) assert.equal(summary.log_pictures_dropped, 0);
 assert.equal(of("/servo/tick").length, summary.ticks);
 assert.equal(taken, features.size);
 assert.equal(hash.digest("hex"), summary.log_hash, "all values of all ticks");
-console.log(`${summary.ticks} ticks have the run's fingerprint ${summary.log_hash}`);
+console.log(`${summary.ticks} ticks match the run's hash ${summary.log_hash}`);
 
-// The rest, by what it must be.
+// The rest, by expected values.
 const pictures = simulated ? summary.frames : summary.log_pictures;
 assert.equal(of("/camera/image").length, pictures);
 assert.equal(of("/camera/annotations").length, pictures + summary.log_pictures_dropped);
@@ -185,7 +185,7 @@ for (const { data } of of("/camera/image")) {
 const calibration = of("/camera/calibration")[0].data;
 assert.equal(calibration.K.length, 9);
 if (simulated) {
-  assert.equal(of("/truth").length, summary.ticks + 1, "one for each tick, and how it began");
+  assert.equal(of("/truth").length, summary.ticks + 1, "one for each tick, and one for the start");
   const errors = of("/truth").map(({ data }) => data);
   const windowStart = errors.at(-1).stamp_ns - 5e8;
   const window = errors.filter((e) => e.stamp_ns > windowStart);
@@ -198,14 +198,14 @@ if (simulated) {
   }
 } else {
   assert.ok(pictures > 0);
-  assert.equal(of("/truth").length, 0, "nobody knows it");
+  assert.equal(of("/truth").length, 0, "hardware has no ground truth");
 }
 const frames = new Set(of("/tf").flatMap(({ data }) => data.transforms.map((t) => t.child_frame_id)));
 for (const { data } of of("/scene")) {
   for (const entity of data.entities) {
     assert.ok(
       frames.has(entity.frame_id) || entity.frame_id === "fovea/base",
-      `${entity.id} stands in a frame that moves`,
+      `${entity.id} has a frame with transforms`,
     );
   }
 }
@@ -221,7 +221,7 @@ const counted = of("/servo/tick_times")[0].data.counts.reduce((sum, count) => su
 assert.equal(counted, summary.ticks);
 
 const layouts = new URL("../../tools/layouts", import.meta.url).pathname;
-if (simulated) console.log(`${checkLayouts(layouts, byTopic)} streams and fields of the layouts are there`);
+if (simulated) console.log(`${checkLayouts(layouts, byTopic)} streams and fields of the layouts are in the log`);
 
 const metadata = {};
 for await (const record of reader.readMetadata()) {
@@ -238,4 +238,4 @@ for await (const attachment of reader.readAttachments({ validateCrcs: true })) {
 }
 assert.deepEqual(JSON.parse(attachments["summary.json"].toString()), summary);
 assert.deepEqual(attachments["camera.mp4"], fs.readFileSync(path.join(folder, "camera.mp4")));
-console.log("log.mcap says what the run was");
+console.log("log.mcap matches the run");

@@ -1,8 +1,8 @@
-// What each part of a report must show: curves with numbers, marks, words. Called with a page that is drawn.
+// Checks of each part of a report (curves, numbers, marks, texts), called with a drawn page.
 import assert from "node:assert/strict";
 
-// Of each plot of the part `id`: for every entry of its legend how many pixels have that entry's colour. An empty curve
-// has none.
+// For each plot of the part `id` and each entry of its legend: the number
+// of pixels with that entry's colour. An empty curve has none.
 function curvePixels(page, id) {
   return page.evaluate((part) => {
     const near = (data, i, [r, g, b]) =>
@@ -26,11 +26,11 @@ function curvePixels(page, id) {
   }, id);
 }
 
-// `covered`: curves lie on each other, as those of an arm of one joint do, of which most stand at 0.
+// `covered`: curves may cover each other, for example those of a one-joint arm, most of which are 0.
 async function checkCurves(page, id, least, covered = false) {
   await page.locator(`#${id}`).scrollIntoViewIfNeeded();
   const curves = await curvePixels(page, id);
-  assert.ok(curves.length >= least, `#${id}: ${curves.length} curves, at least ${least} are there`);
+  assert.ok(curves.length >= least, `#${id}: ${curves.length} curves, at least ${least} expected`);
   const drawn = ({ count }) => count > 15;
   if (covered) assert.ok(curves.some(drawn), `#${id}: a curve is drawn`);
   else
@@ -39,7 +39,7 @@ async function checkCurves(page, id, least, covered = false) {
   return curves.length;
 }
 
-// The path of the features: lines that are long, and start, end and goal of each.
+// The feature paths: long lines, with start, end and goal marked.
 async function checkFeatures(page) {
   const seen = await page.evaluate(() => {
     const drawing = document.querySelector(".feature-svg");
@@ -56,10 +56,10 @@ async function checkFeatures(page) {
   const paths = seen.lengths.length;
   assert.ok(paths >= seen.runs && seen.lengths.every((length) => length > 20), "each feature has a path");
   assert.deepEqual([seen.starts, seen.ends, seen.goals], [paths, paths, paths], "start, end and goal are marked");
-  assert.ok(seen.cells.length >= 4 * paths && seen.cells.every((text) => /\d/.test(text)), "and given in numbers");
+  assert.ok(seen.cells.length >= 4 * paths && seen.cells.every((text) => /\d/.test(text)), "and listed in numbers");
 }
 
-// Chosen with the keyboard alone, drawn, remembered in the address.
+// Curves chosen with the keyboard only are drawn and kept in the address.
 async function checkFreePlot(page) {
   const search = page.locator("#free input[type=search]");
   await search.fill("joint 1 velocity");
@@ -80,7 +80,7 @@ async function checkFreePlot(page) {
   assert.equal(await page.locator("#free .plot").count(), 0);
 }
 
-// Tiles and time axis count the same frames.
+// Tiles and time axis show the same frame counts.
 async function checkFrames(page) {
   const tiles = await page.evaluate(() =>
     Object.fromEntries(
@@ -99,12 +99,12 @@ async function checkFrames(page) {
   return counted;
 }
 
-// Rows in which nothing happens are one line, until they are unfolded.
+// Rows without events are folded into one line until they are unfolded.
 async function checkTimeline(page) {
   const rows = () => page.locator("#timeline .row-name").count();
   const folded = await rows();
   const line = await page.locator("#timeline .quiet-rows").innerText();
-  assert.match(line, /never at work: .*torque/i);
+  assert.match(line, /never active: .*torque/i);
   const button = page.locator("#timeline .quiet-rows button");
   await button.press("Enter");
   assert.ok((await rows()) > folded, "folded rows can be shown");
@@ -112,7 +112,7 @@ async function checkTimeline(page) {
   assert.equal(await rows(), folded);
 }
 
-// Modes are shaded and explained wherever time is the axis.
+// Modes are shaded and explained in every plot over time.
 async function checkBands(page, parts) {
   for (const id of parts) {
     const words = await page.locator(`#${id} .mode-legend`).first().innerText();
@@ -120,7 +120,7 @@ async function checkBands(page, parts) {
   }
 }
 
-// A fault that was put into the run: on the plots, in their legend, and on the time axis.
+// An injected fault appears on the plots, in their legend and on the time axis.
 async function checkInjected(page) {
   assert.match(await page.locator("#error .mode-legend").innerText(), /injected fault/);
   const edges = await page.evaluate(() => {
@@ -139,10 +139,10 @@ async function checkInjected(page) {
   });
   assert.ok(edges.length >= 7 && edges.every((count) => count > 100), `bands are drawn: ${edges}`);
   const row = await page.locator("#timeline .span.injected title").allTextContents();
-  assert.ok(row.length >= 1 && row.every((text) => /frame loss/.test(text)), "and a row of the time axis");
+  assert.ok(row.length >= 1 && row.every((text) => /frame loss/.test(text)), "the time axis has a row for it");
 }
 
-// Of a commanded circle: the error is that of the summary.
+// For a commanded circle, the path error matches the summary.
 async function checkPathError(page) {
   await checkCurves(page, "way", 1);
   const { most, said } = await page.evaluate(() => {
@@ -152,10 +152,10 @@ async function checkPathError(page) {
     return { most: Math.max(...values), said: summary.path_error_mm_max };
   });
   console.log(`path error at most ${most} mm by the joints, ${said} mm by the truth`);
-  assert.ok(Math.abs(most - said) < 0.1 * said + 0.05, "the joints and the truth tell the same error");
+  assert.ok(Math.abs(most - said) < 0.1 * said + 0.05, "the errors from joints and from truth agree");
 }
 
-// Why no tick can overrun, which limit acted, and how to repeat the run.
+// Texts: why no tick can overrun, which limit acted, how to repeat the run.
 async function checkWords(page, command) {
   const about = await page.locator("#about").innerText();
   const { names, lockstep, slow, acted } = await page.evaluate(() => ({
@@ -164,7 +164,7 @@ async function checkWords(page, command) {
     slow: Fovea.runs.some((run) => run.summary.tick_ns.max > 1e6),
     acted: Fovea.runs.some((run) => Object.values(run.summary.limit_ticks || {}).some((ticks) => ticks > 0)),
   }));
-  for (const name of names) assert.ok(about.includes(name), "the foot names the run");
+  for (const name of names) assert.ok(about.includes(name), "the footer names the run");
   assert.match(about, /Fovea \d+\.\d+/);
   assert.match(await page.locator("#about .repeat code").first().innerText(), command);
   if (lockstep && slow) assert.match(await page.locator("#ticks").innerText(), /simulated clock waits for the servo/);
@@ -177,7 +177,7 @@ async function checkWords(page, command) {
     );
 }
 
-// On paper the configuration is folded: what differs from the defaults is enough.
+// On paper the configuration is folded: the differences from the defaults suffice.
 async function checkPaper(page) {
   const open = await page.evaluate(() => {
     dispatchEvent(new Event("beforeprint"));

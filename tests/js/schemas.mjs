@@ -1,4 +1,4 @@
-// Holds the schemas in a log against Foxglove's own definitions.
+// Compares the schemas in a log with Foxglove's own definitions.
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
 
@@ -8,7 +8,7 @@ const { foxgloveEnumSchemas, foxgloveMessageSchemas, generateProto } = createReq
   "@foxglove/schemas/internal",
 );
 
-// Foxglove's definitions as one set of types. Each message is a file of its own there; here they lie side by side.
+// Foxglove's definitions as one set of types. Foxglove has one file per message; here they share one root.
 function official() {
   const root = new protobuf.Root();
   const common = protobuf.common.get("google/protobuf/timestamp.proto");
@@ -33,8 +33,8 @@ const shapeOf = (type) =>
       .sort(([a], [b]) => a - b),
   );
 
-// `types`: message types by number. Every one of package foxglove, and every one that it is made of, must be the
-// official one. Returns how many there were.
+// `types`: message types by number. Each type of package foxglove, and each type that it contains, must equal the
+// official one. Returns the number of compared types.
 export function compareWithOfficial(types) {
   const root = official();
   const seen = new Set();

@@ -1,16 +1,16 @@
-/* linux_rt::BoundedRing, the recorder's ring and the log's. One thread pushes VALUES values, one drains.
+/* Model of linux_rt::BoundedRing, used by the recorder and the log. One thread pushes VALUES values, the other drains.
  *
- * Follows hal/drivers/linux_rt/include/fovea/linux_rt/bounded_ring.hpp: what stands in a comment that begins with a colon
- * is its text, and check.py compares it. Proved, for every order of the steps and every value that C++ lets an atomic give:
- * nobody touches a place that the other may be at; values come whole, each once, in the order in which they were pushed;
- * what was taken and what was dropped is all there was; a Push that HasRoom was true before drops nothing; neither side
- * ever waits for the other. */
+ * Follows hal/drivers/linux_rt/include/fovea/linux_rt/bounded_ring.hpp. A comment that begins with a colon quotes its text;
+ * check.py compares the two. Proved for every order of the steps and every value that C++ lets an atomic return: no thread
+ * uses a place that the other may be using; values arrive whole, each once, in the order of the pushes; every value is
+ * either taken or counted as dropped; a Push drops nothing if HasRoom was true before it; neither thread waits for the
+ * other. */
 #define CAPACITY 2
 #define VALUES 5
 #define PLACES CAPACITY
 #include "release_acquire.pml"
 
-/* What this code would be with one mistake; each must be found. */
+/* Each definition puts one mistake into the code; Spin must find it. */
 #ifdef WRITTEN_WITHOUT_RELEASE
 #define WRITTEN_RELEASES 0
 #else
@@ -37,16 +37,16 @@
 #define LESS <
 #endif
 
-byte first_half[CAPACITY]; /* values_: what is half-written shows */
+byte first_half[CAPACITY]; /* values_ in two halves, so that a half-written value shows */
 byte second_half[CAPACITY];
 byte written = 0; /* written_: the newest value */
 byte read = 0;    /* read_ */
 byte dropped = 0; /* dropped_ */
-/* What each value that the two ever had carries. */
+/* What each value of written_ and of read_ makes known to its reader. */
 int written_knows[VALUES + 1] = ALL_PLACES;
 int read_knows[VALUES + 1] = ALL_PLACES;
 
-byte pushed[VALUES]; /* the values that found a place, in order */
+byte pushed[VALUES]; /* the values that were stored, in order */
 bool done = false;   /* all were pushed; read with acquire */
 
 byte forgetting = 0;
@@ -74,7 +74,7 @@ inline store_read(value) {
   }
 }
 
-/* Any value from the newest that this thread has seen up to the newest of all. */
+/* Returns any value from the newest that this thread has seen to the newest of all. */
 inline load_written(acquires) {
   do
   :: seen_written < written -> seen_written++
@@ -151,7 +151,7 @@ inline Drain(end) {
     value = first_half[next % CAPACITY];
     assert(second_half[next % CAPACITY] == value); /* whole */
     assert(value == pushed[next]);                 /* each once, in order */
-    /* Taken's end. */
+    /* Taken's destructor. */
 #ifndef READ_TOO_EARLY
     store_read(next + 1);
 #endif
@@ -166,7 +166,7 @@ active proctype Servo() {
   bool has_room = false, promised = false;
   do
   :: value < VALUES ->
-    if /* RunLog asks first where nothing may be dropped */
+    if /* RunLog first asks HasRoom when nothing may be dropped */
     :: HasRoom(promised)
     :: skip
     fi;

@@ -1,9 +1,10 @@
-/* cortex_m7::ByteRing, between an interrupt and the main program. One side puts VALUES bytes, one takes.
+/* Model of cortex_m7::ByteRing, between an interrupt and the main program. One side puts VALUES bytes, the other takes.
  *
- * Follows hal/drivers/cortex_m7/include/fovea/cortex_m7/byte_ring.hpp: what stands in a comment that begins with a colon is
- * its text, and check.py compares it. Its counters wrap, here at WRAP instead of 2^32. Proved, for every order of the steps
- * and every value that C++ lets an atomic give: nobody touches a byte that the other may be at; bytes come each once, in
- * order, across the wrap; a byte that is refused was not put; what Empty and Room say holds; neither side ever waits. */
+ * Follows hal/drivers/cortex_m7/include/fovea/cortex_m7/byte_ring.hpp. A comment that begins with a colon quotes its text;
+ * check.py compares the two. The counters wrap, here at WRAP instead of 2^32. Proved for every order of the steps and every
+ * value that C++ lets an atomic return: no side uses a byte that the other may be using; bytes arrive each once, in order,
+ * across the wrap; a refused byte is not stored; Put succeeds if Room was not 0; Take succeeds if Empty was false; neither
+ * side ever waits. */
 #ifdef CAPACITY_NO_POWER_OF_TWO
 #define CAPACITY 3
 #else
@@ -14,7 +15,7 @@
 #define PLACES CAPACITY
 #include "release_acquire.pml"
 
-/* What this code would be with one mistake; each must be found. */
+/* Each definition puts one mistake into the code; Spin must find it. */
 #ifdef WRITTEN_WITHOUT_RELEASE
 #define WRITTEN_RELEASES 0
 #else
@@ -42,14 +43,14 @@
 #endif
 
 byte bytes[CAPACITY]; /* bytes_ */
-/* How often written_ and read_ were stored; modulo WRAP that is their newest value. */
+/* Number of stores to written_ and to read_; modulo WRAP it is their newest value. */
 byte written = 0;
 byte read = 0;
-/* What each value that the two ever had carries. */
+/* What each value of written_ and of read_ makes known to its reader. */
 int written_knows[VALUES + 1] = ALL_PLACES;
 int read_knows[VALUES + 1] = ALL_PLACES;
 
-byte put[VALUES]; /* the bytes that found a place, in order */
+byte put[VALUES]; /* the bytes that were stored, in order */
 byte refused = 0;
 bool done = false; /* all were put; read with acquire */
 
@@ -78,7 +79,7 @@ inline store_read(value) {
   }
 }
 
-/* Any value from the newest that this thread has seen up to the newest of all. */
+/* Returns any value from the newest that this thread has seen to the newest of all. */
 inline load_written(acquires) {
   do
   :: seen_written < written -> seen_written++
@@ -155,7 +156,7 @@ active proctype Interrupt() {
   short room = 0, promised = 0;
   do
   :: value < VALUES ->
-    if /* SendBytes asks first whether all of a message finds a place */
+    if /* SendBytes first asks Room whether a whole message fits */
     :: Room(promised)
     :: skip
     fi;
@@ -178,7 +179,7 @@ active proctype Program() {
     fi;
     Empty(is_empty);
     Take(value, came);
-    assert(is_empty || came); /* who is not is_empty gives a byte */
+    assert(is_empty || came); /* a ring that is not empty gives a byte */
     if
     :: came ->
       assert(value == put[taken]); /* each once, in order */

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Has spin look at every order of a hand-over's steps.
+"""Runs Spin on the model of a queue between two threads: Spin checks every order of the steps.
 
-  check.py MODEL.pml SOURCE             what the model quotes of SOURCE is there, and no assertion ever fails
-  check.py MODEL.pml SOURCE MISTAKE     with that mistake one does; each is an #ifdef of the model
+  check.py MODEL.pml SOURCE             the text that the model quotes must be in SOURCE, and no assertion may fail
+  check.py MODEL.pml SOURCE MISTAKE     an assertion must fail with MISTAKE, which is an #ifdef of the model
 
-Exit code 0: so it is.
+Exit code 0 when this is so, otherwise 1.
 """
 import pathlib
 import re
@@ -20,7 +20,7 @@ def stripped(text):
 
 
 def quotes_of(model):
-    """What the model quotes of each function: comments that begin with a colon, from a signature to the next."""
+    """Text that the model quotes from each function: its comments that begin with a colon."""
     functions = []
     for quote in re.findall(r"/\*:(.*?)\*/", model, flags=re.DOTALL):
         if functions == [] or functions[-1].count("{") == functions[-1].count("}"):
@@ -37,13 +37,13 @@ def run(*command, folder):
 def main():
     model, source, mistakes = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]), sys.argv[3:]
     if shutil.which("spin") is None:
-        print("spin is not installed; tools/install test brings it")
+        print("spin is not installed: run tools/install test")
         return 1
     code = stripped(source.read_text())
     functions = quotes_of(model.read_text())
-    for function in functions or ["nothing is quoted"]:
+    for function in functions or ["the model quotes nothing"]:
         if function not in code or function.count("{") != function.count("}"):
-            print(f"{model.name}: not in {source.name} (any more): {function}")
+            print(f"{model.name}: quoted text is not in {source.name}: {function}")
             return 1
     with tempfile.TemporaryDirectory() as folder:
         for command in (["spin", "-a", *("-D" + mistake for mistake in mistakes), str(model)],

@@ -1,14 +1,14 @@
-/* hal::FeatureMailbox: three slots, one atomic. One thread puts VALUES measurements, one takes.
+/* Model of hal::FeatureMailbox: three slots, one atomic. One thread puts VALUES measurements, the other takes.
  *
- * Follows hal/src/feature.cpp: what stands in a comment that begins with a colon is its text, and check.py compares it.
- * Proved, for every order of the steps and every value that C++ lets an atomic give: nobody touches a slot that the other
- * may be at; what is taken is whole, newer than what was taken before, and at least as new as what was there when the
- * take began; after the last Put the last measurement is taken; neither side ever waits for the other. */
+ * Follows hal/src/feature.cpp. A comment that begins with a colon quotes its text; check.py compares the two. Proved for
+ * every order of the steps and every value that C++ lets an atomic return: no thread uses a slot that the other may be
+ * using; a measurement taken is whole, newer than the one before, and at least as new as the newest when the Take began;
+ * the last measurement put is taken; neither thread ever waits for the other. */
 #define VALUES 5
 #define PLACES 3
 #include "release_acquire.pml"
 
-/* What this code would be with one mistake; each must be found. */
+/* Each definition puts one mistake into the code; Spin must find it. */
 #ifdef PUT_WITHOUT_RELEASE
 #define PUT_RELEASES 0
 #else
@@ -30,7 +30,7 @@
 #define TAKE_ACQUIRES 1
 #endif
 
-byte first_half[3]; /* slots_: what is half-written shows */
+byte first_half[3]; /* slots_ in two halves, so that a half-written measurement shows */
 byte second_half[3];
 byte write_slot = 0;
 byte middle_slot = 1; /* middle_ & kSlotMask */
@@ -38,15 +38,15 @@ bool middle_fresh = false; /* middle_ & kFresh */
 int middle_knows = ALL_PLACES;
 byte read_slot = 2;
 
-byte newest = 0;   /* of the measurements whose Put has ended */
+byte newest = 0;   /* the last measurement whose Put has ended */
 bool done = false; /* all were put; read with acquire */
 
 inline forget(event) {
   middle_knows = middle_knows & ~(event)
 }
 
-/* middle_.exchange(slot | fresh): takes the newest value. It goes on with what earlier releases carried, as any
- * read-modify-write does. */
+/* middle_.exchange(slot | fresh): returns the newest value. Like every read-modify-write it passes on what earlier
+ * releases made known. */
 inline exchange(thread, slot, fresh, releases, acquires, returned) {
   d_step {
     returned = middle_slot;
@@ -78,7 +78,7 @@ inline Put(measurement) {
 /*: bool FeatureMailbox::Take(FeatureMeasurement& measurement) noexcept { */
 inline Take(measurement, came) {
   /*: if ((middle_.load(std::memory_order_relaxed) & kFresh) == 0) { return false; } */
-  /* A thread that knows that all is done sees the newest; any other may still see its own last exchange. */
+  /* A reader that knows all Puts are done sees the newest value. Before, it may still see its own last exchange. */
   if
 #ifndef TAKE_WITHOUT_LOOKING
   :: !middle_fresh -> came = false
@@ -126,7 +126,7 @@ active proctype Servo() {
     Take(measurement, came);
     if
     :: came ->
-      assert(measurement > last);      /* forward */
+      assert(measurement > last);      /* never an older one */
       assert(measurement >= at_least); /* the newest wins */
       last = measurement;
       came = false;

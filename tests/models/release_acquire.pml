@@ -1,13 +1,13 @@
-/* C++'s memory order, as far as two threads that hand something over need it.
+/* The memory order of C++, as far as two threads need it to hand data over.
  *
- * A place is memory that is no atomic, e.g. a slot. Two threads may take turns at it only where the second knows of what
- * the first did: where an atomic carried the knowledge, put there by a release and picked up by an acquire. `knows` has for
- * each thread the places of whose last write, and of whose last read, it knows; an atomic's value has the same of what its
- * writer knew. An access by a thread that does not know is a data race, whatever the order in which things happen to come:
- * undefined behaviour, and here an assertion that does not hold.
+ * A place is memory that is not atomic, e.g. a slot. Two threads may use it in turn only if the second knows what the first
+ * did there: an atomic must carry this knowledge, stored by a release and loaded by an acquire. `knows` holds for each
+ * thread the places whose last write, and whose last read, the thread knows. Each value of an atomic holds what its writer
+ * knew. An access by a thread that lacks this knowledge is a data race, in whatever order the steps run: undefined
+ * behaviour, and here a failed assertion.
  *
- * An atomic read may also give an older value than the newest, down to the one that its thread has seen before; each model
- * lets it, where the value is not read by an exchange, which takes the newest.
+ * An atomic load may also return an older value than the newest, but none older than the last that its thread has seen.
+ * Each model allows this, except for an exchange, which returns the newest.
  *
  * The including model defines PLACES. */
 #define WRITER 0
@@ -16,13 +16,13 @@
 #define READ_OF(place) (1 << (PLACES + (place)))
 #define ALL_PLACES ((1 << (2 * PLACES)) - 1)
 
-int knows[2] = ALL_PLACES; /* whoever made the object had both threads started after it */
+int knows[2] = ALL_PLACES; /* both threads start after the object is made */
 
-/* `forget(event)` is the model's: no atomic carries knowledge of `event` any more. */
+/* The model defines `forget(event)`: after it no atomic carries knowledge of `event`. */
 inline touch(thread, place, event) {
   d_step {
-    assert((knows[thread] & WRITE_OF(place)) != 0);                          /* else a data race: with a write */
-    assert(event == READ_OF(place) || (knows[thread] & READ_OF(place)) != 0); /* else a data race: with a read */
+    assert((knows[thread] & WRITE_OF(place)) != 0);                          /* else a data race with a write */
+    assert(event == READ_OF(place) || (knows[thread] & READ_OF(place)) != 0); /* else a data race with a read */
     knows[WRITER] = knows[WRITER] & ~(event);
     knows[READER] = knows[READER] & ~(event);
     forget(event);

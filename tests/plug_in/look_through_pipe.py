@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""The camera driver of camera_driver.patch: writes gray pictures into a pipe and asks `fovea-hw --check` what it sees.
+"""Tests the camera driver of camera_driver.patch: writes gray pictures into a pipe and runs `fovea-hw --check`.
 
   look_through_pipe.py FOVEA_HW FOLDER
 
-Exit 0: it opens, and pictures of the right size come through. The robot's row fails: there is none."""
+Exit 0: the camera opens and gives pictures of the right size. The row of the robot fails, because there is none."""
 
 import json
 import os
@@ -52,7 +52,7 @@ def main():
     os.mkfifo(pipe)
     config = folder / "pipe.toml"
     config.write_text(CONFIG.format(pipe=pipe))
-    held_open = os.open(pipe, os.O_RDWR | os.O_NONBLOCK)  # so that neither end waits for the other
+    held_open = os.open(pipe, os.O_RDWR | os.O_NONBLOCK)  # so that opening the pipe blocks neither end
     done = threading.Event()
     threading.Thread(target=write_pictures, args=(pipe, done), daemon=True).start()
     checked = subprocess.run([program, config, "--check", "--json"], capture_output=True, text=True, timeout=120,

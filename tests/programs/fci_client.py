@@ -1,6 +1,6 @@
-"""A client of the Franka Control Interface, version 5, for tests: Python's standard library alone.
+"""A client of the Franka Control Interface, version 5, for tests. It uses only Python's standard library.
 
-Written from the interface's description, apart from the driver and the server in C++; every offset is typed again.
+It is written from the interface's description, independent of the driver and the server in C++, with its own offsets.
 """
 
 import select
@@ -88,7 +88,7 @@ def command(message_id, q_c=(0,) * 7, dq_c=(0,) * 7, O_T_EE_c=tuple(IDENTITY), O
 
 
 class Client:
-    """One connection, checked to begin as it should."""
+    """One connection; checks the answer to Connect."""
 
     def __init__(self, port, version=VERSION):
         self.udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -108,14 +108,14 @@ class Client:
         self.udp.close()
 
     def post(self, number, payload=b""):
-        """Sends a request; its command_id."""
+        """Sends a request. Returns its command_id."""
         command_id = self.next_id
         self.next_id += 1
         self.tcp.sendall(struct.pack("<III", number, command_id, 12 + len(payload)) + payload)
         return command_id
 
     def answer_to(self, number, command_id, wait_s=PATIENCE_S):
-        """The payload of the next message, which must answer that request; None when none comes."""
+        """The payload of the next message, which must answer that request; None after `wait_s`."""
         end = time.monotonic() + wait_s
         while True:
             if len(self.buffer) >= 12:
@@ -138,20 +138,20 @@ class Client:
         return answer
 
     def set(self, number, *values, form=None):
-        """A setter's status."""
+        """Sends a setter. Returns the status of its answer."""
         answer = self.request(number, struct.pack(form or f"<{len(values)}d", *values))
         assert len(answer) == 1, answer
         return answer[0]
 
     def state(self):
-        """The next state that comes."""
+        """The next state that arrives."""
         self.udp.settimeout(PATIENCE_S)
         data, self.robot = self.udp.recvfrom(4096)
         self.last = State(data)
         return self.last
 
     def newest(self):
-        """The newest state: first all that wait are passed over."""
+        """The newest state; discards all that are queued before it."""
         while select.select([self.udp], [], [], 0)[0]:
             self.udp.recvfrom(4096)
         return self.state()
@@ -160,7 +160,7 @@ class Client:
         self.udp.sendto(data, self.robot)
 
     def start(self, controller, generator, path=(10.0, 3.0, 6.0), goal=(10.0, 3.0, 6.0)):
-        """Asks for a motion; its first state."""
+        """Requests a motion. Returns its first state."""
         self.move_id = self.post(MOVE, struct.pack("<II3d3d", controller, generator, *path, *goal))
         answer = self.answer_to(MOVE, self.move_id)
         assert answer == b"\x01", answer
@@ -172,12 +172,12 @@ class Client:
         return self.last
 
     def step(self, **what):
-        """Answers the newest state and waits for the next."""
+        """Answers the newest state and waits for the next one."""
         self.send(command(self.last.message_id, **what))
         return self.state()
 
     def finish(self, **what):
-        """Says that this is the end; the status that Move ends with."""
+        """Finishes the motion. Returns the final status of Move."""
         for _ in range(100):
             if self.last.robot_mode != MOVING:
                 break

@@ -1,4 +1,4 @@
-"""What an independent client sees of the robot's errors and of recovering from them:  fci_errors_test.py FOVEA_SIM"""
+"""The robot's errors and the recovery from them, tested by an independent client:  fci_errors_test.py FOVEA_SIM"""
 
 import math
 import signal
@@ -11,7 +11,7 @@ from served import Served, fade
 
 class Errors(Served):
     def pulled_to(self, goal):
-        """Torques that pull the joints there."""
+        """Torques that pull the joints to `goal`."""
         s = self.client.last
         stiffness, damping = [400, 400, 300, 300, 100, 60, 30], [40, 40, 30, 30, 8, 4, 2]
         wish = [k * (g - q) - d * v for k, d, g, q, v in zip(stiffness, damping, goal, s.q, s.dq)]
@@ -81,7 +81,7 @@ class Errors(Served):
                      "cartesian_motion_generator_joint_position_limits")
 
     def test_cartesian_motion_too_fast_for_the_joints_raises_joint_errors(self):
-        # The elbow is held, so that joint 1 has to do it.
+        # The elbow is held, so that joint 1 must make the motion.
         self.provoke(fci.JOINT_IMPEDANCE, fci.CARTESIAN_VELOCITY,
                      lambda k, s: {"O_dP_EE_c": [0, 3e-3 if k > 5 else 0.0, 0, 0, 0, 0], "elbow_c": s.elbow_d},
                      "cartesian_motion_generator_joint_acceleration_discontinuity")
@@ -143,7 +143,7 @@ class Errors(Served):
                      "self_collision_avoidance")
 
     def test_pull_at_the_hand_raises_the_reflex_of_its_threshold(self):
-        """Somebody pulls at the hand."""
+        """A force pulls at the hand."""
         def pulled(torques, forces, error):
             self.assertEqual(self.client.set(fci.SET_COLLISION_BEHAVIOR, *([torques] * 28), *([forces] * 24)), 0)
 
@@ -172,7 +172,7 @@ class Errors(Served):
                      "joint_position_limits", recovery=2)
         self.type("g")
         self.wait_for(lambda s: s.robot_mode == fci.GUIDING)
-        self.type("f -30 0 0")  # the wrong way
+        self.type("f -30 0 0")  # in the wrong direction
         state = self.wait_for(lambda s: s.robot_mode == fci.REFLEX)
         self.assertEqual(state.errors, ["joint_position_limits", "joint_move_in_wrong_direction"])
         self.type("f 0 0 0")
@@ -190,7 +190,7 @@ class Errors(Served):
         self.assertEqual(self.client.newest().errors, [])
 
     def test_contact_with_the_table_is_a_cartesian_reflex(self):
-        """The arm leans forward until the hand is on the table with more than the threshold."""
+        """The arm leans forward until the hand presses on the table with more than the threshold."""
         self.assertEqual(self.client.set(fci.SET_COLLISION_BEHAVIOR, *([100.0] * 28), *([10.0] * 6), *([20.0] * 6),
                                          *([10.0] * 6), *([20.0] * 6)), 0)
         self.provoke(fci.JOINT_IMPEDANCE, fci.JOINT_VELOCITY,

@@ -1,4 +1,4 @@
-"""What an independent client sees of `fovea-sim serve`:  fci_server_test.py FOVEA_SIM"""
+"""`fovea-sim serve`, tested by an independent client:  fci_server_test.py FOVEA_SIM"""
 
 import ctypes
 import math
@@ -17,7 +17,7 @@ from served import Served, fade
 
 
 class UntrustedClients(Served):
-    """What somebody on the network can do who should not."""
+    """Misuse of the server over the network."""
 
     def test_listens_on_loopback_only(self):
         found = listening.sockets_of(self.server.pid)
@@ -27,13 +27,13 @@ class UntrustedClients(Served):
     def test_client_that_reads_no_answers_is_dropped(self):
         machine = {"x86_64": 0, "aarch64": 3}[platform.machine()]
         self.client.tcp.settimeout(5)
-        with self.assertRaises(OSError):  # broken off by the other end, long before this is a gigabyte
+        with self.assertRaises(OSError):  # the server disconnects, long before this is a gigabyte
             for _ in range(20000):
                 self.client.post(fci.LOAD_MODEL_LIBRARY, bytes([machine, 0]))
         said = [self.server.stderr.readline() for _ in range(2)]
         self.assertIn("the client is gone: it does not read its answers\n", said)
         self.client.close()
-        self.client = fci.Client(self.port)  # and the next one is served
+        self.client = fci.Client(self.port)  # the next client is served
         self.client.state()
 
     def test_garbage_ends_only_its_connection(self):
@@ -74,10 +74,10 @@ class Connecting(Served):
 
 
 class BenchFaults(unittest.TestCase):
-    """[faults] that act on the arm's body: at work from 1 s of the robot's time on."""
+    """[faults] that act on the arm's body, from 1 s of the robot's time on."""
 
     def states(self, *assignments):
-        """The last state before the fault, and one of half a second later."""
+        """The last state before the fault, and one half a second after its start."""
         options = [word for assignment in assignments for word in ("--set", assignment)]
         server = subprocess.Popen([served.PROGRAM, "serve", "ball", "--fci-port", "0", "--camera-serial", "", "--pace",
                                    "lockstep", *options], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
@@ -85,7 +85,7 @@ class BenchFaults(unittest.TestCase):
         try:
             client = fci.Client(int(server.stderr.readline().split("127.0.0.1:")[1].split(",")[0]))
             before = after = client.state()
-            self.assertLess(before.message_id, 1000, "the client came before the fault")
+            self.assertLess(before.message_id, 1000, "the client connects before the fault")
             while after.message_id < 1500:
                 after = client.state()
                 before = after if after.message_id < 990 else before
@@ -105,7 +105,7 @@ class BenchFaults(unittest.TestCase):
     def test_unknown_load_raises_the_measured_torques(self):
         before, after = self.states("faults.load_mass=1", "faults.load_s=[1,1e6]")
         more = max(abs(a - b) for a, b in zip(after.tau_J, before.tau_J))
-        print(f"\n1 kg at the hand: up to {more:.2f} Nm more")
+        print(f"\n1 kg at the hand: measured torques rise by up to {more:.2f} Nm")
         self.assertGreater(more, 2.0)
         self.assertLess(more, 10.0)
 
@@ -115,7 +115,7 @@ class BenchFaults(unittest.TestCase):
         felt = after.tau_ext_hat_filtered[3] - before.tau_ext_hat_filtered[3]
         print(f"\nhalf of joint 4's {before.tau_J[3]:.2f} Nm: it sinks by {after.q[3] - before.q[3]:.5f} rad, as if "
               f"{felt:.2f} Nm pulled")
-        # It yields that way in which the torque that is gone held it.
+        # The joint moves against the direction of the lost torque.
         self.assertLess((after.q[3] - before.q[3]) * before.tau_J[3], 0.0)
         self.assertLess(felt * before.tau_J[3], -0.3 * before.tau_J[3] ** 2)
 
@@ -130,7 +130,7 @@ class BenchFaults(unittest.TestCase):
 
 
 class RealPace(Served):
-    """By the clock, also on a computer that does not come to the simulated robot for a while."""
+    """At real pace, also when the computer pauses the simulated robot for a while."""
 
     options = ["--pace", "real"]
 
@@ -143,10 +143,10 @@ class RealPace(Served):
             count += 1
         rate = count / (time.monotonic() - begin)
         print(f"\n{rate:.1f} states/s, {last.message_id - first.message_id - count} lost")
-        self.assertLess(rate, 1510)  # not faster than its clock, but for the second that it may make up for
+        self.assertLess(rate, 1510)  # real pace, plus the second that it may catch up
 
     def interrupt(self, how_long_s):
-        """What the robot's time is behind the clock's, afterwards [ms]."""
+        """Pauses the server. Returns the delay of the robot's time afterwards [ms]."""
         def behind():
             return min(1e3 * time.monotonic() - self.client.newest().message_id for _ in range(20))
 
@@ -154,18 +154,18 @@ class RealPace(Served):
         self.server.send_signal(signal.SIGSTOP)
         time.sleep(how_long_s)
         self.server.send_signal(signal.SIGCONT)
-        time.sleep(1.0)  # it has 50 times that to make up for
+        time.sleep(1.0)  # time to catch up
         return behind() - before
 
     def test_robot_time_catches_up_after_a_short_pause(self):
         behind_ms = self.interrupt(0.4)
-        print(f"away for 400 ms: {behind_ms:.1f} ms behind")
+        print(f"paused for 400 ms: {behind_ms:.1f} ms behind")
         self.assertLess(behind_ms, 200.0)
 
     def test_time_given_up_after_a_long_pause_is_reported(self):
         behind_ms = self.interrupt(1.6)
-        said = [self.server.stderr.readline() for _ in range(2)][1]  # the first: that a client came
-        print(f"away for 1600 ms: {behind_ms:.1f} ms behind; {said}", end="")
+        said = [self.server.stderr.readline() for _ in range(2)][1]  # the first line reports the client
+        print(f"paused for 1600 ms: {behind_ms:.1f} ms behind; {said}", end="")
         self.assertRegex(said, r"this computer is too slow for the world: [0-9]+ ms are given up")
         self.assertGreater(behind_ms, 1000.0)
 
@@ -234,12 +234,12 @@ class ModelLibrary(Served):
         pose = doubles([0.0] * 16)
         library.O_T_J9(doubles(s.q), doubles(s.F_T_EE), pose)
         off = max(abs(a - b) for a, b in zip(pose, s.O_T_EE))
-        # With the end effector's and the load's masses as one, both at the end effector's place: there is no load.
+        # The masses of end effector and load are passed as one, at the end effector's position: there is no load.
         torque = doubles([0.0] * 7)
         library.g_NE(doubles(s.q), doubles(s.O_ddP_O), ctypes.c_double(s.m_ee + s.m_load), doubles(s.F_x_Cee), torque)
         felt = [a - b for a, b in zip(s.tau_J, s.tau_J_d)]
         off_torque = max(abs(a - b) for a, b in zip(torque, felt))
-        print(f"\nO_T_J9 off by {off:.1e}, g_NE from what the joints feel by {off_torque:.1e} Nm")
+        print(f"\nO_T_J9 off by {off:.1e}, g_NE off from the measured torques by {off_torque:.1e} Nm")
         self.assertLess(off, 1e-12)
         self.assertLess(off_torque, 5e-3)
         mass = doubles([0.0] * 49)
@@ -359,7 +359,7 @@ class Walls(Served):
             done = subprocess.run([served.PROGRAM, "serve", "ball", "--fci-port", "0", "--wall", wall], timeout=20,
                                   capture_output=True, text=True)
             self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
-            self.assertIn(f"--wall {wall} is not allowed: it is X,Y,Z,DX,DY,DZ", done.stderr)
+            self.assertIn(f"--wall {wall} is not allowed: expected X,Y,Z,DX,DY,DZ", done.stderr)
 
 
 class Guiding(Served):
@@ -369,7 +369,7 @@ class Guiding(Served):
         self.type("f 10 10 10")
         time.sleep(0.3)
         self.assertEqual(self.client.newest().robot_mode, fci.IDLE)
-        self.assertLess(math.dist(self.client.last.O_T_EE[12:15], first.O_T_EE[12:15]), 0.03, "it only bends")
+        self.assertLess(math.dist(self.client.last.O_T_EE[12:15], first.O_T_EE[12:15]), 0.03, "it only yields")
         self.type("g")
         state = self.wait_for(lambda s: s.O_T_EE[13] > first.O_T_EE[13] + 0.05)
         self.assertEqual(state.robot_mode, fci.GUIDING)

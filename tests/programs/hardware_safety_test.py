@@ -1,6 +1,6 @@
-"""What stops the hardware program, and what it refuses, whoever listens to it:  hardware_safety_test.py FOVEA_SIM FOVEA_HW
+"""How the hardware program stops, and what it refuses:  hardware_safety_test.py FOVEA_SIM FOVEA_HW
 
-The robot is in lockstep, so that times in the servo's log are the robot's, however busy the machine is."""
+The robot runs in lockstep, so that times in the servo's log are the robot's, also on a busy machine."""
 
 import json
 import os
@@ -19,12 +19,12 @@ import two_programs
 from two_programs import TwoPrograms
 
 PAGE = 4096
-PATIENCE_S = 60.0  # with a line that is waited for
+PATIENCE_S = 60.0  # for an expected line
 MAGIC = b"\x89MCAP0\r\n"
 
 
 class Terminal:
-    """What is said on standard error, read until it is stopped as by Ctrl-S: then the pipe is full to its last byte."""
+    """Reads standard error until `stop`, which blocks it as Ctrl-S does: then the pipe is completely full."""
 
     def __init__(self):
         self.reader, self.writer = os.pipe()
@@ -32,11 +32,11 @@ class Terminal:
         self.heard = []
 
     def wait_for(self, *lines):
-        """The first line that begins with one of `lines`."""
+        """Reads up to the first line that begins with one of `lines`."""
         while True:
             while b"\n" not in self.rest:
                 if not select.select([self.reader], [], [], PATIENCE_S)[0]:
-                    raise AssertionError(f"it did not say {lines}; last: {self.heard[-8:]}")
+                    raise AssertionError(f"no line {lines}; last: {self.heard[-8:]}")
                 self.rest += os.read(self.reader, PAGE)
             line, self.rest = self.rest.split(b"\n", 1)
             self.heard.append(line.decode())
@@ -44,7 +44,7 @@ class Terminal:
                 return self.heard[-1]
 
     def stop(self):
-        """Fills the pipe by another description of it: the program's own stays one that waits."""
+        """Fills the pipe through a second descriptor, so that the program's own descriptor stays blocking."""
         filler = os.open(f"/proc/self/fd/{self.writer}", os.O_WRONLY | os.O_NONBLOCK)
         for size in (PAGE, 1):
             try:
@@ -55,7 +55,7 @@ class Terminal:
         os.close(filler)
 
     def let_go(self):
-        """Of the end that the program holds too."""
+        """Closes this process's copy of the program's end."""
         os.close(self.writer)
         self.writer = None
 
@@ -67,7 +67,7 @@ class Terminal:
 
 class HardwareSafety(TwoPrograms):
     def start(self, port, *options, camera=False, config="loopback"):
-        """The program at a terminal of its own."""
+        """Starts the program with its own terminal."""
         terminal = Terminal()
         self.addCleanup(terminal.close)
         eye = [] if camera else ["--set", "camera.driver=none"]
@@ -86,7 +86,7 @@ class HardwareSafety(TwoPrograms):
             stream.close()
 
     def recover(self, hw, terminal):
-        """Asks until it is done: the button's release may take its time. The refusals for a load, in words."""
+        """Requests recovery until it succeeds: the button's release may take time. Returns the refusals for a load."""
         refused = []
         said = ""
         while not said.startswith("gravity: "):
@@ -104,11 +104,11 @@ class HardwareSafety(TwoPrograms):
         return [(m["mode"], m["reason"]) for m in summary["modes"]]
 
     def since(self, summary, mode, after_s=0.0):
-        """When that mode was entered first."""
+        """When that mode was first entered after `after_s` [s]."""
         return next(m["t_s"] for m in summary["modes"] if m["mode"] == mode and m["t_s"] >= after_s)
 
     def check_files(self, out, summary):
-        """Whole, and as the program said."""
+        """Checks that the files are complete and match the printed summary."""
         log = (out / "log.mcap").read_bytes()
         self.assertEqual((log[:8], log[-8:]), (MAGIC, MAGIC))
         self.assertEqual(json.loads((out / "summary.json").read_text()), summary)
@@ -116,19 +116,19 @@ class HardwareSafety(TwoPrograms):
         if summary["ticks"] > 0:
             self.replay(out, summary)
 
-    # A terminal that stands still.
+    # The output is not read.
 
     def test_dead_man_holds_the_arm_while_output_is_unread(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "0.5", camera=True)
         hw, terminal = self.start(port, "--track", "--seconds", "6", "--set", "input.dead_man_s=4", camera=True)
         terminal.stop()
         s = self.summary_of(hw, code=1)
-        print(f"\nno line from the operator for 4 s: {self.modes_of(s)}, {s['lines_unsaid']} lines unsaid")
+        print(f"\nno line from the operator for 4 s: {self.modes_of(s)}, {s['lines_unsaid']} lines dropped")
         self.assertIn(("track", ""), self.modes_of(s))
         self.assertEqual(self.modes_of(s)[-1], ("hold", "not_asked"))
         held_s = s["modes"][-1]["t_s"]
         print(f"held after {held_s:.3f} s")
-        # The leave counts from the connection; half a second of it went for looking at gravity.
+        # The lease starts at the connection; half a second of it passes in the gravity check.
         self.assertGreater(held_s, 2.5)
         self.assertLess(held_s, 4.0)
         self.assertEqual(s["dead_man_holds"], 1)
@@ -155,7 +155,7 @@ class HardwareSafety(TwoPrograms):
         heard = {w["word"]: w["t_s"] for w in s["words"]}
         hold_s = self.since(s, "hold", self.since(s, "track"))
         print(f"\nheard hold at {heard['hold']:.3f} s, held at {hold_s:.3f} s; from Ctrl-C to the program's end, report "
-              f"and all, {took_s:.2f} s; {s['lines_unsaid']} lines unsaid")
+              f"and all, {took_s:.2f} s; {s['lines_unsaid']} lines dropped")
         self.assertLess(abs(hold_s - heard["hold"]), 0.02)
         self.assertEqual([w["word"] for w in s["words"]], ["hold", "track", "end"])
         self.assertLess(took_s, 20.0)
@@ -167,7 +167,7 @@ class HardwareSafety(TwoPrograms):
         terminal.wait_for("track")
         terminal.wait_for("the operator is silent: hold")
         terminal.wait_for("hold")
-        self.say(hw, "")  # somebody is there again, and nothing moves
+        self.say(hw, "")  # the operator is back, but nothing moves
         time.sleep(0.5)
         self.say(hw, "track")
         terminal.wait_for("track")
@@ -179,7 +179,7 @@ class HardwareSafety(TwoPrograms):
         self.assertEqual([m["mode"] for m in s["modes"] if first_s < m["t_s"] < asked_s - 0.02], [])
 
     def test_hanging_log_does_not_keep_the_robot(self):
-        """Its file is a pipe that nobody reads."""
+        """The log's file is a pipe that nobody reads."""
         port = self.serve("--pace", "lockstep", "--most-speed", "1")
         out = self.folder()
         out.mkdir()
@@ -192,7 +192,7 @@ class HardwareSafety(TwoPrograms):
         began = time.monotonic()
         hw.send_signal(signal.SIGINT)
         terminal.wait_for("told to end")
-        while True:  # the robot is there for another client, and holds by itself
+        while True:  # the robot accepts another client, and holds by itself
             try:
                 client = fci.Client(int(port))
                 break
@@ -203,7 +203,7 @@ class HardwareSafety(TwoPrograms):
         self.assertEqual(client.state().robot_mode, fci.IDLE)
         client.close()
         time.sleep(max(0.0, 6.0 - idle_s))
-        self.assertIsNone(hw.poll(), "the log's thread waits for the disk")
+        self.assertIsNone(hw.poll(), "the log's thread still waits for the disk")
         hw.send_signal(signal.SIGINT)
         began = time.monotonic()
         self.assertEqual(hw.wait(timeout=10), 1)
@@ -215,7 +215,7 @@ class HardwareSafety(TwoPrograms):
         with socket.create_server(("127.0.0.1", 0)) as robot:
             out = self.folder()
             hw, _ = self.start(robot.getsockname()[1], "--enable", "--out", str(out))
-            client, _ = robot.accept()  # and not a word
+            client, _ = robot.accept()  # and sends no answer
             time.sleep(0.2)
             hw.send_signal(signal.SIGINT)
             text, _ = hw.communicate(timeout=20)
@@ -252,7 +252,7 @@ class HardwareSafety(TwoPrograms):
             hw.send_signal(signal.SIGINT)
             text, _ = hw.communicate(timeout=30)
             print(f"\nCtrl-C after {wait_s} s: exit {hw.returncode}")
-            if hw.returncode == -signal.SIGINT:  # its command line was not read yet, and nothing begun
+            if hw.returncode == -signal.SIGINT:  # ended before it read its command line
                 self.assertFalse(out.exists())
             else:
                 self.check_files(out, json.loads(text))
@@ -266,29 +266,29 @@ class HardwareSafety(TwoPrograms):
         self.assertEqual((s["mode"], s["fault"]), ("hold", "none"))
         hw, terminal = self.start(port, "--enable")
         terminal.wait_for("hold")
-        terminal.let_go()  # and nobody reads
+        terminal.let_go()  # nobody reads the output
         os.close(terminal.reader)
         terminal.reader = None
         self.say(hw, "hello")
         time.sleep(0.5)
-        self.assertIsNone(hw.poll(), "a reader that is gone ends nothing")
+        self.assertIsNone(hw.poll(), "a closed reader does not end the program")
         self.say(hw, "end")
         s = self.summary_of(hw)
         self.assertEqual((s["mode"], s["fault"]), ("hold", "none"))
         self.assertGreater(s["lines_unsaid"], 0)
 
     def test_arm_is_at_rest_before_its_motion_is_finished(self):
-        """Told to end while it is under way, it holds first."""
+        """Ended while the arm moves, the program first brings it to rest."""
         port = self.serve("--pace", "lockstep", "--most-speed", "0.5", camera=True)
         out = self.folder()
         s = self.hardware(port, "--track", "--seconds", "0.8", "--out", str(out), "--set", "log.film=false", "--set",
                           "log.picture_rate_hz=0", camera=True, codes=(0, 1))
         self.assertEqual(s["fault"], "none")
-        print(f"\n{s['ticks'] - 800} ticks to come to rest from the way to the target; ended in {s['mode']}")
+        print(f"\n{s['ticks'] - 800} ticks to come to rest on the way to the target; ended in {s['mode']}")
         self.assertGreater(s["ticks"], 800 - s["missed_ticks"])
         self.assertLess(s["ticks"], 800 + 2000)
 
-    # A load that nobody told of.
+    # A load that is not configured.
 
     def test_unknown_load_is_refused_before_anything_moves(self):
         for mass in (0.7, 0.0):
@@ -299,8 +299,8 @@ class HardwareSafety(TwoPrograms):
             self.assertAlmostEqual(s["gravity"]["unknown_mass_kg"], mass, delta=0.05)
             if mass:
                 self.assertEqual((s["converged"], s["ticks"], s["robot"]["commands"], s["robot"]["motions"]), (False, 0, 0, 0))
-                self.assertIn("motion is refused: measured torques are", s["verdict"])
-                self.assertRegex(s["verdict"], r"as of 0\.[67]\d kg too much at the end effector")
+                self.assertIn("motion is refused: measured torques differ", s["verdict"])
+                self.assertRegex(s["verdict"], r"as with 0\.[67]\d kg too much at the end effector")
             else:
                 self.assertEqual((s["converged"], s["mode"]), (None, "hold"))
                 self.assertGreater(s["robot"]["commands"], 0)
@@ -340,10 +340,10 @@ class HardwareSafety(TwoPrograms):
         self.say(hw, "end")
         s = self.summary_of(hw)
         print(f"\n{refused[0]}; refused {len(refused)} times, then: {s['verdict']}")
-        self.assertTrue(any("as of 0.70 kg too much" in line for line in refused), refused)
+        self.assertTrue(any("as with 0.70 kg too much" in line for line in refused), refused)
         self.assertEqual((s["fault"], s["faults_recovered"]), ("none", len(s["faults"])))
 
-    # What a run is judged by.
+    # The verdict of a run.
 
     def test_run_without_motion_is_not_judged(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1")
@@ -355,7 +355,7 @@ class HardwareSafety(TwoPrograms):
         port = self.serve("--pace", "lockstep", "--most-speed", "1", "--set", "faults.camera_outage_s=[0,1e6]", camera=True)
         s = self.hardware(port, "--enable", "--seconds", "1", camera=True, codes=(1,))
         self.assertIs(s["converged"], False)
-        self.assertIn("the camera never saw it, in ", s["verdict"])
+        self.assertIn("the camera never saw the target, in ", s["verdict"])
 
     def test_recovered_fault_is_reported(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1")

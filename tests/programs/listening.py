@@ -1,4 +1,4 @@
-"""Where a process can be reached by network."""
+"""The network addresses where a process listens."""
 
 import os
 import socket
@@ -6,12 +6,12 @@ import struct
 
 
 def sockets_of(process_id):
-    """Its sockets that take what somebody sends to them: (protocol, address, port)."""
+    """The receiving sockets of the process: (protocol, address, port)."""
     inodes = set()
     for fd in os.listdir(f"/proc/{process_id}/fd"):
         try:
             target = os.readlink(f"/proc/{process_id}/fd/{fd}")
-        except FileNotFoundError:  # closed meanwhile
+        except FileNotFoundError:  # closed in the meantime
             continue
         if target.startswith("socket:["):
             inodes.add(target[8:-1])

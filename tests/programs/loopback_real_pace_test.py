@@ -1,9 +1,9 @@
-"""The hardware program against the simulated robot at real pace, on which nobody waits for anybody:
+"""The hardware program with the simulated robot at real pace, where neither waits for the other:
 loopback_real_pace_test.py FOVEA_SIM FOVEA_HW
 
-Accuracy is judged with a robot whose clock is five times slower than the computer's, so that it is no matter of how
-busy that is: what is late or lost there is the network's doing. Each run's log is replayed, without pictures: to encode
-them would take the time that the runs are measured by."""
+For the accuracy tests the robot's clock is five times slower than the computer's. Then the computer's load does not
+matter: only the network makes data late or lost. Each run's log is replayed, and has no pictures, because encoding them
+would disturb the measured times."""
 
 import tempfile
 
@@ -18,7 +18,7 @@ class RealPace(TwoPrograms):
                                  **more)
 
     def tracked_at_real_pace(self, *options):
-        """A run of 6 s of the robot's time: what the client and the server say of it."""
+        """Runs 6 s of the robot's time. Returns the summaries of client and server."""
         port = self.serve("--pace", "real", "--most-speed", "0.2", "--late-ms", "3", *options, camera=True)
         s = self.recorded(port, "--track", "--seconds", "6", camera=True, codes=(0, 1))
         truth = self.end_server()
@@ -36,14 +36,14 @@ class RealPace(TwoPrograms):
         self.assertEqual(s["robot"]["lost_states"], 0)
 
     def test_it_tracks_the_ball_over_a_bad_network_at_real_pace(self):
-        # Of states and of commands 5 % are lost, some overtake each other, and some answers come after 3 ms.
+        # 5 % of the states and commands are lost, some overtake each other, and some answers take 3 ms.
         s, truth = self.tracked_at_real_pace("--loss", "0.05", "--jitter-ms", "2")
         self.assertGreater(s["robot"]["lost_states"], 100)
         self.assertLess(s["robot"]["command_success_rate"], 1.0)
 
     def test_convergence_reported_at_real_pace_agrees_with_the_truth(self):
-        """By the computer's clock, whose stamps the client makes itself. A busy machine may spoil the run; then the client
-        must not say that it reached its goal, and where it says so, the truth agrees."""
+        """On the computer's clock, with the client's own stamps. A busy machine may spoil the run. The client may report
+        convergence only if the truth agrees."""
         port = self.serve("--pace", "real", "--late-ms", "3", camera=True)
         s = self.recorded(port, "--track", "--seconds", "8", "--set", "robot.time=computer", "--set", "camera.time=computer",
                           "--set", "robot.state_timeout_ms=50", "--set", "safety.arm_lost_ticks=1000", "--set", "safety.missed_ticks=20", camera=True, codes=(0, 1))
@@ -57,7 +57,7 @@ class RealPace(TwoPrograms):
 
     def test_real_pace_run_receives_states_without_heap_calls(self):
         port = self.serve("--pace", "real", "--late-ms", "3")
-        # A busy machine may miss 20 ticks in a row; then it ends in a fault, and says so.
+        # A busy machine may miss 20 ticks in a row; then the run ends with a reported fault.
         s = self.recorded(port, "--enable", "--seconds", "2", "--set", "robot.time=computer", "--set", "robot.state_timeout_ms=50", "--set", "safety.arm_lost_ticks=1000",
                           codes=(0, 1))
         print(f"\nreal pace: {s['robot']['states']} states, success rate {s['robot']['command_success_rate']}")

@@ -1,4 +1,4 @@
-"""The hardware program against the simulated robot, two processes and a network:  loopback_test.py FOVEA_SIM FOVEA_HW"""
+"""The hardware program with the simulated robot, two processes and a network:  loopback_test.py FOVEA_SIM FOVEA_HW"""
 
 import hashlib
 import json
@@ -18,7 +18,7 @@ READERS = pathlib.Path(__file__).parent.parent / "js"
 class Loopback(TwoPrograms):
     def test_both_programs_listen_on_loopback_only(self):
         port = self.serve("--pace", "lockstep", camera=True)
-        # Aravis' stand-in for a camera answers who calls into the network for cameras; nothing else leaves loopback.
+        # Aravis' fake camera answers broadcast searches for cameras; all other sockets stay on loopback.
         calls = {("udp", "255.255.255.255", 3956)}
         found = listening.sockets_of(self.server.pid)
         self.assertEqual({address for _, address, _ in found - calls}, {"127.0.0.1"}, found)
@@ -33,8 +33,8 @@ class Loopback(TwoPrograms):
         hw.communicate(timeout=60)
 
     def tracked(self, *options):
-        """A run of 8 s in lockstep, at a quarter of the clock's pace: what the client and the server say of it. The robot
-        waits for the servo; the client's eye has 130 ms for each picture, ten times what it takes."""
+        """Runs 8 s in lockstep, at a quarter of real pace. Returns the summaries of client and server. The robot waits
+        for the servo; the detector has 130 ms for each picture, ten times what it needs."""
         port = self.serve("--pace", "lockstep", "--most-speed", "0.25", *options, camera=True)
         s = self.hardware(port, "--track", "--seconds", "8", camera=True, codes=(0, 1))
         truth = self.end_server()
@@ -62,10 +62,10 @@ class Loopback(TwoPrograms):
             self.assertEqual({file.name for file in out.iterdir()}, {"camera.mp4", "log.mcap", "report.html", "summary.json"})
             self.assertEqual(json.loads((out / "summary.json").read_text()), s)
             self.assertEqual(s["heap_allocations_in_tick"], 0)
-            # Four seconds of ticks find room in the rings, however busy the machine is.
+            # Four seconds of ticks fit into the rings, also on a busy machine.
             self.assertEqual((s["records_dropped"], s["log_entries_dropped"]), (0, 0))
             self.assertLessEqual(s["log_pictures"] + s["log_pictures_dropped"], 4 * 10 + 1)
-            # A busy machine may keep it from its pictures in the last moment, and then it says so.
+            # A busy machine may keep the detector from the last pictures; then the run reports no convergence.
             self.assertEqual(s["converged"], s["mode"] == "track" and s["camera"]["seen_error_px"] <= 3.0, s["verdict"])
             self.assertEqual(s["fault"], "none")
             for reader in (["read_log.mjs", str(out), "hardware"],
@@ -116,15 +116,15 @@ class Loopback(TwoPrograms):
         hw = self.operator(port)
         self.wait_for(hw, 'the robot holds by itself; "enable" lets the servo move it')
         self.say(hw, "enabel")
-        self.wait_for(hw, '"enabel" is not known; enable, track, hold, recover, end')
+        self.wait_for(hw, '"enabel" is not known; allowed: enable, track, hold, recover, end')
         time.sleep(0.5)
         self.say(hw, "end")
-        s = self.summary_of(hw, code=1)  # the servo never began
+        s = self.summary_of(hw, code=1)  # the servo never started
         self.assertEqual((s["ticks"], s["robot"]["motions"], s["robot"]["commands"]), (0, 0, 0))
         self.assertGreater(s["robot"]["states"], 0)
 
     def test_run_with_an_operator_replays_bit_exact(self):
-        """Words that are typed, the stop button and a recovery: all of it reaches the servo as it did."""
+        """Typed commands, the stop button and a recovery: the replay reproduces them all."""
         with tempfile.TemporaryDirectory() as temp:
             port = self.serve("--pace", "lockstep", "--loss", "0.02")
             hw = self.operator(port, "--enable", "--out", temp)
@@ -158,7 +158,7 @@ class Loopback(TwoPrograms):
         hw = self.operator(port, "--set", "input.dead_man_s=0.3")
         self.say(hw, "enable")
         self.wait_for(hw, "enabled")
-        # The lease of 0.3 s may run out before the servo has left Boot.
+        # The lease of 0.3 s may end before the servo has left Boot.
         self.wait_for(hw, "the operator is silent: hold", "hold")
         self.say(hw, "end")
         s = self.summary_of(hw)
@@ -184,7 +184,7 @@ class Loopback(TwoPrograms):
         self.assertGreater(s["robot"]["states"], 0)
 
     def test_both_programs_link_the_same_servo(self):
-        """Both programs say which servo library they were linked with; and that file is there once."""
+        """Both programs report the servo library that they were linked with, and this file exists only once."""
         port = self.serve("--pace", "lockstep")
         hardware = self.hardware(port, "--seconds", "0.2", "--no-motion")["servo"]
         with tempfile.TemporaryDirectory() as temp:
@@ -213,7 +213,7 @@ class Loopback(TwoPrograms):
         self.assertEqual(s["robot"]["motions"], 2)
 
     def test_hung_robot_raises_arm_lost_and_recovers_on_request(self):
-        """Its states are one and the same from then on: number, time, joints."""
+        """A hung robot repeats its last state: number, time, joints."""
         port = self.serve("--pace", "lockstep")
         hw = self.operator(port, "--enable", "--set", "robot.state_timeout_ms=20")
         try:
@@ -227,7 +227,7 @@ class Loopback(TwoPrograms):
         finally:
             hw.send_signal(signal.SIGINT)
             s = self.summary_of(hw)
-        print(f"\n{s['robot']['duplicate_states']} states came again")
+        print(f"\n{s['robot']['duplicate_states']} states were repeated")
         self.assertGreater(s["robot"]["duplicate_states"], 100)
         self.assertEqual(s["robot"]["motions"], 2)
 
@@ -240,7 +240,7 @@ class Loopback(TwoPrograms):
         self.assertEqual(set(rows), {"kernel", "processor speed", "privileges", "wake-up", "limits", "robot",
                                      "robot's mode", "states", "joint ranges", "kinematics", "gravity", "calibration",
                                      "mounting", "camera"})
-        self.assertEqual(rows["camera"]["verdict"], "fail")  # there is none
+        self.assertEqual(rows["camera"]["verdict"], "fail")  # there is no camera
         for what in ("robot", "robot's mode", "limits", "joint ranges", "kinematics", "gravity"):
             self.assertEqual(rows[what]["verdict"], "pass", rows[what])
         self.assertEqual(done.returncode, 1 if any(r["verdict"] == "fail" for r in rows.values()) else 0)
@@ -252,7 +252,7 @@ class Loopback(TwoPrograms):
         self.assertEqual(rows["gravity"]["verdict"], "fail")
 
     def rows(self, port, *options):
-        """The pre-flight's rows by name, and its exit code."""
+        """The rows of the pre-flight check by name, and its exit code."""
         done = subprocess.run([two_programs.HW, "loopback", "--check", "--json", "--set", f"robot.port={port}", "--set",
                                "check.seconds=1", "--set", "camera.time=computer", *options], timeout=60,
                               capture_output=True, text=True)
@@ -268,9 +268,9 @@ class Loopback(TwoPrograms):
         self.assertEqual(rows["calibration"]["found"], "f 554.3 px, its views fit to 0.05 px rms")
         self.assertRegex(rows["camera's rate"]["found"], r"^\d+\.\d Hz$")
         self.assertRegex(rows["frames"]["found"], r"^\d+ came, \d+ lost, \d+ damaged, \d+ late$")
-        # The simulated camera's pictures leave 40 ms after their stamps. That is the least; a busy machine adds to it.
+        # The simulated camera sends its pictures 40 ms after their stamps. A busy machine can only add to that.
         self.assertGreaterEqual(float(rows["latency"]["found"].split()[0]), 39.0)
-        # What is not known, or is bad, or is of another size.
+        # Unknown, bad or missing calibration data.
         rows, _ = self.rows(port)
         self.assertEqual((rows["calibration"]["verdict"], rows["mounting"]["verdict"]), ("warn", "warn"))
         self.assertIn("fovea calibrate intrinsics", rows["calibration"]["advice"])
@@ -284,7 +284,7 @@ class Loopback(TwoPrograms):
         self.assertEqual((rows["mounting"]["verdict"], rows["latency"]["verdict"]), ("fail", "warn"))
 
     def test_pre_flight_fails_on_lost_frames(self):
-        """[faults] of the scenario that is served."""
+        """With [faults] of the served scenario."""
         def frames(*assignments):
             options = [word for assignment in assignments for word in ("--set", assignment)]
             rows, code = self.rows(self.serve("--pace", "real", *options, camera=True))
@@ -358,11 +358,11 @@ class Loopback(TwoPrograms):
         self.assertIn('--track is not allowed: camera.driver = "none"', done.stderr)
 
     def test_moving_arm_is_slowed_down_before_its_motion_is_finished(self):
-        """The robot takes the end of a motion at speed for a fault of its client."""
+        """The robot reports a fault of its client if a motion ends at speed."""
         port = self.serve("--pace", "lockstep", "--most-speed", "0.25", camera=True)
         hw = self.operator(port, "--track", "--set", "camera.driver=genicam")
         self.wait_for(hw, "track")
-        time.sleep(3)  # of the robot's time at most 0.75 s: on its way
+        time.sleep(3)  # at most 0.75 s of the robot's time: the arm is still moving
         hw.send_signal(signal.SIGINT)
         out, _ = hw.communicate(timeout=30)
         events = json.loads(out)["events"]

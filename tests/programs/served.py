@@ -1,4 +1,4 @@
-"""A simulated robot on the network for each test, and what its tests share."""
+"""Base class of tests with a simulated robot on the network, and shared functions."""
 
 import signal
 import struct
@@ -13,14 +13,14 @@ PROGRAM = None
 
 
 def main():
-    """The tests of the file that is run:  FILE FOVEA_SIM [TEST]..."""
+    """Runs the tests of the calling file:  FILE FOVEA_SIM [TEST]..."""
     global PROGRAM
     PROGRAM = sys.argv.pop(1)
     unittest.main(verbosity=2)
 
 
 class Served(unittest.TestCase):
-    """A server of its own for each test, ended by its own process id."""
+    """Starts a server for each test and ends it by its process id."""
 
     options = ["--pace", "lockstep"]
 
@@ -42,12 +42,12 @@ class Served(unittest.TestCase):
         self.server.stdin.close()
 
     def type(self, line):
-        """At the server, as a person beside the robot does."""
+        """Types a line at the server, as a person beside the robot does."""
         self.server.stdin.write(line + "\n")
         self.server.stdin.flush()
 
     def wait_for(self, wanted, wait_s=10.0):
-        """The first state that is as wanted."""
+        """The first state for which `wanted` is true."""
         end = time.monotonic() + wait_s
         while True:
             state = self.client.newest()
@@ -56,7 +56,7 @@ class Served(unittest.TestCase):
             self.assertLess(time.monotonic(), end, (state.robot_mode, state.errors, state.q))
 
     def provoke(self, controller, generator, what, error, recovery=0):
-        """Runs `what` until the robot stops, checks why, and recovers, as far as that is possible without a person."""
+        """Runs `what` until the robot stops, checks the error, and requests recovery, which must return `recovery`."""
         first = self.client.start(controller, generator)
         for k in range(1, 5000):
             state = self.client.step(**what(k, first))
@@ -76,6 +76,6 @@ class Served(unittest.TestCase):
 
 
 def fade(k, steps):
-    """From 0 to 1, at rest at both ends."""
+    """A smooth step from 0 to 1, at rest at both ends."""
     x = min(1.0, k / steps)
     return x**4 * (35 - 84 * x + 70 * x**2 - 20 * x**3)

@@ -1,4 +1,4 @@
-"""The simulated robot and the hardware program, two processes and a network, and what their tests share."""
+"""Base class of tests with the simulated robot and the hardware program, connected by the network."""
 
 import json
 import pathlib
@@ -13,7 +13,7 @@ HW = None
 
 
 def main():
-    """The tests of the file that is run:  FILE FOVEA_SIM FOVEA_HW [TEST]..."""
+    """Runs the tests of the calling file:  FILE FOVEA_SIM FOVEA_HW [TEST]..."""
     global SIM, HW
     HW = sys.argv.pop(2)
     SIM = sys.argv.pop(1)
@@ -33,7 +33,7 @@ class TwoPrograms(unittest.TestCase):
         return line.split("127.0.0.1:")[1].split(",")[0]
 
     def end_server(self):
-        """What the server says in the end; None when it has ended before."""
+        """Ends the server. Returns its summary; None if it has ended before."""
         if self.server.returncode is not None:
             return None
         self.server.send_signal(signal.SIGTERM)
@@ -52,7 +52,7 @@ class TwoPrograms(unittest.TestCase):
         return summary
 
     def operator(self, port, *options):
-        """The program with a person at the keyboard: write to its stdin."""
+        """Starts the program with an operator, who types on its stdin."""
         hw = subprocess.Popen([HW, "loopback", "--set", f"robot.port={port}", "--set", "camera.driver=none", "--json",
                                *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True)
@@ -62,8 +62,8 @@ class TwoPrograms(unittest.TestCase):
         return hw
 
     def replay(self, out, summary):
-        """The log in the folder `out`, its recorded inputs put through the servo again: the same to the last bit, and all of
-        it unless the summary says what is missing."""
+        """Replays the log in the folder `out`. The replay must be bit-exact and complete, except for entries that the
+        summary reports as dropped."""
         done = subprocess.run([pathlib.Path(HW).parent / "fovea", "replay", str(out), "--json"], timeout=60,
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -84,9 +84,9 @@ class TwoPrograms(unittest.TestCase):
         return json.loads(out)
 
     def wait_for(self, process, *lines):
-        """Reads until it has said each of the lines, in any order."""
+        """Reads until the process has printed each of the lines, in any order."""
         missing = set(lines)
         while missing:
             got = process.stderr.readline()
-            self.assertNotEqual(got, "", f"it ended before it said {missing}")
+            self.assertNotEqual(got, "", f"it ended before it printed {missing}")
             missing.discard(got.strip())

@@ -1,5 +1,5 @@
-// What other threads ask of a loop that runs: nothing is taken for what was not asked, the last one before a
-// tick is what it gets, and Stop ends it.
+// Requests of other threads to a running loop: the last one before a tick takes
+// effect, no other value is seen, and Stop ends the loop.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,7 +11,7 @@
 namespace fovea::task {
 namespace {
 
-// Counts what it is told.
+// Counts the requests that it receives.
 class CountingStep final : public ServoStep {
  public:
   void Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept override {
@@ -59,14 +59,14 @@ TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
     }
     loop.Ask(Request::kHold);
     loop.Ask(config::MotionLawKind::kFloat);
-    // Both are on their way: in so many ticks one takes them.
+    // Both are pending; one of the next 1000 ticks takes them.
     const int enough = step.ticks.load(std::memory_order_relaxed) + 1000;
     while (step.ticks.load(std::memory_order_relaxed) < enough) {
       std::this_thread::yield();
     }
     loop.Stop();
   });
-  // In pieces, so that what the fake drivers remember stays small: one that ticks nothing is the end.
+  // Runs in pieces, so that the fake drivers' records stay small. A piece without a tick means the end.
   hal::Status status = hal::Status::Ok();
   for (std::uint64_t before = 1; loop.counters().ticks != before && status.ok();) {
     before = loop.counters().ticks;
@@ -83,11 +83,11 @@ TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
   EXPECT_GE(step.laws, 1);
   EXPECT_LE(step.laws, kAsks + 1);
   EXPECT_EQ(step.wrong_laws, 0);
-  std::printf("%llu ticks took %d of %d asked\n", static_cast<unsigned long long>(loop.counters().ticks),
+  std::printf("%llu ticks took %d of %d requests\n", static_cast<unsigned long long>(loop.counters().ticks),
               step.tracks, kAsks);
 }
 
-// Leave that is given and runs out while the loop runs: no request is taken without it.
+// The leave to move ends and is given again while the loop runs: no request takes effect without it.
 TEST(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
   constexpr int kLeases = 1000;
   constexpr int kPiece = 1000;  // ticks
@@ -101,7 +101,7 @@ TEST(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
   loop.GiveLeave(0);
   std::thread asker([&] {
     for (int i = 0; i < kLeases; ++i) {
-      loop.Ask(Request::kTrack);  // nobody gave leave
+      loop.Ask(Request::kTrack);  // without leave
       std::this_thread::yield();
     }
     loop.GiveLeave(INT64_MAX - 1);
@@ -123,9 +123,9 @@ TEST(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
   }
   asker.join();
   EXPECT_TRUE(status.ok());
-  // The last of them may wait for the tick that has leave again.
+  // The last kTrack may wait for the first tick that has leave again.
   EXPECT_LE(step.tracks, 1);
-  EXPECT_EQ(step.others, 1) << "who gives leave first and asks then is heard";
+  EXPECT_EQ(step.others, 1) << "a request after GiveLeave takes effect";
   EXPECT_EQ(loop.lease_ends(), 1U);
 }
 

@@ -1,5 +1,5 @@
-// No heap in the tick: the whole tick, from reading the arm to the record, in every mode, counted by the
-// interposer. If the interposer does not count, these tests fail.
+// No heap call in the whole tick, from reading the arm to the record, in every mode. The interposer counts
+// the calls; if it is inactive, these tests fail.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@
 namespace fovea {
 namespace {
 
-// An arm and a clock in one, without a heap: the arm stands where its reference wants it.
+// An arm without heap calls that stays at the ready posture.
 class SteadyArm final : public hal::Arm {
  public:
   SteadyArm() : Arm(7, false) {
@@ -60,14 +60,14 @@ class TickHeapTest : public testing::Test {
  protected:
   void SetUp() override {
 #ifdef FOVEA_SANITIZED
-    GTEST_SKIP() << "a sanitizer brings a malloc of its own";
+    GTEST_SKIP() << "a sanitizer replaces malloc";
 #endif
     ASSERT_TRUE(linux_rt::HeapCounterActive())
         << "the interposer is not linked: a count of 0 would mean nothing";
     ASSERT_TRUE(task_.Init(test::PandaConfig()).ok());
   }
 
-  // The ball stands where it should, so the arm need not move.
+  // The ball is at its goal, so the arm need not move.
   void PutFeature(std::int64_t now_ns) {
     hal::FeatureMeasurement m;
     m.stamp_ns = now_ns - 20 * hal::kNsPerMs;
@@ -92,7 +92,7 @@ TEST_F(TickHeapTest, NoHeapCallInAnyMode) {
   SteppingClock clock([&](std::int64_t now_ns) {
     arm_.Advance();
     const std::int64_t ms = now_ns / hal::kNsPerMs;
-    // Seen, lost for a while, seen again, then a sensor breaks.
+    // The target is seen, lost for a while and seen again; then an encoder fails.
     if (ms > 60 && ms % 33 == 0 && (ms < 1000 || ms > 2500)) {
       PutFeature(now_ns);
     }
@@ -103,19 +103,19 @@ TEST_F(TickHeapTest, NoHeapCallInAnyMode) {
   task::ServoLoop loop(task_, arm_, clock, mailbox_, ring_, meter_);
   ASSERT_TRUE(loop.Run(5 * hal::kNsPerSecond).ok());
   ring_.Drain([&](const hal::TickRecord& record) { modes_seen |= 1 << static_cast<int>(record.mode); });
-  EXPECT_EQ(modes_seen, 0b11111) << "boot, hold, track, coast and fault were all run through";
+  EXPECT_EQ(modes_seen, 0b11111) << "boot, hold, track, coast and fault all occur";
   EXPECT_EQ(meter_.durations().count(), 5000U);
   EXPECT_EQ(meter_.heap_calls(), 0U);
 }
 
-// Goals of both kinds, and setpoints, a hundred of them in turn, each near where the arm stands.
+// Alternates joint goals and pose goals, about a hundred in all, each near the arm's posture.
 class BusySource final : public moves::MotionSource {
  public:
   moves::MotionCommand At(std::int64_t now_ns) noexcept override {
     const std::int64_t ms = now_ns / hal::kNsPerMs;
     moves::MotionCommand command;
     if (ms < 100 || ms % 400 > 350) {
-      return command;  // now and then nothing: the arm comes to Hold
+      return command;  // gaps without a command, in which the arm changes to Hold
     }
     command.kind = ms % 800 < 400 ? moves::MotionKind::kJointGoal : moves::MotionKind::kPoseGoal;
     command.q = test::Panda().model.q_ready;
@@ -139,10 +139,10 @@ TEST_F(TickHeapTest, NoHeapCallInCommandedMotionsAndWithAnyLaw) {
   config.guard.obstacles.num_planes = 1;
   config.guard.obstacles.num_boxes = 1;
   config.guard.obstacles.boxes[0] = {model::Vec3(0.9, 0.9, 0.0), model::Vec3(1.0, 1.0, 1.0)};
-  config.guard.singularity_min = 0.15;  // near, so that it is looked at in each tick
+  config.guard.singularity_min = 0.15;  // near enough that each tick checks it
   config.motion_law.integral = 0.5;
-  config.safety.contact_torque_fraction = 1e3;  // the arm stands whatever it is told
-  config.safety.non_finite_ticks = 10'000;      // and its readings stay the same
+  config.safety.contact_torque_fraction = 1e3;  // the arm ignores its commands
+  config.safety.non_finite_ticks = 10'000;      // and its readings never change
   config.safety.following_error = 1.0;
   config.motion_law.friction_compensation = 1.0;
   config.motion_law.k_p.fill(50.0);
@@ -173,7 +173,7 @@ TEST_F(TickHeapTest, NoHeapCallInCommandedMotionsAndWithAnyLaw) {
   EXPECT_EQ(meter_.heap_calls(), 0U);
 }
 
-// Digests and keyframes are taken in the tick.
+// The recorder computes digests and keyframes in the tick.
 TEST_F(TickHeapTest, NoHeapCallWithTheFlightRecorder) {
   flight::FlightRecorder recorder(task_, &task_, 4096);
   SteppingClock clock([&](std::int64_t now_ns) {
@@ -193,7 +193,7 @@ TEST_F(TickHeapTest, NoHeapCallWithTheFlightRecorder) {
   EXPECT_EQ(meter_.heap_calls(), 0U);
 }
 
-// The guard's own proof: a recorder that allocates is caught.
+// Checks the check: a recorder that allocates is detected.
 class AllocatingRecorder final : public hal::Recorder {
  public:
   void Record(const hal::TickRecord&) noexcept override {

@@ -1,4 +1,4 @@
-// fovea-adversary: hours of robot time with an eye that means ill. Exit 1 when a limit was passed, the arm
+// fovea-adversary: hours of robot time with adversarial measurements. Exit 1 if a limit was exceeded, the arm
 // touched something, or a measurement led to a fault.
 #include <fmt/format.h>
 

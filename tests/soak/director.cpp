@@ -13,14 +13,14 @@ namespace {
 using hal::Mode;
 
 constexpr int kEpisodeMs = 10'000;
-constexpr int kLongestMs = 30'000;   // for a way that takes long
-constexpr int kMeasuredMs = 500;     // at its end
-constexpr int kEachMs = 10;          // so often then
-constexpr double kTherePx = 1.0;     // a target that stands, at its goal
-constexpr double kFollowedPx = 5.0;  // one that moves, on the mean
-constexpr double kMarginPx = 30.0;   // about the outline of a new target
+constexpr int kLongestMs = 30'000;   // longest episode
+constexpr int kMeasuredMs = 500;     // measured at the end of each kEpisodeMs
+constexpr int kEachMs = 10;          // measuring period
+constexpr double kTherePx = 1.0;     // bound for a still target
+constexpr double kFollowedPx = 5.0;  // bound for a moving target, on the mean
+constexpr double kMarginPx = 30.0;   // around the outline of a new target
 constexpr int kDraws = 300;
-constexpr int kRestMs = 1500;     // after a fault, until somebody comes
+constexpr int kRestMs = 1500;     // from a fault to the first reset
 constexpr double kAtRest = 0.01;  // [rad/s]
 constexpr std::uint64_t kHeavyJoints = 4;
 constexpr int kHomeMs = 15'000;
@@ -88,7 +88,7 @@ bool Director::IsInPicture(const sim::Truth& truth, const Eigen::Vector3d& p_BO)
   return true;
 }
 
-// A place that the eye sees from where it is; false after many tries.
+// Draws a target that the camera sees from its present pose. False after kDraws tries.
 bool Director::DrawTarget(const sim::Truth& truth) {
   target_ = sim::TargetMotion{};
   for (int i = 0; i < kDraws; ++i) {
@@ -103,7 +103,7 @@ bool Director::DrawTarget(const sim::Truth& truth) {
         target_.reach = Uniform(0.02, 0.06);
         target_.speed = Uniform(0.01, 0.05);
         target_.direction = Eigen::Vector3d::UnitY();
-        // It sets out from where it was seen.
+        // The motion starts at the drawn position.
         target_.p_BO -= sim::PositionAt(target_, 0) - target_.p_BO;
       }
       return true;
@@ -116,7 +116,7 @@ void Director::Begin(std::int64_t now_ns, const sim::Truth& truth) {
   begun_ = DrawTarget(truth);
   if (!begun_) {
     if (home_ns_ != 0 && now_ns - home_ns_ < hal::kNsPerSecond) {
-      Complain(now_ns, "no target can be seen from home");
+      Complain(now_ns, "no target is visible from the ready posture");
     }
     goes_home_ = true;
     home_begun_ = false;
@@ -129,7 +129,7 @@ void Director::Begin(std::int64_t now_ns, const sim::Truth& truth) {
     trouble_ = static_cast<Trouble>(1 + engine_() % (kTroubleNames.size() - 1));
   }
   trouble_ms_ = static_cast<int>(Uniform(500.0, 3500.0));
-  // One of those that carry much: a push that a hand bears without noticing throws a light wrist off its way.
+  // One of the heavy joints: a push that they tolerate would throw a light wrist joint off its path.
   acting_.joint = static_cast<int>(engine_() % kHeavyJoints);
   strength_ = Uniform(0.0, 1.0) < 0.5 ? -1.0 : 1.0;
   ++troubles_[static_cast<std::size_t>(trouble_)];
@@ -137,7 +137,7 @@ void Director::Begin(std::int64_t now_ns, const sim::Truth& truth) {
   error_px_ = speed2_ = torque2_ = Spread{};
 }
 
-// `ms` of the episode.
+// Applies the disturbance at `ms` of the episode.
 void Director::LetTrouble(int ms) {
   const int end_ms = trouble_ms_ + LengthOf(trouble_);
   const bool now = ms >= trouble_ms_ && ms < end_ms;
@@ -193,9 +193,9 @@ void Director::GoHome(std::int64_t now_ns, const sim::Truth& truth, const hal::T
     return;
   }
   if (!done) {
-    Complain(now_ns, "the way home does not end");
+    Complain(now_ns, "the motion home does not end");
   } else if (record.hold_reason == hal::HoldReason::kMotionRefused) {
-    ++ways_refused_;  // it goes on from where it is
+    ++ways_refused_;  // goes on from the present posture
   }
   goes_home_ = false;
   home_ns_ = now_ns;
@@ -227,12 +227,12 @@ void Director::End(std::int64_t now_ns, const sim::Truth& truth, const hal::Tick
     ending = Ending::kHeld;
   } else if (Ms(now_ns - episode_ns_) < kLongestMs) {
     error_px_ = speed2_ = torque2_ = Spread{};
-    return;  // it may take longer
+    return;  // the episode may take longer
   }
   ++endings_[static_cast<std::size_t>(ending)];
   if (ending == Ending::kUndefined) {
-    Complain(now_ns,
-             fmt::format("it ends in mode {}, {:.2f} px off", hal::Name(record.mode), error_px_.mean));
+    Complain(now_ns, fmt::format("the episode ends in mode {}, {:.2f} px off", hal::Name(record.mode),
+                                 error_px_.mean));
   }
   if (ending == Ending::kConverged && trouble_ == Trouble::kNone) {
     const double share = static_cast<double>(now_ns) / static_cast<double>(end_ns_);
@@ -266,7 +266,7 @@ void Director::Step(std::int64_t now_ns, const sim::Truth& truth, const hal::Tic
     asks_again_ = !goes_home_;
   }
   mode_before_ = record.mode;
-  if (asks_again_ && record.mode == Mode::kHold) {  // a fault ends every wish
+  if (asks_again_ && record.mode == Mode::kHold) {  // a fault cancels all requests
     asks_again_ = false;
     request_ = task::Request::kTrack;
   }

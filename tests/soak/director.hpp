@@ -1,8 +1,8 @@
-// One episode after another: a target, what goes wrong meanwhile, what is asked of the servo, how it ended.
+// Episodes of a soak: a target, a disturbance, the operator's requests, and the outcome.
 //
-// All of it is drawn from a seed. After a fault the director does what a person would: waits until the arm
-// is at rest, resets it, and asks it to track again. Where the servo holds with a reason, or no target could
-// be seen, the arm is sent home.
+// All of it is drawn from a seed. After a fault the director acts as an operator: it waits until
+// the arm is at rest, resets the servo and requests tracking again. If the servo holds with a
+// reason, or no target is visible, it sends the arm home.
 #pragma once
 
 #include <array>
@@ -24,19 +24,19 @@
 namespace fovea::soak {
 
 enum class Ending : std::uint8_t {
-  kConverged,  // a target that stands, at its goal
-  kFollowed,   // one that moves
-  kHeld,       // the servo holds and says why
-  kUndefined,  // none of these, after all the time there is
+  kConverged,  // a still target, at its goal
+  kFollowed,   // a moving target
+  kHeld,       // the servo holds and reports the reason
+  kUndefined,  // none of these within kLongestMs
 };
 inline constexpr std::array<const char*, 4> kEndingNames{"converged", "followed", "held", "undefined"};
 
-// What an undisturbed episode with a target that stands leaves, of each tenth of the run.
+// Figures of undisturbed episodes with a still target, for each tenth of the run.
 struct Figures {
-  Tenths error_px;    // of the image, by the truth
+  Tenths error_px;    // true image error
   Tenths speed;       // rms of the joints' true speeds at the goal [rad/s]
-  Tenths torque;      // rms of the commands there [Nm]
-  Tenths covariance;  // trace of the estimate's, of the position [m^2]
+  Tenths torque;      // rms of the commanded torques at the goal [Nm]
+  Tenths covariance;  // trace of the estimated position's covariance [m^2]
   Tenths posture;     // the joints' distance from the ready posture [rad]
 };
 
@@ -44,14 +44,14 @@ class Director final : public moves::MotionSource {
  public:
   Director(const sim::RunDescription& about, std::int64_t end_ns, std::uint64_t seed);
 
-  // The world has come to `now_ns` with `truth`; `record` is of the last tick, `state` what it left.
+  // The world has reached `now_ns` with `truth`; `record` is the last tick's, `state` the servo's after it.
   void Step(std::int64_t now_ns, const sim::Truth& truth, const hal::TickRecord& record,
             const task::ServoState& state);
 
   [[nodiscard]] Acting& acting() { return acting_; }
-  // What is asked of the servo in the next tick; once.
+  // The request for the next tick; cleared by the call.
   [[nodiscard]] task::Request TakeRequest();
-  // What pulls at the joints [num_joints; Nm].
+  // External torques on the joints [num_joints; Nm].
   [[nodiscard]] const Eigen::VectorXd& pull() const { return pull_; }
   [[nodiscard]] Eigen::Vector3d TargetAt(std::int64_t now_ns) const {
     return sim::PositionAt(target_, now_ns - episode_ns_);
@@ -66,7 +66,7 @@ class Director final : public moves::MotionSource {
   [[nodiscard]] std::uint64_t ways_home() const { return ways_home_; }
   [[nodiscard]] std::uint64_t ways_refused() const { return ways_refused_; }
   [[nodiscard]] const Figures& figures() const { return figures_; }
-  // Of what should not have been, the first few in words.
+  // The first few unexpected events, as texts.
   [[nodiscard]] const std::vector<std::string>& complaints() const { return complaints_; }
   [[nodiscard]] std::uint64_t num_complaints() const { return num_complaints_; }
 
@@ -85,7 +85,7 @@ class Director final : public moves::MotionSource {
 
   const sim::RunDescription& about_;
   const sim::TargetGoal goal_;
-  const Eigen::Matrix3d R_BO_still_;  // the scenario's own
+  const Eigen::Matrix3d R_BO_still_;  // the scenario's orientation
   const std::int64_t end_ns_;
   std::mt19937_64 engine_;
 
@@ -100,12 +100,12 @@ class Director final : public moves::MotionSource {
   Eigen::VectorXd pull_;
   task::Request request_ = task::Request::kNone;
 
-  // the way home
+  // the motion home
   bool goes_home_ = false;
   std::int64_t home_ns_ = 0;
   bool home_begun_ = false;
 
-  // what is measured in its last half second
+  // measured in the episode's last half second
   Spread error_px_;
   Spread speed2_;
   Spread torque2_;
@@ -113,7 +113,7 @@ class Director final : public moves::MotionSource {
 
   // faults
   hal::Mode mode_before_ = hal::Mode::kBoot;
-  bool asks_again_ = false;  // to track, once the servo holds after a recovery
+  bool asks_again_ = false;  // request Track once the servo holds after a recovery
   std::int64_t fault_ns_ = 0;
 
   std::array<std::uint64_t, kEndingNames.size()> endings_{};

@@ -1,4 +1,4 @@
-// fovea-hazards: thousands of random cases of each hazard, and how far the arm goes in the worst.
+// fovea-hazards: thousands of random cases of each hazard, with the worst motion of the arm.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -11,9 +11,9 @@ namespace {
 using namespace fovea;
 
 constexpr const char* kHead =
-    "| hazard | noticed, of all | after, 99 %; most | way of the hand, median; 99 %; most | fastest | at "
-    "rest in the "
-    "end | touched; joint too fast | fastest joint, of its limit |\n|---|---|---|---|---|---|---|---|\n";
+    "| hazard | detected, of all | delay, 99 %; max | hand displacement, median; 99 %; max | fastest hand | "
+    "at rest at the end | contacts; joint too fast | fastest joint, of its limit |\n"
+    "|---|---|---|---|---|---|---|---|\n";
 
 std::string RowOf(const test::Hazard& hazard, const test::HazardFigures& f) {
   return fmt::format(

@@ -5,10 +5,10 @@
 namespace fovea::soak {
 namespace {
 
-constexpr double kWarmUp = 0.1;     // share of the time
+constexpr double kWarmUp = 0.1;     // share of the run time
 constexpr std::size_t kEnough = 5;  // samples of memory
 constexpr std::uint64_t kEnoughValues = 8;
-constexpr double kChance = 6.0;  // [sigma]: not in a life of soaks
+constexpr double kChance = 6.0;  // [sigma]; never exceeded by chance
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Whether a long run leaks or drifts: judged from figures taken while it went on.
+// Detects leaks and drift of a long run from figures taken during the run.
 #pragma once
 
 #include <array>
@@ -9,22 +9,22 @@
 
 namespace fovea::soak {
 
-// How much of the system's memory there was, taken at equal distances of robot time.
+// Memory in use, sampled at equal intervals of robot time.
 struct MemorySample {
   double robot_s = 0.0;
   double bytes = 0.0;
 };
 
 struct Growth {
-  double bytes = 0.0;  // of the straight line through the samples, from the end of the warm-up to the last
+  double bytes = 0.0;  // growth of the fitted line from the end of the warm-up to the last sample
   bool leaks = false;
 };
 
-// The first tenth of the time is warm-up. `most`: what may come on top of it [bytes], by the straight line
-// that fits best. Fewer than 5 samples after the warm-up tell nothing: no leak.
+// The first tenth of the time is warm-up. A leak is a growth above `most` [bytes] of the least-squares line
+// after it. Fewer than 5 samples after the warm-up: no leak.
 Growth JudgeMemory(const std::vector<MemorySample>& samples, double most);
 
-// Mean and deviation of a figure.
+// Mean and standard deviation of a figure.
 struct Spread {
   std::uint64_t count = 0;
   double mean = 0.0;
@@ -34,7 +34,7 @@ struct Spread {
   [[nodiscard]] double Sigma() const;
 };
 
-// A figure of each of the run's tenths.
+// A figure for each tenth of the run.
 using Tenths = std::array<Spread, 10>;
 
 struct Drift {
@@ -42,8 +42,8 @@ struct Drift {
   bool drifts = false;
 };
 
-// The same distribution in the first and the last tenth: their means apart by chance alone. `least` is the
-// smallest difference that counts, in units of the figure. Fewer than 8 values in one of them tell nothing.
+// Drift means that the means of the first and the last tenth differ by more than chance. `least` is the
+// smallest difference that counts, in units of the figure. Fewer than 8 values in either tenth: no drift.
 Drift JudgeDrift(const Tenths& tenths, double least);
 
 }  // namespace fovea::soak

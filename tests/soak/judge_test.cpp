@@ -1,4 +1,4 @@
-// What would leak or drift is found, and what only scatters is not.
+// Leaks and drift are detected; scatter is not reported.
 #include "tests/soak/judge.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 constexpr double kKiB = 1024.0;
 constexpr double kMost = 256.0 * kKiB;
 
-// A day's samples: `growth(share)` [bytes] on top of 50 MB and of scatter by 20 KiB.
+// Samples of a day: `growth(share)` [bytes] on top of 50 MB, with a scatter of 20 KiB.
 template <class Grow>
 std::vector<MemorySample> Day(const Grow& growth) {
   std::mt19937_64 engine(3);
@@ -42,7 +42,7 @@ TEST(MemoryJudgeTest, WarmUpAndScatterAreNoLeak) {
   EXPECT_FALSE(JudgeMemory({}, kMost).leaks);
 }
 
-// Each tenth with `each` values of mean 1 and deviation 0.3, of which the mean moves by `by` until the last.
+// Ten tenths of `each` values with mean 1 and deviation 0.3; the mean moves by `by` up to the last tenth.
 Tenths Ten(int each, double by) {
   std::mt19937_64 engine(5);
   std::normal_distribution<double> scatter(1.0, 0.3);

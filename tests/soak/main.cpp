@@ -1,4 +1,4 @@
-// fovea-soak: hours of robot time in one process, and what they did to it.
+// fovea-soak: hours of robot time in one process, and the findings.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using namespace fovea;
 
-// On a terminal a line that is written over; elsewhere one for each twentieth.
+// Progress: one overwritten line on a terminal, else a line for every twentieth.
 class Progress {
  public:
   void Show(double share) {
@@ -36,7 +36,7 @@ class Progress {
 
  private:
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double next_ = 0.001;  // before, nothing is known of what is left
+  double next_ = 0.001;  // earlier the remaining time is unknown
 };
 
 std::string Counts(const std::map<std::string, std::uint64_t>& counts) {
@@ -53,11 +53,11 @@ void PrintTable(const soak::SoakResult& r) {
   const auto line = [](const char* name, const std::string& what) { fmt::print("  {:<18}{}\n", name, what); };
   line("robot time", fmt::format("{:.3f} h in {:.1f} s, {:.0f} times real time", r.robot_s / 3600.0, r.wall_s,
                                  r.robot_s / r.wall_s));
-  line("ticks",
-       fmt::format("{}, {} missed on purpose, {} heap calls in them", r.ticks, r.missed_ticks, r.heap_calls));
+  line("ticks", fmt::format("{}, {} missed on purpose, {} heap calls in ticks", r.ticks, r.missed_ticks,
+                            r.heap_calls));
   line("episodes", Counts(r.endings));
-  line("what happened", Counts(r.troubles));
-  line("faults", fmt::format("{}; {} recoveries, {} ways home, {} of them refused", Counts(r.faults),
+  line("disturbances", Counts(r.troubles));
+  line("faults", fmt::format("{}; {} recoveries, {} motions home, {} of them refused", Counts(r.faults),
                              r.recoveries, r.ways_home, r.ways_refused));
   line("memory", fmt::format("grew by {:.0f} KiB resident, {:.1f} KiB in use", r.resident_growth / 1024.0,
                              r.heap_growth / 1024.0));
@@ -66,7 +66,7 @@ void PrintTable(const soak::SoakResult& r) {
                                           figure.first, figure.last, figure.sigmas));
   }
   line("digest", fmt::format("{:016x}", r.digest));
-  line("verdict", r.failures.empty() ? "good" : "NOT GOOD");
+  line("verdict", r.failures.empty() ? "passed" : "FAILED");
   for (const std::string& failure : r.failures) {
     fmt::print("    {}\n", failure);
   }
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
   soak::SoakOptions options;
   app.add_option("scenario", options.scenario, "scenario with the arm, camera, kind of target and servo")
       ->capture_default_str();
-  app.add_option("--set", options.assignments, "key=value, over the scenario's own; may be repeated")
+  app.add_option("--set", options.assignments, "key=value, overrides the scenario; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);

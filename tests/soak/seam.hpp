@@ -1,5 +1,5 @@
-// The seam of a soak: the simulated arm and clock, with a clock that may have run for 292 years, and with
-// what goes wrong between them and the servo.
+// The seam of a soak: wraps the simulated arm and clock, adds an offset of up to 292 years to the clock, and
+// injects disturbances between them and the servo.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,23 @@
 
 namespace fovea::soak {
 
-// Where clock and counters begin.
+// Initial values of clock and counters.
 struct Start {
   std::int64_t clock_ns = 0;
   std::uint64_t tick = 0;
   std::uint64_t sequence = 0;  // of states and frames
 };
 
-// What acts now; one thread reads and writes it.
+// The present disturbance; one thread reads and writes it.
 struct Acting {
   Trouble trouble = Trouble::kNone;
   int joint = 0;
-  int stall_ticks = 0;  // the next wait ends so many ticks late
+  int stall_ticks = 0;  // the next wait ends this many ticks late
 };
 
 class SoakArm final : public hal::Arm {
  public:
-  // All are borrowed.
+  // All arguments must outlive the object.
   SoakArm(hal::Arm& arm, const Start& start, const Acting& acting)
       : Arm(arm.num_joints(), /*paces_loop=*/false), arm_(arm), start_(start), acting_(acting) {}
 

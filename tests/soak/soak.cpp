@@ -32,10 +32,10 @@ namespace fovea::soak {
 namespace {
 
 constexpr int kMemorySamples = 200;
-constexpr double kResidentMost = 4.0 * 1048576.0;  // growth that is no leak yet [bytes]
+constexpr double kResidentMost = 4.0 * 1048576.0;  // allowed growth [bytes]
 constexpr double kHeapMost = 0.25 * 1048576.0;
-constexpr double kSigmaPx = 0.05;  // of a truth that is seen
-constexpr double kNothing = 0.02;  // share of a figure that does not count as drift
+constexpr double kSigmaPx = 0.05;  // noise of features made from the truth
+constexpr double kNothing = 0.02;  // relative change of a figure that does not count as drift
 constexpr std::int64_t kLateNs = 60 * hal::kNsPerMs;
 constexpr std::int64_t kHourNs = 3600 * hal::kNsPerSecond;
 
@@ -43,7 +43,7 @@ Start StartOf(const SoakOptions& options, std::uint64_t ticks) {
   if (!options.late_clock) {
     return {};
   }
-  // The middle of the run is where 32 bits are full.
+  // The counters pass 2^32 in the middle of the run.
   const std::uint64_t before = (std::uint64_t{1} << 32U) - ticks / 2;
   return {std::numeric_limits<std::int64_t>::max() - 30 * kHourNs, before, before};
 }
@@ -61,7 +61,7 @@ double HeapInUse() {
   return static_cast<double>(info.uordblks) + static_cast<double>(info.hblkhd);
 }
 
-// Counts what the tick takes from the heap.
+// Counts heap calls in the tick.
 class HeapProbe final : public hal::TickProbe {
  public:
   void Enter() noexcept override { linux_rt::EnterCountedRegion(); }
@@ -103,7 +103,7 @@ class Digest final : public hal::Recorder {
   bool has_last_ = false;
 };
 
-// One pass. Members stand in the order in which one needs the other.
+// One pass. The order of the members follows their dependencies.
 class Pass {
  public:
   Pass(const SoakOptions& options, const sim::RunDescription& about, std::function<void(double)> progress)
@@ -125,7 +125,7 @@ class Pass {
         clock_(lockstep_, start_, director_.acting()),
         loop_(task_, arm_, clock_, mailbox_, digest_, probe_) {
     if (!task_.Init(about.servo).ok()) {
-      throw std::logic_error("a servo configuration that was checked is refused");
+      throw std::logic_error("the servo refuses a checked configuration");
     }
     task::ServoState state = task_.state();
     state.tick = start_.tick;
@@ -166,7 +166,7 @@ class Pass {
   }
 
  private:
-  // Between two ticks, when the world has moved on.
+  // Called between two ticks, after the world has advanced.
   bool Between(std::int64_t now_ns) {
     if (now_ns >= next_sample_ns_) {
       const double robot_s = static_cast<double>(now_ns) * 1e-9;
@@ -256,8 +256,8 @@ class Pass {
     expect(result.heap_calls == 0, fmt::format("{} heap calls in ticks", result.heap_calls));
     const auto periods = static_cast<std::uint64_t>(end_ns_ / hal::kTickPeriodNs);
     expect(counters.ticks + counters.missed_ticks == periods,
-           fmt::format("{} ticks and {} missed are not the {} there were", counters.ticks,
-                       counters.missed_ticks, periods));
+           fmt::format("{} ticks and {} missed do not sum to {}", counters.ticks, counters.missed_ticks,
+                       periods));
     expect(
         clock_.swallowed() - counters.missed_ticks <= MostCutOff(),
         fmt::format("{} ticks swallowed, {} counted as missed", clock_.swallowed(), counters.missed_ticks));
@@ -265,9 +265,9 @@ class Pass {
            fmt::format("{} silent reads, {} counted", arm_.silent_reads(), counters.arm_read_errors));
     expect(counters.arm_write_errors == 0, fmt::format("{} commands refused", counters.arm_write_errors));
     expect(digest_.out_of_order() == 0, fmt::format("{} ticks out of order", digest_.out_of_order()));
-    expect(task_.state().tick == start_.tick + counters.ticks, "the tick counter has not counted all ticks");
+    expect(task_.state().tick == start_.tick + counters.ticks, "the tick counter missed ticks");
     expect(director_.num_complaints() == 0,
-           fmt::format("{} times something ended as it should not, first: {}", director_.num_complaints(),
+           fmt::format("{} unexpected events, first: {}", director_.num_complaints(),
                        director_.complaints().empty() ? "" : director_.complaints().front()));
     for (const std::string& complaint : director_.complaints()) {
       result.failures.push_back("  " + complaint);
@@ -281,7 +281,7 @@ class Pass {
     SummariseDrift(result);
   }
 
-  // The last wait may have ended beyond the run.
+  // The last wait may end after the run.
   [[nodiscard]] std::uint64_t MostCutOff() const {
     return static_cast<std::uint64_t>(2 * about_.servo.safety.missed_ticks);
   }
@@ -318,7 +318,7 @@ class Pass {
   Digest digest_;
   hal::FeatureMailbox mailbox_;
   SoakFeatures features_;
-  std::deque<std::pair<std::int64_t, hal::FeatureMeasurement>> under_way_;  // by the time when it is due
+  std::deque<std::pair<std::int64_t, hal::FeatureMeasurement>> under_way_;  // by due time
   sim::SimArm sim_arm_;
   SoakArm arm_;
   sim::LockstepClock lockstep_;

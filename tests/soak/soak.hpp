@@ -1,4 +1,4 @@
-// A long run in one process, and what is found out about it.
+// A long run in one process, and its findings.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,17 @@ namespace fovea::soak {
 
 struct SoakOptions {
   std::string scenario = "ball";
-  std::vector<std::string> assignments;  // key=value, over the scenario's own
+  std::vector<std::string> assignments;  // key=value, override the scenario
   double hours = 1.0;                    // of robot time
-  bool camera = false;  // pictures are drawn and looked at; else features come from the truth
+  bool camera = false;                   // render and detect pictures; else features from the truth
   std::uint64_t seed = 1;
   bool late_clock = false;  // clock 30 h before the end of its range, counters near 2^32
-  int passes = 2;           // of the same; they must agree to the last bit
-  // Told now and then how far it is, of all passes [0 to 1].
+  int passes = 2;           // identical runs; they must be bit-identical
+  // Called now and then with the progress over all passes [0 to 1].
   std::function<void(double share)> progress;
 };
 
-// A figure of the first and of the last tenth.
+// A figure in the first and in the last tenth.
 struct DriftFigure {
   std::string name;
   double first = 0.0;
@@ -42,16 +42,16 @@ struct SoakResult {
   std::map<std::string, std::uint64_t> faults;
   std::uint64_t recoveries = 0;
   std::uint64_t ways_home = 0;
-  std::uint64_t ways_refused = 0;  // of them, since a limit stood in the way
+  std::uint64_t ways_refused = 0;  // of ways_home, because a limit blocked the path
   double resident_growth = 0.0;    // after warm-up [bytes]
-  double heap_growth = 0.0;        // the same, of what is in use
+  double heap_growth = 0.0;        // the same, of allocated memory
   std::vector<DriftFigure> drift;
   std::uint64_t digest = 0;  // of modes, faults, limits, reference and torques of every tick, not of stamps
-  // What was wrong, in words; empty: nothing.
+  // Failure messages; empty if the run passed.
   std::vector<std::string> failures;
 };
 
-// Throws config::InputError when the scenario cannot be run.
+// Throws config::InputError if the scenario cannot be run.
 SoakResult RunSoak(const SoakOptions& options);
 
 }  // namespace fovea::soak

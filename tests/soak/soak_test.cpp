@@ -1,4 +1,4 @@
-// A minute and more of a soak, by the clock as it is and at the end of its range.
+// A soak of a few minutes, with the normal clock and with one at the end of its range.
 #include "tests/soak/soak.hpp"
 
 #include <gmock/gmock.h>
@@ -24,8 +24,8 @@ void Print(const SoakResult& result) {
             << " KiB in use\n";
 }
 
-// The servo uses stamps for nothing but differences: with the clock 30 h before the end of its range, and
-// counters that pass 2^32, every torque is the same to the last bit.
+// The servo uses only differences of stamps: 30 h before the end of the clock's range, and with counters that
+// pass 2^32, every torque is bit-identical.
 TEST(SoakTest, RunIsBitExactUnderALateClock) {
   const SoakResult early = RunSoak(Minutes(2.0));
   Print(early);

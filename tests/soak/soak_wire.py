@@ -1,12 +1,12 @@
-"""Half an hour of robot time by the clock, on the wire: the hardware program against the served robot, an operator at
-both keyboards.
+"""Half an hour at real pace over the network: the hardware program with the served robot, and an operator at both
+keyboards.
 
   soak_wire.py FOVEA_SIM FOVEA_HW [--minutes 30] [--seed 1] [--json]
 
-The ball wanders. Again and again, drawn from the seed, the operator has the arm held and lets it track again, or presses
-the stop button, releases it and recovers. Looked at: that every fault is recovered from, that neither program's memory
-grows, that no tick takes from the heap, that what was counted on both sides adds up, and how far off the ball is in the
-end. Exit: 0 nothing was found, 1 something was, 2 it did not start."""
+The ball wanders. Repeatedly, at random times from the seed, the operator requests Hold and then Track, or presses the
+stop button, releases it and recovers. The test checks that every fault is recovered from, that neither program's memory
+grows, that no tick uses the heap, that the counters of both sides add up, and the final image error of the ball.
+Exit: 0 passed, 1 failed, 2 not started."""
 
 import argparse
 import json
@@ -20,20 +20,20 @@ import threading
 import time
 
 PAGE = os.sysconf("SC_PAGESIZE")
-MOST_GROWTH = 4 << 20  # of either program, by the line that fits best [bytes]
+MOST_GROWTH = 4 << 20  # of either program, by the fitted line [bytes]
 WARM_UP_S = 180.0
-MOST_ERROR_PX = 5.0  # of a ball that wanders
+MOST_ERROR_PX = 5.0  # for a wandering ball
 PATIENCE_S = 20.0
 
 
 class Program:
-    """One of the two, with what it says on standard error as it comes."""
+    """One of the two programs, with the lines of its standard error."""
 
     def __init__(self, *command):
         self.process = subprocess.Popen([str(part) for part in command], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                         stderr=subprocess.PIPE, text=True)
         self.lines = queue.Queue()
-        self.fault = ""  # that it is in, in its own words
+        self.fault = ""  # the program's line about its present fault
         self.said = ""
         self.memory = []
         threading.Thread(target=self.listen, daemon=True).start()
@@ -54,7 +54,7 @@ class Program:
         self.process.stdin.flush()
 
     def wait_for(self, *words):
-        """The first line that begins with one of these; empty when none comes in time."""
+        """The first line that begins with one of `words`; empty on timeout."""
         end = time.monotonic() + PATIENCE_S
         while (left := end - time.monotonic()) > 0:
             try:
@@ -77,7 +77,7 @@ class Program:
             pass
 
     def end(self):
-        """What it says of itself."""
+        """Ends the program. Returns its summary."""
         self.process.send_signal(signal.SIGINT)
         self.process.wait(timeout=30)
         time.sleep(0.2)
@@ -85,8 +85,8 @@ class Program:
 
 
 def growth(samples):
-    """Of the line that fits best, after a tenth of the time and three minutes, in which the renderer's and the
-    allocator's stores fill (by 4 MiB) [bytes]."""
+    """Growth of the fitted line [bytes], after a warm-up of a tenth of the time, at least three minutes. In these the
+    caches of the renderer and the allocator fill (4 MiB)."""
     if not samples:
         return 0.0
     warm_s = samples[0][0] + max(0.1 * (samples[-1][0] - samples[0][0]), WARM_UP_S)
@@ -100,7 +100,7 @@ def growth(samples):
 
 
 def operate(server, hw, draw, end, complaints):
-    """What was done, and how often."""
+    """Plays the operator until `end`. Returns the number of each action and fault."""
     done = {"held": 0, "stopped": 0, "recovered": 0}
     begin = time.monotonic()
     hw.wait_for("track")
@@ -116,19 +116,19 @@ def operate(server, hw, draw, end, complaints):
             if hw.process.poll() is not None or server.process.poll() is not None:
                 complaints.append("a program ended by itself")
                 return done
-        # A machine that is kept busy may miss deadlines, at any moment: that is a fault as any other, to be recovered from.
+        # A busy machine may miss deadlines at any moment: a fault like any other, to be recovered from.
         hw.forget()
         fault = hw.fault
         if fault:
             done[fault] = done.get(fault, 0) + 1
         elif time.monotonic() + PATIENCE_S > end:
-            continue  # what comes now would not be over in time
+            continue  # too late for another action
         elif draw.random() < 0.5:
             hw.say("hold")
             done["held"] += 1
             answer = hw.wait_for("hold", "fault:")
             if not answer:
-                complaints.append("hold was asked for and did not come")
+                complaints.append("the servo did not hold on request")
             fault = answer if answer.startswith("fault:") else ""
             if not fault:
                 hw.say("track")
@@ -137,13 +137,13 @@ def operate(server, hw, draw, end, complaints):
             done["stopped"] += 1
             fault = hw.wait_for("fault:")
             if not fault:
-                complaints.append("the stop button was pressed and nobody took notice")
+                complaints.append("the stop button had no effect")
             time.sleep(draw.uniform(0.2, 1.5))
             server.say("s")
             time.sleep(0.5)
         if fault:
             recover(hw, done, complaints)
-    # In the end it tracks, whatever came last.
+    # At the end the servo tracks, whatever came last.
     if hw.fault:
         recover(hw, done, complaints)
     time.sleep(PATIENCE_S)
@@ -156,7 +156,7 @@ def recover(hw, done, complaints):
     if hw.wait_for("hold", "track"):
         done["recovered"] += 1
     else:
-        complaints.append("it was not recovered from a fault")
+        complaints.append("recovery from a fault failed")
     hw.say("track")
 
 
@@ -188,7 +188,7 @@ def main():
         servo_side = hw.end()
         robot_side = server.end()
     except (subprocess.TimeoutExpired, ValueError, OSError) as error:
-        complaints.append(f"a program did not say how it went: {error}")
+        complaints.append(f"a program gave no summary: {error}")
         for program in (hw, server):
             program.process.kill()
     figures = {"minutes": (time.monotonic() - begin) / 60.0, **done,
@@ -206,11 +206,11 @@ def main():
         if servo_side["heap_allocations_in_tick"] != 0:
             complaints.append(f"{servo_side['heap_allocations_in_tick']} heap calls in ticks")
         if robot["commands"] > robot["states"] or robot["states"] > robot_side["states"]:
-            complaints.append(f"{robot_side['states']} states sent, {robot['states']} come, {robot['commands']} answered")
+            complaints.append(f"{robot_side['states']} states sent, {robot['states']} received, {robot['commands']} answered")
         if not (robot_side.get("error_px") or 1e9) <= MOST_ERROR_PX:
-            complaints.append(f"in the end the ball is {robot_side.get('error_px')} px off")
+            complaints.append(f"the final error is {robot_side.get('error_px')} px")
         if servo_side["mode"] not in ("track", "coast"):
-            complaints.append(f"it ended in {servo_side['mode']}, {servo_side['fault']}")
+            complaints.append(f"the run ended in {servo_side['mode']}, {servo_side['fault']}")
     figures |= {"good": not complaints, "failures": complaints}
     if options.json:
         print(json.dumps(figures, indent=2))

@@ -1,4 +1,4 @@
-// What a soak lets happen to arm, eye and computer: a list, and when each of them lasts.
+// The disturbances of a soak on arm, camera and computer, and their durations.
 #pragma once
 
 #include <array>
@@ -11,27 +11,27 @@ namespace fovea::soak {
 enum class Trouble : std::uint8_t {
   kNone,
   kSilence,       // the arm does not answer for some ticks
-  kLongSilence,   // for longer than it may
-  kNoNumber,      // an encoder's value is no number, for some ticks
-  kNoNumberLong,  // for longer than it may
-  kStall,         // the computer swallows some ticks
-  kLongStall,     // more than it may
-  kPush,          // somebody leans on a joint
-  kShove,         // harder than is borne
+  kLongSilence,   // for longer than tolerated
+  kNoNumber,      // an encoder reads NaN for some ticks
+  kNoNumberLong,  // for longer than tolerated
+  kStall,         // the computer misses some ticks
+  kLongStall,     // more than tolerated
+  kPush,          // a person leans on a joint
+  kShove,         // harder than tolerated
   kBlink,         // no measurement for a moment
-  kBlind,         // for longer than prediction reaches
-  kWrongFeature,  // the detector sees the target elsewhere
-  kNoFeature,     // it says what is no number
-  kLateFeature,   // its measurements come 60 ms later
-  kHoldAsked,     // the operator asks to hold, and then to track again
+  kBlind,         // for longer than the prediction is used
+  kWrongFeature,  // the detector reports a wrong position
+  kNoFeature,     // the detector reports NaN
+  kLateFeature,   // measurements arrive 60 ms late
+  kHoldAsked,     // the operator requests Hold, then Track again
 };
 inline constexpr std::array<const char*, 15> kTroubleNames{
     "none",  "silence",       "long_silence", "no_number",    "no_number_long",
     "stall", "long_stall",    "push",         "shove",        "blink",
     "blind", "wrong_feature", "no_feature",   "late_feature", "hold_asked"};
 
-// Whether it may lead to `fault`; kNone: it may be borne. A shove may make a joint too fast, or take it away
-// from its reference, before it shows as a contact.
+// Whether the disturbance may lead to `fault`; kNone: it may be tolerated. A shove may first appear as a
+// joint that is too fast or that leaves its reference, before it appears as a contact.
 [[nodiscard]] constexpr bool MayLeadTo(Trouble trouble, hal::Fault fault) {
   switch (trouble) {
     case Trouble::kLongSilence: return fault == hal::Fault::kArmLost;
@@ -45,7 +45,7 @@ inline constexpr std::array<const char*, 15> kTroubleNames{
   }
 }
 
-// How long it lasts [ms].
+// Duration [ms].
 [[nodiscard]] constexpr int LengthOf(Trouble trouble) {
   switch (trouble) {
     case Trouble::kNone: return 0;

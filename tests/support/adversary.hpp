@@ -1,5 +1,5 @@
-// An eye that means ill: measurements of a ball that freeze, repeat what was, go the wrong way, jump, run
-// away from the hand or draw it to where it must not go; in a row, each for a while, by chance and by seed.
+// An adversarial camera. Its measurements of a ball freeze, repeat, go the wrong way, jump, run away from the
+// hand or lure it to forbidden places. The seed decides which trick follows and how long it lasts.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -15,20 +15,20 @@
 namespace fovea::test {
 
 enum class Trick {
-  kHonest,     // where the ball is, with noise
-  kFrozen,     // as it was seen when the trick began
-  kSame,       // the same, and the picture is said to be the same, too
-  kReplayed,   // as it was seen some time ago
-  kMirrored,   // right is left
-  kTurned,     // as by a mount that is off by up to half a turn
-  kWalks,      // a random walk in the picture
-  kRunsAway,   // steadily on in the base's axes, at up to 4 m/s
-  kFlees,      // always a little further on in the direction in which the camera goes
-  kDrawsDown,  // beneath the hand, so that it must go down
-  kDrawsHome,  // near the arm's own base
-  kJumps,      // elsewhere every few frames
-  kNoise,      // anywhere in each frame
-  kHuge,       // numbers at the edge of what is one
+  kHonest,     // the true position, with noise
+  kFrozen,     // the position when the trick began
+  kSame,       // as kFrozen, and the measurement reports an unchanged picture
+  kReplayed,   // the position some time ago
+  kMirrored,   // left and right swapped
+  kTurned,     // turned by up to 1.2 rad, as by a wrong mount
+  kWalks,      // a random walk in C
+  kRunsAway,   // at constant velocity in B, up to 4 m/s
+  kFlees,      // fixed in C beside where it was seen: it moves along with the camera
+  kDrawsDown,  // at least 0.6 m below the camera, so that the hand goes down
+  kDrawsHome,  // 0.1 m from the base's origin
+  kJumps,      // to another place every fourth frame
+  kNoise,      // 0.3 m of noise in each frame
+  kHuge,       // scaled by 1e-12 to 1e12
 };
 inline constexpr int kNumTricks = 14;
 
@@ -36,7 +36,7 @@ class Adversary {
  public:
   explicit Adversary(std::uint64_t seed) : random_(seed) {}
 
-  // What is said of a ball of `radius` [m] at `p_BO`, exposed at `stamp_ns` from `X_BC`.
+  // The measurement of a ball of `radius` [m] at `p_BO` [m], exposed at `stamp_ns` from `X_BC`; true or not.
   hal::FeatureMeasurement See(const Eigen::Isometry3d& X_BC, const Eigen::Vector3d& p_BO, double radius,
                               std::int64_t stamp_ns) {
     if (frames_left_-- <= 0) {
@@ -53,7 +53,7 @@ class Adversary {
       p_B_ = p_BO;
     }
     Eigen::Vector3d p = Place(X_BC, honest);
-    p.z() = std::max(std::fabs(p.z()), 0.05);  // before the camera, or it would be refused at once
+    p.z() = std::max(std::fabs(p.z()), 0.05);  // in front of the camera, or the servo refuses it at once
     hal::FeatureMeasurement m;
     m.stamp_ns = stamp_ns + stamp_off_ns_;
     m.sequence = sequence_++;
@@ -69,7 +69,7 @@ class Adversary {
   }
 
   [[nodiscard]] Trick trick() const { return trick_; }
-  // How many times each was played.
+  // How often each trick was played.
   [[nodiscard]] const std::array<int, kNumTricks>& played() const { return played_; }
 
  private:
@@ -80,7 +80,7 @@ class Adversary {
   Eigen::Vector3d Anywhere(double size) { return size * Eigen::Vector3d(Normal(), Normal(), Normal()); }
 
   void Begin(std::int64_t stamp_ns) {
-    // Every other one is honest, so that the servo comes back to where it can be misled.
+    // Every other trick is kHonest, so that the servo tracks again and can be misled again.
     trick_ = trick_ == Trick::kHonest
                  ? static_cast<Trick>(1 + static_cast<int>(Uniform(0.0, kNumTricks - 1.001)))
                  : Trick::kHonest;
@@ -134,7 +134,7 @@ class Adversary {
   std::uint64_t sequence_ = 0;
   std::int64_t since_ns_ = 0;
   bool started_ = false;
-  std::deque<Eigen::Vector3d> seen_;  // in C
+  std::deque<Eigen::Vector3d> seen_;  // true positions in C
   Eigen::Vector3d p_C_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d p_B_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d way_ = Eigen::Vector3d::UnitX();

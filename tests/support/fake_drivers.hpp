@@ -13,7 +13,7 @@
 
 namespace fovea::test {
 
-// Answers with `state`, `read_status` and `write_status`; remembers what was written.
+// Returns `state`, `read_status` and `write_status`; keeps the commands written.
 class FakeArm final : public hal::Arm {
  public:
   explicit FakeArm(int num_joints, bool paces_loop = false) : Arm(num_joints, paces_loop) {
@@ -22,7 +22,7 @@ class FakeArm final : public hal::Arm {
   hal::ArmState state;
   hal::Status read_status;
   hal::Status write_status;
-  std::function<void()> before_read;  // what the arm does while it is waited for; may be empty
+  std::function<void()> before_read;  // runs at the start of each Read; may be empty
   std::vector<hal::ArmCommand> written;
 
  private:
@@ -42,7 +42,7 @@ class FakeArm final : public hal::Arm {
   }
 };
 
-// Hands out the frames that were put in, then answers `after`.
+// Returns `frames` one after another, then the status `after`.
 class FakeCamera final : public hal::Camera {
  public:
   std::deque<hal::Frame> frames;
@@ -59,7 +59,7 @@ class FakeCamera final : public hal::Camera {
   }
 };
 
-// Time that jumps to each deadline, plus the delays that were asked for, one per wait.
+// Time jumps to each deadline, plus the next entry of `late_ns`: one entry per wait.
 class FakeClock final : public hal::Clock {
  public:
   std::int64_t now_ns = 0;

@@ -1,4 +1,4 @@
-// An arm that obeys its own model exactly, without gravity and friction (the seam's arm adds those itself):
+// An arm that follows its model exactly, without gravity and friction (a hal::Arm compensates both itself):
 // M(q) ddq + C(q, dq) dq = tau, integrated with many small steps. For closed loops without a simulator.
 #pragma once
 
@@ -21,7 +21,7 @@ class IdealArm {
     braked_ = command.engage_brakes;
   }
 
-  // One millisecond.
+  // Simulates one millisecond.
   void Step() {
     constexpr int kSubSteps = 4;
     constexpr double kDt = 1e-3 / kSubSteps;
@@ -55,7 +55,7 @@ class IdealArm {
 
   [[nodiscard]] const model::VecN& q() const { return q_; }
   [[nodiscard]] const model::VecN& dq() const { return dq_; }
-  // From now on nothing moves it.
+  // From now on the arm stands still.
   void Jam() { jammed_ = true; }
   void SetVelocity(const model::VecN& dq) { dq_ = dq; }
 

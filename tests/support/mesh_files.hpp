@@ -16,7 +16,7 @@ inline void WriteStlText(const std::filesystem::path& file, const sim::Mesh& mes
   out.precision(9);
   out << "solid test\n";
   for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
-    out << "facet normal 0 0 0\n outer loop\n";  // many programs leave the normals to the reader
+    out << "facet normal 0 0 0\n outer loop\n";  // many programs write no normals
     for (std::size_t k = 0; k < 3; ++k) {
       out << "  vertex " << mesh.vertices[mesh.indices[t + k]].position.transpose() << "\n";
     }
@@ -47,7 +47,7 @@ inline void WriteStlBinary(const std::filesystem::path& file, const sim::Mesh& m
   }
 }
 
-// With the mesh's normals, or without any. `material`: a line "usemtl <name>" and its library, or "".
+// `normals`: also writes the mesh's normals. `material`: a line "usemtl <name>" and its library, or "".
 inline void WriteObj(const std::filesystem::path& file, const sim::Mesh& mesh, bool normals,
                      const std::string& material = "") {
   std::ofstream out(file);
@@ -71,7 +71,7 @@ inline void WriteObj(const std::filesystem::path& file, const sim::Mesh& mesh, b
   }
 }
 
-// As a node with `matrix` (row by row), in red; `asset`: what stands in <asset>.
+// Writes one red node with `matrix` (row by row). `asset`: the content of <asset>.
 inline void WriteDae(const std::filesystem::path& file, const sim::Mesh& mesh, const std::string& asset,
                      const std::string& matrix = "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1") {
   std::ofstream out(file);

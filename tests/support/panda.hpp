@@ -1,4 +1,4 @@
-// The Panda and a servo configuration for it, as most tests want them.
+// The Panda and its servo configuration, as most tests use them.
 #pragma once
 
 #include <string>

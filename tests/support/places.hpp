@@ -1,5 +1,4 @@
-// Where the tests find the tree's own files. Functions, not macros: no test's object depends on where the
-// tree lies.
+// Paths of the tree's own files. Functions, not macros: no test's object code depends on the tree's path.
 #pragma once
 
 #include <filesystem>

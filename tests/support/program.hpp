@@ -1,4 +1,4 @@
-// Runs a program as a user would, and keeps what it said.
+// Runs a program as a user would, and keeps its output.
 #pragma once
 
 #include <fcntl.h>
@@ -20,13 +20,13 @@
 namespace fovea::test {
 
 struct ProgramResult {
-  int exit_code = -1;  // -1: it was ended by a signal
+  int exit_code = -1;  // -1: a signal ended it
   std::string out;
   std::string err;
 };
 
-// `arguments[0]` is the program, looked for in PATH. `environment` ("NAME=value") is added to this one's. A
-// program that does not end within `limit` is killed, and std::runtime_error thrown.
+// `arguments[0]` is the program, looked up in PATH. `environment` ("NAME=value") is added to the caller's. A
+// program that runs longer than `limit` is killed: std::runtime_error.
 inline ProgramResult RunProgram(std::vector<std::string> arguments,
                                 const std::vector<std::string>& environment = {},
                                 std::chrono::seconds limit = std::chrono::seconds(90)) {

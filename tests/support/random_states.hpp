@@ -17,7 +17,7 @@ class RandomStates {
     return {Uniform(-size, size), Uniform(-size, size), Uniform(-size, size)};
   }
 
-  // Anywhere in the joints' range.
+  // Uniform in the joints' range, within +-3.2 [rad or m].
   model::VecN Position(const model::ArmModel& arm) {
     model::VecN q(arm.num_joints);
     for (int i = 0; i < arm.num_joints; ++i) {

@@ -22,7 +22,7 @@ struct BallPicture {
   double radius = 0.04;
   std::array<double, 3> ball_bgr{15.0, 18.0, 190.0};
   std::array<double, 3> ground_bgr{60.0, 52.0, 30.0};
-  double shade = 0.0;  // how much darker the ball is on its far side from the light, 0 to 1
+  double shade = 0.0;  // how much darker the side away from the light is, 0 to 1
   double noise = 0.0;  // standard deviation [gray levels]
   unsigned seed = 1;
   int grid = 8;  // points per pixel, each way

@@ -1,9 +1,9 @@
-// How often a property is tried with random states.
+// Number of random states that a test tries.
 #pragma once
 
 namespace fovea::test {
 
-// `count` as asked for; under a sanitizer, which is some twenty times slower, a tenth of it.
+// Returns `count`; under a sanitizer, which is some twenty times slower, a tenth of it.
 constexpr int Repetitions(int count) {
 #if defined(FOVEA_SANITIZED)
   return count / 10;

@@ -1,5 +1,5 @@
-// Inputs of the servo over some seconds, as an ideal arm and an eye that is told the truth give them: one run
-// for each target, for commanded motions, and for what goes wrong. For what looks at the servo from outside.
+// The servo's inputs over some seconds, recorded with an ideal arm and a camera that measures the truth: one
+// run per target, one of commanded motions, one of disturbances. For tests that watch the servo from outside.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ inline config::ServoConfig ConfigOf(hal::FeatureKind target, features::FeatureFo
   return config;
 }
 
-// `change(tick, inputs)` has the last word on each tick's inputs.
+// `change(tick, inputs)` may change each tick's inputs.
 template <class Change>
 ServoRun RunOnIdealArm(const std::string& name, const config::ServoConfig& config, int ticks, bool sees,
                        const Change& change) {
@@ -87,7 +87,7 @@ inline ServoRun TrackingRun(const std::string& name, hal::FeatureKind target, fe
   return RunOnIdealArm(name, ConfigOf(target, form), ticks, true, [](int, task::ServoInputs&) {});
 }
 
-// Goals of joints and of the hand, home, another law on the way, and a request.
+// Joint goals, pose goals, homing, a change of motion law, and a Hold request.
 inline ServoRun CommandedRun(int ticks) {
   config::ServoConfig config = PandaConfig();
   config.auto_track = false;
@@ -113,8 +113,7 @@ inline ServoRun CommandedRun(int ticks) {
   });
 }
 
-// States that do not come, values that are no numbers, missed ticks, an eye that goes blind; at last the arm
-// is lost, and reset.
+// Missing states, NaN, missed ticks, a camera without measurements; at the end the arm is lost, then reset.
 inline ServoRun TroubledRun(int ticks) {
   return RunOnIdealArm("troubled", ConfigOf(hal::FeatureKind::kSphere, features::FeatureForm::kSphere), ticks,
                        true, [ticks](int k, task::ServoInputs& inputs) {
@@ -132,7 +131,7 @@ inline ServoRun TroubledRun(int ticks) {
                        });
 }
 
-// One of each, each long enough to pass two keyframes' times.
+// All runs. Each lasts 2600 ticks, past the keyframes of ticks 1000 and 2000.
 inline std::vector<ServoRun> AllServoRuns() {
   using features::FeatureForm;
   using hal::FeatureKind;

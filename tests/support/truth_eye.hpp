@@ -1,5 +1,5 @@
-// An eye that is told the truth: measurements of any target from its pose, with noise of a size in pixels and
-// the covariance that goes with it. For closed loops without a renderer and a detector.
+// A camera that measures the truth: measurements of any target from its true pose, with noise given in pixels
+// and the matching covariance. For closed loops without renderer and detector.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -13,12 +13,11 @@ namespace fovea::test {
 
 class TruthEye {
  public:
-  // `sigma_px`: of each corner, or of a centre and a radius; 0: no noise, but still the covariance of 0.01
-  // px.
+  // `sigma_px`: noise of each corner, or of centre and radius. 0: no noise, but the covariance of 0.01 px.
   TruthEye(const features::TargetFeature& feature, double f_px, double sigma_px, unsigned seed)
       : feature_(feature), sigma_(std::max(sigma_px, 0.01) / f_px), noisy_(sigma_px > 0.0), engine_(seed) {}
 
-  // What is seen of a target at `X_CO`.
+  // The measurement of a target at `X_CO`.
   hal::FeatureMeasurement See(const model::Pose& X_CO, std::int64_t stamp_ns, std::uint64_t sequence) {
     hal::FeatureMeasurement m;
     m.stamp_ns = stamp_ns;
@@ -54,7 +53,7 @@ class TruthEye {
     }
   }
 
-  // Centre (x, y) and half size R/Z, each with `sigma_`, as the position that they come from.
+  // Centre (x, y) and half size R/Z with noise `sigma_` each, converted to the position p_CO_C.
   void SeeCentre(const model::Vec3& p, hal::FeatureMeasurement& m) {
     const double z = p.z();
     model::Mat3 dp;  // d p_CO_C / d(x, y, R/Z)
@@ -79,7 +78,7 @@ class TruthEye {
     SetCovariance<3>(ds * cov_p * ds.transpose(), m);
   }
 
-  // Corners that are each off by `sigma_`, and the pose in which they are.
+  // Corners with noise `sigma_` each, and the true pose.
   void SeeCorners(const model::Pose& X_CO, hal::FeatureMeasurement& m) {
     m.dim = 2 * feature_.corners.num_corners;
     for (int i = 0; i < feature_.corners.num_corners; ++i) {

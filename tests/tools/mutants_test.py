@@ -1,4 +1,4 @@
-"""tools/mutants in a project of its own, with a program in cmake's place:  mutants_test.py TOOLS_MUTANTS"""
+"""tools/mutants in a small test project, with a fake cmake:  mutants_test.py TOOLS_MUTANTS"""
 
 import os
 import pathlib
@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 MUTANTS = None
-# "Compiles" a source by copying it, unless it says that it does not compile.
+# "Compiles" a source by copying it; fails if the source contains "syntax".
 CMAKE = """#!/bin/sh
 [ "$1" = --preset ] && exit 0
 mkdir -p build/release/bin
@@ -42,7 +42,7 @@ class Mutants(unittest.TestCase):
         (self.root / name).write_text(text)
 
     def mutants(self, rows, *arguments, chosen="*"):
-        """Exit code, and all that was said, with a list of (name, old, new)."""
+        """Exit code and output of tools/mutants for a list of (name, old, new)."""
         self.write("tests/mutants/mutants.toml", "".join(
             f'[[mutant]]\nname = "{name}"\nfile = "source.sh"\nold = "{old}"\nnew = "{new}"\nmeans = "m"\n'
             f'tests = ["a_test"]\nfilter = "{chosen}"\n' for name, old, new in rows))
@@ -53,19 +53,19 @@ class Mutants(unittest.TestCase):
     def test_detected_mutant_passes_and_names_its_test(self):
         code, said = self.mutants([DROPPED])
         self.assertEqual(code, 0, said)
-        self.assertIn("dropped: noticed by Limit.Holds", said)
-        self.assertIn("1 of 1 mistakes were noticed", said)
+        self.assertIn("dropped: detected by Limit.Holds", said)
+        self.assertIn("1 of 1 mistakes were detected", said)
         self.assertEqual((self.root / "source.sh").read_text(), SOURCE)
 
     def test_surviving_mutant_fails(self):
         code, said = self.mutants([DROPPED, ("alive", "unwatched=4", "unwatched=5")])
         self.assertEqual(code, 1, said)
-        self.assertIn("1 of 2 mistakes were noticed; not: alive", said)
+        self.assertIn("1 of 2 mistakes were detected; not: alive", said)
 
     def test_each_mutant_is_reverted_before_the_next(self):
         code, said = self.mutants([DROPPED, ("alive", "unwatched=4", "unwatched=5"), ("again", "limit=3", "limit=1")])
         self.assertEqual(code, 1, said)
-        self.assertIn("2 of 3 mistakes were noticed; not: alive", said)
+        self.assertIn("2 of 3 mistakes were detected; not: alive", said)
 
     def test_mutant_that_does_not_apply_or_compile_fails(self):
         code, said = self.mutants([("gone", "limit=7", "limit=9"), ("broken", "limit=3", "syntax")])
@@ -109,12 +109,12 @@ class Mutants(unittest.TestCase):
         code, said = self.mutants([DROPPED], "--table")
         self.assertEqual(code, 0, said)
         self.assertIn("| dropped | m | `source.sh` | `a_test`: `*` | `Limit.Holds` |", said)
-        # What was found of it says nothing of another mistake of that name.
+        # A recorded result does not apply to another mistake of the same name.
         self.assertNotIn("Limit.Holds", self.mutants([("dropped", "limit=3", "limit=1")], "--table")[1])
         self.mutants([("alive", "unwatched=4", "unwatched=5")])
         code, said = self.mutants([("alive", "unwatched=4", "unwatched=5"), DROPPED], "--table")
         self.assertEqual(code, 1, said)
-        self.assertIn("| **none**: lives: no test noticed |", said)
+        self.assertIn("| **none**: lives: no test failed |", said)
 
     def test_wrong_usage_is_refused(self):
         self.assertEqual(self.mutants([DROPPED], "--only", "nothing")[0], 2)

@@ -1,4 +1,4 @@
-"""tools/tidy in a project of its own, with programs in clang-tidy's and ninja's place:  tidy_test.py TOOLS_TIDY"""
+"""tools/tidy in a small test project, with fake clang-tidy and ninja:  tidy_test.py TOOLS_TIDY"""
 
 import json
 import os
@@ -10,7 +10,7 @@ import tempfile
 import unittest
 
 TIDY = None
-# Finds fault with sources that say so.
+# Fails for sources that contain "bad".
 CLANG_TIDY = """#!/bin/sh
 [ "$1" = --version ] && exit 0
 for source; do :; done
@@ -51,7 +51,7 @@ class Tidy(unittest.TestCase):
         self.git("commit", "--quiet", "--message", "a")
 
     def tidy(self, *arguments):
-        """Exit code, and all that was said."""
+        """Exit code and output."""
         done = subprocess.run([sys.executable, self.root / "tools/tidy", *arguments], capture_output=True, text=True,
                               env={**os.environ, "PATH": f"{self.root / 'bin'}:{os.environ['PATH']}",
                                    "XDG_CACHE_HOME": str(self.root / "build/cache")})
@@ -60,7 +60,7 @@ class Tidy(unittest.TestCase):
     def test_clean_source_is_not_checked_again(self):
         code, said = self.tidy()
         self.assertEqual(code, 0, said)
-        self.assertIn("not in build/release, so not looked at: tests/consumer/project/main.cpp", said)
+        self.assertIn("not in build/release, so not checked: tests/consumer/project/main.cpp", said)
         self.assertIn("2 sources, 2 known to be clean", self.tidy()[1])
         self.write("b.cpp", "bad")
         code, said = self.tidy()
@@ -94,10 +94,10 @@ class Tidy(unittest.TestCase):
     def test_sources_left_at_timeout_fail_unless_partial(self):
         code, said = self.tidy("--minutes", "0")
         self.assertEqual(code, 1, said)
-        self.assertIn("2 of 2 sources were not looked at: the time was up", said)
+        self.assertIn("2 of 2 sources were not checked: the time was up", said)
         code, said = self.tidy("--minutes", "0", "--partial")
         self.assertEqual(code, 0, said)
-        self.assertIn("2 of 2 sources were not looked at: the time was up", said)
+        self.assertIn("2 of 2 sources were not checked: the time was up", said)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
-// Once warm, a detector takes nothing from the heap: every malloc of the process is counted, those inside
-// OpenCV too.
+// After the first images a detector makes no heap call. Every
+// malloc of the process is counted, also inside OpenCV.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -38,14 +38,14 @@ class DetectorHeapTest : public testing::Test {
  protected:
   void SetUp() override {
 #ifdef FOVEA_SANITIZED
-    GTEST_SKIP() << "a sanitizer brings a malloc of its own";
+    GTEST_SKIP() << "a sanitizer replaces malloc";
 #endif
     ASSERT_TRUE(linux_rt::HeapCounterActive())
         << "the interposer is not linked: a count of 0 would mean nothing";
     cv::setNumThreads(1);
   }
 
-  // Heap calls of: searched and found, found again where it was, lost, found anew. The second time round.
+  // Heap calls of four images: found by a search, tracked, lost, found again. Counted in the second round.
   static std::uint64_t CallsOf(TargetKind kind, FindBy by) {
     const char* scene = by == FindBy::kColour ? "clutter" : "noise-15";
     const cv::Mat with = PictureOf(scene, kind, true);
@@ -91,7 +91,7 @@ TEST_F(DetectorHeapTest, TriangleByColourMakesNoHeapCall) {
   EXPECT_EQ(CallsOf(TargetKind::kTriangle, FindBy::kColour), 0U);
 }
 
-// The test's own proof.
+// Checks the check: a heap call is counted.
 TEST_F(DetectorHeapTest, HeapCallOfAVectorIsCounted) {
   EXPECT_EQ(HeapCallsOf([] {
               std::vector<EdgePoint> points(7);

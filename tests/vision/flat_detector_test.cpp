@@ -1,4 +1,4 @@
-// Disc, square and triangle on ray-cast pictures: poses against the truth and against their own covariance.
+// Poses of disc, square and triangle on ray-cast pictures, against the truth and their own covariance.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -48,13 +48,13 @@ bench::PictureScene SceneOf(const DetectorConfig& config, const model::Pose& X_C
 
 struct Errors {
   int found = 0;
-  int right = 0;  // of the right branch
+  int right = 0;  // poses on the right branch
   double mm2 = 0.0;
   double deg2 = 0.0;
   double chi2 = 0.0;  // over 6
 };
 
-// Tilted by up to `most_tilt` [rad], in a first image: nothing is known of the pose before.
+// Poses tilted by up to `most_tilt` [rad], each from a single first image without a known last pose.
 Errors MeasurePoses(hal::FeatureKind kind, double most_tilt, double most_turn, int count) {
   const DetectorConfig config = ConfigOf(kind);
   std::mt19937 engine(5);
@@ -111,7 +111,7 @@ TEST(FlatDetectorTest, SquarePosesAreAccurate) {
 TEST(FlatDetectorTest, TrianglePosesAreAccurate) {
   const Errors e = MeasurePoses(hal::FeatureKind::kTriangle, 0.25, 3.0, 30);
   EXPECT_EQ(e.found, 30);
-  EXPECT_GE(e.right, 20) << "without a last pose, three points leave a choice";
+  EXPECT_GE(e.right, 20) << "without a last pose, three points are ambiguous";
   EXPECT_LT(std::sqrt(e.mm2), 0.5);
   EXPECT_LT(e.chi2, 3.0);
 }
@@ -121,7 +121,7 @@ TEST(FlatDetectorTest, TiltedDiscCentreIsNotItsEllipseCentre) {
   double worst = 0.0;
   double worst_depth = 0.0;
   for (int i = 0; i < 12; ++i) {
-    // The table's discs face the optical axis, wherever they are in the picture.
+    // The discs are parallel to the image plane, wherever they are in the picture.
     const int row = i / 4;
     const model::Pose X_CO{Mat3::Identity(), Vec3(0.02 * (i % 4 - 1.5), 0.02 * (row - 1.0), 0.25 + 0.02 * i)};
     TargetDetector detector(config);
@@ -132,15 +132,15 @@ TEST(FlatDetectorTest, TiltedDiscCentreIsNotItsEllipseCentre) {
         worst, 554.256 * std::hypot(d.s[0] - X_CO.p.x() / X_CO.p.z(), d.s[1] - X_CO.p.y() / X_CO.p.z()));
     worst_depth = std::max(worst_depth, std::fabs(d.s[2] * X_CO.p.z() / config.size - 1.0));
   }
-  std::cout << "middle, worst " << worst << " px; depth, worst " << 100.0 * worst_depth << " %\n";
+  std::cout << "centre, worst " << worst << " px; depth, worst " << 100.0 * worst_depth << " %\n";
   EXPECT_LT(worst, 0.35);
   EXPECT_LT(worst_depth, 0.001);
 
-  // Exactly, from the ellipse of a tilted one.
+  // The pose of a tilted disc from its exact ellipse.
   const Mat3 tilt = model::RotationOf(Vec3(0.6, 0.0, 0.0));
   std::array<DiscPose, 2> poses;
   const model::Pose X_CO{tilt, Vec3(0.03, -0.02, 0.4)};
-  Eigen::Matrix3d H;  // from the disc's plane, in radii, to pixels
+  Eigen::Matrix3d H;  // maps the disc's plane [radii] to pixels
   const Intrinsics& in = config.intrinsics;
   Eigen::Matrix3d K;
   K << in.f_u_px, 0.0, in.c_u_px, 0.0, in.f_v_px, in.c_v_px, 0.0, 0.0, 1.0;
@@ -153,7 +153,7 @@ TEST(FlatDetectorTest, TiltedDiscCentreIsNotItsEllipseCentre) {
   EXPECT_LT(off, 1e-9);
 }
 
-// Three corners fit up to six poses, of which one out of reach says nothing of the others.
+// Three corners fit up to six poses. A pose out of reach does not exclude the others.
 TEST(FlatDetectorTest, TrianglePosesOutOfReachAreDropped) {
   const model::Pose X_CO{model::RotationOf({-0.001, 0.7353, -0.2209}), {-0.3394, -0.1787, 0.7283}};
   const auto poses_within = [&](double distance_max) {
@@ -164,7 +164,7 @@ TEST(FlatDetectorTest, TrianglePosesOutOfReachAreDropped) {
   };
   const Detection all = poses_within(3.0);
   ASSERT_TRUE(all.found);
-  ASSERT_GT(all.pose[0].X_CO.p.norm(), 0.9) << "or the case is none";
+  ASSERT_GT(all.pose[0].X_CO.p.norm(), 0.9) << "the test needs a pose out of reach";
   const Detection d = poses_within(0.9);
   ASSERT_TRUE(d.found);
   EXPECT_LT(d.pose_count, all.pose_count);
@@ -174,7 +174,7 @@ TEST(FlatDetectorTest, TrianglePosesOutOfReachAreDropped) {
     EXPECT_LE(pose.p.norm(), 0.9);
     nearest_deg = std::min(nearest_deg, 57.3 * model::RotationVector(pose.R * X_CO.R.transpose()).norm());
   }
-  std::cout << "of a triangle's poses in reach the nearest is off by " << nearest_deg << " deg\n";
+  std::cout << "nearest pose of the triangle in reach is off by " << nearest_deg << " deg\n";
   EXPECT_LT(nearest_deg, 0.3);
   EXPECT_FALSE(poses_within(0.3).found);
 }

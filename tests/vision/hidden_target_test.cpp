@@ -1,4 +1,4 @@
-// Each target with a part of it hidden, and on its way out of the picture and back: found rightly or refused.
+// Each target partly hidden, or moving out of the picture and back: found correctly or refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using bench::TargetKind;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kWrongPx = 2.0;  // further off than this is wrong
+constexpr double kWrongPx = 2.0;  // a larger error counts as wrong
 
 DetectorConfig ByBrightness(TargetKind kind) { return bench::ConfigOf(kind, {}, FindBy::kGray); }
 
@@ -29,8 +29,8 @@ struct Score {
   double rms_px = 0.0;
 };
 
-// `pictures` of a target with the share `hidden` of its outline behind a bar, then half as many of a bar
-// alone.
+// Measures `pictures` of a target whose outline is hidden by a bar over the share
+// `hidden`, then half as many pictures of the bar alone.
 Score Look(TargetKind kind, double hidden, int pictures) {
   const bench::SceneClass scenes{.name = "hidden", .noise = 3.0, .hidden = hidden};
   Score score;
@@ -49,21 +49,21 @@ Score Look(TargetKind kind, double hidden, int pictures) {
   }
   score.rms_px = std::sqrt(sum2 / std::max(score.found, 1));
   std::cout << 100.0 * hidden << " % hidden: found " << score.found << " of " << pictures << ", wrong "
-            << score.wrong << ", worst corner or middle " << score.rms_px << " px rms\n";
+            << score.wrong << ", worst corner or centre " << score.rms_px << " px rms\n";
   return score;
 }
 
-// With 10, 20 and 30 % hidden.
+// Required results with 10, 20 and 30 % hidden.
 struct Least {
   TargetKind kind;
   std::array<int, 3> found;  // of 20
   std::array<double, 3> rms_px;
-  double way_px;  // worst of those on its way out and back
+  double way_px;  // largest error on the way out and back
 };
 
 class HiddenTargetTest : public testing::TestWithParam<Least> {};
 
-// Where a side of a square is all hidden, its other three allow any square behind it: such are refused.
+// If one side of a square is hidden completely, the other three fit many squares: such pictures are refused.
 INSTANTIATE_TEST_SUITE_P(
     Kinds, HiddenTargetTest,
     testing::Values(Least{TargetKind::kSphere, {20, 19, 20}, {0.034, 0.017, 0.026}, 0.036},
@@ -81,7 +81,7 @@ TEST_P(HiddenTargetTest, IsFoundCorrectlyOrNotAtAll) {
   }
 }
 
-// Out over the right border and back in over it; one detector sees all of it.
+// Moves out over the right border and back in; one detector processes all pictures.
 TEST_P(HiddenTargetTest, IsLostOutsideThePictureAndFoundAgain) {
   const TargetKind kind = GetParam().kind;
   constexpr std::array<double, 14> kX{0.10, 0.15, 0.18, 0.20, 0.22, 0.24, 0.30,
@@ -108,7 +108,8 @@ TEST_P(HiddenTargetTest, IsLostOutsideThePictureAndFoundAgain) {
       worst_px = std::max(worst_px, OffOf(d, scene));
     }
   }
-  std::cout << inside << " of " << kX.size() << " pictures have all of it; worst " << worst_px << " px\n";
+  std::cout << inside << " of " << kX.size() << " pictures show the whole target; worst " << worst_px
+            << " px\n";
   EXPECT_GE(inside, 3);
   EXPECT_LT(worst_px, GetParam().way_px);
 }

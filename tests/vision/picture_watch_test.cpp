@@ -1,4 +1,4 @@
-// Whether two pictures differ by more than their noise.
+// Detection of pictures that differ by more than their noise.
 #include "firmware/vision/detect/picture_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kFrameNs = 33 * hal::kNsPerMs;
 
-// A bench with a smooth texture, of `contrast` gray levels, seen `shift_px` further to the side.
+// A bench with a smooth texture of `contrast` gray levels, shifted sideways by `shift_px`.
 cv::Mat Bench(double contrast, double shift_px) {
   cv::Mat gray(480, 640, CV_64FC1);
   for (int y = 0; y < gray.rows; ++y) {
@@ -57,7 +57,7 @@ TEST_P(PictureWatchTest, OnePixelShiftIsAChange) {
   EXPECT_EQ(watch.Look(Photo(Bench(40.0, 0.0), GetParam(), engine), 0), 0);
   EXPECT_EQ(watch.Look(Photo(Bench(40.0, 0.0), GetParam(), engine), kFrameNs), kFrameNs);
   for (int k = 2; k < 30; ++k) {
-    // In strong noise one pixel may be too little to tell; two are not.
+    // In strong noise one pixel may be too little to detect; two pixels are detected.
     EXPECT_LE(watch.Look(Photo(Bench(40.0, 1.0 * k), GetParam(), engine), k * kFrameNs),
               GetParam() > 3.0 ? kFrameNs : 0);
   }
@@ -65,7 +65,7 @@ TEST_P(PictureWatchTest, OnePixelShiftIsAChange) {
 
 INSTANTIATE_TEST_SUITE_P(Noise, PictureWatchTest, testing::Values(0.0, 1.0, 3.0, 6.0));
 
-// A slow drift adds up: the first picture of the row counts, not the one before.
+// A slow drift adds up, because each picture is compared with the first of the series, not with the last.
 TEST(PictureWatch, SlowDriftIsDetectedWithinTwoPixels) {
   std::mt19937_64 engine(3);
   PictureWatch watch;
@@ -75,7 +75,7 @@ TEST(PictureWatch, SlowDriftIsDetectedWithinTwoPixels) {
         static_cast<double>(watch.Look(Photo(Bench(40.0, 0.05 * k), 3.0, engine), k * kFrameNs));
     longest_px = std::max(longest_px, 0.05 * same / static_cast<double>(kFrameNs));
   }
-  std::cout << "the same over at most " << longest_px << " px\n";
+  std::cout << "counted as the same over at most " << longest_px << " px\n";
   EXPECT_LT(longest_px, 2.0);
 }
 

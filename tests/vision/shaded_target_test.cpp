@@ -1,4 +1,4 @@
-// A red target half in the sun, half in the shade of something: found by its colour, where it is.
+// A red target half in sun and half in shade is found by its colour, with the right position.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -30,7 +30,7 @@ class ShadedTargetTest : public testing::TestWithParam<hal::FeatureKind> {
     return config;
   }
 
-  // Tilted by `tilt` against the line of sight [rad].
+  // The target is tilted by `tilt` against the line of sight [rad].
   static bench::PictureScene Scene(const DetectorConfig& config, double tilt, std::mt19937& engine) {
     const auto uniform = [&](double a, double b) {
       return std::uniform_real_distribution<double>(a, b)(engine);
@@ -56,7 +56,7 @@ class ShadedTargetTest : public testing::TestWithParam<hal::FeatureKind> {
     return scene;
   }
 
-  // On one side of a line near the target's middle there is a third of the light; the edge is soft.
+  // Reduces the light to 0.3 on one side of a line near the target's centre, with a soft edge.
   static void Shade(const bench::PictureScene& scene, std::mt19937& engine, cv::Mat& image) {
     constexpr double kDark = 0.3;
     constexpr double kSoftPx = 2.0;
@@ -106,7 +106,7 @@ class ShadedTargetTest : public testing::TestWithParam<hal::FeatureKind> {
       found.worst_px = std::max(found.worst_px, std::hypot(d.u_px - u, d.v_px - v));
       found.worst_px = std::max(found.worst_px, std::fabs(d.radius_px - truth.radius_px));
     }
-    std::cout << "found " << found.count << " of " << pictures << ", middle and radius off by at most "
+    std::cout << "found " << found.count << " of " << pictures << ", centre and radius off by at most "
               << found.worst_px << " px\n";
     return found;
   }

@@ -1,4 +1,4 @@
-// What stands beside a triangle's sides and in line with them, on ray-cast pictures.
+// Evidence beside a triangle's sides and along their extensions, on ray-cast pictures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,11 +45,11 @@ bench::PictureScene SceneOf(const DetectorConfig& config, double level) {
   return scene;
 }
 
-// Of side `k` of the triangle: where its corner is, which way is on beyond it and which is inward.
+// A corner of the triangle's side `k` and the directions beyond it.
 struct Beyond {
   Vector2d corner;
   Vector2d on;
-  Vector2d inward;  // both of the side's length
+  Vector2d inward;  // normal to the side, as long as `on`
 };
 Beyond BeyondOf(const DetectorConfig& config, std::size_t k, bool at_end) {
   const std::vector<Vector2d> corners = CornersOf(config);
@@ -59,7 +59,7 @@ Beyond BeyondOf(const DetectorConfig& config, std::size_t k, bool at_end) {
   return {at_end ? b : a, at_end ? side : Vector2d(-side), Vector2d(-side.y(), side.x())};
 }
 
-// A plate on the inner side of the line that goes on beyond a corner, in shares of the side.
+// A plate on the inner side of the extended side, from `from` to `to` side lengths beyond the corner.
 bench::Body PlateBeyond(const Beyond& beyond, double from, double to, double level) {
   const Vector2d near = beyond.corner + from * beyond.on;
   const Vector2d far = beyond.corner + to * beyond.on;
@@ -71,7 +71,7 @@ bench::Body PlateBeyond(const Beyond& beyond, double from, double to, double lev
   return Plate(corners, kDistance, level);
 }
 
-// Fits the triangle where it is and asks whether a side goes on.
+// Fits the triangle from its true corners; returns whether a side goes on beyond a corner.
 bool GoesOn(const DetectorConfig& config, const bench::PictureScene& scene) {
   const cv::Mat image = Draw(scene);
   std::vector<ImagePoint> start;
@@ -88,7 +88,7 @@ bool GoesOn(const DetectorConfig& config, const bench::PictureScene& scene) {
                                       std::span(fit.corners.corner).first(start.size()), kLeast);
 }
 
-// Calls `look` with each corner and each side that ends there, of a brighter and of a darker triangle.
+// Calls `look` for both ends of each side, of a brighter and of a darker triangle.
 template <class Look>
 void ForEachEnd(Look look) {
   const DetectorConfig config = Triangle();
@@ -101,8 +101,8 @@ void ForEachEnd(Look look) {
   }
 }
 
-// Of the 12 ends, at how many the side is seen to go on where a plate begins `from` and ends `to` sides
-// beyond, which differs from the ground by `share` of the target's contrast.
+// The number of ends (of 12) at which a side seems to go on, with a plate from `from` to `to` side lengths
+// beyond the corner whose contrast to the ground is `share` of the target's.
 int CountThatGoOn(double from, double to, double share) {
   int found = 0;
   ForEachEnd([&](const DetectorConfig& config, double contrast, const Beyond& beyond) {
@@ -123,15 +123,15 @@ TEST(SideEvidenceTest, EdgeFarBeyondTheCornerIsNotTheSameSide) {
   EXPECT_EQ(CountThatGoOn(0.65, 0.9, 1.0), 0);
 }
 
-// Right at the corner any contrast tells: it is the edge of what hides.
+// At the corner itself any contrast counts: it is the edge of a covering object.
 TEST(SideEvidenceTest, EdgeContinuingAtTheCornerCountsWithAnyContrast) {
   EXPECT_EQ(CountThatGoOn(0.0, 0.4, -0.5), 12);
 }
 
-// A bar as bright as the ground leaves a piece of the triangle's own shape beside it.
+// A bar of the ground's brightness cuts off a smaller triangle of the same shape.
 TEST(SideEvidenceTest, PieceBesideAGroundColouredBarIsNotTheTarget) {
   constexpr double kWrongPx = 2.0;
-  constexpr double kNear = 0.98;  // the bar's distance, in the triangle's
+  constexpr double kNear = 0.98;  // the bar's distance over the triangle's
   constexpr double kThick = 0.12;
   const DetectorConfig config = Triangle();
   const std::vector<Vector2d> corners = CornersOf(config);
@@ -141,7 +141,7 @@ TEST(SideEvidenceTest, PieceBesideAGroundColouredBarIsNotTheTarget) {
   for (const double contrast : {kContrast, -kContrast}) {
     for (std::size_t k = 0; k < 3; ++k) {
       for (const double from : {0.25, 0.35, 0.45}) {
-        // Across all of it, in parallel to the side that is opposite to corner k.
+        // Across the whole triangle, parallel to the side opposite to corner k.
         const Vector2d on = corners[(k + 1) % 3] - corners[k];
         const Vector2d back = corners[(k + 2) % 3] - corners[k];
         const Vector2d wide = 0.2 * (back - on);
@@ -159,17 +159,17 @@ TEST(SideEvidenceTest, PieceBesideAGroundColouredBarIsNotTheTarget) {
       }
     }
   }
-  std::cout << right << " of " << pictures << " found rightly, " << wrong << " wrongly\n";
+  std::cout << right << " of " << pictures << " found correctly, " << wrong << " incorrectly\n";
   EXPECT_EQ(wrong, 0);
   EXPECT_EQ(right, pictures);
 }
 
-// A small triangle that faces the camera, and before it a bar whose edge crosses a side at some degrees:
-// lines there meet the one edge or the other, and the fit follows the longer one.
+// A small triangle that faces the camera, and a bar in front of it whose edge crosses a side at a few
+// degrees. Some lines hit the side's edge and some the bar's; the fit follows the longer edge.
 struct Crossed {
   bench::PictureScene scene;
   std::vector<Vector2d> corners;  // [px]
-  std::vector<ImagePoint> start;  // up to 1 px off
+  std::vector<ImagePoint> start;  // with errors of up to 1 px
 };
 Crossed MakeCrossed(unsigned seed) {
   constexpr double kNear = 0.98;
@@ -200,7 +200,7 @@ Crossed MakeCrossed(unsigned seed) {
     const double u = p.x() + between(-1.0, 1.0);
     crossed.start.push_back({u, p.y() + between(-1.0, 1.0)});
   }
-  // The bar's near edge begins on side 1 and goes a little inward or outward from it.
+  // The bar's near edge starts on side 1 and turns slightly inward or outward.
   const Vector2d on = (triangle[2] - triangle[1]).normalized();
   const Vector2d inward(-on.y(), on.x());
   const double angle = between(-0.12, 0.12);
@@ -224,8 +224,8 @@ Crossed MakeCrossed(unsigned seed) {
   return crossed;
 }
 
-// Of each: whether the fit is the target's, and so the bends explained. A side of these gets another number
-// of lines as the fit moves its corners: what is off and what stands beside must be of the same lines.
+// For each scene: whether the fit is the target's, and the bends explained. Here a side's number of lines
+// changes during the fit; the outliers and the colours must come from the same lines.
 TEST(SideEvidenceTest, BendsAreExplainedOnlyByACorrectFit) {
   constexpr std::array<unsigned, 6> kRight{285, 3143, 3878, 3928, 5960, 6141};
   constexpr std::array<unsigned, 4> kWrong{3160, 4228, 4653, 7080};

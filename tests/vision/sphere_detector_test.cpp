@@ -1,4 +1,4 @@
-// The ball detector on pictures whose truth is known.
+// The ball detector on pictures with a known truth.
 #include "firmware/vision/detect/target_detector.hpp"
 
 #include <gtest/gtest.h>
@@ -87,7 +87,7 @@ TEST(SphereDetectorTest, ShadedBallsAreMeasuredWithinTheirCovariance) {
   EXPECT_LT(std::sqrt(errors.lateral2 / 120), 0.012);
   EXPECT_LT(errors.worst_px, 0.04);
   EXPECT_LT(std::sqrt(errors.depth2 / 60), 0.0006);
-  EXPECT_LT(errors.chi2 / 180, 1.5) << "the covariance promises too much";
+  EXPECT_LT(errors.chi2 / 180, 1.5) << "the covariance is too small";
 }
 
 TEST(SphereDetectorTest, NoisyPicturesAreMeasuredWithinTheirCovariance) {
@@ -99,8 +99,8 @@ TEST(SphereDetectorTest, NoisyPicturesAreMeasuredWithinTheirCovariance) {
   EXPECT_LT(std::sqrt(errors.lateral2 / 120), 0.016);
   EXPECT_LT(errors.worst_px, 0.05);
   EXPECT_LT(std::sqrt(errors.depth2 / 60), 0.0003);
-  EXPECT_LT(errors.chi2 / 180, 1.5) << "the covariance promises too much";
-  EXPECT_GT(errors.chi2 / 180, 0.05) << "the covariance says nothing";
+  EXPECT_LT(errors.chi2 / 180, 1.5) << "the covariance is too small";
+  EXPECT_GT(errors.chi2 / 180, 0.05) << "the covariance is far too large";
 }
 
 TEST(SphereDetectorTest, GrayPicturesAreMeasuredAccurately) {
@@ -112,8 +112,8 @@ TEST(SphereDetectorTest, GrayPicturesAreMeasuredAccurately) {
   EXPECT_LT(std::sqrt(errors.lateral2 / 120), 0.009);
 }
 
-// A ball on its way: steady, then a jump, then gone, then back somewhere else. Looked for from image to image
-// it is found where a search of each image for itself finds it.
+// A ball moves steadily, jumps, disappears and comes back elsewhere.
+// Tracking must give the same results as a search in each image.
 TEST(SphereDetectorTest, TrackingFindsTheSameAsSearchingEachImage) {
   test::BallPicture picture;
   picture.noise = 5.0;
@@ -135,7 +135,7 @@ TEST(SphereDetectorTest, TrackingFindsTheSameAsSearchingEachImage) {
       worst_px = std::max(worst_px, std::hypot(next.u_px - one.u_px, next.v_px - one.v_px));
     }
   }
-  std::cout << "followed in " << followed << " images, " << worst_px << " px apart at most\n";
+  std::cout << "tracked in " << followed << " images, " << worst_px << " px difference at most\n";
   EXPECT_GE(followed, 5);
   EXPECT_LT(worst_px, 0.01);
 }

@@ -1,4 +1,4 @@
-// Poses of three and of four corners against OpenCV's P3P and IPPE.
+// Poses of three and four corners compared with OpenCV's P3P and IPPE.
 #include "firmware/vision/pose/three_points.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class Chance {
  public:
   double Between(double a, double b) { return std::uniform_real_distribution<double>(a, b)(engine_); }
   double Normal() { return normal_(engine_); }
-  // One draw after the other, so that every compiler draws the same.
+  // Separate statements, so that every compiler draws in the same order.
   model::Pose Pose(double most_tilt) {
     const double about = Between(0.0, 6.28);
     const double tilt = Between(0.0, most_tilt);
@@ -90,7 +90,7 @@ TEST(ThreePointsTest, FindsTheTruePoseAndEveryPoseOfOpenCv) {
     std::vector<cv::Mat> positions;
     cv::solveP3P(object, seen, cv::Matx33d::eye(), cv::noArray(), rotations, positions, cv::SOLVEPNP_P3P);
     for (const model::Pose& theirs : PosesOf(rotations, positions)) {
-      // Not all of its poses are before the camera, nor any.
+      // Some of OpenCV's poses lie behind the camera or do not fit at all.
       bool is_one = true;
       for (std::size_t k = 0; k < rays.size(); ++k) {
         is_one = is_one && (theirs * points[k]).normalized().dot(rays[k]) > 1.0 - 1e-12;
@@ -99,14 +99,14 @@ TEST(ThreePointsTest, FindsTheTruePoseAndEveryPoseOfOpenCv) {
       missed += is_one && nearest_m(theirs) > 1e-3 ? 1 : 0;
     }
   }
-  std::cout << "the truth, at most " << worst_m << " m off; of OpenCV's " << of_opencv << " poses " << missed
-            << " missed\n";
+  std::cout << "true pose off by at most " << worst_m << " m; of OpenCV's " << of_opencv << " poses "
+            << missed << " missed\n";
   EXPECT_LT(worst_m, 1e-7);
   EXPECT_GT(of_opencv, kPoses);
   EXPECT_EQ(missed, 0);
 }
 
-// Where the second distance over the first is a quotient of nearly nothing by nearly nothing.
+// Poses at which the formula for the second distance is nearly 0/0.
 TEST(ThreePointsTest, FindsTheTruePoseWhereTheFormulaIsIllConditioned) {
   Chance chance;
   const std::array<Vec3, 3> points{Vec3(-0.047, 0.037, 0.0), Vec3(0.063, 0.027, 0.0),
@@ -131,7 +131,7 @@ TEST(ThreePointsTest, FindsTheTruePoseWhereTheFormulaIsIllConditioned) {
     }
     worst_m = std::max(worst_m, nearest_m);
   }
-  std::cout << "the truth, at most " << worst_m << " m off, in " << tried << " poses\n";
+  std::cout << "true pose off by at most " << worst_m << " m, in " << tried << " poses\n";
   EXPECT_LT(worst_m, 1e-10);
 }
 
@@ -179,7 +179,7 @@ TEST(ThreePointsTest, SquarePosesMatchIppeOrFitBetter) {
     cv::solvePnPGeneric(object, seen, cv::Matx33d::eye(), cv::noArray(), rotations, positions, false,
                         cv::SOLVEPNP_IPPE);
     worse += off_px(PosesOf(rotations, positions).front()) < least_px - 1e-6 ? 1 : 0;
-    // Its second pose, where noise allows it and it is one: from which its own refinement does not leave.
+    // IPPE's second pose counts if it fits within the noise and IPPE's own refinement stays there.
     cv::solvePnPRefineLM(object, seen, cv::Matx33d::eye(), cv::noArray(), rotations[1], positions[1]);
     const model::Pose second = PosesOf(rotations, positions)[1];
     if (off_px(second) < 2.0 * kNoisePx &&
@@ -191,14 +191,14 @@ TEST(ThreePointsTest, SquarePosesMatchIppeOrFitBetter) {
     }
   }
   std::cout << worse << " of " << kPoses << " fit worse than IPPE's; of " << seconds
-            << " second poses that noise allows " << missed << " missed\n";
+            << " second poses within the noise, " << missed << " missed\n";
   EXPECT_EQ(worse, 0);
   EXPECT_GE(seconds, 50);
-  EXPECT_LE(missed, 2) << "but where the corners hardly tell the tilt, and a search ends anywhere";
+  EXPECT_LE(missed, 2) << "except where the corners hardly determine the tilt";
 }
 
-// Whichever corner the finder names first: the pose is the true one, or one of its equal turns.
-TEST(PosesOfCornersTest, EqualTurnsAreOneAndOthersAreToldApart) {
+// The detector may name any corner first: the pose is the true one or one of its symmetric turns.
+TEST(PosesOfCornersTest, SymmetricTurnsAreOnePoseAndOthersAreDistinct) {
   const double r = 0.05;
   const double h = r * std::sqrt(0.75);
   const Intrinsics in{640, 480, 554.256, 554.256, 319.5, 239.5};
@@ -213,7 +213,7 @@ TEST(PosesOfCornersTest, EqualTurnsAreOneAndOthersAreToldApart) {
                         Case{"equilateral triangle", {{0.0, -r}, {h, 0.5 * r}, {-h, 0.5 * r}}, 3}}) {
     Chance chance;
     const auto n = static_cast<int>(c.shape.size());
-    // Of three corners two poses may nearly meet; those within 0.01 rad are named once.
+    // Two poses of three corners may nearly coincide; poses within 0.01 rad are listed once.
     const double most_rad = n == 3 ? 0.01 : 1e-6;
     double worst_rad = 0.0;
     double worst_px = 0.0;
@@ -252,8 +252,8 @@ TEST(PosesOfCornersTest, EqualTurnsAreOneAndOthersAreToldApart) {
       EXPECT_LT(TurnBetween(tracked.pose[0].X_CO.R, X_CO.R), most_rad) << c.name << ": as before";
       EXPECT_EQ(tracked.pose[0].first, (n - shift) % n) << c.name;
     }
-    std::cout << c.name << ": the truth, at most " << worst_rad << " rad off; corners at most " << worst_px
-              << " px off\n";
+    std::cout << c.name << ": true pose off by at most " << worst_rad << " rad; corners off by at most "
+              << worst_px << " px\n";
     EXPECT_LT(worst_rad, most_rad) << c.name;
     EXPECT_LT(worst_px, 0.2) << c.name;
   }

@@ -1,4 +1,4 @@
-// What the detector must refuse, and how the vision task passes its verdicts on.
+// Pictures that the detector must refuse, and how the vision task passes results on.
 #include "firmware/vision/detect/vision_task.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(TargetDetectorTest, FindsNothingInEmptyPictures) {
   EXPECT_FALSE(Finds(Ground()));
   EXPECT_FALSE(Finds(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(0)))) << "black";
   EXPECT_FALSE(Finds(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(255)))) << "saturated";
-  EXPECT_FALSE(Finds(cv::Mat(480, 640, CV_8UC3, kRed))) << "all red: larger than the picture";
+  EXPECT_FALSE(Finds(cv::Mat(480, 640, CV_8UC3, kRed))) << "all red: a target larger than the picture";
   cv::Mat noise(480, 640, CV_8UC3);
   cv::RNG rng(3);
   rng.fill(noise, cv::RNG::NORMAL, 128, 60);
@@ -58,7 +58,7 @@ TEST(TargetDetectorTest, RefusesOtherShapesColoursAndSizes) {
   cv::Mat gray = Ground();
   cv::circle(gray, {320, 240}, 50, {160, 160, 160}, cv::FILLED, cv::LINE_AA);
   EXPECT_FALSE(Finds(gray));
-  cv::Mat small = Ground();  // as an 80 mm ball it would be 2.2 m away
+  cv::Mat small = Ground();  // an 80 mm ball of this size would be 2.2 m away
   cv::circle(small, {320, 240}, 10, kRed, cv::FILLED, cv::LINE_AA);
   EXPECT_FALSE(Finds(small));
   cv::Mat half = Ground();
@@ -74,7 +74,7 @@ TEST(TargetDetectorTest, FindsPartlyHiddenAndPartlyOutOfViewTargets) {
   TargetDetector detector(Config());
   const Detection d = detector.Detect(image);
   ASSERT_TRUE(d.found);
-  EXPECT_LT(d.confidence, 0.9) << "and says that it saw less";
+  EXPECT_LT(d.confidence, 0.9) << "the confidence is lower";
   EXPECT_NEAR(d.s.x(), 0.0, 0.02);
   EXPECT_NEAR(d.s.z(), 10.0, 0.05);
 
@@ -131,13 +131,13 @@ TEST_F(VisionTaskTest, PassesTheFeatureOnWithItsStamp) {
   EXPECT_EQ(m.dim, 3);
   EXPECT_NEAR(m.s[2], 10.0, 0.02);
   EXPECT_GT(m.cov_s[0], 0.0);
-  EXPECT_GT(m.cov_s[2 * hal::kMaxFeatureDim + 2], m.cov_s[0]) << "depth is known worst";
+  EXPECT_GT(m.cov_s[2 * hal::kMaxFeatureDim + 2], m.cov_s[0]) << "depth is the least certain";
 
   const cv::Mat empty = Ground();
   ASSERT_TRUE(task_.Process(FrameOf(empty), m).ok());
   EXPECT_FALSE(m.found);
   EXPECT_EQ(m.dim, 0);
-  EXPECT_EQ(m.stamp_ns, 123) << "the frame was looked at";
+  EXPECT_EQ(m.stamp_ns, 123) << "the frame was processed";
 }
 
 TEST_F(VisionTaskTest, AcceptsPaddedRowsAndGrayFrames) {
@@ -200,7 +200,8 @@ TEST_F(VisionTaskTest, RunsUntilTheCameraEnds) {
   EXPECT_EQ(RunVision(camera, task_, sink, stopped, {}).code(), hal::StatusCode::kClosed);
 }
 
-// One bad picture is one frame without the target: vision goes on, and says how many there were and why.
+// A bad picture counts as one frame without the target. Vision goes on and
+// reports the number of such frames and the first reason.
 TEST_F(VisionTaskTest, GoesOnAfterABadPicture) {
   const cv::Mat image = test::RayCast({});
   const cv::Mat small(240, 320, CV_8UC3, cv::Scalar::all(0));
@@ -210,7 +211,7 @@ TEST_F(VisionTaskTest, GoesOnAfterABadPicture) {
     camera.frames.back().sequence = i;
     camera.frames.back().stamp_ns = 1000 + static_cast<std::int64_t>(i);
   }
-  // What no driver may hand over: the seam makes a fault of each.
+  // Invalid frames that no driver may return: the seam turns each into a fault.
   camera.frames[1].pixels = camera.frames[1].pixels.first(5000);
   camera.frames[2].stride_bytes = 7;
   camera.frames[4].height_px = -480;
@@ -227,7 +228,7 @@ TEST_F(VisionTaskTest, GoesOnAfterABadPicture) {
   EXPECT_EQ(end.code(), hal::StatusCode::kClosed);
   EXPECT_EQ(found, (std::vector<bool>{true, false, true}));
   const std::array<std::uint64_t, 3> sequences{0, 3, 5};
-  ASSERT_EQ(sink.list.size(), sequences.size()) << "the servo hears of each that has a stamp";
+  ASSERT_EQ(sink.list.size(), sequences.size()) << "the servo gets a measurement for each valid frame";
   for (std::size_t i = 0; i < sequences.size(); ++i) {
     EXPECT_EQ(sink.list[i].found, found[i]) << i;
     EXPECT_EQ(sink.list[i].sequence, sequences[i]);
@@ -237,7 +238,7 @@ TEST_F(VisionTaskTest, GoesOnAfterABadPicture) {
   EXPECT_NE(task_.failures().first.find("(Frame geometry)"), std::string::npos) << task_.failures().first;
 }
 
-// A hundred faults in a row, or a camera that stopped by itself: that ends vision, and is said.
+// A hundred faults in a row, or a camera that stops by itself, end vision and are reported.
 TEST_F(VisionTaskTest, CameraThatOnlyFailsIsReported) {
   test::FakeCamera camera;
   camera.after = hal::Status(hal::StatusCode::kDeviceFault, "camera picture");
@@ -248,7 +249,7 @@ TEST_F(VisionTaskTest, CameraThatOnlyFailsIsReported) {
   EXPECT_EQ(sink.list.size(), 0U);
 }
 
-// OpenCV without memory: what it throws is the first picture's, and the second is looked at.
+// OpenCV runs out of memory at the first picture; the second is processed.
 class NoMemory final : public cv::MatAllocator {
  public:
   cv::UMatData* allocate(int, const int*, int, void*, std::size_t*, cv::AccessFlag,
@@ -287,8 +288,8 @@ TEST_F(VisionTaskTest, GoesOnAfterAnOpenCvException) {
   ASSERT_EQ(sink.list.size(), 2U);
   EXPECT_FALSE(sink.list[0].found);
   EXPECT_EQ(sink.list[0].sequence, 45U);
-  EXPECT_EQ(task.failures().frames, 1U) << "the second was looked at";
-  std::cout << "its words: " << task.failures().first << '\n';
+  EXPECT_EQ(task.failures().frames, 1U) << "the second picture was processed";
+  std::cout << "first failure: " << task.failures().first << '\n';
   EXPECT_NE(task.failures().first.find("no memory"), std::string::npos);
   EXPECT_EQ(task.failures().first.find('\n'), std::string::npos) << "one line";
 }

@@ -1,4 +1,4 @@
-// fovea-bench: figures. Each command prints a table, or with --json a list of {name, value, unit, goal}.
+// fovea-bench: benchmarks. Each command prints a table, or with --json a list of {name, value, unit, goal}.
 #include <CLI/CLI.hpp>
 
 #include "firmware/core/features/target_traits.hpp"
@@ -15,7 +15,7 @@
 
 int main(int argc, char** argv) {
   using namespace fovea;
-  CLI::App app{"Fovea's benchmarks. Each prints its figures, and their goals if it has any."};
+  CLI::App app{"Fovea's benchmarks. Each prints its figures, and their goals if there are any."};
   app.require_subcommand(1);
   app.set_version_flag("--version", std::string("fovea-bench ") + kVersion + " " + kGitRevision);
   app.footer(
@@ -29,12 +29,14 @@ int main(int argc, char** argv) {
   CLI::App* tick_command = app.add_subcommand(
       "tick", "measure the time of one servo tick by input, stage and mode, and compare with KDL");
   tick_command->add_option("--robot", tick.robot, "A shipped arm")->capture_default_str();
-  tick_command->add_option("--runs", tick.runs, "Random closed loops in which the worst input is searched")
+  tick_command
+      ->add_option("--runs", tick.runs,
+                   "Number of random closed loops that are searched for the slowest tick")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   tick_command->add_flag("--instructions", tick.instructions,
-                         "Count instructions too, by valgrind (minutes)");
-  tick_command->add_option("--count", tick.count)->group("");  // of the process that valgrind watches
+                         "Also count instructions, with valgrind (takes minutes)");
+  tick_command->add_option("--count", tick.count)->group("");  // hidden: for the process under valgrind
   tick_command->add_flag("--traced", tick.traced)->group("");
   tick_command->add_flag("--recorded", tick.recorded)->group("");
   tick_command->add_flag("--json", tick.json, "Print JSON");
@@ -43,13 +45,16 @@ int main(int argc, char** argv) {
   CLI::App* jitter_command = app.add_subcommand("jitter",
                                                 "measure whether this machine keeps 1 kHz: the servo loop, a "
                                                 "thread that only sleeps, and cyclictest if installed");
-  jitter_command->add_option("--seconds", jitter.seconds, "Of each kind, in blocks of a second in turns")
+  jitter_command
+      ->add_option("--seconds", jitter.seconds,
+                   "Measuring time of each kind [s]; the kinds alternate in blocks of 1 s")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
-  jitter_command->add_option("--load", jitter.load, "Work beside it")
+  jitter_command->add_option("--load", jitter.load, "Load on the machine during the measurement")
       ->check(CLI::IsMember(bench::kLoads))
       ->capture_default_str();
-  jitter_command->add_option("--policy", jitter.policy, "Of the measured thread: SCHED_FIFO, or as any other")
+  jitter_command
+      ->add_option("--policy", jitter.policy, "Scheduling of the measured thread: SCHED_FIFO, or the default")
       ->check(CLI::IsMember({"fifo", "other"}))
       ->capture_default_str();
   jitter_command->add_option("--cpu", jitter.cpu, "Processor that the measured thread is bound to")
@@ -57,23 +62,23 @@ int main(int argc, char** argv) {
   jitter_command->add_option("--out", jitter.out, "Folder for jitter.html and jitter.json")
       ->capture_default_str();
   jitter_command->add_option("--trace", jitter.trace,
-                             "File for a timeline, for ui.perfetto.dev or chrome://tracing");
+                             "File to write a timeline to, for ui.perfetto.dev or chrome://tracing");
   jitter_command->add_flag("--json", jitter.json, "Print JSON");
 
   bench::SimArguments sim;
   CLI::App* sim_command = app.add_subcommand(
       "sim", "measure the simulator's speed by image size and rate, and where its time goes");
-  sim_command->add_option("--seconds", sim.seconds, "Simulated, of each run")
+  sim_command->add_option("--seconds", sim.seconds, "Simulated time of each run [s]")
       ->check(CLI::Range(0.5, 1000.0))
       ->capture_default_str();
-  sim_command->add_flag("--shares", sim.shares, "Only what the time goes to, and how that grows");
+  sim_command->add_flag("--shares", sim.shares, "Measure only the time by activity, joints and image size");
   sim_command->add_flag("--json", sim.json, "Print JSON");
 
   bench::McuArguments mcu;
   CLI::App* mcu_command = app.add_subcommand("mcu",
                                              "count the servo's instructions on a Cortex-M7 in QEMU by stage "
                                              "and mode, and its stack, flash and RAM");
-  mcu_command->add_option("--seconds", mcu.seconds, "Simulated, of ball; of square a quarter")
+  mcu_command->add_option("--seconds", mcu.seconds, "Simulated time of ball [s]; square gets a quarter of it")
       ->check(CLI::Range(0.4, 1000.0))
       ->capture_default_str();
   mcu_command->add_flag("--json", mcu.json, "Print JSON");
@@ -81,13 +86,13 @@ int main(int argc, char** argv) {
   bench::WireArguments wire;
   CLI::App* wire_command = app.add_subcommand(
       "wire", "measure the robot's network interface at real pace: states per second, jitter, response time");
-  wire_command->add_option("--seconds", wire.seconds, "By the clock; in lockstep of the robot's time")
+  wire_command->add_option("--seconds", wire.seconds, "Measuring time [s]; in lockstep the robot's time")
       ->check(CLI::Range(0.5, 100000.0))
       ->capture_default_str();
   wire_command
       ->add_option("--pace", wire.pace,
-                   "real: the robot by the clock; lockstep: it waits for each answer, so that the counts "
-                   "are the same on any machine")
+                   "real: the robot runs in real time; lockstep: it waits for each answer, so the counts are "
+                   "the same on any machine")
       ->check(CLI::IsMember({"real", "lockstep"}))
       ->capture_default_str();
   wire_command->add_flag("--json", wire.json, "Print JSON");
@@ -97,14 +102,15 @@ int main(int argc, char** argv) {
   targets.emplace_back("all");
   CLI::App* vision_command =
       app.add_subcommand("vision", "measure detection rate, accuracy and time on images with ground truth");
-  vision_command->add_option("--target", vision.target, "Which target")
+  vision_command->add_option("--target", vision.target, "Target to detect")
       ->check(CLI::IsMember(targets))
       ->capture_default_str();
-  vision_command->add_option("--class", vision.only, "One class of pictures; all when not given");
-  vision_command->add_option("--pictures", vision.pictures, "Of each class; a third without a target")
+  vision_command->add_option("--class", vision.only, "One class of pictures; default: all");
+  vision_command
+      ->add_option("--pictures", vision.pictures, "Pictures of each class; a third of them without a target")
       ->check(CLI::Range(3, 100000))
       ->capture_default_str();
-  vision_command->add_option("--seed", vision.seed, "Of the pictures")->capture_default_str();
+  vision_command->add_option("--seed", vision.seed, "Seed of the pictures")->capture_default_str();
   vision_command->add_flag("--json", vision.json, "Print JSON");
 
   bench::CompareArguments compare;
@@ -113,7 +119,7 @@ int main(int argc, char** argv) {
   compare_command->add_option("new", compare.new_file)->required();
   compare_command
       ->add_option("--most", compare.most,
-                   "Fail when a figure is more than this times the old one, or is gone")
+                   "Fail when a new figure exceeds this multiple of the old one, or is missing")
       ->check(CLI::PositiveNumber);
 
   return config::RunProgram("fovea-bench", app, argc, argv, [&] {

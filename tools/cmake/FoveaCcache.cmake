@@ -1,5 +1,5 @@
-# Where ccache is installed, what was compiled once is not compiled again: not after `rm -r build`, and not in another
-# checkout of the same sources. (Paths below the root count as relative to the build folder.)
+# Uses ccache if it is installed. Then nothing is compiled twice, even after `rm -r build` or in another checkout of the same
+# sources: ccache makes paths below the root relative to the build folder.
 find_program(FOVEA_CCACHE ccache)
 mark_as_advanced(FOVEA_CCACHE)
 if(FOVEA_CCACHE AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)

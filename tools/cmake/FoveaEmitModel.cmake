@@ -1,5 +1,5 @@
-# fovea_emit_model(<target> <arm>...): the shipped arms' models as `fovea model --emit-cpp` writes them, for
-# `target` to include as "emitted/<arm>.hpp".
+# fovea_emit_model(<target> <arm>...): writes the models of shipped arms with `fovea model --emit-cpp`. <target> includes them
+# as "emitted/<arm>.hpp".
 function(fovea_emit_model target)
   set(robots ${PROJECT_SOURCE_DIR}/firmware/host/robots/share)
   file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/emitted)

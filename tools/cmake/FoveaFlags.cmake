@@ -1,8 +1,8 @@
 # Compiler flags, in one place. Three sets:
 #   fovea_warnings  every target of the project: warnings are errors
-#   fovea_bits      PUBLIC on the firmware libraries: what decides the bits of a result, so that everything
-#                   that shares their types computes alike (and alike on another machine)
-#   fovea_tick      PRIVATE on what runs inside the 1 kHz tick: no exceptions, no RTTI
+#   fovea_bits      PUBLIC on the firmware libraries: flags that decide the bits of a result. All code that uses
+#                   their types gets the same bits, on every machine
+#   fovea_tick      PRIVATE on the libraries that run inside the 1 kHz tick: no exceptions, no RTTI
 
 include(FoveaInstall)
 
@@ -22,22 +22,22 @@ target_include_directories(fovea_warnings INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(fovea_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wdouble-promotion -Wold-style-cast
   -Woverloaded-virtual -Werror
-  # GCC takes the unused capacity of an Eigen matrix of run-time size for a read of unset memory.
+  # GCC mistakes the unused capacity of a run-time-sized Eigen matrix for a read of uninitialised memory.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 
 add_library(fovea_bits INTERFACE)
-# No fused multiply-add behind our back, and sums that do not depend on a vector's width; a square root is an
-# instruction, not a call that might set errno.
+# The compiler forms no fused multiply-add. Eigen does not vectorise, so the order of a sum does not depend on the vector
+# width. A square root is an instruction, not a call that may set errno.
 target_compile_options(fovea_bits INTERFACE -ffp-contract=off -fno-math-errno)
 target_compile_definitions(fovea_bits INTERFACE EIGEN_DONT_VECTORIZE EIGEN_DONT_PARALLELIZE)
 
-fovea_install(fovea_bits core)  # whoever shares our types must compute alike
+fovea_install(fovea_bits core)  # code that uses our types needs the same flags
 
 add_library(fovea_tick INTERFACE)
 target_compile_options(fovea_tick INTERFACE -fno-exceptions -fno-rtti)
 
 if(FOVEA_SANITIZE)
-  # The check of virtual calls needs the type information that the tick is built without.
+  # The check of virtual calls (vptr) needs RTTI, which the tick is built without.
   add_compile_options(-fsanitize=${FOVEA_SANITIZE} -fno-sanitize=vptr -fno-omit-frame-pointer
                       -fno-sanitize-recover=all)
   add_link_options(-fsanitize=${FOVEA_SANITIZE})
@@ -49,9 +49,9 @@ endif()
 
 # fovea_add_library(<name> [TICK] [COMPONENT <core|host>] [SOURCES <file>...] [HEADERS <file>...] [API <file>...]
 #                   [PUBLIC <target>...] [PRIVATE <target>...])
-# HEADERS stand beside the sources and are included by their path from the root; API are those that an outside project
-# includes, relative to the folder's include/ or to firmware/include/. With COMPONENT the library is installed with all
-# of them, and belongs to that component of the CMake package.
+# HEADERS are beside the sources and are included by their path from the root. API are the headers that an outside project
+# includes, relative to the folder's include/ or to firmware/include/. With COMPONENT the library and all its headers are
+# installed in that component of the CMake package.
 function(fovea_add_library name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "TICK" "COMPONENT" "SOURCES;HEADERS;API;PUBLIC;PRIVATE")
   add_library(${name} STATIC ${arg_SOURCES})
@@ -75,7 +75,7 @@ function(fovea_add_library name)
 endfunction()
 
 # fovea_add_sources(<name> [SOURCES <file>...] [HEADERS <file>...])
-# A room's part of the library <name>.
+# Adds the files of a subfolder to the target <name>.
 function(fovea_add_sources name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;HEADERS")
   if(arg_SOURCES)

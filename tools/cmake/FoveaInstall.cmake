@@ -1,4 +1,4 @@
-# What is installed where, the CMake package `fovea`, and the Debian packages.
+# Installation folders, the CMake package `fovea`, and the Debian packages.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -22,7 +22,7 @@ function(fovea_install target component)
     ${header_sets})
 endfunction()
 
-# Called once, when all targets are there.
+# Call it once, after all targets are defined.
 function(fovea_install_package)
   foreach(component core host)
     install(EXPORT fovea-${component} NAMESPACE fovea:: FILE fovea-${component}.cmake
@@ -33,7 +33,7 @@ function(fovea_install_package)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fovea-config-version.cmake
     ${PROJECT_SOURCE_DIR}/tools/cmake/fovea-config.cmake
     DESTINATION ${FOVEA_PACKAGE_FOLDER} COMPONENT dev)
-  # Found from where the file itself is, so that an installation can be moved.
+  # The prefix is relative to the .pc file, so an installation can be moved.
   file(RELATIVE_PATH FOVEA_PREFIX_OF_PC /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
   configure_file(${PROJECT_SOURCE_DIR}/tools/cmake/fovea.pc.in ${CMAKE_CURRENT_BINARY_DIR}/fovea.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fovea.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
@@ -43,7 +43,7 @@ function(fovea_install_package)
     install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/fovea.bash RENAME ${program}
       DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
   endforeach()
-  # Debian's zsh looks into vendor-completions of /usr; others, and Debian's in /usr/local, into site-functions.
+  # Below /usr, Debian's zsh reads vendor-completions. Below /usr/local and on other systems, zsh reads site-functions.
   foreach(folder site-functions vendor-completions)
     install(FILES ${PROJECT_SOURCE_DIR}/tools/completion/_fovea DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/${folder}
       COMPONENT runtime)
@@ -53,7 +53,7 @@ function(fovea_install_package)
   fovea_debian_packages()
 endfunction()
 
-# `cpack --config build/<preset>/CPackConfig.cmake` makes them: fovea (programs), libfovea-dev, fovea-data.
+# `cpack --config build/<preset>/CPackConfig.cmake` builds the packages fovea (programs), libfovea-dev and fovea-data.
 macro(fovea_debian_packages)
   set(CPACK_GENERATOR DEB)
   set(CPACK_PACKAGE_CONTACT "The Fovea authors <fovea@localhost>")

@@ -1,5 +1,5 @@
-# Run by the build: writes OUTPUT from the checkout at SOURCE and the libraries SERVO and LINK, and leaves the file alone
-# when nothing changed.
+# The build runs this script. It writes OUTPUT from the checkout at SOURCE and the libraries SERVO and LINK. It does not touch
+# OUTPUT when nothing changed.
 find_package(Git QUIET)
 set(revision "")
 if(GIT_FOUND)

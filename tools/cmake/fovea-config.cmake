@@ -1,6 +1,6 @@
 # find_package(fovea [COMPONENTS core|host]...)
-#   core  hal, model, features, servo, linux_rt, heap_interposer: all that runs in and around the tick
-#   host  vision, calibration, config, robots, servo_keys: what needs OpenCV, TOML and URDF; contains core
+#   core  hal, model, features, servo, linux_rt, heap_interposer: the code that runs in and around the tick
+#   host  vision, calibration, config, robots, servo_keys: the code that needs OpenCV, TOML and URDF; includes core
 # Targets are fovea::hal, fovea::servo, ... fovea_SHARE_DIR is where robots and scenarios are.
 include(CMakeFindDependencyMacro)
 
@@ -10,7 +10,7 @@ endif()
 foreach(component IN LISTS fovea_FIND_COMPONENTS)
   if(NOT component MATCHES "^(core|host)$")
     set(fovea_FOUND FALSE)
-    set(fovea_NOT_FOUND_MESSAGE "fovea has no component \"${component}\"; there are core and host")
+    set(fovea_NOT_FOUND_MESSAGE "fovea has no component \"${component}\"; its components are core and host")
     return()
   endif()
 endforeach()
@@ -37,6 +37,6 @@ if("host" IN_LIST fovea_FIND_COMPONENTS)
 endif()
 
 get_filename_component(fovea_SHARE_DIR ${CMAKE_CURRENT_LIST_DIR}/../../../share/fovea ABSOLUTE)
-if(NOT EXISTS ${fovea_SHARE_DIR})  # a library folder with the machine's name in it is one level deeper
+if(NOT EXISTS ${fovea_SHARE_DIR})  # one level deeper: lib/<architecture>/cmake/fovea
   get_filename_component(fovea_SHARE_DIR ${CMAKE_CURRENT_LIST_DIR}/../../../../share/fovea ABSOLUTE)
 endif()

@@ -2,7 +2,7 @@
 # program's own --help, scenarios from `fovea-sim list`, keys from `fovea-sim keys` and `fovea-hw CONFIG --keys`: nothing is
 # listed here twice.
 
-# What --help of "$@" says, one word a line: `commands`, `options`, or the choices of the option $1.
+# Words from the --help of "$@", one per line: `commands`, `options`, or the choices of the option $1.
 _fovea_help() {
   local what=$1
   shift
@@ -22,8 +22,8 @@ _fovea_help() {
     }'
 }
 
-# The keys that --set of "$@" knows. Those of fovea-hw depend on its configuration, the first word typed behind it. A replay
-# knows those of the servo.
+# The keys that --set of "$@" accepts. Those of fovea-hw depend on its configuration, the first word after the program. A
+# replay accepts the keys of the servo.
 _fovea_keys() {
   local folder=$1 sections='[a-z]'
   local -a ask=("${folder}fovea-sim" keys)
@@ -40,12 +40,12 @@ _fovea_keys() {
 
 _fovea() {
   local program=${1/#'~/'/$HOME/} word=$2 previous=$3
-  # Where the other programs stand.
+  # The folder of this program and of the others.
   local folder=${program%"${program##*/}"}
   local -a call=("$program") found
   local w choices
   COMPREPLY=()
-  # The sub-commands typed so far, the one that the cursor is in not counted.
+  # The sub-commands typed so far, without the word at the cursor.
   for w in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     if _fovea_help commands "${call[@]}" | grep -qxF -- "$w"; then
       call+=("$w")

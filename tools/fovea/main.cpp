@@ -1,5 +1,5 @@
-// fovea: what is done beside runs: reports of those that are over; gains, models and features for those to
-// come.
+// The program fovea: reports and replays of recorded runs, atlases of simulated runs, gains, arm models,
+// features, detection and calibration.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -29,7 +29,7 @@ struct ReportArguments {
   std::string out;
 };
 
-// Beside its log; one of two runs, in the current folder.
+// A report goes beside its log, a comparison of two runs to the current folder.
 std::filesystem::path DefaultOut(const std::vector<std::string>& logs) {
   if (logs.size() > 1) {
     return "comparison.html";
@@ -43,7 +43,7 @@ int Report(const ReportArguments& arguments) {
   for (const std::string& log : arguments.logs) {
     runs.push_back(report::ReadRun(flight::LogIn(log)));
     if (!runs.back().complete) {
-      fmt::print(stderr, "fovea: {}; the report shows what is there\n", runs.back().why_incomplete);
+      fmt::print(stderr, "fovea: {}; the report shows the readable part\n", runs.back().why_incomplete);
     }
   }
   const std::string page = report::ReportPage(config::ShareFolder() / "report").Make(runs);

@@ -1,5 +1,5 @@
-// What the arm fills of space, in B: the capsules of its model (model::ArmShape) at a posture. All that asks
-// how near the arm comes to something asks these: itself, planes, lines of sight.
+// The space that the arm fills, in B: the capsules of its model (model::ArmShape) at a posture. All
+// clearances of the arm's links use them: from each other, from planes and from lines of sight.
 #pragma once
 
 #include <array>
@@ -12,18 +12,17 @@ namespace fovea::barriers {
 struct PlacedCapsule {
   model::Vec3 p_BA;    // in B [m]
   model::Vec3 p_BB;    // in B [m]
-  model::Vec3 middle;  // of both, in B [m]
+  model::Vec3 middle;  // midpoint of the segment, in B [m]
   double radius;       // [m]
-  double reach;        // of the ball about `middle` that holds the capsule [m]
+  double reach;        // radius of the ball about `middle` that contains the capsule [m]
 };
 
 struct ArmBodies {
-  int size = 0;  // the base, and each link
+  int size = 0;  // the base and each link
   std::array<PlacedCapsule, model::ArmShape::kMostBodies> body;
 };
 
-// Body 0 is the base, body k the link that joint k - 1 moves: joints 0 to k - 1 move it.
-// Real-time: yes.
+// Body 0 is the base. Body k is the link behind joint k - 1, which joints 0 to k - 1 move. Real-time: yes.
 [[nodiscard]] ArmBodies PlaceBodies(const model::ArmModel& arm, const model::ArmPoses& poses) noexcept;
 
 }  // namespace fovea::barriers

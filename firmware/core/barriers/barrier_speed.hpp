@@ -1,4 +1,4 @@
-// How fast something may go towards a barrier (THEORY B5).
+// The largest allowed speed towards a barrier (THEORY B5).
 #pragma once
 
 namespace fovea::barriers {

@@ -7,7 +7,7 @@
 namespace fovea::barriers {
 namespace {
 
-// One side of the picture: sign * (x or y) may not pass sign * bound.
+// One side of the picture: sign * (x or y) must not exceed sign * bound.
 struct Side {
   Eigen::Index axis;
   double sign;
@@ -24,7 +24,7 @@ PictureBarriers FieldOfViewBarriers(const config::GuardConfig& guard, const View
   }
   const auto n = static_cast<std::size_t>(target.outline.num_points);
   std::array<features::ImagePoint, features::Polygon::kMost> points;
-  std::array<double, features::Polygon::kMost> reach{};  // of the outline about each, in the image
+  std::array<double, features::Polygon::kMost> reach{};  // outline radius at each point, in the image
   for (std::size_t i = 0; i < n; ++i) {
     if (!features::ComputePoint(target.seen, target.outline.p_OP[i], points[i])) {
       return barriers;

@@ -1,8 +1,8 @@
-// A limit on the motion that keeps the target in the picture: what the camera does not see it cannot follow.
+// A motion limit that keeps the target in the picture, because the servo cannot follow a target out of view.
 //
-// For each of the picture's four sides the point of the target that is nearest to it may approach it only so
-// fast, d x/dt <= rate (x_max - x), and past it no further. Standing still is always allowed, also where the
-// target runs out of the picture by itself: its own motion counts, as far as the camera can make up for it.
+// For each of the picture's four sides, the nearest point of the target may approach that side only with
+// dx/dt <= rate (x_max - x), and must not move further out beyond it. The target's own motion counts, as far
+// as the camera can compensate it. Standing still is always allowed, even if the target leaves the picture.
 #pragma once
 
 #include <array>
@@ -14,16 +14,16 @@
 
 namespace fovea::barriers {
 
-// The target as it is kept in the picture.
+// The target, as these barriers use it.
 struct ViewedTarget {
   features::TargetOutline outline;
   features::TargetInCamera seen;
   const model::Mat6N& J_C;                     // body Jacobian of the camera
-  model::Vec3 normal_C = model::Vec3::Zero();  // of a disc, where it is known; else 0
+  model::Vec3 normal_C = model::Vec3::Zero();  // of a disc, if known; else 0
 };
 
-// One for each side of the picture; none of them when the picture's limits are not enabled, or a point of the
-// target is not well before the camera. Real-time: yes.
+// One barrier for each side of the picture. All are inactive if the picture's limits are disabled or a point
+// of the target is not clearly in front of the camera. Real-time: yes.
 using PictureBarriers = std::array<Barrier, 4>;
 [[nodiscard]] PictureBarriers FieldOfViewBarriers(const config::GuardConfig& guard,
                                                   const ViewedTarget& target) noexcept;

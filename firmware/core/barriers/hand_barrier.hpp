@@ -1,4 +1,4 @@
-// The hand, with the camera and the tools on it, stays out of a plane or a box.
+// Keeps the hand, with its camera and tools, out of a plane or a box.
 #pragma once
 
 #include "firmware/core/barriers/barrier.hpp"
@@ -7,8 +7,9 @@
 
 namespace fovea::barriers {
 
-// Before plane or box `obstacle`, planes first: the distance of the hand's nearest point or ball [m]. The
-// guard proves a stop before each; the row keeps it from having to. Real-time: yes.
+// h is the distance of the hand's nearest point or ball from plane or box `obstacle` (planes first) [m]. The
+// guard proves a stop before each obstacle. The row keeps more distance, so that the guard need not
+// interfere. Real-time: yes.
 [[nodiscard]] Barrier HandBarrier(const config::ServoConfig& config, int obstacle,
                                   const model::ArmPoses& poses) noexcept;
 

@@ -9,14 +9,14 @@ namespace {
 
 using model::Vec3;
 
-// Where a line of sight and a link are nearest to each other.
+// The closest approach of a line of sight and a link.
 struct Nearest {
-  model::SegmentPair axes;  // the line of sight from the camera, the link's axis
+  model::SegmentPair axes;  // first: line of sight from the camera; second: the link's axis
   double gap = HUGE_VAL;    // from the line of sight to the link [m]
   int body = 0;             // the link
 };
 
-// Of all links and all lines of sight.
+// Over all links and all lines of sight.
 Nearest NearestLink(const Sight& sight) noexcept {
   Nearest nearest;
   for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
@@ -39,7 +39,7 @@ double ClearanceOfSight(const Sight& sight) noexcept { return NearestLink(sight)
 
 Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight,
                            const model::Mat6N& J_C) noexcept {
-  constexpr double kTouch = 1e-6;  // lines that cross have no direction apart [m]
+  constexpr double kTouch = 1e-6;  // if lines cross, the direction between them is undefined [m]
   Barrier barrier;
   if (config.guard.sight_clearance <= 0.0) {
     return barrier;
@@ -50,7 +50,7 @@ Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight
     return barrier;
   }
   const Vec3 apart = (axes.on_first - axes.on_second) / axes.distance;
-  // d/dt distance = apart . (v_sight - v_link); the line of sight turns about the target, which stays.
+  // d/dt distance = apart . (v_sight - v_link); the line of sight pivots about the fixed target.
   const Vec3 apart_C = sight.X_BC.R.transpose() * apart;
   barrier.gradient = (1.0 - axes.s) * J_C.topRows<3>().transpose().lazyProduct(apart_C);
   model::LinearJacobian J_link;

@@ -1,9 +1,8 @@
-// The arm's own links stay out of the lines of sight from the camera to the target: to its centre, or to each
-// corner.
+// Keeps the arm's own links out of the lines of sight from the camera to the target's centre or its corners.
 //
-// With the hand where a target asks for it, another part of the arm may come between: the elbow, or the
-// forearm. The hand, and the links with at most ArmShape::kNeighbours joints between them and it, are never
-// in its way. How near the others come to the line of sight is a barrier like the others (barrier.hpp).
+// When the hand tracks a target, the elbow or the forearm may come between camera and target. The hand, and
+// the links with at most ArmShape::kNeighbours joints between them and the hand, never do. The distance of
+// the other links from the line of sight is a barrier (barrier.hpp).
 #pragma once
 
 #include "firmware/core/barriers/arm_bodies.hpp"
@@ -17,17 +16,17 @@ namespace fovea::barriers {
 struct Sight {
   const model::ArmPoses& poses;
   const ArmBodies& bodies;
-  model::Pose X_BC;  // of the same posture
+  model::Pose X_BC;  // at the posture of `poses`
   features::TargetOutline outline;
   model::Pose X_BO;
 };
 
-// How far the nearest link is from the nearest line of sight [m]. Real-time: yes.
+// The smallest distance of a link from a line of sight [m]. Real-time: yes.
 [[nodiscard]] double ClearanceOfSight(const Sight& sight) noexcept;
 
-// The same as a barrier, which keeps it guard.sight_clearance [m] at least; what is already nearer may not
-// come nearer still. None where the clearance is 0, and none where the two cross: there is no way apart then.
-// `J_C`: body Jacobian of the camera. Real-time: yes.
+// The barrier that keeps this distance at least guard.sight_clearance [m]. A link that is already nearer must
+// not come nearer still. Inactive if the clearance is 0 or the axes cross: the direction between them is then
+// undefined. `J_C`: body Jacobian of the camera. Real-time: yes.
 [[nodiscard]] Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight,
                                          const model::Mat6N& J_C) noexcept;
 

@@ -11,10 +11,10 @@ namespace {
 
 using model::Vec3;
 
-// Where the links are nearest to a plane.
+// The closest approach of a link and a plane.
 struct NearestPlane {
   Clearance clearance{HUGE_VAL, Vec3::UnitZ()};
-  Vec3 p_BP = Vec3::Zero();  // a point on the axis of the body that is nearest [m]
+  Vec3 p_BP = Vec3::Zero();  // end of the nearest body's axis [m]
   int body = -1;
 };
 

@@ -1,8 +1,8 @@
-// The arm's links stay above the planes that its hand stays above.
+// Keeps the arm's links above the planes that limit its hand.
 //
-// With the hand where it may be, the elbow or the wrist can still come down on the table. None of the last
-// four links does: of an arm with six or seven joints these are forearm, wrist and hand. The links before
-// them cannot reach what the base stands on, and stand beside a wall as the base does.
+// While the hand is clear, the elbow or the wrist can still hit the table. The barrier covers the last four
+// links: forearm, wrist and hand of an arm with six or seven joints. The links before them cannot reach the
+// surface that the base stands on, and are as clear of a wall as the base is.
 #pragma once
 
 #include "firmware/core/barriers/arm_bodies.hpp"
@@ -12,13 +12,14 @@
 
 namespace fovea::barriers {
 
-inline constexpr int kOuterLinks = 4;  // that planes are for
+inline constexpr int kOuterLinks = 4;  // the barrier covers these last links
 
-// How far the arm's links are from the nearest plane [m]; HUGE_VAL without planes. Real-time: yes.
+// The smallest distance of these links from a plane [m]; HUGE_VAL without planes. Real-time: yes.
 [[nodiscard]] double ClearanceOfPlanes(const config::GuardConfig& guard, const ArmBodies& bodies) noexcept;
 
-// The same as a barrier, which keeps it guard.link_clearance [m] and more: the links come nearer with the
-// speed from which they can stop; what is nearer may not go further. Real-time: yes.
+// The barrier that keeps this distance above guard.link_clearance [m] plus twice the workspace margin. The
+// links approach no faster than they can stop. A link that is already nearer must not come nearer still.
+// Real-time: yes.
 [[nodiscard]] Barrier LinksBarrier(const config::ServoConfig& config, const model::ArmPoses& poses,
                                    const ArmBodies& bodies) noexcept;
 

@@ -7,7 +7,7 @@ namespace fovea::barriers {
 namespace {
 
 Clearance ClearanceOf(const config::Box& box, const model::Vec3& p) noexcept {
-  model::Vec3 outside = model::Vec3::Zero();  // from the box's nearest point
+  model::Vec3 outside = model::Vec3::Zero();  // vector from the box's nearest point
   double nearest_face = HUGE_VAL;
   int axis = 0;
   double side = 1.0;

@@ -1,4 +1,4 @@
-// How far a point is from the planes and boxes that it keeps out of, and which way leads away from them.
+// The distance of a point from planes and boxes, and the direction away from them.
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"
@@ -6,19 +6,19 @@
 namespace fovea::barriers {
 
 struct Clearance {
-  double distance = 0.0;  // to the surface; below 0 within [m]
+  double distance = 0.0;  // to the surface; negative inside [m]
   model::Vec3 away = model::Vec3::UnitZ();
 };
 
-// Of `p_B` [m] to plane or box `i`, planes first, 0 <= i < CountObstacles. Within a box the way out is
-// through its nearest face. Real-time: yes.
+// The clearance of `p_B` [m] from plane or box `i` (planes first), 0 <= i < CountObstacles. Inside a box,
+// `away` points to the nearest face. Real-time: yes.
 [[nodiscard]] Clearance ClearanceOf(const config::Obstacles& obstacles, int i,
                                     const model::Vec3& p_B) noexcept;
-// Where the hand is nearest to plane or box `i`: its end effector's point, or a ball of `hand`, at `X_BE`.
+// The hand's point nearest to plane or box `i`: the origin of E at `X_BE`, or the centre of a ball of `hand`.
 // Real-time: yes.
 struct HandClearance {
   Clearance clearance;
-  model::Vec3 p_BP = model::Vec3::Zero();  // the hand's point, a ball's middle [m]
+  model::Vec3 p_BP = model::Vec3::Zero();  // origin of E or centre of the nearest ball [m]
 };
 [[nodiscard]] HandClearance ClearanceOf(const config::Obstacles& obstacles, int i,
                                         const config::HandShape& hand, const model::Pose& X_BE) noexcept;

@@ -7,12 +7,12 @@ namespace fovea::barriers {
 namespace {
 
 constexpr double kOrthogonal = 1e-15;  // cosine of two rows that count as orthogonal
-constexpr double kNothing = 1e-16;     // a row so small against the whole matrix is rounding
+constexpr double kNothing = 1e-16;     // a row this small relative to the matrix is rounding error
 
 using Row = std::array<double, 8>;
 static_assert(features::kMaxDim == 8 && model::kMaxJoints == 8, "one type for the rows of U^T and of R");
 
-// Rows are filled up with zeros: loops of one length are the faster ones.
+// Rows are padded with zeros, because loops of constant length are faster.
 double Dot(const Row& a, const Row& b) noexcept {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -29,7 +29,7 @@ void Rotate(Row& a, Row& b, double c, double s) noexcept {
   }
 }
 
-// Makes rows i and j orthogonal; false when they already were. `nothing2`: square of a row that is rounding.
+// Makes rows i and j orthogonal; false if they already were. `nothing2`: squared norm of rounding errors.
 bool Orthogonalise(RowSvd& svd, double nothing2, std::size_t i, std::size_t j) noexcept {
   const double ii = Dot(svd.r[i], svd.r[i]);
   const double jj = Dot(svd.r[j], svd.r[j]);
@@ -37,7 +37,7 @@ bool Orthogonalise(RowSvd& svd, double nothing2, std::size_t i, std::size_t j) n
   if (ij * ij <= kOrthogonal * kOrthogonal * ii * jj || ii <= nothing2 || jj <= nothing2) {
     return false;
   }
-  // The smaller of the two angles that do it.
+  // Two angles do it. This is the smaller one.
   const double half = 0.5 * (jj - ii);
   const double t = ij / (half + std::copysign(std::sqrt(half * half + ij * ij), half));
   const double c = 1.0 / std::sqrt(1.0 + t * t);

@@ -10,17 +10,17 @@
 
 namespace fovea::barriers {
 
-// [dim x num_joints] how the task moves with the joints: ds/dt = J dq.
+// [dim x num_joints] task Jacobian: ds/dt = J dq.
 using TaskJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, features::kMaxDim,
                                    model::kMaxJoints>;
 
 struct RowSvd {
-  static constexpr int kMaxSweeps = 12;  // five to seven is what a matrix of 6 or 8 rows takes
+  static constexpr int kMaxSweeps = 12;  // a matrix of 6 or 8 rows takes five to seven
 
   int rows = 0;
   int columns = 0;
-  int sweeps = 0;                                 // that were needed; kMaxSweeps: perhaps not converged
-  std::array<double, features::kMaxDim> sigma{};  // [rows] falling; zero past min(rows, columns)
+  int sweeps = 0;                                 // done; kMaxSweeps: perhaps not converged
+  std::array<double, features::kMaxDim> sigma{};  // [rows] descending; zero past min(rows, columns)
   std::array<std::array<double, features::kMaxDim>, features::kMaxDim> u{};  // u[i] left singular vector i
   std::array<std::array<double, model::kMaxJoints>, features::kMaxDim> r{};  // r[i] = sigma[i] * v_i^T
 
@@ -31,7 +31,7 @@ struct RowSvd {
   }
 };
 
-// `J` [m x n], m and n at most 8. Not finite in, not finite out. Real-time: yes.
+// `J` [m x n], m and n at most 8. Non-finite input gives non-finite output. Real-time: yes.
 void ComputeRowSvd(const TaskJacobian& J, RowSvd& svd) noexcept;
 
 }  // namespace fovea::barriers

@@ -12,7 +12,7 @@ using model::ArmShape;
 using model::Vec3;
 
 struct Nearest {
-  model::SegmentPair axes;  // first of the body that is further from the base
+  model::SegmentPair axes;  // first: of the body further from the base
   double gap = HUGE_VAL;
   ArmShape::Pair pair;
 };
@@ -22,7 +22,7 @@ Nearest NearestPair(const ArmShape& shape, const ArmBodies& bodies) noexcept {
   for (const ArmShape::Pair& pair : std::span(shape.pairs).first(static_cast<std::size_t>(shape.num_pairs))) {
     const PlacedCapsule& far = bodies.body[static_cast<std::size_t>(pair.far)];
     const PlacedCapsule& near = bodies.body[static_cast<std::size_t>(pair.near)];
-    // Bodies whose balls are further apart than what was found already need no closer look.
+    // Skips bodies whose bounding balls are further apart than the smallest gap so far.
     const double apart = nearest.gap + far.reach + near.reach;
     if (apart > 0.0 && (far.middle - near.middle).squaredNorm() > apart * apart) {
       continue;
@@ -44,7 +44,7 @@ double SelfClearance(const model::ArmModel& arm, const ArmBodies& bodies) noexce
 
 Barrier SelfClearanceBarrier(const config::ServoConfig& config, const model::ArmPoses& poses,
                              const ArmBodies& bodies) noexcept {
-  constexpr double kTouch = 1e-6;  // axes that cross have no direction apart [m]
+  constexpr double kTouch = 1e-6;  // if axes cross, the direction between them is undefined [m]
   const model::ArmModel& arm = config.arm;
   Barrier barrier;
   if (config.guard.self_clearance <= 0.0) {

@@ -1,7 +1,7 @@
-// The arm stays away from itself.
+// Keeps the arm's bodies away from each other.
 //
-// Folded up, an arm can run its hand into its shoulder or upper arm. Its model (model::ArmShape)
-// names the pairs of its bodies that could touch. The pair that is nearest counts.
+// A folded arm can hit its shoulder or upper arm with its hand. Its model (model::ArmShape) lists the pairs
+// of bodies that could touch. The barrier uses the nearest pair.
 #pragma once
 
 #include "firmware/core/barriers/arm_bodies.hpp"
@@ -11,13 +11,13 @@
 
 namespace fovea::barriers {
 
-// The least gap between two links that could touch [m]; negative: they overlap; HUGE_VAL where none could.
+// The smallest gap of all pairs that could touch [m]; negative: they overlap; HUGE_VAL: no pair could.
 // Real-time: yes.
 [[nodiscard]] double SelfClearance(const model::ArmModel& arm, const ArmBodies& bodies) noexcept;
 
-// The same as a barrier, which keeps it guard.self_clearance [m] at least; what is already nearer may not
-// come nearer still. None where the clearance is 0, and none where two axes cross: there is no way apart
-// then. Real-time: yes.
+// The barrier that keeps this gap at least guard.self_clearance [m]. A pair that is already nearer must not
+// come nearer still. Inactive if the clearance is 0 or the axes cross: the direction between them is then
+// undefined. Real-time: yes.
 [[nodiscard]] Barrier SelfClearanceBarrier(const config::ServoConfig& config, const model::ArmPoses& poses,
                                            const ArmBodies& bodies) noexcept;
 

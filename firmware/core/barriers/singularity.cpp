@@ -26,7 +26,7 @@ void ComputeSingularity(const model::Mat6N& J, double length, Singularity& singu
   for (Eigen::Index i = 0; i < 6; ++i) {
     u[i] = svd.u[last][static_cast<std::size_t>(i)];
   }
-  u.head<3>() /= length;  // so that it takes unscaled changes
+  u.head<3>() /= length;  // so that it multiplies changes of the unscaled J
   for (int j = 0; j + 1 < n; ++j) {
     const double v_j = svd.r[last][static_cast<std::size_t>(j)] / singularity.sigma;
     for (int k = j + 1; k < n; ++k) {
@@ -38,8 +38,8 @@ void ComputeSingularity(const model::Mat6N& J, double length, Singularity& singu
 bool IsNear(const SingularityConfig& config, const model::Mat6N& J, double speed, double reach,
             SingularityWatch& watch, Singularity& singularity) noexcept {
   constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-  // No entry pair of dJ/dq_k is longer than two reaches over the length and one; their sum over the columns
-  // bounds how fast any singular value changes.
+  // No column of the scaled dJ/dq_k is longer than 2 reach / length + 1. The norm over all columns bounds the
+  // rate of change of every singular value.
   const double rate = (2.0 * reach / config.length + 1.0) * std::sqrt(static_cast<double>(J.cols()));
   watch.sigma -= rate * speed * kPeriodS;
   const double near = config.sigma_min + SingularityWatch::kNear;

@@ -1,11 +1,11 @@
-// How near the arm is to a singular posture, which way it comes nearer, and a limit on that.
+// The distance of the arm from a singular posture, its gradient, and a motion limit made from both.
 //
 // The measure is the smallest singular value sigma of the body Jacobian with its linear rows divided by a
-// length, so that metres and radians compare: the slowest motion of the hand that joints of speed 1 can be
-// brought to make. Its gradient is dsigma/dq_k = u^T (dJ/dq_k) v with the singular vectors u, v of sigma and
-// dJ/dq from the Jacobian's own columns. Where the two smallest singular values meet, sigma has a kink, and
-// the gradient is that of one of its branches; at sigma = 0, where sigma = |something smooth|, it is given as
-// 0.
+// length, so that metres and radians are comparable. It is the hand's speed in its slowest direction, for
+// joint velocities of norm 1. Its gradient is dsigma/dq_k = u^T (dJ/dq_k) v with the singular vectors u, v of
+// sigma and dJ/dq from the Jacobian's own columns. If the two smallest singular values are equal, sigma has a
+// kink, and the gradient is that of one branch. At sigma = 0, where sigma = |a smooth function|, the gradient
+// is returned as 0.
 #pragma once
 
 #include "firmware/core/barriers/barrier.hpp"
@@ -14,9 +14,9 @@
 namespace fovea::barriers {
 
 struct SingularityConfig {
-  double length = 0.3;      // that a metre counts as much as a radian for [m]
-  double sigma_min = 0.05;  // the arm does not go deeper than this
-  double rate = 5.0;        // what is left above it may be used up no faster than exp(-rate t) [1/s]
+  double length = 0.3;      // this distance counts as much as one radian [m]
+  double sigma_min = 0.05;  // lower bound of sigma
+  double rate = 5.0;        // sigma - sigma_min shrinks no faster than exp(-rate t) [1/s]
 };
 
 struct Singularity {
@@ -24,24 +24,25 @@ struct Singularity {
   model::VecN gradient;  // [num_joints] dsigma/dq [1/rad]
 };
 
-// `J` [6 x num_joints] body Jacobian of any frame fixed to the end effector. Of an arm with fewer than six
-// joints it is the smallest of its num_joints singular values. Real-time: yes.
+// `J` [6 x num_joints] body Jacobian of any frame fixed to the end effector. For an arm with fewer than six
+// joints, sigma is the smallest of the num_joints singular values. Real-time: yes.
 void ComputeSingularity(const model::Mat6N& J, double length, Singularity& singularity) noexcept;
 
-// Looks after the measure at the cost that it deserves: sigma changes no faster than the joints' speed
-// allows, so that far from a singularity it need not be computed anew in each tick.
+// Saves computing time: the joints' speed bounds how fast sigma changes, so that far from a singularity sigma
+// need not be computed in each tick.
 struct SingularityWatch {
-  static constexpr double kNear = 0.3;  // the limit is looked at when sigma is this close to its least
+  static constexpr double kNear = 0.3;  // the limit applies if sigma is less than this above sigma_min
 
-  double sigma = 0.0;  // at the last look, less all that it may have lost since
+  double sigma = 0.0;  // last computed value, less the largest possible decrease since
 };
 
-// `speed`: sum of the joints' speeds since the last call [rad/s], in a tick; `reach`: no point of the arm is
-// further from an axis [m]. True, with `singularity` computed, when the posture is near. Real-time: yes.
+// Call once per tick. `speed`: sum of the joints' speeds since the last call [rad/s]. `reach`: no point of
+// the arm is further from a joint axis [m]. If the posture is near a singularity: true, with `singularity`
+// computed. Real-time: yes.
 bool IsNear(const SingularityConfig& config, const model::Mat6N& J, double speed, double reach,
             SingularityWatch& watch, Singularity& singularity) noexcept;
 
-// Its quantity is sigma, with the margin sigma_min: standing still is always allowed. Real-time: yes.
+// h is sigma, with the margin sigma_min. Standing still is always allowed. Real-time: yes.
 [[nodiscard]] Barrier SingularityBarrier(const SingularityConfig& config,
                                          const Singularity& singularity) noexcept;
 

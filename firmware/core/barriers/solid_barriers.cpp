@@ -11,8 +11,8 @@
 namespace fovea::barriers {
 namespace {
 
-// The rows of the resolution are nearly on their boundary where the arm slides along itself: the proof leaves
-// them so much room [m].
+// When the arm slides along itself, the resolution's rows are almost on their boundary. The stop's proof
+// therefore allows this much less clearance [m].
 constexpr double kSelfRoom = 0.01;
 
 }  // namespace

@@ -1,8 +1,7 @@
-// What the arm can run into, in one table: the workspace's edge, each plane and box before the hand, the
-// planes before the links, and the arm itself.
+// One table of everything that the arm can collide with: the workspace's edge, each plane and box (for the
+// hand), the planes (for the links), and the arm itself.
 //
-// The resolution keeps each as a row, and the guard proves a stop before each; what one of them knows the
-// other knows too.
+// The resolution keeps each as a row, and the guard proves a stop before each. Both use this table.
 #pragma once
 
 #include "firmware/core/barriers/arm_bodies.hpp"
@@ -20,18 +19,16 @@ class SolidBarriers {
 
   [[nodiscard]] int size() const noexcept { return num_hand_ + (links_ ? 1 : 0) + (self_ ? 1 : 0) + 1; }
   [[nodiscard]] hal::Limit NameOf(int i) const noexcept;
-  // h of barrier `i` [m], 0 <= i < size(), with the arm's links at `poses`; `bodies`: what it
-  // fills there.
+  // h of barrier `i` [m], 0 <= i < size(), with the arm's links at `poses`; `bodies`: their capsules there.
   // Real-time: yes.
   [[nodiscard]] double ValueOf(int i, const model::ArmPoses& poses, const ArmBodies& bodies) const noexcept;
-  // The least h that a stop must keep [m].
+  // The smallest h that is allowed during a stop [m].
   [[nodiscard]] double StopMarginOf(int i) const noexcept;
-  // How much of h is left at least for each metre that every point of the arm may still go: 1, or half of it
-  // where both sides may move.
+  // How far every point of the arm may move per metre of h - margin: 1 m, or 0.5 m if both bodies move.
   [[nodiscard]] double ShareOf(int i) const noexcept { return KindOf(i) == Kind::kSelf ? 0.5 : 1.0; }
 
-  // Barrier `i` as a row of the resolution. `J_E_B` [3 x num_joints] moves the end effector; `dq`: the joint
-  // velocities at present. Real-time: yes.
+  // Barrier `i` as a row of the resolution. `J_E_B` [3 x num_joints]: linear Jacobian of the end effector;
+  // `dq`: current joint velocities. Real-time: yes.
   struct Scene {
     const model::ArmPoses& poses;
     const ArmBodies& bodies;
@@ -50,8 +47,8 @@ class SolidBarriers {
   bool self_;
 };
 
-// How far hand, camera, tools and links are from the planes and boxes that they keep out of, at least [m];
-// HUGE_VAL where there is nothing. Real-time: yes.
+// The smallest distance of hand, camera, tools and links from the planes and boxes that they avoid [m];
+// HUGE_VAL if there are none. Real-time: yes.
 [[nodiscard]] double ClearanceOfArm(const config::ServoConfig& config, const model::ArmPoses& poses) noexcept;
 
 }  // namespace fovea::barriers

@@ -1,5 +1,5 @@
-// The fields of a target's feature, which follow from the keys of [target] and from servo.feature and
-// servo.goal: their own texts stand with those keys.
+// The fields of a target's feature. They follow from the keys of [target] and from servo.feature and
+// servo.goal, which have their own texts (firmware/host/config).
 #pragma once
 
 #include "firmware/core/config/fields.hpp"

@@ -1,4 +1,4 @@
-// [servo] the visual law: how the arm shall move to take the feature's error away.
+// [servo] the visual law: how the arm moves to reduce the feature's error.
 #pragma once
 
 #include <array>
@@ -57,12 +57,13 @@ void Fields(Visitor& v, Config& c) noexcept {
       c.manipulability_gain, 0.0, 20.0);
   v.Number({"servo.free_speed", "rad/s", "speed limit of these three pulls together"}, c.free_speed, 1e-6,
            10.0);
-  v.PerJoint({"servo.posture", "rad", "that posture, one per joint; the arm's ready posture when not given"},
+  v.PerJoint({"servo.posture", "rad",
+              "posture that servo.posture_gain pulls to, one per joint; default: the arm's ready posture"},
              c.q_posture, -1e4, 1e4);
-  v.Number({"servo.unreachable_s", "s", "limits keep the arm from the goal for so long: Hold"},
+  v.Number({"servo.unreachable_s", "s", "Hold after limits block the arm from its goal for this time"},
            c.unreachable_s, 0.001, 60.0);
   v.Number({"servo.unreachable_progress", "",
-            "kept from the goal means that less than this share of the wanted motion is left"},
+            "the arm counts as blocked if limits leave less than this share of the wanted motion"},
            c.unreachable_progress, 0.0, 1.0);
 }
 

@@ -37,9 +37,10 @@ void Fields(Visitor& v, Config& c) noexcept {
       c.kind, kMotionLawNames);
   v.Number({"servo.omega_n", "rad/s", "natural frequency of the joints' error"}, c.omega_n, 0.1, 80.0);
   v.Number({"servo.zeta", "", "damping of the joints' error"}, c.zeta, 0.1, 10.0);
-  v.Number({"servo.integral", "1/s",
-            "computed_torque: how fast an error that stays is made up for, at most zeta omega_n; 0: not"},
-           c.integral, 0.0, 100.0);
+  v.Number(
+      {"servo.integral", "1/s",
+       "computed_torque: rate at which a constant error is removed, at most zeta omega_n; 0: no integral"},
+      c.integral, 0.0, 100.0);
   v.Number({"servo.integral_torque_fraction", "", "bound of the integral, as a share of a joint's torque"},
            c.integral_torque_fraction, 0.0, 1.0);
   v.PerJoint({"servo.k_p", "Nm/rad",
@@ -50,18 +51,19 @@ void Fields(Visitor& v, Config& c) noexcept {
              c.k_v, 0.0, 1e6);
   v.Derived({"servo.k_v"}, c.damp_by_inertia);
   v.Number({"servo.friction_compensation", "",
-            "share of the joints' friction that the servo makes up for, where the robot does not"},
+            "share of the joints' friction that the servo compensates, if the robot does not"},
            c.friction_compensation, 0.0, 1.0);
   v.Number({"servo.friction_width", "rad/s",
-            "the sign of a speed is smooth within this; narrow: a joint jerks where it turns round"},
+            "below this speed the friction's sign changes smoothly; too small: a joint jerks as it reverses"},
            c.friction_width, 1e-9, 10.0);
-  v.Number({"servo.friction_slow", "rad/s", "below this speed the sign of the wanted speed counts"},
+  v.Number({"servo.friction_slow", "rad/s",
+            "below this measured speed the friction takes the sign of the reference speed"},
            c.friction_slow, 1e-9, 10.0);
   v.Number({"servo.operational_damping", "",
             "operational_space: damping near a singularity, relative to the inertia's size"},
            c.operational_damping, 1e-9, 1.0);
-  v.Number({"servo.change_s", "s", "one motion law takes over from another in this time"}, c.change_s, 0.001,
-           10.0);
+  v.Number({"servo.change_s", "s", "duration of the change from one motion law to another"}, c.change_s,
+           0.001, 10.0);
 }
 
 }  // namespace fovea::config

@@ -25,9 +25,11 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Number({"servo.turn_speed", "rad/s", kOfHand}, c.turn_speed, 0.001, 10.0);
   v.Number({"servo.turn_acceleration", "rad/s^2", kOfHand}, c.turn_acceleration, 0.001, 1000.0);
   v.Number({"servo.turn_jerk", "rad/s^3", kOfHand}, c.turn_jerk, 0.001, 1e6);
-  v.Number({"servo.pose_gain", "1/s", "takes away what the end effector is off its commanded way"},
-           c.pose_gain, 0.0, 200.0);
-  v.Number({"servo.pose_error_max", "m", "further off its commanded way, the motion is refused"},
+  v.Number(
+      {"servo.pose_gain", "1/s", "gain that corrects the end effector's deviation from its commanded path"},
+      c.pose_gain, 0.0, 200.0);
+  v.Number({"servo.pose_error_max", "m",
+            "the motion is refused if the end effector deviates further from its commanded path"},
            c.pose_error_max, 1e-6, 10.0);
 }
 

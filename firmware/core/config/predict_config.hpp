@@ -1,4 +1,4 @@
-// [servo] where the target is now: prediction, filters, and how much of a measurement is believed.
+// [servo] the target's current place: prediction, filters, and the checks of each measurement.
 #pragma once
 
 #include "firmware/core/config/fields.hpp"
@@ -35,7 +35,7 @@ struct PredictConfig {
 template <class Visitor, Struct<PredictConfig> Config>
 void Fields(Visitor& v, Config& c) noexcept {
   v.Flag({"servo.predict", "",
-          "predict the target for every tick; false: hold the newest measurement as it came"},
+          "predict the target for every tick; false: hold the newest measurement unchanged"},
          c.enabled);
   v.Number({"servo.target_jerk", "m/s^3",
             "how fast the target's acceleration may change; larger follows faster, filters less"},
@@ -43,31 +43,29 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Number(
       {"servo.target_turn", "rad/s^2", "square and triangle: how fast their angular velocity may change"},
       c.target_turn, 0.0, 1000.0);
-  v.Number({"servo.gate_sigma", "sigma", "a measurement further off than this is an outlier"}, c.gate_sigma,
-           1.0, 1000.0);
+  v.Number({"servo.gate_sigma", "sigma", "a measurement that deviates more than this is an outlier"},
+           c.gate_sigma, 1.0, 1000.0);
   v.Integer({"servo.gate_rejects_max", "",
-             "after so many outliers in a row the target is taken to have moved there"},
+             "after this many outliers in a row the filter restarts at the newest one"},
             c.gate_rejects_max, 1, 1000);
-  v.Integer({"servo.accepted_min", "", "measurements before the target counts as known"}, c.accepted_min, 1,
-            1000);
-  v.Number({"servo.stale_s", "s", "without a measurement for so long: Coast"}, c.stale_s, 0.001, 10.0);
-  v.Number({"servo.coast_s", "s", "without a measurement for so long: Hold"}, c.coast_s, 0.001, 60.0);
-  v.Number({"servo.target_speed_max", "m/s", "the target is never taken to be faster, whatever is measured"},
+  v.Integer({"servo.accepted_min", "", "number of measurements before the target counts as known"},
+            c.accepted_min, 1, 1000);
+  v.Number({"servo.stale_s", "s", "Coast after this time without a measurement"}, c.stale_s, 0.001, 10.0);
+  v.Number({"servo.coast_s", "s", "Hold after this time without a measurement"}, c.coast_s, 0.001, 60.0);
+  v.Number({"servo.target_speed_max", "m/s", "upper bound of the target's estimated speed"},
            c.target_speed_max, 0.0, 10.0);
-  v.Number({"servo.target_acceleration_max", "m/s^2", "the target is never taken to accelerate harder"},
+  v.Number({"servo.target_acceleration_max", "m/s^2", "upper bound of the target's estimated acceleration"},
            c.target_acceleration_max, 0.0, 100.0);
-  v.Number({"servo.target_turn_max", "rad/s", "the target is never taken to turn faster"}, c.target_turn_max,
-           0.0, 100.0);
+  v.Number({"servo.target_turn_max", "rad/s", "upper bound of the target's estimated angular velocity"},
+           c.target_turn_max, 0.0, 100.0);
   v.Derived({"servo.target_region", "m",
-             "a measurement that puts the target outside this box is refused, and the prediction stays "
-             "inside: low x, "
-             "y, z, high x, y, z, in axes of the base"},
+             "box that the target stays in: measurements outside are rejected, predictions are kept inside; "
+             "low x, y, z, high x, y, z, in axes of the base"},
             c.target_region.low, -100.0, 100.0);
   v.Derived({"servo.target_region"}, c.target_region.high, -100.0, 100.0);
   v.Derived({"servo.stuck_shift_px", "px",
-             "a picture that stays the same within its noise, although the hand shifted the scene in it by "
-             "more than "
-             "this, is no measurement"},
+             "a picture that stays the same within its noise is rejected once the hand's motion must have "
+             "shifted the scene by more than this"},
             c.stuck_shift, 1e-6, 1e6);
   v.Number({"servo.stamp_sigma", "s", "standard deviation of the measurements' stamps"}, c.stamp_sigma, 0.0,
            1.0);
@@ -75,11 +73,12 @@ void Fields(Visitor& v, Config& c) noexcept {
            0.0, 1.0);
   v.Number({"servo.mount_turn_sigma", "rad", "standard deviation of the mount's orientation"},
            c.mount_turn_sigma, 0.0, 1.0);
-  v.Number({"servo.scale_sigma", "", "standard deviation of focal length and target size, as a share"},
+  v.Number({"servo.scale_sigma", "", "relative standard deviation of focal length and target size"},
            c.scale_sigma, 0.0, 1.0);
-  v.Number({"servo.way_in_vain", "m",
-            "the camera has gone so far and its error got no smaller: Hold, until Track is asked for anew"},
-           c.way_in_vain, 0.001, 1000.0);
+  v.Number(
+      {"servo.way_in_vain", "m",
+       "Hold, until Track is requested again, after the camera has moved this far without a smaller error"},
+      c.way_in_vain, 0.001, 1000.0);
 }
 
 }  // namespace fovea::config

@@ -1,4 +1,4 @@
-// A visitor of the lists of fields that finds the first value outside its range.
+// A visitor of the field lists that finds the first value outside its range.
 #pragma once
 
 #include <cmath>

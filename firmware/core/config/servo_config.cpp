@@ -8,7 +8,7 @@ namespace fovea::config {
 bool HandShape::AddCapsule(const model::Vec3& p_EA, const model::Vec3& p_EB, double radius) noexcept {
   const double length = (p_EB - p_EA).norm();
   const int steps = std::max(1, static_cast<int>(std::ceil(length / radius)));
-  // Balls a radius apart cover the capsule when they are larger by what is between them.
+  // Balls up to one radius apart cover the capsule if their radius is enlarged for the gap between them.
   const double step = length / steps;
   for (int i = 0; i <= steps; ++i) {
     if (num_balls >= kMost) {

@@ -1,5 +1,5 @@
-// Everything that can be set about the servo. Fixed after Init. Each struct stands in a file of its own, with
-// the list of its fields: key, unit, range, meaning (fields.hpp).
+// All settings of the servo. Fixed after Init. Each struct has its own file, with the list of its fields:
+// key, unit, range, meaning (fields.hpp).
 #pragma once
 
 #include "firmware/core/config/feature_fields.hpp"
@@ -16,7 +16,7 @@ namespace fovea::config {
 
 struct ServoConfig {
   model::ArmModel arm;
-  model::Pose X_EC;  // the camera in the hand
+  model::Pose X_EC;  // pose of the camera in the hand
   features::TargetFeature feature;
   bool auto_track = false;
   PredictConfig predict;
@@ -29,8 +29,8 @@ struct ServoConfig {
 
 inline constexpr Field kAutoTrackField{"servo.auto_track", "", "go to Track as soon as the target is known"};
 
-// Calls `visit(name, fields)` for each part but the arm, in the order of the line and of logs;
-// `fields(visitor)` goes through the part's fields.
+// Calls `visit(name, fields)` for each section except the arm, in the order of messages and logs.
+// `fields(visitor)` visits the section's fields.
 template <class Visit, Struct<ServoConfig> Config>
 void EachSection(Config& c, const Visit& visit) noexcept {
   visit("mount", [&c](auto& v) {

@@ -1,6 +1,6 @@
-// The limits that hold an estimate back, for the dual active-set method (move_into_limits.hpp): their
-// normals, in coordinates where the cost is the plain distance, as N = Q R with Q orthonormal and R upper
-// triangular, and their multipliers. At most one per joint. Real-time: yes, all.
+// The active limits of the dual active-set method (move_into_limits.hpp), at most one per joint: multipliers,
+// and normals as N = Q R with Q orthonormal and R upper triangular. The normals are in coordinates in which
+// the cost is the Euclidean distance. Real-time: yes, all functions.
 #pragma once
 
 #include <array>
@@ -19,10 +19,10 @@ struct ActiveSet {
   std::array<std::array<double, model::kMaxJoints>, model::kMaxJoints> R{};  // R[column][row]
   std::uint64_t members = 0;                                                 // bit per limit
 
-  // Splits `normal` into its share along Q, `along`, and the rest, which it becomes.
+  // Splits `vector` into `along`, its coordinates along Q, and the rest, which replaces it.
   void Split(model::VecN& vector, std::array<double, model::kMaxJoints>& along) const noexcept {
     along.fill(0.0);
-    for (int pass = 0; pass < 2; ++pass) {  // the second takes away what rounding left
+    for (int pass = 0; pass < 2; ++pass) {  // the second pass removes rounding errors
       for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
         const double share = Q[i].dot(vector);
         along[i] += share;
@@ -31,7 +31,7 @@ struct ActiveSet {
     }
   }
 
-  // R^-1 along, in place.
+  // Replaces x by R^-1 x.
   void SolveR(std::array<double, model::kMaxJoints>& x) const noexcept {
     for (int i = size - 1; i >= 0; --i) {
       const auto row = static_cast<std::size_t>(i);
@@ -42,7 +42,7 @@ struct ActiveSet {
     }
   }
 
-  // `rest` and `along`: what Split made of `whitened`.
+  // `rest` and `along`: results of Split for `whitened`.
   void Add(int new_limit, double new_multiplier, const model::VecN& whitened, const model::VecN& rest,
            const std::array<double, model::kMaxJoints>& along) noexcept {
     const auto k = static_cast<std::size_t>(size);

@@ -26,7 +26,7 @@ void CompressTask(features::InteractionMatrix& L, features::FeatureVector& v) no
   if (rows <= kRows) {
     return;
   }
-  // The columns of L, and v as one more; rows that are not there are zero.
+  // The columns of L, and v as one more; missing rows are zero.
   std::array<Column, kRows + 1> columns{};
   for (std::size_t i = 0; i < rows; ++i) {
     for (std::size_t c = 0; c < kRows; ++c) {
@@ -43,7 +43,7 @@ void CompressTask(features::InteractionMatrix& L, features::FeatureVector& v) no
     if (!(length2 > 0.0) && !std::isnan(length2)) {
       continue;
     }
-    // The root is not waited for: it scales what is written, not what goes on.
+    // The root scales only the results written here, so that the next columns do not wait for it.
     const double share = 1.0 / length2;
     const double length = std::sqrt(length2);
     L(row, row) = length;

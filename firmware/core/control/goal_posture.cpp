@@ -20,30 +20,30 @@ using model::VecN;
 
 constexpr double kStepMost = 0.2;  // [rad]
 constexpr double kDamping = 1e-6;
-constexpr double kReached = 2e-3;  // the rest follows, also of a target that moves [m, rad]
-constexpr double kOff = 0.01;      // a posture that was found and is further off than this is none any more,
-constexpr int kOffSteps = 25;      // after so many steps
-constexpr double kLost = 0.5;      // or this at once
+constexpr double kReached = 2e-3;  // a goal this near is reached; later steps remove the rest [m, rad]
+constexpr double kOff = 0.01;      // a posture found is given up if it is further off than this
+constexpr int kOffSteps = 25;      // for more than this many steps
+constexpr double kLost = 0.5;      // or further off than this once
 constexpr int kStepsMost = 100;
-constexpr int kStepsLooked = 8;       // a trial that comes no nearer in so many
-constexpr double kComesNearer = 0.8;  // than this share is given up
-constexpr int kPasses = 3;            // of joints found at the ends of their ranges, in one step
-constexpr double kSpread = 0.5;  // of the first round about the arm's posture, a step more each round [rad]
-constexpr int kTrialsInRound = 16;    // to each turn
-constexpr int kRounds = 12;           // then it begins anew: limits, target or arm may have moved
-constexpr int kTrialsForClear = 192;  // before a posture is taken that has no clear way to it
-constexpr double kBarred = 100.0;     // a way that is barred counts as so much longer [rad]
-constexpr double kSame = 0.2;         // postures no further apart are one [rad]
-constexpr int kDetours = 6;           // that are tried to a posture whose straight way is barred
-constexpr double kDetour = 1.5;       // how far off the posture is that one begins towards [rad]
-constexpr int kDetourSteps = 4;       // that it goes there, or up to
-constexpr int kDetourStepsMore = 11;  // so many more
+constexpr int kStepsLooked = 8;       // a trial is given up if in this many steps
+constexpr double kComesNearer = 0.8;  // its distance does not fall to this share
+constexpr int kPasses = 3;            // of one step, to find joints at the ends of their ranges
+constexpr double kSpread = 0.5;       // of the first round's starts; each round adds as much [rad]
+constexpr int kTrialsInRound = 16;    // for each turn
+constexpr int kRounds = 12;           // then the search restarts: limits, target or arm may have moved
+constexpr int kTrialsForClear = 192;  // then a posture without a clear path is taken too
+constexpr double kBarred = 100.0;     // added to the length of a barred path [rad]
+constexpr double kSame = 0.2;         // postures no further apart are the same [rad]
+constexpr int kDetours = 6;           // number tried if the straight path is barred
+constexpr double kDetour = 1.5;       // a detour starts towards a posture up to this far away [rad]
+constexpr int kDetourSteps = 4;       // of a detour, at least
+constexpr int kDetourStepsMore = 11;  // and up to this many more
 
 int TurnsOf(const features::TargetFeature& feature) noexcept {
   return features::TraitsOf(feature.target).turns;
 }
 
-// Where the camera shall be.
+// The camera's goal pose.
 Pose CameraGoal(const features::TargetFeature& feature, const Pose& X_BO, int turn) noexcept {
   const Pose turned{X_BO.R * EqualTurn(turn, TurnsOf(feature)), X_BO.p};
   return turned * Pose{feature.R_CO_star, feature.p_CO_C_star}.Inverse();
@@ -53,7 +53,7 @@ Pose HandGoal(const config::ServoConfig& config, const Pose& X_BO, int turn) noe
   return CameraGoal(config.feature, X_BO, turn) * config.X_EC.Inverse();
 }
 
-// The turn `first`, then the others, the nearest to the camera's orientation first.
+// The turn in place `rank`: `first`, then the others, nearest to the camera's orientation first.
 int TurnOfRank(const config::ServoConfig& config, const Pose& X_BO, const VecN& q, int first,
                int rank) noexcept {
   const int turns = TurnsOf(config.feature);
@@ -64,7 +64,7 @@ int TurnOfRank(const config::ServoConfig& config, const Pose& X_BO, const VecN& 
   model::ComputePoses(config.arm, q, poses);
   const Pose X_BC = poses.X_BE * config.X_EC;
   std::array<double, features::Polygon::kMost> likeness{};
-  likeness.fill(-HUGE_VAL);  // of turns that it does not have: last
+  likeness.fill(-HUGE_VAL);  // turns that the target does not have come last
   for (int i = 0; i < turns; ++i) {
     likeness[static_cast<std::size_t>(i)] = X_BC.R.cwiseProduct(CameraGoal(config.feature, X_BO, i).R).sum();
   }
@@ -76,7 +76,7 @@ int TurnOfRank(const config::ServoConfig& config, const Pose& X_BO, const VecN& 
   return order[static_cast<std::size_t>(rank)];
 }
 
-// Uniform in [-1, 1]: numbers of Numerical Recipes' quick generator.
+// Uniform in [-1, 1]: the quick generator of Numerical Recipes.
 double Draw(std::uint32_t& state) noexcept {
   state = state * 1664525U + 1013904223U;
   return static_cast<double>(state >> 8U) * 0x1p-23 - 1.0;
@@ -100,8 +100,8 @@ void Begin(const config::ServoConfig& config, const Pose& X_BO, const VecN& q, G
   }
 }
 
-// What the camera is off its goal, and how the joints change that: J dq = off. A target whose orientation is
-// not seen leaves the camera free to turn about it: dp_CO/dt = -v + [p_CO]x w shall be p_CO* - p_CO.
+// The camera's distance `off` from its goal, and the Jacobian with J dq = off. If the target's orientation is
+// not seen, the camera may turn about it, and dp_CO/dt = -v + [p_CO]x w must be p_CO* - p_CO.
 void OffGoal(const config::ServoConfig& config, const Pose& X_BO, int turn, const model::ArmPoses& poses,
              Vec6& off, model::Mat6N& J) noexcept {
   const Pose X_BC = poses.X_BE * config.X_EC;
@@ -119,8 +119,8 @@ void OffGoal(const config::ServoConfig& config, const Pose& X_BO, int turn, cons
   }
 }
 
-// One step of Gauss-Newton towards the goal. A joint at its end rests where the step would take it further.
-// Returns how far off it was before.
+// One Gauss-Newton step towards the goal. A joint at the end of its range stays if the step would move it
+// out. Returns the distance from the goal before the step.
 double Descend(const config::ServoConfig& config, const Pose& X_BO, int turn, const model::ArmPoses& poses,
                VecN& q) noexcept {
   Vec6 off;
@@ -164,7 +164,7 @@ bool WasDropped(const GoalPosture& goal) noexcept {
   return dropped;
 }
 
-// A way to a posture that reaches the goal has been tried.
+// Records a tried path to a posture that reaches the goal.
 void Note(GoalPosture& goal) noexcept {
   const double way = goal.way.length + (goal.way.barred ? kBarred : 0.0);
   const bool counts = goal.detour == 0 || !goal.way.barred;
@@ -177,7 +177,7 @@ void Note(GoalPosture& goal) noexcept {
   }
 }
 
-// Another detour from `q`, towards a posture drawn about where the arm is.
+// Starts another detour from `q`, towards a random posture about `q`.
 void BeginDetour(const config::ServoConfig& config, const VecN& q, GoalPosture& goal) noexcept {
   ++goal.detour;
   goal.turned = false;
@@ -192,7 +192,7 @@ void BeginDetour(const config::ServoConfig& config, const VecN& q, GoalPosture& 
   goal.way.q = q;
 }
 
-// A step of the way that is tried. False when it is at its end, there or barred.
+// One step along the tried path. False at its end, reached or barred.
 bool TryOn(const config::ServoConfig& config, const Pose& X_BO, GoalPosture& goal) noexcept {
   if (goal.detour == 0 || goal.turned) {
     return StepOnWay(config, X_BO, goal.q, goal.way);
@@ -208,7 +208,7 @@ bool TryOn(const config::ServoConfig& config, const Pose& X_BO, GoalPosture& goa
   return true;
 }
 
-// What has been found counts at once when it lies downhill, else when the round is over.
+// Ends the trial. A posture found downhill counts at once, others at the end of the round.
 void NextTrial(const config::ServoConfig& config, GoalPosture& goal) noexcept {
   const int turns = TurnsOf(config.feature);
   goal.downhill = goal.trial < turns;

@@ -13,24 +13,24 @@ namespace {
 using model::kMaxJoints;
 using model::VecN;
 
-constexpr double kBroken = 1e-10;       // a limit passed by more is broken [rad/s, normal of length 1]
-constexpr double kAcceptBroken = 1e-9;  // and by more than this the result is not accepted
-constexpr double kDependent = 1e-9;     // a normal this near to the span of others lies in it
+constexpr double kBroken = 1e-10;       // a limit exceeded by more is violated [rad/s, normal of length 1]
+constexpr double kAcceptBroken = 1e-9;  // a result that violates a limit by more is rejected
+constexpr double kDependent = 1e-9;     // a normal this close to the span of others lies in it
 
 // Limits are numbered: upper ends of the ranges, lower ends, rows.
 constexpr int kFirstLower = kMaxJoints;
 constexpr int kFirstRow = 2 * kMaxJoints;
 constexpr int kNumLimits = kFirstRow + barriers::MotionLimits::kMaxRows;
 
-// The limits with normals of length 1 and ranges that are none the wrong way round.
+// The limits with normals of length 1, and with dq_min <= dq_max.
 struct Limits {
   Eigen::Index n = 0;
   VecN dq_min, dq_max;
   int num_rows = 0;
   std::array<barriers::LimitRow, barriers::MotionLimits::kMaxRows> rows;
-  std::array<int, barriers::MotionLimits::kMaxRows> origin{};  // number of the row as it was given
-  bool contradict = false;  // a range that is empty, a row that no dq keeps
-  bool sound;               // false: something is not a number, or left out
+  std::array<int, barriers::MotionLimits::kMaxRows> origin{};  // number of the given row
+  bool contradict = false;                                     // a range is empty, or no dq keeps a row
+  bool sound;                                                  // false: a value is NaN, or a row is missing
 
   explicit Limits(const barriers::MotionLimits& given) noexcept
       : n(given.dq_min.size()), dq_min(given.dq_min), dq_max(given.dq_max), sound(given.complete) {
@@ -46,11 +46,11 @@ struct Limits {
       sound = sound && row.a.allFinite() && !std::isnan(row.b);
       const double largest = row.a.lpNorm<Eigen::Infinity>();
       if (!(largest > 0.0)) {
-        contradict |= row.b < 0.0;  // says nothing about dq
+        contradict |= row.b < 0.0;  // does not depend on dq
         continue;
       }
       barriers::LimitRow& unit = rows[static_cast<std::size_t>(num_rows)];
-      unit.a = row.a / largest;  // first this, lest a square overflow
+      unit.a = row.a / largest;  // first, so that no square overflows
       const double size = unit.a.norm();
       unit.a /= size;
       unit.b = row.b / largest / size;
@@ -63,7 +63,7 @@ struct Limits {
     return limit < kFirstRow ? limit % kMaxJoints < n : limit - kFirstRow < num_rows;
   }
 
-  // By how much `dq` passes the limit.
+  // By how much `dq` exceeds the limit.
   [[nodiscard]] double Passed(int limit, const VecN& dq) const noexcept {
     if (limit < kFirstLower) {
       return dq[limit] - dq_max[limit];
@@ -105,7 +105,7 @@ static_assert(kNumLimits <= 64, "one bit each");
 
 enum class Search : std::uint8_t { kDone, kGaveUp, kInfeasible };
 
-// From `dq`, the wish, to the nearest point that keeps all limits.
+// Moves `dq` from the wish to the nearest point that keeps all limits.
 Search FindNearest(const model::MatN& L, const Limits& limits, VecN& dq, ActiveSet& active,
                    int& steps) noexcept {
   const double broken = kBroken + 1e-14 * dq.lpNorm<Eigen::Infinity>();
@@ -133,7 +133,7 @@ Search FindNearest(const model::MatN& L, const Limits& limits, VecN& dq, ActiveS
       whitened = limits.Normal(entering);
       model::SolveLower(L, whitened);
     }
-    // Way towards the limit within those that already hold, and how their multipliers change along it.
+    // Direction towards the limit that keeps the active ones, and the change of their multipliers along it.
     VecN rest = whitened;
     std::array<double, kMaxJoints> along;
     active.Split(rest, along);
@@ -177,7 +177,7 @@ Search FindNearest(const model::MatN& L, const Limits& limits, VecN& dq, ActiveS
   return Search::kGaveUp;
 }
 
-// From `rest`, which keeps all limits, towards `goal`, as far as they are kept.
+// The point furthest from `rest` towards `goal` that keeps all limits; `rest` keeps them.
 VecN GoAsFarAsKept(const Limits& limits, const VecN& rest, const VecN& goal) noexcept {
   const VecN way = limits.IntoRange(goal) - rest;
   double share = 1.0;

@@ -36,7 +36,7 @@ model::VecN ManipulabilityGradient(const model::Mat6N& J, double length, double 
     model::Vec6 y = scaled.col(j);
     model::SolveLower(A, y);
     model::SolveLowerTransposed(A, y);
-    y.head<3>() /= length;  // so that it takes unscaled changes
+    y.head<3>() /= length;  // so that it multiplies changes of the unscaled J
     for (int k = j + 1; k < n; ++k) {
       gradient[k] += y.dot(model::ColumnChange(J, j, k));
     }

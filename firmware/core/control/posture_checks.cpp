@@ -11,12 +11,12 @@
 namespace fovea::control {
 namespace {
 
-constexpr double kJointRoom = 0.06;       // inside the range that the reference keeps [rad, m]
-constexpr double kRadiusRoom = 0.003;     // inside the sphere that it keeps [m]
-constexpr double kLineRoom = 0.005;       // outside the clearances that it keeps [m]
-constexpr double kSingularityRoom = 1.5;  // of the smallest singular value that the guard keeps
+constexpr double kJointRoom = 0.06;       // inside the reference's range [rad, m]
+constexpr double kRadiusRoom = 0.003;     // inside the reference's sphere [m]
+constexpr double kLineRoom = 0.005;       // beyond the guard's clearances [m]
+constexpr double kSingularityRoom = 1.5;  // times the guard's smallest singular value
 
-constexpr double kSteepest = 0.2;  // cosine to a flat target's normal at which it is still made out
+constexpr double kSteepest = 0.2;  // smallest cosine to a flat target's normal for its detection
 constexpr double kNearest = 0.05;  // [m]
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a posture must satisfy to be a goal, or to lie on the way to one.
+// Checks of a posture that is a goal, or that lies on the path to one.
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"
@@ -11,23 +11,24 @@ struct JointRange {
   double most;
 };
 
-// Where a goal's joint `i` may be [rad, m]: inside the range that the reference keeps, with some room; in the
-// middle of one that leaves none. Real-time: yes.
+// The range of joint `i` at a goal [rad, m]: the reference's range less some room; its middle if that leaves
+// nothing. Real-time: yes.
 [[nodiscard]] JointRange RoomOfJoint(const config::ServoConfig& config, Eigen::Index i) noexcept;
 
-// Whether the hand at `p_BE` [m] is inside the workspace and out of the obstacles, with some room.
+// True if the hand at `X_BE` is inside the workspace and clear of the obstacles, with some room.
 // Real-time: yes.
 [[nodiscard]] bool KeepsOut(const config::ServoConfig& config, const model::Pose& X_BE) noexcept;
 
-// Whether the posture is clear of the singularities that the guard keeps it from. Real-time: yes.
+// True if the posture is further from a singularity than the guard requires, with some room. Real-time: yes.
 [[nodiscard]] bool IsRegular(const config::ServoConfig& config, const model::ArmPoses& poses) noexcept;
 
-// Whether the arm's own links leave the target at `X_BO` in sight and the hand is clear of the first of them,
-// and of the planes what comes from the elbow on. Real-time: yes.
+// True if the arm's links are clear of each other and of the lines of sight to the target at `X_BO`, and the
+// outer links of the planes, with some room. Real-time: yes.
 [[nodiscard]] bool IsArmClear(const config::ServoConfig& config, const model::ArmPoses& poses,
                               const model::Pose& X_BO) noexcept;
 
-// Whether the target is in the picture, and a flat one not seen from beside or behind. Real-time: yes.
+// True if the target is in the picture and, if it is flat, seen from the front and not too obliquely.
+// Real-time: yes.
 [[nodiscard]] bool IsInView(const config::ServoConfig& config, const model::Pose& X_BC,
                             const model::Pose& X_BO) noexcept;
 

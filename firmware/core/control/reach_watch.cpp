@@ -6,7 +6,7 @@
 namespace fovea::control {
 namespace {
 
-constexpr double kMovedM = 0.02;  // so far from where it was unreachable, and it is tried again
+constexpr double kMovedM = 0.02;  // a target that has moved this far is tried again
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 
 }  // namespace

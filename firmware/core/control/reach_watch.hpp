@@ -1,4 +1,4 @@
-// Whether limits keep the arm from its goal for good, and when the goal is worth another try.
+// Detects that limits block the arm from its goal, and when the goal is worth another try.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 namespace fovea::control {
 
 struct ReachWatch {
-  std::int64_t blocked_ns = 0;  // how much longer limits have kept the arm from the goal than not
-  model::Vec3 p_BO_unreachable = model::Vec3::Zero();  // where the target was that could not be reached [m]
+  std::int64_t blocked_ns = 0;                         // blocked time less unblocked time, at least 0
+  model::Vec3 p_BO_unreachable = model::Vec3::Zero();  // the target's place when it was unreachable [m]
 };
 
-// One tick of steering: whether limits kept the arm from the goal. Noise lets it through for a tick now and
-// then: what counts is how often it is kept. Real-time: yes.
+// One tick of steering. `blocked`: limits kept the arm from the goal. Noise unblocks single ticks, so that
+// the balance of blocked and unblocked ticks counts. Real-time: yes.
 void UpdateBlockedTime(bool blocked, ReachWatch& watch) noexcept;
 
 [[nodiscard]] bool IsUnreachable(const config::LawConfig& config, const ReachWatch& watch) noexcept;
 
-// Whether the target, at `p_BO` [m], has moved since it could not be reached.
+// True if the target, at `p_BO` [m], has moved since it was unreachable.
 [[nodiscard]] bool HasMoved(const model::Vec3& p_BO, const ReachWatch& watch) noexcept;
 
 }  // namespace fovea::control

@@ -8,11 +8,10 @@
 namespace fovea::control {
 namespace {
 
-constexpr double kSlowJoint =
-    1e-3;  // a task slower than joints at this speed move it has no direction [rad/s]
+constexpr double kSlowJoint = 1e-3;  // a task slower than this joint speed has no direction [rad/s]
 
-// Where the task's cost meets the wish dq_0: `H` = J^T J in units of the task, and next to nothing for the
-// wish.
+// Adds to `H` = J^T J, in units of the task, the small cost weight^2 |d - dq_0|^2_W. `free` becomes the
+// velocity d of least cost: dq_0 with the task almost at rest.
 void WeighFreeMotion(const MotionTask& task, double weight, model::MatN& H, model::VecN& free) noexcept {
   free.resize(task.dq_0.size());
   for (Eigen::Index j = 0; j < free.size(); ++j) {
@@ -26,9 +25,9 @@ void WeighFreeMotion(const MotionTask& task, double weight, model::MatN& H, mode
   model::SolveLowerTransposed(L, free);
 }
 
-// The limits for what is free beside the task's own motion `u`: where that moves away from one, there is more
-// room, so that a sum which keeps all limits is left as it is; where it moves towards one, no less, lest a
-// task that comes to rest should find the free motion has taken it all.
+// The limits of the free motion beside the task's motion `u`. If `u` moves away from a limit, the free motion
+// gets more room, so that a sum that keeps all limits stays unchanged. If `u` moves towards a limit, the room
+// stays: otherwise the free motion would take all room from a task that comes to rest.
 barriers::MotionLimits RoomBeside(const barriers::MotionLimits& limits, const model::VecN& u) noexcept {
   barriers::MotionLimits room = limits;
   for (Eigen::Index i = 0; i < u.size(); ++i) {
@@ -42,14 +41,14 @@ barriers::MotionLimits RoomBeside(const barriers::MotionLimits& limits, const mo
   return room;
 }
 
-// rms singular value of J W^-1/2, squared: the unit in which the task counts.
+// Squared rms singular value of J W^-1/2: the unit of the task's cost.
 double UnitOf(const MotionTask& task) noexcept {
   double unit = 0.0;
   for (Eigen::Index k = 0; k < task.J.cols(); ++k) {
     unit += task.J.col(k).squaredNorm() / task.weight[k];
   }
   unit /= static_cast<double>(task.J.rows());
-  return unit > 0.0 ? unit : 1.0;  // no task: the null space is all there is
+  return unit > 0.0 ? unit : 1.0;  // no task: only the null space
 }
 
 }  // namespace
@@ -66,8 +65,8 @@ void ResolveConstrained(const ConstrainedConfig& config, const MotionTask& task,
     motion.limited.outcome = LimitOutcome::kNotFinite;
     return;
   }
-  // Damped directions let a share of dq_0 through to the task: there, and where a limit is broken, what of it
-  // is free is found more sharply.
+  // In damped directions a share of dq_0 disturbs the task. There, and if a limit is violated, the free part
+  // of dq_0 is computed more sharply.
   const bool damped = motion.wish.sigma_min < motion.wish.threshold;
   if (!damped && limits.KeptBy(motion.wish.dq)) {
     return;
@@ -95,9 +94,9 @@ void ResolveConstrained(const ConstrainedConfig& config, const MotionTask& task,
   LimitedMotion free_limited;
   MoveIntoLimits(H_free, free, RoomBeside(limits, motion.wish.dq - free), free_limited);
 
-  features::FeatureVector v(task.J.rows());  // of the wish: near a singularity not all that was asked for
+  features::FeatureVector v(task.J.rows());  // of the wish: less than requested near a singularity
   v = task.J.lazyProduct(motion.wish.dq);
-  // Cost (I - k v v^T) of the task's departure. The second term keeps it continuous where v vanishes.
+  // Cost (I - k v v^T) of the task's departure. slow2 keeps it continuous where v vanishes.
   const double slow2 = kSlowJoint * kSlowJoint * unit;
   const double k = (1.0 - config.progress_weight) / (v.squaredNorm() + slow2);
   const model::VecN g = task.J.transpose().lazyProduct(v);
@@ -109,7 +108,7 @@ void ResolveConstrained(const ConstrainedConfig& config, const MotionTask& task,
     H(j, j) += config.null_weight * config.null_weight * task.weight[j];
   }
   MoveIntoLimits(H, motion.wish.dq - free + free_limited.dq, limits, motion.limited);
-  if (motion.limited.outcome == LimitOutcome::kFree) {  // the limits held back dq_0 alone
+  if (motion.limited.outcome == LimitOutcome::kFree) {  // the limits restrict dq_0 only
     const model::VecN dq = motion.limited.dq;
     motion.limited = free_limited;
     motion.limited.dq = dq;

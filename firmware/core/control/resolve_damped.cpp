@@ -9,7 +9,7 @@ namespace {
 
 using Entries = std::array<double, 8>;
 
-// Rows are filled up with zeros: loops of one length are the faster ones.
+// Rows are padded with zeros, because loops of constant length are faster.
 double Dot(const Entries& a, const Entries& b) noexcept {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -18,7 +18,7 @@ double Dot(const Entries& a, const Entries& b) noexcept {
   return sum;
 }
 
-// The one that damping asks for, of a direction with `sigma2`.
+// g of a direction with the squared singular value `sigma2`.
 double Filter(double sigma2, double threshold2) noexcept {
   if (sigma2 >= threshold2) {
     return 1.0 / sigma2;
@@ -28,7 +28,7 @@ double Filter(double sigma2, double threshold2) noexcept {
   return 1.0 / (threshold2 * half * half);
 }
 
-// Of `size` numbers, the one that `greater` are greater than, or as great.
+// Of the first `size` values, the one that exactly `greater` others precede in descending order.
 double FromTheTop(Entries values, std::size_t size, std::size_t greater) noexcept {
   std::sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(size), std::greater<>());
   return values[greater];
@@ -69,9 +69,9 @@ void DampedInverse::Factor(const DampingConfig& config) noexcept {
   threshold_ = std::sqrt(threshold2);
   sigma_min_ = threshold_;
   for (std::size_t i = rows_; i < kRows; ++i) {
-    A[i][i] = 2.0 * threshold2;  // a row that is not there is none that is damped
+    A[i][i] = 2.0 * threshold2;  // a padding row is never damped
   }
-  // All singular values are above the threshold when A less its square is positive definite.
+  // All singular values are above the threshold if A - threshold^2 I is positive definite.
   model::Square8 above;
   for (std::size_t i = 0; i < kRows; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -92,7 +92,7 @@ void DampedInverse::Factor(const DampingConfig& config) noexcept {
     sigma2[i] = A[i][i] > 0.0 || std::isnan(A[i][i]) ? A[i][i] : 0.0;
     filter_[i] = Filter(sigma2[i], threshold2);
   }
-  // Rows that are not there, and those that the joints are too few for, are none that count.
+  // Padding rows, and rows beyond the number of joints, do not count.
   const std::size_t counted = kRows - rows_ + std::min(rows_, columns_);
   sigma_min_ = std::sqrt(FromTheTop(sigma2, kRows, counted - 1));
 }

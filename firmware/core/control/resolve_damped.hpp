@@ -6,12 +6,12 @@
 // direction's singular value and t = sigma / threshold,
 //
 //   1 / g = sigma^2                                  for t >= 1: exact
-//   1 / g = sigma^2 + (threshold (1 - t^2) / 2)^2    for t <  1: damping that grows smoothly from nothing
+//   1 / g = sigma^2 + (threshold (1 - t^2) / 2)^2    for t <  1: damping that grows smoothly from 0
 //
-// so what is well conditioned stays exact beside what is not, |W^1/2 J^# v| <= 1.3 |v| / threshold, and dq is
-// a smooth function of J even where singular values meet or vanish, being a function of the matrix and not
-// of its singular vectors. dq_0 acts in what J^# leaves free, (I - J^# J) dq_0: exactly the null space while
-// t >= 1 for all directions; below that it may disturb the task by 0.22 threshold |W^1/2 dq_0| at most.
+// Well-conditioned directions stay exact beside ill-conditioned ones, and |W^1/2 J^# v| <= 1.3 |v| /
+// threshold. dq is a smooth function of J even where singular values meet or vanish, because it depends on
+// the matrix and not on its singular vectors. dq_0 acts as (I - J^# J) dq_0: exactly in the null space while
+// t >= 1 for all directions; otherwise it disturbs the task by at most 0.22 threshold |W^1/2 dq_0|.
 //
 // (Nakamura and Hanafusa, Inverse kinematic solutions with singularity robustness, 1986; Chiaverini,
 // Singularity-robust task-priority redundancy resolution, 1997; Maciejewski and Klein, Numerical filtering
@@ -33,24 +33,24 @@ struct MotionTask {
 
 struct DampingConfig {
   double threshold = 0.05;        // damping begins at this singular value, relative to the rms one of Jw
-  double threshold_floor = 1e-6;  // and at this one at the latest, in units of Jw; > 0
+  double threshold_floor = 1e-6;  // lower bound of the threshold, in units of Jw; > 0
 };
 
 struct DampedMotion {
   model::VecN dq;          // [num_joints]
   double threshold = 0.0;  // below which a singular value of Jw is damped
-  double sigma_min = 0.0;  // smallest singular value of Jw, or `threshold` when it is not below that
-  bool finite = false;     // false: an argument was not finite, or dq left the range of numbers; dq = 0
+  double sigma_min = 0.0;  // smallest singular value of Jw, or `threshold` if it is not below that
+  bool finite = false;     // false: an argument was not finite, or dq overflowed; dq = 0
 };
 
-// J^# of one task, for as many wishes as it shall be asked about. In A = Jw Jw^T a singular value is known to
-// 1e-8 of the largest one: far below any threshold that is of use.
+// J^# of one task, for any number of wishes. A = Jw Jw^T gives singular values to 1e-8 of the largest one,
+// far below any useful threshold.
 class DampedInverse {
  public:
-  // Of `task` its J and weight count. Real-time: yes.
+  // Uses J and weight of `task`. Real-time: yes.
   DampedInverse(const DampingConfig& config, const MotionTask& task) noexcept;
 
-  // The joint velocities for `task`, the same, with its v and dq_0. Real-time: yes.
+  // The joint velocities for v and dq_0 of `task`, whose J and weight are the same as before. Real-time: yes.
   void Resolve(const MotionTask& task, DampedMotion& motion) const noexcept;
 
  private:
@@ -66,9 +66,9 @@ class DampedInverse {
   double threshold_ = 0.0;
   double sigma_min_ = 0.0;
   bool damped_ = false;
-  model::Square8 factors_;        // of A, where nothing is damped;
-  model::SymmetricAxes axes_;     // its axes, where something is,
-  std::array<double, 8> filter_;  // and g along each of them
+  model::Square8 factors_;        // of A, if nothing is damped
+  model::SymmetricAxes axes_;     // axes of A, if something is damped
+  std::array<double, 8> filter_;  // g along each axis
 };
 
 // Real-time: yes.

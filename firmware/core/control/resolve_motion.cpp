@@ -18,9 +18,8 @@ using hal::LimitSet;
 
 constexpr double kWishFades = 0.5;
 
-// A wish is nothing to get into a singularity for: from half as deep again as the limit on it fades. (At the
-// limit it would take its joints' freedom from the task, by a gradient that leaps where two singular values
-// meet.)
+// The wish fades out towards a singularity, from 1.5 times the limit down to the limit. (At the limit it
+// would take freedom from the task, along a gradient that jumps where two singular values meet.)
 double ShareOfWish(double sigma, double sigma_min) noexcept {
   return std::clamp((sigma / sigma_min - 1.0) / kWishFades, 0.0, 1.0);
 }
@@ -34,7 +33,7 @@ void Gather(const config::ServoConfig& config, const MotionScene& scene, barrier
     limits.Add(solid.RowOf(i, {scene.poses, bodies, scene.J_E_B, scene.reference.dq}));
   }
   if (scene.by_joints) {
-    watch = barriers::SingularityWatch{};  // what it knew of the posture holds no longer
+    watch = barriers::SingularityWatch{};  // its stored value is no longer valid
   } else if (config.guard.singularity_min > 0.0) {
     barriers::SingularityConfig singularity_config;
     singularity_config.sigma_min = config.guard.singularity_min;

@@ -1,8 +1,8 @@
-// The visual laws: by which interaction matrix the feature's error is taken away. Chosen by
-// servo.interaction; each is a function here and a line in kVisualLaws.
+// The visual laws. Each uses another interaction matrix to reduce the feature's error. servo.interaction
+// chooses one. Each is a function here and a line in kVisualLaws.
 //
-// All share e, the gain and the target's own motion (visual_law.hpp); they differ in what they take for the
-// feature's change with the camera's motion.
+// All share e, the gain and the target's own motion (visual_law.hpp). They differ in the matrix that relates
+// the feature's change to the camera's motion.
 #pragma once
 
 #include <array>
@@ -12,16 +12,16 @@
 
 namespace fovea::control {
 
-// Writes the matrix that the law inverts into `feature.L_s`, which holds that of now; `L_s_star` is that of
-// the goal, of the same size. Real-time: yes.
+// Writes the matrix that the law inverts into `feature.L_s`, which holds the current one. `L_s_star`: the one
+// at the goal, of the same size. Real-time: yes.
 using VisualLawFunction = void (*)(const features::InteractionMatrix& L_s_star,
                                    features::FeatureState& feature) noexcept;
 
-// Of now: the classical law (Chaumette and Hutchinson, Visual servo control I, 2006).
+// The current matrix: the classical law (Chaumette and Hutchinson, Visual servo control I, 2006).
 inline void CurrentInteraction(const features::InteractionMatrix& /*L_s_star*/,
                                features::FeatureState& /*feature*/) noexcept {}
 
-// Of the goal: straighter ways in the image far off, and never singular where the goal is not.
+// The matrix at the goal: straighter image paths from far away, and never singular unless the goal is.
 inline void DesiredInteraction(const features::InteractionMatrix& L_s_star,
                                features::FeatureState& feature) noexcept {
   feature.L_s = L_s_star;

@@ -28,9 +28,9 @@ model::VecN WayInView(const model::VecN& to_goal, const features::TargetInCamera
 bool StepOnWay(const config::ServoConfig& config, const model::Pose& X_BO, const model::VecN& q_goal,
                WayTrial& way) noexcept {
   constexpr double kStep = 0.15;   // [rad]
-  constexpr double kShort = 0.02;  // a step that is so much shorter leads nowhere
+  constexpr double kShort = 0.02;  // a shorter step counts as stuck [rad]
   constexpr int kStepsMost = 60;
-  constexpr int kStepsToTurnIn = 2;  // a target that was at the edge comes in
+  constexpr int kStepsToTurnIn = 2;  // until a target at the edge is in view
   model::ArmPoses poses;
   model::ComputePoses(config.arm, way.q, poses);
   const model::Pose X_BC = poses.X_BE * config.X_EC;
@@ -51,7 +51,7 @@ bool StepOnWay(const config::ServoConfig& config, const model::Pose& X_BO, const
   const model::VecN before = way.q;
   for (Eigen::Index i = 0; i < step.size(); ++i) {
     const JointRange range = RoomOfJoint(config, i);
-    const double least = std::min(range.least, before[i]);  // where the arm is it may be
+    const double least = std::min(range.least, before[i]);  // the arm's own posture is allowed
     const double most = std::max(range.most, before[i]);
     way.q[i] = std::clamp(before[i] + step[i], least, most);
   }

@@ -8,29 +8,29 @@
 namespace fovea::control {
 namespace {
 
-constexpr int kStepsInATick = 4;  // of the search for a posture;
-constexpr int kTicksToAStep = 4;  // what was found follows the target more slowly
+constexpr int kStepsInATick = 4;  // of the search for a posture
+constexpr int kTicksToAStep = 4;  // a posture found follows the target more slowly
 
-// When the joints take over.
-constexpr double kLookS = 0.2;   // after which the target's pose is believed so far as to leave the law's way
-constexpr double kIdleS = 0.4;   // for so long the goal came no nearer
-constexpr double kNearer = 0.8;  // by this share;
-constexpr double kIdleSureS = 1.0;  // where the law most often gets there, for so long
+// When a joint motion takes over.
+constexpr double kLookS = 0.2;  // of Track, before the target's pose is trusted enough to leave the law's way
+constexpr double kIdleS = 0.4;  // without progress: the law is stalled
+constexpr double kNearer = 0.8;     // progress: the distance falls to this share
+constexpr double kIdleSureS = 1.0;  // both, for targets that the law usually reaches
 constexpr double kNearerSure = 0.5;
-constexpr double kThereM = 0.0015;  // a goal that is so near needs no other way
+constexpr double kThereM = 0.0015;  // a goal this near needs no other way
 constexpr double kThereRad = 0.006;
 constexpr double kMetrePerRad = 0.1;
-constexpr double kBegins = 0.04;  // where some joint is further from the posture than this [rad]
+constexpr double kBegins = 0.04;  // if a joint is further from the posture than this [rad]
 
-// How they go, and until when.
+// Speed and end of a joint motion.
 constexpr double kGain = 3.0;       // [1/s]
-constexpr double kSpeed = 1.8;      // of the fastest [rad/s]
-constexpr double kEnds = 0.015;     // where no joint is further off [rad]
-constexpr double kAtDetour = 0.15;  // so near the posture on the way is behind [rad]
-constexpr double kHeldShare = 0.1;  // of the wanted motion: limits that leave less hold it up,
-constexpr double kHeldS = 0.4;      // and for so long, another posture is looked for
+constexpr double kSpeed = 1.8;      // of the fastest joint [rad/s]
+constexpr double kEnds = 0.015;     // when no joint is further from the posture [rad]
+constexpr double kAtDetour = 0.15;  // a waypoint this near counts as passed [rad]
+constexpr double kHeldShare = 0.1;  // limits that leave less of the motion than this share hold it up
+constexpr double kHeldS = 0.4;      // after this time the search looks for another posture
 
-constexpr std::int64_t kSeekNs = 1'500'000'000;  // for so long the arm stands while a way is looked for
+constexpr std::int64_t kSeekNs = 1'500'000'000;  // longest wait of the arm for a way
 
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 
@@ -66,14 +66,14 @@ void SeekOn(const config::ServoConfig& config, const WaySight& sight, WayToGoal&
     SeekGoalPosture(config, sight.X_BO, sight.q, way.goal);
   }
   if (way.goal.turn != turn) {
-    way.least_off = HUGE_VAL;  // it was another goal's
+    way.least_off = HUGE_VAL;  // it belonged to another goal
   }
 }
 
-// The first way on this track. True while the arm stands for it: the law may go where no way leads on.
+// Chooses the first way after Track began. True while the arm waits for it, kSeekNs at most.
 bool StandsToChoose(const WaySight& sight, WayToGoal& way) noexcept {
   if (way.chosen || way.preferred || !sight.is_told_apart) {
-    return false;  // of poses that cannot be told apart, the law's motion tells
+    return false;  // the law's motion is needed to tell the poses apart
   }
   if (way.goal.found && !way.goal.clear && !way.goal.downhill && way.sought_ns <= kSeekNs) {
     SeekClearerPosture(way.goal);
@@ -123,18 +123,18 @@ void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGo
     return;
   }
   if (!sight.is_told_apart) {
-    return;  // or it would be the way to a pose that is not the target's
+    return;  // the pose may be the wrong one
   }
   const bool elsewhere =
       !way.preferred && !way.goal.downhill && IsLonger(sight.now_ns - sight.track_since_ns, kLookS);
   const bool idle = IsLonger(way.stalled_ns, kIdleS);
   if (idle && way.goal.downhill && !way.preferred) {
     way.preferred = true;
-    SeekAnew(way.goal);  // it lay downhill from where the arm was; from here another one may
+    SeekAnew(way.goal);  // it lay downhill from the arm's old posture; another one may from here
     return;
   }
   if (idle && way.goal.downhill && !way.goal.clear) {
-    SeekClearerPosture(way.goal);  // the joints would get no further to this one than the law
+    SeekClearerPosture(way.goal);  // the joints would get no nearer to this one than the law
     way.stalled_ns = 0;
     return;
   }

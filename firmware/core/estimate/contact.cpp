@@ -8,10 +8,10 @@ namespace fovea::estimate {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kChangeS = 0.25;  // a load is taken up and laid down within so long
-// Of what the observer sees. Less than all: where a joint's reading does not follow its motion, the observer
-// sees the servo's own torque as a push. Were all of it carried, each torque would call for the next; so,
-// what is seen stays what it was. Against what is there the arm is stiffer by 1 / (1 - kShare).
+constexpr double kChangeS = 0.25;  // the compensation fades in and out in this time [s]
+// Compensated share of the observed torque. If a joint's reading does not follow its motion, the observer
+// takes the servo's own torque for an external one. Full compensation would then raise the torque without
+// end; this share keeps it bounded. Against a real load the arm is stiffer by 1 / (1 - kShare).
 constexpr double kShare = 0.75;
 
 }  // namespace
@@ -26,7 +26,7 @@ void ObserveContact(double gain, const model::ArmDynamics& dynamics, const model
                     const model::VecN& tau, ContactState& state) noexcept {
   const model::VecN p = dynamics.M.lazyProduct(dq);
   if (state.started) {
-    model::VecN change = p - state.M_before.lazyProduct(dq);  // C^T dq over a tick, its other terms below
+    model::VecN change = p - state.M_before.lazyProduct(dq);  // dM/dt dq over a tick; the other terms follow
     change += kPeriodS * (tau - dynamics.Cdq + state.residual);
     state.residual += gain * (p - state.p_before - change);
   } else {

@@ -1,4 +1,4 @@
-// A flat target's corners in an image, with where the camera was, and what is expected of them.
+// A flat target's corners in an image, with the camera's pose, and the corners expected there.
 #pragma once
 
 #include <cstdint>
@@ -13,27 +13,28 @@ struct CornerView {
   std::int64_t stamp_ns = 0;
   model::Pose X_CB;
   features::SeenCorners seen;
-  model::Mat6 doubt = model::Mat6::Zero();  // of the camera's pose, for the gate: measurement_doubt.hpp
+  model::Mat6 doubt = model::Mat6::Zero();  // uncertainty of X_CB, for the gate: measurement_doubt.hpp
 };
 
 // d(corners) / d(position, turn), both in axes of B: [2 n x 6].
 using CornerSlope =
     Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, 2 * features::Polygon::kMost, 6>;
 
-// Where O's corners are expected in the normalised image, xy [2 n]. False when one is not before the camera.
+// The expected corners of O in the normalised image, xy [2 n]. False if one is not in front of the camera.
 // Real-time: yes.
 [[nodiscard]] bool ExpectCorners(const features::Polygon& polygon, const model::Pose& X_CB,
                                  const model::Pose& X_BO, features::SeenCorners::Vector& xy) noexcept;
 
-// By how much they move with the target; they must be before the camera. Real-time: yes.
+// The derivative of these corners; all must be in front of the camera. Real-time: yes.
 void SlopeOfCorners(const features::Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,
                     CornerSlope& H) noexcept;
 
-// The seen corners and their covariance in O's order, whose first is the `first` of them. Real-time: yes.
+// The seen corners and their covariance in O's order. O's first corner is seen corner `first`.
+// Real-time: yes.
 void InOrder(const features::SeenCorners& seen, int first, features::SeenCorners::Vector& xy,
              features::SeenCorners::Covariance& cov) noexcept;
 
-// Which of the seen corners [2 n] O's first is, so that all are nearest to where they are expected.
+// The index of O's first corner among the seen corners [2 n], for the order nearest to the expected corners.
 // Real-time: yes.
 [[nodiscard]] int NearestFirst(const features::SeenCorners::Vector& seen,
                                const features::SeenCorners::Vector& expected) noexcept;

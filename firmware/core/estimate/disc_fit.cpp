@@ -10,12 +10,12 @@ namespace {
 
 using model::Vec3;
 
-constexpr double kAspect = 7.0;        // of a half axis' share of noise: what a tilt must show [sigma]
-constexpr double kCalibration = 0.01;  // what arm, camera and lens are not known to [rad]
+constexpr double kAspect = 7.0;        // noise of the aspect, in units of a half axis' relative noise
+constexpr double kCalibration = 0.01;  // uncertainty of arm, camera and lens [rad]
 constexpr int kRounds = 2;
 
-// A disc's aspect is the cosine of its tilt: noise of the one, over the sine, is noise of the other, and
-// where the sine vanishes its square root.
+// A disc's aspect is the cosine of its tilt. The tilt's noise is the aspect's noise over the sine, or the
+// square root of the aspect's noise where the sine vanishes.
 double WeightOf(const DiscView& view, double share) noexcept {
   const double aspect = kAspect * share;
   const double cosine = view.normal_B[0].dot(view.ray_B);

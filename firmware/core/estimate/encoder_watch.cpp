@@ -10,31 +10,31 @@ namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kMeanShare = kPeriodS / 0.05;  // the mean forgets in 0.05 s
-constexpr double kQuanta = 3.0;                 // a joint that must have gone so many steps of its encoder
-constexpr double kTorqueShare = 0.01;           // of its torque: what the model may be wrong by in a moment
-constexpr double kWishSlack = 0.01;             // what the law may be late by [rad, m]
-constexpr double kLeast = 1e-9;                 // where the encoder has no steps [rad, m]
-constexpr double kTravelSlack = 1e-3;           // what noise of the velocities may add up to [rad, m]
-constexpr double kShown = 0.5;                  // of the speed that a push gives a joint, seen: it lives
-constexpr double kFlicker = 1e-6;               // noise of velocities is more than this [rad/s, m/s]
-constexpr std::int32_t kFlickersMost = 30;      // by then a joint is one that flickers: a tenth of a second
-constexpr std::int32_t kTicksMost = 1'000'000;  // counted no further
+constexpr double kQuanta = 3.0;                 // encoder steps that a joint must have moved by
+constexpr double kTorqueShare = 0.01;           // of a joint's torque: short-term error of the model
+constexpr double kWishSlack = 0.01;             // lag of the joint behind its reference [rad, m]
+constexpr double kLeast = 1e-9;                 // if the encoder has no steps [rad, m]
+constexpr double kTravelSlack = 1e-3;           // largest integral of velocity noise [rad, m]
+constexpr double kShown = 0.5;              // share of the expected speed change that proves a live encoder
+constexpr double kFlicker = 1e-6;           // velocity noise is larger than this [rad/s, m/s]
+constexpr std::int32_t kFlickersMost = 30;  // this many make a joint noisy: about a tenth of a second
+constexpr std::int32_t kTicksMost = 1'000'000;  // counters stop here
 
-// What changed of what pushes the joints, each less its mean: as accelerations that the readings do not show.
-// Zero where friction may hold the joint. (Where joint i hangs and moves by ddq, the observer sees -M e_i
+// Accelerations that the readings do not show, from the change of each external torque against its mean. Zero
+// if friction may hold the joint. (If encoder i hangs and joint i moves by ddq, the observer sees -M e_i
 // ddq.)
 void UnseenAcceleration(const config::ServoConfig& config, const WatchedJoints& now, EncoderWatch& watch,
                         hal::JointArray& ddq) noexcept {
   const int n = config.arm.num_joints;
   const double gain = config.safety.contact_gain * kPeriodS;
   model::VecN change = model::VecN::Zero(n);
-  hal::JointArray share{};  // of the change that friction leaves
+  hal::JointArray share{};  // of the change that friction cannot hold
   bool any = false;
   for (int i = 0; now.drives && i < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& arm_joint = config.arm.joints[k];
     EncoderWatch::Joint& joint = watch.joints[k];
-    // The observer comes to it with its own time constant, which is known: this is what it comes to.
+    // The observer approaches the torque with a known time constant. This is its final value.
     const double pushed = now.residual[i] + (watch.drove ? (now.residual[i] - joint.residual) / gain : 0.0);
     joint.residual = now.residual[i];
     change[i] = joint.mean - pushed;
@@ -57,16 +57,14 @@ void UnseenAcceleration(const config::ServoConfig& config, const WatchedJoints& 
   }
 }
 
-// Whether something has begun to push the joint, or ceased to, and its velocity shows that: it turns round
-// within a step of its encoder. What would be the unseen motion of a joint that hangs is, the other way
-// round, what the push does to one that lives.
+// True if a push on the joint began or ended and the measured velocity shows it: the joint reverses within
+// one encoder step. On a live encoder the push's effect is opposite to the unseen motion of a hanging one.
 bool TurnsRound(const EncoderWatch::Joint& joint, double dq) noexcept {
   return (joint.dq - dq) * joint.speed >= kShown * joint.speed * joint.speed;
 }
 
-// Whether a joint that flickers has ceased to. Only one that flickers at rest, and never repeats itself
-// there, does so for its noise: an encoder with steps flickers too, but while the joint moves, or now and
-// then.
+// True if a joint that flickers has stopped flickering. Only a joint that flickers at rest and never repeats
+// a reading there does so from noise. An encoder with steps flickers too, but only in motion or now and then.
 bool HasFrozen(const config::ServoConfig& config, double q, double dq, EncoderWatch::Joint& joint) noexcept {
   const double change = dq - joint.dq_last;
   const bool is_up_and_down = change * joint.change_last < -kFlicker * kFlicker;
@@ -102,7 +100,7 @@ std::int32_t WatchEncoders(const config::ServoConfig& config, const WatchedJoint
     }
     if (joint.ticks == 0 || std::fabs(now.q[i] - joint.q) > config.safety.encoder_quantum) {
       joint.ticks = 1;
-      joint.mean = joint.residual;  // it lives: what pushes it until now is no secret
+      joint.mean = joint.residual;  // the encoder is alive: the torque until now is explained
       joint.q = now.q[i];
       joint.q_reference = now.q_reference[i];
       joint.dq = now.dq[i];
@@ -110,7 +108,7 @@ std::int32_t WatchEncoders(const config::ServoConfig& config, const WatchedJoint
       continue;
     }
     if (!watch.drove) {
-      joint.q_reference = now.q_reference[i];  // it begins here
+      joint.q_reference = now.q_reference[i];  // the reference starts here
     }
     joint.ticks = std::min(joint.ticks + 1, kTicksMost);
     joint.travel += now.dq[i] * kPeriodS;
@@ -125,7 +123,7 @@ std::int32_t WatchEncoders(const config::ServoConfig& config, const WatchedJoint
     const double M = now.dynamics.M(i, i);
     const double omega_n = config.motion_law.omega_n;
     const double wished = now.drives ? std::fabs(now.q_reference[i] - joint.q_reference) : 0.0;
-    // A step of the reference that is allowed is no motion that the joint has already made.
+    // The joint has not yet made an allowed step of the reference.
     const double late = std::max(kWishSlack, config.safety.setpoint_jump);
     const double gone =
         std::max({TurnsRound(joint, now.dq[i]) ? 0.0 : std::fabs(joint.way) / (enough + kLeast),

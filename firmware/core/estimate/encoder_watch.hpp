@@ -1,16 +1,15 @@
-// Joints whose encoders hang: the reading stays the same although the joint must have moved.
+// Detects joints whose encoders hang: the reading stays the same although the joint must have moved.
 //
-// Three things say that it must have: the velocity that is measured with it, the reference that it should
-// follow, and the torque. The contact observer's residual (contact.hpp) is the torque from outside that would
-// explain why a joint does not move as its motor, and the other joints, make it. What changes in it while the
-// reading stays, beyond what friction may hold, has moved the joint, or else something firm holds it, which
-// is as good a reason to stop.
+// Three signs show that it must have moved: its measured velocity, the reference that it should follow, and
+// the torque. The contact observer's residual (contact.hpp) is the external torque that would explain why a
+// joint does not move as the motors drive it. If the residual changes by more than friction may hold while
+// the reading stays, the joint has moved, or something firm holds it. Both are reasons to stop.
 //
-// A joint that stands still under a load that nobody knows has a residual, but one that does not change.
+// A joint at rest under an unknown load also has a residual, but a constant one.
 //
-// A fourth thing needs no motion: most encoders have noise in their last bits. Where a joint at rest has been
-// seen to flicker for a tenth of a second without ever repeating itself, readings that repeat to the last bit
-// are none. That is known before the arm leaves Boot and finds its target.
+// A fourth sign needs no motion: most encoders have noise in their last bits. After a joint at rest has
+// flickered for a tenth of a second without repeating a reading, readings that repeat to the last bit are
+// invalid. This is known before the arm leaves Boot and finds its target.
 #pragma once
 
 #include <array>
@@ -23,36 +22,36 @@ namespace fovea::estimate {
 
 struct EncoderWatch {
   struct Joint {
-    double residual = 0.0;  // of the observer, in the tick before [Nm, N]
-    double mean = 0.0;      // of what pushes it [Nm, N]
+    double residual = 0.0;  // of the observer, in the previous tick [Nm, N]
+    double mean = 0.0;      // of the external torque [Nm, N]
     // Since its reading last changed
     std::int32_t ticks = 0;
     double q = 0.0;            // that reading [rad, m]
-    double q_reference = 0.0;  // where the joint should have been then [rad, m]
-    double dq = 0.0;           // its velocity when that torque began [rad/s, m/s]
-    double speed = 0.0;        // that the torque has given it [rad/s, m/s]
-    double way = 0.0;          // and how far it went [rad, m]
-    double travel = 0.0;       // how far it went by its measured velocity [rad, m]
+    double q_reference = 0.0;  // its reference at that time [rad, m]
+    double dq = 0.0;           // its velocity before the unseen acceleration [rad/s, m/s]
+    double speed = 0.0;        // gained from that acceleration [rad/s, m/s]
+    double way = 0.0;          // moved at that speed [rad, m]
+    double travel = 0.0;       // moved at its measured velocity [rad, m]
     // Its noise
     double q_last = 0.0;          // of the state before [rad, m]
     double dq_last = 0.0;         // [rad/s, m/s]
     double change_last = 0.0;     // of dq, in the last state in which it changed [rad/s, m/s]
-    std::int32_t flickers = 0;    // at rest, states in which dq turned round, less those in which it did not
+    std::int32_t flickers = 0;    // at rest: states in which dq reversed its change, less those without
     std::int32_t same_ticks = 0;  // states in a row that repeat the one before to the last bit
-    bool is_noisy = false;        // it is one that flickers
+    bool is_noisy = false;        // it flickers at rest
   };
-  bool drove = false;  // in the tick before
+  bool drove = false;  // the servo drove the arm in the previous tick
   std::array<Joint, hal::kMaxJoints> joints{};
 };
 
-// What a tick with a new state knows of the joints, each [num_joints].
+// The joints in a tick with a new state, each [num_joints].
 struct WatchedJoints {
   const model::VecN& q;   // measured
   const model::VecN& dq;  // measured
   const model::ArmDynamics& dynamics;
   const model::VecN& residual;     // of the contact observer
-  const model::VecN& q_reference;  // in the tick before
-  bool drives = true;              // false: there is neither residual nor reference
+  const model::VecN& q_reference;  // in the previous tick
+  bool drives = true;              // false: residual and reference are invalid
 };
 
 // Returns the joint whose encoder hangs, or -1. Real-time: yes.

@@ -6,11 +6,11 @@ namespace fovea::estimate {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kFades = 0.967;        // from one measurement to the next: a second at 30 Hz
-constexpr double kEnoughShifts = 20.0;  // of servo.stuck_shift_px: the hand has moved the scene by so much
-constexpr double kAgainst = -0.7;       // of what was predicted
-constexpr double kNearest = 0.01;       // a target nearer to the camera's plane shows nothing [m]
-constexpr double kNear = 0.15;          // an error below this share of the goal's size is no reason to doubt
+constexpr double kFades = 0.967;        // per measurement: a time constant of 1 s at 30 Hz
+constexpr double kEnoughShifts = 20.0;  // times servo.stuck_shift_px: a shift large enough to judge
+constexpr double kAgainst = -0.7;       // share of the predicted shift that counts as opposite
+constexpr double kNearest = 0.01;       // a target nearer to the camera's plane is ignored [m]
+constexpr double kNear = 0.15;          // an error below this share of the goal's size is never doubted
 constexpr double kProgress = 0.9;       // an error that is smaller by this factor is progress
 
 }  // namespace

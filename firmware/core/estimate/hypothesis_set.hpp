@@ -1,9 +1,8 @@
-// Poses of a target that one picture does not tell apart, and the rule by which one of them is believed.
+// Poses of a target that one picture cannot tell apart, and the rule that selects the believed one.
 //
-// The camera moves, and its poses are known. In the base frame the true pose of a target that stands still is
-// one and the same from everywhere, while the others seem to turn as the camera goes. So each hypothesis is
-// fitted to all views along the camera's way, and the one that fits best is believed; unless none fits, and
-// the target moves.
+// The camera moves, and its poses are known. In the base frame the true pose of a target at rest is the same
+// in all views; the others seem to turn as the camera moves. Each hypothesis is fitted to all views along the
+// camera's path, and the best fit is believed. If none fits, the target moves.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +15,7 @@
 namespace fovea::estimate {
 
 enum class Stillness : std::uint8_t {
-  kUnknown,  // one pose fits all views, but they are from too few places to tell
+  kUnknown,  // one pose fits all views, but they come from too few places
   kStill,    // one pose fits views from different places
   kMoving,   // no pose fits them
 };
@@ -24,23 +23,23 @@ inline constexpr int kNumStillness = 3;
 
 // All misfits are squared distances in standard deviations [sigma^2].
 struct ChoiceRule {
-  double switch_margin;  // so much less misfit, and another hypothesis is believed
-  double still_most;     // a target that stands still fits no worse than this, per entry of its views
-  double still_credit;   // taken off the believed one's misfit before that is judged
-  int views_to_tell;     // so many, from different places, before a target counts as one that stands still
-  double give_up;        // so much more misfit than the best one's is no chance
+  double switch_margin;  // another hypothesis is believed if its misfit is smaller by this
+  double still_most;     // largest misfit of a target at rest, per entry of its views
+  double still_credit;   // subtracted from the believed one's misfit before that test
+  int views_to_tell;     // views from different places before a target counts as at rest
+  double give_up;        // a hypothesis whose misfit exceeds the best one's by this is dropped
 };
 
 // A `Hypothesis` has
 //   kRule                 its ChoiceRule
 //   still_misfit          of the pose that fits all views best
-//   MisfitOfMotion()      how badly it explains a target that moves
-//   IsSame(other)         whether two hypotheses are one
+//   MisfitOfMotion()      its misfit for a target that moves
+//   IsSame(other)         whether two hypotheses are the same
 template <class Hypothesis, std::size_t kMostHypotheses, class View, std::size_t kMostViews>
 struct HypothesisSet {
   static constexpr int kMost = static_cast<int>(kMostHypotheses);
 
-  int count = 0;  // 0: nothing is known; more than 1: they are not told apart yet
+  int count = 0;  // 0: nothing is known; more than 1: not yet told apart
   int believed = 0;
   Stillness stillness = Stillness::kUnknown;
   std::array<Hypothesis, kMostHypotheses> all;
@@ -49,9 +48,9 @@ struct HypothesisSet {
   [[nodiscard]] const Hypothesis& best() const noexcept { return all[static_cast<std::size_t>(believed)]; }
   [[nodiscard]] Hypothesis& best() noexcept { return all[static_cast<std::size_t>(believed)]; }
 
-  // Chooses by the misfits, which are those of `entries` entries of views in all. True when another
-  // hypothesis is believed than before. Those without a chance are given up, and of two that have met the
-  // worse one. At least one must be there. Real-time: yes.
+  // Selects a hypothesis by the misfits, which are sums over `entries` entries of views. True if another one
+  // is believed than before. Drops hypotheses with a too large misfit, and the worse one of two that have
+  // become the same. At least one must exist. Real-time: yes.
   [[nodiscard]] bool Choose(double entries) noexcept {
     stillness = Judge(entries);
     const std::size_t before = static_cast<std::size_t>(believed);
@@ -92,7 +91,7 @@ struct HypothesisSet {
     return best;
   }
 
-  // Leaves `chosen` as the believed one, and of the others those that have a chance.
+  // Keeps `chosen` as the believed one, and the others that are not to be dropped.
   void GiveUp(std::size_t best, std::size_t chosen) noexcept {
     std::array<bool, kMostHypotheses> stays{};
     for (std::size_t i = 0; i < size(); ++i) {

@@ -1,4 +1,4 @@
-// Where the joints were: positions of the last half second, one entry per tick.
+// The joints' positions of the last half second, one entry per tick.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ class JointHistory {
 
   void Push(std::int64_t stamp_ns, const model::VecN& q) noexcept;
 
-  // q at `stamp_ns`, interpolated between the two ticks around it. False when the history does not reach
-  // back so far; a stamp after the newest entry gives the newest. Real-time: yes, at most 9 steps of search.
+  // q at `stamp_ns`, interpolated between the two ticks around it. False if the history does not reach back
+  // that far. A stamp after the newest entry gives the newest. Real-time: yes, at most 9 steps of search.
   [[nodiscard]] bool At(std::int64_t stamp_ns, model::VecN& q) const noexcept;
 
   void Clear() noexcept { size_ = 0; }
@@ -37,8 +37,8 @@ class JointHistory {
   int size_ = 0;
 };
 
-// The pose of a camera at `X_EC` in the hand of `arm` at `stamp_ns`. False, with `X_BC` untouched, when the
-// history does not reach back so far. Real-time: yes.
+// The pose of a camera at `X_EC` in the hand of `arm` at `stamp_ns`. False, with `X_BC` unchanged, if the
+// history does not reach back that far. Real-time: yes.
 [[nodiscard]] bool CameraPoseAt(const JointHistory& history, const model::ArmModel& arm,
                                 const model::Pose& X_EC, std::int64_t stamp_ns, model::Pose& X_BC) noexcept;
 

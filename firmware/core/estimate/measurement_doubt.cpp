@@ -6,10 +6,10 @@
 namespace fovea::estimate {
 namespace {
 
-constexpr std::int64_t kMomentNs = 200 * hal::kNsPerMs;  // in which the filter takes an error in
-constexpr std::int64_t kStepNs = 20 * hal::kNsPerMs;     // over which a velocity is taken
+constexpr std::int64_t kMomentNs = 200 * hal::kNsPerMs;  // in which the filter absorbs an error
+constexpr std::int64_t kStepNs = 20 * hal::kNsPerMs;     // interval of a velocity's difference
 
-// The camera's mean twist in its own axes on the way from `X_BC_before` to `X_BC`.
+// The camera's mean twist in its own axes between `X_BC_before` and `X_BC`.
 model::Vec6 TwistBetween(const model::Pose& X_BC_before, const model::Pose& X_BC) noexcept {
   constexpr double kStepS = 1e-9 * static_cast<double>(kStepNs);
   model::Vec6 V_BC_C;
@@ -34,7 +34,7 @@ model::Mat6 MeasurementDoubt(const config::ServoConfig& config, const JointHisto
     return model::Mat6::Zero();
   }
   const model::Pose X_C2C1 = X_BC.Inverse() * X_BC1;
-  // I - Ad(X_C2C1), column by column, each of the size of its error.
+  // I - Ad(X_C2C1), column by column, each scaled by its error.
   model::Mat6 doubt;
   for (int i = 0; i < 6; ++i) {
     const model::Vec6 error = model::Vec6::Unit(i) * (i < 3 ? c.mount_shift_sigma : c.mount_turn_sigma);
@@ -44,7 +44,7 @@ model::Mat6 MeasurementDoubt(const config::ServoConfig& config, const JointHisto
   const model::Vec6 by_stamp = c.stamp_sigma * (TwistBetween(X_BC_step, X_BC) -
                                                 model::ShiftTwist(X_C2C1, TwistBetween(X_BC1_step, X_BC1)));
   cov += by_stamp.lazyProduct(by_stamp.transpose());
-  // c - R_C2C1 c_1 is the camera's way, in its own axes, for a target that lies still.
+  // For a target at rest, c - R_C2C1 c_1 is the camera's displacement in its own axes.
   const model::Vec3 by_scale = c.scale_sigma * (X_BC.R.transpose() * (X_BC1.p - X_BC.p));
   cov.topLeftCorner<3, 3>() += by_scale.lazyProduct(by_scale.transpose());
   return cov;

@@ -11,20 +11,20 @@ namespace {
 using features::Polygon;
 using features::SeenCorners;
 
-constexpr double kCalibration = 2e-4;  // what arm, camera and lens are not known to, in the normalised image
-constexpr double kStepM = 0.05;        // steps are held back by these, so that none leaps where the corners
-constexpr double kStepRad = 0.05;      // say nothing
-constexpr double kHereM = 5e-5;        // a camera that has moved no further stands where it was: corners at
+constexpr double kCalibration = 2e-4;  // uncertainty of arm, camera and lens, in the normalised image
+constexpr double kStepM = 0.05;        // sizes that damp a step, so that it does not jump in directions
+constexpr double kStepRad = 0.05;      // that the corners do not determine
+constexpr double kHereM = 5e-5;        // a camera that has moved no further stands still: corners at
 constexpr double kHereRad = 1e-4;      // 0.25 m and further shift by no more than kCalibration
-constexpr int kFramesMost = 60;        // whose mean a view is
+constexpr int kFramesMost = 60;        // largest number in a mean
 constexpr double kNoWay = 1e9;
 
 double WeightOf(double variance, int frames) noexcept {
   return 1.0 / (variance / frames + kCalibration * kCalibration);
 }
 
-// How far the corners of a view are from where `X_BO` has them, in the polygon's order. False when one is
-// not before the camera.
+// The distances of a view's corners from their places at `X_BO`, in the polygon's order. False if one is not
+// in front of the camera.
 bool OffFrom(const Polygon& polygon, const PlateView& view, const model::Pose& X_BO,
              SeenCorners::Vector& e) noexcept {
   SeenCorners::Vector expected;
@@ -40,7 +40,7 @@ bool OffFrom(const Polygon& polygon, const PlateView& view, const model::Pose& X
   return true;
 }
 
-// Whether the camera has stayed where `view` was taken from.
+// True if the camera has stayed where `view` was taken.
 bool IsFromHere(const PlateView& view, const model::Pose& X_CB) noexcept {
   const model::Pose moved = X_CB * view.X_CB.Inverse();
   return moved.p.norm() < kHereM && model::RotationVector(moved.R).norm() < kHereRad;
@@ -57,13 +57,13 @@ void Average(const PlateView& newest, PlateView& mean) noexcept {
   }
 }
 
-// What views say of a pose: which way it fits better.
+// The normal equations of a pose's correction.
 struct Fit {
   model::Mat6 information = model::Mat6::Zero();
   model::Vec6 right = model::Vec6::Zero();
 };
 
-// One view's share; false when a corner is not before the camera.
+// Adds one view; false if a corner is not in front of the camera.
 bool AddTo(Fit& fit, const Polygon& polygon, const PlateView& view, const model::Pose& X_BO) noexcept {
   SeenCorners::Vector e;
   if (!OffFrom(polygon, view, X_BO, e)) {

@@ -1,7 +1,7 @@
-// The pose that fits a flat target's corners in some views, taken from different places, all at once.
+// Fits one pose to a flat target's corners in several views, taken from different places, all at once.
 //
-// Not by a filter: beside the cylinder through a triangle's corners its poses lie on a fold, and what a
-// filter believed there before the camera moved it does not give up again.
+// This is not a filter. Near the cylinder through a triangle's corners its poses lie on a fold, and a filter
+// would not give up a wrong pose from there after the camera moves.
 #pragma once
 
 #include <span>
@@ -11,33 +11,33 @@
 namespace fovea::estimate {
 
 struct PlateView {
-  static constexpr double kFirstStep = 0.005;  // how far the camera goes from one view to the next [m]
+  static constexpr double kFirstStep = 0.005;  // travel of the camera between two kept views [m]
 
   model::Pose X_CB;
   features::SeenCorners::Vector xy;
   double variance = 0.0;  // of an entry of one frame's corners
-  int frames = 1;         // whose mean this is
+  int frames = 1;         // number of frames in this mean
 };
 
-// How far the camera has gone [m]. Real-time: yes.
+// The travel of the camera between two views [m]. Real-time: yes.
 [[nodiscard]] inline double WayBetween(const PlateView& a, const PlateView& b) noexcept {
   return (a.X_CB.Inverse().p - b.X_CB.Inverse().p).norm();
 }
 
-// Of one frame. Real-time: yes.
+// The view of one frame. Real-time: yes.
 [[nodiscard]] PlateView SeePlate(const CornerView& view) noexcept;
 
-// Takes `newest`, of one frame, into the mean of the frames from where the camera stands; begins that anew
-// where it has moved. Real-time: yes.
+// Adds `newest`, a single frame, to the mean of the frames from the camera's present place. Restarts the mean
+// if the camera has moved. Real-time: yes.
 void TakeIntoMean(const PlateView& newest, PlateView& mean) noexcept;
 
-// The squared distances of the corners from where `X_BO` has them, in standard deviations: summed over
-// `views` and `newest`; large where one is not before the camera. Real-time: yes.
+// The squared distances of the corners from their places at `X_BO`, in standard deviations, summed over
+// `views` and `newest`. Large if a corner is not in front of the camera. Real-time: yes.
 [[nodiscard]] double MisfitOf(const features::Polygon& polygon, std::span<const PlateView> views,
                               const PlateView& newest, const model::Pose& X_BO) noexcept;
 
-// Improves `X_BO` by `views` and `mean`; by one step of Gauss-Newton, since the pose is near from the view
-// before. `X_BO` stays as it was when a corner is not before the camera. Real-time: yes.
+// Improves `X_BO` with `views` and `mean` by one Gauss-Newton step, which suffices because the previous view
+// left it close. `X_BO` stays unchanged if a corner is not in front of the camera. Real-time: yes.
 void FitPose(const features::Polygon& polygon, std::span<const PlateView> views, const PlateView& mean,
              model::Pose& X_BO) noexcept;
 

@@ -17,10 +17,10 @@ using model::Vec3;
 constexpr double kStartSpeedSigma = 0.3;         // how fast a target may be when it is first seen [m/s]
 constexpr double kStartAccelerationSigma = 0.5;  // and how hard it may accelerate [m/s^2]
 constexpr double kStartTurnSigma = 0.5;          // and how fast it may turn [rad/s]
-constexpr double kStartPositionSigma = 1.0;      // how far off the corners' pose may be, where they say
-constexpr double kStartTiltSigma = 0.3;          // nothing of it [m, rad]
-constexpr double kMeanTime = 0.1;  // jerk and angular acceleration have their size as means over this [s]
-constexpr double kLeastVariance = 1e-16;  // of a pose, so that rounding leaves it one [m^2, rad^2]
+constexpr double kStartPositionSigma = 1.0;      // error of the corners' pose in directions that they do
+constexpr double kStartTiltSigma = 0.3;          // not determine [m, rad]
+constexpr double kMeanTime = 0.1;  // the configured jerk and angular acceleration are means over this [s]
+constexpr double kLeastVariance = 1e-16;  // of a pose, so that rounding leaves it positive [m^2, rad^2]
 constexpr double kNoWay = 1e9;            // a distance that passes no gate
 
 using Rows6 = CornerSlope;
@@ -29,10 +29,10 @@ using Gain = Eigen::Matrix<double, Eigen::Dynamic, PoseFilter::kDim, Eigen::ColM
 
 double Seconds(std::int64_t duration_ns) noexcept { return static_cast<double>(duration_ns) * 1e-9; }
 
-// What is expected of the corners of a pose that is only known to `P`: their mean, how they go with the
-// pose's errors, and as `bent` the covariance that this straight line does not explain. By points on all
-// sides at the distance where they have P's own covariance (Julier and Uhlmann, Unscented filtering and
-// nonlinear estimation, 2004): beside the cylinder through a triangle's corners its poses lie on a fold.
+// The expected corners of a pose with the covariance `P`: their mean, their slope `H` over the pose's errors,
+// and the covariance `bent` that this linear slope does not explain. Sigma points with P's own covariance
+// give them (Julier and Uhlmann, Unscented filtering and nonlinear estimation, 2004), because near the
+// cylinder through a triangle's corners its poses lie on a fold.
 bool ExpectAround(const Polygon& polygon, const model::Pose& X_CB, const model::Pose& X_BO,
                   const model::Mat6& P, SeenCorners::Vector& mean, Rows6& H,
                   SeenCorners::Covariance& bent) noexcept {
@@ -66,7 +66,7 @@ bool ExpectAround(const Polygon& polygon, const model::Pose& X_CB, const model::
   return true;
 }
 
-// How the corners move with the camera, as a twist of C; zero where a corner is not before it.
+// The derivative of the corners by the camera's twist in C; zero if a corner is not in front of the camera.
 CornerSlope SlopeByCamera(const Polygon& polygon, const model::Pose& X_CO) noexcept {
   CornerSlope by_camera(2 * polygon.num_corners, 6);
   for (int i = 0; i < polygon.num_corners; ++i) {
@@ -80,7 +80,7 @@ CornerSlope SlopeByCamera(const Polygon& polygon, const model::Pose& X_CO) noexc
   return by_camera;
 }
 
-// Adds what the camera's own pose is not known to.
+// Adds the noise of the camera's own pose.
 void AddCameraNoise(CornerSlope by_camera, SeenCorners::Covariance& cov) noexcept {
   by_camera.leftCols<3>() *= kCameraShiftSigma;
   by_camera.rightCols<3>() *= kCameraTurnSigma;
@@ -205,7 +205,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   innovation -= expected;
   const CornerSlope by_camera = SlopeByCamera(polygon, view.X_CB * next.X_BO);
   AddCameraNoise(by_camera, S);
-  // With S = L L^T: the gain is Y^T L^-1 and takes Y^T Y off P, Y = L^-1 H P.
+  // With S = L L^T and Y = L^-1 H P, the gain is Y^T L^-1 and reduces P by Y^T Y.
   Gain Y = H.lazyProduct(next.P.topRows<6>());
   S += Y.leftCols<6>().lazyProduct(H.transpose());
   S += bent;

@@ -1,15 +1,15 @@
 // Kalman filter of a flat target's pose and its motion in the base frame, from its corners in the image.
 //
-// The position is disturbed by white jerk, as target_filter.hpp has it; the orientation has its error's own
-// three coordinates, R_true = exp([delta]x) R, and is disturbed by white angular acceleration:
+// White jerk disturbs the position, as in target_filter.hpp. The orientation's error has three coordinates,
+// R_true = exp([delta]x) R, and white angular acceleration disturbs it:
 //
 //   R(t + dt) = exp([w dt]x) R(t),   delta' = exp([w dt]x) delta + A(w dt) dt dw,   A of rotation.hpp
 //
 // (Markley and Crassidis, Fundamentals of Spacecraft Attitude Determination and Control, 2014, chapter 6.)
 //
-// The corners are taken in as they are, not as a pose: a pose's errors in position and tilt belong together,
-// and where the camera passes the cylinder through a triangle's corners two of the poses that fit them become
-// one and vanish, while the corners still say all that they say.
+// The filter uses the corners themselves, not a pose, because a pose's errors in position and tilt are
+// correlated. Where the camera passes the cylinder through a triangle's corners, two of the poses that fit
+// merge and vanish, but the corners keep all their information.
 #pragma once
 
 #include <array>
@@ -20,15 +20,15 @@
 
 namespace fovea::estimate {
 
-// How well the camera's own pose is known from one view to the next, by encoders and by how the arm bends:
+// Noise of the camera's own pose from one view to the next, from the encoders and the bending of the arm:
 // standard deviations along and about each axis. It moves all corners together.
 inline constexpr double kCameraShiftSigma = 5e-5;  // [m]
 inline constexpr double kCameraTurnSigma = 5e-5;   // [rad]
 
-// Estimate at `stamp_ns`, the stamp of the last view that was taken in.
+// Estimate at `stamp_ns`, the stamp of the last accepted view.
 struct PoseFilter {
   static constexpr int kDim = 15;
-  // Where the error's parts begin, three entries each, all in axes of B.
+  // First index of each part of the error, three entries each, all in axes of B.
   static constexpr int kPosition = 0;      // [m]
   static constexpr int kTurn = 3;          // delta [rad]
   static constexpr int kVelocity = 6;      // [m/s]
@@ -43,19 +43,19 @@ struct PoseFilter {
   Eigen::Matrix<double, kDim, kDim> P = Eigen::Matrix<double, kDim, kDim>::Zero();
 };
 
-// Starts at the view's pose nearest to `branch`. False, with `filter` untouched, when there is none.
+// Starts at the view's pose nearest to `branch`. False, with `filter` unchanged, if there is none.
 // Real-time: yes.
 [[nodiscard]] bool StartPose(const features::Polygon& polygon, const CornerView& view,
                              const features::SeenCorners::Branch& branch, PoseFilter& filter) noexcept;
 
-// Takes in a view later than the filter's stamp; which of the corners is O's first is seen from where they
-// are expected. False, with `filter` untouched, when it is further off than the gate and the view's doubt
-// allow; the target's motion stays within the configuration's bounds. `distance2`: the squared innovation in
-// standard deviations; large where none can be told. Real-time: yes.
+// Updates the filter with a view later than its stamp. The expected corners determine which seen corner is
+// O's first. False, with `filter` unchanged, if the view is further off than the gate and the view's doubt
+// allow. The target's motion stays within the configured bounds. `distance2`: the squared innovation in
+// standard deviations; large if there is none. Real-time: yes.
 [[nodiscard]] bool UpdatePose(const config::PredictConfig& config, const features::Polygon& polygon,
                               const CornerView& view, PoseFilter& filter, double& distance2) noexcept;
 
-// Where the target is at `now_ns`, and how it moves. Real-time: yes.
+// The target's pose and motion at `now_ns`. Real-time: yes.
 struct FlatMotion {
   model::Pose X_BO;
   model::Vec3 v_BO_B = model::Vec3::Zero();  // [m/s]

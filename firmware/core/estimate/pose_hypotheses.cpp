@@ -10,15 +10,15 @@ namespace {
 using features::Polygon;
 using features::SeenCorners;
 
-constexpr double kSameNormal = 0.15;  // normals no further from each other than this are one [rad]
-constexpr double kSameTurn = 0.02;    // poses nearer to each other than this are one [rad]
+constexpr double kSameNormal = 0.15;  // normals no further apart are the same [rad]
+constexpr double kSameTurn = 0.02;    // poses closer than this are the same [rad]
 constexpr double kSlip = 0.05;        // a filter that is further from the still pose may have slipped [rad]
 
 double TurnBetween(const model::Pose& a, const model::Pose& b) noexcept {
   return model::RotationVector(a.R.lazyProduct(b.R.transpose())).norm();
 }
 
-// Of the view's poses the one that is turned most nearly as `R_CO`; -1: it has none.
+// The view's pose whose orientation is nearest to `R_CO`; -1: it has none.
 int Nearest(const SeenCorners& seen, const model::Mat3& R_CO) noexcept {
   double nearest = -2.0;
   int pose = -1;
@@ -38,7 +38,7 @@ Verdict TakenBy(const CornerView& view, const PoseHypotheses& hypotheses, bool c
   return {hal::Intake::kTaken, Nearest(view.seen, view.X_CB.R * R_BO), changed};
 }
 
-// Begins anew with the poses of `view`. False, with nothing changed, when it has none.
+// Restarts with the poses of `view`. False, with nothing changed, if it has none.
 bool Start(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypotheses) noexcept {
   PoseHypotheses start;
   for (int i = 0; i < view.seen.num_branches; ++i) {
@@ -59,7 +59,7 @@ bool Start(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypot
   return true;
 }
 
-// Where two poses are one, a filter may slip from one to the other. The views from elsewhere tell.
+// Where two poses merge, a filter may slip from one to the other. The views from other places reveal it.
 void CatchSlip(const Polygon& polygon, const CornerView& view, const PlateView& newest,
                PoseHypotheses& hypotheses) noexcept {
   const auto views = hypotheses.plate.views.kept();
@@ -73,8 +73,7 @@ void CatchSlip(const Polygon& polygon, const CornerView& view, const PlateView& 
   }
 }
 
-// Takes what all views say together, and keeps the hypotheses that it allows. True when another one is
-// believed.
+// Fits all views together, and keeps the hypotheses that fit. True if another one is believed than before.
 bool Compare(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypotheses) noexcept {
   auto& plate = hypotheses.plate;
   const PlateView newest = SeePlate(view);
@@ -129,7 +128,7 @@ Verdict TakeView(const hal::FeatureMeasurement& measurement, const model::Pose& 
   (void)disc.Choose(static_cast<double>(disc.views.count + 1));
   DiscNormal& best = disc.best();
   if (disc.stillness == Stillness::kMoving) {
-    disc.views.count = 0;  // their step stays
+    disc.views.count = 0;  // keeps the views' step
     best.normal_B = view.normal_B[static_cast<std::size_t>(Nearer(view, before.normal_B))];
   }
   disc.views.Keep(view);

@@ -1,12 +1,12 @@
-// Which of the poses that a picture of the target allows is the true one.
+// Finds the true one of the poses that fit a picture of the target.
 //
-// A disc's outline allows two poses, three corners up to four, each exactly. hypothesis_set.hpp has the rule
-// that tells them apart as the camera moves. A disc's hypotheses are normals: the one that is believed, and
-// with each view the two that it shows; the others are forgotten, since the next view shows both again. A
-// flat target's are the poses of its first view, until they are given up; each has a filter (pose_filter.hpp)
-// besides, and when none stands still, how smoothly each moves speaks instead.
+// Two poses fit a disc's outline exactly, up to four fit three corners. hypothesis_set.hpp has the rule that
+// tells them apart as the camera moves. A disc's hypotheses are normals: the believed one and the two of each
+// view. The others are dropped, because the next view shows both again. A flat target's hypotheses are the
+// poses of its first view, until they are dropped. Each also has a filter (pose_filter.hpp). If none stands
+// still, the one that moves most smoothly is believed.
 //
-// Of a ball there is nothing to choose.
+// A ball has no such ambiguity.
 #pragma once
 
 #include <limits>
@@ -29,7 +29,7 @@ struct DiscNormal {
   model::Vec3 normal_B = model::Vec3::UnitZ();
   double still_misfit = 0.0;  // of the normal from all views
 
-  // Nothing else speaks for or against a disc that turns.
+  // There is no other evidence for a disc that turns.
   [[nodiscard]] double MisfitOfMotion() const noexcept { return still_misfit; }
   [[nodiscard]] bool IsSame(const DiscNormal& other) const noexcept;
 };
@@ -41,47 +41,47 @@ struct PlatePose {
   PoseFilter filter;
   model::Pose X_BO_still;
   double motion_misfit = 0.0;  // sum of the filter's squared innovations, in standard deviations
-  double still_misfit = 0.0;   // of the still pose from all views, the same
+  double still_misfit = 0.0;   // of the still pose from all views, in the same unit
 
   [[nodiscard]] double MisfitOfMotion() const noexcept { return motion_misfit; }
   [[nodiscard]] bool IsSame(const PlatePose& other) const noexcept;
 };
 
-// One target is of one kind: the other's set stays empty.
+// A target has one kind. The other kind's set stays empty.
 struct PoseHypotheses {
   HypothesisSet<DiscNormal, 3, DiscView, 12> disc;
   HypothesisSet<PlatePose, hal::kMaxPoses, PlateView, 16> plate;
 
   // of a flat target
-  PlateView plate_mean;  // of the frames since the camera stands where it is
+  PlateView plate_mean;  // of the frames since the camera stands still
   int accepted = 0;      // views since the start, up to accepted_min
   int rejected_in_row = 0;
-  std::int64_t stamp_ns = 0;  // of the last view that was taken in
+  std::int64_t stamp_ns = 0;  // of the last accepted view
 };
 
-// What became of a view.
+// The result of a view.
 struct Verdict {
   hal::Intake intake = hal::Intake::kTaken;
-  int pose = -1;         // of the measurement's poses the one nearest to what is believed; -1: it has none
+  int pose = -1;         // the measurement's pose nearest to the believed one; -1: it has none
   bool changed = false;  // another hypothesis is believed than before
 };
 
-// Takes in a measurement of a circle with both its poses, by a camera at `X_BC`. The first view's first pose
-// is believed until the others say otherwise. Where a pose is none, nothing changes, and the first one
-// counts. Real-time: yes.
+// Adds a measurement of a circle with both its poses, by a camera at `X_BC`. The first view's first pose is
+// believed until other views contradict it. If a pose is invalid, nothing changes, and the first pose counts.
+// Real-time: yes.
 [[nodiscard]] Verdict TakeView(const hal::FeatureMeasurement& measurement, const model::Pose& X_BC,
                                PoseHypotheses& hypotheses) noexcept;
 
-// Takes in a view of a flat target. What fits no hypothesis is an outlier and left out; after too many in a
-// row the poses of that view are begun anew. Real-time: yes.
+// Adds a view of a flat target. Rejects a view that fits no hypothesis as an outlier. After too many in a
+// row, the hypotheses restart with the poses of that view. Real-time: yes.
 [[nodiscard]] Verdict TakeView(const config::PredictConfig& config, const features::Polygon& polygon,
                                const CornerView& view, PoseHypotheses& hypotheses) noexcept;
 
-// Where the believed pose of a flat target is at `now_ns`. Of one that stands still it is the pose that fits
-// all views: what is wrong with the corners is wrong in the same way for as long as the camera stands, so
-// that a filter would take many views from there for much news, and forget the tilt that was seen so much
-// better from aside. Where arm, camera and corners do not agree to some tenths of a pixel, nothing counts as
-// still, and the filter speaks. Real-time: yes.
+// The believed pose of a flat target at `now_ns`. For a target at rest it is the pose that fits all views.
+// While the camera stands, the corners' errors stay the same. A filter would take these many views for new
+// information, and would forget the tilt, which views from the side show much better. If arm, camera and
+// corners disagree by more than some tenths of a pixel, nothing counts as still, and the filter's pose is
+// used. Real-time: yes.
 [[nodiscard]] FlatMotion MotionAt(const config::PredictConfig& config, const PoseHypotheses& hypotheses,
                                   std::int64_t now_ns) noexcept;
 

@@ -8,7 +8,7 @@
 namespace fovea::estimate {
 namespace {
 
-// A measurement, and where the camera was when it was true.
+// A measurement, and the camera's pose at its stamp.
 struct Seen {
   const hal::FeatureMeasurement& measurement;
   model::Pose X_BC;
@@ -21,7 +21,7 @@ hal::Intake TakePose(const config::ServoConfig& config, const Seen& seen, Corner
   view.stamp_ns = seen.measurement.stamp_ns;
   view.X_CB = seen.X_BC.Inverse();
   const Verdict verdict = TakeView(config.predict, config.feature.corners, view, state.hypotheses);
-  // Where the corners allow no pose, the one before stays.
+  // If no pose fits the corners, the previous one stays.
   if (verdict.intake == hal::Intake::kTaken && verdict.pose >= 0) {
     state.X_CO_meas = view.seen.branches[static_cast<std::size_t>(verdict.pose)].X_CO;
   }
@@ -36,7 +36,7 @@ hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, fe
     const Verdict verdict = TakeView(seen.measurement, seen.X_BC, state.hypotheses);
     const auto& p = seen.measurement.poses[static_cast<std::size_t>(verdict.pose)].p_CO_C;
     lifted.p_CO_C = {p[0], p[1], p[2]};
-    if (verdict.changed) {  // what was believed of the centre was of the other pose
+    if (verdict.changed) {  // the centre's estimate belongs to the other pose
       const int accepted = state.filter.accepted;
       state.filter = TargetFilter{};
       const hal::Intake intake =
@@ -61,7 +61,7 @@ hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, fe
   return intake;
 }
 
-// Where corners are: by the likeliest pose that they allow, or else by what is believed.
+// The place of the corners: from the likeliest pose that fits them, or else from the believed pose.
 model::Vec3 PlaceOfCorners(const features::SeenCorners& seen, const model::Pose& X_BC,
                            const PoseHypotheses& hypotheses) noexcept {
   return seen.num_branches > 0 ? seen.branches[0].X_CO.p
@@ -72,7 +72,7 @@ bool IsInside(const config::Box& box, const model::Vec3& p) noexcept {
   return (p.array() >= box.low.array()).all() && (p.array() <= box.high.array()).all();
 }
 
-// What is believed of the target stays in its region, and goes no further out of it.
+// Keeps the estimate of the target in its region, and stops its motion out of it.
 void KeepInside(const config::Box& box, FlatMotion& motion) noexcept {
   for (Eigen::Index i = 0; i < 3; ++i) {
     double& p = motion.X_BO.p[i];
@@ -88,7 +88,7 @@ bool HasEnough(const config::ServoConfig& config, const PredictState& state) noe
   return accepted >= config.predict.accepted_min;
 }
 
-// What the filters believe of the target at `now_ns`.
+// The filters' estimate of the target at `now_ns`.
 FlatMotion BelievedMotion(const config::ServoConfig& config, const PredictState& state,
                           std::int64_t now_ns) noexcept {
   if (config.feature.SeesOrientation()) {
@@ -98,7 +98,7 @@ FlatMotion BelievedMotion(const config::ServoConfig& config, const PredictState&
   return {{model::Mat3::Identity(), motion.p_BO}, motion.v_BO, model::Vec3::Zero()};
 }
 
-// Where a target goes on to that moves as `belief` says, without acceleration.
+// Extrapolates `belief` to `now_ns` without acceleration.
 FlatMotion GoesOn(const LastBelief& belief, std::int64_t now_ns) noexcept {
   const double dt = 1e-9 * static_cast<double>(now_ns - belief.stamp_ns);
   FlatMotion motion = belief.motion;
@@ -107,8 +107,8 @@ FlatMotion GoesOn(const LastBelief& belief, std::int64_t now_ns) noexcept {
   return motion;
 }
 
-// What is known of the target once a measurement was taken. `has_enough`: the filter, now; `before`: what was
-// believed until then.
+// Updates the knowledge after an accepted measurement. `has_enough`: the filter now has enough measurements;
+// `before`: the estimate until then.
 void NoteTaken(bool has_enough, const LastBelief& before, PredictState& state) noexcept {
   if (has_enough) {
     state.knowledge = Knowledge::kKnown;
@@ -129,7 +129,7 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
     return hal::Intake::kNotFound;
   }
   if (measurement.stamp_ns > now_ns + hal::kTickPeriodNs) {
-    return hal::Intake::kFromFuture;  // a filter that believed it would refuse all that is true
+    return hal::Intake::kFromFuture;  // a filter that accepted it would reject all true ones
   }
   const auto camera_at = [&](std::int64_t time_ns, model::Pose& X) {
     return CameraPoseAt(state.history, config.arm, config.X_EC, time_ns, X);
@@ -150,7 +150,7 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   WatchPicture(config.predict, X_BC, p_CO_C, eye);
   PictureView picture{measurement.stamp_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
   if (measurement.same_for_ns > 0) {
-    // Where the camera was then is not known any more: the hand's way counts from here on.
+    // If the history does not reach back that far, the hand's motion counts from now on.
     static_cast<void>(camera_at(picture.since_ns, picture.X_BC_since));
   }
   if (IsStuck(config.predict.stuck_shift, picture, state.picture)) {
@@ -184,7 +184,7 @@ Prediction Predict(const config::ServoConfig& config, std::int64_t now_ns, const
   prediction.known = state.knowledge != Knowledge::kTooLittle;
   prediction.age_ns = now_ns - state.accepted_stamp_ns;
   if (!config.predict.enabled) {
-    // As a camera-rate servo does it: the measurement counts until the next one comes.
+    // As in a camera-rate servo, a measurement counts until the next one.
     prediction.seen.X_CO = state.X_CO_meas;
     prediction.p_BO = X_BC * state.X_CO_meas.p;
     if (is_flat) {

@@ -1,7 +1,7 @@
-// Stage 1, predict: from measurements that are old when they come to where the target is now.
+// Stage 1, predict: computes where the target is now from measurements that arrive late.
 //
-// A measurement is true at its stamp. It is lifted to the base frame with the camera's pose of that moment
-// (the joints' history knows it), filtered there, and taken to the present by the target's own velocity.
+// A measurement is valid at its stamp. It is transformed to the base frame with the camera's pose of that
+// time (from the joints' history), filtered there, and predicted to the present with the target's velocity.
 #pragma once
 
 #include <cstdint>
@@ -17,17 +17,16 @@
 
 namespace fovea::estimate {
 
-// What measurements say of the target so far.
+// What is known of the target.
 enum class Knowledge : std::uint8_t {
-  kNone,       // none was taken
-  kTooLittle,  // too few were
+  kNone,       // no measurement was accepted
+  kTooLittle,  // too few were accepted
   kKnown,
-  kBegunAnew,  // the filter had to start anew and has too few; what was believed before goes on till then,
-               // as it does while the target is hidden
+  kBegunAnew,  // the filter restarted and has too few; the last belief continues, as for a hidden target
 };
 inline constexpr int kNumKnowledge = 4;
 
-// What was believed of the target when its filter had to start anew.
+// The estimate of the target when its filter restarted.
 struct LastBelief {
   std::int64_t stamp_ns = 0;
   FlatMotion motion;  // at that stamp
@@ -39,12 +38,12 @@ struct PredictState {
   TargetFilter filter;        // of sphere and circle
   PoseHypotheses hypotheses;  // of circle, square and triangle
   Knowledge knowledge = Knowledge::kNone;
-  LastBelief belief;                   // of kBegunAnew
-  std::int64_t accepted_stamp_ns = 0;  // of the last measurement that went into what is believed
+  LastBelief belief;                   // for kBegunAnew
+  std::int64_t accepted_stamp_ns = 0;  // of the last measurement in the present estimate
   // The last measurement itself, for servo.predict = false.
   model::Pose X_CO_meas;
 
-  // Forgets the target; what is known of arm and camera stays.
+  // Forgets the target. Keeps the history of arm and camera.
   void Reset() noexcept {
     filter = TargetFilter{};
     hypotheses = PoseHypotheses{};
@@ -54,20 +53,20 @@ struct PredictState {
 };
 
 struct Prediction {
-  bool known = false;                          // enough measurements to say where the target is
-  std::int64_t age_ns = 0;                     // now less the last accepted stamp; only when one was accepted
+  bool known = false;                          // there were enough measurements
+  std::int64_t age_ns = 0;                     // now less the last accepted stamp; only if one was accepted
   model::Vec3 p_BO = model::Vec3::Zero();      // now [m]
   model::Mat3 R_BO = model::Mat3::Identity();  // now; of a target whose orientation is seen
   model::Vec3 v_BO = model::Vec3::Zero();      // [m/s]
   features::TargetInCamera seen;               // now: pose and twist in axes of C
 };
 
-// Takes in `measurement`, and says what became of it; `eye` watches it, too. Real-time: yes.
+// Processes `measurement` and returns what was done with it. `eye` watches it, too. Real-time: yes.
 [[nodiscard]] hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_ns,
                                           const hal::FeatureMeasurement& measurement, PredictState& state,
                                           EyeWatch& eye) noexcept;
 
-// Where the target is at `now_ns`, seen from today's camera pose `X_BC`. Real-time: yes.
+// The target at `now_ns`, seen from the present camera pose `X_BC`. Real-time: yes.
 [[nodiscard]] Prediction Predict(const config::ServoConfig& config, std::int64_t now_ns,
                                  const model::Pose& X_BC, const PredictState& state) noexcept;
 

@@ -1,11 +1,11 @@
-// A vector cut down to a length.
+// Limits the length of a vector.
 #pragma once
 
 #include "firmware/core/model/types.hpp"
 
 namespace fovea::estimate {
 
-// `v` with its direction, no longer than `most` >= 0. Real-time: yes.
+// `v`, shortened to the length `most` >= 0 if it is longer. Real-time: yes.
 [[nodiscard]] inline model::Vec3 Shortened(const model::Vec3& v, double most) noexcept {
   const double length = v.norm();
   return length <= most ? v : model::Vec3(v * (most / length));

@@ -9,11 +9,11 @@ namespace {
 
 using model::Vec3;
 
-constexpr double kHalfPicture = 0.3;  // points about the target are this far off it in the normalised image
-constexpr double kNearest = 1e-3;     // a point nearer to the camera's plane shows nothing [m]
+constexpr double kHalfPicture = 0.3;  // test points are this far from the target in the normalised image
+constexpr double kNearest = 1e-3;     // a point nearer to the camera's plane is out of the picture [m]
 
-// The furthest that points as far off as the target, and at rest in B, went in the picture on the camera's
-// way from `X_BC_then` to `X_BC`.
+// The largest shift in the picture of points at rest in B and at the target's depth, while the camera moved
+// from `X_BC_then` to `X_BC`.
 double ShiftOfScene(const model::Pose& X_BC_then, const model::Pose& X_BC, const Vec3& p_CO_C) noexcept {
   constexpr std::array<std::array<double, 2>, 5> kOff{
       {{0.0, 0.0}, {kHalfPicture, 0.0}, {-kHalfPicture, 0.0}, {0.0, kHalfPicture}, {0.0, -kHalfPicture}}};

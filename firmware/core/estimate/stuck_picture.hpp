@@ -1,14 +1,14 @@
-// Whether the picture moves as the hand does. A camera that repeats one picture shows a target that seems to
-// be carried along with the hand; taken for a measurement, its motion would be fed forward and drive the hand
-// on for ever.
+// Detects a picture that does not change although the hand moves. A camera that repeats one picture shows a
+// target that seems to move with the hand. If that counted as a measurement, its motion would be fed forward
+// and drive the hand on without end.
 //
-// The vision task says for how long the picture has been the same. The arm's encoders say where the camera
-// went meanwhile, and so by how much a scene that stands still had to shift in the picture. Where that is
-// more than a shift that nobody overlooks, one of two things is true: the target stands still in B and the
-// picture should have changed, or it stands still in C. What the measurement is nearer to decides.
+// The vision task reports how long the picture has been the same. The encoders show how the camera moved
+// meanwhile, and so how far a scene at rest must have shifted in the picture. If that shift is large enough
+// to be visible, one of two cases holds: the target is at rest in B and the picture should have changed, or
+// it is at rest in C. The case nearer to the measurement counts.
 //
-// A target that the hand follows without an error, before a ground without any texture, looks stuck too, and
-// is taken for it: the arm then stops, and the target moves in the picture again.
+// A target that the hand follows without error in front of a plain background also counts as stuck. The arm
+// then stops, and the target moves in the picture again.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace fovea::estimate {
 
-// The first measurement since which the picture has been the same.
+// The first measurement with the present picture.
 struct StuckPicture {
   bool started = false;
   std::int64_t since_ns = 0;
@@ -26,14 +26,14 @@ struct StuckPicture {
 };
 
 struct PictureView {
-  std::int64_t since_ns = 0;  // the picture has been the same since then; the measurement's stamp: it changed
+  std::int64_t since_ns = 0;  // start of the present picture; equal to the measurement's stamp: it changed
   model::Pose X_BC_since;     // the camera's pose then
   model::Pose X_BC;           // at the measurement's stamp
   model::Vec3 p_CO_C;         // the target as measured [m]
 };
 
-// Whether the picture is stuck, by `view` and what was before. `stuck_shift`: in the normalised image.
-// Real-time: yes.
+// True if the picture is stuck, from `view` and the measurements before. `stuck_shift`: in the normalised
+// image. Real-time: yes.
 [[nodiscard]] bool IsStuck(double stuck_shift, const PictureView& view, StuckPicture& picture) noexcept;
 
 }  // namespace fovea::estimate

@@ -14,7 +14,7 @@ using model::Vec3;
 constexpr int kOrder = TargetFilter::kOrder;
 constexpr double kStartSpeedSigma = 0.3;         // how fast a target may be when it is first seen [m/s]
 constexpr double kStartAccelerationSigma = 0.5;  // and how hard it may accelerate [m/s^2]
-constexpr double kJerkTime = 0.1;                // the jerk's mean over this time has the configured size [s]
+constexpr double kJerkTime = 0.1;                // the configured jerk is a mean over this [s]
 
 double Seconds(std::int64_t duration_ns) noexcept { return static_cast<double>(duration_ns) * 1e-9; }
 
@@ -28,7 +28,7 @@ void StartAt(const MeasuredCentre& measured, TargetFilter& filter) noexcept {
   filter.P[2][2] = Mat3::Identity() * (kStartAccelerationSigma * kStartAccelerationSigma);
 }
 
-// Moves the estimate on by `dt` [s]: x' = F x, P' = F P F^T + Q, with jerk of spectral density q [m^2/s^5].
+// Predicts the estimate over `dt` [s]: x' = F x, P' = F P F^T + Q, with jerk of spectral density q [m^2/s^5].
 void Advance(double dt, double jerk, TargetFilter& filter) noexcept {
   const double F[kOrder][kOrder] = {{1.0, dt, 0.5 * dt * dt}, {0.0, 1.0, dt}, {0.0, 0.0, 1.0}};
   const double q = jerk * jerk * kJerkTime;
@@ -99,7 +99,7 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
   for (std::size_t i = 0; i < kOrder; ++i) {
     for (std::size_t j = i; j < kOrder; ++j) {
       next.P[i][j] -= K[i] * S * K[j].transpose();
-      // Rounding must not make the covariance lean to one side over hours.
+      // Keeps the covariance symmetric over hours of rounding.
       if (i == j) {
         next.P[i][i] = 0.5 * (next.P[i][i] + next.P[i][i].transpose()).eval();
       } else {

@@ -29,20 +29,20 @@ struct TargetFilter {
   std::array<Block, kOrder> P;        // covariance of x, block by block
 };
 
-// A target's centre as it was measured.
+// A measured centre of the target.
 struct MeasuredCentre {
-  std::int64_t stamp_ns = 0;                  // when it was true
+  std::int64_t stamp_ns = 0;                  // time at which it is valid
   model::Vec3 p_BO = model::Vec3::Zero();     // [m] in B
   model::Mat3 cov_B = model::Mat3::Zero();    // of its noise [m^2]
-  model::Mat3 doubt_B = model::Mat3::Zero();  // what calibration may add to that, for the gate alone [m^2]
+  model::Mat3 doubt_B = model::Mat3::Zero();  // uncertainty from calibration, for the gate alone [m^2]
 };
 
-// Takes in a measurement. An outlier is left out; after too many in a row the filter starts anew there.
-// Velocity and acceleration stay within the configuration's bounds. Real-time: yes.
+// Adds a measurement. Rejects an outlier; after too many in a row the filter restarts at the newest. Velocity
+// and acceleration stay within the configured bounds. Real-time: yes.
 [[nodiscard]] hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& measured,
                                  TargetFilter& filter) noexcept;
 
-// Where the target is at `now_ns` [m], and how fast [m/s], within the same bounds. Real-time: yes.
+// The target's position [m] and velocity [m/s] at `now_ns`, within the same bounds. Real-time: yes.
 struct TargetMotion {
   model::Vec3 p_BO;
   model::Vec3 v_BO;

@@ -1,4 +1,4 @@
-// Views of a target that are spread over the camera's way, however long that gets, in bounded space.
+// Keeps views of a target spread over the camera's path of any length, in bounded memory.
 #pragma once
 
 #include <array>
@@ -7,23 +7,23 @@
 
 namespace fovea::estimate {
 
-// `View` names its first step in kFirstStep; WayBetween(a, b) is how far the camera has gone from one view to
-// the other, in the step's unit. What stands behind the first `count` views is never looked at.
+// View::kFirstStep is the first step. WayBetween(a, b) is the camera's travel between two views, in the
+// step's unit. Only the first `count` views are used.
 template <class View, std::size_t kMostViews>
 struct ViewsAlongTheWay {
   static constexpr int kMost = static_cast<int>(kMostViews);
   static_assert(kMost > 0 && kMost % 2 == 0);
 
   int count = 0;
-  double step = View::kFirstStep;  // of the way from one view to the next; doubles when they are too many
+  double step = View::kFirstStep;  // travel between two kept views; doubles when the array is full
   std::array<View, kMostViews> views;
 
   [[nodiscard]] std::span<const View> kept() const noexcept {
     return std::span<const View>(views).first(static_cast<std::size_t>(count));
   }
 
-  // Takes `view` if the camera has gone a step since the last one. Where there is no room, every second view
-  // goes. Real-time: yes.
+  // Keeps `view` if the camera has moved by a step since the last one. If there is no room, drops every
+  // second view. Real-time: yes.
   void Keep(const View& view) noexcept {
     if (count > 0 && !(WayBetween(views[static_cast<std::size_t>(count - 1)], view) >= step)) {
       return;
@@ -38,7 +38,7 @@ struct ViewsAlongTheWay {
     views[static_cast<std::size_t>(count++)] = view;
   }
 
-  // The target has moved: what it showed before says nothing more. Real-time: yes.
+  // Drops all views, because the target has moved. Real-time: yes.
   void Forget() noexcept {
     count = 0;
     step = View::kFirstStep;

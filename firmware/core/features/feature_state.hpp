@@ -1,4 +1,4 @@
-// A visual feature at one instant: what the visual law works on, whatever the target is.
+// A visual feature at one instant: the input of the visual law, for every target.
 #pragma once
 
 #include "firmware/core/model/types.hpp"
@@ -13,7 +13,7 @@ using InteractionMatrix = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMaj
 struct FeatureState {
   FeatureVector s;             // [dim]
   FeatureVector s_star;        // [dim] goal
-  FeatureVector ds_dt_target;  // [dim] ds/dt owing to the target's own motion [1/s]
+  FeatureVector ds_dt_target;  // [dim] ds/dt from the target's own motion [1/s]
   InteractionMatrix L_s;       // [dim x 6] ds/dt = L_s V_BC_C for a target at rest
 
   void Resize(int dim) noexcept {
@@ -24,19 +24,19 @@ struct FeatureState {
   }
 };
 
-// Where a target is and how it moves, as the camera sees it. Of a sphere only the position counts.
+// A target's pose and motion as the camera sees them. For a sphere only the position counts.
 struct TargetInCamera {
   model::Pose X_CO;                          // [m]
   model::Vec3 v_BO_C = model::Vec3::Zero();  // velocity of O's origin in B, in axes of C [m/s]
-  model::Vec3 w_BO_C = model::Vec3::Zero();  // and its angular velocity [rad/s]
+  model::Vec3 w_BO_C = model::Vec3::Zero();  // angular velocity of O in B, in axes of C [rad/s]
 
   [[nodiscard]] bool IsFinite() const noexcept {
     return X_CO.p.allFinite() && X_CO.R.allFinite() && v_BO_C.allFinite() && w_BO_C.allFinite();
   }
 };
 
-// Stacks features: `part`'s entries come below those of `whole`. False, with `whole` untouched, when there is
-// no room. Real-time: yes.
+// Stacks `part`'s entries below those of `whole`. False, with `whole` unchanged, if there is no room.
+// Real-time: yes.
 [[nodiscard]] inline bool Stack(const FeatureState& part, FeatureState& whole) noexcept {
   const Eigen::Index above = whole.s.size();
   const Eigen::Index below = part.s.size();

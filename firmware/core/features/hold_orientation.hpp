@@ -1,9 +1,9 @@
-// The camera's orientation held: s = phi, the turn from the goal's orientation D to the camera's,
-// R_DC = exp([phi]x) [rad], dim 3, controls the three turns. To be stacked with what sees no orientation,
-// a sphere or a circle.
+// Holds the camera's orientation: s = phi, the turn from the goal's orientation D to the camera's, R_DC =
+// exp([phi]x) [rad], dim 3, controls the three turns. Stacked below a sphere or a circle, which see no
+// orientation.
 //
-// With w the camera's angular velocity in axes of C: dphi/dt = A(phi)^-T w, A of rotation.hpp, so that
-// L_s = [ 0 | A(phi)^-T ]. The target has no share in it. Good up to half a turn.
+// With w the camera's angular velocity in axes of C: dphi/dt = A(phi)^-T w, A of rotation.hpp, so that L_s =
+// [ 0 | A(phi)^-T ]. The target's motion does not enter. Valid up to half a turn.
 #pragma once
 
 #include "firmware/core/features/feature_state.hpp"
@@ -13,9 +13,9 @@ namespace fovea::features {
 struct HoldOrientation {
   static constexpr int kDim = 3;
 
-  model::Mat3 R_BD = model::Mat3::Identity();  // what is held
+  model::Mat3 R_BD = model::Mat3::Identity();  // the orientation to hold
 
-  // False, with `state` untouched, when `R_BC` is not finite. Real-time: yes.
+  // False, with `state` unchanged, if `R_BC` or `R_BD` is not finite. Real-time: yes.
   [[nodiscard]] bool Compute(const model::Mat3& R_BC, FeatureState& state) const noexcept;
 };
 

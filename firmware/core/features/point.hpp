@@ -1,5 +1,5 @@
-// One point of a target in the normalised image: (x, y) = (X/Z, Y/Z), dim 2. What the flat targets' features
-// are made of.
+// One point of a target in the normalised image: (x, y) = (X/Z, Y/Z), dim 2. The flat targets' features
+// consist of such points.
 //
 // With d p_C/dt = -v - w x p_C + (the point's own velocity), and x, y of p_C:
 //
@@ -13,23 +13,23 @@
 
 namespace fovea::features {
 
-inline constexpr double kMinDepth = 0.01;  // nearer than this in Z nothing is said of a point [m]
+inline constexpr double kMinDepth = 0.01;  // a point with a smaller Z is refused [m]
 
 using Vec2 = Eigen::Matrix<double, 2, 1>;
 using Mat26 = Eigen::Matrix<double, 2, 6>;
 
 struct ImagePoint {
   Vec2 xy;             // normalised
-  Vec2 dxy_dt_target;  // owing to the point's own motion [1/s]
+  Vec2 dxy_dt_target;  // from the point's own motion [1/s]
   Mat26 L;             // d(xy)/dt = L V_BC_C for a point at rest
 };
 
 // The point at `p_C` [m] that moves with `v_BP_C` [m/s] in B, both in axes of C. False, with `point`
-// untouched, when Z is below kMinDepth or an argument not finite. Real-time: yes.
+// unchanged, if Z is below kMinDepth or an argument is not finite. Real-time: yes.
 [[nodiscard]] bool ComputePoint(const model::Vec3& p_C, const model::Vec3& v_BP_C,
                                 ImagePoint& point) noexcept;
 
-// The same of the point at `p_OP` [m] of a target. Real-time: yes.
+// The same for the point at `p_OP` [m] of a target. Real-time: yes.
 [[nodiscard]] bool ComputePoint(const TargetInCamera& target, const model::Vec3& p_OP,
                                 ImagePoint& point) noexcept;
 

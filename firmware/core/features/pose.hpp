@@ -5,8 +5,8 @@
 //   L_s = [  0   A^-T(phi) ],   A of rotation.hpp;  ds/dt of the target (v, w):  (v, -A^-T w)
 //
 // (Chaumette and Hutchinson, Visual servo control I, 2006, section on pose-based control.) Three corners look
-// the same from up to four poses, and the law on them may end at another than the goal; the pose that the
-// filter follows says which it is. Refused below Z = kMinDepth; good up to half a turn.
+// the same from up to four poses, and a law on the corners may end at a wrong one. The filter's pose is the
+// right one. Refused below Z = kMinDepth; valid up to half a turn.
 #pragma once
 
 #include "firmware/core/features/point.hpp"
@@ -18,7 +18,7 @@ struct PoseFeature {
 
   model::Pose X_CO_star{model::Mat3::Identity(), {0.0, 0.0, 0.40}};
 
-  // False, with `state` untouched, where it is refused. Real-time: yes.
+  // False, with `state` unchanged, if it is refused. Real-time: yes.
   [[nodiscard]] bool Compute(const TargetInCamera& target, FeatureState& state) const noexcept;
 };
 

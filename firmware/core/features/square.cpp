@@ -9,7 +9,7 @@ namespace {
 
 using Row6 = Eigen::Matrix<double, 1, 6>;
 
-// The feature at one pose: its entries, and how they change.
+// The feature at one pose: its entries and their derivatives.
 struct SideInImage {
   Eigen::Matrix<double, 4, 1> s;
   Eigen::Matrix<double, 4, 1> ds_dt_target;

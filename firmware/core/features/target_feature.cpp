@@ -8,7 +8,7 @@
 namespace fovea::features {
 namespace {
 
-// TraitsOf finds a kind by its place. A plate that looks the same after a turn has its corners on each other.
+// TraitsOf uses the kind as index. A turn that leaves a plate's look maps its corners onto each other.
 static_assert([] {
   for (std::size_t i = 0; i < kTargets.size(); ++i) {
     const TargetTraits& target = kTargets[i];
@@ -22,7 +22,7 @@ static_assert([] {
   return true;
 }());
 
-// `cov` [dim x dim] takes the measurement's covariance.
+// Copies the measurement's covariance into `cov` [dim x dim].
 template <typename Matrix>
 void TakeCovariance(const hal::FeatureMeasurement& measurement, Matrix& cov) noexcept {
   for (int row = 0; row < measurement.dim; ++row) {

@@ -2,7 +2,7 @@
 //
 //   target     feature     dim  controls                      file
 //   sphere     sphere       3   x, y, z                       sphere.hpp
-//              circle       3   x, y, z                       circle.hpp, the source's simple form
+//              circle       3   x, y, z                       circle.hpp, the exercises' simple form
 //   circle     circle       3   x, y, z                       circle.hpp
 //   square     corners      8   all six                       polygon.hpp, square.hpp
 //              side         4   x, y, z, turn about the line of sight; from the centre
@@ -11,7 +11,7 @@
 //   triangle   pose         6   all six
 //              corners      6   all six, up to four goals     polygon.hpp, triangle.hpp
 //
-// With hold_orientation three entries more, stacked below (hold_orientation.hpp).
+// hold_orientation stacks three more entries below (hold_orientation.hpp).
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ struct SeenCorners {
   std::array<Branch, hal::kMaxPoses> branches;
 };
 
-// What of the target shall stay in the picture: its corners, or a ball about its centre.
+// The part of the target that must stay in the picture: its corners, or a ball about its centre.
 struct TargetOutline {
   int num_points = 1;
   std::array<model::Vec3, Polygon::kMost> p_OP{};  // in O [m]
@@ -59,32 +59,33 @@ struct TargetOutline {
 struct TargetFeature {
   hal::FeatureKind target = hal::FeatureKind::kSphere;
   FeatureForm form = FeatureForm::kSphere;
-  bool hold_orientation = false;  // servo.hold_orientation: keep the camera's, as it was when Track began
+  bool hold_orientation = false;  // servo.hold_orientation: keep the camera's orientation of Track's begin
 
   double radius = 0.04;                             // of sphere and circle [m]
   double side = 0.10;                               // of the square [m]
   Polygon corners;                                  // of square and triangle
-  model::Vec3 p_CO_C_star{0.0, 0.0, 0.40};          // where the target shall be, in C [m]
-  model::Mat3 R_CO_star = model::Mat3::Identity();  // and how it shall be turned
+  model::Vec3 p_CO_C_star{0.0, 0.0, 0.40};          // goal of the target's position, in C [m]
+  model::Mat3 R_CO_star = model::Mat3::Identity();  // goal of its orientation
 
   [[nodiscard]] bool SeesOrientation() const noexcept { return TraitsOf(target).body == TargetBody::kPlate; }
-  // Whether `form` is a feature of `target`, and there is room for all that is stacked.
+  // True if `form` is a feature of `target`, and all stacked entries fit.
   [[nodiscard]] bool IsListed() const noexcept;
   [[nodiscard]] int Dim() const noexcept;
   [[nodiscard]] TargetOutline Outline() const noexcept;
 
-  // s, s_star, L_s and the target's share for `seen`, without what is stacked. False, with `state` untouched,
-  // where the feature refuses. Real-time: yes.
+  // s, s_star, L_s and the target's share for `seen`, without stacked entries. False, with `state` unchanged,
+  // if the feature refuses. Real-time: yes.
   [[nodiscard]] bool Compute(const TargetInCamera& seen, FeatureState& state) const noexcept;
 
   // The same at the goal, with the target at rest. Real-time: yes.
   [[nodiscard]] bool ComputeAtGoal(FeatureState& state) const noexcept;
 
-  // Of a sphere or circle. False when `measurement` is of another target, or names none before the camera.
-  // Real-time: yes.
+  // Reads a measured sphere or circle. False if `measurement` is of another target or of none in front of the
+  // camera. Real-time: yes.
   [[nodiscard]] bool Lift(const hal::FeatureMeasurement& measurement, LiftedTarget& lifted) const noexcept;
 
-  // The same of a square or triangle; poses that are none before the camera are left out. Real-time: yes.
+  // The same for a square or triangle. Omits poses that are invalid or not in front of the camera.
+  // Real-time: yes.
   [[nodiscard]] bool TakeCorners(const hal::FeatureMeasurement& measurement,
                                  SeenCorners& seen) const noexcept;
 };

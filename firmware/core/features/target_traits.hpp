@@ -1,7 +1,7 @@
-// The kinds of targets, and what everybody else has to know of one: a line of a table for each.
+// The kinds of targets, with all that other modules need to know of each: one line of a table per kind.
 //
-// Who draws, looks for, logs or steers by a target asks the table, and no more than it says; a new kind that
-// is a plate with corners is another line here, and its own corners and pictures (firmware/README.md).
+// Code that draws, detects, logs or steers by a target uses this table only. A new plate with corners needs
+// another line here, and its own corners and pictures (firmware/README.md).
 #pragma once
 
 #include <array>
@@ -13,23 +13,22 @@
 
 namespace fovea::features {
 
-// What the servo can steer by; target_feature.hpp says of which target.
+// The features that the servo can steer by; target_feature.hpp lists them for each target.
 enum class FeatureForm : std::uint8_t { kSphere, kCircle, kCorners, kSide, kCornerSide, kPose };
 inline constexpr std::array<const char*, 6> kFormNames{"sphere", "circle",      "corners",
                                                        "side",   "corner_side", "pose"};
 
-// What it is as a thing: a ball, a flat disc, or a flat plate with corners.
+// The shape of a target: a ball, a flat disc, or a flat plate with corners.
 enum class TargetBody : std::uint8_t { kBall, kDisc, kPlate };
 
 struct TargetTraits {
   hal::FeatureKind kind;
-  const char* name;  // as target.kind, logs and commands have it
+  const char* name;  // as in target.kind, logs and commands
   TargetBody body;
-  int num_corners;   // of a plate; else 0
-  int turns;         // of a full turn about O's z that nobody can tell from each other: a square's 4.
-                     // Of a plate they divide num_corners
-  FeatureForm form;  // that is steered by when none is chosen
-  std::array<FeatureForm, 4> forms;  // all that it can be steered by; `form` fills the rest
+  int num_corners;  // of a plate; else 0
+  int turns;  // equal-looking orientations in a full turn about O's z: a square's 4; a divisor of num_corners
+  FeatureForm form;                  // the default
+  std::array<FeatureForm, 4> forms;  // all of its features; `form` fills the rest
 };
 
 // In the order of hal::FeatureKind.
@@ -69,7 +68,7 @@ inline constexpr std::array<TargetTraits, 4> kTargets{{
   return kTargets[static_cast<std::size_t>(kind)];
 }
 
-// The one of that name; null where there is none.
+// The target of that name; null if there is none.
 [[nodiscard]] constexpr const TargetTraits* FindTraits(std::string_view name) noexcept {
   for (const TargetTraits& target : kTargets) {
     if (name == target.name) {

@@ -1,4 +1,4 @@
-// Stage 5, clamp: the last word before the arm, in every mode. Finite, within range, within rate.
+// Stage 5, clamp: the last step before the arm, in every mode. Makes torques finite, in range and in rate.
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"
@@ -11,9 +11,9 @@ struct ClampResult {
   hal::LimitSet limits = 0;
 };
 
-// Brings `tau` [num_joints] within reach of `tau_applied`, the command that the arm says is in force, by
-// one tick of the rate limit, and into the range of the joints. A non-finite entry is replaced by the applied
-// torque, faded towards zero at the rate limit. Real-time: yes.
+// Limits `tau` [num_joints] to one tick of the rate limit around `tau_applied`, the command that the arm
+// reports as in force, and to the range of the joints. Replaces a non-finite entry by the applied torque,
+// faded towards zero at the rate limit. Real-time: yes.
 [[nodiscard]] ClampResult ClampTorque(const model::ArmModel& arm, const config::SafetyConfig& config,
                                       const model::VecN& tau_applied, model::VecN& tau) noexcept;
 

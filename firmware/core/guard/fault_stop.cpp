@@ -7,8 +7,8 @@
 namespace fovea::guard {
 namespace {
 
-constexpr double kBehind = 0.2;     // a stop that is so much behind what it should be is none [rad/s, m/s]
-constexpr double kStopShare = 0.3;  // of safety.fault_damping: what it should be at least
+constexpr double kBehind = 0.2;     // a stop this much slower than expected has failed [rad/s, m/s]
+constexpr double kStopShare = 0.3;  // of safety.fault_damping: the least expected damping
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 }  // namespace

@@ -1,6 +1,6 @@
-// How the arm is stopped after a fault: damped, as long as that can be and helps; then let go, and braked.
+// Stops the arm after a fault: damps it while that is possible and helps, then removes the torque and brakes.
 //
-// Damping needs true velocities. Nor does it stop a joint whose motor is dead or that is pushed: then the arm
+// Damping needs true velocities. It cannot stop a joint that is pushed or whose motor is dead: the arm then
 // gets faster again, or no slower, and only the brakes are left.
 #pragma once
 
@@ -15,26 +15,26 @@ namespace fovea::guard {
 struct FaultStop {
   enum class Stage : std::uint8_t {
     kDamped,  // each joint is damped
-    kLetGo,   // the torque fades out, as fast as the arm takes it
-    kBraked,  // there is none any more, and the brakes close
+    kLetGo,   // the torque fades out at the arm's rate limit
+    kBraked,  // the torque is zero, and the brakes close
   };
   static constexpr int kNumStages = 3;
 
   Stage stage = Stage::kDamped;
-  double speed_due = HUGE_VAL;  // how slow the fastest joint should be by now [rad/s, m/s]
+  double speed_due = HUGE_VAL;  // expected speed of the fastest joint by now [rad/s, m/s]
 };
 
-// tau = -damping M dq, which takes the speed away like exp(-damping t). Real-time: yes.
+// tau = -damping M dq, which makes the speed decay like exp(-damping t). Real-time: yes.
 void DampedStop(double damping, const model::ArmDynamics& dynamics, const model::VecN& dq,
                 model::VecN& tau) noexcept;
 
-// One tick in Fault, `since_s` after it began. `blind`: the velocities `dq` [num_joints] are not to be
-// believed. Writes `tau` [num_joints]. Real-time: yes.
+// One tick in Fault, `since_s` after it began. `blind`: the velocities `dq` [num_joints] cannot be trusted.
+// Writes `tau` [num_joints]. Real-time: yes.
 void StopAfterFault(const config::SafetyConfig& config, const model::ArmDynamics& dynamics,
                     const model::VecN& dq, bool blind, double since_s, FaultStop& stop,
                     model::VecN& tau) noexcept;
 
-// After the clamp: the brakes close once the torque `tau` that is sent is gone. Real-time: yes.
+// Call after the clamp. The brakes close once the torque `tau` that is sent is zero. Real-time: yes.
 void CloseBrakes(const model::VecN& tau, FaultStop& stop) noexcept;
 
 }  // namespace fovea::guard

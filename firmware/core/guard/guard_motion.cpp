@@ -17,17 +17,17 @@ using hal::Limit;
 using hal::LimitSet;
 using model::LinearJacobian;
 
-// Of the hand's speed and turn that is wished; the proof of a stop allows more.
+// Shares of the hand's speed limits that a wish may use; the stop's proof allows more.
 constexpr double kSpeedShare = 0.93;
 constexpr double kTurnShare = 0.89;
-constexpr double kSlow = 1e-3;  // a joint that is no faster stops by itself [rad/s, m/s]
+constexpr double kSlow = 1e-3;  // a slower joint stops by itself [rad/s, m/s]
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 const model::Joint& JointOf(const config::ServoConfig& config, int i) noexcept {
   return config.arm.joints[static_cast<std::size_t>(i)];
 }
 
-// Joint velocity: scaled as a whole, so that the direction of the motion stays.
+// Joint velocity: scaled as a whole, which keeps the direction of the motion.
 LimitSet LimitVelocity(const config::ServoConfig& config, model::VecN& dq) noexcept {
   double scale = 1.0;
   for (int i = 0; i < dq.size(); ++i) {
@@ -44,7 +44,7 @@ LimitSet LimitVelocity(const config::ServoConfig& config, model::VecN& dq) noexc
   return Bit(Limit::kJointVelocity);
 }
 
-// The hand's speed, the same way: of its point, and of its turn.
+// The hand's linear and angular speed, the same way.
 LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E_B,
                     const model::ArmPoses& poses, model::VecN& dq) noexcept {
   LimitSet limits = 0;
@@ -61,7 +61,7 @@ LimitSet LimitSpeed(const config::ServoConfig& config, const LinearJacobian& J_E
   return limits;
 }
 
-// Joint position: each joint on its own, since the others may still carry the task.
+// Joint position: each joint on its own, because the others may still do the task.
 LimitSet LimitJointPosition(const config::ServoConfig& config, const model::VecN& q,
                             model::VecN& dq) noexcept {
   const config::GuardConfig& guard = config.guard;
@@ -84,7 +84,7 @@ LimitSet LimitJointPosition(const config::ServoConfig& config, const model::VecN
   return limits;
 }
 
-// Workspace: the part of the motion that leads out of the sphere too fast is taken away.
+// Workspace: removes the part of the motion that leads out of the sphere too fast.
 LimitSet LimitWorkspace(const config::ServoConfig& config, const model::Vec3& p_BE,
                         const LinearJacobian& J_E_B, model::VecN& dq) noexcept {
   const double radius = p_BE.norm();
@@ -97,7 +97,7 @@ LimitSet LimitWorkspace(const config::ServoConfig& config, const model::Vec3& p_
     return 0;
   }
   LimitSet limits = 0;
-  // Along the edge at most half of the deceleration may be spent.
+  // A motion along the edge may use at most half of the deceleration.
   const double deceleration = config.guard.workspace_deceleration;
   const double v_t2_max = 0.5 * deceleration * radius;
   if (v_t2 > v_t2_max && edge.value - edge.margin < v_t2 / (2.0 * deceleration)) {
@@ -145,7 +145,7 @@ LimitSet LimitAcceleration(const config::ServoConfig& config, const model::VecN&
 
 MotionWish StopTogether(const config::ServoConfig& config, const trajectory::Reference& reference) noexcept {
   MotionWish wish = MotionWish::Velocity(model::VecN::Zero(reference.dq.size()));
-  double share = 0.0;  // of its velocity that the slowest to stop has left after this tick
+  double share = 0.0;  // of its velocity that the slowest joint to stop keeps after this tick
   for (int i = 0; i < reference.dq.size(); ++i) {
     if (std::fabs(reference.dq[i]) < kSlow) {
       continue;
@@ -174,7 +174,7 @@ LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, 
   LimitSet limits = LimitVelocity(config, dq);
   limits |= LimitJointPosition(config, reference.q, dq);
   limits |= LimitWorkspace(config, p_BE, J_E_B, dq);
-  // The correction for the workspace may have set a joint on the move again: what it may not do is cut.
+  // The workspace correction may move a joint again, so that the joint's limits apply once more.
   limits |= LimitJointPosition(config, reference.q, dq);
   limits |= LimitVelocity(config, dq);
   limits |= LimitSpeed(config, J_E_B, reference_poses, dq);

@@ -1,4 +1,4 @@
-// Whether the motors can do what the guard allows the reference: the arm follows it no further than that.
+// Checks that the motors can follow every reference that the guard allows.
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"
@@ -7,11 +7,11 @@ namespace fovea::guard {
 
 struct MotorNeed {
   int joint = -1;        // from 0
-  double torque = 0.0;   // that its largest acceleration takes, at the ready posture with the load [Nm, N]
-  double allowed = 0.0;  // that its motor may give [Nm, N]
+  double torque = 0.0;   // for its largest acceleration, at the ready posture with the load [Nm, N]
+  double allowed = 0.0;  // of its motor [Nm, N]
 };
 
-// Of the joint that has least to spare: M_ii ddq_max against tau_max, each by its share. Not for the tick.
+// Of the joint with the smallest reserve: M_ii ddq_max to tau_max, each with its share. Not for the tick.
 [[nodiscard]] MotorNeed LargestMotorNeed(const config::ServoConfig& config) noexcept;
 
 }  // namespace fovea::guard

@@ -12,10 +12,9 @@ namespace fovea::guard {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kSlack = 1e-9;  // rounding is no step outward [m, rad]
+constexpr double kSlack = 1e-9;  // tolerance for rounding [m, rad]
 
-// A joint that stops after `distance` from q_now, given that it may go up to `limit` (or no further than it
-// already is).
+// True if `q` is from `low` to `high`, or at least no further out than `q_now`.
 bool Within(double q, double q_now, double low, double high) noexcept {
   return q <= std::max(high, q_now) + kSlack && q >= std::min(low, q_now) - kSlack;
 }
@@ -41,11 +40,11 @@ StopPlan PlanAll(const config::ServoConfig& config, const trajectory::Reference&
 
 using PerJoint = std::array<double, model::kMaxJoints>;
 
-// How far any point of arm and hand goes at most per travel of each joint: its distance from the joint's
-// axis, which the lengths of the links between them bound; 1 for a joint that slides.
+// The largest travel of any point of arm and hand per travel of each joint: the point's distance from the
+// joint's axis, bounded by the lengths of the links between them; 1 for a prismatic joint.
 PerJoint Levers(const model::ArmModel& arm, const config::HandShape& hand) noexcept {
   PerJoint levers{};
-  double reach = 0.0;  // of what is bolted to the end effector
+  double reach = 0.0;  // of the parts bolted to the end effector
   for (int i = 0; i < hand.num_balls; ++i) {
     reach = std::max(reach, hand.balls[static_cast<std::size_t>(i)].p_EP.norm());
   }
@@ -66,7 +65,7 @@ PerJoint Levers(const model::ArmModel& arm, const config::HandShape& hand) noexc
   return levers;
 }
 
-// The stop, looked at from one point of time on.
+// The stop as a function of time.
 class StopWay {
  public:
   StopWay(const config::ServoConfig& config, const trajectory::Reference& reference) noexcept
@@ -75,17 +74,16 @@ class StopWay {
         plan_(PlanAll(config, reference)),
         levers_(Levers(config.arm, config.guard.hand)) {}
 
-  // The ticks' own steps come on top of the continuous motion.
+  // The tick's own step precedes the continuous motion.
   [[nodiscard]] double Duration() const noexcept { return plan_.duration_s + kPeriodS; }
 
-  // How fast a point of the arm can be from some time on at most [m/s], and how fast its hand can turn
-  // [rad/s].
+  // Upper bounds from some time on: speed of any point of the arm [m/s], angular speed of its hand [rad/s].
   struct Most {
     double speed = 0.0;
     double turn = 0.0;
   };
 
-  // Where the joints are `t` seconds into the stop, and how fast; and what can come from then on.
+  // The joints' positions and velocities `t` seconds into the stop. Returns the bounds from then on.
   Most At(double t, model::VecN& q, model::VecN& dq) const noexcept {
     Most most;
     for (int i = 0; i < q.size(); ++i) {
@@ -93,7 +91,7 @@ class StopWay {
       const trajectory::AxisState state = plan_.joints[k].At(t);
       q[i] = reference_.q[i] + reference_.dq[i] * kPeriodS + state.x;
       dq[i] = state.v;
-      // A joint is never faster than now, or than when it has released its acceleration.
+      // A joint is never faster than now, or than after it has released its acceleration.
       const double settled = trajectory::SettledVelocity(
           state.v, state.a, config_.guard.joint_jerk_fraction * config_.arm.joints[k].dddq_max);
       const double speed = std::max(std::fabs(state.v), std::fabs(settled));
@@ -104,7 +102,7 @@ class StopWay {
     return most;
   }
 
-  // How far a point of the arm is at most from where it was with the joints at `q_now` when the stop begins.
+  // The largest distance of a point of the arm, when the stop begins, from its place at `q_now`.
   [[nodiscard]] double FirstStep(const model::VecN& q_now) const noexcept {
     double reach = 0.0;
     for (int i = 0; i < q_now.size(); ++i) {
@@ -121,7 +119,7 @@ class StopWay {
   PerJoint levers_;
 };
 
-// What bounds the arm, each with its margin; what is already past one may only come back.
+// The arm's barriers, each with its margin. Past a barrier the arm may only come back.
 class Bounds {
  public:
   static constexpr int kMost = barriers::SolidBarriers::kMost;
@@ -138,9 +136,9 @@ class Bounds {
 
   [[nodiscard]] int size() const noexcept { return solid_.size(); }
   [[nodiscard]] hal::LimitSet LimitOf(int i) const noexcept { return hal::Bit(solid_.NameOf(i)); }
-  // The distance that any point may still go before bound `i`, when the stop begins.
+  // The distance that any point may still travel before bound `i`, at the posture `now`.
   [[nodiscard]] double ClearNow(int i) const noexcept { return clear_now_[static_cast<std::size_t>(i)]; }
-  // The same with the links at `poses`; below 0 where it is passed.
+  // The same with the links at `poses`; negative if the bound is exceeded.
   [[nodiscard]] double Clear(int i, const model::ArmPoses& poses,
                              const barriers::ArmBodies& bodies) const noexcept {
     return solid_.ShareOf(i) * (solid_.ValueOf(i, poses, bodies) - least_[static_cast<std::size_t>(i)]);
@@ -148,7 +146,7 @@ class Bounds {
 
  private:
   barriers::SolidBarriers solid_;
-  std::array<double, kMost> least_{};  // value of each that must be kept
+  std::array<double, kMost> least_{};  // smallest allowed value of each
   std::array<double, kMost> clear_now_{};
 };
 
@@ -168,7 +166,7 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
   model::VecN q = reference.q;
   model::VecN dq = reference.dq;
 
-  // Joints: a joint is furthest out where it stops, unless it still turns round before.
+  // Joints: a joint is furthest out where it stops, unless it reverses before.
   way.At(duration, q, dq);
   for (int i = 0; i < q.size(); ++i) {
     const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
@@ -178,15 +176,15 @@ hal::LimitSet LimitsPassed(const config::ServoConfig& config, const trajectory::
     }
   }
 
-  // Arm and hand: at points of time that are denser at the start, which is what will be gone for certain.
-  // No bound is looked at before some point can have reached it.
+  // Arm and hand: at times that are denser at the start, because the arm certainly moves along that part. A
+  // bound is checked only from the time at which some point can have reached it.
   const Bounds bounds(config, poses_now);
   std::array<double, Bounds::kMost> clear_until{};
   const StopWay::Most most_now = way.At(0.0, q, dq);
   const double first_step = way.FirstStep(q_now);
   const double speed_most = config::kSpeedShareMost * config::SpeedLimitOfReference(guard);
   const double turn_most = config::kTurnShareMost * config::TurnLimitOfReference(guard);
-  // While any point could be faster than the hand may, or turn faster, each sample counts.
+  // While the hand could exceed its speed or turn limit, each sample is checked.
   double first_due = most_now.speed > speed_most || most_now.turn > turn_most ? 0.0 : HUGE_VAL;
   for (int i = 0; i < bounds.size(); ++i) {
     double& until = clear_until[static_cast<std::size_t>(i)];

@@ -1,5 +1,4 @@
-// The servo's configuration as bytes: the lists of core/config, in their order, over any archive of
-// fields.hpp.
+// The servo's configuration as bytes: the field lists of core/config, for any archive of fields.hpp.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +8,7 @@
 
 namespace fovea::link {
 
-// A visitor of the lists that passes each value to `archive`.
+// A visitor of the field lists that passes each value to `archive`.
 template <class Archive>
 class FieldsOf {
  public:
@@ -53,8 +52,7 @@ class FieldsOf {
   Archive& archive_;
 };
 
-// Calls `visit(name, fields)` for each part of `c` but the arm; `fields(archive)` goes through the part's
-// fields.
+// Calls `visit(name, fields)` for each section of `c` but the arm. `fields(archive)` visits its fields.
 template <class Config, class Visit>
 void EachSection(Config& c, const Visit& visit) noexcept {
   config::EachSection(c, [&visit](const char* name, const auto& fields) {

@@ -1,4 +1,4 @@
-// CRC-32 as Ethernet and zlib have it: reflected polynomial 0xedb88320, all ones before and after.
+// CRC-32 of Ethernet and zlib: reflected polynomial 0xedb88320, all ones before and after.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace fovea::link {
 
-// Of `bytes` after what gave `before`; 0: nothing. Real-time: yes.
+// The CRC of `bytes`, continued from `before`; 0: nothing before. Real-time: yes.
 [[nodiscard]] std::uint32_t Crc32(std::span<const std::uint8_t> bytes, std::uint32_t before = 0) noexcept;
 
 }  // namespace fovea::link

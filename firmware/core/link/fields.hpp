@@ -1,8 +1,7 @@
-// Plain values as bytes, little-endian, one after the other without gaps. A list of fields is written once,
-// as a template, and serves both ways: `template <class Archive, class T> void Fields(Archive& a, T& t) {
-// a(t.x); ... }`.
+// Plain values as bytes, little-endian, one after the other without gaps. One template serves both
+// directions: `template <class Archive, class T> void Fields(Archive& a, T& t) { a(t.x); ... }`.
 //
-// Neither goes past its bytes; what does not fit, or is no value of its type, makes ok() false.
+// Neither class goes past its bytes. A value that does not fit, or is invalid for its type, makes ok() false.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +23,7 @@ class FieldWriter {
   void operator()(std::uint64_t value) noexcept { Put(value, 8); }
   void operator()(std::int64_t value) noexcept { Put(static_cast<std::uint64_t>(value), 8); }
   void operator()(double value) noexcept { Put(std::bit_cast<std::uint64_t>(value), 8); }
-  // Of 32 bits. (Which type that is, int or long, is not the same on all processors.)
+  // 32 bits. (Whether that is int or long depends on the processor.)
   template <class Integer>
   void Int(Integer value) noexcept {
     static_assert(std::is_signed_v<Integer> && sizeof(Integer) == 4);
@@ -36,7 +35,7 @@ class FieldWriter {
     ok_ = ok_ && value >= 0 && value <= most;
     Int(value);
   }
-  // One of the `count` first values of its type.
+  // One of the first `count` values of its type.
   template <class Enum>
   void Choice(Enum value, int count) noexcept {
     ok_ = ok_ && static_cast<int>(value) < count;
@@ -95,7 +94,7 @@ class FieldReader {
     value = ok_ ? static_cast<Enum>(bits) : Enum{};
   }
 
-  // All was there and sound, and nothing is left over.
+  // True if all values were there and valid, and nothing is left over.
   [[nodiscard]] bool Done() const noexcept { return ok_ && at_ == bytes_.size(); }
 
  private:
@@ -117,7 +116,7 @@ class FieldReader {
   bool ok_ = true;
 };
 
-// `count` values in a row, at once where the archive can.
+// `count` values in a row, at once if the archive can.
 template <class Archive, class T>
 void Row(Archive& a, T* values, std::size_t count) noexcept {
   if constexpr (requires { a.Row(values, count); }) {

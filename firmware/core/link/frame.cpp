@@ -5,7 +5,7 @@
 namespace fovea::link {
 namespace {
 
-constexpr std::uint8_t kLongestRun = 0xff;  // the code of 254 bytes without a 0, and none after them
+constexpr std::uint8_t kLongestRun = 0xff;  // the code of 254 bytes without a 0 that no 0 follows
 
 std::array<std::uint8_t, 4> ToBytes(std::uint32_t value) noexcept {
   return {static_cast<std::uint8_t>(value), static_cast<std::uint8_t>(value >> 8U),

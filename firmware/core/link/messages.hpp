@@ -1,8 +1,8 @@
-// What the frames carry: the servo's configuration, inputs and outputs, as bytes and back.
+// The frames' payloads: the servo's configuration, inputs and outputs, as bytes and back.
 //
-// Decode answers false, and `message` is not to be used, where bytes are missing or left over, a count is
-// past its capacity, or a choice is none of the list. Values are passed on as they are, non-finite ones
-// included: who uses them judges them, as at the seam. Real-time: yes, all of it.
+// Decode returns false, and `message` must not be used, if bytes are missing or left over, a count exceeds
+// its capacity, or a choice is not in the list. Values pass unchanged, non-finite ones included; their user
+// checks them, as at the seam. Real-time: yes, all functions.
 #pragma once
 
 #include <array>
@@ -22,22 +22,22 @@ namespace fovea::link {
 
 // Who drives the ticks.
 enum class Pacing : std::uint8_t {
-  kLockstep,  // each Inputs frame is one tick; one that comes twice is answered twice and stepped once
-  kTimer,     // the servo's own clock, 1 kHz: a tick without a new Inputs frame is one without an arm state
-  kGated,     // as kTimer, but that clock stands from each tick's end until the host says Go: for a host that
-              // simulates, and whose millisecond takes as long as it takes
+  kLockstep,  // each Inputs frame is one tick; a repeated one is answered twice and stepped once
+  kTimer,     // the servo's own clock, 1 kHz; a tick without a new Inputs frame has no arm state
+  kGated,  // as kTimer, but the clock stands from each tick's end until the host sends Go: for a simulator as
+           // host, whose millisecond may take any time
 };
 inline constexpr int kNumPacings = 3;
 
 struct Configuration {
   Pacing pacing = Pacing::kLockstep;
-  bool may_provoke = false;   // take Provoke frames
-  std::uint32_t arm_crc = 0;  // ArmCrc of the arm with its load: the servo's own must have the same
+  bool may_provoke = false;   // accept Provoke frames
+  std::uint32_t arm_crc = 0;  // ArmCrc of the arm with its load; the servo's own must be equal
   model::Load load;
-  config::ServoConfig servo;  // without `arm`: the servo has its model as a constant
+  config::ServoConfig servo;  // without `arm`: the servo has the arm's model as a constant
 };
 
-// kOk, or why not and of what: the first kWhere - 1 characters of Status::where.
+// kOk, or the error and where: the first kWhere - 1 characters of Status::where.
 struct Answer {
   static constexpr std::size_t kWhere = 48;
   hal::StatusCode code = hal::StatusCode::kOk;
@@ -46,25 +46,25 @@ struct Answer {
 
 inline constexpr std::size_t kNumStages = task::kStageNames.size();
 
-// What went wrong on the way, since the servo was configured; bytes and frames lost: since its start.
+// Losses on the line since the servo was configured; lost bytes and unsent frames: since its start.
 struct LineCounters {
-  std::uint32_t damaged_frames = 0;  // that the servo's reader counted
-  std::uint32_t late_frames = 0;     // of the timer's pacing: overtaken, or too old to be used
-  std::uint32_t silent_ticks = 0;    // of the timer's pacing: without a new Inputs frame
-  std::uint32_t missed_ticks = 0;    // of the timer's pacing: periods that passed without a tick
-  std::uint32_t lost_bytes = 0;      // that came faster than they were taken
-  std::uint32_t unsent_frames = 0;   // that found no room to be sent
+  std::uint32_t damaged_frames = 0;  // counted by the servo's reader
+  std::uint32_t late_frames = 0;     // with the timer: overtaken, or too old to be used
+  std::uint32_t silent_ticks = 0;    // with the timer: without a new Inputs frame
+  std::uint32_t missed_ticks = 0;    // with the timer: periods that passed without a tick
+  std::uint32_t lost_bytes = 0;      // received faster than taken
+  std::uint32_t unsent_frames = 0;   // without room to be sent
   bool operator==(const LineCounters&) const = default;
 };
 
-// One tick's outputs, without the inputs that the host sent itself, and what the tick took.
+// One tick's outputs without the host's own inputs, and the time that the tick took.
 struct Outputs {
   hal::TickRecord record;                                // `arm`, `has_feature` and `feature` are not sent
   std::array<std::uint32_t, kNumStages> stage_counts{};  // of the timer, from one stage's end to the next's
   std::uint32_t tick_counts = 0;                         // of the timer, the whole of Step
-  std::uint32_t link_counts = 0;                         // of the timer, for the line, since the tick before
-  std::uint32_t periods_passed = 0;                      // of the timer's pacing: while the tick was computed
-  std::uint32_t stack_bytes = 0;                         // the deepest the stack ever was
+  std::uint32_t link_counts = 0;     // of the timer, for the line, since the previous tick
+  std::uint32_t periods_passed = 0;  // with the timer: while the tick was computed
+  std::uint32_t stack_bytes = 0;     // the largest stack depth so far
   LineCounters line;
 };
 
@@ -79,10 +79,10 @@ struct Crash {
 
 enum class Provocation : std::uint8_t { kUsageFault };  // floating point with the FPU switched off
 
-// Of all that an arm's model says, in the order of its fields.
+// The CRC of an arm's model, in the order of its fields.
 [[nodiscard]] std::uint32_t ArmCrc(const model::ArmModel& arm) noexcept;
 
-// The bytes lie in `storage`; none when they do not fit. kMaxPayload holds any of them.
+// The bytes lie in `storage`; none if they do not fit. kMaxPayload is enough for any message.
 using Bytes = std::span<const std::uint8_t>;
 using Storage = std::span<std::uint8_t>;
 [[nodiscard]] Bytes Encode(const Configuration& message, Storage storage) noexcept;

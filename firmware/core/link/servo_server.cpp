@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t kDriftNs = hal::kTickPeriodNs / 10'000;  // in a tick, between two clocks: 100 ppm
 
-// Stamps come from the other end: whatever they are, nothing overflows.
+// Stamps come from the other end. The difference wraps instead of overflowing.
 std::int64_t Difference(std::int64_t a, std::int64_t b) noexcept {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
 }
@@ -22,7 +22,7 @@ void ServoServer::Send(FrameKind kind, std::uint32_t sequence, const Message& me
 void ServoServer::SayHello() noexcept { board_.Send(writer_.Encode({FrameKind::kHello, 0, {}})); }
 
 void ServoServer::Receive(std::span<const std::uint8_t> bytes) noexcept {
-  // What a frame of Inputs makes of a tick is the tick's own time.
+  // The time of a tick that an Inputs frame causes is not the link's time.
   std::uint32_t began = board_.TimerCounts();
   for (const std::uint8_t byte : bytes) {
     if (reader_.Add(byte)) {
@@ -44,8 +44,8 @@ void ServoServer::Take(const Frame& frame) noexcept {
       }
       return;
     case FrameKind::kGo: LetTimerRun(frame); return;
-    case FrameKind::kHello: SayHello(); return;  // the host came late, or anew
-    default: return;                             // what only the servo sends
+    case FrameKind::kHello: SayHello(); return;  // the host started late or again
+    default: return;                             // only the servo sends these
   }
 }
 
@@ -107,7 +107,7 @@ void ServoServer::TakeInputs(const Frame& frame) noexcept {
   }
 }
 
-// By the timer: a frame that is late is overtaken by the next, but what it asked for and saw is not lost.
+// With the timer: the next frame overtakes a late one, but its request and measurement are kept.
 void ServoServer::TakeInputsByTimer(const Frame& frame) noexcept {
   const bool newer = !has_inputs_ || static_cast<std::int32_t>(frame.sequence - inputs_sequence_) > 0;
   const std::uint32_t began = board_.TimerCounts();
@@ -140,8 +140,8 @@ void ServoServer::TakeInputsByTimer(const Frame& frame) noexcept {
   fresh_ = true;
 }
 
-// The two ends have no common clock: how late a state is, is seen beside the one that was the quickest. What
-// is as late as an arm may be silent is as good as lost.
+// The two ends have no common clock: a state's delay is measured relative to the quickest state. A state as
+// late as an arm may be silent counts as lost.
 bool ServoServer::ComesTooLate(std::int64_t stamp_ns) noexcept {
   const std::int64_t lag_ns = Difference(time_ns_, stamp_ns);
   least_lag_ns_ = has_inputs_ ? std::min(least_lag_ns_, lag_ns) : lag_ns;

@@ -1,5 +1,5 @@
-// The servo at the far end of a serial line: takes frames, steps the task, sends what came of it. All that a
-// processor without an operating system runs, but for the processor itself.
+// The servo at the far end of a serial line: takes frames, steps the task, sends the result. It is all that a
+// processor without an operating system runs, apart from the processor's own driver.
 #pragma once
 
 #include <array>
@@ -11,24 +11,24 @@
 
 namespace fovea::link {
 
-// What a processor lost of its line so far.
+// What a processor lost on its line so far.
 struct LineLosses {
-  std::uint32_t bytes = 0;   // that came while there was no room for them
-  std::uint32_t frames = 0;  // that found no room to be sent
+  std::uint32_t bytes = 0;   // received without room for them
+  std::uint32_t frames = 0;  // without room to be sent
 };
 
-// What the server needs of its processor. Real-time: yes.
+// The functions that the server needs of its processor. Real-time: yes.
 class Board {
  public:
   Board(const Board&) = delete;
   Board& operator=(const Board&) = delete;
   virtual void Send(std::span<const std::uint8_t> bytes) noexcept = 0;
   [[nodiscard]] virtual std::uint32_t TimerCounts() noexcept = 0;  // runs freely, upwards, wraps
-  [[nodiscard]] virtual std::uint32_t StackBytes() noexcept = 0;   // the deepest the stack ever was
+  [[nodiscard]] virtual std::uint32_t StackBytes() noexcept = 0;   // the largest stack depth so far
   [[nodiscard]] virtual LineLosses Lost() noexcept = 0;
-  // The 1 kHz timer. Stopped, it keeps what has passed of the period in hand.
+  // The 1 kHz timer. A stopped timer keeps the elapsed part of its period.
   virtual void RunTimer(bool on) noexcept = 0;
-  [[nodiscard]] virtual std::uint32_t Periods() noexcept = 0;  // of that timer, all that have passed; wraps
+  [[nodiscard]] virtual std::uint32_t Periods() noexcept = 0;  // of that timer, elapsed so far; wraps
   virtual void Provoke(Provocation what) noexcept = 0;
 
  protected:
@@ -38,12 +38,12 @@ class Board {
 
 class ServoServer final : private task::StageProbe {
  public:
-  // `arm` without load. Both are borrowed.
+  // `arm`: without load. Both must outlive the server.
   ServoServer(const model::ArmModel& arm, Board& board) noexcept : arm_(arm), board_(board) {}
 
   void SayHello() noexcept;
   void Receive(std::span<const std::uint8_t> bytes) noexcept;
-  // To be called whenever a period may have passed: ticks if one has.
+  // Call whenever a period may have passed: ticks if one has.
   void Poll() noexcept;
 
  private:
@@ -78,14 +78,14 @@ class ServoServer final : private task::StageProbe {
 
   // By the timer
   bool fresh_ = false;       // `inputs_` came since the last tick
-  bool has_inputs_ = false;  // some came ever, the newest of them `inputs_sequence_`
+  bool has_inputs_ = false;  // some came, the newest of them `inputs_sequence_`
   std::uint32_t inputs_sequence_ = 0;
-  bool may_tick_ = false;           // false: the timer stands until the host says Go
+  bool may_tick_ = false;           // false: the timer stands until the host sends Go
   std::uint32_t periods_done_ = 0;  // of Board::Periods
   std::int64_t time_ns_ = 0;        // of the timer's ticks
-  std::int64_t least_lag_ns_ = 0;   // of a state's stamp behind them
+  std::int64_t least_lag_ns_ = 0;   // the smallest lag of a state's stamp behind them
   LineCounters line_;
-  std::uint32_t damaged_before_ = 0;  // this configuration
+  std::uint32_t damaged_before_ = 0;  // damaged frames before this configuration
   std::uint32_t stage_began_ = 0;
 };
 

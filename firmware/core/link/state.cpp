@@ -8,8 +8,8 @@
 namespace fovea::link {
 namespace {
 
-// Mixes fields into 64 bits, in two lanes that need not wait for each other. Each step is one to one, so
-// that no single difference is lost.
+// Mixes fields into 64 bits, in two lanes that do not wait for each other. Each step is bijective, so that no
+// single difference is lost.
 class Mixer {
  public:
   void operator()(bool value) noexcept { Put(value ? 1U : 0U); }
@@ -17,7 +17,7 @@ class Mixer {
   void operator()(std::uint64_t value) noexcept { Put(value); }
   void operator()(std::int64_t value) noexcept { Put(static_cast<std::uint64_t>(value)); }
   void operator()(double value) noexcept { Put(std::bit_cast<std::uint64_t>(value)); }
-  // The same as one after the other: each lane takes every second one.
+  // Same result as one after the other: each lane takes every second value.
   void Row(const double* values, std::size_t count) noexcept {
     std::uint64_t lane = lane_;
     std::uint64_t next = next_;
@@ -124,7 +124,7 @@ std::uint64_t DigestOf(const config::ServoConfig& config, const task::ServoState
 
 const char* FirstDifference(const task::ServoState& a, const task::ServoState& b, Storage storage_a,
                             Storage storage_b) noexcept {
-  // Group by group: where `b`'s groups end is found as they are written.
+  // Group by group: writing `b` shows where its groups end.
   FieldWriter writer_a(storage_a);
   FieldWriter writer_b(storage_b);
   std::array<const char*, 32> names{};

@@ -1,6 +1,6 @@
-// The fields of the servo's state that a tick takes from the tick before, in groups. What every tick computes
-// anew before it looks at it (poses, dynamics, Jacobians, the prediction, the law's task) is not among them.
-// A field that is added to a struct is added here; state_test.cpp knows the structs' sizes and says so.
+// The fields of the servo's state that a tick takes from the previous tick, in groups. State that every tick
+// computes before it uses it (poses, dynamics, Jacobians, the prediction, the law's task) is not included.
+// Add a new field of a struct here too; state_test.cpp checks the structs' sizes.
 #pragma once
 
 #include <algorithm>
@@ -14,16 +14,16 @@
 
 namespace fovea::link {
 
-// When a group can change, and its digest is worth taking.
+// When a group can change, so that the digest must include it.
 enum class Pace : std::uint8_t {
   kTick,         // in every tick
   kMeasurement,  // in a tick that takes a measurement
-  kSeeking,      // while a target is steered by for which a posture is looked for
+  kSeeking,      // while the servo tracks a target and searches for a posture
   kMoving,       // in mode Move
   kFollows,      // follows from inputs and the other groups alone
 };
 
-// Of a size that is set at run time, up to its capacity.
+// Entries of a size that is set at run time, up to the capacity.
 template <class Archive, class Matrix>
 void SizedEntries(Archive& a, Matrix& m) noexcept {
   auto rows = static_cast<std::int32_t>(m.rows());
@@ -38,7 +38,7 @@ void SizedEntries(Archive& a, Matrix& m) noexcept {
   Row(a, m.data(), static_cast<std::size_t>(m.size()));
 }
 
-// The first `count` of `values`: what stands behind them is never looked at.
+// The first `count` of `values`; the others are never used.
 template <class Array>
 auto FirstOf(Array& values, int count) noexcept {
   const int size = static_cast<int>(values.size());
@@ -150,7 +150,7 @@ void HypothesisSetFields(Archive& a, Set& set) noexcept {
   a(set.views.step);
 }
 
-// The misfits to the still pose are computed anew before they are looked at.
+// Without the misfits to the still pose, which are computed before use.
 template <class Archive, class T>
 void PoseHypothesesFields(Archive& a, T& h) noexcept {
   HypothesisSetFields(a, h.disc);
@@ -258,9 +258,9 @@ void TorqueFields(Archive& a, T& s) noexcept {
   a(s.stop.speed_due);
 }
 
-// To what the state's classes keep to themselves.
+// Access to the private fields of the state's classes.
 struct StateAccess {
-  // From the oldest entry; where the ring begins does not matter.
+  // From the oldest entry; the ring's start does not matter.
   template <class Archive>
   static void Fields(Archive& a, const estimate::JointHistory& history) noexcept {
     a.Count(history.size_, estimate::JointHistory::kCapacity);
@@ -311,8 +311,7 @@ struct StateAccess {
   }
 };
 
-// Calls `visit(pace, name, fields)` for each group of `state`, in their order; `fields(archive)` goes through
-// the group's fields.
+// Calls `visit(pace, name, fields)` for each group of `state`, in order. `fields(archive)` visits its fields.
 template <class State, class Visit>
 void EachGroup(State& s, const Visit& visit) noexcept {
   visit(Pace::kTick, "tick", [&s](auto& a) {

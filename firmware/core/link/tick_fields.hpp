@@ -1,4 +1,4 @@
-// The fields of a tick's inputs and outputs, in the order in which they go over the line.
+// The fields of a tick's inputs and outputs, in the order of the line.
 #pragma once
 
 #include "firmware/core/features/target_traits.hpp"
@@ -58,7 +58,7 @@ void MotionFields(Archive& a, T& m) noexcept {
   EachOf(a, m.V_BE_B);
 }
 
-// What is asked of the servo.
+// The requests to the servo.
 template <class Archive, class T>
 void DemandFields(Archive& a, T& in) noexcept {
   a.Choice(in.request, kNumRequests);
@@ -67,7 +67,7 @@ void DemandFields(Archive& a, T& in) noexcept {
   a.Choice(in.law, config::kNumMotionLaws);
 }
 
-// But the status: its words stay with the driver that said them.
+// All inputs except the arm's status, whose text stays with its driver.
 template <class Archive, class T>
 void InputFields(Archive& a, T& in) noexcept {
   ArmStateFields(a, in.arm);

@@ -28,7 +28,7 @@ struct Joint {
   double dtau_max = 0.0;  // fastest change of the torque command [Nm/s]
   double viscous = 0.0;   // friction per speed [Nm s/rad]
   double coulomb = 0.0;   // friction against any motion [Nm]
-  double spring = 0.0;    // that pulls the joint to 0 [Nm/rad]; no robot description has a word for it
+  double spring = 0.0;    // that pulls the joint to 0 [Nm/rad]; not part of robot descriptions
 };
 
 struct LinkInertia {

@@ -1,4 +1,4 @@
-// What an arm fills of space: a capsule about each link, and which of them could come to touch.
+// The space that an arm fills: a capsule about each link, and the pairs of capsules that could touch.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ struct Capsule {
 
 struct ArmShape {
   static constexpr int kMostBodies = kMaxJoints + 1;
-  static constexpr int kNeighbours = 2;  // bodies with at most so many joints between them are always near
+  static constexpr int kNeighbours = 2;  // bodies with at most this many joints between them are always near
   static constexpr int kMostPairs = (kMaxJoints - kNeighbours) * (kMaxJoints - kNeighbours + 1) / 2;
 
   // Two bodies; `far` is further from the base.
@@ -27,7 +27,7 @@ struct ArmShape {
   };
 
   std::array<Capsule, kMostBodies> bodies{};  // 0: the base, in B; i + 1: link i, in L_i
-  int num_pairs = 0;                          // of bodies that could come to touch
+  int num_pairs = 0;                          // of bodies that could touch
   std::array<Pair, kMostPairs> pairs{};
 };
 

@@ -17,7 +17,7 @@ struct Wrench {
 
 double Power(const Twist& S, const Wrench& F) noexcept { return S.v.dot(F.f) + S.w.dot(F.n); }
 
-// What joint i does per unit of joint velocity.
+// The twist of joint i per unit of joint velocity.
 Twist JointTwist(const ArmModel& model, const ArmPoses& poses, std::size_t i) noexcept {
   const Vec3 axis = poses.X_BL[i].R.col(2);
   if (model.joints[i].type == JointType::kRevolute) {
@@ -33,7 +33,7 @@ struct Composite {
   Mat3 I = Mat3::Zero();
 };
 
-// Link i, as its centre of mass and its inertia about it, in B.
+// Link i: its centre of mass and its inertia about it, in B.
 struct LinkInB {
   Vec3 p_com;
   Mat3 I_com;
@@ -57,8 +57,8 @@ Wrench Momentum(const Composite& body, const Twist& V) noexcept {
   return {body.mass * V.v + Cross(V.w, body.h), body.I * V.w + Cross(body.h, V.v)};
 }
 
-// The wrenches that the links' motion asks for, summed from the tip: F[i] acts through joint i.
-// `A_0` is the acceleration of B (minus gravity, to have the arm's weight in the result).
+// The torques of the links' motion. Wrenches are summed from the tip: F[i] acts through joint i. `A_0` is the
+// acceleration of B (minus gravity, to include the arm's weight).
 void NewtonEuler(const ArmModel& model, const std::array<Twist, kMaxJoints>& S,
                  const std::array<LinkInB, kMaxJoints>& links, const VecN& dq, const VecN* ddq,
                  const Vec3& A_0, VecN& tau) noexcept {

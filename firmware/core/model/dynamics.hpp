@@ -1,8 +1,8 @@
 // The arm's equation of motion: M(q) ddq + C(q, dq) dq + g(q) = tau.
 //
 // All spatial quantities are taken about the origin of B in axes of B. There a sum over bodies is a plain
-// sum, and no transform stands between neighbours: composite rigid bodies for M (Featherstone, Rigid Body
-// Dynamics Algorithms, 2008, ch. 6), recursive Newton-Euler for the rest (ch. 5).
+// sum, without transforms between neighbours: composite rigid bodies for M (Featherstone, Rigid Body Dynamics
+// Algorithms, 2008, ch. 6), recursive Newton-Euler for the rest (ch. 5).
 #pragma once
 
 #include "firmware/core/model/kinematics.hpp"

@@ -1,4 +1,4 @@
-// Where the arm's links are, and how its joints move them.
+// Poses of the arm's links, and how its joints move them.
 #pragma once
 
 #include <array>
@@ -32,16 +32,16 @@ using LinearJacobian = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor,
 void ComputeLinearJacobian(const ArmModel& model, const ArmPoses& poses, const Vec3& p_B,
                            LinearJacobian& J_B) noexcept;
 
-// What the end effector's acceleration owes to the joints' velocities alone: dJ/dt dq [m/s^2, rad/s^2],
-// linear first, of E's origin, in axes of B. Real-time: yes.
+// The end effector's acceleration from the joints' velocities alone: dJ/dt dq [m/s^2, rad/s^2], linear first,
+// of E's origin, in axes of B. Real-time: yes.
 [[nodiscard]] Vec6 BiasAcceleration(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept;
 
-// How the end effector turns while the joints move with `dq`: its angular velocity in axes of B [rad/s].
-// Real-time: yes.
+// The end effector's angular velocity in axes of B [rad/s], for the joint velocities `dq`. Real-time: yes.
 [[nodiscard]] Vec3 AngularVelocity(const ArmModel& model, const ArmPoses& poses, const VecN& dq) noexcept;
 
 // dJ_j/dq_k for body Jacobian columns `J_j`, `J_k` (any fixed frame of the end effector): the Lie bracket
-// [J_j, J_k] for k > j, since joint k carries the frame past joint j's axis; zero otherwise. Real-time: yes.
+// [J_j, J_k] for k > j, because joint k moves the frame relative to joint j's axis; zero otherwise.
+// Real-time: yes.
 [[nodiscard]] inline Vec6 ColumnChange(const Mat6N& J, int j, int k) noexcept {
   Vec6 change = Vec6::Zero();
   if (k > j) {

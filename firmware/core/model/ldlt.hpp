@@ -1,6 +1,6 @@
 // Symmetric systems of a few equations, without roots: A = L D L^T, L with ones on its diagonal. The size is
-// known when it is compiled, so that no loop is left of it; one division an equation. (Cholesky's way is in
-// cholesky.hpp, for sizes that are not known before.)
+// known at compile time, so that all loops are unrolled. One division per equation. (cholesky.hpp is for
+// sizes that are known only at run time.)
 #pragma once
 
 #include <array>
@@ -11,15 +11,13 @@ namespace fovea::model {
 // Room for a matrix of up to eight rows, row by row.
 using Square8 = std::array<std::array<double, 8>, 8>;
 
-// Factors the lower half of `A` [kSize x kSize] in place: L below the diagonal, 1 / D on it. False when a
-// pivot is not positive, so that A is not positive definite, or not finite; A is of no use then. Real-time:
-// yes.
+// Factors the lower half of `A` [kSize x kSize] in place: L below the diagonal, 1 / D on it. False if a pivot
+// is not positive: A is not positive definite or not finite. `A` is then useless. Real-time: yes.
 template <std::size_t kSize>
 [[nodiscard]] bool FactorLdlt(Square8& A) noexcept {
   static_assert(kSize <= 8);
   bool positive = true;
-  Square8
-      rest;  // what is left of A without the columns that are done: in registers, where loops are unrolled
+  Square8 rest;  // A without the finished columns; in registers, because the loops are unrolled
 #pragma GCC unroll 8
   for (std::size_t i = 0; i < kSize; ++i) {
 #pragma GCC unroll 8

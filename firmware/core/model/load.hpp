@@ -11,11 +11,11 @@ struct Load {
   Mat3 I_Com_E = Mat3::Zero();  // about the centre of mass, in axes of E [kg m^2]
 };
 
-// Two bodies fixed to each other, given and returned in one frame; their masses' sum is above 0.
+// Joins two bodies that are fixed to each other, all in one frame; the sum of their masses is above 0.
 // Real-time: yes.
 [[nodiscard]] LinkInertia Join(const LinkInertia& a, const LinkInertia& b) noexcept;
 
-// From now on the last link of `arm` carries `load` too. Real-time: yes.
+// Adds `load` to the last link of `arm`. Real-time: yes.
 void Attach(const Load& load, ArmModel& arm) noexcept;
 
 }  // namespace fovea::model

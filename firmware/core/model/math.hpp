@@ -24,8 +24,8 @@ struct SinCosResult {
   double cos;
 };
 
-// sin and cos of `x` [rad]. NaN for a NaN and for |x| > kSinCosMaxArgument: an angle of that size is a
-// bug, and NaN is what the servo latches a fault on. Real-time: yes.
+// sin and cos of `x` [rad]. NaN for a NaN and for |x| > kSinCosMaxArgument: an angle of that size is a bug,
+// and the servo latches a fault on NaN. Real-time: yes.
 inline SinCosResult SinCos(double x) noexcept {
   if (!(x >= -kSinCosMaxArgument && x <= kSinCosMaxArgument)) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -35,9 +35,9 @@ inline SinCosResult SinCos(double x) noexcept {
   constexpr double kHalfPi1 = 0x1.921fb54400000p+0;   // the first 33 bits of pi/2
   constexpr double kHalfPi2 = 0x1.0b4611a600000p-34;  // the next 33
   constexpr double kHalfPi3 = 0x1.3198a2e037073p-69;  // the rest
-  constexpr double kRound = 0x1.8p52;                 // adding and taking it away rounds to an integer
+  constexpr double kRound = 0x1.8p52;                 // adding and subtracting it rounds to an integer
   const double turns = (x * kTwoOverPi + kRound) - kRound;
-  // r is the angle within its quarter turn, tail what rounding took from it.
+  // r is the angle within its quarter turn, tail its rounding error.
   const double head = x - turns * kHalfPi1;
   const double r = head - turns * kHalfPi2;
   const double tail = ((head - r) - turns * kHalfPi2) - turns * kHalfPi3;

@@ -1,4 +1,4 @@
-// How heavy each joint is where the arm is ready: what gains and motors are chosen by.
+// The joints' inertia at the ready posture, to check gains and motors.
 #pragma once
 
 #include "firmware/core/model/arm_model.hpp"
@@ -7,13 +7,12 @@ namespace fovea::model {
 
 // At arm.q_ready, loads included; M is the mass matrix.
 struct ReadyInertia {
-  VecN held;      // [num_joints] M_ii: of each joint while the others are held [kg m^2, kg]
-  VecN coupling;  // [num_joints] M_ii (M^-1)_ii, at least 1: how many times less while they are free
+  VecN held;      // [num_joints] M_ii: inertia of each joint while the others are held [kg m^2, kg]
+  VecN coupling;  // [num_joints] M_ii (M^-1)_ii, at least 1: divisor of M_ii while they are free
 };
 
-// Of an arm that is coupled more closely, limits per joint (torque, its rate) bend the motion to where the
-// model does not send it: at 1071 times, with a load beside a wrist, the simulated arm passed its limits at
-// rest.
+// With a stronger coupling, limits per joint (torque, its rate) deflect the motion from the model's: at 1071,
+// with a load beside a wrist, the simulated arm exceeded its limits at rest.
 inline constexpr double kCouplingMost = 200.0;
 
 // Real-time: yes.

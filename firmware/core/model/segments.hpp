@@ -1,4 +1,4 @@
-// Where two segments are nearest to each other.
+// The nearest points of two segments.
 #pragma once
 
 #include <cmath>
@@ -9,12 +9,12 @@ namespace fovea::model {
 
 struct SegmentPair {
   double distance = HUGE_VAL;  // [m]
-  double s = 0.0;              // on the first, as a share of its length, from its first point
+  double s = 0.0;              // place on the first, as a share of its length from p1
   Vec3 on_first = Vec3::Zero();
   Vec3 on_second = Vec3::Zero();
 };
 
-// Of the segments from `p1` to `q1` and from `p2` to `q2` [m], all in one frame; one of length 0 is a point.
+// Of the segments from `p1` to `q1` and from `p2` to `q2` [m], all in one frame; length 0 is allowed.
 // Ericson, Real-Time Collision Detection, 2005, 5.1.9. Real-time: yes.
 [[nodiscard]] SegmentPair NearestOfSegments(const Vec3& p1, const Vec3& q1, const Vec3& p2,
                                             const Vec3& q2) noexcept;

@@ -1,15 +1,14 @@
-// The axes of a small symmetric matrix, A = U diag(a) U^T, by Jacobi's rotations in a bounded number of
-// steps.
+// Eigenvectors (axes) of a small symmetric matrix, A = U diag(a) U^T, by Jacobi rotations in bounded time.
 //
-// A sweep turns each pair of axes once, in rounds of pairs that do not meet (as chess players in a tournament
-// do), so that the rotations of a round wait for nothing of each other. An angle is found by one division and
-// no root, good to a tenth where it is large and to the third power where it is small: a sweep more far off
-// and the last ones as fast as with the exact angle, while each rotation is one to the last bit whatever its
-// angle. U is left as the rotations that it is made of, which is what a function of A times a vector needs:
+// A sweep rotates each pair of axes once, in rounds of disjoint pairs (as in a chess tournament), so that the
+// rotations of a round do not wait for each other. An angle takes one division and no root. It is accurate to
+// a tenth if it is large, and to third order if it is small. This costs one more sweep at the start; the last
+// ones converge as with exact angles. Each rotation is orthogonal to the last bit, whatever its angle. U is
+// kept as its rotations, which is enough for a function of A times a vector:
 //
 //   f(A) x = U diag(f(a)) U^T x
 //
-// The error of each a is rounding of the largest. (Golub and Van Loan, Matrix Computations, 2013,
+// The error of each a is the rounding error of the largest. (Golub and Van Loan, Matrix Computations, 2013,
 // section 8.5; for small singular values to their own last bits see row_svd.hpp.)
 #pragma once
 
@@ -24,11 +23,11 @@ namespace fovea::model {
 
 class SymmetricAxes {
  public:
-  static constexpr int kMaxSweeps =
-      12;  // four to six is what a matrix of six rows takes, eight to nine at most
+  static constexpr int kMaxSweeps = 12;  // a matrix of six rows takes four to six, eight to nine at most
 
-  // The rotations of `A` [kSize x kSize], of which the part right of the diagonal counts; the diagonal
-  // becomes a, in no order. kSize is even, 8 at most. Not finite in, not finite out. Real-time: yes.
+  // Diagonalises `A` [kSize x kSize], of which only the diagonal and the part right of it are read. The
+  // diagonal becomes a, unsorted. kSize is even, 8 at most. Non-finite input gives non-finite output.
+  // Real-time: yes.
   template <std::size_t kSize>
   void Diagonalise(model::Square8& A) noexcept {
     double trace = 0.0;
@@ -79,11 +78,11 @@ class SymmetricAxes {
     std::size_t i, j;  // i < j
   };
 
-  static constexpr double kRounding = 1e-15;  // of the trace: what is less beside the diagonal is nothing
+  static constexpr double kRounding = 1e-15;  // of the trace: a smaller off-diagonal part counts as zero
   static constexpr std::size_t kMaxTurns = 28;
   using Turns = std::array<Turn, kMaxTurns>;  // of a sweep
 
-  // The last one stays, the others go round it.
+  // The tournament: the last player stays, the others go round.
   template <std::size_t kSize>
   static constexpr auto Tournament() noexcept {
     static_assert(kSize % 2 == 0 && kSize <= 8);
@@ -114,8 +113,8 @@ class SymmetricAxes {
     return sum;
   }
 
-  // Twice the angle that makes ij nothing has the tangent 2 ij / (jj - ii). The tangent of its half, p / q,
-  // is found instead, and gives sine and cosine without a root.
+  // Twice the angle that makes ij zero has the tangent 2 ij / (jj - ii). Computes the tangent of half the
+  // angle, p / q, instead, which gives sine and cosine without a root.
   static Turn Angle(double ii, double jj, double ij) noexcept {
     const double h = 0.5 * std::fabs(jj - ii);
     const double blunt = 0.6532 * h + 0.6036 * std::fabs(ij);  // exact where the angle is 22.5 or 45 degrees
@@ -149,7 +148,7 @@ class SymmetricAxes {
     return i < j ? A[i][j] : A[j][i];
   }
 
-  // What stands where two pairs of one round cross.
+  // Rotates the entries where two pairs of one round cross.
   template <std::size_t kSize, std::size_t kTurn, std::size_t kOther>
   static void TurnCrossing(model::Square8& A, const Turns& turns) noexcept {
     if constexpr (kTurn < kOther) {

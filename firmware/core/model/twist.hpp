@@ -1,4 +1,4 @@
-// Twists [v; w] of one rigid body, seen from its different frames (THEORY B4).
+// Twists [v; w] of one rigid body in its different frames (THEORY B4).
 #pragma once
 
 #include <array>
@@ -12,8 +12,9 @@ namespace fovea::model {
 [[nodiscard]] Vec6 ShiftTwist(const Pose& X_AB, const Vec6& V_B) noexcept;
 
 // The end effector's twist in axes of B, from the camera's `V_BC_C` [m/s, rad/s]. `x_BE`: position [m] and
-// quaternion (w, x, y, z) of the end effector, 7 numbers; `X_EC`: the camera in the hand, lever arm and all.
-// False, with `V_BE_B` untouched, when the quaternion is none or an argument not finite. Real-time: yes.
+// quaternion (w, x, y, z) of the end effector, 7 numbers; `X_EC`: pose of the camera in the hand, lever arm
+// included. False, with `V_BE_B` unchanged, if the quaternion is invalid or an argument is not finite.
+// Real-time: yes.
 [[nodiscard]] bool CameraToBaseTwist(const std::array<double, 7>& x_BE, const Pose& X_EC, const Vec6& V_BC_C,
                                      Vec6& V_BE_B) noexcept;
 

@@ -14,12 +14,12 @@ using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat3 = Eigen::Matrix<double, 3, 3>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-// One entry per joint: the size is set at run time, the storage is not.
+// One entry per joint: the size is set at run time, the storage is fixed.
 using VecN = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxJoints, 1>;
 using MatN = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxJoints, kMaxJoints>;
 using Mat6N = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, kMaxJoints>;
 
-// a x b, and the matrix [a]x of that product. (Eigen's own comes with all of its geometry module.)
+// a x b, and the matrix [a]x of that product. (Eigen's own needs its whole geometry module.)
 inline Vec3 Cross(const Vec3& a, const Vec3& b) noexcept {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
 }

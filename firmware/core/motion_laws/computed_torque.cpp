@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
-// Adds one tick's error, unless that would push further into a bound.
+// Adds one tick's error, unless the clamp cut the torque in that direction.
 void Integrate(const config::MotionLawConfig& config, const MotionLawInputs& inputs, double k_i,
                const model::VecN& e, MotionLawState& state) noexcept {
   for (int i = 0; i < e.size(); ++i) {

@@ -12,7 +12,7 @@ model::VecN FrictionTorque(const model::ArmModel& arm, const config::MotionLawCo
   const double slow2 = config.friction_slow * config.friction_slow;
   for (int i = 0; i < dq.size(); ++i) {
     const model::Joint& joint = arm.joints[static_cast<std::size_t>(i)];
-    const double measured = dq[i] * dq[i] / (dq[i] * dq[i] + slow2);  // how far its sign counts
+    const double measured = dq[i] * dq[i] / (dq[i] * dq[i] + slow2);  // weight of the measured speed
     const double v = reference.dq[i] + measured * (dq[i] - reference.dq[i]);
     tau[i] = config.friction_compensation *
              (joint.viscous * dq[i] + joint.coulomb * SmoothSign(v, config.friction_width));

@@ -1,4 +1,4 @@
-// The laws that lay a spring and a damper on each joint.
+// The laws with a spring and a damper on each joint, and Float.
 #include <cmath>
 
 #include "firmware/core/motion_laws/friction.hpp"

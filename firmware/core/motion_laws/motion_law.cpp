@@ -25,7 +25,7 @@ void TorqueOf(config::MotionLawKind kind, const config::MotionLawConfig& config,
   EntryOf(kind).torque(config, inputs, state, tau);
 }
 
-// What is left of the step of the last change of laws.
+// The remaining share of the step of the last change of laws.
 double Fade(const config::MotionLawConfig& config, const MotionLawState& state) noexcept {
   return 1.0 - trajectory::SmoothStep(state.since_change_s / config.change_s);
 }
@@ -79,7 +79,7 @@ void ChangeMotionLaw(const config::MotionLawConfig& config, const MotionLawInput
   model::VecN after;
   TorqueOf(state.kind, config, inputs, state, before);
   before += Fade(config, state) * state.step;
-  state.integral.setZero();  // what it held is in the step now
+  state.integral.setZero();  // its torque is in the step now
   TorqueOf(kind, config, inputs, state, after);
   state.kind = kind;
   state.step = before - after;

@@ -1,8 +1,8 @@
-// Stage 4, motion law: from the joints' reference to their torques. Several laws, chosen by servo.motion_law
-// and changed while the arm moves; each is a file in this folder and a line in kMotionLaws (motion_laws.hpp).
+// Stage 4, motion law: computes the joints' torques from their reference. servo.motion_law chooses one of
+// several laws; it can change while the arm moves. Each is a function and a line in motion_laws.hpp.
 //
-// Gravity and motor friction are the arm's own affair at the seam. What friction it leaves to the servo, and
-// springs, are the laws' affair, as far as the configuration says.
+// Behind the seam the arm itself compensates gravity and motor friction. The laws compensate springs, and the
+// friction that the arm leaves to the servo, as configured.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace fovea::motion_laws {
 
-// What a law looks at.
+// The inputs of a law.
 struct MotionLawInputs {
   const model::ArmModel& arm;
   const model::ArmPoses& poses;        // at q
@@ -25,8 +25,8 @@ struct MotionLawInputs {
 
 struct MotionLawState {
   model::VecN integral;  // [num_joints] of the error over time [rad s]
-  model::VecN cut;       // [num_joints] what the clamp took from the last torque; the integral waits for it
-  // A change of laws: the torque's step, which fades away.
+  model::VecN cut;  // [num_joints] what the clamp cut from the last torque; the integral does not grow there
+  // A change of laws: the torque's step, which fades out.
   config::MotionLawKind kind = config::MotionLawKind::kComputedTorque;
   model::VecN step;
   double since_change_s = 0.0;
@@ -34,7 +34,7 @@ struct MotionLawState {
   void Reset(config::MotionLawKind law, int num_joints) noexcept;
 };
 
-// Why the law `kind` may not drive an arm with the gains of a configuration.
+// Why a law may not drive an arm with the configured gains.
 enum class Unfit : std::uint8_t { kNone, kTooFewJoints, kDampedTooFast };
 
 struct Fitness {
@@ -43,17 +43,17 @@ struct Fitness {
   double damping = 0.0;  // its damping over its inertia at the ready posture [1/s]
 };
 
-// Not for the tick: it makes the arm's dynamics.
+// Not for the tick: it computes the arm's dynamics.
 [[nodiscard]] Fitness FitnessOf(const config::MotionLawConfig& config, const model::ArmModel& arm,
                                 config::MotionLawKind kind) noexcept;
 
-// Torques at the seam `tau` [num_joints] by the law that `state` names, and its step if there was a change.
-// Real-time: yes.
+// Computes the torques at the seam, `tau` [num_joints], by the law that `state` names, plus its step after a
+// change. Real-time: yes.
 void MotionLaw(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
                model::VecN& tau) noexcept;
 
-// From now on the law `kind`; the torque goes from one to the other within config.change_s without a step,
-// whatever each of them asks. `inputs` as in the last call. Real-time: yes.
+// Changes to the law `kind`. The torque moves from one law's to the other's within config.change_s, without a
+// step. `inputs` as in the last call. Real-time: yes.
 void ChangeMotionLaw(const config::MotionLawConfig& config, const MotionLawInputs& inputs,
                      config::MotionLawKind kind, MotionLawState& state) noexcept;
 

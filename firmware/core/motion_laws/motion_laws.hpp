@@ -24,14 +24,14 @@ void ComputedTorque(const config::MotionLawConfig& config, const MotionLawInputs
 void PdLaw(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
            model::VecN& tau) noexcept;
 
-// A spring and a damper between each joint and its reference, the arm's own dynamics along the reference made
-// up for: tau = M ddq_ref + C dq + k_p e + k_v e' + friction + springs. Without k_v the damper follows the
-// inertia, 2 zeta sqrt(k_p M_ii). Soft where pushed (Hogan, Impedance control, 1985).
+// A spring and a damper between each joint and its reference; the arm's dynamics along the reference are
+// compensated: tau = M ddq_ref + C dq + k_p e + k_v e' + friction + springs. Without k_v the damper follows
+// the inertia, 2 zeta sqrt(k_p M_ii). It yields when pushed (Hogan, Impedance control, 1985).
 void JointImpedance(const config::MotionLawConfig& config, const MotionLawInputs& inputs,
                     MotionLawState& state, model::VecN& tau) noexcept;
 
-// The end effector's error by its own inertia, the posture in what is left (Khatib, A unified approach for
-// motion and force control: the operational space formulation, 1987):
+// Controls the end effector's error with its own inertia, and the posture in the null space (Khatib, A
+// unified approach for motion and force control: the operational space formulation, 1987):
 //
 //   tau = J^T Lambda (a_ref + k_v' (V_ref - V) + k_p' e_x - dJ/dt dq) + C dq
 //         + N^T M (ddq_ref + k_v' e' + k_p' e) + friction + springs
@@ -45,16 +45,16 @@ void OperationalSpace(const config::MotionLawConfig& config, const MotionLawInpu
 void Float(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
            model::VecN& tau) noexcept;
 
-// What a joint's error obeys where nothing else is at work; a run against theory is judged by it.
+// The error dynamics of an undisturbed joint; a run against theory is judged by them.
 enum class ErrorDynamics : std::uint8_t {
   kPlant,    // the joint's own inertia, friction and spring
-  kSprings,  // those, and k_p and k_v
-  kUnit,     // those are made up for: e'' + 2 zeta omega_n e' + omega_n^2 e = 0, and the integral's share
+  kSprings,  // the same, plus k_p and k_v
+  kUnit,     // those are compensated: e'' + 2 zeta omega_n e' + omega_n^2 e = 0, and the integral's share
 };
 
-// A joint's damping, k_v over its inertia, that a loop of 1 kHz with a period of delay bears is 1000 1/s (z =
-// -1); these laws are allowed less than half. Springs know nothing of how the joints' inertias couple: at
-// some postures a direction is ten times as light as a joint by itself. [1/s]
+// The largest damping, k_v over a joint's inertia [1/s]. A 1 kHz loop with one period of delay is stable up
+// to 1000 1/s (z = -1); these laws may use less than half. Springs ignore the coupling of the joints'
+// inertias: at some postures a direction is ten times as light as a joint by itself.
 inline constexpr double kDampingMost = 400.0;
 inline constexpr double kSpringDampingMost = 75.0;
 
@@ -63,10 +63,10 @@ struct MotionLawEntry {
   void (*torque)(const config::MotionLawConfig&, const MotionLawInputs&, MotionLawState&,
                  model::VecN&) noexcept;
   int joints_min;  // arms with fewer joints cannot be driven by it
-  bool carries;    // a load that nobody told it of, where the arm stands; else it gives way as its springs do
+  bool carries;    // an unknown load is compensated while the arm stands; false: the law yields as a spring
   ErrorDynamics error = ErrorDynamics::kUnit;
   double damping_most = kDampingMost;
-  bool has_springs = false;  // by k_p and k_v, one per joint; else all joints by omega_n and zeta
+  bool has_springs = false;  // gains k_p and k_v per joint; false: omega_n and zeta for all joints
 };
 
 // In the order of MotionLawKind.

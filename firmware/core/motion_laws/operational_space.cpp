@@ -24,7 +24,7 @@ void OperationalSpace(const config::MotionLawConfig& config, const MotionLawInpu
   model::ComputeBaseJacobian(inputs.arm, goal, J_goal);
   model::ComputeBaseJacobian(inputs.arm, inputs.poses, J);
 
-  // The acceleration that takes the end effector's error away.
+  // The acceleration that corrects the end effector's error.
   Vec6 e_x;
   e_x << goal.X_BE.p - inputs.poses.X_BE.p,
       model::RotationVector(goal.X_BE.R.lazyProduct(inputs.poses.X_BE.R.transpose()));
@@ -44,7 +44,7 @@ void OperationalSpace(const config::MotionLawConfig& config, const MotionLawInpu
   A.diagonal().array() += config.operational_damping * config.operational_damping * A.trace() / 6.0;
   model::FactorCholesky(A);
 
-  // The posture's acceleration; what of it would move the end effector is taken out.
+  // The posture's acceleration, without the part that would move the end effector.
   const VecN posture = reference.ddq + k_v * (reference.dq - inputs.dq) + k_p * (reference.q - inputs.q);
   Vec6 F = a - J.lazyProduct(posture);
   model::SolveCholesky(A, F);

@@ -11,7 +11,7 @@ namespace fovea::moves {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kLateS = 1.0;  // the end effector is there so soon after its plan, or a limit keeps it away
+constexpr double kLateS = 1.0;            // after this time beyond its plan, a limit blocks the end effector
 constexpr double kRounding = 1.0 + 1e-9;  // a plan that uses all of a limit may round above it
 
 bool Exceeds(double value, double limit) noexcept { return !(std::fabs(value) <= limit * kRounding); }
@@ -40,7 +40,7 @@ model::ArmPoses PosesOf(const config::ServoConfig& config, const model::VecN& q)
   return poses;
 }
 
-// The reference slows down as fast as it may on its course.
+// Slows the reference down on its course as fast as allowed.
 hal::LimitSet Brake(const config::ServoConfig& config, trajectory::Reference& reference) noexcept {
   const model::ArmPoses poses = PosesOf(config, reference.q);
   model::LinearJacobian J_E_B;
@@ -83,9 +83,9 @@ hal::LimitSet TakeSetpoint(const config::ServoConfig& config, const MotionComman
   return TakeReference(config, next, state, reference);
 }
 
-// How much of the joints' `limits` a move to `q_goal` may use so that the hand keeps its own: all joints
-// arriving together, it goes nearly straight in the joints' space. Of the hand's speeds some is left for a
-// stop on the way, in which it may get faster.
+// The share of the joints' `limits` that a move to `q_goal` may use so that the hand keeps its own limits.
+// All joints arrive together, so that the path is nearly straight in joint space. Some of the hand's speed is
+// left for a stop on the way, in which it may rise.
 double ShareOfSpeed(const config::ServoConfig& config, const model::VecN& q, const model::VecN& q_goal,
                     const trajectory::JointMove::Limits& limits) noexcept {
   constexpr int kSamples = 12;
@@ -143,7 +143,7 @@ bool SameGoal(const MotionCommand& a, const MotionCommand& b) noexcept {
   return a.kind == b.kind && a.q == b.q && a.p_BE == b.p_BE && a.quaternion_BE == b.quaternion_BE;
 }
 
-// Plans for a goal that is not the one under way. False when it is none.
+// Plans for a goal unless it is already under way. False if it is invalid.
 bool TakeGoal(const config::ServoConfig& config, const MotionCommand& command, std::int64_t now_ns,
               const trajectory::Reference& reference, MotionState& state) noexcept {
   if (SameGoal(command, state.goal)) {

@@ -1,9 +1,9 @@
-// Stage 3 in mode Move: the reference follows what was commanded, as far as it may.
+// Stage 3 in mode Move: the reference follows the commanded motion within all limits.
 //
 // Joint goals are planned online, jerk-limited and synchronised (joint_move.hpp), and so are the six
 // coordinates of a pose goal (synchronised_move.hpp). Joint setpoints, planned or streamed, become the
-// reference as they are, if they keep every limit and the arm could still stop inside all of them. Poses are
-// brought to joint velocities first and go through the guard like the visual law's.
+// reference unchanged if they keep every limit and the arm can still stop inside all of them. Poses are
+// converted to joint velocities first, and pass the guard like the visual law's.
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"
@@ -17,30 +17,29 @@
 namespace fovea::moves {
 
 struct MotionState {
-  MotionCommand goal;  // the one under way, kNone when there is none
-  MotionCommand done;  // the last one that came to its end, while it is asked for on; else kNone
+  MotionCommand goal;  // the one under way; kNone if there is none
+  MotionCommand done;  // the last one reached, while it is still commanded; else kNone
   std::int64_t start_ns = 0;
   trajectory::JointMove joints;
-  model::Pose X_BE;                   // a pose goal's
+  model::Pose X_BE;                   // of a pose goal
   trajectory::SynchronisedMove pose;  // position less goal, and the turn from the goal, both in axes of B
-  control::ResolvedMotion resolved;   // what the last pose asked of the joints; its dq empty: none did
+  control::ResolvedMotion resolved;   // joint motion of the last pose; empty dq: there was none
   bool refused = false;               // in the last tick
-  model::VecN off;                    // reference less arm, as a mean [rad, m]; 0 where none is followed
+  model::VecN off;                    // mean of reference less arm [rad, m]; 0 without a motion
 
-  // Whether a motion goes on after this tick without another command.
+  // True if a motion continues after this tick without another command.
   [[nodiscard]] bool IsUnderWay() const noexcept { return goal.kind != MotionKind::kNone; }
-  // Whether what is asked for was reached: it is not begun again.
+  // True if the commanded goal was reached; it does not start again.
   [[nodiscard]] bool HasArrived() const noexcept { return done.kind != MotionKind::kNone; }
   void Stop() noexcept { goal.kind = MotionKind::kNone; }
 };
 
-// Before the modes: where `asked` is not the goal that was reached, and has been asked for ever since,
-// `state.done` is forgotten. Real-time: yes.
+// Call before the modes. Clears `state.done` if `asked` is not the goal that was reached. Real-time: yes.
 void NoteAsked(const config::ServoConfig& config, const MotionCommand& asked, MotionState& state) noexcept;
 
-// One tick of a commanded motion: moves `reference` on. Returns the limits that acted or forbade it; where
-// they, or a command that is none, forbid it, `state.refused` is set and the reference brakes.
-// Real-time: yes; a new goal takes some 10 us.
+// One tick of a commanded motion: advances `reference`. Returns the limits that acted or forbade it. If they
+// or an invalid command forbid it, sets `state.refused` and brakes. Real-time: yes; a new goal takes some 10
+// us.
 hal::LimitSet FollowMotion(const config::ServoConfig& config, const MotionCommand& asked, std::int64_t now_ns,
                            MotionState& state, trajectory::Reference& reference) noexcept;
 

@@ -1,4 +1,4 @@
-// A motion that a program asks for, instead of the target that the camera sees.
+// A motion that a program commands, instead of following the target that the camera sees.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@ namespace fovea::moves {
 
 enum class MotionKind : std::uint8_t {
   kNone,           // nothing is commanded in this tick; a stream that gives none has ended
-  kJointSetpoint,  // where the joints shall be now, one of a stream: q, dq, ddq
-  kPoseSetpoint,   // where the end effector shall be now, one of a stream: p_BE, R_BE, V_BE_B
-  kJointGoal,      // where the joints shall come to rest: q
-  kPoseGoal,       // where the end effector shall come to rest: p_BE, R_BE
-  kHome,           // the joints shall come to rest in the arm's ready posture
+  kJointSetpoint,  // the joints' state now, one of a stream: q, dq, ddq
+  kPoseSetpoint,   // the end effector's state now, one of a stream: p_BE, R_BE, V_BE_B
+  kJointGoal,      // the joints come to rest there: q
+  kPoseGoal,       // the end effector comes to rest there: p_BE, R_BE
+  kHome,           // the joints come to rest in the arm's ready posture
 };
 
-// A goal is asked for in one tick or in many; the motion to it goes on until it is there. Another goal takes
-// effect in the tick that asks for it.
+// A goal may be commanded in one tick or in many; the motion continues until it is reached. Another goal
+// takes effect in the tick that commands it.
 struct MotionCommand {
   MotionKind kind = MotionKind::kNone;
   hal::JointArray q{};                                      // [num_joints]
@@ -29,12 +29,12 @@ struct MotionCommand {
   std::array<double, 6> V_BE_B{};  // twist of E in axes of B, linear first [m/s, rad/s]
 };
 
-// Where the loop takes its commands from, once per tick.
+// The loop reads its commands here, once per tick.
 class MotionSource {
  public:
   MotionSource(const MotionSource&) = delete;
   MotionSource& operator=(const MotionSource&) = delete;
-  // What is asked for at `now_ns`, the stamp of the newest arm state. Real-time: yes.
+  // The command at `now_ns`, the stamp of the newest arm state. Real-time: yes.
   virtual MotionCommand At(std::int64_t now_ns) noexcept = 0;
 
  protected:

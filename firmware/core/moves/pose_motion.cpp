@@ -15,12 +15,12 @@ using model::Vec3;
 using model::Vec6;
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kLength = 0.3;   // that a metre counts as much as a radian for [m]
-constexpr double kThereM = 1e-5;  // so near the goal is there
+constexpr double kLength = 0.3;   // this distance counts as much as one radian [m]
+constexpr double kThereM = 1e-5;  // a goal this near is reached
 constexpr double kThereRad = 1e-4;
-constexpr double kAtRest = 1e-3;  // and no joint is faster [rad/s]
+constexpr double kAtRest = 1e-3;  // if no joint is faster [rad/s]
 
-// From `X` to `X_goal`: the way, and the turn, in axes of B.
+// Displacement and turn from `X` to `X_goal`, in axes of B.
 Vec6 Difference(const model::Pose& X_goal, const model::Pose& X) noexcept {
   Vec6 difference;
   difference << X_goal.p - X.p, model::RotationVector(X_goal.R.lazyProduct(X.R.transpose()));
@@ -52,8 +52,8 @@ bool PlanPose(const config::ServoConfig& config, const model::Pose& X_BE,
   const Vec3 phi = model::RotationVector(poses.X_BE.R.lazyProduct(X_BE.R.transpose()));
   const Mat3 rate = model::TurnRateInverse(phi);
   const Vec3 dphi = rate.lazyProduct(V.tail<3>());
-  // The change of the rate matrix itself is left out: it matters only to a goal that is changed in full turn,
-  // and the guard bounds what jerk it makes.
+  // Leaves out the change of the rate matrix. It matters only if the goal changes during a fast turn, and the
+  // guard bounds the resulting jerk.
   const Vec3 ddphi = rate.lazyProduct(A.tail<3>());
   const config::MoveConfig& limits = config.move;
   std::array<trajectory::AxisTask, 6> tasks;
@@ -94,7 +94,7 @@ hal::LimitSet FollowPose(const config::ServoConfig& config, const PoseSetpoint& 
     return guard::GuardMotion(config, guard::MotionWish::Velocity(model::VecN::Zero(config.arm.num_joints)),
                               poses.X_BE.p, J_E_B, poses, reference);
   }
-  // Where the reference is one tick late by itself, the feedback has nothing to take away.
+  // The reference is one tick late by design; the feedback must not correct that.
   Vec6 V = setpoint.V_BE_B + config.move.pose_gain * (e - kPeriodS * setpoint.V_BE_B);
   model::Mat6N J_E;
   model::ComputeJacobian(config.arm, poses, model::Pose{}, J_E);

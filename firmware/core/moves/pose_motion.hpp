@@ -10,18 +10,18 @@
 
 namespace fovea::moves {
 
-// Where the end effector shall be, and how it shall move, in this tick.
+// The end effector's commanded pose and twist in this tick.
 struct PoseSetpoint {
   model::Pose X_BE;
   model::Vec6 V_BE_B = model::Vec6::Zero();  // [v; w] in axes of B
-  bool is_end = false;                       // the joints shall come to rest too
+  bool is_end = false;                       // the joints come to rest too
 };
 
-// False when the command's numbers are no pose. Real-time: yes.
+// False if the command's numbers are not a pose. Real-time: yes.
 [[nodiscard]] bool ToSetpoint(const MotionCommand& command, PoseSetpoint& setpoint) noexcept;
 
-// Plans from where `reference` has the end effector, with its velocity and acceleration, to rest at `X_BE`:
-// six coordinates that end at zero, position less goal and the turn from the goal. Real-time: yes.
+// Plans from the end effector's pose, velocity and acceleration at `reference` to rest at `X_BE`, in six
+// coordinates that end at zero: position less goal, and the turn from the goal. Real-time: yes.
 [[nodiscard]] bool PlanPose(const config::ServoConfig& config, const model::Pose& X_BE,
                             const trajectory::Reference& reference,
                             trajectory::SynchronisedMove& move) noexcept;
@@ -30,13 +30,13 @@ struct PoseSetpoint {
 [[nodiscard]] PoseSetpoint PoseAt(const model::Pose& X_BE, const trajectory::SynchronisedMove& move,
                                   double t) noexcept;
 
-// Moves the joints' reference on by a tick towards `setpoint`, through the guard. `refused` is set when the
-// end effector is further from it than servo.pose_error_max: a limit forbids the way. `motion` is that
-// of the tick before, its dq empty in the first, and becomes this one's. Real-time: yes.
+// Advances the joints' reference by a tick towards `setpoint`, through the guard. Sets `refused` if the end
+// effector is further from it than servo.pose_error_max: a limit blocks the path. `motion`: that of the
+// previous tick, with empty dq in the first; becomes that of this tick. Real-time: yes.
 hal::LimitSet FollowPose(const config::ServoConfig& config, const PoseSetpoint& setpoint, bool& refused,
                          control::ResolvedMotion& motion, trajectory::Reference& reference) noexcept;
 
-// Whether the reference stands at `X_BE`. Real-time: yes.
+// True if the reference stands at `X_BE`. Real-time: yes.
 [[nodiscard]] bool StandsAt(const config::ServoConfig& config, const model::Pose& X_BE,
                             const trajectory::Reference& reference) noexcept;
 

@@ -7,7 +7,7 @@
 namespace fovea::task {
 namespace {
 
-// The first joint that is pushed with more than it may be; -1: none.
+// The first joint whose external torque exceeds its limit; -1: none.
 std::int32_t PushedJoint(const config::ServoConfig& config, const model::VecN& residual) noexcept {
   for (int i = 0; i < residual.size(); ++i) {
     const double most =

@@ -1,4 +1,4 @@
-// Stage 2, contact: what pushes the arm, and whether each encoder still says where its joint is.
+// Stage contact: estimates external torques, and checks that each encoder still follows its joint.
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"
@@ -8,12 +8,12 @@
 namespace fovea::task {
 
 struct ContactScene {
-  bool sound = true;   // the arm's state is new, and was believed
+  bool sound = true;   // the arm's state is new and was accepted
   bool drives = true;  // the servo drives the arm
 };
 
 // Observes with the state of this tick. A joint whose encoder hangs, or that is pushed too hard, becomes the
-// fault in `check`, unless there is one; `state.blind` says whether an encoder hangs. Real-time: yes.
+// fault in `check`, unless there is one. Sets `state.blind` if an encoder hangs. Real-time: yes.
 void CheckContact(const config::ServoConfig& config, const ContactScene& scene, ServoState& state,
                   InputCheck& check) noexcept;
 

@@ -7,14 +7,14 @@ namespace fovea::task {
 namespace {
 
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kJump = 0.02;  // a position may be off by so much, beside what speed there is for [rad, m]
-constexpr double kVelocityJump = 0.02;  // and a velocity, beside what torque there is for [rad/s, m/s]
-constexpr double kTorqueAtMost = 2.0;   // times what an arm may accelerate by: what pulls at it adds to it
-constexpr int kBadTicksMost = 1'000'000'000;  // counted no further
+constexpr double kJump = 0.02;          // allowed change of a position beyond the speed limit's [rad, m]
+constexpr double kVelocityJump = 0.02;  // and of a velocity beyond the torque's [rad/s, m/s]
+constexpr double kTorqueAtMost = 2.0;   // times the acceleration limit: external torques add to it
+constexpr int kBadTicksMost = 1'000'000'000;  // the counter stops here
 
-// A measured velocity that differs from the last one by more than anything that moves an arm can do in
-// `elapsed_s` counts only as far as motors can in a tick. So it differs when an encoder begins to hang, or is
-// all noise. Returns the first such joint, or -1.
+// If a measured velocity differs from the last one by more than any torque can cause in `elapsed_s`, only the
+// change that the motors can make in a tick counts. This happens when an encoder begins to hang, or gives
+// only noise. Returns the first such joint, or -1.
 std::int32_t BridgeVelocityJumps(const model::ArmModel& arm, double elapsed_s,
                                  const hal::JointArray& dq_before, hal::JointArray& dq) noexcept {
   std::int32_t jumps = -1;
@@ -45,7 +45,7 @@ std::int32_t CopyFinite(const hal::JointArray& from, int num_joints, hal::JointA
   return bad;
 }
 
-// Takes in what the arm answered.
+// Checks the arm's answer alone.
 InputCheck TakeIn(const config::ServoConfig& config, const hal::Status& arm_status, const hal::ArmState& arm,
                   std::int32_t missed_ticks, double velocity_share, InputState& state) noexcept {
   const config::SafetyConfig& safety = config.safety;
@@ -54,7 +54,7 @@ InputCheck TakeIn(const config::ServoConfig& config, const hal::Status& arm_stat
   const bool fresh = answered && (!state.has_state || arm.stamp_ns > state.stamp_ns);
   if (!fresh) {
     state.sound_ticks = 0;
-    // What passed without a tick was silence too.
+    // Missed ticks count as silence too.
     const int passed = static_cast<int>(std::clamp<std::int32_t>(missed_ticks, 0, kBadTicksMost));
     state.bad_ticks = std::min(state.bad_ticks + 1 + passed, kBadTicksMost);
     if (state.bad_ticks >= safety.arm_lost_ticks) {
@@ -67,7 +67,7 @@ InputCheck TakeIn(const config::ServoConfig& config, const hal::Status& arm_stat
   const bool is_first = !state.has_state;
   const hal::JointArray q_before = state.q;
   const hal::JointArray dq_before = state.dq;
-  // Ticks without a state and ticks that the computer swallowed are one silence, where one follows the other.
+  // Ticks without a state and ticks that the computer missed count as one silence if one follows the other.
   const bool was_lost =
       state.bad_ticks > 0 && std::int64_t{state.bad_ticks} + missed_ticks >= safety.arm_lost_ticks;
   state.has_state = true;
@@ -107,7 +107,7 @@ InputCheck TakeIn(const config::ServoConfig& config, const hal::Status& arm_stat
     }
   }
   const hal::JointArray dq = state.dq;
-  // What was not believed may have been true in part.
+  // A rejected change may have been partly true.
   const double since_s = elapsed_s * (1.0 + 0.25 * state.jumps);
   const std::int32_t joint = is_first ? -1 : BridgeVelocityJumps(config.arm, since_s, dq_before, state.dq);
   state.jumped = joint >= 0;
@@ -119,7 +119,7 @@ InputCheck TakeIn(const config::ServoConfig& config, const hal::Status& arm_stat
       const bool stays = std::fabs(state.q[k] - q_before[k]) < 0.5 * std::fabs(dq_before[k]) * elapsed_s;
       state.jumps = 0;
       state.jumped = false;
-      state.dq = dq;  // from now on this is how fast it is
+      state.dq = dq;  // from now on this velocity counts
       return {stays ? hal::Fault::kArmStale : hal::Fault::kJointVelocity, joint};
     }
     return {};
@@ -134,7 +134,7 @@ InputCheck CheckInputs(const config::ServoConfig& config, const hal::Status& arm
                        const hal::ArmState& arm, std::int32_t missed_ticks, double velocity_share,
                        InputState& state) noexcept {
   const InputCheck check = TakeIn(config, arm_status, arm, missed_ticks, velocity_share, state);
-  // An arm that says nothing is late by itself; that the loop is shows in its next state.
+  // If the arm is silent, the lateness is the arm's. A late loop shows in the arm's next state.
   if (state.bad_ticks == 0 && missed_ticks >= config.safety.missed_ticks) {
     return {hal::Fault::kDeadlineMissed, -1};
   }

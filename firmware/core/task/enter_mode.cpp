@@ -3,7 +3,7 @@
 namespace fovea::task {
 namespace {
 
-// Track from Hold is a new try; Track from Coast goes on with the old one.
+// Track from Hold is a new try; Track from Coast continues the old one.
 void BeginToTrack(ServoState& state) noexcept {
   state.track_since_ns = state.now_ns;
   state.reach.blocked_ns = 0;

@@ -1,4 +1,4 @@
-// What begins anew when the mode changes.
+// Resets the state that starts anew with each mode.
 #pragma once
 
 #include "firmware/core/task/servo_state.hpp"
@@ -7,15 +7,14 @@ namespace fovea::task {
 
 struct ModeChange {
   int num_joints = 0;
-  bool carries_loads = false;  // the motion law in force is one that carries what hangs on the arm
+  bool carries_loads = false;  // the active motion law compensates unknown loads
   hal::Mode before = hal::Mode::kBoot;
 };
 
-// From `change.before` to the mode that `state` has now. Real-time: yes.
+// Changes from `change.before` to the mode that `state` has now. Real-time: yes.
 void EnterMode(const ModeChange& change, ServoState& state) noexcept;
 
-// What the last resolution knew of the posture holds no longer once something else has moved the arm.
-// Real-time: yes.
+// Clears the last resolution, which is no longer valid once something else has moved the arm. Real-time: yes.
 void ForgetMotion(ServoState& state) noexcept;
 
 }  // namespace fovea::task

@@ -17,40 +17,40 @@ constexpr ModeEdge From(Mode from, const char* words, bool (*when)(const F&), Mo
   return {false, from, words, when, to, reason};
 }
 
-// Why a motion ended is said until something else is asked for.
+// The reason for the last motion's end stays reported until the next request.
 constexpr bool IsSaidOn(HoldReason reason) {
   return reason == HoldReason::kMotionDone || reason == HoldReason::kMotionRefused ||
          reason == HoldReason::kNotFollowed || reason == HoldReason::kEyeDoubted;
 }
 
-// The first that fits is taken.
+// The first transition that fits is taken.
 // clang-format off
 constexpr std::array kEdges{
     FromAny(            "a fault is found",                   [](const F& f) { return f.fault; },            Mode::kFault),
-    From(Mode::kFault,  "reset is asked for",                 [](const F& f) { return f.request == Request::kReset; }, Mode::kBoot),
-    From(Mode::kBoot,   "the arm is sound and at rest, track is asked for", [](const F& f) { return f.ready && f.asked; }, Mode::kHold, HoldReason::kNoTarget),
+    From(Mode::kFault,  "reset is requested",                 [](const F& f) { return f.request == Request::kReset; }, Mode::kBoot),
+    From(Mode::kBoot,   "the arm is sound and at rest, track is requested", [](const F& f) { return f.ready && f.asked; }, Mode::kHold, HoldReason::kNoTarget),
     From(Mode::kBoot,   "the arm is sound and at rest",       [](const F& f) { return f.ready; },            Mode::kHold, HoldReason::kNotAsked),
 
     From(Mode::kHold,   "goal unreachable, the target has not moved", [](const F& f) { return f.asked && f.hold_reason == HoldReason::kGoalUnreachable && !f.moved; }, Mode::kHold, HoldReason::kGoalUnreachable),
-    From(Mode::kHold,   "track is asked for, the target seen", [](const F& f) { return f.asked && f.fresh; }, Mode::kTrack),
+    From(Mode::kHold,   "track is requested, the target seen", [](const F& f) { return f.asked && f.fresh; }, Mode::kTrack),
     From(Mode::kHold,   "a motion is commanded",              [](const F& f) { return !f.asked && f.motion; }, Mode::kMove),
-    From(Mode::kHold,   "track is asked for, after a motion or none", [](const F& f) { return f.asked && f.hold_reason != HoldReason::kTargetLost; }, Mode::kHold, HoldReason::kNoTarget),
-    From(Mode::kHold,   "nothing is asked for",               [](const F& f) { return !f.asked && !IsSaidOn(f.hold_reason); }, Mode::kHold, HoldReason::kNotAsked),
-    From(Mode::kHold,   "hold is asked for",                  [](const F& f) { return f.request == Request::kHold; }, Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kHold,   "track is requested, after a motion or none", [](const F& f) { return f.asked && f.hold_reason != HoldReason::kTargetLost; }, Mode::kHold, HoldReason::kNoTarget),
+    From(Mode::kHold,   "nothing is requested",               [](const F& f) { return !f.asked && !IsSaidOn(f.hold_reason); }, Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kHold,   "hold is requested",                  [](const F& f) { return f.request == Request::kHold; }, Mode::kHold, HoldReason::kNotAsked),
 
-    From(Mode::kTrack,  "track is asked for no more",         [](const F& f) { return !f.asked; },           Mode::kHold, HoldReason::kNotAsked),
-    From(Mode::kTrack,  "what is seen is nothing to steer by", [](const F& f) { return f.doubted; },         Mode::kHold, HoldReason::kEyeDoubted),
+    From(Mode::kTrack,  "track is no longer requested",       [](const F& f) { return !f.asked; },           Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kTrack,  "the eye cannot steer the arm",       [](const F& f) { return f.doubted; },          Mode::kHold, HoldReason::kEyeDoubted),
     From(Mode::kTrack,  "limits keep the arm from the goal",  [](const F& f) { return f.unreachable; },      Mode::kHold, HoldReason::kGoalUnreachable),
     From(Mode::kTrack,  "the target is lost",                 [](const F& f) { return f.lost; },             Mode::kHold, HoldReason::kTargetLost),
     From(Mode::kTrack,  "the target is not seen for a moment", [](const F& f) { return !f.fresh; },          Mode::kCoast),
-    From(Mode::kCoast,  "track is asked for no more",         [](const F& f) { return !f.asked; },           Mode::kHold, HoldReason::kNotAsked),
-    From(Mode::kCoast,  "what is seen is nothing to steer by", [](const F& f) { return f.doubted; },         Mode::kHold, HoldReason::kEyeDoubted),
+    From(Mode::kCoast,  "track is no longer requested",       [](const F& f) { return !f.asked; },           Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kCoast,  "the eye cannot steer the arm",       [](const F& f) { return f.doubted; },          Mode::kHold, HoldReason::kEyeDoubted),
     From(Mode::kCoast,  "limits keep the arm from the goal",  [](const F& f) { return f.unreachable; },      Mode::kHold, HoldReason::kGoalUnreachable),
     From(Mode::kCoast,  "the target is lost",                 [](const F& f) { return f.lost; },             Mode::kHold, HoldReason::kTargetLost),
     From(Mode::kCoast,  "the target is seen again",           [](const F& f) { return f.fresh; },            Mode::kTrack),
 
-    From(Mode::kMove,   "hold is asked for",                  [](const F& f) { return f.request == Request::kHold; }, Mode::kHold, HoldReason::kNotAsked),
-    From(Mode::kMove,   "track is asked for",                 [](const F& f) { return f.asked; },            Mode::kHold, HoldReason::kNoTarget),
+    From(Mode::kMove,   "hold is requested",                  [](const F& f) { return f.request == Request::kHold; }, Mode::kHold, HoldReason::kNotAsked),
+    From(Mode::kMove,   "track is requested",                 [](const F& f) { return f.asked; },            Mode::kHold, HoldReason::kNoTarget),
     From(Mode::kMove,   "a limit forbids the motion",         [](const F& f) { return f.refused; },          Mode::kHold, HoldReason::kMotionRefused),
     From(Mode::kMove,   "the arm does not follow the motion", [](const F& f) { return f.astray; },         Mode::kHold, HoldReason::kNotFollowed),
     From(Mode::kMove,   "the motion is done",                 [](const F& f) { return !f.motion; },          Mode::kHold, HoldReason::kMotionDone),
@@ -102,13 +102,12 @@ bool UpdateMode(const config::PredictConfig& config, const ModeInputs& inputs, M
   }
   if (before == Mode::kFault || state.mode == Mode::kFault ||
       (before != Mode::kHold && state.hold_reason == HoldReason::kEyeDoubted)) {
-    state.track_asked = false;  // a fault ends every wish: after it nothing moves until it is asked for anew
+    state.track_asked = false;  // a fault cancels every request: nothing moves until it is requested again
   }
   if (!inputs.motion_asked) {
     state.motion_barred = false;
   }
-  // A motion that was broken off, or comes while something else moves the arm, does not begin later by
-  // itself.
+  // A motion that was interrupted, or commanded while something else moves the arm, does not start later.
   const bool broken_off = before == Mode::kMove && state.mode != Mode::kMove;
   const bool elsewhere =
       state.mode == Mode::kTrack || state.mode == Mode::kCoast || state.mode == Mode::kFault;

@@ -1,4 +1,4 @@
-// Modes and how one leads to another. The table of transitions is in modes.cpp, on one screen.
+// The modes and their transitions. The table of transitions is in modes.cpp, on one screen.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace fovea::task {
 
-// What the person, or the program above, asks of the servo; taken in at a tick.
+// A request of the person or the program above to the servo; takes effect in a tick.
 enum class Request : std::uint8_t {
   kNone,
   kTrack,  // steer by the target as soon as it is known
@@ -18,7 +18,7 @@ enum class Request : std::uint8_t {
   kReset,  // leave Fault for Boot
 };
 
-// What the mode depends on, as seen in this tick.
+// The inputs of the mode in this tick.
 struct ModeInputs {
   Request request = Request::kNone;
   bool arm_ready = false;  // enough sound states in a row, arm at rest
@@ -26,9 +26,9 @@ struct ModeInputs {
   std::int64_t feature_age_ns = 0;       // of the last accepted measurement
   bool goal_unreachable = false;         // limits kept the arm from the goal for too long
   bool target_moved = false;             // far enough from where it was unreachable to try again
-  bool eye_doubted = false;              // what is seen is nothing to steer by
-  bool motion_asked = false;             // a motion is commanded, or not yet at its end
-  bool motion_refused = false;           // the one of the tick before was
+  bool eye_doubted = false;              // the eye cannot steer the arm
+  bool motion_asked = false;             // a motion is commanded, or not yet finished
+  bool motion_refused = false;           // the motion of the previous tick was refused
   bool motion_not_followed = false;      // the arm is too far off it
   hal::Fault fault = hal::Fault::kNone;  // found in this tick
 };
@@ -38,28 +38,27 @@ struct ModeState {
   hal::HoldReason hold_reason = hal::HoldReason::kNone;
   hal::Fault fault = hal::Fault::kNone;  // latched
   bool track_asked = false;
-  bool motion_barred = false;  // what is commanded now was stopped: only a new motion may move the arm
+  bool motion_barred = false;  // the present command was stopped: only a new motion may move the arm
 };
 
-// What the table's conditions look at.
+// The facts that the table's conditions use.
 struct ModeFacts {
   Request request;
   hal::HoldReason hold_reason;  // before this tick
   bool fault;
   bool ready;
-  bool asked;  // for Track
-  bool fresh;  // the target was seen a moment ago
-  bool lost;   // or not for too long
+  bool asked;  // Track is requested
+  bool fresh;  // the target was seen recently
+  bool lost;   // the target was not seen for too long
   bool unreachable;
   bool moved;
   bool doubted;
-  bool motion;  // one that may move the arm
+  bool motion;  // a motion may move the arm
   bool refused;
   bool astray;  // the arm is too far off the motion
 };
 
-// One way from a mode to a mode. The first of the table whose `from` and `when` fit is taken; where none
-// fits, all stays as it is.
+// A transition. The first one whose `from` and `when` fit is taken. If none fits, nothing changes.
 struct ModeEdge {
   bool from_any;
   hal::Mode from;
@@ -70,11 +69,11 @@ struct ModeEdge {
 };
 std::span<const ModeEdge> ModeEdges() noexcept;
 
-// What the table sees of this tick's `inputs` in `state`.
+// The facts of this tick's `inputs` in `state`.
 [[nodiscard]] ModeFacts FactsOf(const config::PredictConfig& config, const ModeInputs& inputs,
                                 const ModeState& state) noexcept;
 
-// One tick of the mode. True when the mode changed. Real-time: yes.
+// One tick of the mode. True if the mode changed. Real-time: yes.
 bool UpdateMode(const config::PredictConfig& config, const ModeInputs& inputs, ModeState& state) noexcept;
 
 }  // namespace fovea::task

@@ -1,4 +1,4 @@
-// What a configuration must satisfy before the task takes it.
+// Checks of a configuration before the task accepts it.
 #include <cmath>
 #include <memory>
 
@@ -47,7 +47,7 @@ Status CheckArmModel(const model::ArmModel& arm) noexcept {
   return Status::Ok();
 }
 
-// A body that is not finite would pass for one that is far from everything.
+// A body that is not finite would count as far from everything.
 Status CheckArmShape(const model::ArmModel& arm) noexcept {
   for (const model::Capsule& body : arm.shape.bodies) {
     if (!body.p_LA.allFinite() || !body.p_LB.allFinite() || !(body.radius >= 0.0) ||
@@ -67,7 +67,7 @@ Status CheckArmShape(const model::ArmModel& arm) noexcept {
   return Status::Ok();
 }
 
-// The feature at its goal, into `goal`, with what is stacked below it.
+// Computes the feature at its goal, plus orientation-hold rows if enabled, into `goal`.
 Status ComputeGoal(const features::TargetFeature& feature, features::FeatureState& goal) noexcept {
   if (!(feature.p_CO_C_star.z() >= feature.radius)) {
     return Status(StatusCode::kOutOfRange, "servo.goal");
@@ -114,12 +114,12 @@ Status CheckGuard(const config::GuardConfig& guard) noexcept {
   return Status::Ok();
 }
 
-// Values that are in range each by itself and must fit each other.
+// Checks values that are each in range but must also fit together.
 Status CheckTogether(const config::ServoConfig& config) noexcept {
   if (!(config.predict.stale_s <= config.predict.coast_s)) {
     return Status(StatusCode::kOutOfRange, "servo.stale_s");
   }
-  // Half of what makes the joints' error grow (Routh), so that the gain may be twice as large as believed.
+  // Half of the stability limit of the joints' error (Routh), so that the true gain may be twice as large.
   if (!(config.motion_law.integral <= config.motion_law.zeta * config.motion_law.omega_n)) {
     return Status(StatusCode::kOutOfRange, "servo.integral");
   }
@@ -172,7 +172,7 @@ Status ServoTask::Init(const config::ServoConfig& config) noexcept {
 
   config_ = config;
   goal_ = goal;
-  std::construct_at(&state_);  // no other one for a moment: it is large, and a stack may be small
+  std::construct_at(&state_);  // in place, without a temporary: it is large, and a stack may be small
   const int n = config.arm.num_joints;
   state_.mode.track_asked = config.auto_track;
   for (const motion_laws::MotionLawEntry& law : motion_laws::kMotionLaws) {

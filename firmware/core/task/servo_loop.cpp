@@ -9,7 +9,7 @@ namespace {
 constexpr double kReferenceRests = 1e-3;  // every joint of the reference slower than this [rad/s, m/s]
 constexpr double kArmRests = 0.02;        // and every joint of the arm than this
 constexpr int kMostFinishingTicks = 2000;
-constexpr int kMostSilentTicks = 5;  // of an arm that is to finish: it hears nothing either
+constexpr int kMostSilentTicks = 5;  // of an arm that should finish: it receives nothing either
 
 bool IsSlow(const hal::JointArray& dq, double limit) noexcept {
   return std::all_of(dq.begin(), dq.end(), [limit](double speed) { return std::fabs(speed) < limit; });
@@ -40,7 +40,7 @@ hal::Status ServoLoop::RunByClock(std::int64_t end_ns) noexcept {
     if (const hal::Status status = clock_.WaitUntil(deadline_ns); !status.ok()) {
       return status;
     }
-    // What was missed of the deadlines that there still were.
+    // The missed ones of the deadlines that were left.
     const std::int64_t late = (clock_.NowNs() - deadline_ns) / hal::kTickPeriodNs;
     const std::int64_t left = (end_ns - deadline_ns + hal::kTickPeriodNs - 1) / hal::kTickPeriodNs;
     missed_ticks = static_cast<std::int32_t>(std::max<std::int64_t>(std::min(late, left), 0));
@@ -53,13 +53,13 @@ hal::Status ServoLoop::RunByClock(std::int64_t end_ns) noexcept {
 hal::Status ServoLoop::RunByArm(std::int64_t end_ns) noexcept {
   bool has_state = false;
   std::int64_t state_ns = 0;               // stamp of the arm's last state
-  std::int64_t heard_ns = clock_.NowNs();  // when it came; before the first, the start
-  std::int64_t ticks_since = 0;            // held or missed
+  std::int64_t heard_ns = clock_.NowNs();  // when it came; before the first: the start
+  std::int64_t ticks_since = 0;            // run or missed
   while (clock_.NowNs() < end_ns && !stop_.load(std::memory_order_relaxed)) {
-    // This is where the loop waits, so it is no part of the tick's time.
+    // The loop waits here, so that this is not part of the tick's time.
     inputs_.arm_status = arm_.Read(inputs_.arm);
     const bool answered = inputs_.arm_status.ok();
-    // Since the last state, by stamps; of an arm that says nothing, by the clock.
+    // Since the last state: by stamps; while the arm is silent, by the clock.
     std::int64_t periods = 0;
     if (!answered) {
       periods = (clock_.NowNs() - heard_ns) / hal::kTickPeriodNs;
@@ -84,7 +84,7 @@ hal::Status ServoLoop::RunByArm(std::int64_t end_ns) noexcept {
       break;
     }
     if (!answered && inputs_.arm_status.code() != hal::StatusCode::kTimeout) {
-      // An arm that is gone answers at once; its period is still the loop's.
+      // A lost arm answers at once; the loop still keeps its period.
       if (const hal::Status status = clock_.WaitUntil(clock_.NowNs() + hal::kTickPeriodNs); !status.ok()) {
         return status;
       }
@@ -98,7 +98,7 @@ void ServoLoop::CountMissed(std::int32_t missed_ticks) noexcept {
   counters_.missed_ticks += static_cast<std::uint64_t>(missed_ticks);
 }
 
-// Whether this tick may be asked for motion.
+// True if this tick may get requests for motion.
 bool ServoLoop::MayMove() noexcept {
   const std::int64_t until_ns = leave_until_ns_.load(std::memory_order_relaxed);
   const bool ended = until_ns != kForEver && clock_.NowNs() >= until_ns;
@@ -113,7 +113,7 @@ bool ServoLoop::MayMove() noexcept {
   return !ended && !finishes;
 }
 
-// Whether a run that is to finish may end with the tick that was.
+// True if a run that should finish may end after the last tick.
 bool ServoLoop::HasFinished() noexcept {
   if (finishing_ticks_ == 0) {
     return false;

@@ -1,7 +1,6 @@
 // The loop around the servo task: reads the arm, steps the task, writes the arm, once per period.
 //
-// The same loop runs in the simulator at either pace and on the robot; only what stands behind the seam
-// differs.
+// The same loop runs in the simulator, at either pace, and on the robot. Only the drivers differ.
 #pragma once
 
 #include <atomic>
@@ -21,53 +20,52 @@ struct LoopCounters {
   std::uint64_t missed_ticks = 0;  // periods that passed without a tick
   std::uint64_t arm_read_errors = 0;
   std::uint64_t arm_write_errors = 0;
-  std::uint64_t lease_ends = 0;  // times that the leave to move ran out
+  std::uint64_t lease_ends = 0;  // times that the permission to move expired
 };
 
 class ServoLoop {
  public:
-  // The parts are borrowed; they outlive the loop.
+  // The loop does not own its parts; they must outlive it.
   ServoLoop(ServoStep& task, hal::Arm& arm, hal::Clock& clock, hal::FeatureMailbox& features,
             hal::Recorder& recorder, hal::TickProbe& probe) noexcept;
 
   // Runs ticks until `end_ns` or Stop or the clock closes. Real-time: yes.
-  // By the clock: at start, start + 1 ms, ... The grid is kept: a tick that comes late is counted, what it
-  // missed is told to the task, and the next deadline is the next point of the grid.
-  // By an arm that paces the loop: one tick for each state, or each time that it says none came; ticks are
-  // missed where the states' stamps say so, or, while it is silent, the clock.
+  // By the clock: at start, start + 1 ms, ... The grid is kept: a late tick is counted, the task learns how
+  // many ticks were missed, and the next deadline is the next point of the grid.
+  // By an arm that paces the loop: one tick for each state, or each time that the arm reports that none came.
+  // Missed ticks follow from the states' stamps or, while the arm is silent, from the clock.
   [[nodiscard]] hal::Status Run(std::int64_t end_ns) noexcept;
 
-  // From any thread: Run returns after the tick in hand.
+  // From any thread: Run returns after the current tick.
   void Stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
-  // From any thread: every tick from now on is asked to hold, and Run returns once the arm is at rest or
-  // braked, silent for some ticks, or after two seconds' worth of ticks.
+  // From any thread: every tick from now on gets a Hold request. Run returns once the arm is at rest or
+  // braked, silent for some ticks, or after two seconds of ticks.
   void Finish() noexcept { finish_.store(true, std::memory_order_relaxed); }
-  // From any thread: the first tick that Finish had its say in; kNever before.
+  // From any thread: the first tick that Finish affected; kNever before.
   [[nodiscard]] std::uint64_t finish_tick() const noexcept {
     return finish_tick_.load(std::memory_order_acquire);
   }
 
-  // From any thread: the arm may be moved until this time of the loop's clock; for ever where this is never
-  // called. Past it each tick is asked to hold and gets no motion. Later leave does not take up what was
-  // broken off: whatever was asked for meanwhile is forgotten, and a commanded motion must end before another
-  // one is taken.
+  // From any thread: permits motion until this time of the loop's clock; without a call, for ever. After that
+  // time each tick gets a Hold request and no motion. A later permission does not resume interrupted motion:
+  // requests in between are dropped, and a commanded motion must end before another one is accepted.
   void GiveLeave(std::int64_t until_ns) noexcept {
     leave_until_ns_.store(until_ns, std::memory_order_relaxed);
   }
-  // From any thread: how often it ran out.
+  // From any thread: how often the permission expired.
   [[nodiscard]] std::uint64_t lease_ends() const noexcept {
     return lease_ends_.load(std::memory_order_relaxed);
   }
-  // Before Run: where commanded motions come from. Without it there are none.
+  // Before Run: sets the source of commanded motions. Without it there are none.
   void UseMotion(moves::MotionSource& motion) noexcept { motion_ = &motion; }
-  // From any thread: handed to the task in the next tick; the last one before that tick wins.
-  // Who gives leave first and asks then is heard with that leave.
+  // From any thread: passed to the task in the next tick; the last request before that tick wins. A request
+  // after GiveLeave is handled with that permission.
   void Ask(Request request) noexcept { request_.store(request, std::memory_order_release); }
   void Ask(config::MotionLawKind law) noexcept {
     law_.store(static_cast<int>(law), std::memory_order_relaxed);
   }
 
-  // When no thread runs it.
+  // Only while no thread runs the loop.
   [[nodiscard]] LoopCounters counters() const noexcept;
 
   static constexpr std::uint64_t kNever = UINT64_MAX;
@@ -94,10 +92,10 @@ class ServoLoop {
   std::atomic<std::int64_t> leave_until_ns_{kForEver};
   std::atomic<std::uint64_t> lease_ends_{0};
   std::atomic<Request> request_{Request::kNone};
-  std::atomic<int> law_{-1};  // asked for; -1: none
+  std::atomic<int> law_{-1};  // requested; -1: none
   moves::MotionSource* motion_ = nullptr;
   bool leave_ended_ = false;    // in the last tick
-  bool motion_barred_ = false;  // what is commanded now was broken off
+  bool motion_barred_ = false;  // the present command was interrupted
   int finishing_ticks_ = 0;
   int silent_ticks_ = 0;  // of these, in a row without a state
   ServoInputs inputs_;

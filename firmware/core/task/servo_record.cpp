@@ -1,4 +1,4 @@
-// What a tick leaves behind: its inputs, what was made of them, and the command.
+// Writes the record of a tick: its inputs, the intermediate results, and the command.
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/core/task/servo_task.hpp"
 

@@ -1,4 +1,4 @@
-// The stages that decide where the arm is to be: the visual law and the reference.
+// The stages that decide where the arm moves: the visual law and the reference.
 #include <algorithm>
 #include <cmath>
 
@@ -11,10 +11,10 @@
 namespace fovea::task {
 namespace {
 
-constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as there
+constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as zero
 constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kOffShare = kPeriodS / 0.25;  // of a tick in the mean by which a motion is not followed
+constexpr double kOffShare = kPeriodS / 0.25;  // of a tick in the mean deviation from a motion
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
 
@@ -49,7 +49,7 @@ void ServoTask::ChooseTheWay() noexcept {
   }
 }
 
-// The target's feature, and what is stacked below it.
+// Target feature, plus orientation-hold rows if enabled.
 bool ServoTask::ComputeFeature() noexcept {
   features::TargetInCamera seen = state_.prediction.seen;
   if (state_.way.goal.turn != 0) {
@@ -79,13 +79,13 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     return;
   }
   if (state_.inputs.bad_ticks > 0) {
-    return;  // nothing new is known: the last command stays in force
+    return;  // no new state: the last command stays in force
   }
   if (!state_.holds) {
     if (state_.inputs.sound_ticks == 0) {
       return;
     }
-    // The servo takes the arm over where it is, as fast as it is, and brings it to rest.
+    // The servo takes over the arm at its present state and velocity, and brings it to rest.
     state_.reference.q = state_.q;
     state_.reference.dq = state_.dq;
     state_.reference.ddq.setZero();
@@ -126,7 +126,7 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   model::ArmPoses reference_poses;
   model::ComputePoses(config_.arm, state_.reference.q, reference_poses);
   if (state_.mode.mode == hal::Mode::kBoot && !IsOutside()) {
-    state_.limits |= hal::Bit(hal::Limit::kObstacle);  // why Boot goes on
+    state_.limits |= hal::Bit(hal::Limit::kObstacle);  // the reason why Boot continues
   }
   state_.limits |=
       guard::GuardMotion(config_, wish, state_.poses.X_BE.p, state_.J_E_B, reference_poses, state_.reference);
@@ -145,7 +145,7 @@ void ServoTask::CheckFollowing() noexcept {
   }
 }
 
-// For how long limits have kept the arm from the goal.
+// Updates the time for which limits have blocked the arm from its goal.
 void ServoTask::UpdateBlockedTime() noexcept {
   const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
   bool blocked = false;
@@ -159,8 +159,7 @@ void ServoTask::UpdateBlockedTime() noexcept {
   control::UpdateBlockedTime(blocked, state_.reach);
 }
 
-// Whether steering by what is seen brings the goal nearer. A way by the joints may lead away from it at
-// first.
+// Checks that the visual law brings the goal nearer. A joint motion may lead away from it at first.
 void ServoTask::NoteSteering() noexcept {
   if (!IsTracking(state_.mode.mode) || !state_.feature_valid || state_.way.by_joints) {
     return;

@@ -1,4 +1,4 @@
-// What the servo carries from tick to tick, and what a tick computes on its way.
+// The servo's state from tick to tick, and the intermediate results of a tick.
 #pragma once
 
 #include <cstdint>
@@ -62,21 +62,21 @@ struct ServoState {
   // visual law
   bool feature_valid = false;
   features::FeatureState feature;
-  model::Mat3 R_BC_held = model::Mat3::Identity();  // the camera's when Track began
+  model::Mat3 R_BC_held = model::Mat3::Identity();  // the camera's orientation when Track began
   control::VisualLawOutput law;
-  control::WayToGoal way;  // of a target that is steered by in all six degrees of freedom
+  control::WayToGoal way;  // the law or a joint motion to the target
 
   // guard
   control::ResolvedMotion resolved;
   trajectory::Reference reference;
-  bool holds = false;         // the reference started where the arm was found
+  bool holds = false;         // the reference has started at the arm's state
   moves::MotionState motion;  // mode Move
   hal::LimitSet limits = 0;
 
   // motion law and clamp
   motion_laws::MotionLawState law_state;
   model::VecN tau;
-  model::VecN tau_before;  // the command of the tick before
+  model::VecN tau_before;  // the command of the previous tick
   guard::FaultStop stop;   // in Fault
 };
 

@@ -1,4 +1,4 @@
-// The tick, stage by stage, and what is known of the arm: from its sensors to the mode.
+// The tick, stage by stage, and its first stages: from the arm's sensors to the mode.
 #include "firmware/core/task/servo_task.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace fovea::task {
 namespace {
 
-constexpr double kBootShare = 0.5;  // of a joint's velocity limit in Boot, where nothing shall move it
+constexpr double kBootShare = 0.5;  // of a joint's velocity limit, in Boot, where nothing should move it
 
 bool IsFinite(const hal::FeatureMeasurement& feature) noexcept {
   for (std::size_t i = 0; i < feature.s.size(); ++i) {
@@ -73,7 +73,7 @@ void ServoTask::ComputeModel() noexcept {
   model::ComputeLinearJacobian(config_.arm, state_.poses, state_.poses.X_BE.p, state_.J_E_B);
 }
 
-// While the servo drives the arm; a floating arm is there to be pushed.
+// Only while the servo drives the arm: people may push a floating arm.
 void ServoTask::WatchForContact(std::int32_t missed_ticks, InputCheck& check) noexcept {
   const bool sound = missed_ticks == 0 && state_.inputs.bad_ticks == 0 &&
                      state_.inputs.non_finite_ticks == 0 && !state_.inputs.jumped;
@@ -126,7 +126,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   EnterMode({config_.arm.num_joints, CarriesLoads(), before}, state_);
 }
 
-// In Boot: whether the arm stands outside what it keeps out of. Within, nothing that it could do is proved.
+// In Boot: true if the arm is outside all planes and boxes. Inside, no stop can be proved.
 bool ServoTask::IsOutside() const noexcept {
   return barriers::CountObstacles(config_.guard.obstacles) == 0 ||
          barriers::ClearanceOfArm(config_, state_.poses) > 0.0;

@@ -1,4 +1,4 @@
-// The 1 kHz servo task: one call of Step turns what the arm and the camera said into joint torques.
+// The 1 kHz servo task: one call of Step converts the data of arm and camera to joint torques.
 //
 // Step is a function of (configuration, state, inputs): no clock, no globals. The same inputs give the same
 // outputs to the last bit, in the simulator, on the robot, and in a replay.
@@ -26,12 +26,12 @@ struct ServoInputs {
   hal::FeatureMeasurement feature;
   Request request = Request::kNone;
   moves::MotionCommand motion;
-  bool change_law = false;  // from now on `law`
+  bool change_law = false;  // change to `law`
   config::MotionLawKind law = config::MotionLawKind::kComputedTorque;
-  std::int32_t missed_ticks = 0;  // deadlines missed since the tick before
+  std::int32_t missed_ticks = 0;  // deadlines missed since the previous tick
 };
 
-// The record holds the command and all that led to it.
+// The record holds the command and everything that led to it.
 struct ServoOutputs {
   hal::TickRecord record;
   [[nodiscard]] const hal::ArmCommand& command() const noexcept { return record.command; }
@@ -49,19 +49,18 @@ class ServoStep {
 
 class ServoTask final : public ServoStep {
  public:
-  // Checks `config` and takes it over. On kOutOfRange or kInvalidArgument, where() names the field.
-  // Real-time: no.
+  // Checks and stores `config`. On kOutOfRange or kInvalidArgument, where() names the field. Real-time: no.
   [[nodiscard]] hal::Status Init(const config::ServoConfig& config) noexcept;
 
   // One tick. `outputs` is written whole. Real-time: yes.
   void Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept override;
 
-  // From now on told of each stage; null: nobody is. Real-time: yes.
+  // Sets the probe that is told of each stage; null: none. Real-time: yes.
   void UseProbe(StageProbe* probe) noexcept { probe_ = probe; }
 
   [[nodiscard]] const config::ServoConfig& config() const noexcept { return config_; }
   [[nodiscard]] const ServoState& state() const noexcept { return state_; }
-  // After Init: goes on as the servo, of the same configuration, that left `state`. Real-time: no.
+  // After Init: continues from the `state` of a servo with the same configuration. Real-time: no.
   void Restore(const ServoState& state) noexcept { state_ = state; }
 
  private:

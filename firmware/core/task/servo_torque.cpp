@@ -41,14 +41,14 @@ void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
   }
 }
 
-// Whether the law in force is one that holds the arm where it is, whatever hangs on it, and does not learn
-// the load by itself.
+// True if unknown loads are compensated: enabled, with a law that holds the arm in place, and without an
+// integral, which would learn the load by itself.
 bool ServoTask::CarriesLoads() const noexcept {
   return config_.safety.carried_torque_fraction > 0.0 && config_.motion_law.integral == 0.0 &&
          motion_laws::EntryOf(state_.law_state.kind).carries;
 }
 
-// Whether the arm is to stand, and with what hangs on it.
+// True if the arm should stand still with its load compensated.
 bool ServoTask::Stands() const noexcept {
   const bool may_stand = state_.mode.mode == hal::Mode::kBoot || state_.mode.mode == hal::Mode::kHold;
   return may_stand && CarriesLoads() && state_.reference.dq.isZero(0.0);
@@ -62,8 +62,8 @@ void ServoTask::StopDamped() noexcept {
 }
 
 void ServoTask::Clamp() noexcept {
-  // The rate counts from what the arm says is in force; when it says nothing that can be, from what was sent
-  // last. So it does behind closed brakes: what an arm then applies is its own way to hold itself.
+  // The rate limit starts at the torque that the arm reports as in force. If the report is missing or
+  // impossible, it starts at the last command; so it does behind closed brakes, where the arm holds itself.
   model::VecN in_force = state_.tau_applied;
   const bool told = state_.inputs.bad_ticks == 0 && state_.inputs.non_finite_ticks == 0;
   const bool behind_brakes = state_.stop.stage == guard::FaultStop::Stage::kBraked;

@@ -1,4 +1,4 @@
-// Where the time of a tick goes, for whoever asks.
+// Measures the time of each stage of a tick.
 #pragma once
 
 #include <array>

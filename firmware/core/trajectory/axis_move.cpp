@@ -8,10 +8,10 @@
 namespace fovea::trajectory {
 namespace {
 
-// A stop that ends this close to the goal, as a share of the lengths involved, ends there.
+// A stop that ends this close to the goal, relative to the lengths involved, ends there.
 constexpr double kRounding = 2e-15;
 
-// Writes the phases down, one after the other.
+// Writes the phases one after the other.
 class MoveWriter {
  public:
   MoveWriter(const AxisState& start, double goal_x) noexcept : now_(start) { move_.goal_x = goal_x; }
@@ -26,7 +26,7 @@ class MoveWriter {
     }
   }
 
-  // `change` until its acceleration's peak is to be released; all of it; its first `duration_s`.
+  // Appends `change` up to the release of its acceleration's peak; all of it; its first `duration_s`.
   void AppendToPeak(const VelocityChange& change) noexcept {
     for (int k = 0; k < VelocityChange::kRelease; ++k) {
       const JerkPhase& phase = change.phases[static_cast<std::size_t>(k)];
@@ -47,7 +47,7 @@ class MoveWriter {
     }
   }
 
-  // The last change, to rest at the goal: from there backwards.
+  // Appends the last change, to rest at the goal, computed backwards from there.
   [[nodiscard]] AxisMove Finish(const VelocityChange& stop) noexcept {
     std::array<AxisState, VelocityChange::kNumPhases> starts;
     AxisState state{move_.goal_x, 0.0, 0.0};
@@ -57,7 +57,7 @@ class MoveWriter {
     }
     for (std::size_t k = 0; k < starts.size(); ++k) {
       if (stop.phases[k].duration_s > 0.0) {
-        // What begins with the stop begins where the axis is.
+        // A move that begins with the stop begins at the axis's state.
         Begin(stop.phases[k].jerk, move_.num_phases == 0 ? now_ : starts[k], stop.phases[k].duration_s);
       }
     }
@@ -81,27 +81,27 @@ VelocityChange ChangeFrom(const AxisState& state, double v1, const AxisLimits& l
   return PlanVelocityChange(state.v, state.a, v1, limits);
 }
 
-// The first part of `t` seconds of forward acceleration: until it has reached its limit.
+// Of `t` seconds of forward acceleration, the time until it reaches its limit.
 double RampTime(const AxisState& state, double t, const AxisLimits& limits) noexcept {
   return std::min(t, std::max((limits.a_max - state.a) / limits.j_max, 0.0));
 }
 
-// `state` after `t` seconds of forward jerk, and forward acceleration once that has reached its limit.
+// `state` after `t` seconds of forward jerk, with the acceleration held once it reaches its limit.
 AxisState Accelerate(const AxisState& state, double t, const AxisLimits& limits) noexcept {
   const double ramp_s = RampTime(state, t, limits);
   return After(After(state, limits.j_max, ramp_s), 0.0, t - ramp_s);
 }
 
-// For how long a forward change accelerates before it releases.
+// How long a forward change accelerates before it releases.
 double ForwardTime(const VelocityChange& change) noexcept {
   return change.phases[VelocityChange::kRamp].duration_s + change.phases[VelocityChange::kHold].duration_s;
 }
 
-// The fastest way to rest `distance` forward of a start at x = 0; the start is within the limits and would
+// The fastest move to rest `distance` forward of a start at x = 0. The start is within the limits and would
 // stop short of `distance`.
 struct Sprint {
   double accelerate_s = 0.0;  // forward
-  double cruise_s = -1.0;     // at v_max; negative when that is not reached
+  double cruise_s = -1.0;     // at v_max; negative if that is not reached
   double duration_s = 0.0;
 };
 
@@ -115,12 +115,12 @@ Sprint FindSprint(const AxisState& start, double distance, const AxisLimits& lim
     sprint.duration_s = rise.Duration() + sprint.cruise_s + fall.Duration();
     return sprint;
   }
-  // How far beyond `distance` a stop leads after forward acceleration for `s`.
+  // How far beyond `distance` the axis stops after forward acceleration for `s`.
   const auto beyond = [&](double s) noexcept {
     const AxisState state = Accelerate(start, s, limits);
     return state.x + ChangeFrom(state, 0.0, limits).Travel() - distance;
   };
-  // A start that settles at v_max, but for rounding above it, may only release its braking.
+  // A start that settles at v_max, or above it by rounding, can only release its braking.
   const double most =
       rise.direction > 0.0 ? ForwardTime(rise) : rise.phases[VelocityChange::kRelease].duration_s;
   sprint.accelerate_s = BracketedRoot(beyond, 0.0, beyond(0.0), most, -cruise);
@@ -129,7 +129,7 @@ Sprint FindSprint(const AxisState& start, double distance, const AxisLimits& lim
   return sprint;
 }
 
-// `state` as seen by someone who looks forward in the direction of `sign`, from where the axis is.
+// `state` relative to the axis's position, with `sign` as the forward direction.
 AxisState Seen(const AxisState& state, double sign) noexcept { return {0.0, sign * state.v, sign * state.a}; }
 
 VelocityChange Mirrored(VelocityChange change, double sign) noexcept {
@@ -143,7 +143,7 @@ VelocityChange Mirrored(VelocityChange change, double sign) noexcept {
   return change;
 }
 
-// Beyond the limits: back into them. Ends where the velocity would settle within its limit.
+// Brings a start beyond the limits back. Ends where the velocity would settle within its limit.
 void AppendReturn(const AxisLimits& limits, MoveWriter& writer) noexcept {
   const double a = writer.Now().a;
   if (std::fabs(a) > limits.a_max) {
@@ -155,8 +155,7 @@ void AppendReturn(const AxisLimits& limits, MoveWriter& writer) noexcept {
   }
 }
 
-// A problem from where the writer is: rest `distance` forward, which is the direction of `sign`, after
-// `duration_s`.
+// The task from the writer's state: rest `distance` forward, in the direction of `sign`, after `duration_s`.
 struct Task {
   AxisLimits limits;
   double sign = 1.0;
@@ -178,21 +177,20 @@ AxisMove WriteSprint(const Task& task, const Sprint& sprint, MoveWriter& writer)
   return writer.Finish(ChangeFrom(writer.Now(), 0.0, limits));
 }
 
-// The cruise velocity, at most `v_high`, with which the move lasts as long as it should; negative when there
-// is none.
+// The cruise velocity, at most `v_high`, that gives the move its duration; negative if there is none.
 double FindCruise(const AxisState& start, const Task& task, double v_high) noexcept {
-  // Velocity times the time that is missing: finite at zero, where it is the distance left after a stop.
-  const auto missing = [&](double v) noexcept {
+  // Velocity times the excess of the duration: finite at zero, where it is the distance left after a stop.
+  const auto excess = [&](double v) noexcept {
     const VelocityChange rise = ChangeFrom(start, v, task.limits);
     const VelocityChange fall = PlanVelocityChange(v, 0.0, 0.0, task.limits);
     return (rise.Duration() + fall.Duration() - task.duration_s) * v + task.distance - rise.Travel() -
            fall.Travel();
   };
-  const double at_high = missing(v_high);
-  return at_high <= 0.0 ? BracketedRoot(missing, 0.0, missing(0.0), v_high, at_high) : -1.0;
+  const double at_high = excess(v_high);
+  return at_high <= 0.0 ? BracketedRoot(excess, 0.0, excess(0.0), v_high, at_high) : -1.0;
 }
 
-// The move that takes `task.duration_s`, which is more than the sprint does.
+// The move that takes `task.duration_s`, which is longer than the sprint.
 AxisMove WriteStretched(const Task& task, const Sprint& sprint, MoveWriter& writer) noexcept {
   const AxisLimits& limits = task.limits;
   const AxisState start = Seen(writer.Now(), task.sign);
@@ -211,7 +209,7 @@ AxisMove WriteStretched(const Task& task, const Sprint& sprint, MoveWriter& writ
       return writer.Finish(Mirrored(fall, task.sign));
     }
   }
-  // None: brake for a while, then go as fast as can be.
+  // There is none: brake for a while, then sprint.
   const VelocityChange stop = ChangeFrom(start, 0.0, limits);
   const auto sprint_after = [&](double brake_s) noexcept {
     const AxisState then = stop.At(brake_s);
@@ -227,7 +225,7 @@ AxisMove WriteStretched(const Task& task, const Sprint& sprint, MoveWriter& writ
     brake_s = BracketedRoot(late, 0.0, sprint.duration_s - task.duration_s, stop_s, late_at_end);
     writer.AppendPart(Mirrored(stop, task.sign), brake_s);
   } else {
-    // Even that is too early, which no case is known to be: wait where the stop ends.
+    // Even that arrives too early (no such case is known): wait where the stop ends.
     writer.Append(Mirrored(stop, task.sign));
     writer.Append(0.0, -late_at_end);
   }

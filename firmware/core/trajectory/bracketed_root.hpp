@@ -1,8 +1,8 @@
 // A root of a continuous function between two places where its signs differ, in a bounded number of steps.
 //
 // Chandrupatla's rule (A new hybrid quadratic/bisection algorithm, 1997): inverse quadratic interpolation
-// through the last three places where that can be trusted, halving elsewhere. The roots of this folder need
-// about ten steps, to the last bits of a double.
+// through the last three places if that can be trusted, else halving. The roots of this folder need about ten
+// steps, to the last bits of a double.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace fovea::trajectory {
 
 inline constexpr int kRootSteps = 100;
 
-// `f(low)` and `f(high)` are handed in. Where they do not differ in sign, which only rounding brings about,
-// the end that is nearer to a root; where kRootSteps did not do, the best place so far. Real-time: yes.
+// `f_low` and `f_high` are the values at the ends. If their signs do not differ, which only rounding causes,
+// returns the end nearer to a root. After kRootSteps, returns the best place so far. Real-time: yes.
 template <typename Function>
 [[nodiscard]] double BracketedRoot(Function f, double low, double f_low, double high,
                                    double f_high) noexcept {
@@ -25,7 +25,7 @@ template <typename Function>
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   Place newest{low, f_low};
   Place other{high, f_high};  // across the root
-  double share = 0.5;         // where to look next, from `newest` (0) to `other` (1)
+  double share = 0.5;         // next place, from `newest` (0) to `other` (1)
   if ((f_low < 0.0) == (f_high < 0.0)) {
     return std::fabs(f_low) < std::fabs(f_high) ? low : high;
   }
@@ -39,7 +39,7 @@ template <typename Function>
     share = std::max(share_min, std::min(1.0 - share_min, share));
     Place next{newest.x + share * (other.x - newest.x), 0.0};
     next.f = f(next.x);
-    // Of the three, the one that is no longer part of the bracket still bends the interpolation.
+    // The place that left the bracket is still used for the interpolation.
     Place third = newest;
     if ((next.f < 0.0) != (newest.f < 0.0)) {
       third = other;

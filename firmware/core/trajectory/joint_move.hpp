@@ -1,4 +1,4 @@
-// The joints' reference from wherever it is to rest at a posture, all joints arriving together, within limits
+// Moves the joints' reference from any state to rest at a posture. All joints arrive together, within limits
 // of velocity, acceleration and jerk. The method: synchronised_move.hpp.
 #pragma once
 
@@ -17,13 +17,12 @@ class JointMove {
  public:
   using Limits = std::array<AxisLimits, model::kMaxJoints>;
 
-  // Plans anew from `start` to `q_goal` [num_joints] rad or m; `limits` of the joints, entries past the last
-  // unused. A new goal may be taken in any tick, from the reference that At() gave. False, and the move stays
-  // as it was, when sizes differ, a value is not finite or a limit is not greater than zero. Real-time: yes.
+  // Plans from `start` to `q_goal` [num_joints] rad or m; `limits` of the joints, entries past the last
+  // unused. A new goal may begin in any tick from the reference that At() gave. False, with the move
+  // unchanged, if sizes differ, a value is not finite or a limit is not greater than zero. Real-time: yes.
   [[nodiscard]] bool Plan(const Reference& start, const model::VecN& q_goal, const Limits& limits) noexcept;
 
-  // The reference `t` seconds after the start; q_goal at rest, to the bit, from Duration() on. Real-time:
-  // yes.
+  // The reference `t` seconds after the start; exactly q_goal at rest from Duration() on. Real-time: yes.
   void At(double t, Reference& reference) const noexcept;
 
   [[nodiscard]] double Duration() const noexcept { return move_.Duration(); }

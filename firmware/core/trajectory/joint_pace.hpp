@@ -1,4 +1,4 @@
-// How fast a joint may speed up and brake, within its share of the arm's limits.
+// A joint's acceleration, jerk and braking, within its shares of the arm's limits.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace fovea::trajectory {
 struct JointPace {
   double ddq_max = 0.0;       // [rad/s^2]
   double dddq_max = 0.0;      // [rad/s^3]
-  double ramp_s = 0.0;        // from no acceleration to ddq_max
+  double ramp_s = 0.0;        // time from no acceleration to ddq_max
   double deceleration = 0.0;  // for stopping before a barrier [rad/s^2]
-  double reaction_s = 0.0;    // until it is there: a tick to see it, a tick to act, and the ramp
+  double reaction_s = 0.0;    // until it acts: a tick to see, a tick to act, and the ramp
 };
 
 // Of joint `i`. Real-time: yes.

@@ -1,4 +1,4 @@
-// A soft way from 0 to 1.
+// A smooth transition from 0 to 1.
 #pragma once
 
 namespace fovea::trajectory {

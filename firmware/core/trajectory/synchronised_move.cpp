@@ -6,7 +6,7 @@
 namespace fovea::trajectory {
 namespace {
 
-// Below this an axis counts as this far away: the line's own limits stay finite [m or rad].
+// The smallest distance that counts for an axis, so that the line's limits stay finite [m or rad].
 constexpr double kShortestWay = 1e-60;
 
 bool IsPositive(double limit) noexcept { return std::isfinite(limit) && limit > 0.0; }
@@ -42,7 +42,7 @@ bool SynchronisedMove::Plan(std::span<const AxisTask> tasks) noexcept {
 }
 
 void SynchronisedMove::PlanLine(std::span<const AxisTask> tasks) noexcept {
-  // The limits of the whole line's share per second, and so on.
+  // The line's limits, as shares of its length per s, s^2 and s^3.
   AxisLimits line;
   bool moves = false;
   for (std::size_t k = 0; k < tasks.size(); ++k) {

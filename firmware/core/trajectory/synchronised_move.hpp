@@ -1,12 +1,12 @@
-// Several axes from any state to rest at a goal, all of them arriving at the same time: the joints of an arm,
-// or the six coordinates of a pose.
+// Moves several axes from any state to rest at a goal, where they arrive at the same time: the joints of an
+// arm, or the six coordinates of a pose.
 //
-// From rest the axes share one course along the straight line to the goal (phase synchronised): one move over
-// the line's length, limited by whichever axis reaches a limit first. From anywhere else no straight line
-// leads on; the slowest axis goes as fast as it can and every other takes as long (time synchronised). A new
-// goal may be taken at any time from the state that At() gives: the new move begins with exactly that.
+// From rest the axes move along the straight line to the goal (phase synchronised): one move over the line's
+// length, limited by the axis that reaches a limit first. From any other state there is no straight line: the
+// slowest axis moves as fast as possible, and every other takes as long (time synchronised). A new goal may
+// begin at any time from the state that At() gives; the new move starts exactly there.
 //
-// What an axis does: see axis_move.hpp.
+// The move of one axis: axis_move.hpp.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ struct StateAccess;
 
 namespace fovea::trajectory {
 
-// One axis's part: [m or rad, and per s, s^2, s^3]
+// The task of one axis: [m or rad, and per s, s^2, s^3]
 struct AxisTask {
   AxisState start;
   double goal_x = 0.0;
@@ -33,12 +33,12 @@ class SynchronisedMove {
   static constexpr int kMaxAxes = model::kMaxJoints;
   using States = std::array<AxisState, kMaxAxes>;
 
-  // Plans anew. False, and the move stays as it was, when there are more than kMaxAxes tasks, a value is not
-  // finite or a limit is not greater than zero. Real-time: yes, some 10 us for 7 axes.
+  // Plans a new move. False, with the old one unchanged, if there are more than kMaxAxes tasks, a value is
+  // not finite or a limit is not greater than zero. Real-time: yes, some 10 us for 7 axes.
   [[nodiscard]] bool Plan(std::span<const AxisTask> tasks) noexcept;
 
-  // Where all axes are `t` seconds after the start; at rest at the goal, to the bit, from Duration() on.
-  // Entries past the last axis are left alone. Real-time: yes.
+  // The states of all axes `t` seconds after the start; exactly at rest at the goal from Duration() on.
+  // Entries past the last axis are unchanged. Real-time: yes.
   void At(double t, States& states) const noexcept;
 
   [[nodiscard]] int NumAxes() const noexcept { return num_axes_; }

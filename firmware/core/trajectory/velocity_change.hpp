@@ -1,5 +1,5 @@
-// One axis from any velocity and acceleration to a given velocity, in the shortest time that its acceleration
-// and jerk limits allow: jerk to a peak of acceleration, hold the peak, release it.
+// Changes one axis from any velocity and acceleration to a given velocity, in the shortest time that its
+// acceleration and jerk limits allow: jerk to a peak of acceleration, hold the peak, release it.
 //
 // An axis is anything with one coordinate: a joint [rad, rad/s, ...] or a direction [m, m/s, ...]. The method
 // is the double integrator's time optimum with its acceleration as a bounded state (Biagiotti and Melchiorri,
@@ -16,7 +16,7 @@ struct AxisState {
   double a = 0.0;  // acceleration [1/s^2 of it]
 };
 
-// Bounds of the sizes, all greater than zero.
+// Bounds of the absolute values, all greater than zero.
 struct AxisLimits {
   double v_max = 0.0;
   double a_max = 0.0;
@@ -34,7 +34,7 @@ struct JerkPhase {
           state.v + t * (state.a + 0.5 * t * jerk), state.a + t * jerk};
 }
 
-// The velocity at which the axis is once its acceleration has gone to zero as fast as the jerk allows.
+// The velocity of the axis after its acceleration has gone to zero as fast as the jerk allows.
 [[nodiscard]] inline double SettledVelocity(double v, double a, double j_max) noexcept {
   return v + a * (a < 0.0 ? -a : a) / (2.0 * j_max);
 }
@@ -49,14 +49,14 @@ struct VelocityChange {
   double direction = 1.0;  // sign of the acceleration's peak
 
   [[nodiscard]] double Duration() const noexcept;
-  // The state `t` seconds into the change, x counted from its start; past the end it goes on at v_end.
+  // The state `t` seconds into the change, x counted from its start; past the end it continues at v_end.
   [[nodiscard]] AxisState At(double t) const noexcept;
-  // How far the axis goes until the end.
+  // The distance that the axis travels until the end.
   [[nodiscard]] double Travel() const noexcept;
 };
 
 // The shortest change from velocity `v0` and acceleration `a0`, which may be beyond its limit, to velocity
-// `v1` and no acceleration. `limits.v_max` plays no part. Real-time: yes.
+// `v1` and no acceleration. `limits.v_max` is not used. Real-time: yes.
 [[nodiscard]] VelocityChange PlanVelocityChange(double v0, double a0, double v1,
                                                 const AxisLimits& limits) noexcept;
 

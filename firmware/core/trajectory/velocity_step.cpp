@@ -8,7 +8,7 @@ VelocityStep StepVelocity(const AxisState& state, double v, double a, const Axis
                           double period_s) noexcept {
   const double jerk_step = limits.j_max * period_s;
   const double half = 0.5 * jerk_step;
-  double beside = (v - state.v) / period_s - a;  // the acceleration beside `a` that would do it in this tick
+  double beside = (v - state.v) / period_s - a;  // the acceleration beside `a` that reaches v in this tick
   const double most = std::sqrt(half * half + 2.0 * jerk_step * std::fabs(beside)) - half;
   if (std::fabs(beside) > most) {
     beside = std::copysign(most, beside);

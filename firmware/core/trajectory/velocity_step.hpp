@@ -1,10 +1,10 @@
-// One tick of an axis on its way to a velocity that may change with every tick: what limits the visual law,
+// One tick of an axis towards a velocity that may change with every tick. It limits the visual law's motion,
 // and brings the arm to rest in Hold.
 //
-// It is the time-optimal change of velocity_change.hpp on the grid of the ticks. There the acceleration of a
-// tick is what the motion law is told, so it is constant in each: v grows by a T, and x by v T. The largest
-// acceleration from which it can still return to zero, a jerk step at a time, before the velocity is reached,
-// is a = sqrt(h^2 + 2 j |dv| / T) - h with j the jerk step and h = j / 2.
+// It is the time-optimal change of velocity_change.hpp on the grid of the ticks. The motion law gets one
+// acceleration per tick, which is constant in it: v grows by a T, and x by v T. The largest acceleration that
+// can still return to zero, one jerk step at a time, before the velocity is reached is a = sqrt(h^2 + 2 j
+// |dv| / T) - h with j the jerk step and h = j / 2.
 #pragma once
 
 #include "firmware/core/trajectory/velocity_change.hpp"
@@ -17,8 +17,8 @@ struct VelocityStep {
   bool at_j_max = false;
 };
 
-// From `state` towards the velocity `v`, which itself goes on to change by `a`, in one tick of `period_s`.
-// `limits.v_max` plays no part. Real-time: yes.
+// One tick of `period_s` from `state` towards the velocity `v`, which itself changes by `a`. `limits.v_max`
+// is not used. Real-time: yes.
 [[nodiscard]] VelocityStep StepVelocity(const AxisState& state, double v, double a, const AxisLimits& limits,
                                         double period_s) noexcept;
 

@@ -10,12 +10,12 @@
 namespace fovea::calibration {
 namespace {
 
-constexpr std::size_t kFewestCorners = 8;  // of a ChArUco board: twice what a pose takes
+constexpr std::size_t kFewestCorners = 8;  // of a ChArUco board: twice what a pose needs
 
 cv::Ptr<cv::aruco::Dictionary> DictionaryOf(const Board& board) {
   const auto* name = std::find(kDictionaryNames.begin(), kDictionaryNames.end(), board.dictionary);
   if (name == kDictionaryNames.end()) {
-    throw CalibrationError("no dictionary is called " + board.dictionary + ": from 4x4_50 to 7x7_1000");
+    throw CalibrationError("unknown dictionary " + board.dictionary + ": 4x4_50 to 7x7_1000 are allowed");
   }
   return cv::aruco::getPredefinedDictionary(static_cast<int>(name - kDictionaryNames.begin()));
 }
@@ -25,7 +25,7 @@ cv::Ptr<cv::aruco::CharucoBoard> MakeCharuco(const Board& board) {
                                          static_cast<float>(board.marker), DictionaryOf(board));
 }
 
-// To a fraction of a pixel, by the edges within `half_px` to each side.
+// Refines corners to a fraction of a pixel, in a window of `half_px` (2 to 11) to each side.
 void Refine(const cv::Mat& gray, double half_px, std::vector<cv::Point2f>& corners) {
   const int half = std::clamp(static_cast<int>(half_px), 2, 11);
   cv::cornerSubPix(gray, corners, {half, half}, {-1, -1},
@@ -33,7 +33,7 @@ void Refine(const cv::Mat& gray, double half_px, std::vector<cv::Point2f>& corne
 }
 
 bool FindChessboard(const cv::Mat& gray, const Board& board, BoardView& view) {
-  // A look at what is there first: the whole search in an image without a board takes many seconds.
+  // FAST_CHECK: the full search of an image without a board takes many seconds.
   const int flags = cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK;
   if (!cv::findChessboardCorners(gray, {board.columns, board.rows}, view.corners, flags)) {
     return false;
@@ -42,12 +42,12 @@ bool FindChessboard(const cv::Mat& gray, const Board& board, BoardView& view) {
   for (std::size_t i = 0; i < view.ids.size(); ++i) {
     view.ids[i] = static_cast<int>(i);
   }
-  // A window that stays within the squares beside a corner.
+  // The window must stay within the squares around a corner.
   Refine(gray, 0.35 * cv::norm(view.corners[0] - view.corners[1]), view.corners);
   return true;
 }
 
-// The shortest distance between two neighbours that were both seen; 0 without any.
+// The shortest distance between two visible neighbour corners [px]; 0 if there is no such pair.
 double SquarePx(const Board& board, const BoardView& view) {
   double least = 0.0;
   for (std::size_t i = 0; i + 1 < view.ids.size(); ++i) {
@@ -80,7 +80,7 @@ bool FindCharuco(const cv::Mat& gray, const Board& board, BoardView& view) {
   if (view.ids.size() < kFewestCorners || rows.size() < 2 || columns.size() < 2) {
     return false;
   }
-  // OpenCV stops at 0.1 px. The window ends before the markers, whose corners would pull.
+  // OpenCV's interpolation stops at 0.1 px. The window excludes the markers: their corners would add a bias.
   const double margin = 0.5 * (board.square - board.marker) / board.square;
   Refine(gray, 0.9 * margin * SquarePx(board, view), view.corners);
   return true;
@@ -93,13 +93,13 @@ void CheckBoard(const Board& board) {
     return;
   }
   if (board.marker >= 0.95 * board.square) {
-    throw CalibrationError("the markers' side must be below 0.95 of the squares'");
+    throw CalibrationError("a marker's side must be below 0.95 of a square's side");
   }
   const int needed = (board.columns + 1) * (board.rows + 1) / 2;
   const int there = DictionaryOf(board)->bytesList.rows;
   if (needed > there) {
-    throw CalibrationError("the board has " + std::to_string(needed) + " markers, the dictionary " +
-                           board.dictionary + " only " + std::to_string(there));
+    throw CalibrationError("the board has " + std::to_string(needed) + " markers, but the dictionary " +
+                           board.dictionary + " has only " + std::to_string(there));
   }
 }
 

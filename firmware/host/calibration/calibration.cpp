@@ -16,10 +16,10 @@ using model::Vec3;
 
 constexpr double kDeg = std::numbers::pi / 180.0;
 constexpr std::size_t kFewestViews = 4;
-constexpr double kLeastTiltDeg = 8.0;  // between the views furthest apart
+constexpr double kLeastTiltDeg = 8.0;  // between the two views that differ most
 constexpr double kMostRmsPx = 2.0;
 
-// On the board, of what was seen of it.
+// Positions on the board of the corners in `view` [m].
 std::vector<cv::Point3f> CornersOf(const Board& board, const BoardView& view) {
   std::vector<cv::Point3f> corners;
   corners.reserve(view.ids.size());
@@ -31,8 +31,8 @@ std::vector<cv::Point3f> CornersOf(const Board& board, const BoardView& view) {
 
 void CheckCount(std::size_t views) {
   if (views < kFewestViews) {
-    throw CalibrationError("the board is in " + std::to_string(views) + " views; " +
-                           std::to_string(kFewestViews) + " at least");
+    throw CalibrationError("the board is in " + std::to_string(views) + " views; at least " +
+                           std::to_string(kFewestViews) + " are needed");
   }
 }
 
@@ -63,7 +63,7 @@ std::size_t WorstOf(const cv::Mat& per_view) {
 
 FocalLength SolveFocalLength(const std::vector<RadiusView>& views, double diameter, bool sphere) {
   if (views.size() < 2) {
-    throw CalibrationError("two views at least");
+    throw CalibrationError("at least two views are needed");
   }
   const RadiusView& near = *std::min_element(views.begin(), views.end(),
                                              [](const auto& a, const auto& b) { return a.moved < b.moved; });
@@ -72,10 +72,10 @@ FocalLength SolveFocalLength(const std::vector<RadiusView>& views, double diamet
   const double dZ = far.moved - near.moved;
   const double unsure = 3.0 * std::hypot(near.sigma_px, far.sigma_px);
   if (!(dZ > 0.0) || near.radius_px - far.radius_px <= unsure) {
-    throw CalibrationError("the target must look smaller in each view than in the one before");
+    throw CalibrationError("the target must look clearly smaller in the farthest view than in the nearest");
   }
   const double R = 0.5 * diameter;
-  // The formula for two views, as the start.
+  // Start value: the formula for two views.
   FocalLength result;
   result.f_px = 2.0 * dZ * near.radius_px * far.radius_px / (diameter * (near.radius_px - far.radius_px));
   result.Z = result.f_px * R / near.radius_px - near.moved;
@@ -128,7 +128,8 @@ IntrinsicsResult SolveIntrinsics(const std::vector<BoardView>& views, const Boar
     result.rms_px =
         cv::calibrateCamera(object, image, size, K, lens, turns, places, deviations, ignored, per_view);
   } catch (const cv::Exception&) {
-    throw CalibrationError("the views do not determine a camera: too much alike, or too little of the board");
+    throw CalibrationError(
+        "the views do not determine a camera: they are too similar, or show too little of the board");
   }
   result.views = static_cast<int>(views.size());
   double apart = 0.0;
@@ -141,7 +142,7 @@ IntrinsicsResult SolveIntrinsics(const std::vector<BoardView>& views, const Boar
   }
   if (apart < kLeastTiltDeg * kDeg) {
     throw CalibrationError(
-        "all views look at the board from nearly the same side: tilt it by 20 degrees and more");
+        "all views look at the board from nearly the same side: tilt the board by at least 20 degrees");
   }
   if (!(result.rms_px < kMostRmsPx)) {
     throw CalibrationError(
@@ -165,7 +166,7 @@ IntrinsicsResult SolveIntrinsics(const std::vector<BoardView>& views, const Boar
 HandEyeResult SolveHandEye(const std::vector<HandView>& views, const Board& board,
                            const vision::Intrinsics& in) {
   CheckCount(views.size());
-  // Two turns of the hand about axes that differ are needed.
+  // The hand must turn about two different axes.
   double across = 0.0;
   for (const HandView& a : views) {
     for (const HandView& b : views) {
@@ -176,7 +177,7 @@ HandEyeResult SolveHandEye(const std::vector<HandView>& views, const Board& boar
   }
   if (across < kLeastTiltDeg * kDeg * kLeastTiltDeg * kDeg) {
     throw CalibrationError(
-        "the hand turned about one axis alone, or hardly: turn it about two by 20 degrees and more");
+        "the hand turned about only one axis, or hardly: turn it by at least 20 degrees about two axes");
   }
   const std::vector<double> lens{in.lens.k1, in.lens.k2, in.lens.p1, in.lens.p2, in.lens.k3};
   std::vector<cv::Mat> hand_R, hand_p, board_R, board_p;
@@ -213,7 +214,7 @@ HandEyeResult SolveHandEye(const std::vector<HandView>& views, const Board& boar
     }
   }
   result.X_EC.p = ToVec3(p);
-  // The board stands still: how well the views agree on where.
+  // The board stands still, so the spread of its poses in B measures the error.
   Vec3 mean = Vec3::Zero();
   std::vector<model::Pose> X_BO;
   for (std::size_t i = 0; i < views.size(); ++i) {

@@ -1,5 +1,5 @@
-// What a camera must be told before it can measure: its focal length, its lens, and where it sits on the
-// hand. Not for the tick, nor for the camera's rate.
+// Camera calibration: focal length, lens, and the camera's pose on the hand. Used before a run, not in the
+// tick or at the camera's rate.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -15,7 +15,7 @@ namespace fovea::calibration {
 struct RadiusView {
   double radius_px = 0.0;
   double sigma_px = 0.0;  // its standard deviation
-  double moved = 0.0;     // how much further off than in the first view [m]
+  double moved = 0.0;     // extra distance, compared with the first view [m]
 };
 
 struct FocalLength {
@@ -44,7 +44,7 @@ struct IntrinsicsResult {
 // that is worse than two pixels.
 IntrinsicsResult SolveIntrinsics(const std::vector<BoardView>& views, const Board& board, cv::Size size);
 
-// --- Where the camera sits on the hand.
+// --- The camera's pose on the hand.
 
 struct HandView {
   model::Pose X_BE;
@@ -53,14 +53,14 @@ struct HandView {
 
 struct HandEyeResult {
   model::Pose X_EC;
-  double rms_mm = 0.0;   // of the board's place in B about its mean, over the views
-  double rms_deg = 0.0;  // and of its turn
-  double rms_px = 0.0;   // of the corners about where the intrinsics put them
+  double rms_mm = 0.0;   // of the board's position in B about its mean, over the views
+  double rms_deg = 0.0;  // of the board's orientation in B about its mean
+  double rms_px = 0.0;   // of the corners about their projections by the intrinsics
   int views = 0;
 };
 
-// CalibrationError: too few views, a hand that turned about one axis alone, or intrinsics that do not fit
-// them.
+// CalibrationError: too few views, a hand that turned about only one axis, or intrinsics that do not fit the
+// views.
 HandEyeResult SolveHandEye(const std::vector<HandView>& views, const Board& board,
                            const vision::Intrinsics& intrinsics);
 

@@ -1,4 +1,4 @@
-// The flags that say which board to calibrate with, the same for every program that asks.
+// Command-line flags for the calibration board, the same in every program.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,7 +17,7 @@ struct BoardFlags {
 };
 
 inline void AddBoardFlags(CLI::App& command, BoardFlags& flags) {
-  command.add_option("--board", flags.size, "inner corners, columns x rows: squares less one")
+  command.add_option("--board", flags.size, "inner corners, columns x rows; one less than squares")
       ->capture_default_str();
   command.add_option("--square", flags.board.square, "side of a square [m]")
       ->check(CLI::PositiveNumber)
@@ -32,7 +32,7 @@ inline void AddBoardFlags(CLI::App& command, BoardFlags& flags) {
       ->capture_default_str();
 }
 
-// InputError when there can be no such board.
+// InputError when no such board is possible.
 inline calibration::Board MakeBoard(const BoardFlags& flags) {
   calibration::Board board = flags.board;
   char cross = 0;
@@ -40,7 +40,7 @@ inline calibration::Board MakeBoard(const BoardFlags& flags) {
   if (!(size >> board.columns >> cross >> board.rows) || cross != 'x' || !size.eof() || board.columns < 3 ||
       board.rows < 3 || board.columns > 100 || board.rows > 100) {
     throw InputError("--board " + flags.size +
-                     ": must be columns x rows of inner corners, as in 9x6, 3 to 100");
+                     ": must be columns x rows of inner corners, each 3 to 100, as in 9x6");
   }
   try {
     calibration::CheckBoard(board);

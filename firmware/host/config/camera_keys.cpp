@@ -7,17 +7,17 @@ namespace fovea::config {
 
 void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys, PictureRange range) {
   vision::Intrinsics& in = settings.intrinsics;
-  keys.Integer("camera.width_px", in.width_px, range.least, range.most, "px", "of its pictures");
-  keys.Integer("camera.height_px", in.height_px, range.least, range.most, "px", "of its pictures");
+  keys.Integer("camera.width_px", in.width_px, range.least, range.most, "px", "width of a picture");
+  keys.Integer("camera.height_px", in.height_px, range.least, range.most, "px", "height of a picture");
   keys.Number("camera.f_u_px", in.f_u_px, 1.0, 1e6, "px", "focal length along u");
   keys.Number("camera.f_v_px", in.f_v_px, 1.0, 1e6, "px", "focal length along v");
   keys.Number("camera.c_u_px", in.c_u_px, -1e5, 1e5, "px", "principal point");
   keys.Number("camera.c_v_px", in.c_v_px, -1e5, 1e5, "px", "principal point");
   keys.Numbers("camera.lens", settings.lens, 5, 5, -1e3, 1e3, "", "distortion: k1, k2, p1, p2, k3");
   keys.Number("camera.rms_px", settings.rms_px, 0.0, 1e3, "px",
-              "how well the views of the calibration fit, as `fovea calibrate intrinsics` says; 0: unknown");
+              "rms error of the calibration, as `fovea calibrate intrinsics` reports; 0: unknown");
   keys.Number("camera.mount_rms_mm", settings.mount_rms_mm, 0.0, 1e3, "mm",
-              "how well those of the mounting agree, as `fovea calibrate hand-eye` says; 0: unknown");
+              "rms error of the mounting's position, as `fovea calibrate hand-eye` reports; 0: unknown");
   keys.Numbers("camera.mount_xyz", settings.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
   keys.Numbers("camera.mount_rpy_deg", settings.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
                "orientation of C in E: roll, pitch, yaw about fixed axes");
@@ -27,7 +27,7 @@ vision::Intrinsics MakeIntrinsics(const CalibrationSettings& settings) {
   vision::Intrinsics in = settings.intrinsics;
   if (in.f_u_px <= 0.0 || in.f_v_px <= 0.0) {
     throw InputError(
-        "camera.f_u_px and camera.f_v_px are needed: copy what `fovea calibrate intrinsics` writes into "
+        "camera.f_u_px and camera.f_v_px are needed: copy the output of `fovea calibrate intrinsics` into "
         "[camera]");
   }
   const std::vector<double>& k = settings.lens;

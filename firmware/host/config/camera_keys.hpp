@@ -1,5 +1,5 @@
-// The keys of section [camera] that say what a real camera's pictures mean: its calibration, and where it is
-// mounted. What `fovea calibrate intrinsics` writes is read by them.
+// The keys of section [camera] for a real camera: its calibration and its mounting. They read the output of
+// `fovea calibrate`.
 #pragma once
 
 #include <vector>
@@ -13,13 +13,13 @@ namespace fovea::config {
 struct CalibrationSettings {
   vision::Intrinsics intrinsics{640, 480, 0.0, 0.0, 319.5, 239.5};
   std::vector<double> lens{0.0, 0.0, 0.0, 0.0, 0.0};
-  double rms_px = 0.0;                               // how well the views of the calibration fit; 0: unknown
-  double mount_rms_mm = 0.0;                         // and those of where it is mounted
+  double rms_px = 0.0;                               // rms error of the calibration; 0: unknown
+  double mount_rms_mm = 0.0;                         // rms error of the mounting's position; 0: unknown
   std::vector<double> mount_xyz{0.0, 0.0, 0.0};      // p_EC [m]
   std::vector<double> mount_rpy_deg{0.0, 0.0, 0.0};  // R_EC
 };
 
-// Pictures are so wide and so high [px].
+// Allowed width and height of a picture [px].
 struct PictureRange {
   int least = 32;
   int most = 20'000;

@@ -1,4 +1,4 @@
-// A program's own command line as text, for a log: who pastes it into a shell repeats the run.
+// A program's own command line as text for a log. Pasted into a shell, it repeats the run.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ inline std::string QuotedForShell(std::string_view word) {
   return quoted + "'";
 }
 
-// The program by its name alone, and all its arguments.
+// The program's name without its folder, and all its arguments.
 inline std::string CommandLine(int argc, const char* const* argv) {
   std::string text = argc > 0 ? std::filesystem::path(argv[0]).filename().string() : std::string();
   for (int i = 1; i < argc; ++i) {

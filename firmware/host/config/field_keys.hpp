@@ -1,4 +1,4 @@
-// The fields of the servo's settings as keys: a visitor of the lists of core/config.
+// Turns the fields of the servo's settings into keys: a visitor of the field lists in core/config.
 #pragma once
 
 #include <functional>
@@ -15,8 +15,8 @@ class FieldKeys {
  public:
   explicit FieldKeys(KeyTable& keys) : keys_(keys) {}
 
-  // The key of a field that is derived: `add` adds it where the field stands in its list. Every derived field
-  // with a meaning has one.
+  // Binds the key of a derived field: `add` adds the key at the field's place in its list. Every derived
+  // field with a meaning needs a bound key.
   using Add = std::function<void(KeyTable& keys, const Field& field)>;
   void Bind(const std::string& key, Add add) { bound_[key] = std::move(add); }
 

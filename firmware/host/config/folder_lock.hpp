@@ -1,15 +1,15 @@
-// One run per folder.
+// Allows one run per folder.
 #pragma once
 
 #include <filesystem>
 
 namespace fovea::config {
 
-// Holds `folder` for this process. The kernel lets go of it when the process ends, however it ends; no file
-// is left behind. A file system that has no locks on folders (some network ones) gives no protection.
+// Locks `folder` for this process. The kernel releases the lock when the process ends, also after a crash; no
+// file is left behind. A file system without locks on folders (some network ones) gives no protection.
 class FolderLock {
  public:
-  // `folder` exists. InputError: another run holds it.
+  // `folder` must exist. InputError: another run holds it.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

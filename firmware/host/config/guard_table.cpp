@@ -21,8 +21,8 @@ std::string DefaultOf(const KeyTable& keys, const std::string& name) {
 GuardRow RowOf(hal::Limit limit) {
   switch (limit) {
     case hal::Limit::kJointPosition:
-      return {"a joint's reference before the end of its range",
-              "the others take its part over; it slows down in time to stop there"};
+      return {"distance of a joint's reference from the end of its range",
+              "the other joints take over its part; the joint slows down in time to stop there"};
     case hal::Limit::kJointVelocity:
       return {"speed of a joint's reference", "the motion slows down as a whole and keeps its direction"};
     case hal::Limit::kJointAcceleration:
@@ -30,33 +30,33 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kJointJerk:
       return {"jerk of a joint's reference", "that joint's reference follows later"};
     case hal::Limit::kWorkspace:
-      return {"distance of the end effector from the base, in the tick and on the way of a stop",
-              "only what can still be stopped inside is begun; along the boundary it slides"};
+      return {"distance of the end effector from the base, now and on the stopping path",
+              "only motions that can still stop inside start; the arm slides along the boundary"};
     case hal::Limit::kTorque: return {"torque command of a joint, in every mode", "cut to the range"};
     case hal::Limit::kTorqueRate:
       return {"change of a joint's torque command per tick, in every mode", "cut to the rate"};
     case hal::Limit::kObstacle:
       return {
-          "hand, camera and tools (`safety.camera_radius`, `safety.tools`) before planes and boxes, links "
-          "before planes (`safety.link_clearance`), the arm's links before each other "
-          "(`safety.self_clearance`), in the tick and on the way of a stop",
-          "as at the workspace's boundary; an arm that stands inside when it starts stays in Boot"};
+          "distance of hand, camera and tools (`safety.camera_radius`, `safety.tools`) from planes and "
+          "boxes, of links from planes (`safety.link_clearance`), of the arm's links from each other "
+          "(`safety.self_clearance`), now and on the stopping path",
+          "as at the workspace's boundary; an arm that starts inside an obstacle stays in Boot"};
     case hal::Limit::kCartesianSpeed:
-      return {"speed of the end effector, as it is wished and on the way of a stop",
+      return {"requested speed of the end effector, and its speed on the stopping path",
               "the motion slows down as a whole"};
     case hal::Limit::kRotationSpeed:
-      return {"speed at which the end effector turns, as it is wished and on the way of a stop",
+      return {"requested angular speed of the end effector, and its angular speed on the stopping path",
               "the motion slows down as a whole"};
     case hal::Limit::kSingularity:
       return {
           "smallest singular value of the hand's Jacobian",
-          "the posture goes no deeper, but for a motion of the joints that ends clear of it; the task gives "
-          "way"};
+          "the posture goes no nearer to the singularity, except in a joint motion that ends clear of it; "
+          "the task gives way"};
     case hal::Limit::kFieldOfView:
       return {
-          "the target before the edge of the picture, less this margin; the arm's links beside the lines "
-          "of sight; a disc's face (safety.disc_tilt_max)",
-          "only so fast towards it; the task slides along"};
+          "distance of the target from the edge of the picture, less this margin; distance of the arm's "
+          "links from the lines of sight; tilt of a disc's face (safety.disc_tilt_max)",
+          "the approach slows down; the task slides along the boundary"};
   }
   return {"", ""};
 }
@@ -67,31 +67,32 @@ GuardRow RowOf(hal::Fault fault) {
   switch (fault) {
     case hal::Fault::kNone: return {"", ""};
     case hal::Fault::kArmLost:
-      return {"an arm that answers with an error or not at all; until then the last command stays", kBrake};
+      return {"an arm that answers with an error or not at all; the last command stays until the fault",
+              kBrake};
     case hal::Fault::kArmStale:
       return {
-          "an arm whose stamps stand still or go back; for `safety.non_finite_ticks` and more, a joint whose "
-          "reading "
-          "stays within a step of its encoder (`safety.encoder_quantum`) although torque, or its velocity, "
-          "should have moved it by three; one whose velocity jumps, and that stays where it is; one whose "
-          "velocity has flickered, and that repeats itself "
-          "to the last bit (`safety.frozen_ticks`)",
+          "an arm whose stamps stand still or go back; a joint whose reading stays within one encoder step "
+          "(`safety.encoder_quantum`) for at least `safety.non_finite_ticks` although its torque, velocity "
+          "or reference should have moved it by three steps; a joint whose velocity jumps while its position "
+          "stays; a joint whose velocity flickered at rest and whose reading now repeats to the last bit "
+          "(`safety.frozen_ticks`)",
           kBrake};
     case hal::Fault::kNonFiniteSensor:
-      return {"a joint value that is no number; until then the last one that was", kBrake};
-    case hal::Fault::kNonFiniteFeature: return {"a measurement that is no number", kStop};
-    case hal::Fault::kNonFiniteControl: return {"a law or a torque that is no number", kStop};
+      return {"a joint value that is NaN or infinite; the last finite one counts until the fault", kBrake};
+    case hal::Fault::kNonFiniteFeature: return {"a measurement that is NaN or infinite", kStop};
+    case hal::Fault::kNonFiniteControl:
+      return {"a control law's output or a torque that is NaN or infinite", kStop};
     case hal::Fault::kDeadlineMissed: return {"deadlines missed in a row", kStop};
     case hal::Fault::kJointPosition: return {"a joint measured outside its range", kStop};
     case hal::Fault::kJointVelocity:
       return {
-          "a joint measured faster than it may be, or 0.02 rad further than that allows from one state to "
-          "the next; in Boot, faster than half of that; a velocity that goes on to differ from the last by "
-          "0.02 rad/s beyond what twice the joint's largest acceleration makes: for "
-          "`safety.non_finite_ticks` it counts only as far as motors can",
+          "a joint measured faster than its limit (in Boot, half its limit), or moved between two states by "
+          "0.02 rad more than its limit allows; a velocity that keeps differing from the last one by 0.02 "
+          "rad/s more than twice the joint's largest acceleration explains: for `safety.non_finite_ticks` "
+          "the servo uses only the change that the motors can make",
           kStop};
     case hal::Fault::kNotFollowing: return {"a joint too far from its reference", kStop};
-    case hal::Fault::kContact: return {"torque from outside, by the arm's momentum", kStop};
+    case hal::Fault::kContact: return {"external torque, estimated from the arm's momentum", kStop};
   }
   return {"", ""};
 }
@@ -102,16 +103,12 @@ std::string GuardTableAsMarkdown() {
   AddServoKeys(settings, keys);
   std::string text =
       "# What the servo watches\n\n"
-      "Printed by `fovea guards`. A limit shapes the motion and is reported; a fault is latched, and left by "
-      "a reset "
-      "alone.\nMeasurements that do not fit the target's motion are left out (`servo.gate_sigma`); without "
-      "one the "
-      "servo coasts\n(`servo.stale_s`), then holds (`servo.coast_s`). A damped stop in which the arm gets "
-      "faster "
-      "again, or slower\nby less than a third of what the damping should do, is given up for the brakes. A "
-      "commanded "
-      "motion that the arm does\nnot follow ends in Hold (`safety.motion_error`). Each row is provoked in "
-      "closed loop by `guard_test`.\n";
+      "Printed by `fovea guards`. A limit shapes the motion and is reported. A fault is latched; only a "
+      "reset clears it.\nThe servo leaves out measurements that do not fit the target's motion "
+      "(`servo.gate_sigma`). Without a measurement it\ncoasts (`servo.stale_s`), then holds "
+      "(`servo.coast_s`). The brakes replace a damped stop if the arm gets faster again,\nor slows down by "
+      "less than a third of what the damping should do. A commanded motion that the arm does not follow\n"
+      "ends in Hold (`safety.motion_error`). `guard_test` provokes each row in closed loop.\n";
   const auto head = [&](const char* title) {
     text +=
         fmt::format("\n## {}\n\n| name | watches | key | default | then |\n|---|---|---|---|---|\n", title);

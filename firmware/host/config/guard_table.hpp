@@ -1,4 +1,4 @@
-// Everything that the servo watches, as a table for people: limits, which shape the motion, and faults, which
+// Everything that the servo watches, as a readable table: limits, which shape the motion, and faults, which
 // stop it.
 #pragma once
 
@@ -15,7 +15,7 @@ struct GuardRow {
 GuardRow RowOf(hal::Limit limit);
 GuardRow RowOf(hal::Fault fault);
 
-// All of them, with the key that sets each and its default.
+// All limits and faults, each with its key and the key's default.
 std::string GuardTableAsMarkdown();
 
 }  // namespace fovea::config

@@ -11,9 +11,9 @@
 namespace fovea::config {
 namespace {
 
-constexpr std::size_t kDescriptionColumn = 30;  // as CLI11 writes options and sub-commands
+constexpr std::size_t kDescriptionColumn = 30;  // where CLI11 starts the text of options and subcommands
 
-// Where the rest of a line that is too long begins.
+// The column at which the rest of a line that is too long begins.
 std::size_t RestColumn(const std::string& line) {
   const std::size_t first = line.find_first_not_of(' ');
   const bool is_described = first > 0 && line.size() > kDescriptionColumn &&
@@ -34,7 +34,7 @@ void AppendLine(std::string line, std::size_t width, std::string& text) {
   while (line.size() > width) {
     std::size_t space = line.rfind(' ', width);
     if (space == std::string::npos || space <= column) {
-      // A word that is longer than the line: a list of choices is broken behind a comma.
+      // A word longer than the line, such as a list of choices, breaks after a comma.
       if (const std::size_t comma = line.rfind(',', width - 1);
           comma != std::string::npos && comma > column) {
         text.append(line, 0, comma + 1).append("\n");

@@ -1,4 +1,4 @@
-// The text of --help as a terminal shows it: lines that fit, headings that stand out.
+// Formats the text of --help for a terminal: lines that fit its width, headings in bold.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@ struct HelpStyle {
   bool bold_headings = false;
 };
 
-// For what standard output is: as wide as the terminal, from 60 to 100 characters, and headings in bold
-// unless the environment's NO_COLOR is set; 100 characters and plain text where it is no terminal.
+// The style for standard output. On a terminal: its width, limited to 60 to 100 characters, and bold headings
+// unless the environment variable NO_COLOR is set. Otherwise: 100 characters and plain text.
 HelpStyle HelpStyleOfOutput();
 
-// `text` with each line broken between words so that it fits into style.width; a word that is longer is
-// broken behind commas, and stays whole where it has none. What follows a break is indented to the column of
-// its description, or by two more than its line.
+// Breaks each line of `text` between words so that it fits into style.width. A longer word breaks after a
+// comma, or stays whole if it has none. The rest of a line is indented to the column of its description, or
+// by two more than an indented line.
 std::string FormatHelp(const std::string& text, const HelpStyle& style);
 
 }  // namespace fovea::config

@@ -1,4 +1,4 @@
-// Bad input: one line for the person who can mend it. Thrown outside the tick only.
+// Bad input: one line for the person who can correct it. Thrown only outside the tick.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace fovea::config {
 
-// what() says what is wrong, where (file, line, key), and what is allowed. It quotes what came in, of which
-// line ends and all else that a terminal would obey are shown as question marks.
+// what() says what is wrong, where (file, line, key), and what is allowed. It quotes the input, with each
+// control character (a line end, a terminal code) shown as a question mark.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(std::string what) : std::runtime_error(Shown(what)) {}

@@ -16,7 +16,7 @@ bool IsInside(const fs::path& folder, const fs::path& file) {
   if (error) {
     return false;
   }
-  const fs::path above = top.has_filename() ? top : top.parent_path();  // without a slash at its end
+  const fs::path above = top.has_filename() ? top : top.parent_path();  // without a trailing slash
   return std::mismatch(above.begin(), above.end(), place.begin(), place.end()).first == above.end();
 }
 

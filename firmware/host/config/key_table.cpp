@@ -13,7 +13,7 @@
 namespace fovea::config {
 namespace {
 
-// A number as a person writes it: 1e-06 stays, 0.30000000000000004 does not occur among defaults.
+// A number as a person writes it, with at most six digits. Defaults need no more.
 std::string Plain(double value) { return fmt::format("{:g}", value); }
 
 std::string Range(double min, double max) { return fmt::format("{} to {}", Plain(min), Plain(max)); }

@@ -1,7 +1,7 @@
 // The keys that a program knows: name, unit, range and meaning of each, bound to the field that it sets.
 //
-// One table serves reading, checking, error messages and the printed list; its defaults are the values that
-// the fields hold when the key is added.
+// One table serves reading, checking, error messages and the printed list. A key's default is the value of
+// its field when the key is added.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace fovea::config {
 
 struct Key {
   std::string name;  // dotted
-  std::string kind;  // "number", "whole number", "true or false", "text", "list of numbers", ...
+  std::string kind;  // "a number", "a whole number", "a flag", "a text", "one of", "a list of 3 numbers"
   std::string unit;  // "" when it has none
   std::string allowed;
   std::string meaning;
@@ -30,7 +30,7 @@ class KeyTable {
  public:
   void Number(std::string name, double& field, double min, double max, std::string unit, std::string meaning);
   void Integer(std::string name, int& field, int min, int max, std::string unit, std::string meaning);
-  // The same of a field that holds the value in another unit or form: `set` puts it there.
+  // The same for a field that holds the value in another unit or form: `set` stores it.
   void Number(std::string name, double value, double min, double max, std::string unit, std::string meaning,
               std::function<void(double)> set);
   void Integer(std::string name, int value, int min, int max, std::string unit, std::string meaning,
@@ -52,19 +52,19 @@ class KeyTable {
                std::size_t size_max, double min, double max, std::string unit, std::string meaning,
                std::function<void(const std::vector<double>&)> set);
 
-  // A key that was called `former` until it got its name of today, `successor`, with the same meaning.
+  // Registers a renamed key: `former` is now called `successor` and means the same.
   void Renamed(std::string former, std::string successor);
 
-  // Sets one field, or throws InputError and leaves it: unknown key (with the nearest known one), renamed
-  // key (with its name of today), wrong kind, out of range.
+  // Sets one field. Throws InputError and leaves the field unchanged for an unknown key (names the nearest
+  // known one), a renamed key (names the current one), a wrong kind or a value out of range.
   void Apply(const Setting& setting) const;
-  // The name of today of a key, of any time, that somebody wrote down.
+  // The current name of a key. `name` may be a former name.
   [[nodiscard]] const std::string& NameToday(const std::string& name) const;
 
   [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
-  // The names of today of those that were renamed, by their former ones.
+  // The current names of renamed keys, by their former names.
   [[nodiscard]] const std::map<std::string, std::string>& successors() const { return successors_; }
-  // What each key's field held when the key was added, by the key's name.
+  // Each key's default as text, by the key's name.
   [[nodiscard]] std::map<std::string, std::string> Values() const;
 
  private:
@@ -76,7 +76,7 @@ class KeyTable {
   std::map<std::string, std::string> successors_;  // by the former name
 };
 
-// The entry of `names` that is fewest edits away from `name`; "" when none is near. For "did you mean".
+// The entry of `names` with the smallest edit distance from `name`; "" when none is near. For "did you mean".
 std::string Nearest(const std::string& name, const std::vector<std::string>& names);
 
 }  // namespace fovea::config

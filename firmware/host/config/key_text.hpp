@@ -1,4 +1,4 @@
-// The keys that a program knows, as its user reads them.
+// A program's keys as text for its user.
 #pragma once
 
 #include <string>

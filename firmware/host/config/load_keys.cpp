@@ -11,10 +11,10 @@ namespace fovea::config {
 
 void AddLoadKeys(LoadSettings& settings, KeyTable& keys) {
   keys.Number("arm.load_mass", settings.mass, 0.0, 100.0, "kg",
-              "what the end effector carries, the camera with it; robot and servo know of it");
-  keys.Numbers("arm.load_com", settings.com, 3, 3, -2.0, 2.0, "m", "its centre of mass in E");
+              "mass that the end effector carries, with the camera; robot and servo know of it");
+  keys.Numbers("arm.load_com", settings.com, 3, 3, -2.0, 2.0, "m", "the load's centre of mass in E");
   keys.Numbers("arm.load_inertia", settings.inertia, 3, 6, -100.0, 100.0, "kg m^2",
-               "about its centre of mass, in axes of E: xx, yy, zz, and xy, xz, yz where they are not 0");
+               "its inertia about its centre of mass, in axes of E: xx, yy, zz, then xy, xz, yz if not 0");
 }
 
 model::Load MakeLoad(const LoadSettings& settings) {
@@ -33,7 +33,7 @@ model::Load MakeLoad(const LoadSettings& settings) {
   }
   const Eigen::SelfAdjointEigenSolver<model::Mat3> solver(load.I_Com_E, Eigen::EigenvaluesOnly);
   const model::Vec3& moments = solver.eigenvalues();  // ascending
-  const double least = -1e-12;                        // a point mass has none
+  const double least = -1e-12;                        // slack for rounding: a point mass has moments of 0
   if (!(moments[0] >= least && moments[0] + moments[1] >= moments[2] * (1.0 - 1e-6) + least)) {
     throw InputError(
         fmt::format("arm.load_inertia = [{}] is not allowed: no body has principal moments "

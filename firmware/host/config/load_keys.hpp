@@ -1,4 +1,4 @@
-// The keys of what the end effector carries, the same for the simulator and for hardware.
+// The keys of the end effector's load, the same for the simulator and for hardware.
 #pragma once
 
 #include <vector>
@@ -12,13 +12,13 @@ namespace fovea::config {
 struct LoadSettings {
   double mass = 0.25;                             // [kg]
   std::vector<double> com{0.05, 0.0, 0.02};       // in E [m]
-  std::vector<double> inertia{2e-4, 2e-4, 1e-4};  // xx, yy, zz, or with xy, xz, yz behind them [kg m^2]
+  std::vector<double> inertia{2e-4, 2e-4, 1e-4};  // xx, yy, zz; optionally then xy, xz, yz [kg m^2]
 };
 
 // The settings must outlive the table.
 void AddLoadKeys(LoadSettings& settings, KeyTable& keys);
 
-// InputError: moments of inertia that no body can have.
+// InputError: a wrong number of entries, or moments of inertia that no body can have.
 model::Load MakeLoad(const LoadSettings& settings);
 
 }  // namespace fovea::config

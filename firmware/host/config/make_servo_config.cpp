@@ -1,4 +1,4 @@
-// From the keys' settings, an arm, a mount and a target to the servo's configuration.
+// Makes the servo's configuration from the keys' settings, an arm, a camera mount and a target.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -75,19 +75,19 @@ ViewConfig MakeView(const ServoSettings& settings, const vision::Intrinsics& in)
   view.y_max = side(in.height_px - 0.5, 1.0, in.c_v_px, in.f_v_px);
   if (view.enabled && !(view.x_min < view.x_max && view.y_min < view.y_max)) {
     throw InputError(
-        fmt::format("safety.view_margin_px = {} is not allowed: of a picture of {} x {} px nothing is left",
+        fmt::format("safety.view_margin_px = {} is not allowed: it leaves nothing of a picture of {} x {} px",
                     margin, in.width_px, in.height_px));
   }
   return view;
 }
 
-// Values that are allowed each by itself and must fit each other.
+// Checks values that are each allowed alone but must fit together.
 void CheckTogether(const ServoConfig& c) {
   const model::Vec3& goal = c.feature.p_CO_C_star;
   if (!c.feature.SeesOrientation() && goal.z() <= c.feature.radius) {
     throw InputError(fmt::format(
-        "servo.goal = [{}, {}, {}] is not allowed: the target must be wholly before the camera, so "
-        "the third above its radius of {} m",
+        "servo.goal = [{}, {}, {}] is not allowed: the target must be wholly in front of the camera, so "
+        "the third number must be above its radius of {} m",
         goal.x(), goal.y(), goal.z(), c.feature.radius));
   }
   if (c.predict.stale_s > c.predict.coast_s) {
@@ -97,26 +97,26 @@ void CheckTogether(const ServoConfig& c) {
   if (const double most = c.motion_law.zeta * c.motion_law.omega_n; c.motion_law.integral > most) {
     throw InputError(fmt::format(
         "servo.integral = {} is not allowed: at most servo.zeta times servo.omega_n, which is {:g} "
-        "1/s; at twice that the joints' error grows",
+        "1/s; at twice that value the joints' error grows",
         c.motion_law.integral, most));
   }
   if (const guard::MotorNeed need = guard::LargestMotorNeed(c); !(need.torque <= need.allowed)) {
     throw InputError(fmt::format(
         "arm.load_mass, safety.joint_acceleration_fraction and safety.torque_fraction do not fit: with the "
-        "load, joint {} takes {:.3g} to accelerate as it may, and its motor may give {:.3g} (Nm, N)",
+        "load, joint {} needs {:.3g} for its allowed acceleration, its motor may give only {:.3g} (Nm, N)",
         need.joint + 1, need.torque, need.allowed));
   }
   int joint = 0;
   if (const double coupling = model::InertiaAtReady(c.arm).coupling.maxCoeff(&joint);
       !(coupling <= model::kCouplingMost)) {
     throw InputError(fmt::format(
-        "arm.load_mass at arm.load_com is not allowed: it ties joint {} to the others, which makes it {:.0f} "
-        "times as heavy while they are held; at most {:g} times",
+        "arm.load_mass at arm.load_com is not allowed: it couples joint {} to the others and makes it {:.0f} "
+        "times as heavy while they are held; at most {:g} times is allowed",
         joint + 1, coupling, model::kCouplingMost));
   }
   if (c.guard.workspace_margin >= c.guard.workspace_radius) {
     throw InputError(fmt::format(
-        "safety.workspace_margin = {} is not allowed: below safety.workspace_radius, which is {} m",
+        "safety.workspace_margin = {} is not allowed: must be below safety.workspace_radius, which is {} m",
         c.guard.workspace_margin, c.guard.workspace_radius));
   }
 }
@@ -213,8 +213,8 @@ void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, Mot
                       law.joints_min, robot.name, robot.model.num_joints));
     case motion_laws::Unfit::kDampedTooFast:
       throw InputError(
-          fmt::format("{} is not allowed: joint {} is damped at {:.0f} 1/s, which is {}, and motion law "
-                      "\"{}\" bears {:g} 1/s",
+          fmt::format("{} is not allowed: joint {} is damped at {:.0f} 1/s, which is {}; motion law "
+                      "\"{}\" allows at most {:g} 1/s",
                       law.has_springs ? "servo.k_v (or servo.zeta, servo.omega_n, servo.k_p, which make it)"
                                       : "servo.zeta with servo.omega_n",
                       fitness.joint + 1, fitness.damping,

@@ -1,4 +1,4 @@
-// Numbers of a command line: finite ones alone, whatever else an option checks.
+// Rejects NaN and infinity in command-line numbers, whatever else an option checks.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,7 +14,7 @@ inline void RefuseNonFinite(CLI::App& app) {
       [](std::string& text) {
         double value = 0.0;
         const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-        return is_number ? std::string() : text + " is not allowed: a finite number is";
+        return is_number ? std::string() : text + " is not allowed: expected a finite number";
       },
       "");
   for (CLI::Option* option : app.get_options({})) {

@@ -36,6 +36,7 @@ fs::path OutputFolder::Begin(const std::string& name) {
 }
 
 fs::path OutputFolder::Partial(const std::string& name) const { return folder_ / ("." + name + ".partial"); }
+fs::path OutputFolder::Earlier(const std::string& name) const { return folder_ / ("." + name + ".earlier"); }
 
 void OutputFolder::WritePartial(const OutputFile& file) const {
   std::error_code ignored;
@@ -66,6 +67,22 @@ fs::path OutputFolder::Keep(const std::string& name, const std::vector<std::stri
   return folder_ / name;
 }
 
+void OutputFolder::TakeBack(const std::vector<OutputFile>& files,
+                            const std::vector<std::string>& all_names) const {
+  std::error_code ignored;
+  for (const OutputFile& file : files) {
+    if (file.content) {
+      fs::remove(folder_ / file.name, ignored);
+      fs::remove(Partial(file.name), ignored);
+    } else {
+      fs::rename(folder_ / file.name, Partial(file.name), ignored);
+    }
+  }
+  for (const std::string& name : all_names) {
+    fs::rename(Earlier(name), folder_ / name, ignored);
+  }
+}
+
 void OutputFolder::Replace(const std::vector<OutputFile>& files,
                            const std::vector<std::string>& all_names) const {
   std::error_code ignored;
@@ -81,14 +98,18 @@ void OutputFolder::Replace(const std::vector<OutputFile>& files,
   }
   const std::lock_guard lock(placing_);
   for (const std::string& name : all_names) {
-    fs::remove(folder_ / name, ignored);
+    fs::rename(folder_ / name, Earlier(name), ignored);
   }
   for (const OutputFile& file : files) {
     std::error_code error;
     fs::rename(Partial(file.name), folder_ / file.name, error);
     if (error) {
+      TakeBack(files, all_names);
       throw InputError((folder_ / file.name).string() + ": cannot be written: " + error.message());
     }
+  }
+  for (const std::string& name : all_names) {
+    fs::remove(Earlier(name), ignored);
   }
 }
 

@@ -1,4 +1,4 @@
-// The folder that a run leaves its files in. A file is there whole or not at all.
+// The output folder of a run. A file in it is complete or absent.
 #pragma once
 
 #include <filesystem>
@@ -13,42 +13,45 @@ namespace fovea::config {
 
 struct OutputFile {
   std::string name;
-  std::optional<std::string> content;  // none: what was written to the path that Begin gave
+  std::optional<std::string> content;  // none: the run wrote it to the path that Begin returned
 };
 
 class OutputFolder {
  public:
-  // Makes the folder, holds it, and makes sure that files can be written to it. InputError when they cannot,
-  // or when another run holds it.
+  // Makes and locks the folder, and checks that it can be written to. InputError when it cannot, or when
+  // another run holds it.
   explicit OutputFolder(const std::filesystem::path& folder);
-  // Removes what was begun and not put in place.
+  // Removes files that were begun and not put in place.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  // A path to write the file `name` to while the run goes on; Replace puts it in place.
+  // Returns a path for writing the file `name` during the run; Replace puts the file in place.
   std::filesystem::path Begin(const std::string& name);
 
-  // Puts `files` there, in place of what an earlier run left under `all_names`. When one cannot be written,
-  // InputError, and everything is as it was. The last of `files` appears after all the others: where it is,
-  // the rest is too.
+  // Replaces the files of an earlier run, named in `all_names`, by `files`. InputError when a file cannot be
+  // written; the earlier files then stay. The last of `files` appears last: where it exists, the others exist
+  // too.
   void Replace(const std::vector<OutputFile>& files, const std::vector<std::string>& all_names) const;
 
-  // Puts in place what was written to the path that Begin gave for `name`, as far as it goes, and takes away
-  // what an earlier run left under `all_names`. For what shall outlive a Replace that cannot be. Returns its
-  // path. Any thread may call it, during a Replace too; once that has put `name` in place, nothing is done.
+  // Puts the file `name` of Begin in place, complete or not, and removes an earlier run's files, named in
+  // `all_names`. For a file that must survive when Replace is impossible. Returns its path. Any thread may
+  // call it, also during Replace; it does nothing once Replace has put `name` in place.
   std::filesystem::path Keep(const std::string& name, const std::vector<std::string>& all_names) const;
 
   [[nodiscard]] const std::filesystem::path& path() const { return folder_; }
 
  private:
   [[nodiscard]] std::filesystem::path Partial(const std::string& name) const;
+  [[nodiscard]] std::filesystem::path Earlier(const std::string& name) const;  // while Replace may fail
   void WritePartial(const OutputFile& file) const;
+  // Undoes a Replace in which a rename failed. Begun files go back to their paths of Begin.
+  void TakeBack(const std::vector<OutputFile>& files, const std::vector<std::string>& all_names) const;
 
   std::filesystem::path folder_;
   std::optional<FolderLock> lock_;
   std::vector<std::string> begun_;
-  mutable std::mutex placing_;  // while names change
+  mutable std::mutex placing_;  // held while files are removed and renamed
 };
 
 }  // namespace fovea::config

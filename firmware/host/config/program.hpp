@@ -1,4 +1,4 @@
-// What every program of the project does with its command line: exit codes, and errors on one line.
+// Command-line handling of every program of the project: exit codes, and errors on one line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,7 +21,7 @@ inline constexpr int kDone = 0;
 inline constexpr int kGoalMissed = 1;  // the run failed its own goal
 inline constexpr int kBadInput = 2;    // wrong usage or input
 
-// A library's words may have several lines.
+// Joins lines: a library's message may have several.
 inline std::string OnOneLine(std::string text) {
   text.erase(text.find_last_not_of(" \n\r\t") + 1);
   std::replace_if(
@@ -29,7 +29,7 @@ inline std::string OnOneLine(std::string text) {
   return text;
 }
 
-// What `app` takes: the names of its subcommands and options.
+// The names of the subcommands and options of `app`.
 inline std::vector<std::string> NamesAllowedBy(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* command :
@@ -44,7 +44,7 @@ inline std::vector<std::string> NamesAllowedBy(const CLI::App& app) {
   return names;
 }
 
-// What is wrong with a command line, and what is allowed there.
+// Says what is wrong with a command line, and what is allowed there.
 inline std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = &app;
   while (!command->get_subcommands().empty()) {
@@ -74,8 +74,8 @@ inline std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
   return what + "; allowed: " + allowed;
 }
 
-// Parses the command line into what `app` was given, then does `action`. Returns the program's exit code: of
-// the action, or kBadInput after one line on standard error that begins with the program's `name`.
+// Parses the command line with `app`, then runs `action`. Returns the program's exit code: the action's, or
+// kBadInput after one line on standard error that begins with the program's `name`.
 inline int RunProgram(const char* name, CLI::App& app, int argc, char** argv,
                       const std::function<int()>& action) {
   RefuseNonFinite(app);

@@ -1,4 +1,4 @@
-// Orientations as configurations write them.
+// Roll, pitch, yaw: the form of an orientation in a configuration.
 #pragma once
 
 #include <array>
@@ -18,8 +18,8 @@ inline model::Mat3 RollPitchYaw(const std::vector<double>& degrees) {
   return model::RotationOf({0.0, 0.0, to_rad * degrees[2]}) * pitch * roll;
 }
 
-// The same back: roll, pitch, yaw [deg] of `R`, pitch from -90 to 90. Where pitch is 90 either way only the
-// sum or the difference of the others counts, and roll is 0.
+// The inverse: roll, pitch, yaw [deg] of `R`, pitch from -90 to 90. At a pitch of -90 or 90 only the sum or
+// the difference of roll and yaw is defined, and roll is set to 0.
 inline std::array<double, 3> RollPitchYawOf(const model::Mat3& R) {
   const double to_deg = 180.0 / std::numbers::pi;
   const double level = std::hypot(R(0, 0), R(1, 0));

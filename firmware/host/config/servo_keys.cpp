@@ -26,7 +26,7 @@ FieldKeys::Add Number(double& value, double min, double max) {
   };
 }
 
-// What the keys set from which a field of the servo's settings follows.
+// Binds the keys from which fields of the servo's settings are derived.
 void BindDerived(ServoSettings& s, FieldKeys& keys) {
   keys.Bind("servo.target_region", List(s.target_region, 6, 6, -100.0, 100.0));
   keys.Bind("servo.stuck_shift_px", Number(s.stuck_shift_px, 0.5, 1000.0));
@@ -48,17 +48,17 @@ void AddFeatureKeys(ServoSettings& s, KeyTable& keys) {
   forms.insert(forms.end(), features::kFormNames.begin(), features::kFormNames.end());
   keys.Choice(
       "servo.feature", s.feature, forms,
-      "what the law works on; auto: sphere P/R, circle x, y, D/Z, the square's corners, the triangle's pose; "
-      "circle also for a sphere, side and corner_side for a square (4 of 6 degrees of freedom), pose and "
-      "corners for both");
+      "feature that the law controls; auto: sphere P/R, circle x, y, D/Z, the square's corners, the "
+      "triangle's pose; also allowed: circle for a sphere, side and corner_side for a square (4 of 6 degrees "
+      "of freedom), pose and corners for square and triangle");
   keys.Flag("servo.hold_orientation", s.config.feature.hold_orientation,
             "also keep the camera's orientation as it was when tracking began; sphere, circle, side");
   keys.Numbers("servo.goal", s.goal, 3, 3, -10.0, 10.0, "m",
-               "where the target's centre shall stand in camera axes: x right, y down, z forward");
+               "goal position of the target's centre in camera axes: x right, y down, z forward");
   keys.Numbers(
       "servo.goal_rpy_deg", s.goal_rpy_deg, 3, 3, -360.0, 360.0, "deg",
-      "how a square or triangle shall be turned there: roll, pitch, yaw about fixed camera axes; 0: it faces "
-      "the camera");
+      "goal orientation of a square or triangle: roll, pitch, yaw about fixed camera axes; 0: it faces the "
+      "camera");
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
   Fields(fields, c.move);
   Fields(fields, c.guard);
   keys.Number("safety.camera_radius", settings.camera_radius, 0.0, 1.0, "m",
-              "the camera is guarded as a capsule of this radius from the flange to its lens; 0: as nothing");
+              "the camera is guarded as a capsule of this radius from the flange to its lens; 0: unguarded");
   Fields(fields, c.safety);
   keys.Renamed("safety.face_tilt_max", "safety.disc_tilt_max");
   keys.Renamed("safety.hand_clearance", "safety.self_clearance");
@@ -88,7 +88,7 @@ void ScaleSpeed(double scale, ServoSettings& settings) {
   settings.config.guard.joint_velocity_fraction *= scale;
   double& speed = settings.config.guard.cartesian_speed;
   double& turn = settings.config.guard.rotation_speed;
-  speed = std::max(scale * speed, kLeastCartesianSpeed);  // as Init allows
+  speed = std::max(scale * speed, kLeastCartesianSpeed);  // the least that Init allows
   turn = std::max(scale * turn, kLeastRotationSpeed);
 }
 

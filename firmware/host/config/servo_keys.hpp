@@ -12,7 +12,7 @@
 
 namespace fovea::config {
 
-// What the keys set, before robot, camera mount and target are known.
+// The values of the keys, before robot, camera mount and target are known.
 struct ServoSettings {
   ServoConfig config;
   std::vector<double> goal{0.0, 0.0, 0.40};         // p_CO_C_star [m]
@@ -35,11 +35,11 @@ struct ServoSettings {
 // The settings must outlive the table.
 void AddServoKeys(ServoSettings& settings, KeyTable& keys);
 
-// The speeds that robot.speed_scale makes a share of: gains and speed limits.
+// Scales gains and speed limits by robot.speed_scale.
 void ScaleSpeed(double scale, ServoSettings& settings);
 
 // The servo's whole configuration for `robot`, with the camera at `X_EC`. InputError: a posture that does not
-// fit the robot, a feature that is none of the target's, or anything that ServoTask::Init refuses.
+// fit the robot, a feature that the target does not have, or anything that ServoTask::Init refuses.
 ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::Robot& robot,
                             const model::Pose& X_EC, const vision::Intrinsics& intrinsics,
                             const TargetSettings& target);

@@ -16,7 +16,7 @@ std::vector<double> ToNumbers(const toml::array& array, const std::string& what)
   std::vector<double> numbers;
   for (const toml::node& element : array) {
     if (element.is_table()) {
-      throw InputError(what + ": a list of tables is no value here; a section is written [name], once");
+      throw InputError(what + ": a list of tables is not allowed here; write a section [name] once");
     }
     const auto number = element.value<double>();
     if (!number || !element.is_number()) {
@@ -44,9 +44,9 @@ Value ToValue(const toml::node& node, const std::string& what) {
     return ToNumbers(*array, what);
   }
   if (node.is_table()) {
-    throw InputError(what + ": a table is no value here");
+    throw InputError(what + ": a table is not allowed here");
   }
-  throw InputError(what + ": dates and times are no values here");
+  throw InputError(what + ": dates and times are not allowed here");
 }
 
 void Flatten(const toml::table& table, const std::string& prefix, const std::string& file,
@@ -63,7 +63,7 @@ void Flatten(const toml::table& table, const std::string& prefix, const std::str
   }
 }
 
-// The parser takes a key of any depth, a.a.a and so on, and the depth of its recursion with it.
+// The parser recurses once per level of a dotted key (a.a.a ...). A line limit bounds that depth.
 constexpr std::size_t kLongestLine = 10'000;  // bytes
 
 void CheckLine(const std::string& line, const std::string& where) {

@@ -1,4 +1,4 @@
-// Settings as they come from a TOML file or from the command line, before anyone knows what they mean.
+// Settings read from a TOML file or from the command line, before they are checked against known keys.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ std::vector<Setting> ReadTomlFile(const std::filesystem::path& path);
 // One "key=value" of the command line; the value in TOML, or bare text. InputError when it is neither.
 Setting ParseAssignment(const std::string& text);
 
-// The value as TOML would have it.
+// The value in TOML.
 std::string ToText(const Value& value);
 
 }  // namespace fovea::config

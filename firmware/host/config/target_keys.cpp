@@ -12,8 +12,8 @@ namespace {
 
 using features::Polygon;
 
-constexpr double kDifferent = 0.05;  // sides differ by this share of the longest, at least
-constexpr double kFlat = 0.1;        // the height over the longest side is this share of it, at least
+constexpr double kDifferent = 0.05;  // least difference of two sides, as a share of the longest
+constexpr double kFlat = 0.1;        // least height over the longest side, as a share of that side
 
 void CheckTriangle(const Polygon& triangle) {
   const auto& c = triangle.corners;
@@ -23,14 +23,14 @@ void CheckTriangle(const Polygon& triangle) {
   const double height = model::Cross(c[1] - c[0], c[2] - c[0]).norm() / std::max(longest, 1e-12);
   if (!(longest >= 0.005 && height >= kFlat * longest)) {
     throw InputError(fmt::format(
-        "target.triangle: its longest side is {:.3g} m and its height over it {:.3g} m; allowed is a side of "
-        "at least 0.005 m and a height of at least {:g} of it",
+        "target.triangle: its longest side is {:.3g} m and its height over it {:.3g} m; the side must be at "
+        "least 0.005 m and the height at least {:g} of the side",
         longest, height, kFlat));
   }
   if (std::min(sides[1] - sides[0], sides[2] - sides[1]) < kDifferent * longest) {
     throw InputError(fmt::format(
-        "target.triangle: sides of {:.3g}, {:.3g} and {:.3g} m are too much alike to tell its corners apart; "
-        "they must differ by {:g} of the longest",
+        "target.triangle: sides of {:.3g}, {:.3g} and {:.3g} m are too similar to tell its corners apart; "
+        "they must differ by at least {:g} of the longest",
         sides[0], sides[1], sides[2], kDifferent));
   }
 }
@@ -61,12 +61,12 @@ static_assert([] {
 
 void AddTargetKeys(TargetSettings& s, KeyTable& keys) {
   keys.Choice("target.kind", s.kind, {features::kTargetNames.begin(), features::kTargetNames.end()},
-              "what is looked at");
-  keys.Number("target.diameter", s.diameter, 0.005, 2.0, "m", "of a sphere or a circle");
-  keys.Number("target.side", s.side, 0.005, 2.0, "m", "of a square");
+              "kind of the target");
+  keys.Number("target.diameter", s.diameter, 0.005, 2.0, "m", "diameter of a sphere or a circle");
+  keys.Number("target.side", s.side, 0.005, 2.0, "m", "side of a square");
   keys.Numbers(
       "target.triangle", s.triangle, 6, 6, -1.0, 1.0, "m",
-      "the triangle's corners, x right and y down of each; put about their mean; three different sides");
+      "a triangle's corners, x right and y down of each, centred on their mean; its three sides must differ");
 }
 
 features::TargetFeature MakeTarget(const TargetSettings& s) {

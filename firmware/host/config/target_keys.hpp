@@ -1,4 +1,4 @@
-// The keys of section [target] that say what is looked at, the same for the simulator and for hardware.
+// The keys of section [target] that describe the target, the same for the simulator and for hardware.
 #pragma once
 
 #include <string>
@@ -21,9 +21,8 @@ struct TargetSettings {
 // The settings must outlive the table.
 void AddTargetKeys(TargetSettings& settings, KeyTable& keys);
 
-// The target without a goal, and with the feature that its kind is steered by when none is chosen.
-// InputError: a triangle that is none, or nearly equilateral, isosceles or flat, so that its corners cannot
-// be told apart.
+// The target without a goal, with the default feature of its kind. InputError: a degenerate triangle, or one
+// so nearly equilateral, isosceles or flat that its corners cannot be told apart.
 features::TargetFeature MakeTarget(const TargetSettings& settings);
 
 }  // namespace fovea::config

@@ -25,7 +25,7 @@ toml::table Parse(const std::string& text) {
   }
 }
 
-// Byte offset of a place in `text`; TOML's columns count characters, of which UTF-8 may take several bytes.
+// Byte offset of a place in `text`. TOML's columns count characters; one may take several bytes in UTF-8.
 std::size_t OffsetOf(const std::string& text, const toml::source_position& place) {
   std::size_t offset = 0;
   for (toml::source_index line = 1; line < place.line; ++line) {
@@ -70,7 +70,7 @@ std::string WithValue(const std::string& text, const std::string& section, const
   }
   const std::size_t from = OffsetOf(text, old->source().begin);
   const std::size_t to = OffsetOf(text, old->source().end);
-  // What is said behind a value is said of that value.
+  // A comment after a value describes that value: it goes too.
   std::size_t rest = text.find('\n', to);
   rest = rest == std::string::npos ? text.size() : rest;
   return text.substr(0, from) + value.value + text.substr(rest);
@@ -97,24 +97,24 @@ std::map<std::string, std::string> ValuesOf(const toml::table& table, const std:
 std::string WithValues(const std::string& text, const std::string& section,
                        const std::vector<NewValue>& values) {
   std::string changed = text;
-  // The last first: each new one stands before those that were added.
+  // In reverse: each new value is inserted before those added earlier.
   for (auto value = values.rbegin(); value != values.rend(); ++value) {
     changed = WithValue(changed, section, *value);
   }
-  // The result must say the new values, and for the rest what it said before.
+  // The result must hold the new values and otherwise the old ones.
   std::map<std::string, std::string> wanted = ValuesOf(Parse(text));
   for (const NewValue& value : values) {
     wanted[section + "." + value.key] = ValuesOf(Parse("value = " + value.value)).at("value");
   }
   if (ValuesOf(Parse(changed)) != wanted) {
     throw InputError(
-        fmt::format("[{}] is written in a way that is not changed here: change it by hand", section));
+        fmt::format("[{}] is written in a form that cannot be edited here: change it by hand", section));
   }
   return changed;
 }
 
 void WriteValues(const fs::path& file, const std::string& section, const std::vector<NewValue>& values) {
-  (void)ReadTomlFile(file);  // its errors say what is no file, or no TOML
+  (void)ReadTomlFile(file);  // InputError for a missing file or invalid TOML
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   std::string changed;

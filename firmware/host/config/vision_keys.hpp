@@ -9,7 +9,7 @@
 
 namespace fovea::config {
 
-// What the keys set, before camera and target are known.
+// The values of the keys, before camera and target are known.
 struct VisionSettings {
   vision::DetectorConfig config;
   std::string method = "colour";
@@ -18,8 +18,7 @@ struct VisionSettings {
 // The settings must outlive the table.
 void AddVisionKeys(VisionSettings& settings, KeyTable& keys);
 
-// The detector's whole configuration. InputError: limits that leave nothing, a method that finds no such
-// target.
+// The detector's whole configuration. InputError: empty ranges, or a method that cannot find this target.
 vision::DetectorConfig MakeVisionConfig(const VisionSettings& settings, const vision::Intrinsics& intrinsics,
                                         const TargetSettings& target);
 

@@ -7,10 +7,10 @@
 namespace fovea::design {
 namespace {
 
-constexpr double kSameInstant = 1e-9;  // of a period: what a delay may miss whole periods by
-constexpr int kDeepest = 48;           // halvings of the half circle
+constexpr double kSameInstant = 1e-9;  // a delay this close to whole periods counts as whole [periods]
+constexpr int kDeepest = 48;           // most halvings of the half circle
 
-// Position and velocity after `t` under a unit force from rest.
+// Position and velocity at time `t` after a start from rest under a unit force.
 Eigen::Vector2d ForcedState(const SecondOrder& system, double t) {
   return {Response(system, 0.0, 0.0, 1.0, t), ResponseVelocity(system, 0.0, 0.0, 1.0, t)};
 }
@@ -23,9 +23,9 @@ double DistanceToSegment(const std::complex<double>& from, const std::complex<do
   return std::abs(from + share * along);
 }
 
-// The angle by which F turns about zero between two angles, or none when it may touch zero. A curve departs
-// from its chord by no more than curvature * length^2 / 8; when zero is farther off, both turn about it
-// alike.
+// The angle by which F turns about zero from `phi_1` to `phi_2`, or none when F may touch zero. A curve
+// deviates from its chord by no more than curvature * length^2 / 8. When zero is farther from the chord than
+// that, curve and chord turn about zero by the same angle.
 std::optional<double> Turn(const Characteristic& F, double phi_1, const std::complex<double>& F_1,
                            double phi_2, const std::complex<double>& F_2, int depth) {
   const double length = phi_2 - phi_1;

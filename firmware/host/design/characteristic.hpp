@@ -10,19 +10,19 @@
 
 namespace fovea::design {
 
-// Plant and gains with time in sampling periods. Phi - I is kept, not Phi, which a fast rate brings so near
-// to I that the plant is lost in its last digits.
+// Plant and gains with time in sampling periods. Stores Phi - I instead of Phi: at a fast rate Phi is so near
+// to I that rounding would lose the plant.
 struct Discretised {
   explicit Discretised(const SampledLoop& loop);
 
   double k_p;
   double k_v;
   int whole_periods;  // of the delay
-  double fraction;    // the rest of it, [0, 1)
+  double fraction;    // the rest of the delay [periods], 0 <= fraction < 1
   double kappa;
   double beta;
-  double h;  // response to a unit impulse after one period, and H to a unit step
-  double H;
+  double h;  // response to a unit impulse after one period
+  double H;  // response to a unit step after one period
   Eigen::Matrix2d Phi_minus_I;
   Eigen::Vector2d Gamma_0;
   Eigen::Vector2d Gamma_1;
@@ -47,7 +47,7 @@ class Characteristic {
   Eigen::Vector2d b_;
 };
 
-// Roots of F in |w| < 1. None when one is on the circle, as near as doubles tell.
+// Number of roots of F in |w| < 1. None when a root is on the circle to within rounding.
 [[nodiscard]] std::optional<int> RootsWithinUnitCircle(const Characteristic& F);
 
 }  // namespace fovea::design

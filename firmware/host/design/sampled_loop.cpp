@@ -12,8 +12,8 @@ namespace {
 constexpr double kScanStep = 1.002;
 constexpr double kFarthestFactor = 1e6;
 
-// Goes from `from` to `to` in geometric steps until `holds` fails for the first time, and narrows that step
-// down. `from` itself is known to hold.
+// Goes from `from` to `to` in geometric steps until `holds` fails for the first time, then bisects that step.
+// `holds(known)` must be true.
 template <typename Predicate>
 std::optional<double> FirstFailure(const Predicate& holds, double known, double from, double to) {
   const double factor = to > from ? kScanStep : 1.0 / kScanStep;
@@ -52,7 +52,7 @@ Eigen::MatrixXd PeriodMatrix(const SampledLoop& loop) {
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(2 + under_way, 2 + under_way);
   const Eigen::RowVector2d K(plant.k_p, plant.k_v);
   A.topLeftCorner<2, 2>() = Eigen::Matrix2d::Identity() + plant.Phi_minus_I;
-  // What acts in this period, first part and rest: forces that are under way, or the one of this sample.
+  // The forces that act in the first part and in the rest of this period: delayed ones, or this sample's.
   for (const auto& [age, Gamma] :
        {std::pair{plant.whole_periods, plant.Gamma_0}, std::pair{plant.whole_periods + 1, plant.Gamma_1}}) {
     if (age == 0) {

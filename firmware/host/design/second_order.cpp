@@ -10,7 +10,7 @@ namespace {
 // (e^y - 1) / y
 double ExpDifference(double y) { return y == 0.0 ? 1.0 : std::expm1(y) / y; }
 
-// x'' + 2 a x' + w x = u: the coefficients, and a^2 - w, which decides between oscillating and creeping.
+// x'' + 2 a x' + w x = u: the coefficients, and a^2 - w, negative when the motion oscillates.
 struct Normal {
   explicit Normal(const SecondOrder& system)
       : a(system.damping / (2.0 * system.mass)), w(system.stiffness / system.mass), discriminant(a * a - w) {}
@@ -24,7 +24,7 @@ struct RealPoles {
   double fast;
 };
 
-// For discriminant >= 0. The larger root by a sum, the other by their product: nothing cancels.
+// For discriminant >= 0. One root is a sum, the other follows from the product of both: nothing cancels.
 RealPoles RealPolesOf(const Normal& normal) {
   const double root = std::sqrt(normal.discriminant);
   if (normal.a >= 0.0) {
@@ -35,7 +35,7 @@ RealPoles RealPolesOf(const Normal& normal) {
   return {slow, normal.w / slow};
 }
 
-// What all motion is made of: x = x0 g + v0 h + u H under a constant acceleration u.
+// The basis of every motion: x = x0 g + v0 h + u H under a constant acceleration u.
 struct Basis {
   double g;   // from x(0) = 1 at rest
   double h;   // from x'(0) = 1 at zero; also H'
@@ -85,7 +85,7 @@ Basis BasisAt(const Normal& normal, double t) {
   return basis;
 }
 
-// The crossing of `level` by `f`, which falls from above it at `low` to below it at `high`.
+// Where `f` crosses `level`. `f` falls from above the level at `low` to below it at `high`.
 template <typename Function>
 double Falls(const Function& f, double level, double low, double high) {
   for (double middle = 0.5 * (low + high); low < middle && middle < high; middle = 0.5 * (low + high)) {
@@ -127,12 +127,12 @@ std::optional<double> SettlingTime(const SecondOrder& system, double band) {
   if (!(system.damping > 0.0 && system.stiffness > 0.0)) {
     return std::nullopt;
   }
-  // What is left of the step, as a share of it.
+  // The remaining share of the step.
   const auto rest = [&](double t) { return Response(system, 1.0, 0.0, 0.0, t); };
   const Normal normal(system);
   if (normal.discriminant < 0.0) {
-    // Its extremes stand half a period apart and shrink like exp(-a t); it falls for good after the last one
-    // that is outside the band.
+    // The extremes are half a period apart and shrink like exp(-a t). The response stays in the band after
+    // the last extreme outside it.
     const double half_period = std::numbers::pi / std::sqrt(-normal.discriminant);
     const double last = std::floor(-std::log(band) / (normal.a * half_period));
     const double sign = std::fmod(last, 2.0) == 0.0 ? 1.0 : -1.0;

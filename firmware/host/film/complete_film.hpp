@@ -1,4 +1,4 @@
-// The end of a film beside a run: what goes wrong with it costs nothing but the film.
+// Completes a film at the end of a run. An error costs only the film.
 #pragma once
 
 #include <exception>
@@ -8,8 +8,8 @@
 
 namespace fovea::film {
 
-// Calls `complete`, which may throw. Whether the film of that name is there; where it is not, one line that
-// says why is added to `errors`, for the summary of the run.
+// Calls `complete`, which may throw. True when the film `name` is complete. Otherwise adds one line with the
+// reason to `errors`, for the summary of the run.
 inline bool CompleteFilm(const std::string& name, const std::function<void()>& complete,
                          std::vector<std::string>& errors) {
   try {

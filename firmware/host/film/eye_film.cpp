@@ -15,7 +15,7 @@ namespace {
 constexpr int kLegendPx = 28;    // height of the strip below the picture
 constexpr int kBaselinePx = 19;  // of the text in it
 
-// H.264 with halved colour planes wants even sizes.
+// H.264 with halved colour planes needs even sizes.
 int Even(int size) { return size + size % 2; }
 
 cv::Size PageSize(const vision::Intrinsics& in) {

@@ -1,4 +1,4 @@
-// What the eye saw, as a film: each frame with detection, goal and time drawn in, encoded beside the run.
+// Film of the camera's frames, with detection, goal and time drawn in; encoded while the run goes on.
 #pragma once
 
 #include <cstdint>
@@ -23,12 +23,12 @@ struct EyeFilmConfig {
 class EyeFilm {
  public:
   explicit EyeFilm(const EyeFilmConfig& config);
-  // From the vision thread; copies the pixels. Its time is told from `begin_ns` on, of the clock that stamps
-  // frames. A frame of another size than the intrinsics' is left out.
+  // From the vision thread; copies the pixels. The film's time counts from `begin_ns`, on the clock of the
+  // frames' stamps. Skips a frame whose size differs from the intrinsics.
   void Add(const hal::Frame& frame, const vision::Detection& detection, std::int64_t begin_ns = 0);
-  // Encodes what is left and completes the file. Throws what went wrong at any time.
+  // Encodes the remaining frames and completes the file. Throws any error since the start.
   void Finish();
-  // Frames that found no place; and, when nobody adds any more, those that did: without one there is no film.
+  // Frames dropped for lack of room; frames added (read it after the last Add): without one there is no film.
   [[nodiscard]] std::uint64_t dropped() const { return queue_.dropped(); }
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] const std::filesystem::path& path() const { return config_.path; }
@@ -42,7 +42,7 @@ class EyeFilm {
   void Draw(Item& item) const;
 
   const EyeFilmConfig config_;
-  cv::Mat legend_;  // what it says in every frame
+  cv::Mat legend_;  // the part that is the same in every frame
   std::uint64_t frames_ = 0;
   VideoFile file_;
   FilmQueue<Item> queue_;  // last: its thread uses the others

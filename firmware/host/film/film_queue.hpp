@@ -1,4 +1,4 @@
-// Frames of a film, on their way to a thread of their own that draws and encodes them beside the run.
+// A queue of a film's frames. Its own thread draws and encodes them while the run goes on.
 #pragma once
 
 #include <condition_variable>
@@ -16,20 +16,20 @@
 
 namespace fovea::film {
 
-// `Item` holds what a frame needs; used ones are given out again, so that their memory is. One thread fills
-// it.
+// `Item` holds the data of one frame. Take returns used items again, which reuses their memory. Only one
+// thread may fill the queue.
 template <typename Item>
 class FilmQueue {
  public:
-  // `work` is called for each item in order, on the queue's thread, from the first Put on. When it is slower
-  // than the frames come: drop one (`may_drop`) or wait.
+  // The queue's thread calls `work` for each item in order. When `work` is slower than the frames, Take drops
+  // a frame (`may_drop`) or waits.
   FilmQueue(bool may_drop, std::function<void(Item&)> work)
       : may_drop_(may_drop), work_(std::move(work)), thread_([this] { Run(); }) {}
   ~FilmQueue() { Close(); }
   FilmQueue(const FilmQueue&) = delete;
   FilmQueue& operator=(const FilmQueue&) = delete;
 
-  // An item to fill and Put, new or with what is left of an earlier frame; none when this frame is dropped.
+  // An item to fill and Put: new, or with the data of an earlier frame. None when this frame is dropped.
   std::optional<Item> Take() {
     std::unique_lock lock(mutex_);
     const auto has_room = [this] { return waiting_.size() < kMostWaiting || failure_ != nullptr; };
@@ -56,7 +56,7 @@ class FilmQueue {
     changed_.notify_all();
   }
 
-  // Waits until all is worked off. Throws what `work` threw.
+  // Waits until all items are done. Throws what `work` threw.
   void Finish() {
     Close();
     if (failure_) {
@@ -64,7 +64,7 @@ class FilmQueue {
     }
   }
 
-  // Frames that found no place.
+  // Frames dropped for lack of room or after an error.
   [[nodiscard]] std::uint64_t dropped() const {
     const std::lock_guard lock(mutex_);
     return dropped_;
@@ -121,7 +121,7 @@ class FilmQueue {
   bool closed_ = false;
   std::uint64_t dropped_ = 0;
   std::exception_ptr failure_;
-  std::thread thread_;  // last: it begins when all else is there
+  std::thread thread_;  // last: it starts when all other members exist
 };
 
 }  // namespace fovea::film

@@ -14,7 +14,7 @@ constexpr int kDash = 2;  // segments drawn, then as many left out
 
 }  // namespace
 
-// Where the lens puts it; pixel centres stay pixel centres.
+// Applies the lens distortion and the scale; pixel centres stay pixel centres.
 cv::Point Overlay::At(double u_px, double v_px) const {
   in_.Distort(u_px, v_px);
   const double one = 1 << kSubPixelBits;

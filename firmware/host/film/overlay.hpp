@@ -12,7 +12,7 @@
 
 namespace fovea::film {
 
-// Blue, green, red; told apart by brightness too.
+// Blue, green, red. The colours also differ in brightness.
 inline const cv::Scalar kDetectionColour(255, 220, 60);
 inline const cv::Scalar kGoalColour(60, 215, 255);
 inline const cv::Scalar kTruthColour(255, 255, 255);
@@ -26,7 +26,7 @@ class Overlay {
   Overlay(cv::Mat& image, const vision::Intrinsics& intrinsics, int scale)
       : image_(image), in_(intrinsics), scale_(scale) {}
 
-  // An outline's points in ideal pixels, evenly along it, closed or dashed; none: nothing is drawn.
+  // An outline's points in ideal pixels, evenly spaced; it is drawn closed or dashed, or not at all if empty.
   using Curve = std::vector<vision::ImagePoint>;
   static Curve CurveOf(const vision::Intrinsics& intrinsics, const model::Vec3& m);  // of cone |x| = x . m
   void Outline(std::span<const vision::ImagePoint> curve, const cv::Scalar& colour, int thickness,
@@ -34,7 +34,7 @@ class Overlay {
   // A cross at the ray `p`, `arm_px` of the camera's pixels to each side.
   void Cross(const model::Vec3& p, double arm_px, const cv::Scalar& colour);
 
-  // The target where it shall be, dashed and with a cross; and where it was detected.
+  // Goal: the target at its goal, dashed and with a cross. Detection: the detected target.
   void Goal(const Curve& outline, const Eigen::Vector3d& p_CO_C_star);
   void Detection(const vision::Detection& detection);
 

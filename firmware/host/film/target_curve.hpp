@@ -1,4 +1,4 @@
-// The target's outline in the picture, for those who look.
+// The target's outline in the picture, for display only.
 #pragma once
 
 #include "firmware/core/features/target_feature.hpp"
@@ -7,7 +7,7 @@
 namespace fovea::film {
 
 // Points along the outline of the target at `X_CO`, in ideal pixels; of a sphere its silhouette. Empty when a
-// part of it is not before the camera.
+// part of the outline is not in front of the camera.
 Overlay::Curve TargetCurve(const vision::Intrinsics& intrinsics, const features::TargetFeature& target,
                            const model::Pose& X_CO);
 

@@ -18,7 +18,7 @@ namespace fovea::film {
 namespace {
 
 constexpr AVRational kTimeBase{1, 90'000};     // of the stream; what MP4 players expect
-constexpr std::int64_t kUsualDuration = 3000;  // of a frame that nothing is known of: 1/30 s
+constexpr std::int64_t kUsualDuration = 3000;  // of the first frame, which has no predecessor: 1/30 s
 
 void Check(int result, const std::string& what) {
   if (result < 0) {
@@ -48,7 +48,7 @@ struct VideoFile::Impl {
   AVStream* stream = nullptr;  // owned by `format`
   cv::Mat i420;                // Y, U and V planes below each other
   std::optional<std::int64_t> first_ns;
-  std::int64_t given_pts = -1;  // of the last frame that the encoder was given
+  std::int64_t given_pts = -1;  // of the last frame that the encoder got
   std::int64_t last_pts = -kUsualDuration;
 
   void OpenEncoder(int width_px, int height_px) {
@@ -66,7 +66,7 @@ struct VideoFile::Impl {
     codec->color_trc = AVCOL_TRC_SMPTE170M;
     codec->time_base = kTimeBase;
     codec->gop_size = 60;
-    codec->thread_count = 1;  // simulation and detection want the other cores
+    codec->thread_count = 1;  // simulation and detection need the other cores
     if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0) {
       codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     }
@@ -105,7 +105,7 @@ VideoFile::VideoFile(const std::filesystem::path& path, int width_px, int height
   Check(avcodec_parameters_from_context(impl_->stream->codecpar, impl_->codec.get()), "the stream");
   Check(avio_open(&format->pb, path.c_str(), AVIO_FLAG_WRITE), path.string());
   AVDictionary* options = nullptr;
-  av_dict_set(&options, "movflags", "+faststart", 0);  // the index first: it plays while it loads
+  av_dict_set(&options, "movflags", "+faststart", 0);  // index first: the film plays while it loads
   const int result = avformat_write_header(format, &options);
   av_dict_free(&options);
   Check(result, path.string());
@@ -134,7 +134,7 @@ void VideoFile::Add(const cv::Mat& bgr, std::int64_t stamp_ns) {
   if (!impl_->first_ns) {
     impl_->first_ns = stamp_ns;
   }
-  // Stamps that are closer than the time base, or go back, would be no film to encoder and container.
+  // Encoder and container refuse stamps that go back or are closer than the time base.
   const std::int64_t pts = av_rescale(stamp_ns - *impl_->first_ns, kTimeBase.den, 1'000'000'000);
   frame->pts = impl_->given_pts = std::max(pts, impl_->given_pts + 1);
   Check(avcodec_send_frame(impl_->codec.get(), frame), "encoding");

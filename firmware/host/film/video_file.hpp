@@ -11,16 +11,16 @@ namespace fovea::film {
 // One thread uses it. The same frames give the same bytes.
 class VideoFile {
  public:
-  // Width and height are even. std::runtime_error with one line when the file or the encoder cannot be had.
+  // Width and height must be even. std::runtime_error of one line when file or encoder cannot be opened.
   VideoFile(const std::filesystem::path& path, int width_px, int height_px);
   ~VideoFile();
   VideoFile(const VideoFile&) = delete;
   VideoFile& operator=(const VideoFile&) = delete;
 
-  // `bgr` (CV_8UC3) is shown from `stamp_ns` on; one whose stamp is not 11 us after the last one's, the
-  // film's resolution, comes just so much after it.
+  // Shows `bgr` (CV_8UC3) from `stamp_ns` on. A stamp less than 11 us (the film's resolution) after the last
+  // one moves to 11 us after it.
   void Add(const cv::Mat& bgr, std::int64_t stamp_ns);
-  // Writes what is still held back and the file's index. Without it the file cannot be played.
+  // Writes the frames that are still buffered and the file's index. Without it the file cannot be played.
   void Finish();
 
  private:

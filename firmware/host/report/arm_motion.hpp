@@ -1,4 +1,4 @@
-// How camera and end effector moved, by the measured joints and the arm's model that the log holds.
+// Motion of camera and end effector, computed from the measured joints and the arm's model in the log.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@ namespace fovea::report {
 
 class ArmMotion {
  public:
-  // Without a model: nothing is known of any tick.
+  // Without a model: At returns NaN for every tick.
   ArmMotion() = default;
-  // std::runtime_error when `message` is none of this program's.
+  // std::runtime_error when `message` does not fit this program.
   explicit ArmMotion(const log::ServoConfiguration& message);
 
   struct OfTick {
     std::array<float, 6> V_BC_C;  // the camera's twist, linear first [m/s, rad/s]
-    float path_error_mm;          // from the end effector to where it is commanded to be in this tick
+    float path_error_mm;          // from the end effector to its commanded position in this tick
   };
-  // NaN where nothing is known: without a model, without joints, or (path) without a commanded pose.
+  // NaN for unknown values: without a model, without joints, or (path) without a commanded pose.
   [[nodiscard]] OfTick At(const log::Tick& tick) const;
 
  private:

@@ -34,8 +34,8 @@ class Envelope {
     }
   }
 
-  // The times, and each column's values: one row for a bucket of one row, two for others, in the order in
-  // which the column ran through them.
+  // Times, and the values of each column. A bucket of one row gives one row. Other buckets give two rows: the
+  // least and the greatest value, in the order of the column's trend.
   struct Rows {
     std::vector<float> t_s;
     std::vector<std::vector<float>> columns;
@@ -68,7 +68,7 @@ class Envelope {
   };
 
   static void Widen(Bucket& bucket, std::size_t i, float least, float greatest) {
-    bucket.least[i] = std::fmin(bucket.least[i], least);  // fmin and fmax pass over NaN
+    bucket.least[i] = std::fmin(bucket.least[i], least);  // fmin and fmax ignore NaN
     bucket.greatest[i] = std::fmax(bucket.greatest[i], greatest);
   }
 

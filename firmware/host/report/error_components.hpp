@@ -1,4 +1,4 @@
-// What the entries of the error e = s_star - s are called, and their units.
+// Names and units of the entries of the error e = s_star - s.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace fovea::report {
 
 struct ErrorComponent {
   std::string name;
-  std::string unit;  // "1": it has none
+  std::string unit;  // "1": no unit
 };
 
-// Of the feature in `setup`, as many as its s has entries; and the three of a held orientation, stacked below
-// where the servo holds it (features/hold_orientation.hpp).
+// One for each entry of s of the feature in `setup`, then the three of a held orientation, which are present
+// in s only if the servo holds it (features/hold_orientation.hpp).
 std::vector<ErrorComponent> ErrorComponentsOf(const log::Setup& setup);
 
 }  // namespace fovea::report

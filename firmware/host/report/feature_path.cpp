@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostFrames = 2000;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-// How far apart the points of `a` and `b` are, with `a`'s point `first` first; squared [px^2].
+// Sum of the squared distances between the points of `a`, beginning at its point `first`, and of `b` [px^2].
 double Apart2(const std::vector<float>& a, std::size_t first, const std::vector<float>& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < b.size(); ++i) {
@@ -72,7 +72,7 @@ void FeaturePath::Add(const log::Feature& feature, double t_s) {
       for (std::size_t i = 0; i < size; i += 2) {
         put(i, s[static_cast<int>(i)], s[static_cast<int>(i) + 1]);
       }
-      // Which corner the detector names first may change from frame to frame: each goes on as the nearest.
+      // The detector's first corner may change between frames: take the order nearest to the last frame's.
       if (!before_.empty()) {
         std::size_t nearest = 0;
         for (std::size_t first = 1; 2 * first < size; ++first) {
@@ -93,7 +93,7 @@ void FeaturePath::Add(const log::Feature& feature, double t_s) {
   }
 }
 
-// Every second frame.
+// Keeps every second frame.
 void FeaturePath::Thin() {
   const std::size_t size = path_.goal_px.size();
   const std::size_t kept = (path_.t_s.size() + 1) / 2;

@@ -1,5 +1,5 @@
-// Where the target's features were in the picture, frame by frame, and where they shall be: the middle of
-// what is round, each corner of a plate.
+// Positions of the target's features in the picture, frame by frame, and their goals: the centre of a round
+// target, each corner of a plate.
 #pragma once
 
 #include <cstddef>
@@ -29,9 +29,9 @@ class FeaturePath {
   double f_px_ = 0.0;
   double c_u_px_ = 0.0;
   double c_v_px_ = 0.0;
-  std::vector<float> before_;  // of the last frame in which it was found
+  std::vector<float> before_;  // of the last frame with the target
   std::int64_t frames_ = 0;
-  std::int64_t stride_ = 1;  // every so many frames are kept
+  std::int64_t stride_ = 1;  // one of so many frames is kept
 };
 
 }  // namespace fovea::report

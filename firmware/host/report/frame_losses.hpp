@@ -1,4 +1,4 @@
-// Frames that never reached the servo, by the numbers of those that did, and frames without target.
+// Counts frames that never reached the servo (gaps in the sequence numbers) and frames without target.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class FrameLosses {
     if (run_.frames_taken > 1 && sequence > sequence_ && sequence - sequence_ > 1) {
       Put(run_.lost, {t_s_, t_s, sequence - sequence_ - 1});
     }
-    // Without target from one frame to the next in which it is found again.
+    // A span without target lasts until the next frame with the target.
     if (run_.frames_taken > 1 && !found_) {
       run_.not_found.back().to_s = t_s;
     }
@@ -36,7 +36,7 @@ class FrameLosses {
   }
 
  private:
-  static constexpr std::size_t kMostSpans = 2000;  // what comes later widens the last
+  static constexpr std::size_t kMostSpans = 2000;  // later spans extend the last one
 
   static void Put(std::vector<FrameSpan>& spans, const FrameSpan& span) {
     if (spans.size() < kMostSpans) {
@@ -48,7 +48,7 @@ class FrameLosses {
   }
 
   RunData& run_;
-  bool found_ = true;  // of the frame before, as the two below
+  bool found_ = true;  // of the previous frame, like the two below
   std::uint64_t sequence_ = 0;
   double t_s_ = 0.0;
 };

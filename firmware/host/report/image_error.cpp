@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// Between the places where two points before the camera are seen, squared; NaN when one is behind it.
+// Squared distance of two points in the normalised image; NaN when one is not in front of the camera.
 double Apart2(const model::Vec3& a, const model::Vec3& b) {
   if (!(a.z() > 0.0) || !(b.z() > 0.0)) {
     return kNone;
@@ -53,7 +53,7 @@ ImageError::ImageError(const log::Setup& setup) : f_px_(setup.f_px()) {
   }
 }
 
-// In focal lengths; of the turns of `a` that look alike the nearest.
+// Rms distance of the points in the normalised image, for the nearest of the turns of `a` that look alike.
 double ImageError::BetweenPoses(const model::Pose& a, const model::Pose& b) const {
   double least2 = kNone;
   for (int turn = 0; turn < turns_; ++turn) {
@@ -62,7 +62,7 @@ double ImageError::BetweenPoses(const model::Pose& a, const model::Pose& b) cons
     for (const model::Vec3& p : points_) {
       sum2 += Apart2(a.p + R * p, b * p);
     }
-    least2 = std::fmin(least2, sum2 / static_cast<double>(points_.size()));  // passes NaN over
+    least2 = std::fmin(least2, sum2 / static_cast<double>(points_.size()));  // ignores NaN
   }
   return std::sqrt(least2);
 }
@@ -112,7 +112,7 @@ float ImageError::OfMeasurement(const log::Feature& feature) const {
     off = std::sqrt(Apart2(ThreeOf(s, 0), X_CO_star_.p));
   } else if (feature.poses_size() > 0 && feature.poses(0).p_co_c_size() == 3 &&
              feature.poses(0).q_co_size() == 4) {
-    // All poses look alike in the picture.
+    // All poses look alike in the picture, so the first one is enough.
     const Doubles& q = feature.poses(0).q_co();
     model::Pose X_CO{model::Mat3::Identity(), ThreeOf(feature.poses(0).p_co_c(), 0)};
     if (model::RotationOfQuaternion({q[0], q[1], q[2], q[3]}, X_CO.R)) {

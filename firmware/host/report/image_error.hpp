@@ -1,6 +1,6 @@
-// How far the target is from its goal in the picture, from what a log says the servo and the eye knew of it.
-// The same measure as the truth's error: rms over what is judged, which is the corners where the feature
-// controls the orientation and the middle where it does not.
+// Image error: distance of the target from its goal in the picture, by the servo's prediction and by the
+// measurements in a log. The same measure as the true error: rms over the corners if the feature controls the
+// orientation, otherwise the error of the centre.
 #pragma once
 
 #include <google/protobuf/repeated_field.h>
@@ -18,9 +18,9 @@ class ImageError {
   ImageError() = default;
   explicit ImageError(const log::Setup& setup);
 
-  // Of s against s_star, as the servo's feature has them [px]; NaN when that is not in the picture.
+  // Error of the servo's s against s_star [px]; NaN when s is missing or behind the camera.
   [[nodiscard]] float OfTick(const log::Tick& tick) const;
-  // Of a measurement against the goal [px]; NaN when nothing was found, or behind the camera.
+  // Error of a measurement against the goal [px]; NaN when nothing was found, or behind the camera.
   [[nodiscard]] float OfMeasurement(const log::Feature& feature) const;
 
  private:
@@ -30,7 +30,7 @@ class ImageError {
   enum class Form { kRay, kInPicture, kCorners, kPose };
   double f_px_ = 0.0;
   Form form_ = Form::kRay;
-  int turns_ = 1;  // of a full one that look alike: 4 of a square
+  int turns_ = 1;  // number of turns that look alike: 4 for a square
   std::vector<model::Vec3> points_{model::Vec3::Zero()};
   model::Pose X_CO_star_;
 };

@@ -1,4 +1,4 @@
-// The look of all our pages, which is the report's.
+// The common style of all pages: the report's style sheets.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace fovea::report {
 
-// The text of the style sheets in `folder`, the report's page, for another page to be put into whole.
+// The text of the style sheets in `folder`, the folder of the report's page, for use inside another page.
 // std::runtime_error, naming the file, when one cannot be read.
 inline std::string PageStyle(const std::filesystem::path& folder) {
   std::string style;

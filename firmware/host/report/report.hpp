@@ -1,4 +1,4 @@
-// The report of a run, or of two beside each other: one HTML file that needs nothing else.
+// The report of one run, or of two runs side by side: one self-contained HTML file.
 #pragma once
 
 #include <filesystem>
@@ -11,13 +11,13 @@ namespace fovea::report {
 
 class ReportPage {
  public:
-  // Reads the page's own parts from `folder`, where `page` names them, and the libraries that are put into
-  // it. std::runtime_error, naming the file, when one is not there.
+  // Reads the template `page` from `folder`, and the parts and libraries that it names. std::runtime_error,
+  // naming the file, when one is missing.
   explicit ReportPage(const std::filesystem::path& folder, const std::string& page = "report.html");
 
   // The whole file, for one run or two.
   [[nodiscard]] std::string Make(const std::vector<RunData>& runs) const;
-  // The same, of what another page's script reads: a JSON text for each run.
+  // The same for another page. `runs`: for each run the JSON text that the page's script reads.
   [[nodiscard]] std::string Make(const std::string& title, const std::vector<std::string>& runs) const;
 
  private:
@@ -25,7 +25,7 @@ class ReportPage {
   std::string after_data_;
 };
 
-// What the page's scripts read; see firmware/host/report/README.md.
+// The JSON text that the page's scripts read; see firmware/host/report/README.md.
 std::string ToJson(const RunData& run);
 
 }  // namespace fovea::report

@@ -1,4 +1,4 @@
-// RunData as the page's scripts read it; numbers by the thousand as base64 of little-endian float32.
+// RunData as JSON for the page's scripts; long arrays as base64 of little-endian float32.
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
@@ -15,7 +15,7 @@ namespace {
 using nlohmann::ordered_json;
 
 std::string Base64(std::string_view bytes) {
-  std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // and the 0 that OpenSSL puts after it
+  std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // plus the 0 that OpenSSL appends
   EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
                   reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
   text.pop_back();
@@ -98,7 +98,7 @@ ordered_json Frame(const RunData& run, const std::optional<EyeFrame>& frame) {
           {"shapes", shapes}};
 }
 
-constexpr double kLargestShown = 5.0;  // a workspace beyond it would leave the arm a dot [m]
+constexpr double kLargestShown = 5.0;  // beside a larger workspace the arm would be too small to see [m]
 
 ordered_json Scene(const RunData& run) {
   if (run.links.empty() || run.motion.t_s.empty()) {
@@ -133,14 +133,14 @@ ordered_json Scene(const RunData& run) {
           {"table_z", 0.0}};
 }
 
-// Discarded when it is no JSON. What lies deeper than a summary does is left out: writing it goes as deep.
+// Discarded if it is not JSON. Drops values nested deeper than a summary's: writing them recurses as deep.
 ordered_json ParseFlat(const std::string& text) {
   constexpr int kDeepest = 16;
   return ordered_json::parse(
       text, [](int depth, ordered_json::parse_event_t, ordered_json&) { return depth <= kDeepest; }, false);
 }
 
-// The keys as a TOML file would have them.
+// The keys in TOML.
 std::string Configuration(const std::map<std::string, std::string>& keys) {
   std::string text;
   std::string section;
@@ -155,7 +155,7 @@ std::string Configuration(const std::map<std::string, std::string>& keys) {
   return text;
 }
 
-// Null when the log does not say what the defaults were.
+// Null when the log does not contain the defaults.
 ordered_json ChangedKeys(const RunData& run) {
   const auto keys = run.metadata.find("configuration");
   const auto defaults = run.metadata.find("defaults");
@@ -199,7 +199,7 @@ std::string ToJson(const RunData& run) {
   json["config"] = keys == run.metadata.end() ? std::string() : Configuration(keys->second);
   json["duration_s"] = run.duration_s;
   json["lambda"] = run.lambda;
-  // Without a target the run had no eye.
+  // A run without a target had no camera.
   json["target"] = run.target_radius == 0.0 ? ordered_json(nullptr)
                                             : ordered_json({{"kind", run.target_kind},
                                                             {"radius_m", run.target_radius},

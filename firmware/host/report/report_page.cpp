@@ -1,5 +1,4 @@
-// Puts the page together: the template's marks are replaced by the files that they name, and by the runs'
-// data.
+// Assembles the page: replaces the template's marks by the files that they name, and by the runs' data.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -17,7 +16,7 @@ namespace fs = std::filesystem;
 std::string ReadFile(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) {
-    throw std::runtime_error(path.string() + ": not there; the report is made with it");
+    throw std::runtime_error(path.string() + ": missing; the report needs it");
   }
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -28,7 +27,7 @@ void ReplaceAll(std::string& text, std::string_view from, std::string_view to) {
   }
 }
 
-// Takes out the lines that name a library's source map, a file that the page does not bring.
+// Removes the lines that name a library's source map: the page does not contain that file.
 std::string WithoutSourceMap(std::string text) {
   constexpr std::string_view kMark = "# sourceMappingURL=";
   for (std::size_t at = text.find(kMark); at != std::string::npos; at = text.find(kMark)) {
@@ -38,7 +37,7 @@ std::string WithoutSourceMap(std::string text) {
   return text;
 }
 
-// Text within <script> ends at the first "</script": it must not be in there.
+// Text within <script> ends at the first "</script", so the text must not contain it.
 std::string InScript(std::string text) {
   ReplaceAll(text, "</script", "<\\/script");
   ReplaceAll(text, "<!--", "<\\!--");

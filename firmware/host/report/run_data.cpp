@@ -38,7 +38,7 @@ Message Parse(const log::McapMessage& message) {
   return parsed;
 }
 
-// a - b, whatever a log says that they are.
+// a - b without overflow, for any values in a log.
 std::int64_t Apart(std::int64_t a, std::int64_t b) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
 }
@@ -95,7 +95,7 @@ class Reader {
   }
 
  private:
-  // Since the run began.
+  // Time since the start of the run [s].
   [[nodiscard]] double Seconds(std::int64_t time_ns) const {
     return static_cast<double>(Apart(time_ns, setup_.start_ns())) * 1e-9;
   }
@@ -131,7 +131,7 @@ class Reader {
     run_.ticks.emplace(4 * run_.joints.size() + RunData::kNumTickColumns, kMostBuckets);
   }
 
-  // A later program's: what needs the arm's model is left out.
+  // If the configuration is from a later program, the parts that need the arm's model are left out.
   void TakeConfiguration(const log::ServoConfiguration& configuration) {
     try {
       arm_motion_ = ArmMotion(configuration);
@@ -172,7 +172,7 @@ class Reader {
     Join(false);
   }
 
-  // Into `columns` [kNumTickColumns], all but the truth.
+  // Fills `columns` [kNumTickColumns], except for the truth.
   void TakeServo(const log::Tick& tick, float* columns) const {
     const auto put = [columns](const auto& values, int most, int at) {
       for (int i = 0; i < std::min(values.size(), most); ++i) {
@@ -206,8 +206,8 @@ class Reader {
     last_fault_ = fault;
   }
 
-  // Gives each tick the truth of its own time. The two streams are written one after the other, so that one
-  // waits for the other.
+  // Joins each tick with the truth of the same time. The log holds parts of both streams in turn, so ticks
+  // wait for their truth.
   void Join(bool last) {
     while (!waiting_.empty()) {
       Row& row = waiting_.front();
@@ -273,7 +273,7 @@ class Reader {
     return frame;
   }
 
-  // As bars of equal width on a logarithmic axis; the log's own bins are finer than any screen.
+  // Makes bars of equal width on a logarithmic axis; the log's own bins are finer than a screen shows.
   void TakeTickTimes(const log::TickTimes& times) {
     constexpr double kBinsPerDecade = 30.0;
     std::map<int, std::uint64_t> bins;
@@ -302,7 +302,7 @@ class Reader {
   FrameLosses frame_losses_;
   std::deque<Row> waiting_;
   std::deque<log::Truth> truths_;
-  std::vector<std::optional<double>> open_limits_;  // since when each acts
+  std::vector<std::optional<double>> open_limits_;  // time since which each limit is active [s]
   hal::Fault last_fault_ = hal::Fault::kNone;
   std::map<std::int64_t, foxglove::ImageAnnotations> annotations_;
   std::int64_t last_image_ns_ = 0;
@@ -339,7 +339,7 @@ RunData ReadRun(const std::filesystem::path& log_or_folder) {
   run.complete = end.complete;
   run.why_incomplete = end.why;
   if (!run.ticks) {
-    throw std::runtime_error(path.string() + ": no log of a run of Fovea's: it has no " + log::kSetupTopic);
+    throw std::runtime_error(path.string() + ": not the log of a Fovea run: it has no " + log::kSetupTopic);
   }
   reader.Finish();
   return run;

@@ -1,4 +1,4 @@
-// A run as its log tells it, thinned to what a page can show.
+// A run's data from its log, thinned to what a page can show.
 #pragma once
 
 #include <array>
@@ -42,7 +42,7 @@ struct LimitSpans {
   std::vector<std::array<double, 2>> spans_s;  // from, to
 };
 
-// What the camera saw in one frame, and what was drawn on it.
+// One frame of the camera, and the outlines drawn on it.
 struct EyeFrame {
   double t_s = 0.0;
   std::string jpeg;
@@ -53,7 +53,7 @@ struct EyeFrame {
   std::vector<Outline> outlines;
 };
 
-// Frames one after the other that have something in common.
+// Consecutive frames with a common property.
 struct FrameSpan {
   double from_s = 0.0;
   double to_s = 0.0;
@@ -73,7 +73,7 @@ struct SceneShape {
   std::vector<float> vertices;  // mesh: x, y, z of each corner of each triangle [m]
   std::array<double, 3> position{};
   std::array<double, 4> quaternion{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
-  std::array<double, 3> colour{};                        // as screens show it, 0 to 1
+  std::array<double, 3> colour{};                        // gamma-encoded, 0 to 1
 };
 
 struct SceneLink {
@@ -81,13 +81,13 @@ struct SceneLink {
   std::vector<SceneShape> shapes;
 };
 
-// Poses in B of all links, evenly in time.
+// Poses in B of all links, evenly spaced in time.
 struct SceneMotion {
   std::vector<float> t_s;          // [F]
   std::vector<float> poses;        // [F * links * 7] x, y, z, qw, qx, qy, qz
   std::vector<float> camera_path;  // [F * 3]
-  std::vector<float> target_path;  // [F * 3]; NaN where it is not known
-  std::vector<float> target_turn;  // [F * 4] w, x, y, z of its orientation in B, the same
+  std::vector<float> target_path;  // [F * 3]; NaN: unknown
+  std::vector<float> target_turn;  // [F * 4] w, x, y, z of its orientation in B; NaN: unknown
 };
 
 struct RunData {
@@ -100,11 +100,11 @@ struct RunData {
   std::vector<JointInfo> joints;
   double lambda = 0.0;
   std::string target_kind;             // "sphere", "circle", "square", "triangle"
-  double target_radius = 0.0;          // of the ball that holds it [m]; 0: there is none
-  std::vector<double> target_corners;  // x, y of each in O [m]; none of what is round
+  double target_radius = 0.0;          // of the sphere that encloses it [m]; 0: no target
+  std::vector<double> target_corners;  // x, y of each in O [m]; empty for a round target
   bool target_moves = false;
   double workspace_radius = 0.0;
-  double duration_s = 0.0;  // of the records that are there
+  double duration_s = 0.0;  // of the records in the log
   int width_px = 0;
   int height_px = 0;
 
@@ -119,8 +119,8 @@ struct RunData {
     kPredictedPx,
     kPathErrorMm,
     kTwistCmd,                   // V_BC_C_cmd, 6 columns
-    kTwistMeas = kTwistCmd + 6,  // the same by the measured joints
-    kError = kTwistMeas + 6,     // e, as error_components has them
+    kTwistMeas = kTwistCmd + 6,  // the same, computed from the measured joints
+    kError = kTwistMeas + 6,     // e, in the order of error_components
     kNumTickColumns = kError + hal::kMaxFeatureDim
   };
   std::optional<Envelope> ticks;
@@ -129,13 +129,13 @@ struct RunData {
   // Columns of `measured`.
   enum MeasuredColumn : std::uint8_t { kMeasuredPx, kAgeMs, kConfidence, kNumMeasuredColumns };
   Envelope measured{kNumMeasuredColumns, 1500};
-  // Columns of `theory`: a one-joint arm, its goal, and its analytic answer; empty for all other runs.
+  // Columns of `theory`: a one-joint arm, its goal, and its analytic solution; empty for all other runs.
   enum TheoryColumn : std::uint8_t { kTheoryX, kTheoryGoal, kTheoryAnalytic, kNumTheoryColumns };
   Envelope theory{kNumTheoryColumns, 1500};
   bool has_theory = false;
   PixelPath feature_path;
-  std::uint64_t frames_taken = 0;    // of which a measurement reached the servo
-  std::vector<FrameSpan> lost;       // between two of them, of which none did
+  std::uint64_t frames_taken = 0;    // frames whose measurement reached the servo
+  std::vector<FrameSpan> lost;       // frames between two of them that did not reach the servo
   std::vector<FrameSpan> not_found;  // in which the target was not found
   std::vector<ModeChange> modes;
   std::vector<FaultNote> faults;
@@ -148,8 +148,8 @@ struct RunData {
   SceneMotion motion;
 };
 
-// Reads a log, or the log in a run's folder. One that was cut off is read as far as it goes.
-// std::runtime_error, naming the file: it cannot be read, is no MCAP file, or holds no run of Fovea's.
+// Reads a log, or the log in a run's folder. Reads a truncated log up to the cut. std::runtime_error, naming
+// the file: it cannot be read, is no MCAP file, or is not the log of a Fovea run.
 RunData ReadRun(const std::filesystem::path& log_or_folder);
 
 }  // namespace fovea::report

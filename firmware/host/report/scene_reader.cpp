@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kMostFrames = 800;
 constexpr std::size_t kPoseSize = 7;
 
-// Every second row of `row` values.
+// Keeps every second row of `row` values.
 void Halve(std::vector<float>& values, std::size_t row) {
   if (row == 0) {
     return;
@@ -59,7 +59,7 @@ SceneShape MakeMesh(const foxglove::TriangleListPrimitive& triangles) {
 
 void SceneReader::AddScene(const foxglove::SceneUpdate& scene) {
   if (!run_.motion.t_s.empty()) {
-    return;  // links that come later have no place in the poses
+    return;  // later links have no column in the poses
   }
   for (const foxglove::SceneEntity& entity : scene.entities()) {
     // The page draws target and table itself.
@@ -142,7 +142,7 @@ void SceneReader::AddTruth(const log::Truth& truth, double t_s) {
     truth_X_.push_back(static_cast<float>(value));
   }
   for (int i = 0; i < 4; ++i) {
-    const double one = i == 0 ? 1.0 : 0.0;  // not turned
+    const double one = i == 0 ? 1.0 : 0.0;  // the identity
     truth_X_.push_back(static_cast<float>(truth.q_bo_size() == 4 ? truth.q_bo(i) : one));
   }
   if (truth_t_s_.size() > 16 * kMostFrames) {

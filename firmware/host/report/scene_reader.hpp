@@ -1,4 +1,4 @@
-// From a log's scene and transforms to links with shapes and their poses over time.
+// Converts a log's scene and transforms to links with shapes, and their poses over time.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class SceneReader {
   void AddScene(const foxglove::SceneUpdate& scene);
   void AddTransforms(const foxglove::FrameTransforms& transforms, double t_s);
   void AddTruth(const log::Truth& truth, double t_s);
-  // When all is read: the true target's poses take the place of the predicted one.
+  // Call after the last message: replaces the target's predicted poses by the true ones, if there are any.
   void Finish();
 
  private:
@@ -28,7 +28,7 @@ class SceneReader {
   RunData& run_;
   std::map<std::string, std::size_t> link_of_frame_;
   std::int64_t frames_seen_ = 0;
-  std::int64_t stride_ = 1;  // every so many frames are kept
+  std::int64_t stride_ = 1;  // one of so many frames is kept
   std::vector<float> truth_t_s_;
   std::vector<float> truth_X_;  // x, y, z, qw, qx, qy, qz of the target in B
   std::int64_t truths_seen_ = 0;

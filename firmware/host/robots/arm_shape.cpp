@@ -15,11 +15,11 @@ using model::ArmShape;
 using model::Capsule;
 using model::Vec3;
 
-constexpr double kLinkRadius = 0.055;  // of a link that no simple body describes [m]
-constexpr int kPostures = 8192;        // that are looked at
-constexpr double kNear = 0.05;         // a pair that never comes so near is left out [m]
-constexpr double kTooNear = 0.02;      // and one that is so near [m]
-constexpr double kTooOften = 0.25;     // in such a share of all postures
+constexpr double kLinkRadius = 0.055;  // of a link without simple bodies [m]
+constexpr int kPostures = 8192;        // number of random postures
+constexpr double kNear = 0.05;         // a pair that never comes this near is left out [m]
+constexpr double kTooNear = 0.02;      // also left out is a pair that is this near [m]
+constexpr double kTooOften = 0.25;     // in this share of all postures
 constexpr double kPi = 3.14159265358979323846;
 
 double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -30,8 +30,8 @@ Vec3 NextJointOf(const ArmModel& arm, std::size_t body) {
   return body == static_cast<std::size_t>(arm.num_joints) ? arm.X_LnE.p : arm.joints[body].X_PJ.p;
 }
 
-// Uniform in each joint's range; of an endless one, in a full turn. Written out, so that every computer draws
-// the same.
+// Uniform in each joint's range, or in a full turn for an endless joint. Uses no standard distribution, so
+// every computer draws the same postures.
 model::VecN RandomPosture(const ArmModel& arm, std::mt19937_64& bits) {
   model::VecN q(arm.num_joints);
   for (int i = 0; i < arm.num_joints; ++i) {

@@ -10,7 +10,7 @@
 namespace fovea::robots {
 namespace {
 
-// For a joint whose file gives no figure: full speed in 0.25 s, full acceleration in 5 ms, full torque in
+// Limits of a joint whose file gives none: full speed in 0.25 s, full acceleration in 5 ms, full torque in
 // 0.1 s. Gentle values for an arm of a person's size.
 struct Derived {
   double velocity_to_acceleration = 1.0 / 0.25;
@@ -19,7 +19,7 @@ struct Derived {
 };
 constexpr Derived kDerived;
 
-// The limits that URDF has no words for, one entry per joint, or none.
+// The limits that URDF cannot express, one entry per joint, or none.
 struct ExtraLimits {
   std::vector<double> acceleration;
   std::vector<double> jerk;
@@ -27,7 +27,7 @@ struct ExtraLimits {
   std::vector<double> ready;
 };
 
-// `values` has one entry per joint, or none: then `derived` counts.
+// Entry `i` of `values`, or `derived` if `values` is empty.
 double EntryOr(const std::vector<double>& values, std::size_t i, double derived) {
   return values.empty() ? derived : values[i];
 }
@@ -63,8 +63,9 @@ void SetLimits(const std::filesystem::path& file, const ExtraLimits& extra, mode
 void CheckIsInside(const std::filesystem::path& root, const std::filesystem::path& file,
                    const std::string& who) {
   if (!root.empty() && !config::IsInside(root, std::filesystem::absolute(file))) {
-    throw config::InputError(fmt::format("{} is not allowed: it lies outside {}, the folder of what names it",
-                                         who, std::filesystem::absolute(root).lexically_normal().string()));
+    throw config::InputError(
+        fmt::format("{} is not allowed: it lies outside {}, the folder of the file that names it", who,
+                    std::filesystem::absolute(root).lexically_normal().string()));
   }
 }
 
@@ -86,7 +87,7 @@ Robot LoadRobot(const std::filesystem::path& file, const std::filesystem::path& 
   config::KeyTable keys;
   constexpr double kHuge = 1e6;
   constexpr std::size_t kMax = model::kMaxJoints;
-  keys.Text("urdf", urdf, "the robot's URDF, beside this file");
+  keys.Text("urdf", urdf, "the robot's URDF, relative to this file's folder");
   keys.Text("base", robot.base_link, "link whose frame is B; the root when not given");
   keys.Text("tip", robot.tip_link, "link whose frame is E; the only leaf when not given");
   keys.Numbers("acceleration_max", extra.acceleration, 1, kMax, 1e-3, kHuge, "rad/s^2", "per joint");

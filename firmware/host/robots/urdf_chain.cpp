@@ -22,7 +22,7 @@ using model::Mat3;
 using model::Pose;
 using model::Vec3;
 
-// Collects what urdfdom has to say, so that it reaches the person as part of one line.
+// Collects urdfdom's messages, so that the user gets them as part of one line.
 class MessageCollector final : public console_bridge::OutputHandler {
  public:
   MessageCollector() : previous_(console_bridge::getOutputHandler()) {
@@ -40,7 +40,7 @@ class MessageCollector final : public console_bridge::OutputHandler {
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  static constexpr int kMost = 2;  // what is wrong, and in which element; then it goes on about what follows
+  static constexpr int kMost = 2;  // the error and its element; later messages are consequences
   console_bridge::OutputHandler* previous_;
   std::string text_;
   int count_ = 0;
@@ -76,7 +76,7 @@ Mat3 AlignZ(const Vec3& axis) {
 class ChainReader {
  public:
   explicit ChainReader(Robot& robot) : robot_(robot), file_(robot.urdf.string()) {}
-  // Links own their children; those of a ring would keep each other alive.
+  // Links own their children; links in a ring would keep each other alive.
   ~ChainReader() {
     if (urdf_) {
       for (const auto& [name, link] : urdf_->links_) {
@@ -135,7 +135,7 @@ class ChainReader {
     } catch (const std::exception& error) {  // number parsing inside urdfdom
       Fail(fmt::format("not a usable URDF: {}", error.what()));
     }
-    // Of a link with an error in it urdfdom drops what follows the error, and goes on.
+    // After an error in a link, urdfdom drops the rest of that link and continues.
     if (!urdf_ || !messages.text().empty()) {
       Fail("not a usable URDF: " + (messages.text().empty() ? "no robot in it" : messages.text()));
     }
@@ -143,7 +143,7 @@ class ChainReader {
     for (const auto& [name, joint] : urdf_->joints_) {
       const auto [it, is_new] = parent_joint.emplace(joint->child_link_name, name);
       if (!is_new) {
-        Fail(fmt::format("link \"{}\" hangs on two joints, \"{}\" and \"{}\": a loop is no serial arm",
+        Fail(fmt::format("link \"{}\" has two parent joints, \"{}\" and \"{}\": a loop is not a serial arm",
                          joint->child_link_name, it->second, name));
       }
     }
@@ -152,12 +152,12 @@ class ChainReader {
     }
   }
 
-  // Links that hang on each other in a ring, beside the root, have one joint each.
+  // Finds links in a ring apart from the root: each of them has only one parent joint.
   void CheckReachesRoot(const urdf::Link& link) const {
     std::size_t steps = 0;
     for (urdf::LinkConstSharedPtr above = link.getParent(); above; above = above->getParent()) {
       if (++steps > urdf_->links_.size()) {
-        Fail(fmt::format("link \"{}\" hangs on itself: a loop is no serial arm", link.name));
+        Fail(fmt::format("link \"{}\" is its own ancestor: a loop is not a serial arm", link.name));
       }
     }
   }
@@ -168,7 +168,7 @@ class ChainReader {
     }
     base_ = urdf_->getLink(robot_.base_link);
     if (!base_) {
-      Fail(fmt::format("base link \"{}\" is not in it", robot_.base_link));
+      Fail(fmt::format("base link \"{}\" does not exist", robot_.base_link));
     }
     if (robot_.tip_link.empty()) {
       std::vector<std::string> leaves;
@@ -184,7 +184,7 @@ class ChainReader {
       robot_.tip_link = leaves.front();
     }
     if (!urdf_->getLink(robot_.tip_link)) {
-      Fail(fmt::format("no end effector: tip link \"{}\" is not in it", robot_.tip_link));
+      Fail(fmt::format("no end effector: tip link \"{}\" does not exist", robot_.tip_link));
     }
   }
 
@@ -198,7 +198,7 @@ class ChainReader {
       link = link->getParent();
     }
     if (!link) {
-      Fail(fmt::format("tip link \"{}\" does not hang on base link \"{}\"", robot_.tip_link,
+      Fail(fmt::format("tip link \"{}\" does not descend from base link \"{}\"", robot_.tip_link,
                        robot_.base_link));
     }
     std::reverse(chain.begin(), chain.end());
@@ -262,7 +262,7 @@ class ChainReader {
     ++arm.num_joints;
   }
 
-  // The bodies of `link` and of all that is fixed to it; `X_LU` is its pose in the moving link's frame.
+  // Adds the bodies of `link` and of all links fixed to it. `X_LU` is its pose in the moving link's frame.
   // `bodies` is null for the base, which does not move.
   void AddBodies(const urdf::LinkConstSharedPtr& link, Bodies* bodies, Capsules& shapes, const Pose& X_LU,
                  const std::vector<urdf::JointConstSharedPtr>& chain) const {
@@ -293,7 +293,7 @@ class ChainReader {
   void AddShape(const urdf::Link& link, const urdf::Collision& collision, const Pose& X_LU,
                 Capsules& shapes) const {
     if (!collision.geometry || collision.geometry->type == urdf::Geometry::MESH) {
-      return;  // a simulator's matter
+      return;  // only a simulator uses meshes
     }
     const Pose X_LS = X_LU * ToPose(collision.origin);
     model::Capsule shape;
@@ -311,7 +311,7 @@ class ChainReader {
   }
 
   // A rigid body has a positive mass, and principal moments that are positive and obey the triangle
-  // inequality; a description that does not would make M lose its definiteness.
+  // inequality. With other values M could lose its definiteness.
   void CheckInertia(const std::string& link, double mass, const Mat3& I) const {
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(I, Eigen::EigenvaluesOnly);
     const Vec3& moments = solver.eigenvalues();  // ascending

@@ -6,7 +6,7 @@
 namespace fovea::robots {
 
 // Fills joint_names and the geometry, inertia, position, velocity and effort limits of `robot.model` from
-// `robot.urdf`; an empty base_link or tip_link is found and filled in. InputError as LoadRobot says.
+// `robot.urdf`. Finds and fills in an empty base_link or tip_link. InputError as for LoadRobot.
 void ReadUrdfChain(Robot& robot);
 
 }  // namespace fovea::robots

@@ -53,7 +53,7 @@ log::RunSetup SetupOf(const RunFacts& facts, std::int64_t start_ns) {
   return setup;
 }
 
-// Of the keys that have another value.
+// The defaults of the keys that have another value.
 std::map<std::string, std::string> DefaultsThatDiffer(const RunFacts& facts) {
   std::map<std::string, std::string> differing;
   for (const auto& [key, text] : facts.default_keys) {
@@ -149,7 +149,7 @@ bool RunBook::IsPictureDue(std::int64_t stamp_ns) {
   if (!std::isfinite(options_.picture_rate_hz) || options_.picture_rate_hz <= 0.0) {
     return options_.picture_rate_hz > 0.0;
   }
-  // On a grid, and a little before its time too: stamps of a camera of just that rate have jitter.
+  // Due on a grid, also a little early: the stamps of a camera with exactly that rate have jitter.
   const auto period_ns = static_cast<std::int64_t>(1e9 / options_.picture_rate_hz);
   if (stamp_ns < next_picture_ns_ - period_ns / 10) {
     return false;
@@ -196,8 +196,8 @@ void RunBook::Write(const std::string& summary_json, const linux_rt::DurationHis
     if (!log_.failed()) {
       throw;
     }
-    // A disk that is full: what was recorded before is the more worth keeping.
-    throw std::runtime_error(fmt::format("{}; the log is kept as far as it goes, in {}", error.what(),
+    // The disk may be full: the data recorded until then must be kept.
+    throw std::runtime_error(fmt::format("{}; the incomplete log is kept in {}", error.what(),
                                          folder_.Keep(kLog, all_files_).string()));
   }
 }
@@ -208,8 +208,7 @@ void RunBook::WriteAll(const std::string& summary_json, const linux_rt::Duration
                        const MoreFiles& more) {
   if (has_ticks_) {
     log_.Add(log::kTickTimesTopic, last_ns_, log::TickTimesMessage(ticks));
-  } else if (!begun_) {  // ended before it moved; there is nothing to draw, and the log says what it was to
-                         // be
+  } else if (!begun_) {  // ended before the first tick: no report, but the log contains the run's setup
     Begin(0);
   }
   log_.AddAttachment(kSummary, "application/json", summary_json);
@@ -220,14 +219,14 @@ void RunBook::WriteAll(const std::string& summary_json, const linux_rt::Duration
   log_.Finish();
   if (has_ticks_) {
     report::RunData run = report::ReadRun(log_path_);
-    run.source = kLog;  // as it will be called
+    run.source = kLog;  // its final name
     files.push_back({kReport, page_.Make({run})});
   }
   if (more) {
     const std::vector<config::OutputFile> others = more();
     files.insert(files.end(), others.begin(), others.end());
   }
-  files.push_back({kSummary, summary_json});  // the last: where it is, the rest is too
+  files.push_back({kSummary, summary_json});  // last: where it exists, the other files exist too
   folder_.Replace(files, all_files_);
 }
 

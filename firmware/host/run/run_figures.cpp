@@ -10,7 +10,7 @@
 namespace fovea::run {
 namespace {
 
-// It rises when a field is renamed, goes, or comes to mean something else; a field more needs no new one.
+// It rises when a field is renamed or removed, or changes its meaning. A new field needs no new version.
 constexpr int kSummaryFormat = 1;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What every run counts, and how summary.json says it: of a simulated run and of one on hardware alike.
+// The counters of every run, simulated or on hardware, and their fields in summary.json.
 #pragma once
 
 #include <cstdint>
@@ -16,43 +16,43 @@ struct LoopCounters;
 
 namespace fovea::run {
 
-// What the log and the film took, and what found no place in them.
+// What the log and the film took, and what they dropped.
 struct BookFigures {
   std::uint64_t ticks_dropped = 0;
   std::uint64_t pictures = 0;
   std::uint64_t pictures_dropped = 0;
   std::uint64_t film_frames_dropped = 0;
-  std::vector<std::string> film_errors;  // why there is no film, where there should be one
+  std::vector<std::string> film_errors;  // why an expected film is missing
 };
 
 struct RunFigures {
   std::uint64_t ticks = 0;
   std::uint64_t overruns = 0;         // ticks that began a whole period or more late
   std::uint64_t missed_ticks = 0;     // periods that passed without a tick
-  std::uint64_t records_dropped = 0;  // ticks that nobody looked at
+  std::uint64_t records_dropped = 0;  // ticks whose record was dropped
   std::uint64_t log_entries_dropped = 0;
   std::uint64_t log_pictures = 0;
   std::uint64_t log_pictures_dropped = 0;
   std::uint64_t film_frames_dropped = 0;                  // of all films
-  std::vector<std::string> film_errors;                   // why one is not there that should be
+  std::vector<std::string> film_errors;                   // why an expected film is missing
   std::optional<std::uint64_t> heap_allocations_in_tick;  // none when the counter is not active
   std::uint64_t page_faults_in_loop = 0;
   std::int64_t tick_ns_p50 = 0;
   std::int64_t tick_ns_p99 = 0;
   std::int64_t tick_ns_p999 = 0;
   std::int64_t tick_ns_max = 0;
-  std::vector<std::string> realtime_missing;  // what the machine did not grant
-  std::string log_hash;                       // over all records but those that were dropped
+  std::vector<std::string> realtime_missing;  // missing real-time privileges
+  std::string log_hash;                       // over all records except dropped ones
 };
 
 void FillTicks(const task::LoopCounters& counters, const linux_rt::TickMeter& meter, RunFigures& figures);
 void FillBook(const BookFigures& book, RunFigures& figures);
 
-// The first field of every summary.json: the version of its fields.
+// Adds the first field of every summary.json: the version of its fields.
 void BeginSummary(nlohmann::ordered_json& json);
-// The fields above, by their names there, and AddBuild's.
+// Adds the fields of RunFigures under their names, and those of AddBuild.
 void AddFigures(const RunFigures& figures, nlohmann::ordered_json& json);
-// The last fields: what the program was built from.
+// Adds the last fields: the build information of the program.
 void AddBuild(nlohmann::ordered_json& json);
 
 }  // namespace fovea::run

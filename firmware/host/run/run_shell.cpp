@@ -4,7 +4,7 @@
 
 namespace fovea::run {
 
-// Digests and keyframes are for a log alone.
+// Only a log needs digests and keyframes.
 RunShell::RunShell(task::ServoStep& step, task::ServoTask* task, std::size_t records, RunFolderConfig folder)
     : task_(task),
       folder_(std::move(folder)),

@@ -1,8 +1,8 @@
-// A run of the servo, whoever runs it: the simulator at either pace, or the hardware target.
+// A run of the servo in any program: the simulator at either pace, or the hardware target.
 //
-// It has what all of them have: mailbox, flight recorder, tick meter, loop, the records' hash, the folder and
-// the summary's core. Log, summary.json and report are the same because no program wires them by itself. What
-// a program knows alone it adds as an observer of records, as fields of its summary or as files: the
+// RunShell has the common parts: mailbox, flight recorder, tick meter, loop, the records' hash, the folder
+// and the summary's core. All programs share this wiring, so their log, summary.json and report are the same.
+// A program adds its own data with an observer of records, as fields of its summary or as files: the
 // simulator its truth and verdict, the hardware target its operator.
 //
 //   vision   -> features() -> loop -> flight recorder -> ring -> TakeRecords -> hash, observers, log
@@ -33,53 +33,53 @@ class RunShell {
  public:
   using RecordObserver = std::function<void(const flight::FlightRecord& record)>;
 
-  // `step`: what the loop steps; `task`: the same, where its state can be looked at; null: it is on another
-  // processor. Both are borrowed. `records`: ticks that may wait for TakeRecords. Throws as RunFolder.
+  // `step`: what the loop steps. `task`: the servo behind `step`; null if it runs on another processor.
+  // Borrows both. `records`: ticks that may wait for TakeRecords. Throws like RunFolder.
   RunShell(task::ServoStep& step, task::ServoTask* task, std::size_t records, RunFolderConfig folder);
   RunShell(const RunShell&) = delete;
   RunShell& operator=(const RunShell&) = delete;
 
-  // Before the threads run.
-  // Called by TakeRecords for each record, in order; of several observers the first that was added first.
+  // Call the next two before the threads run.
+  // TakeRecords calls `observer` for each record, in order; several observers in the order of their addition.
   void OnRecord(RecordObserver observer) { observers_.push_back(std::move(observer)); }
-  // The ticks and their stages go to `track`, which is borrowed.
+  // Traces the ticks and their stages on `track`, which is borrowed.
   void UseTrack(trace::Track& track);
 
   // From the servo's thread.
   void MakeThreadRealtime(const linux_rt::RealtimeOptions& options);
-  // Where the loop's records go.
+  // The recorder that takes the loop's records.
   [[nodiscard]] hal::Recorder& recorder();
-  // The loop, ready to run. All are borrowed until EndLoop. `first`: gets each record in the tick, in place
-  // of recorder(), and hands it on to that.
+  // Returns the loop, ready to run. Borrows all until EndLoop. `first`: gets each record in the tick instead
+  // of recorder(), and must pass it on to recorder().
   task::ServoLoop& BeginLoop(hal::Arm& arm, hal::Clock& clock, hal::Recorder* first = nullptr);
   // Null before BeginLoop, and after EndLoop.
   [[nodiscard]] task::ServoLoop* loop() { return loop_ ? &*loop_ : nullptr; }
-  // When nobody asks anything of the loop any more; not needed where arm and clock outlive the shell. Its
-  // counters are kept.
+  // Call when no thread uses the loop any more; not needed if arm and clock outlive the shell. Keeps the
+  // loop's counters.
   void EndLoop();
 
-  // Measurements for the loop: from the vision thread, or from who hands them over late.
+  // Measurements for the loop: from the vision thread, or from an object that delays them.
   [[nodiscard]] hal::FeatureMailbox& features() { return features_; }
-  // From the vision thread. `more`: what else is drawn on the log's picture.
+  // From the vision thread. `more`: further annotations of the log's picture.
   void AddFrame(const hal::Frame& frame, const vision::Detection& detection,
                 const foxglove::ImageAnnotations& more = {});
 
-  // From one thread, as mode and now_s: whatever the loop recorded since goes to hash, observers and log.
+  // From one thread, like mode and now_s: passes all new records to hash, observers and log.
   void TakeRecords();
   [[nodiscard]] hal::Mode mode() const { return mode_; }  // of the last record taken
-  [[nodiscard]] double now_s() const { return now_s_; }   // and its time, by the loop's clock; 0 before
+  [[nodiscard]] double now_s() const { return now_s_; }   // its time, by the loop's clock; 0 before the first
 
-  // Null where there is no log.
+  // Null if there is no log.
   [[nodiscard]] RunBook* book() { return folder_.book(); }
 
-  // When the servo's thread is done: what the machine did not grant it.
+  // The missing real-time privileges of the servo's thread. Call when that thread is done.
   [[nodiscard]] const std::vector<std::string>& realtime_missing() const { return realtime_missing_; }
 
-  // When the threads are done and all records are taken, once each and in this order. Fill completes the film
-  // and says everything that RunFigures has. Write as RunFolder's.
+  // Call when the threads are done and all records are taken, once each and in this order. Fill completes the
+  // film and sets all fields of RunFigures. Write is that of RunFolder.
   void Fill(RunFigures& figures);
   void Write(const std::string& summary_json, const RunBook::MoreFiles& more = {});
-  // From any thread, when the process ends before Write is done: the log is kept as far as it goes.
+  // From any thread, when the process ends before Write is done: keeps only the incomplete log.
   void KeepLog() const { folder_.KeepLog(); }
 
  private:
@@ -90,9 +90,9 @@ class RunShell {
   linux_rt::TickMeter meter_;
   std::optional<trace::TickTrace> ticks_;  // around meter and recorder
   std::optional<task::ServoLoop> loop_;
-  std::optional<task::LoopCounters> counters_;  // of a loop that was ended
+  std::optional<task::LoopCounters> counters_;  // of an ended loop
   std::vector<std::string> realtime_missing_;
-  // of the thread that takes the records
+  // Used only by the thread that takes the records
   log::RecordHash hash_;
   std::vector<RecordObserver> observers_;
   hal::Mode mode_ = hal::Mode::kBoot;

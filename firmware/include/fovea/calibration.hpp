@@ -1,4 +1,4 @@
-// Cameras and hand-eye, before any run.
+// Calibration of camera and hand-eye, before any run.
 #pragma once
 
 #include "firmware/host/calibration/board.hpp"        // IWYU pragma: export

@@ -1,4 +1,4 @@
-// What the visual law works on: s and L_s of each target.
+// The visual features: s and L_s of each target.
 #pragma once
 
 #include "firmware/core/features/target_feature.hpp"  // IWYU pragma: export

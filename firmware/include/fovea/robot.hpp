@@ -1,4 +1,4 @@
-// Arms from their files.
+// Reads an arm from its files.
 #pragma once
 
 #include "firmware/host/robots/robot.hpp"  // IWYU pragma: export

@@ -1,4 +1,4 @@
-// Everything that can be set about the servo.
+// All settings of the servo.
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"  // IWYU pragma: export

@@ -1,4 +1,4 @@
-// Keys and values from files and command lines.
+// Reads keys and values from files and command lines.
 #pragma once
 
 #include "firmware/host/config/key_table.hpp"  // IWYU pragma: export

@@ -1,4 +1,4 @@
-// Who watches a tick's stages from outside.
+// Observes the stages of a tick from outside.
 #pragma once
 
 #include "firmware/core/task/stage_probe.hpp"  // IWYU pragma: export

@@ -1,4 +1,4 @@
-// From a picture to a target.
+// Detects the target in a picture.
 #pragma once
 
 #include "firmware/vision/detect/target_detector.hpp"  // IWYU pragma: export

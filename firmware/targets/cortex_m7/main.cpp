@@ -14,7 +14,7 @@ namespace {
 namespace m7 = fovea::cortex_m7;
 namespace link = fovea::link;
 
-constexpr std::uint32_t kTicksPerStackLook = 64;  // it reads all of the stack that is not used
+constexpr std::uint32_t kTicksPerStackLook = 64;  // a look takes time: it reads the whole unused stack
 
 class Mps2Board final : public link::Board {
  public:
@@ -48,13 +48,13 @@ fovea::model::ArmModel arm;
 Mps2Board board;
 link::ServoServer server(arm, board);
 
-// Of their own: what the server holds may be half-written when a fault comes.
+// Separate buffers: those of the server may be half-written when a fault comes.
 link::FrameWriter crash_writer;
 std::array<std::uint8_t, 64> crash_payload;
 
 }  // namespace
 
-// The host is told; it holds what it drives when it is, or when nothing comes any more.
+// Reports the fault to the host. The host holds the arm when it gets the report, or when the board is silent.
 void fovea::cortex_m7::OnFault(const FaultRegisters& registers) noexcept {
   const link::Crash crash{registers.exception, registers.cfsr, registers.hfsr, registers.pc, registers.lr};
   SendBytesNow(crash_writer.Encode({link::FrameKind::kCrash, 0, link::Encode(crash, crash_payload)}));

@@ -39,8 +39,8 @@ std::string InWords(const LeaveFinding& finding, double allowed_nm) {
   const std::string why = finding.trouble != nullptr
                               ? std::string(finding.trouble)
                               : fmt::format(
-                                    "{}; at most {} Nm are allowed (check.gravity_torque); is arm.load_* "
-                                    "what the flange carries?",
+                                    "{}; at most {} Nm are allowed (check.gravity_torque); check that "
+                                    "arm.load_* is the load at the flange",
                                     InWords(finding.gravity), allowed_nm);
   return fmt::format("motion is refused: {}", why);
 }

@@ -1,4 +1,4 @@
-// What stands between a robot that holds by itself and a servo that moves it.
+// Decides when the servo may take over a robot that holds by itself.
 #pragma once
 
 #include <optional>
@@ -11,21 +11,21 @@
 
 namespace fovea::hw {
 
-// What came of a wish to move.
+// The result of a request to move.
 struct LeaveFinding {
   bool passed = false;
   const char* trouble = nullptr;  // why gravity could not be compared; static storage
-  GravityFinding gravity;         // where it could
+  GravityFinding gravity;         // if it could be compared
 };
 [[nodiscard]] std::string InWords(const LeaveFinding& finding, double allowed_nm);
 
-// Looks at the states of an arm that holds by itself, until there is a finding.
+// Compares gravity in the states of an arm that holds by itself, until there is a finding.
 class LeaveLook {
  public:
   LeaveLook(const HwConfig& config, const model::ArmModel& model)
       : config_(config), model_(model), mean_(MakeRestMean(config)) {}
 
-  // The next read of the arm, and what it answered.
+  // Takes the result of the next read. Returns the finding when there is one.
   [[nodiscard]] std::optional<LeaveFinding> Add(const hal::Status& status, const hal::ArmState& state);
   void BeginAnew();
 
@@ -38,9 +38,9 @@ class LeaveLook {
 
 using LeaveRing = linux_rt::BoundedRing<LeaveFinding>;
 
-// Reads states until motion is asked for and gravity is as the model has it: true. The findings go to
-// `findings`. False when it was told to end, or, where motion was asked for from the start (`only_once`),
-// after the first that did not pass. From the arm's thread.
+// Reads states until motion is requested and gravity matches the model, then returns true. Puts each finding
+// into `findings`. Returns false when the run ends, or, with `only_once` (motion requested from the start),
+// after the first finding that does not pass. From the arm's thread.
 bool AwaitLeave(const HwConfig& config, const model::ArmModel& model, bool only_once, hal::Arm& arm,
                 hal::Clock& clock, RunControl& control, LeaveRing& findings);
 

@@ -38,7 +38,7 @@ void CheckComputer(const HwConfig& config, Rows& rows) {
   const std::string governor = FirstLine("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
   const bool steady = governor.empty() || governor == "performance";
   rows.push_back({"processor speed", steady ? Verdict::kPass : Verdict::kWarn,
-                  governor.empty() ? "no scaling is seen" : governor,
+                  governor.empty() ? "no frequency scaling" : governor,
                   steady ? "" : "cpupower frequency-set -g performance"});
 
   std::vector<std::string> missing;
@@ -60,7 +60,7 @@ void CheckComputer(const HwConfig& config, Rows& rows) {
                     line.find(": ") == std::string::npos ? "" : line.substr(line.find(": ") + 2)});
   }
   if (missing.empty()) {
-    rows.push_back({"privileges", Verdict::kPass, "all that was asked for", ""});
+    rows.push_back({"privileges", Verdict::kPass, "all are granted", ""});
   }
   const double p999_us = static_cast<double>(late.Percentile(0.999)) / kNsPerUs;
   const Verdict verdict = p999_us < kWakeWarnUs   ? Verdict::kPass
@@ -70,7 +70,7 @@ void CheckComputer(const HwConfig& config, Rows& rows) {
       {"wake-up", verdict,
        fmt::format("p99.9 {:.0f} us, at most {:.0f} us in {} s", p999_us,
                    static_cast<double>(late.max_ns()) / kNsPerUs, config.check.seconds),
-       verdict == Verdict::kPass ? "" : "end what else runs here; a kernel with PREEMPT_RT; loop.cpu"});
+       verdict == Verdict::kPass ? "" : "end other programs; use a kernel with PREEMPT_RT; set loop.cpu"});
 }
 
 }  // namespace

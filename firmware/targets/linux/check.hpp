@@ -1,4 +1,4 @@
-// The pre-flight: what of computer and robot is as it should be before an arm moves.
+// The pre-flight check of computer, robot and camera before an arm moves.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ struct CheckRow {
   std::string advice;  // what to do; empty when there is nothing
 };
 
-// Looks at the computer, at the robot, which is not moved, and at the camera. NetworkError and CameraError
-// never: what is not there is a row.
+// Checks the computer, the robot (without moving it) and the camera. Never throws NetworkError or
+// CameraError: a missing device is a row.
 std::vector<CheckRow> Check(const HwConfig& config);
 
 [[nodiscard]] bool AnyFails(const std::vector<CheckRow>& rows);

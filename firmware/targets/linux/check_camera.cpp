@@ -20,26 +20,26 @@ constexpr double kRmsWarnPx = 0.5;
 constexpr double kRmsFailPx = 2.0;
 constexpr double kMountWarnMm = 2.0;
 constexpr double kMountFailMm = 10.0;
-constexpr double kRateWarn = 0.95;  // of what was asked for
+constexpr double kRateWarn = 0.95;  // of the requested rate
 constexpr double kRateFail = 0.7;
 constexpr double kLostFail = 0.02;                 // share of all frames
-constexpr double kLateWarn = 0.02;                 //
-constexpr std::int64_t kFirstNs = 3'000'000'000;   // patience with the first frame
-constexpr std::int64_t kPatienceNs = 200'000'000;  // and with the next
+constexpr double kLateWarn = 0.02;                 // share of all frames
+constexpr std::int64_t kFirstNs = 3'000'000'000;   // timeout for the first frame
+constexpr std::int64_t kPatienceNs = 200'000'000;  // timeout for each later frame
 constexpr const char* kNetwork =
-    "GigE: camera.packet_size and the MTU, net.core.rmem_max; no other traffic; fewer pixels";
+    "GigE: check camera.packet_size, the MTU and net.core.rmem_max; avoid other traffic; use fewer pixels";
 
 Verdict Grade(double value, double warn, double fail) {
   return value < warn ? Verdict::kPass : value < fail ? Verdict::kWarn : Verdict::kFail;
 }
 
 void CheckCalibration(const config::CalibrationSettings& settings, Rows& rows) {
-  const char* const advice = "`fovea calibrate intrinsics` on pictures of a board; copy what it writes";
+  const char* const advice = "run `fovea calibrate intrinsics` on pictures of a board; copy its output";
   try {
     const vision::Intrinsics in = config::MakeIntrinsics(settings);
     if (settings.rms_px == 0.0) {
       rows.push_back({"calibration", Verdict::kWarn,
-                      fmt::format("f {:.1f} px; how well it fits is unknown", in.f_u_px), advice});
+                      fmt::format("f {:.1f} px; its rms error is unknown", in.f_u_px), advice});
     } else {
       const Verdict verdict = Grade(settings.rms_px, kRmsWarnPx, kRmsFailPx);
       rows.push_back({"calibration", verdict,
@@ -53,12 +53,12 @@ void CheckCalibration(const config::CalibrationSettings& settings, Rows& rows) {
     return std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; });
   };
   const char* const mount_advice =
-      "`fovea calibrate hand-eye`; copy it into camera.mount_xyz, mount_rpy_deg and mount_rms_mm";
+      "run `fovea calibrate hand-eye`; set camera.mount_xyz, mount_rpy_deg and mount_rms_mm from its output";
   if (is_zero(settings.mount_xyz) && is_zero(settings.mount_rpy_deg)) {
     rows.push_back(
-        {"mounting", Verdict::kFail, "the camera is said to sit in the flange's middle", mount_advice});
+        {"mounting", Verdict::kFail, "the configured position is the flange's centre", mount_advice});
   } else if (settings.mount_rms_mm == 0.0) {
-    rows.push_back({"mounting", Verdict::kWarn, "how well it was measured is unknown", mount_advice});
+    rows.push_back({"mounting", Verdict::kWarn, "its rms error is unknown", mount_advice});
   } else {
     const Verdict verdict = Grade(settings.mount_rms_mm, kMountWarnMm, kMountFailMm);
     rows.push_back({"mounting", verdict,
@@ -78,8 +78,8 @@ void CheckRate(const HwConfig& config, const FrameFigures& figures, Rows& rows) 
                           : share > kRateFail ? Verdict::kWarn
                                               : Verdict::kFail;
   rows.push_back(
-      {"camera's rate", verdict, fmt::format("{:.1f} Hz, {:.1f} asked for", figures.rate_hz, wished_hz),
-       verdict == Verdict::kPass ? "" : "a shorter camera.exposure_ms; a faster line; fewer pixels"});
+      {"camera's rate", verdict, fmt::format("{:.1f} Hz, {:.1f} requested", figures.rate_hz, wished_hz),
+       verdict == Verdict::kPass ? "" : "shorten camera.exposure_ms; use a faster line or fewer pixels"});
 }
 
 void CheckLosses(const CameraCounters& counters, std::size_t frames, int late, Rows& rows) {
@@ -96,8 +96,8 @@ void CheckLosses(const CameraCounters& counters, std::size_t frames, int late, R
 
 void CheckLatency(const HwConfig& config, const FrameFigures& figures, bool by_clock, Rows& rows) {
   if (config.camera.time != "computer" || config.camera.driver == "recorded") {
-    rows.push_back({"latency", Verdict::kWarn, "not measured: stamps are in another clock",
-                    "with camera.time = \"computer\" it is measured here"});
+    rows.push_back({"latency", Verdict::kWarn, "not measured: the stamps are from another clock",
+                    "set camera.time = \"computer\" to measure it"});
     return;
   }
   const double stale_ms = 1e3 * config.servo.config.predict.stale_s;
@@ -109,7 +109,7 @@ void CheckLatency(const HwConfig& config, const FrameFigures& figures, bool by_c
                    figures.latency_max_ms, by_clock ? "the camera's own clock" : "camera.transport_ms"),
        verdict == Verdict::kPass
            ? ""
-           : fmt::format("with a period of {:.1f} ms it comes to servo.stale_s, which is {:.0f} ms",
+           : fmt::format("latency plus the period of {:.1f} ms reaches servo.stale_s, which is {:.0f} ms",
                          figures.period_ms, stale_ms)});
 }
 
@@ -132,7 +132,7 @@ void CheckFrames(const HwConfig& config, Rows& rows) {
   if (arrivals.size() < 2) {
     rows.push_back({"frames", Verdict::kFail,
                     fmt::format("{} came in {:.1f} s", arrivals.size(), config.check.seconds),
-                    "is it triggered by something else? a longer check.seconds; camera.exposure_ms"});
+                    "check for an external trigger; set a longer check.seconds; check camera.exposure_ms"});
     return;
   }
   CameraCounters counters = camera->counters();
@@ -143,7 +143,7 @@ void CheckFrames(const HwConfig& config, Rows& rows) {
     rows.push_back({"picture size", Verdict::kFail,
                     fmt::format("{} x {} px, calibrated for {} x {} px", frame.width_px, frame.height_px,
                                 in.width_px, in.height_px),
-                    "calibrate at the size that is used"});
+                    "calibrate the camera at the size in use"});
   }
   CheckRate(config, figures, rows);
   CheckLosses(counters, arrivals.size(), figures.late, rows);
@@ -154,7 +154,7 @@ void CheckFrames(const HwConfig& config, Rows& rows) {
 
 void CheckCamera(const HwConfig& config, Rows& rows) {
   if (!config.HasCamera()) {
-    rows.push_back({"camera", Verdict::kWarn, "none: the arm is held where it stands", "camera.driver"});
+    rows.push_back({"camera", Verdict::kWarn, "none: the arm is held where it stands", "set camera.driver"});
     return;
   }
   CheckCalibration(config.camera.calibration, rows);
@@ -163,7 +163,7 @@ void CheckCamera(const HwConfig& config, Rows& rows) {
   } catch (const camera::CameraError& error) {
     rows.push_back(
         {"camera", Verdict::kFail, error.what(),
-         "its power and cable; camera.device; `arv-tool-0.8` or `v4l2-ctl --list-devices` lists them"});
+         "check power, cable and camera.device; `arv-tool-0.8` or `v4l2-ctl --list-devices` lists cameras"});
   }
 }
 

@@ -1,4 +1,4 @@
-// What of the camera is as it should be.
+// Checks of the camera.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace fovea::hw {
 
-// Calibration and mounting; then rate, losses, and how old pictures are when they come.
+// Checks calibration and mounting, then rate, losses and latency of the pictures.
 void CheckCamera(const HwConfig& config, std::vector<CheckRow>& rows);
 
 }  // namespace fovea::hw

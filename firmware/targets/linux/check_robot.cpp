@@ -13,8 +13,8 @@ constexpr double kGravityWarn = 0.5;  // share of check.gravity_torque
 
 CheckRow CheckGravity(const robots::Robot& robot, const RestMean& mean, bool rests, double allowed_nm) {
   if (!rests) {
-    return {"gravity", Verdict::kFail, "the arm moves, and gravity is compared at rest",
-            "let it come to rest"};
+    return {"gravity", Verdict::kFail, "the arm moves; gravity is compared only at rest",
+            "let the arm come to rest"};
   }
   const GravityFinding finding = CompareGravity(robot.model, mean.q(), mean.tau_meas());
   const double worst = std::fabs(finding.worst_nm);
@@ -24,7 +24,7 @@ CheckRow CheckGravity(const robots::Robot& robot, const RestMean& mean, bool res
   return {"gravity", verdict, InWords(finding),
           verdict == Verdict::kPass
               ? ""
-              : "is arm.load_* what the flange carries, and does the robot know of it?"};
+              : "check that arm.load_* is the load at the flange, and that the robot knows it"};
 }
 
 CheckRow CheckRange(const robots::Robot& robot, const hal::ArmState& state, double margin) {
@@ -32,12 +32,12 @@ CheckRow CheckRange(const robots::Robot& robot, const hal::ArmState& state, doub
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = robot.model.joints[k];
     if (state.q[k] < joint.q_min + margin || state.q[k] > joint.q_max - margin) {
-      return {"joint ranges", Verdict::kFail, fmt::format("joint {} stands at {:.3f} rad", i + 1, state.q[k]),
-              fmt::format("lead it by hand to between {:.3f} and {:.3f} rad", joint.q_min + margin,
+      return {"joint ranges", Verdict::kFail, fmt::format("joint {} is at {:.3f} rad", i + 1, state.q[k]),
+              fmt::format("move it by hand to between {:.3f} and {:.3f} rad", joint.q_min + margin,
                           joint.q_max - margin)};
     }
   }
-  return {"joint ranges", Verdict::kPass, "all joints are inside", ""};
+  return {"joint ranges", Verdict::kPass, "all joints are inside their ranges", ""};
 }
 
 }  // namespace fovea::hw

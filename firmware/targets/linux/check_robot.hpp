@@ -1,4 +1,4 @@
-// Checks of a robot that every driver makes alike.
+// Checks of a robot that all drivers share.
 #pragma once
 
 #include "firmware/targets/linux/check.hpp"
@@ -6,11 +6,11 @@
 
 namespace fovea::hw {
 
-// What the robot's joints feel beside what the model says that they carry; `rests`: `mean` is there. Motion
-// is refused where this fails.
+// Compares the measured joint torques with the model's gravity. `rests`: `mean` is complete. If this check
+// fails, motion is refused.
 CheckRow CheckGravity(const robots::Robot& robot, const RestMean& mean, bool rests, double allowed_nm);
 
-// Whether each joint stands inside its range, less `margin` [rad].
+// Checks that each joint is inside its range, less `margin` [rad].
 CheckRow CheckRange(const robots::Robot& robot, const hal::ArmState& state, double margin);
 
 }  // namespace fovea::hw

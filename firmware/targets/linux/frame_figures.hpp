@@ -1,4 +1,4 @@
-// How often pictures come, and how late.
+// The rate and the latency of a camera's pictures.
 #pragma once
 
 #include <cstdint>
@@ -6,21 +6,21 @@
 
 namespace fovea::hw {
 
-// A frame that came.
+// A frame that arrived.
 struct Arrival {
   std::int64_t stamp_ns = 0;  // mid-exposure
-  std::int64_t at_ns = 0;     // when it was here, by the same clock
+  std::int64_t at_ns = 0;     // arrival, by the same clock
 };
 
 struct FrameFigures {
-  double rate_hz = 0.0;     // by their stamps; 0 of fewer than two
-  double period_ms = 0.0;   // the usual one, between two stamps
-  double latency_ms = 0.0;  // from exposure to arrival, the usual one
+  double rate_hz = 0.0;     // by the stamps; 0 for fewer than two frames
+  double period_ms = 0.0;   // median time between two stamps
+  double latency_ms = 0.0;  // median time from exposure to arrival
   double latency_max_ms = 0.0;
-  int late = 0;  // that came more than half a period later than usual
+  int late = 0;  // frames whose latency is above the median by more than half a period
 };
 
-// In the order in which they came.
+// `arrivals` in the order of arrival.
 FrameFigures FiguresOf(const std::vector<Arrival>& arrivals);
 
 }  // namespace fovea::hw

@@ -45,10 +45,10 @@ GravityFinding CompareGravity(const model::ArmModel& arm, const hal::JointArray&
 }
 
 std::string InWords(const GravityFinding& finding) {
-  const std::string off = fmt::format("measured torques are {:.2f} Nm off the model's at joint {}",
+  const std::string off = fmt::format("measured torques differ from the model by {:.2f} Nm at joint {}",
                                       std::fabs(finding.worst_nm), finding.joint + 1);
   const bool lighter = finding.unknown_mass_kg < 0.0;
-  return fmt::format("{}, as of {:.2f} kg {} at the end effector", off, std::fabs(finding.unknown_mass_kg),
+  return fmt::format("{}, as with {:.2f} kg {} at the end effector", off, std::fabs(finding.unknown_mass_kg),
                      lighter ? "too little" : "too much");
 }
 

@@ -1,4 +1,4 @@
-// What the joints of a resting arm feel beside what the model says that they carry.
+// Compares the measured joint torques of an arm at rest with the model's gravity.
 #pragma once
 
 #include <string>
@@ -9,29 +9,29 @@
 namespace fovea::hw {
 
 struct GravityFinding {
-  double worst_nm = 0.0;         // of all joints, measured less the model's
-  int joint = 0;                 // where, from 0
-  double unknown_mass_kg = 0.0;  // at the end effector, that would explain all joints best
+  double worst_nm = 0.0;         // largest difference of all joints, measured minus model
+  int joint = 0;                 // the joint with that difference, from 0
+  double unknown_mass_kg = 0.0;  // mass at the end effector that fits all joints best (least squares)
 };
 
-// `tau_meas` [num_joints], gravity included, of an arm at rest at `q`: then they are its gravity and nothing
-// else, whoever holds it. NaN where a value is not finite.
+// `tau_meas` [num_joints], gravity included, of an arm at rest at `q`: there the torques are only gravity,
+// whichever controller holds the arm. NaN for values that are not finite.
 [[nodiscard]] GravityFinding CompareGravity(const model::ArmModel& arm, const hal::JointArray& q,
                                             const hal::JointArray& tau_meas);
 
-// "measured torques are 3.41 Nm off the model's at joint 2, as of 0.70 kg at the end effector".
+// "measured torques differ from the model by 3.4 Nm at joint 2, as with 0.7 kg too much at the end effector".
 [[nodiscard]] std::string InWords(const GravityFinding& finding);
 
-// The mean over states in a row of an arm at rest.
+// The mean over consecutive states of an arm at rest.
 class RestMean {
  public:
-  // At rest: every joint slower than `rest_speed` [rad/s]. `states` [>= 1]: so many in a row.
+  // At rest: every joint slower than `rest_speed` [rad/s]. `states` [>= 1]: number of consecutive states.
   RestMean(int states, double rest_speed) : states_(states), rest_speed_(rest_speed) {}
 
   [[nodiscard]] int states() const noexcept { return states_; }
-  // Takes the next state; true once the mean is there. Real-time: yes.
+  // Takes the next state; true once the mean is complete. Real-time: yes.
   bool Add(const hal::ArmState& state) noexcept;
-  // So many states came without it, and the arm does not come to rest.
+  // True after kPatience times `states` states: the arm does not come to rest.
   [[nodiscard]] bool IsInVain() const noexcept { return seen_ >= kPatience * states_; }
 
   [[nodiscard]] hal::JointArray q() const noexcept { return Divided(q_); }

@@ -61,7 +61,7 @@ fs::path FindConfig(const std::string& name_or_path) {
                                name_or_path, fmt::join(names, ", ")));
 }
 
-// The driver that `settings` name, and the keys that there are, follow from each other: it comes first.
+// The known keys depend on the driver that `settings` name, so the driver is chosen first.
 void ChooseDriver(const std::vector<config::Setting>& settings, HwConfig& config) {
   config::KeyTable keys;
   AddDriverKey(config, keys);
@@ -83,24 +83,23 @@ config::KeyTable HwKeys(HwConfig& c) {
   auto& camera = c.camera;
   AddCameraDriverKeys(c, keys);
   keys.Text("camera.pixel_format", camera.pixel_format,
-            "Mono8, BayerRG8, BayerGR8, BayerGB8, BayerBG8, YUYV, RGB8 or BGR8; \"\": as the camera is set");
+            "Mono8, BayerRG8, BayerGR8, BayerGB8, BayerBG8, YUYV, RGB8 or BGR8; \"\": the camera's setting");
   keys.Number("camera.rate_hz", camera.rate_hz, 0.0, 1000.0, "Hz",
-              "frames per second; 0: as the camera is set");
+              "frames per second; 0: the camera's setting");
   keys.Number("camera.exposure_ms", camera.exposure_ms, 0.0, 1000.0, "ms",
-              "exposure time; 0: as the camera is set");
+              "exposure time; 0: the camera's setting");
   keys.Number("camera.gain", camera.gain, -1.0, 1000.0, "",
-              "in the camera's own unit; negative: as the camera is set");
+              "gain in the camera's own unit; negative: the camera's setting");
   keys.Integer("camera.packet_size", camera.packet_size, 0, 65000, "bytes",
-               "GigE Vision's; 0: the largest that the network carries");
+               "packet size of GigE Vision; 0: the largest that the network carries");
   keys.Choice("camera.stamp_at", camera.stamp_at, {"start", "middle", "end"},
-              "when in an exposure the camera takes its stamp");
+              "point of the exposure at which the camera takes its stamp");
   keys.Number("camera.transport_ms", camera.transport_ms, 0.0, 1000.0, "ms",
-              "the least time from a stamp until its picture is here, where the camera's own clock cannot be "
-              "asked; what "
-              "is not known of it is latency that nothing makes up for");
+              "least time from a stamp to the arrival of its picture, used if the camera's clock cannot be "
+              "read; an error of it is latency that nothing compensates");
   keys.Choice("camera.time", camera.time, {"computer", "device"},
-              "whose clock stamps are in; device: one that is the loop's already (PTP, or a simulated camera "
-              "in lockstep)");
+              "clock of the stamps; device: the camera's clock, which must agree with the loop's (PTP, or a "
+              "simulated camera in lockstep)");
   config::AddCalibrationKeys(camera.calibration, keys);
   config::AddVisionKeys(c.vision, keys);
   config::AddTargetKeys(c.target, keys);
@@ -110,19 +109,19 @@ config::KeyTable HwKeys(HwConfig& c) {
       "safety.rotation_speed that is used");
   keys.Number(
       "input.dead_man_s", c.input.dead_man_s, 0.0, 3600.0, "s",
-      "no line on standard input for so long, by the loop's clock: the arm is held until somebody asks "
-      "for motion anew; 0: nobody need be there");
-  keys.Integer("loop.priority", c.loop.priority, 1, 98, "", "of the servo's thread, SCHED_FIFO");
-  keys.Integer("loop.cpu", c.loop.cpu, -1, 1023, "", "the processor that it stays on; -1: any");
+      "after so long without a line on standard input, by the loop's clock, the arm is held until somebody "
+      "requests motion again; 0: no operator is needed");
+  keys.Integer("loop.priority", c.loop.priority, 1, 98, "", "priority of the servo's thread, SCHED_FIFO");
+  keys.Integer("loop.cpu", c.loop.cpu, -1, 1023, "", "processor of the servo's thread; -1: any");
   keys.Number("check.seconds", c.check.seconds, 0.1, 3600.0, "s",
-              "for so long --check measures how late a thread wakes up");
+              "how long --check measures a thread's wake-up, and the camera");
   keys.Number(
       "check.gravity_torque", c.check.gravity_torque, 0.1, 100.0, "Nm",
-      "a joint's torque at rest may be so far off the model's gravity; further, and motion is refused");
-  keys.Number("check.gravity_s", c.check.gravity_s, 0.01, 60.0, "s", "over so long at rest it is averaged");
+      "largest difference of a joint's torque at rest from the model's gravity; above it motion is refused");
+  keys.Number("check.gravity_s", c.check.gravity_s, 0.01, 60.0, "s", "averaging time of that torque");
   keys.Number("log.picture_rate_hz", c.log.picture_rate_hz, 0.0, 1000.0, "Hz",
-              "with --out: at most so many pictures per second are kept in the log");
-  keys.Flag("log.film", c.log.film, "with --out: what the eye saw, as camera.mp4 and in the report");
+              "with --out: the log keeps at most so many pictures per second");
+  keys.Flag("log.film", c.log.film, "with --out: the camera's film, as camera.mp4 and in the report");
   config::AddServoKeys(c.servo, keys);
   return keys;
 }
@@ -165,7 +164,7 @@ config::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robo
   config::ServoSettings settings = config.servo;
   config::ScaleSpeed(config.robot.speed_scale, settings);
   if (!config.HasCamera()) {
-    settings.keep_in_view = false;  // there is no picture to keep anything in
+    settings.keep_in_view = false;  // without a camera there is no view
     return config::MakeServoConfig(settings, robot, model::Pose{}, vision::Intrinsics{},
                                    config::TargetSettings{});
   }

@@ -1,4 +1,4 @@
-// What a configuration of fovea-hw can say.
+// The configuration of fovea-hw.
 #pragma once
 
 #include <filesystem>
@@ -70,8 +70,8 @@ struct HwConfig {
   [[nodiscard]] bool HasCamera() const { return camera.driver != "none"; }
 };
 
-// The keys of all sections, bound to `config`, which must outlive the table; of the robot those of
-// config.robot.driver, which must be one of the list.
+// The keys of all sections, bound to `config`, which must outlive the table. The robot's keys are those of
+// config.robot.driver, which must be in the list.
 config::KeyTable HwKeys(HwConfig& config);
 
 // Reads a shipped configuration by name, or a .toml by path, then applies `assignments` ("key=value").
@@ -81,11 +81,11 @@ HwConfig LoadHwConfig(const std::string& name_or_path, const std::vector<std::st
 // The arm of arm.model, with its load.
 robots::Robot LoadHwRobot(const HwConfig& config);
 
-// The servo's configuration: with a camera as it is calibrated, without one for an arm that is held.
+// The servo's configuration: with a camera from its calibration, without one for an arm that is held.
 // InputError.
 config::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot);
 
-// Over so many states, and of an arm so still, gravity is compared.
+// The mean for the comparison of gravity: its number of states and its speed limit.
 RestMean MakeRestMean(const HwConfig& config);
 
 }  // namespace fovea::hw

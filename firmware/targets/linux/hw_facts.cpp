@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kRing = 8192;  // ticks that may wait for the disk: eight seconds
 constexpr std::size_t kMostImages = 32;
 
-// Of the ball about its centre that holds the target.
+// Radius of the sphere about the target's centre that encloses the target [m].
 double Reach(const features::TargetFeature& target) {
   const features::TargetOutline outline = target.Outline();
   double reach = 0.0;

@@ -1,4 +1,4 @@
-// What a run on hardware is about, for what it leaves behind.
+// The facts of a run on hardware, for its files.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace fovea::hw {
 
-// What it leaves in the folder `out`; empty: nothing. Nobody waits for a disk. `duration_s`: 0 when nobody
-// knows. `command`: the command line, for the log.
+// The configuration of the folder `out`; empty: no files. The run never waits for a disk. `duration_s`: 0 if
+// unknown. `command`: the command line, for the log.
 run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot,
                               const config::ServoConfig& servo, const std::string& out, double duration_s,
                               const std::string& command);

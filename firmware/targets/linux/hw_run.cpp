@@ -26,9 +26,9 @@ namespace {
 constexpr std::size_t kRecords = 8192;  // that may wait: eight seconds at 1 kHz
 constexpr std::size_t kFindings = 16;
 constexpr std::chrono::milliseconds kLook{10};
-constexpr std::chrono::milliseconds kSayLast{300};  // before the summary counts what could not be said
+constexpr std::chrono::milliseconds kSayLast{300};  // before the summary counts the unprinted lines
 
-// Everything of one run, wired up. Members stand in the order in which one needs the other.
+// All objects of one run, connected. The order of the members follows their dependencies.
 class Session {
  public:
   Session(const HwConfig& config, const HwRunOptions& options, const linux_rt::SignalQueue& signals,
@@ -45,7 +45,7 @@ class Session {
                FolderOf(config, robot_, servo_, options.out, options.duration_s, options.command)),
         operator_({.dead_man_s = config.input.dead_man_s, .allow_motion = options.allow_motion}, clock_,
                   signals, control_) {
-    // Checked by MakeServoConfig already; it is refused there, in words.
+    // MakeServoConfig has checked it already, and throws with a message if it is refused.
     static_cast<void>(task_.Init(servo_));
     summary_.config = config.name;
     summary_.allow_motion = options.allow_motion;
@@ -90,7 +90,7 @@ class Session {
   // The real-time thread.
   void RunServo() {
     shell_.MakeThreadRealtime({.fifo_priority = config_.loop.priority, .cpu = config_.loop.cpu});
-    // Last of all: from now on the robot sends a state each millisecond.
+    // Connect last: from now on the robot sends a state each millisecond.
     try {
       if (!control_.ended) {
         Connect();
@@ -137,7 +137,7 @@ class Session {
     }
   }
 
-  // The main thread: whatever came from the others.
+  // In the main thread: handles everything that the other threads put into their rings.
   void Attend() {
     TellConnection();
     findings_.Drain(findings_.End(), [this](const LeaveFinding& finding) {
@@ -151,7 +151,7 @@ class Session {
     shell_.TakeRecords();
     LookAtRecovery();
     LookAtCamera();
-    // Before that the servo would find the same fault again.
+    // Without new states the servo would find the same fault again.
     if (watch_.ArmIsBack() && summary_.fault != hal::Fault::kNone) {
       look_.emplace(config_, robot_.model);
     }
@@ -163,7 +163,7 @@ class Session {
     }
     connection_told_ = true;
     speaker_.Say(fmt::format("connected to {}{}", robot_link_->address(),
-                             options_.allow_motion ? "" : ", without leave to move"));
+                             options_.allow_motion ? "" : ", without permission to move"));
     if (!options_.allow_motion) {
       return;
     }
@@ -172,13 +172,13 @@ class Session {
     }
     if (config_.input.dead_man_s > 0.0) {
       speaker_.Say(
-          fmt::format("a line on standard input at least every {} s keeps the arm moving, else it is held; "
-                      "for a run that nobody watches: --set input.dead_man_s=0",
+          fmt::format("type a line at least every {} s to keep the arm moving, otherwise it is held; "
+                      "for a run without an operator: --set input.dead_man_s=0",
                       config_.input.dead_man_s));
     }
   }
 
-  // `word` asks anew.
+  // `word`: the operator types it to try again.
   void Tell(const LeaveFinding& finding, const char* word) {
     const std::string words = InWords(finding, config_.check.gravity_torque);
     summary_.refusal = finding.passed ? "" : words;
@@ -187,12 +187,12 @@ class Session {
     }
     watch_.Say(words);
     if (!finding.passed) {
-      speaker_.Say(fmt::format("the robot holds by itself; set it right and type \"{}\" anew", word));
+      speaker_.Say(fmt::format("the robot holds by itself; remove the cause and type \"{}\" again", word));
     }
   }
 
-  // Of a robot that recovered, and holds by itself: the servo gets it back when gravity is as before the
-  // start.
+  // For a robot that recovered and holds by itself: the servo takes over again when gravity passes the same
+  // check as before the start.
   void LookBeforeReset(const hal::ArmState& state) {
     const bool is_new = std::exchange(looked_at_, state.sequence) != state.sequence;
     if (!look_ || !is_new) {
@@ -203,7 +203,7 @@ class Session {
       Tell(*finding, "recover");
       if (finding->passed) {
         shell_.loop()->Ask(task::Request::kReset);
-        speaker_.Say("recovered: the servo holds; \"track\" asks for motion anew");
+        speaker_.Say("recovered: the servo holds; type \"track\" to move again");
       }
     }
   }
@@ -221,8 +221,8 @@ class Session {
   void Tell(const Heard& heard) {
     if (heard.word == Word::kAlive) {
       if (heard.unknown.front() != 0) {
-        speaker_.Say(
-            fmt::format("\"{}\" is not known; enable, track, hold, recover, end", heard.unknown.data()));
+        speaker_.Say(fmt::format("\"{}\" is not known; allowed: enable, track, hold, recover, end",
+                                 heard.unknown.data()));
       }
       return;
     }
@@ -245,7 +245,7 @@ class Session {
   void LookAtRecovery() {
     ArmDriver* robot = control_.arm;
     if (const char* why = robot != nullptr ? robot->TakeRecoveryRefusal() : nullptr) {
-      watch_.Say(fmt::format("no recovery: {}; type \"recover\" anew", why));
+      watch_.Say(fmt::format("no recovery: {}; type \"recover\" again", why));
     }
   }
 
@@ -257,7 +257,7 @@ class Session {
   }
 
   void Summarise() {
-    // Said before any file is waited for.
+    // Print these lines before the program waits for any file.
     if (!status_.ok()) {
       watch_.Say(fmt::format("the loop ended: {} ({})", hal::ToString(status_.code()), status_.where()));
     }
@@ -302,7 +302,7 @@ class Session {
   std::uint64_t lease_ends_told_ = 0;
   bool camera_failed_ = false;
   std::optional<LeaveLook> look_;  // after a recovery
-  std::uint64_t looked_at_ = 0;    // the number of its newest state
+  std::uint64_t looked_at_ = 0;    // sequence of its newest state
   run::RunShell shell_;
   std::optional<HwVision> vision_;  // its thread uses the shell
   hal::Arm* arm_ = nullptr;         // once connected
@@ -314,7 +314,7 @@ class Session {
 }  // namespace
 
 HwSummary Run(const HwConfig& config, const HwRunOptions& options, Speaker& speaker) {
-  // From here on a signal ends the run in order, and a reader that is gone ends nothing.
+  // From here on a signal ends the run in order, and a closed pipe does not end it.
   std::signal(SIGPIPE, SIG_IGN);
   const linux_rt::SignalQueue signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};
   return Session(config, options, signals, speaker).Execute();

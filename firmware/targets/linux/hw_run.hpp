@@ -1,4 +1,4 @@
-// The servo on the robot, until somebody ends it.
+// Runs the servo on the robot until somebody ends it.
 #pragma once
 
 #include <string>
@@ -11,21 +11,21 @@ namespace fovea::hw {
 
 struct HwRunOptions {
   bool allow_motion = true;
-  bool enable = false;      // the arm may move from the start; else when the operator says so
-  bool track = false;       // and steers by the target; needs a camera
-  double duration_s = 0.0;  // of the servo, by the loop's clock; 0: until it is told to end
+  bool enable = false;      // the arm may move from the start; false: after the operator's "enable"
+  bool track = false;       // track the target from the start; needs a camera
+  double duration_s = 0.0;  // of the servo, by the loop's clock; 0: until somebody ends it
   std::string out;          // the folder for log, report and summary; empty: none
-  std::string command;      // the command line, for the log; "" when there was none
+  std::string command;      // the command line, for the log; "" if there is none
 };
 
-// Connects, waits for the operator's leave (see operator_input.hpp) while the robot holds by itself, compares
-// gravity with what the joints feel, runs the servo on a real-time thread, and ends in order: at "end",
-// SIGINT, SIGTERM, SIGHUP or after the duration the arm is brought to rest, and the motion is finished by the
-// robot's own way before the connection is closed; told a second time, at once. "recover" or SIGUSR1 asks a
-// robot that stopped to recover, and the servo to start anew. An operator who is silent for longer than
-// input.dead_man_s has the arm held. Without a camera it is held where it stands. Neither what `speaker` says
-// nor what is written delays any of this. InputError (also of a folder that cannot be written to),
-// NetworkError, CameraError.
+// Connects, waits for the operator's permission (see operator_input.hpp) while the robot holds by itself,
+// compares gravity with the measured joint torques, runs the servo on a real-time thread, and ends in order.
+// At "end", SIGINT, SIGTERM, SIGHUP or after the duration, the arm is brought to rest and the motion is
+// finished in the robot's own way before the connection is closed; a second request ends at once. "recover"
+// or SIGUSR1 makes a stopped robot recover and the servo start again. If the operator is silent for longer
+// than input.dead_man_s, the arm is held. Without a camera the arm is held where it stands. Neither `speaker`
+// nor a file delays any of this. InputError (also for a folder that cannot be written to), NetworkError,
+// CameraError.
 HwSummary Run(const HwConfig& config, const HwRunOptions& options, Speaker& speaker);
 
 }  // namespace fovea::hw

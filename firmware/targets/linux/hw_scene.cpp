@@ -12,12 +12,12 @@ namespace {
 constexpr double kJointRadius = 0.055;  // [m]
 constexpr double kJointLength = 0.12;
 constexpr double kRodRadius = 0.04;
-constexpr double kShortest = 1e-3;  // rods below it are none
+constexpr double kShortest = 1e-3;  // shorter rods are not drawn
 constexpr double kThickness = 0.001;
 
 Eigen::Isometry3d At(const Eigen::Vector3d& p) { return Eigen::Isometry3d(Eigen::Translation3d(p)); }
 
-// From the entity's origin to `p`.
+// Adds a rod from the entity's origin to `p`.
 void AddRod(const Eigen::Vector3d& p, const Eigen::Vector3f& colour, foxglove::SceneEntity& entity) {
   if (p.norm() < kShortest) {
     return;

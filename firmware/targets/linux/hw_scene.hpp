@@ -1,4 +1,4 @@
-// The arm and its target as a log's viewer draws them, from nothing but the servo's model.
+// The arm and its target for a log's viewer, made only from the servo's model.
 #pragma once
 
 #include <vector>
@@ -13,12 +13,12 @@ class SceneUpdate;
 
 namespace fovea::hw {
 
-// A frame for the base and for each joint, by their names in the robot's description, and with a camera
-// its own. X_EC: where it is mounted.
+// A frame for the base and for each joint, named as in the robot's description, and one for the camera if
+// there is one. X_EC: pose of the camera on the end effector.
 std::vector<log::LinkFrame> MakeLinkFrames(const robots::Robot& robot, bool has_camera,
                                            const model::Pose& X_EC);
 
-// Each link as a rod from its joint to the next; with a camera its housing, and the target.
+// Each link as a rod from its joint to the next; with a camera also its housing and the target.
 foxglove::SceneUpdate MakeSceneMessage(const robots::Robot& robot, bool has_camera,
                                        const features::TargetFeature& target);
 

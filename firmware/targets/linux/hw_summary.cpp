@@ -12,11 +12,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kAtGoalPx = 3.0;  // a target seen within this of its goal is there
+constexpr double kAtGoalPx = 3.0;  // within this image error the target counts as at its goal
 constexpr const char* kUnknown =
-    "how far the camera truly is from its goal, in depth above all, is not known: a wrong focal length, "
-    "mount "
-    "or target size does not show in its own picture";
+    "the camera's true distance from its goal, above all in depth, is unknown: a wrong focal length, mount "
+    "or target size does not show in the camera's own picture";
 
 Json ModesOf(const HwSummary& s) {
   Json modes = Json::array();
@@ -41,13 +40,13 @@ Json FaultsOf(const HwSummary& s) {
 
 std::string LastSeen(const std::optional<SeenError>& seen) {
   if (seen && seen->last_px) {
-    return fmt::format("the camera saw it {:.2f} px off its goal", *seen->last_px);
+    return fmt::format("the camera saw the target {:.2f} px off its goal", *seen->last_px);
   }
   if (seen && seen->frames > 0 && seen->failures.frames == seen->frames) {
-    return fmt::format("none of the camera's {} pictures could be looked at ({})", seen->frames,
+    return fmt::format("none of the camera's {} pictures could be processed ({})", seen->frames,
                        seen->failures.first);
   }
-  return "the camera never saw it";
+  return "the camera never saw the target";
 }
 
 Json GravityOf(const HwSummary& s) {
@@ -77,8 +76,8 @@ bool HasTracked(const HwSummary& s) {
   });
 }
 
-// Whether the eye was doubted when it came to the Hold that it ended in: the end itself, and a word, leave
-// another reason behind it.
+// Whether the final Hold began because the camera was doubted. The end itself, or an operator's word, may
+// have replaced the reason since.
 bool EndedInDoubt(const HwSummary& s) {
   for (auto m = s.modes.rbegin(); m != s.modes.rend() && m->mode == hal::Mode::kHold; ++m) {
     if (m->reason == hal::HoldReason::kEyeDoubted) {
@@ -88,7 +87,7 @@ bool EndedInDoubt(const HwSummary& s) {
   return false;
 }
 
-// Faults that it was recovered from, by name.
+// The names of the faults that the run recovered from.
 std::string RecoveredFrom(const HwSummary& s) {
   const std::size_t left = s.fault != hal::Fault::kNone && !s.faults.empty() ? 1 : 0;
   std::map<std::string, int> counts;
@@ -108,34 +107,36 @@ void JudgeEnd(HwSummary& s) {
   const hal::HoldReason reason = s.hold_reason;
   s.converged = false;
   if (s.fault != hal::Fault::kNone) {
-    s.verdict = fmt::format("it ended in a fault: {}", hal::Name(s.fault));
+    s.verdict = fmt::format("the run ended in a fault: {}", hal::Name(s.fault));
   } else if (!s.refusal.empty()) {
     s.verdict = s.refusal;
   } else if (s.ticks == 0) {
-    s.verdict = "the servo was never told to begin";
+    s.verdict = "the servo was never started";
   } else if (s.mode == hal::Mode::kBoot) {
-    s.verdict = "it never left mode boot: the arm's states were not sound, or it did not come to rest";
+    s.verdict = "the servo never left mode boot: the arm's states were invalid, or the arm was not at rest";
   } else if (s.seen && s.seen->frames_detected == 0) {
-    s.verdict = fmt::format("{}, in {} frames; it ended in mode {}", last, s.seen->frames, hal::Name(s.mode));
+    s.verdict =
+        fmt::format("{}, in {} frames; the run ended in mode {}", last, s.seen->frames, hal::Name(s.mode));
   } else if (!s.allow_motion) {
     s.converged = std::nullopt;
-    s.verdict = fmt::format("nothing was commanded; it ended without a fault, in mode {}", hal::Name(s.mode));
+    s.verdict =
+        fmt::format("nothing was commanded; the run ended without a fault, in mode {}", hal::Name(s.mode));
   } else if (s.mode == hal::Mode::kTrack || s.mode == hal::Mode::kCoast) {
     s.converged = s.mode == hal::Mode::kTrack && s.seen && s.seen->last_px && *s.seen->last_px <= kAtGoalPx;
-    s.verdict = fmt::format("it ended while it followed the target; at last {}", last);
+    s.verdict = fmt::format("the run ended while the servo followed the target; at the end {}", last);
   } else if (reason == hal::HoldReason::kNoTarget || reason == hal::HoldReason::kTargetLost ||
              reason == hal::HoldReason::kGoalUnreachable) {
-    s.verdict =
-        fmt::format("it was to follow the target, and held in the end ({}); {}", hal::Name(reason), last);
+    s.verdict = fmt::format("the servo should follow the target, but held at the end ({}); {}",
+                            hal::Name(reason), last);
   } else if (s.mode == hal::Mode::kHold && EndedInDoubt(s)) {
-    s.verdict = fmt::format("it was to follow the target, and held in the end ({}); {}",
+    s.verdict = fmt::format("the servo should follow the target, but held at the end ({}); {}",
                             hal::Name(hal::HoldReason::kEyeDoubted), last);
   } else if (s.operator_silent && HasTracked(s)) {
     s.verdict =
-        fmt::format("it was to follow the target, and was held since the operator was silent; {}", last);
+        fmt::format("the servo should follow the target, but held because the operator was silent; {}", last);
   } else {
     s.converged = std::nullopt;
-    s.verdict = fmt::format("it ended without a fault, in mode {}", hal::Name(s.mode));
+    s.verdict = fmt::format("the run ended without a fault, in mode {}", hal::Name(s.mode));
   }
 }
 

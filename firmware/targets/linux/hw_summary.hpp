@@ -1,4 +1,4 @@
-// What a run on hardware came to.
+// The result of a run on hardware.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace fovea::hw {
 
-// A mode, and why it holds; those while the arm is brought to rest in the end among them.
+// A mode and its hold reason. Includes the modes while the arm is brought to rest at the end.
 struct ModeEvent {
   double t_s = 0.0;  // since the servo's first tick
   hal::Mode mode = hal::Mode::kBoot;
@@ -29,7 +29,7 @@ struct FaultEvent {
   int joint = -1;  // at fault; -1: none
 };
 
-// Something that the operator asked for, in a word or by a signal.
+// A request of the operator, by a word or by a signal.
 struct WordEvent {
   std::int64_t stamp_ns = 0;  // of the loop's clock
   std::string word;
@@ -37,35 +37,35 @@ struct WordEvent {
 
 struct HwSummary : run::RunFigures {
   std::string config;
-  // How it ended, in words, and whether the target was followed to its goal, as far as its own camera says:
-  // true when it is seen there in the end; false when it was to be and is not, the target was never seen, the
-  // servo never began, or a fault is left; none when nobody asked for it.
+  // How the run ended, as text, and whether the target reached its goal according to the camera. True: the
+  // camera sees it there at the end. False: the servo should track it and it is not there, the target was
+  // never seen, the servo never began, or a fault remains. None: nobody requested tracking.
   std::string verdict;
   std::optional<bool> converged;
   bool allow_motion = true;
-  std::string refusal;                    // why motion was refused; "" when it was not, or is no longer
+  std::string refusal;                    // why motion is refused; "" if it is not
   std::optional<GravityFinding> gravity;  // the last comparison
-  bool operator_silent = false;           // the dead man has the arm held, and nobody asked anew
+  bool operator_silent = false;           // the arm is held since the operator's silence; no new request yet
   std::vector<WordEvent> words;
   std::optional<std::int64_t> start_ns;  // of the servo's first tick, by the loop's clock
-  std::uint64_t dead_man_holds = 0;      // times that the leave to move ran out
-  std::uint64_t lines_unsaid = 0;        // that standard error did not take
+  std::uint64_t dead_man_holds = 0;      // times that the permission to move ran out
+  std::uint64_t lines_unsaid = 0;        // lines that standard error did not take
   RobotFigures robot;
   std::optional<SeenError> seen;  // with a camera
   CameraCounters camera;
-  std::map<std::string, std::uint64_t> measurements;  // how many, by what became of them (hal::Intake)
+  std::map<std::string, std::uint64_t> measurements;  // counts by the name of hal::Intake
   linux_rt::DurationHistogram feature_ages;           // from exposure to the tick that took the measurement
-  // At the end, before the arm was brought to rest for it.
+  // At the end of the run, before the arm was brought to rest.
   hal::Mode mode = hal::Mode::kBoot;
   hal::HoldReason hold_reason = hal::HoldReason::kNone;
   hal::Fault fault = hal::Fault::kNone;
-  std::optional<double> finish_t_s;  // since when it was, in the servo's time
-  std::vector<std::string> events;   // modes, faults and recoveries, in words
+  std::optional<double> finish_t_s;  // when that began, since the servo's first tick
+  std::vector<std::string> events;   // modes, faults and recoveries, as text
   std::vector<ModeEvent> modes;
   std::vector<FaultEvent> faults;
 };
 
-// Sets verdict and converged from all else.
+// Computes `verdict` and `converged` from the other fields.
 void Judge(HwSummary& summary);
 
 std::string ToJson(const HwSummary& summary);

@@ -11,7 +11,7 @@
 namespace fovea::hw {
 namespace {
 
-constexpr int kFailedIsSaid = 100;  // pictures in a row that could not be looked at
+constexpr int kFailedIsSaid = 100;  // failed pictures in a row that are reported
 
 }  // namespace
 
@@ -62,7 +62,7 @@ void HwVision::Look(const vision::Detection& detection) {
   }
   if (failed_in_a_row_ == kFailedIsSaid) {
     failure_ =
-        fmt::format("its last {} pictures could not be looked at: {}", kFailedIsSaid, seen_.failures.first);
+        fmt::format("its last {} pictures could not be processed: {}", kFailedIsSaid, seen_.failures.first);
   }
   if (detection.found) {
     ++seen_.frames_detected;

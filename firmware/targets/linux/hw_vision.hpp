@@ -1,4 +1,4 @@
-// The eye of the hardware target: camera and detector on a thread of their own, measurements to the servo.
+// Vision of the hardware target: camera and detector on their own thread, measurements to the servo.
 #pragma once
 
 #include <atomic>
@@ -14,29 +14,29 @@
 
 namespace fovea::hw {
 
-// How far the target is from its goal in the picture, as the camera sees it.
+// Image error of the target, as the camera sees it.
 struct SeenError {
   std::uint64_t frames = 0;
   std::uint64_t frames_detected = 0;
-  std::optional<double> last_px;     // of the newest picture with the target in it
-  vision::FrameFailures failures{};  // frames that could not be looked at; they count as not found
+  std::optional<double> last_px;     // distance from the goal in the newest picture with the target
+  vision::FrameFailures failures{};  // frames that could not be processed; they count as not found
 };
 
 class HwVision {
  public:
   // Opens the camera and begins. CameraError, InputError. `features` must outlive it. `observer` may be
-  // empty; called by the thread of its own.
+  // empty; the vision thread calls it.
   HwVision(const HwConfig& config, const features::TargetFeature& goal, std::int64_t start_ns,
            hal::FeatureSink& features, vision::FrameObserver observer);
   ~HwVision();
 
   // From any thread.
   [[nodiscard]] SeenError seen() const;
-  // Why there are no measurements any more; "" while the camera works, or was only told to end.
+  // Why there are no more measurements; "" while the camera works, or after a normal end.
   [[nodiscard]] std::string failure() const;
   [[nodiscard]] std::string name() const { return camera_->name(); }
 
-  // Ends the thread; then what the driver counted.
+  // Ends the thread and returns the driver's counters.
   CameraCounters Finish();
 
  private:

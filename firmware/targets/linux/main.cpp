@@ -29,7 +29,7 @@ struct Arguments {
   bool json = false;
   double seconds = 0.0;
   std::string out;
-  std::string command;  // all of them, as they were typed
+  std::string command;  // the whole command line
 };
 
 int Check(const hw::HwConfig& config, bool json) {
@@ -38,7 +38,7 @@ int Check(const hw::HwConfig& config, bool json) {
   return hw::AnyFails(rows) ? config::kGoalMissed : config::kDone;
 }
 
-// None when something went wrong, which is said.
+// None after an error, which it prints.
 std::optional<hw::HwSummary> Serve(const hw::HwConfig& config, const Arguments& arguments) {
   hw::Speaker speaker(STDERR_FILENO);
   try {
@@ -73,11 +73,11 @@ int Run(const Arguments& arguments) {
     fmt::print("{}", hw::ToJson(summary));
   } else {
     if (summary.seen && summary.seen->last_px) {
-      fmt::print("{} frames, the target in {}; at last {:.2f} px off its goal\n", summary.seen->frames,
+      fmt::print("{} frames, the target in {}; at the end {:.2f} px off its goal\n", summary.seen->frames,
                  summary.seen->frames_detected, *summary.seen->last_px);
     }
     fmt::print(
-        "{} ticks, {} overruns; {} states, {} lost; {} commands, {:.0f} % of the last 100 came; ended in "
+        "{} ticks, {} overruns; {} states, {} lost; {} commands, {:.0f} % of the last 100 arrived; ended in "
         "{}\n",
         summary.ticks, summary.overruns, summary.robot.states, summary.robot.lost_states,
         summary.robot.commands, 100.0 * summary.robot.command_success_rate, hal::Name(summary.mode));
@@ -97,28 +97,24 @@ int main(int argc, char** argv) {
       "  fovea-hw panda --keys\n"
       "  fovea-hw panda --no-motion --seconds 10\n"
       "  fovea-sim serve ball --pace lockstep & fovea-hw loopback --track --seconds 8 --out out/hw\n"
-      "On standard input, a word a line: enable, track, hold, recover, end. SIGUSR1 recovers; SIGINT, "
-      "SIGTERM "
-      "and SIGHUP end, a second time at once.\n"
-      "Dead man: with input.dead_man_s (5 s; 0 in loopback) without a line, the arm is held, with --enable "
-      "and "
-      "--track too. For a run that nobody watches: --set input.dead_man_s=0\n"
-      "Before it moves, gravity is compared with what the joints feel (check.gravity_torque).\n"
-      "Exit: 0 done; 1 it ended in a fault, motion was refused, the target was never seen or not brought to "
-      "its "
-      "goal, the servo never began, or a check failed; 2 wrong usage or input.");
+      "Words on standard input, one per line: enable, track, hold, recover, end. SIGUSR1 recovers; SIGINT, "
+      "SIGTERM and SIGHUP end the run, a second one at once.\n"
+      "Dead man's switch: after input.dead_man_s (5 s; 0 in loopback: never) without a line the arm is held, "
+      "also with --enable and --track. For a run without an operator: --set input.dead_man_s=0\n"
+      "Before the arm moves, gravity is compared with the measured joint torques (check.gravity_torque).\n"
+      "Exit: 0 done; 1 the run ended in a fault, motion was refused, the target was never seen or not "
+      "brought to its goal, the servo never began, or a check failed; 2 wrong usage or input.");
   Arguments arguments;
   arguments.command = config::CommandLine(argc, argv);
   app.add_option("config", arguments.config, "a shipped configuration by name, or the path of a .toml")
       ->required();
-  app.add_option("--set", arguments.assignments, "key=value, over the configuration's own; may be repeated")
+  app.add_option("--set", arguments.assignments, "key=value, overrides the configuration; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
   app.add_flag("--check", arguments.check,
                "check computer, robot and camera without motion, and print what to fix");
-  app.add_flag("--keys", arguments.keys,
-               "print every key that the configuration takes: its value there, meaning, range, unit");
+  app.add_flag("--keys", arguments.keys, "print every key of the configuration: value, meaning, range, unit");
   app.add_flag("--no-motion", arguments.no_motion, "read states, command nothing");
   app.add_flag("--enable", arguments.enable, "enable motion from the start; without it, type \"enable\"");
   app.add_flag("--track", arguments.track,

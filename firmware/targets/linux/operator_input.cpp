@@ -14,8 +14,8 @@ constexpr std::array<std::pair<const char*, Word>, 5> kWords{{{"enable", Word::k
                                                               {"hold", Word::kHold},
                                                               {"recover", Word::kRecover},
                                                               {"end", Word::kEnd}}};
-constexpr std::size_t kMostUnread = 4096;  // of a line that never ends
-constexpr int kMostReads = 32;             // in one call, of an input that never ends
+constexpr std::size_t kMostUnread = 4096;  // bytes of a line without an end; more are dropped
+constexpr int kMostReads = 32;             // reads in one call, for an input without an end
 
 }  // namespace
 

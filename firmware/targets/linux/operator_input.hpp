@@ -1,4 +1,4 @@
-// What the person at the keyboard says, a word a line on standard input.
+// The operator's words on standard input, one per line.
 #pragma once
 
 #include <unistd.h>
@@ -9,11 +9,11 @@
 namespace fovea::hw {
 
 enum class Word {
-  kAlive,    // an empty line, or anything unknown: somebody is there
+  kAlive,    // an empty line, or anything unknown: the operator is present
   kEnable,   // the arm may move
-  kTrack,    // steer by the target
+  kTrack,    // track the target
   kHold,     // stand still
-  kRecover,  // a robot that stopped shall start anew
+  kRecover,  // make a stopped robot recover
   kEnd,
 };
 
@@ -21,9 +21,9 @@ class OperatorInput {
  public:
   explicit OperatorInput(int fd = STDIN_FILENO) : fd_(fd) {}
 
-  // The next word, if one was typed; never waits. An input that has ended, or is none, says nothing.
+  // The next word, if one was typed; never waits. None for an input that has ended or does not exist.
   std::optional<Word> Next();
-  // The last unknown line, once.
+  // Returns the last unknown line once, then "".
   std::string TakeUnknown();
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kLookMs = 5;
 constexpr std::size_t kRing = 256;
-// Files that are not written after this are given up with the next signal.
+// After this time the next signal ends the program, even if files are not written.
 constexpr std::int64_t kClosingNs = 5 * hal::kNsPerSecond;
 
 }  // namespace
@@ -37,7 +37,7 @@ void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) 
   }
   const std::int64_t now_ns = clock.NowNs();
   if (now_ns >= control.leave_until_ns) {
-    loop->Ask(task::Request::kNone);  // what was asked for before is forgotten, by a loop that waits too
+    loop->Ask(task::Request::kNone);  // drops the earlier request, also if the loop does not run yet
   }
   const auto lasts_ns = static_cast<std::int64_t>(dead_man_s * static_cast<double>(hal::kNsPerSecond));
   control.leave_until_ns = now_ns + lasts_ns;
@@ -56,7 +56,7 @@ OperatorThread::OperatorThread(const Options& options, const hal::Clock& clock,
 
 void OperatorThread::HearAll(const std::stop_token& stop) {
   pthread_setname_np(pthread_self(), "fovea-operator");
-  // Before all that may keep the machine busy, where that is granted; the servo's priority is higher.
+  // Runs before other busy programs, if that is granted; the servo's priority is higher.
   static_cast<void>(linux_rt::MakeThreadRealtime({.fifo_priority = 1,
                                                   .lock_memory = false,
                                                   .stack_prefault_kib = 0,
@@ -80,7 +80,7 @@ void OperatorThread::HearSignal() {
     if (closing_ns == 0) {
       End();
     } else if (linux_rt::MonotonicNs() - closing_ns > kClosingNs) {
-      std::_Exit(EXIT_FAILURE);  // a disk that hangs; the robot is let go of already
+      std::_Exit(EXIT_FAILURE);  // the disk hangs; the robot is already released
     }
   }
 }
@@ -109,7 +109,7 @@ void OperatorThread::HearWords() {
   }
 }
 
-// In order the first time, at once the second.
+// Ends in order the first time, at once the second time.
 void OperatorThread::End() noexcept {
   const bool again = control_.ended.exchange(true);
   if (task::ServoLoop* loop = control_.loop) {

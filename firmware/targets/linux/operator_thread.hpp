@@ -1,4 +1,4 @@
-// Who may have the arm moved, and for how long: words and signals, heard by a thread that does nothing else.
+// The operator's thread: reads words and signals, and renews the permission to move.
 #pragma once
 
 #include <array>
@@ -16,25 +16,25 @@
 
 namespace fovea::hw {
 
-// What the threads of a run share: nobody waits for anybody.
+// Data that the threads of a run share; no thread waits for another.
 struct RunControl {
-  // Null until there is a connection; what they point to outlives the operator's thread.
+  // Null until there is a connection. The objects outlive the operator's thread.
   std::atomic<task::ServoLoop*> loop{nullptr};
   std::atomic<ArmDriver*> arm{nullptr};
   std::atomic<bool> enable_asked{false};
-  std::atomic<bool> ended{false};               // it was told to
+  std::atomic<bool> ended{false};               // somebody requested the end
   std::atomic<bool> done{false};                // the servo's thread has nothing more to do
-  std::atomic<std::int64_t> closing_ns{0};      // since then, of MonotonicNs(), files are written; 0: not yet
-  std::atomic<std::int64_t> leave_until_ns{0};  // of the loop's clock, with a dead man
+  std::atomic<std::int64_t> closing_ns{0};      // when the writing of files began, MonotonicNs(); 0: not yet
+  std::atomic<std::int64_t> leave_until_ns{0};  // end of the permission to move, by the loop's clock
 };
 
-// Leave to move for `dead_man_s` from now on; for ever when that is 0.
+// Permits motion for `dead_man_s` from now on. Does nothing when that is 0: the permission never ends.
 void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) noexcept;
 
 struct Heard {
   std::int64_t stamp_ns = 0;  // of the loop's clock
   Word word = Word::kAlive;
-  std::array<char, 64> unknown{};  // a line that is no word, as far as there is room; ends in 0
+  std::array<char, 64> unknown{};  // an unknown line, truncated to fit; ends in 0
 };
 
 [[nodiscard]] const char* Name(Word word) noexcept;
@@ -46,11 +46,11 @@ class OperatorThread {
     bool allow_motion = true;
     int input_fd = STDIN_FILENO;
   };
-  // All are borrowed.
+  // Borrows all.
   OperatorThread(const Options& options, const hal::Clock& clock, const linux_rt::SignalQueue& signals,
                  RunControl& control);
 
-  // From one other thread: calls `take(heard)` for all that was heard, oldest first.
+  // From one other thread: calls `take(heard)` for each word and signal, oldest first.
   template <typename Take>
   void Drain(Take&& take) {
     heard_.Drain(heard_.End(), take);

@@ -1,4 +1,4 @@
-// What a run says and notes as its records come by: changes of mode, and faults.
+// Prints and stores the changes of mode and the faults in a run's records.
 #pragma once
 
 #include <string>
@@ -14,12 +14,12 @@ class RunWatch {
   // Both are borrowed.
   RunWatch(HwSummary& summary, Speaker& speaker) : summary_(summary), speaker_(speaker) {}
 
-  // `finishes`: the run is at its end, and the arm is brought to rest, which is no mode that it ended in.
+  // `finishes`: the arm is brought to rest at the end; modes from then on do not count as the final mode.
   void Add(const hal::TickRecord& record, bool finishes);
-  // An event, said and kept for the summary.
+  // Prints an event and keeps it for the summary.
   void Say(const std::string& line);
 
-  // Whether the arm's states come anew; true once after each AwaitArm.
+  // Whether new states of the arm arrive; true once after each AwaitArm.
   bool ArmIsBack() { return std::exchange(back_, false); }
   void AwaitArm() { awaited_ = true; }
 

@@ -24,8 +24,8 @@ constexpr std::chrono::milliseconds kPatience{500};
 }  // namespace
 
 struct Speaker::Shared {
-  // A descriptor of its own: when the thread outlives the speaker, the number that was given may by then be
-  // another file's.
+  // Its own descriptor: the thread may outlive the speaker, and then the given number may belong to another
+  // file.
   explicit Shared(int given) : fd(dup(given)) {}
   ~Shared() {
     if (fd >= 0) {
@@ -38,24 +38,24 @@ struct Speaker::Shared {
   const int fd;
   std::mutex mutex;
   std::condition_variable changed;
-  std::deque<std::string> lines;  // the first is being said
+  std::deque<std::string> lines;  // the first is being written
   std::uint64_t dropped = 0;
   bool closed = false;     // no more lines
-  bool abandoned = false;  // nor patience with those that are there
+  bool abandoned = false;  // waiting lines are given up too
 
   bool IsAbandoned() {
     const std::lock_guard lock(mutex);
     return abandoned;
   }
 
-  // False when it could not be said.
+  // False when the text could not be written.
   bool Write(std::string_view text) {
     while (fd >= 0 && !text.empty() && !IsAbandoned()) {
       pollfd room{fd, POLLOUT, 0};
       if (poll(&room, 1, kPollMs) <= 0) {
         continue;
       }
-      // A pipe with room takes so much without making one wait.
+      // A pipe with room takes PIPE_BUF bytes without blocking.
       const ssize_t written = write(fd, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
       if (written >= 0) {
         text.remove_prefix(static_cast<std::size_t>(written));
@@ -68,12 +68,12 @@ struct Speaker::Shared {
 };
 
 Speaker::Speaker(int fd) : shared_(std::make_shared<Shared>(fd)) {
-  // Signals are for others: the thread takes over what is blocked here.
+  // Signals are for other threads: the new thread inherits this mask.
   sigset_t all;
   sigset_t before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
-  // Not to be joined: a write to a terminal that stands still may never return.
+  // Detached: a write to a stopped terminal may never return.
   std::thread([shared = shared_] { SpeakAll(shared); }).detach();
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
 }

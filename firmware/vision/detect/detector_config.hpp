@@ -1,4 +1,4 @@
-// What is looked for, and how.
+// Which target the detector searches for, and how.
 #pragma once
 
 #include "firmware/core/features/target_feature.hpp"
@@ -9,25 +9,25 @@
 namespace fovea::vision {
 
 enum class FindBy {
-  kColour,  // edges of what has the target's colour
-  kGray,    // edges of brightness, whatever the colour
-  kHough,   // the source's finder: blur, Hough transform for circles; sphere and disc alone
+  kColour,  // edges of regions with the target's colour
+  kGray,    // edges of brightness, for a target of any colour
+  kHough,   // the source project's finder: blur, Hough transform for circles; only sphere and disc
 };
 
-// The source's finder, on the gray image: GaussianBlur and HoughCircles as OpenCV has them.
+// The source project's finder, on the gray image: OpenCV's GaussianBlur and HoughCircles.
 struct HoughConfig {
   double blur_sigma_px = 1.5;
   double canny_threshold = 100.0;
   double votes = 30.0;
-  double resolution_px = 1.0;  // of the votes' places
-  double spacing_px = 30.0;    // between circles' middles
+  double resolution_px = 1.0;  // of the votes: size of an accumulator cell
+  double spacing_px = 30.0;    // least distance between circle centres
 };
 
-// What no picture of a camera tells of itself, and the covariance allows for.
+// Errors that a picture does not show. The covariance includes them. Standard deviations.
 struct EdgeNoise {
-  double floor = 0.3;       // of a picture's noise: less is not believed [gray levels, standard deviation]
-  double shift_px = 0.01;   // what lens and light may move an outline or a side as a whole
-  double corner_px = 0.06;  // what the pixels' grid and colours may move a corner, otherwise in each picture
+  double floor = 0.3;       // least noise assumed for a picture [gray levels]
+  double shift_px = 0.01;   // common shift of an outline or a side by lens and light
+  double corner_px = 0.06;  // shift of a corner by pixel grid and colours, independent in each picture
 };
 
 struct DetectorConfig {
@@ -37,13 +37,13 @@ struct DetectorConfig {
   ColourConfig colour;
   HoughConfig hough;
   EdgeNoise edge_noise;
-  double size = 0.08;          // a ball's and a disc's diameter [m]
-  features::Polygon corners;   // a plate's: about their mean, turning from x to y
-  double distance_min = 0.12;  // a target can only be this near [m]
-  double distance_max = 1.20;  // or this far [m]: smaller things are something else
-  double radius_min_px = 8.0;  // nor are smaller outlines looked for: radius of the circle with their area
+  double size = 0.08;          // diameter of a sphere or disc [m]
+  features::Polygon corners;   // of a plate: relative to their mean, in the rotational sense from x to y
+  double distance_min = 0.12;  // least distance of a target [m]
+  double distance_max = 1.20;  // greatest distance of a target [m]; a smaller outline is another object
+  double radius_min_px = 8.0;  // least size of an outline: radius of the circle with its area
   double radius_max_px = 400.0;
-  double confidence_min = 0.5;  // finds below it are refused, 0 to 1
+  double confidence_min = 0.5;  // detections below it are rejected, 0 to 1
 
   void LookFor(const features::TargetFeature& target) {
     kind = target.target;

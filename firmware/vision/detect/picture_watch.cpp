@@ -8,10 +8,10 @@ namespace fovea::vision {
 namespace {
 
 constexpr int kSide = 4;      // of a patch [px]
-constexpr int kSpacing = 16;  // from one to the next [px]
+constexpr int kSpacing = 16;  // from one patch to the next [px]
 constexpr std::size_t kPixels = kSide * kSide;
-constexpr double kSigmas = 6.0;         // R of noise alone is below this many standard deviations above 1
-constexpr double kMoreThanNoise = 1.3;  // differences larger by this factor are no noise
+constexpr double kSigmas = 6.0;         // R of pure noise exceeds 1 by fewer standard deviations than this
+constexpr double kMoreThanNoise = 1.3;  // mean square differences larger by this factor are not noise
 
 }  // namespace
 

@@ -1,15 +1,15 @@
-// For how long the camera has shown the same picture: one that hangs repeats it, with fresh stamps, and even
-// with fresh noise.
+// Measures how long the camera has shown the same picture. A camera that hangs repeats its last picture with
+// new stamps, possibly with new noise.
 //
-// Patches of pixels spread over the picture are compared with those of the first picture of a row. What two
-// pictures of one scene differ by is noise, and noise of one pixel knows nothing of the next: with d_j the
-// differences of a patch's n pixels,
+// Compares patches of pixels, spread over the picture, with those of the first picture of a series of equal
+// pictures. Pictures of an unchanged scene differ by noise, which is independent from pixel to pixel. With
+// d_j the differences of a patch's n pixels,
 //
 //   R = sum over patches of (sum d_j)^2  /  sum over patches of sum d_j^2
 //
-// is 1 for noise alone, whatever its size, and up to n where the scene changed, since then whole patches get
-// brighter or darker. A texture as fine as the pixels moves R by nothing, but the differences themselves grow
-// beyond the smallest that were seen. Both must be as for noise for a picture to count as the same.
+// is 1 for pure noise of any level. If the scene changed, R is up to n, because whole patches become brighter
+// or darker. A moved texture as fine as the pixels does not change R, but its differences exceed the smallest
+// seen so far. A picture counts as the same if R and the size of the differences both match noise.
 #pragma once
 
 #include <cstdint>
@@ -18,21 +18,21 @@
 
 namespace fovea::vision {
 
-// One thread uses it. Allocates at the first picture of a size.
+// For one thread. Allocates when a picture is larger than those before.
 class PictureWatch {
  public:
-  // Looks at the next picture, CV_8UC3 or CV_8UC1, stamped `stamp_ns`. Returns for how long it has been the
-  // same [ns]; 0 when it is another than the one before.
+  // Takes the next picture, CV_8UC3 or CV_8UC1, stamped `stamp_ns`. Returns how long the picture has been the
+  // same [ns]; 0 when it differs from the series before it.
   std::int64_t Look(const cv::Mat& image, std::int64_t stamp_ns);
 
  private:
   void TakePatches(const cv::Mat& image, std::vector<std::uint8_t>& patches) const;
   [[nodiscard]] bool IsSame(const std::vector<std::uint8_t>& patches);
 
-  std::vector<std::uint8_t> first_;  // patches of the first picture of the row
+  std::vector<std::uint8_t> first_;  // patches of the first picture of the series
   std::vector<std::uint8_t> now_;
   std::int64_t first_stamp_ns_ = 0;
-  double least_ = -1.0;  // the smallest mean square difference between two pictures; below 0: none yet
+  double least_ = -1.0;  // smallest mean square difference above 0 so far; negative: none yet
 };
 
 }  // namespace fovea::vision

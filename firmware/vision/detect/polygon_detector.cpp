@@ -11,39 +11,39 @@
 namespace fovea::vision {
 namespace {
 
-constexpr double kMaxRmsPx = 0.35;     // edges further about the sides, but for noise: it is no target's
-constexpr double kMaxRmsShare = 0.05;  // of the radius, whatever the noise: another shape shows more
-constexpr double kMaxOffPx = 0.8;      // corners further from where the pose has them
-constexpr double kMaxOffPartPx = 0.3;  // the same where a part is hidden
+constexpr double kMaxRmsPx = 0.35;     // limit of the edges' rms distance from the sides, plus noise
+constexpr double kMaxRmsShare = 0.05;  // cap of that limit, of the radius: other shapes scatter more
+constexpr double kMaxOffPx = 0.8;      // limit of the corners' rms distance from the pose's corners
+constexpr double kMaxOffPartPx = 0.3;  // the same if a part is hidden
 constexpr double kMinColourShare = 0.6;
 constexpr double kSureConfidence = 0.9;
-constexpr double kMostAgainst = 0.08;  // of the sides: neither the target nor what could hide it
-constexpr int kMostCornersHidden = 1;  // of two, any place along the sides would do
-constexpr double kLeastSeen = 0.35;    // of each side
-constexpr double kLeastOn = 0.6;       // of its edges on its line: else it is two things' that meet
-constexpr double kPartRmsPx = 0.06;    // edges about the sides, where a part is hidden,
-constexpr double kWholeRmsPx = 0.12;   // and where none is,
-constexpr double kNoiseRms = 1.6;      // and so much more for noise over contrast
-constexpr double kPartSigmaPx = 0.3;   // of a corner, where a part is hidden,
-constexpr double kNoiseSigma = 2.0;    // and so much more for noise over contrast
-constexpr double kGoesOnShare = 0.25;  // of the target's contrast: what covers it may have any brightness
-constexpr double kGoesOnSigmas = 1.3;  // of the noise, from the mean of some 24 pairs of samples
+constexpr double kMostAgainst = 0.08;  // share of the sides without the target or an object that hides it
+constexpr int kMostCornersHidden = 1;  // with two, their places along the sides are undetermined
+constexpr double kLeastSeen = 0.35;    // seen share of each side
+constexpr double kLeastOn = 0.6;       // share of a side's edges on its line; less means two objects
+constexpr double kPartRmsPx = 0.06;    // limit of the edges' rms distance if a part is hidden,
+constexpr double kWholeRmsPx = 0.12;   // and if no part is hidden,
+constexpr double kNoiseRms = 1.6;      // plus this times noise / contrast
+constexpr double kPartSigmaPx = 0.3;   // limit of a corner's standard deviation if a part is hidden,
+constexpr double kNoiseSigma = 2.0;    // plus this times noise / contrast
+constexpr double kGoesOnShare = 0.25;  // of the contrast; low, as a covering object may have any brightness
+constexpr double kGoesOnSigmas = 1.3;  // of the noise; the step is a mean over 27 pairs of samples
 constexpr int kMostFits = 12;
 
-// Whether the fitted sides are the target's, as far as what stands beside them says.
+// Whether the fitted sides belong to the target, judged by the colours beside them.
 bool IsTargets(const PolygonFit& fit) {
   if (fit.against > kMostAgainst || fit.corners_hidden > kMostCornersHidden || fit.least_seen < kLeastSeen ||
       fit.least_on < kLeastOn) {
     return false;
   }
-  // Next to what hides a part, edges of two things may pass for one that is blurred.
+  // Next to a covering object, the edges of two objects can look like one blurred edge.
   const double noise = fit.quiet / std::max(fit.contrast, 1.0);
   const double scatter = (fit.whole ? kWholeRmsPx : kPartRmsPx) + kNoiseRms * noise;
   const double sigma = kPartSigmaPx + kNoiseSigma * noise;
   if (!fit.whole && fit.corners.cov.diagonal().maxCoeff() > sigma * sigma) {
-    return false;  // a corner that is so little known may be anywhere
+    return false;  // such an uncertain corner may be anywhere
   }
-  // Four sides that are not all the target's own fit no pose of it.
+  // Four corners need no explanation of bends: with a side of another object they fit no pose of the target.
   return fit.rms_px < scatter && (fit.whole || fit.bends_explained || fit.corners.count > 3);
 }
 
@@ -64,7 +64,7 @@ PolygonDetector::PolygonDetector(const DetectorConfig& config)
       colour_(config.colour),
       fitter_(config.edge_noise, config.by == FindBy::kColour) {
   if (static_cast<int>(shape_.size()) != features::TraitsOf(config.kind).num_corners) {
-    throw std::invalid_argument("the detector's corners are not those of its kind of target");
+    throw std::invalid_argument("the number of corners does not match the kind of target");
   }
   double area = 0.0;
   double side = 1e9;
@@ -95,7 +95,7 @@ Detection PolygonDetector::Look(const cv::Mat& image, const cv::Rect& area, int 
   return best;
 }
 
-// Fits from `start`; takes the place of `best` when it is more trustworthy.
+// Fits from `start`. Replaces `best` if the fit has a higher confidence.
 void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start, Detection& best) {
   const auto n = shape_.size();
   const PolygonFit fit = fitter_.Fit(image, config_.intrinsics, std::span(start.corner).first(n));
@@ -113,7 +113,7 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
   if (config_.by == FindBy::kColour && ColourShare(image, corners) < kMinColourShare) {
     return;
   }
-  // Not asked where the target's colour is known: a shadow beside it would look the same.
+  // Skipped if the target's colour is known: a shadow beside the target would look the same.
   const double step = std::max(kGoesOnShare * fit.contrast, kGoesOnSigmas * fit.quiet);
   if (config_.by == FindBy::kGray &&
       fitter_.evidence().SideGoesOn(image, config_.intrinsics, corners, step)) {
@@ -155,7 +155,7 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
     d.outline[i] = corners[from];
     d.u_px += corners[i].u_px / static_cast<double>(n);
     d.v_px += corners[i].v_px / static_cast<double>(n);
-    // d(area) = half the diagonal across the corner, turned; radius = sqrt(area / pi).
+    // d(area)/d(corner) is half the diagonal across the corner, turned by 90 deg; radius = sqrt(area / pi).
     const ImagePoint& before = corners[(i + n - 1) % n];
     const ImagePoint& after = corners[(i + 1) % n];
     const double scale = 0.5 / (2.0 * std::numbers::pi * d.radius_px);
@@ -168,7 +168,7 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
   best_X_CO_ = pose.X_CO;
 }
 
-// Of three corners many poses may be true, of which the first need not be the one.
+// Removes poses at impossible distances: three corners allow several poses, and the first can be false.
 void PolygonDetector::DropPosesOutOfReach(CornerPoses& found) const {
   const auto out = [this](const CornerPose& pose) {
     const double distance = pose.X_CO.p.norm();
@@ -178,7 +178,7 @@ void PolygonDetector::DropPosesOutOfReach(CornerPoses& found) const {
   found.count = static_cast<int>(std::remove_if(found.pose.begin(), end, out) - found.pose.begin());
 }
 
-// s and cov_s: the corners in the normalised image, from `first` on.
+// Sets s and cov_s: the corners in the normalised image, starting with `first`.
 void PolygonDetector::SetCorners(const CornerFit& fit, int first, Detection& d) const {
   const int n = fit.count;
   const Intrinsics& in = config_.intrinsics;
@@ -196,7 +196,7 @@ void PolygonDetector::SetCorners(const CornerFit& fit, int first, Detection& d) 
   }
 }
 
-// Over points between the middle and the outline.
+// Over points between the centre and the outline.
 double PolygonDetector::ColourShare(const cv::Mat& image, std::span<const ImagePoint> corners) const {
   constexpr int kPerSide = 8;
   constexpr std::array<double, 3> kOut{0.25, 0.55, 0.8};

@@ -14,17 +14,17 @@
 
 namespace fovea::vision {
 
-// The corners of the target in O that `config` names, turning from x to y.
+// The target's corners (x, y) in O [m], in the rotational sense from x to y.
 std::vector<Eigen::Vector2d> CornersOf(const DetectorConfig& config);
 
 class PolygonDetector {
  public:
-  // std::invalid_argument: corners that are not as many as its kind of target has.
+  // std::invalid_argument: the number of corners does not match the kind of target.
   explicit PolygonDetector(const DetectorConfig& config);
 
-  // The best that is in `area` of the image, searched `factor` times smaller.
+  // The best detection in `area` of the image, which is searched at 1 / `factor` of its resolution.
   Detection Look(const cv::Mat& image, const cv::Rect& area, int factor);
-  // What Look found last was the target: the next image's pose is kept near its; or the target is lost.
+  // Keep: the last detection was the target; the next pose is chosen near it. Forget: the target is lost.
   void Keep() { X_CO_ = best_X_CO_; }
   void Forget() { X_CO_.reset(); }
 
@@ -36,13 +36,13 @@ class PolygonDetector {
 
   const DetectorConfig config_;
   const std::vector<Eigen::Vector2d> shape_;
-  const int turns_;  // of the target that look alike
+  const int turns_;  // equal turns after which the target looks the same
   ColourModel colour_;
   PolygonLimits limits_;
   EdgeMap map_;
   PolygonFinder finder_;
   PolygonFitter fitter_;
-  std::optional<model::Pose> X_CO_;  // in the image before
+  std::optional<model::Pose> X_CO_;  // in the last image
   model::Pose best_X_CO_;
 };
 

@@ -15,21 +15,21 @@ namespace {
 using model::Mat3;
 using model::Vec3;
 
-constexpr double kMaxRmsPx = 0.35;       // edges further about the outline, but for noise: it is no target's
-constexpr double kMaxRmsShare = 0.05;    // of the radius, whatever the noise: another shape shows more
-constexpr double kMinColourShare = 0.6;  // of the inside that must look like the target
-constexpr double kSureConfidence = 0.9;  // no other candidate is looked at
-constexpr double kHalfSharp = 0.4;       // edges that scatter further than 0.4 of the limit cost trust
+constexpr double kMaxRmsPx = 0.35;       // limit of the edges' rms distance from the outline, plus noise
+constexpr double kMaxRmsShare = 0.05;    // cap of that limit, of the radius: other shapes scatter more
+constexpr double kMinColourShare = 0.6;  // share of the inside that must have the target's colour
+constexpr double kSureConfidence = 0.9;  // above it no other candidate is tried
+constexpr double kHalfSharp = 0.4;       // an rms distance above 0.4 of the limit reduces the confidence
 constexpr int kMostFits = 8;
-constexpr double kAsSure = 0.85;     // of the last confidence, when the outline is where it was expected
-constexpr double kAsClear = 0.5;     // of the last contrast
-constexpr double kSameSize = 0.1;    // share by which the radius may differ from what was expected
-constexpr double kRoundSigma = 7.0;  // an ellipse so little longer than wide is taken for a circle
+constexpr double kAsSure = 0.85;     // least share of the last confidence, at the expected place
+constexpr double kAsClear = 0.5;     // least share of the last contrast
+constexpr double kSameSize = 0.1;    // relative difference of the radius from the expected one
+constexpr double kRoundSigma = 7.0;  // an ellipse rounder than this many sigma is taken for a circle
 
 template <class Curve>
 constexpr bool kIsSphere = std::is_same_v<Curve, ConeCurve>;
 
-// The curve of a circle in the image, near enough to start from.
+// Sets `curve` to the circle `c` in the image, near enough to start a fit.
 void SetCircle(const Intrinsics& in, const Circle& c, ConeCurve& curve) {
   const Vec3 centre = in.Ray(c.u_px, c.v_px);
   const Vec3 rim = in.Ray(c.u_px + c.radius_px, c.v_px);
@@ -43,7 +43,7 @@ void SetCircle(const Intrinsics& /*in*/, const Circle& c, EllipseCurve& curve) {
   curve.p << 1.0, 0.0, 1.0, 0.0, 0.0;
 }
 
-// An orientation with z along `normal`; a disc's turn about it says nothing.
+// An orientation with z along `normal`; the turn about z is arbitrary for a disc.
 Mat3 AxesAbout(const Vec3& normal) {
   Mat3 R;
   R.col(2) = normal.normalized();
@@ -58,7 +58,7 @@ template <class Curve>
 RoundDetector<Curve>::RoundDetector(const DetectorConfig& config)
     : config_(config), colour_(config.colour), fitter_(config.edge_noise) {
   const double r = 0.5 * config.size * std::max(config.intrinsics.f_u_px, config.intrinsics.f_v_px);
-  // Off the axis outlines are larger; a tilted disc's is smaller.
+  // An outline is larger away from the optical axis; a tilted disc's is smaller.
   limits_.radius_min_px =
       std::max(config.radius_min_px, (kIsSphere<Curve> ? 0.9 : 0.5) * r / config.distance_max);
   limits_.radius_max_px = std::min(config.radius_max_px, 1.6 * r / config.distance_min);
@@ -113,7 +113,7 @@ void RoundDetector<Curve>::Keep() {
   last_ = best_;
 }
 
-// Fits from `start`; takes the place of `best` when it is more trustworthy.
+// Fits from `start`. Replaces `best` if the fit has a higher confidence.
 template <class Curve>
 void RoundDetector<Curve>::Judge(const cv::Mat& image, const Curve& start, Detection& best) {
   const CurveFit<Curve> fit = fitter_.Fit(image, config_.intrinsics, start, kIsSphere<Curve>);
@@ -123,7 +123,7 @@ void RoundDetector<Curve>::Judge(const cv::Mat& image, const Curve& start, Detec
       fit.ellipse.minor_px < 0.9 * limits_.aspect_min * fit.ellipse.major_px) {
     return;
   }
-  // A whole, sharp, rightly coloured outline counts 1; half an outline counts half.
+  // A whole and sharp outline has confidence 1, half an outline 0.5.
   const double sharp = 1.0 - fit.rms_px / most;
   const double confidence = std::clamp(fit.seen * std::min(1.0, kHalfSharp + sharp), 0.0, 1.0);
   if (confidence < config_.confidence_min || confidence <= best.confidence) {
@@ -180,7 +180,7 @@ bool RoundDetector<Curve>::DiscOf(const EllipseCurve& curve, double round_below,
   return true;
 }
 
-// s, its covariance and the outline's description, from the curve.
+// Computes s, its covariance and the outline's description from the curve.
 template <class Curve>
 bool RoundDetector<Curve>::FeatureOf(const CurveFit<Curve>& fit, Detection& d) {
   const Intrinsics& in = config_.intrinsics;
@@ -189,7 +189,7 @@ bool RoundDetector<Curve>::FeatureOf(const CurveFit<Curve>& fit, Detection& d) {
   d.v_px = e.v_px;
   d.radius_px = e.radius_px;
   constexpr int kN = Curve::kDim;
-  // Derivatives by differences over a tenth of a standard deviation: the curve is smooth there.
+  // Derivatives by differences over +-0.1 standard deviations, where the curve is smooth.
   Eigen::Matrix<double, 3, kN> uvr;
   Curve moved = fit.curve;
   for (int i = 0; i < kN; ++i) {
@@ -215,7 +215,7 @@ bool RoundDetector<Curve>::FeatureOf(const CurveFit<Curve>& fit, Detection& d) {
     d.cov_s = ds_dm * fit.cov * ds_dm.transpose();
     distance = s.norm() * 0.5 * config_.size;
   } else {
-    // What noise makes of a circle's half axes, as 1 - minor / major.
+    // The value of 1 - minor / major that noise gives a circle.
     const double round_below = kRoundSigma * std::sqrt(d.cov_uvr_px2(2, 2)) / e.radius_px;
     std::array<DiscPose, 2> poses;
     if (!DiscOf(fit.curve, round_below, poses)) {
@@ -244,7 +244,7 @@ bool RoundDetector<Curve>::FeatureOf(const CurveFit<Curve>& fit, Detection& d) {
     }
     d.s = s;
     d.cov_s = ds * fit.cov * ds.transpose();
-    // A tilt that cannot be told from none moves the middle: by (R / Z)^2 sin(tilt) in s.
+    // A tilt too small to measure still shifts the centre: by (R / Z)^2 sin(tilt) in s.
     const double sine = std::sqrt(std::min(1.0, 2.0 * round_below));
     const double tilt = std::max(e.minor_px / e.major_px, 0.05);
     const double shown = std::sqrt(std::max(1.0 - tilt * tilt, 0.0));

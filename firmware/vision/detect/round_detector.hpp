@@ -1,4 +1,4 @@
-// Sphere and disc: find (curve_finder.hpp, or the source's Hough transform), fit (curve_fit.hpp), judge.
+// Sphere and disc: find (curve_finder.hpp or hough_finder.hpp), fit (curve_fit.hpp), judge.
 #pragma once
 
 #include <optional>
@@ -20,19 +20,19 @@ class RoundDetector {
  public:
   explicit RoundDetector(const DetectorConfig& config);
 
-  // The best that is in `area` of the image, searched `factor` times smaller.
+  // The best detection in `area` of the image, which is searched at 1 / `factor` of its resolution.
   Detection Look(const cv::Mat& image, const cv::Rect& area, int factor);
-  // The same without a search: the outline that is expected is fitted at once, and counts when it is as
-  // trustworthy as the last. Not found when nothing is expected.
+  // The same without a search: fits the expected outline directly. Found if it is about as trustworthy as the
+  // last one. Not found if no outline is expected.
   Detection LookAgain(const cv::Mat& image);
-  // What was found last was the target: the next image's is expected near it; or the target is lost.
+  // Keep: the last detection was the target; the next one is expected near it. Forget: the target is lost.
   void Keep();
   void Forget() { last_.reset(); }
 
  private:
   void Judge(const cv::Mat& image, const Curve& start, Detection& best);
   bool FeatureOf(const CurveFit<Curve>& fit, Detection& detection);
-  // The one nearest to the last image's first.
+  // Both poses, the one nearest to the last image's pose first.
   bool DiscOf(const EllipseCurve& curve, double round_below, std::array<DiscPose, 2>& poses) const;
   [[nodiscard]] double ColourShare(const cv::Mat& image, const Ellipse& ellipse) const;
 
@@ -43,16 +43,16 @@ class RoundDetector {
   CurveFinder<Curve> finder_;
   HoughFinder hough_;
   CurveFitter fitter_;
-  // What is known of a target beside its detection.
+  // State of a target that its Detection does not contain.
   struct Known {
     Curve curve;
-    Curve next;                                  // expected in the image after
+    Curve next;                                  // expected in the next image
     model::Vec3 normal_C = model::Vec3::Zero();  // of the disc
     double confidence = 0.0;
     double contrast = 0.0;
   };
-  std::optional<Known> last_;  // in the image before
-  Known best_;                 // of this one
+  std::optional<Known> last_;  // in the last image
+  Known best_;                 // in this image
   model::Vec3 candidate_normal_ = model::Vec3::Zero();
 };
 

@@ -6,21 +6,21 @@
 namespace fovea::vision {
 namespace {
 
-constexpr double kDepthPx = 3.5;  // how far off the side colours are looked at, first
-constexpr int kDepths = 3;        // and so many pixels on
-constexpr double kClearPx = 1.5;  // and not nearer to another side than this
-constexpr int kReach = 2;         // neighbours whose mean a line takes, each way
-constexpr float kLike = 0.35F;    // colours nearer than this, of the target's contrast, are alike
+constexpr double kDepthPx = 3.5;  // distance from the side of the first colour sample
+constexpr int kDepths = 3;        // samples, 1 px apart
+constexpr double kClearPx = 1.5;  // least distance of a sample from another side
+constexpr int kReach = 2;         // neighbours on each side in a line's mean colour
+constexpr float kLike = 0.35F;    // colours nearer than this share of the contrast are alike
 constexpr float kLikeGround = 0.2F;
-// In another light, a colour is the target's own times a factor, and but for so much of that.
+// In other light, the target's colour is scaled by a factor in this range, with at most this relative error.
 constexpr float kDarkest = 0.15F;
 constexpr float kBrightest = 6.0F;
 constexpr float kSameHue = 0.3F;
-constexpr float kColoured = 0.5F;  // saturation of a target of which that can be said
-constexpr double kEndPx = 12.0;    // a side that is not seen so near to its corner does not show it
-constexpr double kEndShare = 0.2;  // or this, of its length
+constexpr float kColoured = 0.5F;  // least saturation of a target for this rule
+constexpr double kEndPx = 12.0;    // a side shows its corner if it is seen up to this distance from it,
+constexpr double kEndShare = 0.2;  // or up to this share of its length
 
-// The pixel there; false outside the image.
+// Reads the pixel at the ideal position (u, v); false outside the image.
 bool ColourAt(const cv::Mat& image, const Intrinsics& in, double u, double v, Eigen::Vector3f& colour) {
   in.Distort(u, v);
   u += 0.5;
@@ -64,7 +64,7 @@ void SideEvidence::Look(const cv::Mat& image, const Intrinsics& in, std::span<co
   Describe();
 }
 
-// How far a point is inside all sides but `but` [px].
+// How far a point is inside all sides except `but` [px].
 double SideEvidence::DepthOf(int but, double u, double v) const {
   double depth = 1e9;
   for (int k = 0; k < sides_count_; ++k) {
@@ -76,7 +76,7 @@ double SideEvidence::DepthOf(int but, double u, double v) const {
   return depth;
 }
 
-// Whether both the nearest and the furthest place within line i, of side `k`, are clear of the other sides.
+// Whether the nearest and the furthest inner sample of line i of side `k` are clear of the other sides.
 bool SideEvidence::IsInside(int k, int i) const {
   const ProfileLine& l = lines_[static_cast<std::size_t>(i)];
   const auto is_clear = [&](double depth) {
@@ -88,7 +88,7 @@ bool SideEvidence::IsInside(int k, int i) const {
 void SideEvidence::Sample(const cv::Mat& image, const Intrinsics& in) {
   for (int k = 0; k < sides_count_; ++k) {
     const Side& side = sides_[static_cast<std::size_t>(k)];
-    // What is clear of the other sides is convex: so are all places between two lines that are.
+    // The region clear of the other sides is convex: all lines between two clear lines are clear too.
     int first = side.from;
     int last = side.to - 1;
     while (first < side.to && !IsInside(k, first)) {
@@ -129,7 +129,7 @@ void SideEvidence::Sample(const cv::Mat& image, const Intrinsics& in) {
   Smooth(outside_, out_known_);
 }
 
-// Each line's colour to the mean of its neighbours' on the side.
+// Replaces each line's colour by the mean over its neighbours on the same side.
 void SideEvidence::Smooth(std::array<Colour, Profiles::kMaxLines>& colours,
                           const std::array<bool, Profiles::kMaxLines>& known) {
   for (int k = 0; k < sides_count_; ++k) {
@@ -149,7 +149,7 @@ void SideEvidence::Smooth(std::array<Colour, Profiles::kMaxLines>& colours,
   colours = smooth_;
 }
 
-// Channel by channel, over those of lines `from` to before `to` that `counts` names; black when none.
+// Median per channel over the known lines in [from, to) for which `counts` is true; black if there are none.
 template <class Counts>
 SideEvidence::Colour SideEvidence::MedianOf(const std::array<Colour, Profiles::kMaxLines>& colours, int from,
                                             int to, Counts counts) {
@@ -209,7 +209,7 @@ void SideEvidence::Judge() {
         says_[line] = (inside_[line] - ground_).squaredNorm() < ground2 ? Says::kNot : Says::kHidden;
       }
     }
-    // The ground is what lies beside the sides, now that they are known.
+    // Now the sides are known: the ground's colour is the colour outside of them.
     ground_ = MedianOf(outside_, 0, count, is_side);
   }
 }
@@ -250,7 +250,7 @@ void SideEvidence::Describe() {
   against_ = known > 0 ? static_cast<double>(wrong) / known : 1.0;
 }
 
-// Lines of which nothing is known are as the next one that is known.
+// An unknown line counts like the nearest known one.
 void SideEvidence::FindClear(const Side& side, int beside) {
   const auto is_clear = [&](int i) {
     for (int off = 0; off < side.to - side.from; ++off) {
@@ -262,7 +262,7 @@ void SideEvidence::FindClear(const Side& side, int beside) {
     }
     return true;
   };
-  int since = beside;  // lines since the last that is not
+  int since = beside;  // lines since the last one that is not clear
   for (int i = side.from; i < side.to; ++i) {
     since = is_clear(i) ? since + 1 : 0;
     clear_[static_cast<std::size_t>(i)] = since > beside;
@@ -275,7 +275,7 @@ void SideEvidence::FindClear(const Side& side, int beside) {
 }
 
 bool SideEvidence::ExplainsBends(const std::array<bool, Profiles::kMaxLines>& off) {
-  constexpr int kFew = 2;  // are off by chance
+  constexpr int kFew = 2;  // may be off by chance
   const float like = kLikeGround * static_cast<float>(contrast_);
   for (int k = 0; k < sides_count_; ++k) {
     const Side& side = sides_[static_cast<std::size_t>(k)];
@@ -303,8 +303,8 @@ int SideEvidence::CornersHidden() const {
   return hidden;
 }
 
-// The step across the line through a corner along (du, dv), from `from` to before `to` beyond it: what is on
-// its right less what is on its left. False where that is outside the image.
+// The colour step across the line through a corner along (du, dv), at [from, to) px beyond the corner: colour
+// on the right minus colour on the left. False if over half of the samples are outside the image.
 bool SideEvidence::StepBeyond(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
                               double dv, int from, int to, Colour& step) {
   constexpr int kNearest = 2;  // beside the line [px]
@@ -336,7 +336,7 @@ bool SideEvidence::SideGoesOn(const cv::Mat& image, const Intrinsics& in, std::s
     const double length = std::hypot(b.u_px - a.u_px, b.v_px - a.v_px);
     const double du = (b.u_px - a.u_px) / length;
     const double dv = (b.v_px - a.v_px) / length;
-    // Towards the end the inside is on the right, towards the begin on the left.
+    // Looking towards the side's end, the inside is on the right; towards its beginning, on the left.
     const Colour own = target_ - ground_;
     if (GoesOn(image, in, b, du, dv, length, own, least) ||
         GoesOn(image, in, a, -du, -dv, length, -own, least)) {
@@ -346,13 +346,13 @@ bool SideEvidence::SideGoesOn(const cv::Mat& image, const Intrinsics& in, std::s
   return false;
 }
 
-// `own`: the side's own step, from left to right as one looks along (du, dv) with v downwards.
+// `own`: the side's own step, right minus left, looking along (du, dv) with v downwards.
 bool SideEvidence::GoesOn(const cv::Mat& image, const Intrinsics& in, const ImagePoint& corner, double du,
                           double dv, double length, const Colour& own, double least) {
-  constexpr int kFirst = 4;  // beyond the corner, which is blurred [px]
-  constexpr int kPart = 3;   // what merely crosses there is not in each part of the way
+  constexpr int kFirst = 4;  // distance beyond the corner, which is blurred [px]
+  constexpr int kPart = 3;   // length of a part [px]; an edge that only crosses is not in all parts
   constexpr std::size_t kParts = 3;
-  constexpr double kFurthest = 0.6;  // of the side: where it may come out again behind something narrow
+  constexpr double kFurthest = 0.6;  // of the side: where it can reappear behind a narrow object
   constexpr float kSame = 0.4F;
   std::array<Colour, kParts> steps;
   std::size_t known = 0;

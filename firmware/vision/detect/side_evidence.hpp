@@ -1,9 +1,9 @@
-// What stands on both sides of a polygon's sides, line by line: whether it is the target that ends there.
+// Decides line by line, from the colours inside and outside of a polygon's sides, where the target ends.
 //
-// A side of the target has the target's own colour within and something else without. Where something
-// stands before the target, neither does; what stands there differs from the ground too, or there is nothing
-// that could hide a part. And the edge of what hides goes on beyond the corners that it makes with the
-// target's sides, where a side of the target ends.
+// A side of the target has the target's colour inside and another colour outside. Where an object hides the
+// target, the inside has the object's colour. That colour must differ from the ground's too; otherwise no
+// object is there. The edge of a covering object continues beyond the corners that it forms with the target's
+// sides; a side of the target ends there.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,44 +18,43 @@
 
 namespace fovea::vision {
 
-// Keeps the memory that it works in. One thread uses it.
+// Reuses its working memory. For one thread.
 class SideEvidence {
  public:
-  static constexpr double kBesidePx = 7.0;  // lines so near to what hides may see its edge
+  static constexpr double kBesidePx = 7.0;  // lines this near to a covering object may cross its edge
 
   using Colour = Eigen::Vector3f;
 
-  // `in_any_light`: a coloured target is one in the sun and in the shade, where a shadow's edge crosses it
-  // too.
+  // `in_any_light`: recognise a coloured target in sun and in shade, also if a shadow's edge crosses it.
   explicit SideEvidence(bool in_any_light) : in_any_light_(in_any_light) {}
 
   struct Side {
-    int from = 0, to = 0;  // its lines
+    int from = 0, to = 0;  // its lines, [from, to)
     double length_px = 0.0;
     double inward_u = 0.0, inward_v = 0.0;  // unit vector
-    double offset_px = 0.0;                 // of its line along that, from the image's origin
-    double seen = 0.0;                      // share of it where the target ends
-    bool ends[2] = {false, false};          // seen up to its begin, its end
+    double offset_px = 0.0;                 // of its line from the image's origin, along `inward`
+    double seen = 0.0;                      // share of its lines where the target ends
+    bool ends[2] = {false, false};          // seen up to its beginning, up to its end
   };
 
-  // `lines` cross the polygon's sides from within to without, side by side in the corners' order, each side's
-  // from its begin to its end; `ends[k]` is one past side k's last.
+  // `lines` cross the polygon's sides outward: side by side in the corners' order, each side from its
+  // beginning to its end. `ends[k]` is one past side k's last line.
   void Look(const cv::Mat& image, const Intrinsics& in, std::span<const ImagePoint> corners,
             std::span<const ProfileLine> lines, std::span<const int> ends);
 
-  // Whether line i's edge can be taken for the side's: it is, and nothing that hides is near.
+  // Whether line i's edge can be used for the side: the target ends there, and no covering object is near.
   [[nodiscard]] bool clear(int i) const { return clear_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const Side& side(int k) const { return sides_[static_cast<std::size_t>(k)]; }
-  [[nodiscard]] bool is_whole() const { return is_whole_; }  // the target ends at every line that is known
-  [[nodiscard]] double against() const { return against_; }  // share of the outline that is not the target's
-  // A side of which the edges of some lines are off: whether it is because something stands before them. Two
-  // things meet there; the one that lies against the ground, as the other sides do, is the target's.
+  [[nodiscard]] bool is_whole() const { return is_whole_; }  // the target ends at every known line
+  [[nodiscard]] double against() const { return against_; }  // share of the known lines that are kNot
+  // Whether an object in front of the target explains the outlier edges `off` on each side: outside, the
+  // side's other edges have the colour of the ground, and the outliers have another colour.
   [[nodiscard]] bool ExplainsBends(const std::array<bool, Profiles::kMaxLines>& off);
-  // Corners to which the sides are not seen.
+  // Number of corners that are not seen from both of their sides.
   [[nodiscard]] int CornersHidden() const;
 
-  // Whether the edge along a side goes on beyond a corner, by more than `least` gray levels: then it is the
-  // edge of what hides the target; or comes out again further on: then what is seen is a piece of the target.
+  // Whether the edge along a side continues beyond a corner with a step above `least` [gray levels]: then it
+  // is the edge of a covering object. Or it reappears further on: then only a piece of the target is seen.
   [[nodiscard]] bool SideGoesOn(const cv::Mat& image, const Intrinsics& in,
                                 std::span<const ImagePoint> corners, double least) const;
 
@@ -63,8 +62,8 @@ class SideEvidence {
   enum class Says : std::uint8_t {
     kUnknown,  // outside the image, or too near to a corner
     kSide,     // the target ends here
-    kHidden,   // something stands before it
-    kNot,      // the ground is where the target should be, or the target goes on
+    kHidden,   // an object hides the target here
+    kNot,      // the ground lies inside, or the target continues outside
   };
   [[nodiscard]] bool IsTargets(const Colour& colour) const;
   [[nodiscard]] Says SaysOf(int i) const { return says_[static_cast<std::size_t>(i)]; }

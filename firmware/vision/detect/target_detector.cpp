@@ -6,10 +6,10 @@
 namespace fovea::vision {
 namespace {
 
-constexpr double kReach = 1.9;  // how far corners are from the middle, in radii of the circle with the area
-constexpr double kRoomShare = 0.3;  // how far the target may be from where it is expected, in radii
-constexpr double kRoomPx = 14.0;
-constexpr double kSmallPx = 22.0;  // radius below which a reduction by four leaves too little
+constexpr double kReach = 1.9;  // distance of corners from the centre, in radii of the circle with that area
+constexpr double kRoomShare = 0.3;  // largest distance from the expected place, in radii,
+constexpr double kRoomPx = 14.0;    // plus this
+constexpr double kSmallPx = 22.0;   // radius below which a reduction by four leaves too few pixels
 
 }  // namespace
 

@@ -1,8 +1,8 @@
-// From an image to a target's feature: find, fit, judge. A false find is worse than none.
+// Computes a target's feature from an image: find, fit, judge. A false detection is worse than none.
 //
-// What is round is fitted at once where the last images' targets lead to expect it. Else, or when it is not
-// quite there, a small part of the image about that place is searched; then all of it, four times smaller,
-// then two times.
+// A sphere or disc is first fitted directly at the place predicted from the last images. If that fails, or
+// for other targets, a small area around the predicted place is searched; then the whole image, reduced by
+// four, then by two.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -15,7 +15,7 @@
 
 namespace fovea::vision {
 
-// One thread uses it. Allocates only when an image is larger, or fuller, than any before.
+// For one thread. Allocates only when an image is larger, or has more edges, than any before.
 class TargetDetector {
  public:
   explicit TargetDetector(const DetectorConfig& config);
@@ -23,7 +23,7 @@ class TargetDetector {
   // `image` is CV_8UC3 (BGR) or CV_8UC1, of the intrinsics' size.
   Detection Detect(const cv::Mat& image);
 
-  // As if no image had been seen before.
+  // Resets the tracking, as if no image had been seen before.
   void Forget();
 
  private:
@@ -35,7 +35,7 @@ class TargetDetector {
   Detection LookAgain(const cv::Mat& image);
   [[nodiscard]] cv::Rect ExpectedArea(const cv::Mat& image) const;
 
-  // Middle and size of the outline.
+  // Centre and size of the outline.
   struct Place {
     double u_px = 0.0;
     double v_px = 0.0;
@@ -46,7 +46,7 @@ class TargetDetector {
   AnyDetector detector_;
   bool has_last_ = false;
   Place last_;
-  Place step_;  // what changed from the one before to the last
+  Place step_;  // change from the last but one image to the last
 };
 
 }  // namespace fovea::vision

@@ -8,7 +8,7 @@
 namespace fovea::vision {
 namespace {
 
-constexpr int kMostCameraFaults = 100;  // pictures in a row; a camera that stopped says so without end
+constexpr int kMostCameraFaults = 100;  // in a row; a camera that stopped reports them without end
 
 bool HasSizeOf(const Intrinsics& intrinsics, const hal::Frame& frame) {
   return frame.width_px == intrinsics.width_px && frame.height_px == intrinsics.height_px;
@@ -25,7 +25,7 @@ hal::FeatureMeasurement NothingFound(const hal::Frame& frame, hal::FeatureKind k
 }  // namespace
 
 VisionTask::VisionTask(const DetectorConfig& config) : config_(config), detector_(config) {
-  // One thread, so that a run repeats to the bit and other threads keep their cores.
+  // One thread, so that runs are bit-exact and other threads keep their cores.
   cv::setNumThreads(1);
 }
 
@@ -88,8 +88,8 @@ hal::Status VisionTask::Process(const hal::Frame& frame, hal::FeatureMeasurement
 
 hal::Status RunVision(hal::Camera& camera, VisionTask& task, hal::FeatureSink& sink,
                       const std::atomic<bool>& stop, const FrameObserver& observer) {
-  constexpr std::int64_t kPollNs = 100'000'000;  // how often `stop` is looked at while no frame comes
-  std::vector<std::uint8_t> black;               // in place of a picture of another size
+  constexpr std::int64_t kPollNs = 100'000'000;  // period of checking `stop` while no frame arrives
+  std::vector<std::uint8_t> black;               // shown in place of a picture of the wrong size
   int faults = 0;                                // of the camera, in a row
   while (!stop.load(std::memory_order_relaxed)) {
     hal::Frame frame;

@@ -1,4 +1,4 @@
-// The camera-rate task: a frame from the camera becomes a feature for the servo.
+// The camera-rate task: computes a feature for the servo from each frame of the camera.
 #pragma once
 
 #include <atomic>
@@ -14,27 +14,27 @@
 
 namespace fovea::vision {
 
-// Frames that could not be looked at.
+// Frames that could not be processed.
 struct FrameFailures {
   std::uint64_t frames = 0;
-  std::string first;  // why the first of them; one line
+  std::string first;  // reason for the first of them; one line
 };
 
 class VisionTask {
  public:
   explicit VisionTask(const DetectorConfig& config);
 
-  // Looks at one frame. `measurement` says what was seen, also when nothing was.
-  // kInvalidArgument, with `measurement` untouched: the frame cannot be looked at. Its size is not the
-  // intrinsics', or the detector breaks on it, which then begins anew.
+  // Processes one frame into `measurement`, also if the target is not found.
+  // kInvalidArgument, with `measurement` unchanged: the frame's size differs from the intrinsics', or the
+  // detector threw an exception; then its tracking is reset.
   hal::Status Process(const hal::Frame& frame, hal::FeatureMeasurement& measurement);
 
-  // Counts a frame that the camera could not hand over.
+  // Counts a frame that the camera could not deliver.
   void MissFrame(const hal::Status& status);
 
-  // What the last Process saw, for pictures and logs; nothing found where it could not look.
+  // The detection of the last Process, for pictures and logs; not found if the frame could not be processed.
   [[nodiscard]] const Detection& last() const { return last_; }
-  // Of all that Process got; from its thread, or when that is done.
+  // All failures so far. From Process's thread, or after it has ended.
   [[nodiscard]] const FrameFailures& failures() const { return failures_; }
   [[nodiscard]] const DetectorConfig& config() const { return config_; }
 
@@ -48,13 +48,13 @@ class VisionTask {
   FrameFailures failures_;
 };
 
-// Called after each frame with what was seen in it; the frame's pixels are valid during the call. A frame of
-// another size is shown as a black one.
+// Called after each frame with its detection; the frame's pixels are valid during the call. A frame of the
+// wrong size is replaced by a black one.
 using FrameObserver = std::function<void(const hal::Frame& frame, const Detection& detection)>;
 
-// Takes frames from the camera until it closes or breaks, or `stop` becomes true, and puts a measurement of
-// each into the sink. A frame that cannot be looked at counts as one without the target; one that the camera
-// cannot hand over is counted alone, and 100 of those in a row are a camera that broke. Returns why it ended:
+// Takes frames from the camera until it closes or fails, or `stop` becomes true, and puts a measurement of
+// each into the sink. A frame that cannot be processed gives a measurement without the target. A frame that
+// the camera cannot deliver is only counted; the 100th of those in a row ends the task. Returns why it ended:
 // kClosed for an orderly end. `observer` may be empty.
 hal::Status RunVision(hal::Camera& camera, VisionTask& task, hal::FeatureSink& sink,
                       const std::atomic<bool>& stop, const FrameObserver& observer);

@@ -32,7 +32,7 @@ double ColourModel::Exactly(double blue, double green, double red) const {
     hue_deg = 60.0 * (blue - red) / chroma + 120.0;
   }
   const double off = std::remainder(hue_deg - config_.hue_deg, 360.0) / config_.hue_width_deg;
-  // A colour counts from saturation_min on, fully 0.2 above.
+  // The weight rises from 0 at saturation_min to 1 at saturation_min + 0.2.
   const double coloured = std::clamp((chroma / high - config_.saturation_min) / 0.2, 0.0, 1.0);
   return std::exp(-0.5 * off * off) * coloured;
 }

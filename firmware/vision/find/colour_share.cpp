@@ -17,7 +17,7 @@ double ColourShare(const cv::Mat& image, const ColourModel& colour, std::span<co
     if (x < 1 || y < 1 || x >= image.cols - 1 || y >= image.rows - 1) {
       continue;
     }
-    // The mean of a 3 x 3 patch, so that noise in a dark image does not turn the hue.
+    // The mean of a 3 x 3 patch, so that noise in a dark image does not change the hue.
     cv::Vec3i sum(0, 0, 0);
     for (int dy = -1; dy <= 1; ++dy) {
       const cv::Vec3b* row = image.ptr<cv::Vec3b>(y + dy);

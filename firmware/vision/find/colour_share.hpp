@@ -1,4 +1,4 @@
-// How much of what lies inside an outline has the target's colour.
+// The share of an outline's inside that has the target's colour.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -9,7 +9,7 @@
 
 namespace fovea::vision {
 
-// The share, 0 to 1, of `points` (places well inside the outline) that look like the target; 1 in a gray
+// The share, 0 to 1, of `points` (image pixels well inside the outline) with the target's colour; 1 in a gray
 // image.
 double ColourShare(const cv::Mat& image, const ColourModel& colour, std::span<const ImagePoint> points);
 

@@ -22,14 +22,14 @@ Eigen::Matrix3d EllipseCurve::Conic(const Intrinsics& /*in*/) const {
 }
 
 EllipseCurve EllipseCurve::Next(const EllipseCurve& before) const {
-  // The conic does not depend on where it was written down.
+  // An ellipse's conic in pixels depends neither on the intrinsics nor on its own frame (u0, v0, size).
   const Intrinsics none;
   const Ellipse now = EllipseOf(Conic(none));
   const Ellipse then = EllipseOf(before.Conic(none));
   EllipseCurve next = *this;
   next.size_px *= now.radius_px / then.radius_px;
   const double growth = next.size_px / size_px;
-  // The curve's middle, not its frame's, is what goes on.
+  // Extrapolate the curve's centre, not its frame's origin.
   next.u0_px = 2.0 * now.u_px - then.u_px + growth * (u0_px - now.u_px);
   next.v0_px = 2.0 * now.v_px - then.v_px + growth * (v0_px - now.v_px);
   return next;
@@ -67,7 +67,7 @@ void EllipsePoints(const Eigen::Matrix3d& Q, std::span<Eigen::Vector2d> points) 
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double r = std::sqrt(depth / (Q(0, 0) * c * c + 2.0 * Q(0, 1) * c * s + Q(1, 1) * s * s));
     points[i] = {e.u_px + r * c, e.v_px + r * s};
-    // The next angle's: turned on, not computed anew.
+    // Rotate (c, s) to the next angle, which is faster than cos and sin.
     const double next = turn_c * c - turn_s * s;
     s = turn_s * c + turn_c * s;
     c = next;

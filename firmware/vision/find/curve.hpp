@@ -1,5 +1,5 @@
 // Closed curves in the image that are linear in their parameters: F(u, v) = row(u, v) . p - rhs(u, v), zero
-// on the curve, positive outside. So a fit is weighted least squares, the gradient tells distances, and
+// on the curve, positive outside. So a fit is weighted least squares, the gradient gives distances, and
 // sphere and disc share finder, edges and fit.
 #pragma once
 
@@ -25,7 +25,7 @@ struct ConeCurve {
   using Parameters = Eigen::Matrix<double, kDim, 1>;
   Parameters p = Parameters::Zero();
 
-  // What the curve needs to know before it is fitted: nothing here.
+  // Sets the curve's own frame before a fit; a cone has none.
   void Frame(const Intrinsics& /*in*/, double /*u_px*/, double /*v_px*/, double /*size_px*/) {}
   [[nodiscard]] CurveRow<kDim> Row(const Intrinsics& in, double u_px, double v_px) const {
     const model::Vec3 x = in.Ray(u_px, v_px);
@@ -41,7 +41,7 @@ struct ConeCurve {
   }
   // Q of (u, v, 1) Q (u, v, 1)' = 0, negative inside.
   [[nodiscard]] Eigen::Matrix3d Conic(const Intrinsics& in) const;
-  // Where it is next when it goes on as from `before` to now.
+  // The curve in the next image, extrapolated linearly from `before` and this one.
   [[nodiscard]] ConeCurve Next(const ConeCurve& before) const {
     ConeCurve next;
     next.p = 2.0 * p - before.p;
@@ -50,7 +50,7 @@ struct ConeCurve {
 };
 
 // Any ellipse, for a disc's outline. p = coefficients of x^2, xy, y^2, x, y in F = p . (...) - 1, with x and
-// y the pixel less `u0`, `v0`, in units of `size`: about 1 on the curve.
+// y the pixel minus (`u0`, `v0`), in units of `size`; |(x, y)| is about 1 on the curve.
 struct EllipseCurve {
   static constexpr int kDim = 5;
   using Parameters = Eigen::Matrix<double, kDim, 1>;
@@ -76,13 +76,13 @@ struct EllipseCurve {
     return r;
   }
   [[nodiscard]] Eigen::Matrix3d Conic(const Intrinsics& in) const;
-  // Middle and size go on, the shape stays.
+  // The same; centre and size are extrapolated, the shape stays.
   [[nodiscard]] EllipseCurve Next(const EllipseCurve& before) const;
 };
 
-// An ellipse as one sees it.
+// An ellipse by its centre and half axes.
 struct Ellipse {
-  bool real = false;  // false: the curve is none
+  bool real = false;  // false: the conic is not an ellipse
   double u_px = 0.0;
   double v_px = 0.0;
   double major_px = 0.0;  // half axes
@@ -91,7 +91,7 @@ struct Ellipse {
 };
 Ellipse EllipseOf(const Eigen::Matrix3d& conic);
 
-// F over the length of its gradient: the distance from the curve to first order, outward; and the normal.
+// Distance from the curve to first order, F / |grad F|, positive outside; sets the outward normal (nu, nv).
 template <class Curve>
 double DistanceTo(const Curve& curve, const Intrinsics& in, double u_px, double v_px, double& nu,
                   double& nv) {
@@ -104,7 +104,7 @@ double DistanceTo(const Curve& curve, const Intrinsics& in, double u_px, double 
   return (r.row.dot(curve.p) - r.rhs) / length;
 }
 
-// Where the line from (u, v) along (du, dv) meets the curve, near `start_px`: Newton's method.
+// Distance along (du, dv) from (u, v) to the curve, by Newton's method from `start_px`.
 template <class Curve>
 double DistanceAlong(const Curve& curve, const Intrinsics& in, double u_px, double v_px, double du, double dv,
                      double start_px, int steps = 4) {
@@ -117,7 +117,7 @@ double DistanceAlong(const Curve& curve, const Intrinsics& in, double u_px, doub
   return distance;
 }
 
-// `points.size()` points of the ellipse, evenly turned about its middle.
+// Fills `points` with points of the ellipse at equal angles about its centre.
 void EllipsePoints(const Eigen::Matrix3d& conic, std::span<Eigen::Vector2d> points);
 
 }  // namespace fovea::vision

@@ -9,23 +9,23 @@
 namespace fovea::vision {
 namespace {
 
-// In pixels of the reduced image, times its factor.
-constexpr double kPieceRms = 0.42;    // a piece further about its curve than this is cut
+// Lengths are in pixels of the reduced image.
+constexpr double kPieceRms = 0.42;    // a piece with a larger rms distance from its curve is cut
 constexpr double kNear = 0.75;        // points nearer than this support a curve
-constexpr double kAlongNormal = 0.8;  // cosine between a supporter's gradient and the curve's normal
+constexpr double kAlongNormal = 0.8;  // least cosine between a supporter's gradient and the curve's normal
 constexpr double kPointSigma = 0.3;
 constexpr double kDirectionSigma = 0.12;  // of a gradient's direction [rad]
 constexpr std::size_t kShortestPiece = 7;
 constexpr int kMostCuts = 8;
-constexpr std::size_t kCornerPoints = 2;  // on each side of a cut, which the corner has rounded
-constexpr double kLeastTurn = 0.9;        // a piece that turns less says little of its curve [rad]
-constexpr int kClosest = 2;               // factor of the closest look
-constexpr double kLeastArc = 0.25;        // one of a pair must turn as much
+constexpr std::size_t kCornerPoints = 2;  // dropped on each side of a cut, because the corner rounds them
+constexpr double kLeastTurn = 0.9;        // a piece that turns less does not determine its curve [rad]
+constexpr int kClosest = 2;               // smallest reduction factor
+constexpr double kLeastArc = 0.25;        // each piece of a pair must turn this much [rad]
 constexpr double kMostArc = 4.0;
 constexpr std::size_t kMostCandidates = 24;
 constexpr int kSectors = 48;
 
-// By how much the gradient turns along the piece, in sum.
+// Total turn of the gradient along the piece [rad].
 double Turn(std::span<const EdgePoint> piece) {
   double turn = 0.0;
   constexpr std::size_t kStep = 3;
@@ -38,12 +38,12 @@ double Turn(std::span<const EdgePoint> piece) {
   return std::fabs(turn);
 }
 
-// Where the piece turns most sharply, or its middle when nowhere.
+// Index of the piece's sharpest turn; its middle if there is none.
 std::size_t SharpestTurn(std::span<const EdgePoint> piece) {
   constexpr std::size_t kReach = 3;
   std::size_t best = piece.size() / 2;
   float lowest = 0.8F;
-  // Not at its ends, where the last cut's corner still turns.
+  // Skip the ends, where the corner of the last cut still shows.
   for (std::size_t i = 2 * kReach; i + 2 * kReach < piece.size(); ++i) {
     const EdgePoint& a = piece[i - kReach];
     const EdgePoint& b = piece[i + kReach];
@@ -60,7 +60,7 @@ std::size_t SharpestTurn(std::span<const EdgePoint> piece) {
 
 template <class Curve>
 bool CurveFinder<Curve>::IsAllowed(const Ellipse& e) const {
-  // The fit has the last word on the size: the reduced image is good to a pixel or two.
+  // Loose limits: the reduced image is accurate to a pixel or two, and the fit checks the size again.
   return e.real && e.radius_px >= 0.8 * limits_.radius_min_px && e.radius_px <= limits_.radius_max_px &&
          e.minor_px >= limits_.aspect_min * e.major_px && e.u_px > -e.radius_px && e.v_px > -e.radius_px &&
          e.u_px < in_->width_px + e.radius_px && e.v_px < in_->height_px + e.radius_px;
@@ -83,7 +83,7 @@ typename CurveFinder<Curve>::Fitted CurveFinder<Curve>::FitPoints(std::span<cons
   mean_u /= n;
   mean_v /= n;
   double spread = 0.0;
-  // The curve's middle, so that it is well posed: where the lines along the gradients meet.
+  // Centre the curve's frame where the lines along the gradients meet, for a well-conditioned fit.
   double a11 = 1e-9, a12 = 0.0, a22 = 1e-9, b1 = 0.0, b2 = 0.0;
   for (const EdgePoint& p : points) {
     const double du = static_cast<double>(p.u_px) - mean_u;
@@ -132,9 +132,9 @@ typename CurveFinder<Curve>::Fitted CurveFinder<Curve>::FitPoints(std::span<cons
         const double slope_v = r.row_v.dot(fit.curve.p) - r.rhs_v;
         length = std::sqrt(slope_u * slope_u + slope_v * slope_v);
       } else if constexpr (kN == EllipseCurve::kDim) {
-        length = 2.0 / size;  // a circle's
+        length = 2.0 / size;  // gradient of a circle
       } else {
-        length = size / (in_->f_u_px * in_->f_u_px);  // a small cone's
+        length = size / (in_->f_u_px * in_->f_u_px);  // gradient of a small cone
       }
       const double wd = 1.0 / (length * kPointSigma * scale);
       normal += wd * wd * r.row * r.row.transpose();
@@ -185,7 +185,7 @@ void CurveFinder<Curve>::TryPiece(std::span<const EdgePoint> piece, int depth) {
   TryPiece(piece.subspan(std::min(cut + kCornerPoints, piece.size())), depth - 1);
 }
 
-// Keeps the longest pieces that turn, each but once: not the parts of one that is kept.
+// Keeps the longest pieces that turn, but no part of a piece that is kept already.
 template <class Curve>
 void CurveFinder<Curve>::Remember(std::span<const EdgePoint> piece) {
   const double turn = Turn(piece);
@@ -210,8 +210,8 @@ void CurveFinder<Curve>::Remember(std::span<const EdgePoint> piece) {
   }
 }
 
-// Where something stands before the target, what is left of its outline may be in pieces of which none alone
-// tells the curve; two together may.
+// If an object hides part of the target, the remaining pieces of the outline may each be too short to
+// determine the curve. Two pieces together can determine it.
 template <class Curve>
 void CurveFinder<Curve>::TryPairs() {
   for (std::size_t i = 0; i < arc_count_; ++i) {
@@ -226,7 +226,7 @@ void CurveFinder<Curve>::TryPairs() {
   }
 }
 
-// Fits the curve to all points on it, and says how much of it they cover.
+// Collects the points on the curve in supporters_ and sets `seen`. False if there are too few.
 template <class Curve>
 bool CurveFinder<Curve>::Gather(CurveCandidate<Curve>& candidate) {
   const Ellipse& e = candidate.ellipse;
@@ -250,7 +250,7 @@ bool CurveFinder<Curve>::Gather(CurveCandidate<Curve>& candidate) {
     }
     supporters_.push_back(p);
     const double turn = std::atan2(dv, du) / (2.0 * std::numbers::pi) + 0.5;
-    // A point covers as much of a small curve as a pixel of the reduced image does.
+    // A point covers the sectors that a pixel of the reduced image spans.
     const int wide =
         static_cast<int>(0.5 * kSectors * map_->factor() / (2.0 * std::numbers::pi * e.radius_px));
     for (int k = -wide; k <= wide; ++k) {
@@ -301,7 +301,7 @@ const std::vector<CurveCandidate<Curve>>& CurveFinder<Curve>::Find(const EdgeMap
   for (int i = 0; i < map.chain_count(); ++i) {
     TryPiece(map.Chain(i), kMostCuts);
   }
-  // The last resort: not before the image has been looked at more closely.
+  // The last resort, only at the smallest reduction.
   if (candidates_.empty() && map.factor() == kClosest) {
     TryPairs();
   }

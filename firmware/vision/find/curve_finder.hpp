@@ -1,5 +1,5 @@
-// First half of finding what is round: roughly where. Chains of edge points (edge_map.hpp) are cut into
-// pieces that a curve fits; each piece's curve then counts the points of all chains that lie on it.
+// First stage of finding a sphere or disc: approximate curves. Cuts chains of edge points (edge_map.hpp) into
+// pieces that a curve fits, then refits each curve to the points of all chains that lie on it.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace fovea::vision {
 struct RoundLimits {
   double radius_min_px = 10.0;
   double radius_max_px = 200.0;
-  double aspect_min = 0.3;  // minor to major axis
+  double aspect_min = 0.3;  // least ratio of minor to major axis
   double seen_min = 0.4;    // share of the curve that must have edges
 };
 
@@ -28,7 +28,7 @@ struct CurveCandidate {
 template <class Curve>
 class CurveFinder {
  public:
-  // The best first.
+  // The candidate with the largest `seen` first.
   const std::vector<CurveCandidate<Curve>>& Find(const EdgeMap& map, const Intrinsics& in,
                                                  const RoundLimits& limits);
 
@@ -50,7 +50,7 @@ class CurveFinder {
   const Intrinsics* in_ = nullptr;
   RoundLimits limits_;
   static constexpr std::size_t kMostArcs = 12;
-  std::array<std::span<const EdgePoint>, kMostArcs> arcs_;  // pieces that no curve alone fits
+  std::array<std::span<const EdgePoint>, kMostArcs> arcs_;  // pieces that gave no curve alone
   std::size_t arc_count_ = 0;
   std::vector<EdgePoint> pair_;
   std::vector<EdgePoint> supporters_;

@@ -7,12 +7,12 @@
 namespace fovea::vision {
 namespace {
 
-// Sobel's answer to a step of 1 is 4 where the step is whole; blurred over two pixels about 3.
+// Sobel's response to a sharp step of 1 is 4; to a step blurred over two pixels, about 3.
 constexpr float kWeakestEdge = 6.0F * 3.0F;  // a step of 6 gray levels
-constexpr float kNoiseStrong = 4.8F;         // begins a chain, in standard deviations of the gradient
-constexpr float kNoiseWeak = 2.8F;           // continues one
+constexpr float kNoiseStrong = 4.8F;         // starts a chain [standard deviations of the gradient]
+constexpr float kNoiseWeak = 2.8F;           // continues a chain
 constexpr std::size_t kShortestChain = 6;
-constexpr float kSameDirection = 0.55F;  // cosine between neighbours' gradients
+constexpr float kSameDirection = 0.55F;  // least cosine between neighbours' gradients
 
 struct Offset {
   int x;
@@ -82,7 +82,7 @@ void EdgeMap::Reduce(const cv::Mat& image, const cv::Rect& area, const ColourMod
   }
 }
 
-// Factor and channels are known when it is compiled: a third of the time.
+// Factor and channels are compile-time constants: this takes a third of the time.
 template <std::size_t kFactor, std::size_t kChannels>
 void EdgeMap::ReduceBy(const cv::Mat& image, const cv::Rect& area, const ColourModel* colour) {
   constexpr unsigned kArea = kFactor * kFactor;
@@ -113,8 +113,7 @@ void EdgeMap::ReduceBy(const cv::Mat& image, const cv::Rect& area, const ColourM
       if constexpr (kChannels == 1) {
         out[x] = static_cast<std::uint8_t>(mean[0] / kArea);
       } else {
-        // Without a colour in mind, the strongest channel: a saturated target is bright in it, whatever its
-        // hue.
+        // Without a colour model, the strongest channel: a saturated target of any hue is bright in it.
         out[x] = colour != nullptr ? colour->Likeness(mean[0] / kArea, mean[1] / kArea, mean[2] / kArea)
                                    : static_cast<std::uint8_t>(std::max({mean[0], mean[1], mean[2]}) / kArea);
       }
@@ -132,7 +131,7 @@ void EdgeMap::FindGradient() {
     clear(At(x, 0, width_));
     clear(At(x, height_ - 1, width_));
   }
-  // Sobel's sums, down first: then all of it is whole numbers of two bytes, eight at a time.
+  // Sobel's sums, vertical first: all numbers fit into 16 bits, eight per vector instruction.
   down_.resize(static_cast<std::size_t>(width_));
   across_.resize(static_cast<std::size_t>(width_));
   for (int y = 1; y + 1 < height_; ++y) {
@@ -141,7 +140,7 @@ void EdgeMap::FindGradient() {
     const std::uint8_t* a = &small_[At(0, y - 1, width_)];
     const std::uint8_t* b = a + width_;
     const std::uint8_t* c = b + width_;
-    // None of them overlap, which lets the loops take eight pixels at a time.
+    // __restrict: the rows do not overlap, so the compiler can take eight pixels at a time.
     std::int16_t* __restrict down = down_.data();
     std::int16_t* __restrict across = across_.data();
     for (int x = 0; x < width_; ++x) {
@@ -161,8 +160,8 @@ void EdgeMap::FindGradient() {
   }
 }
 
-// Its standard deviation along one axis where there is nothing but noise: most of an image is no edge, so the
-// median of the squared length tells; that of two squared normal variables is 1.386.
+// Standard deviation of the gradient along one axis due to noise. Most of an image has no edge, so the median
+// of the squared length measures it; for the sum of two squared normal variables the median is 1.386.
 float EdgeMap::NoiseOfGradient() {
   constexpr std::size_t kEvery = 13;
   sample_.clear();
@@ -174,7 +173,7 @@ float EdgeMap::NoiseOfGradient() {
   return std::sqrt(static_cast<float>(*middle) / 1.386F);
 }
 
-// All of ridge_at_ to -1: what the ridges before have set, or when the size is another, everywhere.
+// Sets ridge_at_ to -1: only where the last ridges were, or everywhere if the size changed.
 void EdgeMap::ForgetRidges() {
   if (ridge_at_.size() != small_.size()) {
     ridge_at_.assign(small_.size(), -1);
@@ -197,7 +196,7 @@ void EdgeMap::FindRidges(const cv::Rect& area) {
   for (int y = 1; y + 1 < height_; ++y) {
     for (int x = 1; x + 1 < width_; ++x) {
       const std::size_t i = At(x, y, width_);
-      // Most of a picture has no edge: eight pixels at a time are passed over.
+      // Most of a picture has no edge: skip eight pixels at a time.
       constexpr int kTogether = 8;
       if (x + kTogether < width_) {
         int edges = 0;
@@ -213,7 +212,7 @@ void EdgeMap::FindRidges(const cv::Rect& area) {
       if (m2 < weak2) {
         continue;
       }
-      // The neighbours across the edge, of the four lines through a pixel.
+      // Choose the neighbours across the edge: horizontal, vertical or on a diagonal.
       const int gx = dx_[i];
       const int gy = dy_[i];
       const int ax = std::abs(gx);
@@ -237,7 +236,7 @@ void EdgeMap::FindRidges(const cv::Rect& area) {
       const float shift = 0.5F * (high - low) / std::max(2.0F * size - low - high, 1e-3F);
       const float gu = static_cast<float>(gx) / size;
       const float gv = static_cast<float>(gy) / size;
-      // The parabola's top along the line; only its part across the edge counts.
+      // Offset of the parabola's maximum along that line, projected across the edge.
       const float across =
           std::clamp(shift, -0.5F, 0.5F) * (static_cast<float>(ox) * gu + static_cast<float>(oy) * gv);
       Ridge ridge;
@@ -255,7 +254,7 @@ void EdgeMap::FindRidges(const cv::Rect& area) {
   }
 }
 
-// The best ridge to go on with from ridge `index` in direction (along_u, along_v), or -1.
+// The best ridge to continue with from ridge `index` in direction (along_u, along_v), or -1.
 int EdgeMap::Next(int index, float along_u, float along_v) const {
   const Ridge& here = ridges_[static_cast<std::size_t>(index)];
   const auto search = [&](std::span<const Offset> offsets, float min_along) {
@@ -310,7 +309,7 @@ void EdgeMap::Link() {
     if (forward_.size() + backward_.size() + 1 < kShortestChain) {
       continue;
     }
-    // In the order that has the brighter side on its left, as one looks at the picture with v downwards.
+    // Store the points in the order that has the brighter side on the left, seen with v downwards.
     for (auto i = backward_.rbegin(); i != backward_.rend(); ++i) {
       points_.push_back(ridges_[static_cast<std::size_t>(*i)].point);
     }

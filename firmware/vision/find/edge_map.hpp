@@ -1,8 +1,8 @@
-// Where an image, or a part of it, has edges: points to a fraction of a pixel, linked to chains.
+// Edges of an image, or of a part of it: points with sub-pixel accuracy, linked to chains.
 //
-// First the image is made smaller by averaging squares of pixels, which takes most of the noise and of the
-// time; by colour, each mean is replaced by how much it looks like the target. Edges are the ridges of the
-// gradient there, above what its noise would give. Chains follow them and end where their direction jumps.
+// The image is first reduced by averaging squares of pixels, which removes most of the noise and saves most
+// of the time. With a colour model, each mean becomes its likeness to the target's colour. Edges are the
+// ridges of the gradient above its noise. Chains follow the ridges and end where their direction jumps.
 #pragma once
 
 #include <cstdint>
@@ -17,22 +17,22 @@ namespace fovea::vision {
 struct EdgePoint {
   float u_px = 0.0F;  // in the whole image
   float v_px = 0.0F;
-  float gu = 0.0F;  // unit vector, towards the brighter side (by colour: the likelier)
+  float gu = 0.0F;  // unit vector towards the brighter side (with a colour model: the likelier one)
   float gv = 0.0F;
 };
 
 class EdgeMap {
  public:
-  // Looks at `area` of `image` (CV_8UC3 BGR or CV_8UC1), `factor` (2 or 4) times smaller. Without `colour`,
-  // or when the image is gray, by brightness: of its strongest channel. Allocates when it is larger than any
-  // before.
+  // Finds edges in `area` of `image` (CV_8UC3 BGR or CV_8UC1), reduced by `factor` (2 or 4). Without
+  // `colour`, or in a gray image, uses the brightness of the strongest channel. Allocates when the area is
+  // larger, or has more edges, than any before.
   void Find(const cv::Mat& image, const cv::Rect& area, int factor, const ColourModel* colour);
 
   [[nodiscard]] int chain_count() const { return static_cast<int>(chain_ends_.size()); }
   [[nodiscard]] std::span<const EdgePoint> Chain(int index) const;
-  // All of them, chain by chain.
+  // All points, chain by chain.
   [[nodiscard]] std::span<const EdgePoint> points() const { return points_; }
-  // Of its pixels in the image's.
+  // Pixels of the image per pixel of the reduced image, along each axis.
   [[nodiscard]] int factor() const { return factor_; }
 
  private:
@@ -60,8 +60,8 @@ class EdgeMap {
   std::vector<std::uint16_t> rows_;          // sums of `factor` rows
   std::vector<std::uint8_t> small_;          // [height x width]
   std::vector<std::int16_t> down_, across_;  // a row's sums and differences of three
-  std::vector<std::int16_t> dx_, dy_;        // Sobel's sums
-  std::vector<std::int32_t> size2_;          // their squared length
+  std::vector<std::int16_t> dx_, dy_;        // Sobel's gradient
+  std::vector<std::int32_t> size2_;          // its squared length
   std::vector<std::int32_t> sample_;         // of size2_, for the noise
   std::vector<std::int32_t> ridge_at_;       // index in ridges_, or -1
   std::vector<std::size_t> ridge_places_;    // where ridge_at_ is not -1

@@ -1,4 +1,4 @@
-// The source's own way to find a circle: gray image, Gaussian blur, Hough transform. Good to about a pixel.
+// The source project's circle finder: gray image, Gaussian blur, Hough transform. Accurate to about a pixel.
 #pragma once
 
 #include <opencv2/core.hpp>

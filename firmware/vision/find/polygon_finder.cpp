@@ -8,11 +8,11 @@
 namespace fovea::vision {
 namespace {
 
-// In pixels of the reduced image, times its factor.
-constexpr double kStraight = 0.75;  // a straight piece's points are no further from its line
+// In pixels of the reduced image.
+constexpr double kStraight = 0.75;  // largest distance of a straight piece's points from its line
 constexpr double kNear = 0.9;       // points nearer than this support a side
-constexpr double kOverlap = 3.0;    // how far pieces may reach over the corner between them
-constexpr double kShortest = 3.5;   // a piece
+constexpr double kOverlap = 3.0;    // how far pieces may extend beyond the corner between them
+constexpr double kShortest = 3.5;   // shortest piece
 
 constexpr double kMinTurn = 0.30;  // sine of the angle between neighbouring sides
 constexpr std::size_t kMostSegments = 28;
@@ -20,7 +20,7 @@ constexpr std::size_t kMostCandidates = 24;
 constexpr int kMostCuts = 7;
 constexpr int kSideBins = 24;
 constexpr double kAlongNormal = 0.85;
-constexpr double kGap = 3.0;  // how much of a side may be missing, in lengths of what is seen of it
+constexpr double kGap = 3.0;  // missing length of a side, at most, in lengths of its seen part
 
 }  // namespace
 
@@ -35,7 +35,7 @@ double RadiusOf(std::span<const ImagePoint> corners) {
   return twice < 0.0 ? -radius : radius;
 }
 
-// Into straight pieces, at the point furthest from the line between the ends.
+// Cuts `piece` into straight pieces at the point furthest from the line between its ends.
 void PolygonFinder::Cut(std::span<const EdgePoint> piece, int depth) {
   const double scale = map_->factor();
   if (piece.size() < 4) {
@@ -52,7 +52,7 @@ void PolygonFinder::Cut(std::span<const EdgePoint> piece, int depth) {
   for (std::size_t i = 1; i < end; ++i) {
     const double d = length > 2.0 * scale
                          ? std::fabs(du * (v(i) - v(0)) - dv * (u(i) - u(0))) / length
-                         : std::hypot(u(i) - u(0), v(i) - v(0));  // the chain comes back to where it began
+                         : std::hypot(u(i) - u(0), v(i) - v(0));  // the chain ends where it began
     if (d > distance) {
       distance = d;
       furthest = i;
@@ -65,7 +65,7 @@ void PolygonFinder::Cut(std::span<const EdgePoint> piece, int depth) {
     }
     return;
   }
-  // Without its ends, which a corner may have rounded, when it is long enough.
+  // Fit a line; a long piece without its ends, which a corner may have rounded.
   const std::size_t skip = piece.size() > 12 ? 2 : piece.size() > 7 ? 1 : 0;
   double mu = 0.0, mv = 0.0, uu = 0.0, uv = 0.0, vv = 0.0;
   const auto n = static_cast<double>(piece.size() - 2 * skip);
@@ -99,7 +99,7 @@ void PolygonFinder::Cut(std::span<const EdgePoint> piece, int depth) {
   segments_.push_back(s);
 }
 
-// Whether b may be the side after a, round a polygon whose inside is on the left (sign -1) or right (+1).
+// Whether b can be the side after a, in a polygon whose inside is on the left (sign -1) or right (+1).
 bool PolygonFinder::Follows(const Segment& a, const Segment& b, double sign, ImagePoint& corner) const {
   const double cross = a.du * b.dv - a.dv * b.du;
   if (sign * cross < kMinTurn) {
@@ -141,7 +141,7 @@ void PolygonFinder::Extend(int depth, double sign) {
   }
 }
 
-// corner_[i] lies where side i begins.
+// Adds the chosen polygon to the candidates if it is allowed. corner_[i] is where side i begins.
 void PolygonFinder::Offer(double sign) {
   PolygonCandidate candidate;
   candidate.count = corners_;
@@ -167,7 +167,7 @@ void PolygonFinder::Offer(double sign) {
   }
   const double close = 0.1 * radius + 2.0;
   for (PolygonCandidate& other : candidates_) {
-    // The same one from other pieces of its sides: corners pair up for some turn.
+    // The same polygon from other pieces of its sides: the corners match after a cyclic shift.
     for (int turn = 0; turn < corners_; ++turn) {
       bool same = true;
       for (int i = 0; i < corners_; ++i) {
@@ -188,7 +188,7 @@ void PolygonFinder::Offer(double sign) {
   }
 }
 
-// The share of the outline that has edges across it.
+// The share of the outline that lies on edges.
 double PolygonFinder::Seen(const PolygonCandidate& polygon) const {
   const double near = kNear * map_->factor();
   double seen = 0.0;

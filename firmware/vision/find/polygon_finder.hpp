@@ -1,5 +1,5 @@
-// First half of finding a triangle or a square: roughly where. Chains of edge points are cut into straight
-// pieces, and pieces that may follow one another round a convex polygon are joined.
+// First stage of finding a triangle or a square: approximate corners. Cuts chains of edge points into
+// straight pieces, and joins pieces that can follow one another around a convex polygon.
 #pragma once
 
 #include <vector>
@@ -18,18 +18,17 @@ struct PolygonLimits {
 
 struct PolygonCandidate {
   int count = 0;
-  // Turning from u to v, as the clock does on a screen.
+  // Ordered from u to v, clockwise on a screen.
   std::array<ImagePoint, Detection::kMaxCorners> corner{};
   double seen = 0.0;
 };
 
-// Twice the area's root over pi: the radius of the circle with the polygon's area; negative when the corners
-// turn the other way.
+// Radius of the circle with the polygon's area, sqrt(area / pi); negative if the corners turn the other way.
 double RadiusOf(std::span<const ImagePoint> corners);
 
 class PolygonFinder {
  public:
-  // Polygons of `corners` corners, the best first.
+  // Polygons with `corners` corners, the one with the largest `seen` first.
   const std::vector<PolygonCandidate>& Find(const EdgeMap& map, int corners, const PolygonLimits& limits);
 
  private:

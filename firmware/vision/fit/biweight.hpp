@@ -1,4 +1,4 @@
-// How far an edge is believed that is off the line or curve through the others.
+// Weight of an edge that is off the line or curve through the others.
 #pragma once
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 
 namespace fovea::vision {
 
-// Edges are never judged closer than this, whatever their samples say [px, standard deviation].
+// Least standard deviation of an edge's position, added to the one from its samples [px].
 inline constexpr double kMinScalePx = 0.03;
 
 // Tukey's biweight: 1 at 0, 0 beyond `limit`.
@@ -15,9 +15,9 @@ inline double Biweight(double residual, double limit) {
   return std::fabs(t) >= 1.0 ? 0.0 : (1.0 - t * t) * (1.0 - t * t);
 }
 
-// Its limit for residuals in standard deviations whose sizes have this median: 1.4826 makes of the median
-// what a normal variable's standard deviation would be, never less than it should be; Tukey's constant
-// is 4.685 of those.
+// The biweight's limit for residuals [standard deviations] whose absolute values have this median. 1.4826
+// times the median estimates the standard deviation of normal variables, here at least 1. Tukey's constant is
+// 4.685.
 inline double BiweightLimit(double median_size) { return 4.685 * std::max(1.4826 * median_size, 1.0); }
 
 }  // namespace fovea::vision

@@ -12,17 +12,17 @@ namespace fovea::vision {
 namespace {
 
 constexpr int kMinLines = 40;
-constexpr double kStartBlurPx = 1.8;  // wide: the start may be off
-constexpr double kMinBlurPx = 0.45;   // a pixel's own width, and that of reading between pixels
+constexpr double kStartBlurPx = 1.8;  // wide, because the start may be off
+constexpr double kMinBlurPx = 0.45;   // from the pixel's width and the interpolation
 constexpr double kMaxBlurPx = 3.0;
-constexpr int kFewLines = 64;  // are enough to come near
+constexpr int kFewLines = 64;  // enough for the first approach
 constexpr int kFewRounds = 6;
 constexpr int kRounds = 4;  // with all lines
 constexpr double kNearPx = 0.05;
 constexpr double kStillPx = 0.003;  // a round that moves the curve less is the last
 constexpr double kOnCurvePx = 0.4;
 constexpr double kShadedBlurPx = 1.5;
-constexpr double kShadedPx = 0.03;  // what light may move all of a ball that is lit from one side
+constexpr double kShadedPx = 0.03;  // common shift of the outline of a ball that is lit from one side
 
 }  // namespace
 
@@ -56,15 +56,15 @@ bool CurveFitter::ReadLines(const cv::Mat& image, const Intrinsics& in, const Cu
   return true;
 }
 
-// Where some neighbouring lines all met something else, something stands before the outline. The lines beside
-// them may meet its border too, and would be believed although they are a little off: as long as their
-// samples are rougher about the edge than most lines' are. All of some pixels would be too many: of a small
-// ellipse, too little would be left to tell its shape.
+// A run of outlier lines means that an object hides the outline there. The lines beside the run may cross the
+// object's border too and be slightly off without being outliers. They are hidden as well, as long as their
+// samples scatter more about the edge than most lines' do. To hide a fixed length would leave too little of a
+// small ellipse to determine its shape.
 void CurveFitter::FindHidden(double spacing_px) {
   constexpr int kRun = 3;
   constexpr double kBesidePx = 6.0;
   constexpr double kRough = 3.0;  // times the others' variance
-  constexpr int kClean = 2;       // so many lines in a row end it
+  constexpr int kClean = 2;       // clean lines in a row that end the hidden part
   const int beside = static_cast<int>(std::ceil(kBesidePx / spacing_px));
   const auto at = [&](int i) { return static_cast<std::size_t>((i + 2 * count_) % count_); };
   const double rough = kRough * profiles_.noise() * profiles_.noise();
@@ -94,7 +94,7 @@ void CurveFitter::FindHidden(double spacing_px) {
   }
 }
 
-// Where `curve` crosses the lines. False when it has left what was read.
+// Computes where `curve` crosses the lines. False if too many crossings left the sampled range.
 template <class Curve>
 bool CurveFitter::Place(const Intrinsics& in, const Curve& curve) {
   int outside = 0;
@@ -107,7 +107,7 @@ bool CurveFitter::Place(const Intrinsics& in, const Curve& curve) {
   return outside <= count_ / 20;
 }
 
-// Rows of the least squares through the edges that are measured now.
+// Makes the least-squares rows from the measured edges. False if there are too few.
 template <class Curve>
 bool CurveFitter::MakeRows(const Intrinsics& in, const Curve& curve) {
   const double noise = std::max(profiles_.noise(), edge_noise_.floor);
@@ -123,7 +123,7 @@ bool CurveFitter::MakeRows(const Intrinsics& in, const Curve& curve) {
         curve.Row(in, line.u_px + edge.at_px * line.nu, line.v_px + edge.at_px * line.nv);
     const double per_px =
         1.0 / ((r.row_u.dot(curve.p) - r.rhs_u) * line.nu + (r.row_v.dot(curve.p) - r.rhs_v) * line.nv);
-    // Beside the noise every edge may be off by the smallest scale; a line that is no clean step, by more.
+    // Beside the noise every edge has an error of kMinScalePx; a line without a clean step has more.
     const double variance =
         std::max(noise * noise, 0.5 * edge.variance) / edge.info + kMinScalePx * kMinScalePx;
     Row& row = rows_[row_count_++];
@@ -137,7 +137,7 @@ bool CurveFitter::MakeRows(const Intrinsics& in, const Curve& curve) {
   return row_count_ >= kMinLines / 3;
 }
 
-// Residuals in standard deviations, and Tukey's limit for them. [row_count_]
+// Computes residual_ [row_count_] in standard deviations. Returns Tukey's limit for them.
 template <int kN>
 double CurveFitter::Residuals(const Eigen::Matrix<double, kN, 1>& p) {
   for (std::size_t i = 0; i < row_count_; ++i) {
@@ -153,7 +153,7 @@ double CurveFitter::Residuals(const Eigen::Matrix<double, kN, 1>& p) {
   return BiweightLimit(*middle);
 }
 
-// One step of weighted least squares. False when too few edges are believed.
+// One step of weighted least squares. False if the sum of weights is too small.
 template <int kN>
 bool CurveFitter::Solve(Eigen::Matrix<double, kN, 1>& p) {
   const double limit = Residuals<kN>(p);
@@ -188,7 +188,7 @@ bool CurveFitter::Solve(Eigen::Matrix<double, kN, 1>& p) {
   return weights > kMinLines / 4.0 && p.allFinite();
 }
 
-// What the last round's edges say of the curve.
+// Computes the fit's covariance and quality from the edges of the last round.
 template <class Curve>
 bool CurveFitter::Describe(CurveFit<Curve>& fit) {
   constexpr int kN = Curve::kDim;
@@ -197,7 +197,7 @@ bool CurveFitter::Describe(CurveFit<Curve>& fit) {
   const double quiet = std::min(noise, 1.5 * profiles_.quiet() + 0.5);
   const double limit = Residuals<kN>(fit.curve.p);
   Eigen::Matrix<double, kN, kN> normal = Eigen::Matrix<double, kN, kN>::Zero();
-  Vector common = Vector::Zero();  // what an equal shift of all edges does
+  Vector common = Vector::Zero();  // effect of an equal shift of all edges
   Vector aside_u = Vector::Zero();
   Vector aside_v = Vector::Zero();
   double chi2 = 0.0;
@@ -226,9 +226,9 @@ bool CurveFitter::Describe(CurveFit<Curve>& fit) {
   if (!(weights > kMinLines / 4.0) || !inverse.allFinite()) {
     return false;
   }
-  // The noise as the edges show it; never less than half of what the samples showed.
+  // Scaled by the scatter of the edges, but at least by half the standard deviation from the samples.
   fit.cov = std::max(chi2 / std::max(weights - kN, 1.0), 0.25) * inverse;
-  // In or out, and along u, v.
+  // Common shifts: outward, along u, along v.
   const double together_px =
       profiles_.shaded() ? std::max(kShadedPx, edge_noise_.shift_px) : edge_noise_.shift_px;
   for (const Vector& shift : {common, aside_u, aside_v}) {
@@ -238,7 +238,7 @@ bool CurveFitter::Describe(CurveFit<Curve>& fit) {
   fit.rms_px = std::sqrt(rms2 / weights);
   fit.noise_px = std::sqrt(noise2 / weights);
   fit.contrast = contrast / weights;
-  // Lines with an edge where the curve is, also those that were not believed to the last hundredth.
+  // Count the lines with an edge on the curve, including edges with little weight.
   int on_curve = 0;
   for (int i = 0; i < count_; ++i) {
     const Profiles::Edge& edge = profiles_.edge(i);
@@ -249,7 +249,7 @@ bool CurveFitter::Describe(CurveFit<Curve>& fit) {
   return fit.cov.allFinite();
 }
 
-// Rounds of measuring and fitting with at most `most` lines, until one moves the curve less than `still_px`.
+// Measures and fits in rounds, with at most `most` lines, until one moves the curve less than `still_px`.
 template <class Curve>
 bool CurveFitter::Approach(const cv::Mat& image, const Intrinsics& in, int most, int rounds, double still_px,
                            bool shaded, CurveFit<Curve>& fit) {
@@ -263,15 +263,14 @@ bool CurveFitter::Approach(const cv::Mat& image, const Intrinsics& in, int most,
       return false;
     }
     if (shaded && round > 0 && last.radius_px > Profiles::kHalf && fit.blur_px < kShadedBlurPx) {
-      // The shading is told from the edge once the edge is known to less than a pixel, and is not blurred
-      // over it.
+      // Shading and edge can be separated once the edge is known to less than a pixel and is not too blurred.
       profiles_.FitShading(at_px_, weight_, last.radius_px, fit.blur_px);
     }
     profiles_.Measure(at_px_, weight_, fit.blur_px);
     if (!MakeRows(in, fit.curve)) {
       return false;
     }
-    // At first it is not known which edges to believe.
+    // The first round repeats the weighting, because its outliers are not known yet.
     constexpr int kReweights = 3;
     for (int i = 0; i < (round == 0 ? kReweights : 1); ++i) {
       if (!Solve<Curve::kDim>(fit.curve.p)) {

@@ -1,5 +1,5 @@
-// Second half of finding what is round: exactly where. Edges along lines across the curve (profiles.hpp),
-// then robust weighted least squares of the curve through them, a few times over.
+// Second stage of finding a sphere or disc: the accurate curve. Measures edges along lines across the curve
+// (profiles.hpp), then fits the curve to them by robust weighted least squares, in a few rounds.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -17,19 +17,19 @@ struct CurveFit {
   Eigen::Matrix<double, Curve::kDim, Curve::kDim> cov =
       Eigen::Matrix<double, Curve::kDim, Curve::kDim>::Zero();
   Ellipse ellipse;
-  double rms_px = 0.0;    // of the edges about the curve
-  double noise_px = 0.0;  // what of that the image's noise explains
-  double contrast = 0.0;  // mean step across it [gray levels]
+  double rms_px = 0.0;    // of the edges' distances from the curve
+  double noise_px = 0.0;  // part of rms_px that the image's noise explains
+  double contrast = 0.0;  // mean step across the curve [gray levels]
   double seen = 0.0;      // share of the curve that is inside the image and on an edge
   double blur_px = 0.0;
 };
 
-// Keeps the memory that a fit works in. One thread uses it.
+// Reuses the working memory of a fit. For one thread.
 class CurveFitter {
  public:
   explicit CurveFitter(const EdgeNoise& edge_noise) : edge_noise_(edge_noise) {}
-  // Fits the curve near `start`, which may be some 2 px off. `shaded`: it is a ball's, whose surface turns
-  // away.
+  // Fits the curve near `start`, which may be about 2 px off. `shaded`: the outline is a ball's, whose
+  // brightness falls off towards it.
   template <class Curve>
   CurveFit<Curve> Fit(const cv::Mat& image, const Intrinsics& in, const Curve& start, bool shaded);
 
@@ -52,7 +52,7 @@ class CurveFitter {
 
   void FindHidden(double spacing_px);
 
-  // row . p - rhs is how far an edge is off the curve [px].
+  // row . p - rhs is an edge's distance from the curve [px].
   struct Row {
     std::array<double, EllipseCurve::kDim> row;
     double rhs = 0.0;

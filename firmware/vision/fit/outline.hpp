@@ -1,4 +1,4 @@
-// The outline of a sphere whose place is known, for drawing.
+// The outline of a sphere at a known position, for drawing.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace fovea::vision {
 
-// `count` points of the outline of cone `m` (features/sphere.hpp), evenly turned about its middle.
+// `count` points of the outline of cone `m` (features/sphere.hpp), at equal angles about its centre.
 std::vector<ImagePoint> SphereOutline(const Intrinsics& intrinsics, const model::Vec3& m, int count);
 
 }  // namespace fovea::vision

@@ -14,16 +14,16 @@ constexpr double kMinBlurPx = 0.45;
 constexpr double kMaxBlurPx = 3.0;
 constexpr int kRounds = 6;
 constexpr double kStillPx = 0.003;
-constexpr double kCornerPx = 4.0;      // edges nearer to a corner than this are rounded by it
-constexpr double kRoundedBlurs = 4.5;  // and so near, in standard deviations of the blur, they may be off
-constexpr double kStraight = 0.95;  // share of a side's edges on its line: no part of it is another thing's
-constexpr int kMinLines = 6;        // on a side
-// What may shift and turn a side of which something that hides a part is next to the rest.
+constexpr double kCornerPx = 4.0;      // lines keep this distance from a corner, which rounds edges
+constexpr double kRoundedBlurs = 4.5;  // edges nearer than this may still be rounded [blur_px]
+constexpr double kStraight = 0.95;     // share of a side's edges on its line, above which no part is hidden
+constexpr int kMinLines = 6;           // on a side
+// Shift and turn of a side that is partly hidden: the covering object is next to the rest.
 constexpr double kPartShiftPx = 0.04;
 
 }  // namespace
 
-// Lines across the sides, and what stands beside them.
+// Places lines across the sides and judges the colours beside them. False if a side's length is impossible.
 bool PolygonFitter::PlaceLines(const cv::Mat& image, const Intrinsics& in, const PolygonFit& fit) {
   const int n = fit.corners.count;
   std::array<int, Detection::kMaxCorners> ends{};
@@ -110,7 +110,7 @@ bool PolygonFitter::FitSide(Side& side, double blur, PolygonFit& fit, double& rm
     fit.seen += e.weight > 0.2 ? 1.0 : 0.0;
   }
   fit.least_on = std::min(fit.least_on, side.line.on * static_cast<double>(count) / std::max(clear, 1));
-  // Lens and light shift the side, and turn what is seen of it about its middle.
+  // Add the shift by lens and light, and the turn of the seen part about its middle.
   const Eigen::Vector2d turned(-side.line.middle, 1.0);
   const bool part = clear < side.to - side.from || side.line.on < kStraight;
   const double common = part ? std::max(kPartShiftPx, edge_noise_.shift_px) : edge_noise_.shift_px;
@@ -120,12 +120,12 @@ bool PolygonFitter::FitSide(Side& side, double blur, PolygonFit& fit, double& rm
   return true;
 }
 
-// Corners to where the sides meet now, and their covariance.
+// Moves the corners to the intersections of the sides and computes their covariance.
 void PolygonFitter::MoveCorners(PolygonFit& fit) const {
   const int n = fit.corners.count;
   using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, CornerFit::kMaxSize,
                                  CornerFit::kMaxSize>;
-  Jacobian J = Jacobian::Zero(2 * n, 2 * n);  // of the corners by the sides' a, b
+  Jacobian J = Jacobian::Zero(2 * n, 2 * n);  // derivative of the corners by the sides' a, b
   Jacobian cov = Jacobian::Zero(2 * n, 2 * n);
   for (int k = 0; k < n; ++k) {
     const int before = (k + n - 1) % n;
@@ -148,7 +148,7 @@ void PolygonFitter::MoveCorners(PolygonFit& fit) const {
   fit.corners.cov.diagonal().array() += edge_noise_.corner_px * edge_noise_.corner_px;
 }
 
-// Rounds of measuring and fitting, until one moves the sides no more.
+// Measures and fits in rounds until the sides stop moving.
 bool PolygonFitter::Approach(const cv::Mat& image, const Intrinsics& in, double& blur, PolygonFit& fit) {
   for (int round = 0; round < kRounds; ++round) {
     profiles_.Measure(at_px_, weight_, blur);
@@ -201,7 +201,7 @@ bool PolygonFitter::Approach(const cv::Mat& image, const Intrinsics& in, double&
   return true;
 }
 
-// Where the lines are now.
+// Whether no part is hidden, judged by the present lines.
 bool PolygonFitter::IsWhole(const PolygonFit& fit) const {
   return evidence_.is_whole() && fit.least_on > kStraight;
 }
@@ -211,7 +211,7 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
   fit.corners.count = static_cast<int>(start.size());
   std::copy(start.begin(), start.end(), fit.corners.corner.begin());
   double blur = kStartBlurPx;
-  // Once more where a part is hidden: which, is only told well from where the sides are.
+  // A second pass if a part is hidden: the hidden part is only located well once the sides are known.
   for (int pass = 0; pass < 2; ++pass) {
     weight_.fill(1.0);
     if (!ReadLines(image, in, fit) || !Approach(image, in, blur, fit)) {
@@ -221,8 +221,8 @@ PolygonFit PolygonFitter::Fit(const cv::Mat& image, const Intrinsics& in, std::s
       break;
     }
   }
-  // Asked before lines are placed anew, of those that off_ tells of: one pixel more of a side, and there is
-  // another number of them.
+  // Before lines are placed again, because off_ belongs to the present ones: a side that is one pixel longer
+  // can have more lines.
   fit.bends_explained = evidence_.ExplainsBends(off_);
   if (!PlaceLines(image, in, fit)) {
     return fit;

@@ -9,11 +9,11 @@
 namespace fovea::vision {
 namespace {
 
-constexpr double kMinContrast = 4.0;  // gray levels between the two sides, or it is no edge
-constexpr double kStartNoise = 2.0;   // [gray levels], before it is measured
-constexpr int kClear = 2;             // samples nearer to the edge belong to neither side
+constexpr double kMinContrast = 4.0;  // least step of an edge [gray levels]
+constexpr double kStartNoise = 2.0;   // [gray levels], until it is measured
+constexpr int kClear = 2;             // samples nearer to the edge than this belong to neither side
 
-// The step 1 - Phi(x) and its density, from a table: every sample of every line asks for them.
+// Table of the step 1 - Phi(x) and its density, for speed.
 class StepTable {
  public:
   StepTable() {
@@ -39,7 +39,7 @@ class StepTable {
 };
 const StepTable kStep;
 
-// Four samples at a time: the same sums in the same order on every machine.
+// Four samples at a time, in a fixed order: the sums are equal on every machine.
 using Four = float __attribute__((vector_size(16)));
 Four Load(const float* from) {
   Four four;
@@ -48,11 +48,11 @@ Four Load(const float* from) {
 }
 double Total(Four sum) { return static_cast<double>((sum[0] + sum[1]) + (sum[2] + sum[3])); }
 
-// Places in the image are in units of 2^-16 px, and brightness between pixels in units of 2^-22: whole
-// numbers take half of the time.
+// Fixed point, which takes half of the time: positions in units of 2^-16 px, interpolated brightness in units
+// of 2^-22.
 constexpr int kPlaceBits = 16;
 constexpr int kShareBits = 11;
-constexpr float kGrey = 128.0F;  // is taken off, so that the sums of squares keep their small digits
+constexpr float kGrey = 128.0F;  // subtracted, so that sums of squares keep their precision
 std::int32_t PlaceOf(double px) { return static_cast<std::int32_t>(px * (1 << kPlaceBits)); }
 
 template <int kChannels>
@@ -124,7 +124,7 @@ void Profiles::Read(const cv::Mat& image, const Intrinsics& in, const ProfileLin
   MeasureQuiet();
 }
 
-// How rough the samples are away from the edge: by their second differences, which slow changes do not enter.
+// Measures the noise away from the edge by second differences, which slow brightness changes do not affect.
 void Profiles::MeasureQuiet() {
   std::array<float, kMaxLines> rough;
   std::size_t count = 0;
@@ -146,13 +146,13 @@ void Profiles::MeasureQuiet() {
   }
   const auto middle = rough.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(rough.begin(), middle, rough.begin() + static_cast<std::ptrdiff_t>(count));
-  // Six times the variance, of which reading between pixels leaves about a third; the median of four squares
-  // is 0.84 of their mean.
+  // The mean square is six times the variance, of which interpolation leaves about a third. The median of a
+  // mean of four squares is 0.84 of its mean.
   quiet_ = std::sqrt(static_cast<double>(*middle) / 1.7);
 }
 
-// Colours become their part along the step from outside to inside. Its direction is a mean over neighbours:
-// one that follows a single line's noise would count that noise as contrast.
+// Projects colours on the direction of the step from outside to inside. The direction is a mean over
+// neighbours: one from a single line's noise would count that noise as contrast.
 void Profiles::ProjectColours(bool closed) {
   std::array<Eigen::Vector3f, kMaxLines> step;
   surface_.setZero();
@@ -191,7 +191,7 @@ void Profiles::ProjectColours(bool closed) {
   }
 }
 
-// The step between two pixels, at each of kPhases places: as samples of it look, and their sums of products.
+// Samples of the blurred step at each of kPhases positions between two pixels, and their sums of products.
 void Profiles::MakeSteps(double blur_px) {
   const double reach = std::clamp(2.2 * blur_px + 2.0, 3.0, kHalf - 1.0);
   half_ = 2 * static_cast<int>(std::ceil(0.5 * reach));
@@ -218,7 +218,7 @@ void Profiles::MakeSteps(double blur_px) {
   }
 }
 
-// Over samples `from` to before `to` of the step.
+// Over samples [from, to) of the step.
 Profiles::Sums Profiles::Products(const Step& s, int from, int to) {
   Sums sum;
   for (int t = from; t < to; ++t) {
@@ -251,7 +251,7 @@ Profiles::Sums Profiles::Products(const Step& s, int from, int to) {
   return sum;
 }
 
-// The line's samples against the step where the outline is thought to cross it.
+// Multiplies the line's samples with the step at the expected crossing `at_px`.
 void Profiles::Multiply(std::size_t k, double at_px, double blur_px) {
   Line& line = measured_[k];
   line.used = false;
@@ -272,7 +272,7 @@ void Profiles::Multiply(std::size_t k, double at_px, double blur_px) {
     cut_[k] = Products(step, cut_low, cut_high);
     line.step = &cut_[k];
   }
-  // Beyond the ends of the line stand zeros.
+  // Zeros pad the line beyond its ends.
   const float* y = &value_[k][static_cast<std::size_t>(first + kPad)];
   Four y1{}, yq{}, yd{}, yb{}, yz{}, yy{};
   for (int t = 0; t < 2 * half_; t += 4) {
@@ -316,7 +316,7 @@ void Profiles::Measure(const std::array<double, kMaxLines>& at_px,
       ++lines;
     }
   }
-  // The noisier, the more neighbours tell a line's levels.
+  // The more noise, the more neighbours contribute to a line's levels.
   contrast = lines > 0 ? contrast / lines : 0.0;
   const double ratio = contrast / std::max(noise_, 0.1);
   const int neighbours = ratio > 25.0 ? 0 : ratio > 10.0 ? 1 : ratio > 4.0 ? 2 : 4;
@@ -353,7 +353,7 @@ void Profiles::Measure(const std::array<double, kMaxLines>& at_px,
       continue;
     }
     const Sums& s = *line.step;
-    // Against y - outside - step q.
+    // Products with the residual y - outside - step q.
     const double dr = line.yd - outside * s.d - step * s.dq;
     const double rb = line.yb - outside * s.b - step * s.bq;
     const double rr = line.yy - 2.0 * (outside * line.y + step * line.yq) + outside * outside * s.n +
@@ -373,7 +373,7 @@ void Profiles::Measure(const std::array<double, kMaxLines>& at_px,
       variance[variances++] = edge.variance;
     }
   }
-  // Beside the levels the blur keeps about half of its trace in the samples.
+  // The fitted levels absorb part of the blur's effect on the samples: about half remains.
   blur_change_ = blur_down > 0.0 ? std::clamp(1.6 * blur_up / blur_down, -0.5 * blur_px, 0.5 * blur_px) : 0.0;
   if (variances > 0) {
     const auto middle = variance.begin() + static_cast<std::ptrdiff_t>(variances / 2);

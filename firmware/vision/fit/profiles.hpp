@@ -1,12 +1,12 @@
-// Brightness along short lines across an outline, and what it says of where the edge is.
+// Measures the position of an edge from the brightness along short lines across an outline.
 //
 // Along a line the brightness goes from the level inside to the level outside like a blurred step. The
-// outline is known to a pixel or so; how far the step is from there is the answer of the least-squares filter
-// for it, the derivative of the step, with both levels estimated too. That uses all that the pixels know (the
-// Cramer-Rao bound), where the place of the steepest gradient does not. The blur is the same for all lines
-// and is estimated from all of them; the levels from a line and, in noise, its neighbours. A blurred outline
-// of curvature k looks smaller by blur^2 k / 2, which is allowed for. How a ball's brightness falls off
-// towards its edge is fitted over all lines (shading.cpp) and taken off.
+// outline is known to about a pixel. The least-squares filter for the step's offset from there is the
+// derivative of the step, with both levels estimated too. It reaches the Cramer-Rao bound; the position of
+// the steepest gradient does not. The blur is the same for all lines and is estimated from all of them. The
+// levels come from a line and, in noise, from its neighbours. A blurred outline of curvature k looks smaller
+// by blur^2 k / 2; this is corrected. The fall-off of a ball's brightness towards its edge is fitted over all
+// lines (shading.cpp) and subtracted.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@
 
 namespace fovea::vision {
 
-// A line across the outline: from a point on it, outward. The point in ideal pixels.
+// A line across the outline: a point on the outline, in ideal pixels, and the outward direction.
 struct ProfileLine {
   double u_px = 0.0;
   double v_px = 0.0;
@@ -32,67 +32,67 @@ class Profiles {
   static constexpr int kHalf = 8;  // samples on each side, one per pixel
   static constexpr int kSamples = 2 * kHalf + 1;
 
-  // What is known of one line's edge.
+  // The measurement of one line's edge.
   struct Edge {
     bool valid = false;
-    double at_px = 0.0;  // along the line, from its point: where the step is
-    double info = 0.0;   // 1 / variance of at_px, but for the noise: contrast^2 times the filter's [1/px^2]
+    double at_px = 0.0;  // position of the step along the line, from its point
+    double info = 0.0;   // variance of at_px is noise^2 / info [gray levels^2/px^2]
     double contrast = 0.0;
-    double step = 0.0;      // level inside less level outside
+    double step = 0.0;      // level inside minus level outside
     double variance = 0.0;  // of its samples about the step [gray levels^2]
   };
 
   // Reads the image along `count` lines. `closed`: the last line and the first are neighbours.
   void Read(const cv::Mat& image, const Intrinsics& in, const ProfileLine* lines, int count, bool closed);
 
-  // Measures all edges. `at_px[i]` is where the outline is thought to cross line i; `blur_px` the standard
-  // deviation of the blur; `weight[i]` how far line i was believed, 0 to 1.
+  // Measures all edges. `at_px[i]` is where the outline is expected to cross line i; `blur_px` the standard
+  // deviation of the blur; `weight[i]` the weight of line i in the last fit, 0 to 1.
   void Measure(const std::array<double, kMaxLines>& at_px, const std::array<double, kMaxLines>& weight,
                double blur_px);
 
-  // Fits how a ball's surface of outline radius `radius_px` darkens towards its edge.
+  // Fits how the surface of a ball with outline radius `radius_px` darkens towards its edge.
   void FitShading(const std::array<double, kMaxLines>& at_px, const std::array<double, kMaxLines>& weight,
                   double radius_px, double blur_px);
 
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] const Edge& edge(int i) const { return edges_[static_cast<std::size_t>(i)]; }
-  // By how much the blur should change, from the last Measure [px].
+  // Correction of the blur, from the last Measure [px].
   [[nodiscard]] double blur_change_px() const { return blur_change_; }
   [[nodiscard]] double noise() const {
     return noise_;
-  }  // standard deviation of most lines' samples [gray levels]
-  [[nodiscard]] bool shaded() const { return shaded_; }  // the last FitShading found some
-  // The same where there is no edge, roughly: what the image's noise alone makes of it.
+  }  // median over the lines of the samples' standard deviation about the step [gray levels]
+  [[nodiscard]] bool shaded() const { return shaded_; }  // the last FitShading found shading
+  // The image's noise alone, measured roughly away from the edge [gray levels].
   [[nodiscard]] double quiet() const { return quiet_; }
 
  private:
   void ProjectColours(bool closed);
   void MeasureQuiet();
 
-  // A blurred step is the same for all lines, but for where it stands between two samples: it is made once
-  // for each of so many places there, which takes five sixths of the time out of Measure.
+  // Blurred steps of different lines differ only by their position between two samples. Each of kPhases
+  // positions is computed once, which saves five sixths of Measure's time.
   static constexpr int kPhases = 16;
   static constexpr int kMostUsed = 2 * kHalf;
-  static constexpr int kPad = 5;  // zeros beside a line's samples, so that all windows are of one length
+  static constexpr int kPad = 5;  // zeros beside a line's samples, so that all windows have one length
 
-  // Sums of products of a step's samples; p is 1 - q.
+  // Sums of products of a step's samples: q, p = 1 - q, d density, b wider, z turn.
   struct Sums {
     double n = 0.0, q = 0.0, qq = 0.0;
     double d = 0.0, dq = 0.0, dd = 0.0;
     double b = 0.0, bq = 0.0, bb = 0.0;
     double z = 0.0, zq = 0.0, zd = 0.0, zb = 0.0, zz = 0.0;
     double p = 0.0, qp = 0.0, pp = 0.0;
-    double left = 0.0;  // of dd, beside the two levels
+    double left = 0.0;  // part of dd that is independent of the two levels
   };
   struct Step {
-    alignas(16) std::array<float, kMostUsed> used{};     // 1: near enough to the edge
+    alignas(16) std::array<float, kMostUsed> used{};     // 1 near the edge, else 0
     alignas(16) std::array<float, kMostUsed> q{};        // the step, 1 inside to 0 outside
-    alignas(16) std::array<float, kMostUsed> density{};  // what moving it outward does
-    alignas(16) std::array<float, kMostUsed> wider{};    // what more blur does
-    alignas(16) std::array<float, kMostUsed> turn{};     // of a ball's surface, seen through the step
+    alignas(16) std::array<float, kMostUsed> density{};  // derivative by an outward shift
+    alignas(16) std::array<float, kMostUsed> wider{};    // derivative by the blur
+    alignas(16) std::array<float, kMostUsed> turn{};     // SurfaceTurn of a ball times q
     Sums whole;
   };
-  // Least squares of the levels inside and outside.
+  // Normal equations of the levels inside and outside.
   struct Levels {
     double qq = 0.0, qp = 0.0, pp = 0.0, yq = 0.0, yp = 0.0;
     [[nodiscard]] double Det() const { return qq * pp - qp * qp; }
@@ -106,10 +106,10 @@ class Profiles {
       yp += w * o.yp;
     }
   };
-  // A line's samples y, less the shading, times the step's.
+  // Products of a line's samples y, minus the shading, with the step's samples.
   struct Line {
     bool used = false;
-    double at_px = 0.0;  // where the step was put
+    double at_px = 0.0;  // position of the step
     const Sums* step = nullptr;
     Levels levels;
     double y = 0.0, yq = 0.0, yd = 0.0, yb = 0.0, yy = 0.0;
@@ -128,17 +128,17 @@ class Profiles {
   double quiet_ = 1.0;
   double blur_change_ = 0.0;
   std::array<ProfileLine, kMaxLines> lines_;
-  // Brightness along the colour step, less a level in common.
+  // Brightness along the colour step, minus a common level.
   std::array<std::array<float, kPad + kSamples + kPad + 1>, kMaxLines> value_{};
   std::array<std::array<float, 3 * kSamples>, kMaxLines> colour_;
-  Eigen::Vector3f surface_ = Eigen::Vector3f::Zero();  // colour inside, of length 1
-  std::array<double, kMaxLines> along_{};              // how much of it a line's colour step has
+  Eigen::Vector3f surface_ = Eigen::Vector3f::Zero();  // mean colour inside, of length 1
+  std::array<double, kMaxLines> along_{};              // component of surface_ along a line's colour step
   std::array<bool, kMaxLines> readable_{};
-  std::array<double, kMaxLines> shade_{};  // of each line: how much brighter where z is 1
+  std::array<double, kMaxLines> shade_{};  // of each line: slope of the brightness in z
   int half_ = 0;                           // samples of a step, each way
   std::array<Step, kPhases> steps_;
   std::array<Line, kMaxLines> measured_;
-  std::array<Sums, kMaxLines> cut_;  // of a step whose window is longer than the line
+  std::array<Sums, kMaxLines> cut_;  // of a step whose window extends beyond the line
   std::array<Edge, kMaxLines> edges_;
 };
 

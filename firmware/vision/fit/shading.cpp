@@ -1,5 +1,5 @@
-// How a ball's brightness falls off towards its outline: from the samples of all lines (profiles.hpp), by a
-// model of surface and light.
+// Fits how a ball's brightness falls off towards its outline, from the samples of all lines (profiles.hpp),
+// by a model of surface and light.
 #include "firmware/vision/fit/shading.hpp"
 
 #include <Eigen/Cholesky>
@@ -15,7 +15,7 @@ double SurfaceTurn(double d_px, double radius_px) {
   return std::sqrt(x * (2.0 - x));
 }
 
-// By Simpson's rule it would be off where the root is steep: the integral of the root's first terms.
+// Integrates the root's first terms: Simpson's rule would be inaccurate where the root is steep.
 double MeanSurfaceTurn(double d_px, double radius_px) {
   const double high = d_px + 0.5;
   if (high <= 0.0) {
@@ -32,18 +32,18 @@ double MeanSurfaceTurn(double d_px, double radius_px) {
   return (integral(high) - integral(low)) / (high - low);
 }
 
-// A dull surface under light from all around and one lamp: its brightness is
+// The brightness of a matt surface under ambient light and one lamp is
 //   A + S z + max(0, B (1 - d/r) + L z),  B = (b_u, b_v) . (n_u, n_v),
-// d inside the outline of radius r where the outline's normal is (n_u, n_v). So on the lamp's side it falls
-// off towards the outline, on the other it lies in its own shadow and does not. A, S, b and L by least
-// squares; what lies in the shadow is found in some turns. A line's shade is the slope in z that this has
-// next to the outline.
+// at depth d inside an outline of radius r with normal (n_u, n_v); z is SurfaceTurn. So it falls off towards
+// the outline on the lamp's side. The other side is in its own shadow, where it does not. A, S, b and L come
+// from least squares; a few iterations find what is in the shadow. A line's shade is the slope of this
+// brightness in z next to the outline.
 void Profiles::FitShading(const std::array<double, kMaxLines>& at_px,
                           const std::array<double, kMaxLines>& weight, double radius_px, double blur_px) {
   using Vector5 = Eigen::Matrix<double, 5, 1>;  // A, S, b_u, b_v, L
   using Matrix5 = Eigen::Matrix<double, 5, 5>;
   constexpr int kTurns = 3;
-  constexpr int kMostShaded = 64;  // lines that are enough
+  constexpr int kMostShaded = 64;  // about so many lines are enough
   const double clear = 2.5 * blur_px;
   const int every = std::max(1, count_ / kMostShaded);
   Vector5 light = Vector5::Zero();
@@ -78,11 +78,11 @@ void Profiles::FitShading(const std::array<double, kMaxLines>& at_px,
         n += 1.0;
       }
     }
-    // What the samples do not tell, as S from L where nothing is in the shadow, stays small.
+    // Keeps undetermined terms small, such as S against L when nothing is in the shadow.
     normal.diagonal().array() += 1e-4 * n + 1e-9;
     light = normal.ldlt().solve(right);
   }
-  constexpr std::array kNextToIt{0.25, 1.0, 2.0, 3.0};  // [px inside]
+  constexpr std::array kNextToIt{0.25, 1.0, 2.0, 3.0};  // [px inside the outline]
   constexpr double kEach = 1.0 / kNextToIt.size();
   std::array<double, kNextToIt.size()> z;
   double mean = 0.0;
@@ -106,7 +106,7 @@ void Profiles::FitShading(const std::array<double, kMaxLines>& at_px,
     shade_[k] = (gray_ ? 1.0 : along_[k]) * slope;
     seen2 += slope * slope * spread / kEach;
   }
-  // Told from noise, or left alone.
+  // Used only if it is significant against the noise.
   constexpr double kSure = 4.0;
   shaded_ = light.allFinite() && seen2 > kSure * 5.0 * std::max(noise_ * noise_, 0.1);
   radius_px_ = radius_px;

@@ -13,15 +13,15 @@ namespace {
 
 constexpr std::size_t kLeastEdges = 3;
 constexpr int kReweights = 4;
-constexpr double kBent = 2.5;         // a median further off [sigma] is no line's
-constexpr double kAgreeSigmas = 3.0;  // edges that agree with a line are no further off,
-constexpr double kAgreePx = 0.15;     // and this
+constexpr double kBent = 2.5;         // a larger median residual [sigma] means that the line is wrong
+constexpr double kAgreeSigmas = 3.0;  // largest residual of an edge that agrees with a line,
+constexpr double kAgreePx = 0.15;     // plus this
 constexpr double kOnPx = 0.25;
-constexpr std::size_t kTries = 10;  // edges, of which each two are tried
+constexpr std::size_t kTries = 10;  // edges whose pairs are tried
 
 double OffOf(const SideEdge& edge, const SideLine& line) { return edge.at_px - line.a - line.b * edge.t; }
 
-// Of the sizes of the edges' residuals that are below `most` [sigma].
+// Median of the edges' absolute residuals below `most` [sigma].
 double MedianOff(std::span<const SideEdge> edges, const SideLine& line, double most) {
   std::array<double, Profiles::kMaxLines> sizes;
   std::size_t count = 0;
@@ -44,9 +44,9 @@ bool Agrees(const SideEdge& edge, const SideLine& line) {
   return off < kAgreePx + kAgreeSigmas * std::sqrt(edge.variance);
 }
 
-// The line through two groups of neighbouring edges that most edges agree with.
+// Of the lines through two groups of neighbouring edges, the one with which most edges agree.
 SideLine MostAgreed(std::span<const SideEdge> edges) {
-  constexpr std::size_t kGroup = 3;  // the middle one of so many neighbours
+  constexpr std::size_t kGroup = 3;  // a group is the median of so many neighbours
   SideLine best;
   std::array<SideEdge, kTries> tries;
   const std::size_t count = std::min(kTries, edges.size() / kGroup);
@@ -80,7 +80,7 @@ bool IsOn(const SideEdge& edge, const SideLine& line) {
   return edge.rounded || std::fabs(OffOf(edge, line)) < kOnPx + kAgreeSigmas * std::sqrt(edge.variance);
 }
 
-// One round of weighted least squares. False when too few edges are believed.
+// One round of weighted least squares. False if the sum of weights is too small.
 bool Solve(std::span<SideEdge> edges, double limit, SideLine& line) {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Identity() * 1e-12;
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
@@ -117,7 +117,7 @@ bool Solve(std::span<SideEdge> edges, double limit, SideLine& line) {
   return true;
 }
 
-// Whether something was left out.
+// Leaves out runs of edges that are off the line, and `beside` edges on both sides. True if there are any.
 bool LeaveOut(std::span<SideEdge> edges, int beside, const SideLine& line) {
   constexpr int kRun = 3;
   const int count = static_cast<int>(edges.size());

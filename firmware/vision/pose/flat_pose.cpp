@@ -14,17 +14,14 @@ namespace {
 using model::Mat3;
 using model::Vec3;
 
-constexpr double kMostTilt =
-    75.0 * std::numbers::pi / 180.0;  // against the line of sight, of a target that is looked for
-constexpr double kNoChance =
-    30.0;  // a pose whose corners fit so much worse than the best's is none [sigma^2]
+constexpr double kMostTilt = 75.0 * std::numbers::pi / 180.0;  // largest tilt against the line of sight
+constexpr double kNoChance = 30.0;  // a pose whose chi^2 exceeds the least one by this is rejected
 constexpr double kSameTurn = 0.01;  // poses nearer to each other than this are one [rad]
-// Gauss-Newton steps are held back by these, so that none leaps where the corners say nothing.
+// Damping of the Gauss-Newton steps: no large steps in directions that the corners do not determine.
 constexpr double kStepM = 0.1;
 constexpr double kStepRad = 0.05;
 
-// 0 for a pose that faces the camera squarely and upright; the turn about the view axis decides between
-// equals.
+// 0 for a pose that faces the camera squarely and upright; the turn about the view axis only breaks ties.
 double Unlikeness(const Mat3& R) {
   const double tilt = std::acos(std::clamp(R(2, 2), -1.0, 1.0));
   const double turn = std::atan2(R(1, 0), R(0, 0));
@@ -41,7 +38,7 @@ struct Refined {
   bool ok = false;
 };
 
-// Gauss-Newton on the corners, weighted by their covariance. `at[i]` is the image's corner of O's corner i.
+// Gauss-Newton on the corners, weighted by their covariance. `at[i]` is the image corner of O's corner i.
 Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorners>& at, const Intrinsics& in,
                FlatShape shape, const model::Pose& start) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, CornerFit::kMaxSize, 6>;
@@ -62,8 +59,8 @@ Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorner
   const CornerFit::Covariance info = cov.inverse();
   Vector e(2 * n);
   Rows J(2 * n, 6);
-  constexpr int kRounds = 30;        // where the corners hardly tell the tilt; else four or five
-  constexpr double kStill2 = 1e-20;  // a step that is smaller is the last [m^2 + rad^2]
+  constexpr int kRounds = 30;        // if the corners hardly determine the tilt; else four or five
+  constexpr double kStill2 = 1e-20;  // a smaller step is the last [m^2 + rad^2]
   bool still = false;
   for (int round = 0; round <= kRounds; ++round) {
     for (int i = 0; i < n; ++i) {
@@ -100,13 +97,13 @@ Refined Refine(const CornerFit& fit, const std::array<int, Detection::kMaxCorner
     still = step.squaredNorm() < kStill2;
   }
   r.pose.off_px = std::sqrt(e.squaredNorm() / n);
-  // Its painted side is seen, and not too much from aside.
+  // True when the painted side faces the camera and the viewing angle is not too flat.
   r.ok = r.pose.cov.allFinite() && X_CO.p.z() > 0.0 &&
          X_CO.R.col(2).dot(X_CO.p) > std::cos(kMostTilt) * X_CO.p.norm();
   return r;
 }
 
-// Those found so far.
+// The different poses found so far.
 struct Found {
   static constexpr int kMost = 24;
   int count = 0;
@@ -124,7 +121,7 @@ struct Found {
   }
 };
 
-// Tilted the other way about the line of sight.
+// The same pose, tilted to the opposite side of the line of sight.
 model::Pose Mirrored(const model::Pose& X_CO) {
   const Vec3 sight = X_CO.p.normalized();
   const Vec3 normal = X_CO.R.col(2);
@@ -137,7 +134,7 @@ model::Pose Mirrored(const model::Pose& X_CO) {
   return {model::RotationOf(2.0 * tilt / sine * axis) * X_CO.R, X_CO.p};
 }
 
-// All poses with the image's corner `first` as O's first: from those of three corners, on to all of them.
+// Adds all poses with image corner `first` as O's corner 0: starts from three corners, then refines with all.
 void FindPoses(const CornerFit& fit, const Intrinsics& in, FlatShape shape, const model::Pose* last,
                int first, Found& found) {
   std::array<int, Detection::kMaxCorners> at{};
@@ -165,7 +162,7 @@ void FindPoses(const CornerFit& fit, const Intrinsics& in, FlatShape shape, cons
   }
 }
 
-// Equal turns are one to a target with `count` corners: of them the most likely.
+// A target with `count` corners looks the same after each equal turn: chooses the turn with the least cost.
 template <class Cost>
 void ChooseTurn(const Cost& cost, int count, int turns, CornerPose& pose) {
   const CornerPose found = pose;
@@ -188,7 +185,7 @@ bool PosesOfDisc(const Eigen::Matrix3d& conic, const Intrinsics& in, double diam
   K << in.f_u_px, 0.0, in.c_u_px, 0.0, in.f_v_px, in.c_v_px, 0.0, 0.0, 1.0;
   const Mat3 Q = K.transpose() * conic * K;
   const Eigen::SelfAdjointEigenSolver<Mat3> eigen(Q / Q.norm());
-  // One negative value, along the cone's axis, and two positive ones.
+  // One negative eigenvalue, along the cone's axis, and two positive ones.
   Vec3 axis = eigen.eigenvectors().col(0);
   const double l3 = eigen.eigenvalues()[0];
   double l2 = eigen.eigenvalues()[1];  // along the longer half axis
@@ -200,14 +197,14 @@ bool PosesOfDisc(const Eigen::Matrix3d& conic, const Intrinsics& in, double diam
     axis = -axis;
   }
   const Vec3 e1 = eigen.eigenvectors().col(2);
-  // Noise makes a circle an ellipse, never rounder: its mean square is taken off again.
+  // Noise makes an outline look longer, never rounder: subtract its mean square.
   const double mean = 0.5 * (l1 + l2);
   const double half = 0.5 * (l1 - l2);
   const double noise = round_below * mean;
   const double true_half = std::sqrt(std::max(0.0, half * half - noise * noise));
   l1 = mean + true_half;
   l2 = mean - true_half;
-  // The plane through the cone x' Q x = 0 that cuts it in a circle (Q = l1 e1 e1' + l2 e2 e2' + l3 a a').
+  // The plane that cuts the cone x' Q x = 0 in a circle (Q = l1 e1 e1' + l2 e2 e2' + l3 a a').
   const double sine = std::sqrt(std::max(0.0, (l1 - l2) / (l1 - l3)));
   const double cosine = std::sqrt((l2 - l3) / (l1 - l3));
   const double distance = 0.5 * diameter * l2 / std::sqrt(-l1 * l3);  // of the plane from the camera
@@ -215,7 +212,7 @@ bool PosesOfDisc(const Eigen::Matrix3d& conic, const Intrinsics& in, double diam
     const double s = i == 0 ? sine : -sine;
     DiscPose& pose = poses[static_cast<std::size_t>(i)];
     pose.normal_C = cosine * axis + s * e1;
-    // The cut's middle: x = distance n + t across meets the cone x' Q x = 0 at two t; their mean.
+    // The circle's centre: x = distance n + t across meets the cone x' Q x = 0 at two t; take their mean.
     const Vec3 across = -s * axis + cosine * e1;
     const double t = -distance * (l1 - l3) * s * cosine / l2;
     pose.p_CO_C = distance * pose.normal_C + t * across;

@@ -1,11 +1,11 @@
 // Poses of flat targets from their outlines: a disc from its ellipse, square and triangle from their corners.
 //
-// Each outline has several poses: a disc two, a square two (and four by its quarter turns, which are one to
-// it), a triangle up to four, and others with its corners taken for each other. Of a disc the one nearest to
-// the last is kept; those of corners are all named, for one image does not tell them apart.
+// Each outline has several poses: a disc two, a square two (each in four equivalent quarter turns), a
+// triangle up to four, and more with its corners exchanged. All that fit are returned, because one image does
+// not distinguish them.
 //
-// A plate that looks the same after a k-th of a full turn (features::TargetTraits::turns) has k poses for
-// one: the most likely of them is named.
+// A plate that looks the same after 1/k of a full turn (features::TargetTraits::turns) has k equivalent
+// poses. Only the most likely of them is returned.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,10 +24,10 @@ struct DiscPose {
   model::Vec3 normal_C{0.0, 0.0, 1.0};  // z of O, away from the camera
 };
 
-// The two poses of a disc of diameter `diameter` [m] whose outline is `conic` (of pixels). `round_below`: an
-// outline whose tilt [1 - minor / major] is less than this cannot be told from a circle and is taken for one;
-// the tilt above it counts less by what noise adds to it. False when the conic is no ellipse before the
-// camera.
+// The two poses of a disc of diameter `diameter` [m] with outline `conic` (in pixels). `round_below`: an
+// outline whose 1 - minor / major is less than this cannot be distinguished from a circle and is taken for
+// one; above it, the contribution of noise is subtracted. False if the conic is not an ellipse in front of
+// the camera.
 bool PosesOfDisc(const Eigen::Matrix3d& conic, const Intrinsics& in, double diameter, double round_below,
                  std::array<DiscPose, 2>& poses);
 
@@ -44,8 +44,8 @@ struct CornerFit {
 struct CornerPose {
   model::Pose X_CO;
   model::Mat6 cov = model::Mat6::Zero();  // position in axes of C [m], small rotation about axes of C [rad]
-  double off_px = 0.0;                    // rms distance of the corners from where this pose has them
-  int first = 0;                          // the image's corner that is O's corner 0
+  double off_px = 0.0;                    // rms distance of the corners from their places in this pose
+  int first = 0;                          // the image corner that is O's corner 0
 };
 
 struct CornerPoses {
@@ -53,12 +53,12 @@ struct CornerPoses {
   std::array<CornerPose, hal::kMaxPoses> pose;
 };
 
-// Corners of the target in O [m], z = 0, about their mean, in the order that turns like the image's corners.
+// Corners of the target in O [m], z = 0, relative to their mean, ordered in the same sense as in the image.
 using FlatShape = std::span<const Eigen::Vector2d>;
 
-// The poses of a plate that looks the same after each of `turns` equal turns and whose corners are `fit`, at
-// most hal::kMaxPoses: first the one nearest to `last`, its pose in the image before; or, when that is null,
-// the one that faces the camera most squarely, then the least turned about the view axis.
+// The poses of a plate with corners `fit` that looks the same after each of `turns` equal turns; at most
+// hal::kMaxPoses. First the one nearest to `last`, the pose in the last image. If `last` is null, first the
+// one that faces the camera most squarely; the turn about the view axis breaks ties.
 CornerPoses PosesOfCorners(const CornerFit& fit, const Intrinsics& in, FlatShape shape, int turns,
                            const model::Pose* last);
 

@@ -1,7 +1,7 @@
-// A calibrated camera: u = f_u X / Z + c_u, v = f_v Y / Z + c_v; pixel centres at whole numbers.
+// A calibrated camera: u = f_u X / Z + c_u, v = f_v Y / Z + c_v; pixel centres at integers.
 //
-// Everything is computed with ideal pixels, those of a lens without distortion. Pictures are never
-// straightened: a point of the ideal picture is looked up where the lens puts it.
+// All computations use ideal pixels, those of a lens without distortion. Pictures are never rectified: a
+// point of the ideal picture is read at its distorted position.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace fovea::vision {
 
-// Brown's lens: radial k1, k2, k3, tangential p1, p2; all zero for a lens without distortion.
+// Brown's lens model: radial k1, k2, k3, tangential p1, p2; all zero for a lens without distortion.
 struct Distortion {
   double k1 = 0.0;
   double k2 = 0.0;
@@ -37,7 +37,7 @@ struct Intrinsics {
   [[nodiscard]] double U(const model::Vec3& p_C) const { return f_u_px * p_C.x() / p_C.z() + c_u_px; }
   [[nodiscard]] double V(const model::Vec3& p_C) const { return f_v_px * p_C.y() / p_C.z() + c_v_px; }
 
-  // From an ideal pixel to where the lens puts it, and back.
+  // From an ideal pixel to its distorted position, and back.
   void Distort(double& u_px, double& v_px) const {
     if (lens.IsZero()) {
       return;
@@ -53,7 +53,7 @@ struct Intrinsics {
     if (lens.IsZero()) {
       return;
     }
-    constexpr int kRounds = 12;  // each leaves a tenth of the error, or less, of lenses worth the name
+    constexpr int kRounds = 12;  // each reduces the error to a tenth or less for usual lenses
     const double measured_u = u_px;
     const double measured_v = v_px;
     for (int i = 0; i < kRounds; ++i) {

@@ -13,7 +13,7 @@ namespace {
 using model::Mat3;
 using model::Vec3;
 
-// Axes that three points give: x from the first to the second, z across their plane.
+// Axes from three points: x from the first to the second, z normal to their plane.
 Mat3 AxesOf(const std::array<Vec3, 3>& points) {
   Mat3 R;
   R.col(0) = (points[1] - points[0]).normalized();
@@ -27,7 +27,7 @@ struct Roots {
   std::array<double, 4> real{};
 };
 
-// Of c[4] x^4 + ... + c[0]; of those that are not real, the real part. Newton's method has the last word.
+// Roots of c[4] x^4 + ... + c[0], real ones refined by Newton's method; of complex roots the real part.
 Roots RootsOf(const std::array<double, 5>& c) {
   constexpr int kNewtons = 3;
   Roots roots;
@@ -58,8 +58,7 @@ Roots RootsOf(const std::array<double, 5>& c) {
   return roots;
 }
 
-// The cosines between the rays to three points, and the squares of the points' distances, as Grunert names
-// them.
+// In Grunert's notation: cosines between the rays to three points, and squared distances between the points.
 struct Triangle {
   double ca, cb, cg;
   double a2, b2, c2;
@@ -71,8 +70,7 @@ Vec3 Residual(const Triangle& t, const Vec3& d) {
           d[0] * d[0] + d[1] * d[1] - 2.0 * d[0] * d[1] * t.cg - t.c2};
 }
 
-// Newton's method on the three laws of cosines, in the points' distances from the camera. Whether they hold
-// then.
+// Solves the three laws of cosines for the points' distances `d` by Newton's method. True if they hold then.
 bool Polish(const Triangle& t, Vec3& d) {
   constexpr int kNewtons = 8;
   constexpr double kHolds = 1e-10;
@@ -93,7 +91,7 @@ bool Polish(const Triangle& t, Vec3& d) {
   return r.lpNorm<Eigen::Infinity>() < kHolds * (t.a2 + t.b2 + t.c2);
 }
 
-// The points' distances that go with the third one over the first, `v`.
+// The points' distances from the camera, for values of `v`, the third distance over the first.
 class Distances {
  public:
   explicit Distances(const Triangle& triangle) : t_(triangle) {}
@@ -111,13 +109,13 @@ class Distances {
       Keep({first, u * first, v * first});
       return;
     }
-    // Of u, a quotient, little is left; the law of cosines between first and second has two answers, and both
-    // may be right: then this v comes twice.
+    // The quotient u is inaccurate here. The law of cosines between the first and second point has two
+    // solutions. Both may be right: then this v is a double root.
     const double root = std::sqrt(std::max(0.0, t_.cg * t_.cg - 1.0 + t_.c2 / first2));
     bool found = false;
     for (const double either : {t_.cg + root, t_.cg - root}) {
       Vec3 d(first, either * first, v * first);
-      // Else it has become the answer to another v.
+      // Otherwise Newton's method has moved to the solution of another v.
       if (Polish(t_, d) && std::fabs(d[2] - v * d[0]) < kSameRatio * d[2]) {
         found = true;
         if (!Knows(d)) {
@@ -165,7 +163,7 @@ ThreePointPoses PosesOfThreePoints(const std::array<Vec3, 3>& points_O, const st
   const double s = (a2 + c2) / b2;
   const double c = c2 / b2;
   const double a = a2 / b2;
-  // In v, the third distance over the first.
+  // A polynomial in v, the third distance over the first.
   const std::array<double, 5> quartic{
       (1.0 + q) * (1.0 + q) - 4.0 * a * cg * cg,
       4.0 * (-q * (1.0 + q) * cb + 2.0 * a * cg * cg * cb - (1.0 - s) * ca * cg),

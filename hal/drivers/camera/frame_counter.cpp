@@ -5,7 +5,7 @@
 namespace fovea::camera {
 namespace {
 
-constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 32U;  // a year and more without a frame
+constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 32U;  // more than a year of frames
 
 }  // namespace
 

@@ -11,9 +11,9 @@ namespace {
 
 constexpr std::int64_t kWorstTripNs = 5 * hal::kNsPerMs;
 constexpr std::int64_t kMostOffNs = 20 * hal::kNsPerMs;      // a reading is off by half its trip at most
-constexpr std::int64_t kBelievedNs = 2 * hal::kNsPerSecond;  // after a reading: 0.1 ms at 50 ppm
+constexpr std::int64_t kBelievedNs = 2 * hal::kNsPerSecond;  // after a reading: 0.1 ms of error at 50 ppm
 constexpr std::int64_t kBelievedWithDriftNs = 10 * hal::kNsPerSecond;
-constexpr double kSurelyNs = 1e4;  // a shorter round trip than this says no more
+constexpr double kSurelyNs = 1e4;  // a round trip shorter than this [ns] gets no more weight
 
 }  // namespace
 
@@ -30,7 +30,7 @@ void LatchMapper::Add(std::int64_t before_ns, std::int64_t device_ns, std::int64
   FitLine();
 }
 
-// Weighted least squares about the points' own middle; all that is subtracted is exact.
+// Weighted least squares about the points' mean. Differences are exact, because they are taken in integers.
 void LatchMapper::FitLine() {
   const Reading& newest = best_.all().back();
   const auto weight = [](const Reading& r) {

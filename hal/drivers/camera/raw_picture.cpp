@@ -13,8 +13,8 @@ struct Known {
   int conversion;  // OpenCV's, to BGR; -1: a copy
 };
 
-// In the order of RawFormat. OpenCV's own Bayer names begin with the second row's second pixel; those with
-// four letters are read as GenICam's are.
+// In the order of RawFormat. OpenCV's two-letter Bayer names start at the second row's second pixel; its
+// four-letter names mean the same as GenICam's.
 constexpr std::array<Known, 8> kFormats{{{"Mono8", 1, -1},
                                          {"BayerRG8", 1, cv::COLOR_BayerRGGB2BGR},
                                          {"BayerGR8", 1, cv::COLOR_BayerGRBG2BGR},

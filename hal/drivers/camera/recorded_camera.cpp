@@ -49,7 +49,7 @@ struct RecordedCamera::Player {
   cv::Size size;
   bool broken = false;
 
-  // Reads what comes next.
+  // Reads the next picture.
   void Read() {
     coming.release();
     if (video.isOpened()) {
@@ -78,7 +78,7 @@ RecordedCamera::RecordedCamera(const RecordedCameraConfig& config) : player_(std
     }
   } else if (!fs::is_regular_file(config.path)) {
     throw CameraError("camera " + name + ": no such folder or file");
-  } else if (!player_->video.open(name, cv::CAP_FFMPEG)) {  // and no other: some look for devices first
+  } else if (!player_->video.open(name, cv::CAP_FFMPEG)) {  // some other backends search for devices first
     throw CameraError("camera " + name + ": not a video that can be read");
   } else if (const double rate_hz = player_->video.get(cv::CAP_PROP_FPS); rate_hz > 0.0) {
     player_->rate_hz = rate_hz;
@@ -120,7 +120,7 @@ hal::Status RecordedCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns
     frame.sequence = p.next++;
     p.Read();
     return hal::Status::Ok();
-  } catch (const std::exception&) {  // a decoder's
+  } catch (const std::exception&) {  // from a decoder
     p.broken = true;
     return hal::Status(hal::StatusCode::kDeviceFault, "recorded picture");
   }

@@ -10,7 +10,7 @@ std::optional<std::int64_t> StampOfTicks(std::int64_t ticks, double ns_per_tick)
   if (!is_period || std::fabs(static_cast<double>(ticks) * ns_per_tick) > kMost) {
     return std::nullopt;
   }
-  // Whole ticks first: a double has no room for nanoseconds since a camera was switched on long ago.
+  // Whole nanoseconds per tick in integers: a double cannot hold a long uptime to the nanosecond.
   const auto whole_ns = static_cast<std::int64_t>(ns_per_tick);
   const double rest_ns = ns_per_tick - static_cast<double>(whole_ns);
   const std::int64_t stamp_ns = ticks * whole_ns + std::llround(static_cast<double>(ticks) * rest_ns);

@@ -10,10 +10,10 @@
 namespace fovea::camera {
 namespace {
 
-// No network lets pictures in this much sooner than ever before: the clock was set.
+// A picture that arrives this much sooner than ever before means that the clock was set.
 constexpr std::int64_t kMostEarlyNs = 20 * hal::kNsPerMs;
 constexpr std::int64_t kMostLateNs = hal::kNsPerSecond;
-// One picture may be this late, all of a second are not.
+// One picture may be this late. If all of a second are, the clock was set back.
 constexpr std::int64_t kLateNs = 20 * hal::kNsPerMs;
 constexpr std::size_t kLatePictures = 8;
 
@@ -39,7 +39,7 @@ void StampMapper::Restart() {
   line_.drift = 0.0;
 }
 
-// By the line as it was. Of the pictures that were late the one that was least says what the clock shows now.
+// Uses the line before this point. The least late of the late pictures gives the clock's new offset.
 void StampMapper::LookForClockSetBack(const Point& point) {
   if (best_.all().empty() || point.excess_ns <= line_.At(point.device_ns) + kLateNs) {
     late_ = {};
@@ -59,8 +59,8 @@ void StampMapper::LookForClockSetBack(const Point& point) {
   }
 }
 
-// The edge of the lower hull above the middle of the known time: of all lines below the points it is the one
-// nearest to them, summed.
+// Takes the edge of the lower hull at the middle of the known time: of all lines below the points, it has the
+// least sum of distances to them.
 void StampMapper::FitLine() {
   const std::span<const Point> points = best_.all();
   if (!best_.enough_for_drift()) {

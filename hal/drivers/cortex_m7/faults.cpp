@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint32_t kMemoryBusUsage = 0x7U << 16U;
 
-// What the processor pushed when it took the exception.
+// The registers that the processor pushes at an exception.
 struct StackFrame {
   std::uint32_t r0;
   std::uint32_t r1;
@@ -29,9 +29,9 @@ void FailCheck() noexcept {
   __builtin_unreachable();
 }
 
-// Called by FaultHandler with the stack pointer of whoever faulted.
+// Called by FaultHandler with the stack pointer of the code that faulted.
 extern "C" [[noreturn]] void ReportFault(const StackFrame* frame, std::uint32_t exception) {
-  // The compiler may use its registers even where nothing is computed.
+  // FPU on: the compiler may use its registers even without floating-point code.
   Register(kCoprocessors) = Register(kCoprocessors) | kFpuOn;
   asm volatile("dsb\n isb" ::: "memory");
   OnFault({exception, Register(kFaultStatus), Register(kHardFaultStatus), frame->pc, frame->lr});
@@ -40,7 +40,7 @@ extern "C" [[noreturn]] void ReportFault(const StackFrame* frame, std::uint32_t 
   }
 }
 
-// The stack that faulted may be the reason: another one is used from here on.
+// The stack may be the cause of the fault: switch to another one.
 extern "C" [[gnu::naked]] void FaultHandler() {
   asm volatile(
       "cpsid i\n"

@@ -1,4 +1,4 @@
-// From reset to main: FPU on, data in RAM, the stack painted so that its use can be read off later.
+// From reset to the program: FPU on, data in RAM, the stack filled with a pattern to measure its use later.
 #include <cstddef>
 #include <cstdint>
 
@@ -39,7 +39,7 @@ struct VectorTable {
   Vector interrupts[32];
 };
 
-// Everything that is not expected is a fault.
+// Unexpected exceptions and interrupts are faults.
 constexpr VectorTable MakeVectors() {
   VectorTable table{&stack_top, {}, {}};
   for (Vector& vector : table.exceptions) {
@@ -84,7 +84,7 @@ extern "C" [[noreturn, gnu::used]] void StartProgram() {
 
 }  // namespace fovea::cortex_m7
 
-// Nothing here may use the FPU before it is on, nor the stack that is painted.
+// Must not use the FPU before it is on, nor the stack, which is being filled.
 extern "C" [[gnu::naked]] void ResetHandler() {
   asm volatile(
       "ldr r0, =0xE000ED88\n"  // CPACR: full access to the FPU

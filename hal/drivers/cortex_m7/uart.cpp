@@ -12,7 +12,7 @@ constexpr std::uint32_t kReceived = 1U << 1U;
 constexpr std::uint32_t kTransmitDone = 1U << 0U;
 constexpr std::uint32_t kReceiveDone = 1U << 1U;
 constexpr std::uint32_t kAllOn = 0xFU;         // both ways, and their interrupts
-constexpr std::uint32_t kFastestDivider = 16;  // the smallest that the UART takes
+constexpr std::uint32_t kFastestDivider = 16;  // the smallest that the UART accepts
 
 ByteRing<8192> received;
 ByteRing<16384> to_send;
@@ -20,7 +20,7 @@ UartCounters counters;
 
 volatile std::uint32_t& Uart(std::uint32_t offset) noexcept { return Register(kUart0 + offset); }
 
-// The next byte, if there is one and the transmitter has room.
+// Sends queued bytes while the transmitter has room.
 void SendNext() noexcept {
   std::uint8_t byte = 0;
   while ((Uart(kUartState) & kTransmitterFull) == 0 && to_send.Take(byte)) {

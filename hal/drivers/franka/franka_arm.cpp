@@ -1,4 +1,4 @@
-// What runs in the loop: no heap, no lock, no exception. The set-up is in franka_setup.cpp.
+// The part that runs in the loop: no heap, no lock, no exception. The set-up is in franka_setup.cpp.
 #include "fovea/franka/franka_arm.hpp"
 
 #include <algorithm>
@@ -12,18 +12,17 @@ namespace {
 using hal::Status;
 using hal::StatusCode;
 
-// The robot's clock may run this much faster or slower than the computer's: what the estimate of their offset
-// gives way each millisecond.
+// Largest drift between the robot's clock and the computer's: the estimate of their offset rises by this each
+// millisecond.
 constexpr std::int64_t kDriftNsPerState = 200;
 constexpr std::int64_t kClockStepNs = 10 * hal::kNsPerMs;
 constexpr int kClockStepStates = 1000;  // in a row
 constexpr int kMostDatagramsPerRead = 256;
-constexpr int kMostBrakingStates = 500;  // then the motion is finished, whatever still moves
-constexpr std::uint64_t kMostMessageId =
-    1'000'000'000'000;  // 31 years of milliseconds; in ns there is room for it
-// States from before a recovery may come after its answer: two channels, no common order.
+constexpr int kMostBrakingStates = 500;  // then the motion is finished, even if a joint still moves
+constexpr std::uint64_t kMostMessageId = 1'000'000'000'000;  // 31 years of ms, which fit into 64 bits in ns
+// States from before a recovery may arrive after its answer: UDP and TCP have no common order.
 constexpr int kMostStoppedStates = 100;
-constexpr int kMostStartingStates = 500;  // until a motion that was asked for shows
+constexpr int kMostStartingStates = 500;  // until the states must show a requested motion
 
 hal::JointArray ToJoints(const Vector7& values) noexcept {
   hal::JointArray joints{};
@@ -41,7 +40,7 @@ Status FrankaArm::DoRead(hal::ArmState& state) noexcept {
   const std::int64_t deadline_ns = linux_rt::MonotonicNs() + state_timeout_ns_;
   for (;;) {
     const bool new_state = TakeStates();
-    TakeAnswers();  // an answer that was sent before the state is read before it is acted on
+    TakeAnswers();  // after the states: FollowPhase then knows all answers sent before the state
     if (!tcp_.open()) {
       return Status(StatusCode::kDisconnected, failure_);
     }
@@ -78,7 +77,7 @@ Status FrankaArm::DoWrite(const hal::ArmCommand& command) noexcept {
   return phase_ == MotionPhase::kFailed ? Status(StatusCode::kDeviceFault, failure_) : Status::Ok();
 }
 
-// Once for each state of a motion.
+// Answers each state of a motion once.
 void FrankaArm::Answer(bool repeated) noexcept {
   if (phase_ == MotionPhase::kRunning && brakes_) {
     phase_ = MotionPhase::kFinishing;
@@ -140,14 +139,14 @@ void FrankaArm::TakeAnswers() noexcept {
         tcp_.Close();
         return;
       case MessageStream::Next::kGarbage:
-        Fail("the robot sent what is no message");
+        Fail("the robot sent an invalid message");
         tcp_.Close();
         return;
     }
   }
 }
 
-// Of what was posted; answers of the set-up are taken there.
+// Takes answers to posted requests; the set-up takes its own answers.
 void FrankaArm::TakeAnswer(const Header& header, std::span<const std::byte> payload) noexcept {
   StatusAnswer answer;
   if (!Decode(payload, answer)) {
@@ -159,12 +158,12 @@ void FrankaArm::TakeAnswer(const Header& header, std::span<const std::byte> payl
     switch (static_cast<MoveStatus>(answer.status)) {
       case MoveStatus::kMotionStarted: move_started_ = true; break;
       case MoveStatus::kSuccess: break;  // the states show it
-      case MoveStatus::kPreempted: Fail("another motion took its place"); break;
+      case MoveStatus::kPreempted: Fail("another motion replaced it"); break;
       case MoveStatus::kNotPossible: Fail("the robot cannot move now"); break;
-      case MoveStatus::kStartAtSingularPose: Fail("start at a singular pose"); break;
+      case MoveStatus::kStartAtSingularPose: Fail("the start pose is singular"); break;
       case MoveStatus::kInvalidArgument: Fail("the robot refuses the motion's arguments"); break;
       case MoveStatus::kEmergencyAborted: Fail("user stop"); break;
-      default: Fail("the robot broke the motion off"); break;  // the state says why
+      default: Fail("the robot aborted the motion"); break;  // the state gives the reason
     }
   } else if (header.command == Command::kAutomaticErrorRecovery && recovery_id_ == header.command_id) {
     recovery_id_.reset();
@@ -184,10 +183,10 @@ void FrankaArm::TakeAnswer(const Header& header, std::span<const std::byte> payl
   }
 }
 
-// The newest of the states that are there; false when there is none that is new.
+// Takes all waiting states and keeps the newest. False if none is new.
 bool FrankaArm::TakeStates() noexcept {
   bool taken = false;
-  std::array<std::byte, kStateSize + 1> bytes;  // one more, so that a longer datagram shows
+  std::array<std::byte, kStateSize + 1> bytes;  // one more, to detect a longer datagram
   std::size_t size = 0;
   Endpoint from;
   for (int k = 0; k < kMostDatagramsPerRead && udp_.Receive(bytes, size, from); ++k) {
@@ -217,9 +216,9 @@ bool FrankaArm::TakeStates() noexcept {
   return taken;
 }
 
-// The robot's time in the computer's. A datagram never comes before it is sent, so the smallest difference
-// seen is the nearest to the truth; the estimate gives way a little with each state, since the two clocks
-// drift. When all states of a second come far later than it allows, the robot's clock was set or stood still.
+// Converts the robot's time to the computer's. A datagram never arrives before it is sent, so the smallest
+// difference seen is the best estimate. It rises a little with each state, because the clocks drift. If all
+// states of a second arrive far later than it allows, the robot's clock was set or stood still.
 std::int64_t FrankaArm::StampOf(std::uint64_t message_id, std::int64_t arrival_ns) noexcept {
   const std::int64_t robot_ns = static_cast<std::int64_t>(message_id) * hal::kNsPerMs;
   if (robot_time_ != nullptr) {
@@ -240,7 +239,7 @@ std::int64_t FrankaArm::StampOf(std::uint64_t message_id, std::int64_t arrival_n
   return std::max(stamp_ns_ + 1, robot_ns + *robot_offset_ns_);
 }
 
-// What the newest state says of the motion.
+// Updates phase_ from the newest state.
 void FrankaArm::FollowPhase() noexcept {
   const bool moves = state_.robot_mode == RobotMode::kMove;
   const bool stopped =
@@ -259,7 +258,7 @@ void FrankaArm::FollowPhase() noexcept {
   } else if (phase_ == MotionPhase::kFinishing && !moves) {
     phase_ = MotionPhase::kIdle;
   } else if (phase_ == MotionPhase::kRunning && !moves) {
-    Fail("the robot left the motion");
+    Fail("the robot ended the motion");
   }
 }
 
@@ -287,7 +286,7 @@ void FrankaArm::Stop() noexcept {
          (phase_ == MotionPhase::kStarting || phase_ == MotionPhase::kRunning ||
           phase_ == MotionPhase::kFinishing)) {
     brakes_ = true;
-    static_cast<void>(DoRead(ignored));  // what it says shows in phase_
+    static_cast<void>(DoRead(ignored));  // phase_ shows the result
   }
   std::uint32_t id = 0;
   if (tcp_.open() && phase_ != MotionPhase::kIdle && phase_ != MotionPhase::kFailed) {

@@ -40,11 +40,12 @@ FrankaArm::~FrankaArm() { Stop(); }
 void FrankaArm::SetUp(const FrankaConfig& config) {
   robot_tcp_ = Resolve(config.host, config.port);
   tcp_ = TcpConnection::Connect(robot_tcp_, answer_timeout_ms_);
-  udp_ = UdpSocket(Endpoint{tcp_.own().ip, 0});  // on the robot's network, and no other
+  udp_ = UdpSocket(Endpoint{tcp_.own().ip, 0});  // only on the robot's network
   const auto hello = Request<ConnectRequest, ConnectAnswer>(Command::kConnect, {kVersion, udp_.port()});
   if (hello.status != ConnectStatus::kSuccess || hello.version != kVersion) {
     throw NetworkError("it speaks version " + std::to_string(hello.version) +
-                       " of the Franka Control Interface, this driver version " + std::to_string(kVersion));
+                       " of the Franka Control Interface, this driver speaks version " +
+                       std::to_string(kVersion));
   }
   Set(Command::kSetCollisionBehavior, config.collision);
   Set(Command::kSetNEToEE, FramePose{config.NE_T_EE});
@@ -54,12 +55,12 @@ void FrankaArm::SetUp(const FrankaConfig& config) {
   while (!TakeStates()) {
     if (LeftNs(deadline) <= 0) {
       throw NetworkError("it sends no states to UDP port " + std::to_string(udp_.port()) + " within " +
-                         std::to_string(answer_timeout_ms_) + " ms; is a firewall between?");
+                         std::to_string(answer_timeout_ms_) + " ms; does a firewall block them?");
     }
     const std::array fds{udp_.fd()};
     WaitReadable(fds, LeftNs(deadline));
   }
-  counters_ = FrankaCounters{};  // states piled up during the set-up
+  counters_ = FrankaCounters{};  // drop the counts of states that queued during the set-up
 }
 
 template <typename Payload, typename Answer>
@@ -90,8 +91,7 @@ Answer FrankaArm::Request(Command command, const Payload& payload) {
         throw NetworkError(std::string("it closed the connection at ") + Name(command) +
                            "; is another client in control?");
       case MessageStream::Next::kGarbage:
-        throw NetworkError(std::string(Name(command)) +
-                           " was answered with what is no message of this interface");
+        throw NetworkError(std::string(Name(command)) + " was answered with an invalid message");
     }
     if (LeftNs(deadline) <= 0) {
       throw NetworkError(std::string("no ") + (stream_.HasPart() ? "whole " : "") + "answer to " +

@@ -18,7 +18,7 @@
 namespace fovea::franka {
 namespace {
 
-constexpr std::size_t kMaxWaited = 4;  // descriptors that one call waits for
+constexpr std::size_t kMaxWaited = 4;  // descriptors that one call can wait for
 
 sockaddr_in ToSystem(const Endpoint& endpoint) noexcept {
   sockaddr_in address{};
@@ -41,7 +41,7 @@ std::string Text(const Endpoint& endpoint) {
 
 [[noreturn]] void Fail(const std::string& what) { throw NetworkError(what + ": " + std::strerror(errno)); }
 
-// What the system has for sockets takes a general address.
+// Calls a socket function of the system, which takes a general address.
 template <typename Call>
 int WithAddress(const Endpoint& endpoint, Call&& call) noexcept {
   const sockaddr_in address = ToSystem(endpoint);
@@ -63,7 +63,7 @@ Endpoint OwnEnd(int fd) noexcept {
 Descriptor Open(int type, const Endpoint& at) {
   Descriptor descriptor(socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!descriptor.open()) {
-    Fail("no socket");
+    Fail("cannot create a socket");
   }
   const int fd = descriptor.get();
   if (type == SOCK_STREAM) {
@@ -100,7 +100,7 @@ Endpoint Resolve(const std::string& host, std::uint16_t port) {
   addrinfo* found = nullptr;
   const int code = getaddrinfo(host.c_str(), nullptr, &hints, &found);
   if (code != 0) {
-    throw NetworkError("\"" + host + "\" is no host that can be found: " + gai_strerror(code));
+    throw NetworkError("\"" + host + "\" is not a known host: " + gai_strerror(code));
   }
   sockaddr_in address{};
   std::memcpy(&address, found->ai_addr, sizeof(address));
@@ -119,7 +119,7 @@ TcpConnection TcpConnection::Connect(const Endpoint& to, int timeout_ms) {
   Descriptor descriptor(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int fd = descriptor.get();
   if (!descriptor.open()) {
-    Fail("no socket");
+    Fail("cannot create a socket");
   }
   const int begun = WithAddress(to, [fd](const sockaddr* a, socklen_t n) { return connect(fd, a, n); });
   if (begun != 0 && errno != EINPROGRESS) {

@@ -6,7 +6,7 @@
 namespace fovea::franka {
 namespace {
 
-constexpr double kSame = 1e-9;  // [Nm]; the robot says a command's torque as it came
+constexpr double kSame = 1e-9;  // [Nm]; the robot reports a command's torque unchanged
 
 bool AreSame(const Vector7& a, const Vector7& b) noexcept {
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -30,7 +30,7 @@ bool TorqueRate::Limit(const Vector7& wish, const Vector7& tau_J_d, Vector7& com
       low = std::min(low, sent_[k][i]);
       high = std::max(high, sent_[k][i]);
     }
-    // Where they are more than two steps apart no torque is near to all; the middle is the least evil.
+    // If they are more than two steps apart, no torque is near all of them: take the middle.
     const double least = std::min(high - step_max_[i], 0.5 * (low + high));
     const double most = std::max(low + step_max_[i], 0.5 * (low + high));
     command[i] = std::clamp(wish[i], least, most);
@@ -44,7 +44,7 @@ bool TorqueRate::Limit(const Vector7& wish, const Vector7& tau_J_d, Vector7& com
   return limited;
 }
 
-// What is no number says nothing: the command that was sent last counts for it.
+// Replaces values that are not finite by those of the last command.
 Vector7 TorqueRate::Known(const Vector7& tau_J_d) const noexcept {
   Vector7 known = tau_J_d;
   for (std::size_t i = 0; i < known.size(); ++i) {
@@ -55,8 +55,8 @@ Vector7 TorqueRate::Known(const Vector7& tau_J_d) const noexcept {
   return known;
 }
 
-// Commands are applied in the order in which they were sent: what is older than the one in force is done
-// with. That one stays, so that a later one of the same size is not taken for it.
+// The robot applies commands in the order in which they were sent: drop those older than the one in force.
+// That one stays, so that a later equal one is not mistaken for it.
 void TorqueRate::ForgetWhatCameBefore(const Vector7& tau_J_d) noexcept {
   if (num_sent_ == 0) {
     sent_[num_sent_++] = tau_J_d;

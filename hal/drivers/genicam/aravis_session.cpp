@@ -12,8 +12,8 @@ using camera::CameraError;
 using camera::RawFormat;
 
 constexpr int kBuffers = 8;
-constexpr unsigned kPacketTimeoutUs = 5'000;     // then what is missing is asked for again
-constexpr unsigned kFrameRetentionUs = 100'000;  // and after this the frame is given up
+constexpr unsigned kPacketTimeoutUs = 5'000;     // then missing packets are requested again
+constexpr unsigned kFrameRetentionUs = 100'000;  // after this the frame is abandoned
 constexpr int kSocketBufferBytes = 8 << 20;
 
 struct FormatPair {
@@ -29,7 +29,7 @@ constexpr std::array<FormatPair, 8> kFormats{{{ARV_PIXEL_FORMAT_MONO_8, RawForma
                                               {ARV_PIXEL_FORMAT_RGB_8_PACKED, RawFormat::kRgb8},
                                               {ARV_PIXEL_FORMAT_BGR_8_PACKED, RawFormat::kBgr8}}};
 
-// What an Aravis call left behind, made into an exception: "camera DEVICE: WHAT: its words".
+// Turns the error of an Aravis call into an exception: "camera DEVICE: WHAT: Aravis' message".
 class Call {
  public:
   Call(const std::string& device, std::string what) : device_(device), what_(std::move(what)) {}
@@ -88,9 +88,9 @@ GenicamCamera::Session::~Session() {
 void GenicamCamera::Session::SetUp(const GenicamConfig& config) {
   ArvCamera* camera = camera_.get();
   const auto text = [](const char* value) { return std::string(value == nullptr ? "" : value); };
-  name_ = text(arv_camera_get_vendor_name(camera, Call(device_, "its vendor"))) + " " +
-          text(arv_camera_get_model_name(camera, Call(device_, "its model"))) + " " +
-          text(arv_camera_get_device_serial_number(camera, Call(device_, "its serial number")));
+  name_ = text(arv_camera_get_vendor_name(camera, Call(device_, "vendor name"))) + " " +
+          text(arv_camera_get_model_name(camera, Call(device_, "model name"))) + " " +
+          text(arv_camera_get_device_serial_number(camera, Call(device_, "serial number")));
   arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS,
                                   Call(device_, "continuous acquisition"));
   arv_camera_clear_triggers(camera, Call(device_, "triggers off"));
@@ -98,11 +98,11 @@ void GenicamCamera::Session::SetUp(const GenicamConfig& config) {
     arv_camera_set_pixel_format_from_string(camera, config.pixel_format.c_str(),
                                             Call(device_, "pixel format " + config.pixel_format));
   }
-  if (const ArvPixelFormat format = arv_camera_get_pixel_format(camera, Call(device_, "its pixel format"));
+  if (const ArvPixelFormat format = arv_camera_get_pixel_format(camera, Call(device_, "pixel format"));
       !FormatOf(format)) {
     throw CameraError("camera " + device_ + ": pixel format " +
-                      text(arv_camera_get_pixel_format_as_string(camera, Call(device_, "its pixel format"))) +
-                      " is none of Mono8, Bayer..8, YUYV, RGB8, BGR8");
+                      text(arv_camera_get_pixel_format_as_string(camera, Call(device_, "pixel format"))) +
+                      " is not one of Mono8, Bayer..8, YUYV, RGB8, BGR8");
   }
   SetRegion(config);
   if (config.rate_hz > 0.0) {
@@ -111,7 +111,7 @@ void GenicamCamera::Session::SetUp(const GenicamConfig& config) {
   SetExposure(config);
   if (config.gain >= 0.0) {
     if (arv_camera_is_gain_auto_available(camera, nullptr) != FALSE) {
-      arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, Call(device_, "gain by hand"));
+      arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, Call(device_, "manual gain"));
     }
     arv_camera_set_gain(camera, config.gain, Call(device_, "gain"));
   }
@@ -121,10 +121,9 @@ void GenicamCamera::Session::SetRegion(const GenicamConfig& config) {
   gint x = 0;
   gint y = 0;
   if (config.width_px > 0 && config.height_px > 0) {
-    arv_camera_set_region(camera_.get(), 0, 0, config.width_px, config.height_px,
-                          Call(device_, "its region"));
+    arv_camera_set_region(camera_.get(), 0, 0, config.width_px, config.height_px, Call(device_, "region"));
   }
-  arv_camera_get_region(camera_.get(), &x, &y, &width_px_, &height_px_, Call(device_, "its region"));
+  arv_camera_get_region(camera_.get(), &x, &y, &width_px_, &height_px_, Call(device_, "region"));
   if ((config.width_px > 0 && config.width_px != width_px_) ||
       (config.height_px > 0 && config.height_px != height_px_)) {
     throw CameraError("camera " + device_ + ": its pictures are " + std::to_string(width_px_) + " x " +
@@ -139,19 +138,19 @@ void GenicamCamera::Session::SetExposure(const GenicamConfig& config) {
   constexpr double kTolerance = 0.05;  // cameras round to their line time
   if (config.exposure_us > 0.0) {
     if (arv_camera_is_exposure_auto_available(camera, nullptr) != FALSE) {
-      arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, Call(device_, "exposure by hand"));
+      arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, Call(device_, "manual exposure"));
     }
     arv_camera_set_exposure_time(camera, config.exposure_us, Call(device_, "exposure time"));
   }
-  const double exposure_us = arv_camera_get_exposure_time(camera, Call(device_, "its exposure time"));
+  const double exposure_us = arv_camera_get_exposure_time(camera, Call(device_, "reading the exposure time"));
   if (config.exposure_us > 0.0 &&
       std::fabs(exposure_us - config.exposure_us) > kTolerance * config.exposure_us) {
     double least = 0.0;
     double most = 0.0;
-    arv_camera_get_exposure_time_bounds(camera, &least, &most, Call(device_, "its exposure times"));
-    throw CameraError("camera " + device_ + ": an exposure of " + std::to_string(config.exposure_us) +
-                      " us became one of " + std::to_string(exposure_us) + "; it takes " +
-                      std::to_string(least) + " to " + std::to_string(most) + " us");
+    arv_camera_get_exposure_time_bounds(camera, &least, &most, Call(device_, "exposure limits"));
+    throw CameraError("camera " + device_ + ": it changed the exposure of " +
+                      std::to_string(config.exposure_us) + " us to " + std::to_string(exposure_us) +
+                      " us; its range is " + std::to_string(least) + " to " + std::to_string(most) + " us");
   }
   exposure_ns_ = std::llround(exposure_us * kNsPerUs);
 }
@@ -159,7 +158,7 @@ void GenicamCamera::Session::SetExposure(const GenicamConfig& config) {
 void GenicamCamera::Session::Start(const GenicamConfig& config) {
   ArvCamera* camera = camera_.get();
   if (is_gige_) {
-    // An ordinary socket: packets of loopback are not seen by a packet socket, and it needs no privilege.
+    // An ordinary socket: it needs no privilege, and a packet socket does not see loopback packets.
     arv_camera_gv_set_stream_options(camera, ARV_GV_STREAM_OPTION_PACKET_SOCKET_DISABLED);
     if (config.packet_size > 0) {
       arv_camera_gv_set_packet_size_adjustment(camera, ARV_GV_PACKET_SIZE_ADJUSTMENT_NEVER);
@@ -168,16 +167,16 @@ void GenicamCamera::Session::Start(const GenicamConfig& config) {
       arv_camera_gv_auto_packet_size(camera, Call(device_, "packet size"));
     }
   }
-  stream_.reset(arv_camera_create_stream(camera, nullptr, nullptr, Call(device_, "its stream")));
+  stream_.reset(arv_camera_create_stream(camera, nullptr, nullptr, Call(device_, "stream")));
   if (!stream_) {
-    throw CameraError("camera " + device_ + ": no stream; is another program using it?");
+    throw CameraError("camera " + device_ + ": cannot open its stream; is another program using it?");
   }
   if (is_gige_) {
     g_object_set(stream_.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_FIXED, "socket-buffer-size",
                  kSocketBufferBytes, "packet-resend", ARV_GV_STREAM_PACKET_RESEND_ALWAYS, "packet-timeout",
                  kPacketTimeoutUs, "frame-retention", kFrameRetentionUs, nullptr);
   }
-  const guint payload = arv_camera_get_payload(camera, Call(device_, "the size of its pictures"));
+  const guint payload = arv_camera_get_payload(camera, Call(device_, "size of its pictures"));
   for (int i = 0; i < kBuffers; ++i) {
     arv_stream_push_buffer(stream_.get(), arv_buffer_new(payload, nullptr));
   }

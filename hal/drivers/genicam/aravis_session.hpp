@@ -1,4 +1,4 @@
-// One camera, opened, set up and streaming, until it is lost or let go. All that speaks with Aravis.
+// One session of a camera through Aravis: opened, set up and streaming until it is lost or closed.
 #pragma once
 
 #include <arv.h>
@@ -20,7 +20,7 @@ struct Unref {
 template <typename T>
 using Owned = std::unique_ptr<T, Unref>;
 
-// The formats that the seam knows; empty for all others.
+// The raw format of an Aravis format; empty for formats that are not supported.
 std::optional<camera::RawFormat> FormatOf(ArvPixelFormat format);
 
 class GenicamCamera::Session {
@@ -31,7 +31,7 @@ class GenicamCamera::Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  // The next buffer, whole or not; null when none came in time. Give it back.
+  // The next buffer, complete or not; null after the timeout. The caller must give it back.
   ArvBuffer* Pop(std::int64_t timeout_ns);
   void GiveBack(ArvBuffer* buffer) { arv_stream_push_buffer(stream_.get(), buffer); }
 
@@ -40,11 +40,11 @@ class GenicamCamera::Session {
   [[nodiscard]] int width_px() const { return width_px_; }
   [[nodiscard]] int height_px() const { return height_px_; }
   [[nodiscard]] std::int64_t exposure_ns() const { return exposure_ns_; }
-  // Numbers of frames have 16 bits, until one is larger.
+  // Whether frame numbers have 16 bits, until one is larger.
   [[nodiscard]] bool counts_to_16_bits() const { return is_gige_; }
-  // The camera's own clock; null when its stamps are taken as they are.
+  // The camera's own clock; null if its stamps are used unchanged.
   [[nodiscard]] const DeviceClock* clock() const { return clock_ ? &*clock_ : nullptr; }
-  // Resent and missing packets of a GigE Vision camera.
+  // Adds the resent and missing packets of a GigE Vision camera.
   void AddPackets(GenicamCounters& counters) const;
 
  private:

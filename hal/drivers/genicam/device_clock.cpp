@@ -9,10 +9,10 @@
 namespace fovea::genicam {
 namespace {
 
-constexpr int kQuick = 8;  // readings at the beginning, so that the first pictures have something
+constexpr int kQuick = 8;  // readings at the beginning, for the first pictures
 constexpr std::chrono::milliseconds kQuickPeriod{20};
 constexpr std::chrono::milliseconds kPeriod{250};
-constexpr int kMostFailures = 5;  // in a row; then it is left alone
+constexpr int kMostFailures = 5;  // in a row; then it stops
 
 }  // namespace
 
@@ -67,7 +67,7 @@ void DeviceClock::Run() {
   }
 }
 
-// One reading; false when the camera did not answer, or with what is no stamp.
+// Takes one reading. False if the camera did not answer, or the value is not a stamp.
 bool DeviceClock::Ask() {
   GError* error = nullptr;
   const std::int64_t before_ns = linux_rt::MonotonicNs();

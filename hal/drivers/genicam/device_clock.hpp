@@ -1,7 +1,7 @@
-// A camera's own clock, asked again and again while it streams, on a thread of its own.
+// Reads a camera's own clock periodically while the camera streams, in its own thread.
 //
 // GenICam's names for it are TimestampLatch and TimestampLatchValue [ns] (SFNC 2), before that
-// GevTimestampControlLatch and GevTimestampValue [ticks] (SFNC 1). A camera that has neither cannot be asked.
+// GevTimestampControlLatch and GevTimestampValue [ticks] (SFNC 1). Without both, the clock cannot be read.
 #pragma once
 
 #include <arv.h>
@@ -17,15 +17,14 @@ namespace fovea::genicam {
 
 class DeviceClock {
  public:
-  // Begins to ask when the camera can be asked. From then on until the end of this nobody else may use its
-  // features.
+  // Starts to read the clock if the camera supports it. While this object exists, nobody else may use the
+  // camera's features.
   explicit DeviceClock(ArvDevice* device);
   ~DeviceClock();
   DeviceClock(const DeviceClock&) = delete;
   DeviceClock& operator=(const DeviceClock&) = delete;
 
-  // From any thread: the host's time of a stamp of the camera's; none while nothing is known, or what is
-  // known is too old.
+  // From any thread: the host's time of a camera stamp; none if there is no reading that is recent enough.
   [[nodiscard]] std::optional<std::int64_t> Map(std::int64_t device_ns) const;
   [[nodiscard]] double drift() const;
 

@@ -14,10 +14,9 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookPeriod{500};
 constexpr std::uint64_t k16Bits = 65535;
-constexpr std::int64_t kClockMarginNs = 5 * hal::kNsPerMs;  // what a reading of the camera's clock may be off
-constexpr std::int64_t kOldestNs = hal::kNsPerSecond;       // no picture is longer on its way
-constexpr std::int64_t kLostLookNs =
-    50 * hal::kNsPerMs;  // no wait without a look at the connection is longer
+constexpr std::int64_t kClockMarginNs = 5 * hal::kNsPerMs;  // error of a reading of the camera's clock
+constexpr std::int64_t kOldestNs = hal::kNsPerSecond;       // longest transport time of a picture
+constexpr std::int64_t kLostLookNs = 50 * hal::kNsPerMs;    // longest wait between checks of the connection
 
 }  // namespace
 
@@ -68,12 +67,12 @@ hal::Status GenicamCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns)
       }
     }
     if (!session) {
-      return config_.reconnect ? hal::Status(hal::StatusCode::kTimeout, "camera is away")
+      return config_.reconnect ? hal::Status(hal::StatusCode::kTimeout, "camera is disconnected")
                                : hal::Status(hal::StatusCode::kDisconnected, "camera");
     }
     const hal::Status status = Take(*session, frame, closed ? 0 : timeout_ns);
     return closed && !status.ok() ? hal::Status(hal::StatusCode::kClosed, "camera") : status;
-  } catch (const std::exception&) {  // OpenCV's, of a picture that it cannot convert; memory
+  } catch (const std::exception&) {  // OpenCV cannot convert the picture, or no memory
     return hal::Status(hal::StatusCode::kDeviceFault, "camera picture");
   }
 }
@@ -110,7 +109,7 @@ hal::Status GenicamCamera::Take(Session& session, hal::Frame& frame, std::int64_
     session.AddPackets(counters_);
     session_.reset();
     changed_.notify_all();
-    return config_.reconnect ? hal::Status(hal::StatusCode::kTimeout, "camera is away")
+    return config_.reconnect ? hal::Status(hal::StatusCode::kTimeout, "camera is disconnected")
                              : hal::Status(hal::StatusCode::kDisconnected, "camera");
   }
 
@@ -151,7 +150,7 @@ hal::Status GenicamCamera::Take(Session& session, hal::Frame& frame, std::int64_
   return hal::Status::Ok();
 }
 
-// The last picture once more, or one with the number that GigE Vision keeps for trials.
+// True for the last picture again, and for number 0, which GigE Vision reserves for tests.
 bool GenicamCamera::IsNoPicture(const Session& session, ArvBuffer* buffer) const {
   return static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer)) == last_device_ns_ ||
          (session.counts_to_16_bits() && arv_buffer_get_frame_id(buffer) == 0);
@@ -166,14 +165,14 @@ std::int64_t GenicamCamera::StampOf(const Session& session, std::int64_t device_
   return (config_.device_time ? device_ns : HostTimeOf(session, device_ns, arrival_ns)) + to_middle_ns;
 }
 
-// By the camera's own clock where it can be asked, else by the earliest arrivals. Rises from stamp to stamp.
+// By the camera's own clock if it can be read, else by the earliest arrivals. Strictly increasing.
 std::int64_t GenicamCamera::HostTimeOf(const Session& session, std::int64_t device_ns,
                                        std::int64_t arrival_ns) {
   const std::int64_t by_arrivals_ns = mapper_.Map(device_ns, arrival_ns);
   const auto by_clock_ns = session.clock() != nullptr ? session.clock()->Map(device_ns) : std::nullopt;
   std::int64_t host_ns = by_arrivals_ns;
   if (by_clock_ns) {
-    // Else it is another clock that was asked than the one that stamps pictures.
+    // If it is not, the clock that was read is not the one that stamps pictures.
     const bool plausible =
         *by_clock_ns < arrival_ns + kClockMarginNs && arrival_ns - *by_clock_ns < kOldestNs;
     counters_.clock_refused += plausible ? 0U : 1U;
@@ -187,7 +186,7 @@ std::int64_t GenicamCamera::HostTimeOf(const Session& session, std::int64_t devi
   return last_host_ns_;
 }
 
-// The thread that brings a lost camera back.
+// Thread that opens a lost camera again.
 void GenicamCamera::Look() {
   std::unique_lock lock(mutex_);
   while (true) {
@@ -214,6 +213,7 @@ void GenicamCamera::Look() {
 }
 
 GenicamCounters GenicamCamera::counters() const {
+  const std::lock_guard lock(mutex_);
   GenicamCounters counters = counters_;
   counters.reconnects = reconnects_;
   if (session_) {

@@ -5,8 +5,8 @@
 namespace fovea::linux_rt {
 namespace {
 
-// Plain data of the thread: reaching it must not itself allocate. Volatile, since the compiler takes malloc
-// for a function that cannot come back into this file.
+// Plain thread-local data: access to it must not allocate. Volatile, because the compiler assumes that malloc
+// does not call back into this file.
 thread_local volatile bool in_region = false;
 thread_local volatile std::uint64_t heap_calls = 0;
 
@@ -26,7 +26,7 @@ bool HeapCounterActive() noexcept {
   const bool was_in_region = in_region;
   const std::uint64_t before = heap_calls;
   in_region = true;
-  void* volatile block = std::malloc(1);  // volatile: the compiler must not take the pair away
+  void* volatile block = std::malloc(1);  // volatile: the compiler must not remove the pair
   std::free(block);
   in_region = was_in_region;
   const bool seen = heap_calls >= before + 2;

@@ -1,5 +1,5 @@
-// Takes the place of malloc and its kin in the executable, notes each call, and passes it on to glibc.
-// operator new and delete come through here too, since libstdc++ builds them on malloc and free.
+// Replaces malloc and related functions in the executable, counts each call, and forwards it to glibc.
+// operator new and delete are counted too, because libstdc++ builds them on malloc and free.
 #include <cerrno>
 #include <cstddef>
 
@@ -7,7 +7,7 @@
 
 extern "C" {
 
-// glibc's own allocator under the names that it keeps for interposers.
+// glibc's own allocator, under its names for interposers.
 void* __libc_malloc(std::size_t size);
 void __libc_free(void* block);
 void* __libc_calloc(std::size_t count, std::size_t size);

@@ -1,2 +1,2 @@
-// Built in place of heap_interposer.cpp under a sanitizer, which brings a malloc of its own:
-// HeapCounterActive() then answers no, and what depends on the count says "not measured".
+// Built in place of heap_interposer.cpp under a sanitizer, which has its own malloc: HeapCounterActive() is
+// then false, and reports that need the count say "not measured".

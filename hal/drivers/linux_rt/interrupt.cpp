@@ -34,7 +34,7 @@ void Interrupt::Watch() {
   }
 }
 
-// As the signal itself would have ended it, so that a shell sees why.
+// Ends the process like the signal itself would, so that a shell sees the reason.
 void Interrupt::EndAtOnce(int signal) {
   const std::lock_guard lock(mutex_);
   if (last_act_) {

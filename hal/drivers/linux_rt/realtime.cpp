@@ -18,7 +18,7 @@ namespace {
 
 std::string Reason() { return std::strerror(errno); }
 
-// Touches the stack below, so that its pages are there before the loop needs them.
+// Touches the stack below, so that its pages are mapped before the loop needs them.
 void PrefaultStack(int kib) {
   constexpr int kPage = 4096;
   volatile unsigned char page[kPage];
@@ -29,7 +29,7 @@ void PrefaultStack(int kib) {
   page[kPage - 1] = page[0];  // keeps the frame alive across the call
 }
 
-// The wish holds as long as the file is open: until the process ends, on purpose.
+// The setting holds while the file is open. It stays open until the process ends.
 bool KeepProcessorAwake() {
   const int file = open("/dev/cpu_dma_latency", O_WRONLY | O_CLOEXEC);
   const std::int32_t latency_us = 0;
@@ -52,32 +52,32 @@ std::vector<std::string> MakeThreadRealtime(const RealtimeOptions& options) {
   param.sched_priority = options.fifo_priority;
   if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) {
     missing.push_back("no SCHED_FIFO (" + Reason() +
-                      "): run as root, or give your user an rtprio in /etc/security/limits.d");
+                      "): run as root, or set rtprio for your user in /etc/security/limits.d");
   }
   if (options.lock_memory && mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
     missing.push_back("memory is not locked (" + Reason() +
-                      "): run as root, or give your user a memlock in /etc/security/limits.d");
+                      "): run as root, or set memlock for your user in /etc/security/limits.d");
   }
   if (options.cpu >= 0 && !StayOn(options.cpu)) {
-    missing.push_back("not kept on processor " + std::to_string(options.cpu) + " (" + Reason() +
-                      "): see `nproc` for those that there are");
+    missing.push_back("cannot stay on processor " + std::to_string(options.cpu) + " (" + Reason() +
+                      "): `nproc` prints how many there are");
   }
   if (options.keep_awake && !KeepProcessorAwake()) {
-    missing.push_back("the processor may sleep deeply, /dev/cpu_dma_latency (" + Reason() +
+    missing.push_back("deep sleep of the processor is not disabled, /dev/cpu_dma_latency (" + Reason() +
                       "): run as root, or give your user write access by a udev rule");
   }
   if (options.keep_memory) {
     mallopt(M_TRIM_THRESHOLD, -1);
     mallopt(M_MMAP_MAX, 0);
   }
-  prctl(PR_SET_TIMERSLACK, 1UL);  // a thread of SCHED_FIFO has none; one that could not become so is helped
+  prctl(PR_SET_TIMERSLACK, 1UL);  // SCHED_FIFO has no slack; this helps a thread without it
   PrefaultStack(options.stack_prefault_kib);
   return missing;
 }
 
 void MakeThreadYielding(const char* name) {
   pthread_setname_np(pthread_self(), name);
-  // On Linux the nice value belongs to the thread. Lowering one's own claim is always allowed.
+  // On Linux the nice value belongs to the thread. Lowering one's own priority is always allowed.
   setpriority(PRIO_PROCESS, 0, 10);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kLookPeriodNs = 500 * hal::kNsPerMs;
 
-// Mid-exposure. A driver that does not stamp by CLOCK_MONOTONIC leaves the arrival as all there is.
+// Mid-exposure. Estimated from the arrival if the driver does not stamp in CLOCK_MONOTONIC.
 std::int64_t StampOf(const v4l2_buffer& buffer, std::int64_t arrival_ns, std::int64_t exposure_ns,
                      std::int64_t transport_ns) {
   const bool monotonic = (buffer.flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) == V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC;
@@ -38,19 +38,19 @@ V4l2Camera::~V4l2Camera() = default;
 hal::Status V4l2Camera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept {
   try {
     if (!session_ && !closed_ && config_.reconnect && !Reopen(timeout_ns)) {
-      return hal::Status(hal::StatusCode::kTimeout, "camera is away");
+      return hal::Status(hal::StatusCode::kTimeout, "camera is disconnected");
     }
     if (!session_) {
       return hal::Status(closed_ ? hal::StatusCode::kClosed : hal::StatusCode::kDisconnected, "camera");
     }
     const hal::Status status = Take(frame, closed_ ? 0 : timeout_ns);
     return closed_ && !status.ok() ? hal::Status(hal::StatusCode::kClosed, "camera") : status;
-  } catch (const std::exception&) {  // OpenCV's, of a picture that it cannot convert; memory
+  } catch (const std::exception&) {  // OpenCV cannot convert the picture, or no memory
     return hal::Status(hal::StatusCode::kDeviceFault, "camera picture");
   }
 }
 
-// True when the device is there again; waits for that at most `timeout_ns`.
+// Opens the device again, waiting at most `timeout_ns`. True on success.
 bool V4l2Camera::Reopen(std::int64_t timeout_ns) {
   const std::int64_t end_ns = linux_rt::MonotonicNs() + timeout_ns;
   if (next_look_ns_ > end_ns) {
@@ -73,6 +73,7 @@ hal::Status V4l2Camera::Take(hal::Frame& frame, std::int64_t timeout_ns) {
   const std::int64_t end_ns = linux_rt::MonotonicNs() + timeout_ns;
   std::optional<v4l2_buffer> newest;
   std::int64_t arrival_ns = 0;
+  std::int64_t exposure_ns = 0;
   while (true) {
     v4l2_buffer buffer{};
     const int result = session_->Dequeue(buffer);
@@ -84,15 +85,16 @@ hal::Status V4l2Camera::Take(hal::Frame& frame, std::int64_t timeout_ns) {
         counters_.overtaken += newest ? 1U : 0U;
         newest = buffer;
         arrival_ns = linux_rt::MonotonicNs();
+        exposure_ns = session_->exposure_ns();  // the session may end before the picture is returned
       }
-      static_cast<void>(session_->Enqueue(buffer));  // what it says, the next Dequeue says too
+      static_cast<void>(session_->Enqueue(buffer));  // the next Dequeue reports an error too
       continue;
     }
-    if (result != -EAGAIN) {  // ENODEV: unplugged; any other is no better
+    if (result != -EAGAIN) {  // ENODEV: unplugged; other errors are handled alike
       ++counters_.disconnects;
       session_.reset();
       if (!newest) {
-        return config_.reconnect ? hal::Status(hal::StatusCode::kTimeout, "camera is away")
+        return config_.reconnect ? hal::Status(hal::StatusCode::kTimeout, "camera is disconnected")
                                  : hal::Status(hal::StatusCode::kDisconnected, "camera");
       }
     }
@@ -100,13 +102,13 @@ hal::Status V4l2Camera::Take(hal::Frame& frame, std::int64_t timeout_ns) {
     if (newest || left_ns <= 0) {
       break;
     }
-    static_cast<void>(device_->Wait(left_ns));  // what is wrong, the next Dequeue says
+    static_cast<void>(device_->Wait(left_ns));  // the next Dequeue reports an error
   }
   if (!newest) {
     return hal::Status(hal::StatusCode::kTimeout, "camera");
   }
   frame = camera::FrameOf(picture_);
-  frame.exposure_ns = std::max<std::int64_t>(session_ ? session_->exposure_ns() : 0, 1);
+  frame.exposure_ns = std::max<std::int64_t>(exposure_ns, 1);
   frame.stamp_ns = StampOf(*newest, arrival_ns, frame.exposure_ns, config_.transport_ns);
   frame.sequence = numbers_.Count(newest->sequence);
   counters_.lost = numbers_.lost();

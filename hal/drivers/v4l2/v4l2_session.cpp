@@ -78,11 +78,11 @@ void V4l2Camera::Session::Check(int result, const std::string& what) const {
 
 void V4l2Camera::Session::SetUp() {
   v4l2_capability capability{};
-  Check(device_.Control(VIDIOC_QUERYCAP, &capability), "is no video device");
+  Check(device_.Control(VIDIOC_QUERYCAP, &capability), "is not a video device");
   const std::uint32_t can = (capability.capabilities & V4L2_CAP_DEVICE_CAPS) != 0 ? capability.device_caps
                                                                                   : capability.capabilities;
   if ((can & V4L2_CAP_VIDEO_CAPTURE) == 0 || (can & V4L2_CAP_STREAMING) == 0) {
-    Refuse("it takes no pictures, or does not stream them");
+    Refuse("it does not capture video, or does not stream it");
   }
   const auto* card = reinterpret_cast<const char*>(capability.card);
   name_ = std::string(card, strnlen(card, sizeof(capability.card)));
@@ -97,7 +97,7 @@ void V4l2Camera::Session::SetUp() {
 void V4l2Camera::Session::SetFormat() {
   v4l2_format format{};
   format.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-  Check(device_.Control(VIDIOC_G_FMT, &format), "does not say its format");
+  Check(device_.Control(VIDIOC_G_FMT, &format), "does not report its format");
   v4l2_pix_format& pix = format.fmt.pix;
   pix.width = static_cast<std::uint32_t>(config_.width_px);
   pix.height = static_cast<std::uint32_t>(config_.height_px);
@@ -106,7 +106,7 @@ void V4l2Camera::Session::SetFormat() {
   if (!config_.pixel_format.empty()) {
     const auto wanted = camera::FormatOf(config_.pixel_format);
     if (!wanted) {
-      Refuse("pixel format " + config_.pixel_format + " is none of Mono8, Bayer..8, YUYV, RGB8, BGR8");
+      Refuse("pixel format " + config_.pixel_format + " is not one of Mono8, Bayer..8, YUYV, RGB8, BGR8");
     }
     for (const FormatPair& pair : kFormats) {
       pix.pixelformat = pair.raw == *wanted ? pair.fourcc : pix.pixelformat;
@@ -130,7 +130,7 @@ void V4l2Camera::Session::SetFormat() {
     }
   }
   if (!known) {
-    Refuse("pixel format " + Letters(pix.pixelformat) + " is none of Mono8, Bayer..8, YUYV, RGB8, BGR8");
+    Refuse("pixel format " + Letters(pix.pixelformat) + " is not one of Mono8, Bayer..8, YUYV, RGB8, BGR8");
   }
   const int row = config_.width_px * camera::RawBytesPerPixel(format_);
   stride_bytes_ = pix.bytesperline == 0 ? row : static_cast<int>(pix.bytesperline);
@@ -150,14 +150,15 @@ void V4l2Camera::Session::SetRate() {
   const double got_hz = got.numerator == 0 ? 0.0 : static_cast<double>(got.denominator) / got.numerator;
   constexpr double kTolerance = 0.02;
   if (std::fabs(got_hz - config_.rate_hz) > kTolerance * config_.rate_hz) {
-    Refuse(std::to_string(config_.rate_hz) + " frames per second became " + std::to_string(got_hz));
+    Refuse("it changed the frame rate from " + std::to_string(config_.rate_hz) + " to " +
+           std::to_string(got_hz) + " Hz");
   }
 }
 
 void V4l2Camera::Session::SetControls() {
   constexpr double kUnitUs = 100.0;  // of V4L2_CID_EXPOSURE_ABSOLUTE
   if (config_.exposure_us > 0.0) {
-    SetControl(V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "exposure by hand");
+    SetControl(V4L2_CID_EXPOSURE_AUTO, V4L2_EXPOSURE_MANUAL, "manual exposure");
     const auto units = static_cast<std::int32_t>(std::lround(config_.exposure_us / kUnitUs));
     SetControl(V4L2_CID_EXPOSURE_ABSOLUTE, units, "exposure time");
     exposure_ns_ = std::llround(1e3 * config_.exposure_us);
@@ -171,7 +172,7 @@ void V4l2Camera::Session::SetControl(std::uint32_t id, std::int32_t value, const
   v4l2_control control{id, value};
   Check(device_.Control(VIDIOC_S_CTRL, &control), "refuses " + what + " = " + std::to_string(value));
   if (control.value != value) {
-    Refuse(what + " = " + std::to_string(value) + " became " + std::to_string(control.value));
+    Refuse("it changed " + what + " = " + std::to_string(value) + " to " + std::to_string(control.value));
   }
 }
 
@@ -187,8 +188,9 @@ void V4l2Camera::Session::MapBuffers() {
   for (std::uint32_t i = 0; i < std::min(request.count, kBuffers); ++i) {
     v4l2_buffer buffer = EmptyBuffer(i);
     Check(device_.Control(VIDIOC_QUERYBUF, &buffer), "gives no buffers");
-    Check(device_.Map(buffer.length, buffer.m.offset, mapped_[i].memory), "cannot map its buffers");
-    mapped_[i].size = buffer.length;
+    void* memory = nullptr;
+    Check(device_.Map(buffer.length, buffer.m.offset, memory), "cannot map its buffers");
+    mapped_[i] = {memory, buffer.length};
     Check(Enqueue(buffer), "takes no buffers");
   }
 }

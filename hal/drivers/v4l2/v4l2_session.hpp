@@ -1,4 +1,4 @@
-// One opening of a video device: set up, with its buffers mapped, streaming.
+// One session of a video device: opened, set up, with its buffers mapped, streaming.
 #pragma once
 
 #include <linux/videodev2.h>
@@ -14,13 +14,13 @@ namespace fovea::v4l2 {
 
 class V4l2Camera::Session {
  public:
-  // CameraError; then the device is closed again.
+  // On CameraError, the device is closed again.
   Session(const V4l2Config& config, Device& device);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  // The next filled buffer: 0, else -errno (-EAGAIN: none).
+  // Takes the next filled buffer. Returns 0, else -errno (-EAGAIN: none).
   int Dequeue(v4l2_buffer& buffer);
   int Enqueue(v4l2_buffer& buffer);
   // The picture in a buffer that Dequeue gave.
@@ -42,7 +42,7 @@ class V4l2Camera::Session {
   void SetControls();
   void MapBuffers();
   void Release();
-  // CameraError when `result` says that it did not work.
+  // CameraError if `result` is negative.
   void Check(int result, const std::string& what) const;
   void SetControl(std::uint32_t id, std::int32_t value, const std::string& what);
   [[noreturn]] void Refuse(const std::string& why) const;

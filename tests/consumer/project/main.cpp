@@ -1,5 +1,4 @@
-// The servo, driving an arm that this program brings along: what someone with a robot of their own would
-// write.
+// The servo drives an arm that this program defines. Users with their own robot write such a program.
 #include <Eigen/Cholesky>
 #include <cstdio>
 
@@ -12,7 +11,7 @@
 
 using namespace fovea;
 
-// The driver: an arm that obeys its own model. A real one would talk to its robot in DoRead and DoWrite.
+// The driver: an arm that follows its own model. A real driver talks to its robot in DoRead and DoWrite.
 class MyArm final : public hal::Arm {
  public:
   explicit MyArm(const model::ArmModel& model) : Arm(model.num_joints, /*paces_loop=*/false), model_(model) {
@@ -54,7 +53,7 @@ class MyArm final : public hal::Arm {
   hal::ArmCommand command_;
 };
 
-// Time that goes on when the loop waits, and moves the arm along.
+// Time advances only while the loop waits, and the arm moves with it.
 class MyClock final : public hal::Clock {
  public:
   explicit MyClock(MyArm& arm) : arm_(arm) {}
@@ -93,7 +92,7 @@ int main(int argc, char** argv) {
   linux_rt::RecordRing records(8192);
   linux_rt::TickMeter meter;
   task::ServoLoop loop(task, arm, clock, mailbox, records, meter);
-  // A camera that sees a ball at rest, ten times a second. Its vision task would put this into the mailbox.
+  // A camera that sees a ball at rest ten times a second. In a real program its vision task calls Put.
   const model::Vec3 p_BO(0.45, 0.10, 0.05);
   for (int frame = 0; frame < 60; ++frame) {
     if (!loop.Run(frame * hal::kNsPerSecond / 10).ok()) {
@@ -110,7 +109,7 @@ int main(int argc, char** argv) {
       seen.s[i] = s[static_cast<Eigen::Index>(i)];
       seen.cov_s[i * hal::kMaxFeatureDim + i] = 1e-6;
     }
-    if (frame > 0) {  // the first is before the first tick
+    if (frame > 0) {  // frame 0 precedes the first tick
       mailbox.Put(seen);
     }
   }

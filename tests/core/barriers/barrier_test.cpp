@@ -1,4 +1,4 @@
-// How fast a barrier may be come nearer to.
+// The speed with which a barrier may be approached.
 #include "firmware/core/barriers/barrier.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(BarrierTest, DriftLowersTheSpeedLimitButNotBelowZero) {
   EXPECT_EQ(barrier.SpeedMost(), 0.0);
 }
 
-// At its largest speed it is stopped by the deceleration, which comes a reaction late, before the margin.
+// From the largest speed the deceleration, which begins a reaction time late, stops exactly at the margin.
 TEST(BarrierTest, SpeedLimitAllowsAStopBeforeTheMargin) {
   Barrier barrier;
   barrier.deceleration = 2.0;

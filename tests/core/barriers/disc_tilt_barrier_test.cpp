@@ -1,4 +1,4 @@
-// A disc's face and the camera: the row against differences, and when there is none.
+// The tilt of a disc's face to the line of sight: the row against differences, and when there is no row.
 #include "firmware/core/barriers/disc_tilt_barrier.hpp"
 
 #include <gtest/gtest.h>
@@ -67,8 +67,7 @@ TEST(DiscTiltBarrierTest, RowMatchesFiniteDifferenceOfTheTilt) {
                         (2.0 * kDt);
     worst = std::max(worst, std::abs(limits.rows[0].a.dot(dq) + rate));
   }
-  std::cout << "off by at most " << worst << " 1/s; " << beyond
-            << " of 300 turned away further than they shall be\n";
+  std::cout << "off by at most " << worst << " 1/s; " << beyond << " of 300 beyond the tilt limit\n";
   EXPECT_LT(worst, 1e-7);
   EXPECT_GT(beyond, 20);
 }

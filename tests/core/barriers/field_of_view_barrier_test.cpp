@@ -1,4 +1,4 @@
-// The target stays in the picture: rows against differences, and a motion that would lose it.
+// Keeps the target in the picture: the rows against finite differences, and a target that moves out.
 #include "firmware/core/barriers/field_of_view_barrier.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ MotionLimits Limits(const config::ViewConfig& view, const Scene& scene) {
   return limits;
 }
 
-// Largest x and y over the corners, and their negatives.
+// The largest -x, x, -y and y of all corners.
 std::array<double, 4> Extent(const Scene& scene, const features::TargetInCamera& seen) {
   std::array<double, 4> most;
   most.fill(-1e9);
@@ -57,7 +57,7 @@ std::array<double, 4> Extent(const Scene& scene, const features::TargetInCamera&
   return most;
 }
 
-// a dq is how fast the outermost corner moves with the camera.
+// a^T dq must be the image velocity of the outermost corner caused by the camera's motion.
 TEST(FieldOfViewBarrierTest, RowsMatchFiniteDifferencesOfTheOutermostCorner) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(61);
@@ -109,7 +109,7 @@ TEST(FieldOfViewBarrierTest, RowsUseTheSphereOutlineAndNeedATargetInView) {
   scene.outline.radius = 0.04;
   scene.seen = {{model::Mat3::Identity(), {0.1, 0.0, 0.4}}, Vec3::Zero(), Vec3::Zero()};
   EXPECT_NEAR(Limits(kView, scene).rows[1].b, 1.5 * (0.55 - 0.25 - 0.1), 1e-12);
-  scene.seen.v_BO_C = {0.04, 0.0, 0.0};  // it runs out by itself: d x/dt = 0.1
+  scene.seen.v_BO_C = {0.04, 0.0, 0.0};  // the target itself moves out: dx/dt = 0.1
   EXPECT_NEAR(Limits(kView, scene).rows[1].b, 1.5 * (0.55 - 0.25 - 0.1) - 0.1, 1e-12);
   scene.seen.X_CO.p.z() = -0.4;
   EXPECT_EQ(Limits(kView, scene).num_rows, 0);

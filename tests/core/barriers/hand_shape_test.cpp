@@ -1,4 +1,4 @@
-// What is bolted to the hand: capsules as balls, and how near they come to planes and boxes.
+// Bodies fixed to the hand: capsules covered by balls, and their distance to planes and boxes.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -49,21 +49,21 @@ TEST(HandShapeTest, RefusesACapsuleBeyondItsCapacity) {
   EXPECT_FALSE(hand.AddCapsule(Vec3::Zero(), Vec3(1.0, 0.0, 0.0), 0.01));
 }
 
-// The lens of a camera that is 0.2 m from the flange stood inside a box that the flange kept out of.
+// The lens of a camera 0.2 m from the flange once stood inside a box that the flange stayed out of.
 TEST(HandShapeTest, CameraIsKeptOutOfABoxTheFlangeDoesNotReach) {
   config::ServoConfig config = test::PandaConfig();
   model::ArmPoses poses;
   model::ComputePoses(config.arm, test::Ready(), poses);
   const Vec3 p_EC(0.0, 0.0, 0.2);
   const Vec3 lens = poses.X_BE * p_EC;
-  config.guard.rotation_speed = 100.0;  // this is about the box alone
+  config.guard.rotation_speed = 100.0;  // only the box shall limit
   config.guard.obstacles.num_boxes = 1;
   config.guard.obstacles.boxes[0] = {lens - Vec3(0.05, 0.05, 0.1), lens + Vec3(0.05, 0.05, -0.06)};
   const trajectory::Reference reference{test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
-  EXPECT_GT(ClearanceOfArm(config, poses), 0.1) << "the flange alone is far off";
+  EXPECT_GT(ClearanceOfArm(config, poses), 0.1) << "the flange alone is far away";
   ASSERT_TRUE(config.guard.hand.AddCapsule(Vec3::Zero(), p_EC, 0.03));
   EXPECT_NEAR(ClearanceOfArm(config, poses), 0.03, 0.004);
-  // Going down: the stop leads into the box for the camera, not for the flange.
+  // Moving down: a stop ends inside the box for the camera, but not for the flange.
   model::LinearJacobian J;
   model::ComputeLinearJacobian(config.arm, poses, poses.X_BE.p, J);
   trajectory::Reference down = reference;

@@ -1,4 +1,4 @@
-// The arm's own links beside the line of sight: distances against a search, rows against differences.
+// Distance of the arm's links from the line of sight: value against a search, row against differences.
 #include "firmware/core/barriers/line_of_sight_barrier.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using model::Vec3;
 using model::VecN;
 
-// The posture, and what hangs on it.
+// A posture and what follows from it.
 struct Posture {
   Posture(const config::ServoConfig& config, const VecN& q) {
     model::ComputePoses(config.arm, q, poses);
@@ -37,7 +37,7 @@ VecN RandomPosture(test::RandomStates& random, const config::ServoConfig& config
   return test::Ready() + random.Joints(config.arm, 0.6);
 }
 
-// A target about the one that the camera looks for, and some far aside, so that links come between.
+// A target near its goal or far to the side, so that links come between.
 Vec3 RandomTarget(test::RandomStates& random, const Posture& posture) {
   const Vec3 p_C(random.Uniform(-0.4, 0.4), random.Uniform(-0.4, 0.4), random.Uniform(-0.2, 0.6));
   return posture.X_BC * p_C;
@@ -65,7 +65,7 @@ double Clearance(const config::ServoConfig& config, const VecN& q, const Vec3& p
   return ClearanceOfSight(SightOf(posture, p_BO, triangle));
 }
 
-// Points on the line of sight and on the links' axes, 2 mm apart and less.
+// The search tries points on the line of sight and on the links' axes, at most 2 mm apart.
 TEST(LineOfSightBarrierTest, ClearanceIsTheSmallestFoundByASearchOverAllLinks) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(71);
@@ -119,7 +119,7 @@ TEST(LineOfSightBarrierTest, RowMatchesFiniteDifferenceOfClearance) {
         (2.0 * kDt);
     worst = std::max(worst, std::abs(limits.rows[0].a.dot(dq) + rate));
   }
-  std::cout << "off by at most " << worst << " m/s; " << beyond << " of 300 nearer than they shall be\n";
+  std::cout << "off by at most " << worst << " m/s; " << beyond << " of 300 below the clearance\n";
   EXPECT_LT(worst, 1e-7);
   EXPECT_GT(beyond, 20);
 }

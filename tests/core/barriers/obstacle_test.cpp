@@ -40,11 +40,11 @@ TEST(ObstacleTest, BoxDistanceIsThatOfItsNearestPoint) {
     const Clearance clearance = ClearanceOf(obstacles, 0, p);
     worst = std::max(worst, std::abs(clearance.distance - expected));
     EXPECT_NEAR(clearance.away.norm(), 1.0, 1e-12);
-    // A step that way leads away by its length, within the box as well.
+    // A step along `away` increases the distance by its length, inside the box as well.
     const double further = ClearanceOf(obstacles, 0, p + 1e-6 * clearance.away).distance;
     EXPECT_NEAR(further - clearance.distance, 1e-6, 1e-9);
   }
-  std::cout << "distances off by " << worst << " m, " << inside << " points within the box\n";
+  std::cout << "distances off by " << worst << " m, " << inside << " points inside the box\n";
   EXPECT_LT(worst, 1e-14);
   EXPECT_GT(inside, 100);
 }

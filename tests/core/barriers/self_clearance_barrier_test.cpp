@@ -1,4 +1,4 @@
-// The arm beside itself and above planes: distances against a search, rows against differences.
+// Distance of the arm from itself and from planes: values against a search, rows against differences.
 #include "firmware/core/barriers/self_clearance_barrier.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ config::ServoConfig WithSelfClearance(double clearance) {
 
 double PlaneClearance(const VecN& q) { return ClearanceOfPlanes(Planes(), BodiesAt(q)); }
 
-// Points on the two axes of each pair, 1 mm apart and less.
+// The search tries points on the two axes of each pair, at most 1 mm apart.
 TEST(SelfClearanceBarrierTest, GapIsTheSmallestFoundByASearchOverAllPairs) {
   test::RandomStates random(81);
   const model::ArmShape& shape = Arm().shape;
@@ -93,7 +93,7 @@ TEST(SelfClearanceBarrierTest, GapIsTheSmallestFoundByASearchOverAllPairs) {
   EXPECT_LT(worst, 0.002);
 }
 
-// Points on the axes of the last four links, less their radius.
+// The search tries points on the axes of the last four links, and subtracts the radius.
 TEST(LinksBarrierTest, ClearanceIsTheSmallestFoundByASearchOverAllLinks) {
   test::RandomStates random(82);
   for (int k = 0; k < 300; ++k) {
@@ -113,7 +113,7 @@ TEST(LinksBarrierTest, ClearanceIsTheSmallestFoundByASearchOverAllLinks) {
   }
 }
 
-// The row of `limits` against the change of `clearance` with the joints.
+// Compares the row of `limits` with the finite difference of `clearance`.
 template <class Clearance>
 void ExpectRow(const MotionLimits& limits, const VecN& q, const VecN& dq, const Clearance& clearance,
                double& worst) {
@@ -148,7 +148,7 @@ TEST(SelfClearanceBarrierTest, GradientMatchesFiniteDifferenceOfClearance) {
     arms += PlaneClearance(q) < 0.05 ? 1 : 0;
   }
   std::cout << "off by at most " << worst_self << ", " << worst_arm << " m/s; " << selves << " and " << arms
-            << " of 300 nearer than they shall be\n";
+            << " of 300 below the clearance\n";
   EXPECT_LT(worst_self, 1e-7);
   EXPECT_LT(worst_arm, 1e-7);
   EXPECT_GT(selves, 20);

@@ -1,4 +1,4 @@
-// What the arm can run into: each gradient against differences of its value, and the whole table there.
+// What the arm can run into: each gradient against differences of its value; the table is complete.
 #include "firmware/core/barriers/solid_barriers.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(SolidBarriersTest, GradientsMatchFiniteDifferencesOfTheirValues) {
       const Barrier row = solid.RowOf(i, {now.poses, now.bodies, now.J_E_B, dq});
       EXPECT_EQ(row.value, solid.ValueOf(i, now.poses, now.bodies));
       EXPECT_EQ(row.name, solid.NameOf(i));
-      EXPECT_GE(row.margin, solid.StopMarginOf(i)) << "the proof of a stop must not come before the row";
+      EXPECT_GE(row.margin, solid.StopMarginOf(i)) << "the row must act before the proof of a stop";
       const double rate =
           (solid.ValueOf(i, after.poses, after.bodies) - solid.ValueOf(i, before.poses, before.bodies)) /
           (2.0 * kDt);

@@ -1,4 +1,4 @@
-// The lists of fields are whole: whatever a struct holds, its list has.
+// The lists of fields are complete: every member of a struct is in its list.
 #include "firmware/core/config/fields.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 namespace fovea::config {
 namespace {
 
-// A visitor that notes which bytes it was shown.
+// A visitor that records which bytes it visits.
 class SeenBytes {
  public:
   SeenBytes(const void* begin, std::size_t size)
@@ -71,7 +71,7 @@ class SeenBytes {
   std::vector<bool> seen_;
 };
 
-// The bytes of T that its members take: those that a new T sets to the same, whatever was there before.
+// The bytes of T's members: those to which a new T gives the same values, whatever was there before.
 template <class T>
 std::vector<bool> MemberBytes() {
   alignas(T) std::array<std::byte, sizeof(T)> first{};
@@ -104,7 +104,7 @@ TYPED_TEST(FieldList, HasEveryMember) {
         << "byte " << i << " of " << sizeof(config) << " is in no field";
     members += member[i] ? 1U : 0U;
   }
-  EXPECT_GT(members, sizeof(config) / 2) << "padding was not told from members";
+  EXPECT_GT(members, sizeof(config) / 2) << "padding is not distinguished from members";
 }
 
 // A struct with one member more than its list.
@@ -131,7 +131,7 @@ TEST(FieldListTest, MissingMemberIsDetected) {
   EXPECT_EQ(missing, 1);
 }
 
-// A visitor that puts each number of a configuration out of its range, one at a time.
+// A visitor that puts one number of a configuration, the `target`th, out of its range.
 class OutOfRange {
  public:
   explicit OutOfRange(int target) : target_(target) {}
@@ -168,7 +168,7 @@ class OutOfRange {
   int count_ = 0;
 };
 
-// Init refuses what is past the range that the key has, and names the key.
+// Init refuses a value outside its key's range, and names the key.
 TEST(FieldListTest, InitRefusesValuesOutsideTheKeysRanges) {
   task::ServoTask task;
   int refused = 0;

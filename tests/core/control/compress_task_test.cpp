@@ -1,4 +1,4 @@
-// A task in fewer rows: the same least-squares solution, against Eigen's.
+// A task in fewer rows has the same least-squares solution; compared with Eigen.
 #include "firmware/core/control/compress_task.hpp"
 
 #include <gtest/gtest.h>

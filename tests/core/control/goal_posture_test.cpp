@@ -29,7 +29,7 @@ Pose CameraAt(const config::ServoConfig& config, const VecN& q) {
   return poses.X_BE * config.X_EC;
 }
 
-// Where the target is when the camera at `q` has it at its goal.
+// The pose of the target if the camera at `q` is at its goal.
 Pose TargetFor(const config::ServoConfig& config, const VecN& q) {
   return CameraAt(config, q) * Pose{config.feature.R_CO_star, config.feature.p_CO_C_star};
 }
@@ -76,7 +76,7 @@ TEST(GoalPostureTest, NearbyGoalIsFoundDownhillAndFollowsTheTarget) {
   ExpectAtGoal(config, X_BO, goal);
 }
 
-// The last joint at its upper end, the goal a third of a turn further: another posture, the long way round.
+// The last joint is at its upper end, the goal a third of a turn further: this needs the long way round.
 TEST(GoalPostureTest, GoalBeyondAJointEndIsReachedTheOtherWayRound) {
   const config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   VecN q = test::Ready();
@@ -92,7 +92,7 @@ TEST(GoalPostureTest, GoalBeyondAJointEndIsReachedTheOtherWayRound) {
   ExpectAtGoal(config, X_BO, goal);
 }
 
-// One to which no way is clear is taken when all rounds have found no other.
+// A posture without a clear path is taken only after all rounds of the search find no other.
 TEST(GoalPostureTest, PostureWithABlockedPathIsTakenLast) {
   config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   VecN q = test::Ready();
@@ -104,7 +104,7 @@ TEST(GoalPostureTest, PostureWithABlockedPathIsTakenLast) {
   const int steps = StepsUntilFound(config, X_BO, q, clear);
   ASSERT_GT(steps, 0);
   EXPECT_TRUE(clear.clear);
-  config.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // the goal itself is not in there
+  config.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // the goal itself is outside
   GoalPosture barred;
   EXPECT_GT(StepsUntilFound(config, X_BO, q, barred), 5 * steps);
   EXPECT_TRUE(barred.found);
@@ -123,7 +123,7 @@ TEST(GoalPostureTest, EqualTurnsMakeAFullTurn) {
   EXPECT_EQ(EqualTurn(1, 2), EqualTurn(2, 4)) << "exact";
 }
 
-// The hand hangs beside the camera: turned by half a turn it would be outside the workspace, as it is not.
+// The hand is beside the camera. Half a turn would move the hand out of the workspace, in which it is now.
 TEST(GoalPostureTest, SquareIsFacedFromASideInReach) {
   const config::ServoConfig config = Config(hal::FeatureKind::kSquare);
   const Pose half{EqualTurn(2, 4), model::Vec3::Zero()};
@@ -148,7 +148,7 @@ TEST(GoalPostureTest, SquareIsFacedFromASideInReach) {
   ExpectAtGoal(config, X_BO, goal);
 }
 
-// Where the target jumps and another posture is looked for, first the same side is tried.
+// When the target jumps and a new posture search begins, the search tries the same side first.
 TEST(GoalPostureTest, JumpingSquareKeepsItsGoalSide) {
   const config::ServoConfig config = Config(hal::FeatureKind::kSquare);
   const VecN q = test::Ready();
@@ -185,22 +185,22 @@ TEST(GoalPostureTest, RefusesPosturesBelowAPlaneOccludingOrSingular) {
   below.guard.obstacles.planes[0] = {{0.0, 0.0, 1.0}, poses.X_BE.p.z() + 0.01};
   GoalPosture goal;
   EXPECT_EQ(StepsUntilFound(below, X_BO, test::Ready(), goal), 0);
-  below.guard.obstacles.planes[0].distance -= 0.15;  // and the last link's radius
+  below.guard.obstacles.planes[0].distance -= 0.15;  // the last link's radius is clear, too
   goal = GoalPosture{};
   EXPECT_GT(StepsUntilFound(below, X_BO, test::Ready(), goal), 0);
 
   config::ServoConfig hidden = free;
-  hidden.guard.sight_clearance = 10.0;  // no posture is so clear
+  hidden.guard.sight_clearance = 10.0;  // no posture has so much clearance
   goal = GoalPosture{};
   EXPECT_EQ(StepsUntilFound(hidden, X_BO, test::Ready(), goal), 0);
 
   config::ServoConfig singular = free;
-  singular.guard.singularity_min = 1.0;  // nor so far from every singularity
+  singular.guard.singularity_min = 1.0;  // no posture is so far from every singularity
   goal = GoalPosture{};
   EXPECT_EQ(StepsUntilFound(singular, X_BO, test::Ready(), goal), 0);
 }
 
-// A range that leaves no room at its ends is used in its middle.
+// If the margins leave no room in the range of a joint, the search uses its middle.
 TEST(GoalPostureTest, JointWithANarrowRangeStaysInItsMiddle) {
   config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   VecN q_goal = test::Ready();
@@ -223,7 +223,7 @@ TEST(GoalPostureTest, FindsNoPostureForAGoalOutsideTheWorkspace) {
   EXPECT_EQ(StepsUntilFound(config, X_BO, test::Ready(), goal), 0);
 }
 
-// A start that the atlas drew: straight ways to all postures lead out of the picture or behind the arm.
+// A start from `fovea atlas`: straight paths to all postures leave the picture or pass behind the arm.
 TEST(GoalPostureTest, BlockedStraightPathsGiveADetourPosture) {
   config::ServoConfig config = Config(hal::FeatureKind::kTriangle);
   config.guard.view = {true, -0.55, 0.55, -0.41, 0.41};
@@ -244,9 +244,9 @@ TEST(GoalPostureTest, BlockedStraightPathsGiveADetourPosture) {
     way.q = second;
     while (StepOnWay(config, X_BO, goal.q, way)) {
     }
-    EXPECT_FALSE(way.barred) << "from there it is straight on, seed " << seed;
+    EXPECT_FALSE(way.barred) << "the straight path from there is clear, seed " << seed;
   }
-  EXPECT_GE(detours, 2) << "or the case is none";
+  EXPECT_GE(detours, 2) << "this start must need detours";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What the tests of limits on joint velocities share.
+// Shared by the tests of limits on joint velocities.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace fovea::control {
 
-constexpr double kRowTolerance = 1.1e-9;  // what a row may be passed by, per length of its normal
+constexpr double kRowTolerance = 1.1e-9;  // allowed excess over a row, per length of its normal
 
 inline model::VecN RandomVector(test::RandomStates& random, int n, double size) {
   model::VecN v(n);
@@ -19,7 +19,7 @@ inline model::VecN RandomVector(test::RandomStates& random, int n, double size) 
   return v;
 }
 
-// How far `dq` is past the limits, as the result promises them: ranges exactly, rows per length of a.
+// How far `dq` exceeds the limits: infinite past a range; otherwise the largest excess per length of a row.
 inline double Broken(const barriers::MotionLimits& limits, const model::VecN& dq) {
   double most = 0.0;
   for (int i = 0; i < dq.size(); ++i) {

@@ -27,7 +27,7 @@ struct Problem {
   barriers::MotionLimits limits;
 };
 
-// H with condition numbers up to some 1e7; ranges around 0; rows that standing still keeps.
+// H with condition numbers up to some 1e7; ranges around 0; rows that standstill satisfies.
 Problem RandomProblem(test::RandomStates& random, int n, int rows) {
   Problem p;
   const MatrixXd factor = MatrixXd::NullaryExpr(n, n, [&] { return random.Uniform(-1.0, 1.0); });
@@ -65,7 +65,7 @@ void Stack(const barriers::MotionLimits& limits, MatrixXd& A, VectorXd& b) {
   }
 }
 
-// The lowest cost over all sets of at most n limits that may hold; infinite when none is feasible.
+// The lowest cost over all active sets of at most n limits; infinite if none is feasible.
 double LowestCost(const Problem& p) {
   MatrixXd A;
   VectorXd b;
@@ -97,7 +97,7 @@ double LowestCost(const Problem& p) {
   return lowest;
 }
 
-// Residual of stationarity and most negative multiplier, relative to the size of the cost's slope.
+// Checks the active limits. Keeps the worst stationarity residual and multiplier, relative to |H wish|.
 void ExpectOptimal(const Problem& p, const LimitedMotion& motion, double& worst_residual,
                    double& worst_multiplier) {
   const auto n = p.wish.size();
@@ -144,10 +144,10 @@ TEST(MoveIntoLimitsTest, MatchesAnExhaustiveSearch) {
     const int n = 1 + k % 3;
     Problem p = RandomProblem(random, n, k / 3 % 4);
     if (k % 5 == 0) {
-      p.limits.dq_min[0] = p.limits.dq_max[0];  // a joint that is told what to do
+      p.limits.dq_min[0] = p.limits.dq_max[0];  // a joint with one allowed velocity
     }
     if (k % 7 == 0 && p.limits.num_rows > 0) {
-      p.limits.rows[0].b = -0.1;  // standing still is not allowed, and perhaps nothing is
+      p.limits.rows[0].b = -0.1;  // standstill is not allowed, and perhaps nothing is
     }
     LimitedMotion motion;
     MoveIntoLimits(p.H, p.wish, p.limits, motion);
@@ -192,7 +192,7 @@ TEST(MoveIntoLimitsTest, MeetsTheOptimalityConditions) {
   }
   std::cout << cases << " problems: stationary to " << worst_residual << ", multipliers >= -"
             << worst_multiplier << " (relative), limits passed by " << worst_broken << "; steps "
-            << steps / cases << " mean, " << most_steps << " most; " << scaled << " given up\n";
+            << steps / cases << " mean, " << most_steps << " most; " << scaled << " unsolved\n";
   EXPECT_LT(worst_residual, 1e-8);
   EXPECT_LT(worst_multiplier, 1e-8);
   EXPECT_LE(worst_broken, kRowTolerance);
@@ -200,8 +200,8 @@ TEST(MoveIntoLimitsTest, MeetsTheOptimalityConditions) {
   EXPECT_EQ(scaled, 0);
 }
 
-// Degenerate on purpose: rows that repeat each other or the ranges, no room at all, standing still as the
-// only point, sizes from 1e-12 to 1e200.
+// Degenerate on purpose: rows that repeat each other or the ranges, no feasible point, standstill as the only
+// one, sizes from 1e-12 to 1e200.
 TEST(MoveIntoLimitsTest, SolvesDegenerateInputWithinTheStepLimit) {
   test::RandomStates random(513);
   int counts[5] = {};

@@ -1,4 +1,4 @@
-// A goal that limits keep out of reach, and when it is tried again.
+// A goal that limits keep out of reach, and when the servo tries it again.
 #include "firmware/core/control/reach_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST(ReachWatchTest, GoalIsUnreachableAfterTheConfiguredBlockedTime) {
   EXPECT_TRUE(IsUnreachable(config, watch));
 }
 
-// What counts is how often it is kept: nine ticks of ten are, so it takes 10 / 8 as long.
+// Each free tick cancels a blocked one: with nine of ten ticks blocked it takes 10 / 8 as long.
 TEST(ReachWatchTest, UnblockedTickTakesOneBlockedTickOff) {
   config::LawConfig config;
   config.unreachable_s = 0.4;

@@ -1,4 +1,4 @@
-// Prints how ways of kinematic resolution compare in closed loop (resolve_loop.hpp), on the same starts:
+// Prints how methods of kinematic resolution compare in closed loop (resolve_loop.hpp), on the same starts:
 //   resolve_compare [starts] [seconds per run]
 #include <chrono>
 #include <cstdio>
@@ -30,7 +30,7 @@ std::vector<Way> Ways(const config::ServoConfig& config) {
     return [=](const Scene& s) { return ByConstrained(s, wishes, way, acceleration); };
   };
   return {
-      {"law, as it is", ByFixedDamping},
+      {"fixed damping", ByFixedDamping},
       {"damped, unbounded posture", [=](const Scene& s) { return ByDamped(s, pull); }},
       {"damped", [=](const Scene& s) { return ByDamped(s, posture); }},
       {"damped, all wishes", [=](const Scene& s) { return ByDamped(s, all); }},
@@ -59,8 +59,8 @@ void Compare(int starts, double limit_s) {
   for (int k = 0; k < starts; ++k) {
     samples.push_back(Sample(random, config));
   }
-  std::printf("%d starts, at most %.0f s each; path: way in the image over the straight one\n", starts,
-              limit_s);
+  std::printf("%d starts, at most %.0f s each; path: its length in the image over the straight length\n",
+              starts, limit_s);
   std::printf("%-28s %9s %8s %8s %8s %8s %8s %9s %8s %8s %8s\n", "way", "converged", "t50 s", "t95 s",
               "max |dq|", "path50", "path95", "unseen", "max |p|", "range", "ns");
   for (const Way& way : Ways(config)) {
@@ -85,7 +85,7 @@ void Compare(int starts, double limit_s) {
       dq = std::max(dq, run.dq_largest);
       radius = std::max(radius, run.radius);
       range = std::max(range, run.range_used);
-      // What never settles counts as slower than all that does.
+      // A run that never settles counts as slower than all others.
       settle.push_back(run.converged ? run.settle_s : limit_s);
       if (run.converged && run.straight_px > 20.0) {
         path.push_back(run.path_px / run.straight_px);

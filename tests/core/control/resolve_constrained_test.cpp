@@ -1,4 +1,4 @@
-// The constrained resolution: its priorities, its continuity, and its behaviour with input of every kind.
+// The constrained resolution: its priorities, its continuity, and its behaviour with any input.
 #include "firmware/core/control/resolve_constrained.hpp"
 
 #include <gtest/gtest.h>
@@ -63,16 +63,16 @@ TEST(ResolveConstrainedTest, NullSpaceYieldsFirstAndTheTaskKeepsItsDirection) {
     }
   }
   std::cout << free << " free; " << kept << " kept the task, to " << worst_kept << "; " << slowed
-            << " slowed it, cosine to its course at least " << worst_slowed << "\n";
+            << " slowed it, cosine to its direction at least " << worst_slowed << "\n";
   EXPECT_GT(kept, test::Repetitions(5000) / 20);
   EXPECT_GT(slowed, test::Repetitions(5000) / 50);
   EXPECT_LT(worst_kept, 0.1);
   EXPECT_GT(worst_slowed, 0.85);
 }
 
-// A task that wants nothing gets nothing, however the wish dq_0 pulls against limits or through a direction
-// that is damped: else the arm would come to rest off its goal. (With the wish beside the task in one problem
-// of null_weight 0.04 the largest was 0.1 rad/s on the rms singular value, with damping alone 0.003.)
+// A task of zero velocity stays at zero, however the wish dq_0 pulls against limits or through a damped
+// direction: otherwise the arm would come to rest off its goal. (With task and wish in one problem with
+// null_weight 0.04 the largest was 0.1 rad/s on the rms singular value, with damping alone 0.003.)
 TEST(ResolveConstrainedTest, NullSpaceWishAgainstALimitLeavesTheTaskUnchanged) {
   test::RandomStates random(518);
   int limited = 0;
@@ -82,7 +82,7 @@ TEST(ResolveConstrainedTest, NullSpaceWishAgainstALimitLeavesTheTaskUnchanged) {
     MotionTask task = RandomTask(random, 3);
     task.v.setZero();
     if (k % 2 == 0) {
-      task.J.row(2) = task.J.row(2) * 0.02 + task.J.row(0);  // a direction that is damped
+      task.J.row(2) = task.J.row(2) * 0.02 + task.J.row(0);  // a damped direction
     }
     barriers::MotionLimits limits = Ranges(0.8);
     limits.AddRow(RandomVector(random, 7, 1.0), 0.0);
@@ -101,7 +101,7 @@ TEST(ResolveConstrainedTest, NullSpaceWishAgainstALimitLeavesTheTaskUnchanged) {
   EXPECT_LT(worst, 1e-4);
 }
 
-// The wish, the Jacobian and the limits move on straight lines; halving the step halves the change.
+// The task's velocity, Jacobian and limits change linearly: half the step must give half the change.
 TEST(ResolveConstrainedTest, IsContinuousInWishJacobianAndLimits) {
   test::RandomStates random(516);
   double steps[2] = {0.0, 0.0};

@@ -1,4 +1,4 @@
-// The damped resolution against Eigen's SVD, and its behaviour on the way through singular postures.
+// The damped resolution against Eigen's SVD, and its behaviour on paths through singular postures.
 #include "firmware/core/control/resolve_damped.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// m x n, of random rank deficiency and scale.
+// m x n, of random scale; `deficient`: with rank below m.
 MotionTask RandomTask(test::RandomStates& random, int m, int n, bool deficient) {
   MotionTask task;
   task.J.resize(m, n);
@@ -47,7 +47,7 @@ MatrixXd Weighted(const MotionTask& task) {
   return MatrixXd(task.J) * VectorXd(task.weight).cwiseSqrt().cwiseInverse().asDiagonal();
 }
 
-// The Panda's hand, told to move with `v`, at `q`.
+// The task to move the Panda's hand with `v` at `q`.
 MotionTask HandTask(const model::ArmModel& arm, const model::VecN& q, const model::Vec6& v) {
   model::ArmPoses poses;
   model::Mat6N J;
@@ -117,14 +117,14 @@ TEST(ResolveDampedTest, EqualsTheWeightedPseudoInverseAwayFromSingularity) {
     const VectorXd expected = pinv * (task.v - J * task.dq_0) + task.dq_0;
     worst = std::max(worst, (expected - motion.dq).norm() / expected.norm());
     worst_residual = std::max(worst_residual, (J * motion.dq - task.v).norm() / task.v.norm());
-    // The second wish moves nothing of the task, and all that it does is optimal in W.
+    // The null-space wish must not change the task's motion.
     DampedMotion without;
     task.dq_0.setZero();
     ResolveDamped(config, task, without);
     worst_null_space = std::max(worst_null_space, (J * (motion.dq - without.dq)).norm() / J.norm());
   }
   std::cout << tried << " cases: differs from the pseudo-inverse by " << worst << ", task missed by "
-            << worst_residual << ", moved by the null space's wish by " << worst_null_space
+            << worst_residual << ", changed by the null-space wish by " << worst_null_space
             << " (relative)\n";
   EXPECT_GT(tried, test::Repetitions(10000) / 2);
   EXPECT_LT(worst, 1e-11);
@@ -178,14 +178,13 @@ TEST(ResolveDampedTest, DampingMatchesItsFormulaAndBoundsMotionForAnyRank) {
                                               root.cwiseProduct(VectorXd(task.dq_0)).norm());
   }
   std::cout << "differs from the formula by " << worst << "; largest |dq|_W threshold / |v| " << largest
-            << ", largest disturbance by the null space's wish " << largest_leak << " threshold |dq_0|_W\n";
+            << ", largest disturbance by the null-space wish " << largest_leak << " threshold |dq_0|_W\n";
   EXPECT_LT(worst, 1e-10);
   EXPECT_LE(largest, 1.3);
   EXPECT_LE(largest_leak, 0.22);
 }
 
-// Straight through the stretched elbow, which the joint's range ends just short of, and past the aligned
-// wrist.
+// Straight through the stretched elbow, which is just past the joint's range, and past the aligned wrist.
 TEST(ResolveDampedTest, IsSmoothThroughSingularPosturesOfThePanda) {
   const model::ArmModel& arm = test::PandaConfig().arm;
   test::RandomStates random(504);
@@ -221,13 +220,13 @@ TEST(ResolveDampedTest, IsSmoothThroughSingularPosturesOfThePanda) {
   std::cout << "down to sigma " << deepest << "; largest |dq| threshold / |v| " << largest
             << ", largest step of dq " << steps[0] << " rad/s per 1/1000 of the way, " << steps[1]
             << " per 1/2000\n";
-  EXPECT_LT(deepest, 1e-3) << "the ways must lead through singular postures";
+  EXPECT_LT(deepest, 1e-3) << "the paths must lead through singular postures";
   EXPECT_LE(largest, 1.3);
   EXPECT_LT(steps[1], 0.6 * steps[0]) << "half the step, half the change: continuous";
 }
 
-// From where all directions are exact to where one, two, three are damped: nothing is seen of the step from
-// one way of solving to the other.
+// From all directions exact to one, two or three of them damped: the switch from one solver to the other
+// causes no step.
 TEST(ResolveDampedTest, IsContinuousWhereDampingBegins) {
   test::RandomStates random(507);
   double largest_step = 0.0;
@@ -248,7 +247,7 @@ TEST(ResolveDampedTest, IsContinuousWhereDampingBegins) {
     DampedMotion below;
     const double threshold = [&] {
       double at = 0.05;
-      for (int i = 0; i < 60; ++i) {  // the fixed point: a threshold that the last singular value stands at
+      for (int i = 0; i < 60; ++i) {  // fixed point: the threshold equals the last singular value
         set(at);
         ResolveDamped(DampingConfig{}, task, above);
         at = above.threshold;
@@ -290,7 +289,7 @@ TEST(ResolveDampedTest, SolvesSeveralWishesAccuratelyForSmallThresholds) {
         EXPECT_EQ(motion.dq, alone.dq);
         task.dq_0 *= -2.0;
       }
-      // The same by the accurate singular values of row_svd.hpp.
+      // The same from the accurate singular values of row_svd.hpp.
       task.dq_0.setZero();
       inverse.Resolve(task, motion);
       const MatrixXd Jw = Weighted(task);
@@ -308,7 +307,7 @@ TEST(ResolveDampedTest, SolvesSeveralWishesAccuratelyForSmallThresholds) {
       const VectorXd dq = VectorXd(task.weight).cwiseSqrt().cwiseInverse().asDiagonal() * x;
       worst = std::max(worst, (dq - VectorXd(motion.dq)).norm() / dq.norm());
     }
-    std::cout << "threshold " << threshold << ": differs from the singular values' answer by " << worst
+    std::cout << "threshold " << threshold << ": differs from the SVD's solution by " << worst
               << " (relative)\n";
     EXPECT_LT(worst, std::max(1e-14 / threshold / threshold, 1e-11));
   }
@@ -346,8 +345,8 @@ TEST(ScaleIntoRangeTest, KeepsTheDirectionAndEveryRange) {
     EXPECT_TRUE((dq.array() <= limits.dq_max.array()).all() && (dq.array() >= limits.dq_min.array()).all());
     EXPECT_TRUE(scale == 1.0 || (dq - limits.dq_max).cwiseAbs().minCoeff() < 1e-12 ||
                 (dq - limits.dq_min).cwiseAbs().minCoeff() < 1e-12)
-        << "no more than needed";
-    // A joint that must move does, whatever was wished.
+        << "scaled no more than needed";
+    // A joint whose range excludes zero must move, whatever the wish.
     limits.dq_min[3] = 0.05;
     dq = wish;
     barriers::ScaleIntoRange(limits, dq);

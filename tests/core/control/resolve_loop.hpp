@@ -1,11 +1,11 @@
-// A closed loop without dynamics, to compare ways of kinematic resolution on the same starts: the arm is
-// where its reference is, the camera sees the ball's centre at once and without noise.
+// A closed loop without dynamics, to compare methods of kinematic resolution on the same starts: the arm
+// follows its reference exactly, the camera measures the ball's centre without delay or noise.
 //
-// Sampler: start and goal postures uniform in the joints' range less 5 degrees at each end, each with
-// |p_BE| <= 0.82 m and the hand above the table (p_BE z >= 0.1 m); the ball is where the goal posture wants
-// it, at 0.40 m on the camera's axis, and not below the table; the start must see it, at a depth of 0.15 to
-// 1.2 m and 30 px inside a picture of 640x480 with f = 554.256 px, and at least 150 px or 0.1 m of depth away
-// from where it shall be. So there is a posture that reaches the goal, but no promise of a way there.
+// Sampler: start and goal postures are uniform in the joints' range minus 5 degrees at each end, each with
+// |p_BE| <= 0.82 m and the hand above the table (p_BE z >= 0.1 m). The ball is where the goal posture sees it
+// at its goal, 0.40 m away on the camera's axis, and not below the table. The start must see it at a depth of
+// 0.15 to 1.2 m, 30 px inside a picture of 640x480 with f = 554.256 px, and more than 150 px or 0.1 m of
+// depth away from its goal. So a posture that reaches the goal exists, but perhaps no path to it.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -34,7 +34,7 @@ struct Start {
 
 struct Seen {
   double u_px = 0.0, v_px = 0.0, depth = 0.0;
-  // Within the picture less a margin.
+  // True inside the picture minus a margin.
   [[nodiscard]] bool Inside(double margin_px) const {
     return depth > 0.0 && std::abs(u_px) <= 319.5 - margin_px && std::abs(v_px) <= 239.5 - margin_px;
   }
@@ -79,7 +79,7 @@ inline Start Sample(test::RandomStates& random, const config::ServoConfig& confi
   }
 }
 
-// What a way of resolution may use; all of the reference, which the arm obeys.
+// Inputs of a resolution method, all computed from the reference.
 struct Scene {
   const config::ServoConfig& config;
   const features::FeatureState& feature;
@@ -92,14 +92,14 @@ using Resolve = std::function<model::VecN(const Scene&)>;
 
 struct Run {
   bool converged = false;      // the error goes below 2 % of its start and stays there until `limit_s`
-  double settle_s = 0.0;       // when it last was above
-  double final_share = 1.0;    // of the error at the start
+  double settle_s = 0.0;       // when the error was last above that
+  double final_share = 1.0;    // final error as a share of the first
   double dq_largest = 0.0;     // |dq| of the reference [rad/s]
-  double path_px = 0.0;        // length of the centre's way in the image
-  double straight_px = 0.0;    // from its start to its end
-  double out_of_view_s = 0.0;  // outside the picture
+  double path_px = 0.0;        // length of the centre's path in the image
+  double straight_px = 0.0;    // straight distance from its start to its end
+  double out_of_view_s = 0.0;  // time outside the picture
   double radius = 0.0;         // largest |p_BE| [m]
-  double range_used = 0.0;     // largest share of a joint's range, less its margin
+  double range_used = 0.0;     // largest share used of a joint's range minus its margin
 };
 
 inline Run Loop(const config::ServoConfig& config, const Start& start, const Resolve& resolve,
@@ -153,10 +153,10 @@ inline Run Loop(const config::ServoConfig& config, const Start& start, const Res
   return run;
 }
 
-// Ways of resolution. `wishes`: what to do with the free directions.
+// Resolution methods. `wishes`: goals for the free directions.
 
-// The pseudo-inverse with one damping for all directions, and the posture's pull as hard as it comes: what is
-// usual, for comparison.
+// The usual method, for comparison: the pseudo-inverse with one damping for all directions, and an unbounded
+// pull towards the posture.
 inline model::VecN ByFixedDamping(const Scene& scene) {
   constexpr double kDamping = 0.01;  // relative to the Jacobian's size
   const Eigen::MatrixXd J = scene.feature.L_s * scene.J_C;
@@ -198,7 +198,7 @@ inline model::VecN ByConstrained(const Scene& scene, const NullSpaceConfig& wish
   return motion.limited.dq;
 }
 
-// The posture alone, pulling as hard as in the visual law, or no faster than `speed_max` [rad/s].
+// Only the pull towards the posture, with the visual law's gain, no faster than `speed_max` [rad/s].
 inline NullSpaceConfig PostureOnly(const config::ServoConfig& config, double speed_max) {
   NullSpaceConfig wishes;
   wishes.posture_gain = config.law.posture_gain;
@@ -209,7 +209,6 @@ inline NullSpaceConfig PostureOnly(const config::ServoConfig& config, double spe
   return wishes;
 }
 
-// All wishes.
 inline NullSpaceConfig AllWishes(const config::ServoConfig& config) {
   NullSpaceConfig wishes;
   wishes.posture_gain = config.law.posture_gain;

@@ -1,4 +1,4 @@
-// Kinematic resolution in closed loop: what the constrained problem is there for.
+// Kinematic resolution in closed loop: the benefit of limits inside the solver.
 #include <gtest/gtest.h>
 
 #include <iostream>

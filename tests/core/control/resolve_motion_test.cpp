@@ -13,7 +13,7 @@ namespace {
 
 using model::VecN;
 
-// Near a singular posture, and a task of the joints that leads further into it.
+// An arm near a singular posture, with a task in joint space that leads further into it.
 class ResolveMotionTest : public testing::Test {
  protected:
   ResolveMotionTest() : config_(test::PandaConfig()), q_(test::Ready()) {
@@ -68,12 +68,12 @@ TEST_F(ResolveMotionTest, SingularityLimitsTheLawButNotAJointMotion) {
 }
 
 TEST_F(ResolveMotionTest, JointMotionResetsTheSingularityEstimate) {
-  motion_.watch.sigma = 5.0;  // far off, where the arm was before
+  motion_.watch.sigma = 5.0;  // far from singular, as the arm was before
   Resolve(true);
   EXPECT_NE(Resolve(false), 0U);
 }
 
-// With all limits in force at once none is left out: planes and boxes that are far off change nothing.
+// With all limits in force at once no row is dropped: planes and boxes far away change nothing.
 TEST_F(ResolveMotionTest, AllPlanesAndBoxesLeaveRoomForTheOtherLimits) {
   config_.guard.view = {true, -0.6, 0.6, -0.5, 0.5, 0.5};
   features::TargetOutline outline;
@@ -81,7 +81,7 @@ TEST_F(ResolveMotionTest, AllPlanesAndBoxesLeaveRoomForTheOtherLimits) {
   outline.radius = 0.04;
   barriers::ViewedTarget target{outline, {}, J_C_};
   target.seen.X_CO.p = model::Vec3(0.0, 0.0, 0.4);
-  target.normal_C = model::Vec3(std::sqrt(1.0 - 0.51 * 0.51), 0.0, 0.51);  // nearly as tilted as it may be
+  target.normal_C = model::Vec3(std::sqrt(1.0 - 0.51 * 0.51), 0.0, 0.51);  // nearly at the tilt limit
   barriers::MotionLimits tilt;
   tilt.dq_min.setConstant(7, -1.0);
   tilt.dq_max.setConstant(7, 1.0);

@@ -1,4 +1,4 @@
-// Null-space wishes and the singularity's measure against finite differences, and the limit built on it.
+// Null-space wishes and the singularity measure against finite differences, and the limit based on it.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -188,7 +188,7 @@ TEST(SingularityTest, AgreesWithEigenAndFiniteDifferences) {
   EXPECT_EQ(of_nothing.gradient.norm(), 0.0);
 }
 
-// Steers the hand anywhere for some seconds, with the singularity's row as the only defence.
+// Moves the hand in a random direction for 2 s, limited only by speed ranges and the singularity row.
 TEST(SingularityTest, RowKeepsTheSmallestSingularValueAboveItsLimit) {
   const config::ServoConfig config = test::PandaConfig();
   const barriers::SingularityConfig limit;
@@ -226,7 +226,7 @@ TEST(SingularityTest, RowKeepsTheSmallestSingularValueAboveItsLimit) {
   }
   std::cout << "limit " << limit.sigma_min << ", deepest with it " << deepest << ", without it "
             << deepest_without << "\n";
-  EXPECT_LT(deepest_without, 0.5 * limit.sigma_min) << "the walks must be attacks";
+  EXPECT_LT(deepest_without, 0.5 * limit.sigma_min) << "the walks must lead into singular postures";
   EXPECT_GT(deepest, 0.9 * limit.sigma_min);
 }
 

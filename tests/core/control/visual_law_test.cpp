@@ -18,7 +18,7 @@ struct Scene {
   model::VecN q;
 };
 
-// A random posture well inside the range, with a sphere before the camera.
+// A random posture well inside the range, with a sphere in front of the camera.
 Scene RandomScene(test::RandomStates& random, const config::ServoConfig& config) {
   Scene scene;
   scene.q = test::Ready() + random.Joints(config.arm, 0.5);
@@ -31,7 +31,7 @@ Scene RandomScene(test::RandomStates& random, const config::ServoConfig& config)
   return scene;
 }
 
-// The joint velocities of the law where no limit is near.
+// The law's joint velocities when no limit is near.
 model::VecN Unlimited(const config::ServoConfig& config, const config::LawConfig& law,
                       const features::FeatureState& feature, const model::Mat6N& J_C, const model::VecN& q,
                       VisualLawOutput& out) {
@@ -51,7 +51,7 @@ TEST(VisualLawTest, CommandsExponentialDecayOfTheFeatureError) {
     const Scene s = RandomScene(random, config);
     VisualLawOutput out;
     const model::VecN dq_des = Unlimited(config, config.law, s.feature, s.J_C, s.q, out);
-    // What the joints then do to s, with the target's own share: ds/dt = lambda e, and e is goal less actual.
+    // Joints and target together must change s by ds/dt = lambda e, with e = goal - actual.
     const Eigen::VectorXd ds = s.feature.L_s * (s.J_C * dq_des) + s.feature.ds_dt_target;
     const Eigen::VectorXd wanted = config.law.lambda * (s.feature.s_star - s.feature.s);
     worst = std::max(worst, (ds - wanted).norm() / wanted.norm());
@@ -134,7 +134,7 @@ TEST(GainTest, ChangesFromNearToFarValueWithTheSetSlope) {
     const double slope = (GainAt(law, 1e-7) - GainAt(law, 0.0)) / 1e-7;
     EXPECT_NEAR(slope, near > law.lambda ? -law.lambda_slope : law.lambda_slope, 1e-3);
     double before = near;
-    for (double e = 0.01; e < 3.0; e += 0.01) {  // without a turn
+    for (double e = 0.01; e < 3.0; e += 0.01) {  // monotonic
       const double gain = GainAt(law, e);
       EXPECT_GT((gain - before) * (law.lambda - near), 0.0);
       before = gain;

@@ -1,5 +1,4 @@
-// The joints' way with the target in view: its place in the image against differences, and ways to their
-// ends.
+// Joint paths that keep the target in view: its place in the image against differences, and whole paths.
 #include "firmware/core/control/way_in_view.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +43,7 @@ VecN WayFrom(const config::ServoConfig& config, const VecN& q, const VecN& to_go
   return WayInView(to_goal, SeenFrom(config, q, X_BO), J_C, config.feature.p_CO_C_star);
 }
 
-// Along the way d(x)/dt = -(x - x*), whatever the goal; and it is the way to the goal but for that.
+// Along the path the image place x obeys dx/dt = -(x - x*) for any goal. The rest of the motion is unchanged.
 TEST(WayInViewTest, TargetImageDecaysToItsGoalAndTheRestOfTheMotionStays) {
   const config::ServoConfig config = Config();
   test::RandomStates random(81);
@@ -63,10 +62,10 @@ TEST(WayInViewTest, TargetImageDecaysToItsGoalAndTheRestOfTheMotionStays) {
     constexpr double kDt = 1e-6;
     const Eigen::Vector2d rate = (place(kDt) - place(-kDt)) / (2.0 * kDt);
     worst = std::max(worst, (rate + place(0.0)).norm());
-    // What was taken from the way lies in the span of the two rows: once more takes nothing.
+    // The correction lies in the span of the two image rows: a second one changes nothing.
     worst_rest = std::max(worst_rest, (WayFrom(config, q, way, X_BO) - way).norm());
   }
-  std::cout << "off by " << worst << " 1/s; the second time it changes by " << worst_rest << " rad\n";
+  std::cout << "off by " << worst << " 1/s; a second correction changes it by " << worst_rest << " rad\n";
   EXPECT_LT(worst, 1e-5);
   EXPECT_LT(worst_rest, 1e-5);
 }
@@ -89,7 +88,7 @@ WayTrial Try(const config::ServoConfig& config, const Pose& X_BO, const VecN& q,
   return way;
 }
 
-// The last joint turns by a third: the target stays in the middle, and the way is about as long.
+// The last joint turns by 2 rad: the target stays in the middle, and the path is about 2 rad long.
 TEST(WayInViewTest, ClearPathIsFollowedToItsEnd) {
   const config::ServoConfig config = Config();
   VecN q_goal = test::Ready();
@@ -114,7 +113,7 @@ TEST(WayInViewTest, PathBelowAPlaneBehindTheArmOrOutOfViewIsBlocked) {
   EXPECT_TRUE(Try(below, X_BO, test::Ready(), q_goal).barred);
 
   config::ServoConfig hidden = config;
-  hidden.guard.sight_clearance = 10.0;  // an arm so thick hides all
+  hidden.guard.sight_clearance = 10.0;  // so large a clearance hides every target
   EXPECT_TRUE(Try(hidden, X_BO, test::Ready(), q_goal).barred);
 
   config::ServoConfig narrow = config;

@@ -25,7 +25,7 @@ class WayToGoalTest : public testing::Test {
     return poses.X_BE * config_.X_EC;
   }
 
-  // A target that the camera has at its goal with the joints at `q`.
+  // Places the target so that the camera is at its goal with the joints at `q`.
   void PutTargetFor(const VecN& q) {
     X_BO_ = CameraAt(q) * Pose{config_.feature.R_CO_star, config_.feature.p_CO_C_star};
   }
@@ -52,8 +52,8 @@ class WayToGoalTest : public testing::Test {
     SteerByJoints(way_, q, seen, J_C, config_.feature.p_CO_C_star, task);
   }
 
-  // The last joint near its upper end, the goal a third of a turn further: only the long way round leads
-  // there.
+  // The last joint is near its upper end, the goal a third of a turn further: only the long way round leads
+  // there. Returns the start.
   VecN PutTargetPastTheEnd() {
     VecN q = test::Ready();
     q[6] = config_.arm.joints[6].q_max - 0.1;
@@ -93,7 +93,7 @@ TEST_F(WayToGoalTest, GoalInAnotherPostureIsReachedByJointMotion) {
   EXPECT_LT(task.v.lpNorm<Eigen::Infinity>(), 2.0);
 
   Stand(way_.goal.q, 1);
-  EXPECT_FALSE(way_.by_joints) << "there, the law takes over";
+  EXPECT_FALSE(way_.by_joints) << "at the goal posture the law takes over";
 }
 
 TEST_F(WayToGoalTest, JointMotionWaitsForAnUnambiguousTargetPose) {
@@ -114,18 +114,18 @@ TEST_F(WayToGoalTest, LawBlockedByLimitsSwitchesToJointMotion) {
   EXPECT_TRUE(way_.by_joints);
 }
 
-// The joints would get no further to it than the law.
+// Joint motion would come no nearer to it than the law.
 TEST_F(WayToGoalTest, DownhillPostureWithABlockedPathIsAbandoned) {
   VecN q_goal = test::Ready();
   q_goal[0] += 0.8;
   PutTargetFor(q_goal);
-  config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // no way keeps it in there
+  config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // no path keeps the target in this view
   Stand(test::Ready(), 300, hal::Bit(hal::Limit::kWorkspace));
   EXPECT_TRUE(way_.goal.downhill);
   EXPECT_FALSE(way_.goal.clear);
   Stand(test::Ready(), 300, hal::Bit(hal::Limit::kWorkspace));
   EXPECT_FALSE(way_.by_joints);
-  EXPECT_FALSE(way_.goal.found) << "another one is looked for";
+  EXPECT_FALSE(way_.goal.found) << "the search continues";
 }
 
 TEST_F(WayToGoalTest, PostureBlockedByLimitsIsReplacedByAnother) {
@@ -142,27 +142,27 @@ TEST_F(WayToGoalTest, PostureBlockedByLimitsIsReplacedByAnother) {
   }
   EXPECT_LT(ticks, 1000);
   Steer(q, task);
-  EXPECT_EQ(task.v.norm(), 0.0) << "stands while it looks for another";
+  EXPECT_EQ(task.v.norm(), 0.0) << "the arm stands during the search";
 
-  X_BO_.p.x() += 1.0;  // out of reach, so that it looks on
+  X_BO_.p.x() += 1.0;  // out of reach, so that the search goes on
   int first_held = -1;
   for (int i = 0; i < 2000; ++i) {
     first_held = first_held < 0 && NoteHeld(task, VecN::Zero(q.size()), way_) ? i : first_held;
     Stand(q, 1);
   }
-  EXPECT_NEAR(first_held, 1500, 5) << "for so long it may look for one";
-  EXPECT_EQ((way_.goal.q_dropped[0] - first).norm(), 0.0) << "what it only tries is not given up";
+  EXPECT_NEAR(first_held, 1500, 5) << "the longest time of a search";
+  EXPECT_EQ((way_.goal.q_dropped[0] - first).norm(), 0.0) << "a posture that was only tried is not dropped";
   X_BO_.p.x() -= 1.0;
   Stand(q, 3000);
   ASSERT_TRUE(way_.goal.found);
   EXPECT_GT((way_.goal.q - first).lpNorm<Eigen::Infinity>(), 0.1);
 }
 
-// While it lies neither downhill nor clear, the arm stands and looks on: the law would go where no way leads
-// on.
+// While no posture is downhill or has a clear path, the arm stands and the search goes on: the law would lead
+// into a dead end.
 TEST_F(WayToGoalTest, ArmStandsUntilAClearPathIsFound) {
   const VecN q = PutTargetPastTheEnd();
-  config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // no way keeps it in there
+  config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // no path keeps the target in this view
   Stand(q, 1000);
   EXPECT_TRUE(way_.by_joints);
   EXPECT_FALSE(way_.goal.found);
@@ -206,7 +206,7 @@ TEST_F(WayToGoalTest, DetourPostureIsVisitedBeforeTheGoal) {
   EXPECT_LT(task.v[6], -0.5);
 }
 
-// What lay downhill from the start may be far off by the time that the law gets stuck.
+// A posture downhill from the start may be far away when the law gets stuck.
 TEST_F(WayToGoalTest, StuckLawStartsANewPostureSearchFromThere) {
   VecN q_goal = test::Ready();
   q_goal[0] += 0.3;
@@ -215,14 +215,14 @@ TEST_F(WayToGoalTest, StuckLawStartsANewPostureSearchFromThere) {
   ASSERT_TRUE(way_.goal.downhill);
   const VecN far = way_.goal.q;
   VecN elsewhere = q_goal;
-  elsewhere[0] += 0.8;  // and back by the third joint, so that the elbow swings
+  elsewhere[0] += 0.8;  // the third joint turns back, so that the elbow swings
   elsewhere[2] -= 0.8;
   Stand(elsewhere, 600, hal::Bit(hal::Limit::kWorkspace));
   ASSERT_TRUE(way_.goal.found);
   EXPECT_LT((way_.goal.q - elsewhere).norm(), 0.9 * (far - elsewhere).norm());
 }
 
-// A ball may be seen from all around: while the law gets on, nothing is looked for.
+// A ball can be seen from any side: while the law makes progress, no search runs.
 TEST_F(WayToGoalTest, SphereStartsAPostureSearchOnlyOnceTheLawIsStuck) {
   config_.feature = features::TargetFeature{};
   ASSERT_TRUE(SeeksGoalPosture(config_));

@@ -1,4 +1,4 @@
-// The observer against an arm that obeys the model, moving and pushed.
+// The contact observer on an arm that follows its model, moving and pushed.
 #include "firmware/core/estimate/contact.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kGain = 30.0;  // [1/s]
 
-// Swings all joints by computed torque, with `push` on each of them from the second on; what is observed.
+// Swings all joints by computed torque; `push` [Nm] acts on each after 1 s. Returns the residual [Nm].
 model::VecN Observed(double push, double& worst_before) {
   const config::ServoConfig config = test::PandaConfig();
   test::IdealArm arm(config.arm, test::Ready());
@@ -66,8 +66,8 @@ TEST(ContactTest, ResidualEqualsThePushAndIsNearZeroWithoutOne) {
   }
 }
 
-// An arm that stands in the ready posture and is pushed with `push` on each joint from the start. It carries
-// that (`carries`) until `lays_down_s`.
+// An arm in the ready posture with `push` [Nm] on each joint from the start. If `carries`, the servo
+// compensates this load until `lays_down_s`, then fades it out.
 class PushedArm {
  public:
   PushedArm(double push, bool carries, double lays_down_s)
@@ -79,7 +79,7 @@ class PushedArm {
     reference_.ddq.setZero(7);
   }
 
-  // From now on its readings are those of this moment, with noise of their own [rad], [rad/s].
+  // From now on the encoders hang at their present values, plus noise [rad], [rad/s].
   void HangsWithNoise(double q_noise, double dq_noise) {
     q_hung_ = arm_.q();
     q_noise_ = q_noise;
@@ -87,7 +87,7 @@ class PushedArm {
     hangs_ = true;
   }
 
-  // Until `t_s`; what the joints are then off [rad].
+  // Runs until `t_s`. Returns the deflection of the joints [rad].
   model::VecN OffAt(double t_s) {
     for (; 1e-3 * tick_ < t_s; ++tick_) {
       Tick();
@@ -95,7 +95,7 @@ class PushedArm {
     return arm_.q() - reference_.q;
   }
 
-  // Mean of the torque until `t_s` [Nm].
+  // Runs until `t_s`. Returns the mean torque [Nm].
   model::VecN TorqueUntil(double t_s) {
     model::VecN sum = model::VecN::Zero(7);
     const int from = tick_;
@@ -153,7 +153,7 @@ class PushedArm {
   std::normal_distribution<double> noise_;
 };
 
-// Of its joint's Coulomb friction, what may hold it, against `push`; the largest.
+// The largest share of `push` that the friction of a joint may hold.
 double LeftToFriction(double push) {
   const config::ServoConfig config = test::PandaConfig();
   double left = 0.0;
@@ -163,20 +163,20 @@ double LeftToFriction(double push) {
   return left;
 }
 
-// By its springs alone it would go M^-1 push / omega_n^2. What friction may hold is left to the springs.
+// Uncompensated joints deflect by M^-1 push / omega_n^2. The share that friction may hold is left to them.
 TEST(CarryLoadTest, PushedArmSagsByAQuarterPlusTheFrictionShare) {
   const double push = 1.5;
   const model::VecN sags = PushedArm(push, false, 0.0).OffAt(2.0);
   const model::VecN stands = PushedArm(push, true, 1e9).OffAt(2.0);
   const double left = LeftToFriction(push);
-  std::cout << "off by its springs " << sags.norm() << " rad, when it is carried " << stands.norm()
-            << " rad; left to friction at most " << left << "\n";
+  std::cout << "deflection without compensation " << sags.norm() << " rad, with it " << stands.norm()
+            << " rad; share left to friction at most " << left << "\n";
   EXPECT_GT(sags.norm(), 1e-3);
   EXPECT_LT(left, 0.5);
   EXPECT_LT(stands.norm(), (0.25 + 0.75 * left + 0.01) * sags.norm());
 }
 
-// Nothing that friction may hold is carried: the two would hunt each other.
+// A load that friction may hold is not compensated: friction and compensation would hunt each other.
 TEST(CarryLoadTest, LoadBelowStictionIsNotCarried) {
   const config::ServoConfig config = test::PandaConfig();
   double least = HUGE_VAL;
@@ -187,20 +187,19 @@ TEST(CarryLoadTest, LoadBelowStictionIsNotCarried) {
   EXPECT_EQ(PushedArm(0.5 * least, true, 1e9).OffAt(1.0), PushedArm(0.5 * least, false, 0.0).OffAt(1.0));
 }
 
-// When it is to move, what it carried goes to the springs within a quarter of a second, and is not dropped.
+// When the arm is to move, the compensation fades within a quarter of a second: the load is not dropped.
 TEST(CarryLoadTest, CarriedLoadIsReleasedSlowly) {
   PushedArm arm(1.5, true, 1.0);
   const model::VecN carried = arm.OffAt(1.0);
   const double all = (PushedArm(1.5, false, 0.0).OffAt(2.0) - carried).norm();
   const double soon = (arm.OffAt(1.05) - carried).norm() / all;
   const double in_the_end = (arm.OffAt(1.6) - carried).norm() / all;
-  std::cout << "of what the springs give way by: after 50 ms " << soon << ", in the end " << in_the_end
-            << "\n";
+  std::cout << "share of the full deflection: after 50 ms " << soon << ", in the end " << in_the_end << "\n";
   EXPECT_LT(soon, 0.1);
   EXPECT_NEAR(in_the_end, 1.0, 0.01);
 }
 
-// A hand between the arm and a wall is not pressed harder and harder.
+// The compensation must not press a hand between arm and wall harder and harder.
 TEST(CarryLoadTest, CarriedTorqueIsCappedAtItsLimit) {
   const config::ServoConfig config = test::PandaConfig();
   const double most = config.safety.carried_torque_fraction;
@@ -218,8 +217,7 @@ TEST(CarryLoadTest, CarriedTorqueIsCappedAtItsLimit) {
   }
 }
 
-// Where no reading follows the arm any more, each torque looks like a push. The torque stays what it was, for
-// as long as nobody notices.
+// With encoders that hang, every torque looks like a push. The compensating torque must then stay constant.
 TEST(CarryLoadTest, StuckEncodersFreezeTheCarriedTorque) {
   PushedArm arm(1.5, true, 1e9);
   arm.OffAt(1.5);

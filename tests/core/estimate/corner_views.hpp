@@ -1,4 +1,4 @@
-// Views of a flat target's corners from a camera that moves, with noise of a given size, for tests.
+// Test data: views of a flat target's corners from a moving camera, with noise of a given size.
 #pragma once
 
 #include <Eigen/Dense>
@@ -51,7 +51,7 @@ inline SeenCorners::Vector CornersOf(const Polygon& polygon, const Pose& X_CO) {
   return xy;
 }
 
-// The target in the camera's axes, corners off by `sigma_px`, their first one named the `shift`th.
+// The view in frame `frame`: corners with noise `sigma_px`, the polygon's first corner numbered `shift`.
 inline CornerView ViewOf(const Polygon& polygon, const Pose& X_BC, const Pose& X_BO, int frame,
                          double sigma_px, Draw& draw, int shift = 0) {
   CornerView view;
@@ -74,7 +74,7 @@ inline CornerView ViewOf(const Polygon& polygon, const Pose& X_BC, const Pose& X
   return view;
 }
 
-// A camera that goes to and fro over the table, looking down.
+// A camera that moves to and fro above the table and looks down.
 inline Pose CameraAt(double t, double swing = 1.0) {
   Pose X_BC;
   X_BC.R = Turned({3.14159265, 0.0, 0.0}) *

@@ -12,8 +12,8 @@ using model::Mat3;
 using model::Pose;
 using model::Vec3;
 
-// A disc at 0.5 m below the base, of normal `n`, as a camera at `p_BC` that looks at it measures it: the pose
-// that is not true first.
+// The measurement of a disc 0.5 m below the base with normal `n`, from a camera at `p_BC` that looks at it.
+// The false pose comes first.
 hal::FeatureMeasurement See(const Vec3& n, const Vec3& p_BC, Pose& X_BC) {
   const Vec3 disc(0.0, 0.0, -0.5);
   const Vec3 ray = (disc - p_BC).normalized();
@@ -42,7 +42,8 @@ TEST(DiscHypothesesTest, CameraMotionSelectsTheTruePose) {
   int changes = 0;
   Pose X_BC;
   const hal::FeatureMeasurement first = See(kNormal, {0.0, 0.0, 0.0}, X_BC);
-  EXPECT_EQ(TakeView(first, X_BC, hypotheses).pose, 0) << "one view does not tell: the eye's first counts";
+  EXPECT_EQ(TakeView(first, X_BC, hypotheses).pose, 0)
+      << "one view does not decide: the detector's first pose counts";
   Verdict verdict;
   for (int i = 1; i <= 30; ++i) {
     const hal::FeatureMeasurement m = See(kNormal, {0.005 * i, -0.004 * i, 0.0}, X_BC);
@@ -59,7 +60,7 @@ TEST(DiscHypothesesTest, CameraMotionSelectsTheTruePose) {
 TEST(DiscHypothesesTest, FrontalViewKeepsTheKnownPose) {
   PoseHypotheses hypotheses;
   Pose X_BC;
-  // Past the normal itself, where both poses are one and change places.
+  // The camera crosses the normal, where both poses coincide and swap.
   for (int i = 0; i <= 60; ++i) {
     const double along = 0.02 * i;
     const Vec3 p_BC = Vec3(0.0, 0.0, -0.5) - 0.5 * (kNormal + Vec3(0.0, 0.6 - along, 0.0)).normalized();
@@ -76,10 +77,10 @@ TEST(DiscHypothesesTest, TurningDiscIsFollowed) {
   PoseHypotheses hypotheses;
   Pose X_BC;
   for (int i = 0; i <= 90; ++i) {
-    const double angle = 0.02 * i;  // in all 103 degrees about the vertical
+    const double angle = 0.02 * i;  // 103 degrees in total about the vertical
     const Vec3 n = Vec3(0.5 * std::cos(angle), 0.5 * std::sin(angle), -1.0).normalized();
     hal::FeatureMeasurement m = See(n, {0.1, 0.0, 0.0}, X_BC);
-    std::swap(m.poses[0], m.poses[1]);  // begun rightly
+    std::swap(m.poses[0], m.poses[1]);  // the true pose first
     EXPECT_EQ(TakeView(m, X_BC, hypotheses).pose, 0) << i;
   }
 }

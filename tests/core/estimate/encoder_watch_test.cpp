@@ -1,4 +1,4 @@
-// Encoders that hang, and those that only stand still.
+// Encoders that hang, and encoders whose joint only rests.
 #include "firmware/core/estimate/encoder_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ class EncoderWatchTest : public testing::Test {
     model::ComputePoses(config_.arm, q_, poses);
     model::ComputeDynamics(config_.arm, poses, dq_, dynamics_);
   }
-  // Ticks until a joint is said to hang; -1: not within `most`.
+  // Ticks until a joint is reported to hang; -1: not within `most`.
   int TicksUntil(int most) {
     for (int tick = 1; tick <= most; ++tick) {
       joint_ = WatchEncoders(config_, {q_, dq_, dynamics_, residual_, reference_, drives_}, watch_);
@@ -43,7 +43,7 @@ class EncoderWatchTest : public testing::Test {
 };
 
 TEST_F(EncoderWatchTest, RestingJointUnderLoadIsSound) {
-  for (int tick = 0; tick < 600; ++tick) {  // a weight that nobody knows, taken up while the joint moves
+  for (int tick = 0; tick < 600; ++tick) {  // an unknown load, picked up while the joint moves
     residual_[1] += 0.03 * (30.0 - residual_[1]);
     q_[1] += 1e-3;
     ASSERT_EQ(TicksUntil(1), -1);
@@ -65,8 +65,8 @@ TEST_F(EncoderWatchTest, UnbalancedTorqueWithoutMotionIsDetected) {
   }
 }
 
-// The observer comes to a push with its own time constant, of which the watch knows: it is as soon as if the
-// push were seen at once.
+// The observer reports a push with a time constant. The watch knows this constant, so it detects the fault as
+// soon as if the push were seen at once.
 TEST_F(EncoderWatchTest, ObserverDelayDoesNotDelayDetection) {
   const double share = 1e-3 * config_.safety.contact_gain;
   for (int joint = 0; joint < 7; ++joint) {
@@ -79,7 +79,7 @@ TEST_F(EncoderWatchTest, ObserverDelayDoesNotDelayDetection) {
       residual_[joint] += share * (pushed - residual_[joint]);
       ++ticks;
     } while (TicksUntil(1) < 0 && ticks < 1000);
-    // Until a joint that is free had gone three quanta by it, at best.
+    // Best possible: the time in which this torque moves a free joint by three quanta.
     const double M = 1.0 / dynamics_.M.inverse()(joint, joint);
     const double way = 3.0 * config_.safety.encoder_quantum;
     const double least = 1e3 * std::sqrt(2.0 * way * M / std::fabs(pushed));
@@ -89,8 +89,8 @@ TEST_F(EncoderWatchTest, ObserverDelayDoesNotDelayDetection) {
   }
 }
 
-// A load is let go while the joint gives way to it: it goes on, turns round and comes back within one step of
-// its encoder. Its velocity tells that it lives; that of a joint that hangs stays the same.
+// A load is released while the joint gives way to it: the joint goes on, reverses and comes back within one
+// encoder step. A velocity that changes shows that the encoder works; a hanging one stays the same.
 TEST_F(EncoderWatchTest, JointReversingWithinOneEncoderStepIsSound) {
   for (const bool lives : {true, false}) {
     watch_ = EncoderWatch{};
@@ -109,7 +109,7 @@ TEST_F(EncoderWatchTest, JointReversingWithinOneEncoderStepIsSound) {
         break;
       }
     }
-    std::cout << (lives ? "lives" : "hangs") << ": " << tick << " ticks\n";
+    std::cout << (lives ? "works" : "hangs") << ": " << tick << " ticks\n";
     EXPECT_EQ(tick < 30, !lives);
   }
 }
@@ -130,7 +130,7 @@ TEST_F(EncoderWatchTest, VelocityWithoutMotionIsDetectedWithoutTheObserver) {
   EXPECT_LE(ticks, 10);
 }
 
-// A light joint takes so little torque that the observer sees nothing: but its reference has gone on.
+// A light joint needs so little torque that the observer sees nothing, but its reference moves on.
 TEST_F(EncoderWatchTest, AdvancingReferenceWithoutMotionIsDetected) {
   for (int joint = 0; joint < 7; ++joint) {
     watch_ = EncoderWatch{};
@@ -147,8 +147,8 @@ TEST_F(EncoderWatchTest, AdvancingReferenceWithoutMotionIsDetected) {
   }
 }
 
-// A joint that rests, whose noise ceases: nothing pushed it, and yet its encoder hangs. One that never had
-// noise may stand still for ever, and so may one that only moved.
+// The noise of a resting joint ceases: nothing pushed it, and yet its encoder hangs. An encoder that never
+// had noise may stay constant for ever, and so may one that only moved.
 TEST_F(EncoderWatchTest, CeasedEncoderNoiseIsDetected) {
   test::RandomStates random(7);
   for (int tick = 0; tick < 5000; ++tick) {
@@ -166,7 +166,7 @@ TEST_F(EncoderWatchTest, CeasedEncoderNoiseIsDetected) {
   EXPECT_EQ(TicksUntil(10'000), -1);
 }
 
-// Noise at rest is known a fifth of a second after the start, before anything moves the arm.
+// The watch knows the noise at rest a fifth of a second after the start, before anything moves the arm.
 TEST_F(EncoderWatchTest, NoiseIsLearnedWithinAFifthOfASecond) {
   test::RandomStates random(11);
   for (int tick = 0; tick < 200; ++tick) {
@@ -182,8 +182,8 @@ TEST_F(EncoderWatchTest, NoiseIsLearnedWithinAFifthOfASecond) {
   EXPECT_EQ(TicksUntil(1000), config_.safety.frozen_ticks);
 }
 
-// An encoder with steps whose velocity is their difference flickers while its joint moves, and trembles by a
-// step now and then at rest. Then it stands still for ever: it has no noise that could cease.
+// An encoder with coarse steps, whose velocity is their difference, flickers while its joint moves and jumps
+// by a step now and then at rest. Then it stays constant for ever: it has no noise that could cease.
 TEST_F(EncoderWatchTest, FlickeringStepsAreNotTakenForNoise) {
   const double quantum = config_.safety.encoder_quantum;
   test::RandomStates random(12);
@@ -204,7 +204,7 @@ TEST_F(EncoderWatchTest, FlickeringStepsAreNotTakenForNoise) {
   EXPECT_EQ(TicksUntil(10'000), -1);
 }
 
-// What is read changes by a step of the encoder now and then: it works.
+// A reading that changes by one encoder step now and then is sound.
 TEST_F(EncoderWatchTest, ReadingChangingByOneStepIsSound) {
   for (int step = 0; step < 50; ++step) {
     residual_[1] = step % 2 == 0 ? 1.5 : -1.5;

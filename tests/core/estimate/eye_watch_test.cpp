@@ -1,4 +1,4 @@
-// Eyes that cannot be steered by.
+// Measurements that must not be used for steering.
 #include "firmware/core/estimate/eye_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ namespace {
 
 using model::Vec3;
 
-// The camera goes along x at `hand(t)` [m/s] over a target at `target(t)` [m] that is seen through `eye`; how
-// far it went until that was doubted [m], or -1.
+// The camera moves along x at `hand(t)` [m/s] over a target at `target(t)` [m], which it measures through
+// `eye`. Returns the way until the watch doubts the measurements [m], or -1.
 template <class Hand, class Target, class Eye>
 double WayUntilDoubted(double duration_s, const Hand& hand, const Target& target, const Eye& eye) {
   const config::PredictConfig config;
@@ -49,12 +49,12 @@ TEST(EyeWatchTest, RestingOrTrackedTargetIsNotDoubted) {
   EXPECT_EQ(WayUntilDoubted(
                 20.0, [](double t) { return 0.4 * std::sin(3.0 * t); }, kStill, kTrue),
             -1.0);
-  // Followed on a circle, 0.1 s behind.
+  // Tracked to and fro, 0.1 s behind.
   EXPECT_EQ(WayUntilDoubted(
                 20.0, [](double t) { return 0.2 * std::cos(2.0 * (t - 0.1)); },
                 [](double t) { return 0.1 * std::sin(2.0 * t); }, kTrue),
             -1.0);
-  // Caught up with from rest, in half a second.
+  // From rest, the hand reaches the target's speed in half a second.
   EXPECT_EQ(WayUntilDoubted(
                 5.0, [](double t) { return 0.3 * std::min(1.0, 2.0 * t); }, [](double t) { return 0.3 * t; },
                 kTrue),
@@ -71,7 +71,7 @@ TEST(EyeWatchTest, SteeringThatDoesNotReduceTheErrorIsDoubted) {
   }
   std::cout << "after " << way << " m\n";
   EXPECT_LT(way, 1.5);
-  // An error that falls, and one that stays small while a target is followed for hours.
+  // An error that falls, then one that stays small while a target is tracked for long.
   EyeWatch sound;
   for (int tick = 0; tick < 4000; ++tick) {
     WatchSteering(config, std::exp(-1e-3 * tick), 0.5, sound);

@@ -1,4 +1,4 @@
-// The rule by which one of some hypotheses is believed, and the views that it looks at.
+// The rule that selects one of several hypotheses, and the views that it compares them with.
 #include "firmware/core/estimate/hypothesis_set.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ Set Of(const std::vector<Guess>& guesses, int num_views = 8) {
   return set;
 }
 
-TEST(HypothesisSetTest, AnotherIsBelievedOnceItFitsBetterByTheMargin) {
+TEST(HypothesisSetTest, BetterFitByTheMarginIsSelected) {
   Set set = Of({{1.0, 14.0}, {2.0, 9.5}, {3.0, 12.0}});
   EXPECT_FALSE(set.Choose(kEntries));
   EXPECT_EQ(set.best().value, 1.0);
@@ -49,10 +49,10 @@ TEST(HypothesisSetTest, AnotherIsBelievedOnceItFitsBetterByTheMargin) {
   EXPECT_TRUE(set.Choose(kEntries));
   EXPECT_EQ(set.best().value, 2.0);
   EXPECT_EQ(set.count, 3);
-  EXPECT_FALSE(set.Choose(kEntries)) << "it stays believed";
+  EXPECT_FALSE(set.Choose(kEntries)) << "it stays selected";
 }
 
-TEST(HypothesisSetTest, FromTooFewPlacesNothingCountsAsStill) {
+TEST(HypothesisSetTest, TooFewViewsLeaveStillnessUnknown) {
   Set set = Of({{1.0, 1.0}}, 3);
   EXPECT_FALSE(set.Choose(kEntries));
   EXPECT_EQ(set.stillness, Stillness::kUnknown);
@@ -61,33 +61,33 @@ TEST(HypothesisSetTest, FromTooFewPlacesNothingCountsAsStill) {
   EXPECT_EQ(set.stillness, Stillness::kStill);
 }
 
-TEST(HypothesisSetTest, WhereNoneFitsTheMotionSpeaks) {
+TEST(HypothesisSetTest, BadStillFitSelectsByMotion) {
   Set set = Of({{1.0, 24.0, 1.0}, {2.0, 21.0, 30.0}});
   EXPECT_FALSE(set.Choose(kEntries));
   EXPECT_EQ(set.stillness, Stillness::kMoving);
   EXPECT_EQ(set.best().value, 1.0);
-  EXPECT_EQ(set.count, 1) << "by its motion the second one has no chance";
+  EXPECT_EQ(set.count, 1) << "the second one does not fit the motion";
   set = Of({{1.0, 22.9, 30.0}, {2.0, 24.0, 1.0}});
-  EXPECT_FALSE(set.Choose(kEntries)) << "what is believed has credit";
+  EXPECT_FALSE(set.Choose(kEntries)) << "the selected one has credit";
   EXPECT_EQ(set.stillness, Stillness::kStill);
   set = Of({{1.0, NAN, NAN}});
   EXPECT_FALSE(set.Choose(kEntries));
-  EXPECT_EQ(set.stillness, Stillness::kMoving) << "what is no number fits nothing";
+  EXPECT_EQ(set.stillness, Stillness::kMoving) << "NaN fits nothing";
   EXPECT_EQ(set.count, 1);
 }
 
-TEST(HypothesisSetTest, OnesWithoutAChanceAreGivenUpAndOfTwoThatMeetTheWorse) {
+TEST(HypothesisSetTest, HopelessAndDuplicateHypothesesAreDropped) {
   Set set = Of({{1.0, 40.0}, {2.0, 1.0}, {2.05, 2.0}, {3.0, 20.5}});
   set.believed = 2;
   EXPECT_FALSE(set.Choose(kEntries));
   ASSERT_EQ(set.count, 2);
-  EXPECT_EQ(set.best().value, 2.05) << "the believed one stays, though worse by less than the margin";
+  EXPECT_EQ(set.best().value, 2.05) << "the selected one stays: it is worse, but by less than the margin";
   EXPECT_EQ(set.believed, 0);
   EXPECT_EQ(set.all[1].value, 3.0);
 }
 
-// However far the camera goes, the views cover its whole way evenly, and the first one stays.
-TEST(ViewsAlongTheWayTest, TheStepDoublesWhenTheyAreTooMany) {
+// However far the camera moves, the views cover its whole way evenly, and the first one stays.
+TEST(ViewsAlongTheWayTest, StepDoublesWhenTheViewsAreFull) {
   ViewsAlongTheWay<Place, 8> views;
   for (int i = 0; i < 1000; ++i) {
     views.Keep({0.5 * i});
@@ -101,12 +101,12 @@ TEST(ViewsAlongTheWayTest, TheStepDoublesWhenTheyAreTooMany) {
   }
   EXPECT_EQ(views.step, 64.0);
   views.Keep({NAN});
-  EXPECT_EQ(views.count, 8) << "what is no number is no way";
+  EXPECT_EQ(views.count, 8) << "a view at NaN is not kept";
   views.Forget();
   EXPECT_EQ(views.count, 0);
   views.Keep({7.0});
   views.Keep({8.0});
-  EXPECT_EQ(views.count, 2) << "the step is the first one again";
+  EXPECT_EQ(views.count, 2) << "the step is reset";
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Which of the poses that three corners allow is the true one; and where all views say that a still target
-// is.
+// Selects the true one of the poses that three corners allow, and finds a still target from all views.
 #include "firmware/core/estimate/pose_hypotheses.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,7 @@
 namespace fovea::estimate {
 namespace {
 
-// A detector that sees something else now and then.
+// A detector that reports another place now and then.
 TEST(PlateHypothesesTest, RejectsOutliersAndRestartsAfterSeveral) {
   config::PredictConfig config;
   config.gate_rejects_max = 3;
@@ -51,7 +50,7 @@ TEST(PlateHypothesesTest, RejectsOutliersAndRestartsAfterSeveral) {
   EXPECT_EQ(empty.plate.count, 0);
 }
 
-// Poses in which the triangle's corners look as in `xy`, in any order: Newton's method from many starts.
+// All poses that put the triangle's corners at `xy`, in any order: Newton's method from many starts.
 std::vector<SeenCorners::Branch> AllPoses(const Polygon& triangle, const SeenCorners::Vector& xy,
                                           Draw& draw) {
   std::vector<SeenCorners::Branch> all;
@@ -73,7 +72,7 @@ std::vector<SeenCorners::Branch> AllPoses(const Polygon& triangle, const SeenCor
         d[k] = 1e-6;
         J.col(k) = 1e6 * (CornersOf(triangle, {Turned(d.tail<3>()) * X.R, X.p + d.head<3>()}) - now);
       }
-      // Held back a little, so that it ends at the nearest pose too where noise leaves none.
+      // Damped a little, so that it ends at the nearest pose where noise leaves no exact one.
       const Eigen::Matrix<double, 6, 6> normal =
           J.transpose() * J + 1e-7 * Eigen::Matrix<double, 6, 6>::Identity();
       Eigen::Matrix<double, 6, 1> step = normal.ldlt().solve(J.transpose() * e);
@@ -92,8 +91,8 @@ std::vector<SeenCorners::Branch> AllPoses(const Polygon& triangle, const SeenCor
   return all;
 }
 
-// The camera comes over a still triangle, which lies any way. In the first image all poses stand side by
-// side, the most squarely seen one first; in the end the true one alone is left.
+// The camera moves over a still triangle with any orientation. After the first image all poses remain
+// possible, the most frontal one first. In the end only the true one is left.
 TEST(PlateHypothesesTest, CameraMotionFindsTheTruePoseOfATriangle) {
   config::PredictConfig config;
   const Polygon triangle = features::MakeTriangle(features::kDefaultTriangle);
@@ -151,17 +150,17 @@ TEST(PlateHypothesesTest, CameraMotionFindsTheTruePoseOfATriangle) {
   std::sort(nees.begin(), nees.end());
   const double median = nees[nees.size() / 2];
   std::cout << "up to " << most << " poses; the first one wrong in " << first_was_wrong
-            << ", the last wrong one believed for " << last_wrong_s << " s; right in the end " << right
+            << ", a wrong one believed for at most " << last_wrong_s << " s; right in the end " << right
             << ", alone " << alone << " of " << kRuns << "; median normalised squared error " << median
             << ", expected 5.3\n";
   EXPECT_GE(most, 4);
   EXPECT_GT(first_was_wrong, kRuns / 10);
-  EXPECT_GE(right, kRuns - 1) << "one is not told apart within two seconds";
+  EXPECT_GE(right, kRuns - 1) << "at most one run may still be wrong after two seconds";
   EXPECT_GE(alone, 54);
   EXPECT_LT(median, 7.0);
 }
 
-// From aside to straight above the target within two seconds, then at rest there.
+// The camera moves from the side to straight above the target within two seconds, then rests.
 Pose ComesOver(const Pose& X_BO, double t) {
   const double s = std::min(0.5 * t, 1.0);
   Pose X_BC;
@@ -172,8 +171,8 @@ Pose ComesOver(const Pose& X_BO, double t) {
   return X_BC;
 }
 
-// What is wrong with the corners from above, a quarter of a pixel of one of them, is wrong in every frame:
-// for the filter it is much news, and the tilt goes. The views from aside know better.
+// Seen from above, one corner is wrong by a quarter of a pixel in every frame. The filter counts each frame
+// as new information, so its tilt becomes wrong. The views from the side correct this.
 TEST(PlateHypothesesTest, AllViewsOfAStillTargetOutweighOneBiasedPlace) {
   const config::PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);
@@ -198,8 +197,8 @@ TEST(PlateHypothesesTest, AllViewsOfAStillTargetOutweighOneBiasedPlace) {
   EXPECT_LT(all, 0.25);
 }
 
-// A camera that comes to rest by and by, as at the end of every approach: frames that look nearly alike are
-// not taken for frames from one place. Without noise all that is left of an error is the mean's.
+// A camera that slowly comes to rest, as at the end of every approach: frames that look nearly alike must not
+// count as frames from one place. Without noise the only error left is that of the mean.
 TEST(PlateHypothesesTest, CreepingCameraDoesNotBiasTheMean) {
   const config::PredictConfig config;
   const Polygon square = features::MakeSquare(0.08);
@@ -245,7 +244,7 @@ TEST(PlateHypothesesTest, StartOfMotionEndsTheStillState) {
       worst = std::max(worst, (MotionAt(config, hypotheses, hypotheses.stamp_ns).X_BO.p - X_BO.p).norm());
     }
   }
-  std::cout << "still for " << still_until - kSetsOut << " frames more, off by at most " << 1e3 * worst
+  std::cout << "still for " << still_until - kSetsOut << " more frames, off by at most " << 1e3 * worst
             << " mm\n";
   EXPECT_GE(still_until, kSetsOut - 1);
   EXPECT_LE(still_until, kSetsOut + 3);

@@ -1,5 +1,4 @@
-// A flat target's pose from its corners: exact for its own model, honest about its covariance, not led
-// astray.
+// A flat target's pose from its corners: exact for its motion model, with a consistent covariance.
 #include "firmware/core/estimate/pose_filter.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +25,7 @@ TEST(PoseFilterTest, FollowsAConstantMotionExactly) {
     ASSERT_TRUE(StartPose(polygon, first, first.seen.branches[0], filter));
     double distance2 = 0.0;
     for (int k = 1; k < 90; ++k) {
-      // Vision names another corner the first one in each image.
+      // Vision may begin with another corner in each image.
       const CornerView view =
           ViewOf(polygon, CameraAt(k * kFrameS), truth(k * kFrameS), k, 0.0, draw, k % polygon.num_corners);
       ASSERT_TRUE(UpdatePose(config, polygon, view, filter, distance2)) << k << ": " << distance2;
@@ -44,10 +43,10 @@ TEST(PoseFilterTest, FollowsAConstantMotionExactly) {
   }
 }
 
-// Normalised squared error of pose and rates over many runs: as many on average as there are, when the
-// covariance is true. The camera moves, the target turns and is pushed about as its model says. Over the
-// triangle the camera stays inside the cylinder through its corners: on it two of its poses are one, and
-// which one a target that moves anyhow went on to is not to be seen.
+// Mean normalised squared error of pose and rates over many runs: it equals their dimension if the covariance
+// is right. The camera moves; the target moves and turns at random, as its model assumes. Above the triangle
+// the camera stays inside the cylinder through its corners: on that cylinder two poses coincide, and no image
+// shows with which of them a freely moving target goes on.
 TEST(PoseFilterTest, CovarianceIsConsistentForATargetOfItsModel) {
   config::PredictConfig config;
   config.target_jerk = 0.3;

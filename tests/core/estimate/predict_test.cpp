@@ -1,4 +1,4 @@
-// From measurements that are old when they come to where the target is now.
+// Predicts where the target is now from measurements that are old on arrival.
 #include "firmware/core/estimate/predict.hpp"
 
 #include <gtest/gtest.h>
@@ -65,8 +65,8 @@ class PredictTest : public testing::Test {
   EyeWatch eye_;
 };
 
-// A target on a circle, a camera that moves, measurements 40 ms old at 30 Hz: the prediction is where the
-// target is now, and the newest measurement as it came is not.
+// A target on a circle, a moving camera, measurements 40 ms old at 30 Hz: the prediction is where the target
+// is now. The newest measurement, held, is not.
 TEST_F(PredictTest, CompensatesLatencyWhileCameraAndTargetMove) {
   const auto target = [](double t) {
     return model::Vec3(0.55 + 0.1 * std::cos(2.0 * t), 0.1 * std::sin(2.0 * t), 0.05);
@@ -135,7 +135,7 @@ TEST_F(PredictTest, RejectsUnusableMeasurementsWithTheirReason) {
   }
 }
 
-// It goes out of its region, where it is not believed: nor is it thought to go on there by itself.
+// The target leaves its region. Measurements there are refused, and the prediction does not leave the region.
 TEST_F(PredictTest, NothingIsAcceptedOrPredictedOutsideTheTargetRegion) {
   const auto target = [](double t) { return model::Vec3(0.55, 0.1 + 0.2 * t, 0.2 - 0.5 * t); };
   config_.predict.target_region.low.z() = -0.05;
@@ -159,7 +159,7 @@ TEST_F(PredictTest, NothingIsAcceptedOrPredictedOutsideTheTargetRegion) {
   }
   EXPECT_EQ(lowest, -0.05);
   EXPECT_GE(refused, 14);
-  EXPECT_NEAR(v_y, 0.2, 0.02) << "along its region's end it goes on";
+  EXPECT_NEAR(v_y, 0.2, 0.02) << "it moves on along the edge of the region";
 }
 
 TEST_F(PredictTest, KnowsTheTargetAfterEnoughMeasurements) {
@@ -178,9 +178,8 @@ TEST_F(PredictTest, KnowsTheTargetAfterEnoughMeasurements) {
   }
 }
 
-// A frozen picture: the measurement goes with the camera. The one that froze was true; all that follow once
-// the hand has moved on are none, by fresh noise or without; and when the camera works again, it is believed
-// again.
+// A frozen picture: the measurement moves with the camera. The first one is true. Once the hand has moved on,
+// all others are rejected. When the camera works again, its measurements are taken again.
 TEST_F(PredictTest, FrozenPictureIsRejected) {
   const model::Vec3 target(0.55, 0.1, 0.05);
   PredictState state;
@@ -210,7 +209,7 @@ TEST_F(PredictTest, FrozenPictureIsRejected) {
     EXPECT_TRUE(freezes || intake == hal::Intake::kTaken) << ms;
     fastest = std::max(fastest, ms > 300 ? Predict(config_, now, CameraAt(t), state).v_BO.norm() : 0.0);
   }
-  std::cout << taken << " taken, " << stuck << " stuck; the target is thought to go at most " << fastest
+  std::cout << taken << " taken, " << stuck << " stuck; estimated speed of the target at most " << fastest
             << " m/s\n";
   EXPECT_GE(stuck, 28);
   EXPECT_LT(fastest, 0.02);
@@ -231,8 +230,8 @@ TEST_F(PredictTest, UnchangedPictureWithTheArmAtRestIsAccepted) {
   }
 }
 
-// A hand that starts and turns round at speed, as seen by noise of 0.1 mm: stamps or a mount that are off
-// make outliers of what was seen rightly, unless the filter knows that they may be.
+// A hand that reverses at speed, with 0.1 mm of measurement noise: wrong stamps or a wrong mount make
+// outliers of correct measurements, unless the filter allows for such errors.
 TEST_F(PredictTest, KnownStampAndMountErrorsAreNoOutliers) {
   const auto joints_at = [](double t) {
     model::VecN q = test::Ready();
@@ -274,13 +273,13 @@ TEST_F(PredictTest, KnownStampAndMountErrorsAreNoOutliers) {
       }
     }
     std::cout << (by_mount ? "mount 5 deg off: " : "stamps 8 ms off: ") << outliers[0]
-              << " outliers by noise alone, " << outliers[1] << " with the doubt\n";
+              << " outliers with noise alone, " << outliers[1] << " with calibration errors allowed for\n";
     EXPECT_GT(outliers[0], 5);
     EXPECT_EQ(outliers[1], 0);
   }
 }
 
-// Three outliers in a row start the filter anew; the servo goes on by what was believed, and is not lost.
+// Three outliers in a row restart the filter. Meanwhile the servo goes on with the old estimate.
 TEST_F(PredictTest, RestartedFilterCoastsOnTheOldEstimate) {
   PredictState state;
   const model::Vec3 target = CameraAt(0.0) * model::Vec3(0.02, 0.0, 0.4);
@@ -305,7 +304,7 @@ TEST_F(PredictTest, RestartedFilterCoastsOnTheOldEstimate) {
       EXPECT_EQ(p.age_ns, 0);
     }
   }
-  EXPECT_EQ(newest_age_ns, 4 * 33 * hal::kNsPerMs) << "what is believed gets old";
+  EXPECT_EQ(newest_age_ns, 4 * 33 * hal::kNsPerMs) << "the old estimate ages";
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(TargetFilterTest, FollowsAConstantAccelerationExactly) {
 }
 
 TEST(TargetFilterTest, CovarianceIsConsistentForATargetOfItsModel) {
-  // Normalised squared error of [p; v; a] over many runs: 9 on average when the covariance is true.
+  // Normalised squared error of [p; v; a] over many runs: 9 on average if the covariance is right.
   config::PredictConfig config;
   config.target_speed_max = config.target_acceleration_max = 1e3;  // its own model has no bounds
   std::mt19937_64 engine(11);
@@ -98,18 +98,18 @@ TEST(TargetFilterTest, RejectsOutliersAndRestartsWhenTheTargetMoved) {
   }
   const Vec3 far = p + Vec3(0.2, 0.0, 0.0);
   EXPECT_EQ(Update(config, {StampOf(k++), far, cov}, filter), Intake::kOutlier);
-  EXPECT_LT((filter.x[0] - p).norm(), 1e-6) << "one outlier is left out";
+  EXPECT_LT((filter.x[0] - p).norm(), 1e-6) << "one outlier is ignored";
   EXPECT_EQ(Update(config, {StampOf(k++), p, cov}, filter), Intake::kTaken);
   EXPECT_EQ(filter.rejected_in_row, 0);
   EXPECT_EQ(Update(config, {StampOf(k++), far, cov}, filter), Intake::kOutlier);
   EXPECT_EQ(Update(config, {StampOf(k++), far, cov}, filter), Intake::kOutlier);
   EXPECT_EQ(Update(config, {StampOf(k++), far, cov}, filter), Intake::kTaken)
-      << "three in a row: it is there now";
+      << "three in a row: the target has moved";
   EXPECT_LT((filter.x[0] - far).norm(), 1e-12);
   EXPECT_EQ(filter.accepted, 1);
 }
 
-// What calibration may explain is no outlier, and moves the estimate as any other measurement does.
+// An error that calibration may explain is no outlier: the measurement moves the estimate like any other.
 TEST(TargetFilterTest, CalibrationDoubtWidensOnlyTheGate) {
   config::PredictConfig config;
   const Vec3 p(0.5, 0.1, 0.04);
@@ -126,7 +126,7 @@ TEST(TargetFilterTest, CalibrationDoubtWidensOnlyTheGate) {
             Intake::kOutlier);
 }
 
-// Whatever is measured: a target carried off by an adversary is never thought faster than it may be.
+// Whatever an adversary measures, the estimated speed and acceleration of the target stay bounded.
 TEST(TargetFilterTest, SpeedAndAccelerationStayWithinTheirBounds) {
   config::PredictConfig config;
   config.target_speed_max = 0.5;
@@ -147,7 +147,7 @@ TEST(TargetFilterTest, SpeedAndAccelerationStayWithinTheirBounds) {
   std::cout << "at most " << fastest << " m/s, " << furthest << " m in 0.6 s\n";
   EXPECT_LE(fastest, 0.5 * (1.0 + 1e-12));
   EXPECT_LE(furthest, 0.3 * (1.0 + 1e-12));
-  EXPECT_GT(fastest, 0.49) << "the adversary does not try";
+  EXPECT_GT(fastest, 0.49) << "the adversary must reach the bound";
 }
 
 TEST(TargetFilterTest, IgnoresMeasurementsThatAreNotNewer) {
@@ -157,7 +157,7 @@ TEST(TargetFilterTest, IgnoresMeasurementsThatAreNotNewer) {
   (void)Update(config, {StampOf(3), {0.5, 0, 0}, cov}, filter);
   EXPECT_EQ(Update(config, {StampOf(3), {0.6, 0, 0}, cov}, filter), Intake::kTooOld);
   EXPECT_EQ(Update(config, {StampOf(2), {0.6, 0, 0}, cov}, filter), Intake::kTooOld);
-  // Not even where it says the same, and no gate would mind.
+  // Not even if it equals the estimate, so that the gate would accept it.
   EXPECT_EQ(Update(config, {StampOf(3), {0.5, 0, 0}, cov}, filter), Intake::kTooOld);
   EXPECT_EQ(Update(config, {StampOf(2), {0.5, 0, 0}, cov}, filter), Intake::kTooOld);
   EXPECT_EQ(filter.x[0].x(), 0.5);

@@ -1,5 +1,5 @@
-// A target as it is seen after camera and target have moved on, for differences that L_s is compared with.
-// Turns by Eigen's own exponential.
+// The view of a target after camera and target have moved, for the differences that L_s is compared with.
+// Rotations use Eigen's exponential.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -14,7 +14,7 @@ inline model::Mat3 Turned(const model::Vec3& phi) {
                           : Eigen::Matrix3d::Identity();
 }
 
-// After `dt` with the camera's body twist `V_BC_C` and the target's own motion.
+// The view after `dt` [s] with the camera's body twist `V_BC_C` and the target's own motion.
 inline features::TargetInCamera AfterSteps(const features::TargetInCamera& seen, const model::Vec6& V_BC_C,
                                            double dt) {
   const model::Pose camera{Turned(V_BC_C.tail<3>() * dt), V_BC_C.head<3>() * dt};
@@ -22,7 +22,7 @@ inline features::TargetInCamera AfterSteps(const features::TargetInCamera& seen,
   return {camera.Inverse() * moved, seen.v_BO_C, seen.w_BO_C};
 }
 
-// Before the camera, tilted by at most `tilt` [rad] each way and turned about the line of sight at will.
+// A random view in front of the camera: tilted by up to `tilt` [rad] each way, any turn about its z axis.
 inline features::TargetInCamera RandomView(RandomStates& random, double tilt) {
   features::TargetInCamera seen;
   const double z = random.Uniform(0.25, 1.2);
@@ -53,7 +53,7 @@ double WorstDerivative(const Feature& feature, double tilt, unsigned seed, int p
     constexpr double kDt = 1e-5;
     if (!feature.Compute(seen, now) || !feature.Compute(AfterSteps(seen, V, kDt), plus) ||
         !feature.Compute(AfterSteps(seen, V, -kDt), minus)) {
-      return 1e9;  // none of these is to be refused
+      return 1e9;  // none of these may be refused
     }
     const Eigen::VectorXd difference = (plus.s - minus.s) / (2.0 * kDt);
     const Eigen::VectorXd computed = now.L_s * V + now.ds_dt_target;

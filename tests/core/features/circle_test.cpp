@@ -1,4 +1,4 @@
-// The circle's feature: B3's matrix typed again, finite differences, the source's block and depth.
+// The circle feature: against B3's matrix, finite differences, and the source's block and depth formula.
 #include "firmware/core/features/circle.hpp"
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST(CircleFeatureTest, LiftInvertsComputeAndMapsTheCovariance) {
   EXPECT_LT(worst, 1e-8);
 }
 
-// What the simple form says of a sphere: 2 mm at 0.4 m, which is why the sphere has a feature of its own.
+// For a sphere the simple depth formula errs by 2 mm at 0.4 m: therefore the sphere has its own feature.
 TEST(CircleFeatureTest, SimpleDepthFormulaOfASphereErrsByHalfAPercent) {
   const double f = 554.256;
   const double R = 0.04;

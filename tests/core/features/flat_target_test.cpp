@@ -1,5 +1,4 @@
-// Square and triangle: every form of their features against finite differences, what is refused, and the
-// list.
+// Square and triangle: every form of their features against finite differences, refused input, the list.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -27,7 +26,7 @@ TargetFeature Make(FeatureKind target, FeatureForm form) {
   return feature;
 }
 
-// Each target by each of its features.
+// Every target with each of its feature forms.
 std::set<std::pair<FeatureKind, FeatureForm>> Listed() {
   std::set<std::pair<FeatureKind, FeatureForm>> listed;
   for (const TargetTraits& target : kTargets) {
@@ -38,7 +37,7 @@ std::set<std::pair<FeatureKind, FeatureForm>> Listed() {
   return listed;
 }
 
-// The target's own turn is in it too: RandomView gives the target a velocity and a turn.
+// This includes the target's own motion: RandomView gives the target a velocity and a turn rate.
 TEST(FlatTargetTest, EveryInteractionMatrixMatchesFiniteDifferences) {
   for (const auto& [target, form] : Listed()) {
     const double worst = test::WorstDerivative(Make(target, form), 0.6, 43, 1000);
@@ -62,7 +61,7 @@ TEST(FlatTargetTest, ListedFeaturesAreCompleteWithTheirDimensions) {
       ASSERT_TRUE(feature.ComputeAtGoal(state));
       EXPECT_EQ(state.s.size(), feature.Dim());
       EXPECT_EQ(state.L_s.rows(), feature.Dim());
-      EXPECT_LT((state.s - state.s_star).norm(), 1e-15) << "at the goal nothing is left to do";
+      EXPECT_LT((state.s - state.s_star).norm(), 1e-15) << "the error at the goal is zero";
       EXPECT_TRUE(state.ds_dt_target.isZero());
       feature.hold_orientation = true;
       EXPECT_EQ(feature.IsListed(), state.s.size() + 3 <= kMaxDim);
@@ -71,7 +70,7 @@ TEST(FlatTargetTest, ListedFeaturesAreCompleteWithTheirDimensions) {
   EXPECT_EQ(listed, static_cast<int>(Listed().size()));
 }
 
-// Seen squarely from above, in numbers anyone can check.
+// A frontal view from above, with values that are easy to check by hand.
 TEST(SquareFeatureTest, FourEntriesMatchHandComputedValues) {
   SquareSideFeature feature;
   TargetInCamera seen;
@@ -117,17 +116,17 @@ TEST(FlatTargetTest, RefusesATargetNotFullyInFrontOfTheCamera) {
     EXPECT_FALSE(feature.Compute(seen, state));
     EXPECT_EQ(state.s[0], 7.0) << "untouched";
   }
-  // A corner behind the camera, the middle before it.
+  // A corner is behind the camera, the centre in front of it.
   TargetFeature square = Make(FeatureKind::kSquare, FeatureForm::kCorners);
   FeatureState state;
   TargetInCamera edge_on;
   edge_on.X_CO = {test::Turned({model::kPi / 2, 0, 0}), {0, 0, 0.04}};
   EXPECT_FALSE(square.Compute(edge_on, state));
-  // The side that the angle is of, seen from its end.
+  // The side whose angle is measured lies along the line of sight.
   edge_on.X_CO = {test::Turned({0, model::kPi / 2, 0}) * test::Turned({0, 0, 0}), {0, 0, 0.4}};
   square.form = FeatureForm::kCornerSide;
   edge_on.X_CO.p = -(edge_on.X_CO.R * Vec3(0, -0.05, 0)) + Vec3(0, 0, 0.4);
-  EXPECT_FALSE(square.Compute(edge_on, state)) << "no angle";
+  EXPECT_FALSE(square.Compute(edge_on, state)) << "the angle is undefined";
 }
 
 TEST(FlatTargetTest, TakesCornersAndDropsInvalidPoses) {
@@ -146,7 +145,7 @@ TEST(FlatTargetTest, TakesCornersAndDropsInvalidPoses) {
   m.poses[0] = {{0.0, 0.0, 0.5}, {0.0, 0.0, 0.0, 0.0}, 0};  // no orientation
   m.poses[1] = {{0.01, 0.02, 0.5}, turned, 2};
   m.poses[2] = {{0.01, 0.02, -0.5}, turned, 0};  // behind
-  m.poses[3] = {{0.01, 0.02, 0.6}, turned, 3};   // of no corner
+  m.poses[3] = {{0.01, 0.02, 0.6}, turned, 3};   // no such corner
   m.poses[4] = {{0.01, 0.02, 0.7}, turned, 1};
   SeenCorners seen;
   ASSERT_TRUE(feature.TakeCorners(m, seen));
@@ -169,7 +168,7 @@ TEST(FlatTargetTest, TakesCornersAndDropsInvalidPoses) {
   m.s[3] = std::nan("");
   EXPECT_FALSE(feature.TakeCorners(m, seen));
   LiftedTarget lifted;
-  EXPECT_FALSE(feature.Lift(m, lifted)) << "no position of its own";
+  EXPECT_FALSE(feature.Lift(m, lifted)) << "corners give no position directly";
 }
 
 }  // namespace

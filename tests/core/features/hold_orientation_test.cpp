@@ -47,7 +47,7 @@ TEST(HoldOrientationTest, StackedBelowASphereControlsSixDegreesOfFreedom) {
   EXPECT_EQ(state.ds_dt_target.head(3), sphere.ds_dt_target);
   EXPECT_EQ(state.L_s.topRows(3), sphere.L_s);
   EXPECT_EQ(state.L_s.bottomRows(3), held.L_s);
-  EXPECT_FALSE(Stack(held, state)) << "nine entries find no room";
+  EXPECT_FALSE(Stack(held, state)) << "nine entries do not fit";
   EXPECT_EQ(state.s.size(), 6);
 }
 

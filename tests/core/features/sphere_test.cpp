@@ -1,5 +1,5 @@
-// The sphere's feature: its interaction matrix against finite differences, its cone against plain geometry,
-// and what it refuses.
+// The sphere feature: its interaction matrix against finite differences, its cone against plain geometry, and
+// input that is refused.
 #include "firmware/core/features/sphere.hpp"
 
 #include <gtest/gtest.h>
@@ -128,7 +128,7 @@ TEST(SphereConeTest, RoundTripIsExactAndDerivativeMatchesFiniteDifferences) {
       worst_derivative = std::max(worst_derivative, (ds_dm.col(i) - difference).norm() / ds_dm.norm());
     }
   }
-  std::cout << "there and back " << worst << " relative, derivative " << worst_derivative << " relative\n";
+  std::cout << "round trip " << worst << " relative, derivative " << worst_derivative << " relative\n";
   EXPECT_LT(worst, 1e-12);
   EXPECT_LT(worst_derivative, 1e-6);
 }

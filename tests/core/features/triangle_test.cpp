@@ -1,5 +1,5 @@
-// What three corners can and cannot control: L_s loses rank on the cylinder through them, and nowhere that
-// the source's notes say it does.
+// What three corners can control: L_s loses rank on the cylinder through them, and not where the notes of the
+// source say it does.
 #include "firmware/core/features/triangle.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using model::Vec3;
 
-// The triangle as a camera at `p_OC` sees it that looks at its middle.
+// The triangle seen by a camera at `p_OC` that looks at its centre.
 TargetInCamera From(const Vec3& p_OC) {
   const Vec3 z = -p_OC.normalized();
   const Vec3 x = Vec3(0, 1, 0).cross(z).normalized();
@@ -42,7 +42,7 @@ Polygon Equilateral() {
 
 TEST(TriangleTest, LosesRankOnTheCylinderThroughItsCorners) {
   for (const Polygon& triangle : {MakeTriangle(kDefaultTriangle), Equilateral()}) {
-    // Its axis and radius from three corners, by Heron and the law of sines: no formula of triangle.cpp.
+    // The cylinder's axis and radius from the circumcentre's barycentric weights: not triangle.cpp's formula.
     const Vec3 a = triangle.corners[0], b = triangle.corners[1], c = triangle.corners[2];
     const double A = (b - c).norm(), B = (c - a).norm(), C = (a - b).norm();
     const double wa = A * A * (B * B + C * C - A * A), wb = B * B * (C * C + A * A - B * B),
@@ -70,12 +70,11 @@ TEST(TriangleTest, LosesRankOnTheCylinderThroughItsCorners) {
   }
 }
 
-// The source's claim, corrected: an equilateral triangle controls the turn about its normal as any other
-// does.
+// Corrects the source's claim: an equilateral triangle controls the turn about its normal like any other.
 TEST(TriangleTest, EquilateralTriangleIsWellConditioned) {
   const double from_above = InverseCondition(Equilateral(), {0.0, 0.0, -0.4});
   const double aside = InverseCondition(Equilateral(), {0.15, 0.1, -0.4});
-  std::cout << "equilateral, 1 / condition: from above " << from_above << ", from aside " << aside << "\n";
+  std::cout << "equilateral, 1 / condition: from above " << from_above << ", from the side " << aside << "\n";
   EXPECT_GT(from_above, 1e-3);
   EXPECT_GT(aside, 1e-3);
 }

@@ -1,4 +1,4 @@
-// The stop after a fault: damped, let go, braked.
+// The stages of the stop after a fault: damped, let go (the torque fades), braked.
 #include "firmware/core/guard/fault_stop.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(FaultStopTest, DampedStopDecaysTheSpeedExponentially) {
   for (int tick = 0; tick < 500; ++tick) {
     const model::ArmDynamics dynamics = DynamicsAt(config.arm, arm.q(), arm.dq());
     const double energy = 0.5 * arm.dq().dot(dynamics.M * arm.dq());
-    EXPECT_LT(energy, energy_before) << "it never speeds up";
+    EXPECT_LT(energy, energy_before) << "the arm never speeds up";
     energy_before = energy;
     model::VecN tau;
     DampedStop(config.safety.fault_damping, dynamics, arm.dq(), tau);
@@ -83,7 +83,7 @@ TEST_F(FaultStopStageTest, DampingEndsAtTheTimeLimit) {
 
 TEST_F(FaultStopStageTest, DampingEndsWhenTheArmSpeedsUp) {
   EXPECT_EQ(Tick(0.5), Stage::kDamped);
-  EXPECT_EQ(Tick(0.69), Stage::kDamped) << "noise of the velocities is none";
+  EXPECT_EQ(Tick(0.69), Stage::kDamped) << "noise of the velocities does not count";
   EXPECT_EQ(Tick(0.72), Stage::kLetGo);
 }
 
@@ -100,7 +100,7 @@ TEST_F(FaultStopStageTest, BrakesCloseAtZeroTorqueAndStayClosed) {
   Tick(0.5, true);
   model::VecN sent = model::VecN::Constant(7, 3.0);
   CloseBrakes(sent, stop_);
-  EXPECT_EQ(stop_.stage, Stage::kLetGo) << "it fades out first";
+  EXPECT_EQ(stop_.stage, Stage::kLetGo) << "the torque fades out first";
   sent.setZero();
   CloseBrakes(sent, stop_);
   EXPECT_EQ(stop_.stage, Stage::kBraked);

@@ -1,4 +1,4 @@
-// The guard against wishes of every kind: no limit is ever passed, whatever is wished for.
+// The guard with wishes of every kind: no limit is ever exceeded.
 #include "firmware/core/guard/guard_motion.hpp"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,7 @@ namespace {
 
 constexpr double kTick = 1e-3;
 
-// Moves a reference tick by tick, as an arm that follows it perfectly, and keeps the largest use of each
-// limit.
+// Moves a reference that the arm follows perfectly, and keeps the largest share used of each limit.
 class Walker {
  public:
   explicit Walker(const config::ServoConfig& config, const model::VecN& q) : config_(config) {
@@ -44,7 +43,7 @@ class Walker {
           std::abs(reference_.ddq[i]) / (config_.guard.joint_acceleration_fraction * joint.ddq_max));
       Use(jerk, std::abs(reference_.ddq[i] - before.ddq[i]) /
                     (config_.guard.joint_jerk_fraction * joint.dddq_max * kTick));
-      // The reference is one motion: each derivative is the change of the one above.
+      // The reference is consistent: each derivative is the change of the quantity above.
       EXPECT_NEAR(reference_.q[i] - before.q[i], reference_.dq[i] * kTick, 1e-12);
       EXPECT_NEAR(reference_.dq[i] - before.dq[i], reference_.ddq[i] * kTick, 1e-12);
     }
@@ -57,7 +56,7 @@ class Walker {
     return limits;
   }
 
-  // The joint velocity that moves the end effector with `v_B`, as well as it can.
+  // The joint velocity that moves the end effector with `v_B` [m/s] as well as possible.
   [[nodiscard]] model::VecN Towards(const model::Vec3& v_B) const {
     const Eigen::MatrixXd J = J_E_B_;
     return J.completeOrthogonalDecomposition().solve(Eigen::VectorXd(v_B));
@@ -67,7 +66,7 @@ class Walker {
   [[nodiscard]] const trajectory::Reference& reference() const { return reference_; }
 
   double position = 0.0, velocity = 0.0, acceleration = 0.0, jerk = 0.0, speed = 0.0,
-         turn = 0.0;    // largest use of each limit
+         turn = 0.0;    // largest share used of each limit
   double radius = 0.0;  // largest |p_BE|
   hal::LimitSet all_limits = 0;
 
@@ -89,7 +88,7 @@ void ExpectAllHeld(const Walker& walker, const config::ServoConfig& config) {
             << ", acceleration " << walker.acceleration << ", jerk " << walker.jerk << ", hand's speed "
             << walker.speed << ", its turn " << walker.turn << ", |p_BE| " << walker.radius << " m\n";
   EXPECT_LE(walker.position, 1.0 + 1e-3);
-  EXPECT_LE(walker.velocity, 1.0 + 0.01);  // braking at full jerk may end a hair later
+  EXPECT_LE(walker.velocity, 1.0 + 0.01);  // braking at full jerk may end slightly later
   EXPECT_LE(walker.acceleration, 1.0 + 1e-9);
   EXPECT_LE(walker.jerk, 1.0 + 1e-9);
   EXPECT_LE(walker.speed, 1.0);
@@ -111,8 +110,7 @@ TEST(GuardMotionTest, KeepsEveryLimitUnderRandomCommands) {
   ExpectAllHeld(walker, config);
 }
 
-// Joints get to what is wished for at different times: on the way the hand would be faster than before and
-// after.
+// Joints reach their velocities at different times: the hand would be faster in between than at either end.
 TEST(GuardMotionTest, HandKeepsItsSpeedLimitUnderRandomWishes) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.cartesian_speed = 0.3;
@@ -126,7 +124,7 @@ TEST(GuardMotionTest, HandKeepsItsSpeedLimitUnderRandomWishes) {
     walker.Step(wish);
   }
   ExpectAllHeld(walker, config);
-  EXPECT_GT(walker.speed, 0.9) << "the attack must be one";
+  EXPECT_GT(walker.speed, 0.9) << "the wishes must reach the limit";
   EXPECT_NE(walker.all_limits & hal::Bit(hal::Limit::kCartesianSpeed), 0U);
 }
 
@@ -145,14 +143,14 @@ TEST(GuardMotionTest, HandKeepsItsRotationLimitUnderRandomWishes) {
     }
     ExpectAllHeld(walker, config);
     EXPECT_GT(walker.turn * most, 0.9 * config::TurnLimitOfReference(config.guard))
-        << "the attack must be one";
-    // Between the points that a stop's proof looks at.
+        << "the wishes must reach the limit";
+    // Slightly more is possible between the points that the proof of a stop samples.
     EXPECT_LT(walker.turn * most, 1.05 * config::kTurnShareMost * config::TurnLimitOfReference(config.guard));
     EXPECT_NE(walker.all_limits & hal::Bit(hal::Limit::kRotationSpeed), 0U);
   }
 }
 
-// THEORY B5: towards the boundary, along it, and aslant, at 1 m/s, from many places.
+// THEORY B5: towards the boundary, along it, and obliquely, at 1 m/s, from many places.
 TEST(GuardMotionTest, AttacksOnTheWorkspaceStopInsideIt) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(32);
@@ -164,7 +162,7 @@ TEST(GuardMotionTest, AttacksOnTheWorkspaceStopInsideIt) {
     const model::Vec3 direction = random.Vector(1.0).normalized();
     const double turn = random.Uniform(-2.0, 2.0);
     for (int tick = 0; tick < 3000; ++tick) {
-      // Outward at first, then more and more along the boundary, the direction turning as it goes.
+      // Outward at first, then more and more along the boundary.
       const model::Vec3 outward = walker.p_BE().normalized();
       const double share = attack % 3 == 0 ? 0.0 : std::min(1.0, tick / 1500.0);
       const model::Vec3 along = model::Cross(outward, direction).normalized() * (turn > 0 ? 1.0 : -1.0);
@@ -179,7 +177,7 @@ TEST(GuardMotionTest, AttacksOnTheWorkspaceStopInsideIt) {
   std::cout << kAttacks << " attacks, " << reached << " reached the last centimetre; furthest |p_BE| "
             << worst << " m, boundary " << config.guard.workspace_radius << " m\n";
   EXPECT_LE(worst, config.guard.workspace_radius + 1e-3);
-  EXPECT_GT(reached, kAttacks / 6) << "the attacks must be attacks";
+  EXPECT_GT(reached, kAttacks / 6) << "too few attacks reach the boundary";
 }
 
 TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
@@ -187,7 +185,7 @@ TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
   for (int joint = 0; joint < 7; ++joint) {
     for (const double sign : {-1.0, 1.0}) {
       config::ServoConfig far = config;
-      far.guard.workspace_radius = 10.0;  // this is about the joints alone
+      far.guard.workspace_radius = 10.0;  // only joint limits shall act
       far.guard.self_clearance = 0.0;
       Walker walker(far, test::Ready());
       model::VecN wish = model::VecN::Zero(7);
@@ -197,15 +195,15 @@ TEST(GuardMotionTest, JointsStopBeforeTheEndOfTheirRange) {
         last = walker.Step(wish);
       }
       EXPECT_LE(walker.position, 1.0 + 1e-3) << "joint " << joint + 1;
-      EXPECT_GE(walker.position, 1.0 - 1e-2) << "it goes to the end of its range";
-      EXPECT_LT(walker.reference().dq.norm(), 1e-2) << "and stands there";
-      EXPECT_TRUE(last & hal::Bit(hal::Limit::kJointPosition)) << "and says why";
+      EXPECT_GE(walker.position, 1.0 - 1e-2) << "the joint reaches the end of its range";
+      EXPECT_LT(walker.reference().dq.norm(), 1e-2) << "the joint stands there";
+      EXPECT_TRUE(last & hal::Bit(hal::Limit::kJointPosition)) << "the limit is reported";
     }
   }
 }
 
-// The barriers brake in time, with the deceleration that is set: that a stop is proved behind them is for
-// what they cannot foresee, and brakes with all there is.
+// The barriers brake in time with the configured deceleration. The proof of a stop behind them covers what
+// they cannot foresee, and brakes with all available acceleration.
 TEST(GuardMotionTest, JointBrakesBeforeItsEndWithTheBarriersDeceleration) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 10.0;
@@ -223,8 +221,8 @@ TEST(GuardMotionTest, JointBrakesBeforeItsEndWithTheBarriersDeceleration) {
       }
     }
   }
-  std::cout << "brakes with " << most << " of the acceleration that there is, "
-            << config.guard.braking_fraction << " is set\n";
+  std::cout << "brakes with " << most
+            << " of the available acceleration, configured: " << config.guard.braking_fraction << "\n";
   EXPECT_LT(most, 1.2 * config.guard.braking_fraction);
 }
 
@@ -242,12 +240,11 @@ TEST(GuardMotionTest, HandSpeedTowardsTheWorkspaceEdgeKeepsTheBarrier) {
     most = std::max(most, (walker.p_BE() - p).dot(p.normalized()) / kTick - allowed);
   }
   std::cout << "at most " << most << " m/s faster\n";
-  EXPECT_LT(most,
-            0.12);  // the jerk is limited; without the barrier it is 0.23, and the stop's proof catches it
+  EXPECT_LT(most, 0.12);  // since jerk is limited; without the barrier 0.23, then the proof of a stop acts
 }
 
-// From random motions, with every limit in force: the hand is at rest no later than by each joint for itself,
-// and on its way no faster than it was. Joint by joint it would be: the comparison is printed.
+// From random motions, with every limit in force: joints that stop together stop the hand at most 10 ms later
+// than independent ones, and do not speed it up. Independent joints do: the test prints both.
 TEST(GuardMotionTest, JointsStoppingTogetherDoNotSpeedUpTheHand) {
   const config::ServoConfig config = test::PandaConfig();
   test::RandomStates random(35);
@@ -260,7 +257,7 @@ TEST(GuardMotionTest, JointsStoppingTogetherDoNotSpeedUpTheHand) {
     Walker together(config, test::Ready());
     const model::VecN wish = random.Joints(config.arm, 1.5);
     int run_up = 0;
-    do {  // until they have come to their speeds
+    do {  // until the joints have reached their speeds
       together.Step(wish);
     } while (++run_up < 100 || (together.reference().ddq.norm() > kSteady && run_up < 2000));
     ASSERT_LE(together.reference().ddq.norm(), kSteady) << "in repetition " << k;
@@ -292,7 +289,7 @@ TEST(GuardMotionTest, JointsStoppingTogetherDoNotSpeedUpTheHand) {
   std::cout << "the hand gains at most " << most_gained << " m/s, joint by joint " << most_gained_alone
             << " m/s; at rest at most " << latest << " ms later; run-up at most " << longest << " ms\n";
   EXPECT_LT(most_gained, 0.015);
-  EXPECT_GT(most_gained_alone, 0.06) << "else this shows nothing";
+  EXPECT_GT(most_gained_alone, 0.06) << "the comparison must differ";
   EXPECT_LE(latest, 10);
 }
 
@@ -309,7 +306,7 @@ TEST(GuardMotionTest, PassesAGentleCommandUnchanged) {
 
 TEST(GuardMotionTest, ScalesTheVelocityWithoutChangingItsDirection) {
   config::ServoConfig config = test::PandaConfig();
-  config.guard.rotation_speed = 100.0;  // the joints' own limits shall act
+  config.guard.rotation_speed = 100.0;  // only the joints' own limits shall act
   config.guard.workspace_radius = 10.0;
   Walker walker(config, test::Ready());
   model::VecN wish(7);

@@ -1,4 +1,4 @@
-// The shortest stop, by the derivatives of the way that it claims, and what the proof refuses.
+// The proof of a stop: the limits that it names, and its verdict against that from all points of the path.
 #include "firmware/core/guard/stop_path.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST(LimitsPassedTest, NamesEveryLimitThatAStopWouldPass) {
   EXPECT_EQ(LimitsPassed(config, reference, reference.q, poses), hal::Bit(hal::Limit::kJointPosition));
   reference.dq[5] = -1.0;
   EXPECT_EQ(LimitsPassed(config, reference, reference.q, poses), 0U);
-  // A workspace that ends a centimetre before the end effector, towards which joint 2 leans out.
+  // The workspace ends 1 cm (and its margin) beyond the end effector. Joint 4 moves the hand towards it.
   reference = {test::Ready(), model::VecN::Zero(7), model::VecN::Zero(7)};
   model::ComputePoses(config.arm, reference.q, poses);
   const double radius = poses.X_BE.p.norm();
@@ -38,7 +38,7 @@ TEST(LimitsPassedTest, NamesEveryLimitThatAStopWouldPass) {
   narrow.guard.workspace_radius = radius + narrow.guard.workspace_margin + 0.01;
   reference.dq[3] = 1.0;  // stretches the elbow
   EXPECT_EQ(LimitsPassed(narrow, reference, reference.q, poses), hal::Bit(hal::Limit::kWorkspace));
-  // The same with a plane and with a box a centimetre before it; away from them it may go.
+  // The same with a plane and with a box 1 cm ahead. Motion away from them is allowed.
   const model::Vec3& p = poses.X_BE.p;
   const model::Vec3 outward = p / radius;
   config::ServoConfig plane = config;
@@ -62,7 +62,7 @@ TEST(LimitsPassedTest, NamesEveryLimitThatAStopWouldPass) {
   EXPECT_EQ(LimitsPassed(box, reference, reference.q, poses), 0U);
 }
 
-// The same verdict as from all points of the way, near bounds and far from them.
+// The verdict equals that from all points of the path, near bounds and far from them.
 TEST(LimitsPassedTest, SampledStopGivesTheSameVerdictAsAllPoints) {
   test::RandomStates random(9);
   config::ServoConfig config = test::PandaConfig();
@@ -137,7 +137,7 @@ TEST(LimitsPassedTest, SampledStopGivesTheSameVerdictAsAllPoints) {
     ASSERT_EQ(passed != 0, expected) << "case " << k;
     num_passed += expected ? 1 : 0;
   }
-  std::cout << num_passed << " of " << kCases << " pass a bound\n";
+  std::cout << num_passed << " of " << kCases << " exceed a bound\n";
   EXPECT_GT(num_passed, kCases / 10);
   EXPECT_LT(num_passed, kCases * 9 / 10);
 }

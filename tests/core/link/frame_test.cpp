@@ -1,4 +1,4 @@
-// Frames: round trips, what they look like on the line, and what a reader makes of damage.
+// Frames: round trips, their bytes on the line, and what the reader does with damaged ones.
 #include "firmware/core/link/frame.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class Noise {
   std::size_t Below(std::size_t end) {
     return std::uniform_int_distribution<std::size_t>(0, end - 1)(engine_);
   }
-  // Many zeros, or none, or few: what stuffing has to do with.
+  // Bytes with no zeros, few zeros or many: the cases that byte stuffing must handle.
   ByteVector Bytes(std::size_t size) {
     const std::size_t zeros = Below(4);
     ByteVector bytes(size);
@@ -85,7 +85,7 @@ TEST(Crc32, MatchesZlib) {
   }
 }
 
-// As PROTOCOL.md writes it down.
+// The bytes of the example in PROTOCOL.md.
 TEST(Frame, EncodingMatchesTheProtocolPage) {
   EXPECT_EQ(Line({FrameKind::kHello, 0, {}}),
             (ByteVector{0x00, 0x03, 0x05, 0x01, 0x01, 0x01, 0x01, 0x05, 0xa0, 0x19, 0x6f, 0xdc, 0x00}));
@@ -127,7 +127,7 @@ TEST(Frame, TooLongPayloadIsRefusedByWriterAndReader) {
   EXPECT_EQ(reader.counters().damaged, 1U);
 }
 
-// Bits turned, bytes lost, doubled or put in: no frame that was not sent, and the one after it is read.
+// Flipped bits, lost or doubled bytes, a lost end: no frame is invented, and the next one is read.
 TEST(Frame, DamagedFrameIsDetectedAndTheNextIsRead) {
   Noise noise(11);
   FrameReader reader;
@@ -152,7 +152,7 @@ TEST(Frame, DamagedFrameIsDetectedAndTheNextIsRead) {
     EXPECT_TRUE(read.size() == 1 || (read.size() == 2 && read.front() == frame));
     lost += read.size() == 1 ? 1U : 0U;
   }
-  EXPECT_GT(lost, static_cast<std::uint32_t>(0.9 * count));  // damage to a zero around a frame harms nothing
+  EXPECT_GT(lost, static_cast<std::uint32_t>(0.9 * count));  // damage to a zero around a frame is harmless
   EXPECT_GE(reader.counters().damaged, lost);
 }
 

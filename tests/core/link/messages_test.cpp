@@ -1,4 +1,4 @@
-// Messages: what is sent comes back, and bytes that are no message are refused.
+// Messages: round trips keep every field, and bytes that are no message are refused.
 #include "firmware/core/link/messages.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace fovea::link {
 namespace {
 
-// A field that is added to one of these must be added to what goes over the line, and then here.
+// Add a new field of one of these structs to the message on the line first, then change its size here.
 static_assert(sizeof(moves::MotionCommand) == 304);
 static_assert(sizeof(hal::ArmState) == 280);
 static_assert(sizeof(hal::FeatureMeasurement) == 1016);
@@ -32,7 +32,7 @@ std::vector<std::uint8_t> BytesOf(const Message& message) {
   return {bytes.begin(), bytes.end()};
 }
 
-// Decoded bytes encode to the same bytes: each field went where it came from.
+// Decoded bytes must encode to the same bytes: every field is restored.
 template <class Message>
 void ExpectComesBack(const Message& message) {
   const std::vector<std::uint8_t> bytes = BytesOf(message);
@@ -142,16 +142,16 @@ TEST(Messages, CountsAndEnumsOutOfRangeAreRefused) {
   EXPECT_TRUE(BytesOf(in).empty());
   std::vector<std::uint8_t> bytes = BytesOf(task::ServoInputs{});
   task::ServoInputs back;
-  bytes[0] = 200;  // no status
+  bytes[0] = 200;  // not a StatusCode
   EXPECT_FALSE(Decode(bytes, back));
   bytes[0] = 0;
   ASSERT_TRUE(Decode(bytes, back));
-  bytes[1 + 16] = 9;  // joints
+  bytes[1 + 16] = 9;  // num_joints
   EXPECT_FALSE(Decode(bytes, back));
   EXPECT_LE(back.arm.num_joints, hal::kMaxJoints);
 }
 
-// Whatever the bytes are, nothing that is decoded is out of its range.
+// Whatever the bytes are, all decoded values are in range.
 TEST(Messages, RandomBytesDecodeOnlyToValuesInRange) {
   std::mt19937 engine(7);
   Values values(9);

@@ -1,5 +1,4 @@
-// The servo behind a serial line, without the processor: the same ticks, whatever the line does to the
-// frames.
+// The servo behind a serial line, without the processor: the right ticks, whatever the line does to frames.
 #include "firmware/core/link/servo_server.hpp"
 
 #include <gtest/gtest.h>
@@ -43,13 +42,13 @@ class ServoServerTest : public task::ServoTaskTest {
   }
 
   void Give(const Frame& frame) { server_.Receive(writer_.Encode(frame)); }
-  // So many periods of the timer pass.
+  // Lets `periods` periods of the timer pass.
   void Pass(std::uint32_t periods) {
     board_.periods += periods;
     server_.Poll();
   }
 
-  // The last frame that the server sent since the last look.
+  // Reads the last frame that the server sent since the previous call; false if none.
   bool Answered() {
     bool any = false;
     for (const std::uint8_t byte : board_.sent) {
@@ -99,7 +98,7 @@ TEST_F(ServoServerTest, AnswersAHelloFrame) {
   EXPECT_TRUE(Answered());
 }
 
-// Tick by tick the same bits as the task that is called here.
+// Each tick gives the same bits as a task that is called directly.
 TEST_F(ServoServerTest, LockstepGivesTheSameBitsAsTheTask) {
   ASSERT_EQ(Configure(Pacing::kLockstep).code, hal::StatusCode::kOk);
   log::RecordHash here;
@@ -108,7 +107,7 @@ TEST_F(ServoServerTest, LockstepGivesTheSameBitsAsTheTask) {
     task::ServoInputs given;
     here.Add(Tick([&](task::ServoInputs& inputs) { given = inputs; }));
     Give({FrameKind::kInputs, k, Encode(given, payload_)});
-    if (k % 7 == 0) {  // the frame came twice: answered twice, stepped once
+    if (k % 7 == 0) {  // the frame arrives twice: two answers, one step
       Give({FrameKind::kInputs, k, Encode(given, payload_)});
     }
     Outputs outputs = Taken();
@@ -123,7 +122,7 @@ TEST_F(ServoServerTest, LockstepGivesTheSameBitsAsTheTask) {
   EXPECT_EQ(there.Finish(), here.Finish());
 }
 
-// What the line took is told of a tick, not of what came before it was configured.
+// `link_counts` is the line's time for a tick. It must not include frames before the configuration.
 TEST_F(ServoServerTest, ReconfigurationResetsTheLinkCounts) {
   for (int run = 0; run < 2; ++run) {
     for (int k = 0; k < 5; ++k) {
@@ -160,7 +159,7 @@ TEST_F(ServoServerTest, RefusesABadConfigurationAndNamesTheKey) {
   answer = Configure(Pacing::kLockstep, [](Configuration& c) { c.servo.law.lambda = -1.0; });
   EXPECT_EQ(answer.code, hal::StatusCode::kOutOfRange);
   EXPECT_NE(std::string(answer.where.data()).find("lambda"), std::string::npos) << answer.where.data();
-  // And does nothing before it is configured.
+  // The server does nothing before it is configured.
   Give({FrameKind::kInputs, 1, Encode(task::ServoInputs{}, payload_)});
   EXPECT_FALSE(Answered());
 }
@@ -175,7 +174,7 @@ TEST_F(ServoServerTest, ProvocationNeedsPermission) {
   EXPECT_EQ(board_.provoked, 1);
 }
 
-// By its own clock: a tick in each period, whether the host speaks or not.
+// Paced by its own timer: one tick in each period, whether the host sends or not.
 class ServoServerByTimerTest : public ServoServerTest {
  protected:
   void SetUp() override {
@@ -183,7 +182,7 @@ class ServoServerByTimerTest : public ServoServerTest {
     ASSERT_EQ(Configure(Pacing::kTimer).code, hal::StatusCode::kOk);
   }
 
-  // The arm's state of this millisecond, through `line`; the server ticks, and the arm does what it says.
+  // Sends the arm's state through `line`; the server ticks, and the arm applies the command.
   Outputs TickThrough(const std::function<void(std::span<const std::uint8_t>)>& line) {
     task::ServoInputs inputs;
     inputs.arm = arm_->State();
@@ -261,7 +260,7 @@ TEST_F(ServoServerByTimerTest, StormOfBadFramesRaisesArmLost) {
   EXPECT_GE(outputs.line.damaged_frames, 2900U);
 }
 
-// Two frames in one period: the newer state, and what the older one saw.
+// Two frames in one period: the tick uses the newer state, and the feature of the older frame.
 TEST_F(ServoServerByTimerTest, OvertakenFrameStillDeliversItsFeature) {
   task::ServoInputs first;
   first.arm = arm_->State();
@@ -272,14 +271,15 @@ TEST_F(ServoServerByTimerTest, OvertakenFrameStillDeliversItsFeature) {
   second.arm.sequence += 1;
   Give({FrameKind::kInputs, 1, Encode(first, payload_)});
   Give({FrameKind::kInputs, 2, Encode(second, payload_)});
-  Give({FrameKind::kInputs, 1, Encode(first, payload_)});  // late: it changes nothing
+  Give({FrameKind::kInputs, 1, Encode(first, payload_)});  // late: changes nothing
   Pass(1);
   const Outputs outputs = Taken();
   EXPECT_EQ(reader_.frame().sequence, 2U);
   EXPECT_EQ(outputs.record.command.state_sequence, second.arm.sequence);
+  EXPECT_NE(outputs.record.intake, hal::Intake::kNone) << "the feature of the overtaken frame";
 }
 
-// A frame that comes as late as an arm may be silent is none, however new it is.
+// A frame that is older than an arm may be silent is ignored, even if it is the newest.
 TEST_F(ServoServerByTimerTest, TooOldStateIsIgnoredAndCounted) {
   const int most = config_.safety.arm_lost_ticks;
   task::ServoInputs inputs;
@@ -292,7 +292,7 @@ TEST_F(ServoServerByTimerTest, TooOldStateIsIgnoredAndCounted) {
     return Taken();
   };
   for (int k = 0; k < 100; ++k) {
-    tick(5);  // as on a line that always takes so long
+    tick(5);  // as on a line with constant delay
   }
   EXPECT_EQ(tick(5 + most - 1).line.late_frames, 0U);
   const Outputs outputs = tick(5 + most + 1);  // the clocks may drift
@@ -313,7 +313,7 @@ TEST_F(ServoServerByTimerTest, ReportsLostBytesUnsentFramesAndMissedTicks) {
   EXPECT_EQ(late.line.silent_ticks, 1U);
 }
 
-// The timer stands from a tick's end until the host says Go, which may be said twice.
+// The timer stands from a tick's end until the host sends Go. A repeated Go is harmless.
 TEST_F(ServoServerTest, GatedTimerStandsUntilTheHostSaysGo) {
   ASSERT_EQ(Configure(Pacing::kGated).code, hal::StatusCode::kOk);
   EXPECT_FALSE(board_.timer_runs);
@@ -329,7 +329,7 @@ TEST_F(ServoServerTest, GatedTimerStandsUntilTheHostSaysGo) {
   const Outputs outputs = Taken();
   EXPECT_EQ(outputs.line.silent_ticks, 0U);
   EXPECT_FALSE(board_.timer_runs);
-  Give({FrameKind::kGo, 1, {}});  // the host did not hear the answer
+  Give({FrameKind::kGo, 1, {}});  // the host did not receive the answer
   EXPECT_FALSE(board_.timer_runs);
   EXPECT_EQ(Taken().record.tick, outputs.record.tick);
   Give({FrameKind::kGo, 2, {}});

@@ -1,5 +1,4 @@
-// The servo's state as bytes: what goes on from them goes on as if nothing had been; and the digest sees what
-// differs.
+// The servo's state as bytes: a servo restored from them goes on bit-exactly, and the digest sees changes.
 #include "firmware/core/link/state.hpp"
 
 #include <gtest/gtest.h>
@@ -17,8 +16,8 @@
 namespace fovea::link {
 namespace {
 
-// A field that is added to one of these and that a tick takes from the tick before must be added to what is
-// kept of the state (state_fields.hpp), and then here.
+// If a tick takes a new field of one of these structs from the tick before, add it to the stored state first
+// (state_fields.hpp), then change the size here.
 static_assert(sizeof(task::InputState) == 232);
 static_assert(sizeof(estimate::ContactState) == 688);
 static_assert(sizeof(estimate::TargetFilter) == 736);
@@ -51,8 +50,8 @@ Buffer BytesOf(const hal::TickRecord& record) {
   return {bytes.begin(), bytes.end()};
 }
 
-// At every 250th tick of every run, a servo that knows only the bytes of the state takes over, and gives what
-// the first one gives, to the last bit and to the run's end.
+// At every 250th tick of every run a second servo starts from the bytes of the state alone. Its outputs equal
+// those of the first, bit by bit, to the end of the run.
 TEST(ServoStateTest, RestoredServoContinuesBitExact) {
   constexpr std::size_t kEvery = 250;
   for (const test::ServoRun& run : test::AllServoRuns()) {
@@ -105,8 +104,8 @@ TEST(ServoStateTest, BytesOfAnotherLengthAreRefused) {
   EXPECT_FALSE(Decode(longer, *state));
 }
 
-// Any bit of what it covers changes the digest: bytes of the state's that decode are tried, all along it.
-// `left_out`: the groups that it does not cover at the end of `run`, in `mode`.
+// A change of any covered byte must change the digest. Tries every fifth byte whose change still decodes.
+// `left_out`: the groups that the digest does not cover at the end of `run`, in `mode`.
 void ExpectDigestToSeeAllBut(const std::set<std::string>& left_out, hal::Mode mode,
                              const test::ServoRun& run) {
   task::ServoTask task;
@@ -135,7 +134,7 @@ void ExpectDigestToSeeAllBut(const std::set<std::string>& left_out, hal::Mode mo
     ASSERT_NE(group, nullptr) << i;
     tried.insert(group);
     if (state->way.preferred != task.state().way.preferred) {
-      continue;  // it decides whether its group is covered
+      continue;  // decides whether its group is covered
     }
     const bool differs = DigestOf(run.config, *state, true) != digest;
     seen += differs ? 1 : 0;
@@ -162,7 +161,7 @@ TEST(ServoStateTest, DigestChangesWithEachCoveredField) {
                           hal::Mode::kMove, test::CommandedRun(300));
 }
 
-// What leads outside of an array is no state.
+// A state with an index outside its array is refused.
 TEST(ServoStateTest, IndicesOutOfRangeAreRefused) {
   task::ServoTask task;
   ASSERT_TRUE(task.Init(test::PandaConfig()).ok());

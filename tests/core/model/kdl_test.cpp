@@ -1,6 +1,5 @@
-// Our kinematics and dynamics against KDL's, which shares neither code nor formulation with them: KDL works
-// link by link in link frames, ours about the base's origin. Both get the arm from the same URDF, KDL
-// through its own joint-by-joint construction below.
+// Our kinematics and dynamics against KDL's, which share neither code nor formulation: KDL works link by link
+// in link frames, ours about the base's origin. Both read the same URDF; BuildKdlChain makes KDL's chain.
 #include <gtest/gtest.h>
 #include <urdf_parser/urdf_parser.h>
 
@@ -69,7 +68,7 @@ KDL::JntArray ToKdl(const model::VecN& v) {
 class KdlTest : public testing::TestWithParam<const char*> {
  protected:
   KdlTest() : robot_(robots::LoadRobot(test::RobotsFolder() + GetParam())), chain_(BuildKdlChain(robot_)) {
-    // Every arm carries something with six different moments, aside of its flange.
+    // Every arm carries a load beside its flange, with six different moments of inertia.
     model::Load load;
     load.mass = 1.7;
     load.p_ECom = {0.03, -0.05, 0.11};

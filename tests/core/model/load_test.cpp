@@ -1,4 +1,4 @@
-// What a carried load adds to the arm's dynamics, by the energy of a free body at the hand.
+// The share of a carried load in the arm's dynamics, compared with a free body at the hand.
 #include "firmware/core/model/load.hpp"
 
 #include <gtest/gtest.h>

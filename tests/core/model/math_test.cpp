@@ -1,4 +1,4 @@
-// Own sin, cos and atan2 against the C library in extended precision.
+// Our sin, cos and atan2 against the C library in extended precision.
 #include "firmware/core/model/math.hpp"
 
 #include <gtest/gtest.h>

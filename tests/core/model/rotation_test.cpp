@@ -1,4 +1,4 @@
-// Turns as vectors, there and back, to half a turn and through the small ones.
+// Rotation vectors, matrices and quaternions: round trips from tiny angles to half a turn.
 #include "firmware/core/model/rotation.hpp"
 
 #include <gtest/gtest.h>
@@ -38,8 +38,8 @@ TEST(RotationTest, MatchesEigenAndRoundTrips) {
     ASSERT_TRUE(RotationOfQuaternion(q, again));
     worst_quaternion = std::max(worst_quaternion, (again - truth).cwiseAbs().maxCoeff());
   }
-  std::cout << "matrices differ by " << worst_matrix << ", vectors come back within " << worst_back
-            << " rad, quaternions " << worst_quaternion << "\n";
+  std::cout << "matrices differ by " << worst_matrix << ", vectors after a round trip by " << worst_back
+            << " rad, quaternions by " << worst_quaternion << "\n";
   EXPECT_LT(worst_quaternion, 1e-14);
   EXPECT_LT(worst_matrix, 1e-14);
   EXPECT_LT(worst_back, 1e-12);

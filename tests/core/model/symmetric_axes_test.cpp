@@ -1,4 +1,4 @@
-// Jacobi's axes and the factors L D L^T of small symmetric matrices, against Eigen's.
+// Jacobi's axes and the L D L^T factors of small symmetric matrices, against Eigen.
 #include "firmware/core/model/symmetric_axes.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Entries = std::array<double, 8>;
 
-// Full of all sorts: of any scale, rank and spread of eigenvalues, some of them the same.
+// A random matrix of any scale, rank and spread of eigenvalues, some of them equal.
 MatrixXd RandomSymmetric(test::RandomStates& random, Eigen::Index n, int kind) {
   MatrixXd J(n, n + 1);
   for (Eigen::Index i = 0; i < J.size(); ++i) {
@@ -50,9 +50,9 @@ model::Square8 ToSquare(const MatrixXd& A) {
 }
 
 struct Worst {
-  double value = 0.0;    // of an eigenvalue, relative to the largest
-  double product = 0.0;  // of A x, the same way
-  double turned = 0.0;   // of x, to the axes and back
+  double value = 0.0;    // error of an eigenvalue, relative to the largest
+  double product = 0.0;  // error of A x, relative
+  double turned = 0.0;   // error of x after ToAxes and FromAxes, relative
   int sweeps = 0;
 };
 
@@ -139,7 +139,7 @@ TEST(LdltTest, SolvesAndDetectsPositiveDefiniteness) {
     const VectorXd solution = Eigen::Map<const VectorXd>(x.data(), 6);
     worst = std::max(worst, (A * solution - b).norm() / (size * solution.norm() + b.norm()));
   }
-  std::cout << positive << " positive definite, " << others << " not; equations missed by " << worst
+  std::cout << positive << " positive definite, " << others << " not; equations solved within " << worst
             << " (relative)\n";
   EXPECT_GT(positive, test::Repetitions(4000));
   EXPECT_GT(others, test::Repetitions(2000));

@@ -1,4 +1,4 @@
-// B4: the camera's velocity as the end effector's in the base frame, against the arm's own Jacobians and
+// THEORY B4: the camera's twist as the end effector's in the base frame, against the arm's own Jacobians and
 // against differences of poses.
 #include "firmware/core/model/twist.hpp"
 
@@ -49,10 +49,10 @@ TEST(TwistTest, CameraJacobianTwistMapsToTheHandJacobianTwist) {
   EXPECT_LT(worst, 1e-13);
 }
 
-// A hand that only turns moves its camera, and a camera that only turns moves the hand.
+// A camera that only turns moves the hand by the lever arm.
 TEST(TwistTest, RotationAloneMovesTheOtherFrameByTheLeverArm) {
   Vec6 V_BC_C = Vec6::Zero();
-  V_BC_C[5] = 1.0;  // about the camera's axis
+  V_BC_C[5] = 1.0;  // about the camera's z axis
   Vec6 V_BE_B;
   ASSERT_TRUE(CameraToBaseTwist({0.4, 0.1, 0.5, 1.0, 0.0, 0.0, 0.0}, Mount(), V_BC_C, V_BE_B));
   Vec6 expected;

@@ -1,4 +1,4 @@
-// The partition law on an arm that obeys the model: each joint's error lives by e'' + k_v' e' + k_p' e = 0.
+// Motion laws on an ideal arm. With the partition law each joint's error obeys e'' + k_v' e' + k_p' e = 0.
 #include "firmware/core/motion_laws/motion_law.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ hal::ArmCommand CommandOf(const model::VecN& tau) {
   return command;
 }
 
-// Lets the law drive the arm towards `reference(t)` for `ticks`; `each` sees every tick's state before it.
+// A motion law and an ideal arm in closed loop. Tick: one step; `push` [Nm] acts on every joint.
 class Loop {
  public:
   Loop(const config::ServoConfig& config, const model::VecN& q) : config_(config), arm_(config.arm, q) {
@@ -163,7 +163,7 @@ TEST(MotionLawTest, ModelBasedLawsFollowASwing) {
   }
 }
 
-// Pushed with a constant torque, an impedance gives way by tau / k_p.
+// Under a constant torque the impedance law gives way by tau / k_p.
 TEST(MotionLawTest, ImpedanceYieldsByTorqueOverStiffness) {
   config::ServoConfig config = Config(config::MotionLawKind::kJointImpedance);
   config.motion_law.k_p.fill(50.0);
@@ -183,7 +183,7 @@ TEST(MotionLawTest, IntegralStopsAtItsBoundAndPausesWhileClamped) {
   config.motion_law.integral = 5.0;
   config.motion_law.integral_torque_fraction = 0.1;
   Loop loop(config, test::Ready());
-  // Held fast away from its goal, as by a hand.
+  // The arm is jammed away from its goal.
   loop.arm().Jam();
   const trajectory::Reference reference = Standing(test::Ready() + model::VecN::Constant(7, 0.05));
   const double k_p = config.motion_law.omega_n * config.motion_law.omega_n;
@@ -196,7 +196,7 @@ TEST(MotionLawTest, IntegralStopsAtItsBoundAndPausesWhileClamped) {
         config.motion_law.integral * k_p * loop.state().integral[i] * loop.dynamics().M(i, i);
     EXPECT_NEAR(torque, most, 1e-9) << "joint " << i;
   }
-  // While the clamp cuts the torque, the integral waits.
+  // While the clamp cuts the torque, the integral pauses.
   Loop cut(config, test::Ready());
   cut.arm().Jam();
   for (int tick = 0; tick < 100; ++tick) {
@@ -206,7 +206,7 @@ TEST(MotionLawTest, IntegralStopsAtItsBoundAndPausesWhileClamped) {
   EXPECT_EQ(cut.state().integral.norm(), 0.0);
 }
 
-// From any law to any other, in motion and pushed: no step that the arm's rate limit would cut.
+// From any law to any other, in motion and under a push: no torque step above the arm's rate limit.
 TEST(MotionLawTest, LawChangeCausesNoTorqueStep) {
   double worst = 0.0;
   for (const MotionLawEntry& from : kMotionLaws) {
@@ -239,7 +239,7 @@ TEST(MotionLawTest, LawChangeCausesNoTorqueStep) {
   EXPECT_LT(worst, 1.0);
 }
 
-// Each law by its own bound, springs by the joint that is damped fastest.
+// Each law has its own bound. For springs the joint with the fastest damping counts.
 TEST(MotionLawTest, GainsThatDampTooFastDoNotFit) {
   for (const auto& [kind, most] : {std::pair{config::MotionLawKind::kComputedTorque, 400.0},
                                    {config::MotionLawKind::kOperationalSpace, 400.0},
@@ -282,9 +282,9 @@ TEST(MotionLawTest, FrictionIsCompensatedWithoutChatter) {
   };
   EXPECT_NEAR(torque(0.5, 0.5), 2.0 * 0.5 + 5.0, 1e-4);
   EXPECT_NEAR(torque(-0.5, -0.5), -2.0 * 0.5 - 5.0, 1e-4);
-  EXPECT_EQ(torque(0.0, 0.0), 0.0) << "what stands is left alone";
-  EXPECT_NEAR(torque(0.1, 0.0), 5.0, 1e-2) << "what shall turn round is torn off";
-  // Encoder noise at standstill does not throw the torque about.
+  EXPECT_EQ(torque(0.0, 0.0), 0.0) << "no torque at standstill";
+  EXPECT_NEAR(torque(0.1, 0.0), 5.0, 1e-2) << "the full torque breaks a standing joint loose";
+  // Encoder noise at standstill hardly changes the torque.
   for (const double noise : {-5e-4, 5e-4}) {
     EXPECT_LT(std::fabs(torque(0.0, noise)), 0.01);
   }

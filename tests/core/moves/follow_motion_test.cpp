@@ -1,4 +1,4 @@
-// Commanded motions on an arm that obeys the model: there exactly, or refused.
+// Commanded motions on an ideal arm: the goal is reached exactly, or the motion is refused.
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -17,7 +17,7 @@ TEST_F(FollowMotionTest, JointGoalIsReachedBitExact) {
   test::RandomStates random(5);
   for (int n = 0; n < 5; ++n) {
     const model::VecN goal = test::Ready() + random.Joints(config_.arm, 0.3);
-    EXPECT_EQ(Tick(JointGoal(goal)).mode, Mode::kMove) << "in the tick that asks for it";
+    EXPECT_EQ(Tick(JointGoal(goal)).mode, Mode::kMove) << "in the tick of the command";
     EXPECT_GT(RunToHold(), 100);
     EXPECT_EQ(record().hold_reason, HoldReason::kMotionDone);
     EXPECT_EQ((Reference() - goal).norm(), 0.0);
@@ -73,8 +73,7 @@ TEST_F(FollowMotionTest, FlangeFollowsACircle) {
   const model::Vec3 phi(3.14159265358979, 0.0, 0.0);  // the hand looks down
   constexpr double kRadius = 0.15;
   constexpr double kOmega = 2.0 * 3.14159265358979 * 0.5;
-  // The angle comes up to speed within a second, without a jump of its acceleration: integral of a smooth
-  // step.
+  // The angle reaches its speed within a second without a jump of acceleration: integral of a smooth step.
   const auto angle = [](double t, double& rate) {
     if (t >= 1.0) {
       rate = kOmega;
@@ -127,12 +126,11 @@ TEST_F(FollowMotionTest, InvalidMotionIsRefusedAndTheArmStops) {
     EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused) << "case " << i;
     EXPECT_EQ((Reference() - before).norm(), 0.0) << "case " << i;
     EXPECT_EQ(record().fault, hal::Fault::kNone);
-    EXPECT_EQ(Tick(JointGoal(ready)).mode, Mode::kMove) << "a good one is taken, case " << i;
+    EXPECT_EQ(Tick(JointGoal(ready)).mode, Mode::kMove) << "a valid motion is accepted, case " << i;
   }
 }
 
-// Something hangs on the arm that nobody told the servo of, and it sags. The motion ends when the arm is too
-// far off on the whole; a push that passes does not end it.
+// An unknown load makes the arm sag. A mean error that is too large ends the motion, a short push does not.
 TEST_F(FollowMotionTest, PersistentMotionErrorEndsInHold) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.motion_error = 1e-3;
@@ -153,19 +151,19 @@ TEST_F(FollowMotionTest, PersistentMotionErrorEndsInHold) {
     return off;
   };
   EXPECT_GT(run(1.0, 2000), 1e-3);
-  EXPECT_EQ(record().mode, Mode::kHold) << "what is asked for on and on is not taken up again";
+  EXPECT_EQ(record().mode, Mode::kHold) << "a command that goes on does not restart the motion";
   EXPECT_EQ(record().hold_reason, HoldReason::kNotFollowed);
   EXPECT_EQ(record().fault, hal::Fault::kNone);
   Tick({});
-  EXPECT_EQ(Tick(Joints(MotionKind::kJointSetpoint, ready)).mode, Mode::kMove) << "asked for anew it is";
+  EXPECT_EQ(Tick(Joints(MotionKind::kJointSetpoint, ready)).mode, Mode::kMove)
+      << "a new command restarts the motion";
   run(2.0, 50);
   EXPECT_EQ(record().mode, Mode::kMove);
   EXPECT_LT(run(0.5, 2000), 1e-3);
   EXPECT_EQ(record().mode, Mode::kMove);
 }
 
-// A goal may be asked for in every tick: reached, it is done, and not begun anew until something else was
-// asked for.
+// A goal may be commanded in every tick. Once reached, it starts again only after another command or none.
 TEST_F(FollowMotionTest, ReachedGoalRequestedAgainIsNotRestarted) {
   const model::VecN ready = test::Ready();
   model::VecN there = ready;
@@ -189,7 +187,7 @@ TEST_F(FollowMotionTest, ReachedGoalRequestedAgainIsNotRestarted) {
   EXPECT_GT(ask(Pose(MotionKind::kPoseGoal, PoseOf(there).p, model::RotationVector(PoseOf(there).R))), 100);
   Tick({});
   EXPECT_GT(ask(Pose(MotionKind::kPoseGoal, PoseOf(there).p, model::RotationVector(PoseOf(there).R))), 0)
-      << "asked for anew";
+      << "a new command starts it again";
 }
 
 TEST_F(FollowMotionTest, HoldRequestEndsAMotionForGood) {

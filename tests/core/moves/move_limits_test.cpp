@@ -14,7 +14,7 @@ using hal::HoldReason;
 
 using MoveLimitsTest = FollowMotionTest;
 
-// A goal in reach whose way leads out of the workspace is begun, stopped inside and refused.
+// A motion to a goal outside the workspace starts, stops inside the workspace and is refused.
 TEST_F(MoveLimitsTest, PathLeavingTheWorkspaceIsStoppedAndRefused) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 0.75;
@@ -30,18 +30,18 @@ TEST_F(MoveLimitsTest, PathLeavingTheWorkspaceIsStoppedAndRefused) {
   for (int i = 0; i < 1000; ++i) {
     Tick({});
   }
-  std::cout << "came to " << outermost_ << " m of 0.75 m, " << hal::Name(record().hold_reason) << "\n";
+  std::cout << "reached " << outermost_ << " m of 0.75 m, " << hal::Name(record().hold_reason) << "\n";
   EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused);
   EXPECT_LT(outermost_, 0.751);
-  EXPECT_GT((arm_->q() - q).norm(), 0.05) << "it was begun";
+  EXPECT_GT((arm_->q() - q).norm(), 0.05) << "the motion starts";
   EXPECT_LE(most_, 1.0);
   EXPECT_LT(arm_->dq().norm(), 1e-3);
 }
 
-// A hand that is sent through a plane, and into a box, stops before them.
+// A hand commanded through a plane or into a box stops in front of it.
 TEST_F(MoveLimitsTest, HandStopsBeforePlanesAndBoxes) {
   config::ServoConfig config = test::PandaConfig();
-  config.move.pose_error_max = 0.2;  // it shall try for long
+  config.move.pose_error_max = 0.2;  // the servo shall not give up soon
   const model::Vec3 p = PoseOf(test::Ready()).p;
   config::Obstacles plane;
   plane.num_planes = 1;
@@ -71,7 +71,7 @@ TEST_F(MoveLimitsTest, HandStopsBeforePlanesAndBoxes) {
     EXPECT_GT(lowest, p.z() - 0.10 - 1e-3);
     // Before a plane the last link's capsule, which reaches 34 mm beyond the flange, keeps its clearance too.
     const double short_of_it = obstacles.num_planes > 0 ? 0.034 + config.guard.link_clearance + 0.01 : 0.01;
-    EXPECT_LT(lowest, p.z() - 0.10 + short_of_it) << "it went there";
+    EXPECT_LT(lowest, p.z() - 0.10 + short_of_it) << "the hand must come close";
     EXPECT_NE(limits & hal::Bit(hal::Limit::kObstacle), 0U);
     EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused);
     EXPECT_EQ(record().fault, hal::Fault::kNone);
@@ -100,10 +100,11 @@ TEST_F(MoveLimitsTest, HandKeepsItsCartesianSpeedLimit) {
   std::cout << "fastest " << fastest << " m/s of 0.15 m/s, " << hal::Name(record().hold_reason) << "\n";
   EXPECT_LT(fastest, 0.15 * 1.008);
   EXPECT_NE(limits & hal::Bit(hal::Limit::kCartesianSpeed), 0U);
-  EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused) << "it cannot keep up, and says so";
+  EXPECT_EQ(record().hold_reason, HoldReason::kMotionRefused)
+      << "the hand cannot keep up, and the servo reports it";
 }
 
-// A goal of the joints is planned so that the hand keeps its speeds on the way, and is not given up for them.
+// The plan to a joint goal keeps the hand's speed limits on the way, and the goal is reached.
 TEST_F(MoveLimitsTest, JointGoalKeepsTheSpeedsOfTheHandAndArrives) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.cartesian_speed = 0.4;
@@ -132,12 +133,12 @@ TEST_F(MoveLimitsTest, JointGoalKeepsTheSpeedsOfTheHandAndArrives) {
   EXPECT_GT(std::max(fastest / 0.4, most_turn / 0.9), 0.75) << "the goals must be far";
 }
 
-// Stretched out towards the boundary, with a workspace that would allow it: the elbow does not come straight.
+// The hand is commanded far out in a workspace that allows it: the elbow does not become straight.
 TEST_F(MoveLimitsTest, SingularPostureIsNotEntered) {
   config::ServoConfig config = test::PandaConfig();
   config.guard.workspace_radius = 2.0;
   config.guard.singularity_min = 0.06;
-  config.move.pose_error_max = 1.0;  // it shall try for long
+  config.move.pose_error_max = 1.0;  // the servo shall not give up soon
   Start(config, test::Ready());
   const model::Pose start = PoseOf(test::Ready());
   hal::LimitSet limits = 0;
@@ -155,7 +156,7 @@ TEST_F(MoveLimitsTest, SingularPostureIsNotEntered) {
   }
   std::cout << "smallest singular value " << least << ", allowed 0.06\n";
   EXPECT_GT(least, 0.06 - 0.003);
-  EXPECT_LT(least, 0.09) << "it came near";
+  EXPECT_LT(least, 0.09) << "the arm must come close";
   EXPECT_NE(limits & hal::Bit(hal::Limit::kSingularity), 0U);
   EXPECT_LE(most_, 1.0);
   EXPECT_EQ(record().fault, hal::Fault::kNone);

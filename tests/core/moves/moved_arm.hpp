@@ -1,4 +1,4 @@
-// An arm that obeys the model, and a servo that is commanded to move it.
+// An ideal arm, and a servo that moves it by commanded motions.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ class FollowMotionTest : public testing::Test {
     outermost_ = std::max(outermost_, PoseOf(arm_->q()).p.norm());
     return outputs_.record;
   }
-  // The largest share of any limit that the reference used.
+  // Keeps the largest share of any limit that the reference uses.
   void NoteLimits(const hal::TickRecord& before, const hal::TickRecord& now) {
     for (int i = 0; i < config_.arm.num_joints; ++i) {
       const auto k = static_cast<std::size_t>(i);
@@ -86,7 +86,7 @@ class FollowMotionTest : public testing::Test {
     }
     return command;
   }
-  // Until the arm stands again; the number of ticks.
+  // Runs until the motion ends. Returns the number of ticks.
   int RunToHold() {
     int ticks = 0;
     while (record().mode == Mode::kMove && ticks < 20000) {

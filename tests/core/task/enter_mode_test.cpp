@@ -1,4 +1,4 @@
-// What begins anew when the mode changes, and what goes on.
+// What a change of mode resets, and what it keeps.
 #include "firmware/core/task/enter_mode.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The task closes the loop on every target and feature of the list: ideal arm, measurements 40 ms late with
-// noise of 0.05 px in each corner, still and moving.
+// The task in closed loop with every listed target and feature, still and moving: ideal arm, measurements
+// that are 40 ms late with 0.05 px of noise in each corner.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -24,16 +24,16 @@ struct Residual {
   double deg = 0.0;  // of the orientation
 };
 
-// As ServoTaskTest, with any target, seen by the truth plus noise.
+// As ServoTaskTest, with any target, measured as the truth plus noise.
 class TargetLoop {
  public:
   static constexpr double kFocal = 554.256;
 
-  // `turn`: of the last joint more than the rest has [rad].
+  // `turn`: additional offset of the last joint at the start [rad].
   TargetLoop(const config::ServoConfig& config, double sigma_px, double turn = 0.0)
       : config_(config), arm_(config.arm, Start(turn)), eye_(config.feature, kFocal, sigma_px, 71) {
     EXPECT_TRUE(task_.Init(config).ok());
-    // So that the goal is near the ready posture.
+    // Places the target so that the goal is near the ready posture.
     model::ArmPoses poses;
     model::ComputePoses(config.arm, test::Ready(), poses);
     X_BO_ = poses.X_BE * config.X_EC * model::Pose{config.feature.R_CO_star, config.feature.p_CO_C_star};
@@ -49,7 +49,7 @@ class TargetLoop {
     return q;
   }
 
-  // The target at `t` [s]: as it goes round and turns, when it does.
+  // The pose of the target in B at `t` [s]: on a circle and turning after Move, otherwise at rest.
   model::Pose TargetAt(double t) const {
     if (!moves_) {
       return X_BO_;
@@ -104,7 +104,7 @@ class TargetLoop {
     return r;
   }
 
-  // The picture's edges, `margin` outside of all corners at the start and at the goal.
+  // View limits `margin` outside all corners at the start and at the goal.
   config::ViewConfig ViewOfStartAndGoal(double margin) const {
     config::ViewConfig view{true, 1e9, -1e9, 1e9, -1e9};
     for (const model::Pose& X_CO :
@@ -120,7 +120,7 @@ class TargetLoop {
     return view;
   }
 
-  // How far the outermost corner is outside of `view`; below 0 when all are inside.
+  // How far the outermost corner is outside `view`; negative if all are inside.
   double Outside(const config::ViewConfig& view) const {
     double most = -1e9;
     for (const Vec3& p_OP : config_.feature.Outline().p_OP) {
@@ -198,7 +198,7 @@ TEST_P(FourTargets, StillTargetConvergesToItsGoal) {
   }
 }
 
-// Round about at 0.075 m/s while it turns by up to 0.3 rad/s: with the prediction and without.
+// A target on a circle at 0.075 m/s that turns at up to 0.3 rad/s, with and without prediction.
 TEST_P(FourTargets, PredictionCutsTheMovingTargetErrorFivefold) {
   const Case& c = GetParam();
   Residual followed[2];
@@ -220,8 +220,7 @@ TEST_P(FourTargets, PredictionCutsTheMovingTargetErrorFivefold) {
   }
 }
 
-// Three corners look the same from up to four poses: by the corners alone the arm ends at another than the
-// goal.
+// Three corners look the same in up to four poses: with corners alone the arm may stop at a wrong one.
 TEST(FourTargetsLaw, TriangleCornersAloneLeaveThePoseAmbiguous) {
   TargetLoop loop(ConfigFor(FeatureKind::kTriangle, FeatureForm::kCorners), 0.05);
   loop.Run(6000);
@@ -232,7 +231,7 @@ TEST(FourTargetsLaw, TriangleCornersAloneLeaveThePoseAmbiguous) {
   EXPECT_GT(end.deg, 10.0);
 }
 
-// Every choice of the law closes the loop.
+// Every option of the law converges.
 TEST(FourTargetsLaw, EveryGainInteractionAndOrientationChoiceConverges) {
   struct Way {
     const char* name;
@@ -266,10 +265,10 @@ TEST(FourTargetsLaw, EveryGainInteractionAndOrientationChoiceConverges) {
   }
 }
 
-// A picture that ends just outside of where the square's corners are and shall be. By its pose the way there
-// bulges out of it; with the picture's edges as limits it bulges a third of that.
+// The view ends just outside the corners at the start and at the goal. With the pose feature a corner leaves
+// it on the way; with the view as a limit it does so by a third of that.
 TEST(FourTargetsLaw, FieldOfViewLimitsKeepTheSquareInThePicture) {
-  double out[2] = {0.0, 0.0};  // how far a corner was outside, at most, in the normalised image
+  double out[2] = {0.0, 0.0};  // largest distance of a corner outside, in the normalised image
   for (const bool keep : {false, true}) {
     config::ServoConfig config = ConfigFor(FeatureKind::kSquare, FeatureForm::kPose);
     config.guard.view = TargetLoop(config, 0.0, 0.9).ViewOfStartAndGoal(0.02);
@@ -287,10 +286,10 @@ TEST(FourTargetsLaw, FieldOfViewLimitsKeepTheSquareInThePicture) {
     EXPECT_LT(loop.Now().px, 0.3);
   }
   EXPECT_GT(out[0], 0.010);
-  EXPECT_LT(out[1], 0.006) << "the arm follows later than it is told; the margin of 10 px is for that";
+  EXPECT_LT(out[1], 0.006) << "the arm lags behind its reference; the margin of 10 px is for that";
 }
 
-// The source's four entries: the square's turn comes right, its tilts stay what they happen to be.
+// The source's feature with four entries: the square's turn converges, its tilts are not controlled.
 TEST(FourTargetsLaw, SideFeatureControlsFourDegreesOfFreedom) {
   for (const FeatureForm form : {FeatureForm::kSide, FeatureForm::kCornerSide}) {
     config::ServoConfig config = ConfigFor(FeatureKind::kSquare, form);
@@ -302,13 +301,13 @@ TEST(FourTargetsLaw, SideFeatureControlsFourDegreesOfFreedom) {
       e2 += r.e[i] * r.e[i];
     }
     std::cout << features::kFormNames[static_cast<std::size_t>(form)] << ": |e| " << std::sqrt(e2)
-              << " after 7 s, " << loop.Now().deg << " deg off in all\n";
+              << " after 7 s, " << loop.Now().deg << " deg off in total\n";
     EXPECT_EQ(r.dim, 4);
     EXPECT_LT(std::sqrt(e2), 2e-3);
   }
 }
 
-// A ball alone does not see how the camera turns about it; with the orientation held it does not turn.
+// A ball does not fix how the camera turns about it. With the orientation held the camera does not turn.
 TEST(FourTargetsLaw, HeldOrientationStopsRotationAboutABall) {
   for (const bool hold : {false, true}) {
     config::ServoConfig config = ConfigFor(FeatureKind::kSphere, FeatureForm::kSphere);

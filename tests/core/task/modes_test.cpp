@@ -1,4 +1,4 @@
-// Every edge of the mode table, and that there is no way from Fault to motion without a reset.
+// Every edge of the mode table. No path leads from Fault to motion without a reset.
 #include "firmware/core/task/modes.hpp"
 
 #include <gtest/gtest.h>
@@ -123,7 +123,7 @@ TEST_F(ModesTest, FaultLatchesFromEveryModeAndKeepsItsFirstCause) {
   }
 }
 
-// Whoever wanted the arm to move has to say so again once the fault is over.
+// A request to track must be made again after the fault.
 TEST_F(ModesTest, FaultClearsTheTrackRequest) {
   ModeInputs fault = Seen(kFresh);
   fault.fault = Fault::kNotFollowing;
@@ -132,7 +132,7 @@ TEST_F(ModesTest, FaultClearsTheTrackRequest) {
   ModeInputs track = Seen(kFresh);
   track.request = Request::kTrack;
   ASSERT_EQ(After(last_, track), Mode::kFault);
-  EXPECT_FALSE(last_.track_asked) << "nor does a wish count that comes meanwhile";
+  EXPECT_FALSE(last_.track_asked) << "a request during the fault does not count";
   ModeInputs reset = Seen(kFresh);
   reset.request = Request::kReset;
   ASSERT_EQ(After(last_, reset), Mode::kBoot);
@@ -155,7 +155,7 @@ TEST_F(ModesTest, OnlyAResetWithoutAFaultLeavesFault) {
     ModeInputs idle = Seen(kFresh);
     idle.request = Request::kReset;
     EXPECT_EQ(After(In(mode), idle), mode == Mode::kBoot ? Mode::kBoot : Mode::kTrack)
-        << "a reset elsewhere means nothing";
+        << "a reset in another mode has no effect";
   }
 }
 
@@ -166,8 +166,8 @@ TEST_F(ModesTest, CommandedMotionIsFollowedUntilItsEnd) {
   EXPECT_EQ(After(last_, motion), Mode::kMove);
   EXPECT_EQ(After(last_, ModeInputs{}), Mode::kHold);
   EXPECT_EQ(last_.hold_reason, HoldReason::kMotionDone);
-  EXPECT_EQ(After(last_, motion), Mode::kMove) << "and another one";
-  EXPECT_EQ(After(In(Mode::kHold, true), motion), Mode::kHold) << "not while track is asked for";
+  EXPECT_EQ(After(last_, motion), Mode::kMove) << "a second motion is accepted";
+  EXPECT_EQ(After(In(Mode::kHold, true), motion), Mode::kHold) << "not while tracking is requested";
 }
 
 TEST_F(ModesTest, StoppedMotionIsNotResumed) {
@@ -184,19 +184,19 @@ TEST_F(ModesTest, StoppedMotionIsNotResumed) {
                                        {hold, HoldReason::kNotAsked}}) {
     EXPECT_EQ(After(In(Mode::kMove, false), inputs), Mode::kHold);
     EXPECT_EQ(last_.hold_reason, reason);
-    EXPECT_EQ(After(last_, motion), Mode::kHold) << "the stream that goes on is not taken up again";
+    EXPECT_EQ(After(last_, motion), Mode::kHold) << "a stream that goes on does not restart the motion";
     EXPECT_EQ(After(last_, motion), Mode::kHold);
     EXPECT_EQ(After(last_, ModeInputs{}), Mode::kHold);
-    EXPECT_EQ(After(last_, motion), Mode::kMove) << "a new one is";
+    EXPECT_EQ(After(last_, motion), Mode::kMove) << "a new stream restarts the motion";
   }
   ModeInputs track = Seen(kFresh);
   track.motion_asked = true;
   track.request = Request::kTrack;
-  EXPECT_EQ(After(In(Mode::kMove, false), track), Mode::kHold) << "first it stands";
+  EXPECT_EQ(After(In(Mode::kMove, false), track), Mode::kHold) << "the arm stands first";
   EXPECT_EQ(After(last_, track), Mode::kTrack);
 }
 
-// Everything that can be asked and seen in a tick.
+// All combinations of requests and conditions in a tick.
 std::vector<ModeInputs> AllInputs(std::int64_t stale_ns, std::int64_t lost_ns) {
   std::vector<ModeInputs> all;
   for (const Request request : {Request::kNone, Request::kTrack, Request::kHold, Request::kReset}) {
@@ -232,7 +232,7 @@ struct Less {
   }
 };
 
-// All states that `inputs` lead to from `start`, in any order and number.
+// All states that can be reached from `start` by any sequence of `inputs`. Calls `each` for every step.
 template <typename Each>
 std::set<ModeState, Less> Reachable(const config::PredictConfig& config, const std::vector<ModeState>& start,
                                     const std::vector<ModeInputs>& inputs, Each each) {
@@ -253,8 +253,7 @@ std::set<ModeState, Less> Reachable(const config::PredictConfig& config, const s
   return seen;
 }
 
-// The whole space of states, searched: without a reset there is no way from Fault to anything, and its cause
-// stays.
+// Searches all states: without a reset Fault leads to no other mode, and its cause stays.
 TEST_F(ModesTest, NoWayFromFaultToMotionWithoutReset) {
   std::vector<ModeInputs> inputs = AllInputs(Stale(), Lost());
   std::erase_if(inputs, [](const ModeInputs& i) { return i.request == Request::kReset; });
@@ -268,8 +267,8 @@ TEST_F(ModesTest, NoWayFromFaultToMotionWithoutReset) {
   }
 }
 
-// From the start, with all inputs: every edge of the table is walked, none that is not in it, and motion
-// comes only from Hold, which comes only by way of Boot with the arm at rest.
+// From the start, with all inputs: every edge of the table occurs and no other. Boot and Fault never lead
+// directly to motion, and Boot leads to Hold only with the arm ready.
 TEST_F(ModesTest, ExactlyTheListedTransitionsOccur) {
   std::set<const ModeEdge*> walked;
   std::set<std::pair<Mode, Mode>> pairs;
@@ -287,7 +286,7 @@ TEST_F(ModesTest, ExactlyTheListedTransitionsOccur) {
                                 const bool moves = after.mode == Mode::kTrack || after.mode == Mode::kCoast ||
                                                    after.mode == Mode::kMove;
                                 if (moves && (before.mode == Mode::kBoot || before.mode == Mode::kFault)) {
-                                  ADD_FAILURE() << "motion straight from " << hal::Name(before.mode);
+                                  ADD_FAILURE() << "motion directly from " << hal::Name(before.mode);
                                 }
                                 if (before.mode == Mode::kBoot && after.mode == Mode::kHold) {
                                   EXPECT_TRUE(i.arm_ready);

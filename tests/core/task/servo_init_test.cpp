@@ -1,4 +1,4 @@
-// Init refuses what cannot work and names the key.
+// Init refuses a configuration that cannot work and names the key.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,7 +55,7 @@ TEST(ServoInitTest, RefusesABadValueAndNamesTheKey) {
        [](config::ServoConfig& c) {
          c.feature.target = hal::FeatureKind::kSquare;
          c.feature.form = features::FeatureForm::kCorners;
-         c.feature.corners = features::MakeSquare(1.0);  // a corner of which is behind the camera, turned so
+         c.feature.corners = features::MakeSquare(1.0);  // turned so that a corner is behind the camera
          c.feature.R_CO_star << 0, 0, 1, 0, 1, 0, -1, 0, 0;
        }},
       {"safety.view_margin_px", [](config::ServoConfig& c) { c.guard.view.enabled = true; }},
@@ -91,7 +91,7 @@ TEST(ServoInitTest, RefusesABadValueAndNamesTheKey) {
        [](config::ServoConfig& c) { c.guard.joint_acceleration_fraction = 0.9; }},
       {"safety.torque_fraction",
        [](config::ServoConfig& c) {
-         c.arm.joints[5].tau_max = 0.02;  // it takes more to accelerate the hand
+         c.arm.joints[5].tau_max = 0.02;  // too little to accelerate the hand
        }},
       {"safety.rotation_speed", [](config::ServoConfig& c) { c.guard.rotation_speed = 0.19; }},
       {"safety.joint_velocity_fraction",

@@ -1,4 +1,4 @@
-// The loop keeps its grid, counts what it misses, and hands everything on.
+// The loop keeps its time grid, counts missed ticks, and passes on features, requests and motions.
 #include "firmware/core/task/servo_loop.hpp"
 
 #include <gtest/gtest.h>
@@ -60,14 +60,14 @@ TEST_F(ServoLoopTest, MissedTicksAreCountedAndReportedAndTheGridStays) {
   }
 }
 
-// The last deadline is the end: what passes after it is no miss.
+// Time after the last deadline of a run is no missed tick.
 TEST_F(ServoLoopTest, TimePastTheLastDeadlineIsNoMiss) {
   clock_.late_ns = {0, 0, 0, 0, 0, 0, 0, 0, 1'500'000, 3'200'000};
   EXPECT_TRUE(loop_.Run(10 * hal::kNsPerMs).ok());
   EXPECT_EQ(loop_.counters().ticks + loop_.counters().missed_ticks, 10U);
 }
 
-// An arm with a clock of its own: the loop ticks when it answers, however its period compares with ours.
+// An arm with its own clock: the loop ticks when the arm answers, whatever the arm's period.
 class PacedLoopTest : public ServoLoopTest {
  protected:
   PacedLoopTest() {
@@ -118,13 +118,13 @@ TEST_F(PacedLoopTest, SilentOrDisconnectedArmStillTicksAtTheLoopRate) {
   EXPECT_TRUE(paced_.Run(15 * hal::kNsPerMs).ok());
   EXPECT_EQ(paced_.counters().arm_read_errors, 5U);
   pacing_.read_status = hal::Status(hal::StatusCode::kDisconnected);
-  pacing_.before_read = {};  // it answers at once
+  pacing_.before_read = {};  // the arm answers at once
   EXPECT_TRUE(paced_.Run(50 * hal::kNsPerMs).ok());
   EXPECT_EQ(paced_.counters().arm_read_errors, 40U);
   EXPECT_EQ(recorder_.records.back().mode, hal::Mode::kFault);
 }
 
-// Time-outs are times: however long a failed read lasts, the arm is lost after so many milliseconds.
+// The arm is lost after arm_lost_ticks milliseconds of silence, however long each failed read takes.
 TEST_F(PacedLoopTest, SilentArmIsLostByTimeAndNotByReadCount) {
   const int limit = test::PandaConfig().safety.arm_lost_ticks;
   for (const std::int64_t timeout_ms : {1, 2, 5, 7, 20, 40}) {
@@ -154,7 +154,7 @@ TEST_F(PacedLoopTest, SilentArmIsLostByTimeAndNotByReadCount) {
   }
 }
 
-// What was counted while the arm was silent is not counted again when its stamps tell of it.
+// Ticks that were counted as missed in the silence are not counted again from the arm's next stamp.
 TEST_F(PacedLoopTest, SilenceIsNotCountedAgainFromStamps) {
   int reads = 0;
   pacing_.before_read = [&] {
@@ -199,7 +199,7 @@ TEST_F(ServoLoopTest, CountsCommandsThatTheArmRefuses) {
   EXPECT_EQ(loop_.counters().arm_read_errors, 0U);
 }
 
-// Remembers what it is asked.
+// Keeps the requests and motions that it receives.
 class ListeningStep final : public ServoStep {
  public:
   void Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept override {
@@ -228,7 +228,7 @@ class GivenMotion final : public moves::MotionSource {
   moves::MotionCommand command;
 };
 
-// Who may ask for motion, and for how long.
+// The lease: a permission to move that runs out.
 class LeaseTest : public testing::Test {
  protected:
   void RunMs(int ms) { EXPECT_TRUE(loop_.Run(clock_.now_ns + ms * hal::kNsPerMs).ok()); }
@@ -263,7 +263,7 @@ TEST_F(LeaseTest, ExpiredLeaseHoldsEveryTickAndDropsRequests) {
   for (std::size_t k = 1; k < 100; ++k) {
     EXPECT_EQ(step_.requests[k], k < 50 ? Request::kNone : Request::kHold) << k;
   }
-  EXPECT_EQ(loop_.lease_ends(), 1U) << "told once";
+  EXPECT_EQ(loop_.lease_ends(), 1U) << "reported once";
 
   loop_.GiveLeave(150 * hal::kNsPerMs);
   RunMs(20);
@@ -285,7 +285,7 @@ TEST_F(LeaseTest, ExpiredLeaseEndsACommandedMotionForGood) {
   EXPECT_EQ(step_.motions[50], moves::MotionKind::kNone);
   loop_.GiveLeave(1000 * hal::kNsPerMs);
   RunMs(20);
-  EXPECT_EQ(step_.motions.back(), moves::MotionKind::kNone) << "as long as it is the same one";
+  EXPECT_EQ(step_.motions.back(), moves::MotionKind::kNone) << "as long as the command is the same";
   source_.command.kind = moves::MotionKind::kNone;
   RunMs(1);
   source_.command.kind = moves::MotionKind::kHome;

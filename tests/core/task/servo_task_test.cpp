@@ -1,5 +1,4 @@
-// The task as a whole, on an arm that obeys the model: it closes the loop, and it reacts to all that goes
-// wrong.
+// The whole task on an ideal arm: it closes the loop, and reacts to bad inputs.
 #include "firmware/core/task/servo_task.hpp"
 
 #include <gtest/gtest.h>
@@ -46,8 +45,7 @@ TEST_F(ServoTaskTest, TheErrorDecaysExponentially) {
   EXPECT_LT(worst, 0.10);
 }
 
-// Boot may be over within the tick that finds the arm sound: its reference starts where the arm is all the
-// same.
+// Boot may end in its first tick with a sound arm: the reference must start at the arm's position even then.
 TEST_F(ServoTaskTest, BootOfOneTickHoldsTheArmWhereItIs) {
   config::ServoConfig config = test::PandaConfig();
   config.safety.boot_ticks = 1;
@@ -59,7 +57,7 @@ TEST_F(ServoTaskTest, BootOfOneTickHoldsTheArmWhereItIs) {
   EXPECT_EQ(outputs_.record.mode, Mode::kHold);
 }
 
-// An arm that still drifts when Boot finds it at rest is braked within the limits, not stopped at once.
+// An arm that still drifts when Boot accepts it as at rest is braked within the limits, not stopped at once.
 TEST_F(ServoTaskTest, TakesOverADriftingArmWithoutAStep) {
   camera_on_ = false;
   const model::VecN drift = model::VecN::Constant(config_.arm.num_joints, 0.9 * config_.safety.boot_velocity);
@@ -92,14 +90,14 @@ TEST_F(ServoTaskTest, HoldsUntilAskedWhenAutoTrackIsOff) {
   EXPECT_EQ(outputs_.record.hold_reason, hal::HoldReason::kNotAsked);
   const model::VecN before = arm_->q();
   Run(500);
-  EXPECT_LT((arm_->q() - before).norm(), 1e-9) << "it stands still";
+  EXPECT_LT((arm_->q() - before).norm(), 1e-9) << "the arm stands still";
   Tick([](ServoInputs& inputs) { inputs.request = Request::kTrack; });
   EXPECT_EQ(outputs_.record.mode, Mode::kTrack);
   Run(300);
   Tick([](ServoInputs& inputs) { inputs.request = Request::kHold; });
   EXPECT_EQ(outputs_.record.mode, Mode::kHold);
   Run(500);
-  EXPECT_LT(arm_->dq().norm(), 1e-3) << "and stands again";
+  EXPECT_LT(arm_->dq().norm(), 1e-3) << "the arm stands again";
 }
 
 TEST_F(ServoTaskTest, CoastsThroughAShortGapAndHoldsAfterALongOne) {
@@ -121,7 +119,7 @@ TEST_F(ServoTaskTest, CoastsThroughAShortGapAndHoldsAfterALongOne) {
   EXPECT_EQ(outputs_.record.mode, Mode::kTrack);
 }
 
-// A camera whose clock jumped: what it says of the future is left out, and does not stand in the way later.
+// The camera clock jumped: a measurement from the future is rejected, and does not block later ones.
 TEST_F(ServoTaskTest, RejectsAMeasurementFromTheFuture) {
   Run(500);
   ASSERT_EQ(outputs_.record.mode, Mode::kTrack);
@@ -153,7 +151,7 @@ TEST_F(ServoTaskTest, RejectsAMeasurementAFewTicksAhead) {
 }
 
 TEST_F(ServoTaskTest, HoldsWithAReasonWhenTheGoalIsOutOfReach) {
-  target_ = X_BC() * model::Vec3(0.0, 0.0, 1.15);  // seen, but 0.4 m before it is outside the workspace
+  target_ = X_BC() * model::Vec3(0.0, 0.0, 1.15);  // visible, but the goal is outside the workspace
   target_.x() += 0.6;
   Run(12000);
   EXPECT_EQ(outputs_.record.mode, Mode::kHold);
@@ -164,8 +162,8 @@ TEST_F(ServoTaskTest, HoldsWithAReasonWhenTheGoalIsOutOfReach) {
   EXPECT_LE(poses.X_BE.p.norm(), config_.guard.workspace_radius + 1e-3);
 }
 
-// Here the goal lies in reach, but along the workspace's edge all the way: that takes long, and is no reason
-// to give up.
+// The goal is in reach, but the path follows the workspace boundary all the way: this takes long, and is no
+// reason to give up.
 TEST_F(ServoTaskTest, CreepsAlongTheEdgeToAGoalThatIsJustInReach) {
   target_ = X_BC() * model::Vec3(0.0, 0.0, 1.15);
   target_.x() += 0.5;
@@ -179,7 +177,7 @@ TEST_F(ServoTaskTest, CreepsAlongTheEdgeToAGoalThatIsJustInReach) {
   EXPECT_LT(Error(), 0.8 * after_12_s);
 }
 
-// Whatever is thrown at it, in any order: the command stays finite, within range and within rate.
+// Random bad inputs in any order: the command stays finite, within range and within rate.
 TEST_F(ServoTaskTest, AnyInputKeepsTheTorqueLimits) {
   std::mt19937_64 engine(51);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -209,7 +207,7 @@ TEST_F(ServoTaskTest, AnyInputKeepsTheTorqueLimits) {
       } else if (dice < 0.16) {
         inputs.arm.tau_applied[joint] = value;
         if (std::abs(value) <= config_.arm.joints[joint].tau_max) {
-          in_force[joint] = value;  // a lie that cannot be known for one
+          in_force[joint] = value;  // wrong, but plausible
         }
       } else if (dice < 0.17) {
         inputs.has_feature = true;
@@ -227,7 +225,7 @@ TEST_F(ServoTaskTest, AnyInputKeepsTheTorqueLimits) {
   }
 }
 
-// Gains that one law bears are too fast for another: it does not take over.
+// Gains that suit one law may be too high for another: the servo then refuses the change of law.
 TEST_F(ServoTaskTest, LawThatTheGainsDoNotFitDoesNotTakeOver) {
   for (const double k_v : {0.1, 1.0}) {  // on 0.005 kg m^2: 20 and 204 1/s
     config::ServoConfig config = test::PandaConfig();

@@ -1,4 +1,4 @@
-// The task in closed loop with an arm that obeys the model and a camera that measures without error.
+// The task in closed loop with an ideal arm and a camera that measures without error.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class ServoTaskTest : public testing::Test {
     return poses.X_BE * config_.X_EC;
   }
 
-  // One tick; `change` may spoil the inputs.
+  // Runs one tick; `change` may change the inputs.
   const hal::TickRecord& Tick(const std::function<void(ServoInputs&)>& change = {}) {
     ServoInputs inputs;
     inputs.arm = arm_->State();

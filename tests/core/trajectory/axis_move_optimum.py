@@ -3,12 +3,12 @@
 
 The axis is a chain of three integrators whose jerk is constant in each of N equal steps of a move of duration T.
 Position, velocity and acceleration at the steps' ends are then linear in the jerks, so "can it be at rest at the
-goal after T within its limits?" is a linear programme; the least such T is found by halving. The programme knows
+goal after T within its limits?" is a linear programme; bisection finds the least such T. The programme knows
 nothing of phases, peaks or switching times.
 
-Steps make the jerk switch on a grid, which costs time, and let the velocity pass its limit between two of the
-grid's points, which saves some. Both are of the order of one step in the worst case and shrink with it: each case
-is solved with N and N / 2 steps, and the difference is in the table as the size of the error.
+The steps make the jerk switch on a grid, which costs time. They also let the velocity exceed its limit between two
+grid points, which saves time. Both errors are at worst about one step and shrink with it. Each case is solved with
+N and N / 2 steps; the table gives the difference as the size of the error.
 
 A developer's tool: it writes axis_move_optimum.csv, which axis_move_test.cpp reads. Needs python3-scipy.
 
@@ -28,7 +28,7 @@ SEED = 20
 
 
 def feasible(duration, steps, v0, a0, distance, v_max):
-    """Whether `distance` can be gone from (v0, a0) to rest in `duration`; limits of a and j are 1."""
+    """True if the axis can move `distance` from (v0, a0) to rest in `duration`; limits of a and j are 1."""
     h = duration / steps
     # Unknowns: a_1..a_N, v_1..v_N, j_0..j_(N-1).
     rows, cols, values, right = [], [], [], []
@@ -74,7 +74,7 @@ def least_duration(steps, v0, a0, distance, v_max):
     while not feasible(high, steps, v0, a0, distance, v_max):
         high *= 1.5
         if high > 1e4:
-            raise RuntimeError("no duration does")
+            raise RuntimeError("no duration is long enough")
     low = 0.0 if high == 1.0 else high / 1.5
     while high - low > 4e-6 * high:
         middle = 0.5 * (low + high)
@@ -86,7 +86,7 @@ def least_duration(steps, v0, a0, distance, v_max):
 
 
 def stopping_distance(v, a):
-    """Where full braking leads, by small steps: only to draw goals near it."""
+    """The distance of full braking, by small steps; only used to draw goals near it."""
     x, h = 0.0, 1e-3
     sign = 1.0 if v + a * abs(a) / 2 > 0 else -1.0
     v, a = sign * v, sign * a
@@ -106,7 +106,7 @@ def draw(kind):
         v0, a0 = random.uniform(-1, 1) * v_max, random.uniform(-1, 1)
         if abs(v0 + a0 * abs(a0) / 2) <= 0.98 * v_max:
             break
-    if kind == "near":  # the goal close to where full braking leads
+    if kind == "near":  # the goal close to the end of full braking
         return v0, a0, stopping_distance(v0, a0) + random.choice([-1, 1]) * 10 ** random.uniform(-2.5, 0), v_max
     return v0, a0, random.uniform(-1, 1) * 10 ** random.uniform(-1, 1) * max(v_max, 0.5), v_max
 
@@ -121,7 +121,7 @@ def main():
         v0, a0, distance, v_max = draw(kind)
         fine = least_duration(STEPS, v0, a0, distance, v_max)
         coarse = least_duration(STEPS // 2, v0, a0, distance, v_max)
-        # Into other units: a_max and j_max of any size.
+        # Convert to other units: a_max and j_max of any size.
         a_max, j_max = 10 ** random.uniform(-1, 2), 10 ** random.uniform(-1, 4)
         time = a_max / j_max
         length = a_max * time * time

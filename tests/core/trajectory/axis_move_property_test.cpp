@@ -1,5 +1,4 @@
-// Moves of one axis: a million random ones by the motion that they claim, and their durations against least
-// ones that a linear programme found (axis_move_optimum.py).
+// A million random moves of one axis keep their limits, arrive, and respect lower bounds of the duration.
 #include "firmware/core/trajectory/axis_move.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +17,7 @@ struct Case {
   AxisLimits limits;
   AxisState start;
   double goal_x = 0.0;
-  bool stops_there = false;  // the shortest stop ends at the goal, but for rounding
+  bool stops_there = false;  // the shortest stop ends at the goal, within rounding
 };
 
 double Decades(test::RandomStates& random, double low, double high) {
@@ -27,8 +26,8 @@ double Decades(test::RandomStates& random, double low, double high) {
 
 double Sign(test::RandomStates& random) { return random.Uniform(-1.0, 1.0) < 0.0 ? -1.0 : 1.0; }
 
-// Four in ten starts are anywhere within the limits, the others at rest, at a limit, or beyond by up to four
-// times; goals are over ten decades, at the start, or where the axis would stop, and close to there.
+// Starts: within the limits (four in ten), at rest, at constant velocity, at the limit, or up to four times
+// beyond. Goals: over ten decades, at the start, at the end of the shortest stop, or near it.
 Case Draw(test::RandomStates& random) {
   Case c;
   c.limits = {Decades(random, -3, 3), Decades(random, -3, 3), Decades(random, -3, 4)};
@@ -61,8 +60,8 @@ Case Draw(test::RandomStates& random) {
   return c;
 }
 
-// Until when an axis may be beyond its limits: full jerk into the acceleration's, then the shortest change to
-// the velocity's.
+// How long an axis may be beyond its limits: full jerk back to the acceleration limit, then the shortest
+// change to the velocity limit [s].
 double ReturnTime(const Case& c) {
   const double excess_s = std::max(std::fabs(c.start.a) - c.limits.a_max, 0.0) / c.limits.j_max;
   const AxisState in = After(c.start, std::copysign(c.limits.j_max, -c.start.a), excess_s);
@@ -73,17 +72,17 @@ double ReturnTime(const Case& c) {
   return std::fabs(in.v) > c.limits.v_max ? excess_s + std::fabs(in.a) / c.limits.j_max : excess_s;
 }
 
-// The worst of all moves: parts of the size of the quantity, and uses of the limits (1 is all of it).
+// The worst of all moves: errors relative to the size of the quantity, and shares used of the limits.
 struct Residuals {
   double seam_x = 0.0, seam_v = 0.0, seam_a = 0.0;
   double use_v = 0.0, use_a = 0.0, use_j = 0.0;
-  double way = 0.0;      // between two samples, off their velocities
-  double arrival = 0.0;  // off the asked duration, as a share of it
+  double way = 0.0;      // between two samples, against their velocities
+  double arrival = 0.0;  // of the duration, relative to the one asked for
 };
 
 void Worse(double& worst, double value) { worst = std::max(worst, std::isnan(value) ? 1e300 : value); }
 
-// The lengths that rounding is measured by.
+// The length to which rounding errors are compared.
 double WayGone(const Case& c, const AxisMove& move) {
   double way = std::fabs(c.start.x) + std::fabs(c.goal_x);
   for (int k = 0; k < move.num_phases; ++k) {
@@ -113,8 +112,8 @@ void CheckSeams(const Case& c, const AxisMove& move, Residuals& worst) {
   }
 }
 
-// At the phases' ends and where the velocity is extreme in one; beyond the limits only while it returns, and
-// then no further than the start leads.
+// Looks at the ends of the phases and at velocity extremes inside them. The move may be beyond the limits
+// only until ReturnTime, and no further than the start forces it to be.
 void CheckLimits(const Case& c, const AxisMove& move, Residuals& worst) {
   const double return_s = ReturnTime(c) * (1.0 + 1e-12);
   const double v_return = std::max({c.limits.v_max, std::fabs(c.start.v),
@@ -142,7 +141,7 @@ void CheckLimits(const Case& c, const AxisMove& move, Residuals& worst) {
   }
 }
 
-// What At() gives: the start, two random times a tick apart, and the goal.
+// Checks At() at the start, at two random times a tick apart, and at the goal.
 void CheckSamples(const Case& c, const AxisMove& move, test::RandomStates& random, Residuals& worst) {
   const double T = move.Duration();
   if (T > 0.0) {
@@ -156,7 +155,7 @@ void CheckSamples(const Case& c, const AxisMove& move, test::RandomStates& rando
     // Times are rounded to their last bit, accelerations too.
     const double rounding = 8e-16 * (T * c.limits.j_max + std::fabs(a.a) + std::fabs(b.a)) / h;
     Worse(worst.use_j, (std::fabs(b.a - a.a) / h - rounding) / c.limits.j_max);
-    // The trapezoid's rule is off by jerk h^3 / 12 at most.
+    // The error of the trapezoidal rule is at most jerk h^3 / 12.
     const double way = std::fabs(b.x - a.x - 0.5 * h * (a.v + b.v)) - c.limits.j_max * h * h * h / 12.0;
     Worse(worst.way, way / WayGone(c, move));
     if (t >= return_s) {
@@ -171,7 +170,7 @@ void CheckSamples(const Case& c, const AxisMove& move, test::RandomStates& rando
   }
 }
 
-// Bounds from below that hold for any move whatever.
+// Lower bounds of the duration that hold for any move.
 void CheckDuration(const Case& c, const AxisMove& move) {
   const double T = move.Duration() * (1.0 + 1e-9);
   ASSERT_GE(T, PlanVelocityChange(c.start.v, c.start.a, 0.0, c.limits).Duration());
@@ -195,13 +194,13 @@ TEST(AxisMovePropertyTest, MillionRandomMovesKeepTheirLimitsAndArrive) {
     AxisMove move = PlanAxisMove(c.start, c.goal_x, c.limits);
     ASSERT_NO_FATAL_FAILURE(CheckDuration(c, move)) << n;
     if (n % 3 == 0) {
-      // The same, in a longer time.
+      // The same move, in a longer time.
       const double asked_s = move.Duration() * (1.0 + Decades(random, -8, 2));
       move = PlanAxisMove(c.start, c.goal_x, c.limits, asked_s);
       Worse(worst.arrival, asked_s > 0.0 ? std::fabs(move.Duration() / asked_s - 1.0) : 0.0);
       const double arrived_s = move.phases[static_cast<std::size_t>(move.num_phases - 1)].start_s;
       if (arrived_s < asked_s * (1.0 - 1e-9)) {
-        ASSERT_TRUE(c.stops_there) << "no other has to wait at its goal " << n;
+        ASSERT_TRUE(c.stops_there) << "only a move that stops there may wait at its goal, " << n;
         ++waited;
       }
     }
@@ -209,9 +208,9 @@ TEST(AxisMovePropertyTest, MillionRandomMovesKeepTheirLimitsAndArrive) {
     ASSERT_NO_FATAL_FAILURE(CheckSamples(c, move, random, worst)) << n;
     CheckLimits(c, move, worst);
   }
-  std::cout << count << " moves; off at the seams: x " << worst.seam_x << ", v " << worst.seam_v << ", a "
-            << worst.seam_a << "; largest use: v " << worst.use_v << ", a " << worst.use_a << ", jerk "
-            << worst.use_j << "; ways off by " << worst.way << "; off the asked duration " << worst.arrival
+  std::cout << count << " moves; errors at the seams: x " << worst.seam_x << ", v " << worst.seam_v << ", a "
+            << worst.seam_a << "; largest shares: v " << worst.use_v << ", a " << worst.use_a << ", jerk "
+            << worst.use_j << "; error of the way " << worst.way << ", of the duration " << worst.arrival
             << "; waited at the goal " << waited << "\n";
   EXPECT_LE(worst.seam_x, 1e-13);
   EXPECT_LE(worst.seam_v, 1e-13);
@@ -220,7 +219,7 @@ TEST(AxisMovePropertyTest, MillionRandomMovesKeepTheirLimitsAndArrive) {
   EXPECT_LE(worst.use_a, 1.0 + 1e-12);
   EXPECT_LE(worst.use_j, 1.0 + 1e-9);
   EXPECT_LE(worst.way, 1e-13);
-  // Where the duration is a steep function of the time spent braking, that time's last bit shows.
+  // If the duration is a steep function of the braking time, the last bit of that time shows.
   EXPECT_LE(worst.arrival, 1e-9);
   EXPECT_GT(waited, 0);
 }

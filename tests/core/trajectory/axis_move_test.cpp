@@ -1,4 +1,4 @@
-// Moves of one axis that can be told in words, and the durations of others against least ones that a linear
+// Single examples of moves of one axis, and the durations of others against least ones that a linear
 // programme found (axis_move_optimum.py).
 #include "firmware/core/trajectory/axis_move.hpp"
 #include "tests/support/places.hpp"
@@ -15,7 +15,7 @@
 namespace fovea::trajectory {
 namespace {
 
-// `look` at the states at the start of each of a thousand equal parts of a move.
+// Calls `look` with the state at the start of each of a thousand equal parts of a move.
 template <typename Look>
 void ForEachState(const AxisMove& move, Look look) {
   for (int i = 0; i < 1000; ++i) {
@@ -45,12 +45,12 @@ TEST(AxisMoveTest, IsAsFastAsTheLinearProgramme) {
     sum += ratio;
     fastest = std::min(fastest, ratio);
     slowest = std::max(slowest, ratio);
-    // Twice the steps took away error_s; all further ones together take about a third or, at worst, as much.
+    // Twice the steps removed error_s. All further steps remove about a third of it, at worst as much again.
     below_error = std::max(below_error, 1.0 - ratio - error_s / optimum_s);
   }
   ASSERT_EQ(cases, 300);
-  std::cout << cases << " cases: duration to the programme's, mean " << sum / cases << ", worst " << slowest
-            << ", least " << fastest << " (less its own error, " << below_error << " below 1)\n";
+  std::cout << cases << " cases: duration relative to the programme's: mean " << sum / cases << ", worst "
+            << slowest << ", least " << fastest << " (less its own error, " << below_error << " below 1)\n";
   EXPECT_LE(slowest, 1.0 + 1e-5);
   EXPECT_GE(fastest, 1.0 - 5e-4);
   EXPECT_LE(below_error, 5e-5);
@@ -69,7 +69,7 @@ TEST(AxisMoveTest, OvershootsAndReturnsWhenItCannotStopInTime) {
   const AxisMove move = PlanAxisMove({0.0, 1.0, 0.0}, 0.1, {1.0, 1.0, 10.0});
   double furthest = 0.0;
   ForEachState(move, [&](const AxisState& state) { furthest = std::max(furthest, state.x); });
-  // It brakes fully until it turns: 0.1 s of jerk, and from 0.95 m/s at 1 m/s^2.
+  // It brakes fully until it reverses: 0.1 s of full jerk, then from 0.95 m/s at 1 m/s^2.
   EXPECT_NEAR(furthest, 0.1 - 0.01 / 6.0 + 0.5 * 0.95 * 0.95, 1e-6);
   EXPECT_LT(move.At(move.Duration() - 1e-3).v, 0.0);
 }
@@ -88,7 +88,7 @@ TEST(AxisMoveTest, TakesALongerTimeByCruisingSlower) {
   const AxisMove move = PlanAxisMove(start, 2.0, limits, T);
   double last = start.v;
   ForEachState(move, [&](const AxisState& state) {
-    EXPECT_LE(state.v, last + 1e-12) << "no detour by way of a stop at " << state.x;
+    EXPECT_LE(state.v, last + 1e-12) << "the axis must not speed up again, at " << state.x;
     last = state.v;
   });
   EXPECT_NEAR(move.At(0.5 * T).v, 2.0 / T, 0.1);
@@ -103,7 +103,7 @@ TEST(AxisMoveTest, EasesItsBrakingWhenTheGoalIsSlightlyFurther) {
   double a_max = -1.0;
   ForEachState(move, [&](const AxisState& state) { a_max = std::max(a_max, state.a); });
   EXPECT_LT(a_max, 0.0) << "the acceleration never comes to zero on the way";
-  // Between that and the fastest way with a cruise there are durations too, and none waits at the goal.
+  // Longer durations, up to twice this one, do not wait at the goal either.
   for (int i = 0; i < 100; ++i) {
     const double asked_s = (1.0 + 0.01 * i) * move.Duration();
     const AxisMove longer = PlanAxisMove(start, goal_x, limits, asked_s);

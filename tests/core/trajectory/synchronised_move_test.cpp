@@ -1,5 +1,5 @@
-// Moves of several axes: all arrive together, within their limits, straight from rest, and change their mind
-// in any tick without a jump.
+// Moves of several axes: all arrive together within their limits, on a straight line from rest, and take a
+// new goal in any tick without a jump.
 #include "firmware/core/trajectory/synchronised_move.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ Tasks DrawTasks(test::RandomStates& random, bool at_rest) {
   return tasks;
 }
 
-// The largest use of the limits at some times of a move, jerk by differences over a tick.
+// The largest share used of the limits at `samples` times of a move; jerk by differences over a tick.
 double LargestUse(const SynchronisedMove& move, const Tasks& tasks, int samples) {
   double worst = 0.0;
   SynchronisedMove::States now;
@@ -108,7 +108,7 @@ TEST(SynchronisedMoveTest, PathFromRestIsStraight) {
     least_use = std::min(least_use, use);
     for (int i = 0; i <= 10; ++i) {
       move.At(move.Duration() * i / 10, states);
-      // Each axis's share of its way, against that of the one that goes furthest.
+      // Compares each axis's share of its way with that of the axis with the longest way.
       std::size_t far = 0;
       for (std::size_t k = 1; k < tasks.size(); ++k) {
         if (std::fabs(tasks[k].goal_x - tasks[k].start.x) >
@@ -154,7 +154,7 @@ TEST(SynchronisedMoveTest, RefusesInvalidTasksAndKeepsItsPlan) {
   EXPECT_EQ(move.NumAxes(), SynchronisedMove::kMaxAxes);
 }
 
-// A new goal in any tick, from the reference as it is then.
+// A new goal in any tick, planned from the reference of that tick.
 TEST(JointMoveTest, TakesANewGoalInAnyTick) {
   test::RandomStates random(68);
   const model::ArmModel& arm = test::Panda().model;
@@ -181,7 +181,7 @@ TEST(JointMoveTest, TakesANewGoalInAnyTick) {
         move.At(t, reference);
         for (int i = 0; i < 7; ++i) {
           const AxisLimits& limit = limits[static_cast<std::size_t>(i)];
-          // What a tick of bounded jerk may add.
+          // The most that a tick of bounded jerk may add.
           const double jerk_step = limit.j_max * kTickS;
           worst_use = std::max({worst_use, std::fabs(reference.dq[i]) / limit.v_max,
                                 std::fabs(reference.ddq[i]) / limit.a_max,

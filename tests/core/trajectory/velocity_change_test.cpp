@@ -1,5 +1,4 @@
-// The shortest change of velocity: by the motion that it claims, and against the guard's stop, which is other
-// code.
+// The shortest change of velocity: it ends as planned, keeps its limits, and its positions are consistent.
 #include "firmware/core/trajectory/velocity_change.hpp"
 
 #include <gtest/gtest.h>
@@ -41,14 +40,14 @@ TEST(VelocityChangeTest, EndsAtItsVelocityWithinItsLimits) {
     worst_travel = std::max({worst_travel, std::fabs(change.Travel() - state.x) / (v_size * T + 1e-300),
                              std::fabs(change.At(T + 1.0).x - state.x - v1) / (v_size * (T + 1.0))});
   }
-  std::cout << "ends off by " << worst_end << ", goes off by " << worst_travel
-            << ", largest use of the acceleration " << worst_a << "\n";
+  std::cout << "error of the end " << worst_end << ", of the way " << worst_travel
+            << "; largest share of the acceleration " << worst_a << "\n";
   EXPECT_LE(worst_end, 1e-13);
   EXPECT_LE(worst_travel, 1e-13);
   EXPECT_LE(worst_a, 1.0 + 1e-13);
 }
 
-// Told by its positions alone.
+// Checked from its positions alone.
 TEST(VelocityChangeTest, StopComesToRestWithinItsLimits) {
   test::RandomStates random(61);
   double worst_start = 0.0;
@@ -78,8 +77,8 @@ TEST(VelocityChangeTest, StopComesToRestWithinItsLimits) {
       last = a;
     }
   }
-  std::cout << "starts off by " << worst_start << " rad/s, is not at rest by " << worst_end
-            << " rad; largest use: acceleration " << worst_a << ", jerk " << worst_jerk << "\n";
+  std::cout << "error of the start " << worst_start << " rad/s, of the rest at the end " << worst_end
+            << " rad; largest shares: acceleration " << worst_a << ", jerk " << worst_jerk << "\n";
   EXPECT_LE(worst_start, 0.0);
   EXPECT_LE(worst_end, 0.0);
   EXPECT_LE(worst_a, 1.0 + 1e-6);

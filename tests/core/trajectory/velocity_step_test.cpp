@@ -1,4 +1,4 @@
-// The tick's way to a velocity against the time optimum that velocity_change.hpp plans.
+// The change of velocity tick by tick, against the time optimum of velocity_change.hpp.
 #include "firmware/core/trajectory/velocity_step.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ TEST(VelocityStepTest, MatchesTheTimeOptimumWithinLimitsWithoutOvershoot) {
     AxisState state{0.0, random.Uniform(-2.0, 2.0), random.Uniform(-10.0, 10.0)};
     const double v = random.Uniform(-2.0, 2.0);
     const double optimum_s = PlanVelocityChange(state.v, state.a, v, kLimits).Duration();
-    // Where releasing the acceleration leads beyond v, that much overshoot is nobody's fault.
+    // If reducing the acceleration to zero leads beyond v, that overshoot cannot be avoided.
     const double settled = SettledVelocity(state.v, state.a, kLimits.j_max);
     const double high = std::max({state.v, settled, v});
     const double low = std::min({state.v, settled, v});
@@ -42,7 +42,7 @@ TEST(VelocityStepTest, MatchesTheTimeOptimumWithinLimitsWithoutOvershoot) {
   std::cout << "at most " << latest << " ticks later than the optimum, at most " << most_over
             << " rad/s beyond the velocity\n";
   EXPECT_LE(latest, 2);
-  EXPECT_LT(most_over, 0.15 * kLimits.j_max * kPeriodS * kPeriodS);  // of a jerk step for a tick: the grid's
+  EXPECT_LT(most_over, 0.15 * kLimits.j_max * kPeriodS * kPeriodS);  // caused by the tick grid
 }
 
 TEST(VelocityStepTest, FollowsAChangingVelocity) {

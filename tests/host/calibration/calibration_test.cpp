@@ -1,4 +1,4 @@
-// Calibration recovers what the ray-cast pictures were made with.
+// Calibration recovers the camera parameters that the ray-cast pictures were made with.
 #include "firmware/host/calibration/calibration.hpp"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ bench::PictureCamera Camera() {
 
 const Board kBoard{8, 5, 0.02, 0.0, ""};
 
-// A board whose first inner corner is O's origin, at X_CO.
+// A picture of the board at pose X_CO. O's origin is the board's first inner corner.
 cv::Mat BoardPicture(const bench::PictureCamera& camera, const model::Pose& X_CO, unsigned seed) {
   bench::PictureScene scene;
   scene.camera = camera;
@@ -57,7 +57,7 @@ cv::Mat BoardPicture(const bench::PictureCamera& camera, const model::Pose& X_CO
   return bench::Draw(scene);
 }
 
-// Looks at the board's middle, tilted by `tilt` [rad] towards `about`.
+// A view of the board's centre, tilted by `tilt` [rad] towards `about`.
 model::Pose Look(double tilt, double about, double turn, double distance, double u, double v) {
   model::Pose X_CO;
   X_CO.R = model::RotationOf(tilt * Vec3(std::cos(about), std::sin(about), 0.0)) *
@@ -82,7 +82,7 @@ TEST(CalibrationTest, RecoversIntrinsicsAndLens) {
     views.push_back(view);
   }
   const IntrinsicsResult r = SolveIntrinsics(views, kBoard, {640, 480});
-  // The lens as a whole: where it puts points that the boards reached.
+  // The error of the whole lens model, at image points that the boards reached.
   const vision::Intrinsics truth{640,
                                  480,
                                  camera.f_px,
@@ -101,8 +101,8 @@ TEST(CalibrationTest, RecoversIntrinsicsAndLens) {
     }
   }
   std::cout << "f " << r.intrinsics.f_u_px << " +- " << r.sigma_f_px << ", c " << r.intrinsics.c_u_px << " "
-            << r.intrinsics.c_v_px << " +- " << r.sigma_c_px << ", rms " << r.rms_px << " px, picture off by "
-            << worst << " px at most\n";
+            << r.intrinsics.c_v_px << " +- " << r.sigma_c_px << ", rms " << r.rms_px
+            << " px, points off by at most " << worst << " px\n";
   EXPECT_NEAR(r.intrinsics.f_u_px, camera.f_px, 1.5);
   EXPECT_NEAR(r.intrinsics.c_u_px, camera.c_u_px, 1.5);
   EXPECT_NEAR(r.intrinsics.c_v_px, camera.c_v_px, 1.5);
@@ -111,10 +111,10 @@ TEST(CalibrationTest, RecoversIntrinsicsAndLens) {
 
   EXPECT_THROW(SolveIntrinsics({views.begin(), views.begin() + 3}, kBoard, {640, 480}), CalibrationError);
   EXPECT_THROW(SolveIntrinsics(std::vector<BoardView>(5, views[1]), kBoard, {640, 480}), CalibrationError)
-      << "all from one side";
+      << "all views from one direction";
 }
 
-// Each kind of useless views has its own line.
+// Each kind of useless views has its own error line.
 TEST(CalibrationTest, ReportsWhyViewsAreUseless) {
   const vision::Intrinsics in{640, 480, 560.0, 560.0, 320.0, 240.0, {}};
   const auto seen = [&in](const model::Pose& X_CO, const char* name) {
@@ -159,7 +159,7 @@ TEST(CalibrationTest, ReportsWhyViewsAreUseless) {
   }
   EXPECT_THAT(refusal(few), testing::HasSubstr("do not determine a camera"));
   EXPECT_THROW(SolveFocalLength({{60.0, 0.01, 0.0}, {59.99, 0.01, 0.15}}, 0.08, false), CalibrationError)
-      << "no more than noise";
+      << "the difference is only noise";
 }
 
 TEST(CalibrationTest, DrawnChessboardIsFoundWhereItWasDrawn) {
@@ -185,7 +185,7 @@ TEST(CalibrationTest, DrawnChessboardIsFoundWhereItWasDrawn) {
   }
   BoardView none;
   EXPECT_FALSE(FindBoard(cv::Mat(480, 640, CV_8UC1, cv::Scalar(255)), kBoard, none));
-  EXPECT_NO_THROW(CheckBoard(kBoard)) << "no markers, no dictionary";
+  EXPECT_NO_THROW(CheckBoard(kBoard)) << "a board without markers needs no dictionary";
   EXPECT_THROW(CheckBoard({8, 5, 0.02, 0.014, "9x9_50"}), CalibrationError);
 }
 
@@ -199,7 +199,7 @@ vision::Intrinsics IntrinsicsOf(const bench::PictureCamera& camera) {
           {camera.lens[0], camera.lens[1], camera.lens[2], camera.lens[3], 0.0}};
 }
 
-// The board as DrawBoard has it, seen through a camera with a lens: each pixel the mean of 3 x 3 rays.
+// The board of DrawBoard, seen through a camera with a lens. Each pixel is the mean of 3 x 3 rays.
 cv::Mat SeenBoard(const Board& board, const vision::Intrinsics& in, const model::Pose& X_CO, unsigned seed) {
   constexpr int kSquarePx = 160;
   constexpr int kRays = 3;
@@ -232,7 +232,7 @@ cv::Mat SeenBoard(const Board& board, const vision::Intrinsics& in, const model:
 
 const Board kCharuco{8, 5, 0.02, 0.014, "5x5_100"};
 
-// Of a ChArUco board a part is enough, here with a third of it outside every picture.
+// A visible part of a ChArUco board suffices; here a third of it lies outside every picture.
 TEST(CalibrationTest, PartlyVisibleCharucoBoardSuffices) {
   const bench::PictureCamera camera = Camera();
   const vision::Intrinsics in = IntrinsicsOf(camera);
@@ -312,17 +312,17 @@ TEST(CalibrationTest, RecoversTheCameraPoseOnTheHand) {
   for (HandView& view : views) {
     view.X_BE.R = model::RotationOf(Vec3(0.0, 0.0, 0.1 * static_cast<double>(&view - views.data())));
   }
-  EXPECT_THROW(SolveHandEye(views, kBoard, in), CalibrationError) << "about one axis";
+  EXPECT_THROW(SolveHandEye(views, kBoard, in), CalibrationError) << "all rotations are about one axis";
 }
 
 TEST(CalibrationTest, FocalLengthIsFoundFromTwoOrMoreDistances) {
-  // The formula of two views, exactly.
+  // The closed-form result of two views.
   const FocalLength two = SolveFocalLength({{60.0, 0.01, 0.0}, {40.0, 0.01, 0.15}}, 0.08, false);
   EXPECT_NEAR(two.f_px, 2.0 * 0.15 * 60.0 * 40.0 / (0.08 * 20.0), 1e-9);
   EXPECT_THROW(SolveFocalLength({{40.0, 0.01, 0.0}, {60.0, 0.01, 0.15}}, 0.08, false), CalibrationError);
   EXPECT_THROW(SolveFocalLength({{40.0, 0.01, 0.0}}, 0.08, false), CalibrationError);
 
-  // From pictures of a disc, by the detector, which is told nothing but a rough focal length.
+  // Radii from pictures of a disc; the detector has only a rough focal length.
   bench::PictureScene scene;
   scene.noise = 3.0;
   bench::Body disc;

@@ -1,4 +1,4 @@
-// A command line as it can be typed again.
+// The recorded command line can be typed again in a shell.
 #include "firmware/host/config/command_line.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Help fits into a terminal, and nothing of it is lost.
+// Help texts are wrapped to the terminal's width without losing a word.
 #include "firmware/host/config/help_text.hpp"
 
 #include <gtest/gtest.h>
@@ -19,9 +19,9 @@ TEST(FormatHelpTest, KeepsLinesThatFit) {
 }
 
 TEST(FormatHelpTest, IndentsTheRestOfADescriptionToItsColumn) {
-  EXPECT_EQ(Formatted("  --seed UINT                 of all that is random, in every run of it\n", 60),
-            "  --seed UINT                 of all that is random, in\n"
-            "                              every run of it\n");
+  EXPECT_EQ(Formatted("  --seed UINT                 seed of the random numbers, the same in each run\n", 60),
+            "  --seed UINT                 seed of the random numbers,\n"
+            "                              the same in each run\n");
 }
 
 TEST(FormatHelpTest, IndentsTheRestOfALineByTwoMore) {
@@ -48,9 +48,9 @@ TEST(FormatHelpTest, BreaksALongListOfChoicesBehindCommas) {
 
 TEST(FormatHelpTest, LosesNoWordAtAnyWidth) {
   const std::string text =
-      "Fovea's tools beside its runs: reports and replays of logs.\n\nOptions:\n"
-      "  -j,--jobs INT:INT in [1 - 256]\n                              that run beside each other; one for "
-      "every two cores when not given\n  fovea atlas --faults --jobs 2 --only ball.approach\n";
+      "Fovea's tools: reports and replays of logs.\n\nOptions:\n"
+      "  -j,--jobs INT:INT in [1 - 256]\n                              jobs that run in parallel; default: "
+      "one for every two cores\n  fovea atlas --faults --jobs 2 --only ball.approach\n";
   const auto words = [](const std::string& of) {
     std::istringstream stream(of);
     std::string all;

@@ -1,5 +1,5 @@
-// Keys: the right ones are set, the wrong ones named with the file, the line and what is allowed; never by
-// half.
+// Keys: valid settings are applied as a whole. An error names the
+// file, the line and the allowed values, and changes nothing.
 #include "firmware/host/config/key_table.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ class KeyTableTest : public testing::Test {
  protected:
   KeyTableTest() {
     keys_.Number("camera.rate_hz", rate_, 1.0, 240.0, "Hz", "frames per second");
-    keys_.Integer("run.seed", seed_, 0, 100, "", "of all that is random");
+    keys_.Integer("run.seed", seed_, 0, 100, "", "seed of the random numbers");
     keys_.Flag("servo.predict", predict_, "predict");
     keys_.Text("arm.model", model_, "which arm");
     keys_.Choice("target.motion", motion_, {"still", "circle"}, "how it moves");
@@ -72,7 +72,7 @@ TEST_F(KeyTableTest, RefusesABadValueAndNamesWhatIsAllowed) {
         Case{"arm.model=3", "a text"}, Case{"target.motion=spin", "\"still\", \"circle\""},
         Case{"target.position=[1, 2]", "3 numbers"}, Case{"target.position=[1, 2, 9]", "-5 to 5 m"},
         Case{"target.position=[1, 2, \"x\"]", "must be a number"},
-        Case{"target.position={a = 1}", "a table is no value"},
+        Case{"target.position={a = 1}", "a table is not allowed"},
         Case{"camera.rate_hz=3\nfoo=1", "more than one value"}}) {
     EXPECT_THAT(ErrorOf(c.assignment), HasSubstr(c.words));
   }
@@ -101,7 +101,7 @@ TEST_F(KeyTableTest, MalformedAssignmentIsRefused) {
   }
 }
 
-// A refusal is one line, and no words of a stranger's are orders to a terminal.
+// A refusal is one line, and quoted text cannot send control characters to the terminal.
 TEST_F(KeyTableTest, ControlCharactersInErrorsAreEscaped) {
   for (const char* text : {"servo\n.predict", "\x1b[2J=1\r\n", "arm.model=\x7f\""}) {
     const std::string error = ErrorOf(text);
@@ -145,7 +145,7 @@ TEST(TomlFileTest, ErrorsNameFileAndLine) {
   EXPECT_THAT(settings[1].where, HasSubstr("scenario.toml:2"));
 }
 
-// The parser would take it, and as much stack as it is deep.
+// The parser would accept such a key, but would recurse as deeply as it is nested.
 TEST(ReadTomlFile, LineThatIsTooLongIsRefused) {
   const test::TempFolder folder;
   const std::filesystem::path file = folder.path() / "deep.toml";

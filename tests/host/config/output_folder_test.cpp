@@ -1,4 +1,4 @@
-// A file is there whole or not at all.
+// An output file is either complete or absent.
 #include "firmware/host/config/output_folder.hpp"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ TEST(OutputFolderTest, ReplaceWritesNewFilesAndRemovesOldOnes) {
   std::ofstream(folder.path() / "mine.txt") << "a person's own";
   folder.Replace({{"x.json", "two"}}, names);
   EXPECT_EQ(Read(folder.path() / "x.json"), "two");
-  EXPECT_FALSE(fs::exists(folder.path() / "y.png")) << "a picture of another run beside this one's figures";
+  EXPECT_FALSE(fs::exists(folder.path() / "y.png")) << "a picture of an earlier run is left";
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator()), 2);
 }
 
@@ -46,6 +46,24 @@ TEST(OutputFolderTest, FailedWriteKeepsTheOldFiles) {
   EXPECT_EQ(Read(temp.path() / "a.png"), "one");
   EXPECT_EQ(Read(temp.path() / "x.json"), "one");
   EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 3);
+}
+
+TEST(OutputFolderTest, FailedRenameKeepsTheOldFilesAndTheBegunOnes) {
+  const test::TempFolder temp;
+  OutputFolder folder(temp.path());
+  const std::vector<std::string> names{"log.mcap", "film.mp4", "x.json"};
+  folder.Replace({{"log.mcap", "one"}, {"film.mp4", "one"}, {"x.json", "one"}}, names);
+  std::ofstream(folder.Begin("log.mcap")) << "two";
+  static_cast<void>(folder.Begin("film.mp4"));  // never written: its rename fails
+  EXPECT_THROW(
+      folder.Replace({{"log.mcap", std::nullopt}, {"film.mp4", std::nullopt}, {"x.json", "two"}}, names),
+      InputError);
+  for (const std::string& name : names) {
+    EXPECT_EQ(Read(temp.path() / name), "one") << name;
+  }
+  folder.Keep("log.mcap", names);
+  EXPECT_EQ(Read(temp.path() / "log.mcap"), "two") << "a begun file can still be kept";
+  EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 1);
 }
 
 TEST(OutputFolderTest, BegunFileIsPutInPlaceOrRemoved) {
@@ -62,7 +80,7 @@ TEST(OutputFolderTest, BegunFileIsPutInPlaceOrRemoved) {
   EXPECT_EQ(std::distance(fs::directory_iterator(temp.path()), fs::directory_iterator()), 2);
 }
 
-// What a run begins itself and then does not have cannot be put in place; it is said which file.
+// A begun file that is missing at the end cannot be put in place; the error names it.
 TEST(OutputFolderTest, MissingOrUnwritableFileIsNamed) {
   const test::TempFolder temp;
   const OutputFolder folder(temp.path());
@@ -76,10 +94,10 @@ TEST(OutputFolderTest, MissingOrUnwritableFileIsNamed) {
   };
   EXPECT_THAT(refusal({{"film.mp4", std::nullopt}}),
               testing::HasSubstr("film.mp4: cannot be written: No such file"));
-  fs::create_directory(temp.path() / ".x.json.partial");  // as a disk that takes nothing
+  fs::create_directory(temp.path() / ".x.json.partial");  // the write fails, as on a full disk
   EXPECT_THAT(refusal({{"y.json", "one"}, {"x.json", "one"}}),
               testing::HasSubstr("x.json: cannot be written"));
-  EXPECT_FALSE(fs::exists(temp.path() / "y.json")) << "all or none";
+  EXPECT_FALSE(fs::exists(temp.path() / "y.json")) << "all files or none";
 }
 
 TEST(OutputFolderTest, ImpossibleFolderIsRefusedAtOnce) {
@@ -89,7 +107,7 @@ TEST(OutputFolderTest, ImpossibleFolderIsRefusedAtOnce) {
   EXPECT_THROW(OutputFolder(temp.path() / "file" / "below"), InputError);
 }
 
-// The second run is refused, and what the first one writes stays whole.
+// A second run is refused, and the first one's files stay complete.
 TEST(OutputFolderTest, IsHeldByOneRunAtATime) {
   const test::TempFolder temp;
   {
@@ -106,10 +124,10 @@ TEST(OutputFolderTest, IsHeldByOneRunAtATime) {
     first.Replace({{"log.mcap", std::nullopt}}, {"log.mcap"});
     EXPECT_EQ(Read(temp.path() / "log.mcap"), "the first one's");
   }
-  EXPECT_NO_THROW(OutputFolder(temp.path())) << "let go";
+  EXPECT_NO_THROW(OutputFolder(temp.path())) << "the folder is released";
 }
 
-// A process that holds the folder, and is killed.
+// A killed process releases the folder.
 TEST(OutputFolderTest, IsFreeWhenItsHolderIsKilled) {
   const test::TempFolder temp;
   int holds[2];
@@ -131,7 +149,7 @@ TEST(OutputFolderTest, IsFreeWhenItsHolderIsKilled) {
   close(holds[1]);
 }
 
-// What is kept stands alone: nothing of an earlier run beside it.
+// No file of an earlier run stays beside the kept one.
 TEST(OutputFolderTest, KeepLeavesOnlyTheBegunFile) {
   const test::TempFolder temp;
   {

@@ -29,7 +29,7 @@ TEST(RollPitchYaw, AnglesOfARotationGiveTheRotationBack) {
   std::uniform_real_distribution<double> angle(-180.0, 180.0);
   double worst = 0.0;
   for (int k = 0; k < 1000; ++k) {
-    // Every fourth stands at, or within a millionth of a degree of, a pitch of 90 degrees either way.
+    // Every fourth pitch is +-90 degrees, exactly or within a millionth of a degree.
     const double upright = (k % 8 == 0 ? 90.0 : -90.0) + (k % 16 < 8 ? 0.0 : 1e-6);
     const std::vector<double> rpy{angle(engine), k % 4 == 0 ? upright : angle(engine), angle(engine)};
     const model::Mat3 R = RollPitchYaw(rpy);
@@ -41,7 +41,7 @@ TEST(RollPitchYaw, AnglesOfARotationGiveTheRotationBack) {
   EXPECT_LT(worst, 1e-12);
 }
 
-TEST(RollPitchYaw, AnglesWithinTheirRangesComeBackAsTheyWere) {
+TEST(RollPitchYaw, AnglesWithinTheirRangesRoundTrip) {
   for (const std::array<double, 3>& rpy : {std::array<double, 3>{0.0, 0.0, 0.0},
                                            {10.0, -20.0, 30.0},
                                            {-170.0, 89.0, 179.0},

@@ -1,4 +1,4 @@
-// Values change, and nothing else of the text does.
+// Editing changes the values and leaves the rest of the text as it is.
 #include "firmware/host/config/toml_edit.hpp"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// A sampled regulator with a delay, stepped through time: the plant by Runge-Kutta between changes of its
-// force, the forces in a queue until they are due. Knows nothing of transition matrices or poles.
+// Simulates a sampled regulator with a delay: Runge-Kutta for the plant between changes of the force, and a
+// queue for the delayed forces. Independent of the transition matrices and poles of firmware/host/design.
 #pragma once
 
 #include <cmath>
@@ -58,8 +58,8 @@ class DelayedLoop {
 
 enum class Fate { kDecays, kGrows, kUndecided };
 
-// What becomes of a start off the goal: a factor of a million down, or of a thousand up, after things have
-// settled into their slowest mode. Given up after `most_periods`.
+// Simulates from an initial error: kDecays at a factor of 1e-6 and kGrows at 1e3, relative to the size once
+// only the slowest mode is left. kUndecided after `most_periods`.
 inline Fate FateOf(const design::SampledLoop& loop, long most_periods = 3'000'000) {
   const double omega = std::sqrt((loop.plant.stiffness + std::fabs(loop.gains.k_p)) / loop.plant.mass);
   DelayedLoop run(loop, {1.0, 0.5 * omega});

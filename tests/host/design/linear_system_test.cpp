@@ -1,4 +1,4 @@
-// Linear systems of any order, judged by motions that are known in closed form.
+// Linear systems of any order, compared with closed-form responses.
 #include "firmware/host/design/linear_system.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Plants for tests of the design, and their motion by a numerical method that shares nothing with it.
+// Plants for the design tests, and their motion by an independent numerical method.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ inline double LogUniform(std::mt19937& random, double low, double high) {
   return std::exp(std::uniform_real_distribution<double>(std::log(low), std::log(high))(random));
 }
 
-// Heavy and light, creeping and ringing; some without damping, some without a spring.
+// Heavy or light, overdamped or oscillating; some without damping, some without a spring.
 inline design::SecondOrder RandomPlant(std::mt19937& random) {
   const double mass = LogUniform(random, 0.05, 50.0);
   const double omega_n = LogUniform(random, 0.2, 30.0);

@@ -1,4 +1,4 @@
-// The sampled loop: one period against a simulation, poles against the continuous ones, two ways of counting.
+// The sampled loop against a simulation, the continuous poles, and two counts of unstable poles.
 #include "firmware/host/design/sampled_loop.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(SampledLoopTest, OnePeriodMatchesTheSimulation) {
       worst = std::fmax(worst, std::fabs(state[1] - run.motion().v / loop.rate_hz) / size);
     }
   }
-  std::cout << "worst departure from the simulation: " << worst << " of the state's size\n";
+  std::cout << "largest difference from the simulation: " << worst << " of the state's size\n";
   EXPECT_LT(worst, 1e-7);
 }
 
@@ -56,7 +56,7 @@ TEST(SampledLoopTest, HasOnePolePerDelayedForce) {
   for (std::size_t periods = 1; periods < 30; ++periods) {
     const double delay_s = 1e-3 * static_cast<double>(periods);
     EXPECT_EQ(Poles(SampledLoop{plant, gains, 1000.0, delay_s}).size(), 2U + periods)
-        << "whatever it rounds to";
+        << "independent of rounding";
   }
   EXPECT_EQ(Poles(SampledLoop{plant, gains, 1000.0, 0.0031}).size(), 6U);
 }
@@ -71,7 +71,7 @@ TEST(SampledLoopTest, WithoutGainsEqualsTheSampledOpenLoop) {
   }
 }
 
-// Poles known by hand: x'' = u under whole-period sampling, z^2 - (2 - k_v - k_p / 2) z + 1 - k_v + k_p / 2.
+// Poles by hand: x'' = u sampled with T = 1, without delay: z^2 - (2 - k_v - k_p / 2) z + 1 - k_v + k_p / 2.
 TEST(SampledLoopTest, DoubleIntegratorPolesMatchHandComputation) {
   const double k_p = 0.08;
   const double k_v = 0.5;
@@ -80,7 +80,7 @@ TEST(SampledLoopTest, DoubleIntegratorPolesMatchHandComputation) {
   EXPECT_NEAR((z[0] * z[1]).real(), 1.0 - k_v + k_p / 2.0, 1e-14);
 }
 
-// The hold alone delays by half a period: the poles come nearer in proportion to the period.
+// The hold alone delays by half a period, so the pole error is proportional to the period.
 TEST(SampledLoopTest, PolesApproachTheContinuousOnesAtHighRates) {
   const SecondOrder plant{2.0, 3.0, 50.0};
   const PdGains gains = DesignPd(plant, 800.0, 0.5);
@@ -123,7 +123,7 @@ TEST(SampledLoopTest, StabilityCountAgreesWithTheEigenvalues) {
 }
 
 TEST(SampledLoopTest, PoleOnTheUnitCircleIsNotStable) {
-  // Neither spring nor damping, and no regulator: z = 1, twice. A spring alone: a pair on the circle.
+  // Without spring, damping and regulator: a double pole at z = 1. With a spring only: a pair on the circle.
   EXPECT_FALSE(IsStable({{1.0, 0.0, 0.0}, {}, 1000.0, 0.0}));
   EXPECT_FALSE(IsStable({{1.0, 1.0, 0.0}, {}, 1000.0, 0.0}));
   EXPECT_TRUE(IsStable({{1.0, 1.0, 1.0}, {}, 1000.0, 0.0}));

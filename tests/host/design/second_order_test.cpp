@@ -1,4 +1,4 @@
-// One degree of freedom: the exercise's figures, and the exact motion against a numerical one.
+// One degree of freedom: the exercise's figures, and the exact motion compared with a numerical one.
 #include "firmware/host/design/second_order.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(SecondOrderTest, PolesSolveTheCharacteristicEquation) {
   EXPECT_LT(worst, 1e-14);
 }
 
-// k = 0, b = 0, both, and poles so far apart that their sum hides the slow one.
+// k = 0, b = 0, both, and poles so far apart that rounding of their sum loses the slow one.
 TEST(SecondOrderTest, PolesOfDegenerateSystemsAreExact) {
   EXPECT_EQ(Poles({2.0, 4.0, 0.0}), (std::array<std::complex<double>, 2>{0.0, -2.0}));
   EXPECT_EQ(Poles({1.0, 0.0, 9.0}),
@@ -75,7 +75,7 @@ TEST(SecondOrderTest, ResponseAgreesWithNumericalIntegration) {
   for (int i = 0; i < 300; ++i) {
     SecondOrder plant = test::RandomPlant(random);
     if (i % 3 == 0) {
-      // Near critical damping on both sides, from far off down to the last digits.
+      // Near critical damping on both sides, from 10 % down to rounding.
       const double off = (i % 2 == 0 ? 1.0 : -1.0) * test::LogUniform(random, 1e-16, 0.1);
       plant.damping = 2.0 * std::sqrt(plant.mass * plant.stiffness) * (1.0 + off);
     }
@@ -95,7 +95,7 @@ TEST(SecondOrderTest, ResponseAgreesWithNumericalIntegration) {
     worst = std::fmax(worst,
                       std::fabs(ResponseVelocity(plant, x0, v0, force, t_end) - motion.v) / (rate * size_x));
   }
-  std::cout << "worst departure from RK4: " << worst << " of the motion's size\n";
+  std::cout << "largest difference from RK4: " << worst << " of the motion's size\n";
   EXPECT_LT(worst, 1e-11) << "the numerical method's own error is about 3e-12";
 }
 
@@ -116,13 +116,13 @@ TEST(SecondOrderTest, ResponseMatchesKnownValues) {
   EXPECT_DOUBLE_EQ(Response(brake, 0.0, 6.0, 0.0, 1.0), 3.0 * (1.0 - std::exp(-2.0)));
   EXPECT_DOUBLE_EQ(Response(brake, 0.0, 0.0, 8.0, 100.0), 200.0 - 1.0);
   EXPECT_NEAR(Response({1.0, 0.0, -1.0}, 1.0, 0.0, 0.0, 2.0), std::cosh(2.0), 1e-14);
-  // A short time: t^2 / 2 (1 - 2 t / 3), where 1 - exp(-t) (1 + t) would keep four digits.
+  // A short time: t^2 / 2 (1 - 2 t / 3). The formula 1 - exp(-t) (1 + t) would keep only four digits.
   EXPECT_NEAR(Response(critical, 0.0, 0.0, 1.0, 1e-6) / 0.5e-12, 1.0 - 2e-6 / 3.0, 1e-12);
   // A stiff overdamped loop after a long time: no overflow on the way.
   EXPECT_DOUBLE_EQ(Response({1.0, 1e6, 1.0}, 0.0, 0.0, 5.0, 1e9), 5.0);
 }
 
-// The exercise's disturbance: under 8 N a loop of m k_p' = 16 N/m stands off by 0.5 m.
+// The exercise's disturbance: 8 N on a loop of m k_p' = 16 N/m leaves an offset of 0.5 m.
 TEST(SecondOrderTest, ConstantForceLeavesForceOverStiffness) {
   EXPECT_NEAR(Response({16.0, 32.0, 16.0}, 0.0, 0.0, 8.0, 60.0), 0.5, 1e-15);
 }

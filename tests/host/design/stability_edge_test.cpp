@@ -1,5 +1,5 @@
-// The edges of stability: on their inner side a simulation decays, on their outer side it grows, and nothing
-// before them is unstable.
+// Stability edges: a simulation decays just below an edge and
+// grows just above it, and every smaller value is stable.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ SampledLoop WithDelay(SampledLoop loop, double delay_s) {
   return loop;
 }
 
-// The exercise at 1 kHz; plants without spring, without damping, with neither; gains below zero.
+// The exercise at 1 kHz; plants without spring, without damping, with neither; negative gains.
 std::vector<SampledLoop> ChosenLoops() {
   const SecondOrder& plant = test::kExercise;
   return {
@@ -70,11 +70,11 @@ std::vector<SampledLoop> Loops() {
 
 TEST(StabilityEdgeTest, ExerciseEdgesMatchHandComputation) {
   const SampledLoop loop{test::kExercise, DesignPd(test::kExercise, 16.0), 1000.0, 0.0};
-  // |L| = 1 at 1 rad/s, with a phase margin of pi - atan(4/3) + atan(3/4); the hold takes half a period of
-  // it.
+  // |L| = 1 at 1 rad/s, with a phase margin of pi - atan(4/3)
+  // + atan(3/4). The hold costs half a period of delay.
   const double phase_margin = std::numbers::pi - std::atan2(16.0, -12.0) + std::atan2(16.0, 12.0);
   EXPECT_NEAR(*DelayEdge(loop).at, phase_margin - 0.0005, 1e-6);
-  // z = -1, where a speed of 2 / T per unit of k_v / m turns over; the damping's share is one in 2000.
+  // The edge is at z = -1, where k_v = 2 m / T; the plant's damping changes it by one part in 2000.
   EXPECT_NEAR(*GainEdge(loop).at, 2000.0, 1.0);
   EXPECT_TRUE(DelayEdge(loop).searched_to >= 40.0);
 }
@@ -110,7 +110,7 @@ TEST(StabilityEdgeTest, SimulationDecaysBeforeTheDelayEdgeAndGrowsAfterIt) {
     ++edges;
     EXPECT_EQ(FateOf(WithDelay(loop, 0.98 * *edge.at)), Fate::kDecays) << edges;
     if (FateOf(WithDelay(loop, 1.02 * *edge.at)) != Fate::kGrows) {
-      // Where a delay drives a fast mode, a little more of it can calm that mode again.
+      // A slightly longer delay can stabilise a fast mode again.
       EXPECT_EQ(FateOf(WithDelay(loop, 1.005 * *edge.at)), Fate::kGrows) << edges;
       ++narrow;
     }
@@ -119,15 +119,15 @@ TEST(StabilityEdgeTest, SimulationDecaysBeforeTheDelayEdgeAndGrowsAfterIt) {
     }
   }
   std::cout << edges << " edges, " << narrow
-            << " of them to a stretch of less than 2 %; at them the spectral radius "
+            << " of them followed by an unstable range below 2 %; at them the spectral radius "
             << "is off 1 by " << worst << " at most\n";
   EXPECT_GT(edges, 45);
   EXPECT_LE(narrow, 1);
   EXPECT_LT(worst, 1e-9);
 }
 
-// A ringing plant is damped by some delays and driven by others. The edge is where the first bad stretch
-// begins.
+// An oscillating plant is damped by some delays and excited by
+// others. The edge is the start of the first unstable range.
 TEST(StabilityEdgeTest, DelayEdgeIsTheFirstOfSeveral) {
   for (const PdGains& gains : {PdGains{0.5, 0.3}, PdGains{0.0, 0.3}, PdGains{0.5, 0.1}}) {
     const SampledLoop loop{{1.0, 0.2, 1.0}, gains, 5.0, 0.0};
@@ -144,20 +144,19 @@ TEST(StabilityEdgeTest, DelayEdgeIsTheFirstOfSeveral) {
       stable = now;
     }
     std::cout << "edge at " << edge << " s, " << changes << " edges up to 9 s\n";
-    EXPECT_GE(changes, 3) << "or this test proves nothing";
+    EXPECT_GE(changes, 3) << "otherwise this test proves nothing";
     EXPECT_GT(SpectralRadius(WithDelay(loop, 1.001 * edge)), 1.0);
   }
 }
 
-// A stiff plant that its regulator softens: delays from 6.0 to 6.1 periods drive it, a little less or more
-// does not.
+// A stiff plant softened by its regulator is unstable only for delays from about 6.0 to 6.1 periods.
 TEST(StabilityEdgeTest, FindsAnUnstableDelayRangeOfLessThanTwoPercent) {
   const SampledLoop loop{{12.1043, 665.625, 3004.8}, {-2963.54, -646.537}, 22.7676, 0.0};
   const double edge = DelayEdge(loop).at.value();
   EXPECT_NEAR(edge * loop.rate_hz, 5.989, 0.001);
   EXPECT_EQ(FateOf(WithDelay(loop, 0.98 * edge)), Fate::kDecays);
   EXPECT_EQ(FateOf(WithDelay(loop, 1.005 * edge)), Fate::kGrows);
-  EXPECT_EQ(FateOf(WithDelay(loop, 1.03 * edge)), Fate::kDecays) << "or this test proves nothing";
+  EXPECT_EQ(FateOf(WithDelay(loop, 1.03 * edge)), Fate::kDecays) << "otherwise this test proves nothing";
 }
 
 TEST(StabilityEdgeTest, EveryGainBelowTheEdgeIsStable) {
@@ -172,7 +171,7 @@ TEST(StabilityEdgeTest, EveryGainBelowTheEdgeIsStable) {
   }
 }
 
-// Too much delay for these gains: the edge is the share of them that would do.
+// Too much delay for these gains: the edge is the factor below 1 at which the loop becomes stable.
 TEST(StabilityEdgeTest, UnstableLoopHasAGainEdgeBelowOne) {
   const SampledLoop loop{test::kExercise, DesignPd(test::kExercise, 16.0), 100.0, 2.5};
   ASSERT_FALSE(IsStable(loop));
@@ -180,11 +179,11 @@ TEST(StabilityEdgeTest, UnstableLoopHasAGainEdgeBelowOne) {
   EXPECT_LT(edge, 1.0);
   EXPECT_EQ(FateOf(WithFactor(loop, 0.98 * edge)), Fate::kDecays);
   EXPECT_EQ(FateOf(WithFactor(loop, 1.02 * edge)), Fate::kGrows);
-  EXPECT_LT(*DelayEdge(loop).at, 2.5) << "counted from none";
+  EXPECT_LT(*DelayEdge(loop).at, 2.5) << "the delay edge counts from zero delay";
 }
 
 TEST(StabilityEdgeTest, LoopWithoutAnEdgeReportsNone) {
-  // Gains too weak to make the loop's own plant unstable at any delay.
+  // Gains too weak to destabilise the plant at any delay.
   const SampledLoop weak{{1.0, 2.0, 1.0}, {0.1, 0.1}, 100.0, 0.0};
   const StabilityEdge delay = DelayEdge(weak);
   EXPECT_FALSE(delay.at);
@@ -193,7 +192,7 @@ TEST(StabilityEdgeTest, LoopWithoutAnEdgeReportsNone) {
   const StabilityEdge gain = GainEdge({{1.0, 2.0, 1.0}, {}, 100.0, 0.0});
   EXPECT_FALSE(gain.at);
   EXPECT_EQ(gain.searched_to, 1e6);
-  // Unstable as it is, without delay: sampled too slowly.
+  // Unstable without delay, because the sampling is too slow.
   EXPECT_EQ(DelayEdge({{1.0, 0.0, 0.0}, {100.0, 20.0}, 5.0, 0.0}).at, 0.0);
 }
 

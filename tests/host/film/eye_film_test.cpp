@@ -1,4 +1,4 @@
-// The film: read back by another reader, frame by frame.
+// The film, read back frame by frame with OpenCV.
 #include "firmware/host/film/eye_film.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ constexpr int kFrames = 45;
 
 class EyeFilmTest : public testing::Test {
  protected:
-  // A film of plain frames that grow brighter, 30 per second, with a gap after the 20th.
+  // A film of plain frames of increasing brightness, 30 per second, with a gap after the 20th.
   void Film(const std::string& name) {
     EyeFilmConfig config;
     config.path = Path(name);
@@ -46,7 +46,7 @@ class EyeFilmTest : public testing::Test {
   static std::uint8_t Level(int i) { return static_cast<std::uint8_t>(20 + 4 * i); }
   static std::int64_t StampNs(int i) {
     const std::int64_t step_ms =
-        (std::int64_t{i} * 100 + 1) / 3;  // as the world exposes: on whole steps of 1 ms
+        (std::int64_t{i} * 100 + 1) / 3;  // the simulated world exposes on whole milliseconds
     return 1'000'000 * (20 + step_ms + (i >= 20 ? 500 : 0));
   }
   std::string Path(const std::string& name) { return folder_.path() / name; }
@@ -95,7 +95,7 @@ TEST_F(EyeFilmTest, EveryFrameAppearsAtItsTimeWithALegend) {
   EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_WIDTH), kWidth);
   EXPECT_EQ(film.get(cv::CAP_PROP_FRAME_HEIGHT), kHeight + 28);
   const int fourcc = static_cast<int>(film.get(cv::CAP_PROP_FOURCC));
-  EXPECT_EQ(fourcc, cv::VideoWriter::fourcc('a', 'v', 'c', '1')) << "no browser plays it";
+  EXPECT_EQ(fourcc, cv::VideoWriter::fourcc('a', 'v', 'c', '1')) << "not H.264, which browsers play";
   EXPECT_EQ(static_cast<int>(film.get(cv::CAP_PROP_CODEC_PIXEL_FORMAT)),
             cv::VideoWriter::fourcc('I', '4', '2', '0'));
   cv::Mat frame;
@@ -105,7 +105,7 @@ TEST_F(EyeFilmTest, EveryFrameAppearsAtItsTimeWithALegend) {
     ASSERT_LT(count, kFrames);
     const double shown_ms = film.get(cv::CAP_PROP_POS_MSEC);
     EXPECT_NEAR(shown_ms, 1e-6 * static_cast<double>(StampNs(count) - StampNs(0)), 0.02) << "frame " << count;
-    // A corner, where nothing is drawn.
+    // A corner without drawings.
     EXPECT_NEAR(cv::mean(frame(cv::Rect(2, 2, 8, 8)))[1], Level(count), 6.0) << "frame " << count;
     double bright = 0.0;
     cv::Mat gray;
@@ -115,7 +115,7 @@ TEST_F(EyeFilmTest, EveryFrameAppearsAtItsTimeWithALegend) {
     ++count;
   }
   EXPECT_EQ(count, kFrames);
-  EXPECT_GT(brightest, 150.0) << "no legend";
+  EXPECT_GT(brightest, 150.0) << "the legend is missing";
 }
 
 TEST_F(EyeFilmTest, SameFramesGiveTheSameBytes) {
@@ -125,7 +125,7 @@ TEST_F(EyeFilmTest, SameFramesGiveTheSameBytes) {
   EXPECT_EQ(Bytes("a.mp4"), Bytes("b.mp4"));
 }
 
-// Of a camera whose clock jumps: no film without the frames' own order.
+// The stamps of a jumping camera clock do not change the order of the frames.
 TEST_F(EyeFilmTest, EqualOrBackwardStampsKeepTheFrameOrder) {
   constexpr std::int64_t kMs = 1'000'000;
   const std::vector<std::int64_t> stamps_ns{-5 * kMs, 0, 1, 2, 40 * kMs, 30 * kMs, 30 * kMs, 80 * kMs};
@@ -146,7 +146,7 @@ TEST_F(EyeFilmTest, EqualOrBackwardStampsKeepTheFrameOrder) {
   EXPECT_EQ(count, shown_ms.size());
 }
 
-// At real pace nobody waits for the film: what finds no place is counted, the rest is there.
+// At real pace the producer does not wait: frames without room are counted, and the film holds the rest.
 TEST_F(EyeFilmTest, FramesWithoutRoomAreCounted) {
   constexpr std::uint64_t kMany = 300;
   EyeFilmConfig config;

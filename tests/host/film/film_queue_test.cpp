@@ -1,4 +1,4 @@
-// The queue behind the films: order, waiting, dropping, and what goes wrong on its thread.
+// The film queue: order, waiting, dropping and errors of its thread.
 #include "firmware/host/film/film_queue.hpp"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(FilmQueueTest, DroppingProducerNeverWaits) {
       ++put;
     }
   }
-  EXPECT_LE(put, 9U) << "the queue has no bound";
+  EXPECT_LE(put, 9U) << "the queue is not bounded";
   EXPECT_EQ(queue.dropped(), 100U - put);
   go_on.set_value();
   queue.Finish();

@@ -1,4 +1,4 @@
-// Outlines by another way: a ray through each of their points meets the target where it ends.
+// Checks outlines by another method: the ray through each outline point must touch the target's edge.
 #include "firmware/host/film/target_curve.hpp"
 
 #include <gtest/gtest.h>
@@ -39,8 +39,8 @@ double OffSide(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - share * (b - a)).norm();
 }
 
-// Where a ray through the picture's point comes nearest to a ball's centre, or meets a flat target's plane,
-// in C [m].
+// The point [m, in C] where the ray through an image point is nearest
+// to a ball's centre, or meets the plane of a flat target.
 Vec3 MetBy(const TargetFeature& target, const model::Pose& X_CO, const vision::ImagePoint& point) {
   const Vec3 ray = kCamera.Ray(point.u_px, point.v_px).normalized();
   if (features::TraitsOf(target.target).body == features::TargetBody::kBall) {
@@ -50,7 +50,7 @@ Vec3 MetBy(const TargetFeature& target, const model::Pose& X_CO, const vision::I
   return normal.dot(X_CO.p) / normal.dot(ray) * ray;
 }
 
-// How far that is from the target's edge [m].
+// Distance of that point from the target's edge [m].
 double OffOf(const TargetFeature& target, const model::Pose& X_CO, const Vec3& p_C) {
   if (!target.SeesOrientation()) {
     return std::fabs((p_C - X_CO.p).norm() - target.radius);
@@ -64,7 +64,7 @@ double OffOf(const TargetFeature& target, const model::Pose& X_CO, const Vec3& p
   return least;
 }
 
-// The length of what of the target ends in the picture [m]: of a ball, the circle that its cone touches.
+// Length of the visible edge [m]; for a ball, of the circle where the view cone touches it.
 double Around(const TargetFeature& target, const model::Pose& X_CO) {
   const int n = target.SeesOrientation() ? target.corners.num_corners : 0;
   double around = 0.0;
@@ -102,10 +102,10 @@ TEST(TargetCurveTest, CurveFollowsTheTargetsEdge) {
       }
       const double share = way / Around(target, X_CO);
       least_share = std::min(least_share, share);
-      ASSERT_LT(share, 1.0 + 1e-12) << "it goes back, or across";
+      ASSERT_LT(share, 1.0 + 1e-12) << "the curve turns back or crosses itself";
     }
-    std::cout << traits.name << ": rays miss the edge by at most " << worst << " m and go round at least "
-              << least_share << " of it\n";
+    std::cout << traits.name << ": rays miss the edge by at most " << worst << " m and cover at least "
+              << least_share << " of its length\n";
     EXPECT_LT(worst, 1e-12);
     EXPECT_GT(least_share, 0.9998);  // 96 chords of a circle: 1 - (pi / 96)^2 / 6
   }

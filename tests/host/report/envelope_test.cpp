@@ -1,4 +1,4 @@
-// Thinning keeps what a plot must show.
+// Thinning keeps every peak that a plot must show.
 #include "firmware/host/report/envelope.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(EnvelopeTest, KeepsEveryPeak) {
               *std::min_element(all.begin(), all.end()));
     EXPECT_TRUE(std::is_sorted(rows.t_s.begin(), rows.t_s.end()));
     EXPECT_FLOAT_EQ(rows.t_s.back(), static_cast<float>(count - 1));
-    // Any stretch between two rows of a bucket holds no value outside them.
+    // Between the two rows of a bucket no value lies outside their range.
     for (std::size_t i = 0; i + 1 < rows.t_s.size(); i += 2) {
       const auto [low, high] = std::minmax(rows.columns[0][i], rows.columns[0][i + 1]);
       for (auto k = static_cast<std::size_t>(rows.t_s[i]); k <= static_cast<std::size_t>(rows.t_s[i + 1]);

@@ -1,5 +1,4 @@
-// From a log to a page: what is there is shown, what is not is left out, and nothing in a log breaks the
-// page.
+// From a log to a page: the page shows what the log holds, omits the rest, and no log content breaks it.
 #include "firmware/host/report/report.hpp"
 
 #include <gmock/gmock.h>
@@ -86,7 +85,7 @@ class ReportTest : public testing::Test {
     }
     return r;
   }
-  // With truth when asked for.
+  // With ground truth if `truth`.
   void WriteLog(const std::string& name, bool truth, int ticks = 500, std::int64_t start_ns = 0) const {
     log::RunLog log(Config(path_));
     log.Add(log::kSetupTopic, start_ns, Setup(name, start_ns));
@@ -124,8 +123,8 @@ TEST_F(ReportTest, ShowsTheRunOfALog) {
   ASSERT_EQ(ticks.t_s.size(), 500U);
   const std::size_t at = 4 * run.joints.size();
   EXPECT_FLOAT_EQ(ticks.columns[1][250], 0.25F);
-  EXPECT_FLOAT_EQ(ticks.columns[at + RunData::kErrorPx][250], 75.0F) << "the truth of its own tick";
-  EXPECT_TRUE(std::isnan(ticks.columns[at + RunData::kPredictedPx][50])) << "nothing is known yet";
+  EXPECT_FLOAT_EQ(ticks.columns[at + RunData::kErrorPx][250], 75.0F) << "the truth of the same tick";
+  EXPECT_TRUE(std::isnan(ticks.columns[at + RunData::kPredictedPx][50])) << "the target is not known yet";
   EXPECT_FLOAT_EQ(ticks.columns[at + RunData::kPredictedPx][250], 50.0F);
   const Envelope::Rows measured = run.measured.rows();
   ASSERT_EQ(measured.t_s.size(), 10U);
@@ -135,7 +134,7 @@ TEST_F(ReportTest, ShowsTheRunOfALog) {
   EXPECT_FLOAT_EQ(measured.columns[RunData::kAgeMs][0], 40.0F);
 }
 
-// What the servo and the eye say of a flat target is told in the same pixels as the truth, whatever s is.
+// Errors of a flat target are in the same pixels as the truth, for every form of s.
 TEST_F(ReportTest, ShowsFlatTargetErrorsInPixels) {
   const double c = std::cos(0.1);
   const double s = std::sin(0.1);
@@ -157,15 +156,15 @@ TEST_F(ReportTest, ShowsFlatTargetErrorsInPixels) {
     return std::pair(run.ticks->rows().columns[at][0], run.measured.rows().columns[RunData::kMeasuredPx][0]);
   };
   hal::TickRecord r = Record(140);
-  // A disc, 0.01 of the focal length aside.
+  // A disc, off by 0.01 of the focal length.
   r.feature.kind = hal::FeatureKind::kCircle;
   r.s = r.feature.s = {0.01, 0.0, 0.2};
   r.s_star = {0.0, 0.0, 0.2};
   const auto [disc_predicted, disc_measured] = error_of("circle", "circle", r);
   EXPECT_FLOAT_EQ(disc_predicted, 5.0F);
   EXPECT_FLOAT_EQ(disc_measured, 5.0F);
-  // A square 0.4 m away, turned by a quarter, which nobody sees, and by 0.1 rad, of which every corner moves
-  // by 2 sin(0.05) of its distance from the middle.
+  // A square at 0.4 m, turned by 90 degrees (invisible by symmetry) plus 0.1 rad: each corner moves by 2
+  // sin(0.05) times its distance from the centre.
   const double moved_px = 500.0 * 2.0 * std::sin(0.05) * 0.04 * std::sqrt(2.0) / 0.4;
   r.feature.kind = hal::FeatureKind::kSquare;
   r.feature.num_poses = 1;
@@ -180,14 +179,14 @@ TEST_F(ReportTest, ShowsFlatTargetErrorsInPixels) {
   const auto [square_predicted, square_measured] = error_of("square", "corners", r);
   EXPECT_NEAR(square_predicted, moved_px, 1e-4);
   EXPECT_NEAR(square_measured, moved_px, 1e-4);
-  // The same by its pose: phi takes it from where it is to where it shall be.
+  // The same as a pose feature: phi is the rotation from the present to the desired orientation.
   r.dim = 6;
   r.s = {0.0, 0.0, 0.4, 0.0, 0.0, -0.1};
   r.s_star = {0.0, 0.0, 0.4, 0.0, 0.0, 0.0};
   EXPECT_NEAR(error_of("square", "pose", r).first, moved_px, 1e-4);
 }
 
-// A target that turns is turned in the 3-D view: by the truth where there is one.
+// The 3-D view shows the target's orientation, from the ground truth if the log has it.
 TEST_F(ReportTest, TargetOrientationReachesTheScene) {
   for (const bool truth : {false, true}) {
     log::RunLog log(Config(path_));
@@ -210,7 +209,7 @@ TEST_F(ReportTest, TargetOrientationReachesTheScene) {
   }
 }
 
-// A robot's clock may have run for a century when the run begins.
+// A robot's clock may start at any time, also after centuries.
 TEST_F(ReportTest, CountsTimeFromTheRunsStart) {
   WriteLog("late", true, 500, std::int64_t{1} << 62);
   const RunData run = ReadRun(folder_);
@@ -256,13 +255,13 @@ TEST_F(ReportTest, RefusesALogWithoutARun) {
   }
   try {
     ReadRun(path_);
-    ADD_FAILURE() << "a log without a set-up was taken";
+    ADD_FAILURE() << "a log without a set-up was accepted";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("/setup"), std::string::npos) << error.what();
   }
 }
 
-// A log of somebody else's may say anything of itself.
+// A log from an untrusted source may contradict itself.
 TEST_F(ReportTest, InconsistentLogIsRefusedOrShownInPart) {
   const auto said = [this](const std::function<void(log::RunLog&)>& write) -> std::string {
     {
@@ -296,7 +295,7 @@ TEST_F(ReportTest, InconsistentLogIsRefusedOrShownInPart) {
                 log.Add(log::kSetupTopic, 0, setup);
               }),
               HasSubstr("at most 8 and 32"));
-  // Enumerations that are none, times that no clock shows.
+  // Unknown enumerators, and times out of range.
   EXPECT_THAT(said([&](log::RunLog& log) {
                 log.Add(log::kSetupTopic, 0, Setup("odd", INT64_MIN));
                 tick(log, [](log::Tick& t) {
@@ -307,7 +306,7 @@ TEST_F(ReportTest, InconsistentLogIsRefusedOrShownInPart) {
                 });
               }),
               HasSubstr("\"name\":\"unknown\""));
-  // Corners of triangles that there are not, and links that the poses have no place for.
+  // Triangle indices without a point, and links without poses.
   EXPECT_THAT(said([](log::RunLog& log) {
                 log.Add(log::kSetupTopic, 0, Setup("scene"));
                 foxglove::SceneUpdate scene;
@@ -320,14 +319,14 @@ TEST_F(ReportTest, InconsistentLogIsRefusedOrShownInPart) {
                 }
                 foxglove::FrameTransforms transforms;
                 transforms.add_transforms()->set_child_frame_id("link");
-                for (int i = 0; i < 900; ++i) {  // as many as are thinned, without a link
+                for (int i = 0; i < 900; ++i) {  // enough to be thinned, without a link
                   log.Add(log::kTransformTopic, i, transforms);
                 }
                 log.Add(log::kSceneTopic, 0, scene);
                 log.Add(log::kTransformTopic, 901, transforms);
               }),
               HasSubstr("\"scene\":null"));
-  // A summary that goes deeper than writing it may.
+  // A summary nested deeper than the writer allows.
   EXPECT_THAT(said([](log::RunLog& log) {
                 log.Add(log::kSetupTopic, 0, Setup("deep"));
                 log.AddAttachment("summary.json", "application/json",
@@ -336,7 +335,7 @@ TEST_F(ReportTest, InconsistentLogIsRefusedOrShownInPart) {
               HasSubstr("\"name\":\"deep\""));
 }
 
-// A name may hold anything; the page's own scripts too.
+// A name may hold any text; so may the page's own scripts.
 TEST_F(ReportTest, NamesFromALogAreEscapedInThePage) {
   WriteLog("</script><!--<b>&", true);
   const std::string page = ReportPage(folder_ / "page").Make({ReadRun(path_), ReadRun(path_)});
@@ -347,7 +346,7 @@ TEST_F(ReportTest, NamesFromALogAreEscapedInThePage) {
     }
     return found;
   };
-  EXPECT_EQ(count("</script"), 3U) << "one closes each of two runs, one the page's script";
+  EXPECT_EQ(count("</script"), 3U) << "one for each of two runs, one for the page's script";
   EXPECT_EQ(count("<!--"), 0U);
   EXPECT_EQ(count("<style>"), 1U);
   EXPECT_EQ(count("<title>&lt;/script>&lt;!--&lt;b>&amp; and"), 1U);
@@ -360,7 +359,7 @@ TEST_F(ReportTest, MissingPagePartIsNamed) {
   Page("<!-- FOVEA:SCRIPT missing.js -->\n");
   try {
     ReportPage page(folder_ / "page");
-    ADD_FAILURE() << "a page without its script was made";
+    ADD_FAILURE() << "a page without its script was accepted";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("missing.js"), std::string::npos) << error.what();
   }

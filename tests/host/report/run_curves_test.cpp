@@ -1,5 +1,5 @@
-// What a report draws beside the image error: components of e, the features' path, the camera's velocity, the
-// path error, and the frames that are missing.
+// Curves of a report besides the image error: components of e, the features' path, the
+// camera's velocity, the path error and the missing frames.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ class RunCurvesTest : public testing::Test {
     }
     return setup;
   }
-  // One hinge about B's z; the hand is 0.5 m from it along x, and the camera in the hand.
+  // One hinge about B's z axis; flange and camera are 0.5 m from it along x.
   static config::ServoConfig Hinge() {
     config::ServoConfig config;
     config.arm.num_joints = 1;
@@ -78,7 +78,7 @@ class RunCurvesTest : public testing::Test {
   static std::vector<float> Column(const RunData& run, std::size_t which) {
     return run.ticks->rows().columns[4 * run.joints.size() + which];
   }
-  // A measurement of each frame in `sequences`; in those that are negative no target is found.
+  // Adds a measurement per frame of `sequences`; a negative number means that no target is found.
   static void AddFrames(log::RunLog& log, const std::vector<int>& sequences) {
     for (const int sequence : sequences) {
       hal::TickRecord r = Record(30 * std::abs(sequence));
@@ -128,7 +128,7 @@ TEST_F(RunCurvesTest, ErrorIsShownOnceTheTargetIsKnown) {
   EXPECT_FLOAT_EQ(second[1], -0.25F);
   const json data = json::parse(ToJson(run));
   EXPECT_TRUE(data["ticks"]["e"][2].is_string());
-  EXPECT_TRUE(data["ticks"]["e"][3].is_null()) << "it has three entries";
+  EXPECT_TRUE(data["ticks"]["e"][3].is_null()) << "e has three entries";
 }
 
 TEST_F(RunCurvesTest, CameraVelocityIsThatOfTheModel) {
@@ -147,7 +147,7 @@ TEST_F(RunCurvesTest, CameraVelocityIsThatOfTheModel) {
     EXPECT_NEAR(Column(run, RunData::kTwistCmd + i)[0], 0.1 * static_cast<double>(i + 1), 1e-6) << i;
   }
   EXPECT_TRUE(std::isnan(Column(run, RunData::kPathErrorMm)[0])) << "no pose is commanded";
-  EXPECT_TRUE(std::isnan(Column(with(false), RunData::kTwistMeas)[0])) << "the log holds no arm";
+  EXPECT_TRUE(std::isnan(Column(with(false), RunData::kTwistMeas)[0])) << "the log has no arm model";
 }
 
 TEST_F(RunCurvesTest, PathErrorIsToTheCommandedPose) {
@@ -187,7 +187,7 @@ TEST_F(RunCurvesTest, FeaturePathIsInPixels) {
   EXPECT_TRUE(std::isnan(run.feature_path.px[2])) << "not found";
 }
 
-// A detector may name another corner first in each frame; each corner's path goes on as it began.
+// A detector may name another corner first in each frame; each corner's path must stay continuous.
 TEST_F(RunCurvesTest, CornersKeepTheirPaths) {
   const RunData run = Read(Setup("square", "corners"), [](log::RunLog& log) {
     for (std::size_t frame = 0; frame < 3; ++frame) {
@@ -223,7 +223,7 @@ TEST_F(RunCurvesTest, LongFeaturePathIsThinned) {
   EXPECT_THAT(run.lost, IsEmpty());
 }
 
-TEST_F(RunCurvesTest, CommandAndChangedKeysAreTold) {
+TEST_F(RunCurvesTest, CommandAndChangedKeysAreReported) {
   const auto data = [&](bool told) {
     return json::parse(ToJson(Read(Setup("sphere", "sphere"), [told](log::RunLog& log) {
       log.AddMetadata("configuration", {{"servo.lambda", "3"}, {"run.seed", "1"}});

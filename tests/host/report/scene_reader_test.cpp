@@ -1,4 +1,4 @@
-// A log's scene: shapes, what they are made of, and poses over time, thinned when there are too many.
+// A log's scene: shapes, meshes and poses over time, thinned if there are too many.
 #include "firmware/host/report/scene_reader.hpp"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ void AddTransform(foxglove::FrameTransforms& transforms, const char* frame, doub
 
 TEST(SceneReaderTest, EveryShapeIsRead) {
   foxglove::SceneUpdate scene;
-  scene.add_entities()->set_frame_id(log::kTargetFrame);  // the page draws it itself
+  scene.add_entities()->set_frame_id(log::kTargetFrame);  // the page draws the target itself
   foxglove::SceneEntity* entity = scene.add_entities();
   entity->set_frame_id("link");
   foxglove::CubePrimitive* cube = entity->add_cubes();
@@ -49,7 +49,7 @@ TEST(SceneReaderTest, EveryShapeIsRead) {
     for (int i = 0; i < 3; ++i) {
       mesh->add_points()->set_y(i);
     }
-    for (const std::uint32_t index : {2U, 1U, 0U, 3U, 4'000'000'000U}) {  // the last two are points of none
+    for (const std::uint32_t index : {2U, 1U, 0U, 3U, 4'000'000'000U}) {  // the last two are out of range
       if (with_indices) {
         mesh->add_indices(index);
       }
@@ -70,7 +70,7 @@ TEST(SceneReaderTest, EveryShapeIsRead) {
   EXPECT_THAT(shapes[4].vertices, ElementsAre(0, 2, 0, 0, 1, 0, 0, 0, 0));
 }
 
-// However long a run is, its page stays as large; what is left is spread over all of it.
+// The page stays bounded for a run of any length, and the kept samples are evenly spaced.
 TEST(SceneReaderTest, LongRunIsThinnedEvenly) {
   RunData run;
   SceneReader reader(run);
@@ -85,7 +85,7 @@ TEST(SceneReaderTest, LongRunIsThinnedEvenly) {
     AddTransform(transforms, log::kTargetFrame, 3.0 * i);
     reader.AddTransforms(transforms, i);
   }
-  reader.AddScene(scene);  // too late: there is no place for it in the poses
+  reader.AddScene(scene);  // too late: the poses have no slot for it
   reader.Finish();
   EXPECT_EQ(run.links.size(), 1U);
   const SceneMotion& motion = run.motion;
@@ -113,15 +113,16 @@ TEST(SceneReaderTest, IncompleteTruthIsIgnored) {
   reader.AddTransforms(transforms, 0.5);
   log::Truth truth;
   truth.add_p_bo(1.0);
-  reader.AddTruth(truth, 0.0);  // one number is no place
+  reader.AddTruth(truth, 0.0);  // one number is not a position
   reader.Finish();
-  EXPECT_EQ(run.motion.target_path[0], 9.0F) << "as the servo had it";
+  EXPECT_EQ(run.motion.target_path[0], 9.0F) << "the servo's estimate is used";
   truth.add_p_bo(2.0);
   truth.add_p_bo(3.0);
   reader.AddTruth(truth, 0.0);
   reader.Finish();
   EXPECT_THAT(run.motion.target_path, ElementsAre(1.0F, 2.0F, 3.0F));
-  EXPECT_THAT(run.motion.target_turn, ElementsAre(1.0F, 0.0F, 0.0F, 0.0F)) << "of which nothing was said";
+  EXPECT_THAT(run.motion.target_turn, ElementsAre(1.0F, 0.0F, 0.0F, 0.0F))
+      << "identity, because the truth has no orientation";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Capsules from a robot's description: they hold what they stand for, and the pairs are those that can touch.
+// Capsules from a robot's description: they enclose their bodies, and the pairs are those that can touch.
 #include "firmware/host/robots/arm_shape.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ double Outside(const Capsule& capsule, const Vec3& p) {
 
 model::Pose SomePose() { return {model::RotationOf(Vec3(0.4, -1.1, 0.7)), Vec3(0.1, -0.2, 0.3)}; }
 
-TEST(ArmShapeTest, ACylindersCapsuleHoldsItsRims) {
+TEST(ArmShapeTest, CylinderCapsuleEnclosesTheRims) {
   const model::Pose X = SomePose();
   const Capsule capsule = CapsuleOfCylinder(X, 0.3, 0.05);
   for (const double angle : {0.0, 1.0, 2.5, 4.0}) {
@@ -41,7 +41,7 @@ TEST(ArmShapeTest, ACylindersCapsuleHoldsItsRims) {
   }
 }
 
-TEST(ArmShapeTest, ABoxesCapsuleHoldsItsCorners) {
+TEST(ArmShapeTest, BoxCapsuleEnclosesTheCorners) {
   const model::Pose X = SomePose();
   const Capsule capsule = CapsuleOfBox(X, Vec3(0.1, 0.4, 0.06));
   for (int corner = 0; corner < 8; ++corner) {
@@ -50,7 +50,7 @@ TEST(ArmShapeTest, ABoxesCapsuleHoldsItsCorners) {
   }
 }
 
-TEST(ArmShapeTest, OneCapsuleHoldsAllPartsOfALink) {
+TEST(ArmShapeTest, OneCapsuleEnclosesAllPartsOfALink) {
   test::RandomStates random(3);
   const auto somewhere = [&random] {
     return Vec3(random.Uniform(-0.2, 0.2), random.Uniform(-0.2, 0.2), random.Uniform(-0.2, 0.2));
@@ -93,16 +93,16 @@ TEST(ArmShapeTest, ForearmAndHandOfThePandaCanTouchBaseAndUpperArm) {
   EXPECT_EQ(panda.bodies[7].radius, 0.046);
   EXPECT_THAT(PairsOf(panda),
               testing::IsSupersetOf<BodyPair>({{0, 5}, {0, 6}, {0, 7}, {1, 5}, {1, 6}, {1, 7}, {2, 7}}));
-  EXPECT_THAT(PairsOf(panda), testing::Not(testing::Contains(BodyPair(3, 7)))) << "11 cm at least";
+  EXPECT_THAT(PairsOf(panda), testing::Not(testing::Contains(BodyPair(3, 7)))) << "never closer than 11 cm";
 }
 
-TEST(ArmShapeTest, AWristThatIsBuiltCloseIsNoPair) {
+TEST(ArmShapeTest, LinksBuiltCloseTogetherAreNoPair) {
   EXPECT_THAT(PairsOf(Shipped("puma560")), testing::Not(testing::Contains(BodyPair(3, 6))));
   EXPECT_THAT(PairsOf(Shipped("ur5e")), testing::Contains(BodyPair(2, 6)));
   EXPECT_THAT(PairsOf(Shipped("slider")), testing::IsEmpty());
 }
 
-// The shipped Panda with all of its collision elements, or the first, replaced.
+// The shipped Panda, with `replacement` in place of every collision element.
 class EditedPanda {
  public:
   explicit EditedPanda(const std::string& replacement) {
@@ -118,7 +118,7 @@ class EditedPanda {
   test::TempFolder folder_;
 };
 
-TEST(ArmShapeTest, ALinkOfMeshesAloneGetsACapsuleFromJointToJoint) {
+TEST(ArmShapeTest, MeshOnlyLinkGetsACapsuleFromJointToJoint) {
   const EditedPanda edited("<collision><geometry><mesh filename=\"link.stl\"/></geometry></collision>");
   const model::ArmModel arm = LoadRobot(edited.file()).model;
   EXPECT_EQ(arm.shape.bodies[0].p_LB, arm.joints[0].X_PJ.p);
@@ -132,7 +132,7 @@ TEST(ArmShapeTest, RefusesACollisionBodyWithoutASize) {
       "<collision><geometry><cylinder radius=\"0\" length=\"0.1\"/></geometry></collision>");
   try {
     LoadRobot(edited.file());
-    FAIL() << "taken";
+    FAIL() << "accepted";
   } catch (const config::InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("<collision>: sizes must be finite and above 0"));
   }

@@ -1,4 +1,4 @@
-// Robots from files: what is read, and what is refused with which words.
+// Robots from files: what is read, and the error of each refusal.
 #include "firmware/host/robots/robot.hpp"
 
 #include <gmock/gmock.h>
@@ -34,14 +34,14 @@ TEST(RobotTest, ReadsThePanda) {
   EXPECT_EQ(panda.tip_link, "panda_flange");
   ASSERT_EQ(panda.model.num_joints, 7);
   EXPECT_EQ(panda.joint_names[6], "panda_joint7");
-  // The maker's figures, as in the facts: joint 4's range, joint 7's torque, joint 2's acceleration.
+  // The manufacturer's figures: joint 4's range, joint 7's torque, joint 2's acceleration.
   EXPECT_EQ(panda.model.joints[3].q_min, -3.0718);
   EXPECT_EQ(panda.model.joints[3].q_max, -0.0698);
   EXPECT_EQ(panda.model.joints[6].tau_max, 12.0);
   EXPECT_EQ(panda.model.joints[1].ddq_max, 7.5);
   EXPECT_EQ(panda.model.joints[1].dtau_max, 1000.0);
   EXPECT_EQ(panda.model.links[6].mass, 0.735522);
-  // The ready pose: flange 0.307 m before the base, 0.590 m up, looking down.
+  // The ready pose: flange 0.307 m in front of the base, 0.590 m up, pointing down.
   model::ArmPoses poses;
   model::ComputePoses(panda.model, test::Ready(), poses);
   EXPECT_NEAR(poses.X_BE.p.x(), 0.3069, 1e-3);
@@ -50,7 +50,7 @@ TEST(RobotTest, ReadsThePanda) {
   EXPECT_NEAR(poses.X_BE.R(2, 2), -1.0, 1e-9);
 }
 
-// The makers' Denavit-Hartenberg parameters, standard form: a, d, alpha.
+// The manufacturers' Denavit-Hartenberg parameters, standard form: a, d, alpha.
 struct DhRow {
   double a, d, alpha;
 };
@@ -117,11 +117,11 @@ TEST(RobotTest, BareUrdfGetsDerivedLimitsAndItsOnlyLeafAsTip) {
   EXPECT_EQ(robot.model.joints[1].type, model::JointType::kPrismatic);
   EXPECT_GT(robot.model.joints[0].ddq_max, 0.0);
   EXPECT_GT(robot.model.joints[0].dddq_max, robot.model.joints[0].ddq_max);
-  // Bracket and link 2 move as one: 2 + 0.7 kg.
+  // Bracket and link 2 form one body: 2 + 0.7 kg.
   EXPECT_DOUBLE_EQ(robot.model.links[1].mass, 2.7);
 }
 
-// A two-joint arm that works, to be spoiled.
+// A valid two-joint arm; the tests break it.
 std::string GoodUrdf() {
   return R"(<robot name="two">
   <link name="base"/>
@@ -176,7 +176,7 @@ TEST(RobotTest, RefusesAUrdfItCannotDrive) {
       {Replace(good, inertia2, "<link name=\"l2\"/>"), "without <inertial>"},
       {Replace(good, "<link name=\"base\"/>",
                "<link name=\"base\"><visual><geometry><cone/></geometry></visual></link>"),
-       "cone"},  // which urdfdom would leave out
+       "cone"},  // urdfdom would ignore the shape
       {Replace(good, "mass value=\"1\"", "mass value=\"0\""), "the mass above 0"},
       {Replace(good, "ixx=\"0.01\"", "ixx=\"-0.01\""), "principal moments"},
       {Replace(good, "izz=\"0.01\"", "izz=\"0.03\""),
@@ -191,11 +191,11 @@ TEST(RobotTest, RefusesAUrdfItCannotDrive) {
        "links could be the end effector"},
       {Replace(good, "</robot>",
                R"(<joint name="c" type="fixed"><parent link="base"/><child link="l2"/></joint></robot>)"),
-       "hangs on two joints"},
+       "has two parent joints"},
       {Replace(good, "</robot>",
                R"(<joint name="c" type="fixed"><parent link="r1"/><child link="r2"/></joint><link name="r1"/>
                <joint name="d" type="fixed"><parent link="r2"/><child link="r1"/></joint><link name="r2"/></robot>)"),
-       "hangs on itself"},  // a ring beside the arm
+       "is its own ancestor"},  // a ring beside the arm
       {Replace(good, "</robot>", "<link name=\"alone\"/></robot>"), "not a usable URDF"},  // two roots
       {Replace(good, "<limit lower", "<mimic joint=\"b\"/><limit lower"), "mimic"},
       {R"(<robot name="r"><link name="base"/></robot>)", "no moving joint"},
@@ -205,7 +205,7 @@ TEST(RobotTest, RefusesAUrdfItCannotDrive) {
   }
 }
 
-// urdfdom refuses it before it hands anything over, and itself keeps the links of the ring for ever.
+// urdfdom refuses this file and leaks the links of the ring.
 TEST(RobotTest, RefusesARingOfLinksWithoutARoot) {
 #ifdef __SANITIZE_ADDRESS__
   const __lsan::ScopedDisabler not_our_leak;
@@ -248,13 +248,14 @@ TEST(RobotTest, ArmFileErrorsNameKeyAndLine) {
   EXPECT_THAT(error("urdf = \"none.urdf\"\n"), HasSubstr("no such file"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\nbase = \"x\"\n"), HasSubstr("base link \"x\""));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\ntip = \"x\"\n"), HasSubstr("no end effector"));
-  // The arm's own links in a ring, beside a root that is not its base.
+  // The arm's links form a ring; another link is the root.
   std::ofstream(folder.path() / "ring.urdf") << Replace(
       GoodUrdf(), "</robot>",
       R"(<joint name="c" type="fixed"><parent link="l2"/><child link="base"/></joint><link name="world"/></robot>)");
   EXPECT_THAT(error("urdf = \"ring.urdf\"\nbase = \"base\"\ntip = \"l2\"\n"),
-              HasSubstr("a loop is no serial arm"));
-  EXPECT_THAT(error("urdf = \"arm.urdf\"\nbase = \"l2\"\ntip = \"l1\"\n"), HasSubstr("does not hang on"));
+              HasSubstr("a loop is not a serial arm"));
+  EXPECT_THAT(error("urdf = \"arm.urdf\"\nbase = \"l2\"\ntip = \"l1\"\n"),
+              HasSubstr("does not descend from"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\njerk_max = [1.0]\n"), HasSubstr("jerk_max has 1 entries"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\nready = [0.0, 5.0]\n"), HasSubstr("outside the joint's range"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\nreday = [0.0, 0.0]\n"), HasSubstr("did you mean ready?"));

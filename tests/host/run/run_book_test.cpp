@@ -1,4 +1,4 @@
-// What a run leaves in its folder, and what it costs that its film fails.
+// The files that a run leaves in its folder, and the effect of a failed film.
 #include "firmware/host/run/run_book.hpp"
 
 #include <gmock/gmock.h>
@@ -28,8 +28,8 @@ constexpr std::int64_t kStartNs = 5'000'000'000;
 
 class RunBookTest : public testing::Test {
  protected:
-  // A run of 0.2 s with frames of that size; what it says of its log. Once it goes on, the file `removed` of
-  // its folder is gone.
+  // Runs for 0.2 s with frames of that size and returns the log's figures.
+  // Removes the file `removed` from the folder after the start.
   BookFigures Run(int width_px, int height_px, const std::string& removed = "") {
     RunBook files(folder_.path(), Facts(), options_);
     if (!removed.empty()) {
@@ -86,7 +86,7 @@ class RunBookTest : public testing::Test {
     }
     return names;
   }
-  // Ticks and attachments of a log that is complete.
+  // Checks that the log is complete, and its ticks and attachments.
   void ExpectLog(const std::vector<std::string>& attachments) const {
     int ticks = 0;
     std::vector<std::string> found;
@@ -136,7 +136,7 @@ TEST_F(RunBookTest, FailedFilmKeepsTheOtherFiles) {
   EXPECT_EQ(nlohmann::json::parse(stream)["film_errors"], log.film_errors);
 }
 
-// Ended before it moved: the log is whole, and says what was to be.
+// Ended before the first tick: the log is complete and holds the summary.
 TEST_F(RunBookTest, RunWithoutATickWritesOnlyLogAndSummary) {
   {
     RunBook files(folder_.path(), Facts(), options_);
@@ -150,7 +150,7 @@ TEST_F(RunBookTest, RunWithoutATickWritesOnlyLogAndSummary) {
   EXPECT_THAT(found, ElementsAre("summary.json"));
 }
 
-// The film takes frames of the calibrated size alone.
+// The film takes only frames of the calibrated size.
 TEST_F(RunBookTest, RunWithoutAFrameWritesNoFilm) {
   const BookFigures log = Run(320, 240);
   EXPECT_THAT(log.film_errors, testing::IsEmpty());
@@ -159,8 +159,7 @@ TEST_F(RunBookTest, RunWithoutAFrameWritesNoFilm) {
   ExpectLog({"summary.json"});
 }
 
-// No more pictures than are wished for, neither at first nor after a gap: at 20 Hz those at 10, 130 and 180
-// ms.
+// Never more pictures than the limit, neither at first nor after a gap: at 20 Hz those at 10, 130 and 180 ms.
 TEST_F(RunBookTest, LogKeepsThePictureRateLimit) {
   options_.picture_rate_hz = 20.0;
   frame_ticks_ = {10, 20, 30, 40, 130, 140, 150, 160, 170, 180, 190};

@@ -1,4 +1,4 @@
-// What all runs of the servo have in common, around an arm that stands where it should.
+// The common shell of all servo runs, around an arm at its ready posture.
 #include "firmware/host/run/run_shell.hpp"
 
 #include <gmock/gmock.h>
@@ -48,7 +48,7 @@ class StandingArm final : public hal::Arm {
   hal::ArmState state_;
 };
 
-// Its time is the deadline that is waited for, but for one wait that ends late.
+// Its time is the last awaited deadline, except for one wait that ends late.
 class SteppingClock final : public hal::Clock {
  public:
   std::int64_t late_at_ns = -1;
@@ -65,7 +65,7 @@ class SteppingClock final : public hal::Clock {
 
 std::int64_t Ms(int ms) { return ms * hal::kNsPerMs; }
 
-// A shell with arm and clock.
+// A shell with an arm and a clock.
 class Bench {
  public:
   explicit Bench(RunFolderConfig folder = {}, std::size_t records = 4096, bool is_here = true) {
@@ -125,7 +125,7 @@ std::string TextOf(const fs::path& path) {
   return text.str();
 }
 
-TEST(RunShellTest, ObserversGetEachRecordInTheOrderInWhichTheyWereAdded) {
+TEST(RunShellTest, ObserversAreCalledInTheOrderOfTheirAddition) {
   Bench bench;
   std::vector<std::string> calls;
   for (const char* name : {"a", "b"}) {
@@ -142,7 +142,7 @@ TEST(RunShellTest, ObserversGetEachRecordInTheOrderInWhichTheyWereAdded) {
   EXPECT_EQ(bench.Figures().ticks, 3U);
 }
 
-TEST(RunShellTest, KnowsModeAndTimeOfTheLastRecordThatWasTaken) {
+TEST(RunShellTest, HasModeAndTimeOfTheLastTakenRecord) {
   Bench bench;
   bench.RunTo(100);
   EXPECT_EQ(bench.shell->mode(), hal::Mode::kBoot);
@@ -150,12 +150,12 @@ TEST(RunShellTest, KnowsModeAndTimeOfTheLastRecordThatWasTaken) {
   hal::TickRecord last;
   bench.shell->OnRecord([&](const flight::FlightRecord& flown) { last = flown.record; });
   bench.shell->TakeRecords();
-  EXPECT_EQ(last.mode, hal::Mode::kHold) << "the arm stood still for long enough";
+  EXPECT_EQ(last.mode, hal::Mode::kHold) << "the arm has been at rest long enough";
   EXPECT_EQ(bench.shell->mode(), last.mode);
   EXPECT_DOUBLE_EQ(bench.shell->now_s(), 1e-9 * static_cast<double>(last.stamp_ns));
 }
 
-TEST(RunShellTest, CountsRecordsThatWereDropped) {
+TEST(RunShellTest, CountsDroppedRecords) {
   Bench bench({}, 16);
   int taken = 0;
   bench.shell->OnRecord([&](const flight::FlightRecord&) { ++taken; });
@@ -167,7 +167,7 @@ TEST(RunShellTest, CountsRecordsThatWereDropped) {
   EXPECT_EQ(figures.records_dropped, 84U);
 }
 
-TEST(RunShellTest, HashIsOfTheRecordsThatWereTaken) {
+TEST(RunShellTest, HashCoversTheTakenRecords) {
   log::RecordHash expected;
   Bench bench;
   bench.shell->OnRecord([&](const flight::FlightRecord& flown) { expected.Add(flown.record); });
@@ -175,7 +175,7 @@ TEST(RunShellTest, HashIsOfTheRecordsThatWereTaken) {
   bench.shell->TakeRecords();
   const std::string hash = bench.Figures().log_hash;
   EXPECT_EQ(hash, expected.Finish());
-  // Whatever else is done with them.
+  // The hash does not depend on logging and tracing.
   const test::TempFolder folder;
   Bench logged(FolderIn(folder.path(), /*has_log=*/true), 8);
   trace::Trace trace("test");
@@ -217,7 +217,7 @@ TEST(RunShellTest, WithoutALoopNothingWasCounted) {
   EXPECT_EQ(figures.log_hash, log::RecordHash().Finish());
 }
 
-// Who looks at records in the tick hands them on.
+// A recorder that inspects records in the tick and passes every second one on.
 class Gate final : public hal::Recorder {
  public:
   explicit Gate(hal::Recorder& next) : next_(next) {}
@@ -258,12 +258,12 @@ TEST(RunShellTest, TracedTicksAreMeasuredAndRecordedAsWell) {
     ticks += std::string(span.name) == "tick" ? 1 : 0;
   }
   EXPECT_EQ(ticks, 10);
-  EXPECT_GT(names.size(), 3U) << "the stages, too";
+  EXPECT_GT(names.size(), 3U) << "the stages are traced too";
   EXPECT_EQ(taken, 10);
   EXPECT_GT(bench.Figures().tick_ns_p50, 0);
 }
 
-TEST(RunShellTest, DigestsAndKeyframesAreForALogOfAServoInThisProcess) {
+TEST(RunShellTest, DigestsNeedALogAndAServoInThisProcess) {
   const test::TempFolder folder;
   const auto has_digest = [&](bool has_log, bool is_here) {
     Bench bench(has_log ? FolderIn(folder.path(), true) : RunFolderConfig{}, 4096, is_here);
@@ -278,7 +278,7 @@ TEST(RunShellTest, DigestsAndKeyframesAreForALogOfAServoInThisProcess) {
   EXPECT_FALSE(has_digest(false, true));
 }
 
-TEST(RunShellTest, LogHasEachTickAndAKeyframeASecond) {
+TEST(RunShellTest, LogHasEveryTickAndOneKeyframePerSecond) {
   const test::TempFolder folder;
   Bench bench(FolderIn(folder.path(), /*has_log=*/true));
   ASSERT_NE(bench.shell->book(), nullptr);
@@ -302,7 +302,7 @@ TEST(RunShellTest, LogHasEachTickAndAKeyframeASecond) {
   EXPECT_EQ(nlohmann::json::parse(TextOf(folder.path() / "summary.json"))["log_hash"], figures.log_hash);
 }
 
-TEST(RunShellTest, WithoutFactsThereAreTheSummaryAndWhatTheProgramAdds) {
+TEST(RunShellTest, WithoutFactsOnlySummaryAndAddedFilesAreWritten) {
   const test::TempFolder folder;
   RunFolderConfig config = FolderIn(folder.path(), /*has_log=*/false);
   config.options.more_files = {"bench.png", "of-another-run.png"};
@@ -318,7 +318,7 @@ TEST(RunShellTest, WithoutFactsThereAreTheSummaryAndWhatTheProgramAdds) {
   EXPECT_EQ(TextOf(folder.path() / "summary.json"), "{}");
 }
 
-TEST(RunShellTest, WithoutAFolderNothingIsMadeAndNothingIsWritten) {
+TEST(RunShellTest, WithoutAFolderNothingIsWritten) {
   Bench bench;
   EXPECT_EQ(bench.shell->book(), nullptr);
   bench.RunTo(10);
@@ -326,19 +326,19 @@ TEST(RunShellTest, WithoutAFolderNothingIsMadeAndNothingIsWritten) {
   bench.Figures();
   bench.shell->KeepLog();
   bench.shell->Write("{}", [] {
-    ADD_FAILURE() << "nobody wants its files";
+    ADD_FAILURE() << "files were requested without a folder";
     return std::vector<config::OutputFile>{};
   });
 }
 
-TEST(RunShellTest, AFolderThatCannotBeWrittenToIsRefusedAtOnce) {
+TEST(RunShellTest, UnwritableFolderIsRefusedAtOnce) {
   const test::TempFolder folder;
   std::ofstream(folder.path() / "file") << "no folder";
   EXPECT_THROW(Bench(FolderIn(folder.path() / "file", true)), config::InputError);
   EXPECT_THROW(Bench(FolderIn(folder.path() / "file", false)), config::InputError);
 }
 
-TEST(RunShellTest, KeepLogLeavesTheLogAsFarAsItGoes) {
+TEST(RunShellTest, KeepLogKeepsTheIncompleteLog) {
   const test::TempFolder folder;
   Bench bench(FolderIn(folder.path(), /*has_log=*/true));
   bench.RunTo(100);
@@ -348,9 +348,9 @@ TEST(RunShellTest, KeepLogLeavesTheLogAsFarAsItGoes) {
   EXPECT_FALSE(fs::exists(folder.path() / "summary.json"));
 }
 
-TEST(RunShellTest, SaysWhatTheMachineDidNotGrantItsThread) {
+TEST(RunShellTest, ListsMissingRealtimePrivileges) {
   Bench bench;
-  // Priority 0 is none of SCHED_FIFO's, for anybody.
+  // SCHED_FIFO refuses priority 0 for every user.
   bench.shell->MakeThreadRealtime({.fifo_priority = 0,
                                    .lock_memory = false,
                                    .stack_prefault_kib = 0,

@@ -1,4 +1,4 @@
-// fovea-sim as its users type it: what it answers, what it refuses, with which words and which exit code.
+// The fovea-sim command line: results, error messages and exit codes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ class CommandLineTest : public testing::Test {
     arguments.insert(arguments.begin(), FOVEA_SIM_PROGRAM);
     return RunProgram(std::move(arguments), environment);
   }
-  // What a run with these arguments says when it is refused: one line, exit code 2, no files.
+  // The error of a refused run: one line, exit code 2, no files.
   std::string Refusal(std::vector<std::string> arguments) {
     const fs::path out = folder_.path() / "refused";
     arguments.insert(arguments.begin(), "run");
@@ -36,7 +36,7 @@ class CommandLineTest : public testing::Test {
     const ProgramResult result = Sim(std::move(arguments));
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(result.out, "");
-    EXPECT_FALSE(fs::exists(out)) << "something was left behind";
+    EXPECT_FALSE(fs::exists(out)) << "files were left behind";
     std::string line = result.err;
     line.erase(line.find_last_not_of('\n') + 1);
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
@@ -69,7 +69,7 @@ TEST_F(CommandLineTest, BoardOptionWithoutABoardIsRefused) {
       AllOf(HasSubstr("faults.deadline_miss_s"), HasSubstr("--instruction-ns")));
 }
 
-// A camera that never says anything leaves no film and no pictures of what it saw; all else is there.
+// Without any frame the run writes no film and no camera pictures, but all other files.
 TEST_F(CommandLineTest, RunWithoutAnyFrameFailsAndWritesNoFilm) {
   const ProgramResult result = Sim({"run", "ball", "--set", "faults.camera_outage_s=[0,100]", "--set",
                                     "run.duration_s=0.5", "--out", Out()});
@@ -110,7 +110,7 @@ TEST_F(CommandLineTest, ValueOutOfRangeIsRefusedWithItsRange) {
   EXPECT_THAT(Refusal({file}), AllOf(HasSubstr("mine.toml:2"), HasSubstr("1 to 240 Hz")));
 }
 
-// Each value is allowed; together they are not.
+// Each value alone is allowed; the combination is not.
 TEST_F(CommandLineTest, ContradictingValuesAreRefused) {
   EXPECT_THAT(Refusal({"ball", "--set", "arm.q_start=[0, 0, 0]"}),
               AllOf(HasSubstr("arm.q_start has 3 entries"), HasSubstr("has 7 joints")));
@@ -150,7 +150,7 @@ TEST_F(CommandLineTest, ContradictingValuesAreRefused) {
 TEST_F(CommandLineTest, BrokenTomlIsRefusedWithItsLine) {
   EXPECT_THAT(Refusal({Write("mine.toml", "[camera\nrate_hz = 30\n")}), HasSubstr("mine.toml:1"));
   EXPECT_THAT(Refusal({Write("mine.toml", "[[target]]\ndiameter = 0.1\n")}),
-              AllOf(HasSubstr("mine.toml:1"), HasSubstr("a section is written [name]")));
+              AllOf(HasSubstr("mine.toml:1"), HasSubstr("write a section [name] once")));
 }
 
 TEST_F(CommandLineTest, BrokenUrdfIsRefused) {
@@ -178,7 +178,8 @@ class MeshArmTest : public CommandLineTest {
     WriteStlBinary(folder_.path() / "meshes" / "link.stl", box);
     fs::copy_file(test::RobotsFolder() + "/panda.toml", folder_.path() / "panda.toml");
   }
-  // Puts `mesh` in place of the first visual and the first collision geometry of link 7; the setting for it.
+  // Replaces the first visual and the first collision geometry
+  // of link 7 by `mesh`. Returns the setting of this arm.
   std::string Arm(const std::string& mesh) {
     const auto link = urdf_.find("<link name=\"panda_link7\">");
     std::string urdf = urdf_;
@@ -233,7 +234,7 @@ TEST_F(CommandLineTest, UnwritableOutputFolderIsRefused) {
   EXPECT_THAT(result.err, AllOf(HasSubstr("--out " + file + "/out"), HasSubstr("cannot be made")));
 }
 
-// The first run stands still while the second one is tried, so that it is there whatever the machine does.
+// The first run is stopped while the second one is tried, so that it is present at any speed.
 TEST_F(CommandLineTest, SecondRunIntoTheSameFolderIsRefused) {
   const ProgramResult result = RunProgram(
       {"sh", "-c",
@@ -254,11 +255,11 @@ echo "first $? second $second")",
 }
 
 TEST_F(CommandLineTest, MissingEglIsRefusedWithAHint) {
-  // Found out while the run is prepared: behind a line of progress.
+  // Detected while the run is prepared, so a progress line comes before the error.
   const ProgramResult result =
       Sim({"run", "ball", "--out", Out()}, {"__EGL_VENDOR_LIBRARY_DIRS=/nonexistent"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_FALSE(fs::exists(Out())) << "something was left behind";
+  EXPECT_FALSE(fs::exists(Out())) << "files were left behind";
   EXPECT_THAT(result.err, AllOf(HasSubstr("EGL"), HasSubstr("libgl1-mesa-dri")));
 }
 
@@ -270,9 +271,9 @@ TEST_F(CommandLineTest, LostProgressIsToleratedAndALostResultFails) {
                        FOVEA_SIM_PROGRAM, Out()})
         .exit_code;
   };
-  EXPECT_EQ(shell("2>/dev/full"), 1) << "the progress is lost, the run is not";
+  EXPECT_EQ(shell("2>/dev/full"), 1) << "lost progress lines do not fail the run";
   EXPECT_EQ(shell("2>&-"), 1);
-  EXPECT_EQ(shell(">/dev/full"), 2) << "the result is lost, and that is said";
+  EXPECT_EQ(shell(">/dev/full"), 2) << "a lost result fails the run";
 }
 
 TEST_F(CommandLineTest, ScenarioNameWithInvalidBytesGivesValidJson) {
@@ -311,21 +312,21 @@ TEST_F(CommandLineTest, ListAndKeysShowScenariosAndKeys) {
                         "a number: 0 to 20 1/s\n"));
 }
 
-// The table in the repository is what the program says; renew it with `fovea-sim keys --markdown`.
+// The table in the repository matches the program; renew it with `fovea-sim keys --markdown`.
 TEST_F(CommandLineTest, TableOfKeysIsUpToDate) {
   std::ostringstream table;
   table << std::ifstream(test::SourceRoot() / "sim/scenarios/KEYS.md").rdbuf();
   EXPECT_EQ(Sim({"keys", "--markdown"}).out, table.str());
 }
 
-// A run too short to converge: exit code 1, and files that are whole.
+// A run too short to converge: exit code 1, and complete files.
 TEST_F(CommandLineTest, RunThatMissesItsGoalExitsWith1AndWritesItsFiles) {
   const ProgramResult result = Sim(
       {"run", "ball", "--set", "run.duration_s=0.3", "--seed", "9", "--json", "--no-report", "--out", Out()});
   EXPECT_EQ(result.exit_code, 1);
   const auto json = nlohmann::json::parse(result.out);
   std::ifstream file(Out() + "/summary.json");
-  EXPECT_EQ(json, nlohmann::json::parse(file)) << "what is printed is what is written";
+  EXPECT_EQ(json, nlohmann::json::parse(file)) << "printed and written summary are equal";
   for (const char* key : {"scenario",
                           "seed",
                           "converged",
@@ -377,7 +378,7 @@ TEST_F(CommandLineTest, RefusedRunKeepsTheFilesOfTheLastOne) {
   EXPECT_EQ(fs::last_write_time(Out() + "/summary.json"), written);
 }
 
-// One core or two, this process or another: the same run.
+// The run is the same on one core and on two, and in any process.
 TEST_F(CommandLineTest, SameSeedGivesTheSameRunOnOneCore) {
   const auto hash = [&](std::vector<std::string> before, const std::string& seed) {
     before.insert(before.end(), {FOVEA_SIM_PROGRAM, "run", "ball", "--set", "run.duration_s=1.5", "--seed",

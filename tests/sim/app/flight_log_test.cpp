@@ -1,5 +1,5 @@
-// Logs of whole runs: each kind is replayed to the last bit, and a run that is killed, or whose disk is full,
-// leaves what it recorded.
+// Logs of whole runs: each kind is replayed bit-exactly, and a run that
+// is killed, or whose disk is full, leaves a readable log.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,14 +47,14 @@ class FlightLogTest : public testing::Test {
     if (lost == 0) {
       EXPECT_EQ(replay["ticks"], summary["ticks"]) << arguments[0];
       EXPECT_EQ(replay["segments"].size(), 1U);
-    } else {  // at real pace alone, on a machine that is too busy to write
+    } else {  // only at real pace, on a machine too busy to write
       const std::uint64_t records = summary["records_dropped"];
       const std::uint64_t entries = summary["log_entries_dropped"];
       EXPECT_LE(lost, records + entries);
     }
     std::cout << arguments[0] << ": " << replay["ticks"] << " of " << summary["ticks"] << " ticks\n";
   }
-  // Ticks in the log as it is now; the file may be one that is being written.
+  // The number of ticks in the log, which may still be written.
   std::size_t TicksIn(const fs::path& log) const {
     std::size_t ticks = 0;
     flight::TickVisitor visitor;
@@ -84,8 +84,8 @@ TEST_F(FlightLogTest, LockstepRunReplaysBitExact) {
   ExpectIdentical({"theory/trajectory-friction", "--set", brief});
 }
 
-// The keys that a log names are those that it was recorded with, whatever the scenario: what was set as it is
-// set again changes nothing, and something else does.
+// A log names the keys that it was recorded with, for any scenario: setting them to the recorded values
+// changes nothing, and another value does.
 TEST_F(FlightLogTest, ReplayWithTheRecordedSettingsHasNoChanges) {
   for (const char* scenario : {"ball", "square", "home"}) {
     ASSERT_NE(RunProgram(RunOf({scenario, "--set", "run.duration_s=0.6", "--set", "servo.omega_n=23.456789",
@@ -103,8 +103,7 @@ TEST_F(FlightLogTest, RealPaceRunReplaysBitExact) {
   ExpectIdentical({"ball", "--pace", "real", "--set", "run.duration_s=3"});
 }
 
-// Killed by what cannot be caught, while it writes: all that was in the file before the kill is replayed, and
-// the report is made of it.
+// Killed by SIGKILL while it writes: all that was in the file before is replayed, and the report shows it.
 TEST_F(FlightLogTest, KilledRunReplaysUpToTheKill) {
   std::vector<std::string> arguments = RunOf({"ball", "--pace", "real", "--set", "run.duration_s=600"});
   std::vector<char*> argv;
@@ -144,7 +143,7 @@ TEST_F(FlightLogTest, KilledRunReplaysUpToTheKill) {
   EXPECT_THAT(report.err, HasSubstr("cut off at byte"));
 }
 
-// Nothing waits for a disk that takes no more; the run goes on to its end, says so, and leaves the log alone.
+// A full disk blocks nothing: the run goes on to its end, reports the error and keeps the log.
 TEST_F(FlightLogTest, FullDiskKeepsTheLogUpToThere) {
   fs::create_directories(out_);
   std::vector<std::string> arguments = RunOf({"ball", "--set", "run.duration_s=4"});
@@ -153,7 +152,7 @@ TEST_F(FlightLogTest, FullDiskKeepsTheLogUpToThere) {
   const ProgramResult run = RunProgram(all);
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("cannot be written"));
-  EXPECT_THAT(run.err, HasSubstr("the log is kept as far as it goes, in " + (out_ / "log.mcap").string()));
+  EXPECT_THAT(run.err, HasSubstr("the incomplete log is kept in " + (out_ / "log.mcap").string()));
   EXPECT_EQ(std::distance(fs::directory_iterator(out_), fs::directory_iterator()), 1);
   const json replay = Replayed();
   EXPECT_TRUE(replay["identical"]);

@@ -1,5 +1,5 @@
-// Ctrl-C at any moment of a run leaves files that can be read. (Signals are sent when the run is where the
-// test wants it, however long it takes to get there.)
+// Ctrl-C at any moment of a run leaves readable files. (Each test waits
+// for the run to reach a state before it sends the signal.)
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Starts a run, sends it `signals` at the moments that the shell script picks, and says how it ended.
+// Starts a run; `script` sends it signals. Returns how it ended.
 class InterruptTest : public testing::Test {
  protected:
   ProgramResult Interrupt(const std::string& script, const std::string& settings = "") {
@@ -33,7 +33,7 @@ wait $run; echo "ended with $?")",
     return nlohmann::json::parse(file);
   }
   std::string Out() { return folder_.path() / "out"; }
-  // Ticks in the log, which is whole or cut off, and whether it is whole.
+  // The number of ticks in the log, and whether the log is complete.
   std::pair<int, bool> TicksInLog() {
     int ticks = 0;
     log::McapVisitor visitor;
@@ -55,7 +55,7 @@ wait $run; echo "ended with $?")",
 constexpr const char* kUntilItRuns =
     R"(until [ -s "$1/.log.mcap.partial" ]; do kill -0 $run || exit 9; sleep 0.02; done)";
 
-// Ctrl-C, and a terminal that is gone.
+// Ctrl-C, and a closed terminal.
 class InterruptBy : public InterruptTest, public testing::WithParamInterface<const char*> {};
 
 TEST_P(InterruptBy, InterruptedRunLeavesReadableLogAndSummary) {
@@ -75,7 +75,7 @@ TEST_P(InterruptBy, InterruptedRunLeavesReadableLogAndSummary) {
 INSTANTIATE_TEST_SUITE_P(Signals, InterruptBy, testing::Values("INT", "HUP"),
                          [](const auto& name) { return std::string(name.param); });
 
-// Before there is any folder: the run ends with its first tick.
+// Before the folder exists: the run ends with its first tick.
 TEST_F(InterruptTest, InterruptWhilePreparingLeavesLogAndSummary) {
   const ProgramResult result = Interrupt(
       R"(until grep -q 'SigBlk:.*[2367abef]$' /proc/$run/status; do kill -0 $run || exit 9; done
@@ -89,7 +89,7 @@ kill -INT $run)");
   EXPECT_EQ(ticks, summary["ticks"]);
 }
 
-// While films and report are made the run itself is over, and is judged as any other.
+// While films and report are written, the run itself is over and is judged as usual.
 TEST_F(InterruptTest, InterruptWhileWritingFilesKeepsTheResult) {
   const ProgramResult result = Interrupt(
       R"(until [ -s "$1/.summary.json.partial" ] || grep -q drawing "$1.err"; do kill -0 $run || exit 9; done
@@ -102,7 +102,7 @@ kill -INT $run)",
   EXPECT_EQ(TicksInLog(), std::pair(300, true));
 }
 
-// The second one ends it at once: the log stands alone, up to where it was cut.
+// A second signal ends the run at once; only the log remains, up to there.
 TEST_F(InterruptTest, SecondInterruptEndsAtOnceAndKeepsTheLog) {
   const std::string before = "of a run before";
   fs::create_directories(Out());
@@ -115,7 +115,7 @@ kill -STOP $run; kill -INT $run; kill -TERM $run; kill -CONT $run)",
   const auto [ticks, whole] = TicksInLog();
   EXPECT_FALSE(whole);
   EXPECT_GT(ticks, 100);
-  EXPECT_FALSE(fs::exists(Out() + "/summary.json")) << "no figures of another run beside it";
+  EXPECT_FALSE(fs::exists(Out() + "/summary.json")) << "no summary of an earlier run remains";
 }
 
 }  // namespace

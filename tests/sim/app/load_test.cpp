@@ -1,4 +1,4 @@
-// What the arm carries: the servo's model and the physics' bodies are one arm.
+// The load: the servo's model and the physics' bodies agree.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -47,14 +47,14 @@ TEST(LoadTest, ServoAndPhysicsCarryTheSameLoad) {
     most_weight = std::max(most_weight, (dynamics.g - of_empty.g).cwiseAbs().maxCoeff());
   }
   std::cout << "ddq off by " << worst_relative << " (relative), gravity by " << worst_gravity
-            << " Nm; the load's weight makes up to " << most_weight << " Nm\n";
+            << " Nm; the load's weight adds up to " << most_weight << " Nm\n";
   EXPECT_LT(worst_relative, 1e-12);
   EXPECT_LT(worst_gravity, 1e-12);
   EXPECT_GT(most_weight, 5.0);
 }
 
 TEST(LoadTest, LoadWithImpossibleInertiaIsRefused) {
-  EXPECT_NO_THROW(DescribeRun(Carrying(1.0, {0.0, 0.0, 0.0}))) << "a point mass";
+  EXPECT_NO_THROW(DescribeRun(Carrying(1.0, {0.0, 0.0, 0.0}))) << "a point mass is allowed";
   EXPECT_THROW(DescribeRun(Carrying(1.0, {0.001, 0.001, 0.003})), config::InputError);
   EXPECT_THROW(DescribeRun(Carrying(1.0, {0.001, 0.001, 0.001, 0.002, 0.0, 0.0})), config::InputError);
   EXPECT_THROW(DescribeRun(Carrying(1.0, {0.001, 0.001, 0.001, 0.0})), config::InputError);

@@ -1,4 +1,4 @@
-// Wrong usage: one line that begins with the program's name and says what is allowed, and exit code 2.
+// Wrong usage: exit code 2, and one line with the program's name and the allowed values.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 class UsageTest : public testing::Test {
  protected:
-  // The last line that the program says when it refuses `arguments`; before it there may be progress alone.
+  // The last line of the program's error; only progress lines may precede it.
   static std::string Refusal(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), FOVEA_SIM_PROGRAM);
     const ProgramResult result = RunProgram(arguments);
@@ -45,7 +45,7 @@ TEST_F(UsageTest, WrongUsageNamesWhatIsAllowed) {
   EXPECT_THAT(Refusal({"run", "ball", "--pace", "slow"}), HasSubstr("{lockstep,real}"));
 }
 
-// CLI11's ranges let NaN pass.
+// CLI11's range checks accept NaN.
 TEST_F(UsageTest, NonFiniteNumberIsRefused) {
   for (const char* number : {"nan", "-nan", "inf", "-inf", "1e999"}) {
     for (const char* option : {"--line-loss", "--line-delay-ms", "--line-from-s"}) {

@@ -1,4 +1,4 @@
-// `fovea-bench wire` from outside: it starts the simulated robot by itself, and its figures have their names.
+// `fovea-bench wire` from outside: it starts the simulated robot itself and reports all figures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(WireBench, ReportsEveryFigure) {
   EXPECT_LE(figures["answered_states"], 1.01);
 }
 
-// Runs the bench as process $b of a shell, and `script` once `ready` holds for its robot, process $c.
+// Runs the bench as process $b of a shell, then `script` once `ready` is true for its robot, process $c.
 ProgramResult WithItsRobot(const std::string& ready, const std::string& script) {
   return RunProgram({"sh", "-c",
                      R"("$0" wire --pace lockstep --seconds 100000 & b=$!
@@ -47,8 +47,8 @@ done 2> /dev/null
 }
 
 TEST(WireBench, EndedMotionFailsWithItsReason) {
-  // Signals have their queue, as the mask of the thread that serves says; then the stop button, and once more
-  // where nobody took notice for ten seconds.
+  // Waits until the serving thread blocks the signals for its queue, then presses the stop button, and again
+  // every ten seconds until it has an effect.
   const ProgramResult run = WithItsRobot(
       "readlink /proc/$c/exe | grep -q 'fovea-sim$' && grep -q 'SigBlk:.*[2367abef]..$' "
       "/proc/$c/task/*/status",
@@ -59,7 +59,7 @@ TEST(WireBench, EndedMotionFailsWithItsReason) {
 done
 wait $b)");
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_EQ(run.out, "") << "no figures of a robot that stood";
+  EXPECT_EQ(run.out, "") << "no figures after an ended motion";
   EXPECT_THAT(run.err, HasSubstr("(user stop)"));
 }
 

@@ -1,5 +1,5 @@
-// The simulator's camera, calibrated from the simulator's pictures by the programs that a person would use:
-// what comes out is what the scenario says.
+// Calibrates the simulator's camera from its pictures with the
+// shipped programs and compares the result with the scenario.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@ using testing::HasSubstr;
 struct BoardCase {
   const char* name;
   std::vector<std::string> flags;
-  std::vector<std::string> lens;  // --set of it, and of what else the camera has of its own
-  // Bounds on what is found.
+  std::vector<std::string> lens;  // --set options of the lens and the camera's other parameters
+  // Bounds on the errors of the result.
   double f_px, c_px, picture_px, rms_px, X_mm, X_deg;
 };
 
@@ -38,7 +38,7 @@ void PrintTo(const BoardCase& board, std::ostream* out) { *out << board.name; }
 
 class CalibrationLoopTest : public testing::TestWithParam<BoardCase> {
  protected:
-  static constexpr std::chrono::seconds kLimit{240};  // under the sanitizers each takes two minutes
+  static constexpr std::chrono::seconds kLimit{240};  // with sanitizers each takes two minutes
 
   static ProgramResult Fovea(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), FOVEA_PROGRAM);
@@ -91,7 +91,7 @@ TEST_P(CalibrationLoopTest, RecoversTheScenariosCalibration) {
   const json found = json::parse(intrinsics.out);
   const vision::Intrinsics in = ToIntrinsics(found);
   const vision::Intrinsics in_truth = ToIntrinsics(truth);
-  // Lens, focal length and principal point together: where a ray is seen. To the reach of the boards.
+  // The image error of a ray: lens, focal length and principal point together, within the boards' reach.
   double picture_px = 0.0;
   for (int column = -5; column <= 5; ++column) {
     for (int row = -3; row <= 3; ++row) {
@@ -114,10 +114,10 @@ TEST_P(CalibrationLoopTest, RecoversTheScenariosCalibration) {
   const double off_mm = 1e3 * off.translation().norm();
   const double off_deg = 57.29578 * Eigen::AngleAxisd(off.linear()).angle();
   std::cout << board.name << ", " << found["views"] << " views: f off " << f_px << " px (sigma "
-            << found["sigma_f_px"] << "), c " << c_px << " px, the picture at most " << picture_px
+            << found["sigma_f_px"] << "), c " << c_px << " px, image points at most " << picture_px
             << " px, rms " << found["rms_px"] << " px; X_EC off " << off_mm << " mm, " << off_deg
             << " deg, the views agree to " << hand["rms_mm"] << " mm, " << hand["rms_deg"] << " deg\n";
-  // The same written into a scenario: that camera is simulated, and the servo knows it.
+  // Written into a scenario: the run simulates that camera, and the servo uses it.
   const std::string scenario = folder_.path() / "mine.toml";
   fs::copy_file(SourceRoot() / "sim/scenarios/ball.toml", scenario);
   for (const std::vector<std::string>& what :
@@ -134,7 +134,7 @@ TEST_P(CalibrationLoopTest, RecoversTheScenariosCalibration) {
   const json summary = Read(folder_.path() / "run" / "summary.json");
   std::cout << "a run with that camera ends " << summary["final_error_px_rms"] << " px off\n";
   EXPECT_LT(summary["final_error_px_rms"].get<double>(), 0.1);
-  // The same written into a configuration of hardware, as it is read from there.
+  // Written into a hardware configuration and read back.
   const std::string cell = folder_.path() / "cell.toml";
   std::ofstream(cell)
       << "[robot]\nhost = \"192.168.1.2\"\n\n[camera]  # on the flange\nmount_xyz = [0, 0, 0]\n";
@@ -182,7 +182,7 @@ INSTANTIATE_TEST_SUITE_P(
                   0.075,
                   0.3,
                   0.035},
-        // As real ones are: pixels that are not quite square, an axis beside the middle.
+        // Like a real sensor: pixels that are not quite square, a principal point off the centre.
         BoardCase{
             "own_sensor",
             {"--board", "8x5", "--square", "0.03", "--marker", "0.022"},
@@ -190,13 +190,13 @@ INSTANTIATE_TEST_SUITE_P(
              "--set", "camera.c_v_px=252.2", "--set", "camera.lens=[-0.1, 0.03, 0.0005, 0.001, 0]"},
             0.1,
             0.35,
-            1.2,  // the corner that is furthest from the axis lies beyond what the boards reach
+            1.2,  // the corner furthest from the axis is out of the boards' reach
             0.075,
             0.4,
             0.025}),
     [](const auto& board) { return std::string(board.param.name); });
 
-// Without a lens; and what cannot be calibrated from.
+// Without lens distortion; and refused inputs.
 TEST_F(CalibrationLoopTest, FindsTheFocalLengthAndRefusesBadInput) {
   const std::vector<std::string> board{"--board", "9x6", "--square", "0.025"};
   const ProgramResult taken = Pictures(Out(), Joined(board, {"--views", "5"}));
@@ -214,7 +214,7 @@ TEST_F(CalibrationLoopTest, FindsTheFocalLengthAndRefusesBadInput) {
   EXPECT_LT(std::fabs(off_px), 3.0 * found["sigma_px"].get<double>());
   EXPECT_LT(found["sigma_px"].get<double>(), 0.5);
 
-  // Of five views two are spoilt: three are too few, and each that gave nothing is named.
+  // Two of five views are spoilt: three are too few, and the error names the two.
   cv::imwrite((Out() / "view-02.png").string(), cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(0)));
   cv::imwrite((Out() / "view-04.png").string(), cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(255)));
   const auto intrinsics = [&](const fs::path& folder, const std::vector<std::string>& flags) {
@@ -222,16 +222,16 @@ TEST_F(CalibrationLoopTest, FindsTheFocalLengthAndRefusesBadInput) {
   };
   ExpectRefused(
       intrinsics(Out(), board),
-      "the board is in 3 views; 4 at least (view-02.png: the image is black, view-04.png: the image is "
-      "saturated)");
-  // The same view four times says nothing of a camera.
+      "the board is in 3 views; at least 4 are needed (view-02.png: the image is black, view-04.png: the "
+      "image is saturated)");
+  // The same view four times does not determine a camera.
   const fs::path alike = folder_.path() / "alike";
   fs::create_directories(alike);
   for (const char* name : {"a.png", "b.png", "c.png", "d.png"}) {
     fs::copy_file(Out() / "view-03.png", alike / name);
   }
   ExpectRefused(intrinsics(alike, board), "nearly the same side");
-  // Another size among them, and intrinsics of another camera.
+  // One picture of another size, and intrinsics of another camera.
   const std::string camera = folder_.path() / "camera.toml";
   const auto hand_eye = [&](double f_u_px, int width_px) {
     std::ofstream(camera) << "[camera]\nwidth_px = " << width_px << "\nheight_px = 480\nf_u_px = " << f_u_px
@@ -242,10 +242,10 @@ TEST_F(CalibrationLoopTest, FindsTheFocalLengthAndRefusesBadInput) {
   ExpectRefused(hand_eye(554.0, 320), "of 320 x 480 px");
   ExpectRefused(hand_eye(760.0, 640), "these intrinsics do not fit the images");
   cv::imwrite((alike / "e.png").string(), cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(90)));
-  ExpectRefused(intrinsics(alike, board), "320 x 240 px, but the others are of 640 x 480 px");
-  // Boards that cannot be.
+  ExpectRefused(intrinsics(alike, board), "320 x 240 px, but the others have 640 x 480 px");
+  // Impossible boards.
   ExpectRefused(intrinsics(Out(), {"--board", "8x5", "--square", "0.03", "--marker", "0.03"}),
-                "--marker, --dictionary: the markers' side");
+                "--marker, --dictionary: a marker's side");
   ExpectRefused(intrinsics(Out(), {"--board", "20x20", "--marker", "0.015", "--dictionary", "4x4_50"}),
                 "the board has 220 markers");
   ExpectRefused(Pictures(folder_.path() / "wide", {"--board", "40x6", "--square", "0.025"}), "--board 40x6");

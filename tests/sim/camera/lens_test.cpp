@@ -1,5 +1,5 @@
-// The lens and the sensor: its formula against OpenCV's, what it lays on the sensor against where a ball must
-// be seen, and the detector behind it, which is told the same lens.
+// Lens and sensor: the formula against OpenCV's, the resampled picture against the
+// ideal projection, and the detector with the same lens.
 #include "sim/camera/lens.hpp"
 
 #include <gtest/gtest.h>
@@ -46,14 +46,14 @@ TEST(LensTest, MatchesOpenCvAndRoundTrips) {
   EXPECT_LT(back, 1e-9);
 }
 
-// A lens that folds the picture over puts two points onto one.
+// A lens that folds the picture maps two points onto one.
 TEST(LensTest, LensThatFoldsThePictureIsRefused) {
   const Pinhole wide = MakePinhole(640, 480, 1.9);
   EXPECT_THROW(LensMap({-0.9, 0.0, 0.0, 0.0, 0.0}, wide), std::invalid_argument);
   EXPECT_THROW(LensMap({-0.5, 0.0, 0.0, 0.0, 0.0}, MakePinhole(64, 48, 2.6)), std::invalid_argument);
 }
 
-// A picture of brightness a + b u + c v, resampled, has each pixel's own ideal place in it.
+// In a picture of brightness a + b u + c v each resampled pixel shows its ideal position.
 class SensorTest : public testing::TestWithParam<std::tuple<Lens, Pinhole>> {};
 
 TEST_P(SensorTest, ResamplesByTheCamerasFormula) {
@@ -83,11 +83,11 @@ TEST_P(SensorTest, ResamplesByTheCamerasFormula) {
                     std::fabs(to[at + 1] - 255.0 * (wide.f_px * ideal.y() + wide.c_v_px) / wide.height_px)});
     }
   }
-  std::cout << "off by " << worst << " gray levels of 255, which the picture rounds to whole ones\n";
+  std::cout << "off by " << worst << " of 255 gray levels, in a picture of whole gray levels\n";
   EXPECT_LT(worst, 1.6);
 }
 
-// A sensor of its own: pixels that are not square, an axis beside the middle.
+// A sensor with pixels that are not square and a principal point off the centre.
 Pinhole OwnSensor() { return {160, 120, 146.0, 71.2, 66.1, 1.03}; }
 
 INSTANTIATE_TEST_SUITE_P(Cameras, SensorTest,
@@ -101,7 +101,7 @@ TEST(LensTest, PlainCameraNeedsNoResampling) {
   EXPECT_TRUE(NeedsLensMap({}, beside));
 }
 
-// A ball near the corners, through the lens and back: where the detector has it against where it is.
+// Balls near the corners, through the lens: the detector's position against the true one.
 TEST(LensTest, DetectorUndoesTheLens) {
   RenderScene scene;
   scene.bench = MakeBench(/*clutter=*/false);
@@ -142,7 +142,7 @@ TEST(LensTest, DetectorUndoesTheLens) {
   }
   const double rms = std::sqrt(sum2 / count);
   std::cout << "the lens moves the ball by up to " << moved_px << " px; found " << rms << " px rms off\n";
-  EXPECT_GT(moved_px, 5.0) << "no lens worth undoing";
+  EXPECT_GT(moved_px, 5.0) << "the lens distorts too little for this test";
   EXPECT_LT(rms, 0.10);
 }
 

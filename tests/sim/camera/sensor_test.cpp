@@ -1,4 +1,4 @@
-// The image sensor: noise of the size that was asked for, the same for the same seed and frame.
+// The image sensor: noise with the configured deviation, the same for the same seed and frame.
 #include "sim/camera/sensor.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(SensorTest, NoiseHasZeroMeanAndTheSetDeviation) {
   }
   const auto n = static_cast<double>(bgr.size());
   EXPECT_NEAR(sum / n, 0.0, 0.1);
-  EXPECT_NEAR(std::sqrt(sum2 / n), std::sqrt(49.0 + 1.0 / 12.0), 0.1);  // and that of rounding
+  EXPECT_NEAR(std::sqrt(sum2 / n), std::sqrt(49.0 + 1.0 / 12.0), 0.1);  // plus the rounding error
 }
 
 TEST(SensorTest, ZeroNoiseLeavesPixelsUnchanged) {
@@ -51,7 +51,7 @@ TEST(SensorTest, NoiseDependsOnSeedAndFrame) {
   EXPECT_NE(first, Expose(3.0, 1, 6));
 }
 
-// Neighbouring rows and frames read one table: they must not read it at the same place.
+// Neighbouring rows and frames read one noise table and must not read it at the same place.
 TEST(SensorTest, NoiseOfRowsAndFramesIsUncorrelated) {
   const auto a = Expose(7.0, 1, 0);
   const auto b = Expose(7.0, 1, 1);

@@ -1,5 +1,4 @@
-// What the contract does not say of the simulated camera: order under uneven work, loss, a painter that
-// fails.
+// Properties of the simulated camera beyond the contract: order of frames, loss, and a failing painter.
 #include "sim/camera/sim_camera.hpp"
 
 #include <gtest/gtest.h>
@@ -29,8 +28,8 @@ void Fill(const Exposure& exposure, std::span<std::uint8_t> rgba) {
   std::fill(rgba.begin(), rgba.end(), static_cast<std::uint8_t>(exposure.sequence));
 }
 
-// Takes what a closed camera with a queue of 2 still has of `exposed` frames: the newest, and at most one
-// more that a painter had in its hands.
+// Takes the remaining frames of a closed camera with a queue of 2, after `exposed` frames: the newest, and at
+// most one more that a painter was drawing.
 void ExpectTheNewestOf(std::uint64_t exposed, SimCamera& camera) {
   std::vector<std::uint64_t> got;
   hal::Frame frame;
@@ -38,7 +37,7 @@ void ExpectTheNewestOf(std::uint64_t exposed, SimCamera& camera) {
     got.push_back(frame.sequence);
   }
   ASSERT_FALSE(got.empty());
-  EXPECT_EQ(got.back(), exposed - 1) << "the newest is what a servo needs";
+  EXPECT_EQ(got.back(), exposed - 1) << "a servo needs the newest";
   EXPECT_LE(got.size(), 3U);
   EXPECT_EQ(got.size() + camera.lost(), exposed);
 }
@@ -47,7 +46,7 @@ TEST(SimCameraTest, FramesKeepTheirOrderWhenALaterPictureIsReadyFirst) {
   std::latch third_is_drawn(1);
   const auto draw = [&](const Exposure& exposure, std::span<std::uint8_t> rgba) {
     if (exposure.sequence == 0) {
-      third_is_drawn.wait();  // the other painter is two pictures ahead by then
+      third_is_drawn.wait();  // then the other painter is two pictures ahead
     }
     Fill(exposure, rgba);
     if (exposure.sequence == 2) {
@@ -66,7 +65,7 @@ TEST(SimCameraTest, FramesKeepTheirOrderWhenALaterPictureIsReadyFirst) {
   }
 }
 
-// Whether pictures are slow to draw or nobody takes them: two wait, the rest is lost, the newest are kept.
+// If drawing is slow or frames are not taken, two frames wait, the newest are kept and the rest is lost.
 TEST(SimCameraTest, SlowDrawingDropsAndCountsTheOldestFrames) {
   std::latch all_exposed(1);
   const auto draw = [&](const Exposure& exposure, std::span<std::uint8_t> rgba) {

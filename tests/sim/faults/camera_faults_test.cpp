@@ -1,4 +1,4 @@
-// Faults of the camera that show an old scene, the same pixels, a mirrored picture, or a wrong stamp.
+// Camera faults that show an old scene, old pixels, a mirrored picture, or a wrong stamp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kLong = 10'000'000'000;
 constexpr double kNoise = 8.0;
 
-// The scene of frame k, exposed after 10 k ms, has its target at x = k.
+// Frame k, exposed at 10 k ms; its target is at x = k.
 Exposure FrameAfter(int k) {
   Exposure exposure;
   exposure.sequence = static_cast<std::uint64_t>(k);
@@ -32,14 +32,14 @@ std::vector<Exposure> TakeAll(const FrameFaults& faults, int frames) {
     const std::optional<Exposure> exposure = spoiler.Spoil(FrameAfter(k));
     if (exposure) {
       taken.push_back(*exposure);
-      EXPECT_EQ(taken.back().sequence, static_cast<std::uint64_t>(k)) << "it looks like a new one";
+      EXPECT_EQ(taken.back().sequence, static_cast<std::uint64_t>(k)) << "the frame has a new number";
       EXPECT_EQ(taken.back().stamp_ns, 10 * k * kMs);
     }
   }
   return taken;
 }
 
-// The frames' pixels as they leave the camera: gray levels of the scene, and the sensor's noise.
+// The frames' pixels as the camera outputs them: the scene's gray level plus sensor noise.
 std::vector<std::vector<std::uint8_t>> PixelsOf(const std::vector<Exposure>& taken) {
   const auto draw = [](const Exposure& exposure, std::span<std::uint8_t> rgba) {
     std::fill(rgba.begin(), rgba.end(), static_cast<std::uint8_t>(100.0 + exposure.p_BO.x()));
@@ -74,7 +74,7 @@ TEST(FrozenPictureTest, FrozenSceneHasFreshNoiseUnlessPixelsFreezeToo) {
   }
 }
 
-// What comes before the lens after the picture has frozen is not in it.
+// An object that comes in front of the lens after the freeze is not in the picture.
 TEST(FrozenPictureTest, FrozenPixelsKeepTheOcclusionOfThatMoment) {
   FrameFaults faults;
   faults.freeze = {0.050, 0.100};
@@ -92,7 +92,7 @@ TEST(ReplayFaultTest, ShowsTheSceneOfTheSetTimeAgo) {
   faults.replay = {{0.100, 0.200}, 35 * kMs};
   const std::vector<Exposure> taken = TakeAll(faults, 30);
   for (int k = 0; k < 30; ++k) {
-    // The newest that is 35 ms old or older: four frames back.
+    // The newest scene that is at least 35 ms old: four frames back.
     EXPECT_EQ(taken[static_cast<std::size_t>(k)].p_BO.x(), k >= 10 && k < 20 ? k - 4 : k);
   }
 }
@@ -110,14 +110,14 @@ TEST(StampFaultTest, ShiftsOnlyTheStampOfTheFrame) {
   for (const std::int64_t by_ns : {-60 * kMs, 8 * kMs}) {
     FrameFaults faults;
     faults.stamp = {{0.050, 0.100}, by_ns};
-    const std::vector<Exposure> taken = TakeAll(faults, 15);  // stamp_ns is still when it was exposed
+    const std::vector<Exposure> taken = TakeAll(faults, 15);  // stamp_ns is still the time of exposure
     for (int k = 0; k < 15; ++k) {
       const Exposure& exposure = taken[static_cast<std::size_t>(k)];
       EXPECT_EQ(exposure.stamp_error_ns, k >= 5 && k < 10 ? by_ns : 0);
       EXPECT_EQ(exposure.p_BO.x(), k);
     }
     PixelsOf(taken);  // checks the frames' stamps
-    EXPECT_EQ(FrameSpoiler(faults).DelayNs(70 * kMs), 0) << "frames come when they would";
+    EXPECT_EQ(FrameSpoiler(faults).DelayNs(70 * kMs), 0) << "the frames are not delayed";
   }
 }
 
@@ -146,7 +146,7 @@ TEST(MirrorTest, SwapsLeftAndRightWithinItsWindow) {
   }
 }
 
-// A glare at the left of the lens is at the right of a mirrored picture.
+// A glare at the left of the lens appears at the right of a mirrored picture.
 TEST(MirrorTest, MirrorsGlareOnTheLensToo) {
   constexpr int kWidth = 64;
   PictureFaults faults;

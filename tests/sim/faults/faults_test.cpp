@@ -1,4 +1,4 @@
-// Each fault does what it says within its window, nothing outside it, and the same for the same seed.
+// Each fault acts as described within its window and not outside it, and repeats for the same seed.
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::int64_t kMs = hal::kNsPerMs;
 
-// The states of 100 ms from an arm that turns, as they come through `faults`.
+// The states of 100 ms from a turning arm, read through `faults`.
 struct Reading {
   bool came = false;
   hal::ArmState state;
@@ -56,7 +56,7 @@ TEST(FaultyArmTest, StuckEncoderKeepsItsReadingWithZeroVelocity) {
     const hal::ArmState& state = readings[static_cast<std::size_t>(tick)].state;
     EXPECT_EQ(state.q[0], InWindow(tick) ? 0.20 : 0.01 * tick) << tick;
     EXPECT_EQ(state.dq[0], InWindow(tick) ? 0.0 : 10.0);
-    EXPECT_EQ(state.q[1], 1.0) << "the other joint is sound";
+    EXPECT_EQ(state.q[1], 1.0) << "the other joint is unaffected";
     EXPECT_EQ(state.dq[1], 0.5);
   }
 }
@@ -92,7 +92,7 @@ TEST(FaultyArmTest, NoiseBurstHasTheSetDeviations) {
       q2 += state.q[k] * state.q[k];
       dq2 += state.dq[k] * state.dq[k];
     }
-    EXPECT_EQ(state.q[7], 0.0) << "past the last joint there is nothing";
+    EXPECT_EQ(state.q[7], 0.0) << "entries beyond the last joint stay 0";
   }
   const double q_rms = std::sqrt(q2 / (7 * kTicks));
   const double dq_rms = std::sqrt(dq2 / (7 * kTicks));
@@ -172,7 +172,7 @@ TEST(FrameSpoilerTest, LosesFreezesAndDelaysFramesWithinTheirWindows) {
     EXPECT_TRUE(taken || (t_s >= 1.0 && t_s < 2.0)) << t_s;
     if (taken) {
       EXPECT_EQ(taken->sequence, frame);
-      EXPECT_EQ(taken->stamp_ns, exposure.stamp_ns) << "it looks like a new one";
+      EXPECT_EQ(taken->stamp_ns, exposure.stamp_ns) << "the frame has a new stamp";
       EXPECT_EQ(taken->p_BO.x(), t_s >= 3.0 && t_s < 4.0 ? 300.0 : exposure.p_BO.x());
     }
     EXPECT_EQ(spoiler.DelayNs(exposure.stamp_ns), t_s >= 5.0 && t_s < 6.0 ? 30 * kMs : 0);
@@ -204,7 +204,7 @@ TEST(FaultyDetectorTest, ShiftsAndSpoilsOnlyFoundFeatures) {
   EXPECT_EQ(said(1.5), (std::array<double, hal::kMaxFeatureDim>{1.5, 1.75, 8.0}));
   EXPECT_TRUE(std::isnan(said(3.5)[0]));
   m.found = false;
-  EXPECT_EQ(said(1.5), m.s) << "what is not found cannot be wrong";
+  EXPECT_EQ(said(1.5), m.s) << "a measurement without target is not changed";
 }
 
 TEST(PictureFaultsTest, GlareAndOccluderAppearAtTheirPlaces) {
@@ -212,7 +212,7 @@ TEST(PictureFaultsTest, GlareAndOccluderAppearAtTheirPlaces) {
   constexpr int kHeight = 48;
   PictureFaults faults;
   faults.glare = {{1.0, 2.0}, 20.0, 10.0, 5.0};
-  faults.occluder = {{1.0, 2.0}, 62.0, 24.0, 10.0, 100.0};  // beyond the edges
+  faults.occluder = {{1.0, 2.0}, 62.0, 24.0, 10.0, 100.0};  // partly outside the picture
   const auto draw = [&](std::int64_t stamp_ns) {
     std::vector<std::uint8_t> rgba(static_cast<std::size_t>(kWidth * kHeight) * 4, 100);
     SpoilPicture(faults, stamp_ns, kWidth, rgba);
@@ -232,7 +232,7 @@ TEST(PictureFaultsTest, GlareAndOccluderAppearAtTheirPlaces) {
       } else if (distance >= 7.5) {
         EXPECT_EQ(value, 100);
       } else {
-        EXPECT_GT(value, 100) << "it fades out";
+        EXPECT_GT(value, 100) << "the glare fades out";
       }
     }
   }
@@ -250,7 +250,8 @@ class BenchFaultTest : public testing::Test {
   WorldConfig config_;
 };
 
-// The motor of joint 2 gives half: the other half of what holds the arm is missing, all else is as it was.
+// Joint 2's motor gives half of its torque: the other half of
+// the holding torque is missing, and nothing else changes.
 TEST_F(BenchFaultTest, WeakMotorAcceleratesTheArmByTheMissingTorque) {
   BulletArm reference(config_.robot, {});
   reference.SetState(config_.q_start, Eigen::VectorXd::Zero(7));
@@ -261,17 +262,18 @@ TEST_F(BenchFaultTest, WeakMotorAcceleratesTheArmByTheMissingTorque) {
   config_.torque_loss = {{0.010, 1.0}, 1, 0.5};
   World world(config_);
   world.AdvanceTo(10 * kMs);
-  EXPECT_LT(world.truth().dq.norm(), 1e-9) << "at rest before";
+  EXPECT_LT(world.truth().dq.norm(), 1e-9) << "at rest before the fault";
   world.AdvanceTo(11 * kMs);
   const double off = (1e3 * world.truth().dq - ddq).norm() / ddq.norm();
-  std::cout << "acceleration " << ddq.norm() << " rad/s^2, off by " << off << " of it\n";
+  std::cout << "acceleration " << ddq.norm() << " rad/s^2, relative error " << off << "\n";
   EXPECT_LT(off, 1e-8);
-  EXPECT_LT((world.truth().ddq_disturbed - ddq).norm(), 1e-6 * ddq.norm()) << "all of it is the fault's";
+  EXPECT_LT((world.truth().ddq_disturbed - ddq).norm(), 1e-6 * ddq.norm())
+      << "all of it is attributed to the fault";
   EXPECT_NEAR(world.MeasuredState().tau_meas[1], 0.5 * reference.GravityTorque()[1], 0.05)
-      << "the sensor on the link's side sees it";
+      << "the torque sensor on the link side measures it";
 }
 
-// A base that leans: M ddq is the difference of the weight's torques, each from the masses and their levers.
+// A tilted base: M ddq is the change of the gravity torques, from the masses and their positions.
 TEST_F(BenchFaultTest, TiltedBaseAcceleratesTheArmAsComputed) {
   constexpr double kTilt = 0.1;
   constexpr double kWeight = 9.81;
@@ -281,12 +283,12 @@ TEST_F(BenchFaultTest, TiltedBaseAcceleratesTheArmAsComputed) {
   model::ArmDynamics dynamics;
   model::ComputePoses(robot_.model, q, poses);
   model::ComputeDynamics(robot_.model, poses, rest, dynamics);
-  // In the base's axes the weight turns by -kTilt about x.
+  // In the base's axes the gravity vector turns by -kTilt about x.
   const Eigen::Vector3d change(0.0, -kWeight * std::sin(kTilt), kWeight * (1.0 - std::cos(kTilt)));
   Eigen::VectorXd tau = Eigen::VectorXd::Zero(7);
   BulletArm arm(config_.robot, {});
   arm.SetState(config_.q_start, Eigen::VectorXd::Zero(7));
-  const auto coms = [&](const Eigen::VectorXd& at) {  // mass times place, of all links
+  const auto coms = [&](const Eigen::VectorXd& at) {  // sum of mass times position over all links
     arm.SetState(at, Eigen::VectorXd::Zero(7));
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (int i = 1; i < static_cast<int>(config_.robot.links.size()); ++i) {
@@ -305,16 +307,17 @@ TEST_F(BenchFaultTest, TiltedBaseAcceleratesTheArmAsComputed) {
   config_.base_tilt = {{0.010, 0.020}, kTilt};
   World world(config_);
   world.AdvanceTo(10 * kMs);
-  EXPECT_LT(world.truth().dq.norm(), 1e-9) << "at rest before";
+  EXPECT_LT(world.truth().dq.norm(), 1e-9) << "at rest before the fault";
   world.AdvanceTo(11 * kMs);
   const double off = (1e3 * world.truth().dq - ddq).norm() / ddq.norm();
-  std::cout << "acceleration " << ddq.norm() << " rad/s^2, off by " << off << " of it\n";
+  std::cout << "acceleration " << ddq.norm() << " rad/s^2, relative error " << off << "\n";
   EXPECT_LT(off, 1e-6);
-  EXPECT_LT((world.truth().ddq_disturbed - ddq).norm(), 1e-6 * ddq.norm()) << "all of it is the fault's";
+  EXPECT_LT((world.truth().ddq_disturbed - ddq).norm(), 1e-6 * ddq.norm())
+      << "all of it is attributed to the fault";
   world.AdvanceTo(20 * kMs);
   const Eigen::VectorXd dq = world.truth().dq;
   world.AdvanceTo(25 * kMs);
-  EXPECT_LT((world.truth().dq - dq).norm(), 0.05 * dq.norm()) << "upright again";
+  EXPECT_LT((world.truth().dq - dq).norm(), 0.05 * dq.norm()) << "the base is upright again";
 }
 
 TEST_F(BenchFaultTest, LoadFromTheStartActsInTheFirstStep) {
@@ -330,7 +333,7 @@ TEST_F(BenchFaultTest, LoadFromTheStartActsInTheFirstStep) {
   EXPECT_LT((first - later.truth().dq).norm(), 1e-9);
 }
 
-// A mass that nobody was told of: (M + m J^T J) ddq = m J^T g, from the servo's own model.
+// An unknown mass at the hand: (M + m J^T J) ddq = m J^T g, from the servo's own model.
 TEST_F(BenchFaultTest, LoadActsAsAPointMassAtTheHand) {
   constexpr double kMass = 2.0;
   const model::VecN q = config_.q_start;
@@ -348,13 +351,14 @@ TEST_F(BenchFaultTest, LoadActsAsAPointMassAtTheHand) {
   config_.load = {{0.010, 0.020}, kMass};
   World world(config_);
   world.AdvanceTo(10 * kMs);
-  EXPECT_LT(world.truth().dq.norm(), 1e-9) << "at rest before";
+  EXPECT_LT(world.truth().dq.norm(), 1e-9) << "at rest before the fault";
   world.AdvanceTo(11 * kMs);
   const double off = (1e3 * world.truth().dq - ddq).norm() / ddq.norm();
-  std::cout << "acceleration " << ddq.norm() << " rad/s^2, off by " << off << " of it\n";
+  std::cout << "acceleration " << ddq.norm() << " rad/s^2, relative error " << off << "\n";
   EXPECT_LT(off, 1e-8);
-  EXPECT_LT((world.truth().ddq_disturbed - ddq).norm(), 1e-6 * ddq.norm()) << "all of it is the fault's";
-  // Let go: what speed it has it keeps, but for what turns with the posture.
+  EXPECT_LT((world.truth().ddq_disturbed - ddq).norm(), 1e-6 * ddq.norm())
+      << "all of it is attributed to the fault";
+  // After the window the arm keeps its speed, except for the effects of its changing posture.
   world.AdvanceTo(20 * kMs);
   const Eigen::VectorXd dq = world.truth().dq;
   world.AdvanceTo(25 * kMs);

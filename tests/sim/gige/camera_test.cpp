@@ -1,4 +1,4 @@
-// The camera driver against the simulated camera, over the network of this computer.
+// The camera driver with the simulated camera, over this computer's network.
 #include "sim/gige/camera.hpp"
 
 #include <gtest/gtest.h>
@@ -16,11 +16,11 @@
 namespace fovea::test {
 namespace {
 
-constexpr int kWidth = 64;  // a picture is one packet, and is not lost on a busy machine
+constexpr int kWidth = 64;  // one packet per picture: it is not lost on a busy machine
 constexpr int kHeight = 48;
 constexpr std::int64_t kPatience = 20 * hal::kNsPerSecond;
 
-// Blue, green and red of the picture with this number.
+// Blue, green or red of the picture number `sequence`.
 std::uint8_t ColourOf(std::uint64_t sequence, std::size_t channel) {
   return static_cast<std::uint8_t>(40 + 30 * channel + 5 * sequence);
 }
@@ -47,7 +47,7 @@ genicam::GenicamConfig Client() {
   return config;
 }
 
-// An eye whose pictures are numbers, on the network, and the driver that takes them.
+// A simulated camera whose colours encode the picture number, on the network, and the driver.
 struct Bench {
   explicit Bench(const genicam::GenicamConfig& client = Client(), std::int64_t transport_ns = 0) {
     Plug(transport_ns);
@@ -87,7 +87,7 @@ struct GenicamFixture : Bench {
   hal::Camera& camera() { return *driver; }
   void Close() {
     server->Advance(INT64_MAX / 2, /*wait=*/true);
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // what has left arrives
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // sent pictures arrive
     driver->Close();
   }
 };
@@ -102,7 +102,7 @@ TEST(GigeCamera, FramesMatchThePicturesOfTheEye) {
     bench.Expose(hal::kNsPerSecond + k * 33 * hal::kNsPerMs);
     const hal::Frame frame = bench.Take();
     EXPECT_EQ(frame.stamp_ns, hal::kNsPerSecond + k * 33 * hal::kNsPerMs);
-    EXPECT_EQ(frame.exposure_ns, 5 * hal::kNsPerMs) << "the camera's own";
+    EXPECT_EQ(frame.exposure_ns, 5 * hal::kNsPerMs) << "the camera's own exposure time";
     EXPECT_TRUE(k == 0 || frame.sequence == last + 1);
     last = frame.sequence;
     ASSERT_EQ(frame.format, hal::PixelFormat::kBgr8);
@@ -116,7 +116,7 @@ TEST(GigeCamera, FramesMatchThePicturesOfTheEye) {
   hal::Frame frame;
   frame.sequence = 77;
   EXPECT_EQ(bench.driver->Acquire(frame, 10 * hal::kNsPerMs).code(), hal::StatusCode::kTimeout)
-      << "a repeated picture is none";
+      << "a repeated picture is not a new one";
   EXPECT_EQ(frame.sequence, 77U);
 }
 
@@ -147,7 +147,7 @@ TEST(GigeCamera, PictureIsSentAfterItsTransportTime) {
   bench.server->Advance(hal::kNsPerSecond + 39 * hal::kNsPerMs, false);
   EXPECT_EQ(bench.driver->Acquire(frame, 50 * hal::kNsPerMs).code(), hal::StatusCode::kTimeout);
   bench.server->Advance(hal::kNsPerSecond + 40 * hal::kNsPerMs, true);
-  EXPECT_EQ(bench.server->sent(), 1U) << "it waited until the picture had left";
+  EXPECT_EQ(bench.server->sent(), 1U) << "Advance waits until the picture is sent";
   EXPECT_EQ(bench.Take().stamp_ns, hal::kNsPerSecond);
 }
 
@@ -209,12 +209,12 @@ std::string ErrorOf(const genicam::GenicamConfig& config) {
 
 TEST(GigeCamera, AppliesTheConfiguredSettings) {
   genicam::GenicamConfig client = Client();
-  client.device = "";  // the first one that answers
+  client.device = "";  // the first camera that answers
   client.pixel_format = "";
   client.rate_hz = 25.0;
   client.exposure_us = 8000.0;
   client.gain = 3.0;
-  client.packet_size = 0;  // as the network carries
+  client.packet_size = 0;  // chosen by the network
   for (const auto& [at, to_middle_ms] : {std::pair{genicam::StampAt::kStart, 4},
                                          {genicam::StampAt::kMiddle, 0},
                                          {genicam::StampAt::kEnd, -4}}) {

@@ -1,4 +1,4 @@
-// The camera driver asks a camera for its clock: Aravis' stand-in, with the features that SFNC has for it.
+// The camera driver reads the camera's clock. Aravis' fake camera has the SFNC features for it.
 #include <arv.h>
 #include <gtest/gtest.h>
 
@@ -19,18 +19,18 @@
 namespace fovea::test {
 namespace {
 
-constexpr int kWidth = 64;  // a picture is one packet
+constexpr int kWidth = 64;  // one packet per picture
 constexpr int kHeight = 48;
-constexpr std::int64_t kTransportNs = 40 * hal::kNsPerMs;  // the stamp of a picture is so old when it leaves
+constexpr std::int64_t kTransportNs = 40 * hal::kNsPerMs;  // age of a picture's stamp when it is sent
 constexpr std::int64_t kPatience = 20 * hal::kNsPerSecond;
 
-// The clock of the camera: it began elsewhere, and gains.
+// The camera's clock has an offset and a drift.
 constexpr double kGains = 200e-6;
 std::int64_t DeviceNs(std::int64_t host_ns) {
   return host_ns - 1000 + std::llround(kGains * static_cast<double>(host_ns));
 }
 
-// Features for a camera's description; the registers are GigE Vision's.
+// Features for the camera's description file; the registers are GigE Vision's.
 constexpr const char* kSfnc1 = R"(
   <Command Name="GevTimestampControlLatch"><pValue>LatchRegister</pValue><CommandValue>2</CommandValue></Command>
   <Integer Name="GevTimestampValue"><pValue>LatchedRegister</pValue></Integer>)";
@@ -47,8 +47,7 @@ struct Unref {
   void operator()(void* object) const { g_object_unref(object); }
 };
 
-// A camera on the network of this computer. Its latched time is refreshed with each picture, 500 times a
-// second.
+// A camera on this computer's network. Its latched time is refreshed with each picture, 500 times per second.
 class ClockedCamera {
  public:
   ClockedCamera(const std::string& features, bool another_clock) : another_clock_(another_clock) {
@@ -90,7 +89,7 @@ class ClockedCamera {
 };
 
 struct Outcome {
-  std::vector<double> off_ms;  // of the stamps of the last frames, sorted
+  std::vector<double> off_ms;  // stamp errors of the later frames, sorted
   genicam::GenicamCounters counters;
 };
 
@@ -104,7 +103,7 @@ Outcome TakePictures(const std::string& features, bool another_clock = false, in
   config.height_px = kHeight;
   config.packet_size = 16000;
   config.stamp_at = genicam::StampAt::kMiddle;
-  // What the driver has to know beforehand where the clock cannot be asked is withheld: transport_ns.
+  // transport_ns stays 0: the driver needs it only if it cannot read the camera's clock.
   genicam::GenicamCamera driver(config);
   Outcome outcome;
   std::int64_t last_ns = INT64_MIN;
@@ -126,19 +125,18 @@ Outcome TakePictures(const std::string& features, bool another_clock = false, in
   return outcome;
 }
 
-// How old a stamp is beyond the transport, of the frame that was taken soonest: on a busy machine others
-// wait.
+// The stamp error of the frame that was taken soonest [ms]; on a busy machine other frames wait longer.
 double Soonest(const Outcome& outcome) { return outcome.off_ms.at(0); }
 
 TEST(GenicamClock, ReadableCameraClockNeedsNoTransportTime) {
   for (const char* features : {kSfnc1, kSfnc2}) {
     const Outcome outcome = TakePictures(features);
-    std::cout << "stamps are off by " << Soonest(outcome) << " ms, the camera's way is 40 ms; "
+    std::cout << "stamps are off by " << Soonest(outcome) << " ms, the transport time is 40 ms; "
               << outcome.counters.stamped_by_clock << " of " << outcome.counters.frames << " by its clock\n";
     EXPECT_GT(outcome.counters.stamped_by_clock, outcome.counters.frames / 2);
     EXPECT_LT(outcome.counters.clock_refused, outcome.counters.frames / 20)
-        << "before its first picture it shows 0";
-    EXPECT_LT(std::fabs(Soonest(outcome)), 5.0) << "what a reading may be off, and half of it more";
+        << "the clock reads 0 before the first picture";
+    EXPECT_LT(std::fabs(Soonest(outcome)), 5.0) << "1.5 times the possible error of a reading";
   }
 }
 
@@ -146,14 +144,14 @@ TEST(GenicamClock, WithoutTheLatchFeatureStampsComeFromArrivals) {
   const Outcome outcome = TakePictures("");
   std::cout << "stamps are off by " << Soonest(outcome) << " ms\n";
   EXPECT_EQ(outcome.counters.stamped_by_clock, 0U);
-  EXPECT_LT(Soonest(outcome), -35.0) << "the transport time that nobody told it of";
+  EXPECT_LT(Soonest(outcome), -35.0) << "the transport time is not configured";
 }
 
 TEST(GenicamClock, ClockOtherThanThePicturesIsNotUsed) {
   const Outcome outcome = TakePictures(kSfnc2, /*another_clock=*/true);
   EXPECT_EQ(outcome.counters.stamped_by_clock, 0U);
   EXPECT_GT(outcome.counters.clock_refused, 0U);
-  EXPECT_LT(Soonest(outcome), -35.0) << "by the arrivals again";
+  EXPECT_LT(Soonest(outcome), -35.0) << "stamps come from the arrivals again";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The host's end of a board's line, against the servo's end in this process: what a late, jittering or broken
-// line makes of a run.
+// The host's end of a board's line, with the servo's end in
+// this process: effects of a late, jittering or broken line.
 #include "sim/mcu/board_servo.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class BoardServoTest : public task::ServoTaskTest {
     return config;
   }
 
-  // As ServoTaskTest's, with the servo on the board.
+  // Like ServoTaskTest::Tick, with the servo on the board.
   const hal::TickRecord& BoardTick(std::int32_t missed_ticks = 0) {
     task::ServoInputs inputs;
     inputs.missed_ticks = missed_ticks;
@@ -63,7 +63,7 @@ class BoardServoTest : public task::ServoTaskTest {
   std::unique_ptr<BoardServo> servo_;
 };
 
-TEST_F(BoardServoTest, PerfectLineGivesTheTasksBitsAtEitherPace) {
+TEST_F(BoardServoTest, PerfectLineMatchesTheTaskBitExactAtBothPaces) {
   log::RecordHash here;
   for (int k = 0; k < 2500; ++k) {
     here.Add(Tick());
@@ -84,7 +84,7 @@ TEST_F(BoardServoTest, PerfectLineGivesTheTasksBitsAtEitherPace) {
 }
 
 constexpr LinkFaults kJitter{.loss = 0.01, .delay_ms = 0.2, .jitter_ms = 2.5};
-constexpr double kBootedAt = 0.3;  // Boot wants sound states in a row
+constexpr double kBootedAt = 0.3;  // Boot needs valid states in a row
 
 TEST_F(BoardServoTest, ConvergesThroughJitterAndLoss) {
   Connect(ByTimer(kJitter, kBootedAt));
@@ -155,7 +155,7 @@ TEST_F(BoardServoTest, TooLongTickCountsAsMissed) {
   line_->board.periods_in_tick = 3;
   BoardTick();
   EXPECT_EQ(servo_->OverrunNs(), 2 * hal::kTickPeriodNs);
-  line_->board.periods_in_tick = 1;  // over at once when the next begins: late, but none is missed
+  line_->board.periods_in_tick = 1;  // ends as the next one starts: late, but not missed
   EXPECT_EQ(BoardTick(2).missed_ticks, 2);
   EXPECT_EQ(servo_->OverrunNs(), 0);
   EXPECT_EQ(BoardTick().missed_ticks, 0);
@@ -192,7 +192,7 @@ TEST_F(BoardServoTest, ArmOtherThanTheBoardsIsRefusedByName) {
   auto line = std::make_unique<test::ServerLine>(test::Panda().model);
   try {
     const BoardServo servo(std::move(line), {}, 1, config_, model::Load{});
-    FAIL() << "an arm that is not the board's was taken";
+    FAIL() << "another arm than the board's was accepted";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("its image holds the shipped panda"), std::string::npos)
         << error.what();

@@ -1,4 +1,4 @@
-// The servo's image on an emulated Cortex-M7: what is in it, and how it ends when it must.
+// The servo's image on an emulated Cortex-M7: its contents, and its reaction to failures.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 
 class BoardTest : public testing::Test {
  protected:
-  // The next frame of `kind`, kept in reader_; false when none comes within `limit`.
+  // Waits for the next frame of `kind`, kept in reader_. False if none arrives within `limit`.
   bool Await(link::FrameKind kind, std::chrono::seconds limit = 20s) {
     const auto end = std::chrono::steady_clock::now() + limit;
     while (std::chrono::steady_clock::now() < end && !board_.gone()) {
@@ -64,12 +64,12 @@ class BoardTest : public testing::Test {
     EXPECT_TRUE(link::Decode(reader_.frame().payload, outputs));
     return outputs;
   }
-  // By the timer, which stands between the ticks: the next tick's.
+  // For the gated timer: the outputs of the next tick.
   link::Outputs Go() {
     Send(link::FrameKind::kGo, ++goes_, {});
     return Outputs();
   }
-  // Until the servo holds the arm, each tick with its state.
+  // Ticks with states until the servo holds the arm.
   link::Outputs Boot() {
     link::Outputs outputs;
     for (std::uint32_t k = 1; k <= 60; ++k) {
@@ -80,7 +80,7 @@ class BoardTest : public testing::Test {
     EXPECT_EQ(outputs.line, link::LineCounters{});
     return outputs;
   }
-  // What it does about a line without states.
+  // Checks the reaction to a line without states.
   static void ExpectBrakes(const link::Outputs& outputs) {
     EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
     EXPECT_TRUE(outputs.record.command.engage_brakes);
@@ -88,8 +88,7 @@ class BoardTest : public testing::Test {
       EXPECT_EQ(torque, 0.0);
     }
   }
-  static constexpr std::uint32_t kLongest =
-      3000;  // ticks until the brakes are closed, far more than it takes
+  static constexpr std::uint32_t kLongest = 3000;  // ticks until the brakes close, with a wide margin
 
   sim::Qemu board_{{FOVEA_MCU_IMAGE, 4}};
   test::IdealArm arm_{test::PandaConfig().arm, test::Ready()};
@@ -110,7 +109,7 @@ TEST(McuImage, ContainsNoHeapOrStreamSymbols) {
   }
 }
 
-// What fovea-bench mcu prints of it.
+// The sizes that fovea-bench mcu prints.
 TEST(McuImage, ModuleSizesAddUpToTheSections) {
   const bench::LinkMap map = bench::ReadLinkMap(FOVEA_MCU_MAP);
   bench::ModuleBytes sum;
@@ -160,7 +159,7 @@ TEST_F(BoardTest, StormOfBadChecksumsRaisesArmLost) {
   EXPECT_EQ(outputs.line.silent_ticks, ticks);
 }
 
-// The timer that nobody holds: the board goes on, whether the host speaks or not.
+// The free-running timer: the board goes on with or without the host.
 TEST_F(BoardTest, OwnTimerTicksWithoutTheHost) {
   Configure(link::Pacing::kTimer);
   const std::uint64_t first = Outputs().record.tick;
@@ -168,7 +167,7 @@ TEST_F(BoardTest, OwnTimerTicksWithoutTheHost) {
   for (int k = 0; k < 50; ++k) {
     outputs = Outputs();
   }
-  EXPECT_GE(outputs.record.tick, first + 50);  // what found no room on the line was left out
+  EXPECT_GE(outputs.record.tick, first + 50);  // outputs without room on the line are skipped
   EXPECT_GE(outputs.line.silent_ticks, 50U);
   EXPECT_EQ(outputs.record.fault, hal::Fault::kArmLost);
 }

@@ -1,4 +1,4 @@
-// fovea-bench mcu: every figure is there, and another run can be held against it.
+// fovea-bench mcu reports every figure and compares them with another run.
 #include <gtest/gtest.h>
 
 #include <fstream>

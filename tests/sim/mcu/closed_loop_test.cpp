@@ -1,4 +1,4 @@
-// Whole runs with the servo on the emulated board: it converges, and to the last bit as on this computer.
+// Whole runs with the servo on the emulated board: they converge, and match this computer bit-exactly.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// The processes that this one started, from what the kernel says of each of its threads.
+// The child processes of this process, from the kernel's list for each thread.
 #pragma once
 
 #include <sys/types.h>

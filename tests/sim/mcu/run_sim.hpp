@@ -1,4 +1,4 @@
-// Whole runs by the program, with the servo here or on the emulated board.
+// Whole runs of fovea-sim, with the servo on this computer or on the emulated board.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace fovea::test {
 
-// What `fovea-sim run ARGUMENTS --servo SERVO` says of itself.
+// The JSON summary of `fovea-sim run ARGUMENTS --servo SERVO`.
 inline nlohmann::json RunSim(std::vector<std::string> arguments, const std::string& servo) {
   const TempFolder folder;
   arguments.insert(arguments.begin(), {FOVEA_SIM_PROGRAM, "run"});

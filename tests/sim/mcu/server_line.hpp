@@ -1,5 +1,4 @@
-// A board without a processor: the servo behind the line, in this process, with a timer that is moved by
-// hand.
+// A board without a processor: the servo behind the line runs in this process, and the test moves the timer.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +19,7 @@ class HandMovedBoard final : public link::Board {
   [[nodiscard]] std::uint32_t TimerCounts() noexcept override { return counts += 10; }
   [[nodiscard]] std::uint32_t StackBytes() noexcept override { return 1234; }
   [[nodiscard]] link::LineLosses Lost() noexcept override { return {}; }
-  // It is stopped when a tick is done: that is when the periods pass that the tick took.
+  // The server stops the timer at the end of a tick; then the periods of that tick pass.
   void RunTimer(bool on) noexcept override {
     if (timer_runs && !on) {
       periods += periods_in_tick;

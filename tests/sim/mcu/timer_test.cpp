@@ -1,4 +1,4 @@
-// The board paced by its own timer, in virtual time, against the simulator.
+// The board paced by its own timer in virtual time, with the simulator.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -19,7 +19,7 @@ Words With(Words words, const Words& more) {
 }
 
 const Words kByTimer{"--servo-pace", "timer", "--instruction-ns", "4"};
-// Without a camera, so that the machine is the line and the board alone.
+// Without a camera, so that only line and board matter.
 const Words kHome{"ball", "--set", "camera.enabled=false", "--set", "motion.kind=home"};
 
 nlohmann::json OnTheBoard(const Words& words) {
@@ -53,7 +53,7 @@ TEST(BoardByTimer, ConvergesThroughJitterAndLoss) {
   EXPECT_GT(run["mcu"]["ticks_without_torque"], 200);
 }
 
-// Twice the same with jitter, though nothing here is as quick as the time before.
+// Repeats bit-exactly with jitter, although the wall-clock timing differs.
 TEST(BoardByTimer, RunRepeatsForTheSameSeed) {
   const Words run = With(With(kHome, kByTimer),
                          {"--line-jitter-ms", "3", "--line-from-s", "0.05", "--set", "run.duration_s=0.25"});
@@ -80,7 +80,7 @@ TEST(BoardByTimer, SlowProcessorMissesAndCountsItsDeadlines) {
   const nlohmann::json run = OnTheBoard(
       With(kHome, {"--servo-pace", "timer", "--instruction-ns", "64", "--set", "run.duration_s=0.3"}));
   EXPECT_GT(run["mcu"]["line"]["missed_ticks"], 50);
-  // The run may end amid a tick, of three periods at most: one of the two has counted it then, or its misses.
+  // The run may end within a tick of up to three periods, which only one of the two counters may include.
   EXPECT_NEAR(run["mcu"]["line"]["missed_ticks"].get<int>(), run["missed_ticks"].get<int>(), 3);
   EXPECT_EQ(run["ticks"].get<int>() + run["missed_ticks"].get<int>(), 300);
   EXPECT_TRUE(run["faults"].empty()) << run["faults"];

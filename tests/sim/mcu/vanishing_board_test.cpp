@@ -1,4 +1,4 @@
-// A board that vanishes in the middle of a run: its emulator is killed.
+// A board vanishes during a run: its emulator is killed.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -32,7 +32,7 @@ TEST(VanishingBoard, ClosesTheBrakesAndIsReported) {
   };
   try {
     RunScenario(scenario, options);
-    FAIL() << "the run ended as if nothing had been";
+    FAIL() << "the run ended without an error";
   } catch (const std::runtime_error& error) {
     std::cout << error.what() << '\n';
     EXPECT_STREQ(error.what(), "the servo's board is gone; the arm's brakes were closed");
@@ -43,7 +43,7 @@ TEST(VanishingBoard, ClosesTheBrakesAndIsReported) {
   for (const double torque : last.command.tau_cmd) {
     EXPECT_EQ(torque, 0.0);
   }
-  EXPECT_TRUE(test::OwnChildren().empty());  // nothing of it is left
+  EXPECT_TRUE(test::OwnChildren().empty());  // no child process is left
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The end of a motion: success at rest, a reflex at speed.
+// Finishing a motion: success at rest, a reflex at speed.
 #include "fovea/franka/brake.hpp"
 #include "tests/sim/panda/robot_fixture.hpp"
 
@@ -12,7 +12,7 @@ using franka::RobotCommand;
 
 constexpr int kRise = 400;  // steps to full speed
 
-// The way after k steps of a motion that fades in to `speed` within kRise [rad, m].
+// The path after k steps of a motion that rises smoothly to `speed` within kRise [rad or m].
 double Gone(int k, double speed) {
   double way = 0.0;
   for (int j = 1; j <= k; ++j) {
@@ -23,7 +23,7 @@ double Gone(int k, double speed) {
 
 class FinishTest : public FciRobotTest {
  protected:
-  // Steps by `command` for a hundred steps at full speed, then says that this was the end.
+  // Steps with `command` up to 100 steps at full speed, then finishes the motion.
   void FinishAtSpeed(const std::function<void(int, RobotCommand&)>& command) {
     RobotCommand c;
     for (int k = 1; k <= kRise + 100; ++k) {
@@ -35,7 +35,7 @@ class FinishTest : public FciRobotTest {
     c.motion_generation_finished = 1;
     robot().Step(c);
   }
-  // Pulls joint 1 until it moves with `speed`.
+  // Accelerates joint 1 with torques up to `speed`.
   void PullUpTo(double speed) {
     Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
     for (int k = 0; k < 3000 && state().dq[0] < speed; ++k) {
@@ -77,7 +77,7 @@ TEST_F(FinishTest, FinishWithAMovingHandIsAReflex) {
   }
 }
 
-// The hand stands still while the elbow swings about it.
+// The hand is at rest while the elbow swings.
 TEST_F(FinishTest, FinishWithAMovingElbowIsAReflex) {
   Move(MoveController::kJointImpedance, MoveGenerator::kCartesianPosition);
   FinishAtSpeed([&](int k, RobotCommand& c) {
@@ -87,7 +87,7 @@ TEST_F(FinishTest, FinishWithAMovingElbowIsAReflex) {
   ExpectReflex(Error::kCartesianJointVelocityDiscontinuity);
 }
 
-// A client with a controller of its own commands no speed: what is measured counts.
+// A client with its own controller commands no speed, so the measured speed counts.
 TEST_F(FinishTest, FinishOfATorqueMotionAtSpeedIsAReflex) {
   for (const double speed : {0.3, 0.5}) {
     PullUpTo(speed);
@@ -113,7 +113,7 @@ TEST_F(FinishTest, FinishOfATorqueMotionAtRestSucceeds) {
   EXPECT_EQ(state().robot_mode, franka::RobotMode::kIdle);
 }
 
-// As this project's driver ends a motion: damping first, then the word.
+// As this project's driver ends a motion: damping first, then the finish.
 TEST_F(FinishTest, FinishAfterTheDriverSlowedTheArmSucceeds) {
   PullUpTo(0.5);
   int states = 0;

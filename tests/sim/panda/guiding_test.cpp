@@ -1,4 +1,4 @@
-// Guiding by hand: what the button and a pull do to the robot.
+// Guiding by hand: effects of the button and of a pull.
 #include "tests/sim/panda/robot_fixture.hpp"
 
 namespace fovea::test {
@@ -19,7 +19,7 @@ class GuidingTest : public FciRobotTest {
         robot().Set(franka::Command::kSetGuidingMode, franka::Bytes(franka::GuidingMode{axes, nullspace})),
         franka::SetterStatus::kSuccess);
   }
-  // Where the hand is after `steps` of guiding by `force_B`, from where it was; then it is let go.
+  // Guides by `force_B` for `steps`, then lets go. Returns the hand's displacement.
   franka::Vector3 Guide(const Eigen::Vector3d& force_B, int steps) {
     begin_ = state();
     robot().PressGuiding(true);
@@ -27,7 +27,7 @@ class GuidingTest : public FciRobotTest {
     robot().PullHand(force_B);
     Wait(steps);
     robot().PullHand(Eigen::Vector3d::Zero());
-    Wait(300);  // the hand is still at it, and holds it back
+    Wait(300);  // still in guiding mode, which damps the motion
     const franka::Vector3 way = Way();
     robot().PressGuiding(false);
     std::cout << "guided by " << force_B.transpose() << " N: " << 1e3 * way[0] << ", " << 1e3 * way[1] << ", "
@@ -41,11 +41,12 @@ TEST_F(GuidingTest, GuidedHandFollowsThePullAndStaysThere) {
   EXPECT_EQ(state().robot_mode, RobotMode::kIdle);
   EXPECT_GT(way[1], 0.05);
   const franka::RobotState released = state();
-  EXPECT_LT(Off(released.q_d, released.q), 1e-2) << "what is wanted went along";
+  EXPECT_LT(Off(released.q_d, released.q), 1e-2) << "the desired position follows";
   Wait(500);
   EXPECT_LT(Off(state().dq, {}), 5e-3);
-  EXPECT_LT(std::fabs(state().O_T_EE[13] - released.O_T_EE[13]), 0.02) << "it holds where it was let go";
-  EXPECT_GT(state().O_T_EE[13] - begin_.O_T_EE[13], 0.05) << "and does not spring back";
+  EXPECT_LT(std::fabs(state().O_T_EE[13] - released.O_T_EE[13]), 0.02)
+      << "the arm holds where it is released";
+  EXPECT_GT(state().O_T_EE[13] - begin_.O_T_EE[13], 0.05) << "the arm does not spring back";
 }
 
 TEST_F(GuidingTest, WithoutTheButtonAPullOnlyBendsTheArm) {
@@ -71,10 +72,10 @@ TEST_F(GuidingTest, LockedAxesAreHeld) {
   for (std::size_t i = 0; i < 12; ++i) {
     turned = std::max(turned, std::fabs(state().O_T_EE[i] - begin_.O_T_EE[i]));
   }
-  EXPECT_LT(turned, 0.02) << "its orientation is locked too";
+  EXPECT_LT(turned, 0.02) << "the orientation is locked too";
 }
 
-// A hand that is locked, and something that pushes the elbow aside.
+// A locked hand, and a torque that pushes the elbow aside.
 struct ElbowGuidingTest : GuidingTest {
   static sim::WorldConfig Pushed() {
     sim::WorldConfig config = WirePandaWorld();
@@ -98,13 +99,13 @@ struct ElbowGuidingTest : GuidingTest {
 
 TEST_F(ElbowGuidingTest, FreeElbowFollowsThePull) {
   const double way = ElbowWay(1);
-  std::cout << "joint 3 went by " << way << " rad\n";
+  std::cout << "joint 3 moved by " << way << " rad\n";
   EXPECT_GT(way, 0.1);
 }
 
 TEST_F(ElbowGuidingTest, LockedElbowIsHeld) {
   const double way = ElbowWay(0);
-  std::cout << "joint 3 went by " << way << " rad\n";
+  std::cout << "joint 3 moved by " << way << " rad\n";
   EXPECT_LT(way, 0.1);
 }
 
@@ -144,9 +145,9 @@ TEST_F(GuidingTest, GuidingTooFastIsAReflex) {
             1);
 }
 
-// An arm whose joint 4 is 5 mrad past its end: guided farther out, it stops again; guided in, it recovers.
+// An arm whose joint 4 is 5 mrad past its end: guided further out it stops again, guided inwards it recovers.
 struct OutOfRangeGuidingTest : GuidingTest {
-  // Pulled by `force_B` until the robot lets go or so many steps are over.
+  // Pulls by `force_B` until the robot leaves guiding, for at most `steps`.
   void Pull(const Eigen::Vector3d& force_B, int steps) {
     robot().PressGuiding(true);
     robot().PullHand(force_B);

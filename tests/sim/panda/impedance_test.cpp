@@ -1,5 +1,4 @@
-// The robot's own controllers give way as stiffly as they were told to: a pull at the hand, and how far it
-// goes.
+// The robot's own controllers yield according to the set stiffness: displacement of the hand under a pull.
 #include <iostream>
 #include <numbers>
 
@@ -15,7 +14,7 @@ using franka::SetterStatus;
 
 class ImpedanceTest : public FciRobotTest {
  protected:
-  // How far 10 N along y of B take the hand that holds where the motion began [m].
+  // The displacement of the hand under 10 N along B's y, while it holds the start pose [m].
   double BentBy10N() {
     robot().PullHand({0.0, 10.0, 0.0});
     Run(1500, [](int, franka::RobotCommand&) {});
@@ -53,7 +52,7 @@ TEST_F(ImpedanceTest, QuarterJointStiffnessBendsFourTimesAsFar) {
   EXPECT_NEAR(soft / stiff, 4.0, 0.4);
 }
 
-// The same stiffness in all directions, since they are those of K. What the hand turns by comes on top.
+// The stiffness is along K's axes and equal in all directions. The hand's rotation adds to the displacement.
 TEST_F(ImpedanceTest, HandYieldsByForceOverCartesianStiffness) {
   SetCollisionsFrom(80.0, 80.0);
   const double stiff = BentWithCartesianStiffness(2000.0);
@@ -84,7 +83,7 @@ TEST_F(ImpedanceTest, FilterLagsTheReferenceByItsTimeConstant) {
   };
   const double quick = lag(1000.0);
   const double slow = lag(10.0);
-  constexpr double kFastest = 0.1 * 35.0 / 16.0 / 0.6;  // of the fade [rad/s]
+  constexpr double kFastest = 0.1 * 35.0 / 16.0 / 0.6;  // largest speed of the fade [rad/s]
   std::cout << "behind by " << quick << " rad at 1000 Hz, " << slow << " rad at 10 Hz\n";
   EXPECT_LT(quick, 1e-3);
   EXPECT_NEAR(slow, kFastest / (20.0 * std::numbers::pi), 1.5e-3);

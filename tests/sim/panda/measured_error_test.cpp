@@ -1,4 +1,4 @@
-// Every error that comes of what the arm does, behind the interface and without a network.
+// Every error caused by the arm's measured behaviour, at the robot's interface without a network.
 #include "tests/sim/panda/robot_fixture.hpp"
 
 namespace fovea::test {
@@ -25,7 +25,7 @@ TEST_F(FciRobotTest, TorqueMotionPastAJointRangeNeedsManualRecovery) {
 
 TEST_F(FciRobotTest, TooFastHandIsAReflex) {
   Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
-  // Joints 1 and 7 turn the hand together, each of them slowly enough.
+  // Joints 1 and 7 turn the hand together, each within its own limit.
   RunUntilItStops(2000, [&](int k) {
     franka::Vector7 goal = begin_.q;
     const double turn = 3e-6 * k * k;  // an acceleration of 6 rad/s^2
@@ -55,7 +55,7 @@ TEST_F(FciRobotTest, PullAboveOnlyTheCartesianThresholdIsACartesianReflex) {
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);
   robot().PullHand({0.0, 0.0, -30.0});
   RunUntilItStops(1000, [&](int) { return Still(); });
-  EXPECT_EQ(state().cartesian_collision[2], 1.0) << "the hand hangs head down: K's z is B's, reversed";
+  EXPECT_EQ(state().cartesian_collision[2], 1.0) << "the hand points down: K's z is opposite to B's";
   ExpectReflex(Error::kCartesianReflex);
 }
 
@@ -78,7 +78,7 @@ TEST_F(FciRobotTest, TorqueAboveTheJointRangeIsAReflex) {
   SetCollisionsFrom(1e3, 1e3);
   Move(MoveController::kJointImpedance, MoveGenerator::kJointVelocity);
   RunUntilItStops(3000, [&](int k) {
-    robot().PullHand({0.0, 0.0, -0.1 * k});  // harder and harder
+    robot().PullHand({0.0, 0.0, -0.1 * k});  // an increasing pull
     return Still();
   });
   ExpectReflex(Error::kTauJRange);
@@ -88,8 +88,7 @@ TEST_F(FciRobotTest, UnstableControlLoopIsAReflex) {
   Move(MoveController::kExternal, MoveGenerator::kJointVelocity);
   RunUntilItStops(3000, [&](int k) {
     RobotCommand c = Towards(begin_.q);
-    // A spring without a damper, so stiff that a millisecond's delay feeds it; a motor that gives up at 1.5
-    // Nm.
+    // An undamped spring, so stiff that a delay of 1 ms makes it unstable; the torque saturates at 1.5 Nm.
     const double goal = begin_.q[6] + (k > 10 ? 0.002 : 0.0);
     const double wish = std::clamp(600.0 * (goal - state().q[6]), -1.5, 1.5);
     c.tau_J_d[6] = state().tau_J_d[6] + std::clamp(wish - state().tau_J_d[6], -1.0, 1.0);
@@ -115,7 +114,7 @@ TEST_F(FciRobotTest, StopsBeforeItMeetsItself) {
   const double gap = sim::SelfDistance(config.robot).Least(chain.LinkPoses(sim::ToVector(state().q)));
   std::cout << "stands with a gap of " << 1e3 * gap << " mm\n";
   EXPECT_GT(gap, 0.0);
-  // Away from it all is allowed.
+  // A motion away from the collision is allowed.
   EXPECT_EQ(robot().Recover(), RecoveryStatus::kSuccess);
   Move(MoveController::kJointImpedance, MoveGenerator::kJointPosition);
   Run(2000, [&](int k, RobotCommand& c) { c.q_c[3] += 0.5 * Fade(k, 2000); });
@@ -144,7 +143,7 @@ TEST_F(VirtualWallTest, RobotStopsAtAWall) {
   });
   EXPECT_NEAR(state().O_T_EE[13], 0.05, 1e-3);
   ExpectReflex(Error::kCartesianPositionLimits);
-  // It stands inside: a person has to guide it out.
+  // The hand is inside the wall: a person must guide it out.
   EXPECT_EQ(robot().Recover(), RecoveryStatus::kManualRecoveryRequired);
   robot().PressGuiding(true);
   robot().PullHand({0.0, -15.0, 0.0});

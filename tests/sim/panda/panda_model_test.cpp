@@ -1,4 +1,4 @@
-// The model library's C functions against the model from the URDF.
+// The model library's C functions compared with the model from the URDF.
 #include "sim/model_library/panda_model.hpp"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST_F(PandaModel, DynamicsMatchTheUrdfWithItsLoad) {
     }
   }
   std::cout << "largest difference " << worst << " Nm\n";
-  EXPECT_EQ(worst, 0.0) << "it is the same model, to the last bit";
+  EXPECT_EQ(worst, 0.0) << "both must be bit-identical";
 }
 
 TEST_F(PandaModel, PosesMatchTheUrdf) {
@@ -82,7 +82,7 @@ TEST_F(PandaModel, PosesMatchTheUrdf) {
   }
 }
 
-// The Jacobian of the end effector against differences of its pose, and in its own axes.
+// The Jacobian of the end effector against pose differences, and in its own axes.
 TEST_F(PandaModel, JacobiansMatchFiniteDifferencesOfPoses) {
   const Vector7 q = Random();
   Matrix4 tool = Matrix4::Identity();

@@ -1,4 +1,4 @@
-// Every error that a command provokes, behind the interface and without a network.
+// Every error caused by a command, at the robot's interface without a network.
 #include "tests/sim/panda/robot_fixture.hpp"
 
 namespace fovea::test {
@@ -11,7 +11,7 @@ using franka::MoveStatus;
 using franka::RobotCommand;
 using franka::RobotMode;
 
-// What each class of bad command leads to.
+// A class of bad commands and its error.
 struct Refused {
   const char* what;
   MoveController controller;
@@ -36,7 +36,7 @@ TEST_P(RefusedCommand, RaisesTheReflexOfItsKind) {
   for (int k = 0; k < 300; ++k) {
     robot().Step(std::nullopt);
   }
-  EXPECT_LT(Off(state().dq, {}), 1e-2) << "it stands";
+  EXPECT_LT(Off(state().dq, {}), 1e-2) << "the arm is at rest";
   EXPECT_EQ(robot().Recover(), franka::RecoveryStatus::kSuccess);
   EXPECT_EQ(state().robot_mode, RobotMode::kIdle);
   EXPECT_EQ(state().errors, franka::ErrorFlags{});
@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"twist_too_fast_for_a_joint", kJoint, MoveGenerator::kCartesianVelocity,
                 [turned = 0.0](int k, RobotCommand& c) mutable {
                   c.valid_elbow = 1;
-                  const double w = 2.3 * FciRobotTest::Fade(k, 800);  // about the base's own axis
+                  const double w = 2.3 * FciRobotTest::Fade(k, 800);  // about the base's z axis
                   turned += 1e-3 * w;
                   const double radius = std::hypot(c.O_T_EE_c[12], c.O_T_EE_c[13]);
                   c.O_dP_EE_c = {-w * radius * std::sin(turned), w * radius * std::cos(turned), 0, 0, 0, w};

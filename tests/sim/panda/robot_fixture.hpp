@@ -1,4 +1,4 @@
-// The robot behind its interface, without a network, for tests that step it by the millisecond.
+// The robot behind its interface, without a network, for tests that step it by 1 ms.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace fovea::test {
 
-// The largest difference.
+// The largest difference of an entry.
 inline double Off(const franka::Vector7& a, const franka::Vector7& b) {
   double most = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -46,7 +46,7 @@ class FciRobotTest : public testing::Test {
     c.message_id = state().message_id;
     c.q_c = begin_.q_d;
     c.O_T_EE_c = begin_.O_T_EE_d;
-    c.elbow_c = begin_.elbow_d;  // of account with valid_elbow alone
+    c.elbow_c = begin_.elbow_d;  // used only with valid_elbow
     c.tau_J_d = state().tau_J_d;
     return c;
   }
@@ -67,7 +67,7 @@ class FciRobotTest : public testing::Test {
     EXPECT_EQ(state().robot_mode, franka::RobotMode::kIdle);
   }
   std::string Reason() { return franka::FirstError(state().reflex_reason); }
-  // How far a motion of `steps` by `command` ends from what it wants; runs it, then 300 ms of hold.
+  // Runs a motion of `steps` by `command`, then holds its end for 300 ms.
   void Run(int steps, const std::function<void(int, franka::RobotCommand&)>& command) {
     for (int k = 1; k <= steps + 300; ++k) {
       franka::RobotCommand c = Still();
@@ -88,7 +88,7 @@ class FciRobotTest : public testing::Test {
     }
     return c;
   }
-  // Steps by `command` until the motion ends, at most so often.
+  // Steps with `command` until the motion ends, at most `steps` times.
   void RunUntilItStops(int steps, const std::function<franka::RobotCommand(int)>& command) {
     for (int k = 1; k <= steps && robot().moving(); ++k) {
       robot().Step(command(k));
@@ -99,7 +99,7 @@ class FciRobotTest : public testing::Test {
       robot().Step(std::nullopt);
     }
   }
-  // Collisions are felt from these torques and forces on, and contacts from the usual ones.
+  // Sets the torque and force above which collisions are detected; contacts keep the default thresholds.
   void SetCollisionsFrom(double torque, double force) {
     franka::CollisionBehavior behavior;
     for (franka::Vector7* most : {&behavior.upper_torque_acceleration, &behavior.upper_torque_nominal}) {
@@ -111,21 +111,21 @@ class FciRobotTest : public testing::Test {
     ASSERT_EQ(robot().Set(franka::Command::kSetCollisionBehavior, franka::Bytes(behavior)),
               franka::SetterStatus::kSuccess);
   }
-  // A reflex for this reason, and this alone.
+  // Checks for a reflex with this error only, after which the arm comes to rest.
   void ExpectReflex(franka::Error error) {
     EXPECT_EQ(state().robot_mode, franka::RobotMode::kReflex);
     EXPECT_EQ(Reason(), franka::Name(error));
     EXPECT_EQ(state().errors, OnlyFlag(error));
     EXPECT_EQ(robot().TakeMoveEnd(), franka::MoveStatus::kReflexAborted);
     Wait(500);
-    EXPECT_LT(Off(state().dq, {}), 1e-2) << "it stands";
+    EXPECT_LT(Off(state().dq, {}), 1e-2) << "the arm is at rest";
   }
   static franka::ErrorFlags OnlyFlag(franka::Error error) {
     franka::ErrorFlags flags{};
     flags[static_cast<std::size_t>(error)] = 1;
     return flags;
   }
-  // How far the end effector is from where the motion began [m].
+  // The displacement of the end effector since the start of the motion [m].
   franka::Vector3 Way() {
     return {state().O_T_EE[12] - begin_.O_T_EE[12], state().O_T_EE[13] - begin_.O_T_EE[13],
             state().O_T_EE[14] - begin_.O_T_EE[14]};

@@ -1,4 +1,4 @@
-// The robot behind its interface, without a network: every way to move it, every way in which it refuses.
+// The robot behind its interface, without a network: every motion generator and every refusal.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -128,7 +128,7 @@ TEST_F(FciRobotTest, TorqueMovesItsJointForward) {
   for (int k = 0; k < 500; ++k) {
     robot().Step(std::nullopt);
   }
-  EXPECT_LT(Off(state().dq, {}), 5e-3) << "afterwards it comes to rest by itself";
+  EXPECT_LT(Off(state().dq, {}), 5e-3) << "afterwards the robot comes to rest by itself";
 }
 
 TEST_F(FciRobotTest, NineteenLostCommandsAreBridgedAndTwentyStopTheMotion) {
@@ -204,7 +204,7 @@ TEST_F(FciRobotTest, MoveRefusesInvalidAndSecondRequests) {
   request.max_path_deviation[0] = -1.0;
   EXPECT_EQ(robot().Move(request), MoveStatus::kInvalidArgument);
   EXPECT_EQ(robot().Move({}), MoveStatus::kMotionStarted);
-  EXPECT_EQ(robot().Move({}), MoveStatus::kNotPossible) << "one at a time";
+  EXPECT_EQ(robot().Move({}), MoveStatus::kNotPossible) << "one motion at a time";
 }
 
 TEST_F(FciRobotTest, DeviationFromThePathIsAReflex) {

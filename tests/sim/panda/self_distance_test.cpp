@@ -1,4 +1,4 @@
-// The gap between an arm's links, against what can be worked out by hand.
+// The distance between an arm's links, compared with hand computations.
 #include "sim/panda/self_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ sim::SimLink Link(int parent, int dof, double half_length, double radius) {
   return link;
 }
 
-// Base and third link; the two between have no shape.
+// Base and third link; the two links between have no shape.
 sim::SimRobot Two(const sim::SimLink& base, const sim::SimLink& third) {
   sim::SimRobot robot;
   sim::SimLink between = Link(0, 0, 0.0, 0.0);
@@ -63,7 +63,7 @@ TEST(SelfDistance, CapsuleOfZeroLengthIsASphere) {
 
 TEST(SelfDistance, NeighbouringLinksAreIgnored) {
   sim::SimRobot robot = Two(Link(-1, -1, 0.5, 0.1), Link(2, 2, 0.3, 0.05));
-  robot.links[3].parent = 1;  // one link less between
+  robot.links[3].parent = 1;  // one link less in between
   EXPECT_TRUE(std::isinf(Least(robot, Eigen::Isometry3d::Identity())));
 }
 

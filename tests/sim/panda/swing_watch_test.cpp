@@ -1,4 +1,4 @@
-// Which to and fro of a joint is called unstable, and which is a motion.
+// Which oscillation of a joint counts as unstable, and which is a normal motion.
 #include "sim/panda/swing_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 namespace fovea::sim {
 namespace {
 
-// When, in two seconds, a joint's speed of this amplitude [rad/s] and frequency is called unstable [ms]; -1:
-// never.
+// The time at which a joint speed of this amplitude [rad/s] and
+// frequency is called unstable [ms]; -1: not within two seconds.
 int UnstableAfter(double amplitude, double frequency_hz, double noise = 0.0) {
   SwingWatch watch;
   std::mt19937_64 random(5);
@@ -37,7 +37,7 @@ TEST(SwingWatch, FastAndWideSwingsAreUnstable) {
 }
 
 TEST(SwingWatch, SlowOrSmallSwingsAreNotUnstable) {
-  EXPECT_EQ(UnstableAfter(2.0, 5.0, 5e-4), -1) << "a motion to and fro";
+  EXPECT_EQ(UnstableAfter(2.0, 5.0, 5e-4), -1) << "a slow motion back and forth";
   EXPECT_EQ(UnstableAfter(0.1, 25.0, 5e-4), -1);
   EXPECT_EQ(UnstableAfter(0.0, 1.0, 0.02), -1) << "noise";
 }

@@ -1,4 +1,4 @@
-// The client and the served robot together, against the contract of every arm.
+// The client and the served robot together, tested against the contract of arms.
 #include "tests/contract/arm_contract.hpp"
 #include "tests/sim/panda/wire_panda.hpp"
 
@@ -11,7 +11,7 @@ struct WireArmFixture {
   franka::FrankaArm driver{served.ClientConfig(), &clock};
   WireArmFixture() { StartMotion(driver); }
   hal::Arm& arm() { return driver; }
-  // The robot's time passes by its states.
+  // The robot's time advances with its states.
   void Advance() {
     hal::ArmState ignored;
     ASSERT_TRUE(driver.Read(ignored).ok()) << driver.failure();

@@ -1,4 +1,4 @@
-// A simulated Panda for the tests of its interface, alone and on the network.
+// A simulated Panda for the tests of its interface, without and with a network.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ struct PandaAlone {
   sim::FciRobot robot;
 };
 
-// A robot that is served, in a thread of its own, on a free port.
+// A served robot, in its own thread, on a free port.
 class ServedPanda {
  public:
   explicit ServedPanda(const sim::FciServerConfig& config, const sim::WorldConfig& world = WirePandaWorld())
@@ -47,7 +47,7 @@ class ServedPanda {
   ServedPanda(const ServedPanda&) = delete;
   ServedPanda& operator=(const ServedPanda&) = delete;
 
-  // Afterwards counters and robot may be looked at.
+  // After this call, counters and robot may be read.
   void Stop() {
     stop_ = true;
     if (thread_.joinable()) {
@@ -85,7 +85,7 @@ inline sim::FciServerConfig Lockstep() {
   return config;
 }
 
-// Reads and writes zero torque until a motion is under way.
+// Reads states and writes zero torque until a motion runs.
 inline void StartMotion(franka::FrankaArm& arm) {
   hal::ArmState state;
   hal::ArmCommand command;

@@ -1,4 +1,4 @@
-// Client and server over loopback, in good weather and in bad, and the servo at one end.
+// Client and server over loopback, with and without network faults, and the servo at one end.
 #include <gmock/gmock.h>
 
 #include "firmware/core/task/servo_loop.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using hal::StatusCode;
 
-// A joint goal from half a second on.
+// Commands a joint goal after half a second.
 class GoSlowly final : public moves::MotionSource {
  public:
   explicit GoSlowly(const hal::JointArray& goal) : goal_(goal) {}
@@ -40,11 +40,11 @@ class Keeper final : public hal::Recorder {
     ticks.fetch_add(1, std::memory_order_relaxed);
   }
   hal::TickRecord last;
-  hal::Fault fault = hal::Fault::kNone;  // the first
+  hal::Fault fault = hal::Fault::kNone;  // the first fault
   std::atomic<int> ticks{0};
 };
 
-// The servo, with the robot on the wire as its arm.
+// The servo, with the robot on the network as its arm.
 struct ServoOnWire {
   explicit ServoOnWire(const ServedPanda& served, std::int64_t state_timeout_ns = 3 * hal::kNsPerSecond)
       : arm(Client(served, state_timeout_ns), &clock) {
@@ -61,7 +61,7 @@ struct ServoOnWire {
     config.state_timeout_ns = state_timeout_ns;
     return config;
   }
-  // Runs until the robot's time has gone on by `duration_s`.
+  // Runs for `duration_s` of the robot's time.
   hal::Status Run(double duration_s, moves::MotionSource& motion) {
     task::ServoLoop loop(task, arm, clock, features, recorder, meter);
     loop.UseMotion(motion);
@@ -96,12 +96,12 @@ TEST(ServoOnTheWire, HoldsAndMovesThePandaInLockstep) {
   }
   std::cout << "off its goal by " << off << " rad; " << servo.counters.ticks << " ticks, "
             << servo.arm.counters().commands << " commands, " << servo.arm.counters().rate_limited
-            << " held back by the torque rate\n";
-  EXPECT_LT(off, 3e-3) << "what friction leaves";
+            << " limited by the torque rate\n";
+  EXPECT_LT(off, 3e-3) << "the error that friction leaves";
   EXPECT_EQ(servo.recorder.last.fault, hal::Fault::kNone);
   EXPECT_EQ(servo.counters.arm_read_errors, 0U);
   EXPECT_LE(servo.counters.missed_ticks, servo.arm.counters().skipped_states)
-      << "before the motion, on a busy machine";
+      << "missed before the motion, on a busy machine";
   EXPECT_EQ(servo.arm.counters().lost_states, 0U);
   EXPECT_EQ(servo.arm.counters().rate_limited, 0U);
   EXPECT_EQ(servo.arm.robot_state().control_command_success_rate, 1.0);
@@ -112,7 +112,7 @@ TEST(ServoOnTheWire, HoldsAndMovesThePandaInLockstep) {
   servo.arm.Stop();
   served.Stop();
   EXPECT_EQ(served.server().counters().missing, 0U);
-  EXPECT_EQ(served.panda().robot.state().robot_mode, franka::RobotMode::kIdle) << "an orderly stop";
+  EXPECT_EQ(served.panda().robot.state().robot_mode, franka::RobotMode::kIdle) << "stopped in order";
 }
 
 TEST(ServoOnTheWire, ReachesItsGoalOverABadNetwork) {
@@ -144,7 +144,7 @@ TEST(ServoOnTheWire, ReachesItsGoalOverABadNetwork) {
 TEST(FciWire, UncommandedRobotStopsAndRecoversOnRequest) {
   ServedPanda served(Lockstep());
   franka::FrankaConfig config = served.ClientConfig();
-  config.state_timeout_ns = 20 * hal::kNsPerMs;  // some states will not come
+  config.state_timeout_ns = 20 * hal::kNsPerMs;  // some states will be lost
   franka::RobotClock clock;
   franka::FrankaArm arm(config, &clock);
   StartMotion(arm);
@@ -155,19 +155,19 @@ TEST(FciWire, UncommandedRobotStopsAndRecoversOnRequest) {
     ASSERT_TRUE(arm.Read(state).ok());
     ASSERT_TRUE(arm.Write(command).ok());
   }
-  // The wire is cut from here to the robot.
+  // All packets are lost from here on.
   served.server().SetLoss(1.0);
   hal::Status status = hal::Status::Ok();
   for (int k = 0; k < 400 && status.code() != StatusCode::kDeviceFault; ++k) {
     status = arm.Read(state);
     static_cast<void>(arm.Write(command));
-    if (k == 5) {  // 100 ms: the robot has stopped, and can say so
+    if (k == 5) {  // after 100 ms the robot has stopped, and can report it
       served.server().SetLoss(0.0);
     }
   }
   EXPECT_EQ(status.code(), StatusCode::kDeviceFault);
   EXPECT_STREQ(status.where(), "communication_constraints_violation");
-  command.engage_brakes = true;  // it is known that the motion is over
+  command.engage_brakes = true;  // the client knows that the motion has ended
   static_cast<void>(arm.Write(command));
   command.engage_brakes = false;
   arm.AskRecovery();
@@ -181,7 +181,7 @@ TEST(FciWire, UncommandedRobotStopsAndRecoversOnRequest) {
   }
 }
 
-// States that come, and are always the same one: the number stands still, and so does all else.
+// A hung robot repeats one state: the number and all values stay the same.
 TEST(ServoOnTheWire, HungRobotRaisesArmLostAndClosesTheBrakes) {
   ServedPanda served(Lockstep());
   ServoOnWire servo(served, 20 * hal::kNsPerMs);
@@ -194,14 +194,14 @@ TEST(ServoOnTheWire, HungRobotRaisesArmLostAndClosesTheBrakes) {
     };
     wait_for(1000);
     served.server().Hang(true);
-    wait_for(servo.recorder.ticks + 40);  // without a state, and of those from before
+    wait_for(servo.recorder.ticks + 40);  // with and without states from before
     served.server().Hang(false);
   });
   ASSERT_TRUE(servo.Run(3.0, motion).ok());
   plug.join();
   const franka::FrankaCounters& c = servo.arm.counters();
-  std::cout << c.duplicate_states << " states came again, " << c.timeouts
-            << " waits for a new one were in vain; " << hal::Name(servo.recorder.fault) << '\n';
+  std::cout << c.duplicate_states << " states were repeated, " << c.timeouts
+            << " waits for a new state timed out; " << hal::Name(servo.recorder.fault) << '\n';
   EXPECT_GT(c.duplicate_states, 100U);
   EXPECT_GE(c.timeouts, 20U) << "safety.arm_lost_ticks";
   EXPECT_EQ(servo.recorder.fault, hal::Fault::kArmLost);
@@ -210,7 +210,7 @@ TEST(ServoOnTheWire, HungRobotRaisesArmLostAndClosesTheBrakes) {
   served.Stop();
   EXPECT_EQ(served.panda().robot.state().robot_mode, franka::RobotMode::kIdle);
   EXPECT_EQ(franka::FirstError(served.panda().robot.state().reflex_reason), std::string("none"))
-      << "once it went on, the motion ended in order";
+      << "after the hang the motion ended in order";
 }
 
 TEST(FciWire, StopButtonIsReportedAsAUserStop) {
@@ -236,7 +236,7 @@ TEST(FciWire, SecondClientIsRefusedAndTheFirstGoesOn) {
   std::thread second([&] {
     try {
       const franka::FrankaArm arm(served.ClientConfig());
-      ADD_FAILURE() << "two in control";
+      ADD_FAILURE() << "two clients in control";
     } catch (const franka::NetworkError& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("is another client in control?"));
     }
@@ -262,12 +262,12 @@ TEST(FciWire, VanishedClientLeavesTheRobotHolding) {
   StartMotion(next);
 }
 
-// Bytes that are no client's do not disturb the robot.
+// Garbage bytes do not disturb the robot.
 TEST(FciWire, ConnectionSendingGarbageIsClosed) {
   ServedPanda served(Lockstep());
   const franka::Endpoint at{0x7F000001, served.port()};
   const std::vector<std::vector<std::byte>> kinds{
-      std::vector<std::byte>(200, std::byte{0xFF}),                           // no message
+      std::vector<std::byte>(200, std::byte{0xFF}),                           // not a message
       std::vector<std::byte>(5, std::byte{0}),                                // half a header, then silence
       {std::byte{1}, {}, {}, {}, {}, {}, {}, {}, std::byte{12}, {}, {}, {}},  // Move before Connect, too
                                                                               // short
@@ -299,7 +299,7 @@ TEST(FciWire, RealPaceSendsAThousandStatesPerSecond) {
             << ", skipped " << arm.counters().skipped_states << '\n';
   EXPECT_EQ(arm.counters().states - before.states + arm.counters().lost_states - before.lost_states,
             state.sequence - first);
-  EXPECT_GT(wall_s, 0.95) << "not faster than its clock";
+  EXPECT_GT(wall_s, 0.95) << "not faster than real time";
 }
 
 }  // namespace

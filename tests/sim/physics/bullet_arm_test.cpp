@@ -1,4 +1,4 @@
-// Bullet's forward dynamics against our own inverse dynamics, and the conservation of energy.
+// Bullet's forward dynamics compared with our inverse dynamics, and conservation of energy.
 #include "sim/physics/bullet_arm.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ class BulletArmTest : public testing::TestWithParam<const char*> {
   test::RandomStates random_{3};
 };
 
-// tau = ID(q, dq, ddq) put into Bullet must give back ddq.
+// Bullet must return ddq for tau = ID(q, dq, ddq).
 TEST_P(BulletArmTest, ForwardDynamicsInvertsOurInverseDynamics) {
   const model::ArmModel& arm = robot_.model;
   BulletArm bullet(sim_robot_, {.table = false});
@@ -59,7 +59,7 @@ TEST_P(BulletArmTest, ForwardDynamicsInvertsOurInverseDynamics) {
   EXPECT_LT(worst_gravity, 1e-10);
 }
 
-// A camera that shows where the arm was a millisecond ago lies by a fifth of a millimetre at 0.2 m/s.
+// At 0.2 m/s a link pose that is 1 ms old would be off by 0.2 mm.
 TEST_P(BulletArmTest, LinkPosesMatchTheJointsAfterEachStep) {
   const model::ArmModel& arm = robot_.model;
   BulletArm bullet(sim_robot_, {.table = false});
@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(Arms, BulletArmTest,
                          testing::Values("/panda.toml", "/ur5e.toml", "/puma560.toml",
                                          "/../../../../tests/core/model/mixed_arm.urdf"));
 
-// A free swing without gravity: the energy must stay. The figures say which integrator to take.
+// A free swing without gravity must keep its energy. The figures show which integrator to use.
 TEST(BulletArmEnergyTest, FreeSwingKeepsItsEnergy) {
   const std::string panda = test::RobotsFolder() + "/panda.urdf";
   const SimRobot robot = LoadSimRobot(panda, "panda_base", "panda_flange");

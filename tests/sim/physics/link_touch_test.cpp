@@ -1,4 +1,4 @@
-// Where links would touch each other or the target, though physics lets them pass.
+// Contacts of links with each other and with the target, which physics lets pass.
 #include "sim/physics/link_touch.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ class LinkTouchTest : public testing::Test {
   BulletArm arm_;
 };
 
-// Of capsules it must say what their distance says.
+// For capsules the result must agree with their distance.
 TEST_F(LinkTouchTest, LinksOverlapWhereTheirCapsulesDo) {
   LinkTouch touch(robot_, std::nullopt);
   const SelfDistance distance(robot_);
@@ -56,12 +56,12 @@ TEST_F(LinkTouchTest, LinksOverlapWhereTheirCapsulesDo) {
     }
     touch.Place(X_BL, Eigen::Isometry3d::Identity());
     EXPECT_EQ(touch.Self(), gap < 0.0) << gap << " m";
-    EXPECT_FALSE(touch.Target()) << "there is none";
+    EXPECT_FALSE(touch.Target()) << "there is no target";
     touching += gap < 0.0 ? 1 : 0;
     near += gap >= 0.0 && gap < 0.05 ? 1 : 0;
   }
-  std::cout << touching << " of 3000 random postures stand in themselves, " << near
-            << " by less than 50 mm not\n";
+  std::cout << touching << " of 3000 random postures collide with themselves, " << near
+            << " have a gap below 50 mm\n";
   EXPECT_GT(touching, 30);
   EXPECT_GT(near, 30);
 }
@@ -70,7 +70,7 @@ TEST_F(LinkTouchTest, AnyLinkCanTouchTheTarget) {
   constexpr double kRadius = 0.04;
   LinkTouch touch(robot_, Ball(kRadius));
   const std::vector<Eigen::Isometry3d> X_BL = Poses(test::Ready());
-  // Beside the forearm's capsule: from its middle out along its own x.
+  // Beside the forearm's capsule: from its centre outwards along its own x.
   std::size_t forearm = 0;
   for (std::size_t k = 0; k < robot_.links.size(); ++k) {
     forearm = robot_.links[k].name == "panda_link5" ? k : forearm;
@@ -106,7 +106,7 @@ TEST_F(LinkTouchTest, PrintsItsCostBesideAStepOfPhysics) {
     any = touch.Self() || touch.Target() || any;
   });
   const double step = us([&] { arm_.Step(Eigen::VectorXd::Zero(7), 1e-3); });
-  std::cout << "looking takes " << looking << " us, a step of physics " << step << " us\n";
+  std::cout << "the contact check takes " << looking << " us, a step of physics " << step << " us\n";
 }
 
 }  // namespace

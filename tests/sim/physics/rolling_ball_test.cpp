@@ -1,4 +1,4 @@
-// The pushed ball against the closed form of a ball that slides, rolls and stops.
+// The pushed ball compared with the closed form of a ball that slides, rolls and stops.
 #include "sim/physics/rolling_ball.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(RollingBall, LiesStillUntilItIsPushed) {
   EXPECT_LT(off, 1e-5);
 }
 
-// P / m at first; mu g until it rolls with 5/7 of that; then 5/7 c g / R, and at rest for good.
+// Speed P / m at first; slows by mu g until it rolls at 5/7 of that; then by 5/7 c g / R until it rests.
 TEST(RollingBall, SlideRollAndStopMatchTheClosedForm) {
   const RollingBallConfig config = OnTheTable();
   RollingBall ball(config);
@@ -38,7 +38,7 @@ TEST(RollingBall, SlideRollAndStopMatchTheClosedForm) {
   const double v0 = 0.3;
   ball.Push({0.0, -config.mass * v0, 0.0});
   EXPECT_NEAR(ball.v_BO().y(), -v0, 1e-6);
-  // Sliding: v falls by mu g, the speed of its skin rises by 5/2 (mu - c / R) g, until they meet.
+  // Sliding: v falls by mu g, and the surface speed rises by 5/2 (mu - c / R) g, until they are equal.
   const double share = config.rolling_resistance / config.radius;
   const double slides_s = v0 / (kGravity * (config.friction + 2.5 * (config.friction - share)));
   const double slows_by_form = 5.0 / 7.0 * share * kGravity;
@@ -49,7 +49,7 @@ TEST(RollingBall, SlideRollAndStopMatchTheClosedForm) {
   const double rolls = -ball.v_BO().y();
   const double rolls_by_form =
       v0 - config.friction * kGravity * slides_s - slows_by_form * (steps * kDt - slides_s);
-  std::cout << "rolls with " << rolls << " m/s, closed form " << rolls_by_form << "\n";
+  std::cout << "rolls at " << rolls << " m/s, closed form " << rolls_by_form << "\n";
   EXPECT_NEAR(rolls, rolls_by_form, 1e-4);
   for (int i = 0; i < 500; ++i) {
     ball.Step(kDt);

@@ -1,5 +1,5 @@
-// Flat targets as they are drawn, against plain geometry: how much of each pixel a plate covers is known from
-// two pictures of it in two colours, and its area and middle from that.
+// Rendered flat targets compared with their projection. Two pictures in two colours give each pixel's
+// coverage, and from it the target's area and centre.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -30,7 +30,7 @@ class RenderPlateTest : public ::testing::Test {
     for (int i = 0; i < static_cast<int>(scene_.robot.links.size()); ++i) {
       exposure_.X_BL.push_back(arm.LinkPose(i));
     }
-    scene_.X_EC.translation() = Eigen::Vector3d(0.05, 0.0, 0.04);  // where the hand is not in its way
+    scene_.X_EC.translation() = Eigen::Vector3d(0.05, 0.0, 0.04);  // where the hand does not occlude the view
     exposure_.X_BC = arm.LinkPose(scene_.robot.tip) * scene_.X_EC;
   }
 
@@ -41,7 +41,7 @@ class RenderPlateTest : public ::testing::Test {
     return renderer;
   }
 
-  // The target at `X_CO`.
+  // Draws the target at `X_CO`.
   cv::Mat Draw(SceneRenderer& renderer, const Eigen::Isometry3d& X_CO) {
     const Eigen::Isometry3d X_BO = exposure_.X_BC * X_CO;
     exposure_.p_BO = X_BO.translation();
@@ -52,7 +52,7 @@ class RenderPlateTest : public ::testing::Test {
     return rgba;
   }
 
-  // What is covered, from the difference of a dark and a bright plate.
+  // Covered area and centre, from the difference of a dark and a bright plate.
   Blob Covered(const Eigen::Isometry3d& X_CO) {
     const cv::Mat dark = Draw(*dark_, X_CO);
     const cv::Mat bright = Draw(*bright_, X_CO);
@@ -66,7 +66,7 @@ class RenderPlateTest : public ::testing::Test {
       return sum;
     };
     const double full = difference(middle_v, middle_u);
-    EXPECT_GT(full, 100.0) << "the plate is lit, and before what is behind it";
+    EXPECT_GT(full, 100.0) << "the plate is lit and not occluded";
     Blob blob;
     for (int v = 0; v < pinhole_.height_px; ++v) {
       for (int u = 0; u < pinhole_.width_px; ++u) {
@@ -79,7 +79,7 @@ class RenderPlateTest : public ::testing::Test {
     return blob;
   }
 
-  // The same of the polygon through the outline's points, by the shoelace formula.
+  // Area and centre of the projected outline, by the shoelace formula.
   Blob Expected(const Eigen::Isometry3d& X_CO) const {
     std::vector<Eigen::Vector2d> outline;
     const auto add = [&](const Eigen::Vector2d& xy) {
@@ -119,7 +119,7 @@ class RenderPlateTest : public ::testing::Test {
       const Blob expected = Expected(X_CO);
       const double off_px = (seen.middle_px - expected.middle_px).norm();
       const double area = seen.area_px / expected.area_px - 1.0;
-      std::cout << name << ": middle off by " << off_px << " px, area by " << 100.0 * area << " %\n";
+      std::cout << name << ": centre off by " << off_px << " px, area by " << 100.0 * area << " %\n";
       EXPECT_LT(off_px, 0.005);
       EXPECT_LT(std::fabs(area), 1e-4);
     }
@@ -150,7 +150,7 @@ TEST_F(RenderPlateTest, DiscCoversItsProjectedPixels) {
   Compare("disc");
 }
 
-// From behind nothing is painted.
+// The back of a plate is not painted.
 TEST_F(RenderPlateTest, PlateTurnedAwayIsInvisible) {
   scene_.target.kind = TargetShape::Kind::kDisc;
   Eigen::Isometry3d X_CO = Eigen::Isometry3d::Identity();

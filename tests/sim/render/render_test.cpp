@@ -1,4 +1,4 @@
-// The renderer against the truth: what the detector measures in a rendered picture is where the ball was put.
+// The renderer compared with the truth: in its pictures the detector finds the ball where it is.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -85,7 +85,7 @@ TEST_F(RenderTest, BallIsRenderedAtItsPosition) {
   const double rms_px = std::sqrt(centre2 / kCount);
   std::cout << "centre " << rms_px << " px rms, worst " << worst_px << " px; distance, worst "
             << 100 * worst_depth << " %; chi2/3 " << chi2 / kCount / 3 << "\n";
-  EXPECT_LT(chi2 / kCount / 3, 1.5) << "the covariance promises too much";
+  EXPECT_LT(chi2 / kCount / 3, 1.5) << "the covariance is too small";
   EXPECT_LT(rms_px, 0.035);
   EXPECT_LT(worst_px, 0.07);
   EXPECT_LT(worst_depth, 0.0005);
@@ -109,8 +109,8 @@ TEST_F(RenderTest, TwoRenderersDrawTheSameBytes) {
   EXPECT_EQ(cv::norm(a, b, cv::NORM_INF), 0.0);
 }
 
-// What is left out because a table hides it would not have been seen: from above the bench, from its edge and
-// from beside it, the same bytes.
+// Skipping geometry that the table hides gives the same bytes:
+// from above the bench, from its edge and from beside it.
 TEST_F(RenderTest, SkippingHiddenGeometryGivesTheSamePicture) {
   SceneRenderer renderer(scene_, pinhole_, {});
   SceneRenderer whole(scene_, pinhole_, {.skip_hidden = false}, 1);
@@ -135,12 +135,12 @@ TEST_F(RenderTest, SkippingHiddenGeometryGivesTheSamePicture) {
     whole.Release();
     EXPECT_EQ(cv::norm(drawn, expected, cv::NORM_INF), 0.0) << "picture " << i;
   }
-  std::cout << covered << " of " << kCount << " pictures show nothing beside the table\n";
+  std::cout << covered << " of " << kCount << " pictures are filled by the table\n";
   EXPECT_GE(covered, 5);
   EXPECT_LE(covered, kCount - 5);
 }
 
-// From h above a plane, straight down, the picture's corners meet it at h times their rays.
+// Looking straight down from height h, the picture's corners meet the plane at h times their rays.
 TEST(Cover, VisiblePartOfATableMatchesTheViewRays) {
   const Pinhole pinhole = MakePinhole(640, 480, 1.0471975511965976);
   TexturedPlane plane;

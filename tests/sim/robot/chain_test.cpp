@@ -1,4 +1,4 @@
-// The simulator's kinematics and dynamics against the servo's, which are other code from the same URDF.
+// The simulator's kinematics and dynamics compared with the servo's: independent code for the same URDF.
 #include "sim/robot/chain.hpp"
 
 #include <gtest/gtest.h>

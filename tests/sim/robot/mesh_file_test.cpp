@@ -1,4 +1,4 @@
-// Mesh files: a tetrahedron written in every format is read back where it was, with outward normals.
+// Mesh files: a tetrahedron written in each format is read back in place, with outward normals.
 #include "sim/robot/mesh_file.hpp"
 
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ const Vector3d kOne(1.0, 1.0, 1.0);
 const Vector3f kRed(0.8F, 0.1F, 0.2F);
 const Vector3f kGrey(0.7F, 0.7F, 0.7F);
 
-// Corners that no turn and no mirror maps onto each other; volume 0.1 * 0.2 * 0.3 / 6.
+// A tetrahedron without rotation or mirror symmetry; volume 0.1 * 0.2 * 0.3 / 6.
 Mesh Tetrahedron() {
   Mesh mesh;
   for (const Vector3f& p :
@@ -42,7 +42,7 @@ Mesh Tetrahedron() {
   return mesh;
 }
 
-// Above 0 when the triangles are seen counter-clockwise from outside.
+// Positive if the triangles are counter-clockwise seen from outside.
 double Volume(const Mesh& mesh) {
   double six = 0.0;
   for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
@@ -68,7 +68,7 @@ double WorstNormal(const Mesh& mesh) {
   return worst;
 }
 
-// The corner farthest along each axis, for comparison in any order of vertices.
+// The largest coordinate along each axis, independent of the order of vertices.
 Vector3f Reach(const Mesh& mesh, float sign) {
   Vector3f reach = Vector3f::Constant(-1e9F);
   for (const Vertex& v : mesh.vertices) {
@@ -133,7 +133,7 @@ TEST_F(MeshFileTest, ScaleStretchesAndMirrorsWithoutTurningTheSurfaceInsideOut) 
   }
 }
 
-// What ROS's viewers show: coordinates as they are written, lengths in the file's unit.
+// As in ROS's viewers: coordinates unchanged, lengths in the file's unit.
 TEST_F(MeshFileTest, ColladaUsesItsUnitAndIgnoresItsUpAxis) {
   for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
     const std::string axis = std::string("<up_axis>") + up + "</up_axis>";
@@ -142,7 +142,7 @@ TEST_F(MeshFileTest, ColladaUsesItsUnitAndIgnoresItsUpAxis) {
     test::WriteDae(File("a.dae"), Tetrahedron(), "<unit meter=\"0.01\" name=\"centimeter\"/>" + axis);
     ExpectTetrahedron(LoadMeshFile(File("a.dae"), kOne), 0.01 * size_, kRed, std::string(up) + " in cm");
   }
-  // A node that turns x to y, y to -x, and mirrors z.
+  // A node that rotates x to y and y to -x, and mirrors z.
   test::WriteDae(File("a.dae"), Tetrahedron(), "<up_axis>Z_UP</up_axis>",
                  "0 -1 0 0 1 0 0 0 0 0 -1 0 0 0 0 1");
   ExpectTetrahedron(LoadMeshFile(File("a.dae"), kOne), {-0.2, 0.1, -0.3}, kRed, "turned node");
@@ -150,7 +150,7 @@ TEST_F(MeshFileTest, ColladaUsesItsUnitAndIgnoresItsUpAxis) {
 
 TEST_F(MeshFileTest, NormalsComeFromTheFileOrKeepSharpEdges) {
   const Mesh ball = MakeSphere(0.1F, 24, kGrey);
-  // Against the ball itself, at the corners of all triangles but the poles' folded ones.
+  // Compared with the ball's own normals, at all triangles except the degenerate ones at the poles.
   const auto worst = [](const Mesh& mesh) {
     float off = 0.0F;
     for (std::size_t t = 0; t < mesh.indices.size(); t += 3) {
@@ -170,8 +170,8 @@ TEST_F(MeshFileTest, NormalsComeFromTheFileOrKeepSharpEdges) {
   const float own = worst(LoadMeshFile(File("own.obj"), kOne));
   const float made = worst(LoadMeshFile(File("made.obj"), kOne));
   const float flat = worst(LoadMeshFile(File("flat.stl"), kOne));
-  std::cout << "a ball's normals off by " << own << " as written, " << made << " as made, " << flat
-            << " as STL, which is flat\n";
+  std::cout << "a ball's normals off by " << own << " from the file, " << made << " if computed, " << flat
+            << " from STL, which has flat faces\n";
   EXPECT_LT(own, 1e-4F);
   EXPECT_LT(made, 0.06F);
   EXPECT_GT(flat, 0.1F);
@@ -183,7 +183,7 @@ TEST_F(MeshFileTest, ObjMaterialsColourTheirParts) {
   ExpectTetrahedron(LoadMeshFile(File("c.obj"), kOne), size_, {0.1F, 0.2F, 0.9F}, "OBJ with material");
 }
 
-// Of a stranger's, none are read from elsewhere, and no device from anywhere.
+// With an allowed folder, no materials are read from outside it. Device files are never read.
 TEST_F(MeshFileTest, ObjMaterialsAreReadOnlyFromTheAllowedFolder) {
   fs::create_directory(File("own"));
   std::ofstream(File("paint.mtl")) << "newmtl blue\nKd 0.1 0.2 0.9\n";
@@ -195,7 +195,7 @@ TEST_F(MeshFileTest, ObjMaterialsAreReadOnlyFromTheAllowedFolder) {
     bool confined;
     Vector3f colour;
   };
-  // What assimp gives to a material that it has the name of and nothing else.
+  // assimp's default colour for a material with only a name.
   const Vector3f unknown(0.6F, 0.6F, 0.6F);
   for (const Case& c : {Case{"paint.mtl", true, blue}, Case{"../own/paint.mtl", true, blue},
                         Case{"../paint.mtl", true, unknown}, Case{"linked.mtl", true, unknown},
@@ -239,7 +239,7 @@ TEST_F(MeshFileTest, UnusableFileIsRefusedWithTheReason) {
   EXPECT_THAT(Refusal(File("good.stl"), {1e300, 1.0, 1.0}), HasSubstr("not a finite number"));
 }
 
-// On such a list assimp's reader does not come back.
+// assimp's reader hangs on such a list.
 TEST_F(MeshFileTest, ColladaListWithNonNumbersIsRefused) {
   test::WriteDae(File("a.dae"), Tetrahedron(), "<up_axis>Z_UP</up_axis>");
   std::ostringstream good;
@@ -309,7 +309,7 @@ TEST_F(MeshFileTest, PackagesAreFoundAboveTheUrdfAndInTheEnvironment) {
   EXPECT_THAT(refusal(File("ws").string()), HasSubstr("no such file"));
 }
 
-// Fewer points, the same solid: all corners of a box, and of a ball nearly all it reaches.
+// The hull has fewer points: all corners of a box, and points that nearly reach a ball's surface.
 TEST(HullPointsTest, KeepsBoxCornersAndStaysCloseToABall) {
   const std::vector<Vector3d> box = HullPoints(MakeBox({0.2F, 0.3F, 0.4F}, 0.0F, kGrey));
   EXPECT_EQ(box.size(), 8U);
@@ -326,7 +326,7 @@ TEST(HullPointsTest, KeepsBoxCornersAndStaysCloseToABall) {
     }
     worst = std::max(worst, 1.0 - reach);
   }
-  std::cout << ball.size() << " points of a ball; short by " << 100.0 * worst << " % of its radius\n";
+  std::cout << ball.size() << " points of a ball; missing at most " << 100.0 * worst << " % of its radius\n";
   EXPECT_LT(worst, 0.01);
 }
 

@@ -1,5 +1,4 @@
-// A robot whose links are meshes: drawn as the same solids in URDF's own shapes, touching the table like
-// them.
+// A robot with mesh links: drawn like the same solids as URDF shapes, and touching the table like them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +31,7 @@ class MeshRobotTest : public testing::Test {
  protected:
   std::string Path(const std::string& name) const { return folder_.path() / name; }
 
-  // A slider that goes up and down with a link of `visual` and `collision` geometry, 0.3 m high.
+  // A vertical slider whose link has `visual` and `collision` geometry and is 0.3 m high.
   SimRobot Slider(const std::string& visual, const std::string& collision,
                   const std::string& material = kMaterial) {
     std::ofstream(Path("arm.urdf")) << R"(<robot name="slider"><link name="base"/>
@@ -53,7 +52,7 @@ class MeshRobotTest : public testing::Test {
     RenderScene scene;
     scene.bench = MakeBench(/*clutter=*/false);
     scene.robot = robot;
-    scene.X_EC.translation() = Eigen::Vector3d(0.0, 0.0, -0.5);  // its housing out of sight
+    scene.X_EC.translation() = Eigen::Vector3d(0.0, 0.0, -0.5);  // the camera's housing is out of sight
     Exposure exposure;
     exposure.p_BO = {0.3, -0.25, 0.04};
     exposure.X_BL = {Eigen::Isometry3d::Identity(),
@@ -80,7 +79,7 @@ class MeshRobotTest : public testing::Test {
     return rgba;
   }
 
-  // Height of the slider at which the link touches the table, coming from above [m].
+  // The slider height at which the link touches the table from above [m].
   static double TouchHeight(const SimRobot& robot) {
     BulletArm arm(robot, {.integrator = Integrator::kSemiImplicitEuler, .table = true, .gravity = false});
     Eigen::VectorXd q(1);
@@ -99,7 +98,7 @@ class MeshRobotTest : public testing::Test {
 
 struct Residual {
   double mean = 0.0;   // gray levels
-  double share = 0.0;  // of the pixels that differ by more than 8
+  double share = 0.0;  // of pixels that differ by more than 8
 };
 
 Residual Compare(const cv::Mat& a, const cv::Mat& b) {
@@ -113,8 +112,7 @@ Residual Compare(const cv::Mat& a, const cv::Mat& b) {
 TEST_F(MeshRobotTest, BoxMeshIsRenderedLikeABox) {
   const cv::Mat box = Draw(Slider(kBox, kBox));
   const Residual nothing = Compare(box, Draw(Slider("<sphere radius=\"0.001\"/>", kBox)));
-  // The renderer's own triangles, rounded edges and all; as a box they would cast a shadow with sharp
-  // corners.
+  // The renderer's own triangles with rounded edges; as a box their shadow would have sharp corners.
   test::WriteObj(Path("round.obj"), MakeBox(kSize, 0.008F, Vector3f::Ones()), /*normals=*/true);
   const Residual same = Compare(box, Draw(Slider(MeshTag("round.obj"), kBox)));
   // In millimetres, with sharp edges.
@@ -139,7 +137,7 @@ TEST_F(MeshRobotTest, UrdfColourOverridesTheColourOfTheFile) {
   EXPECT_TRUE(own.links[1].visuals[0].mesh->vertices[0].colour.isApprox(Vector3f(0.8F, 0.1F, 0.2F), 1e-5F));
   const SimRobot given = Slider(MeshTag("box.dae"), kBox);
   EXPECT_TRUE(given.links[1].visuals[0].mesh->vertices[0].colour.isApprox(Vector3f(0.2F, 0.5F, 0.7F), 1e-5F));
-  // Both ways of saying it give the same picture.
+  // Drawing is repeatable: the same link gives the same picture.
   const double worst = cv::norm(Draw(given), Draw(Slider(MeshTag("box.dae"), kBox, kMaterial)), cv::NORM_INF);
   EXPECT_EQ(worst, 0.0);
   EXPECT_GT(cv::norm(Draw(given), Draw(own), cv::NORM_INF), 50.0);
@@ -155,7 +153,7 @@ TEST_F(MeshRobotTest, MeshTouchesTheTableWhereItsHullDoes) {
   EXPECT_NEAR(TouchHeight(Slider(kBox, MeshTag("box.stl", "scale=\"1 1 0.5\""))), 0.075, 2e-4);
 }
 
-// A link dropped onto the table comes to lie on it.
+// A link dropped onto the table comes to rest on it.
 TEST_F(MeshRobotTest, DroppedMeshComesToRestOnTheTable) {
   test::WriteStlText(Path("box.stl"), MakeBox(kSize, 0.0F, Vector3f::Ones()));
   BulletArm arm(Slider(kBox, MeshTag("box.stl")), {});
@@ -163,12 +161,12 @@ TEST_F(MeshRobotTest, DroppedMeshComesToRestOnTheTable) {
   for (int i = 0; i < 1000; ++i) {
     arm.Step(Eigen::VectorXd::Zero(1), 1e-3);
   }
-  std::cout << "lies " << 1e3 * (arm.q()[0] - 0.15) << " mm over the table\n";
+  std::cout << "rests " << 1e3 * (arm.q()[0] - 0.15) << " mm over the table\n";
   EXPECT_NEAR(arm.q()[0], 0.15, 1e-3);
   EXPECT_LT(std::fabs(arm.dq()[0]), 1e-3);
 }
 
-// What costs time with every frame stays small: no edge is smoothed, and few triangles cast the shadow.
+// The cost per frame stays small: no edges are smoothed, and few triangles cast the shadow.
 TEST_F(MeshRobotTest, DenseMeshIsDrawnWithoutEdgesAndWithASimpleShadow) {
   const Mesh dense = MakeSphere(0.14F, 450, Vector3f::Ones());
   test::WriteStlBinary(Path("dense.stl"), dense);

@@ -1,4 +1,4 @@
-// The bench in the log stands where the physics has it.
+// The link frames in the log match the physics.
 #include "sim/run/log_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -53,8 +53,8 @@ TEST_P(LogSceneTest, EveryLinkMatchesItsPhysicsPose) {
 INSTANTIATE_TEST_SUITE_P(Arms, LogSceneTest, testing::Values("panda", "ur5e", "puma560"),
                          [](const auto& arm) { return std::string(arm.param); });
 
-// The target's frame has its orientation, so a plate stands in it as it is: not turned a second time. A
-// disc's frame has none, so it lies as the scenario has it.
+// The target's frame includes a plate's orientation, so the plate is not turned a second time. A disc's frame
+// does not, so the shape has the scenario's orientation.
 TEST(LogSceneTargetTest, PlateIsTurnedOnlyByItsFrame) {
   RenderScene scene;
   scene.target_R_BO = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitX()).toRotationMatrix();
@@ -76,7 +76,7 @@ TEST(LogSceneTargetTest, PlateIsTurnedOnlyByItsFrame) {
   EXPECT_NEAR(disc.cylinders(0).pose().orientation().x(), std::sin(0.35), 1e-12);
 }
 
-// Links may be called as our own frames seem to be.
+// Link names may look like our own frame names.
 TEST(LogSceneNamesTest, LinkNamesDoNotCollideWithOurFrames) {
   const test::TempFolder folder;
   const auto urdf = folder.path() / "arm.urdf";
@@ -92,7 +92,7 @@ TEST(LogSceneNamesTest, LinkNamesDoNotCollideWithOurFrames) {
   scene.robot = LoadSimRobot(urdf, "base", "camera");
   std::set<std::string> frames{log::kBaseFrame, log::kTargetFrame};
   for (const log::LinkFrame& frame : MakeLinkFrames(scene.robot, robot.model, kMount)) {
-    EXPECT_TRUE(frames.insert(frame.name).second) << frame.name << " is there twice";
+    EXPECT_TRUE(frames.insert(frame.name).second) << frame.name << " exists twice";
   }
   EXPECT_EQ(frames.size(), 5U);
   const foxglove::SceneUpdate update = MakeSceneMessage(scene);

@@ -1,4 +1,4 @@
-// The small parts of a run that keep what its pictures need, however long it goes on.
+// Small parts of a run that keep data for its pictures, bounded for any duration.
 #include <gtest/gtest.h>
 
 #include "firmware/host/config/input_error.hpp"
@@ -31,7 +31,7 @@ TEST(TargetLogTest, LostFramesAreForgottenAndOthersKeepTheirTarget) {
   for (std::uint64_t i = 0; i < 5; ++i) {
     log.Put(i, {model::Mat3::Identity(), model::Vec3::Constant(static_cast<double>(i))});
   }
-  EXPECT_EQ(log.Take(2).p.x(), 2.0);  // 0 and 1 were lost, the very first frames too
+  EXPECT_EQ(log.Take(2).p.x(), 2.0);  // frames 0 and 1 were lost
   EXPECT_EQ(log.size(), 2U);
   EXPECT_EQ(log.Take(3).p.x(), 3.0);
   EXPECT_EQ(log.Take(4).p.x(), 4.0);
@@ -59,13 +59,13 @@ TEST(FaultSettingsTest, CameraFaultsAndBaseTiltReachTheirParts) {
   EXPECT_EQ(f.picture.glare.radius_px, 3.0);
   EXPECT_EQ(f.arm.stuck.joint, kAllJoints);
   EXPECT_EQ(f.arm.not_a_number.joint, 2);
-  EXPECT_EQ(f.detector.wrong.shift[0], 0.0) << "the default's first entry is gone";
+  EXPECT_EQ(f.detector.wrong.shift[0], 0.0) << "the default's first entry is replaced";
   EXPECT_EQ(f.detector.wrong.shift[1], -2.0);
   EXPECT_EQ(f.bench.push.tau, Eigen::Vector3d(1.0, 2.0, 3.0));
   EXPECT_NEAR(f.bench.base_tilt.tilt, 1.5707963267948966, 1e-15);
   EXPECT_EQ(FaultsOf(f).size(), 6U);
   EXPECT_NO_THROW(CheckFaults(f, 7));
-  EXPECT_THROW(CheckServedFaults(f), config::InputError) << "stamps and encoders are none of the bench's";
+  EXPECT_THROW(CheckServedFaults(f), config::InputError) << "serve cannot inject stamp and encoder faults";
   f.picture.mirror = {8.0, 7.0};
   EXPECT_THROW(CheckFaults(f, 7), config::InputError);
   f.picture.mirror = {7.0, 8.0};

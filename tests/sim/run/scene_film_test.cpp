@@ -1,4 +1,4 @@
-// The film from beside the bench, of a short run, read back by another reader.
+// The film of the bench of a short run, read back with OpenCV.
 #include "sim/run/scene_film.hpp"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ namespace {
 
 class SceneFilmTest : public testing::Test {
  protected:
-  // 0.9 s of a target that goes round, while the arm goes after it.
+  // A run of 0.9 s with a target on a circle that the arm follows.
   Summary Run(bool scene_video) {
     RunOptions options;
     options.out = folder_.path();
@@ -34,7 +34,7 @@ class SceneFilmTest : public testing::Test {
   const test::TempFolder folder_;
 };
 
-// Pixels of a path's colour, as far as halved colour planes and encoding leave it.
+// The number of pixels with a path's colour, within the tolerance of encoding.
 int Count(const cv::Mat& bgr, const cv::Scalar& colour) {
   cv::Mat mask;
   const cv::Scalar around(50, 50, 50);
@@ -62,7 +62,7 @@ TEST_F(SceneFilmTest, EveryExposureAppearsWithThePathsSoFar) {
   cv::Scalar mean;
   cv::Scalar deviation;
   cv::meanStdDev(frames.back()(picture), mean, deviation);
-  EXPECT_GT(deviation[1], 20.0) << "it is blank";
+  EXPECT_GT(deviation[1], 20.0) << "the film is blank";
   for (const auto& [name, colour] :
        {std::pair{"camera", film::kDetectionColour}, {"target", film::kGoalColour}}) {
     const int first = Count(frames.front()(picture), colour);
@@ -72,17 +72,17 @@ TEST_F(SceneFilmTest, EveryExposureAppearsWithThePathsSoFar) {
     EXPECT_GT(middle, first + 20) << name;
     EXPECT_GT(last, middle + 20) << name;
   }
-  // The time stands in the legend, and goes on.
+  // The legend shows the running time.
   const cv::Rect time(0, 572, 200, 28);
   EXPECT_GT(cv::norm(frames.front()(time), frames.back()(time), cv::NORM_INF), 50.0);
 
-  // Nothing that the run does depends on who films it; and a film of another run does not stay.
+  // Filming does not change the run, and a later run without a film removes the old one.
   const Summary without = Run(false);
   EXPECT_EQ(with.log_hash, without.log_hash);
   EXPECT_FALSE(std::filesystem::exists(Film()));
 }
 
-// However dark the eye's picture is, the reader sees the bench.
+// The bench is visible even if the camera's picture is dark.
 TEST_F(SceneFilmTest, FilmIsBrightWhenTheSceneIsDark) {
   RunOptions options;
   options.out = folder_.path();
@@ -94,12 +94,12 @@ TEST_F(SceneFilmTest, FilmIsBrightWhenTheSceneIsDark) {
   EXPECT_GT(cv::mean(frame)[1], 60.0);
 }
 
-// What is worth more than a film stays, and says why there is none.
+// All other files are kept, and the summary gives the reason for the missing films.
 TEST_F(SceneFilmTest, FailedFilmsKeepTheOtherFiles) {
   RunOptions options;
   options.out = folder_.path();
   options.show_progress = false;
-  options.observer.on_truth = [this](const Truth&) {  // in the midst of the run their files vanish
+  options.observer.on_truth = [this](const Truth&) {  // their files vanish during the run
     std::filesystem::remove(folder_.path() / ".camera.mp4.partial");
     std::filesystem::remove(folder_.path() / ".scene.mp4.partial");
   };

@@ -1,4 +1,4 @@
-// The timeline of a run at real pace, as `fovea-sim run --trace` writes it.
+// The timeline that `fovea-sim run --trace` writes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,8 +24,8 @@ std::int64_t Ns(const json& us) { return std::llround(us.get<double>() * 1000.0)
 
 struct Timeline {
   json summary;
-  std::map<std::string, std::vector<json>> spans;        // by their thread's name, in the file's order
-  std::map<std::string, std::set<std::int64_t>> arrows;  // pictures, by phase
+  std::map<std::string, std::vector<json>> spans;        // by thread name, in the file's order
+  std::map<std::string, std::set<std::int64_t>> arrows;  // picture numbers, by phase
   std::uint64_t dropped = 0;
 };
 
@@ -60,7 +60,7 @@ Timeline TimelineOf(const std::vector<std::string>& more) {
   return timeline;
 }
 
-// Within a thread each span lies within the one that is open, or after it.
+// Within a thread each span lies inside the open one, or after it.
 void ExpectNesting(const std::string& thread, const std::vector<json>& spans) {
   std::vector<std::int64_t> open;  // ends
   std::int64_t last_ns = 0;
@@ -95,7 +95,7 @@ TEST_P(TracedRun, EveryTickIsTracedWithinItsThread) {
     threads.insert(thread);
     ExpectNesting(thread, spans);
   }
-  // By the clock one renderer may have drawn all there was.
+  // At real pace one renderer may have drawn all pictures.
   const bool one = threads.erase("renderer 0") + threads.erase("renderer 1") > 0;
   EXPECT_TRUE(one);
   EXPECT_EQ(threads, (std::set<std::string>{"servo and world", "vision"}));
@@ -131,7 +131,7 @@ TEST_P(TracedRun, EveryTickIsTracedWithinItsThread) {
       }
     }
   }
-  // A tick can only take a picture that was drawn and looked at.
+  // A tick can only take a picture that was drawn and processed.
   EXPECT_EQ(timeline.arrows.at("s"), drawn);
   EXPECT_FALSE(timeline.arrows.at("f").empty());
   for (const std::int64_t picture : timeline.arrows.at("f")) {
@@ -143,7 +143,7 @@ TEST_P(TracedRun, EveryTickIsTracedWithinItsThread) {
 INSTANTIATE_TEST_SUITE_P(Paces, TracedRun, testing::Values("real", "lockstep"),
                          [](const auto& pace) { return std::string(pace.param); });
 
-// Who looks on changes nothing.
+// Tracing does not change the run.
 TEST(TraceTest, TracingDoesNotChangeTheRun) {
   const TempFolder folder;
   const Timeline traced = TimelineOf({"--set", "run.duration_s=0.5"});
@@ -152,8 +152,8 @@ TEST(TraceTest, TracingDoesNotChangeTheRun) {
   EXPECT_EQ(traced.summary["log_hash"], json::parse(plain.out)["log_hash"]);
 }
 
-// Each share is one; those of one thread are not more than the whole, those of the eye not more than its
-// threads.
+// Each share is positive; the shares of one thread sum to at most
+// 1, those of the camera to at most its number of threads.
 TEST(TraceTest, BenchReportsTheTimeShares) {
   const ProgramResult run =
       RunProgram({FOVEA_BENCH_PROGRAM, "sim", "--shares", "--seconds", "0.5", "--json"});

@@ -1,4 +1,4 @@
-// A scenario's keys, seen from outside the command line.
+// A scenario's keys, without the command line.
 #include "sim/scenario/scenario.hpp"
 
 #include <gtest/gtest.h>
@@ -13,13 +13,13 @@
 namespace fovea::sim {
 namespace {
 
-// What a fault or a limit sends a person to must be there to be turned.
+// A key that a fault or limit refers to must exist.
 TEST(ScenarioTest, EveryKeyThatAFaultOrLimitNamesExists) {
   Scenario scenario;
   const config::KeyTable table = ScenarioKeys(scenario);
   std::set<std::string> keys{""};
   for (const config::Key& key : table.keys()) {
-    EXPECT_TRUE(keys.insert(key.name).second) << key.name << " stands there twice";
+    EXPECT_TRUE(keys.insert(key.name).second) << key.name << " exists twice";
   }
   for (int i = 0; i < hal::kNumFaults; ++i) {
     EXPECT_EQ(keys.count(hal::Key(static_cast<hal::Fault>(i))), 1U) << hal::Key(static_cast<hal::Fault>(i));
@@ -53,7 +53,7 @@ TEST(ScenarioTest, HueFollowsTheTargetsColourUnlessItIsSet) {
   EXPECT_NEAR(hue({"target.colour=[0.8, 0.45, 0.1]"}), 30.0, 1e-9);
   EXPECT_NEAR(hue({"target.colour=[0.8, 0.1, 0.45]"}), 330.0, 1e-9);
   EXPECT_NEAR(hue({"target.colour=[0.1, 0.1, 0.8]", "vision.hue_deg=30"}), 30.0, 1e-9);
-  EXPECT_EQ(hue({"target.colour=[0.5, 0.5, 0.5]"}), 0.0) << "gray has none";
+  EXPECT_EQ(hue({"target.colour=[0.5, 0.5, 0.5]"}), 0.0) << "gray has no hue";
 }
 
 TEST(ScenarioTest, IntrinsicsAreTakenWholeOrRefused) {
@@ -83,8 +83,8 @@ TEST(ScenarioTest, StartFasterThanALimitIsRefused) {
     DescribeRun(LoadScenario("ball", {"arm.dq_start=" + dq}));
   };
   EXPECT_NO_THROW(describe("[0.1, 0.1, 0, 0, 0, 0, 0]"));
-  EXPECT_THROW(describe("[2, 2, 2, 2, 2, 2, 2]"), config::InputError) << "a joint";
-  EXPECT_THROW(describe("[0, 0, 0, 0, 2, 0, 2]"), config::InputError) << "the hand";
+  EXPECT_THROW(describe("[2, 2, 2, 2, 2, 2, 2]"), config::InputError) << "a joint is too fast";
+  EXPECT_THROW(describe("[0, 0, 0, 0, 2, 0, 2]"), config::InputError) << "the hand is too fast";
 }
 
 TEST(ScenarioTest, MoreFrictionCompensationThanFrictionIsRefused) {

@@ -1,5 +1,5 @@
-// A scenario that somebody else wrote: nothing that it names is read from outside its folder, whichever way
-// it leads there. What the user types is the user's, and may.
+// A scenario from an untrusted source: no file that it names is read from outside its folder, by any path.
+// Paths that the user types are allowed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-// A folder with a scenario, and an arm with a mesh both in it and beside it.
+// A folder with a scenario, and an arm with a mesh both inside and outside of it.
 class UntrustedScenario : public testing::Test {
  protected:
   UntrustedScenario() {
@@ -40,7 +40,7 @@ class UntrustedScenario : public testing::Test {
   fs::path Own(const std::string& name) const { return folder_.path() / "theirs" / name; }
   fs::path Outside(const std::string& name) const { return folder_.path() / "outside" / name; }
 
-  // What is said of a scenario with this text; "" when it is taken.
+  // The error of a scenario with this text; "" if it is accepted.
   std::string Said(const std::string& toml, const std::vector<std::string>& assignments = {}) const {
     std::ofstream(Own("scenario.toml")) << toml;
     try {
@@ -52,7 +52,7 @@ class UntrustedScenario : public testing::Test {
     return "";
   }
   std::string SaidOfArm(const std::string& model) const { return Said("[arm]\nmodel = \"" + model + "\"\n"); }
-  // Of the arm in its folder, with `mesh` at its last link.
+  // The error of the arm in its folder, with `mesh` at its last link.
   std::string SaidOfMesh(const std::string& mesh) const {
     const auto link = urdf_.find("<link name=\"panda_link7\">");
     const auto begin = urdf_.find("<geometry>", link);
@@ -109,11 +109,11 @@ TEST_F(UntrustedScenario, MeshOutsideItsFolderIsRefused) {
     EXPECT_THAT(SaidOfMesh(mesh), AllOf(HasSubstr("mesh \"" + mesh + "\""), HasSubstr("lies outside")))
         << mesh;
   }
-  // Not even looked for above its folder.
+  // Packages are not searched above the folder.
   EXPECT_THAT(SaidOfMesh("package://outside/link.stl"), HasSubstr("no folder of package \"outside\""));
 }
 
-// The environment is the user's.
+// The environment belongs to the user, so its packages are allowed.
 TEST_F(UntrustedScenario, MeshInAPackageOfTheUserIsRead) {
   setenv("ROS_PACKAGE_PATH", folder_.path().c_str(), 1);
   EXPECT_EQ(SaidOfMesh("package://outside/link.stl"), "");
@@ -128,7 +128,7 @@ TEST_F(UntrustedScenario, PathTypedByTheUserMayLieAnywhere) {
   EXPECT_EQ(Said("[arm]\nmodel = \"../outside/panda.toml\"\n", {"arm.model=panda"}), "");
 }
 
-// A run's folder has the file's name.
+// The run's output folder is named after the file.
 TEST_F(UntrustedScenario, NameThatIsAParentFolderIsRefused) {
   for (const char* name : {"..toml", "...toml"}) {
     std::ofstream(Own(name)) << "";

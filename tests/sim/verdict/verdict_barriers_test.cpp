@@ -1,4 +1,4 @@
-// What must hold by the truth, one barrier after the other; and what the arm did when it should have stood.
+// Limits on the ground truth, one after the other, and the arm's motion when it should be at rest.
 #include "sim/verdict/barriers.hpp"
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ class VerdictBarriersTest : public testing::Test {
     config_.obstacles.num_boxes = 1;
     config_.obstacles.boxes[0] = {{0.4, -0.1, 0.0}, {0.6, 0.1, 0.3}};
   }
-  // A run of 100 ms that `change` disturbs, with the servo in `mode`.
+  // A run of 100 ms, modified by `change`, with the servo in `mode`.
   Summary Judge(const std::function<void(std::int64_t k, Truth&)>& change,
                 hal::Mode mode = hal::Mode::kTrack) const {
     TruthBarriers barriers(config_);
@@ -63,10 +63,10 @@ TEST_F(VerdictBarriersTest, ArmClearOfAllBarriersViolatesNone) {
   EXPECT_EQ(s.limits.at("cartesian_speed"), 0.0);
 }
 
-// The flange keeps out; the camera that is bolted to it does not.
+// The flange is clear, but the camera bolted to it is not.
 TEST_F(VerdictBarriersTest, CameraBelowAPlaneOrInABoxIsCounted) {
   ASSERT_TRUE(config_.hand.AddCapsule(model::Vec3::Zero(), {0.15, 0.0, -0.25}, 0.03));
-  const Summary s = Judge([](auto, Truth&) {});  // it stands at (0.45, 0, 0.25)
+  const Summary s = Judge([](auto, Truth&) {});  // the camera is at (0.45, 0, 0.25)
   EXPECT_NEAR(s.clearances_m.at("hand.planes[0]"), 0.12, 0.005);
   EXPECT_NEAR(s.clearances_m.at("hand.boxes[0]"), -0.08, 0.005);
   EXPECT_EQ(s.violations.at("hand.boxes[0]"), 101U);
@@ -117,7 +117,8 @@ TEST_F(VerdictBarriersTest, EveryKindOfContactIsCounted) {
   EXPECT_EQ(touches({1, true, true}).limit_violations, 2U) << "a tick counts once";
 }
 
-// 15 rad/s^2 are joint 1's. A shorter peak is no passing; in Fault nothing is, nor 10 ms after.
+// Joint 1's limit is 15 rad/s^2. The average over 10 ms counts, so a short peak is no
+// violation. In Fault and up to 10 ms after it nothing counts.
 TEST_F(VerdictBarriersTest, TrueAccelerationIsAveragedOverTenMilliseconds) {
   const auto with = [&](double ddq, std::int64_t ticks, hal::Mode mode) {
     double dq = 0.0;
@@ -147,8 +148,8 @@ TEST_F(VerdictBarriersTest, NonFiniteVelocityIsAViolation) {
   EXPECT_EQ(s.violations.at("joint_velocity"), 1U);
 }
 
-// A motor that dies accelerates its joint: not the servo's doing, as long as what is left is within the
-// limit.
+// A failed motor accelerates its joint: no violation, as long as the
+// acceleration without the disturbance is within the limit.
 TEST_F(VerdictBarriersTest, AccelerationByADisturbanceIsNoViolation) {
   const auto with = [&](double ddq, double disturbed) {
     double dq = 0.0;
@@ -164,11 +165,11 @@ TEST_F(VerdictBarriersTest, AccelerationByADisturbanceIsNoViolation) {
   EXPECT_THAT(with(-40.0, -40.0).violations, IsEmpty());
   EXPECT_NEAR(with(-40.0, -30.0).limits.at("true_joint_acceleration"), 10.0 / 15.0, 1e-9);
   EXPECT_THAT(with(-40.0, -24.0).violations, ElementsAre(Pair("true_joint_acceleration", 31)));
-  EXPECT_THAT(with(-40.0, -80.0).violations, IsEmpty()) << "it works against the fall";
+  EXPECT_THAT(with(-40.0, -80.0).violations, IsEmpty()) << "the servo works against the disturbance";
   EXPECT_THAT(with(16.0, -40.0).violations, ElementsAre(Pair("true_joint_acceleration", 31)))
-      << "against what pulls";
-  EXPECT_THAT(with(0.0, -40.0).violations, IsEmpty()) << "it is held";
-  // Let go it springs back, and that fades.
+      << "beyond the limit, against the disturbance";
+  EXPECT_THAT(with(0.0, -40.0).violations, IsEmpty()) << "the joint is held";
+  // After a disturbance the joint may spring back; this allowance fades.
   const auto let_go = [&](std::int64_t at, double beside = 0.0) {
     double dq = 0.0;
     return Judge([&, at, beside](auto k, Truth& t) {
@@ -182,7 +183,7 @@ TEST_F(VerdictBarriersTest, AccelerationByADisturbanceIsNoViolation) {
     });
   };
   EXPECT_THAT(let_go(21).violations, IsEmpty());
-  EXPECT_THAT(let_go(21, -1e-6).violations, IsEmpty()) << "what goes on beside it changes nothing";
+  EXPECT_THAT(let_go(21, -1e-6).violations, IsEmpty()) << "a simultaneous small disturbance changes nothing";
   EXPECT_THAT(let_go(85).violations, ElementsAre(Pair("true_joint_acceleration", 6)));
 }
 
@@ -194,12 +195,12 @@ StopRules Rules() {
   return rules;
 }
 
-// A hand that goes along x, joint 3 with it.
+// A hand that moves along x, and joint 3 with it.
 struct Walk {
   UnwantedMotion unwanted{Rules()};
   std::int64_t k = 0;
   double x = 0.0;
-  double joint_share = 0.0;  // of the hand's speed [rad/m]
+  double joint_share = 0.0;  // joint 3's speed over the hand's [rad/m]
 
   void Go(hal::Mode mode, std::int64_t ticks, double speed) {
     for (std::int64_t i = 0; i < ticks; ++i) {
@@ -215,7 +216,7 @@ TEST(UnwantedMotionTest, StoppingDistanceIsSubtracted) {
   Walk walk;
   walk.joint_share = -2.0;
   walk.Go(hal::Mode::kTrack, 10, 1.0);
-  walk.Go(hal::Mode::kHold, 200, 1.0);  // 0.5 * 2 / 10 s and 0.02 s are a stop's
+  walk.Go(hal::Mode::kHold, 200, 1.0);  // a stop may take 0.5 * 2 / 10 s + 0.02 s
   walk.Go(hal::Mode::kTrack, 10, 0.5);
   walk.Go(hal::Mode::kFault, 400, 0.5);
   const UnwantedMotion& unwanted = walk.unwanted;
@@ -223,7 +224,7 @@ TEST(UnwantedMotionTest, StoppingDistanceIsSubtracted) {
   EXPECT_NEAR(unwanted.by_mode().at("hold").beyond_stop_mm, 200.0 - 120.0, 1e-9);
   EXPECT_NEAR(unwanted.by_mode().at("fault").beyond_stop_mm, 200.0 - 150.0, 1e-9);
   EXPECT_NEAR(unwanted.by_mode().at("hold").gained_m_per_s, 0.0, 1e-9);
-  // While it accelerates by 5 m/s^2: 0.02 s to turn that round leave it 0.05 m/s faster.
+  // Accelerating at 5 m/s^2: reversing that within 0.02 s allows a gain of 0.05 m/s.
   UnwantedMotion accelerating(Rules());
   double x = 0.0;
   for (std::int64_t i = 0; i <= 120; ++i) {
@@ -236,16 +237,16 @@ TEST(UnwantedMotionTest, StoppingDistanceIsSubtracted) {
 TEST(UnwantedMotionTest, IsMeasuredFromTheStartOfTheMode) {
   Walk walk;
   walk.Go(hal::Mode::kBoot, 1, 0.0);
-  walk.Go(hal::Mode::kBoot, 50, 0.1);    // it falls by 5 mm
-  walk.Go(hal::Mode::kTrack, 100, 1.0);  // that is what it is for
-  walk.Go(hal::Mode::kFault, 20, 1.2);   // on by 24 mm, and faster at first
-  walk.Go(hal::Mode::kFault, 20, 0.2);   // and 4 mm
+  walk.Go(hal::Mode::kBoot, 50, 0.1);    // falls by 5 mm
+  walk.Go(hal::Mode::kTrack, 100, 1.0);  // wanted motion
+  walk.Go(hal::Mode::kFault, 20, 1.2);   // 24 mm more, faster at first
+  walk.Go(hal::Mode::kFault, 20, 0.2);   // 4 mm more
   walk.Go(hal::Mode::kTrack, 10, 0.3);
   walk.Go(hal::Mode::kFault, 10, 0.3);
   const auto& by_mode = walk.unwanted.by_mode();
   ASSERT_EQ(by_mode.size(), 2U);
   EXPECT_NEAR(by_mode.at("boot").most_mm, 5.0, 1e-9);
-  EXPECT_NEAR(by_mode.at("boot").beyond_stop_mm, 5.0, 1e-9) << "it stands when it begins";
+  EXPECT_NEAR(by_mode.at("boot").beyond_stop_mm, 5.0, 1e-9) << "at rest when Boot starts";
   EXPECT_NEAR(by_mode.at("boot").most_m_per_s, 0.1, 1e-9);
   EXPECT_NEAR(by_mode.at("boot").gained_m_per_s, 0.1, 1e-9);
   EXPECT_NEAR(by_mode.at("fault").most_mm, 28.0, 1e-9);

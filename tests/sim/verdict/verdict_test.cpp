@@ -1,4 +1,4 @@
-// The judge, on runs made up for it: each bound is kept, and each is broken.
+// The verdict, on synthetic runs that keep or break each bound.
 #include "sim/verdict/verdict.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ class VerdictTest : public testing::Test {
     config_.tracking_bound_px = 3.0;
   }
 
-  // A run of `duration_s` in which the target is `offset(t)` off its goal, in axes of C [m].
+  // A run of `duration_s` in which the target is off its goal by `offset(t)`, in axes of C [m].
   Summary Judge(double duration_s, const std::function<Eigen::Vector3d(double)>& offset,
                 const std::function<void(Truth&)>& change = {}) {
     config_.duration_s = duration_s;
@@ -106,9 +106,7 @@ TEST_F(VerdictTest, MovingTargetIsJudgedOverTheSecondHalf) {
   EXPECT_NEAR(*s.tracking_error_px_rms, 3.1, 1e-9);
 }
 
-// A target that moves is kept while its error is within the bound over half a second: a sample beyond it is
-// none.
-// The middle of the picture says nothing of the way to the target.
+// The pixel error says nothing about the distance to the target.
 TEST_F(VerdictTest, MovingTargetIsJudgedInDepthToo) {
   config_.target_moves = true;
   config_.tracking_bound_mm = 20.0;
@@ -126,7 +124,7 @@ TEST_F(VerdictTest, MovingTargetIsJudgedInDepthToo) {
   EXPECT_THAT(far.verdict, testing::HasSubstr("120.00 mm rms, bound 20 mm"));
 }
 
-// Without an eye: a motion that was given up, or was never begun, was not followed.
+// Without a camera: a motion that was aborted or never started counts as not followed.
 TEST_F(VerdictTest, MotionThatWasGivenUpOrNeverBegunIsNotFollowed) {
   config_.has_eye = false;
   hal::TickRecord record;
@@ -139,7 +137,7 @@ TEST_F(VerdictTest, MotionThatWasGivenUpOrNeverBegunIsNotFollowed) {
     record.mode = hal::Mode::kHold;
     record.hold_reason = reason;
     records_ = {records_.front(), record};
-    record.hold_reason = hal::HoldReason::kNotAsked;  // what came later takes nothing back
+    record.hold_reason = hal::HoldReason::kNotAsked;  // later records do not clear it
     records_.push_back(record);
     EXPECT_FALSE(judge().converged) << hal::Name(reason);
   }
@@ -150,9 +148,10 @@ TEST_F(VerdictTest, MotionThatWasGivenUpOrNeverBegunIsNotFollowed) {
   EXPECT_THAT(judge().verdict, testing::HasSubstr("before the circle began"));
   config_.circle.reset();
   config_.has_motion = false;
-  EXPECT_EQ(judge().verdict, "no motion was commanded, and the arm stood");
+  EXPECT_EQ(judge().verdict, "no motion was commanded, and the arm stood still");
 }
 
+// A moving target is kept while its rms error over half a second is within the bound; a sample may exceed it.
 TEST_F(VerdictTest, MovingTargetIsKeptByItsMeanErrorOverHalfASecond) {
   config_.target_moves = true;
   const double px = kGoalZ / config_.pinhole.f_px;
@@ -168,7 +167,7 @@ TEST_F(VerdictTest, MovingTargetIsKeptByItsMeanErrorOverHalfASecond) {
 }
 
 TEST_F(VerdictTest, EveryExceededLimitIsCounted) {
-  // In one tick; how often it counts.
+  // Changes one tick; returns the number of violations.
   const auto violations = [&](const char* name, const std::function<void(Truth&)>& change) {
     const Summary s = Judge(0.1, Still, [&](Truth& truth) {
       if (truth.stamp_ns == 50 * kMs) {
@@ -181,7 +180,7 @@ TEST_F(VerdictTest, EveryExceededLimitIsCounted) {
   EXPECT_EQ(violations("joint_position", [](Truth& t) { t.q[1] = 1.77; }), 1U);     // +-1.7628 rad
   EXPECT_EQ(violations("joint_velocity", [](Truth& t) { t.dq[6] = -2.62; }), 1U);   // 2.61 rad/s
   EXPECT_EQ(violations("torque_rate", [](Truth& t) { t.tau_cmd[6] = 0.99; }), 0U);  // 1 Nm per tick
-  EXPECT_EQ(violations("torque_rate", [](Truth& t) { t.tau_cmd[6] = 1.01; }), 2U);  // up, and down again
+  EXPECT_EQ(violations("torque_rate", [](Truth& t) { t.tau_cmd[6] = 1.01; }), 2U);  // one step up, one down
   EXPECT_EQ(violations("workspace", [](Truth& t) { t.X_BE.translation().x() = 0.86; }), 1U);  // 0.85 m
   EXPECT_EQ(violations("torque", [](Truth& t) { t.tau_cmd[6] = -12.1; }), 1U);                // 12 Nm
 }
@@ -191,7 +190,7 @@ TEST_F(VerdictTest, ExceededLimitFailsTheRunAndCountsOncePerTick) {
   record.stamp_ns = 50 * kMs;
   record.ddq_cmd[0] = 2.0 * config_.barriers.arm.joints[0].ddq_max;
   records_ = {record};
-  // In the same tick the truth is beyond a limit too, and in one more.
+  // The truth exceeds a limit in the same tick, and in one more.
   const Summary s = Judge(1.0, Still, [](Truth& truth) {
     if (truth.stamp_ns == 50 * kMs || truth.stamp_ns == 70 * kMs) {
       truth.q[1] = 1.77;
@@ -199,13 +198,13 @@ TEST_F(VerdictTest, ExceededLimitFailsTheRunAndCountsOncePerTick) {
   });
   EXPECT_TRUE(s.converged);
   EXPECT_EQ(s.limit_violations, 2U);
-  EXPECT_EQ(s.verdict, "converged, but in 2 ticks a limit was passed");
+  EXPECT_EQ(s.verdict, "converged, but a limit was exceeded in 2 ticks");
   EXPECT_FALSE(ReachedItsGoal(s));
   records_.clear();
   EXPECT_TRUE(ReachedItsGoal(Judge(1.0, Still)));
 }
 
-// Whatever is touched, and however well the target stands in the end.
+// Any contact fails the run, even if the target ends at its goal.
 TEST_F(VerdictTest, AnyContactFailsTheRun) {
   for (const auto& [contacts, what] : {std::pair{Contacts{1, false, false}, "the bench"},
                                        {Contacts{0, true, false}, "the target"},

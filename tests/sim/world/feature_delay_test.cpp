@@ -1,4 +1,4 @@
-// The modelled latency: nothing before its time, everything in order, lockstep waits and real pace does not.
+// The modelled latency: no measurement before its time, all in order; lockstep waits and real pace does not.
 #include "sim/world/feature_delay.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ hal::FeatureMeasurement Measurement(std::uint64_t sequence) {
 
 class FeatureDelayTest : public ::testing::Test {
  protected:
-  // The sequence number of what the servo would read now; -1: nothing new.
+  // The sequence number that the servo would read now; -1: nothing new.
   std::int64_t Taken() {
     hal::FeatureMeasurement m;
     return mailbox_.Take(m) ? static_cast<std::int64_t>(m.sequence) : -1;
@@ -58,7 +58,7 @@ TEST_F(FeatureDelayTest, RealPaceHandsALateMeasurementOverWhenItComes) {
   EXPECT_EQ(Taken(), 1);
 }
 
-// A frame that the camera lost has no measurement, ever; a later one tells.
+// A lost frame never gets a measurement; a later measurement reveals that.
 TEST_F(FeatureDelayTest, LostFrameDoesNotBlockLaterOnes) {
   delay_.Expect(1, 40'000'000);
   delay_.Expect(2, 70'000'000);
@@ -67,7 +67,7 @@ TEST_F(FeatureDelayTest, LostFrameDoesNotBlockLaterOnes) {
   EXPECT_EQ(Taken(), 2);
 }
 
-// The frame that is waited for is lost while it is waited for, and nothing else is expected.
+// The awaited frame is lost during the wait, and no other is expected.
 TEST_F(FeatureDelayTest, FrameLostWhileAwaitedEndsTheWait) {
   delay_.Expect(1, 40'000'000);
   std::thread vision([&] {

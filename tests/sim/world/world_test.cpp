@@ -37,7 +37,7 @@ TEST(TargetMotionTest, CircleIsLevelWithTheSetRadiusAndSpeed) {
   EXPECT_EQ(PositionAt(motion, 3'000 * kMs), motion.p_BO);
 }
 
-// Each stays within its reach and within its speed, comes near to both, and runs without a step.
+// Each path keeps its reach and its speed, comes near both limits, and has no step.
 TEST(TargetMotionTest, EveryPathKeepsItsReachAndSpeed) {
   TargetMotion motion{MotionKind::kStill, {0.5, 0.1, 0.2}, 0.12, 0.2};
   motion.direction = Eigen::Vector3d(0.6, 0.8, 0.0);
@@ -61,7 +61,7 @@ TEST(TargetMotionTest, EveryPathKeepsItsReachAndSpeed) {
   EXPECT_GT(far, 0.06);
   EXPECT_LE(fast, 0.2);
   EXPECT_GT(fast, 0.06);
-  // A pendulum of 0.12 m: its bob never nearer to the pivot nor further from it than that.
+  // A pendulum of 0.12 m: its bob stays at this distance from the pivot.
   motion.kind = MotionKind::kPendulum;
   const Eigen::Vector3d pivot = motion.p_BO + Eigen::Vector3d(0, 0, 0.12);
   for (std::int64_t t = 0; t < 2'000 * kMs; t += 7 * kMs) {
@@ -133,8 +133,7 @@ TEST(WorldTest, CameraKeepsItsRateAndItsOutage) {
   }
 }
 
-// What those who look on throw does not pass through the loop: the clock closes, and gives it back when
-// asked.
+// An observer's exception does not pass through the loop: the clock closes and rethrows it on request.
 TEST(WorldClockTest, ObserverExceptionClosesTheClockAndIsRethrownOnRequest) {
   World world(PandaWorld());
   LockstepClock clock(world, [](std::int64_t now_ns) -> bool {
@@ -149,7 +148,7 @@ TEST(WorldClockTest, ObserverExceptionClosesTheClockAndIsRethrownOnRequest) {
   EXPECT_THROW(clock.RethrowFailure(), std::runtime_error);
 }
 
-// A link of 40 kg mm^2 under friction that a step of 1 ms could turn round at full size.
+// A link of 40 kg mm^2 under friction, which could reverse its velocity within a step of 1 ms.
 TEST(WorldTest, LightLinkComesToRestUnderFriction) {
   WorldConfig config;
   config.robot = LoadSimRobot(test::RobotsFolder() + "/puma560.urdf", "puma560_base", "puma560_flange");
@@ -162,14 +161,14 @@ TEST(WorldTest, LightLinkComesToRestUnderFriction) {
   command.tau_cmd[5] = 0.15;
   world.Command(command);
   world.AdvanceTo(100 * kMs);
-  EXPECT_GT(std::fabs(world.truth().dq[5]), 0.01) << "it was not moved";
+  EXPECT_GT(std::fabs(world.truth().dq[5]), 0.01) << "the joint did not move";
   command.tau_cmd[5] = 0.0;
   world.Command(command);
   world.AdvanceTo(1'100 * kMs);
   EXPECT_LT(world.truth().dq.cwiseAbs().maxCoeff(), 1e-3);
 }
 
-// A joint under friction, and the same one whose controller takes all friction away.
+// A joint under friction, with partial and full compensation by its controller.
 TEST(WorldTest, FrictionCompensationRestoresTheSpeedOfAJoint) {
   const auto speed_after = [](double compensation) {
     WorldConfig config = PandaWorld();
@@ -186,7 +185,7 @@ TEST(WorldTest, FrictionCompensationRestoresTheSpeedOfAJoint) {
   EXPECT_GT(speed_after(0.5), 1.1 * speed_after(0.0));
 }
 
-// Positions come in multiples of the quantum and are right to half of it; velocities are as they were.
+// Positions are multiples of the quantum, accurate to half of it; velocities are unchanged.
 TEST(WorldTest, EncodersAreQuantised) {
   WorldConfig config = PandaWorld();
   config.dq_start = Eigen::VectorXd::Constant(7, 0.1);

@@ -1,4 +1,4 @@
-// The Panda's driver as the program sees it, with a robot on the wire that does what the test says.
+// The Panda's driver as the program uses it, with a robot on the network that the test controls.
 #include "firmware/targets/linux/robots/fci/fci_driver.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 namespace fovea::hw {
 namespace {
 
-// While the motion is ended the robot counts states that want no command any more.
+// While a motion ends, the robot's success rate also counts states that need no command any more.
 TEST(FciDriverTest, SuccessRateIsThatBeforeStop) {
   test::FakeRobot robot;
   const HwConfig config =
@@ -41,7 +41,7 @@ TEST(FciDriverTest, SuccessRateIsThatBeforeStop) {
   robot.state.control_command_success_rate = 0.25;
   robot.SendState();
   driver.Stop();
-  EXPECT_EQ(driver.figures().states, states + 1) << "Stop took the state";
+  EXPECT_EQ(driver.figures().states, states + 1) << "Stop has read the state";
   EXPECT_EQ(driver.figures().command_success_rate, 0.75);
 }
 

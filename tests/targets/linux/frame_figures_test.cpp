@@ -1,4 +1,4 @@
-// Figures of frames whose times are known.
+// Figures of frames with known times.
 #include "firmware/targets/linux/frame_figures.hpp"
 
 #include <gtest/gtest.h>

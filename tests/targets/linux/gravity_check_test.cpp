@@ -1,4 +1,4 @@
-// Gravity by the joints' torques beside gravity by the model: what an unknown load looks like.
+// Gravity from the measured torques compared with the model: how an unknown load appears.
 #include "firmware/targets/linux/gravity_check.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(GravityCheckTest, FindsAnUnknownMassAndNoneForTheModelsOwn) {
     const GravityFinding finding = CompareGravity(arm, q, GravityOf(heavy, q));
     EXPECT_NEAR(finding.unknown_mass_kg, mass, 1e-9);
     EXPECT_GT(std::fabs(finding.worst_nm), 4.0 * std::fabs(mass))
-        << "a Panda's reach, ready, is half a metre";
+        << "the Panda's reach at the ready posture is about half a metre";
     std::printf("%s\n", InWords(finding).c_str());
   }
 }
@@ -64,7 +64,7 @@ TEST(RestMeanTest, AveragesOnlyConsecutiveStatesAtRest) {
     return there;
   };
   EXPECT_FALSE(add(0.0, 100.0, 9));
-  EXPECT_FALSE(add(-0.06, 100.0, 1)) << "it moves, and all begins anew";
+  EXPECT_FALSE(add(-0.06, 100.0, 1)) << "a movement restarts the average";
   EXPECT_FALSE(add(0.04, 3.0, 9));
   EXPECT_FALSE(mean.IsInVain());
   EXPECT_TRUE(add(0.04, 2.0, 1));

@@ -1,4 +1,4 @@
-// Values of a configuration that are allowed each by itself and not together, and where its camera goes.
+// Configuration values that are allowed alone but not together, and the choice of the camera driver.
 #include "firmware/targets/linux/hw_config.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ namespace {
 using config::InputError;
 using testing::HasSubstr;
 
-// The line that refuses `assignments` on top of configuration loopback; "" when they are taken.
+// The error line for `assignments` on top of configuration loopback; "" if they are accepted.
 std::string RefusalOf(const std::vector<std::string>& assignments) {
   try {
     const HwConfig config = LoadHwConfig("loopback", assignments);
@@ -40,16 +40,16 @@ TEST(HwConfigTest, ContradictingValuesAreRefusedByName) {
       {{"arm.model=slider"}, "arm.model = \"slider\" is not allowed: it has 1 joints"},
       {{"target.kind=circle", "servo.feature=corners"}, "is not allowed for target.kind = \"circle\""},
       {{"target.kind=square", "servo.feature=sphere"}, "servo.feature = \"sphere\" is not allowed"},
-      {{"servo.goal=[0, 0, 0.03]"}, "the third above its radius of 0.04 m"},
+      {{"servo.goal=[0, 0, 0.03]"}, "the third number must be above its radius of 0.04 m"},
       {{"servo.stale_s=2", "servo.coast_s=1"}, "servo.stale_s = 2 is not allowed: at most servo.coast_s"},
       {{"safety.workspace_radius=0.5", "safety.workspace_margin=0.5"}, "below safety.workspace_radius"},
-      {{"safety.view_margin_px=240"}, "of a picture of 640 x 480 px nothing is left"},
+      {{"safety.view_margin_px=240"}, "it leaves nothing of a picture of 640 x 480 px"},
       {{"servo.posture=[0, 0]"}, "servo.posture has 2 entries, arm \"panda\" has 7 joints"},
       {{"safety.planes=[0, 0, 1, 0, 0]"}, "safety.planes has 5 entries: four for each plane"},
       {{"safety.planes=[0, 0, 0, 1]"}, "a plane's normal must not be zero"},
       {{"safety.boxes=[0, 0, 0, 1, 1, 1, 1]"}, "safety.boxes has 7 entries: six for each box"},
       {{"safety.boxes=[0, 0, 0, 1, 0, 1]"}, "each low corner must be below its high corner"},
-      {{"target.kind=square", "vision.method=hough"}, "it finds spheres and circles alone"},
+      {{"target.kind=square", "vision.method=hough"}, "it finds only spheres and circles"},
       {{"vision.radius_min_px=50", "vision.radius_max_px=50"}, "must be below vision.radius_max_px"},
       {{"vision.distance_min=0.8", "vision.distance_max=0.8"}, "must be below vision.distance_max"},
   };
@@ -59,7 +59,7 @@ TEST(HwConfigTest, ContradictingValuesAreRefusedByName) {
   EXPECT_EQ(RefusalOf({}), "");
 }
 
-// A silent robot is given up after safety.arm_lost_ticks, and no single read lasts longer.
+// A silent robot is a fault after safety.arm_lost_ticks, and no single read may last longer.
 TEST(HwConfigTest, ReadTimeoutBeyondTheLostLimitIsRefused) {
   EXPECT_THAT(
       RefusalOf({"robot.time=computer"}),
@@ -98,7 +98,7 @@ TEST(HwConfigTest, PlanesBoxesAndPostureReachTheServo) {
   const config::Obstacles& obstacles = servo.guard.obstacles;
   ASSERT_EQ(obstacles.num_planes, 2);
   ASSERT_EQ(obstacles.num_boxes, 1);
-  EXPECT_EQ(obstacles.planes[0].normal, model::Vec3(0.0, 0.0, 1.0)) << "of length one";
+  EXPECT_EQ(obstacles.planes[0].normal, model::Vec3(0.0, 0.0, 1.0)) << "normalised";
   EXPECT_EQ(obstacles.planes[0].distance, 0.25);
   EXPECT_EQ(obstacles.planes[1].distance, -0.3);
   EXPECT_EQ(obstacles.boxes[0].high, model::Vec3(0.0, 0.0, 0.4));

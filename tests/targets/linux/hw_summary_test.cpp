@@ -1,4 +1,4 @@
-// What a run on hardware is judged by: how it ended, and what its camera saw last.
+// The verdict of a hardware run: its last mode, and the last image error.
 #include "firmware/targets/linux/hw_summary.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(HwSummaryTest, HoldWithoutTargetIsNotConverged) {
   }
 }
 
-// The end of the run leaves another reason behind the one that the arm held for.
+// At the end of the run the hold reason differs from the one that stopped the tracking.
 TEST(HwSummaryTest, HoldWithADoubtedEyeIsNotConverged) {
   HwSummary summary = Ended(Mode::kHold, HoldReason::kNotAsked, 318.9);
   summary.modes.insert(summary.modes.end() - 1,
@@ -54,7 +54,7 @@ TEST(HwSummaryTest, HoldWithADoubtedEyeIsNotConverged) {
   Judge(summary);
   EXPECT_EQ(summary.converged, false);
   EXPECT_NE(summary.verdict.find("eye_doubted"), std::string::npos) << summary.verdict;
-  // Tracking since then, and a hold that was asked for: nobody's doubt.
+  // After tracking again and a requested hold, the old doubt does not count.
   summary.modes.insert(summary.modes.end() - 1, {.t_s = 2.5, .mode = Mode::kTrack});
   Judge(summary);
   EXPECT_EQ(summary.converged, std::nullopt);
@@ -64,7 +64,7 @@ TEST(HwSummaryTest, HoldForASilentOperatorIsNotConverged) {
   HwSummary summary = Ended(Mode::kHold, HoldReason::kNotAsked, 0.2);
   summary.operator_silent = true;
   Judge(summary);
-  EXPECT_EQ(summary.converged, std::nullopt) << "nobody had asked for the target";
+  EXPECT_EQ(summary.converged, std::nullopt) << "tracking was never requested";
   summary.modes.insert(summary.modes.begin() + 1, {.t_s = 2.0, .mode = Mode::kTrack});
   Judge(summary);
   EXPECT_EQ(summary.converged, false);
@@ -89,7 +89,7 @@ TEST(HwSummaryTest, FaultIsNotConvergedAndARecoveryIsReported) {
 
 TEST(HwSummaryTest, RunThatNeverLeftBootIsNotConverged) {
   HwSummary summary = Ended(Mode::kBoot, HoldReason::kNone, 0.2);
-  EXPECT_EQ(summary.converged, false) << "it stayed in Boot";
+  EXPECT_EQ(summary.converged, false) << "the run stayed in Boot";
   summary.ticks = 0;
   Judge(summary);
   EXPECT_EQ(summary.converged, false);
@@ -124,7 +124,7 @@ TEST(HwSummaryTest, RunWithoutLeaveToMoveIsNotJudgedPastBoot) {
   }
 }
 
-// Nobody measured where the camera truly is.
+// Without ground truth the camera's true pose is unknown.
 TEST(HwSummaryTest, FiguresThatNeedTheTruthAreNullWithAReason) {
   const HwSummary summary = Ended(Mode::kTrack, HoldReason::kNone, 0.2);
   const auto json = nlohmann::json::parse(ToJson(summary));

@@ -1,4 +1,4 @@
-// Words as they are typed, in pieces, unknown ones, and lines that never end.
+// Typed words, in pieces, unknown ones, and endless lines.
 #include "firmware/targets/linux/operator_input.hpp"
 
 #include <gtest/gtest.h>

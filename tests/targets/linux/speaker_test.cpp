@@ -1,4 +1,4 @@
-// Whoever says something never waits for who reads it.
+// A thread that prints a line never waits for the reader.
 #include "firmware/targets/linux/speaker.hpp"
 
 #include <fcntl.h>
@@ -37,7 +37,7 @@ class SpeakerTest : public testing::Test {
     }
     fcntl(ends_[1], F_SETFL, flags);
   }
-  // All that is there.
+  // Reads all pending output.
   std::string Read() {
     fcntl(ends_[0], F_SETFL, O_NONBLOCK);
     std::string text;
@@ -76,7 +76,7 @@ TEST_F(SpeakerTest, FullPipeDelaysNeitherSpeakerNorExit) {
     EXPECT_EQ(speaker.unsaid(), 10'000U);
   }
   const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin);
-  std::printf("10000 lines into a full pipe: %lld ms, the end included\n",
+  std::printf("10000 lines into a full pipe: %lld ms, including the end\n",
               static_cast<long long>(took.count()));
   EXPECT_LT(took, 5s);
 }

@@ -1,4 +1,4 @@
-// The benchmarks' statistics against what is known in closed form.
+// The benchmarks' statistics compared with closed-form results.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNormal90 = 1.6449;  // half of a normal variable's 90 % interval, in deviations
 
-// n values that are the middles of n equally likely parts of an exponential distribution of mean 1.
+// n values: the medians of n equally likely parts of an exponential distribution with mean 1.
 std::vector<double> ExponentialGrid(int n) {
   std::vector<double> values;
   for (int i = 0; i < n; ++i) {
@@ -58,8 +58,8 @@ TEST(BenchStatistics, MeanDurationIsPerCase) {
   EXPECT_GE(ns, 1e6);
 }
 
-// The deviation of an exponential's sample percentile p is sqrt(p / (1 - p) / n), of its logarithm that over
-// the percentile; two of them are as independent as their samples.
+// The sample percentile p of an exponential has the deviation sqrt(p / (1 - p) / n); its logarithm has that
+// divided by the percentile. The two samples are independent.
 TEST(BenchStatistics, IntervalWidthMatchesTheory) {
   constexpr int kBlocks = 200;
   constexpr int kSize = 100;
@@ -83,7 +83,7 @@ TEST(BenchStatistics, IntervalWidthMatchesTheory) {
   EXPECT_LE(holds, 60);
 }
 
-// What disturbs both kinds in the same minute is no difference between them.
+// A disturbance of both kinds in the same block is no difference between them.
 TEST(BenchStatistics, DisturbedPairsCancel) {
   std::vector<std::vector<double>> blocks = ExponentialBlocks(20, 100, 1.0, 1);
   for (double& value : blocks[7]) {

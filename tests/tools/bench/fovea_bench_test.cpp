@@ -1,5 +1,4 @@
-// `fovea-bench` from outside: its figures have the names that others script against. How large they are is no
-// test's business.
+// `fovea-bench` from outside: its figures have the names that scripts use. Their values are not tested.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,14 +27,14 @@ test::ProgramResult Bench(std::vector<std::string> arguments) {
   return test::RunProgram(arguments);
 }
 
-// The names in a list of {name, value, unit, goal}, each of which has a value.
+// The names in a list of {name, value, unit, goal}. Checks that each has a value.
 std::set<std::string> NamesOf(const test::ProgramResult& run) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   std::set<std::string> names;
   for (const json& figure : json::parse(run.out)) {
     EXPECT_TRUE(figure.contains("goal") && figure.contains("unit")) << figure;
     EXPECT_TRUE(figure["value"].is_number()) << figure;
-    EXPECT_TRUE(names.insert(figure["name"]).second) << figure["name"] << " stands there twice";
+    EXPECT_TRUE(names.insert(figure["name"]).second) << figure["name"] << " exists twice";
   }
   return names;
 }
@@ -50,7 +49,7 @@ TEST(FoveaBench, TickReportsEveryFigure) {
   }
 }
 
-// It fails when the twists of both differ.
+// The program fails if the twists of both differ.
 TEST(FoveaBench, LawMatchesVispAndBothAreTimed) {
   const std::set<std::string> names = NamesOf(test::RunProgram({FOVEA_BENCH_VISP_PROGRAM, "--json"}));
   EXPECT_EQ(names, (std::set<std::string>{"fovea_law_ns", "visp_steps_ns", "visp_control_law_ns",
@@ -79,7 +78,7 @@ TEST(FoveaBench, JitterReportsEveryFigure) {
   EXPECT_EQ(json::parse(TextOf(folder.path() / "j" / "jitter.json")), json::parse(run.out));
 }
 
-// A picture's way is the sum of its hops, so its least is no less than the sum of theirs, nor its most more.
+// A picture's delay is the sum of its hops: it lies between the sums of their minima and maxima.
 TEST(FoveaBench, JitterHopsAddUp) {
   const test::TempFolder folder;
   const test::ProgramResult run =
@@ -98,7 +97,7 @@ TEST(FoveaBench, JitterHopsAddUp) {
   EXPECT_GE(value["pictures"], 1.0);
   EXPECT_GE(value["image_to_torque_us_min"], least - 1e-6);
   EXPECT_LE(value["image_to_torque_us_max"], most + 1e-6);
-  EXPECT_GE(value["hop_exposure_us_min"] + value["hop_arrival_us_min"], 5500.0);  // the camera's own
+  EXPECT_GE(value["hop_exposure_us_min"] + value["hop_arrival_us_min"], 5500.0);  // the camera's delay
 }
 
 TEST(FoveaBench, JitterPageIsSelfContained) {
@@ -124,8 +123,8 @@ TEST(FoveaBench, JitterPageIsSelfContained) {
     EXPECT_THAT(run.out, HasSubstr(words));
   }
   const std::string page = TextOf(folder.path() / "jitter.html");
-  for (const char* part : {"id=\"verdict\"", "What limits it", "Wake-up latency", "Stages of the tick",
-                           "From picture to torque", "sleeper: wake-up", "</html>"}) {
+  for (const char* part : {"id=\"verdict\"", "Limits of this machine", "Wake-up latency",
+                           "Stages of the tick", "From picture to torque", "sleeper: wake-up", "</html>"}) {
     EXPECT_THAT(page, HasSubstr(part));
   }
   for (const char* outside : {"http:", "https:", "src=", "href="}) {
@@ -154,7 +153,7 @@ TEST(FoveaBench, CompareFailsOnlyAboveTheAllowedRatio) {
   EXPECT_EQ(Bench({"compare", small, folder.path() / "none.json"}).exit_code, 2);
 }
 
-// With all that is shipped but the simulator, each of those that run it says so before it writes anything.
+// Without fovea-sim each command that needs it reports that before it writes anything.
 TEST(FoveaBench, CommandWithoutTheSimulatorNamesTheMissingProgram) {
   const test::TempFolder folder;
   const std::filesystem::path bin = folder.path() / "bin";
@@ -175,8 +174,8 @@ TEST(FoveaBench, CommandWithoutTheSimulatorNamesTheMissingProgram) {
   for (const auto& [name, arguments] : calls) {
     const test::ProgramResult run = test::RunProgram(arguments);
     EXPECT_EQ(run.exit_code, 2) << name;
-    EXPECT_THAT(run.err, HasSubstr((bin / "fovea-sim").string() + ": not there; " + name +
-                                   " needs the simulator built beside it"))
+    EXPECT_THAT(run.err, HasSubstr((bin / "fovea-sim").string() + ": not found; " + name +
+                                   " needs the simulator in the same folder"))
         << name;
     EXPECT_FALSE(std::filesystem::exists(out)) << name;
   }
@@ -187,7 +186,7 @@ TEST(FoveaBench, RefusesUnknownCommandsAndOptions) {
   EXPECT_EQ(Bench({"jitter", "--load", "nix"}).exit_code, 2);
   const test::ProgramResult run = Bench({"tick", "--robot", "nix"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("no shipped arm of that name"));
+  EXPECT_THAT(run.err, HasSubstr("no shipped arm has this name"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The reader of the linker's map: a small map whose sums are known, and the image's own.
+// The reader of the linker's map, with a small map of known sums.
 #include "tools/bench/mcu/link_map.hpp"
 
 #include <gtest/gtest.h>

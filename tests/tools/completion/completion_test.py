@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Completion as bash and zsh ask for it: completion_test.py BIN_FOLDER [CLASS]...
+"""Completion in bash and zsh:  completion_test.py BIN_FOLDER [CLASS]...
 
 The classes that end in Sim need fovea-sim.
 """
@@ -59,11 +59,11 @@ class Zsh:
     FOLDER = SCRIPTS
 
     def press(self, widget, line, **environment):
-        """`line` as it stands after the key."""
+        """The content of the command line after the key."""
         with tempfile.TemporaryDirectory() as home:
             pathlib.Path(home, ".zshrc").write_text(ZSHRC)
             typed = pathlib.Path(home, "typed")
-            # A terminal of its own, read until zsh ends.
+            # A pseudo-terminal, read until zsh ends.
             run(["zsh", "-fc", "zmodload zsh/zpty; zpty z zsh -d; while zpty -r z; do :; done"], ZDOTDIR=home,
                 FOLDER=str(self.FOLDER), LINE=line, KEY_PRESSED=widget, TYPED=str(typed), TERM="dumb", **environment)
             return typed.read_text()
@@ -76,7 +76,7 @@ class Zsh:
 
 
 class Tools:
-    """What is built everywhere."""
+    """Programs that every build has."""
 
     def test_sub_commands_of_a_program(self):
         self.assertEqual(sorted(self.complete("fovea rep")), ["replay", "report"])
@@ -108,7 +108,7 @@ class Tools:
 
 
 class Simulator:
-    """What fovea-sim is asked for."""
+    """Completion of fovea-sim."""
 
     def test_scenarios(self):
         self.assertIn("ball-moving", self.complete("fovea-sim run ball-m"))

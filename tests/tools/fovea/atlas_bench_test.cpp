@@ -1,4 +1,4 @@
-// What the sampler takes to stand on the bench is what the simulator draws there.
+// The sampler's objects on the bench match those that the simulator draws.
 #include "tools/fovea/atlas/bench.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ bool IsInOne(const Vec3& p_B, double clear) {
                      [&](const BenchThing& thing) { return IsIn(thing, p_B, clear); });
 }
 
-// Of the simulator's bench, within the table.
+// Objects of the simulator's bench, within the table.
 TEST(AtlasBenchTest, EveryObjectOnTheTableIsInTheAtlas) {
   constexpr double kSlack = 0.002;
   int high = 0;
@@ -58,7 +58,7 @@ TEST(AtlasBenchTest, SegmentMeetsAnObjectThatHoldsOneOfItsPoints) {
     for (int i = 0; i <= kPoints; ++i) {
       const Vec3 p = a + i / double{kPoints} * (b - a);
       inside = inside || IsInOne(p, 0.01);
-      near = near || IsInOne(p, 0.014);  // half the way between points further
+      near = near || IsInOne(p, 0.014);  // larger by half the distance between points
     }
     const bool meets = ThingInTheWay(a, b, 0.01);
     EXPECT_TRUE(!inside || meets);

@@ -1,4 +1,4 @@
-// A search for a way in a plane with a wall: through a gap, and through none.
+// Path search in a plane with a wall, with and without a gap.
 #include "tools/fovea/atlas/way.hpp"
 
 #include <gtest/gtest.h>
@@ -35,10 +35,11 @@ TEST(AtlasWayTest, PathIsFoundThroughAGapAndNotThroughAWall) {
   WayProblem closed = Wall(0.0);
   closed.draws = 2000;
   EXPECT_FALSE(WayExists(closed, At(-1.0, -2.0), {At(1.0, -2.0)}, 1));
-  EXPECT_TRUE(WayExists(closed, At(-1.0, -2.0), {At(1.0, -2.0), At(-2.0, 2.0)}, 1)) << "to any of the goals";
+  EXPECT_TRUE(WayExists(closed, At(-1.0, -2.0), {At(1.0, -2.0), At(-2.0, 2.0)}, 1))
+      << "a path to any one of the goals";
 }
 
-// Along a curve that random postures never meet: only by being pulled onto it.
+// A curve that random postures never hit: reachable only by pulling them onto it.
 TEST(AtlasWayTest, PulledPosturesStayOnTheAllowedCurve) {
   WayProblem problem = Wall(0.5);
   problem.is_allowed = [](const VecN& q) { return std::fabs(q[1] - std::sin(q[0])) < 1e-6; };

@@ -1,4 +1,4 @@
-// fovea detect and fovea calibrate as a user meets them, on ray-cast pictures.
+// fovea detect and fovea calibrate on the command line, with ray-cast pictures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ class EyeProgramsTest : public testing::Test {
     EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << "one line: " << result.err;
   }
-  // A disc of 80 mm, `Z` away.
+  // A picture of an 80 mm disc at distance `Z` [m].
   std::string Disc(const std::string& name, double Z) const {
     bench::PictureScene scene;
     scene.noise = 3.0;
@@ -77,7 +77,7 @@ TEST_F(EyeProgramsTest, DetectReportsEachImage) {
   }
 }
 
-TEST_F(EyeProgramsTest, DetectSaysWhatKeptItFromATarget) {
+TEST_F(EyeProgramsTest, DetectReportsWhyNoTargetIsFound) {
   const std::string disc = Disc("a.png", 0.4);
   const std::string empty = Write("empty.png", cv::Mat(480, 640, CV_8UC1, cv::Scalar(128)));
   const auto why = [](std::vector<std::string> arguments) {
@@ -85,21 +85,21 @@ TEST_F(EyeProgramsTest, DetectSaysWhatKeptItFromATarget) {
     return nlohmann::json::parse(Fovea(arguments).out)[0]["why"].get<std::string>();
   };
   cv::Mat part = cv::imread(disc, cv::IMREAD_GRAYSCALE);
-  part.colRange(385, 640) = part.at<std::uint8_t>(10, 10);  // the disc reaches from column 320 to 430
+  part.colRange(385, 640) = part.at<std::uint8_t>(10, 10);  // the disc covers columns 320 to 430
   EXPECT_THAT(why({Write("part.png", part), "--confidence-min", "1"}),
               testing::AllOf(testing::HasSubstr("the best outline, at ("),
                              testing::HasSubstr("below --confidence-min 1.00")));
   EXPECT_EQ(why({disc, "--radius-max", "20"}), "no outline of a circle with a radius of 8 to 20 px");
-  EXPECT_EQ(why({empty}), "the image shows nothing");
+  EXPECT_EQ(why({empty}), "the image has no contrast");
 }
 
-TEST_F(EyeProgramsTest, DetectDrawsWhatItFound) {
+TEST_F(EyeProgramsTest, DetectDrawsTheFoundOutline) {
   const std::string disc = Disc("a.png", 0.4);
   const std::string marked = folder_.path() / "new" / "marked";
   ASSERT_EQ(Fovea({"detect", "--target", "circle", "--marked", marked, disc}).exit_code, 0);
   const cv::Mat picture = cv::imread(marked + "/a-marked.png");
   ASSERT_EQ(picture.size(), cv::Size(640, 480));
-  // The outline, 55 px to the right of the middle, in the marks' blue; beside it nothing is drawn.
+  // The outline, 55 px right of the centre, is drawn in blue; beside it nothing is drawn.
   const cv::Vec3b on = picture.at<cv::Vec3b>(240, 375 + 55);
   EXPECT_GT(on[0], on[2] + 60) << on;
   const cv::Vec3b beside = picture.at<cv::Vec3b>(240, 375 + 70);
@@ -131,7 +131,7 @@ TEST_F(EyeProgramsTest, DetectRefusesTwoImagesOfOneMarkedName) {
   const std::filesystem::path marked = folder_.path() / "marked";
   ExpectRefused(Fovea({"detect", "--target", "circle", "--marked", marked, disc, folder_.path() / "a.jpg"}),
                 "a-marked.png; images need different names");
-  EXPECT_FALSE(std::filesystem::exists(marked)) << "nothing is half done";
+  EXPECT_FALSE(std::filesystem::exists(marked)) << "no files are written";
 }
 
 TEST_F(EyeProgramsTest, DetectRefusesAnUnreadableImage) {
@@ -160,8 +160,8 @@ TEST_F(EyeProgramsTest, CalibrateFindsTheFocalLength) {
   EXPECT_LT(found["sigma_px"].get<double>(), 1.0);
   ExpectRefused(Fovea({"calibrate", "focal", "--diameter", "0.08", "--delta-z", "0.15", Disc("b.png", 0.45),
                        Disc("a.png", 0.3)}),
-                "smaller in each view");
-  ExpectRefused(Fovea({"calibrate", "intrinsics", folder_.path().string()}), "4 at least");
+                "smaller in the farthest view");
+  ExpectRefused(Fovea({"calibrate", "intrinsics", folder_.path().string()}), "at least 4");
   ExpectRefused(Fovea({"calibrate", "intrinsics", folder_.path().string(), "--board", "9by6"}), "9by6");
 }
 

@@ -1,5 +1,4 @@
-// The judge of a fault matrix, on summaries made up for it: every verdict can be reached, and each bound be
-// broken.
+// The judge of the fault matrix, on synthetic summaries: each verdict is reached, and each bound is exceeded.
 #include "tools/fovea/faults/judge.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +16,7 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAre;
 
-// A run of 6 s that is disturbed from 2 s to 3 s, without a camera's noise or anything else that counts.
+// A run of 6 s, disturbed from 2 s to 3 s, without noise or other events.
 json Summary(const std::string& fault) {
   return {
       {"modes",
@@ -89,11 +88,11 @@ TEST_F(FaultJudge, EventAlsoWithoutTheFaultIsNoDetection) {
     (*summary)["injected"][0]["noticed"]["target_not_found"] = 2.0;
   }
   EXPECT_FALSE(Judged().ticks.has_value());
-  noticed()["limit_torque"] = 2.3;  // a limit alone
+  noticed()["limit_torque"] = 2.3;  // only a limit
   EXPECT_EQ(Judged().noticed_by, "limit torque");
   EXPECT_EQ(*Judged().ticks, 300);
   EXPECT_EQ(Judged().reaction, "limit torque");
-  noticed()["state_missing"] = 2.5;  // a guard comes first, however late
+  noticed()["state_missing"] = 2.5;  // a guard takes precedence, even if later
   EXPECT_EQ(Judged().noticed_by, "state_missing");
 }
 
@@ -103,7 +102,7 @@ TEST_F(FaultJudge, ProlongedModeIsADetection) {
   EXPECT_EQ(Judged().noticed_by, "boot goes on");
   EXPECT_EQ(*Judged().ticks, 10);
   noticed() = {{"mode_boot", 2.0}, {"mode_hold", 2.011}};
-  EXPECT_EQ(Judged().noticed_by, "") << "a tick later is no longer";
+  EXPECT_EQ(Judged().noticed_by, "") << "one tick is within the tolerance";
   without_["injected"][0]["noticed"]["mode_track"] = 2.118;
   EXPECT_EQ(Judged().noticed_by, "hold goes on");
   EXPECT_EQ(*Judged().ticks, 118);
@@ -121,7 +120,7 @@ TEST_F(FaultJudge, SafeStopNeedsBrakesAndRest) {
   EXPECT_EQ(*Judged().ticks, 19);
   EXPECT_EQ(Judged().end, End::kSafeStop);
   EXPECT_FALSE(Judged().Failed());
-  end()["goal_kept_since_s"] = 1.5;  // it stopped where it was to be; stopped it is
+  end()["goal_kept_since_s"] = 1.5;  // a stop at the goal is still a stop
   EXPECT_EQ(Judged().end, End::kSafeStop);
   end()["brakes"] = false;
   EXPECT_EQ(Judged().end, End::kUndefined);
@@ -129,7 +128,7 @@ TEST_F(FaultJudge, SafeStopNeedsBrakesAndRest) {
   end()["at_rest_since_s"] = nullptr;
   EXPECT_EQ(Judged().end, End::kUndefined);
   EXPECT_TRUE(Judged().Failed());
-  EXPECT_FALSE(Judged().is_on_its_way) << "it was to be at rest by now";
+  EXPECT_FALSE(Judged().is_on_its_way) << "the arm should be at rest by now";
 }
 
 TEST_F(FaultJudge, HeldNeedsHoldAndRest) {
@@ -143,22 +142,22 @@ TEST_F(FaultJudge, HeldNeedsHoldAndRest) {
 }
 
 TEST_F(FaultJudge, EveryOtherEndIsUndefined) {
-  end()["goal_kept_since_s"] = nullptr;  // it tracks, and misses
+  end()["goal_kept_since_s"] = nullptr;  // tracks, but misses the goal
   EXPECT_EQ(Judged().end, End::kUndefined);
   EXPECT_TRUE(Judged().Failed());
   EXPECT_TRUE(Judged().is_on_its_way);
-  end()["goal_kept_since_s"] = 5.6;  // only just there
+  end()["goal_kept_since_s"] = 5.6;  // kept for less than kept_s_
   EXPECT_EQ(Judged().end, End::kUndefined);
   run_["injected"][0]["to_s"] = 6.0;
-  EXPECT_FALSE(Judged().is_on_its_way) << "the fault is not over: more time would be more of it";
+  EXPECT_FALSE(Judged().is_on_its_way) << "the fault lasts to the end: more time would not help";
   run_["injected"][0]["to_s"] = 3.0;
   end()["goal_kept_since_s"] = 5.5;
   EXPECT_EQ(Judged().end, End::kRecovered);
   EXPECT_FALSE(Judged().is_on_its_way);
   end()["goal_kept_since_s"] = 5.9;
-  kept_s_ = 0.0;  // it is a mean over half a second itself
+  kept_s_ = 0.0;  // the error is already a mean over half a second
   EXPECT_EQ(Judged().end, End::kRecovered);
-  Mode(5.0, "boot");  // at the goal by chance: nothing keeps it there
+  Mode(5.0, "boot");  // at the goal by chance, without tracking
   EXPECT_EQ(Judged().end, End::kUndefined);
 }
 
@@ -166,17 +165,17 @@ TEST_F(FaultJudge, ExceedingAnyArmLimitFails) {
   for (const std::string& limit : PhysicalLimits()) {
     run_ = Summary("freeze");
     run_["limits"][limit] = 1.0 + 1e-10;
-    EXPECT_FALSE(Judged().Failed()) << limit << ": rounding passes none";
+    EXPECT_FALSE(Judged().Failed()) << limit << ": rounding does not exceed a limit";
     run_["limits"][limit] = 1.001;
     EXPECT_THAT(Judged().exceeded, ElementsAre(limit));
     EXPECT_TRUE(Judged().Failed());
-    EXPECT_EQ(Judged().end, End::kRecovered) << "that it recovered excuses nothing";
+    EXPECT_EQ(Judged().end, End::kRecovered) << "a recovery does not excuse it";
     run_["limits"][limit] = std::nan("");
     EXPECT_THAT(Judged().exceeded, ElementsAre(limit));
   }
 }
 
-// The servo's own barriers, and whatever is touched.
+// The servo's own barriers, and any contact.
 TEST_F(FaultJudge, AnyViolationByTheTruthFails) {
   for (const char* name : {"workspace", "hand.planes[0]", "hand.boxes[1]", "cartesian_speed",
                            "true_joint_acceleration", "contact_bench", "contact_target", "contact_self"}) {
@@ -187,7 +186,7 @@ TEST_F(FaultJudge, AnyViolationByTheTruthFails) {
   }
   run_["violations"] = {{"joint_velocity", 7}};
   run_["limits"]["joint_velocity"] = 1.2;
-  EXPECT_THAT(Judged().exceeded, ElementsAre("joint_velocity")) << "once";
+  EXPECT_THAT(Judged().exceeded, ElementsAre("joint_velocity")) << "listed once";
 }
 
 TEST_F(FaultJudge, MotionUnderAPermanentFaultIsNotUndefined) {
@@ -200,7 +199,7 @@ TEST_F(FaultJudge, MotionUnderAPermanentFaultIsNotUndefined) {
   EXPECT_EQ(Judged().off_mm, 1.8);
   EXPECT_FALSE(Judged().Failed());
   run_["path_error_mm_max"] = nullptr;
-  EXPECT_EQ(Judged().end, End::kUndefined) << "it follows no way";
+  EXPECT_EQ(Judged().end, End::kUndefined) << "no path is followed";
 }
 
 TEST_F(FaultJudge, MotionWhereTheArmShouldStandFails) {
@@ -244,7 +243,7 @@ TEST(FaultTable, ListsEveryFaultAndNoCellTwice) {
     EXPECT_EQ(&FaultOf(fault.id), &fault);
     for (const FaultLevel& level : fault.levels) {
       EXPECT_GT(level.lasts_s, 0.0);
-      EXPECT_TRUE(level.lasts_s <= 5.0 || level.lasts_s == kForever) << "the runs beside are no longer";
+      EXPECT_TRUE(level.lasts_s <= 5.0 || level.lasts_s == kForever) << "the undisturbed runs are not longer";
       EXPECT_STRNE(level.figures, "");
       EXPECT_STRNE(level.why, "");
     }
@@ -266,7 +265,7 @@ TEST(FaultStages, FaultFromTheStartBeginsWithTheFirstTick) {
   const StageSetup setup = matrix::SetUp(TimesOf(mode, Summary("nothing")), Stage::kBoot, &load);
   EXPECT_EQ(setup.onset_s, 0.0);
   EXPECT_NE(setup.name, matrix::SetUp(TimesOf(mode, Summary("nothing")), Stage::kBoot, &FaultOf("load")).name)
-      << "it has a run of its own beside it";
+      << "it has its own undisturbed run";
 }
 
 TEST(FaultStages, StageTimesComeFromAnUndisturbedRun) {

@@ -1,4 +1,4 @@
-// `fovea features` as a user meets it: what each target controls, computed, and what is refused.
+// `fovea features` on the command line: computed properties of each target, and refused options.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ Json Study(std::vector<std::string> arguments) {
   return Json::parse(result.out);
 }
 
-// Free is what L_s sends to nothing; each twist of unit length and independent of the others by its words.
+// Free twists are the null space of L_s; each has its own description.
 void ExpectFree(const Json& json, std::size_t count) {
   EXPECT_EQ(json["rank"].get<std::size_t>(), 6 - count);
   ASSERT_EQ(json["free"].size(), count);
@@ -63,14 +63,14 @@ TEST(FeaturesProgramTest, SquareSideControlsFourAndCornersControlSix) {
   EXPECT_EQ(corners["controls"].size(), 6U);
 }
 
-// The source's claim about the equilateral triangle, corrected, and where the rank is lost in truth.
+// Corrects the source's claim about the equilateral triangle, and shows where the rank really drops.
 TEST(FeaturesProgramTest, TriangleLosesRankOnlyOnItsCylinder) {
   const std::string equilateral = "0,-0.06,0.0519615242270663,0.03,-0.0519615242270663,0.03";
-  // Alike to the eye, and no good for a detector, which is why a scenario refuses it.
+  // Its corners look alike, so a detector cannot tell them apart and a scenario refuses it.
   const test::ProgramResult refused =
       Features({"--target", "triangle", "--feature", "corners", "--triangle", equilateral});
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_NE(refused.err.find("too much alike"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("too similar"), std::string::npos) << refused.err;
   Json tables = Study({"--tables"});
   const auto row = [&](const std::string& name) {
     return *std::find_if(tables.begin(), tables.end(),
@@ -82,8 +82,8 @@ TEST(FeaturesProgramTest, TriangleLosesRankOnlyOnItsCylinder) {
   EXPECT_EQ(row("circle")["rank"], 3);
   EXPECT_EQ(row("square, source's")["rank"], 4);
   EXPECT_EQ(row("triangle, pose")["rank"], 6);
-  // Extraction difficulty, on pictures: what is round is found in all of them, and what is measured in the
-  // picture scatters by some millionths of its range per gray level, a pose by many more.
+  // Detection difficulty on pictures: round targets are found in all of them. Features measured in the
+  // picture scatter by some millionths of their range per gray level, a pose by many more.
   for (const Json& entry : tables) {
     const std::string name = entry["target"];
     std::cout << name << ": found " << entry["found"] << ", scatter of range " << entry["scatter_of_range"]
@@ -91,7 +91,7 @@ TEST(FeaturesProgramTest, TriangleLosesRankOnlyOnItsCylinder) {
     const bool is_round = name.rfind("circle", 0) == 0 || name.rfind("sphere", 0) == 0;
     EXPECT_GE(entry["found"].get<double>(), is_round ? 1.0 : 0.85) << name;
     EXPECT_EQ(entry["scatter_found"], 24) << name;
-    EXPECT_GT(entry["scatter_of_range"].get<double>(), 1e-7) << name << ": noise that leaves no trace";
+    EXPECT_GT(entry["scatter_of_range"].get<double>(), 1e-7) << name << ": noise without any effect";
     if (name != "  on its cylinder" && name != "triangle, pose") {
       EXPECT_LT(entry["scatter_of_range"].get<double>(), 1.2e-5) << name;
     }
@@ -131,9 +131,9 @@ TEST(FeaturesProgramTest, RefusesBadOptionsInOneLine) {
   refused({"--pose", "0,0,0.4"}, "seven numbers");
   refused({"--pose", "0,0,0.4,1,0,0,x"}, "seven numbers");
   refused({"--pose", "0,0,0.4,0,0,0,0"}, "seven numbers");
-  refused({"--pose", "0,0,-0.4,1,0,0,0"}, "before the camera");
+  refused({"--pose", "0,0,-0.4,1,0,0,0"}, "in front of the camera");
   refused({"--target", "cube"}, "cube");
-  refused({"--target", "circle", "--feature", "corners"}, "none of a circle's");
+  refused({"--target", "circle", "--feature", "corners"}, "not a feature of a circle");
   refused({"--target", "square", "--hold-orientation"}, "too many entries");
 }
 

@@ -1,5 +1,5 @@
-// `fovea atlas`: the same figures however many jobs run, after a kill too; starts that are what they are said
-// to be; refusals in one line.
+// `fovea atlas`: the same figures for any number of jobs and after a kill;
+// starts that match their description; errors in one line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ std::string Content(const fs::path& file) {
 
 class AtlasTest : public testing::Test {
  protected:
-  // Runs too short to reach anything, so that many fit into a test.
+  // Runs too short to converge, so that many fit into a test.
   static std::vector<std::string> Arguments(const std::string& out, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{
         FOVEA_PROGRAM, "atlas", "--target", "sphere", "--set", "run.duration_s=0.15",
@@ -58,7 +58,7 @@ class AtlasTest : public testing::Test {
 
 TEST_F(AtlasTest, ResultIsTheSameForAnyJobCountAndAfterAKill) {
   const test::ProgramResult one = Atlas("one", {"--runs", "3", "-j", "1"});
-  ASSERT_EQ(one.exit_code, 1) << one.err;  // runs this short fail
+  ASSERT_EQ(one.exit_code, 1) << one.err;  // such short runs fail
   const json figures = json::parse(one.out);
   EXPECT_EQ(figures["runs"], 3);
   EXPECT_EQ(figures["seed_kind"], "tuning");
@@ -70,7 +70,7 @@ TEST_F(AtlasTest, ResultIsTheSameForAnyJobCountAndAfterAKill) {
   const test::ProgramResult two = Atlas("two", {"--runs", "3", "-j", "2"});
   EXPECT_EQ(two.out, one.out);
 
-  // Killed once a run is done, with a row that was cut off.
+  // Killed after the first run, with a truncated row.
   std::vector<std::string> words = Arguments(folder_.path() / "killed", {"--runs", "3", "-j", "1"});
   std::vector<char*> argv;
   argv.reserve(words.size() + 1);
@@ -100,7 +100,7 @@ TEST_F(AtlasTest, ResultIsTheSameForAnyJobCountAndAfterAKill) {
   std::ofstream(rows, std::ios::app) << R"({"run":2,"start":{"q":[0.1)";
   const test::ProgramResult resumed = Atlas("killed", {"--runs", "3", "-j", "1", "--resume"});
   EXPECT_EQ(resumed.out, one.out);
-  EXPECT_EQ(Content(rows).substr(0, before.size()), before) << "what was done is not done again";
+  EXPECT_EQ(Content(rows).substr(0, before.size()), before) << "finished runs are not repeated";
 
   std::vector<std::string> of_another = Arguments(folder_.path() / "killed", {"--runs", "3", "--resume"});
   *std::find(of_another.begin(), of_another.end(), "1") = "2";
@@ -109,7 +109,7 @@ TEST_F(AtlasTest, ResultIsTheSameForAnyJobCountAndAfterAKill) {
   EXPECT_THAT(other.err, HasSubstr("rows of another"));
 }
 
-// The command beside a failure repeats it: to the last bit of its log.
+// The command listed with a failure repeats its run bit-exactly.
 TEST_F(AtlasTest, FailureCommandRepeatsItsRunBitExact) {
   const test::ProgramResult atlas = Atlas("atlas", {"--runs", "1"});
   const std::string command = json::parse(atlas.out)["failures"][0]["command"];
@@ -122,14 +122,14 @@ TEST_F(AtlasTest, FailureCommandRepeatsItsRunBitExact) {
   EXPECT_EQ(json::parse(again.out)["log_hash"], row["log_hash"]);
 }
 
-// The refusals of starts that are drawn alone are those of the runs from them.
+// Drawing starts only gives the same refusals as running them.
 TEST_F(AtlasTest, DrawsStartsWithoutRunningThem) {
   const json runs = json::parse(Atlas("runs", {"--runs", "2"}).out);
   const test::ProgramResult draws = Atlas("draws", {"--runs", "2", "--draw-only"});
   ASSERT_EQ(draws.exit_code, 0) << draws.err;
   EXPECT_EQ(json::parse(draws.out)["sampler"], runs["sampler"]);
   EXPECT_EQ(json::parse(draws.out)["starts"], 2);
-  EXPECT_FALSE(fs::exists(folder_.path() / "draws")) << "nothing is run";
+  EXPECT_FALSE(fs::exists(folder_.path() / "draws")) << "no run is started";
 }
 
 TEST_F(AtlasTest, RefusesBadOptionsInOneLine) {
@@ -137,7 +137,7 @@ TEST_F(AtlasTest, RefusesBadOptionsInOneLine) {
   ExpectRefused({"--runs", "1", "--set", "servo.lamda=3"}, "did you mean servo.lambda");
   fs::create_directories(folder_.path() / "refused");
   std::ofstream(folder_.path() / "refused" / "rows.jsonl") << "{}\n";
-  ExpectRefused({"--resume"}, "no row of an atlas");
+  ExpectRefused({"--resume"}, "not a row of an atlas");
   const config::FolderLock another(folder_.path() / "refused");
   ExpectRefused({}, "another run writes there");
   EXPECT_EQ(Content(folder_.path() / "refused" / "rows.jsonl"), "{}\n");
@@ -147,7 +147,7 @@ TEST_F(AtlasTest, RefusesBadOptionsInOneLine) {
   EXPECT_EQ(test::RunProgram({FOVEA_PROGRAM, "atlas"}).exit_code, 2);
 }
 
-// Each bound is the rate from which what was seen is 1.96 deviations off.
+// Each bound is the rate at which the observed share is 1.96 deviations off.
 TEST(AtlasFigures, WilsonIntervalMatchesItsDefinition) {
   for (const auto& [converged, runs] : {std::pair{198, 200}, {20, 24}, {1, 3}}) {
     const std::array<double, 2> bounds = atlas::Wilson95(converged, runs);
@@ -162,7 +162,7 @@ TEST(AtlasFigures, WilsonIntervalMatchesItsDefinition) {
   EXPECT_NEAR(atlas::Wilson95(0, 10)[0], 0.0, 1e-12);
 }
 
-// A start is refused for what nothing could be done about, never for being hard.
+// A start is refused only if no servo could succeed, never for being difficult.
 TEST(AtlasSampler, RefusesStartsOnlyForGeometryOrAMissingPath) {
   EXPECT_THAT(atlas::kRejectionNames,
               testing::ElementsAreArray({"start_outside_barrier", "start_below_table", "target_near_edge",
@@ -182,7 +182,7 @@ TEST(AtlasFigures, GoalAllowsOneMissInAThousand) {
   EXPECT_FALSE(figures.ReachedGoal());
 }
 
-// The page, the table and the JSON of every target tell what was refused, and over which seed.
+// Page, table and JSON of every target report the refusals and the seed.
 TEST(AtlasFigures, RefusalsAndSeedAreReported) {
   atlas::Figures figures;
   figures.heading = {"circle", 7, {}, "0123456789abcdef"};

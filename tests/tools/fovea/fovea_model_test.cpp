@@ -1,4 +1,4 @@
-// `fovea model` from outside, and the C++ that it writes against the arm that it was written from.
+// `fovea model` on the command line, and its generated C++ compared with the arm.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -58,11 +58,11 @@ TEST(FoveaModel, DefaultStateIsTheReadyPostureAtRest) {
 }
 
 TEST(FoveaModel, RefusesUnknownArmsAndBadNumbers) {
-  EXPECT_THAT(Model({"nix"}).err, HasSubstr("\"nix\": no shipped arm of that name"));
+  EXPECT_THAT(Model({"nix"}).err, HasSubstr("\"nix\": no shipped arm has this name"));
   EXPECT_EQ(Model({"nix"}).exit_code, 2);
   EXPECT_THAT(Model({"panda", "--at", "1,2"}).err, HasSubstr("--at has 2 numbers: 7, 14 or 21 are allowed"));
   EXPECT_THAT(Model({"panda", "--at", "nan,0,0,0,0,0,0"}).err,
-              HasSubstr("nan is not allowed: a finite number is"));
+              HasSubstr("nan is not allowed: expected a finite number"));
   EXPECT_EQ(Model({"panda", "--json", "--emit-cpp"}).exit_code, 2);
 }
 

@@ -1,4 +1,4 @@
-// The program fovea as a user meets it: what it is given, and what it says when that will not do.
+// The program fovea on the command line: results and errors.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class FoveaProgramTest : public testing::Test {
     return test::RunProgram(arguments);
   }
 
-  // A run's folder with a short log in it.
+  // Makes a run's folder with a short log.
   fs::path MakeRun(const std::string& name) const {
     const fs::path run = folder_.path() / name;
     fs::create_directories(run);
@@ -55,7 +55,7 @@ class FoveaProgramTest : public testing::Test {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << "one line: " << result.err;
   }
 
-  // `fovea gains` for the exercise, with `more` behind it.
+  // `fovea gains` for the exercise, with `more` options.
   static test::ProgramResult Gains(const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments = {
         "gains", "--mass", "16", "--damping", "16", "--stiffness", "4", "--closed-loop-stiffness", "16"};
@@ -73,7 +73,7 @@ TEST_F(FoveaProgramTest, ReportIsWrittenBesideTheLog) {
     const test::ProgramResult result = Fovea({"report", given.string()});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.out, (run / "report.html").string() + "\n");
-    EXPECT_GT(fs::file_size(run / "report.html"), 1'000'000U) << "its libraries are in it";
+    EXPECT_GT(fs::file_size(run / "report.html"), 1'000'000U) << "the page includes its libraries";
   }
 }
 
@@ -153,7 +153,7 @@ TEST_F(FoveaProgramTest, GainsAsJsonHaveStableNames) {
   EXPECT_EQ(json["stable"], true);
   EXPECT_EQ(json["delay_ms"], 2.5);
   EXPECT_NEAR(json["gain_edge"], 536.070924, 1e-5);
-  EXPECT_NEAR(json["delay_edge_ms"], 1854.09043, 1e-4) << "counted from none";
+  EXPECT_NEAR(json["delay_edge_ms"], 1854.09043, 1e-4) << "the delay edge counts from zero delay";
   EXPECT_NEAR(json["closed_settle_time_s"], 5.8339217, 1e-7);
   EXPECT_EQ(json["discrete_poles"].size(), 5U);
   EXPECT_EQ(json["discrete_poles_as_s"][0].size(), 2U);
@@ -162,7 +162,7 @@ TEST_F(FoveaProgramTest, GainsAsJsonHaveStableNames) {
 
 TEST_F(FoveaProgramTest, GainsReportUnstableNegativeAndUndampedLoops) {
   const test::ProgramResult unstable = Gains({"--delay-ms", "1900"});
-  EXPECT_EQ(unstable.exit_code, 1) << "the goal is missed";
+  EXPECT_EQ(unstable.exit_code, 1) << "an unstable loop misses the goal";
   EXPECT_NE(unstable.out.find("UNSTABLE"), std::string::npos);
   EXPECT_NE(unstable.out.find("  stable from 0.9"), std::string::npos) << unstable.out;
   EXPECT_NE(unstable.out.find("poles are not listed"), std::string::npos);
@@ -214,12 +214,12 @@ TEST_F(FoveaProgramTest, HelpShowsExamples) {
   EXPECT_EQ(Fovea({}).exit_code, 2);
 }
 
-// The table in the repository is what the program says; renew it with `fovea guards`.
+// The table in the repository matches the program; renew it with `fovea guards`.
 TEST_F(FoveaProgramTest, TableOfGuardsIsUpToDateAndComplete) {
   std::ifstream stream(test::SourceRoot() / "firmware/GUARDS.md");
   const std::string table{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_EQ(Fovea({"guards"}).out, table);
-  EXPECT_EQ(table.find("|  |"), std::string::npos) << "an empty cell";
+  EXPECT_EQ(table.find("|  |"), std::string::npos) << "the table has an empty cell";
   for (int i = 0; i < hal::kNumLimits; ++i) {
     EXPECT_NE(table.find(std::string("| `") + hal::Name(static_cast<hal::Limit>(i)) + "` |"),
               std::string::npos);

@@ -1,4 +1,4 @@
-// What every benchmark prints: figures with stable names.
+// The output of every benchmark: figures with stable names.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@ struct Figure {
   std::string name;
   double value = 0.0;
   std::string unit;
-  std::optional<double> goal;  // where there is one
+  std::optional<double> goal;  // empty: none
 };
 
 // As a JSON list of {name, value, unit, goal}.

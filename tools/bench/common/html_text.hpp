@@ -1,11 +1,11 @@
-// Words in a page.
+// Text in an HTML page.
 #pragma once
 
 #include <string>
 
 namespace fovea::bench {
 
-// `text` as a page shows it, whatever it holds.
+// `text` with the characters & < > " escaped for HTML.
 inline std::string Escaped(const std::string& text) {
   std::string escaped;
   for (const char c : text) {

@@ -44,18 +44,18 @@ MachineFacts LookAtMachine(const std::vector<std::string>& missing, bool kept_aw
   facts.limits = missing;
   if (FirstLine("/sys/kernel/realtime") != "1") {
     facts.limits.emplace_back(
-        "the kernel is not PREEMPT_RT: a driver or a long system call may hold the thread up");
+        "the kernel is not PREEMPT_RT: a driver or a long system call may delay the thread");
   }
   const std::string governor = FirstLine("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
   if (!governor.empty() && governor != "performance") {
     facts.limits.push_back("the CPU governor is \"" + governor +
-                           "\": cpupower frequency-set --governor performance keeps the clock up");
+                           "\": cpupower frequency-set --governor performance keeps the clock high");
   }
   const std::string idle_driver = FirstLine("/sys/devices/system/cpu/cpuidle/current_driver");
   if (!kept_awake && !idle_driver.empty() && idle_driver != "none") {
     facts.limits.emplace_back(
-        "idle states are on: holding /dev/cpu_dma_latency at 0 keeps the processor awake (--policy fifo "
-        "does)");
+        "idle states are on: holding /dev/cpu_dma_latency at 0 keeps the processor awake (--policy fifo does "
+        "this)");
   }
   if (CpuInfo("flags").find(" hypervisor") != std::string::npos) {
     facts.limits.emplace_back("this is a virtual machine: its host may take the processor away at any time");
@@ -104,12 +104,12 @@ std::vector<std::string> InWords(const ProcessorTime::Shares& shares) {
   std::vector<std::string> words;
   if (shares.stolen > 0.001) {
     words.push_back(
-        fmt::format("the host took {:.1f} % of the processors' time away from this virtual machine meanwhile",
+        fmt::format("meanwhile the host took {:.1f} % of the processors' time away from this virtual machine",
                     100.0 * shares.stolen));
   }
   if (shares.others > 0.05) {
-    words.push_back(
-        fmt::format("other processes had {:.0f} % of the processors' time meanwhile", 100.0 * shares.others));
+    words.push_back(fmt::format("meanwhile other processes used {:.0f} % of the processors' time",
+                                100.0 * shares.others));
   }
   return words;
 }

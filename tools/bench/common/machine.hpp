@@ -1,4 +1,4 @@
-// What of a machine decides whether it holds 1 kHz.
+// The properties of a machine that decide whether it keeps 1 kHz.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@ struct MachineFacts {
   std::string kernel;
   std::string processor;
   int cores = 0;
-  std::vector<std::string> limits;  // what stands in the way, in words that say what to do
+  std::vector<std::string> limits;  // one line per obstacle to 1 kHz, with its remedy if there is one
 };
 
-// `missing` is what MakeThreadRealtime could not have. `kept_awake`: it was asked to keep the processor
-// awake.
+// `missing`: the privileges that MakeThreadRealtime did not get. `kept_awake`: it was asked to keep the
+// processor awake.
 MachineFacts LookAtMachine(const std::vector<std::string>& missing, bool kept_awake);
 
-// How the processors' time went, by the kernel's own account (/proc/stat), since the first call of Start.
+// How the time of all processors was used since construction, from the kernel's counters (/proc/stat).
 class ProcessorTime {
  public:
   ProcessorTime();
-  // Of all processors' time until now, 0 to 1: what the virtual machine's host took away, and what processes
-  // other than this one and its children had.
+  // Shares of the time of all processors, 0 to 1: `stolen` by the virtual machine's host, and used by
+  // `others`, the processes other than this one and its children.
   struct Shares {
     double stolen = 0.0;
     double others = 0.0;
@@ -41,7 +41,7 @@ class ProcessorTime {
   Counts start_;
 };
 
-// What `shares` say in words, one line each; none where they are small.
+// One line of text for each share that is not small.
 std::vector<std::string> InWords(const ProcessorTime::Shares& shares);
 
 }  // namespace fovea::bench

@@ -11,11 +11,10 @@ namespace fovea::bench {
 namespace fs = std::filesystem;
 
 Scratch::Scratch() {
-  // mkdtemp replaces the last six letters, which it wants to be these, by others that make the name one of
-  // its own.
+  // mkdtemp requires six X at the end. It replaces them so that the name is unique.
   std::string name = (fs::temp_directory_path() / "fovea-bench-").string() + std::string(6, 'X');
   if (mkdtemp(name.data()) == nullptr) {
-    throw std::runtime_error("no folder can be made in " + fs::temp_directory_path().string());
+    throw std::runtime_error("cannot create a folder in " + fs::temp_directory_path().string());
   }
   path_ = name;
 }

@@ -1,14 +1,14 @@
-// A folder for what another program writes.
+// A temporary folder for the output of another program.
 #pragma once
 
 #include <filesystem>
 
 namespace fovea::bench {
 
-// Of its own under the system's temporary folder, gone with the object.
+// Creates a new folder in the system's temporary folder. The destructor deletes it.
 class Scratch {
  public:
-  Scratch();  // std::runtime_error when none can be made
+  Scratch();  // std::runtime_error when the folder cannot be created
   ~Scratch();
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;

@@ -9,8 +9,8 @@ namespace fovea::bench {
 std::filesystem::path SimulatorBeside(const std::string& needs) {
   std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "fovea-sim";
   if (!std::filesystem::is_regular_file(program)) {
-    throw std::runtime_error(program.string() + ": not there; " + needs +
-                             " needs the simulator built beside it");
+    throw std::runtime_error(program.string() + ": not found; " + needs +
+                             " needs the simulator in the same folder");
   }
   return program;
 }

@@ -1,4 +1,4 @@
-// Another program: the simulator beside this one, and what the shell runs.
+// Starts other programs: the simulator beside this one, and shell commands.
 #pragma once
 
 #include <filesystem>
@@ -6,11 +6,11 @@
 
 namespace fovea::bench {
 
-// Where fovea-sim is: in this program's folder. Throws std::runtime_error, which names who `needs` it, when
-// it is not there.
+// The path of fovea-sim in this program's folder. Throws std::runtime_error when it does not exist; the text
+// names the command that `needs` it.
 std::filesystem::path SimulatorBeside(const std::string& needs);
 
-// `text` as one word of a command.
+// `text` quoted as one word of a shell command.
 std::string Quoted(const std::string& text);
 
 struct ShellResult {

@@ -15,8 +15,8 @@ struct Ranked {
   std::size_t block = 0;
 };
 
-// All values of some blocks from the most to the least, so that a percentile of any choice of blocks is found
-// by a walk from the top.
+// All values of the first `count` blocks in descending order. One pass from the top then finds a percentile
+// of any selection of blocks.
 class RankedBlocks {
  public:
   RankedBlocks(const std::vector<std::vector<double>>& blocks, std::size_t count) {
@@ -30,7 +30,7 @@ class RankedBlocks {
               [](const Ranked& a, const Ranked& b) { return a.value > b.value; });
   }
 
-  // Of the blocks, each taken so many `times`.
+  // Percentile `p` of the values when block i counts `times[i]` times.
   [[nodiscard]] double Percentile(const std::vector<std::size_t>& times, double p) const {
     std::size_t total = 0;
     for (std::size_t i = 0; i < sizes_.size(); ++i) {
@@ -40,7 +40,7 @@ class RankedBlocks {
       return 0.0;
     }
     const auto rank = static_cast<std::size_t>(std::llround(p * static_cast<double>(total - 1)));
-    std::size_t above = total - 1 - rank;  // so many are larger
+    std::size_t above = total - 1 - rank;  // number of values that are larger
     for (const Ranked& entry : ranked_) {
       if (above < times[entry.block]) {
         return entry.value;

@@ -1,4 +1,4 @@
-// Durations: taken, their percentiles, and how sure a ratio of those is.
+// Durations: measuring them, their percentiles, and the confidence interval of a ratio of percentiles.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace fovea::bench {
 
-// The value that a share `p` of `values` does not pass; 0 when there are none.
+// Percentile `p` (0 to 1) of `values`; 0 when there are none.
 inline double Percentile(std::vector<double> values, double p) {
   if (values.empty()) {
     return 0.0;
@@ -20,7 +20,7 @@ inline double Percentile(std::vector<double> values, double p) {
   return *at;
 }
 
-// What `call` takes with each of `cases` on the average [ns], timed once.
+// Mean duration [ns] of `call` over all `cases`, measured once.
 template <typename Cases, typename Call>
 double MeanNs(Cases& cases, const Call& call) {
   const auto begin = std::chrono::steady_clock::now();
@@ -31,7 +31,7 @@ double MeanNs(Cases& cases, const Call& call) {
   return took.count() / static_cast<double>(std::size(cases));
 }
 
-// The median of that over so many `rounds` [ns].
+// Median of MeanNs over `rounds` measurements [ns].
 template <typename Cases, typename Call>
 double MedianNs(int rounds, Cases& cases, const Call& call) {
   std::vector<double> means;
@@ -43,27 +43,27 @@ double MedianNs(int rounds, Cases& cases, const Call& call) {
 }
 
 struct Ratio {
-  double value = 0.0;  // of both percentiles, all blocks together
+  double value = 0.0;  // ratio of the percentiles of all blocks together
   double low = 0.0;    // its 90 % interval
   double high = 0.0;
 };
 
-// Percentile `p` of `above` over that of `below`, which were measured block by block in turns: block i of one
-// beside block i of the other. The interval is by drawing such pairs with replacement (bootstrap), so that
-// what one disturbed minute did to both cancels. Blocks that only one of them has are left out; all 0 where
-// none are left or the lower percentile is 0.
+// Percentile `p` of `above` divided by that of `below`. Both were measured in turns: block i of one next to
+// block i of the other. The interval comes from drawing such pairs with replacement (bootstrap), so a
+// disturbance that affects both blocks of a pair cancels. Blocks that only one of them has are ignored. All
+// values are 0 when no pair is left or the percentile of `below` is 0.
 Ratio RatioOfPercentiles(const std::vector<std::vector<double>>& above,
                          const std::vector<std::vector<double>>& below, double p, unsigned seed = 1);
 
-// Counts in bins whose edges are powers of 2^(1/4), from the bin of the least value to that of the most.
-// Values of 0 and below are in the bin from 0 to the first edge, 1.
+// Counts in bins whose edges are powers of 2^(1/4), from the bin of the least value to that of the largest.
+// Values below 1 are in the bin from 0 to 1.
 struct LogHistogram {
   struct Bin {
     double low = 0.0;
     double high = 0.0;
     std::int64_t count = 0;
   };
-  std::vector<Bin> bins;  // one beside the other, none left out
+  std::vector<Bin> bins;  // adjacent, without gaps
 };
 LogHistogram CountByLog(const std::vector<double>& values);
 

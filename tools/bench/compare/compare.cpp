@@ -21,7 +21,7 @@ struct Entry {
   std::string unit;
 };
 
-// The figures of a file that have a value, in its order.
+// The figures of a file that have a value, in the order of the file.
 std::vector<Entry> Read(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) {
@@ -29,7 +29,7 @@ std::vector<Entry> Read(const std::string& file) {
   }
   const json list = json::parse(stream, nullptr, /*allow_exceptions=*/false);
   if (!list.is_array()) {
-    throw config::InputError(file + ": a list of figures as --json prints it is allowed");
+    throw config::InputError(file + ": must be a list of figures, as --json prints it");
   }
   std::vector<Entry> entries;
   for (const json& figure : list) {

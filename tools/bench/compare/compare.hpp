@@ -1,4 +1,4 @@
-// `fovea-bench compare OLD NEW`: the ratio of each figure that both have.
+// `fovea-bench compare OLD NEW`: the ratio of each figure that both files have.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 namespace fovea::bench {
 
 struct CompareArguments {
-  std::string old_file;  // as --json printed them
+  std::string old_file;  // output of --json
   std::string new_file;
-  double most = 0.0;  // a figure whose new value is more than this times the old fails; 0: none does
+  double most = 0.0;  // a figure fails when its new value exceeds this multiple of the old; 0: no limit
 };
 
 int RunCompare(const CompareArguments& arguments);

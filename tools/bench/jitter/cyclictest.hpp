@@ -1,4 +1,4 @@
-// The well-known measure of wake-up latency, where the machine has it: cyclictest of rt-tests.
+// Wake-up latency by cyclictest (rt-tests), the usual tool for it, if it is installed.
 #pragma once
 
 #include <optional>
@@ -10,12 +10,12 @@ namespace fovea::bench {
 // Whether the program is in PATH.
 bool HasCyclictest();
 
-// The latencies [us] of `periods` of 1 ms by one thread of cyclictest, under `policy` ("fifo" at priority 80,
-// or "other"), bound to processor `cpu` where that is not below 0. It counts whole microseconds; the middle
-// of each stands for all of its. Nothing when it would not run, e.g. for want of a privilege.
+// The latencies [us] of one cyclictest thread over `periods` of 1 ms. `policy`: "fifo" (at priority 80) or
+// "other". `cpu`: the processor it is bound to; below 0: any. cyclictest counts whole microseconds; each
+// latency is the middle of its microsecond. nullopt when cyclictest fails, e.g. without the privilege.
 std::optional<std::vector<double>> RunCyclictest(int periods, const std::string& policy, int cpu);
 
-// What cyclictest's --json file says of one thread, as latencies [us]; nothing when it is none.
+// The latencies [us] of one thread from the text of cyclictest's --json file; nullopt when it is invalid.
 std::optional<std::vector<double>> ReadCyclictest(const std::string& text);
 
 }  // namespace fovea::bench

@@ -11,7 +11,7 @@ namespace fovea::bench {
 namespace {
 
 constexpr std::int64_t kFrameNs = 33'333'333;
-constexpr unsigned kPictures = 8;  // that differ by their noise; shown in turns
+constexpr unsigned kPictures = 8;  // with different noise; shown in turns
 
 PictureScene SceneAtGoal(const features::TargetFeature& feature, unsigned seed) {
   Body ball;
@@ -39,7 +39,7 @@ vision::DetectorConfig DetectorFor(const features::TargetFeature& feature) {
 
 }  // namespace
 
-// Pictures by the clock. One that nobody waited for is lost, as a real camera's.
+// Delivers pictures in real time. A picture that nobody waits for is lost, as with a real camera.
 class EyeChain::Camera final : public hal::Camera {
  public:
   explicit Camera(EyeChain& chain) : chain_(chain), start_ns_(clock_.NowNs()) {}

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kBlockPeriods = 1000;  // of one kind, before the next has its turn
+constexpr int kBlockPeriods = 1000;  // of one kind before the next kind's turn
 constexpr int kPicturesPerS = 31;
 
 void Say(int second, int seconds) {
@@ -34,7 +34,7 @@ void Say(int second, int seconds) {
   }
 }
 
-// Whom the thread's processor is given to, and by which policy. Returns what could not be had.
+// Sets the thread's policy and processor. Returns the privileges that are missing.
 std::vector<std::string> PrepareThread(const JitterArguments& arguments) {
   std::vector<std::string> missing;
   if (arguments.policy == "fifo") {
@@ -46,13 +46,13 @@ std::vector<std::string> PrepareThread(const JitterArguments& arguments) {
     CPU_SET(static_cast<std::size_t>(arguments.cpu), &set);
     if (sched_setaffinity(0, sizeof(set), &set) != 0) {
       throw config::InputError(
-          fmt::format("--cpu {}: this machine has no such processor for us", arguments.cpu));
+          fmt::format("--cpu {}: this machine has no such processor, or we may not use it", arguments.cpu));
     }
   }
   return missing;
 }
 
-// One block of each kind in turns, all beside the same camera and the same load.
+// Measures one block of each kind in turns, all with the same camera and the same load.
 void Measure(const JitterArguments& arguments, EyeChain& eye, const config::ServoConfig& config,
              JitterResult& result) {
   bool has_cyclictest = HasCyclictest();
@@ -69,7 +69,7 @@ void Measure(const JitterArguments& arguments, EyeChain& eye, const config::Serv
         result.cyclictest.push_back(*us);
       } else {
         result.cyclictest.clear();
-        result.cyclictest_absent = "would not run here";
+        result.cyclictest_absent = "failed on this machine";
       }
     }
   }
@@ -85,7 +85,7 @@ void WriteFiles(const fs::path& folder, const JitterResult& result) {
   std::ofstream figures(folder / "jitter.json");
   figures << ToJson(JitterFigures(result)) << "\n";
   if (!page.flush() || !figures.flush()) {
-    throw config::InputError(fmt::format("--out {}: cannot be written to", folder.string()));
+    throw config::InputError(fmt::format("--out {}: cannot write to this folder", folder.string()));
   }
 }
 
@@ -98,12 +98,12 @@ int RunJitter(const JitterArguments& arguments) {
   result.load = arguments.load;
   result.policy = arguments.policy;
   result.seconds = arguments.seconds;
-  // The three kinds and, generously, what starting them takes.
+  // Enough for the three kinds and for starting them.
   EyeChain eye(config, static_cast<std::size_t>(kPicturesPerS * (4 * arguments.seconds + 10)));
   const ProcessorTime time;
   {
     const Load load(arguments.load);
-    eye.Start();  // before this thread asks for what a new one would inherit
+    eye.Start();  // first, or the new thread would inherit this thread's policy and processor
     const std::vector<std::string> missing = PrepareThread(arguments);
     result.machine = LookAtMachine(missing, arguments.policy == "fifo");
     Measure(arguments, eye, config, result);

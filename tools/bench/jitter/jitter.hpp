@@ -1,4 +1,4 @@
-// `fovea-bench jitter`: does this machine hold 1 kHz?
+// `fovea-bench jitter`: does this machine keep 1 kHz?
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 namespace fovea::bench {
 
 struct JitterArguments {
-  int seconds = 20;  // of the servo's loop; the sleeper gets as many, and cyclictest where it is there
+  int seconds = 20;  // of the servo's loop, of the sleeper, and of cyclictest if it is installed
   std::string load = "none";
   std::string policy = "fifo";
-  int cpu = -1;                    // that the measured thread is bound to; -1: any
+  int cpu = -1;                    // processor that the measured thread is bound to; -1: any
   std::string out = "out/jitter";  // folder for jitter.html and jitter.json
   std::string trace;               // file for a timeline; empty: none
   bool json = false;

@@ -40,7 +40,7 @@ void Copy(const std::atomic<bool>& stop) {
   }
 }
 
-// A datagram to itself, over and over.
+// Sends datagrams to itself in a loop.
 void Send(const std::atomic<bool>& stop) {
   const int socket_fd = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0);
   sockaddr_in address{};

@@ -1,4 +1,4 @@
-// Work beside the measured thread, to see what it does to it.
+// Load on the machine, to measure its effect on the measured thread.
 #pragma once
 
 #include <atomic>
@@ -9,14 +9,14 @@
 
 namespace fovea::bench {
 
-// The kinds of load: none; cpu: a busy thread on each core; memory: two that copy 64 MiB to and fro; network:
-// datagrams on the loopback, as fast as they go; render: the simulator draws pictures, where it is built.
+// The kinds of load: none; cpu: one busy thread per core; memory: two threads that copy 64 MiB back and
+// forth; network: two threads that send datagrams on the loopback without pause; render: the simulator.
 inline const std::vector<std::string> kLoads{"none", "cpu", "memory", "network", "render"};
 
-// Runs from construction to destruction.
+// The load runs from construction to destruction.
 class Load {
  public:
-  // std::runtime_error when it cannot be brought about here.
+  // std::runtime_error when the load cannot be started.
   explicit Load(const std::string& kind);
   ~Load();
   Load(const Load&) = delete;

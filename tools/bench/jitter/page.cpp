@@ -1,4 +1,4 @@
-// What was measured, as one page that needs nothing else, in the look of a run's report.
+// The result as one self-contained HTML page, in the style of a run's report.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace fovea::bench {
 namespace {
 
-// Drawings stretch to the page's width; what is text stands outside of them, at its own size.
+// Drawings stretch to the page's width. Text is outside the drawings, at its own size.
 constexpr const char* kStyle = R"css(
 .hist { position: relative; height: 300px; margin: 10px 8px 26px 52px; border-left: 1px solid var(--axis);
   border-bottom: 1px solid var(--axis); }
@@ -57,7 +57,7 @@ std::string Tile(const char* name, const std::string& value, const std::string& 
       name, value, note);
 }
 
-// Both axes are logarithmic: counts from a half to the top, durations over the decades that hold any.
+// Both axes are logarithmic: counts from 0.5 up, durations over the decades that contain any.
 class HistogramAxes {
  public:
   explicit HistogramAxes(const std::vector<Durations>& kinds) {
@@ -75,7 +75,7 @@ class HistogramAxes {
     last_decade_ = std::max(static_cast<int>(std::ceil(std::log10(most))), first_decade_ + 1);
     top_decade_ = std::max(static_cast<int>(std::ceil(std::log10(static_cast<double>(top)))), 1);
   }
-  // Shares of the width from the left, and of the height from the top.
+  // X: share of the width from the left. Y: share of the height from the top.
   [[nodiscard]] double X(double us) const {
     const double decades = last_decade_ - first_decade_;
     return std::max((std::log10(std::max(us, 1e-9)) - first_decade_) / decades, 0.0);
@@ -94,7 +94,7 @@ class HistogramAxes {
   int top_decade_ = 1;
 };
 
-constexpr double kBox = 1000.0;  // of a drawing's own units, each way
+constexpr double kBox = 1000.0;  // width and height of a drawing, in its own units
 
 std::string Steps(const HistogramAxes& axes, const Durations& kind) {
   std::string path;
@@ -190,9 +190,8 @@ std::string HopBar(const std::vector<Durations>& hops) {
                           kHopColours[i], hops[i].title, Duration(median));
   }
   return fmt::format(
-      "<p>A picture is {} old, at the median, when the torques that it leads to are written. Exposure ({:g} "
-      "ms) "
-      "and read-out ({:g} ms) are those of the benchmark's camera; the rest is measured.</p><div "
+      "<p>The median age of a picture is {} when its torques are written. Exposure ({:g} ms) and read-out "
+      "({:g} ms) are set by the benchmark's camera; the rest is measured.</p><div "
       "class=\"hops\">{}</div><ul class=\"legend plain\">{}</ul>",
       Duration(total), 1e-6 * static_cast<double>(kExposureNs), 1e-6 * static_cast<double>(kReadOutNs), bar,
       legend);
@@ -210,8 +209,8 @@ std::string Counts(const JitterResult& result) {
   return fmt::format(
       "<section><h2>Counts</h2><div class=\"scroll\"><table><thead><tr><th></th><th "
       "class=\"number\">overruns</th>"
-      "<th class=\"number\">page faults</th><th class=\"number\">switches: waited</th><th "
-      "class=\"number\">was taken off</th></tr></thead><tbody>{}</tbody></table></div></section>",
+      "<th class=\"number\">page faults</th><th class=\"number\">voluntary switches</th><th "
+      "class=\"number\">involuntary switches</th></tr></thead><tbody>{}</tbody></table></div></section>",
       rows);
 }
 
@@ -222,19 +221,20 @@ std::string Verdict(const JitterResult& result, const std::vector<Durations>& lo
                 "median " + Duration(Percentile(loop[0].us, 0.5)));
   for (const WakeRatio& wake : WakeRatios(result)) {
     tiles += Tile(
-        ("Beside " + wake.to).c_str(), fmt::format("{:.2f} times", wake.ratio.value),
+        ("Compared with " + wake.to).c_str(), fmt::format("{:.2f} times", wake.ratio.value),
         fmt::format("p99.9; 90 %: {:.2f} to {:.2f}; goal {:g}", wake.ratio.low, wake.ratio.high, kGoalRatio));
   }
   tiles += Tile("The tick takes", Duration(Percentile(loop[1].us, 0.5)),
                 "median; p99.9 " + Duration(Percentile(loop[1].us, 0.999)));
-  tiles += Tile("Worst response", Duration(Percentile(loop[3].us, 1.0)), "from the deadline to the torques");
+  tiles += Tile("Worst response", Duration(Percentile(loop[3].us, 1.0)),
+                "from the deadline until the torques are written");
   return fmt::format(
       "<section id=\"verdict\"><div class=\"banner {}\"><div><p class=\"run-tag\">{} s of each, load {}, "
       "policy "
       "{}</p><p class=\"verdict-word\">{}</p><p class=\"verdict-sentence\">{}</p></div></div><dl "
       "class=\"tiles\">{}</dl></section>",
       verdict.holds ? "good" : "bad", result.seconds, result.load, result.policy,
-      verdict.holds ? "Holds 1 kHz" : "Does not hold 1 kHz", verdict.words, tiles);
+      verdict.holds ? "Keeps 1 kHz" : "Does not keep 1 kHz", verdict.words, tiles);
 }
 
 std::string Limits(const JitterResult& result) {
@@ -246,9 +246,10 @@ std::string Limits(const JitterResult& result) {
     items += "<li>cyclictest: " + Escaped(result.cyclictest_absent) + "</li>";
   }
   return fmt::format(
-      "<section><h2>What limits it</h2><p>{}, {} cores, {}.</p><ul class=\"limits\">{}</ul></section>",
+      "<section><h2>Limits of this machine</h2><p>{}, {} cores, {}.</p><ul "
+      "class=\"limits\">{}</ul></section>",
       Escaped(result.machine.kernel), result.machine.cores, Escaped(result.machine.processor),
-      items.empty() ? "<li>Nothing was found.</li>" : items);
+      items.empty() ? "<li>None found.</li>" : items);
 }
 
 }  // namespace
@@ -264,9 +265,8 @@ std::string JitterPage(const JitterResult& result, const std::string& style) {
       "content=\"width=device-width, initial-scale=1\"><title>Fovea: "
       "jitter</title><style>{}{}</style></head>\n"
       "<body><header class=\"head\"><p class=\"brand\"><span class=\"brand-mark\" "
-      "aria-hidden=\"true\"></span>Fovea <span class=\"brand-sub\">jitter of the servo's loop</span></p>"
-      "<h1>Does this machine hold 1 kHz?</h1></header>\n<main>{}\n{}\n<section><h2>How often, how "
-      "late</h2><div "
+      "aria-hidden=\"true\"></span>Fovea <span class=\"brand-sub\">jitter of the servo loop</span></p>"
+      "<h1>Does this machine keep 1 kHz?</h1></header>\n<main>{}\n{}\n<section><h2>Histograms</h2><div "
       "class=\"columns\">{}{}</div><p class=\"hint\">Both axes are logarithmic; each step is a quarter of an "
       "octave wide.</p></section>\n{}\n{}\n{}\n{}\n</main></body></html>\n",
       style, kStyle, Verdict(result, loop), Limits(result), Histogram("Wake-up latency", wakes),

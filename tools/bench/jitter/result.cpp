@@ -51,7 +51,7 @@ std::vector<Durations> LoopDurations(const JitterResult& result) {
   std::vector<Durations> list;
   list.push_back({"wake", "servo: wake-up", All(result.servo, &Period::wake_ns)});
   list.push_back({"execute", "servo: execution", All(result.servo, &Period::execute_ns)});
-  list.push_back({"off_period", "servo: off its period", All(result.servo, &Period::off_period_ns)});
+  list.push_back({"off_period", "servo: period error", All(result.servo, &Period::off_period_ns)});
   list.push_back({"response", "servo: response", All(result.servo, &Period::response_ns)});
   list.push_back({"sleeper_wake", "sleeper: wake-up", All(result.sleeper, &Period::wake_ns)});
   if (!result.cyclictest.empty()) {
@@ -82,15 +82,15 @@ std::vector<Durations> HopDurations(const JitterResult& result) {
   std::vector<Durations> list{{"hop_exposure", "rest of the exposure", {}},
                               {"hop_arrival", "read-out and arrival", {}},
                               {"hop_detection", "detection", {}},
-                              {"hop_hand_over", "hand-over: until the tick", {}},
-                              {"hop_tick", "the tick, until its torques", {}},
+                              {"hop_hand_over", "wait for the next tick", {}},
+                              {"hop_tick", "tick, until torques written", {}},
                               {"image_to_torque", "from mid-exposure to torque", {}}};
   for (const HopTimes& hop : result.pictures) {
     if (hop.written_ns == 0) {
       continue;
     }
     const std::int64_t closed_ns = hop.stamp_ns + kExposureNs / 2;
-    // A measurement may come while its tick is already under way.
+    // A measurement may arrive after the tick that takes it has begun.
     const std::int64_t begun_ns = std::max(hop.woken_ns, hop.detected_ns);
     const std::array<std::int64_t, 6> ns{closed_ns - hop.stamp_ns,         hop.arrived_ns - closed_ns,
                                          hop.detected_ns - hop.arrived_ns, begun_ns - hop.detected_ns,
@@ -120,11 +120,11 @@ JitterVerdict Judge(const JitterResult& result) {
   const std::uint64_t overruns = Sum(result.servo).overruns;
   const double worst = Percentile(All(result.servo, &Period::response_ns), 1.0);
   if (overruns > 0) {
-    return {false, fmt::format("Does not hold 1 kHz here: {} {} a whole one late, the worst response took "
+    return {false, fmt::format("Does not keep 1 kHz here: {} {} at least 1 ms late. The worst response took "
                                "{:.0f} us.",
                                overruns, overruns == 1 ? "period began" : "periods began", worst)};
   }
-  return {true, fmt::format("Holds 1 kHz here{}: the worst response took {:.0f} us of 1000.",
+  return {true, fmt::format("Keeps 1 kHz here{}: the worst response took {:.0f} us of 1000.",
                             worst < 500.0 ? "" : ", with little to spare", worst)};
 }
 

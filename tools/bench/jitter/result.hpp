@@ -1,4 +1,4 @@
-// What `fovea-bench jitter` measured, before anybody wrote it down.
+// The result of `fovea-bench jitter`, and its forms: figures, text, page and timeline.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@
 
 namespace fovea::bench {
 
-inline constexpr double kGoalRatio = 1.1;  // of the servo's p99.9 wake-up latency to cyclictest's
+inline constexpr double kGoalRatio = 1.1;  // p99.9 wake-up latency of the servo divided by cyclictest's
 
 // Durations of one kind [us].
 struct Durations {
-  std::string name;   // of its figures
-  std::string title;  // for people
+  std::string name;   // prefix of the figures' names
+  std::string title;  // for text and page
   std::vector<double> us;
 };
 
-// A ratio of the servo's p99.9 wake-up latency.
+// The servo's p99.9 wake-up latency divided by that of `to`.
 struct WakeRatio {
   std::string to;  // "the sleeping thread", "cyclictest"
   Ratio ratio;
@@ -33,39 +33,39 @@ struct JitterResult {
   int seconds = 0;
   std::vector<Block> servo;
   std::vector<Block> sleeper;
-  std::vector<std::vector<double>> cyclictest;  // latencies of each block [us]; empty: not there
-  std::string cyclictest_absent;                // why
+  std::vector<std::vector<double>> cyclictest;  // latencies of each block [us]; empty: no result
+  std::string cyclictest_absent;                // why there is no result
   std::vector<HopTimes> pictures;
 };
 
-// Servo, sleeper and cyclictest: wake-up; of the servo off-period, execution and response too.
+// Wake-up of servo, sleeper and cyclictest; period error, execution and response of the servo.
 std::vector<Durations> LoopDurations(const JitterResult& result);
 // The stages of the servo's tick.
 std::vector<Durations> StageDurations(const JitterResult& result);
-// From picture to torque, hop by hop, and as a whole at the end; of the pictures that a tick used.
+// From picture to torque: each hop, and last the whole way. Only pictures that a tick used.
 std::vector<Durations> HopDurations(const JitterResult& result);
 
 std::vector<WakeRatio> WakeRatios(const JitterResult& result);
 
-// Sums over the servo's blocks.
+// Sums over the blocks of servo or sleeper.
 struct JitterCounts {
   std::string name;
   Block sum;  // without periods
 };
 std::vector<JitterCounts> CountsOf(const JitterResult& result);
 
-// One sentence, and whether it is a good one.
+// Whether the machine keeps 1 kHz, and a sentence that says so.
 struct JitterVerdict {
   bool holds = false;
   std::string words;
 };
 JitterVerdict Judge(const JitterResult& result);
 
-// As figures with stable names, as text for a terminal, and as a page that needs nothing but `style`.
+// The result as figures with stable names, as text for a terminal, and as an HTML page with the CSS `style`.
 std::vector<Figure> JitterFigures(const JitterResult& result);
 std::string JitterText(const JitterResult& result);
 std::string JitterPage(const JitterResult& result, const std::string& style);
-// As a timeline for ui.perfetto.dev or chrome://tracing. std::runtime_error when the file cannot be written.
+// Writes a timeline for ui.perfetto.dev or chrome://tracing. std::runtime_error when `file` is not writable.
 void WriteJitterTrace(const JitterResult& result, const std::string& file);
 
 }  // namespace fovea::bench

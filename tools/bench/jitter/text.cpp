@@ -1,4 +1,4 @@
-// What was measured, for a terminal.
+// The result as text for a terminal.
 #include <fmt/format.h>
 
 #include <cmath>

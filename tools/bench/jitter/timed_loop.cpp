@@ -27,7 +27,7 @@ std::int32_t Clipped(std::int64_t ns) noexcept {
   return static_cast<std::int32_t>(std::min<std::int64_t>(ns, std::numeric_limits<std::int32_t>::max()));
 }
 
-// What the kernel counted for this thread meanwhile.
+// The kernel's counters for this thread since construction.
 class Usage {
  public:
   Usage() { getrusage(RUSAGE_THREAD, &begin_); }
@@ -43,13 +43,13 @@ class Usage {
   rusage begin_{};
 };
 
-// The real clock, which notes how late each wake-up was.
+// The real clock. It records how late each wake-up was.
 class NotingClock final : public hal::Clock {
  public:
   explicit NotingClock(std::vector<Period>& periods) : periods_(periods) {}
   [[nodiscard]] std::int64_t woken_ns() const noexcept { return woken_ns_; }
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  // The period that has begun; none before the first deadline, nor when there is no room for it.
+  // The current period; nullptr before the first deadline and when there is no room for it.
   [[nodiscard]] Period* current() noexcept {
     return count_ > 0 && count_ <= periods_.size() ? &periods_[count_ - 1] : nullptr;
   }
@@ -92,7 +92,7 @@ class NotingStages final : public task::StageProbe {
   std::int64_t last_ns_ = 0;
 };
 
-// The arm behind the seam. What it does with a command comes after the time was taken.
+// The arm behind the seam. It takes the time first, then applies the command.
 class BenchArm final : public hal::Arm {
  public:
   BenchArm(const config::ServoConfig& config, NotingClock& clock)
@@ -103,7 +103,7 @@ class BenchArm final : public hal::Arm {
   [[nodiscard]] std::int64_t written_ns() const noexcept { return written_ns_; }
 
  private:
-  // Stamped with the grid's time, which goes on when ticks are missed.
+  // The stamp is a multiple of the period after the start, so it stays right when ticks are missed.
   hal::Status DoRead(hal::ArmState& state) noexcept override {
     state = arm_.State();
     const std::int64_t woken_ns = clock_.count() > 0 ? clock_.woken_ns() : start_ns_;
@@ -126,7 +126,7 @@ class BenchArm final : public hal::Arm {
   std::int64_t written_ns_ = 0;
 };
 
-// Notes which tick took which picture.
+// Records which tick took which picture.
 class NotingRecorder final : public hal::Recorder {
  public:
   NotingRecorder(EyeChain& eye, const NotingClock& clock, const BenchArm& arm)
@@ -168,16 +168,16 @@ Block RunServoBlock(const config::ServoConfig& config, EyeChain& eye, int period
   NoProbe probe;
   task::ServoLoop loop(task, arm, clock, eye.mailbox(), recorder, probe);
   hal::FeatureMeasurement old;
-  static_cast<void>(eye.mailbox().Take(old));  // what came since the block before counts for no tick
+  static_cast<void>(eye.mailbox().Take(old));  // drops what arrived since the last block
   const Usage usage;
   const hal::Status status = loop.Run(clock.NowNs() + periods * kPeriodNs);
   usage.Fill(block);
   if (!status.ok()) {
-    throw std::runtime_error("the servo's loop broke off");
+    throw std::runtime_error("the servo loop stopped with an error");
   }
   block.overruns = loop.counters().overruns;
   block.fault_ticks = recorder.fault_ticks();
-  // The last wake-up ends the loop; a late one takes the place of those that it missed.
+  // The last wake-up only ends the loop. Missed periods have no wake-up and no entry.
   block.periods.resize(std::min(clock.count() > 0 ? clock.count() - 1 : 0, block.periods.size()));
   return block;
 }

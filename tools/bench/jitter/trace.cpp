@@ -1,4 +1,4 @@
-// What was measured, as a timeline. It is made of what the threads noted anyway, so it costs them nothing.
+// The result as a timeline. It uses times that the threads record anyway, so it costs them nothing.
 #include <numeric>
 
 #include "firmware/host/recording/trace/trace.hpp"

@@ -11,7 +11,7 @@
 namespace fovea::bench {
 namespace {
 
-// The first that a section's file, or its name, holds is its module.
+// {part of a section's name or file, its module}; the first match counts.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kModules{{
     {"panda_data", "arm table"},
     {"LoadPanda", "arm table"},
@@ -35,7 +35,7 @@ std::string ModuleOf(const std::string& section, const std::string& file) {
   return file.empty() ? "alignment" : "other";
 }
 
-// What an output section takes; those that are not in the image take nothing.
+// The memories that an output section occupies: none for sections that are not in the image.
 struct Place {
   bool flash = false;
   bool ram = false;
@@ -66,7 +66,7 @@ LinkMap ReadLinkMap(const std::filesystem::path& path) {
   bool in_sections = false;
   Place place;
   std::string output;
-  bool counted = true;  // of the output section: its own size was read
+  bool counted = true;  // whether the size of the output section was read
   std::string section;
   for (std::string line; std::getline(stream, line);) {
     in_sections = in_sections || line == "Linker script and memory map";
@@ -93,7 +93,7 @@ LinkMap ReadLinkMap(const std::filesystem::path& path) {
       section = words.front();
       words.erase(words.begin());
     }
-    // An address and a size, on the name's line or, where that is long, on the next.
+    // An address and a size follow on the name's line, or on the next one if the name is long.
     if (words.size() < 2 || !IsHex(words[0]) || !IsHex(words[1])) {
       continue;
     }
@@ -101,7 +101,7 @@ LinkMap ReadLinkMap(const std::filesystem::path& path) {
     if (!section.empty()) {
       Add(place, size,
           map.modules[output == ".stack" ? "stacks" : ModuleOf(section, words.size() > 2 ? words[2] : "")]);
-      section.clear();  // the symbols in it have an address and a name
+      section.clear();  // the symbols that follow have an address and a name, but no size
       counted = true;
     } else if (!counted) {
       Add(place, size, map.total);
@@ -109,7 +109,7 @@ LinkMap ReadLinkMap(const std::filesystem::path& path) {
     }
   }
   if (map.total.flash == 0) {
-    throw std::runtime_error(path.string() + ": not there, or no map of a linker's");
+    throw std::runtime_error(path.string() + ": not found, or not a linker map");
   }
   std::erase_if(map.modules,
                 [](const auto& module) { return module.second.flash == 0 && module.second.ram == 0; });

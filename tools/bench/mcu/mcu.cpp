@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-// Cycles that an instruction takes. Arm publishes none for this processor: it issues at most two in a cycle;
-// 1 and 3 are assumptions, the latter for code that mostly waits for its doubles. No board was measured.
+// Cycles per instruction. Arm publishes no figure for this processor. 0.5: it issues at most two instructions
+// per cycle. 1 and 3 are assumptions, 3 for code that mostly waits for doubles. No board was measured.
 constexpr std::array<double, 3> kCyclesPerInstruction{0.5, 1.0, 3.0};
 constexpr double kInHand = 2.0;
 constexpr double kTicksPerSecond = 1000.0;
 
-// Figures for a machine, and their lines for a person.
+// Collects the figures for --json, and their lines of text.
 class Sheet {
  public:
   void Title(const std::string& text) { text_ += fmt::format("{}\n", text); }
@@ -64,7 +64,7 @@ class Sheet {
   std::string text_;
 };
 
-// What `fovea-sim run SCENARIO --servo mcu` says of its board.
+// The board's entry in the summary of `fovea-sim run SCENARIO --servo mcu`.
 ordered_json BoardOf(const fs::path& program, const std::string& scenario, double seconds) {
   const Scratch scratch;
   const fs::path words = scratch.path() / "words";
@@ -72,7 +72,7 @@ ordered_json BoardOf(const fs::path& program, const std::string& scenario, doubl
       fmt::format("{} run {} --servo mcu --no-report --json --set run.duration_s={} --out {} 2>{}",
                   Quoted(program.string()), scenario, seconds, Quoted((scratch.path() / "out").string()),
                   Quoted(words.string()));
-  // A run too short to converge is none that failed: what it printed counts.
+  // A run that is too short to converge has not failed. Its output counts, not its exit code.
   const ordered_json summary =
       ordered_json::parse(RunShell(command).output, nullptr, /*allow_exceptions=*/false);
   if (!summary.is_object() || !summary.contains("mcu")) {
@@ -93,7 +93,7 @@ int RunMcu(const McuArguments& arguments) {
   for (const auto& [scenario, seconds] :
        {std::pair<std::string, double>{"ball", arguments.seconds}, {"square", 0.25 * arguments.seconds}}) {
     const ordered_json board = BoardOf(program, scenario, seconds);
-    sheet.Title(fmt::format("{}, {} ticks: instructions, least, median, most; read to {:g}", scenario,
+    sheet.Title(fmt::format("{}, {} ticks: instructions, least, median, most; resolution {:g}", scenario,
                             board["instructions"]["ticks"].get<int>(),
                             std::max(1.0, board["instructions_per_count"].get<double>())));
     sheet.AddSpread(scenario + "_tick", board["instructions"]["tick"], "tick");
@@ -103,7 +103,7 @@ int RunMcu(const McuArguments& arguments) {
     for (const auto& [stage, spread] : board["instructions"]["stages"].items()) {
       sheet.AddSpread(fmt::format("{}_stage_{}", scenario, stage), spread, "  stage " + stage);
     }
-    sheet.AddSpread(scenario + "_link", board["link_instructions"], "line, besides the tick");
+    sheet.AddSpread(scenario + "_link", board["link_instructions"], "serial line, outside the tick");
     const double all =
         board["instructions"]["tick"]["max"].get<double>() + board["link_instructions"]["max"].get<double>();
     most = std::max(most, all);
@@ -114,7 +114,7 @@ int RunMcu(const McuArguments& arguments) {
                 fmt::format("clock at {:g} cycles each", cycles));
     }
   }
-  sheet.Title("(the clock for 1 kHz with a factor of 2 in hand, from the most of tick and line together)");
+  sheet.Title("(clock for 1 kHz with a reserve of factor 2, from the most of tick and serial line together)");
   sheet.Title("stack");
   sheet.Add("stack_bytes", stack, "bytes", "deepest use");
   sheet.Title("image                                flash         RAM   bytes");

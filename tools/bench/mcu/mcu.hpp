@@ -1,10 +1,10 @@
-// `fovea-bench mcu`: what the servo takes of a Cortex-M7: instructions, stack, flash and RAM.
+// `fovea-bench mcu`: instructions, stack, flash and RAM of the servo on a Cortex-M7.
 #pragma once
 
 namespace fovea::bench {
 
 struct McuArguments {
-  double seconds = 4.0;  // simulated, of `ball`; of `square` a quarter
+  double seconds = 4.0;  // simulated time of `ball`; `square` gets a quarter of it
   bool json = false;
 };
 

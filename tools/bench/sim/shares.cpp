@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-// A run of `words`, by its timeline. A run too short to converge is none that failed.
+// Runs `words` and sums its timeline. A run that is too short to converge has not failed.
 SpanSums SumsOf(const fs::path& program, const std::string& words, double seconds) {
   const Scratch scratch;
   const fs::path file = scratch.path() / "trace.json";
@@ -34,7 +34,7 @@ SpanSums SumSpans(const fs::path& file) {
   std::ifstream stream(file);
   const json trace = json::parse(stream, nullptr, /*allow_exceptions=*/false);
   if (!trace.is_object() || !trace.contains("traceEvents")) {
-    throw std::runtime_error(file.string() + ": not there, or no timeline");
+    throw std::runtime_error(file.string() + ": not found, or not a timeline");
   }
   std::map<std::string, double> us;
   std::map<std::string, int> count;
@@ -47,7 +47,7 @@ SpanSums SumSpans(const fs::path& file) {
       sums.wall_us = std::max(sums.wall_us, event["ts"].get<double>() + took);
     }
   }
-  // Records are taken, and measurements waited for, within the world's span.
+  // The span of the world contains the spans of recording and of waiting for a measurement.
   sums.physics_us = us["world"] - us["records"] - us["wait for vision"];
   sums.servo_us = us["tick"];
   sums.render_us = us["draw"] - us["read-back"];

@@ -56,10 +56,10 @@ std::string Command(const std::filesystem::path& program, const Setting& setting
                      setting.keys);
 }
 
-// What `fovea-sim run ball --json` says, run as a program of its own.
+// The summary that `fovea-sim run ball --json` prints.
 json Summary(const std::filesystem::path& program, const Setting& setting, double seconds) {
   const std::string command = Command(program, setting, seconds);
-  // A run too short to converge is none that failed: what it printed counts.
+  // A run that is too short to converge has not failed. Its output counts, not its exit code.
   const json summary = json::parse(RunShell(command).output, nullptr, /*allow_exceptions=*/false);
   if (!summary.is_object() || !summary.contains("real_time_factor")) {
     throw std::runtime_error(setting.name + ": the simulator did not run: " + command);
@@ -67,7 +67,7 @@ json Summary(const std::filesystem::path& program, const Setting& setting, doubl
   return summary;
 }
 
-// Processor time of the programs that ran and ended so far, on all cores [s].
+// Processor time on all cores of the child programs that have ended [s].
 double ProcessorTime() {
   rusage usage{};
   getrusage(RUSAGE_CHILDREN, &usage);
@@ -77,8 +77,8 @@ double ProcessorTime() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-// Processor time of one core that a simulated second takes, start-up taken off: a figure that other programs
-// on the machine disturb less than they do the time by the clock. The least of some tries.
+// Processor time that a simulated second takes [s], without start-up: a run of twice `seconds` minus a run of
+// `seconds`, the least of kTries each. Other programs on the machine disturb it less than wall time.
 double ProcessorShare(const std::filesystem::path& program, const Setting& setting, double seconds) {
   constexpr int kTries = 3;
   double shortest[2] = {HUGE_VAL, HUGE_VAL};
@@ -90,14 +90,14 @@ double ProcessorShare(const std::filesystem::path& program, const Setting& setti
   return (shortest[1] - shortest[0]) / seconds;
 }
 
-// What a second takes of one core beside what the goals leave of it: a core's hundredth without a camera;
-// with one a tenth of two cores.
+// Processor time of a physics step and of a picture. The goals: without a camera, a simulated second takes
+// 1/100 s of one core; with a camera, 1/10 s of two cores.
 std::vector<Figure> ProcessorShares(const std::filesystem::path& program, const Setting& no_camera,
                                     double seconds) {
   constexpr double kStepsPerSecond = 1000.0;
   constexpr double kPicturesPerSecond = 30.0;
   const Setting reference{"", "", false, {}};
-  // Long runs where a second takes next to nothing.
+  // Longer runs, because a simulated second without a camera takes very little time.
   const double step = ProcessorShare(program, no_camera, 10.0 * seconds) / kStepsPerSecond;
   const double picture = ProcessorShare(program, reference, seconds) / kPicturesPerSecond;
   return {{"step_no_camera_cpu_us", 1e6 * step, "us", 1e6 / 100.0 / kStepsPerSecond},

@@ -1,11 +1,11 @@
-// `fovea-bench sim`: how much faster than the clock the simulator runs, by picture size and rate.
+// `fovea-bench sim`: the simulator's speed relative to real time, by picture size and rate.
 #pragma once
 
 namespace fovea::bench {
 
 struct SimArguments {
-  double seconds = 4.0;  // simulated, of each run
-  bool shares = false;   // only what the time goes to
+  double seconds = 4.0;  // simulated time of each run
+  bool shares = false;   // only the figures of SimShares
   bool json = false;
 };
 

@@ -16,7 +16,7 @@ namespace {
 constexpr int kPlaces = 500;
 constexpr int kRounds = 41;
 
-// 0.35 to 0.65 m off, in the picture, tilted and turned by some 10 degrees.
+// 0.35 to 0.65 m from the camera, in the picture, tilted and turned by about 10 degrees.
 std::vector<features::TargetInCamera> RandomPlaces() {
   std::mt19937_64 engine(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -29,7 +29,7 @@ std::vector<features::TargetInCamera> RandomPlaces() {
   return places;
 }
 
-// Each target by each of its features.
+// Each target with each of its features.
 std::vector<features::TargetFeature> AllFeatures() {
   std::vector<features::TargetFeature> all;
   for (const features::TargetTraits& target : features::kTargets) {
@@ -37,7 +37,7 @@ std::vector<features::TargetFeature> AllFeatures() {
     settings.kind = target.name;
     features::TargetFeature feature = config::MakeTarget(settings);
     for (auto form = target.forms.begin(); form != target.forms.end(); ++form) {
-      if (std::find(target.forms.begin(), form, *form) == form) {  // the first fills the rest
+      if (std::find(target.forms.begin(), form, *form) == form) {  // unused entries repeat a form
         feature.form = *form;
         all.push_back(feature);
       }
@@ -54,7 +54,7 @@ double ComputeNs(const features::TargetFeature& feature,
     refused += feature.Compute(place, state) ? 0 : 1;
   });
   if (refused > 0) {
-    throw std::logic_error("a feature refuses a place that it is timed at");
+    throw std::logic_error("a feature refuses a pose that it is timed at");
   }
   return ns;
 }

@@ -1,4 +1,4 @@
-// How fast a target's place becomes a feature and its interaction matrix.
+// Speed of computing a feature and its interaction matrix from a target's pose.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace fovea::bench {
 
-// s, s_star and L_s of each listed feature: ns per call over random places before the camera.
+// s, s_star and L_s of each listed feature: ns per call over random poses in front of the camera.
 std::vector<Figure> FeatureSpeed();
 
 }  // namespace fovea::bench

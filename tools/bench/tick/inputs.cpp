@@ -16,14 +16,14 @@ constexpr double kTickS = 1e-3;
 
 struct Loop {
   model::VecN q_start;
-  model::Vec3 p_BO;  // where the target lies, in B [m]
+  model::Vec3 p_BO;  // position of the target in B [m]
   int ticks = 4000;
-  int unseen_from = 4000;                                   // the camera sees nothing any more
-  int silent_from = 4000;                                   // and the arm says nothing
-  std::function<moves::MotionCommand(double t_s)> command;  // empty: none, and the camera is on
+  int unseen_from = 4000;                                   // from this tick on the camera sees no target
+  int silent_from = 4000;                                   // from this tick on the arm sends no state
+  std::function<moves::MotionCommand(double t_s)> command;  // empty: no command, and the camera is on
 };
 
-// Closes the loop and keeps what went in.
+// Closes the loop and records the servo's inputs in `run`.
 void Fill(const Loop& loop, TickCase& run) {
   task::ServoTask task;
   if (!task.Init(run.config).ok()) {

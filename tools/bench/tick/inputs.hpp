@@ -1,7 +1,7 @@
-// What a servo was given, tick by tick, in closed loops of many kinds: the inputs on which its tick is timed.
+// Inputs of the servo, tick by tick, from several kinds of closed loop. The benchmark times the tick on them.
 //
-// The arm obeys its model (M ddq + C dq = tau), the camera measures without error, 40 ms late at 30 Hz. No
-// simulator is needed, so the same inputs come about wherever the servo is built.
+// The arm obeys its model (M ddq + C dq = tau). The camera measures without error, 40 ms late, at 30 Hz. No
+// simulator is needed, so every build of the servo gets the same inputs.
 #pragma once
 
 #include <string>
@@ -20,13 +20,14 @@ struct TickCase {
 // The reference run: from Boot to the goal, 4 s.
 TickCase TrackingCase(const model::ArmModel& arm);
 
-// The same, until the target is lost: Coast, then Hold, and at last an arm that says nothing any more: Fault.
+// The same, but the target is lost: Coast, then Hold. At last the arm sends no state any more: Fault.
 TickCase LossCase(const model::ArmModel& arm);
 
-// The end effector follows commanded poses round a circle.
+// The end effector follows commanded poses around a circle.
 TickCase CommandedCase(const model::ArmModel& arm);
 
-// Everything on (obstacles, singularity, wishes for the null space), random start, goal and target, 1.5 s.
+// Everything on (obstacles, null-space gains for joint limits and manipulability), random start, goal and
+// target, 1.5 s.
 TickCase RandomCase(const model::ArmModel& arm, unsigned seed);
 
 }  // namespace fovea::bench

@@ -36,7 +36,7 @@ double Totals(const fs::path& file) {
 
 }  // namespace
 
-// Found by its name: the one function in which callgrind counts.
+// callgrind counts in this function only. It finds the function by its name.
 [[gnu::noinline]] void FoveaBenchCountedStep(task::ServoStep& step, hal::Recorder& recorder,
                                              const task::ServoInputs& inputs, task::ServoOutputs& outputs) {
   step.Step(inputs, outputs);
@@ -46,7 +46,7 @@ double Totals(const fs::path& file) {
 void RunCounted(const std::vector<TickCase>& cases, const std::string& mode, bool traced, bool recorded) {
   std::uint64_t counted = 0;
   for (const TickCase& c : cases) {
-    // Run twice: which ticks are of that mode is known only after them.
+    // The scout runs each tick first, because the mode of a tick is known only after the tick.
     task::ServoTask scout;
     task::ServoTask task;
     if (!scout.Init(c.config).ok() || !task.Init(c.config).ok()) {

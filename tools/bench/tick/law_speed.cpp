@@ -16,15 +16,14 @@ constexpr int kRounds = 41;
 constexpr int kFeatures = 8;
 
 constexpr double kGoalNs = 500.0;
-constexpr double kSmallestRatio =
-    1e-6;  // of singular values that a pseudo-inverse takes for more than nothing
+constexpr double kSmallestRatio = 1e-6;  // relative singular value down to which the inverse is exact
 
 struct Case {
   features::FeatureState feature;
   model::Mat6N J_C;
   trajectory::Reference reference;
   control::VisualLawOutput law;         // for the arm
-  control::VisualLawOutput camera_law;  // for a camera that goes where it wants
+  control::VisualLawOutput camera_law;  // for a free camera, without an arm
 };
 
 std::vector<Case> RandomCases(const model::ArmModel& arm) {

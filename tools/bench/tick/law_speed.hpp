@@ -1,4 +1,4 @@
-// How fast a task becomes joint velocities.
+// Speed of the visual law and of its resolution to joint velocities.
 #pragma once
 
 #include <vector>
@@ -8,11 +8,11 @@
 
 namespace fovea::bench {
 
-// The visual law for eight features: from s and L_s [8 x 6] to the camera's twist, as other libraries' do, by
-// the pseudo-inverse (`visual_law_ns`) and damped where directions are weak, two of six here
-// (`visual_law_damped_ns`); and on to the velocities of the arm's joints with the posture in what is free
-// (`visual_law_joints_...`); and those with all limits inside. The servo's own code in each; ns per call over
-// random postures and squares.
+// The servo's own code for eight features, in ns per call over random postures and squares:
+//   visual_law_ns              from s and L_s [8 x 6] to the camera's twist, by the pseudo-inverse
+//   visual_law_damped_ns       the same, damped in weak directions: two of six here
+//   visual_law_joints_[...]ns  from s and L_s to joint velocities, with the posture in the free directions
+//   resolve_constrained_ns     from the task to joint velocities within all limits
 std::vector<Figure> LawSpeed(const model::ArmModel& arm);
 
 }  // namespace fovea::bench

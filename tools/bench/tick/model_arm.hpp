@@ -1,5 +1,5 @@
-// An arm that obeys its model, M ddq + C dq = tau, and a camera that measures without error: what the
-// benchmarks close the servo's loop with, wherever it is built.
+// An arm that obeys its model, M ddq + C dq = tau, and a camera that measures without error. The benchmarks
+// close the servo's loop with them.
 #pragma once
 
 #include "firmware/core/task/servo_task.hpp"
@@ -16,7 +16,7 @@ class ModelArm {
   ModelArm(const model::ArmModel& arm, const model::VecN& q)
       : arm_(arm), q_(q), dq_(model::VecN::Zero(q.size())), tau_(model::VecN::Zero(q.size())) {}
 
-  // One millisecond on, under `command`.
+  // Advances the arm by 1 ms under `command`.
   void Tick(const hal::ArmCommand& command) noexcept;
 
   [[nodiscard]] hal::ArmState State() const noexcept;
@@ -30,13 +30,13 @@ class ModelArm {
   std::uint64_t tick_ = 0;
 };
 
-// A servo for `arm` with the default camera mount, which tracks what it sees.
+// A servo for `arm` with the default camera mount. It tracks the target that it sees.
 config::ServoConfig DefaultConfig(const model::ArmModel& arm);
 
-// Where the camera is, in B.
+// X_BC, the pose of the camera in B.
 model::Pose CameraAt(const config::ServoConfig& config, const model::VecN& q);
 
-// What the camera sees now of a ball at `p_BO` [m] in B. Real-time: yes.
+// The camera's measurement of a ball at `p_BO` [m] in B. Real-time: yes.
 hal::FeatureMeasurement Measure(const config::ServoConfig& config, const ModelArm& arm,
                                 const model::Vec3& p_BO);
 

@@ -74,7 +74,7 @@ KDL::Chain ToKdl(const model::ArmModel& arm) {
 
 using Call = std::function<void(const State&)>;
 
-// Median over rounds of the mean per state [ns], of each of `calls` in turns.
+// For each of `calls`, run in turns: the median over rounds of the mean time per state [ns].
 std::vector<double> Time(const std::vector<State>& states, const std::vector<Call>& calls) {
   std::vector<std::vector<double>> rounds(calls.size());
   for (int round = 0; round < kRounds; ++round) {

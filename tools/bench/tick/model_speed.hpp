@@ -1,4 +1,4 @@
-// How fast the arm's model is, beside KDL's in the same run.
+// Speed of the arm's model and of KDL, in the same run.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace fovea::bench {
 
-// Poses, Jacobian, M, C dq and g, inverse dynamics: ns per call over random states; ours and KDL's are called
-// in turns, so that what disturbs one disturbs the other.
+// Poses, Jacobian, M, C dq and g, inverse dynamics: ns per call over random states. Our functions and KDL's
+// run in turns, so a disturbance affects both.
 std::vector<Figure> ModelSpeed(const model::ArmModel& arm);
 
 }  // namespace fovea::bench

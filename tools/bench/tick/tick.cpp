@@ -27,9 +27,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Ns = std::chrono::duration<double, std::nano>;
 
-constexpr int kReplays = 7;                      // of each case; a tick's time is the least of them
+constexpr int kReplays = 7;                      // of each case; a tick's time is the least one
 constexpr int kColdTicks = 300;                  // spread over the case
-constexpr std::size_t kFlushBytes = 64U << 20U;  // more than any cache holds
+constexpr std::size_t kFlushBytes = 64U << 20U;  // larger than any cache
 constexpr double kGoalNs = 5000.0;
 
 void Start(const TickCase& c, task::ServoTask& task) {
@@ -61,7 +61,7 @@ std::vector<TimedTick> Replay(const TickCase& c) {
   return ticks;
 }
 
-// With caches that hold none of it, every so many ticks.
+// Times of single ticks with flushed caches, about kColdTicks of them, spread over the case.
 std::vector<double> ReplayCold(const TickCase& c) {
   std::vector<unsigned char> flush(kFlushBytes);
   std::vector<double> ns;
@@ -100,7 +100,7 @@ class StageTimer final : public task::StageProbe {
   std::array<double, task::kStageNames.size()> ns_{};
 };
 
-// What the clock itself takes between two readings.
+// Median time between two readings of the clock.
 double ClockNs() {
   std::vector<double> ns;
   constexpr int kReadings = 1000;
@@ -112,7 +112,7 @@ double ClockNs() {
   return Percentile(ns, 0.5);
 }
 
-// Median of each stage, less the clock's share.
+// Median time of each stage, minus the time of reading the clock.
 std::vector<double> StageMedians(const TickCase& c) {
   task::ServoTask task;
   Start(c, task);
@@ -145,7 +145,7 @@ std::vector<double> Times(const std::vector<TimedTick>& ticks) {
   return ns;
 }
 
-// Tells a person at a terminal how far it is.
+// Shows the progress on a terminal.
 void Say(const char* what) {
   if (isatty(STDERR_FILENO) != 0) {
     fmt::print(stderr, "\r\x1b[K{}", what);
@@ -222,12 +222,12 @@ void AddTicks(const std::vector<TickCase>& cases, std::vector<Figure>& figures) 
 int RunTick(const TickArguments& arguments) {
   const std::filesystem::path file = config::ShareFolder() / "robots" / (arguments.robot + ".toml");
   if (!std::filesystem::is_regular_file(file)) {
-    throw config::InputError(fmt::format("--robot \"{}\": no shipped arm of that name", arguments.robot));
+    throw config::InputError(fmt::format("--robot \"{}\": no shipped arm has this name", arguments.robot));
   }
   const model::ArmModel arm = robots::LoadRobot(file).model;
   if (arm.num_joints < 6) {
     throw config::InputError(
-        fmt::format("--robot \"{}\": an arm of six joints or more is allowed", arguments.robot));
+        fmt::format("--robot \"{}\": the arm must have at least six joints", arguments.robot));
   }
   const std::vector<TickCase> cases = Cases(arm, arguments.runs);
   if (!arguments.count.empty()) {

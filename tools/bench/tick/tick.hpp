@@ -1,4 +1,4 @@
-// `fovea-bench tick`: what one tick of the servo costs, on which input, and in which stage.
+// `fovea-bench tick`: the time of one servo tick, by input and by stage.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@ namespace fovea::bench {
 
 struct TickArguments {
   std::string robot = "panda";
-  int runs = 40;              // random ones in which the worst input is searched
-  bool instructions = false;  // also count them, under valgrind
+  int runs = 40;              // random closed loops that are searched for the slowest tick
+  bool instructions = false;  // also count instructions, under valgrind
   std::string count;          // internal: the mode whose ticks are counted in this process
-  bool traced = false;        // internal: and each of them leaves its spans on a timeline
-  bool recorded = false;      // internal: and each of them goes through the flight recorder
+  bool traced = false;        // internal: each counted tick adds its spans to a timeline
+  bool recorded = false;      // internal: each counted tick goes through the flight recorder
   bool json = false;
 };
 

@@ -16,8 +16,8 @@ namespace {
 constexpr int kMost = 8;  // unknowns
 using Change = Eigen::Matrix<double, kMost, 1>;
 
-// By u, v, r, and the two ways of a disc's outline to be longer than wide; a ball's has the shape of its
-// place. `out_of`: from the middle, in radii.
+// Normal displacement of an outline point per unit of u, v, r and of the two elongations of a disc's outline.
+// A ball's elongation follows from its position. `out_of`: the point relative to the centre, in radii.
 Change SweepOfRound(const Vector2d& out_of, const Vector2d& normal) {
   Change sweep = Change::Zero();
   sweep.head<5>() << normal.x(), normal.y(), normal.dot(out_of),
@@ -25,7 +25,8 @@ Change SweepOfRound(const Vector2d& out_of, const Vector2d& normal) {
   return sweep;
 }
 
-// By the corners' places: point `i` of `points`, as many on each side, moves with its side's two.
+// The same per unit of the corners' coordinates. Point `i` of `points` moves with the two corners of its
+// side; all sides have the same number of points.
 Change SweepOfCorners(std::size_t points, std::size_t corners, std::size_t i, const Vector2d& normal) {
   const std::size_t per_side = points / corners;
   const std::size_t side = i / per_side;
@@ -36,8 +37,8 @@ Change SweepOfCorners(std::size_t points, std::size_t corners, std::size_t i, co
   return sweep;
 }
 
-// Derivatives of the corners' mean, and of the radius of the circle with the polygon's area, by the corners.
-// [3 x 2 corners]
+// Derivatives of the corners' mean, and of the radius of the circle with the polygon's area, with respect to
+// the corners. [3 x 2 corners]
 Eigen::MatrixXd MiddleAndRadius(const TrueOutline& outline, std::size_t corners) {
   Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3, static_cast<Eigen::Index>(2 * corners));
   const std::size_t per_side = outline.points.size() / corners;
@@ -65,7 +66,7 @@ Bound CramerRao(const PictureScene& scene) {
   const int reach = static_cast<int>(std::ceil(3.0 * scene.blur_px)) + 2;
   const int width = scene.camera.width_px;
   const int height = scene.camera.height_px;
-  // d(brightness) / d(unknowns) of each pixel; of a gray picture the mean channel's, else of each.
+  // d(brightness) / d(unknowns) of each pixel and channel; a gray picture has one channel, the mean.
   const Body& body = scene.bodies.front();
   const bool polygon = body.shape == Shape::kPolygon;
   const std::size_t corners = body.corners.size();
@@ -73,7 +74,7 @@ Bound CramerRao(const PictureScene& scene) {
   const int channels = scene.gray ? 1 : 3;
   std::vector<std::array<Change, 3>> change(static_cast<std::size_t>(width * height),
                                             {Change::Zero(), Change::Zero(), Change::Zero()});
-  // The outline's own kernel: a point of it spreads over the pixels by the lens' blur.
+  // The lens blur spreads each point of the outline over the pixels around it.
   const Vector2d middle(outline.u_px, outline.v_px);
   for (std::size_t i = 0; i < outline.points.size(); ++i) {
     const Vector2d a = outline.points[i];
@@ -123,7 +124,7 @@ Bound CramerRao(const PictureScene& scene) {
       }
     }
   }
-  // Rounding to whole levels is noise too.
+  // Rounding to whole gray levels adds noise.
   const double variance = scene.noise * scene.noise + 1.0 / 12.0;
   Eigen::Matrix<double, kMost, kMost> information = Eigen::Matrix<double, kMost, kMost>::Zero();
   for (const auto& pixel : change) {
@@ -133,7 +134,7 @@ Bound CramerRao(const PictureScene& scene) {
     }
   }
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(Eigen::MatrixXd(information.topLeftCorner(unknowns, unknowns)));
-  if (!lu.isInvertible()) {  // a side is hidden altogether
+  if (!lu.isInvertible()) {  // a side is hidden completely
     return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   }
   const Eigen::MatrixXd cov = lu.inverse();

@@ -1,10 +1,10 @@
-// The Cramer-Rao bound: how well any detector without bias can know an outline's middle and radius from a
-// picture.
+// The Cramer-Rao bound: the smallest standard deviation of an outline's centre and radius that any unbiased
+// detector can reach on a picture.
 //
-// A pixel's mean brightness changes by the step across the outline times how much of the pixel the moving
-// outline sweeps; those changes over the noise, squared and summed, are the Fisher information. The levels on
-// both sides and the lens' blur count as known, so a real detector cannot quite get there. A polygon's
-// unknowns are its corners' places, each for itself: its middle is their mean, as the detector's is.
+// When the outline moves, a pixel's mean brightness changes by the step across the outline times the swept
+// part of the pixel. The Fisher information is the sum of the squares of these changes over the noise. The
+// levels on both sides and the lens blur are assumed to be known, so a real detector stays above the bound.
+// The unknowns of a polygon are the positions of its corners. Its centre is their mean, as in the detector.
 #pragma once
 
 #include "tools/bench/vision/picture.hpp"
@@ -16,7 +16,7 @@ struct Bound {
   double radius_px = 0.0;
 };
 
-// For the scene's first body. Parts of its outline that are hidden or outside the picture tell nothing.
+// For the scene's first body. Parts of its outline that are hidden or outside the picture do not count.
 Bound CramerRao(const PictureScene& scene);
 
 }  // namespace fovea::bench

@@ -11,7 +11,7 @@
 namespace fovea::bench {
 namespace {
 
-constexpr double kRadiusMinPx = 10.0;  // of what is looked for
+constexpr double kRadiusMinPx = 10.0;  // range of radii that all detectors search
 constexpr double kRadiusMaxPx = 190.0;
 
 class Ours final : public Contestant {

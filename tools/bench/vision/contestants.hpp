@@ -1,4 +1,4 @@
-// Who takes part in `fovea-bench vision`: our detector and what people do with OpenCV alone.
+// The detectors that `fovea-bench vision` compares: ours, and common methods that use OpenCV alone.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ struct Answer {
   double u_px = 0.0;
   double v_px = 0.0;
   double radius_px = 0.0;
-  double sigma_px = 0.0;                 // what it says itself of its centre, along one axis; 0: nothing
+  double sigma_px = 0.0;                 // reported deviation of the centre along one axis; 0: none
   std::vector<Eigen::Vector2d> corners;  // of a polygon [px]
 };
 
@@ -26,13 +26,13 @@ class Contestant {
   Contestant& operator=(const Contestant&) = delete;
   virtual ~Contestant() = default;
   [[nodiscard]] virtual std::string name() const = 0;
-  // A picture without hint; and the same one again, when it keeps a hint from one to the next.
+  // Look: detects without a hint. LookAgain: the same picture, with the last detection as a hint.
   virtual Answer Look(const cv::Mat& image) = 0;
   virtual Answer LookAgain(const cv::Mat& image) { return Look(image); }
   [[nodiscard]] virtual bool tracks() const { return false; }
 };
 
-// Ours first; the others know only what is round.
+// Our detector comes first. The others find round targets only.
 std::vector<std::unique_ptr<Contestant>> MakeContestants(TargetKind kind, const PictureCamera& camera,
                                                          bool colour);
 

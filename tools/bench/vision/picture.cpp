@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// The ray of a pixel of the real lens: the pinhole ray whose picture the lens puts there.
+// The ray of a pixel: the pinhole ray that the lens distorts to this pixel.
 Vector3d RayOf(const PictureCamera& c, double u_px, double v_px) {
   const double xd = (u_px - c.c_u_px) / c.f_px;
   const double yd = (v_px - c.c_v_px) / c.f_px;
@@ -79,7 +79,7 @@ double Meet(const Body& body, const Vector3d& ray, Vector3d& bgr) {
   return z;
 }
 
-// Several numbers when a pattern's edge is crossed too.
+// -1: ground. Other bodies have two labels each, so the edges of their dark patterns count as edges too.
 int Label(int body, const Vector3d& bgr) { return body < 0 ? -1 : 2 * body + (bgr.sum() < 90.0 ? 1 : 0); }
 
 void Blur(std::vector<Vector3d>& image, int width, int height, double sigma) {
@@ -135,7 +135,7 @@ int Cast(const PictureScene& scene, double u_px, double v_px, Vector3d& bgr) {
 cv::Mat Draw(const PictureScene& scene) {
   const int width = scene.camera.width_px;
   const int height = scene.camera.height_px;
-  // What stands at the corners of the pixels tells where edges are.
+  // An edge crosses a pixel when the labels of its corners and its centre differ.
   std::vector<int> label(static_cast<std::size_t>((width + 1) * (height + 1)));
   Vector3d bgr;
   for (int v = 0; v <= height; ++v) {

@@ -1,4 +1,4 @@
-// A picture's target as a detector is told of it, and how far off is what it says.
+// The detector's configuration for a picture's target, and the error of a detection.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,11 +15,11 @@ vision::DetectorConfig ConfigOf(TargetKind kind, const PictureCamera& camera, vi
 
 std::vector<Eigen::Vector2d> CornersOf(const vision::Detection& detection);  // of a polygon [px]
 
-// How far the middle is off, or the corner that is furthest off, whichever corner is named first [px].
-// `corner_count`: the body's corners, 0 of what is round.
+// The error of the centre or of the worst corner, whichever is larger [px]. `corners` may begin with any
+// corner. `corner_count`: the body's corners, 0 for a round body.
 double OffOf(const Eigen::Vector2d& middle, std::span<const Eigen::Vector2d> corners,
              const TrueOutline& truth, std::size_t corner_count);
-// The same of what a detector says of the scene's target.
+// The same for a detection of the scene's target.
 double OffOf(const vision::Detection& detection, const PictureScene& scene);
 
 }  // namespace fovea::bench

@@ -41,8 +41,8 @@ Eigen::Matrix3d Turn(Chance& chance, double most_tilt) {
       .toRotationMatrix();
 }
 
-// How large a plate is drawn: `radius` of the circle with its area [m], `reach` of its furthest corner, in
-// radii, and `clutter`, the radius that stands for its size among clutter [m].
+// The size of a plate: `radius` of the circle with its area [m], `reach` of its furthest corner in radii, and
+// `clutter`, the size by which AddScaled divides [m].
 struct PlateSize {
   double radius;
   double reach;
@@ -50,7 +50,7 @@ struct PlateSize {
 };
 
 PlateSize SizeOf(const features::TargetFeature& target) {
-  // The published figures are of pictures that were drawn with these.
+  // The published figures come from pictures that were drawn with these sizes.
   struct Drawn {
     TargetKind kind;
     PlateSize size;
@@ -107,7 +107,7 @@ Body MakeTarget(TargetKind kind, const PictureCamera& camera, bool off_axis, Cha
   const double most = off_axis ? 80.0 : flat ? 100.0 : kRadiusMaxPx;
   const double radius_px = least * std::pow(most / least, chance.Between(0.0, 1.0));
   body.p.z() = camera.f_px * radius / radius_px;
-  // Off the axis outlines are longer: room for them, and for the lines across them.
+  // Leaves room for the longer outlines off the axis, and for the search lines across the outline.
   const double room = 1.25 * reach * radius_px + 14.0;
   const double u_most = std::max(0.0, 0.5 * camera.width_px - room);
   const double v_most = std::max(0.0, 0.5 * camera.height_px - room);
@@ -122,7 +122,7 @@ Body MakeTarget(TargetKind kind, const PictureCamera& camera, bool off_axis, Cha
   return body;
 }
 
-// A bar before the target that hides the share `hidden` of its outline.
+// A bar in front of the target that hides the share `hidden` of its outline.
 Body MakeOccluder(const PictureCamera& camera, const Body& target, double hidden, Chance& chance) {
   const TrueOutline outline = OutlineOf(camera, target);
   const double about = chance.Between(0.0, 2.0 * std::numbers::pi);
@@ -134,7 +134,7 @@ Body MakeOccluder(const PictureCamera& camera, const Body& target, double hidden
   const auto at =
       along.begin() + static_cast<std::ptrdiff_t>((1.0 - hidden) * static_cast<double>(along.size()));
   std::nth_element(along.begin(), at, along.end());
-  const double edge = *at;  // as many of the outline's points are further out
+  const double edge = *at;  // the share `hidden` of the outline's points is further out
   Body body;
   body.shape = Shape::kPolygon;
   body.p = Vector3d(0.0, 0.0, 0.4 * target.p.z());
@@ -149,7 +149,7 @@ Body MakeOccluder(const PictureCamera& camera, const Body& target, double hidden
         Vector2d(start + wide * aside + deep * out), Vector2d(start + wide * aside)}) {
     body.corners.push_back(scale * (corner - centre));
   }
-  // Turning from x to y.
+  // In order from x to y, as Body requires.
   const Vector2d a = body.corners[1] - body.corners[0];
   const Vector2d b = body.corners[2] - body.corners[1];
   if (a.x() * b.y() - a.y() * b.x() < 0.0) {
@@ -158,14 +158,14 @@ Body MakeOccluder(const PictureCamera& camera, const Body& target, double hidden
   return body;
 }
 
-// Its corners, as large as if `radius` were its size.
+// Adds the corners of `plate`, scaled from its clutter size to `radius`.
 void AddScaled(const features::TargetFeature& plate, double radius, std::vector<Vector2d>& corners) {
   for (const Vector2d& corner : CornersOf(plate)) {
     corners.emplace_back(corner * (radius / SizeOf(plate).clutter));
   }
 }
 
-// Things that differ from the target in colour, shape or size, not before it.
+// Adds objects that differ from the target in colour, shape or size. None of them hides it.
 void AddClutter(PictureScene& scene, TargetKind kind, Chance& chance) {
   constexpr int kThings = 9;
   const PictureCamera& camera = scene.camera;
@@ -197,7 +197,7 @@ void AddClutter(PictureScene& scene, TargetKind kind, Chance& chance) {
       body.radius = radius;
     } else {
       body.shape = Shape::kPolygon;
-      // The target's own shape, in another colour; or another one: a long bar, or a triangle.
+      // The target's shape in another colour, or another shape: a long bar or a triangle.
       if (sort == 0) {
         AddScaled(plate, radius, body.corners);
       } else if (is_triangle || (is_round && chance.Coin())) {

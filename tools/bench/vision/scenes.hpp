@@ -15,21 +15,21 @@ struct SceneClass {
   std::string name;
   double noise = 0.0;
   double blur_px = 0.0;
-  double contrast_min = 80.0;  // of the target on the ground [gray levels]
+  double contrast_min = 80.0;  // between target and ground [gray levels]
   double contrast_max = 140.0;
-  double hidden = 0.0;   // share of the outline that something else stands before
-  bool clutter = false;  // in colour, among things of another colour, shape or size
+  double hidden = 0.0;   // share of the outline that an object in front hides
+  bool clutter = false;  // in colour, among objects of another colour, shape or size
   bool off_axis = false;
-  // Sphere and circle, when there is one: rms of the centre shall be at most this, or 1.3 times the bound.
+  // Goal for sphere and circle: rms error at most the larger of this and 1.3 times the bound; 0: no goal.
   double goal_px = 0.0;
 };
 const std::vector<SceneClass>& SceneClasses();
 
-// The target of each kind, as the detector is told of it.
+// The target of each kind, as the detector is configured for it.
 features::TargetFeature TargetOf(TargetKind kind);
 std::vector<Eigen::Vector2d> CornersOf(const features::TargetFeature& target);
 
-// One picture of a class; the radius of the target's outline is from 12 to 150 px.
+// Composes one picture of a class. The radius of the target's outline is 12 to 150 px.
 PictureScene MakeScene(const SceneClass& scene_class, TargetKind kind, bool with_target, unsigned seed);
 
 }  // namespace fovea::bench

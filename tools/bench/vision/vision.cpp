@@ -20,18 +20,18 @@
 namespace fovea::bench {
 namespace {
 
-constexpr double kWrongPx = 2.0;  // further off than this is wrong, centre or corner
+constexpr double kWrongPx = 2.0;  // a detection with a larger error of centre or corner is wrong
 constexpr double kGoalMs = 0.5;
 constexpr double kGoalTrackedMs = 0.1;
 
 struct Score {
   int with_target = 0;
   int without = 0;
-  int found = 0;  // of those with a target, not more than kWrongPx off
-  int wrong = 0;  // further off, or found where nothing is
+  int found = 0;  // pictures with a target, found with an error of at most kWrongPx
+  int wrong = 0;  // found with a larger error, or in a picture without a target
   double centre2 = 0.0;
   double radius2 = 0.0;
-  double bound_centre2 = 0.0;  // of those found
+  double bound_centre2 = 0.0;  // of the found targets
   double bound_radius2 = 0.0;
   double chi2 = 0.0;
   double worst_px = 0.0;
@@ -55,10 +55,10 @@ double MsOf(Function function) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-// What is true of a picture's target, and how well it can be known.
+// The truth about a picture's target, and the best possible accuracy.
 struct Truth {
   TrueOutline outline;
-  std::size_t corners = 0;  // of a polygon
+  std::size_t corners = 0;  // of a polygon; else 0
   Bound bound;
 };
 
@@ -99,7 +99,7 @@ struct Row {
   Score score;
 };
 
-// One class of one target: all contestants on the same pictures.
+// Runs one class of one target: all contestants on the same pictures.
 void RunClass(const SceneClass& scenes, TargetKind kind, const VisionArguments& arguments,
               std::vector<Figure>& figures) {
   const PictureCamera camera;
@@ -169,14 +169,15 @@ void RunClass(const SceneClass& scenes, TargetKind kind, const VisionArguments& 
 int RunVision(const VisionArguments& arguments) {
   cv::setNumThreads(1);
   if (!arguments.json) {
-    fmt::print("{} pictures of 640x480 a class, a third of them without a target; rms along one axis [px]\n",
-               arguments.pictures);
+    fmt::print(
+        "{} pictures of 640x480 per class, a third of them without a target; rms along one axis [px]\n",
+        arguments.pictures);
     fmt::print("{:<9}{:<13}{:<23}{:>5} {:>5} {:>8} {:>8} {:>7} {:>7} {:>6} {:>7} {:>6} {:>7} {:>6}\n",
                "target", "class", "", "found", "wrong", "centre", "radius", "CR c.", "CR r.", "goal", "worst",
                "chi2/2", "ms", "track");
     fmt::print("{:<45}{:>5} {:>5}\n", "", "%", "%");
-    // As wide as the figures below them.
-    fmt::print("{:<45}{:5.1f} {:5.1f} {:>63.3f} {:6.3f}\n", "goals, of what is round", 100.0, 0.0, kGoalMs,
+    // In the columns of the figures below.
+    fmt::print("{:<45}{:5.1f} {:5.1f} {:>63.3f} {:6.3f}\n", "goals for round targets", 100.0, 0.0, kGoalMs,
                kGoalTrackedMs);
   }
   std::vector<Figure> figures;
@@ -196,7 +197,7 @@ int RunVision(const VisionArguments& arguments) {
   }
   if (!any) {
     throw config::InputError(
-        fmt::format("--class {}: there is no such class of --target {}", arguments.only, arguments.target));
+        fmt::format("--class {}: --target {} has no such class", arguments.only, arguments.target));
   }
   if (arguments.json) {
     fmt::print("{}\n", ToJson(figures));

@@ -1,4 +1,4 @@
-// `fovea-bench vision`: how often, how well and how fast targets are found in pictures of known truth.
+// `fovea-bench vision`: detection rate, accuracy and time on pictures with known truth.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// ViSP's visual law, behind plain arrays: its headers are C++17.
+// ViSP's visual law behind plain arrays, because its headers need C++17.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ class VispLaw {
 
   // vpServo::computeControlLaw.
   VispTwist Control(const VispPoints& points);
-  // The interaction matrix, the error, and the pseudo-inverse between them.
+  // -lambda L^+ e, with ViSP's interaction matrix, error and pseudo-inverse.
   VispTwist Steps(const VispPoints& points, double smallest_ratio);
 
  private:

@@ -1,5 +1,5 @@
-// fovea-bench-visp: the visual law beside ViSP's. A program of its own, which is not installed: ViSP is under
-// the GPL, and no package of this project shall need it.
+// fovea-bench-visp: times the visual law and ViSP's. A separate program that is not installed: ViSP is under
+// the GPL, and no package of this project may need it.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -10,11 +10,11 @@
 int main(int argc, char** argv) {
   using namespace fovea;
   CLI::App app{
-      "The visual law beside ViSP's, in one run: four points to the camera's twist, with s, L_s and the "
-      "error."};
+      "Times the visual law and ViSP's in one run: from four points to the camera's twist, with s, L_s and "
+      "the error."};
   bool json = false;
   app.add_flag("--json", json, "Print JSON");
-  app.footer("Example:\n  fovea-bench-visp\nExit: 0 done, 2 wrong usage, or the twists of both differ.");
+  app.footer("Example:\n  fovea-bench-visp\nExit: 0 done, 2 wrong usage, or the two twists differ.");
   return config::RunProgram("fovea-bench-visp", app, argc, argv, [&] {
     const std::vector<bench::Figure> figures = bench::VispSpeed();
     fmt::print("{}", json ? bench::ToJson(figures) + "\n" : bench::ToTable(figures));

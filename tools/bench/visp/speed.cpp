@@ -17,12 +17,12 @@ constexpr int kCases = 500;
 constexpr int kRounds = 41;
 constexpr std::size_t kPoints = 4;
 constexpr double kLambda = 2.0;          // [1/s]
-constexpr double kSmallestRatio = 1e-6;  // of singular values that count, on both sides
-constexpr double kSame = 1e-9;           // of the twists, in shares
+constexpr double kSmallestRatio = 1e-6;  // relative singular value down to which both inverses are exact
+constexpr double kSame = 1e-9;           // largest relative difference of the twists
 
 struct Case {
   std::array<model::Vec3, kPoints> p_C;
-  model::Vec6 V = model::Vec6::Zero();  // of the camera, by whoever computed it last
+  model::Vec6 V = model::Vec6::Zero();  // camera twist, from the law that ran last
 };
 
 // Four corners of a square at about 0.4 m.
@@ -76,7 +76,7 @@ class FoveaLaw {
  private:
   config::LawConfig config_;
   control::DampingConfig exact_;
-  model::ArmModel camera_;  // one that goes where it wants
+  model::ArmModel camera_;  // a free camera, without an arm
   const model::Mat6N along_itself_ = model::Mat6::Identity();
   const model::VecN nowhere_ = model::VecN::Zero(6);
   features::FeatureState feature_;
@@ -84,7 +84,7 @@ class FoveaLaw {
   control::DampedMotion motion_;
 };
 
-// What a camera measures: x = X / Z and y = Y / Z.
+// x = X / Z, y = Y / Z and the depth Z of each point.
 VispPoints Seen(const Case& c) {
   VispPoints points;
   for (std::size_t k = 0; k < kPoints; ++k) {
@@ -113,7 +113,7 @@ void CheckTwists(std::vector<Case>& cases, FoveaLaw& ours, VispLaw& theirs) {
     Keep(theirs.Steps(Seen(c), kSmallestRatio), c);
     const double most = kSame * V.norm();
     if (!((V - V_visp).norm() <= most && (V - c.V).norm() <= most)) {
-      throw std::runtime_error("the visual law's twist is not ViSP's");
+      throw std::runtime_error("the visual law's twist differs from ViSP's");
     }
   }
 }

@@ -1,4 +1,4 @@
-// The visual law beside ViSP's, on the same points.
+// Speed of the visual law and of ViSP's, on the same points.
 #pragma once
 
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace fovea::bench {
 
-// Four points and their depths, eight features, to the camera's twist by the pseudo-inverse: s, L_s [8 x 6],
-// the error and the law, all of it on both sides. Rounds of both take turns; medians [ns per call] and their
-// ratio. `visp_control_law`: ViSP's usual call, which also projects a secondary task; `visp_steps`: only L_s,
-// the error and its pseudo-inverse by ViSP. std::runtime_error: the twists of both sides differ.
+// From four points and their depths (eight features) to the camera's twist by the pseudo-inverse: s,
+// L_s [8 x 6], the error and the law, on both sides. The rounds alternate. Returns medians [ns per call] and
+// ratios. `visp_control_law`: ViSP's usual call, which also projects a secondary task. `visp_steps`: only
+// L_s, the error and the pseudo-inverse by ViSP. std::runtime_error when the two twists differ.
 std::vector<Figure> VispSpeed();
 
 }  // namespace fovea::bench

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kStartMs = 20'000;  // for the first line
 
-// What comes through `pipe` up to the first line's end, or all that came in time.
+// The first line from `pipe`, or its part before a pause of kStartMs.
 std::string FirstLine(int pipe) {
   std::string line;
   pollfd ready{pipe, POLLIN, 0};
@@ -32,7 +32,7 @@ std::string FirstLine(int pipe) {
   return line;
 }
 
-// Of "... at 127.0.0.1:39937, real pace"; 0 where there is none.
+// The port in a line such as "... at 127.0.0.1:39937, real pace"; 0 if there is none.
 std::uint16_t PortIn(const std::string& line) {
   const std::string before = "127.0.0.1:";
   const std::size_t at = line.find(before);
@@ -48,7 +48,7 @@ std::uint16_t PortIn(const std::string& line) {
 [[noreturn]] void BecomeProgram(char* const* argv, int say, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);  // no robot is left behind
   const int in_file = open("/dev/null", O_RDONLY);
-  if (getppid() == parent && in_file >= 0) {  // else the parent is gone
+  if (getppid() == parent && in_file >= 0) {  // another parent: ours has ended already
     dup2(in_file, STDIN_FILENO);
     dup2(say, STDERR_FILENO);
     execv(argv[0], argv);
@@ -61,7 +61,7 @@ std::uint16_t PortIn(const std::string& line) {
 ServedRobot::ServedRobot(const std::filesystem::path& program, const std::string& pace) {
   std::array<int, 2> out{};
   if (pipe2(out.data(), O_CLOEXEC) != 0) {
-    throw std::runtime_error("no pipe for " + program.string());
+    throw std::runtime_error("cannot create a pipe for " + program.string());
   }
   std::vector<std::string> words{
       program.string(), "serve", "ball",      "--pace", pace, "--camera-serial", "",
@@ -79,7 +79,7 @@ ServedRobot::ServedRobot(const std::filesystem::path& program, const std::string
   }
   close(out[1]);
   const std::string line = process_ > 0 ? FirstLine(out[0]) : std::string();
-  said_ = out[0];  // open for as long as it may say more
+  said_ = out[0];  // stays open, because the program may print more
   port_ = PortIn(line);
   if (port_ == 0) {
     if (process_ > 0) {
@@ -87,7 +87,7 @@ ServedRobot::ServedRobot(const std::filesystem::path& program, const std::string
       waitpid(process_, nullptr, 0);
     }
     close(said_);
-    throw std::runtime_error(program.string() + " serve: does not say where it listens: " + line);
+    throw std::runtime_error(program.string() + " serve: did not print where it listens: " + line);
   }
 }
 

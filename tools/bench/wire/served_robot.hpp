@@ -1,4 +1,4 @@
-// `fovea-sim serve` as a program of its own, for as long as the object lives.
+// Runs `fovea-sim serve` as a child process for the lifetime of the object.
 #pragma once
 
 #include <sys/types.h>
@@ -11,8 +11,8 @@ namespace fovea::bench {
 
 class ServedRobot {
  public:
-  // The Panda of scenario `ball` at this pace, without its camera, on a free port of 127.0.0.1. Throws
-  // std::runtime_error when `program` does not start or does not say where it listens.
+  // Starts the Panda of scenario `ball` at `pace`, without its camera, on a free port of 127.0.0.1. Throws
+  // std::runtime_error when `program` does not start or does not print its port.
   ServedRobot(const std::filesystem::path& program, const std::string& pace);
   ~ServedRobot();
   ServedRobot(const ServedRobot&) = delete;
@@ -22,7 +22,7 @@ class ServedRobot {
 
  private:
   pid_t process_ = -1;
-  int said_ = -1;  // what it says
+  int said_ = -1;  // pipe with the program's output
   std::uint16_t port_ = 0;
 };
 

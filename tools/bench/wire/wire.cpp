@@ -20,18 +20,18 @@ namespace fovea::bench {
 namespace {
 
 constexpr double kStatesPerSecond = 1000.0;
-constexpr double kMostReserved = 1e6;  // states; more take what they need as they come
+constexpr double kMostReserved = 1e6;  // states to reserve memory for
 
-// std::runtime_error unless `status` is a state that only has not come yet, or nothing is wrong.
+// std::runtime_error unless `status` is ok or a timeout: a state that has not arrived yet.
 void CheckRobot(const hal::Status& status) {
   if (!status.ok() && status.code() != hal::StatusCode::kTimeout) {
     throw std::runtime_error(fmt::format("the robot: {} ({})", hal::ToString(status.code()), status.where()));
   }
 }
 
-// Each state as it comes, answered with torques that leave the arm where it is, for `seconds` by the clock
-// or, in lockstep, of the robot's time, from the motion's begin on. std::runtime_error when the motion is
-// refused, or the robot breaks it off.
+// Answers each state at once with zero torques, which leave the arm where it is. Measures for `seconds` from
+// the start of the motion: of wall time or, in lockstep, of the robot's time. std::runtime_error when the
+// robot refuses or aborts the motion.
 std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds, bool lockstep) {
   linux_rt::MonotonicClock clock;
   std::vector<double> gaps_us;
@@ -50,7 +50,7 @@ std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds, bool lockste
       CheckRobot(status);
       const std::int64_t now_ns = clock.NowNs();
       if (now_ns - last_ns > hal::kNsPerSecond) {
-        throw std::runtime_error("no state came for a second");
+        throw std::runtime_error("no state arrived for a second");
       }
       continue;
     }
@@ -59,7 +59,7 @@ std::vector<Figure> Measure(franka::FrankaArm& arm, double seconds, bool lockste
     command.num_joints = state.num_joints;
     CheckRobot(arm.Write(command));
     const std::int64_t now_ns = clock.NowNs();
-    if (!moves && arm.phase() == franka::MotionPhase::kRunning) {  // from here on each state is answered
+    if (!moves && arm.phase() == franka::MotionPhase::kRunning) {  // from now on each state is answered
       moves = true;
       begin_ns = now_ns;
       first_state = arm.robot_state().message_id;

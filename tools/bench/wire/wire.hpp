@@ -1,4 +1,4 @@
-// `fovea-bench wire`: the robot's network interface by the clock, its server and our client on this machine.
+// `fovea-bench wire`: times the robot's network interface, with server and client on this machine.
 #pragma once
 
 #include <string>

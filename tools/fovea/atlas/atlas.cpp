@@ -40,7 +40,7 @@ atlas::Sampler MakeSampler(const std::string& target) {
           config::MakeTarget(settings)};
 }
 
-// What the sampler decides or builds upon stays as it is.
+// --set must not change what the sampler sets or relies on.
 void CheckAssignments(const std::vector<std::string>& assignments) {
   for (const std::string& assignment : assignments) {
     for (const char* own : {"arm.model", "arm.q_start", "camera.enabled", "camera.width_px",
@@ -89,7 +89,7 @@ class AtlasRun {
     std::error_code error;
     fs::create_directories(out_ / "runs", error);
     if (error) {
-      throw config::InputError(out_.string() + ": no folder can be made there");
+      throw config::InputError(out_.string() + ": cannot create this folder");
     }
     lock_.emplace(out_);
     rows_.emplace(out_ / "rows.jsonl", heading_, arguments.resume);
@@ -140,7 +140,7 @@ class AtlasRun {
     children_.Start(index, command, Printed(index), Said(index), kRunLimit);
   }
 
-  // What did not converge leaves its pictures.
+  // Deletes the run's folder if the run converged. Failed runs keep their pictures.
   void Finish(const atlas::Children::Ended& ended) {
     const int index = ended.tag;
     Row row;
@@ -149,7 +149,7 @@ class AtlasRun {
     } else if (ended.exit_code < 0) {
       row.index = index;
       row.start = starts_[index];
-      row.verdict = fmt::format("the simulator broke off, or did not end within {} s", kRunLimit.count());
+      row.verdict = fmt::format("the simulator was killed, or did not end within {} s", kRunLimit.count());
     } else {
       throw std::runtime_error(
           fmt::format("run {}: {}", index, atlas::FirstLine(atlas::Content(Said(index)))));
@@ -173,7 +173,7 @@ class AtlasRun {
   const fs::path out_;
   std::optional<config::FolderLock> lock_;
   std::optional<atlas::RowFile> rows_;
-  std::map<int, atlas::Start> starts_;  // of the runs under way
+  std::map<int, atlas::Start> starts_;  // of the runs in progress
   atlas::Children children_;
 };
 
@@ -187,7 +187,7 @@ int JobsOf(const AtlasArguments& arguments) {
 CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
   CLI::App* atlas = app.add_subcommand(
       "atlas", "simulate many runs: the convergence rate from random starts, or the outcome of every fault");
-  CLI::Option_group* kind = atlas->add_option_group("of what");
+  CLI::Option_group* kind = atlas->add_option_group("kind of atlas");
   CLI::Option* target = kind->add_option("--target", arguments.target, "random starts with this target")
                             ->check(CLI::IsMember(std::vector<std::string>(features::kTargetNames.begin(),
                                                                            features::kTargetNames.end())));
@@ -220,17 +220,17 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       ->check(CLI::Range(0, 2147483647));
   atlas
       ->add_option("--set", arguments.assignments,
-                   "key=value for every run, over the scenario's own; may be repeated")
+                   "key=value for every run, overrides the scenario; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false)
       ->excludes(faults);
   atlas->add_option("--out", arguments.out,
                     "folder for the files; default: out/atlas-<target> or out/atlas-faults");
-  atlas->add_flag("--resume", arguments.resume, "continue with the rows in the folder");
+  atlas->add_flag("--resume", arguments.resume, "keep the finished runs in the folder, do the rest");
   atlas
       ->add_flag("--draw-only", arguments.draw_only,
-                 "draw the starts without running them; print how many are refused, and why")
+                 "draw the starts without running them; print how many are rejected, and why")
       ->excludes(faults);
   CLI::Option* json = atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
   atlas->add_flag("--markdown", arguments.markdown, "with --faults: print the page sim/FAULTS.md")

@@ -1,5 +1,5 @@
-// fovea atlas: many simulated runs from random starts, and how many of them reach their goal; with --faults,
-// every fault in every mode and stage.
+// fovea atlas: the convergence rate of simulated runs from random starts; with --faults, the outcome of every
+// fault in every mode and stage.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -24,15 +24,15 @@ struct AtlasArguments {
   bool json = false;
 };
 
-// The subcommand, which fills `arguments`.
+// Adds the subcommand, which fills `arguments`.
 CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments);
 
-// Runs them and prints the figures; returns the program's exit code. Throws config::InputError.
+// Simulates the runs and prints the figures. Returns the program's exit code. Throws config::InputError.
 int Atlas(const AtlasArguments& arguments);
-// The same of --faults.
+// The same for --faults.
 int FaultAtlas(const AtlasArguments& arguments);
 
-// How many runs beside each other.
+// The number of runs in parallel.
 int JobsOf(const AtlasArguments& arguments);
 
 }  // namespace fovea

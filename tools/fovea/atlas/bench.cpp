@@ -15,7 +15,7 @@ const std::array<BenchThing, 3> kThings{{
     {{0.99, -0.44, 0.0435}, {0.072, 0.072, 0.087}, 0.0}  // mug
 }};
 
-// The segment's share that is between both planes of each pair, pair by pair (slabs).
+// Whether the segment meets the box, enlarged by `clear` (slab method).
 bool Meets(const BenchThing& thing, const model::Vec3& a_B, const model::Vec3& b_B, double clear) {
   const model::Mat3 R_TB = model::RotationOf({0.0, 0.0, thing.yaw}).transpose();
   const model::Vec3 from = R_TB * (a_B - thing.centre_B);

@@ -1,7 +1,7 @@
-// The things on the simulated bench that stand high enough to come between a camera and a target.
+// The things on the simulated bench that are high enough to come between the camera and a target.
 //
-// Theirs is the simulator's bench (sim/render/bench.cpp), of which the sampler needs no more than upright
-// boxes; tests/tools/fovea/atlas_bench_test.cpp holds the two against each other.
+// The sampler approximates the things of the simulator's bench (sim/render/bench.cpp) by upright boxes.
+// tests/tools/fovea/atlas_bench_test.cpp compares the two.
 #pragma once
 
 #include <span>
@@ -17,13 +17,12 @@ struct BenchThing {
   double yaw = 0.0;
 };
 
-// Whatever is higher than this above the table is one of them [m].
+// Things on the bench that are higher than this above the table are listed [m].
 inline constexpr double kThingHeight = 0.03;
 
 [[nodiscard]] std::span<const BenchThing> BenchThings();
 
-// Whether a thing comes nearer than `clear` [m] to the segment from `a_B` to `b_B` [m]; corners count as if
-// they stood out square.
+// Whether the segment from `a_B` to `b_B` [m] meets a thing, enlarged by `clear` [m] on each side.
 [[nodiscard]] bool ThingInTheWay(const model::Vec3& a_B, const model::Vec3& b_B, double clear);
 
 }  // namespace fovea::atlas

@@ -18,16 +18,16 @@ using model::VecN;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kHfovDeg = 60.0;
 constexpr double kEdgePx = 30.0;
-constexpr double kRadius = 0.845;     // 1 mm inside what the servo keeps of safety.workspace_radius [m]
+constexpr double kRadius = 0.845;  // 3 mm inside the servo's bound, workspace_radius - workspace_margin [m]
 constexpr double kAboveTable = 0.10;  // [m]
-constexpr double kThingClear = 0.01;  // of the lines of sight, and of the target [m]
-// And along a way, what the servo itself keeps.
+constexpr double kThingClear = 0.01;  // distance of things from the lines of sight and the target [m]
+// Along a path: the bounds that the servo itself keeps.
 constexpr double kEdgeOnTheWayPx = 10.0;
 constexpr double kAboveTableOnTheWay = 0.09;  // [m]
 constexpr double kDepthOnTheWay = 0.05;       // [m]
 constexpr double kSteepest = 0.2;             // cosine between a flat target's normal and the line of sight
-constexpr int kUpperLinks = 6;                // lines up to the forearm's, which the sight must pass by,
-constexpr int kTrunkLinks = 3;                // and up to the elbow, which the hand must
+constexpr int kUpperLinks = 6;                // segments up to the forearm: not in a line of sight
+constexpr int kTrunkLinks = 3;                // segments up to the elbow: not near the hand
 
 double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
@@ -36,7 +36,7 @@ double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - t * ab).norm();
 }
 
-// Of points along it, which is near enough for something as thick as an arm.
+// Approximate, from points along the first segment. Accurate enough for something as thick as an arm.
 double DistanceOfSegments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   constexpr int kPoints = 20;
   double least = DistanceToSegment(a, c, d);
@@ -73,7 +73,7 @@ bool StartChecks::InsideBarrier(const StartPosture& posture) const {
   return posture.poses.X_BE.p.norm() <= kRadius;
 }
 
-// Where the forearm's axis begins, beside the elbow joint (a_5 of the Panda's table).
+// The start of the forearm's axis, beside the elbow joint (a_5 in the Panda's table).
 Vec3 StartChecks::ForearmStart(const StartPosture& posture) const {
   const Pose& X_BL4 = posture.poses.X_BL[3];
   return X_BL4 * Vec3(arm_.joints[4].X_PJ.p.x(), 0.0, 0.0);
@@ -81,13 +81,13 @@ Vec3 StartChecks::ForearmStart(const StartPosture& posture) const {
 
 bool StartChecks::AboveTable(const StartPosture& posture, double height) const {
   double lowest = std::min({posture.poses.X_BE.p.z(), posture.X_BC.p.z(), ForearmStart(posture).z()});
-  for (int i = 3; i < arm_.num_joints; ++i) {  // what comes before stands on the table
+  for (int i = 3; i < arm_.num_joints; ++i) {  // the links before it stand on the table
     lowest = std::min(lowest, posture.poses.X_BL[static_cast<std::size_t>(i)].p.z());
   }
   return lowest >= height;
 }
 
-// A ball's outline along one axis of the picture lies between the tangents to it (exact, off axis too).
+// Along each axis of the picture, a ball's outline ends at the tangents to the ball (exact, also off axis).
 bool StartChecks::InPicture(const Pose& X_CO, double edge_px) const {
   const features::TargetOutline outline = feature_.Outline();
   const auto inside = [&](double across, double depth, double size_px) {
@@ -115,8 +115,8 @@ bool StartChecks::TargetAboveTable(const Pose& X_BO) const {
   return true;
 }
 
-// The arm as a thick line from joint to joint: what hangs on the wrist keeps clear of what comes before, the
-// target of all of it, and the lines of sight of all but the wrist, where the camera sits.
+// The arm as thick segments from joint to joint. Keeps apart: hand and links up to the elbow; target and
+// whole arm; lines of sight and all links except the wrist, where the camera sits.
 bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO, const Clear& clear) const {
   const features::TargetOutline outline = feature_.Outline();
   std::vector<Vec3> line{Vec3::Zero()};

@@ -1,5 +1,5 @@
-// What a start of an atlas and the postures of a way from it must keep: hand and arm, target and lines of
-// sight, by the atlas's own geometry. It shares no code with the servo's, which would be the judge of itself.
+// Conditions for a start of an atlas and for the postures of a path from it: hand and arm, target and lines
+// of sight. The geometry shares no code with the servo, so the servo is not judged by its own code.
 #pragma once
 
 #include "firmware/core/features/target_feature.hpp"
@@ -11,7 +11,7 @@ namespace fovea::atlas {
 inline constexpr double kWidthPx = 640.0;
 inline constexpr double kHeightPx = 480.0;
 [[nodiscard]] double FocalPx();
-// Where the point is in the picture [px].
+// Position of the point in the picture [px].
 [[nodiscard]] double U(const model::Vec3& p_C);
 [[nodiscard]] double V(const model::Vec3& p_C);
 
@@ -27,28 +27,28 @@ class StartChecks {
   StartChecks(const model::ArmModel& arm, const features::TargetFeature& feature);
 
   [[nodiscard]] StartPosture At(const model::VecN& q) const;
-  // The hand is inside the workspace.
+  // True when the hand is inside the workspace.
   [[nodiscard]] bool InsideBarrier(const StartPosture& posture) const;
-  // Elbow, forearm, wrist, hand and camera are, by 0.10 m.
+  // True when elbow, forearm, wrist, hand and camera are at least 0.10 m above the table.
   [[nodiscard]] bool AboveTable(const StartPosture& posture) const;
-  // The target's outline is wholly, by 30 px; and above the table.
+  // True when the target's outline is completely 30 px inside the picture; when it is above the table.
   [[nodiscard]] bool InPicture(const model::Pose& X_CO) const;
   [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;
-  // The arm stands in itself, in the target or in a line of sight.
+  // True when the arm is too close to itself, to the target or to a line of sight.
   [[nodiscard]] bool ArmInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
-  // A thing on the bench stands in the target or in a line of sight.
+  // True when a thing on the bench is in the target or in a line of sight.
   [[nodiscard]] bool BenchInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
 
-  // All of it along a way, where it is somewhat less than at its ends.
+  // True when a posture on a path meets all conditions. The bounds are less strict than at its ends.
   [[nodiscard]] bool OnTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
-  // The target is in front of the camera, but not wholly in the picture as a way keeps it.
+  // True when the target is in front of the camera but not completely in the picture, by the path's bound.
   [[nodiscard]] bool OutOfViewOnTheWay(const model::Pose& X_CO) const;
 
   // X_EC.
   [[nodiscard]] const model::Pose& camera() const { return X_EC_; }
 
  private:
-  // How far the arm's line keeps from what [m].
+  // Distances of the arm's segments from lines of sight, target and trunk [m].
   struct Clear {
     double sight;
     double target;

@@ -12,7 +12,7 @@
 namespace fovea::atlas {
 namespace {
 
-constexpr int kCannotStart = 127;  // as shells say it
+constexpr int kCannotStart = 127;  // the exit code that shells use
 
 // In the child: only calls that are allowed between fork and exec.
 [[noreturn]] void BecomeProgram(char* const* argv, const char* out, const char* err, pid_t parent) {
@@ -21,7 +21,7 @@ constexpr int kCannotStart = 127;  // as shells say it
   const int in_file = open("/dev/null", O_RDONLY);
   const int out_file = open(out, kFlags, 0600);
   const int err_file = open(err, kFlags, 0600);
-  if (getppid() == parent && in_file >= 0 && out_file >= 0 && err_file >= 0) {  // else the parent is gone
+  if (getppid() == parent && in_file >= 0 && out_file >= 0 && err_file >= 0) {  // else our parent has ended
     dup2(in_file, STDIN_FILENO);
     dup2(out_file, STDOUT_FILENO);
     dup2(err_file, STDERR_FILENO);
@@ -54,7 +54,7 @@ void Children::Start(int tag, const std::vector<std::string>& arguments, const s
     BecomeProgram(argv.data(), out.c_str(), err.c_str(), parent);
   }
   if (pid < 0) {
-    throw std::runtime_error(arguments[0] + ": no process can be started");
+    throw std::runtime_error(arguments[0] + ": cannot start a process");
   }
   children_.push_back({pid, tag, std::chrono::steady_clock::now() + limit});
 }

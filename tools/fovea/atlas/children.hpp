@@ -1,4 +1,4 @@
-// Programs run beside each other, each a process of its own: what one does to itself, no other notices.
+// Runs programs in parallel, each in its own process, so that a crash does not affect the others.
 #pragma once
 
 #include <sys/types.h>
@@ -12,12 +12,12 @@ namespace fovea::atlas {
 
 class Children {
  public:
-  // Kills what still runs.
+  // Kills the children that still run.
   ~Children();
 
-  // Starts `arguments`, whose first is the program's path, with what it prints in the files `out` and `err`.
-  // It is killed after `limit`, and when this process dies, in whatever way. `tag` is the caller's. Throws
-  // std::runtime_error.
+  // Starts the program `arguments[0]` with the rest as its arguments. Its output goes to the files `out` and
+  // `err`. The child is killed after `limit`, and whenever this process ends. `tag` is returned in Ended.
+  // Throws std::runtime_error.
   void Start(int tag, const std::vector<std::string>& arguments, const std::filesystem::path& out,
              const std::filesystem::path& err, std::chrono::seconds limit);
 
@@ -25,7 +25,7 @@ class Children {
     int tag = 0;
     int exit_code = -1;  // -1: ended by a signal, or killed at its limit
   };
-  // Waits until one has ended. There must be one.
+  // Waits until a child has ended. At least one must be running.
   Ended WaitForOne();
 
   [[nodiscard]] std::size_t running() const { return children_.size(); }

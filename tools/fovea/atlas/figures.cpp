@@ -19,7 +19,7 @@ std::optional<Spread> SpreadOf(std::vector<double> values) {
     return std::nullopt;
   }
   std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {  // the value that this share of them is not above
+  const auto at = [&](double share) {  // the least value that at least this share does not exceed
     const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
     return values[std::max<std::size_t>(rank, 1) - 1];
   };
@@ -47,8 +47,7 @@ std::uint64_t DrawsOf(const Figures& f) {
 
 std::string SamplerLines(const Figures& f) {
   std::string text;
-  text +=
-      Line("sampler", fmt::format("{} draws for {} starts that have a way; refused:", DrawsOf(f), f.runs));
+  text += Line("sampler", fmt::format("{} draws for {} starts with a path; rejected:", DrawsOf(f), f.runs));
   for (std::size_t i = 0; i < f.rejections.size(); ++i) {
     text += Line("", fmt::format("{:>9} {}: {}", f.rejections[i], kRejectionNames[i], kRejectionWords[i]));
   }
@@ -81,7 +80,7 @@ std::array<double, 2> Wilson95(int converged, int runs) {
 }
 
 std::vector<std::string> AssignmentsOf(const Heading& heading, const Start& start) {
-  // Told first, so that what the caller sets counts.
+  // This one comes first, so that the caller's assignments override it.
   std::vector<std::string> assignments{"safety.planes=[0,0,1,0.03]"};
   assignments.insert(assignments.end(), heading.assignments.begin(), heading.assignments.end());
   std::vector<std::string> q;

@@ -1,4 +1,4 @@
-// Small files of an atlas, read and written whole.
+// Reads and writes small files of an atlas.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +6,10 @@
 
 namespace fovea::atlas {
 
-// What stands in `file`; "" when it cannot be read.
+// The content of `file`; "" when it cannot be read.
 std::string Content(const std::filesystem::path& file);
 std::string FirstLine(const std::string& text);
-// InputError: it cannot be written.
+// InputError: the file cannot be written.
 void WriteFile(const std::filesystem::path& file, const std::string& content);
 
 }  // namespace fovea::atlas

@@ -15,9 +15,9 @@ constexpr double kWidth = 460.0;  // of the drawing, in its own units
 constexpr double kLeft = 46.0;
 constexpr double kBelow = 40.0;
 constexpr double kAround = 10.0;
-constexpr double kFromDark = 0.55;  // share of the scale from which the ink on a cell is white
+constexpr double kFromDark = 0.55;  // from this share of the scale on, text on a cell is white
 
-// From light to dark, so that it can be read without colours too.
+// From light to dark, so that the map is readable without colours too.
 std::string Colour(double share) {
   constexpr std::array<std::array<double, 3>, 4> kStops{
       {{236, 243, 247}, {142, 196, 222}, {47, 122, 179}, {13, 50, 97}}};
@@ -39,7 +39,7 @@ struct Cell {
   int failed = 0;
 };
 
-// Where the axes' values are on the drawing.
+// Maps values of the axes to positions on the drawing.
 struct Frame {
   const MapAxes& axes;
   double scale = 1.0;
@@ -80,7 +80,7 @@ std::string CellText(const Frame& frame, std::pair<int, int> at, Cell cell, cons
       share >= kFromDark ? "#ffffff" : "#17202a", cell.heat.size() + static_cast<std::size_t>(cell.failed));
 }
 
-// A step of 1, 2 or 5 times a power of ten that gives about six numbers.
+// A step of 1, 2 or 5 times a power of ten that gives about six labels.
 double TickStep(double range) {
   const double rough = range / 6.0;
   const double power = std::pow(10.0, std::floor(std::log10(rough)));
@@ -163,7 +163,7 @@ std::string HeatLegend(const HeatScale& scale, const std::string& name) {
                         share >= kFromDark ? "#ffffff" : "#17202a",
                         scale.least + share * (scale.most - scale.least));
   }
-  return text + ". The number in a cell is how many runs began there.</p>";
+  return text + ". The number in a cell is the count of runs that began there.</p>";
 }
 
 }  // namespace fovea::atlas

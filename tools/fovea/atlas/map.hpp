@@ -9,7 +9,7 @@ namespace fovea::atlas {
 struct MapPoint {
   double x = 0.0;
   double y = 0.0;
-  double heat = 0.0;  // of a run that did not fail
+  double heat = 0.0;  // valid if the run did not fail
   bool failed = false;
   int run = 0;
 };
@@ -20,19 +20,20 @@ struct MapAxes {
   double x_min = 0.0, x_max = 1.0;
   double y_min = 0.0, y_max = 1.0;
   double cell = 0.1;    // side of a cell, in the axes' unit
-  bool y_down = false;  // as rows of a picture
+  bool y_down = false;  // y grows downwards, as in a picture
 };
 
-// The range of heat that the colours stand for.
+// The range of heat that the colours cover.
 struct HeatScale {
   double least = 0.0;
   double most = 1.0;
 };
 
-// A cell's colour is its median heat, its number the runs in it; a failed run is a cross with its number.
+// A cell's colour shows its median heat, its number the count of runs in it. A cross marks a failed run, with
+// the run's number.
 std::string HeatMap(const std::vector<MapPoint>& points, const MapAxes& axes, const HeatScale& scale);
 
-// The colours with their numbers.
+// The colours with their values.
 std::string HeatLegend(const HeatScale& scale, const std::string& name);
 
 }  // namespace fovea::atlas

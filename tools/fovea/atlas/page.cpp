@@ -34,7 +34,7 @@ std::string Verdict(const Figures& f) {
       "scenario "
       "{}</p><p class=\"verdict-word\">{} of {} converged</p><p class=\"verdict-sentence\">The rate lies "
       "between "
-      "{:.1f} and {:.1f} % (Wilson, 95 %); limits were passed in {} ticks.</p></div></div><dl "
+      "{:.1f} and {:.1f} % (Wilson, 95 %); limits were exceeded in {} ticks.</p></div></div><dl "
       "class=\"tiles\">"
       "{}{}{}{}</dl></section>",
       f.ReachedGoal() ? "good" : "bad", f.runs, KindOfSeed(f.heading.seed, f.heading.servo), f.heading.seed,
@@ -44,7 +44,7 @@ std::string Verdict(const Figures& f) {
       SpreadTile("Orientation error", f.error_deg, "deg"));
 }
 
-// The smallest multiple of `cell` that is not below (with `sign` 1), or above (-1), all values.
+// The multiple of `cell` nearest to 0 that no value exceeds: upwards for `sign` 1, downwards for -1.
 double Bound(const std::vector<MapPoint>& points, double MapPoint::*value, double cell, int sign) {
   double bound = 0.0;
   for (const MapPoint& point : points) {
@@ -128,7 +128,7 @@ std::string SamplerTable(const Figures& f) {
                         kRejectionNames[i], Escaped(kRejectionWords[i]), f.rejections[i]);
   }
   return fmt::format(
-      "<section><h2>Draws that were refused</h2><table><thead><tr><th>first reason</th><th></th><th "
+      "<section><h2>Rejected draws</h2><table><thead><tr><th>first reason</th><th></th><th "
       "class=\"number\">"
       "draws</th></tr></thead><tbody>{}</tbody></table></section>",
       rows);
@@ -149,8 +149,7 @@ std::string FailureTable(const Figures& f) {
         failure.index, Escaped(failure.verdict), Escaped(failure.command));
   }
   return fmt::format(
-      "<section><h2>Failures</h2><table><thead><tr><th class=\"brief\">run</th><th>why, and how to repeat "
-      "it</th>"
+      "<section><h2>Failures</h2><table><thead><tr><th class=\"brief\">run</th><th>verdict and command</th>"
       "<th class=\"brief\">pictures</th></tr></thead><tbody>{}</tbody></table></section>",
       rows);
 }

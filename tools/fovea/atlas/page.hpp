@@ -1,4 +1,4 @@
-// atlas.html: where runs began, how long they took and which failed, as one file that needs nothing else.
+// atlas.html: maps of the starts, settling times and failures, in one self-contained file.
 #pragma once
 
 #include <filesystem>
@@ -10,10 +10,10 @@ namespace fovea::atlas {
 
 class AtlasPage {
  public:
-  // Reads the style of the reports in `folder`. std::runtime_error when it is not there.
+  // Reads the style of the reports from `folder`. std::runtime_error when it is missing.
   explicit AtlasPage(const std::filesystem::path& folder);
 
-  // A page of its own around `main`, in the reports' style.
+  // A complete page around `main`, in the reports' style.
   [[nodiscard]] std::string Wrap(const std::string& title, const std::string& main) const;
   [[nodiscard]] std::string Make(const Figures& figures, const std::map<int, Row>& rows) const;
 

@@ -1,4 +1,4 @@
-// How far an atlas is, on standard error: a bar on a terminal, else a line for every tenth.
+// The progress of an atlas on standard error: a bar on a terminal, else one line per tenth.
 #pragma once
 
 #include <string>

@@ -90,7 +90,7 @@ Json ToJson(const Row& row) {
   return json;
 }
 
-// What a summary and a row tell in the same words.
+// Reads the keys that a summary and a row have in common.
 void ReadResult(const nlohmann::json& json, Row& row) {
   row.converged = json.at("converged");
   row.verdict = json.at("verdict");
@@ -115,7 +115,7 @@ Row MakeRow(int index, const Start& start, const nlohmann::json& summary) {
   const std::optional<double> seen_px = NumberOrNone(summary.at("start_error_px"));
   if (!seen_px || std::fabs(*seen_px - start.error_px) > kSamePx) {
     throw std::runtime_error(fmt::format(
-        "run {}: the target begins {} px from its goal in the simulator, {:.2f} px by the sampler; "
+        "run {}: the target starts {} px from its goal in the simulator, {:.2f} px in the sampler; "
         "arm, camera and servo.goal must be those of the scenario ball",
         index, seen_px ? fmt::format("{:.2f}", *seen_px) : "?", start.error_px));
   }
@@ -140,17 +140,17 @@ void RowFile::Read(const Heading& heading) {
   std::ostringstream content;
   content << std::ifstream(file_, std::ios::binary).rdbuf();
   const std::string text = content.str();
-  std::size_t whole = 0;  // bytes of lines that are there to their end
+  std::size_t whole = 0;  // bytes of complete lines
   try {
     for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', whole)) {
       const nlohmann::json json = nlohmann::json::parse(text.begin() + static_cast<std::ptrdiff_t>(whole),
                                                         text.begin() + static_cast<std::ptrdiff_t>(end));
       if (whole == 0) {
         if (HeadingOf(json) != heading) {
-          throw config::InputError(fmt::format(
-              "{}: rows of another --target, --seed, --set or servo library; leave out --resume to "
-              "begin anew",
-              file_.string()));
+          throw config::InputError(
+              fmt::format("{}: rows of another --target, --seed, --set or servo library; omit --resume to "
+                          "start again",
+                          file_.string()));
         }
       } else {
         Row row;
@@ -163,10 +163,10 @@ void RowFile::Read(const Heading& heading) {
     }
   } catch (const nlohmann::json::exception&) {
     throw config::InputError(fmt::format(
-        "{}: byte {} on is no row of an atlas; leave out --resume to begin anew", file_.string(), whole));
+        "{}: not a row of an atlas from byte {} on; omit --resume to start again", file_.string(), whole));
   }
   if (whole == 0) {
-    throw config::InputError(file_.string() + ": holds no atlas; leave out --resume to begin anew");
+    throw config::InputError(file_.string() + ": contains no atlas; omit --resume to start again");
   }
   std::filesystem::resize_file(file_, whole);
 }

@@ -1,4 +1,4 @@
-// The runs of an atlas on disk: one line of JSON each, written as it comes, so that what was done is kept.
+// The runs of an atlas on disk: one line of JSON per run, written when the run ends, so that none is lost.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace fovea::atlas {
 
-// A run: where it began, and what fovea-sim said of it.
+// A run: its start, and its result in fovea-sim's summary.
 struct Row {
   int index = 0;
   Start start;
@@ -26,11 +26,11 @@ struct Row {
   std::optional<double> final_error_px;
   std::optional<double> final_error_mm;
   std::optional<double> final_error_deg;
-  std::map<std::string, double> limits;  // largest used share of each
+  std::map<std::string, double> limits;  // largest used share of each limit
   std::string log_hash;
 };
 
-// What a folder's rows have in common. Rows of another atlas are none of this one's.
+// The settings that all rows of a folder share. Rows with another heading belong to another atlas.
 struct Heading {
   std::string target;
   std::uint64_t seed = 1;
@@ -40,14 +40,14 @@ struct Heading {
   bool operator==(const Heading&) const = default;
 };
 
-// The row of a run that `summary` (fovea-sim's --json) tells of. std::runtime_error when it is none, or when
-// the simulator saw the target elsewhere than the sampler put it.
+// The row of a run, from `summary` (fovea-sim's --json). Throws when `summary` is not one, or when the target
+// has another start error in the simulator than in the sampler (std::runtime_error).
 Row MakeRow(int index, const Start& start, const nlohmann::json& summary);
 
 class RowFile {
  public:
-  // Begins `file` anew, or with `resume` goes on with what is there: rows() then holds its runs, and a last
-  // line that was cut off is dropped. InputError: it cannot be written, or is not of `heading`.
+  // Starts `file` again, or with `resume` continues it: rows() then contains its runs, and an incomplete last
+  // line is dropped. InputError: the file cannot be written or has another heading.
   RowFile(const std::filesystem::path& file, const Heading& heading, bool resume);
 
   void Add(const Row& row);

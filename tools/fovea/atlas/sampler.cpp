@@ -22,10 +22,10 @@ constexpr double kDepthLeast = 0.25;  // [m]
 constexpr double kDepthMost = 0.90;
 constexpr double kTiltMostDeg = 45.0;
 constexpr double kJointMargin = 5.0 * kRadPerDeg;
-constexpr double kRangeOnTheWay = 0.06;  // more of each joint's range along a way, at either end [rad]
+constexpr double kRangeOnTheWay = 0.06;  // a path may use this much more of a joint's range at each end [rad]
 constexpr int kMostDraws = 1'000'000;
 constexpr double kNear = 0.5;      // [rad]
-constexpr int kNearDescents = 16;  // from about the start, and from anywhere
+constexpr int kNearDescents = 16;  // from postures near the start; kFarDescents: from anywhere
 constexpr int kFarDescents = 24;
 constexpr int kDescentSteps = 120;
 
@@ -35,7 +35,7 @@ double Uniform(std::mt19937_64& engine, double low, double high) {
 
 double Rounded(double value, double step) { return std::round(value / step) * step; }
 
-// Roll, pitch, yaw about fixed axes, as a scenario writes an orientation.
+// Roll, pitch, yaw about fixed axes, as in a scenario.
 std::array<double, 3> RollPitchYawDeg(const Mat3& R) {
   return {std::atan2(R(2, 1), R(2, 2)) / kRadPerDeg,
           std::atan2(-R(2, 0), std::hypot(R(2, 1), R(2, 2))) / kRadPerDeg,
@@ -70,7 +70,7 @@ VecN Sampler::DrawPosture(std::mt19937_64& engine) const {
   return q;
 }
 
-// X_CO of a target somewhere in the picture.
+// X_CO of a target at a random place in the picture.
 Pose Sampler::DrawTarget(std::mt19937_64& engine) const {
   const double u = Uniform(engine, 0.0, kWidthPx - 1.0);
   const double v = Uniform(engine, 0.0, kHeightPx - 1.0);
@@ -86,7 +86,7 @@ Pose Sampler::DrawTarget(std::mt19937_64& engine) const {
   return X_CO;
 }
 
-// The goal's orientation; of those that look alike the one that is nearest.
+// The goal's orientation. If several look alike, the nearest one.
 Mat3 Sampler::NearestGoal(const Mat3& R_CO) const {
   const int turns = features::TraitsOf(feature_.target).turns;
   Mat3 nearest = feature_.R_CO_star;
@@ -101,7 +101,7 @@ Mat3 Sampler::NearestGoal(const Mat3& R_CO) const {
 }
 
 // Gauss-Newton on the target's pose in the camera: with V the camera's twist, dp_CO/dt = -v + [p]x w and the
-// orientation turns by -w. A joint at its end rests where the step would take it further.
+// orientation turns by -w. A joint at the end of its range stays there if the step would take it further.
 std::optional<VecN> Sampler::DescentTo(const VecN& q_start, const Pose& X_BO) const {
   constexpr double kStepMost = 0.2;  // [rad]
   constexpr double kDamping = 1e-6;
@@ -151,8 +151,8 @@ std::optional<VecN> Sampler::DescentTo(const VecN& q_start, const Pose& X_BO) co
   return std::nullopt;
 }
 
-// A step of Gauss-Newton that takes the target's centre a third of the way to the picture's, when the target
-// is not wholly in it.
+// If the target is not completely in the picture: a Gauss-Newton step that moves its centre a third of the
+// way to the picture's centre.
 VecN Sampler::PulledIntoView(const VecN& q, const Pose& X_BO) const {
   constexpr double kShare = 1.0 / 3.0;
   const StartPosture posture = checks_.At(q);
@@ -230,7 +230,7 @@ Start Sampler::Draw(std::uint64_t seed, int index) const {
       refuse(Rejection::kStartBelowTable);
       continue;
     }
-    // As the run will be told of it.
+    // Rounded as in the settings of the run.
     Pose X_BO = posture.X_BC * drawn;
     X_BO.p = X_BO.p.unaryExpr([](double x) { return Rounded(x, 1e-4); });
     start.rpy_deg = RollPitchYawDeg(X_BO.R);

@@ -1,8 +1,8 @@
-// Which starts a servo is judged by: those that nobody can have tuned it on.
+// Seeds of an atlas. A servo is judged on starts on which nobody can have tuned it.
 //
-// A servo that was changed while somebody looked at the starts of a seed has learned them. So seeds below
-// kFirstJudgingSeed are there to look at while the servo is worked on, and figures are quoted over a judging
-// seed: it follows from the servo library's hash, so that each change of the servo gives starts that are new.
+// Whoever changes the servo while looking at the starts of a seed tunes it on them. Seeds below
+// kFirstJudgingSeed are for such tuning. Quoted figures use a judging seed. It follows from the hash of the
+// servo library, so each change of the servo gives new starts.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,12 @@ namespace fovea::atlas {
 
 inline constexpr int kFirstJudgingSeed = 1000;
 
-// Of the library with this SHA-256, in hexadecimal: kFirstJudgingSeed up to 2^28 more.
+// The judging seed for a library with this SHA-256 in hexadecimal: kFirstJudgingSeed plus less than 2^28.
 [[nodiscard]] inline int JudgingSeed(const std::string& servo_hash) {
   return kFirstJudgingSeed + static_cast<int>(std::strtol(servo_hash.substr(0, 7).c_str(), nullptr, 16));
 }
 
-// What starts of `seed` say of the servo with this hash.
+// The kind of `seed` for the servo with this hash.
 [[nodiscard]] inline const char* KindOfSeed(std::uint64_t seed, const std::string& servo_hash) {
   if (seed < static_cast<std::uint64_t>(kFirstJudgingSeed)) {
     return "tuning";

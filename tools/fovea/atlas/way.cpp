@@ -25,9 +25,9 @@ const VecN& NearestOf(const Tree& tree, const VecN& q) {
 
 enum class Step : std::uint8_t { kThere, kNearer, kBarred };
 
-// From `from` towards `to`; the posture that is come to joins the tree.
+// Steps from `from` towards `to`, and adds the reached posture to the tree.
 Step StepTowards(const WayProblem& problem, const VecN& from, const VecN& to, Tree& tree) {
-  constexpr double kNearer = 0.02;  // of a step, at least
+  constexpr double kNearer = 0.02;  // least progress, as a share of a step
   const VecN off = to - from;
   const double left = off.norm();
   if (left <= problem.step) {

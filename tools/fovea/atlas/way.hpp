@@ -1,8 +1,8 @@
-// Whether any way of the joints leads from one posture to another: a search by two trees that grow towards
-// random postures and towards each other (Kuffner and LaValle, RRT-Connect, ICRA 2000).
+// Searches a joint path from one posture to another with two trees that grow towards random postures and
+// towards each other (Kuffner and LaValle, RRT-Connect, ICRA 2000).
 //
-// It shares no code with the servo's own search, and takes its time. What it finds exists; where it finds
-// nothing there may still be a way, through a gap too narrow for it.
+// It shares no code with the servo's own search, and may take long. A path that it finds exists. When it
+// finds none, a path through a narrow gap may still exist.
 #pragma once
 
 #include <cstdint>
@@ -17,14 +17,14 @@ struct WayProblem {
   model::VecN least;  // of the joints' ranges [num_joints]
   model::VecN most;
   std::function<bool(const model::VecN& q)> is_allowed;
-  // A posture near `q` that is nearer to an allowed one; `q` itself will do.
+  // Returns a posture near `q` that is closer to an allowed one, or `q` itself.
   std::function<model::VecN(const model::VecN& q)> pull;
-  double step = 0.1;  // between postures that are asked about [rad]
-  int draws = 60000;  // of random postures, until it is given up
+  double step = 0.1;  // between tested postures [rad]
+  int draws = 60000;  // largest number of random postures
 };
 
-// The same for the same `seed`. Postures of `goals` that are not allowed are left out, and a start that is
-// not has no way.
+// True when a path to any of `goals` was found. The same seed gives the same result. Goals that are not
+// allowed are ignored. From a start that is not allowed there is no path.
 [[nodiscard]] bool WayExists(const WayProblem& problem, const model::VecN& start,
                              const std::vector<model::VecN>& goals, std::uint64_t seed);
 

@@ -32,7 +32,7 @@ int Focal(const CalibrateArguments& a) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     const cv::Mat image = ReadImage(files[i]);
     if (!sizes.empty() && image.size() != sizes.front()) {
-      throw config::InputError(fmt::format("{}: {} x {} px, but {} is of {} x {} px", files[i].string(),
+      throw config::InputError(fmt::format("{}: {} x {} px, but {} has {} x {} px", files[i].string(),
                                            image.cols, image.rows, files[0].string(), sizes[0].width,
                                            sizes[0].height));
     }
@@ -40,7 +40,7 @@ int Focal(const CalibrateArguments& a) {
     vision::DetectorConfig config;
     config.kind = a.target == "sphere" ? hal::FeatureKind::kSphere : hal::FeatureKind::kCircle;
     config.by = vision::FindBy::kGray;
-    // The radius alone is asked for; it hardly depends on this focal length.
+    // Only the radius is used. It hardly depends on this assumed focal length.
     const double f = 0.5 * image.cols * std::sqrt(3.0);
     config.intrinsics = {image.cols, image.rows, f, f, 0.5 * (image.cols - 1), 0.5 * (image.rows - 1), {}};
     config.size = a.diameter;
@@ -51,7 +51,7 @@ int Focal(const CalibrateArguments& a) {
     if (!d.found) {
       throw config::InputError(
           fmt::format("{}: {}", files[i].string(),
-                      WhyNothing(image).value_or(fmt::format("no {} is in this image", a.target))));
+                      WhyNothing(image).value_or(fmt::format("no {} found in this image", a.target))));
     }
     views.push_back({d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), static_cast<double>(i) * a.delta_z});
   }
@@ -73,20 +73,20 @@ int Focal(const CalibrateArguments& a) {
   return config::kDone;
 }
 
-// What a folder's images show of the board.
+// The board in the images of a folder.
 struct BoardFolder {
   std::vector<calibration::BoardView> views;
   cv::Size size;
-  std::string without;  // which images show none, and why; "" when all do
+  std::string without;  // images without the board, and why; "": none
 };
 
-// All images must be of one size.
+// All images must have the same size.
 BoardFolder ReadBoards(const std::string& folder, const calibration::Board& board) {
   BoardFolder found;
   for (const fs::path& file : ImageFiles({folder})) {
     const cv::Mat image = ReadImage(file);
     if (found.size.area() > 0 && image.size() != found.size) {
-      throw config::InputError(fmt::format("{}: {} x {} px, but the others are of {} x {} px", file.string(),
+      throw config::InputError(fmt::format("{}: {} x {} px, but the others have {} x {} px", file.string(),
                                            image.cols, image.rows, found.size.width, found.size.height));
     }
     found.size = image.size();
@@ -98,12 +98,12 @@ BoardFolder ReadBoards(const std::string& folder, const calibration::Board& boar
       continue;
     }
     found.without += fmt::format("{}{}: {}", found.without.empty() ? "" : ", ", view.name,
-                                 nothing.value_or("no such board"));
+                                 nothing.value_or("board not found"));
   }
   return found;
 }
 
-// What `solve` makes of the views; when it refuses them, with the images that gave none.
+// The result of `solve`. When it refuses the views, the error also lists the images without the board.
 template <typename Solve>
 auto SolveBoards(const BoardFolder& found, const Solve& solve) {
   try {
@@ -122,7 +122,7 @@ void SayWithout(const BoardFolder& found) {
   }
 }
 
-// The lines that a configuration takes.
+// Prints the lines for section [camera] of a configuration.
 void PrintSection(const std::vector<config::NewValue>& values) {
   fmt::print("[camera]\n");
   for (const config::NewValue& value : values) {
@@ -168,7 +168,7 @@ int FindIntrinsics(const CalibrateArguments& a) {
   return config::kDone;
 }
 
-// Those views of boards whose pictures the hand's poses name.
+// The views whose pictures poses.csv names, with the hand's poses.
 std::vector<calibration::HandView> HandViews(const std::string& folder,
                                              const std::vector<calibration::BoardView>& boards) {
   std::vector<calibration::HandView> views;
@@ -186,7 +186,7 @@ int HandEye(const CalibrateArguments& a) {
   const vision::Intrinsics in = ReadCameraFile(a.camera_file);
   const BoardFolder found = ReadBoards(a.folder, a.board);
   if (found.size != cv::Size(in.width_px, in.height_px)) {
-    throw config::InputError(fmt::format("{}: images of {} x {} px, but --camera {} is of {} x {} px",
+    throw config::InputError(fmt::format("{}: images have {} x {} px, but --camera {} has {} x {} px",
                                          a.folder, found.size.width, found.size.height, a.camera_file,
                                          in.width_px, in.height_px));
   }
@@ -236,9 +236,9 @@ int WriteBoard(const CalibrateArguments& a) {
     written = false;
   }
   if (!written) {
-    throw config::InputError(a.out + ": cannot be written; a picture's name ends in .png");
+    throw config::InputError(a.out + ": cannot be written; the name must end in .png");
   }
-  fmt::print("{}: {} x {} px, {} of them a square of {} m\n", a.out, page.cols, page.rows, kSquarePx,
+  fmt::print("{}: {} x {} px; a square has {} px and {} m\n", a.out, page.cols, page.rows, kSquarePx,
              a.board.square);
   return config::kDone;
 }
@@ -260,9 +260,11 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
       "Exit: 0 done, 2 wrong usage or input.");
   CLI::App* focal = calibrate->add_subcommand(
       "focal", "calibrate the focal length from views of one disc or ball, each --delta-z further away");
-  focal->add_option("image", a.images, "two or more, the nearest first")->required();
-  focal->add_option("--diameter", a.diameter, "of the target [m]")->required()->check(CLI::PositiveNumber);
-  focal->add_option("--delta-z", a.delta_z, "from one view to the next [m]")
+  focal->add_option("image", a.images, "two or more images, the nearest first")->required();
+  focal->add_option("--diameter", a.diameter, "diameter of the target [m]")
+      ->required()
+      ->check(CLI::PositiveNumber);
+  focal->add_option("--delta-z", a.delta_z, "distance from one view to the next [m]")
       ->required()
       ->check(CLI::PositiveNumber);
   focal->add_option("--target", a.target, "circle or sphere")
@@ -286,7 +288,8 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
         "--write", a.write,
         "write the result into [camera] of this configuration (.toml); the rest is unchanged");
   }
-  hand_eye->add_option("--camera", a.camera_file, "what `calibrate intrinsics --out` wrote")->required();
+  hand_eye->add_option("--camera", a.camera_file, "camera file from `calibrate intrinsics --out`")
+      ->required();
   for (CLI::App* command : {focal, intrinsics, hand_eye}) {
     command->add_flag("--json", a.json, "print JSON");
   }

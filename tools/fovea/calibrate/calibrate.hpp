@@ -1,4 +1,4 @@
-// fovea calibrate: focal length, intrinsics with lens, and where the camera sits on the hand.
+// fovea calibrate: focal length, intrinsics with lens, and the camera's pose on the hand.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -17,17 +17,17 @@ struct CalibrateArguments {
   std::string target = "circle";
   std::string folder;  // intrinsics, hand-eye
   config::BoardFlags board_flags;
-  calibration::Board board;  // that they name
+  calibration::Board board;  // made from board_flags
   std::string camera_file;
   std::string out;
   std::string write;  // a configuration to write the result into; empty: none
   bool json = false;
 };
 
-// The subcommand with its own four.
+// Adds the subcommand, which has four subcommands itself.
 CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& arguments);
 
-// Runs the one that was given; returns the program's exit code. Throws config::InputError.
+// Runs the given one of them; returns the program's exit code. Throws config::InputError.
 int Calibrate(const CLI::App& calibrate, CalibrateArguments& arguments);
 
 }  // namespace fovea

@@ -40,7 +40,7 @@ vision::Intrinsics ReadCameraFile(const std::filesystem::path& path) {
   const vision::Intrinsics& in = settings.intrinsics;
   if (in.width_px == 0 || in.height_px == 0 || in.f_u_px == 0.0 || in.f_v_px == 0.0) {
     throw config::InputError(path.string() +
-                             ": camera.width_px, height_px, f_u_px, f_v_px, c_u_px and c_v_px are needed");
+                             ": must have camera.width_px, height_px, f_u_px, f_v_px, c_u_px and c_v_px");
   }
   return config::MakeIntrinsics(settings);
 }

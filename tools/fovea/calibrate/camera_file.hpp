@@ -1,4 +1,4 @@
-// A camera's intrinsics as a file: what `fovea calibrate intrinsics --out` writes and others read.
+// A camera's intrinsics as a file: `fovea calibrate intrinsics --out` writes it, other commands read it.
 #pragma once
 
 #include <filesystem>
@@ -10,13 +10,13 @@
 
 namespace fovea {
 
-// The keys of section [camera] that say so. `rms_px`: how well the views fit.
+// The intrinsics as keys of section [camera]. `rms_px`: residual of the views.
 std::vector<config::NewValue> CameraValues(const vision::Intrinsics& intrinsics, double rms_px);
 
 // As TOML, with the section [camera]. `rms_px` as above.
 std::string CameraFileText(const vision::Intrinsics& intrinsics, double rms_px);
 
-// Throws config::InputError: no such file, a key missing or out of range.
+// Throws config::InputError when the file does not exist, or a key is missing or out of range.
 vision::Intrinsics ReadCameraFile(const std::filesystem::path& path);
 
 }  // namespace fovea

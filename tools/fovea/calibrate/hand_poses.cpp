@@ -16,7 +16,7 @@ std::vector<HandPose> ReadHandPoses(const std::filesystem::path& path) {
   std::ifstream stream(path);
   if (!stream) {
     throw config::InputError(path.string() +
-                             ": no such file; it has a line file,x,y,z,qw,qx,qy,qz for each image");
+                             ": no such file; it needs one line file,x,y,z,qw,qx,qy,qz for each image");
   }
   std::vector<HandPose> poses;
   std::string line;

@@ -1,4 +1,4 @@
-// Where the hand was at each picture: the file poses.csv, as `fovea calibrate hand-eye` reads it.
+// The hand's pose at each picture, from the file poses.csv, for `fovea calibrate hand-eye`.
 #pragma once
 
 #include <filesystem>
@@ -10,12 +10,12 @@
 namespace fovea {
 
 struct HandPose {
-  std::string file;  // of the picture
+  std::string file;  // name of the picture
   model::Pose X_BE;
 };
 
-// One line for each picture, file,x,y,z,qw,qx,qy,qz [m, unit quaternion]; empty lines and those that begin
-// with # say nothing. Throws config::InputError: no such file, or a line that is none of these.
+// One line for each picture: file,x,y,z,qw,qx,qy,qz [m, unit quaternion]. Empty lines and lines that begin
+// with # are ignored. Throws config::InputError when the file does not exist or has another line.
 std::vector<HandPose> ReadHandPoses(const std::filesystem::path& path);
 
 }  // namespace fovea

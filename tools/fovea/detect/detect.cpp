@@ -24,7 +24,7 @@
 namespace fovea {
 namespace {
 
-constexpr double kDefaultSize = 0.08;  // [m]; stands for nothing where no size is given
+constexpr double kDefaultSize = 0.08;  // [m]; an arbitrary size when none is given
 
 vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
                                  const std::optional<vision::Intrinsics>& camera, const std::string& file) {
@@ -35,9 +35,8 @@ vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
   config.LookFor(config::MakeTarget(target));
   if (camera) {
     if (camera->width_px != image.cols || camera->height_px != image.rows) {
-      throw config::InputError(fmt::format("{}: {} x {} px, but --camera {} is of {} x {} px", file,
-                                           image.cols, image.rows, a.camera_file, camera->width_px,
-                                           camera->height_px));
+      throw config::InputError(fmt::format("{}: {} x {} px, but --camera {} has {} x {} px", file, image.cols,
+                                           image.rows, a.camera_file, camera->width_px, camera->height_px));
     }
     config.intrinsics = *camera;
   } else {
@@ -56,7 +55,7 @@ vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
     throw config::InputError("--radius-min must be below --radius-max");
   }
   config.confidence_min = a.confidence_min;
-  // The outline's size is bounded by the radii alone; a distance can be anything.
+  // Only the radii bound the outline's size. The distance is free.
   config.distance_min = 0.51 * config.size;
   config.distance_max = 4.0 * config.intrinsics.f_u_px * config.size / config.radius_min_px;
   return config;
@@ -90,7 +89,7 @@ nlohmann::json ToJson(const std::string& file, const vision::Detection& d, doubl
   return entry;
 }
 
-// What kept `image` from showing the target, where `detector` found none.
+// Why the detector found no target in `image`.
 std::string WhyNotFound(const DetectArguments& a, const cv::Mat& image, vision::DetectorConfig config) {
   if (const std::optional<std::string> nothing = WhyNothing(image)) {
     return *nothing;
@@ -112,7 +111,7 @@ std::filesystem::path MarkedFile(const std::filesystem::path& folder,
   return folder / (image_file.stem().string() + "-marked.png");
 }
 
-// config::InputError: two of the images would be marked in one file.
+// config::InputError when the marked copies of two images would have the same name.
 void CheckMarkedFiles(const std::filesystem::path& folder,
                       const std::vector<std::filesystem::path>& image_files) {
   std::map<std::filesystem::path, std::filesystem::path> written;
@@ -120,16 +119,16 @@ void CheckMarkedFiles(const std::filesystem::path& folder,
     const auto [other, is_new] = written.emplace(MarkedFile(folder, image_file), image_file);
     if (!is_new) {
       throw config::InputError(
-          fmt::format("--marked: {} and {} would both be drawn in {}; images need different names",
+          fmt::format("--marked: {} and {} would both be written to {}; images need different names",
                       other->second.string(), image_file.string(), other->first.string()));
     }
   }
 }
 
-// The image in colour, with what was found.
+// Writes the image in colour, with the detection drawn in.
 void WriteMarked(const std::filesystem::path& file, const cv::Mat& image,
                  const vision::Detection& detection) {
-  constexpr int kShift = 4;  // OpenCV draws at sixteenths of a pixel
+  constexpr int kShift = 4;  // OpenCV draws with a resolution of 1/16 pixel
   const cv::Scalar kBlue(255, 128, 0);
   const auto point = [](const vision::ImagePoint& p) {
     return cv::Point(static_cast<int>(std::lround(p.u_px * (1 << kShift))),
@@ -163,7 +162,7 @@ void WriteMarked(const std::filesystem::path& file, const cv::Mat& image,
 CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
   CLI::App* detect = app.add_subcommand("detect", "detect a target in images: position, size, confidence");
   detect->add_option("image", a.images, "images, or folders of them")->required();
-  detect->add_option("--target", a.target, "what to look for")
+  detect->add_option("--target", a.target, "target to detect")
       ->required()
       ->check(CLI::IsMember(
           std::vector<std::string>(features::kTargetNames.begin(), features::kTargetNames.end())));
@@ -172,7 +171,7 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
           "--method", a.method,
           "edges in colour, edges in brightness, or OpenCV's Hough transform; default: gray without --hue")
       ->check(CLI::IsMember({"colour", "gray", "hough"}));
-  detect->add_option("--hue", a.hue_deg, "of the target [deg]: 0 red, 120 green, 240 blue")
+  detect->add_option("--hue", a.hue_deg, "hue of the target [deg]: 0 red, 120 green, 240 blue")
       ->check(CLI::Range(0.0, 360.0));
   detect->add_option("--camera", a.camera_file,
                      "intrinsics, as `fovea calibrate intrinsics --out` writes them");
@@ -180,7 +179,7 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
       ->add_option("--focal-px", a.focal_px,
                    "focal length [px] without --camera; default: a field of view of 60 degrees")
       ->check(CLI::PositiveNumber);
-  detect->add_option("--size", a.size, "diameter or side [m]")->check(CLI::PositiveNumber);
+  detect->add_option("--size", a.size, "diameter or side of the target [m]")->check(CLI::PositiveNumber);
   detect
       ->add_option("--radius-min", a.radius_min_px,
                    "smallest outline: radius of the circle with its area [px]")
@@ -193,7 +192,7 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
   detect->add_option("--hough-blur", a.hough.blur_sigma_px, "method hough: Gaussian blur [px]")
       ->check(CLI::Range(0.1, 10.0))
       ->capture_default_str();
-  detect->add_option("--hough-canny", a.hough.canny_threshold, "method hough: threshold of edges")
+  detect->add_option("--hough-canny", a.hough.canny_threshold, "method hough: threshold of the edge detector")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   detect->add_option("--hough-votes", a.hough.votes, "method hough: votes that a circle needs")
@@ -218,7 +217,7 @@ int Detect(const DetectArguments& arguments) {
   cv::setNumThreads(1);
   const bool round = features::FindTraits(arguments.target)->body != features::TargetBody::kPlate;
   if (arguments.method == "hough" && !round) {
-    throw config::InputError("--method hough: finds spheres and circles alone");
+    throw config::InputError("--method hough: finds only spheres and circles");
   }
   std::optional<vision::Intrinsics> camera;
   if (!arguments.camera_file.empty()) {
@@ -241,7 +240,7 @@ int Detect(const DetectArguments& arguments) {
       detector = std::make_unique<vision::TargetDetector>(config);
       (void)detector->Detect(image);  // the first image of a size also allocates; it is not timed
     }
-    detector->Forget();  // images may have nothing to do with one another
+    detector->Forget();  // the images may be unrelated
     const auto start = std::chrono::steady_clock::now();
     const vision::Detection d = detector->Detect(image);
     const double ms =

@@ -1,4 +1,4 @@
-// fovea detect: the detector on anyone's pictures.
+// fovea detect: runs the detector on any images.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -11,23 +11,23 @@ namespace fovea {
 
 struct DetectArguments {
   std::vector<std::string> images;
-  std::string target;  // by its name
+  std::string target;  // name of the target
   std::string method;  // empty: by colour when a hue is given, else gray
   double hue_deg = -1.0;
   std::string camera_file;
-  double focal_px = 0.0;  // 0: a field of 60 degrees
-  double size = 0.0;      // [m]; 0: unknown, then any distance will do
+  double focal_px = 0.0;  // 0: a field of view of 60 degrees
+  double size = 0.0;      // [m]; 0: unknown
   double radius_min_px = 8.0;
-  double radius_max_px = 0.0;  // 0: what fits into the image
+  double radius_max_px = 0.0;  // 0: 0.75 of the larger side of the image
   double confidence_min = 0.5;
   vision::HoughConfig hough;
-  std::string marked;  // folder for pictures with what was found drawn in; empty: none
+  std::string marked;  // folder for copies with the detection drawn in; empty: none
   bool json = false;
 };
 
 CLI::App* AddDetect(CLI::App& app, DetectArguments& arguments);
 
-// Prints what was seen, image by image; returns the program's exit code. Throws config::InputError.
+// Prints the detection in each image; returns the program's exit code. Throws config::InputError.
 int Detect(const DetectArguments& arguments);
 
 }  // namespace fovea

@@ -67,7 +67,7 @@ cv::Mat ReadImage(const fs::path& path) {
                                          path.string(), image.channels()));
   }
   if (std::min(image.cols, image.rows) < kSmallestPx) {
-    throw config::InputError(fmt::format("{}: {} x {} px; must be {} or more each way", path.string(),
+    throw config::InputError(fmt::format("{}: {} x {} px; width and height must be {} or more", path.string(),
                                          image.cols, image.rows, kSmallestPx));
   }
   return image;
@@ -83,7 +83,7 @@ std::optional<std::string> WhyNothing(const cv::Mat& image) {
   if (low > 247.0) {
     return "the image is saturated";
   }
-  return high - low < 6.0 ? std::make_optional("the image shows nothing") : std::nullopt;
+  return high - low < 6.0 ? std::make_optional("the image has no contrast") : std::nullopt;
 }
 
 }  // namespace fovea

@@ -1,4 +1,4 @@
-// Images that a person names: files, or folders of them.
+// Images from the command line: files, or folders with images.
 #pragma once
 
 #include <filesystem>
@@ -9,13 +9,14 @@
 
 namespace fovea {
 
-// The files, and the images in each folder by name. InputError: no such file, a folder without images.
+// The files, and the images of each folder in order of their names. InputError: a file does not exist, or a
+// folder has no images.
 std::vector<std::filesystem::path> ImageFiles(const std::vector<std::string>& paths);
 
-// CV_8UC1 or CV_8UC3. InputError: no image, or one too small to look at.
+// CV_8UC1 or CV_8UC3. InputError: not a readable image, another format, or too small.
 cv::Mat ReadImage(const std::filesystem::path& path);
 
-// Why a picture shows nothing, where that is plain to see.
+// Why no target can be visible: the image is black, saturated or without contrast. nullopt: none of these.
 std::optional<std::string> WhyNothing(const cv::Mat& image);
 
 }  // namespace fovea

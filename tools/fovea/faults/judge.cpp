@@ -17,8 +17,8 @@ namespace {
 using nlohmann::json;
 
 constexpr double kTickS = 1e-3;
-constexpr double kRounding = 1e-9;   // passes no limit
-constexpr double kGoesOnS = 1.5e-3;  // a mode goes on when it lasts longer by so much
+constexpr double kRounding = 1e-9;   // a used share of 1 plus this exceeds no limit
+constexpr double kGoesOnS = 1.5e-3;  // a mode goes on when it lasts longer by more than this
 
 bool IsLimit(const std::string& what) { return what.rfind("limit_", 0) == 0; }
 
@@ -38,10 +38,10 @@ const json& InjectedAs(const std::string& name, const json& summary) {
       return fault;
     }
   }
-  throw std::runtime_error("a run's summary tells of no fault " + name);
+  throw std::runtime_error("a run's summary has no fault " + name);
 }
 
-// The modes from `onset_s` on, the one before not among them.
+// The modes that begin at or after `onset_s`.
 std::vector<std::string> ModesSince(double onset_s, const json& summary) {
   std::vector<std::string> modes;
   for (const json& event : summary.at("modes")) {
@@ -57,8 +57,8 @@ int TicksBetween(double from_s, double to_s) {
   return static_cast<int>(std::lround((to_s - from_s) / kTickS));
 }
 
-// What is noticed with the fault and not, or later, without it. A limit that acts all the same without it
-// says nothing; nor does a mode that is only reached a little sooner.
+// Finds what noticed the fault: an event that occurs only in the run with the fault. Limits count only when
+// nothing else did. An event that also occurs without the fault does not count, at whatever time.
 void FindNotice(const json& with, const json& without, Outcome& outcome) {
   const double from_s = with.at("from_s");
   std::optional<double> first_s;
@@ -77,8 +77,8 @@ void FindNotice(const json& with, const json& without, Outcome& outcome) {
       return;
     }
   }
-  // What keeps the arm from being sound and at rest, or the target from being found at all, shows only in
-  // that the mode goes on.
+  // A fault that keeps the arm from being ready, or the target from being found at all, is visible only in a
+  // mode that goes on longer.
   for (const auto& [mode, next] : {std::pair{"boot", "mode_hold"}, {"hold", "mode_track"}}) {
     const json& then = without.at("noticed");
     if (!with.at("noticed").contains(std::string("mode_") + mode) || !then.contains(next)) {
@@ -103,7 +103,7 @@ std::string NewLimits(const json& with, const json& without) {
   return names;
 }
 
-// The modes that the fault led to, or, when they are those of the run without it, the limits.
+// The modes since the fault's start or, when they equal those of the run without it, the new limits.
 std::string ReactionOf(const json& run, const json& without_run, const json& with, const json& without) {
   const double onset_s = with.at("from_s");
   const std::vector<std::string> modes = ModesSince(onset_s, run);
@@ -117,7 +117,7 @@ std::string ReactionOf(const json& run, const json& without_run, const json& wit
   return words.empty() ? "stays" : words;
 }
 
-// What the simulator's truth says was passed or touched; the arm's own limits once more by their shares.
+// Everything exceeded or touched by the simulator's truth. The arm's own limits are also checked by shares.
 std::vector<std::string> ExceededIn(const json& run, const std::map<std::string, double>& limits) {
   std::vector<std::string> exceeded;
   for (const auto& [name, ticks] : run.at("violations").items()) {
@@ -148,7 +148,7 @@ void JudgeStanding(const std::string& key, const json& run, Outcome& outcome) {
     const double most = is_the_eyes ? bound.gained_by_eye_m_per_s : bound.gained_m_per_s;
     outcome.moved[bound.mode] = moved;
     if (!(moved.beyond_stop_mm <= bound.beyond_stop_mm) || !(moved.gained_m_per_s <= most)) {
-      outcome.too_far.push_back(fmt::format("{} {:.0f} mm, {:.0f} beyond a stop, {:.2f} m/s faster",
+      outcome.too_far.push_back(fmt::format("{} {:.0f} mm, {:.0f} mm beyond a stop, {:.2f} m/s faster",
                                             bound.mode, moved.mm, moved.beyond_stop_mm,
                                             moved.gained_m_per_s));
     }
@@ -196,7 +196,7 @@ Outcome Judge(const std::string& key, const json& run, const json& without_run, 
     const json& with = InjectedAs(key, run);
     const json& without = InjectedAs("nothing", without_run);
     if (std::fabs(with.at("from_s").get<double>() - without.at("from_s").get<double>()) > 0.5 * kTickS) {
-      throw std::runtime_error("the run beside it is of another stage");
+      throw std::runtime_error("the run without the fault is of another stage");
     }
     Outcome outcome;
     FindNotice(with, without, outcome);
@@ -208,7 +208,7 @@ Outcome Judge(const std::string& key, const json& run, const json& without_run, 
     JudgeEnd(run, with, kept_s, outcome);
     return outcome;
   } catch (const json::exception& error) {
-    throw std::runtime_error(fmt::format("fault {}: no summary of a run: {}", key, error.what()));
+    throw std::runtime_error(fmt::format("fault {}: not a summary of a run: {}", key, error.what()));
   } catch (const std::out_of_range&) {
     throw std::runtime_error(fmt::format("fault {}: a summary without the arm's limits", key));
   }

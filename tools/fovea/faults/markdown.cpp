@@ -5,68 +5,70 @@
 namespace fovea::matrix {
 namespace {
 
-constexpr const char* kHead = R"(# What faults come to
+constexpr const char* kHead = R"(# Results of the faults
 
-Printed by `fovea atlas --faults --markdown`: every fault of the simulator at three or four severities, in every mode of
-run, at every stage of it. Each cell is a run of its own, beside the same run without the fault. The command fails when one
-passes anything that must hold (the arm's limits, the servo's barriers, contact), moves too far or too fast while the arm
-should stand, or ends in no defined state.
+Printed by `fovea atlas --faults --markdown`: every fault of the simulator at three or four severities, in every mode
+of run, at every stage. Each cell is one run, compared with the same run without the fault. The command fails when a
+run exceeds a limit of the arm or a barrier of the servo, has contact, moves too far or too fast while the arm should
+stand, or ends in no defined state.
 
 )";
 
 constexpr const char* kHow = R"(
-A cell says, line by line:
+A cell has three lines:
 
-1. what noticed the fault, and in how many ticks from its beginning; "-": nothing did, nor was there need to;
-2. the reaction: the modes gone through since then, each named once, where they differ from those of the run without the fault,
-   else limits that act and would not have. The mode `fault` is a damped stop, or the torque fades, then brakes
-   ([GUARDS](../firmware/GUARDS.md));
-3. the end. *recovered*: the goal is kept again, for the last half second at least; the time is from the fault's end on. Of a
-   fault that never ends: it is kept all the same.
-   *safe stop*: a fault is latched, the brakes closed, the arm at rest. *hold*: in Hold, for this reason, at rest. *goes on*: a
-   load or a tilt that never ends, and the way is followed all the same, off by so much at most (`safety.motion_error`). All
-   else would be **UNDEFINED**. **EXCEEDED** names what was passed, by the simulator's truth (`violations` in a run's
-   summary.json); contact is with bench, target or itself. **MOVED** says by how far the hand moved in Boot, Hold or Fault from
-   where that mode began, how much of it was more than a stop takes, and by how much it became faster than it was then, where
-   that is beyond the bound.
+1. What noticed the fault, and after how many ticks from its start. "-": nothing noticed it.
+2. The reaction: the modes since the fault's start, each named once, if they differ from the modes of the run without
+   the fault. Otherwise the limits that act only with the fault. In the mode `fault` the arm makes a damped stop, or its
+   torque fades; then the brakes close ([GUARDS](../firmware/GUARDS.md)).
+3. The end. *recovered*: the goal is kept for at least the last half second; the time counts from the fault's end. With
+   a fault that never ends, the goal is kept in spite of it.
+   *safe stop*: a fault is latched, the brakes are closed, the arm is at rest. *hold*: the arm is in Hold for the named
+   reason, at rest. *goes on*: a load or a tilt never ends, and the arm follows its path with at most the given error
+   (`safety.motion_error`). Any other end is **UNDEFINED**. **EXCEEDED** names the exceeded limits, by the simulator's
+   truth (`violations` in a run's summary.json); contact is with bench, target or the arm itself. **MOVED** means that
+   the hand moved too much in Boot, Hold or Fault. It gives the distance since that mode began, the part beyond a stop,
+   and the gain in speed.
 
-A run goes on for 1.5 to 4 s after its fault. One that is in no defined state then, without a fault that is latched, is run once more,
-the same and 6 s longer: that it takes long is told above, and what is stuck stays **UNDEFINED**.
+A run goes on for 1.5 to 4 s after its fault. If it then is in no defined state and no fault is latched, the same run is
+repeated with 6 s more. The list above counts these runs. A run that never reaches a defined state is **UNDEFINED**.
 
-A stop may take as far as the hand goes, at the speed that it has when the mode begins, in the time of the stop: in Hold half of
-what the joint that takes longest needs at its largest deceleration, and twice its time to turn its acceleration round; in Fault
-`safety.brake_after_s`. Of the joints' true acceleration, what a dead motor, a load or a push does by itself is not counted, nor the
-springing back when it is over: it has passed where a joint would have been too fast without that, too.
+The distance of a stop is at most the hand's speed at the start of the mode times the time of the stop. In Hold this
+time is half the braking time of the slowest joint at its largest deceleration, plus twice the longest time that a joint
+needs to reverse its acceleration. In Fault it is `safety.brake_after_s`. `true_joint_acceleration` ignores the
+acceleration that a dead motor, a load or a push causes, and the rebound when it ends. It is exceeded only if a joint's
+acceleration would be too large without that part too.
 
 )";
 
 constexpr const char* kWords = R"(
-| noticed by | that is |
+| noticed by | meaning |
 |---|---|
-| a guard's or a mode's name | the guard, as in [GUARDS](../firmware/GUARDS.md), latched the fault; the servo went into the mode |
-| `state_missing` | a tick without a new state of the arm that could be taken |
-| `target_not_found` | a picture was looked at and the target is not in it |
+| name of a guard; name of a mode | this guard ([GUARDS](../firmware/GUARDS.md)) latched the fault; the servo changed to this mode |
+| `state_missing` | a tick without a new, valid state of the arm |
+| `target_not_found` | the target was not found in a picture |
 | `measurement_left_out` | a measurement that does not fit the target's motion, or is too old |
-| `boot goes on`, `hold goes on` | the arm is not sound and at rest, or no target is found, when it would be without the fault |
-| `limit ...` | nothing else did; this limit acts and would not have |
+| `boot goes on`, `hold goes on` | the servo stays in this mode longer than without the fault: the arm is not ready, or no target is found |
+| `limit ...` | nothing else noticed the fault; this limit acts only with the fault |
 
-A fault of the camera can show only with the next picture, 40 to 75 ms on. What is noticed after as many ticks as the fault lasts was
-noticed when it ended.
+A fault of the camera can be noticed only with the next picture, 40 to 75 ms later. A fault that is noticed after as
+many ticks as it lasts was noticed when it ended.
 
-Last come the largest shares of the arm's own limits used in any of the row's runs, by the simulator's truth and the command in
-force, rounded up: position (from the middle of the range), velocity, torque and torque rate of the worst joint.
+The last columns are the largest used shares of the arm's own limits in the runs of the row, rounded up: position (from
+the middle of the range), velocity, torque and torque rate of the worst joint. They come from the simulator's truth and
+the applied command.
 
-| stage | the fault begins |
+| stage | start of the fault |
 |---|---|
-| boot | when half of Boot is over; what is there from the start, with the first tick |
+| boot | when half of Boot is over; a fault from the start: with the first tick |
 | approach | on the way to the goal, while the arm moves |
 | tracking | once the goal is kept |
-| coasting | amid half a second for which the whole picture is hidden, on the way (where the fault is the occluder: in which the camera delivers nothing) |
-| fault | 20 ms into the damped stop after another fault, `deadline_missed`, that is latched |
+| coasting | on the way to the goal, in the middle of 0.5 s in which the whole picture is hidden (if the fault is the occluder: in which the camera delivers nothing) |
+| fault | 20 ms into the damped stop after another latched fault, `deadline_missed` |
 
-| mode of run | boot | approach | tracking | coasting | fault |
+| mode of run: the servo is in | boot | approach | tracking | coasting | fault |
 |---|---|---|---|---|---|
-| `ball`, `ball-moving`: the servo is in | Boot | Track | Track | Coast | Fault |
+| `ball`, `ball-moving` | Boot | Track | Track | Coast | Fault |
 | `home` | Boot | Move | Hold | - | Fault |
 | `flange-circle` | Boot | Move, to a pose | Move, by setpoints | - | Fault |
 
@@ -74,9 +76,8 @@ force, rounded up: position (from the middle of the range), velocity, torque and
 
 std::string BoundList() {
   std::string text =
-      "| mode | the hand, beyond what a stop takes | faster than it was at the mode's beginning | by a fault "
-      "of the eye "
-      "|\n|---|---|---|---|\n";
+      "| mode | allowed distance beyond a stop | allowed gain in speed | allowed gain with a camera fault |\n"
+      "|---|---|---|---|\n";
   for (const StandBound& bound : kStandBounds) {
     text += fmt::format("| {} | {:g} mm | {:g} m/s | {:g} m/s |\n", bound.mode, bound.beyond_stop_mm,
                         bound.gained_m_per_s, bound.gained_by_eye_m_per_s);
@@ -119,8 +120,8 @@ std::string ToMarkdown(const Matrix& matrix) {
   }
   if (matrix.cells.size() < NumCells()) {
     text += fmt::format(
-        "- **a part of the matrix: {} of its {} cells; an empty cell, or a mode of run without a table, "
-        "was not run**\n",
+        "- **a part of the matrix: {} of its {} cells; an empty cell, or a mode of run without a table, was "
+        "not run**\n",
         matrix.cells.size(), NumCells());
   }
   text += kHow + BoundList() + kWords + FaultList() + "\nLeft out:";

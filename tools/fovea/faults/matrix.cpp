@@ -11,12 +11,12 @@
 namespace fovea::matrix {
 namespace {
 
-constexpr double kLongestFaultS = 5.0;  // of those that end
-constexpr double kGoalS = 0.8;  // and no shorter than so long after the goal that is reached without a fault
-constexpr double kStopS = 1.5;  // a run in Fault goes on for so long; safety.brake_after_s is 0.3
-constexpr double kLongerS = 6.0;  // and one that is still on its way when its time is over
+constexpr double kLongestFaultS = 5.0;  // the longest fault that ends
+constexpr double kGoalS = 0.8;  // a run goes on at least this long after the goal time without a fault
+constexpr double kStopS = 1.5;  // time that a run in Fault gets after the fault; safety.brake_after_s is 0.3
+constexpr double kLongerS = 6.0;  // extra time for a run that is still on its way at its end
 
-// Of a run whose fault lasts from `onset_s` on for `lasts_s`; one that never ends lasts as long as the run.
+// End of a run with a fault from `onset_s` on for `lasts_s`. A fault without end lasts as long as the run.
 double EndFor(const RunMode& mode, Stage stage, double goal_s, double onset_s, double lasts_s) {
   const bool forever = lasts_s >= kForever;
   if (stage == Stage::kFault) {
@@ -24,14 +24,14 @@ double EndFor(const RunMode& mode, Stage stage, double goal_s, double onset_s, d
   }
   return std::max(onset_s + lasts_s + (forever ? 0.0 : mode.recovery_s), goal_s + kGoalS);
 }
-// Of the run without the fault: as long as the longest with one.
+// End of the run without the fault: as late as that of the longest run with one.
 double EndBeside(const RunMode& mode, Stage stage, double goal_s, double onset_s) {
   return std::max(EndFor(mode, stage, goal_s, onset_s, kLongestFaultS),
                   EndFor(mode, stage, goal_s, onset_s, kForever));
 }
 std::string Duration(double end_s) { return fmt::format("run.duration_s={:.3f}", end_s); }
 
-// The cells that `only` asks for, in their order.
+// The cells that `only` selects, in order.
 std::vector<Cell> CellsOf(const std::vector<std::string>& only) {
   std::vector<Cell> cells;
   for (const RunMode& mode : RunModes()) {
@@ -55,7 +55,8 @@ std::vector<Cell> CellsOf(const std::vector<std::string>& only) {
     }
   }
   if (cells.empty()) {
-    throw config::InputError("--only leaves no cell; they are named as in ball.approach.torque_loss.severe");
+    throw config::InputError(
+        "--only leaves no cell; a cell has a name such as ball.approach.torque_loss.severe");
   }
   return cells;
 }
@@ -79,7 +80,7 @@ Job JobOf(const Cell& cell, const StageTimes& times, const StageSetup& setup) {
 
 Outcome BrokeOff() {
   Outcome outcome;
-  outcome.end_detail = "the simulator broke off";
+  outcome.end_detail = "the simulator did not finish";
   return outcome;
 }
 

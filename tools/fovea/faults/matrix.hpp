@@ -17,8 +17,8 @@ struct Cell {
   const Fault* fault = nullptr;
   std::size_t severity = 0;  // of kSeverities
   double onset_s = 0.0;
-  double longer_s = 0.0;  // its run goes on for so long beyond what it has as a rule
-  std::string command;    // that repeats it
+  double longer_s = 0.0;  // extra time that its run got
+  std::string command;    // repeats its run
   Outcome outcome;
 };
 // "<mode>.<stage>.<fault's id>.<severity>"
@@ -26,7 +26,7 @@ std::string NameOf(const Cell& cell);
 
 struct Matrix {
   int seed = 1;
-  int runs = 0;  // those without a fault among them
+  int runs = 0;  // includes the runs without a fault
   std::vector<Cell> cells;
 };
 
@@ -34,33 +34,33 @@ struct MatrixOptions {
   int seed = 1;
   int jobs = 1;
   bool resume = false;
-  std::vector<std::string> only;  // parts of cells' names; empty: all
+  std::vector<std::string> only;  // parts of the names of cells; empty: all cells
   std::filesystem::path out;      // folder for the rows
 };
 
-// How many cells there are when none is left out by --only.
+// The number of cells without --only.
 std::size_t NumCells();
 
-// Runs them. InputError: `only` leaves none, or the folder cannot be written. std::runtime_error: a run
-// without a fault does not reach its goal.
+// Runs the selected cells. InputError: `only` selects none, or the folder cannot be written.
+// std::runtime_error: a run without a fault does not reach its goal.
 Matrix RunMatrix(const MatrixOptions& options);
 
-// What all cells come to.
+// Totals over all cells.
 struct Totals {
-  int exceeded = 0;   // cells in which anything that must hold was passed
-  int moved = 0;      // in which the arm moved further or faster than it may where it should stand
-  int undefined = 0;  // that ended in no defined state
+  int exceeded = 0;   // cells in which a limit was exceeded
+  int moved = 0;      // cells in which the arm moved too far or too fast while it had to stand
+  int undefined = 0;  // cells that ended in no defined state
   int recovered = 0;
   int stopped = 0;
   int held = 0;
   int gone_on = 0;
-  int touched = 0;  // in which the arm touched bench, target or itself
+  int touched = 0;  // cells in which the arm touched bench, target or itself
   int noticed = 0;
-  int longer = 0;                                   // that were given more time
-  const Cell* slowest = nullptr;                    // to be noticed; none when nothing was
-  const Cell* last = nullptr;                       // to recover; none when none did
-  std::map<std::string, const Cell*> worst_limits;  // the cell that used the most of each
-  std::map<std::string, const Cell*> furthest;      // by mode: where the arm went furthest beyond a stop
+  int longer = 0;                                   // cells whose run got extra time
+  const Cell* slowest = nullptr;                    // noticed last; null: none was noticed
+  const Cell* last = nullptr;                       // recovered last; null: none recovered
+  std::map<std::string, const Cell*> worst_limits;  // by limit: the cell that used the most of it
+  std::map<std::string, const Cell*> furthest;      // by mode: the cell that went furthest beyond a stop
   [[nodiscard]] bool Failed() const { return exceeded > 0 || moved > 0 || undefined > 0; }
 };
 Totals Sum(const Matrix& matrix);

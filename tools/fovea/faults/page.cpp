@@ -28,7 +28,7 @@ const char* ClassOf(const Outcome& o) {
   return o.end == End::kRecovered ? "fine" : o.end == End::kSafeStop ? "stop" : "held";
 }
 
-// HTML that may be broken after each underscore.
+// HTML text that may wrap after each underscore.
 std::string Breakable(const std::string& name) {
   std::string html;
   for (const char c : Escaped(name)) {
@@ -57,11 +57,9 @@ std::string Banner(const Matrix& matrix) {
   }
   return fmt::format(
       "<section id=\"verdict\"><div class=\"banner {}\"><div><p class=\"run-tag\">{} runs, seed {}</p><p "
-      "class=\"verdict-word\">{} of {} cells sound</p><p class=\"verdict-sentence\">In {} a limit of the "
-      "arm's or of the servo's was "
-      "exceeded, in {} it moved when it should have stood; {} ended in no defined "
-      "state.</p></div></div></section><section><h2>What all came "
-      "to</h2><ul>{}</ul></section>",
+      "class=\"verdict-word\">{} of {} cells passed</p><p class=\"verdict-sentence\">In {} cells a limit "
+      "of the arm or of the servo was exceeded, in {} the arm moved while it had to stand, {} ended in no "
+      "defined state.</p></div></div></section><section><h2>Totals</h2><ul>{}</ul></section>",
       t.Failed() ? "bad" : "good", matrix.runs, matrix.seed,
       std::count_if(matrix.cells.begin(), matrix.cells.end(),
                     [](const Cell& cell) { return !cell.outcome.Failed(); }),

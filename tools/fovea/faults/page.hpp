@@ -1,4 +1,4 @@
-// atlas.html of a fault matrix: what all came to, and a table for each mode of run.
+// atlas.html of a fault matrix: totals, and a table for each mode of run.
 #pragma once
 
 #include <string>

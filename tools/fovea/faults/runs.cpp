@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr std::chrono::seconds kRunLimit{900};  // of wall time; a run takes some seconds
 
-// What the judge reads of a summary; the rest is not kept.
+// The entries of a summary that the judge needs. The rest is dropped.
 json Excerpt(const json& summary) {
   json excerpt;
   for (const char* key : {"verdict", "modes", "injected", "end", "limits", "violations", "unwanted_motion",
@@ -30,7 +30,7 @@ json Excerpt(const json& summary) {
   return excerpt;
 }
 
-// Whether `row` is of `job`, by this servo.
+// Whether `row` is the result of `job` with this servo.
 bool IsOf(const json& row, const Job& job, int seed) {
   return row.at("servo") == kServoLibraryHash && row.at("seed") == seed &&
          row.at("scenario") == job.scenario &&
@@ -55,7 +55,7 @@ Runs::Runs(const fs::path& folder, int seed, int jobs, bool resume)
   std::error_code error;
   fs::create_directories(folder_ / "runs", error);
   if (error) {
-    throw config::InputError(folder_.string() + ": no folder can be made there");
+    throw config::InputError(folder_.string() + ": cannot create this folder");
   }
   lock_.emplace(folder_);
   if (resume) {
@@ -71,7 +71,7 @@ Runs::Runs(const fs::path& folder, int seed, int jobs, bool resume)
   }
 }
 
-// A last line that was cut off is dropped.
+// Drops an incomplete last line.
 void Runs::Read() {
   std::istringstream lines(atlas::Content(folder_ / "rows.jsonl"));
   for (std::string line; std::getline(lines, line);) {

@@ -1,4 +1,4 @@
-// The runs of a fault matrix: each by the simulator as a process of its own, its summary kept on disk.
+// The runs of a fault matrix: each is a simulator process, and its summary is kept on disk.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@
 
 namespace fovea::matrix {
 
-// A run by name; two of one name are one.
+// A run, identified by its name.
 struct Job {
   std::string name;
   std::string scenario;
@@ -27,14 +27,14 @@ std::string CommandOf(const Job& job, int seed);
 
 class Runs {
  public:
-  // Keeps its rows in `folder`/rows.jsonl; with `resume` those that are there count as done, where servo,
-  // seed and assignments are the same. InputError: it cannot be written.
+  // Keeps its rows in `folder`/rows.jsonl. With `resume`, existing rows with the same servo, seed, scenario
+  // and assignments count as done. InputError: the file cannot be written.
   Runs(const std::filesystem::path& folder, int seed, int jobs, bool resume);
 
-  // Runs what is not done yet. std::runtime_error: the simulator refuses one.
+  // Runs the jobs that are not done yet. std::runtime_error: the simulator refuses one.
   void Execute(const std::vector<Job>& jobs, atlas::Progress& progress);
 
-  // What a run said of itself; null when it broke off.
+  // The summary of a run; null when the run did not finish.
   [[nodiscard]] const nlohmann::json& SummaryOf(const std::string& name) const;
 
  private:

@@ -8,16 +8,16 @@
 namespace fovea::matrix {
 namespace {
 
-constexpr double kHiddenS = 0.5;      // the target, in the stage `coasting`
-constexpr double kSwallowedS = 0.03;  // ticks before the stage `fault`; safety.missed_ticks are 20 ms
-constexpr double kInTheStopS = 0.02;  // so long after the latched fault the next one comes
+constexpr double kHiddenS = 0.5;      // how long the target is hidden in the stage `coasting`
+constexpr double kSwallowedS = 0.03;  // how long ticks are missed before the stage `fault`; limit: 20 ms
+constexpr double kInTheStopS = 0.02;  // from the end of the missed ticks to the injected fault
 constexpr const char* kOccluder = "faults.occluder_px=[320, 240, 640, 480]";
 
 constexpr std::array kRunModes{
     RunMode{"ball", "ball", "visual servo on a still target", true, 0.3, 0.5, 4.0, 0.5},
     RunMode{"ball-moving", "ball-moving", "visual servo on a moving target", true, 0.5, 1.0, 3.5, 0.0},
-    RunMode{"home", "home", "joint way to the ready posture", false, 0.5, 0.5, 3.0, 0.5},
-    RunMode{"flange-circle", "flange-circle", "flange control round a circle", false, 0.2, 1.5, 1.5, 0.5}};
+    RunMode{"home", "home", "joint motion to the ready posture", false, 0.5, 0.5, 3.0, 0.5},
+    RunMode{"flange-circle", "flange-circle", "flange control around a circle", false, 0.2, 1.5, 1.5, 0.5}};
 
 double ToMs(double time_s) { return 1e-3 * std::round(1e3 * time_s); }
 
@@ -39,12 +39,10 @@ bool MakesSense(const RunMode& mode, Stage stage, const Fault& fault) {
 
 std::vector<std::string> LeftOut() {
   return {
-      "`home` and `flange-circle` have no camera: what goes wrong with frames, pictures and detections "
-      "cannot "
-      "reach them, and nothing is tracked that could be lost, so they do not coast",
-      "What is there from the start, a load or a base that leans, is in the column of Boot, in which it is "
-      "met, "
-      "and stays for the whole run"};
+      "`home` and `flange-circle` have no camera: faults of frames, pictures and detections cannot affect "
+      "them, and they have no target to lose, so they do not coast",
+      "A fault from the start (a load or a tilted base) is in the column of Boot and stays for the whole "
+      "run"};
 }
 
 StageTimes TimesOf(const RunMode& mode, const nlohmann::json& undisturbed) {

@@ -1,4 +1,4 @@
-// Where in a run a fault comes: the modes of run, the stages of each, and when a stage is reached.
+// When a fault starts in a run: the modes of run, the stages of each, and the time of each stage.
 #pragma once
 
 #include <array>
@@ -18,42 +18,42 @@ inline constexpr std::array kStages{Stage::kBoot, Stage::kApproach, Stage::kTrac
 
 const char* Name(Stage stage);
 
-// A kind of run that the servo has a mode for.
+// A kind of run, such as visual servoing or a joint motion.
 struct RunMode {
   const char* name;  // for people
   const char* scenario;
   const char* title;
   bool has_eye;
-  double approach_share;  // of the way from the first motion to the goal, in time: where `approach` is
-  double settled_s;       // `tracking` is so long after the goal was reached [s]
-  double recovery_s;      // a run goes on for so long after the fault [s]
-  double kept_s;  // its goal is kept when it is for so long; a moving target's is a mean over 0.5 s itself
+  double approach_share;  // `approach` is after this share of the time from first motion to goal
+  double settled_s;       // `tracking` is this long after the goal was reached [s]
+  double recovery_s;      // how long a run goes on after the fault [s]
+  double kept_s;          // least time at the goal [s]; a moving target's error is a mean over 0.5 s already
 };
 std::span<const RunMode> RunModes();
 
-// Whether `fault` in `stage` of `mode` means anything.
+// Whether `fault` in `stage` of `mode` makes sense.
 bool MakesSense(const RunMode& mode, Stage stage, const Fault& fault);
-// Why not: for people, one line for each combination that is left out.
+// Text for people: one line for each kind of combination that is left out, and why.
 std::vector<std::string> LeftOut();
 
-// When the stages are reached, by the summary of a run that nothing disturbs. std::runtime_error when that
-// run does not reach its goal.
+// The times of the stages, from the summary of a run without faults. std::runtime_error when that run does
+// not reach its goal.
 struct StageTimes {
   double boot_s = 0.0;
   double approach_s = 0.0;
   double tracking_s = 0.0;
-  double goal_s = 0.0;  // the goal is kept from then on
+  double goal_s = 0.0;  // the goal is kept from this time on
 };
 StageTimes TimesOf(const RunMode& mode, const nlohmann::json& undisturbed);
 
-// A stage, brought about: what is set before the fault, and when the fault begins.
+// The settings that lead to a stage, and the time at which the fault starts.
 struct StageSetup {
-  std::string name;  // of the run beside which the fault's is held
+  std::string name;  // of the run without the fault, for comparison
   std::vector<std::string> assignments;
   double onset_s = 0.0;
 };
-// `fault`, where it is known: what hides the target in the stage `coasting` is not what comes then, and what
-// is there from the start comes before half of Boot is over.
+// `fault` may be null. In the stage `coasting` another fault than `fault` hides the target. A fault from the
+// start begins with the first tick, not when half of Boot is over.
 StageSetup SetUp(const StageTimes& times, Stage stage, const Fault* fault);
 
 }  // namespace fovea::matrix

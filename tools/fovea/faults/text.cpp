@@ -9,7 +9,7 @@
 namespace fovea::matrix {
 namespace {
 
-constexpr std::size_t kModesShown = 5;  // of a reaction, where there is little room
+constexpr std::size_t kModesShown = 5;  // of a reaction, to save space
 
 std::vector<std::string> Parts(const std::string& text, const std::string& separator) {
   std::vector<std::string> parts;
@@ -103,8 +103,7 @@ std::vector<std::string> TotalsInWords(const Matrix& matrix) {
       fmt::format("the arm touched bench, target or itself in {}", t.touched)};
   if (t.last != nullptr) {
     lines.push_back(
-        fmt::format("the last to recover did {:.1f} s after the fault's end ({}); {} had not when "
-                    "their time was over, and were given longer",
+        fmt::format("the slowest recovery took {:.1f} s from the fault's end ({}); runs with extra time: {}",
                     *t.last->outcome.recovered_after_s, NameOf(*t.last), t.longer));
   }
   for (const auto& [mode, cell] : t.furthest) {

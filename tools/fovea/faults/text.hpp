@@ -1,4 +1,4 @@
-// A fault matrix for people and machines: a line per cell, a page of Markdown, JSON.
+// A fault matrix as text: one line per cell, a Markdown page, and JSON.
 #pragma once
 
 #include <array>
@@ -9,25 +9,24 @@
 
 namespace fovea::matrix {
 
-// The cells of one fault at one severity in one mode, by stage; null where it makes no sense or was not
-// asked.
+// The cells of one fault at one severity in one mode, by stage; null where a cell makes no sense or is not
+// selected.
 struct MatrixRow {
   const RunMode* mode = nullptr;
   const Fault* fault = nullptr;
   std::size_t severity = 0;
   std::array<const Cell*, kStages.size()> cells{};
 
-  // The largest share of `limit` used in any of them, in percent as it is printed: rounded up, so that
-  // nothing below 100 looks like it.
+  // The largest share of `limit` used in these cells, in percent, rounded up.
   [[nodiscard]] std::string Worst(const std::string& limit) const;
 };
 std::vector<MatrixRow> RowsOf(const Matrix& matrix);
 
-// A cell's reaction, each mode said once.
+// A cell's reaction, with each mode named once.
 std::string ShortReaction(const Outcome& outcome);
-// "recovered 1.2 s", "safe stop", "held", "UNDEFINED"; with what was exceeded and how far it moved.
+// "recovered 1.2 s", "safe stop", "hold (reason)", "UNDEFINED: ..."; also exceeded limits and motion.
 std::string EndInWords(const Outcome& outcome);
-// What all came to, in a sentence or two, each a line.
+// Totals over all cells, one line each.
 std::vector<std::string> TotalsInWords(const Matrix& matrix);
 
 std::string ToTable(const Matrix& matrix);

@@ -29,7 +29,7 @@ vision::DetectorConfig ConfigFor(const TargetFeature& target, const bench::Pictu
   return config;
 }
 
-// s alone, without what is stacked; empty where the feature refuses.
+// s without stacked rows; empty when the feature has no value.
 std::vector<double> FeatureAt(const TargetFeature& feature, const model::Pose& X_CO) {
   features::FeatureState state;
   if (!feature.Compute({X_CO, model::Vec3::Zero(), model::Vec3::Zero()}, state)) {
@@ -38,7 +38,7 @@ std::vector<double> FeatureAt(const TargetFeature& feature, const model::Pose& X
   return {state.s.begin(), state.s.end()};
 }
 
-// The largest less the smallest of each entry, over the poses of the benchmark's pictures.
+// The range (largest minus smallest) of each entry of s over the poses of the benchmark's pictures.
 std::vector<double> Ranges(const TargetFeature& feature) {
   constexpr unsigned kPoses = 200;
   std::vector<double> low;
@@ -62,7 +62,7 @@ std::vector<double> Ranges(const TargetFeature& feature) {
   return high;
 }
 
-// The target alone on an even ground, without noise.
+// Draws the target alone on an even ground, without noise.
 cv::Mat Portrait(const TargetFeature& feature, const model::Pose& X_CO, const bench::PictureCamera& camera) {
   bench::PictureScene scene;
   scene.camera = camera;
@@ -78,7 +78,7 @@ cv::Mat Portrait(const TargetFeature& feature, const model::Pose& X_CO, const be
   for (int i = 0; feature.SeesOrientation() && i < feature.corners.num_corners; ++i) {
     body.corners.emplace_back(feature.corners.corners[static_cast<std::size_t>(i)].head<2>());
   }
-  // Turning from x to y, as the caster wants it.
+  // In order from x to y, as bench::Body requires.
   if (body.corners.size() >= 3) {
     const Eigen::Vector2d a = body.corners[1] - body.corners[0];
     const Eigen::Vector2d b = body.corners[2] - body.corners[1];
@@ -90,8 +90,8 @@ cv::Mat Portrait(const TargetFeature& feature, const model::Pose& X_CO, const be
   return bench::Draw(scene);
 }
 
-// Where the detection has the target; of a flat one's poses the one that is nearest to the truth, since which
-// is true is for the servo to find out.
+// The target's pose by the detection. For a flat target, the candidate pose nearest to the truth: choosing
+// the true one is the servo's task.
 std::optional<model::Pose> PoseIn(const vision::Detection& d, const TargetFeature& feature,
                                   const model::Pose& X_CO) {
   if (!d.found) {
@@ -125,7 +125,7 @@ Search MeasureSearch(FeatureKind target, int per_class) {
   int found = 0;
   std::vector<double> ms;
   for (const bench::SceneClass& scenes : bench::SceneClasses()) {
-    for (int i = 0; i < per_class && !scenes.clutter; ++i) {  // clutter is told apart by colour
+    for (int i = 0; i < per_class && !scenes.clutter; ++i) {  // clutter needs colour
       const bench::PictureScene scene = bench::MakeScene(scenes, target, true, static_cast<unsigned>(i));
       const cv::Mat image = bench::Draw(scene);
       const bench::TrueOutline truth = bench::OutlineOf(camera, scene.bodies.front());

@@ -61,7 +61,7 @@ TargetFeature MakeFeature(const FeaturesArguments& arguments) {
   feature.R_CO_star = goal.R;
   if (!feature.IsListed()) {
     throw config::InputError(
-        fmt::format("--feature {}{}: none of a {}'s, or too many entries in all", arguments.feature,
+        fmt::format("--feature {}{}: not a feature of a {}, or too many entries in total", arguments.feature,
                     arguments.hold_orientation ? " --hold-orientation" : "", NameOf(feature.target)));
   }
   return feature;
@@ -84,12 +84,12 @@ int PrintStudy(const FeaturesArguments& arguments) {
   const TargetFeature feature = MakeFeature(arguments);
   const FeatureStudy study = Study(feature, ParsePose("--pose", arguments.pose));
   if (study.refused) {
-    throw config::InputError(fmt::format(
-        "--pose {}: the target must be wholly before the camera, and the goal too, and not edge-on",
-        arguments.pose));
+    throw config::InputError(
+        fmt::format("--pose {}: target and goal must be completely in front of the camera and not edge-on",
+                    arguments.pose));
   }
   std::vector<double> s(study.state.s.begin(), study.state.s.end());
-  // With a focal length, entries of the normalised image in pixels too.
+  // With a focal length, image coordinates are printed in pixels too.
   std::vector<double> s_px;
   const bool in_image = feature.form != FeatureForm::kSphere && feature.form != FeatureForm::kPose;
   for (std::size_t i = 0; arguments.focal_px > 0.0 && in_image && i < s.size(); ++i) {
@@ -137,14 +137,14 @@ int PrintStudy(const FeaturesArguments& arguments) {
              ConditionText(study.condition), fmt::join(study.sigma, " "));
   fmt::print(
       "  {:<14}{}\n", "controls",
-      study.controls.empty() ? "nothing by itself" : fmt::format("{}", fmt::join(study.controls, ", ")));
+      study.controls.empty() ? "no motion by itself" : fmt::format("{}", fmt::join(study.controls, ", ")));
   for (const FreeTwist& free : study.free) {
     fmt::print("  {:<14}{}\n", "free", free.words);
   }
   return config::kDone;
 }
 
-// The condition number with the camera moved about over the target, at its pose's distance, looking at it.
+// The condition number over camera positions above the target, at the pose's distance, looking at it.
 int PrintSweep(const FeaturesArguments& arguments) {
   constexpr int kColumns = 61;
   constexpr int kRows = 31;
@@ -175,10 +175,10 @@ int PrintSweep(const FeaturesArguments& arguments) {
     fmt::print("{}\n", json.dump());
     return config::kDone;
   }
-  // A sign for each half power of ten.
+  // One character per half power of ten.
   constexpr std::string_view kSigns = " .:-=+*#%@";
   fmt::print(
-      "  condition of L_s, {} by {}, camera {:g} m over the target and up to {:g} m aside, looking at it\n",
+      "  condition of L_s, {} by {}, camera {:g} m above the target, up to {:g} m sideways, looking at it\n",
       NameOf(feature.target), NameOf(feature.form), height, arguments.span);
   for (const std::vector<double>& row : condition) {
     std::string line;
@@ -190,7 +190,7 @@ int PrintSweep(const FeaturesArguments& arguments) {
     }
     fmt::print("  |{}|\n", line);
   }
-  fmt::print("  a sign per half power of ten: \"{}\" from 1 to {:.0f} and above\n", kSigns,
+  fmt::print("  one character per half power of ten: \"{}\" from 1 to {:.0f} and above\n", kSigns,
              std::pow(10.0, 0.5 * (kSigns.size() - 1.0)));
   return config::kDone;
 }
@@ -214,11 +214,11 @@ CLI::App* AddFeatures(CLI::App& app, FeaturesArguments& arguments) {
   command->add_flag("--hold-orientation", arguments.hold_orientation,
                     "also hold the orientation (stacked below the feature)");
   command->add_option("--pose", arguments.pose, "X_CO as x,y,z,qw,qx,qy,qz [m]")->capture_default_str();
-  command->add_option("--goal", arguments.goal, "X_CO that is wanted")->capture_default_str();
-  command->add_option("--diameter", arguments.target.diameter, "of a sphere or circle [m]")
+  command->add_option("--goal", arguments.goal, "X_CO at the goal")->capture_default_str();
+  command->add_option("--diameter", arguments.target.diameter, "diameter of a sphere or circle [m]")
       ->check(CLI::Range(0.005, 2.0))
       ->capture_default_str();
-  command->add_option("--side", arguments.target.side, "of a square [m]")
+  command->add_option("--side", arguments.target.side, "side of a square [m]")
       ->check(CLI::Range(0.005, 2.0))
       ->capture_default_str();
   command->add_option("--triangle", arguments.target.triangle, "corners x1,y1,x2,y2,x3,y3 [m]")

@@ -1,4 +1,4 @@
-// fovea features: what a target's feature controls, computed.
+// fovea features: analyses what a target's feature controls.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,10 +21,10 @@ struct FeaturesArguments {
   bool json = false;
 };
 
-// The subcommand, which fills `arguments`.
+// Adds the subcommand, which fills `arguments`.
 CLI::App* AddFeatures(CLI::App& app, FeaturesArguments& arguments);
 
-// Prints what was asked for; returns the program's exit code. Throws config::InputError.
+// Prints the requested analysis; returns the program's exit code. Throws config::InputError.
 int Features(const FeaturesArguments& arguments);
 
 }  // namespace fovea

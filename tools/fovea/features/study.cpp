@@ -15,14 +15,14 @@ using Twist = Eigen::Matrix<double, 6, 1>;
 using model::Vec3;
 
 constexpr double kZero = 1e-9;      // a singular value below this share of the largest is 0
-constexpr double kParallel = 1e-6;  // a named twist this near to the free ones is one of them
+constexpr double kParallel = 1e-6;  // a named twist this close to the free space is free
 
 struct NamedTwist {
   std::string words;
   Twist V;
 };
 
-// A turn about the axis along `w` through `p_C`: what lies on the axis stays where it is in the picture.
+// A turn about the axis along `w` through `p_C`. Points on the axis keep their place in the picture.
 Twist TurnAbout(const Vec3& p_C, const Vec3& w) {
   Twist V;
   V << model::Cross(p_C, w), w;
@@ -35,13 +35,13 @@ Twist Shift(const Vec3& v) {
   return V;
 }
 
-// What a person would call motions of the camera, the simplest first.
+// Motions of the camera with a common name, the simplest first.
 std::vector<NamedTwist> NamedTwists(const features::TargetFeature& feature, const model::Pose& X_CO) {
   const Vec3& p = X_CO.p;
   std::vector<NamedTwist> named{
       {"turn about the line of sight", TurnAbout(p, p)},
-      {"swing round the target's middle, about the camera's x", TurnAbout(p, Vec3::UnitX())},
-      {"swing round the target's middle, about the camera's y", TurnAbout(p, Vec3::UnitY())},
+      {"swing around the target's centre, about the camera's x", TurnAbout(p, Vec3::UnitX())},
+      {"swing around the target's centre, about the camera's y", TurnAbout(p, Vec3::UnitY())},
       {"turn about the camera's own axis", TurnAbout(Vec3::Zero(), Vec3::UnitZ())},
       {"turn about the camera's own x", TurnAbout(Vec3::Zero(), Vec3::UnitX())},
       {"turn about the camera's own y", TurnAbout(Vec3::Zero(), Vec3::UnitY())},
@@ -54,14 +54,14 @@ std::vector<NamedTwist> NamedTwists(const features::TargetFeature& feature, cons
     const Vec3 a = X_CO * feature.corners.corners[0];
     const Vec3 b = X_CO * feature.corners.corners[1];
     named.push_back({"turn about the target's normal", TurnAbout(p, X_CO.R.col(2))});
-    named.push_back({"tilt about the target's x, round its middle", TurnAbout(p, X_CO.R.col(0))});
-    named.push_back({"tilt about the target's y, round its middle", TurnAbout(p, X_CO.R.col(1))});
+    named.push_back({"tilt about the target's x through its centre", TurnAbout(p, X_CO.R.col(0))});
+    named.push_back({"tilt about the target's y through its centre", TurnAbout(p, X_CO.R.col(1))});
     named.push_back({"tilt about the first side", TurnAbout(a, b - a)});
   }
   return named;
 }
 
-// The part of V outside the columns of `basis`, which are orthonormal.
+// Length of the part of V outside the span of `basis`, whose columns are orthonormal.
 double Outside(const Eigen::MatrixXd& basis, const Twist& V) {
   return basis.cols() == 0 ? V.norm() : (V - basis * (basis.transpose() * V)).norm();
 }
@@ -89,16 +89,16 @@ std::vector<FreeTwist> Describe(const Eigen::MatrixXd& null_space, const std::ve
     cover(V);
     const Twist rest = covered.rightCols(1);
     free.push_back(
-        {rest, fmt::format("a motion of its own: v = ({:.3f}, {:.3f}, {:.3f}) m/s with w = ({:.3f}, {:.3f}, "
+        {rest, fmt::format("a combined motion: v = ({:.3f}, {:.3f}, {:.3f}) m/s with w = ({:.3f}, {:.3f}, "
                            "{:.3f}) rad/s",
                            rest[0], rest[1], rest[2], rest[3], rest[4], rest[5])});
   }
   return free;
 }
 
-// Of shifts and turns about the target: those that no free motion has a share in.
+// The shifts and the turns about the target that are part of no free motion.
 std::vector<std::string> Controlled(const Eigen::MatrixXd& null_space, const Vec3& p) {
-  Eigen::Matrix<double, 6, 6> basis;  // its columns: shifts, then turns about the target's middle
+  Eigen::Matrix<double, 6, 6> basis;  // columns: shifts, then turns about the target's centre
   const Vec3 sight = p.normalized();
   const Vec3 across = model::Cross(Vec3::UnitY(), sight).normalized();
   const Vec3 turns[] = {across, model::Cross(sight, across), sight};

@@ -1,4 +1,4 @@
-// What a feature controls at a pose: rank and condition of L_s, and the camera's twists that it does not see.
+// What a feature controls at a pose: rank and condition of L_s, and the camera twists that do not change it.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,25 +15,25 @@ struct FreeTwist {
 };
 
 struct FeatureStudy {
-  bool refused = false;  // not before the camera, or the feature has no value there; nothing else is set
+  bool refused = false;  // not in front of the camera, or no value there; nothing else is set
   features::FeatureState state;
-  std::vector<double> sigma;  // singular values of L_s, falling
+  std::vector<double> sigma;  // singular values of L_s, in descending order
   int rank = 0;
-  double condition = 0.0;  // infinite below full rank (of the smaller of both sizes)
+  double condition = 0.0;  // infinite below full rank, min(rows, 6)
   std::vector<std::string> controls;
   std::vector<FreeTwist> free;
 };
 
-// `feature` at `X_CO`, with what is stacked below it.
+// Analyses `feature` at `X_CO`, with the rows stacked below it.
 FeatureStudy Study(const features::TargetFeature& feature, const model::Pose& X_CO);
 
-// X_CO for a camera at `p_OC` [m] in O that looks at the target's middle, with as little roll as can be.
+// X_CO for a camera at `p_OC` [m] in O that looks at the target's centre, with the least possible roll.
 model::Pose LookFrom(const model::Vec3& p_OC);
 
 // "infinite" below full rank.
 std::string ConditionText(double condition);
 
-// The words for entries, size and parameters: "x, y, D/Z".
+// The entries of s as text, such as "x, y, D/Z".
 std::string Parameters(const features::TargetFeature& feature);
 
 }  // namespace fovea

@@ -28,7 +28,7 @@ constexpr int kPerClass = 3;  // pictures of the set, for each target
 struct TableRow {
   const char* name;
   TargetFeature feature;
-  model::Vec3 p_OC;  // from where it is seen
+  model::Vec3 p_OC;  // position of the camera
   const char* note;
 };
 
@@ -48,8 +48,7 @@ std::vector<TableRow> TableRows() {
   const model::Vec3 above(0.0, 0.0, -0.4);
   const model::Vec3 aside(0.12, 0.08, -0.38);
   return {
-      {"circle", make(FeatureKind::kCircle, FeatureForm::kCircle, false), aside,
-       "any tilt looks alike to it"},
+      {"circle", make(FeatureKind::kCircle, FeatureForm::kCircle, false), aside, "all tilts look alike"},
       {"sphere", make(FeatureKind::kSphere, FeatureForm::kSphere, false), aside,
        "orientation is not observable"},
       {"sphere, turn held", make(FeatureKind::kSphere, FeatureForm::kSphere, true), aside, "stacked"},
@@ -59,10 +58,10 @@ std::vector<TableRow> TableRows() {
       {"triangle", make(FeatureKind::kTriangle, FeatureForm::kCorners, false), aside,
        "up to four poses look alike"},
       {"  from above", make(FeatureKind::kTriangle, FeatureForm::kCorners, false), above, ""},
-      {"  equilateral", equilateral, aside,
-       "full rank too; its three turns look alike, which is another matter"},
-      {"  on its cylinder", equilateral, {0.0, -r, -0.4}, "camera over a corner: rank is lost"},
-      {"triangle, pose", make(FeatureKind::kTriangle, FeatureForm::kPose, false), aside, "one goal only"},
+      {"  equilateral", equilateral, aside, "also full rank, although its three turns look alike"},
+      {"  on its cylinder", equilateral, {0.0, -r, -0.4}, "camera above a corner: loses rank"},
+      {"triangle, pose", make(FeatureKind::kTriangle, FeatureForm::kPose, false), aside,
+       "a single goal pose"},
   };
 }
 
@@ -82,7 +81,7 @@ int PrintFeatureTables(bool json) {
   Json list = Json::array();
   if (!json) {
     fmt::print("  {:<18} {:<34} {:>3} {:>6} {:>5} {:>10} {:>6} {:>6} {:>9}  {}\n", "target", "s", "dim",
-               "L_s", "rank", "condition", "found", "ms", "scatter", "free, and notes");
+               "L_s", "rank", "condition", "found", "ms", "scatter", "free motions, notes");
   }
   for (const TableRow& row : TableRows()) {
     const model::Pose X_CO = LookFrom(row.p_OC);
@@ -122,11 +121,10 @@ int PrintFeatureTables(bool json) {
     return config::kDone;
   }
   fmt::print(
-      "  found, ms: in {} pictures of each target, with noise, blur, low contrast, a part hidden, off the "
-      "axis; a\n"
-      "  search without a hint. scatter: of s, the worst entry, per gray level of noise, in millionths of "
-      "its\n"
-      "  range over those pictures' poses; {} pictures at this pose, contrast {} gray levels\n",
+      "  found, ms: search without a hint in {} pictures of each target, with noise, blur, low contrast,\n"
+      "  occlusion, off the axis. scatter: standard deviation of the worst entry of s per gray level of\n"
+      "  noise, in millionths of its range over the poses of these pictures; from {} pictures at this pose,\n"
+      "  contrast {} gray levels\n",
       8 * kPerClass, Scatter::kPictures, Scatter::kContrast);
   return config::kDone;
 }

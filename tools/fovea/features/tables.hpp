@@ -1,10 +1,10 @@
-// The source's tables B1 of all targets beside each other, with its corrections: parameters, size, rank and
-// condition from the matrices, extraction difficulty from pictures.
+// Table B1 of the course exercises for all targets, corrected: parameters, size, rank and condition from the
+// matrices, detection difficulty from pictures.
 #pragma once
 
 namespace fovea {
 
-// Prints them, some seconds long; returns the program's exit code.
+// Prints the table, which takes some seconds; returns the program's exit code.
 int PrintFeatureTables(bool json);
 
 }  // namespace fovea

@@ -19,10 +19,10 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kMostPeriodsListed = 400.0;  // of delay: the poles beyond take more than a second
+constexpr double kMostPeriodsListed = 400.0;  // of delay; the poles of a longer one take more than a second
 constexpr std::size_t kMostPolesShown = 6;
 
-// All that is found out, for either way of printing it.
+// All results, for text and JSON.
 struct Design {
   design::SampledLoop loop;
   design::SecondOrder closed;
@@ -56,7 +56,7 @@ void Check(const GainsArguments& arguments) {
           fmt::format("from 0 to {:g} ({:g} periods of --rate-hz)", most_ms, design::kMostPeriods));
 }
 
-// Beyond these the digits of a double do not tell the poles z apart any more.
+// Beyond this range a double has too few digits to separate the poles z.
 void CheckRate(const Design& design, double rate_hz) {
   constexpr double kFarthest = 1e6;
   double fastest = 0.0;
@@ -67,7 +67,7 @@ void CheckRate(const Design& design, double rate_hz) {
   }
   if (!std::isfinite(fastest)) {
     throw config::InputError(
-        "--mass, --damping, --stiffness, --closed-loop-stiffness: too far apart in size to be computed with");
+        "--mass, --damping, --stiffness, --closed-loop-stiffness: magnitudes too different to compute with");
   }
   Require(rate_hz >= fastest / kFarthest && rate_hz <= fastest * kFarthest, "--rate-hz", rate_hz,
           fmt::format("from {:g} to {:g} for poles of {:g} rad/s", fastest / kFarthest, fastest * kFarthest,
@@ -78,18 +78,16 @@ std::vector<std::string> Notes(const Design& design) {
   std::vector<std::string> notes;
   if (design.loop.gains.k_v < 0.0) {
     notes.emplace_back(
-        "k_v is negative: the plant is damped more than was asked for, so the regulator drives the speed on "
-        "and "
-        "trusts b; a higher --damping-ratio or --closed-loop-stiffness avoids it");
+        "k_v is negative: the plant has more damping than requested, so the regulator reduces it and relies "
+        "on b; a higher --damping-ratio or --closed-loop-stiffness avoids this");
   }
   if (design.loop.gains.k_p < 0.0) {
     notes.emplace_back(
-        "k_p is negative: the plant is stiffer than was asked for, so the regulator pushes away from the "
-        "goal and "
-        "trusts k; a --closed-loop-stiffness above --stiffness avoids it");
+        "k_p is negative: the plant is stiffer than requested, so the regulator pushes away from the goal "
+        "and relies on k; a --closed-loop-stiffness above --stiffness avoids this");
   }
   if (design.loop.plant.stiffness == 0.0) {
-    notes.emplace_back("k = 0: the open loop has no place of its own to come back to");
+    notes.emplace_back("k = 0: the open loop has no equilibrium position to return to");
   }
   if (design.discrete_poles.empty()) {
     notes.push_back(fmt::format("the discrete poles are not listed: the delay is longer than {:g} periods",
@@ -127,7 +125,7 @@ nlohmann::ordered_json Json(const std::vector<Complex>& poles) {
   return list;
 }
 
-// What is not finite has no number in JSON.
+// Infinity and NaN become null, because JSON has no number for them.
 nlohmann::ordered_json Json(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
 }
@@ -178,7 +176,7 @@ std::string ToJson(const GainsArguments& arguments, const Design& design) {
   return json.dump(2) + "\n";
 }
 
-// Pairs are written once. `digits` that are significant.
+// Conjugate pairs are written once. `digits`: number of significant digits.
 std::string ToText(const std::vector<Complex>& poles, int digits) {
   std::string text;
   std::size_t shown = 0;
@@ -199,7 +197,7 @@ std::string ToText(const std::vector<Complex>& poles, int digits) {
                                pole.imag(), digits);
     ++shown;
   }
-  return covered < poles.size() ? fmt::format("{}, and {} smaller ones", text, poles.size() - covered) : text;
+  return covered < poles.size() ? fmt::format("{}, and {} smaller", text, poles.size() - covered) : text;
 }
 
 void PrintRow(const char* name, const std::string& text) { fmt::print("  {:<24}{}\n", name, text); }
@@ -228,13 +226,13 @@ void PrintTable(const Design& design) {
     PrintRow("  as s", ToText(Equivalent(design.discrete_poles, loop.rate_hz), 5) + " 1/s");
   }
   const auto& [gain, gain_to] = design.gain_edge;
-  PrintRow("  edge of the gains",
+  PrintRow("  gain limit",
            gain ? fmt::format("{} from {:.6g} times both", design.stable ? "unstable" : "stable", *gain)
                 : fmt::format("none up to {:g} times both", gain_to));
   const auto& [delay_s, delay_to_s] = design.delay_edge;
-  PrintRow("  edge of the delay", !delay_s         ? fmt::format("none up to {:.6g} ms", 1e3 * delay_to_s)
-                                  : *delay_s > 0.0 ? fmt::format("unstable from {:.6g} ms", 1e3 * *delay_s)
-                                                   : "unstable without any delay");
+  PrintRow("  delay limit", !delay_s         ? fmt::format("none up to {:.6g} ms", 1e3 * delay_to_s)
+                            : *delay_s > 0.0 ? fmt::format("unstable from {:.6g} ms", 1e3 * *delay_s)
+                                             : "unstable without any delay");
   for (const std::string& note : design.notes) {
     PrintRow("note", note);
   }
@@ -253,9 +251,9 @@ CLI::App* AddGains(CLI::App& app, GainsArguments& arguments) {
   number("--stiffness", arguments.stiffness, "k >= 0 [N/m]")->required();
   number("--closed-loop-stiffness", arguments.closed_loop_stiffness, "k + k_p > 0 [N/m]")->required();
   number("--damping-ratio", arguments.damping_ratio, "zeta > 0 of the closed loop")->capture_default_str();
-  number("--delay-ms", arguments.delay_ms, "from a sample until its force acts, >= 0 [ms]")
+  number("--delay-ms", arguments.delay_ms, "delay from a sample until its force acts, >= 0 [ms]")
       ->capture_default_str();
-  number("--rate-hz", arguments.rate_hz, "of sampling, > 0 [Hz]")->capture_default_str();
+  number("--rate-hz", arguments.rate_hz, "sampling rate, > 0 [Hz]")->capture_default_str();
   gains->add_flag("--json", arguments.json, "print every figure by name instead of the table");
   gains->footer(
       "Examples:\n"

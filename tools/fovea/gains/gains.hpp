@@ -1,4 +1,4 @@
-// fovea gains: a PD regulator for one degree of freedom, and how much gain and delay it bears.
+// fovea gains: designs a PD regulator for one degree of freedom and computes its gain and delay limits.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,7 +16,7 @@ struct GainsArguments {
   bool json = false;
 };
 
-// The subcommand, which fills `arguments`.
+// Adds the subcommand, which fills `arguments`.
 CLI::App* AddGains(CLI::App& app, GainsArguments& arguments);
 
 // Prints the design; returns the program's exit code. Throws config::InputError.

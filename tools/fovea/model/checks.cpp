@@ -16,7 +16,7 @@ using model::ArmPoses;
 using model::VecN;
 
 constexpr double kStep = 1e-5;     // of central differences [rad, m]
-constexpr double kFullTurn = 3.2;  // joints without an end are tried so far [rad]
+constexpr double kFullTurn = 3.2;  // largest tested |q| of a joint without limits [rad]
 
 ArmPoses PosesAt(const ArmModel& arm, const VecN& q) {
   ArmPoses poses;
@@ -77,7 +77,7 @@ void LookAt(const ArmModel& arm, const VecN& q, const VecN& dq, Worst& worst) {
     worst.jacobian = std::max({worst.jacobian, (J.col(i).head<3>() - v).cwiseAbs().maxCoeff(),
                                (model::CrossMatrix(J.col(i).tail<3>()) - turn).cwiseAbs().maxCoeff()});
   }
-  // Coriolis terms do no work beyond the change of M: dq . (dM/dt dq / 2 - C dq) = 0.
+  // The work of the Coriolis terms equals that of the change of M: dq . (dM/dt dq / 2 - C dq) = 0.
   const VecN ahead = q + kStep * dq;
   const VecN behind = q - kStep * dq;
   const Eigen::MatrixXd dM = (DynamicsAt(arm, ahead, dq).M - DynamicsAt(arm, behind, dq).M) / (2.0 * kStep);
@@ -102,10 +102,10 @@ std::vector<ModelCheck> CheckModel(const ArmModel& arm, int states) {
     LookAt(arm, q, dq, worst);
   }
   return {{"smallest eigenvalue of M", worst.eigenvalue, "kg m^2", 1e-9, /*at_least=*/true},
-          {"M less its transpose", worst.asymmetry, "kg m^2", 1e-10},
-          {"g less the slope of the potential energy", worst.gravity, "Nm", 1e-5},
-          {"power of C dq less that of dM/dt", worst.power, "W", 1e-5},
-          {"J_E less the slope of X_BE", worst.jacobian, "", 1e-7}};
+          {"M minus its transpose", worst.asymmetry, "kg m^2", 1e-10},
+          {"g minus the slope of the potential energy", worst.gravity, "Nm", 1e-5},
+          {"power of C dq minus that of dM/dt", worst.power, "W", 1e-5},
+          {"J_E minus the slope of X_BE", worst.jacobian, "", 1e-7}};
 }
 
 }  // namespace fovea

@@ -1,5 +1,5 @@
-// Checks of an arm's model against what must hold for any rigid body: each residual comes from a formula that
-// the model itself does not use.
+// Checks an arm's model against laws that hold for any rigid-body model. Each residual comes from a formula
+// that the model itself does not use.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@ namespace fovea {
 
 struct ModelCheck {
   std::string what;
-  double value = 0.0;  // the worst over all states
+  double value = 0.0;  // the worst value over all states
   std::string unit;
   double bound = 0.0;
-  bool at_least = false;  // value >= bound is good, instead of <=
+  bool at_least = false;  // true: good when value >= bound; false: when value <= bound
   [[nodiscard]] bool Good() const { return at_least ? value >= bound : value <= bound; }
 };
 
-// Over `states` random ones within the joints' ranges, always the same.
+// Checks `states` random states within the joints' ranges, the same ones in each call.
 std::vector<ModelCheck> CheckModel(const model::ArmModel& arm, int states);
 
 }  // namespace fovea

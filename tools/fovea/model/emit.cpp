@@ -9,7 +9,7 @@
 namespace fovea {
 namespace {
 
-// Of any text, an identifier in lower or mixed case ("ur5e", "my_arm", "arm_3x" of "3x").
+// Makes an identifier from any text: "ur5e" from "ur5e", "my_arm" from "my arm", "arm_3x" from "3x".
 std::string Identifier(const std::string& name) {
   std::string id;
   for (const char c : name) {
@@ -18,7 +18,7 @@ std::string Identifier(const std::string& name) {
   return id.empty() || std::isdigit(static_cast<unsigned char>(id.front())) != 0 ? "arm_" + id : id;
 }
 
-// "MyArm" of "my_arm".
+// "MyArm" from "my_arm".
 std::string CamelCase(const std::string& id) {
   std::string camel;
   bool starts_word = true;
@@ -31,7 +31,7 @@ std::string CamelCase(const std::string& id) {
   return camel;
 }
 
-// Hexadecimal, so that no digit is lost.
+// Hexadecimal, which is exact.
 std::string Number(double value) { return fmt::format("{:a}", value); }
 
 template <typename Matrix>
@@ -80,9 +80,9 @@ std::string EmitModel(const robots::Robot& robot) {
   const model::ArmModel& arm = robot.model;
   const std::string id = Identifier(robot.name);
   std::string text = fmt::format(
-      "// The arm \"{0}\", {1} joints from \"{2}\" to \"{3}\". Written by `fovea model {0} --emit-cpp`; not "
-      "to be\n"
-      "// changed by hand. Numbers are hexadecimal, exact to the last bit.\n"
+      "// The arm \"{0}\", {1} joints from \"{2}\" to \"{3}\". Written by `fovea model {0} --emit-cpp`; do "
+      "not\n"
+      "// change it by hand. Numbers are hexadecimal, exact to the last bit.\n"
       "#pragma once\n\n"
       "#include <iterator>\n\n"
       "#include \"fovea/arm_model.hpp\"\n\n"
@@ -110,14 +110,14 @@ std::string EmitModel(const robots::Robot& robot) {
   const std::string pairs = PairRows(arm.shape);
   text += fmt::format(
       "}};\n"
-      "// A capsule about the base, and about each link: its ends and its radius.\n"
+      "// Capsules around the base and around each link: two ends and the radius.\n"
       "inline constexpr double kBodies[{7}][7] = {{\n{6}}};\n"
       "inline constexpr int kPairs[{9}][2] = {{{8}}};\n"
       "inline constexpr double kFlangeR[9] = {{{1}}};\n"
       "inline constexpr double kFlangeP[3] = {{{2}}};\n"
       "inline constexpr double kGravity[3] = {{{3}}};\n\n"
       "}}  // namespace {0}_data\n\n"
-      "// Makes `arm` that arm.\n"
+      "// Sets `arm` to this model.\n"
       "inline void Load{5}(model::ArmModel& arm) noexcept {{\n"
       "  using namespace {0}_data;\n"
       "  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;\n"

@@ -1,4 +1,4 @@
-// An arm's model as C++ source, for firmware that has no file to read it from.
+// An arm's model as C++ source, for firmware without a file system.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace fovea {
 
-// A header that defines `fovea::arms::Load<Name>(model::ArmModel&)`; its numbers are those of `robot` to the
-// last bit.
+// A header that defines `fovea::arms::Load<Name>(model::ArmModel&)`. Its numbers equal those of `robot` to
+// the last bit.
 std::string EmitModel(const robots::Robot& robot);
 
 }  // namespace fovea

@@ -26,7 +26,7 @@ using model::VecN;
 using nlohmann::ordered_json;
 
 constexpr int kCheckedStates = 500;
-constexpr double kPrintedAsZero = 5e-5;  // without a sign, where four digits are shown
+constexpr double kPrintedAsZero = 5e-5;  // smaller numbers are 0 with four decimals; printed without a sign
 
 robots::Robot Load(const std::string& name) {
   const fs::path path = name;
@@ -36,14 +36,14 @@ robots::Robot Load(const std::string& name) {
   const fs::path shipped = config::ShareFolder() / "robots" / (name + ".toml");
   if (!fs::is_regular_file(shipped)) {
     throw InputError(
-        fmt::format("\"{}\": no shipped arm of that name; the path of an arm file .toml or of a "
-                    ".urdf is allowed too",
+        fmt::format("\"{}\": no shipped arm has this name; a path of an arm file (.toml) or URDF (.urdf) "
+                    "is allowed too",
                     name));
   }
   return robots::LoadRobot(shipped);
 }
 
-// All of one state.
+// All quantities of one state.
 struct State {
   VecN q;
   VecN dq;
@@ -74,7 +74,7 @@ State Compute(const model::ArmModel& arm, const std::vector<double>& at) {
   s.dq = part(1);
   s.ddq = part(2);
   if (!s.q.allFinite() || !s.dq.allFinite() || !s.ddq.allFinite()) {
-    throw InputError("--at: finite numbers are allowed");
+    throw InputError("--at: must be finite numbers");
   }
   model::ArmPoses poses;
   model::ComputePoses(arm, s.q, poses);
@@ -150,7 +150,7 @@ template <typename Matrix>
 void PrintMatrix(const char* name, const char* unit, const Matrix& matrix) {
   for (const std::vector<double>& row : Rows(matrix)) {
     PrintRow(name, unit, row);
-    name = unit = "";  // of the first row only
+    name = unit = "";  // printed in the first row only
   }
 }
 

@@ -1,4 +1,4 @@
-// fovea model: kinematics and dynamics of an arm at a state, its limits, and whether the model is sound.
+// fovea model: kinematics and dynamics of an arm at a state, its limits, and checks of the model.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,10 +14,10 @@ struct ModelArguments {
   bool emit_cpp = false;
 };
 
-// The subcommand, which fills `arguments`.
+// Adds the subcommand, which fills `arguments`.
 CLI::App* AddModel(CLI::App& app, ModelArguments& arguments);
 
-// Prints what was asked for; returns the program's exit code. Throws config::InputError.
+// Prints the model; returns the program's exit code. Throws config::InputError.
 int Model(const ModelArguments& arguments);
 
 }  // namespace fovea

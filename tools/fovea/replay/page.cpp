@@ -12,9 +12,9 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMostBuckets = 1000;
-constexpr std::size_t kFirstJoint = 2;  // column; before it speed and turn
+constexpr std::size_t kFirstJoint = 2;  // column of the first joint, after speed and turn
 
-// Six digits are more than a plot shows.
+// Six decimals are enough for a plot.
 json Numbers(const std::vector<float>& values) {
   json list = json::array();
   for (const float value : values) {
@@ -85,7 +85,7 @@ std::string ReplayPage::Make(const std::string& log, const std::vector<std::stri
     return run;
   };
   const json recorded = of(recorded_, log);
-  json replayed = of(replayed_, "What it would have done");
+  json replayed = of(replayed_, "Replay with the changes");
   replayed["settings"] = settings;
   replayed["changes"] = json::array();
   for (const flight::FieldChange& change : result.changes) {

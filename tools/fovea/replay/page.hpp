@@ -1,4 +1,4 @@
-// fovea replay --set: what was recorded and what would have been, as a page to look at.
+// fovea replay --set: an HTML page that compares the recording with the replay.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@ namespace fovea {
 
 class ReplayPage {
  public:
-  // Takes both from ReplayOptions::on_tick.
+  // Adds one tick. ReplayOptions::on_tick provides both.
   void Add(const log::Tick& recorded, const log::Tick& replayed);
 
-  // The whole file. `log`: its path; `settings`: what was set. std::runtime_error: a part of the page is not
-  // there.
+  // The complete file. `log`: its path; `settings`: the assignments of --set. std::runtime_error when a part
+  // of the page is missing.
   [[nodiscard]] std::string Make(const std::string& log, const std::vector<std::string>& settings,
                                  const flight::ReplayResult& result) const;
 

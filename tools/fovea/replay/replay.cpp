@@ -59,10 +59,10 @@ const CLI::App* AddReplay(CLI::App& app, ReplayArguments& arguments) {
 
 int Replay(const ReplayArguments& arguments) {
   if (arguments.renew && (!arguments.settings.empty() || arguments.from_s > 0.0)) {
-    throw config::InputError("--renew goes with neither --set nor --from: it is the whole log as it is");
+    throw config::InputError("--renew excludes --set and --from: it rewrites the whole log");
   }
   if (!arguments.out.empty() && arguments.settings.empty()) {
-    throw config::InputError("--out goes with --set: there is a page of what was changed");
+    throw config::InputError("--out needs --set: only a replay with changes has a page");
   }
   const std::filesystem::path log = flight::LogIn(arguments.log);
   flight::ReplayOptions options;
@@ -81,7 +81,7 @@ int Replay(const ReplayArguments& arguments) {
   } else if (arguments.settings.empty()) {
     fmt::print("{}{}", ReplayText(log.string(), result), ChangeTable(result));
   } else {
-    fmt::print("{}: {} ticks with {}, beside what was recorded\n{}", log.string(), result.ticks(),
+    fmt::print("{}: {} ticks with {}, compared with the recording\n{}", log.string(), result.ticks(),
                fmt::join(arguments.settings, ", "), ChangeTable(result));
   }
   if (arguments.renew && !result.Identical()) {
@@ -91,7 +91,7 @@ int Replay(const ReplayArguments& arguments) {
   }
   if (!arguments.settings.empty()) {
     if (result.ticks() == 0) {
-      throw std::runtime_error(log.string() + ": nothing of it can be replayed");
+      throw std::runtime_error(log.string() + ": no part of it can be replayed");
     }
     const std::filesystem::path out =
         arguments.out.empty() ? log.parent_path() / "replay.html" : std::filesystem::path(arguments.out);

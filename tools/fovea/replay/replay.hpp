@@ -1,4 +1,4 @@
-// fovea replay: the recorded inputs of a log through the servo again.
+// fovea replay: runs the servo on the recorded inputs of a log again.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,10 +16,10 @@ struct ReplayArguments {
   bool json = false;
 };
 
-// The subcommand, which fills `arguments`.
+// Adds the subcommand, which fills `arguments`.
 const CLI::App* AddReplay(CLI::App& app, ReplayArguments& arguments);
 
-// Prints what came of it. The exit code: kDone, or kGoalMissed when something differs though nothing was set.
+// Prints the result. Returns the exit code: kGoalMissed when something differs without --set, else kDone.
 // Throws config::InputError.
 int Replay(const ReplayArguments& arguments);
 

@@ -18,7 +18,7 @@ namespace {
 
 using config::InputError;
 
-// What a log says of its run in words.
+// The keys and the camera that a log records for its run.
 struct Recorded {
   std::map<std::string, std::string> keys;
   std::optional<vision::Intrinsics> intrinsics;
@@ -79,8 +79,8 @@ class Keys {
     const config::Setting setting = config::ParseAssignment(assignment);
     if (std::find(known_.begin(), known_.end(), setting.key) == known_.end()) {
       const std::string near = config::Nearest(setting.key, known_);
-      throw InputError(fmt::format("--set {}: a replay knows the keys of [servo] and [safety]{}", setting.key,
-                                   near.empty() ? "" : "; did you mean " + near + "?"));
+      throw InputError(fmt::format("--set {}: a replay accepts the keys of [servo] and [safety]{}",
+                                   setting.key, near.empty() ? "" : "; did you mean " + near + "?"));
     }
     table_.Apply(setting);
   }

@@ -1,4 +1,4 @@
-// fovea replay --set: what keys make of a recorded configuration.
+// fovea replay --set: applies changed keys to a recorded configuration.
 #pragma once
 
 #include <filesystem>
@@ -10,8 +10,8 @@
 
 namespace fovea {
 
-// Reads from the log what its keys were, and gives the change that `assignments` ("servo.lambda=3") make.
-// InputError: a key outside of [servo] and [safety], or a value that is not allowed.
+// Reads the keys of the run from the log. Returns a function that applies `assignments` ("servo.lambda=3") to
+// a configuration. InputError: a key outside [servo] and [safety], or a value that is not allowed.
 std::function<config::ServoConfig(const config::ServoConfig&)> ChangeOf(
     const std::filesystem::path& log, const std::vector<std::string>& assignments);
 

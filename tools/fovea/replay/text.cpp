@@ -71,7 +71,7 @@ std::string ChangeTable(const ReplayResult& result) {
   std::size_t lines = 0;
   for (const FieldChange& change : result.changes) {
     if (++lines > kMostLines) {
-      text += fmt::format("  and {} fields more\n", result.changes.size() - kMostLines);
+      text += fmt::format("  and {} more fields\n", result.changes.size() - kMostLines);
       break;
     }
     const std::string most = std::isfinite(change.most) ? fmt::format("{:.3g}", change.most) : "-";

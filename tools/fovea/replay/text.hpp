@@ -1,4 +1,4 @@
-// A replay's result in words, and as JSON.
+// A replay's result as text and as JSON.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace fovea {
 std::string ReplayText(const std::string& log, const flight::ReplayResult& result);
 std::string ReplayJson(const std::string& log, const flight::ReplayResult& result);
 
-// The fields that changed, a line each: in how many ticks, since when, by how much at most.
+// One line per changed field: number of ticks, time of the first, largest change.
 std::string ChangeTable(const flight::ReplayResult& result);
 
 }  // namespace fovea

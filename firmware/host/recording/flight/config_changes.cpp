@@ -9,7 +9,7 @@
 namespace fovea::flight {
 namespace {
 
-// An archive that lists the fields' values, or puts listed ones into the fields.
+// An archive that lists the fields' values, or with `puts` writes listed values into the fields.
 class FieldList {
  public:
   std::vector<std::uint64_t> values;

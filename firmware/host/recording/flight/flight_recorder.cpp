@@ -3,9 +3,9 @@
 namespace fovea::flight {
 namespace {
 
-constexpr std::size_t kKeyframes = 8;  // that may wait
+constexpr std::size_t kKeyframes = 8;  // room of the ring
 
-// The motion's numbers only where there is one.
+// Copies the motion's numbers only if there is a motion.
 template <class From>
 void TakeDemand(const From& from, link::Demand& to) noexcept {
   to.request = from.request;
@@ -29,7 +29,7 @@ void FlightRecorder::Step(const task::ServoInputs& inputs, task::ServoOutputs& o
   step_.Step(inputs, outputs);
 }
 
-// After the tick's torques are on their way, so that they wait for none of it.
+// Runs after the tick's torques are sent, so that recording does not delay them.
 void FlightRecorder::Record(const hal::TickRecord& record) noexcept {
   records_.Fill([&](FlightRecord& place) {
     place.record = record;

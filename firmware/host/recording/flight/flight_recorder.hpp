@@ -1,8 +1,8 @@
-// Keeps of every tick what a replay needs: the inputs, the outputs, a digest of the servo's state after it,
-// and each second the whole state before it.
+// Records the data of every tick that a replay needs: the inputs, the outputs, a digest of the servo's state
+// after the tick, and each second the whole state before a tick (a keyframe).
 //
-// It stands around the servo, where the loop steps it, and is the loop's recorder. All goes through bounded
-// rings to one other thread. What finds no place is dropped and counted; the tick never waits.
+// The recorder wraps the servo's Step and is also the loop's recorder. The data goes through bounded rings to
+// one other thread. Records that do not fit are dropped and counted; the tick never waits.
 #pragma once
 
 #include <cstdint>
@@ -22,23 +22,23 @@ struct FlightRecord {
 };
 
 struct Keyframe {
-  std::uint64_t tick = 0;  // the next one
-  task::ServoState state;  // before it
+  std::uint64_t tick = 0;  // the next tick
+  task::ServoState state;  // before that tick
 };
 
 class FlightRecorder final : public task::ServoStep, public hal::Recorder {
  public:
   static constexpr std::uint64_t kKeyframeTicks = 1000;
 
-  // Room for `capacity` records [>= 1]. All are borrowed. `task`: the servo that `step` is, where its state
-  // can be looked at; null: it is on another processor, and there is neither digest nor keyframe.
+  // Room for `capacity` records [>= 1]. Borrows both. `task`: the servo behind `step`. Null when that servo
+  // runs on another processor: then there are no digests and no keyframes.
   FlightRecorder(task::ServoStep& step, const task::ServoTask* task, std::size_t capacity);
 
   // From the real-time thread. Real-time: yes; a keyframe takes some 15 us.
   void Step(const task::ServoInputs& inputs, task::ServoOutputs& outputs) noexcept override;
   void Record(const hal::TickRecord& record) noexcept override;
 
-  // From one other thread: calls `take_keyframe(keyframe)` and `take(record)` for all that is there, the
+  // From one other thread: calls `take_keyframe(keyframe)` and `take(record)` for all waiting entries, the
   // keyframe of a tick before its record.
   template <typename Take, typename TakeKeyframe>
   void Drain(Take&& take, TakeKeyframe&& take_keyframe) {
@@ -47,13 +47,13 @@ class FlightRecorder final : public task::ServoStep, public hal::Recorder {
     records_.Drain(end, take);
   }
 
-  // Records that found no place. (A keyframe that finds none is left out: the next one comes in a second.)
+  // Records dropped for lack of room. (A dropped keyframe does not count: the next one follows in a second.)
   [[nodiscard]] std::uint64_t dropped() const noexcept { return records_.dropped(); }
 
  private:
   task::ServoStep& step_;
   const task::ServoTask* task_;
-  link::Demand demand_;  // of the tick in hand
+  link::Demand demand_;  // of the current tick
   linux_rt::BoundedRing<FlightRecord> records_;
   linux_rt::BoundedRing<Keyframe> keyframes_;
 };

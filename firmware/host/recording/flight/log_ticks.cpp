@@ -12,7 +12,7 @@
 namespace fovea::flight {
 namespace {
 
-// Joins each tick with its measurement, which stands behind it in the log.
+// Joins each tick with its measurement, which follows it in the log.
 class Joiner {
  public:
   explicit Joiner(const TickVisitor& visitor) : visitor_(visitor) {}
@@ -61,7 +61,7 @@ class Joiner {
   const TickVisitor& visitor_;
   log::Tick tick_;
   hal::FeatureMeasurement feature_;
-  bool waits_ = false;  // tick_ for its measurement
+  bool waits_ = false;  // tick_ waits for its measurement
 };
 
 }  // namespace

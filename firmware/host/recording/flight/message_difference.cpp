@@ -19,11 +19,11 @@ using google::protobuf::Reflection;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// A field's value, one entry of it where it has several.
+// A field's value, or one entry of a repeated field.
 struct Value {
   std::string text;
-  std::string bits;       // the same for the same value alone
-  double number = kNone;  // where it is one
+  std::string bits;       // equal only for equal values
+  double number = kNone;  // NaN when the value is not a number
 };
 
 Value OfNumber(double number) {
@@ -34,7 +34,7 @@ template <typename Integer>
 Value OfInteger(Integer value) {
   return {fmt::format("{}", value), fmt::format("{}", value), static_cast<double>(value)};
 }
-// A set of flags: no number.
+// A set of flags, not a number.
 Value OfBits(std::uint32_t value) { return {fmt::format("{:#x}", value), fmt::format("{}", value), kNone}; }
 
 Value Get(const Message& m, const FieldDescriptor& f, int i) {

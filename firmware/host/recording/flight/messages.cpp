@@ -19,8 +19,8 @@ static_assert(link::kMaxDemand <= std::tuple_size_v<decltype(log::ReplayData::de
 
 constexpr std::size_t kMostSection = 8192;  // bytes of a part of the configuration
 
-// As link::FieldReader, but what stands after the last byte keeps the value that it has: a log that was
-// written before a field was added to the end of its list.
+// As link::FieldReader, but fields after the last byte keep their values: the log was written before those
+// fields were added to the end of their list.
 class EarlierReader {
  public:
   explicit EarlierReader(link::Bytes bytes) : reader_(bytes) {}
@@ -66,7 +66,7 @@ void EachPart(Config& config, const Visit& visit) {
   visit("arm", [&config](auto& a) { link::ArmFields(a, config.arm); });
 }
 
-// The largest radius of the bodies from `first` to before `end` [m].
+// The largest radius of the bodies `first` to `end` - 1 [m].
 double LargestRadius(const model::ArmModel& arm, int first, int end) {
   double largest = 0.0;
   for (int k = std::max(first, 0); k < end; ++k) {
@@ -75,8 +75,8 @@ double LargestRadius(const model::ArmModel& arm, int first, int end) {
   return largest;
 }
 
-// Clearances of a log before format 3 count from the lines between the joints. This takes the links' radii
-// off them, so that the arm is kept no farther away than it was.
+// Clearances of a log before format 3 count from the lines between the joints. This subtracts the links'
+// radii, so that no distance becomes larger than it was.
 void CountFromCapsules(config::ServoConfig& config) {
   constexpr double kLeastSight = 1e-3;  // 0 would switch the barrier off [m]
   const model::ArmModel& arm = config.arm;
@@ -98,7 +98,7 @@ log::ReplayData ReplayDataOf(const FlightRecord& record) {
   if (!record.demand.IsPlain()) {
     const link::Bytes bytes = link::Encode(record.demand, data.demand);
     if (bytes.empty()) {
-      throw std::runtime_error(fmt::format("tick {}: a request that is none", record.record.tick));
+      throw std::runtime_error(fmt::format("tick {}: its request is invalid", record.record.tick));
     }
     data.demand_size = static_cast<std::uint32_t>(bytes.size());
   }
@@ -163,7 +163,7 @@ config::ServoConfig FromMessage(const log::ServoConfiguration& message) {
     });
     if (!known) {
       throw std::runtime_error(fmt::format(
-          "the servo's configuration, part \"{}\": not as this program has it; the log is of a later one",
+          "part \"{}\" of the servo's configuration is unknown here: the log is from a later program",
           section.name()));
     }
   }
@@ -176,7 +176,7 @@ config::ServoConfig FromMessage(const log::ServoConfiguration& message) {
 void FromMessage(const log::Keyframe& message, task::ServoState& state) {
   if (!link::Decode(BytesOf(message.state()), state)) {
     throw std::runtime_error(
-        fmt::format("the keyframe of tick {}: not as this program has it", message.tick()));
+        fmt::format("the keyframe of tick {} does not fit this program", message.tick()));
   }
 }
 

@@ -1,4 +1,4 @@
-// Between what the flight recorder keeps and what the log holds.
+// Converts between the flight recorder's records and the log's messages.
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"
@@ -13,18 +13,18 @@ class Tick;
 
 namespace fovea::flight {
 
-// std::runtime_error: a choice in it that is none.
+// std::runtime_error: an enumerator in the record is invalid.
 log::ReplayData ReplayDataOf(const FlightRecord& record);
 log::Keyframe ToMessage(const Keyframe& keyframe);
 log::ServoConfiguration ToMessage(const config::ServoConfig& config);
 
-// All below: std::runtime_error when the message is none of this program's.
+// All below: std::runtime_error when the message does not fit this program.
 
-// The inputs of a tick. `feature`: the measurement that it took, if it took one.
+// The inputs of a tick. `feature`: the measurement that the tick took, if any.
 task::ServoInputs InputsOf(const log::Tick& message, const hal::FeatureMeasurement& feature);
-// Fields that this program knows and the log does not have their defaults.
+// Fields that are missing in the log keep their defaults.
 config::ServoConfig FromMessage(const log::ServoConfiguration& message);
-// Into `state`, that of a servo after Init; see link::Decode.
+// Decodes into `state`, which must be the state of a servo after Init; see link::Decode.
 void FromMessage(const log::Keyframe& message, task::ServoState& state);
 
 }  // namespace fovea::flight

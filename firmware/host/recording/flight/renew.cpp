@@ -57,7 +57,7 @@ void Renew(const std::filesystem::path& path, const std::map<std::string, std::s
     };
     const ReplayResult result = Replay(path, options);
     if (result.segments.size() != 1 || !result.segments[0].not_replayed.empty() || !result.complete) {
-      throw std::runtime_error(path.string() + ": not a whole log from the first tick on");
+      throw std::runtime_error(path.string() + ": the log is not complete from the first tick on");
     }
     log.Finish();
     std::filesystem::rename(beside, path);

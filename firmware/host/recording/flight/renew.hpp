@@ -1,4 +1,4 @@
-// Writes a log anew: its inputs as they are, its outputs as the servo that is linked in gives them.
+// Rewrites a log: keeps its inputs, and replaces its outputs by those of the linked servo.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace fovea::flight {
 
-// `build`: of this program, as in BuildEntries(). What a replay needs is kept, and nothing else.
-// std::runtime_error, with the file as it was: it cannot be read or written, or ticks are missing in it.
+// `build`: BuildEntries() of this program. Keeps only the data that a replay needs. std::runtime_error, with
+// the file unchanged: it cannot be read or written, or ticks are missing in it.
 void Renew(const std::filesystem::path& log, const std::map<std::string, std::string>& build);
 
 }  // namespace fovea::flight

@@ -100,7 +100,7 @@ class Replayer {
       }
     } else {
       segment.not_replayed = result_.same_build ? "no keyframe at its start"
-                                                : "a keyframe serves only the build that wrote the log";
+                                                : "a keyframe fits only the build that wrote the log";
     }
     result_.segments.push_back(segment);
   }
@@ -125,7 +125,7 @@ class Replayer {
       other_.Step(inputs, outputs_);
       FollowTheArm();
     }
-    // Of another configuration, or of another build's fields, it says nothing.
+    // With another configuration or another build's fields, digests cannot be compared.
     if (changed_ || !result_.same_build) {
       data.state_digest = recorded.state_digest();
     } else {
@@ -143,7 +143,7 @@ class Replayer {
     }
   }
 
-  // The arm went where the recorded servo led it.
+  // The arm followed the recorded servo's reference.
   void FollowTheArm() {
     if (other_.state().mode.mode == task_.state().mode.mode) {
       *state_ = other_.state();
@@ -181,7 +181,7 @@ class Replayer {
     }
   }
 
-  // What a state that has come to differ differs in.
+  // Finds the group of the state that differs after a divergence.
   void CompareStates(const log::Keyframe& keyframe) {
     std::optional<Divergence>& divergence = result_.segments.back().divergence;
     if (!divergence || !divergence->state_group.empty() || changed_) {
@@ -201,7 +201,7 @@ class Replayer {
   std::map<std::string, std::size_t> change_of_;      // by field
   bool started_ = false;
   std::uint64_t next_tick_ = 0;
-  bool runs_ = false;  // the segment in hand is replayed
+  bool runs_ = false;  // the current segment is replayed
   task::ServoTask task_;
   task::ServoTask other_;  // with the changed configuration
   task::ServoOutputs outputs_;

@@ -10,7 +10,7 @@ namespace {
 
 using google::protobuf::FileDescriptor;
 
-// Adds `file` after all that it imports.
+// Adds `file` after its imports.
 void AddFile(const FileDescriptor& file, std::set<std::string>& known,
              google::protobuf::FileDescriptorSet& set) {
   if (!known.insert(file.name()).second) {

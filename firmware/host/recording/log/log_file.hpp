@@ -1,4 +1,4 @@
-// An MCAP file of protobuf messages: each type's schema and each topic's channel made when first needed.
+// An MCAP file of protobuf messages. Adds each type's schema and each topic's channel at its first use.
 #pragma once
 
 #include <google/protobuf/message.h>

@@ -66,14 +66,14 @@ inline std::string Record(Op op, std::string_view content) {
   return record;
 }
 
-// Takes numbers and texts off the front of `rest`. std::runtime_error when there is less than asked for.
+// Reads numbers and texts from the front of a record. std::runtime_error when the record is too short.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes) : rest_(bytes) {}
 
   std::string_view Bytes(std::uint64_t count) {
     if (count > rest_.size()) {
-      throw std::runtime_error("a record is shorter than it says");
+      throw std::runtime_error("a record is shorter than its length");
     }
     const std::string_view bytes = rest_.substr(0, count);
     rest_.remove_prefix(count);

@@ -18,8 +18,8 @@ using mcap::Op;
 // No writer makes records or chunks so large; a length above it is damage.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 31U;
 
-// Zstandard's best: a block of 128 KiB in 4 bytes. A chunk that says more lies, and would have memory for
-// nothing.
+// Zstandard's best ratio: a block of 128 KiB in 4 bytes. A chunk that claims more is damaged; memory for it
+// would be wasted.
 constexpr std::uint64_t kMostPacked = 32'768;
 
 class Reader {
@@ -56,7 +56,7 @@ class Reader {
   }
 
  private:
-  // What is wrong with the file; what a visitor throws goes through.
+  // Damage of the file. Exceptions of a visitor pass through.
   struct DamageError : std::runtime_error {
     using std::runtime_error::runtime_error;
   };
@@ -83,7 +83,7 @@ class Reader {
     return true;
   }
 
-  // Splits `content` by `parse`; a record that ends too early is damage.
+  // Parses `content` with `parse`; a record that ends too early is damage.
   template <typename Parse>
   static auto Parsed(std::string_view content, Parse parse) {
     try {
@@ -106,7 +106,7 @@ class Reader {
         num_promised_ = Parsed(content, [](Cursor& c) { return c.Number<std::uint64_t>(); });
         return;
       case Op::kFooter: ended_ = true; return;
-      default: return;  // indexes, and what later versions may add
+      default: return;  // indexes, and records of later versions
     }
   }
 
@@ -229,7 +229,7 @@ class Reader {
   std::uint64_t size_ = 0;
   bool ended_ = false;
   std::uint64_t num_messages_ = 0;
-  std::uint64_t num_promised_ = 0;  // as the summary at the file's end has it
+  std::uint64_t num_promised_ = 0;  // from the summary at the file's end
   std::string record_;
   std::string chunk_;
   std::map<std::uint16_t, std::string> schemas_;

@@ -1,4 +1,4 @@
-// Reads MCAP files from front to back, as far as they go: a log that was cut off is read up to the cut.
+// Reads MCAP files from front to back. Reads a truncated log up to the cut.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct McapAttachment {
   std::string_view data;
 };
 
-// Called in the order of the file; what is viewed is valid during the call. Any may be empty.
+// Called in the order of the file; views are valid only during the call. Any function may be empty.
 struct McapVisitor {
   std::function<void(const McapMessage&)> on_message;
   std::function<void(const McapAttachment&)> on_attachment;

@@ -19,7 +19,7 @@ using mcap::PutText;
 
 namespace {
 
-constexpr std::size_t kChunkBytes = 1U << 20U;  // a chunk is closed when it holds so much
+constexpr std::size_t kChunkBytes = 1U << 20U;  // a chunk of this size is closed
 constexpr int kZstdLevel = 1;  // pictures are compressed already, numbers shrink at any level
 
 std::uint32_t Crc(std::string_view bytes, std::uint32_t before = 0) {
@@ -42,7 +42,7 @@ McapWriter::McapWriter(const std::filesystem::path& path, const std::string& lib
   PutText(header, library);
   Put(mcap::kMagic);
   Put(mcap::Record(Op::kHeader, header));
-  file_.flush();  // who reads it now finds a log; what went wrong with that, the next Put says
+  file_.flush();  // a reader finds a log from now on; the next Put reports an error
 }
 
 void McapWriter::Put(std::string_view bytes) {
@@ -197,11 +197,11 @@ void McapWriter::WriteMetadata(const std::string& name, const std::map<std::stri
 void McapWriter::Flush() {
   CloseChunk();
   file_.flush();
-  Put({});  // asks whether that went well
+  Put({});  // throws if the flush failed
 }
 
-// The summary at the file's end: everything that a reader needs to find its way without reading the rest, and
-// where each group of it stands.
+// The summary at the file's end: all that a reader needs for random access, and the offset of each group of
+// records in the summary.
 std::string McapWriter::Summary(std::uint64_t start) const {
   std::string statistics;
   PutNumber(statistics, messages_);
@@ -257,7 +257,7 @@ std::string McapWriter::Summary(std::uint64_t start) const {
 void McapWriter::Finish() {
   CloseChunk();
   std::string data_end;
-  PutNumber(data_end, std::uint32_t{0});  // no checksum over all: each chunk has its own
+  PutNumber(data_end, std::uint32_t{0});  // no checksum over the file: each chunk has its own
   Put(mcap::Record(Op::kDataEnd, data_end));
   Put(Summary(position_));
   Put(mcap::kMagic);

@@ -16,7 +16,7 @@ class McapWriter {
  public:
   // Creates the file. `library` names the writing program in it.
   McapWriter(const std::filesystem::path& path, const std::string& library);
-  // Leaves a file that was not finished as it is: readable up to the last chunk.
+  // An unfinished file stays readable up to the last chunk.
   ~McapWriter() = default;
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
@@ -33,7 +33,7 @@ class McapWriter {
                        std::string_view content);
   void WriteMetadata(const std::string& name, const std::map<std::string, std::string>& entries);
 
-  // Puts what is collected into the file, so that who reads it now sees it.
+  // Writes the collected messages to the file, so that a reader sees them.
   void Flush();
   // Completes the file; nothing may be written after it.
   void Finish();
@@ -60,7 +60,7 @@ class McapWriter {
   std::uint64_t position_ = 0;  // in the file
 
   std::vector<std::string> schemas_;          // records as they were written
-  std::vector<std::string> channel_records_;  //
+  std::vector<std::string> channel_records_;  // records as they were written
   std::vector<Channel> channels_;             // number 0 first
   std::vector<std::string> chunk_indexes_;    // records for the summary
   std::vector<std::string> attachment_indexes_;

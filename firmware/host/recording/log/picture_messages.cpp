@@ -13,7 +13,7 @@ namespace {
 
 void SetColour(const char* role, foxglove::Color& colour) {
   const std::string_view name(role);
-  // Sky blue for what is seen, yellow for the goal, white for the truth: told apart by brightness too.
+  // Sky blue for the detection, yellow for the goal, white for the truth; they also differ in brightness.
   const bool detection = name == kDetectionRole;
   colour.set_r(detection ? 0.24 : 1.0);
   colour.set_g(detection ? 0.86 : name == kGoalRole ? 0.84 : 1.0);

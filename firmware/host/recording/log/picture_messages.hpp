@@ -1,4 +1,4 @@
-// What goes with the camera's pictures in the log: its calibration, and what is drawn on them.
+// Messages that go with the camera's pictures in the log: the calibration and the annotations.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +16,16 @@ namespace fovea::log {
 
 foxglove::CameraCalibration CalibrationMessage(std::int64_t time_ns, const vision::Intrinsics& intrinsics);
 
-// Outlines on one picture, drawn where the lens puts them. Each carries the metadata "role": kGoalRole,
-// kDetectionRole or kTruthRole.
+// The roles of outlines on a picture. Each outline has one as its metadata "role", and is drawn with the
+// lens's distortion.
 inline constexpr const char* kGoalRole = "goal";
 inline constexpr const char* kDetectionRole = "detection";
 inline constexpr const char* kTruthRole = "truth";
 
-// A closed outline of ideal pixels; nothing when it has none.
+// Adds a closed outline of ideal pixels; nothing when `points` is empty.
 void AddOutline(const vision::Intrinsics& intrinsics, std::span<const vision::ImagePoint> points,
                 const char* role, foxglove::ImageAnnotations& annotations);
-// The detection's outline, and its confidence in words; nothing when nothing was found.
+// Adds the detection's outline, and its confidence as text; nothing when nothing was found.
 void AddDetection(const vision::Intrinsics& intrinsics, const vision::Detection& detection,
                   foxglove::ImageAnnotations& annotations);
 

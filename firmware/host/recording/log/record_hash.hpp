@@ -1,7 +1,7 @@
-// Fingerprints, SHA-256 in 64 hexadecimal digits: of a run, and of the arm that it was computed for.
+// Hashes of a run and of its arm: SHA-256 in 64 hexadecimal digits.
 //
-// A run's is taken over every tick's record, field by field, in little-endian bytes. Records hold virtual
-// time only, so the same binary, scenario and seed give the same hash. Measured times are not part of them.
+// A run's hash covers every tick's record, field by field, in little-endian bytes. Records hold virtual time
+// only, so the same binary, scenario and seed give the same hash. Records do not contain measured times.
 #pragma once
 
 #include <cstdint>

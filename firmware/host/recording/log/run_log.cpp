@@ -21,8 +21,8 @@ namespace fovea::log {
 namespace {
 
 constexpr std::size_t kMostJobs = 1024;                  // messages that may wait
-constexpr auto kPoll = std::chrono::milliseconds(2);     // how often the rings are looked at
-constexpr auto kFlush = std::chrono::milliseconds(500);  // what is older than this is in the file, or soon
+constexpr auto kPoll = std::chrono::milliseconds(2);     // time between two reads of the rings
+constexpr auto kFlush = std::chrono::milliseconds(500);  // least time between two flushes of the file
 
 Truth ToMessage(const TruthSample& sample) {
   Truth truth;
@@ -47,7 +47,7 @@ RunLog::RunLog(const RunLogConfig& config)
 
 RunLog::~RunLog() { Close(); }
 
-// Where nothing may be dropped.
+// Waits only if nothing may be dropped.
 template <typename T>
 void RunLog::WaitForRoom(const linux_rt::BoundedRing<T>& ring) const {
   while (!config_.may_drop && !ring.HasRoom() && !failed_.load(std::memory_order_relaxed)) {
@@ -76,7 +76,7 @@ bool RunLog::Push(Job job) {
       changed_.wait(lock, has_room);
     }
     if (!has_room() || failure_ != nullptr) {
-      ++lost_;  // a disk that hangs, or a failure: Finish says it
+      ++lost_;  // the disk hangs, or writing failed (Finish reports that)
       return false;
     }
     jobs_.push_back(std::move(job));
@@ -161,8 +161,8 @@ void RunLog::AddFile(const std::string& name, const std::string& media_type,
   AddAttachment(name, media_type, {std::istreambuf_iterator<char>(stream), {}});
 }
 
-// What a thread added first is written first: the rings are marked before the messages are taken, so that
-// every message that was added before a tick is there with it.
+// Keeps the order of each thread: reads the rings' ends before it takes the messages, so that each message
+// that was added before a tick is written before that tick.
 bool RunLog::WriteRound() {
   const std::uint64_t ticks_end = ticks_.End();
   const std::uint64_t truths_end = truths_.End();
@@ -221,14 +221,14 @@ void RunLog::WriteAll() {
   }
 }
 
-// True once the log is closed: whatever was added before is there now.
+// True once the log is closed: then everything that was added before is visible.
 bool RunLog::WaitForMore() {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, kPoll, [this] { return closed_ || !jobs_.empty(); });
   return closed_;
 }
 
-// After a failure: nothing is kept, and nothing goes uncounted.
+// After a failure: discards all waiting entries and counts them.
 void RunLog::CountLost() {
   std::uint64_t lost = ticks_.Drain(ticks_.End(), [](const LoggedTick&) {});
   lost += truths_.Drain(truths_.End(), [](const TruthSample&) {});

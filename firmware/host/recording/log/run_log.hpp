@@ -1,7 +1,7 @@
-// A run's log.mcap: fed by the threads of a run, written by one of its own.
+// A run's log.mcap: filled by the threads of a run, written by its own thread.
 //
-// What comes per tick goes through bounded rings without locks; all else through a bounded queue. From ticks
-// the log makes by itself what viewers want: modes and faults in words, and the poses of all frames.
+// Data of each tick goes through bounded rings without locks, other data through a bounded queue. From the
+// ticks the log derives the messages for viewers: modes and faults as text, and the poses of all frames.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ namespace fovea::log {
 class LogFile;
 class TickWriter;
 
-// A frame that moves with the arm: fixed to what joint `joint` moves, or to B when that is -1.
+// A frame of the arm: fixed to the link that joint `joint` moves, or to B when `joint` is -1.
 struct LinkFrame {
   std::string name;
   int joint = -1;
@@ -44,18 +44,18 @@ struct LinkFrame {
 
 struct RunLogConfig {
   std::filesystem::path path;
-  std::string library;  // who writes
+  std::string library;  // name of the writing program
   model::ArmModel arm;
-  std::vector<LinkFrame> frames;  // of /tf, the camera's among them
+  std::vector<LinkFrame> frames;  // of /tf, including the camera's
   // When the disk is slower than the run: drop ticks, samples and pictures and count them (true), or wait
   // (false).
   bool may_drop = false;
-  std::size_t ring = 2048;      // ticks, and samples, that may wait: two seconds
+  std::size_t ring = 2048;      // ticks, and samples, that may wait: two seconds of them
   std::size_t most_images = 8;  // pictures that may wait to be encoded
   int jpeg_quality = 80;
 };
 
-// What a simulator knows; see Truth in firmware/host/recording/log/proto/fovea/run.proto.
+// Data that only a simulator knows; see Truth in firmware/host/recording/log/proto/fovea/run.proto.
 struct TruthSample {
   std::int64_t stamp_ns = 0;
   std::array<double, 3> p_BO{};
@@ -69,7 +69,7 @@ class RunLog {
  public:
   // Creates the file. std::runtime_error when it cannot.
   explicit RunLog(const RunLogConfig& config);
-  // Ends the thread; a file that was not finished stays readable up to what was written.
+  // Ends the thread. An unfinished file stays readable up to the last written chunk.
   ~RunLog();
   RunLog(const RunLog&) = delete;
   RunLog& operator=(const RunLog&) = delete;
@@ -78,22 +78,22 @@ class RunLog {
   void AddTick(const hal::TickRecord& record, const ReplayData& data = {});
   // From one thread. Real-time when the log may drop.
   void AddTruth(const TruthSample& sample);
-  // From any thread that need not be real-time. For messages that are few and small: none is dropped, unless
-  // a thousand wait for a disk that hangs, and the log may drop.
+  // From any thread that is not real-time. For few and small messages: one is dropped only if the log may
+  // drop and a thousand already wait because the disk hangs.
   void Add(const char* topic, std::int64_t time_ns, const google::protobuf::Message& message);
-  // Copies the pixels; encoded as JPEG by the log's thread.
+  // Copies the pixels; the log's thread encodes them as JPEG.
   void AddImage(const hal::Frame& frame);
   void AddMetadata(const std::string& name, const std::map<std::string, std::string>& entries);
   void AddAttachment(const std::string& name, const std::string& media_type, const std::string& content);
-  // What the file holds now, as an attachment. std::runtime_error when it cannot be read.
+  // Adds the file's current content as an attachment. std::runtime_error when it cannot be read.
   void AddFile(const std::string& name, const std::string& media_type, const std::filesystem::path& path);
 
-  // Writes what is left and completes the file. Throws what went wrong at any time.
+  // Writes the remaining entries and completes the file. Throws any error since the start.
   void Finish();
-  // The file could not be written; what was before stays readable.
+  // True when the file could not be written; its earlier content stays readable.
   [[nodiscard]] bool failed() const;
-  // Ticks, samples and pictures that found no place, and all that came after a failure (not what had been
-  // collected for the file then, of the last second at most); and the pictures alone.
+  // Ticks, samples and pictures dropped for lack of room, and all entries after a failure (without the open
+  // chunk at that time, of the last second at most); and the pictures alone.
   [[nodiscard]] std::uint64_t dropped() const;
   [[nodiscard]] std::uint64_t dropped_images() const;
 
@@ -109,7 +109,7 @@ class RunLog {
   void WriteAll();
   bool WaitForMore();
   void CountLost();
-  // Writes what is there; false when nothing was.
+  // Writes all waiting entries; false when there are none.
   bool WriteRound();
   void Close();
   template <typename T>
@@ -124,11 +124,11 @@ class RunLog {
   std::condition_variable changed_;
   std::deque<Job> jobs_;
   std::size_t images_waiting_ = 0;  // to be encoded
-  std::vector<cv::Mat> spare_;      // pictures whose memory is used again
+  std::vector<cv::Mat> spare_;      // pictures whose memory is reused
   bool closed_ = false;
   std::uint64_t dropped_images_ = 0;
-  std::uint64_t lost_ = 0;      // messages without a place, and all after the failure
-  std::exception_ptr failure_;  // of the writing thread; after it the log takes everything and keeps nothing
+  std::uint64_t lost_ = 0;      // messages dropped for lack of room, and all entries after the failure
+  std::exception_ptr failure_;  // of the writing thread; after it the log discards all entries
   std::atomic<bool> failed_{false};
   std::thread thread_;
 };

@@ -1,4 +1,4 @@
-// What a log says once of its run: what it is about, how long its ticks took, what it was built from.
+// Messages that a log holds once: the run's setup, and the durations of its ticks.
 #pragma once
 
 #include <cstdint>
@@ -23,10 +23,10 @@ struct RunSetup {
   features::TargetFeature feature;
   vision::Intrinsics intrinsics;
   double lambda = 0.0;         // [1/s]
-  double target_radius = 0.0;  // of the ball that holds the target [m]; 0: there is no camera
+  double target_radius = 0.0;  // of the sphere that encloses the target [m]; 0: there is no camera
   bool target_moves = false;
   double workspace_radius = 0.0;  // [m]
-  double duration_s = 0.0;        // 0: until it is told to end
+  double duration_s = 0.0;        // 0: until somebody ends the run
   std::int64_t start_ns = 0;      // the loop's clock when the run began
 };
 

@@ -19,7 +19,7 @@ void SetPose(const Eigen::Isometry3d& X, foxglove::Pose& pose) {
   pose.mutable_orientation()->set_z(q.z());
 }
 
-// Viewers show colours as screens do; ours are linear.
+// Viewers take gamma-encoded colours; ours are linear.
 void SetColour(const Eigen::Vector3f& linear, foxglove::Color& colour) {
   const auto shown = [](float value) { return std::pow(static_cast<double>(value), 1.0 / 2.2); };
   colour.set_r(shown(linear.x()));

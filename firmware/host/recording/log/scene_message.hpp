@@ -1,4 +1,4 @@
-// Shapes of a bench as a log's viewer draws them.
+// Shapes of a bench for a log's viewer.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -12,18 +12,18 @@ class TriangleListPrimitive;
 
 namespace fovea::log {
 
-// What stands in `frame` and goes with it.
+// Adds an entity that is fixed to `frame`.
 foxglove::SceneEntity& AddEntity(const std::string& id, const std::string& frame,
                                  foxglove::SceneUpdate& update);
 
-// Each at X in the entity's frame; sizes in m, colours linear, 0 to 1.
+// Each adds a shape at pose X in the entity's frame; sizes in m, colours linear, 0 to 1.
 void AddBox(const Eigen::Isometry3d& X, const Eigen::Vector3d& size, const Eigen::Vector3f& colour,
             foxglove::SceneEntity& entity);
 void AddCylinder(const Eigen::Isometry3d& X, double radius, double length, const Eigen::Vector3f& colour,
                  foxglove::SceneEntity& entity);
 void AddSphere(const Eigen::Isometry3d& X, double radius, const Eigen::Vector3f& colour,
                foxglove::SceneEntity& entity);
-// Without its points.
+// Adds an empty list; AddPoint adds its points.
 foxglove::TriangleListPrimitive& AddTriangles(const Eigen::Isometry3d& X, foxglove::SceneEntity& entity);
 void AddPoint(const Eigen::Vector3f& position, const Eigen::Vector3f& colour,
               foxglove::TriangleListPrimitive& triangles);

@@ -1,4 +1,4 @@
-// Times as protobuf has them.
+// Converts times to protobuf's stamps.
 #pragma once
 
 #include <google/protobuf/timestamp.pb.h>

@@ -1,4 +1,4 @@
-// Between what the servo records and what the log holds; no bit is lost on the way, in either direction.
+// Converts between the servo's records and the log's messages, bit-exact in both directions.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace fovea::log {
 
-// What a replay needs beside the record; see Tick in firmware/host/recording/log/proto/fovea/tick.proto.
+// Data for a replay beside the record; see Tick in firmware/host/recording/log/proto/fovea/tick.proto.
 struct ReplayData {
   std::uint32_t demand_size = 0;  // [bytes]
   std::array<std::uint8_t, 320> demand{};
@@ -19,14 +19,14 @@ struct ReplayData {
 class Feature;
 class Tick;
 
-// `message` may be one that is used again.
+// `message` may be reused: its old content is replaced.
 void ToMessage(const hal::TickRecord& record, Tick& message);
 void ToMessage(const ReplayData& data, Tick& message);
 void ToMessage(const hal::FeatureMeasurement& measurement, Feature& message);
 
 // std::runtime_error when the message cannot have come from ToMessage (more entries than the servo has).
 hal::FeatureMeasurement FromMessage(const Feature& message);
-// `feature`: the last one that was taken, which the record repeats.
+// `feature`: the last measurement that was taken; the record repeats it.
 hal::TickRecord FromMessage(const Tick& message, const hal::FeatureMeasurement& feature);
 
 }  // namespace fovea::log

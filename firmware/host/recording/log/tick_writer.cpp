@@ -14,7 +14,7 @@
 namespace fovea::log {
 namespace {
 
-constexpr std::int64_t kTransformPeriodNs = 20 * hal::kNsPerMs;  // 50 Hz: what an eye can follow
+constexpr std::int64_t kTransformPeriodNs = 20 * hal::kNsPerMs;  // 50 Hz: enough for a viewer
 
 void SetPosition(const model::Vec3& p, foxglove::Vector3& to) {
   to.set_x(p.x());
@@ -76,7 +76,7 @@ void TickWriter::WriteEvents(const hal::TickRecord& record, LogFile& file) const
   file.Write(kEventTopic, record.stamp_ns, line);
 }
 
-// Where the arm's own encoders say that its frames are.
+// Computes the poses of the frames from the arm's encoders.
 void TickWriter::WriteTransforms(const hal::TickRecord& record, LogFile& file) {
   model::VecN q(record.arm.num_joints);
   for (int i = 0; i < record.arm.num_joints; ++i) {
@@ -103,7 +103,7 @@ void TickWriter::WriteTransforms(const hal::TickRecord& record, LogFile& file) {
   }
   if (record.target_known) {
     model::Pose X_BO{model::Mat3::Identity(), {record.p_BO[0], record.p_BO[1], record.p_BO[2]}};
-    static_cast<void>(model::RotationOfQuaternion(record.q_BO, X_BO.R));  // else as it was: not turned
+    static_cast<void>(model::RotationOfQuaternion(record.q_BO, X_BO.R));  // on error: R stays the identity
     add(kTargetFrame, X_BO);
   }
   file.Write(kTransformTopic, record.stamp_ns, transforms_);

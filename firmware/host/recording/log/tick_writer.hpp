@@ -1,5 +1,5 @@
-// From the servo's records to messages: the records themselves, the measurements that they took, modes and
-// faults in words, and the poses of all frames.
+// Converts the servo's records to messages: the records, the measurements that they took, modes and faults as
+// text, and the poses of all frames.
 #pragma once
 
 #include "firmware/host/recording/log/log_file.hpp"
@@ -21,7 +21,7 @@ class TickWriter {
   void WriteTransforms(const hal::TickRecord& record, LogFile& file);
 
   const RunLogConfig& config_;
-  Tick tick_;  // used again for each
+  Tick tick_;  // reused for each record
   Feature feature_;
   foxglove::FrameTransforms transforms_;
   hal::Mode mode_ = hal::Mode::kBoot;

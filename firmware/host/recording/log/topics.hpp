@@ -1,11 +1,11 @@
-// The streams of a log: what each is called and which messages it carries.
+// The topics of a log, and the type of their messages.
 #pragma once
 
 namespace fovea::log {
 
 inline constexpr const char* kTickTopic = "/servo/tick";          // fovea.log.Tick
 inline constexpr const char* kFeatureTopic = "/servo/feature";    // fovea.log.Feature
-inline constexpr const char* kEventTopic = "/servo/events";       // foxglove.Log: modes and faults in words
+inline constexpr const char* kEventTopic = "/servo/events";       // foxglove.Log: modes and faults as text
 inline constexpr const char* kKeyframeTopic = "/servo/keyframe";  // fovea.log.Keyframe
 inline constexpr const char* kConfigurationTopic = "/servo/configuration";  // fovea.log.ServoConfiguration
 inline constexpr const char* kTickTimesTopic = "/servo/tick_times";         // fovea.log.TickTimes

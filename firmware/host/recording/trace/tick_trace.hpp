@@ -1,5 +1,5 @@
-// The servo's ticks and their stages on a track. It stands where a tick is watched anyway, at its probe, its
-// stages' probe and its recorder: a tick that is not traced runs the code that it always ran.
+// Traces the servo's ticks and their stages on a track. It uses the existing hooks of a tick: its probe, its
+// stages' probe and its recorder. So a tick without trace runs unchanged code.
 #pragma once
 
 #include "firmware/core/task/stage_probe.hpp"
@@ -10,13 +10,13 @@
 
 namespace fovea::trace {
 
-// Spans of one tick, at most: itself, its stages, and from the last of them to its end.
+// The most spans of one tick: the tick, its stages, and the rest from the last stage to the tick's end.
 inline constexpr std::size_t kSpansPerTick = task::kStageNames.size() + 2;
 
-// Reading the arm counts as the first stage's; writing it, and the record, are "write".
+// Reading the arm belongs to the first stage; writing to the arm and recording are "write".
 class TickTrace final : public hal::TickProbe, public task::StageProbe, public hal::Recorder {
  public:
-  // All are borrowed; `probe` and `recorder` are asked as without it.
+  // Borrows all; forwards every call to `probe` and `recorder`.
   TickTrace(Track& track, hal::TickProbe& probe, hal::Recorder& recorder) noexcept
       : track_(track), probe_(probe), recorder_(recorder) {}
 
@@ -32,10 +32,10 @@ class TickTrace final : public hal::TickProbe, public task::StageProbe, public h
   std::int64_t begin_ns_ = 0;
   std::int64_t last_ns_ = 0;
   std::int64_t tick_ = -1;
-  std::int64_t picture_ = -1;  // that the tick took
+  std::int64_t picture_ = -1;  // whose measurement the tick took; -1: none
 };
 
-// Each wait of a clock as a span.
+// Traces each wait of a clock as a span.
 class ClockTrace final : public hal::Clock {
  public:
   ClockTrace(Track& track, hal::Clock& clock, const char* name) noexcept
@@ -50,7 +50,7 @@ class ClockTrace final : public hal::Clock {
   const char* name_;
 };
 
-// Each measurement on its way to the servo as an instant, in the thread that puts it.
+// Traces each measurement that goes to the servo as an instant, in the thread that puts it.
 class SinkTrace final : public hal::FeatureSink {
  public:
   SinkTrace(Track& track, hal::FeatureSink& sink) noexcept : track_(track), sink_(sink) {}

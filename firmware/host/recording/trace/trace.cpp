@@ -38,7 +38,7 @@ json ToJson(const Span& span, int thread, std::int64_t start_ns) {
   return entry;
 }
 
-// An arrow's end, bound to the span that it begins with.
+// A point of an arrow, bound to the beginning of `span`.
 json ArrowOf(const Span& span, int thread, std::int64_t start_ns) {
   const char* const phase = span.flow == Flow::kBegin ? "s" : span.flow == Flow::kStep ? "t" : "f";
   json entry{{"name", "picture"},
@@ -86,7 +86,7 @@ void Trace::Write(const std::filesystem::path& file) const {
       start_ns = std::min(start_ns, spans.back().front().begin_ns);
     }
   }
-  // Span by span, so that a long run's file need not be in memory whole.
+  // Writes span by span, so that a long run's file need not fit into memory.
   stream << "{\"displayTimeUnit\":\"ns\",\"otherData\":" << json{{"program", program_}, {"dropped", dropped}}
          << ",\n\"traceEvents\":[\n"
          << Naming("process_name", 0, program_);

@@ -1,8 +1,8 @@
-// When each thread of a program did what, for a timeline that people look at: Chrome's trace format, which
-// chrome://tracing and ui.perfetto.dev open.
+// Records what each thread of a program does and when, as a timeline in Chrome's trace format:
+// chrome://tracing and ui.perfetto.dev open it.
 //
-// Each thread writes into a track of its own, whose room is taken beforehand: nobody waits for anybody, and
-// nothing is asked of the heap. What finds no room is dropped and counted.
+// Each thread writes into its own track, whose memory is allocated beforehand: no thread waits, and none uses
+// the heap. Spans that do not fit are dropped and counted.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace fovea::trace {
 // CLOCK_MONOTONIC [ns]. Real-time: yes.
 [[nodiscard]] std::int64_t NowNs() noexcept;
 
-// The way of one picture through the threads; arrows join the spans that name the same picture.
+// The path of one picture through the threads; arrows join the spans with the same picture's number.
 enum class Flow : std::uint8_t { kNone, kBegin, kStep, kEnd };
 
 struct Span {
@@ -27,7 +27,7 @@ struct Span {
   Flow flow = Flow::kNone;
 };
 
-// Of one thread, whose spans lie within or beside each other.
+// The spans of one thread. Two spans are nested or do not overlap.
 class Track {
  public:
   Track(std::string name, std::size_t capacity) : name_(std::move(name)) { spans_.resize(capacity); }
@@ -41,15 +41,15 @@ class Track {
     }
   }
 
-  // When its thread is done.
+  // Call these only when the track's thread is done.
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
-  // In order of their beginnings; of those that begin together the longest first.
+  // In the order of their beginnings; of spans that begin together, the longest first.
   [[nodiscard]] std::vector<Span> Spans() const;
 
  private:
   std::string name_;
-  std::vector<Span> spans_;  // [capacity], touched
+  std::vector<Span> spans_;  // [capacity], written once so that its pages are mapped
   std::size_t count_ = 0;
   std::uint64_t dropped_ = 0;
 };
@@ -58,10 +58,11 @@ class Trace {
  public:
   explicit Trace(std::string program) : program_(std::move(program)) {}
 
-  // A thread's track, with room for `capacity` spans. It lives as long as the trace. Before the thread runs.
+  // Adds a thread's track with room for `capacity` spans. Call it before the thread runs. The track lives as
+  // long as the trace.
   Track& AddTrack(const std::string& name, std::size_t capacity);
 
-  // When all threads are done. std::runtime_error when the file cannot be written.
+  // Call when all threads are done. std::runtime_error when the file cannot be written.
   void Write(const std::filesystem::path& file) const;
 
   [[nodiscard]] const std::vector<std::unique_ptr<Track>>& tracks() const { return tracks_; }

@@ -2,8 +2,7 @@
 
 namespace fovea::trace {
 
-// What follows a measurement, until the next picture is asked for, is done by those who look on: log and
-// film.
+// The time between a measurement and the next request for a picture belongs to log and film.
 hal::Status VisionTrace::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept {
   const std::int64_t begin_ns = NowNs();
   if (put_ns_ > 0) {

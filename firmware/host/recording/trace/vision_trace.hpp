@@ -1,4 +1,4 @@
-// The vision task on a track: what it waits for, and each detection, from the picture to its measurement.
+// Traces the vision task on a track: its waits for pictures, and each detection from picture to measurement.
 #pragma once
 
 #include "firmware/host/recording/trace/trace.hpp"
@@ -7,7 +7,7 @@
 
 namespace fovea::trace {
 
-// Stands between the vision task and both of its ends; all are borrowed.
+// Stands between the vision task and its camera, and between the task and its sink. Borrows all.
 class VisionTrace final : public hal::Camera, public hal::FeatureSink {
  public:
   VisionTrace(Track& track, hal::Camera& camera, hal::FeatureSink& sink) noexcept
@@ -22,7 +22,7 @@ class VisionTrace final : public hal::Camera, public hal::FeatureSink {
   hal::Camera& camera_;
   hal::FeatureSink& sink_;
   std::int64_t acquired_ns_ = 0;
-  std::int64_t put_ns_ = 0;  // 0: since the last picture nothing was put
+  std::int64_t put_ns_ = 0;  // 0: nothing was put since the last picture
 };
 
 }  // namespace fovea::trace

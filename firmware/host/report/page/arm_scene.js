@@ -83,7 +83,7 @@ Fovea.armScene = (function () {
   function path(flat, colour, dashed, radius) {
     const points = [];
     for (let i = 0; i + 2 < flat.length; i += 3) {
-      if (!Number.isFinite(flat[i] + flat[i + 1] + flat[i + 2])) continue; // a vector of three.js makes 0 of NaN
+      if (!Number.isFinite(flat[i] + flat[i + 1] + flat[i + 2])) continue; // three.js's vectors turn NaN into 0
       const p = new THREE.Vector3(flat[i], flat[i + 1], flat[i + 2]);
       if (!points.length || points[points.length - 1].distanceTo(p) > 0.004) points.push(p);
     }
@@ -137,7 +137,7 @@ Fovea.armScene = (function () {
     return mesh;
   }
 
-  // A sphere of which mostly the rim is seen.
+  // A sphere that shows mostly its rim.
   function workspace(radius) {
     const material = new THREE.ShaderMaterial({
       transparent: true,

@@ -45,7 +45,7 @@ Fovea.armView = (function () {
     return Number.isFinite(flat[i]) ? new THREE.Quaternion(flat[i + 1], flat[i + 2], flat[i + 3], flat[i]) : null;
   }
 
-  // Everything of one run that moves with the time.
+  // All objects of one run that move with the time.
   function actor(run, scene) {
     const ghost = run.index > 0;
     const arm = make.arm(run, ghost);
@@ -185,7 +185,7 @@ Fovea.armView = (function () {
     return { controls, camera, actors, render, ask, home, colours, resize, setTime };
   }
 
-  // Turn (in radians) and approach (a factor) with keys and buttons.
+  // Turns the view [rad] and zooms it by a factor, for keys and buttons.
   function nudge(view, around, up, factor) {
     const offset = view.camera.position.clone().sub(view.controls.target);
     const place = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
@@ -310,7 +310,7 @@ Fovea.armView = (function () {
       legend(shown, view),
       el("p", {
         class: "hint no-print",
-        text: "Drag to turn, with the right button to move; after a click the wheel zooms. The time is the one of all plots.",
+        text: "Drag to turn; drag with the right button to move. After a click the wheel zooms. All plots share this time.",
       }),
     );
     const follow = (t) => {

@@ -3,7 +3,7 @@
 Fovea.compare = (function () {
   const { el, number } = Fovea;
 
-  // Which run is better, in words, where that is clear.
+  // Says which run is better, if the difference is clear.
   function better(a, b) {
     if (!a || !b || !a.better || a.value === b.value) return "";
     const scale = Math.max(Math.abs(a.value), Math.abs(b.value));

@@ -16,7 +16,7 @@ Fovea.config = (function () {
     );
   }
 
-  // The keys whose value is not the default; a log of before does not say.
+  // The keys whose value is not the default; older logs do not contain the defaults.
   function changedKeys(run, several) {
     if (!run.changed) return null;
     const title = `Keys that differ from their defaults${several ? `, run ${run.letter}` : ""}`;
@@ -37,7 +37,7 @@ Fovea.config = (function () {
           el("code", { class: `side-${line.side.trim() || "both"}`, text: `${line.side} ${line.text}\n` }),
         ),
       );
-    // A changed line is told with the table of the TOML file that it stands in.
+    // Shows each changed line below the header of its TOML table.
     const short = [];
     let table = "";
     let told = "";
@@ -60,7 +60,7 @@ Fovea.config = (function () {
     ];
   }
 
-  // Versions and hashes: the info map, then what only the summary knows.
+  // Versions and hashes: the info map, then the values that only the summary has.
   function facts(run) {
     const map = new Map(Object.entries(run.info));
     const s = run.summary || {};

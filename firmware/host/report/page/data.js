@@ -1,4 +1,4 @@
-// Reading the embedded runs, and the small tools that every other file uses.
+// Reads the embedded runs, and has the small tools that every other file uses.
 "use strict";
 
 const Fovea = {};
@@ -28,7 +28,7 @@ Fovea.readRuns = function () {
   });
 };
 
-// Turn the encoded arrays into typed arrays and give absent parts a harmless form.
+// Turns the encoded arrays into typed arrays, and absent parts into empty ones.
 Fovea.decode = function (run) {
   const list = (value) => (Array.isArray(value) ? value : []);
   const ticks = run.ticks || {};
@@ -109,7 +109,7 @@ Fovea.table = function (heads, rows, { caption, number, named = true, scroll = f
 
 Fovea.absent = (words) => Fovea.el("p", { class: "absent", text: words });
 
-// A number in words with about `digits` significant digits, never in scientific notation.
+// A number as text with about `digits` significant digits, never in scientific notation.
 Fovea.number = function (value, digits = 3) {
   if (typeof value !== "number" || !Number.isFinite(value)) return "–";
   const size = Math.abs(value);
@@ -119,7 +119,7 @@ Fovea.number = function (value, digits = 3) {
   return (/^-0\.?0*$/.test(text) ? text.slice(1) : text).replace("-", "−");
 };
 
-// A given number, such as a limit, without digits that it does not have: 2.175, 87.
+// A given number, such as a limit, without trailing zeros: 2.175, 87.
 Fovea.plain = (value, digits = 4) =>
   Number.isFinite(value) ? String(parseFloat(value.toPrecision(digits))).replace("-", "−") : "–";
 
@@ -152,10 +152,10 @@ Fovea.valueAt = function (times, values, t, reach) {
   return index >= 0 && Math.abs(times[index] - t) <= reach ? values[index] : NaN;
 };
 
-// How many frames of `spans` there are.
+// The number of frames in `spans`.
 Fovea.frameCount = (spans) => spans.reduce((sum, span) => sum + span.frames, 0);
 
-// What the target is called. Null of a run without an eye.
+// The name of the target; null for a run without a camera.
 Fovea.targetWord = (run) =>
   run.has_eye ? { sphere: "ball", circle: "disc" }[run.target.kind] || Fovea.words(run.target.kind) : null;
 
@@ -172,7 +172,7 @@ Fovea.setting = function (run, key) {
 
 Fovea.hasNumbers = (values) => !!values && values.some(Number.isFinite);
 
-// A row of buttons of which one is pressed.
+// A row of buttons; one of them is pressed.
 Fovea.choice = function (label, options, chosen, onChoose) {
   const buttons = options.map(([key, words]) =>
     Fovea.el("button", {

@@ -1,11 +1,11 @@
-// What the eye saw: the film, and the first and the last picture with outlines.
+// The camera's pictures: the film, and the first and the last picture with outlines.
 
 Fovea.eye = (function () {
   const { el, svg, fixed } = Fovea;
 
   const ROLES = {
-    goal: "goal: where the target should stand",
-    detection: "detection: what the eye found",
+    goal: "goal: where the target should be",
+    detection: "detection: what the detector found",
     truth: "truth: where the target was",
   };
 
@@ -51,7 +51,7 @@ Fovea.eye = (function () {
   }
 
   function film(run) {
-    const caption = el("figcaption", { text: `Film of the eye${Fovea.suffix(run) && ", run" + Fovea.suffix(run)}` });
+    const caption = el("figcaption", { text: `Film of the camera${Fovea.suffix(run) && ", run" + Fovea.suffix(run)}` });
     const figure = el("figure", { class: "picture film" });
     if (!run.video) {
       figure.append(Fovea.absent("There is no film of this run."));
@@ -74,7 +74,7 @@ Fovea.eye = (function () {
     return figure;
   }
 
-  // A film as long as the run follows the shared time, and leads it while it plays.
+  // A film as long as the run follows the shared time. While it plays, it sets the shared time.
   function link(run, video) {
     const clock = Fovea.clock;
     const follows = () =>

@@ -1,4 +1,4 @@
-// What the foot of the page says of these runs: scenario, target and version, and the command that repeats each.
+// The page's footer: scenario, target and version of each run, and the command that repeats it.
 
 Fovea.footer = (function () {
   const { el } = Fovea;
@@ -20,13 +20,13 @@ Fovea.footer = (function () {
     const targets = Array.from(new Set(runs.map(Fovea.targetWord).filter(Boolean)));
     if (!targets.length) return "There is no camera in this run: the servo steers the arm along a commanded motion.";
     const name = targets.length === 1 ? targets[0] : "target";
-    return `The camera sits in the robot's hand. The servo steers the arm so that the ${name} stands where it should in the camera's image. The image error is how far the ${name} is from that place in the picture, in pixels.`;
+    return `The camera sits in the robot's hand. The servo steers the arm so that the ${name} reaches its goal in the camera's image. The image error is the distance of the ${name} from that goal in the picture, in pixels.`;
   }
 
   function repeat(run) {
     if (!run.command)
       return Fovea.absent(
-        `The log${Fovea.runs.length > 1 ? ` of run ${run.letter}` : ""} does not name the command that began the run.`,
+        `The log${Fovea.runs.length > 1 ? ` of run ${run.letter}` : ""} does not name the command that started the run.`,
       );
     return el(
       "div",

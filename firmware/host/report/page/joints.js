@@ -3,7 +3,7 @@
 Fovea.joints = (function () {
   const { el, plots, hasNumbers, number, plain, fixed, suffix } = Fovea;
 
-  // What can be shown: where it is found, its limits, and its units.
+  // The quantities of the plots: title, limits, and units.
   const QUANTITIES = {
     q: { title: "position", low: (j) => j.q_min, high: (j) => j.q_max, unit: ["rad", "m"], range: true },
     dq: { title: "velocity", low: (j) => -j.dq_max, high: (j) => j.dq_max, unit: ["rad/s", "m/s"] },
@@ -52,7 +52,7 @@ Fovea.joints = (function () {
   function settings(runs, key, physical, only, fit) {
     const kind = QUANTITIES[key];
     const joints = runs[0].joints;
-    // Without limits there is nothing to take a share of.
+    // Without limits there is no share: physical units are shown.
     if (!(only === null ? joints : [joints[only]]).some((joint) => limited(kind, joint))) physical = true;
     const series = seriesOf(runs, key, physical, only);
     const sliding = (only === null ? joints : [joints[only]]).map((j) => (j.type === "prismatic" ? 1 : 0));
@@ -142,7 +142,7 @@ Fovea.joints = (function () {
     const heads = [
       "Joint",
       `Positions [${turn}]`,
-      `Left to the nearer stop [${turn}]`,
+      `Margin to the nearer limit [${turn}]`,
       `Peak velocity [${slides ? "rad/s or m/s" : "rad/s"}]`,
       `Peak torque [${slides ? "N m or N" : "N m"}]`,
     ];

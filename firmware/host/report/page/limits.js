@@ -1,12 +1,12 @@
-// What the limits are: what each watches, which key sets the servo's own, and how much of each a run used.
+// The limits: what each watches, the key that sets it, and the share of it that a run used.
 
 Fovea.limits = (function () {
   const { el, words, fixed, number } = Fovea;
 
-  // As firmware/GUARDS.md has them.
+  // A short form of firmware/GUARDS.md.
   const LIMITS = {
     joint_position: {
-      of: "a joint's reference, before the end of its range",
+      of: "the distance of a joint's reference from the end of its range",
       key: "safety.joint_position_margin",
       then: "the joint slows down in time to stop there",
     },
@@ -50,13 +50,18 @@ Fovea.limits = (function () {
       key: "safety.cartesian_speed",
       then: "the motion slows down as a whole",
     },
+    rotation_speed: {
+      of: "the angular speed of the end effector",
+      key: "safety.rotation_speed",
+      then: "the motion slows down as a whole",
+    },
     singularity: {
-      of: "how near the posture is to a singular one",
+      of: "the distance of the posture from a singularity",
       key: "safety.singularity_min",
-      then: "the posture goes no deeper",
+      then: "the posture goes no nearer",
     },
     field_of_view: {
-      of: "the target before the edge of the picture",
+      of: "the distance of the target from the edge of the picture",
       key: "safety.view_margin_px",
       then: "the target slides along the edge",
     },
@@ -64,7 +69,7 @@ Fovea.limits = (function () {
 
   const percent = (share) => `${100 * share < 9.95 ? number(100 * share, 2) : fixed(100 * share, 0)} %`;
 
-  // A fraction is one of the arm's own limit; the others are limits by themselves.
+  // A key with "_fraction" is a share of the arm's own limit; the others are limits themselves.
   const ofWhat = (name) =>
     LIMITS[name] && LIMITS[name].key.endsWith("_fraction") ? "of the arm's own limit" : "of the limit";
 
@@ -92,7 +97,7 @@ Fovea.limits = (function () {
       if (!Number.isFinite(share)) return null;
       const over = share > 1 + 1e-6;
       const acted = actedWords(run, name);
-      const text = `at most ${percent(share)} ${ofWhat(name)}${over ? ", over it" : ""}${acted ? `; ${acted}` : ""}`;
+      const text = `at most ${percent(share)} ${ofWhat(name)}${over ? ", exceeded" : ""}${acted ? `; ${acted}` : ""}`;
       return el(
         "div",
         { class: `share run-${run.index}` },

@@ -19,7 +19,7 @@
     ["path", "armView"],
   ];
 
-  // What no run of this page has, and the way to it.
+  // Removes a section that no run of this page needs, and the link to it.
   function dropSection(id) {
     document.getElementById(id).remove();
     document.querySelector(`a[href="#${id}"]`).remove();
@@ -29,7 +29,7 @@
     );
   }
 
-  // A section that cannot be drawn says so, and leaves the others alone.
+  // A section that cannot be drawn shows its error; the others are still drawn.
   function draw([id, name]) {
     try {
       Fovea[name].draw(Fovea.runs);
@@ -63,7 +63,7 @@
       }
     };
     requestAnimationFrame(() => setTimeout(next, 0));
-    // A print must show everything, also when it comes early.
+    // A print must show everything, also before all sections are drawn.
     addEventListener(
       "beforeprint",
       () => {

@@ -1,4 +1,4 @@
-// A replay with other settings beside what was recorded: the commands of both over one time.
+// Compares a replay with other settings to the recorded run: the commands of both over time.
 
 (function () {
   const { el, plots } = Fovea;
@@ -10,7 +10,7 @@
     );
   }
 
-  // Of both runs, one line each.
+  // One line for each run.
   function pair(name, colour, pick) {
     return Fovea.runs.map((run) => ({ name, run: run.index, colour, width: 1.8, t: run.t_s, v: pick(run) }));
   }
@@ -42,18 +42,18 @@
     const [recorded, other] = (Fovea.runs = readRuns());
     document.getElementById("title").textContent = other.title;
     document.getElementById("subtitle").textContent =
-      `A, solid: as it was recorded in ${recorded.title}. B, dashed: with ${other.settings.join(", ")}.`;
+      `A, solid: as recorded in ${recorded.title}. B, dashed: with ${other.settings.join(", ")}.`;
     Fovea.clock.duration = Math.max(0.001, recorded.t_s[recorded.t_s.length - 1] || 0);
     Fovea.clock.span = [0, Fovea.clock.duration];
     body("motion").append(el("div", { class: "toolbar" }, Fovea.zoomBar()), Fovea.bands.legend(Fovea.runs) || "");
     plot(
       body("motion"),
-      "speed of the camera that is asked for [m/s]",
+      "commanded speed of the camera [m/s]",
       pair("speed", "--blue", (run) => run.speed),
     );
     plot(
       body("motion"),
-      "and how fast it shall turn [rad/s]",
+      "commanded angular speed of the camera [rad/s]",
       pair("turn", "--purple", (run) => run.turn),
     );
     plot(body("joints"), "velocities [rad/s or m/s]", ofJoints("dq_cmd"), { endLabels: true });
@@ -69,7 +69,7 @@
     );
     body("changes").append(
       table(
-        ["field", "ticks in which it differs", "first at [s]", "by at most", "at [s]"],
+        ["field", "ticks that differ", "first at [s]", "largest difference", "at [s]"],
         [0],
         other.changes.map((c) => [
           c.field,

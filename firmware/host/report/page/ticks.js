@@ -12,11 +12,11 @@ Fovea.ticks = (function () {
 
   const isLockstep = (run) => !!run.summary && run.summary.pace === "lockstep";
 
-  // What a longest tick beyond the budget means; null when there is none.
+  // Explains a longest tick above the budget; null when there is none.
   function longestWords(run) {
     const longest = percentiles(run).find((mark) => mark.name.endsWith("max"));
     if (!longest || longest.us <= BUDGET_US) return null;
-    const what = `${suffix(run) ? `Run${suffix(run)}: the` : "The"} longest tick took ${number(longest.us, 4)} µs, beyond the budget of 1 ms.`;
+    const what = `${suffix(run) ? `Run${suffix(run)}: the` : "The"} longest tick took ${number(longest.us, 4)} µs, above the budget of 1 ms.`;
     return isLockstep(run)
       ? {
           text: `${what} In lockstep the simulated clock waits for the servo: no tick can overrun, however long this computer takes for it.`,

@@ -1,4 +1,4 @@
-// Modes, faults, lost frames and limits at work, on one axis of time; pointing at it gives words.
+// Modes, faults, lost frames and active limits on one time axis; pointing at it shows a description.
 
 Fovea.timeline = (function () {
   const { el, svg, clock, words, suffix } = Fovea;
@@ -87,18 +87,18 @@ Fovea.timeline = (function () {
       {},
       el("summary", { text: `Modes and faults as a list${suffix(run) && ", run" + suffix(run)}` }),
       Fovea.table(
-        [{ class: "time", of: "Time [s]" }, "What", "In words"],
+        [{ class: "time", of: "Time [s]" }, "Kind", "Description"],
         events.map(([t, what, say]) => ({ class: what, cells: [t.toFixed(3), what, say] })),
         { number: (i) => i === 0, named: false },
       ),
     );
   }
 
-  // One line for all rows in which nothing happens, and a button that shows them.
+  // One line for all rows without an event, and a button that shows them.
   function foldLine(quiet, onChange) {
     const limits = quiet.filter((row) => row.limit).map((row) => row.limit);
     const others = quiet.filter((row) => !row.limit).map((row) => `${row.name}: ${row.empty}`);
-    const parts = limits.length ? [...others, `never at work: ${limits.join(", ")}`] : others;
+    const parts = limits.length ? [...others, `never active: ${limits.join(", ")}`] : others;
     const words = (on) => (on ? "Fold these rows" : `Show ${Fovea.plural(quiet.length, "more row")}`);
     const button = el("button", { type: "button", class: "no-print", "aria-expanded": "false", text: words(false) });
     button.addEventListener("click", () => {
@@ -117,13 +117,13 @@ Fovea.timeline = (function () {
     let unfolded = false;
     const shownRows = () => (unfolded ? rows : rows.filter((row) => !isQuiet(row)));
     if (quiet.length === rows.length) {
-      body.append(Fovea.absent("The log holds no modes, no faults and no limits at work."));
+      body.append(Fovea.absent("The log holds no modes, no faults and no active limits."));
       return Fovea.drawn("timeline");
     }
     const drawing = svg("svg", {
       class: "timeline-svg",
       role: "img",
-      "aria-label": "Modes, faults, lost pictures and active limits over time; the same is given as a list beneath",
+      "aria-label": "Modes, faults, lost pictures and active limits over time; the list below gives the same",
     });
     const cursor = el("div", { class: "cursor", hidden: true });
     const brush = el("div", { class: "brush", hidden: true });
@@ -166,7 +166,7 @@ Fovea.timeline = (function () {
       said.textContent = "";
       const lines =
         clock.time === null
-          ? ["Point at the drawing, or move the time with the arrow keys, to read in words what was going on."]
+          ? ["Point at the drawing, or move the time with the arrow keys, to read what happened at a time."]
           : sayAt(runs, clock.time);
       if (clock.time !== null) said.append(el("strong", { text: `At ${clock.time.toFixed(3)} s` }));
       said.append(...lines.map((text) => el("p", { text })));
@@ -186,8 +186,7 @@ Fovea.timeline = (function () {
       const list = asTable(run);
       if (list) body.append(list);
     });
-    if (!runs.some((run) => run.limits_active.length))
-      body.append(Fovea.absent("The log names no limit that was at work."));
+    if (!runs.some((run) => run.limits_active.length)) body.append(Fovea.absent("The log names no active limit."));
     Fovea.drawn("timeline");
   }
 

@@ -1,4 +1,4 @@
-// The rows of the time axis: modes, faults, injected faults, frames and limits; and what is going on, in words.
+// The rows of the time axis: modes, faults, injected faults, frames and limits; and a description of one time.
 
 Fovea.timelineRows = (function () {
   const { clock, words, suffix } = Fovea;
@@ -32,7 +32,7 @@ Fovea.timelineRows = (function () {
       label: "",
       say: `${say} ${Fovea.plural(span.frames, "frame")}`,
     }));
-  const spansOfLost = (run) => spansOfFrames(run.lost, "the servo never got");
+  const spansOfLost = (run) => spansOfFrames(run.lost, "lost before the servo:");
   const spansOfNotFound = (run) => spansOfFrames(run.not_found, "target not found in");
 
   const spansOfLimit = (run, name) => {
@@ -42,7 +42,7 @@ Fovea.timelineRows = (function () {
       to,
       kind: "limit",
       label: "",
-      say: `limit at work: ${words(name)}`,
+      say: `active limit: ${words(name)}`,
     }));
   };
 
@@ -78,7 +78,7 @@ Fovea.timelineRows = (function () {
     for (const name of names)
       runs.forEach((run) =>
         rows.push({
-          name: `limit at work: ${words(name)}${suffix(run)}`,
+          name: `active limit: ${words(name)}${suffix(run)}`,
           limit: words(name) + suffix(run),
           spans: spansOfLimit(run, name),
           empty: "never",
@@ -89,7 +89,7 @@ Fovea.timelineRows = (function () {
 
   const isQuiet = (row) => !row.spans.length;
 
-  // What is going on at time t, a line for each run.
+  // A description of time t, a line for each run.
   function sayAt(runs, t) {
     return runs.map((run) => {
       const at = (spans, slack = 0) => spans.filter((s) => s.from - slack <= t && t <= s.to + slack).map((s) => s.say);

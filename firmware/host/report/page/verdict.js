@@ -1,4 +1,4 @@
-// The head of the page: one verdict in words for each run, and the figures that carry it.
+// The head of the page: a verdict for each run, and the figures behind it.
 
 Fovea.verdict = (function () {
   const { el, svg, number, words, plural } = Fovea;
@@ -16,7 +16,7 @@ Fovea.verdict = (function () {
       return {
         kind: "warn",
         word: "No verdict",
-        sentence: `The log was cut off: it ends at ${end} s and holds no summary.`,
+        sentence: `The log is truncated: it ends at ${end} s and holds no summary.`,
       };
     }
     const faults = (summary.faults || run.faults).length;
@@ -27,7 +27,7 @@ Fovea.verdict = (function () {
     const sentence = summary.verdict ? sentenceCase(summary.verdict) : "The log gives no verdict.";
     if (summary.converged === true && !troubles.length) return { kind: "good", word: "Good", sentence };
     if (summary.converged === true)
-      return { kind: "warn", word: "With trouble", sentence: `${sentence} But: ${troubles.join(", ")}.` };
+      return { kind: "warn", word: "With problems", sentence: `${sentence} But: ${troubles.join(", ")}.` };
     if (summary.converged === false) return { kind: "bad", word: "Not good", sentence };
     return { kind: "warn", word: "No verdict", sentence };
   }
@@ -50,9 +50,9 @@ Fovea.verdict = (function () {
       note: Number.isFinite(s.start_error_px) ? `rms, from ${number(s.start_error_px)} px at the start` : "rms",
     });
     add("error_mm", "Final position error", s.final_error_mm, "mm", { note: splitNote(s) });
-    if (s.camera) add("seen_px", "Last image error seen", s.camera.seen_error_px, "px", { note: "by the camera" });
-    add("sideways", "of which sideways", s.final_error_lateral_mm, "mm", { onlyTable: true });
-    add("depth", "of which in depth", s.final_error_depth_mm, "mm", { onlyTable: true });
+    if (s.camera) add("seen_px", "Last measured image error", s.camera.seen_error_px, "px", { note: "by the camera" });
+    add("sideways", "Final position error, sideways", s.final_error_lateral_mm, "mm", { onlyTable: true });
+    add("depth", "Final position error, in depth", s.final_error_depth_mm, "mm", { onlyTable: true });
     add("angle", "Final angle error", s.final_error_deg, "°");
     add("tracking", "Tracking error", s.tracking_error_px_rms, "px", { note: "rms while the target moves" });
     if (!run.target.moves)
@@ -79,12 +79,12 @@ Fovea.verdict = (function () {
     return list;
   }
 
-  // Counted in the log, as the time axis has them, so that the two never contradict each other.
+  // Counted from the log's spans, like the time axis, so that the two never contradict each other.
   function frameFigures(run) {
     if (!run.has_eye || !Number.isFinite(run.frames_taken)) return [];
     const placed = Fovea.frameCount(run.lost);
     const counted = run.summary ? run.summary.frames_lost || 0 : 0;
-    const more = counted > placed ? `; the log says of ${placed} of them when` : "";
+    const more = counted > placed ? `; the log gives the time of ${placed} of them` : "";
     const of = `of ${Fovea.plural(run.frames_taken, "frame")} that reached the servo`;
     const figure = { unit: "", count: true, better: "low" };
     return [
@@ -92,7 +92,7 @@ Fovea.verdict = (function () {
         key: "lost",
         label: "Frames lost",
         value: Math.max(placed, counted),
-        note: `that never reached the servo, beside ${run.frames_taken} that did${more}`,
+        note: `never reached the servo; ${run.frames_taken} did${more}`,
         ...figure,
       },
       {
@@ -105,7 +105,7 @@ Fovea.verdict = (function () {
     ];
   }
 
-  // What the log itself still tells when there is no summary.
+  // The figures from the log itself, for a run without summary.
   function figuresFromLog(run) {
     const list = [];
     const last = (times, values) => {

@@ -1,7 +1,6 @@
-// A camera that fovea-hw sees through, and the drivers that there are, by the name that camera.driver has for
-// them: a closed list.
+// The camera of fovea-hw, and the camera drivers by their names in camera.driver: a closed list.
 //
-// Each driver is a file in this folder, above one in hal/drivers, and a line in camera_drivers.cpp.
+// Each driver is a file in this folder, on top of one in hal/drivers, and a line in camera_drivers.cpp.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +14,16 @@ namespace fovea::hw {
 
 struct HwConfig;
 
-// What a driver counted, as far as it does.
+// Counters of a driver; 0 where it does not count.
 struct CameraCounters {
-  std::uint64_t incomplete = 0;  // frames that came damaged
-  std::uint64_t lost = 0;        // that never came, by their numbers
-  std::uint64_t overtaken = 0;   // whole, but a newer one was there already
+  std::uint64_t incomplete = 0;  // frames that arrived damaged
+  std::uint64_t lost = 0;        // frames that never arrived, by gaps in their numbers
+  std::uint64_t overtaken = 0;   // whole frames that a newer one had replaced already
   std::uint64_t missing_packets = 0;
   std::uint64_t disconnects = 0;
   std::uint64_t reconnects = 0;
   std::uint64_t stamped_by_clock = 0;  // frames with a stamp by the camera's own clock, not by their arrival
-  std::uint64_t clock_refused = 0;     // whose stamp cannot be of the clock that was asked: by their arrival
+  std::uint64_t clock_refused = 0;     // frames whose stamp does not fit that clock: stamped by their arrival
 };
 
 class CameraDriver {
@@ -35,7 +34,7 @@ class CameraDriver {
   virtual ~CameraDriver() = default;
 
   [[nodiscard]] virtual hal::Camera& camera() = 0;
-  // What it is, in words.
+  // A description of the camera as text.
   [[nodiscard]] virtual std::string name() const = 0;
   [[nodiscard]] virtual CameraCounters counters() const = 0;
 };
@@ -43,7 +42,7 @@ class CameraDriver {
 struct CameraDriverEntry {
   const char* name;
   const char* meaning;  // for the list of keys
-  const char* device;   // what camera.device is to it
+  const char* device;   // what camera.device means for this driver
   // Opens and starts it. `start_ns`: the loop's time, at which recorded pictures begin. CameraError.
   std::unique_ptr<CameraDriver> (*open)(const HwConfig& config, std::int64_t start_ns);
 };

@@ -8,7 +8,7 @@ namespace fovea::hw {
 namespace {
 
 constexpr double kNsPerMs = 1e6;
-constexpr double kRecordedRateHz = 30.0;  // of a folder, where nothing else is said
+constexpr double kRecordedRateHz = 30.0;  // of a folder, if camera.rate_hz is 0
 constexpr double kRecordedExposureMs = 5.0;
 
 camera::RecordedCameraConfig MakeRecordedConfig(const HwConfig& config, std::int64_t start_ns) {

@@ -1,4 +1,4 @@
-// The drivers of robots, by the name that robot.driver has for them: a closed list.
+// The robots' drivers by their names in robot.driver: a closed list.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,7 @@ struct ArmDriverEntry {
 };
 std::span<const ArmDriverEntry> ArmDrivers();
 
-// The one that config.robot.driver names, which is in the list.
+// The entry that config.robot.driver names; it must be in the list.
 const ArmDriverEntry& ArmDriverOf(const HwConfig& config);
 
 }  // namespace fovea::hw

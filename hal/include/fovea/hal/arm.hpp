@@ -19,7 +19,7 @@ struct ArmState {
   JointArray tau_applied{};  // [num_joints] the command in force at stamp_ns, gravity and friction excluded
 };
 
-// What the servo asks for until the next command.
+// What the servo commands until the next command.
 struct ArmCommand {
   std::uint64_t state_sequence = 0;  // the ArmState that this answers
   std::int32_t num_joints = 0;
@@ -38,7 +38,7 @@ class Arm {
 
   // The newest state of the arm. On any answer but kOk, `state` is left as it was.
   // kTimeout: no new state within two periods. kDisconnected, kClosed, kDeviceFault: see StatusCode.
-  // Values that a sensor garbled are passed on as they came, non-finite ones included: the servo decides.
+  // Corrupt sensor values, non-finite ones included, are passed on unchanged: the servo decides.
   [[nodiscard]] Status Read(ArmState& state) noexcept;
 
   // Puts `command` in force. Refused, with the last command left in force: kInvalidArgument for another

@@ -1,4 +1,4 @@
-// The loop's time: monotonic, in ns since a start of the clock's own choice.
+// The loop's time: monotonic, in ns since an arbitrary start.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace fovea::hal {
 
-// Real or virtual. All stamps that meet in one loop are in the time of one Clock.
+// Real or virtual. All stamps in one loop are in the time of one Clock.
 class Clock {
  public:
   Clock(const Clock&) = delete;
@@ -16,9 +16,9 @@ class Clock {
   // Never goes back. Real-time: yes.
   [[nodiscard]] std::int64_t NowNs() const noexcept { return DoNowNs(); }
 
-  // Returns at `deadline_ns` or as soon after as the machine allows, at once when it has passed. This is
-  // where a loop may sleep; a virtual clock moves its world on to that time. The waiting itself may be a
-  // system call, so this is called between ticks, never within one.
+  // Returns at `deadline_ns` or as soon after as the machine allows, at once when it has passed. A loop may
+  // sleep here; a virtual clock advances its simulation to that time. The wait may be a system call, so
+  // call this between ticks, never within one.
   // kClosed: the clock was stopped; time will not reach the deadline.
   [[nodiscard]] Status WaitUntil(std::int64_t deadline_ns) noexcept { return DoWaitUntil(deadline_ns); }
 

@@ -1,4 +1,4 @@
-// What the vision task tells the servo about one frame, and the way it takes.
+// What the vision task reports to the servo about one frame, and the mailbox between them.
 #pragma once
 
 #include <array>
@@ -32,18 +32,18 @@ inline constexpr int kMaxPoses = 6;
 struct FeatureMeasurement {
   std::int64_t stamp_ns = 0;   // mid-exposure of the frame, monotonic, in the loop's Clock
   std::uint64_t sequence = 0;  // of the frame
-  // For how long the whole picture has been the same within its noise, this frame included [ns]; 0: it
-  // changed since the frame before, or nobody compared.
+  // How long the whole picture has been the same within its noise, this frame included [ns]; 0: it changed
+  // since the frame before, or was not compared.
   std::int64_t same_for_ns = 0;
   FeatureKind kind = FeatureKind::kSphere;
-  bool found = false;                      // false: the frame was looked at and the target is not in it
-  double confidence = 0.0;                 // 0 to 1; the detector refuses below its own threshold
+  bool found = false;                      // false: the frame was processed and the target is not in it
+  double confidence = 0.0;                 // 0 to 1; the detector rejects below its own threshold
   std::int32_t dim = 0;                    // entries of s in use
   std::array<double, kMaxFeatureDim> s{};  // [dim] units as `kind` says
   // [dim x dim] covariance of s, row-major with rows of kMaxFeatureDim entries.
   std::array<double, kMaxFeatureDim * kMaxFeatureDim> cov_s{};
-  // Of square and triangle: the poses that s allows, the likeliest first; 0 when none fits. To start from.
-  // Of a circle both, the first being the one of s, each turned anyhow about its z; 0 where only s is known.
+  // Square and triangle: the poses that match s, the likeliest first, as starting values; 0 if none fits.
+  // Circle: both poses, first the one of s, with an arbitrary turn about z; 0 if only s is known.
   std::int32_t num_poses = 0;
   std::array<FlatPose, kMaxPoses> poses{};
 };
@@ -68,7 +68,7 @@ class FeatureMailbox final : public FeatureSink {
  public:
   FeatureMailbox() noexcept = default;
 
-  // Replaces what was put before. Cameras deliver in order; who takes a measurement judges its stamp.
+  // Replaces the last measurement. Cameras deliver in order; the caller of Take judges the stamp.
   void Put(const FeatureMeasurement& measurement) noexcept override;
 
   // True, with the newest measurement in `measurement`, when one came since the last Take; else false, and

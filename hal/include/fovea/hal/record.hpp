@@ -1,4 +1,4 @@
-// What one tick leaves behind, and where it goes.
+// The record of one tick, and the interfaces that receive it.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct TickRecord {
   ArmState arm;
   bool has_feature = false;       // a measurement was taken in this tick
   FeatureMeasurement feature;     // the last one taken
-  Intake intake = Intake::kNone;  // what became of it, in the tick that it came
+  Intake intake = Intake::kNone;  // what the servo did with it, in the tick of its arrival
 
   // Modes
   Mode mode = Mode::kBoot;
@@ -33,9 +33,9 @@ struct TickRecord {
 
   // Prediction, frame B
   bool target_known = false;
-  std::int64_t feature_age_ns = 0;                 // stamp_ns less the stamp of the last accepted measurement
+  std::int64_t feature_age_ns = 0;                 // stamp_ns - stamp of the last accepted measurement
   std::array<double, 3> p_BO{};                    // target's centre [m]
-  std::array<double, 4> q_BO{1.0, 0.0, 0.0, 0.0};  // its orientation (w, x, y, z); 1 where none is seen
+  std::array<double, 4> q_BO{1.0, 0.0, 0.0, 0.0};  // its orientation (w, x, y, z); identity if none is seen
   std::array<double, 3> v_BO{};                    // its velocity [m/s]
 
   // Visual law, units as the feature's kind says
@@ -43,7 +43,7 @@ struct TickRecord {
   std::array<double, kMaxFeatureDim> s{};       // [dim] predicted for now
   std::array<double, kMaxFeatureDim> s_star{};  // [dim] goal
   std::array<double, kMaxFeatureDim> e{};       // [dim] s_star - s
-  std::array<double, 6> V_BC_C_cmd{};           // camera's twist that the reference asks for [m/s, rad/s]
+  std::array<double, 6> V_BC_C_cmd{};           // camera's twist from the reference [m/s, rad/s]
 
   // Reference after the guard
   JointArray q_cmd{};
@@ -67,8 +67,8 @@ class Recorder {
   ~Recorder() = default;
 };
 
-// Told when the tick begins and ends, by the thread that runs it: where time is measured and where heap
-// calls are counted. Real-time: yes; whatever it must ask of the system, it asks outside Enter..Leave.
+// Called at the start and end of each tick, by the thread that runs it, to measure time and count heap calls.
+// Real-time: yes; it makes its own system calls outside the measured part.
 class TickProbe {
  public:
   TickProbe(const TickProbe&) = delete;

@@ -8,9 +8,9 @@ namespace fovea::hal {
 // Each driver maps its own errors onto these; hal/README.md says what the caller does about each.
 enum class StatusCode : std::uint8_t {
   kOk = 0,
-  kTimeout,          // nothing came within the time allowed; try again
+  kTimeout,          // nothing arrived within the time allowed; try again
   kClosed,           // the device was closed on purpose; no data will follow
-  kDisconnected,     // the device is gone; no data will follow unless it is opened anew
+  kDisconnected,     // the device is gone; no data will follow unless it is opened again
   kDeviceFault,      // the device reports a fault of its own (reflex, user stop); it has stopped by itself
   kInvalidArgument,  // the caller passed something that this device cannot take; nothing was done
   kNonFinite,        // the caller passed a value that is not finite; nothing was done

@@ -36,7 +36,7 @@ Status CartArm::TakeAll() noexcept {
     }
     filled_ += static_cast<std::size_t>(got);
     const std::size_t whole = filled_ / sizeof(CartState);
-    if (whole > 0) {  // only the newest counts; what follows it is the beginning of the next
+    if (whole > 0) {  // keep only the newest; the bytes after it begin the next state
       std::memcpy(&newest_, buffer_.data() + (whole - 1) * sizeof(CartState), sizeof(CartState));
       filled_ -= whole * sizeof(CartState);
       std::memmove(buffer_.data(), buffer_.data() + whole * sizeof(CartState), filled_);
@@ -67,7 +67,7 @@ Status CartArm::DoRead(fovea::hal::ArmState& state) noexcept {
   return Status::Ok();
 }
 
-// hal::Arm has seen to it that there is one torque, and that it is finite.
+// hal::Arm has checked that there is one torque, and that it is finite.
 Status CartArm::DoWrite(const fovea::hal::ArmCommand& command) noexcept {
   const CartCommand out{command.tau_cmd[0], command.engage_brakes ? std::uint64_t{1} : std::uint64_t{0}};
   const ssize_t sent = send(socket_, &out, sizeof(out), MSG_DONTWAIT | MSG_NOSIGNAL);

@@ -1,4 +1,4 @@
-// The driver against the contract of the seam, against a device that goes wrong, and with the servo.
+// Tests the driver with the contract of hal::Arm, with a failing device, and with the servo.
 #include "cart_arm.hpp"
 
 #include <gtest/gtest.h>
@@ -19,15 +19,15 @@ namespace {
 
 using namespace fovea;
 
-constexpr std::int64_t kPatientNs = 60 * hal::kNsPerSecond;  // nobody is in time on a busy computer
+constexpr std::int64_t kPatientNs = 60 * hal::kNsPerSecond;  // long, since a busy computer is late
 
-// The device, which moves when it is told to.
+// The simulated device. It moves only in Advance.
 class Cart {
  public:
   explicit Cart(int socket) : socket_(socket) { Send(std::as_bytes(std::span(&state_, 1))); }
   ~Cart() { Close(); }
 
-  // A millisecond.
+  // Simulates one millisecond.
   void Advance() {
     constexpr double kMass = 1.0;
     constexpr double kPeriodS = 1e-3;
@@ -66,10 +66,10 @@ struct Bench {
   struct Pair {
     int fd[2] = {-1, -1};
     Pair() {
-      const int room = 1 << 20;  // for what the device sends while nobody reads
+      const int room = 1 << 20;  // holds what the device sends while nobody reads
       if (socketpair(AF_UNIX, SOCK_STREAM, 0, fd) != 0 ||
           setsockopt(fd[1], SOL_SOCKET, SO_SNDBUF, &room, sizeof(room)) != 0) {
-        throw std::runtime_error("no sockets");
+        throw std::runtime_error("cannot create a socket pair");
       }
     }
   };
@@ -121,7 +121,7 @@ TEST(CartArmTest, StateReceivedInTwoPartsIsAssembled) {
 TEST(CartArmTest, SilenceTimesOutStopButtonFaultsLostLineDisconnects) {
   Bench silent(/*timeout_ns=*/0);
   hal::ArmState state;
-  static_cast<void>(silent.driver.Read(state));  // takes the first
+  static_cast<void>(silent.driver.Read(state));  // takes the first state
   EXPECT_EQ(silent.driver.Read(state).code(), hal::StatusCode::kTimeout);
   Bench bench;
   bench.cart.PressButton();
@@ -134,7 +134,7 @@ TEST(CartArmTest, SilenceTimesOutStopButtonFaultsLostLineDisconnects) {
   EXPECT_EQ(bench.driver.Write(command).code(), hal::StatusCode::kDisconnected);
 }
 
-// Time that goes on when the loop waits, and the cart with it.
+// Time advances only while the loop waits, and the cart moves with it.
 class CartClock final : public hal::Clock {
  public:
   explicit CartClock(Cart& cart) : cart_(cart) {}

@@ -1,4 +1,4 @@
-// Readings of a device's clock that runs apart from the host's, by questions that are late by chance.
+// Maps a device clock to the host's clock from readings with a random round-trip delay.
 #include "fovea/camera/latch_mapper.hpp"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::int64_t kBeginNs = 5'000'000'007;
 
-// The device's clock began elsewhere and gains `drift` seconds a second on the host's. Question and answer
-// are each 0.1 ms on their way, and by chance longer: 0.2 ms more in the mean.
+// The device's clock has an offset and gains `drift` seconds per second on the host's. Question and answer
+// each take 0.1 ms plus a random delay of 0.2 ms on average.
 struct Device {
   double drift = 0.0;
   std::int64_t offset_ns = 0;
@@ -57,7 +57,7 @@ TEST(LatchMapper, FollowsADriftingClock) {
     std::cout << "drift " << 1e6 * drift << " ppm: " << 1e6 * -mapper.drift()
               << " ppm found, stamps off by at most " << 1e-3 * worst_ns << " us\n";
     EXPECT_NEAR(-mapper.drift(), drift, 4e-6);
-    EXPECT_LT(worst_ns, 6e4) << "less than the shortest way of a question";
+    EXPECT_LT(worst_ns, 6e4) << "less than the shortest one-way delay";
     EXPECT_EQ(mapper.restarts(), 0U);
   }
 }
@@ -72,7 +72,7 @@ TEST(LatchMapper, WithoutJitterItIsExact) {
     worst_ns =
         k < 40 ? 0 : std::max<std::int64_t>(worst_ns, std::llabs(*mapper.Map(device.Stamp(now_ns)) - now_ns));
   }
-  EXPECT_LE(worst_ns, 2);  // what rounding leaves
+  EXPECT_LE(worst_ns, 2);  // rounding error
 }
 
 TEST(LatchMapper, MapsAfterTheFirstReading) {
@@ -83,8 +83,8 @@ TEST(LatchMapper, MapsAfterTheFirstReading) {
   EXPECT_EQ(mapper.Map(500'100), 2100);
 }
 
-// Quick readings at the beginning, then answers that are all too slow: with 50 ppm it is 3 ms off a minute
-// later.
+// Fast readings at first, then only answers that are too slow. With 50 ppm of
+// drift the mapping would be off by 3 ms after a minute.
 TEST(LatchMapper, ClockNotReadForTooLongIsNotUsed) {
   LatchMapper mapper;
   const Device device{50e-6, -77 * hal::kNsPerSecond};
@@ -103,10 +103,11 @@ TEST(LatchMapper, ClockNotReadForTooLongIsNotUsed) {
     ask(6 * hal::kNsPerMs);
   }
   ASSERT_TRUE(after(1.9).has_value());
-  EXPECT_NEAR(static_cast<double>(*after(1.9) - last_ns), 1.9e9, 1.2e5) << "50 ppm, and no drift known";
+  EXPECT_NEAR(static_cast<double>(*after(1.9) - last_ns), 1.9e9, 1.2e5)
+      << "error of 50 ppm, because the drift is not known yet";
   EXPECT_FALSE(after(2.1).has_value());
   EXPECT_FALSE(after(60.0).has_value());
-  // A reading after such a time stands for itself: what was known before is as old as it was.
+  // A reading after such a gap is used alone, because the earlier ones are too old.
   ask(300'000);
   ASSERT_TRUE(mapper.Map(device.Stamp(now_ns)).has_value());
   EXPECT_NEAR(static_cast<double>(*mapper.Map(device.Stamp(now_ns)) - now_ns), 0.0, 1e3);
@@ -122,7 +123,8 @@ TEST(LatchMapper, KnownDriftExtendsTheUsableTime) {
   ASSERT_TRUE(after(9.9).has_value());
   std::cout << "9.9 s after the last reading a stamp is off by "
             << 1e-3 * (static_cast<double>(*after(9.9) - last_ns) - 9.9e9) << " us\n";
-  EXPECT_NEAR(static_cast<double>(*after(9.9) - last_ns), 9.9e9, 1.4e5) << "4 ppm, and half of a way";
+  EXPECT_NEAR(static_cast<double>(*after(9.9) - last_ns), 9.9e9, 1.4e5)
+      << "drift error of 4 ppm, plus half a one-way delay";
   EXPECT_FALSE(after(10.1).has_value());
 }
 

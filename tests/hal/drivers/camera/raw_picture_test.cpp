@@ -1,4 +1,4 @@
-// Formats of pixels, from pictures whose colours are known.
+// Conversion of pixel formats, with pictures of a known colour.
 #include "fovea/camera/raw_picture.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ std::vector<std::uint8_t> Bytes(std::size_t bytes_per_pixel, int padding = 0) {
 
 cv::Vec3b Middle(const cv::Mat& picture) { return picture.at<cv::Vec3b>(kHeight / 2, kWidth / 2); }
 
-// The first row and the second of each Bayer pattern, as GenICam's names say them.
+// First and second row of each Bayer pattern, as in its GenICam name.
 TEST(RawPicture, BayerPatternsMatchTheirNames) {
   for (const auto& [name, pattern] :
        {std::pair{"BayerRG8", "RGGB"}, {"BayerGR8", "GRBG"}, {"BayerGB8", "GBRG"}, {"BayerBG8", "BGGR"}}) {
@@ -59,7 +59,7 @@ TEST(RawPicture, RgbAndBgrKeepTheirChannelOrder) {
   }
 }
 
-// ITU-R BT.601: the colour's luma and chroma, by its own formula.
+// Luma and chroma by the formula of ITU-R BT.601.
 TEST(RawPicture, YuyvIsConvertedByBt601) {
   const double b = kColour[0] / 255.0;
   const double g = kColour[1] / 255.0;
@@ -98,10 +98,10 @@ TEST(RawPicture, ImpossibleGeometryIsRefused) {
   const std::vector<std::uint8_t> bytes = Bytes(1);
   cv::Mat out;
   EXPECT_FALSE(Unpack({RawFormat::kMono8, kWidth, kHeight + 1, kWidth, bytes}, out)) << "too few bytes";
-  EXPECT_FALSE(Unpack({RawFormat::kMono8, kWidth, kHeight, kWidth - 1, bytes}, out)) << "rows that overlap";
+  EXPECT_FALSE(Unpack({RawFormat::kMono8, kWidth, kHeight, kWidth - 1, bytes}, out)) << "rows overlap";
   EXPECT_FALSE(Unpack({RawFormat::kMono8, 0, kHeight, kWidth, bytes}, out));
   EXPECT_FALSE(Unpack({RawFormat::kMono8, kWidth, -1, kWidth, bytes}, out));
-  EXPECT_FALSE(Unpack({RawFormat::kYuyv, 3, 2, 6, bytes}, out)) << "half a pair";
+  EXPECT_FALSE(Unpack({RawFormat::kYuyv, 3, 2, 6, bytes}, out)) << "half a pixel pair";
   EXPECT_FALSE(Unpack({RawFormat::kBayerRg8, 1, 8, 1, bytes}, out));
   EXPECT_TRUE(out.empty());
   EXPECT_FALSE(FormatOf("Mono12"));
@@ -114,7 +114,7 @@ TEST(FrameCounter, CountsAcrossA16BitWrap) {
   EXPECT_EQ(counter.Count(1), 2U);
   EXPECT_EQ(counter.Count(4), 5U);
   EXPECT_EQ(counter.lost(), 2U);
-  EXPECT_EQ(counter.Count(3), 6U) << "backwards: it started anew";
+  EXPECT_EQ(counter.Count(3), 6U) << "a smaller number means that the device restarted";
   counter.Restart();
   EXPECT_EQ(counter.Count(40000), 7U);
   EXPECT_EQ(counter.lost(), 2U);
@@ -131,8 +131,10 @@ TEST(FrameCounter, CountsAcrossA64BitWrap) {
 TEST(FrameCounter, ImplausibleNumberCountsAsTheNextFrame) {
   FrameCounter counter;
   EXPECT_EQ(counter.Count(0), 0U);
-  EXPECT_EQ(counter.Count(std::uint64_t{1} << 32U), std::uint64_t{1} << 32U) << "as many may get lost";
-  EXPECT_EQ(counter.Count((std::uint64_t{1} << 33U) + 1), (std::uint64_t{1} << 32U) + 1) << "no more";
+  EXPECT_EQ(counter.Count(std::uint64_t{1} << 32U), std::uint64_t{1} << 32U)
+      << "a gap of 2^32 frames is allowed";
+  EXPECT_EQ(counter.Count((std::uint64_t{1} << 33U) + 1), (std::uint64_t{1} << 32U) + 1)
+      << "a larger gap is not";
   EXPECT_EQ(counter.Count(std::uint64_t{1} << 62U), (std::uint64_t{1} << 32U) + 2);
 }
 
@@ -141,7 +143,7 @@ TEST(RawPicture, PaddingSetsOnlyPossibleStrides) {
   ASSERT_TRUE(SetPadding(5, raw));
   EXPECT_EQ(raw.stride_bytes, 17);
   EXPECT_FALSE(SetPadding(-1, raw));
-  EXPECT_FALSE(SetPadding(INT_MAX, raw)) << "a row of more bytes than are counted";
+  EXPECT_FALSE(SetPadding(INT_MAX, raw)) << "the row length overflows an int";
   raw.width_px = INT_MAX / 2;
   EXPECT_FALSE(SetPadding(0, raw));
   raw.width_px = -4;

@@ -69,7 +69,7 @@ TEST_F(RecordedCameraTest, PlaysAVideoAtItsOwnRate) {
   for (int k = 0; k < 5; ++k) {
     ASSERT_TRUE(camera.Acquire(frame, 0).ok());
     EXPECT_NEAR(frame.pixels[0], 40 * k, 2);
-    EXPECT_EQ(frame.stamp_ns, k * 40 * hal::kNsPerMs) << "by the video's own rate";
+    EXPECT_EQ(frame.stamp_ns, k * 40 * hal::kNsPerMs) << "stamps at the video's own rate";
   }
   EXPECT_EQ(camera.Acquire(frame, 0).code(), hal::StatusCode::kClosed);
 }
@@ -82,7 +82,8 @@ TEST_F(RecordedCameraTest, FrameNotYetDueTimesOut) {
   const std::int64_t start_ns = now.tv_sec * hal::kNsPerSecond + now.tv_nsec + 3600 * hal::kNsPerSecond;
   RecordedCamera camera({.path = folder_, .start_ns = start_ns});
   hal::Frame frame;
-  EXPECT_EQ(camera.Acquire(frame, hal::kNsPerMs).code(), hal::StatusCode::kTimeout) << "it is due in an hour";
+  EXPECT_EQ(camera.Acquire(frame, hal::kNsPerMs).code(), hal::StatusCode::kTimeout)
+      << "the frame is due in an hour";
 }
 
 TEST_F(RecordedCameraTest, BrokenOrDifferentlySizedPictureIsADeviceFault) {

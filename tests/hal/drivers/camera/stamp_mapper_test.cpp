@@ -1,4 +1,4 @@
-// Stamps of a device whose clock runs apart from the host's, through a network that is late by chance.
+// Maps the stamps of a device clock to the host's clock when the network delay is random.
 #include "fovea/camera/stamp_mapper.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 constexpr std::int64_t kTransportNs = 12 * hal::kNsPerMs;
 constexpr std::int64_t kFrameNs = hal::kNsPerSecond / 30;
 
-// The device's clock began elsewhere and gains `drift` seconds a second on the host's.
+// The device's clock has an offset and gains `drift` seconds per second on the host's.
 struct Device {
   double drift = 0.0;
   std::int64_t offset_ns = 0;
@@ -68,7 +68,7 @@ TEST(StampMapper, WithoutJitterItIsExact) {
     const std::int64_t mapped_ns = mapper.Map(device.Stamp(true_ns), true_ns + kTransportNs);
     worst_ns = k < 300 ? 0 : std::max<std::int64_t>(worst_ns, std::llabs(mapped_ns - true_ns));
   }
-  EXPECT_LE(worst_ns, 2);  // what rounding leaves
+  EXPECT_LE(worst_ns, 2);  // rounding error
 }
 
 TEST(StampMapper, StampsRiseAndNeverComeAfterTheirArrival) {
@@ -86,7 +86,7 @@ TEST(StampMapper, StampsRiseAndNeverComeAfterTheirArrival) {
   }
 }
 
-// A camera that says the same again, or a moment before.
+// A camera repeats its last stamp, or gives one slightly earlier.
 TEST(StampMapper, RepeatedOrEarlierStampIsMadeToRise) {
   StampMapper mapper(0);
   const std::int64_t first_ns = mapper.Map(10 * kFrameNs, 10 * kFrameNs);
@@ -96,7 +96,7 @@ TEST(StampMapper, RepeatedOrEarlierStampIsMadeToRise) {
   EXPECT_GT(before_ns, again_ns);
 }
 
-// A camera that was unplugged counts from zero again.
+// An unplugged camera counts from zero again.
 TEST(StampMapper, RestartedDeviceClockIsLearnedAgain) {
   StampMapper mapper(kTransportNs);
   Device device{0.0, 1000 * hal::kNsPerSecond};
@@ -110,8 +110,8 @@ TEST(StampMapper, RestartedDeviceClockIsLearnedAgain) {
   EXPECT_EQ(mapper.restarts(), 1U);
 }
 
-// A clock that is set, by less than a second: forwards it shows with the first picture, since none comes
-// before it can; backwards when all of a second were late.
+// A device clock stepped by less than a second. A forward step shows in the first picture, because a picture
+// never arrives before its exposure; a backward step shows once all pictures of a second seem late.
 TEST(StampMapper, SteppedDeviceClockIsLearnedAgain) {
   for (const std::int64_t step_ns : {150 * hal::kNsPerMs, -150 * hal::kNsPerMs, -30 * hal::kNsPerMs}) {
     StampMapper mapper(kTransportNs);
@@ -124,14 +124,14 @@ TEST(StampMapper, SteppedDeviceClockIsLearnedAgain) {
       const bool known = (k > 300 && k < 900) || k > (step_ns > 0 ? 960 : 960 + 32);
       worst_ns = std::max(worst_ns, known ? std::fabs(static_cast<double>(mapped_ns - true_ns)) : 0.0);
     }
-    std::cout << "set by " << 1e-6 * static_cast<double>(step_ns) << " ms: off by at most " << 1e-3 * worst_ns
-              << " us but for the two seconds after\n";
+    std::cout << "clock stepped by " << 1e-6 * static_cast<double>(step_ns) << " ms: off by at most "
+              << 1e-3 * worst_ns << " us, except in the two seconds after\n";
     EXPECT_LT(worst_ns, 8e4);
     EXPECT_EQ(mapper.restarts(), 1U);
   }
 }
 
-// Pictures that a busy network brings late, for most of a second.
+// A busy network delays all pictures for most of a second.
 TEST(StampMapper, BusyNetworkIsNotTakenForANewClock) {
   StampMapper mapper(kTransportNs);
   const Device device{0.0, 0};
@@ -160,7 +160,7 @@ TEST(StampOfTicks, IsExactOrRefusedWhenOutOfRange) {
   EXPECT_FALSE(StampOfTicks(1, 0.0).has_value());
 }
 
-// A stamp that no clock shows: its arrival is taken, and what is known of the clock stays.
+// For an impossible stamp the arrival time is used, and the mapping stays.
 TEST(StampMapper, InvalidStampIsReplacedByTheArrival) {
   StampMapper mapper(kTransportNs);
   EXPECT_EQ(mapper.Map(kFrameNs, 2 * kFrameNs), 2 * kFrameNs - kTransportNs);

@@ -1,4 +1,4 @@
-// A robot on the wire that does what a test tells it, step by step, in the test's own thread or another.
+// A robot on the network that a test controls step by step, from its own thread or another.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace fovea::test {
 using namespace std::chrono_literals;
 
 inline constexpr franka::Endpoint kLoopback{0x7F000001, 0};
-inline constexpr auto kPatience = 2s;  // no wait of a test is longer
+inline constexpr auto kPatience = 2s;  // longest wait in a test
 
 class FakeRobot {
  public:
@@ -39,7 +39,7 @@ class FakeRobot {
     });
   }
 
-  // The next request, or none within the patience.
+  // The next request; none after kPatience.
   std::optional<Request> Take() {
     Request request;
     std::span<const std::byte> payload;
@@ -63,7 +63,7 @@ class FakeRobot {
   void SendRaw(const std::vector<std::byte>& bytes) { EXPECT_TRUE(tcp_.Send(bytes)); }
   void Close() { tcp_.Close(); }
 
-  // Answers the set-up as a robot does, then sends the first state. False when the client does not go along.
+  // Answers the set-up as a robot does, then sends the first state. False when the client stops short.
   bool ServeSetUp() {
     if (!Accept()) {
       return false;
@@ -89,14 +89,14 @@ class FakeRobot {
     return true;
   }
 
-  // Sends `state`, then counts its time on.
+  // Sends `state`, then advances its time by 1 ms.
   void SendState() {
     SendDatagram(franka::Bytes(state));
     ++state.message_id;
   }
   void SendDatagram(std::span<const std::byte> bytes) { EXPECT_TRUE(udp_.Send(bytes, client_udp_)); }
 
-  // A state that is later by `ms`, from another computer.
+  // Sends, from another address, a state that is later by `ms`.
   void SendForeignState(std::uint64_t ms) {
     franka::RobotState later = state;
     later.message_id += ms;
@@ -104,7 +104,7 @@ class FakeRobot {
     EXPECT_TRUE(elsewhere.Send(franka::Bytes(later), client_udp_));
   }
 
-  // The next command, or none within `patience`.
+  // The next command; none after `patience`.
   std::optional<franka::RobotCommand> TakeCommand(std::chrono::milliseconds patience = kPatience) {
     std::array<std::byte, 2048> bytes;
     std::size_t size = 0;
@@ -170,7 +170,7 @@ inline franka::FrankaConfig ConfigFor(const FakeRobot& robot) {
   config.host = "127.0.0.1";
   config.port = robot.port();
   config.answer_timeout_ms = 300;
-  config.state_timeout_ns = 50 * hal::kNsPerMs;  // a busy machine must not turn a test's step into a timeout
+  config.state_timeout_ns = 50 * hal::kNsPerMs;  // a step on a busy machine must not time out
   return config;
 }
 

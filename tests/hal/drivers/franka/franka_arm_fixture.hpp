@@ -1,4 +1,4 @@
-// The driver connected to a robot that does what the test says.
+// The driver connected to a robot that the test controls.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -33,7 +33,7 @@ class FrankaArmTest : public testing::Test {
     command.engage_brakes = brakes;
     return arm_->Write(command);
   }
-  // A motion under way: Move asked for, started, shown.
+  // Starts a motion: Move is requested, answered and shown in the state.
   void Start() {
     EXPECT_TRUE(Next().ok());
     EXPECT_TRUE(Write(0.0).ok());
@@ -47,7 +47,7 @@ class FrankaArmTest : public testing::Test {
     ASSERT_EQ(arm_->phase(), MotionPhase::kRunning);
   }
 
-  // Recovery is asked for by one who knows that the motion is over, and the robot's answer is there.
+  // Engages the brakes, requests recovery and lets the robot's answer arrive.
   void AskRecovery(int answer) {
     static_cast<void>(Write(0.0, /*brakes=*/true));
     arm_->AskRecovery();

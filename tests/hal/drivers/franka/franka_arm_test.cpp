@@ -1,4 +1,4 @@
-// The driver in the loop, against a robot that does what the test says.
+// The driver in the control loop, connected to a robot that the test controls.
 #include "fovea/linux_rt/heap_counter.hpp"
 #include "tests/hal/drivers/franka/franka_arm_fixture.hpp"
 
@@ -18,7 +18,7 @@ TEST_F(FrankaArmTest, StateIsPassedOnUnchanged) {
   EXPECT_EQ(state_.sequence, 1001U);
   EXPECT_EQ(state_.stamp_ns, 1001 * hal::kNsPerMs);
   EXPECT_EQ(clock_.NowNs(), state_.stamp_ns);
-  for (std::size_t i = 0; i < 7; ++i) {  // each joint's own
+  for (std::size_t i = 0; i < 7; ++i) {  // no joint is swapped
     const auto k = static_cast<double>(i);
     EXPECT_EQ(state_.q[i], 0.1 + k);
     EXPECT_EQ(state_.dq[i], 0.2 + k);
@@ -72,7 +72,7 @@ TEST_F(FrankaArmTest, TorqueRateStartsFromTheAppliedTorque) {
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(10.0).ok());
   EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 2.0);
-  // None of ours: near to it, and to what may still come.
+  // The applied torque matches no command: the next one stays near it and near the commands not applied yet.
   robot_.state.tau_J_d[0] = 1.5;
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(10.0).ok());
@@ -86,7 +86,7 @@ TEST_F(FrankaArmTest, StateWithoutACommandIsAnsweredWithTheLastOne) {
   EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 0.5);
   ASSERT_TRUE(Next().ok());
   const std::uint64_t open = robot_.state.message_id - 1;
-  ASSERT_TRUE(Next().ok());  // no Write between
+  ASSERT_TRUE(Next().ok());  // without a Write in between
   const auto command = robot_.TakeCommand();
   ASSERT_TRUE(command.has_value());
   EXPECT_EQ(command->message_id, open);
@@ -106,11 +106,11 @@ TEST_F(FrankaArmTest, LostLateRepeatedShortAndForeignDatagramsAreCounted) {
   robot_.SendDatagram(std::vector<std::byte>(2372, std::byte{}));  // short
   robot_.SendDatagram(std::vector<std::byte>(2374, std::byte{}));  // long
   robot_.SendDatagram({});                                         // empty
-  robot_.state.message_id = std::uint64_t{1} << 60U;               // of a time that no clock shows
+  robot_.state.message_id = std::uint64_t{1} << 60U;               // a time out of range
   robot_.SendState();
   robot_.state.message_id = newest + 1;
   robot_.SendState();
-  robot_.SendState();  // two that are new
+  robot_.SendState();  // the second of two new states
   ASSERT_TRUE(arm_->Read(state_).ok());
   EXPECT_EQ(state_.sequence, newest + 2);
   const franka::FrankaCounters& c = arm_->counters();
@@ -121,7 +121,7 @@ TEST_F(FrankaArmTest, LostLateRepeatedShortAndForeignDatagramsAreCounted) {
   EXPECT_EQ(c.states, 3U);
 }
 
-// Whoever else is on the network: a state from another address is none.
+// A state from another address must not be used.
 TEST_F(FrankaArmTest, StateFromAnotherAddressIsIgnoredAndCounted) {
   ASSERT_TRUE(Next().ok());
   const std::uint64_t newest = robot_.state.message_id - 1;
@@ -137,7 +137,7 @@ TEST_F(FrankaArmTest, SilenceTimesOutAndKeepsTheState) {
   EXPECT_EQ(arm_->Read(state_).code(), StatusCode::kTimeout);
   EXPECT_EQ(state_.sequence, before.sequence);
   EXPECT_EQ(arm_->counters().timeouts, 1U);
-  EXPECT_TRUE(Next().ok()) << "and goes on";
+  EXPECT_TRUE(Next().ok()) << "the next state is read again";
 }
 
 TEST_F(FrankaArmTest, ClosedConnectionIsReportedAsDisconnected) {
@@ -159,10 +159,10 @@ TEST_F(FrankaArmTest, GarbageDuringAMotionEndsTheConnection) {
   for (int k = 0; k < 20 && status.code() != StatusCode::kDisconnected; ++k) {
     status = arm_->Read(state_);
   }
-  EXPECT_STREQ(status.where(), "the robot sent what is no message");
+  EXPECT_STREQ(status.where(), "the robot sent an invalid message");
 }
 
-// A message that says that it is longer than any is not waited for.
+// A message with an impossible length is refused at once; the driver does not wait for its end.
 TEST_F(FrankaArmTest, TooLongMessageEndsTheConnection) {
   Start();
   franka::Header header;
@@ -174,7 +174,7 @@ TEST_F(FrankaArmTest, TooLongMessageEndsTheConnection) {
   for (int k = 0; k < 20 && status.code() != StatusCode::kDisconnected; ++k) {
     status = arm_->Read(state_);
   }
-  EXPECT_STREQ(status.where(), "the robot sent what is no message");
+  EXPECT_STREQ(status.where(), "the robot sent an invalid message");
 }
 
 TEST_F(FrankaArmTest, BrakingFinishesTheMotionAndReleaseStartsANewOne) {
@@ -186,7 +186,7 @@ TEST_F(FrankaArmTest, BrakingFinishesTheMotionAndReleaseStartsANewOne) {
   EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1);
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(0.0, true).ok());
-  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "until the states show the end";
+  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "repeated until the states show the end";
   robot_.ShowIdle();
   robot_.AnswerStatus(move_, 0);
   ASSERT_TRUE(Next().ok());
@@ -197,7 +197,7 @@ TEST_F(FrankaArmTest, BrakingFinishesTheMotionAndReleaseStartsANewOne) {
   EXPECT_EQ(arm_->counters().motions, 2U);
 }
 
-// A robot takes the end of a motion at speed for a fault of its client.
+// A robot reports a fault of the client if a motion ends at speed.
 TEST_F(FrankaArmTest, MovingArmIsSlowedDownBeforeItsMotionIsFinished) {
   Start();
   ASSERT_TRUE(Write(0.0).ok());
@@ -214,11 +214,11 @@ TEST_F(FrankaArmTest, MovingArmIsSlowedDownBeforeItsMotionIsFinished) {
   robot_.state.dq = {0.015, 0.0, 0.0, -0.015, 0.0, 0.0, 0.0};
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(0.0, true).ok());
-  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "it has come to rest";
-  robot_.state.dq[0] = 0.1;  // what pushes it now is the robot's own
+  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "the arm is at rest";
+  robot_.state.dq[0] = 0.1;  // any later movement is the robot's own
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(0.0, true).ok());
-  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "once said, it is said";
+  EXPECT_EQ(robot_.TakeCommand()->motion_generation_finished, 1) << "finished is not withdrawn";
 }
 
 TEST_F(FrankaArmTest, ArmThatNeverRestsIsFinishedAfterHalfASecond) {
@@ -249,7 +249,7 @@ TEST_F(FrankaArmTest, StopFinishesTheMotionAndDisconnects) {
       }
       robot_.SendState();
     }
-    ADD_FAILURE() << "the end was never announced";
+    ADD_FAILURE() << "the driver never finished the motion";
   });
   arm_->Stop();
   EXPECT_EQ(arm_->phase(), MotionPhase::kIdle);
@@ -258,7 +258,7 @@ TEST_F(FrankaArmTest, StopFinishesTheMotionAndDisconnects) {
 
 TEST_F(FrankaArmTest, ReadAndWriteMakeNoHeapCalls) {
 #ifdef FOVEA_SANITIZED
-  GTEST_SKIP() << "a sanitizer has the heap to itself";
+  GTEST_SKIP() << "a sanitizer replaces malloc";
 #endif
   ASSERT_TRUE(linux_rt::HeapCounterActive());
   Start();

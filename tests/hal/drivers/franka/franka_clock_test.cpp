@@ -1,4 +1,4 @@
-// The robot's time as a clock, against the contract.
+// The robot's time as a hal::Clock, tested against the contract.
 #include "fovea/franka/robot_clock.hpp"
 #include "tests/contract/clock_contract.hpp"
 

@@ -1,4 +1,4 @@
-// Connecting, in good and in bad weather: each refusal is one clear line.
+// Connecting to the robot; each refusal is one clear line.
 #include <gmock/gmock.h>
 
 #include "tests/hal/drivers/franka/fake_robot.hpp"
@@ -9,7 +9,7 @@ namespace {
 using franka::NetworkError;
 using testing::HasSubstr;
 
-// What the driver says when `robot` does `script` as it connects; empty when it was content.
+// The driver's error when `robot` runs `script` during the connection; empty if there is none.
 std::string Refusal(FakeRobot& robot, const std::function<void()>& script) {
   std::jthread other(script);
   try {
@@ -81,7 +81,7 @@ TEST(FrankaSetUp, UnknownHostIsReported) {
     const franka::FrankaArm arm(config);
     FAIL() << "there is no such host";
   } catch (const NetworkError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("is no host that can be found"));
+    EXPECT_THAT(error.what(), HasSubstr("is not a known host"));
   }
 }
 
@@ -93,7 +93,7 @@ TEST(FrankaSetUp, AnotherProtocolVersionIsRefused) {
                         robot.Answer(*robot.Take(),
                                      franka::ConnectAnswer{franka::ConnectStatus::kIncompatibleVersion, 4});
                       }),
-              HasSubstr("it speaks version 4 of the Franka Control Interface, this driver version 5"));
+              HasSubstr("it speaks version 4 of the Franka Control Interface, this driver speaks version 5"));
 }
 
 TEST(FrankaSetUp, SilentRobotTimesOut) {
@@ -122,7 +122,7 @@ TEST(FrankaSetUp, GarbageAnswerIsRefused) {
                         robot.Take();
                         robot.SendRaw(std::vector<std::byte>(64, std::byte{0xA5}));
                       }),
-              HasSubstr("Connect was answered with what is no message"));
+              HasSubstr("Connect was answered with an invalid message"));
 }
 
 TEST(FrankaSetUp, AnswerOfTheWrongLengthIsRefused) {

@@ -1,4 +1,4 @@
-// The robot's time in the computer's, by when its states come.
+// Maps the robot's time to the computer's clock from the arrivals of its states.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -11,7 +11,7 @@
 namespace fovea::test {
 namespace {
 
-// Without a clock of the robot's: stamps are the computer's.
+// The arm without a RobotClock: its stamps are in the computer's time.
 struct Connected {
   Connected() {
     std::jthread other([this] { EXPECT_TRUE(robot.ServeSetUp()); });
@@ -34,13 +34,13 @@ TEST(FrankaArm, StampsFollowTheEarliestArrivals) {
   connected.Next();
   connected.Next();
   std::this_thread::sleep_for(20ms);
-  // A state that comes 20 ms late is stamped as if it had not.
+  // A state that arrives 20 ms late is stamped as if it were on time.
   const double span_ms = static_cast<double>(connected.Next() - first_ns) * 1e-6;
   std::cout << "four states in " << span_ms << " ms of stamps\n";
   EXPECT_LT(span_ms, 3.01);
 }
 
-// A controller whose time stood still for 80 ms is believed again within a second, not at 0.2 ms a second.
+// The robot's time stops for 80 ms. The mapping must recover within a second, not by 0.2 ms per second.
 TEST(FrankaArm, StalledRobotClockIsLearnedAgain) {
   Connected connected;
   connected.Next();
@@ -53,11 +53,11 @@ TEST(FrankaArm, StalledRobotClockIsLearnedAgain) {
     linux_rt::SleepUntilNs(due_ns);
     off_ms = static_cast<double>(connected.Next() - due_ns) * 1e-6;
     if (k == 500) {
-      std::cout << "half a second after: off by " << off_ms << " ms\n";
-      EXPECT_LT(off_ms, -60.0) << "so soon it may be the network";
+      std::cout << "half a second later: off by " << off_ms << " ms\n";
+      EXPECT_LT(off_ms, -60.0) << "after half a second it may still be a network delay";
     }
   }
-  std::cout << "a second after: off by " << off_ms << " ms\n";
+  std::cout << "a second later: off by " << off_ms << " ms\n";
   EXPECT_GE(off_ms, 0.0);
   EXPECT_LT(off_ms, 10.0);
 }

@@ -1,4 +1,4 @@
-// What ends a motion or lets none begin, in whose words, and how it is recovered from.
+// Events that end a motion or prevent its start: the reported reason, and the recovery.
 #include "tests/hal/drivers/franka/franka_arm_fixture.hpp"
 
 namespace fovea::test {
@@ -15,7 +15,7 @@ TEST_F(FrankaArmTest, ReflexStopsUntilRecoveryAndRestartIsWithoutAStep) {
   EXPECT_STREQ(status.where(), "communication_constraints_violation");
   EXPECT_EQ(Write(5.0).code(), StatusCode::kDeviceFault);
   EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
-  EXPECT_FALSE(robot_.TakeCommand(20ms).has_value()) << "nothing is sent to a robot that stopped";
+  EXPECT_FALSE(robot_.TakeCommand(20ms).has_value()) << "nothing is sent to a stopped robot";
 
   arm_->AskRecovery();
   EXPECT_EQ(Next().code(), StatusCode::kDeviceFault);
@@ -24,7 +24,7 @@ TEST_F(FrankaArmTest, ReflexStopsUntilRecoveryAndRestartIsWithoutAStep) {
   EXPECT_EQ(recovery->header.command, franka::Command::kAutomaticErrorRecovery);
   robot_.AnswerStatus(*recovery, 0);
   std::this_thread::sleep_for(5ms);
-  EXPECT_TRUE(Next().ok()) << "a state from before that comes after the answer is borne";
+  EXPECT_TRUE(Next().ok()) << "an old state may arrive after the answer";
   robot_.state.errors = {};
   robot_.ShowIdle();
   robot_.state.tau_J_d[0] = 2.0;
@@ -32,15 +32,15 @@ TEST_F(FrankaArmTest, ReflexStopsUntilRecoveryAndRestartIsWithoutAStep) {
   EXPECT_EQ(arm_->phase(), MotionPhase::kIdle);
 
   ASSERT_TRUE(Write(5.0).ok());
-  EXPECT_EQ(arm_->counters().motions, 1U) << "a command as if the motion went on begins none";
+  EXPECT_EQ(arm_->counters().motions, 1U) << "a command of the ended motion starts no new one";
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(0.0, /*brakes=*/true).ok());
   Start();
   ASSERT_TRUE(Write(-8.0).ok());
-  EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 1.0) << "one step from the 2 Nm that are in force";
+  EXPECT_EQ(robot_.TakeCommand()->tau_J_d[0], 1.0) << "one step from the applied 2 Nm";
 }
 
-// Of all that may be wrong then, that nobody but a person can help is the one to know.
+// The answer to a refused recovery is reported before any other reason.
 TEST_F(FrankaArmTest, ManualRecoveryIsReportedUntilItIsDone) {
   for (const auto& [answer, says] : {std::pair{2, "the robot needs a person to recover it"},
                                      std::pair{1, "the robot cannot recover now"}}) {
@@ -52,10 +52,10 @@ TEST_F(FrankaArmTest, ManualRecoveryIsReportedUntilItIsDone) {
     for (int k = 0; k < 3; ++k) {
       EXPECT_STREQ(Next().where(), says);
     }
-    // Guided back by hand.
+    // A person moved the arm back by hand.
     robot_.state.errors = {};
     robot_.ShowIdle();
-    EXPECT_STREQ(Next().where(), says) << "until it is asked again";
+    EXPECT_STREQ(Next().where(), says) << "until recovery is requested again";
     AskRecovery(0);
     EXPECT_TRUE(Next().ok());
   }
@@ -65,12 +65,12 @@ TEST_F(FrankaArmTest, RefusedOrAbortedMotionReportsTheReason) {
   const struct {
     int answer;
     const char* says;
-  } kRows[]{{2, "another motion took its place"},
+  } kRows[]{{2, "another motion replaced it"},
             {3, "the robot cannot move now"},
-            {4, "start at a singular pose"},
+            {4, "the start pose is singular"},
             {5, "the robot refuses the motion's arguments"},
             {7, "user stop"},
-            {9, "the robot broke the motion off"}};
+            {9, "the robot aborted the motion"}};
   for (const auto& row : kRows) {
     Start();
     robot_.ShowIdle();
@@ -89,7 +89,7 @@ TEST_F(FrankaArmTest, RobotLeavingTheMotionIsADeviceFault) {
   robot_.ShowIdle();
   const hal::Status status = Next();
   EXPECT_EQ(status.code(), StatusCode::kDeviceFault);
-  EXPECT_STREQ(status.where(), "the robot left the motion");
+  EXPECT_STREQ(status.where(), "the robot ended the motion");
 }
 
 TEST_F(FrankaArmTest, UserStopIsReported) {

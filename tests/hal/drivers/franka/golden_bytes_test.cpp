@@ -1,5 +1,4 @@
-// The messages against the interface's own figures: every offset is typed again here, from the interface's
-// table.
+// Message layouts. The offsets are typed here a second time, from the interface's table.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -76,7 +75,7 @@ constexpr Place kStateDoubles[] = {
     {"success rate", 2365, 1},
 };
 
-// Every double of a state that holds its own offset is where the table has it.
+// Each double of the test state holds its own offset and must be decoded into the right field.
 TEST(GoldenBytes, StateFieldsAreAtTheirOffsets) {
   std::vector<std::byte> bytes(2373, std::byte{0xEE});
   for (const Place& place : kStateDoubles) {

@@ -1,4 +1,4 @@
-// Sockets of the driver and of the simulated robot: what cannot be is one line that names the other end.
+// Sockets of the driver and of the simulated robot. Each error is one line that names the other end.
 #include "fovea/franka/sockets.hpp"
 
 #include <gmock/gmock.h>
@@ -27,9 +27,8 @@ std::string ErrorOf(const std::function<void()>& action) {
 }
 
 TEST(Sockets, FailuresNameHostOrPort) {
-  const std::string name(300, 'x');  // longer than any: nobody needs to be asked
-  EXPECT_THAT(ErrorOf([&] { Resolve(name, 1337); }),
-              HasSubstr("\"" + name + "\" is no host that can be found"));
+  const std::string name(300, 'x');  // too long for a host name: no DNS query
+  EXPECT_THAT(ErrorOf([&] { Resolve(name, 1337); }), HasSubstr("\"" + name + "\" is not a known host"));
   EXPECT_EQ(Resolve("127.0.0.1", 1337), (Endpoint{0x7F000001, 1337}));
 
   const UdpSocket udp(kAny);
@@ -41,7 +40,7 @@ TEST(Sockets, FailuresNameHostOrPort) {
                 TcpListener elsewhere({0xC0000201, 0});
               }),
               HasSubstr("cannot listen on 192.0.2.1:0"))
-      << "an address for documentation, of no computer's";
+      << "an address reserved for documentation";
 
   std::uint16_t left = 0;
   {
@@ -60,7 +59,7 @@ TEST(Sockets, FailuresNameHostOrPort) {
 
 TEST(Sockets, BothEndsExchangeBytesAndDetectTheClose) {
   TcpListener listener(kAny);
-  EXPECT_FALSE(listener.Accept().has_value()) << "nobody has come yet";
+  EXPECT_FALSE(listener.Accept().has_value()) << "no client yet";
   TcpConnection client = TcpConnection::Connect({kAny.ip, listener.port()}, 1000);
   const std::array waited{listener.fd(), -1};
   WaitReadable(waited, kPatienceNs);
@@ -76,15 +75,16 @@ TEST(Sockets, BothEndsExchangeBytesAndDetectTheClose) {
   WaitReadable(std::array{server->fd()}, kPatienceNs);
   ASSERT_EQ(server->Receive(std::span(room).first(1), size), Received::kSome);
   EXPECT_EQ(size, 1U);
-  EXPECT_EQ(server->Receive(std::span(room).first(0), size), Received::kNothing) << "no room is no end";
+  EXPECT_EQ(server->Receive(std::span(room).first(0), size), Received::kNothing)
+      << "an empty buffer does not mean closed";
   client.Close();
   WaitReadable(std::array{server->fd()}, kPatienceNs);
-  ASSERT_EQ(server->Receive(room, size), Received::kSome) << "what was sent before";
+  ASSERT_EQ(server->Receive(room, size), Received::kSome) << "bytes sent before the close";
   EXPECT_EQ(room[0], std::byte{9});
   EXPECT_EQ(server->Receive(room, size), Received::kClosed);
 }
 
-// One who does not read: what there is no room for is not sent, and nobody waits.
+// The peer does not read: Send fails when the buffer is full, and does not wait.
 TEST(Sockets, SendToAFullBufferFailsWithoutWaiting) {
   TcpListener listener(kAny);
   TcpConnection client = TcpConnection::Connect({kAny.ip, listener.port()}, 1000);
@@ -95,7 +95,7 @@ TEST(Sockets, SendToAFullBufferFailsWithoutWaiting) {
     last = client.SendSome(much);
     sent += last;
   }
-  EXPECT_EQ(last, 0U) << sent << " bytes found a place";
+  EXPECT_EQ(last, 0U) << sent << " bytes were buffered";
   EXPECT_FALSE(client.Send(much));
 }
 

@@ -1,4 +1,4 @@
-// Torque commands over networks that lose, delay and keep them.
+// Torque rate limit when the network loses and delays commands.
 #include "fovea/franka/torque_rate.hpp"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ Vector7 All(double value) {
   return v;
 }
 
-// The robot applies commands in order, each at most `late` states after the one that it answers; what it
-// holds is in the next state. Returns the largest step between two that were applied [Nm].
+// The robot applies commands in order, each at most `late` states after the state that it answers; its next
+// state has the applied torque. Returns the largest step between two applied torques [Nm].
 double WorstStep(double loss, int late, double wish_size, int ticks) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> even(-wish_size, wish_size);
@@ -39,7 +39,7 @@ double WorstStep(double loss, int late, double wish_size, int ticks) {
   int applied = -1;
   double worst = 0.0;
   for (int t = 0; t < ticks; ++t) {
-    if (chance(random) >= loss) {  // the state comes
+    if (chance(random) >= loss) {  // the state arrives
       Vector7 wish;
       std::generate(wish.begin(), wish.end(), [&] { return even(random); });
       Vector7 command;
@@ -48,7 +48,7 @@ double WorstStep(double loss, int late, double wish_size, int ticks) {
         link.push_back({t, t + delay(random), command});
       }
     }
-    // The newest of what has come.
+    // The robot applies the newest command that has arrived.
     for (const OnItsWay& c : link) {
       if (c.due <= t && c.sent > applied) {
         for (std::size_t i = 0; i < tau.size(); ++i) {
@@ -86,19 +86,19 @@ TEST(TorqueRate, GoodNetworkUsesTheWholeStep) {
   EXPECT_FALSE(rate.Limit(tau, tau, command));
 }
 
-// A robot that says so must not be sent it.
+// The robot reports NaN or infinity; the commands stay finite.
 TEST(TorqueRate, NonFiniteTorqueIsNeverCommanded) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                            -std::numeric_limits<double>::infinity()}) {
     TorqueRate rate(All(kStep));
     Vector7 command;
     rate.Limit(All(9.0), All(bad), command);
-    EXPECT_EQ(command, All(kStep)) << "from nothing";
+    EXPECT_EQ(command, All(kStep)) << "a step from zero";
     rate.Limit(All(9.0), All(bad), command);
     EXPECT_LE(command[0], 2.0 * kStep);
     EXPECT_GT(command[0], 0.0);
     rate.Limit(All(9.0), All(kStep), command);
-    EXPECT_LE(command[0], 2.0 * kStep) << "and it goes on when the robot says numbers again";
+    EXPECT_LE(command[0], 2.0 * kStep) << "limited again from the applied torque once that is finite";
   }
 }
 

@@ -1,8 +1,8 @@
-// The ring from one thread to another: in order, whole, nothing lost without being counted.
+// The ring between two threads: values stay in order and whole, and every dropped one is counted.
 //
-// Every value is three words that tell the same story, so that a mixture shows; under the thread sanitizer a
-// place that both threads are at shows even where the values come out right. tests/models/bounded_ring.pml is
-// the same by every order of the steps.
+// Every value holds one number in all its fields, so that a torn value is detected. The thread
+// sanitizer also reports a slot that both threads access at once.
+// tests/models/bounded_ring.pml checks the same for every order of the steps.
 #include "fovea/linux_rt/bounded_ring.hpp"
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ bool IsWhole(const Story& story) {
 
 class BoundedRingSizeTest : public testing::TestWithParam<std::size_t> {};
 
-// The reader now and then rests, so that the ring is full as often as it is empty.
+// The reader pauses now and then, so that the ring is full as often as it is empty.
 TEST_P(BoundedRingSizeTest, TwoThreadsTakeOrCountEveryItem) {
   constexpr std::uint64_t kCount = 100'000;
   BoundedRing<Story> ring(GetParam());
@@ -83,14 +83,14 @@ TEST_P(BoundedRingSizeTest, TwoThreadsTakeOrCountEveryItem) {
   EXPECT_TRUE(whole);
   EXPECT_TRUE(forward);
   EXPECT_EQ(taken + ring.dropped(), kCount);
-  EXPECT_EQ(broken, 0U) << "HasRoom was true and the Push after it dropped";
+  EXPECT_EQ(broken, 0U) << "a Push after HasRoom() == true was dropped";
   EXPECT_GT(promised, 0U);
   EXPECT_GT(taken, 0U);
   std::printf("room for %zu: %llu taken, %llu dropped\n", GetParam(), static_cast<unsigned long long>(taken),
               static_cast<unsigned long long>(ring.dropped()));
 }
 
-// As a log at lockstep pace: who waits for room loses nothing.
+// As for a log at lockstep pace: a writer that waits for room loses nothing.
 TEST_P(BoundedRingSizeTest, WaitingWriterLosesNothing) {
   constexpr std::uint64_t kCount = 50'000;
   BoundedRing<Story> ring(GetParam());
@@ -123,7 +123,7 @@ TEST_P(BoundedRingSizeTest, WaitingWriterLosesNothing) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, BoundedRingSizeTest, testing::Values(1, 2, 3, 64));
 
-// What came after the mark waits for the next.
+// Values pushed after the mark stay for the next Drain.
 TEST(BoundedRingTest, DrainsOnlyUpToTheMark) {
   BoundedRing<int> ring(4);
   ring.Push(1);

@@ -1,4 +1,4 @@
-// In a program without the interposer the counter must not pretend.
+// Without the interposer the counter must report that it is inactive.
 #include <gtest/gtest.h>
 
 #include "fovea/linux_rt/heap_counter.hpp"

@@ -1,4 +1,4 @@
-// The heap counter sees every way to the heap, and says when it sees none.
+// The heap counter counts every allocation function, and reports when it is inactive.
 #include "fovea/linux_rt/heap_counter.hpp"
 
 #include <gtest/gtest.h>
@@ -26,11 +26,11 @@ class HeapCounterTest : public testing::Test {
  protected:
   void SetUp() override {
 #ifdef FOVEA_SANITIZED
-    GTEST_SKIP() << "a sanitizer brings a malloc of its own";
+    GTEST_SKIP() << "a sanitizer replaces malloc";
 #endif
-    ASSERT_TRUE(HeapCounterActive()) << "the interposer is not linked: nothing below would mean anything";
+    ASSERT_TRUE(HeapCounterActive()) << "the interposer is not linked: the tests below would prove nothing";
   }
-  // Through a volatile pointer, so that the compiler cannot take a pair of calls away.
+  // Through a volatile pointer, so that the compiler does not remove the pair of calls.
   static void Use(void* block) {
     void* volatile used = block;
     std::free(used);

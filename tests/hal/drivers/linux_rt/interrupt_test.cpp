@@ -22,7 +22,7 @@ TEST(Interrupt, FirstSignalIsOnlyRecorded) {
   AwaitFirst(interrupt);
 }
 
-// In a child, which leaves the word of its last act in a pipe.
+// In a child process, whose last action writes a byte into a pipe.
 TEST(Interrupt, SecondSignalRunsTheLastActionAndEndsTheProcess) {
   int words[2];
   ASSERT_EQ(pipe(words), 0);
@@ -44,7 +44,7 @@ TEST(Interrupt, SecondSignalRunsTheLastActionAndEndsTheProcess) {
   int status = 0;
   waitpid(child, &status, 0);
   EXPECT_TRUE(WIFSIGNALED(status));
-  EXPECT_EQ(WTERMSIG(status), SIGINT) << "a shell sees why";
+  EXPECT_EQ(WTERMSIG(status), SIGINT) << "the exit status tells a shell the signal";
   close(words[0]);
 }
 

@@ -12,20 +12,20 @@
 namespace fovea::linux_rt {
 namespace {
 
-// Whatever the machine grants, each thing is either had or named.
+// Each privilege is either granted or listed as missing, on any machine.
 TEST(RealtimeTest, ListsEachMissingPrivilege) {
   std::thread thread([] {
     const std::vector<std::string> missing = MakeThreadRealtime({.fifo_priority = 10, .lock_memory = true});
     int named = 0;
     for (const std::string& line : missing) {
       named += line.find("SCHED_FIFO") != std::string::npos ? 1 : 0;
-      EXPECT_NE(line.find("): "), std::string::npos) << "it says what to do: " << line;
+      EXPECT_NE(line.find("): "), std::string::npos) << "the line says how to get the privilege: " << line;
       EXPECT_EQ(line.find('\n'), std::string::npos);
     }
     EXPECT_EQ(sched_getscheduler(0) == SCHED_FIFO, named == 0);
   });
   thread.join();
-  munlockall();  // not for the rest of this process
+  munlockall();  // later tests of this process run unlocked
 }
 
 TEST(RealtimeTest, ThreadStaysOnItsProcessorWithoutTimerSlack) {

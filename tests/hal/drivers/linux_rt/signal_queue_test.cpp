@@ -23,7 +23,7 @@ TEST(SignalQueue, RestoresTheSignalMask) {
   EXPECT_EQ(sigismember(&before, SIGUSR1), sigismember(&after, SIGUSR1));
 }
 
-// A terminal that is gone ends a program, but not one that was started to outlive it.
+// A closed terminal ends a program, except one that ignores SIGHUP, such as under nohup.
 TEST(SignalQueue, HangUpIsLeftOutWhereItIsIgnored) {
   {
     const SignalQueue queue({SIGHUP});

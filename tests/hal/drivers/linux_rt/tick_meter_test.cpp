@@ -48,7 +48,7 @@ TEST(DurationHistogramTest, AcceptsNegativeAndHugeDurations) {
 
 TEST(TickMeterTest, CountsHeapCallsOfTheTickOnly) {
 #ifdef FOVEA_SANITIZED
-  GTEST_SKIP() << "a sanitizer brings a malloc of its own";
+  GTEST_SKIP() << "a sanitizer replaces malloc";
 #endif
   ASSERT_TRUE(HeapCounterActive());
   TickMeter meter;

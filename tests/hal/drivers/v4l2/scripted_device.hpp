@@ -1,4 +1,4 @@
-// A video device that does what a test tells it: the kernel's side of Video4Linux2, in memory.
+// A video device that a test controls: the kernel's side of Video4Linux2, in memory.
 #pragma once
 
 #include <linux/videodev2.h>
@@ -16,12 +16,13 @@
 
 namespace fovea::test {
 
-// What a test sets and looks at; outlives the driver, as a plugged camera does.
+// State that a test sets and reads. It outlives the driver, as a plugged-in camera does.
 struct ScriptedCamera {
   bool plugged = true;
+  bool unplug_when_empty = false;  // the next Dequeue without a picture finds it unplugged
   bool busy = false;
   bool takes_pictures = true;
-  std::uint32_t width = 640;  // the largest that it gives
+  std::uint32_t width = 640;  // the largest size that it supports
   std::uint32_t height = 480;
   std::vector<std::uint32_t> formats{V4L2_PIX_FMT_GREY};
   double rate_hz_max = 120.0;
@@ -38,7 +39,7 @@ struct ScriptedCamera {
     std::uint32_t flags = 0;
     std::uint32_t missing_bytes = 0;
   };
-  // Into the oldest free buffer; lost where there is none.
+  // Fills the oldest free buffer; the picture is lost if there is none.
   bool Expose(const Picture& picture) {
     if (!streaming || free.empty()) {
       return false;
@@ -107,7 +108,7 @@ class ScriptedDevice final : public v4l2::Device {
     f.fmt.pix.pixelformat = camera_.formats.front();
     return 0;
   }
-  // As drivers do: what cannot be is changed to what can.
+  // As kernel drivers do: replaces unsupported values by supported ones.
   int SetFormat(v4l2_format& f) {
     v4l2_pix_format& pix = f.fmt.pix;
     pix.width = std::min(pix.width, camera_.width);
@@ -148,7 +149,8 @@ class ScriptedDevice final : public v4l2::Device {
   }
   int Dequeue(v4l2_buffer& b) {
     if (camera_.filled.empty()) {
-      return -EAGAIN;
+      camera_.plugged = !camera_.unplug_when_empty;
+      return camera_.plugged ? -EAGAIN : -ENODEV;
     }
     const auto [index, picture] = camera_.filled.front();
     camera_.filled.pop_front();

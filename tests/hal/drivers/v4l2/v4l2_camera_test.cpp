@@ -1,4 +1,4 @@
-// The driver against a scripted device. Not tried on hardware.
+// The driver with a scripted device. Not tried on hardware.
 #include "fovea/v4l2/v4l2_camera.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ std::string ErrorOf(ScriptedCamera& device, const v4l2::V4l2Config& config = Con
     v4l2::V4l2Camera camera(config, std::make_unique<ScriptedDevice>(device));
     return "";
   } catch (const camera::CameraError& error) {
-    EXPECT_EQ(device.mapped, 0) << "what was taken is given back";
+    EXPECT_EQ(device.mapped, 0) << "all buffers are unmapped";
     return error.what();
   }
 }
@@ -121,6 +121,18 @@ TEST(V4l2Camera, TakesTheNewestCompletePicture) {
   EXPECT_EQ(camera.counters().lost, 5U);
 }
 
+TEST(V4l2Camera, PictureTakenBeforeTheUnplugKeepsItsExposure) {
+  ScriptedCamera device;
+  v4l2::V4l2Camera camera(Config(), std::make_unique<ScriptedDevice>(device));
+  device.Expose({.gray = 1, .stamp_us = 6000});
+  device.unplug_when_empty = true;
+  hal::Frame frame;
+  ASSERT_TRUE(camera.Acquire(frame, 0).ok());
+  EXPECT_EQ(frame.exposure_ns, 4 * hal::kNsPerMs);
+  EXPECT_EQ(frame.stamp_ns, 4 * hal::kNsPerMs);
+  EXPECT_EQ(camera.counters().disconnects, 1U);
+}
+
 TEST(V4l2Camera, ReconnectsAfterBeingUnplugged) {
   ScriptedCamera device;
   v4l2::V4l2Camera camera(Config(), std::make_unique<ScriptedDevice>(device));
@@ -135,12 +147,12 @@ TEST(V4l2Camera, ReconnectsAfterBeingUnplugged) {
   EXPECT_EQ(camera.counters().disconnects, 1U);
   device.plugged = true;
   EXPECT_EQ(camera.Acquire(frame, hal::kNsPerSecond).code(), hal::StatusCode::kTimeout)
-      << "it is back, without a picture";
+      << "the camera is back, without a picture yet";
   EXPECT_EQ(camera.counters().reconnects, 1U);
   device.Expose({.gray = 9, .sequence = 0});
   ASSERT_TRUE(camera.Acquire(frame, 0).ok());
   EXPECT_EQ(frame.pixels[0], 9);
-  EXPECT_EQ(frame.sequence, before + 1) << "counted on";
+  EXPECT_EQ(frame.sequence, before + 1) << "the count continues";
 
   v4l2::V4l2Config once = Config();
   once.reconnect = false;
@@ -162,17 +174,17 @@ TEST(V4l2Camera, ImpossibleConfigurationIsRefusedWithAReason) {
   EXPECT_EQ(refusal([](Device d, Asked) { d.plugged = false; }),
             "camera /dev/video7: cannot be opened: No such file or directory");
   EXPECT_EQ(refusal([](Device d, Asked) { d.takes_pictures = false; }),
-            "camera /dev/video7: it takes no pictures, or does not stream them");
+            "camera /dev/video7: it does not capture video, or does not stream it");
   EXPECT_EQ(refusal([](Device, Asked c) { c.width_px = 1280; }),
             "camera /dev/video7: its pictures are 640 x 480 px, not 1280 x 480");
   EXPECT_EQ(refusal([](Device, Asked c) { c.pixel_format = "BGR8"; }),
             "camera /dev/video7: gives GREY pictures, not BGR3");
   EXPECT_EQ(refusal([](Device, Asked c) { c.pixel_format = "Mono12"; }),
-            "camera /dev/video7: pixel format Mono12 is none of Mono8, Bayer..8, YUYV, RGB8, BGR8");
+            "camera /dev/video7: pixel format Mono12 is not one of Mono8, Bayer..8, YUYV, RGB8, BGR8");
   EXPECT_EQ(refusal([](Device d, Asked) { d.formats = {V4L2_PIX_FMT_MJPEG}; }),
-            "camera /dev/video7: pixel format MJPG is none of Mono8, Bayer..8, YUYV, RGB8, BGR8");
+            "camera /dev/video7: pixel format MJPG is not one of Mono8, Bayer..8, YUYV, RGB8, BGR8");
   EXPECT_EQ(refusal([](Device, Asked c) { c.rate_hz = 500.0; }),
-            "camera /dev/video7: 500.000000 frames per second became 120.000000");
+            "camera /dev/video7: it changed the frame rate from 500.000000 to 120.000000 Hz");
   EXPECT_EQ(refusal([](Device d, Asked) { d.refused_controls = {V4L2_CID_EXPOSURE_ABSOLUTE}; }),
             "camera /dev/video7: refuses exposure time = 40: Invalid argument");
   EXPECT_EQ(refusal([](Device d, Asked) { d.busy = true; }),

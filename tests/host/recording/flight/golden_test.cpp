@@ -1,5 +1,5 @@
-// Golden logs: what the servo did with given inputs, and does still. A difference is a change of behaviour;
-// when it is meant, `fovea replay <log> --renew` writes the log anew, and the commit shows which one it is.
+// Golden logs: the servo must reproduce its recorded behaviour. After an intended change `fovea replay <log>
+// --renew` rewrites the log, and the commit names the change.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// All modes in a second: boot, hold, track, states that do not come, coast, hold, a commanded goal with a
-// change of laws on the way, home, a fault, reset.
+// All modes in about a second: boot, hold, track, missing states, coast, hold, a commanded goal with a change
+// of the motion law, home, a fault, reset.
 ServoRun Tour() {
   config::ServoConfig config = PandaConfig();
   config.predict.stale_s = 0.1;
@@ -61,22 +61,21 @@ TEST_P(GoldenLog, ServoReproducesTheGoldenLog) {
   if (!fs::exists(log)) {
     fs::create_directories(log.parent_path());
     RecordRun(run, log);
-    FAIL() << log << " was not there; it is written now, and goes with the next commit";
+    FAIL() << log << " was missing; it is written now: commit it";
   }
   EXPECT_LT(fs::file_size(log), 700'000U);
   const ProgramResult replay = RunProgram({FOVEA_PROGRAM, "replay", log});
   std::cout << replay.out;
-  EXPECT_EQ(replay.exit_code, 0)
-      << "the servo does something else than it did. If that is meant: fovea replay " << log.string()
-      << " --renew\n"
-      << replay.out << replay.err;
+  EXPECT_EQ(replay.exit_code, 0) << "the servo's behaviour has changed. If that is intended: fovea replay "
+                                 << log.string() << " --renew\n"
+                                 << replay.out << replay.err;
 }
 
 INSTANTIATE_TEST_SUITE_P(Runs, GoldenLog, testing::Values(&Tour, &Triangle),
                          [](const auto& run) { return run.index == 0 ? "Tour" : "Triangle"; });
 
-// It was written before a disc's face had a limit: what a configuration lacks stays as it is by itself, and
-// what it has is read into the fields that it was written from.
+// The log was written before the limit of a disc's tilt existed. A field that the log lacks keeps its
+// default; the others are read into the right fields.
 TEST(GoldenConfiguration, KeyMissingFromAnOldLogKeepsItsMeaning) {
   std::optional<config::ServoConfig> config;
   flight::TickVisitor visitor;
@@ -89,7 +88,7 @@ TEST(GoldenConfiguration, KeyMissingFromAnOldLogKeepsItsMeaning) {
   EXPECT_EQ(config->guard.workspace_margin, Triangle().config.guard.workspace_margin);
 }
 
-// A renewed log keeps the configuration that it was written with, unless a format's change converts it.
+// A renewed log keeps its old configuration, unless a change of the format converts it.
 TEST(GoldenConfiguration, TourHasTheConfigurationOfToday) {
   std::string logged;
   flight::TickVisitor visitor;
@@ -101,7 +100,7 @@ TEST(GoldenConfiguration, TourHasTheConfigurationOfToday) {
       << "remove the log and run this test, which writes it";
 }
 
-// All of the modes are in it.
+// The tour passes through all modes.
 TEST(GoldenTour, PassesThroughEveryMode) {
   const ServoRun run = Tour();
   task::ServoTask task;
@@ -115,12 +114,12 @@ TEST(GoldenTour, PassesThroughEveryMode) {
   EXPECT_EQ(modes, 0b111111) << "boot, hold, track, coast, fault, move";
 }
 
-// --renew makes it whole again after a change, and keeps its inputs.
+// --renew repairs a log after a change of the servo and keeps its inputs.
 TEST(GoldenLogRenewed, RenewedLogReplaysIdentically) {
   const TempFolder folder;
   const std::string log = folder.path() / "log.mcap";
   ServoRun run = TrackingRun("sphere", hal::FeatureKind::kSphere, features::FeatureForm::kSphere, 700);
-  // Recorded with another gain than the log says: as if the servo had changed since.
+  // Recorded with another gain than the log states, as if the servo had changed since.
   {
     ServoRun other = run;
     other.config.law.lambda = 1.5;

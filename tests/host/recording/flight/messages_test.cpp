@@ -1,5 +1,5 @@
-// The servo's configuration in a log: every field comes back, and a log of before a field was added is read
-// with that field's default.
+// The servo's configuration in a log: every field is read
+// back, and a field that an older log lacks gets its default.
 #include "firmware/host/recording/flight/messages.hpp"
 
 #include <gmock/gmock.h>
@@ -47,15 +47,15 @@ TEST(ServoConfigurationTest, FieldMissingFromALogTakesItsDefault) {
   EXPECT_EQ(back.law.lambda, 1.0 / 3.0);
 }
 
-// Before format 3 clearances counted from the lines between the joints.
+// Before format 3, clearances counted from the lines between the joints.
 TEST(ServoConfigurationTest, ClearancesOfAnOlderLogCountFromTheLinksSurface) {
   config::ServoConfig old = SomeConfig();
   ASSERT_EQ(old.arm.num_joints, 7);
   for (model::Capsule& body : old.arm.shape.bodies) {
     body.radius = 0.02;
   }
-  old.arm.shape.bodies[1].radius = 0.05;  // near the base: lines of sight ask it, planes do not
-  old.arm.shape.bodies[5].radius = 0.04;  // the other way round
+  old.arm.shape.bodies[1].radius = 0.05;  // near the base: used for lines of sight, not for planes
+  old.arm.shape.bodies[5].radius = 0.04;  // used for planes, not for lines of sight
   const auto read = [&old](double planes, double sight, bool in_older_log) {
     old.guard.link_clearance = planes;
     old.guard.sight_clearance = sight;
@@ -68,8 +68,8 @@ TEST(ServoConfigurationTest, ClearancesOfAnOlderLogCountFromTheLinksSurface) {
   EXPECT_DOUBLE_EQ(read(0.06, 0.08, true).link_clearance, 0.02);
   EXPECT_DOUBLE_EQ(read(0.06, 0.08, true).sight_clearance, 0.03);
   EXPECT_EQ(read(0.03, 0.03, true).link_clearance, 0.0);
-  EXPECT_EQ(read(0.03, 0.03, true).sight_clearance, 1e-3) << "0 would switch it off";
-  EXPECT_EQ(read(0.03, 0.0, true).sight_clearance, 0.0) << "it was switched off";
+  EXPECT_EQ(read(0.03, 0.03, true).sight_clearance, 1e-3) << "0 would switch the limit off";
+  EXPECT_EQ(read(0.03, 0.0, true).sight_clearance, 0.0) << "the limit was off";
   EXPECT_EQ(read(0.06, 0.08, false).link_clearance, 0.06);
   EXPECT_EQ(read(0.06, 0.08, false).sight_clearance, 0.08);
 }

@@ -1,5 +1,5 @@
-// A run's log without a simulator: the servo steps through given inputs, the flight recorder stands around
-// it, and the log is written by its own thread.
+// Writes a run's log without a simulator: the servo steps through given inputs, wrapped by the flight
+// recorder, and the log's own thread writes.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,12 +24,12 @@ inline std::map<std::string, std::string> ThisBuild() {
 }
 
 struct RecordedRunOptions {
-  std::size_t ring = 4096;                             // of the recorder
-  std::function<bool(std::size_t tick)> is_drained{};  // after this tick; empty: after each
-  std::optional<config::ServoConfig> configuration{};  // that the log says; none: the run's
+  std::size_t ring = 4096;                             // size of the recorder's ring
+  std::function<bool(std::size_t tick)> is_drained{};  // whether to drain after this tick; empty: after each
+  std::optional<config::ServoConfig> configuration{};  // stated in the log; none: the run's
 };
 
-// Returns how many records were dropped.
+// Returns the number of dropped records.
 inline std::uint64_t RecordRun(const ServoRun& run, const std::filesystem::path& path,
                                const RecordedRunOptions& options = {}) {
   task::ServoTask task;

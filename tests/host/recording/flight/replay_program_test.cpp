@@ -1,4 +1,4 @@
-// fovea replay as its users type it.
+// The program `fovea replay`, run from the command line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,30 +57,30 @@ TEST_F(ReplayProgramTest, ReportsChangesUnderOtherSettings) {
   std::vector<std::string> fields;
   for (const json& change : replay["changes"]) {
     fields.push_back(change["field"]);
-    EXPECT_GT(change.value("most", 1.0), 0.0);  // of flags none is told
+    EXPECT_GT(change.value("most", 1.0), 0.0);  // flags have no "most"
     EXPECT_GT(change["first_s"], 0.0) << "the arm is not driven in the first tick";
   }
   EXPECT_THAT(fields, testing::Contains("dq_cmd[3]"));
   EXPECT_THAT(fields, testing::Contains("V_BC_C_cmd[0]"));
   EXPECT_THAT(fields, testing::Contains("command.tau[1]"));
-  EXPECT_THAT(fields, testing::Not(testing::Contains("mode"))) << "it stays where the arm went";
+  EXPECT_THAT(fields, testing::Not(testing::Contains("mode"))) << "the recorded arm states stay the same";
   std::ostringstream text;
   text << std::ifstream(page).rdbuf();
   EXPECT_THAT(text.str(), AllOf(HasSubstr("servo.lambda=3"), HasSubstr("servo.omega_n=30"),
-                                HasSubstr("What it would have done")));
-  // What it was anyway changes nothing.
+                                HasSubstr("Replay with the changes")));
+  // Setting a key to its recorded value changes nothing.
   const ProgramResult same = Replay({"--set", "servo.lambda=2", "--json", "--out", page});
   EXPECT_EQ(json::parse(same.out)["changes"].size(), 0U);
 }
 
 TEST_F(ReplayProgramTest, RefusesUnknownKeysOptionsAndFiles) {
   EXPECT_THAT(Refusal({"--set", "servo.lamda=3"}),
-              HasSubstr("--set servo.lamda: a replay knows the keys of [servo] and [safety]; did you mean "
+              HasSubstr("--set servo.lamda: a replay accepts the keys of [servo] and [safety]; did you mean "
                         "servo.lambda?"));
-  EXPECT_THAT(Refusal({"--set", "camera.rate_hz=10"}), HasSubstr("knows the keys of [servo] and [safety]"));
+  EXPECT_THAT(Refusal({"--set", "camera.rate_hz=10"}), HasSubstr("accepts the keys of [servo] and [safety]"));
   EXPECT_THAT(Refusal({"--set", "servo.lambda=300"}), HasSubstr("expected a number, 0 to 20"));
-  EXPECT_THAT(Refusal({"--out", "x.html"}), HasSubstr("--out goes with --set"));
-  EXPECT_THAT(Refusal({"--renew", "--from", "1"}), HasSubstr("--renew goes with neither"));
+  EXPECT_THAT(Refusal({"--out", "x.html"}), HasSubstr("--out needs --set"));
+  EXPECT_THAT(Refusal({"--renew", "--from", "1"}), HasSubstr("--renew excludes --set and --from"));
   const ProgramResult none = RunProgram({FOVEA_PROGRAM, "replay", folder_.path() / "none.mcap"});
   EXPECT_EQ(none.exit_code, 2);
   EXPECT_THAT(none.err, HasSubstr("no such file"));

@@ -1,5 +1,5 @@
-// What is recorded is replayed to the last bit: from the first tick, from each keyframe, around what was
-// lost, and up to where the file was cut off. What differs is found, and named.
+// Replay is bit-exact from the first tick, from each keyframe, around lost ticks and up to the end of a
+// truncated file. A difference is found and named.
 #include "firmware/host/recording/flight/replay.hpp"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ class ReplayTest : public testing::Test {
   static test::ServoRun Sphere(int ticks) {
     return test::TrackingRun("sphere", hal::FeatureKind::kSphere, features::FeatureForm::kSphere, ticks);
   }
-  // The same log, but for what `change` makes of each tick.
+  // A copy of the log in which `change` has edited each tick, or removed it by returning false.
   fs::path Changed(const std::function<bool(log::Tick&)>& change) const {
     fs::path path = folder_.path() / "changed.mcap";
     log::McapWriter writer(path, "test");
@@ -89,7 +89,7 @@ TEST_F(ReplayTest, EveryKindOfRunReplaysBitExact) {
   }
 }
 
-// Ticks that found no place in the ring are counted, and split the log at the next keyframe.
+// Ticks dropped by a full ring are counted, and split the log at the next keyframe.
 TEST_F(ReplayTest, LostTicksSplitTheLogAtTheNextKeyframe) {
   const test::ServoRun run = Sphere(3500);
   test::RecordedRunOptions options;
@@ -109,7 +109,7 @@ TEST_F(ReplayTest, LostTicksSplitTheLogAtTheNextKeyframe) {
   EXPECT_TRUE(result.Identical());
   EXPECT_EQ(result.ticks(), 1300U + 1500U);
 
-  // Of another build the first segment is as good as ever, and the keyframes are left alone.
+  // With another build the first segment still replays; the keyframes are not used.
   for (const char* library : {"servo library", "link library"}) {
     ReplayOptions other = Options();
     other.build[library] = "another";
@@ -172,8 +172,8 @@ TEST_F(ReplayTest, DifferingOutputIsFoundAndNamed) {
   EXPECT_EQ(result.changes[1].ticks, 1U);
 }
 
-// One input bit of one tick: the outputs say so, or the digest does, and what it did to the state is named at
-// the next keyframe.
+// One changed input bit of one tick: the outputs or the digest show it, and
+// the next keyframe names the changed part of the state.
 TEST_F(ReplayTest, DifferingInputShowsInTheState) {
   test::RecordRun(Sphere(1500), path_);
   const fs::path changed = Changed([](log::Tick& tick) {
@@ -200,11 +200,11 @@ TEST_F(ReplayTest, MissingTickIsNoDivergence) {
   EXPECT_EQ(result.segments[2].first_tick, 1000U);
 }
 
-// Another gain, open loop: the outputs change from the first tick that tracks, and the arm's own path stays
-// the servo's, so that it finds no fault.
+// Another gain, in open loop: the outputs change from the first tracking tick. The servo still gets the
+// recorded arm states and reports no fault.
 TEST_F(ReplayTest, AnotherConfigurationReportsItsChanges) {
   config::ServoConfig still = test::PandaConfig();
-  still.law.posture_gain = 0.0;  // nothing else moves the hand
+  still.law.posture_gain = 0.0;  // only the visual law moves the arm
   const auto as_it_is = [](int, const task::ServoInputs&) {};
   test::RecordRun(test::RunOnIdealArm("sphere", still, 2500, true, as_it_is), path_);
   for (const double from_s : {0.0, 0.5}) {
@@ -222,15 +222,15 @@ TEST_F(ReplayTest, AnotherConfigurationReportsItsChanges) {
       const auto speed = [](const log::Tick& tick) {
         return std::hypot(tick.v_bc_c_cmd(0), tick.v_bc_c_cmd(1), tick.v_bc_c_cmd(2));
       };
-      if (speed(recorded) > 0.02) {  // below it is the estimate's noise that moves the hand
+      if (speed(recorded) > 0.02) {  // below, the estimate's noise dominates
         recorded_speed += speed(recorded);
         replayed_speed += speed(replayed);
       }
     };
     const ReplayResult result = Replay(path_, options);
     EXPECT_FALSE(result.Identical());
-    std::cout << "half as much again of the gain: " << replayed_speed / recorded_speed << " of the speed\n";
-    // From a keyframe the hand is as fast as it was, and is sped up from there, while it slows down already.
+    std::cout << "with 1.5 times the gain: " << replayed_speed / recorded_speed << " of the speed\n";
+    // A replay from a keyframe starts at the recorded speed, while the recorded arm slows down already.
     EXPECT_GT(replayed_speed, (from_s == 0.0 ? 1.4 : 1.1) * recorded_speed);
     EXPECT_LT(replayed_speed, 1.6 * recorded_speed);
   }

@@ -1,4 +1,4 @@
-// The container: what is written is read, wherever the file ends.
+// The MCAP container: all written data is read back, wherever the file ends.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -54,7 +54,7 @@ std::string FileBytes(const fs::path& path) {
 
 class McapTest : public testing::Test {
  protected:
-  // A file of several chunks, with everything in it.
+  // A file of several chunks with every kind of record.
   void WriteSample() {
     McapWriter writer(path_, "test");
     const std::uint16_t schema = writer.AddSchema("a.Type", "descriptor");
@@ -93,7 +93,7 @@ TEST_F(McapTest, ReadsBackEverythingWritten) {
   EXPECT_EQ(content.metadata.at("about").at("key"), "value");
 }
 
-// Cut off anywhere, the file gives the messages of all chunks that are whole, and says that it was cut off.
+// Truncated anywhere, the file gives the messages of all complete chunks and is reported as truncated.
 TEST_F(McapTest, IsReadableUpToAnyCut) {
   WriteSample();
   const std::string bytes = FileBytes(path_);
@@ -113,7 +113,7 @@ TEST_F(McapTest, IsReadableUpToAnyCut) {
   EXPECT_EQ(most, written_.size());
 }
 
-// A bit that fell over in a chunk's body is noticed; no such damage crashes the reader.
+// A flipped bit in a chunk is detected, and no such damage crashes the reader.
 TEST_F(McapTest, DamagedChunkMakesTheLogIncomplete) {
   WriteSample();
   const std::string bytes = FileBytes(path_);
@@ -126,17 +126,16 @@ TEST_F(McapTest, DamagedChunkMakesTheLogIncomplete) {
     std::ofstream(path_, std::ios::binary) << damaged;
     const Content content = Read(path_);
     noticed += content.end.complete ? 0 : 1;
-    // A chunk is taken whole, with its checksum right, or not at all.
+    // A chunk is read only with a correct checksum.
     if (content.messages != written_) {
       EXPECT_FALSE(content.end.complete) << "damage at try " << i << " was not noticed";
     }
   }
-  // What is left are names, times and the index, which have no checksum of their own when read from the
-  // front.
+  // Undetected flips lie in names, times or the index, which have no checksum in a sequential read.
   EXPECT_GT(noticed, kTries * 8 / 10);
 }
 
-// A chunk that is no longer taken for one is missed: the summary says how many messages there were.
+// A chunk with a damaged record type is skipped. The message count of the summary reveals it.
 TEST_F(McapTest, SkippedChunkMakesTheLogIncomplete) {
   WriteSample();
   std::string bytes = FileBytes(path_);
@@ -159,7 +158,7 @@ TEST_F(McapTest, RefusesAFileThatIsNoLog) {
   EXPECT_THROW(Read(fs::temp_directory_path()), std::runtime_error);
 }
 
-// Both versions are named, of the log and of the program, and who wrote it.
+// The error names both versions, of the log and of the program, and the program that wrote the log.
 TEST_F(McapTest, RefusesAnUnknownFormatAndNamesBothVersions) {
   const auto error = [this](const std::string& version) -> std::string {
     {
@@ -188,7 +187,7 @@ TEST_F(McapTest, RefusesAnUnknownFormatAndNamesBothVersions) {
 
 TEST_F(McapTest, FullDiskThrows) {
   if (!fs::exists("/dev/full")) {
-    GTEST_SKIP() << "no /dev/full here";
+    GTEST_SKIP() << "this system has no /dev/full";
   }
   EXPECT_THROW(
       {
@@ -202,7 +201,7 @@ TEST_F(McapTest, FullDiskThrows) {
   EXPECT_THROW(McapWriter("/nowhere/at/all", "test"), std::runtime_error);
 }
 
-// A few bytes that say they were two gigabytes once get no memory for it.
+// A chunk of a few bytes that claims 2 GB uncompressed must not cause an allocation.
 TEST_F(McapTest, ImplausibleUncompressedSizeIsDamage) {
   const auto put = [](std::string& out, auto value) {
     char bytes[sizeof value];
@@ -212,7 +211,7 @@ TEST_F(McapTest, ImplausibleUncompressedSizeIsDamage) {
   std::string chunk;
   put(chunk, std::uint64_t{0});
   put(chunk, std::uint64_t{0});
-  put(chunk, (std::uint64_t{1} << 31U) - 1U);  // as it was before it was packed
+  put(chunk, (std::uint64_t{1} << 31U) - 1U);  // uncompressed size
   put(chunk, std::uint32_t{0});
   put(chunk, std::uint32_t{4});
   chunk += "zstd";

@@ -1,4 +1,4 @@
-// The fingerprint: one bit anywhere in a record changes it.
+// The hash of the records changes with any bit of a record.
 #include "firmware/host/recording/log/record_hash.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The log of a run: nothing is lost silently, and a disk that is slow or full stops nobody.
+// The log of a run: every loss is counted, and a slow or full disk blocks no thread.
 #include "firmware/host/recording/log/run_log.hpp"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ class RunLogTest : public testing::Test {
 };
 
 TEST_F(RunLogTest, WithoutDroppingItWaitsAndLosesNothing) {
-  constexpr std::uint64_t kTicks = 20'000;  // ten times what the ring holds
+  constexpr std::uint64_t kTicks = 20'000;  // ten times the ring's size
   RunLog log(OneJoint(path_));
   for (std::uint64_t i = 0; i < kTicks; ++i) {
     log.AddTick(RecordAt(i));
@@ -78,7 +78,7 @@ TEST_F(RunLogTest, WithoutDroppingItWaitsAndLosesNothing) {
   }
 }
 
-// Where it may drop, what is there and what was dropped make up the whole, and the writer never waits.
+// If dropping is allowed, written and dropped ticks add up, and the servo never waits.
 TEST_F(RunLogTest, DroppedTicksAreCounted) {
   constexpr std::uint64_t kTicks = 200'000;
   RunLogConfig config = OneJoint(path_);
@@ -89,7 +89,7 @@ TEST_F(RunLogTest, DroppedTicksAreCounted) {
   }
   log.Finish();
   const auto ticks = Messages<Tick>(kTickTopic);
-  EXPECT_GT(log.dropped(), 0U) << "ticks came a hundred times faster than they can be written";
+  EXPECT_GT(log.dropped(), 0U) << "ticks come a hundred times faster than the disk writes";
   EXPECT_EQ(ticks.size() + log.dropped(), kTicks);
 }
 
@@ -127,7 +127,7 @@ TEST_F(RunLogTest, WritesTheFrameTransforms) {
   log.Finish();
   const auto transforms = Messages<foxglove::FrameTransforms>(kTransformTopic);
   ASSERT_EQ(transforms.size(), 1U);
-  ASSERT_EQ(transforms[0].transforms_size(), 2) << "the target is not known";
+  ASSERT_EQ(transforms[0].transforms_size(), 2) << "no transform of an unknown target";
   const foxglove::FrameTransform& arm = transforms[0].transforms(1);
   EXPECT_EQ(arm.child_frame_id(), "arm");
   EXPECT_EQ(arm.parent_frame_id(), kBaseFrame);
@@ -137,7 +137,7 @@ TEST_F(RunLogTest, WritesTheFrameTransforms) {
   EXPECT_NEAR(arm.rotation().z(), 0.7071067811865476, 1e-12);
 }
 
-// What was added is in the file a moment later, though nothing follows it and nobody completes it.
+// An added tick reaches the file soon, even if nothing follows and Finish is not called.
 TEST_F(RunLogTest, AddedTicksReachTheFileSoon) {
   RunLog log(OneJoint(path_));
   std::size_t added = 0;
@@ -153,10 +153,10 @@ TEST_F(RunLogTest, AddedTicksReachTheFileSoon) {
   }
 }
 
-// A log that cannot be written any more says so at the end; until then it takes everything, and nobody waits.
+// Finish reports a log that could not be written. Until then the log accepts all data and blocks no thread.
 TEST_F(RunLogTest, FullDiskBlocksNobodyAndFinishThrows) {
   if (!fs::exists("/dev/full")) {
-    GTEST_SKIP() << "no /dev/full here";
+    GTEST_SKIP() << "this system has no /dev/full";
   }
   RunLog log(OneJoint("/dev/full"));
   for (std::uint64_t i = 0; i < 20'000; ++i) {
@@ -169,10 +169,10 @@ TEST_F(RunLogTest, FullDiskBlocksNobodyAndFinishThrows) {
   EXPECT_TRUE(log.failed());
 }
 
-// What was to be written when it failed is counted, like what came after.
+// Data that was pending at the failure is counted, like all later data.
 TEST_F(RunLogTest, FullDiskCountsEveryLostAttachment) {
   if (!fs::exists("/dev/full")) {
-    GTEST_SKIP() << "no /dev/full here";
+    GTEST_SKIP() << "this system has no /dev/full";
   }
   constexpr int kAttachments = 50;
   RunLog log(OneJoint("/dev/full"));
@@ -183,10 +183,10 @@ TEST_F(RunLogTest, FullDiskCountsEveryLostAttachment) {
   EXPECT_EQ(log.dropped(), static_cast<std::uint64_t>(kAttachments));
 }
 
-// Nor do the ticks that nobody takes out of their ring any more.
+// Ticks that stay in their ring after the failure are counted too.
 TEST_F(RunLogTest, TicksAfterAFullDiskAreCounted) {
   if (!fs::exists("/dev/full")) {
-    GTEST_SKIP() << "no /dev/full here";
+    GTEST_SKIP() << "this system has no /dev/full";
   }
   constexpr std::uint64_t kTicks = 100;
   RunLog log(OneJoint("/dev/full"));
@@ -203,8 +203,8 @@ TEST_F(RunLogTest, TicksAfterAFullDiskAreCounted) {
   EXPECT_EQ(log.dropped(), added + kTicks);
 }
 
-// A disk that is full once a part of it is written: the file is readable up to there, and every tick is there
-// or counted, but for those of the last second before.
+// The disk becomes full during the run: the file is readable up to there, and every tick is written or
+// counted, except for those of the last second before.
 TEST_F(RunLogTest, FullDiskKeepsTheLogReadableUpToThere) {
   constexpr std::uint64_t kTicks = 60'000;
   rlimit before{};

@@ -1,4 +1,4 @@
-// No bit is lost between the servo's record and the log's message.
+// Converting a record to a log message and back keeps every bit.
 #include "firmware/host/recording/log/tick_message.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ std::string HashOf(const hal::TickRecord& record) {
   return hash.Finish();
 }
 
-// Any bits are a double: NaN with a payload, infinities, subnormal numbers and -0 among them.
+// Random doubles of any bit pattern, including NaN with a payload, infinities, subnormal numbers and -0.
 class Random {
  public:
   explicit Random(unsigned seed) : engine_(seed) {}
@@ -103,7 +103,7 @@ hal::TickRecord RandomRecord(Random& random) {
 
 TEST(TickMessageTest, KeepsEveryBitOfRandomRecords) {
   Random random(3);
-  Tick tick;  // used again, as the log does
+  Tick tick;  // reused, as in the log
   Feature feature;
   for (int i = 0; i < 5000; ++i) {
     const hal::TickRecord record = RandomRecord(random);

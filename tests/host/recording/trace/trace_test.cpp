@@ -1,4 +1,4 @@
-// A timeline as its readers get it: what its file holds, and that what is traced is what is done without it.
+// Timelines: the content of the trace file, and that tracing changes nothing in the traced run.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -47,7 +47,7 @@ TEST(Trace, WritesTheChromeTraceFormat) {
     }
   }
   ASSERT_EQ(spans.size(), 3U);
-  // Of two that begin together the outer one comes first; time counts from the first of all.
+  // Of two spans with the same start the outer one comes first; times count from the earliest span.
   EXPECT_EQ(spans[0]["name"], "outer");
   EXPECT_EQ(spans[0]["ts"], 0.0);
   EXPECT_EQ(spans[0]["dur"], 1000.0);

@@ -39,7 +39,7 @@ Fovea.components = (function () {
     body.append(
       el("p", {
         class: "hint",
-        text: "s is what the servo steers by, as it is predicted for each tick; s* is its goal. All components go to 0 when the goal is reached.",
+        text: "s is the feature that the servo controls, predicted for each tick; s* is its goal. At the goal all components are 0.",
       }),
     );
     Fovea.drawn("components");

@@ -50,7 +50,7 @@ Fovea.error = (function () {
       .filter((s) => s.t && hasNumbers(s.v));
   }
 
-  // For the log scale: whole decades around what is there, without the ideal's endless tail.
+  // The range of the log scale: whole decades around the values, without the ideal's endless tail.
   function decades(series) {
     const values = [];
     for (const s of series) if (s.name !== "ideal") for (const v of s.v) if (v > 0) values.push(v);
@@ -120,7 +120,7 @@ Fovea.error = (function () {
     if (!truth.length) small("confidence of the detection [0 to 1]", confidence, { range: [0, 1.05] });
     const notes = [];
     if (series.length && runs.some((run) => !hasNumbers(run.ticks.error_px)))
-      notes.push("Where no true error is drawn, the log holds no truth, as on a real robot or with a log cut off.");
+      notes.push("Where no true error is drawn, the log holds no truth: it is from a real robot, or it is truncated.");
     if (runs.some((run) => run.target.moves))
       notes.push("The target moves, so there is no ideal exponential to compare with.");
     if (notes.length) body.append(Fovea.absent(notes.join(" ")));

@@ -27,7 +27,7 @@ Fovea.featurePath = (function () {
     return frames.length ? [point.at(frames[0]), point.at(frames[frames.length - 1])] : null;
   }
 
-  // Nearest to the end, of goals that look alike: which corner is the first is nobody's to tell.
+  // Distance to the nearest goal of any corner: the picture does not tell which corner is the first.
   function offGoal(run, points, end) {
     return Math.min(...points.map((p) => Math.hypot(p.goal[0] - end[0], p.goal[1] - end[1])));
   }
@@ -146,7 +146,7 @@ Fovea.featurePath = (function () {
     return el("ul", { class: "legend plain" }, items);
   }
 
-  // Start, end and goal in numbers.
+  // A table of start, end and goal.
   function table(run) {
     const points = pointsOf(run);
     const pair = (p) => (p && isSeen(p) ? `${fixed(p[0], 1)}, ${fixed(p[1], 1)}` : "–");
@@ -165,7 +165,7 @@ Fovea.featurePath = (function () {
       (run) => run.feature_path && run.width_px > 0 && run.height_px > 0 && pointsOf(run).some((p) => ends(run, p)),
     );
     if (!shown.length) {
-      body.append(Fovea.absent("The log holds no place of the target in the picture."));
+      body.append(Fovea.absent("The log holds no position of the target in the picture."));
       return Fovea.drawn("features");
     }
     const drawing = svg("svg", {
@@ -178,7 +178,7 @@ Fovea.featurePath = (function () {
       el("figure", { class: "plot" }, frame, legend(shown)),
       el("p", {
         class: "hint",
-        text: "As the eye measured it, frame by frame, in pixels of a lens without distortion. The dot is where the feature is at the pointed-at time.",
+        text: "Measured by the detector, frame by frame, in pixels of a lens without distortion. The dot marks the feature at the shared time.",
       }),
       ...shown.map(table),
     );

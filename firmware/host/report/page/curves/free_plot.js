@@ -1,11 +1,11 @@
-// A plot of whatever signals the reader chooses: found by words, one plot for each unit, remembered in the address.
+// A plot of signals that the reader chooses with a word search: one plot for each unit. The address keeps the choice.
 
 Fovea.freePlot = (function () {
   const { el, plots } = Fovea;
   const COLOURS = 8;
   const MARK = "?show=";
 
-  // The address is "#section?show=id,id": a section to jump to, and what is chosen here.
+  // The address is "#section?show=id,id": a section to jump to, and the chosen signals.
   function readAddress() {
     const at = location.hash.indexOf(MARK);
     const section = at < 0 ? location.hash.slice(1) : location.hash.slice(1, at);
@@ -108,7 +108,7 @@ Fovea.freePlot = (function () {
       count.textContent = `${found().length} of ${signals.length} signals`;
     }
     search.addEventListener("input", filter);
-    // From the field with the arrows into the list and back; Enter takes the first that was found.
+    // The arrow keys move from the field into the list and back; Enter switches the first match.
     const move = (from, by) => {
       const list = found();
       const at = list.findIndex(({ box }) => box === from) + by;

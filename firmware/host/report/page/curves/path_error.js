@@ -1,4 +1,4 @@
-// How far the end effector is from where it is commanded to be, of a run that commands poses.
+// Distance of the end effector from its commanded position, for runs that command poses.
 
 Fovea.pathError = (function () {
   const { el, plots, hasNumbers, number, suffix } = Fovea;
@@ -10,7 +10,7 @@ Fovea.pathError = (function () {
     const parts = [];
     if (Number.isFinite(s.path_error_mm_max))
       parts.push(
-        `On the way itself at most ${number(s.path_error_mm_max)} mm, ${number(s.path_error_mm_rms)} mm rms, by the simulator's truth`,
+        `Distance from the path: at most ${number(s.path_error_mm_max)} mm, ${number(s.path_error_mm_rms)} mm rms, by the simulator's truth`,
       );
     const bound = Fovea.setting(run, "motion.bound_mm");
     if (bound !== null) parts.push(`motion.bound_mm allows ${bound} mm`);
@@ -45,7 +45,7 @@ Fovea.pathError = (function () {
     body.append(
       el("p", {
         class: "hint",
-        text: "By the measured joints and the arm's model, in each tick that commands a pose.",
+        text: "Computed from the measured joints and the arm's model, in each tick that commands a pose.",
       }),
       ...notes.map((text) => el("p", { class: "hint", text })),
     );

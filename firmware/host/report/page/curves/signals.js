@@ -50,7 +50,7 @@ Fovea.signals = (function () {
     return list;
   }
 
-  // One entry for each signal; it stands for those of both runs.
+  // One entry for each signal; it covers both runs.
   function all(runs) {
     const entries = new Map();
     for (const signal of runs.flatMap(of)) {

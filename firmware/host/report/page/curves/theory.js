@@ -1,4 +1,4 @@
-// A one-joint arm beside its analytic answer: position, what is between the two, and the figures of both.
+// A one-joint arm and its analytic solution: their positions, the difference, and the figures of both.
 
 Fovea.theory = (function () {
   const { el, plots, number } = Fovea;
@@ -17,7 +17,7 @@ Fovea.theory = (function () {
       ["damping ratio ζ", "zeta", ""],
       ["natural frequency ωₙ", "omega_n", "rad/s"],
       ["settled after", "settle_time_s", "s"],
-      ["error that stays", "e_ss", "m"],
+      ["steady-state error", "e_ss", "m"],
     ].map(([name, key, unit]) => [name, figures[key], figures.analytic[key], unit]);
     const cell = (value, unit) => (Number.isFinite(value) ? `${number(value, 4)} ${unit}`.trim() : "–");
     const table = Fovea.table(
@@ -30,7 +30,7 @@ Fovea.theory = (function () {
     );
     const words = `The two positions are at most ${number(1000 * figures.residual_max)} mm apart, ${number(
       1000 * figures.residual_rms,
-    )} mm rms; after the first second the goal is missed by at most ${number(1000 * figures.error_max)} mm.`;
+    )} mm rms; after the first second the error is at most ${number(1000 * figures.error_max)} mm.`;
     return el("div", {}, table, el("p", { class: "note", text: words }));
   }
 
@@ -49,7 +49,7 @@ Fovea.theory = (function () {
       errors.push({ name: "theory", run: run.index, t, v: less(analytic), colour: "--orange", width: 4 });
       errors.push({ name: "simulated", run: run.index, t, v: less(x), colour: "--blue", width: 1.6 });
       apart.push({
-        name: "simulated less theory",
+        name: "simulated minus theory",
         run: run.index,
         t,
         v: x.map((value, i) => 1000 * (value - analytic[i])),
@@ -61,8 +61,8 @@ Fovea.theory = (function () {
     const key = Fovea.bands.legend(runs);
     if (key) body.append(key);
     plots.create(body, { label: "position of the joint [m]", series, height: 260 });
-    plots.create(body, { label: "error: goal less actual [m]", series: errors, height: 260, includeZero: true });
-    plots.create(body, { label: "simulated less theory [mm]", series: apart, height: 170, includeZero: true });
+    plots.create(body, { label: "error: goal minus actual [m]", series: errors, height: 260, includeZero: true });
+    plots.create(body, { label: "simulated minus theory [mm]", series: apart, height: 170, includeZero: true });
     for (const run of shown) {
       const table = figures(run);
       if (table) body.append(table);

@@ -1,10 +1,10 @@
-// The camera's velocity in its own axes: measured by the joints beside commanded by the servo.
+// The camera's velocity in its own axes: measured (from the joints) and commanded by the servo.
 
 Fovea.velocity = (function () {
   const { el, plots, hasNumbers } = Fovea;
   const AXES = ["x", "y", "z"];
 
-  // Of two runs the dashes tell B from A, and the width tells commanded from measured.
+  // With two runs, dashes mark run B, and the width tells commanded from measured.
   function seriesOf(runs, letter, first) {
     const single = runs.length === 1;
     return runs
@@ -43,7 +43,7 @@ Fovea.velocity = (function () {
     body.append(
       el("p", {
         class: "hint",
-        text: "Axes of C: x to the right in the picture, y down, z along the line of sight. Measured: from the measured positions and velocities of the joints and the arm's model. Commanded: what the servo's reference asks for, after its limits.",
+        text: "Axes of C: x to the right in the picture, y down, z along the line of sight. Measured: from the measured positions and velocities of the joints and the arm's model. Commanded: the servo's reference, after its limits.",
       }),
     );
     if (!parts.some((part) => part.series.some((s) => s.name.endsWith("measured"))))

@@ -1,4 +1,4 @@
-// What stands behind every plot over time: the servo's modes as faint shading, injected faults as labelled bands.
+// The background of every plot over time: the servo's modes as faint shading, injected faults as labelled bands.
 
 Fovea.bands = (function () {
   const { el, svg, clock, theme, words } = Fovea;
@@ -7,7 +7,7 @@ Fovea.bands = (function () {
     boot: { words: "getting ready", colour: "--mode-boot" },
     hold: { words: "standing still and waiting", colour: "--mode-hold" },
     track: { words: "steering to the target", colour: "--mode-track" },
-    coast: { words: "steering on the prediction alone", colour: "--mode-coast" },
+    coast: { words: "steering only by prediction", colour: "--mode-coast" },
     move: { words: "following a commanded motion", colour: "--mode-move" },
     fault: { words: "stopped by a fault", colour: "--bad" },
   };
@@ -24,7 +24,7 @@ Fovea.bands = (function () {
     }));
   }
 
-  // Faults that were put into the run. One that never ends has no end in the summary, or a very late one.
+  // Faults that were injected into the run. A fault that never ends has no end in the summary, or a very late one.
   function injectedOf(run) {
     const list = run.summary && Array.isArray(run.summary.injected) ? run.summary.injected : [];
     return list
@@ -51,7 +51,7 @@ Fovea.bands = (function () {
     ctx.stroke();
   }
 
-  // Behind the curves, into `box`. Of two runs A has the upper half, B the lower one.
+  // Paints into `box`, behind the curves. With two runs, A has the upper half and B the lower one.
   function paint(ctx, box, xOf) {
     const runs = Fovea.runs;
     const height = box.h / runs.length;
@@ -104,7 +104,7 @@ Fovea.bands = (function () {
     ctx.restore();
   }
 
-  // What the shading means, for above or below the plots of a part.
+  // The legend of the shading, for above or below the plots of a part.
   function legend(runs) {
     const shown = runs.flatMap(modesOf).map((m) => m.mode);
     const entry = (name, more, text) =>

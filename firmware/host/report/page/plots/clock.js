@@ -1,6 +1,6 @@
-// What all drawings share: the pointed-at time, the visible span of time, and the colours of the page.
+// State that all drawings share: the pointed-at time, the visible span of time, and the colours of the page.
 
-// Callbacks that are called together. Each can be taken back by what `listen` returns.
+// Callbacks that are called together. `listen` returns a function that removes its callback.
 Fovea.callbacks = function () {
   const callbacks = new Set();
   return {
@@ -69,7 +69,7 @@ Fovea.timeKeys = function (event) {
 Fovea.theme = (function () {
   const { listen, tell } = Fovea.callbacks();
   const theme = {
-    // The value of a custom property of the page, for what is painted on a canvas.
+    // The value of a custom property of the page, for painting on a canvas.
     colour: (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim(),
     listen,
     tell,

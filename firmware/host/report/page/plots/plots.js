@@ -1,4 +1,4 @@
-// One kind of time plot, drawn by Dygraphs, with a legend that tells the values at the shared time.
+// One kind of time plot, drawn by Dygraphs, with a legend that shows the values at the shared time.
 
 Fovea.plots = (function () {
   const { el, svg, clock, theme, number } = Fovea;
@@ -27,7 +27,7 @@ Fovea.plots = (function () {
   const DASH = [7, 4];
   const dashOf = (s) => s.dash || (s.run && !s.dots ? DASH : null);
 
-  // A sample of each of the given series, one beneath the other.
+  // A sample of each of the given series, one below the other.
   function swatch(...list) {
     const box = svg("svg", {
       viewBox: "0 0 26 12",
@@ -130,7 +130,7 @@ Fovea.plots = (function () {
     function fillLegend() {
       legend.textContent = "";
       visible = state.series.map(() => true);
-      // One entry for each quantity; it stands for the lines of both runs.
+      // One entry for each quantity; it covers the lines of both runs.
       outputs = Array.from(new Set(state.series.map((s) => s.name))).map((name) => {
         const members = state.series.map((s, i) => i).filter((i) => state.series[i].name === name);
         const output = el("span", { class: "legend-value" });
@@ -241,7 +241,7 @@ Fovea.plots = (function () {
       }
     }
 
-    // What was painted during `beforeprint` does not reach the paper, but a picture of it does.
+    // A canvas painted during `beforeprint` is not printed, but an image of it is.
     function keepStill() {
       const layers = Array.from(area.querySelectorAll("canvas"));
       const copy = el("canvas", { width: layers[0].width, height: layers[0].height });

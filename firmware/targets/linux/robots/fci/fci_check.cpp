@@ -19,14 +19,14 @@ namespace {
 
 using Rows = std::vector<CheckRow>;
 
-constexpr int kStates = 1000;  // of the robot that are looked at, or more
+constexpr int kStates = 1000;  // states of the robot that are read, at least
 constexpr double kFlangeWarnMm = 1.0;
 constexpr double kFlangeFailMm = 5.0;
 constexpr double kFlangeWarnDeg = 0.1;
 constexpr double kFlangeFailDeg = 0.5;
 constexpr double kMmPerM = 1e3;
 
-// The arm that the servo computes with may be less than the robot, never more.
+// The limits of the servo's arm model may be inside the robot's, never outside.
 CheckRow CheckLimits(const HwConfig& config, const robots::Robot& robot) {
   struct Limit {
     const char* what;
@@ -73,7 +73,7 @@ CheckRow CheckLimits(const HwConfig& config, const robots::Robot& robot) {
   return {"limits", Verdict::kPass, "ranges, speeds, torques and their rates are inside the robot's", ""};
 }
 
-// Where the robot says that its flange is beside where the model has it.
+// Compares the flange's pose that the robot reports with the model's.
 CheckRow CheckKinematics(const robots::Robot& robot, const hal::ArmState& state,
                          const franka::RobotState& said) {
   const auto pose = [](const franka::Matrix4& m) {
@@ -91,7 +91,7 @@ CheckRow CheckKinematics(const robots::Robot& robot, const hal::ArmState& state,
           : mm < kFlangeFailMm && deg < kFlangeFailDeg ? Verdict::kWarn
                                                        : Verdict::kFail,
           fmt::format("the flange is {:.2f} mm and {:.3f} deg off the model's", mm, deg),
-          fits ? "" : "is arm.model this robot, with its tip at the flange?"};
+          fits ? "" : "check that arm.model is this robot, with its tip at the flange"};
 }
 
 void CheckStates(const HwConfig& config, const robots::Robot& robot, Rows& rows) {
@@ -117,11 +117,11 @@ void CheckStates(const HwConfig& config, const robots::Robot& robot, Rows& rows)
   const std::uint64_t lost = c.lost_states + c.timeouts;
   const bool ready = has_state && arm.robot_state().robot_mode == franka::RobotMode::kIdle;
   rows.push_back({"robot's mode", ready ? Verdict::kPass : Verdict::kFail, ready ? "idle" : "not idle",
-                  ready ? "" : "switch it to external control, and end what else moves it"});
+                  ready ? "" : "switch it to external control, and end other programs that move it"});
   rows.push_back({"states",
                   lost == 0 ? Verdict::kPass : (lost < kStates / 100 ? Verdict::kWarn : Verdict::kFail),
                   fmt::format("{} came, {} lost or late", c.states, lost),
-                  lost == 0 ? "" : "a cable straight to the robot, no switch and no other traffic"});
+                  lost == 0 ? "" : "use a direct cable to the robot, without a switch or other traffic"});
   if (has_state) {
     rows.push_back(CheckRange(robot, state, config.servo.config.guard.joint_position_margin));
     rows.push_back(CheckKinematics(robot, state, arm.robot_state()));
@@ -137,7 +137,7 @@ void CheckFciRobot(const HwConfig& config, const robots::Robot& robot, Rows& row
     CheckStates(config, robot, rows);
   } catch (const franka::NetworkError& error) {
     rows.push_back(
-        {"robot", Verdict::kFail, error.what(), "see robot.host, robot.port and the network's cable"});
+        {"robot", Verdict::kFail, error.what(), "check robot.host, robot.port and the network cable"});
   }
 }
 

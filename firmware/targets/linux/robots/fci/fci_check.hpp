@@ -1,4 +1,4 @@
-// What of a Panda is as it should be; it is not moved.
+// Checks of a Panda, without moving it.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace fovea::hw {
 
-// Limits and kinematics of the model beside the robot's, its mode, its states, where it stands, what its
-// joints carry.
+// Compares limits and kinematics of the model with the robot's. Checks its mode, its states, its joint ranges
+// and gravity.
 void CheckFciRobot(const HwConfig& config, const robots::Robot& robot, std::vector<CheckRow>& rows);
 
 }  // namespace fovea::hw

@@ -17,16 +17,16 @@ const FciDriver::Settings& SettingsOf(const HwConfig& config) {
 
 void FciDriver::AddKeys(Settings& settings, config::KeyTable& keys) {
   keys.Text("robot.host", settings.host, "address of the robot's controller");
-  keys.Integer("robot.port", settings.port, 1, 65535, "", "its TCP port");
+  keys.Integer("robot.port", settings.port, 1, 65535, "", "TCP port of the robot's controller");
   keys.Flag("robot.set_load", settings.set_load,
-            "tell the robot of arm.load_*; false: its own settings know of it already");
+            "send arm.load_* to the robot; false: the robot's own settings contain the load");
   keys.Choice("robot.time", settings.time, {"computer", "robot"},
-              "whose clock stamps are in; robot: of a simulated one in lockstep");
+              "clock of the stamps; robot: that of a simulated robot in lockstep");
   keys.Number("robot.state_timeout_ms", settings.state_timeout_ms, 1.0, 10000.0, "ms",
-              "no state for so long is a tick without one; at most safety.arm_lost_ticks with robot.time = "
-              "\"computer\", long for a robot in lockstep");
+              "after so long without a state the tick runs without one; at most safety.arm_lost_ticks with "
+              "robot.time = \"computer\", long for a robot in lockstep");
   keys.Number("robot.torque_step", settings.torque_step, 0.001, 1.0, "Nm",
-              "a joint's torque changes by no more from one state to the next");
+              "largest change of a joint's torque from one state to the next");
 }
 
 void FciDriver::CheckSettings(const HwConfig& config) {
@@ -52,7 +52,7 @@ hal::Arm& FciDriver::Connect(bool allow_motion) {
   return arm_.emplace(FrankaConfigOf(config_, allow_motion), by_robot_ ? &robot_time_ : nullptr);
 }
 
-// The robot counts over its last states, and while a motion is ended it sends some that want no command.
+// The robot counts over its last states. While a motion ends, it sends some states that need no command.
 void FciDriver::Stop() noexcept {
   success_rate_ = arm_->robot_state().control_command_success_rate;
   arm_->Stop();

@@ -1,4 +1,4 @@
-// A Franka Emika Panda, by its control interface, version 5 (hal/drivers/franka).
+// A Franka Emika Panda, through its control interface, version 5 (hal/drivers/franka).
 #pragma once
 
 #include <optional>
@@ -14,11 +14,11 @@ namespace fovea::hw {
 class FciDriver final : public ArmDriver {
  public:
   static constexpr const char* kName = "fci5";
-  static constexpr const char* kMeaning = "a Franka Emika Panda, by its control interface, version 5";
+  static constexpr const char* kMeaning = "a Franka Emika Panda, through its control interface, version 5";
   static constexpr int kJoints = franka::kJoints;
 
   struct Settings {
-    std::string host = "172.16.0.2";  // as the maker ships it
+    std::string host = "172.16.0.2";  // the maker's default
     int port = franka::kFciPort;
     bool set_load = true;
     std::string time = "computer";
@@ -26,7 +26,7 @@ class FciDriver final : public ArmDriver {
     double torque_step = 1.0;  // [Nm]
   };
   static void AddKeys(Settings& settings, config::KeyTable& keys);
-  // A read of the robot's state ends before the robot counts as lost.
+  // Checks that a read of the robot's state ends before the robot counts as lost.
   static void CheckSettings(const HwConfig& config);
 
   // `config` is borrowed.
@@ -50,10 +50,10 @@ class FciDriver final : public ArmDriver {
   const bool by_robot_;
   franka::RobotClock robot_time_;
   std::optional<franka::FrankaArm> arm_;
-  std::optional<double> success_rate_;  // when Stop was told to end the motion
+  std::optional<double> success_rate_;  // at the call of Stop
 };
 
-// What the robot is told.
+// The configuration of the Franka driver.
 franka::FrankaConfig FrankaConfigOf(const HwConfig& config, bool allow_motion);
 
 }  // namespace fovea::hw

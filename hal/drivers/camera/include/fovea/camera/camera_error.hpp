@@ -1,4 +1,4 @@
-// What a camera driver throws when it cannot be opened or set up as asked: one line, with the device in it.
+// Thrown when a camera cannot be opened or set up as configured: one line that names the device.
 #pragma once
 
 #include <stdexcept>

@@ -1,6 +1,6 @@
-// What is known of a device's clock beside the host's: a point for each second of the last half minute, and a
-// line along them. latch_mapper.hpp and stamp_mapper.hpp differ in which point of a second is the best, and
-// in how the line lies to them.
+// Compares a device's clock with the host's: one point for each second of the last half minute, and a line
+// along the points. latch_mapper.hpp and stamp_mapper.hpp differ in which point of a second is the best, and
+// in how they fit the line.
 #pragma once
 
 #include <algorithm>
@@ -14,25 +14,25 @@
 
 namespace fovea::camera {
 
-// The host's clock less the device's, over the device's.
+// Host time minus device time, as a line over the device time.
 struct ClockLine {
-  std::int64_t device_ns = 0;  // it goes through this point
+  std::int64_t device_ns = 0;  // the line goes through this point
   std::int64_t excess_ns = 0;
   double drift = 0.0;  // seconds that the host's clock gains on the device's in a second
 
   [[nodiscard]] std::int64_t At(std::int64_t ns) const {
-    constexpr double kMostNs = 1e18;  // that a drift makes; far beyond what is lost
+    constexpr double kMostNs = 1e18;  // bounds the drift's term, which must fit into 64 bits
     return excess_ns +
            std::llround(std::clamp(drift * static_cast<double>(ns - device_ns), -kMostNs, kMostNs));
   }
 };
 
-// Of a second's points the one with the least `kKey` stays. A Point has device_ns and excess_ns, as above.
+// Keeps the point with the least `kKey` of each second. A Point has device_ns and excess_ns, as above.
 template <class Point, std::int64_t Point::*kKey>
 class ClockPoints {
  public:
-  // A device clock that goes back, or whose point lies further below or above `line` than it can, was set
-  // anew: what was known of it is forgotten. The point's time is a stamp (stamp.hpp).
+  // A device clock that goes back, or whose point lies too far below or above `line`, was set: the earlier
+  // points are dropped. The point's device time must be a stamp (stamp.hpp).
   void Add(const Point& point, const ClockLine& line, std::int64_t most_below_ns,
            std::int64_t most_above_ns) {
     const std::int64_t off_ns = count_ > 0 ? point.excess_ns - line.At(point.device_ns) : 0;

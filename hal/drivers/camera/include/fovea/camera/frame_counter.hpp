@@ -1,4 +1,4 @@
-// Numbers of frames as devices count them, made into one count that never goes back.
+// Converts a device's frame numbers into one count that never goes back.
 #pragma once
 
 #include <cstdint>
@@ -7,17 +7,17 @@ namespace fovea::camera {
 
 class FrameCounter {
  public:
-  // Device numbers run from `first` to `last` and then start again; 64-bit ones never do.
+  // Device numbers run from `first` to `last` and then start again; 64-bit numbers never do.
   FrameCounter(std::uint64_t first, std::uint64_t last) : span_(last - first + 1) {}
   FrameCounter() = default;  // all 64 bits
 
-  // The count of the frame with number `device`; a gap stays a gap. A number that would lie more than half a
-  // round or 2^32 frames ahead, or is the last one again, is that of a device that started anew: it counts as
-  // the next.
+  // The count of the frame with number `device`; a gap stays a gap. A number that is more than half a cycle
+  // or 2^32 frames ahead, or equal to the last one, comes from a restarted device: the frame counts as the
+  // next.
   std::uint64_t Count(std::uint64_t device);
-  // The device was opened anew: whatever number comes is the next.
+  // The device was opened again: its next frame counts as the next, whatever its number.
   void Restart() { known_ = false; }
-  // The device's numbers have 64 bits after all.
+  // The device's numbers turned out to have 64 bits.
   void Widen() { span_ = 0; }
 
   [[nodiscard]] std::uint64_t lost() const { return lost_; }

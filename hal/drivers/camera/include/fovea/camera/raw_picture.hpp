@@ -1,4 +1,4 @@
-// Pictures as they come from devices, and as the seam wants them: mono8 or BGR8.
+// Converts pictures from the formats of devices into those of the seam: mono8 or BGR8.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,11 @@ enum class RawFormat : std::uint8_t {
   kBgr8,
 };
 
-// "Mono8", "BayerRG8", ..., "YUYV", "RGB8", "BGR8"; empty when the seam knows no such format.
+// By name: "Mono8", "BayerRG8", ..., "YUYV", "RGB8", "BGR8"; empty for other names.
 std::optional<RawFormat> FormatOf(const std::string& name);
 const char* Name(RawFormat format);
 int RawBytesPerPixel(RawFormat format);
-// What the picture is behind the seam.
+// The seam's format of the converted picture.
 hal::PixelFormat UnpackedFormat(RawFormat format);
 
 struct RawPicture {
@@ -37,15 +37,15 @@ struct RawPicture {
   std::span<const std::uint8_t> bytes;
 };
 
-// Sets `raw`'s stride to that of rows with `padding` bytes after their pixels. False, with `raw` as it was:
-// no such rows are possible.
+// Sets `raw`'s stride to that of rows with `padding` bytes after their pixels. False, with `raw` unchanged,
+// if such rows are impossible.
 bool SetPadding(int padding, RawPicture& raw);
 
-// Into `out`, whose memory is used again when it fits. False, with `out` as it was: fewer bytes than the
-// picture needs, no size, a Bayer picture under 2 x 2 or a YUYV one of odd width.
+// Converts `raw` into `out`, whose memory is reused if it fits. False, with `out` unchanged: too few bytes,
+// no size, a Bayer picture under 2 x 2 or a YUYV one of odd width.
 bool Unpack(const RawPicture& raw, cv::Mat& out);
 
-// A picture that `Unpack` made as a frame of the seam, without its times; a view of `picture`.
+// A frame of the seam, without its times, that views `picture` (made by `Unpack`).
 hal::Frame FrameOf(const cv::Mat& picture);
 
 }  // namespace fovea::camera

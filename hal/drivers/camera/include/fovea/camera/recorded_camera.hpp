@@ -1,4 +1,4 @@
-// A camera that plays what was recorded: the pictures of a folder, or a video.
+// A camera that plays recorded pictures: those of a folder, or a video.
 #pragma once
 
 #include <cstdint>
@@ -10,11 +10,10 @@
 namespace fovea::camera {
 
 struct RecordedCameraConfig {
-  std::filesystem::path
-      path;               // a folder of .png, .jpg or .bmp in the order of their names, or a video's file
-  double rate_hz = 30.0;  // of a folder; a video says it itself
-  std::int64_t exposure_ns = 5'000'000;  // as it was [ns]
-  // Frame k is true at start_ns + k / rate. With `wait` it is handed out when the host's clock is there;
+  std::filesystem::path path;  // a folder of .png, .jpg or .bmp, played in order of their names, or a video
+  double rate_hz = 30.0;       // of a folder; a video file has its own
+  std::int64_t exposure_ns = 5'000'000;  // of the recording [ns]
+  // Frame k has the stamp start_ns + k / rate. With `wait` it is delivered at that time of the host's clock;
   // without, at once.
   std::int64_t start_ns = 0;
   bool wait = true;
@@ -22,7 +21,7 @@ struct RecordedCameraConfig {
 
 class RecordedCamera final : public hal::Camera {
  public:
-  // CameraError: no such file or folder, nothing in it that can be read.
+  // CameraError: no such file or folder, or no readable picture in it.
   explicit RecordedCamera(const RecordedCameraConfig& config);
   ~RecordedCamera();
 
@@ -31,7 +30,7 @@ class RecordedCamera final : public hal::Camera {
 
  private:
   struct Player;
-  // kClosed after the last picture; kDeviceFault: one that cannot be read, or has another size.
+  // kClosed after the last picture; kDeviceFault for a picture that cannot be read or has another size.
   hal::Status DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept override;
 
   std::unique_ptr<Player> player_;

@@ -1,7 +1,7 @@
-// A device's stamps on the host's clock, from nothing but when each came.
+// Converts a device's stamps to the host's clock, from their arrival times alone.
 //
-// A stamp comes the least transport time after it was true, or later: on a plot of (arrival - stamp) over
-// the stamp all points lie above a line, whose slope is the drift between the clocks. The line is an edge of
+// A stamp arrives the least transport time after it was taken, or later. In a plot of (arrival - stamp) over
+// the stamp, all points lie above a line whose slope is the drift between the clocks. The line is an edge of
 // the points' lower convex hull (Zhang, Liu and Xia, Clock synchronization algorithms for network
 // measurements, 2002), here of the earliest arrival in each second of the last half minute.
 #pragma once
@@ -15,13 +15,13 @@ namespace fovea::camera {
 
 class StampMapper {
  public:
-  // `transport_ns`: the least time from a stamp to its arrival. What is not known of it stays in every stamp.
+  // `transport_ns`: the least time from a stamp to its arrival. An error of it stays in every stamp.
   explicit StampMapper(std::int64_t transport_ns) : transport_ns_(transport_ns) {}
 
-  // The host's time of `device_ns`, which came at `arrival_ns` [ns]. Never later than its arrival, and later
-  // than all before it. Of a stamp that is none (stamp.hpp) the arrival is taken. A device clock that goes
-  // back was set anew, and what was known of it is forgotten; so was one that leaves the line: at once when
-  // stamps come 20 ms before they can, or a second late; else when all of a second come 20 ms late.
+  // The host's time of `device_ns`, which arrived at `arrival_ns` [ns]: not later than the arrival, and
+  // strictly increasing. For a value that is not a stamp (stamp.hpp), the arrival minus transport_ns. The
+  // known points are dropped if the device clock was set: it goes back, a stamp arrives 20 ms too early or a
+  // second too late, or all stamps of a second arrive 20 ms too late.
   std::int64_t Map(std::int64_t device_ns, std::int64_t arrival_ns);
   void Restart();
 
@@ -35,10 +35,10 @@ class StampMapper {
     std::int64_t excess_ns = 0;  // arrival - stamp
   };
 
-  // The stamps that have come far too late since the last one that did not.
+  // The stamps that arrived far too late since the last one that did not.
   struct Late {
     std::size_t count = 0;
-    std::int64_t since_ns = 0;  // by the device
+    std::int64_t since_ns = 0;  // device time of the first
     Point least;
   };
 

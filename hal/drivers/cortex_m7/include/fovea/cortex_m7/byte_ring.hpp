@@ -14,11 +14,11 @@ class ByteRing {
   static_assert(kCapacity > 0 && (kCapacity & (kCapacity - 1)) == 0);
 
  public:
-  // By the one who writes: how many bytes there is room for at least.
+  // From the writer: how many bytes there is room for, at least.
   [[nodiscard]] std::size_t Room() const noexcept {
     return kCapacity - (written_.load(std::memory_order_relaxed) - read_.load(std::memory_order_acquire));
   }
-  // False, with nothing put, when it is full.
+  // From the writer. False, with nothing written, when it is full.
   bool Put(std::uint8_t byte) noexcept {
     if (Room() == 0) {
       return false;
@@ -28,11 +28,11 @@ class ByteRing {
     written_.store(at + 1, std::memory_order_release);
     return true;
   }
-  // By the one who reads.
+  // From the reader.
   [[nodiscard]] bool Empty() const noexcept {
     return read_.load(std::memory_order_relaxed) == written_.load(std::memory_order_acquire);
   }
-  // False when it is empty.
+  // From the reader. False when it is empty.
   bool Take(std::uint8_t& byte) noexcept {
     const std::uint32_t at = read_.load(std::memory_order_relaxed);
     if (at == written_.load(std::memory_order_acquire)) {

@@ -1,5 +1,5 @@
-// Included before everything else: a failed check of Eigen's is a fault of the processor, which ends in the
-// safe state, and not a message on a stream that is not there.
+// Include this before everything else. A failed Eigen assertion becomes a processor fault, which ends in the
+// safe state. The board has no stream for a message.
 #pragma once
 
 namespace fovea::cortex_m7 {

@@ -1,5 +1,4 @@
-// What the processor does with an instruction that it cannot execute: it tells once, and does nothing any
-// more.
+// Processor faults: the fault is reported once, then the processor sleeps forever.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +13,14 @@ struct FaultRegisters {
   std::uint32_t lr;
 };
 
-// The program's: brings the outputs into their safe state and reports. Runs on a stack of its own, with
-// interrupts off and the FPU on; the processor sleeps for good after it.
+// The program implements it: brings the outputs into their safe state and reports. Runs on its own stack,
+// with interrupts off and the FPU on. The processor then sleeps forever.
 void OnFault(const FaultRegisters& registers) noexcept;
 
 // Memory management, bus and usage faults get handlers of their own instead of becoming hard faults.
 void EnableFaults() noexcept;
 
-// What a failed check of the program's own becomes: a usage fault.
+// Raises a usage fault, for a failed check of the program.
 [[noreturn]] void FailCheck() noexcept;
 
 }  // namespace fovea::cortex_m7

@@ -1,4 +1,4 @@
-// Interrupts held off for a moment, and sleep until the next.
+// Disables interrupts in a scope, and sleeps until the next interrupt.
 #pragma once
 
 namespace fovea::cortex_m7 {
@@ -11,7 +11,7 @@ class InterruptLock {
   InterruptLock& operator=(const InterruptLock&) = delete;
 };
 
-// One that comes while a lock is held wakes the processor too, and is served when the lock is gone.
+// An interrupt during a lock wakes the processor too; it is served when the lock is released.
 inline void WaitForInterrupt() noexcept { asm volatile("dsb\n wfi" ::: "memory"); }
 
 }  // namespace fovea::cortex_m7

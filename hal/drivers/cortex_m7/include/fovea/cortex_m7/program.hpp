@@ -1,4 +1,4 @@
-// What runs after reset, once memory and FPU are ready: given by whoever links this driver.
+// Runs after reset, once memory and FPU are ready. The program that links this driver implements it.
 #pragma once
 
 namespace fovea::cortex_m7 {

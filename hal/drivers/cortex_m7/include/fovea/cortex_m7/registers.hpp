@@ -1,4 +1,4 @@
-// Where the processor and the board keep their registers. Processor: ARMv7-M Architecture Reference Manual,
+// Register addresses of the processor and the board. Processor: ARMv7-M Architecture Reference Manual,
 // B3; board: Arm MPS2 with image AN500 (Application Note 500), with Arm's CMSDK peripherals (DDI 0479).
 #pragma once
 

@@ -1,11 +1,11 @@
-// How much of the stack was ever used.
+// The largest stack use so far.
 #pragma once
 
 #include <cstdint>
 
 namespace fovea::cortex_m7 {
 
-// [bytes], from its top to the deepest word that was written. Looks at every word that was not.
+// [bytes], from the stack's top to the deepest word that was written. Scans all words that were not.
 [[nodiscard]] std::uint32_t StackBytes() noexcept;
 
 }  // namespace fovea::cortex_m7

@@ -5,14 +5,14 @@
 
 namespace fovea::cortex_m7 {
 
-// Of TimerCounts.
+// Rate of TimerCounts.
 inline constexpr std::uint32_t kTimerHz = 25'000'000;
 
 void StartTimers() noexcept;
 
-// SysTick's interrupts at 1 kHz. Off, it keeps what has passed of the period in hand.
+// Turns SysTick's interrupts at 1 kHz on or off. Off, the counter keeps its place in the period.
 void RunSysTick(bool on) noexcept;
-[[nodiscard]] std::uint32_t SysTicks() noexcept;  // all of them; wraps
+[[nodiscard]] std::uint32_t SysTicks() noexcept;  // since the start; wraps
 
 // Runs freely, upwards, wraps after 172 s.
 [[nodiscard]] std::uint32_t TimerCounts() noexcept;

@@ -7,8 +7,8 @@
 namespace fovea::cortex_m7 {
 
 struct UartCounters {
-  std::uint32_t received_lost = 0;  // bytes that came while the ring was full
-  std::uint32_t messages_lost = 0;  // that found no room to be sent
+  std::uint32_t received_lost = 0;  // bytes that arrived while the ring was full
+  std::uint32_t messages_lost = 0;  // dropped because the ring was full
 };
 
 void StartUart() noexcept;
@@ -18,11 +18,10 @@ void StartUart() noexcept;
 // False when no byte is there.
 [[nodiscard]] bool TakeByte(std::uint8_t& byte) noexcept;
 
-// All of `message`, or nothing of it where there is no room. Does not wait.
+// Queues all of `message`, or nothing if there is no room. Does not wait.
 void SendBytes(std::span<const std::uint8_t> message) noexcept;
 
-// All of `message` at once, waiting for each byte, whatever the interrupts do: for a processor that has
-// faulted.
+// Sends all of `message` at once, waits for each byte, needs no interrupts: for a processor that has faulted.
 void SendBytesNow(std::span<const std::uint8_t> message) noexcept;
 
 [[nodiscard]] const UartCounters& Counters() noexcept;

@@ -27,7 +27,7 @@ enum class Command : std::uint32_t {
 };
 inline constexpr std::uint32_t kCommands = 14;
 
-// The name of a command, for a person; static storage.
+// The name of a command, for messages; static storage.
 [[nodiscard]] const char* Name(Command command) noexcept;
 
 struct Header {
@@ -69,7 +69,7 @@ enum class RecoveryStatus : std::uint8_t {
 };
 enum class LoadModelStatus : std::uint8_t { kSuccess, kError };
 
-// Move's figures; the state's are others.
+// Values in Move; the state uses other values.
 enum class MoveController : std::uint32_t { kJointImpedance, kCartesianImpedance, kExternal };
 enum class MoveGenerator : std::uint32_t {
   kJointPosition,
@@ -137,7 +137,7 @@ struct GetCartesianLimitAnswer {
   }
 };
 
-// Above a lower threshold is contact, above an upper one collision. [Nm, N]
+// Above a lower threshold the robot reports a contact, above an upper one a collision. [Nm, N]
 struct CollisionBehavior {
   Vector7 lower_torque_acceleration{20, 20, 18, 18, 16, 14, 12};
   Vector7 upper_torque_acceleration{20, 20, 18, 18, 16, 14, 12};
@@ -206,7 +206,7 @@ struct Load {
   }
 };
 
-// Cut-off frequencies [Hz] of what is commanded; at 1000 nothing is filtered.
+// Cut-off frequencies of the commands [Hz]; 1000 turns the filter off.
 struct Filters {
   double joint_position = 1000.0;
   double joint_velocity = 1000.0;
@@ -232,7 +232,7 @@ struct LoadModelRequest {
   }
 };
 
-// An answer that is a status and nothing more.
+// An answer that contains only a status.
 struct StatusAnswer {
   std::uint8_t status = 0;
 
@@ -242,8 +242,7 @@ struct StatusAnswer {
   }
 };
 
-// How long the request of `command` is on the wire [bytes, header included]; 0 for no command of this
-// interface.
+// Length of the request of `command` on the wire [bytes, header included]; 0 for an unknown command.
 [[nodiscard]] std::uint32_t RequestSize(Command command) noexcept;
 
 // A whole message: header and payload.

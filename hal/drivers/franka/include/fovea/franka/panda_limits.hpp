@@ -1,4 +1,4 @@
-// What the maker publishes of a Panda's limits; the robot itself does not say them.
+// The maker's published limits of a Panda; the robot itself does not report them.
 #pragma once
 
 #include <array>

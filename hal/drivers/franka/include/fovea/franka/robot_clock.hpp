@@ -10,14 +10,14 @@ namespace fovea::franka {
 
 class RobotClock final : public hal::Clock {
  public:
-  // From the arm's thread: a state of `time_ns` came. Real-time: yes.
+  // From the arm's thread: a state with time `time_ns` arrived. Real-time: yes.
   void Advance(std::int64_t time_ns) noexcept;
 
  private:
   [[nodiscard]] std::int64_t DoNowNs() const noexcept override {
     return now_ns_.load(std::memory_order_relaxed);
   }
-  // No state will come while the loop waits here, so its time is taken from the computer's.
+  // No state arrives while the loop waits here, so the computer's clock measures the wait.
   hal::Status DoWaitUntil(std::int64_t deadline_ns) noexcept override;
 
   std::atomic<std::int64_t> now_ns_{0};

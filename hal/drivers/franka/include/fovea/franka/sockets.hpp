@@ -1,5 +1,5 @@
-// TCP and UDP over IPv4, as far as the robot's interface needs them. What opens a socket may block, allocate
-// and throw NetworkError; sending and receiving never do.
+// TCP and UDP over IPv4, as far as the robot's interface needs them. Functions that open a socket may block,
+// allocate and throw NetworkError; sending and receiving never do.
 #pragma once
 
 #include <cstddef>
@@ -46,7 +46,7 @@ struct Endpoint {
 // Looks up `host`, a name or a dotted address. NetworkError.
 Endpoint Resolve(const std::string& host, std::uint16_t port);
 
-// What came of reading a stream.
+// The result of reading a stream.
 enum class Received : std::uint8_t { kSome, kNothing, kClosed };
 
 class TcpConnection {
@@ -57,11 +57,11 @@ class TcpConnection {
   // NetworkError when `to` does not answer within `timeout_ms`.
   static TcpConnection Connect(const Endpoint& to, int timeout_ms);
 
-  // All of `bytes` at once, or false: the connection is broken or its buffer full. Real-time: yes.
+  // Sends all of `bytes`. False if the connection is broken or its buffer is full. Real-time: yes.
   [[nodiscard]] bool Send(std::span<const std::byte> bytes) noexcept;
-  // As much of `bytes` as there is room for; how much that was. Real-time: yes.
+  // Sends as much of `bytes` as there is room for. Returns how many bytes it sent. Real-time: yes.
   [[nodiscard]] std::size_t SendSome(std::span<const std::byte> bytes) noexcept;
-  // What is there, without waiting; `size` bytes of `room` are filled. Real-time: yes.
+  // Takes what has arrived, without waiting; fills `size` bytes of `room`. Real-time: yes.
   [[nodiscard]] Received Receive(std::span<std::byte> room, std::size_t& size) noexcept;
 
   [[nodiscard]] Endpoint peer() const noexcept;
@@ -79,7 +79,7 @@ class TcpListener {
   // Port 0 takes a free one. NetworkError when the port is taken.
   explicit TcpListener(const Endpoint& at);
 
-  // The next client that waits, if one does.
+  // The next waiting client, if there is one.
   [[nodiscard]] std::optional<TcpConnection> Accept() noexcept;
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
   [[nodiscard]] int fd() const noexcept { return descriptor_.get(); }
@@ -95,7 +95,7 @@ class UdpSocket {
   // Port 0 takes a free one. NetworkError.
   explicit UdpSocket(const Endpoint& at);
 
-  // Real-time: yes, both. False: it could not be sent; nothing waits.
+  // Real-time: both yes. False: the datagram could not be sent; no datagram is waiting.
   [[nodiscard]] bool Send(std::span<const std::byte> bytes, const Endpoint& to) noexcept;
   [[nodiscard]] bool Receive(std::span<std::byte> room, std::size_t& size, Endpoint& from) noexcept;
 
@@ -107,8 +107,8 @@ class UdpSocket {
   std::uint16_t port_ = 0;
 };
 
-// Waits until one of `fds` (those below 0 are passed over) has something to read, or `timeout_ns` has passed.
-// Real-time: yes; it is where a loop sleeps.
+// Waits until one of `fds` (those below 0 are ignored) has something to read, or `timeout_ns` has passed.
+// Real-time: yes; this is where a loop sleeps.
 void WaitReadable(std::span<const int> fds, std::int64_t timeout_ns) noexcept;
 
 }  // namespace fovea::franka

@@ -21,7 +21,7 @@ using ErrorFlags = std::array<std::uint8_t, kErrors>;
 
 inline constexpr Matrix4 kIdentity4{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
-// As the state shows them; Move has other figures (see messages.hpp).
+// Values in a state; Move uses other values (see messages.hpp).
 enum class MotionGeneratorMode : std::uint8_t {
   kIdle,
   kJointPosition,

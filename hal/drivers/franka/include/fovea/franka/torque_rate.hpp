@@ -1,8 +1,7 @@
-// Keeps torque commands within one step of whatever the robot may hold when they come.
+// Keeps torque commands within one step of every torque that the robot may apply when they arrive.
 //
-// On a good network that is what the answered state says. When packets are lost or late, a command that was
-// sent since may have been applied meanwhile, or may never have come: the next one must be near to all of
-// them.
+// On a good network, that is the torque in the answered state. If packets are lost or late, the robot may or
+// may not have applied the commands sent since: the next one must be near all of them.
 #pragma once
 
 #include <array>
@@ -14,19 +13,19 @@ namespace fovea::franka {
 
 class TorqueRate {
  public:
-  // `step_max`: the change of each joint's torque from one command that is applied to the next [Nm].
+  // `step_max`: the largest change of each joint's torque from one applied command to the next [Nm].
   explicit TorqueRate(const Vector7& step_max) noexcept : step_max_(step_max) {}
 
-  // A motion begins: nothing has been sent in it.
+  // At the start of a motion: nothing has been sent in it.
   void Clear() noexcept { num_sent_ = 0; }
 
-  // The torque nearest to `wish` that is within a step of `tau_J_d`, which the answered state holds, and of
-  // what was sent since that was [Nm]. True when it is not `wish` itself. Where `tau_J_d` is no number, what
-  // was sent last counts for it. Real-time: yes.
+  // Sets `command` to the torque nearest to `wish` that is within a step of `tau_J_d`, from the answered
+  // state, and of the commands sent after it [Nm]. True if it differs from `wish`. Where `tau_J_d` is not
+  // finite, the last command replaces it. Real-time: yes.
   bool Limit(const Vector7& wish, const Vector7& tau_J_d, Vector7& command) noexcept;
 
  private:
-  static constexpr std::size_t kMost = 8;  // commands that may be on their way
+  static constexpr std::size_t kMost = 8;  // commands that may be in transit
 
   [[nodiscard]] Vector7 Known(const Vector7& tau_J_d) const noexcept;
   void ForgetWhatCameBefore(const Vector7& tau_J_d) noexcept;

@@ -1,8 +1,8 @@
-// Plain data to bytes and back: little endian, packed, IEEE doubles, as the Franka Control Interface has
-// them.
+// Converts plain data to the bytes of the Franka Control Interface and back: little endian, packed, with IEEE
+// doubles.
 //
 // A message is a struct with `Fields(self, visit)`, which calls `visit` for each field in the order of the
-// wire. That one list is all that reads, writes and measures a message.
+// wire. This one list serves reading, writing and measuring a message.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little,
               "the wire is little endian; bytes are copied as they are");
 static_assert(std::numeric_limits<double>::is_iec559);
 
-// How many bytes a message takes.
+// The size of a message [bytes].
 template <typename Message>
 constexpr std::size_t WireSize() {
   std::size_t size = 0;
@@ -39,7 +39,7 @@ void Encode(const Message& message, std::span<std::byte> bytes) noexcept {
   });
 }
 
-// Reads a message from the start of `bytes`. False, with `message` left as it was, when they are too few.
+// Reads a message from the start of `bytes`. False, with `message` unchanged, if they are too few.
 // Real-time: yes.
 template <typename Message>
 [[nodiscard]] bool Decode(std::span<const std::byte> bytes, Message& message) noexcept {
@@ -55,7 +55,7 @@ template <typename Message>
   return true;
 }
 
-// A message as bytes of its own. Real-time: yes.
+// A message as an array of bytes. Real-time: yes.
 template <typename Message>
 [[nodiscard]] std::array<std::byte, WireSize<Message>()> Bytes(const Message& message) noexcept {
   std::array<std::byte, WireSize<Message>()> bytes;

@@ -31,39 +31,39 @@ struct GenicamConfig {
   double gain = -1.0;        // in the camera's unit; negative: as the camera is set
   int packet_size = 0;       // GigE Vision [bytes]; 0: the largest that the network carries
   StampAt stamp_at = StampAt::kStart;
-  // The least time from stamp to arrival; of account where the camera's own clock cannot be asked.
+  // The least time from stamp to arrival; used if the camera's own clock cannot be read.
   std::int64_t transport_ns = 0;
-  // The camera's clock is the loop's (by PTP; or a simulated one in lockstep): stamps are taken as they are.
+  // The camera's clock is the loop's (by PTP; or a simulated one in lockstep): stamps are used unchanged.
   bool device_time = false;
-  bool reconnect = true;  // after a loss, look for the camera until it is there again
+  bool reconnect = true;  // after a loss, search for the camera until it is back
 };
 
 struct GenicamCounters {
   std::uint64_t frames = 0;
-  std::uint64_t incomplete = 0;  // frames with packets missing, or given up
-  std::uint64_t lost = 0;        // frames that never came whole, by their numbers
-  std::uint64_t overtaken = 0;   // whole, but a newer one was there already
+  std::uint64_t incomplete = 0;  // frames with missing packets, or abandoned
+  std::uint64_t lost = 0;        // frames that never arrived complete, by gaps in their numbers
+  std::uint64_t overtaken = 0;   // complete, but a newer one had already arrived
   std::uint64_t resent_packets = 0;
   std::uint64_t missing_packets = 0;
   std::uint64_t disconnects = 0;
   std::uint64_t reconnects = 0;
-  std::uint64_t stamped_by_clock = 0;  // frames with a stamp by the camera's own clock
-  std::uint64_t clock_refused = 0;     // frames whose stamp cannot be of the clock that was asked
+  std::uint64_t stamped_by_clock = 0;  // frames stamped by the camera's own clock
+  std::uint64_t clock_refused = 0;     // frames whose stamp cannot be from the clock that was read
 };
 
 class GenicamCamera final : public hal::Camera {
  public:
-  // Opens, sets up and starts. CameraError: there is none, it is in use, or it refuses a setting.
+  // Opens, sets up and starts the camera. CameraError: not found, in use, or it refuses a setting.
   explicit GenicamCamera(const GenicamConfig& config);
   ~GenicamCamera();
 
-  // From any thread: Acquire still hands out what waits, then answers kClosed.
+  // From any thread: Acquire still delivers waiting frames, then returns kClosed.
   void Close();
 
   [[nodiscard]] int width_px() const { return width_px_; }
   [[nodiscard]] int height_px() const { return height_px_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  // From the thread that acquires, or after it.
+  // From the acquiring thread, or after it has ended.
   [[nodiscard]] GenicamCounters counters() const;
   // Seconds that the host's clock gains on the camera's in a second; 0 until 8 s are known.
   [[nodiscard]] double clock_drift() const { return drift_; }
@@ -71,8 +71,8 @@ class GenicamCamera final : public hal::Camera {
  private:
   class Session;
 
-  // While the camera is away: kTimeout, when it is looked for; else kDisconnected. When frames wait, the
-  // newest is taken, the others are counted as overtaken.
+  // While the camera is lost: kTimeout with `reconnect`, else kDisconnected. Takes the newest of the waiting
+  // frames and counts the others as overtaken.
   hal::Status DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept override;
   [[nodiscard]] hal::Status Take(Session& session, hal::Frame& frame, std::int64_t timeout_ns);
   [[nodiscard]] bool IsNoPicture(const Session& session, _ArvBuffer* buffer) const;
@@ -82,18 +82,18 @@ class GenicamCamera final : public hal::Camera {
   void Look();
 
   const GenicamConfig config_;
-  std::shared_ptr<Session> session_;  // guarded by mutex_ once the looking thread runs; null: camera away
+  std::shared_ptr<Session> session_;  // guarded by mutex_ once looking_ runs; null: camera lost
   std::string name_;
   int width_px_ = 0;
   int height_px_ = 0;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   bool closed_ = false;
   bool came_back_ = false;
   std::atomic<std::uint64_t> reconnects_{0};
 
-  // Of the thread that acquires.
+  // For the acquiring thread.
   cv::Mat picture_;
   std::int64_t last_device_ns_ = INT64_MIN;  // stamp of the last picture
   camera::FrameCounter numbers_;

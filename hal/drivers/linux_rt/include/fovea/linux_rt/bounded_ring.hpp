@@ -1,5 +1,5 @@
-// A bounded ring from one thread to another: one writer, one reader, no locks. What finds it full is dropped
-// and counted.
+// A bounded ring from one thread to another: one writer, one reader, no locks. Values that find it full are
+// dropped and counted.
 #pragma once
 
 #include <atomic>
@@ -20,8 +20,8 @@ class BoundedRing {
     Fill([&value](T& place) { place = value; });
   }
 
-  // The same, of a value that `fill(place)` puts together in its place, which holds an older one. Real-time:
-  // yes, when `fill` is.
+  // The same, but `fill(place)` writes the value in its place, which contains an older value. Real-time: yes,
+  // if `fill` is.
   template <typename Make>
   void Fill(const Make& fill) noexcept {
     const std::uint64_t at = written_.load(std::memory_order_relaxed);
@@ -33,16 +33,16 @@ class BoundedRing {
     written_.store(at + 1, std::memory_order_release);
   }
 
-  // From the writing thread: whether the next Push finds a place.
+  // From the writing thread: whether there is room for the next Push.
   [[nodiscard]] bool HasRoom() const noexcept {
     return written_.load(std::memory_order_relaxed) - read_.load(std::memory_order_acquire) < values_.size();
   }
 
-  // From the reading thread: a mark after all that is there now, for Drain.
+  // From the reading thread: a mark after the values now in the ring, for Drain.
   [[nodiscard]] std::uint64_t End() const noexcept { return written_.load(std::memory_order_acquire); }
 
-  // From the reading thread: calls `take(value)` for every value before the mark, oldest first. Returns how
-  // many. Where `take` throws, that value is gone, and those behind it are still there.
+  // From the reading thread: calls `take(value)` for every value before the mark, oldest first. Returns
+  // their number. If `take` throws, that value is removed, and those behind it stay.
   template <typename Take>
   std::size_t Drain(std::uint64_t end, Take&& take) {
     const std::uint64_t begin = read_.load(std::memory_order_relaxed);
@@ -56,7 +56,7 @@ class BoundedRing {
   [[nodiscard]] std::uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
 
  private:
-  // Gives a place back, however the taking ends.
+  // Frees the place, even if `take` throws.
   struct Taken {
     std::atomic<std::uint64_t>& read;
     std::uint64_t next;

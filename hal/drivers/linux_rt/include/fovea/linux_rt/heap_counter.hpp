@@ -1,8 +1,8 @@
 // Counts the heap calls of the calling thread while it is inside a counted region.
 //
 // The counting itself is done by the interposer (heap_interposer.cpp, target fovea_heap_interposer), which
-// takes the place of malloc and its kin in the executable that links it. Without it nothing is counted, and
-// HeapCounterActive() says so: a proof of "no heap" must ask it first.
+// replaces malloc and related functions in the executable that links it. Without it nothing is counted, and
+// HeapCounterActive() is false: a proof of "no heap" must check it first.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ void LeaveCountedRegion() noexcept;
 // Heap calls (allocate, free, reallocate) of this thread inside counted regions so far.
 [[nodiscard]] std::uint64_t CountedHeapCalls() noexcept;
 
-// Whether a heap call of this thread is seen at all; it makes one to find out. Real-time: no.
+// Whether a heap call of this thread is counted at all; makes one to find out. Real-time: no.
 [[nodiscard]] bool HeapCounterActive() noexcept;
 
 // For the interposer: called at every heap call.

@@ -1,4 +1,4 @@
-// Ctrl-C as a wish to end: the first SIGINT, SIGTERM or SIGHUP is noted, the second ends the process at once.
+// Ctrl-C as a request to end: the first SIGINT, SIGTERM or SIGHUP sets a flag, the second ends the process.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@ namespace fovea::linux_rt {
 
 class Interrupt {
  public:
-  // Made before other threads are, which then leave these signals to it.
+  // Create it before other threads, which then leave these signals to it.
   Interrupt();
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
@@ -20,8 +20,8 @@ class Interrupt {
 
   // From any thread: whether to end early. Real-time: yes.
   [[nodiscard]] bool Came() const noexcept { return came_.load(std::memory_order_relaxed); }
-  // What is still done before the process ends at once, by the thread of the signals; empty: nothing. Returns
-  // when nobody does what was set before.
+  // Sets the last action before the process ends at once, run by the signal thread; empty: none. Returns when
+  // the previous action is not running.
   void SetLastAct(std::function<void()> act);
 
  private:

@@ -8,7 +8,7 @@
 namespace fovea::linux_rt {
 
 std::int64_t MonotonicNs() noexcept;
-void SleepUntilNs(std::int64_t time_ns) noexcept;  // of MonotonicNs(); at once when it is past
+void SleepUntilNs(std::int64_t time_ns) noexcept;  // on the clock of MonotonicNs(); at once if past
 
 class MonotonicClock final : public hal::Clock {
  private:

@@ -1,4 +1,4 @@
-// Signals as something to ask for, instead of something that interrupts.
+// Signals that the program polls instead of being interrupted by them.
 #pragma once
 
 #include <csignal>
@@ -6,9 +6,9 @@
 
 namespace fovea::linux_rt {
 
-// While one lives, the signals that it names come to Next and to nobody else. Made before other threads are,
-// which then block them too. SIGHUP is left out where the process ignores it, since it shall outlive its
-// terminal (nohup).
+// While it exists, only Next receives its signals. Create it before other threads, which then block these
+// signals too. SIGHUP is left out if the process ignores it, because the process must outlive its terminal
+// (nohup).
 class SignalQueue {
  public:
   SignalQueue(std::initializer_list<int> numbers);

@@ -1,4 +1,4 @@
-// Measures every tick from outside: how long it took, what it took from the heap, which pages it missed.
+// Measures every tick from outside: its duration, heap calls and page faults.
 #pragma once
 
 #include <array>
@@ -38,8 +38,7 @@ class DurationHistogram {
   std::int64_t max_ns_ = 0;
 };
 
-// Asks the system for time and page faults just outside the counted part, so that the tick itself is
-// measured and not the measuring.
+// Reads time and page faults just outside the counted region, so that the measurement does not count itself.
 class TickMeter final : public hal::TickProbe {
  public:
   void Enter() noexcept override;

@@ -1,4 +1,4 @@
-// What the driver asks of the kernel: one video device, opened by its path. A test plays the kernel.
+// The driver's interface to the kernel: one video device, opened by its path. A test can replace the kernel.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,12 @@ class Device {
  public:
   virtual ~Device() = default;
 
-  // Each answers 0 or above when it worked, else -errno.
+  // Each returns 0 or more on success, else -errno.
   virtual int Open(const std::string& path) = 0;
   virtual int Control(unsigned long request, void* argument) = 0;  // an ioctl
   virtual int Map(std::size_t size, std::int64_t offset, void*& memory) = 0;
   virtual void Unmap(void* memory, std::size_t size) = 0;
-  // 1: a buffer waits, or the device has something to say; 0: nothing came in time.
+  // 1: a buffer or an error is waiting; 0: timeout.
   virtual int Wait(std::int64_t timeout_ns) = 0;
   virtual void Close() = 0;
 };
