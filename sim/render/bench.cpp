@@ -6,10 +6,6 @@ namespace {
 using Eigen::Isometry3f;
 using Eigen::Vector3f;
 
-constexpr float kTableWidth = 1.6F;  // along x
-constexpr float kTableDepth = 1.3F;  // along y
-constexpr float kTableX = 0.42F;     // centre
-constexpr float kTableThickness = 0.036F;
 constexpr float kFloorZ = -0.76F;
 constexpr float kBevel = 0.004F;
 

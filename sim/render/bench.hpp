@@ -30,6 +30,12 @@ struct Bench {
   std::vector<Ball> balls;
 };
 
+// The table [m]. Its top is at z = 0 in B.
+inline constexpr float kTableWidth = 1.6F;  // along x
+inline constexpr float kTableDepth = 1.3F;  // along y
+inline constexpr float kTableX = 0.42F;     // centre
+inline constexpr float kTableThickness = 0.036F;
+
 // The lab bench. `clutter` adds things of the target's colour and things of its shape; each differs from a
 // red ball of 80 mm in colour, shape or size.
 Bench MakeBench(bool clutter);

@@ -4,6 +4,7 @@
 #include "firmware/host/recording/log/scene_message.hpp"
 #include "firmware/host/recording/log/topics.hpp"
 #include "foxglove/scene.pb.h"
+#include "sim/render/bench.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -94,8 +95,8 @@ foxglove::SceneUpdate MakeSceneMessage(const RenderScene& scene) {
       AddShape(shape, entity);
     }
   }
-  log::AddBox(At(0.35, 0.0, -0.01), {1.6, 1.3, 0.018}, {0.42F, 0.40F, 0.37F},
-              log::AddEntity("table", log::kBaseFrame, update));
+  log::AddBox(At(kTableX, 0.0, -0.5 * kTableThickness), {kTableWidth, kTableDepth, kTableThickness},
+              {0.42F, 0.40F, 0.37F}, log::AddEntity("table", log::kBaseFrame, update));
   if (!scene.has_eye) {
     return update;
   }
