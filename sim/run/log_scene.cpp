@@ -95,8 +95,9 @@ foxglove::SceneUpdate MakeSceneMessage(const RenderScene& scene) {
       AddShape(shape, entity);
     }
   }
-  log::AddBox(At(kTableX, 0.0, -0.5 * kTableThickness), {kTableWidth, kTableDepth, kTableThickness},
-              {0.42F, 0.40F, 0.37F}, log::AddEntity("table", log::kBaseFrame, update));
+  const Eigen::Vector3d table = Eigen::Vector3f(kTableWidth, kTableDepth, kTableThickness).cast<double>();
+  log::AddBox(At(static_cast<double>(kTableX), 0.0, -0.5 * table.z()), table, {0.42F, 0.40F, 0.37F},
+              log::AddEntity("table", log::kBaseFrame, update));
   if (!scene.has_eye) {
     return update;
   }

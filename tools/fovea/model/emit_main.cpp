@@ -1,5 +1,5 @@
-// fovea-emit-model ARM: prints the model of a shipped arm as a C++ header, for the build. It is `fovea model ARM
-// --emit-cpp` without what the build of the simulator does not need.
+// fovea-emit-model ARM: prints the model of a shipped arm as a C++ header, for the build. The output is that
+// of `fovea model ARM --emit-cpp`, without the rest of that program.
 #include <cstdio>
 #include <exception>
 
@@ -15,7 +15,8 @@ int main(int argc, char** argv) {
   }
   try {
     const std::string name = argv[1];
-    const std::string header = EmitModel(robots::LoadRobot(config::ShareFolder() / "robots" / (name + ".toml")));
+    const std::string header =
+        EmitModel(robots::LoadRobot(config::ShareFolder() / "robots" / (name + ".toml")));
     return std::fputs(header.c_str(), stdout) < 0 || std::fflush(stdout) != 0 ? 2 : 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fovea-emit-model: %s\n", error.what());

@@ -21,14 +21,12 @@ class Writer {
 
   template <typename T>
   requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void operator()(const T& value) {
-    const auto* from = reinterpret_cast<const std::uint8_t*>(&value);
-    bytes_.insert(bytes_.end(), from, from + sizeof(T));
+    Append(&value, sizeof(value));
   }
   template <typename T, std::size_t N>
   requires std::is_arithmetic_v<T>
   void operator()(const std::array<T, N>& values) {
-    const auto* from = reinterpret_cast<const std::uint8_t*>(values.data());
-    bytes_.insert(bytes_.end(), from, from + sizeof(values));
+    Append(values.data(), sizeof(values));
   }
   template <typename M>
   void Matrix(const M& m) {
@@ -42,6 +40,12 @@ class Writer {
   }
 
  private:
+  void Append(const void* from, std::size_t size) {
+    const std::size_t old_size = bytes_.size();
+    bytes_.resize(old_size + size);
+    std::memcpy(bytes_.data() + old_size, from, size);
+  }
+
   std::vector<std::uint8_t>& bytes_;
 };
 
