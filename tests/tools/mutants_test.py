@@ -70,7 +70,7 @@ class Mutants(unittest.TestCase):
     def test_mutant_that_does_not_apply_or_compile_fails(self):
         code, said = self.mutants([("gone", "limit=7", "limit=9"), ("broken", "limit=3", "syntax")])
         self.assertEqual(code, 1, said)
-        self.assertIn("gone: ITS OLD LINE STANDS 0 TIMES", said)
+        self.assertIn("gone: ITS OLD LINE OCCURS 0 TIMES", said)
         self.assertIn("broken: DOES NOT COMPILE", said)
 
     def test_check_builds_nothing(self):

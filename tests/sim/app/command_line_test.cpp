@@ -54,7 +54,7 @@ class CommandLineTest : public testing::Test {
 
 TEST_F(CommandLineTest, BoardOptionWithoutABoardIsRefused) {
   const auto needs = [](const std::string& option, const std::string& choice) {
-    return HasSubstr(option + " goes with " + choice);
+    return HasSubstr(option + " requires " + choice);
   };
   EXPECT_THAT(Refusal({"ball", "--servo-pace", "timer"}), needs("--servo-pace", "--servo mcu"));
   EXPECT_THAT(Refusal({"ball", "--servo", "pc", "--instruction-ns", "64"}),
@@ -127,7 +127,7 @@ TEST_F(CommandLineTest, ContradictingValuesAreRefused) {
   EXPECT_THAT(Refusal({"ball", "--set", "servo.goal=[0.3, 0, 0.4]"}),
               AllOf(HasSubstr("servo.goal"), HasSubstr("outside the picture of 640 x 480 px")));
   EXPECT_THAT(Refusal({"ball", "--set", "servo.goal=[0, 0, 1.3]"}),
-              AllOf(HasSubstr("servo.goal"), HasSubstr("from 0.12 to 1.2 m")));
+              AllOf(HasSubstr("servo.goal"), HasSubstr("allow 0.12 to 1.2 m")));
   EXPECT_THAT(Refusal({"ball", "--set", "servo.stale_s=0.7"}),
               AllOf(HasSubstr("servo.stale_s = 0.7"), HasSubstr("servo.coast_s, which is 0.6 s")));
   EXPECT_THAT(Refusal({"ball", "--set", "camera.latency_ms=200"}),

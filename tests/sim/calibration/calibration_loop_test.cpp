@@ -239,7 +239,7 @@ TEST_F(CalibrationLoopTest, FindsTheFocalLengthAndRefusesBadInput) {
     return Fovea(Joined({"calibrate", "hand-eye", folder_.path() / "more", "--camera", camera}, board));
   };
   ASSERT_EQ(Pictures(folder_.path() / "more", Joined(board, {"--views", "6"})).exit_code, 0);
-  ExpectRefused(hand_eye(554.0, 320), "of 320 x 480 px");
+  ExpectRefused(hand_eye(554.0, 320), "has 320 x 480 px");
   ExpectRefused(hand_eye(760.0, 640), "these intrinsics do not fit the images");
   cv::imwrite((alike / "e.png").string(), cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(90)));
   ExpectRefused(intrinsics(alike, board), "320 x 240 px, but the others have 640 x 480 px");

@@ -233,7 +233,7 @@ TEST(GigeCamera, ImpossibleConfigurationIsRefusedWithAReason) {
   Bench bench;
   bench.driver.reset();
   client.pixel_format = "Mono16";
-  EXPECT_NE(ErrorOf(client).find("none of Mono8"), std::string::npos) << ErrorOf(client);
+  EXPECT_NE(ErrorOf(client).find("not one of Mono8"), std::string::npos) << ErrorOf(client);
   client.pixel_format = "Mono9";
   EXPECT_NE(ErrorOf(client).find("pixel format Mono9"), std::string::npos) << ErrorOf(client);
   client = Client();

@@ -25,9 +25,7 @@ class Writer {
   }
   template <typename T, std::size_t N>
   requires std::is_arithmetic_v<T>
-  void operator()(const std::array<T, N>& values) {
-    Append(values.data(), sizeof(values));
-  }
+  void operator()(const std::array<T, N>& values) { Append(values.data(), sizeof(values)); }
   template <typename M>
   void Matrix(const M& m) {
     for (Eigen::Index i = 0; i < m.size(); ++i) {
