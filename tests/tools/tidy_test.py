@@ -57,6 +57,15 @@ class Tidy(unittest.TestCase):
                                    "XDG_CACHE_HOME": str(self.root / "build/cache")})
         return done.returncode, done.stdout + done.stderr
 
+    def test_precompiled_headers_are_left_out_of_the_commands(self):
+        command = "cc -O3 -Winvalid-pch -include /b/x.dir/cmake_pch.hxx -o a.o -c a.cpp"
+        self.write("build/release/compile_commands.json", json.dumps(
+            [{"file": str(self.root / "a.cpp"), "command": command, "output": "a.o"}]))
+        code, said = self.tidy("a.cpp")
+        self.assertEqual(code, 0, said)
+        commands = json.loads((self.root / "build/release/tidy/compile_commands.json").read_text())
+        self.assertEqual([entry["command"] for entry in commands], ["cc -O3 -o a.o -c a.cpp"])
+
     def test_clean_source_is_not_checked_again(self):
         code, said = self.tidy()
         self.assertEqual(code, 0, said)
