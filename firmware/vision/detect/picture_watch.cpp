@@ -54,11 +54,12 @@ bool PictureWatch::IsSame(const std::vector<std::uint8_t>& patches) {
   if (of_pixels == 0) {
     return true;
   }
-  const auto count = static_cast<double>(patches.size() / kPixels);
+  const std::size_t num_patches = patches.size() / kPixels;
   const double mean_square = static_cast<double>(of_pixels) / static_cast<double>(patches.size());
   least_ = least_ < 0.0 ? mean_square : std::min(least_, mean_square);
   const double ratio = static_cast<double>(of_patches) / static_cast<double>(of_pixels);
-  return ratio <= 1.0 + kSigmas * std::sqrt(2.0 / count) && mean_square <= kMoreThanNoise * least_;
+  return ratio <= 1.0 + kSigmas * std::sqrt(2.0 / static_cast<double>(num_patches)) &&
+         mean_square <= kMoreThanNoise * least_;
 }
 
 std::int64_t PictureWatch::Look(const cv::Mat& image, std::int64_t stamp_ns) {

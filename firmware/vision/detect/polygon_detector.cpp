@@ -51,6 +51,7 @@ bool IsTargets(const PolygonFit& fit) {
 
 std::vector<Eigen::Vector2d> CornersOf(const DetectorConfig& config) {
   std::vector<Eigen::Vector2d> corners;
+  corners.reserve(static_cast<std::size_t>(config.corners.num_corners));
   for (int i = 0; i < config.corners.num_corners; ++i) {
     corners.emplace_back(config.corners.corners[static_cast<std::size_t>(i)].head<2>());
   }

@@ -83,6 +83,7 @@ std::vector<double> Time(const std::vector<State>& states, const std::vector<Cal
     }
   }
   std::vector<double> medians;
+  medians.reserve(rounds.size());
   for (const std::vector<double>& values : rounds) {
     medians.push_back(Percentile(values, 0.5));
   }

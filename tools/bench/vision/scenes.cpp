@@ -242,6 +242,7 @@ features::TargetFeature TargetOf(TargetKind kind) {
 
 std::vector<Vector2d> CornersOf(const features::TargetFeature& target) {
   std::vector<Vector2d> corners;
+  corners.reserve(static_cast<std::size_t>(target.corners.num_corners));
   for (int i = 0; i < target.corners.num_corners; ++i) {
     corners.emplace_back(target.corners.corners[static_cast<std::size_t>(i)].head<2>());
   }
