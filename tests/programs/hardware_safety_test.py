@@ -73,7 +73,7 @@ class HardwareSafety(TwoPrograms):
         eye = [] if camera else ["--set", "camera.driver=none"]
         hw = subprocess.Popen([two_programs.HW, config, "--set", f"robot.port={port}", "--json", *eye, *options],
                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=terminal.writer, text=True)
-        watchdog = threading.Timer(45, hw.kill)
+        watchdog = threading.Timer(100, hw.kill)
         watchdog.start()
         self.addCleanup(watchdog.cancel)
         self.addCleanup(self.discard, hw)
@@ -218,7 +218,7 @@ class HardwareSafety(TwoPrograms):
             client, _ = robot.accept()  # and sends no answer
             time.sleep(0.2)
             hw.send_signal(signal.SIGINT)
-            text, _ = hw.communicate(timeout=20)
+            text, _ = hw.communicate(timeout=60)
             client.close()
         self.assertEqual(hw.returncode, 1)
         s = json.loads(text)
