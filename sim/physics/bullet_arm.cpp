@@ -18,21 +18,12 @@
 #include <vector>
 
 #include "sim/physics/bullet_shapes.hpp"
+#include "sim/physics/bullet_types.hpp"
 #include "sim/physics/weight_on_joints.hpp"
 
 namespace fovea::sim {
 namespace {
 
-constexpr double kGravity = 9.81;  // [m/s^2]
-
-btVector3 ToBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-btQuaternion ToBullet(const Eigen::Matrix3d& R) {
-  const Eigen::Quaterniond q(R);
-  return {q.x(), q.y(), q.z(), q.w()};
-}
-btTransform ToBullet(const Eigen::Isometry3d& X) {
-  return btTransform(ToBullet(Eigen::Matrix3d(X.linear())), ToBullet(Eigen::Vector3d(X.translation())));
-}
 Eigen::Isometry3d ToEigen(const btTransform& t) {
   Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
   const btQuaternion q = t.getRotation();

@@ -5,12 +5,11 @@
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 
+#include "sim/physics/bullet_types.hpp"
 #include "sim/physics/hull_points.hpp"
 
 namespace fovea::sim {
 namespace {
-
-btVector3 ToBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 std::unique_ptr<btCollisionShape> MakeHull(const Mesh& mesh) {
   auto hull = std::make_unique<btConvexHullShape>();

@@ -10,17 +10,12 @@
 #include <algorithm>
 
 #include "sim/physics/bullet_shapes.hpp"
+#include "sim/physics/bullet_types.hpp"
 
 namespace fovea::sim {
 namespace {
 
 constexpr int kNeighbours = 2;  // links at most this many joints apart are always close
-
-btTransform ToBullet(const Eigen::Isometry3d& X) {
-  const Eigen::Quaterniond q(Eigen::Matrix3d(X.linear()));
-  const Eigen::Vector3d p = X.translation();
-  return btTransform(btQuaternion(q.x(), q.y(), q.z(), q.w()), btVector3(p.x(), p.y(), p.z()));
-}
 
 struct Overlap final : btCollisionWorld::ContactResultCallback {
   bool found = false;

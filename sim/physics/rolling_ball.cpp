@@ -9,12 +9,10 @@
 #include <BulletDynamics/Dynamics/btDiscreteDynamicsWorld.h>
 #include <BulletDynamics/Dynamics/btRigidBody.h>
 
+#include "sim/physics/bullet_types.hpp"
+
 namespace fovea::sim {
 namespace {
-
-constexpr double kGravity = 9.81;  // [m/s^2]
-
-btVector3 ToBullet(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 btRigidBody::btRigidBodyConstructionInfo BodyInfo(double mass, btCollisionShape& shape,
                                                   const Eigen::Vector3d& p_BO) {

@@ -5,9 +5,9 @@ namespace {
 
 constexpr float kMargin =
     0.02F;  // margin to the surface's edges [m]: smoothed edges are drawn larger than they are
-constexpr float kMarginPx = 2.0F;    // margin around the picture
-constexpr float kBeneath = 0.03F;    // a pixel between two tiles may show the slab below the surface [m]
-constexpr float kLeastDown = 0.05F;  // least downward component of a ray; a flatter ray counts as a miss
+constexpr float kCoverMarginPx = 2.0F;  // margin around the picture
+constexpr float kBeneath = 0.03F;       // a pixel between two tiles may show the slab below the surface [m]
+constexpr float kLeastDown = 0.05F;     // least downward component of a ray; a flatter ray counts as a miss
 
 }  // namespace
 
@@ -31,11 +31,11 @@ std::optional<Box> SeenOver(const TexturedPlane& plane, const Pinhole& pinhole,
   const auto f = static_cast<float>(pinhole.f_px);
   const auto c_u = static_cast<float>(pinhole.c_u_px);
   const auto c_v = static_cast<float>(pinhole.c_v_px);
-  const auto right = static_cast<float>(pinhole.width_px - 1) + kMarginPx;
-  const auto bottom = static_cast<float>(pinhole.height_px - 1) + kMarginPx;
+  const auto right = static_cast<float>(pinhole.width_px - 1) + kCoverMarginPx;
+  const auto bottom = static_cast<float>(pinhole.height_px - 1) + kCoverMarginPx;
   Box seen(eye);
-  for (const float u : {-kMarginPx, right}) {
-    for (const float v : {-kMarginPx, bottom}) {
+  for (const float u : {-kCoverMarginPx, right}) {
+    for (const float v : {-kCoverMarginPx, bottom}) {
       const Eigen::Vector3f ray =
           (X_BC.linear() * Eigen::Vector3f((u - c_u) / f, (v - c_v) / f, 1.0F)).normalized();
       if (ray.z() > -kLeastDown) {

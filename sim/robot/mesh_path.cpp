@@ -16,8 +16,6 @@ namespace fs = std::filesystem;
 constexpr const char* kPackage = "package://";
 constexpr const char* kFile = "file://";
 
-[[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
-
 bool StartsWith(const std::string& text, const std::string& start) { return text.rfind(start, 0) == 0; }
 
 bool IsFile(const fs::path& path) {
@@ -80,9 +78,9 @@ fs::path FindInPackage(const fs::path& urdf, const std::string& name, const std:
     }
   }
   if (!there_is.empty()) {
-    Fail(fmt::format("no such file: {}", there_is));
+    throw std::runtime_error(fmt::format("no such file: {}", there_is));
   }
-  Fail(fmt::format(
+  throw std::runtime_error(fmt::format(
       "no folder of package \"{}\": searched above {}, in ROS_PACKAGE_PATH and in AMENT_PREFIX_PATH/share",
       name, fs::absolute(urdf).lexically_normal().parent_path().string()));
 }
@@ -92,7 +90,7 @@ fs::path FindAnywhere(const fs::path& urdf, const std::string& filename, const f
     const std::string path = filename.substr(std::string(kPackage).size());
     const auto slash = path.find('/');
     if (slash == std::string::npos || slash == 0 || slash + 1 == path.size()) {
-      Fail("a package URL has the form package://name/path");
+      throw std::runtime_error("a package URL has the form package://name/path");
     }
     return FindInPackage(urdf, path.substr(0, slash), path.substr(slash + 1), root);
   }
@@ -100,16 +98,16 @@ fs::path FindAnywhere(const fs::path& urdf, const std::string& filename, const f
   if (StartsWith(filename, kFile)) {
     file = filename.substr(std::string(kFile).size());
     if (!file.is_absolute()) {
-      Fail("a file URL has the form file:///absolute/path");
+      throw std::runtime_error("a file URL has the form file:///absolute/path");
     }
   } else if (filename.find("://") != std::string::npos) {
-    Fail("only package:// and file:// URLs, and paths, are supported");
+    throw std::runtime_error("only package:// and file:// URLs, and paths, are supported");
   }
   if (file.is_relative()) {
     file = urdf.parent_path() / file;
   }
   if (!IsFile(file)) {
-    Fail(fmt::format("no such file: {}", fs::absolute(file).lexically_normal().string()));
+    throw std::runtime_error(fmt::format("no such file: {}", fs::absolute(file).lexically_normal().string()));
   }
   return file;
 }
@@ -141,8 +139,8 @@ bool LiesIn(const fs::path& folder, const fs::path& file) {
 fs::path FindMeshFile(const fs::path& urdf, const std::string& filename, const fs::path& root) {
   const fs::path file = FindAnywhere(urdf, filename, root);
   if (!root.empty() && !LiesIn(root, file) && !(StartsWith(filename, kPackage) && IsUsersPackage(file))) {
-    Fail(fmt::format("it lies outside {}, the folder of the file that names it",
-                     fs::absolute(root).lexically_normal().string()));
+    throw std::runtime_error(fmt::format("it lies outside {}, the folder of the file that names it",
+                                         fs::absolute(root).lexically_normal().string()));
   }
   return file;
 }

@@ -14,8 +14,8 @@
 namespace fovea::sim {
 namespace {
 
-constexpr int kScale = 2;      // magnification of the camera's pictures
-constexpr int kLegendPx = 84;  // height of the strip below them
+constexpr int kScale = 2;          // magnification of the camera's pictures
+constexpr int kPageLegendPx = 84;  // height of the strip below them
 std::string ToPng(const cv::Mat& image) {
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 4})) {
@@ -56,7 +56,7 @@ std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
   overlay.Goal(film::GoalCurve(in, target), p_CO_C_star);
   overlay.Detection(frame.detection);
 
-  cv::Mat page(picture.rows + kLegendPx, picture.cols, CV_8UC3, film::kLegendColour);
+  cv::Mat page(picture.rows + kPageLegendPx, picture.cols, CV_8UC3, film::kLegendColour);
   picture.copyTo(page.rowRange(0, picture.rows));
   const double error_px = std::hypot(in.U(p_CO_C) - in.U(p_CO_C_star), in.V(p_CO_C) - in.V(p_CO_C_star));
   const int top = picture.rows + 34;

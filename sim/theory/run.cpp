@@ -14,7 +14,6 @@
 namespace fovea::sim {
 namespace {
 
-constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr std::int64_t kStartNs = hal::kTickPeriodNs;  // the servo's first tick is over
 constexpr std::size_t kStride = 50;                    // steps of the fitted transition
 constexpr double kSettledShare = 0.02;
@@ -32,7 +31,7 @@ Eigen::Matrix4d TransitionOf(const TheoryLoop& loop) {
   A.row(2) << -loop.c_i, -loop.c_0, -loop.c_1, loop.d;
   Eigen::Matrix4d transition;
   for (int i = 0; i < 4; ++i) {
-    transition.col(i) = design::LinearResponse(A, Eigen::Vector4d::Unit(i), kStepS);
+    transition.col(i) = design::LinearResponse(A, Eigen::Vector4d::Unit(i), hal::kTickPeriodS);
   }
   return transition;
 }
@@ -89,7 +88,7 @@ TheorySample TheoryRun::Add(const Truth& truth) {
   State now{0.0, goal.q[0] - truth.q[0], goal.dq[0] - truth.dq[0]};
   State analytic = now;
   if (truth.stamp_ns > kStartNs) {
-    now.integral = run_.back().integral + 0.5 * kStepS * (run_.back().e + now.e);
+    now.integral = run_.back().integral + 0.5 * hal::kTickPeriodS * (run_.back().e + now.e);
     const State& before = analytic_.back();
     const bool pushed = 1e-9 * static_cast<double>(stamps_ns_.back()) >= config_.push_s;
     const Eigen::Vector4d next =
@@ -112,7 +111,7 @@ void TheoryRun::Fit(const std::vector<State>& states, TheoryFigures& figures) co
   std::vector<std::size_t> from;
   for (std::size_t k = 0; k + kStride < states.size(); ++k) {
     const double t_s = 1e-9 * static_cast<double>(stamps_ns_[k]);
-    if (t_s >= begin_s && t_s + kStride * kStepS <= config_.fit_end_s) {
+    if (t_s >= begin_s && t_s + kStride * hal::kTickPeriodS <= config_.fit_end_s) {
       from.push_back(k);
     }
   }
@@ -134,7 +133,7 @@ void TheoryRun::Fit(const std::vector<State>& states, TheoryFigures& figures) co
   }
   const Eigen::MatrixXd fit = before.completeOrthogonalDecomposition().solve(after);
   const Eigen::MatrixXd phi = fit.topRows(n).transpose();
-  const double stride_s = kStepS * static_cast<double>(kStride);
+  const double stride_s = hal::kTickPeriodS * static_cast<double>(kStride);
   std::vector<std::complex<double>> eigenvalues;
   if (n == 2) {
     const double half = 0.5 * phi.trace();
@@ -177,7 +176,7 @@ TheoryFigures TheoryRun::Measure(const std::vector<State>& states) const {
   }
   if (most > kStill && last_outside_s &&
       *last_outside_s + start_s < 1e-9 * static_cast<double>(stamps_ns_.back())) {
-    figures.settle_time_s = *last_outside_s + kStepS;
+    figures.settle_time_s = *last_outside_s + hal::kTickPeriodS;
   }
   return figures;
 }

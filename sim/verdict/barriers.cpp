@@ -16,7 +16,6 @@ using Value = std::optional<double>;
 
 constexpr double kReboundLeft =
     0.99;  // share of an arm's rebound left per step; decays with 2.5 time constants of the law
-constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 // Signed distance from a point to the surface of a plane or box [m]; negative inside. Does not use the
 // servo's function: the verdict must share no code with the servo.
@@ -58,7 +57,7 @@ void AddJoints(const model::ArmModel& arm, std::vector<TruthBarrier>& list) {
   add("torque_rate", [](const TruthStep& step, const model::Joint& joint, int i) {
     return step.before == nullptr
                ? 0.0
-               : (step.now.tau_cmd[i] - step.before->tau_cmd[i]) / (joint.dtau_max * kStepS);
+               : (step.now.tau_cmd[i] - step.before->tau_cmd[i]) / (joint.dtau_max * hal::kTickPeriodS);
   });
   // The servo is not responsible for disturbances, e.g. a fall with a dead motor. An acceleration counts only
   // as far as it also exists, in the same direction, without the disturbance: a reaction against the fall
@@ -81,7 +80,7 @@ void AddJoints(const model::ArmModel& arm, std::vector<TruthBarrier>& list) {
                       return std::nullopt;
                     }
                     return LargestOf(arm, [&](const model::Joint& joint, int i) {
-                      return ((*step.ddq)[i] - (*step.ddq_before)[i]) / (joint.dddq_max * kStepS);
+                      return ((*step.ddq)[i] - (*step.ddq_before)[i]) / (joint.dddq_max * hal::kTickPeriodS);
                     });
                   }});
 }
@@ -97,7 +96,7 @@ void AddHand(const BarrierConfig& config, std::vector<TruthBarrier>& list) {
            return std::nullopt;
          }
          const Eigen::Vector3d way = step.now.X_BE.translation() - step.before->X_BE.translation();
-         return way.norm() / (most * kStepS);
+         return way.norm() / (most * hal::kTickPeriodS);
        }});
   list.push_back(
       {"rotation_speed", Kind::kShare, [most = config.rotation_speed](const TruthStep& step) -> Value {
@@ -105,7 +104,7 @@ void AddHand(const BarrierConfig& config, std::vector<TruthBarrier>& list) {
            return std::nullopt;
          }
          const Eigen::AngleAxisd turn(step.before->X_BE.linear().transpose() * step.now.X_BE.linear());
-         return std::fabs(turn.angle()) / (most * kStepS);
+         return std::fabs(turn.angle()) / (most * hal::kTickPeriodS);
        }});
   const auto keep_out = [&](const char* name, int i, const auto& thing) {
     list.push_back({fmt::format("hand.{}[{}]", name, i), Kind::kClearance,
@@ -168,7 +167,7 @@ void TruthBarriers::Add(const Truth& truth, hal::Mode mode) {
   TruthStep step{truth, before_ ? &*before_ : nullptr, {}, {}, {}, {}, {}};
   const std::size_t n = dq_.size();
   if (n == kMeanTicks + 1) {
-    step.mean_ddq = (dq_.back() - dq_.front()) / (kMeanTicks * kStepS);
+    step.mean_ddq = (dq_.back() - dq_.front()) / (kMeanTicks * hal::kTickPeriodS);
     for (std::size_t i = 1; i < n; ++i) {  // the kMeanTicks steps between the n velocities
       if (ddq_disturbed_[i].size() > 0) {
         if (step.mean_ddq_disturbed.size() == 0) {
@@ -177,8 +176,8 @@ void TruthBarriers::Add(const Truth& truth, hal::Mode mode) {
         step.mean_ddq_disturbed += ddq_disturbed_[i] / kMeanTicks;
       }
     }
-    step.ddq = (dq_[n - 1] - dq_[n - 2]) / kStepS;
-    step.ddq_before = (dq_[n - 2] - dq_[n - 3]) / kStepS;
+    step.ddq = (dq_[n - 1] - dq_[n - 2]) / hal::kTickPeriodS;
+    step.ddq_before = (dq_[n - 2] - dq_[n - 3]) / hal::kTickPeriodS;
   }
   // A rebound comes from past disturbances: the present disturbance is subtracted.
   rebound_ *= kReboundLeft;

@@ -9,7 +9,6 @@
 namespace fovea::sim {
 namespace {
 
-constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr std::size_t kHalf = 5;  // half of the steps over which an acceleration is computed
 
 }  // namespace
@@ -18,7 +17,7 @@ UnwantedMotion::UnwantedMotion(StopRules rules) : rules_(std::move(rules)) {}
 
 void UnwantedMotion::Add(const Truth& truth, hal::Mode mode) {
   const Eigen::Vector3d p = truth.X_BE.translation();
-  const double speed = p_.empty() ? 0.0 : (p - p_.back()).norm() / kStepS;
+  const double speed = p_.empty() ? 0.0 : (p - p_.back()).norm() / hal::kTickPeriodS;
   if (mode != mode_) {
     const bool stands = mode == hal::Mode::kBoot || mode == hal::Mode::kHold || mode == hal::Mode::kFault;
     now_ = stands ? &by_mode_[hal::Name(mode)] : nullptr;
@@ -46,7 +45,7 @@ double UnwantedMotion::Acceleration() const {
   if (p_.size() < 2 * kHalf + 1) {
     return 0.0;
   }
-  constexpr double kHalfS = kHalf * kStepS;
+  constexpr double kHalfS = kHalf * hal::kTickPeriodS;
   return (p_[2 * kHalf] - 2.0 * p_[kHalf] + p_[0]).norm() / (kHalfS * kHalfS);
 }
 

@@ -10,7 +10,6 @@
 namespace fovea::sim {
 namespace {
 
-constexpr double kTickS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr std::int64_t kWindowNs = hal::kNsPerSecond / 2;  // final_* are over this last part of a run
 constexpr double kConvergedPx = 1.0;                       // largest error of a converged run in this part
 constexpr double kConvergedM = 0.002;
@@ -99,7 +98,7 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
     const auto runs = [](hal::Mode mode) { return mode != hal::Mode::kBoot && mode != hal::Mode::kFault; };
     if (has_record_ && runs(before_.mode) && runs(record.mode)) {
       reference_.Note(record.stamp_ns, reference_jerk_,
-                      (record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * kTickS));
+                      (record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * hal::kTickPeriodS));
     }
   }
   for (int i = 0; i < hal::kNumLimits; ++i) {
@@ -256,7 +255,7 @@ void Verdict::FillStill(Summary& summary) const {
   summary.converged =
       worst_px <= kConvergedPx && worst_m <= kConvergedM && worst_deg <= kConvergedDeg && faults_.empty();
   if (!is_outside_ && last_outside_s_) {
-    summary.settle_time_s = *last_outside_s_ + kTickS;
+    summary.settle_time_s = *last_outside_s_ + hal::kTickPeriodS;
   }
   if (summary.converged) {
     summary.verdict = "converged: the target stands at its goal";

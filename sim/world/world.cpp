@@ -9,7 +9,6 @@
 namespace fovea::sim {
 namespace {
 
-constexpr double kStepS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kStictionSpeed = 0.02;  // Coulomb friction reaches its full size beyond this [rad/s, m/s]
 constexpr double kBrakeDecay = 0.8;      // share of the speed that an engaged brake leaves per step
 constexpr double kBrakeRest = 1e-3;      // below this speed an engaged brake holds the joint [rad/s]
@@ -42,7 +41,8 @@ World::World(const WorldConfig& config)
       // On a light link, the full friction of one step would reverse the speed. Each of its two parts
       // therefore removes at most half of the speed per step.
       const double left = 1.0 - config_.friction_compensation;
-      const double most = 0.5 * OwnInertia(link) / kStepS;  // damping of one part [N m s/rad, N s/m]
+      const double most =
+          0.5 * OwnInertia(link) / hal::kTickPeriodS;  // damping of one part [N m s/rad, N s/m]
       viscous_.push_back(std::min(left * link.viscous, most));
       stiction_speed_.push_back(std::max(kStictionSpeed, left * link.coulomb / most));
     }
@@ -86,7 +86,7 @@ void World::Step() {
     for (Eigen::Index i = 0; i < dq.size(); ++i) {
       dq[i] = std::fabs(dq[i]) < kBrakeRest ? 0.0 : dq[i];
     }
-    arm_.SetState(arm_.q() + dq * kStepS, dq);
+    arm_.SetState(arm_.q() + dq * hal::kTickPeriodS, dq);
     arm_.FindContacts();
   } else {
     const double mass = config_.load.window.Contains(now_ns_) ? config_.load.mass : 0.0;
@@ -94,7 +94,7 @@ void World::Step() {
     truth_.ddq_disturbed = AccelerationByDisturbance(mass, tilt);
     TakeUpLoad(mass);
     TiltBase(tilt);
-    arm_.Step(JointTorque(), kStepS);
+    arm_.Step(JointTorque(), hal::kTickPeriodS);
   }
   StepBall();
   now_ns_ += hal::kTickPeriodNs;
@@ -114,7 +114,7 @@ void World::StepBall() {
   if (now_ns_ <= push_ns && push_ns < now_ns_ + hal::kTickPeriodNs) {
     ball_->Push(config_.ball_push);
   }
-  ball_->Step(kStepS);
+  ball_->Step(hal::kTickPeriodS);
 }
 
 // Torques of the springs and of external pushes.

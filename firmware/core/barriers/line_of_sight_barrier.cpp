@@ -10,15 +10,15 @@ namespace {
 using model::Vec3;
 
 // The closest approach of a line of sight and a link.
-struct Nearest {
+struct LinkAtSight {
   model::SegmentPair axes;  // first: line of sight from the camera; second: the link's axis
   double gap = HUGE_VAL;    // from the line of sight to the link [m]
   int body = 0;             // the link
 };
 
 // Over all links and all lines of sight.
-Nearest NearestLink(const Sight& sight) noexcept {
-  Nearest nearest;
+LinkAtSight NearestLink(const Sight& sight) noexcept {
+  LinkAtSight nearest;
   for (std::size_t k = 0; k < static_cast<std::size_t>(sight.outline.num_points); ++k) {
     const Vec3 p_BP = sight.X_BO * sight.outline.p_OP[k];
     for (int i = 0; i + model::ArmShape::kNeighbours + 1 < sight.bodies.size; ++i) {
@@ -44,7 +44,7 @@ Barrier LineOfSightBarrier(const config::ServoConfig& config, const Sight& sight
   if (config.guard.sight_clearance <= 0.0) {
     return barrier;
   }
-  const Nearest nearest = NearestLink(sight);
+  const LinkAtSight nearest = NearestLink(sight);
   const model::SegmentPair& axes = nearest.axes;
   if (!std::isfinite(nearest.gap) || !(axes.distance > kTouch)) {
     return barrier;

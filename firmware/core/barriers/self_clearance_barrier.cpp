@@ -11,14 +11,14 @@ namespace {
 using model::ArmShape;
 using model::Vec3;
 
-struct Nearest {
+struct NearestBodies {
   model::SegmentPair axes;  // first: of the body further from the base
   double gap = HUGE_VAL;
   ArmShape::Pair pair;
 };
 
-Nearest NearestPair(const ArmShape& shape, const ArmBodies& bodies) noexcept {
-  Nearest nearest;
+NearestBodies NearestPair(const ArmShape& shape, const ArmBodies& bodies) noexcept {
+  NearestBodies nearest;
   for (const ArmShape::Pair& pair : std::span(shape.pairs).first(static_cast<std::size_t>(shape.num_pairs))) {
     const PlacedCapsule& far = bodies.body[static_cast<std::size_t>(pair.far)];
     const PlacedCapsule& near = bodies.body[static_cast<std::size_t>(pair.near)];
@@ -50,7 +50,7 @@ Barrier SelfClearanceBarrier(const config::ServoConfig& config, const model::Arm
   if (config.guard.self_clearance <= 0.0) {
     return barrier;
   }
-  const Nearest nearest = NearestPair(arm.shape, bodies);
+  const NearestBodies nearest = NearestPair(arm.shape, bodies);
   if (!std::isfinite(nearest.gap) || !(nearest.axes.distance > kTouch)) {
     return barrier;
   }

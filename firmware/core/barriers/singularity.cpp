@@ -37,11 +37,10 @@ void ComputeSingularity(const model::Mat6N& J, double length, Singularity& singu
 
 bool IsNear(const SingularityConfig& config, const model::Mat6N& J, double speed, double reach,
             SingularityWatch& watch, Singularity& singularity) noexcept {
-  constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
   // No column of the scaled dJ/dq_k is longer than 2 reach / length + 1. The norm over all columns bounds the
   // rate of change of every singular value.
   const double rate = (2.0 * reach / config.length + 1.0) * std::sqrt(static_cast<double>(J.cols()));
-  watch.sigma -= rate * speed * kPeriodS;
+  watch.sigma -= rate * speed * hal::kTickPeriodS;
   const double near = config.sigma_min + SingularityWatch::kNear;
   if (watch.sigma > near) {
     return false;

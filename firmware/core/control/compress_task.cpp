@@ -11,7 +11,7 @@ constexpr std::size_t kRows = 6;
 using Column = std::array<double, features::kMaxDim>;
 static_assert(features::kMaxDim == 8, "a sum of four pairs");
 
-double Dot(const Column& a, const Column& b) noexcept {
+double ColumnDot(const Column& a, const Column& b) noexcept {
   std::array<double, 4> pairs;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     pairs[i] = a[i] * b[i] + a[i + 4] * b[i + 4];
@@ -39,7 +39,7 @@ void CompressTask(features::InteractionMatrix& L, features::FeatureVector& v) no
   for (std::size_t k = 0; k < kRows; ++k) {
     const auto row = static_cast<Eigen::Index>(k);
     const Column& a = columns[k];
-    const double length2 = Dot(a, a);
+    const double length2 = ColumnDot(a, a);
     if (!(length2 > 0.0) && !std::isnan(length2)) {
       continue;
     }
@@ -49,7 +49,7 @@ void CompressTask(features::InteractionMatrix& L, features::FeatureVector& v) no
     L(row, row) = length;
 #pragma GCC unroll 8
     for (std::size_t c = k + 1; c <= kRows; ++c) {
-      const double part = Dot(a, columns[c]) * share;
+      const double part = ColumnDot(a, columns[c]) * share;
       (c < kRows ? L(row, static_cast<Eigen::Index>(c)) : v[row]) = part * length;
       for (std::size_t i = 0; i < a.size(); ++i) {
         columns[c][i] -= part * a[i];

@@ -7,14 +7,14 @@ namespace fovea::control {
 namespace {
 
 constexpr double kMovedM = 0.02;  // a target that has moved this far is tried again
-constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
 
 }  // namespace
 
 void UpdateBlockedTime(bool blocked, ReachWatch& watch) noexcept { CountTick(blocked, watch.blocked_ns); }
 
 bool IsUnreachable(const config::LawConfig& config, const ReachWatch& watch) noexcept {
-  return static_cast<double>(watch.blocked_ns) > config.unreachable_s * kSecondNs;
+  return static_cast<double>(watch.blocked_ns) >
+         config.unreachable_s * static_cast<double>(hal::kNsPerSecond);
 }
 
 bool HasMoved(const model::Vec3& p_BO, const ReachWatch& watch) noexcept {

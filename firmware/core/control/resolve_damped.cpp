@@ -7,10 +7,10 @@
 namespace fovea::control {
 namespace {
 
-using Entries = std::array<double, 8>;
+using RowEntries = std::array<double, 8>;
 
 // Rows are padded with zeros, because loops of constant length are faster.
-double Dot(const Entries& a, const Entries& b) noexcept {
+double RowDot(const RowEntries& a, const RowEntries& b) noexcept {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
     sum += a[k] * b[k];
@@ -29,7 +29,7 @@ double Filter(double sigma2, double threshold2) noexcept {
 }
 
 // Of the first `size` values, the one that exactly `greater` others precede in descending order.
-double FromTheTop(Entries values, std::size_t size, std::size_t greater) noexcept {
+double FromTheTop(RowEntries values, std::size_t size, std::size_t greater) noexcept {
   std::sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(size), std::greater<>());
   return values[greater];
 }
@@ -60,7 +60,7 @@ void DampedInverse::Factor(const DampingConfig& config) noexcept {
   double trace = 0.0;
   for (std::size_t i = 0; i < kRows; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      A[i][j] = A[j][i] = Dot(Jw_[i], Jw_[j]);
+      A[i][j] = A[j][i] = RowDot(Jw_[i], Jw_[j]);
     }
     trace += A[i][i];
   }
@@ -87,7 +87,7 @@ void DampedInverse::Factor(const DampingConfig& config) noexcept {
     return;
   }
   axes_.Diagonalise<kRows>(A);
-  Entries sigma2{};
+  RowEntries sigma2{};
   for (std::size_t i = 0; i < kRows; ++i) {
     sigma2[i] = A[i][i] > 0.0 || std::isnan(A[i][i]) ? A[i][i] : 0.0;
     filter_[i] = Filter(sigma2[i], threshold2);
@@ -99,7 +99,7 @@ void DampedInverse::Factor(const DampingConfig& config) noexcept {
 
 // y = g(A) y
 template <std::size_t kRows>
-void DampedInverse::Apply(Entries& y) const noexcept {
+void DampedInverse::Apply(RowEntries& y) const noexcept {
   if (!damped_) {
     model::SolveLdlt<kRows>(factors_, y);
     return;
@@ -114,13 +114,13 @@ void DampedInverse::Apply(Entries& y) const noexcept {
 void DampedInverse::Resolve(const MotionTask& task, DampedMotion& motion) const noexcept {
   motion.threshold = threshold_;
   motion.sigma_min = sigma_min_;
-  Entries wish{};
+  RowEntries wish{};
   for (std::size_t k = 0; k < columns_; ++k) {
     wish[k] = task.dq_0[static_cast<Eigen::Index>(k)] / shrink_[k];
   }
-  Entries y{};
+  RowEntries y{};
   for (std::size_t i = 0; i < rows_; ++i) {
-    y[i] = task.v[static_cast<Eigen::Index>(i)] - Dot(Jw_[i], wish);
+    y[i] = task.v[static_cast<Eigen::Index>(i)] - RowDot(Jw_[i], wish);
   }
   if (rows_ <= 4) {
     Apply<4>(y);

@@ -32,9 +32,9 @@ constexpr double kHeldS = 0.4;      // after this time the search looks for anot
 
 constexpr std::int64_t kSeekNs = 1'500'000'000;  // longest wait of the arm for a way
 
-constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
-
-bool IsLonger(std::int64_t ns, double s) noexcept { return static_cast<double>(ns) > s * kSecondNs; }
+bool IsLonger(std::int64_t ns, double s) noexcept {
+  return static_cast<double>(ns) > s * static_cast<double>(hal::kNsPerSecond);
+}
 
 void NoteIdle(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
   const int turns = features::TraitsOf(config.feature.target).turns;

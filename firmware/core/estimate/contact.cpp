@@ -7,7 +7,6 @@
 namespace fovea::estimate {
 namespace {
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kChangeS = 0.25;  // the compensation fades in and out in this time [s]
 // Compensated share of the observed torque. If a joint's reading does not follow its motion, the observer
 // takes the servo's own torque for an external one. Full compensation would then raise the torque without
@@ -27,7 +26,7 @@ void ObserveContact(double gain, const model::ArmDynamics& dynamics, const model
   const model::VecN p = dynamics.M.lazyProduct(dq);
   if (state.started) {
     model::VecN change = p - state.M_before.lazyProduct(dq);  // dM/dt dq over a tick; the other terms follow
-    change += kPeriodS * (tau - dynamics.Cdq + state.residual);
+    change += hal::kTickPeriodS * (tau - dynamics.Cdq + state.residual);
     state.residual += gain * (p - state.p_before - change);
   } else {
     state.started = true;
@@ -37,7 +36,7 @@ void ObserveContact(double gain, const model::ArmDynamics& dynamics, const model
 }
 
 void CarryLoad(const CarriedLoad& load, ContactState& state, model::VecN& tau) noexcept {
-  constexpr double kStep = kPeriodS / kChangeS;
+  constexpr double kStep = hal::kTickPeriodS / kChangeS;
   state.carried = load.stands ? std::min(state.carried + kStep, 1.0) : std::max(state.carried - kStep, 0.0);
   for (int i = 0; state.carried > 0.0 && i < tau.size(); ++i) {
     const model::Joint& joint = load.arm.joints[static_cast<std::size_t>(i)];

@@ -10,8 +10,8 @@ namespace {
 
 using model::Vec3;
 
-constexpr double kAspect = 7.0;        // noise of the aspect, in units of a half axis' relative noise
-constexpr double kCalibration = 0.01;  // uncertainty of arm, camera and lens [rad]
+constexpr double kAspect = 7.0;           // noise of the aspect, in units of a half axis' relative noise
+constexpr double kCalibrationRad = 0.01;  // uncertainty of arm, camera and lens [rad]
 constexpr int kRounds = 2;
 
 // A disc's aspect is the cosine of its tilt. The tilt's noise is the aspect's noise over the sine, or the
@@ -21,7 +21,7 @@ double WeightOf(const DiscView& view, double share) noexcept {
   const double cosine = view.normal_B[0].dot(view.ray_B);
   const double sine2 = std::max(1.0 - cosine * cosine, 0.0);
   const double variance = aspect * aspect / std::max(sine2, 0.5 * aspect);
-  return 1.0 / (variance + kCalibration * kCalibration);
+  return 1.0 / (variance + kCalibrationRad * kCalibrationRad);
 }
 
 }  // namespace

@@ -8,13 +8,12 @@
 namespace fovea::estimate {
 namespace {
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kMeanShare = kPeriodS / 0.05;  // the mean forgets in 0.05 s
-constexpr double kQuanta = 3.0;                 // encoder steps that a joint must have moved by
-constexpr double kTorqueShare = 0.01;           // of a joint's torque: short-term error of the model
-constexpr double kWishSlack = 0.01;             // lag of the joint behind its reference [rad, m]
-constexpr double kLeast = 1e-9;                 // if the encoder has no steps [rad, m]
-constexpr double kTravelSlack = 1e-3;           // largest integral of velocity noise [rad, m]
+constexpr double kMeanShare = hal::kTickPeriodS / 0.05;  // the mean forgets in 0.05 s
+constexpr double kQuanta = 3.0;                          // encoder steps that a joint must have moved by
+constexpr double kTorqueShare = 0.01;                    // of a joint's torque: short-term error of the model
+constexpr double kWishSlack = 0.01;                      // lag of the joint behind its reference [rad, m]
+constexpr double kLeast = 1e-9;                          // if the encoder has no steps [rad, m]
+constexpr double kTravelSlack = 1e-3;                    // largest integral of velocity noise [rad, m]
 constexpr double kShown = 0.5;              // share of the expected speed change that proves a live encoder
 constexpr double kFlicker = 1e-6;           // velocity noise is larger than this [rad/s, m/s]
 constexpr std::int32_t kFlickersMost = 30;  // this many make a joint noisy: about a tenth of a second
@@ -26,7 +25,7 @@ constexpr std::int32_t kTicksMost = 1'000'000;  // counters stop here
 void UnseenAcceleration(const config::ServoConfig& config, const WatchedJoints& now, EncoderWatch& watch,
                         hal::JointArray& ddq) noexcept {
   const int n = config.arm.num_joints;
-  const double gain = config.safety.contact_gain * kPeriodS;
+  const double gain = config.safety.contact_gain * hal::kTickPeriodS;
   model::VecN change = model::VecN::Zero(n);
   hal::JointArray share{};  // of the change that friction cannot hold
   bool any = false;
@@ -111,10 +110,10 @@ std::int32_t WatchEncoders(const config::ServoConfig& config, const WatchedJoint
       joint.q_reference = now.q_reference[i];  // the reference starts here
     }
     joint.ticks = std::min(joint.ticks + 1, kTicksMost);
-    joint.travel += now.dq[i] * kPeriodS;
+    joint.travel += now.dq[i] * hal::kTickPeriodS;
     if (unseen[k] != 0.0) {
-      joint.speed += unseen[k] * kPeriodS;
-      joint.way += joint.speed * kPeriodS;
+      joint.speed += unseen[k] * hal::kTickPeriodS;
+      joint.way += joint.speed * hal::kTickPeriodS;
     } else {
       joint.dq = now.dq[i];
       joint.speed = joint.way = 0.0;

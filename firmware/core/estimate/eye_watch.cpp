@@ -5,7 +5,6 @@
 namespace fovea::estimate {
 namespace {
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kFades = 0.967;        // per measurement: a time constant of 1 s at 30 Hz
 constexpr double kEnoughShifts = 20.0;  // times servo.stuck_shift_px: a shift large enough to judge
 constexpr double kAgainst = -0.7;       // share of the predicted shift that counts as opposite
@@ -44,7 +43,7 @@ void WatchSteering(const config::PredictConfig& config, double error, double spe
     watch.way = 0.0;
     return;
   }
-  watch.way += speed * kPeriodS;
+  watch.way += speed * hal::kTickPeriodS;
   if (watch.way > config.way_in_vain) {
     watch.doubted = true;
   }

@@ -17,7 +17,7 @@ constexpr double kStepRad = 0.05;      // that the corners do not determine
 constexpr double kHereM = 5e-5;        // a camera that has moved no further stands still: corners at
 constexpr double kHereRad = 1e-4;      // 0.25 m and further shift by no more than kCalibration
 constexpr int kFramesMost = 60;        // largest number in a mean
-constexpr double kNoWay = 1e9;
+constexpr double kNoFit = 1e9;         // misfit of a pose that the corners cannot have
 
 double WeightOf(double variance, int frames) noexcept {
   return 1.0 / (variance / frames + kCalibration * kCalibration);
@@ -98,11 +98,11 @@ double MisfitOf(const Polygon& polygon, std::span<const PlateView> views, const 
   const auto add = [&](const PlateView& view) {
     SeenCorners::Vector e;
     const bool seen = OffFrom(polygon, view, X_BO, e);
-    misfit = seen ? misfit + WeightOf(view.variance, view.frames) * e.squaredNorm() : kNoWay;
-    return misfit < kNoWay;
+    misfit = seen ? misfit + WeightOf(view.variance, view.frames) * e.squaredNorm() : kNoFit;
+    return misfit < kNoFit;
   };
   const bool fits = add(newest) && std::all_of(views.begin(), views.end(), add);
-  return fits ? misfit : kNoWay;
+  return fits ? misfit : kNoFit;
 }
 
 void FitPose(const Polygon& polygon, std::span<const PlateView> views, const PlateView& mean,

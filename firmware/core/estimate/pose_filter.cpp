@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "firmware/core/estimate/first_sight.hpp"
 #include "firmware/core/estimate/shortened.hpp"
 #include "firmware/core/model/cholesky.hpp"
 #include "firmware/core/model/rotation.hpp"
@@ -14,11 +15,9 @@ using features::SeenCorners;
 using model::Mat3;
 using model::Vec3;
 
-constexpr double kStartSpeedSigma = 0.3;         // how fast a target may be when it is first seen [m/s]
-constexpr double kStartAccelerationSigma = 0.5;  // and how hard it may accelerate [m/s^2]
-constexpr double kStartTurnSigma = 0.5;          // and how fast it may turn [rad/s]
-constexpr double kStartPositionSigma = 1.0;      // error of the corners' pose in directions that they do
-constexpr double kStartTiltSigma = 0.3;          // not determine [m, rad]
+constexpr double kStartTurnSigma = 0.5;      // how fast a target may turn when it is first seen [rad/s]
+constexpr double kStartPositionSigma = 1.0;  // error of the corners' pose in directions that they do
+constexpr double kStartTiltSigma = 0.3;      // not determine [m, rad]
 constexpr double kMeanTime = 0.1;  // the configured jerk and angular acceleration are means over this [s]
 constexpr double kLeastVariance = 1e-16;  // of a pose, so that rounding leaves it positive [m^2, rad^2]
 constexpr double kNoWay = 1e9;            // a distance that passes no gate
@@ -26,8 +25,6 @@ constexpr double kNoWay = 1e9;            // a distance that passes no gate
 using Rows6 = CornerSlope;
 using Gain = Eigen::Matrix<double, Eigen::Dynamic, PoseFilter::kDim, Eigen::ColMajor, 2 * Polygon::kMost,
                            PoseFilter::kDim>;
-
-double Seconds(std::int64_t duration_ns) noexcept { return static_cast<double>(duration_ns) * 1e-9; }
 
 // The expected corners of a pose with the covariance `P`: their mean, their slope `H` over the pose's errors,
 // and the covariance `bent` that this linear slope does not explain. Sigma points with P's own covariance
@@ -192,7 +189,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   using F = PoseFilter;
   distance2 = kNoWay;
   PoseFilter next = filter;
-  Advance(config, Seconds(view.stamp_ns - filter.stamp_ns), next);
+  Advance(config, hal::ToSeconds(view.stamp_ns - filter.stamp_ns), next);
   SeenCorners::Vector expected;
   Rows6 H;
   SeenCorners::Covariance bent;
@@ -244,7 +241,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
 
 FlatMotion MotionAt(const config::PredictConfig& config, const PoseFilter& filter,
                     std::int64_t now_ns) noexcept {
-  const double dt = Seconds(now_ns - filter.stamp_ns);
+  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns);
   const Mat3 R = model::RotationOf(filter.w_BO_B * dt).lazyProduct(filter.X_BO.R);
   const Vec3 way = dt * (filter.v_BO_B + 0.5 * dt * filter.a_BO_B);
   return {{R, filter.X_BO.p + Shortened(way, config.target_speed_max * std::fabs(dt))},

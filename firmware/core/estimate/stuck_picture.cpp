@@ -10,7 +10,7 @@ namespace {
 using model::Vec3;
 
 constexpr double kHalfPicture = 0.3;  // test points are this far from the target in the normalised image
-constexpr double kNearest = 1e-3;     // a point nearer to the camera's plane is out of the picture [m]
+constexpr double kInPicture = 1e-3;   // a point nearer to the camera's plane is out of the picture [m]
 
 // The largest shift in the picture of points at rest in B and at the target's depth, while the camera moved
 // from `X_BC_then` to `X_BC`.
@@ -22,7 +22,7 @@ double ShiftOfScene(const model::Pose& X_BC_then, const model::Pose& X_BC, const
   for (const auto& off : kOff) {
     const Vec3 then = p_CO_C + p_CO_C.z() * Vec3(off[0], off[1], 0.0);
     const Vec3 now = X_CnowCthen * then;
-    if (then.z() < kNearest || now.z() < kNearest) {
+    if (then.z() < kInPicture || now.z() < kInPicture) {
       return HUGE_VAL;  // it left the picture
     }
     most = std::max(most, (now.head<2>() / now.z() - then.head<2>() / then.z()).norm());

@@ -3,6 +3,7 @@
 #include <Eigen/LU>  // inverse of a 3x3
 #include <cmath>
 
+#include "firmware/core/estimate/first_sight.hpp"
 #include "firmware/core/estimate/shortened.hpp"
 
 namespace fovea::estimate {
@@ -12,11 +13,7 @@ using model::Mat3;
 using model::Vec3;
 
 constexpr int kOrder = TargetFilter::kOrder;
-constexpr double kStartSpeedSigma = 0.3;         // how fast a target may be when it is first seen [m/s]
-constexpr double kStartAccelerationSigma = 0.5;  // and how hard it may accelerate [m/s^2]
-constexpr double kJerkTime = 0.1;                // the configured jerk is a mean over this [s]
-
-double Seconds(std::int64_t duration_ns) noexcept { return static_cast<double>(duration_ns) * 1e-9; }
+constexpr double kJerkTime = 0.1;  // the configured jerk is a mean over this [s]
 
 void StartAt(const MeasuredCentre& measured, TargetFilter& filter) noexcept {
   filter = TargetFilter{};
@@ -76,7 +73,7 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
     return hal::Intake::kTooOld;
   }
   TargetFilter next = filter;
-  Advance(Seconds(measured.stamp_ns - filter.stamp_ns), config.target_jerk, next);
+  Advance(hal::ToSeconds(measured.stamp_ns - filter.stamp_ns), config.target_jerk, next);
 
   const Vec3 innovation = measured.p_BO - next.x[0];
   const Mat3 S = next.P[0][0] + measured.cov_B;
@@ -120,7 +117,7 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
 
 TargetMotion MotionAt(const config::PredictConfig& config, const TargetFilter& filter,
                       std::int64_t now_ns) noexcept {
-  const double dt = Seconds(now_ns - filter.stamp_ns);
+  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns);
   const Vec3 way = dt * (filter.x[1] + 0.5 * dt * filter.x[2]);
   return {filter.x[0] + Shortened(way, config.target_speed_max * std::fabs(dt)),
           Shortened(filter.x[1] + dt * filter.x[2], config.target_speed_max)};

@@ -7,12 +7,11 @@ namespace fovea::guard {
 
 ClampResult ClampTorque(const model::ArmModel& arm, const config::SafetyConfig& config,
                         const model::VecN& tau_applied, model::VecN& tau) noexcept {
-  constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
   ClampResult result;
   for (int i = 0; i < tau.size(); ++i) {
     const model::Joint& joint = arm.joints[static_cast<std::size_t>(i)];
     const double range = config.torque_fraction * joint.tau_max;
-    const double step = config.torque_rate_fraction * joint.dtau_max * kPeriodS;
+    const double step = config.torque_rate_fraction * joint.dtau_max * hal::kTickPeriodS;
     double wanted = tau[i];
     if (!std::isfinite(wanted)) {
       wanted = 0.0;

@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kBehind = 0.2;     // a stop this much slower than expected has failed [rad/s, m/s]
 constexpr double kStopShare = 0.3;  // of safety.fault_damping: the least expected damping
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 }  // namespace
 
@@ -23,7 +22,7 @@ void StopAfterFault(const config::SafetyConfig& config, const model::ArmDynamics
                     const model::VecN& dq, bool blind, double since_s, FaultStop& stop,
                     model::VecN& tau) noexcept {
   const double speed = dq.lpNorm<Eigen::Infinity>();
-  const double falls = 1.0 - kStopShare * config.fault_damping * kPeriodS;
+  const double falls = 1.0 - kStopShare * config.fault_damping * hal::kTickPeriodS;
   stop.speed_due = std::min(falls * stop.speed_due, speed);
   const bool in_vain = speed > stop.speed_due + kBehind;
   if (stop.stage == FaultStop::Stage::kDamped &&

@@ -21,7 +21,6 @@ using model::LinearJacobian;
 constexpr double kSpeedShare = 0.93;
 constexpr double kTurnShare = 0.89;
 constexpr double kSlow = 1e-3;  // a slower joint stops by itself [rad/s, m/s]
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 
 const model::Joint& JointOf(const config::ServoConfig& config, int i) noexcept {
   return config.arm.joints[static_cast<std::size_t>(i)];
@@ -131,7 +130,7 @@ LimitSet LimitAcceleration(const config::ServoConfig& config, const model::VecN&
     const trajectory::JointPace pace = trajectory::PaceOf(config, i);
     const trajectory::VelocityStep step =
         trajectory::StepVelocity({reference.q[i], reference.dq[i], reference.ddq[i]}, dq_des[i], ddq_des[i],
-                                 {0.0, pace.ddq_max, pace.dddq_max}, kPeriodS);
+                                 {0.0, pace.ddq_max, pace.dddq_max}, hal::kTickPeriodS);
     reference.q[i] = step.state.x;
     reference.dq[i] = step.state.v;
     reference.ddq[i] = step.state.a;
@@ -153,14 +152,14 @@ MotionWish StopTogether(const config::ServoConfig& config, const trajectory::Ref
     const trajectory::JointPace pace = trajectory::PaceOf(config, i);
     const trajectory::VelocityStep step =
         trajectory::StepVelocity({reference.q[i], reference.dq[i], reference.ddq[i]}, 0.0, 0.0,
-                                 {0.0, pace.ddq_max, pace.dddq_max}, kPeriodS);
+                                 {0.0, pace.ddq_max, pace.dddq_max}, hal::kTickPeriodS);
     share = std::max(share, step.state.v / reference.dq[i]);
   }
   share = std::min(share, 1.0);
   for (int i = 0; i < reference.dq.size(); ++i) {
     if (std::fabs(reference.dq[i]) >= kSlow) {
       wish.dq[i] = share * reference.dq[i];
-      wish.ddq[i] = (wish.dq[i] - reference.dq[i]) / kPeriodS;
+      wish.ddq[i] = (wish.dq[i] - reference.dq[i]) / hal::kTickPeriodS;
     }
   }
   wish.stops = true;

@@ -11,7 +11,6 @@
 namespace fovea::guard {
 namespace {
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kSlack = 1e-9;  // tolerance for rounding [m, rad]
 
 // True if `q` is from `low` to `high`, or at least no further out than `q_now`.
@@ -75,7 +74,7 @@ class StopWay {
         levers_(Levers(config.arm, config.guard.hand)) {}
 
   // The tick's own step precedes the continuous motion.
-  [[nodiscard]] double Duration() const noexcept { return plan_.duration_s + kPeriodS; }
+  [[nodiscard]] double Duration() const noexcept { return plan_.duration_s + hal::kTickPeriodS; }
 
   // Upper bounds from some time on: speed of any point of the arm [m/s], angular speed of its hand [rad/s].
   struct Most {
@@ -89,7 +88,7 @@ class StopWay {
     for (int i = 0; i < q.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       const trajectory::AxisState state = plan_.joints[k].At(t);
-      q[i] = reference_.q[i] + reference_.dq[i] * kPeriodS + state.x;
+      q[i] = reference_.q[i] + reference_.dq[i] * hal::kTickPeriodS + state.x;
       dq[i] = state.v;
       // A joint is never faster than now, or than after it has released its acceleration.
       const double settled = trajectory::SettledVelocity(
@@ -106,7 +105,8 @@ class StopWay {
   [[nodiscard]] double FirstStep(const model::VecN& q_now) const noexcept {
     double reach = 0.0;
     for (int i = 0; i < q_now.size(); ++i) {
-      const double step = std::fabs(reference_.q[i] - q_now[i]) + std::fabs(reference_.dq[i]) * kPeriodS;
+      const double step =
+          std::fabs(reference_.q[i] - q_now[i]) + std::fabs(reference_.dq[i]) * hal::kTickPeriodS;
       reach += levers_[static_cast<std::size_t>(i)] * step;
     }
     return reach;

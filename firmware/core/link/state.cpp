@@ -66,7 +66,7 @@ class Mixer {
 };
 
 template <class Archive, class T>
-void FieldsOf(Archive& a, T& demand) noexcept {
+void FieldsOfDemand(Archive& a, T& demand) noexcept {
   a.Choice(demand.arm_status, kNumStatusCodes);
   DemandFields(a, demand);
 }
@@ -75,13 +75,13 @@ void FieldsOf(Archive& a, T& demand) noexcept {
 
 Bytes Encode(const Demand& message, Storage storage) noexcept {
   FieldWriter writer(storage);
-  FieldsOf(writer, message);
+  FieldsOfDemand(writer, message);
   return writer.ok() ? writer.written() : Bytes{};
 }
 
 bool Decode(Bytes bytes, Demand& message) noexcept {
   FieldReader reader(bytes);
-  FieldsOf(reader, message);
+  FieldsOfDemand(reader, message);
   return reader.Done();
 }
 

@@ -7,8 +7,6 @@
 namespace fovea::motion_laws {
 namespace {
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-
 // Adds one tick's error, unless the clamp cut the torque in that direction.
 void Integrate(const config::MotionLawConfig& config, const MotionLawInputs& inputs, double k_i,
                const model::VecN& e, MotionLawState& state) noexcept {
@@ -17,7 +15,7 @@ void Integrate(const config::MotionLawConfig& config, const MotionLawInputs& inp
     const bool winds_up = state.cut[i] * e[i] > 0.0;
     if (!winds_up) {
       const double most = config.integral_torque_fraction * joint.tau_max / (k_i * inputs.dynamics.M(i, i));
-      state.integral[i] = std::clamp(state.integral[i] + e[i] * kPeriodS, -most, most);
+      state.integral[i] = std::clamp(state.integral[i] + e[i] * hal::kTickPeriodS, -most, most);
     }
   }
 }

@@ -18,8 +18,6 @@ static_assert(
     }(),
     "a law is found by its place in the list");
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-
 void TorqueOf(config::MotionLawKind kind, const config::MotionLawConfig& config,
               const MotionLawInputs& inputs, MotionLawState& state, model::VecN& tau) noexcept {
   EntryOf(kind).torque(config, inputs, state, tau);
@@ -66,7 +64,7 @@ void MotionLaw(const config::MotionLawConfig& config, const MotionLawInputs& inp
   TorqueOf(state.kind, config, inputs, state, tau);
   tau += Fade(config, state) * state.step;
   if (state.since_change_s < config.change_s) {
-    state.since_change_s += kPeriodS;
+    state.since_change_s += hal::kTickPeriodS;
   }
 }
 

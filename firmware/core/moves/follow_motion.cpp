@@ -10,7 +10,6 @@
 namespace fovea::moves {
 namespace {
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kLateS = 1.0;            // after this time beyond its plan, a limit blocks the end effector
 constexpr double kRounding = 1.0 + 1e-9;  // a plan that uses all of a limit may round above it
 
@@ -54,7 +53,7 @@ hal::LimitSet TakeReference(const config::ServoConfig& config, const trajectory:
                             MotionState& state, trajectory::Reference& reference) noexcept {
   hal::LimitSet limits = 0;
   for (int i = 0; i < config.arm.num_joints; ++i) {
-    const double expected = reference.q[i] + reference.dq[i] * kPeriodS;
+    const double expected = reference.q[i] + reference.dq[i] * hal::kTickPeriodS;
     state.refused = state.refused || Exceeds(next.q[i] - expected, config.safety.setpoint_jump);
     limits |= LimitsOfJoint(config, i, next);
   }
@@ -204,7 +203,7 @@ hal::LimitSet FollowMotion(const config::ServoConfig& config, const MotionComman
       }
       break;
   }
-  const double t = static_cast<double>(now_ns - state.start_ns) * 1e-9 + kPeriodS;
+  const double t = static_cast<double>(now_ns - state.start_ns) * 1e-9 + hal::kTickPeriodS;
   hal::LimitSet limits = 0;
   if (state.goal.kind == MotionKind::kJointGoal) {
     trajectory::Reference next;

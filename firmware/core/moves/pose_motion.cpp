@@ -14,7 +14,6 @@ using model::Mat3;
 using model::Vec3;
 using model::Vec6;
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kLength = 0.3;   // this distance counts as much as one radian [m]
 constexpr double kThereM = 1e-5;  // a goal this near is reached
 constexpr double kThereRad = 1e-4;
@@ -95,7 +94,7 @@ hal::LimitSet FollowPose(const config::ServoConfig& config, const PoseSetpoint& 
                               poses.X_BE.p, J_E_B, poses, reference);
   }
   // The reference is one tick late by design; the feedback must not correct that.
-  Vec6 V = setpoint.V_BE_B + config.move.pose_gain * (e - kPeriodS * setpoint.V_BE_B);
+  Vec6 V = setpoint.V_BE_B + config.move.pose_gain * (e - hal::kTickPeriodS * setpoint.V_BE_B);
   model::Mat6N J_E;
   model::ComputeJacobian(config.arm, poses, model::Pose{}, J_E);
   J.topRows<3>() /= kLength;
@@ -113,7 +112,7 @@ hal::LimitSet FollowPose(const config::ServoConfig& config, const PoseSetpoint& 
   refused = !motion.finite;
   guard::MotionWish wish = guard::MotionWish::Velocity(motion.dq);
   if (dq_before.size() == wish.dq.size()) {
-    wish.ddq = (wish.dq - dq_before) / kPeriodS;
+    wish.ddq = (wish.dq - dq_before) / hal::kTickPeriodS;
   }
   return motion.limits | guard::GuardMotion(config, wish, poses.X_BE.p, J_E_B, poses, reference);
 }

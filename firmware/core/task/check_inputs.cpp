@@ -6,7 +6,6 @@
 namespace fovea::task {
 namespace {
 
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
 constexpr double kJump = 0.02;          // allowed change of a position beyond the speed limit's [rad, m]
 constexpr double kVelocityJump = 0.02;  // and of a velocity beyond the torque's [rad/s, m/s]
 constexpr double kTorqueAtMost = 2.0;   // times the acceleration limit: external torques add to it
@@ -23,7 +22,7 @@ std::int32_t BridgeVelocityJumps(const model::ArmModel& arm, double elapsed_s,
     const double ddq = arm.joints[k].ddq_max;
     const double change = dq[k] - dq_before[k];
     if (std::fabs(change) > kVelocityJump + kTorqueAtMost * ddq * elapsed_s) {
-      dq[k] = dq_before[k] + std::copysign(ddq * kPeriodS, change);
+      dq[k] = dq_before[k] + std::copysign(ddq * hal::kTickPeriodS, change);
       jumps = jumps < 0 ? i : jumps;
     }
   }

@@ -11,10 +11,8 @@
 namespace fovea::task {
 namespace {
 
-constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as zero
-constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
-constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
-constexpr double kOffShare = kPeriodS / 0.25;  // of a tick in the mean deviation from a motion
+constexpr double kGoalNearFraction = 0.005;             // errors below this share of |s_star| count as zero
+constexpr double kOffShare = hal::kTickPeriodS / 0.25;  // of a tick in the mean deviation from a motion
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
 
@@ -101,7 +99,8 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   guard::MotionWish wish;
   if (IsTracking(state_.mode.mode) && state_.feature_valid) {
     const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
-    const double since_s = static_cast<double>(state_.now_ns - since_ns) / kSecondNs;
+    const double since_s =
+        static_cast<double>(state_.now_ns - since_ns) / static_cast<double>(hal::kNsPerSecond);
     const double blend = trajectory::SmoothStep(since_s / config_.law.smooth_start_s);
     state_.law.task.v *= blend;
     state_.law.task.dq_0 *= blend;

@@ -6,12 +6,6 @@
 #include "firmware/core/task/servo_task.hpp"
 
 namespace fovea::task {
-namespace {
-
-constexpr double kSecondNs = static_cast<double>(hal::kNsPerSecond);
-
-}  // namespace
-
 void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
   const motion_laws::MotionLawInputs law_inputs{config_.arm,      state_.poses, state_.dynamics,
                                                 state_.reference, state_.q,     state_.dq};
@@ -57,7 +51,8 @@ bool ServoTask::Stands() const noexcept {
 void ServoTask::StopDamped() noexcept {
   const bool blind = state_.inputs.bad_ticks > 0 || state_.inputs.non_finite_ticks > 0 ||
                      state_.inputs.jumped || state_.blind || state_.mode.fault == hal::Fault::kArmStale;
-  const double since_s = static_cast<double>(state_.now_ns - state_.mode_since_ns) / kSecondNs;
+  const double since_s =
+      static_cast<double>(state_.now_ns - state_.mode_since_ns) / static_cast<double>(hal::kNsPerSecond);
   guard::StopAfterFault(config_.safety, state_.dynamics, state_.dq, blind, since_s, state_.stop, state_.tau);
 }
 

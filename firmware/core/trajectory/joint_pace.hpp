@@ -18,7 +18,6 @@ struct JointPace {
 
 // Of joint `i`. Real-time: yes.
 [[nodiscard]] inline JointPace PaceOf(const config::ServoConfig& config, int i) noexcept {
-  constexpr double kPeriodS = static_cast<double>(hal::kTickPeriodNs) * 1e-9;
   const config::GuardConfig& guard = config.guard;
   const model::Joint& joint = config.arm.joints[static_cast<std::size_t>(i)];
   JointPace pace;
@@ -26,7 +25,7 @@ struct JointPace {
   pace.ddq_max = guard.joint_acceleration_fraction * joint.ddq_max;
   pace.ramp_s = pace.ddq_max / pace.dddq_max;
   pace.deceleration = guard.braking_fraction * pace.ddq_max;
-  pace.reaction_s = 2.0 * kPeriodS + pace.deceleration / pace.dddq_max;
+  pace.reaction_s = 2.0 * hal::kTickPeriodS + pace.deceleration / pace.dddq_max;
   return pace;
 }
 

@@ -5,11 +5,10 @@
 #include "firmware/core/link/state.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/host/recording/flight/messages.hpp"
+#include "firmware/host/report/envelope.hpp"
 
 namespace fovea::report {
 namespace {
-
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 using Doubles = google::protobuf::RepeatedField<double>;
 
@@ -22,7 +21,7 @@ model::VecN VectorOf(const Doubles& values, int size) {
 ArmMotion::ArmMotion(const log::ServoConfiguration& message) : servo_(flight::FromMessage(message)) {}
 
 ArmMotion::OfTick ArmMotion::At(const log::Tick& tick) const {
-  OfTick motion{{kNone, kNone, kNone, kNone, kNone, kNone}, kNone};
+  OfTick motion{{kGap, kGap, kGap, kGap, kGap, kGap}, kGap};
   const int joints = servo_ ? servo_->arm.num_joints : 0;
   if (joints == 0 || tick.arm().q_size() < joints || tick.arm().dq_size() < joints) {
     return motion;

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace fovea::report {
+
+inline constexpr float kGap = std::numeric_limits<float>::quiet_NaN();  // of a curve, where it has no value
 
 // Rows come in order of time. They are gathered in buckets of equally many rows; a bucket keeps each column's
 // least and greatest value. When there are too many buckets, neighbours are joined: memory stays bounded.

@@ -5,12 +5,12 @@
 
 #include "firmware/core/features/target_traits.hpp"
 #include "firmware/core/model/rotation.hpp"
+#include "firmware/host/report/envelope.hpp"
 
 namespace fovea::report {
 namespace {
 
-constexpr std::size_t kMostFrames = 2000;
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kMostPathFrames = 2000;
 
 // Sum of the squared distances between the points of `a`, beginning at its point `first`, and of `b` [px^2].
 double Apart2(const std::vector<float>& a, std::size_t first, const std::vector<float>& b) {
@@ -48,15 +48,15 @@ void FeaturePath::Begin(const log::Setup& setup) {
   for (const model::Vec3& p_OP : points) {
     const model::Vec3 p_C = X_CO_star * p_OP;
     const bool is_seen = p_C.z() > 0.0;
-    path_.goal_px.push_back(is_seen ? static_cast<float>(c_u_px_ + f_px_ * p_C.x() / p_C.z()) : kNone);
-    path_.goal_px.push_back(is_seen ? static_cast<float>(c_v_px_ + f_px_ * p_C.y() / p_C.z()) : kNone);
+    path_.goal_px.push_back(is_seen ? static_cast<float>(c_u_px_ + f_px_ * p_C.x() / p_C.z()) : kGap);
+    path_.goal_px.push_back(is_seen ? static_cast<float>(c_v_px_ + f_px_ * p_C.y() / p_C.z()) : kGap);
   }
 }
 
 void FeaturePath::Add(const log::Feature& feature, double t_s) {
   const std::size_t size = path_.goal_px.size();
   const auto kind = static_cast<std::size_t>(feature.kind());
-  std::vector<float> now(size, kNone);
+  std::vector<float> now(size, kGap);
   if (feature.found() && kind < features::kTargets.size()) {
     const auto put = [&](std::size_t i, double x, double y) {
       now[i] = static_cast<float>(c_u_px_ + f_px_ * x);
@@ -88,7 +88,7 @@ void FeaturePath::Add(const log::Feature& feature, double t_s) {
   }
   path_.t_s.push_back(static_cast<float>(t_s));
   path_.px.insert(path_.px.end(), now.begin(), now.end());
-  if (path_.t_s.size() > kMostFrames) {
+  if (path_.t_s.size() > kMostPathFrames) {
     Thin();
   }
 }

@@ -11,12 +11,12 @@
 namespace fovea::report {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Squared distance of two points in the normalised image; NaN when one is not in front of the camera.
 double Apart2(const model::Vec3& a, const model::Vec3& b) {
   if (!(a.z() > 0.0) || !(b.z() > 0.0)) {
-    return kNone;
+    return kNan;
   }
   const double dx = a.x() / a.z() - b.x() / b.z();
   const double dy = a.y() / a.z() - b.y() / b.z();
@@ -55,7 +55,7 @@ ImageError::ImageError(const log::Setup& setup) : f_px_(setup.f_px()) {
 
 // Rms distance of the points in the normalised image, for the nearest of the turns of `a` that look alike.
 double ImageError::BetweenPoses(const model::Pose& a, const model::Pose& b) const {
-  double least2 = kNone;
+  double least2 = kNan;
   for (int turn = 0; turn < turns_; ++turn) {
     const model::Mat3 R = a.R * model::RotationOf(model::Vec3(0.0, 0.0, 2.0 * model::kPi * turn / turns_));
     double sum2 = 0.0;
@@ -73,7 +73,7 @@ float ImageError::OfTick(const log::Tick& tick) const {
   const int needed = form_ == Form::kPose      ? 6
                      : form_ == Form::kCorners ? 2 * static_cast<int>(points_.size())
                                                : 3;
-  double off = kNone;
+  double off = kNan;
   if (std::min(s.size(), s_star.size()) < needed) {
     return static_cast<float>(off);
   }
@@ -100,7 +100,7 @@ float ImageError::OfTick(const log::Tick& tick) const {
 
 float ImageError::OfMeasurement(const log::Feature& feature) const {
   const Doubles& s = feature.s();
-  double off = kNone;
+  double off = kNan;
   const auto kind = static_cast<std::size_t>(feature.kind());
   if (!feature.found() || kind >= features::kTargets.size()) {
     return static_cast<float>(off);

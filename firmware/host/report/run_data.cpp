@@ -27,7 +27,6 @@ namespace {
 constexpr std::size_t kMostBuckets = 1500;
 constexpr std::size_t kMostWaiting = 20'000;  // ticks that wait for their truth
 constexpr int kMostLimits = 32;               // bits of Tick.limits_active
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 template <typename Message>
 Message Parse(const log::McapMessage& message) {
@@ -162,11 +161,11 @@ class Reader {
     for (const auto* values :
          {&tick.arm().q(), &tick.arm().dq(), &tick.command().tau(), &tick.arm().tau_meas()}) {
       for (int i = 0; i < joints; ++i) {
-        row.values.push_back(i < values->size() ? static_cast<float>((*values)[i]) : kNone);
+        row.values.push_back(i < values->size() ? static_cast<float>((*values)[i]) : kGap);
       }
     }
     const std::size_t at = row.values.size();
-    row.values.resize(at + RunData::kNumTickColumns, kNone);
+    row.values.resize(at + RunData::kNumTickColumns, kGap);
     TakeServo(tick, &row.values[at]);
     waiting_.push_back(std::move(row));
     Join(false);
@@ -220,7 +219,7 @@ class Reader {
       if (!truths_.empty() && truths_.front().stamp_ns() == row.stamp_ns) {
         const std::size_t at = row.values.size() - RunData::kNumTickColumns;
         const double error_px = truths_.front().error_px();
-        row.values[at + RunData::kErrorPx] = std::isfinite(error_px) ? static_cast<float>(error_px) : kNone;
+        row.values[at + RunData::kErrorPx] = std::isfinite(error_px) ? static_cast<float>(error_px) : kGap;
         row.values[at + RunData::kErrorMm] = static_cast<float>(truths_.front().error_mm());
         run_.has_truth = true;
       }

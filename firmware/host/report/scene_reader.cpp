@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "firmware/host/recording/log/topics.hpp"
+#include "firmware/host/report/envelope.hpp"
 
 namespace fovea::report {
 namespace {
@@ -91,13 +92,12 @@ void SceneReader::AddTransforms(const foxglove::FrameTransforms& transforms, dou
     return;
   }
   SceneMotion& motion = run_.motion;
-  constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   const std::size_t begin = motion.poses.size();
   motion.t_s.push_back(static_cast<float>(t_s));
-  motion.poses.resize(begin + run_.links.size() * kPoseSize, kNone);
-  motion.camera_path.resize(motion.t_s.size() * 3, kNone);
-  motion.target_path.resize(motion.t_s.size() * 3, kNone);
-  motion.target_turn.resize(motion.t_s.size() * 4, kNone);
+  motion.poses.resize(begin + run_.links.size() * kPoseSize, kGap);
+  motion.camera_path.resize(motion.t_s.size() * 3, kGap);
+  motion.target_path.resize(motion.t_s.size() * 3, kGap);
+  motion.target_turn.resize(motion.t_s.size() * 4, kGap);
   for (const foxglove::FrameTransform& transform : transforms.transforms()) {
     const foxglove::Vector3& p = transform.translation();
     const foxglove::Quaternion& q = transform.rotation();

@@ -15,7 +15,6 @@ namespace {
 
 using Rows = std::vector<CheckRow>;
 
-constexpr double kNsPerS = 1e9;
 constexpr double kRmsWarnPx = 0.5;
 constexpr double kRmsFailPx = 2.0;
 constexpr double kMountWarnMm = 2.0;
@@ -121,7 +120,9 @@ void CheckFrames(const HwConfig& config, Rows& rows) {
   std::uint64_t lost_before = 0;  // until the first frame came
   hal::Frame frame;
   hal::Status status = camera->camera().Acquire(frame, kFirstNs);
-  const std::int64_t end_ns = clock.NowNs() + static_cast<std::int64_t>(config.check.seconds * kNsPerS);
+  const std::int64_t end_ns =
+      clock.NowNs() +
+      static_cast<std::int64_t>(config.check.seconds * static_cast<double>(hal::kNsPerSecond));
   while (clock.NowNs() < end_ns && (status.ok() || status.code() == hal::StatusCode::kTimeout)) {
     if (status.ok()) {
       lost_before = arrivals.empty() ? camera->counters().lost : lost_before;

@@ -7,7 +7,6 @@ namespace fovea::hw {
 namespace {
 
 constexpr double kMsPerNs = 1e-6;
-constexpr double kNsPerS = 1e9;
 
 double Median(std::vector<double> values) {
   if (values.empty()) {
@@ -39,7 +38,7 @@ FrameFigures FiguresOf(const std::vector<Arrival>& arrivals) {
     return latency_ms > out.latency_ms + 0.5 * out.period_ms;
   }));
   if (!periods.empty()) {
-    out.rate_hz = kNsPerS * static_cast<double>(periods.size()) /
+    out.rate_hz = static_cast<double>(hal::kNsPerSecond) * static_cast<double>(periods.size()) /
                   static_cast<double>(arrivals.back().stamp_ns - arrivals.front().stamp_ns);
   }
   return out;

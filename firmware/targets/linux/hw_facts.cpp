@@ -7,7 +7,7 @@
 namespace fovea::hw {
 namespace {
 
-constexpr std::size_t kRing = 8192;  // ticks that may wait for the disk: eight seconds
+constexpr std::size_t kTickRing = 8192;  // ticks that may wait for the disk: eight seconds
 constexpr std::size_t kMostImages = 32;
 
 // Radius of the sphere about the target's centre that encloses the target [m].
@@ -57,7 +57,7 @@ run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot
   folder.facts = FactsOf(config, robot, servo, duration_s);
   folder.facts->command = command;
   folder.options.may_drop = true;
-  folder.options.ring = kRing;
+  folder.options.ring = kTickRing;
   folder.options.most_images = kMostImages;
   folder.options.film = config.log.film;
   folder.options.picture_rate_hz = config.log.picture_rate_hz;

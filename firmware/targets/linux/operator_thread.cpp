@@ -12,7 +12,7 @@ namespace fovea::hw {
 namespace {
 
 constexpr int kLookMs = 5;
-constexpr std::size_t kRing = 256;
+constexpr std::size_t kHeardRing = 256;
 // After this time the next signal ends the program, even if files are not written.
 constexpr std::int64_t kClosingNs = 5 * hal::kNsPerSecond;
 
@@ -51,7 +51,7 @@ OperatorThread::OperatorThread(const Options& options, const hal::Clock& clock,
       signals_(signals),
       control_(control),
       input_(options.input_fd),
-      heard_(kRing),
+      heard_(kHeardRing),
       thread_([this](const std::stop_token& stop) { HearAll(stop); }) {}
 
 void OperatorThread::HearAll(const std::stop_token& stop) {

@@ -6,17 +6,14 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "firmware/vision/detect/acceptance.hpp"
 #include "firmware/vision/find/colour_share.hpp"
 
 namespace fovea::vision {
 namespace {
 
-constexpr double kMaxRmsPx = 0.35;     // limit of the edges' rms distance from the sides, plus noise
-constexpr double kMaxRmsShare = 0.05;  // cap of that limit, of the radius: other shapes scatter more
 constexpr double kMaxOffPx = 0.8;      // limit of the corners' rms distance from the pose's corners
 constexpr double kMaxOffPartPx = 0.3;  // the same if a part is hidden
-constexpr double kMinColourShare = 0.6;
-constexpr double kSureConfidence = 0.9;
 constexpr double kMostAgainst = 0.08;  // share of the sides without the target or an object that hides it
 constexpr int kMostCornersHidden = 1;  // with two, their places along the sides are undetermined
 constexpr double kLeastSeen = 0.35;    // seen share of each side
@@ -101,7 +98,7 @@ void PolygonDetector::Judge(const cv::Mat& image, const PolygonCandidate& start,
   const auto n = shape_.size();
   const PolygonFit fit = fitter_.Fit(image, config_.intrinsics, std::span(start.corner).first(n));
   const double radius = RadiusOf(std::span(fit.corners.corner).first(n));
-  const double most = std::min(kMaxRmsPx + 1.3 * fit.noise_px, std::max(kMaxRmsPx, kMaxRmsShare * radius));
+  const double most = MostRmsPx(fit.noise_px, radius);
   if (!fit.converged || fit.rms_px > most || !IsTargets(fit)) {
     return;
   }

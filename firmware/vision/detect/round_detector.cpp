@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "firmware/core/features/sphere.hpp"
+#include "firmware/vision/detect/acceptance.hpp"
 #include "firmware/vision/find/colour_share.hpp"
 
 namespace fovea::vision {
@@ -15,12 +16,8 @@ namespace {
 using model::Mat3;
 using model::Vec3;
 
-constexpr double kMaxRmsPx = 0.35;       // limit of the edges' rms distance from the outline, plus noise
-constexpr double kMaxRmsShare = 0.05;    // cap of that limit, of the radius: other shapes scatter more
-constexpr double kMinColourShare = 0.6;  // share of the inside that must have the target's colour
-constexpr double kSureConfidence = 0.9;  // above it no other candidate is tried
-constexpr double kHalfSharp = 0.4;       // an rms distance above 0.4 of the limit reduces the confidence
-constexpr int kMostFits = 8;
+constexpr double kHalfSharp = 0.4;  // an rms distance above 0.4 of the limit reduces the confidence
+constexpr int kMostCurveFits = 8;
 constexpr double kAsSure = 0.85;     // least share of the last confidence, at the expected place
 constexpr double kAsClear = 0.5;     // least share of the last contrast
 constexpr double kSameSize = 0.1;    // relative difference of the radius from the expected one
@@ -81,7 +78,7 @@ Detection RoundDetector<Curve>::Look(const cv::Mat& image, const cv::Rect& area,
   map_.Find(image, area, factor, config_.by == FindBy::kColour && image.channels() == 3 ? &colour_ : nullptr);
   int fits = 0;
   for (const auto& candidate : finder_.Find(map_, config_.intrinsics, limits_)) {
-    if (best.confidence > kSureConfidence || ++fits > kMostFits) {
+    if (best.confidence > kSureConfidence || ++fits > kMostCurveFits) {
       break;
     }
     Judge(image, candidate.curve, best);
@@ -117,8 +114,7 @@ void RoundDetector<Curve>::Keep() {
 template <class Curve>
 void RoundDetector<Curve>::Judge(const cv::Mat& image, const Curve& start, Detection& best) {
   const CurveFit<Curve> fit = fitter_.Fit(image, config_.intrinsics, start, kIsSphere<Curve>);
-  const double most =
-      std::min(kMaxRmsPx + 1.3 * fit.noise_px, std::max(kMaxRmsPx, kMaxRmsShare * fit.ellipse.radius_px));
+  const double most = MostRmsPx(fit.noise_px, fit.ellipse.radius_px);
   if (!fit.converged || fit.rms_px > most || fit.ellipse.radius_px < 0.8 * limits_.radius_min_px ||
       fit.ellipse.minor_px < 0.9 * limits_.aspect_min * fit.ellipse.major_px) {
     return;

@@ -9,7 +9,7 @@ namespace {
 constexpr double kDepthPx = 3.5;  // distance from the side of the first colour sample
 constexpr int kDepths = 3;        // samples, 1 px apart
 constexpr double kClearPx = 1.5;  // least distance of a sample from another side
-constexpr int kReach = 2;         // neighbours on each side in a line's mean colour
+constexpr int kMeanReach = 2;     // neighbours on each side in a line's mean colour
 constexpr float kLike = 0.35F;    // colours nearer than this share of the contrast are alike
 constexpr float kLikeGround = 0.2F;
 // In other light, the target's colour is scaled by a factor in this range, with at most this relative error.
@@ -137,7 +137,7 @@ void SideEvidence::Smooth(std::array<Colour, Profiles::kMaxLines>& colours,
     for (int i = side.from; i < side.to; ++i) {
       Colour sum = Colour::Zero();
       int count = 0;
-      for (int j = std::max(side.from, i - kReach); j <= std::min(side.to - 1, i + kReach); ++j) {
+      for (int j = std::max(side.from, i - kMeanReach); j <= std::min(side.to - 1, i + kMeanReach); ++j) {
         if (known[static_cast<std::size_t>(j)]) {
           sum += colours[static_cast<std::size_t>(j)];
           ++count;

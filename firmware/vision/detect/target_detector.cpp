@@ -6,7 +6,8 @@
 namespace fovea::vision {
 namespace {
 
-constexpr double kReach = 1.9;  // distance of corners from the centre, in radii of the circle with that area
+constexpr double kCornerReach =
+    1.9;  // distance of corners from the centre, in radii of the circle with that area
 constexpr double kRoomShare = 0.3;  // largest distance from the expected place, in radii,
 constexpr double kRoomPx = 14.0;    // plus this
 constexpr double kSmallPx = 22.0;   // radius below which a reduction by four leaves too few pixels
@@ -45,7 +46,7 @@ cv::Rect TargetDetector::ExpectedArea(const cv::Mat& image) const {
   double v = last_.v_px + step_.v_px;
   config_.intrinsics.Distort(u, v);
   const bool round = features::TraitsOf(config_.kind).body == features::TargetBody::kBall;
-  const double reach = (round ? 1.2 : kReach) * (last_.radius_px + std::max(step_.radius_px, 0.0)) +
+  const double reach = (round ? 1.2 : kCornerReach) * (last_.radius_px + std::max(step_.radius_px, 0.0)) +
                        kRoomShare * last_.radius_px + kRoomPx;
   const int left = std::max(0, static_cast<int>(u - reach));
   const int top = std::max(0, static_cast<int>(v - reach));

@@ -22,14 +22,14 @@ struct Offset {
 };
 constexpr float kR2 = 0.70710678F;  // 1 / sqrt(2)
 constexpr float kR5 = 0.44721360F;  // 1 / sqrt(5)
-constexpr std::array<Offset, 8> kNear{{{1, 0, 1, 0},
-                                       {1, 1, kR2, kR2},
-                                       {0, 1, 0, 1},
-                                       {-1, 1, -kR2, kR2},
-                                       {-1, 0, -1, 0},
-                                       {-1, -1, -kR2, -kR2},
-                                       {0, -1, 0, -1},
-                                       {1, -1, kR2, -kR2}}};
+constexpr std::array<Offset, 8> kNearOffsets{{{1, 0, 1, 0},
+                                              {1, 1, kR2, kR2},
+                                              {0, 1, 0, 1},
+                                              {-1, 1, -kR2, kR2},
+                                              {-1, 0, -1, 0},
+                                              {-1, -1, -kR2, -kR2},
+                                              {0, -1, 0, -1},
+                                              {1, -1, kR2, -kR2}}};
 constexpr std::array<Offset, 16> kFar{{{2, 0, 1, 0},
                                        {2, 1, 2 * kR5, kR5},
                                        {2, 2, kR2, kR2},
@@ -281,7 +281,7 @@ int EdgeMap::Next(int index, float along_u, float along_v) const {
     }
     return best;
   };
-  const int near = search(kNear, 0.3F);
+  const int near = search(kNearOffsets, 0.3F);
   return near >= 0 ? near : search(kFar, 0.75F);
 }
 

@@ -10,16 +10,16 @@ namespace {
 
 // In pixels of the reduced image.
 constexpr double kStraight = 0.75;  // largest distance of a straight piece's points from its line
-constexpr double kNear = 0.9;       // points nearer than this support a side
+constexpr double kNearSide = 0.9;   // points nearer than this support a side
 constexpr double kOverlap = 3.0;    // how far pieces may extend beyond the corner between them
 constexpr double kShortest = 3.5;   // shortest piece
 
 constexpr double kMinTurn = 0.30;  // sine of the angle between neighbouring sides
 constexpr std::size_t kMostSegments = 28;
-constexpr std::size_t kMostCandidates = 24;
-constexpr int kMostCuts = 7;
+constexpr std::size_t kMostPolygons = 24;
+constexpr int kMostSideCuts = 7;
 constexpr int kSideBins = 24;
-constexpr double kAlongNormal = 0.85;
+constexpr double kAlongSideNormal = 0.85;
 constexpr double kGap = 3.0;  // missing length of a side, at most, in lengths of its seen part
 
 }  // namespace
@@ -183,14 +183,14 @@ void PolygonFinder::Offer(double sign) {
       }
     }
   }
-  if (candidates_.size() < kMostCandidates) {
+  if (candidates_.size() < kMostPolygons) {
     candidates_.push_back(candidate);
   }
 }
 
 // The share of the outline that lies on edges.
 double PolygonFinder::Seen(const PolygonCandidate& polygon) const {
-  const double near = kNear * map_->factor();
+  const double near = kNearSide * map_->factor();
   double seen = 0.0;
   double whole = 0.0;
   for (int i = 0; i < polygon.count; ++i) {
@@ -205,7 +205,7 @@ double PolygonFinder::Seen(const PolygonCandidate& polygon) const {
       const double rv = static_cast<double>(p.v_px) - a.v_px;
       const double t = ru * du + rv * dv;
       if (std::fabs(du * rv - dv * ru) > near || t < 0.0 || t >= length ||
-          std::fabs(static_cast<double>(p.gv) * du - static_cast<double>(p.gu) * dv) < kAlongNormal) {
+          std::fabs(static_cast<double>(p.gv) * du - static_cast<double>(p.gu) * dv) < kAlongSideNormal) {
         continue;
       }
       const int wide = static_cast<int>(0.7 * kSideBins * map_->factor() / length);
@@ -228,7 +228,7 @@ const std::vector<PolygonCandidate>& PolygonFinder::Find(const EdgeMap& map, int
   segments_.clear();
   candidates_.clear();
   for (int i = 0; i < map.chain_count(); ++i) {
-    Cut(map.Chain(i), kMostCuts);
+    Cut(map.Chain(i), kMostSideCuts);
   }
   std::sort(segments_.begin(), segments_.end(),
             [](const Segment& a, const Segment& b) { return a.length > b.length; });

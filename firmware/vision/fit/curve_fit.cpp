@@ -12,14 +12,10 @@ namespace fovea::vision {
 namespace {
 
 constexpr int kMinLines = 40;
-constexpr double kStartBlurPx = 1.8;  // wide, because the start may be off
-constexpr double kMinBlurPx = 0.45;   // from the pixel's width and the interpolation
-constexpr double kMaxBlurPx = 3.0;
 constexpr int kFewLines = 64;  // enough for the first approach
 constexpr int kFewRounds = 6;
 constexpr int kRounds = 4;  // with all lines
 constexpr double kNearPx = 0.05;
-constexpr double kStillPx = 0.003;  // a round that moves the curve less is the last
 constexpr double kOnCurvePx = 0.4;
 constexpr double kShadedBlurPx = 1.5;
 constexpr double kShadedPx = 0.03;  // common shift of the outline of a ball that is lit from one side

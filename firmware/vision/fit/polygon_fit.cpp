@@ -9,15 +9,11 @@
 namespace fovea::vision {
 namespace {
 
-constexpr double kStartBlurPx = 1.8;
-constexpr double kMinBlurPx = 0.45;
-constexpr double kMaxBlurPx = 3.0;
-constexpr int kRounds = 6;
-constexpr double kStillPx = 0.003;
+constexpr int kSideRounds = 6;
 constexpr double kCornerPx = 4.0;      // lines keep this distance from a corner, which rounds edges
 constexpr double kRoundedBlurs = 4.5;  // edges nearer than this may still be rounded [blur_px]
 constexpr double kStraight = 0.95;     // share of a side's edges on its line, above which no part is hidden
-constexpr int kMinLines = 6;           // on a side
+constexpr int kMinSideLines = 6;       // on a side
 // Shift and turn of a side that is partly hidden: the covering object is next to the rest.
 constexpr double kPartShiftPx = 0.04;
 
@@ -44,7 +40,7 @@ bool PolygonFitter::PlaceLines(const cv::Mat& image, const Intrinsics& in, const
     side.line = SideLine{};
     const double skip = std::min(kCornerPx, 0.2 * side.length);
     const int lines =
-        std::clamp(static_cast<int>(side.length - 2.0 * skip), kMinLines, Profiles::kMaxLines / n);
+        std::clamp(static_cast<int>(side.length - 2.0 * skip), kMinSideLines, Profiles::kMaxLines / n);
     for (int i = 0; i < lines; ++i) {
       const double way = skip + (side.length - 2.0 * skip) * i / (lines - 1);
       const auto line = static_cast<std::size_t>(count_++);
@@ -150,7 +146,7 @@ void PolygonFitter::MoveCorners(PolygonFit& fit) const {
 
 // Measures and fits in rounds until the sides stop moving.
 bool PolygonFitter::Approach(const cv::Mat& image, const Intrinsics& in, double& blur, PolygonFit& fit) {
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kSideRounds; ++round) {
     profiles_.Measure(at_px_, weight_, blur);
     double rms2 = 0.0;
     double noise2 = 0.0;
@@ -181,7 +177,7 @@ bool PolygonFitter::Approach(const cv::Mat& image, const Intrinsics& in, double&
     const double next = std::clamp(blur + profiles_.blur_change_px(), kMinBlurPx, kMaxBlurPx);
     const bool still = round >= 3 && std::fabs(next - blur) < 0.05 * blur && moved < kStillPx;
     blur = next;
-    const bool last = still || round == kRounds - 1;
+    const bool last = still || round == kSideRounds - 1;
     if (last || read > 3.0) {
       MoveCorners(fit);
       if (last) {

@@ -17,6 +17,12 @@
 
 namespace fovea::vision {
 
+// The blur of an edge in a fit of an outline [px].
+inline constexpr double kStartBlurPx = 1.8;  // wide, because the start may be off
+inline constexpr double kMinBlurPx = 0.45;   // from the pixel's width and the interpolation
+inline constexpr double kMaxBlurPx = 3.0;
+inline constexpr double kStillPx = 0.003;  // a round that moves the outline less is the last
+
 // A line across the outline: a point on the outline, in ideal pixels, and the outward direction.
 struct ProfileLine {
   double u_px = 0.0;

@@ -2,12 +2,10 @@
 
 #include "firmware/targets/linux/cameras/camera_driver.hpp"
 #include "firmware/targets/linux/hw_config.hpp"
+#include "fovea/hal/types.hpp"
 
 namespace fovea::hw {
 namespace {
-
-constexpr double kNsPerMs = 1e6;
-constexpr double kUsPerMs = 1e3;
 
 genicam::GenicamConfig MakeGenicamConfig(const HwConfig& config) {
   const auto& camera = config.camera;
@@ -17,13 +15,13 @@ genicam::GenicamConfig MakeGenicamConfig(const HwConfig& config) {
   out.height_px = camera.calibration.intrinsics.height_px;
   out.pixel_format = camera.pixel_format;
   out.rate_hz = camera.rate_hz;
-  out.exposure_us = kUsPerMs * camera.exposure_ms;
+  out.exposure_us = 1e3 * camera.exposure_ms;
   out.gain = camera.gain;
   out.packet_size = camera.packet_size;
   out.stamp_at = camera.stamp_at == "start"    ? genicam::StampAt::kStart
                  : camera.stamp_at == "middle" ? genicam::StampAt::kMiddle
                                                : genicam::StampAt::kEnd;
-  out.transport_ns = static_cast<std::int64_t>(kNsPerMs * camera.transport_ms);
+  out.transport_ns = static_cast<std::int64_t>(static_cast<double>(hal::kNsPerMs) * camera.transport_ms);
   out.device_time = camera.time == "device";
   return out;
 }

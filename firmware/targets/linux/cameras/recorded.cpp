@@ -3,11 +3,11 @@
 #include "firmware/targets/linux/cameras/camera_driver.hpp"
 #include "firmware/targets/linux/hw_config.hpp"
 #include "fovea/camera/recorded_camera.hpp"
+#include "fovea/hal/types.hpp"
 
 namespace fovea::hw {
 namespace {
 
-constexpr double kNsPerMs = 1e6;
 constexpr double kRecordedRateHz = 30.0;  // of a folder, if camera.rate_hz is 0
 constexpr double kRecordedExposureMs = 5.0;
 
@@ -16,8 +16,9 @@ camera::RecordedCameraConfig MakeRecordedConfig(const HwConfig& config, std::int
   camera::RecordedCameraConfig out;
   out.path = camera.device;
   out.rate_hz = camera.rate_hz > 0.0 ? camera.rate_hz : kRecordedRateHz;
-  out.exposure_ns = static_cast<std::int64_t>(
-      kNsPerMs * (camera.exposure_ms > 0.0 ? camera.exposure_ms : kRecordedExposureMs));
+  out.exposure_ns =
+      static_cast<std::int64_t>(static_cast<double>(hal::kNsPerMs) *
+                                (camera.exposure_ms > 0.0 ? camera.exposure_ms : kRecordedExposureMs));
   out.start_ns = start_ns;
   return out;
 }

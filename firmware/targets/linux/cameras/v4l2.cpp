@@ -1,12 +1,10 @@
 #include "firmware/targets/linux/cameras/camera_driver.hpp"
 #include "firmware/targets/linux/hw_config.hpp"
+#include "fovea/hal/types.hpp"
 #include "fovea/v4l2/v4l2_camera.hpp"
 
 namespace fovea::hw {
 namespace {
-
-constexpr double kNsPerMs = 1e6;
-constexpr double kUsPerMs = 1e3;
 
 v4l2::V4l2Config MakeV4l2Config(const HwConfig& config) {
   const auto& camera = config.camera;
@@ -16,9 +14,9 @@ v4l2::V4l2Config MakeV4l2Config(const HwConfig& config) {
   out.height_px = camera.calibration.intrinsics.height_px;
   out.pixel_format = camera.pixel_format;
   out.rate_hz = camera.rate_hz;
-  out.exposure_us = kUsPerMs * camera.exposure_ms;
+  out.exposure_us = 1e3 * camera.exposure_ms;
   out.gain = static_cast<int>(camera.gain);
-  out.transport_ns = static_cast<std::int64_t>(kNsPerMs * camera.transport_ms);
+  out.transport_ns = static_cast<std::int64_t>(static_cast<double>(hal::kNsPerMs) * camera.transport_ms);
   return out;
 }
 

@@ -17,4 +17,10 @@ inline constexpr std::int64_t kNsPerSecond = 1'000'000'000;
 inline constexpr std::int64_t kNsPerMs = 1'000'000;
 inline constexpr std::int64_t kTickPeriodNs = kNsPerMs;  // the servo's period: 1 kHz
 
+constexpr double ToSeconds(std::int64_t duration_ns) noexcept {
+  return static_cast<double>(duration_ns) * 1e-9;
+}
+
+inline constexpr double kTickPeriodS = ToSeconds(kTickPeriodNs);
+
 }  // namespace fovea::hal

@@ -1,0 +1,26 @@
+# The small sources of a folder are compiled together, a few at a time: most of a small source's time is the headers that it
+# shares with its neighbours. Their anonymous namespaces become one, so a name stands once in a folder. Not in a sanitized
+# build: that compiles each source by itself, so that a source still has to include what it uses.
+option(FOVEA_UNITY "Compile the small sources of a folder together" ON)
+if(FOVEA_SANITIZE)
+  set(FOVEA_UNITY OFF)
+endif()
+set(fovea_unity_size 8)  # sources: more gain little, and a change in one compiles all again
+
+# fovea_compile_together(<target> <source>...): sources of the current folder.
+function(fovea_compile_together target)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
+  if(NOT FOVEA_UNITY OR folder MATCHES "^tests/")  # tests change one at a time
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  # GCC takes the sources for headers, whose anonymous types a class must not have as members.
+  target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  string(MAKE_C_IDENTIFIER ${folder} folder)
+  set(index 0)
+  foreach(source IN LISTS ARGN)
+    math(EXPR group "${index} / ${fovea_unity_size}")
+    set_source_files_properties(${source} TARGET_DIRECTORY ${target} PROPERTIES UNITY_GROUP ${folder}_${group})
+    math(EXPR index "${index} + 1")
+  endforeach()
+endfunction()
