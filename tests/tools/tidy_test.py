@@ -66,6 +66,30 @@ class Tidy(unittest.TestCase):
         commands = json.loads((self.root / "build/release/tidy/compile_commands.json").read_text())
         self.assertEqual([entry["command"] for entry in commands], ["cc -O3 -o a.o -c a.cpp"])
 
+    def test_sources_compiled_together_are_checked_one_by_one(self):
+        together = self.root / "build/release/x.dir/Unity/unity_x_0_cxx.cxx"
+        sources = [self.root / "a.cpp", self.root / "b.cpp"]
+        self.write(together, "".join(f'/* NOLINT */\n\n#include "{source}"\n' for source in sources))
+        self.write("build/release/compile_commands.json", json.dumps(
+            [{"file": str(together), "command": f"cc -o a.o -c {together}", "output": "a.o"}]))
+        self.write("b.cpp", "bad")
+        code, said = self.tidy()
+        self.assertEqual(code, 1, said)
+        commands = json.loads((self.root / "build/release/tidy/compile_commands.json").read_text())
+        self.assertEqual([(entry["file"], entry["command"]) for entry in commands],
+                         [(str(source), f"cc -o a.o -c {source}") for source in sources])
+        self.assertIn("2 sources, 1 known to be clean", self.tidy()[1])
+
+    def test_changed_header_is_checked_in_a_source_that_names_it(self):
+        self.write("b.cpp", '#include "both.hpp"\n')
+        self.commit()
+        self.write("both.hpp", "int x;")
+        self.commit()
+        code, said = self.tidy("--since", "HEAD~1")
+        self.assertEqual(code, 0, said)
+        self.assertIn("] b.cpp", said)
+        self.assertIn("1 sources", said)
+
     def test_clean_source_is_not_checked_again(self):
         code, said = self.tidy()
         self.assertEqual(code, 0, said)
