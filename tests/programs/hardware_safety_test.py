@@ -73,7 +73,7 @@ class HardwareSafety(TwoPrograms):
         eye = [] if camera else ["--set", "camera.driver=none"]
         hw = subprocess.Popen([two_programs.HW, config, "--set", f"robot.port={port}", "--json", *eye, *options],
                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=terminal.writer, text=True)
-        watchdog = threading.Timer(100, hw.kill)
+        watchdog = threading.Timer(45, hw.kill)
         watchdog.start()
         self.addCleanup(watchdog.cancel)
         self.addCleanup(self.discard, hw)
@@ -122,7 +122,7 @@ class HardwareSafety(TwoPrograms):
         port = self.serve("--pace", "lockstep", "--most-speed", "0.5", camera=True)
         hw, terminal = self.start(port, "--track", "--seconds", "6", "--set", "input.dead_man_s=4", camera=True)
         terminal.stop()
-        s = self.summary_of(hw, code=1)
+        s = self.summary_of(hw, code=1, run_s=24)  # 6 s at half speed, and twice that
         print(f"\nno line from the operator for 4 s: {self.modes_of(s)}, {s['lines_unsaid']} lines dropped")
         self.assertIn(("track", ""), self.modes_of(s))
         self.assertEqual(self.modes_of(s)[-1], ("hold", "not_asked"))
@@ -218,7 +218,7 @@ class HardwareSafety(TwoPrograms):
             client, _ = robot.accept()  # and sends no answer
             time.sleep(0.2)
             hw.send_signal(signal.SIGINT)
-            text, _ = hw.communicate(timeout=60)
+            text, _ = hw.communicate(timeout=20)
             client.close()
         self.assertEqual(hw.returncode, 1)
         s = json.loads(text)
