@@ -209,6 +209,20 @@ class HardwareSafety(TwoPrograms):
         self.assertEqual(hw.wait(timeout=10), 1)
         print(f"\nthe robot was free {idle_s:.2f} s after Ctrl-C, the program ended {time.monotonic() - began:.2f} s after the second")
 
+    def test_log_at_its_largest_size_does_not_end_the_run(self):
+        """The log may have 1 MB, as with ulimit -f: it ends there, the run does not."""
+        port = self.serve("--pace", "lockstep", "--most-speed", "1")
+        out = self.folder()
+        done = subprocess.run(["prlimit", "--fsize=1000000", two_programs.HW, "loopback", "--set", f"robot.port={port}",
+                               "--set", "camera.driver=none", "--enable", "--seconds", "4", "--out", str(out)],
+                              timeout=60, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("the incomplete log is kept in", done.stderr.strip().splitlines()[-1])
+        self.assertEqual((out / "log.mcap").stat().st_size, 1000000)
+        commands = self.end_server()["commands"]
+        print(f"\n{commands} commands to the robot in 4 s")
+        self.assertGreater(commands, 3900)
+
     # Ctrl-C at any moment.
 
     def test_ctrl_c_before_the_robot_answers_leaves_log_and_summary(self):
