@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "firmware/host/config/input_error.hpp"
+#include "firmware/vision/pose/flat_corners.hpp"
 #include "sim/scenario/roll_pitch_yaw.hpp"
 
 namespace fovea::sim {
@@ -108,9 +109,7 @@ TargetShape MakeTargetShape(const features::TargetFeature& feature) {
     shape.kind = TargetShape::Kind::kDisc;
   } else if (feature.SeesOrientation()) {
     shape.kind = TargetShape::Kind::kPolygon;
-    for (int i = 0; i < feature.corners.num_corners; ++i) {
-      shape.corners.emplace_back(feature.corners.corners[static_cast<std::size_t>(i)].head<2>());
-    }
+    shape.corners = vision::FlatCorners(feature.corners);
   }
   return shape;
 }

@@ -73,7 +73,7 @@ class HardwareSafety(TwoPrograms):
         eye = [] if camera else ["--set", "camera.driver=none"]
         hw = subprocess.Popen([two_programs.HW, config, "--set", f"robot.port={port}", "--json", *eye, *options],
                               stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=terminal.writer, text=True)
-        watchdog = threading.Timer(100, hw.kill)
+        watchdog = threading.Timer(45, hw.kill)
         watchdog.start()
         self.addCleanup(watchdog.cancel)
         self.addCleanup(self.discard, hw)
@@ -122,7 +122,7 @@ class HardwareSafety(TwoPrograms):
         port = self.serve("--pace", "lockstep", "--most-speed", "0.5", camera=True)
         hw, terminal = self.start(port, "--track", "--seconds", "6", "--set", "input.dead_man_s=4", camera=True)
         terminal.stop()
-        s = self.summary_of(hw, code=1)
+        s = self.summary_of(hw, code=1, run_s=24)  # 6 s at half speed, and twice that
         print(f"\nno line from the operator for 4 s: {self.modes_of(s)}, {s['lines_unsaid']} lines dropped")
         self.assertIn(("track", ""), self.modes_of(s))
         self.assertEqual(self.modes_of(s)[-1], ("hold", "not_asked"))
@@ -209,6 +209,20 @@ class HardwareSafety(TwoPrograms):
         self.assertEqual(hw.wait(timeout=10), 1)
         print(f"\nthe robot was free {idle_s:.2f} s after Ctrl-C, the program ended {time.monotonic() - began:.2f} s after the second")
 
+    def test_log_at_its_largest_size_does_not_end_the_run(self):
+        """The log may have 1 MB, as with ulimit -f: it ends there, the run does not."""
+        port = self.serve("--pace", "lockstep", "--most-speed", "1")
+        out = self.folder()
+        done = subprocess.run(["prlimit", "--fsize=1000000", two_programs.HW, "loopback", "--set", f"robot.port={port}",
+                               "--set", "camera.driver=none", "--enable", "--seconds", "4", "--out", str(out)],
+                              timeout=60, stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("the incomplete log is kept in", done.stderr.strip().splitlines()[-1])
+        self.assertEqual((out / "log.mcap").stat().st_size, 1000000)
+        commands = self.end_server()["commands"]
+        print(f"\n{commands} commands to the robot in 4 s")
+        self.assertGreater(commands, 3900)
+
     # Ctrl-C at any moment.
 
     def test_ctrl_c_before_the_robot_answers_leaves_log_and_summary(self):
@@ -218,7 +232,7 @@ class HardwareSafety(TwoPrograms):
             client, _ = robot.accept()  # and sends no answer
             time.sleep(0.2)
             hw.send_signal(signal.SIGINT)
-            text, _ = hw.communicate(timeout=60)
+            text, _ = hw.communicate(timeout=20)
             client.close()
         self.assertEqual(hw.returncode, 1)
         s = json.loads(text)

@@ -37,7 +37,7 @@ class TwoPrograms(unittest.TestCase):
         if self.server.returncode is not None:
             return None
         self.server.send_signal(signal.SIGTERM)
-        out, _ = self.server.communicate(timeout=60)
+        out, _ = self.server.communicate(timeout=20)
         self.assertEqual(self.server.returncode, 0)
         return json.loads(out)
 
@@ -56,7 +56,7 @@ class TwoPrograms(unittest.TestCase):
         hw = subprocess.Popen([HW, "loopback", "--set", f"robot.port={port}", "--set", "camera.driver=none", "--json",
                                *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True)
-        watchdog = threading.Timer(100, hw.kill)
+        watchdog = threading.Timer(60, hw.kill)
         watchdog.start()
         self.addCleanup(watchdog.cancel)
         return hw
@@ -78,8 +78,9 @@ class TwoPrograms(unittest.TestCase):
         hw.stdin.write(word + "\n")
         hw.stdin.flush()
 
-    def summary_of(self, hw, code=0):
-        out, said = hw.communicate(timeout=60)
+    def summary_of(self, hw, code=0, run_s=0.0):
+        """The program's summary, once it has ended: in 20 s, and `run_s`, which the rest of its run may take."""
+        out, said = hw.communicate(timeout=20 + run_s)
         self.assertEqual(hw.returncode, code, f"{out}\n{said}")
         return json.loads(out)
 

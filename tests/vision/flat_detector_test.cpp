@@ -8,6 +8,7 @@
 
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
+#include "firmware/vision/pose/flat_corners.hpp"
 #include "tools/bench/vision/picture.hpp"
 #include "tools/bench/vision/scenes.hpp"
 
@@ -40,7 +41,7 @@ bench::PictureScene SceneOf(const DetectorConfig& config, const model::Pose& X_C
     body.radius = 0.5 * config.size;
   } else {
     body.shape = bench::Shape::kPolygon;
-    body.corners = CornersOf(config);
+    body.corners = FlatCorners(config.corners);
   }
   scene.bodies.push_back(body);
   return scene;

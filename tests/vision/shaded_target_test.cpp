@@ -10,6 +10,7 @@
 
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
+#include "firmware/vision/pose/flat_corners.hpp"
 #include "tools/bench/vision/picture.hpp"
 #include "tools/bench/vision/scenes.hpp"
 
@@ -43,7 +44,7 @@ class ShadedTargetTest : public testing::TestWithParam<hal::FeatureKind> {
     bench::Body body;
     body.shape = bench::Shape::kPolygon;
     body.bgr = {25.0, 25.0, 200.0};
-    body.corners = CornersOf(config);
+    body.corners = FlatCorners(config.corners);
     body.p.z() = uniform(0.3, 0.45);
     body.p.x() = body.p.z() * uniform(-0.2, 0.2);
     body.p.y() = body.p.z() * uniform(-0.12, 0.12);

@@ -12,6 +12,7 @@
 
 #include "firmware/vision/detect/target_detector.hpp"
 #include "firmware/vision/fit/polygon_fit.hpp"
+#include "firmware/vision/pose/flat_corners.hpp"
 #include "tools/bench/vision/picture.hpp"
 #include "tools/bench/vision/picture_target.hpp"
 
@@ -41,7 +42,7 @@ bench::PictureScene SceneOf(const DetectorConfig& config, double level) {
   bench::PictureScene scene;
   scene.ground_bgr.setConstant(kGround);
   scene.noise = 3.0;
-  scene.bodies = {Plate(CornersOf(config), kDistance, level)};
+  scene.bodies = {Plate(FlatCorners(config.corners), kDistance, level)};
   return scene;
 }
 
@@ -52,7 +53,7 @@ struct Beyond {
   Vector2d inward;  // normal to the side, as long as `on`
 };
 Beyond BeyondOf(const DetectorConfig& config, std::size_t k, bool at_end) {
-  const std::vector<Vector2d> corners = CornersOf(config);
+  const std::vector<Vector2d> corners = FlatCorners(config.corners);
   const Vector2d& a = corners[k];
   const Vector2d& b = corners[(k + 1) % corners.size()];
   const Vector2d side = b - a;
@@ -75,7 +76,7 @@ bench::Body PlateBeyond(const Beyond& beyond, double from, double to, double lev
 bool GoesOn(const DetectorConfig& config, const bench::PictureScene& scene) {
   const cv::Mat image = Draw(scene);
   std::vector<ImagePoint> start;
-  const std::vector<Vector2d> corners = CornersOf(config);
+  const std::vector<Vector2d> corners = FlatCorners(config.corners);
   start.reserve(corners.size());
   for (const Vector2d& corner : corners) {
     const Vector2d p = scene.camera.f_px / kDistance * corner;
@@ -134,7 +135,7 @@ TEST(SideEvidenceTest, PieceBesideAGroundColouredBarIsNotTheTarget) {
   constexpr double kNear = 0.98;  // the bar's distance over the triangle's
   constexpr double kThick = 0.12;
   const DetectorConfig config = Triangle();
-  const std::vector<Vector2d> corners = CornersOf(config);
+  const std::vector<Vector2d> corners = FlatCorners(config.corners);
   int pictures = 0;
   int right = 0;
   int wrong = 0;

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <functional>
@@ -78,6 +79,7 @@ inline std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
 // kBadInput after one line on standard error that begins with the program's `name`.
 inline int RunProgram(const char* name, CLI::App& app, int argc, char** argv,
                       const std::function<int()>& action) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file at its largest size is a failed write, as on a full disk
   RefuseNonFinite(app);
   try {
     app.parse(argc, argv);

@@ -8,6 +8,7 @@
 
 #include "firmware/vision/detect/acceptance.hpp"
 #include "firmware/vision/find/colour_share.hpp"
+#include "firmware/vision/pose/flat_corners.hpp"
 
 namespace fovea::vision {
 namespace {
@@ -46,18 +47,9 @@ bool IsTargets(const PolygonFit& fit) {
 
 }  // namespace
 
-std::vector<Eigen::Vector2d> CornersOf(const DetectorConfig& config) {
-  std::vector<Eigen::Vector2d> corners;
-  corners.reserve(static_cast<std::size_t>(config.corners.num_corners));
-  for (int i = 0; i < config.corners.num_corners; ++i) {
-    corners.emplace_back(config.corners.corners[static_cast<std::size_t>(i)].head<2>());
-  }
-  return corners;
-}
-
 PolygonDetector::PolygonDetector(const DetectorConfig& config)
     : config_(config),
-      shape_(CornersOf(config)),
+      shape_(FlatCorners(config.corners)),
       turns_(features::TraitsOf(config.kind).turns),
       colour_(config.colour),
       fitter_(config.edge_noise, config.by == FindBy::kColour) {

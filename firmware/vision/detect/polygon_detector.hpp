@@ -14,9 +14,6 @@
 
 namespace fovea::vision {
 
-// The target's corners (x, y) in O [m], in the rotational sense from x to y.
-std::vector<Eigen::Vector2d> CornersOf(const DetectorConfig& config);
-
 class PolygonDetector {
  public:
   // std::invalid_argument: the number of corners does not match the kind of target.

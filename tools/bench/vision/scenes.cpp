@@ -8,6 +8,7 @@
 #include <random>
 
 #include "firmware/host/config/target_keys.hpp"
+#include "firmware/vision/pose/flat_corners.hpp"
 
 namespace fovea::bench {
 namespace {
@@ -64,7 +65,7 @@ PlateSize SizeOf(const features::TargetFeature& target) {
       return drawn.size;
     }
   }
-  const std::vector<Vector2d> corners = CornersOf(target);
+  const std::vector<Vector2d> corners = vision::FlatCorners(target.corners);
   double twice_area = 0.0;
   double furthest = 0.0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -95,7 +96,7 @@ Body MakeTarget(TargetKind kind, const PictureCamera& camera, bool off_axis, Cha
     case features::TargetBody::kPlate: {
       const PlateSize size = SizeOf(target);
       body.shape = Shape::kPolygon;
-      body.corners = CornersOf(target);
+      body.corners = vision::FlatCorners(target.corners);
       body.R = Turn(chance, 0.7);
       radius = size.radius;
       reach = size.reach;
@@ -160,7 +161,7 @@ Body MakeOccluder(const PictureCamera& camera, const Body& target, double hidden
 
 // Adds the corners of `plate`, scaled from its clutter size to `radius`.
 void AddScaled(const features::TargetFeature& plate, double radius, std::vector<Vector2d>& corners) {
-  for (const Vector2d& corner : CornersOf(plate)) {
+  for (const Vector2d& corner : vision::FlatCorners(plate.corners)) {
     corners.emplace_back(corner * (radius / SizeOf(plate).clutter));
   }
 }
@@ -238,15 +239,6 @@ features::TargetFeature TargetOf(TargetKind kind) {
   settings.side = kSide;
   settings.triangle.assign(kTriangle.begin(), kTriangle.end());
   return config::MakeTarget(settings);
-}
-
-std::vector<Vector2d> CornersOf(const features::TargetFeature& target) {
-  std::vector<Vector2d> corners;
-  corners.reserve(static_cast<std::size_t>(target.corners.num_corners));
-  for (int i = 0; i < target.corners.num_corners; ++i) {
-    corners.emplace_back(target.corners.corners[static_cast<std::size_t>(i)].head<2>());
-  }
-  return corners;
 }
 
 PictureScene MakeScene(const SceneClass& c, TargetKind kind, bool with_target, unsigned seed) {

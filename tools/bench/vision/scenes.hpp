@@ -27,7 +27,6 @@ const std::vector<SceneClass>& SceneClasses();
 
 // The target of each kind, as the detector is configured for it.
 features::TargetFeature TargetOf(TargetKind kind);
-std::vector<Eigen::Vector2d> CornersOf(const features::TargetFeature& target);
 
 // Composes one picture of a class. The radius of the target's outline is 12 to 150 px.
 PictureScene MakeScene(const SceneClass& scene_class, TargetKind kind, bool with_target, unsigned seed);

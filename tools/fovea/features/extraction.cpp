@@ -8,6 +8,7 @@
 
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
+#include "firmware/vision/pose/flat_corners.hpp"
 #include "tools/bench/vision/scenes.hpp"
 
 namespace fovea {
@@ -75,8 +76,8 @@ cv::Mat Portrait(const TargetFeature& feature, const model::Pose& X_CO, const be
   body.shape = shape == features::TargetBody::kBall   ? bench::Shape::kSphere
                : shape == features::TargetBody::kDisc ? bench::Shape::kDisc
                                                       : bench::Shape::kPolygon;
-  for (int i = 0; feature.SeesOrientation() && i < feature.corners.num_corners; ++i) {
-    body.corners.emplace_back(feature.corners.corners[static_cast<std::size_t>(i)].head<2>());
+  if (feature.SeesOrientation()) {
+    body.corners = vision::FlatCorners(feature.corners);
   }
   // In order from x to y, as bench::Body requires.
   if (body.corners.size() >= 3) {
