@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -131,7 +129,7 @@ void TheoryRun::Fit(const std::vector<State>& states, TheoryFigures& figures) co
   if (most < kStill || before.rows() < 10) {
     return;
   }
-  const Eigen::MatrixXd fit = before.completeOrthogonalDecomposition().solve(after);
+  const Eigen::MatrixXd fit = design::LeastSquares(before, after);
   const Eigen::MatrixXd phi = fit.topRows(n).transpose();
   const double stride_s = hal::kTickPeriodS * static_cast<double>(kStride);
   std::vector<std::complex<double>> eigenvalues;
@@ -140,8 +138,7 @@ void TheoryRun::Fit(const std::vector<State>& states, TheoryFigures& figures) co
     const std::complex<double> root = std::sqrt(std::complex<double>(half * half - phi.determinant()));
     eigenvalues = {half + root, half - root};
   } else {
-    const Eigen::VectorXcd values = phi.eigenvalues();
-    eigenvalues.assign(values.begin(), values.end());
+    eigenvalues = design::Eigenvalues(phi);
   }
   for (const std::complex<double>& z : eigenvalues) {
     figures.poles.push_back(std::log(z) / stride_s);

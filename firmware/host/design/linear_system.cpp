@@ -1,6 +1,7 @@
 #include "firmware/host/design/linear_system.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
 #include <unsupported/Eigen/MatrixFunctions>
 
@@ -11,13 +12,21 @@ Eigen::VectorXd LinearResponse(const Eigen::MatrixXd& A, const Eigen::VectorXd& 
   return transition * x0;
 }
 
-std::vector<std::complex<double>> Poles(const Eigen::MatrixXd& A) {
+std::vector<std::complex<double>> Eigenvalues(const Eigen::MatrixXd& A) {
   const Eigen::VectorXcd values = A.eigenvalues();
-  std::vector<std::complex<double>> poles(values.begin(), values.end());
+  return {values.begin(), values.end()};
+}
+
+std::vector<std::complex<double>> Poles(const Eigen::MatrixXd& A) {
+  std::vector<std::complex<double>> poles = Eigenvalues(A);
   std::sort(poles.begin(), poles.end(), [](const auto& one, const auto& other) {
     return one.real() != other.real() ? one.real() > other.real() : one.imag() > other.imag();
   });
   return poles;
+}
+
+Eigen::MatrixXd LeastSquares(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
+  return A.completeOrthogonalDecomposition().solve(B);
 }
 
 Eigen::Matrix3d IntegralLoop(double k_p, double k_v, double k_i) {

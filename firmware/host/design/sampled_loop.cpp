@@ -1,10 +1,10 @@
 #include "firmware/host/design/sampled_loop.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "firmware/host/design/characteristic.hpp"
+#include "firmware/host/design/linear_system.hpp"
 
 namespace fovea::design {
 namespace {
@@ -69,8 +69,7 @@ Eigen::MatrixXd PeriodMatrix(const SampledLoop& loop) {
 }
 
 std::vector<std::complex<double>> Poles(const SampledLoop& loop) {
-  const Eigen::VectorXcd values = PeriodMatrix(loop).eigenvalues();
-  std::vector<std::complex<double>> poles(values.begin(), values.end());
+  std::vector<std::complex<double>> poles = Eigenvalues(PeriodMatrix(loop));
   std::sort(poles.begin(), poles.end(), [](const auto& one, const auto& other) {
     const double size_one = std::abs(one);
     const double size_other = std::abs(other);
