@@ -1,16 +1,16 @@
-# The small sources of a folder are compiled together, a few at a time: most of a small source's time is the headers that it
-# shares with its neighbours. Their anonymous namespaces become one, so a name stands once in a folder. Not in a sanitized
-# build: that compiles each source by itself, so that a source still has to include what it uses.
+# The small sources of a folder are compiled together: most of a small source's time is the headers that it shares with its
+# neighbours. Their anonymous namespaces become one, so a name stands once in a folder. Not in a sanitized build: that
+# compiles each source by itself, so that a source still has to include what it uses.
 option(FOVEA_UNITY "Compile the small sources of a folder together" ON)
 if(FOVEA_SANITIZE)
   set(FOVEA_UNITY OFF)
 endif()
-set(fovea_unity_size 8)  # sources: more gain little, and a change in one compiles all again
+set(fovea_unity_size 16)  # sources: hardly a folder has more
 
 # fovea_compile_together(<target> <source>...): sources of the current folder.
 function(fovea_compile_together target)
   file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  if(NOT FOVEA_UNITY OR folder MATCHES "^tests/")  # tests change one at a time
+  if(NOT FOVEA_UNITY OR folder MATCHES "^(tests|tools)/")  # their sources are independent and change one at a time
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
