@@ -120,7 +120,11 @@ class Run {
     progress_.Update(about_.scenario.run.duration_s,
                      interrupted_ ? "interrupted; Ctrl-C again ends at once" : "drawing the pictures");
     const Instant simulated = std::chrono::steady_clock::now();
-    files_->Write(summary, world_->Look());
+    try {
+      files_->Write(summary, world_->Look());
+    } catch (const std::exception& error) {
+      summary.files_error = error.what();
+    }
     summary.writing_s = SecondsSince(simulated);
     return summary;
   }

@@ -50,6 +50,10 @@ struct ServeSummary {
 ServeSummary Serve(const Scenario& scenario, const ServeOptions& options,
                    const std::function<void(const std::string&)>& say);
 
+// Parses "x,y,z,dx,dy,dz": a corner and the edge lengths from that corner [m]. InputError when it is not
+// that.
+CartesianWall ParseWall(const std::string& text);
+
 // The JSON text of summary.json.
 std::string ToJson(const ServeSummary& summary);
 

@@ -32,7 +32,7 @@ constexpr std::chrono::milliseconds kSayLast{300};  // before the summary counts
 class Session {
  public:
   Session(const HwConfig& config, const HwRunOptions& options, const linux_rt::SignalQueue& signals,
-          Speaker& speaker)
+          linux_rt::Speaker& speaker)
       : config_(config),
         options_(options),
         speaker_(speaker),
@@ -282,12 +282,16 @@ class Session {
     }
     speaker_.Wait(kSayLast);
     summary_.lines_unsaid = speaker_.unsaid();
-    shell_.Write(ToJson(summary_));
+    try {
+      shell_.Write(ToJson(summary_));
+    } catch (const std::exception& error) {
+      summary_.files_error = error.what();
+    }
   }
 
   const HwConfig& config_;
   const HwRunOptions options_;
-  Speaker& speaker_;
+  linux_rt::Speaker& speaker_;
   const robots::Robot robot_;
   const config::ServoConfig servo_;
   HwSummary summary_;
@@ -313,7 +317,7 @@ class Session {
 
 }  // namespace
 
-HwSummary Run(const HwConfig& config, const HwRunOptions& options, Speaker& speaker) {
+HwSummary Run(const HwConfig& config, const HwRunOptions& options, linux_rt::Speaker& speaker) {
   // From here on a signal ends the run in order, and a closed pipe does not end it.
   std::signal(SIGPIPE, SIG_IGN);
   const linux_rt::SignalQueue signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};

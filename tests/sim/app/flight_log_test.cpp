@@ -158,6 +158,7 @@ TEST_F(FlightLogTest, FullDiskKeepsTheLogUpToThere) {
   EXPECT_TRUE(replay["identical"]);
   EXPECT_FALSE(replay["complete"]);
   EXPECT_GT(replay["ticks"], 500);
+  EXPECT_EQ(json::parse(run.out)["ticks"], 4000) << "the result is printed";
   std::cout << "replayed " << replay["ticks"] << " of 4000 ticks\n";
 }
 
