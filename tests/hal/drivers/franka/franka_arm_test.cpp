@@ -28,6 +28,18 @@ TEST_F(FrankaArmTest, StateIsPassedOnUnchanged) {
   EXPECT_EQ(state_.q[7], 0.0);
 }
 
+// Its own time stands still: the loop's clock goes on by the computer's, so that time-outs and ends are kept.
+TEST_F(FrankaArmTest, SilentRobotDoesNotStopTheLoopsClock) {
+  ASSERT_TRUE(Next().ok());
+  const std::int64_t before_ns = clock_.NowNs();
+  --robot_.state.message_id;  // the same state again
+  EXPECT_EQ(Next().code(), StatusCode::kTimeout);
+  EXPECT_EQ(clock_.NowNs() - before_ns, ConfigFor(robot_).state_timeout_ns);
+  const std::int64_t silent_ns = clock_.NowNs();
+  EXPECT_TRUE(Next().ok()) << "it continues";
+  EXPECT_EQ(clock_.NowNs(), silent_ns) << "and its clock is never turned back";
+}
+
 TEST_F(FrankaArmTest, MoveIsSentOnceAndEachStateAnsweredOnce) {
   ASSERT_TRUE(Next().ok());
   ASSERT_TRUE(Write(0.5).ok());
