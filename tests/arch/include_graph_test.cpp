@@ -55,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Rule{"hal/include", "fovea/hal/.*", "the contract depends only on the standard library"},
         Rule{"hal/src", "fovea/hal/.*", "the contract depends only on the standard library"},
-        Rule{"hal/drivers/linux_rt", "fovea/(hal|linux_rt)/.*|(sys/|fcntl|malloc|poll|sched|unistd|pthread).*",
+        Rule{"hal/drivers/linux_rt",
+             "fovea/(hal|linux_rt)/.*|(sys/|fcntl|malloc|poll|sched|unistd|pthread).*",
              "a driver depends on the contract and on its device"},
         Rule{"hal/drivers/camera", "fovea/(hal|linux_rt|camera)/.*|opencv2/.*",
              "a driver depends on the contract and on its device"},
