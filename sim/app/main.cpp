@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <stdexcept>
 
 #include "firmware/host/build_info.hpp"
 #include "firmware/host/config/board_flags.hpp"
@@ -184,6 +185,9 @@ int Serve(const ServeArguments& arguments) {
     if (summary.error_px) {
       fmt::print("final target error: {:.2f} px, {:.2f} mm\n", *summary.error_px, *summary.error_mm);
     }
+  }
+  if (!summary.error.empty()) {
+    throw std::runtime_error(summary.error);
   }
   return kDone;
 }

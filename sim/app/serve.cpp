@@ -194,14 +194,16 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   summary.contact_ticks = contacts.any();
   summary.contacts = contacts.by_what();
   if (eye) {
-    if (!eye->fault().empty()) {
-      throw std::runtime_error("the camera failed: " + eye->fault());
-    }
+    summary.error = eye->fault().empty() ? "" : "the camera failed: " + eye->fault();
     summary.frames_sent = eye->sent();
     summary.frames_dropped = eye->dropped();
     FillError(ErrorOf(world.truth(), about.pinhole, GoalOf(about.servo.feature)), summary);
   }
-  folder.Write(ToJson(summary));
+  try {
+    folder.Write(ToJson(summary));
+  } catch (const std::exception& error) {
+    summary.error = error.what();
+  }
   return summary;
 }
 

@@ -224,8 +224,8 @@ class HardwareSafety(TwoPrograms):
         print(f"\n{commands} commands to the robot in 4 s")
         self.assertGreater(commands, 3900)
 
-    def test_robot_that_repeats_one_state_is_a_fault_and_the_run_ends(self):
-        """Its own time stands still, and each read waits for robot.state_timeout_ms = 3000."""
+    def test_robot_that_repeats_one_state_does_not_keep_the_run(self):
+        """Its own time stands still, and a read waits for robot.state_timeout_ms = 3000."""
         for by_signal in (False, True):
             port = self.serve("--pace", "lockstep", "--most-speed", "1")
             out = self.folder()
@@ -241,7 +241,8 @@ class HardwareSafety(TwoPrograms):
             took_s = time.monotonic() - began
             s = json.loads(text)
             print(f"\n{'Ctrl-C' if by_signal else '--seconds 4'}: ended after {took_s:.1f} s, {s['verdict']}")
-            self.assertEqual((hw.returncode, s["faults"][-1]["name"]), (1, "arm_lost"))
+            self.assertEqual(hw.returncode, 1)
+            self.assertIn("the robot sent no new state at the end", s["verdict"])
             self.assertLess(took_s, 9.0)
             self.check_files(out, s)
             self.end_server()

@@ -228,7 +228,7 @@ class Loopback(TwoPrograms):
             hw.send_signal(signal.SIGINT)
             s = self.summary_of(hw)
         print(f"\n{s['robot']['duplicate_states']} states were repeated")
-        self.assertGreater(s["robot"]["duplicate_states"], 10)
+        self.assertGreater(s["robot"]["duplicate_states"], 100)
         self.assertEqual(s["robot"]["motions"], 2)
 
     def test_pre_flight_passes_the_robot_and_fails_a_wrong_load(self):

@@ -9,8 +9,7 @@ namespace {
 constexpr double kReferenceRests = 1e-3;  // every joint of the reference slower than this [rad/s, m/s]
 constexpr double kArmRests = 0.02;        // and every joint of the arm than this
 constexpr int kMostFinishingTicks = 2000;
-// Longest silence of an arm that should finish: it receives nothing either.
-constexpr std::int64_t kMostSilentNs = 5 * hal::kTickPeriodNs;
+constexpr int kMostSilentTicks = 5;  // of an arm that should finish: it receives nothing either
 
 bool IsSlow(const hal::JointArray& dq, double limit) noexcept {
   return std::all_of(dq.begin(), dq.end(), [limit](double speed) { return std::fabs(speed) < limit; });
@@ -28,12 +27,10 @@ hal::Status ServoLoop::Run(std::int64_t end_ns) noexcept {
 
 hal::Status ServoLoop::RunByClock(std::int64_t end_ns) noexcept {
   std::int64_t deadline_ns = clock_.NowNs();
-  heard_ns_ = deadline_ns;
   std::int32_t missed_ticks = 0;
   while (deadline_ns < end_ns && !stop_.load(std::memory_order_relaxed)) {
     probe_.Enter();
     inputs_.arm_status = arm_.Read(inputs_.arm);
-    heard_ns_ = inputs_.arm_status.ok() ? deadline_ns : heard_ns_;
     Tick(missed_ticks);
     probe_.Leave();
     if (HasFinished()) {
@@ -55,9 +52,9 @@ hal::Status ServoLoop::RunByClock(std::int64_t end_ns) noexcept {
 
 hal::Status ServoLoop::RunByArm(std::int64_t end_ns) noexcept {
   bool has_state = false;
-  std::int64_t state_ns = 0;     // stamp of the arm's last state
-  std::int64_t ticks_since = 0;  // run or missed
-  heard_ns_ = clock_.NowNs();
+  std::int64_t state_ns = 0;               // stamp of the arm's last state
+  std::int64_t heard_ns = clock_.NowNs();  // when it came; before the first: the start
+  std::int64_t ticks_since = 0;            // run or missed
   while (clock_.NowNs() < end_ns && !stop_.load(std::memory_order_relaxed)) {
     // The loop waits here, so that this is not part of the tick's time.
     inputs_.arm_status = arm_.Read(inputs_.arm);
@@ -65,7 +62,7 @@ hal::Status ServoLoop::RunByArm(std::int64_t end_ns) noexcept {
     // Since the last state: by stamps; while the arm is silent, by the clock.
     std::int64_t periods = 0;
     if (!answered) {
-      periods = (clock_.NowNs() - heard_ns_) / hal::kTickPeriodNs;
+      periods = (clock_.NowNs() - heard_ns) / hal::kTickPeriodNs;
     } else if (has_state) {
       periods = (inputs_.arm.stamp_ns - state_ns + hal::kTickPeriodNs / 2) / hal::kTickPeriodNs;
     }
@@ -76,7 +73,7 @@ hal::Status ServoLoop::RunByArm(std::int64_t end_ns) noexcept {
     if (answered) {
       has_state = true;
       state_ns = inputs_.arm.stamp_ns;
-      heard_ns_ = clock_.NowNs();
+      heard_ns = clock_.NowNs();
       ticks_since = 0;
     }
     CountMissed(missed_ticks);
@@ -122,10 +119,13 @@ bool ServoLoop::HasFinished() noexcept {
     return false;
   }
   const hal::TickRecord& record = outputs_.record;
-  const bool silent = !inputs_.arm_status.ok() && clock_.NowNs() - heard_ns_ >= kMostSilentNs;
+  const bool answered = inputs_.arm_status.ok();  // an old state does not show that the arm rests
+  silent_ticks_ = answered ? 0 : silent_ticks_ + 1;
   const bool reference_rests = record.mode == hal::Mode::kBoot || IsSlow(record.dq_cmd, kReferenceRests);
-  const bool rests = record.mode != hal::Mode::kFault && reference_rests && IsSlow(record.arm.dq, kArmRests);
-  return rests || record.command.engage_brakes || silent || finishing_ticks_ >= kMostFinishingTicks;
+  const bool rests =
+      answered && record.mode != hal::Mode::kFault && reference_rests && IsSlow(record.arm.dq, kArmRests);
+  return rests || record.command.engage_brakes || silent_ticks_ >= kMostSilentTicks ||
+         finishing_ticks_ >= kMostFinishingTicks;
 }
 
 LoopCounters ServoLoop::counters() const noexcept {

@@ -97,7 +97,7 @@ class ServoLoop {
   bool leave_ended_ = false;    // in the last tick
   bool motion_barred_ = false;  // the present command was interrupted
   int finishing_ticks_ = 0;
-  std::int64_t heard_ns_ = 0;  // when the arm's last state came; before the first: the start
+  int silent_ticks_ = 0;  // of these, in a row without a state
   ServoInputs inputs_;
   ServoOutputs outputs_;
   LoopCounters counters_;

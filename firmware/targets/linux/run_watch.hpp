@@ -29,6 +29,7 @@ class RunWatch {
   HwSummary& summary_;
   linux_rt::Speaker& speaker_;
   std::uint64_t sequence_ = 0;  // of the arm's newest state
+  int silent_ticks_ = 0;        // in a row, without a new state
   bool awaited_ = false;
   bool back_ = false;
 };

@@ -54,9 +54,6 @@ Status FrankaArm::DoRead(hal::ArmState& state) noexcept {
     if (left_ns <= 0) {
       ++counters_.timeouts;
       silent_ = true;
-      if (robot_time_ != nullptr) {  // a robot that stands still does not advance its own time
-        robot_time_->Advance(robot_time_->NowNs() + patience_ns);
-      }
       return Status(StatusCode::kTimeout, "robot state");
     }
     const std::array fds{udp_.fd(), tcp_.fd()};

@@ -128,6 +128,18 @@ wait $run; echo "ended with $?")",
   EXPECT_EQ(TicksInLog(), std::pair(300, true));
 }
 
+TEST_F(InterruptTest, ServedRobotPrintsItsResultWhenTheFolderCannotBeWritten) {
+  fs::create_directories(fs::path(Out()) / "summary.json");
+  const ProgramResult result = RunProgram(
+      {"sh", "-c", R"("$0" serve ball --fci-port 0 --camera-serial "" --json --out "$1" 2> "$1.err" & run=$!
+until grep -q serving "$1.err"; do kill -0 $run || exit 9; sleep 0.02; done
+kill -TERM $run; wait $run; exit $?)",
+       FOVEA_SIM_PROGRAM, Out()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(nlohmann::json::parse(result.out)["scenario"], "ball");
+  EXPECT_THAT(Err(), testing::HasSubstr("summary.json: cannot be written: a folder has that name"));
+}
+
 // A second signal ends the run at once; only the log remains, up to there.
 TEST_F(InterruptTest, SecondInterruptEndsAtOnceAndKeepsTheLog) {
   const std::string before = "of a run before";

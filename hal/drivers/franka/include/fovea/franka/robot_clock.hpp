@@ -1,6 +1,5 @@
-// A loop's clock that shows the robot's own time: that of the newest state, and further by the computer's
-// time while the robot is silent. For a robot whose time is not the computer's, such as a simulated one in
-// lockstep.
+// A loop's clock that shows the robot's own time: that of the newest state. For a robot whose time is not the
+// computer's, such as a simulated one in lockstep.
 #pragma once
 
 #include <atomic>
