@@ -1,10 +1,11 @@
 // fovea-sim: the sim target's command line.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <sstream>
+#include <csignal>
+#include <stdexcept>
 
 #include "firmware/host/build_info.hpp"
 #include "firmware/host/config/board_flags.hpp"
@@ -13,6 +14,7 @@
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/config/share_folder.hpp"
 #include "fovea/linux_rt/interrupt.hpp"
+#include "fovea/linux_rt/speaker.hpp"
 #include "sim/app/run.hpp"
 #include "sim/app/serve.hpp"
 #include "sim/calibration/pictures.hpp"
@@ -70,6 +72,7 @@ sim::BoardConfig MakeBoard(const RunArguments& arguments, const sim::Scenario& s
 }
 
 int Run(const RunArguments& arguments) {
+  std::signal(SIGPIPE, SIG_IGN);  // nobody reads the progress any more: the run goes on
   linux_rt::Interrupt interrupt;  // from here on, Ctrl-C ends the run early and writes all files
   std::vector<std::string> assignments = arguments.assignments;
   if (arguments.seed >= 0) {
@@ -93,15 +96,21 @@ int Run(const RunArguments& arguments) {
   options.interrupt = &interrupt;
   const sim::Summary summary = sim::RunScenario(scenario, options);
   for (const std::string& error : summary.film_errors) {
-    fmt::print(stderr, "fovea-sim: {}\n", error);
+    config::PrintError("fovea-sim", error);
   }
   if (arguments.json) {
     fmt::print("{}", sim::ToJson(summary));
   } else {
-    fmt::print("{}  {:<24}{}\n", sim::ToTable(summary), "files", options.out.string());
-    if (options.report) {
+    fmt::print("{}", sim::ToTable(summary));
+    if (summary.files_error.empty()) {
+      fmt::print("  {:<24}{}\n", "files", options.out.string());
+    }
+    if (summary.files_error.empty() && options.report) {
       fmt::print("  {:<24}{}\n", "report", (options.out / "report.html").string());
     }
+  }
+  if (!summary.files_error.empty()) {
+    throw config::InputError(summary.files_error);
   }
   return sim::ReachedItsGoal(summary) ? kDone : kGoalMissed;
 }
@@ -150,30 +159,6 @@ struct ServeArguments {
   sim::ServeOptions options;
 };
 
-// Parses "x,y,z,dx,dy,dz": a corner and the edge lengths from that corner [m].
-sim::CartesianWall ParseWall(const std::string& text) {
-  std::istringstream words(text);
-  std::array<double, 6> v{};
-  bool commas = true;
-  for (std::size_t i = 0; i < v.size(); ++i) {
-    words >> v[i];
-    if (i + 1 < v.size()) {
-      char comma = 0;
-      words >> comma;
-      commas = commas && comma == ',';
-    }
-  }
-  if (words.fail() || !commas || words.peek() != std::istringstream::traits_type::eof() ||
-      std::any_of(v.begin() + 3, v.end(), [](double edge) { return !(edge > 0.0); })) {
-    throw config::InputError(fmt::format(
-        "--wall {} is not allowed: expected X,Y,Z,DX,DY,DZ, a corner and three edges above 0 [m]", text));
-  }
-  sim::CartesianWall wall;
-  wall.X_BW.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
-  wall.size = {v[3], v[4], v[5]};
-  return wall;
-}
-
 int Serve(const ServeArguments& arguments) {
   std::vector<std::string> assignments = arguments.assignments;
   if (arguments.seed >= 0) {
@@ -182,13 +167,13 @@ int Serve(const ServeArguments& arguments) {
   sim::ServeOptions options = arguments.options;
   options.server.lockstep = arguments.pace == "lockstep";
   for (const std::string& wall : arguments.walls) {
-    options.walls.push_back(ParseWall(wall));
+    options.walls.push_back(sim::ParseWall(wall));
   }
+  const sim::Scenario scenario = sim::LoadScenario(arguments.scenario, assignments);
+  std::signal(SIGPIPE, SIG_IGN);
+  linux_rt::Speaker speaker(STDERR_FILENO);
   const sim::ServeSummary summary =
-      sim::Serve(sim::LoadScenario(arguments.scenario, assignments), options, [](const std::string& line) {
-        fmt::print(stderr, "{}\n", line);
-        std::fflush(stderr);
-      });
+      sim::Serve(scenario, options, [&](const std::string& line) { speaker.Say(line); });
   if (arguments.json) {
     fmt::print("{}", sim::ToJson(summary));
   } else {
@@ -200,6 +185,9 @@ int Serve(const ServeArguments& arguments) {
     if (summary.error_px) {
       fmt::print("final target error: {:.2f} px, {:.2f} mm\n", *summary.error_px, *summary.error_mm);
     }
+  }
+  if (!summary.error.empty()) {
+    throw std::runtime_error(summary.error);
   }
   return kDone;
 }

@@ -104,9 +104,7 @@ class Run {
     wall_time_s_ = SecondsSince(begin);
     vision_.End();
     shell_->TakeRecords();
-    if (trace_) {
-      trace_->Write();
-    }
+    const std::string trace_error = WriteTrace();
     if (failure) {
       std::rethrow_exception(failure);
     }
@@ -120,7 +118,12 @@ class Run {
     progress_.Update(about_.scenario.run.duration_s,
                      interrupted_ ? "interrupted; Ctrl-C again ends at once" : "drawing the pictures");
     const Instant simulated = std::chrono::steady_clock::now();
-    files_->Write(summary, world_->Look());
+    summary.files_error = trace_error;
+    try {
+      files_->Write(summary, world_->Look());
+    } catch (const std::exception& error) {
+      summary.files_error = error.what();
+    }
     summary.writing_s = SecondsSince(simulated);
     return summary;
   }
@@ -134,6 +137,18 @@ class Run {
     RunDescription about = DescribeRun(scenario);  // before any progress: an error is the only output
     progress.Update(0.0, "preparing");
     return about;
+  }
+
+  // Returns why it cannot; "" otherwise.
+  std::string WriteTrace() {
+    try {
+      if (trace_) {
+        trace_->Write();
+      }
+      return "";
+    } catch (const std::exception& error) {
+      return error.what();
+    }
   }
 
   void BuildWorld() {

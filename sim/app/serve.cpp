@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <exception>
@@ -11,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
+#include <sstream>
 #include <thread>
 
 #include "firmware/host/config/input_error.hpp"
@@ -92,6 +95,29 @@ void FillError(const TargetError& error, ServeSummary& summary) {
 
 }  // namespace
 
+CartesianWall ParseWall(const std::string& text) {
+  std::istringstream words(text);
+  std::array<double, 6> v{};
+  bool commas = true;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    words >> v[i];
+    if (i + 1 < v.size()) {
+      char comma = 0;
+      words >> comma;
+      commas = commas && comma == ',';
+    }
+  }
+  if (words.fail() || !commas || words.peek() != std::istringstream::traits_type::eof() ||
+      std::any_of(v.begin() + 3, v.end(), [](double edge) { return !(edge > 0.0); })) {
+    throw config::InputError(fmt::format(
+        "--wall {} is not allowed: expected X,Y,Z,DX,DY,DZ, a corner and three edges above 0 [m]", text));
+  }
+  CartesianWall wall;
+  wall.X_BW.translation() = Eigen::Vector3d(v[0], v[1], v[2]);
+  wall.size = {v[3], v[4], v[5]};
+  return wall;
+}
+
 ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const Say& say) {
   const RunDescription about = DescribeRun(scenario);
   CheckIsPanda(about);
@@ -168,14 +194,16 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   summary.contact_ticks = contacts.any();
   summary.contacts = contacts.by_what();
   if (eye) {
-    if (!eye->fault().empty()) {
-      throw std::runtime_error("the camera failed: " + eye->fault());
-    }
+    summary.error = eye->fault().empty() ? "" : "the camera failed: " + eye->fault();
     summary.frames_sent = eye->sent();
     summary.frames_dropped = eye->dropped();
     FillError(ErrorOf(world.truth(), about.pinhole, GoalOf(about.servo.feature)), summary);
   }
-  folder.Write(ToJson(summary));
+  try {
+    folder.Write(ToJson(summary));
+  } catch (const std::exception& error) {
+    summary.error = error.what();
+  }
   return summary;
 }
 

@@ -41,14 +41,19 @@ struct ServeSummary {
   std::uint64_t contact_ticks = 0;  // ticks in which the arm touched bench, target or itself
   ContactTicks contacts;
   std::vector<std::string> realtime_missing;  // at real pace: missing real-time privileges
+  std::string error;  // why the camera failed or the folder could not be written; not in summary.json
 };
 
 // Serves the scenario's arm as a Panda, and its camera, until SIGINT, SIGTERM or SIGHUP. SIGUSR1 presses and
 // releases the stop button. Lines on standard input do this and more (serve_keys.hpp). Calls `say` with each
 // message for the person. Writes summary.json to `options.out`. InputError: the scenario cannot be served, or
-// the folder cannot be written. std::runtime_error: a port is in use, or no picture can be drawn.
+// the folder cannot be made. std::runtime_error: a port is in use, or no picture can be drawn.
 ServeSummary Serve(const Scenario& scenario, const ServeOptions& options,
                    const std::function<void(const std::string&)>& say);
+
+// Parses "x,y,z,dx,dy,dz": a corner and the edge lengths from that corner [m]. InputError when it is not
+// that.
+CartesianWall ParseWall(const std::string& text);
 
 // The JSON text of summary.json.
 std::string ToJson(const ServeSummary& summary);

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 namespace fovea::sim {
@@ -14,25 +13,23 @@ constexpr auto kBarInterval = std::chrono::milliseconds(80);
 constexpr int kLineStepPercent = 25;
 constexpr int kBarWidth = 30;
 
-// Ignores write errors: the run continues without a reader.
-void Say(const std::string& text) {
-  std::fputs(text.c_str(), stderr);
-  std::fflush(stderr);
-}
-
 }  // namespace
 
 Progress::Progress(std::string name, double end_s, bool quiet)
-    : name_(std::move(name)), end_s_(end_s), quiet_(quiet), is_terminal_(isatty(STDERR_FILENO) == 1) {}
+    : name_(std::move(name)), end_s_(end_s), is_terminal_(isatty(STDERR_FILENO) == 1) {
+  if (!quiet) {
+    speaker_.emplace(STDERR_FILENO);
+  }
+}
 
 Progress::~Progress() {
   if (shown_ && is_terminal_) {
-    Say("\r\033[K");  // the table takes the bar's place
+    speaker_->Put("\r\033[K");  // the table takes the bar's place
   }
 }
 
 void Progress::Update(double now_s, const char* note) {
-  if (quiet_) {
+  if (!speaker_) {
     return;
   }
   const double share = std::clamp(now_s / end_s_, 0.0, 1.0);
@@ -54,10 +51,11 @@ void Progress::Show(double share, double now_s, const char* note) {
       fmt::format("{:3.0f} %  {:.1f} of {:.1f} s  {}", 100.0 * share, now_s, end_s_, note);
   if (is_terminal_) {
     const int filled = static_cast<int>(share * kBarWidth);
-    Say(fmt::format("\r{} [{}{}] {}\033[K", name_, std::string(static_cast<std::size_t>(filled), '#'),
-                    std::string(static_cast<std::size_t>(kBarWidth - filled), '.'), figures));
+    speaker_->Put(fmt::format("\r{} [{}{}] {}\033[K", name_,
+                              std::string(static_cast<std::size_t>(filled), '#'),
+                              std::string(static_cast<std::size_t>(kBarWidth - filled), '.'), figures));
   } else {
-    Say(fmt::format("{}: {}\n", name_, figures));
+    speaker_->Say(fmt::format("{}: {}", name_, figures));
   }
 }
 

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
+
+#include "fovea/linux_rt/speaker.hpp"
 
 namespace fovea::sim {
 
@@ -22,11 +25,11 @@ class Progress {
 
   std::string name_;
   double end_s_;
-  bool quiet_;
   bool is_terminal_;
   bool shown_ = false;
   int next_line_percent_ = 0;
   std::chrono::steady_clock::time_point next_look_;
+  std::optional<linux_rt::Speaker> speaker_;  // none if quiet; the run does not wait for who reads it
 };
 
 }  // namespace fovea::sim

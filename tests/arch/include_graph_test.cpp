@@ -55,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Rule{"hal/include", "fovea/hal/.*", "the contract depends only on the standard library"},
         Rule{"hal/src", "fovea/hal/.*", "the contract depends only on the standard library"},
-        Rule{"hal/drivers/linux_rt", "fovea/(hal|linux_rt)/.*|(sys/|fcntl|malloc|sched|unistd|pthread).*",
+        Rule{"hal/drivers/linux_rt",
+             "fovea/(hal|linux_rt)/.*|(sys/|fcntl|malloc|poll|sched|unistd|pthread).*",
              "a driver depends on the contract and on its device"},
         Rule{"hal/drivers/camera", "fovea/(hal|linux_rt|camera)/.*|opencv2/.*",
              "a driver depends on the contract and on its device"},
@@ -111,12 +112,12 @@ INSTANTIATE_TEST_SUITE_P(
              "(fovea/(hal|linux_rt)|firmware/(core|vision|host)|Eigen|unsupported/Eigen|opencv2)/.*|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|"
              "(CLI|console_bridge|fmt|google|libavcodec|libavformat|libavutil|nlohmann|openssl|toml\\+\\+|"
-             "urdf_parser)/.*|(fcntl|unistd|sys/file|sys/ioctl|zlib|zstd)[.]h",
+             "urdf_parser)/.*|(fcntl|poll|unistd|sys/file|sys/ioctl|zlib|zstd)[.]h",
              "the host part depends on core, vision and libraries, on no device driver and no simulator"},
         Rule{"firmware/host/config",
              "fovea/hal/.*|firmware/(core|vision|host/(calibration|config|robots))/"
              ".*|(CLI|fmt|toml\\+\\+|Eigen)/.*|"
-             "(unistd|fcntl|sys/file|sys/ioctl)[.]h",
+             "(unistd|fcntl|poll|sys/file|sys/ioctl)[.]h",
              "keys configure servo and vision only"},
         Rule{"firmware/host/robots",
              "firmware/(core/model|host/(config|robots))/.*|(fmt|urdf_parser|console_bridge|Eigen)/.*",

@@ -218,10 +218,34 @@ class HardwareSafety(TwoPrograms):
                               timeout=60, stdin=subprocess.DEVNULL, capture_output=True, text=True)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("the incomplete log is kept in", done.stderr.strip().splitlines()[-1])
+        self.assertIn("overruns", done.stdout, "the result is printed")
         self.assertEqual((out / "log.mcap").stat().st_size, 1000000)
         commands = self.end_server()["commands"]
         print(f"\n{commands} commands to the robot in 4 s")
         self.assertGreater(commands, 3900)
+
+    def test_robot_that_repeats_one_state_does_not_keep_the_run(self):
+        """Its own time stands still, and a read waits for robot.state_timeout_ms = 3000."""
+        for by_signal in (False, True):
+            port = self.serve("--pace", "lockstep", "--most-speed", "1")
+            out = self.folder()
+            hw, terminal = self.start(port, "--enable", "--seconds", "1000" if by_signal else "4", "--out", str(out))
+            terminal.wait_for("hold")
+            self.say(self.server, "h")
+            self.wait_for(self.server, "the robot hangs")
+            time.sleep(0.5)  # the servo waits for a state
+            began = time.monotonic()
+            if by_signal:
+                hw.send_signal(signal.SIGINT)
+            text, _ = hw.communicate(timeout=40)
+            took_s = time.monotonic() - began
+            s = json.loads(text)
+            print(f"\n{'Ctrl-C' if by_signal else '--seconds 4'}: ended after {took_s:.1f} s, {s['verdict']}")
+            self.assertEqual(hw.returncode, 1)
+            self.assertIn("the robot sent no new state at the end", s["verdict"])
+            self.assertLess(took_s, 9.0)
+            self.check_files(out, s)
+            self.end_server()
 
     # Ctrl-C at any moment.
 

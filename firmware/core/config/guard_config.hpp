@@ -109,7 +109,7 @@ void Fields(Visitor& v, Config& c) noexcept {
            c.workspace_radius, 0.01, 1000.0);
   v.Number({"safety.workspace_margin", "m",
             "distance of the reference from the edges of workspace, planes and boxes"},
-           c.workspace_margin, 0.0, 1.0);
+           c.workspace_margin, 0.001, 1.0);
   v.Number({"safety.workspace_deceleration", "m/s^2",
             "deceleration of the end effector before the edges of workspace, planes and boxes"},
            c.workspace_deceleration, 0.01, 100.0);

@@ -119,9 +119,11 @@ bool ServoLoop::HasFinished() noexcept {
     return false;
   }
   const hal::TickRecord& record = outputs_.record;
-  silent_ticks_ = inputs_.arm_status.ok() ? 0 : silent_ticks_ + 1;
+  const bool answered = inputs_.arm_status.ok();  // an old state does not show that the arm rests
+  silent_ticks_ = answered ? 0 : silent_ticks_ + 1;
   const bool reference_rests = record.mode == hal::Mode::kBoot || IsSlow(record.dq_cmd, kReferenceRests);
-  const bool rests = record.mode != hal::Mode::kFault && reference_rests && IsSlow(record.arm.dq, kArmRests);
+  const bool rests =
+      answered && record.mode != hal::Mode::kFault && reference_rests && IsSlow(record.arm.dq, kArmRests);
   return rests || record.command.engage_brakes || silent_ticks_ >= kMostSilentTicks ||
          finishing_ticks_ >= kMostFinishingTicks;
 }

@@ -92,7 +92,9 @@ void OutputFolder::Replace(const std::vector<OutputFile>& files,
     }
   } catch (...) {
     for (const OutputFile& file : files) {
-      fs::remove(Partial(file.name), ignored);
+      if (file.content) {
+        fs::remove(Partial(file.name), ignored);
+      }
     }
     throw;
   }

@@ -30,8 +30,8 @@ class OutputFolder {
   std::filesystem::path Begin(const std::string& name);
 
   // Replaces the files of an earlier run, named in `all_names`, by `files`. InputError when a file cannot be
-  // written; the earlier files then stay. The last of `files` appears last: where it exists, the others exist
-  // too.
+  // written; the earlier files then stay, and those of Begin. The last of `files` appears last: where it
+  // exists, the others exist too.
   void Replace(const std::vector<OutputFile>& files, const std::vector<std::string>& all_names) const;
 
   // Puts the file `name` of Begin in place, complete or not, and removes an earlier run's files, named in

@@ -1,6 +1,9 @@
 // Command-line handling of every program of the project: exit codes, and errors on one line.
 #pragma once
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -28,6 +31,15 @@ inline std::string OnOneLine(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
   return text;
+}
+
+// Prints a line of the program `name` on standard error. Does not wait for a reader who has stopped reading.
+inline void PrintError(const char* name, const std::string& text) {
+  constexpr int kPatienceMs = 500;
+  pollfd room{STDERR_FILENO, POLLOUT, 0};
+  if (poll(&room, 1, kPatienceMs) != 0) {
+    std::fprintf(stderr, "%s: %s\n", name, OnOneLine(text).c_str());
+  }
 }
 
 // The names of the subcommands and options of `app`.
@@ -90,7 +102,7 @@ inline int RunProgram(const char* name, CLI::App& app, int argc, char** argv,
       std::fputs(FormatHelp(help.str(), HelpStyleOfOutput()).c_str(), stdout);
       return done ? kDone : kBadInput;
     }
-    std::fprintf(stderr, "%s: %s\n", name, Explain(app, error).c_str());
+    PrintError(name, Explain(app, error));
     return kBadInput;
   }
   try {
@@ -100,7 +112,7 @@ inline int RunProgram(const char* name, CLI::App& app, int argc, char** argv,
     }
     return code;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", name, OnOneLine(error.what()).c_str());
+    PrintError(name, error.what());
     return kBadInput;
   }
 }

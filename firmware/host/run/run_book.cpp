@@ -193,11 +193,9 @@ void RunBook::Write(const std::string& summary_json, const linux_rt::DurationHis
   try {
     WriteAll(summary_json, ticks, more);
   } catch (const std::exception& error) {
-    if (!log_.failed()) {
-      throw;
-    }
     // The disk may be full: the data recorded until then must be kept.
-    throw std::runtime_error(fmt::format("{}; the incomplete log is kept in {}", error.what(),
+    throw std::runtime_error(fmt::format("{}; the {}log is kept in {}", error.what(),
+                                         log_.failed() ? "incomplete " : "",
                                          folder_.Keep(kLog, all_files_).string()));
   }
 }

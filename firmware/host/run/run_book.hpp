@@ -85,7 +85,7 @@ class RunBook {
   BookFigures EndFilm();
 
   // Puts all files in place, with the files of `more` before the summary. Throws any error. Then the folder
-  // is unchanged, except when writing the log failed: then it contains only the incomplete log.
+  // contains only the log, complete or up to where writing it failed.
   using MoreFiles = std::function<std::vector<config::OutputFile>()>;
   void Write(const std::string& summary_json, const linux_rt::DurationHistogram& ticks,
              const MoreFiles& more = {});

@@ -43,6 +43,7 @@ struct RunFigures {
   std::int64_t tick_ns_max = 0;
   std::vector<std::string> realtime_missing;  // missing real-time privileges
   std::string log_hash;                       // over all records except dropped ones
+  std::string files_error;                    // why the files could not be written; not in summary.json
 };
 
 void FillTicks(const task::LoopCounters& counters, const linux_rt::TickMeter& meter, RunFigures& figures);

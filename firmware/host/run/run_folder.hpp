@@ -28,8 +28,8 @@ class RunFolder {
   [[nodiscard]] RunBook* book() { return book_ ? &*book_ : nullptr; }
 
   // Call once, after RunBook::EndFilm if there is a book: puts all files in place, with the files of `more`
-  // before the summary. Throws any error. Then the folder is unchanged, except when writing the log failed:
-  // then it contains only the incomplete log.
+  // before the summary. Throws any error. Then the folder contains only the log, complete or up to where
+  // writing it failed; a folder without a log is unchanged.
   void Write(const std::string& summary_json, const linux_rt::DurationHistogram& ticks = {},
              const RunBook::MoreFiles& more = {});
   // From any thread, when the process ends before Write is done: keeps only the incomplete log.

@@ -32,7 +32,7 @@ constexpr std::chrono::milliseconds kSayLast{300};  // before the summary counts
 class Session {
  public:
   Session(const HwConfig& config, const HwRunOptions& options, const linux_rt::SignalQueue& signals,
-          Speaker& speaker)
+          linux_rt::Speaker& speaker)
       : config_(config),
         options_(options),
         speaker_(speaker),
@@ -149,6 +149,7 @@ class Session {
     TellLease();
     operator_.Drain([this](const Heard& heard) { Tell(heard); });
     shell_.TakeRecords();
+    EndSilentRun();
     LookAtRecovery();
     LookAtCamera();
     // Without new states the servo would find the same fault again.
@@ -162,6 +163,7 @@ class Session {
       return;
     }
     connection_told_ = true;
+    connected_ns_ = linux_rt::MonotonicNs();
     speaker_.Say(fmt::format("connected to {}{}", robot_link_->address(),
                              options_.allow_motion ? "" : ", without permission to move"));
     if (!options_.allow_motion) {
@@ -188,6 +190,21 @@ class Session {
     watch_.Say(words);
     if (!finding.passed) {
       speaker_.Say(fmt::format("the robot holds by itself; remove the cause and type \"{}\" again", word));
+    }
+  }
+
+  // A silent robot that sets the clock (robot_time) stops the loop's time: then the computer's ends the run.
+  void EndSilentRun() {
+    const double passed_s = 1e-9 * static_cast<double>(linux_rt::MonotonicNs() - connected_ns_);
+    task::ServoLoop* loop = control_.loop;
+    if (!summary_.robot_silent || loop == nullptr || options_.duration_s <= 0.0 ||
+        passed_s < options_.duration_s || control_.ended.exchange(true)) {
+      return;
+    }
+    if (options_.allow_motion) {
+      loop->Finish();
+    } else {
+      loop->Stop();
     }
   }
 
@@ -282,12 +299,16 @@ class Session {
     }
     speaker_.Wait(kSayLast);
     summary_.lines_unsaid = speaker_.unsaid();
-    shell_.Write(ToJson(summary_));
+    try {
+      shell_.Write(ToJson(summary_));
+    } catch (const std::exception& error) {
+      summary_.files_error = error.what();
+    }
   }
 
   const HwConfig& config_;
   const HwRunOptions options_;
-  Speaker& speaker_;
+  linux_rt::Speaker& speaker_;
   const robots::Robot robot_;
   const config::ServoConfig servo_;
   HwSummary summary_;
@@ -299,6 +320,7 @@ class Session {
   RunControl control_;
   LeaveRing findings_{kFindings};
   bool connection_told_ = false;
+  std::int64_t connected_ns_ = 0;  // MonotonicNs()
   std::uint64_t lease_ends_told_ = 0;
   bool camera_failed_ = false;
   std::optional<LeaveLook> look_;  // after a recovery
@@ -313,7 +335,7 @@ class Session {
 
 }  // namespace
 
-HwSummary Run(const HwConfig& config, const HwRunOptions& options, Speaker& speaker) {
+HwSummary Run(const HwConfig& config, const HwRunOptions& options, linux_rt::Speaker& speaker) {
   // From here on a signal ends the run in order, and a closed pipe does not end it.
   std::signal(SIGPIPE, SIG_IGN);
   const linux_rt::SignalQueue signals{SIGINT, SIGTERM, SIGHUP, SIGUSR1};

@@ -5,7 +5,7 @@
 
 #include "firmware/targets/linux/hw_config.hpp"
 #include "firmware/targets/linux/hw_summary.hpp"
-#include "firmware/targets/linux/speaker.hpp"
+#include "fovea/linux_rt/speaker.hpp"
 
 namespace fovea::hw {
 
@@ -26,6 +26,6 @@ struct HwRunOptions {
 // than input.dead_man_s, the arm is held. Without a camera the arm is held where it stands. Neither `speaker`
 // nor a file delays any of this. InputError (also for a folder that cannot be written to), NetworkError,
 // CameraError.
-HwSummary Run(const HwConfig& config, const HwRunOptions& options, Speaker& speaker);
+HwSummary Run(const HwConfig& config, const HwRunOptions& options, linux_rt::Speaker& speaker);
 
 }  // namespace fovea::hw

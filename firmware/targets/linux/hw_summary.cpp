@@ -112,6 +112,9 @@ void JudgeEnd(HwSummary& s) {
     s.verdict = s.refusal;
   } else if (s.ticks == 0) {
     s.verdict = "the servo was never started";
+  } else if (s.robot_silent) {
+    s.verdict =
+        fmt::format("the robot sent no new state at the end; the run ended in mode {}", hal::Name(s.mode));
   } else if (s.mode == hal::Mode::kBoot) {
     s.verdict = "the servo never left mode boot: the arm's states were invalid, or the arm was not at rest";
   } else if (s.seen && s.seen->frames_detected == 0) {

@@ -45,6 +45,7 @@ struct HwSummary : run::RunFigures {
   bool allow_motion = true;
   std::string refusal;                    // why motion is refused; "" if it is not
   std::optional<GravityFinding> gravity;  // the last comparison
+  bool robot_silent = false;              // no new state for some ticks, up to the end
   bool operator_silent = false;           // the arm is held since the operator's silence; no new request yet
   std::vector<WordEvent> words;
   std::optional<std::int64_t> start_ns;  // of the servo's first tick, by the loop's clock

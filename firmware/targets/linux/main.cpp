@@ -13,6 +13,7 @@
 #include "firmware/host/config/program.hpp"
 #include "firmware/targets/linux/check.hpp"
 #include "firmware/targets/linux/hw_run.hpp"
+#include "fovea/linux_rt/speaker.hpp"
 
 namespace {
 
@@ -40,7 +41,7 @@ int Check(const hw::HwConfig& config, bool json) {
 
 // None after an error, which it prints.
 std::optional<hw::HwSummary> Serve(const hw::HwConfig& config, const Arguments& arguments) {
-  hw::Speaker speaker(STDERR_FILENO);
+  linux_rt::Speaker speaker(STDERR_FILENO);
   try {
     return hw::Run(config,
                    {!arguments.no_motion, arguments.enable || arguments.track, arguments.track,
@@ -82,6 +83,9 @@ int Run(const Arguments& arguments) {
         summary.ticks, summary.overruns, summary.robot.states, summary.robot.lost_states,
         summary.robot.commands, 100.0 * summary.robot.command_success_rate, hal::Name(summary.mode));
     fmt::print("{}\n", summary.verdict);
+  }
+  if (!summary.files_error.empty()) {
+    throw config::InputError(summary.files_error);
   }
   return summary.converged.value_or(true) ? config::kDone : config::kGoalMissed;
 }

@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 
 namespace fovea::hw {
+namespace {
+
+constexpr int kSilentTicks = 5;  // so many ticks in a row without a new state: the robot is silent
+
+}  // namespace
 
 void RunWatch::Add(const hal::TickRecord& record, bool finishes) {
   if (!summary_.start_ns) {
@@ -12,6 +17,8 @@ void RunWatch::Add(const hal::TickRecord& record, bool finishes) {
     awaited_ = false;
     back_ = true;
   }
+  silent_ticks_ = record.arm.sequence == sequence_ ? silent_ticks_ + 1 : 0;
+  summary_.robot_silent = silent_ticks_ >= kSilentTicks;
   sequence_ = record.arm.sequence;
   if (record.has_feature) {
     summary_.feature_ages.Add(record.stamp_ns - record.feature.stamp_ns);

@@ -5,14 +5,14 @@
 #include <utility>
 
 #include "firmware/targets/linux/hw_summary.hpp"
-#include "firmware/targets/linux/speaker.hpp"
+#include "fovea/linux_rt/speaker.hpp"
 
 namespace fovea::hw {
 
 class RunWatch {
  public:
   // Both are borrowed.
-  RunWatch(HwSummary& summary, Speaker& speaker) : summary_(summary), speaker_(speaker) {}
+  RunWatch(HwSummary& summary, linux_rt::Speaker& speaker) : summary_(summary), speaker_(speaker) {}
 
   // `finishes`: the arm is brought to rest at the end; modes from then on do not count as the final mode.
   void Add(const hal::TickRecord& record, bool finishes);
@@ -27,8 +27,9 @@ class RunWatch {
   [[nodiscard]] double Seconds(const hal::TickRecord& record) const;
 
   HwSummary& summary_;
-  Speaker& speaker_;
+  linux_rt::Speaker& speaker_;
   std::uint64_t sequence_ = 0;  // of the arm's newest state
+  int silent_ticks_ = 0;        // in a row, without a new state
   bool awaited_ = false;
   bool back_ = false;
 };

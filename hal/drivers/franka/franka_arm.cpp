@@ -17,6 +17,8 @@ using hal::StatusCode;
 constexpr std::int64_t kDriftNsPerState = 200;
 constexpr std::int64_t kClockStepNs = 10 * hal::kNsPerMs;
 constexpr int kClockStepStates = 1000;  // in a row
+// After a read without a state, the next ones wait no longer than this: the loop stays responsive.
+constexpr std::int64_t kSilentWaitNs = 100 * hal::kNsPerMs;
 constexpr int kMostDatagramsPerRead = 256;
 constexpr int kMostBrakingStates = 500;  // then the motion is finished, even if a joint still moves
 constexpr std::uint64_t kMostMessageId = 1'000'000'000'000;  // 31 years of ms, which fit into 64 bits in ns
@@ -37,7 +39,8 @@ Status FrankaArm::DoRead(hal::ArmState& state) noexcept {
     Recover();
   }
   Answer(/*repeated=*/true);
-  const std::int64_t deadline_ns = linux_rt::MonotonicNs() + state_timeout_ns_;
+  const std::int64_t patience_ns = silent_ ? std::min(state_timeout_ns_, kSilentWaitNs) : state_timeout_ns_;
+  const std::int64_t deadline_ns = linux_rt::MonotonicNs() + patience_ns;
   for (;;) {
     const bool new_state = TakeStates();
     TakeAnswers();  // after the states: FollowPhase then knows all answers sent before the state
@@ -50,11 +53,13 @@ Status FrankaArm::DoRead(hal::ArmState& state) noexcept {
     const std::int64_t left_ns = deadline_ns - linux_rt::MonotonicNs();
     if (left_ns <= 0) {
       ++counters_.timeouts;
+      silent_ = true;
       return Status(StatusCode::kTimeout, "robot state");
     }
     const std::array fds{udp_.fd(), tcp_.fd()};
     WaitReadable(fds, left_ns);
   }
+  silent_ = false;
   FollowPhase();
   if (phase_ == MotionPhase::kFailed) {
     return Status(StatusCode::kDeviceFault, failure_);
@@ -281,6 +286,7 @@ void FrankaArm::Fill(hal::ArmState& state) const noexcept {
 void FrankaArm::Stop() noexcept {
   constexpr std::int64_t kPatienceNs = hal::kNsPerSecond;
   const std::int64_t end_ns = linux_rt::MonotonicNs() + kPatienceNs;
+  silent_ = true;  // so that no read takes longer
   hal::ArmState ignored;
   while (tcp_.open() && linux_rt::MonotonicNs() < end_ns &&
          (phase_ == MotionPhase::kStarting || phase_ == MotionPhase::kRunning ||

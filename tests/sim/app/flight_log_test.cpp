@@ -158,7 +158,29 @@ TEST_F(FlightLogTest, FullDiskKeepsTheLogUpToThere) {
   EXPECT_TRUE(replay["identical"]);
   EXPECT_FALSE(replay["complete"]);
   EXPECT_GT(replay["ticks"], 500);
+  EXPECT_EQ(json::parse(run.out)["ticks"], 4000) << "the result is printed";
   std::cout << "replayed " << replay["ticks"] << " of 4000 ticks\n";
+}
+
+// A file that cannot be written costs neither the result nor the log.
+TEST_F(FlightLogTest, UnwritableReportKeepsResultAndLog) {
+  fs::create_directories(out_ / "report.html");
+  const ProgramResult run = RunProgram(RunOf({"ball", "--set", "run.duration_s=0.3"}));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err,
+              HasSubstr("a folder has that name; the log is kept in " + (out_ / "log.mcap").string()));
+  EXPECT_EQ(json::parse(run.out)["ticks"], 300);
+  EXPECT_TRUE(Replayed()["complete"]);
+}
+
+TEST_F(FlightLogTest, UnwritableTraceKeepsResultAndFiles) {
+  const ProgramResult run =
+      RunProgram(RunOf({"ball", "--set", "run.duration_s=0.3", "--trace", "/dev/full"}));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("/dev/full"));
+  EXPECT_EQ(json::parse(run.out)["ticks"], 300);
+  EXPECT_TRUE(fs::exists(out_ / "summary.json"));
+  EXPECT_TRUE(fs::exists(out_ / "report.html"));
 }
 
 }  // namespace

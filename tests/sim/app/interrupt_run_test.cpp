@@ -21,9 +21,14 @@ namespace fs = std::filesystem;
 // Starts a run; `script` sends it signals. Returns how it ended.
 class InterruptTest : public testing::Test {
  protected:
-  ProgramResult Interrupt(const std::string& script, const std::string& settings = "") {
+  // `before`: what the script does first.
+  ProgramResult Interrupt(const std::string& script, const std::string& settings = "",
+                          const std::string& before = "") {
     return RunProgram({"sh", "-c",
-                       R"("$0" run ball --json --out "$1" )" + settings + R"( > "$1.json" 2> "$1.err" & run=$!
+                       before + R"(
+"$0" run ball --json --out "$1" )" +
+                           settings +
+                           R"( > "$1.json" 2> "$1.err" & run=$!
 )" + script + R"(
 wait $run; echo "ended with $?")",
                        FOVEA_SIM_PROGRAM, Out()});
@@ -102,13 +107,46 @@ kill -INT $run)",
   EXPECT_EQ(TicksInLog(), std::pair(300, true));
 }
 
+// Nobody reads standard error, whose pipe is full from the start.
+TEST_F(InterruptTest, FullPipeOfStandardErrorDelaysNeitherRunNorEnd) {
+  const ProgramResult result = Interrupt(std::string(kUntilItRuns) + "\nkill -INT $run",
+                                         "--set run.duration_s=600", R"(mkfifo "$1.err"; exec 3<> "$1.err"
+for size in 4096 1; do dd if=/dev/zero of="$1.err" bs=$size count=1000000 oflag=nonblock 2> /dev/null; done)");
+  EXPECT_EQ(result.out, "ended with 1\n");
+  EXPECT_TRUE(Summary()["interrupted"]);
+  EXPECT_TRUE(TicksInLog().second);
+}
+
+TEST_F(InterruptTest, ClosedPipeOfStandardErrorDoesNotEndTheRun) {
+  const ProgramResult result = RunProgram({"sh", "-c", R"(mkfifo "$1.err"; exec 3<> "$1.err" 4> "$1.err" 3>&-
+"$0" run ball --json --out "$1" --set run.duration_s=0.3 > "$1.json" 2>&4 4>&- & run=$!
+exec 4>&-
+wait $run; echo "ended with $?")",
+                                           FOVEA_SIM_PROGRAM, Out()});
+  EXPECT_EQ(result.out, "ended with 1\n");
+  EXPECT_EQ(Summary()["ticks"], 300);
+  EXPECT_EQ(TicksInLog(), std::pair(300, true));
+}
+
+TEST_F(InterruptTest, ServedRobotPrintsItsResultWhenTheFolderCannotBeWritten) {
+  fs::create_directories(fs::path(Out()) / "summary.json");
+  const ProgramResult result = RunProgram(
+      {"sh", "-c", R"("$0" serve ball --fci-port 0 --camera-serial "" --json --out "$1" 2> "$1.err" & run=$!
+until grep -q serving "$1.err"; do kill -0 $run || exit 9; sleep 0.02; done
+kill -TERM $run; wait $run; exit $?)",
+       FOVEA_SIM_PROGRAM, Out()});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(nlohmann::json::parse(result.out)["scenario"], "ball");
+  EXPECT_THAT(Err(), testing::HasSubstr("summary.json: cannot be written: a folder has that name"));
+}
+
 // A second signal ends the run at once; only the log remains, up to there.
 TEST_F(InterruptTest, SecondInterruptEndsAtOnceAndKeepsTheLog) {
   const std::string before = "of a run before";
   fs::create_directories(Out());
   std::ofstream(Out() + "/summary.json") << before;
   const ProgramResult result = Interrupt(std::string(kUntilItRuns) + R"(
-until [ $(stat -c %s "$1/.log.mcap.partial") -gt 100000 ]; do kill -0 $run || exit 9; sleep 0.02; done
+until [ $(stat -c %s "$1/.log.mcap.partial") -gt 400000 ]; do kill -0 $run || exit 9; sleep 0.02; done
 kill -STOP $run; kill -INT $run; kill -TERM $run; kill -CONT $run)",
                                          "--set run.duration_s=600");
   EXPECT_EQ(result.out, "ended with 143\n") << Err();

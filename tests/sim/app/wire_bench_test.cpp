@@ -47,10 +47,10 @@ done 2> /dev/null
 }
 
 TEST(WireBench, EndedMotionFailsWithItsReason) {
-  // Waits until the serving thread blocks the signals for its queue, then presses the stop button, and again
-  // every ten seconds until it has an effect.
+  // Waits until a thread blocks just the signals of its queue (HUP, INT, USR1, TERM), then presses the stop
+  // button, and again every ten seconds until it has an effect.
   const ProgramResult run = WithItsRobot(
-      "readlink /proc/$c/exe | grep -q 'fovea-sim$' && grep -q 'SigBlk:.*[2367abef]..$' "
+      "readlink /proc/$c/exe | grep -q 'fovea-sim$' && grep -q 'SigBlk:.*4203$' "
       "/proc/$c/task/*/status",
       R"(for k in $(seq 500); do
   [ $((k % 100)) = 1 ] && kill -USR1 $c 2> /dev/null

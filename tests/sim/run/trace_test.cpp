@@ -88,7 +88,9 @@ std::map<std::string, int> CountByName(const std::vector<json>& spans) {
 class TracedRun : public testing::TestWithParam<const char*> {};
 
 TEST_P(TracedRun, EveryTickIsTracedWithinItsThread) {
-  const Timeline timeline = TimelineOf({"--pace", GetParam(), "--set", "run.duration_s=1"});
+  // At real pace long enough for some pictures on a slow machine, also under the thread sanitizer.
+  const char* duration = GetParam() == std::string("real") ? "run.duration_s=4" : "run.duration_s=1";
+  const Timeline timeline = TimelineOf({"--pace", GetParam(), "--set", duration});
   EXPECT_EQ(timeline.dropped, 0U);
   std::set<std::string> threads;
   for (const auto& [thread, spans] : timeline.spans) {

@@ -253,7 +253,12 @@ void RunLog::Finish() {
   if (failure_) {
     std::rethrow_exception(failure_);
   }
-  file_->writer().Finish();
+  try {
+    file_->writer().Finish();
+  } catch (...) {
+    failed_ = true;
+    throw;
+  }
 }
 
 std::uint64_t RunLog::dropped() const {

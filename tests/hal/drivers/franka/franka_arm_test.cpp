@@ -1,5 +1,8 @@
 // The driver in the control loop, connected to a robot that the test controls.
+#include <algorithm>
+
 #include "fovea/linux_rt/heap_counter.hpp"
+#include "fovea/linux_rt/monotonic_clock.hpp"
 #include "tests/hal/drivers/franka/franka_arm_fixture.hpp"
 
 namespace fovea::test {
@@ -26,6 +29,25 @@ TEST_F(FrankaArmTest, StateIsPassedOnUnchanged) {
     EXPECT_EQ(state_.tau_applied[i], 0.4 + k);
   }
   EXPECT_EQ(state_.q[7], 0.0);
+}
+
+// The first read waits for the whole time-out; then the loop stays responsive.
+TEST_F(FrankaArmTest, SilentRobotIsWaitedForOnlyOnce) {
+  franka::FrankaConfig config = ConfigFor(robot_);
+  config.state_timeout_ns = hal::kNsPerSecond;
+  arm_.reset();
+  Connect(config);
+  ASSERT_TRUE(Next().ok());
+  std::array<std::int64_t, 5> waited_ns{};
+  for (std::int64_t& waited : waited_ns) {
+    --robot_.state.message_id;  // the same state again
+    const std::int64_t begin_ns = linux_rt::MonotonicNs();
+    EXPECT_EQ(Next().code(), StatusCode::kTimeout);
+    waited = linux_rt::MonotonicNs() - begin_ns;
+  }
+  EXPECT_GE(waited_ns[0], hal::kNsPerSecond);
+  EXPECT_LT(*std::min_element(waited_ns.begin() + 1, waited_ns.end()), hal::kNsPerSecond / 2);
+  EXPECT_TRUE(Next().ok()) << "it continues";
 }
 
 TEST_F(FrankaArmTest, MoveIsSentOnceAndEachStateAnsweredOnce) {

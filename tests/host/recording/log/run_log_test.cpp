@@ -169,6 +169,17 @@ TEST_F(RunLogTest, FullDiskBlocksNobodyAndFinishThrows) {
   EXPECT_TRUE(log.failed());
 }
 
+// So little data that only the last write, in Finish, meets the full disk.
+TEST_F(RunLogTest, FailureOfTheLastWriteIsAFailureOfTheLog) {
+  if (!fs::exists("/dev/full")) {
+    GTEST_SKIP() << "this system has no /dev/full";
+  }
+  RunLog log(OneJoint("/dev/full"));
+  log.AddTick(RecordAt(0));
+  EXPECT_THROW(log.Finish(), std::runtime_error);
+  EXPECT_TRUE(log.failed());
+}
+
 // Data that was pending at the failure is counted, like all later data.
 TEST_F(RunLogTest, FullDiskCountsEveryLostAttachment) {
   if (!fs::exists("/dev/full")) {

@@ -131,6 +131,7 @@ class FrankaArm final : public hal::Arm {
 
   RobotState state_;
   bool has_state_ = false;
+  bool silent_ = false;   // the last read brought no state
   bool answered_ = true;  // the newest state
   std::int64_t stamp_ns_ = 0;
   std::optional<std::int64_t> robot_offset_ns_;  // from the robot's time to CLOCK_MONOTONIC

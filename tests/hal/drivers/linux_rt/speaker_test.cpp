@@ -1,5 +1,5 @@
 // A thread that prints a line never waits for the reader.
-#include "firmware/targets/linux/speaker.hpp"
+#include "fovea/linux_rt/speaker.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <csignal>
 #include <string>
 
-namespace fovea::hw {
+namespace fovea::linux_rt {
 namespace {
 
 using namespace std::chrono_literals;
@@ -106,4 +106,4 @@ TEST_F(SpeakerTest, WithoutAReaderLinesAreOnlyCounted) {
 }
 
 }  // namespace
-}  // namespace fovea::hw
+}  // namespace fovea::linux_rt

@@ -1,4 +1,4 @@
-#include "firmware/targets/linux/speaker.hpp"
+#include "fovea/linux_rt/speaker.hpp"
 
 #include <poll.h>
 #include <pthread.h>
@@ -13,11 +13,12 @@
 #include <mutex>
 #include <string_view>
 #include <thread>
+#include <utility>
 
-namespace fovea::hw {
+namespace fovea::linux_rt {
 namespace {
 
-constexpr std::size_t kMostWaiting = 256;  // lines
+constexpr std::size_t kMostWaiting = 256;  // texts
 constexpr int kPollMs = 50;
 constexpr std::chrono::milliseconds kPatience{500};
 
@@ -38,10 +39,10 @@ struct Speaker::Shared {
   const int fd;
   std::mutex mutex;
   std::condition_variable changed;
-  std::deque<std::string> lines;  // the first is being written
+  std::deque<std::string> texts;  // the first is being written
   std::uint64_t dropped = 0;
-  bool closed = false;     // no more lines
-  bool abandoned = false;  // waiting lines are given up too
+  bool closed = false;     // no more texts
+  bool abandoned = false;  // waiting texts are given up too
 
   bool IsAbandoned() {
     const std::lock_guard lock(mutex);
@@ -89,43 +90,43 @@ Speaker::~Speaker() {
   shared_->abandoned = true;
 }
 
-void Speaker::Say(const std::string& line) {
+void Speaker::Put(std::string text) {
   {
     const std::lock_guard lock(shared_->mutex);
-    if (shared_->lines.size() >= kMostWaiting) {
+    if (shared_->texts.size() >= kMostWaiting) {
       ++shared_->dropped;
       return;
     }
-    shared_->lines.push_back(line + "\n");
+    shared_->texts.push_back(std::move(text));
   }
   shared_->changed.notify_all();
 }
 
 void Speaker::Wait(std::chrono::milliseconds most) {
   std::unique_lock lock(shared_->mutex);
-  shared_->changed.wait_for(lock, most, [this] { return shared_->lines.empty(); });
+  shared_->changed.wait_for(lock, most, [this] { return shared_->texts.empty(); });
 }
 
 std::uint64_t Speaker::unsaid() const {
   const std::lock_guard lock(shared_->mutex);
-  return shared_->dropped + shared_->lines.size();
+  return shared_->dropped + shared_->texts.size();
 }
 
 void Speaker::SpeakAll(const std::shared_ptr<Shared>& shared) {
   std::unique_lock lock(shared->mutex);
   for (;;) {
-    shared->changed.wait(lock, [&] { return shared->closed || !shared->lines.empty(); });
-    if (shared->lines.empty() || shared->abandoned) {
+    shared->changed.wait(lock, [&] { return shared->closed || !shared->texts.empty(); });
+    if (shared->texts.empty() || shared->abandoned) {
       return;
     }
-    const std::string line = shared->lines.front();
+    const std::string text = shared->texts.front();
     lock.unlock();
-    const bool said = shared->Write(line);
+    const bool said = shared->Write(text);
     lock.lock();
-    shared->lines.pop_front();
+    shared->texts.pop_front();
     shared->dropped += said ? 0U : 1U;
     shared->changed.notify_all();
   }
 }
 
-}  // namespace fovea::hw
+}  // namespace fovea::linux_rt
