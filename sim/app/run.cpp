@@ -122,7 +122,7 @@ class Run {
     try {
       files_->Write(summary, world_->Look());
     } catch (const std::exception& error) {
-      summary.files_error = error.what();
+      summary.files_error += (trace_error.empty() ? "" : "; ") + std::string(error.what());
     }
     summary.writing_s = SecondsSince(simulated);
     return summary;

@@ -202,7 +202,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   try {
     folder.Write(ToJson(summary));
   } catch (const std::exception& error) {
-    summary.error = error.what();
+    summary.error += (summary.error.empty() ? "" : "; ") + std::string(error.what());
   }
   return summary;
 }

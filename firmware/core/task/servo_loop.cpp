@@ -9,7 +9,6 @@ namespace {
 constexpr double kReferenceRests = 1e-3;  // every joint of the reference slower than this [rad/s, m/s]
 constexpr double kArmRests = 0.02;        // and every joint of the arm than this
 constexpr int kMostFinishingTicks = 2000;
-constexpr int kMostSilentTicks = 5;  // of an arm that should finish: it receives nothing either
 
 bool IsSlow(const hal::JointArray& dq, double limit) noexcept {
   return std::all_of(dq.begin(), dq.end(), [limit](double speed) { return std::fabs(speed) < limit; });

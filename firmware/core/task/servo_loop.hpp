@@ -69,6 +69,8 @@ class ServoLoop {
   [[nodiscard]] LoopCounters counters() const noexcept;
 
   static constexpr std::uint64_t kNever = UINT64_MAX;
+  // Ticks in a row without a state after which an arm counts as silent: a run that should finish ends.
+  static constexpr int kMostSilentTicks = 5;
 
  private:
   [[nodiscard]] hal::Status RunByClock(std::int64_t end_ns) noexcept;

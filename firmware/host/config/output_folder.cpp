@@ -61,7 +61,9 @@ fs::path OutputFolder::Keep(const std::string& name, const std::vector<std::stri
     return folder_ / name;
   }
   for (const std::string& other : all_names) {
-    fs::remove(folder_ / other, ignored);
+    if (!fs::is_directory(folder_ / other, ignored)) {  // that is no run's file
+      fs::remove(folder_ / other, ignored);
+    }
   }
   fs::rename(Partial(name), folder_ / name, ignored);
   return folder_ / name;

@@ -196,15 +196,9 @@ class Session {
   // A silent robot that sets the clock (robot_time) stops the loop's time: then the computer's ends the run.
   void EndSilentRun() {
     const double passed_s = 1e-9 * static_cast<double>(linux_rt::MonotonicNs() - connected_ns_);
-    task::ServoLoop* loop = control_.loop;
-    if (!summary_.robot_silent || loop == nullptr || options_.duration_s <= 0.0 ||
-        passed_s < options_.duration_s || control_.ended.exchange(true)) {
-      return;
-    }
-    if (options_.allow_motion) {
-      loop->Finish();
-    } else {
-      loop->Stop();
+    if (summary_.robot_silent && options_.duration_s > 0.0 && passed_s >= options_.duration_s &&
+        !control_.ended) {
+      EndRun(options_.allow_motion, control_);
     }
   }
 

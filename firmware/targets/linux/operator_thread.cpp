@@ -44,6 +44,17 @@ void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) 
   loop->GiveLeave(now_ns + lasts_ns);
 }
 
+void EndRun(bool allow_motion, RunControl& control) noexcept {
+  const bool again = control.ended.exchange(true);
+  if (task::ServoLoop* loop = control.loop) {
+    if (again || !allow_motion) {
+      loop->Stop();
+    } else {
+      loop->Finish();
+    }
+  }
+}
+
 OperatorThread::OperatorThread(const Options& options, const hal::Clock& clock,
                                const linux_rt::SignalQueue& signals, RunControl& control)
     : options_(options),
@@ -109,16 +120,8 @@ void OperatorThread::HearWords() {
   }
 }
 
-// Ends in order the first time, at once the second time.
 void OperatorThread::End() noexcept {
-  const bool again = control_.ended.exchange(true);
-  if (task::ServoLoop* loop = control_.loop) {
-    if (again || !options_.allow_motion) {
-      loop->Stop();
-    } else {
-      loop->Finish();
-    }
-  }
+  EndRun(options_.allow_motion, control_);
   Note(Word::kEnd);
 }
 

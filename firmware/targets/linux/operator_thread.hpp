@@ -31,6 +31,9 @@ struct RunControl {
 // Permits motion for `dead_man_s` from now on. Does nothing when that is 0: the permission never ends.
 void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) noexcept;
 
+// Ends the run: the first time in order, the second time at once.
+void EndRun(bool allow_motion, RunControl& control) noexcept;
+
 struct Heard {
   std::int64_t stamp_ns = 0;  // of the loop's clock
   Word word = Word::kAlive;

@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "firmware/core/task/servo_loop.hpp"
+
 namespace fovea::hw {
-namespace {
-
-constexpr int kSilentTicks = 5;  // so many ticks in a row without a new state: the robot is silent
-
-}  // namespace
 
 void RunWatch::Add(const hal::TickRecord& record, bool finishes) {
   if (!summary_.start_ns) {
@@ -18,7 +15,7 @@ void RunWatch::Add(const hal::TickRecord& record, bool finishes) {
     back_ = true;
   }
   silent_ticks_ = record.arm.sequence == sequence_ ? silent_ticks_ + 1 : 0;
-  summary_.robot_silent = silent_ticks_ >= kSilentTicks;
+  summary_.robot_silent = silent_ticks_ >= task::ServoLoop::kMostSilentTicks;
   sequence_ = record.arm.sequence;
   if (record.has_feature) {
     summary_.feature_ages.Add(record.stamp_ns - record.feature.stamp_ns);

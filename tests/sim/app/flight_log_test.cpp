@@ -171,6 +171,7 @@ TEST_F(FlightLogTest, UnwritableReportKeepsResultAndLog) {
               HasSubstr("a folder has that name; the log is kept in " + (out_ / "log.mcap").string()));
   EXPECT_EQ(json::parse(run.out)["ticks"], 300);
   EXPECT_TRUE(Replayed()["complete"]);
+  EXPECT_TRUE(fs::is_directory(out_ / "report.html")) << "it is not the run's";
 }
 
 TEST_F(FlightLogTest, UnwritableTraceKeepsResultAndFiles) {

@@ -43,6 +43,7 @@ TEST(HwConfigTest, ContradictingValuesAreRefusedByName) {
       {{"servo.goal=[0, 0, 0.03]"}, "the third number must be above its radius of 0.04 m"},
       {{"servo.stale_s=2", "servo.coast_s=1"}, "servo.stale_s = 2 is not allowed: at most servo.coast_s"},
       {{"safety.workspace_radius=0.5", "safety.workspace_margin=0.5"}, "below safety.workspace_radius"},
+      {{"safety.workspace_margin=0"}, "safety.workspace_margin = 0 is not allowed"},
       {{"safety.view_margin_px=240"}, "it leaves nothing of a picture of 640 x 480 px"},
       {{"servo.posture=[0, 0]"}, "servo.posture has 2 entries, arm \"panda\" has 7 joints"},
       {{"safety.planes=[0, 0, 1, 0, 0]"}, "safety.planes has 5 entries: four for each plane"},
