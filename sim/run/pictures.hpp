@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "firmware/core/features/target_feature.hpp"
-#include "firmware/vision/detect/detection.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/detection.hpp"
+#include "firmware/vision/intrinsics.hpp"
 #include "fovea/hal/camera.hpp"
 #include "sim/render/scene_renderer.hpp"
 

@@ -65,9 +65,9 @@ RunDescription DescribeRun(const Scenario& scenario) {
   const Lens lens = MakeScenarioLens(scenario);
   run.intrinsics.lens = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
   CheckLens(scenario);
-  run.servo =
-      config::MakeServoConfig(scenario.servo, run.robot, model::Pose{X_EC.linear(), X_EC.translation()},
-                              run.intrinsics, scenario.target);
+  run.servo = config::MakeServoConfig(scenario.servo, {run.robot.name, run.robot.model},
+                                      model::Pose{X_EC.linear(), X_EC.translation()}, run.intrinsics,
+                                      scenario.target);
   CheckOutside(scenario, run.servo);
   CheckGoal(scenario);
   CheckTimes(scenario);

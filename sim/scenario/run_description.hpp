@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "firmware/core/config/servo_config.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 #include "sim/render/pinhole.hpp"
 #include "sim/render/scene_renderer.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "sim/theory/run.hpp"
+#include "sim/scenario/theory_config.hpp"
 
 namespace fovea::sim {
 

@@ -48,9 +48,6 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
 void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
   keys.Flag("camera.enabled", s.camera.enabled, "false: a run without camera, for commanded motions");
   config::AddCalibrationKeys(s.camera.calibration, keys, {64, 4096});
-  for (const char* former : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
-    keys.Renamed(former, "camera.lens");
-  }
   keys.Number("camera.hfov_deg", s.camera.hfov_deg, 5.0, 150.0, "deg",
               "horizontal field of view, if camera.f_u_px, f_v_px, c_u_px and c_v_px are not given");
   keys.Number("camera.rate_hz", s.camera.rate_hz, 1.0, 240.0, "Hz", "frames per second");

@@ -1,16 +1,15 @@
 #include "sim/scenario/target_scene.hpp"
 
-#include <cmath>
-#include <memory>
-#include <numbers>
-#include <utility>
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
 
+#include "firmware/core/features/target_traits.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/vision/pose/flat_corners.hpp"
 #include "sim/scenario/roll_pitch_yaw.hpp"
@@ -85,7 +84,8 @@ RollingBallConfig MakeRollingBall(const TargetScene& s) {
   }
   ball.p_BO = Eigen::Vector3d(s.position[0], s.position[1], s.position[2]);
   ball.radius = 0.5 * s.diameter;
-  if (s.kind != "sphere") {
+  const features::TargetTraits* traits = features::FindTraits(s.kind);
+  if (traits == nullptr || traits->body != features::TargetBody::kBall) {
     throw config::InputError(fmt::format(
         "target.motion = \"pushed\" is not allowed for target.kind = \"{}\": only a sphere rolls", s.kind));
   }

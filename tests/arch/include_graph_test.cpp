@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <ostream>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "tests/arch/source_tree.hpp"
 
@@ -22,12 +26,14 @@ void PrintTo(const Rule& rule, std::ostream* out) { *out << rule.folder; }
 // Headers of the standard library have neither folder nor extension.
 const std::regex kStandard("[a-z_]+");
 
-std::string NameOf(const testing::TestParamInfo<Rule>& rule) {
-  std::string name = rule.param.folder;
+std::string NameOfFolder(std::string folder) {
   std::replace_if(
-      name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
-  return name;
+      folder.begin(), folder.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; },
+      '_');
+  return folder;
 }
+
+std::string NameOf(const testing::TestParamInfo<Rule>& rule) { return NameOfFolder(rule.param.folder); }
 
 class IncludeRule : public testing::TestWithParam<Rule> {};
 
@@ -48,6 +54,20 @@ TEST_P(IncludeRule, EveryIncludeIsAllowed) {
 // Matches hal, Eigen and the core modules that match `rooms`.
 std::string Rooms(const char* rooms) {
   return std::string("fovea/hal/.*|Eigen/.*|firmware/core/(") + rooms + ")/.*";
+}
+
+// Matches core, OpenCV, the types that all of vision shares, and the modules of vision that match `rooms`.
+std::string Vision(const char* rooms) {
+  return std::string("fovea/hal/.*|firmware/core/.*|(Eigen|opencv2)/.*|firmware/vision/([a-z_]+[.]hpp|(") +
+         rooms + ")/.*)";
+}
+
+// Matches what scenarios, runs and verdicts use, and the folders of sim that match `rooms`.
+std::string Runs(const char* rooms) {
+  return std::string(
+             "(fovea|firmware|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/.*|(fcntl|poll|unistd)[.]h|sim/"
+             "(") +
+         rooms + ")/.*";
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -108,6 +128,9 @@ INSTANTIATE_TEST_SUITE_P(
              "public headers expose no driver and no hardware target"},
         Rule{"firmware/vision", "fovea/hal/.*|firmware/(core|vision)/.*|(Eigen|opencv2)/.*",
              "vision depends only on core and OpenCV"},
+        Rule{"firmware/vision/find", Vision("find"), "finding depends on no fit and no pose"},
+        Rule{"firmware/vision/fit", Vision("find|pose|fit"), "a fit depends on no detector"},
+        Rule{"firmware/vision/pose", Vision("find|pose"), "a pose depends on no fit"},
         Rule{"firmware/host",
              "(fovea/(hal|linux_rt)|firmware/(core|vision|host)|Eigen|unsupported/Eigen|opencv2)/.*|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|"
@@ -156,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
              "the simulated world depends on hal, not on the firmware"},
         Rule{"sim/faults", "fovea/hal/.*|sim/(camera|faults|render)/.*|Eigen/.*",
              "the simulated world depends on hal, not on the firmware"},
-        Rule{"sim/physics", "sim/(physics|robot)/.*|Eigen/.*|Bullet.*",
+        Rule{"sim/physics", "sim/(physics|robot)/.*|Eigen/.*|(Bullet|LinearMath).*",
              "physics depends only on Bullet and the robot"},
         Rule{"sim/render", "sim/(render|robot)/.*|(Eigen|epoxy|fmt)/.*",
              "rendering depends on neither physics nor servo"},
@@ -175,7 +198,17 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"sim/gige", "fovea/(hal|linux_rt)/.*|fovea/franka/sockets[.]hpp|sim/gige/.*|arv[.]h",
              "the camera's network end depends only on frames"},
         Rule{"sim/world", "fovea/hal/.*|sim/(world|physics|render|robot|faults)/.*|Eigen/.*",
-             "the simulated world depends on hal, not on the firmware"}),
+             "the simulated world depends on hal, not on the firmware"},
+        Rule{"sim/scenario", Runs("scenario|camera|faults|physics|render|robot|world"),
+             "a scenario describes a run and knows no verdict"},
+        Rule{"sim/theory", Runs("theory|scenario|world"), "an analytic response depends on no run"},
+        Rule{"sim/verdict", Runs("verdict|theory|scenario|mcu|render|world"),
+             "a verdict depends on the truth and not on the run that it judges"},
+        Rule{"sim/run", Runs("run|verdict|theory|scenario|camera|faults|gige|render|world"),
+             "a run depends on no program"},
+        Rule{"sim/calibration", Runs("calibration|scenario|camera|physics|render|robot|world"),
+             "calibration pictures need no run"},
+        Rule{"sim/app", Runs("[a-z_]+"), "the programs combine everything"}),
     NameOf);
 
 INSTANTIATE_TEST_SUITE_P(
@@ -189,6 +222,69 @@ INSTANTIATE_TEST_SUITE_P(
              "[a-z_]+[.]h",
              "the benchmarks run without the simulator"}),
     NameOf);
+
+TEST(IncludeRules, CoverEveryFolder) {
+  std::set<std::string> ruled;
+  const testing::UnitTest& tests = *testing::UnitTest::GetInstance();
+  for (int i = 0; i < tests.total_test_suite_count(); ++i) {
+    const testing::TestSuite& suite = *tests.GetTestSuite(i);
+    for (int k = 0; k < suite.total_test_count(); ++k) {
+      const std::string name = suite.GetTestInfo(k)->name();
+      if (name.starts_with("EveryIncludeIsAllowed/")) {
+        ruled.insert(name.substr(name.find('/') + 1));
+      }
+    }
+  }
+  for (const char* tree : {"hal", "firmware", "sim", "tools"}) {
+    for (const auto& file : test::SourcesIn(tree)) {
+      const auto inside = std::filesystem::relative(file, test::SourceRoot());
+      bool has_rule = false;
+      for (auto folder = inside.parent_path(); !folder.empty(); folder = folder.parent_path()) {
+        has_rule = has_rule || ruled.contains(NameOfFolder(folder.string()));
+      }
+      EXPECT_TRUE(has_rule) << "no rule for the folder of " << inside.string();
+    }
+  }
+}
+
+// The folders below a tree use each other in one direction: no folder reaches itself.
+class FolderOrder : public testing::TestWithParam<const char*> {};
+
+TEST_P(FolderOrder, FoldersFormNoCycle) {
+  const std::string tree = GetParam();
+  const auto folder_of = [&tree](const std::string& path) {  // "" for files in the tree itself
+    const std::size_t end = path.find('/', tree.size() + 1);
+    return path.starts_with(tree + "/") && end != std::string::npos ? path.substr(0, end) : std::string();
+  };
+  std::map<std::string, std::set<std::string>> uses;
+  for (const auto& file : test::SourcesIn(tree)) {
+    const std::string from = folder_of(std::filesystem::relative(file, test::SourceRoot()).string());
+    for (const std::string& include : test::IncludesOf(file)) {
+      if (const std::string to = folder_of(include); !from.empty() && !to.empty() && to != from) {
+        uses[from].insert(to);
+      }
+    }
+  }
+  EXPECT_FALSE(uses.empty());
+  for (const auto& [folder, first] : uses) {
+    std::set<std::string> reached;
+    std::vector<std::string> open(first.begin(), first.end());
+    while (!open.empty()) {
+      const std::string next = open.back();
+      open.pop_back();
+      if (reached.insert(next).second) {
+        open.insert(open.end(), uses[next].begin(), uses[next].end());
+      }
+    }
+    EXPECT_FALSE(reached.contains(folder)) << folder << " uses folders that use it";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Trees, FolderOrder,
+                         testing::Values("firmware/core", "firmware/vision", "firmware/host", "sim"),
+                         [](const testing::TestParamInfo<const char*>& tree) {
+                           return NameOfFolder(tree.param);
+                         });
 
 }  // namespace
 }  // namespace fovea

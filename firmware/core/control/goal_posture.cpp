@@ -18,13 +18,13 @@ using model::Pose;
 using model::Vec6;
 using model::VecN;
 
-constexpr double kStepMost = 0.2;  // [rad]
-constexpr double kDamping = 1e-6;
-constexpr double kReached = 2e-3;  // a goal this near is reached; later steps remove the rest [m, rad]
-constexpr double kOff = 0.01;      // a posture found is given up if it is further off than this
-constexpr int kOffSteps = 25;      // for more than this many steps
-constexpr double kLost = 0.5;      // or further off than this once
-constexpr int kStepsMost = 100;
+constexpr double kStepMost = 0.2;     // [rad]
+constexpr double kDamping = 1e-6;     // of J J^T, against a singular matrix [m^2, rad^2]
+constexpr double kReached = 2e-3;     // a goal this near is reached; later steps remove the rest [m, rad]
+constexpr double kOff = 0.01;         // a posture found is given up if it is further off than this
+constexpr int kOffSteps = 25;         // for more than this many steps
+constexpr double kLost = 0.5;         // or further off than this once
+constexpr int kStepsMost = 100;       // of a trial; then it is given up
 constexpr int kStepsLooked = 8;       // a trial is given up if in this many steps
 constexpr double kComesNearer = 0.8;  // its distance does not fall to this share
 constexpr int kPasses = 3;            // of one step, to find joints at the ends of their ranges

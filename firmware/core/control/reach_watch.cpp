@@ -6,9 +6,17 @@
 namespace fovea::control {
 namespace {
 
-constexpr double kMovedM = 0.02;  // a target that has moved this far is tried again
+constexpr double kGoalNearFraction = 0.005;  // errors below this share of |s_star| count as zero
+constexpr double kMovedM = 0.02;             // a target that has moved this far is tried again
 
 }  // namespace
+
+bool IsBlocked(const config::LawConfig& config, const features::FeatureState& feature,
+               const VisualLawOutput& law, const model::Mat6N& J_C, const model::VecN& dq,
+               hal::LimitSet limits) noexcept {
+  return (limits & kBarriers) != 0 && law.e.norm() > kGoalNearFraction * feature.s_star.norm() &&
+         Progress(feature, law.ds_cmd, J_C, dq) < config.unreachable_progress;
+}
 
 void UpdateBlockedTime(bool blocked, ReachWatch& watch) noexcept { CountTick(blocked, watch.blocked_ns); }
 

@@ -88,7 +88,7 @@ hal::LimitSet TakeSetpoint(const config::ServoConfig& config, const MotionComman
 double ShareOfSpeed(const config::ServoConfig& config, const model::VecN& q, const model::VecN& q_goal,
                     const trajectory::JointMove::Limits& limits) noexcept {
   constexpr int kSamples = 12;
-  constexpr double kShareOfSpeed = 0.85;
+  constexpr double kShareOfSpeed = 0.85;  // of the limits of the hand's speed and of its turn
   constexpr double kShareOfTurn = 0.81;
   const model::VecN way = q_goal - q;
   double duration_s = 0.0;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "firmware/core/features/hold_orientation.hpp"
+#include "firmware/core/guard/following.hpp"
 #include "firmware/core/guard/guard_motion.hpp"
 #include "firmware/core/task/enter_mode.hpp"
 #include "firmware/core/task/servo_task.hpp"
@@ -11,7 +12,6 @@
 namespace fovea::task {
 namespace {
 
-constexpr double kGoalNearFraction = 0.005;             // errors below this share of |s_star| count as zero
 constexpr double kOffShare = hal::kTickPeriodS / 0.25;  // of a tick in the mean deviation from a motion
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
@@ -135,12 +135,9 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
 }
 
 void ServoTask::CheckFollowing() noexcept {
-  const model::VecN following_error = state_.reference.q - state_.q;
-  for (int i = 0; i < following_error.size(); ++i) {
-    if (!(std::fabs(following_error[i]) <= config_.safety.following_error)) {
-      LatchFault(hal::Fault::kNotFollowing, i);
-      return;
-    }
+  const int joint = guard::JointThatDoesNotFollow(config_.safety, state_.reference.q, state_.q);
+  if (joint >= 0) {
+    LatchFault(hal::Fault::kNotFollowing, joint);
   }
 }
 
@@ -150,10 +147,9 @@ void ServoTask::UpdateBlockedTime() noexcept {
   bool blocked = false;
   if (steering && state_.way.by_joints) {
     blocked = control::NoteHeld(state_.law.task, state_.reference.dq, state_.way);
-  } else if (steering && (state_.limits & control::kBarriers) != 0) {
-    blocked = state_.law.e.norm() > kGoalNearFraction * state_.feature.s_star.norm() &&
-              control::Progress(state_.feature, state_.law.ds_cmd, state_.J_C, state_.reference.dq) <
-                  config_.law.unreachable_progress;
+  } else if (steering) {
+    blocked = control::IsBlocked(config_.law, state_.feature, state_.law, state_.J_C, state_.reference.dq,
+                                 state_.limits);
   }
   control::UpdateBlockedTime(blocked, state_.reach);
 }

@@ -14,6 +14,9 @@ void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys, PictureRa
   keys.Number("camera.c_u_px", in.c_u_px, -1e5, 1e5, "px", "principal point");
   keys.Number("camera.c_v_px", in.c_v_px, -1e5, 1e5, "px", "principal point");
   keys.Numbers("camera.lens", settings.lens, 5, 5, -1e3, 1e3, "", "distortion: k1, k2, p1, p2, k3");
+  for (const char* former : {"camera.k1", "camera.k2", "camera.p1", "camera.p2", "camera.k3"}) {
+    keys.Renamed(former, "camera.lens");
+  }
   keys.Number("camera.rms_px", settings.rms_px, 0.0, 1e3, "px",
               "rms error of the calibration, as `fovea calibrate intrinsics` reports; 0: unknown");
   keys.Number("camera.mount_rms_mm", settings.mount_rms_mm, 0.0, 1e3, "mm",

@@ -6,7 +6,7 @@
 
 #include "firmware/core/model/types.hpp"
 #include "firmware/host/config/key_table.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace fovea::config {
 

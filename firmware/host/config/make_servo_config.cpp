@@ -121,10 +121,10 @@ void CheckTogether(const ServoConfig& c) {
   }
 }
 
-void CheckSize(const char* key, const std::vector<double>& values, const robots::Robot& robot) {
-  if (!values.empty() && static_cast<int>(values.size()) != robot.model.num_joints) {
-    throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", key, values.size(),
-                                 robot.name, robot.model.num_joints));
+void CheckSize(const char* key, const std::vector<double>& values, const NamedArm& arm) {
+  if (!values.empty() && static_cast<int>(values.size()) != arm.model.num_joints) {
+    throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", key, values.size(), arm.name,
+                                 arm.model.num_joints));
   }
 }
 
@@ -191,12 +191,12 @@ void SetHand(const ServoSettings& settings, const model::Pose& X_EC, HandShape& 
   }
 }
 
-void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, MotionLawConfig& c) {
-  CheckSize("servo.k_p", settings.k_p, robot);
-  CheckSize("servo.k_v", settings.k_v, robot);
-  const model::VecN M_ii = model::InertiaAtReady(robot.model).held;
+void SetMotionLaw(const ServoSettings& settings, const NamedArm& arm, MotionLawConfig& c) {
+  CheckSize("servo.k_p", settings.k_p, arm);
+  CheckSize("servo.k_v", settings.k_v, arm);
+  const model::VecN M_ii = model::InertiaAtReady(arm.model).held;
   c.damp_by_inertia = settings.k_v.empty();
-  for (int i = 0; i < robot.model.num_joints; ++i) {
+  for (int i = 0; i < arm.model.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double inertia = M_ii[i];
     c.k_p[k] = settings.k_p.empty() ? inertia * c.omega_n * c.omega_n : settings.k_p[k];
@@ -204,13 +204,13 @@ void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, Mot
   }
   const motion_laws::MotionLawEntry& law = motion_laws::EntryOf(c.kind);
   const char* name = kMotionLawNames[static_cast<std::size_t>(c.kind)];
-  const motion_laws::Fitness fitness = motion_laws::FitnessOf(c, robot.model, c.kind);
+  const motion_laws::Fitness fitness = motion_laws::FitnessOf(c, arm.model, c.kind);
   switch (fitness.why) {
     case motion_laws::Unfit::kNone: break;
     case motion_laws::Unfit::kTooFewJoints:
       throw InputError(
           fmt::format("servo.motion_law = \"{}\" is not allowed: it takes {} joints, arm \"{}\" has {}", name,
-                      law.joints_min, robot.name, robot.model.num_joints));
+                      law.joints_min, arm.name, arm.model.num_joints));
     case motion_laws::Unfit::kDampedTooFast:
       throw InputError(
           fmt::format("{} is not allowed: joint {} is damped at {:.0f} 1/s, which is {}; motion law "
@@ -224,22 +224,21 @@ void SetMotionLaw(const ServoSettings& settings, const robots::Robot& robot, Mot
 
 }  // namespace
 
-ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::Robot& robot,
-                            const model::Pose& X_EC, const vision::Intrinsics& intrinsics,
-                            const TargetSettings& target) {
+ServoConfig MakeServoConfig(const ServoSettings& settings, const NamedArm& arm, const model::Pose& X_EC,
+                            const vision::Intrinsics& intrinsics, const TargetSettings& target) {
   ServoConfig config = settings.config;
-  config.arm = robot.model;
+  config.arm = arm.model;
   config.X_EC = X_EC;
   SetFeature(settings, target, config.feature);
   config.guard.view = MakeView(settings, intrinsics);
-  config.law.q_posture = robot.model.q_ready;
-  CheckSize("servo.posture", settings.posture, robot);
+  config.law.q_posture = arm.model.q_ready;
+  CheckSize("servo.posture", settings.posture, arm);
   if (!settings.posture.empty()) {
     for (std::size_t i = 0; i < settings.posture.size(); ++i) {
       config.law.q_posture[i] = settings.posture[i];
     }
   }
-  SetMotionLaw(settings, robot, config.motion_law);
+  SetMotionLaw(settings, arm, config.motion_law);
   SetObstacles(settings, config.guard.obstacles);
   SetHand(settings, X_EC, config.guard.hand);
   SetPredict(settings, intrinsics, config.predict);

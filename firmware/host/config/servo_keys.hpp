@@ -7,8 +7,7 @@
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/host/config/key_table.hpp"
 #include "firmware/host/config/target_keys.hpp"
-#include "firmware/host/robots/robot.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace fovea::config {
 
@@ -38,10 +37,14 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys);
 // Scales gains and speed limits by robot.speed_scale.
 void ScaleSpeed(double scale, ServoSettings& settings);
 
-// The servo's whole configuration for `robot`, with the camera at `X_EC`. InputError: a posture that does not
-// fit the robot, a feature that the target does not have, or anything that ServoTask::Init refuses.
-ServoConfig MakeServoConfig(const ServoSettings& settings, const robots::Robot& robot,
-                            const model::Pose& X_EC, const vision::Intrinsics& intrinsics,
-                            const TargetSettings& target);
+struct NamedArm {
+  std::string name;  // for messages
+  model::ArmModel model;
+};
+
+// The servo's whole configuration for `arm`, with the camera at `X_EC`. InputError: a posture that does not
+// fit the arm, a feature that the target does not have, or anything that ServoTask::Init refuses.
+ServoConfig MakeServoConfig(const ServoSettings& settings, const NamedArm& arm, const model::Pose& X_EC,
+                            const vision::Intrinsics& intrinsics, const TargetSettings& target);
 
 }  // namespace fovea::config

@@ -25,6 +25,9 @@ void AddVisionKeys(VisionSettings& settings, KeyTable& keys) {
               "method \"hough\": cell size of the accumulator of votes");
   keys.Number("vision.hough_spacing_px", c.hough.spacing_px, 1.0, 1000.0, "px",
               "method \"hough\": least distance between two circles");
+  keys.Renamed("vision.blur_sigma_px", "vision.hough_blur_sigma_px");
+  keys.Renamed("vision.canny_threshold", "vision.hough_canny_threshold");
+  keys.Renamed("vision.votes", "vision.hough_votes");
   keys.Number("vision.noise_floor", c.edge_noise.floor, 0.0, 50.0, "gray levels",
               "least standard deviation of a picture's noise that the covariance assumes");
   keys.Number("vision.edge_shift_px", c.edge_noise.shift_px, 0.0, 2.0, "px",

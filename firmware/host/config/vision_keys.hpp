@@ -5,7 +5,7 @@
 
 #include "firmware/host/config/key_table.hpp"
 #include "firmware/host/config/target_keys.hpp"
-#include "firmware/vision/detect/detector_config.hpp"
+#include "firmware/vision/detector_config.hpp"
 
 namespace fovea::config {
 

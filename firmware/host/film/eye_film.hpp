@@ -7,7 +7,7 @@
 #include "firmware/host/film/film_queue.hpp"
 #include "firmware/host/film/overlay.hpp"
 #include "firmware/host/film/video_file.hpp"
-#include "firmware/vision/detect/detection.hpp"
+#include "firmware/vision/detection.hpp"
 #include "fovea/hal/camera.hpp"
 
 namespace fovea::film {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "firmware/vision/detect/detection.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/detection.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace fovea::film {
 

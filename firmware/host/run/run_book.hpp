@@ -21,7 +21,7 @@
 #include "firmware/host/recording/log/run_log.hpp"
 #include "firmware/host/report/report.hpp"
 #include "firmware/host/run/run_figures.hpp"
-#include "firmware/vision/detect/detection.hpp"
+#include "firmware/vision/detection.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "foxglove/image.pb.h"
 #include "foxglove/scene.pb.h"

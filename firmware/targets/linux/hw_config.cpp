@@ -163,12 +163,13 @@ robots::Robot LoadHwRobot(const HwConfig& config) {
 config::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot) {
   config::ServoSettings settings = config.servo;
   config::ScaleSpeed(config.robot.speed_scale, settings);
+  const config::NamedArm arm{robot.name, robot.model};
   if (!config.HasCamera()) {
     settings.keep_in_view = false;  // without a camera there is no view
-    return config::MakeServoConfig(settings, robot, model::Pose{}, vision::Intrinsics{},
+    return config::MakeServoConfig(settings, arm, model::Pose{}, vision::Intrinsics{},
                                    config::TargetSettings{});
   }
-  return config::MakeServoConfig(settings, robot, config::MakeMount(config.camera.calibration),
+  return config::MakeServoConfig(settings, arm, config::MakeMount(config.camera.calibration),
                                  config::MakeIntrinsics(config.camera.calibration), config.target);
 }
 

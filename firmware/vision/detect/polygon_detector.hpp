@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "firmware/vision/detect/detection.hpp"
-#include "firmware/vision/detect/detector_config.hpp"
+#include "firmware/vision/detection.hpp"
+#include "firmware/vision/detector_config.hpp"
 #include "firmware/vision/find/colour_model.hpp"
 #include "firmware/vision/find/edge_map.hpp"
 #include "firmware/vision/find/polygon_finder.hpp"

@@ -3,8 +3,8 @@
 
 #include <optional>
 
-#include "firmware/vision/detect/detection.hpp"
-#include "firmware/vision/detect/detector_config.hpp"
+#include "firmware/vision/detection.hpp"
+#include "firmware/vision/detector_config.hpp"
 #include "firmware/vision/find/colour_model.hpp"
 #include "firmware/vision/find/curve_finder.hpp"
 #include "firmware/vision/find/edge_map.hpp"

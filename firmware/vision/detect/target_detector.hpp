@@ -8,10 +8,10 @@
 #include <opencv2/core.hpp>
 #include <variant>
 
-#include "firmware/vision/detect/detection.hpp"
-#include "firmware/vision/detect/detector_config.hpp"
 #include "firmware/vision/detect/polygon_detector.hpp"
 #include "firmware/vision/detect/round_detector.hpp"
+#include "firmware/vision/detection.hpp"
+#include "firmware/vision/detector_config.hpp"
 
 namespace fovea::vision {
 

@@ -1,17 +1,12 @@
 // Likeness of a colour to the target's: a weight of hue and saturation, as a table over BGR.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
-namespace fovea::vision {
+#include "firmware/vision/detector_config.hpp"
 
-struct ColourConfig {
-  double hue_deg = 0.0;          // of the target; 0 is red, 120 green, 240 blue
-  double hue_width_deg = 12.0;   // standard deviation of the hue
-  double saturation_min = 0.35;  // a colour below it has likeness 0; 0 to 1
-};
+namespace fovea::vision {
 
 class ColourModel {
  public:

@@ -8,7 +8,7 @@ double ColourShare(const cv::Mat& image, const ColourModel& colour, std::span<co
   if (image.channels() == 1) {
     return 1.0;
   }
-  constexpr double kAlike = 0.3;
+  constexpr double kAlike = 0.3;  // likeness of a colour that counts as the target's
   int alike = 0;
   int count = 0;
   for (const ImagePoint& p : points) {

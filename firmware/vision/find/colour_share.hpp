@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <span>
 
-#include "firmware/vision/detect/detection.hpp"
+#include "firmware/vision/detection.hpp"
 #include "firmware/vision/find/colour_model.hpp"
 
 namespace fovea::vision {

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace fovea::vision {
 

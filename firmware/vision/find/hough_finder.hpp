@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "firmware/vision/detect/detector_config.hpp"
+#include "firmware/vision/detector_config.hpp"
 
 namespace fovea::vision {
 

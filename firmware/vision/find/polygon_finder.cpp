@@ -17,10 +17,10 @@ constexpr double kShortest = 3.5;   // shortest piece
 constexpr double kMinTurn = 0.30;  // sine of the angle between neighbouring sides
 constexpr std::size_t kMostSegments = 28;
 constexpr std::size_t kMostPolygons = 24;
-constexpr int kMostSideCuts = 7;
-constexpr int kSideBins = 24;
-constexpr double kAlongSideNormal = 0.85;
-constexpr double kGap = 3.0;  // missing length of a side, at most, in lengths of its seen part
+constexpr int kMostSideCuts = 7;           // of one side that is tried
+constexpr int kSideBins = 24;              // along a side, to see which part of it has edge points
+constexpr double kAlongSideNormal = 0.85;  // cosine between an edge point's gradient and the side's normal
+constexpr double kGap = 3.0;               // missing length of a side, at most, in lengths of its seen part
 
 }  // namespace
 

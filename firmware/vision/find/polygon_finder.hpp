@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "firmware/vision/detect/detection.hpp"
+#include "firmware/vision/detection.hpp"
 #include "firmware/vision/find/edge_map.hpp"
 
 namespace fovea::vision {

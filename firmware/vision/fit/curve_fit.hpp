@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "firmware/vision/detect/detector_config.hpp"
+#include "firmware/vision/detector_config.hpp"
 #include "firmware/vision/find/curve.hpp"
 #include "firmware/vision/fit/profiles.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "firmware/vision/detect/detection.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/detection.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace fovea::vision {
 

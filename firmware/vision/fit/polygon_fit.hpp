@@ -5,10 +5,10 @@
 
 #include <opencv2/core.hpp>
 
-#include "firmware/vision/detect/detector_config.hpp"
-#include "firmware/vision/detect/side_evidence.hpp"
+#include "firmware/vision/detector_config.hpp"
 #include "firmware/vision/find/polygon_finder.hpp"
 #include "firmware/vision/fit/profiles.hpp"
+#include "firmware/vision/fit/side_evidence.hpp"
 #include "firmware/vision/fit/side_line.hpp"
 #include "firmware/vision/pose/flat_pose.hpp"
 

@@ -13,7 +13,7 @@
 #include <array>
 #include <opencv2/core.hpp>
 
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace fovea::vision {
 

@@ -13,9 +13,9 @@
 #include <span>
 
 #include "firmware/core/model/types.hpp"
-#include "firmware/vision/detect/detection.hpp"
+#include "firmware/vision/detection.hpp"
 #include "firmware/vision/find/curve.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace fovea::vision {
 

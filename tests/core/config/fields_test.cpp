@@ -56,6 +56,24 @@ class SeenBytes {
     Note(value);
   }
 
+  // As an archive of link::FieldsOf.
+  template <class T>
+  void operator()(T& value) {
+    Note(value);
+  }
+  template <class T>
+  void Int(T& value) {
+    Note(value);
+  }
+  template <class T>
+  void Choice(T& value, int /*count*/) {
+    Note(value);
+  }
+  template <class T>
+  void Count(T& value, int /*most*/) {
+    Note(value);
+  }
+
   [[nodiscard]] const std::vector<bool>& seen() const { return seen_; }
 
  private:
@@ -102,6 +120,21 @@ TYPED_TEST(FieldList, HasEveryMember) {
   for (std::size_t i = 0; i < sizeof(config); ++i) {
     EXPECT_TRUE(visitor.seen()[i] || !member[i])
         << "byte " << i << " of " << sizeof(config) << " is in no field";
+    members += member[i] ? 1U : 0U;
+  }
+  EXPECT_GT(members, sizeof(config) / 2) << "padding is not distinguished from members";
+}
+
+TEST(FieldListTest, SectionsAndArmContainEveryMemberOfTheConfiguration) {
+  ServoConfig config;
+  SeenBytes archive(&config, sizeof(config));
+  link::EachSection(config, [&](const char* /*name*/, const auto& fields) { fields(archive); });
+  link::ArmFields(archive, config.arm);
+  const std::vector<bool> member = MemberBytes<ServoConfig>();
+  std::size_t members = 0;
+  for (std::size_t i = 0; i < sizeof(config); ++i) {
+    EXPECT_TRUE(archive.seen()[i] || !member[i])
+        << "byte " << i << " of " << sizeof(config) << " is in no section";
     members += member[i] ? 1U : 0U;
   }
   EXPECT_GT(members, sizeof(config) / 2) << "padding is not distinguished from members";

@@ -14,7 +14,7 @@
 
 #include "firmware/host/config/camera_keys.hpp"
 #include "firmware/host/config/settings.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 #include "tests/support/places.hpp"
 #include "tests/support/program.hpp"
 #include "tests/support/temp_folder.hpp"

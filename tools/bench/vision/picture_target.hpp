@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "firmware/vision/detect/detection.hpp"
-#include "firmware/vision/detect/detector_config.hpp"
+#include "firmware/vision/detection.hpp"
+#include "firmware/vision/detector_config.hpp"
 #include "tools/bench/vision/scenes.hpp"
 
 namespace fovea::bench {

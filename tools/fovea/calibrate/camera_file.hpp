@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "firmware/host/config/toml_edit.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace fovea {
 

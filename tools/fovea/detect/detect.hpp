@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware/vision/detect/detector_config.hpp"
+#include "firmware/vision/detector_config.hpp"
 
 namespace fovea {
 

@@ -86,14 +86,11 @@ class Keys {
   }
 
   [[nodiscard]] config::ServoConfig Make(const config::ServoConfig& recorded) const {
-    robots::Robot robot;
-    robot.name = "of the log";
-    robot.model = recorded.arm;
     config::ServoSettings settings = servo_;
     config::ScaleSpeed(speed_scale_, settings);
     settings.keep_in_view = settings.keep_in_view && intrinsics_.has_value();
-    return config::MakeServoConfig(settings, robot, recorded.X_EC, intrinsics_.value_or(vision::Intrinsics{}),
-                                   target_);
+    return config::MakeServoConfig(settings, {"of the log", recorded.arm}, recorded.X_EC,
+                                   intrinsics_.value_or(vision::Intrinsics{}), target_);
   }
 
  private:

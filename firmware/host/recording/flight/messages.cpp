@@ -162,9 +162,10 @@ config::ServoConfig FromMessage(const log::ServoConfiguration& message) {
       }
     });
     if (!known) {
-      throw std::runtime_error(fmt::format(
-          "part \"{}\" of the servo's configuration is unknown here: the log is from a later program",
-          section.name()));
+      throw std::runtime_error(
+          fmt::format("part \"{}\" of the servo's configuration is unknown here: its log has format {}, this "
+                      "program's is {}",
+                      section.name(), message.format(), log::kLogFormat));
     }
   }
   if (message.format() < 3) {
@@ -175,8 +176,8 @@ config::ServoConfig FromMessage(const log::ServoConfiguration& message) {
 
 void FromMessage(const log::Keyframe& message, task::ServoState& state) {
   if (!link::Decode(BytesOf(message.state()), state)) {
-    throw std::runtime_error(
-        fmt::format("the keyframe of tick {} does not fit this program", message.tick()));
+    throw std::runtime_error(fmt::format("the keyframe of tick {} is not of log format {}, this program's",
+                                         message.tick(), log::kLogFormat));
   }
 }
 

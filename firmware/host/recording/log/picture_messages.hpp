@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "firmware/vision/detect/detection.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/detection.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace foxglove {
 class CameraCalibration;

@@ -7,7 +7,7 @@
 
 #include "firmware/core/features/target_feature.hpp"
 #include "firmware/core/model/arm_model.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
 
 namespace fovea::log {

@@ -2,8 +2,7 @@
 #pragma once
 
 #include "firmware/core/features/target_feature.hpp"
-#include "firmware/vision/find/colour_model.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 #include "fovea/hal/feature.hpp"
 
 namespace fovea::vision {
@@ -12,6 +11,12 @@ enum class FindBy {
   kColour,  // edges of regions with the target's colour
   kGray,    // edges of brightness, for a target of any colour
   kHough,   // the source project's finder: blur, Hough transform for circles; only sphere and disc
+};
+
+struct ColourConfig {
+  double hue_deg = 0.0;          // of the target; 0 is red, 120 green, 240 blue
+  double hue_width_deg = 12.0;   // standard deviation of the hue
+  double saturation_min = 0.35;  // a colour below it has likeness 0; 0 to 1
 };
 
 // The source project's finder, on the gray image: OpenCV's GaussianBlur and HoughCircles.

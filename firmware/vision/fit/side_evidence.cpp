@@ -1,4 +1,4 @@
-#include "firmware/vision/detect/side_evidence.hpp"
+#include "firmware/vision/fit/side_evidence.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,12 @@
 namespace fovea::vision {
 namespace {
 
-constexpr double kDepthPx = 3.5;  // distance from the side of the first colour sample
-constexpr int kDepths = 3;        // samples, 1 px apart
-constexpr double kClearPx = 1.5;  // least distance of a sample from another side
-constexpr int kMeanReach = 2;     // neighbours on each side in a line's mean colour
-constexpr float kLike = 0.35F;    // colours nearer than this share of the contrast are alike
-constexpr float kLikeGround = 0.2F;
+constexpr double kDepthPx = 3.5;     // distance from the side of the first colour sample
+constexpr int kDepths = 3;           // samples, 1 px apart
+constexpr double kClearPx = 1.5;     // least distance of a sample from another side
+constexpr int kMeanReach = 2;        // neighbours on each side in a line's mean colour
+constexpr float kLike = 0.35F;       // colours nearer than this share of the contrast are alike
+constexpr float kLikeGround = 0.2F;  // the same for the ground's colour
 // In other light, the target's colour is scaled by a factor in this range, with at most this relative error.
 constexpr float kDarkest = 0.15F;
 constexpr float kBrightest = 6.0F;
@@ -353,7 +353,7 @@ bool SideEvidence::GoesOn(const cv::Mat& image, const Intrinsics& in, const Imag
   constexpr int kPart = 3;   // length of a part [px]; an edge that only crosses is not in all parts
   constexpr std::size_t kParts = 3;
   constexpr double kFurthest = 0.6;  // of the side: where it can reappear behind a narrow object
-  constexpr float kSame = 0.4F;
+  constexpr float kSame = 0.4F;      // steps that differ by less than this share belong to one edge
   std::array<Colour, kParts> steps;
   std::size_t known = 0;
   const int last = std::max(kFirst, static_cast<int>(kFurthest * length)) + kPart * static_cast<int>(kParts);

@@ -12,9 +12,9 @@
 #include <opencv2/core.hpp>
 #include <span>
 
-#include "firmware/vision/detect/detection.hpp"
+#include "firmware/vision/detection.hpp"
 #include "firmware/vision/fit/profiles.hpp"
-#include "firmware/vision/pose/intrinsics.hpp"
+#include "firmware/vision/intrinsics.hpp"
 
 namespace fovea::vision {
 
