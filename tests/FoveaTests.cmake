@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # fovea_add_test(<name> SOURCES <file>... LIBS <target>... [LABELS <label>...] [TIMEOUT <s>] [LOCK <name>])
 # Adds one executable. Each of its tests is one ctest test, labelled LABELS/name: `ctest -L '^log_test$'` runs one
 # program, `ctest -LE slow` leaves out "slow/closed_loop_test". (One label, because gtest_discover_tests keeps only the

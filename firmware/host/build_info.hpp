@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Build information of this program. The build generates the values (tools/cmake/WriteBuildInfo.cmake).
 #pragma once
 

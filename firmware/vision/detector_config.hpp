@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which target the detector searches for, and how.
 #pragma once
 
@@ -10,7 +11,7 @@ namespace fovea::vision {
 enum class FindBy {
   kColour,  // edges of regions with the target's colour
   kGray,    // edges of brightness, for a target of any colour
-  kHough,   // the source project's finder: blur, Hough transform for circles; only sphere and disc
+  kHough,   // the course exercises' finder: blur, Hough transform for circles; only sphere and disc
 };
 
 struct ColourConfig {
@@ -19,7 +20,7 @@ struct ColourConfig {
   double saturation_min = 0.35;  // a colour below it has likeness 0; 0 to 1
 };
 
-// The source project's finder, on the gray image: OpenCV's GaussianBlur and HoughCircles.
+// The course exercises' finder, on the gray image: OpenCV's GaussianBlur and HoughCircles.
 struct HoughConfig {
   double blur_sigma_px = 1.5;
   double canny_threshold = 100.0;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A calibrated camera: u = f_u X / Z + c_u, v = f_v Y / Z + c_v; pixel centres at integers.
 //
 // All computations use ideal pixels, those of a lens without distortion. Pictures are never rectified: a

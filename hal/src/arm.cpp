@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The checks common to all arm drivers: arguments on the way in, the joint count on the way out.
 #include "fovea/hal/arm.hpp"
 

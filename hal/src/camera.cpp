@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The checks common to all camera drivers: arguments on the way in, geometry on the way out.
 #include "fovea/hal/camera.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One table per enumeration, with name and key side by side.
 #include "fovea/hal/events.hpp"
 
@@ -91,6 +92,54 @@ const char* Name(HoldReason reason) noexcept {
 const char* Name(Fault fault) noexcept { return EntryOf(kFaultTable, fault).name; }
 const char* Name(Limit limit) noexcept { return EntryOf(kLimitTable, limit).name; }
 const char* Name(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).name; }
+
+const char* Words(HoldReason reason) noexcept {
+  switch (reason) {
+    case HoldReason::kNone: return "the servo does not hold";
+    case HoldReason::kNotAsked: return "tracking was not requested";
+    case HoldReason::kNoTarget: return "no target was found yet";
+    case HoldReason::kTargetLost: return "the target was lost";
+    case HoldReason::kGoalUnreachable: return "limits keep the arm from the goal";
+    case HoldReason::kMotionDone: return "the commanded motion has ended";
+    case HoldReason::kMotionRefused: return "the commanded motion was refused";
+    case HoldReason::kEyeDoubted: return "the picture contradicts the hand's motion, or following it fails";
+    case HoldReason::kNotFollowed: return "the arm did not follow the commanded motion";
+  }
+  return "the reason is unknown";
+}
+
+const char* Words(Fault fault) noexcept {
+  switch (fault) {
+    case Fault::kNone: return "no fault";
+    case Fault::kArmLost: return "the arm returned errors, or nothing";
+    case Fault::kArmStale: return "the arm's states stood still";
+    case Fault::kNonFiniteSensor: return "a sensor value was not finite";
+    case Fault::kNonFiniteFeature: return "a value from vision was not finite";
+    case Fault::kNonFiniteControl: return "a value of the control law was not finite";
+    case Fault::kDeadlineMissed: return "too many ticks in a row were missed";
+    case Fault::kJointPosition: return "a joint was outside its range";
+    case Fault::kJointVelocity: return "a joint was faster than its limit";
+    case Fault::kNotFollowing: return "a joint did not follow its reference";
+    case Fault::kContact: return "an external force exceeded its limit";
+  }
+  return "an unknown fault";
+}
+
+const char* Words(Intake intake) noexcept {
+  switch (intake) {
+    case Intake::kNone: return "not arrived";
+    case Intake::kTaken: return "taken for the estimate";
+    case Intake::kNotFound: return "without the target";
+    case Intake::kWrongKind: return "of another target";
+    case Intake::kFromFuture: return "stamped in the future";
+    case Intake::kTooOld: return "too old";
+    case Intake::kStuckPicture: return "from a stuck picture";
+    case Intake::kOutOfRegion: return "outside the target region";
+    case Intake::kOutlier: return "rejected as outlier";
+  }
+  return "with an unknown outcome";
+}
+
 const char* Key(Fault fault) noexcept { return EntryOf(kFaultTable, fault).key; }
 const char* Key(Limit limit) noexcept { return EntryOf(kLimitTable, limit).key; }
 const char* Key(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).key; }

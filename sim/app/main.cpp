@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-sim: the sim target's command line.
 #include <fmt/format.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include "firmware/host/config/board_flags.hpp"
 #include "firmware/host/config/command_line.hpp"
 #include "firmware/host/config/key_text.hpp"
+#include "firmware/host/config/printed_table.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/config/share_folder.hpp"
 #include "fovea/linux_rt/interrupt.hpp"
@@ -26,6 +28,8 @@ using namespace fovea;
 
 using config::kDone;
 using config::kGoalMissed;
+
+constexpr std::size_t kContinued = 2;  // indent of the rest of a printed line that is too long
 
 struct RunArguments {
   std::string scenario;
@@ -101,13 +105,15 @@ int Run(const RunArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}", sim::ToJson(summary));
   } else {
-    fmt::print("{}", sim::ToTable(summary));
+    const config::TextStyle style = config::StyleOf(STDOUT_FILENO);
+    config::PrintedTable files(style);
     if (summary.files_error.empty()) {
-      fmt::print("  {:<24}{}\n", "files", options.out.string());
+      files.Row("files", options.out.string());
     }
     if (summary.files_error.empty() && options.report) {
-      fmt::print("  {:<24}{}\n", "report", (options.out / "report.html").string());
+      files.Row("report", (options.out / "report.html").string());
     }
+    fmt::print("{}{}", sim::ToTable(summary, style), files.text());
   }
   if (!summary.files_error.empty()) {
     throw config::InputError(summary.files_error);
@@ -178,10 +184,12 @@ int Serve(const ServeArguments& arguments) {
     fmt::print("{}", sim::ToJson(summary));
   } else {
     const sim::FciServerCounters& c = summary.robot;
-    fmt::print(
-        "{} states, {} commands applied, {} missing, {} overruns, {} ms given up; {} frames, {} dropped\n",
-        c.states, c.commands, c.missing, c.overruns, c.given_up_ns / hal::kNsPerMs, summary.frames_sent,
-        summary.frames_dropped);
+    config::PrintFitted(
+        fmt::format(
+            "{} states, {} commands applied, {} missing, {} overruns, {} ms skipped; {} frames, {} dropped",
+            c.states, c.commands, c.missing, c.overruns, c.given_up_ns / hal::kNsPerMs, summary.frames_sent,
+            summary.frames_dropped),
+        kContinued);
     if (summary.error_px) {
       fmt::print("final target error: {:.2f} px, {:.2f} mm\n", *summary.error_px, *summary.error_mm);
     }
@@ -272,8 +280,12 @@ int TakePictures(const PictureArguments& arguments) {
   if (board.HasMarkers()) {
     flags += fmt::format(" --marker {} --dictionary {}", board.marker, board.dictionary);
   }
+  config::PrintFitted(
+      fmt::format("{0} views of the board in {1}, {2} of a disc in {1}/focal; true values in {1}/truth.json. "
+                  "Next:",
+                  taken.boards.size(), arguments.out, taken.discs.size()),
+      kContinued);
   fmt::print(
-      "{0} views of the board in {1}, {2} of a disc in {1}/focal; true values in {1}/truth.json. Next:\n"
       "  fovea calibrate intrinsics {1} {3} --out {1}/camera.toml\n"
       "  fovea calibrate hand-eye {1} {3} --camera {1}/camera.toml\n"
       "  fovea calibrate focal --diameter {4} --delta-z {5} {1}/{6} {1}/{7}\n",
@@ -310,7 +322,8 @@ int List() {
     width = std::max(width, name.size());
   }
   for (const std::string& name : names) {
-    fmt::print("{:<{}}{}\n", name, width + 2, sim::LoadScenario(name, {}).run.description);
+    config::PrintFitted(fmt::format("{:<{}}{}", name, width + 2, sim::LoadScenario(name, {}).run.description),
+                        width + 2);
   }
   return kDone;
 }
@@ -318,7 +331,8 @@ int List() {
 int Keys(bool markdown) {
   sim::Scenario scenario;
   const config::KeyTable keys = sim::ScenarioKeys(scenario);
-  fmt::print("{}", markdown ? sim::KeysAsMarkdown(keys) : config::KeysAsText(keys));
+  fmt::print("{}", markdown ? sim::KeysAsMarkdown(keys)
+                            : config::KeysAsText(keys, config::TerminalWidth(STDOUT_FILENO)));
   return kDone;
 }
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One simulated run, from scenario to summary and files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulated robot on the network: `fovea-sim serve`.
 #pragma once
 

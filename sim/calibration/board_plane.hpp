@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A calibration board for the renderer: a textured plane on the bench with a paper margin around the squares.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Renders pictures for the calibration of the simulated camera: a board on the bench from many sides, with
 // the hand's poses, and a disc from two distances. The arm is placed without motion: only its poses matter.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/calibration/place_hand.hpp"
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inverse kinematics for pictures from given camera poses.
 #pragma once
 

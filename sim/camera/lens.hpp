@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera that is not ideal: its lens distorts the picture, its sensor is off-centre or has pixels that are
 // not square. Its pictures are resampled from a larger and finer picture of a plain pinhole camera.
 #pragma once

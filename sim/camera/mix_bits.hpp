@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hashes a number to a pseudorandom number: the finaliser of SplitMix64 (Steele, Lea and Flood, Fast
 // splittable pseudorandom number generators, 2014).
 #pragma once

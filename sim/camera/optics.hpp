@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The picture on the sensor: renders the scene, then resamples it through the lens if the lens is not ideal.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulated camera as a hal::Camera: takes exposures of the world, delivers frames in the same order.
 //
 // Drawing the pictures is most of a simulation's work, and pictures are independent. Several worker threads

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults of the bench: the arm's body and the camera's outage. World applies them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pseudorandom number per event, computed from the seed and the event's number alone. It does not depend on
 // the order of the calls, so a run repeats exactly.
 #pragma once

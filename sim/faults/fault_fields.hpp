@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each struct of faults has one list of its keys, beside the struct:
 //
 //   template <class Visitor, Struct<PictureFaults> Faults>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decorates an arm with faults of its states: encoders, clock, line.
 //
 // Each state passes through these faults in this order: stuck encoders, noise, NaN, wrong stamp, loss of the

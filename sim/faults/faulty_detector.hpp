@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Injects wrong measurements between the detector and the servo.
 #pragma once
 

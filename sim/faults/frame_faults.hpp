@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults of frames between lens and computer: lost, frozen, replayed, late or wrongly stamped frames.
 #pragma once
 

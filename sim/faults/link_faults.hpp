@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults of a network or serial line: loses, delays, reorders and duplicates datagrams. Repeatable by seed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults of a picture: a glare that saturates a spot of it, an object in front of the lens that hides a part
 // of it, mirroring.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A clock whose waits end too late, so that the servo misses ticks.
 #pragma once
 

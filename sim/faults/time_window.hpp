@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The time interval in which a fault acts.
 #pragma once
 

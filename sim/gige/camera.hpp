@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulated camera on the network: a GigE Vision camera, built on Aravis' fake camera.
 //
 // A picture is sent when the world's time reaches its stamp plus its transport time. GigE Vision's control

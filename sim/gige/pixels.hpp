@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a rendered picture to a pixel format of GigE Vision.
 #pragma once
 

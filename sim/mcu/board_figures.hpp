@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Collects the cost of each tick on a board.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial line to a board, as a stream of bytes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/mcu/board_servo.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo on a board, from the host's side: each tick sends a frame to the board and receives one.
 #pragma once
 

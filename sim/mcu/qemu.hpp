@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An emulated board: runs QEMU as a child process, with its serial port as a stream of bytes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uses the servo's own model (firmware/core/model), compiled in: a client needs no other file to load it.
 #include "sim/model_library/panda_model.hpp"
 

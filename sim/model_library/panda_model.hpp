@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The C functions of the model library that the robot sends on LoadModelLibrary: kinematics and dynamics of a
 // Panda. Arrays are column-major; Jacobians are [6 x 7], linear first; "load" is everything on the flange.
 #pragma once

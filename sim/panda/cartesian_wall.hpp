@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cuboid that the end effector may not enter, as GetCartesianLimit reports it.
 #pragma once
 

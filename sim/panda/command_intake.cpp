@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/panda/command_intake.hpp"
 
 namespace fovea::sim {

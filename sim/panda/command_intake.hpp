@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selects the command to apply: the newest one, if it is newer than the last applied and not too late.
 #pragma once
 

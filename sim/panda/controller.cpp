@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stiff spring and damper, constant over a whole millisecond, would make a light wrist overshoot. Both are
 // therefore evaluated at the end of the step (backward Euler). The acceleration x beyond that of the
 // reference solves  (M + D dt + K dt^2) x = K (e + e' dt) + D e'.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's internal controllers: joint and Cartesian impedance. Torques without gravity.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reference of the robot's own controllers: the checked commands of a motion generator, or a path to
 // rest.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulated Panda behind its network interface: modes, motions, errors and internal controllers.
 //
 // Has no socket: requests and commands are plain data, one step per millisecond. External torques are

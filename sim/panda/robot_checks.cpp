@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks the measured motion against the robot's limits.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hand guiding: a person's pull, and the enabling button.
 #include <algorithm>
 

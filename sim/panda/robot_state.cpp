@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's measurements and the state that it reports.
 #include <cmath>
 #include <numbers>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distance between an arm's links, by capsules around their collision shapes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/panda/server.hpp"
 
 #include <algorithm>
@@ -66,8 +67,8 @@ void FciServer::AwaitTick() {
   const std::int64_t now_ns = NowNs();
   counters_.overruns += now_ns > next_tick_ns_ ? 1U : 0U;
   if (const std::int64_t lost_ns = now_ns - next_tick_ns_; lost_ns > kMostBehindNs) {
-    say_("this computer is too slow for the world: " + std::to_string(lost_ns / hal::kNsPerMs) +
-         " ms are given up");
+    say_("this computer is too slow for real pace: " + std::to_string(lost_ns / hal::kNsPerMs) +
+         " ms are skipped");
     counters_.given_up_ns += lost_ns;
     next_tick_ns_ += lost_ns;
   }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot on the network: one client at a time, one state per millisecond, two paces.
 //
 // Real pace: steps of 1 ms by the clock, scaled by `most_speed`. A command that arrives later is missing.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's side of one client's TCP connection: receives requests, executes them on the robot, answers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects an unstable control loop: a joint that oscillates faster and farther than any normal motion.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts the interface's arrays to matrices and back. Holds the Panda's limits that the interface enforces.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/physics/bullet_arm.hpp"
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arm as a Bullet multi-body: torques in, true motion out.
 //
 // Bullet's defaults that would distort an arm's motion are off: linear and angular damping, sleeping, the

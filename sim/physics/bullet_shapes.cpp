@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/physics/bullet_shapes.hpp"
 
 #include <BulletCollision/CollisionShapes/btBoxShape.h>

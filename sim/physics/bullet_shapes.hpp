@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bullet's collision shapes of a link.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Our types and Bullet's, one from the other.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reduces a mesh to few points with nearly the same convex hull, for collisions.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects contacts of an arm's links with each other and with the target, by their collision shapes.
 //
 // The physics lets links collide only with the table; they pass through each other and through the target.

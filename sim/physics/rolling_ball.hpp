@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A ball on the table as a Bullet rigid body: it is pushed, slides, rolls and comes to rest. It collides only
 // with the table, in a separate Bullet world.
 //

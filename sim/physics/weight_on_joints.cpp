@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/physics/weight_on_joints.hpp"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gravity torques of an arm, from Bullet's link poses.
 #pragma once
 

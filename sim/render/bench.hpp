@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lab: table, floor, walls and the things on the bench. Data only, in frame B.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds what a horizontal surface hides. If the whole picture shows only a table and the things on it, floor
 // and walls need not be drawn; the picture is the same.
 #pragma once

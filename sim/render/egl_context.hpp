@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An OpenGL context without a window, by EGL: on a GPU if there is one, else in software.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The world at one exposure: everything needed to draw the camera's picture.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A linked OpenGL program and its uniforms by name.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mesh in the driver's memory. The OpenGL context must be current to create, draw or destroy it.
 #pragma once
 

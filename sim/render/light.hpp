@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bench's light: a bright ceiling, a darker floor, and one sun through a high window.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The visible parts of a robot's link, as meshes.
 #pragma once
 

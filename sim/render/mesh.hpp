@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Triangle meshes of simple solids and of the robot's shapes, built on the CPU.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Smooths the outlines of meshes against their background.
 //
 // Multisampling would double the cost of the whole picture in software. Instead, each outline edge gets a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulated camera's geometry: u = f_u X / Z + c_u, v = f_v Y / Z + c_v, pixel centres at integers.
 #pragma once
 

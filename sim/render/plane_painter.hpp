@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws the bench's horizontal surfaces, which fill most of each picture, at low cost in a software renderer.
 //
 // Light and static shadows are painted into the textures once. For each picture, a surface is split into

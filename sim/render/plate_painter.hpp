@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws a flat target by its exact outline, not by triangles: each pixel by its covered share.
 #pragma once
 

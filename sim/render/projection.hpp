@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts the pinhole camera to OpenGL's conventions. No other file does so.
 #pragma once
 

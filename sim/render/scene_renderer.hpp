@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws the bench, the robot and the target for a pinhole camera at a given pose.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The renderer's shaders. Lengths in metres, positions in frame B (suffix _B) or C (suffix _C).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Depth map of the bench from the sun: the nearest surface is lit, everything behind it is in shadow.
 //
 // Static things are drawn once; moving things are drawn onto a copy.

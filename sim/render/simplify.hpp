@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reduces the triangles of a mesh, for its shadow.
 #pragma once
 

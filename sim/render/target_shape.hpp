@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The target's shape for the renderer. Flat targets are painted plates. Looking at the painted side, frame O
 // has x right, y down and z into the plate.
 #pragma once

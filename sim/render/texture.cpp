@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/render/texture.hpp"
 
 #include <algorithm>

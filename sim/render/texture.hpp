@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computed textures of the bench: equal on every machine, without third-party pictures.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinematics and dynamics of a simulated arm at any joint position, for the robot's own controller.
 //
 // Uses only the URDF, like the physics, and shares no code with the servo's model; tests compare the two.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads mesh files of URDFs (STL, Collada, Wavefront) with assimp.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the file of a URDF's <mesh filename="..."/>.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulator's robot: all links with their shapes, read from the URDF.
 //
 // Other code (firmware/host/robots) reads the servo's model from the same file; tests compare the two.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A triangle mesh: drawn for a solid, or read from a mesh file.
 #pragma once
 

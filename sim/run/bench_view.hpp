@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A view of the bench from beside it, and paths drawn into that view.
 #pragma once
 

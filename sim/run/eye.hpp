@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rendered camera of a run: several renderers, each with its own thread, and the sensor.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/run/files.hpp"
 
 #include "firmware/host/film/complete_film.hpp"
@@ -9,7 +10,7 @@ namespace {
 const std::string kSceneFilm = "scene.mp4";
 
 // Files of a simulated run, in addition to those of any run.
-const std::vector<std::string> kMoreFiles{"eye-first.png", "eye-last.png", "bench.png", kSceneFilm};
+const std::vector<std::string> kMoreFiles{"eye-first.png", "eye-last.png", "frame-last.png", "bench.png", kSceneFilm};
 
 }  // namespace
 
@@ -91,6 +92,7 @@ std::vector<config::OutputFile> RunFiles::PicturesAndScene(std::future<std::stri
          {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
       files.push_back({name, DrawEyePicture(*frame, about_.intrinsics, about_.servo.feature)});
     }
+    files.push_back({"frame-last.png", DrawFrame(frames_.last())});
   }
   if (has_scene_film_) {
     files.push_back({kSceneFilm, std::nullopt});

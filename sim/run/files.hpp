@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files that only a simulated run has: the truth in its log, pictures, the film of the bench. RunShell
 // writes log, report and summary.
 #pragma once

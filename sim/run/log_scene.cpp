@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/run/log_scene.hpp"
 
 #include "firmware/core/model/kinematics.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bench for a log viewer, and the frames of its moving parts.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The scenario's camera as a GigE Vision camera: sends the rendered pictures, with injected faults.
 #pragma once
 

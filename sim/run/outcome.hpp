@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adjusts a run's verdict for failed pictures, the analytic answer and an early end.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A path for a picture: points evenly spaced in time, at most as many as a picture can show.
 #pragma once
 

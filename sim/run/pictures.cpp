@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/run/pictures.hpp"
 
 #include <fmt/format.h>
@@ -76,6 +77,8 @@ std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& in,
         middle, top, film::kDetectionColour);
   return ToPng(page);
 }
+
+std::string DrawFrame(const KeptFrame& frame) { return ToPng(frame.bgr); }
 
 std::string DrawBenchPicture(const RenderScene& scene, const Exposure& exposure,
                              const std::vector<Eigen::Vector3d>& camera_path,

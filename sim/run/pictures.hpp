@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pictures of a run: the camera's first and last frame, and a third-person view of the bench.
 #pragma once
 
@@ -42,6 +43,9 @@ class FrameKeeper {
 // The frame at twice its size with target (true outline), detection and goal drawn in, and a legend; as PNG.
 std::string DrawEyePicture(const KeptFrame& frame, const vision::Intrinsics& intrinsics,
                            const features::TargetFeature& target);
+
+// The frame as the camera gave it, as PNG.
+std::string DrawFrame(const KeptFrame& frame);
 
 // The bench viewed from beside it, with the paths of camera and target, as PNG. `camera_path` and
 // `target_path` are points in B [m].

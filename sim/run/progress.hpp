@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shows the progress of a run on standard error: a bar on a terminal, otherwise a line for each quarter.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A film of the run, viewed from beside the bench: each exposure drawn a second time, with the paths of
 // camera and target so far, and the time. Another thread draws and encodes it during the run.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/run/sim_vision.hpp"
 
 #include <stdexcept>
@@ -60,6 +61,7 @@ void SimVision::Run() {
 bool SimVision::Expose(const Exposure& exposure) {
   std::optional<Exposure> taken = frame_faults_.Spoil(exposure);
   if (!taken) {
+    ++lost_on_purpose_;
     return false;
   }
   const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The vision of a simulated run, from an exposure to a measurement that is due: rendered camera, vision task
 // on its own thread, faults of frames and detector, and the modelled latency.
 #pragma once
@@ -52,7 +53,10 @@ class SimVision {
   // functions below only after End.
   void RethrowFailure() const;
   [[nodiscard]] const vision::FrameFailures& failures() const { return task_.failures(); }
-  [[nodiscard]] std::uint64_t frames_lost() const { return eye_ ? eye_->camera().lost() : 0; }
+  // Frames that never reached vision: those that Expose lost, and those that the camera dropped.
+  [[nodiscard]] std::uint64_t frames_lost() const {
+    return lost_on_purpose_ + (eye_ ? eye_->camera().lost() : 0);
+  }
   // Name of the renderer; "nothing" without a camera.
   [[nodiscard]] std::string renderer() const { return eye_ ? eye_->driver_name() : "nothing"; }
 
@@ -65,6 +69,7 @@ class SimVision {
   FeatureDelay delay_;
   FaultyDetector detector_;
   FrameSpoiler frame_faults_;
+  std::uint64_t lost_on_purpose_ = 0;
   TargetLog targets_;
   RunTrace* trace_ = nullptr;
   std::optional<Eye> eye_;

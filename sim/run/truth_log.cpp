@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/run/truth_log.hpp"
 
 #include "firmware/core/model/rotation.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of the log that only a simulated run has: the facts of its scenario, and the truth.
 #pragma once
 

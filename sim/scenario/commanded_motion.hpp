@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The commanded motions of a scenario, as a source for the servo's loop.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds the simulator's parts from a scenario's keys, and checks keys against each other.
 #pragma once
 

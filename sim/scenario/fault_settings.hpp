@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [faults]: the faults of a run with their times and sizes. Random faults depend on run.seed.
 #pragma once
 

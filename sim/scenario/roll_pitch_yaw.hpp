@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Orientations in a scenario. Does not use the code of firmware/host/config: the truth must share no code
 // with the servo that it judges.
 #pragma once

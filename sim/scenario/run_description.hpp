@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that a run derives from its scenario, complete and checked. Constant after DescribeRun.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/scenario/scenario.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/inside_folder.hpp"
 #include "firmware/host/config/share_folder.hpp"
+#include "firmware/host/robots/shipped_robots.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -206,7 +208,7 @@ Scenario LoadScenario(const std::string& name_or_path, const std::vector<std::st
 
 robots::Robot LoadScenarioRobot(const Scenario& scenario) {
   const fs::path model = scenario.arm.model;
-  if (model.extension() == ".toml" || model.extension() == ".urdf") {
+  if (robots::IsRobotPath(model)) {
     const fs::path beside = scenario.folder / model;
     if (scenario.arm_is_the_users) {
       return robots::LoadRobot(fs::exists(beside) ? beside : model);
@@ -220,14 +222,7 @@ robots::Robot LoadScenarioRobot(const Scenario& scenario) {
     }
     return robots::LoadRobot(beside, root);
   }
-  const fs::path shipped = config::ShareFolder() / "robots" / (scenario.arm.model + ".toml");
-  if (model != model.filename() || !fs::is_regular_file(shipped)) {
-    throw InputError(
-        fmt::format("arm.model = \"{}\": no shipped arm of that name (or give the path of an arm file "
-                    ".toml or a .urdf)",
-                    scenario.arm.model));
-  }
-  return robots::LoadRobot(shipped);
+  return robots::LoadRobot(robots::FindShippedRobot(scenario.arm.model, "arm.model", robots::kOrRobotPath));
 }
 
 }  // namespace fovea::sim

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scenario: everything that can be set about a simulated run. Its defaults are the scenario `ball`.
 #pragma once
 
@@ -10,6 +11,7 @@
 #include "firmware/host/config/load_keys.hpp"
 #include "firmware/host/config/servo_keys.hpp"
 #include "firmware/host/config/vision_keys.hpp"
+#include "firmware/host/robots/robot.hpp"
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/scenario/target_scene.hpp"
 

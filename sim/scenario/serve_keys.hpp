@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The commands that a person types into `fovea-sim serve`, one per line.
 #pragma once
 

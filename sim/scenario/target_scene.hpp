@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The target of a scenario: its shape, pose and motion.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one-joint arm whose run is compared with its analytic response (sim/theory).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares a run of a one-joint arm (mass, damper, spring, linear law) with its analytic response.
 //
 // With e = goal - actual, the loop is  e'' + c_1 e' + c_0 e + c_i (integral of e) = -f / m  under a constant

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The conditions that a run must satisfy by the simulator's truth: one list of names and values.
 //
 // To add a condition, add an entry to the list in barriers.cpp: its name, its kind (LimitBook::Kind), and how

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/verdict/config.hpp"
 
 #include "firmware/core/trajectory/joint_pace.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Builds the verdict's configuration from a run's description.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the ticks in which the arm touched something, by the simulator's truth.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records for each condition of a run how close it came to its bound, and when it exceeded it.
 #pragma once
 

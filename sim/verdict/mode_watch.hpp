@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the servo's mode from the tick records that pass through, for the code that advances the world.
 #pragma once
 

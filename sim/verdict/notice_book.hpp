@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records what the servo noticed since a fault began: faults, modes, limits, missing measurements and states.
 #pragma once
 

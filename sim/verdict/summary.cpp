@@ -1,9 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/verdict/summary.hpp"
 
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/host/config/printed_table.hpp"
 #include "fovea/hal/events.hpp"
 
 namespace fovea::sim {
@@ -112,35 +114,31 @@ std::string Poles(const TheoryFigures& f) {
   return text.empty() ? "-" : text;
 }
 
-class Table {
- public:
-  void Row(const std::string& name, const std::string& value) {
-    text_ += fmt::format("  {:<24}{}\n", name, value);
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-// E.g. "232 taken; 3 outlier". Omits targets not found, which the row of the frames shows.
+// E.g. "232 taken, 3 rejected as outlier". Omits targets not found, which the row of the frames shows.
 std::string MeasurementsInWords(const std::map<std::string, std::uint64_t>& measurements) {
-  const std::string taken = hal::Name(hal::Intake::kTaken);
-  const auto of_taken = measurements.find(taken);
+  const auto of_taken = measurements.find(hal::Name(hal::Intake::kTaken));
   std::string words = fmt::format("{} taken", of_taken == measurements.end() ? 0 : of_taken->second);
-  for (const auto& [name, count] : measurements) {
-    if (name != taken && name != hal::Name(hal::Intake::kNotFound)) {
-      words += fmt::format("; {} {}", count, name);
+  for (int i = 0; i < hal::kNumIntakes; ++i) {
+    const auto intake = static_cast<hal::Intake>(i);
+    const auto found = measurements.find(hal::Name(intake));
+    if (found != measurements.end() && intake != hal::Intake::kTaken && intake != hal::Intake::kNotFound) {
+      words += fmt::format(", {} {}", found->second, hal::Words(intake));
     }
   }
   return words;
 }
 
-}  // namespace
+// E.g. "90, lost 35, target found in 40": the frames that the camera took, those that never reached vision,
+// and those with the target.
+std::string FramesInWords(const Summary& s) {
+  return fmt::format("{}{}, target found in {}", s.frames + s.frames_lost,
+                     s.frames_lost > 0 ? fmt::format(", lost {}", s.frames_lost) : "", s.frames_detected);
+}
 
-namespace {
+using config::Paint;
+using config::PrintedTable;
 
-void AddTheory(const TheoryResult& theory, Table& table) {
+void AddTheory(const TheoryResult& theory, PrintedTable& table) {
   const auto row = [&](const char* name, const std::string& run, const std::string& analytic) {
     table.Row(name, fmt::format("{:<24}theory {}", run, analytic));
   };
@@ -154,7 +152,7 @@ void AddTheory(const TheoryResult& theory, Table& table) {
   table.Row("largest error", fmt::format("{:.3g} m after the first second", theory.error_max));
 }
 
-void AddBoard(const BoardSummary& board, Table& table) {
+void AddBoard(const BoardSummary& board, PrintedTable& table) {
   table.Row(
       "servo's processor",
       fmt::format("Cortex-M7: {} to {} instructions per tick, median {}; stack {:.1f} KiB",
@@ -167,7 +165,7 @@ void AddBoard(const BoardSummary& board, Table& table) {
                                   board.ticks_without_torque));
   }
   if (!board.stopped.empty()) {
-    table.Row("", board.stopped + ": the brakes were closed");
+    table.Row("", board.stopped + ": the brakes were closed", Paint::kBad);
   }
 }
 
@@ -237,10 +235,16 @@ std::string ToJson(const Summary& s) {
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string ToTable(const Summary& s) {
-  Table table;
+std::string InWords(const FaultEvent& fault) {
+  const bool has_joint = fault.detail.starts_with("joint");
+  return fmt::format("{} ({}), at {:.3f} s{}{}", fault.words, fault.name, fault.t_s,
+                     has_joint ? ", " + fault.detail : "", fault.key.empty() ? "" : "; see " + fault.key);
+}
+
+std::string ToTable(const Summary& s, const config::TextStyle& style) {
+  PrintedTable table(style);
   table.Row("scenario", fmt::format("{}, seed {}, {} pace", s.scenario, s.seed, s.pace));
-  table.Row("verdict", s.verdict);
+  table.Row("verdict", s.verdict, ReachedItsGoal(s) ? Paint::kGood : Paint::kBad);
   if (s.theory) {
     AddTheory(*s.theory, table);
   } else if (s.path_error_mm_max) {
@@ -259,8 +263,8 @@ std::string ToTable(const Summary& s) {
                           Figure(s.final_error_lateral_mm, "mm"), Figure(s.final_error_depth_mm, "mm")));
     table.Row("settled after", Figure(s.settle_time_s, "s"));
   }
-  if (s.frames > 0) {
-    table.Row("frames", fmt::format("{}, target found in {}", s.frames, s.frames_detected));
+  if (s.frames + s.frames_lost > 0) {
+    table.Row("frames", FramesInWords(s));
     table.Row("measurements", MeasurementsInWords(s.measurements));
   }
   if (s.frames_failed > 0) {
@@ -275,11 +279,13 @@ std::string ToTable(const Summary& s) {
   for (const auto& [name, ticks] : s.violations) {
     violations += fmt::format("{}{} {}", violations.empty() ? ": " : ", ", name, ticks);
   }
-  table.Row("limit violations", fmt::format("{}{}", s.limit_violations, violations));
-  table.Row("faults", s.faults.empty() ? "none" : "");
+  table.Row("limit violations", fmt::format("{}{}", s.limit_violations, violations),
+            s.limit_violations > 0 ? Paint::kBad : Paint::kPlain);
+  if (s.faults.empty()) {
+    table.Row("faults", "none");
+  }
   for (const FaultEvent& f : s.faults) {
-    table.Row("", fmt::format("{:.3f} s: {} ({}){}", f.t_s, f.name, f.detail,
-                              f.key.empty() ? "" : ", see " + f.key));
+    table.Row(&f == s.faults.data() ? "faults" : "", InWords(f), Paint::kBad);
   }
   if (s.mcu) {
     AddBoard(*s.mcu, table);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The results of a run, as JSON (summary.json) and as a table for a person.
 #pragma once
 
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/host/config/terminal.hpp"
 #include "firmware/host/run/run_figures.hpp"
 #include "sim/mcu/board_summary.hpp"
 #include "sim/theory/run.hpp"
@@ -19,7 +21,11 @@ struct FaultEvent {
   std::string name;
   std::string key;
   std::string detail;
+  std::string words = {};  // the same as `name`, for a person
 };
+
+// E.g. "a sensor value was not finite (non_finite_sensor), at 1.005 s, joint 1; see safety.non_finite_ticks".
+std::string InWords(const FaultEvent& fault);
 
 struct ModeEvent {
   double t_s = 0.0;
@@ -101,11 +107,11 @@ struct Summary : run::RunFigures {
   std::vector<InjectedFault> injected;
   RunEnd end;
 
-  std::uint64_t frames = 0;
+  std::uint64_t frames = 0;  // that reached vision
   std::uint64_t frames_detected = 0;
   std::uint64_t frames_failed = 0;  // frames on which vision failed; they count as not found
   std::string frame_failure;        // reason for the first of them
-  std::uint64_t frames_lost = 0;
+  std::uint64_t frames_lost = 0;    // frames that never reached vision: dropped by the camera, or by a fault
   std::optional<BoardSummary> mcu;  // for a servo on a board
   double sim_time_s = 0.0;
   double preparing_s = 0.0;  // wall time before the first tick
@@ -121,6 +127,7 @@ inline bool ReachedItsGoal(const Summary& summary) {
 }
 
 std::string ToJson(const Summary& summary);
-std::string ToTable(const Summary& summary);
+// For a person, in lines that fit into the style's width.
+std::string ToTable(const Summary& summary, const config::TextStyle& style = {});
 
 }  // namespace fovea::sim

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The target's true error to its goal.
 #pragma once
 

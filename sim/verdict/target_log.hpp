@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the target's true pose for each frame between its exposure and its detection.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how far and how fast the hand moves while the arm must stand still (Boot, Hold, Fault), by the
 // simulator's truth, from the start of each mode.
 //

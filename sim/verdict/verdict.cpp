@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sim/verdict/verdict.hpp"
 
 #include <fmt/format.h>
@@ -6,6 +7,8 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace fovea::sim {
 namespace {
@@ -90,6 +93,7 @@ void Verdict::NoteGoal(double t_s, bool kept) {
 
 void Verdict::AddRecord(const hal::TickRecord& record) {
   notices_.Add(record);
+  ++ticks_;
   for (int i = 0; i < config_.barriers.arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config_.barriers.arm.joints[k];
@@ -119,7 +123,8 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
   if (record.fault != hal::Fault::kNone && (!has_record_ || before_.fault != record.fault)) {
     const std::string detail = record.fault_joint >= 0 ? fmt::format("joint {}", record.fault_joint + 1)
                                                        : std::string("no single joint");
-    faults_.push_back({t_s, hal::Name(record.fault), hal::Key(record.fault), detail});
+    faults_.push_back(
+        {t_s, hal::Name(record.fault), hal::Key(record.fault), detail, hal::Words(record.fault)});
   }
   before_ = record;
   has_record_ = true;
@@ -198,7 +203,7 @@ std::string Verdict::WhyNotFollowed(const Summary& summary) const {
                        [reason](const ModeEvent& event) { return event.reason == hal::Name(reason); });
   };
   if (!faults_.empty()) {
-    return "a fault stopped the arm: " + faults_.front().name;
+    return "a fault stopped the arm: " + InWords(faults_.front());
   }
   if (contacts_.any() > 0) {
     return Touched(summary);
@@ -287,56 +292,87 @@ std::string Verdict::Touched(const Summary& summary) {
 
 std::string Verdict::WhyNot(const Summary& summary) const {
   if (!faults_.empty()) {
-    const FaultEvent& f = faults_.front();
-    return fmt::format("not converged: fault {} at {:.3f} s ({}){}", f.name, f.t_s, f.detail,
-                       f.key.empty() ? "" : ", see " + f.key);
-  }
-  if (!ever_known_ && summary.frames_detected == 0) {
-    return "not converged: the target was never found in view; the arm held still (see target.position, "
-           "arm.q_start, [vision])";
-  }
-  const auto future = measurements_.find(hal::Name(hal::Intake::kFromFuture));
-  if (!ever_known_ && future != measurements_.end()) {
-    return fmt::format(
-        "not converged: {} of {} measurements had stamps from the future and were rejected (see "
-        "camera.latency_ms, the camera's clock)",
-        future->second, summary.frames);
+    return "not converged: fault: " + InWords(faults_.front());
   }
   if (!ever_known_) {
-    return fmt::format(
-        "not converged: the target was found in {} frames, too few to accept it (see run.duration_s, "
-        "servo.accepted_min)",
-        summary.frames_detected);
+    return WhyNeverAccepted(summary);
   }
   if (!modes_.empty() && modes_.back().mode == hal::Name(hal::Mode::kHold)) {
-    if (modes_.back().reason == hal::Name(hal::HoldReason::kEyeDoubted)) {
-      return fmt::format(
-          "not converged: the image motion contradicts the hand's motion, or servoing did not reduce the "
-          "error; the arm holds since {:.3f} s (see camera.mount_xyz, camera.mount_rpy_deg, "
-          "servo.way_in_vain)",
-          modes_.back().t_s);
-    }
-    if (modes_.back().reason == hal::Name(hal::HoldReason::kGoalUnreachable)) {
-      return fmt::format(
-          "not converged: limits keep the arm from the goal, so it holds since {:.3f} s (see "
-          "target.position, servo.goal, safety.workspace_radius)",
-          modes_.back().t_s);
-    }
-    return fmt::format("not converged: the arm holds since {:.3f} s, reason {}", modes_.back().t_s,
-                       modes_.back().reason);
+    return WhyHeld() + LimitedBy();
   }
   if (config_.target_moves) {
     const auto figure = [](const std::optional<double>& error) {
       return error ? fmt::format("{:.2f}", *error) : std::string("infinite");
     };
-    return fmt::format("not converged: tracking error {} px rms, bound {:g} px, and {} mm rms, bound {:g} mm",
-                       figure(summary.tracking_error_px_rms), config_.tracking_bound_px,
-                       figure(summary.tracking_error_mm_rms), config_.tracking_bound_mm);
+    return fmt::format(
+        "not converged: tracking error {} px rms, bound {:g} px, and {} mm rms, bound {:g} mm{}",
+        figure(summary.tracking_error_px_rms), config_.tracking_bound_px,
+        figure(summary.tracking_error_mm_rms), config_.tracking_bound_mm, LimitedBy());
   }
   return fmt::format(
-      "not converged: over the last {:g} s the target was not within {:g} px and {:g} mm{} of its goal",
+      "not converged: over the last {:g} s the target was not within {:g} px and {:g} mm{} of its goal{}",
       1e-9 * static_cast<double>(kWindowNs), kConvergedPx, 1e3 * kConvergedM,
-      config_.goal.R_CO_star ? fmt::format(" and {:g} deg", kConvergedDeg) : std::string());
+      config_.goal.R_CO_star ? fmt::format(" and {:g} deg", kConvergedDeg) : std::string(), LimitedBy());
+}
+
+std::string Verdict::WhyNeverAccepted(const Summary& summary) const {
+  if (summary.frames_detected == 0) {
+    return "not converged: the target was never found in view; the arm held still (see target.position, "
+           "arm.q_start, [vision])";
+  }
+  const auto future = measurements_.find(hal::Name(hal::Intake::kFromFuture));
+  if (future != measurements_.end()) {
+    return fmt::format(
+        "not converged: {} of {} measurements had stamps from the future and were rejected (see "
+        "camera.latency_ms, the camera's clock)",
+        future->second, summary.frames);
+  }
+  return fmt::format(
+      "not converged: the target was found in {} frames, too few to accept it (see run.duration_s, "
+      "servo.accepted_min)",
+      summary.frames_detected);
+}
+
+// Of a run that ended in Hold.
+std::string Verdict::WhyHeld() const {
+  const double since_s = modes_.back().t_s;
+  switch (before_.hold_reason) {
+    case hal::HoldReason::kEyeDoubted:
+      return fmt::format(
+          "not converged: the image motion contradicts the hand's motion, or servoing did not reduce the "
+          "error; the arm has held since {:.3f} s (see camera.mount_xyz, camera.mount_rpy_deg, "
+          "servo.way_in_vain)",
+          since_s);
+    case hal::HoldReason::kGoalUnreachable:
+      return fmt::format(
+          "not converged: limits keep the arm from the goal, so it has held since {:.3f} s (see "
+          "target.position, servo.goal, safety.workspace_radius)",
+          since_s);
+    default:
+      return fmt::format("not converged: the arm has held since {:.3f} s because {} ({})", since_s,
+                         hal::Words(before_.hold_reason), hal::Name(before_.hold_reason));
+  }
+}
+
+// E.g. "; limited by field_of_view (safety.view_margin_px) in 89 % of the ticks": the limits that acted, the
+// longest first; "" if none did.
+std::string Verdict::LimitedBy() const {
+  std::vector<std::pair<std::uint64_t, hal::Limit>> acted;
+  for (int i = 0; i < hal::kNumLimits; ++i) {
+    const auto limit = static_cast<hal::Limit>(i);
+    if (const auto ticks = limit_ticks_.find(hal::Name(limit)); ticks != limit_ticks_.end()) {
+      acted.emplace_back(ticks->second, limit);
+    }
+  }
+  std::stable_sort(acted.begin(), acted.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::string words;
+  for (const auto& [ticks, limit] : acted) {
+    const double percent = 100.0 * static_cast<double>(ticks) / static_cast<double>(ticks_);
+    words += fmt::format("{} {} ({}) in {} %", words.empty() ? "; limited by" : ",", hal::Name(limit),
+                         hal::Key(limit), percent < 1.0 ? "under 1" : fmt::format("{:.0f}", percent));
+  }
+  return words.empty() ? words : words + " of the ticks";
 }
 
 }  // namespace fovea::sim

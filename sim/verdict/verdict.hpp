@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Judges a run against the simulator's truth.
 #pragma once
 
@@ -70,6 +71,9 @@ class Verdict {
   void FillMoving(Summary& summary) const;
   static std::string Touched(const Summary& summary);
   [[nodiscard]] std::string WhyNot(const Summary& summary) const;
+  [[nodiscard]] std::string WhyNeverAccepted(const Summary& summary) const;
+  [[nodiscard]] std::string WhyHeld() const;
+  [[nodiscard]] std::string LimitedBy() const;
 
   const VerdictConfig config_;
 
@@ -96,6 +100,7 @@ class Verdict {
   std::size_t reference_ddq_ = reference_.Add("joint_acceleration", LimitBook::Kind::kShare);
   std::size_t reference_jerk_ = reference_.Add("joint_jerk", LimitBook::Kind::kShare);
   NoticeBook notices_;
+  std::uint64_t ticks_ = 0;
   std::map<std::string, std::uint64_t> limit_ticks_;
   std::map<std::string, std::uint64_t> measurements_;  // count by hal::Intake
   hal::TickRecord before_;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps each measurement until its modelled latency has passed, then passes it to the servo.
 //
 // The scenario sets the latency of exposure, read-out, transport and processing, independent of this

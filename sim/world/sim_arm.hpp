@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulated arm as a hal::Arm.
 #pragma once
 

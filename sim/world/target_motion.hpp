@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The target's pose as a function of time, by the scenario.
 #pragma once
 

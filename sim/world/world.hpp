@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulated bench: arm, target and time, in steps of 1 ms. It holds the true state.
 #pragma once
 

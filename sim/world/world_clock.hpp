@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loop's clocks for the two paces. The wait for the next tick advances the world.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the tree easy to read: short files, small folders, and namespaces named after their folder.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks from the #include lines that dependencies between folders point one way only.
 #include <gtest/gtest.h>
 

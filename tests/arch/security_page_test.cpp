@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks that every test and every fuzz target that SECURITY.md names exists.
 #include <gtest/gtest.h>
 

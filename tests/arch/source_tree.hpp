@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the project's own sources and runs tools on its libraries, for tests of the tree's structure.
 #pragma once
 

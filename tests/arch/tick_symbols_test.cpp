@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks that the code of the tick calls nothing that could allocate, lock, throw or make a system call.
 // Reads the symbols that the tick's libraries need: these libraries would link on bare metal.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the arm in Bullet with an adversarial camera, judged by the simulator's truth: what can a stream of
 // measurements make the arm do?
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's assumptions are wrong: false measurements, encoders that hang, unknown loads.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

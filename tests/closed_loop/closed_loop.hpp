@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole runs: simulator, camera, detector and servo in one process, judged against the simulator's truth.
 #pragma once
 

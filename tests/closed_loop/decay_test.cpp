@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // With constant gain and after the smooth start the error decays like exp(-lambda t), within 10 %. Noise,
 // friction and every limit act as shipped.
 #include <algorithm>

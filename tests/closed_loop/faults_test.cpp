@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole runs with injected faults: the servo rides out transient ones. The same seed repeats a run exactly.
 #include <gmock/gmock.h>
 
@@ -43,6 +44,16 @@ INSTANTIATE_TEST_SUITE_P(
                           "faults.velocity_noise=0.01"}},
                     Case{"Load", {"faults.load_s=[0.6, 2.4]", "faults.load_mass=1"}}),
     [](const auto& fault) { return std::string(fault.param.name); });
+
+TEST(InjectedFaults, LostFramesAreCounted) {
+  const sim::Summary all = RunShipped("ball", {"run.duration_s=1.2"});
+  EXPECT_EQ(all.frames_lost, 0U);
+  const sim::Summary some =
+      RunShipped("ball", {"run.duration_s=1.2", "faults.frame_loss_s=[0.2, 0.8]", "faults.frame_loss=0.6"});
+  std::cout << some.frames << " frames, " << some.frames_lost << " lost\n";
+  EXPECT_GT(some.frames_lost, 0U);
+  EXPECT_EQ(some.frames + some.frames_lost, all.frames);
+}
 
 std::string HashOf(int seed) {
   const sim::Summary s = RunShipped(

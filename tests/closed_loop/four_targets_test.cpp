@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Scenarios of all targets and motions on the simulated arm, with friction and encoder noise. Measurements
 // are the truth plus 0.05 px of noise: the error that remains is the servo's own.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Attacks on the workspace boundary in Bullet: 1 m/s towards it, along it and obliquely, from every side.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/closed_loop/guard_bench.hpp"
 
 #include <gtest/gtest.h>

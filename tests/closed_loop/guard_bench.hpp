@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's loop with the arm in Bullet, without a camera. Tests provoke what the guard watches, and check
 // the arm tick by tick against the simulator's truth.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Faults in closed loop. Each is provoked while the arm in Bullet moves, and must be latched after a stated
 // number of ticks. The arm must come to rest, its brakes close, and only a reset ends the fault.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits in closed loop: each is provoked, reported in time, and never exceeded by the arm in Bullet.
 #include <gtest/gtest.h>
 

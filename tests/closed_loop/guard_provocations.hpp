@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One provocation for each row of firmware/GUARDS.md; guard_table_test.cpp runs them all.
 #pragma once
 

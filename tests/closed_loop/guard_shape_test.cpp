@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the guard's model of the arm's shape with the simulator's links.
 #include <gtest/gtest.h>
 

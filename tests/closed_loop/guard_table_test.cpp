@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every row of firmware/GUARDS.md is provoked in closed loop: a row without a provocation fails.
 #include <gtest/gtest.h>
 

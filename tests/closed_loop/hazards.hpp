@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hazards of camera, arm, line, computer and person, each in thousands of random cases: how far the arm moves
 // until it stands. These are the figures of firmware/SAFETY.md.
 #pragma once

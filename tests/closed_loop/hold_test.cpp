@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A target that is unreachable, absent or lost: the arm stands still in Hold and reports the reason.
 #include <gmock/gmock.h>
 

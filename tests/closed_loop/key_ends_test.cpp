@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keys at the ends of their ranges: whether the task is done or refused, the true arm keeps its limits.
 #include "tests/closed_loop/closed_loop.hpp"
 

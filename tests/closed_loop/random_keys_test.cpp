@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random keys of `servo` and `safety`, drawn together from their ranges, half of them at an end of the range.
 // Whether the configuration is refused or runs, the true arm keeps its limits.
 //

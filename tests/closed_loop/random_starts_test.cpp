@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Starts from which `fovea atlas` once did not reach the goal: one for each cause, all fixed.
 #include <gtest/gtest.h>
 

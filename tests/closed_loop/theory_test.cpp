@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One degree of freedom in Bullet, compared with its analytic answers (the exercises of part A).
 #include <cmath>
 #include <complex>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A shipped scenario without renderer and detector: physics, servo and verdict are the real ones,
 // measurements are the truth plus noise given in pixels. Ten times faster than the whole run.
 #pragma once

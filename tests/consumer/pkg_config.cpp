@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The flags from `pkg-config fovea` are enough to compile and link the servo.
 #include <cstdio>
 #include <memory>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installs BUILD_DIR into its own folder, builds the project SOURCE_DIR against it, and runs the programs built.
 foreach(name BUILD_DIR WORK_DIR SOURCE_DIR GENERATOR CXX)
   if(NOT ${name})

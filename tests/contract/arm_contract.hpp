@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requirements for every arm driver, real or simulated. A test of a driver defines a fixture
 //
 //   struct MyArmFixture {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requirements for every camera driver. A fixture has `hal::Camera& camera()`, `void Expose(std::int64_t
 // stamp_ns)`, which takes one picture, and `void Close()`.
 #pragma once

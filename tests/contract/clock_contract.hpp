@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requirements for every clock. A fixture has `hal::Clock& clock()`.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests the linux_rt drivers against their contracts.
 #include <atomic>
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requirements for every recorder. A fixture has `hal::Recorder& recorder()`, `std::vector<hal::TickRecord>
 // Taken()`, which returns the records since the last call, and `std::uint64_t dropped()`.
 #pragma once

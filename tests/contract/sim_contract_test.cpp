@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests the simulator's drivers against their contracts.
 #include <memory>
 

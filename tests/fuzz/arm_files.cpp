@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robot files: any bytes as a URDF, read directly or named by an arm file, and any bytes in the arm file
 // itself. The servo must be able to compute with every arm that is accepted.
 #include <Eigen/LU>

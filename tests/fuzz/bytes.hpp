@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turns an input's bytes into the choices of a harness.
 #pragma once
 

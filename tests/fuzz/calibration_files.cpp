@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files that `fovea calibrate` reads besides images: a camera file and the hand poses.
 #include <Eigen/LU>
 #include <cmath>

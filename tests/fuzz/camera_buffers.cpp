@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Arbitrary camera data: formats, sizes, paddings, frame numbers and stamps.
 #include <limits>
 #include <optional>

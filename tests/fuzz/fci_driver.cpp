@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot that sends arbitrary bytes: during the set-up, as states and as answers. The driver refuses them
 // with a one-line error or goes on. Its torque commands stay finite.
 #include <chrono>

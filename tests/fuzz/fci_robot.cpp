@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A client that sends arbitrary data to the simulated robot: valid and broken requests, and commands with any
 // numbers. The robot's state stays finite, and the robot goes on.
 #include <sys/socket.h>

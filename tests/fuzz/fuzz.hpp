@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Entry point that each harness of this folder defines: runs the code under test on one input of any content.
 //
 // clang's libFuzzer calls it with generated inputs (preset fuzz); replay.cpp calls it in every build with the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes an input to a file for code that reads files. One file per process, overwritten for each input.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Link frames: arbitrary bytes on the line, and arbitrary payloads written and read back.
 #include <algorithm>
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The host's end of the link: a board that sends arbitrary answers. Every tick
 // ends; after the board has failed the brakes are engaged.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages: arbitrary bytes decoded as each message type. An accepted message
 // encodes to the same bytes, and its values are in range.
 #include <algorithm>

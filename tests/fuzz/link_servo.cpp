@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's end of the link: frames of any kind with any payload, valid and broken, in any order, with
 // timer periods in between. The servo keeps its torques within their limits and goes on ticking.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replacement for libFuzzer's main: passes each file named on the
 // command line, or in a folder named there, to the harness.
 #include <algorithm>

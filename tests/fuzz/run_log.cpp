@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A log from an untrusted source, as the report reads it: arbitrary bytes as a file, as its records, or as
 // the messages in it. It is refused with a one-line error, or it becomes a run that the page can show.
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The key sections shared by scenarios and hardware configurations, as a TOML file and as an assignment. Any
 // text is refused with a one-line error, or it gives a configuration that the servo accepts.
 #include "firmware/host/config/settings.hpp"

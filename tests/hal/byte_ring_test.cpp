@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ring between a board's interrupt and its main program, tested here with two threads.
 // tests/models/byte_ring.pml checks the same for every order of the steps, also when the counters wrap.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hand-over from camera to servo: the newest measurement wins and is never torn.
 #include <gtest/gtest.h>
 

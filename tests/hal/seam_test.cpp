@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Promises of the seam's base classes for every driver: arguments and results
 // are checked, and an error leaves the outputs unchanged.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens pages in a browser as a user does; reports what they fetch and their console errors.
 import assert from "node:assert/strict";
 import fs from "node:fs";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run whose names (scenario, arm, joints, configuration) all contain injected HTML. The report must show them as
 // text, must run no script from them and must send no request, even if told to.
 //   node hostile_report.mjs FOVEA_SIM FOVEA ROBOTS FOLDER

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks that the log has every stream and field that a layout shows, and that every panel is placed once.
 import assert from "node:assert/strict";
 import fs from "node:fs";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens the page of a replay in a wide and a narrow window. Checks that every part is drawn, that both runs are there,
 // that nothing is fetched, that the console is silent and that nothing overflows. Saves screenshots.
 //   node open_replay.mjs REPLAY.html FOLDER

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Opens a report in a wide and a narrow window, and on paper. Checks that every part is drawn, that nothing is fetched,
 // that the console is silent and that nothing overflows. Saves screenshots.
 //   node open_report.mjs REPORT.html FOLDER [theory|hardware|circle|faults]

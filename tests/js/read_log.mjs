@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a run's log.mcap with independent readers and compares it with the run's summary.json: the ticks by the hash
 // that the run itself computed, the rest by counts and by expected values.
 //   node read_log.mjs FOLDER [hardware]

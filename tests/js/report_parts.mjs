@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks of each part of a report (curves, numbers, marks, texts), called with a drawn page.
 import assert from "node:assert/strict";
 
@@ -158,10 +159,11 @@ async function checkPathError(page) {
 // Texts: why no tick can overrun, which limit acted, how to repeat the run.
 async function checkWords(page, command) {
   const about = await page.locator("#about").innerText();
-  const { names, lockstep, slow, acted } = await page.evaluate(() => ({
+  const { names, lockstep, slow, acted, limits } = await page.evaluate(() => ({
     names: Fovea.runs.map((run) => run.name),
     lockstep: Fovea.runs.every((run) => run.summary.pace === "lockstep"),
     slow: Fovea.runs.some((run) => run.summary.tick_ns.max > 1e6),
+    limits: Fovea.runs.flatMap((run) => Object.keys(run.summary.limit_ticks || {})).map((name) => Fovea.words(name)),
     acted: Fovea.runs.some((run) => Object.values(run.summary.limit_ticks || {}).some((ticks) => ticks > 0)),
   }));
   for (const name of names) assert.ok(about.includes(name), "the footer names the run");
@@ -170,6 +172,8 @@ async function checkWords(page, command) {
   if (lockstep && slow) assert.match(await page.locator("#ticks").innerText(), /simulated clock waits for the servo/);
   if (lockstep && names.length === 1)
     assert.match(await page.locator("#verdict").innerText(), /in lockstep the simulated clock waits/);
+  const shown = await page.locator("#joints .shares dt").allTextContents();
+  for (const name of limits) assert.ok(shown.includes(name), `the limit that acted is shown: ${name}`);
   if (acted)
     assert.match(
       await page.locator("#joints .shares").innerText(),

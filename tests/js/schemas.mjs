@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the schemas in a log with Foxglove's own definitions.
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Model of linux_rt::BoundedRing, used by the recorder and the log. One thread pushes VALUES values, the other drains.
  *
  * Follows hal/drivers/linux_rt/include/fovea/linux_rt/bounded_ring.hpp. A comment that begins with a colon quotes its text;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Model of cortex_m7::ByteRing, between an interrupt and the main program. One side puts VALUES bytes, the other takes.
  *
  * Follows hal/drivers/cortex_m7/include/fovea/cortex_m7/byte_ring.hpp. A comment that begins with a colon quotes its text;

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs Spin on the model of a queue between two threads: Spin checks every order of the steps.
 
   check.py MODEL.pml SOURCE             the text that the model quotes must be in SOURCE, and no assertion may fail

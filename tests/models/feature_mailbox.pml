@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* Model of hal::FeatureMailbox: three slots, one atomic. One thread puts VALUES measurements, the other takes.
  *
  * Follows hal/src/feature.cpp. A comment that begins with a colon quotes its text; check.py compares the two. Proved for

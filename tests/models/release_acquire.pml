@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: Apache-2.0 */
 /* The memory order of C++, as far as two threads need it to hand data over.
  *
  * A place is memory that is not atomic, e.g. a slot. Two threads may use it in turn only if the second knows what the first

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Tests the camera driver of camera_driver.patch: writes gray pictures into a pipe and runs `fovea-hw --check`.
 
   look_through_pipe.py FOVEA_HW FOLDER

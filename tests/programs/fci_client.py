@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A client of the Franka Control Interface, version 5, for tests. It uses only Python's standard library.
 
 It is written from the interface's description, independent of the driver and the server in C++, with its own offsets.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The robot's errors and the recovery from them, tested by an independent client:  fci_errors_test.py FOVEA_SIM"""
 
 import math

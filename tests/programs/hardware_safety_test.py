@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How the hardware program stops, and what it refuses:  hardware_safety_test.py FOVEA_SIM FOVEA_HW
 
 The robot runs in lockstep, so that times in the servo's log are the robot's, also on a busy machine."""
@@ -369,7 +370,7 @@ class HardwareSafety(TwoPrograms):
         refused = []
         while True:
             self.say(self.server, "s")
-            terminal.wait_for("fault: arm_lost")
+            terminal.wait_for("fault: the arm returned errors, or nothing (arm_lost)")
             self.say(self.server, "s")
             refused += self.recover(hw, terminal)
             terminal.wait_for("hold")
@@ -400,13 +401,13 @@ class HardwareSafety(TwoPrograms):
         hw, terminal = self.start(port, "--enable")
         terminal.wait_for("hold")
         self.say(self.server, "s")
-        terminal.wait_for("fault: arm_lost")
+        terminal.wait_for("fault: the arm returned errors, or nothing (arm_lost)")
         self.say(self.server, "s")
         self.recover(hw, terminal)
         terminal.wait_for("hold")
         self.say(hw, "end")
         s = self.summary_of(hw)
-        self.assertIn("recovered from arm_lost", s["verdict"])
+        self.assertIn("recovered from: the arm returned errors, or nothing (arm_lost)", s["verdict"])
         self.assertEqual(s["faults_recovered"], 1)
 
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The hardware program with the simulated robot at real pace, where neither waits for the other:
 loopback_real_pace_test.py FOVEA_SIM FOVEA_HW
 

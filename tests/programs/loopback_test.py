@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The hardware program with the simulated robot, two processes and a network:  loopback_test.py FOVEA_SIM FOVEA_HW"""
 
 import hashlib
@@ -134,7 +135,7 @@ class Loopback(TwoPrograms):
                 time.sleep(0.2)
                 self.say(hw, "hold")
                 self.server.send_signal(signal.SIGUSR1)
-                self.wait_for(hw, "fault: arm_lost")
+                self.wait_for(hw, "fault: the arm returned errors, or nothing (arm_lost)")
                 self.server.send_signal(signal.SIGUSR1)
                 time.sleep(0.3)
                 self.say(hw, "recover")
@@ -202,7 +203,7 @@ class Loopback(TwoPrograms):
         try:
             self.wait_for(hw, "hold")
             self.server.send_signal(signal.SIGUSR1)
-            self.wait_for(hw, "fault: arm_lost")
+            self.wait_for(hw, "fault: the arm returned errors, or nothing (arm_lost)")
             self.server.send_signal(signal.SIGUSR1)
             time.sleep(0.3)
             self.say(hw, "recover")
@@ -219,7 +220,7 @@ class Loopback(TwoPrograms):
         try:
             self.wait_for(hw, "hold")
             self.say(self.server, "h")
-            self.wait_for(hw, "fault: arm_lost")
+            self.wait_for(hw, "fault: the arm returned errors, or nothing (arm_lost)")
             self.say(self.server, "h")
             time.sleep(0.5)
             self.say(hw, "recover")

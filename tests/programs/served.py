@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Base class of tests with a simulated robot on the network, and shared functions."""
 
 import signal

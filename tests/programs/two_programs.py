@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Base class of tests with the simulated robot and the hardware program, connected by the network."""
 
 import json

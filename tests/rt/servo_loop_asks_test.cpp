@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests of other threads to a running loop: the last one before a tick takes
 // effect, no other value is seen, and Stop ends the loop.
 #include <gtest/gtest.h>

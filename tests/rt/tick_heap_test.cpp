@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // No heap call in the whole tick, from reading the arm to the record, in every mode. The interposer counts
 // the calls; if it is inactive, these tests fail.
 #include <gtest/gtest.h>

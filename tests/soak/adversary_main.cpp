@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-adversary: hours of robot time with adversarial measurements. Exit 1 if a limit was exceeded, the arm
 // touched something, or a measurement led to a fault.
 #include <fmt/format.h>

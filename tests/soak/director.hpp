@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Episodes of a soak: a target, a disturbance, the operator's requests, and the outcome.
 //
 // All of it is drawn from a seed. After a fault the director acts as an operator: it waits until

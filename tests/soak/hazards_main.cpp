@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-hazards: thousands of random cases of each hazard, with the worst motion of the arm.
 #include <fmt/format.h>
 

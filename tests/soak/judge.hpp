@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects leaks and drift of a long run from figures taken during the run.
 #pragma once
 

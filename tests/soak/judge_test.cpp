@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Leaks and drift are detected; scatter is not reported.
 #include "tests/soak/judge.hpp"
 

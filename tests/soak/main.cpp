@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-soak: hours of robot time in one process, and the findings.
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The seam of a soak: wraps the simulated arm and clock, adds an offset of up to 292 years to the clock, and
 // injects disturbances between them and the servo.
 #pragma once

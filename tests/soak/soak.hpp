@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A long run in one process, and its findings.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A soak of a few minutes, with the normal clock and with one at the end of its range.
 #include "tests/soak/soak.hpp"
 

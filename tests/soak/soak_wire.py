@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Half an hour at real pace over the network: the hardware program with the served robot, and an operator at both
 keyboards.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The disturbances of a soak on arm, camera and computer, and their durations.
 #pragma once
 

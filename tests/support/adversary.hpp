@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An adversarial camera. Its measurements of a ball freeze, repeat, go the wrong way, jump, run away from the
 // hand or lure it to forbidden places. The seed decides which trick follows and how long it lasts.
 #pragma once

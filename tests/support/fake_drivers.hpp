@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Drivers whose behaviour a test decides.
 #pragma once
 

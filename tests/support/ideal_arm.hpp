@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An arm that follows its model exactly, without gravity and friction (a hal::Arm compensates both itself):
 // M(q) ddq + C(q, dq) dq = tau, integrated with many small steps. For closed loops without a simulator.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a mesh in the formats that a URDF may name, for tests to read back.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Panda and its servo configuration, as most tests use them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random joint states, the same in every run.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures of a ball with known truth: rays cast through a grid of points in every pixel. Shares no code with
 // the renderer or the detector.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Number of random states that a test tries.
 #pragma once
 

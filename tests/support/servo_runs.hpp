@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's inputs over some seconds, recorded with an ideal arm and a camera that measures the truth: one
 // run per target, one of commanded motions, one of disturbances. For tests that watch the servo from outside.
 #pragma once

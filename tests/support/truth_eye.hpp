@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera that measures the truth: measurements of any target from its true pose, with noise given in pixels
 // and the matching covariance. For closed loops without renderer and detector.
 #pragma once

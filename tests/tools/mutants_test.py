@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """tools/mutants in a small test project, with a fake cmake:  mutants_test.py TOOLS_MUTANTS"""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """tools/tidy in a small test project, with fake clang-tidy and ninja:  tidy_test.py TOOLS_TIDY"""
 
 import json

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // After the first images a detector makes no heap call. Every
 // malloc of the process is counted, also inside OpenCV.
 #include <gtest/gtest.h>

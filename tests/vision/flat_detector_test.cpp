@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of disc, square and triangle on ray-cast pictures, against the truth and their own covariance.
 #include <gtest/gtest.h>
 

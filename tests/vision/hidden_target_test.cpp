@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each target partly hidden, or moving out of the picture and back: found correctly or refused.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detection of pictures that differ by more than their noise.
 #include "firmware/vision/detect/picture_watch.hpp"
 

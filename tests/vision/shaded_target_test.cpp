@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A red target half in sun and half in shade is found by its colour, with the right position.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Evidence beside a triangle's sides and along their extensions, on ray-cast pictures.
 #include <gtest/gtest.h>
 

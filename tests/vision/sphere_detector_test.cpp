@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ball detector on pictures with a known truth.
 #include "firmware/vision/detect/target_detector.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of three and four corners compared with OpenCV's P3P and IPPE.
 #include "firmware/vision/pose/three_points.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pictures that the detector must refuse, and how the vision task passes results on.
 #include "firmware/vision/detect/vision_task.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-bench: benchmarks. Each command prints a table, or with --json a list of {name, value, unit, goal}.
 #include <CLI/CLI.hpp>
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Uses ccache if it is installed. Then nothing is compiled twice, even after `rm -r build` or in another checkout of the same
 # sources: ccache makes paths below the root relative to the build folder.
 find_program(FOVEA_CCACHE ccache)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # fovea_emit_model(<target> <arm>...): writes the models of shipped arms as `fovea model ARM --emit-cpp` does. <target> includes
 # them as "emitted/<arm>.hpp".
 function(fovea_emit_model target)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Compiler flags, in one place. Three sets:
 #   fovea_warnings  every target of the project: warnings are errors
 #   fovea_bits      PUBLIC on the firmware libraries: flags that decide the bits of a result. All code that uses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Installation folders, the CMake package `fovea`, and the Debian packages.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
@@ -50,6 +51,12 @@ function(fovea_install_package)
   endforeach()
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/firmware/host/robots/share/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fovea/robots
     COMPONENT data)
+  set(packages dev libfovea-dev data fovea-data runtime fovea)
+  while(packages)
+    list(POP_FRONT packages component package)
+    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright
+      DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+  endwhile()
   fovea_debian_packages()
 endfunction()
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Headers that most sources of a library include, compiled once for all of them. GCC alone, and in no sanitized build:
 # those compile each source by itself, so that a source still has to include what it uses.
 option(FOVEA_PRECOMPILE "Precompile the headers of Eigen, fmt, JSON, OpenCV and protobuf" ON)

@@ -1,5 +1,6 @@
+# SPDX-License-Identifier: Apache-2.0
 # The small sources of a folder are compiled together: most of a small source's time is the headers that it shares with its
-# neighbours. Their anonymous namespaces become one, so a name stands once in a folder. Not in a sanitized build: that
+# neighbours. Their anonymous namespaces become one, so a name must be unique in its folder. Not in a sanitized build: that
 # compiles each source by itself, so that a source still has to include what it uses.
 option(FOVEA_UNITY "Compile the small sources of a folder together" ON)
 if(FOVEA_SANITIZE)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The build runs this script. It writes OUTPUT from the checkout at SOURCE and the libraries SERVO and LINK. It does not touch
 # OUTPUT when nothing changed.
 find_package(Git QUIET)

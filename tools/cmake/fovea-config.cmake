@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # find_package(fovea [COMPONENTS core|host]...)
 #   core  hal, model, features, servo, linux_rt, heap_interposer: the code that runs in and around the tick
 #   host  vision, calibration, config, robots, servo_keys: the code that needs OpenCV, TOML and URDF; includes core

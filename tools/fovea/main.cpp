@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program fovea: reports and replays of recorded runs, atlases of simulated runs, gains, arm models,
 // features, detection and calibration.
 #include <fmt/format.h>

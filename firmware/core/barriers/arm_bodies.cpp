@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/barriers/arm_bodies.hpp"
 
 namespace fovea::barriers {

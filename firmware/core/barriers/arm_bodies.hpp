@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The space that the arm fills, in B: the capsules of its model (model::ArmShape) at a posture. All
 // clearances of the arm's links use them: from each other, from planes and from lines of sight.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A barrier: a quantity h(q) that must stay above its margin and may approach it only at a limited speed.
 //
 // Everything that the motion avoids has this form: the workspace's edge, planes and boxes, the arm itself, a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The largest allowed speed towards a barrier (THEORY B5).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion limit that keeps a disc's face towards the camera.
 //
 // A disc's feature controls the camera's direction and distance to the disc, not its orientation. Three

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/barriers/field_of_view_barrier.hpp"
 
 #include <algorithm>

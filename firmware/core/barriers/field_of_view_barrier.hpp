@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion limit that keeps the target in the picture, because the servo cannot follow a target out of view.
 //
 // For each of the picture's four sides, the nearest point of the target may approach that side only with

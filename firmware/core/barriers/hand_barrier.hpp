@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the hand, with its camera and tools, out of a plane or a box.
 #pragma once
 

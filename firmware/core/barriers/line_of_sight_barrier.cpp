@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/barriers/line_of_sight_barrier.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the arm's own links out of the lines of sight from the camera to the target's centre or its corners.
 //
 // When the hand tracks a target, the elbow or the forearm may come between camera and target. The hand, and

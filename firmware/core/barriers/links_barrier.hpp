@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the arm's links above the planes that limit its hand.
 //
 // While the hand is clear, the elbow or the wrist can still hit the table. The barrier covers the last four

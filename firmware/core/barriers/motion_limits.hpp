@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits of the joint velocities: a range for each joint, and inequalities across joints.
 //
 // In each tick every motion limit takes one of these two forms. Joint velocity, acceleration and the end of a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The distance of a point from planes and boxes, and the direction away from them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Singular values and vectors of a small matrix, in a bounded number of steps: one-sided Jacobi. Rotations of
 // pairs of rows make all rows orthogonal to each other, J = U R with R = diag(sigma) V^T (Golub and Van Loan,
 // Matrix Computations, 2013, sec. 8.6.3). Small singular values come out as accurate as large ones, and R is

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the arm's bodies away from each other.
 //
 // A folded arm can hit its shoulder or upper arm with its hand. Its model (model::ArmShape) lists the pairs

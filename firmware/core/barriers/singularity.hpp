@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The distance of the arm from a singular posture, its gradient, and a motion limit made from both.
 //
 // The measure is the smallest singular value sigma of the body Jacobian with its linear rows divided by a

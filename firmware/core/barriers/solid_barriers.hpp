@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One table of everything that the arm can collide with: the workspace's edge, each plane and box (for the
 // hand), the planes (for the links), and the arm itself.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the end effector in a sphere about the base (THEORY B5).
 //
 // h = -|p_BE| with the margin -(radius), so that h - margin is the distance from the edge. A motion along the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fields of a target's feature. They follow from the keys of [target] and from servo.feature and
 // servo.goal, which have their own texts (firmware/host/config).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One list of fields for each settings struct. Key, unit, range and meaning stand once, beside the struct.
 //
 //   template <class Visitor, Struct<MoveConfig> Config>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [safety] motion limits, as shares of the arm's own limits or in their units, and obstacles around the arm.
 #pragma once
 
@@ -140,16 +141,19 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Derived({"safety.view_margin_px"}, c.view.x_max, -1e6, 1e6);
   v.Derived({"safety.view_margin_px"}, c.view.y_min, -1e6, 1e6);
   v.Derived({"safety.view_margin_px"}, c.view.y_max, -1e6, 1e6);
-  v.Number({"safety.sight_clearance", "m",
-            "distance of the arm's own links from the lines of sight to the target; a nearer link comes no "
-            "nearer; 0: no limit"},
-           c.sight_clearance, 0.0, 10.0);
-  v.Derived({"safety.disc_tilt_max", "rad",
-             "largest tilt of a disc's face against the line of sight; a larger tilt does not grow; pi / 2: "
-             "no limit"},
-            c.view.disc_cosine_min, 0.0, 1.0);
+  v.Number(
+      {"safety.sight_clearance", "m",
+       "distance of the arm's own links from the lines of sight to the target; a link that is nearer may "
+       "not come nearer still; 0: no limit"},
+      c.sight_clearance, 0.0, 10.0);
+  v.Derived(
+      {"safety.disc_tilt_max", "rad",
+       "largest tilt of a disc's face against the line of sight; a larger tilt may not grow; pi / 2: no "
+       "limit"},
+      c.view.disc_cosine_min, 0.0, 1.0);
   v.Number({"safety.self_clearance", "m",
-            "distance of the arm's links from each other; a nearer pair comes no nearer; 0: they may touch"},
+            "distance of the arm's links from each other; a pair that is nearer may not come nearer still; "
+            "0: they may touch"},
            c.self_clearance, 0.0, 10.0);
   v.Count(
       {"safety.tools", "m",

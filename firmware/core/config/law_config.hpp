@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [servo] the visual law: how the arm moves to reduce the feature's error.
 #pragma once
 
@@ -33,10 +34,9 @@ template <class Visitor, Struct<LawConfig> Config>
 void Fields(Visitor& v, Config& c) noexcept {
   v.Number({"servo.lambda", "1/s", "gain: the error decays like exp(-lambda t)"}, c.lambda, 0.0, 20.0);
   v.Number({"servo.lambda_near", "1/s",
-            "gain near the goal, servo.lambda being that of large errors; 0: servo.lambda everywhere"},
+            "gain near the goal; servo.lambda applies to large errors; 0: servo.lambda everywhere"},
            c.lambda_near, 0.0, 20.0);
-  v.Number({"servo.lambda_slope", "1/s",
-            "how fast the gain changes with the feature's error at the goal, per unit of it"},
+  v.Number({"servo.lambda_slope", "1/s", "slope of the gain over the feature's error, at error 0"},
            c.lambda_slope, 0.0, 1e6);
   v.Choice({"servo.interaction", "",
             "the interaction matrix that the law inverts: of now, of the goal, or the mean of both"},

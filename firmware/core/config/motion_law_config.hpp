@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [servo] the inner loop: how the joints follow their reference. The laws are in motion_laws/motion_law.hpp.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [servo] commanded motions of the end effector.
 #pragma once
 

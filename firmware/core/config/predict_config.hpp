@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [servo] the target's current place: prediction, filters, and the checks of each measurement.
 #pragma once
 
@@ -75,10 +76,10 @@ void Fields(Visitor& v, Config& c) noexcept {
            c.mount_turn_sigma, 0.0, 1.0);
   v.Number({"servo.scale_sigma", "", "relative standard deviation of focal length and target size"},
            c.scale_sigma, 0.0, 1.0);
-  v.Number(
-      {"servo.way_in_vain", "m",
-       "Hold, until Track is requested again, after the camera has moved this far without a smaller error"},
-      c.way_in_vain, 0.001, 1000.0);
+  v.Number({"servo.way_in_vain", "m",
+            "Hold if the camera moves this far and the error does not decrease; Track must then be requested "
+            "again"},
+           c.way_in_vain, 0.001, 1000.0);
 }
 
 }  // namespace fovea::config

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A visitor of the field lists that finds the first value outside its range.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // [safety] limits of the torque, and the conditions of a fault.
 #pragma once
 

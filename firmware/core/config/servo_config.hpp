@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // All settings of the servo. Fixed after Init. Each struct has its own file, with the list of its fields:
 // key, unit, range, meaning (fields.hpp).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The active limits of the dual active-set method (move_into_limits.hpp), at most one per joint: multipliers,
 // and normals as N = Q R with Q orthonormal and R upper triangular. The normals are in coordinates in which
 // the cost is the Euclidean distance. Real-time: yes, all functions.

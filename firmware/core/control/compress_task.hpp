@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reduces a task to six rows, the hand's degrees of freedom. With L = Q R, the least-squares solution of L V
 // = v is that of R V = Q^T v. A task of six rows costs the law a third of one of eight.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/control/goal_posture.hpp"
 
 #include <algorithm>
@@ -21,12 +22,12 @@ using model::VecN;
 constexpr double kStepMost = 0.2;     // [rad]
 constexpr double kDamping = 1e-6;     // of J J^T, against a singular matrix [m^2, rad^2]
 constexpr double kReached = 2e-3;     // a goal this near is reached; later steps remove the rest [m, rad]
-constexpr double kOff = 0.01;         // a posture found is given up if it is further off than this
-constexpr int kOffSteps = 25;         // for more than this many steps
-constexpr double kLost = 0.5;         // or further off than this once
-constexpr int kStepsMost = 100;       // of a trial; then it is given up
-constexpr int kStepsLooked = 8;       // a trial is given up if in this many steps
-constexpr double kComesNearer = 0.8;  // its distance does not fall to this share
+constexpr double kOff = 0.01;         // a found posture is dropped if it is further off the goal than this
+constexpr int kOffSteps = 25;         // in more than this number of steps in a row
+constexpr double kLost = 0.5;         // or once further off the goal than this
+constexpr int kStepsMost = 100;       // of a trial; then the trial fails
+constexpr int kStepsLooked = 8;       // a trial fails if after this number of steps
+constexpr double kComesNearer = 0.8;  // its distance has not fallen to this share
 constexpr int kPasses = 3;            // of one step, to find joints at the ends of their ranges
 constexpr double kSpread = 0.5;       // of the first round's starts; each round adds as much [rad]
 constexpr int kTrialsInRound = 16;    // for each turn
@@ -208,7 +209,8 @@ bool TryOn(const config::ServoConfig& config, const Pose& X_BO, GoalPosture& goa
   return true;
 }
 
-// Ends the trial. A posture found downhill counts at once, others at the end of the round.
+// Ends the trial. A posture found by descent from the arm's posture counts at once, others at the end of the
+// round.
 void NextTrial(const config::ServoConfig& config, GoalPosture& goal) noexcept {
   const int turns = TurnsOf(config.feature);
   goal.downhill = goal.trial < turns;

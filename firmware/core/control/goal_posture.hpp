@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Searches, while the arm moves, for a posture in which the camera is at its goal relative to the target.
 //
 // The visual law only descends. With all six degrees of freedom controlled, it may stop at the end of a

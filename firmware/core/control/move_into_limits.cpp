@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/control/move_into_limits.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The joint velocity that keeps all limits and is nearest to a wish:
 //
 //   minimise  (dq - dq_wish)^T H (dq - dq_wish)   subject to  dq_min <= dq <= dq_max,  a_k^T dq <= b_k

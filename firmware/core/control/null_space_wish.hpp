@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The secondary task for the directions that the task leaves free: a sum of wished joint velocities, each
 // with its own gain, bounded as a whole. It does not disturb the task while no limit acts. When a limit acts,
 // both compete for the remaining freedom, and the bound keeps the wish the weaker one.

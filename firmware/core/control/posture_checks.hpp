@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks of a posture that is a goal, or that lies on the path to one.
 #pragma once
 

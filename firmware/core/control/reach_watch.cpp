@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/control/reach_watch.hpp"
 
 #include "firmware/core/control/way_to_goal.hpp"

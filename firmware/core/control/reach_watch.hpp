@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects that limits block the arm from its goal, and when the goal is worth another try.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinematic resolution that includes all limits: one constrained problem per tick.
 //
 // The wish is the damped solution without limits (resolve_damped.hpp). The result is the joint velocity

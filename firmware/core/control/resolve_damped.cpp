@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/control/resolve_damped.hpp"
 
 #include <algorithm>
@@ -28,7 +29,7 @@ double Filter(double sigma2, double threshold2) noexcept {
   return 1.0 / (threshold2 * half * half);
 }
 
-// Of the first `size` values, the one that exactly `greater` others precede in descending order.
+// The value with index `greater` after the first `size` values are sorted in descending order.
 double FromTheTop(RowEntries values, std::size_t size, std::size_t greater) noexcept {
   std::sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(size), std::greater<>());
   return values[greater];

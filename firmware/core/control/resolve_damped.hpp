@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinematic resolution without limits: from a wished task velocity to joint velocities.
 //
 //   dq = dq_0 + J^# (v - J dq_0)            J^# = W^-1/2 Jw^T g(Jw Jw^T),   Jw = J W^-1/2

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stage 3, first half: converts a task to joint velocities that keep all motion limits.
 //
 // The limits are ranges of the joint velocities and rows across them (motion_limits.hpp): joint velocity, the

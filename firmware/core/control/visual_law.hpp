@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stage 2, visual law: computes the task that reduces the feature's error.
 //
 //   ds_cmd = lambda(|e|) e - ds/dt of the target's own motion          e = s_star - s

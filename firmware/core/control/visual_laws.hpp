@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The visual laws. Each uses another interaction matrix to reduce the feature's error. servo.interaction
 // chooses one. Each is a function here and a line in kVisualLaws.
 //

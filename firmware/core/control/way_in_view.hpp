@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A joint path to a posture that keeps the target at its goal place in the picture.
 //
 // A straight joint path swings the camera away from the target. This path omits the part that would move the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/control/way_to_goal.hpp"
 
 #include <algorithm>
@@ -12,12 +13,12 @@ constexpr int kStepsInATick = 4;  // of the search for a posture
 constexpr int kTicksToAStep = 4;  // a posture found follows the target more slowly
 
 // When a joint motion takes over.
-constexpr double kLookS = 0.2;  // of Track, before the target's pose is trusted enough to leave the law's way
-constexpr double kIdleS = 0.4;  // without progress: the law is stalled
+constexpr double kLookS = 0.2;      // in Track, before the target's pose is trusted enough for a joint motion
+constexpr double kIdleS = 0.4;      // without progress: the law is stalled
 constexpr double kNearer = 0.8;     // progress: the distance falls to this share
-constexpr double kIdleSureS = 1.0;  // both, for targets that the law usually reaches
+constexpr double kIdleSureS = 1.0;  // kIdleS and kNearer for targets that the law usually reaches
 constexpr double kNearerSure = 0.5;
-constexpr double kThereM = 0.0015;  // a goal this near needs no other way
+constexpr double kThereM = 0.0015;  // the law alone reaches a goal this near
 constexpr double kThereRad = 0.006;
 constexpr double kMetrePerRad = 0.1;
 constexpr double kBegins = 0.04;  // if a joint is further from the posture than this [rad]
@@ -27,10 +28,10 @@ constexpr double kGain = 3.0;       // [1/s]
 constexpr double kSpeed = 1.8;      // of the fastest joint [rad/s]
 constexpr double kEnds = 0.015;     // when no joint is further from the posture [rad]
 constexpr double kAtDetour = 0.15;  // a waypoint this near counts as passed [rad]
-constexpr double kHeldShare = 0.1;  // limits that leave less of the motion than this share hold it up
+constexpr double kHeldShare = 0.1;  // limits block the motion if they leave less than this share of it
 constexpr double kHeldS = 0.4;      // after this time the search looks for another posture
 
-constexpr std::int64_t kSeekNs = 1'500'000'000;  // longest wait of the arm for a way
+constexpr std::int64_t kSeekNs = 1'500'000'000;  // maximum time that the arm waits for a path
 
 bool IsLonger(std::int64_t ns, double s) noexcept {
   return static_cast<double>(ns) > s * static_cast<double>(hal::kNsPerSecond);
@@ -130,11 +131,11 @@ void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGo
   const bool idle = IsLonger(way.stalled_ns, kIdleS);
   if (idle && way.goal.downhill && !way.preferred) {
     way.preferred = true;
-    SeekAnew(way.goal);  // it lay downhill from the arm's old posture; another one may from here
+    SeekAnew(way.goal);  // the old posture led to this goal posture; the present one may lead to another
     return;
   }
   if (idle && way.goal.downhill && !way.goal.clear) {
-    SeekClearerPosture(way.goal);  // the joints would get no nearer to this one than the law
+    SeekClearerPosture(way.goal);  // its path is blocked: a joint motion would come no nearer than the law
     way.stalled_ns = 0;
     return;
   }

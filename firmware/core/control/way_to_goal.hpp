@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses how the arm moves to a target: by the visual law, or by a joint motion.
 //
 // The law always reduces the feature's error. A limit, such as the end of a joint's range or the workspace's
@@ -5,11 +6,12 @@
 // posture (goal_posture.hpp). If the target leaves the hand no freedom, it searches all the time. For a disc
 // or ball, where the law usually succeeds, it searches only after limits have stopped the progress.
 //
-// The law goes first if a posture lies downhill. Otherwise the arm waits, for a limited time, until a posture
-// with a clear path is found. If limits stop the progress, the search starts from there. The joints then move
-// to the posture together, by the detour with which it was found, as straight as the target's place in the
-// picture and the limits allow. Near the posture the law takes over. All limits apply to both, except the
-// guard of the hand's singularities, which a joint motion may cross.
+// If gradient descent from the arm's posture finds a goal posture, the law starts first. Otherwise the arm
+// waits, for a limited time, until a posture with a clear path is found. If limits stop the progress, the
+// search starts from there. The joints then move to the posture together, by the detour with which it was
+// found, as straight as the target's place in the picture and the limits allow. Near the posture the law
+// takes over. All limits apply to both, except the guard of the hand's singularities, which a joint motion
+// may cross.
 #pragma once
 
 #include <cmath>
@@ -54,11 +56,11 @@ void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGo
 void SteerByJoints(const WayToGoal& way, const model::VecN& q, const features::TargetInCamera& seen,
                    const model::Mat6N& J_C, const model::Vec3& p_CO_C_star, MotionTask& task) noexcept;
 
-// Records what the limits left of that task, `dq`. True if they hold it up, or no posture was found in time.
+// Records what the limits left of that task, `dq`. True if they block it, or no posture was found in time.
 // Real-time: yes.
 bool NoteHeld(const MotionTask& task, const model::VecN& dq, WayToGoal& way) noexcept;
 
-// The limits that block a way and do not only slow it.
+// The limits that can block a path. All others only slow the motion down.
 inline constexpr hal::LimitSet kBarriers =
     hal::Bit(hal::Limit::kJointPosition) | hal::Bit(hal::Limit::kWorkspace) |
     hal::Bit(hal::Limit::kObstacle) | hal::Bit(hal::Limit::kSingularity) | hal::Bit(hal::Limit::kFieldOfView);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Estimates the external torques on the arm from its momentum (De Luca, Albu-Schaeffer, Haddadin and
 // Hirzinger, Collision detection and safe reaction with the DLR-III lightweight manipulator arm, 2006):
 //
@@ -37,8 +38,8 @@ struct CarriedLoad {
 };
 
 // Adds to `tau` [num_joints] the compensation of most of the observed external torque, so that a standing arm
-// yields less to an unknown load. It leaves out what friction may hold; otherwise servo and friction would
-// hunt each other. Real-time: yes.
+// yields less to an unknown load. It omits the part that friction may hold; otherwise servo and friction
+// would cause a limit cycle. Real-time: yes.
 void CarryLoad(const CarriedLoad& load, ContactState& state, model::VecN& tau) noexcept;
 
 }  // namespace fovea::estimate

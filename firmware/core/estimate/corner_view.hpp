@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flat target's corners in an image, with the camera's pose, and the corners expected there.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits one normal of a disc to its outlines in several views, taken from different places, all at once.
 //
 // Seen along the ray r, a disc with the normal n looks like one with the normal of about 2 (n.r) r - n, whose

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/estimate/encoder_watch.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects joints whose encoders hang: the reading stays the same although the joint must have moved.
 //
 // Three signs show that it must have moved: its measured velocity, the reference that it should follow, and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects an eye (camera and detector) that cannot steer the arm, whatever its defect. There are two signs:
 //
 // - For a while the target moves in the picture, in x or in y, against the shift that the hand's motion gives

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is assumed of a target when it is first seen.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of a target that one picture cannot tell apart, and the rule that selects the believed one.
 //
 // The camera moves, and its poses are known. In the base frame the true pose of a target at rest is the same

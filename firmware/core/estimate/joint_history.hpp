@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The joints' positions of the last half second, one entry per tick.
 #pragma once
 

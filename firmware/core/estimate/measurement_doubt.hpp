@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The effect of calibration errors on a measurement: how far the camera's pose, as the measurement sees it,
 // may disagree with what the filter absorbed a moment before.
 //

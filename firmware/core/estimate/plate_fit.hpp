@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits one pose to a flat target's corners in several views, taken from different places, all at once.
 //
-// This is not a filter. Near the cylinder through a triangle's corners its poses lie on a fold, and a filter
-// would not give up a wrong pose from there after the camera moves.
+// This is not a filter. Near the cylinder through a triangle's corners its poses lie on a fold. A filter
+// would keep a wrong pose from there even after the camera has moved.
 #pragma once
 
 #include <span>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kalman filter of a flat target's pose and its motion in the base frame, from its corners in the image.
 //
 // White jerk disturbs the position, as in target_filter.hpp. The orientation's error has three coordinates,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the true one of the poses that fit a picture of the target.
 //
 // Two poses fit a disc's outline exactly, up to four fit three corners. hypothesis_set.hpp has the rule that
@@ -78,8 +79,8 @@ struct Verdict {
                                const CornerView& view, PoseHypotheses& hypotheses) noexcept;
 
 // The believed pose of a flat target at `now_ns`. For a target at rest it is the pose that fits all views.
-// While the camera stands, the corners' errors stay the same. A filter would take these many views for new
-// information, and would forget the tilt, which views from the side show much better. If arm, camera and
+// While the camera stands still, the corner errors are constant. A filter would treat each view as
+// independent, and would forget the tilt, which views from the side show much better. If arm, camera and
 // corners disagree by more than some tenths of a pixel, nothing counts as still, and the filter's pose is
 // used. Real-time: yes.
 [[nodiscard]] FlatMotion MotionAt(const config::PredictConfig& config, const PoseHypotheses& hypotheses,

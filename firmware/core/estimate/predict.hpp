@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stage 1, predict: computes where the target is now from measurements that arrive late.
 //
 // A measurement is valid at its stamp. It is transformed to the base frame with the camera's pose of that

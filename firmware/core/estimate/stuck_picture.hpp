@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects a picture that does not change although the hand moves. A camera that repeats one picture shows a
 // target that seems to move with the hand. If that counted as a measurement, its motion would be fed forward
 // and drive the hand on without end.

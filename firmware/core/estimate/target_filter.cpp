@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/estimate/target_filter.hpp"
 
 #include <Eigen/LU>  // inverse of a 3x3

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kalman filter of a target's position, velocity and acceleration in the base frame: constant acceleration,
 // disturbed by white jerk. Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and
 // Navigation (2001), section 6.2.3.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps views of a target spread over the camera's path of any length, in bounded memory.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A round target by its centre and its size: s = (f X/Z, f Y/Z, f D/Z), dim 3, controls x, y, z.
 //
 // The feature of a disc with the 3-D centre p_CO_C and the diameter D. It is also the exercises' simple form

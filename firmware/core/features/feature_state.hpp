@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A visual feature at one instant: the input of the visual law, for every target.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/features/hold_orientation.hpp"
 
 #include "firmware/core/model/rotation.hpp"

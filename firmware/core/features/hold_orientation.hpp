@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Holds the camera's orientation: s = phi, the turn from the goal's orientation D to the camera's, R_DC =
 // exp([phi]x) [rad], dim 3, controls the three turns. Stacked below a sphere or a circle, which see no
 // orientation.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One point of a target in the normalised image: (x, y) = (X/Z, Y/Z), dim 2. The flat targets' features
 // consist of such points.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The corners of a flat target in the normalised image: s = (x_1, y_1, x_2, y_2, ...), two entries each, no
 // unit. Square and triangle use it. Three corners control all six degrees of freedom away from their singular
 // poses; four do so everywhere, unless the target is seen edge-on.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A target's whole pose: s = (p_CO_C [m], phi [rad]), dim 6, controls all six degrees of freedom, from
 // everywhere. phi is the turn from the goal's camera D to the camera, R_DC = R_CO_star R_CO^T = exp([phi]x).
 //

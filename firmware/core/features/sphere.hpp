@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sphere of known radius, seen by a calibrated camera: s = p_CO_C / R, dim 3, controls x, y, z.
 //
 // The sphere's outline is the cone of rays that touch it. With c the unit vector towards the centre and

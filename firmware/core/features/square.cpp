@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/features/square.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A square of known side, in two forms.
 //
 //   four corners   polygon.hpp, dim 8, controls all six degrees of freedom

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The features that the servo can steer by, for each target of target_traits.hpp.
 //
 //   target     feature     dim  controls                      file

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The kinds of targets, with all that other modules need to know of each: one line of a table per kind.
 //
 // Code that draws, detects, logs or steers by a target uses this table only. A new plate with corners needs

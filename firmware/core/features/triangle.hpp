@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A triangle by its three corners: polygon.hpp, dim 6, controls all six degrees of freedom.
 //
 // L_s loses rank when the camera's centre lies on the cylinder through the three corners with its axis along

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stage 5, clamp: the last step before the arm, in every mode. Makes torques finite, in range and in rate.
 #pragma once
 

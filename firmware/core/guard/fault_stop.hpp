@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stops the arm after a fault: damps it while that is possible and helps, then removes the torque and brakes.
 //
 // Damping needs true velocities. It cannot stop a joint that is pushed or whose motor is dead: the arm then

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detects an arm that does not follow its reference.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stage 3, guard: converts any wish for joint velocities to a reference that the arm may follow.
 //
 // First it shapes the wish so that it approaches each limit softly: joint velocity, joint position,

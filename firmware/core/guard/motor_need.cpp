@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/guard/motor_need.hpp"
 
 #include "firmware/core/model/ready_inertia.hpp"

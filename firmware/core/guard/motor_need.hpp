@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks that the motors can follow every reference that the guard allows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The path of a reference that comes to rest with every joint at full braking.
 //
 // Each joint's velocity goes to zero in the shortest time that its acceleration and jerk limits allow

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's configuration as bytes: the field lists of core/config, for any archive of fields.hpp.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CRC-32 of Ethernet and zlib: reflected polynomial 0xedb88320, all ones before and after.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plain values as bytes, little-endian, one after the other without gaps. One template serves both
 // directions: `template <class Archive, class T> void Fields(Archive& a, T& t) { a(t.x); ... }`.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames on a serial line. firmware/core/link/PROTOCOL.md describes the whole protocol.
 //
 //   0x00 | COBS(version u8, kind u8, sequence u32, payload, crc u32) | 0x00

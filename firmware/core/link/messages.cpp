@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/link/messages.hpp"
 
 #include "firmware/core/link/config_fields.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frames' payloads: the servo's configuration, inputs and outputs, as bytes and back.
 //
 // Decode returns false, and `message` must not be used, if bytes are missing or left over, a count exceeds

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo at the far end of a serial line: takes frames, steps the task, sends the result. It is all that a
 // processor without an operating system runs, apart from the processor's own driver.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's whole state as bytes and back, and its digest, for the flight recorder.
 #pragma once
 

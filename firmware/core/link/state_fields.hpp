@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fields of the servo's state that a tick takes from the previous tick, in groups. State that every tick
 // computes before it uses it (poses, dynamics, Jacobians, the prediction, the law's task) is not included.
 // Add a new field of a struct here too; state_test.cpp checks the structs' sizes.

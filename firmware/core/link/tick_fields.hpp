@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The fields of a tick's inputs and outputs, in the order of the line.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A serial arm as numbers: plain data, fixed capacity, no pointers.
 //
 // Link i is what joint i moves (i = 0 .. num_joints - 1). Its frame L_i has the joint's axis as z, so that

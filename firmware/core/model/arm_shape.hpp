@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The space that an arm fills: a capsule about each link, and the pairs of capsules that could touch.
 #pragma once
 

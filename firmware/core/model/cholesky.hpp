@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Symmetric positive definite systems of a few equations, without a heap and in a fixed order of operations.
 #pragma once
 

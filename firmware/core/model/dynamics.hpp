@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arm's equation of motion: M(q) ddq + C(q, dq) dq + g(q) = tau.
 //
 // All spatial quantities are taken about the origin of B in axes of B. There a sum over bodies is a plain

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of the arm's links, and how its joints move them.
 #pragma once
 

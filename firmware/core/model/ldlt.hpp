@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Symmetric systems of a few equations, without roots: A = L D L^T, L with ones on its diagonal. The size is
 // known at compile time, so that all loops are unrolled. One division per equation. (cholesky.hpp is for
 // sizes that are known only at run time.)

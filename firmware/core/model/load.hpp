@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the end effector carries: the camera, a tool, a workpiece.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // sin, cos and atan2 of our own, so that a PC and a microcontroller compute the same bits.
 //
 // Only additions, multiplications and divisions in a fixed order: the result depends on nothing but IEEE

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The joints' inertia at the ready posture, to check gains and motors.
 #pragma once
 

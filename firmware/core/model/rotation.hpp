@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rotations as vectors (axis times angle), and back. Uses our own sin, cos and atan2, so that bits agree.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Eigenvectors (axes) of a small symmetric matrix, A = U diag(a) U^T, by Jacobi rotations in bounded time.
 //
 // A sweep rotates each pair of axes once, in rounds of disjoint pairs (as in a chess tournament), so that the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Twists [v; w] of one rigid body in its different frames (THEORY B4).
 #pragma once
 

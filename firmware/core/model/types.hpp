@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors and matrices of the firmware: fixed capacity, no heap.
 #pragma once
 

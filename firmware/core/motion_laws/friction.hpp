@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Torques by which the servo itself compensates friction and springs in the joints.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The laws with a spring and a damper on each joint, and Float.
 #include <cmath>
 

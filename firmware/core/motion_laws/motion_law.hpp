@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stage 4, motion law: computes the joints' torques from their reference. servo.motion_law chooses one of
 // several laws; it can change while the arm moves. Each is a function and a line in motion_laws.hpp.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The laws themselves, and their list. Each writes `tau` [num_joints] at the seam.
 #pragma once
 
@@ -45,7 +46,7 @@ void OperationalSpace(const config::MotionLawConfig& config, const MotionLawInpu
 void Float(const config::MotionLawConfig& config, const MotionLawInputs& inputs, MotionLawState& state,
            model::VecN& tau) noexcept;
 
-// The error dynamics of an undisturbed joint; a run against theory is judged by them.
+// The error dynamics of an undisturbed joint. A run with theory.enabled is compared with them.
 enum class ErrorDynamics : std::uint8_t {
   kPlant,    // the joint's own inertia, friction and spring
   kSprings,  // the same, plus k_p and k_v

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/model/cholesky.hpp"
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/core/motion_laws/friction.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/moves/follow_motion.hpp"
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 namespace fovea::moves {
 namespace {
 
-constexpr double kLateS = 1.0;            // after this time beyond its plan, a limit blocks the end effector
+constexpr double kLateS = 1.0;            // a motion this late against its plan counts as blocked by a limit
 constexpr double kRounding = 1.0 + 1e-9;  // a plan that uses all of a limit may round above it
 
 bool Exceeds(double value, double limit) noexcept { return !(std::fabs(value) <= limit * kRounding); }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stage 3 in mode Move: the reference follows the commanded motion within all limits.
 //
 // Joint goals are planned online, jerk-limited and synchronised (joint_move.hpp), and so are the six

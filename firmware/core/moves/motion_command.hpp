@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A motion that a program commands, instead of following the target that the camera sees.
 #pragma once
 
@@ -9,7 +10,7 @@
 namespace fovea::moves {
 
 enum class MotionKind : std::uint8_t {
-  kNone,           // nothing is commanded in this tick; a stream that gives none has ended
+  kNone,           // no command in this tick; it ends a stream of setpoints
   kJointSetpoint,  // the joints' state now, one of a stream: q, dq, ddq
   kPoseSetpoint,   // the end effector's state now, one of a stream: p_BE, R_BE, V_BE_B
   kJointGoal,      // the joints come to rest there: q

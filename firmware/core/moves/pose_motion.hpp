@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motions of the end effector: planned in its own six coordinates, followed by the joints.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stage contact: estimates external torques, and checks that each encoder still follows its joint.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stage 0, inputs: accepts the arm's state, bridges a bad one for a configured time, or raises a fault.
 #pragma once
 

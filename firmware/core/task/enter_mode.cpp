@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/task/enter_mode.hpp"
 
 namespace fovea::task {

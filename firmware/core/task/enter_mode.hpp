@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Resets the state that starts anew with each mode.
 #pragma once
 

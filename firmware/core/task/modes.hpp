@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The modes and their transitions. The table of transitions is in modes.cpp, on one screen.
 #pragma once
 

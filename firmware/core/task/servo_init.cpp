@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks of a configuration before the task accepts it.
 #include <cmath>
 #include <memory>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/task/servo_loop.hpp"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ hal::Status ServoLoop::RunByClock(std::int64_t end_ns) noexcept {
     if (const hal::Status status = clock_.WaitUntil(deadline_ns); !status.ok()) {
       return status;
     }
-    // The missed ones of the deadlines that were left.
+    // The number of missed deadlines, at most those before end_ns.
     const std::int64_t late = (clock_.NowNs() - deadline_ns) / hal::kTickPeriodNs;
     const std::int64_t left = (end_ns - deadline_ns + hal::kTickPeriodNs - 1) / hal::kTickPeriodNs;
     missed_ticks = static_cast<std::int32_t>(std::max<std::int64_t>(std::min(late, left), 0));

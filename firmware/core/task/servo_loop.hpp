@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loop around the servo task: reads the arm, steps the task, writes the arm, once per period.
 //
 // The same loop runs in the simulator, at either pace, and on the robot. Only the drivers differ.
@@ -69,7 +70,8 @@ class ServoLoop {
   [[nodiscard]] LoopCounters counters() const noexcept;
 
   static constexpr std::uint64_t kNever = UINT64_MAX;
-  // Ticks in a row without a state after which an arm counts as silent: a run that should finish ends.
+  // After this number of ticks in a row without a state, an arm counts as silent: a run that should finish
+  // ends.
   static constexpr int kMostSilentTicks = 5;
 
  private:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the record of a tick: its inputs, the intermediate results, and the command.
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/core/task/servo_task.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stages that decide where the arm moves: the visual law and the reference.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's state from tick to tick, and the intermediate results of a tick.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tick, stage by stage, and its first stages: from the arm's sensors to the mode.
 #include "firmware/core/task/servo_task.hpp"
 

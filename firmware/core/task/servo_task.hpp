@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 1 kHz servo task: one call of Step converts the data of arm and camera to joint torques.
 //
 // Step is a function of (configuration, state, inputs): no clock, no globals. The same inputs give the same

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stages that decide what the motors do: the motion law, the damped stop and the clamp.
 #include <cmath>
 

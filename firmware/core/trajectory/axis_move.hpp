@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves one axis from any position, velocity and acceleration to rest at a goal, within limits of velocity,
 // acceleration and jerk: as fast as possible, or in a longer given time.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A root of a continuous function between two places where its signs differ, in a bounded number of steps.
 //
 // Chandrupatla's rule (A new hybrid quadratic/bisection algorithm, 1997): inverse quadratic interpolation

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves the joints' reference from any state to rest at a posture. All joints arrive together, within limits
 // of velocity, acceleration and jerk. The method: synchronised_move.hpp.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A joint's acceleration, jerk and braking, within its shares of the arm's limits.
 #pragma once
 

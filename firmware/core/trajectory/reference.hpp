@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The joints' reference, which the motion law follows. Continuous in q, dq and ddq.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A smooth transition from 0 to 1.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves several axes from any state to rest at a goal, where they arrive at the same time: the joints of an
 // arm, or the six coordinates of a pose.
 //

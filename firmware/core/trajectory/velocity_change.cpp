@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/trajectory/velocity_change.hpp"
 
 #include <algorithm>

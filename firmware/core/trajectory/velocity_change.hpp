@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Changes one axis from any velocity and acceleration to a given velocity, in the shortest time that its
 // acceleration and jerk limits allow: jerk to a peak of acceleration, hold the peak, release it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One tick of an axis towards a velocity that may change with every tick. It limits the visual law's motion,
 // and brings the arm to rest in Hold.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibration boards: a chessboard, which must be wholly visible, or a ChArUco board, of which a part is
 // enough: the markers in its white squares identify the corners. Too slow for the camera's rate.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Camera calibration: focal length, lens, and the camera's pose on the hand. Used before a run, not in the
 // tick or at the camera's rate.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command-line flags for the calibration board, the same in every program.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/config/camera_keys.hpp"
 
 #include "firmware/host/config/input_error.hpp"

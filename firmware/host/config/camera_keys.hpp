@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys of section [camera] for a real camera: its calibration and its mounting. They read the output of
 // `fovea calibrate`.
 #pragma once

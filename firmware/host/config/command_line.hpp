@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program's own command line as text for a log. Pasted into a shell, it repeats the run.
 #pragma once
 

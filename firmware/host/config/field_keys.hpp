@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Turns the fields of the servo's settings into keys: a visitor of the field lists in core/config.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/config/guard_table.hpp"
 
 #include <fmt/format.h>
@@ -26,12 +27,13 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kJointVelocity:
       return {"speed of a joint's reference", "the motion slows down as a whole and keeps its direction"};
     case hal::Limit::kJointAcceleration:
-      return {"acceleration of a joint's reference", "that joint's reference follows later"};
+      return {"acceleration of a joint's reference", "the reference of that joint is delayed"};
     case hal::Limit::kJointJerk:
-      return {"jerk of a joint's reference", "that joint's reference follows later"};
+      return {"jerk of a joint's reference", "the reference of that joint is delayed"};
     case hal::Limit::kWorkspace:
-      return {"distance of the end effector from the base, now and on the stopping path",
-              "only motions that can still stop inside start; the arm slides along the boundary"};
+      return {
+          "distance of the end effector from the base, now and on the stopping path",
+          "a motion starts only if the arm can stop inside the boundary; the arm slides along the boundary"};
     case hal::Limit::kTorque: return {"torque command of a joint, in every mode", "cut to the range"};
     case hal::Limit::kTorqueRate:
       return {"change of a joint's torque command per tick, in every mode", "cut to the rate"};
@@ -50,8 +52,8 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kSingularity:
       return {
           "smallest singular value of the hand's Jacobian",
-          "the posture goes no nearer to the singularity, except in a joint motion that ends clear of it; "
-          "the task gives way"};
+          "the arm moves no nearer to the singularity, except in a joint motion that ends clear of it; this "
+          "limit has priority over the task"};
     case hal::Limit::kFieldOfView:
       return {
           "distance of the target from the edge of the picture, less this margin; distance of the arm's "
@@ -67,18 +69,20 @@ GuardRow RowOf(hal::Fault fault) {
   switch (fault) {
     case hal::Fault::kNone: return {"", ""};
     case hal::Fault::kArmLost:
-      return {"an arm that answers with an error or not at all; the last command stays until the fault",
-              kBrake};
+      return {
+          "an arm that answers with an error or not at all; the last command stays in force until the fault",
+          kBrake};
     case hal::Fault::kArmStale:
       return {
-          "an arm whose stamps stand still or go back; a joint whose reading stays within one encoder step "
+          "an arm whose stamps do not increase; a joint whose reading stays within one encoder step "
           "(`safety.encoder_quantum`) for at least `safety.non_finite_ticks` although its torque, velocity "
           "or reference should have moved it by three steps; a joint whose velocity jumps while its position "
           "stays; a joint whose velocity flickered at rest and whose reading now repeats to the last bit "
           "(`safety.frozen_ticks`)",
           kBrake};
     case hal::Fault::kNonFiniteSensor:
-      return {"a joint value that is NaN or infinite; the last finite one counts until the fault", kBrake};
+      return {"a joint value that is NaN or infinite; the servo uses the last finite value until the fault",
+              kBrake};
     case hal::Fault::kNonFiniteFeature: return {"a measurement that is NaN or infinite", kStop};
     case hal::Fault::kNonFiniteControl:
       return {"a control law's output or a torque that is NaN or infinite", kStop};
@@ -87,9 +91,9 @@ GuardRow RowOf(hal::Fault fault) {
     case hal::Fault::kJointVelocity:
       return {
           "a joint measured faster than its limit (in Boot, half its limit), or moved between two states by "
-          "0.02 rad more than its limit allows; a velocity that keeps differing from the last one by 0.02 "
-          "rad/s more than twice the joint's largest acceleration explains: for `safety.non_finite_ticks` "
-          "the servo uses only the change that the motors can make",
+          "0.02 rad more than its limit allows; a velocity jump larger than 0.02 rad/s plus twice the "
+          "joint's largest acceleration times the time since the last state, if it persists: for "
+          "`safety.non_finite_ticks` the servo uses only the change that the motors can make",
           kStop};
     case hal::Fault::kNotFollowing: return {"a joint too far from its reference", kStop};
     case hal::Fault::kContact: return {"external torque, estimated from the arm's momentum", kStop};
@@ -104,10 +108,10 @@ std::string GuardTableAsMarkdown() {
   std::string text =
       "# What the servo watches\n\n"
       "Printed by `fovea guards`. A limit shapes the motion and is reported. A fault is latched; only a "
-      "reset clears it.\nThe servo leaves out measurements that do not fit the target's motion "
+      "reset clears it.\nThe servo rejects measurements that do not fit the target's motion "
       "(`servo.gate_sigma`). Without a measurement it\ncoasts (`servo.stale_s`), then holds "
-      "(`servo.coast_s`). The brakes replace a damped stop if the arm gets faster again,\nor slows down by "
-      "less than a third of what the damping should do. A commanded motion that the arm does not follow\n"
+      "(`servo.coast_s`). The brakes replace a damped stop if the arm gets faster again,\nor decelerates at "
+      "less than a third of the expected damping. A commanded motion that the arm does not follow\n"
       "ends in Hold (`safety.motion_error`). `guard_test` provokes each row in closed loop.\n";
   const auto head = [&](const char* title) {
     text +=

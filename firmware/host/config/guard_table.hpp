@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything that the servo watches, as a readable table: limits, which shape the motion, and faults, which
 // stop it.
 #pragma once

@@ -1,11 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/config/help_text.hpp"
-
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
 #include <sstream>
 
 namespace fovea::config {
@@ -29,8 +26,7 @@ bool IsHeading(const std::string& line) {
          line.back() == ':' && line.find(". ") == std::string::npos;
 }
 
-void AppendLine(std::string line, std::size_t width, std::string& text) {
-  const std::size_t column = RestColumn(line);
+void AppendLine(std::string line, std::size_t column, std::size_t width, std::string& text) {
   while (line.size() > width) {
     std::size_t space = line.rfind(' ', width);
     if (space == std::string::npos || space <= column) {
@@ -55,27 +51,23 @@ void AppendLine(std::string line, std::size_t width, std::string& text) {
 
 }  // namespace
 
-HelpStyle HelpStyleOfOutput() {
-  HelpStyle style;
-  if (isatty(STDOUT_FILENO) != 1) {
-    return style;
+std::string Fitted(const std::string& text, std::size_t column, std::size_t width) {
+  std::string fitted;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    AppendLine(line, column, width, fitted);
   }
-  winsize size{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) {
-    style.width = std::clamp<std::size_t>(size.ws_col, 60, 100);
-  }
-  style.bold_headings = std::getenv("NO_COLOR") == nullptr;
-  return style;
+  return fitted;
 }
 
-std::string FormatHelp(const std::string& text, const HelpStyle& style) {
+std::string FormatHelp(const std::string& text, const TextStyle& style) {
   std::string formatted;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
-    if (style.bold_headings && IsHeading(line)) {
-      formatted.append("\033[1m").append(line).append("\033[0m\n");
+    if (style.colour && IsHeading(line)) {
+      formatted.append(Painted(line, Paint::kBold, style)).append("\n");
     } else {
-      AppendLine(line, style.width, formatted);
+      AppendLine(line, RestColumn(line), style.width, formatted);
     }
   }
   return formatted;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bad input: one line for the person who can correct it. Thrown only outside the tick.
 #pragma once
 

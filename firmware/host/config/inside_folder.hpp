@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks where a file lies that another file refers to.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys that a program knows: name, unit, range and meaning of each, bound to the field that it sets.
 //
 // One table serves reading, checking, error messages and the printed list. A key's default is the value of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys of the end effector's load, the same for the simulator and for hardware.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the servo's configuration from the keys' settings, an arm, a camera mount and a target.
 #include <fmt/format.h>
 #include <fmt/ranges.h>

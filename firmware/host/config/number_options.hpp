@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rejects NaN and infinity in command-line numbers, whatever else an option checks.
 #pragma once
 

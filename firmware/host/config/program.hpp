@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Command-line handling of every program of the project: exit codes, and errors on one line.
 #pragma once
 
@@ -10,6 +11,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -18,6 +20,7 @@
 #include "firmware/host/config/help_text.hpp"
 #include "firmware/host/config/key_table.hpp"
 #include "firmware/host/config/number_options.hpp"
+#include "firmware/host/config/terminal.hpp"
 
 namespace fovea::config {
 
@@ -33,13 +36,28 @@ inline std::string OnOneLine(std::string text) {
   return text;
 }
 
-// Prints a line of the program `name` on standard error. Does not wait for a reader who has stopped reading.
+// An error as printed: one line, or lines that fit into `width`, if given.
+inline std::string ErrorText(const char* name, const std::string& text, std::optional<std::size_t> width) {
+  constexpr std::size_t kIndent = 2;
+  const std::string line = std::string(name) + ": " + OnOneLine(text);
+  return width ? Fitted(line, kIndent, *width) : line + "\n";
+}
+
+// Prints an error of the program `name` on standard error: one line, which a terminal's width breaks. Does
+// not wait for a reader who has stopped reading.
 inline void PrintError(const char* name, const std::string& text) {
   constexpr int kPatienceMs = 500;
   pollfd room{STDERR_FILENO, POLLOUT, 0};
   if (poll(&room, 1, kPatienceMs) != 0) {
-    std::fprintf(stderr, "%s: %s\n", name, OnOneLine(text).c_str());
+    const bool is_terminal = isatty(STDERR_FILENO) == 1;
+    const auto width = is_terminal ? std::optional(TerminalWidth(STDERR_FILENO)) : std::nullopt;
+    std::fputs(ErrorText(name, text, width).c_str(), stderr);
   }
+}
+
+// Prints `text` on standard output. A line that is too long continues at `column`.
+inline void PrintFitted(const std::string& text, std::size_t column) {
+  std::fputs(Fitted(text, column, TerminalWidth(STDOUT_FILENO)).c_str(), stdout);
 }
 
 // The names of the subcommands and options of `app`.
@@ -99,7 +117,7 @@ inline int RunProgram(const char* name, CLI::App& app, int argc, char** argv,
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
       std::ostringstream help;
       const bool done = app.exit(error, help, help) == 0;
-      std::fputs(FormatHelp(help.str(), HelpStyleOfOutput()).c_str(), stdout);
+      std::fputs(FormatHelp(help.str(), StyleOf(STDOUT_FILENO)).c_str(), stdout);
       return done ? kDone : kBadInput;
     }
     PrintError(name, Explain(app, error));

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Roll, pitch, yaw: the form of an orientation in a configuration.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys of sections [servo] and [safety], the same for the simulator and for hardware.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Settings read from a TOML file or from the command line, before they are checked against known keys.
 #pragma once
 

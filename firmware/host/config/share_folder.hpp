@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where shipped scenarios, robots and the report's page are.
 #pragma once
 

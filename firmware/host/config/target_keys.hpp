@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The keys of section [target] that describe the target, the same for the simulator and for hardware.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/config/toml_edit.hpp"
 
 #include <fmt/format.h>

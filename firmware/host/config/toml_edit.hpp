@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Changes values of a TOML file and keeps the rest of its text: comments, order, spaces.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/config/vision_keys.hpp"
 
 #include "firmware/host/config/input_error.hpp"
@@ -7,8 +8,8 @@ namespace fovea::config {
 void AddVisionKeys(VisionSettings& settings, KeyTable& keys) {
   vision::DetectorConfig& c = settings.config;
   keys.Choice("vision.method", settings.method, {"colour", "gray", "hough"},
-              "colour: search by the target's colour; gray: search by brightness only; hough: the source's "
-              "finder, Gaussian blur and Hough transform");
+              "colour: search by the target's colour; gray: search by brightness only; hough: the "
+              "finder of the course exercises, Gaussian blur and Hough transform");
   keys.Number("vision.hue_deg", c.colour.hue_deg, 0.0, 360.0, "deg",
               "the target's hue: 0 red, 120 green, 240 blue");
   keys.Number("vision.hue_width_deg", c.colour.hue_width_deg, 1.0, 90.0, "deg",

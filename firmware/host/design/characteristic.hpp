@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The characteristic polynomial of a sampled loop (see sampled_loop.hpp), and how many of its roots are
 // within the unit circle.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/design/linear_system.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Linear systems of any order, x' = A x: poles, free motion and their fit to samples. The loop with integral
 // action is one of them.
 #pragma once

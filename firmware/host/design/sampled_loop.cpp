@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/design/sampled_loop.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A PD regulator as a computer runs it: it samples the plant at a rate, and each force acts from a delay
 // after its sample until the next one replaces it (zero-order hold). Computes its poles and the limits of its
 // stability.

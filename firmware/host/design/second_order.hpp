@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One degree of freedom, m x'' + b x' + k x = f: its poles, its exact motion, and the PD regulator that gives
 // it another stiffness and damping.
 //

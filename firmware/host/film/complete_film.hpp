@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Completes a film at the end of a run. An error costs only the film.
 #pragma once
 

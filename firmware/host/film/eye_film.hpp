@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Film of the camera's frames, with detection, goal and time drawn in; encoded while the run goes on.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A queue of a film's frames. Its own thread draws and encodes them while the run goes on.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Marks on a camera's picture: outlines and crosses, to a fraction of a pixel.
 #pragma once
 

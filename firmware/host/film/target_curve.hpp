@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The target's outline in the picture, for display only.
 #pragma once
 

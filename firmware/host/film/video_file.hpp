@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An H.264 film in an MP4 file, as browsers play it (yuv420p), written frame by frame.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion of camera and end effector, computed from the measured joints and the arm's model in the log.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Time series thinned for a plot: as many rows as a screen can show, with every peak kept.
 #pragma once
 

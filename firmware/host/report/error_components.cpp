@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/report/error_components.hpp"
 
 #include <fmt/format.h>

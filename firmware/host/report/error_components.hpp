@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Names and units of the entries of the error e = s_star - s.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions of the target's features in the picture, frame by frame, and their goals: the centre of a round
 // target, each corner of a plate.
 #pragma once

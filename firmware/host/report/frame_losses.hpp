@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts frames that never reached the servo (gaps in the sequence numbers) and frames without target.
 #pragma once
 

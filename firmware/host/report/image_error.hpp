@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Image error: distance of the target from its goal in the picture, by the servo's prediction and by the
 // measurements in a log. The same measure as the true error: rms over the corners if the feature controls the
 // orientation, otherwise the error of the centre.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The common style of all pages: the report's style sheets.
 #pragma once
 

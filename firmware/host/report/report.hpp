@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The report of one run, or of two runs side by side: one self-contained HTML file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // RunData as JSON for the page's scripts; long arrays as base64 of little-endian float32.
 #include <fmt/format.h>
 #include <openssl/evp.h>

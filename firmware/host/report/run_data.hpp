@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run's data from its log, thinned to what a page can show.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/report/scene_reader.hpp"
 
 #include <algorithm>

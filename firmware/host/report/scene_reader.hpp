@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a log's scene and transforms to links with shapes, and their poses over time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The space that an arm fills, from its description: capsules, and the pairs of them that could touch.
 #pragma once
 

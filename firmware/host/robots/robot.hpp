@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loads a robot's files into the plain ArmModel that the servo computes with. Outside the tick.
 #pragma once
 

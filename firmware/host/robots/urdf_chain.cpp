@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/robots/urdf_chain.hpp"
 
 #include <console_bridge/console.h>

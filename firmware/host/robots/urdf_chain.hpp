@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The serial chain between two links of a URDF, as an ArmModel.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/run/run_book.hpp"
 
 #include <fmt/format.h>

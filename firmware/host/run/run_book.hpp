@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files of every run, simulated or on hardware: log.mcap, camera.mp4, report.html and summary.json.
 //
 // They are written during the run and put in place at its end. Data of only one kind of run, such as the

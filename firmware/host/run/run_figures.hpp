@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The counters of every run, simulated or on hardware, and their fields in summary.json.
 #pragma once
 

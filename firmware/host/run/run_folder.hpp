@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The folder of a run, or none: with only the summary, or with all files of a run (RunBook). Every program
 // writes its summary.json through this class.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run of the servo in any program: the simulator at either pace, or the hardware target.
 //
 // RunShell has the common parts: mailbox, flight recorder, tick meter, loop, the records' hash, the folder

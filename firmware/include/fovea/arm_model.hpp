@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An arm's kinematics and dynamics.
 #pragma once
 

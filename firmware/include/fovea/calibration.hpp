@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibration of camera and hand-eye, before any run.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The visual features: s and L_s of each target.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commanded motions: goals and streams of setpoints.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 1 kHz servo task.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Observes the stages of a tick from outside.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera-rate task: frames in, measurements out.
 #pragma once
 

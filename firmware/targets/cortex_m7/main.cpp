@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-mcu: the servo on a processor without an operating system, at the end of a serial line.
 #include "emitted/panda.hpp"
 #include "firmware/core/link/servo_server.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides when the servo may take over a robot that holds by itself.
 #pragma once
 

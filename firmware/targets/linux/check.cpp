@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/targets/linux/check.hpp"
 
 #include <fmt/format.h>
@@ -8,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "firmware/host/config/printed_table.hpp"
 #include "firmware/targets/linux/check_camera.hpp"
 #include "firmware/targets/linux/robots/arm_drivers.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
@@ -89,16 +91,17 @@ bool AnyFails(const Rows& rows) {
                      [](const CheckRow& row) { return row.verdict == Verdict::kFail; });
 }
 
-std::string ToTable(const Rows& rows) {
-  std::string text;
+std::string ToTable(const Rows& rows, const config::TextStyle& style) {
+  config::PrintedTable table(style);
   for (const CheckRow& row : rows) {
-    text += fmt::format("  {:<6}{:<18}{}\n", kVerdictNames[static_cast<std::size_t>(row.verdict)], row.what,
-                        row.found);
+    const config::Paint paint = row.verdict == Verdict::kFail ? config::Paint::kBad : config::Paint::kPlain;
+    table.Row(fmt::format("{:<6}{:<18}", kVerdictNames[static_cast<std::size_t>(row.verdict)], row.what),
+              row.found, paint);
     if (!row.advice.empty()) {
-      text += fmt::format("{:26}{}\n", "", row.advice);
+      table.Row("", row.advice);
     }
   }
-  return text;
+  return table.text();
 }
 
 std::string ToJson(const Rows& rows) {

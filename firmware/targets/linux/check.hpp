@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pre-flight check of computer, robot and camera before an arm moves.
 #pragma once
 
@@ -5,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/host/config/terminal.hpp"
 #include "firmware/targets/linux/hw_config.hpp"
 
 namespace fovea::hw {
@@ -23,7 +25,7 @@ struct CheckRow {
 std::vector<CheckRow> Check(const HwConfig& config);
 
 [[nodiscard]] bool AnyFails(const std::vector<CheckRow>& rows);
-std::string ToTable(const std::vector<CheckRow>& rows);
+std::string ToTable(const std::vector<CheckRow>& rows, const config::TextStyle& style = {});
 std::string ToJson(const std::vector<CheckRow>& rows);
 
 }  // namespace fovea::hw

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares the measured joint torques of an arm at rest with the model's gravity.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/targets/linux/hw_config.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/share_folder.hpp"
+#include "firmware/host/robots/shipped_robots.hpp"
 #include "firmware/targets/linux/cameras/camera_driver.hpp"
 
 namespace fovea::hw {
@@ -96,7 +98,7 @@ config::KeyTable HwKeys(HwConfig& c) {
               "point of the exposure at which the camera takes its stamp");
   keys.Number("camera.transport_ms", camera.transport_ms, 0.0, 1000.0, "ms",
               "least time from a stamp to the arrival of its picture, used if the camera's clock cannot be "
-              "read; an error of it is latency that nothing compensates");
+              "read; an error in it is a latency that the prediction does not compensate");
   keys.Choice("camera.time", camera.time, {"computer", "device"},
               "clock of the stamps; device: the camera's clock, which must agree with the loop's (PTP, or a "
               "simulated camera in lockstep)");
@@ -109,7 +111,7 @@ config::KeyTable HwKeys(HwConfig& c) {
       "safety.rotation_speed that is used");
   keys.Number(
       "input.dead_man_s", c.input.dead_man_s, 0.0, 3600.0, "s",
-      "after so long without a line on standard input, by the loop's clock, the arm is held until somebody "
+      "the arm is held after this time without a line on standard input, by the loop's clock, until somebody "
       "requests motion again; 0: no operator is needed");
   keys.Integer("loop.priority", c.loop.priority, 1, 98, "", "priority of the servo's thread, SCHED_FIFO");
   keys.Integer("loop.cpu", c.loop.cpu, -1, 1023, "", "processor of the servo's thread; -1: any");
@@ -120,7 +122,7 @@ config::KeyTable HwKeys(HwConfig& c) {
       "largest difference of a joint's torque at rest from the model's gravity; above it motion is refused");
   keys.Number("check.gravity_s", c.check.gravity_s, 0.01, 60.0, "s", "averaging time of that torque");
   keys.Number("log.picture_rate_hz", c.log.picture_rate_hz, 0.0, 1000.0, "Hz",
-              "with --out: the log keeps at most so many pictures per second");
+              "with --out: maximum rate of the pictures in the log");
   keys.Flag("log.film", c.log.film, "with --out: the camera's film, as camera.mp4 and in the report");
   config::AddServoKeys(c.servo, keys);
   return keys;
@@ -144,10 +146,10 @@ HwConfig LoadHwConfig(const std::string& name_or_path, const std::vector<std::st
 }
 
 robots::Robot LoadHwRobot(const HwConfig& config) {
-  const fs::path given = config.arm.model;
-  const bool is_path = given.extension() == ".toml" || given.extension() == ".urdf";
-  robots::Robot robot =
-      robots::LoadRobot(is_path ? given : config::ShareFolder() / "robots" / (config.arm.model + ".toml"));
+  const std::string& given = config.arm.model;
+  robots::Robot robot = robots::LoadRobot(
+      robots::IsRobotPath(given) ? fs::path(given)
+                                 : robots::FindShippedRobot(given, "arm.model", robots::kOrRobotPath));
   const int num_joints = ArmDriverOf(config).num_joints;
   if (robot.model.num_joints != num_joints) {
     throw InputError(fmt::format(

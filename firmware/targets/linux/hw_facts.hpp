@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The facts of a run on hardware, for its files.
 #pragma once
 

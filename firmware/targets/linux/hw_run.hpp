@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the servo on the robot until somebody ends it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arm and its target for a log's viewer, made only from the servo's model.
 #pragma once
 

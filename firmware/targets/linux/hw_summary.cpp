@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/targets/linux/hw_summary.hpp"
 
 #include <fmt/format.h>
@@ -87,19 +88,25 @@ bool EndedInDoubt(const HwSummary& s) {
   return false;
 }
 
-// The names of the faults that the run recovered from.
+// E.g. "the target was lost (target_lost)": for a person, with the name that the documents list.
+template <typename Reason>
+std::string InWords(Reason reason) {
+  return fmt::format("{} ({})", hal::Words(reason), hal::Name(reason));
+}
+
+// The faults that the run recovered from.
 std::string RecoveredFrom(const HwSummary& s) {
   const std::size_t left = s.fault != hal::Fault::kNone && !s.faults.empty() ? 1 : 0;
-  std::map<std::string, int> counts;
+  std::map<hal::Fault, int> counts;
   for (std::size_t k = 0; k + left < s.faults.size(); ++k) {
-    ++counts[hal::Name(s.faults[k].fault)];
+    ++counts[s.faults[k].fault];
   }
   std::vector<std::string> words;
   words.reserve(counts.size());
-  for (const auto& [name, count] : counts) {
-    words.push_back(count > 1 ? fmt::format("{} ({} times)", name, count) : name);
+  for (const auto& [fault, count] : counts) {
+    words.push_back(InWords(fault) + (count > 1 ? fmt::format(", {} times", count) : ""));
   }
-  return fmt::format("{}", fmt::join(words, ", "));
+  return fmt::format("{}", fmt::join(words, "; "));
 }
 
 void JudgeEnd(HwSummary& s) {
@@ -107,7 +114,7 @@ void JudgeEnd(HwSummary& s) {
   const hal::HoldReason reason = s.hold_reason;
   s.converged = false;
   if (s.fault != hal::Fault::kNone) {
-    s.verdict = fmt::format("the run ended in a fault: {}", hal::Name(s.fault));
+    s.verdict = fmt::format("the run ended in a fault: {}", InWords(s.fault));
   } else if (!s.refusal.empty()) {
     s.verdict = s.refusal;
   } else if (s.ticks == 0) {
@@ -129,11 +136,11 @@ void JudgeEnd(HwSummary& s) {
     s.verdict = fmt::format("the run ended while the servo followed the target; at the end {}", last);
   } else if (reason == hal::HoldReason::kNoTarget || reason == hal::HoldReason::kTargetLost ||
              reason == hal::HoldReason::kGoalUnreachable) {
-    s.verdict = fmt::format("the servo should follow the target, but held at the end ({}); {}",
-                            hal::Name(reason), last);
+    s.verdict = fmt::format("the servo should follow the target, but held at the end because {}; {}",
+                            InWords(reason), last);
   } else if (s.mode == hal::Mode::kHold && EndedInDoubt(s)) {
-    s.verdict = fmt::format("the servo should follow the target, but held at the end ({}); {}",
-                            hal::Name(hal::HoldReason::kEyeDoubted), last);
+    s.verdict = fmt::format("the servo should follow the target, but held at the end because {}; {}",
+                            InWords(hal::HoldReason::kEyeDoubted), last);
   } else if (s.operator_silent && HasTracked(s)) {
     s.verdict =
         fmt::format("the servo should follow the target, but held because the operator was silent; {}", last);
@@ -157,7 +164,7 @@ Json RobotOf(const RobotFigures& robot) {
 void Judge(HwSummary& s) {
   JudgeEnd(s);
   if (const std::string recovered = RecoveredFrom(s); !recovered.empty()) {
-    s.verdict += "; recovered from " + recovered;
+    s.verdict += "; recovered from: " + recovered;
   }
   if (s.converged == true) {
     s.verdict += fmt::format("; {}", kUnknown);

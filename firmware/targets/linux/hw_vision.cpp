@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/targets/linux/hw_vision.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vision of the hardware target: camera and detector on their own thread, measurements to the servo.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-hw: the servo on the robot.
 #include <fmt/format.h>
 
@@ -19,6 +20,8 @@ namespace {
 
 using namespace fovea;
 
+constexpr std::size_t kContinued = 2;  // indent of the rest of a printed line that is too long
+
 struct Arguments {
   std::string config;
   std::vector<std::string> assignments;
@@ -35,7 +38,7 @@ struct Arguments {
 
 int Check(const hw::HwConfig& config, bool json) {
   const std::vector<hw::CheckRow> rows = hw::Check(config);
-  fmt::print("{}", json ? hw::ToJson(rows) : hw::ToTable(rows));
+  fmt::print("{}", json ? hw::ToJson(rows) : hw::ToTable(rows, config::StyleOf(STDOUT_FILENO)));
   return hw::AnyFails(rows) ? config::kGoalMissed : config::kDone;
 }
 
@@ -53,10 +56,20 @@ std::optional<hw::HwSummary> Serve(const hw::HwConfig& config, const Arguments& 
   }
 }
 
+void PrintVerdict(const hw::HwSummary& summary) {
+  const config::TextStyle style = config::StyleOf(STDOUT_FILENO);
+  std::string lines = config::Fitted(summary.verdict, kContinued, style.width);
+  lines.pop_back();  // its line end
+  const config::Paint paint = !summary.converged   ? config::Paint::kPlain
+                              : *summary.converged ? config::Paint::kGood
+                                                   : config::Paint::kBad;
+  fmt::print("{}\n", config::Painted(lines, paint, style));
+}
+
 int Run(const Arguments& arguments) {
   hw::HwConfig config = hw::LoadHwConfig(arguments.config, arguments.assignments);
   if (arguments.keys) {
-    fmt::print("{}", config::KeysAsText(hw::HwKeys(config)));
+    fmt::print("{}", config::KeysAsText(hw::HwKeys(config), config::TerminalWidth(STDOUT_FILENO)));
     return config::kDone;
   }
   if (arguments.check) {
@@ -74,15 +87,19 @@ int Run(const Arguments& arguments) {
     fmt::print("{}", hw::ToJson(summary));
   } else {
     if (summary.seen && summary.seen->last_px) {
-      fmt::print("{} frames, the target in {}; at the end {:.2f} px off its goal\n", summary.seen->frames,
-                 summary.seen->frames_detected, *summary.seen->last_px);
+      config::PrintFitted(
+          fmt::format("{} frames, the target in {}; at the end {:.2f} px off its goal", summary.seen->frames,
+                      summary.seen->frames_detected, *summary.seen->last_px),
+          kContinued);
     }
-    fmt::print(
-        "{} ticks, {} overruns; {} states, {} lost; {} commands, {:.0f} % of the last 100 arrived; ended in "
-        "{}\n",
-        summary.ticks, summary.overruns, summary.robot.states, summary.robot.lost_states,
-        summary.robot.commands, 100.0 * summary.robot.command_success_rate, hal::Name(summary.mode));
-    fmt::print("{}\n", summary.verdict);
+    config::PrintFitted(
+        fmt::format(
+            "{} ticks, {} overruns; {} states, {} lost; {} commands, {:.0f} % of the last 100 arrived; "
+            "ended in {}",
+            summary.ticks, summary.overruns, summary.robot.states, summary.robot.lost_states,
+            summary.robot.commands, 100.0 * summary.robot.command_success_rate, hal::Name(summary.mode)),
+        kContinued);
+    PrintVerdict(summary);
   }
   if (!summary.files_error.empty()) {
     throw config::InputError(summary.files_error);

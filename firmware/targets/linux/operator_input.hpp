@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The operator's words on standard input, one per line.
 #pragma once
 

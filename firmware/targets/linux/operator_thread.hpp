@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The operator's thread: reads words and signals, and renews the permission to move.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/targets/linux/run_watch.hpp"
 
 #include <fmt/format.h>
@@ -38,16 +39,20 @@ void RunWatch::Add(const hal::TickRecord& record, bool finishes) {
   }
   summary_.mode = record.mode;
   summary_.fault = record.fault;
-  Say(fmt::format("{}{}{}", hal::Name(record.mode), faulty ? ": " : "",
-                  faulty ? hal::Name(record.fault) : ""));
-  if (faulty) {
+  const char* mode = hal::Name(record.mode);
+  if (!faulty) {
+    Say(mode);
+  } else {
+    const char* fault = hal::Name(record.fault);
+    Say(fmt::format("{}: {}", mode, fault),
+        fmt::format("{}: {} ({})", mode, hal::Words(record.fault), fault));
     summary_.faults.push_back({Seconds(record), record.fault, record.fault_joint});
   }
 }
 
-void RunWatch::Say(const std::string& line) {
-  summary_.events.push_back(line);
-  speaker_.Say(line);
+void RunWatch::Say(const std::string& event, const std::string& words) {
+  summary_.events.push_back(event);
+  speaker_.Say(words);
 }
 
 double RunWatch::Seconds(const hal::TickRecord& record) const {

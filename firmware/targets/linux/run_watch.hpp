@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints and stores the changes of mode and the faults in a run's records.
 #pragma once
 
@@ -17,13 +18,15 @@ class RunWatch {
   // `finishes`: the arm is brought to rest at the end; modes from then on do not count as the final mode.
   void Add(const hal::TickRecord& record, bool finishes);
   // Prints an event and keeps it for the summary.
-  void Say(const std::string& line);
+  void Say(const std::string& line) { Say(line, line); }
 
   // Whether new states of the arm arrive; true once after each AwaitArm.
   bool ArmIsBack() { return std::exchange(back_, false); }
   void AwaitArm() { awaited_ = true; }
 
  private:
+  // Prints `words` for the event that the summary keeps.
+  void Say(const std::string& event, const std::string& words);
   [[nodiscard]] double Seconds(const hal::TickRecord& record) const;
 
   HwSummary& summary_;

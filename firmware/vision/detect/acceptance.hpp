@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a fit must reach to be accepted as the target, whatever the target's shape is.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/vision/detect/picture_watch.hpp"
 
 #include <algorithm>

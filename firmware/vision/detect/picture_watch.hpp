@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures how long the camera has shown the same picture. A camera that hangs repeats its last picture with
 // new stamps, possibly with new noise.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/vision/detect/polygon_detector.hpp"
 
 #include <Eigen/Geometry>

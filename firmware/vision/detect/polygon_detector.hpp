@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plates with corners: find (polygon_finder.hpp), fit (polygon_fit.hpp), pose (flat_pose.hpp), judge.
 #pragma once
 

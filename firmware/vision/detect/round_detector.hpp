@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sphere and disc: find (curve_finder.hpp or hough_finder.hpp), fit (curve_fit.hpp), judge.
 #pragma once
 

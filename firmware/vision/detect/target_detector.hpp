@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Computes a target's feature from an image: find, fit, judge. A false detection is worse than none.
 //
 // A sphere or disc is first fitted directly at the place predicted from the last images. If that fails, or

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/vision/detect/vision_task.hpp"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera-rate task: computes a feature for the servo from each frame of the camera.
 #pragma once
 

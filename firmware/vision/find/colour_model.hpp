@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Likeness of a colour to the target's: a weight of hue and saturation, as a table over BGR.
 #pragma once
 

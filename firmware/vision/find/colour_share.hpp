@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The share of an outline's inside that has the target's colour.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Closed curves in the image that are linear in their parameters: F(u, v) = row(u, v) . p - rhs(u, v), zero
 // on the curve, positive outside. So a fit is weighted least squares, the gradient gives distances, and
 // sphere and disc share finder, edges and fit.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // First stage of finding a sphere or disc: approximate curves. Cuts chains of edge points (edge_map.hpp) into
 // pieces that a curve fits, then refits each curve to the points of all chains that lie on it.
 #pragma once

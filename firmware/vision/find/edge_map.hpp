@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Edges of an image, or of a part of it: points with sub-pixel accuracy, linked to chains.
 //
 // The image is first reduced by averaging squares of pixels, which removes most of the noise and saves most

@@ -1,4 +1,5 @@
-// The source project's circle finder: gray image, Gaussian blur, Hough transform. Accurate to about a pixel.
+// SPDX-License-Identifier: Apache-2.0
+// The course exercises' circle finder: gray image, Gaussian blur, Hough transform. Accurate to about a pixel.
 #pragma once
 
 #include <opencv2/core.hpp>

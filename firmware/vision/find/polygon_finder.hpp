@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // First stage of finding a triangle or a square: approximate corners. Cuts chains of edge points into
 // straight pieces, and joins pieces that can follow one another around a convex polygon.
 #pragma once

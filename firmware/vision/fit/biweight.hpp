@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Weight of an edge that is off the line or curve through the others.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Second stage of finding a sphere or disc: the accurate curve. Measures edges along lines across the curve
 // (profiles.hpp), then fits the curve to them by robust weighted least squares, in a few rounds.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The outline of a sphere at a known position, for drawing.
 #pragma once
 

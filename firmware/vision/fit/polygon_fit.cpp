@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/vision/fit/polygon_fit.hpp"
 
 #include <Eigen/LU>

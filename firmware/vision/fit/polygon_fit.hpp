@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Second stage of finding a triangle or a square: accurate corners. Measures edges along lines across each
 // side (profiles.hpp), fits a robust line to each side, and intersects the lines into corners with a
 // covariance. Hidden parts of a side (side_evidence.hpp) are left out, with a margin.

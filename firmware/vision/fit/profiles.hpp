@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures the position of an edge from the brightness along short lines across an outline.
 //
 // Along a line the brightness goes from the level inside to the level outside like a blurred step. The

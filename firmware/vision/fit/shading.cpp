@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fits how a ball's brightness falls off towards its outline, from the samples of all lines (profiles.hpp),
 // by a model of surface and light.
 #include "firmware/vision/fit/shading.hpp"

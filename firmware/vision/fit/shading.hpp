@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far a ball's surface is turned towards the camera near its outline.
 #pragma once
 

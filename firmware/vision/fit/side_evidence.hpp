@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decides line by line, from the colours inside and outside of a polygon's sides, where the target ends.
 //
 // A side of the target has the target's colour inside and another colour outside. Where an object hides the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/vision/fit/side_line.hpp"
 
 #include <Eigen/LU>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A line through the edges of one side of a polygon; some edges may belong to another object.
 #pragma once
 

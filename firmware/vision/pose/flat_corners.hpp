@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The corners of a flat target in its own plane.
 #pragma once
 

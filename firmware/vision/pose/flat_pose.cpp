@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/vision/pose/flat_pose.hpp"
 
 #include <Eigen/Dense>

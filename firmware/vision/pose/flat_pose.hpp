@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Poses of flat targets from their outlines: a disc from its ellipse, square and triangle from their corners.
 //
 // Each outline has several poses: a disc two, a square two (each in four equivalent quarter turns), a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The poses of three points from the rays to them (P3P). Fixed size, no heap.
 //
 // J. A. Grunert, Das Pothenotische Problem in erweiterter Gestalt (1841), as in R. M. Haralick et al., Review

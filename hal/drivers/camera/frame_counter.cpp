@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/camera/frame_counter.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/camera/latch_mapper.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/cortex_m7/faults.hpp"
 
 #include "fovea/cortex_m7/interrupts.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From reset to the program: FPU on, data in RAM, the stack filled with a pattern to measure its use later.
 #include <cstddef>
 #include <cstdint>

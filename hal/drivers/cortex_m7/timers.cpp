@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/cortex_m7/timers.hpp"
 
 #include <atomic>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part that runs in the loop: no heap, no lock, no exception. The set-up is in franka_setup.cpp.
 #include "fovea/franka/franka_arm.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Connecting and setting up: once, before the loop. May block, allocate and throw.
 #include <chrono>
 

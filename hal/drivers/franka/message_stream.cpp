@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/franka/message_stream.hpp"
 
 #include <algorithm>

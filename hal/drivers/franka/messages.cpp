@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/franka/messages.hpp"
 
 #include "fovea/franka/errors.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/franka/torque_rate.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "aravis_session.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One session of a camera through Aravis: opened, set up and streaming until it is lost or closed.
 #pragma once
 

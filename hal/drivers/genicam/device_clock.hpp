@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads a camera's own clock periodically while the camera streams, in its own thread.
 //
 // GenICam's names for it are TimestampLatch and TimestampLatchValue [ns] (SFNC 2), before that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replaces malloc and related functions in the executable, counts each call, and forwards it to glibc.
 // operator new and delete are counted too, because libstdc++ builds them on malloc and free.
 #include <cerrno>

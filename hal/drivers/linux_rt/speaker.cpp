@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/linux_rt/speaker.hpp"
 
 #include <poll.h>
@@ -42,7 +43,7 @@ struct Speaker::Shared {
   std::deque<std::string> texts;  // the first is being written
   std::uint64_t dropped = 0;
   bool closed = false;     // no more texts
-  bool abandoned = false;  // waiting texts are given up too
+  bool abandoned = false;  // waiting texts are dropped too
 
   bool IsAbandoned() {
     const std::lock_guard lock(mutex);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/linux_rt/tick_meter.hpp"
 
 #include <sys/resource.h>

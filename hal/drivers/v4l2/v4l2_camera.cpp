@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/v4l2/v4l2_camera.hpp"
 
 #include <algorithm>

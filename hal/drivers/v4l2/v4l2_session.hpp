@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One session of a video device: opened, set up, with its buffers mapped, streaming.
 #pragma once
 

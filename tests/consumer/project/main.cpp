@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo drives an arm that this program defines. Users with their own robot write such a program.
 #include <Eigen/Cholesky>
 #include <cstdio>

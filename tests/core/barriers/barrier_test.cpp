@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The speed with which a barrier may be approached.
 #include "firmware/core/barriers/barrier.hpp"
 

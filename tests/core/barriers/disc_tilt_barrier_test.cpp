@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The tilt of a disc's face to the line of sight: the row against differences, and when there is no row.
 #include "firmware/core/barriers/disc_tilt_barrier.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps the target in the picture: the rows against finite differences, and a target that moves out.
 #include "firmware/core/barriers/field_of_view_barrier.hpp"
 

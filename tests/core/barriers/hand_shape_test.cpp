@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bodies fixed to the hand: capsules covered by balls, and their distance to planes and boxes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distance of the arm's links from the line of sight: value against a search, row against differences.
 #include "firmware/core/barriers/line_of_sight_barrier.hpp"
 

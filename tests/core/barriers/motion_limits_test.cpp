@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The limits of a configuration as ranges and rows.
 #include "firmware/core/barriers/motion_limits.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distances to planes and boxes, against a search over their surfaces.
 #include "firmware/core/barriers/obstacle.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distance of the arm from itself and from planes: values against a search, rows against differences.
 #include "firmware/core/barriers/self_clearance_barrier.hpp"
 

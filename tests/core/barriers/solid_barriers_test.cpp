@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the arm can run into: each gradient against differences of its value; the table is complete.
 #include "firmware/core/barriers/solid_barriers.hpp"
 

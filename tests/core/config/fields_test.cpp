@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The lists of fields are complete: every member of a struct is in its list.
 #include "firmware/core/config/fields.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A task in fewer rows has the same least-squares solution; compared with Eigen.
 #include "firmware/core/control/compress_task.hpp"
 

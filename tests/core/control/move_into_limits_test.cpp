@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The nearest velocity within limits, against an exhaustive search and against the conditions of optimality.
 #include "firmware/core/control/move_into_limits.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A goal that limits keep out of reach, and when the servo tries it again.
 #include "firmware/core/control/reach_watch.hpp"
 

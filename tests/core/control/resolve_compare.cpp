@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints how methods of kinematic resolution compare in closed loop (resolve_loop.hpp), on the same starts:
 //   resolve_compare [starts] [seconds per run]
 #include <chrono>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The constrained resolution: its priorities, its continuity, and its behaviour with any input.
 #include "firmware/core/control/resolve_constrained.hpp"
 

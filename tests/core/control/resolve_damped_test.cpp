@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The damped resolution against Eigen's SVD, and its behaviour on paths through singular postures.
 #include "firmware/core/control/resolve_damped.hpp"
 

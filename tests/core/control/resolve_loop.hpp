@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A closed loop without dynamics, to compare methods of kinematic resolution on the same starts: the arm
 // follows its reference exactly, the camera measures the ball's centre without delay or noise.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Kinematic resolution in closed loop: the benefit of limits inside the solver.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/control/resolve_motion.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Null-space wishes and the singularity measure against finite differences, and the limit based on it.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Joint paths that keep the target in view: its place in the image against differences, and whole paths.
 #include "firmware/core/control/way_in_view.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The contact observer on an arm that follows its model, moving and pushed.
 #include "firmware/core/estimate/contact.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Test data: views of a flat target's corners from a moving camera, with noise of a given size.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encoders that hang, and encoders whose joint only rests.
 #include "firmware/core/estimate/encoder_watch.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measurements that must not be used for steering.
 #include "firmware/core/estimate/eye_watch.hpp"
 

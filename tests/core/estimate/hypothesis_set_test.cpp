@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rule that selects one of several hypotheses, and the views that it compares them with.
 #include "firmware/core/estimate/hypothesis_set.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Selects the true one of the poses that three corners allow, and finds a still target from all views.
 #include "firmware/core/estimate/pose_hypotheses.hpp"
 

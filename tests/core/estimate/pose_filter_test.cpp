@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A flat target's pose from its corners: exact for its motion model, with a consistent covariance.
 #include "firmware/core/estimate/pose_filter.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Predicts where the target is now from measurements that are old on arrival.
 #include "firmware/core/estimate/predict.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The view of a target after camera and target have moved, for the differences that L_s is compared with.
 // Rotations use Eigen's exponential.
 #pragma once

@@ -1,4 +1,6 @@
-// The circle feature: against B3's matrix, finite differences, and the source's block and depth formula.
+// SPDX-License-Identifier: Apache-2.0
+// The circle feature: against equation B3, finite differences, and the translational block and depth formula
+// of the course exercises.
 #include "firmware/core/features/circle.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +22,7 @@ TEST(CircleFeatureTest, InteractionMatrixMatchesFiniteDifferences) {
   EXPECT_LT(worst, 1e-8);
 }
 
-// In pixels it is THEORY B3, whose left half is the source's getImageJacobianCFToFF.
+// In pixels it is THEORY B3, whose left half is getImageJacobianCFToFF of the course exercises.
 TEST(CircleFeatureTest, InteractionMatrixInPixelsEqualsTheoryB3) {
   test::RandomStates random(42);
   double worst = 0.0;

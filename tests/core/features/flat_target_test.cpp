@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Square and triangle: every form of their features against finite differences, refused input, the list.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The held orientation against finite differences, and stacked below a sphere.
 #include "firmware/core/features/hold_orientation.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sphere feature: its interaction matrix against finite differences, its cone against plain geometry, and
 // input that is refused.
 #include "firmware/core/features/sphere.hpp"

@@ -1,5 +1,6 @@
-// What three corners can control: L_s loses rank on the cylinder through them, and not where the notes of the
-// source say it does.
+// SPDX-License-Identifier: Apache-2.0
+// What three corners can control: L_s loses rank on the cylinder through them, not where the notes of the
+// course exercises say.
 #include "firmware/core/features/triangle.hpp"
 
 #include <gtest/gtest.h>
@@ -70,7 +71,8 @@ TEST(TriangleTest, LosesRankOnTheCylinderThroughItsCorners) {
   }
 }
 
-// Corrects the source's claim: an equilateral triangle controls the turn about its normal like any other.
+// Corrects a claim of the course exercises: an equilateral triangle controls the turn about its normal like
+// any other.
 TEST(TriangleTest, EquilateralTriangleIsWellConditioned) {
   const double from_above = InverseCondition(Equilateral(), {0.0, 0.0, -0.4});
   const double aside = InverseCondition(Equilateral(), {0.15, 0.1, -0.4});

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/guard/clamp_torque.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The stages of the stop after a fault: damped, let go (the torque fades), braked.
 #include "firmware/core/guard/fault_stop.hpp"
 

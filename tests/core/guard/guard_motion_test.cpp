@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The guard with wishes of every kind: no limit is ever exceeded.
 #include "firmware/core/guard/guard_motion.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The proof of a stop: the limits that it names, and its verdict against that from all points of the path.
 #include "firmware/core/guard/stop_path.hpp"
 

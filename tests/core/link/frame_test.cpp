@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames: round trips, their bytes on the line, and what the reader does with damaged ones.
 #include "firmware/core/link/frame.hpp"
 

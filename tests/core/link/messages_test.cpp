@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages: round trips keep every field, and bytes that are no message are refused.
 #include "firmware/core/link/messages.hpp"
 

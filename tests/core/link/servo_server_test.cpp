@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo behind a serial line, without the processor: the right ticks, whatever the line does to frames.
 #include "firmware/core/link/servo_server.hpp"
 

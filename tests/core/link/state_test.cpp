@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's state as bytes: a servo restored from them goes on bit-exactly, and the digest sees changes.
 #include "firmware/core/link/state.hpp"
 

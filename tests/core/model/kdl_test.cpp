@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Our kinematics and dynamics against KDL's, which share neither code nor formulation: KDL works link by link
 // in link frames, ours about the base's origin. Both read the same URDF; BuildKdlChain makes KDL's chain.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The share of a carried load in the arm's dynamics, compared with a free body at the hand.
 #include "firmware/core/model/load.hpp"
 

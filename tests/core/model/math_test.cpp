@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Our sin, cos and atan2 against the C library in extended precision.
 #include "firmware/core/model/math.hpp"
 

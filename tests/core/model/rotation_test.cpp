@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rotation vectors, matrices and quaternions: round trips from tiny angles to half a turn.
 #include "firmware/core/model/rotation.hpp"
 

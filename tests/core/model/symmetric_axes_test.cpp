@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Jacobi's axes and the L D L^T factors of small symmetric matrices, against Eigen.
 #include "firmware/core/model/symmetric_axes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // THEORY B4: the camera's twist as the end effector's in the base frame, against the arm's own Jacobians and
 // against differences of poses.
 #include "firmware/core/model/twist.hpp"
@@ -20,7 +21,7 @@ std::array<double, 7> Seven(const Pose& X) {
   return {X.p.x(), X.p.y(), X.p.z(), q.w(), q.x(), q.y(), q.z()};
 }
 
-// The source's mount, +90 degrees about z, with the lever arm that it leaves out.
+// The mount of the course exercises, +90 degrees about z, with the lever arm that they omit.
 Pose Mount() {
   Pose X_EC;
   X_EC.R << 0, -1, 0, 1, 0, 0, 0, 0, 1;

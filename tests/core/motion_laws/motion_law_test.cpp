@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Motion laws on an ideal arm. With the partition law each joint's error obeys e'' + k_v' e' + k_p' e = 0.
 #include "firmware/core/motion_laws/motion_law.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commanded motions on an ideal arm: the goal is reached exactly, or the motion is refused.
 #include <cmath>
 #include <iostream>

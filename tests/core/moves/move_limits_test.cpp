@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commanded motions keep all limits: workspace, obstacles, speed, singularities.
 #include <cmath>
 #include <iostream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An ideal arm, and a servo that moves it by commanded motions.
 #pragma once
 

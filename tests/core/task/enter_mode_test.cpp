@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a change of mode resets, and what it keeps.
 #include "firmware/core/task/enter_mode.hpp"
 

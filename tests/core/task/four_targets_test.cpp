@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The task in closed loop with every listed target and feature, still and moving: ideal arm, measurements
 // that are 40 ms late with 0.05 px of noise in each corner.
 #include <gtest/gtest.h>
@@ -289,7 +290,8 @@ TEST(FourTargetsLaw, FieldOfViewLimitsKeepTheSquareInThePicture) {
   EXPECT_LT(out[1], 0.006) << "the arm lags behind its reference; the margin of 10 px is for that";
 }
 
-// The source's feature with four entries: the square's turn converges, its tilts are not controlled.
+// The feature of the course exercises with four entries: the square's turn converges, its tilts are not
+// controlled.
 TEST(FourTargetsLaw, SideFeatureControlsFourDegreesOfFreedom) {
   for (const FeatureForm form : {FeatureForm::kSide, FeatureForm::kCornerSide}) {
     config::ServoConfig config = ConfigFor(FeatureKind::kSquare, form);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every edge of the mode table. No path leads from Fault to motion without a reset.
 #include "firmware/core/task/modes.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every fault on an ideal arm: what is detected, after what time, and that the arm stops and stays at rest.
 #include <gtest/gtest.h>
 

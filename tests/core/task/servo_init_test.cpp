@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Init refuses a configuration that cannot work and names the key.
 #include <gtest/gtest.h>
 

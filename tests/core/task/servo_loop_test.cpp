@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loop keeps its time grid, counts missed ticks, and passes on features, requests and motions.
 #include "firmware/core/task/servo_loop.hpp"
 

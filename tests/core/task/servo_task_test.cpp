@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole task on an ideal arm: it closes the loop, and reacts to bad inputs.
 #include "firmware/core/task/servo_task.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The task in closed loop with an ideal arm and a camera that measures without error.
 #pragma once
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Least durations of jerk-limited moves of one axis, found without any knowledge of their shape.
 
 The axis is a chain of three integrators whose jerk is constant in each of N equal steps of a move of duration T.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A million random moves of one axis keep their limits, arrive, and respect lower bounds of the duration.
 #include "firmware/core/trajectory/axis_move.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Single examples of moves of one axis, and the durations of others against least ones that a linear
 // programme found (axis_move_optimum.py).
 #include "firmware/core/trajectory/axis_move.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Moves of several axes: all arrive together within their limits, on a straight line from rest, and take a
 // new goal in any tick without a jump.
 #include "firmware/core/trajectory/synchronised_move.hpp"

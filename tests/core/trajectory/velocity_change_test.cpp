@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shortest change of velocity: it ends as planned, keeps its limits, and its positions are consistent.
 #include "firmware/core/trajectory/velocity_change.hpp"
 

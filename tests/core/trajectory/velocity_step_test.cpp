@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The change of velocity tick by tick, against the time optimum of velocity_change.hpp.
 #include "firmware/core/trajectory/velocity_step.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibration recovers the camera parameters that the ray-cast pictures were made with.
 #include "firmware/host/calibration/calibration.hpp"
 

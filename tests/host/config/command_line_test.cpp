@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The recorded command line can be typed again in a shell.
 #include "firmware/host/config/command_line.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Help texts are wrapped to the terminal's width without losing a word.
 #include "firmware/host/config/help_text.hpp"
 
@@ -10,7 +11,7 @@ namespace fovea::config {
 namespace {
 
 std::string Formatted(const std::string& text, std::size_t width) {
-  return FormatHelp(text, {.width = width, .bold_headings = false});
+  return FormatHelp(text, {.width = width, .colour = false});
 }
 
 TEST(FormatHelpTest, KeepsLinesThatFit) {
@@ -70,7 +71,7 @@ TEST(FormatHelpTest, LosesNoWordAtAnyWidth) {
 }
 
 TEST(FormatHelpTest, MakesHeadingsBoldWhereAsked) {
-  EXPECT_EQ(FormatHelp("Options:\n  --json\nExit: 0 done.\n", {.width = 80, .bold_headings = true}),
+  EXPECT_EQ(FormatHelp("Options:\n  --json\nExit: 0 done.\n", {.width = 80, .colour = true}),
             "\033[1mOptions:\033[0m\n  --json\nExit: 0 done.\n");
 }
 

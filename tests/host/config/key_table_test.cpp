@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keys: valid settings are applied as a whole. An error names the
 // file, the line and the allowed values, and changes nothing.
 #include "firmware/host/config/key_table.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An output file is either complete or absent.
 #include "firmware/host/config/output_folder.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/config/roll_pitch_yaw.hpp"
 
 #include <gtest/gtest.h>

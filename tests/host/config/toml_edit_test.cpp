@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Editing changes the values and leaves the rest of the text as it is.
 #include "firmware/host/config/toml_edit.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Simulates a sampled regulator with a delay: Runge-Kutta for the plant between changes of the force, and a
 // queue for the delayed forces. Independent of the transition matrices and poles of firmware/host/design.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Linear systems of any order, compared with closed-form responses.
 #include "firmware/host/design/linear_system.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plants for the design tests, and their motion by an independent numerical method.
 #pragma once
 

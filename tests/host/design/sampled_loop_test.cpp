@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sampled loop against a simulation, the continuous poles, and two counts of unstable poles.
 #include "firmware/host/design/sampled_loop.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One degree of freedom: the exercise's figures, and the exact motion compared with a numerical one.
 #include "firmware/host/design/second_order.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stability edges: a simulation decays just below an edge and
 // grows just above it, and every smaller value is stable.
 #include <gtest/gtest.h>

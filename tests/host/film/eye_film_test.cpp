@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The film, read back frame by frame with OpenCV.
 #include "firmware/host/film/eye_film.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The film queue: order, waiting, dropping and errors of its thread.
 #include "firmware/host/film/film_queue.hpp"
 

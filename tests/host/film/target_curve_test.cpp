@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks outlines by another method: the ray through each outline point must touch the target's edge.
 #include "firmware/host/film/target_curve.hpp"
 

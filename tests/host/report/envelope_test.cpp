@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Thinning keeps every peak that a plot must show.
 #include "firmware/host/report/envelope.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a log to a page: the page shows what the log holds, omits the rest, and no log content breaks it.
 #include "firmware/host/report/report.hpp"
 

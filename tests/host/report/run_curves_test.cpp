@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Curves of a report besides the image error: components of e, the features' path, the
 // camera's velocity, the path error and the missing frames.
 #include <gmock/gmock.h>

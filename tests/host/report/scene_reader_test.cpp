@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A log's scene: shapes, meshes and poses over time, thinned if there are too many.
 #include "firmware/host/report/scene_reader.hpp"
 

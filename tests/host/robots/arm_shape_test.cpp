@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Capsules from a robot's description: they enclose their bodies, and the pairs are those that can touch.
 #include "firmware/host/robots/arm_shape.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Robots from files: what is read, and the error of each refusal.
 #include "firmware/host/robots/robot.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files that a run leaves in its folder, and the effect of a failed film.
 #include "firmware/host/run/run_book.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The common shell of all servo runs, around an arm at its ready posture.
 #include "firmware/host/run/run_shell.hpp"
 

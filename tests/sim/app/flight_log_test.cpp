@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Logs of whole runs: each kind is replayed bit-exactly, and a run that
 // is killed, or whose disk is full, leaves a readable log.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ctrl-C at any moment of a run leaves readable files. (Each test waits
 // for the run to reach a state before it sends the signal.)
 #include <gmock/gmock.h>

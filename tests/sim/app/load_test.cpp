@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The load: the servo's model and the physics' bodies agree.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wrong usage: exit code 2, and one line with the program's name and the allowed values.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

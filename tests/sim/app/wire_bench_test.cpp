@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea-bench wire` from outside: it starts the simulated robot itself and reports all figures.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Calibrates the simulator's camera from its pictures with the
 // shipped programs and compares the result with the scenario.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lens and sensor: the formula against OpenCV's, the resampled picture against the
 // ideal projection, and the detector with the same lens.
 #include "sim/camera/lens.hpp"

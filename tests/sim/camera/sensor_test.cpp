@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The image sensor: noise with the configured deviation, the same for the same seed and frame.
 #include "sim/camera/sensor.hpp"
 

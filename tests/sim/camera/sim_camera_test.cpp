@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Properties of the simulated camera beyond the contract: order of frames, loss, and a failing painter.
 #include "sim/camera/sim_camera.hpp"
 

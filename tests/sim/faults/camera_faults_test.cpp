@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Camera faults that show an old scene, old pixels, a mirrored picture, or a wrong stamp.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each fault acts as described within its window and not outside it, and repeats for the same seed.
 #include <gtest/gtest.h>
 

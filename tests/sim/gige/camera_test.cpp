@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera driver with the simulated camera, over this computer's network.
 #include "sim/gige/camera.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera driver reads the camera's clock. Aravis' fake camera has the SFNC features for it.
 #include <arv.h>
 #include <gtest/gtest.h>

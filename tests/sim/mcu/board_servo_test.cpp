@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The host's end of a board's line, with the servo's end in
 // this process: effects of a late, jittering or broken line.
 #include "sim/mcu/board_servo.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's image on an emulated Cortex-M7: its contents, and its reaction to failures.
 #include <gtest/gtest.h>
 

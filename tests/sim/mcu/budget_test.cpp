@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-bench mcu reports every figure and compares them with another run.
 #include <gtest/gtest.h>
 

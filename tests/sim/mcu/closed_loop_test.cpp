@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole runs with the servo on the emulated board: they converge, and match this computer bit-exactly.
 #include <gtest/gtest.h>
 

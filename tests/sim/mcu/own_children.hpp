@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The child processes of this process, from the kernel's list for each thread.
 #pragma once
 

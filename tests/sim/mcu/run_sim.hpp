@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole runs of fovea-sim, with the servo on this computer or on the emulated board.
 #pragma once
 

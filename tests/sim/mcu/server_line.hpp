@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A board without a processor: the servo behind the line runs in this process, and the test moves the timer.
 #pragma once
 

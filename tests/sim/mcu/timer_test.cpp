@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The board paced by its own timer in virtual time, with the simulator.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A board vanishes during a run: its emulator is killed.
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finishing a motion: success at rest, a reflex at speed.
 #include "fovea/franka/brake.hpp"
 #include "tests/sim/panda/robot_fixture.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Guiding by hand: effects of the button and of a pull.
 #include "tests/sim/panda/robot_fixture.hpp"
 

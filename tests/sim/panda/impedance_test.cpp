@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's own controllers yield according to the set stiffness: displacement of the hand under a pull.
 #include <iostream>
 #include <numbers>

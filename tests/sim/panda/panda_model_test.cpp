@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The model library's C functions compared with the model from the URDF.
 #include "sim/model_library/panda_model.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every error caused by a command, at the robot's interface without a network.
 #include "tests/sim/panda/robot_fixture.hpp"
 

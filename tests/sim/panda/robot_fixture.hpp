@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot behind its interface, without a network, for tests that step it by 1 ms.
 #pragma once
 

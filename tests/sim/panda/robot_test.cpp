@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot behind its interface, without a network: every motion generator and every refusal.
 #include <gmock/gmock.h>
 

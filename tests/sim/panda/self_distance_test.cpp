@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The distance between an arm's links, compared with hand computations.
 #include "sim/panda/self_distance.hpp"
 

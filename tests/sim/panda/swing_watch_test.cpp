@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which oscillation of a joint counts as unstable, and which is a normal motion.
 #include "sim/panda/swing_watch.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The client and the served robot together, tested against the contract of arms.
 #include "tests/contract/arm_contract.hpp"
 #include "tests/sim/panda/wire_panda.hpp"

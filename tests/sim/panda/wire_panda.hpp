@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A simulated Panda for the tests of its interface, without and with a network.
 #pragma once
 

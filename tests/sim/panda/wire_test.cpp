@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Client and server over loopback, with and without network faults, and the servo at one end.
 #include <gmock/gmock.h>
 

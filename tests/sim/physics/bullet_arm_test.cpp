@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bullet's forward dynamics compared with our inverse dynamics, and conservation of energy.
 #include "sim/physics/bullet_arm.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Contacts of links with each other and with the target, which physics lets pass.
 #include "sim/physics/link_touch.hpp"
 

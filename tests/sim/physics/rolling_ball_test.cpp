@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pushed ball compared with the closed form of a ball that slides, rolls and stops.
 #include "sim/physics/rolling_ball.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rendered flat targets compared with their projection. Two pictures in two colours give each pixel's
 // coverage, and from it the target's area and centre.
 #include <gtest/gtest.h>

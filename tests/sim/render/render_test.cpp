@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The renderer compared with the truth: in its pictures the detector finds the ball where it is.
 #include <gtest/gtest.h>
 

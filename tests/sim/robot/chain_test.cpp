@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The simulator's kinematics and dynamics compared with the servo's: independent code for the same URDF.
 #include "sim/robot/chain.hpp"
 

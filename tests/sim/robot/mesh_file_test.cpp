@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mesh files: a tetrahedron written in each format is read back in place, with outward normals.
 #include "sim/robot/mesh_file.hpp"
 

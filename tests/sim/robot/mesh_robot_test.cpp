@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot with mesh links: drawn like the same solids as URDF shapes, and touching the table like them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The link frames in the log match the physics.
 #include "sim/run/log_scene.hpp"
 

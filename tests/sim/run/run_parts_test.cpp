@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small parts of a run that keep data for its pictures, bounded for any duration.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The film of the bench of a short run, read back with OpenCV.
 #include "sim/run/scene_film.hpp"
 
@@ -113,8 +114,8 @@ TEST_F(SceneFilmTest, FailedFilmsKeepTheOtherFiles) {
   for (const std::filesystem::directory_entry& file : std::filesystem::directory_iterator(folder_.path())) {
     files.insert(file.path().filename());
   }
-  EXPECT_THAT(files, testing::ElementsAre("bench.png", "eye-first.png", "eye-last.png", "log.mcap",
-                                          "report.html", "summary.json"));
+  EXPECT_THAT(files, testing::ElementsAre("bench.png", "eye-first.png", "eye-last.png", "frame-last.png",
+                                          "log.mcap", "report.html", "summary.json"));
 }
 
 }  // namespace

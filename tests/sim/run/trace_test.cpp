@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The timeline that `fovea-sim run --trace` writes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scenario's keys, without the command line.
 #include "sim/scenario/scenario.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A scenario from an untrusted source: no file that it names is read from outside its folder, by any path.
 // Paths that the user types are allowed.
 #include <gmock/gmock.h>
@@ -89,7 +90,9 @@ TEST_F(UntrustedScenario, ArmOutsideItsFolderIsRefused) {
     EXPECT_THAT(SaidOfArm(model), AllOf(HasSubstr("arm.model = \"" + model + "\" is not allowed"),
                                         HasSubstr("outside " + Own("").string())));
   }
-  EXPECT_THAT(SaidOfArm("../robots/panda"), HasSubstr("no shipped arm of that name"));
+  EXPECT_THAT(SaidOfArm("../robots/panda"), HasSubstr("arm.model: unknown arm \"../robots/panda\""));
+  EXPECT_THAT(SaidOfArm("pandda"),
+              AllOf(HasSubstr("did you mean panda?"), HasSubstr("shipped are panda, puma560, slider, ur5e")));
 }
 
 TEST_F(UntrustedScenario, UrdfOutsideItsFolderIsRefused) {

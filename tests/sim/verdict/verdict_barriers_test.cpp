@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Limits on the ground truth, one after the other, and the arm's motion when it should be at rest.
 #include "sim/verdict/barriers.hpp"
 

@@ -1,8 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // The verdict, on synthetic runs that keep or break each bound.
 #include "sim/verdict/verdict.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <sstream>
 
 #include "tests/support/panda.hpp"
 
@@ -241,7 +244,79 @@ TEST_F(VerdictTest, FaultFailsTheRunAndIsNamed) {
   EXPECT_EQ(s.faults[0].name, "joint_velocity");
   EXPECT_EQ(s.faults[0].detail, "joint 4");
   EXPECT_DOUBLE_EQ(s.faults[0].t_s, 0.25);
-  EXPECT_THAT(s.verdict, testing::HasSubstr("joint_velocity"));
+  EXPECT_EQ(
+      s.verdict,
+      "not converged: fault: a joint was faster than its limit (joint_velocity), at 0.250 s, joint 4; see "
+      "arm.model");
+  EXPECT_THAT(ToTable(s), testing::HasSubstr("faults                  a joint was faster than its limit "
+                                             "(joint_velocity), at 0.250 s, joint 4;\n" +
+                                             std::string(26, ' ') + "see arm.model\n"));
+}
+
+TEST_F(VerdictTest, HoldIsExplainedInWords) {
+  hal::TickRecord record;
+  record.stamp_ns = 1588 * kMs;
+  record.mode = hal::Mode::kHold;
+  record.hold_reason = hal::HoldReason::kTargetLost;
+  record.target_known = true;
+  records_ = {record};
+  const Summary s = Judge(2.0, [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); });
+  EXPECT_EQ(s.verdict,
+            "not converged: the arm has held since 1.588 s because the target was lost (target_lost)");
+  EXPECT_EQ(s.end.reason, "target_lost");
+}
+
+TEST_F(VerdictTest, LimitsThatActedAreNamedTheLongestFirst) {
+  const auto far = [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); };
+  hal::TickRecord record;
+  record.mode = hal::Mode::kTrack;
+  record.target_known = true;
+  records_.assign(1000, record);
+  EXPECT_THAT(Judge(1.0, far).verdict, testing::Not(testing::HasSubstr("limited by")));
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    records_[k].limits_active = (k < 5 ? hal::Bit(hal::Limit::kObstacle) : 0U) |
+                                (k < 890 ? hal::Bit(hal::Limit::kFieldOfView) : 0U) |
+                                (k < 30 ? hal::Bit(hal::Limit::kJointJerk) : 0U);
+  }
+  EXPECT_THAT(Judge(1.0, far).verdict,
+              testing::EndsWith("of its goal; limited by field_of_view (safety.view_margin_px) in 89 %, "
+                                "joint_jerk (safety.joint_jerk_fraction) in 3 %, obstacle (safety.planes) in "
+                                "under 1 % of the ticks"));
+}
+
+TEST(SummaryTableTest, RowsSayInWordsWhatVisionDelivered) {
+  Summary s;
+  s.frames = 55;
+  s.frames_lost = 35;
+  s.frames_detected = 40;
+  s.measurements = {{"taken", 36}, {"not_found", 15}, {"outlier", 4}, {"too_old", 1}};
+  const std::string table = ToTable(s);
+  EXPECT_THAT(table, testing::HasSubstr("  frames                  90, lost 35, target found in 40\n"));
+  EXPECT_THAT(table,
+              testing::HasSubstr("  measurements            36 taken, 1 too old, 4 rejected as outlier\n"));
+  s.frames_lost = 0;
+  EXPECT_THAT(ToTable(s), testing::HasSubstr("  frames                  55, target found in 40\n"));
+}
+
+TEST(SummaryTableTest, FitsItsWidthAndPaintsTheVerdict) {
+  Summary s;
+  s.verdict = "not converged: the target was lost";
+  for (const char* name : {"cartesian_speed", "joint_acceleration", "joint_jerk", "joint_position"}) {
+    s.limits[name] = 0.5;
+  }
+  for (const std::size_t width : {60U, 80U, 100U}) {
+    std::istringstream lines(ToTable(s, {.width = width, .colour = false}));
+    for (std::string line; std::getline(lines, line);) {
+      EXPECT_LE(line.size(), width) << line;
+    }
+  }
+  const config::TextStyle coloured{.width = 100, .colour = true};
+  EXPECT_THAT(ToTable(s, coloured),
+              testing::HasSubstr("\033[31mnot converged: the target was lost\033[0m\n"));
+  s.converged = true;
+  s.verdict = "converged";
+  EXPECT_THAT(ToTable(s, coloured), testing::HasSubstr("\033[32mconverged\033[0m\n"));
+  EXPECT_THAT(ToTable(s), testing::Not(testing::HasSubstr("\033")));
 }
 
 }  // namespace

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The modelled latency: no measurement before its time, all in order; lockstep waits and real pace does not.
 #include "sim/world/feature_delay.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The world: time, target, encoders, exposures, friction.
 #include "sim/world/world.hpp"
 

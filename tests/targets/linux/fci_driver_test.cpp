@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Panda's driver as the program uses it, with a robot on the network that the test controls.
 #include "firmware/targets/linux/robots/fci/fci_driver.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures of frames with known times.
 #include "firmware/targets/linux/frame_figures.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gravity from the measured torques compared with the model: how an unknown load appears.
 #include "firmware/targets/linux/gravity_check.hpp"
 

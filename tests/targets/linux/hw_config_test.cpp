@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Configuration values that are allowed alone but not together, and the choice of the camera driver.
 #include "firmware/targets/linux/hw_config.hpp"
 

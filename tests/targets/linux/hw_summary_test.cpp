@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The verdict of a hardware run: its last mode, and the last image error.
 #include "firmware/targets/linux/hw_summary.hpp"
 
@@ -77,13 +78,21 @@ TEST(HwSummaryTest, FaultIsNotConvergedAndARecoveryIsReported) {
   summary.faults = {{.t_s = 1.0, .fault = hal::Fault::kContact}, {.t_s = 2.0, .fault = hal::Fault::kArmLost}};
   Judge(summary);
   EXPECT_EQ(summary.converged, true);
-  EXPECT_NE(summary.verdict.find("recovered from arm_lost, contact"), std::string::npos) << summary.verdict;
+  EXPECT_NE(
+      summary.verdict.find("recovered from: the arm returned errors, or nothing (arm_lost); an external "
+                           "force exceeded its limit (contact)"),
+      std::string::npos)
+      << summary.verdict;
   EXPECT_EQ(nlohmann::json::parse(ToJson(summary))["faults_recovered"], 2);
   summary.fault = hal::Fault::kArmLost;
   Judge(summary);
   EXPECT_EQ(summary.converged, false);
-  EXPECT_NE(summary.verdict.find(hal::Name(summary.fault)), std::string::npos);
-  EXPECT_NE(summary.verdict.find("recovered from contact"), std::string::npos) << summary.verdict;
+  EXPECT_NE(summary.verdict.find("ended in a fault: the arm returned errors, or nothing (arm_lost)"),
+            std::string::npos)
+      << summary.verdict;
+  EXPECT_NE(summary.verdict.find("recovered from: an external force exceeded its limit (contact)"),
+            std::string::npos)
+      << summary.verdict;
   EXPECT_EQ(nlohmann::json::parse(ToJson(summary))["faults_recovered"], 1);
 }
 

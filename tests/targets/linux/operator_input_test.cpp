@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Typed words, in pieces, unknown ones, and endless lines.
 #include "firmware/targets/linux/operator_input.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The benchmarks' statistics compared with closed-form results.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea-bench` from outside: its figures have the names that scripts use. Their values are not tested.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -186,7 +187,7 @@ TEST(FoveaBench, RefusesUnknownCommandsAndOptions) {
   EXPECT_EQ(Bench({"jitter", "--load", "nix"}).exit_code, 2);
   const test::ProgramResult run = Bench({"tick", "--robot", "nix"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("no shipped arm has this name"));
+  EXPECT_THAT(run.err, HasSubstr("--robot: unknown arm \"nix\"; shipped are panda, puma560"));
 }
 
 }  // namespace

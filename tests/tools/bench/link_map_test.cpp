@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The reader of the linker's map, with a small map of known sums.
 #include "tools/bench/mcu/link_map.hpp"
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Completion in bash and zsh:  completion_test.py BIN_FOLDER [CLASS]...
 
 The classes that end in Sim need fovea-sim.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sampler's objects on the bench match those that the simulator draws.
 #include "tools/fovea/atlas/bench.hpp"
 

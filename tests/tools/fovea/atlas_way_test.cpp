@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Path search in a plane with a wall, with and without a gap.
 #include "tools/fovea/atlas/way.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The judge of the fault matrix, on synthetic summaries: each verdict is reached, and each bound is exceeded.
 #include "tools/fovea/faults/judge.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea atlas --faults`: real cells of the matrix match the page sim/FAULTS.md; errors are one line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea features` on the command line: computed properties of each target, and refused options.
 #include <gtest/gtest.h>
 
@@ -63,7 +64,7 @@ TEST(FeaturesProgramTest, SquareSideControlsFourAndCornersControlSix) {
   EXPECT_EQ(corners["controls"].size(), 6U);
 }
 
-// Corrects the source's claim about the equilateral triangle, and shows where the rank really drops.
+// Corrects a claim of the course exercises about the equilateral triangle, and shows where the rank drops.
 TEST(FeaturesProgramTest, TriangleLosesRankOnlyOnItsCylinder) {
   const std::string equilateral = "0,-0.06,0.0519615242270663,0.03,-0.0519615242270663,0.03";
   // Its corners look alike, so a detector cannot tell them apart and a scenario refuses it.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea atlas`: the same figures for any number of jobs and after a kill;
 // starts that match their description; errors in one line.
 #include <gmock/gmock.h>

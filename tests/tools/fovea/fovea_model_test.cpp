@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea model` on the command line, and its generated C++ compared with the arm.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -58,7 +59,8 @@ TEST(FoveaModel, DefaultStateIsTheReadyPostureAtRest) {
 }
 
 TEST(FoveaModel, RefusesUnknownArmsAndBadNumbers) {
-  EXPECT_THAT(Model({"nix"}).err, HasSubstr("\"nix\": no shipped arm has this name"));
+  EXPECT_THAT(Model({"nix"}).err, HasSubstr("unknown arm \"nix\"; shipped are panda, puma560"));
+  EXPECT_THAT(Model({"pandda"}).err, HasSubstr("unknown arm \"pandda\"; did you mean panda?"));
   EXPECT_EQ(Model({"nix"}).exit_code, 2);
   EXPECT_THAT(Model({"panda", "--at", "1,2"}).err, HasSubstr("--at has 2 numbers: 7, 14 or 21 are allowed"));
   EXPECT_THAT(Model({"panda", "--at", "nan,0,0,0,0,0,0"}).err,

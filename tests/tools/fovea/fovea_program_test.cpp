@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The program fovea on the command line: results and errors.
 #include <gtest/gtest.h>
 

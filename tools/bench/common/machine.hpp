@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The properties of a machine that decide whether it keeps 1 kHz.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Starts other programs: the simulator beside this one, and shell commands.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Durations: measuring them, their percentiles, and the confidence interval of a ratio of percentiles.
 #pragma once
 

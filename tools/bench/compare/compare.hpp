@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea-bench compare OLD NEW`: the ratio of each figure that both files have.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Wake-up latency by cyclictest (rt-tests), the usual tool for it, if it is installed.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From picture to torque in real time: a camera with the timing of a real one, the detector in its own
 // thread, and the times at which each picture reached each step.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea-bench jitter`: does this machine keep 1 kHz?
 #pragma once
 

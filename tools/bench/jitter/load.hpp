@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Load on the machine, to measure its effect on the measured thread.
 #pragma once
 

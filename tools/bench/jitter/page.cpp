@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The result as one self-contained HTML page, in the style of a run's report.
 #include <fmt/format.h>
 

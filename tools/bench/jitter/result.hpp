@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The result of `fovea-bench jitter`, and its forms: figures, text, page and timeline.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times each period of the servo's loop in real time, and of a loop that only sleeps, as cyclictest does.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The result as a timeline. It uses times that the threads record anyway, so it costs them nothing.
 #include <numeric>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bytes of an image that each module takes, from the linker's map file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea-bench mcu`: instructions, stack, flash and RAM of the servo on a Cortex-M7.
 #pragma once
 

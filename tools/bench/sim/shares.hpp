@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a simulated run spends its time, and how that time grows, from the timelines of short runs.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea-bench sim`: the simulator's speed relative to real time, by picture size and rate.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Speed of computing a feature and its interaction matrix from a target's pose.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/tick/inputs.hpp"
 
 #include <Eigen/Geometry>

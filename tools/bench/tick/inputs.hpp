@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Inputs of the servo, tick by tick, from several kinds of closed loop. The benchmark times the tick on them.
 //
 // The arm obeys its model (M ddq + C dq = tau). The camera measures without error, 40 ms late, at 30 Hz. No

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Instructions per tick, counted by valgrind's callgrind. The count does not depend on the machine's load.
 #pragma once
 

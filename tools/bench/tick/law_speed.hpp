@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Speed of the visual law and of its resolution to joint velocities.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An arm that obeys its model, M ddq + C dq = tau, and a camera that measures without error. The benchmarks
 // close the servo's loop with them.
 #pragma once

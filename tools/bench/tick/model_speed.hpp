@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Speed of the arm's model and of KDL, in the same run.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/tick/tick.hpp"
 
 #include <fmt/format.h>
@@ -11,8 +12,8 @@
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/program.hpp"
-#include "firmware/host/config/share_folder.hpp"
 #include "firmware/host/robots/robot.hpp"
+#include "firmware/host/robots/shipped_robots.hpp"
 #include "tools/bench/common/figure.hpp"
 #include "tools/bench/common/spread.hpp"
 #include "tools/bench/tick/feature_speed.hpp"
@@ -220,11 +221,8 @@ void AddTicks(const std::vector<TickCase>& cases, std::vector<Figure>& figures) 
 }  // namespace
 
 int RunTick(const TickArguments& arguments) {
-  const std::filesystem::path file = config::ShareFolder() / "robots" / (arguments.robot + ".toml");
-  if (!std::filesystem::is_regular_file(file)) {
-    throw config::InputError(fmt::format("--robot \"{}\": no shipped arm has this name", arguments.robot));
-  }
-  const model::ArmModel arm = robots::LoadRobot(file).model;
+  const model::ArmModel arm =
+      robots::LoadRobot(robots::FindShippedRobot(arguments.robot, "--robot", "")).model;
   if (arm.num_joints < 6) {
     throw config::InputError(
         fmt::format("--robot \"{}\": the arm must have at least six joints", arguments.robot));

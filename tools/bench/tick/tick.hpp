@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea-bench tick`: the time of one servo tick, by input and by stage.
 #pragma once
 

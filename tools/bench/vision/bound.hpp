@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Cramer-Rao bound: the smallest standard deviation of an outline's centre and radius that any unbiased
 // detector can reach on a picture.
 //

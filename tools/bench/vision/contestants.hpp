@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The detectors that `fovea-bench vision` compares: ours, and common methods that use OpenCV alone.
 #pragma once
 

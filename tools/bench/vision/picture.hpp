@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws pictures with known truth by ray casting, for the benchmark and for tests. A pixel that an edge
 // crosses is the mean over a grid of rays. Shares no code with the simulator's renderer or with the detector.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The detector's configuration for a picture's target, and the error of a detection.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea-bench vision`: detection rate, accuracy and time on pictures with known truth.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/bench/visp/law.hpp"
 
 #include <visp3/visual_features/vpFeaturePoint.h>

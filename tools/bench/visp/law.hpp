@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // ViSP's visual law behind plain arrays, because its headers need C++17.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-bench-visp: times the visual law and ViSP's. A separate program that is not installed: ViSP is under
 // the GPL, and no package of this project may need it.
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs `fovea-sim serve` as a child process for the lifetime of the object.
 #pragma once
 

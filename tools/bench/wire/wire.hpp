@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `fovea-bench wire`: times the robot's network interface, with server and client on this machine.
 #pragma once
 

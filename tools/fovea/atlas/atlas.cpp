@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/atlas/atlas.hpp"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "firmware/host/build_info.hpp"
 #include "firmware/host/config/folder_lock.hpp"
 #include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/printed_table.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/config/share_folder.hpp"
 #include "firmware/host/config/target_keys.hpp"
@@ -71,7 +73,8 @@ int DrawOnly(const AtlasArguments& arguments) {
       figures.rejections[i] += start.rejections[i];
     }
   }
-  fmt::print("{}", arguments.json ? atlas::DrawsAsJson(figures) : atlas::DrawsAsTable(figures));
+  fmt::print("{}", arguments.json ? atlas::DrawsAsJson(figures)
+                                  : atlas::DrawsAsTable(figures, config::StyleOf(STDOUT_FILENO)));
   return config::kDone;
 }
 
@@ -252,7 +255,10 @@ int Atlas(const AtlasArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}", atlas::ToJson(figures));
   } else {
-    fmt::print("{}  {:<24}{}\n", atlas::ToTable(figures), "page", (run.out() / "atlas.html").string());
+    const config::TextStyle style = config::StyleOf(STDOUT_FILENO);
+    config::PrintedTable page(style);
+    page.Row("page", (run.out() / "atlas.html").string());
+    fmt::print("{}{}", atlas::ToTable(figures, style), page.text());
   }
   return figures.ReachedGoal() ? config::kDone : config::kGoalMissed;
 }

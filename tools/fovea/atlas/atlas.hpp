@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea atlas: the convergence rate of simulated runs from random starts; with --faults, the outcome of every
 // fault in every mode and stage.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The things on the simulated bench that are high enough to come between the camera and a target.
 //
 // The sampler approximates the things of the simulator's bench (sim/render/bench.cpp) by upright boxes.

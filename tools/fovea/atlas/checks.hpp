@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conditions for a start of an atlas and for the postures of a path from it: hand and arm, target and lines
 // of sight. The geometry shares no code with the servo, so the servo is not judged by its own code.
 #pragma once

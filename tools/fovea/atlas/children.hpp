@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs programs in parallel, each in its own process, so that a crash does not affect the others.
 #pragma once
 

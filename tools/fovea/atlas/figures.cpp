@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/atlas/figures.hpp"
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "firmware/host/config/printed_table.hpp"
 #include "tools/fovea/atlas/seed.hpp"
 
 namespace fovea::atlas {
@@ -37,21 +39,15 @@ std::string ToText(const std::optional<Spread>& spread, const char* unit) {
                 : std::string("-");
 }
 
-std::string Line(const std::string& name, const std::string& value) {
-  return fmt::format("  {:<24}{}\n", name, value);
-}
-
 std::uint64_t DrawsOf(const Figures& f) {
   return std::accumulate(f.rejections.begin(), f.rejections.end(), static_cast<std::uint64_t>(f.runs));
 }
 
-std::string SamplerLines(const Figures& f) {
-  std::string text;
-  text += Line("sampler", fmt::format("{} draws for {} starts with a path; rejected:", DrawsOf(f), f.runs));
+void AddSampler(const Figures& f, config::PrintedTable& table) {
+  table.Row("sampler", fmt::format("{} draws for {} starts with a path; rejected:", DrawsOf(f), f.runs));
   for (std::size_t i = 0; i < f.rejections.size(); ++i) {
-    text += Line("", fmt::format("{:>9} {}: {}", f.rejections[i], kRejectionNames[i], kRejectionWords[i]));
+    table.Row("", fmt::format("{:>9} {}: {}", f.rejections[i], kRejectionNames[i], kRejectionWords[i]));
   }
-  return text;
 }
 
 Json SamplerJson(const Figures& f) {
@@ -62,9 +58,9 @@ Json SamplerJson(const Figures& f) {
   return {{"draws", DrawsOf(f)}, {"rejected", rejections}};
 }
 
-std::string TargetLine(const Figures& f) {
-  return Line("target", fmt::format("{}, scenario {}, {} seed {}", f.heading.target, f.scenario,
-                                    KindOfSeed(f.heading.seed, f.heading.servo), f.heading.seed));
+void AddTarget(const Figures& f, config::PrintedTable& table) {
+  table.Row("target", fmt::format("{}, scenario {}, {} seed {}", f.heading.target, f.scenario,
+                                  KindOfSeed(f.heading.seed, f.heading.servo), f.heading.seed));
 }
 
 }  // namespace
@@ -175,28 +171,32 @@ std::string ToJson(const Figures& f) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string ToTable(const Figures& f) {
-  std::string text = TargetLine(f);
-  text += Line("converged", fmt::format("{} of {}: {:.1f} %, between {:.1f} and {:.1f} % (Wilson, 95 %)",
-                                        f.converged, f.runs, f.runs > 0 ? 100.0 * f.converged / f.runs : 0.0,
-                                        100.0 * f.wilson_95[0], 100.0 * f.wilson_95[1]));
-  text += Line("limit violations", fmt::format("{}", f.limit_violations));
-  text += Line("settled after", ToText(f.settle_s, "s"));
-  text += Line("image error", ToText(f.error_px, "px rms"));
-  text += Line("position error", ToText(f.error_mm, "mm"));
+std::string ToTable(const Figures& f, const config::TextStyle& style) {
+  config::PrintedTable table(style);
+  AddTarget(f, table);
+  table.Row("converged", fmt::format("{} of {}: {:.1f} %, between {:.1f} and {:.1f} % (Wilson, 95 %)",
+                                     f.converged, f.runs, f.runs > 0 ? 100.0 * f.converged / f.runs : 0.0,
+                                     100.0 * f.wilson_95[0], 100.0 * f.wilson_95[1]));
+  table.Row("limit violations", fmt::format("{}", f.limit_violations),
+            f.limit_violations > 0 ? config::Paint::kBad : config::Paint::kPlain);
+  table.Row("settled after", ToText(f.settle_s, "s"));
+  table.Row("image error", ToText(f.error_px, "px rms"));
+  table.Row("position error", ToText(f.error_mm, "mm"));
   if (f.error_deg) {
-    text += Line("orientation error", ToText(f.error_deg, "deg"));
+    table.Row("orientation error", ToText(f.error_deg, "deg"));
   }
   std::string limits;
   for (const auto& [name, used] : f.limits) {
     limits += fmt::format("{}{} {:.1f} %", limits.empty() ? "" : ", ", name, 100.0 * used);
   }
-  text += Line("limits used, at most", limits);
-  text += Line("touched something", fmt::format("{} runs", f.contact_runs));
-  text += SamplerLines(f);
+  table.Row("limits used, at most", limits);
+  table.Row("touched something", fmt::format("{} runs", f.contact_runs));
+  AddSampler(f, table);
+  std::string text = table.text();
   for (const Failure& failure : f.failures) {
-    text += Line(fmt::format("failure, run {}", failure.index), failure.verdict);
-    text += Line("", failure.command);
+    config::PrintedTable row(style);
+    row.Row(fmt::format("failure, run {}", failure.index), failure.verdict, config::Paint::kBad);
+    text += row.text() + fmt::format("    {}\n", failure.command);  // in one line, to be copied
   }
   return text;
 }
@@ -211,6 +211,11 @@ std::string DrawsAsJson(const Figures& f) {
   return json.dump(2) + "\n";
 }
 
-std::string DrawsAsTable(const Figures& f) { return TargetLine(f) + SamplerLines(f); }
+std::string DrawsAsTable(const Figures& f, const config::TextStyle& style) {
+  config::PrintedTable table(style);
+  AddTarget(f, table);
+  AddSampler(f, table);
+  return table.text();
+}
 
 }  // namespace fovea::atlas

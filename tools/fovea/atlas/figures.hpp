@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures computed from the rows of an atlas.
 #pragma once
 
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/host/config/terminal.hpp"
 #include "tools/fovea/atlas/rows.hpp"
 
 namespace fovea::atlas {
@@ -58,9 +60,9 @@ std::string CommandOf(const Heading& heading, const std::string& scenario, const
 std::vector<std::string> AssignmentsOf(const Heading& heading, const Start& start);
 
 std::string ToJson(const Figures& figures);
-std::string ToTable(const Figures& figures);
+std::string ToTable(const Figures& figures, const config::TextStyle& style = {});
 // Only the sampler's part, for starts that were drawn but not simulated.
 std::string DrawsAsJson(const Figures& figures);
-std::string DrawsAsTable(const Figures& figures);
+std::string DrawsAsTable(const Figures& figures, const config::TextStyle& style = {});
 
 }  // namespace fovea::atlas

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A heat map of runs over two of their quantities, as SVG.
 #pragma once
 

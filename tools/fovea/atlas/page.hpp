@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // atlas.html: maps of the starts, settling times and failures, in one self-contained file.
 #pragma once
 

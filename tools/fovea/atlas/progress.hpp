@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The progress of an atlas on standard error: a bar on a terminal, else one line per tenth.
 #pragma once
 

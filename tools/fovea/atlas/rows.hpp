@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The runs of an atlas on disk: one line of JSON per run, written when the run ends, so that none is lost.
 #pragma once
 

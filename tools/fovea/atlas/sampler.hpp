@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Starts of an atlas: a start posture and a target, drawn at random until both are feasible.
 //
 // The arm, the camera and the goal are those of the scenario `ball` (a Panda; 640x480, 60 degrees; centred at

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Seeds of an atlas. A servo is judged on starts on which nobody can have tuned it.
 //
 // Whoever changes the servo while looking at the starts of a seed tunes it on them. Seeds below

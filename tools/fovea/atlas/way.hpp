@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Searches a joint path from one posture to another with two trees that grow towards random postures and
 // towards each other (Kuffner and LaValle, RRT-Connect, ICRA 2000).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/calibrate/calibrate.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,31 @@
 namespace fovea {
 namespace {
 
+// Writes the result into the configuration of --write.
+void Write(const CalibrateArguments& a, const std::vector<config::NewValue>& values) {
+  if (!a.write.empty()) {
+    config::WriteValues(a.write, "camera", values);
+  }
+}
+
+void SayWritten(const CalibrateArguments& a) {
+  if (!a.write.empty()) {
+    fmt::print("# written into [camera] of {}\n", a.write);
+  }
+}
+
+// Prints the lines for section [camera] of a configuration.
+void PrintSection(const CalibrateArguments& a, const std::vector<config::NewValue>& values) {
+  fmt::print("[camera]\n");
+  for (const config::NewValue& value : values) {
+    fmt::print("{} = {}\n", value.key, value.value);
+  }
+  SayWritten(a);
+}
+
 namespace fs = std::filesystem;
+
+constexpr std::string_view kCommentSign = "# ";  // the output can be pasted into a configuration
 
 int Focal(const CalibrateArguments& a) {
   const std::vector<fs::path> files = ImageFiles(a.images);
@@ -56,6 +81,13 @@ int Focal(const CalibrateArguments& a) {
     views.push_back({d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), static_cast<double>(i) * a.delta_z});
   }
   const calibration::FocalLength r = calibration::SolveFocalLength(views, a.diameter, a.target == "sphere");
+  const std::vector<config::NewValue> values{{"width_px", std::to_string(sizes[0].width)},
+                                             {"height_px", std::to_string(sizes[0].height)},
+                                             {"f_u_px", fmt::format("{:.3f}", r.f_px)},
+                                             {"f_v_px", fmt::format("{:.3f}", r.f_px)},
+                                             {"c_u_px", fmt::format("{:.1f}", 0.5 * (sizes[0].width - 1))},
+                                             {"c_v_px", fmt::format("{:.1f}", 0.5 * (sizes[0].height - 1))}};
+  Write(a, values);
   if (a.json) {
     nlohmann::json radii = nlohmann::json::array();
     for (const calibration::RadiusView& view : views) {
@@ -67,8 +99,10 @@ int Focal(const CalibrateArguments& a) {
             {"f_px", r.f_px}, {"sigma_px", r.sigma_px}, {"Z", r.Z}, {"rms_px", r.rms_px}, {"radii_px", radii}}
             .dump(2));
   } else {
-    fmt::print("focal length {:.3f} px +- {:.3f}; first view at {:.4f} m; radii fit to {:.4f} px rms\n",
+    fmt::print("# focal length {:.3f} px +- {:.3f}; first view at {:.4f} m; radii fit to {:.4f} px rms\n",
                r.f_px, r.sigma_px, r.Z, r.rms_px);
+    fmt::print("# assumed: square pixels, no distortion, principal point in the middle of the image\n");
+    PrintSection(a, values);
   }
   return config::kDone;
 }
@@ -118,15 +152,11 @@ auto SolveBoards(const BoardFolder& found, const Solve& solve) {
 
 void SayWithout(const BoardFolder& found) {
   if (!found.without.empty()) {
-    fmt::print("# without the board: {}\n", found.without);
-  }
-}
-
-// Prints the lines for section [camera] of a configuration.
-void PrintSection(const std::vector<config::NewValue>& values) {
-  fmt::print("[camera]\n");
-  for (const config::NewValue& value : values) {
-    fmt::print("{} = {}\n", value.key, value.value);
+    std::istringstream lines(config::Fitted("without the board: " + found.without, 2,
+                                            config::TerminalWidth(STDOUT_FILENO) - kCommentSign.size()));
+    for (std::string line; std::getline(lines, line);) {
+      fmt::print("{}{}\n", kCommentSign, line);
+    }
   }
 }
 
@@ -143,9 +173,7 @@ int FindIntrinsics(const CalibrateArguments& a) {
       throw config::InputError(a.out + ": cannot be written");
     }
   }
-  if (!a.write.empty()) {
-    config::WriteValues(a.write, "camera", CameraValues(in, r.rms_px));
-  }
+  Write(a, CameraValues(in, r.rms_px));
   if (a.json) {
     fmt::print("{}\n", nlohmann::json{{"width_px", in.width_px},
                                       {"height_px", in.height_px},
@@ -164,6 +192,7 @@ int FindIntrinsics(const CalibrateArguments& a) {
     SayWithout(found);
     fmt::print("{}# f +- {:.3f} px, c +- {:.3f} px, {} views fit to {:.4f} px rms\n",
                CameraFileText(in, r.rms_px), r.sigma_f_px, r.sigma_c_px, r.views, r.rms_px);
+    SayWritten(a);
   }
   return config::kDone;
 }
@@ -199,9 +228,7 @@ int HandEye(const CalibrateArguments& a) {
       {"mount_xyz", fmt::format("[{:.6f}, {:.6f}, {:.6f}]", r.X_EC.p.x(), r.X_EC.p.y(), r.X_EC.p.z())},
       {"mount_rpy_deg", fmt::format("[{:.5f}, {:.5f}, {:.5f}]", rpy_deg[0], rpy_deg[1], rpy_deg[2])},
       {"mount_rms_mm", fmt::format("{:.4g}", r.rms_mm)}};
-  if (!a.write.empty()) {
-    config::WriteValues(a.write, "camera", mount);
-  }
+  Write(a, mount);
   if (a.json) {
     fmt::print(
         "{}\n",
@@ -218,7 +245,7 @@ int HandEye(const CalibrateArguments& a) {
         "# {} views agree on the board's pose to {:.3f} mm and {:.4f} deg rms, its corners fit to {:.4f} "
         "px\n",
         r.views, r.rms_mm, r.rms_deg, r.rms_px);
-    PrintSection(mount);
+    PrintSection(a, mount);
   }
   return config::kDone;
 }
@@ -283,7 +310,7 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
   }
   board->add_option("--out", a.out, "the picture to write: .png")->required();
   intrinsics->add_option("--out", a.out, "the camera file to write");
-  for (CLI::App* command : {intrinsics, hand_eye}) {
+  for (CLI::App* command : {focal, intrinsics, hand_eye}) {
     command->add_option(
         "--write", a.write,
         "write the result into [camera] of this configuration (.toml); the rest is unchanged");

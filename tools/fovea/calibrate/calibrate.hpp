@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea calibrate: focal length, intrinsics with lens, and the camera's pose on the hand.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera's intrinsics as a file: `fovea calibrate intrinsics --out` writes it, other commands read it.
 #pragma once
 

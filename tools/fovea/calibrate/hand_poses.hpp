@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hand's pose at each picture, from the file poses.csv, for `fovea calibrate hand-eye`.
 #pragma once
 

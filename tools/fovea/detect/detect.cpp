@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/detect/detect.hpp"
 
 #include <fmt/format.h>
@@ -24,6 +25,7 @@
 namespace fovea {
 namespace {
 
+constexpr std::size_t kContinued = 2;  // indent of the rest of a printed line that is too long
 constexpr double kDefaultSize = 0.08;  // [m]; an arbitrary size when none is given
 
 vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
@@ -101,6 +103,16 @@ std::string WhyNotFound(const DetectArguments& a, const cv::Mat& image, vision::
         "the best outline, at ({:.1f}, {:.1f}) px with a radius of {:.1f} px, has a confidence of {:.2f}, "
         "below --confidence-min {:.2f}",
         best.u_px, best.v_px, best.radius_px, best.confidence, a.confidence_min);
+  }
+  if (config.by != vision::FindBy::kGray) {
+    const std::string missed = config.by == vision::FindBy::kColour
+                                   ? fmt::format("does not have the colour of --hue {:g}", a.hue_deg)
+                                   : fmt::format("gets fewer than --hough-votes {:g}", a.hough.votes);
+    config.by = vision::FindBy::kGray;
+    if (const vision::Detection gray = vision::TargetDetector(config).Detect(image); gray.found) {
+      return fmt::format("the best outline of a {}, at ({:.1f}, {:.1f}) px with a radius of {:.1f} px, {}",
+                         a.target, gray.u_px, gray.v_px, gray.radius_px, missed);
+    }
   }
   return fmt::format("no outline of a {} with a radius of {:.0f} to {:.0f} px", a.target,
                      config.radius_min_px, config.radius_max_px);
@@ -226,7 +238,12 @@ int Detect(const DetectArguments& arguments) {
   const std::vector<std::filesystem::path> image_files = ImageFiles(arguments.images);
   if (!arguments.marked.empty()) {
     CheckMarkedFiles(arguments.marked, image_files);
-    std::filesystem::create_directories(arguments.marked);
+    std::error_code error;
+    std::filesystem::create_directories(arguments.marked, error);
+    if (error) {
+      throw config::InputError(
+          fmt::format("--marked {}: cannot make this folder: {}", arguments.marked, error.message()));
+    }
   }
   nlohmann::json list = nlohmann::json::array();
   std::unique_ptr<vision::TargetDetector> detector;
@@ -252,12 +269,14 @@ int Detect(const DetectArguments& arguments) {
     if (arguments.json) {
       list.push_back(ToJson(path.string(), d, ms, why));
     } else if (d.found) {
-      fmt::print(
-          "{}: at ({:.3f}, {:.3f}) px +- {:.3f}, radius {:.3f} px +- {:.3f}, confidence {:.2f}, {:.2f} ms\n",
-          path.string(), d.u_px, d.v_px, std::sqrt(0.5 * (d.cov_uvr_px2(0, 0) + d.cov_uvr_px2(1, 1))),
-          d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), d.confidence, ms);
+      config::PrintFitted(fmt::format("{}: at ({:.3f}, {:.3f}) px +- {:.3f}, radius {:.3f} px +- {:.3f}, "
+                                      "confidence {:.2f}, {:.2f} ms",
+                                      path.string(), d.u_px, d.v_px,
+                                      std::sqrt(0.5 * (d.cov_uvr_px2(0, 0) + d.cov_uvr_px2(1, 1))),
+                                      d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), d.confidence, ms),
+                          kContinued);
     } else {
-      fmt::print("{}: not found: {}, {:.2f} ms\n", path.string(), why, ms);
+      config::PrintFitted(fmt::format("{}: not found: {}, {:.2f} ms", path.string(), why, ms), kContinued);
     }
   }
   if (arguments.json) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea detect: runs the detector on any images.
 #pragma once
 

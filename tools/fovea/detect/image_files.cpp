@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/detect/image_files.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Images from the command line: files, or folders with images.
 #pragma once
 

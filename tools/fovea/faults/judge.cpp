@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/faults/judge.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Judges a run with a fault: what noticed the fault and when, what the servo did, how much of each limit was
 // used, and how the run ended.
 #pragma once

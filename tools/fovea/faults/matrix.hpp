@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea atlas --faults: every fault at every severity, in every mode of run and at every stage of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // atlas.html of a fault matrix: totals, and a table for each mode of run.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The runs of a fault matrix: each is a simulator process, and its summary is kept on disk.
 #pragma once
 

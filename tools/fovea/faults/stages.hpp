@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When a fault starts in a run: the modes of run, the stages of each, and the time of each stage.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The faults of the matrix, each at three or four severities: the keys of [faults] that it sets, their
 // values, and the reason for each value.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fault matrix as text: one line per cell, a Markdown page, and JSON.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Detection difficulty of a target and scatter of its feature, measured with the detectors on ray-cast
 // pictures: the column "extraction difficulty" of the course exercises.
 #pragma once

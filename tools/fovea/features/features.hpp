@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea features: analyses what a target's feature controls.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a feature controls at a pose: rank and condition of L_s, and the camera twists that do not change it.
 #pragma once
 

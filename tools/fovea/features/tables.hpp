@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Table B1 of the course exercises for all targets, corrected: parameters, size, rank and condition from the
 // matrices, detection difficulty from pictures.
 #pragma once

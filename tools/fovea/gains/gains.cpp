@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/gains/gains.hpp"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/printed_table.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/design/sampled_loop.hpp"
 #include "firmware/host/design/second_order.hpp"
@@ -200,7 +202,11 @@ std::string ToText(const std::vector<Complex>& poles, int digits) {
   return covered < poles.size() ? fmt::format("{}, and {} smaller", text, poles.size() - covered) : text;
 }
 
-void PrintRow(const char* name, const std::string& text) { fmt::print("  {:<24}{}\n", name, text); }
+void PrintRow(const char* name, const std::string& text) {
+  config::PrintedTable table(config::StyleOf(STDOUT_FILENO));
+  table.Row(name, text);
+  fmt::print("{}", table.text());
+}
 
 std::string SystemText(const design::SecondOrder& system) {
   const double zeta = design::DampingRatio(system);

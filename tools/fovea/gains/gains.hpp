@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea gains: designs a PD regulator for one degree of freedom and computes its gain and delay limits.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checks an arm's model against laws that hold for any rigid-body model. Each residual comes from a formula
 // that the model itself does not use.
 #pragma once

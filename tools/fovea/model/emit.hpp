@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An arm's model as C++ source, for firmware without a file system.
 #pragma once
 

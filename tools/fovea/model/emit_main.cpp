@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea-emit-model ARM: prints the model of a shipped arm as a C++ header, for the build. The output is that
 // of `fovea model ARM --emit-cpp`, without the rest of that program.
 #include <cstdio>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/model/model.hpp"
 
 #include <fmt/format.h>
@@ -12,15 +13,14 @@
 #include "firmware/core/model/dynamics.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/program.hpp"
-#include "firmware/host/config/share_folder.hpp"
 #include "firmware/host/robots/robot.hpp"
+#include "firmware/host/robots/shipped_robots.hpp"
 #include "tools/fovea/model/checks.hpp"
 #include "tools/fovea/model/emit.hpp"
 
 namespace fovea {
 namespace {
 
-namespace fs = std::filesystem;
 using config::InputError;
 using model::VecN;
 using nlohmann::ordered_json;
@@ -29,18 +29,9 @@ constexpr int kCheckedStates = 500;
 constexpr double kPrintedAsZero = 5e-5;  // smaller numbers are 0 with four decimals; printed without a sign
 
 robots::Robot Load(const std::string& name) {
-  const fs::path path = name;
-  if (path.extension() == ".toml" || path.extension() == ".urdf") {
-    return robots::LoadRobot(path);
-  }
-  const fs::path shipped = config::ShareFolder() / "robots" / (name + ".toml");
-  if (!fs::is_regular_file(shipped)) {
-    throw InputError(
-        fmt::format("\"{}\": no shipped arm has this name; a path of an arm file (.toml) or URDF (.urdf) "
-                    "is allowed too",
-                    name));
-  }
-  return robots::LoadRobot(shipped);
+  return robots::LoadRobot(robots::IsRobotPath(name)
+                               ? std::filesystem::path(name)
+                               : robots::FindShippedRobot(name, "model", robots::kOrRobotPath));
 }
 
 // All quantities of one state.
@@ -63,11 +54,11 @@ State Compute(const model::ArmModel& arm, const std::vector<double>& at) {
                                  at.size(), n, 2 * n, 3 * n, n));
   }
   const auto part = [&](std::size_t index) -> VecN {
-    VecN v = VecN::Zero(arm.num_joints);
+    hal::JointArray v{};
     for (std::size_t i = 0; i < n && index * n + i < at.size(); ++i) {
-      v[static_cast<Eigen::Index>(i)] = at[index * n + i];
+      v[i] = at[index * n + i];
     }
-    return v;
+    return model::ToVector(v, arm.num_joints);
   };
   State s;
   s.q = at.empty() ? model::ToVector(arm.q_ready, arm.num_joints) : part(0);
@@ -156,12 +147,12 @@ void PrintMatrix(const char* name, const char* unit, const Matrix& matrix) {
 
 void PrintLimits(const robots::Robot& robot) {
   const model::ArmModel& arm = robot.model;
-  fmt::print("  {:<3}{:<22}{:>9}{:>9}{:>8}{:>9}{:>10}{:>8}{:>9}{:>9}{:>9}\n", "", "joint", "from", "to",
+  fmt::print("  {:<3}{:<22}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}\n", "", "joint", "from", "to",
              "speed", "accel", "jerk", "torque", "rate", "viscous", "coulomb");
   for (int i = 0; i < arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& j = arm.joints[k];
-    fmt::print("  {:<3}{:<22}{:>9.4f}{:>9.4f}{:>8.4g}{:>9.4g}{:>10.4g}{:>8.4g}{:>9.4g}{:>9.3g}{:>9.3g}\n",
+    fmt::print("  {:<3}{:<22}{:>8.4f}{:>8.4f}{:>8.4g}{:>8.4g}{:>8.4g}{:>8.4g}{:>8.4g}{:>8.3g}{:>8.3g}\n",
                i + 1, robot.joint_names[k] + (j.type == model::JointType::kPrismatic ? " (slides)" : ""),
                j.q_min, j.q_max, j.dq_max, j.ddq_max, j.dddq_max, j.tau_max, j.dtau_max, j.viscous,
                j.coulomb);
@@ -173,8 +164,10 @@ void PrintTable(const robots::Robot& robot, const State& s, const std::vector<Mo
   for (const model::LinkInertia& link : robot.model.links) {
     mass += link.mass;
   }
-  fmt::print("{}: {} joints from \"{}\" to \"{}\", {:.2f} kg in motion; rad, m, Nm, N, s\n", robot.name,
-             robot.model.num_joints, robot.base_link, robot.tip_link, mass);
+  config::PrintFitted(
+      fmt::format("{}: {} joints from \"{}\" to \"{}\", {:.2f} kg in motion; rad, m, Nm, N, s", robot.name,
+                  robot.model.num_joints, robot.base_link, robot.tip_link, mass),
+      2);
   PrintLimits(robot);
   fmt::print("\n");
   PrintVector("q", "rad", s.q);
@@ -184,7 +177,7 @@ void PrintTable(const robots::Robot& robot, const State& s, const std::vector<Mo
   std::transform(X.begin(), X.end(), X.begin(), WithoutSignedZero);
   fmt::print("  X_BE  p = ({:.4f}, {:.4f}, {:.4f}) m, q = (w {:.4f}, {:.4f}, {:.4f}, {:.4f})\n", X[0], X[1],
              X[2], X[3], X[4], X[5], X[6]);
-  PrintMatrix("J_E", "linear, then angular; axes of E", s.J_E);
+  PrintMatrix("J_E", "linear, angular, in E", s.J_E);
   PrintMatrix("M", "kg m^2", s.M);
   PrintVector("h", "Nm, C dq + g", s.h);
   PrintVector("g", "Nm", s.g);

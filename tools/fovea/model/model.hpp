@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea model: kinematics and dynamics of an arm at a state, its limits, and checks of the model.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea replay --set: an HTML page that compares the recording with the replay.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tools/fovea/replay/replay.hpp"
 
 #include <fmt/format.h>
@@ -79,7 +80,8 @@ int Replay(const ReplayArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}", ReplayJson(log.string(), result));
   } else if (arguments.settings.empty()) {
-    fmt::print("{}{}", ReplayText(log.string(), result), ChangeTable(result));
+    config::PrintFitted(ReplayText(log.string(), result), 4);
+    fmt::print("{}", ChangeTable(result));
   } else {
     fmt::print("{}: {} ticks with {}, compared with the recording\n{}", log.string(), result.ticks(),
                fmt::join(arguments.settings, ", "), ChangeTable(result));

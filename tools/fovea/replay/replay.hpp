@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea replay: runs the servo on the recorded inputs of a log again.
 #pragma once
 

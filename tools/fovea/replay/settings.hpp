@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fovea replay --set: applies changed keys to a recorded configuration.
 #pragma once
 

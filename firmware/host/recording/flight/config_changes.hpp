@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes a changed configuration for a replay from two configurations that were made from keys.
 #pragma once
 

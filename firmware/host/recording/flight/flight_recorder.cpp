@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/recording/flight/flight_recorder.hpp"
 
 namespace fovea::flight {

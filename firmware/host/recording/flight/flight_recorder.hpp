@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records the data of every tick that a replay needs: the inputs, the outputs, a digest of the servo's state
 // after the tick, and each second the whole state before a tick (a keyframe).
 //

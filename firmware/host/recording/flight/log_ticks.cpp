@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/recording/flight/log_ticks.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the data for a replay from a log, in order: the servo's configuration, its ticks and its keyframes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lists the fields in which two messages of one type differ, bit by bit.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts between the flight recorder's records and the log's messages.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rewrites a log: keeps its inputs, and replaces its outputs by those of the linked servo.
 #pragma once
 

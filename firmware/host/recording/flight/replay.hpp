@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replay: runs the servo again on the recorded inputs of a log.
 //
 // A log consists of segments. A segment begins at the servo's first tick or at a keyframe and lasts until a

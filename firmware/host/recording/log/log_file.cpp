@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/recording/log/log_file.hpp"
 
 #include <google/protobuf/descriptor.h>

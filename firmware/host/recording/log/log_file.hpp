@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An MCAP file of protobuf messages. Adds each type's schema and each topic's channel at its first use.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The version of a log's content: its topics, its messages, and the servo's lists of fields.
 //
 //   1  no format record

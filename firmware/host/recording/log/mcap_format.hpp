@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Numbers and texts as MCAP writes them: little-endian, lengths before contents.
 #pragma once
 

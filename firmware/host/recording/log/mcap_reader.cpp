@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/recording/log/mcap_reader.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads MCAP files from front to back. Reads a truncated log up to the cut.
 #pragma once
 

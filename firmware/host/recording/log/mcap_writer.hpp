@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes MCAP files (mcap.dev/spec, version 0): chunks compressed by Zstandard, indexed, with checksums.
 #pragma once
 

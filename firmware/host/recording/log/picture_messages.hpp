@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages that go with the camera's pictures in the log: the calibration and the annotations.
 #pragma once
 

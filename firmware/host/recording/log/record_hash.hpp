@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hashes of a run and of its arm: SHA-256 in 64 hexadecimal digits.
 //
 // A run's hash covers every tick's record, field by field, in little-endian bytes. Records hold virtual time

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run's log.mcap: filled by the threads of a run, written by its own thread.
 //
 // Data of each tick goes through bounded rings without locks, other data through a bounded queue. From the

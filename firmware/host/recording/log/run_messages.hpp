@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Messages that a log holds once: the run's setup, and the durations of its ticks.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts times to protobuf's stamps.
 #pragma once
 

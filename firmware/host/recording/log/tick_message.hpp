@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts between the servo's records and the log's messages, bit-exact in both directions.
 #pragma once
 

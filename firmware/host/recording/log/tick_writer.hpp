@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts the servo's records to messages: the records, the measurements that they took, modes and faults as
 // text, and the poses of all frames.
 #pragma once

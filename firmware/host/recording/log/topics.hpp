@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The topics of a log, and the type of their messages.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Traces the servo's ticks and their stages on a track. It uses the existing hooks of a tick: its probe, its
 // stages' probe and its recorder. So a tick without trace runs unchanged code.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records what each thread of a program does and when, as a timeline in Chrome's trace format:
 // chrome://tracing and ui.perfetto.dev open it.
 //

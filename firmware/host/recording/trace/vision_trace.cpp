@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/recording/trace/vision_trace.hpp"
 
 namespace fovea::trace {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Traces the vision task on a track: its waits for pictures, and each detection from picture to measurement.
 #pragma once
 

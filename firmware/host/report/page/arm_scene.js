@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The objects of the 3-D view, made from a run's scene: arm, paths, target, workspace, table.
 
 Fovea.armScene = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 3-D view: the arm at the shared time, its paths, a slider and a play button.
 
 Fovea.armView = (function () {

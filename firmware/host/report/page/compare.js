@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two runs side by side: the table of figures with their difference.
 
 Fovea.compare = (function () {

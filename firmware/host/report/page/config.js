@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The effective configuration (with two runs: what differs), versions and hashes.
 
 Fovea.config = (function () {

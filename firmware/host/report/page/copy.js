@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A button that copies a text.
 
 Fovea.copyButton = function (text, words = "Copy") {

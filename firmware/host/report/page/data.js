@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads the embedded runs, and has the small tools that every other file uses.
 "use strict";
 

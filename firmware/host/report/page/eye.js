@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera's pictures: the film, and the first and the last picture with outlines.
 
 Fovea.eye = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page's footer: scenario, target and version of each run, and the command that repeats it.
 
 Fovea.footer = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Positions, velocities and torques of all joints, as shares of their limits or in physical units.
 
 Fovea.joints = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The limits: what each watches, the key that sets it, and the share of it that a run used.
 
 Fovea.limits = (function () {
@@ -18,12 +19,12 @@ Fovea.limits = (function () {
     joint_acceleration: {
       of: "the acceleration of a joint's reference",
       key: "safety.joint_acceleration_fraction",
-      then: "that joint's reference follows later",
+      then: "the reference of that joint is delayed",
     },
     joint_jerk: {
       of: "the jerk of a joint's reference",
       key: "safety.joint_jerk_fraction",
-      then: "that joint's reference follows later",
+      then: "the reference of that joint is delayed",
     },
     workspace: {
       of: "the distance of the end effector from the base",
@@ -58,7 +59,7 @@ Fovea.limits = (function () {
     singularity: {
       of: "the distance of the posture from a singularity",
       key: "safety.singularity_min",
-      then: "the posture goes no nearer",
+      then: "the arm moves no nearer to it",
     },
     field_of_view: {
       of: "the distance of the target from the edge of the picture",
@@ -86,17 +87,30 @@ Fovea.limits = (function () {
     return `${which}${what} acted in ${Fovea.plural(ticks, "tick")} (${number(ticks * tick_s, 3)} s)${limit ? `: ${limit.then}` : ""}`;
   }
 
-  // The largest used share of every limit, as bars; one bar for each run.
+  // The limits of which a run has a used share or in which the servo acted.
+  function namesOf(runs) {
+    const names = ({ limits, limit_ticks }) => [...Object.keys(limits || {}), ...Object.keys(limit_ticks || {})];
+    return Array.from(new Set(runs.flatMap((run) => names(run.summary || {})))).sort();
+  }
+
+  // The largest used share of every limit, as bars; one bar for each run. A limit without a share, such as the
+  // field of view, has its words alone.
   function bars(runs) {
-    const names = Array.from(
-      new Set(runs.flatMap((run) => Object.keys((run.summary && run.summary.limits) || {}))),
-    ).sort();
+    const names = namesOf(runs);
     if (!names.length) return null;
     const bar = (run, name) => {
       const share = run.summary && run.summary.limits ? run.summary.limits[name] : undefined;
-      if (!Number.isFinite(share)) return null;
-      const over = share > 1 + 1e-6;
       const acted = actedWords(run, name);
+      const letter = runs.length > 1 ? `${run.letter}: ` : "";
+      if (!Number.isFinite(share)) {
+        if (!acted) return null;
+        return el(
+          "div",
+          { class: `share run-${run.index}` },
+          el("span", { class: "share-text", text: letter + acted }),
+        );
+      }
+      const over = share > 1 + 1e-6;
       const text = `at most ${percent(share)} ${ofWhat(name)}${over ? ", exceeded" : ""}${acted ? `; ${acted}` : ""}`;
       return el(
         "div",
@@ -109,7 +123,7 @@ Fovea.limits = (function () {
             style: `width:${Math.min(100, 100 * share).toFixed(1)}%`,
           }),
         ),
-        el("span", { class: "share-text", text: (runs.length > 1 ? `${run.letter}: ` : "") + text }),
+        el("span", { class: "share-text", text: letter + text }),
       );
     };
     return el(

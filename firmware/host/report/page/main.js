@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws the sections one after the other, so that the verdict is readable at once.
 
 (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares a replay with other settings to the recorded run: the commands of both over time.
 
 (function () {

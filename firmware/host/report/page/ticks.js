@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long a servo tick takes: a histogram with a logarithmic axis, its percentiles, and the budget of 1 ms.
 
 Fovea.ticks = (function () {

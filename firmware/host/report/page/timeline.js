@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modes, faults, lost frames and active limits on one time axis; pointing at it shows a description.
 
 Fovea.timeline = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rows of the time axis: modes, faults, injected faults, frames and limits; and a description of one time.
 
 Fovea.timelineRows = (function () {

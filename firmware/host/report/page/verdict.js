@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The head of the page: a verdict for each run, and the figures behind it.
 
 Fovea.verdict = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera of fovea-hw, and the camera drivers by their names in camera.driver: a closed list.
 //
 // Each driver is a file in this folder, on top of one in hal/drivers, and a line in camera_drivers.cpp.

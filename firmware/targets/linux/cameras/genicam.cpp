@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/genicam/genicam_camera.hpp"
 
 #include "firmware/targets/linux/cameras/camera_driver.hpp"

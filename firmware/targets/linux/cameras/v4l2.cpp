@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/targets/linux/cameras/camera_driver.hpp"
 #include "firmware/targets/linux/hw_config.hpp"
 #include "fovea/hal/types.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot that fovea-hw drives: the functions that the program needs beside hal::Arm.
 //
 // Each driver is a folder beside this file and a line in arm_drivers.hpp. A class that derives from ArmDriver

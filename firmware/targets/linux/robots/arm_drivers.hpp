@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robots' drivers by their names in robot.driver: a closed list.
 #pragma once
 

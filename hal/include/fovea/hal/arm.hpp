@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The arm's side of the seam: joint states in, joint torques out.
 #pragma once
 

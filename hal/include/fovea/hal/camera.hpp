@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera's side of the seam: pixels and the time at which they were true.
 #pragma once
 

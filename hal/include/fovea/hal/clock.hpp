@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loop's time: monotonic, in ns since an arbitrary start.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modes, faults and limits of the servo, by name, for logs, reports and other computers.
 #pragma once
 
@@ -85,6 +86,12 @@ const char* Name(HoldReason reason) noexcept;
 const char* Name(Fault fault) noexcept;
 const char* Name(Limit limit) noexcept;
 const char* Name(Intake intake) noexcept;
+
+// The same for a person, e.g. "the target was lost"; static storage. An intake's words describe a
+// measurement: "3 rejected as outlier".
+const char* Words(HoldReason reason) noexcept;
+const char* Words(Fault fault) noexcept;
+const char* Words(Intake intake) noexcept;
 
 // The configuration key that sets the threshold, "" when none does; static storage.
 const char* Key(Fault fault) noexcept;

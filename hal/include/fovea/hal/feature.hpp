@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the vision task reports to the servo about one frame, and the mailbox between them.
 #pragma once
 

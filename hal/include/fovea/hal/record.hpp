@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The record of one tick, and the interfaces that receive it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a call across the seam can answer. Plain data: no heap, no exception, safe in the tick.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sizes and plain arrays that every part of the seam shares.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "cart_arm.hpp"
 
 #include <sys/socket.h>

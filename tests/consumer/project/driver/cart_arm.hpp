@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A driver to copy. Its arm is a cart with one joint, moved by an invented device.
 //
 // The device talks over a stream socket in the computer's byte order. Every millisecond it sends a CartState.

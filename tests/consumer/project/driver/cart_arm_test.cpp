@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tests the driver with the contract of hal::Arm, with a failing device, and with the servo.
 #include "cart_arm.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps a device clock to the host's clock from readings with a random round-trip delay.
 #include "fovea/camera/latch_mapper.hpp"
 

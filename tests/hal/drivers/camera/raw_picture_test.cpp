@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Conversion of pixel formats, with pictures of a known colour.
 #include "fovea/camera/raw_picture.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/camera/recorded_camera.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps the stamps of a device clock to the host's clock when the network delay is random.
 #include "fovea/camera/stamp_mapper.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A robot on the network that a test controls step by step, from its own thread or another.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver connected to a robot that the test controls.
 #pragma once
 

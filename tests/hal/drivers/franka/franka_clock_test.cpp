@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's time as a hal::Clock, tested against the contract.
 #include "fovea/franka/robot_clock.hpp"
 #include "tests/contract/clock_contract.hpp"

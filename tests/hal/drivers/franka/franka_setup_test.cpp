@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Connecting to the robot; each refusal is one clear line.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps the robot's time to the computer's clock from the arrivals of its states.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Events that end a motion or prevent its start: the reported reason, and the recovery.
 #include "tests/hal/drivers/franka/franka_arm_fixture.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Message layouts. The offsets are typed here a second time, from the interface's table.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sockets of the driver and of the simulated robot. Each error is one line that names the other end.
 #include "fovea/franka/sockets.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Torque rate limit when the network loses and delays commands.
 #include "fovea/franka/torque_rate.hpp"
 

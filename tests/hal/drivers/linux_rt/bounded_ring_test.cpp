@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ring between two threads: values stay in order and whole, and every dropped one is counted.
 //
 // Every value holds one number in all its fields, so that a torn value is detected. The thread

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Without the interposer the counter must report that it is inactive.
 #include <gtest/gtest.h>
 

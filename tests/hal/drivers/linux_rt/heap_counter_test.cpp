@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The heap counter counts every allocation function, and reports when it is inactive.
 #include "fovea/linux_rt/heap_counter.hpp"
 

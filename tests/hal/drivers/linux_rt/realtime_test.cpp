@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "fovea/linux_rt/realtime.hpp"
 
 #include <gtest/gtest.h>

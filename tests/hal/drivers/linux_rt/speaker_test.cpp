@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A thread that prints a line never waits for the reader.
 #include "fovea/linux_rt/speaker.hpp"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A video device that a test controls: the kernel's side of Video4Linux2, in memory.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver with a scripted device. Not tried on hardware.
 #include "fovea/v4l2/v4l2_camera.hpp"
 

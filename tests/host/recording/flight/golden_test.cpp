@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Golden logs: the servo must reproduce its recorded behaviour. After an intended change `fovea replay <log>
 // --renew` rewrites the log, and the commit names the change.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The servo's configuration in a log: every field is read
 // back, and a field that an older log lacks gets its default.
 #include "firmware/host/recording/flight/messages.hpp"

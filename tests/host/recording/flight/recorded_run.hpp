@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a run's log without a simulator: the servo steps through given inputs, wrapped by the flight
 // recorder, and the log's own thread writes.
 #pragma once

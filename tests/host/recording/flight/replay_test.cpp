@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replay is bit-exact from the first tick, from each keyframe, around lost ticks and up to the end of a
 // truncated file. A difference is found and named.
 #include "firmware/host/recording/flight/replay.hpp"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The MCAP container: all written data is read back, wherever the file ends.
 #include <gtest/gtest.h>
 

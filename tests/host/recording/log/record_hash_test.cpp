@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hash of the records changes with any bit of a record.
 #include "firmware/host/recording/log/record_hash.hpp"
 

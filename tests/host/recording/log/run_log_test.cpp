@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The log of a run: every loss is counted, and a slow or full disk blocks no thread.
 #include "firmware/host/recording/log/run_log.hpp"
 

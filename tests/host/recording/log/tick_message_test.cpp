@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converting a record to a log message and back keeps every bit.
 #include "firmware/host/recording/log/tick_message.hpp"
 

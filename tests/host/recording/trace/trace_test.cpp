@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Timelines: the content of the trace file, and that tracing changes nothing in the traced run.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The components of the servo's error e = s* − s over time, in the units of s: one plot for each unit.
 
 Fovea.components = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Image error over time: true, measured, predicted, and the ideal exponential; position error and age beneath.
 
 Fovea.error = (function () {

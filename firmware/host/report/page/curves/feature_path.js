@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The path of the features in the picture: v over u, axes as large as the picture; start, end and goal marked.
 
 Fovea.featurePath = (function () {

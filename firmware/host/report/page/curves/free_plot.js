@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A plot of signals that the reader chooses with a word search: one plot for each unit. The address keeps the choice.
 
 Fovea.freePlot = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Distance of the end effector from its commanded position, for runs that command poses.
 
 Fovea.pathError = (function () {

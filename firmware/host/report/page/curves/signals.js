@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every signal over time that the page has, for the free plot: {id, name, unit, run, t, v, dots}.
 
 Fovea.signals = (function () {

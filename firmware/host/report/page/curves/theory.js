@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A one-joint arm and its analytic solution: their positions, the difference, and the figures of both.
 
 Fovea.theory = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The camera's velocity in its own axes: measured (from the joints) and commanded by the servo.
 
 Fovea.velocity = (function () {

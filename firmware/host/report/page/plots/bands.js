@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The background of every plot over time: the servo's modes as faint shading, injected faults as labelled bands.
 
 Fovea.bands = (function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State that all drawings share: the pointed-at time, the visible span of time, and the colours of the page.
 
 // Callbacks that are called together. `listen` returns a function that removes its callback.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The slider and the play button that move the shared time.
 
 Fovea.player = function () {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One kind of time plot, drawn by Dygraphs, with a legend that shows the values at the shared time.
 
 Fovea.plots = (function () {

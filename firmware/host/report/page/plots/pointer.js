@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a pointer, and buttons, move and zoom the shared time on a drawing.
 
 // Pointing moves the shared time, dragging with a mouse zooms, double-click shows everything.

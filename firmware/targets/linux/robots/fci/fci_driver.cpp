@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "firmware/targets/linux/robots/fci/fci_driver.hpp"
 
 #include <fmt/format.h>
@@ -23,8 +24,8 @@ void FciDriver::AddKeys(Settings& settings, config::KeyTable& keys) {
   keys.Choice("robot.time", settings.time, {"computer", "robot"},
               "clock of the stamps; robot: that of a simulated robot in lockstep");
   keys.Number("robot.state_timeout_ms", settings.state_timeout_ms, 1.0, 10000.0, "ms",
-              "after so long without a state the tick runs without one; at most safety.arm_lost_ticks with "
-              "robot.time = \"computer\", long for a robot in lockstep");
+              "maximum wait for a robot state; after it, the tick runs without a new state; at most "
+              "safety.arm_lost_ticks with robot.time = \"computer\"; use a large value in lockstep");
   keys.Number("robot.torque_step", settings.torque_step, 0.001, 1.0, "Nm",
               "largest change of a joint's torque from one state to the next");
 }

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Franka Emika Panda, through its control interface, version 5 (hal/drivers/franka).
 #pragma once
 

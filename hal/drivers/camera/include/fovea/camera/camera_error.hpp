@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Thrown when a camera cannot be opened or set up as configured: one line that names the device.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Compares a device's clock with the host's: one point for each second of the last half minute, and a line
 // along the points. latch_mapper.hpp and stamp_mapper.hpp differ in which point of a second is the best, and
 // in how they fit the line.

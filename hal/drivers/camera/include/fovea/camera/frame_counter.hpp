@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a device's frame numbers into one count that never goes back.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a device's stamps to the host's clock, from readings of the device's clock.
 //
 // The device latches its clock between question and answer. The middle of the two is taken as the host time,

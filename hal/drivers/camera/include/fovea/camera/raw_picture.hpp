@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts pictures from the formats of devices into those of the seam: mono8 or BGR8.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera that plays recorded pictures: those of a folder, or a video.
 #pragma once
 

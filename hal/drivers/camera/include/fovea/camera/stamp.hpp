@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The range of a device's stamps. A device can report any number as its time.
 #pragma once
 

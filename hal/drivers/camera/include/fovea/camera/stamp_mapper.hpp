@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts a device's stamps to the host's clock, from their arrival times alone.
 //
 // A stamp arrives the least transport time after it was taken, or later. In a plot of (arrival - stamp) over

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes between an interrupt and the main program: one writes, one reads, neither waits.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Include this before everything else. A failed Eigen assertion becomes a processor fault, which ends in the
 // safe state. The board has no stream for a message.
 #pragma once

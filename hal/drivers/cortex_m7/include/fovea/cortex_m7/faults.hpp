@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Processor faults: the fault is reported once, then the processor sleeps forever.
 #pragma once
 

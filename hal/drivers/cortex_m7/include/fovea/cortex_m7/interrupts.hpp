@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Disables interrupts in a scope, and sleeps until the next interrupt.
 #pragma once
 

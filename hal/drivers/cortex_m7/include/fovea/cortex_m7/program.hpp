@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs after reset, once memory and FPU are ready. The program that links this driver implements it.
 #pragma once
 

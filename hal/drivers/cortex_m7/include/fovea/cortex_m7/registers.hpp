@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Register addresses of the processor and the board. Processor: ARMv7-M Architecture Reference Manual,
 // B3; board: Arm MPS2 with image AN500 (Application Note 500), with Arm's CMSDK peripherals (DDI 0479).
 #pragma once

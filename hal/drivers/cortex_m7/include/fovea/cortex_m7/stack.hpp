@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The largest stack use so far.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The 1 kHz tick, and a counter to measure with.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // UART 0 of the board, by interrupts, with a ring of bytes each way.
 #pragma once
 

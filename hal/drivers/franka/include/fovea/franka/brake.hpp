@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Torques that bring the arm to rest at the end of a motion: a motion finished at speed causes a reflex.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot's errors, in the order of the 41 flags of a state.
 #pragma once
 

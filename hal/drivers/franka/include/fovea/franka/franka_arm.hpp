@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
 // A Franka Emika Panda behind the seam, by its network interface (Franka Control Interface, version 5).
 //
 // The robot paces the loop: it sends a state each millisecond, and Read waits for it. The first Write without
 // brakes starts a torque motion. From then on each state is answered once: by Write or, without one, by the
 // last command again. Brakes end the motion; the robot then holds by itself. A reflex or a user stop ends it
-// too. Then nothing moves until AskRecovery, and not before a Write with brakes: without it, the caller still
-// commands as if the motion continued.
+// too. After that nothing moves until AskRecovery and a Write with brakes: a caller that has not yet
+// requested the brakes still commands as if the motion continued.
 //
 // Commands stay within the torque rate of the answered state's tau_J_d, which the robot applies, and of the
 // commands sent since (TorqueRate). So neither a lost packet nor a new start causes a step.

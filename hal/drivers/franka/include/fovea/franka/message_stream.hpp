@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cuts a TCP stream into the interface's messages. No heap, bounded.
 #pragma once
 

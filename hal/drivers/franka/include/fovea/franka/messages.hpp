@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The TCP messages of the Franka Control Interface, version 5: a header, then a request's or an answer's
 // payload.
 #pragma once

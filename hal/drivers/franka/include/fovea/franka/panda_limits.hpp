@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The maker's published limits of a Panda; the robot itself does not report them.
 #pragma once
 

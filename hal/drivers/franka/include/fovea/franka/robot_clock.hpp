@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A loop's clock that shows the robot's own time: that of the newest state. For a robot whose time is not the
 // computer's, such as a simulated one in lockstep.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TCP and UDP over IPv4, as far as the robot's interface needs them. Functions that open a socket may block,
 // allocate and throw NetworkError; sending and receiving never do.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The two datagrams of the Franka Control Interface, version 5: RobotState down, RobotCommand up.
 //
 // Field names are the interface's own. f64 matrices are column-major; SI and radians; _d desired, _c

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps torque commands within one step of every torque that the robot may apply when they arrive.
 //
 // On a good network, that is the torque in the answered state. If packets are lost or late, the robot may or

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Converts plain data to the bytes of the Franka Control Interface and back: little endian, packed, with IEEE
 // doubles.
 //

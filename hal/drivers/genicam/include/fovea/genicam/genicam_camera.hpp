@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A GigE Vision or USB3 Vision camera, by Aravis.
 #pragma once
 

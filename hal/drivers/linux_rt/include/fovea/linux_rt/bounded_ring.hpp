@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A bounded ring from one thread to another: one writer, one reader, no locks. Values that find it full are
 // dropped and counted.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counts the heap calls of the calling thread while it is inside a counted region.
 //
 // The counting itself is done by the interposer (heap_interposer.cpp, target fovea_heap_interposer), which

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ctrl-C as a request to end: the first SIGINT, SIGTERM or SIGHUP sets a flag, the second ends the process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the calling thread a real-time one, as far as the machine allows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Carries tick records out of the real-time thread.
 #pragma once
 

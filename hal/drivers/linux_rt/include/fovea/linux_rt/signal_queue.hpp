@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Signals that the program polls instead of being interrupted by them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints text for a person from its own thread: a stopped terminal delays no other thread.
 #pragma once
 

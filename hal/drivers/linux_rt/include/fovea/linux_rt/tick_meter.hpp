@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Measures every tick from outside: its duration, heap calls and page faults.
 #pragma once
 

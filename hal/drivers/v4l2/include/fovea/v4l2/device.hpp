@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The driver's interface to the kernel: one video device, opened by its path. A test can replace the kernel.
 #pragma once
 

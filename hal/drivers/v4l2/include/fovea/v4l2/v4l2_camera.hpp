@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A camera behind Video4Linux2, such as a USB camera. Tested against a scripted device; not tried on
 // hardware.
 #pragma once

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// How printed text looks: its width and its colours.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace fovea::config {
+
+struct TextStyle {
+  std::size_t width = 100;  // of a line, in characters
+  bool colour = false;      // colours and bold headings
+};
+
+enum class Paint : std::uint8_t { kPlain, kBold, kGood, kBad };
+
+// Whether output has colours: on a terminal, unless NO_COLOR is set or TERM is dumb. Both variables may be
+// null: not set.
+bool ColourFor(bool is_terminal, const char* no_color, const char* term);
+
+// Width of a line. On a terminal: its `columns`, limited to 60 to 100; 100 if they are unknown (0). Otherwise
+// 100.
+std::size_t WidthFor(bool is_terminal, std::size_t columns);
+
+// The same for an open file, e.g. standard output.
+bool UsesColour(int fd);
+std::size_t TerminalWidth(int fd);
+TextStyle StyleOf(int fd);
+
+// `text` with the terminal codes of `paint` around it; `text` itself if `style` has no colours.
+std::string Painted(const std::string& text, Paint paint, const TextStyle& style);
+
+}  // namespace fovea::config
