@@ -125,6 +125,9 @@ void RunClass(const SceneClass& scenes, TargetKind kind, const VisionArguments& 
     }
   }
   const bool is_round = features::TraitsOf(kind).body != features::TargetBody::kPlate;
+  if (!arguments.json) {
+    fmt::print("{}, {}\n", NameOf(kind), scenes.name);
+  }
   for (const Row& row : rows) {
     const Score& s = row.score;
     const double n = std::max(s.found, 1);
@@ -141,13 +144,11 @@ void RunClass(const SceneClass& scenes, TargetKind kind, const VisionArguments& 
     if (!arguments.json) {
       const std::string tracked =
           s.tracked_ms.empty() ? "     -" : fmt::format("{:6.3f}", Median(s.tracked_ms));
-      fmt::print(
-          "{:<9}{:<13}{:<23}{:5.1f} {:5.1f} {:8.4f} {:8.4f} {:7.4f} {:7.4f} {:>6} {:7.3f} {:6.2f} {:7.3f} "
-          "{}\n",
-          NameOf(kind), scenes.name, row.contestant, 100.0 * s.found / std::max(s.with_target, 1),
-          100.0 * s.wrong / std::max(s.with_target + s.without, 1), centre, radius, bound_centre,
-          bound_radius, goal_centre ? fmt::format("{:.3f}", *goal_centre) : "-", s.worst_px, s.chi2 / n,
-          Median(s.ms), tracked);
+      fmt::print("  {:<23}{:5.1f} {:5.1f} {:6.3f} {:6.3f} {:6.3f} {:6.3f} {:>6} {:6.2f} {:6.2f} {:6.2f} {}\n",
+                 row.contestant, 100.0 * s.found / std::max(s.with_target, 1),
+                 100.0 * s.wrong / std::max(s.with_target + s.without, 1), centre, radius, bound_centre,
+                 bound_radius, goal_centre ? fmt::format("{:.3f}", *goal_centre) : "-", s.worst_px,
+                 s.chi2 / n, Median(s.ms), tracked);
       std::fflush(stdout);
     }
     if (row.contestant != "fovea") {
@@ -173,12 +174,12 @@ int RunVision(const VisionArguments& arguments) {
     fmt::print(
         "{} pictures of 640x480 per class, a third of them without a target; rms along one axis [px]\n",
         arguments.pictures);
-    fmt::print("{:<9}{:<13}{:<23}{:>5} {:>5} {:>8} {:>8} {:>7} {:>7} {:>6} {:>7} {:>6} {:>7} {:>6}\n",
-               "target", "class", "", "found", "wrong", "centre", "radius", "CR c.", "CR r.", "goal", "worst",
-               "chi2/2", "ms", "track");
-    fmt::print("{:<45}{:>5} {:>5}\n", "", "%", "%");
+    fmt::print("{:<25}{:>5} {:>5} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6} {:>6}\n", "target, class",
+               "found", "wrong", "centre", "radius", "CR c.", "CR r.", "goal", "worst", "chi2/2", "ms",
+               "track");
+    fmt::print("{:<25}{:>5} {:>5}\n", "", "%", "%");
     // In the columns of the figures below.
-    fmt::print("{:<45}{:5.1f} {:5.1f} {:>63.3f} {:6.3f}\n", "goals for round targets", 100.0, 0.0, kGoalMs,
+    fmt::print("{:<25}{:5.1f} {:5.1f} {:>55.2f} {:6.3f}\n", "goals for round targets", 100.0, 0.0, kGoalMs,
                kGoalTrackedMs);
   }
   std::vector<Figure> figures;

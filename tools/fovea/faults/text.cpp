@@ -120,15 +120,17 @@ std::vector<std::string> TotalsInWords(const Matrix& matrix) {
 }
 
 std::string ToTable(const Matrix& matrix) {
-  std::string text = fmt::format("{:<46} {:<26} {:<40} {:>6} {:>6} {:>6} {:>6}  {}\n", "cell",
-                                 "noticed by, ticks", "reaction", "q", "dq", "tau", "dtau", "end");
+  // Two lines per cell: its name and end; then what noticed the fault, the reaction, and the limits used.
+  std::string text = fmt::format("{:<46} {}\n  {:<26} {:<40} {:>6} {:>6} {:>6} {:>6}\n", "cell", "end",
+                                 "noticed by, ticks", "reaction", "q", "dq", "tau", "dtau");
   for (const Cell& cell : matrix.cells) {
     const Outcome& o = cell.outcome;
-    text += fmt::format("{:<46} {:<26} {:<40}", NameOf(cell), Notice(o), ShortReaction(o));
+    text +=
+        fmt::format("{:<46} {}\n  {:<26} {:<40}", NameOf(cell), EndInWords(o), Notice(o), ShortReaction(o));
     for (const std::string& limit : PhysicalLimits()) {
       text += fmt::format(" {:>6}", o.limits.count(limit) > 0 ? Percent(o.limits.at(limit)) : "-");
     }
-    text += fmt::format("  {}\n", EndInWords(o));
+    text += "\n";
   }
   for (const std::string& line : TotalsInWords(matrix)) {
     text += fmt::format("{}\n", line);

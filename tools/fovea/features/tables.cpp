@@ -81,8 +81,8 @@ int PrintFeatureTables(bool json) {
   }
   Json list = Json::array();
   if (!json) {
-    fmt::print("  {:<18} {:<34} {:>3} {:>6} {:>5} {:>10} {:>6} {:>6} {:>9}  {}\n", "target", "s", "dim",
-               "L_s", "rank", "condition", "found", "ms", "scatter", "free motions, notes");
+    fmt::print("  {:<18} {:<34} {:>6} {:>5} {:>9} {:>6} {:>6} {:>8}\n    free motions, notes\n", "target",
+               "s", "L_s", "rank", "condition", "found", "ms", "scatter");
   }
   for (const TableRow& row : TableRows()) {
     const model::Pose X_CO = LookFrom(row.p_OC);
@@ -112,10 +112,14 @@ int PrintFeatureTables(bool json) {
       list.push_back(entry);
       continue;
     }
-    fmt::print("  {:<18} {:<34} {:>3} {:>6} {:>5} {:>10} {:>4.0f} % {:>6.2f} {:>9}  {}{}{}\n", row.name,
-               Parameters(row.feature), dim, fmt::format("{}x6", dim), study.rank,
-               ConditionText(study.condition), 100.0 * search.found, search.ms, ScatterText(scatter),
-               fmt::join(free, "; "), free.empty() || *row.note == '\0' ? "" : "; ", row.note);
+    fmt::print("  {:<18} {:<34} {:>6} {:>5} {:>9} {:>4.0f} % {:>6.2f} {:>8}\n", row.name,
+               Parameters(row.feature), fmt::format("{}x6", dim), study.rank, ConditionText(study.condition),
+               100.0 * search.found, search.ms, ScatterText(scatter));
+    const std::string notes =
+        fmt::format("{}{}{}", fmt::join(free, "; "), free.empty() || *row.note == '\0' ? "" : "; ", row.note);
+    if (!notes.empty()) {
+      config::PrintFitted("    " + notes, 4);
+    }
   }
   if (json) {
     fmt::print("{}\n", list.dump(2));
