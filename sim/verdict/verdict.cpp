@@ -18,6 +18,7 @@ constexpr double kConvergedPx = 1.0;                       // largest error of a
 constexpr double kConvergedM = 0.002;
 constexpr double kConvergedDeg = 0.5;  // for a goal with an orientation
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kNamedPercent = 5.0;   // of the ticks: a limit that acted less often did not decide the run
 constexpr double kHomeBound = 1e-3;     // largest joint error at home [rad]
 constexpr double kAtRest = 0.01;        // a joint below this speed is at rest [rad/s, m/s]
 constexpr double kSettledShare = 0.02;  // settled: stays below this share of the first error
@@ -354,8 +355,8 @@ std::string Verdict::WhyHeld() const {
   }
 }
 
-// E.g. "; limited by field_of_view (safety.view_margin_px) in 89 % of the ticks": the limits that acted, the
-// longest first; "" if none did.
+// E.g. "; limited by field_of_view (safety.view_margin_px) in 89 % of the ticks": the limits that acted in
+// at least kNamedPercent of the ticks, the longest first; "" if none did.
 std::string Verdict::LimitedBy() const {
   std::vector<std::pair<std::uint64_t, hal::Limit>> acted;
   for (int i = 0; i < hal::kNumLimits; ++i) {
@@ -369,8 +370,10 @@ std::string Verdict::LimitedBy() const {
   std::string words;
   for (const auto& [ticks, limit] : acted) {
     const double percent = 100.0 * static_cast<double>(ticks) / static_cast<double>(ticks_);
-    words += fmt::format("{} {} ({}) in {} %", words.empty() ? "; limited by" : ",", hal::Name(limit),
-                         hal::Key(limit), percent < 1.0 ? "under 1" : fmt::format("{:.0f}", percent));
+    if (percent >= kNamedPercent) {
+      words += fmt::format("{} {} ({}) in {:.0f} %", words.empty() ? "; limited by" : ",", hal::Name(limit),
+                           hal::Key(limit), percent);
+    }
   }
   return words.empty() ? words : words + " of the ticks";
 }

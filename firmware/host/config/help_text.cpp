@@ -29,6 +29,9 @@ bool IsHeading(const std::string& line) {
 void AppendLine(std::string line, std::size_t column, std::size_t width, std::string& text) {
   while (line.size() > width) {
     std::size_t space = line.rfind(' ', width);
+    if (space != std::string::npos && line[space + 1] == '%') {
+      space = line.rfind(' ', space - 1);  // a number stays with its %
+    }
     if (space == std::string::npos || space <= column) {
       // A word longer than the line, such as a list of choices, breaks after a comma.
       if (const std::size_t comma = line.rfind(',', width - 1);

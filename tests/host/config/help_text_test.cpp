@@ -34,6 +34,11 @@ TEST(FormatHelpTest, IndentsTheRestOfALineByTwoMore) {
             "usage or input.\n");
 }
 
+TEST(FittedTest, KeepsANumberWithItsPercentSign) {
+  EXPECT_EQ(Fitted("speed 37 %, torque 13 %", 2, 21), "speed 37 %, torque\n  13 %\n");
+  EXPECT_EQ(Fitted("speed 37 %, torque 13 %", 2, 22), "speed 37 %, torque\n  13 %\n");
+}
+
 TEST(FormatHelpTest, KeepsAWordThatIsLongerThanTheLine) {
   const std::string word(80, 'x');
   EXPECT_EQ(Formatted("  --only TEXT                 " + word + " more\n", 60),

@@ -274,14 +274,13 @@ TEST_F(VerdictTest, LimitsThatActedAreNamedTheLongestFirst) {
   records_.assign(1000, record);
   EXPECT_THAT(Judge(1.0, far).verdict, testing::Not(testing::HasSubstr("limited by")));
   for (std::size_t k = 0; k < records_.size(); ++k) {
-    records_[k].limits_active = (k < 5 ? hal::Bit(hal::Limit::kObstacle) : 0U) |
-                                (k < 890 ? hal::Bit(hal::Limit::kFieldOfView) : 0U) |
-                                (k < 30 ? hal::Bit(hal::Limit::kJointJerk) : 0U);
+    records_[k].limits_active =
+        (k < 5 ? hal::Bit(hal::Limit::kObstacle) : 0U) | (k < 890 ? hal::Bit(hal::Limit::kFieldOfView) : 0U) |
+        (k < 60 ? hal::Bit(hal::Limit::kJointJerk) : 0U) | (k < 49 ? hal::Bit(hal::Limit::kSingularity) : 0U);
   }
   EXPECT_THAT(Judge(1.0, far).verdict,
               testing::EndsWith("of its goal; limited by field_of_view (safety.view_margin_px) in 89 %, "
-                                "joint_jerk (safety.joint_jerk_fraction) in 3 %, obstacle (safety.planes) in "
-                                "under 1 % of the ticks"));
+                                "joint_jerk (safety.joint_jerk_fraction) in 6 % of the ticks"));
 }
 
 TEST(SummaryTableTest, RowsSayInWordsWhatVisionDelivered) {
