@@ -112,13 +112,13 @@ const char* Words(Fault fault) noexcept {
   switch (fault) {
     case Fault::kNone: return "no fault";
     case Fault::kArmLost: return "the arm returned errors, or nothing";
-    case Fault::kArmStale: return "the arm's states stood still";
+    case Fault::kArmStale: return "the arm's states, or a joint's reading, stood still";
     case Fault::kNonFiniteSensor: return "a sensor value was not finite";
     case Fault::kNonFiniteFeature: return "a value from vision was not finite";
     case Fault::kNonFiniteControl: return "a value of the control law was not finite";
     case Fault::kDeadlineMissed: return "too many ticks in a row were missed";
     case Fault::kJointPosition: return "a joint was outside its range";
-    case Fault::kJointVelocity: return "a joint was faster than its limit";
+    case Fault::kJointVelocity: return "a joint's velocity exceeded its limit, or jumped";
     case Fault::kNotFollowing: return "a joint did not follow its reference";
     case Fault::kContact: return "an external force exceeded its limit";
   }

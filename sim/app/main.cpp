@@ -29,8 +29,6 @@ using namespace fovea;
 using config::kDone;
 using config::kGoalMissed;
 
-constexpr std::size_t kContinued = 2;  // indent of the rest of a printed line that is too long
-
 struct RunArguments {
   std::string scenario;
   std::vector<std::string> assignments;
@@ -108,10 +106,10 @@ int Run(const RunArguments& arguments) {
     const config::TextStyle style = config::StyleOf(STDOUT_FILENO);
     config::PrintedTable files(style);
     if (summary.files_error.empty()) {
-      files.Row("files", options.out.string());
+      files.WholeRow("files", options.out.string());
     }
     if (summary.files_error.empty() && options.report) {
-      files.Row("report", (options.out / "report.html").string());
+      files.WholeRow("report", (options.out / "report.html").string());
     }
     fmt::print("{}{}", sim::ToTable(summary, style), files.text());
   }
@@ -184,12 +182,10 @@ int Serve(const ServeArguments& arguments) {
     fmt::print("{}", sim::ToJson(summary));
   } else {
     const sim::FciServerCounters& c = summary.robot;
-    config::PrintFitted(
-        fmt::format(
-            "{} states, {} commands applied, {} missing, {} overruns, {} ms skipped; {} frames, {} dropped",
-            c.states, c.commands, c.missing, c.overruns, c.given_up_ns / hal::kNsPerMs, summary.frames_sent,
-            summary.frames_dropped),
-        kContinued);
+    config::PrintFitted(fmt::format(
+        "{} states, {} commands applied, {} missing, {} overruns, {} ms skipped; {} frames, {} dropped",
+        c.states, c.commands, c.missing, c.overruns, c.given_up_ns / hal::kNsPerMs, summary.frames_sent,
+        summary.frames_dropped));
     if (summary.error_px) {
       fmt::print("final target error: {:.2f} px, {:.2f} mm\n", *summary.error_px, *summary.error_mm);
     }
@@ -283,8 +279,7 @@ int TakePictures(const PictureArguments& arguments) {
   config::PrintFitted(
       fmt::format("{0} views of the board in {1}, {2} of a disc in {1}/focal; true values in {1}/truth.json. "
                   "Next:",
-                  taken.boards.size(), arguments.out, taken.discs.size()),
-      kContinued);
+                  taken.boards.size(), arguments.out, taken.discs.size()));
   fmt::print(
       "  fovea calibrate intrinsics {1} {3} --out {1}/camera.toml\n"
       "  fovea calibrate hand-eye {1} {3} --camera {1}/camera.toml\n"

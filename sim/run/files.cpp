@@ -10,7 +10,8 @@ namespace {
 const std::string kSceneFilm = "scene.mp4";
 
 // Files of a simulated run, in addition to those of any run.
-const std::vector<std::string> kMoreFiles{"eye-first.png", "eye-last.png", "frame-last.png", "bench.png", kSceneFilm};
+const std::vector<std::string> kMoreFiles{"eye-first.png", "eye-last.png", "frame-last.png", "bench.png",
+                                          kSceneFilm};
 
 }  // namespace
 

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/host/run/in_words.hpp"
+
 namespace fovea::sim {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr double kConvergedPx = 1.0;                       // largest error of a
 constexpr double kConvergedM = 0.002;
 constexpr double kConvergedDeg = 0.5;  // for a goal with an orientation
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kNamedPercent = 5.0;   // of the ticks: a limit that acted less often did not decide the run
+constexpr double kNamedPercent = 5.0;   // of the motion: limits that acted less often are not named
 constexpr double kHomeBound = 1e-3;     // largest joint error at home [rad]
 constexpr double kAtRest = 0.01;        // a joint below this speed is at rest [rad/s, m/s]
 constexpr double kSettledShare = 0.02;  // settled: stays below this share of the first error
@@ -106,10 +108,14 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
                       (record.ddq_cmd[k] - before_.ddq_cmd[k]) / (joint.dddq_max * hal::kTickPeriodS));
     }
   }
+  const bool in_motion =
+      record.mode == hal::Mode::kTrack || record.mode == hal::Mode::kCoast || record.mode == hal::Mode::kMove;
+  motion_ticks_ += in_motion ? 1U : 0U;
   for (int i = 0; i < hal::kNumLimits; ++i) {
     const auto limit = static_cast<hal::Limit>(i);
     if ((record.limits_active & hal::Bit(limit)) != 0) {
       ++limit_ticks_[hal::Name(limit)];
+      motion_limit_ticks_.at(static_cast<std::size_t>(i)) += in_motion ? 1U : 0U;
     }
   }
   if (record.intake != hal::Intake::kNone) {
@@ -350,32 +356,31 @@ std::string Verdict::WhyHeld() const {
           "target.position, servo.goal, safety.workspace_radius)",
           since_s);
     default:
-      return fmt::format("not converged: the arm has held since {:.3f} s because {} ({})", since_s,
-                         hal::Words(before_.hold_reason), hal::Name(before_.hold_reason));
+      return fmt::format("not converged: the arm has held since {:.3f} s because {}", since_s,
+                         run::InWords(before_.hold_reason));
   }
 }
 
-// E.g. "; limited by field_of_view (safety.view_margin_px) in 89 % of the ticks": the limits that acted in
-// at least kNamedPercent of the ticks, the longest first; "" if none did.
+// E.g. "; limited by field_of_view (safety.view_margin_px) in 89 % of its motion": the limits that acted in
+// at least kNamedPercent of the ticks in motion, the longest first; "" if none did.
 std::string Verdict::LimitedBy() const {
   std::vector<std::pair<std::uint64_t, hal::Limit>> acted;
   for (int i = 0; i < hal::kNumLimits; ++i) {
-    const auto limit = static_cast<hal::Limit>(i);
-    if (const auto ticks = limit_ticks_.find(hal::Name(limit)); ticks != limit_ticks_.end()) {
-      acted.emplace_back(ticks->second, limit);
+    if (const std::uint64_t ticks = motion_limit_ticks_.at(static_cast<std::size_t>(i)); ticks > 0) {
+      acted.emplace_back(ticks, static_cast<hal::Limit>(i));
     }
   }
   std::stable_sort(acted.begin(), acted.end(),
                    [](const auto& a, const auto& b) { return a.first > b.first; });
   std::string words;
   for (const auto& [ticks, limit] : acted) {
-    const double percent = 100.0 * static_cast<double>(ticks) / static_cast<double>(ticks_);
+    const double percent = 100.0 * static_cast<double>(ticks) / static_cast<double>(motion_ticks_);
     if (percent >= kNamedPercent) {
       words += fmt::format("{} {} ({}) in {:.0f} %", words.empty() ? "; limited by" : ",", hal::Name(limit),
                            hal::Key(limit), percent);
     }
   }
-  return words.empty() ? words : words + " of the ticks";
+  return words.empty() ? words : words + " of its motion";
 }
 
 }  // namespace fovea::sim

@@ -2,6 +2,7 @@
 // Judges a run against the simulator's truth.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <map>
 #include <optional>
@@ -102,6 +103,8 @@ class Verdict {
   NoticeBook notices_;
   std::uint64_t ticks_ = 0;
   std::map<std::string, std::uint64_t> limit_ticks_;
+  std::uint64_t motion_ticks_ = 0;  // in Track, Coast and Move
+  std::array<std::uint64_t, hal::kNumLimits> motion_limit_ticks_{};
   std::map<std::string, std::uint64_t> measurements_;  // count by hal::Intake
   hal::TickRecord before_;
   bool has_record_ = false;

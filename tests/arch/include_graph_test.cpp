@@ -253,9 +253,11 @@ class FolderOrder : public testing::TestWithParam<const char*> {};
 
 TEST_P(FolderOrder, FoldersFormNoCycle) {
   const std::string tree = GetParam();
-  const auto folder_of = [&tree](const std::string& path) {  // "" for files in the tree itself
+  // The tree for its own files, "" for files outside.
+  const auto folder_of = [&tree](const std::string& path) {
     const std::size_t end = path.find('/', tree.size() + 1);
-    return path.starts_with(tree + "/") && end != std::string::npos ? path.substr(0, end) : std::string();
+    const std::string folder = end == std::string::npos ? tree : path.substr(0, end);
+    return path.starts_with(tree + "/") ? folder : std::string();
   };
   std::map<std::string, std::set<std::string>> uses;
   for (const auto& file : test::SourcesIn(tree)) {

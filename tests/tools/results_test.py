@@ -172,6 +172,23 @@ class Command(unittest.TestCase):
         self.assertIn("DIFFERS: Accuracy: ball: now 0.09 px, 25 %; the page has 0.06 px, 25 %", said)
         self.assertEqual(self.page.read_text(), written)
 
+    def test_programs_of_another_commit_write_no_page(self):
+        git = ["git", "-C", self.root, "-c", "user.name=a", "-c", "user.email=a@localhost"]
+        subprocess.run([*git, "init", "-q"], check=True)
+        subprocess.run([*git, "commit", "-q", "--allow-empty", "-m", "one"], check=True)
+        code, said = self.results()
+        self.assertEqual(code, 2, said)
+        self.assertIn("the programs are of commit abc1234, the working tree is of", said)
+        self.assertEqual(self.calls(), [])
+        self.assertEqual(self.page.read_text(), "the old page")
+
+    def test_another_renderer_is_not_compared(self):
+        self.assertEqual(self.results()[0], 0)
+        self.program("fovea-sim", {**SUMMARY, "renderer": "another", "error_px": 0.5})
+        code, said = self.results("--check")
+        self.assertEqual(code, 0, said)
+        self.assertIn("not compared: the renderer is another, the page's is llvmpipe", said)
+
     def test_only_prints_and_writes_no_page(self):
         code, said = self.results("--only", "Accuracy")
         self.assertEqual(code, 0, said)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # The small sources of a folder are compiled together: most of a small source's time is the headers that it shares with its
-# neighbours. Their anonymous namespaces become one, so a name must be unique in its folder. Not in a sanitized build: that
-# compiles each source by itself, so that a source still has to include what it uses. Not for a board: its linker map names
+# neighbours. Their anonymous namespaces become one, so a name must be unique in its folder. Not in a sanitized build:
+# `tools/test asan` compiles each source by itself, so that it shows a source that does not include what it uses. Not for a board: its linker map names
 # the sources that take flash and RAM.
 option(FOVEA_UNITY "Compile the small sources of a folder together" ON)
 if(FOVEA_SANITIZE OR CMAKE_SYSTEM_NAME STREQUAL Generic)

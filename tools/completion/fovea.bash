@@ -62,7 +62,7 @@ _fovea() {
     local names
     names=$(_fovea_help commands "${call[@]}")
     case "${call[*]##*/}" in
-      'fovea-sim run' | 'fovea-sim serve' | 'fovea-sim pictures') names=$("${folder}fovea-sim" list 2> /dev/null | awk '/^[^ ]/ { print $1 }') ;;
+      'fovea-sim run' | 'fovea-sim serve' | 'fovea-sim pictures') names=$("${folder}fovea-sim" list 2> /dev/null | awk '{ print $1 }') ;;
       fovea-hw) names='loopback panda' ;;
     esac
     mapfile -t found < <(

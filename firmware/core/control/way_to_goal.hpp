@@ -6,7 +6,7 @@
 // posture (goal_posture.hpp). If the target leaves the hand no freedom, it searches all the time. For a disc
 // or ball, where the law usually succeeds, it searches only after limits have stopped the progress.
 //
-// If gradient descent from the arm's posture finds a goal posture, the law starts first. Otherwise the arm
+// If the search that starts at the arm's posture finds one, the law starts first. Otherwise the arm
 // waits, for a limited time, until a posture with a clear path is found. If limits stop the progress, the
 // search starts from there. The joints then move to the posture together, by the detour with which it was
 // found, as straight as the target's place in the picture and the limits allow. Near the posture the law

@@ -29,7 +29,7 @@ bool IsHeading(const std::string& line) {
 void AppendLine(std::string line, std::size_t column, std::size_t width, std::string& text) {
   while (line.size() > width) {
     std::size_t space = line.rfind(' ', width);
-    if (space != std::string::npos && line[space + 1] == '%') {
+    if (space != std::string::npos && space > 0 && line[space + 1] == '%') {
       space = line.rfind(' ', space - 1);  // a number stays with its %
     }
     if (space == std::string::npos || space <= column) {

@@ -14,4 +14,8 @@ void PrintedTable::Row(const std::string& name, const std::string& value, Paint 
   text_ += lines.substr(0, head.size()) + Painted(lines.substr(head.size()), paint, style_) + "\n";
 }
 
+void PrintedTable::WholeRow(const std::string& name, const std::string& value) {
+  text_ += fmt::format("  {:<{}}{}\n", name, name_width_, value);
+}
+
 }  // namespace fovea::config

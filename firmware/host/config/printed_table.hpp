@@ -18,6 +18,8 @@ class PrintedTable {
 
   // Adds a row. A long value breaks between words; its next lines begin at the value's column.
   void Row(const std::string& name, const std::string& value, Paint paint = Paint::kPlain);
+  // The same for a value that is copied, such as a path: its line is never broken.
+  void WholeRow(const std::string& name, const std::string& value);
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:

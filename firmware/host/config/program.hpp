@@ -36,11 +36,9 @@ inline std::string OnOneLine(std::string text) {
   return text;
 }
 
-// An error as printed: one line, or lines that fit into `width`, if given.
-inline std::string ErrorText(const char* name, const std::string& text, std::optional<std::size_t> width) {
-  constexpr std::size_t kIndent = 2;
-  const std::string line = std::string(name) + ": " + OnOneLine(text);
-  return width ? Fitted(line, kIndent, *width) : line + "\n";
+// An error as printed: lines that fit into `width`.
+inline std::string ErrorText(const char* name, const std::string& text, std::size_t width) {
+  return Fitted(std::string(name) + ": " + OnOneLine(text), kContinued, width);
 }
 
 // Prints an error of the program `name` on standard error: one line, which a terminal's width breaks. Does
@@ -49,14 +47,12 @@ inline void PrintError(const char* name, const std::string& text) {
   constexpr int kPatienceMs = 500;
   pollfd room{STDERR_FILENO, POLLOUT, 0};
   if (poll(&room, 1, kPatienceMs) != 0) {
-    const bool is_terminal = isatty(STDERR_FILENO) == 1;
-    const auto width = is_terminal ? std::optional(TerminalWidth(STDERR_FILENO)) : std::nullopt;
-    std::fputs(ErrorText(name, text, width).c_str(), stderr);
+    std::fputs(ErrorText(name, text, TerminalWidth(STDERR_FILENO)).c_str(), stderr);
   }
 }
 
 // Prints `text` on standard output. A line that is too long continues at `column`.
-inline void PrintFitted(const std::string& text, std::size_t column) {
+inline void PrintFitted(const std::string& text, std::size_t column = kContinued) {
   std::fputs(Fitted(text, column, TerminalWidth(STDOUT_FILENO)).c_str(), stdout);
 }
 
@@ -117,7 +113,9 @@ inline int RunProgram(const char* name, CLI::App& app, int argc, char** argv,
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
       std::ostringstream help;
       const bool done = app.exit(error, help, help) == 0;
-      std::fputs(FormatHelp(help.str(), StyleOf(STDOUT_FILENO)).c_str(), stdout);
+      TextStyle style = StyleOf(STDOUT_FILENO);
+      style.width = std::min(style.width, kMostWidth);  // also in a pager
+      std::fputs(FormatHelp(help.str(), style).c_str(), stdout);
       return done ? kDone : kBadInput;
     }
     PrintError(name, Explain(app, error));

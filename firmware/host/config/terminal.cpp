@@ -13,7 +13,6 @@ namespace fovea::config {
 namespace {
 
 constexpr std::size_t kLeastWidth = 60;
-constexpr std::size_t kMostWidth = 100;
 constexpr std::array kPaintCodes{"", "\033[1m", "\033[32m", "\033[31m"};  // by Paint
 constexpr const char* kEndOfPaint = "\033[0m";
 
@@ -24,7 +23,10 @@ bool ColourFor(bool is_terminal, const char* no_color, const char* term) {
 }
 
 std::size_t WidthFor(bool is_terminal, std::size_t columns) {
-  return is_terminal && columns > 0 ? std::clamp(columns, kLeastWidth, kMostWidth) : kMostWidth;
+  if (!is_terminal) {
+    return kUnbroken;
+  }
+  return columns > 0 ? std::clamp(columns, kLeastWidth, kMostWidth) : kMostWidth;
 }
 
 bool UsesColour(int fd) { return ColourFor(isatty(fd) == 1, std::getenv("NO_COLOR"), std::getenv("TERM")); }

@@ -8,9 +8,13 @@
 
 namespace fovea::config {
 
+inline constexpr std::size_t kMostWidth = 100;               // of a line, in characters, for a person
+inline constexpr std::size_t kUnbroken = std::string::npos;  // width of output that programs read
+inline constexpr std::size_t kContinued = 2;                 // indent of the rest of a line that is too long
+
 struct TextStyle {
-  std::size_t width = 100;  // of a line, in characters
-  bool colour = false;      // colours and bold headings
+  std::size_t width = kMostWidth;
+  bool colour = false;  // colours and bold headings
 };
 
 enum class Paint : std::uint8_t { kPlain, kBold, kGood, kBad };
@@ -19,8 +23,8 @@ enum class Paint : std::uint8_t { kPlain, kBold, kGood, kBad };
 // null: not set.
 bool ColourFor(bool is_terminal, const char* no_color, const char* term);
 
-// Width of a line. On a terminal: its `columns`, limited to 60 to 100; 100 if they are unknown (0). Otherwise
-// 100.
+// Width of a line. On a terminal: its `columns`, limited to 60 to kMostWidth; kMostWidth if they are unknown
+// (0). Otherwise kUnbroken: a file or a pipe gets each line whole.
 std::size_t WidthFor(bool is_terminal, std::size_t columns);
 
 // The same for an open file, e.g. standard output.

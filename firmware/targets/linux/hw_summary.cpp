@@ -8,6 +8,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "firmware/host/run/in_words.hpp"
+
 namespace fovea::hw {
 namespace {
 
@@ -88,12 +90,6 @@ bool EndedInDoubt(const HwSummary& s) {
   return false;
 }
 
-// E.g. "the target was lost (target_lost)": for a person, with the name that the documents list.
-template <typename Reason>
-std::string InWords(Reason reason) {
-  return fmt::format("{} ({})", hal::Words(reason), hal::Name(reason));
-}
-
 // The faults that the run recovered from.
 std::string RecoveredFrom(const HwSummary& s) {
   const std::size_t left = s.fault != hal::Fault::kNone && !s.faults.empty() ? 1 : 0;
@@ -104,7 +100,7 @@ std::string RecoveredFrom(const HwSummary& s) {
   std::vector<std::string> words;
   words.reserve(counts.size());
   for (const auto& [fault, count] : counts) {
-    words.push_back(InWords(fault) + (count > 1 ? fmt::format(", {} times", count) : ""));
+    words.push_back(run::InWords(fault) + (count > 1 ? fmt::format(", {} times", count) : ""));
   }
   return fmt::format("{}", fmt::join(words, "; "));
 }
@@ -114,7 +110,7 @@ void JudgeEnd(HwSummary& s) {
   const hal::HoldReason reason = s.hold_reason;
   s.converged = false;
   if (s.fault != hal::Fault::kNone) {
-    s.verdict = fmt::format("the run ended in a fault: {}", InWords(s.fault));
+    s.verdict = fmt::format("the run ended in a fault: {}", run::InWords(s.fault));
   } else if (!s.refusal.empty()) {
     s.verdict = s.refusal;
   } else if (s.ticks == 0) {
@@ -137,10 +133,10 @@ void JudgeEnd(HwSummary& s) {
   } else if (reason == hal::HoldReason::kNoTarget || reason == hal::HoldReason::kTargetLost ||
              reason == hal::HoldReason::kGoalUnreachable) {
     s.verdict = fmt::format("the servo should follow the target, but held at the end because {}; {}",
-                            InWords(reason), last);
+                            run::InWords(reason), last);
   } else if (s.mode == hal::Mode::kHold && EndedInDoubt(s)) {
     s.verdict = fmt::format("the servo should follow the target, but held at the end because {}; {}",
-                            InWords(hal::HoldReason::kEyeDoubted), last);
+                            run::InWords(hal::HoldReason::kEyeDoubted), last);
   } else if (s.operator_silent && HasTracked(s)) {
     s.verdict =
         fmt::format("the servo should follow the target, but held because the operator was silent; {}", last);

@@ -20,8 +20,6 @@ namespace {
 
 using namespace fovea;
 
-constexpr std::size_t kContinued = 2;  // indent of the rest of a printed line that is too long
-
 struct Arguments {
   std::string config;
   std::vector<std::string> assignments;
@@ -58,7 +56,7 @@ std::optional<hw::HwSummary> Serve(const hw::HwConfig& config, const Arguments& 
 
 void PrintVerdict(const hw::HwSummary& summary) {
   const config::TextStyle style = config::StyleOf(STDOUT_FILENO);
-  std::string lines = config::Fitted(summary.verdict, kContinued, style.width);
+  std::string lines = config::Fitted(summary.verdict, config::kContinued, style.width);
   lines.pop_back();  // its line end
   const config::Paint paint = !summary.converged   ? config::Paint::kPlain
                               : *summary.converged ? config::Paint::kGood
@@ -87,18 +85,15 @@ int Run(const Arguments& arguments) {
     fmt::print("{}", hw::ToJson(summary));
   } else {
     if (summary.seen && summary.seen->last_px) {
-      config::PrintFitted(
-          fmt::format("{} frames, the target in {}; at the end {:.2f} px off its goal", summary.seen->frames,
-                      summary.seen->frames_detected, *summary.seen->last_px),
-          kContinued);
+      config::PrintFitted(fmt::format("{} frames, the target in {}; at the end {:.2f} px off its goal",
+                                      summary.seen->frames, summary.seen->frames_detected,
+                                      *summary.seen->last_px));
     }
-    config::PrintFitted(
-        fmt::format(
-            "{} ticks, {} overruns; {} states, {} lost; {} commands, {:.0f} % of the last 100 arrived; "
-            "ended in {}",
-            summary.ticks, summary.overruns, summary.robot.states, summary.robot.lost_states,
-            summary.robot.commands, 100.0 * summary.robot.command_success_rate, hal::Name(summary.mode)),
-        kContinued);
+    config::PrintFitted(fmt::format(
+        "{} ticks, {} overruns; {} states, {} lost; {} commands, {:.0f} % of the last 100 arrived; "
+        "ended in {}",
+        summary.ticks, summary.overruns, summary.robot.states, summary.robot.lost_states,
+        summary.robot.commands, 100.0 * summary.robot.command_success_rate, hal::Name(summary.mode)));
     PrintVerdict(summary);
   }
   if (!summary.files_error.empty()) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "firmware/core/task/servo_loop.hpp"
+#include "firmware/host/run/in_words.hpp"
 
 namespace fovea::hw {
 
@@ -43,9 +44,8 @@ void RunWatch::Add(const hal::TickRecord& record, bool finishes) {
   if (!faulty) {
     Say(mode);
   } else {
-    const char* fault = hal::Name(record.fault);
-    Say(fmt::format("{}: {}", mode, fault),
-        fmt::format("{}: {} ({})", mode, hal::Words(record.fault), fault));
+    Say(fmt::format("{}: {}", mode, hal::Name(record.fault)),
+        fmt::format("{}: {}", mode, run::InWords(record.fault)));
     summary_.faults.push_back({Seconds(record), record.fault, record.fault_joint});
   }
 }

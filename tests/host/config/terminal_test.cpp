@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <optional>
 #include <string>
 
 #include "firmware/host/config/program.hpp"
@@ -29,15 +28,15 @@ TEST(TerminalTest, WidthIsTheTerminalsFrom60To100) {
   EXPECT_EQ(WidthFor(true, 1), 60U);
   EXPECT_EQ(WidthFor(true, 101), 100U);
   EXPECT_EQ(WidthFor(true, 0), 100U) << "unknown";
-  EXPECT_EQ(WidthFor(false, 80), 100U);
+  EXPECT_EQ(WidthFor(false, 80), kUnbroken);
 }
 
 TEST(TerminalTest, FileIsNoTerminal) {
   const int fd = open("/dev/null", O_WRONLY | O_CLOEXEC);
   ASSERT_GE(fd, 0);
   EXPECT_FALSE(UsesColour(fd));
-  EXPECT_EQ(TerminalWidth(fd), 100U);
-  EXPECT_EQ(StyleOf(fd).width, 100U);
+  EXPECT_EQ(TerminalWidth(fd), kUnbroken);
+  EXPECT_EQ(StyleOf(fd).width, kUnbroken);
   EXPECT_FALSE(StyleOf(fd).colour);
   close(fd);
 }
@@ -54,7 +53,7 @@ TEST(TerminalTest, PaintIsForAStyleWithColours) {
 
 TEST(TerminalTest, ErrorIsOneLineUnlessATerminalBreaksIt) {
   const std::string words = "the first half of a message\nand its second half, which is long";
-  EXPECT_EQ(ErrorText("fovea", words, std::nullopt),
+  EXPECT_EQ(ErrorText("fovea", words, kUnbroken),
             "fovea: the first half of a message and its second half, which is long\n");
   EXPECT_EQ(ErrorText("fovea", words, 60),
             "fovea: the first half of a message and its second half,\n  which is long\n");

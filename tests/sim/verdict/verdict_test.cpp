@@ -244,13 +244,14 @@ TEST_F(VerdictTest, FaultFailsTheRunAndIsNamed) {
   EXPECT_EQ(s.faults[0].name, "joint_velocity");
   EXPECT_EQ(s.faults[0].detail, "joint 4");
   EXPECT_DOUBLE_EQ(s.faults[0].t_s, 0.25);
-  EXPECT_EQ(
-      s.verdict,
-      "not converged: fault: a joint was faster than its limit (joint_velocity), at 0.250 s, joint 4; see "
-      "arm.model");
-  EXPECT_THAT(ToTable(s), testing::HasSubstr("faults                  a joint was faster than its limit "
-                                             "(joint_velocity), at 0.250 s, joint 4;\n" +
-                                             std::string(26, ' ') + "see arm.model\n"));
+  EXPECT_EQ(s.verdict,
+            "not converged: fault: a joint's velocity exceeded its limit, or jumped (joint_velocity), at "
+            "0.250 s, joint 4; see "
+            "arm.model");
+  EXPECT_THAT(ToTable(s),
+              testing::HasSubstr("faults                  a joint's velocity exceeded its limit, or jumped "
+                                 "(joint_velocity), at\n" +
+                                 std::string(26, ' ') + "0.250 s, joint 4; see arm.model\n"));
 }
 
 TEST_F(VerdictTest, HoldIsExplainedInWords) {
@@ -280,7 +281,11 @@ TEST_F(VerdictTest, LimitsThatActedAreNamedTheLongestFirst) {
   }
   EXPECT_THAT(Judge(1.0, far).verdict,
               testing::EndsWith("of its goal; limited by field_of_view (safety.view_margin_px) in 89 %, "
-                                "joint_jerk (safety.joint_jerk_fraction) in 6 % of the ticks"));
+                                "joint_jerk (safety.joint_jerk_fraction) in 6 % of its motion"));
+  record.mode = hal::Mode::kHold;
+  records_.insert(records_.end(), 30'000, record);
+  EXPECT_THAT(Judge(31.0, far).verdict, testing::HasSubstr("limited by field_of_view"))
+      << "a long stop afterwards hides the limit that caused it";
 }
 
 TEST(SummaryTableTest, RowsSayInWordsWhatVisionDelivered) {

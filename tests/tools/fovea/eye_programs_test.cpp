@@ -96,11 +96,12 @@ TEST_F(EyeProgramsTest, DetectReportsWhyNoTargetIsFound) {
   cv::Mat red(480, 640, CV_8UC3, cv::Scalar(120, 120, 120));
   cv::circle(red, {320, 240}, 60, cv::Scalar(20, 20, 200), cv::FILLED, cv::LINE_AA);
   const std::string red_disc = Write("red.png", red);
-  EXPECT_THAT(why({red_disc, "--hue", "120"}),
-              testing::AllOf(testing::HasSubstr("the best outline of a circle, at (320"),
-                             testing::HasSubstr("does not have the colour of --hue 120")));
+  EXPECT_THAT(
+      why({red_disc, "--hue", "120"}),
+      testing::AllOf(testing::HasSubstr("the best outline of a circle, at (320"),
+                     testing::HasSubstr("is not found by its colour (--hue 120, or too little saturation)")));
   EXPECT_THAT(why({red_disc, "--method", "hough", "--hough-votes", "1000"}),
-              testing::HasSubstr("gets fewer than --hough-votes 1000"));
+              testing::HasSubstr("is not found by the Hough transform (--hough-votes 1000"));
 }
 
 TEST_F(EyeProgramsTest, DetectDrawsTheFoundOutline) {
@@ -169,14 +170,15 @@ TEST_F(EyeProgramsTest, CalibrateFindsTheFocalLength) {
   EXPECT_NEAR(found["f_px"].get<double>(), 554.256, 4.0 * found["sigma_px"].get<double>());
   EXPECT_LT(found["sigma_px"].get<double>(), 1.0);
   const std::string cell = folder_.path() / "cell.toml";
-  std::ofstream(cell) << "[camera]\nrate_hz = 30\n";
+  std::ofstream(cell) << "[camera]\nrate_hz = 30\nlens = [-0.2, 0, 0, 0, 0]\n";
   const test::ProgramResult written = Fovea({"calibrate", "focal", "--diameter", "0.08", "--delta-z", "0.15",
                                              "--write", cell, Disc("a.png", 0.3), Disc("b.png", 0.45)});
   EXPECT_THAT(written.out, testing::HasSubstr("[camera]\nwidth_px = 640\nheight_px = 480\nf_u_px = 55"));
   std::stringstream lines;
   lines << std::ifstream(cell).rdbuf();
-  EXPECT_THAT(lines.str(), testing::AllOf(testing::HasSubstr("rate_hz = 30"),
-                                          testing::HasSubstr("c_u_px = 319.5\nc_v_px = 239.5")));
+  EXPECT_THAT(lines.str(),
+              testing::AllOf(testing::HasSubstr("rate_hz = 30"), testing::HasSubstr("lens = [0, 0, 0, 0, 0]"),
+                             testing::HasSubstr("c_u_px = 319.5\nc_v_px = 239.5")));
   ExpectRefused(Fovea({"calibrate", "focal", "--diameter", "0.08", "--delta-z", "0.15", Disc("b.png", 0.45),
                        Disc("a.png", 0.3)}),
                 "smaller in the farthest view");

@@ -257,7 +257,7 @@ int Atlas(const AtlasArguments& arguments) {
   } else {
     const config::TextStyle style = config::StyleOf(STDOUT_FILENO);
     config::PrintedTable page(style);
-    page.Row("page", (run.out() / "atlas.html").string());
+    page.WholeRow("page", (run.out() / "atlas.html").string());
     fmt::print("{}{}", atlas::ToTable(figures, style), page.text());
   }
   return figures.ReachedGoal() ? config::kDone : config::kGoalMissed;

@@ -86,7 +86,9 @@ int Focal(const CalibrateArguments& a) {
                                              {"f_u_px", fmt::format("{:.3f}", r.f_px)},
                                              {"f_v_px", fmt::format("{:.3f}", r.f_px)},
                                              {"c_u_px", fmt::format("{:.1f}", 0.5 * (sizes[0].width - 1))},
-                                             {"c_v_px", fmt::format("{:.1f}", 0.5 * (sizes[0].height - 1))}};
+                                             {"c_v_px", fmt::format("{:.1f}", 0.5 * (sizes[0].height - 1))},
+                                             {"lens", "[0, 0, 0, 0, 0]"},
+                                             {"rms_px", "0"}};
   Write(a, values);
   if (a.json) {
     nlohmann::json radii = nlohmann::json::array();

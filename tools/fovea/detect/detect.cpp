@@ -25,7 +25,6 @@
 namespace fovea {
 namespace {
 
-constexpr std::size_t kContinued = 2;  // indent of the rest of a printed line that is too long
 constexpr double kDefaultSize = 0.08;  // [m]; an arbitrary size when none is given
 
 vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
@@ -105,9 +104,12 @@ std::string WhyNotFound(const DetectArguments& a, const cv::Mat& image, vision::
         best.u_px, best.v_px, best.radius_px, best.confidence, a.confidence_min);
   }
   if (config.by != vision::FindBy::kGray) {
-    const std::string missed = config.by == vision::FindBy::kColour
-                                   ? fmt::format("does not have the colour of --hue {:g}", a.hue_deg)
-                                   : fmt::format("gets fewer than --hough-votes {:g}", a.hough.votes);
+    const std::string missed =
+        config.by == vision::FindBy::kColour
+            ? fmt::format("is not found by its colour (--hue {:g}, or too little saturation)", a.hue_deg)
+            : fmt::format(
+                  "is not found by the Hough transform (--hough-votes {:g}, --hough-canny, --hough-blur)",
+                  a.hough.votes);
     config.by = vision::FindBy::kGray;
     if (const vision::Detection gray = vision::TargetDetector(config).Detect(image); gray.found) {
       return fmt::format("the best outline of a {}, at ({:.1f}, {:.1f}) px with a radius of {:.1f} px, {}",
@@ -269,14 +271,13 @@ int Detect(const DetectArguments& arguments) {
     if (arguments.json) {
       list.push_back(ToJson(path.string(), d, ms, why));
     } else if (d.found) {
-      config::PrintFitted(fmt::format("{}: at ({:.3f}, {:.3f}) px +- {:.3f}, radius {:.3f} px +- {:.3f}, "
-                                      "confidence {:.2f}, {:.2f} ms",
-                                      path.string(), d.u_px, d.v_px,
-                                      std::sqrt(0.5 * (d.cov_uvr_px2(0, 0) + d.cov_uvr_px2(1, 1))),
-                                      d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), d.confidence, ms),
-                          kContinued);
+      config::PrintFitted(fmt::format(
+          "{}: at ({:.3f}, {:.3f}) px +- {:.3f}, radius {:.3f} px +- {:.3f}, "
+          "confidence {:.2f}, {:.2f} ms",
+          path.string(), d.u_px, d.v_px, std::sqrt(0.5 * (d.cov_uvr_px2(0, 0) + d.cov_uvr_px2(1, 1))),
+          d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), d.confidence, ms));
     } else {
-      config::PrintFitted(fmt::format("{}: not found: {}, {:.2f} ms", path.string(), why, ms), kContinued);
+      config::PrintFitted(fmt::format("{}: not found: {}, {:.2f} ms", path.string(), why, ms));
     }
   }
   if (arguments.json) {

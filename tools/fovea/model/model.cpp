@@ -152,7 +152,7 @@ void PrintLimits(const robots::Robot& robot) {
   for (int i = 0; i < arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& j = arm.joints[k];
-    fmt::print("  {:<3}{:<22}{:>8.4f}{:>8.4f}{:>8.4g}{:>8.4g}{:>8.4g}{:>8.4g}{:>8.4g}{:>8.3g}{:>8.3g}\n",
+    fmt::print("  {:<3}{:<22}{:>8.4f}{:>8.4f} {:>7.4g} {:>7.4g} {:>7.4g} {:>7.4g} {:>7.4g}{:>8.2g}{:>8.2g}\n",
                i + 1, robot.joint_names[k] + (j.type == model::JointType::kPrismatic ? " (slides)" : ""),
                j.q_min, j.q_max, j.dq_max, j.ddq_max, j.dddq_max, j.tau_max, j.dtau_max, j.viscous,
                j.coulomb);
