@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "fovea/hal/types.hpp"
+
 namespace fovea::hw {
 namespace {
 
