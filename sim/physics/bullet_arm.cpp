@@ -64,6 +64,7 @@ class RigidWorld final : public btMultiBodyDynamicsWorld {
 
  private:
   void predictUnconstraintMotion(btScalar dt) override {
+    // NOLINTNEXTLINE(bugprone-parent-virtual-call): the parent also predicts the links
     btDiscreteDynamicsWorld::predictUnconstraintMotion(dt);
   }
 };

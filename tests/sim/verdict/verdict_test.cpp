@@ -212,8 +212,9 @@ TEST_F(VerdictTest, AnyContactFailsTheRun) {
   for (const auto& [contacts, what] : {std::pair{Contacts{1, false, false}, "the bench"},
                                        {Contacts{0, true, false}, "the target"},
                                        {Contacts{0, false, true}, "itself"}}) {
-    const Summary s = Judge(1.0, Still, [&](Truth& truth) {
-      truth.contacts = truth.stamp_ns == 50 * kMs ? contacts : Contacts{};
+    const Contacts at_once = contacts;  // a lambda of C++17 captures no structured binding
+    const Summary s = Judge(1.0, Still, [&at_once](Truth& truth) {
+      truth.contacts = truth.stamp_ns == 50 * kMs ? at_once : Contacts{};
     });
     EXPECT_FALSE(s.converged);
     EXPECT_FALSE(ReachedItsGoal(s));
