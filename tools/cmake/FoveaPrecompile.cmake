@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# Headers that most sources of a library include, compiled once for all of them. GCC alone, and in no sanitized build:
-# those compile each source by itself, so that a source still has to include what it uses.
+# Headers that most sources of a library include, compiled once for all of them. GCC alone, and not under the address
+# sanitizer: that build compiles each source by itself, so that a source still has to include what it uses.
 option(FOVEA_PRECOMPILE "Precompile the headers of Eigen, fmt, JSON, OpenCV and protobuf" ON)
-if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR CMAKE_SYSTEM_NAME STREQUAL Generic OR FOVEA_SANITIZE)
+if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU" OR CMAKE_SYSTEM_NAME STREQUAL Generic
+   OR FOVEA_SANITIZE MATCHES "address")
   set(FOVEA_PRECOMPILE OFF)
 endif()
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # The small sources of a folder are compiled together: most of a small source's time is the headers that it shares with its
-# neighbours. Their anonymous namespaces become one, so a name must be unique in its folder. Not in a sanitized build:
-# `tools/test asan` compiles each source by itself, so that it shows a source that does not include what it uses. Not for a board: its linker map names
-# the sources that take flash and RAM.
+# neighbours. Their anonymous namespaces become one, so a name must be unique in its folder. Not under the address
+# sanitizer: `tools/test asan` compiles each source by itself, so that it shows a source that does not include what it
+# uses. Not for a board: its linker map names the sources that take flash and RAM.
 option(FOVEA_UNITY "Compile the small sources of a folder together" ON)
-if(FOVEA_SANITIZE OR CMAKE_SYSTEM_NAME STREQUAL Generic)
+if(FOVEA_SANITIZE MATCHES "address" OR CMAKE_SYSTEM_NAME STREQUAL Generic)
   set(FOVEA_UNITY OFF)
 endif()
 set(fovea_unity_size 16)  # sources: hardly a folder has more
