@@ -6,6 +6,7 @@
 #include "firmware/host/run/run_book.hpp"
 #include "foxglove/image.pb.h"
 #include "sim/scenario/run_description.hpp"
+#include "sim/theory/run.hpp"
 #include "sim/world/world.hpp"
 
 namespace fovea::sim {
