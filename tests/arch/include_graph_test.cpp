@@ -203,8 +203,12 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"sim/scenario", Runs("scenario|camera|faults|physics|render|robot|world"),
              "a scenario describes a run and knows no verdict"},
         Rule{"sim/theory", Runs("theory|scenario|world"), "an analytic response depends on no run"},
-        Rule{"sim/verdict", Runs("verdict|theory|scenario|mcu|render|world"),
-             "a verdict depends on the truth and not on the run that it judges"},
+        Rule{"sim/verdict",
+             "fovea/hal/(events|record|types)[.]hpp|firmware/core/(config|features|model|trajectory)/.*|"
+             "firmware/host/(config/(printed_table|terminal)|run/(fault_event|in_words|run_figures))[.]hpp|"
+             "sim/verdict/.*|sim/(mcu/board_summary|render/pinhole|theory/run|world/world)[.]hpp|"
+             "sim/scenario/(commanded_motion|fault_settings|run_description)[.]hpp|(fmt|nlohmann)/.*",
+             "a verdict depends on truth, records and scenario, not on the run that it judges"},
         Rule{"sim/run", Runs("run|verdict|theory|scenario|camera|faults|gige|render|world"),
              "a run depends on no program"},
         Rule{"sim/calibration", Runs("calibration|scenario|camera|physics|render|robot|world"),

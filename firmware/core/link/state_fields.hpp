@@ -86,7 +86,7 @@ void EncoderWatchFields(Archive& a, T& w) noexcept {
 template <class Archive, class T>
 void ModeFields(Archive& a, T& s) noexcept {
   a.Choice(s.mode.mode, hal::kNumModes);
-  a.Choice(s.mode.hold_reason, kNumHoldReasons);
+  a.Choice(s.mode.hold_reason, hal::kNumHoldReasons);
   a.Choice(s.mode.fault, hal::kNumFaults);
   a(s.mode.track_asked);
   a(s.mode.motion_barred);

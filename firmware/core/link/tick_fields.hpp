@@ -10,7 +10,6 @@
 namespace fovea::link {
 
 inline constexpr int kNumStatusCodes = 8;
-inline constexpr int kNumHoldReasons = static_cast<int>(hal::HoldReason::kNotFollowed) + 1;
 inline constexpr int kNumRequests = 4;
 inline constexpr int kNumMotionKinds = 6;
 inline constexpr int kNumFeatureKinds = static_cast<int>(features::kTargets.size());
@@ -87,7 +86,7 @@ void RecordFields(Archive& a, T& r) noexcept {
   a.Int(r.missed_ticks);
   a.Choice(r.intake, hal::kNumIntakes);
   a.Choice(r.mode, hal::kNumModes);
-  a.Choice(r.hold_reason, kNumHoldReasons);
+  a.Choice(r.hold_reason, hal::kNumHoldReasons);
   a.Choice(r.fault, hal::kNumFaults);
   a.Int(r.fault_joint);
   a(r.limits_active);

@@ -50,6 +50,20 @@ int EditDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+// "" when none is near.
+std::string Nearest(const std::string& name, const std::vector<std::string>& names) {
+  std::string best;
+  int best_distance = std::max(3, static_cast<int>(name.size()) / 3) + 1;
+  for (const std::string& candidate : names) {
+    const int distance = EditDistance(name, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 void KeyTable::Add(Key key) { keys_.push_back(std::move(key)); }
@@ -205,9 +219,8 @@ void KeyTable::Apply(const Setting& setting) const {
     }
     names.push_back(key.name);
   }
-  const std::string nearest = Nearest(setting.key, names);
-  throw InputError(fmt::format("{}: unknown key {}{}", setting.where, setting.key,
-                               nearest.empty() ? std::string() : "; did you mean " + nearest + "?"));
+  throw InputError(
+      fmt::format("{}: unknown key {}{}", setting.where, setting.key, DidYouMean(setting.key, names)));
 }
 
 std::map<std::string, std::string> KeyTable::Values() const {
@@ -218,17 +231,9 @@ std::map<std::string, std::string> KeyTable::Values() const {
   return values;
 }
 
-std::string Nearest(const std::string& name, const std::vector<std::string>& names) {
-  std::string best;
-  int best_distance = std::max(3, static_cast<int>(name.size()) / 3) + 1;
-  for (const std::string& candidate : names) {
-    const int distance = EditDistance(name, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
+std::string DidYouMean(const std::string& name, const std::vector<std::string>& names) {
+  const std::string nearest = Nearest(name, names);
+  return nearest.empty() ? nearest : "; did you mean " + nearest + "?";
 }
 
 }  // namespace fovea::config

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <stdexcept>
 
 #include "firmware/host/recording/log/mcap_reader.hpp"

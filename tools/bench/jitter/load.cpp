@@ -11,7 +11,6 @@
 
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 
 #include "fovea/linux_rt/realtime.hpp"

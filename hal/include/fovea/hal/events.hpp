@@ -28,6 +28,7 @@ enum class HoldReason : std::uint8_t {
   kEyeDoubted,       // the picture contradicts the hand's motion, or following it fails: request Track again
   kNotFollowed,      // the arm deviated from the commanded motion by more than safety.motion_error
 };
+inline constexpr int kNumHoldReasons = 9;
 
 // The cause of a fault; the first one is latched.
 enum class Fault : std::uint8_t {
