@@ -22,6 +22,8 @@ struct Channel {
   std::string schema;       // as the protocol sends it: a FileDescriptorSet in base64, or JSON text
   Weight weight = Weight::kEssential;
   bool latched = false;  // a new subscriber gets the last message at once
+  // Most messages per second of wall time; 0: all. The newest of those between is sent once none is newer.
+  double most_hz = 0.0;
   std::string encoding = "protobuf";
   std::string schema_encoding = "protobuf";
 };

@@ -1,78 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feeds a live page from a run's records and frames: the messages of its log, by the same encoders.
+// Feeds a live page from a run's log: every message as the log encodes it, with the log's topics and types.
 //
-// Ticks arrive at 1 kHz and no viewer needs them all. A tick is sent when 10 ms of wall time have passed
-// since the last one, when mode, fault or hold reason changes, or when it took a measurement. So a run in
-// slow motion shows each tick. Features and events are all sent; /tf with each sent tick, at most at 50 Hz.
+// A run gives it to its log as a tap (RunBookOptions::tap). Viewers get ticks, truth and theory at 100 Hz of
+// wall time at most, so that a run in slow motion shows each tick; /tf, events, features and pictures as the
+// log writes them. Keyframes and the tick times are for replays and reports; viewers do not get them.
 #pragma once
 
-#include <chrono>
-#include <condition_variable>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
-#include <memory>
-#include <mutex>
-#include <opencv2/core.hpp>
-#include <optional>
 #include <string>
-#include <thread>
+#include <string_view>
 #include <vector>
 
-#include "firmware/host/live/server.hpp"
-#include "firmware/host/recording/log/run_log.hpp"
-#include "firmware/host/recording/log/tick_writer.hpp"
-#include "firmware/host/run/run_book.hpp"
+#include "firmware/host/live/catalogue.hpp"
 
 namespace google::protobuf {
 class Descriptor;
-class Message;
-}  // namespace google::protobuf
+}
 
 namespace fovea::live {
 
-// A protobuf channel beside those of every run.
-struct MessageChannel {
-  std::string topic;
-  const google::protobuf::Descriptor* type = nullptr;
-  Weight weight = Weight::kEssential;
-  bool latched = false;
+class Server;
+
+// A channel of protobuf messages.
+Channel MessageChannel(std::string topic, const google::protobuf::Descriptor& type,
+                       Weight weight = Weight::kEssential, bool latched = false, double most_hz = 0.0);
+
+// What of a log depends on the kind of run.
+struct LogContents {
+  bool camera = true;         // /camera/image, /camera/annotations, /camera/calibration
+  bool truth = false;         // /truth: of a simulator
+  bool theory = false;        // /theory: of an arm with an analytic solution
+  bool configuration = true;  // /servo/configuration: of a run that can be replayed
 };
+// The channels of the log of such a run, for Catalogue::channels. A program appends those of its own topics.
+std::vector<Channel> LogChannels(const LogContents& contents);
 
-// The channels of a run with these facts: /servo/..., /setup, /tf, /scene, and /camera/... where it has a
-// camera; then `more`, e.g. /truth of a simulated run. For Catalogue::channels.
-std::vector<Channel> ChannelsOf(const run::RunFacts& facts, const std::vector<MessageChannel>& more);
-
+// The tap. Any one thread calls it; it never waits.
 class LiveFeed {
  public:
-  // Borrows the server, whose catalogue begins with ChannelsOf(facts, more). Ends its thread when destroyed.
-  LiveFeed(Server& server, const run::RunFacts& facts, const std::vector<Channel>& channels);
-  ~LiveFeed();
-  LiveFeed(const LiveFeed&) = delete;
-  LiveFeed& operator=(const LiveFeed&) = delete;
+  // Borrows the server, whose catalogue has these channels.
+  LiveFeed(Server& server, const std::vector<Channel>& channels);
 
-  // Call before the run's threads start: takes the pictures that this log encodes, so that none is encoded
-  // twice.
-  void ShareEncoder(log::RunLog& log);
-
-  // The next three from one thread, the one that takes the records, in order.
-  // The messages that a log has once; at the start, and after a reset.
-  void Begin(std::int64_t start_ns);
-  void AddRecord(const flight::FlightRecord& record);
-  // Sends the last record if it was not sent: when the run pauses, or has stepped.
-  void ShowLast();
-
-  // From the vision thread. `encoded`: the log encodes this picture (RunBook::AddFrame says so), and
-  // ShareEncoder was called.
-  void AddFrame(const hal::Frame& frame, const vision::Detection& detection,
-                const foxglove::ImageAnnotations& more, bool encoded);
-  // From any thread that is not real-time, for all other topics. Plots: at most 100 a second of wall time.
-  void Add(const std::string& topic, std::int64_t time_ns, const google::protobuf::Message& message);
+  // A message of the log; see log::LogTap. Messages of other topics, or of another type than the channel's,
+  // are left out. The stamps of ticks set the server's time.
+  void Take(std::string_view topic, const google::protobuf::Descriptor& type, std::int64_t time_ns,
+            std::string_view bytes);
 
  private:
-  class Sink;
-  class Encoder;
-  std::unique_ptr<Sink> sink_;
-  std::unique_ptr<Encoder> encoder_;
+  struct Place {
+    std::size_t channel = 0;
+    std::string type;
+  };
+
+  Server& server_;
+  std::map<std::string, Place, std::less<>> places_;  // by topic
 };
 
 }  // namespace fovea::live

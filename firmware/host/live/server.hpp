@@ -75,8 +75,9 @@ class Server {
   // From any thread that is not real-time. Locks for the time of a list operation; never waits for a viewer.
   // `channel`: index in Catalogue::channels. `stamp_ns`: log time. Drops the message where there is no room.
   void Publish(std::size_t channel, std::int64_t stamp_ns, std::string payload);
-  // Whether a viewer has subscribed, so that costly messages are made only then. From any thread; lock-free.
-  [[nodiscard]] bool IsWanted(std::size_t channel) const;
+  // Whether Publish would take a message: a viewer has subscribed, or the channel is latched. From any
+  // thread; lock-free.
+  [[nodiscard]] bool Wants(std::size_t channel) const;
   // The run's time, in the clock of the stamps; viewers get it each 50 ms. From any thread; lock-free.
   void SetTime(std::int64_t now_ns);
   // From any thread that is not real-time, as often as it likes. Viewers get the state at 10 Hz, and at once
