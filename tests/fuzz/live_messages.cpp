@@ -46,7 +46,9 @@ struct Checker {
       Require(name == "g" && size >= 0.0 && size <= 2.0, "a fault's size is in its range");
     }
   }
-  void operator()(const StopFault& stop) const { Require(stop.fault == 0, "a fault is one of the catalogue"); }
+  void operator()(const StopFault& stop) const {
+    Require(stop.fault == 0, "a fault is one of the catalogue");
+  }
   void operator()(const Pull& pull) const {
     RequireWithin(pull.p_link, kMostMetres);
     RequireWithin(pull.to_B, kMostMetres);
@@ -71,7 +73,7 @@ struct Checker {
 };
 
 // The run's side: takes and answers the calls that wait.
-void Answer(CallQueue& calls, Hub& hub) {
+void AnswerAll(CallQueue& calls, Hub& hub) {
   for (const PendingCall& pending : calls.TakeAll()) {
     std::visit(Checker(), pending.call.request);
     calls.AddAnswer({pending.from, pending.call.request, {}});
@@ -88,7 +90,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Hub hub(limits, Everything(), calls);
   const std::uint64_t viewer = hub.Join();
   // A channel of the viewer, so that its messages get through.
-  hub.Receive(viewer, true, R"({"op":"advertise","channels":[{"id":1,"topic":"/target/pose","encoding":"json"}]})",
+  hub.Receive(viewer, true,
+              R"({"op":"advertise","channels":[{"id":1,"topic":"/target/pose","encoding":"json"}]})",
               Clock::now());
   fovea::fuzz::Bytes bytes(data, size);
   while (!bytes.empty()) {
@@ -97,21 +100,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto content = bytes.Take(length);
     std::string message(content.begin(), content.end());
     if (kind % 4 == 1) {  // a call of a service that exists
-      message.insert(0, {'\2', static_cast<char>(1 + kind / 4 % kNumServices), 0, 0, 0, 7, 0, 0, 0, 4, 0, 0, 0,
-                         'j', 's', 'o', 'n'});
+      message.insert(message.begin(), {'\2', static_cast<char>(1 + kind / 4 % kNumServices), 0, 0, 0, 7, 0, 0,
+                                       0, 4, 0, 0, 0, 'j', 's', 'o', 'n'});
     } else if (kind % 4 == 2) {  // a pose of the target
-      message.insert(0, {'\1', 1, 0, 0, 0});
+      message.insert(message.begin(), {'\1', 1, 0, 0, 0});
     }
     const auto closing = hub.Receive(viewer, kind % 4 == 0, message, Clock::now());
     Require(!closing || closing->code == kAgainstTheRules, "only a rule ends a connection");
     if (kind % 32 < 16) {
-      Answer(calls, hub);
+      AnswerAll(calls, hub);
     }
     while (const auto out = hub.Next(viewer)) {
       Require(!out->is_text || out->head.find('\n') == std::string::npos, "a text for a viewer is one line");
     }
   }
   hub.Leave(viewer);
-  Answer(calls, hub);
+  AnswerAll(calls, hub);
   return 0;
 }

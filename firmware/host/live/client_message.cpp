@@ -3,6 +3,8 @@
 
 #include <cstring>
 
+#include <utility>
+
 #include "firmware/host/live/json_reader.hpp"
 
 namespace fovea::live {
@@ -24,7 +26,7 @@ std::vector<std::string> NamesOf(const json& object) {
     if (!name.is_string() || name.get_ref<const std::string&>().size() > kMostNameBytes) {
       throw Refusal("a parameter's name must be a short text");
     }
-    names.push_back(name);
+    names.push_back(name.get<std::string>());
   }
   return names;
 }
@@ -48,10 +50,11 @@ Advertise ReadAdvertise(const json& object) {
 SetParameters ReadSetParameters(const json& object) {
   SetParameters out;
   for (const json& entry : ListOf(object, "parameters")) {
-    NewValue& parameter = out.parameters.emplace_back(TextOf(entry, "name"), std::nullopt);
+    NewValue parameter{TextOf(entry, "name"), std::nullopt};
     if (const auto value = entry.find("value"); value != entry.end() && value->is_number()) {
       parameter.value = value->get<double>();
     }
+    out.parameters.push_back(std::move(parameter));
   }
   out.id = TextOrNone(object, "id");
   return out;

@@ -2,6 +2,7 @@
 // Reads JSON from a client: bounded in depth, every field asked for by name and kind.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -57,7 +58,7 @@ inline std::string TextOf(const nlohmann::json& object, const char* name) {
   if (!field.is_string() || field.get_ref<const std::string&>().size() > kMostNameBytes) {
     throw Refusal(std::string("the field ") + name + " must be a short text");
   }
-  return field;
+  return field.get<std::string>();
 }
 
 // "" when the field is missing.

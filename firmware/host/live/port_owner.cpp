@@ -60,14 +60,15 @@ bool IsFree(const std::string& address, std::uint16_t port) {
   version_6.sin6_family = AF_INET6;
   const bool is_4 = inet_pton(AF_INET, address.c_str(), &version_4.sin_addr) == 1;
   const bool is_6 = !is_4 && inet_pton(AF_INET6, address.c_str(), &version_6.sin6_addr) == 1;
-  const int socket = is_4 || is_6 ? ::socket(is_4 ? AF_INET : AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0) : -1;
-  if (socket < 0) {
+  const int handle = is_4 || is_6 ? ::socket(is_4 ? AF_INET : AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0) : -1;
+  if (handle < 0) {
     return false;
   }
   const auto* const place =
       is_4 ? reinterpret_cast<const sockaddr*>(&version_4) : reinterpret_cast<const sockaddr*>(&version_6);
-  const bool is_free = bind(socket, place, is_4 ? sizeof version_4 : sizeof version_6) == 0;
-  close(socket);
+  const auto size = static_cast<socklen_t>(is_4 ? sizeof version_4 : sizeof version_6);
+  const bool is_free = ::bind(handle, place, size) == 0;
+  close(handle);
   return is_free;
 }
 

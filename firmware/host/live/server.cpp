@@ -58,7 +58,8 @@ WebResponse TextResponse(unsigned status, std::string text) {
 
 // The authority of the server's own address.
 std::string AuthorityOf(const Access& access) {
-  return fmt::format(access.address.find(':') == std::string::npos ? "{}:{}" : "[{}]:{}", access.address,
+  const bool is_version_6 = access.address.find(':') != std::string::npos;
+  return fmt::format("{}{}{}:{}", is_version_6 ? "[" : "", access.address, is_version_6 ? "]" : "",
                      access.port);
 }
 

@@ -14,7 +14,6 @@
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "firmware/host/config/input_error.hpp"
@@ -67,22 +66,16 @@ struct Web::Parts : std::enable_shared_from_this<Web::Parts> {
 
 namespace {
 
-// Counts an open connection.
-class Counted {
- public:
-  explicit Counted(Web::Parts& parts) : parts_(parts) { ++parts_.connections; }
-  ~Counted() { --parts_.connections; }
-  Counted(const Counted&) = delete;
-  Counted& operator=(const Counted&) = delete;
-
- private:
-  Web::Parts& parts_;
-};
+// Counts a connection as open while the result lives.
+std::shared_ptr<void> Count(const std::shared_ptr<Web::Parts>& parts) {
+  ++parts->connections;
+  return {nullptr, [parts](void*) { --parts->connections; }};
+}
 
 // One open WebSocket.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
-  Viewer(std::shared_ptr<Web::Parts> parts, std::unique_ptr<Counted> counted, beast::tcp_stream stream)
+  Viewer(std::shared_ptr<Web::Parts> parts, std::shared_ptr<void> counted, beast::tcp_stream stream)
       : parts_(std::move(parts)),
         counted_(std::move(counted)),
         socket_(std::move(stream)),
@@ -113,6 +106,9 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     }
     std::optional<Outgoing> next = parts_->handlers.next(number_);
     if (!next) {
+      if (farewell_) {
+        Close(*farewell_);
+      }
       return;
     }
     message_ = *std::move(next);
@@ -136,6 +132,11 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
     return is_writing_ && now - write_began_ > parts_->limits.behind;
   }
 
+  // Closes when all that waits is written.
+  void CloseAfterAll(const Closing& closing) {
+    farewell_ = closing;
+    Write();
+  }
   void Close(const Closing& closing) {
     if (std::exchange(is_closed_, true)) {
       return;
@@ -149,12 +150,14 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   // Ends the connection now; safe to call again.
   void End() {
     is_closed_ = true;
-    error_code ignored;
-    beast::get_lowest_layer(socket_).socket().close(ignored);
+    beast::get_lowest_layer(socket_).close();
     if (const std::uint64_t number = std::exchange(number_, 0); number != 0) {
       const auto self = shared_from_this();
       parts_->viewers.erase(number);
       parts_->handlers.leave(number);
+      if (parts_->stops && parts_->viewers.empty()) {
+        parts_->farewell.cancel();
+      }
     }
   }
 
@@ -185,13 +188,14 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   }
 
   std::shared_ptr<Web::Parts> parts_;
-  std::unique_ptr<Counted> counted_;
+  std::shared_ptr<void> counted_;
   websocket::stream<beast::tcp_stream> socket_;
   beast::flat_buffer read_;
   std::uint64_t number_ = 0;  // 0: has not joined, or has left
   Outgoing message_;          // that is being written
   bool is_writing_ = false;
   bool is_closed_ = false;
+  std::optional<Closing> farewell_;
   Clock::time_point write_began_{};
 };
 
@@ -200,7 +204,7 @@ class Visit : public std::enable_shared_from_this<Visit> {
  public:
   Visit(std::shared_ptr<Web::Parts> parts, tcp::socket socket)
       : parts_(std::move(parts)),
-        counted_(std::make_unique<Counted>(*parts_)),
+        counted_(Count(parts_)),
         stream_(std::move(socket)),
         buffer_(kHeaderBytes + kBodyBytes) {
     parser_.header_limit(kHeaderBytes);
@@ -268,7 +272,7 @@ class Visit : public std::enable_shared_from_this<Visit> {
   }
 
   std::shared_ptr<Web::Parts> parts_;
-  std::unique_ptr<Counted> counted_;
+  std::shared_ptr<void> counted_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_;
   http::request_parser<http::string_body> parser_;
@@ -364,12 +368,10 @@ void Web::Run() { io_->context.run(); }
 void Web::Stop(const Closing& closing) {
   Post([parts = parts_, closing] {
     parts->stops = true;
-    error_code ignored;
     parts->pulse.cancel();
     const auto viewers = parts->viewers;
     for (const auto& [number, viewer] : viewers) {
-      viewer->Write();
-      viewer->Close(closing);
+      viewer->CloseAfterAll(closing);
     }
     parts->farewell.expires_after(viewers.empty() ? std::chrono::milliseconds(0) : kFarewell);
     parts->farewell.async_wait([parts](error_code) { parts->io.stop(); });

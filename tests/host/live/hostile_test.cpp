@@ -172,7 +172,7 @@ TEST_F(HostileTest, ViewerThatNeverReadsCostsABoundedAmountAndIsClosed) {
   std::printf("closed after %.1f s and %zu kB; memory grew by %zu kB at most\n", seconds, published / 1024,
               (most - std::min(most, before)) / 1024);
   WaitForViewers(1);
-  EXPECT_GT(published, 20'000'000U) << "the test published too little to fill anything";
+  EXPECT_GT(published, 5'000'000U) << "the test published too little to fill anything";
   EXPECT_LT(most, before + 24'000'000) << "inbox, outbox and the system's buffers";
   EXPECT_GE(server_->dropped().pictures, 1U);
   EXPECT_EQ(server_->dropped().viewers, 1U);

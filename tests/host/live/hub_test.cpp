@@ -74,7 +74,7 @@ TEST_F(HubTest, FastChannelIsThinnedAndShowsItsLastMessage) {
   }
   std::vector<std::string> sent;
   for (const json& message : TakeAll(viewer)) {
-    sent.push_back(message["payload"]);
+    sent.push_back(message["payload"].get<std::string>());
   }
   EXPECT_THAT(sent, testing::ElementsAre("0", "10", "20"));
   hub_.Pulse(0, now_ + 30ms);

@@ -107,8 +107,8 @@ TEST_F(LiveFeedTest, ViewersGetTheBytesOfTheLog) {
   do {
     const json message = viewer.Await("binary", 1);
     ASSERT_NE(message, nullptr);
-    const std::size_t channel = std::size_t{message["subscription"]} - 100;
-    shown[catalogue.channels[channel].topic].push_back(message["payload"]);
+    const std::size_t channel = message["subscription"].get<std::size_t>() - 100;
+    shown[catalogue.channels[channel].topic].push_back(message["payload"].get<std::string>());
   } while (shown[log::kTickTopic].empty() ||
            shown[log::kTickTopic].back() != written[log::kTickTopic].back() ||
            shown[log::kSetupTopic].empty());
