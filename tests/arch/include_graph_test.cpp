@@ -135,14 +135,18 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"firmware/host",
              "(fovea/(hal|linux_rt)|firmware/(core|vision|host)|Eigen|unsupported/Eigen|opencv2)/.*|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|"
-             "(CLI|console_bridge|fmt|google|libavcodec|libavformat|libavutil|nlohmann|openssl|toml\\+\\+|"
-             "urdf_parser)/.*|(fcntl|poll|unistd|sys/file|sys/ioctl|zlib|zstd)[.]h",
+             "(CLI|arpa|boost|console_bridge|fmt|google|libavcodec|libavformat|libavutil|netinet|nlohmann|openssl|"
+             "sys|toml\\+\\+|urdf_parser)/.*|(fcntl|poll|unistd|zlib|zstd)[.]h",
              "the host part depends on core, vision and libraries, on no device driver and no simulator"},
         Rule{"firmware/host/config",
              "fovea/hal/.*|firmware/(core|vision|host/(calibration|config|robots))/"
              ".*|(CLI|fmt|toml\\+\\+|Eigen)/.*|"
              "(unistd|fcntl|poll|sys/file|sys/ioctl)[.]h",
              "keys configure servo and vision only"},
+        Rule{"firmware/host/live",
+             "firmware/host/(config|live|recording)/.*|(arpa|boost|fmt|google|netinet|nlohmann|sys)/.*|"
+             "(fovea|foxglove)/[a-z]+[.]pb[.]h|unistd[.]h",
+             "the live page shows a run's log, and knows neither the servo nor who runs it"},
         Rule{"firmware/host/robots",
              "firmware/(core/model|host/(config|robots))/.*|(fmt|urdf_parser|console_bridge|Eigen)/.*",
              "an arm is read from its files only"},
@@ -227,6 +231,21 @@ INSTANTIATE_TEST_SUITE_P(
              "[a-z_]+[.]h",
              "the benchmarks run without the simulator"}),
     NameOf);
+
+// Boost's headers take long to compile.
+TEST(IncludeRules, OnlyOneSourceIncludesBoost) {
+  std::vector<std::string> users;
+  for (const char* tree : {"hal", "firmware", "sim", "tools", "tests"}) {
+    for (const auto& file : test::SourcesIn(tree)) {
+      const std::vector<std::string> includes = test::IncludesOf(file);
+      if (std::any_of(includes.begin(), includes.end(),
+                      [](const std::string& include) { return include.starts_with("boost/"); })) {
+        users.push_back(std::filesystem::relative(file, test::SourceRoot()).string());
+      }
+    }
+  }
+  EXPECT_EQ(users, std::vector<std::string>{"firmware/host/live/web.cpp"});
+}
 
 TEST(IncludeRules, CoverEveryFolder) {
   std::set<std::string> ruled;

@@ -56,6 +56,7 @@ struct RunBookOptions {
   double picture_rate_hz = HUGE_VAL;     // the log keeps at most this rate of pictures; 0: none
   bool replayable = true;                // the recorded inputs are the servo's, so a replay is possible
   std::optional<std::int64_t> begin_ns;  // start, by the loop's clock; none: at the first record
+  log::LogTap tap;                       // gets every message of the log, on the log's thread
 };
 
 class RunBook {
