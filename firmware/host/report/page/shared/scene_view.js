@@ -15,10 +15,10 @@ Fovea.sceneView = (function () {
   }
 
   // A view into `host`. Options: table_z and workspace_radius [m], keep (as above), paint() sets the colours of the objects
-  // that the caller adds, prepare() is called before each picture, least_ms is the least time between two pictures.
+  // that the caller adds, prepare() and done() are called before and after each picture, least_ms is the time between two pictures, or more.
   // Call start() when all objects are in `scene`.
   function build(host, canvas, gl, options) {
-    const { keep, least_ms: least = 0, workspace_radius: radius } = options;
+    const { keep, workspace_radius: radius } = options;
     const renderer = new THREE.WebGLRenderer({ canvas, context: gl, antialias: true, preserveDrawingBuffer: keep });
     renderer.gammaOutput = true;
     renderer.gammaFactor = 2.2;
@@ -55,12 +55,13 @@ Fovea.sceneView = (function () {
       drawn = performance.now();
       if (options.prepare) options.prepare();
       renderer.render(scene, camera);
+      if (options.done) options.done();
     };
     // Draws soon, however often it is called.
     const ask = () => {
       if (asked) return;
       asked = true;
-      const wait = least - (performance.now() - drawn);
+      const wait = (options.least_ms || 0) - (performance.now() - drawn);
       if (wait > 0) setTimeout(() => requestAnimationFrame(render), wait);
       else requestAnimationFrame(render);
     };

@@ -2,10 +2,18 @@
 // The colours of the page, and what to do when they change.
 
 Fovea.theme = (function () {
-  const { listen, tell } = Fovea.callbacks();
+  const { listen, tell: tellAll } = Fovea.callbacks();
+  const known = new Map();
+  const tell = () => {
+    known.clear();
+    tellAll();
+  };
   const theme = {
     // The value of a custom property of the page, for painting on a canvas.
-    colour: (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim(),
+    colour(name) {
+      if (!known.has(name)) known.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+      return known.get(name);
+    },
     listen,
     tell,
     printing: false,
