@@ -45,7 +45,7 @@ const PARAMETERS = () => [
 ];
 
 export class StandIn {
-  // `run`: folder of a run; `page`: the share folder of a build (or of sources: see `roots`).
+  // `run`: folder of a run; `share`: share/fovea of a build.
   static async start({ run, share, port = 0, token = "t0ken" }) {
     const one = new StandIn(token, share);
     await one.#load(path.join(run, "log.mcap"));
@@ -115,13 +115,13 @@ export class StandIn {
     let last = -1e9;
     this.messages = messages
       .filter((message) => !ONCE.has(topicOf(message)))
-      .map((message) => ({ topic: topicOf(message), t: Number(message.logTime) / 1e9, data: message.data }))
+      .map((message) => ({ topic: topicOf(message), t: Number(message.logTime) / 1e9, ns: Number(message.logTime), data: message.data }))
       .filter(({ topic, t }) => {
         if (topic !== "/servo/tick" && topic !== "/truth") return true;
         if (topic === "/servo/tick" && t - last >= TICK_MS / 1000 - 1e-6) last = t;
         return t === last;
       });
-    this.length = this.messages[this.messages.length - 1].t + 0.001;
+    this.length_ns = this.messages[this.messages.length - 1].ns + 1e6;
   }
 
   #file(request, response) {
@@ -231,13 +231,13 @@ export class StandIn {
         this.round++;
       }
       const message = this.messages[this.next];
-      const due = message.t + this.round * this.length;
-      if (due > t) break;
+      const due_ns = message.ns + this.round * this.length_ns;
+      if (due_ns > t * 1e9) break;
       this.next++;
       const changes = message.topic === "/truth" && this.target;
-      const moved = this.round || changes ? this.#moved(message, this.round * this.length) : message.data;
+      const moved = this.round || changes ? this.#moved(message, this.round * this.length_ns) : message.data;
       if (message.topic === "/servo/tick") this.mode = this.#modeOf(message).toLowerCase();
-      this.#sendAll(message.topic, moved, due * 1e9);
+      this.#sendAll(message.topic, moved, due_ns);
     }
     const time = Buffer.alloc(9);
     time.writeUInt8(2, 0);
@@ -250,14 +250,14 @@ export class StandIn {
     return type.lookupEnum("fovea.log.Mode").valuesById[type.decode(data).mode];
   }
 
-  #moved({ topic, data }, by_s) {
+  #moved({ topic, data }, by_ns) {
     const { type } = this.byTopic.get(topic);
     const message = type.decode(data);
-    const later = (ns) => Math.round(Number(ns.toString()) + by_s * 1e9);
+    const later = (ns) => Number(ns.toString()) + by_ns;
     const stamp = (at) => {
-      const ns = Number(at.seconds) * 1e9 + at.nanos + by_s * 1e9;
+      const ns = Number(at.seconds) * 1e9 + at.nanos + by_ns;
       at.seconds = Math.floor(ns / 1e9);
-      at.nanos = Math.round(ns % 1e9);
+      at.nanos = ns % 1e9;
     };
     if (message.stamp_ns !== undefined && type.fields.stamp_ns) message.stamp_ns = later(message.stamp_ns);
     if (message.timestamp) stamp(message.timestamp);

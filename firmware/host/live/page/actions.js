@@ -81,6 +81,7 @@ export class Actions {
   async takeControl() {
     const answer = await this.connection.call("/control/take", { name: this.name });
     if (!answer.granted) throw new Error(`${answer.controller} has control. Ask them to give it up.`);
+    this.model.state.you = true; // the next state says so too
   }
 
   // Takes control when nobody has it; the answer to that comes before the change is sent.

@@ -99,8 +99,21 @@ export class Bench {
       }
     }
     this.onPose?.();
+    this.#tell();
     this.canvas.dataset.pictures = ++this.#count;
     this.#started = performance.now();
+  }
+
+  // Where target and hand are in the picture, from 0 to 1, for whoever looks at the page by a program.
+  #tell() {
+    const { dataset } = this.canvas;
+    const at = (node) => {
+      const p = node.getWorldPosition(new THREE.Vector3()).project(this.view.camera);
+      return JSON.stringify({ x: (p.x + 1) / 2, y: (1 - p.y) / 2 });
+    };
+    if (this.target?.visible) dataset.target = at(this.target);
+    const hand = this.arm.children[this.arm.children.length - 1];
+    if (hand?.visible) dataset.hand = at(hand);
   }
 
   // Sometimes waits for the picture, to know how long it takes.
@@ -111,7 +124,6 @@ export class Bench {
     this.options.least_ms = Math.max(LEAST_MS, 3 * cost);
     if (cost > SLOW_MS && this.#level + 1 < RATIOS.length) {
       this.#level++;
-      this.view.renderer.shadowMap.autoUpdate = this.#level < 2;
       if (this.#level === 2) this.#withoutShadows();
       this.view.limitRatio(RATIOS[this.#level]);
     }

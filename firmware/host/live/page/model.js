@@ -19,7 +19,7 @@ export const TARGET_FRAME = "fovea/target";
 const BASE_FRAME = "fovea/base";
 export const MODES = ["BOOT", "HOLD", "TRACK", "COAST", "FAULT", "MOVE"];
 
-const seconds = (stamp) => Number(stamp.seconds) + stamp.nanos * 1e-9;
+const nanoseconds = (stamp) => stamp.seconds * 1e9 + stamp.nanos; // exact: equal stamps are equal numbers
 
 export class Model {
   #listeners = Fovea.callbacks();
@@ -60,7 +60,7 @@ export class Model {
     on("/servo/events", (message, time) => this.#takeEvent(message, time));
     on("/truth", (message) => this.#takeTruth(message));
     on("/camera/image", (message) => {
-      const t = this.#timeOf(seconds(message.timestamp) * 1e9);
+      const t = this.#timeOf(nanoseconds(message.timestamp));
       if (t === null) return;
       this.#listeners.tell("picture", this.pictures.addPicture(t, message.data.slice()));
     });
@@ -96,18 +96,17 @@ export class Model {
 
   #takeSetup(message) {
     if (this.setup && this.setup.start_ns !== message.start_ns) this.#forget();
+    const known = JSON.stringify(this.setup) === JSON.stringify(message); // sent again to a new connection
     this.setup = message;
+    if (known) return;
     if (!Number.isFinite(this.lambda)) this.lambda = message.lambda;
     this.#listeners.tell("setup");
   }
 
   #takeScene({ entities }) {
-    const base = entities.find((entity) => entity.frame_id === BASE_FRAME);
-    if (base && base.cubes.length) {
-      // The table is the box on whose upper side the base stands.
-      const { pose, size } = base.cubes[0];
-      this.tableZ = pose.position.z + size.z / 2;
-    }
+    if (this.links) return; // sent again to a new connection
+    const table = entities.find(({ id }) => id === "table")?.cubes[0];
+    if (table) this.tableZ = table.pose.position.z + table.size.z / 2;
     const shape = (kind, size) => (primitive) => {
       const { position: p, orientation: q } = primitive.pose;
       const { r, g, b } = primitive.color || { r: 0.8, g: 0.8, b: 0.8 };
@@ -137,7 +136,7 @@ export class Model {
 
   #takePoses({ transforms }) {
     if (!this.poses || !transforms.length) return;
-    const t = this.#timeOf(seconds(transforms[0].timestamp) * 1e9);
+    const t = this.#timeOf(nanoseconds(transforms[0].timestamp));
     if (t === null || t - this.#lastPose() < LEAST_S) return;
     const row = new Array(this.poses.width).fill(NaN);
     for (const { child_frame_id, translation: p, rotation: q } of transforms) {
@@ -189,7 +188,7 @@ export class Model {
   }
 
   #takeOutlines(message, time) {
-    const t = this.#timeOf(message.timestamp ? seconds(message.timestamp) * 1e9 : time);
+    const t = this.#timeOf(message.timestamp ? nanoseconds(message.timestamp) : time);
     if (t === null) return;
     const outlines = message.points.map(({ points, metadata }) => ({
       role: metadata.find(({ key }) => key === "role")?.value || "",

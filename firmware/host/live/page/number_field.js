@@ -36,7 +36,7 @@ export function numberField(setting, label, onSet) {
   };
   const show = (v) => {
     value = v;
-    if (document.activeElement !== slider) slider.value = toSlider(v);
+    slider.value = toSlider(v);
     slider.setAttribute("aria-valuetext", `${plain(v, 4)}${setting.unit ? ` ${setting.unit}` : ""}`);
     if (!editing) field.value = String(parseFloat(v.toPrecision(5)));
   };

@@ -37,6 +37,9 @@ export class Transport {
       "aria-label": "Look back at the last 60 seconds",
       oninput: () => this.#scrub(),
     });
+    this.sliding = false; // the slider stays where the hand holds it
+    this.slider.addEventListener("pointerdown", () => (this.sliding = true));
+    for (const end of ["pointerup", "pointercancel"]) this.slider.addEventListener(end, () => (this.sliding = false));
     this.when = el("output", { class: "when" });
     this.live = el("button", {
       type: "button",
@@ -77,7 +80,7 @@ export class Transport {
     const kept = Math.max(0.1, Math.min(KEPT_S, model.now - model.oldest));
     this.slider.min = -kept;
     if (moment.isLive) this.slider.value = 0;
-    else this.slider.value = moment.t - model.now;
+    else if (!this.sliding) this.slider.value = moment.t - model.now;
     const words = moment.isLive
       ? `${model.now.toFixed(2)} s`
       : `${moment.t.toFixed(2)} s, ${ago(model.now - moment.t)}`;

@@ -95,7 +95,7 @@ Fovea.sceneView = (function () {
     const limitRatio = (most) => {
       mostRatio = most;
       resize();
-      ask();
+      render(); // a canvas of another size is empty
     };
     const start = () => {
       controls.addEventListener("change", ask);
