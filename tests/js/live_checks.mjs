@@ -37,10 +37,10 @@ async function waitForSent(page, sent, from, pattern) {
 }
 
 const waitForText = (page, selector, pattern) =>
-  page.waitForFunction(([where, text]) => new RegExp(text).test(document.querySelector(where)?.innerText || ""), [
-    selector,
-    pattern.source,
-  ]);
+  page.waitForFunction(
+    ([where, text]) => new RegExp(text).test(document.querySelector(where)?.innerText || ""),
+    [selector, pattern.source],
+  );
 
 const shownTime = (page) => page.evaluate(() => parseFloat(document.querySelector(".when").textContent));
 
@@ -346,7 +346,10 @@ export async function checkReconnect(page, gate) {
   const time = await shownTime(page);
   gate.shut = true;
   await page.locator(".note-bar.bad").waitFor();
-  assert.match(await page.locator(".note-bar.bad").innerText(), /connection is lost since \d+ s.*connects again by itself/);
+  assert.match(
+    await page.locator(".note-bar.bad").innerText(),
+    /connection is lost since \d+ s.*connects again by itself/,
+  );
   assert.ok(await page.locator(".pause").isDisabled(), "nothing can be asked for meanwhile");
   await page.waitForTimeout(10_000);
   const tries = gate.tries;

@@ -115,7 +115,12 @@ export class StandIn {
     let last = -1e9;
     this.messages = messages
       .filter((message) => !ONCE.has(topicOf(message)))
-      .map((message) => ({ topic: topicOf(message), t: Number(message.logTime) / 1e9, ns: Number(message.logTime), data: message.data }))
+      .map((message) => ({
+        topic: topicOf(message),
+        t: Number(message.logTime) / 1e9,
+        ns: Number(message.logTime),
+        data: message.data,
+      }))
       .filter(({ topic, t }) => {
         if (topic !== "/servo/tick" && topic !== "/truth") return true;
         if (topic === "/servo/tick" && t - last >= TICK_MS / 1000 - 1e-6) last = t;

@@ -62,7 +62,8 @@ export class Bench {
     let node = hit.object;
     while (node.parent !== this.arm) node = node.parent;
     const index = this.arm.children.indexOf(node);
-    const held = this.model.links[index].frame === CAMERA_FRAME ? this.hand : { node, link: this.model.links[index].frame };
+    const held =
+      this.model.links[index].frame === CAMERA_FRAME ? this.hand : { node, link: this.model.links[index].frame };
     return { ...held, p_link: held.node.worldToLocal(hit.point.clone()), p_B: hit.point };
   }
 
