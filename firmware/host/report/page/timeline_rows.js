@@ -2,8 +2,8 @@
 // The rows of the time axis: modes, faults, injected faults, frames and limits; and a description of one time.
 
 Fovea.timelineRows = (function () {
-  const { clock, words, suffix } = Fovea;
-  const { MODES, modeWords, modesOf, injectedOf } = Fovea.bands;
+  const { clock, words, suffix, MODES, modeWords } = Fovea;
+  const { modesOf, injectedOf } = Fovea.bands;
 
   const modeSay = (m) => modeWords(m.mode) + (m.reason ? ` (${words(m.reason)})` : "");
 
