@@ -87,12 +87,22 @@ constexpr Table<kNumIntakes> kIntakeTable{{
     {"unknown", "", "with an unknown outcome"},
 }};
 
+constexpr Table<kNumTuningResults> kTuningResultTable{{
+    {"none", "", "nothing was requested"},
+    {"taken", "", "taken"},
+    {"unknown_key", "", "no such key changes in motion"},
+    {"not_finite", "", "the value is not finite"},
+    {"out_of_range", "", "the value is outside the key's range"},
+    {"inconsistent", "", "the value contradicts another key"},
+    {"unknown", "", "an unknown answer"},
+}};
+
 template <std::size_t kSize>
 constexpr bool IsComplete(const std::array<Entry, kSize>& table) {
   return std::all_of(table.begin(), table.end(), [](const Entry& entry) { return entry.name != nullptr; });
 }
 static_assert(IsComplete(kModeTable) && IsComplete(kHoldReasonTable) && IsComplete(kFaultTable) &&
-              IsComplete(kLimitTable) && IsComplete(kIntakeTable));
+              IsComplete(kLimitTable) && IsComplete(kIntakeTable) && IsComplete(kTuningResultTable));
 
 template <std::size_t kSize, typename Enumerator>
 const Entry& EntryOf(const std::array<Entry, kSize>& table, Enumerator which) noexcept {
@@ -103,6 +113,7 @@ const Entry& EntryOf(const std::array<Entry, kSize>& table, Enumerator which) no
 
 const char* Name(Mode mode) noexcept { return EntryOf(kModeTable, mode).name; }
 const char* Name(HoldReason reason) noexcept { return EntryOf(kHoldReasonTable, reason).name; }
+const char* Name(TuningResult result) noexcept { return EntryOf(kTuningResultTable, result).name; }
 const char* Name(Fault fault) noexcept { return EntryOf(kFaultTable, fault).name; }
 const char* Name(Limit limit) noexcept { return EntryOf(kLimitTable, limit).name; }
 const char* Name(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).name; }
@@ -110,6 +121,8 @@ const char* Name(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).
 const char* Words(HoldReason reason) noexcept { return EntryOf(kHoldReasonTable, reason).words; }
 const char* Words(Fault fault) noexcept { return EntryOf(kFaultTable, fault).words; }
 const char* Words(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).words; }
+
+const char* Words(TuningResult result) noexcept { return EntryOf(kTuningResultTable, result).words; }
 
 const char* Key(Fault fault) noexcept { return EntryOf(kFaultTable, fault).key; }
 const char* Key(Limit limit) noexcept { return EntryOf(kLimitTable, limit).key; }

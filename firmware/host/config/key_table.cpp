@@ -14,8 +14,23 @@
 namespace fovea::config {
 namespace {
 
-// A number as a person writes it, with at most six digits. Defaults need no more.
+// The limits of a range, with at most six digits.
 std::string Plain(double value) { return fmt::format("{:g}", value); }
+
+// A value as a person writes it: with the fewest digits that give it back. At most 15 of them, which hides
+// the rounding of a conversion between units.
+std::string PlainValue(double value) {
+  constexpr int kFewest = 6;
+  constexpr int kMost = 15;
+  std::string text;
+  for (int digits = kFewest; digits <= kMost; ++digits) {
+    text = fmt::format("{:.{}g}", value, digits);
+    if (std::stod(text) == value) {
+      break;
+    }
+  }
+  return text;
+}
 
 std::string Range(double min, double max) { return fmt::format("{} to {}", Plain(min), Plain(max)); }
 
@@ -76,8 +91,8 @@ void KeyTable::Number(std::string name, double& field, double min, double max, s
 
 void KeyTable::Number(std::string name, double value, double min, double max, std::string unit,
                       std::string meaning, std::function<void(double)> set) {
-  Key key{std::move(name), "a number", std::move(unit), Range(min, max), std::move(meaning),
-          Plain(value),    {}};
+  Key key{std::move(name),   "a number", std::move(unit), Range(min, max), std::move(meaning),
+          PlainValue(value), {}};
   key.set = [key, min, max, set = std::move(set)](const Setting& setting) {
     double number = 0.0;
     if (!ToDouble(setting.value, number) || number < min || number > max) {
@@ -126,7 +141,7 @@ void KeyTable::Flag(std::string name, bool& field, std::string meaning) {
 }
 
 void KeyTable::Text(std::string name, std::string& field, std::string meaning) {
-  Key key{std::move(name), "a text", "", "in quotes", std::move(meaning), fmt::format("\"{}\"", field), {}};
+  Key key{std::move(name), "a text", "", "in quotes", std::move(meaning), ToText(field), {}};
   key.set = [key, &field](const Setting& setting) {
     const auto* text = std::get_if<std::string>(&setting.value);
     if (text == nullptr) {
