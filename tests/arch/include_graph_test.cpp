@@ -66,7 +66,7 @@ std::string Vision(const char* rooms) {
 // Matches what scenarios, runs and verdicts use, and the folders of sim that match `rooms`.
 std::string Runs(const char* rooms) {
   return std::string(
-             "(fovea|firmware|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/.*|(fcntl|poll|unistd)[.]h|sim/"
+             "(fovea|firmware|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/.*|(fcntl|poll|spawn|unistd)[.]h|sim/"
              "(") +
          rooms + ")/.*";
 }
@@ -143,6 +143,9 @@ INSTANTIATE_TEST_SUITE_P(
              ".*|(CLI|fmt|toml\\+\\+|Eigen)/.*|"
              "(unistd|fcntl|poll|sys/file|sys/ioctl)[.]h",
              "keys configure servo and vision only"},
+        Rule{"firmware/host/desk",
+             "fovea/hal/.*|firmware/(core/(config|task)|host/(desk|live))/.*|fmt/.*",
+             "a desk passes on what viewers ask of a servo, and knows no program"},
         Rule{"firmware/host/live",
              "firmware/host/(config|live|recording)/.*|(arpa|boost|fmt|google|netinet|nlohmann|sys)/.*|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|unistd[.]h",
@@ -215,6 +218,8 @@ INSTANTIATE_TEST_SUITE_P(
              "a verdict depends on truth, records and scenario, not on the run that it judges"},
         Rule{"sim/run", Runs("run|verdict|theory|scenario|camera|faults|gige|render|world"),
              "a run depends on no program"},
+        Rule{"sim/operator", Runs("operator|run|scenario|faults|render|robot|world"),
+             "what an operator may do depends on no program and no verdict"},
         Rule{"sim/calibration", Runs("calibration|scenario|camera|physics|render|robot|world"),
              "calibration pictures need no run"},
         Rule{"sim/app", Runs("[a-z_]+"), "the programs combine everything"}),
@@ -224,10 +229,10 @@ INSTANTIATE_TEST_SUITE_P(
     Tools, IncludeRule,
     testing::Values(
         Rule{"tools/fovea",
-             "(fovea|firmware|tools|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/.*|[a-z_]+[.]h",
+             "(fovea|firmware|tools|foxglove|fmt|google|CLI|nlohmann|Eigen|opencv2|sys)/.*|[a-z_]+[.]h",
              "the programs work on recorded runs, without the simulator"},
         Rule{"tools/bench",
-             "(fovea|firmware|tools|fmt|CLI|nlohmann|opencv2|Eigen|kdl|visp3|arpa|netinet|sys|linux)/.*|"
+             "(fovea|firmware|foxglove|tools|fmt|CLI|nlohmann|opencv2|Eigen|kdl|visp3|arpa|netinet|sys|linux)/.*|"
              "[a-z_]+[.]h",
              "the benchmarks run without the simulator"}),
     NameOf);

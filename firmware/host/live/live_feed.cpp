@@ -37,6 +37,7 @@ std::vector<Channel> LogChannels(const LogContents& contents) {
       MessageChannel(log::kTickTopic, *log::Tick::descriptor(), plot, false, kPlotHz),
       MessageChannel(log::kFeatureTopic, *log::Feature::descriptor(), plot),
       MessageChannel(log::kEventTopic, *foxglove::Log::descriptor()),
+      MessageChannel(log::kOperatorTopic, *log::Touch::descriptor()),
       MessageChannel(log::kSetupTopic, *log::Setup::descriptor(), essential, kLatched),
       MessageChannel(log::kTransformTopic, *foxglove::FrameTransforms::descriptor(), plot),
       MessageChannel(log::kSceneTopic, *foxglove::SceneUpdate::descriptor(), essential, kLatched)};

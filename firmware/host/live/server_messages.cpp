@@ -13,11 +13,11 @@ namespace {
 using nlohmann::ordered_json;
 
 // Bytes of a text that are no UTF-8 are replaced: no name or notice can stop the server.
-std::string Dump(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+std::string Dump(const ordered_json& value) {
+  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-Outgoing TextMessage(const ordered_json& json) { return {true, Dump(json), nullptr, Weight::kEssential}; }
+Outgoing TextMessage(const ordered_json& value) { return {true, Dump(value), nullptr, Weight::kEssential}; }
 
 template <typename Number>
 void Put(std::string& out, Number value) {
@@ -228,7 +228,9 @@ std::string StateJsonEnd(const ViewerState& viewer) {
   if (!viewer.controller.empty()) {
     json["controller"] = viewer.controller;
   }
-  return "," + Dump(json).substr(1);
+  std::string text = Dump(json);
+  text[0] = ',';  // instead of the opening brace: the first part of the object stands before it
+  return text;
 }
 
 }  // namespace fovea::live

@@ -79,6 +79,8 @@ class RunBook {
                 const foxglove::ImageAnnotations& more = {});
   // For data of only this kind of run.
   [[nodiscard]] log::RunLog& log() { return log_; }
+  // Where the log is written during the run.
+  [[nodiscard]] const std::filesystem::path& log_path() const { return log_path_; }
   // A path for writing the file `name`, one of more_files, during the run.
   [[nodiscard]] std::filesystem::path BeginFile(const std::string& name) { return folder_.Begin(name); }
 

@@ -35,7 +35,7 @@ std::string FromBase64(const std::string& text) {
 
 TEST(LogChannels, SchemasAreThoseOfTheMessages) {
   const std::vector<Channel> channels = LogChannels({.truth = true, .theory = true});
-  EXPECT_EQ(channels.size(), 12U);
+  EXPECT_EQ(channels.size(), 13U);
   for (const Channel& channel : channels) {
     google::protobuf::FileDescriptorSet set;
     ASSERT_TRUE(set.ParseFromString(FromBase64(channel.schema))) << channel.topic;
@@ -47,7 +47,7 @@ TEST(LogChannels, SchemasAreThoseOfTheMessages) {
     EXPECT_EQ(channel.encoding, "protobuf");
     EXPECT_EQ(channel.schema_encoding, "protobuf");
   }
-  EXPECT_EQ(LogChannels({.camera = false, .configuration = false}).size(), 6U);
+  EXPECT_EQ(LogChannels({.camera = false, .configuration = false}).size(), 7U);
 }
 
 class LiveFeedTest : public LiveServerTest {};

@@ -83,6 +83,8 @@ Load::Load(const std::string& kind) {
     start(2, Send);
   } else if (kind == "render") {
     StartRender();
+  } else if (kind == "viewers") {
+    viewers_ = std::make_unique<Viewers>();
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bench in three dimensions: arm and target at the shown moment. It is drawn only when something moved, and more
 // rarely and more coarsely on a slow computer.
-import { CAMERA_FRAME, TARGET_FRAME, TRUTH } from "./model.js";
+import { TARGET_FRAME, TRUTH } from "./model.js";
 
 const { el, theme, sceneView, armScene } = Fovea;
 const LEAST_MS = 55; // between two pictures
@@ -62,15 +62,7 @@ export class Bench {
     let node = hit.object;
     while (node.parent !== this.arm) node = node.parent;
     const index = this.arm.children.indexOf(node);
-    const held =
-      this.model.links[index].frame === CAMERA_FRAME ? this.hand : { node, link: this.model.links[index].frame };
-    return { ...held, p_link: held.node.worldToLocal(hit.point.clone()), p_B: hit.point };
-  }
-
-  // The last link, which carries the camera.
-  get hand() {
-    const { frame: link } = this.model.links.findLast(({ frame }) => frame !== CAMERA_FRAME);
-    return { link, node: this.linkNode(link) };
+    return { node, link: this.model.links[index].frame, p_link: node.worldToLocal(hit.point.clone()), p_B: hit.point };
   }
 
   linkNode(frame) {
@@ -120,8 +112,8 @@ export class Bench {
       return JSON.stringify({ x: (p.x + 1) / 2, y: (1 - p.y) / 2 });
     };
     if (this.target?.visible) dataset.target = at(this.target);
-    const { node } = this.hand;
-    if (node.visible) dataset.hand = at(node.children[0] || node);
+    const hand = this.arm.children[this.arm.children.length - 1];
+    if (hand?.visible) dataset.hand = at(hand);
   }
 
   // Sometimes waits for the picture, to know how long it takes.

@@ -4,7 +4,6 @@
 const { el, armScene, theme } = Fovea;
 const SEND_MS = 33; // between two messages of a drag
 const THROW_S = 0.12; // a throw has the mean velocity of this time
-const RESTED_S = 0.25; // a hand that rested for so long before it let go does not throw
 const MOST_THROW = 5; // [m/s]
 const MOST_SPIN = 20; // [rad/s]
 const STEP_M = 0.01;
@@ -137,8 +136,7 @@ export class Hands {
     const pose = this.#pose();
     this.bench.held = pose;
     this.#trail.push({ at: performance.now() / 1000, ...pose });
-    const { at } = this.#trail[this.#trail.length - 1];
-    this.#trail = this.#trail.filter((one, i, all) => at - one.at < THROW_S || i >= all.length - 2);
+    this.#trail = this.#trail.filter(({ at }) => performance.now() / 1000 - at < THROW_S);
     if (performance.now() - this.#sent < SEND_MS) return;
     this.#sent = performance.now();
     this.actions.holdTarget(pose.p, pose.q);
@@ -158,8 +156,8 @@ export class Hands {
 
   #velocity() {
     const [a, b] = [this.#trail[0], this.#trail[this.#trail.length - 1]];
-    const dt = a && b.at - a.at;
-    if (!dt || performance.now() / 1000 - b.at > RESTED_S) return { v_BO: [0, 0, 0], omega_B: [0, 0, 0] };
+    const dt = a && performance.now() / 1000 - a.at;
+    if (!a || a === b || dt > 2 * THROW_S) return { v_BO: [0, 0, 0], omega_B: [0, 0, 0] };
     const limited = (list, most) => {
       const size = Math.hypot(...list);
       return list.map((x) => (size > most ? (x * most) / size : x));
@@ -298,7 +296,9 @@ export class Hands {
 
   #pullByKey(offset) {
     if (!this.#pull) {
-      const { node, link } = this.bench.hand;
+      const links = this.model.links.map(({ frame }) => frame);
+      const link = links[links.length - 1];
+      const node = this.bench.linkNode(link);
       this.#pull = { node, link, p_link: new THREE.Vector3(), to_B: node.getWorldPosition(new THREE.Vector3()) };
     }
     this.#pull.to_B.add(new THREE.Vector3(...offset));
