@@ -66,7 +66,8 @@ std::string Vision(const char* rooms) {
 // Matches what scenarios, runs and verdicts use, and the folders of sim that match `rooms`.
 std::string Runs(const char* rooms) {
   return std::string(
-             "(fovea|firmware|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/.*|(fcntl|poll|spawn|unistd)[.]h|sim/"
+             "(fovea|firmware|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/"
+             ".*|(fcntl|poll|spawn|unistd)[.]h|sim/"
              "(") +
          rooms + ")/.*";
 }
@@ -135,7 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"firmware/host",
              "(fovea/(hal|linux_rt)|firmware/(core|vision|host)|Eigen|unsupported/Eigen|opencv2)/.*|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|"
-             "(CLI|arpa|boost|console_bridge|fmt|google|libavcodec|libavformat|libavutil|netinet|nlohmann|openssl|"
+             "(CLI|arpa|boost|console_bridge|fmt|google|libavcodec|libavformat|libavutil|netinet|nlohmann|"
+             "openssl|"
              "sys|toml\\+\\+|urdf_parser)/.*|(fcntl|poll|unistd|zlib|zstd)[.]h",
              "the host part depends on core, vision and libraries, on no device driver and no simulator"},
         Rule{"firmware/host/config",
@@ -143,8 +145,7 @@ INSTANTIATE_TEST_SUITE_P(
              ".*|(CLI|fmt|toml\\+\\+|Eigen)/.*|"
              "(unistd|fcntl|poll|sys/file|sys/ioctl)[.]h",
              "keys configure servo and vision only"},
-        Rule{"firmware/host/desk",
-             "fovea/hal/.*|firmware/(core/(config|task)|host/(desk|live))/.*|fmt/.*",
+        Rule{"firmware/host/desk", "fovea/hal/.*|firmware/(core/(config|task)|host/(desk|live))/.*|fmt/.*",
              "a desk passes on what viewers ask of a servo, and knows no program"},
         Rule{"firmware/host/live",
              "firmware/host/(config|live|recording)/.*|(arpa|boost|fmt|google|netinet|nlohmann|sys)/.*|"
@@ -232,7 +233,8 @@ INSTANTIATE_TEST_SUITE_P(
              "(fovea|firmware|tools|foxglove|fmt|google|CLI|nlohmann|Eigen|opencv2|sys)/.*|[a-z_]+[.]h",
              "the programs work on recorded runs, without the simulator"},
         Rule{"tools/bench",
-             "(fovea|firmware|foxglove|tools|fmt|CLI|nlohmann|opencv2|Eigen|kdl|visp3|arpa|netinet|sys|linux)/.*|"
+             "(fovea|firmware|foxglove|tools|fmt|CLI|nlohmann|opencv2|Eigen|kdl|visp3|arpa|netinet|sys|linux)"
+             "/.*|"
              "[a-z_]+[.]h",
              "the benchmarks run without the simulator"}),
     NameOf);

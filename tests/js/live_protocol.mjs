@@ -135,7 +135,9 @@ async function talk(subprotocol) {
   const closed = once(socket, "close");
   client.close();
   await closed;
-  console.log(`${subprotocol}: ${channels.length} channels, ${compared} types as Foxglove's, ${services.length} services`);
+  console.log(
+    `${subprotocol}: ${channels.length} channels, ${compared} types as Foxglove's, ${services.length} services`,
+  );
 }
 
 try {

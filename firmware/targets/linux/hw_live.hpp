@@ -10,10 +10,10 @@
 #include <optional>
 #include <string>
 
+#include "firmware/host/desk/servo_desk.hpp"
 #include "firmware/host/live/live_feed.hpp"
 #include "firmware/host/live/server.hpp"
 #include "firmware/host/recording/log/log_tap.hpp"
-#include "firmware/host/desk/servo_desk.hpp"
 #include "firmware/host/run/run_shell.hpp"
 #include "firmware/targets/linux/operator_thread.hpp"
 

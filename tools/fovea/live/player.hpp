@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <functional>
 
+#include "firmware/host/desk/wall_pace.hpp"
 #include "firmware/host/live/live_feed.hpp"
 #include "firmware/host/live/server.hpp"
-#include "firmware/host/desk/wall_pace.hpp"
 #include "firmware/host/recording/log/mcap_reader.hpp"
 
 namespace fovea {

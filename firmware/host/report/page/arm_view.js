@@ -111,8 +111,7 @@ Fovea.armView = (function () {
   }
 
   function legend(runs, view) {
-    const item = (colour, words, dots) =>
-      el("li", {}, Fovea.swatch({ colour, dots }), el("span", { text: words }));
+    const item = (colour, words, dots) => el("li", {}, Fovea.swatch({ colour, dots }), el("span", { text: words }));
     const items = [item("--blue", runs.some((run) => run.has_eye) ? "path of the camera" : "path of the hand")];
     if (runs.some((run) => run.scene.target_path)) items.push(item("--vermillion", "path of the target", true));
     if (runs[0].scene.workspace_radius)
