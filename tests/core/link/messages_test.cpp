@@ -21,9 +21,9 @@ namespace {
 static_assert(sizeof(moves::MotionCommand) == 304);
 static_assert(sizeof(hal::ArmState) == 280);
 static_assert(sizeof(hal::FeatureMeasurement) == 1016);
-static_assert(sizeof(hal::TickRecord) == 1984);
+static_assert(sizeof(hal::TickRecord) == 1992);
 static_assert(sizeof(LineCounters) == 24);
-static_assert(sizeof(Outputs) == 1984 + 4 * (kNumStages + 4) + sizeof(LineCounters));
+static_assert(sizeof(Outputs) == 1992 + 4 * (kNumStages + 4) + sizeof(LineCounters));
 
 std::array<std::uint8_t, kMaxPayload> storage;
 
