@@ -238,7 +238,9 @@ TEST(ServoStateTest, DemandRoundTripKeepsEveryField) {
   EXPECT_FALSE(Decode(longer.first(longer.size() - 1), back));
   ASSERT_TRUE(Decode(bytes, back));
   EXPECT_FALSE(back.tuning.IsAsked());
-  EXPECT_FALSE((Demand{.tuning = {0, 1.0}}.IsPlain()));
+  Demand asked;
+  asked.tuning = {0, 1.0};
+  EXPECT_FALSE(asked.IsPlain());
 }
 
 }  // namespace
