@@ -153,7 +153,10 @@ TEST_F(ReportTest, ShowsWhatTheOperatorChanged) {
     }
     log.Finish();
   }
-  const json events = json::parse(ToJson(ReadRun(folder_)))["tunings"];
+  json events = json::parse(ToJson(ReadRun(folder_)))["tunings"];
+  for (json& event : events) {
+    event["t_s"] = std::round(1e3 * event["t_s"].get<double>()) / 1e3;
+  }
   const json expected = json::array(
       {{{"t_s", 0.3}, {"taken", true}, {"words", "servo.lambda 2 -> 3.2 1/s, by the operator"}},
        {{"t_s", 0.41},
