@@ -181,7 +181,7 @@ export async function checkPast(page, sent, folder) {
   await slider.focus();
   await page.evaluate(() => {
     const node = document.querySelector(".scrub");
-    node.value = Number(node.min) / 2;
+    node.value = -2;
     node.dispatchEvent(new Event("input"));
   });
   await page.locator(".past-bar").waitFor();

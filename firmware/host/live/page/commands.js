@@ -74,7 +74,8 @@ export class Commands {
     const { actions, model } = this;
     const { state } = model;
     for (const { node, service } of this.buttons) {
-      node.disabled = !actions.may(service);
+      const idle = service === "/servo/recover" && state?.mode !== "fault"; // nothing to recover from
+      node.disabled = idle || !actions.may(service);
       node.hidden = actions.connection.state === "open" && !actions.connection.has(service);
     }
     this.save.disabled = !actions.may("/run/save");

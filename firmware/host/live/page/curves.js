@@ -103,8 +103,9 @@ export class Curves {
   #drawn = 0;
   #last = "";
 
-  constructor(host, model, moment) {
-    Object.assign(this, { model, moment });
+  // The first plot is drawn into `lead`, the others into `host`.
+  constructor(lead, host, model, moment) {
+    Object.assign(this, { lead, model, moment });
     this.span = 10;
     this.grid = el("div", { class: "strips" });
     this.modes = el("ul", { class: "mode-legend" });
@@ -138,7 +139,9 @@ export class Curves {
   // Makes the plots when the setup is known.
   build() {
     this.#strips = stripsOf(this.model).map((options) => new Strip(this.model, options));
-    this.grid.replaceChildren(...this.#strips.map((strip) => strip.node));
+    const [first, ...others] = this.#strips.map((strip) => strip.node);
+    this.lead.replaceChildren(first);
+    this.grid.replaceChildren(...others);
   }
 
   // Called at each picture of the screen; draws when it is time.

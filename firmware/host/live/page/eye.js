@@ -25,7 +25,7 @@ export class Eye {
       el(
         "ul",
         { class: "legend plain" },
-        Object.keys(Fovea.ROLES).map(Fovea.roleItem),
+        Object.keys(Fovea.ROLES).map((role) => Fovea.roleItem(role, true)),
         el("li", {}, el("label", { for: "outlines" }, outlines, " show outlines")),
       ),
     );

@@ -32,7 +32,7 @@ new Tuning(body("tuning"), actions, model);
 new Faults(body("faults"), actions, model);
 new Happenings(body("happenings"), model, moment);
 new Eye(body("eye"), model, moment);
-const curves = new Curves(body("curves"), model, moment);
+const curves = new Curves(body("lead"), body("curves"), model, moment);
 
 // The bench is made once, when setup and scene are known.
 let bench = null;
@@ -49,7 +49,8 @@ function makeBench() {
     return;
   }
   hands = new Hands(bench, actions, moment);
-  host.append(Fovea.el("div", { class: "bench-tools" }, hands.node, bench.steering), hands.hint);
+  bench.host.append(bench.steering);
+  host.append(Fovea.el("div", { class: "bench-tools" }, hands.node), hands.hint);
 }
 
 model.listen((what) => {

@@ -77,8 +77,6 @@ export class Transport {
       if (near) this.speed.value = near[0];
       else this.#addSpeed(state.speed);
     }
-    const kept = Math.max(0.1, Math.min(KEPT_S, model.now - model.oldest));
-    this.slider.min = -kept;
     if (moment.isLive) this.slider.value = 0;
     else if (!this.sliding) this.slider.value = moment.t - model.now;
     const words = moment.isLive

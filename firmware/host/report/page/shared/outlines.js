@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outlines that are drawn into the camera's pictures: what each means, and its entry in a legend.
+// The outlines that are drawn into the camera's pictures: what each means, and its entry in a legend. A short entry has
+// the meaning as a tooltip.
 
 Fovea.ROLES = {
   goal: "goal: where the target should be",
@@ -7,7 +8,7 @@ Fovea.ROLES = {
   truth: "truth: where the target was",
 };
 
-Fovea.roleItem = function (role) {
+Fovea.roleItem = function (role, short = false) {
   const { el, svg } = Fovea;
   const swatch = svg(
     "svg",
@@ -15,5 +16,6 @@ Fovea.roleItem = function (role) {
     svg("rect", { x: 0, y: 0, width: 26, height: 12, class: "dark" }),
     svg("path", { d: "M2 6H24" }),
   );
-  return el("li", {}, swatch, el("span", { text: Fovea.ROLES[role] }));
+  const text = Fovea.ROLES[role];
+  return el("li", { title: short ? text : null }, swatch, el("span", { text: short ? role : text }));
 };
