@@ -16,7 +16,7 @@ bool AreEqual(std::string_view a, std::string_view b) {
   unsigned differing = a.size() == b.size() ? 0U : 1U;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const char other = b.empty() ? '\0' : b[i % b.size()];
-    differing |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(other);
+    differing |= static_cast<unsigned>(a[i] ^ other);
   }
   return differing == 0;
 }

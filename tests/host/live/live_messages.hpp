@@ -28,8 +28,10 @@ Number NumberAt(std::string_view bytes, std::size_t at) {
 
 inline std::string BinaryServiceCall(std::uint32_t service, std::uint32_t call, const std::string& payload,
                                      const std::string& encoding = "json") {
-  return "\x02" + LittleEndian(service) + LittleEndian(call) +
-         LittleEndian(static_cast<std::uint32_t>(encoding.size())) + encoding + payload;
+  std::string bytes = "\x02";
+  bytes += LittleEndian(service) + LittleEndian(call);
+  bytes += LittleEndian(static_cast<std::uint32_t>(encoding.size())) + encoding + payload;
+  return bytes;
 }
 
 // A text message as its JSON. A binary one as {"binary": operation, ...} with its fields.
