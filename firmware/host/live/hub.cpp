@@ -182,8 +182,8 @@ void Hub::SendState(Viewer& viewer) {
   }
   const ViewerState end{control_.name(), control_.Has(viewer.number), viewers_.size(),
                         viewer.outbox.dropped_pictures(), viewer.outbox.dropped_plots()};
-  const auto json = std::make_shared<const std::string>(StateJson(state_, catalogue_) + StateJsonEnd(end));
-  Deliver(viewer, *subscription, {now_ns_, json});
+  const auto payload = std::make_shared<const std::string>(StateJson(state_, catalogue_) + StateJsonEnd(end));
+  Deliver(viewer, *subscription, {now_ns_, payload});
 }
 
 void Hub::SetParameter(std::size_t index, double value) {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -84,7 +84,7 @@ inline const nlohmann::json& ListOf(const nlohmann::json& object, const char* na
 
 // A finite number in the range.
 inline double NumberIn(const nlohmann::json& value, const std::string& name, double min, double max) {
-  const double number = value.is_number() ? value.get<double>() : std::nan("");
+  const double number = value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
   if (!(number >= min && number <= max)) {
     const auto shown = [](double bound) { return nlohmann::json(bound).dump(); };
     throw Refusal(name + " must be a number from " + shown(min) + " to " + shown(max) + ", got " +

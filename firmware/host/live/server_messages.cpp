@@ -13,11 +13,11 @@ namespace {
 using nlohmann::ordered_json;
 
 // Bytes of a text that are no UTF-8 are replaced: no name or notice can stop the server.
-std::string Dump(const ordered_json& value) {
-  return value.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+std::string Dump(const ordered_json& object) {
+  return object.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 
-Outgoing TextMessage(const ordered_json& value) { return {true, Dump(value), nullptr, Weight::kEssential}; }
+Outgoing TextMessage(const ordered_json& object) { return {true, Dump(object), nullptr, Weight::kEssential}; }
 
 template <typename Number>
 void Put(std::string& out, Number value) {
@@ -149,7 +149,7 @@ Outgoing ServiceFailureMessage(std::uint32_t service, std::uint32_t call, const 
       {{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", text}});
 }
 
-Outgoing ServiceResponseMessage(std::uint32_t service, std::uint32_t call, std::string_view json) {
+Outgoing ServiceResponseMessage(std::uint32_t service, std::uint32_t call, std::string_view object) {
   constexpr std::string_view kEncoding = "json";
   std::string head;
   Put(head, std::uint8_t{3});
@@ -157,7 +157,7 @@ Outgoing ServiceResponseMessage(std::uint32_t service, std::uint32_t call, std::
   Put(head, call);
   Put(head, static_cast<std::uint32_t>(kEncoding.size()));
   head += kEncoding;
-  head += json;
+  head += object;
   return {false, std::move(head), nullptr, Weight::kEssential};
 }
 
@@ -192,44 +192,45 @@ std::string ParametersJson(const std::vector<Parameter>& parameters) {
 }
 
 std::string StateJson(const State& state, const Catalogue& catalogue) {
-  ordered_json json = {{"stamp_s", state.stamp_s},
-                       {"wall_s", state.wall_s},
-                       {"mode", state.mode},
-                       {"hold_reason", state.hold_reason},
-                       {"hold_reason_words", state.hold_reason_words},
-                       {"fault", state.fault},
-                       {"fault_words", state.fault_words},
-                       {"paused", state.paused},
-                       {"speed", state.speed},
-                       {"real_time_factor", state.real_time_factor},
-                       {"ends", state.ends},
-                       {"may", MayJson(catalogue)},
-                       {"faults", FaultsJson(state, catalogue)},
-                       {"target", nullptr},
-                       {"pull", nullptr},
-                       {"notice", state.notice}};
+  ordered_json object = {{"stamp_s", state.stamp_s},
+                         {"wall_s", state.wall_s},
+                         {"mode", state.mode},
+                         {"hold_reason", state.hold_reason},
+                         {"hold_reason_words", state.hold_reason_words},
+                         {"fault", state.fault},
+                         {"fault_words", state.fault_words},
+                         {"paused", state.paused},
+                         {"speed", state.speed},
+                         {"real_time_factor", state.real_time_factor},
+                         {"ends", state.ends},
+                         {"may", MayJson(catalogue)},
+                         {"faults", FaultsJson(state, catalogue)},
+                         {"target", nullptr},
+                         {"pull", nullptr},
+                         {"notice", state.notice}};
   if (state.target) {
-    json["target"] = {
+    object["target"] = {
         {"p_BO", state.target->p_BO}, {"q_BO", state.target->q_BO}, {"held", state.target->held}};
   }
   if (state.pull) {
-    json["pull"] = {{"link", state.pull->link}, {"to_B", state.pull->to_B}};
+    object["pull"] = {{"link", state.pull->link}, {"to_B", state.pull->to_B}};
   }
-  std::string text = Dump(json);
+  std::string text = Dump(object);
   text.pop_back();
   return text;
 }
 
 std::string StateJsonEnd(const ViewerState& viewer) {
-  ordered_json json = {{"controller", nullptr},
-                       {"you", viewer.is_controller},
-                       {"viewers", viewer.viewers},
-                       {"dropped", {{"pictures", viewer.dropped_pictures}, {"plots", viewer.dropped_plots}}}};
+  ordered_json object = {
+      {"controller", nullptr},
+      {"you", viewer.is_controller},
+      {"viewers", viewer.viewers},
+      {"dropped", {{"pictures", viewer.dropped_pictures}, {"plots", viewer.dropped_plots}}}};
   if (!viewer.controller.empty()) {
-    json["controller"] = viewer.controller;
+    object["controller"] = viewer.controller;
   }
-  std::string text = Dump(json);
-  text[0] = ',';  // instead of the opening brace: the first part of the object stands before it
+  std::string text = Dump(object);
+  text.front() = ',';  // continues the object of StateJson
   return text;
 }
 

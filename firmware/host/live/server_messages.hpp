@@ -25,7 +25,7 @@ Outgoing AdvertiseServicesMessage(const std::vector<Service>& services);
 Outgoing StatusMessage(StatusLevel level, const std::string& text, const std::string& id = "");
 Outgoing ParameterValuesMessage(const std::vector<const Parameter*>& parameters, const std::string& id);
 Outgoing ServiceFailureMessage(std::uint32_t service, std::uint32_t call, const std::string& text);
-Outgoing ServiceResponseMessage(std::uint32_t service, std::uint32_t call, std::string_view json);
+Outgoing ServiceResponseMessage(std::uint32_t service, std::uint32_t call, std::string_view answer);
 Outgoing TimeMessage(std::int64_t now_ns);
 Outgoing DataMessage(std::uint32_t subscription, std::int64_t stamp_ns,
                      std::shared_ptr<const std::string> payload, Weight weight);

@@ -324,8 +324,8 @@ void Web::Parts::Pulse() {
     }
     self->handlers.pulse();
     const auto now = Clock::now();
-    const auto present = self->viewers;  // End changes the map
-    for (const auto& [number, viewer] : present) {
+    const auto open = self->viewers;  // End changes the map
+    for (const auto& [number, viewer] : open) {
       if (viewer->IsBehind(now)) {
         ++self->expelled;
         viewer->End();

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <google/protobuf/descriptor.pb.h>
 #include <gtest/gtest.h>
-#include <openssl/evp.h>
 
 #include <map>
 #include <vector>
@@ -24,12 +23,18 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 
 std::string FromBase64(const std::string& text) {
-  std::string bytes(text.size(), '\0');
-  const int size =
-      EVP_DecodeBlock(reinterpret_cast<unsigned char*>(bytes.data()),
-                      reinterpret_cast<const unsigned char*>(text.data()), static_cast<int>(text.size()));
-  const std::size_t padding = text.size() - std::min(text.find('='), text.size());
-  bytes.resize(static_cast<std::size_t>(size) - padding);
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (const char digit : text.substr(0, text.find('='))) {
+    bits = bits << 6U | static_cast<std::uint32_t>(digits.find(digit));
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      bytes.push_back(static_cast<char>(bits >> count & 0xFFU));
+    }
+  }
   return bytes;
 }
 

@@ -30,8 +30,8 @@ inline std::string BinaryServiceCall(std::uint32_t service, std::uint32_t call, 
                                      const std::string& encoding = "json") {
   std::string bytes = "\x02";
   bytes += LittleEndian(service) + LittleEndian(call);
-  bytes += LittleEndian(static_cast<std::uint32_t>(encoding.size()));
-  return bytes + encoding + payload;
+  bytes += LittleEndian(static_cast<std::uint32_t>(encoding.size())) + encoding + payload;
+  return bytes;
 }
 
 // A text message as its JSON. A binary one as {"binary": operation, ...} with its fields.
