@@ -42,8 +42,8 @@ function stripsOf(model) {
       log: true,
       format: px,
       series: [
-        { name: "true", colour: "--blue", rows: of("errors"), column: ERROR.size, width: 2 },
         { name: "measured", colour: "--vermillion", rows: of("measured"), column: ERROR.size, dots: true },
+        { name: "true", colour: "--blue", rows: of("errors"), column: ERROR.size, width: 2 },
         { name: "ideal", colour: "--ink", rows: idealRows, column: ERROR.ideal, dash: [6, 4], width: 1.4 },
       ],
     },
