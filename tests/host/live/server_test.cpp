@@ -186,6 +186,8 @@ TEST_F(ServerTest, TwentyFirstViewerIsRefused) {
   EXPECT_EQ(LiveClient(Port()).Get(kTarget).status, 200) << "the page itself is still served";
   for (const auto& viewer : viewers) {
     Subscribe(*viewer, 0);
+    viewer->SendText({{"op", "getParameters"}, {"parameterNames", nlohmann::json::array()}, {"id", "here"}});
+    EXPECT_FALSE(viewer->Await("id", "here").is_null()) << "then the subscription has arrived, too";
   }
   server_->Publish(0, 1, "to all");
   for (const auto& viewer : viewers) {
