@@ -89,6 +89,18 @@ const char* Name(HoldReason reason) noexcept {
   return "unknown";
 }
 
+const char* Name(TuningResult result) noexcept {
+  switch (result) {
+    case TuningResult::kNone: return "none";
+    case TuningResult::kTaken: return "taken";
+    case TuningResult::kUnknownKey: return "unknown_key";
+    case TuningResult::kNotFinite: return "not_finite";
+    case TuningResult::kOutOfRange: return "out_of_range";
+    case TuningResult::kInconsistent: return "inconsistent";
+  }
+  return "unknown";
+}
+
 const char* Name(Fault fault) noexcept { return EntryOf(kFaultTable, fault).name; }
 const char* Name(Limit limit) noexcept { return EntryOf(kLimitTable, limit).name; }
 const char* Name(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).name; }
@@ -138,6 +150,18 @@ const char* Words(Intake intake) noexcept {
     case Intake::kOutlier: return "rejected as outlier";
   }
   return "with an unknown outcome";
+}
+
+const char* Words(TuningResult result) noexcept {
+  switch (result) {
+    case TuningResult::kNone: return "nothing was requested";
+    case TuningResult::kTaken: return "taken";
+    case TuningResult::kUnknownKey: return "no such key changes in motion";
+    case TuningResult::kNotFinite: return "the value is not finite";
+    case TuningResult::kOutOfRange: return "the value is outside the key's range";
+    case TuningResult::kInconsistent: return "the value contradicts another key";
+  }
+  return "an unknown answer";
 }
 
 const char* Key(Fault fault) noexcept { return EntryOf(kFaultTable, fault).key; }
