@@ -248,6 +248,10 @@ std::string ToJson(const RunData& run) {
     json["faults"].push_back(
         {{"t_s", fault.t_s}, {"name", fault.name}, {"key", fault.key}, {"detail", fault.detail}});
   }
+  json["tunings"] = ordered_json::array();
+  for (const TuningEvent& tuning : run.tunings) {
+    json["tunings"].push_back({{"t_s", tuning.t_s}, {"taken", tuning.taken}, {"words", tuning.words}});
+  }
   json["limits_active"] = ordered_json::array();
   for (const LimitSpans& limit : run.limits_active) {
     json["limits_active"].push_back({{"name", limit.name}, {"spans", limit.spans_s}});
