@@ -18,6 +18,7 @@
 #include "sim/faults/stalling_clock.hpp"
 #include "sim/mcu/board_servo.hpp"
 #include "sim/mcu/qemu.hpp"
+#include "sim/operator/live_session.hpp"
 #include "sim/run/files.hpp"
 #include "sim/run/outcome.hpp"
 #include "sim/run/progress.hpp"
@@ -65,12 +66,24 @@ class Run {
     // The folder is created last, so that a refused run leaves none.
     // A board that ticks by its own timer sees other inputs than the host: its log cannot be replayed.
     const bool replayable = !board_ || !options_.board.by_timer;
-    const RunFilesConfig files{options_.out, options_.report, kRenderers, options_.pace == Pace::kReal,
-                               replayable,   options_.command};
+    RunFilesConfig files;
+    files.out = options_.out;
+    files.report = options_.report;
+    files.renderer_index = kRenderers;
+    files.may_drop = options_.pace == Pace::kReal;
+    files.replayable = replayable;
+    files.command = options_.command;
+    if (options_.live != nullptr) {
+      files.tap = options_.live->tap();
+      files.open_ended = true;
+    }
     shell_.emplace(board_ ? static_cast<task::ServoStep&>(*board_) : servo_, board_ ? nullptr : &servo_,
                    kRecords, FolderOf(about_, files));
     shell_->OnRecord([this](const flight::FlightRecord& flown) { ObserveRecord(flown.record); });
     files_ = std::make_unique<RunFiles>(about_, files, *shell_);
+    if (options_.live != nullptr) {
+      live_.emplace(*options_.live, *shell_, options_.live_speed);
+    }
     if (trace_) {
       shell_->UseTrack(trace_->servo());
     }
@@ -183,6 +196,9 @@ class Run {
   }
 
   [[nodiscard]] std::int64_t EndNs() const {
+    if (live_) {
+      return INT64_MAX / 2;
+    }
     return static_cast<std::int64_t>(about_.scenario.run.duration_s * static_cast<double>(hal::kNsPerSecond));
   }
 
@@ -216,7 +232,13 @@ class Run {
     if (motion_) {
       loop.UseMotion(*motion_);
     }
+    if (live_) {
+      live_->Begin({about_, *world_, *faulty_arm_, vision_, loop, stalling, {}});
+    }
     const hal::Status status = loop.Run(EndNs());
+    if (live_) {
+      live_->End();
+    }
     shell_->EndLoop();
     return status;
   }
@@ -225,11 +247,15 @@ class Run {
     return options_.interrupt != nullptr && options_.interrupt->Came();
   }
 
+  void EndEarly() {
+    interrupted_ = true;
+    shell_->loop()->Stop();  // after the current tick, which is still recorded
+  }
+
   // Passes the measurements that are due to the servo. Called between two ticks, on the servo's thread.
   bool HandOver(std::int64_t now_ns, bool wait) {
     if (IsInterrupted() && now_ns < EndNs()) {
-      interrupted_ = true;
-      shell_->loop()->Stop();  // after the current tick, which is still recorded
+      EndEarly();
       return true;
     }
     if (!trace_) {
@@ -251,6 +277,10 @@ class Run {
       }
       if (board_ && !board_->failure().empty()) {
         throw std::runtime_error(board_->failure() + "; the arm's brakes were closed");
+      }
+      if (live_ && !live_->WaitForTick(now_ns, [this] { return IsInterrupted(); })) {
+        EndEarly();
+        return true;
       }
       return HandOver(now_ns, /*wait=*/true);
     });
@@ -299,7 +329,8 @@ class Run {
     }
     FillFrameFailures(vision_.failures(), s);
     if (interrupted_) {
-      FillInterrupted(s.sim_time_s, about_.scenario.run.duration_s, s);
+      FillInterrupted(s.sim_time_s,
+                      live_ ? std::nullopt : std::optional<double>(about_.scenario.run.duration_s), s);
     }
     s.frames_lost = vision_.frames_lost();
     if (board_) {
@@ -329,6 +360,7 @@ class Run {
   SimVision vision_;  // its thread uses trace_, shell_ and files_
   std::unique_ptr<Verdict> verdict_;
   std::optional<TheoryRun> theory_;
+  std::optional<LiveSession> live_;
   std::optional<CommandedMotionSource> motion_;
   ModeWatch modes_;  // for the verdict, which cannot wait for the records
   std::unique_ptr<World> world_;

@@ -62,9 +62,10 @@ void Fields(Visitor& v, Faults& f) {
       f.base_tilt.window);
   v.Scaled({"gravity_tilt_deg", "deg", "tilt about the base's x axis"}, f.base_tilt.tilt,
            std::numbers::pi / 180.0, -180.0, 180.0);
-  v.List({"push", "Nm", "external torques on the joints, one per joint; default: none"}, f.push.tau,
-         hal::kMaxJoints, -1e4, 1e4);
-  v.Window({"push", "s", "the external torques act from the first time to the second"}, f.push.window);
+  v.Window({"push", "s", "external torques on the joints act from the first time to the second"},
+           f.push.window);
+  v.List({"push", "Nm", "these torques, one per joint; default: none"}, f.push.tau, hal::kMaxJoints, -1e4,
+         1e4);
 }
 
 }  // namespace fovea::sim

@@ -67,13 +67,16 @@ class FaultyArm final : public hal::Arm {
   // `arm` is borrowed.
   FaultyArm(hal::Arm& arm, const ArmFaults& faults);
 
+  // Changes the faults from the next state on, except their seed. From the thread that reads the arm.
+  void SetFaults(const ArmFaults& faults);
+
  private:
   hal::Status DoRead(hal::ArmState& state) noexcept override;
   hal::Status DoWrite(const hal::ArmCommand& command) noexcept override { return arm_.Write(command); }
   void Spoil(hal::ArmState& state) noexcept;
 
   hal::Arm& arm_;
-  const ArmFaults faults_;
+  ArmFaults faults_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
   bool is_stuck_ = false;

@@ -19,6 +19,12 @@ const Exposure& FrameSpoiler::SceneFor(const Exposure& exposure) {
   return replay.window.Contains(exposure.stamp_ns) ? past_.front() : exposure;
 }
 
+void FrameSpoiler::SetFaults(const FrameFaults& faults) {
+  const std::uint64_t seed = faults_.seed;
+  faults_ = faults;
+  faults_.seed = seed;
+}
+
 std::optional<Exposure> FrameSpoiler::Spoil(const Exposure& exposure) {
   Exposure taken = SceneFor(exposure);
   if (faults_.loss.window.Contains(exposure.stamp_ns) &&
@@ -35,6 +41,8 @@ std::optional<Exposure> FrameSpoiler::Spoil(const Exposure& exposure) {
     if (faults_.freeze_pixels) {
       taken.pixels_of = PixelSource{frozen_->sequence, frozen_->stamp_ns};
     }
+  } else {
+    frozen_.reset();
   }
   taken.sequence = exposure.sequence;
   taken.stamp_ns = exposure.stamp_ns;

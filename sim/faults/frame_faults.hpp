@@ -61,6 +61,9 @@ class FrameSpoiler {
  public:
   explicit FrameSpoiler(const FrameFaults& faults) : faults_(faults) {}
 
+  // Changes the faults from the next exposure on, except their seed.
+  void SetFaults(const FrameFaults& faults);
+
   // The exposure that the camera takes instead of `exposure`; none if the frame is lost.
   [[nodiscard]] std::optional<Exposure> Spoil(const Exposure& exposure);
   // Additional delay of the frame exposed at `stamp_ns`.
@@ -69,7 +72,7 @@ class FrameSpoiler {
  private:
   const Exposure& SceneFor(const Exposure& exposure);
 
-  const FrameFaults faults_;
+  FrameFaults faults_;
   std::deque<Exposure> past_;  // scenes to replay, oldest first
   std::optional<Exposure> frozen_;
 };

@@ -25,13 +25,19 @@ class StallingClock final : public hal::Clock {
   // `clock` is borrowed.
   StallingClock(hal::Clock& clock, const StallFault& fault) : clock_(clock), fault_(fault) {}
 
+  // Changes the fault from the next wait on, except its seed. From the thread that waits.
+  void SetFault(const StallFault& fault) {
+    fault_.window = fault.window;
+    fault_.share = fault.share;
+  }
+
  private:
   [[nodiscard]] std::int64_t DoNowNs() const noexcept override { return clock_.NowNs(); }
   // A wait for a missed tick ends at the next tick that is not missed.
   hal::Status DoWaitUntil(std::int64_t deadline_ns) noexcept override;
 
   hal::Clock& clock_;
-  const StallFault fault_;
+  StallFault fault_;
 };
 
 }  // namespace fovea::sim

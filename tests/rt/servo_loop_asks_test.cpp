@@ -3,8 +3,10 @@
 // effect, no other value is seen, and Stop ends the loop.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <thread>
+#include <vector>
 
 #include "firmware/core/task/servo_loop.hpp"
 #include "tests/support/fake_drivers.hpp"
@@ -26,12 +28,21 @@ class CountingStep final : public ServoStep {
                       ? 1
                       : 0;
     law = inputs.change_law ? inputs.law : law;
+    if (inputs.tuning.IsAsked()) {
+      const auto key = static_cast<std::size_t>(inputs.tuning.key);
+      older_values += inputs.tuning.value < values.at(key) ? 1 : 0;
+      values.at(key) = inputs.tuning.value;
+      ++tunings;
+    }
     ticks.fetch_add(1, std::memory_order_relaxed);
   }
   int tracks = 0;
   int others = 0;
   int laws = 0;
   int wrong_laws = 0;
+  int tunings = 0;
+  int older_values = 0;  // of a key, after a newer one
+  std::array<double, config::kMostTunable> values{};
   Request last = Request::kNone;
   config::MotionLawKind law{};
   std::atomic<int> ticks{0};
@@ -86,6 +97,58 @@ TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
   EXPECT_EQ(step.wrong_laws, 0);
   std::printf("%llu ticks took %d of %d requests\n", static_cast<unsigned long long>(loop.counters().ticks),
               step.tracks, kAsks);
+}
+
+// Two threads change eight keys each. No key's last value is lost, and no value comes after a newer one.
+TEST(ServoLoopAsks, LastValueOfEachKeyArrives) {
+  constexpr int kAsks = 2000;
+  constexpr int kPiece = 1000;  // ticks
+  constexpr int kKeys = config::kMostTunable / 2;
+  CountingStep step;
+  test::FakeArm arm(7);
+  test::FakeClock clock;
+  hal::FeatureMailbox mailbox;
+  DeafRecorder recorder;
+  test::NoProbe probe;
+  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
+  std::atomic<int> refused{0};
+  std::vector<std::thread> askers;
+  for (int first : {0, kKeys}) {
+    askers.emplace_back([&, first] {
+      for (int i = 1; i <= kAsks; ++i) {
+        for (int key = first; key < first + kKeys; ++key) {
+          refused += loop.Ask(config::Tuning{key, static_cast<double>(i)}) ? 0 : 1;
+        }
+        std::this_thread::yield();
+      }
+    });
+  }
+  std::thread stopper([&] {
+    for (std::thread& asker : askers) {
+      asker.join();
+    }
+    // Each key waits for at most one round of all keys.
+    const int enough = step.ticks.load(std::memory_order_relaxed) + 100;
+    while (step.ticks.load(std::memory_order_relaxed) < enough) {
+      std::this_thread::yield();
+    }
+    loop.Stop();
+  });
+  hal::Status status = hal::Status::Ok();
+  for (std::uint64_t before = 1; loop.counters().ticks != before && status.ok();) {
+    before = loop.counters().ticks;
+    status = loop.Run(clock.now_ns + kPiece * hal::kTickPeriodNs);
+    arm.written.clear();
+    clock.deadlines_ns.clear();
+  }
+  stopper.join();
+  EXPECT_TRUE(status.ok());
+  for (const double value : step.values) {
+    EXPECT_EQ(value, kAsks);
+  }
+  EXPECT_EQ(step.older_values, 0);
+  EXPECT_EQ(refused.load(), 0);
+  std::printf("%d of %d requests were taken\n", step.tunings, kAsks * config::kMostTunable);
 }
 
 // The leave to move ends and is given again while the loop runs: no request takes effect without it.

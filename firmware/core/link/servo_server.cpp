@@ -134,6 +134,9 @@ void ServoServer::TakeInputsByTimer(const Frame& frame) noexcept {
       received_.change_law = true;
       received_.law = inputs_.law;
     }
+    if (!received_.tuning.IsAsked()) {
+      received_.tuning = inputs_.tuning;
+    }
   }
   inputs_ = received_;
   inputs_sequence_ = frame.sequence;
@@ -182,6 +185,7 @@ void ServoServer::TickByTimer(std::int32_t missed_ticks) noexcept {
     inputs_.request = task::Request::kNone;
     inputs_.motion = moves::MotionCommand{};
     inputs_.change_law = false;
+    inputs_.tuning = {};
   }
   fresh_ = false;
   inputs_.missed_ticks = missed_ticks;

@@ -142,6 +142,7 @@ void ServoLoop::Tick(std::int32_t missed_ticks) noexcept {
   if (inputs_.change_law) {
     inputs_.law = static_cast<config::MotionLawKind>(law);
   }
+  inputs_.tuning = tunings_.Take();
   const bool may_move = MayMove();
   if (!may_move) {
     inputs_.request = Request::kHold;

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "firmware/core/task/servo_task.hpp"
+#include "firmware/core/task/tuning_box.hpp"
 #include "fovea/hal/arm.hpp"
 #include "fovea/hal/clock.hpp"
 #include "fovea/hal/feature.hpp"
@@ -65,6 +66,9 @@ class ServoLoop {
   void Ask(config::MotionLawKind law) noexcept {
     law_.store(static_cast<int>(law), std::memory_order_relaxed);
   }
+  // From any thread: passed to the task in one of the next ticks, one key per tick. The last value of each
+  // key wins. The answer is in that tick's record. False: no key can have this number.
+  [[nodiscard]] bool Ask(const config::Tuning& tuning) noexcept { return tunings_.Put(tuning); }
 
   // Only while no thread runs the loop.
   [[nodiscard]] LoopCounters counters() const noexcept;
@@ -97,6 +101,7 @@ class ServoLoop {
   std::atomic<std::uint64_t> lease_ends_{0};
   std::atomic<Request> request_{Request::kNone};
   std::atomic<int> law_{-1};  // requested; -1: none
+  TuningBox tunings_;
   moves::MotionSource* motion_ = nullptr;
   bool leave_ended_ = false;    // in the last tick
   bool motion_barred_ = false;  // the present command was interrupted

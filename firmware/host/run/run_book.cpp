@@ -35,6 +35,7 @@ log::RunLogConfig LogConfig(const RunFacts& facts, const RunBookOptions& options
   out.may_drop = options.may_drop;
   out.ring = options.ring;
   out.most_images = options.most_images;
+  out.tap = options.tap;
   return out;
 }
 

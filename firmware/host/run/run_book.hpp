@@ -56,6 +56,7 @@ struct RunBookOptions {
   double picture_rate_hz = HUGE_VAL;     // the log keeps at most this rate of pictures; 0: none
   bool replayable = true;                // the recorded inputs are the servo's, so a replay is possible
   std::optional<std::int64_t> begin_ns;  // start, by the loop's clock; none: at the first record
+  log::LogTap tap;                       // gets every message of the log, on the log's thread
 };
 
 class RunBook {
@@ -78,6 +79,8 @@ class RunBook {
                 const foxglove::ImageAnnotations& more = {});
   // For data of only this kind of run.
   [[nodiscard]] log::RunLog& log() { return log_; }
+  // Where the log is written during the run.
+  [[nodiscard]] const std::filesystem::path& log_path() const { return log_path_; }
   // A path for writing the file `name`, one of more_files, during the run.
   [[nodiscard]] std::filesystem::path BeginFile(const std::string& name) { return folder_.Begin(name); }
 

@@ -106,7 +106,13 @@ TEST_F(ServoServerTest, LockstepGivesTheSameBitsAsTheTask) {
   log::RecordHash there;
   for (std::uint32_t k = 1; k <= 3000; ++k) {
     task::ServoInputs given;
-    here.Add(Tick([&](task::ServoInputs& inputs) { given = inputs; }));
+    here.Add(Tick([&](task::ServoInputs& inputs) {
+      if (k % 700 == 0) {
+        inputs.tuning = {0, k == 1400 ? 50.0 : 1e-3 * k};  // one is refused
+      }
+      given = inputs;
+    }));
+    EXPECT_EQ(outputs_.record.tuning.result != hal::TuningResult::kNone, k % 700 == 0);
     Give({FrameKind::kInputs, k, Encode(given, payload_)});
     if (k % 7 == 0) {  // the frame arrives twice: two answers, one step
       Give({FrameKind::kInputs, k, Encode(given, payload_)});
@@ -281,6 +287,28 @@ TEST_F(ServoServerByTimerTest, OvertakenFrameStillDeliversItsFeature) {
 }
 
 // A frame that is older than an arm may be silent is ignored, even if it is the newest.
+// A key of the older frame changes, too; a tick without a frame does not change it again.
+TEST_F(ServoServerByTimerTest, OvertakenFrameStillChangesItsKey) {
+  const auto send = [&](std::uint32_t sequence, const config::Tuning& tuning) {
+    task::ServoInputs inputs;
+    inputs.arm = arm_->State();
+    inputs.tuning = tuning;
+    Give({FrameKind::kInputs, sequence, Encode(inputs, payload_)});
+  };
+  send(1, {0, 3.0});
+  send(2, {});
+  Pass(1);
+  const hal::TuningNote note = Taken().record.tuning;
+  EXPECT_EQ(note.result, hal::TuningResult::kTaken);
+  EXPECT_EQ(note.asked, 3.0);
+  Pass(1);
+  EXPECT_EQ(Taken().record.tuning.result, hal::TuningResult::kNone);
+  send(3, {0, 4.0});
+  send(4, {4, 0.1});
+  Pass(1);
+  EXPECT_EQ(Taken().record.tuning.key, 4) << "the newer one";
+}
+
 TEST_F(ServoServerByTimerTest, TooOldStateIsIgnoredAndCounted) {
   const int most = config_.safety.arm_lost_ticks;
   task::ServoInputs inputs;

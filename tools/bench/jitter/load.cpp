@@ -11,7 +11,6 @@
 
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 
 #include "fovea/linux_rt/realtime.hpp"
@@ -84,6 +83,8 @@ Load::Load(const std::string& kind) {
     start(2, Send);
   } else if (kind == "render") {
     StartRender();
+  } else if (kind == "viewers") {
+    viewers_ = std::make_unique<Viewers>();
   }
 }
 

@@ -40,7 +40,7 @@ Truth ToMessage(const TruthSample& sample) {
 
 RunLog::RunLog(const RunLogConfig& config)
     : config_(config),
-      file_(std::make_unique<LogFile>(config.path, config.library)),
+      file_(std::make_unique<LogFile>(config.path, config.library, config.tap)),
       tick_writer_(std::make_unique<TickWriter>(config_)),
       ticks_(config.ring),
       truths_(config.ring),

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "firmware/core/model/arm_model.hpp"
+#include "firmware/host/recording/log/log_tap.hpp"
 #include "firmware/host/recording/log/tick_message.hpp"
 #include "fovea/hal/camera.hpp"
 #include "fovea/hal/record.hpp"
@@ -54,6 +55,7 @@ struct RunLogConfig {
   std::size_t ring = 2048;      // ticks, and samples, that may wait: two seconds of them
   std::size_t most_images = 8;  // pictures that may wait to be encoded
   int jpeg_quality = 80;
+  LogTap tap;  // gets every message that is written, on the log's thread
 };
 
 // Data that only a simulator knows; see Truth in firmware/host/recording/log/proto/fovea/run.proto.

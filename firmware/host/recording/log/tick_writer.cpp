@@ -52,6 +52,15 @@ void TickWriter::Write(const hal::TickRecord& record, const ReplayData& data, Lo
 }
 
 void TickWriter::WriteEvents(const hal::TickRecord& record, LogFile& file) const {
+  if (tick_.has_tuning()) {
+    foxglove::Log line;
+    SetStamp(record.stamp_ns, *line.mutable_timestamp());
+    line.set_name("servo");
+    const bool taken = record.tuning.result == hal::TuningResult::kTaken;
+    line.set_level(taken ? foxglove::Log::INFO : foxglove::Log::WARNING);
+    line.set_message(InWords(tick_.tuning()));
+    file.Write(kEventTopic, record.stamp_ns, line);
+  }
   if (!is_first_ && record.mode == mode_ && record.hold_reason == reason_) {
     return;
   }

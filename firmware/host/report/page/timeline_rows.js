@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of the time axis: modes, faults, injected faults, frames and limits; and a description of one time.
+// The rows of the time axis: modes, faults, injected faults, the operator's changes, frames and limits; and a description of one time.
 
 Fovea.timelineRows = (function () {
-  const { clock, words, suffix } = Fovea;
-  const { MODES, modeWords, modesOf, injectedOf } = Fovea.bands;
+  const { clock, words, suffix, MODES, modeWords } = Fovea;
+  const { modesOf, injectedOf } = Fovea.bands;
 
   const modeSay = (m) => modeWords(m.mode) + (m.reason ? ` (${words(m.reason)})` : "");
 
@@ -70,6 +70,15 @@ Fovea.timelineRows = (function () {
         say: `fault: ${words(f.name)}${f.key ? `, setting ${f.key}` : ""}${f.detail ? `, ${f.detail}` : ""}`,
       }));
     add("faults", faults, { marks: true });
+    const tunings = (run) =>
+      run.tunings.map((t) => ({
+        from: t.t_s,
+        to: t.t_s,
+        kind: t.taken ? "tuned" : "mark",
+        label: t.words,
+        say: t.words,
+      }));
+    if (runs.some((run) => run.tunings.length)) add("changes by the operator", tunings, { marks: true });
     for (const run of runs.filter((run) => run.has_eye))
       rows.push(
         { name: "frames lost" + suffix(run), spans: spansOfLost(run), empty: "none" },
@@ -107,6 +116,8 @@ Fovea.timelineRows = (function () {
       for (const f of run.faults)
         if (Math.abs(f.t_s - t) < (clock.span[1] - clock.span[0]) / 80)
           parts.push(`fault: ${words(f.name)}${f.detail ? `, ${f.detail}` : ""}`);
+      for (const tuning of run.tunings)
+        if (Math.abs(tuning.t_s - t) < (clock.span[1] - clock.span[0]) / 80) parts.push(tuning.words);
       return (runs.length > 1 ? `Run ${run.letter}: ` : "") + parts.join("; ");
     });
   }

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a person may do, and what the page says when something is refused.
+
+const FREE = new Set(["/servo/hold", "/control/take"]); // need no control
+const MAY = { "/servo/hold": "hold", "/servo/track": "track", "/servo/recover": "recover", "/run/pause": "pause" };
+Object.assign(MAY, { "/run/step": "step", "/run/speed": "speed", "/run/reset": "reset", "/run/save": "save" });
+Object.assign(MAY, { "/run/end": "end", "/fault/start": "fault", "/fault/stop": "fault", "/arm/pull": "pull" });
+Object.assign(MAY, { "/arm/release": "pull", "/target/throw": "throw" });
+
+export class Actions {
+  #listeners = Fovea.callbacks();
+
+  constructor(connection, model) {
+    this.connection = connection;
+    this.model = model;
+    this.name = `viewer ${Math.floor(1296 + Math.random() * 45360).toString(36)}`;
+    model.listen((what) => {
+      if (what === "state") connection.keepAlive = this.inControl;
+    });
+    connection.listen((what, detail) => {
+      if (what === "status" && detail.level > 0) this.say(detail.message, "refused");
+    });
+  }
+
+  // Calls back with (words, kind): kind is refused or done.
+  listen(callback) {
+    return this.#listeners.listen(callback);
+  }
+
+  say(words, kind = "refused") {
+    this.#listeners.tell(words, kind);
+  }
+
+  get inControl() {
+    const { state } = this.model;
+    return !!state && (state.you === undefined ? state.controller === this.name : state.you);
+  }
+
+  // Whether this run offers a service (or "tune", "target") at all.
+  may(what) {
+    const { state } = this.model;
+    if (!state || state.ends || this.connection.state !== "open") return false;
+    if (what.startsWith("/")) return this.connection.has(what) && state.may?.[MAY[what]] !== false;
+    return state.may?.[what] !== false;
+  }
+
+  // Calls a service. Null when it was refused; the reason is shown.
+  async call(service, request = {}) {
+    try {
+      await this.#needControl(service);
+      return await this.connection.call(service, request);
+    } catch (trouble) {
+      this.say(trouble.message);
+      return null;
+    }
+  }
+
+  async setParameter(name, value) {
+    try {
+      await this.#needControl("");
+      this.connection.setParameter(name, value);
+    } catch (trouble) {
+      this.say(trouble.message);
+    }
+  }
+
+  // Sends the pose of the held target. False when it may not be moved.
+  async holdTarget(p_BO, q_BO) {
+    try {
+      await this.#needControl("");
+      this.connection.publish("/target/pose", { p_BO, q_BO });
+    } catch (trouble) {
+      this.say(trouble.message);
+    }
+  }
+
+  async releaseTarget() {
+    if (this.inControl) this.connection.publish("/target/release", {});
+  }
+
+  async takeControl() {
+    const answer = await this.connection.call("/control/take", { name: this.name });
+    if (!answer.granted) throw new Error(`${answer.controller} has control. Ask them to give it up.`);
+    this.model.state.you = true; // the next state says so too
+  }
+
+  // Takes control when nobody has it; the answer to that comes before the change is sent.
+  #needControl(service) {
+    if (FREE.has(service) || this.inControl || !this.connection.has("/control/take")) return Promise.resolve();
+    this.taking ??= this.takeControl().finally(() => (this.taking = null));
+    return this.taking;
+  }
+}

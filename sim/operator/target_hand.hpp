@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The operator's hand on the target: drags, turns and throws it. Once touched, the target stays where the
+// hand left it; its motion of the scenario has ended.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+
+namespace fovea::sim {
+
+class TargetHand {
+ public:
+  // The wishes of a mouse come some 30 times per second. The target moves to each within this time.
+  static constexpr std::int64_t kGlideNs = 40'000'000;
+  static constexpr double kFarthest = 2.0;       // largest coordinate of a wish in B [m]
+  static constexpr double kMostSpeed = 3.0;      // of a throw [m/s]
+  static constexpr double kMostTurnRate = 20.0;  // of a throw [rad/s]
+  static constexpr double kSlowdownS = 0.35;     // time constant with which a thrown target slows down
+
+  // `least_height`: of the target's centre in B [m], so that it stays above the table.
+  explicit TargetHand(double least_height) : least_height_(least_height) {}
+
+  // The target is at `X_BO` now and shall move to `wish` and stay there. `wish` is finite, each coordinate at
+  // most kFarthest.
+  void Drag(const Eigen::Isometry3d& X_BO, const Eigen::Isometry3d& wish, std::int64_t now_ns);
+  // The target leaves the hand at `X_BO` with `v_BO` [m/s] and `omega_B` [rad/s], and slows down until it
+  // rests.
+  void Throw(const Eigen::Isometry3d& X_BO, const Eigen::Vector3d& v_BO, const Eigen::Vector3d& omega_B,
+             std::int64_t now_ns);
+  // The hand lets go: the target stays where it is, or arrives.
+  void Release() { held_ = false; }
+
+  [[nodiscard]] bool held() const { return held_; }
+  // The target's pose X_BO; none if nobody has touched it.
+  [[nodiscard]] std::optional<Eigen::Isometry3d> At(std::int64_t now_ns) const;
+
+ private:
+  enum class Motion { kNone, kDragged, kThrown };
+
+  double least_height_;
+  Motion motion_ = Motion::kNone;
+  bool held_ = false;
+  std::int64_t from_ns_ = 0;
+  Eigen::Isometry3d from_ = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d to_ = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d v_BO_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace fovea::sim
