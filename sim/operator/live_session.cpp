@@ -87,6 +87,9 @@ void LiveSession::ShowState(std::int64_t wall_ns) {
   next_state_ns_ = wall_ns + kStatePeriodNs;
   live::State state = desk_->State();
   state.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+  if (const auto ticks = shell_.NewTickDurations()) {
+    state.tick = {ticks->median_ns, ticks->max_ns};
+  }
   page_.server().SetState(state);
 }
 

@@ -46,7 +46,7 @@ std::string ToToml(Scenario& scenario) {
   std::string section;
   const config::KeyTable keys = ScenarioKeys(scenario);
   for (const config::Key& key : keys.keys()) {
-    if (key.default_text == usual.at(key.name) || key.default_text == "[]") {
+    if (key.default_text == usual.at(key.name)) {
       continue;
     }
     const std::size_t dot = key.name.find('.');

@@ -22,7 +22,7 @@ export async function waitForPictures(page, more) {
 
 // The JSON texts that were sent: ops, service requests and published messages.
 const PUBLISH = 1; // the first byte of a binary frame; a text begins with a brace
-const texts = (sent) =>
+export const texts = (sent) =>
   sent.map((frame) => {
     if (frame[0] === 0x7b) return frame.toString();
     return frame.subarray(frame[0] === PUBLISH ? 5 : 13 + frame.readUInt32LE(9)).toString();
@@ -221,14 +221,14 @@ export async function checkSave(page, sent, folder) {
 }
 
 // Where the target is in the window.
-const targetAt = (page) =>
+export const targetAt = (page) =>
   page.evaluate(() => {
     const box = document.querySelector("#bench canvas").getBoundingClientRect();
     const { x, y } = JSON.parse(document.querySelector("#bench canvas").dataset.target);
     return { x: box.left + x * box.width, y: box.top + y * box.height };
   });
 
-async function drag(page, from, to) {
+export async function drag(page, from, to) {
   await page.mouse.move(from.x, from.y);
   await page.waitForTimeout(150);
   await page.mouse.down();

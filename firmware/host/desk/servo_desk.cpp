@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/desk/servo_desk.hpp"
 
-#include <fmt/format.h>
-
 #include <optional>
 #include <utility>
 
@@ -41,11 +39,7 @@ void ServoDesk::Note(const hal::TickRecord& record) {
   hold_reason_ = record.hold_reason;
   fault_ = record.fault;
   if (const std::optional<std::size_t> parameter = tuner_.Note(record.tuning)) {
-    const live::Parameter& changed = tuner_.parameters()[*parameter];
-    reports_.parameter(*parameter, changed.value);
-    reports_.touch("parameter", tuner_.notice().empty()
-                                    ? fmt::format("{} = {:g} {}", changed.name, changed.value, changed.unit)
-                                    : tuner_.notice());
+    reports_.parameter(*parameter, tuner_.parameters()[*parameter].value);
   }
 }
 

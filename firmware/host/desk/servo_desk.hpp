@@ -19,7 +19,8 @@ namespace fovea::desk {
 
 // What a desk tells its program.
 struct DeskReports {
-  // A request acts now: its name, and a sentence for a person. For the log.
+  // A request acts now: its name, and a sentence for a person. For the log. Not for parameters: the tick has
+  // their changes.
   std::function<void(const std::string& what, const std::string& text)> touch;
   // The servo has answered a request for a parameter: its value is this now. For the server.
   std::function<void(std::size_t parameter, double value)> parameter;

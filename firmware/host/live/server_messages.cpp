@@ -207,6 +207,7 @@ std::string StateJson(const State& state, const Catalogue& catalogue) {
                          {"faults", FaultsJson(state, catalogue)},
                          {"target", nullptr},
                          {"pull", nullptr},
+                         {"tick_us", nullptr},
                          {"notice", state.notice}};
   if (state.target) {
     object["target"] = {
@@ -214,6 +215,10 @@ std::string StateJson(const State& state, const Catalogue& catalogue) {
   }
   if (state.pull) {
     object["pull"] = {{"link", state.pull->link}, {"to_B", state.pull->to_B}};
+  }
+  if (state.tick) {
+    object["tick_us"] = {{"median", 1e-3 * static_cast<double>(state.tick->median_ns)},
+                         {"max", 1e-3 * static_cast<double>(state.tick->max_ns)}};
   }
   std::string text = Dump(object);
   text.pop_back();

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,13 @@ struct PullState {
   bool operator==(const PullState&) const = default;
 };
 
+struct TickTimesState {
+  std::int64_t median_ns = 0;
+  std::int64_t max_ns = 0;
+
+  bool operator==(const TickTimesState&) const = default;
+};
+
 struct State {
   double stamp_s = 0.0;  // time of the run, from its start
   double wall_s = 0.0;   // the same by the wall clock
@@ -48,7 +56,8 @@ struct State {
   std::vector<FaultState> faults;
   std::optional<TargetState> target;
   std::optional<PullState> pull;
-  std::string notice;  // one sentence for all viewers; "" where there is none
+  std::optional<TickTimesState> tick;  // durations of the servo's ticks since the last state
+  std::string notice;                  // one sentence for all viewers; "" where there is none
 
   bool operator==(const State&) const = default;
 };

@@ -245,6 +245,10 @@ std::string ToJson(const RunData& run) {
   for (const TuningEvent& tuning : run.tunings) {
     json["tunings"].push_back({{"t_s", tuning.t_s}, {"taken", tuning.taken}, {"words", tuning.words}});
   }
+  json["touches"] = ordered_json::array();
+  for (const TouchEvent& touch : run.touches) {
+    json["touches"].push_back({{"t_s", touch.t_s}, {"words", touch.words}});
+  }
   json["limits_active"] = ordered_json::array();
   for (const LimitSpans& limit : run.limits_active) {
     json["limits_active"].push_back({{"name", limit.name}, {"spans", limit.spans_s}});

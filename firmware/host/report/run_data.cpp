@@ -72,6 +72,9 @@ class Reader {
       const auto calibration = Parse<foxglove::CameraCalibration>(message);
       run_.width_px = static_cast<int>(calibration.width());
       run_.height_px = static_cast<int>(calibration.height());
+    } else if (topic == log::kOperatorTopic) {
+      const auto touch = Parse<log::Touch>(message);
+      run_.touches.push_back({Seconds(touch.stamp_ns()), touch.text()});
     } else if (topic == log::kTickTimesTopic) {
       TakeTickTimes(Parse<log::TickTimes>(message));
     } else if (topic == log::kSceneTopic) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/targets/linux/hw_live.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -10,13 +13,19 @@
 namespace fovea::hw {
 namespace {
 
-live::Catalogue OfferOf(const std::string& name, const config::ServoConfig& servo, bool has_camera,
-                        bool control) {
+constexpr const char* kSpeedScale = "robot.speed_scale";
+constexpr double kLeastSpeedScale = 0.01;
+
+live::Catalogue OfferOf(const std::string& name, std::vector<live::Parameter> parameters, double speed_scale,
+                        bool has_camera, bool control) {
   using live::Service;
   live::Catalogue offer;
   offer.name = name;
   offer.channels = live::LogChannels({.camera = has_camera});
-  offer.parameters = desk::Tuner(servo).parameters();
+  offer.parameters = std::move(parameters);
+  offer.parameters.push_back(
+      {kSpeedScale, "", "scales servo.lambda and servo.lambda_near of the configuration; the limits stay",
+       std::min(kLeastSpeedScale, speed_scale), speed_scale, speed_scale, speed_scale});
   offer.tune = control;
   offer.services = {Service::kHold, Service::kEnd};
   if (control) {
@@ -29,9 +38,9 @@ live::Catalogue OfferOf(const std::string& name, const config::ServoConfig& serv
 }  // namespace
 
 HwLive::HwLive(HwLiveOptions options, const std::string& name, const config::ServoConfig& servo,
-               bool has_camera)
-    : servo_(servo) {
-  const live::Catalogue offer = OfferOf(name, servo, has_camera, options.control);
+               bool has_camera, double speed_scale)
+    : servo_(servo), speed_scale_(speed_scale), parameters_(desk::Tuner(servo).parameters()) {
+  const live::Catalogue offer = OfferOf(name, parameters_, speed_scale, has_camera, options.control);
   server_ = std::make_unique<live::Server>(std::move(options.server), offer);
   feed_ = std::make_unique<live::LiveFeed>(*server_, offer.channels);
 }
@@ -61,6 +70,9 @@ void HwLive::Attend() {
   state.stamp_s = static_cast<double>(now_ns_ - begin_ns_) * 1e-9;
   if (desk_) {
     desk_->Fill(state);
+  }
+  if (const auto ticks = parts_ ? parts_->shell.NewTickDurations() : std::nullopt) {
+    state.tick = {ticks->median_ns, ticks->max_ns};
   }
   state.ends = parts_ && parts_->control.ended;
   server_->SetState(state);
@@ -106,7 +118,25 @@ live::Answer HwLive::Take(const live::End& /*request*/) {
   return Say(Word::kEnd);
 }
 
-live::Answer HwLive::Take(const live::SetParameter& request) { return desk_->Take(request); }
+live::Answer HwLive::Take(const live::SetParameter& request) {
+  if (request.parameter == parameters_.size()) {
+    SetSpeedScale(request.value);
+    return {};
+  }
+  return desk_->Take(request);
+}
+
+// The gains that robot.speed_scale scales at the start. The tick's record has their changes.
+void HwLive::SetSpeedScale(double scale) {
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const live::Parameter& gain = parameters_[i];
+    if (gain.name == "servo.lambda" || gain.name == "servo.lambda_near") {
+      static_cast<void>(desk_->Take(live::SetParameter{i, gain.value * scale / speed_scale_}));
+    }
+  }
+  server_->SetParameter(parameters_.size(), scale);
+  Touch("speed", fmt::format("{} = {:g}", kSpeedScale, scale));
+}
 
 live::Answer HwLive::Say(Word word) {
   parts_->heard({parts_->clock.NowNs(), word, {}});

@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "firmware/host/desk/servo_desk.hpp"
 #include "firmware/host/live/live_feed.hpp"
@@ -26,8 +27,10 @@ struct HwLiveOptions {
 
 class HwLive {
  public:
-  // Begins to listen. Throws like live::Server. `name`: of the configuration.
-  HwLive(HwLiveOptions options, const std::string& name, const config::ServoConfig& servo, bool has_camera);
+  // Begins to listen. Throws like live::Server. `name`: of the configuration. `speed_scale`: its
+  // robot.speed_scale, with which `servo` was made; viewers may only lower it.
+  HwLive(HwLiveOptions options, const std::string& name, const config::ServoConfig& servo, bool has_camera,
+         double speed_scale);
 
   [[nodiscard]] std::string url() const { return server_->url(); }
   // For the log of the run, which feeds the page.
@@ -51,6 +54,7 @@ class HwLive {
   [[nodiscard]] live::Answer Take(const live::Recover& request);
   [[nodiscard]] live::Answer Take(const live::End& request);
   [[nodiscard]] live::Answer Take(const live::SetParameter& request);
+  void SetSpeedScale(double scale);
   [[nodiscard]] live::Answer Say(Word word);
   void Touch(const std::string& what, const std::string& text);
 
@@ -63,6 +67,8 @@ class HwLive {
   };
 
   const config::ServoConfig servo_;
+  const double speed_scale_;
+  const std::vector<live::Parameter> parameters_;  // the servo's; robot.speed_scale follows them
   std::unique_ptr<live::Server> server_;
   std::unique_ptr<live::LiveFeed> feed_;
   std::optional<Parts> parts_;

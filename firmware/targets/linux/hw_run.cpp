@@ -42,7 +42,8 @@ class Session {
         watch_(summary_, speaker),
         robot_link_(ArmDriverOf(config).make(config)),
         clock_(robot_link_->robot_time() != nullptr ? *robot_link_->robot_time() : monotonic_),
-        live_(options.live ? std::make_unique<HwLive>(*options.live, config.name, servo_, config.HasCamera())
+        live_(options.live ? std::make_unique<HwLive>(*options.live, config.name, servo_, config.HasCamera(),
+                                                      config.robot.speed_scale)
                            : nullptr),
         shell_(task_, &task_, kRecords,
                FolderOf(config, robot_, servo_, options.out, options.duration_s, options.command,

@@ -135,41 +135,6 @@ TEST_F(ReportTest, ShowsTheRunOfALog) {
   EXPECT_FLOAT_EQ(measured.columns[RunData::kAgeMs][0], 40.0F);
 }
 
-// An operator's change is an event. The values that a slider sends on its way are one event.
-TEST_F(ReportTest, ShowsWhatTheOperatorChanged) {
-  {
-    log::RunLog log(Config(path_));
-    log.Add(log::kSetupTopic, 0, Setup("tuned"));
-    for (int i = 0; i < 1000; ++i) {
-      hal::TickRecord r = Record(i);
-      if (i >= 300 && i <= 400 && i % 20 == 0) {
-        r.tuning = {hal::TuningResult::kTaken, 0, 2.0 + 0.01 * (i - 300), 2.2 + 0.01 * (i - 300)};
-      } else if (i == 410) {
-        r.tuning = {hal::TuningResult::kOutOfRange, 0, 3.2, 40.0};
-      } else if (i == 420 || i == 700) {
-        r.tuning = {hal::TuningResult::kTaken, 4, 0.6, 0.5};
-      }
-      log.AddTick(r);
-    }
-    log.Finish();
-  }
-  json events = json::parse(ToJson(ReadRun(folder_)))["tunings"];
-  std::vector<int> times_ms;
-  for (json& event : events) {
-    times_ms.push_back(static_cast<int>(std::lround(1e3 * event["t_s"].get<double>())));
-    event.erase("t_s");
-  }
-  EXPECT_EQ(times_ms, (std::vector<int>{300, 410, 420, 700}));
-  const json expected = json::array(
-      {{{"taken", true}, {"words", "servo.lambda 2 -> 3.2 1/s, by the operator"}},
-       {{"taken", false},
-        {"words",
-         "servo.lambda 3.2 -> 40 1/s, by the operator, refused: the value is outside the key's range"}},
-       {{"taken", true}, {"words", "servo.posture_gain 0.6 -> 0.5 1/s, by the operator"}},
-       {{"taken", true}, {"words", "servo.posture_gain 0.6 -> 0.5 1/s, by the operator"}}});
-  EXPECT_EQ(events, expected);
-}
-
 // Errors of a flat target are in the same pixels as the truth, for every form of s.
 TEST_F(ReportTest, ShowsFlatTargetErrorsInPixels) {
   const double c = std::cos(0.1);

@@ -122,7 +122,7 @@ TEST(OperatorDesk, TheControllersEndReleasesTargetAndArm) {
 TEST(OperatorDesk, EachFaultStartsAndStops) {
   const std::size_t faults = OperatorDesk::Offer(OperatedBench().about).faults.size();
   for (std::size_t i = 0; i < faults; ++i) {
-    OperatedBench bench;
+    OperatedBench bench("ball", {"camera.rate_hz=5"});
     const live::FaultKind kind = OperatorDesk::Offer(bench.about).faults[i];
     bench.RunUntil(0.5);
     std::map<std::string, double> sizes;

@@ -41,8 +41,12 @@ Fovea.decode = function (run) {
   if (run.theory) for (const key of ["t_s", "x", "goal", "analytic"]) run.theory[key] = Fovea.floats(run.theory[key]);
   if (run.feature_path)
     for (const key of ["goal_px", "t_s", "px"]) run.feature_path[key] = Fovea.floats(run.feature_path[key]);
-  for (const key of ["modes", "faults", "tunings", "limits_active", "joints", "error_components", "lost", "not_found"])
+  for (const key of ["modes", "faults", "limits_active", "joints", "error_components", "lost", "not_found"])
     run[key] = list(run[key]);
+  run.operator = [
+    ...list(run.tunings).map((t) => ({ kind: t.taken ? "tuned" : "mark", t_s: t.t_s, words: t.words })),
+    ...list(run.touches).map((t) => ({ kind: "tuned", t_s: t.t_s, words: t.words })),
+  ].sort((a, b) => a.t_s - b.t_s);
   run.info = run.info || {};
   run.has_eye = !!run.target;
   run.target = run.target || {};

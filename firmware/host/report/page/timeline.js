@@ -80,7 +80,7 @@ Fovea.timeline = (function () {
     const events = run.modes
       .map((m) => [m.t_s, "mode", modeSay(m)])
       .concat(run.faults.map((f) => [f.t_s, "fault", [words(f.name), f.key, f.detail].filter(Boolean).join(", ")]))
-      .concat(run.tunings.map((t) => [t.t_s, "change", t.words]))
+      .concat(run.operator.map((o) => [o.t_s, "operator", o.words]))
       .concat(Fovea.bands.injectedOf(run).map((f) => [f.from, "injected", `${f.name}, until ${f.to.toFixed(3)} s`]))
       .sort((a, b) => a[0] - b[0]);
     if (!events.length) return null;

@@ -70,15 +70,9 @@ Fovea.timelineRows = (function () {
         say: `fault: ${words(f.name)}${f.key ? `, setting ${f.key}` : ""}${f.detail ? `, ${f.detail}` : ""}`,
       }));
     add("faults", faults, { marks: true });
-    const tunings = (run) =>
-      run.tunings.map((t) => ({
-        from: t.t_s,
-        to: t.t_s,
-        kind: t.taken ? "tuned" : "mark",
-        label: t.words,
-        say: t.words,
-      }));
-    if (runs.some((run) => run.tunings.length)) add("changes by the operator", tunings, { marks: true });
+    const operator = (run) =>
+      run.operator.map((o) => ({ from: o.t_s, to: o.t_s, kind: o.kind, label: o.words, say: o.words }));
+    if (runs.some((run) => run.operator.length)) add("what the operator did", operator, { marks: true });
     for (const run of runs.filter((run) => run.has_eye))
       rows.push(
         { name: "frames lost" + suffix(run), spans: spansOfLost(run), empty: "none" },
@@ -116,8 +110,8 @@ Fovea.timelineRows = (function () {
       for (const f of run.faults)
         if (Math.abs(f.t_s - t) < (clock.span[1] - clock.span[0]) / 80)
           parts.push(`fault: ${words(f.name)}${f.detail ? `, ${f.detail}` : ""}`);
-      for (const tuning of run.tunings)
-        if (Math.abs(tuning.t_s - t) < (clock.span[1] - clock.span[0]) / 80) parts.push(tuning.words);
+      for (const did of run.operator)
+        if (Math.abs(did.t_s - t) < (clock.span[1] - clock.span[0]) / 80) parts.push(did.words);
       return (runs.length > 1 ? `Run ${run.letter}: ` : "") + parts.join("; ");
     });
   }
