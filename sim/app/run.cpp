@@ -172,7 +172,9 @@ class Run {
     }
 
     const FaultSettings& faults = about_.scenario.faults;
-    world_ = std::make_unique<World>(MakeWorldConfig(about_.scenario, about_.scene.robot));
+    WorldConfig world = MakeWorldConfig(about_.scenario, about_.scene.robot);
+    world.physics.may_be_loaded = options_.live != nullptr;  // a viewer may hang a load at the hand
+    world_ = std::make_unique<World>(world);
     world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
     world_->OnExposure([this](const Exposure& exposure) {
       if (!HasEye() || vision_.Expose(exposure)) {

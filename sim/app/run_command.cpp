@@ -2,13 +2,12 @@
 #include "sim/app/run_command.hpp"
 
 #include <fmt/format.h>
-#include <spawn.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <csignal>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "firmware/host/config/input_error.hpp"
@@ -16,6 +15,7 @@
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/config/share_folder.hpp"
 #include "fovea/linux_rt/interrupt.hpp"
+#include "sim/app/opened_page.hpp"
 #include "sim/app/run.hpp"
 #include "sim/operator/live_page.hpp"
 #include "sim/scenario/run_description.hpp"
@@ -125,17 +125,6 @@ void CheckLive(const RunArguments& arguments) {
   }
 }
 
-// Shows the page in the user's browser, if there is one.
-void OpenInBrowser(const std::string& url) {
-  std::string program = "xdg-open";
-  std::string address = url;
-  std::array<char*, 3> command{program.data(), address.data(), nullptr};
-  pid_t child = 0;
-  if (posix_spawnp(&child, program.c_str(), nullptr, nullptr, command.data(), environ) != 0) {
-    config::PrintError("fovea-sim", "xdg-open is not installed; open the address by hand");
-  }
-}
-
 // Runs the scenario until its operator ends it. Each reset begins a new run, with its own folder.
 int RunLive(const Scenario& scenario, RunOptions options, const RunArguments& arguments) {
   CheckLive(arguments);
@@ -145,21 +134,23 @@ int RunLive(const Scenario& scenario, RunOptions options, const RunArguments& ar
   config.allowed_origins = arguments.page.origins;
   LivePage page(std::move(config), DescribeRun(scenario));
   fmt::print(stderr, "live at {}\n", page.server().url());
+  std::optional<OpenedPage> opened;
   if (arguments.page.open) {
-    OpenInBrowser(page.server().url());
+    opened.emplace(page.server().url());
   }
   options.live = &page;
   options.show_progress = false;
   const std::string first_out = options.out.string();
   int run = 1;
-  Summary summary;
+  std::uint64_t violations = 0;  // of all runs
   do {
     options.out = run == 1 ? first_out : fmt::format("{}-{}", first_out, run);
-    summary = RunScenario(scenario, options);
+    const Summary summary = RunScenario(scenario, options);
+    violations += summary.limit_violations;
     PrintResult(summary, options, arguments.json);
     ++run;
   } while (page.resets() && !options.interrupt->Came());
-  return summary.limit_violations == 0 ? config::kDone : config::kGoalMissed;
+  return violations == 0 ? config::kDone : config::kGoalMissed;
 }
 
 }  // namespace

@@ -26,6 +26,9 @@ int ServeCommand(const ServeArguments& arguments) {
   for (const std::string& wall : arguments.walls) {
     options.walls.push_back(ParseWall(wall));
   }
+  if (arguments.live) {
+    options.live = arguments.page;
+  }
   const Scenario scenario = LoadScenario(arguments.scenario, assignments);
   std::signal(SIGPIPE, SIG_IGN);
   linux_rt::Speaker speaker(STDERR_FILENO);
@@ -47,6 +50,33 @@ int ServeCommand(const ServeArguments& arguments) {
   }
   return config::kDone;
 }
+
+namespace {
+
+void AddLive(CLI::App& serve, ServeArguments& arguments) {
+  CLI::Option* const live = serve.add_flag(
+      "--live", arguments.live,
+      "show the bench in a browser, where the target, the arm and faults can be changed; the page may also "
+      "end the serving");
+  serve.add_option("--live-port", arguments.page.port, "with --live: port of the page; 0: any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str()
+      ->needs(live);
+  serve
+      .add_option("--live-address", arguments.page.address,
+                  "with --live: address to listen at; every computer that reaches it and knows the printed "
+                  "token has control")
+      ->capture_default_str()
+      ->needs(live);
+  serve
+      .add_option("--live-origin", arguments.page.allowed_origins,
+                  "with --live: origin of a web page that may connect too, e.g. https://app.foxglove.dev")
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->needs(live);
+}
+
+}  // namespace
 
 void AddServe(CLI::App& serve, ServeArguments& arguments) {
   FciServerConfig& server = arguments.options.server;
@@ -99,6 +129,7 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
   serve.add_option("--jitter-ms", server.faults.jitter_ms, "largest additional random delay [ms]")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
+  AddLive(serve, arguments);
   serve.add_option("--out", arguments.options.out, "folder for summary.json; without it, write no file");
   serve.add_flag("--json", arguments.json, "print summary.json at the end");
   serve.footer(
@@ -108,7 +139,8 @@ void AddServe(CLI::App& serve, ServeArguments& arguments) {
       "Examples:\n"
       "  fovea-sim serve ball --fci-port 1337\n"
       "  fovea-sim serve ball --pace lockstep --loss 0.05 --jitter-ms 2 --late-ms 3\n"
-      "  fovea-sim serve ball --wall 0.1,0.2,0,0.6,0.5,0.8");
+      "  fovea-sim serve ball --wall 0.1,0.2,0,0.6,0.5,0.8\n"
+      "  fovea-sim serve ball --live");
 }
 
 }  // namespace fovea::sim

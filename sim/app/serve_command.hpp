@@ -20,6 +20,8 @@ struct ServeArguments {
   std::string pace = "real";
   bool json = false;
   std::vector<std::string> walls;
+  bool live = false;
+  live::ServerConfig page;  // used with `live`
   ServeOptions options;
 };
 

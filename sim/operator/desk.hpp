@@ -4,10 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "firmware/core/task/servo_loop.hpp"
 #include "firmware/host/desk/servo_desk.hpp"
@@ -18,9 +14,8 @@
 #include "fovea/hal/record.hpp"
 #include "sim/faults/faulty_arm.hpp"
 #include "sim/faults/stalling_clock.hpp"
-#include "sim/operator/arm_spring.hpp"
-#include "sim/operator/fault_panel.hpp"
-#include "sim/operator/target_hand.hpp"
+#include "sim/operator/bench_hands.hpp"
+#include "sim/operator/fault_desk.hpp"
 #include "sim/run/sim_vision.hpp"
 #include "sim/scenario/run_description.hpp"
 #include "sim/world/world.hpp"
@@ -52,7 +47,8 @@ class OperatorDesk {
   // Carries out a call. An answer with an error changes nothing.
   live::Answer Do(const live::Call& call);
   // Call before each step of the world: places the target and pulls the arm for its present time.
-  void Act();
+  void Act() { hands_.Act(); }
+  [[nodiscard]] const std::vector<live::Parameter>& parameters() const { return servo_.tuner().parameters(); }
   // Call with each record of the servo.
   void Note(const hal::TickRecord& record);
 
@@ -64,7 +60,11 @@ class OperatorDesk {
  private:
   template <class Request>
   [[nodiscard]] live::Answer Take(const Request& request) {
-    return servo_.Take(request);
+    if constexpr (HandRequest<Request>) {
+      return hands_.Take(request);
+    } else {
+      return servo_.Take(request);
+    }
   }
   [[nodiscard]] live::Answer Take(const live::Pause& request);
   [[nodiscard]] live::Answer Take(const live::Step& request);
@@ -74,25 +74,14 @@ class OperatorDesk {
   [[nodiscard]] live::Answer Take(const live::End& request);
   [[nodiscard]] live::Answer Take(const live::StartFault& request);
   [[nodiscard]] live::Answer Take(const live::StopFault& request);
-  [[nodiscard]] live::Answer Take(const live::Pull& request);
-  [[nodiscard]] live::Answer Take(const live::Release& request);
-  [[nodiscard]] live::Answer Take(const live::Throw& request);
-  [[nodiscard]] live::Answer Take(const live::HoldTarget& request);
-  [[nodiscard]] live::Answer Take(const live::ReleaseTarget& request);
-  [[nodiscard]] live::Answer Take(const live::ControlEnded& request);
 
   [[nodiscard]] double now_s() const { return static_cast<double>(parts_.world.now_ns()) * 1e-9; }
-  [[nodiscard]] Eigen::Isometry3d TargetPose() const;
-  [[nodiscard]] bool HasTarget() const { return parts_.about.scene.has_eye; }
   void PassFaults();
-  void LetArmGo();
-  void LetTargetGo();
 
   const DeskParts parts_;
   desk::WallPace pace_;
-  TargetHand hand_;
-  std::optional<ArmSpring> spring_;
-  FaultPanel faults_;
+  BenchHands hands_;
+  FaultDesk faults_;
   desk::ServoDesk servo_;
   LiveEnd end_ = LiveEnd::kNone;
 };

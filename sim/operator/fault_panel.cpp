@@ -25,6 +25,7 @@ struct BoundSize {
 struct BoundSwitch {
   FaultField field;
   TimeWindow* window;
+  bool is_served;
   std::vector<BoundSize> sizes;
 };
 
@@ -33,8 +34,8 @@ class SwitchCollector {
  public:
   explicit SwitchCollector(int num_joints) : num_joints_(num_joints) {}
 
-  void Window(const FaultField& field, TimeWindow& window, const char* /*not_served*/ = nullptr) {
-    all.push_back({field, &window, {}});
+  void Window(const FaultField& field, TimeWindow& window, const char* not_served = nullptr) {
+    all.push_back({field, &window, not_served == nullptr, {}});
   }
   void Number(const FaultField& field, double& value, double min, double max) {
     Add(field, field.key, min, max, false, value, [&value](double number) { value = number; });
@@ -96,10 +97,12 @@ class SwitchCollector {
 };
 
 // The switches of `faults`, which must outlive them. "nothing" is no fault to switch on.
-std::vector<BoundSwitch> SwitchesOf(FaultSettings& faults, int num_joints) {
+std::vector<BoundSwitch> SwitchesOf(FaultSettings& faults, int num_joints, FaultChoice choice) {
   SwitchCollector switches(num_joints);
   Fields(switches, faults);
-  std::erase_if(switches.all, [&](const BoundSwitch& fault) { return fault.window == &faults.nothing; });
+  std::erase_if(switches.all, [&](const BoundSwitch& fault) {
+    return fault.window == &faults.nothing || (choice == FaultChoice::kServed && !fault.is_served);
+  });
   return std::move(switches.all);
 }
 
@@ -133,7 +136,7 @@ void SetSize(BoundSwitch& fault, const std::string& name, double value) {
 std::vector<FaultSwitch> FaultPanel::Switches(double now_s) const {
   FaultSettings faults = faults_;
   std::vector<FaultSwitch> switches;
-  for (const BoundSwitch& fault : SwitchesOf(faults, num_joints_)) {
+  for (const BoundSwitch& fault : SwitchesOf(faults, num_joints_, choice_)) {
     FaultSwitch shown{fault.field.key, fault.field.meaning, false, {}};
     shown.active = now_s >= fault.window->start_s && now_s < fault.window->end_s;
     for (const BoundSize& bound : fault.sizes) {
@@ -146,7 +149,7 @@ std::vector<FaultSwitch> FaultPanel::Switches(double now_s) const {
 
 void FaultPanel::Start(const std::string& name, const std::map<std::string, double>& sizes, double now_s) {
   FaultSettings changed = faults_;
-  std::vector<BoundSwitch> all = SwitchesOf(changed, num_joints_);
+  std::vector<BoundSwitch> all = SwitchesOf(changed, num_joints_, choice_);
   BoundSwitch& fault = Find(all, name);
   for (const auto& [size, value] : sizes) {
     SetSize(fault, size, value);
@@ -161,7 +164,7 @@ void FaultPanel::Start(const std::string& name, const std::map<std::string, doub
 }
 
 void FaultPanel::Stop(const std::string& name, double now_s) {
-  std::vector<BoundSwitch> all = SwitchesOf(faults_, num_joints_);
+  std::vector<BoundSwitch> all = SwitchesOf(faults_, num_joints_, choice_);
   TimeWindow& window = *Find(all, name).window;
   window.end_s = std::min(window.end_s, std::max(now_s, window.start_s));
 }

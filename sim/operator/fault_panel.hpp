@@ -28,11 +28,15 @@ struct FaultSwitch {
   std::vector<FaultSize> sizes;
 };
 
+// Which faults a panel has: all, or those that `serve` accepts (see CheckServedFaults).
+enum class FaultChoice { kAll, kServed };
+
 class FaultPanel {
  public:
-  FaultPanel(const FaultSettings& faults, int num_joints) : faults_(faults), num_joints_(num_joints) {}
+  FaultPanel(const FaultSettings& faults, int num_joints, FaultChoice choice = FaultChoice::kAll)
+      : faults_(faults), num_joints_(num_joints), choice_(choice) {}
 
-  // All faults as they are at `now_s`, in the order of their keys; not "nothing".
+  // The faults as they are at `now_s`, in the order of their keys; not "nothing".
   [[nodiscard]] std::vector<FaultSwitch> Switches(double now_s) const;
 
   // Fault `name` acts from `now_s` on until Stop, with the `sizes` [by FaultSize::name]; the others stay as
@@ -47,6 +51,7 @@ class FaultPanel {
  private:
   FaultSettings faults_;
   int num_joints_;
+  FaultChoice choice_;
 };
 
 }  // namespace fovea::sim

@@ -43,6 +43,14 @@ void LiveSession::Begin(DeskParts parts) {
     page_.server().SetParameter(parameter, value);
   };
   desk_.emplace(parts, speed_);
+  // Viewers may still know another run: its keys, and requests that came after its end.
+  const std::vector<live::Parameter>& parameters = desk_->parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    page_.server().SetParameter(i, parameters[i].value);
+  }
+  page_.server().TakeCalls([](const live::Call&) -> live::Answer {
+    return {"the run has begun anew", "{}"};
+  });
 }
 
 void LiveSession::Record(const std::string& what, const std::string& text) {
@@ -89,6 +97,9 @@ void LiveSession::ShowState(std::int64_t wall_ns) {
   state.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   if (const auto ticks = shell_.NewTickDurations()) {
     state.tick = {ticks->median_ns, ticks->max_ns};
+  }
+  if (shell_.book()->log().failed()) {
+    state.notice = "The log cannot be written, e.g. because the disk is full: it ends here.";
   }
   page_.server().SetState(state);
 }

@@ -130,6 +130,9 @@ Eigen::VectorXd World::Pulls() const {
   if (pulled_.size() > 0) {
     tau += pulled_;
   }
+  if (sprung_.size() > 0) {
+    tau += sprung_;
+  }
   return tau;
 }
 

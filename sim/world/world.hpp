@@ -87,6 +87,8 @@ class World {
 
   // Applies lasting external torques `tau` [num_dofs; Nm, N] to the joints, in addition to WorldConfig's.
   void PullAt(const Eigen::VectorXd& tau) { pulled_ = tau; }
+  // The same for an operator's spring, which acts beside PullAt.
+  void PullBySpring(const Eigen::VectorXd& tau) { sprung_ = tau; }
   // Changes the faults from now on. A load needs BulletArmOptions::may_be_loaded.
   void SetFaults(const BenchFaults& faults) { static_cast<BenchFaults&>(config_) = faults; }
   // From the next step on, the target is at `X_BO` instead of where the scenario moves it.
@@ -130,6 +132,7 @@ class World {
   std::uint64_t next_frame_ = 0;
   hal::ArmCommand command_;
   Eigen::VectorXd pulled_;  // torques of PullAt; empty: none
+  Eigen::VectorXd sprung_;  // torques of PullBySpring; empty: none
   hal::ArmState measured_;
   Truth truth_;
   std::function<void(const Truth&)> on_step_;

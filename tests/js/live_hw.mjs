@@ -130,6 +130,12 @@ async function checkControl(port) {
   assert.match(refusal, /robot\.speed_scale must be a number from 0\.01 to 0\.8/);
   await viewer.set("robot.speed_scale", 0.4);
   await viewer.valueOf("robot.speed_scale", 0.4);
+  const above = await viewer.set("servo.lambda", 1.4);
+  assert.match(above.refusal, /servo\.lambda = 1\.4 is not allowed: at robot\.speed_scale = 0\.4 at most/);
+  await viewer.set("servo.lambda", 0.1);
+  await viewer.valueOf("servo.lambda", 0.1);
+  await viewer.set("robot.speed_scale", 0.3);
+  await viewer.valueOf("robot.speed_scale", 0.3);
   await new Promise((resolve) => setTimeout(resolve, 500));
   await viewer.call("/run/end", {});
   assert.equal(await run.program.exited, 0);
@@ -146,7 +152,9 @@ async function checkControl(port) {
   const asked = tunings.map(({ asked }) => asked);
   console.log(`control: lambda ${configured[0]} at a speed scale of 0.8; asked ${asked.join(", ")}`);
   assert.equal(asked[0], 1.5);
-  assert.ok(Math.abs(asked[1] - configured[0] / 2) < 1e-9, "half the speed scale is half the gain");
+  assert.ok(Math.abs(asked[1] - configured[0] / 2) < 1e-9, "half the speed scale is at most half the gain");
+  assert.equal(asked[2], 0.1, "a smaller gain stays");
+  assert.equal(asked.length, 3);
 }
 
 try {

@@ -53,6 +53,32 @@ class DeafRecorder final : public hal::Recorder {
   void Record(const hal::TickRecord& /*record*/) noexcept override {}
 };
 
+// A Hold from one person is not lost when another asks to track before the next tick.
+TEST(ServoLoopAsks, AHoldThatNoTickHasTakenStays) {
+  CountingStep step;
+  test::FakeArm arm(7);
+  test::FakeClock clock;
+  hal::FeatureMailbox mailbox;
+  DeafRecorder recorder;
+  test::NoProbe probe;
+  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
+  const auto tick = [&] { EXPECT_TRUE(loop.Run(clock.now_ns + hal::kTickPeriodNs).ok()); };
+  loop.Ask(Request::kTrack);
+  loop.Ask(Request::kHold);
+  loop.Ask(Request::kNone);
+  loop.Ask(Request::kTrack);
+  tick();
+  EXPECT_EQ(step.last, Request::kHold);
+  EXPECT_EQ(step.tracks, 0);
+  loop.Ask(Request::kTrack);
+  tick();
+  EXPECT_EQ(step.tracks, 1) << "after that tick a request counts again";
+  loop.Ask(Request::kHold);
+  loop.Ask(Request::kReset);
+  tick();
+  EXPECT_EQ(step.others, 1) << "the reset";
+}
+
 TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
   constexpr int kAsks = 1000;
   constexpr int kPiece = 1000;  // ticks

@@ -60,9 +60,16 @@ class ServoLoop {
   }
   // Before Run: sets the source of commanded motions. Without it there are none.
   void UseMotion(moves::MotionSource& motion) noexcept { motion_ = &motion; }
-  // From any thread: passed to the task in the next tick; the last request before that tick wins. A request
-  // after GiveLeave is handled with that permission.
-  void Ask(Request request) noexcept { request_.store(request, std::memory_order_release); }
+  // From any thread: passed to the task in the next tick; the last request before that tick wins, but a Hold
+  // that no tick has taken stays: only a reset, which leads to Hold too, replaces it. A request after
+  // GiveLeave is handled with that permission.
+  void Ask(Request request) noexcept {
+    Request waiting = request_.load(std::memory_order_relaxed);
+    while ((waiting != Request::kHold || request == Request::kReset) &&
+           !request_.compare_exchange_weak(waiting, request, std::memory_order_release,
+                                           std::memory_order_relaxed)) {
+    }
+  }
   void Ask(config::MotionLawKind law) noexcept {
     law_.store(static_cast<int>(law), std::memory_order_relaxed);
   }

@@ -87,6 +87,7 @@ struct Catalogue {
   bool tune = false;  // viewers may set parameters
   std::vector<FaultKind> faults;
   std::vector<Service> services;  // that the program allows
+  bool anyone_may_end = false;    // /run/end is a stop: it needs no control
   bool target = false;            // viewers may move the target: /target/pose and /target/release
 };
 

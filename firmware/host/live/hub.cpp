@@ -21,6 +21,7 @@ constexpr double kStatusesBurst = 20.0;
 // Without what changes all the time.
 State Events(State state) {
   state.stamp_s = state.wall_s = state.real_time_factor = 0.0;
+  state.tick.reset();
   if (state.target) {
     state.target = TargetState{{}, {}, state.target->held};
   }
@@ -156,7 +157,12 @@ void Hub::SendHeld(Clock::time_point now) {
 
 void Hub::SetState(const State& state) {
   const bool has_event = !has_state_ || Events(state) != Events(state_);
+  const std::optional<TickTimesState> unsent = state_.tick;
   state_ = state;
+  if (unsent) {  // the longest tick reaches the viewers, although not every state does
+    state_.tick = state.tick ? state.tick : unsent;
+    state_.tick->max_ns = std::max(state_.tick->max_ns, unsent->max_ns);
+  }
   has_state_ = true;
   if (has_event) {
     SendStates();
@@ -168,12 +174,14 @@ void Hub::SendStates() {
   if (!has_state_ || !IsWanted(StateChannel())) {
     return;
   }
+  const std::string common = StateJson(state_, catalogue_);
   for (auto& [number, viewer] : viewers_) {
-    SendState(viewer);
+    SendState(viewer, common);
   }
+  state_.tick.reset();
 }
 
-void Hub::SendState(Viewer& viewer) {
+void Hub::SendState(Viewer& viewer, const std::string& common) {
   const auto subscription =
       std::find_if(viewer.subscriptions.begin(), viewer.subscriptions.end(),
                    [this](const Subscription& s) { return s.channel == StateChannel(); });
@@ -182,7 +190,7 @@ void Hub::SendState(Viewer& viewer) {
   }
   const ViewerState end{control_.name(), control_.Has(viewer.number), viewers_.size(),
                         viewer.outbox.dropped_pictures(), viewer.outbox.dropped_plots()};
-  const auto payload = std::make_shared<const std::string>(StateJson(state_, catalogue_) + StateJsonEnd(end));
+  const auto payload = std::make_shared<const std::string>(common + StateJsonEnd(end));
   Deliver(viewer, *subscription, {now_ns_, payload});
 }
 

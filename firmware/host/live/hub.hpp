@@ -133,7 +133,7 @@ class Hub {
   [[nodiscard]] std::size_t IndexOfParameter(const std::string& name) const;  // size() when there is none
   [[nodiscard]] std::vector<const Parameter*> Values(const std::vector<std::size_t>& parameters) const;
   void FinishParameter(std::uint64_t group);
-  void SendState(Viewer& viewer);
+  void SendState(Viewer& viewer, const std::string& common);
   void SendStates();
   void SendParameters();
   void SendHeld(Clock::time_point now);

@@ -67,7 +67,7 @@ void Hub::Handle(Viewer& viewer, const Subscribe& message) {
     viewer.subscriptions.push_back(subscription);
     ++subscribers_[subscription.channel];
     if (subscription.channel == StateChannel()) {
-      SendState(viewer);
+      SendState(viewer, StateJson(state_, catalogue_));
     } else if (const Message& last = channels_[subscription.channel].latched; last.payload) {
       Deliver(viewer, subscription, last);
     }
@@ -216,7 +216,7 @@ void Hub::CallService(Viewer& viewer, Service service, const ServiceCall& messag
     return;
   }
   Request request = ReadRequest(service, message.payload, catalogue_);
-  if (NeedsControl(service)) {
+  if (NeedsControl(service, catalogue_)) {
     RequireControl(viewer);
   }
   Forward(viewer, {ReturnAddress::Kind::kService, viewer.number, message.service, message.call, 0},

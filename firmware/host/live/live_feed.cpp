@@ -33,23 +33,28 @@ std::vector<Channel> LogChannels(const LogContents& contents) {
   constexpr bool kLatched = true;
   const Weight plot = Weight::kPlot;
   const Weight essential = Weight::kEssential;
-  std::vector<Channel> channels{
-      MessageChannel(log::kTickTopic, *log::Tick::descriptor(), plot, false, kPlotHz),
-      MessageChannel(log::kFeatureTopic, *log::Feature::descriptor(), plot),
-      MessageChannel(log::kEventTopic, *foxglove::Log::descriptor()),
-      MessageChannel(log::kOperatorTopic, *log::Touch::descriptor()),
-      MessageChannel(log::kSetupTopic, *log::Setup::descriptor(), essential, kLatched),
-      MessageChannel(log::kTransformTopic, *foxglove::FrameTransforms::descriptor(), plot),
-      MessageChannel(log::kSceneTopic, *foxglove::SceneUpdate::descriptor(), essential, kLatched)};
-  if (contents.configuration) {
+  std::vector<Channel> channels;
+  if (contents.servo) {
+    channels = {MessageChannel(log::kTickTopic, *log::Tick::descriptor(), plot, false, kPlotHz),
+                MessageChannel(log::kFeatureTopic, *log::Feature::descriptor(), plot),
+                MessageChannel(log::kEventTopic, *foxglove::Log::descriptor()),
+                MessageChannel(log::kOperatorTopic, *log::Touch::descriptor())};
+  }
+  channels.push_back(MessageChannel(log::kSetupTopic, *log::Setup::descriptor(), essential, kLatched));
+  channels.push_back(MessageChannel(log::kTransformTopic, *foxglove::FrameTransforms::descriptor(), plot));
+  channels.push_back(
+      MessageChannel(log::kSceneTopic, *foxglove::SceneUpdate::descriptor(), essential, kLatched));
+  if (contents.servo && contents.configuration) {
     channels.push_back(MessageChannel(log::kConfigurationTopic, *log::ServoConfiguration::descriptor(),
                                       essential, kLatched));
   }
   if (contents.camera) {
     channels.push_back(
         MessageChannel(log::kImageTopic, *foxglove::CompressedImage::descriptor(), Weight::kPicture));
-    channels.push_back(
-        MessageChannel(log::kAnnotationTopic, *foxglove::ImageAnnotations::descriptor(), plot));
+    if (contents.servo) {
+      channels.push_back(
+          MessageChannel(log::kAnnotationTopic, *foxglove::ImageAnnotations::descriptor(), plot));
+    }
     channels.push_back(MessageChannel(log::kCalibrationTopic, *foxglove::CameraCalibration::descriptor(),
                                       essential, kLatched));
   }
@@ -80,6 +85,11 @@ void LiveFeed::Take(std::string_view topic, const google::protobuf::Descriptor& 
   if (server_.Wants(place->second.channel)) {
     server_.Publish(place->second.channel, time_ns, std::string(bytes));
   }
+}
+
+bool LiveFeed::Wants(std::string_view topic) const {
+  const auto place = places_.find(topic);
+  return place != places_.end() && server_.Wants(place->second.channel);
 }
 
 }  // namespace fovea::live

@@ -30,10 +30,11 @@ Channel MessageChannel(std::string topic, const google::protobuf::Descriptor& ty
 
 // What of a log depends on the kind of run.
 struct LogContents {
+  bool servo = true;          // /servo/..., /operator, and what the servo finds in the pictures
   bool camera = true;         // /camera/image, /camera/annotations, /camera/calibration
   bool truth = false;         // /truth: of a simulator
   bool theory = false;        // /theory: of an arm with an analytic solution
-  bool configuration = true;  // /servo/configuration: of a run that can be replayed
+  bool configuration = true;  // /servo/configuration: of a servo whose run can be replayed
 };
 // The channels of the log of such a run, for Catalogue::channels. A program appends those of its own topics.
 std::vector<Channel> LogChannels(const LogContents& contents);
@@ -48,6 +49,8 @@ class LiveFeed {
   // are left out. The stamps of ticks set the server's time.
   void Take(std::string_view topic, const google::protobuf::Descriptor& type, std::int64_t time_ns,
             std::string_view bytes);
+  // Whether a viewer would get a message of this topic. From any thread; lock-free.
+  [[nodiscard]] bool Wants(std::string_view topic) const;
 
  private:
   struct Place {

@@ -98,7 +98,7 @@ class Server::Network {
         web_(config_.address, config_.port, config_.limits, MakeHandlers()) {
     access_.port = web_.port();
     policy_ = fmt::format(kPagePolicy, "ws://" + AuthorityOf(access_));
-    thread_ = std::thread([this] { web_.Run(); });
+    thread_ = std::thread([this] { Serve(); });
   }
 
   ~Network() {
@@ -145,10 +145,22 @@ class Server::Network {
   bool WaitForCalls(std::chrono::milliseconds at_most) { return calls_.WaitForOne(at_most); }
 
   [[nodiscard]] Dropped dropped() const {
-    return {inbox_.dropped(), hub_.dropped_pictures(), hub_.dropped_plots(), web_.expelled()};
+    return {inbox_.dropped(), hub_.dropped_pictures(), hub_.dropped_plots(), web_.expelled(), troubles_};
   }
 
  private:
+  // Trouble with one connection, e.g. no memory for its message, must not end the program or the server.
+  void Serve() noexcept {
+    for (bool runs = true; runs;) {
+      try {
+        web_.Run();
+        runs = false;
+      } catch (...) {
+        ++troubles_;
+      }
+    }
+  }
+
   // At most one waits, however much is published.
   void Wake() {
     if (!is_woken_.exchange(true)) {
@@ -246,14 +258,15 @@ class Server::Network {
     if (report_thread_.joinable()) {
       report_thread_.join();  // it has ended
     }
-    report_thread_ = std::thread([this, reply] {
+    report_thread_ = std::thread([this, answer = reply]() mutable {
       WebResponse response{200, "text/html; charset=utf-8", {}, kReportPolicy};
       try {
         response.content = config_.report();
       } catch (const std::exception& error) {
         response = TextResponse(503, std::string("The report cannot be made: ") + error.what());
       }
-      reply(std::move(response));
+      // The connection belongs to the server's thread, which is also the one that lets go of it.
+      web_.Post([answer = std::move(answer), response = std::move(response)] { answer(response); });
       is_reporting_ = false;
     });
   }
@@ -265,6 +278,7 @@ class Server::Network {
   Hub hub_;
   Inbox inbox_;
   std::atomic<bool> is_woken_{false};
+  std::atomic<std::uint64_t> troubles_{0};  // exceptions of the server's thread
   std::atomic<std::int64_t> now_ns_{0};
   Web web_;  // destroyed before all that its handlers use
   std::string policy_;

@@ -63,7 +63,8 @@ class Server {
   // tells, and the next free port), the address is not one of this computer's, or an entry of the catalogue
   // is invalid. std::runtime_error: the page is missing.
   Server(ServerConfig config, Catalogue catalogue);
-  // Tells the viewers that the run has ended, and disconnects them: within a second.
+  // Tells the viewers that the run has ended, and disconnects them: within a second, and after a report that
+  // is being made.
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
@@ -100,7 +101,8 @@ class Server {
     std::uint64_t inbox = 0;     // for all viewers, because the server's thread lagged
     std::uint64_t pictures = 0;  // for one viewer, which lagged
     std::uint64_t plots = 0;
-    std::uint64_t viewers = 0;  // disconnected because they took nothing, too much, or broke a rule
+    std::uint64_t viewers = 0;   // disconnected because they took nothing, too much, or broke a rule
+    std::uint64_t troubles = 0;  // exceptions of the server's thread, e.g. no memory for a message
   };
   [[nodiscard]] Dropped dropped() const;
 

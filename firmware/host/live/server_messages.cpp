@@ -43,6 +43,7 @@ ordered_json MayJson(const Catalogue& catalogue) {
           {"speed", Offers(catalogue, Service::kSpeed)},
           {"reset", Offers(catalogue, Service::kReset)},
           {"end", Offers(catalogue, Service::kEnd)},
+          {"end_at_once", catalogue.anyone_may_end},
           {"recover", Offers(catalogue, Service::kRecover)},
           {"throw", Offers(catalogue, Service::kThrow)}};
 }

@@ -21,7 +21,9 @@ struct ServiceSchemas {
 ServiceSchemas SchemasOf(Service service);
 
 // Only a stop needs no control.
-inline bool NeedsControl(Service service) { return service != Service::kHold; }
+inline bool NeedsControl(Service service, const Catalogue& catalogue) {
+  return service != Service::kHold && !(service == Service::kEnd && catalogue.anyone_may_end);
+}
 
 // `payload`: the JSON of a service call; not for kTakeControl and kGiveControl. Refusal: a field is unknown,
 // missing, of the wrong kind or out of range, or names nothing of the catalogue.

@@ -20,6 +20,7 @@
 #include "firmware/host/film/eye_film.hpp"
 #include "firmware/host/recording/flight/flight_recorder.hpp"
 #include "firmware/host/recording/log/run_log.hpp"
+#include "firmware/host/recording/log/run_messages.hpp"
 #include "firmware/host/report/report.hpp"
 #include "firmware/host/run/run_figures.hpp"
 #include "firmware/vision/detection.hpp"
@@ -46,6 +47,9 @@ struct RunFacts {
   std::vector<log::LinkFrame> frames;               // of the arm
   foxglove::SceneUpdate scene;                      // for a log's viewer
 };
+
+// What the message /setup contains. `start_ns`: when the run begins, by the loop's clock.
+log::RunSetup SetupOf(const RunFacts& facts, std::int64_t start_ns);
 
 struct RunBookOptions {
   std::vector<std::string> more_files;   // files of such a run beside the book's own files

@@ -24,10 +24,11 @@ live::Catalogue OfferOf(const std::string& name, std::vector<live::Parameter> pa
   offer.channels = live::LogChannels({.camera = has_camera});
   offer.parameters = std::move(parameters);
   offer.parameters.push_back(
-      {kSpeedScale, "", "scales servo.lambda and servo.lambda_near of the configuration; the limits stay",
+      {kSpeedScale, "", "share of the speed: bounds servo.lambda and servo.lambda_near; the limits stay",
        std::min(kLeastSpeedScale, speed_scale), speed_scale, speed_scale, speed_scale});
   offer.tune = control;
   offer.services = {Service::kHold, Service::kEnd};
+  offer.anyone_may_end = true;
   if (control) {
     offer.services.push_back(Service::kTrack);
     offer.services.push_back(Service::kRecover);
@@ -39,7 +40,14 @@ live::Catalogue OfferOf(const std::string& name, std::vector<live::Parameter> pa
 
 HwLive::HwLive(HwLiveOptions options, const std::string& name, const config::ServoConfig& servo,
                bool has_camera, double speed_scale)
-    : servo_(servo), speed_scale_(speed_scale), parameters_(desk::Tuner(servo).parameters()) {
+    : servo_(servo),
+      speed_scale_(speed_scale),
+      parameters_(desk::Tuner(servo).parameters()),
+      scale_(speed_scale) {
+  for (const live::Parameter& parameter : parameters_) {
+    wished_.push_back(parameter.value);
+  }
+  asked_ = wished_;
   const live::Catalogue offer = OfferOf(name, parameters_, speed_scale, has_camera, options.control);
   server_ = std::make_unique<live::Server>(std::move(options.server), offer);
   feed_ = std::make_unique<live::LiveFeed>(*server_, offer.channels);
@@ -74,7 +82,11 @@ void HwLive::Attend() {
   if (const auto ticks = parts_ ? parts_->shell.NewTickDurations() : std::nullopt) {
     state.tick = {ticks->median_ns, ticks->max_ns};
   }
-  state.ends = parts_ && parts_->control.ended;
+  state.ends = parts_ && (parts_->control.ended || parts_->control.done);
+  run::RunBook* const book = parts_ ? parts_->shell.book() : nullptr;
+  if (book != nullptr && book->log().failed()) {
+    state.notice = "The log cannot be written, e.g. because the disk is full: it ends here.";
+  }
   server_->SetState(state);
 }
 
@@ -100,6 +112,10 @@ live::Answer HwLive::Take(const live::Track& request) {
   if (!parts_->control.serves) {
     return {"motion is not enabled; type \"enable\" at the program", "{}"};
   }
+  const std::int64_t until_ns = parts_->control.leave_until_ns;  // 0: the permission never ends
+  if (until_ns != 0 && parts_->clock.NowNs() >= until_ns) {
+    return {"the operator at the program is silent, so the arm is held; type a line there", "{}"};
+  }
   static_cast<void>(desk_->Take(request));
   return Say(Word::kTrack);
 }
@@ -114,7 +130,7 @@ live::Answer HwLive::Take(const live::Recover& /*request*/) {
 
 live::Answer HwLive::Take(const live::End& /*request*/) {
   Touch("end", "end the run");
-  EndRun(parts_->allow_motion, parts_->control);
+  EndRun(parts_->allow_motion, false, parts_->control);
   return Say(Word::kEnd);
 }
 
@@ -123,15 +139,31 @@ live::Answer HwLive::Take(const live::SetParameter& request) {
     SetSpeedScale(request.value);
     return {};
   }
+  const live::Parameter& key = parameters_.at(request.parameter);
+  if (const double most = MostOf(key); request.value > most) {
+    return {fmt::format("{} = {:g} is not allowed: at {} = {:g} at most {:g}", key.name, request.value,
+                        kSpeedScale, scale_, most),
+            "{}"};
+  }
+  wished_[request.parameter] = asked_[request.parameter] = request.value;
   return desk_->Take(request);
 }
 
-// The gains that robot.speed_scale scales at the start. The tick's record has their changes.
+// The largest value of a gain: that of the configuration, times the share of the speed that is left. At the
+// configuration's own scale there is no bound but the key's range.
+double HwLive::MostOf(const live::Parameter& key) const {
+  const bool is_scaled = key.name == "servo.lambda" || key.name == "servo.lambda_near";
+  return is_scaled && scale_ < speed_scale_ ? key.default_value * scale_ / speed_scale_ : key.max;
+}
+
+// Lowers the gains that robot.speed_scale scales at the start, where they are larger than it allows. A larger
+// scale gives back what was asked for. The tick's record has the changes.
 void HwLive::SetSpeedScale(double scale) {
+  scale_ = scale;
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
-    const live::Parameter& gain = parameters_[i];
-    if (gain.name == "servo.lambda" || gain.name == "servo.lambda_near") {
-      static_cast<void>(desk_->Take(live::SetParameter{i, gain.value * scale / speed_scale_}));
+    const double value = std::min(wished_[i], MostOf(parameters_[i]));
+    if (value != std::exchange(asked_[i], value)) {
+      static_cast<void>(desk_->Take(live::SetParameter{i, value}));
     }
   }
   server_->SetParameter(parameters_.size(), scale);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The live page of a run on hardware. Viewers watch, and may hold the arm and end the run. With control they
-// may also track, recover, and change the gains that may change in motion. Nobody can enable motion from a
-// page, and a page does not keep the dead man's switch alive.
+// The live page of a run on hardware. All viewers watch, and may hold the arm and end the run. If the program
+// allows it, one may also track, recover, change the gains that may change in motion, and lower the speed.
+// Nobody can enable motion from a page, and a page does not keep the dead man's switch alive.
 #pragma once
 
 #include <cstdint>
@@ -55,6 +55,7 @@ class HwLive {
   [[nodiscard]] live::Answer Take(const live::End& request);
   [[nodiscard]] live::Answer Take(const live::SetParameter& request);
   void SetSpeedScale(double scale);
+  [[nodiscard]] double MostOf(const live::Parameter& key) const;
   [[nodiscard]] live::Answer Say(Word word);
   void Touch(const std::string& what, const std::string& text);
 
@@ -69,6 +70,9 @@ class HwLive {
   const config::ServoConfig servo_;
   const double speed_scale_;
   const std::vector<live::Parameter> parameters_;  // the servo's; robot.speed_scale follows them
+  double scale_;                                   // robot.speed_scale now
+  std::vector<double> wished_;                     // the last values that viewers asked for
+  std::vector<double> asked_;                      // and that the servo was asked for
   std::unique_ptr<live::Server> server_;
   std::unique_ptr<live::LiveFeed> feed_;
   std::optional<Parts> parts_;

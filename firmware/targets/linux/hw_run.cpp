@@ -214,7 +214,7 @@ class Session {
     const double passed_s = 1e-9 * static_cast<double>(linux_rt::MonotonicNs() - connected_ns_);
     if (summary_.robot_silent && options_.duration_s > 0.0 && passed_s >= options_.duration_s &&
         !control_.ended) {
-      EndRun(options_.allow_motion, control_);
+      EndRun(options_.allow_motion, false, control_);
     }
   }
 

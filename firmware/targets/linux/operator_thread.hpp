@@ -33,8 +33,8 @@ struct RunControl {
 // Permits motion for `dead_man_s` from now on. Does nothing when that is 0: the permission never ends.
 void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) noexcept;
 
-// Ends the run: the first time in order, the second time at once.
-void EndRun(bool allow_motion, RunControl& control) noexcept;
+// Ends the run, in order or at once.
+void EndRun(bool allow_motion, bool at_once, RunControl& control) noexcept;
 
 struct Heard {
   std::int64_t stamp_ns = 0;  // of the loop's clock
@@ -65,6 +65,7 @@ class OperatorThread {
   void HearAll(const std::stop_token& stop);
   void HearSignal();
   void HearWords();
+  // The operator's first request ends the run in order, the second at once, whoever else has asked before.
   void End() noexcept;
   void Note(Word word, std::string_view unknown = {}) noexcept;
 
@@ -73,6 +74,7 @@ class OperatorThread {
   const linux_rt::SignalQueue& signals_;
   RunControl& control_;
   OperatorInput input_;
+  bool end_asked_ = false;
   linux_rt::BoundedRing<Heard> heard_;
   std::jthread thread_;  // last: it uses the others
 };

@@ -161,6 +161,7 @@ TEST(OperatorDesk, PausesStepsAndEnds) {
   EXPECT_EQ(bench.desk->end(), LiveEnd::kNone);
   EXPECT_EQ(bench.Ask(live::Reset{}), "");
   EXPECT_EQ(bench.desk->end(), LiveEnd::kReset);
+  EXPECT_EQ(bench.Ask(live::Hold{}), "the run is ending");
   EXPECT_EQ(bench.Ask(live::End{}), "");
   EXPECT_EQ(bench.desk->end(), LiveEnd::kEnd);
 }

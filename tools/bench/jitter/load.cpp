@@ -105,6 +105,12 @@ void Load::StartRender() {
   }
 }
 
+void Load::Check() const {
+  if (viewers_ && viewers_->have_left()) {
+    throw std::runtime_error("--load viewers: a viewer was disconnected");
+  }
+}
+
 Load::~Load() {
   stop_ = true;
   if (render_pid_ != 0) {

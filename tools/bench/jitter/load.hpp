@@ -23,6 +23,8 @@ class Load {
   // std::runtime_error when the load cannot be started.
   explicit Load(const std::string& kind);
   ~Load();
+  // std::runtime_error when viewers have left: the measurement had another load than its name says.
+  void Check() const;
   Load(const Load&) = delete;
   Load& operator=(const Load&) = delete;
 

@@ -25,6 +25,7 @@ namespace fovea::bench {
 namespace {
 
 constexpr int kTicksPerPicture = 33;
+constexpr const char* kToken = "jitter-of-the-bench";
 constexpr std::chrono::seconds kPatience{5};
 constexpr int kPongMs = 4000;  // a viewer that says nothing for long is disconnected
 
@@ -111,7 +112,7 @@ Viewers::Viewers() : channels_(live::LogChannels({})) {
   catalogue.channels = channels_;
   live::ServerConfig config;
   config.port = 0;
-  config.token = "jitter";
+  config.token = kToken;
   server_ = std::make_unique<live::Server>(config, catalogue);
   feed_ = std::make_unique<live::LiveFeed>(*server_, channels_);
   for (int i = 0; i < kViewers; ++i) {
@@ -159,10 +160,10 @@ void Viewers::View(const std::stop_token& stop) {
   try {
     Connection connection(server_->port());
     connection.Send(fmt::format(
-        "GET /?token=jitter HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        "GET /?token={} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
         "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n"
         "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n",
-        server_->port()));
+        kToken, server_->port()));
     if (!connection.Receive(kPongMs).starts_with("HTTP/1.1 101")) {
       throw std::runtime_error("the live page is no WebSocket server");
     }

@@ -23,6 +23,8 @@ class Viewers {
   ~Viewers();
   Viewers(const Viewers&) = delete;
   Viewers& operator=(const Viewers&) = delete;
+  // A viewer was disconnected.
+  [[nodiscard]] bool have_left() const { return failed_; }
 
  private:
   void Feed(const std::stop_token& stop);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person may do, and what the page says when something is refused.
 
+const IDLE_MS = 120_000; // a page that nobody touches for so long gives its control up
 const FREE = new Set(["/servo/hold", "/control/take"]); // need no control
 const MAY = { "/servo/hold": "hold", "/servo/track": "track", "/servo/recover": "recover", "/run/pause": "pause" };
 Object.assign(MAY, { "/run/step": "step", "/run/speed": "speed", "/run/reset": "reset", "/run/save": "save" });
@@ -14,8 +15,11 @@ export class Actions {
     this.connection = connection;
     this.model = model;
     this.name = `viewer ${Math.floor(1296 + Math.random() * 45360).toString(36)}`;
+    this.touched = performance.now();
+    for (const kind of ["pointerdown", "pointermove", "keydown", "wheel"])
+      addEventListener(kind, () => (this.touched = performance.now()), { passive: true });
     model.listen((what) => {
-      if (what === "state") connection.keepAlive = this.inControl;
+      if (what === "state") connection.keepAlive = this.inControl && performance.now() - this.touched < IDLE_MS;
     });
     connection.listen((what, detail) => {
       if (what === "status" && detail.level > 0) this.say(detail.message, "refused");
@@ -86,7 +90,8 @@ export class Actions {
 
   // Takes control when nobody has it; the answer to that comes before the change is sent.
   #needControl(service) {
-    if (FREE.has(service) || this.inControl || !this.connection.has("/control/take")) return Promise.resolve();
+    const free = FREE.has(service) || (service === "/run/end" && this.model.state?.may?.end_at_once);
+    if (free || this.inControl || !this.connection.has("/control/take")) return Promise.resolve();
     this.taking ??= this.takeControl().finally(() => (this.taking = null));
     return this.taking;
   }

@@ -155,10 +155,13 @@ export class Curves {
     if (key === this.#last && now - this.#drawn < 1000) return;
     this.#last = key;
     this.#drawn = now;
+    this.grid.closest("section").hidden = !model.hasServo;
     for (const strip of this.#strips) {
-      const empty = strip.options.id === "ticks" && !model.tickTimes.size;
+      const { id } = strip.options;
+      const empty = (id === "ticks" && !model.tickTimes.size) || (id !== "error" && !model.hasServo);
       if (strip.node.hidden !== empty) strip.node.hidden = empty;
       if (!empty) strip.draw(to - this.span, to, moment.isLive ? null : t);
     }
+    this.lead.closest("section").hidden = this.#strips[0].node.hidden;
   }
 }

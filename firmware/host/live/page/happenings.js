@@ -8,7 +8,7 @@ const LEVELS = { WARNING: "warn", ERROR: "bad", FATAL: "bad" };
 
 export class Happenings {
   constructor(host, model, moment) {
-    Object.assign(this, { model, moment });
+    Object.assign(this, { host, model, moment });
     this.limits = el("p", { class: "limits-now" });
     this.list = el("ol", { class: "happenings" });
     host.append(this.limits, this.list);
@@ -40,6 +40,7 @@ export class Happenings {
 
   #showLimits() {
     const { model, moment } = this;
+    this.host.closest("section").hidden = !model.hasServo;
     const row = model.ticks.rowAt(moment.t, 1);
     const bits = row ? row[TICK.limits] : 0;
     const names = (model.setup?.limits || []).filter((name, i) => (bits >> i) & 1).map(words);

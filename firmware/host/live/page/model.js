@@ -73,7 +73,13 @@ export class Model {
   }
 
   get oldest() {
-    return this.ticks.size ? this.ticks.t[this.ticks.begin] : this.now;
+    const rows = [this.ticks, this.truth, this.poses].find((one) => one?.size);
+    return rows ? rows.t[rows.begin] : this.now;
+  }
+
+  // False for the page of a served robot: its servo runs in another program.
+  get hasServo() {
+    return this.state?.mode !== "";
   }
 
   // Null before the setup is known.

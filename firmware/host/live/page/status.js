@@ -55,7 +55,7 @@ export class Status {
     if (state.notice && state.notice !== this.#notice) this.#note(state.notice, "told");
     this.#notice = state.notice;
     const name = setup?.name || state.name || "";
-    if (name) document.title = `${mode}: ${name} – Fovea`;
+    if (name) document.title = `${mode ? `${mode}: ` : ""}${name} – Fovea`;
   }
 
   #connection() {

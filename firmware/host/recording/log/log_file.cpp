@@ -34,6 +34,12 @@ std::string DescriptorSetOf(const google::protobuf::Descriptor& type) {
 
 void LogFile::Write(const std::string& topic, const google::protobuf::Descriptor& type, std::int64_t time_ns,
                     std::string_view bytes) {
+  if (tap_) {
+    tap_(topic, type, time_ns, bytes);
+  }
+  if (!is_writing_) {
+    return;
+  }
   auto channel = channels_.find(topic);
   if (channel == channels_.end()) {
     auto schema = schemas_.find(type.full_name());
@@ -44,9 +50,6 @@ void LogFile::Write(const std::string& topic, const google::protobuf::Descriptor
     channel = channels_.emplace(topic, writer_.AddChannel(schema->second, topic)).first;
   }
   writer_.Write(channel->second, time_ns, bytes);
-  if (tap_) {
-    tap_(topic, type, time_ns, bytes);
-  }
 }
 
 }  // namespace fovea::log

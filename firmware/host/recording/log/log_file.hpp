@@ -29,11 +29,14 @@ class LogFile {
   // `bytes`: a serialised message of the given type.
   void Write(const std::string& topic, const google::protobuf::Descriptor& type, std::int64_t time_ns,
              std::string_view bytes);
+  // From now on Write only passes the messages to the tap.
+  void StopWriting() { is_writing_ = false; }
   McapWriter& writer() { return writer_; }
 
  private:
   McapWriter writer_;
   LogTap tap_;
+  bool is_writing_ = true;
   std::map<std::string, std::uint16_t> schemas_;   // by the type's name
   std::map<std::string, std::uint16_t> channels_;  // by topic
   std::string bytes_;
