@@ -223,7 +223,8 @@ class Run {
     if (board_) {
       board_clock.emplace(clock, *board_);
     }
-    StallingClock stalling(board_clock ? static_cast<hal::Clock&>(*board_clock) : clock, stall_);
+    StallingClock& stalling =
+        stalling_.emplace(board_clock ? static_cast<hal::Clock&>(*board_clock) : clock, stall_);
     std::optional<trace::ClockTrace> world;
     if (trace_) {
       world.emplace(trace_->servo(), stalling, "world");
@@ -242,6 +243,7 @@ class Run {
       live_->End();
     }
     shell_->EndLoop();
+    stalling_.reset();
     return status;
   }
 
@@ -251,6 +253,7 @@ class Run {
 
   void EndEarly() {
     interrupted_ = true;
+    stalling_->SetFault({});
     shell_->loop()->Stop();  // after the current tick, which is still recorded
   }
 
@@ -356,6 +359,7 @@ class Run {
   task::ServoTask servo_;
   std::unique_ptr<BoardServo> board_;  // instead of `servo_`
   const StallFault stall_;
+  std::optional<StallingClock> stalling_;  // while the loop runs
   std::optional<RunTrace> trace_;
   std::optional<run::RunShell> shell_;
   std::unique_ptr<RunFiles> files_;

@@ -5,13 +5,10 @@
 
 namespace fovea::sim {
 
-// Within the replay's window: the newest scene that is at least `delay_ns` old. Otherwise `exposure` itself.
+// Within the replay's window: the newest scene that is at least `delay_ns` old. Otherwise `exposure` itself. The
+// past is always kept: a replay may be switched on at any time.
 const Exposure& FrameSpoiler::SceneFor(const Exposure& exposure) {
   const auto& replay = faults_.replay;
-  if (static_cast<double>(exposure.stamp_ns) * 1e-9 >= replay.window.end_s) {
-    past_.clear();
-    return exposure;
-  }
   past_.push_back(exposure);
   while (past_.size() > 1 && past_[1].stamp_ns <= exposure.stamp_ns - replay.delay_ns) {
     past_.pop_front();

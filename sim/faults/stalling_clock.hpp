@@ -25,7 +25,8 @@ class StallingClock final : public hal::Clock {
   // `clock` is borrowed.
   StallingClock(hal::Clock& clock, const StallFault& fault) : clock_(clock), fault_(fault) {}
 
-  // Changes the fault from the next wait on, except its seed. From the thread that waits.
+  // Changes the fault from the next tick on, except its seed. From the thread that waits, also within a wait of
+  // the clock below.
   void SetFault(const StallFault& fault) {
     fault_.window = fault.window;
     fault_.share = fault.share;
@@ -33,7 +34,8 @@ class StallingClock final : public hal::Clock {
 
  private:
   [[nodiscard]] std::int64_t DoNowNs() const noexcept override { return clock_.NowNs(); }
-  // A wait for a missed tick ends at the next tick that is not missed.
+  // A wait for a missed tick ends at the next tick that is not missed. Waits for each of them in turn: what
+  // happens between ticks goes on.
   hal::Status DoWaitUntil(std::int64_t deadline_ns) noexcept override;
 
   hal::Clock& clock_;

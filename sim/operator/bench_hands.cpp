@@ -9,6 +9,8 @@
 namespace fovea::sim {
 namespace {
 
+constexpr std::int64_t kBetweenDrags = 500'000'000;  // a pause of a drag that begins another one [ns]
+
 // The lowest centre of the target that leaves it above the table [m].
 double LeastHeight(const RunDescription& about) {
   const bool is_ball = about.scene.has_eye && about.scene.target.kind == TargetShape::Kind::kBall;
@@ -77,10 +79,12 @@ live::Answer BenchHands::Take(const live::HoldTarget& request) {
   if (wish.translation().cwiseAbs().maxCoeff() > TargetHand::kFarthest) {
     return {fmt::format("the target must stay within {:g} m of the base", TargetHand::kFarthest), "{}"};
   }
-  if (!hand_.held()) {
+  const std::int64_t now_ns = world_.now_ns();
+  if (!hand_.held() || now_ns - dragged_ns_ > kBetweenDrags) {
     touch_("target", fmt::format("the target is taken at {}", InMetres(world_.truth().p_BO)));
   }
-  hand_.Drag(TargetPose(), wish, world_.now_ns());
+  dragged_ns_ = now_ns;
+  hand_.Drag(TargetPose(), wish, now_ns);
   return {};
 }
 

@@ -49,6 +49,7 @@ class BenchHands {
   World& world_;
   const Touch touch_;
   TargetHand hand_;
+  std::int64_t dragged_ns_ = 0;  // when the last pose of a drag came
   std::optional<ArmSpring> spring_;
 };
 

@@ -49,7 +49,7 @@ void LiveSession::Begin(DeskParts parts) {
     page_.server().SetParameter(i, parameters[i].value);
   }
   page_.server().TakeCalls([](const live::Call&) -> live::Answer {
-    return {"the run has begun anew", "{}"};
+    return {"the run is only beginning: ask again", "{}"};
   });
 }
 

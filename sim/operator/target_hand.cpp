@@ -14,7 +14,26 @@ Eigen::Vector3d Shortened(const Eigen::Vector3d& v, double most) {
 
 }  // namespace
 
+double TargetHand::SecondsSince(std::int64_t now_ns) const {
+  return static_cast<double>(now_ns - from_ns_) * 1e-9;
+}
+
+Eigen::Vector3d TargetHand::VelocityAt(std::int64_t now_ns) const {
+  const double t_s = SecondsSince(now_ns);
+  switch (motion_) {
+    case Motion::kNone: break;
+    case Motion::kThrown: return v_BO_ * std::exp(-t_s / kSlowdownS);
+    case Motion::kDragged: {
+      const Eigen::Vector3d off = from_.translation() - to_.translation();
+      const Eigen::Vector3d slope = v_BO_ + kFollowRate * off;
+      return (v_BO_ - kFollowRate * t_s * slope) * std::exp(-kFollowRate * t_s);
+    }
+  }
+  return Eigen::Vector3d::Zero();
+}
+
 void TargetHand::Drag(const Eigen::Isometry3d& X_BO, const Eigen::Isometry3d& wish, std::int64_t now_ns) {
+  v_BO_ = VelocityAt(now_ns);
   motion_ = Motion::kDragged;
   held_ = true;
   from_ns_ = now_ns;
@@ -38,14 +57,16 @@ std::optional<Eigen::Isometry3d> TargetHand::At(std::int64_t now_ns) const {
   }
   Eigen::Isometry3d X_BO = Eigen::Isometry3d::Identity();
   if (motion_ == Motion::kDragged) {
-    const double share =
-        std::clamp(static_cast<double>(now_ns - from_ns_) / static_cast<double>(kGlideNs), 0.0, 1.0);
+    const double t_s = SecondsSince(now_ns);
+    const double fade = std::exp(-kFollowRate * t_s);
+    const Eigen::Vector3d off = from_.translation() - to_.translation();
+    X_BO.translation() = to_.translation() + fade * (off + t_s * (v_BO_ + kFollowRate * off));
     const Eigen::Quaterniond from(from_.linear());
+    const double share = 1.0 - fade * (1.0 + kFollowRate * t_s);
     X_BO.linear() = from.slerp(share, Eigen::Quaterniond(to_.linear())).toRotationMatrix();
-    X_BO.translation() = (1.0 - share) * from_.translation() + share * to_.translation();
   } else {
     // The integral of a speed that decays like exp(-t / kSlowdownS).
-    const double t_s = static_cast<double>(now_ns - from_ns_) * 1e-9;
+    const double t_s = SecondsSince(now_ns);
     const double way_s = kSlowdownS * -std::expm1(-t_s / kSlowdownS);
     const Eigen::Vector3d turn = omega_B_ * way_s;
     const double angle = turn.norm();

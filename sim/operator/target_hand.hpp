@@ -11,8 +11,9 @@ namespace fovea::sim {
 
 class TargetHand {
  public:
-  // The wishes of a mouse come some 30 times per second. The target moves to each within this time.
-  static constexpr std::int64_t kGlideNs = 40'000'000;
+  // The wishes of a mouse come 5 to 30 times per second, unevenly. The target follows them as a critically
+  // damped spring does, with this rate [1/s]: its velocity has no jumps, as in a real hand.
+  static constexpr double kFollowRate = 12.0;
   static constexpr double kFarthest = 2.0;       // largest coordinate of a wish in B [m]
   static constexpr double kMostSpeed = 3.0;      // of a throw [m/s]
   static constexpr double kMostTurnRate = 20.0;  // of a throw [rad/s]
@@ -36,6 +37,9 @@ class TargetHand {
   [[nodiscard]] std::optional<Eigen::Isometry3d> At(std::int64_t now_ns) const;
 
  private:
+  [[nodiscard]] double SecondsSince(std::int64_t now_ns) const;
+  [[nodiscard]] Eigen::Vector3d VelocityAt(std::int64_t now_ns) const;
+
   enum class Motion { kNone, kDragged, kThrown };
 
   double least_height_;
@@ -44,7 +48,7 @@ class TargetHand {
   std::int64_t from_ns_ = 0;
   Eigen::Isometry3d from_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d to_ = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d v_BO_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d v_BO_ = Eigen::Vector3d::Zero();  // at from_ns_, like the next
   Eigen::Vector3d omega_B_ = Eigen::Vector3d::Zero();
 };
 

@@ -21,6 +21,8 @@ fs.rmSync(folder, { recursive: true, force: true });
 fs.mkdirSync(folder, { recursive: true });
 const running = new Set();
 
+const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
 // Starts a program, and waits for a line on its stderr that `pattern` matches. Returns the match and the program.
 async function begin(file, args, pattern) {
   const program = spawn(file, args, { stdio: ["pipe", "ignore", "pipe"] });
@@ -30,17 +32,15 @@ async function begin(file, args, pattern) {
     return code;
   });
   const said = [];
-  return new Promise((resolve, reject) => {
-    const timer = setTimeout(() => reject(new Error(`${file} did not say ${pattern}: ${said}`)), LIMIT_MS);
-    createInterface({ input: program.stderr }).on("line", (line) => {
-      said.push(line);
-      const match = line.match(pattern);
-      if (match) {
-        clearTimeout(timer);
-        resolve({ match, program });
-      }
-    });
-  });
+  createInterface({ input: program.stderr }).on("line", (line) => said.push(line));
+  program.says = async (words) => {
+    for (const end = Date.now() + LIMIT_MS; Date.now() < end; await pause(20)) {
+      const match = said.map((line) => line.match(words)).find(Boolean);
+      if (match) return match;
+    }
+    throw new Error(`${file} did not say ${words}: ${said}`);
+  };
+  return { match: await program.says(pattern), program };
 }
 
 const bytesOf = (view) => new Uint8Array(view.buffer, view.byteOffset, view.byteLength);
@@ -55,7 +55,7 @@ async function view(url) {
     for (const end = Date.now() + LIMIT_MS; Date.now() < end; ) {
       const value = found();
       if (value !== undefined) return value;
-      await new Promise((resolve) => setTimeout(resolve, 20));
+      await pause(20);
     }
     throw new Error(`no ${what} came`);
   };
@@ -110,8 +110,13 @@ async function checkWatching(port) {
   const { value, refusal } = await viewer.set("servo.lambda", 1);
   assert.ok(refusal, "a viewer may not change a gain");
   assert.notEqual(value, 1);
-  assert.equal(await viewer.call("/servo/hold", {}), "done");
+  run.program.stdin.write("enable\n");
+  await run.program.says(/^enabled$/);
+  let held = await viewer.call("/servo/hold", {});
+  while (/no connection to the robot yet/.test(held)) held = await viewer.call("/servo/hold", {});
+  assert.equal(held, "done");
   assert.equal(await viewer.call("/run/end", {}), "done");
+  assert.equal(await viewer.call("/run/end", {}).catch(() => "done"), "done", "a second time changes nothing");
   assert.equal(await run.program.exited, 0);
   console.log(`watching: hold and end only; a gain is refused: ${refusal}`);
 }
@@ -121,8 +126,12 @@ async function checkControl(port) {
   const viewer = await view(run.url);
   const offered = viewer.services.filter((name) => !name.startsWith("/control"));
   assert.deepEqual(offered, ["/run/end", "/servo/hold", "/servo/recover", "/servo/track"]);
-  const refused = await viewer.call("/servo/track", {});
+  let refused = await viewer.call("/servo/track", {});
+  while (/no connection/.test(refused)) refused = await viewer.call("/servo/track", {});
   assert.match(refused, /motion is not enabled/);
+  run.program.stdin.write("enable\n");
+  await run.program.says(/^enabled$/);
+  assert.equal(await viewer.call("/servo/track", {}), "done");
   const begun = await viewer.set("servo.lambda", 1.5);
   assert.equal(begun.refusal, undefined);
   await viewer.valueOf("servo.lambda", 1.5);
@@ -136,9 +145,9 @@ async function checkControl(port) {
   await viewer.valueOf("servo.lambda", 0.1);
   await viewer.set("robot.speed_scale", 0.3);
   await viewer.valueOf("robot.speed_scale", 0.3);
-  await new Promise((resolve) => setTimeout(resolve, 500));
+  await pause(500);
   await viewer.call("/run/end", {});
-  assert.equal(await run.program.exited, 0);
+  assert.equal(await run.program.exited, 1, "without a camera it could not track");
   const { channels, messages } = await readLog(path.join(run.out, "log.mcap"));
   const configured = [];
   const tunings = [];

@@ -23,7 +23,7 @@ TEST_F(ArmSpringTest, TorquesFollowFromTheSpringsEnergy) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> even(-1.0, 1.0);
   const auto point = [&](double size) {
-    return Eigen::Vector3d(even(random), even(random), even(random)) * size;
+    return Eigen::Vector3d(size * Eigen::Vector3d(even(random), even(random), even(random)));
   };
   double worst = 0.0;
   for (int trial = 0; trial < 200; ++trial) {

@@ -57,11 +57,12 @@ TEST(OperatorDesk, ADraggedTargetIsFollowed) {
   const Eigen::Vector3d from = bench.world->truth().p_BO;
   EXPECT_EQ(bench.Ask(live::HoldTarget{{from.x(), from.y() + 0.1, from.z()}}), "");
   bench.RunUntil(5.1);
-  EXPECT_NEAR((bench.world->truth().p_BO - from).norm(), 0.1, 1e-9);
+  EXPECT_GT((bench.world->truth().p_BO - from).norm(), 0.02);
   EXPECT_TRUE(bench.desk->State().target->held);
   EXPECT_EQ(bench.Ask(live::ReleaseTarget{}), "");
   EXPECT_FALSE(bench.desk->State().target->held);
   bench.RunUntil(8.0);
+  EXPECT_NEAR((bench.world->truth().p_BO - from).norm(), 0.1, 1e-9);
   std::cout << "error 2.9 s after a drag of 0.1 m: " << 1e3 * bench.TrueError() << " mm\n";
   EXPECT_LT(bench.TrueError(), 1e-3);
   EXPECT_EQ(bench.touches.size(), 2U);
@@ -114,8 +115,8 @@ TEST(OperatorDesk, TheControllersEndReleasesTargetAndArm) {
   EXPECT_EQ(bench.Ask(live::ControlEnded{}), "");
   EXPECT_FALSE(bench.desk->State().target->held);
   EXPECT_FALSE(bench.desk->State().pull.has_value());
-  bench.RunUntil(1.3);
-  EXPECT_NEAR(bench.world->truth().p_BO.x(), 0.55, 1e-9) << "the target stays";
+  bench.RunUntil(3.0);
+  EXPECT_NEAR(bench.world->truth().p_BO.x(), 0.55, 1e-9) << "it arrives, and stays";
 }
 
 // Every fault of the panel can be started and stopped in motion. The arm keeps its limits.
@@ -128,6 +129,8 @@ TEST(OperatorDesk, EachFaultStartsAndStops) {
     std::map<std::string, double> sizes;
     if (kind.name == "push") {
       sizes["push[2]"] = 5.0;
+    } else if (kind.name == "deadline_miss") {
+      sizes["deadline_miss"] = 0.5;  // with all ticks missed, nothing here would end the fault
     }
     ASSERT_EQ(bench.Ask(live::StartFault{i, sizes}), "") << kind.name;
     bench.RunUntil(0.8);
@@ -180,7 +183,8 @@ TEST(OperatorDesk, SavesAScenarioThatBeginsThere) {
   std::ofstream(folder.path() / "saved.toml") << json["toml"].get<std::string>();
   OperatedBench again((folder.path() / "saved.toml").string());
   EXPECT_EQ(again.world->truth().q, bench.world->truth().q);
-  EXPECT_EQ(again.world->truth().p_BO, Eigen::Vector3d(0.5, 0.05, 0.06));
+  EXPECT_EQ(again.world->truth().p_BO, bench.world->truth().p_BO);
+  EXPECT_LT((again.world->truth().p_BO - Eigen::Vector3d(0.5, 0.05, 0.06)).norm(), 0.01);
   EXPECT_EQ(again.about.servo.law.lambda, 3.0);
   again.RunUntil(6.0);
   EXPECT_LT(again.TrueError(), 1e-3);

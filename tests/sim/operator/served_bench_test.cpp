@@ -78,7 +78,7 @@ TEST_F(ServedDeskTest, ADragMovesTheTarget) {
   const Eigen::Vector3d from = bench_.world.truth().p_BO;
   EXPECT_EQ(Ask(live::HoldTarget{{from.x(), from.y() + 0.1, from.z()}}), "");
   EXPECT_TRUE(desk_.State().target->held);
-  Step(60);
+  Step(2000);
   EXPECT_NEAR((bench_.world.truth().p_BO - from).norm(), 0.1, 1e-9);
   EXPECT_EQ(Ask(live::ReleaseTarget{}), "");
   EXPECT_FALSE(desk_.State().target->held);

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
+#include <cmath>
+#include <iostream>
+#include <vector>
 
 #include "sim/world/world.hpp"
 #include "tests/support/places.hpp"
@@ -34,10 +36,37 @@ TEST(TargetHand, DragsSmoothlyAndStays) {
     largest_step =
         std::max(largest_step, (hand.At(t + kMs)->translation() - hand.At(t)->translation()).norm());
   }
-  EXPECT_LT(largest_step, 0.12 / 40 + 1e-9);
+  EXPECT_LT(largest_step, 0.117 * TargetHand::kFollowRate * std::exp(-1.0) * 1e-3)
+      << "the spring's top speed";
   hand.Release();
   EXPECT_FALSE(hand.held());
   EXPECT_TRUE(hand.At(10'000 * kMs)->isApprox(At(0.6, 0.1, 0.10, 1.0), 1e-12));
+}
+
+// The wishes of a slow mouse come late and far apart. The target neither stops between them nor jumps.
+TEST(TargetHand, UnevenWishesMoveItEvenly) {
+  TargetHand hand(0.04);
+  Eigen::Isometry3d now = At(0.5, 0.0, 0.04);
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  double most_jump = 0.0;
+  double least = 1.0;
+  const std::vector<std::int64_t> pauses{33, 140, 33, 120, 150, 40, 110, 33, 140, 100};
+  std::int64_t t = 0;
+  for (std::size_t i = 0; i < pauses.size(); ++i) {
+    hand.Drag(now, At(0.5 + 0.02 * static_cast<double>(i + 1), 0.0, 0.04), t * kMs);
+    for (std::int64_t k = 0; k < pauses[i]; ++k) {
+      const Eigen::Isometry3d next = *hand.At(++t * kMs);
+      const Eigen::Vector3d moved = (next.translation() - now.translation()) / 1e-3;
+      most_jump = std::max(most_jump, (moved - velocity).norm());
+      least = t > 250 ? std::min(least, moved.x()) : least;
+      velocity = moved;
+      now = next;
+    }
+  }
+  std::cout << "velocity changes by at most " << most_jump << " m/s in 1 ms, and is at least " << least
+            << '\n';
+  EXPECT_LT(most_jump, 0.01);
+  EXPECT_GT(least, 0.05);
 }
 
 TEST(TargetHand, AThrownTargetSlowsDownToRest) {

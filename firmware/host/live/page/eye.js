@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The camera's picture at the shown moment, with the outlines of goal, detection and truth.
+import { CPU_CANVAS } from "./canvas.js";
 
 const { el } = Fovea;
 const STYLES = {
@@ -63,7 +64,7 @@ export class Eye {
     const { bitmap, entry } = this.#shown;
     const { canvas } = this;
     if (canvas.width !== bitmap.width) [canvas.width, canvas.height] = [bitmap.width, bitmap.height];
-    const ctx = canvas.getContext("2d");
+    const ctx = canvas.getContext("2d", CPU_CANVAS);
     ctx.drawImage(bitmap, 0, 0);
     if (this.outlines.checked)
       for (const role of Object.keys(STYLES))

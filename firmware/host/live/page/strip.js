@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A plot that scrolls: curves of the last seconds on a canvas, over the shading of the servo's modes.
+import { CPU_CANVAS } from "./canvas.js";
 import { MODES, TICK } from "./model.js";
 
 const { el, theme, number, swatch } = Fovea;
@@ -93,7 +94,7 @@ export class Strip {
   // Draws the span [from, to] of time; a line marks `at` unless it is null.
   draw(from, to, at) {
     if (!this.seen || !this.width) return;
-    const ctx = this.canvas.getContext("2d");
+    const ctx = this.canvas.getContext("2d", CPU_CANVAS);
     ctx.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     ctx.clearRect(0, 0, this.width, this.height);
     const box = { x: LEFT, y: TOP, w: this.width - LEFT - RIGHT, h: this.height - TOP - BOTTOM };
