@@ -5,8 +5,8 @@
 
 namespace fovea::sim {
 
-// Within the replay's window: the newest scene that is at least `delay_ns` old. Otherwise `exposure` itself. The
-// past is always kept: a replay may be switched on at any time.
+// Within the replay's window: the newest scene that is at least `delay_ns` old. Otherwise `exposure` itself.
+// The past is always kept: a replay may be switched on at any time.
 const Exposure& FrameSpoiler::SceneFor(const Exposure& exposure) {
   const auto& replay = faults_.replay;
   past_.push_back(exposure);
