@@ -201,7 +201,9 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   Person person(server, say_from_any);
   while (!stop) {
     const int signal = signals.Next(kLookMs);
-    stop = stop || signal == SIGINT || signal == SIGTERM || signal == SIGHUP || (page && page->ended());
+    if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP || (page && page->ended())) {
+      stop = true;
+    }
     if (signal == SIGUSR1) {
       person.PressStop();
     }

@@ -9,8 +9,6 @@
 namespace fovea::sim {
 namespace {
 
-constexpr std::int64_t kBetweenDrags = 500'000'000;  // a pause of a drag that begins another one [ns]
-
 // The lowest centre of the target that leaves it above the table [m].
 double LeastHeight(const RunDescription& about) {
   const bool is_ball = about.scene.has_eye && about.scene.target.kind == TargetShape::Kind::kBall;
@@ -44,7 +42,7 @@ live::Answer BenchHands::Take(const live::Pull& request) {
   if (!link) {
     return {fmt::format("the arm has no link \"{}\"", request.link), "{}"};
   }
-  if (!spring_) {
+  if (!spring_ && touch_) {
     touch_("pull", fmt::format("the arm is pulled at {}", request.link));
   }
   spring_ = ArmSpring{*link, ToVector(request.p_link), ToVector(request.to_B)};
@@ -60,7 +58,9 @@ void BenchHands::LetArmGo() {
   if (spring_) {
     spring_.reset();
     world_.PullBySpring(Eigen::VectorXd());
-    touch_("pull", "the arm is let go");
+    if (touch_) {
+      touch_("pull", "the arm is let go");
+    }
   }
 }
 
@@ -79,12 +79,10 @@ live::Answer BenchHands::Take(const live::HoldTarget& request) {
   if (wish.translation().cwiseAbs().maxCoeff() > TargetHand::kFarthest) {
     return {fmt::format("the target must stay within {:g} m of the base", TargetHand::kFarthest), "{}"};
   }
-  const std::int64_t now_ns = world_.now_ns();
-  if (!hand_.held() || now_ns - dragged_ns_ > kBetweenDrags) {
+  if (!hand_.held() && touch_) {
     touch_("target", fmt::format("the target is taken at {}", InMetres(world_.truth().p_BO)));
   }
-  dragged_ns_ = now_ns;
-  hand_.Drag(TargetPose(), wish, now_ns);
+  hand_.Drag(TargetPose(), wish, world_.now_ns());
   return {};
 }
 
@@ -96,15 +94,19 @@ live::Answer BenchHands::Take(const live::ReleaseTarget& /*request*/) {
 void BenchHands::LetTargetGo() {
   if (hand_.held()) {
     hand_.Release();
-    touch_("target", fmt::format("the target is let go at {}", InMetres(world_.truth().p_BO)));
+    if (touch_) {
+      touch_("target", fmt::format("the target is let go at {}", InMetres(world_.truth().p_BO)));
+    }
   }
 }
 
 live::Answer BenchHands::Take(const live::Throw& request) {
   const Eigen::Vector3d v_BO = ToVector(request.v_BO);
   hand_.Throw(TargetPose(), v_BO, ToVector(request.omega_B), world_.now_ns());
-  touch_("target",
-         fmt::format("the target is thrown at {:.2f} m/s", std::min(v_BO.norm(), TargetHand::kMostSpeed)));
+  if (touch_) {
+    touch_("target",
+           fmt::format("the target is thrown at {:.2f} m/s", std::min(v_BO.norm(), TargetHand::kMostSpeed)));
+  }
   return {};
 }
 
@@ -123,15 +125,27 @@ void BenchHands::Act() {
   }
 }
 
-void BenchHands::Fill(live::State& state) const {
-  if (about_.scene.has_eye) {
-    const Truth& truth = world_.truth();
-    const Eigen::Quaterniond q(truth.R_BO);
-    state.target = live::TargetState{ToArray(truth.p_BO), {q.w(), q.x(), q.y(), q.z()}, hand_.held()};
-  }
+HandsLook BenchHands::Look(bool paused) const {
+  HandsLook look;
+  const std::optional<Eigen::Isometry3d> goal = hand_.Goal();
+  look.X_BO = paused && goal ? *goal : TargetPose();
+  look.holds_target = hand_.held();
   if (spring_) {
-    const auto link = static_cast<std::size_t>(spring_->link);
-    state.pull = live::PullState{about_.scene.robot.links[link].name, ToArray(spring_->p_BT)};
+    look.pulled_link = spring_->link;
+    look.p_BT = spring_->p_BT;
+  }
+  return look;
+}
+
+void Fill(const RunDescription& about, const HandsLook& look, live::State& state) {
+  if (about.scene.has_eye) {
+    const Eigen::Quaterniond q(look.X_BO.linear());
+    state.target =
+        live::TargetState{ToArray(look.X_BO.translation()), {q.w(), q.x(), q.y(), q.z()}, look.holds_target};
+  }
+  if (look.pulled_link >= 0) {
+    const auto link = static_cast<std::size_t>(look.pulled_link);
+    state.pull = live::PullState{about.scene.robot.links[link].name, ToArray(look.p_BT)};
   }
 }
 

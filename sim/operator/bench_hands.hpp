@@ -16,11 +16,26 @@
 
 namespace fovea::sim {
 
+// What the hands do at one instant. It has a fixed size: the thread that advances a served robot copies it
+// without the heap.
+struct HandsLook {
+  // The target as viewers shall see it. While the time stands still and the target is dragged: where it will
+  // be.
+  Eigen::Isometry3d X_BO = Eigen::Isometry3d::Identity();
+  bool holds_target = false;
+  int pulled_link = -1;                            // index in SimRobot::links; -1: none
+  Eigen::Vector3d p_BT = Eigen::Vector3d::Zero();  // where it is pulled to [m]
+};
+
+// Sets target and pull.
+void Fill(const RunDescription& about, const HandsLook& look, live::State& state);
+
 // All functions from the thread that advances the world. The live page's server has checked the requests'
 // values.
 class BenchHands {
  public:
-  // Borrows `about` and `world`. `touch` is told what acts: its kind, and a sentence for a person.
+  // Borrows `about` and `world`. `touch` is told what acts: its kind, and a sentence for a person. It may be
+  // empty.
   using Touch = std::function<void(const std::string& what, const std::string& text)>;
   BenchHands(const RunDescription& about, World& world, Touch touch);
 
@@ -35,21 +50,21 @@ class BenchHands {
 
   // Call before each step of the world: places the target and pulls the arm for its present time.
   void Act();
-  // Sets target and pull.
-  void Fill(live::State& state) const;
+  // Without a `touch`, these allocate nothing.
+  void LetTargetGo();
+  void LetArmGo();
+  // `paused`: the time stands still. Allocates nothing.
+  [[nodiscard]] HandsLook Look(bool paused) const;
   // Whether somebody has touched the target, so that the scenario no longer moves it.
   [[nodiscard]] bool target_touched() const { return hand_.At(world_.now_ns()).has_value(); }
 
  private:
   [[nodiscard]] Eigen::Isometry3d TargetPose() const;
-  void LetArmGo();
-  void LetTargetGo();
 
   const RunDescription& about_;
   World& world_;
   const Touch touch_;
   TargetHand hand_;
-  std::int64_t dragged_ns_ = 0;  // when the last pose of a drag came
   std::optional<ArmSpring> spring_;
 };
 

@@ -14,7 +14,8 @@ class BetweenSteps {
   using Job = std::function<void()>;
 
   // From the other thread: the world's thread runs `job` after its present step. Returns when that is done.
-  // False: the world made no step for `at_most`, and the job will not be run. `job` must not throw.
+  // False: the world made no step for `at_most`, and the job will not be run. `job` must not throw; the
+  // world's thread may be a real-time one.
   [[nodiscard]] bool Do(const Job& job, std::chrono::milliseconds at_most) {
     job_ = &job;
     stage_.store(Stage::kAsked, std::memory_order_release);

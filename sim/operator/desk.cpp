@@ -84,6 +84,9 @@ live::Answer OperatorDesk::Take(const live::End& /*request*/) {
 live::Answer OperatorDesk::Take(const live::Save& /*request*/) {
   PresentState present;
   present.truth = parts_.world.truth();
+  const Eigen::Isometry3d X_BO = hands_.Look(pace_.paused()).X_BO;
+  present.truth.p_BO = X_BO.translation();
+  present.truth.R_BO = X_BO.linear();
   present.target_touched = hands_.target_touched();
   present.tuned = servo_.tuner().Changed();
   present.faults = faults_.faults();
@@ -94,14 +97,14 @@ live::Answer OperatorDesk::Take(const live::Save& /*request*/) {
 }
 
 live::Answer OperatorDesk::Take(const live::StartFault& request) {
-  const std::string text = faults_.Start(request, now_s());
+  const std::string text = faults_.Start(request, now_ns());
   PassFaults();
   parts_.reports.touch("fault", text);
   return {};
 }
 
 live::Answer OperatorDesk::Take(const live::StopFault& request) {
-  const std::string text = faults_.Stop(request, now_s());
+  const std::string text = faults_.Stop(request, now_ns());
   PassFaults();
   parts_.reports.touch("fault", text);
   return {};
@@ -124,9 +127,9 @@ live::State OperatorDesk::State() const {
   state.paused = pace_.paused();
   state.speed = pace_.speed();
   state.real_time_factor = pace_.achieved();
-  state.ends = end_ != LiveEnd::kNone;
-  faults_.Fill(now_s(), state);
-  hands_.Fill(state);
+  state.ends = end_ == LiveEnd::kEnd;
+  faults_.Fill(now_ns(), state);
+  Fill(parts_.about, hands_.Look(pace_.paused()), state);
   return state;
 }
 

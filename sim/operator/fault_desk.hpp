@@ -2,6 +2,7 @@
 // The faults of a run as viewers of a live page see and switch them.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -19,12 +20,13 @@ class FaultDesk {
 
   // For the catalogue.
   [[nodiscard]] std::vector<live::FaultKind> Kinds() const;
-  // Both act at `now_s`, and return what happened, for a person. InputError, and nothing is changed: see
-  // FaultPanel.
-  std::string Start(const live::StartFault& request, double now_s);
-  std::string Stop(const live::StopFault& request, double now_s);
+  // The world is at `now_ns`: its state was measured, and a frame may be exposed. Both act from the next step
+  // on, so the run is that of a scenario with this window. They return what happened, for a person.
+  // InputError, and nothing is changed: see FaultPanel.
+  std::string Start(const live::StartFault& request, std::int64_t now_ns);
+  std::string Stop(const live::StopFault& request, std::int64_t now_ns);
   // Sets the state's faults, in the order of Kinds.
-  void Fill(double now_s, live::State& state) const;
+  void Fill(std::int64_t now_ns, live::State& state) const;
 
   [[nodiscard]] const FaultSettings& faults() const { return panel_.faults(); }
 

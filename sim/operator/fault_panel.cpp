@@ -15,6 +15,9 @@ namespace {
 using config::InputError;
 
 constexpr double kLasts = 1e6;  // end of a fault that nobody has stopped [s]
+// A fault that ended less than this ago may still act in the present step [s]. A window that begins anew and
+// is stopped before that step would forget it: a load would hang for ever.
+constexpr double kJustEnded = 1.5e-3;
 
 // A size with the function that changes it.
 struct BoundSize {
@@ -154,8 +157,9 @@ void FaultPanel::Start(const std::string& name, const std::map<std::string, doub
   for (const auto& [size, value] : sizes) {
     SetSize(fault, size, value);
   }
-  const bool active = now_s >= fault.window->start_s && now_s < fault.window->end_s;
-  *fault.window = {active ? fault.window->start_s : now_s, kLasts};
+  const bool goes_on =
+      fault.window->Begins() && now_s >= fault.window->start_s && now_s < fault.window->end_s + kJustEnded;
+  *fault.window = {goes_on ? fault.window->start_s : now_s, kLasts};
   CheckFaults(changed, num_joints_);
   if (fault.window == &changed.bench.push.window && changed.bench.push.tau.isZero(0.0)) {
     throw InputError("faults.push is 0 for each joint: give at least one of them a torque");

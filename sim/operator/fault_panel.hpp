@@ -40,8 +40,8 @@ class FaultPanel {
   [[nodiscard]] std::vector<FaultSwitch> Switches(double now_s) const;
 
   // Fault `name` acts from `now_s` on until Stop, with the `sizes` [by FaultSize::name]; the others stay as
-  // they are. An active fault takes its new sizes at once. InputError, and nothing is changed: there is no
-  // such fault or size, or a size is out of range.
+  // they are. An active fault takes its new sizes at once; one that has just ended goes on. InputError, and
+  // nothing is changed: there is no such fault or size, or a size is out of range.
   void Start(const std::string& name, const std::map<std::string, double>& sizes, double now_s);
   // Ends fault `name` at `now_s`. InputError: there is no such fault.
   void Stop(const std::string& name, double now_s);

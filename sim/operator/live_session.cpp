@@ -67,12 +67,13 @@ bool LiveSession::WaitForTick(std::int64_t next_ns, const std::function<bool()>&
     server.TakeCalls([this](const live::Call& call) { return desk_->Do(call); });
     end_ = desk_->end();
     const std::int64_t wall_ns = WallNs();
-    ShowState(wall_ns);
+    const bool is_interrupted = interrupted();
+    ShowState(wall_ns, is_interrupted);
     if (end_ != LiveEnd::kNone) {
       return false;
     }
     const std::int64_t wait_ns = desk_->pace().WaitNs(next_ns, wall_ns);
-    if (wait_ns <= 0 || interrupted()) {
+    if (wait_ns <= 0 || is_interrupted) {
       desk_->pace().Begin(next_ns, wall_ns);
       break;
     }
@@ -88,12 +89,13 @@ bool LiveSession::WaitForTick(std::int64_t next_ns, const std::function<bool()>&
   return true;
 }
 
-void LiveSession::ShowState(std::int64_t wall_ns) {
-  if (wall_ns < next_state_ns_ && end_ == LiveEnd::kNone) {
+void LiveSession::ShowState(std::int64_t wall_ns, bool ends) {
+  if (wall_ns < next_state_ns_ && end_ == LiveEnd::kNone && !ends) {
     return;
   }
   next_state_ns_ = wall_ns + kStatePeriodNs;
   live::State state = desk_->State();
+  state.ends = state.ends || ends;
   state.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   if (const auto ticks = shell_.NewTickDurations()) {
     state.tick = {ticks->median_ns, ticks->max_ns};

@@ -27,14 +27,16 @@ class LiveSession {
   void End() { desk_.reset(); }
 
   // Call between two ticks, before the tick at `next_ns`: returns when it may begin by the pace. False: an
-  // operator has ended the run. `interrupted`: another reason to return.
+  // operator has ended or reset the run. `interrupted`: the run ends for another reason, which viewers are
+  // shown; returns at once.
   bool WaitForTick(std::int64_t next_ns, const std::function<bool()>& interrupted);
 
   [[nodiscard]] LiveEnd end() const { return end_; }
 
  private:
   void Record(const std::string& what, const std::string& text);
-  void ShowState(std::int64_t wall_ns);
+  // `ends`: the run ends, whatever the desk says.
+  void ShowState(std::int64_t wall_ns, bool ends);
 
   LivePage& page_;
   run::RunShell& shell_;

@@ -30,11 +30,15 @@ class WindowShift : public FaultReader {
   explicit WindowShift(double by_s) : by_s_(by_s) {}
 
   void Window(const FaultField& /*field*/, TimeWindow& window, const char* /*not_served*/ = nullptr) const {
-    window.start_s = std::max(window.start_s - by_s_, 0.0);
-    window.end_s = std::max(window.end_s - by_s_, 0.0);
+    window = {Shifted(window.start_s), Shifted(window.end_s)};
   }
 
  private:
+  // Rounded to nanoseconds: a window that begins with a tick still does.
+  [[nodiscard]] double Shifted(double time_s) const {
+    return std::max(std::round((time_s - by_s_) * 1e9) / 1e9, 0.0);
+  }
+
   double by_s_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/operator/served_desk.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -9,9 +10,10 @@
 namespace fovea::sim {
 
 ServedDesk::ServedDesk(const RunDescription& about, World& world, CameraFaults camera_faults)
-    : world_(world),
+    : about_(about),
+      world_(world),
       camera_faults_(std::move(camera_faults)),
-      hands_(about, world, [](const std::string& /*what*/, const std::string& /*text*/) {}),
+      hands_(about, world, {}),
       faults_(about, FaultChoice::kServed) {}
 
 live::Catalogue ServedDesk::Offer(const RunDescription& about) {
@@ -37,13 +39,13 @@ live::Answer ServedDesk::Do(const live::Call& call) {
 }
 
 live::Answer ServedDesk::Take(const live::StartFault& request) {
-  static_cast<void>(faults_.Start(request, now_s()));
+  static_cast<void>(faults_.Start(request, world_.now_ns()));
   PassFaults();
   return {};
 }
 
 live::Answer ServedDesk::Take(const live::StopFault& request) {
-  static_cast<void>(faults_.Stop(request, now_s()));
+  static_cast<void>(faults_.Stop(request, world_.now_ns()));
   PassFaults();
   return {};
 }
@@ -55,11 +57,22 @@ void ServedDesk::PassFaults() {
   }
 }
 
-live::State ServedDesk::State() const {
+ServedLook ServedDesk::Look() const {
+  const Truth& truth = world_.truth();
+  ServedLook look;
+  look.stamp_ns = truth.stamp_ns;
+  look.num_joints = std::min(static_cast<int>(truth.q.size()), hal::kMaxJoints);
+  std::copy_n(truth.q.data(), look.num_joints, look.q.begin());
+  look.X_BC = truth.X_BC;
+  look.hands = hands_.Look(/*paused=*/false);
+  return look;
+}
+
+live::State ServedDesk::State(const ServedLook& look) const {
   live::State state;
-  state.stamp_s = now_s();
-  faults_.Fill(now_s(), state);
-  hands_.Fill(state);
+  state.stamp_s = static_cast<double>(look.stamp_ns) * 1e-9;
+  faults_.Fill(look.stamp_ns, state);
+  Fill(about_, look.hands, state);
   return state;
 }
 

@@ -3,11 +3,13 @@
 // pull the arm, break something.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "firmware/host/live/calls.hpp"
 #include "firmware/host/live/catalogue.hpp"
 #include "firmware/host/live/state.hpp"
+#include "fovea/hal/types.hpp"
 #include "sim/operator/bench_hands.hpp"
 #include "sim/operator/fault_desk.hpp"
 #include "sim/scenario/run_description.hpp"
@@ -15,7 +17,16 @@
 
 namespace fovea::sim {
 
-// All functions from the thread that advances the world.
+// The bench at one instant. It has a fixed size: copying it does not allocate.
+struct ServedLook {
+  std::int64_t stamp_ns = 0;  // in the world's time
+  int num_joints = 0;
+  hal::JointArray q{};  // [num_joints; rad, m]
+  Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
+  HandsLook hands;
+};
+
+// All functions from the thread that advances the world, except State.
 class ServedDesk {
  public:
   // Borrows `about` and `world`. `camera_faults` passes changed faults on to the camera; may be empty.
@@ -26,12 +37,17 @@ class ServedDesk {
   // desk's.
   static live::Catalogue Offer(const RunDescription& about);
 
-  // Carries out a call. An answer with an error changes nothing.
+  // Carries out a call. An answer with an error changes nothing. A request for a fault allocates.
   live::Answer Do(const live::Call& call);
+  // Never refused. They allocate nothing.
+  void LetTargetGo() { hands_.LetTargetGo(); }
+  void LetArmGo() { hands_.LetArmGo(); }
   // Call before each step of the world.
   void Act() { hands_.Act(); }
-  // The bench now; the rest of the state is the page's.
-  [[nodiscard]] live::State State() const;
+  // The bench now. Allocates nothing.
+  [[nodiscard]] ServedLook Look() const;
+  // The bench at `look`; the rest of the state is the page's. From any thread, but not during Do.
+  [[nodiscard]] live::State State(const ServedLook& look) const;
 
  private:
   template <class Request>
@@ -45,9 +61,9 @@ class ServedDesk {
   [[nodiscard]] live::Answer Take(const live::StartFault& request);
   [[nodiscard]] live::Answer Take(const live::StopFault& request);
 
-  [[nodiscard]] double now_s() const { return static_cast<double>(world_.now_ns()) * 1e-9; }
   void PassFaults();
 
+  const RunDescription& about_;
   World& world_;
   const CameraFaults camera_faults_;
   BenchHands hands_;

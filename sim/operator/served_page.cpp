@@ -2,9 +2,11 @@
 #include "sim/operator/served_page.hpp"
 
 #include <exception>
+#include <optional>
 #include <utility>
 #include <variant>
 
+#include "firmware/core/model/types.hpp"
 #include "firmware/host/recording/log/picture_messages.hpp"
 #include "firmware/host/recording/log/run_messages.hpp"
 #include "firmware/host/recording/log/topics.hpp"
@@ -24,14 +26,13 @@ constexpr std::chrono::milliseconds kServedStatePeriod{60};  // also for the tar
 constexpr std::chrono::milliseconds kSpeedPeriod{500};       // over which the speed is measured
 // Longer than a slow computer's step. The robot may also hang, or wait for its client.
 constexpr std::chrono::milliseconds kStepPatience{300};
+constexpr const char* kStandstill = "the robot does not step: it hangs, or it waits for its client";
 
 run::RunFacts FactsOfServed(const RunDescription& about) {
   run::RunFacts facts = FactsOf(about);
   facts.duration_s = 0.0;  // until somebody ends it
   return facts;
 }
-
-model::Pose TargetOf(const Truth& truth) { return {truth.R_BO, truth.p_BO}; }
 
 }  // namespace
 
@@ -47,7 +48,8 @@ ServedPage::ServedPage(live::ServerConfig config, const RunDescription& about, W
   server_ = std::make_unique<live::Server>(std::move(config), catalogue);
   feed_ = std::make_unique<live::LiveFeed>(*server_, catalogue.channels);
   ShowOnce();
-  state_ = desk_.State();
+  look_ = desk_.Look();
+  state_ = desk_.State(look_);
   server_->SetState(state_);
   thread_ = std::thread([this] { Run(); });
 }
@@ -56,6 +58,7 @@ ServedPage::~ServedPage() {
   closed_ = true;
   thread_.join();
   state_.ends = true;
+  state_.notice = "";
   server_->SetState(state_);
 }
 
@@ -74,6 +77,7 @@ void ServedPage::ShowOnce() {
 }
 
 void ServedPage::AfterStep() {
+  LetGo();
   between_.Pass();
   desk_.Act();
 }
@@ -106,51 +110,102 @@ live::Answer ServedPage::Do(const live::Call& call) {
     ended_ = true;
     return {};
   }
+  if (AsksToLetGo(call.request)) {
+    return {};
+  }
   live::Answer answer;
-  if (!between_.Do([&] { answer = desk_.Do(call); }, kStepPatience)) {
+  const auto act = [&] {
+    LetGo();  // what was asked for before
+    answer = desk_.Do(call);
+  };
+  if (!between_.Do(act, kStepPatience)) {
     return {"the robot's time stands still, because it hangs or waits for its client; try again", "{}"};
   }
   return answer;
 }
 
+// A request to let go is neither refused nor lost, even if the world does not step just now: otherwise the
+// spring would pull for ever.
+bool ServedPage::AsksToLetGo(const live::Request& request) {
+  const bool of_both = std::holds_alternative<live::ControlEnded>(request);
+  const bool of_target = of_both || std::holds_alternative<live::ReleaseTarget>(request);
+  const bool of_arm = of_both || std::holds_alternative<live::Release>(request);
+  if (of_target) {
+    let_target_go_.store(true, std::memory_order_release);
+  }
+  if (of_arm) {
+    let_arm_go_.store(true, std::memory_order_release);
+  }
+  return of_target || of_arm;
+}
+
+// From the world's thread.
+void ServedPage::LetGo() {
+  const auto take = [](std::atomic<bool>& asked) {
+    return asked.load(std::memory_order_relaxed) && asked.exchange(false, std::memory_order_acquire);
+  };
+  if (take(let_target_go_)) {
+    desk_.LetTargetGo();
+  }
+  if (take(let_arm_go_)) {
+    desk_.LetArmGo();
+  }
+}
+
 void ServedPage::Look() {
-  const bool state_due = state_due_ || Clock::now() >= next_state_;
-  Truth truth;
-  live::State state;
-  const auto visit = [&] {
-    truth = world_.truth();
-    if (state_due) {
-      state = desk_.State();
-    }
+  const auto visit = [this] {
+    LetGo();
+    look_ = desk_.Look();
   };
   if (!between_.Do(visit, kStepPatience)) {
+    ShowStandstill();
     return;
   }
-  server_->SetTime(truth.stamp_ns);
-  if (truth.stamp_ns >= next_bench_ns_) {
-    next_bench_ns_ = truth.stamp_ns + kBenchPeriodNs;
-    ShowBench(truth);
+  server_->SetTime(look_.stamp_ns);
+  if (look_.stamp_ns >= next_bench_ns_) {
+    next_bench_ns_ = look_.stamp_ns + kBenchPeriodNs;
+    ShowBench();
   }
-  if (state_due) {
+  if (state_due_ || Clock::now() >= next_state_) {
     state_due_ = false;
     next_state_ = Clock::now() + kServedStatePeriod;
-    ShowState(std::move(state));
+    ShowState();
   }
 }
 
-void ServedPage::ShowBench(const Truth& truth) {
+void ServedPage::ShowBench() {
   const bool has_target = about_.scene.has_eye;
+  const model::Pose X_BO{look_.hands.X_BO.linear(), look_.hands.X_BO.translation()};
   if (has_target && feed_->Wants(log::kTruthTopic)) {
-    Show(log::kTruthTopic, truth.stamp_ns, log::TruthMessage(TruthSampleOf(about_, truth)));
+    Truth truth;
+    truth.stamp_ns = look_.stamp_ns;
+    truth.X_BC = look_.X_BC;
+    truth.p_BO = X_BO.p;
+    truth.R_BO = X_BO.R;
+    Show(log::kTruthTopic, look_.stamp_ns, log::TruthMessage(TruthSampleOf(about_, truth)));
   }
-  if (feed_->Wants(log::kTransformTopic) && truth.q.allFinite()) {
-    log::SetTransforms(truth.stamp_ns, facts_.servo.arm, facts_.frames, truth.q,
-                       has_target ? std::optional(TargetOf(truth)) : std::nullopt, transforms_);
-    Show(log::kTransformTopic, truth.stamp_ns, transforms_);
+  const model::VecN q = model::ToVector(look_.q, look_.num_joints);
+  if (feed_->Wants(log::kTransformTopic) && q.allFinite()) {
+    log::SetTransforms(look_.stamp_ns, facts_.servo.arm, facts_.frames, q,
+                       has_target ? std::optional(X_BO) : std::nullopt, transforms_);
+    Show(log::kTransformTopic, look_.stamp_ns, transforms_);
   }
 }
 
-void ServedPage::ShowState(live::State state) {
+// The last state, with the reason why there is no newer one.
+void ServedPage::ShowStandstill() {
+  const Clock::time_point now = Clock::now();
+  speed_ = 0.0;
+  speed_from_ = now;
+  speed_from_s_ = static_cast<double>(look_.stamp_ns) * 1e-9;
+  state_.real_time_factor = 0.0;
+  state_.wall_s = std::chrono::duration<double>(now - begin_).count();
+  state_.notice = kStandstill;
+  server_->SetState(state_);
+}
+
+void ServedPage::ShowState() {
+  live::State state = desk_.State(look_);
   const Clock::time_point now = Clock::now();
   if (now - speed_from_ >= kSpeedPeriod) {
     speed_ = (state.stamp_s - speed_from_s_) / std::chrono::duration<double>(now - speed_from_).count();

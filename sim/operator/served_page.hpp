@@ -48,22 +48,28 @@ class ServedPage {
   [[nodiscard]] bool ended() const { return ended_.load(std::memory_order_relaxed); }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   void ShowOnce();
   void Run();
   [[nodiscard]] live::Answer Do(const live::Call& call);
+  [[nodiscard]] bool AsksToLetGo(const live::Request& request);
+  void LetGo();
   void Look();
-  void ShowBench(const Truth& truth);
-  void ShowState(live::State state);
+  void ShowBench();
+  void ShowState();
+  void ShowStandstill();
   void ShowPicture();
   void Show(const char* topic, std::int64_t stamp_ns, const google::protobuf::Message& message);
-
-  using Clock = std::chrono::steady_clock;
 
   const RunDescription& about_;
   const run::RunFacts facts_;
   World& world_;
   ServedDesk desk_;  // used by the world's thread
   BetweenSteps between_;
+  // What shall be let go before the next step, however late that is.
+  std::atomic<bool> let_target_go_{false};
+  std::atomic<bool> let_arm_go_{false};
   std::unique_ptr<live::Server> server_;
   std::unique_ptr<live::LiveFeed> feed_;
   std::atomic<bool> ended_{false};
@@ -72,6 +78,8 @@ class ServedPage {
   std::mutex picture_mutex_;
   cv::Mat picture_;  // the newest, not sent yet; empty: none
   std::int64_t picture_ns_ = 0;
+
+  ServedLook look_;  // written by the world's thread while the page's thread waits for it
 
   // Used by the page's thread.
   const Clock::time_point begin_ = Clock::now();

@@ -51,6 +51,15 @@ void TargetHand::Throw(const Eigen::Isometry3d& X_BO, const Eigen::Vector3d& v_B
   omega_B_ = Shortened(omega_B, kMostTurnRate);
 }
 
+Eigen::Isometry3d TargetHand::AboveTable(Eigen::Isometry3d X_BO) const {
+  X_BO.translation().z() = std::max(X_BO.translation().z(), least_height_);
+  return X_BO;
+}
+
+std::optional<Eigen::Isometry3d> TargetHand::Goal() const {
+  return motion_ == Motion::kDragged ? std::optional(AboveTable(to_)) : std::nullopt;
+}
+
 std::optional<Eigen::Isometry3d> TargetHand::At(std::int64_t now_ns) const {
   if (motion_ == Motion::kNone) {
     return std::nullopt;
@@ -76,8 +85,7 @@ std::optional<Eigen::Isometry3d> TargetHand::At(std::int64_t now_ns) const {
     }
     X_BO.translation() = from_.translation() + v_BO_ * way_s;
   }
-  X_BO.translation().z() = std::max(X_BO.translation().z(), least_height_);
-  return X_BO;
+  return AboveTable(X_BO);
 }
 
 }  // namespace fovea::sim

@@ -29,14 +29,18 @@ class TargetHand {
   // rests.
   void Throw(const Eigen::Isometry3d& X_BO, const Eigen::Vector3d& v_BO, const Eigen::Vector3d& omega_B,
              std::int64_t now_ns);
-  // The hand lets go: the target stays where it is, or arrives.
+  // The hand lets go: the target stays where it is, or arrives. The scenario's motion does not go on.
   void Release() { held_ = false; }
 
   [[nodiscard]] bool held() const { return held_; }
+  // Where the last drag leads the target, if nothing stops the time; none if it was thrown since, or never
+  // dragged.
+  [[nodiscard]] std::optional<Eigen::Isometry3d> Goal() const;
   // The target's pose X_BO; none if nobody has touched it.
   [[nodiscard]] std::optional<Eigen::Isometry3d> At(std::int64_t now_ns) const;
 
  private:
+  [[nodiscard]] Eigen::Isometry3d AboveTable(Eigen::Isometry3d X_BO) const;
   [[nodiscard]] double SecondsSince(std::int64_t now_ns) const;
   [[nodiscard]] Eigen::Vector3d VelocityAt(std::int64_t now_ns) const;
 

@@ -179,6 +179,11 @@ export async function checkTime(page, sent) {
 export async function checkPast(page, sent, folder) {
   const slider = page.locator(".scrub");
   await slider.focus();
+  for (let i = 0; i < 3; i++) await slider.press("ArrowLeft");
+  await page.locator(".past-bar").waitFor();
+  const keyed = await shownTime(page);
+  await page.waitForTimeout(500);
+  assert.ok((await shownTime(page)) <= keyed, "keys lead from live to the past, which stands still");
   await page.evaluate(() => {
     const node = document.querySelector(".scrub");
     node.value = -2;
@@ -250,15 +255,11 @@ export async function checkTarget(page, sent) {
   assert.equal(first.p_BO.length, 3);
   assert.ok(Math.abs(Math.hypot(...first.q_BO) - 1) < 1e-6, "a quaternion of length 1");
   await page.mouse.up();
-  const release = page.getByRole("button", { name: "Let the target go" });
-  await release.waitFor();
-  const poses = texts(sent.slice(from)).filter((text) => /"p_BO"/.test(text));
-  const last = JSON.parse(poses[poses.length - 1]);
-  assert.ok(Math.hypot(...last.p_BO.map((x, i) => x - first.p_BO[i])) > 0.005, "the target was moved");
-  from = sent.length;
-  await release.click();
   await waitForSent(page, sent, from, /^\{\}$/);
-  await release.waitFor({ state: "hidden" });
+  const poses = texts(sent.slice(from)).filter((text) => /^\{\}$|"p_BO"/.test(text));
+  assert.equal(poses.pop(), "{}", "it is let go after its last pose");
+  const last = JSON.parse(poses.pop());
+  assert.ok(Math.hypot(...last.p_BO.map((x, i) => x - first.p_BO[i])) > 0.005, "the target was moved");
   // Thrown: it flies on with the velocity of the hand.
   await page.getByLabel("What the target does when it is let go").selectOption("throw");
   from = sent.length;
@@ -267,6 +268,7 @@ export async function checkTarget(page, sent) {
   await page.mouse.up();
   const thrown = await waitForSent(page, sent, from, /"v_BO"/);
   assert.ok(Math.hypot(...thrown.v_BO) > 0.01 && Math.hypot(...thrown.v_BO) <= 5.001, JSON.stringify(thrown));
+  assert.ok(!texts(sent.slice(from)).includes("{}"), "a throw is no release");
   await page.getByLabel("What the target does when it is let go").selectOption("stay");
 }
 
@@ -278,7 +280,8 @@ export async function checkPull(page, sent) {
   let from = sent.length;
   await drag(page, hand, { x: hand.x + 60, y: hand.y - 40 });
   const pull = await waitForSent(page, sent, from, /"to_B"/);
-  assert.ok(pull.link.length > 0 && pull.p_link.length === 3 && pull.to_B.every(Number.isFinite), JSON.stringify(pull));
+  assert.match(pull.link, /^(?!fovea)./, "a link of the robot");
+  assert.ok(pull.p_link.length === 3 && pull.to_B.every(Number.isFinite), JSON.stringify(pull));
   from = sent.length;
   await page.mouse.up();
   await waitForSent(page, sent, from, /^\{\}$/);
@@ -292,9 +295,14 @@ export async function checkKeys(page, sent) {
   const from = sent.length;
   await page.keyboard.press("ArrowUp");
   await waitForSent(page, sent, from, /"p_BO"/);
-  const release = page.getByRole("button", { name: "Let the target go" });
-  await release.waitFor();
-  await release.press("Enter");
+  await waitForSent(page, sent, from, /^\{\}$/);
+  await page.getByRole("button", { name: "Pull arm" }).press("Enter");
+  await page.locator("#bench canvas").focus();
+  await page.keyboard.press("ArrowRight");
+  assert.doesNotMatch((await waitForSent(page, sent, from, /"to_B"/)).link, /fovea/, "keys pull the robot's last link");
+  const pulled = sent.length;
+  await page.keyboard.press("Escape");
+  await waitForSent(page, sent, pulled, /^\{\}$/);
   const nameless = await page.evaluate(() =>
     [...document.querySelectorAll("button, input, select, a, [tabindex]")]
       .filter((node) => node.offsetParent && node.tabIndex >= 0)
@@ -311,6 +319,11 @@ export async function checkControl(page, other) {
   await other.locator(".pause").click();
   await waitForText(other, ".notes", /has control/);
   assert.match(await other.locator(".pause").innerText(), /Pause/, "the refused pause did not act");
+  const field = other.locator(".tuned-row .number-field").first();
+  const was = await field.inputValue();
+  await field.fill("7");
+  await field.press("Enter");
+  await other.waitForFunction((value) => document.querySelector(".tuned-row .number-field").value === value, was);
   await page.getByRole("button", { name: "Give control" }).click();
   await waitForText(other, ".who", /Nobody has control/);
   await other.getByRole("button", { name: "Take control" }).click();
@@ -321,7 +334,6 @@ export async function checkControl(page, other) {
 
 // Between page and server, for a network that fails: while it is shut, connections fall silent and none is made.
 export function gate() {
-  const open = new Set();
   const self = {
     shut: false,
     tries: 0,
@@ -329,14 +341,9 @@ export function gate() {
       self.tries++;
       if (self.shut) return socket.close({ code: 1011, reason: "no network" });
       const server = socket.connectToServer();
-      const pair = { socket, server };
-      open.add(pair);
       socket.onMessage((message) => !self.shut && server.send(message));
       server.onMessage((message) => !self.shut && socket.send(message));
-      socket.onClose((code, reason) => {
-        open.delete(pair);
-        server.close({ code, reason });
-      });
+      socket.onClose((code, reason) => server.close({ code, reason }));
     },
   };
   return self;

@@ -177,7 +177,9 @@ async function checkDragAndLambda(context) {
   const ratio = four.tau_s / two.tau_s;
   console.log(`time constant: ratio ${ratio.toFixed(3)}`);
   assert.ok(ratio > 0.3 && ratio < 0.75, "lambda 4 halves the time constant");
-  assert.ok(touches.length >= 2, "the drags are in the log");
+  const told = touches.map(({ data }) => data.text);
+  for (const words of [/^the target is taken/, /^the target is let go/])
+    assert.ok(told.filter((text) => words.test(text)).length >= 2, `both drags are in the log: ${told.join("; ")}`);
   return { saved, truths, rate };
 }
 
@@ -204,8 +206,10 @@ async function checkUntouched(context) {
   const run = await begin("ball", "untouched");
   const { page } = await open(context, run.url);
   await untilTime(page, 1.5);
-  await page.close();
   const watched = await run.end();
+  await page.getByText("The run has ended.").waitFor();
+  assert.ok(await page.locator(".note-bar.bad").isHidden(), "the run's end is no lost connection");
+  await page.close();
   const alone = withoutPage(watched.sim_time_s);
   console.log(`${watched.ticks} ticks with a viewer: log_hash ${watched.log_hash}; without: ${alone.log_hash}`);
   assert.deepEqual([watched.ticks, watched.log_hash], [alone.ticks, alone.log_hash]);

@@ -320,7 +320,7 @@ export class StandIn {
     this.controls = client;
     this.state.controller = client ? client.name : null;
     if (!client) {
-      this.target = null;
+      this.target &&= { ...this.target, held: false };
       this.pull = null;
     }
     this.#tellState();
@@ -340,7 +340,8 @@ export class StandIn {
       this.received.push({ published: topic, message });
       const trouble = this.#refusal(client, topic);
       if (trouble) return client.say({ op: "status", level: 2, message: trouble });
-      this.target = topic === "/target/pose" ? { ...message, held: true } : null;
+      if (topic === "/target/pose") this.target = { ...message, held: true };
+      else this.target &&= { ...this.target, held: false };
       return this.#tellState();
     }
     const [service, call, length] = [1, 5, 9].map((at) => data.readUInt32LE(at));

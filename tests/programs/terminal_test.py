@@ -52,7 +52,7 @@ def run(arguments, columns=None, environment=None, only=(1, 2)):
 
 class Terminal(unittest.TestCase):
     def check_width(self, text, columns):
-        for line in COLOUR.sub("", text).splitlines():
+        for line in COLOUR.sub("", text).replace("\x1b[K", "").splitlines():
             self.assertLessEqual(len(line), columns, line)
 
     def check_colours(self, text):

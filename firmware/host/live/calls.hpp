@@ -61,6 +61,7 @@ struct HoldTarget {
   std::array<double, 3> p_BO{};                    // [m]
   std::array<double, 4> q_BO{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
 };
+// The target stays where HoldTarget put it. No motion that it had before goes on.
 struct ReleaseTarget {};
 struct SetParameter {
   std::size_t parameter = 0;  // index in Catalogue::parameters

@@ -47,6 +47,7 @@ struct FaultSetting {
   double min = 0.0;
   double max = 0.0;
   double value = 0.0;  // at the start
+  bool whole = false;  // only whole numbers; 0 and 1 of a flag
 };
 
 // A fault that a viewer may inject.

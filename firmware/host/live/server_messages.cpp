@@ -61,6 +61,7 @@ ordered_json FaultsJson(const State& state, const Catalogue& catalogue) {
                           {"unit", setting.unit},
                           {"min", setting.min},
                           {"max", setting.max},
+                          {"whole", setting.whole},
                           {"value", k < now.values.size() ? now.values[k] : setting.value}});
     }
     faults.push_back(

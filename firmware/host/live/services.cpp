@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "firmware/host/live/json_reader.hpp"
 
@@ -29,6 +30,16 @@ std::size_t FaultOf(const json& object, const Catalogue& catalogue) {
   return static_cast<std::size_t>(fault - catalogue.faults.begin());
 }
 
+double SizeOf(const json& value, const FaultSetting& setting) {
+  const double size = NumberIn(value, setting.name, setting.min, setting.max);
+  if (setting.whole && size != std::floor(size)) {
+    const auto shown = [](double bound) { return std::to_string(static_cast<std::int64_t>(bound)); };
+    throw Refusal(setting.name + " must be a whole number from " + shown(setting.min) + " to " +
+                  shown(setting.max) + ", got " + Quoted(value.dump(-1, ' ', true)));
+  }
+  return size;
+}
+
 StartFault ReadStartFault(const json& object, const Catalogue& catalogue) {
   RefuseUnknownFields(object, {"name", "settings"});
   StartFault start{FaultOf(object, catalogue), {}};
@@ -46,7 +57,7 @@ StartFault ReadStartFault(const json& object, const Catalogue& catalogue) {
     if (setting == known.end()) {
       throw Refusal("the fault has no setting " + Quoted(name));
     }
-    start.sizes[name] = NumberIn(value, setting->name, setting->min, setting->max);
+    start.sizes[name] = SizeOf(value, *setting);
   }
   return start;
 }

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/host/live/server_messages.hpp"
 #include "tests/host/live/hub_fixture.hpp"
 
 namespace fovea::live {
@@ -125,6 +126,27 @@ TEST_F(HubTest, StateShowsTheViewersOwnPart) {
   seen = json::parse(std::string(Take(two, "binary", 1).back()["payload"]));
   EXPECT_EQ(seen["you"], false);
   EXPECT_EQ(seen["controller"], "Ada");
+}
+
+TEST(LiveState, ShowsTheFaultsWithTheirSizes) {
+  Catalogue catalogue;
+  catalogue.faults = {{"nan",
+                       "an encoder fails",
+                       {{"nan_joint", "which joint", "", 1.0, 7.0, 1.0, true},
+                        {"nan_share", "how often", "", 0.0, 1.0, 0.5}}}};
+  State state;
+  state.faults = {{true, {3.0, 0.25}}};
+  const json fault = json::parse(StateJson(state, catalogue) + "}")["faults"][0];
+  EXPECT_EQ(fault["active"], true);
+  EXPECT_EQ(fault["settings"][0], (json{{"name", "nan_joint"},
+                                        {"words", "which joint"},
+                                        {"unit", ""},
+                                        {"min", 1.0},
+                                        {"max", 7.0},
+                                        {"whole", true},
+                                        {"value", 3.0}}));
+  EXPECT_EQ(fault["settings"][1]["whole"], false);
+  EXPECT_EQ(fault["settings"][1]["value"], 0.25);
 }
 
 TEST_F(HubTest, StateComesAtOnceForEventsElseAtTenHertz) {

@@ -18,7 +18,8 @@ using testing::ElementsAre;
 Catalogue WithFault() {
   Catalogue catalogue;
   catalogue.faults = {{"glare", "glare in the picture", {}},
-                      {"load", "a heavier load", {{"load_mass", "its mass", "kg", 0.0, 3.0, 1.0}}}};
+                      {"load", "a heavier load", {{"load_mass", "its mass", "kg", 0.0, 3.0, 1.0}}},
+                      {"nan", "an encoder fails", {{"nan_joint", "which joint", "", 1.0, 7.0, 1.0, true}}}};
   return catalogue;
 }
 
@@ -63,6 +64,10 @@ TEST(Services, FaultsAreReadByTheCatalogue) {
             "load_mass must be a number from 0.0 to 3.0, got 3.5");
   EXPECT_EQ(WhyNot(Service::kStartFault, R"({"name":"load","settings":{"mass":1}})"),
             "the fault has no setting mass");
+  EXPECT_EQ(Read<StartFault>(Service::kStartFault, R"({"name":"nan","settings":{"nan_joint":7.0}})").sizes,
+            (std::map<std::string, double>{{"nan_joint", 7.0}}));
+  EXPECT_EQ(WhyNot(Service::kStartFault, R"({"name":"nan","settings":{"nan_joint":1.5}})"),
+            "nan_joint must be a whole number from 1 to 7, got 1.5");
   EXPECT_EQ(WhyNot(Service::kStartFault, R"({"name":"load","settings":[]})"), "settings must be an object");
 }
 

@@ -2,6 +2,7 @@
 // Each request of an operator has its effect on a running arm, and is recorded.
 #include "sim/operator/desk.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "firmware/host/recording/log/record_hash.hpp"
 #include "tests/sim/operator/operated_bench.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -65,7 +67,40 @@ TEST(OperatorDesk, ADraggedTargetIsFollowed) {
   EXPECT_NEAR((bench.world->truth().p_BO - from).norm(), 0.1, 1e-9);
   std::cout << "error 2.9 s after a drag of 0.1 m: " << 1e3 * bench.TrueError() << " mm\n";
   EXPECT_LT(bench.TrueError(), 1e-3);
-  EXPECT_EQ(bench.touches.size(), 2U);
+  EXPECT_EQ(bench.Ask(live::HoldTarget{{from.x(), from.y(), from.z()}}), "");
+  EXPECT_EQ(bench.Ask(live::ReleaseTarget{}), "");
+  EXPECT_EQ(bench.touches.size(), 4U) << "each drag is taken and let go";
+}
+
+// The world does not move the target meanwhile. The page and the saved file still have it where it was put.
+TEST(OperatorDesk, APausedTargetIsWhereItWasDragged) {
+  OperatedBench bench;
+  bench.RunUntil(1.0);
+  const Eigen::Vector3d before = bench.world->truth().p_BO;
+  EXPECT_EQ(bench.Ask(live::Pause{true}), "");
+  EXPECT_EQ(bench.desk->State().target->p_BO, (std::array{before.x(), before.y(), before.z()}));
+  constexpr double kHalf = 0.70710678118654757;
+  const live::HoldTarget wish{{0.55, 0.05, 0.06}, {kHalf, 0.0, 0.0, kHalf}};
+  EXPECT_EQ(bench.Ask(wish), "");
+  EXPECT_EQ(bench.Ask(live::ReleaseTarget{}), "");
+  const live::TargetState shown = *bench.desk->State().target;
+  EXPECT_EQ(shown.p_BO, wish.p_BO);
+  EXPECT_NEAR(shown.q_BO[3], kHalf, 1e-12);
+  EXPECT_FALSE(shown.held);
+  const live::Answer saved = bench.desk->Do({"somebody", live::Save{}});
+  ASSERT_EQ(saved.error, "");
+  const test::TempFolder folder;
+  std::ofstream(folder.path() / "saved.toml") << nlohmann::json::parse(saved.json)["toml"].get<std::string>();
+  const OperatedBench again((folder.path() / "saved.toml").string());
+  EXPECT_EQ(again.world->truth().p_BO, Eigen::Vector3d(0.55, 0.05, 0.06));
+  EXPECT_TRUE(again.world->truth().R_BO.isApprox(
+      Eigen::Quaterniond(kHalf, 0.0, 0.0, kHalf).toRotationMatrix(), 1e-9));
+  EXPECT_EQ(bench.Ask(live::Pause{false}), "");
+  EXPECT_EQ(bench.desk->State().target->p_BO, (std::array{before.x(), before.y(), before.z()}))
+      << "it only begins to move";
+  EXPECT_EQ(bench.Ask(live::Pause{true}), "");
+  EXPECT_EQ(bench.Ask(live::Throw{{0.0, 0.1, 0.0}, {}}), "");
+  EXPECT_EQ(bench.desk->State().target->p_BO, (std::array{before.x(), before.y(), before.z()}));
 }
 
 TEST(OperatorDesk, ATargetBeyondReachLeadsToHoldWithItsReason) {
@@ -142,6 +177,48 @@ TEST(OperatorDesk, EachFaultStartsAndStops) {
   }
 }
 
+std::string HashOf(const OperatedBench& bench) {
+  log::RecordHash hash;
+  for (const hal::TickRecord& record : bench.records) {
+    hash.Add(record);
+  }
+  return hash.Finish();
+}
+
+// The page's faults, one after the other, are those of a scenario with the same windows, to the last bit. The
+// first one begins at the time of an exposure.
+TEST(OperatorDesk, FaultsFromThePageEqualThoseOfAScenario) {
+  constexpr double kLasts = 0.1;
+  const std::vector<std::string> names{"camera_outage", "torque_loss", "encoder_noise", "packet_loss",
+                                       "deadline_miss"};
+  std::vector<std::string> set{"faults.deadline_miss=0.5", "faults.packet_loss=0.5"};
+  OperatedBench page("ball", set);
+  const auto next_s = [&page] {
+    return static_cast<double>(page.world->now_ns() + hal::kTickPeriodNs) * 1e-9;
+  };
+  double t_s = 0.52;
+  for (const std::string& name : names) {
+    page.RunUntil(t_s);
+    const double from_s = next_s();
+    ASSERT_EQ(page.Ask(live::StartFault{page.Fault(name), {}}), "");
+    page.RunUntil(t_s + kLasts);
+    const double to_s = next_s();
+    ASSERT_EQ(page.Ask(live::StopFault{page.Fault(name)}), "");
+    set.push_back(fmt::format("faults.{}_s=[{},{}]", name, from_s, to_s));
+    t_s += 2.0 * kLasts;
+  }
+  page.RunUntil(t_s);
+  OperatedBench scenario("ball", set);
+  double again_s = 0.52;
+  for (std::size_t i = 0; i < names.size(); ++i, again_s += 2.0 * kLasts) {
+    scenario.RunUntil(again_s);
+    scenario.RunUntil(again_s + kLasts);
+  }
+  scenario.RunUntil(again_s);
+  EXPECT_EQ(page.records.size(), scenario.records.size());
+  EXPECT_EQ(HashOf(page), HashOf(scenario));
+}
+
 TEST(OperatorDesk, ChangesAGainInMotion) {
   OperatedBench bench;
   bench.RunUntil(0.5);
@@ -164,9 +241,11 @@ TEST(OperatorDesk, PausesStepsAndEnds) {
   EXPECT_EQ(bench.desk->end(), LiveEnd::kNone);
   EXPECT_EQ(bench.Ask(live::Reset{}), "");
   EXPECT_EQ(bench.desk->end(), LiveEnd::kReset);
+  EXPECT_FALSE(bench.desk->State().ends) << "it begins anew";
   EXPECT_EQ(bench.Ask(live::Hold{}), "the run is ending");
   EXPECT_EQ(bench.Ask(live::End{}), "");
   EXPECT_EQ(bench.desk->end(), LiveEnd::kEnd);
+  EXPECT_TRUE(bench.desk->State().ends);
 }
 
 TEST(OperatorDesk, SavesAScenarioThatBeginsThere) {

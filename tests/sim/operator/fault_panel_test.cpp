@@ -64,6 +64,19 @@ TEST(FaultPanel, StartsResizesAndStops) {
   EXPECT_EQ(panel.faults().bench.load.mass, 1.0);
 }
 
+// Otherwise the window would begin anew, and a stop before the next step would leave none: the load that
+// acted before would hang for ever.
+TEST(FaultPanel, AFaultThatHasJustEndedGoesOn) {
+  FaultPanel panel({}, 7);
+  panel.Start("load", {}, 1.0);
+  panel.Stop("load", 3.0);
+  panel.Start("load", {}, 3.001);
+  EXPECT_EQ(panel.faults().bench.load.window.start_s, 1.0);
+  panel.Stop("load", 3.001);
+  EXPECT_TRUE(panel.faults().bench.load.window.Begins());
+  EXPECT_FALSE(Of(panel.Switches(3.001), "load").active);
+}
+
 TEST(FaultPanel, StopsAFaultThatTheScenarioPlanned) {
   FaultSettings settings;
   settings.bench.camera_outage = {2.0, 8.0};

@@ -31,9 +31,9 @@ class OperatedBench {
     world = std::make_unique<sim::World>(config);
     world->OnExposure([this](const sim::Exposure& exposure) { See(exposure); });
     sim_arm_.emplace(*world);
-    arm.emplace(*sim_arm_, sim::ArmFaults{});
+    arm.emplace(*sim_arm_, about.scenario.faults.arm);
     clock_.emplace(*world, [this](std::int64_t now_ns) { return Between(now_ns); });
-    stalling_.emplace(*clock_, sim::StallFault{});
+    stalling_.emplace(*clock_, about.scenario.faults.stall);
     loop.emplace(recorder_, *arm, *stalling_, features_, recorder_, meter_);
     sim::DeskParts parts{about, *world, *arm, vision_, *loop, *stalling_, {}};
     parts.reports.touch = [this](const std::string& what, const std::string& text) {

@@ -57,6 +57,7 @@ class ServedDeskTest : public testing::Test {
   void Step(int steps) {
     bench_.Step(steps, [this] { desk_.Act(); });
   }
+  live::State State() const { return desk_.State(desk_.Look()); }
   std::size_t Fault(const std::string& name) const {
     const live::Catalogue offer = ServedDesk::Offer(bench_.about);
     for (std::size_t i = 0; i < offer.faults.size(); ++i) {
@@ -77,11 +78,11 @@ TEST_F(ServedDeskTest, ADragMovesTheTarget) {
   Step(10);
   const Eigen::Vector3d from = bench_.world.truth().p_BO;
   EXPECT_EQ(Ask(live::HoldTarget{{from.x(), from.y() + 0.1, from.z()}}), "");
-  EXPECT_TRUE(desk_.State().target->held);
+  EXPECT_TRUE(State().target->held);
   Step(2000);
   EXPECT_NEAR((bench_.world.truth().p_BO - from).norm(), 0.1, 1e-9);
   EXPECT_EQ(Ask(live::ReleaseTarget{}), "");
-  EXPECT_FALSE(desk_.State().target->held);
+  EXPECT_FALSE(State().target->held);
   EXPECT_NE(Ask(live::HoldTarget{{2.1, 0.0, 0.04}}), "") << "out of reach";
   EXPECT_EQ(Ask(live::Throw{{0.0, 0.5, 0.0}, {}}), "");
   Step(100);
@@ -92,13 +93,13 @@ TEST_F(ServedDeskTest, APullLoadsTheArmUntilItsEnd) {
   Step(200);
   const Eigen::Vector3d rest = bench_.p_BE();
   EXPECT_EQ(Ask(live::Pull{bench_.hand(), {}, {rest.x(), rest.y() + 0.1, rest.z()}}), "");
-  EXPECT_EQ(desk_.State().pull->link, bench_.hand());
+  EXPECT_EQ(State().pull->link, bench_.hand());
   Step(500);
   const double pulled = bench_.p_BE().y() - rest.y();
   std::cout << "a spring of 20 N moves the hand of the served robot by " << 1e3 * pulled << " mm\n";
   EXPECT_GT(pulled, 1e-4);
   EXPECT_EQ(Ask(live::ControlEnded{}), "");
-  EXPECT_FALSE(desk_.State().pull.has_value());
+  EXPECT_FALSE(State().pull.has_value());
   Step(1000);
   EXPECT_LT(std::abs(bench_.p_BE().y() - rest.y()), 0.5 * pulled) << "the robot's impedance brings it back";
   EXPECT_EQ(Ask(live::Pull{"no_such_link", {}, {}}), "the arm has no link \"no_such_link\"");
@@ -110,26 +111,27 @@ TEST_F(ServedDeskTest, AFaultOfTheBenchStartsAndStops) {
   const double rest = bench_.p_BE().z();
   EXPECT_EQ(Ask(live::StartFault{load, {{"load_mass", 2.0}}}), "");
   Step(300);
-  EXPECT_TRUE(desk_.State().faults[load].active);
+  EXPECT_TRUE(State().faults[load].active);
   const double sag = rest - bench_.p_BE().z();
   std::cout << "a load of 2 kg lowers the hand of the served robot by " << 1e3 * sag << " mm\n";
   EXPECT_GT(sag, 1e-4);
   EXPECT_EQ(Ask(live::StopFault{load}), "");
   Step(1000);
-  EXPECT_FALSE(desk_.State().faults[load].active);
+  EXPECT_FALSE(State().faults[load].active);
   EXPECT_LT(std::abs(rest - bench_.p_BE().z()), 0.5 * sag);
 }
 
 TEST_F(ServedDeskTest, TheCameraGetsItsFaults) {
   EXPECT_EQ(Ask(live::StartFault{Fault("mirror"), {}}), "");
   ASSERT_EQ(camera_faults_.size(), 1U);
-  EXPECT_TRUE(camera_faults_[0].picture.mirror.Contains(bench_.world.now_ns()));
+  EXPECT_TRUE(camera_faults_[0].picture.mirror.Contains(bench_.world.now_ns() + hal::kTickPeriodNs))
+      << "from the next step on";
 }
 
 TEST_F(ServedDeskTest, ARefusedFaultSaysWhyAndChangesNothing) {
   EXPECT_EQ(Ask(live::StartFault{Fault("push"), {}}),
             "faults.push is 0 for each joint: give at least one of them a torque");
-  EXPECT_FALSE(desk_.State().faults[Fault("push")].active);
+  EXPECT_FALSE(State().faults[Fault("push")].active);
   EXPECT_NE(Ask(live::StartFault{Fault("load"), {{"load_mass", 1000.0}}}), "");
   EXPECT_TRUE(camera_faults_.empty());
   EXPECT_EQ(Ask(live::Track{}), "a served robot does not offer this");
@@ -169,6 +171,11 @@ class ServedPageTest : public testing::Test {
     page_.emplace(config, bench_.about, bench_.world, ServedDesk::CameraFaults());
     const std::string url = page_->url();
     port_ = static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1)));
+    GoOn();
+  }
+  ~ServedPageTest() override { Stop(); }
+  void GoOn() {
+    stop_ = false;
     thread_ = std::thread([this] {
       while (!stop_) {
         bench_.Step(1, [this] { page_->AfterStep(); });
@@ -176,7 +183,6 @@ class ServedPageTest : public testing::Test {
       }
     });
   }
-  ~ServedPageTest() override { Stop(); }
   void Stop() {
     stop_ = true;
     if (thread_.joinable()) {
@@ -215,6 +221,15 @@ class ServedPageTest : public testing::Test {
     Message message;
     EXPECT_TRUE(message.ParseFromString(Next(client, topic)));
     return message;
+  }
+  // The first of the next states that is as `wanted`; the last of many if none is.
+  template <class Wanted>
+  json AwaitState(test::LiveClient& client, const Wanted& wanted) {
+    json state;
+    for (int i = 0; i < 100 && (i == 0 || !wanted(state)); ++i) {
+      state = json::parse(Next(client, "/live/state"));
+    }
+    return state;
   }
   static std::string Call(live::Service service, std::uint32_t call, const json& request) {
     return test::BinaryServiceCall(1 + static_cast<std::uint32_t>(service), call, request.dump());
@@ -304,9 +319,31 @@ TEST_F(ServedPageTest, AViewerPullsTheArmAndEndsTheServing) {
 TEST_F(ServedPageTest, ARobotThatStandsStillRefusesWithTheReason) {
   const auto client = Viewer();
   Stop();
-  client->SendBinary(Call(live::Service::kRelease, 7, json::object()));
+  const json pull{{"link", bench_.hand()}, {"p_link", {0, 0, 0}}, {"to_B", {0.5, 0.1, 0.5}}};
+  client->SendBinary(Call(live::Service::kPull, 7, pull));
   const json refused = client->Await("op", "serviceCallFailure");
   EXPECT_NE(std::string(refused["message"]).find("stands still"), std::string::npos);
+  Subscribe(*client, "/live/state");
+  const json state = AwaitState(*client, [](const json& each) { return each["notice"] != ""; });
+  EXPECT_NE(std::string(state["notice"]).find("the robot does not step"), std::string::npos) << state;
+  EXPECT_EQ(state["real_time_factor"], 0.0);
+}
+
+// Otherwise the spring would pull for ever.
+TEST_F(ServedPageTest, ALetGoIsKeptUntilTheRobotStepsAgain) {
+  const auto client = Viewer();
+  const json pull{{"link", bench_.hand()}, {"p_link", {0, 0, 0}}, {"to_B", {0.5, 0.1, 0.5}}};
+  client->SendBinary(Call(live::Service::kPull, 1, pull));
+  EXPECT_EQ(client->Await("binary", 3)["call"], 1);
+  Subscribe(*client, "/live/state");
+  const json pulled = AwaitState(*client, [](const json& state) { return state["pull"] != nullptr; });
+  EXPECT_EQ(pulled["pull"]["link"], bench_.hand());
+  Stop();
+  client->SendBinary(Call(live::Service::kRelease, 2, json::object()));
+  EXPECT_EQ(client->Await("binary", 3)["call"], 2) << "it is not refused";
+  GoOn();
+  const json free = AwaitState(*client, [](const json& state) { return state["pull"] == nullptr; });
+  EXPECT_EQ(free["pull"], nullptr);
 }
 
 }  // namespace

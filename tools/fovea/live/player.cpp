@@ -37,6 +37,9 @@ void LogPlayer::Play(const std::filesystem::path& log, const std::function<bool(
       WaitAtTheEnd(interrupted);
     }
   }
+  state_.ends = true;
+  next_state_ns_ = 0;
+  ShowState();
 }
 
 void LogPlayer::PlayOnce(const std::filesystem::path& log, const std::function<bool()>& interrupted) {

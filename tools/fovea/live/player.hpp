@@ -20,7 +20,7 @@ class LogPlayer {
       : server_(server), feed_(feed), pace_(speed) {}
 
   // Plays the log from its start, and again after each reset, until a viewer or `interrupted` ends it. At the
-  // log's end it waits. std::runtime_error: the log cannot be read.
+  // log's end it waits. Then shows that it has ended. std::runtime_error: the log cannot be read.
   void Play(const std::filesystem::path& log, const std::function<bool()>& interrupted);
 
  private:

@@ -2,6 +2,7 @@
 // What a person may do, and what the page says when something is refused.
 
 const IDLE_MS = 120_000; // a page that nobody touches for so long gives its control up
+const ASK_AGAIN_MS = 1000; // a refusal of control holds so long
 const FREE = new Set(["/servo/hold", "/control/take"]); // need no control
 const MAY = { "/servo/hold": "hold", "/servo/track": "track", "/servo/recover": "recover", "/run/pause": "pause" };
 Object.assign(MAY, { "/run/step": "step", "/run/speed": "speed", "/run/reset": "reset", "/run/save": "save" });
@@ -23,6 +24,7 @@ export class Actions {
     });
     connection.listen((what, detail) => {
       if (what === "status" && detail.level > 0) this.say(detail.message, "refused");
+      if (what === "state" && connection.state !== "open" && model.state) model.state.you = false;
     });
   }
 
@@ -59,22 +61,24 @@ export class Actions {
     }
   }
 
-  async setParameter(name, value) {
-    try {
-      await this.#needControl("");
-      this.connection.setParameter(name, value);
-    } catch (trouble) {
-      this.say(trouble.message);
-    }
+  // False when the value may not be set; the reason is shown.
+  setParameter(name, value) {
+    return this.#change(() => this.connection.setParameter(name, value));
   }
 
-  // Sends the pose of the held target. False when it may not be moved.
-  async holdTarget(p_BO, q_BO) {
+  // Sends the pose of the held target. False when it may not be moved; the reason is shown.
+  holdTarget(p_BO, q_BO) {
+    return this.#change(() => this.connection.publish("/target/pose", { p_BO, q_BO }));
+  }
+
+  async #change(send) {
     try {
       await this.#needControl("");
-      this.connection.publish("/target/pose", { p_BO, q_BO });
+      send();
+      return true;
     } catch (trouble) {
       this.say(trouble.message);
+      return false;
     }
   }
 
@@ -84,6 +88,8 @@ export class Actions {
 
   async takeControl() {
     const answer = await this.connection.call("/control/take", { name: this.name });
+    if (!answer.granted && answer.controller === this.name)
+      throw new Error("Your lost connection still has control for some seconds.");
     if (!answer.granted) throw new Error(`${answer.controller} has control. Ask them to give it up.`);
     this.model.state.you = true; // the next state says so too
   }
@@ -92,7 +98,11 @@ export class Actions {
   #needControl(service) {
     const free = FREE.has(service) || (service === "/run/end" && this.model.state?.may?.end_at_once);
     if (free || this.inControl || !this.connection.has("/control/take")) return Promise.resolve();
-    this.taking ??= this.takeControl().finally(() => (this.taking = null));
+    if (!this.taking) {
+      const end = () => (this.taking = null);
+      this.taking = this.takeControl();
+      this.taking.then(end, () => setTimeout(end, ASK_AGAIN_MS));
+    }
     return this.taking;
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bench in three dimensions: arm and target at the shown moment. It is drawn only when something moved, and more
 // rarely and more coarsely on a slow computer.
-import { TARGET_FRAME, TRUTH } from "./model.js";
+import { CAMERA_FRAME, TARGET_FRAME, TRUTH } from "./model.js";
 
 const { el, theme, sceneView, armScene } = Fovea;
 const LEAST_MS = 55; // between two pictures
@@ -39,6 +39,7 @@ export class Bench {
     this.painters = [];
     this.view = sceneView.build(this.host, this.canvas, this.gl, this.options);
     this.arm = armScene.arm({ scene: { links: model.links } }, false);
+    this.hand = this.#makeHand();
     const { target: kind, target_radius: radius_m, corners: corners_m } = model.setup;
     this.target = kind ? armScene.target({ target: { kind, radius_m, corners_m } }, false) : null;
     this.view.scene.add(this.arm);
@@ -56,14 +57,23 @@ export class Bench {
     moment.listen(() => this.view.ask());
   }
 
-  // The link at a point of the canvas: {link, p_link, p_B}, or null.
+  // The middle of the robot's last link: {link, node, p_link}. Called while the arm's nodes are not yet placed.
+  #makeHand() {
+    const link = this.model.hand;
+    const node = this.linkNode(link);
+    return node ? { link, node, p_link: new THREE.Box3().setFromObject(node).getCenter(new THREE.Vector3()) } : null;
+  }
+
+  // The robot's link at a point of the canvas: {link, node, p_link, p_B}, or null. The camera belongs to the last link.
   pick(ray) {
     const [hit] = ray.intersectObjects(this.arm.children, true);
     if (!hit) return null;
     let node = hit.object;
     while (node.parent !== this.arm) node = node.parent;
-    const index = this.arm.children.indexOf(node);
-    return { node, link: this.model.links[index].frame, p_link: node.worldToLocal(hit.point.clone()), p_B: hit.point };
+    const { frame } = this.model.links[this.arm.children.indexOf(node)];
+    const link = frame === CAMERA_FRAME ? this.model.hand : frame;
+    node = this.linkNode(link);
+    return node ? { link, node, p_link: node.worldToLocal(hit.point.clone()), p_B: hit.point } : null;
   }
 
   linkNode(frame) {
@@ -108,13 +118,13 @@ export class Bench {
   // Where target and hand are in the picture, from 0 to 1, for whoever looks at the page by a program.
   #tell() {
     const { dataset } = this.canvas;
-    const at = (node) => {
-      const p = node.getWorldPosition(new THREE.Vector3()).project(this.view.camera);
+    const at = (node, p_node = new THREE.Vector3()) => {
+      node.updateMatrixWorld();
+      const p = node.localToWorld(p_node.clone()).project(this.view.camera);
       return JSON.stringify({ x: (p.x + 1) / 2, y: (1 - p.y) / 2 });
     };
     if (this.target?.visible) dataset.target = at(this.target);
-    const hand = this.arm.children[this.arm.children.length - 1];
-    if (hand?.visible) dataset.hand = at(hand);
+    if (this.hand?.node.visible) dataset.hand = at(this.hand.node, this.hand.p_link);
   }
 
   // Sometimes waits for the picture, to know how long it takes.

@@ -78,7 +78,7 @@ export class Commands {
       node.disabled = idle || !actions.may(service);
       node.hidden = actions.connection.state === "open" && !actions.connection.has(service);
     }
-    this.report.hidden = !model.hasServo; // a served robot has no log
+    this.report.hidden = !model.hasServo || actions.connection.state === "ended"; // a served robot has no log
     this.save.disabled = !actions.may("/run/save");
     this.save.hidden = actions.connection.state === "open" && !actions.connection.has("/run/save");
     const other = state?.controller && !actions.inControl;

@@ -6,6 +6,8 @@ const NAMES = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
 const SILENT_MS = 4000; // the server sends the time each 50 ms; when nothing comes for so long, the connection is lost
 const CALL_MS = 8000; // a service answers within this time
 const ALIVE_MS = 3000;
+const ENDED_MS = 5000; // between two tries after the run's end: a program may be started again at the same port
+const GOING_AWAY = 1001; // the server closes with this code when the run has ended
 const OP = { message: 1, time: 2, response: 3 }; // binary, from the server
 const CLIENT_OP = { message: 1, request: 2 };
 
@@ -29,7 +31,7 @@ export class Connection {
   // `url`: ws://... with the token.
   constructor(url) {
     this.url = url;
-    this.state = "connecting"; // connecting, open, lost
+    this.state = "connecting"; // connecting, open, lost, ended
     this.lostAt = 0;
     this.keepAlive = false; // whether to send a sign of life
     setInterval(() => this.#watch(), 500);
@@ -47,10 +49,6 @@ export class Connection {
     this.#topics.set(topic, callback);
   }
 
-  get tries() {
-    return this.#tries;
-  }
-
   connect() {
     clearTimeout(this.#timer);
     if (this.#socket) this.#drop();
@@ -64,7 +62,7 @@ export class Connection {
       if (typeof data === "string") this.#text(JSON.parse(data));
       else this.#binary(new DataView(data));
     };
-    socket.onclose = ({ reason }) => socket === this.#socket && this.#lost(reason);
+    socket.onclose = ({ code }) => socket === this.#socket && this.#lost(code === GOING_AWAY);
     this.#socket = socket;
   }
 
@@ -126,7 +124,7 @@ export class Connection {
     this.#listeners.tell("state");
   }
 
-  #drop() {
+  #drop(trouble = "The connection was lost before the answer came.") {
     const socket = this.#socket;
     this.#socket = null;
     socket.onmessage = socket.onclose = socket.onopen = null;
@@ -135,21 +133,23 @@ export class Connection {
     this.#reads.clear();
     this.#services.clear();
     this.#published.clear();
-    for (const id of [...this.#calls.keys()]) this.#answer(id, null, "The connection was lost before the answer came.");
+    for (const id of [...this.#calls.keys()]) this.#answer(id, null, trouble);
   }
 
-  #lost(reason) {
-    this.#drop();
+  // An ended run stays ended until a program answers again.
+  #lost(byEnd) {
+    const ended = byEnd || this.state === "ended";
+    this.#drop(ended ? "The run has ended." : undefined);
     if (this.state !== "lost") this.lostAt = performance.now();
-    this.state = "lost";
-    this.reason = reason;
+    this.state = ended ? "ended" : "lost";
     this.#listeners.tell("state");
     clearTimeout(this.#timer);
-    this.#timer = setTimeout(() => this.connect(), Math.min(3000, 300 * 2 ** Math.min(this.#tries, 5)));
+    const wait = ended ? ENDED_MS : Math.min(3000, 300 * 2 ** Math.min(this.#tries, 5));
+    this.#timer = setTimeout(() => this.connect(), wait);
   }
 
   #watch() {
-    if (this.#socket && performance.now() - this.#heard > SILENT_MS) this.#lost("nothing came for some seconds");
+    if (this.#socket && performance.now() - this.#heard > SILENT_MS) this.#lost(false);
   }
 
   #answer(id, result, trouble) {

@@ -6,6 +6,8 @@ const SEND_MS = 33; // between two messages of a drag
 const THROW_S = 0.12; // a throw has the mean velocity of this time
 const MOST_THROW = 5; // [m/s]
 const MOST_SPIN = 20; // [rad/s]
+const SETTLE_MS = 400; // after the last key, a move by keys ends
+const ANSWER_MS = 300; // by then the run has answered a drag
 const STEP_M = 0.01;
 const STEP_RAD = Math.PI / 36;
 
@@ -21,7 +23,7 @@ const TOOLS = {
   },
   look: { words: "Look", hint: "Drag to turn the view; drag with the right button to move it. Keys: arrows, + and −." },
 };
-const AFTER = { stay: "it stays there", free: "it moves on as planned", throw: "it flies on" };
+const AFTER = { stay: "it stays there", throw: "it flies on" };
 
 // Keys to a direction in B: +x is right in the first view, +y is away.
 const DIRECTIONS = {
@@ -33,13 +35,33 @@ const DIRECTIONS = {
   PageDown: [0, 0, -1],
 };
 
+// Calls `act` at most once each SEND_MS, and not before the last call has ended. A call that comes too early leads to one
+// more at the end, unless it is cancelled.
+function throttled(act) {
+  let busy = false;
+  let again = false;
+  const call = async () => {
+    again = busy;
+    if (busy) return;
+    busy = true;
+    await Promise.all([act(), new Promise((done) => setTimeout(done, SEND_MS))]);
+    busy = false;
+    if (again) call();
+  };
+  call.cancel = () => (again = false);
+  return call;
+}
+
 export class Hands {
   #tool = "move";
   #after = "stay";
   #trail = []; // the last poses of a drag: {at [s], p, q}
-  #sent = 0;
   #pull = null; // {node, link, p_link, to_B, plane}
   #pulling = false; // a request is on its way
+  #controlled = false; // this page had control at the last message
+  #taken = false; // the target was moved and not yet let go
+  #sendPose = throttled(() => this.actions.holdTarget(this.bench.held.p, this.bench.held.q));
+  #sendPull = throttled(() => this.#askForPull());
 
   constructor(bench, actions, moment) {
     this.bench = bench;
@@ -51,10 +73,14 @@ export class Hands {
     this.#followPointer();
     bench.onPose = () => this.#place();
     this.hint = el("p", { class: "hint no-print" });
-    this.release = el("button", { type: "button", text: "Let the target go", onclick: () => this.#letGo("free") });
     this.node = this.#toolbar();
     this.#choose("move");
-    this.model.listen((what) => what === "state" && this.#allow());
+    this.model.listen((what) => {
+      if (what === "state") this.#allow();
+      const lost = this.#controlled && !actions.inControl;
+      this.#controlled = actions.inControl;
+      if (lost || what === "reset") this.#dropPull();
+    });
     moment.listen(() => this.#allow());
   }
 
@@ -71,10 +97,11 @@ export class Hands {
       Object.entries(AFTER).map(([value, words]) => el("option", { value, text: words })),
     );
     this.afterLabel = el("label", { class: "after" }, "After a drag ", this.after);
-    return el("div", { class: "toolbar hands" }, this.tools, this.afterLabel, this.release);
+    return el("div", { class: "toolbar hands" }, this.tools, this.afterLabel);
   }
 
   #choose(tool) {
+    this.#endPull();
     this.#tool = tool;
     this.hint.textContent = TOOLS[tool].hint;
     if (tool !== "look" && tool !== "pull") this.gizmo.setMode(tool === "turn" ? "rotate" : "translate");
@@ -92,7 +119,6 @@ export class Hands {
     pulls.disabled = !pull;
     this.afterLabel.hidden = !target;
     this.after.querySelector('[value="throw"]').disabled = !this.actions.may("/target/throw");
-    this.release.hidden = !this.model.state?.target?.held || !target;
     const shown = target && this.moment.isLive && (this.#tool === "move" || this.#tool === "turn");
     if (shown !== !!this.gizmo.object) {
       if (shown) this.gizmo.attach(this.handle);
@@ -111,8 +137,9 @@ export class Hands {
     this.gizmo.addEventListener("change", view.ask);
     this.gizmo.addEventListener("dragging-changed", ({ value }) => {
       view.controls.enabled = !value;
+      clearTimeout(this.settle);
       if (value) this.#trail = [];
-      else this.#letGo(this.#after);
+      else this.#letGo(this.#after === "throw");
     });
     this.gizmo.addEventListener("objectChange", () => this.#drag());
   }
@@ -134,24 +161,32 @@ export class Hands {
 
   #drag() {
     const pose = this.#pose();
-    this.bench.held = pose;
+    this.#hold(pose);
     this.#trail.push({ at: performance.now() / 1000, ...pose });
     this.#trail = this.#trail.filter(({ at }) => performance.now() / 1000 - at < THROW_S);
-    if (performance.now() - this.#sent < SEND_MS) return;
-    this.#sent = performance.now();
-    this.actions.holdTarget(pose.p, pose.q);
   }
 
-  // The end of a drag: the last pose is sent; then the target stays, moves on, or flies.
-  async #letGo(how) {
-    if (this.bench.held) await this.actions.holdTarget(this.bench.held.p, this.bench.held.q);
-    if (how === "free") await this.actions.releaseTarget();
-    if (how === "throw") await this.actions.call("/target/throw", this.#velocity());
-    setTimeout(() => {
-      if (this.gizmo.dragging) return;
-      this.bench.held = null; // by now the run has answered
+  #hold(pose) {
+    this.bench.held = pose;
+    this.#taken = true;
+    this.#sendPose();
+  }
+
+  // The end of a drag: the last pose is sent; then the target is let go, or thrown.
+  async #letGo(thrown) {
+    this.#sendPose.cancel();
+    this.settle = setTimeout(() => {
+      this.bench.held = null;
       this.bench.view.ask();
-    }, 300);
+    }, ANSWER_MS);
+    if (!this.#taken) return;
+    this.#taken = false;
+    const { p, q } = this.bench.held;
+    const velocity = this.#velocity();
+    const sent = await this.actions.holdTarget(p, q);
+    if (!sent || this.#taken) return; // refused, or another drag has begun
+    if (thrown) this.actions.call("/target/throw", velocity);
+    else this.actions.releaseTarget();
   }
 
   #velocity() {
@@ -180,13 +215,11 @@ export class Hands {
 
   // True when a key was the tool's.
   key(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey || !this.moment.isLive) return false;
+    if (event.ctrlKey || event.metaKey || event.altKey) return false;
+    if (event.key === "Escape") return this.#endPull();
+    if (!this.moment.isLive) return false;
     const direction = DIRECTIONS[event.key];
     const steps = event.shiftKey ? 5 : 1;
-    if (this.#tool === "pull" && event.key === "Escape") {
-      this.#endPull();
-      return true;
-    }
     if (!direction || this.#tool === "look") return false;
     if (this.#tool === "pull") this.#pullByKey(direction.map((x) => 5 * x * STEP_M * steps));
     else if (this.gizmo.object) this.#nudge(direction, steps);
@@ -198,10 +231,9 @@ export class Hands {
     const axis = new THREE.Vector3(...direction);
     if (this.#tool === "move") this.handle.position.addScaledVector(axis, STEP_M * steps);
     else this.handle.quaternion.premultiply(new THREE.Quaternion().setFromAxisAngle(axis, STEP_RAD * steps));
-    this.bench.held = this.#pose();
+    this.#hold(this.#pose());
     clearTimeout(this.settle);
-    this.settle = setTimeout(() => this.#letGo(this.#after === "throw" ? "stay" : this.#after), 400);
-    this.actions.holdTarget(this.bench.held.p, this.bench.held.q);
+    this.settle = setTimeout(() => this.#letGo(false), SETTLE_MS);
     this.bench.view.ask();
   }
 
@@ -269,37 +301,45 @@ export class Hands {
     });
     for (const end of ["pointerup", "pointercancel"])
       canvas.addEventListener(end, () => {
-        if (!this.#pull?.plane) return;
-        view.controls.enabled = true;
-        this.#endPull();
+        if (this.#pull?.plane) this.#endPull();
       });
   }
 
-  // One request at a time: a slow answer does not make a queue.
-  async #sendPull() {
-    if (this.#pulling || performance.now() - this.#sent < SEND_MS) return;
-    this.#sent = performance.now();
+  async #askForPull() {
+    const pull = this.#pull;
+    const { link, p_link, to_B } = pull;
     this.#pulling = true;
-    const { link, p_link, to_B } = this.#pull;
     const answer = await this.actions.call("/arm/pull", { link, p_link: p_link.toArray(), to_B: to_B.toArray() });
     this.#pulling = false;
-    if (!answer) this.#pull = null;
-    else if (!this.#pull) this.actions.call("/arm/release");
+    if (!answer && this.#pull === pull) this.#dropPull();
+    if (answer && !this.#pull) this.#release();
   }
 
+  // True when there was a pull, be it only the run's own one.
   #endPull() {
-    const was = this.#pull;
+    const pulled = !!this.#pull || (!!this.model.state?.pull && this.actions.inControl);
+    this.#dropPull();
+    if (pulled && !this.#pulling) this.#release(); // otherwise when the answer comes
+    return pulled;
+  }
+
+  #dropPull() {
+    if (this.#pull?.plane) this.bench.view.controls.enabled = true;
     this.#pull = null;
-    if (was && !this.#pulling) this.actions.call("/arm/release");
+    this.#sendPull.cancel();
     this.bench.view.ask();
+  }
+
+  #release() {
+    if (this.actions.inControl) this.actions.call("/arm/release");
   }
 
   #pullByKey(offset) {
     if (!this.#pull) {
-      const links = this.model.links.map(({ frame }) => frame);
-      const link = links[links.length - 1];
-      const node = this.bench.linkNode(link);
-      this.#pull = { node, link, p_link: new THREE.Vector3(), to_B: node.getWorldPosition(new THREE.Vector3()) };
+      const { hand } = this.bench;
+      if (!hand) return;
+      hand.node.updateMatrixWorld();
+      this.#pull = { ...hand, to_B: hand.node.localToWorld(hand.p_link.clone()) };
     }
     this.#pull.to_B.add(new THREE.Vector3(...offset));
     this.#sendPull();

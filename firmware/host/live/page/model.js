@@ -30,7 +30,8 @@ export class Model {
     this.setup = null;
     this.state = null;
     this.parameters = [];
-    this.links = null; // of the scene: [{frame, shapes}]
+    this.links = null; // of the scene: [{frame, shapes}]; the camera's housing is one of them
+    this.hand = null; // frame of the robot's last link
     this.tableZ = 0;
     this.frames = [];
     this.lambda = NaN;
@@ -135,6 +136,7 @@ export class Model {
           ...triangles.map(shape("mesh", ({ points, indices }) => ({ vertices: loose(points, indices) }))),
         ],
       }));
+    this.hand = this.links.findLast(({ frame }) => frame !== CAMERA_FRAME)?.frame;
     this.frames = [...new Set([...this.links.map((link) => link.frame), CAMERA_FRAME, TARGET_FRAME])];
     this.poses = new Rows(7 * this.frames.length, 3200);
     this.#listeners.tell("scene");

@@ -3,11 +3,10 @@
 
 const { el, fixed } = Fovea;
 const NOTE_MS = 9000;
+const LINK = { connecting: "connecting", open: "connected", lost: "connection lost", ended: "no connection" };
 const RESTART_HINT_S = 15; // after this time a restarted program is likelier than a lost network
 
 export class Status {
-  #notice = "";
-
   constructor(head, banners, actions, model, moment) {
     Object.assign(this, { actions, model, moment });
     this.mode = el("span", { class: "chip mode" });
@@ -16,7 +15,13 @@ export class Status {
     this.link = el("span", { class: "chip link" });
     head.append(this.mode, this.reason, this.speed, this.link);
     this.lost = el("div", { class: "note-bar bad", role: "alert", hidden: true });
-    this.ended = el("div", { class: "note-bar warn", role: "status", hidden: true });
+    this.ended = el("div", {
+      class: "note-bar warn",
+      role: "status",
+      hidden: true,
+      text: "The run has ended. What was received stays here.",
+    });
+    this.notice = el("div", { class: "note-bar warn", role: "status", hidden: true });
     this.past = el(
       "div",
       { class: "note-bar past-bar", role: "status", hidden: true },
@@ -24,7 +29,7 @@ export class Status {
       el("button", { type: "button", text: "Back to live", onclick: () => moment.goLive() }),
     );
     this.notes = el("div", { class: "notes", role: "status", "aria-live": "polite" });
-    banners.append(this.lost, this.ended, this.past, this.notes);
+    banners.append(this.lost, this.ended, this.notice, this.past, this.notes);
     actions.listen((words, kind) => this.#note(words, kind));
     model.listen((what) => what === "state" && this.show());
     moment.listen(() => this.show());
@@ -44,29 +49,32 @@ export class Status {
     put(this.reason, why && mode !== "track" ? why : Fovea.modeWords(mode));
     this.reason.classList.toggle("bad", !!fault);
     const factor = `${fixed(state.real_time_factor, 1)} × real time`;
-    put(this.speed, state.ends ? "ended" : state.paused ? "paused" : factor);
-    this.ended.hidden = !state.ends;
-    put(this.ended, "The run has ended. What was received stays here; the report has everything.");
+    put(this.speed, this.#hasEnded ? "ended" : state.paused ? "paused" : factor);
+    this.ended.hidden = !this.#hasEnded;
+    this.notice.hidden = !state.notice;
+    put(this.notice, state.notice || "");
     this.past.hidden = this.moment.isLive;
     put(
       this.past.firstChild,
       `You look at the past: ${this.moment.t.toFixed(2)} s, ${(this.model.now - this.moment.t).toFixed(1)} s ago. The run goes on.`,
     );
-    if (state.notice && state.notice !== this.#notice) this.#note(state.notice, "told");
-    this.#notice = state.notice;
     const name = setup?.name || state.name || "";
     if (name) document.title = `${mode ? `${mode}: ` : ""}${name} – Fovea`;
+  }
+
+  get #hasEnded() {
+    return this.actions.connection.state === "ended" || !!this.model.state?.ends;
   }
 
   #connection() {
     const { connection } = this.actions;
     const lost = connection.state === "lost";
-    put(this.link, { connecting: "connecting", open: "connected", lost: "connection lost" }[connection.state]);
+    put(this.link, LINK[connection.state]);
     this.link.className = `chip link ${connection.state}`;
     document.documentElement.classList.toggle("lost", lost);
-    const ended = this.model.state?.ends;
-    this.lost.hidden = !lost || !!ended;
-    if (!lost) {
+    this.lost.hidden = !lost || this.#hasEnded;
+    this.show();
+    if (connection.state === "open" || connection.state === "connecting") {
       if (this.wasLost) this.#note("Connected again. What happened meanwhile is missing in the plots.", "done");
       this.wasLost = false;
       return;
@@ -79,7 +87,12 @@ export class Status {
 
   #note(words, kind) {
     const same = [...this.notes.children].find((one) => one.firstChild.textContent === words);
-    if (same) same.remove();
+    const note = same || this.#newNote(words, kind);
+    clearTimeout(note.timer);
+    note.timer = setTimeout(() => note.remove(), NOTE_MS);
+  }
+
+  #newNote(words, kind) {
     const note = el(
       "div",
       { class: `note-bar ${kind === "refused" ? "warn" : "good"}` },
@@ -94,7 +107,7 @@ export class Status {
     );
     this.notes.prepend(note);
     while (this.notes.children.length > 3) this.notes.lastChild.remove();
-    setTimeout(() => note.remove(), NOTE_MS);
+    return note;
   }
 }
 

@@ -2,7 +2,7 @@
 // The bar that is always in sight: pause, single step, speed, and the last minute to look back at.
 import { KEPT_S } from "./history.js";
 
-const { el } = Fovea;
+const { el, plain } = Fovea;
 const SPEEDS = [
   [0.1, "0.1 ×"],
   [0.25, "0.25 ×"],
@@ -10,6 +10,7 @@ const SPEEDS = [
   [1, "1 × real time"],
   [0, "as fast as it goes"],
 ];
+const WAYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }; // keys of the slider
 const ago = (seconds) => `${seconds < 9.95 ? seconds.toFixed(1) : Math.round(seconds)} s ago`;
 
 export class Transport {
@@ -27,6 +28,8 @@ export class Transport {
       { "aria-label": "Speed of the simulation", onchange: () => this.#speed() },
       SPEEDS.map(([value, words]) => el("option", { value, text: words })),
     );
+    this.other = el("option", { hidden: true }); // a speed that another client chose
+    this.speed.append(this.other);
     this.slider = el("input", {
       type: "range",
       class: "scrub",
@@ -36,7 +39,9 @@ export class Transport {
       value: 0,
       "aria-label": "Look back at the last 60 seconds",
       oninput: () => this.#scrub(),
+      onkeydown: (event) => this.#scrubKey(event),
     });
+    this.zero = 0; // [s]: the run time at the slider's right end
     this.sliding = false; // the slider stays where the hand holds it
     this.slider.addEventListener("pointerdown", () => (this.sliding = true));
     for (const end of ["pointerup", "pointercancel"]) this.slider.addEventListener(end, () => (this.sliding = false));
@@ -74,11 +79,17 @@ export class Transport {
       node.hidden = connection.state === "open" && !connection.has(service);
     if (state && document.activeElement !== this.speed) {
       const near = SPEEDS.find(([value]) => Math.abs(value - state.speed) < 1e-6);
-      if (near) this.speed.value = near[0];
-      else this.#addSpeed(state.speed);
+      this.other.hidden = !!near;
+      if (!near && this.other.value !== String(state.speed)) {
+        this.other.value = state.speed;
+        this.other.textContent = `${plain(state.speed, 3)} ×`;
+      }
+      this.speed.value = near ? near[0] : state.speed;
     }
-    if (moment.isLive) this.slider.value = 0;
-    else if (!this.sliding) this.slider.value = moment.t - model.now;
+    if (moment.isLive || !this.sliding) {
+      this.zero = model.now;
+      this.slider.value = moment.t - model.now;
+    }
     const words = moment.isLive
       ? `${model.now.toFixed(2)} s`
       : `${moment.t.toFixed(2)} s, ${ago(model.now - moment.t)}`;
@@ -86,12 +97,6 @@ export class Transport {
     this.live.disabled = moment.isLive;
     this.live.textContent = moment.isLive ? "Live" : "Back to live";
     document.documentElement.classList.toggle("past", !moment.isLive);
-  }
-
-  // A speed that another client chose.
-  #addSpeed(value) {
-    this.speed.append(el("option", { value, text: `${value} ×` }));
-    this.speed.value = value;
   }
 
   #pause() {
@@ -112,6 +117,15 @@ export class Transport {
   #scrub() {
     const back = Number(this.slider.value);
     if (back > -0.03) this.moment.goLive();
-    else this.moment.lookAt(this.model.now + back);
+    else this.moment.lookAt(this.zero + back);
+  }
+
+  #scrubKey(event) {
+    const way = WAYS[event.key];
+    if (!way || event.ctrlKey || event.metaKey || event.altKey) return;
+    event.preventDefault();
+    const t = this.moment.t + way * (event.shiftKey ? 1 : 0.1);
+    if (t < this.model.now) this.moment.lookAt(t);
+    else this.moment.goLive();
   }
 }

@@ -96,12 +96,13 @@ export class Tuning {
     const moving = this.#waiting.has(name);
     this.#waiting.set(name, value);
     if (moving) return;
-    const send = () => {
+    const send = async () => {
       const next = this.#waiting.get(name);
       if (next === null) return this.#waiting.delete(name);
       this.#waiting.set(name, null);
-      this.actions.setParameter(name, next);
       setTimeout(send, SEND_MS);
+      if (!(await this.actions.setParameter(name, next)))
+        this.#told(this.model.parameters.filter((one) => one.name === name));
     };
     send();
   }
