@@ -195,9 +195,10 @@ async function checkSaved({ saved, truths }) {
   assert.ok(apart("p_BO") < 1e-9 && apart("p_BC") < 1e-4);
 }
 
-// The same time without a page.
-function withoutPage(duration_s) {
-  const set = ["--set", `run.duration_s=${duration_s}`];
+// The same time without a page, with other keys of the scenario.
+function withoutPage(duration_s, settings = {}) {
+  const all = { ...settings, "run.duration_s": duration_s };
+  const set = Object.entries(all).flatMap(([key, value]) => ["--set", `${key}=${value}`]);
   const options = ["run", "ball", ...set, "--no-report", "--json", "--out", path.join(folder, "without-page")];
   return JSON.parse(spawnSync(sim, options, { stdio: ["ignore", "pipe", "ignore"] }).stdout);
 }
@@ -215,7 +216,9 @@ async function checkUntouched(context) {
   assert.deepEqual([watched.ticks, watched.log_hash], [alone.ticks, alone.log_hash]);
 }
 
-// Each fault's button starts and stops its fault: both are in the log, and the ticks are others than without faults.
+// Each fault's button starts and stops its fault: both are in the log, and the ticks are, bit by bit, those of a scenario
+// with these faults. A fault acts from the tick after its request on.
+const TICK_S = 0.001;
 async function checkFaults(context) {
   const run = await begin("ball", "faults");
   const { page, said } = await open(context, run.url);
@@ -242,14 +245,17 @@ async function checkFaults(context) {
   const { "/operator": touches } = await read(run.out, ["/operator"]);
   const timesOf = (pattern) =>
     touches.filter(({ data }) => pattern.test(data.text)).map(({ data }) => Number(data.stamp_ns) * 1e-9);
+  const settings = { "faults.push": "[0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0]" };
   for (const name of names) {
     const started = timesOf(new RegExp(`^fault ${name}(,|$)`));
     const stopped = timesOf(new RegExp(`^fault ${name} stopped$`));
     assert.deepEqual([started.length, stopped.length], [1, 1], `${name} is in the log`);
+    settings[`faults.${name}_s`] = `[${(started[0] + TICK_S).toFixed(9)}, ${(stopped[0] + TICK_S).toFixed(9)}]`;
   }
-  const without = withoutPage(summary.sim_time_s);
-  assert.notEqual(summary.log_hash, without.log_hash, "the faults have an effect");
-  console.log(`${names.length} faults were started and stopped by their buttons`);
+  const keys = withoutPage(summary.sim_time_s, settings);
+  console.log(`${names.length} faults by buttons: log_hash ${summary.log_hash}; by keys: ${keys.log_hash}`);
+  assert.notEqual(summary.log_hash, withoutPage(summary.sim_time_s).log_hash, "the faults have an effect");
+  assert.deepEqual([keys.ticks, keys.log_hash], [summary.ticks, summary.log_hash]);
 }
 
 try {

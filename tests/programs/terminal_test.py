@@ -53,7 +53,8 @@ def run(arguments, columns=None, environment=None, only=(1, 2)):
 class Terminal(unittest.TestCase):
     def check_width(self, text, columns):
         for line in COLOUR.sub("", text).replace("\x1b[K", "").splitlines():
-            self.assertLessEqual(len(line), columns, line)
+            is_one_word = len(line.split("  ")[-1].split()) == 1  # e.g. a hash, which nothing can break
+            self.assertTrue(len(line) <= columns or is_one_word, line)
 
     def check_colours(self, text):
         """Each line ends without a colour."""
