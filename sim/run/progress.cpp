@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <string_view>
 #include <utility>
 
@@ -17,12 +18,18 @@ constexpr auto kBarInterval = std::chrono::milliseconds(80);
 constexpr int kLineStepPercent = 25;
 constexpr std::size_t kMostBar = 30;
 
+// A terminal that cannot clear a line.
+bool IsDumb() {
+  const char* term = std::getenv("TERM");
+  return term != nullptr && std::string_view(term) == "dumb";
+}
+
 }  // namespace
 
 Progress::Progress(std::string name, double end_s, bool quiet)
     : name_(std::move(name)),
       end_s_(end_s),
-      is_terminal_(isatty(STDERR_FILENO) == 1),
+      is_terminal_(isatty(STDERR_FILENO) == 1 && !IsDumb()),
       width_(config::StyleOf(STDERR_FILENO).width - 1) {
   if (!quiet) {
     speaker_.emplace(STDERR_FILENO);

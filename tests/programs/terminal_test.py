@@ -86,7 +86,9 @@ class Terminal(unittest.TestCase):
             code, text, _ = run(command, columns, environment)
             self.assertEqual(code, 0)
             self.assertRegex(text, r"(?m)^  verdict ")
-            self.assertNotIn("\x1b", text)
+            self.assertIsNone(COLOUR.search(text), text)
+            if columns is None or "TERM" in environment:
+                self.assertNotIn("\x1b", text, "no bar either")
 
     def test_bad_verdict_is_red_on_each_of_its_lines(self):
         code, shown, _ = run([SIM, "run", "ball", "--set", "run.duration_s=0.2", "--no-report", "--out", "out"], 60)
