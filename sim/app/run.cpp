@@ -225,6 +225,7 @@ class Run {
     }
     StallingClock& stalling =
         stalling_.emplace(board_clock ? static_cast<hal::Clock&>(*board_clock) : clock, stall_);
+    stalling.EndAt(EndNs());
     std::optional<trace::ClockTrace> world;
     if (trace_) {
       world.emplace(trace_->servo(), stalling, "world");
@@ -253,7 +254,7 @@ class Run {
 
   void EndEarly() {
     interrupted_ = true;
-    stalling_->SetFault({});
+    stalling_->EndAt(0);
     shell_->loop()->Stop();  // after the current tick, which is still recorded
   }
 

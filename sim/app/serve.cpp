@@ -202,7 +202,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   while (!stop) {
     const int signal = signals.Next(kLookMs);
     if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP || (page && page->ended())) {
-      stop = true;
+      stop = true;  // never false again: the robot's thread sets it, too
     }
     if (signal == SIGUSR1) {
       person.PressStop();
