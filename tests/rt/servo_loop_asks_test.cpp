@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests of other threads to a running loop: the last one before a tick takes
-// effect, no other value is seen, and Stop ends the loop.
+// Requests of other threads to a running loop: the last one before a tick takes effect, no Hold is lost, no
+// other value is seen, and Stop ends the loop.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,7 +34,8 @@ class CountingStep final : public ServoStep {
       values.at(key) = inputs.tuning.value;
       ++tunings;
     }
-    ticks.fetch_add(1, std::memory_order_relaxed);
+    holds.fetch_add(inputs.request == Request::kHold ? 1 : 0, std::memory_order_relaxed);
+    ticks.fetch_add(1, std::memory_order_release);
   }
   int tracks = 0;
   int others = 0;
@@ -45,6 +46,7 @@ class CountingStep final : public ServoStep {
   std::array<double, config::kMostTunable> values{};
   Request last = Request::kNone;
   config::MotionLawKind law{};
+  std::atomic<int> holds{0};
   std::atomic<int> ticks{0};
 };
 
@@ -53,42 +55,80 @@ class DeafRecorder final : public hal::Recorder {
   void Record(const hal::TickRecord& /*record*/) noexcept override {}
 };
 
-// A Hold from one person is not lost when another asks to track before the next tick.
-TEST(ServoLoopAsks, AHoldThatNoTickHasTakenStays) {
+class ServoLoopAsks : public testing::Test {
+ protected:
+  // Runs a piece of the loop, so that the fake drivers' records stay small. False if it ran no tick.
+  bool RunAPiece(int ticks = 1000) {
+    const std::uint64_t before = loop.counters().ticks;
+    EXPECT_TRUE(loop.Run(clock.now_ns + ticks * hal::kTickPeriodNs).ok());
+    arm.written.clear();
+    clock.deadlines_ns.clear();
+    return loop.counters().ticks != before;
+  }
+  void RunUntilStop() {
+    while (RunAPiece()) {
+    }
+  }
+
   CountingStep step;
-  test::FakeArm arm(7);
+  test::FakeArm arm{7};
   test::FakeClock clock;
   hal::FeatureMailbox mailbox;
   DeafRecorder recorder;
   test::NoProbe probe;
-  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
-  const auto tick = [&] { EXPECT_TRUE(loop.Run(clock.now_ns + hal::kTickPeriodNs).ok()); };
+  ServoLoop loop{step, arm, clock, mailbox, recorder, probe};
+};
+
+// A Hold from one person is not lost when another asks to track before the next tick.
+TEST_F(ServoLoopAsks, AHoldThatNoTickHasTakenStays) {
   loop.Ask(Request::kTrack);
-  loop.Ask(Request::kHold);
-  loop.Ask(Request::kNone);
-  loop.Ask(Request::kTrack);
-  tick();
-  EXPECT_EQ(step.last, Request::kHold);
-  EXPECT_EQ(step.tracks, 0);
-  loop.Ask(Request::kTrack);
-  tick();
-  EXPECT_EQ(step.tracks, 1) << "after that tick a request counts again";
   loop.Ask(Request::kHold);
   loop.Ask(Request::kReset);
-  tick();
-  EXPECT_EQ(step.others, 1) << "the reset";
+  loop.Ask(Request::kTrack);
+  loop.AskIfNoneWaits(Request::kReset);
+  RunAPiece(1);
+  EXPECT_EQ(step.last, Request::kHold);
+  EXPECT_EQ(step.tracks, 0);
+  RunAPiece(1);
+  EXPECT_EQ(step.tracks, 1) << "what came after the Hold";
+  RunAPiece(10);
+  EXPECT_EQ(step.tracks, 1);
+  EXPECT_EQ(step.others, 0);
 }
 
-TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
+// One person holds while another asks to track all the time: each Hold arrives.
+TEST_F(ServoLoopAsks, NoHoldIsLostToAnotherThread) {
+  constexpr int kHolds = 200;
+  std::atomic<bool> done{false};
+  int lost = 0;
+  std::thread tracker([&] {
+    while (!done.load(std::memory_order_relaxed)) {
+      loop.Ask(Request::kTrack);
+    }
+  });
+  std::thread holder([&] {
+    for (int i = 0; i < kHolds; ++i) {
+      const int before = step.holds.load(std::memory_order_relaxed);
+      loop.Ask(Request::kHold);
+      // The tick that runs now and the next one.
+      const int enough = step.ticks.load(std::memory_order_relaxed) + 2;
+      while (step.ticks.load(std::memory_order_acquire) < enough) {
+        std::this_thread::yield();
+      }
+      lost += step.holds.load(std::memory_order_relaxed) == before ? 1 : 0;
+    }
+    done = true;
+    loop.Stop();
+  });
+  RunUntilStop();
+  holder.join();
+  tracker.join();
+  EXPECT_EQ(lost, 0);
+  EXPECT_EQ(step.holds.load(), kHolds);
+}
+
+TEST_F(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
   constexpr int kAsks = 1000;
-  constexpr int kPiece = 1000;  // ticks
-  CountingStep step;
-  test::FakeArm arm(7);
-  test::FakeClock clock;
-  hal::FeatureMailbox mailbox;
-  DeafRecorder recorder;
-  test::NoProbe probe;
-  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
   std::thread asker([&] {
     for (int i = 0; i < kAsks; ++i) {
       loop.Ask(Request::kTrack);
@@ -104,16 +144,8 @@ TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
     }
     loop.Stop();
   });
-  // Runs in pieces, so that the fake drivers' records stay small. A piece without a tick means the end.
-  hal::Status status = hal::Status::Ok();
-  for (std::uint64_t before = 1; loop.counters().ticks != before && status.ok();) {
-    before = loop.counters().ticks;
-    status = loop.Run(clock.now_ns + kPiece * hal::kTickPeriodNs);
-    arm.written.clear();
-    clock.deadlines_ns.clear();
-  }
+  RunUntilStop();
   asker.join();
-  EXPECT_TRUE(status.ok());
   EXPECT_EQ(step.last, Request::kHold);
   EXPECT_EQ(step.law, config::MotionLawKind::kFloat);
   EXPECT_LE(step.tracks, kAsks);
@@ -126,17 +158,9 @@ TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
 }
 
 // Two threads change eight keys each. No key's last value is lost, and no value comes after a newer one.
-TEST(ServoLoopAsks, LastValueOfEachKeyArrives) {
+TEST_F(ServoLoopAsks, LastValueOfEachKeyArrives) {
   constexpr int kAsks = 2000;
-  constexpr int kPiece = 1000;  // ticks
   constexpr int kKeys = config::kMostTunable / 2;
-  CountingStep step;
-  test::FakeArm arm(7);
-  test::FakeClock clock;
-  hal::FeatureMailbox mailbox;
-  DeafRecorder recorder;
-  test::NoProbe probe;
-  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
   std::atomic<int> refused{0};
   std::vector<std::thread> askers;
   for (int first : {0, kKeys}) {
@@ -160,15 +184,8 @@ TEST(ServoLoopAsks, LastValueOfEachKeyArrives) {
     }
     loop.Stop();
   });
-  hal::Status status = hal::Status::Ok();
-  for (std::uint64_t before = 1; loop.counters().ticks != before && status.ok();) {
-    before = loop.counters().ticks;
-    status = loop.Run(clock.now_ns + kPiece * hal::kTickPeriodNs);
-    arm.written.clear();
-    clock.deadlines_ns.clear();
-  }
+  RunUntilStop();
   stopper.join();
-  EXPECT_TRUE(status.ok());
   for (const double value : step.values) {
     EXPECT_EQ(value, kAsks);
   }
@@ -178,16 +195,8 @@ TEST(ServoLoopAsks, LastValueOfEachKeyArrives) {
 }
 
 // The leave to move ends and is given again while the loop runs: no request takes effect without it.
-TEST(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
+TEST_F(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
   constexpr int kLeases = 1000;
-  constexpr int kPiece = 1000;  // ticks
-  CountingStep step;
-  test::FakeArm arm(7);
-  test::FakeClock clock;
-  hal::FeatureMailbox mailbox;
-  DeafRecorder recorder;
-  test::NoProbe probe;
-  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
   loop.GiveLeave(0);
   std::thread asker([&] {
     for (int i = 0; i < kLeases; ++i) {
@@ -205,14 +214,9 @@ TEST(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
       std::this_thread::yield();
     }
   });
-  hal::Status status = hal::Status::Ok();
-  while (loop.finish_tick() == ServoLoop::kNever && status.ok()) {
-    status = loop.Run(clock.now_ns + kPiece * hal::kTickPeriodNs);
-    arm.written.clear();
-    clock.deadlines_ns.clear();
+  while (loop.finish_tick() == ServoLoop::kNever && RunAPiece()) {
   }
   asker.join();
-  EXPECT_TRUE(status.ok());
   // The last kTrack may wait for the first tick that has leave again.
   EXPECT_LE(step.tracks, 1);
   EXPECT_EQ(step.others, 1) << "a request after GiveLeave takes effect";

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "firmware/core/task/request_box.hpp"
 #include "firmware/core/task/servo_task.hpp"
 #include "firmware/core/task/tuning_box.hpp"
 #include "fovea/hal/arm.hpp"
@@ -60,16 +61,12 @@ class ServoLoop {
   }
   // Before Run: sets the source of commanded motions. Without it there are none.
   void UseMotion(moves::MotionSource& motion) noexcept { motion_ = &motion; }
-  // From any thread: passed to the task in the next tick; the last request before that tick wins, but a Hold
-  // that no tick has taken stays: only a reset, which leads to Hold too, replaces it. A request after
+  // From any thread: passed to the task in the next tick; the last request before that tick wins. A Hold that
+  // no tick has taken stays, and later requests come in the tick after it (see RequestBox). A request after
   // GiveLeave is handled with that permission.
-  void Ask(Request request) noexcept {
-    Request waiting = request_.load(std::memory_order_relaxed);
-    while ((waiting != Request::kHold || request == Request::kReset) &&
-           !request_.compare_exchange_weak(waiting, request, std::memory_order_release,
-                                           std::memory_order_relaxed)) {
-    }
-  }
+  void Ask(Request request) noexcept { requests_.Put(request); }
+  // The same, but a request that no tick has taken wins.
+  void AskIfNoneWaits(Request request) noexcept { requests_.PutIfEmpty(request); }
   void Ask(config::MotionLawKind law) noexcept {
     law_.store(static_cast<int>(law), std::memory_order_relaxed);
   }
@@ -106,7 +103,7 @@ class ServoLoop {
   std::atomic<std::uint64_t> finish_tick_{kNever};
   std::atomic<std::int64_t> leave_until_ns_{kForEver};
   std::atomic<std::uint64_t> lease_ends_{0};
-  std::atomic<Request> request_{Request::kNone};
+  RequestBox requests_;
   std::atomic<int> law_{-1};  // requested; -1: none
   TuningBox tunings_;
   moves::MotionSource* motion_ = nullptr;

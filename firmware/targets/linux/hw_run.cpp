@@ -124,7 +124,7 @@ class Session {
     if (!options_.allow_motion ||
         AwaitLeave(config_, robot_.model, options_.enable, *arm_, clock_, control_, findings_)) {
       if (options_.track) {
-        shell_.loop()->Ask(task::Request::kTrack);
+        shell_.loop()->AskIfNoneWaits(task::Request::kTrack);  // an operator's earlier Hold counts
       }
       RunLoop(*shell_.loop());
     }

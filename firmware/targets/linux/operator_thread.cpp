@@ -39,7 +39,7 @@ void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) 
   }
   const std::int64_t now_ns = clock.NowNs();
   if (now_ns >= control.leave_until_ns) {
-    loop->Ask(task::Request::kNone);  // drops the earlier request, also if the loop does not run yet
+    loop->Ask(task::Request::kNone);  // drops an earlier request to move, also if the loop does not run yet
   }
   const auto lasts_ns = static_cast<std::int64_t>(dead_man_s * static_cast<double>(hal::kNsPerSecond));
   control.leave_until_ns = now_ns + lasts_ns;

@@ -286,7 +286,6 @@ TEST_F(ServoServerByTimerTest, OvertakenFrameStillDeliversItsFeature) {
   EXPECT_NE(outputs.record.intake, hal::Intake::kNone) << "the feature of the overtaken frame";
 }
 
-// A frame that is older than an arm may be silent is ignored, even if it is the newest.
 // A key of the older frame changes, too; a tick without a frame does not change it again.
 TEST_F(ServoServerByTimerTest, OvertakenFrameStillChangesItsKey) {
   const auto send = [&](std::uint32_t sequence, const config::Tuning& tuning) {
@@ -309,6 +308,27 @@ TEST_F(ServoServerByTimerTest, OvertakenFrameStillChangesItsKey) {
   EXPECT_EQ(Taken().record.tuning.key, 4) << "the newer one";
 }
 
+// A Hold is not lost if the next frame asks to track before a tick.
+TEST_F(ServoServerByTimerTest, HoldOfAnOvertakenFrameComesFirst) {
+  Outputs outputs;
+  for (int k = 0; k < 1500; ++k) {
+    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
+  }
+  ASSERT_EQ(outputs.record.mode, hal::Mode::kTrack);
+  std::uint32_t sequence = reader_.frame().sequence;
+  for (const task::Request request : {task::Request::kHold, task::Request::kTrack}) {
+    task::ServoInputs inputs;
+    inputs.arm = arm_->State();
+    inputs.request = request;
+    Give({FrameKind::kInputs, ++sequence, Encode(inputs, payload_)});
+  }
+  for (const hal::Mode mode : {hal::Mode::kHold, hal::Mode::kTrack}) {
+    Pass(1);
+    EXPECT_EQ(Taken().record.mode, mode);
+  }
+}
+
+// A frame that is older than an arm may be silent is ignored, even if it is the newest.
 TEST_F(ServoServerByTimerTest, TooOldStateIsIgnoredAndCounted) {
   const int most = config_.safety.arm_lost_ticks;
   task::ServoInputs inputs;
