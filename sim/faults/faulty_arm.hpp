@@ -41,8 +41,7 @@ struct ArmFaults {
 template <class Visitor, Struct<ArmFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
   constexpr const char* kKept = "a Panda handles encoder faults itself";
-  v.Window({"encoder_stuck", "s", "an encoder stays at its value from the first time to the second"},
-           f.stuck.window, kKept);
+  v.Window({"encoder_stuck", "s", "an encoder stays at its value"}, f.stuck.window, kKept);
   v.Joint({"encoder_stuck_joint", "", "joint with the stuck encoder, counted from 1; 0: all joints"},
           f.stuck.joint, f.stuck.window, 0);
   v.Window({"encoder_noise", "s", "a burst of noise on all encoders"}, f.noise.window,

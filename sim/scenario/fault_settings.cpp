@@ -26,7 +26,8 @@ class FaultKeys {
 
   void Window(const Field& field, TimeWindow& window, const char* /*not_served*/ = nullptr) {
     keys_.Numbers(WindowKeyOf(field), {window.start_s, window.end_s}, 2, 2, 0.0, 1e6, field.unit,
-                  field.meaning, [&window](const std::vector<double>& s) {
+                  std::string("from the first time to the second: ") + field.meaning,
+                  [&window](const std::vector<double>& s) {
                     window = {s[0], s[1]};
                   });
   }
