@@ -1,32 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
-// One table per enumeration, with name and key side by side.
+// One table per enumeration, with name, key and words side by side.
 #include "fovea/hal/events.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 
 namespace fovea::hal {
 namespace {
 
 struct Entry {
-  const char* name;
-  const char* key;
+  const char* name = nullptr;
+  const char* key = "";
+  const char* words = "";
 };
 
-constexpr std::array<Entry, kNumFaults> kFaultTable{{
-    {"none", ""},
-    {"arm_lost", "safety.arm_lost_ticks"},
-    {"arm_stale", "safety.arm_lost_ticks"},
-    {"non_finite_sensor", "safety.non_finite_ticks"},
-    {"non_finite_feature", ""},
-    {"non_finite_control", ""},
-    {"deadline_missed", "safety.missed_ticks"},
-    {"joint_position", "arm.model"},
-    {"joint_velocity", "arm.model"},
-    {"not_following", "safety.following_error"},
-    {"contact", "safety.contact_torque_fraction"},
+// An entry per enumerator, in the order of the enumeration. The last entry is for all values outside it,
+// which a file or a link may contain.
+template <int kNumEnumerators>
+using Table = std::array<Entry, std::size_t{kNumEnumerators} + 1>;
+
+constexpr Table<kNumModes> kModeTable{{
+    {"boot"},
+    {"hold"},
+    {"track"},
+    {"coast"},
+    {"fault"},
+    {"move"},
+    {"unknown"},
 }};
 
-constexpr std::array<Entry, kNumLimits> kLimitTable{{
+constexpr Table<kNumHoldReasons> kHoldReasonTable{{
+    {"none", "", "the servo does not hold"},
+    {"not_asked", "", "tracking was not requested"},
+    {"no_target", "", "no target was found yet"},
+    {"target_lost", "", "the target was lost"},
+    {"goal_unreachable", "", "limits keep the arm from the goal"},
+    {"motion_done", "", "the commanded motion has ended"},
+    {"motion_refused", "", "the commanded motion was refused"},
+    {"eye_doubted", "", "the picture contradicts the hand's motion, or following it fails"},
+    {"not_followed", "", "the arm did not follow the commanded motion"},
+    {"unknown", "", "the reason is unknown"},
+}};
+
+constexpr Table<kNumFaults> kFaultTable{{
+    {"none", "", "no fault"},
+    {"arm_lost", "safety.arm_lost_ticks", "the arm returned errors, or nothing"},
+    {"arm_stale", "safety.arm_lost_ticks", "the arm's states, or a joint's reading, stood still"},
+    {"non_finite_sensor", "safety.non_finite_ticks", "a sensor value was not finite"},
+    {"non_finite_feature", "", "a value from vision was not finite"},
+    {"non_finite_control", "", "a value of the control law was not finite"},
+    {"deadline_missed", "safety.missed_ticks", "too many ticks in a row were missed"},
+    {"joint_position", "arm.model", "a joint was outside its range"},
+    {"joint_velocity", "arm.model", "a joint's velocity exceeded its limit, or jumped"},
+    {"not_following", "safety.following_error", "a joint did not follow its reference"},
+    {"contact", "safety.contact_torque_fraction", "an external force exceeded its limit"},
+    {"unknown", "", "an unknown fault"},
+}};
+
+constexpr Table<kNumLimits> kLimitTable{{
     {"joint_position", "safety.joint_position_margin"},
     {"joint_velocity", "safety.joint_velocity_fraction"},
     {"joint_acceleration", "safety.joint_acceleration_fraction"},
@@ -39,106 +71,58 @@ constexpr std::array<Entry, kNumLimits> kLimitTable{{
     {"singularity", "safety.singularity_min"},
     {"field_of_view", "safety.view_margin_px"},
     {"rotation_speed", "safety.rotation_speed"},
+    {"unknown"},
 }};
 
-constexpr std::array<Entry, kNumIntakes> kIntakeTable{{
-    {"none", ""},
-    {"taken", ""},
-    {"not_found", ""},
-    {"wrong_kind", "target.kind"},
-    {"from_future", "camera.latency_ms"},
-    {"too_old", ""},
-    {"stuck_picture", "servo.stuck_shift_px"},
-    {"out_of_region", "servo.target_region"},
-    {"outlier", "servo.gate_sigma"},
+constexpr Table<kNumIntakes> kIntakeTable{{
+    {"none", "", "not arrived"},
+    {"taken", "", "taken for the estimate"},
+    {"not_found", "", "without the target"},
+    {"wrong_kind", "target.kind", "of another target"},
+    {"from_future", "camera.latency_ms", "stamped in the future"},
+    {"too_old", "", "too old"},
+    {"stuck_picture", "servo.stuck_shift_px", "from a stuck picture"},
+    {"out_of_region", "servo.target_region", "outside the target region"},
+    {"outlier", "servo.gate_sigma", "rejected as outlier"},
+    {"unknown", "", "with an unknown outcome"},
 }};
 
-// A value from a file or a link may be outside the enumeration.
-template <typename Table, typename Enumerator>
-Entry EntryOf(const Table& table, Enumerator which) noexcept {
-  const auto k = static_cast<std::size_t>(which);
-  return k < table.size() ? table[k] : Entry{"unknown", ""};
+constexpr Table<kNumTuningResults> kTuningResultTable{{
+    {"none", "", "nothing was requested"},
+    {"taken", "", "taken"},
+    {"unknown_key", "", "no such key changes in motion"},
+    {"not_finite", "", "the value is not finite"},
+    {"out_of_range", "", "the value is outside the key's range"},
+    {"inconsistent", "", "the value contradicts another key"},
+    {"unknown", "", "an unknown answer"},
+}};
+
+template <std::size_t kSize>
+constexpr bool IsComplete(const std::array<Entry, kSize>& table) {
+  return std::all_of(table.begin(), table.end(), [](const Entry& entry) { return entry.name != nullptr; });
+}
+static_assert(IsComplete(kModeTable) && IsComplete(kHoldReasonTable) && IsComplete(kFaultTable) &&
+              IsComplete(kLimitTable) && IsComplete(kIntakeTable) && IsComplete(kTuningResultTable));
+
+template <std::size_t kSize, typename Enumerator>
+const Entry& EntryOf(const std::array<Entry, kSize>& table, Enumerator which) noexcept {
+  return table[std::min(static_cast<std::size_t>(which), kSize - 1)];
 }
 
 }  // namespace
 
-const char* Name(Mode mode) noexcept {
-  switch (mode) {
-    case Mode::kBoot: return "boot";
-    case Mode::kHold: return "hold";
-    case Mode::kTrack: return "track";
-    case Mode::kCoast: return "coast";
-    case Mode::kFault: return "fault";
-    case Mode::kMove: return "move";
-  }
-  return "unknown";
-}
-
-const char* Name(HoldReason reason) noexcept {
-  switch (reason) {
-    case HoldReason::kNone: return "none";
-    case HoldReason::kNotAsked: return "not_asked";
-    case HoldReason::kNoTarget: return "no_target";
-    case HoldReason::kTargetLost: return "target_lost";
-    case HoldReason::kGoalUnreachable: return "goal_unreachable";
-    case HoldReason::kMotionDone: return "motion_done";
-    case HoldReason::kMotionRefused: return "motion_refused";
-    case HoldReason::kEyeDoubted: return "eye_doubted";
-    case HoldReason::kNotFollowed: return "not_followed";
-  }
-  return "unknown";
-}
-
+const char* Name(Mode mode) noexcept { return EntryOf(kModeTable, mode).name; }
+const char* Name(HoldReason reason) noexcept { return EntryOf(kHoldReasonTable, reason).name; }
+const char* Name(TuningResult result) noexcept { return EntryOf(kTuningResultTable, result).name; }
 const char* Name(Fault fault) noexcept { return EntryOf(kFaultTable, fault).name; }
 const char* Name(Limit limit) noexcept { return EntryOf(kLimitTable, limit).name; }
 const char* Name(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).name; }
 
-const char* Words(HoldReason reason) noexcept {
-  switch (reason) {
-    case HoldReason::kNone: return "the servo does not hold";
-    case HoldReason::kNotAsked: return "tracking was not requested";
-    case HoldReason::kNoTarget: return "no target was found yet";
-    case HoldReason::kTargetLost: return "the target was lost";
-    case HoldReason::kGoalUnreachable: return "limits keep the arm from the goal";
-    case HoldReason::kMotionDone: return "the commanded motion has ended";
-    case HoldReason::kMotionRefused: return "the commanded motion was refused";
-    case HoldReason::kEyeDoubted: return "the picture contradicts the hand's motion, or following it fails";
-    case HoldReason::kNotFollowed: return "the arm did not follow the commanded motion";
-  }
-  return "the reason is unknown";
-}
+const char* Words(HoldReason reason) noexcept { return EntryOf(kHoldReasonTable, reason).words; }
+const char* Words(Fault fault) noexcept { return EntryOf(kFaultTable, fault).words; }
+const char* Words(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).words; }
 
-const char* Words(Fault fault) noexcept {
-  switch (fault) {
-    case Fault::kNone: return "no fault";
-    case Fault::kArmLost: return "the arm returned errors, or nothing";
-    case Fault::kArmStale: return "the arm's states, or a joint's reading, stood still";
-    case Fault::kNonFiniteSensor: return "a sensor value was not finite";
-    case Fault::kNonFiniteFeature: return "a value from vision was not finite";
-    case Fault::kNonFiniteControl: return "a value of the control law was not finite";
-    case Fault::kDeadlineMissed: return "too many ticks in a row were missed";
-    case Fault::kJointPosition: return "a joint was outside its range";
-    case Fault::kJointVelocity: return "a joint's velocity exceeded its limit, or jumped";
-    case Fault::kNotFollowing: return "a joint did not follow its reference";
-    case Fault::kContact: return "an external force exceeded its limit";
-  }
-  return "an unknown fault";
-}
-
-const char* Words(Intake intake) noexcept {
-  switch (intake) {
-    case Intake::kNone: return "not arrived";
-    case Intake::kTaken: return "taken for the estimate";
-    case Intake::kNotFound: return "without the target";
-    case Intake::kWrongKind: return "of another target";
-    case Intake::kFromFuture: return "stamped in the future";
-    case Intake::kTooOld: return "too old";
-    case Intake::kStuckPicture: return "from a stuck picture";
-    case Intake::kOutOfRegion: return "outside the target region";
-    case Intake::kOutlier: return "rejected as outlier";
-  }
-  return "with an unknown outcome";
-}
+const char* Words(TuningResult result) noexcept { return EntryOf(kTuningResultTable, result).words; }
 
 const char* Key(Fault fault) noexcept { return EntryOf(kFaultTable, fault).key; }
 const char* Key(Limit limit) noexcept { return EntryOf(kLimitTable, limit).key; }

@@ -18,6 +18,7 @@
 #include "sim/faults/stalling_clock.hpp"
 #include "sim/mcu/board_servo.hpp"
 #include "sim/mcu/qemu.hpp"
+#include "sim/operator/live_session.hpp"
 #include "sim/run/files.hpp"
 #include "sim/run/outcome.hpp"
 #include "sim/run/progress.hpp"
@@ -65,12 +66,24 @@ class Run {
     // The folder is created last, so that a refused run leaves none.
     // A board that ticks by its own timer sees other inputs than the host: its log cannot be replayed.
     const bool replayable = !board_ || !options_.board.by_timer;
-    const RunFilesConfig files{options_.out, options_.report, kRenderers, options_.pace == Pace::kReal,
-                               replayable,   options_.command};
+    RunFilesConfig files;
+    files.out = options_.out;
+    files.report = options_.report;
+    files.renderer_index = kRenderers;
+    files.may_drop = options_.pace == Pace::kReal;
+    files.replayable = replayable;
+    files.command = options_.command;
+    if (options_.live != nullptr) {
+      files.tap = options_.live->tap();
+      files.open_ended = true;
+    }
     shell_.emplace(board_ ? static_cast<task::ServoStep&>(*board_) : servo_, board_ ? nullptr : &servo_,
                    kRecords, FolderOf(about_, files));
     shell_->OnRecord([this](const flight::FlightRecord& flown) { ObserveRecord(flown.record); });
     files_ = std::make_unique<RunFiles>(about_, files, *shell_);
+    if (options_.live != nullptr) {
+      live_.emplace(*options_.live, *shell_, options_.live_speed);
+    }
     if (trace_) {
       shell_->UseTrack(trace_->servo());
     }
@@ -159,7 +172,9 @@ class Run {
     }
 
     const FaultSettings& faults = about_.scenario.faults;
-    world_ = std::make_unique<World>(MakeWorldConfig(about_.scenario, about_.scene.robot));
+    WorldConfig world = MakeWorldConfig(about_.scenario, about_.scene.robot);
+    world.physics.may_be_loaded = options_.live != nullptr;  // a viewer may hang a load at the hand
+    world_ = std::make_unique<World>(world);
     world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
     world_->OnExposure([this](const Exposure& exposure) {
       if (!HasEye() || vision_.Expose(exposure)) {
@@ -183,6 +198,9 @@ class Run {
   }
 
   [[nodiscard]] std::int64_t EndNs() const {
+    if (live_) {
+      return INT64_MAX / 2;
+    }
     return static_cast<std::int64_t>(about_.scenario.run.duration_s * static_cast<double>(hal::kNsPerSecond));
   }
 
@@ -205,7 +223,9 @@ class Run {
     if (board_) {
       board_clock.emplace(clock, *board_);
     }
-    StallingClock stalling(board_clock ? static_cast<hal::Clock&>(*board_clock) : clock, stall_);
+    StallingClock& stalling =
+        stalling_.emplace(board_clock ? static_cast<hal::Clock&>(*board_clock) : clock, stall_);
+    stalling.EndAt(EndNs());
     std::optional<trace::ClockTrace> world;
     if (trace_) {
       world.emplace(trace_->servo(), stalling, "world");
@@ -216,8 +236,15 @@ class Run {
     if (motion_) {
       loop.UseMotion(*motion_);
     }
+    if (live_) {
+      live_->Begin({about_, *world_, *faulty_arm_, vision_, loop, stalling, {}});
+    }
     const hal::Status status = loop.Run(EndNs());
+    if (live_) {
+      live_->End();
+    }
     shell_->EndLoop();
+    stalling_.reset();
     return status;
   }
 
@@ -225,11 +252,16 @@ class Run {
     return options_.interrupt != nullptr && options_.interrupt->Came();
   }
 
+  void EndEarly() {
+    interrupted_ = true;
+    stalling_->EndAt(0);
+    shell_->loop()->Stop();  // after the current tick, which is still recorded
+  }
+
   // Passes the measurements that are due to the servo. Called between two ticks, on the servo's thread.
   bool HandOver(std::int64_t now_ns, bool wait) {
     if (IsInterrupted() && now_ns < EndNs()) {
-      interrupted_ = true;
-      shell_->loop()->Stop();  // after the current tick, which is still recorded
+      EndEarly();
       return true;
     }
     if (!trace_) {
@@ -251,6 +283,10 @@ class Run {
       }
       if (board_ && !board_->failure().empty()) {
         throw std::runtime_error(board_->failure() + "; the arm's brakes were closed");
+      }
+      if (live_ && !live_->WaitForTick(now_ns, [this] { return IsInterrupted(); })) {
+        EndEarly();
+        return true;
       }
       return HandOver(now_ns, /*wait=*/true);
     });
@@ -299,7 +335,8 @@ class Run {
     }
     FillFrameFailures(vision_.failures(), s);
     if (interrupted_) {
-      FillInterrupted(s.sim_time_s, about_.scenario.run.duration_s, s);
+      FillInterrupted(s.sim_time_s,
+                      live_ ? std::nullopt : std::optional<double>(about_.scenario.run.duration_s), s);
     }
     s.frames_lost = vision_.frames_lost();
     if (board_) {
@@ -323,12 +360,14 @@ class Run {
   task::ServoTask servo_;
   std::unique_ptr<BoardServo> board_;  // instead of `servo_`
   const StallFault stall_;
+  std::optional<StallingClock> stalling_;  // while the loop runs
   std::optional<RunTrace> trace_;
   std::optional<run::RunShell> shell_;
   std::unique_ptr<RunFiles> files_;
   SimVision vision_;  // its thread uses trace_, shell_ and files_
   std::unique_ptr<Verdict> verdict_;
   std::optional<TheoryRun> theory_;
+  std::optional<LiveSession> live_;
   std::optional<CommandedMotionSource> motion_;
   ModeWatch modes_;  // for the verdict, which cannot wait for the records
   std::unique_ptr<World> world_;

@@ -9,6 +9,7 @@
 #include "fovea/hal/record.hpp"
 #include "fovea/linux_rt/interrupt.hpp"
 #include "sim/mcu/board_servo.hpp"
+#include "sim/operator/live_page.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/verdict/summary.hpp"
 #include "sim/world/world.hpp"
@@ -41,6 +42,10 @@ struct RunOptions {
   hal::Clock* clock =
       nullptr;  // at real pace: replaces the computer's clock; the servo then waits for the pictures
   linux_rt::Interrupt* interrupt = nullptr;  // can end the run early; must outlive the run
+  // In lockstep, with files: a page whose viewers watch and touch. The run then has no end of its own, and
+  // its virtual time is paced to the wall clock. Must outlive the run.
+  LivePage* live = nullptr;
+  double live_speed = 1.0;  // at the start; see WallPace
 };
 
 // Composes robot, bench, camera and servo, runs the scenario to its end, judges it against the truth, and

@@ -16,6 +16,7 @@
 #include <span>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/share_folder.hpp"
@@ -23,6 +24,7 @@
 #include "firmware/host/run/run_folder.hpp"
 #include "fovea/linux_rt/realtime.hpp"
 #include "fovea/linux_rt/signal_queue.hpp"
+#include "sim/operator/served_page.hpp"
 #include "sim/run/network_eye.hpp"
 #include "sim/scenario/compose.hpp"
 #include "sim/scenario/fault_settings.hpp"
@@ -124,7 +126,9 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   CheckIsPanda(about);
   CheckServedFaults(scenario.faults);
   const linux_rt::SignalQueue signals({SIGINT, SIGTERM, SIGHUP, SIGUSR1});
-  World world(MakeWorldConfig(scenario, about.scene.robot));
+  WorldConfig bench = MakeWorldConfig(scenario, about.scene.robot);
+  bench.physics.may_be_loaded = options.live.has_value();  // a viewer may hang a load at the hand
+  World world(bench);
   FciRobot robot(world, about.scene.robot, options.walls);
   FciServerConfig config = options.server;
   config.at.ip = franka::Resolve(options.address, 0).ip;
@@ -133,11 +137,30 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   if (config.model_library.empty()) {
     say("model library not found: LoadModelLibrary returns an error");
   }
+  std::optional<ServedPage> page;  // outlives the eye, which gives it pictures
   std::optional<NetworkEye> eye;
-  if (scenario.camera.enabled && !options.camera_serial.empty()) {
-    eye.emplace(about, world, options.address, options.camera_serial, config.lockstep);
-    config.after_step = [&eye] { eye->Advance(); };
+  if (options.live) {
+    page.emplace(*options.live, about, world, [&eye](const FaultSettings& faults) {
+      if (eye) {
+        eye->SetFaults(faults);
+      }
+    });
   }
+  if (scenario.camera.enabled && !options.camera_serial.empty()) {
+    WatchedCamera::Watcher watcher;
+    if (page) {
+      watcher = [&page](const hal::Frame& frame) { page->AddPicture(frame); };
+    }
+    eye.emplace(about, world, options.address, options.camera_serial, config.lockstep, std::move(watcher));
+  }
+  config.after_step = [&eye, &page] {
+    if (eye) {
+      eye->Advance();
+    }
+    if (page) {
+      page->AfterStep();
+    }
+  };
   ContactCount contacts;
   world.OnStep([&contacts](const Truth& truth) { contacts.Add(truth.contacts); });
   FciServer server(robot, config);
@@ -147,6 +170,9 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   if (eye) {
     say(fmt::format("camera \"{}\" at {}: GigE Vision, {} x {} px", options.camera_serial, options.address,
                     about.pinhole.width_px, about.pinhole.height_px));
+  }
+  if (page) {
+    say("live at " + page->url());
   }
 
   ServeSummary summary;
@@ -175,7 +201,9 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   Person person(server, say_from_any);
   while (!stop) {
     const int signal = signals.Next(kLookMs);
-    stop = stop || signal == SIGINT || signal == SIGTERM || signal == SIGHUP;
+    if (signal == SIGINT || signal == SIGTERM || signal == SIGHUP || (page && page->ended())) {
+      stop = true;  // never false again: the robot's thread sets it, too
+    }
     if (signal == SIGUSR1) {
       person.PressStop();
     }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/host/live/server.hpp"
 #include "sim/panda/server.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/verdict/summary.hpp"
@@ -16,11 +17,12 @@
 namespace fovea::sim {
 
 struct ServeOptions {
-  std::string address = "127.0.0.1";    // address to listen on
-  std::string camera_serial = "fovea";  // of the GigE Vision camera; empty: no camera
-  std::vector<CartesianWall> walls;     // cuboids that the end effector may not enter
-  FciServerConfig server;               // `at.port` is used; `at.ip` comes from `address`
-  std::filesystem::path out;            // for summary.json; empty: no files
+  std::string address = "127.0.0.1";       // address to listen on
+  std::string camera_serial = "fovea";     // of the GigE Vision camera; empty: no camera
+  std::vector<CartesianWall> walls;        // cuboids that the end effector may not enter
+  FciServerConfig server;                  // `at.port` is used; `at.ip` comes from `address`
+  std::filesystem::path out;               // for summary.json; empty: no files
+  std::optional<live::ServerConfig> live;  // a page that shows the bench; none: no page
 };
 
 // What was served, and the true state of the bench at the end. The client runs the servo and writes the log
@@ -45,10 +47,11 @@ struct ServeSummary {
   std::string error;  // why the camera failed or the folder could not be written; not in summary.json
 };
 
-// Serves the scenario's arm as a Panda, and its camera, until SIGINT, SIGTERM or SIGHUP. SIGUSR1 presses and
-// releases the stop button. Lines on standard input do this and more (serve_keys.hpp). Calls `say` with each
-// message for the person. Writes summary.json to `options.out`. InputError: the scenario cannot be served, or
-// the folder cannot be made. std::runtime_error: a port is in use, or no picture can be drawn.
+// Serves the scenario's arm as a Panda, and its camera, until SIGINT, SIGTERM, SIGHUP or the page ends it.
+// SIGUSR1 presses and releases the stop button. Lines on standard input do this and more (serve_keys.hpp).
+// Calls `say` with each message for the person. Writes summary.json to `options.out`. InputError: the
+// scenario cannot be served, or the folder cannot be made, or the page's port is in use. std::runtime_error:
+// a port is in use, or no picture can be drawn.
 ServeSummary Serve(const Scenario& scenario, const ServeOptions& options,
                    const std::function<void(const std::string&)>& say);
 

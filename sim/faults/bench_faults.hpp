@@ -48,8 +48,7 @@ struct BenchFaults {
 
 template <class Visitor, Struct<BenchFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
-  v.Window({"camera_outage", "s", "the camera delivers nothing from the first time to the second"},
-           f.camera_outage);
+  v.Window({"camera_outage", "s", "the camera delivers nothing"}, f.camera_outage);
   v.Window({"torque_loss", "s", "a joint's motor delivers less torque, of the command and against gravity"},
            f.torque_loss.window);
   v.Joint({"torque_loss_joint", "", "joint with the weak motor, counted from 1"}, f.torque_loss.joint,
@@ -62,9 +61,9 @@ void Fields(Visitor& v, Faults& f) {
       f.base_tilt.window);
   v.Scaled({"gravity_tilt_deg", "deg", "tilt about the base's x axis"}, f.base_tilt.tilt,
            std::numbers::pi / 180.0, -180.0, 180.0);
-  v.List({"push", "Nm", "external torques on the joints, one per joint; default: none"}, f.push.tau,
-         hal::kMaxJoints, -1e4, 1e4);
-  v.Window({"push", "s", "the external torques act from the first time to the second"}, f.push.window);
+  v.Window({"push", "s", "external torques act on the joints"}, f.push.window);
+  v.List({"push", "Nm", "these torques, one per joint; default: none"}, f.push.tau, hal::kMaxJoints, -1e4,
+         1e4);
 }
 
 }  // namespace fovea::sim

@@ -7,8 +7,8 @@
 //   }
 //
 // The keys of [faults], their checks, the list of a run's faults and the refusals of `serve` come from this
-// list (sim/scenario/fault_settings.cpp). A visitor has the functions below; `value` may be const. A field's
-// key omits "faults.":
+// list (sim/scenario/fault_settings.cpp). The numbers that size a fault follow its window. A visitor has the
+// functions below; `value` may be const. A field's key omits "faults.":
 //
 //   Window(field, window, not_served)       a fault; its key is faults.<name>_s. `not_served`: the reason why
 //                                           `serve` refuses it, null if `serve` has it

@@ -10,6 +10,12 @@ namespace fovea::sim {
 FaultyArm::FaultyArm(hal::Arm& arm, const ArmFaults& faults)
     : Arm(arm.num_joints(), arm.paces_loop()), arm_(arm), faults_(faults), random_(faults.seed) {}
 
+void FaultyArm::SetFaults(const ArmFaults& faults) {
+  const std::uint64_t seed = faults_.seed;
+  faults_ = faults;
+  faults_.seed = seed;
+}
+
 hal::Status FaultyArm::DoRead(hal::ArmState& state) noexcept {
   hal::ArmState read;
   if (const hal::Status status = arm_.Read(read); !status.ok()) {
@@ -37,6 +43,8 @@ void FaultyArm::Spoil(hal::ArmState& state) noexcept {
         state.dq[k] = 0.0;
       }
     }
+  } else {
+    is_stuck_ = false;
   }
   if (faults_.noise.window.Contains(now_ns)) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(state.num_joints); ++k) {

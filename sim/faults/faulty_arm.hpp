@@ -41,8 +41,7 @@ struct ArmFaults {
 template <class Visitor, Struct<ArmFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
   constexpr const char* kKept = "a Panda handles encoder faults itself";
-  v.Window({"encoder_stuck", "s", "an encoder stays at its value from the first time to the second"},
-           f.stuck.window, kKept);
+  v.Window({"encoder_stuck", "s", "an encoder stays at its value"}, f.stuck.window, kKept);
   v.Joint({"encoder_stuck_joint", "", "joint with the stuck encoder, counted from 1; 0: all joints"},
           f.stuck.joint, f.stuck.window, 0);
   v.Window({"encoder_noise", "s", "a burst of noise on all encoders"}, f.noise.window,
@@ -67,13 +66,16 @@ class FaultyArm final : public hal::Arm {
   // `arm` is borrowed.
   FaultyArm(hal::Arm& arm, const ArmFaults& faults);
 
+  // Changes the faults from the next state on, except their seed. From the thread that reads the arm.
+  void SetFaults(const ArmFaults& faults);
+
  private:
   hal::Status DoRead(hal::ArmState& state) noexcept override;
   hal::Status DoWrite(const hal::ArmCommand& command) noexcept override { return arm_.Write(command); }
   void Spoil(hal::ArmState& state) noexcept;
 
   hal::Arm& arm_;
-  const ArmFaults faults_;
+  ArmFaults faults_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
   bool is_stuck_ = false;

@@ -7,15 +7,22 @@
 
 namespace fovea::sim {
 
+void FaultyDetector::SetFaults(const DetectorFaults& faults) {
+  DetectorFaults changed = faults;
+  changed.seed = faults_.Get().seed;
+  faults_.Set(changed);
+}
+
 void FaultyDetector::Put(const hal::FeatureMeasurement& measurement) noexcept {
+  const DetectorFaults faults = faults_.Get();
   hal::FeatureMeasurement said = measurement;
-  if (said.found && faults_.wrong.window.Contains(said.stamp_ns) &&
-      Chance(faults_.seed, said.sequence) < faults_.wrong.share) {
+  if (said.found && faults.wrong.window.Contains(said.stamp_ns) &&
+      Chance(faults.seed, said.sequence) < faults.wrong.share) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(said.dim); ++i) {
-      said.s[i] += faults_.wrong.shift[i];
+      said.s[i] += faults.wrong.shift[i];
     }
   }
-  if (said.found && faults_.not_a_number.Contains(said.stamp_ns)) {
+  if (said.found && faults.not_a_number.Contains(said.stamp_ns)) {
     said.s[0] = std::numeric_limits<double>::quiet_NaN();
   }
   sink_.Put(said);

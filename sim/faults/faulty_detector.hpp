@@ -7,6 +7,7 @@
 
 #include "fovea/hal/feature.hpp"
 #include "sim/faults/fault_fields.hpp"
+#include "sim/faults/shared_faults.hpp"
 
 namespace fovea::sim {
 
@@ -39,9 +40,12 @@ class FaultyDetector final : public hal::FeatureSink {
   FaultyDetector(hal::FeatureSink& sink, const DetectorFaults& faults) : sink_(sink), faults_(faults) {}
   void Put(const hal::FeatureMeasurement& measurement) noexcept override;
 
+  // Changes the faults from the next measurement on, except their seed. From any thread.
+  void SetFaults(const DetectorFaults& faults);
+
  private:
   hal::FeatureSink& sink_;
-  const DetectorFaults faults_;
+  SharedFaults<DetectorFaults> faults_;
 };
 
 }  // namespace fovea::sim

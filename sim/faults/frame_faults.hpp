@@ -35,12 +35,9 @@ struct FrameFaults {
 
 template <class Visitor, Struct<FrameFaults> Faults>
 void Fields(Visitor& v, Faults& f) {
-  v.Window({"frame_loss", "s", "frames get lost from the first time to the second"}, f.loss.window);
+  v.Window({"frame_loss", "s", "frames get lost"}, f.loss.window);
   v.Number({"frame_loss", "", "share of lost frames, at random"}, f.loss.share, 0.0, 1.0);
-  v.Window({"freeze", "s",
-            "the camera shows the same scene again and again, with new stamps, from the first time to the "
-            "second"},
-           f.freeze);
+  v.Window({"freeze", "s", "the camera shows the same scene again and again, with new stamps"}, f.freeze);
   v.Flag({"freeze_pixels", "", "true: frozen pictures have equal pixels; false: each has new noise"},
          f.freeze_pixels);
   v.Window({"replay", "s", "the camera shows the scene as it was before, with new stamps"}, f.replay.window);
@@ -50,8 +47,7 @@ void Fields(Visitor& v, Faults& f) {
            f.stamp.window, "the client synchronises the clocks itself");
   v.Scaled({"stamp_ms", "ms", "offset of the stamps; positive: a frame seems newer than it is"},
            f.stamp.by_ns, kNsOfMs, -1e4, 1e4);
-  v.Window({"latency", "s",
-            "frames exposed from the first time to the second arrive later; the next frames wait for them"},
+  v.Window({"latency", "s", "frames exposed in this time arrive later; the next frames wait for them"},
            f.late.window);
   v.Scaled({"latency_ms", "ms", "delay in addition to camera.latency_ms"}, f.late.by_ns, kNsOfMs, 0.0, 1e4);
 }
@@ -61,6 +57,9 @@ class FrameSpoiler {
  public:
   explicit FrameSpoiler(const FrameFaults& faults) : faults_(faults) {}
 
+  // Changes the faults from the next exposure on, except their seed.
+  void SetFaults(const FrameFaults& faults);
+
   // The exposure that the camera takes instead of `exposure`; none if the frame is lost.
   [[nodiscard]] std::optional<Exposure> Spoil(const Exposure& exposure);
   // Additional delay of the frame exposed at `stamp_ns`.
@@ -69,7 +68,7 @@ class FrameSpoiler {
  private:
   const Exposure& SceneFor(const Exposure& exposure);
 
-  const FrameFaults faults_;
+  FrameFaults faults_;
   std::deque<Exposure> past_;  // scenes to replay, oldest first
   std::optional<Exposure> frozen_;
 };

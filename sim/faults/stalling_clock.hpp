@@ -2,6 +2,8 @@
 // A clock whose waits end too late, so that the servo misses ticks.
 #pragma once
 
+#include <limits>
+
 #include "fovea/hal/clock.hpp"
 #include "sim/faults/fault_fields.hpp"
 
@@ -25,13 +27,24 @@ class StallingClock final : public hal::Clock {
   // `clock` is borrowed.
   StallingClock(hal::Clock& clock, const StallFault& fault) : clock_(clock), fault_(fault) {}
 
+  // Changes the fault from the next tick on, except its seed. From the thread that waits, also within a wait
+  // of the clock below.
+  void SetFault(const StallFault& fault) {
+    fault_.window = fault.window;
+    fault_.share = fault.share;
+  }
+  // From `end_ns` on no tick is missed: a run ends there, whatever the fault's window. From the same thread.
+  void EndAt(std::int64_t end_ns) { end_ns_ = end_ns; }
+
  private:
   [[nodiscard]] std::int64_t DoNowNs() const noexcept override { return clock_.NowNs(); }
-  // A wait for a missed tick ends at the next tick that is not missed.
+  // A wait for a missed tick ends at the next tick that is not missed. Waits for each of them in turn: what
+  // happens between ticks goes on.
   hal::Status DoWaitUntil(std::int64_t deadline_ns) noexcept override;
 
   hal::Clock& clock_;
-  const StallFault fault_;
+  StallFault fault_;
+  std::int64_t end_ns_ = std::numeric_limits<std::int64_t>::max();
 };
 
 }  // namespace fovea::sim

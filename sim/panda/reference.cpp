@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/panda/reference.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -2,7 +2,6 @@
 #include "sim/panda/robot.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 

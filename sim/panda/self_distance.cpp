@@ -2,7 +2,6 @@
 #include "sim/panda/self_distance.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace fovea::sim {

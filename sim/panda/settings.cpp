@@ -2,7 +2,6 @@
 #include "sim/panda/settings.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/panda/types.hpp"
 

@@ -16,6 +16,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "sim/physics/bullet_shapes.hpp"
@@ -315,7 +316,12 @@ void BulletArm::TiltBase(double tilt) {
   impl_->world.setGravity(btVector3(0, -g * std::sin(tilt), -g * std::cos(tilt)));
 }
 
-void BulletArm::SetLoad(double mass) { impl_->body->getLink(impl_->load).m_mass = mass; }
+void BulletArm::SetLoad(double mass) {
+  if (impl_->load < 0) {
+    throw std::logic_error("BulletArm::SetLoad: may_be_loaded is false");
+  }
+  impl_->body->getLink(impl_->load).m_mass = mass;
+}
 
 void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
   for (std::size_t i = 0; i < impl_->stiction.size(); ++i) {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <utility>

@@ -27,7 +27,7 @@ Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
     painter.draw = [this, optics](const Exposure& exposure, std::span<std::uint8_t> rgba) {
       optics->Draw(exposure, rgba);
       const std::int64_t taken_ns = exposure.pixels_of ? exposure.pixels_of->stamp_ns : exposure.stamp_ns;
-      SpoilPicture(faults_, taken_ns, width_px_, rgba);
+      SpoilPicture(faults_.Get(), taken_ns, width_px_, rgba);
     };
     painter.leave_thread = [optics] { optics->Release(); };
     painters.push_back(trace != nullptr ? trace->Watched(std::move(painter), *optics, i)

@@ -9,6 +9,7 @@
 #include "sim/camera/optics.hpp"
 #include "sim/camera/sim_camera.hpp"
 #include "sim/faults/picture_faults.hpp"
+#include "sim/faults/shared_faults.hpp"
 #include "sim/run/trace.hpp"
 #include "sim/scenario/run_description.hpp"
 
@@ -23,12 +24,15 @@ class Eye {
   // std::runtime_error: this computer cannot draw it.
   Eye(const RunDescription& about, std::size_t queue, RunTrace* trace = nullptr);
 
+  // Changes the faults of all pictures that are not drawn yet. From any thread.
+  void SetFaults(const PictureFaults& faults) { faults_.Set(faults); }
+
   [[nodiscard]] SimCamera& camera() { return *camera_; }
   [[nodiscard]] const SimCamera& camera() const { return *camera_; }
   [[nodiscard]] const std::string& driver_name() const { return optics_.front()->driver_name(); }
 
  private:
-  const PictureFaults faults_;
+  SharedFaults<PictureFaults> faults_;
   const int width_px_;
   std::vector<std::unique_ptr<Optics>> optics_;
   std::unique_ptr<SimCamera> camera_;  // its threads use the optics

@@ -21,10 +21,12 @@ run::RunFolderConfig FolderOf(const RunDescription& about, const RunFilesConfig&
   if (config.report && !config.out.empty()) {
     folder.facts = FactsOf(about);
     folder.facts->command = config.command;
+    folder.facts->duration_s = config.open_ended ? 0.0 : folder.facts->duration_s;
   }
   folder.options.more_files = kMoreFiles;
   folder.options.may_drop = config.may_drop;
   folder.options.replayable = config.replayable;
+  folder.options.tap = config.tap;
   folder.options.begin_ns = 0;  // in the world's time
   return folder;
 }

@@ -25,6 +25,8 @@ struct RunFilesConfig {
   bool may_drop = false;      // at real pace: the run does not wait for film or log
   bool replayable = true;     // the recorded inputs are those of the servo
   std::string command;        // command line of the run; "" if none
+  log::LogTap tap;            // gets each message of the log; empty: nobody does
+  bool open_ended = false;    // the run lasts until somebody ends it
 };
 
 // The folder for the RunShell of these RunFiles.

@@ -31,13 +31,15 @@ GigeCameraConfig MakeGigeConfig(const RunDescription& about, const std::string& 
 }  // namespace
 
 NetworkEye::NetworkEye(const RunDescription& about, World& world, const std::string& address,
-                       const std::string& serial, bool lockstep)
+                       const std::string& serial, bool lockstep, WatchedCamera::Watcher watcher)
     : world_(world),
       lockstep_(lockstep),
       eye_(about, kQueue),
+      watched_(eye_.camera(), std::move(watcher)),
       faults_(Seeded(about.scenario.faults.frames, SeedOf(about.scenario, RandomStream::kFrameFaults))),
       on_the_way_(kMostNews) {
-  gige_ = std::make_unique<GigeCamera>(eye_.camera(), MakeGigeConfig(about, address, serial));
+  news_.faults = about.scenario.faults.picture;
+  gige_ = std::make_unique<GigeCamera>(watched_, MakeGigeConfig(about, address, serial));
   world.OnExposure([this](const Exposure& exposure) {
     std::optional<Exposure> taken = faults_.Spoil(exposure);
     if (taken) {
@@ -71,8 +73,14 @@ void NetworkEye::Advance() {
   news_.exposure.reset();
 }
 
+void NetworkEye::SetFaults(const FaultSettings& faults) {
+  faults_.SetFaults(faults.frames);
+  news_.faults = faults.picture;
+}
+
 void NetworkEye::Take(const News& news, bool wait) {
   if (news.exposure && gige_->Expect(news.exposure->stamp_ns, news.late_ns)) {
+    eye_.SetFaults(news.faults);
     eye_.camera().Expose(*news.exposure);
   }
   gige_->Advance(news.now_ns, wait);

@@ -12,8 +12,10 @@
 
 #include "fovea/linux_rt/bounded_ring.hpp"
 #include "sim/faults/frame_faults.hpp"
+#include "sim/faults/picture_faults.hpp"
 #include "sim/gige/camera.hpp"
 #include "sim/run/eye.hpp"
+#include "sim/run/watched_camera.hpp"
 #include "sim/world/world.hpp"
 
 namespace fovea::sim {
@@ -22,13 +24,16 @@ class NetworkEye {
  public:
   // `about` must outlive it; it must outlive the last step of `world`. With `lockstep` the world waits for
   // pictures that are due to leave. Without, the world never waits: another thread passes the exposures to
-  // the threads that draw and send. std::runtime_error: this computer cannot draw, or GigeCamera refuses.
+  // the threads that draw and send. `watcher` sees each picture before it is sent. std::runtime_error: this
+  // computer cannot draw, or GigeCamera refuses.
   NetworkEye(const RunDescription& about, World& world, const std::string& address, const std::string& serial,
-             bool lockstep);
+             bool lockstep, WatchedCamera::Watcher watcher = {});
   ~NetworkEye();
 
   // Call it after each step of the world, on the world's thread.
   void Advance();
+  // Changes the faults of frames and pictures from the next exposure on. Call it on the world's thread.
+  void SetFaults(const FaultSettings& faults);
   [[nodiscard]] std::uint64_t sent() const { return gige_->sent(); }
   // Exposures that were dropped before drawing. Call it on the world's thread, or after that has ended.
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
@@ -40,6 +45,7 @@ class NetworkEye {
   struct News {
     std::int64_t now_ns = 0;
     std::int64_t late_ns = 0;  // additional delay of the exposure
+    PictureFaults faults;      // of the exposure
     std::optional<Exposure> exposure;
   };
   void Take(const News& news, bool wait);
@@ -48,6 +54,7 @@ class NetworkEye {
   World& world_;
   const bool lockstep_;
   Eye eye_;
+  WatchedCamera watched_;
   FrameSpoiler faults_;
   std::unique_ptr<GigeCamera> gige_;
   News news_;                  // of the present millisecond; used by the world's thread

@@ -21,10 +21,11 @@ void FillTheory(const TheoryResult& theory, Summary& summary) {
   summary.verdict = summary.converged || !theory.agrees ? theory.verdict : summary.verdict;
 }
 
-void FillInterrupted(double at_s, double duration_s, Summary& summary) {
+void FillInterrupted(double at_s, std::optional<double> duration_s, Summary& summary) {
   summary.interrupted = true;
   summary.converged = false;
-  summary.verdict = fmt::format("interrupted after {:.3f} s of {:g} s", at_s, duration_s);
+  summary.verdict = duration_s ? fmt::format("interrupted after {:.3f} s of {:g} s", at_s, *duration_s)
+                               : fmt::format("ended by its operator after {:.3f} s", at_s);
 }
 
 }  // namespace fovea::sim

@@ -11,6 +11,6 @@ namespace fovea::sim {
 void FillFrameFailures(const vision::FrameFailures& failures, Summary& summary);
 // A run with an analytic answer has converged only if it agrees with that answer.
 void FillTheory(const TheoryResult& theory, Summary& summary);
-void FillInterrupted(double at_s, double duration_s, Summary& summary);
+void FillInterrupted(double at_s, std::optional<double> duration_s, Summary& summary);
 
 }  // namespace fovea::sim

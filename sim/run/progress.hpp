@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -27,6 +28,7 @@ class Progress {
   std::string name_;
   double end_s_;
   bool is_terminal_;
+  std::size_t width_;  // of a line on the terminal
   bool shown_ = false;
   int next_line_percent_ = 0;
   std::chrono::steady_clock::time_point next_look_;

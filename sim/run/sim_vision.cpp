@@ -72,6 +72,14 @@ bool SimVision::Expose(const Exposure& exposure) {
   return true;
 }
 
+void SimVision::SetFaults(const FaultSettings& faults) {
+  frame_faults_.SetFaults(faults.frames);
+  detector_.SetFaults(faults.detector);
+  if (eye_) {
+    eye_->SetFaults(faults.picture);
+  }
+}
+
 void SimVision::RethrowFailure() const {
   if (failure_) {
     std::rethrow_exception(failure_);

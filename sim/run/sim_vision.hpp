@@ -44,6 +44,9 @@ class SimVision {
 
   // Takes an exposure. False if the frame is lost. Called by the world's thread.
   bool Expose(const Exposure& exposure);
+  // Changes the faults of frames, pictures and detector from the next exposure on. Called by the world's
+  // thread.
+  void SetFaults(const FaultSettings& faults);
   // Passes due measurements to `servo`; see FeatureDelay.
   bool HandOver(std::int64_t now_ns, bool wait, hal::FeatureSink& servo) {
     return delay_.HandOver(now_ns, wait, servo);

@@ -31,10 +31,7 @@ run::RunFacts FactsOf(const RunDescription& about) {
   return facts;
 }
 
-void LogTruth(const RunDescription& about, const Truth& truth, log::RunLog& log) {
-  if (!about.scene.has_eye) {
-    return;  // there is no target
-  }
+log::TruthSample TruthSampleOf(const RunDescription& about, const Truth& truth) {
   const TargetError error = ErrorOf(truth, about.pinhole, GoalOf(about.servo.feature));
   log::TruthSample sample;
   sample.stamp_ns = truth.stamp_ns;
@@ -43,7 +40,13 @@ void LogTruth(const RunDescription& about, const Truth& truth, log::RunLog& log)
   sample.error_px = error.error_px;
   sample.error_mm = 1e3 * error.error_C.norm();
   sample.q_BO = model::QuaternionOf(truth.R_BO);
-  log.AddTruth(sample);
+  return sample;
+}
+
+void LogTruth(const RunDescription& about, const Truth& truth, log::RunLog& log) {
+  if (about.scene.has_eye) {  // otherwise there is no target
+    log.AddTruth(TruthSampleOf(about, truth));
+  }
 }
 
 void LogTheory(const TheorySample& sample, log::RunLog& log) {

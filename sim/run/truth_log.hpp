@@ -13,6 +13,9 @@ namespace fovea::sim {
 
 run::RunFacts FactsOf(const RunDescription& about);
 
+// The truth for the log: poses, and the target's error. Call it only if there is a target.
+log::TruthSample TruthSampleOf(const RunDescription& about, const Truth& truth);
+
 // The thread that advances the world calls LogTruth and LogTheory.
 void LogTruth(const RunDescription& about, const Truth& truth, log::RunLog& log);
 void LogTheory(const TheorySample& sample, log::RunLog& log);

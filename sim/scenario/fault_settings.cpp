@@ -8,26 +8,13 @@
 #include <string>
 
 #include "firmware/host/config/input_error.hpp"
+#include "sim/faults/fault_reader.hpp"
 
 namespace fovea::sim {
 namespace {
 
 using config::InputError;
 using Field = FaultField;
-
-// All lists, in the order of the keys.
-template <class Visitor, Struct<FaultSettings> Settings>
-void Fields(Visitor& v, Settings& f) {
-  Fields(v, f.bench);
-  Fields(v, f.frames);
-  Fields(v, f.picture);
-  Fields(v, f.detector);
-  Fields(v, f.arm);
-  Fields(v, f.stall);
-  v.Window({"nothing", "s",
-            "no fault: a reference run; summary.json lists what the servo noticed, for comparison"},
-           f.nothing);
-}
 
 std::string KeyOf(const Field& field) { return std::string("faults.") + field.key; }
 std::string WindowKeyOf(const Field& field) { return KeyOf(field) + "_s"; }
@@ -39,7 +26,8 @@ class FaultKeys {
 
   void Window(const Field& field, TimeWindow& window, const char* /*not_served*/ = nullptr) {
     keys_.Numbers(WindowKeyOf(field), {window.start_s, window.end_s}, 2, 2, 0.0, 1e6, field.unit,
-                  field.meaning, [&window](const std::vector<double>& s) {
+                  std::string("from the first time to the second: ") + field.meaning,
+                  [&window](const std::vector<double>& s) {
                     window = {s[0], s[1]};
                   });
   }
@@ -90,23 +78,6 @@ class FaultKeys {
   }
 
   config::KeyTable& keys_;
-};
-
-// Reads the lists and does nothing. Derived classes replace the functions that they need.
-class FaultReader {
- public:
-  void Window(const Field& /*field*/, const TimeWindow& /*window*/, const char* /*not_served*/ = nullptr) {}
-  void Number(const Field& /*field*/, const double& /*value*/, double /*min*/, double /*max*/) {}
-  template <class T>
-  void Scaled(const Field& /*field*/, const T& /*value*/, double /*unit*/, double /*min*/, double /*max*/) {}
-  void Flag(const Field& /*field*/, const bool& /*value*/) {}
-  void Joint(const Field& /*field*/, const int& /*value*/, const TimeWindow& /*window*/, int /*least*/) {}
-  template <class Values>
-  void List(const Field& /*field*/, const Values& /*values*/, std::size_t /*most*/, double /*min*/,
-            double /*max*/) {}
-  template <class... Doubles>
-  void Numbers(const Field& /*field*/, double /*min*/, double /*max*/, const Doubles&... /*values*/) {}
-  void Size(const Field& /*field*/, double /*value*/) {}
 };
 
 class FaultsMet : public FaultReader {

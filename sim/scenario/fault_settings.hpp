@@ -26,6 +26,20 @@ struct FaultSettings {
   TimeWindow nothing;  // no fault: a reference run
 };
 
+// All lists, in the order of the keys.
+template <class Visitor, Struct<FaultSettings> Settings>
+void Fields(Visitor& v, Settings& f) {
+  Fields(v, f.bench);
+  Fields(v, f.frames);
+  Fields(v, f.picture);
+  Fields(v, f.detector);
+  Fields(v, f.arm);
+  Fields(v, f.stall);
+  v.Window({"nothing", "s",
+            "no fault: a reference run; summary.json lists what the servo noticed, for comparison"},
+           f.nothing);
+}
+
 // The same faults with another seed.
 template <class Faults>
 Faults Seeded(Faults faults, std::uint64_t seed) {

@@ -123,9 +123,8 @@ fs::path FindScenario(const std::string& name_or_path) {
     return shipped;
   }
   const std::vector<std::string> names = ShippedScenarios();
-  const std::string nearest = config::Nearest(name_or_path, names);
   throw InputError(fmt::format("unknown scenario \"{}\"{}; shipped are {} (or give the path of a .toml)",
-                               name_or_path, nearest.empty() ? "" : "; did you mean " + nearest + "?",
+                               name_or_path, config::DidYouMean(name_or_path, names),
                                fmt::join(names, ", ")));
 }
 
@@ -222,7 +221,7 @@ robots::Robot LoadScenarioRobot(const Scenario& scenario) {
     }
     return robots::LoadRobot(beside, root);
   }
-  return robots::LoadRobot(robots::FindShippedRobot(scenario.arm.model, "arm.model", robots::kOrRobotPath));
+  return robots::LoadRobot(robots::FindRobot(scenario.arm.model, "arm.model"));
 }
 
 }  // namespace fovea::sim

@@ -173,8 +173,11 @@ void AddBoard(const BoardSummary& board, PrintedTable& table) {
 
 std::string ToJson(const Summary& s) {
   ordered_json faults = ordered_json::array();
-  for (const FaultEvent& f : s.faults) {
-    faults.push_back({{"t_s", f.t_s}, {"name", f.name}, {"key", f.key}, {"detail", f.detail}});
+  for (const run::FaultEvent& f : s.faults) {
+    faults.push_back({{"t_s", f.t_s},
+                      {"name", hal::Name(f.fault)},
+                      {"key", hal::Key(f.fault)},
+                      {"detail", run::JointOf(f)}});
   }
   ordered_json modes = ordered_json::array();
   for (const ModeEvent& m : s.modes) {
@@ -235,12 +238,6 @@ std::string ToJson(const Summary& s) {
   return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string InWords(const FaultEvent& fault) {
-  const bool has_joint = fault.detail.starts_with("joint");
-  return fmt::format("{} ({}), at {:.3f} s{}{}", fault.words, fault.name, fault.t_s,
-                     has_joint ? ", " + fault.detail : "", fault.key.empty() ? "" : "; see " + fault.key);
-}
-
 std::string ToTable(const Summary& s, const config::TextStyle& style) {
   PrintedTable table(style);
   table.Row("scenario", fmt::format("{}, seed {}, {} pace", s.scenario, s.seed, s.pace));
@@ -284,8 +281,8 @@ std::string ToTable(const Summary& s, const config::TextStyle& style) {
   if (s.faults.empty()) {
     table.Row("faults", "none");
   }
-  for (const FaultEvent& f : s.faults) {
-    table.Row(&f == s.faults.data() ? "faults" : "", InWords(f), Paint::kBad);
+  for (const run::FaultEvent& f : s.faults) {
+    table.Row(&f == s.faults.data() ? "faults" : "", run::InWords(f), Paint::kBad);
   }
   if (s.mcu) {
     AddBoard(*s.mcu, table);

@@ -6,26 +6,15 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "firmware/host/config/terminal.hpp"
+#include "firmware/host/run/fault_event.hpp"
 #include "firmware/host/run/run_figures.hpp"
 #include "sim/mcu/board_summary.hpp"
 #include "sim/theory/run.hpp"
 
 namespace fovea::sim {
-
-struct FaultEvent {
-  double t_s = 0.0;
-  std::string name;
-  std::string key;
-  std::string detail;
-  std::string words = {};  // the same as `name`, for a person
-};
-
-// E.g. "a sensor value was not finite (non_finite_sensor), at 1.005 s, joint 1; see safety.non_finite_ticks".
-std::string InWords(const FaultEvent& fault);
 
 struct ModeEvent {
   double t_s = 0.0;
@@ -102,7 +91,7 @@ struct Summary : run::RunFigures {
   std::uint64_t contact_ticks = 0;  // ticks in which the arm touched bench, target or itself
   ContactTicks contacts;
   std::map<std::string, StandingMotion> unwanted_motion;  // by mode: boot, hold, fault
-  std::vector<FaultEvent> faults;
+  std::vector<run::FaultEvent> faults;
   std::vector<ModeEvent> modes;
   std::vector<InjectedFault> injected;
   RunEnd end;

@@ -96,7 +96,6 @@ void Verdict::NoteGoal(double t_s, bool kept) {
 
 void Verdict::AddRecord(const hal::TickRecord& record) {
   notices_.Add(record);
-  ++ticks_;
   for (int i = 0; i < config_.barriers.arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const model::Joint& joint = config_.barriers.arm.joints[k];
@@ -128,10 +127,7 @@ void Verdict::AddRecord(const hal::TickRecord& record) {
     modes_.push_back({t_s, hal::Name(record.mode), is_hold ? hal::Name(record.hold_reason) : ""});
   }
   if (record.fault != hal::Fault::kNone && (!has_record_ || before_.fault != record.fault)) {
-    const std::string detail = record.fault_joint >= 0 ? fmt::format("joint {}", record.fault_joint + 1)
-                                                       : std::string("no single joint");
-    faults_.push_back(
-        {t_s, hal::Name(record.fault), hal::Key(record.fault), detail, hal::Words(record.fault)});
+    faults_.push_back({t_s, record.fault, record.fault_joint});
   }
   before_ = record;
   has_record_ = true;
@@ -210,7 +206,7 @@ std::string Verdict::WhyNotFollowed(const Summary& summary) const {
                        [reason](const ModeEvent& event) { return event.reason == hal::Name(reason); });
   };
   if (!faults_.empty()) {
-    return "a fault stopped the arm: " + InWords(faults_.front());
+    return "a fault stopped the arm: " + run::InWords(faults_.front());
   }
   if (contacts_.any() > 0) {
     return Touched(summary);
@@ -299,7 +295,7 @@ std::string Verdict::Touched(const Summary& summary) {
 
 std::string Verdict::WhyNot(const Summary& summary) const {
   if (!faults_.empty()) {
-    return "not converged: fault: " + InWords(faults_.front());
+    return "not converged: fault: " + run::InWords(faults_.front());
   }
   if (!ever_known_) {
     return WhyNeverAccepted(summary);
@@ -323,6 +319,10 @@ std::string Verdict::WhyNot(const Summary& summary) const {
 }
 
 std::string Verdict::WhyNeverAccepted(const Summary& summary) const {
+  if (summary.frames == 0 && summary.frames_lost > 0) {
+    return fmt::format("not converged: all {} frames were lost; the arm held still (see [faults])",
+                       summary.frames_lost);
+  }
   if (summary.frames_detected == 0) {
     return "not converged: the target was never found in view; the arm held still (see target.position, "
            "arm.q_start, [vision])";
@@ -342,23 +342,13 @@ std::string Verdict::WhyNeverAccepted(const Summary& summary) const {
 
 // Of a run that ended in Hold.
 std::string Verdict::WhyHeld() const {
-  const double since_s = modes_.back().t_s;
-  switch (before_.hold_reason) {
-    case hal::HoldReason::kEyeDoubted:
-      return fmt::format(
-          "not converged: the image motion contradicts the hand's motion, or servoing did not reduce the "
-          "error; the arm has held since {:.3f} s (see camera.mount_xyz, camera.mount_rpy_deg, "
-          "servo.way_in_vain)",
-          since_s);
-    case hal::HoldReason::kGoalUnreachable:
-      return fmt::format(
-          "not converged: limits keep the arm from the goal, so it has held since {:.3f} s (see "
-          "target.position, servo.goal, safety.workspace_radius)",
-          since_s);
-    default:
-      return fmt::format("not converged: the arm has held since {:.3f} s because {}", since_s,
-                         run::InWords(before_.hold_reason));
-  }
+  const char* keys = before_.hold_reason == hal::HoldReason::kEyeDoubted
+                         ? "; see camera.mount_xyz, camera.mount_rpy_deg, servo.way_in_vain"
+                     : before_.hold_reason == hal::HoldReason::kGoalUnreachable
+                         ? "; see target.position, servo.goal, safety.workspace_radius"
+                         : "";
+  return fmt::format("not converged: the arm has held since {:.3f} s because {}{}", modes_.back().t_s,
+                     run::InWords(before_.hold_reason), keys);
 }
 
 // E.g. "; limited by field_of_view (safety.view_margin_px) in 89 % of its motion": the limits that acted in

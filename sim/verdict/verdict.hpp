@@ -101,7 +101,6 @@ class Verdict {
   std::size_t reference_ddq_ = reference_.Add("joint_acceleration", LimitBook::Kind::kShare);
   std::size_t reference_jerk_ = reference_.Add("joint_jerk", LimitBook::Kind::kShare);
   NoticeBook notices_;
-  std::uint64_t ticks_ = 0;
   std::map<std::string, std::uint64_t> limit_ticks_;
   std::uint64_t motion_ticks_ = 0;  // in Track, Coast and Move
   std::array<std::uint64_t, hal::kNumLimits> motion_limit_ticks_{};
@@ -109,7 +108,7 @@ class Verdict {
   hal::TickRecord before_;
   bool has_record_ = false;
   bool ever_known_ = false;
-  std::vector<FaultEvent> faults_;
+  std::vector<run::FaultEvent> faults_;
   std::vector<ModeEvent> modes_;
 };
 

@@ -130,6 +130,9 @@ Eigen::VectorXd World::Pulls() const {
   if (pulled_.size() > 0) {
     tau += pulled_;
   }
+  if (sprung_.size() > 0) {
+    tau += sprung_;
+  }
   return tau;
 }
 
@@ -195,6 +198,19 @@ Eigen::VectorXd World::WithFriction(Eigen::VectorXd tau) const {
   return tau;
 }
 
+Eigen::Isometry3d World::TargetPose() const {
+  if (placed_) {
+    return *placed_;
+  }
+  if (ball_) {
+    return ball_->X_BO();
+  }
+  Eigen::Isometry3d X_BO = Eigen::Isometry3d::Identity();
+  X_BO.translation() = PositionAt(config_.target, now_ns_);
+  X_BO.linear() = OrientationAt(config_.target, now_ns_);
+  return X_BO;
+}
+
 void World::RecordTruth() {
   truth_.stamp_ns = now_ns_;
   truth_.q = arm_.q();
@@ -206,11 +222,9 @@ void World::RecordTruth() {
   }
   truth_.X_BE = X_BL_[static_cast<std::size_t>(config_.robot.tip)];
   truth_.X_BC = truth_.X_BE * config_.X_EC;
-  truth_.p_BO = ball_ ? Eigen::Vector3d(ball_->X_BO().translation()) : PositionAt(config_.target, now_ns_);
-  truth_.R_BO = ball_ ? Eigen::Matrix3d(ball_->X_BO().linear()) : OrientationAt(config_.target, now_ns_);
-  Eigen::Isometry3d X_BO = Eigen::Isometry3d::Identity();
-  X_BO.linear() = truth_.R_BO;
-  X_BO.translation() = truth_.p_BO;
+  const Eigen::Isometry3d X_BO = TargetPose();
+  truth_.p_BO = X_BO.translation();
+  truth_.R_BO = X_BO.linear();
   touch_.Place(X_BL_, X_BO);
   truth_.contacts = {arm_.Contacts(), touch_.Target(), touch_.Self()};
 }

@@ -87,6 +87,12 @@ class World {
 
   // Applies lasting external torques `tau` [num_dofs; Nm, N] to the joints, in addition to WorldConfig's.
   void PullAt(const Eigen::VectorXd& tau) { pulled_ = tau; }
+  // The same for an operator's spring, which acts beside PullAt.
+  void PullBySpring(const Eigen::VectorXd& tau) { sprung_ = tau; }
+  // Changes the faults from now on. A load needs BulletArmOptions::may_be_loaded.
+  void SetFaults(const BenchFaults& faults) { static_cast<BenchFaults&>(config_) = faults; }
+  // From the next step on, the target is at `X_BO` instead of where the scenario moves it.
+  void PlaceTarget(const Eigen::Isometry3d& X_BO) { placed_ = X_BO; }
 
   [[nodiscard]] const Truth& truth() const { return truth_; }
   // The bench as it is now, for a picture.
@@ -109,12 +115,14 @@ class World {
   void TiltBase(double tilt);
   [[nodiscard]] Eigen::VectorXd AccelerationByDisturbance(double mass, double tilt);
   void StepBall();
+  [[nodiscard]] Eigen::Isometry3d TargetPose() const;
 
   WorldConfig config_;
   BulletArm arm_;
   LinkTouch touch_;
   std::vector<Eigen::Isometry3d> X_BL_;  // of all links, by RecordTruth
   std::optional<RollingBall> ball_;
+  std::optional<Eigen::Isometry3d> placed_;  // the target's pose, by PlaceTarget
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
   std::vector<const SimLink*> joints_;  // moving links, base to tip
@@ -124,6 +132,7 @@ class World {
   std::uint64_t next_frame_ = 0;
   hal::ArmCommand command_;
   Eigen::VectorXd pulled_;  // torques of PullAt; empty: none
+  Eigen::VectorXd sprung_;  // torques of PullBySpring; empty: none
   hal::ArmState measured_;
   Truth truth_;
   std::function<void(const Truth&)> on_step_;

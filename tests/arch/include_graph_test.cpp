@@ -66,7 +66,8 @@ std::string Vision(const char* rooms) {
 // Matches what scenarios, runs and verdicts use, and the folders of sim that match `rooms`.
 std::string Runs(const char* rooms) {
   return std::string(
-             "(fovea|firmware|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/.*|(fcntl|poll|unistd)[.]h|sim/"
+             "(fovea|firmware|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/"
+             ".*|(fcntl|poll|spawn|unistd)[.]h|sim/"
              "(") +
          rooms + ")/.*";
 }
@@ -135,14 +136,21 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"firmware/host",
              "(fovea/(hal|linux_rt)|firmware/(core|vision|host)|Eigen|unsupported/Eigen|opencv2)/.*|"
              "(fovea|foxglove)/[a-z]+[.]pb[.]h|"
-             "(CLI|console_bridge|fmt|google|libavcodec|libavformat|libavutil|nlohmann|openssl|toml\\+\\+|"
-             "urdf_parser)/.*|(fcntl|poll|unistd|sys/file|sys/ioctl|zlib|zstd)[.]h",
+             "(CLI|arpa|boost|console_bridge|fmt|google|libavcodec|libavformat|libavutil|netinet|nlohmann|"
+             "openssl|"
+             "sys|toml\\+\\+|urdf_parser)/.*|(fcntl|poll|unistd|zlib|zstd)[.]h",
              "the host part depends on core, vision and libraries, on no device driver and no simulator"},
         Rule{"firmware/host/config",
              "fovea/hal/.*|firmware/(core|vision|host/(calibration|config|robots))/"
              ".*|(CLI|fmt|toml\\+\\+|Eigen)/.*|"
              "(unistd|fcntl|poll|sys/file|sys/ioctl)[.]h",
              "keys configure servo and vision only"},
+        Rule{"firmware/host/desk", "fovea/hal/.*|firmware/(core/(config|task)|host/(desk|live))/.*|fmt/.*",
+             "a desk passes on what viewers ask of a servo, and knows no program"},
+        Rule{"firmware/host/live",
+             "firmware/host/(config|live|recording)/.*|(arpa|boost|fmt|google|netinet|nlohmann|sys)/.*|"
+             "(fovea|foxglove)/[a-z]+[.]pb[.]h|unistd[.]h",
+             "the live page shows a run's log, and knows neither the servo nor who runs it"},
         Rule{"firmware/host/robots",
              "firmware/(core/model|host/(config|robots))/.*|(fmt|urdf_parser|console_bridge|Eigen)/.*",
              "an arm is read from its files only"},
@@ -203,10 +211,16 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"sim/scenario", Runs("scenario|camera|faults|physics|render|robot|world"),
              "a scenario describes a run and knows no verdict"},
         Rule{"sim/theory", Runs("theory|scenario|world"), "an analytic response depends on no run"},
-        Rule{"sim/verdict", Runs("verdict|theory|scenario|mcu|render|world"),
-             "a verdict depends on the truth and not on the run that it judges"},
+        Rule{"sim/verdict",
+             "fovea/hal/(events|record|types)[.]hpp|firmware/core/(config|features|model|trajectory)/.*|"
+             "firmware/host/(config/(printed_table|terminal)|run/(fault_event|in_words|run_figures))[.]hpp|"
+             "sim/verdict/.*|sim/(mcu/board_summary|render/pinhole|theory/run|world/world)[.]hpp|"
+             "sim/scenario/(commanded_motion|fault_settings|run_description)[.]hpp|(fmt|nlohmann)/.*",
+             "a verdict depends on truth, records and scenario, not on the run that it judges"},
         Rule{"sim/run", Runs("run|verdict|theory|scenario|camera|faults|gige|render|world"),
              "a run depends on no program"},
+        Rule{"sim/operator", Runs("operator|run|scenario|faults|render|robot|world"),
+             "what an operator may do depends on no program and no verdict"},
         Rule{"sim/calibration", Runs("calibration|scenario|camera|physics|render|robot|world"),
              "calibration pictures need no run"},
         Rule{"sim/app", Runs("[a-z_]+"), "the programs combine everything"}),
@@ -216,13 +230,29 @@ INSTANTIATE_TEST_SUITE_P(
     Tools, IncludeRule,
     testing::Values(
         Rule{"tools/fovea",
-             "(fovea|firmware|tools|foxglove|fmt|CLI|nlohmann|Eigen|opencv2|sys)/.*|[a-z_]+[.]h",
+             "(fovea|firmware|tools|foxglove|fmt|google|CLI|nlohmann|Eigen|opencv2|sys)/.*|[a-z_]+[.]h",
              "the programs work on recorded runs, without the simulator"},
         Rule{"tools/bench",
-             "(fovea|firmware|tools|fmt|CLI|nlohmann|opencv2|Eigen|kdl|visp3|arpa|netinet|sys|linux)/.*|"
+             "(fovea|firmware|foxglove|tools|fmt|CLI|nlohmann|opencv2|Eigen|kdl|visp3|arpa|netinet|sys|linux)"
+             "/.*|"
              "[a-z_]+[.]h",
              "the benchmarks run without the simulator"}),
     NameOf);
+
+// Boost's headers take long to compile.
+TEST(IncludeRules, OnlyTheServersConnectionsIncludeBoost) {
+  std::vector<std::string> users;
+  for (const char* tree : {"hal", "firmware", "sim", "tools", "tests"}) {
+    for (const auto& file : test::SourcesIn(tree)) {
+      const std::vector<std::string> includes = test::IncludesOf(file);
+      if (std::any_of(includes.begin(), includes.end(),
+                      [](const std::string& include) { return include.starts_with("boost/"); })) {
+        users.push_back(std::filesystem::relative(file, test::SourceRoot()).string());
+      }
+    }
+  }
+  EXPECT_EQ(users, std::vector<std::string>{"firmware/host/live/web_connections.hpp"});
+}
 
 TEST(IncludeRules, CoverEveryFolder) {
   std::set<std::string> ruled;

@@ -10,13 +10,14 @@
 #include <utility>
 
 #include "firmware/core/barriers/solid_barriers.hpp"
+#include "fovea/hal/types.hpp"
 #include "tests/closed_loop/guard_bench.hpp"
 #include "tests/support/adversary.hpp"
 
 namespace fovea::test {
 namespace {
 
-constexpr double kTickS = 1e-3;
+constexpr double kTickS = hal::kTickPeriodS;
 constexpr std::int64_t kLatencyNs = 40 * hal::kNsPerMs;
 constexpr double kRounding = 1e-9;
 

@@ -55,6 +55,12 @@ TEST(InjectedFaults, LostFramesAreCounted) {
   EXPECT_EQ(some.frames + some.frames_lost, all.frames);
 }
 
+TEST(InjectedFaults, MissedTicksDoNotOutlastTheRun) {
+  const sim::Summary s = RunShipped("ball", {"run.duration_s=0.6", "faults.deadline_miss_s=[0.3, 2]"});
+  EXPECT_EQ(s.ticks, 300U);
+  EXPECT_NEAR(s.sim_time_s, 0.6, 1e-9);
+}
+
 std::string HashOf(int seed) {
   const sim::Summary s = RunShipped(
       "ball", {"run.duration_s=1.2", "run.seed=" + std::to_string(seed), "faults.frame_loss_s=[0.2, 1]",

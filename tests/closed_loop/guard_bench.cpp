@@ -9,11 +9,12 @@
 #include <iostream>
 
 #include "firmware/core/model/kinematics.hpp"
+#include "fovea/hal/types.hpp"
 
 namespace fovea::test {
 namespace {
 
-constexpr double kTickS = 1e-3;
+constexpr double kTickS = hal::kTickPeriodS;
 constexpr double kLength = 0.3;   // lever arm that converts radians to metres [m]
 constexpr double kAtRest = 0.01;  // [rad/s]
 constexpr std::int64_t kLatencyNs = 40 * hal::kNsPerMs;

@@ -20,7 +20,7 @@ TEST_P(KeysAtTheirEnds, KeepTheLimits) {
             << s.verdict << '\n';
   EXPECT_EQ(s.limit_violations, 0U);
   EXPECT_EQ(s.contact_ticks, 0U);
-  EXPECT_TRUE(s.faults.empty()) << s.faults.front().name;
+  EXPECT_TRUE(s.faults.empty()) << run::InWords(s.faults.front());
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "firmware/host/config/input_error.hpp"
+#include "firmware/host/config/toml_edit.hpp"
 #include "tests/fuzz/bytes.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/fuzz/input_file.hpp"
@@ -22,7 +23,7 @@ void JudgeCamera(const vision::Intrinsics& in) {
           "focal lengths are finite and positive");
   // The camera file is written and read back unchanged.
   static const fuzz::InputFile again("again.toml");
-  const std::string text = CameraFileText(in, 0.0);
+  const std::string text = config::SectionText("camera", CameraValues(in, 0.0));
   const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
   const vision::Intrinsics back = ReadCameraFile(again.Write(bytes));
   Require(back.width_px == in.width_px && back.height_px == in.height_px &&

@@ -11,8 +11,6 @@
 namespace fovea::hal {
 namespace {
 
-constexpr int kNumHoldReasons = static_cast<int>(HoldReason::kNotFollowed) + 1;
-
 // The words of every enumerator: none is empty, a name, or the words of another; a value outside the
 // enumeration has words, too.
 template <typename Enumerator>

@@ -137,7 +137,7 @@ TEST(EventsTest, NamesAreUniqueAndEveryCauseHasAKey) {
 
 TEST(EventsTest, EveryHoldReasonHasAUniqueName) {
   std::set<std::string> names;
-  for (int i = 0; i <= static_cast<int>(HoldReason::kNotFollowed); ++i) {
+  for (int i = 0; i < kNumHoldReasons; ++i) {
     EXPECT_TRUE(names.insert(Name(static_cast<HoldReason>(i))).second);
   }
   EXPECT_EQ(names.count("unknown"), 0U);

@@ -147,6 +147,12 @@ for (const { time, data: t } of of("/servo/tick")) {
     out.f64s(pose.q_CO, 4);
     out.i32(pose.first);
   }
+  if (t.tuning) {
+    out.u8(t.tuning.result);
+    out.i32(t.tuning.number);
+    out.f64(t.tuning.before);
+    out.f64(t.tuning.asked);
+  }
   out.u8(t.intake);
   out.u8(t.mode);
   out.u8(t.hold_reason);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Requests of other threads to a running loop: the last one before a tick takes
-// effect, no other value is seen, and Stop ends the loop.
+// Requests of other threads to a running loop: the last one before a tick takes effect, no Hold is lost, no
+// other value is seen, and Stop ends the loop.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <thread>
+#include <vector>
 
 #include "firmware/core/task/servo_loop.hpp"
 #include "tests/support/fake_drivers.hpp"
@@ -26,14 +28,25 @@ class CountingStep final : public ServoStep {
                       ? 1
                       : 0;
     law = inputs.change_law ? inputs.law : law;
-    ticks.fetch_add(1, std::memory_order_relaxed);
+    if (inputs.tuning.IsAsked()) {
+      const auto key = static_cast<std::size_t>(inputs.tuning.key);
+      older_values += inputs.tuning.value < values.at(key) ? 1 : 0;
+      values.at(key) = inputs.tuning.value;
+      ++tunings;
+    }
+    holds.fetch_add(inputs.request == Request::kHold ? 1 : 0, std::memory_order_relaxed);
+    ticks.fetch_add(1, std::memory_order_release);
   }
   int tracks = 0;
   int others = 0;
   int laws = 0;
   int wrong_laws = 0;
+  int tunings = 0;
+  int older_values = 0;  // of a key, after a newer one
+  std::array<double, config::kMostTunable> values{};
   Request last = Request::kNone;
   config::MotionLawKind law{};
+  std::atomic<int> holds{0};
   std::atomic<int> ticks{0};
 };
 
@@ -42,16 +55,80 @@ class DeafRecorder final : public hal::Recorder {
   void Record(const hal::TickRecord& /*record*/) noexcept override {}
 };
 
-TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
-  constexpr int kAsks = 1000;
-  constexpr int kPiece = 1000;  // ticks
+class ServoLoopAsks : public testing::Test {
+ protected:
+  // Runs a piece of the loop, so that the fake drivers' records stay small. False if it ran no tick.
+  bool RunAPiece(int ticks = 1000) {
+    const std::uint64_t before = loop.counters().ticks;
+    EXPECT_TRUE(loop.Run(clock.now_ns + ticks * hal::kTickPeriodNs).ok());
+    arm.written.clear();
+    clock.deadlines_ns.clear();
+    return loop.counters().ticks != before;
+  }
+  void RunUntilStop() {
+    while (RunAPiece()) {
+    }
+  }
+
   CountingStep step;
-  test::FakeArm arm(7);
+  test::FakeArm arm{7};
   test::FakeClock clock;
   hal::FeatureMailbox mailbox;
   DeafRecorder recorder;
   test::NoProbe probe;
-  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
+  ServoLoop loop{step, arm, clock, mailbox, recorder, probe};
+};
+
+// A Hold from one person is not lost when another asks to track before the next tick.
+TEST_F(ServoLoopAsks, AHoldThatNoTickHasTakenStays) {
+  loop.Ask(Request::kTrack);
+  loop.Ask(Request::kHold);
+  loop.Ask(Request::kReset);
+  loop.Ask(Request::kTrack);
+  loop.AskIfNoneWaits(Request::kReset);
+  RunAPiece(1);
+  EXPECT_EQ(step.last, Request::kHold);
+  EXPECT_EQ(step.tracks, 0);
+  RunAPiece(1);
+  EXPECT_EQ(step.tracks, 1) << "what came after the Hold";
+  RunAPiece(10);
+  EXPECT_EQ(step.tracks, 1);
+  EXPECT_EQ(step.others, 0);
+}
+
+// One person holds while another asks to track all the time: each Hold arrives.
+TEST_F(ServoLoopAsks, NoHoldIsLostToAnotherThread) {
+  constexpr int kHolds = 200;
+  std::atomic<bool> done{false};
+  int lost = 0;
+  std::thread tracker([&] {
+    while (!done.load(std::memory_order_relaxed)) {
+      loop.Ask(Request::kTrack);
+    }
+  });
+  std::thread holder([&] {
+    for (int i = 0; i < kHolds; ++i) {
+      const int before = step.holds.load(std::memory_order_relaxed);
+      loop.Ask(Request::kHold);
+      // The tick that runs now and the next one.
+      const int enough = step.ticks.load(std::memory_order_relaxed) + 2;
+      while (step.ticks.load(std::memory_order_acquire) < enough) {
+        std::this_thread::yield();
+      }
+      lost += step.holds.load(std::memory_order_relaxed) == before ? 1 : 0;
+    }
+    done = true;
+    loop.Stop();
+  });
+  RunUntilStop();
+  holder.join();
+  tracker.join();
+  EXPECT_EQ(lost, 0);
+  EXPECT_EQ(step.holds.load(), kHolds);
+}
+
+TEST_F(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
+  constexpr int kAsks = 1000;
   std::thread asker([&] {
     for (int i = 0; i < kAsks; ++i) {
       loop.Ask(Request::kTrack);
@@ -67,16 +144,8 @@ TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
     }
     loop.Stop();
   });
-  // Runs in pieces, so that the fake drivers' records stay small. A piece without a tick means the end.
-  hal::Status status = hal::Status::Ok();
-  for (std::uint64_t before = 1; loop.counters().ticks != before && status.ok();) {
-    before = loop.counters().ticks;
-    status = loop.Run(clock.now_ns + kPiece * hal::kTickPeriodNs);
-    arm.written.clear();
-    clock.deadlines_ns.clear();
-  }
+  RunUntilStop();
   asker.join();
-  EXPECT_TRUE(status.ok());
   EXPECT_EQ(step.last, Request::kHold);
   EXPECT_EQ(step.law, config::MotionLawKind::kFloat);
   EXPECT_LE(step.tracks, kAsks);
@@ -88,17 +157,46 @@ TEST(ServoLoopAsks, LastRequestOfAnotherThreadTakesEffect) {
               step.tracks, kAsks);
 }
 
+// Two threads change eight keys each. No key's last value is lost, and no value comes after a newer one.
+TEST_F(ServoLoopAsks, LastValueOfEachKeyArrives) {
+  constexpr int kAsks = 2000;
+  constexpr int kKeys = config::kMostTunable / 2;
+  std::atomic<int> refused{0};
+  std::vector<std::thread> askers;
+  for (int first : {0, kKeys}) {
+    askers.emplace_back([&, first] {
+      for (int i = 1; i <= kAsks; ++i) {
+        for (int key = first; key < first + kKeys; ++key) {
+          refused += loop.Ask(config::Tuning{key, static_cast<double>(i)}) ? 0 : 1;
+        }
+        std::this_thread::yield();
+      }
+    });
+  }
+  std::thread stopper([&] {
+    for (std::thread& asker : askers) {
+      asker.join();
+    }
+    // Each key waits for at most one round of all keys.
+    const int enough = step.ticks.load(std::memory_order_relaxed) + 100;
+    while (step.ticks.load(std::memory_order_relaxed) < enough) {
+      std::this_thread::yield();
+    }
+    loop.Stop();
+  });
+  RunUntilStop();
+  stopper.join();
+  for (const double value : step.values) {
+    EXPECT_EQ(value, kAsks);
+  }
+  EXPECT_EQ(step.older_values, 0);
+  EXPECT_EQ(refused.load(), 0);
+  std::printf("%d of %d requests were taken\n", step.tunings, kAsks * config::kMostTunable);
+}
+
 // The leave to move ends and is given again while the loop runs: no request takes effect without it.
-TEST(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
+TEST_F(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
   constexpr int kLeases = 1000;
-  constexpr int kPiece = 1000;  // ticks
-  CountingStep step;
-  test::FakeArm arm(7);
-  test::FakeClock clock;
-  hal::FeatureMailbox mailbox;
-  DeafRecorder recorder;
-  test::NoProbe probe;
-  ServoLoop loop(step, arm, clock, mailbox, recorder, probe);
   loop.GiveLeave(0);
   std::thread asker([&] {
     for (int i = 0; i < kLeases; ++i) {
@@ -116,14 +214,9 @@ TEST(ServoLoopAsks, RequestOfAnotherThreadNeedsLeave) {
       std::this_thread::yield();
     }
   });
-  hal::Status status = hal::Status::Ok();
-  while (loop.finish_tick() == ServoLoop::kNever && status.ok()) {
-    status = loop.Run(clock.now_ns + kPiece * hal::kTickPeriodNs);
-    arm.written.clear();
-    clock.deadlines_ns.clear();
+  while (loop.finish_tick() == ServoLoop::kNever && RunAPiece()) {
   }
   asker.join();
-  EXPECT_TRUE(status.ok());
   // The last kTrack may wait for the first tick that has leave again.
   EXPECT_LE(step.tracks, 1);
   EXPECT_EQ(step.others, 1) << "a request after GiveLeave takes effect";

@@ -3,6 +3,7 @@
 // the calls; if it is inactive, these tests fail.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -191,6 +192,41 @@ TEST_F(TickHeapTest, NoHeapCallWithTheFlightRecorder) {
                  [&](const flight::Keyframe&) { ++keyframes; });
   EXPECT_EQ(records, 3000);
   EXPECT_EQ(keyframes, 3);
+  EXPECT_EQ(meter_.heap_calls(), 0U);
+}
+
+// A request in each tick: taken, refused, repeated; keys move all the time.
+TEST_F(TickHeapTest, NoHeapCallWhileKeysChange) {
+  flight::FlightRecorder recorder(task_, &task_, 4096);
+  task::ServoLoop* running = nullptr;
+  int unasked = 0;
+  SteppingClock clock([&](std::int64_t now_ns) {
+    arm_.Advance();
+    const std::int64_t ms = now_ns / hal::kNsPerMs;
+    if (ms % 33 == 0) {
+      PutFeature(now_ns);
+    }
+    const auto key = static_cast<std::int32_t>(ms % config::kMostTunable);
+    const double value = ms % 5 == 0 ? std::nan("") : 0.2 + 1e-4 * static_cast<double>(ms);
+    unasked += running->Ask(config::Tuning{key, value}) ? 0 : 1;
+  });
+  task::ServoLoop loop(recorder, arm_, clock, mailbox_, recorder, meter_);
+  running = &loop;
+  ASSERT_TRUE(loop.Run(3 * hal::kNsPerSecond).ok());
+  std::array<int, hal::kNumTuningResults> results{};
+  int modes_seen = 0;
+  recorder.Drain(
+      [&](const flight::FlightRecord& record) {
+        ++results.at(static_cast<std::size_t>(record.record.tuning.result));
+        modes_seen |= 1 << static_cast<int>(record.record.mode);
+      },
+      [](const flight::Keyframe&) {});
+  EXPECT_EQ(unasked, 0);
+  EXPECT_GT(results[static_cast<std::size_t>(hal::TuningResult::kTaken)], 1000);
+  EXPECT_GT(results[static_cast<std::size_t>(hal::TuningResult::kNotFinite)], 100);
+  EXPECT_GT(results[static_cast<std::size_t>(hal::TuningResult::kUnknownKey)], 100);
+  EXPECT_NE(modes_seen & (1 << static_cast<int>(hal::Mode::kTrack)), 0);
+  EXPECT_EQ(meter_.durations().count(), 3000U);
   EXPECT_EQ(meter_.heap_calls(), 0U);
 }
 

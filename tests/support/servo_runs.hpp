@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -132,6 +133,28 @@ inline ServoRun TroubledRun(int ticks) {
                        });
 }
 
+// Keys that change while the arm tracks, and requests that are refused. Keys move at ticks 1000 and 2000.
+inline ServoRun TunedRun(int ticks) {
+  return RunOnIdealArm("tuned", ConfigOf(hal::FeatureKind::kSquare, features::FeatureForm::kCorners), ticks,
+                       true, [](int k, task::ServoInputs& inputs) {
+                         switch (k) {
+                           case 450: inputs.tuning = {0, 4.0}; break;   // servo.lambda
+                           case 560: inputs.tuning = {0, 1.0}; break;   // before it is there
+                           case 700: inputs.tuning = {4, 40.0}; break;  // out of range
+                           case 900: inputs.tuning = {1, 3.0}; break;   // servo.lambda_near, from 0
+                           case 950: inputs.tuning = {8, 5.0}; break;   // servo.target_jerk
+                           case 1400: inputs.tuning = {0, std::nan("")}; break;
+                           case 1500: inputs.tuning = {14, 1.0}; break;   // no key
+                           case 1600: inputs.tuning = {11, 10.0}; break;  // above servo.coast_s
+                           case 1900: inputs.tuning = {0, 2.5}; break;
+                           case 1950: inputs.tuning = {1, 0.0}; break;
+                           case 1999: inputs.tuning = {3, 0.01}; break;  // servo.damping
+                           case 2300: inputs.tuning = {4, 0.0}; break;   // servo.posture_gain
+                           default: break;
+                         }
+                       });
+}
+
 // All runs. Each lasts 2600 ticks, past the keyframes of ticks 1000 and 2000.
 inline std::vector<ServoRun> AllServoRuns() {
   using features::FeatureForm;
@@ -143,6 +166,7 @@ inline std::vector<ServoRun> AllServoRuns() {
   runs.push_back(TrackingRun("triangle", FeatureKind::kTriangle, FeatureForm::kPose, 2600));
   runs.push_back(CommandedRun(2600));
   runs.push_back(TroubledRun(2600));
+  runs.push_back(TunedRun(2600));
   return runs;
 }
 

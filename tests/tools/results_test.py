@@ -1,15 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """tools/results in a small test project, with fake programs:  results_test.py TOOLS_RESULTS"""
 
+import argparse
 import importlib.machinery
 import importlib.util
 import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 RESULTS = None
@@ -50,6 +53,11 @@ def load():
     return module
 
 
+def is_running(process_id):
+    state = pathlib.Path("/proc", process_id.strip(), "stat")
+    return state.exists() and ") Z " not in state.read_text()
+
+
 class Extractors(unittest.TestCase):
     def setUp(self):
         self.results = load()
@@ -66,7 +74,8 @@ class Extractors(unittest.TestCase):
 
     def test_printed_text_is_read_by_named_groups(self):
         output = "ball: 0.061 px\nworst 1e-14 m\nworst 3e-13 m\nlambda 3: nan\n"
-        values = self.results.find([r"^ball: (?P<px>\S+) px", r"^worst (?P<max_m>\S+) m", r"worst (?P<first>\S+)"], output)
+        patterns = [r"^ball: (?P<px>\S+) px", r"^worst (?P<max_m>\S+) m", r"worst (?P<first>\S+)"]
+        values = self.results.values_of({"find": patterns}, output)
         self.assertEqual(values, {"px": 0.061, "max_m": 3e-13, "first": 1e-14})
 
     def test_digits_are_grouped_from_five_on(self):
@@ -77,7 +86,24 @@ class Extractors(unittest.TestCase):
             with self.assertRaisesRegex(self.results.NoFigure, "no figure a"):
                 self.results.fill(template, values)
         with self.assertRaisesRegex(self.results.NoFigure, "no match"):
-            self.results.find(["^ball (?P<px>.*)"], "square 1\n")
+            self.results.values_of({"find": ["^ball (?P<px>.*)"]}, "square 1\n")
+
+    def test_output_without_text_is_named(self):
+        for row in ({}, {"find": ["^ball (?P<px>.*)"]}):
+            with self.assertRaisesRegex(self.results.NoFigure, "printed nothing"):
+                self.results.values_of(row, "\n")
+
+    def test_only_finite_figures_are_accepted(self):
+        for word in ("NaN", "Infinity", "-Infinity"):
+            values = self.results.values_of({}, f'{{"a": {word}, "b": 1}}')
+            self.assertEqual(self.results.fill("{b}", values), "1")
+            for template in ("{a:.2f}", "{b/a:.2f}", "{a*2:,}"):
+                with self.assertRaisesRegex(self.results.NoFigure, "the figure a is"):
+                    self.results.fill(template, values)
+        with self.assertRaisesRegex(self.results.NoFigure, "is inf"):
+            self.results.fill("{b*1e9:.0f}", {"b": 1e300})
+        with self.assertRaisesRegex(self.results.NoFigure, "max_m is nan"):  # a largest value would hide it
+            self.results.values_of({"find": [r"^worst (?P<max_m>\S+)"]}, "worst 1\nworst nan\n")
         with self.assertRaisesRegex(self.results.NoFigure, "not JSON"):
             self.results.values_of({}, "error")
 
@@ -99,6 +125,7 @@ class Command(unittest.TestCase):
         self.page = self.root / "tools/bench/RESULTS.md"
         self.page.parent.mkdir(parents=True)
         shutil.copy(RESULTS, self.root / "tools/results")
+        shutil.copy(pathlib.Path(RESULTS).parent / "bench/figures.py", self.page.parent)
         (self.page.parent / "results.toml").write_text(ROWS)
         (self.page.parent / "campaigns.md").write_text("# Long campaigns\n\nA day: no fault.\n")
         self.page.write_text("the old page")
@@ -157,8 +184,7 @@ class Command(unittest.TestCase):
         code, said = self.results("--limit", "1")
         self.assertEqual(code, 1, said)
         self.assertIn("still running after 1 s", said)
-        child = pathlib.Path("/proc", (self.root / "child").read_text().strip(), "stat")
-        self.assertTrue(not child.exists() or ") Z " in child.read_text())
+        self.assertFalse(is_running((self.root / "child").read_text()))
 
     def test_check_names_the_rows_that_differ(self):
         self.assertEqual(self.results()[0], 0)
@@ -186,8 +212,99 @@ class Command(unittest.TestCase):
         self.assertEqual(self.results()[0], 0)
         self.program("fovea-sim", {**SUMMARY, "renderer": "another", "error_px": 0.5})
         code, said = self.results("--check")
-        self.assertEqual(code, 0, said)
+        self.assertEqual(code, 77, said)
         self.assertIn("not compared: the renderer is another, the page's is llvmpipe", said)
+        self.program("fovea-sim", SUMMARY, 3)
+        self.assertEqual(self.results("--check")[0], 1)
+
+    def test_skipped_check_hides_no_difference(self):
+        """Another renderer: the rows that nothing rendered are still compared."""
+        rows = ROWS + '[[table]]\ntitle = "Exact"\n[[table.row]]\nwhat = "steps"\nrun = "fovea-bench tick"\n' \
+                      'figure = "{tick_ns:.0f}"\nfixed = true\n'
+        (self.page.parent / "results.toml").write_text(rows)
+        self.assertEqual(self.results()[0], 0)
+        self.program("fovea-sim", {**SUMMARY, "renderer": "another"})
+        code, said = self.results("--check")
+        self.assertEqual(code, 0, said)
+        self.assertIn("1 of 1 figures agree", said)
+        self.program("fovea-bench", [{"name": "tick_ns", "value": 1, "goal": 5000}])
+        code, said = self.results("--check")
+        self.assertEqual(code, 1, said)
+        self.assertIn("DIFFERS: Exact: steps: now 1; the page has 2650", said)
+
+    def test_check_without_the_needed_program_compares_nothing(self):
+        (self.page.parent / "results.toml").write_text(ROWS.replace('figure = "{x}"', 'figure = "{x}"\nfixed = true'))
+        code, said = self.results("--check", "--only", "Board")
+        self.assertEqual(code, 77, said)
+        self.assertIn("Not measured: the compiler is not installed.", said)
+
+    def test_wrong_list_is_refused_in_one_line(self):
+        for rows, why in (("", "must contain [[table]]"), ("[table]\n", "must contain [[table]]"),
+                          ("tabel = 1\n" + ROWS, "nothing else"), ("table = [1]\n", "must contain [[table]]"),
+                          (ROWS.replace("fixed = true", "fixed = 1"), "ball: fixed is unknown, or has the wrong type"),
+                          (ROWS.replace("fixed = true", "exit = true"), "ball: exit is unknown, or"),
+                          (ROWS.replace("fixed = true", "fixt = true"), "ball: fixt is unknown, or"),
+                          (ROWS.replace('["no-such-compiler"]', "[1]"), "Board: needs is unknown, or"),
+                          (ROWS.replace("fixed = true", 'find = ["("]'), "ball: missing )"),
+                          (ROWS.replace('run = "fovea-sim run ball"\n', ""), "ball: run is missing"),
+                          (ROWS.replace("fovea-sim run", "../fovea-sim run"), "ball: run must begin with the name"),
+                          (ROWS.replace("fovea-sim run ball", ""), "ball: run must begin with the name"),
+                          (ROWS.replace("fovea-sim run", "fovea-sim 'run"), "ball: No closing quotation")):
+            (self.page.parent / "results.toml").write_text(rows)
+            module = load()
+            module.ROWS = self.page.parent / "results.toml"
+            with self.assertRaises(module.Refused) as refused:
+                module.read_tables()
+            self.assertEqual(len(str(refused.exception).splitlines()), 1)
+            self.assertIn(why, str(refused.exception))
+        code, said = self.results()  # the last of them
+        self.assertEqual((code, said), (2, "tools/results: results.toml: ball: No closing quotation\n"))
+        (self.page.parent / "results.toml").write_text(ROWS.replace("fovea-sim run", "fovea-simm run"))
+        code, said = self.results()
+        self.assertEqual((code, len(said.splitlines())), (2, 1))
+        self.assertIn("has no fovea-simm", said)
+        self.assertEqual(self.calls(), [])
+
+    def test_limit_is_a_time(self):
+        for limit in ("0", "-1", "nan", "inf", "1e300"):
+            with self.assertRaisesRegex(argparse.ArgumentTypeError, "expected a number of seconds"):
+                load().limit_s(limit)
+        for limit in ("0", "ten"):
+            code, said = self.results("--limit", limit)
+            self.assertEqual(code, 2, said)
+            self.assertIn("argument --limit: ", said)
+        self.assertEqual(self.calls(), [])
+
+    def test_page_that_cannot_be_written_is_refused_before_any_run(self):
+        (self.page.parent / "campaigns.md").write_text("# Long campaigns\n\n")
+        code, said = self.results()
+        self.assertEqual(code, 2)
+        self.assertEqual(said, "tools/results: tools/bench/campaigns.md has no text below '# Long campaigns'\n")
+        (self.page.parent / "campaigns.md").unlink()
+        code, said = self.results()
+        self.assertEqual(code, 2, said)
+        self.assertIn("campaigns.md", said)
+        (self.page.parent / "campaigns.md").write_text("# Long campaigns\n\nA day: no fault.\n")
+        self.page.unlink()
+        self.page.mkdir()
+        self.assertEqual(self.results(), (2, "tools/results: tools/bench/RESULTS.md is a folder\n"))
+        self.assertEqual(self.calls(), [])
+
+    def test_signal_ends_the_command_too(self):
+        for stop in (signal.SIGTERM, signal.SIGHUP, signal.SIGINT):
+            child = self.root / "child"
+            child.unlink(missing_ok=True)
+            (self.root / "build/release/bin/fovea-sim").write_text(
+                f"#!/bin/sh\necho $$ > {child}.new\nmv {child}.new {child}\nsleep 1000\n")
+            process = subprocess.Popen([sys.executable, self.root / "tools/results", "--only", "ball"],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            while not child.exists():
+                self.assertIsNone(process.poll())
+                time.sleep(0.02)
+            process.send_signal(stop)
+            self.assertIn("interrupted", process.communicate(timeout=30)[1])
+            self.assertEqual(process.returncode, 1)
+            self.assertFalse(is_running(child.read_text()))
 
     def test_only_prints_and_writes_no_page(self):
         code, said = self.results("--only", "Accuracy")

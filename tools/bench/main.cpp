@@ -29,7 +29,8 @@ int main(int argc, char** argv) {
   bench::TickArguments tick;
   CLI::App* tick_command = app.add_subcommand(
       "tick", "measure the time of one servo tick by input, stage and mode, and compare with KDL");
-  tick_command->add_option("--robot", tick.robot, "A shipped arm")->capture_default_str();
+  tick_command->add_option("--robot", tick.robot, "A shipped arm, or the path of an arm file or URDF")
+      ->capture_default_str();
   tick_command
       ->add_option("--runs", tick.runs,
                    "Number of random closed loops that are searched for the slowest tick")

@@ -54,14 +54,14 @@ if(FOVEA_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
 
-# fovea_add_library(<name> [TICK] [COMPONENT <core|host>] [SOURCES <file>...] [APART <file>...] [HEADERS <file>...]
+# fovea_add_library(<name> [TICK] [COMPONENT <core|host>] [SOURCES <file>...] [HEADERS <file>...]
 #                   [API <file>...] [PUBLIC <target>...] [PRIVATE <target>...])
-# SOURCES are compiled together (see FoveaUnity), sources APART each by itself.
+# SOURCES are compiled together (see FoveaUnity).
 # HEADERS are beside the sources and are included by their path from the root. API are the headers that an outside project
 # includes, relative to the folder's include/ or to firmware/include/. With COMPONENT the library and all its headers are
 # installed in that component of the CMake package.
 function(fovea_add_library name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "TICK" "COMPONENT" "SOURCES;APART;HEADERS;API;PUBLIC;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "TICK" "COMPONENT" "SOURCES;HEADERS;API;PUBLIC;PRIVATE")
   add_library(${name} STATIC)
   if(arg_API)
     set(base ${CMAKE_CURRENT_SOURCE_DIR}/include)
@@ -75,18 +75,18 @@ function(fovea_add_library name)
     target_sources(${name} PUBLIC FILE_SET internal TYPE HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR})
     fovea_install(${name} ${arg_COMPONENT})
   endif()
-  fovea_add_sources(${name} SOURCES ${arg_SOURCES} APART ${arg_APART} HEADERS ${arg_HEADERS})
+  fovea_add_sources(${name} SOURCES ${arg_SOURCES} HEADERS ${arg_HEADERS})
   target_link_libraries(${name} PUBLIC ${arg_PUBLIC} PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:fovea_warnings>)
   if(arg_TICK)
     target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:fovea_tick>)
   endif()
 endfunction()
 
-# fovea_add_sources(<name> [SOURCES <file>...] [APART <file>...] [HEADERS <file>...])
+# fovea_add_sources(<name> [SOURCES <file>...] [HEADERS <file>...])
 # Adds the files of a subfolder to the target <name>.
 function(fovea_add_sources name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;APART;HEADERS")
-  target_sources(${name} PRIVATE ${arg_SOURCES} ${arg_APART})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;HEADERS")
+  target_sources(${name} PRIVATE ${arg_SOURCES})
   fovea_compile_together(${name} ${arg_SOURCES})
   if(arg_HEADERS)
     list(TRANSFORM arg_HEADERS PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)

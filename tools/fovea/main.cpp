@@ -18,6 +18,7 @@
 #include "tools/fovea/detect/detect.hpp"
 #include "tools/fovea/features/features.hpp"
 #include "tools/fovea/gains/gains.hpp"
+#include "tools/fovea/live/live.hpp"
 #include "tools/fovea/model/model.hpp"
 #include "tools/fovea/replay/replay.hpp"
 
@@ -101,6 +102,8 @@ int main(int argc, char** argv) {
   const CLI::App* atlas = AddAtlas(app, atlas_arguments);
   CalibrateArguments calibrate_arguments;
   const CLI::App* calibrate = AddCalibrate(app, calibrate_arguments);
+  LiveArguments live_arguments;
+  const CLI::App* live = AddLive(app, live_arguments);
   ModelArguments model_arguments;
   const CLI::App* model = AddModel(app, model_arguments);
   FeaturesArguments features_arguments;
@@ -123,6 +126,9 @@ int main(int argc, char** argv) {
     }
     if (calibrate->parsed()) {
       return Calibrate(*calibrate, calibrate_arguments);
+    }
+    if (live->parsed()) {
+      return Live(live_arguments);
     }
     if (model->parsed()) {
       return Model(model_arguments);

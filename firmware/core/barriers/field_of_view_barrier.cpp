@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/barriers/field_of_view_barrier.hpp"
 
-#include <algorithm>
-
 #include "firmware/core/features/point.hpp"
 
 namespace fovea::barriers {

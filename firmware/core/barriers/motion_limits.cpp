@@ -2,7 +2,6 @@
 #include "firmware/core/barriers/motion_limits.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "firmware/core/barriers/barrier_speed.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"

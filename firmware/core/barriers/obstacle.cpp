@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/barriers/obstacle.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace fovea::barriers {
 namespace {
 

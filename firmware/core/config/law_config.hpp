@@ -32,31 +32,35 @@ struct LawConfig {
 
 template <class Visitor, Struct<LawConfig> Config>
 void Fields(Visitor& v, Config& c) noexcept {
-  v.Number({"servo.lambda", "1/s", "gain: the error decays like exp(-lambda t)"}, c.lambda, 0.0, 20.0);
-  v.Number({"servo.lambda_near", "1/s",
-            "gain near the goal; servo.lambda applies to large errors; 0: servo.lambda everywhere"},
-           c.lambda_near, 0.0, 20.0);
-  v.Number({"servo.lambda_slope", "1/s", "slope of the gain over the feature's error, at error 0"},
-           c.lambda_slope, 0.0, 1e6);
+  v.Number({"servo.lambda", "1/s", "gain: the error decays like exp(-lambda t)", kInMotion<0>}, c.lambda, 0.0,
+           20.0);
+  v.Number(
+      {"servo.lambda_near", "1/s",
+       "gain near the goal; servo.lambda applies to large errors; 0: servo.lambda everywhere", kInMotion<1>},
+      c.lambda_near, 0.0, 20.0);
+  v.Number(
+      {"servo.lambda_slope", "1/s", "slope of the gain over the feature's error, at error 0", kInMotion<2>},
+      c.lambda_slope, 0.0, 1e6);
   v.Choice({"servo.interaction", "",
             "the interaction matrix that the law inverts: of now, of the goal, or the mean of both"},
            c.interaction, kInteractionNames);
   v.Number({"servo.smooth_start_s", "s", "the law is blended in over this time"}, c.smooth_start_s, 0.001,
            10.0);
   v.Number({"servo.damping", "",
-            "the task is damped in directions whose singular value is below this share of the rms one"},
+            "the task is damped in directions whose singular value is below this share of the rms one",
+            kInMotion<3>},
            c.damping, 1e-6, 1.0);
-  v.Number(
-      {"servo.posture_gain", "1/s", "pull of the posture in the directions that the feature leaves free"},
-      c.posture_gain, 0.0, 20.0);
+  v.Number({"servo.posture_gain", "1/s", "pull of the posture in the directions that the feature leaves free",
+            kInMotion<4>},
+           c.posture_gain, 0.0, 20.0);
   v.Number({"servo.joint_limit_gain", "1/s",
-            "pull away from the ends of the joints' ranges in the free directions"},
+            "pull away from the ends of the joints' ranges in the free directions", kInMotion<5>},
            c.joint_limit_gain, 0.0, 20.0);
-  v.Number(
-      {"servo.manipulability_gain", "rad^2/s", "pull towards more manipulability in the free directions"},
-      c.manipulability_gain, 0.0, 20.0);
-  v.Number({"servo.free_speed", "rad/s", "speed limit of these three pulls together"}, c.free_speed, 1e-6,
-           10.0);
+  v.Number({"servo.manipulability_gain", "rad^2/s", "pull towards more manipulability in the free directions",
+            kInMotion<6>},
+           c.manipulability_gain, 0.0, 20.0);
+  v.Number({"servo.free_speed", "rad/s", "speed limit of these three pulls together", kInMotion<7>},
+           c.free_speed, 1e-6, 10.0);
   v.PerJoint({"servo.posture", "rad",
               "posture that servo.posture_gain pulls to, one per joint; default: the arm's ready posture"},
              c.q_posture, -1e4, 1e4);

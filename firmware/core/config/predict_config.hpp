@@ -33,26 +33,33 @@ struct PredictConfig {
   double way_in_vain = 0.5;
 };
 
+// Coast comes before Hold. Init checks it, and so does each change in motion.
+inline bool IsStaleBeforeLost(const PredictConfig& c) noexcept { return c.stale_s <= c.coast_s; }
+
 template <class Visitor, Struct<PredictConfig> Config>
 void Fields(Visitor& v, Config& c) noexcept {
   v.Flag({"servo.predict", "",
           "predict the target for every tick; false: hold the newest measurement unchanged"},
          c.enabled);
-  v.Number({"servo.target_jerk", "m/s^3",
-            "how fast the target's acceleration may change; larger follows faster, filters less"},
-           c.target_jerk, 0.0, 1000.0);
   v.Number(
-      {"servo.target_turn", "rad/s^2", "square and triangle: how fast their angular velocity may change"},
-      c.target_turn, 0.0, 1000.0);
-  v.Number({"servo.gate_sigma", "sigma", "a measurement that deviates more than this is an outlier"},
+      {"servo.target_jerk", "m/s^3",
+       "how fast the target's acceleration may change; larger follows faster, filters less", kInMotion<8>},
+      c.target_jerk, 0.0, 1000.0);
+  v.Number({"servo.target_turn", "rad/s^2", "square and triangle: how fast their angular velocity may change",
+            kInMotion<9>},
+           c.target_turn, 0.0, 1000.0);
+  v.Number({"servo.gate_sigma", "sigma", "a measurement that deviates more than this is an outlier",
+            kInMotion<10>},
            c.gate_sigma, 1.0, 1000.0);
   v.Integer({"servo.gate_rejects_max", "",
              "after this many outliers in a row the filter restarts at the newest one"},
             c.gate_rejects_max, 1, 1000);
   v.Integer({"servo.accepted_min", "", "number of measurements before the target counts as known"},
             c.accepted_min, 1, 1000);
-  v.Number({"servo.stale_s", "s", "Coast after this time without a measurement"}, c.stale_s, 0.001, 10.0);
-  v.Number({"servo.coast_s", "s", "Hold after this time without a measurement"}, c.coast_s, 0.001, 60.0);
+  v.Number({"servo.stale_s", "s", "Coast after this time without a measurement", kInMotion<11>}, c.stale_s,
+           0.001, 10.0);
+  v.Number({"servo.coast_s", "s", "Hold after this time without a measurement", kInMotion<12>}, c.coast_s,
+           0.001, 60.0);
   v.Number({"servo.target_speed_max", "m/s", "upper bound of the target's estimated speed"},
            c.target_speed_max, 0.0, 10.0);
   v.Number({"servo.target_acceleration_max", "m/s^2", "upper bound of the target's estimated acceleration"},

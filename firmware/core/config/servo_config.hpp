@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All settings of the servo. Fixed after Init. Each struct has its own file, with the list of its fields:
-// key, unit, range, meaning (fields.hpp).
+// All settings of the servo. Fixed after Init, except for the keys that may change in motion (tuning.hpp).
+// Each struct has its own file, with the list of its fields: key, unit, range, meaning (fields.hpp).
 #pragma once
 
 #include "firmware/core/config/feature_fields.hpp"

@@ -2,7 +2,6 @@
 #include "firmware/core/control/resolve_constrained.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "firmware/core/model/cholesky.hpp"
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/estimate/eye_watch.hpp"
 
-#include <cmath>
-
 namespace fovea::estimate {
 namespace {
 

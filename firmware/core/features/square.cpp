@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/features/square.hpp"
 
-#include <cmath>
-
 #include "firmware/core/model/math.hpp"
 
 namespace fovea::features {

@@ -68,6 +68,7 @@ void ServoServer::Configure(const Frame& frame) noexcept {
     inputs_ = task::ServoInputs{};
     answered_ = false;
     fresh_ = false;
+    requests_.Clear();
     has_inputs_ = false;
     time_ns_ = 0;
     least_lag_ns_ = 0;
@@ -127,13 +128,16 @@ void ServoServer::TakeInputsByTimer(const Frame& frame) noexcept {
       received_.has_feature = true;
       received_.feature = inputs_.feature;
     }
-    if (received_.request == task::Request::kNone) {
-      received_.request = inputs_.request;
-    }
     if (!received_.change_law && inputs_.change_law) {
       received_.change_law = true;
       received_.law = inputs_.law;
     }
+    if (!received_.tuning.IsAsked()) {
+      received_.tuning = inputs_.tuning;
+    }
+  }
+  if (received_.request != task::Request::kNone) {
+    requests_.Put(received_.request);
   }
   inputs_ = received_;
   inputs_sequence_ = frame.sequence;
@@ -179,10 +183,11 @@ void ServoServer::TickByTimer(std::int32_t missed_ticks) noexcept {
     ++line_.silent_ticks;
     inputs_.arm_status = hal::Status(hal::StatusCode::kTimeout, "link");
     inputs_.has_feature = false;
-    inputs_.request = task::Request::kNone;
     inputs_.motion = moves::MotionCommand{};
     inputs_.change_law = false;
+    inputs_.tuning = {};
   }
+  inputs_.request = requests_.Take();
   fresh_ = false;
   inputs_.missed_ticks = missed_ticks;
   line_.missed_ticks += static_cast<std::uint32_t>(missed_ticks);

@@ -9,6 +9,7 @@
 
 #include "firmware/core/link/frame.hpp"
 #include "firmware/core/link/messages.hpp"
+#include "firmware/core/task/request_box.hpp"
 
 namespace fovea::link {
 
@@ -78,8 +79,9 @@ class ServoServer final : private task::StageProbe {
   std::uint32_t link_counts_ = 0;
 
   // By the timer
-  bool fresh_ = false;       // `inputs_` came since the last tick
-  bool has_inputs_ = false;  // some came, the newest of them `inputs_sequence_`
+  bool fresh_ = false;         // `inputs_` came since the last tick
+  task::RequestBox requests_;  // no tick has taken them
+  bool has_inputs_ = false;    // some came, the newest of them `inputs_sequence_`
   std::uint32_t inputs_sequence_ = 0;
   bool may_tick_ = false;           // false: the timer stands until the host sends Go
   std::uint32_t periods_done_ = 0;  // of Board::Periods

@@ -77,12 +77,19 @@ void FieldsOfDemand(Archive& a, T& demand) noexcept {
 Bytes Encode(const Demand& message, Storage storage) noexcept {
   FieldWriter writer(storage);
   FieldsOfDemand(writer, message);
+  if (message.tuning.IsAsked()) {
+    TuningFields(writer, message.tuning);
+  }
   return writer.ok() ? writer.written() : Bytes{};
 }
 
 bool Decode(Bytes bytes, Demand& message) noexcept {
   FieldReader reader(bytes);
   FieldsOfDemand(reader, message);
+  message.tuning = {};
+  if (!reader.Done()) {
+    TuningFields(reader, message.tuning);
+  }
   return reader.Done();
 }
 
@@ -110,6 +117,7 @@ std::uint64_t DigestOf(const config::ServoConfig& config, const task::ServoState
       case Pace::kMeasurement: return measured;
       case Pace::kSeeking: return seeks;
       case Pace::kMoving: return mode == hal::Mode::kMove;
+      case Pace::kTuning: return state.tuning.active;
       case Pace::kFollows: return false;
     }
     return false;

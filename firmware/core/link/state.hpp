@@ -15,14 +15,16 @@ struct Demand {
   moves::MotionCommand motion;
   bool change_law = false;
   config::MotionLawKind law = config::MotionLawKind::kComputedTorque;
+  config::Tuning tuning;
 
   // True if the arm answered and nothing was requested.
   [[nodiscard]] bool IsPlain() const noexcept {
     return arm_status == hal::StatusCode::kOk && request == task::Request::kNone &&
-           motion.kind == moves::MotionKind::kNone && !change_law;
+           motion.kind == moves::MotionKind::kNone && !change_law && !tuning.IsAsked();
   }
 };
 inline constexpr std::size_t kMaxDemand = 320;  // bytes
+// The key that changes is last, and only written if there is one: older logs end before it.
 [[nodiscard]] Bytes Encode(const Demand& message, Storage storage) noexcept;
 [[nodiscard]] bool Decode(Bytes bytes, Demand& message) noexcept;
 

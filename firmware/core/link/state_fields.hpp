@@ -21,6 +21,7 @@ enum class Pace : std::uint8_t {
   kMeasurement,  // in a tick that takes a measurement
   kSeeking,      // while the servo tracks a target and searches for a posture
   kMoving,       // in mode Move
+  kTuning,       // in a tick with a request to change a key, and while a key moves
   kFollows,      // follows from inputs and the other groups alone
 };
 
@@ -86,7 +87,7 @@ void EncoderWatchFields(Archive& a, T& w) noexcept {
 template <class Archive, class T>
 void ModeFields(Archive& a, T& s) noexcept {
   a.Choice(s.mode.mode, hal::kNumModes);
-  a.Choice(s.mode.hold_reason, kNumHoldReasons);
+  a.Choice(s.mode.hold_reason, hal::kNumHoldReasons);
   a.Choice(s.mode.fault, hal::kNumFaults);
   a(s.mode.track_asked);
   a(s.mode.motion_barred);
@@ -247,6 +248,20 @@ void MotionStateFields(Archive& a, T& m) noexcept {
   SizedEntries(a, m.off);
 }
 
+// Without the note, which each tick writes anew.
+template <class Archive, class T>
+void TuningStateFields(Archive& a, T& s) noexcept {
+  a(s.active);
+  for (auto& ramp : s.ramps) {
+    a(ramp.asked);
+    if (ramp.asked) {
+      a(ramp.from);
+      a(ramp.to);
+      a.Int(ramp.ticks);
+    }
+  }
+}
+
 template <class Archive, class T>
 void TorqueFields(Archive& a, T& s) noexcept {
   SizedEntries(a, s.law_state.integral);
@@ -375,6 +390,7 @@ void EachGroup(State& s, const Visit& visit) noexcept {
   visit(Pace::kFollows, "planned motion", [&s](auto& a) { StateAccess::PlanFields(a, s.motion); });
   visit(Pace::kTick, "limits", [&s](auto& a) { a(s.limits); });
   visit(Pace::kTick, "torque", [&s](auto& a) { TorqueFields(a, s); });
+  visit(Pace::kTuning, "tuning", [&s](auto& a) { TuningStateFields(a, s.tuning); });
 }
 
 }  // namespace fovea::link

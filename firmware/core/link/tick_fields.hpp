@@ -10,7 +10,6 @@
 namespace fovea::link {
 
 inline constexpr int kNumStatusCodes = 8;
-inline constexpr int kNumHoldReasons = static_cast<int>(hal::HoldReason::kNotFollowed) + 1;
 inline constexpr int kNumRequests = 4;
 inline constexpr int kNumMotionKinds = 6;
 inline constexpr int kNumFeatureKinds = static_cast<int>(features::kTargets.size());
@@ -59,13 +58,21 @@ void MotionFields(Archive& a, T& m) noexcept {
   EachOf(a, m.V_BE_B);
 }
 
-// The requests to the servo.
+// The requests to the servo, without a key that changes.
 template <class Archive, class T>
 void DemandFields(Archive& a, T& in) noexcept {
   a.Choice(in.request, kNumRequests);
   MotionFields(a, in.motion);
   a(in.change_law);
   a.Choice(in.law, config::kNumMotionLaws);
+}
+
+template <class Archive, class T>
+void TuningFields(Archive& a, T& t) noexcept {
+  a.Int(t.key);
+  if (t.IsAsked()) {
+    a(t.value);
+  }
 }
 
 // All inputs except the arm's status, whose text stays with its driver.
@@ -77,7 +84,18 @@ void InputFields(Archive& a, T& in) noexcept {
     MeasurementFields(a, in.feature);
   }
   DemandFields(a, in);
+  TuningFields(a, in.tuning);
   a.Int(in.missed_ticks);
+}
+
+template <class Archive, class T>
+void TuningNoteFields(Archive& a, T& note) noexcept {
+  a.Choice(note.result, hal::kNumTuningResults);
+  if (note.result != hal::TuningResult::kNone) {
+    a.Int(note.key);
+    a(note.before);
+    a(note.asked);
+  }
 }
 
 template <class Archive, class T>
@@ -86,8 +104,9 @@ void RecordFields(Archive& a, T& r) noexcept {
   a(r.stamp_ns);
   a.Int(r.missed_ticks);
   a.Choice(r.intake, hal::kNumIntakes);
+  TuningNoteFields(a, r.tuning);
   a.Choice(r.mode, hal::kNumModes);
-  a.Choice(r.hold_reason, kNumHoldReasons);
+  a.Choice(r.hold_reason, hal::kNumHoldReasons);
   a.Choice(r.fault, hal::kNumFaults);
   a.Int(r.fault_joint);
   a(r.limits_active);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 
 #include "firmware/core/motion_laws/friction.hpp"
 #include "firmware/core/motion_laws/motion_laws.hpp"

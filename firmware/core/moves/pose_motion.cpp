@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/moves/pose_motion.hpp"
 
-#include <cmath>
-
 #include "firmware/core/control/resolve_motion.hpp"
 #include "firmware/core/guard/guard_motion.hpp"
 #include "firmware/core/model/kinematics.hpp"

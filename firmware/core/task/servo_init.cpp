@@ -117,7 +117,7 @@ Status CheckGuard(const config::GuardConfig& guard) noexcept {
 
 // Checks values that are each in range but must also fit together.
 Status CheckTogether(const config::ServoConfig& config) noexcept {
-  if (!(config.predict.stale_s <= config.predict.coast_s)) {
+  if (!config::IsStaleBeforeLost(config.predict)) {
     return Status(StatusCode::kOutOfRange, "servo.stale_s");
   }
   // Half of the stability limit of the joints' error (Routh), so that the true gain may be twice as large.

@@ -136,12 +136,13 @@ LoopCounters ServoLoop::counters() const noexcept {
 
 void ServoLoop::Tick(std::int32_t missed_ticks) noexcept {
   inputs_.has_feature = features_.Take(inputs_.feature);
-  inputs_.request = request_.exchange(Request::kNone, std::memory_order_acquire);
+  inputs_.request = requests_.Take();
   const int law = law_.exchange(-1, std::memory_order_relaxed);
   inputs_.change_law = law >= 0;
   if (inputs_.change_law) {
     inputs_.law = static_cast<config::MotionLawKind>(law);
   }
+  inputs_.tuning = tunings_.Take();
   const bool may_move = MayMove();
   if (!may_move) {
     inputs_.request = Request::kHold;

@@ -7,7 +7,9 @@
 #include <atomic>
 #include <cstdint>
 
+#include "firmware/core/task/request_box.hpp"
 #include "firmware/core/task/servo_task.hpp"
+#include "firmware/core/task/tuning_box.hpp"
 #include "fovea/hal/arm.hpp"
 #include "fovea/hal/clock.hpp"
 #include "fovea/hal/feature.hpp"
@@ -59,12 +61,18 @@ class ServoLoop {
   }
   // Before Run: sets the source of commanded motions. Without it there are none.
   void UseMotion(moves::MotionSource& motion) noexcept { motion_ = &motion; }
-  // From any thread: passed to the task in the next tick; the last request before that tick wins. A request
-  // after GiveLeave is handled with that permission.
-  void Ask(Request request) noexcept { request_.store(request, std::memory_order_release); }
+  // From any thread: passed to the task in the next tick; the last request before that tick wins. A Hold that
+  // no tick has taken stays, and later requests come in the tick after it (see RequestBox). A request after
+  // GiveLeave is handled with that permission.
+  void Ask(Request request) noexcept { requests_.Put(request); }
+  // The same, but a request that no tick has taken wins.
+  void AskIfNoneWaits(Request request) noexcept { requests_.PutIfEmpty(request); }
   void Ask(config::MotionLawKind law) noexcept {
     law_.store(static_cast<int>(law), std::memory_order_relaxed);
   }
+  // From any thread: passed to the task in one of the next ticks, one key per tick. The last value of each
+  // key wins. The answer is in that tick's record. False: no key can have this number.
+  [[nodiscard]] bool Ask(const config::Tuning& tuning) noexcept { return tunings_.Put(tuning); }
 
   // Only while no thread runs the loop.
   [[nodiscard]] LoopCounters counters() const noexcept;
@@ -95,8 +103,9 @@ class ServoLoop {
   std::atomic<std::uint64_t> finish_tick_{kNever};
   std::atomic<std::int64_t> leave_until_ns_{kForEver};
   std::atomic<std::uint64_t> lease_ends_{0};
-  std::atomic<Request> request_{Request::kNone};
+  RequestBox requests_;
   std::atomic<int> law_{-1};  // requested; -1: none
+  TuningBox tunings_;
   moves::MotionSource* motion_ = nullptr;
   bool leave_ended_ = false;    // in the last tick
   bool motion_barred_ = false;  // the present command was interrupted

@@ -14,6 +14,7 @@ void ServoTask::WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) 
   record.has_feature = inputs.has_feature;
   record.feature = inputs.feature;
   record.intake = state_.intake;
+  record.tuning = state_.tuning.note;
 
   record.mode = state_.mode.mode;
   record.hold_reason = state_.mode.hold_reason;

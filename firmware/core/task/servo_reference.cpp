@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stages that decide where the arm moves: the visual law and the reference.
 #include <algorithm>
-#include <cmath>
 
 #include "firmware/core/features/hold_orientation.hpp"
 #include "firmware/core/guard/following.hpp"

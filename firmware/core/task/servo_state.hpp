@@ -19,6 +19,7 @@
 #include "firmware/core/moves/follow_motion.hpp"
 #include "firmware/core/task/check_inputs.hpp"
 #include "firmware/core/task/modes.hpp"
+#include "firmware/core/task/tune.hpp"
 #include "firmware/core/trajectory/reference.hpp"
 #include "fovea/hal/events.hpp"
 
@@ -27,6 +28,9 @@ namespace fovea::task {
 // Intermediate terms, grouped by the stage that computes them; each is overwritten in its turn.
 struct ServoState {
   std::uint64_t tick = 0;
+
+  // keys that change in motion
+  TuningState tuning;
 
   // check inputs
   std::int64_t now_ns = 0;  // the time for which this tick computes

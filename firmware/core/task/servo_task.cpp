@@ -33,6 +33,9 @@ bool IsFinite(const hal::FeatureMeasurement& feature) noexcept {
 void ServoTask::Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept {
   InputCheck check;
   state_.tau_before = state_.tau;
+  if (inputs.tuning.IsAsked() || state_.tuning.active) {
+    Tune(inputs.tuning, config_, state_.tuning);
+  }
   CheckArm(inputs, check);
   MarkStageEnd(Stage::kCheck);
   ComputeModel();

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "firmware/core/config/servo_config.hpp"
+#include "firmware/core/config/tuning.hpp"
 #include "firmware/core/features/feature_state.hpp"
 #include "firmware/core/moves/follow_motion.hpp"
 #include "firmware/core/task/check_inputs.hpp"
@@ -29,6 +30,7 @@ struct ServoInputs {
   moves::MotionCommand motion;
   bool change_law = false;  // change to `law`
   config::MotionLawKind law = config::MotionLawKind::kComputedTorque;
+  config::Tuning tuning;          // change this key in motion
   std::int32_t missed_ticks = 0;  // deadlines missed since the previous tick
 };
 
@@ -59,10 +61,14 @@ class ServoTask final : public ServoStep {
   // Sets the probe that is told of each stage; null: none. Real-time: yes.
   void UseProbe(StageProbe* probe) noexcept { probe_ = probe; }
 
+  // As of the last tick: keys may change in motion.
   [[nodiscard]] const config::ServoConfig& config() const noexcept { return config_; }
   [[nodiscard]] const ServoState& state() const noexcept { return state_; }
   // After Init: continues from the `state` of a servo with the same configuration. Real-time: no.
-  void Restore(const ServoState& state) noexcept { state_ = state; }
+  void Restore(const ServoState& state) noexcept {
+    state_ = state;
+    ApplyTunings(state_.tuning, config_);
+  }
 
  private:
   void CheckArm(const ServoInputs& inputs, InputCheck& check) noexcept;

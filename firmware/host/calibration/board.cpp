@@ -2,7 +2,6 @@
 #include "firmware/host/calibration/board.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>

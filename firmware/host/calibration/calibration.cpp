@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <opencv2/calib3d.hpp>
+#include <sstream>
 
 #include "firmware/core/model/rotation.hpp"
 
@@ -66,14 +67,26 @@ FocalLength SolveFocalLength(const std::vector<RadiusView>& views, double diamet
   if (views.size() < 2) {
     throw CalibrationError("at least two views are needed");
   }
-  const RadiusView& near = *std::min_element(views.begin(), views.end(),
-                                             [](const auto& a, const auto& b) { return a.moved < b.moved; });
-  const RadiusView& far = *std::max_element(views.begin(), views.end(),
-                                            [](const auto& a, const auto& b) { return a.moved < b.moved; });
+  std::vector<RadiusView> ordered = views;
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const auto& a, const auto& b) { return a.moved < b.moved; });
+  const RadiusView& near = ordered.front();
+  const RadiusView& far = ordered.back();
   const double dZ = far.moved - near.moved;
   const double unsure = 3.0 * std::hypot(near.sigma_px, far.sigma_px);
   if (!(dZ > 0.0) || near.radius_px - far.radius_px <= unsure) {
     throw CalibrationError("the target must look clearly smaller in the farthest view than in the nearest");
+  }
+  for (std::size_t k = 1; k < ordered.size(); ++k) {
+    const RadiusView& nearer = ordered[k - 1];
+    const RadiusView& farther = ordered[k];
+    if (farther.moved > nearer.moved && !(farther.radius_px < nearer.radius_px)) {
+      std::ostringstream why;
+      why << "the target must look smaller in each farther view, but its radius is " << nearer.radius_px
+          << " px at +" << nearer.moved << " m and " << farther.radius_px << " px at +" << farther.moved
+          << " m";
+      throw CalibrationError(why.str());
+    }
   }
   const double R = 0.5 * diameter;
   // Start value: the formula for two views.

@@ -28,7 +28,7 @@ struct FocalLength {
 
 // Least squares of r = f R / Z (disc) or r = f R / sqrt(Z^2 - R^2) (sphere on the axis) over f and the first
 // distance; two views of a disc give f = 2 dZ r1 r2 / (D (r1 - r2)). CalibrationError: fewer than two views,
-// or radii that do not fall with the distance.
+// or radii that do not strictly fall with the distance, in each step and altogether by more than their noise.
 FocalLength SolveFocalLength(const std::vector<RadiusView>& views, double diameter, bool sphere);
 
 // --- vision::Intrinsics from views of a board.

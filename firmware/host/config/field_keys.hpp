@@ -23,7 +23,8 @@ class FieldKeys {
 
   void Flag(const Field& field, bool& value) { keys_.Flag(field.key, value, field.meaning); }
   void Number(const Field& field, double& value, double min, double max) {
-    keys_.Number(field.key, value, min, max, field.unit, field.meaning);
+    const char* in_motion = field.in_motion == kFixed ? "" : "; may change in motion";
+    keys_.Number(field.key, value, min, max, field.unit, field.meaning + std::string(in_motion));
   }
   void Integer(const Field& field, int& value, int min, int max) {
     keys_.Integer(field.key, value, min, max, field.unit, field.meaning);

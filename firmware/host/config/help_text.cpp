@@ -2,8 +2,10 @@
 #include "firmware/host/config/help_text.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <sstream>
+#include <string_view>
 
 namespace fovea::config {
 namespace {
@@ -26,11 +28,25 @@ bool IsHeading(const std::string& line) {
          line.back() == ':' && line.find(". ") == std::string::npos;
 }
 
+// Whether the space parts a number from its unit, as in "12.5 mm,".
+bool IsBeforeUnit(const std::string& line, std::size_t space) {
+  constexpr std::array<std::string_view, 26> kUnits{
+      "%",  "px", "mm", "m",  "s",  "ms",  "us",  "ns",    "h",   "deg",   "rad", "Hz",    "kHz",
+      "Nm", "N",  "kg", "KB", "MB", "KiB", "MiB", "rad/s", "m/s", "deg/s", "1/s", "times", "ticks"};
+  if (space == 0 || std::isdigit(static_cast<unsigned char>(line[space - 1])) == 0) {
+    return false;
+  }
+  std::string_view word = std::string_view(line).substr(space + 1);
+  word = word.substr(0, word.find(' '));
+  word = word.substr(0, word.find_last_not_of(",;:.)") + 1);
+  return std::find(kUnits.begin(), kUnits.end(), word) != kUnits.end();
+}
+
 void AppendLine(std::string line, std::size_t column, std::size_t width, std::string& text) {
   while (line.size() > width) {
     std::size_t space = line.rfind(' ', width);
-    if (space != std::string::npos && space > 0 && line[space + 1] == '%') {
-      space = line.rfind(' ', space - 1);  // a number stays with its %
+    if (space != std::string::npos && IsBeforeUnit(line, space)) {
+      space = line.rfind(' ', space - 1);
     }
     if (space == std::string::npos || space <= column) {
       // A word longer than the line, such as a list of choices, breaks after a comma.

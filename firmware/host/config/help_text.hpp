@@ -9,8 +9,9 @@
 
 namespace fovea::config {
 
-// Breaks each line of `text` between words so that it fits into `width`. A longer word breaks after a comma,
-// or stays whole if it has none. The rest of a line begins at `column`. Every line ends with a line end.
+// Breaks each line of `text` between words so that it fits into `width`. A number stays with its unit. A
+// longer word breaks after a comma, or stays whole if it has none. The rest of a line begins at `column`.
+// Every line ends with a line end.
 std::string Fitted(const std::string& text, std::size_t column, std::size_t width);
 
 // As Fitted, for a help text: the rest of a line is indented to the column of its description, or by two more

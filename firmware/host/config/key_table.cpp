@@ -14,8 +14,23 @@
 namespace fovea::config {
 namespace {
 
-// A number as a person writes it, with at most six digits. Defaults need no more.
+// The limits of a range, with at most six digits.
 std::string Plain(double value) { return fmt::format("{:g}", value); }
+
+// A value as a person writes it: with the fewest digits that give it back. At most 15 of them, which hides
+// the rounding of a conversion between units.
+std::string PlainValue(double value) {
+  constexpr int kFewest = 6;
+  constexpr int kMost = 15;
+  std::string text;
+  for (int digits = kFewest; digits <= kMost; ++digits) {
+    text = fmt::format("{:.{}g}", value, digits);
+    if (std::stod(text) == value) {
+      break;
+    }
+  }
+  return text;
+}
 
 std::string Range(double min, double max) { return fmt::format("{} to {}", Plain(min), Plain(max)); }
 
@@ -50,6 +65,20 @@ int EditDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
+// "" when none is near.
+std::string Nearest(const std::string& name, const std::vector<std::string>& names) {
+  std::string best;
+  int best_distance = std::max(3, static_cast<int>(name.size()) / 3) + 1;
+  for (const std::string& candidate : names) {
+    const int distance = EditDistance(name, candidate);
+    if (distance < best_distance) {
+      best_distance = distance;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 void KeyTable::Add(Key key) { keys_.push_back(std::move(key)); }
@@ -62,8 +91,8 @@ void KeyTable::Number(std::string name, double& field, double min, double max, s
 
 void KeyTable::Number(std::string name, double value, double min, double max, std::string unit,
                       std::string meaning, std::function<void(double)> set) {
-  Key key{std::move(name), "a number", std::move(unit), Range(min, max), std::move(meaning),
-          Plain(value),    {}};
+  Key key{std::move(name),   "a number", std::move(unit), Range(min, max), std::move(meaning),
+          PlainValue(value), {}};
   key.set = [key, min, max, set = std::move(set)](const Setting& setting) {
     double number = 0.0;
     if (!ToDouble(setting.value, number) || number < min || number > max) {
@@ -112,7 +141,7 @@ void KeyTable::Flag(std::string name, bool& field, std::string meaning) {
 }
 
 void KeyTable::Text(std::string name, std::string& field, std::string meaning) {
-  Key key{std::move(name), "a text", "", "in quotes", std::move(meaning), fmt::format("\"{}\"", field), {}};
+  Key key{std::move(name), "a text", "", "in quotes", std::move(meaning), ToText(field), {}};
   key.set = [key, &field](const Setting& setting) {
     const auto* text = std::get_if<std::string>(&setting.value);
     if (text == nullptr) {
@@ -205,9 +234,8 @@ void KeyTable::Apply(const Setting& setting) const {
     }
     names.push_back(key.name);
   }
-  const std::string nearest = Nearest(setting.key, names);
-  throw InputError(fmt::format("{}: unknown key {}{}", setting.where, setting.key,
-                               nearest.empty() ? std::string() : "; did you mean " + nearest + "?"));
+  throw InputError(
+      fmt::format("{}: unknown key {}{}", setting.where, setting.key, DidYouMean(setting.key, names)));
 }
 
 std::map<std::string, std::string> KeyTable::Values() const {
@@ -218,17 +246,9 @@ std::map<std::string, std::string> KeyTable::Values() const {
   return values;
 }
 
-std::string Nearest(const std::string& name, const std::vector<std::string>& names) {
-  std::string best;
-  int best_distance = std::max(3, static_cast<int>(name.size()) / 3) + 1;
-  for (const std::string& candidate : names) {
-    const int distance = EditDistance(name, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
-  }
-  return best;
+std::string DidYouMean(const std::string& name, const std::vector<std::string>& names) {
+  const std::string nearest = Nearest(name, names);
+  return nearest.empty() ? nearest : "; did you mean " + nearest + "?";
 }
 
 }  // namespace fovea::config

@@ -77,7 +77,8 @@ class KeyTable {
   std::map<std::string, std::string> successors_;  // by the former name
 };
 
-// The entry of `names` with the smallest edit distance from `name`; "" when none is near. For "did you mean".
-std::string Nearest(const std::string& name, const std::vector<std::string>& names);
+// The end of a refusal of `name`: "; did you mean x?", where x is the entry of `names` with the smallest edit
+// distance; "" when none is near.
+std::string DidYouMean(const std::string& name, const std::vector<std::string>& names);
 
 }  // namespace fovea::config

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -90,9 +89,7 @@ inline std::string Explain(const CLI::App& app, const CLI::ParseError& error) {
     return what;
   }
   for (const std::string& word : app.remaining(true)) {
-    if (const std::string nearest = Nearest(word, names); !nearest.empty()) {
-      what += "; did you mean " + nearest + "?";
-    }
+    what += DidYouMean(word, names);
   }
   std::string allowed;
   for (const std::string& name : names) {

@@ -139,7 +139,13 @@ std::string ToText(const Value& value) {
     std::string operator()(bool flag) const { return flag ? "true" : "false"; }
     std::string operator()(std::int64_t integer) const { return fmt::format("{}", integer); }
     std::string operator()(double number) const { return fmt::format("{}", number); }
-    std::string operator()(const std::string& text) const { return fmt::format("\"{}\"", text); }
+    std::string operator()(const std::string& text) const {
+      std::string escaped;
+      for (const char c : text) {
+        escaped += c == '"' || c == '\\' ? std::string{'\\', c} : std::string{c};
+      }
+      return fmt::format("\"{}\"", escaped);
+    }
     std::string operator()(const std::vector<double>& numbers) const {
       return fmt::format("[{}]", fmt::join(numbers, ", "));
     }

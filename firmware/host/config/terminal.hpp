@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace fovea::config {
 
@@ -34,5 +35,9 @@ TextStyle StyleOf(int fd);
 
 // `text` with the terminal codes of `paint` around it; `text` itself if `style` has no colours.
 std::string Painted(const std::string& text, Paint paint, const TextStyle& style);
+
+// `text` as it can be shown: each byte of a control character or of invalid UTF-8 as "\x1b". For names of
+// files, which may contain any bytes.
+std::string Printable(std::string_view text);
 
 }  // namespace fovea::config

@@ -51,14 +51,12 @@ std::size_t AfterHeader(const std::string& text, const toml::table& table, const
   return end == std::string::npos ? text.size() : end + 1;
 }
 
+std::string LineOf(const NewValue& value) { return fmt::format("{} = {}\n", value.key, value.value); }
+
+// `text` has the table [section].
 std::string WithValue(const std::string& text, const std::string& section, const NewValue& value) {
   const toml::table all = Parse(text);
-  const toml::node* node = all.get(section);
-  const std::string line = fmt::format("{} = {}\n", value.key, value.value);
-  if (node == nullptr) {
-    const std::string gap = text.empty() ? "" : text.back() == '\n' ? "\n" : "\n\n";
-    return fmt::format("{}{}[{}]\n{}", text, gap, section, line);
-  }
+  const toml::node* node = all.get(section);  // not null
   const toml::table* table = node->as_table();
   if (table == nullptr) {
     throw InputError(fmt::format("{} is a value, not a section", section));
@@ -67,7 +65,8 @@ std::string WithValue(const std::string& text, const std::string& section, const
   const toml::node* old = table->get(value.key);
   if (old == nullptr) {
     const std::string before = text.substr(0, start);
-    return before + (before.empty() || before.back() == '\n' ? "" : "\n") + line + text.substr(start);
+    return before + (before.empty() || before.back() == '\n' ? "" : "\n") + LineOf(value) +
+           text.substr(start);
   }
   const std::size_t from = OffsetOf(text, old->source().begin);
   const std::size_t to = OffsetOf(text, old->source().end);
@@ -95,12 +94,25 @@ std::map<std::string, std::string> ValuesOf(const toml::table& table, const std:
 
 }  // namespace
 
+std::string SectionText(const std::string& section, const std::vector<NewValue>& values) {
+  std::string text = fmt::format("[{}]\n", section);
+  for (const NewValue& value : values) {
+    text += LineOf(value);
+  }
+  return text;
+}
+
 std::string WithValues(const std::string& text, const std::string& section,
                        const std::vector<NewValue>& values) {
   std::string changed = text;
-  // In reverse: each new value is inserted before those added earlier.
-  for (auto value = values.rbegin(); value != values.rend(); ++value) {
-    changed = WithValue(changed, section, *value);
+  if (Parse(text).contains(section)) {
+    // In reverse: each new value is inserted before those added earlier.
+    for (auto value = values.rbegin(); value != values.rend(); ++value) {
+      changed = WithValue(changed, section, *value);
+    }
+  } else {
+    changed += text.empty() ? "" : text.back() == '\n' ? "\n" : "\n\n";
+    changed += SectionText(section, values);
   }
   // The result must hold the new values and otherwise the old ones.
   std::map<std::string, std::string> wanted = ValuesOf(Parse(text));

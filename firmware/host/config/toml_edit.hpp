@@ -13,6 +13,9 @@ struct NewValue {
   std::string value;  // in TOML, for example "[0.05, 0, 0.04]"
 };
 
+// The section as text: its header and a line for each value.
+std::string SectionText(const std::string& section, const std::vector<NewValue>& values);
+
 // Returns `text` with `values` in its table [section]. Replaces an existing key's value and the rest of its
 // line; adds a new key directly after the section's header; adds a missing table at the end of the text.
 // InputError when the text writes them in a form that cannot be edited here (a dotted key, an inline table).

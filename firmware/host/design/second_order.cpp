@@ -2,7 +2,6 @@
 #include "firmware/host/design/second_order.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace fovea::design {

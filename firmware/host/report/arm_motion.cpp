@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/report/arm_motion.hpp"
 
-#include <limits>
-
 #include "firmware/core/link/state.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/host/recording/flight/messages.hpp"

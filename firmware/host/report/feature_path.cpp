@@ -2,7 +2,6 @@
 #include "firmware/host/report/feature_path.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "firmware/core/features/target_traits.hpp"
 #include "firmware/core/model/rotation.hpp"

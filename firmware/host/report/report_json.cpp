@@ -1,30 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // RunData as JSON for the page's scripts; long arrays as base64 of little-endian float32.
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "firmware/host/recording/log/base64.hpp"
 #include "firmware/host/report/report.hpp"
 
 namespace fovea::report {
 namespace {
 
+using log::Base64;
 using nlohmann::ordered_json;
 
-std::string Base64(std::string_view bytes) {
-  std::string text((bytes.size() + 2) / 3 * 4 + 1, '\0');  // plus the 0 that OpenSSL appends
-  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
-                  reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
-  text.pop_back();
-  return text;
-}
-
 std::string Base64(const std::vector<float>& values) {
-  return Base64(
+  return log::Base64(
       std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)));
 }
 
@@ -247,6 +240,14 @@ std::string ToJson(const RunData& run) {
   for (const FaultNote& fault : run.faults) {
     json["faults"].push_back(
         {{"t_s", fault.t_s}, {"name", fault.name}, {"key", fault.key}, {"detail", fault.detail}});
+  }
+  json["tunings"] = ordered_json::array();
+  for (const TuningEvent& tuning : run.tunings) {
+    json["tunings"].push_back({{"t_s", tuning.t_s}, {"taken", tuning.taken}, {"words", tuning.words}});
+  }
+  json["touches"] = ordered_json::array();
+  for (const TouchEvent& touch : run.touches) {
+    json["touches"].push_back({{"t_s", touch.t_s}, {"words", touch.words}});
   }
   json["limits_active"] = ordered_json::array();
   for (const LimitSpans& limit : run.limits_active) {

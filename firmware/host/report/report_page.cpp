@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Assembles the page: replaces the template's marks by the files that they name, and by the runs' data.
-#include <fmt/format.h>
 
 #include <fstream>
 #include <iterator>

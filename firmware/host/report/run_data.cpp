@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <stdexcept>
 
 #include "firmware/host/recording/log/mcap_reader.hpp"
@@ -28,6 +27,7 @@ namespace {
 constexpr std::size_t kMostBuckets = 1500;
 constexpr std::size_t kMostWaiting = 20'000;  // ticks that wait for their truth
 constexpr int kMostLimits = 32;               // bits of Tick.limits_active
+constexpr double kPauseS = 0.25;              // between two changes of a key that are two events
 
 template <typename Message>
 Message Parse(const log::McapMessage& message) {
@@ -72,6 +72,9 @@ class Reader {
       const auto calibration = Parse<foxglove::CameraCalibration>(message);
       run_.width_px = static_cast<int>(calibration.width());
       run_.height_px = static_cast<int>(calibration.height());
+    } else if (topic == log::kOperatorTopic) {
+      const auto touch = Parse<log::Touch>(message);
+      run_.touches.push_back({Seconds(touch.stamp_ns()), touch.text()});
     } else if (topic == log::kTickTimesTopic) {
       TakeTickTimes(Parse<log::TickTimes>(message));
     } else if (topic == log::kSceneTopic) {
@@ -147,6 +150,9 @@ class Reader {
     const double t_s = Seconds(tick.stamp_ns());
     run_.duration_s = t_s;
     NoteEvents(tick, t_s);
+    if (tick.has_tuning()) {
+      NoteTuning(tick.tuning(), t_s);
+    }
     for (std::size_t i = 0; i < open_limits_.size(); ++i) {
       const bool acts = ((tick.limits_active() >> i) & 1U) != 0;
       if (acts && !open_limits_[i]) {
@@ -204,6 +210,22 @@ class Reader {
                              tick.fault_joint() >= 0 ? fmt::format("joint {}", tick.fault_joint() + 1) : ""});
     }
     last_fault_ = fault;
+  }
+
+  // A slider sends many values: changes of one key without a pause are one event, from the first value to the
+  // last.
+  void NoteTuning(log::Tuning tuning, double t_s) {
+    const bool taken = tuning.result() == log::Tuning::ACCEPTED;
+    const bool goes_on = taken && last_tuning_.result() == log::Tuning::ACCEPTED &&
+                         last_tuning_.number() == tuning.number() && t_s - last_tuning_s_ < kPauseS;
+    if (goes_on) {
+      tuning.set_before(last_tuning_.before());
+      run_.tunings.back().words = log::InWords(tuning);
+    } else {
+      run_.tunings.push_back({t_s, taken, log::InWords(tuning)});
+    }
+    last_tuning_ = std::move(tuning);
+    last_tuning_s_ = t_s;
   }
 
   // Joins each tick with the truth of the same time. The log holds parts of both streams in turn, so ticks
@@ -304,6 +326,8 @@ class Reader {
   std::deque<log::Truth> truths_;
   std::vector<std::optional<double>> open_limits_;  // time since which each limit is active [s]
   hal::Fault last_fault_ = hal::Fault::kNone;
+  log::Tuning last_tuning_;
+  double last_tuning_s_ = 0.0;
   std::map<std::int64_t, foxglove::ImageAnnotations> annotations_;
   std::int64_t last_image_ns_ = 0;
   std::string last_image_;

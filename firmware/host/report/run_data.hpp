@@ -38,6 +38,19 @@ struct FaultNote {
   std::string detail;
 };
 
+// Keys that the operator changed, or was refused to change, in motion.
+struct TuningEvent {
+  double t_s = 0.0;
+  bool taken = false;
+  std::string words;  // "servo.lambda 2 -> 4 1/s, by the operator"
+};
+
+// Another request of the operator that acted: hold, a fault, the target.
+struct TouchEvent {
+  double t_s = 0.0;
+  std::string words;
+};
+
 struct LimitSpans {
   std::string name;
   std::vector<std::array<double, 2>> spans_s;  // from, to
@@ -140,6 +153,8 @@ struct RunData {
   std::vector<FrameSpan> not_found;  // in which the target was not found
   std::vector<ModeChange> modes;
   std::vector<FaultNote> faults;
+  std::vector<TuningEvent> tunings;
+  std::vector<TouchEvent> touches;
   std::vector<LimitSpans> limits_active;
   std::vector<double> tick_upper_us;
   std::vector<std::uint64_t> tick_counts;

@@ -2,7 +2,6 @@
 #include "firmware/host/report/scene_reader.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "firmware/host/recording/log/topics.hpp"
 #include "firmware/host/report/envelope.hpp"

@@ -2,7 +2,6 @@
 #include "firmware/host/robots/arm_shape.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 #include "firmware/core/model/kinematics.hpp"

@@ -36,17 +36,20 @@ bool IsRobotPath(const fs::path& name_or_path) {
   return name_or_path.extension() == ".toml" || name_or_path.extension() == ".urdf";
 }
 
-fs::path FindShippedRobot(const std::string& name, const std::string& where, const std::string& otherwise) {
-  const fs::path shipped = ShippedRobotsFolder() / (name + ".toml");
+fs::path FindRobot(const std::string& name_or_path, const std::string& where) {
+  const fs::path given = name_or_path;
+  if (IsRobotPath(given)) {
+    return given;
+  }
+  const fs::path shipped = ShippedRobotsFolder() / (name_or_path + ".toml");
   std::error_code ignored;
-  if (fs::path(name) == fs::path(name).filename() && fs::is_regular_file(shipped, ignored)) {
+  if (given == given.filename() && fs::is_regular_file(shipped, ignored)) {
     return shipped;
   }
   const std::vector<std::string> names = ShippedRobots();
-  const std::string nearest = config::Nearest(name, names);
-  throw config::InputError(fmt::format("{}: unknown arm \"{}\"{}; shipped are {}{}", where, name,
-                                       nearest.empty() ? "" : "; did you mean " + nearest + "?",
-                                       fmt::join(names, ", "), otherwise));
+  throw config::InputError(fmt::format(
+      "{}: unknown arm \"{}\"{}; shipped are {} (or give the path of an arm file .toml or of a .urdf)", where,
+      name_or_path, config::DidYouMean(name_or_path, names), fmt::join(names, ", ")));
 }
 
 }  // namespace fovea::robots

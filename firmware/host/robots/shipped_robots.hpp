@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds a shipped arm by its name.
+// Finds an arm by its name or by the path of its file.
 #pragma once
 
 #include <filesystem>
@@ -14,11 +14,8 @@ std::vector<std::string> ShippedRobots();
 // Whether `name_or_path` is the path of an arm file (.toml) or of a .urdf.
 bool IsRobotPath(const std::filesystem::path& name_or_path);
 
-// The file of the shipped arm `name`. InputError, which begins with `where` (the key or option that names
-// it), gives the nearest name and all names, and ends with `otherwise`: what else is allowed there.
-std::filesystem::path FindShippedRobot(const std::string& name, const std::string& where,
-                                       const std::string& otherwise);
-
-inline constexpr const char* kOrRobotPath = " (or give the path of an arm file .toml or of a .urdf)";
+// The file of an arm: a path as it stands, otherwise that of the shipped arm of this name. InputError, which
+// begins with `where` (the key or option that names the arm), gives the nearest name and all names.
+std::filesystem::path FindRobot(const std::string& name_or_path, const std::string& where);
 
 }  // namespace fovea::robots

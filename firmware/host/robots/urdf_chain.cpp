@@ -7,9 +7,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <map>
-#include <set>
 
 #include "firmware/core/model/load.hpp"
 #include "firmware/host/config/input_error.hpp"

@@ -13,7 +13,6 @@
 #include "firmware/host/recording/flight/messages.hpp"
 #include "firmware/host/recording/log/picture_messages.hpp"
 #include "firmware/host/recording/log/record_hash.hpp"
-#include "firmware/host/recording/log/run_messages.hpp"
 #include "firmware/host/recording/log/topics.hpp"
 #include "fovea/run.pb.h"
 #include "fovea/tick.pb.h"
@@ -35,8 +34,23 @@ log::RunLogConfig LogConfig(const RunFacts& facts, const RunBookOptions& options
   out.may_drop = options.may_drop;
   out.ring = options.ring;
   out.most_images = options.most_images;
+  out.tap = options.tap;
   return out;
 }
+
+// The defaults of the keys that have another value.
+std::map<std::string, std::string> DefaultsThatDiffer(const RunFacts& facts) {
+  std::map<std::string, std::string> differing;
+  for (const auto& [key, text] : facts.default_keys) {
+    const auto used = facts.keys.find(key);
+    if (used != facts.keys.end() && used->second != text) {
+      differing.emplace(key, text);
+    }
+  }
+  return differing;
+}
+
+}  // namespace
 
 log::RunSetup SetupOf(const RunFacts& facts, std::int64_t start_ns) {
   log::RunSetup setup;
@@ -53,20 +67,6 @@ log::RunSetup SetupOf(const RunFacts& facts, std::int64_t start_ns) {
   setup.start_ns = start_ns;
   return setup;
 }
-
-// The defaults of the keys that have another value.
-std::map<std::string, std::string> DefaultsThatDiffer(const RunFacts& facts) {
-  std::map<std::string, std::string> differing;
-  for (const auto& [key, text] : facts.default_keys) {
-    const auto used = facts.keys.find(key);
-    if (used != facts.keys.end() && used->second != text) {
-      differing.emplace(key, text);
-    }
-  }
-  return differing;
-}
-
-}  // namespace
 
 std::vector<std::string> RunBook::AllFiles(const std::vector<std::string>& more) {
   std::vector<std::string> names{kFilm, kLog, kReport, kSummary};

@@ -20,6 +20,7 @@
 #include "firmware/host/film/eye_film.hpp"
 #include "firmware/host/recording/flight/flight_recorder.hpp"
 #include "firmware/host/recording/log/run_log.hpp"
+#include "firmware/host/recording/log/run_messages.hpp"
 #include "firmware/host/report/report.hpp"
 #include "firmware/host/run/run_figures.hpp"
 #include "firmware/vision/detection.hpp"
@@ -47,6 +48,9 @@ struct RunFacts {
   foxglove::SceneUpdate scene;                      // for a log's viewer
 };
 
+// What the message /setup contains. `start_ns`: when the run begins, by the loop's clock.
+log::RunSetup SetupOf(const RunFacts& facts, std::int64_t start_ns);
+
 struct RunBookOptions {
   std::vector<std::string> more_files;   // files of such a run beside the book's own files
   bool may_drop = true;                  // when the disk is slower than the run; false: the run waits
@@ -56,6 +60,7 @@ struct RunBookOptions {
   double picture_rate_hz = HUGE_VAL;     // the log keeps at most this rate of pictures; 0: none
   bool replayable = true;                // the recorded inputs are the servo's, so a replay is possible
   std::optional<std::int64_t> begin_ns;  // start, by the loop's clock; none: at the first record
+  log::LogTap tap;                       // gets every message of the log, on the log's thread
 };
 
 class RunBook {
@@ -78,6 +83,8 @@ class RunBook {
                 const foxglove::ImageAnnotations& more = {});
   // For data of only this kind of run.
   [[nodiscard]] log::RunLog& log() { return log_; }
+  // Where the log is written during the run.
+  [[nodiscard]] const std::filesystem::path& log_path() const { return log_path_; }
   // A path for writing the file `name`, one of more_files, during the run.
   [[nodiscard]] std::filesystem::path BeginFile(const std::string& name) { return folder_.Begin(name); }
 

@@ -70,6 +70,11 @@ class RunShell {
   [[nodiscard]] hal::Mode mode() const { return mode_; }  // of the last record taken
   [[nodiscard]] double now_s() const { return now_s_; }   // its time, by the loop's clock; 0 before the first
 
+  // Durations of the ticks since the last call, from one thread; nothing if no tick came.
+  [[nodiscard]] std::optional<linux_rt::RecentDurations::Summary> NewTickDurations() {
+    return meter_.recent().TakeNew();
+  }
+
   // Null if there is no log.
   [[nodiscard]] RunBook* book() { return folder_.book(); }
 

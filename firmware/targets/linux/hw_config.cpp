@@ -59,8 +59,9 @@ fs::path FindConfig(const std::string& name_or_path) {
     names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
-  throw InputError(fmt::format("unknown configuration \"{}\"; shipped are {} (or give the path of a .toml)",
-                               name_or_path, fmt::join(names, ", ")));
+  throw InputError(fmt::format("unknown configuration \"{}\"{}; shipped are {} (or give the path of a .toml)",
+                               name_or_path, config::DidYouMean(name_or_path, names),
+                               fmt::join(names, ", ")));
 }
 
 // The known keys depend on the driver that `settings` name, so the driver is chosen first.
@@ -146,10 +147,7 @@ HwConfig LoadHwConfig(const std::string& name_or_path, const std::vector<std::st
 }
 
 robots::Robot LoadHwRobot(const HwConfig& config) {
-  const std::string& given = config.arm.model;
-  robots::Robot robot = robots::LoadRobot(
-      robots::IsRobotPath(given) ? fs::path(given)
-                                 : robots::FindShippedRobot(given, "arm.model", robots::kOrRobotPath));
+  robots::Robot robot = robots::LoadRobot(robots::FindRobot(config.arm.model, "arm.model"));
   const int num_joints = ArmDriverOf(config).num_joints;
   if (robot.model.num_joints != num_joints) {
     throw InputError(fmt::format(

@@ -49,7 +49,7 @@ run::RunFacts FactsOf(const HwConfig& config, const robots::Robot& robot, const 
 
 run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot,
                               const config::ServoConfig& servo, const std::string& out, double duration_s,
-                              const std::string& command) {
+                              const std::string& command, const log::LogTap& tap) {
   run::RunFolderConfig folder;
   if (out.empty()) {
     return folder;
@@ -62,6 +62,7 @@ run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot
   folder.options.most_images = kMostImages;
   folder.options.film = config.log.film;
   folder.options.picture_rate_hz = config.log.picture_rate_hz;
+  folder.options.tap = tap;
   return folder;
 }
 

@@ -11,9 +11,9 @@
 namespace fovea::hw {
 
 // The configuration of the folder `out`; empty: no files. The run never waits for a disk. `duration_s`: 0 if
-// unknown. `command`: the command line, for the log.
+// unknown. `command`: the command line, for the log. `tap`: gets each message of the log; may be empty.
 run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot,
                               const config::ServoConfig& servo, const std::string& out, double duration_s,
-                              const std::string& command);
+                              const std::string& command, const log::LogTap& tap = {});
 
 }  // namespace fovea::hw

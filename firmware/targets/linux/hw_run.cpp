@@ -42,14 +42,21 @@ class Session {
         watch_(summary_, speaker),
         robot_link_(ArmDriverOf(config).make(config)),
         clock_(robot_link_->robot_time() != nullptr ? *robot_link_->robot_time() : monotonic_),
+        live_(options.live ? std::make_unique<HwLive>(*options.live, config.name, servo_, config.HasCamera(),
+                                                      config.robot.speed_scale)
+                           : nullptr),
         shell_(task_, &task_, kRecords,
-               FolderOf(config, robot_, servo_, options.out, options.duration_s, options.command)),
+               FolderOf(config, robot_, servo_, options.out, options.duration_s, options.command,
+                        live_ ? live_->tap() : log::LogTap{})),
         operator_({.dead_man_s = config.input.dead_man_s, .allow_motion = options.allow_motion}, clock_,
                   signals, control_) {
     // MakeServoConfig has checked it already, and throws with a message if it is refused.
     static_cast<void>(task_.Init(servo_));
     summary_.config = config.name;
     summary_.allow_motion = options.allow_motion;
+    if (live_) {
+      speaker_.Say("live at " + live_->url());
+    }
     shell_.OnRecord([this](const flight::FlightRecord& flown) { Observe(flown.record); });
     if (config.HasCamera()) {
       OpenCamera();
@@ -117,7 +124,7 @@ class Session {
     if (!options_.allow_motion ||
         AwaitLeave(config_, robot_.model, options_.enable, *arm_, clock_, control_, findings_)) {
       if (options_.track) {
-        shell_.loop()->Ask(task::Request::kTrack);
+        shell_.loop()->AskIfNoneWaits(task::Request::kTrack);  // an operator's earlier Hold counts
       }
       RunLoop(*shell_.loop());
     }
@@ -128,6 +135,7 @@ class Session {
     if (control_.ended) {
       return;
     }
+    control_.serves = options_.allow_motion;
     constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
     const double duration_ns = options_.duration_s * static_cast<double>(hal::kNsPerSecond);
     status_ =
@@ -150,6 +158,9 @@ class Session {
     TellLease();
     operator_.Drain([this](const Heard& heard) { Tell(heard); });
     shell_.TakeRecords();
+    if (live_) {
+      live_->Attend();
+    }
     EndSilentRun();
     LookAtRecovery();
     LookAtCamera();
@@ -164,6 +175,10 @@ class Session {
       return;
     }
     connection_told_ = true;
+    if (live_) {
+      live_->Begin(shell_, control_, options_.allow_motion, clock_,
+                   [this](const Heard& heard) { Tell(heard); });
+    }
     connected_ns_ = linux_rt::MonotonicNs();
     speaker_.Say(fmt::format("connected to {}{}", robot_link_->address(),
                              options_.allow_motion ? "" : ", without permission to move"));
@@ -199,7 +214,7 @@ class Session {
     const double passed_s = 1e-9 * static_cast<double>(linux_rt::MonotonicNs() - connected_ns_);
     if (summary_.robot_silent && options_.duration_s > 0.0 && passed_s >= options_.duration_s &&
         !control_.ended) {
-      EndRun(options_.allow_motion, control_);
+      EndRun(options_.allow_motion, false, control_);
     }
   }
 
@@ -251,6 +266,9 @@ class Session {
 
   void Observe(const hal::TickRecord& record) {
     watch_.Add(record, record.tick >= shell_.loop()->finish_tick());
+    if (live_) {
+      live_->Note(record);
+    }
     LookBeforeReset(record.arm);
   }
 
@@ -320,6 +338,7 @@ class Session {
   bool camera_failed_ = false;
   std::optional<LeaveLook> look_;  // after a recovery
   std::uint64_t looked_at_ = 0;    // sequence of its newest state
+  const std::unique_ptr<HwLive> live_;
   run::RunShell shell_;
   std::optional<HwVision> vision_;  // its thread uses the shell
   hal::Arm* arm_ = nullptr;         // once connected

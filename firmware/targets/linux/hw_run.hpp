@@ -2,9 +2,11 @@
 // Runs the servo on the robot until somebody ends it.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "firmware/targets/linux/hw_config.hpp"
+#include "firmware/targets/linux/hw_live.hpp"
 #include "firmware/targets/linux/hw_summary.hpp"
 #include "fovea/linux_rt/speaker.hpp"
 
@@ -12,11 +14,12 @@ namespace fovea::hw {
 
 struct HwRunOptions {
   bool allow_motion = true;
-  bool enable = false;      // the arm may move from the start; false: after the operator's "enable"
-  bool track = false;       // track the target from the start; needs a camera
-  double duration_s = 0.0;  // of the servo, by the loop's clock; 0: until somebody ends it
-  std::string out;          // the folder for log, report and summary; empty: none
-  std::string command;      // the command line, for the log; "" if there is none
+  bool enable = false;                // the arm may move from the start; false: after the operator's "enable"
+  bool track = false;                 // track the target from the start; needs a camera
+  double duration_s = 0.0;            // of the servo, by the loop's clock; 0: until somebody ends it
+  std::string out;                    // the folder for log, report and summary; empty: none
+  std::string command;                // the command line, for the log; "" if there is none
+  std::optional<HwLiveOptions> live;  // show the run on a page; needs `out`
 };
 
 // Connects, waits for the operator's permission (see operator_input.hpp) while the robot holds by itself,

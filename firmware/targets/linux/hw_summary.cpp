@@ -32,11 +32,11 @@ Json ModesOf(const HwSummary& s) {
 
 Json FaultsOf(const HwSummary& s) {
   Json faults = Json::array();
-  for (const FaultEvent& f : s.faults) {
+  for (const run::FaultEvent& f : s.faults) {
     faults.push_back({{"t_s", f.t_s},
                       {"name", hal::Name(f.fault)},
                       {"key", hal::Key(f.fault)},
-                      {"detail", f.joint >= 0 ? fmt::format("joint {}", f.joint + 1) : ""}});
+                      {"detail", run::JointOf(f)}});
   }
   return faults;
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/host/run/fault_event.hpp"
 #include "firmware/host/run/run_figures.hpp"
 #include "firmware/targets/linux/gravity_check.hpp"
 #include "firmware/targets/linux/hw_vision.hpp"
@@ -22,12 +23,6 @@ struct ModeEvent {
   double t_s = 0.0;  // since the servo's first tick
   hal::Mode mode = hal::Mode::kBoot;
   hal::HoldReason reason = hal::HoldReason::kNone;
-};
-
-struct FaultEvent {
-  double t_s = 0.0;
-  hal::Fault fault = hal::Fault::kNone;
-  int joint = -1;  // at fault; -1: none
 };
 
 // A request of the operator, by a word or by a signal.
@@ -64,7 +59,7 @@ struct HwSummary : run::RunFigures {
   std::optional<double> finish_t_s;  // when that began, since the servo's first tick
   std::vector<std::string> events;   // modes, faults and recoveries, as text
   std::vector<ModeEvent> modes;
-  std::vector<FaultEvent> faults;
+  std::vector<run::FaultEvent> faults;
 };
 
 // Computes `verdict` and `converged` from the other fields.

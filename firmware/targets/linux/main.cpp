@@ -31,8 +31,35 @@ struct Arguments {
   bool json = false;
   double seconds = 0.0;
   std::string out;
-  std::string command;  // the whole command line
+  bool live = false;
+  bool live_control = false;
+  std::string address = "127.0.0.1";
+  int port = 8765;
+  std::vector<std::string> origins;
+  std::vector<const CLI::Option*> of_live;  // require --live
+  std::string command;                      // the whole command line
 };
+
+// None without --live.
+std::optional<hw::HwLiveOptions> LiveOf(const Arguments& arguments) {
+  if (!arguments.live) {
+    for (const CLI::Option* option : arguments.of_live) {
+      if (option->count() > 0) {
+        throw config::InputError(option->get_name() + " requires --live");
+      }
+    }
+    return std::nullopt;
+  }
+  if (arguments.out.empty()) {
+    throw config::InputError("--live requires --out: the page shows what is logged");
+  }
+  hw::HwLiveOptions live;
+  live.control = arguments.live_control;
+  live.server.address = arguments.address;
+  live.server.port = static_cast<std::uint16_t>(arguments.port);
+  live.server.allowed_origins = arguments.origins;
+  return live;
+}
 
 int Check(const hw::HwConfig& config, bool json) {
   const std::vector<hw::CheckRow> rows = hw::Check(config);
@@ -46,7 +73,7 @@ std::optional<hw::HwSummary> Serve(const hw::HwConfig& config, const Arguments& 
   try {
     return hw::Run(config,
                    {!arguments.no_motion, arguments.enable || arguments.track, arguments.track,
-                    arguments.seconds, arguments.out, arguments.command},
+                    arguments.seconds, arguments.out, arguments.command, LiveOf(arguments)},
                    speaker);
   } catch (const std::exception& error) {
     speaker.Say(fmt::format("fovea-hw: {}", error.what()));
@@ -140,5 +167,22 @@ int main(int argc, char** argv) {
   app.add_option("--out", arguments.out,
                  "folder for log.mcap, report.html and summary.json; without it, write no files");
   app.add_flag("--json", arguments.json, "print the summary as JSON");
+  app.add_flag("--live", arguments.live,
+               "show the run in a browser, where a viewer may hold the arm and end the run; needs --out");
+  arguments.of_live = {
+      app.add_flag("--live-control", arguments.live_control,
+                   "with --live: a viewer may also track, recover and change gains, but never enable motion"),
+      app.add_option("--port", arguments.port, "with --live: port of the page; 0: any free one")
+          ->check(CLI::Range(0, 65535))
+          ->capture_default_str(),
+      app.add_option(
+             "--address", arguments.address,
+             "with --live: address to listen at; every computer that reaches it and knows the printed "
+             "token may use the page")
+          ->capture_default_str(),
+      app.add_option("--live-origin", arguments.origins,
+                     "with --live: origin of a web page that may connect too, e.g. https://app.foxglove.dev")
+          ->expected(1)
+          ->allow_extra_args(false)};
   return config::RunProgram("fovea-hw", app, argc, argv, [&] { return Run(arguments); });
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "fovea/linux_rt/realtime.hpp"
@@ -38,17 +39,17 @@ void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) 
   }
   const std::int64_t now_ns = clock.NowNs();
   if (now_ns >= control.leave_until_ns) {
-    loop->Ask(task::Request::kNone);  // drops the earlier request, also if the loop does not run yet
+    loop->Ask(task::Request::kNone);  // drops an earlier request to move, also if the loop does not run yet
   }
   const auto lasts_ns = static_cast<std::int64_t>(dead_man_s * static_cast<double>(hal::kNsPerSecond));
   control.leave_until_ns = now_ns + lasts_ns;
   loop->GiveLeave(now_ns + lasts_ns);
 }
 
-void EndRun(bool allow_motion, RunControl& control) noexcept {
-  const bool again = control.ended.exchange(true);
+void EndRun(bool allow_motion, bool at_once, RunControl& control) noexcept {
+  control.ended = true;
   if (task::ServoLoop* loop = control.loop) {
-    if (again || !allow_motion) {
+    if (at_once || !allow_motion) {
       loop->Stop();
     } else {
       loop->Finish();
@@ -122,7 +123,7 @@ void OperatorThread::HearWords() {
 }
 
 void OperatorThread::End() noexcept {
-  EndRun(options_.allow_motion, control_);
+  EndRun(options_.allow_motion, std::exchange(end_asked_, true), control_);
   Note(Word::kEnd);
 }
 

@@ -23,6 +23,7 @@ struct RunControl {
   std::atomic<task::ServoLoop*> loop{nullptr};
   std::atomic<ArmDriver*> arm{nullptr};
   std::atomic<bool> enable_asked{false};
+  std::atomic<bool> serves{false};              // motion is enabled, and the servo runs
   std::atomic<bool> ended{false};               // somebody requested the end
   std::atomic<bool> done{false};                // the servo's thread has nothing more to do
   std::atomic<std::int64_t> closing_ns{0};      // when the writing of files began, MonotonicNs(); 0: not yet
@@ -32,8 +33,8 @@ struct RunControl {
 // Permits motion for `dead_man_s` from now on. Does nothing when that is 0: the permission never ends.
 void GiveLeave(double dead_man_s, const hal::Clock& clock, RunControl& control) noexcept;
 
-// Ends the run: the first time in order, the second time at once.
-void EndRun(bool allow_motion, RunControl& control) noexcept;
+// Ends the run, in order or at once.
+void EndRun(bool allow_motion, bool at_once, RunControl& control) noexcept;
 
 struct Heard {
   std::int64_t stamp_ns = 0;  // of the loop's clock
@@ -64,6 +65,7 @@ class OperatorThread {
   void HearAll(const std::stop_token& stop);
   void HearSignal();
   void HearWords();
+  // The operator's first request ends the run in order, the second at once, whoever else has asked before.
   void End() noexcept;
   void Note(Word word, std::string_view unknown = {}) noexcept;
 
@@ -72,6 +74,7 @@ class OperatorThread {
   const linux_rt::SignalQueue& signals_;
   RunControl& control_;
   OperatorInput input_;
+  bool end_asked_ = false;
   linux_rt::BoundedRing<Heard> heard_;
   std::jthread thread_;  // last: it uses the others
 };

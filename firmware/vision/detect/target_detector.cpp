@@ -2,7 +2,6 @@
 #include "firmware/vision/detect/target_detector.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace fovea::vision {
 namespace {

@@ -3,6 +3,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -63,6 +64,29 @@ std::int64_t DurationHistogram::Percentile(double p) const noexcept {
   return max_ns_;
 }
 
+void RecentDurations::Add(std::int64_t duration_ns) noexcept {
+  const std::uint64_t at = added_.load(std::memory_order_relaxed);
+  durations_ns_[at % kMost].store(duration_ns, std::memory_order_relaxed);
+  added_.store(at + 1, std::memory_order_release);
+}
+
+// If the other thread comes round while this one reads, some durations are newer than the summary's time.
+std::optional<RecentDurations::Summary> RecentDurations::TakeNew() noexcept {
+  const std::uint64_t added = added_.load(std::memory_order_acquire);
+  const auto count = static_cast<std::ptrdiff_t>(std::min(added - looked_at_, kMost));
+  looked_at_ = added;
+  if (count == 0) {
+    return std::nullopt;
+  }
+  std::array<std::int64_t, kMost> sorted;
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    const std::uint64_t at = added - static_cast<std::uint64_t>(count - i);
+    sorted[static_cast<std::size_t>(i)] = durations_ns_[at % kMost].load(std::memory_order_relaxed);
+  }
+  std::sort(sorted.begin(), sorted.begin() + count);
+  return Summary{sorted[static_cast<std::size_t>(count / 2)], sorted[static_cast<std::size_t>(count - 1)]};
+}
+
 void TickMeter::Enter() noexcept {
   page_faults_before_ = ThreadPageFaults();
   heap_calls_before_ = CountedHeapCalls();
@@ -72,7 +96,9 @@ void TickMeter::Enter() noexcept {
 
 void TickMeter::Leave() noexcept {
   LeaveCountedRegion();
-  durations_.Add(MonotonicNs() - start_ns_);
+  const std::int64_t duration_ns = MonotonicNs() - start_ns_;
+  durations_.Add(duration_ns);
+  recent_.Add(duration_ns);
   heap_calls_ += CountedHeapCalls() - heap_calls_before_;
   page_faults_ += static_cast<std::uint64_t>(ThreadPageFaults() - page_faults_before_);
 }

@@ -20,12 +20,13 @@
 #include "firmware/core/control/resolve_constrained.hpp"
 #include "firmware/core/control/resolve_motion.hpp"
 #include "firmware/core/guard/guard_motion.hpp"
+#include "fovea/hal/types.hpp"
 #include "tests/support/panda.hpp"
 #include "tests/support/random_states.hpp"
 
 namespace fovea::control::resolve_loop {
 
-constexpr double kTickS = 1e-3;
+constexpr double kTickS = hal::kTickPeriodS;
 constexpr double kFocal = 554.256;  // [px]
 
 struct Start {

@@ -10,6 +10,7 @@
 
 #include "firmware/core/barriers/barrier_speed.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"
+#include "fovea/hal/types.hpp"
 #include "tests/support/panda.hpp"
 #include "tests/support/random_states.hpp"
 #include "tests/support/repetitions.hpp"
@@ -17,7 +18,7 @@
 namespace fovea::guard {
 namespace {
 
-constexpr double kTick = 1e-3;
+constexpr double kTick = hal::kTickPeriodS;
 
 // Moves a reference that the arm follows perfectly, and keeps the largest share used of each limit.
 class Walker {

@@ -21,9 +21,9 @@ namespace {
 static_assert(sizeof(moves::MotionCommand) == 304);
 static_assert(sizeof(hal::ArmState) == 280);
 static_assert(sizeof(hal::FeatureMeasurement) == 1016);
-static_assert(sizeof(hal::TickRecord) == 1960);
+static_assert(sizeof(hal::TickRecord) == 1992);
 static_assert(sizeof(LineCounters) == 24);
-static_assert(sizeof(Outputs) == 1960 + 4 * (kNumStages + 4) + sizeof(LineCounters));
+static_assert(sizeof(Outputs) == 1992 + 4 * (kNumStages + 4) + sizeof(LineCounters));
 
 std::array<std::uint8_t, kMaxPayload> storage;
 
@@ -95,6 +95,7 @@ task::ServoInputs SomeInputs(Values& values) {
   values.Fill(in.motion.p_BE);
   in.change_law = true;
   in.law = config::MotionLawKind::kFloat;
+  in.tuning = {12, values.Number()};
   in.missed_ticks = -3;
   return in;
 }
@@ -117,6 +118,8 @@ TEST(Messages, RoundTripKeepsEveryField) {
   outputs.record.mode = hal::Mode::kMove;
   outputs.record.hold_reason = hal::HoldReason::kNotFollowed;
   outputs.record.fault = hal::Fault::kContact;
+  ExpectComesBack(outputs);
+  outputs.record.tuning = {hal::TuningResult::kOutOfRange, -5, values.Number(), std::nan("")};
   values.Fill(outputs.record.command.tau_cmd);
   outputs.stage_counts[3] = 4711;
   outputs.link_counts = 12;
@@ -126,6 +129,8 @@ TEST(Messages, RoundTripKeepsEveryField) {
   Outputs back;
   ASSERT_TRUE(Decode(BytesOf(outputs), back));
   EXPECT_EQ(back.line, outputs.line);
+  EXPECT_EQ(back.record.tuning.key, -5);
+  EXPECT_EQ(back.record.tuning.before, outputs.record.tuning.before);
   EXPECT_EQ(back.link_counts, outputs.link_counts);
   EXPECT_EQ(back.periods_passed, outputs.periods_passed);
 

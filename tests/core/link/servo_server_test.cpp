@@ -106,7 +106,13 @@ TEST_F(ServoServerTest, LockstepGivesTheSameBitsAsTheTask) {
   log::RecordHash there;
   for (std::uint32_t k = 1; k <= 3000; ++k) {
     task::ServoInputs given;
-    here.Add(Tick([&](task::ServoInputs& inputs) { given = inputs; }));
+    here.Add(Tick([&](task::ServoInputs& inputs) {
+      if (k % 700 == 0) {
+        inputs.tuning = {0, k == 1400 ? 50.0 : 1e-3 * k};  // one is refused
+      }
+      given = inputs;
+    }));
+    EXPECT_EQ(outputs_.record.tuning.result != hal::TuningResult::kNone, k % 700 == 0);
     Give({FrameKind::kInputs, k, Encode(given, payload_)});
     if (k % 7 == 0) {  // the frame arrives twice: two answers, one step
       Give({FrameKind::kInputs, k, Encode(given, payload_)});
@@ -278,6 +284,48 @@ TEST_F(ServoServerByTimerTest, OvertakenFrameStillDeliversItsFeature) {
   EXPECT_EQ(reader_.frame().sequence, 2U);
   EXPECT_EQ(outputs.record.command.state_sequence, second.arm.sequence);
   EXPECT_NE(outputs.record.intake, hal::Intake::kNone) << "the feature of the overtaken frame";
+}
+
+// A key of the older frame changes, too; a tick without a frame does not change it again.
+TEST_F(ServoServerByTimerTest, OvertakenFrameStillChangesItsKey) {
+  const auto send = [&](std::uint32_t sequence, const config::Tuning& tuning) {
+    task::ServoInputs inputs;
+    inputs.arm = arm_->State();
+    inputs.tuning = tuning;
+    Give({FrameKind::kInputs, sequence, Encode(inputs, payload_)});
+  };
+  send(1, {0, 3.0});
+  send(2, {});
+  Pass(1);
+  const hal::TuningNote note = Taken().record.tuning;
+  EXPECT_EQ(note.result, hal::TuningResult::kTaken);
+  EXPECT_EQ(note.asked, 3.0);
+  Pass(1);
+  EXPECT_EQ(Taken().record.tuning.result, hal::TuningResult::kNone);
+  send(3, {0, 4.0});
+  send(4, {4, 0.1});
+  Pass(1);
+  EXPECT_EQ(Taken().record.tuning.key, 4) << "the newer one";
+}
+
+// A Hold is not lost if the next frame asks to track before a tick.
+TEST_F(ServoServerByTimerTest, HoldOfAnOvertakenFrameComesFirst) {
+  Outputs outputs;
+  for (int k = 0; k < 1500; ++k) {
+    outputs = TickThrough([&](std::span<const std::uint8_t> bytes) { server_.Receive(bytes); });
+  }
+  ASSERT_EQ(outputs.record.mode, hal::Mode::kTrack);
+  std::uint32_t sequence = reader_.frame().sequence;
+  for (const task::Request request : {task::Request::kHold, task::Request::kTrack}) {
+    task::ServoInputs inputs;
+    inputs.arm = arm_->State();
+    inputs.request = request;
+    Give({FrameKind::kInputs, ++sequence, Encode(inputs, payload_)});
+  }
+  for (const hal::Mode mode : {hal::Mode::kHold, hal::Mode::kTrack}) {
+    Pass(1);
+    EXPECT_EQ(Taken().record.mode, mode);
+  }
 }
 
 // A frame that is older than an arm may be silent is ignored, even if it is the newest.

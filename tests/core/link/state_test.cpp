@@ -31,7 +31,8 @@ static_assert(sizeof(control::WayToGoal) == 800);
 static_assert(sizeof(control::ResolvedMotion) == 88);
 static_assert(sizeof(moves::MotionState) == 16160);
 static_assert(sizeof(motion_laws::MotionLawState) == 232);
-static_assert(sizeof(task::ServoState) == 82960);
+static_assert(sizeof(task::TuningState) == 544);
+static_assert(sizeof(task::ServoState) == 83504);
 
 using Buffer = std::vector<std::uint8_t>;
 
@@ -149,6 +150,31 @@ void ExpectDigestToSeeAllBut(const std::set<std::string>& left_out, hal::Mode mo
   }
 }
 
+// While a key moves, the digest covers the ramps.
+TEST(ServoStateTest, DigestChangesWithEachRamp) {
+  ExpectDigestToSeeAllBut({"joint history", "planned motion", "momentum", "commanded motion"},
+                          hal::Mode::kTrack, test::TunedRun(600));
+  const test::ServoRun run = test::TunedRun(600);
+  task::ServoTask task;
+  ASSERT_TRUE(task.Init(run.config).ok());
+  task::ServoOutputs outputs;
+  for (const task::ServoInputs& inputs : run.inputs) {
+    task.Step(inputs, outputs);
+  }
+  ASSERT_TRUE(task.state().tuning.active);
+  const std::uint64_t digest = DigestOf(run.config, task.state(), false);
+  const auto changed = [&](const auto& change) {
+    auto state = std::make_unique<task::ServoState>(task.state());
+    change(state->tuning.ramps[0]);
+    return DigestOf(run.config, *state, false) != digest;
+  };
+  EXPECT_FALSE(changed([](task::TuningState::Ramp&) {}));
+  EXPECT_TRUE(changed([](task::TuningState::Ramp& ramp) { ramp.asked = false; }));
+  EXPECT_TRUE(changed([](task::TuningState::Ramp& ramp) { ramp.from += 1e-12; }));
+  EXPECT_TRUE(changed([](task::TuningState::Ramp& ramp) { ramp.to += 1e-12; }));
+  EXPECT_TRUE(changed([](task::TuningState::Ramp& ramp) { ++ramp.ticks; }));
+}
+
 TEST(ServoStateTest, DigestChangesWithEachCoveredField) {
   using features::FeatureForm;
   using hal::FeatureKind;
@@ -200,6 +226,21 @@ TEST(ServoStateTest, DemandRoundTripKeepsEveryField) {
   EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), same.begin(), same.end()));
   EXPECT_EQ(back.arm_status, demand.arm_status);
   EXPECT_FALSE(Decode(bytes.first(bytes.size() - 1), back));
+
+  // A key that changes comes last. A log without one has the bytes of logs from before such keys existed.
+  demand.tuning = {7, 0.25};
+  const Bytes longer = Encode(demand, again);
+  ASSERT_EQ(longer.size(), bytes.size() + 12);
+  EXPECT_TRUE(std::equal(bytes.begin(), bytes.end(), longer.begin()));
+  ASSERT_TRUE(Decode(longer, back));
+  EXPECT_EQ(back.tuning.key, 7);
+  EXPECT_EQ(back.tuning.value, 0.25);
+  EXPECT_FALSE(Decode(longer.first(longer.size() - 1), back));
+  ASSERT_TRUE(Decode(bytes, back));
+  EXPECT_FALSE(back.tuning.IsAsked());
+  Demand asked;
+  asked.tuning = {0, 1.0};
+  EXPECT_FALSE(asked.IsPlain());
 }
 
 }  // namespace

@@ -211,6 +211,7 @@ class ListeningStep final : public ServoStep {
     outputs.record.command.engage_brakes = brakes;
     requests.push_back(inputs.request);
     motions.push_back(inputs.motion.kind);
+    tunings.push_back(inputs.tuning);
     if (before_next) {
       before_next(static_cast<int>(requests.size()));
     }
@@ -218,6 +219,7 @@ class ListeningStep final : public ServoStep {
   std::function<void(int)> before_next;  // with the number of ticks so far
   std::vector<Request> requests;
   std::vector<moves::MotionKind> motions;
+  std::vector<config::Tuning> tunings;
   hal::Mode mode = hal::Mode::kHold;
   double speed = 0.0;
   bool brakes = false;
@@ -249,6 +251,21 @@ TEST_F(LeaseTest, WithoutALeaseNoRequestExpires) {
   EXPECT_EQ(step_.requests[0], Request::kTrack);
   EXPECT_EQ(step_.requests[99], Request::kNone);
   EXPECT_EQ(loop_.counters().lease_ends, 0U);
+}
+
+// A key moves nothing by itself, so it needs no permission.
+TEST_F(LeaseTest, OneKeyChangesPerTick) {
+  loop_.GiveLeave(0);
+  EXPECT_TRUE(loop_.Ask(config::Tuning{4, 0.5}));
+  EXPECT_TRUE(loop_.Ask(config::Tuning{0, 3.0}));
+  EXPECT_TRUE(loop_.Ask(config::Tuning{0, 4.0}));
+  EXPECT_FALSE(loop_.Ask(config::Tuning{99, 4.0}));
+  RunMs(3);
+  EXPECT_EQ(step_.tunings[0].key, 0);
+  EXPECT_EQ(step_.tunings[0].value, 4.0);
+  EXPECT_EQ(step_.tunings[1].key, 4);
+  EXPECT_EQ(step_.tunings[1].value, 0.5);
+  EXPECT_FALSE(step_.tunings[2].IsAsked());
 }
 
 TEST_F(LeaseTest, ExpiredLeaseHoldsEveryTickAndDropsRequests) {

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "firmware/core/trajectory/joint_move.hpp"
+#include "fovea/hal/types.hpp"
 #include "tests/support/panda.hpp"
 #include "tests/support/random_states.hpp"
 #include "tests/support/repetitions.hpp"
@@ -18,7 +19,7 @@
 namespace fovea::trajectory {
 namespace {
 
-constexpr double kTickS = 1e-3;
+constexpr double kTickS = hal::kTickPeriodS;
 
 using Tasks = std::array<AxisTask, SynchronisedMove::kMaxAxes>;
 

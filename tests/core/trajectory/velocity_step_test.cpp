@@ -8,13 +8,14 @@
 #include <cmath>
 #include <iostream>
 
+#include "fovea/hal/types.hpp"
 #include "tests/support/random_states.hpp"
 #include "tests/support/repetitions.hpp"
 
 namespace fovea::trajectory {
 namespace {
 
-constexpr double kPeriodS = 1e-3;
+constexpr double kPeriodS = hal::kTickPeriodS;
 constexpr AxisLimits kLimits{2.0, 10.0, 400.0};  // a joint of the Panda
 
 TEST(VelocityStepTest, MatchesTheTimeOptimumWithinLimitsWithoutOvershoot) {

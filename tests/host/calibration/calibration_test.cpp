@@ -322,6 +322,15 @@ TEST(CalibrationTest, FocalLengthIsFoundFromTwoOrMoreDistances) {
   EXPECT_NEAR(two.f_px, 2.0 * 0.15 * 60.0 * 40.0 / (0.08 * 20.0), 1e-9);
   EXPECT_THROW(SolveFocalLength({{40.0, 0.01, 0.0}, {60.0, 0.01, 0.15}}, 0.08, false), CalibrationError);
   EXPECT_THROW(SolveFocalLength({{40.0, 0.01, 0.0}}, 0.08, false), CalibrationError);
+  for (const double middle_px : {60.0, 61.0, 40.0, 39.0}) {
+    try {
+      (void)SolveFocalLength({{60.0, 0.01, 0.0}, {40.0, 0.01, 0.15}, {middle_px, 0.01, 0.07}}, 0.08, false);
+      ADD_FAILURE() << middle_px << " px between 60 and 40 px is accepted";
+    } catch (const CalibrationError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("smaller in each farther view")) << middle_px;
+    }
+  }
+  EXPECT_NO_THROW(SolveFocalLength({{60.0, 0.01, 0.0}, {40.0, 0.01, 0.15}, {50.0, 0.01, 0.07}}, 0.08, false));
 
   // Radii from pictures of a disc; the detector has only a rough focal length.
   bench::PictureScene scene;

@@ -39,6 +39,18 @@ TEST(FittedTest, KeepsANumberWithItsPercentSign) {
   EXPECT_EQ(Fitted("speed 37 %, torque 13 %", 2, 22), "speed 37 %, torque\n  13 %\n");
 }
 
+TEST(FittedTest, KeepsANumberWithItsUnit) {
+  for (const std::string unit : {"px", "mm", "s", "rad/s", "deg", "Nm,", "KiB)"}) {
+    const std::string text = "settled after 2.42 " + unit;
+    for (std::size_t width = 18; width < text.size(); ++width) {
+      EXPECT_EQ(Fitted(text, 2, width), "settled after\n  2.42 " + unit + "\n") << width;
+    }
+    EXPECT_EQ(Fitted(text, 2, text.size()), text + "\n");
+  }
+  EXPECT_EQ(Fitted("a run of 12 seconds", 2, 12), "a run of 12\n  seconds\n") << "not a unit";
+  EXPECT_EQ(Fitted("the letter m is wide", 2, 11), "the letter\n  m is wide\n") << "not a number";
+}
+
 TEST(FormatHelpTest, KeepsAWordThatIsLongerThanTheLine) {
   const std::string word(80, 'x');
   EXPECT_EQ(Formatted("  --only TEXT                 " + word + " more\n", 60),

@@ -88,6 +88,14 @@ TEST_F(KeyTableTest, UnknownKeySuggestsTheNearestKnownOne) {
   EXPECT_THAT(ErrorOf("zzz=1"), testing::Not(HasSubstr("did you mean")));
 }
 
+TEST(DidYouMeanTest, IsTheEndOfASentenceOrNothing) {
+  const std::vector<std::string> names{"panda", "ur5e"};
+  EXPECT_EQ(DidYouMean("pandda", names), "; did you mean panda?");
+  EXPECT_EQ(DidYouMean("ur5", names), "; did you mean ur5e?");
+  EXPECT_EQ(DidYouMean("quite-another", names), "");
+  EXPECT_EQ(DidYouMean("panda", {}), "");
+}
+
 TEST_F(KeyTableTest, RenamedKeyNamesItsSuccessorAndSetsNothing) {
   keys_.Renamed("camera.frequency_hz", "camera.rate_hz");
   EXPECT_THAT(ErrorOf("camera.frequency_hz=60"),

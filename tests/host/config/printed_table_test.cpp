@@ -28,10 +28,23 @@ TEST(PrintedTableTest, PaintSurroundsTheValueAndDoesNotCountAsWidth) {
             "  faults                  \n");
 }
 
+TEST(PrintedTableTest, PaintEndsBeforeEachLineEnd) {
+  PrintedTable table({.width = 60, .colour = true});
+  table.Row("verdict", "not converged: the target was lost in the last second", Paint::kBad);
+  EXPECT_EQ(table.text(),
+            "  verdict                 \033[31mnot converged: the target was lost\033[0m\n"
+            "                          \033[31min the last second\033[0m\n");
+}
+
 TEST(PrintedTableTest, NameMayBeLongerThanItsColumn) {
-  PrintedTable table({}, 4);
-  table.Row("a name", "1");
-  EXPECT_EQ(table.text(), "  a name1\n");
+  PrintedTable table({});
+  table.Row("a name of 23 characters", "1");
+  table.Row("a name of 24 characters.", "2");
+  table.WholeRow("a name of 25 characters..", "3");
+  EXPECT_EQ(table.text(),
+            "  a name of 23 characters 1\n"
+            "  a name of 24 characters. 2\n"
+            "  a name of 25 characters.. 3\n");
 }
 
 }  // namespace

@@ -51,6 +51,22 @@ TEST(TerminalTest, PaintIsForAStyleWithColours) {
   EXPECT_EQ(Painted("bad", Paint::kBad, {}), "bad");
 }
 
+TEST(TerminalTest, OnlyWhatATerminalShowsIsPrintedAsItIs) {
+  for (const char* text : {"", "a b~.png", "\u00fcber.png", "\u2192", "\U0001F600", "\u00a0", "\\x1b"}) {
+    EXPECT_EQ(Printable(text), text);
+  }
+  EXPECT_EQ(Printable("a\x1b[2J\nb\x7f"), "a\\x1b[2J\\x0ab\\x7f");
+  EXPECT_EQ(Printable(std::string_view("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(Printable("\xc2\x9b"
+                      "2J"),
+            "\\xc2\\x9b2J")
+      << "the control character U+009B";
+  EXPECT_EQ(Printable("\xff\xc3(\xe2\x86"), "\\xff\\xc3(\\xe2\\x86") << "no UTF-8";
+  EXPECT_EQ(Printable("\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80"),
+            "\\xc0\\xaf\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80")
+      << "too long, a half of UTF-16, too large";
+}
+
 TEST(TerminalTest, ErrorIsOneLineUnlessATerminalBreaksIt) {
   const std::string words = "the first half of a message\nand its second half, which is long";
   EXPECT_EQ(ErrorText("fovea", words, kUnbroken),

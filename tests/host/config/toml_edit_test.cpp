@@ -28,6 +28,11 @@ std::string ErrorOf(const std::string& text) {
   return "";
 }
 
+TEST(SectionTextTest, IsWhatAFileWithoutTheSectionGets) {
+  EXPECT_EQ(SectionText("camera", kMount), "[camera]\nmount_xyz = [1.5, 2.0, 3.0]\nrms = 0.25\n");
+  EXPECT_EQ(SectionText("camera", kMount), WithValues("", "camera", kMount));
+}
+
 TEST(WithValuesTest, ReplacesAValueWhereItStands) {
   EXPECT_EQ(
       WithValues(

@@ -179,6 +179,51 @@ TEST_F(RunCurvesTest, LostAndEmptyFramesAreCountedAndPlaced) {
   EXPECT_EQ(run.not_found[0].frames, 2U);
 }
 
+// An operator's change is an event. The values that a slider sends on its way are one event.
+TEST_F(RunCurvesTest, OperatorsChangesAreEvents) {
+  const RunData run = Read(Setup("sphere", "sphere"), [](log::RunLog& log) {
+    for (int i = 0; i < 1000; ++i) {
+      hal::TickRecord r = Record(i);
+      if (i >= 300 && i <= 400 && i % 20 == 0) {
+        r.tuning = {hal::TuningResult::kTaken, 0, 2.0 + 0.01 * (i - 300), 2.2 + 0.01 * (i - 300)};
+      } else if (i == 410) {
+        r.tuning = {hal::TuningResult::kOutOfRange, 0, 3.2, 40.0};
+      } else if (i == 420 || i == 700) {
+        r.tuning = {hal::TuningResult::kTaken, 4, 0.6, 0.5};
+      }
+      log.AddTick(r);
+    }
+  });
+  json events = json::parse(ToJson(run))["tunings"];
+  std::vector<int> times_ms;
+  for (json& event : events) {
+    times_ms.push_back(static_cast<int>(std::lround(1e3 * event["t_s"].get<double>())));
+    event.erase("t_s");
+  }
+  EXPECT_THAT(times_ms, ElementsAre(300, 410, 420, 700));
+  const json expected = json::array(
+      {{{"taken", true}, {"words", "servo.lambda 2 -> 3.2 1/s, by the operator"}},
+       {{"taken", false},
+        {"words",
+         "servo.lambda 3.2 -> 40 1/s, by the operator, refused: the value is outside the key's range"}},
+       {{"taken", true}, {"words", "servo.posture_gain 0.6 -> 0.5 1/s, by the operator"}},
+       {{"taken", true}, {"words", "servo.posture_gain 0.6 -> 0.5 1/s, by the operator"}}});
+  EXPECT_EQ(events, expected);
+}
+
+TEST_F(RunCurvesTest, OperatorsTouchesAreEvents) {
+  const RunData run = Read(Setup("sphere", "sphere"), [](log::RunLog& log) {
+    log::Touch touch;
+    touch.set_stamp_ns(250'000'000);
+    touch.set_what("fault");
+    touch.set_text("fault camera_outage");
+    log.Add(log::kOperatorTopic, touch.stamp_ns(), touch);
+    log.AddTick(Record(1000));
+  });
+  EXPECT_EQ(json::parse(ToJson(run))["touches"],
+            json::array({{{"t_s", 0.25}, {"words", "fault camera_outage"}}}));
+}
+
 TEST_F(RunCurvesTest, FeaturePathIsInPixels) {
   const RunData run = Read(Setup("sphere", "sphere"), [](log::RunLog& log) { AddFrames(log, {1, -2, 3}); });
   EXPECT_THAT(run.feature_path.goal_px, ElementsAre(320.0F, 240.0F));

@@ -12,9 +12,12 @@
 namespace fovea::robots {
 namespace {
 
-std::string Said(const std::string& name, const std::string& otherwise = "") {
+constexpr const char* kShipped =
+    "; shipped are panda, puma560, slider, ur5e (or give the path of an arm file .toml or of a .urdf)";
+
+std::string Said(const std::string& name) {
   try {
-    return FindShippedRobot(name, "--robot", otherwise).string();
+    return FindRobot(name, "--robot").string();
   } catch (const config::InputError& error) {
     return error.what();
   }
@@ -28,16 +31,16 @@ TEST(ShippedRobotsTest, EveryShippedArmIsFoundByName) {
 }
 
 TEST(ShippedRobotsTest, MistypedNameGetsTheNearestAndTheList) {
-  EXPECT_EQ(Said("pandda", " (or a path)"),
-            "--robot: unknown arm \"pandda\"; did you mean panda?; shipped are panda, puma560, slider, ur5e "
-            "(or a path)");
-  EXPECT_EQ(Said("quite-another"),
-            "--robot: unknown arm \"quite-another\"; shipped are panda, puma560, slider, ur5e");
+  EXPECT_EQ(Said("pandda"), std::string("--robot: unknown arm \"pandda\"; did you mean panda?") + kShipped);
+  EXPECT_EQ(Said("quite-another"), std::string("--robot: unknown arm \"quite-another\"") + kShipped);
 }
 
 TEST(ShippedRobotsTest, PathIsNoName) {
   for (const char* path : {"../robots/panda", "./panda", "", ".", ".."}) {
     EXPECT_THAT(Said(path), testing::HasSubstr("unknown arm")) << path;
+  }
+  for (const char* path : {"arm.toml", "a/arm.urdf", "../robots/panda.toml"}) {
+    EXPECT_EQ(Said(path), path);
   }
   EXPECT_TRUE(IsRobotPath("arm.toml"));
   EXPECT_TRUE(IsRobotPath("a/arm.urdf"));

@@ -127,6 +127,23 @@ TEST_F(RunBookTest, LogNamesCommandAndDefaultsThatDiffer) {
   EXPECT_EQ(found["defaults"], (std::map<std::string, std::string>{{"a.c", "5"}}));
 }
 
+TEST_F(RunBookTest, TapGetsEveryMessageOfTheLog) {
+  std::map<std::string, int> tapped;
+  options_.tap = [&tapped](std::string_view topic, const google::protobuf::Descriptor& /*type*/,
+                           std::int64_t /*time_ns*/, std::string_view bytes) {
+    tapped[std::string(topic)] += static_cast<int>(bytes.size());
+  };
+  Run(640, 480);
+  std::map<std::string, int> written;
+  log::McapVisitor visitor;
+  visitor.on_message = [&](const log::McapMessage& m) {
+    written[std::string(m.topic)] += static_cast<int>(m.data.size());
+  };
+  EXPECT_TRUE(log::ReadMcap(folder_.path() / "log.mcap", visitor).complete);
+  EXPECT_GT(written.size(), 5U);
+  EXPECT_EQ(tapped, written);
+}
+
 TEST_F(RunBookTest, FailedFilmKeepsTheOtherFiles) {
   const BookFigures log = Run(640, 480, ".camera.mp4.partial");
   EXPECT_THAT(log.film_errors,

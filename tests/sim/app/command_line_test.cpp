@@ -218,7 +218,7 @@ TEST_F(CommandLineTest, ListAndKeysShowScenariosAndKeys) {
                           HasSubstr("theory/open-loop ")));
   EXPECT_THAT(Sim({"keys"}).out,
               HasSubstr("servo.lambda = 2\n    gain: the error decays like exp(-lambda t); "
-                        "a number: 0 to 20 1/s\n"));
+                        "may change in motion; a number: 0 to 20 1/s\n"));
 }
 
 // The table in the repository matches the program; renew it with `fovea-sim keys --markdown`.

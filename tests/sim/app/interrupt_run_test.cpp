@@ -81,6 +81,17 @@ TEST_P(InterruptBy, InterruptedRunLeavesReadableLogAndSummary) {
 INSTANTIATE_TEST_SUITE_P(Signals, InterruptBy, testing::Values("INT", "HUP"),
                          [](const auto& name) { return std::string(name.param); });
 
+TEST_F(InterruptTest, InterruptEndsARunThatMissesAllItsTicks) {
+  const ProgramResult result =
+      Interrupt(std::string(kUntilItRuns) + "\nsleep 1; kill -INT $run",
+                "--set run.duration_s=600 --set 'faults.deadline_miss_s=[0.05, 1e6]'");
+  EXPECT_EQ(result.out, "ended with 1\n") << Err();
+  EXPECT_TRUE(Summary()["interrupted"]);
+  EXPECT_LE(Summary()["ticks"], 51);
+  EXPECT_LT(Summary()["sim_time_s"], 600.0);
+  EXPECT_TRUE(TicksInLog().second);
+}
+
 // Before the folder exists: the run ends with its first tick.
 TEST_F(InterruptTest, InterruptWhilePreparingLeavesLogAndSummary) {
   const ProgramResult result = Interrupt(

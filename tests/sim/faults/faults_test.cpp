@@ -155,6 +155,17 @@ TEST(StallingClockTest, WaitsPastTheSwallowedTicks) {
   EXPECT_EQ(clock.NowNs(), 51 * kMs);
 }
 
+// Otherwise a window that outlasts the run would keep it from ending.
+TEST(StallingClockTest, MissesNoTickAfterTheEnd) {
+  test::FakeClock inner;
+  StallingClock clock(inner, {{0.020, 0.1}, 1.0, 1});
+  clock.EndAt(30 * kMs);
+  ASSERT_TRUE(clock.WaitUntil(20 * kMs).ok());
+  EXPECT_EQ(clock.NowNs(), 30 * kMs);
+  ASSERT_TRUE(clock.WaitUntil(31 * kMs).ok());
+  EXPECT_EQ(clock.NowNs(), 31 * kMs);
+}
+
 TEST(FrameSpoilerTest, LosesFreezesAndDelaysFramesWithinTheirWindows) {
   FrameFaults faults;
   faults.loss = {{1.0, 2.0}, 0.5};

@@ -47,6 +47,8 @@ class VerdictTest : public testing::Test {
       verdict.AddRecord(record);
     }
     Summary summary;
+    summary.frames = frames_;
+    summary.frames_lost = frames_lost_;
     summary.frames_detected = frames_detected_;
     verdict.Fill(summary);
     return summary;
@@ -55,6 +57,8 @@ class VerdictTest : public testing::Test {
 
   VerdictConfig config_;
   std::vector<hal::TickRecord> records_;
+  std::uint64_t frames_ = 1;
+  std::uint64_t frames_lost_ = 0;
   std::uint64_t frames_detected_ = 1;
 };
 
@@ -228,7 +232,13 @@ TEST_F(VerdictTest, SeenTooSeldomAndNeverSeenHaveDifferentVerdicts) {
   const auto far = [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); };
   frames_detected_ = 0;
   EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("never found in view"));
-  frames_detected_ = 2;
+  frames_ = 0;
+  EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("never found in view"));
+  frames_lost_ = 24;
+  EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("all 24 frames were lost"));
+  frames_ = 1;
+  EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("never found in view"));
+  frames_ = frames_detected_ = 2;
   EXPECT_THAT(Judge(0.1, far).verdict, testing::HasSubstr("found in 2 frames, too few"));
 }
 
@@ -242,8 +252,9 @@ TEST_F(VerdictTest, FaultFailsTheRunAndIsNamed) {
   const Summary s = Judge(1.0, Still);
   EXPECT_FALSE(s.converged);
   ASSERT_EQ(s.faults.size(), 1U);
-  EXPECT_EQ(s.faults[0].name, "joint_velocity");
-  EXPECT_EQ(s.faults[0].detail, "joint 4");
+  EXPECT_EQ(s.faults[0].fault, hal::Fault::kJointVelocity);
+  EXPECT_EQ(s.faults[0].joint, 3);
+  EXPECT_THAT(ToJson(s), testing::HasSubstr("\"detail\": \"joint 4\""));
   EXPECT_DOUBLE_EQ(s.faults[0].t_s, 0.25);
   EXPECT_EQ(s.verdict,
             "not converged: fault: a joint's velocity exceeded its limit, or jumped (joint_velocity), at "
@@ -266,6 +277,10 @@ TEST_F(VerdictTest, HoldIsExplainedInWords) {
   EXPECT_EQ(s.verdict,
             "not converged: the arm has held since 1.588 s because the target was lost (target_lost)");
   EXPECT_EQ(s.end.reason, "target_lost");
+  records_[0].hold_reason = hal::HoldReason::kEyeDoubted;
+  EXPECT_THAT(Judge(2.0, [](double) { return Eigen::Vector3d(0.1, 0.0, 0.0); }).verdict,
+              testing::EndsWith("(eye_doubted); see camera.mount_xyz, camera.mount_rpy_deg, "
+                                "servo.way_in_vain"));
 }
 
 TEST_F(VerdictTest, LimitsThatActedAreNamedTheLongestFirst) {

@@ -79,6 +79,14 @@ TEST(FoveaBench, JitterReportsEveryFigure) {
   EXPECT_EQ(json::parse(TextOf(folder.path() / "j" / "jitter.json")), json::parse(run.out));
 }
 
+// The load must come up: three viewers connect and stay.
+TEST(FoveaBench, JitterIsMeasuredWithViewers) {
+  const test::TempFolder folder;
+  const test::ProgramResult run = Bench({"jitter", "--load", "viewers", "--seconds", "1", "--policy", "other",
+                                         "--out", folder.path(), "--json"});
+  EXPECT_EQ(NamesOf(run).count("wake_us_p999"), 1U) << run.err;
+}
+
 // A picture's delay is the sum of its hops: it lies between the sums of their minima and maxima.
 TEST(FoveaBench, JitterHopsAddUp) {
   const test::TempFolder folder;

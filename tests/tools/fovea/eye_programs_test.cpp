@@ -130,6 +130,29 @@ TEST_F(EyeProgramsTest, HelpIsTextThatFitsIntoATerminal) {
   }
 }
 
+TEST_F(EyeProgramsTest, DetectShowsAnyNameOfAFile) {
+  const std::string disc = Disc("a.png", 0.4);
+  const std::string odd = folder_.path() / "b\x1b[31m\xff.png";
+  std::filesystem::copy_file(disc, odd);
+  const test::ProgramResult text = Fovea({"detect", "--target", "circle", odd});
+  EXPECT_EQ(text.exit_code, 0) << text.err;
+  EXPECT_THAT(text.out, testing::HasSubstr("b\\x1b[31m\\xff.png: at ("));
+  const test::ProgramResult json = Fovea({"detect", "--target", "circle", "--json", odd});
+  EXPECT_EQ(json.exit_code, 0) << json.err;
+  EXPECT_THAT(nlohmann::json::parse(json.out)[0]["file"].get<std::string>(),
+              testing::EndsWith("b\x1b[31m\ufffd.png"));
+}
+
+TEST_F(EyeProgramsTest, DetectRefusesWhatTheKeysRefuse) {
+  const std::string disc = Disc("a.png", 0.4);
+  for (const char* option : {"--hough-canny", "--hough-votes"}) {
+    for (const char* value : {"0.5", "1001"}) {
+      ExpectRefused(Fovea({"detect", "--target", "circle", "--method", "hough", option, value, disc}),
+                    option);
+    }
+  }
+}
+
 TEST_F(EyeProgramsTest, MistypedCommandGetsTheNearestOne) {
   const test::ProgramResult result = Fovea({"atlus"});
   EXPECT_EQ(result.exit_code, 2);

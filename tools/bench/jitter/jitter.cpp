@@ -109,6 +109,7 @@ int RunJitter(const JitterArguments& arguments) {
     result.machine = LookAtMachine(missing, arguments.policy == "fifo");
     Measure(arguments, eye, config, result);
     eye.Stop();
+    load.Check();
     for (std::string& words : InWords(time.SinceStart())) {
       result.machine.limits.push_back(std::move(words));
     }

@@ -11,7 +11,6 @@
 
 #include <array>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
 
 #include "fovea/linux_rt/realtime.hpp"
@@ -84,6 +83,8 @@ Load::Load(const std::string& kind) {
     start(2, Send);
   } else if (kind == "render") {
     StartRender();
+  } else if (kind == "viewers") {
+    viewers_ = std::make_unique<Viewers>();
   }
 }
 
@@ -101,6 +102,12 @@ void Load::StartRender() {
   if (error != 0) {
     render_pid_ = 0;
     throw std::runtime_error("--load render: " + path + " cannot be started");
+  }
+}
+
+void Load::Check() const {
+  if (viewers_ && viewers_->have_left()) {
+    throw std::runtime_error("--load viewers: a viewer was disconnected");
   }
 }
 

@@ -221,8 +221,7 @@ void AddTicks(const std::vector<TickCase>& cases, std::vector<Figure>& figures) 
 }  // namespace
 
 int RunTick(const TickArguments& arguments) {
-  const model::ArmModel arm =
-      robots::LoadRobot(robots::FindShippedRobot(arguments.robot, "--robot", "")).model;
+  const model::ArmModel arm = robots::LoadRobot(robots::FindRobot(arguments.robot, "--robot")).model;
   if (arm.num_joints < 6) {
     throw config::InputError(
         fmt::format("--robot \"{}\": the arm must have at least six joints", arguments.robot));

@@ -24,31 +24,25 @@
 namespace fovea {
 namespace {
 
+namespace fs = std::filesystem;
+
+constexpr const char* kSection = "camera";       // of a configuration
+constexpr std::string_view kCommentSign = "# ";  // the output can be pasted into a configuration
+
 // Writes the result into the configuration of --write.
 void Write(const CalibrateArguments& a, const std::vector<config::NewValue>& values) {
   if (!a.write.empty()) {
-    config::WriteValues(a.write, "camera", values);
+    config::WriteValues(a.write, kSection, values);
   }
 }
 
-void SayWritten(const CalibrateArguments& a) {
-  if (!a.write.empty()) {
-    fmt::print("# written into [camera] of {}\n", a.write);
-  }
-}
-
-// Prints the lines for section [camera] of a configuration.
+// Prints the section for a configuration.
 void PrintSection(const CalibrateArguments& a, const std::vector<config::NewValue>& values) {
-  fmt::print("[camera]\n");
-  for (const config::NewValue& value : values) {
-    fmt::print("{} = {}\n", value.key, value.value);
+  fmt::print("{}", config::SectionText(kSection, values));
+  if (!a.write.empty()) {
+    fmt::print("# written into [{}] of {}\n", kSection, config::Printable(a.write));
   }
-  SayWritten(a);
 }
-
-namespace fs = std::filesystem;
-
-constexpr std::string_view kCommentSign = "# ";  // the output can be pasted into a configuration
 
 int Focal(const CalibrateArguments& a) {
   const std::vector<fs::path> files = ImageFiles(a.images);
@@ -65,13 +59,12 @@ int Focal(const CalibrateArguments& a) {
     vision::DetectorConfig config;
     config.kind = a.target == "sphere" ? hal::FeatureKind::kSphere : hal::FeatureKind::kCircle;
     config.by = vision::FindBy::kGray;
-    // Only the radius is used. It hardly depends on this assumed focal length.
-    const double f = 0.5 * image.cols * std::sqrt(3.0);
-    config.intrinsics = {image.cols, image.rows, f, f, 0.5 * (image.cols - 1), 0.5 * (image.rows - 1), {}};
+    // Only the radius is used. It hardly depends on this assumed camera.
+    config.intrinsics = AssumedCamera(image.cols, image.rows);
     config.size = a.diameter;
     config.radius_max_px = 0.75 * image.cols;
     config.distance_min = 0.51 * a.diameter;
-    config.distance_max = 4.0 * f * a.diameter / config.radius_min_px;
+    config.distance_max = 4.0 * config.intrinsics.f_u_px * a.diameter / config.radius_min_px;
     const vision::Detection d = vision::TargetDetector(config).Detect(image);
     if (!d.found) {
       throw config::InputError(
@@ -81,14 +74,9 @@ int Focal(const CalibrateArguments& a) {
     views.push_back({d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), static_cast<double>(i) * a.delta_z});
   }
   const calibration::FocalLength r = calibration::SolveFocalLength(views, a.diameter, a.target == "sphere");
-  const std::vector<config::NewValue> values{{"width_px", std::to_string(sizes[0].width)},
-                                             {"height_px", std::to_string(sizes[0].height)},
-                                             {"f_u_px", fmt::format("{:.3f}", r.f_px)},
-                                             {"f_v_px", fmt::format("{:.3f}", r.f_px)},
-                                             {"c_u_px", fmt::format("{:.1f}", 0.5 * (sizes[0].width - 1))},
-                                             {"c_v_px", fmt::format("{:.1f}", 0.5 * (sizes[0].height - 1))},
-                                             {"lens", "[0, 0, 0, 0, 0]"},
-                                             {"rms_px", "0"}};
+  // Radii tell neither the lens nor how well points fit, so both are reset.
+  const vision::Intrinsics in = AssumedCamera(sizes[0].width, sizes[0].height, r.f_px);
+  const std::vector<config::NewValue> values = CameraValues(in, 0.0);
   Write(a, values);
   if (a.json) {
     nlohmann::json radii = nlohmann::json::array();
@@ -133,7 +121,7 @@ BoardFolder ReadBoards(const std::string& folder, const calibration::Board& boar
       found.views.push_back(view);
       continue;
     }
-    found.without += fmt::format("{}{}: {}", found.without.empty() ? "" : ", ", view.name,
+    found.without += fmt::format("{}{}: {}", found.without.empty() ? "" : ", ", config::Printable(view.name),
                                  nothing.value_or("board not found"));
   }
   return found;
@@ -167,15 +155,16 @@ int FindIntrinsics(const CalibrateArguments& a) {
   const calibration::IntrinsicsResult r =
       SolveBoards(found, [&] { return calibration::SolveIntrinsics(found.views, a.board, found.size); });
   const vision::Intrinsics& in = r.intrinsics;
+  const std::vector<config::NewValue> values = CameraValues(in, r.rms_px);
   if (!a.out.empty()) {
     std::ofstream stream(a.out, std::ios::trunc);
-    stream << CameraFileText(in, r.rms_px);
+    stream << config::SectionText(kSection, values);
     stream.close();
     if (!stream) {
       throw config::InputError(a.out + ": cannot be written");
     }
   }
-  Write(a, CameraValues(in, r.rms_px));
+  Write(a, values);
   if (a.json) {
     fmt::print("{}\n", nlohmann::json{{"width_px", in.width_px},
                                       {"height_px", in.height_px},
@@ -192,9 +181,9 @@ int FindIntrinsics(const CalibrateArguments& a) {
                            .dump(2));
   } else {
     SayWithout(found);
-    fmt::print("{}# f +- {:.3f} px, c +- {:.3f} px, {} views fit to {:.4f} px rms\n",
-               CameraFileText(in, r.rms_px), r.sigma_f_px, r.sigma_c_px, r.views, r.rms_px);
-    SayWritten(a);
+    fmt::print("# f +- {:.3f} px, c +- {:.3f} px, {} views fit to {:.4f} px rms\n", r.sigma_f_px,
+               r.sigma_c_px, r.views, r.rms_px);
+    PrintSection(a, values);
   }
   return config::kDone;
 }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "firmware/host/config/camera_keys.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/key_table.hpp"
@@ -22,12 +24,9 @@ std::vector<config::NewValue> CameraValues(const vision::Intrinsics& in, double 
           {"rms_px", fmt::format("{:.4g}", rms_px)}};
 }
 
-std::string CameraFileText(const vision::Intrinsics& in, double rms_px) {
-  std::string text = "[camera]\n";
-  for (const config::NewValue& value : CameraValues(in, rms_px)) {
-    text += fmt::format("{} = {}\n", value.key, value.value);
-  }
-  return text;
+vision::Intrinsics AssumedCamera(int width_px, int height_px, std::optional<double> f_px) {
+  const double f = f_px.value_or(0.5 * width_px * std::numbers::sqrt3);
+  return {width_px, height_px, f, f, 0.5 * (width_px - 1), 0.5 * (height_px - 1), {}};
 }
 
 vision::Intrinsics ReadCameraFile(const std::filesystem::path& path) {

@@ -2,7 +2,6 @@
 #include "tools/fovea/detect/detect.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -41,8 +40,7 @@ vision::DetectorConfig ConfigFor(const DetectArguments& a, const cv::Mat& image,
     }
     config.intrinsics = *camera;
   } else {
-    const double f = a.focal_px > 0.0 ? a.focal_px : 0.5 * image.cols * std::sqrt(3.0);
-    config.intrinsics = {image.cols, image.rows, f, f, 0.5 * (image.cols - 1), 0.5 * (image.rows - 1), {}};
+    config.intrinsics = AssumedCamera(image.cols, image.rows, a.focal_px);
   }
   const std::string method = !a.method.empty() ? a.method : a.hue_deg >= 0.0 ? "colour" : "gray";
   config.by = method == "colour"  ? vision::FindBy::kColour
@@ -207,10 +205,10 @@ CLI::App* AddDetect(CLI::App& app, DetectArguments& a) {
       ->check(CLI::Range(0.1, 10.0))
       ->capture_default_str();
   detect->add_option("--hough-canny", a.hough.canny_threshold, "method hough: threshold of the edge detector")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   detect->add_option("--hough-votes", a.hough.votes, "method hough: votes that a circle needs")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1.0, 1000.0))
       ->capture_default_str();
   detect->add_option("--marked", a.marked,
                      "folder for a copy of each image with the detected outline and corners");
@@ -271,17 +269,20 @@ int Detect(const DetectArguments& arguments) {
     if (arguments.json) {
       list.push_back(ToJson(path.string(), d, ms, why));
     } else if (d.found) {
-      config::PrintFitted(fmt::format(
-          "{}: at ({:.3f}, {:.3f}) px +- {:.3f}, radius {:.3f} px +- {:.3f}, "
-          "confidence {:.2f}, {:.2f} ms",
-          path.string(), d.u_px, d.v_px, std::sqrt(0.5 * (d.cov_uvr_px2(0, 0) + d.cov_uvr_px2(1, 1))),
-          d.radius_px, std::sqrt(d.cov_uvr_px2(2, 2)), d.confidence, ms));
+      config::PrintFitted(
+          fmt::format("{}: at ({:.3f}, {:.3f}) px +- {:.3f}, radius {:.3f} px +- {:.3f}, "
+                      "confidence {:.2f}, {:.2f} ms",
+                      config::Printable(path.string()), d.u_px, d.v_px,
+                      std::sqrt(0.5 * (d.cov_uvr_px2(0, 0) + d.cov_uvr_px2(1, 1))), d.radius_px,
+                      std::sqrt(d.cov_uvr_px2(2, 2)), d.confidence, ms));
     } else {
-      config::PrintFitted(fmt::format("{}: not found: {}, {:.2f} ms", path.string(), why, ms));
+      config::PrintFitted(
+          fmt::format("{}: not found: {}, {:.2f} ms", config::Printable(path.string()), why, ms));
     }
   }
   if (arguments.json) {
-    fmt::print("{}\n", list.dump(2));
+    // Replaces invalid UTF-8: a file's name may hold any bytes.
+    fmt::print("{}\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   }
   return config::kDone;
 }

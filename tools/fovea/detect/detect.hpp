@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,8 @@ struct DetectArguments {
   std::string method;  // empty: by colour when a hue is given, else gray
   double hue_deg = -1.0;
   std::string camera_file;
-  double focal_px = 0.0;  // 0: a field of view of 60 degrees
-  double size = 0.0;      // [m]; 0: unknown
+  std::optional<double> focal_px;  // none: a field of view of 60 degrees
+  double size = 0.0;               // [m]; 0: unknown
   double radius_min_px = 8.0;
   double radius_max_px = 0.0;  // 0: 0.75 of the larger side of the image
   double confidence_min = 0.5;

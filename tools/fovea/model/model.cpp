@@ -2,7 +2,6 @@
 #include "tools/fovea/model/model.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -28,11 +27,7 @@ using nlohmann::ordered_json;
 constexpr int kCheckedStates = 500;
 constexpr double kPrintedAsZero = 5e-5;  // smaller numbers are 0 with four decimals; printed without a sign
 
-robots::Robot Load(const std::string& name) {
-  return robots::LoadRobot(robots::IsRobotPath(name)
-                               ? std::filesystem::path(name)
-                               : robots::FindShippedRobot(name, "model", robots::kOrRobotPath));
-}
+robots::Robot Load(const std::string& name) { return robots::LoadRobot(robots::FindRobot(name, "model")); }
 
 // All quantities of one state.
 struct State {

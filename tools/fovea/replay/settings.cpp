@@ -79,9 +79,8 @@ class Keys {
   void Set(const std::string& assignment) {
     const config::Setting setting = config::ParseAssignment(assignment);
     if (std::find(known_.begin(), known_.end(), setting.key) == known_.end()) {
-      const std::string near = config::Nearest(setting.key, known_);
       throw InputError(fmt::format("--set {}: a replay accepts the keys of [servo] and [safety]{}",
-                                   setting.key, near.empty() ? "" : "; did you mean " + near + "?"));
+                                   setting.key, config::DidYouMean(setting.key, known_)));
     }
     table_.Apply(setting);
   }

@@ -17,6 +17,7 @@ void TakeDemand(const From& from, link::Demand& to) noexcept {
   }
   to.change_law = from.change_law;
   to.law = from.law;
+  to.tuning = from.tuning;
 }
 
 }  // namespace

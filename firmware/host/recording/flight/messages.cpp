@@ -147,6 +147,7 @@ task::ServoInputs InputsOf(const log::Tick& message, const hal::FeatureMeasureme
     inputs.motion = demand.motion;
     inputs.change_law = demand.change_law;
     inputs.law = demand.law;
+    inputs.tuning = demand.tuning;
   }
   return inputs;
 }

@@ -25,16 +25,26 @@ void AddFile(const FileDescriptor& file, std::set<std::string>& known,
 
 }  // namespace
 
+std::string DescriptorSetOf(const google::protobuf::Descriptor& type) {
+  google::protobuf::FileDescriptorSet set;
+  std::set<std::string> known;
+  AddFile(*type.file(), known, set);
+  return set.SerializeAsString();
+}
+
 void LogFile::Write(const std::string& topic, const google::protobuf::Descriptor& type, std::int64_t time_ns,
                     std::string_view bytes) {
+  if (tap_) {
+    tap_(topic, type, time_ns, bytes);
+  }
+  if (!is_writing_) {
+    return;
+  }
   auto channel = channels_.find(topic);
   if (channel == channels_.end()) {
     auto schema = schemas_.find(type.full_name());
     if (schema == schemas_.end()) {
-      google::protobuf::FileDescriptorSet set;
-      std::set<std::string> known;
-      AddFile(*type.file(), known, set);
-      const std::uint16_t id = writer_.AddSchema(type.full_name(), set.SerializeAsString());
+      const std::uint16_t id = writer_.AddSchema(type.full_name(), DescriptorSetOf(type));
       schema = schemas_.emplace(type.full_name(), id).first;
     }
     channel = channels_.emplace(topic, writer_.AddChannel(schema->second, topic)).first;

@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "firmware/host/recording/log/stamp.hpp"
 #include "firmware/host/recording/log/topics.hpp"
@@ -23,6 +27,25 @@ void SetColour(const char* role, foxglove::Color& colour) {
 }
 
 }  // namespace
+
+cv::Mat PictureOf(const hal::Frame& frame) {
+  const int type = frame.format == hal::PixelFormat::kMono8 ? CV_8UC1 : CV_8UC3;
+  return {frame.height_px, frame.width_px, type, const_cast<std::uint8_t*>(frame.pixels.data()),
+          static_cast<std::size_t>(frame.stride_bytes)};
+}
+
+foxglove::CompressedImage ImageMessage(const cv::Mat& picture, std::int64_t stamp_ns, int jpeg_quality) {
+  std::vector<unsigned char> jpeg;
+  if (!cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, jpeg_quality})) {
+    throw std::runtime_error("a picture cannot be encoded as JPEG");
+  }
+  foxglove::CompressedImage image;
+  SetStamp(stamp_ns, *image.mutable_timestamp());
+  image.set_frame_id(kCameraFrame);
+  image.set_format("jpeg");
+  image.set_data(jpeg.data(), jpeg.size());
+  return image;
+}
 
 foxglove::CameraCalibration CalibrationMessage(std::int64_t time_ns, const vision::Intrinsics& in) {
   foxglove::CameraCalibration calibration;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that go with the camera's pictures in the log: the calibration and the annotations.
+// The camera's pictures in the log, and the messages that go with them: the calibration and the annotations.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,24 @@
 
 #include "firmware/vision/detection.hpp"
 #include "firmware/vision/intrinsics.hpp"
+#include "fovea/hal/camera.hpp"
+
+namespace cv {
+class Mat;
+}
 
 namespace foxglove {
 class CameraCalibration;
+class CompressedImage;
 class ImageAnnotations;
 }  // namespace foxglove
 
 namespace fovea::log {
 
+// The frame's pixels, which are not copied.
+cv::Mat PictureOf(const hal::Frame& frame);
+// Encodes `picture` (grey, or blue, green, red) as JPEG. std::runtime_error: it cannot be encoded.
+foxglove::CompressedImage ImageMessage(const cv::Mat& picture, std::int64_t stamp_ns, int jpeg_quality);
 foxglove::CameraCalibration CalibrationMessage(std::int64_t time_ns, const vision::Intrinsics& intrinsics);
 
 // The roles of outlines on a picture. Each outline has one as its metadata "role", and is drawn with the

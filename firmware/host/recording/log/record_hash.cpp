@@ -92,6 +92,9 @@ void RecordHash::Add(const hal::TickRecord& r) {
        std::span(r.feature.poses).first(static_cast<std::size_t>(r.feature.num_poses))) {
     write.All(pose.p_CO_C, pose.q_CO, pose.first);
   }
+  if (r.tuning.result != hal::TuningResult::kNone) {
+    write.All(r.tuning.result, r.tuning.key, r.tuning.before, r.tuning.asked);
+  }
   write.All(r.intake, r.mode, r.hold_reason, r.fault, r.fault_joint, r.limits_active);
   write.All(r.target_known, r.feature_age_ns, r.p_BO, r.q_BO, r.v_BO);
   write.All(r.dim, r.s, r.s_star, r.e, r.V_BC_C_cmd);

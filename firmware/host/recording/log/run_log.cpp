@@ -5,13 +5,13 @@
 #include <fstream>
 #include <iterator>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <stdexcept>
 #include <utility>
 
 #include "firmware/host/recording/log/log_file.hpp"
 #include "firmware/host/recording/log/log_format.hpp"
-#include "firmware/host/recording/log/stamp.hpp"
+#include "firmware/host/recording/log/picture_messages.hpp"
+#include "firmware/host/recording/log/run_messages.hpp"
 #include "firmware/host/recording/log/tick_writer.hpp"
 #include "firmware/host/recording/log/topics.hpp"
 #include "fovea/linux_rt/realtime.hpp"
@@ -25,22 +25,11 @@ constexpr std::size_t kMostJobs = 1024;                  // messages that may wa
 constexpr auto kPoll = std::chrono::milliseconds(2);     // time between two reads of the rings
 constexpr auto kFlush = std::chrono::milliseconds(500);  // least time between two flushes of the file
 
-Truth ToMessage(const TruthSample& sample) {
-  Truth truth;
-  truth.set_stamp_ns(sample.stamp_ns);
-  truth.mutable_p_bo()->Add(sample.p_BO.begin(), sample.p_BO.end());
-  truth.mutable_p_bc()->Add(sample.p_BC.begin(), sample.p_BC.end());
-  truth.set_error_px(sample.error_px);
-  truth.set_error_mm(sample.error_mm);
-  truth.mutable_q_bo()->Add(sample.q_BO.begin(), sample.q_BO.end());
-  return truth;
-}
-
 }  // namespace
 
 RunLog::RunLog(const RunLogConfig& config)
     : config_(config),
-      file_(std::make_unique<LogFile>(config.path, config.library)),
+      file_(std::make_unique<LogFile>(config.path, config.library, config.tap)),
       tick_writer_(std::make_unique<TickWriter>(config_)),
       ticks_(config.ring),
       truths_(config.ring),
@@ -93,9 +82,7 @@ void RunLog::Add(const char* topic, std::int64_t time_ns, const google::protobuf
 }
 
 void RunLog::AddImage(const hal::Frame& frame) {
-  const int type = frame.format == hal::PixelFormat::kMono8 ? CV_8UC1 : CV_8UC3;
-  const cv::Mat view(frame.height_px, frame.width_px, type, const_cast<std::uint8_t*>(frame.pixels.data()),
-                     static_cast<std::size_t>(frame.stride_bytes));
+  const cv::Mat view = PictureOf(frame);
   cv::Mat picture;
   {
     std::unique_lock lock(mutex_);
@@ -124,16 +111,7 @@ void RunLog::AddImage(const hal::Frame& frame) {
 }
 
 void RunLog::WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& file) {
-  std::vector<unsigned char> jpeg;
-  if (!cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, config_.jpeg_quality})) {
-    throw std::runtime_error("a picture cannot be encoded as JPEG");
-  }
-  foxglove::CompressedImage image;
-  SetStamp(stamp_ns, *image.mutable_timestamp());
-  image.set_frame_id(kCameraFrame);
-  image.set_format("jpeg");
-  image.set_data(jpeg.data(), jpeg.size());
-  file.Write(kImageTopic, stamp_ns, image);
+  file.Write(kImageTopic, stamp_ns, ImageMessage(picture, stamp_ns, config_.jpeg_quality));
   {
     const std::lock_guard lock(mutex_);
     spare_.push_back(picture);
@@ -164,7 +142,7 @@ void RunLog::AddFile(const std::string& name, const std::string& media_type,
 
 // Keeps the order of each thread: reads the rings' ends before it takes the messages, so that each message
 // that was added before a tick is written before that tick.
-bool RunLog::WriteRound() {
+std::size_t RunLog::WriteRound() {
   const std::uint64_t ticks_end = ticks_.End();
   const std::uint64_t truths_end = truths_.End();
   std::deque<Job> jobs;
@@ -187,9 +165,9 @@ bool RunLog::WriteRound() {
   written += ticks_.Drain(
       ticks_end, [this](const LoggedTick& tick) { tick_writer_->Write(tick.record, tick.data, *file_); });
   written += truths_.Drain(truths_end, [this](const TruthSample& sample) {
-    file_->Write(kTruthTopic, sample.stamp_ns, ToMessage(sample));
+    file_->Write(kTruthTopic, sample.stamp_ns, TruthMessage(sample));
   });
-  return written > 0;
+  return written;
 }
 
 void RunLog::WriteAll() {
@@ -199,7 +177,7 @@ void RunLog::WriteAll() {
     auto flushed = std::chrono::steady_clock::now();
     bool dirty = false;
     while (!WaitForMore()) {
-      dirty = WriteRound() || dirty;
+      dirty = WriteRound() > 0 || dirty;
       const auto now = std::chrono::steady_clock::now();
       if (dirty && now - flushed > kFlush) {
         file_->writer().Flush();
@@ -215,10 +193,11 @@ void RunLog::WriteAll() {
     }
     failed_ = true;
     changed_.notify_all();
+    file_->StopWriting();
     while (!WaitForMore()) {
-      CountLost();
+      Lose();
     }
-    CountLost();
+    Lose();
   }
 }
 
@@ -229,13 +208,17 @@ bool RunLog::WaitForMore() {
   return closed_;
 }
 
-// After a failure: discards all waiting entries and counts them.
-void RunLog::CountLost() {
-  std::uint64_t lost = ticks_.Drain(ticks_.End(), [](const LoggedTick&) {});
-  lost += truths_.Drain(truths_.End(), [](const TruthSample&) {});
+// After a failure: all waiting entries are lost for the file and counted; the tap still gets them.
+void RunLog::Lose() {
+  std::size_t lost = 0;
+  for (int round = 0; round < 2; ++round) {  // a second one, when the first ends early
+    try {
+      lost += WriteRound();
+    } catch (...) {  // e.g. an attachment, for which there is no file
+    }
+  }
   const std::lock_guard lock(mutex_);
-  lost_ += lost + jobs_.size();
-  jobs_.clear();
+  lost_ += lost;
 }
 
 void RunLog::Close() {

@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "firmware/core/model/arm_model.hpp"
+#include "firmware/host/recording/log/log_tap.hpp"
 #include "firmware/host/recording/log/tick_message.hpp"
 #include "fovea/hal/camera.hpp"
 #include "fovea/hal/record.hpp"
@@ -43,6 +44,8 @@ struct LinkFrame {
   model::Pose X_LnF;  // in the frame L_joint of the model, or in B
 };
 
+inline constexpr int kJpegQuality = 80;  // of pictures, unless told otherwise
+
 struct RunLogConfig {
   std::filesystem::path path;
   std::string library;  // name of the writing program
@@ -53,7 +56,8 @@ struct RunLogConfig {
   bool may_drop = false;
   std::size_t ring = 2048;      // ticks, and samples, that may wait: two seconds of them
   std::size_t most_images = 8;  // pictures that may wait to be encoded
-  int jpeg_quality = 80;
+  int jpeg_quality = kJpegQuality;
+  LogTap tap;  // gets every message on the log's thread, also when the file fails
 };
 
 // Data that only a simulator knows; see Truth in firmware/host/recording/log/proto/fovea/run.proto.
@@ -109,9 +113,9 @@ class RunLog {
   void WriteImage(const cv::Mat& picture, std::int64_t stamp_ns, LogFile& file);
   void WriteAll();
   bool WaitForMore();
-  void CountLost();
-  // Writes all waiting entries; false when there are none.
-  bool WriteRound();
+  void Lose();
+  // Writes all waiting entries. Returns their number.
+  std::size_t WriteRound();
   void Close();
   template <typename T>
   void WaitForRoom(const linux_rt::BoundedRing<T>& ring) const;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "firmware/core/model/rotation.hpp"
+#include "firmware/host/recording/log/run_log.hpp"
 #include "fovea/hal/events.hpp"
 #include "fovea/run.pb.h"
 
@@ -55,6 +56,17 @@ TickTimes TickTimesMessage(const linux_rt::DurationHistogram& ticks) {
     times.add_counts(count);
   });
   return times;
+}
+
+Truth TruthMessage(const TruthSample& sample) {
+  Truth truth;
+  truth.set_stamp_ns(sample.stamp_ns);
+  truth.mutable_p_bo()->Add(sample.p_BO.begin(), sample.p_BO.end());
+  truth.mutable_p_bc()->Add(sample.p_BC.begin(), sample.p_BC.end());
+  truth.set_error_px(sample.error_px);
+  truth.set_error_mm(sample.error_mm);
+  truth.mutable_q_bo()->Add(sample.q_BO.begin(), sample.q_BO.end());
+  return truth;
 }
 
 }  // namespace fovea::log

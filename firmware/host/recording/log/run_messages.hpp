@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that a log holds once: the run's setup, and the durations of its ticks.
+// Messages beside those of the ticks: a run's setup and the durations of its ticks, once in a log, and the
+// truth.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,8 @@ namespace fovea::log {
 
 class Setup;
 class TickTimes;
+class Truth;
+struct TruthSample;
 
 // See Setup in firmware/host/recording/log/proto/fovea/run.proto.
 struct RunSetup {
@@ -33,5 +36,6 @@ struct RunSetup {
 
 Setup SetupMessage(const RunSetup& setup);
 TickTimes TickTimesMessage(const linux_rt::DurationHistogram& ticks);
+Truth TruthMessage(const TruthSample& sample);
 
 }  // namespace fovea::log

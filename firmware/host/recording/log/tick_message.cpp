@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/recording/log/tick_message.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 
+#include "firmware/core/config/servo_config.hpp"
+#include "firmware/core/config/tuning.hpp"
 #include "firmware/core/features/target_traits.hpp"
 #include "fovea/tick.pb.h"
 
@@ -37,6 +42,22 @@ static_assert(static_cast<int>(hal::HoldReason::kNotFollowed) == NOT_FOLLOWED);
 static_assert(static_cast<int>(hal::Fault::kContact) == CONTACT && hal::kNumFaults == 11);
 static_assert(features::kTargets.size() == Feature::Kind_ARRAYSIZE);
 static_assert(static_cast<int>(hal::Intake::kOutlier) == OUTLIER && hal::kNumIntakes == 9);
+static_assert(static_cast<int>(hal::TuningResult::kInconsistent) == Tuning::INCONSISTENT &&
+              hal::kNumTuningResults == Tuning::Result_ARRAYSIZE);
+
+void PutTuning(const hal::TuningNote& note, Tuning& m) {
+  m.set_result(Same<Tuning::Result>(note.result));
+  m.set_number(note.key);
+  m.set_before(note.before);
+  m.set_asked(note.asked);
+  const auto defaults = std::make_unique<config::ServoConfig>();
+  config::EachTunable(*defaults, [&](const config::Field& field, double, double, double) {
+    if (field.in_motion == note.key) {
+      m.set_key(field.key);
+      m.set_unit(field.unit);
+    }
+  });
+}
 
 }  // namespace
 
@@ -54,6 +75,10 @@ void ToMessage(const hal::TickRecord& r, Tick& m) {
   Put(r.arm.tau_applied, joints, *arm.mutable_tau_applied());
   m.set_has_feature(r.has_feature);
   m.set_intake(Same<Intake>(r.intake));
+  m.clear_tuning();
+  if (r.tuning.result != hal::TuningResult::kNone) {
+    PutTuning(r.tuning, *m.mutable_tuning());
+  }
   m.set_mode(Same<Mode>(r.mode));
   m.set_hold_reason(Same<HoldReason>(r.hold_reason));
   m.set_fault(Same<FaultCause>(r.fault));
@@ -155,6 +180,10 @@ hal::TickRecord FromMessage(const Tick& m, const hal::FeatureMeasurement& featur
   r.has_feature = m.has_feature();
   r.feature = feature;
   r.intake = Same<hal::Intake>(m.intake());
+  if (m.has_tuning()) {
+    r.tuning = {Same<hal::TuningResult>(m.tuning().result()), m.tuning().number(), m.tuning().before(),
+                m.tuning().asked()};
+  }
   r.mode = Same<hal::Mode>(m.mode());
   r.hold_reason = Same<hal::HoldReason>(m.hold_reason());
   r.fault = Same<hal::Fault>(m.fault());
@@ -178,6 +207,16 @@ hal::TickRecord FromMessage(const Tick& m, const hal::FeatureMeasurement& featur
   Get(m.command().tau(), r.command.tau_cmd);
   r.command.engage_brakes = m.command().engage_brakes();
   return r;
+}
+
+std::string InWords(const Tuning& tuning) {
+  const std::string key = tuning.key().empty() ? fmt::format("key {}", tuning.number()) : tuning.key();
+  const std::string unit = tuning.unit().empty() ? "" : " " + tuning.unit();
+  const auto result = Same<hal::TuningResult>(tuning.result());
+  const std::string refused =
+      result == hal::TuningResult::kTaken ? "" : fmt::format(", refused: {}", hal::Words(result));
+  return fmt::format("{} {:g} -> {:g}{}, by the operator{}", key, tuning.before(), tuning.asked(), unit,
+                     refused);
 }
 
 }  // namespace fovea::log

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "fovea/hal/record.hpp"
 
@@ -19,6 +20,7 @@ struct ReplayData {
 
 class Feature;
 class Tick;
+class Tuning;
 
 // `message` may be reused: its old content is replaced.
 void ToMessage(const hal::TickRecord& record, Tick& message);
@@ -29,5 +31,8 @@ void ToMessage(const hal::FeatureMeasurement& measurement, Feature& message);
 hal::FeatureMeasurement FromMessage(const Feature& message);
 // `feature`: the last measurement that was taken; the record repeats it.
 hal::TickRecord FromMessage(const Tick& message, const hal::FeatureMeasurement& feature);
+
+// "servo.lambda 2 -> 4 1/s, by the operator", with the reason if the request was refused.
+std::string InWords(const Tuning& tuning);
 
 }  // namespace fovea::log

@@ -3,33 +3,19 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
+#include <optional>
 
-#include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/model/rotation.hpp"
 #include "firmware/host/recording/log/stamp.hpp"
 #include "firmware/host/recording/log/tick_message.hpp"
 #include "firmware/host/recording/log/topics.hpp"
+#include "firmware/host/recording/log/transform_message.hpp"
 #include "foxglove/log.pb.h"
 
 namespace fovea::log {
 namespace {
 
 constexpr std::int64_t kTransformPeriodNs = 20 * hal::kNsPerMs;  // 50 Hz: enough for a viewer
-
-void SetPosition(const model::Vec3& p, foxglove::Vector3& to) {
-  to.set_x(p.x());
-  to.set_y(p.y());
-  to.set_z(p.z());
-}
-
-void SetRotation(const model::Mat3& R, foxglove::Quaternion& to) {
-  const Eigen::Quaterniond q(R);
-  to.set_w(q.w());
-  to.set_x(q.x());
-  to.set_y(q.y());
-  to.set_z(q.z());
-}
 
 }  // namespace
 
@@ -52,6 +38,15 @@ void TickWriter::Write(const hal::TickRecord& record, const ReplayData& data, Lo
 }
 
 void TickWriter::WriteEvents(const hal::TickRecord& record, LogFile& file) const {
+  if (tick_.has_tuning()) {
+    foxglove::Log line;
+    SetStamp(record.stamp_ns, *line.mutable_timestamp());
+    line.set_name("servo");
+    const bool taken = record.tuning.result == hal::TuningResult::kTaken;
+    line.set_level(taken ? foxglove::Log::INFO : foxglove::Log::WARNING);
+    line.set_message(InWords(tick_.tuning()));
+    file.Write(kEventTopic, record.stamp_ns, line);
+  }
   if (!is_first_ && record.mode == mode_ && record.hold_reason == reason_) {
     return;
   }
@@ -86,27 +81,12 @@ void TickWriter::WriteTransforms(const hal::TickRecord& record, LogFile& file) {
   if (!q.allFinite()) {
     return;
   }
-  model::ArmPoses poses;
-  model::ComputePoses(config_.arm, q, poses);
-  transforms_.clear_transforms();
-  const auto add = [&](const std::string& name, const model::Pose& X_BF) {
-    foxglove::FrameTransform& transform = *transforms_.add_transforms();
-    SetStamp(record.stamp_ns, *transform.mutable_timestamp());
-    transform.set_parent_frame_id(kBaseFrame);
-    transform.set_child_frame_id(name);
-    SetPosition(X_BF.p, *transform.mutable_translation());
-    SetRotation(X_BF.R, *transform.mutable_rotation());
-  };
-  for (const LinkFrame& frame : config_.frames) {
-    const model::Pose X_BL =
-        frame.joint < 0 ? model::Pose{} : poses.X_BL[static_cast<std::size_t>(frame.joint)];
-    add(frame.name, X_BL * frame.X_LnF);
-  }
+  std::optional<model::Pose> X_BO;
   if (record.target_known) {
-    model::Pose X_BO{model::Mat3::Identity(), {record.p_BO[0], record.p_BO[1], record.p_BO[2]}};
-    static_cast<void>(model::RotationOfQuaternion(record.q_BO, X_BO.R));  // on error: R stays the identity
-    add(kTargetFrame, X_BO);
+    X_BO = model::Pose{model::Mat3::Identity(), {record.p_BO[0], record.p_BO[1], record.p_BO[2]}};
+    static_cast<void>(model::RotationOfQuaternion(record.q_BO, X_BO->R));  // on error: R stays the identity
   }
+  SetTransforms(record.stamp_ns, config_.arm, config_.frames, q, X_BO, transforms_);
   file.Write(kTransformTopic, record.stamp_ns, transforms_);
 }
 

@@ -17,6 +17,7 @@ inline constexpr const char* kAnnotationTopic = "/camera/annotations";      // f
 inline constexpr const char* kCalibrationTopic = "/camera/calibration";     // foxglove.CameraCalibration
 inline constexpr const char* kTransformTopic = "/tf";                       // foxglove.FrameTransforms
 inline constexpr const char* kTheoryTopic = "/theory";                      // fovea.log.Theory
+inline constexpr const char* kOperatorTopic = "/operator";                  // fovea.log.Touch
 inline constexpr const char* kSceneTopic = "/scene";                        // foxglove.SceneUpdate
 
 // Frames of /tf that are not links of the robot; no link has such a name.

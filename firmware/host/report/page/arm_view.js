@@ -2,17 +2,8 @@
 // The 3-D view: the arm at the shared time, its paths, a slider and a play button.
 
 Fovea.armView = (function () {
-  const { el, clock, theme, suffix } = Fovea;
+  const { el, clock, theme, suffix, sceneView } = Fovea;
   const make = Fovea.armScene;
-
-  function context(canvas) {
-    const wishes = { antialias: true, alpha: false, preserveDrawingBuffer: true };
-    try {
-      return canvas.getContext("webgl", wishes);
-    } catch (trouble) {
-      return null;
-    }
-  }
 
   // The pose of a link between two frames of the scene.
   function poser(run, group) {
@@ -102,158 +93,25 @@ Fovea.armView = (function () {
     });
   }
 
+  // The view with an actor for each run.
   function build(host, runs, canvas, gl) {
-    const renderer = new THREE.WebGLRenderer({ canvas, context: gl, antialias: true, preserveDrawingBuffer: true });
-    renderer.gammaOutput = true;
-    renderer.gammaFactor = 2.2;
-    renderer.shadowMap.enabled = true;
-    renderer.shadowMap.type = THREE.PCFSoftShadowMap;
-    const scene = new THREE.Scene();
-    make.lights(scene);
-    const first = runs[0].scene;
-    const floor = Number.isFinite(first.table_z) ? first.table_z : 0;
-    const table = make.table(floor);
-    scene.add(table);
-    const radius = first.workspace_radius;
-    const sphere = radius ? make.workspace(radius) : null;
-    const circle =
-      radius && radius > Math.abs(floor) ? make.ring(Math.sqrt(radius * radius - floor * floor), floor + 0.001) : null;
-    if (sphere) scene.add(sphere);
-    if (circle) scene.add(circle);
-    const axes = make.axes(floor + 0.002);
-    scene.add(axes.lines, ...axes.letters);
-    const actors = runs.map((run) => actor(run, scene));
-
-    const camera = new THREE.PerspectiveCamera(32, 1, 0.02, 30);
-    camera.up.set(0, 0, 1);
-    const controls = new THREE.OrbitControls(camera, canvas);
-    Object.assign(controls, {
-      enableKeys: false,
-      enableZoom: false,
-      maxPolarAngle: Math.PI * 0.62,
-      minDistance: 0.3,
-      maxDistance: 8,
+    const view = Fovea.sceneView.build(host, canvas, gl, {
+      table_z: runs[0].scene.table_z,
+      workspace_radius: runs[0].scene.workspace_radius,
+      keep: true,
+      paint: () => view.actors.forEach((a) => a.parts.forEach(paint)),
     });
-    let asked = false;
-    const render = () => {
-      asked = false;
-      renderer.render(scene, camera);
+    view.actors = runs.map((run) => actor(run, view.scene));
+    view.setTime = (t) => {
+      view.actors.forEach((a) => a.set(t));
+      view.ask();
     };
-    const ask = () => {
-      if (!asked) {
-        asked = true;
-        requestAnimationFrame(render);
-      }
-    };
-    const home = () => {
-      const top = radius || 0.85;
-      controls.target.set(0.08, 0, (floor + top * 0.92) / 2);
-      const away = 2.4 * Math.max(1, 0.5 + 0.62 / camera.aspect) * Math.max(0.5, top / 0.85);
-      camera.position.copy(controls.target).add(new THREE.Vector3(0.62, -0.7, 0.3).normalize().multiplyScalar(away));
-      controls.update();
-      ask();
-    };
-    const colours = () => {
-      renderer.setClearColor(new THREE.Color(theme.colour("--scene")));
-      table.userData.grid.material.color.copy(make.css("--grid-3d"));
-      if (sphere) sphere.material.uniforms.colour.value.set(theme.colour("--rim"));
-      if (circle) circle.material.color.copy(make.css("--rim"));
-      axes.lines.material.color.copy(make.css("--quiet"));
-      axes.letters.forEach((s) => s.userData.paint(theme.colour("--quiet")));
-      actors.forEach((a) => a.parts.forEach(paint));
-    };
-    const resize = () => {
-      const width = host.clientWidth;
-      const height = host.clientHeight;
-      if (!width || !height) return;
-      renderer.setPixelRatio(Math.min(2, devicePixelRatio || 1));
-      renderer.setSize(width, height, false);
-      camera.aspect = width / height;
-      camera.updateProjectionMatrix();
-    };
-    const setTime = (t) => {
-      actors.forEach((a) => a.set(t));
-      ask();
-    };
-    controls.addEventListener("change", ask);
-    resize();
-    colours();
-    home();
-    new ResizeObserver(() => {
-      resize();
-      render();
-    }).observe(host);
-    return { controls, camera, actors, render, ask, home, colours, resize, setTime };
-  }
-
-  // Turns the view [rad] and zooms it by a factor, for keys and buttons.
-  function nudge(view, around, up, factor) {
-    const offset = view.camera.position.clone().sub(view.controls.target);
-    const place = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y));
-    place.theta += around;
-    place.phi = Math.min(view.controls.maxPolarAngle, Math.max(0.05, place.phi - up));
-    place.radius = Math.min(8, Math.max(0.3, place.radius * factor));
-    const v = new THREE.Vector3().setFromSpherical(place);
-    view.camera.position.copy(view.controls.target).add(new THREE.Vector3(v.x, -v.z, v.y));
-    view.controls.update();
-    view.ask();
-  }
-
-  function steering(view, host, canvas) {
-    canvas.addEventListener("keydown", (event) => {
-      const moves = {
-        ArrowLeft: [-0.1, 0, 1],
-        ArrowRight: [0.1, 0, 1],
-        ArrowUp: [0, 0.1, 1],
-        ArrowDown: [0, -0.1, 1],
-        "+": [0, 0, 0.85],
-        "=": [0, 0, 0.85],
-        "-": [0, 0, 1.18],
-      };
-      if (!moves[event.key]) return;
-      nudge(view, ...moves[event.key]);
-      event.preventDefault();
-    });
-    // A finger scrolls the page until turning is switched on; the wheel zooms only after a click into the view.
-    let turning = false;
-    const touch = el("button", {
-      type: "button",
-      class: "touch-only",
-      "aria-pressed": "false",
-      text: "Turn with the finger",
-    });
-    touch.addEventListener("click", () => {
-      turning = !turning;
-      touch.setAttribute("aria-pressed", String(turning));
-      touch.textContent = turning ? "Done turning" : "Turn with the finger";
-      canvas.style.touchAction = turning ? "none" : "pan-y";
-    });
-    canvas.addEventListener(
-      "pointerdown",
-      (event) => {
-        view.controls.enabled = event.pointerType !== "touch" || turning;
-        view.controls.enableZoom = true;
-      },
-      true,
-    );
-    host.addEventListener("pointerleave", () => {
-      view.controls.enableZoom = false;
-    });
-    const button = (text, label, action) =>
-      el("button", { type: "button", text, "aria-label": label, onclick: action });
-    return el(
-      "div",
-      { class: "choice", role: "group", "aria-label": "View" },
-      touch,
-      button("−", "Move away", () => nudge(view, 0, 0, 1.18)),
-      button("+", "Move closer", () => nudge(view, 0, 0, 0.85)),
-      button("Reset view", "Reset view", view.home),
-    );
+    view.start();
+    return view;
   }
 
   function legend(runs, view) {
-    const item = (colour, words, dots) =>
-      el("li", {}, Fovea.plots.swatch({ colour, dots }), el("span", { text: words }));
+    const item = (colour, words, dots) => el("li", {}, Fovea.swatch({ colour, dots }), el("span", { text: words }));
     const items = [item("--blue", runs.some((run) => run.has_eye) ? "path of the camera" : "path of the hand")];
     if (runs.some((run) => run.scene.target_path)) items.push(item("--vermillion", "path of the target", true));
     if (runs[0].scene.workspace_radius)
@@ -296,7 +154,7 @@ Fovea.armView = (function () {
       "aria-label":
         "The arm and the paths of camera and target in three dimensions. Arrow keys turn the view, plus and minus zoom.",
     });
-    const gl = context(canvas);
+    const gl = sceneView.context(canvas, true);
     if (!gl) {
       body.append(Fovea.absent("This browser offers no WebGL, so the path in space cannot be shown here."));
       return Fovea.drawn("path");
@@ -307,7 +165,7 @@ Fovea.armView = (function () {
     const view = build(host, shown, canvas, gl);
     const controls = Fovea.player();
     body.append(
-      el("div", { class: "toolbar under" }, controls.node, steering(view, host, canvas)),
+      el("div", { class: "toolbar under" }, controls.node, sceneView.steering(view, host, canvas)),
       legend(shown, view),
       el("p", {
         class: "hint no-print",

@@ -2,13 +2,7 @@
 // The camera's pictures: the film, and the first and the last picture with outlines.
 
 Fovea.eye = (function () {
-  const { el, svg, fixed } = Fovea;
-
-  const ROLES = {
-    goal: "goal: where the target should be",
-    detection: "detection: what the detector found",
-    truth: "truth: where the target was",
-  };
+  const { el, svg, fixed, ROLES } = Fovea;
 
   function outline(shape) {
     const points = (shape.points || []).filter((p) => p.every(Number.isFinite));
@@ -106,16 +100,9 @@ Fovea.eye = (function () {
         .filter(Boolean)
         .flatMap((frame) => (frame.shapes || []).map((s) => s.role)),
     );
-    const swatch = (role) =>
-      svg(
-        "svg",
-        { viewBox: "0 0 26 12", class: "swatch outline " + role, "aria-hidden": "true" },
-        svg("rect", { x: 0, y: 0, width: 26, height: 12, class: "dark" }),
-        svg("path", { d: "M2 6H24" }),
-      );
     const items = Object.keys(ROLES)
       .filter((role) => present.has(role))
-      .map((role) => el("li", {}, swatch(role), el("span", { text: ROLES[role] })));
+      .map((role) => Fovea.roleItem(role));
     if (!items.length) return null;
     const box = el("input", { type: "checkbox", id: "outlines", checked: true });
     box.addEventListener("change", () => document.getElementById("eye").classList.toggle("bare", !box.checked));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modes, faults, lost frames and active limits on one time axis; pointing at it shows a description.
+// Modes, faults, the operator's changes, lost frames and active limits on one time axis; pointing at it shows a description.
 
 Fovea.timeline = (function () {
   const { el, svg, clock, words, suffix } = Fovea;
@@ -80,13 +80,14 @@ Fovea.timeline = (function () {
     const events = run.modes
       .map((m) => [m.t_s, "mode", modeSay(m)])
       .concat(run.faults.map((f) => [f.t_s, "fault", [words(f.name), f.key, f.detail].filter(Boolean).join(", ")]))
+      .concat(run.operator.map((o) => [o.t_s, "operator", o.words]))
       .concat(Fovea.bands.injectedOf(run).map((f) => [f.from, "injected", `${f.name}, until ${f.to.toFixed(3)} s`]))
       .sort((a, b) => a[0] - b[0]);
     if (!events.length) return null;
     return el(
       "details",
       {},
-      el("summary", { text: `Modes and faults as a list${suffix(run) && ", run" + suffix(run)}` }),
+      el("summary", { text: `Modes, faults and changes as a list${suffix(run) && ", run" + suffix(run)}` }),
       Fovea.table(
         [{ class: "time", of: "Time [s]" }, "Kind", "Description"],
         events.map(([t, what, say]) => ({ class: what, cells: [t.toFixed(3), what, say] })),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of the time axis: modes, faults, injected faults, frames and limits; and a description of one time.
+// The rows of the time axis: modes, faults, injected faults, the operator's changes, frames and limits; and a description of one time.
 
 Fovea.timelineRows = (function () {
-  const { clock, words, suffix } = Fovea;
-  const { MODES, modeWords, modesOf, injectedOf } = Fovea.bands;
+  const { clock, words, suffix, MODES, modeWords } = Fovea;
+  const { modesOf, injectedOf } = Fovea.bands;
 
   const modeSay = (m) => modeWords(m.mode) + (m.reason ? ` (${words(m.reason)})` : "");
 
@@ -70,6 +70,9 @@ Fovea.timelineRows = (function () {
         say: `fault: ${words(f.name)}${f.key ? `, setting ${f.key}` : ""}${f.detail ? `, ${f.detail}` : ""}`,
       }));
     add("faults", faults, { marks: true });
+    const operator = (run) =>
+      run.operator.map((o) => ({ from: o.t_s, to: o.t_s, kind: o.kind, label: o.words, say: o.words }));
+    if (runs.some((run) => run.operator.length)) add("what the operator did", operator, { marks: true });
     for (const run of runs.filter((run) => run.has_eye))
       rows.push(
         { name: "frames lost" + suffix(run), spans: spansOfLost(run), empty: "none" },
@@ -107,6 +110,8 @@ Fovea.timelineRows = (function () {
       for (const f of run.faults)
         if (Math.abs(f.t_s - t) < (clock.span[1] - clock.span[0]) / 80)
           parts.push(`fault: ${words(f.name)}${f.detail ? `, ${f.detail}` : ""}`);
+      for (const did of run.operator)
+        if (Math.abs(did.t_s - t) < (clock.span[1] - clock.span[0]) / 80) parts.push(did.words);
       return (runs.length > 1 ? `Run ${run.letter}: ` : "") + parts.join("; ");
     });
   }

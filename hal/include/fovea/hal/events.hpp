@@ -28,6 +28,7 @@ enum class HoldReason : std::uint8_t {
   kEyeDoubted,       // the picture contradicts the hand's motion, or following it fails: request Track again
   kNotFollowed,      // the arm deviated from the commanded motion by more than safety.motion_error
 };
+inline constexpr int kNumHoldReasons = 9;
 
 // The cause of a fault; the first one is latched.
 enum class Fault : std::uint8_t {
@@ -59,6 +60,17 @@ enum class Intake : std::uint8_t {
 };
 inline constexpr int kNumIntakes = 9;
 
+// The answer to a request to change a key in motion.
+enum class TuningResult : std::uint8_t {
+  kNone,        // no request in this tick
+  kTaken,       // the key moves to the new value
+  kUnknownKey,  // no key that may change in motion has this number
+  kNotFinite,
+  kOutOfRange,    // outside the key's range
+  kInconsistent,  // the key would contradict another key
+};
+inline constexpr int kNumTuningResults = 6;
+
 // Limits that shape the motion or the torque. An active limit is reported; it is not a fault.
 enum class Limit : std::uint8_t {
   kJointPosition,
@@ -86,12 +98,14 @@ const char* Name(HoldReason reason) noexcept;
 const char* Name(Fault fault) noexcept;
 const char* Name(Limit limit) noexcept;
 const char* Name(Intake intake) noexcept;
+const char* Name(TuningResult result) noexcept;
 
 // The same for a person, e.g. "the target was lost"; static storage. An intake's words describe a
 // measurement: "3 rejected as outlier".
 const char* Words(HoldReason reason) noexcept;
 const char* Words(Fault fault) noexcept;
 const char* Words(Intake intake) noexcept;
+const char* Words(TuningResult result) noexcept;
 
 // The configuration key that sets the threshold, "" when none does; static storage.
 const char* Key(Fault fault) noexcept;

@@ -12,6 +12,14 @@
 
 namespace fovea::hal {
 
+// A request to change a key in motion, and its answer.
+struct TuningNote {
+  TuningResult result = TuningResult::kNone;
+  std::int32_t key = -1;  // the key's number
+  double before = 0.0;    // its value when the request came; 0 for an unknown key
+  double asked = 0.0;     // the value that it shall have
+};
+
 // Everything that a person needs to understand one tick. Grouped by the stage that computes it.
 struct TickRecord {
   // The tick
@@ -24,6 +32,8 @@ struct TickRecord {
   bool has_feature = false;       // a measurement was taken in this tick
   FeatureMeasurement feature;     // the last one taken
   Intake intake = Intake::kNone;  // what the servo did with it, in the tick of its arrival
+
+  TuningNote tuning;  // of the request that came in this tick
 
   // Modes
   Mode mode = Mode::kBoot;

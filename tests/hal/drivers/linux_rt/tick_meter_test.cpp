@@ -47,6 +47,32 @@ TEST(DurationHistogramTest, AcceptsNegativeAndHugeDurations) {
   EXPECT_EQ(histogram.Percentile(0.25), 0);
 }
 
+TEST(RecentDurationsTest, SummarizesWhatCameSinceTheLastCall) {
+  RecentDurations recent;
+  EXPECT_FALSE(recent.TakeNew());
+  for (const std::int64_t d : {30, 10, 20}) {
+    recent.Add(d);
+  }
+  const auto three = recent.TakeNew();
+  ASSERT_TRUE(three);
+  EXPECT_EQ(three->median_ns, 20);
+  EXPECT_EQ(three->max_ns, 30);
+  EXPECT_FALSE(recent.TakeNew());
+  recent.Add(5);
+  EXPECT_EQ(recent.TakeNew()->max_ns, 5);
+}
+
+TEST(RecentDurationsTest, KeepsTheNewestOfMany) {
+  RecentDurations recent;
+  for (std::int64_t d = 1; d <= 10'000; ++d) {
+    recent.Add(d);
+  }
+  const auto last = recent.TakeNew();
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->max_ns, 10'000);
+  EXPECT_GT(last->median_ns, 9'000);
+}
+
 TEST(TickMeterTest, CountsHeapCallsOfTheTickOnly) {
 #ifdef FOVEA_SANITIZED
   GTEST_SKIP() << "a sanitizer replaces malloc";

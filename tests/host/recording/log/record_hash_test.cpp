@@ -42,6 +42,17 @@ TEST(RecordHashTest, EveryFieldChangesTheHash) {
       [](hal::TickRecord& r) { r.feature.num_poses = 1; },
       [](hal::TickRecord& r) { r.feature.same_for_ns = 1; },
       [](hal::TickRecord& r) { r.intake = hal::Intake::kOutlier; },
+      [](hal::TickRecord& r) { r.tuning.result = hal::TuningResult::kTaken; },
+      [](hal::TickRecord& r) { r.tuning.result = hal::TuningResult::kNotFinite; },
+      [](hal::TickRecord& r) {
+        r.tuning = {hal::TuningResult::kTaken, 3, 0.0, 0.0};
+      },
+      [](hal::TickRecord& r) {
+        r.tuning = {hal::TuningResult::kTaken, -1, 1e-300, 0.0};
+      },
+      [](hal::TickRecord& r) {
+        r.tuning = {hal::TuningResult::kTaken, -1, 0.0, 1e-300};
+      },
       [](hal::TickRecord& r) { r.feature.num_poses = 1, r.feature.poses[0].first = 1; },
       [](hal::TickRecord& r) { r.feature.num_poses = 1, r.feature.poses[0].p_CO_C[0] = 1e-300; },
       [](hal::TickRecord& r) { r.feature.num_poses = 1, r.feature.poses[0].q_CO[3] = 1e-300; },

@@ -3,7 +3,9 @@
 #include "firmware/host/recording/log/run_log.hpp"
 
 #include <gtest/gtest.h>
+
 #include <sys/resource.h>
+#include <atomic>
 
 #include <chrono>
 #include <csignal>
@@ -213,6 +215,26 @@ TEST_F(RunLogTest, TicksAfterAFullDiskAreCounted) {
   EXPECT_THROW(log.Finish(), std::runtime_error);
   std::cout << added << " attachments and " << kTicks << " ticks\n";
   EXPECT_EQ(log.dropped(), added + kTicks);
+}
+
+// Who watches the run goes on to see it.
+TEST_F(RunLogTest, TapGetsTicksAfterAFullDisk) {
+  if (!fs::exists("/dev/full")) {
+    GTEST_SKIP() << "this system has no /dev/full";
+  }
+  RunLogConfig config = OneJoint("/dev/full");
+  std::atomic<int> ticks{0};
+  config.tap = [&](std::string_view topic, const auto& /*type*/, std::int64_t /*time_ns*/,
+                   std::string_view /*bytes*/) { ticks += topic == kTickTopic ? 1 : 0; };
+  RunLog log(config);
+  while (!log.failed()) {
+    log.AddAttachment("a", "text/plain", std::string(100'000, 'x'));
+  }
+  for (std::uint64_t i = 0; i < 10; ++i) {
+    log.AddTick(RecordAt(i));
+  }
+  EXPECT_THROW(log.Finish(), std::runtime_error);
+  EXPECT_EQ(ticks, 10);
 }
 
 // The disk becomes full during the run: the file is readable up to there, and every tick is written or

@@ -82,6 +82,12 @@ hal::TickRecord RandomRecord(Random& random) {
   }
   r.has_feature = random.Whole(1) == 1;
   r.feature = RandomFeature(random);
+  r.tuning.result = static_cast<hal::TuningResult>(random.Whole(hal::kNumTuningResults - 1));
+  if (r.tuning.result != hal::TuningResult::kNone) {
+    r.tuning.key = static_cast<std::int32_t>(random.Whole(20)) - 3;
+    r.tuning.before = random.Double();
+    r.tuning.asked = random.Double();
+  }
   r.mode = static_cast<hal::Mode>(random.Whole(4));
   r.hold_reason = static_cast<hal::HoldReason>(random.Whole(4));
   r.fault = static_cast<hal::Fault>(random.Whole(hal::kNumFaults - 1));
@@ -116,6 +122,26 @@ TEST(TickMessageTest, KeepsEveryBitOfRandomRecords) {
     ASSERT_TRUE(read_feature.ParseFromString(feature.SerializeAsString()));
     ASSERT_EQ(HashOf(FromMessage(read_tick, FromMessage(read_feature))), HashOf(record)) << "record " << i;
   }
+}
+
+TEST(TickMessageTest, TuningNamesItsKeyAndTheRefusal) {
+  const auto words = [](const hal::TuningNote& note) {
+    hal::TickRecord record;
+    record.tuning = note;
+    Tick tick;
+    ToMessage(record, tick);
+    return InWords(tick.tuning());
+  };
+  EXPECT_EQ(words({hal::TuningResult::kTaken, 0, 2.0, 4.0}), "servo.lambda 2 -> 4 1/s, by the operator");
+  EXPECT_EQ(words({hal::TuningResult::kTaken, 3, 0.05, 0.125}),
+            "servo.damping 0.05 -> 0.125, by the operator");
+  EXPECT_EQ(words({hal::TuningResult::kOutOfRange, 0, 2.0, 40.0}),
+            "servo.lambda 2 -> 40 1/s, by the operator, refused: the value is outside the key's range");
+  EXPECT_EQ(words({hal::TuningResult::kUnknownKey, 15, 0.0, 4.0}),
+            "key 15 0 -> 4, by the operator, refused: no such key changes in motion");
+  Tick tick;
+  ToMessage(hal::TickRecord{}, tick);
+  EXPECT_FALSE(tick.has_tuning()) << "a tick without a request is as in older logs";
 }
 
 TEST(TickMessageTest, RefusesMoreEntriesThanTheServoHas) {

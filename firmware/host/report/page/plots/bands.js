@@ -2,17 +2,7 @@
 // The background of every plot over time: the servo's modes as faint shading, injected faults as labelled bands.
 
 Fovea.bands = (function () {
-  const { el, svg, clock, theme, words } = Fovea;
-
-  const MODES = {
-    boot: { words: "getting ready", colour: "--mode-boot" },
-    hold: { words: "standing still and waiting", colour: "--mode-hold" },
-    track: { words: "steering to the target", colour: "--mode-track" },
-    coast: { words: "steering only by prediction", colour: "--mode-coast" },
-    move: { words: "following a commanded motion", colour: "--mode-move" },
-    fault: { words: "stopped by a fault", colour: "--bad" },
-  };
-  const modeWords = (mode) => (MODES[mode] ? MODES[mode].words : words(mode));
+  const { el, svg, clock, theme, words, MODES } = Fovea;
 
   const endOf = (run) => (Number.isFinite(run.duration_s) ? run.duration_s : clock.duration);
 
@@ -135,5 +125,5 @@ Fovea.bands = (function () {
     return el("ul", { class: "mode-legend" }, el("li", { class: "mode-legend-head", text: words }), items);
   }
 
-  return { MODES, modeWords, modesOf, injectedOf, paint, legend };
+  return { modesOf, injectedOf, paint, legend };
 })();

@@ -1,17 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// State that all drawings share: the pointed-at time, the visible span of time, and the colours of the page.
-
-// Callbacks that are called together. `listen` returns a function that removes its callback.
-Fovea.callbacks = function () {
-  const callbacks = new Set();
-  return {
-    listen(callback) {
-      callbacks.add(callback);
-      return () => callbacks.delete(callback);
-    },
-    tell: (...what) => callbacks.forEach((callback) => callback(...what)),
-  };
-};
+// State that all drawings of a report share: the pointed-at time and the visible span of time.
 
 Fovea.clock = (function () {
   const { listen, tell } = Fovea.callbacks();
@@ -66,32 +54,6 @@ Fovea.timeKeys = function (event) {
   actions[event.key]();
   event.preventDefault();
 };
-
-Fovea.theme = (function () {
-  const { listen, tell } = Fovea.callbacks();
-  const theme = {
-    // The value of a custom property of the page, for painting on a canvas.
-    colour: (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim(),
-    listen,
-    tell,
-    printing: false,
-  };
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => tell());
-  const print = (on) => () => {
-    if (theme.printing === on) return;
-    theme.printing = on;
-    document.documentElement.classList.toggle("printing", on);
-    const folded = document.querySelectorAll(on ? "details:not([open], .folded-on-paper)" : "details.opened-for-print");
-    folded.forEach((node) => {
-      node.open = on;
-      node.classList.toggle("opened-for-print", on);
-    });
-    tell();
-  };
-  addEventListener("beforeprint", print(true));
-  addEventListener("afterprint", print(false));
-  return theme;
-})();
 
 // Letter of a run, as a suffix, when there are several.
 Fovea.suffix = (run) => (Fovea.runs.length > 1 ? ` ${run.letter}` : "");

@@ -2,7 +2,7 @@
 // One kind of time plot, drawn by Dygraphs, with a legend that shows the values at the shared time.
 
 Fovea.plots = (function () {
-  const { el, svg, clock, theme, number } = Fovea;
+  const { el, clock, theme, number, swatch, dashOf } = Fovea;
 
   // Rows for Dygraphs: null where a series has no sample (bridged), NaN where it has no value (a gap).
   function rowsOf(series) {
@@ -23,39 +23,6 @@ Fovea.plots = (function () {
       }
       rows.push(row);
     }
-  }
-
-  const DASH = [7, 4];
-  const dashOf = (s) => s.dash || (s.run && !s.dots ? DASH : null);
-
-  // A sample of each of the given series, one below the other.
-  function swatch(...list) {
-    const box = svg("svg", {
-      viewBox: "0 0 26 12",
-      class: "swatch",
-      "aria-hidden": "true",
-      style: `color:var(${list[0].colour})`,
-    });
-    list.forEach((s, k) => {
-      const y = list.length > 1 ? 3 + 6 * k : 6;
-      const r = list.length > 1 ? 1.9 : 2.2;
-      if (s.dots)
-        for (const x of [5, 13, 21])
-          box.append(svg("circle", { cx: x, cy: y, r, fill: s.run ? "none" : "currentColor", stroke: "currentColor" }));
-      else
-        box.append(
-          svg("line", {
-            x1: 1,
-            x2: 25,
-            y1: y,
-            y2: y,
-            stroke: "currentColor",
-            "stroke-width": 2.4,
-            "stroke-dasharray": (dashOf(s) || []).join(" ") || null,
-          }),
-        );
-    });
-    return box;
   }
 
   function drawDot(hollow) {
@@ -313,7 +280,7 @@ Fovea.plots = (function () {
     };
   }
 
-  return { create, swatch };
+  return { create };
 })();
 
 // Numbers at the right ends of lines, pushed apart so that they do not cover each other.

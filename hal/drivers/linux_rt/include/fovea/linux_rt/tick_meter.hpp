@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
+#include <optional>
 
 #include "fovea/hal/record.hpp"
 
@@ -39,6 +41,26 @@ class DurationHistogram {
   std::int64_t max_ns_ = 0;
 };
 
+// The last durations, for one thread that looks while another adds. Neither waits.
+class RecentDurations {
+ public:
+  struct Summary {
+    std::int64_t median_ns = 0;
+    std::int64_t max_ns = 0;
+  };
+
+  void Add(std::int64_t duration_ns) noexcept;
+  // Of the durations that came since the last call, or of the last kMost. Nothing if none came.
+  [[nodiscard]] std::optional<Summary> TakeNew() noexcept;
+
+ private:
+  static constexpr std::uint64_t kMost = 512;
+
+  std::array<std::atomic<std::int64_t>, kMost> durations_ns_{};
+  std::atomic<std::uint64_t> added_{0};
+  std::uint64_t looked_at_ = 0;  // of the thread that looks
+};
+
 // Reads time and page faults just outside the counted region, so that the measurement does not count itself.
 class TickMeter final : public hal::TickProbe {
  public:
@@ -46,11 +68,13 @@ class TickMeter final : public hal::TickProbe {
   void Leave() noexcept override;
 
   [[nodiscard]] const DurationHistogram& durations() const noexcept { return durations_; }
+  [[nodiscard]] RecentDurations& recent() noexcept { return recent_; }
   [[nodiscard]] std::uint64_t heap_calls() const noexcept { return heap_calls_; }
   [[nodiscard]] std::uint64_t page_faults() const noexcept { return page_faults_; }
 
  private:
   DurationHistogram durations_;
+  RecentDurations recent_;
   std::uint64_t heap_calls_ = 0;
   std::uint64_t page_faults_ = 0;
   std::uint64_t heap_calls_before_ = 0;

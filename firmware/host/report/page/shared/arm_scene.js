@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objects of the 3-D view, made from a run's scene: arm, paths, target, workspace, table.
+// The objects of a 3-D view: arm, paths, target, workspace, table. `run` needs only the parts that a function reads:
+// scene.links [{shapes: [{kind, size, vertices, position, quaternion (w, x, y, z), colour}]}], target {kind, radius_m, corners_m}.
 
 Fovea.armScene = (function () {
   const srgb = (rgb) => new THREE.Color(rgb[0], rgb[1], rgb[2]).convertSRGBToLinear();
@@ -43,7 +44,7 @@ Fovea.armScene = (function () {
     if (shape.kind === "cylinder")
       return new THREE.CylinderBufferGeometry(size[0], size[0], size[1], 36).rotateX(Math.PI / 2);
     if (shape.kind === "sphere") return new THREE.SphereBufferGeometry(size[0], 32, 20);
-    const vertices = shape.kind === "mesh" ? Fovea.floats(shape.vertices) : null;
+    const vertices = shape.kind === "mesh" ? shape.vertices : null;
     if (!vertices || !vertices.length) return null;
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(vertices, 3));

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+// A person's session with the real simulator, in a browser: the target is dragged with the mouse, lambda is changed,
+// every fault's button is pressed, the state is saved. The run's log then says what happened.
+//   node live_run.mjs FOVEA-SIM FOLDER
+import assert from "node:assert/strict";
+import { spawn, spawnSync } from "node:child_process";
+import { once } from "node:events";
+import fs from "node:fs";
+import path from "node:path";
+import { createInterface } from "node:readline";
+
+import { protobufFromBinaryDescriptor } from "@mcap/support";
+
+import { withBrowser } from "./browser.mjs";
+import { drag, targetAt, texts, waitForPictures } from "./live_checks.mjs";
+import { readLog } from "./read_mcap.mjs";
+
+const [sim, folder] = process.argv.slice(2);
+fs.rmSync(folder, { recursive: true, force: true });
+fs.mkdirSync(folder, { recursive: true });
+const running = new Set();
+
+// Starts a live run with its files in `name`. `end()` ends it as Ctrl-C does, and returns its summary.
+async function begin(scenario, name, more = []) {
+  const out = path.join(folder, name);
+  const program = spawn(sim, ["run", scenario, "--live", "--port", "0", "--out", out, ...more], {
+    stdio: ["ignore", "ignore", "pipe"],
+  });
+  running.add(program);
+  const lines = createInterface({ input: program.stderr });
+  const [line] = await once(lines, "line");
+  const [, url] = line.match(/^live at (http:\/\/127\.0\.0\.1:\d+\/\?token=\S+)$/);
+  const end = async () => {
+    program.kill("SIGINT");
+    if (program.exitCode === null) await once(program, "exit");
+    running.delete(program);
+    return JSON.parse(fs.readFileSync(path.join(out, "summary.json"), "utf8"));
+  };
+  return { url, out, end };
+}
+
+// The log's messages of the topics, each {t [s], data}.
+async function read(out, topics) {
+  const { channels, messages } = await readLog(path.join(out, "log.mcap"));
+  const types = new Map();
+  const found = Object.fromEntries(topics.map((topic) => [topic, []]));
+  for (const { channelId, logTime, data } of messages) {
+    const { topic, schema } = channels.get(channelId);
+    if (!found[topic]) continue;
+    if (!types.has(topic)) types.set(topic, protobufFromBinaryDescriptor(schema.data).lookupType(schema.name));
+    found[topic].push({ t: Number(logTime) * 1e-9, data: types.get(topic).decode(data) });
+  }
+  return found;
+}
+
+async function open(context, url) {
+  const page = await context.newPage();
+  await page.setViewportSize({ width: 1440, height: 900 });
+  const said = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && said.push(message.text()));
+  page.on("pageerror", (error) => said.push(String(error.stack)));
+  const sent = [];
+  page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => sent.push(Buffer.from(payload))));
+  await page.goto(url);
+  await waitForPictures(page, 3);
+  return { page, said, sent };
+}
+
+const runTime = (page) => page.evaluate(() => parseFloat(document.querySelector(".when").textContent));
+const untilTime = (page, t) =>
+  page.waitForFunction((end) => parseFloat(document.querySelector(".when").textContent) >= end, t);
+
+// Drags the target with the mouse, sideways in the window, until it is `metres` away.
+async function dragTarget(page, sent, metres, direction) {
+  await page.getByRole("button", { name: "Move target" }).click();
+  await waitForPictures(page, 1);
+  const from = sent.length;
+  const at = await targetAt(page);
+  await page.mouse.move(at.x, at.y);
+  await page.waitForTimeout(150);
+  await page.mouse.down();
+  let way = 0;
+  for (let i = 1; i <= 200 && way < metres; i++) {
+    await page.mouse.move(at.x + direction * 10 * i, at.y);
+    await page.waitForTimeout(20);
+    const poses = texts(sent.slice(from))
+      .filter((text) => /"p_BO"/.test(text))
+      .map((text) => JSON.parse(text).p_BO);
+    if (poses.length) way = Math.hypot(...poses.at(-1).map((x, k) => x - poses[0][k]));
+  }
+  await page.mouse.up();
+  assert.ok(way >= metres && way < metres + 0.05, `the mouse moved the target by ${way} m`);
+}
+
+async function setLambda(page, value) {
+  const field = page.locator('[data-name="servo.lambda"] .number-field');
+  await field.fill(String(value));
+  await field.press("Enter");
+  await page.waitForTimeout(500); // it has its ramp
+}
+
+// After the last move of the target (faster than 5 mm/s) that begins after `from` and before `to`: when it came to rest, the true error
+// then, 3 s later, and its time constant between 70 % and 15 % of the error at rest.
+function settling(truths, from, to) {
+  const part = truths.filter(({ t }) => t >= from && t < to);
+  let rest = -1;
+  for (let i = 1; i < part.length; i++)
+    if (part[i].data.p_BO.some((x, k) => Math.abs(x - part[i - 1].data.p_BO[k]) > 5e-6)) rest = i;
+  assert.ok(rest > 0, "the target moved");
+  const after = part.slice(rest);
+  const first = after[0].data.error_mm;
+  const fit = after.slice(
+    after.findIndex(({ data }) => data.error_mm < 0.7 * first),
+    after.findIndex(({ data }) => data.error_mm < 0.15 * first),
+  );
+  assert.ok(fit.length > 20, "the error falls");
+  const mean = (list) => list.reduce((sum, x) => sum + x, 0) / list.length;
+  const [t0, y0] = [mean(fit.map(({ t }) => t)), mean(fit.map(({ data }) => Math.log(data.error_mm)))];
+  const slope =
+    mean(fit.map(({ t, data }) => (t - t0) * (Math.log(data.error_mm) - y0))) / mean(fit.map(({ t }) => (t - t0) ** 2));
+  const late = after.filter(({ t }) => t >= after[0].t + 3.0);
+  assert.ok(late.length > 0, "the run lasts 3 s after the drag");
+  return {
+    at_px: after[0].data.error_px,
+    late_px: Math.max(...late.map(({ data }) => data.error_px)),
+    tau_s: -1 / slope,
+  };
+}
+
+// The rate of the eye's pictures on the page over `seconds` [1/s], and how fast the run was.
+async function pictureRate(page, seconds) {
+  const count = () => page.evaluate(() => Number(document.querySelector("#eye canvas").dataset.pictures));
+  const [wall, run, pictures] = [performance.now(), await runTime(page), await count()];
+  await page.waitForTimeout(1000 * seconds);
+  const passed = (performance.now() - wall) / 1000;
+  return { rate: ((await count()) - pictures) / passed, speed: ((await runTime(page)) - run) / passed };
+}
+
+async function checkDragAndLambda(context) {
+  const run = await begin("ball", "drag");
+  const { page, said, sent } = await open(context, run.url);
+  await untilTime(page, 5.0);
+  const { rate, speed } = await pictureRate(page, 5);
+  console.log(`${rate.toFixed(1)} pictures/s on the page, the run at ${speed.toFixed(2)} times real time`);
+  assert.ok(rate > 10, "the camera's picture moves");
+  const marks = [];
+  for (const [lambda, direction] of [
+    [2, 1],
+    [4, -1],
+  ]) {
+    await setLambda(page, lambda);
+    marks.push(await runTime(page));
+    await dragTarget(page, sent, 0.1, direction);
+    await untilTime(page, (await runTime(page)) + 4.0);
+  }
+  const waiting = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save", exact: true }).click();
+  const saved = path.join(folder, "saved.toml");
+  await (await waiting).saveAs(saved);
+  await page.screenshot({ path: path.join(folder, "drag.png") });
+  await page.close();
+  await run.end();
+  assert.deepEqual(said, [], "the console is silent");
+  const { "/truth": truths, "/operator": touches } = await read(run.out, ["/truth", "/operator"]);
+  const [two, four] = [settling(truths, marks[0], marks[1]), settling(truths, marks[1], Infinity)];
+  for (const [lambda, one] of [
+    [2, two],
+    [4, four],
+  ]) {
+    console.log(
+      `lambda ${lambda}: ${one.at_px.toFixed(1)} px when the target was let go, at most ${one.late_px.toFixed(2)} px ` +
+        `from 3 s on, time constant ${(1e3 * one.tau_s).toFixed(0)} ms`,
+    );
+    assert.ok(one.at_px > 1, "the drag was a step");
+    assert.ok(one.late_px < 1, "the error is under 1 px within 3 s of letting go");
+  }
+  const ratio = four.tau_s / two.tau_s;
+  console.log(`time constant: ratio ${ratio.toFixed(3)}`);
+  assert.ok(ratio > 0.3 && ratio < 0.75, "lambda 4 halves the time constant");
+  const told = touches.map(({ data }) => data.text);
+  for (const words of [/^the target is taken/, /^the target is let go/])
+    assert.ok(told.filter((text) => words.test(text)).length >= 2, `both drags are in the log: ${told.join("; ")}`);
+  return { saved, truths, rate };
+}
+
+// A saved scenario begins where the run was.
+async function checkSaved({ saved, truths }) {
+  const out = path.join(folder, "again");
+  spawnSync(sim, ["run", saved, "--set", "run.duration_s=0.2", "--out", out], { stdio: "ignore" });
+  const { "/truth": again } = await read(out, ["/truth"]);
+  const time = parseFloat(fs.readFileSync(saved, "utf8").match(/as it was after ([\d.]+) s/)[1]);
+  const was = truths.find(({ data }) => Math.abs(data.stamp_ns * 1e-9 - time) < 6e-4);
+  const apart = (name) => Math.hypot(...was.data[name].map((x, i) => x - again[0].data[name][i]));
+  console.log(`saved at ${time} s: target ${apart("p_BO")} m, camera ${apart("p_BC")} m from where they were`);
+  assert.ok(apart("p_BO") < 1e-9 && apart("p_BC") < 1e-4);
+}
+
+// The same time without a page, with other keys of the scenario.
+function withoutPage(duration_s, settings = {}) {
+  const all = { ...settings, "run.duration_s": duration_s };
+  const set = Object.entries(all).flatMap(([key, value]) => ["--set", `${key}=${value}`]);
+  const options = ["run", "ball", ...set, "--no-report", "--json", "--out", path.join(folder, "without-page")];
+  return JSON.parse(spawnSync(sim, options, { stdio: ["ignore", "pipe", "ignore"] }).stdout);
+}
+
+async function checkUntouched(context) {
+  const run = await begin("ball", "untouched");
+  const { page } = await open(context, run.url);
+  await untilTime(page, 1.5);
+  const watched = await run.end();
+  await page.getByText("The run has ended.").waitFor();
+  assert.ok(await page.locator(".note-bar.bad").isHidden(), "the run's end is no lost connection");
+  await page.close();
+  const alone = withoutPage(watched.sim_time_s);
+  console.log(`${watched.ticks} ticks with a viewer: log_hash ${watched.log_hash}; without: ${alone.log_hash}`);
+  assert.deepEqual([watched.ticks, watched.log_hash], [alone.ticks, alone.log_hash]);
+}
+
+// Each fault's button starts and stops its fault: both are in the log, and the ticks are, bit by bit, those of a scenario
+// with these faults. A fault acts from the tick after its request on.
+const TICK_S = 0.001;
+async function checkFaults(context) {
+  const run = await begin("ball", "faults");
+  const { page, said } = await open(context, run.url);
+  await untilTime(page, 0.5);
+  const names = await page.locator("#faults li[data-fault]").evaluateAll((all) => all.map((one) => one.dataset.fault));
+  assert.ok(names.length > 15, `${names.length} faults`);
+  for (const name of names) {
+    const row = page.locator(`#faults li[data-fault="${name}"]`);
+    if (name === "push") {
+      await row.locator("summary").click();
+      await row.locator("input.number-field").nth(1).fill("5");
+      await row.locator("input.number-field").nth(1).press("Enter");
+    }
+    for (const state of [".active", ":not(.active)"]) {
+      await row.locator("button").first().click();
+      await page.locator(`#faults li[data-fault="${name}"]${state}`).waitFor();
+      await page.waitForTimeout(60);
+    }
+  }
+  await page.screenshot({ path: path.join(folder, "faults.png") });
+  await page.close();
+  const summary = await run.end();
+  assert.deepEqual(said, [], "the console is silent");
+  const { "/operator": touches } = await read(run.out, ["/operator"]);
+  const timesOf = (pattern) =>
+    touches.filter(({ data }) => pattern.test(data.text)).map(({ data }) => Number(data.stamp_ns) * 1e-9);
+  const settings = { "faults.push": "[0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0]" };
+  for (const name of names) {
+    const started = timesOf(new RegExp(`^fault ${name}(,|$)`));
+    const stopped = timesOf(new RegExp(`^fault ${name} stopped$`));
+    assert.deepEqual([started.length, stopped.length], [1, 1], `${name} is in the log`);
+    settings[`faults.${name}_s`] = `[${(started[0] + TICK_S).toFixed(9)}, ${(stopped[0] + TICK_S).toFixed(9)}]`;
+  }
+  const keys = withoutPage(summary.sim_time_s, settings);
+  console.log(`${names.length} faults by buttons: log_hash ${summary.log_hash}; by keys: ${keys.log_hash}`);
+  assert.notEqual(summary.log_hash, withoutPage(summary.sim_time_s).log_hash, "the faults have an effect");
+  assert.deepEqual([keys.ticks, keys.log_hash], [summary.ticks, summary.log_hash]);
+}
+
+try {
+  await withBrowser(async (context) => {
+    const dragged = await checkDragAndLambda(context);
+    await checkSaved(dragged);
+    await checkUntouched(context);
+    await checkFaults(context);
+  });
+} finally {
+  for (const program of running) program.kill("SIGKILL");
+}
+console.log("the live run is complete");

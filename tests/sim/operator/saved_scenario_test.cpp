@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/operator/saved_scenario.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "sim/scenario/compose.hpp"
+#include "sim/scenario/run_description.hpp"
+#include "tests/support/input_error.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace fovea::sim {
+namespace {
+
+Truth SomeTruth() {
+  Truth truth;
+  truth.stamp_ns = 3'250'000'000;
+  truth.q = (Eigen::VectorXd(7) << -0.31, -0.751234567890123, 0.01, -2.05, 0.1, 1.55, 0.485).finished();
+  truth.dq = (Eigen::VectorXd(7) << 0.05, 0.0, -0.02, 0.0, 0.0, 0.0, 1.0 / 3.0).finished();
+  truth.p_BO = {0.5, -0.1, 0.04};
+  truth.R_BO =
+      (Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitZ()) * Eigen::AngleAxisd(3.0, Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
+  return truth;
+}
+
+class SavedScenarioTest : public testing::Test {
+ protected:
+  Scenario Reloaded(const std::string& text) {
+    const std::filesystem::path file = folder_.path() / "saved.toml";
+    std::ofstream(file) << text;
+    return LoadScenario(file.string(), {});
+  }
+  test::TempFolder folder_;
+};
+
+TEST_F(SavedScenarioTest, BeginsAtThePresentState) {
+  const Scenario scenario = LoadScenario("square", {"servo.lambda=1.5", "camera.noise_sigma=1.23456789"});
+  PresentState present{SomeTruth(), true, {{"servo.lambda", 3.75}}, scenario.faults};
+  present.faults.bench.load = {{1.0, 5.25}, 2.5};
+  present.faults.bench.camera_outage = {0.5, 1.0};  // over
+  const Scenario again = Reloaded(SaveScenario(scenario, present));
+  EXPECT_EQ(again.servo.config.law.lambda, 3.75);
+  EXPECT_EQ(again.camera.noise_sigma, 1.23456789);
+  EXPECT_EQ(again.faults.bench.load.window.start_s, 0.0);
+  EXPECT_NEAR(again.faults.bench.load.window.end_s, 2.0, 1e-9);
+  EXPECT_EQ(again.faults.bench.load.mass, 2.5);
+  EXPECT_FALSE(again.faults.bench.camera_outage.Begins());
+  const RunDescription run = DescribeRun(again);
+  const World world(MakeWorldConfig(again, run.scene.robot));
+  EXPECT_EQ(world.truth().q, present.truth.q) << "to the last bit";
+  EXPECT_EQ(world.truth().dq, present.truth.dq);
+  EXPECT_EQ(world.truth().p_BO, present.truth.p_BO);
+  EXPECT_TRUE(world.truth().R_BO.isApprox(present.truth.R_BO, 1e-12));
+}
+
+TEST_F(SavedScenarioTest, AMovingTargetBeginsItsPathAnew) {
+  const Scenario scenario = LoadScenario("ball-moving", {});
+  const std::string text = SaveScenario(scenario, {SomeTruth(), false, {}, scenario.faults});
+  EXPECT_NE(text.find("# The target's path begins anew."), std::string::npos);
+  const Scenario again = Reloaded(text);
+  EXPECT_EQ(again.target.motion, scenario.target.motion);
+  EXPECT_EQ(again.target.position, scenario.target.position);
+  const Scenario touched = Reloaded(SaveScenario(scenario, {SomeTruth(), true, {}, scenario.faults}));
+  EXPECT_EQ(touched.target.motion, "still");
+  EXPECT_EQ(touched.target.position[1], -0.1);
+}
+
+TEST_F(SavedScenarioTest, SurvivesQuotesInItsName) {
+  Scenario scenario = LoadScenario("ball", {});
+  scenario.name = "my \"best\" ball \\ 1";
+  const Scenario again = Reloaded(SaveScenario(scenario, {SomeTruth(), true, {}, scenario.faults}));
+  EXPECT_NE(again.run.description.find(scenario.name), std::string::npos);
+}
+
+// Every shipped scenario can be saved and read again.
+TEST_F(SavedScenarioTest, EachShippedScenarioComesBack) {
+  for (const std::string& name : ShippedScenarios()) {
+    const Scenario scenario = LoadScenario(name, {});
+    PresentState present{SomeTruth(), false, {}, scenario.faults};
+    present.truth.stamp_ns = 0;
+    present.truth.q = Eigen::Map<const Eigen::VectorXd>(
+        scenario.arm.q_start.data(), static_cast<Eigen::Index>(scenario.arm.q_start.size()));
+    present.truth.dq = Eigen::VectorXd::Zero(present.truth.q.size());
+    Scenario again = Reloaded(SaveScenario(scenario, present));
+    Scenario before = scenario;
+    std::map<std::string, std::string> values = ScenarioKeys(again).Values();
+    std::map<std::string, std::string> wanted = ScenarioKeys(before).Values();
+    for (const char* changed : {"run.description", "target.position", "target.rpy_deg", "arm.dq_start"}) {
+      values.erase(changed);
+      wanted.erase(changed);
+    }
+    EXPECT_EQ(values, wanted) << name;
+  }
+}
+
+TEST_F(SavedScenarioTest, RefusesATunedKeyThatNoScenarioHas) {
+  const Scenario scenario = LoadScenario("ball", {});
+  EXPECT_NE(test::InputErrorOf([&] {
+              static_cast<void>(
+                  SaveScenario(scenario, {SomeTruth(), true, {{"servo.lamda", 1.0}}, scenario.faults}));
+            }).find("did you mean servo.lambda"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace fovea::sim
