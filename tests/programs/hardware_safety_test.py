@@ -386,7 +386,7 @@ class HardwareSafety(TwoPrograms):
 
     def test_run_without_motion_is_not_judged(self):
         port = self.serve("--pace", "lockstep", "--most-speed", "1")
-        s = self.hardware(port, "--no-motion", "--seconds", "0.5", codes=(0,))
+        s = self.hardware(port, "--no-motion", "--seconds", "0.5", *two_programs.PATIENT, codes=(0,))
         self.assertIsNone(s["converged"])
         self.assertIn("nothing was commanded", s["verdict"])
 

@@ -180,14 +180,14 @@ class Loopback(TwoPrograms):
 
     def test_no_motion_option_commands_nothing(self):
         port = self.serve("--pace", "lockstep")
-        s = self.hardware(port, "--seconds", "1", "--no-motion")
+        s = self.hardware(port, "--seconds", "1", "--no-motion", *two_programs.PATIENT)
         self.assertEqual((s["robot"]["commands"], s["robot"]["motions"]), (0, 0))
         self.assertGreater(s["robot"]["states"], 0)
 
     def test_both_programs_link_the_same_servo(self):
         """Both programs report the servo library that they were linked with, and this file exists only once."""
         port = self.serve("--pace", "lockstep")
-        hardware = self.hardware(port, "--seconds", "0.2", "--no-motion")["servo"]
+        hardware = self.hardware(port, "--seconds", "0.2", "--no-motion", *two_programs.PATIENT)["servo"]
         with tempfile.TemporaryDirectory() as temp:
             done = subprocess.run([two_programs.SIM, "run", "home", "--no-report", "--json", "--out", temp, "--set",
                                    "run.duration_s=0.1"], timeout=60, capture_output=True, text=True)
