@@ -58,7 +58,6 @@ export class StandIn {
   constructor(token, share) {
     this.token = token;
     this.share = share;
-    this.session = "1";
     this.received = []; // every service call, parameter and published message
     this.clients = new Set();
     this.http = http.createServer((request, response) => this.#file(request, response));
@@ -68,13 +67,6 @@ export class StandIn {
       verifyClient: ({ req }) => new URL(req.url, "http://x").searchParams.get("token") === this.token,
     });
     sockets.on("connection", (socket) => this.#greet(socket));
-    this.#restart();
-  }
-
-  // As if this program ended and another one started at its port.
-  becomeAnother() {
-    this.session += "1";
-    for (const { socket } of this.clients) socket.terminate();
     this.#restart();
   }
 
@@ -169,14 +161,7 @@ export class StandIn {
     const say = (message) => socket.send(JSON.stringify(message));
     client.say = say;
     const capabilities = ["clientPublish", "parameters", "parametersSubscribe", "time", "services"];
-    say({
-      op: "serverInfo",
-      name: "fovea",
-      capabilities,
-      supportedEncodings: ["json"],
-      metadata: {},
-      sessionId: this.session,
-    });
+    say({ op: "serverInfo", name: "fovea", capabilities, supportedEncodings: ["json"], metadata: {}, sessionId: "1" });
     say({ op: "advertise", channels: this.channels.map(({ type, ...channel }) => channel) });
     say({
       op: "advertiseServices",

@@ -68,13 +68,6 @@ try {
     const cut = await open(context, { route: gate.route });
     await checks.checkReconnect(cut.page, gate);
     console.log("ok: the page connects again by itself");
-    if (server) {
-      const anew = cut.page.waitForEvent("load");
-      server.becomeAnother();
-      await anew;
-      await cut.page.locator(".pause").waitFor();
-      console.log("ok: the page begins anew with another program");
-    }
     await cut.page.close();
 
     for (const [size, scheme] of [

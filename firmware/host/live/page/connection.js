@@ -18,7 +18,6 @@ export class Connection {
   #socket = null;
   #heard = 0;
   #tries = 0;
-  #session = ""; // of the program that answered last
   #timer = 0;
   #topics = new Map(); // topic to callback
   #channels = new Map(); // id to channel
@@ -164,7 +163,6 @@ export class Connection {
 
   #text(message) {
     const ops = {
-      serverInfo: () => this.#met(message.sessionId),
       advertise: () => this.#advertised(message.channels),
       unadvertise: () => message.channelIds.forEach((id) => this.#channels.delete(id)),
       advertiseServices: () => {
@@ -180,12 +178,6 @@ export class Connection {
       status: () => this.#listeners.tell("status", message),
     };
     ops[message.op]?.();
-  }
-
-  // Another program at the same port has another robot, keys and faults: the page begins anew.
-  #met(session) {
-    if (this.#session && this.#session !== session) location.reload();
-    this.#session = session;
   }
 
   #advertised(channels) {
