@@ -38,17 +38,25 @@ export async function withBrowser(look) {
   }
 }
 
+// The errors and warnings that the page writes to the console from now on. A page may wait for a picture to know how long
+// it takes: Chromium then says once that a read of its pixels stalls, which is the purpose.
+export function listenTo(page) {
+  const said = [];
+  page.on("console", (message) => {
+    const onPurpose = /GL Driver Message .*GPU stall due to ReadPixels/.test(message.text());
+    if (["error", "warning"].includes(message.type()) && !onPurpose) said.push(message.text());
+  });
+  page.on("pageerror", (error) => said.push(String(error.stack)));
+  return said;
+}
+
 // Opens the file in a window of that size and scrolls to each of its `parts` until it is drawn. Returns the page, its
 // console messages (`said`) and the URLs that it requested (`asked`).
 export async function openPage(context, file, [width, height], parts) {
   const url = pathToFileURL(path.resolve(file)).href;
   const page = await context.newPage();
   await page.setViewportSize({ width, height });
-  const said = [];
-  page.on("console", (message) => {
-    if (["error", "warning"].includes(message.type())) said.push(message.text());
-  });
-  page.on("pageerror", (error) => said.push(String(error)));
+  const said = listenTo(page);
   const asked = [];
   page.on("request", (request) => {
     if (request.url() !== url && !/^(data|blob):/.test(request.url())) asked.push(request.url());

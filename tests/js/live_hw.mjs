@@ -43,6 +43,18 @@ async function begin(file, args, pattern) {
   return { match: await program.says(pattern), program };
 }
 
+// The decoded messages of some topics of a run's log, in order: [{topic, message}].
+async function read(out, topics) {
+  const { channels, messages } = await readLog(path.join(out, "log.mcap"));
+  return messages.flatMap(({ channelId, data }) => {
+    const { topic, schema } = channels.get(channelId);
+    if (!topics.includes(topic)) return [];
+    return [{ topic, message: protobufFromBinaryDescriptor(schema.data).lookupType(schema.name).decode(data) }];
+  });
+}
+
+const touchesOf = (all) => all.filter(({ topic }) => topic === "/operator").map(({ message }) => message.what);
+
 const bytesOf = (view) => new Uint8Array(view.buffer, view.byteOffset, view.byteLength);
 
 // A viewer of the page at `url`.
@@ -118,6 +130,7 @@ async function checkWatching(port) {
   assert.equal(await viewer.call("/run/end", {}), "done");
   assert.equal(await viewer.call("/run/end", {}).catch(() => "done"), "done", "a second time changes nothing");
   assert.equal(await run.program.exited, 0);
+  assert.deepEqual([...new Set(touchesOf(await read(run.out, ["/operator"])))], ["hold", "end"]);
   console.log(`watching: hold and end only; a gain is refused: ${refusal}`);
 }
 
@@ -145,19 +158,14 @@ async function checkControl(port) {
   await viewer.valueOf("servo.lambda", 0.1);
   await viewer.set("robot.speed_scale", 0.3);
   await viewer.valueOf("robot.speed_scale", 0.3);
+  assert.equal(await viewer.call("/servo/recover", {}), "done");
   await pause(500);
   await viewer.call("/run/end", {});
   assert.equal(await run.program.exited, 1, "without a camera it could not track");
-  const { channels, messages } = await readLog(path.join(run.out, "log.mcap"));
-  const configured = [];
-  const tunings = [];
-  for (const { channelId, data } of messages) {
-    const { topic, schema } = channels.get(channelId);
-    if (topic !== "/servo/tick" && topic !== "/setup") continue;
-    const message = protobufFromBinaryDescriptor(schema.data).lookupType(schema.name).decode(data);
-    if (topic === "/setup") configured.push(message.lambda);
-    else if (message.tuning) tunings.push(message.tuning);
-  }
+  const all = await read(run.out, ["/servo/tick", "/setup", "/operator"]);
+  const configured = all.filter(({ topic }) => topic === "/setup").map(({ message }) => message.lambda);
+  const tunings = all.flatMap(({ message }) => message.tuning ?? []);
+  assert.deepEqual(touchesOf(all), ["track", "speed", "speed", "recover", "end"]);
   const asked = tunings.map(({ asked }) => asked);
   console.log(`control: lambda ${configured[0]} at a speed scale of 0.8; asked ${asked.join(", ")}`);
   assert.equal(asked[0], 1.5);

@@ -7,7 +7,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
 
-import { sideways, withBrowser } from "./browser.mjs";
+import { listenTo, sideways, withBrowser } from "./browser.mjs";
 import * as checks from "./live_checks.mjs";
 import { StandIn } from "./live_standin.mjs";
 
@@ -23,11 +23,7 @@ async function open(context, { size = [1440, 900], scheme = "light", route = nul
   const page = await context.newPage();
   await page.setViewportSize({ width: size[0], height: size[1] });
   await page.emulateMedia({ colorScheme: scheme });
-  const said = [];
-  page.on("console", (message) => {
-    if (["error", "warning"].includes(message.type())) said.push(message.text());
-  });
-  page.on("pageerror", (error) => said.push(String(error.stack)));
+  const said = listenTo(page);
   const sent = [];
   page.on("websocket", (socket) => socket.on("framesent", ({ payload }) => sent.push(Buffer.from(payload))));
   if (route) await page.routeWebSocket(/./, route);

@@ -167,6 +167,30 @@ class Loopback(TwoPrograms):
         self.assertEqual(s["dead_man_holds"], 1)
         self.assertEqual(s["robot"]["motions"], 1)
 
+    def test_recovery_needs_no_permission_to_move(self):
+        """A signal recovers while the operator is silent; the arm holds until somebody types "track"."""
+        port = self.serve("--pace", "lockstep")
+        hw = self.operator(port, "--enable", "--set", "input.dead_man_s=0.3")
+        try:
+            self.wait_for(hw, "the operator is silent: hold")
+            self.server.send_signal(signal.SIGUSR1)
+            self.wait_for(hw, "fault: the arm returned errors, or nothing (arm_lost)")
+            self.server.send_signal(signal.SIGUSR1)
+            time.sleep(0.3)
+            hw.send_signal(signal.SIGUSR1)
+            self.wait_for(hw, 'recovered: the servo holds; type "track" to move again', "hold")
+        finally:
+            hw.send_signal(signal.SIGINT)
+            s = self.summary_of(hw)
+        self.assertEqual((s["mode"], s["fault"], s["faults_recovered"]), ("hold", "none", 1))
+
+    def test_hold_that_is_typed_before_the_connection_counts(self):
+        port = self.serve("--pace", "lockstep", "--most-speed", "1", camera=True)
+        hw = self.operator(port, "--track", "--seconds", "2", "--set", "input.dead_man_s=0", camera=True)
+        self.say(hw, "hold")
+        s = self.summary_of(hw, run_s=20)
+        self.assertEqual((s["mode"], s["fault"]), ("hold", "none"))
+
     def test_it_holds_the_arm_in_lockstep(self):
         port = self.serve("--pace", "lockstep")
         s = self.hardware(port, "--enable", "--seconds", "3")

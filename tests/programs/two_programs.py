@@ -55,10 +55,10 @@ class TwoPrograms(unittest.TestCase):
             self.replay(options[options.index("--out") + 1], summary)
         return summary
 
-    def operator(self, port, *options):
+    def operator(self, port, *options, camera=False):
         """Starts the program with an operator, who types on its stdin."""
-        hw = subprocess.Popen([HW, "loopback", "--set", f"robot.port={port}", "--set", "camera.driver=none", "--json",
-                               *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        eye = [] if camera else ["--set", "camera.driver=none"]
+        hw = subprocess.Popen([HW, "loopback", "--set", f"robot.port={port}", "--json", *eye, *options], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               text=True)
         watchdog = threading.Timer(60, hw.kill)
         watchdog.start()

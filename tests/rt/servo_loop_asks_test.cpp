@@ -85,15 +85,32 @@ TEST_F(ServoLoopAsks, AHoldThatNoTickHasTakenStays) {
   loop.Ask(Request::kHold);
   loop.Ask(Request::kReset);
   loop.Ask(Request::kTrack);
-  loop.AskIfNoneWaits(Request::kReset);
-  RunAPiece(1);
-  EXPECT_EQ(step.last, Request::kHold);
-  EXPECT_EQ(step.tracks, 0);
-  RunAPiece(1);
-  EXPECT_EQ(step.tracks, 1) << "what came after the Hold";
+  for (const Request request : {Request::kHold, Request::kReset, Request::kTrack}) {
+    RunAPiece(1);
+    EXPECT_EQ(step.last, request);
+  }
   RunAPiece(10);
   EXPECT_EQ(step.tracks, 1);
-  EXPECT_EQ(step.others, 0);
+  EXPECT_EQ(step.others, 1);
+  loop.Ask(Request::kHold);
+  loop.AskIfNoneWaits(Request::kTrack);
+  RunAPiece(10);
+  EXPECT_EQ(step.tracks, 1) << "the Hold came first";
+}
+
+// Without permission to move, each tick holds; but a fault can be left.
+TEST_F(ServoLoopAsks, AResetNeedsNoLeave) {
+  loop.GiveLeave(0);
+  loop.Ask(Request::kReset);
+  loop.Ask(Request::kTrack);
+  RunAPiece(1);
+  EXPECT_EQ(step.last, Request::kReset);
+  RunAPiece(3);
+  EXPECT_EQ(step.tracks, 0);
+  loop.Finish();
+  loop.Ask(Request::kReset);
+  RunAPiece(1);
+  EXPECT_EQ(step.others, 1);
 }
 
 // One person holds while another asks to track all the time: each Hold arrives.

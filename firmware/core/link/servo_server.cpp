@@ -109,18 +109,20 @@ void ServoServer::TakeInputs(const Frame& frame) noexcept {
   }
 }
 
-// With the timer: the next frame overtakes a late one, but its request and measurement are kept.
+// With the timer: the next frame overtakes a late one, but its request and measurement are kept. Of a frame
+// that comes too late, only a Hold counts.
 void ServoServer::TakeInputsByTimer(const Frame& frame) noexcept {
   const bool newer = !has_inputs_ || static_cast<std::int32_t>(frame.sequence - inputs_sequence_) > 0;
   const std::uint32_t began = board_.TimerCounts();
   received_ = task::ServoInputs{};
-  const bool whole = newer && Decode(frame.payload, received_);
+  const bool whole = Decode(frame.payload, received_);
   link_counts_ += board_.TimerCounts() - began;
-  if (!newer || (whole && ComesTooLate(received_.arm.stamp_ns))) {
-    ++line_.late_frames;
-    return;
+  const bool late = !newer || (whole && ComesTooLate(received_.arm.stamp_ns));
+  line_.late_frames += late ? 1U : 0U;
+  if (whole && late && received_.request == task::Request::kHold) {
+    requests_.Put(task::Request::kHold);
   }
-  if (!whole) {
+  if (!whole || late) {
     return;
   }
   if (fresh_) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hands requests for a mode from any thread to the loop. A Hold is never lost, and never overtaken.
+// Hands requests for a mode from any thread to the loop. No Hold and no reset is lost.
 #pragma once
 
 #include <atomic>
@@ -9,11 +9,12 @@
 
 namespace fovea::task {
 
-// Lock-free, without a heap. Waits: a Hold, and the last request after it. They are taken in this order, one
-// per tick, so that one person's request cannot cancel the Hold of another.
+// Lock-free, without a heap. One of each kind can wait; they are taken in the order Hold, reset, track, one
+// per tick. Put keeps this order true to the order of the requests: a Hold or a reset drops a track that
+// waits, as neither may lead to motion that was asked for before it.
 class RequestBox {
  public:
-  // From any thread. A Hold drops what came before it, except a reset. kNone drops all but a Hold.
+  // From any thread. kNone drops a track that waits.
   void Put(Request request) noexcept {
     std::uint8_t waiting = waiting_.load(std::memory_order_relaxed);
     while (!waiting_.compare_exchange_weak(waiting, With(waiting, request), std::memory_order_release,
@@ -21,48 +22,57 @@ class RequestBox {
     }
   }
 
-  // From any thread: puts it if nothing waits.
+  // From any thread: puts it if nothing but kNone was put since the last Take.
   void PutIfEmpty(Request request) noexcept {
-    std::uint8_t nothing = 0;
-    waiting_.compare_exchange_strong(nothing, With(0, request), std::memory_order_release,
-                                     std::memory_order_relaxed);
+    std::uint8_t waiting = waiting_.load(std::memory_order_relaxed);
+    while ((waiting & ~kDropsTrack) == 0 &&
+           !waiting_.compare_exchange_weak(waiting, With(waiting, request), std::memory_order_release,
+                                           std::memory_order_relaxed)) {
+    }
   }
 
   // From one thread: the next request, kNone if none waits. Real-time: yes.
   Request Take() noexcept {
-    const std::uint8_t waiting = waiting_.exchange(0, std::memory_order_acquire);
-    const Request newest = After(waiting);
-    if ((waiting & kHold) != 0) {
-      after_hold_ = newest != Request::kNone || after_hold_ != Request::kReset ? newest : after_hold_;
-      return Request::kHold;
+    const std::uint8_t came = waiting_.exchange(0, std::memory_order_acquire);
+    if ((came & kDropsTrack) != 0) {
+      kept_ = static_cast<std::uint8_t>(kept_ & ~kTrack);
     }
-    const Request kept = after_hold_;
-    after_hold_ = Request::kNone;
-    return newest != Request::kNone ? newest : kept;
+    kept_ = static_cast<std::uint8_t>(kept_ | (came & ~kDropsTrack));
+    if ((kept_ & kHold) != 0) {
+      return Taken(kHold, Request::kHold);
+    }
+    if ((kept_ & kReset) != 0) {
+      return Taken(kReset, Request::kReset);
+    }
+    return (kept_ & kTrack) != 0 ? Taken(kTrack, Request::kTrack) : Request::kNone;
   }
 
   // Forgets all that waits; only while no other thread uses the box.
   void Clear() noexcept {
     waiting_.store(0, std::memory_order_relaxed);
-    after_hold_ = Request::kNone;
+    kept_ = 0;
   }
 
  private:
-  static constexpr std::uint8_t kHold = 0x80;  // a Hold waits; the other bits: the request after it
+  static constexpr std::uint8_t kHold = 1;
+  static constexpr std::uint8_t kReset = 2;
+  static constexpr std::uint8_t kTrack = 4;
+  static constexpr std::uint8_t kDropsTrack = 8;  // what Take has kept, too
 
-  static constexpr Request After(std::uint8_t waiting) noexcept {
-    return static_cast<Request>(waiting & ~kHold);
-  }
   static constexpr std::uint8_t With(std::uint8_t waiting, Request request) noexcept {
-    if (request != Request::kHold) {
-      return static_cast<std::uint8_t>((waiting & kHold) | static_cast<std::uint8_t>(request));
+    if (request == Request::kTrack) {
+      return static_cast<std::uint8_t>(waiting | kTrack);
     }
-    const Request kept = After(waiting) == Request::kReset ? Request::kReset : Request::kNone;
-    return static_cast<std::uint8_t>(kHold | static_cast<std::uint8_t>(kept));
+    const std::uint8_t added = request == Request::kHold ? kHold : request == Request::kReset ? kReset : 0;
+    return static_cast<std::uint8_t>((waiting & ~kTrack) | added | kDropsTrack);
+  }
+  Request Taken(std::uint8_t kind, Request request) noexcept {
+    kept_ = static_cast<std::uint8_t>(kept_ & ~kind);
+    return request;
   }
 
   std::atomic<std::uint8_t> waiting_{0};
-  Request after_hold_ = Request::kNone;  // came with the Hold that was taken last; of the thread that takes
+  std::uint8_t kept_ = 0;  // taken from `waiting_`, not yet given; of the thread that takes
 };
 
 }  // namespace fovea::task

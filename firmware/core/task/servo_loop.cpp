@@ -144,7 +144,7 @@ void ServoLoop::Tick(std::int32_t missed_ticks) noexcept {
   }
   inputs_.tuning = tunings_.Take();
   const bool may_move = MayMove();
-  if (!may_move) {
+  if (!may_move && (inputs_.request != Request::kReset || finishing_ticks_ > 0)) {
     inputs_.request = Request::kHold;
   }
   if (motion_ != nullptr) {

@@ -50,8 +50,9 @@ class ServoLoop {
   }
 
   // From any thread: permits motion until this time of the loop's clock; without a call, for ever. After that
-  // time each tick gets a Hold request and no motion. A later permission does not resume interrupted motion:
-  // requests in between are dropped, and a commanded motion must end before another one is accepted.
+  // time each tick gets a Hold request, or a reset that was asked for, and no motion. A later permission does
+  // not resume interrupted motion: requests in between are dropped, and a commanded motion must end before
+  // another one is accepted.
   void GiveLeave(std::int64_t until_ns) noexcept {
     leave_until_ns_.store(until_ns, std::memory_order_relaxed);
   }
@@ -61,9 +62,8 @@ class ServoLoop {
   }
   // Before Run: sets the source of commanded motions. Without it there are none.
   void UseMotion(moves::MotionSource& motion) noexcept { motion_ = &motion; }
-  // From any thread: passed to the task in the next tick; the last request before that tick wins. A Hold that
-  // no tick has taken stays, and later requests come in the tick after it (see RequestBox). A request after
-  // GiveLeave is handled with that permission.
+  // From any thread: passed to the task in the next tick, or in one of the two after it when several wait
+  // (see RequestBox). A request after GiveLeave is handled with that permission.
   void Ask(Request request) noexcept { requests_.Put(request); }
   // The same, but a request that no tick has taken wins.
   void AskIfNoneWaits(Request request) noexcept { requests_.PutIfEmpty(request); }

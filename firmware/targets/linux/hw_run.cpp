@@ -117,6 +117,9 @@ class Session {
     task::ServoLoop& loop = shell_.BeginLoop(*arm_, clock_);
     control_.arm = robot_link_.get();
     control_.loop = &loop;
+    if (control_.hold_asked) {  // before there was a loop to ask
+      loop.Ask(task::Request::kHold);
+    }
     GiveLeave(config_.input.dead_man_s, clock_, control_);
   }
 

@@ -106,6 +106,8 @@ void OperatorThread::HearWords() {
       case Word::kEnable: control_.enable_asked = true; break;
       case Word::kTrack:
       case Word::kHold:
+        control_.hold_asked = *word == Word::kHold;
+        loop = control_.loop;  // after that, so that none of both misses the other
         if (loop != nullptr) {
           loop->Ask(*word == Word::kTrack ? task::Request::kTrack : task::Request::kHold);
         }

@@ -23,6 +23,7 @@ struct RunControl {
   std::atomic<task::ServoLoop*> loop{nullptr};
   std::atomic<ArmDriver*> arm{nullptr};
   std::atomic<bool> enable_asked{false};
+  std::atomic<bool> hold_asked{false};          // typed, and no "track" since
   std::atomic<bool> serves{false};              // motion is enabled, and the servo runs
   std::atomic<bool> ended{false};               // somebody requested the end
   std::atomic<bool> done{false};                // the servo's thread has nothing more to do

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Hold is taken before all that is put after it, and nothing after it is lost but what a later request
-// replaces.
+// No Hold and no reset is lost, and nothing moves that was asked for before one of them.
 #include "firmware/core/task/request_box.hpp"
 
 #include <gtest/gtest.h>
@@ -23,15 +22,17 @@ struct Case {
 TEST(RequestBoxTest, EachOrderOfRequestsIsTakenAsTold) {
   const std::array cases{
       Case{"nothing", {}, {kNone}},
-      Case{"the last request wins", {kTrack, kReset, kTrack}, {kTrack, kNone}},
+      Case{"two of a kind are one", {kTrack, kTrack}, {kTrack, kNone}},
       Case{"a later Hold drops a Track", {kTrack, kHold}, {kHold, kNone}},
+      Case{"a later Reset drops a Track", {kTrack, kReset}, {kReset, kNone}},
       Case{"a Track does not overtake a Hold", {kHold, kTrack}, {kHold, kTrack, kNone}},
-      Case{"a Reset does not overtake a Hold", {kHold, kReset}, {kHold, kReset, kNone}},
+      Case{"a Track does not overtake a Reset", {kReset, kTrack}, {kReset, kTrack, kNone}},
       Case{"a Hold does not drop a Reset", {kReset, kHold}, {kHold, kReset, kNone}},
-      Case{"of two after a Hold, the last", {kHold, kReset, kTrack}, {kHold, kTrack, kNone}},
-      Case{"two Holds are one", {kHold, kTrack, kHold}, {kHold, kNone}},
+      Case{"three wait", {kHold, kReset, kTrack}, {kHold, kReset, kTrack, kNone}},
+      Case{"a Hold between two Tracks", {kTrack, kHold, kTrack}, {kHold, kTrack, kNone}},
       Case{"none drops a Track", {kTrack, kNone}, {kNone}},
-      Case{"none drops no Hold", {kHold, kTrack, kNone}, {kHold, kNone}},
+      Case{"none drops neither Hold nor Reset", {kHold, kReset, kTrack, kNone}, {kHold, kReset, kNone}},
+      Case{"a Track after none", {kTrack, kNone, kTrack}, {kTrack, kNone}},
   };
   for (const Case& c : cases) {
     RequestBox box;
@@ -44,24 +45,36 @@ TEST(RequestBoxTest, EachOrderOfRequestsIsTakenAsTold) {
   }
 }
 
-TEST(RequestBoxTest, WhatWaitsBehindAHoldGivesWayToWhatIsNewer) {
-  RequestBox box;
-  box.Put(kHold);
-  box.Put(kTrack);
-  EXPECT_EQ(box.Take(), kHold);
-  box.Put(kHold);
-  EXPECT_EQ(box.Take(), kHold) << "a Hold drops the Track that waited behind the first Hold";
-  EXPECT_EQ(box.Take(), kNone);
-  box.Put(kHold);
-  box.Put(kReset);
-  EXPECT_EQ(box.Take(), kHold);
-  box.Put(kHold);
-  EXPECT_EQ(box.Take(), kHold);
-  EXPECT_EQ(box.Take(), kReset) << "but no reset";
+// Also one that an earlier Take has kept for the next tick.
+TEST(RequestBoxTest, ATrackThatWaitsIsDroppedByAllButAnotherTrack) {
+  for (const Request later : {kHold, kReset, kNone}) {
+    RequestBox box;
+    box.Put(kHold);
+    box.Put(kTrack);
+    EXPECT_EQ(box.Take(), kHold);
+    box.Put(later);
+    EXPECT_EQ(box.Take(), later);
+    EXPECT_EQ(box.Take(), kNone);
+  }
+}
+
+TEST(RequestBoxTest, AResetThatWaitsIsKept) {
+  for (const Request later : {kHold, kTrack}) {
+    RequestBox box;
+    box.Put(kHold);
+    box.Put(kReset);
+    EXPECT_EQ(box.Take(), kHold);
+    box.Put(later);
+    EXPECT_EQ(box.Take(), later == kHold ? kHold : kReset);
+    EXPECT_EQ(box.Take(), later == kHold ? kReset : kTrack);
+  }
 }
 
 TEST(RequestBoxTest, RequestIfNoneWaitsGivesWay) {
   RequestBox box;
+  box.PutIfEmpty(kTrack);
+  EXPECT_EQ(box.Take(), kTrack);
+  box.Put(kNone);
   box.PutIfEmpty(kTrack);
   EXPECT_EQ(box.Take(), kTrack);
   box.Put(kHold);
@@ -80,19 +93,24 @@ TEST(RequestBoxTest, ClearForgetsAll) {
   EXPECT_EQ(box.Take(), kNone);
 }
 
-// Random requests and ticks: the next tick after a Hold gets it, and the last request is the last that is
-// taken.
+// Random requests and ticks: the next tick after a Hold gets it, each reset is taken, and the arm tracks at
+// the end only if that was asked for last.
 TEST(RequestBoxTest, RandomRequestsKeepTheirOrder) {
   std::mt19937 engine(7);
   RequestBox box;
   Request last_put = kNone;
   Request last_taken = kNone;
   bool hold_waits = false;
+  bool reset_waits = false;
   int holds = 0;
+  int resets = 0;
   const auto take = [&] {
     const Request taken = box.Take();
     EXPECT_EQ(taken == kHold, hold_waits);
+    EXPECT_EQ(taken == kReset, reset_waits && !hold_waits);
     holds += taken == kHold ? 1 : 0;
+    resets += taken == kReset ? 1 : 0;
+    reset_waits = reset_waits && taken != kReset;
     hold_waits = false;
     last_taken = taken != kNone ? taken : last_taken;
   };
@@ -104,16 +122,18 @@ TEST(RequestBoxTest, RandomRequestsKeepTheirOrder) {
       last_put = kAll[engine() % kAll.size()];
       box.Put(last_put);
       hold_waits = hold_waits || last_put == kHold;
+      reset_waits = reset_waits || last_put == kReset;
     }
     if (engine() % 50 == 0) {
       take();
       take();
-      // A reset stays behind a Hold.
-      EXPECT_TRUE(last_taken == last_put || (last_put == kHold && last_taken == kReset));
+      take();
+      EXPECT_EQ(last_taken == kTrack, last_put == kTrack);
       EXPECT_EQ(box.Take(), kNone);
     }
   }
   EXPECT_GT(holds, 1000);
+  EXPECT_GT(resets, 1000);
 }
 
 }  // namespace

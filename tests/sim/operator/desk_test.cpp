@@ -109,8 +109,22 @@ TEST(OperatorDesk, ATargetBeyondReachLeadsToHoldWithItsReason) {
   EXPECT_EQ(bench.Ask(live::HoldTarget{{1.9, 0.0, 0.04}}), "");
   bench.RunUntil(12.0);
   const live::State state = bench.desk->State();
-  EXPECT_TRUE(state.mode == "hold" || state.mode == "coast") << state.mode;
+  EXPECT_EQ(state.mode, "hold");
+  EXPECT_FALSE(state.hold_reason == "none" || state.hold_reason_words.empty()) << state.hold_reason;
   EXPECT_NE(bench.Ask(live::HoldTarget{{2.1, 0.0, 0.04}}), "");
+}
+
+TEST(OperatorDesk, ATargetInTheArmLeadsToHoldWithItsReason) {
+  OperatedBench bench;
+  bench.RunUntil(4.0);
+  const Eigen::Vector3d elbow = bench.world->truth().X_BE.translation() * 0.5;
+  EXPECT_EQ(bench.Ask(live::HoldTarget{{elbow.x(), elbow.y(), 0.45}}), "");
+  bench.RunUntil(12.0);
+  const live::State state = bench.desk->State();
+  std::printf("mode %s, %s; contact target %d\n", state.mode.c_str(), state.hold_reason_words.c_str(),
+              bench.world->truth().contacts.target);
+  EXPECT_EQ(state.mode, "hold");
+  EXPECT_FALSE(state.hold_reason == "none" || state.hold_reason_words.empty()) << state.hold_reason;
 }
 
 TEST(OperatorDesk, AThrownTargetComesToRest) {

@@ -3,7 +3,8 @@
 
 const { el, armScene, theme } = Fovea;
 const SEND_MS = 33; // between two messages of a drag
-const THROW_S = 0.12; // a throw has the mean velocity of this time
+const THROW_S = 0.12; // a throw has the mean velocity of this time, or of the last two places that the hand had
+const STILL_S = 0.2; // a hand that did not move for so long throws nothing
 const MOST_THROW = 5; // [m/s]
 const MOST_SPIN = 20; // [rad/s]
 const SETTLE_MS = 400; // after the last key, a move by keys ends
@@ -56,6 +57,7 @@ export class Hands {
   #tool = "move";
   #after = "stay";
   #trail = []; // the last poses of a drag: {at [s], p, q}
+  #moved = 0; // when the hand moved last [s]
   #pull = null; // {node, link, p_link, to_B, plane}
   #pulling = false; // a request is on its way
   #controlled = false; // this page had control at the last message
@@ -142,6 +144,9 @@ export class Hands {
       else this.#letGo(this.#after === "throw");
     });
     this.gizmo.addEventListener("objectChange", () => this.#drag());
+    // When the hand moved, not when a slow page came to know it.
+    for (const kind of ["pointerdown", "pointermove", "pointerup"])
+      addEventListener(kind, (event) => (this.#moved = event.timeStamp / 1000), true);
   }
 
   #place() {
@@ -162,8 +167,8 @@ export class Hands {
   #drag() {
     const pose = this.#pose();
     this.#hold(pose);
-    this.#trail.push({ at: performance.now() / 1000, ...pose });
-    this.#trail = this.#trail.filter(({ at }) => performance.now() / 1000 - at < THROW_S);
+    this.#trail.push({ at: this.#moved, ...pose });
+    this.#trail = this.#trail.filter(({ at }, i, all) => i >= all.length - 2 || this.#moved - at < THROW_S);
   }
 
   #hold(pose) {
@@ -191,8 +196,8 @@ export class Hands {
 
   #velocity() {
     const [a, b] = [this.#trail[0], this.#trail[this.#trail.length - 1]];
-    const dt = a && performance.now() / 1000 - a.at;
-    if (!a || a === b || dt > 2 * THROW_S) return { v_BO: [0, 0, 0], omega_B: [0, 0, 0] };
+    const dt = a && b.at - a.at;
+    if (!(dt > 0) || this.#moved - b.at > STILL_S) return { v_BO: [0, 0, 0], omega_B: [0, 0, 0] };
     const limited = (list, most) => {
       const size = Math.hypot(...list);
       return list.map((x) => (size > most ? (x * most) / size : x));
