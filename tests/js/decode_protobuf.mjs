@@ -3,14 +3,18 @@
 // messages that are cut.
 //   node decode_protobuf.mjs FOLDER
 import assert from "node:assert/strict";
+import fs from "node:fs";
 import path from "node:path";
 
 import { protobufFromBinaryDescriptor } from "@mcap/support";
 import protobuf from "protobufjs";
 import descriptor from "protobufjs/ext/descriptor/index.js";
 
-import { decoder } from "../../firmware/host/live/page/protobuf.js";
 import { readLog } from "./read_mcap.mjs";
+
+// A browser knows that it is a module; Node 18 does not know it from the name.
+const reader = fs.readFileSync(new URL("../../firmware/host/live/page/protobuf.js", import.meta.url), "base64");
+const { decoder } = await import(`data:text/javascript;base64,${reader}`);
 
 const { channels, messages } = await readLog(path.join(process.argv[2], "log.mcap"));
 
