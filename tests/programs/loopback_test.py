@@ -167,16 +167,19 @@ class Loopback(TwoPrograms):
         self.assertEqual(s["dead_man_holds"], 1)
         self.assertEqual(s["robot"]["motions"], 1)
 
+    def press_and_release_stop(self, hw):
+        self.server.send_signal(signal.SIGUSR1)
+        self.wait_for(hw, "fault: the arm returned errors, or nothing (arm_lost)")
+        self.server.send_signal(signal.SIGUSR1)
+        time.sleep(0.3)
+
     def test_recovery_needs_no_permission_to_move(self):
         """A signal recovers while the operator is silent; the arm holds until somebody types "track"."""
         port = self.serve("--pace", "lockstep")
         hw = self.operator(port, "--enable", "--set", "input.dead_man_s=0.3")
         try:
             self.wait_for(hw, "the operator is silent: hold")
-            self.server.send_signal(signal.SIGUSR1)
-            self.wait_for(hw, "fault: the arm returned errors, or nothing (arm_lost)")
-            self.server.send_signal(signal.SIGUSR1)
-            time.sleep(0.3)
+            self.press_and_release_stop(hw)
             hw.send_signal(signal.SIGUSR1)
             self.wait_for(hw, 'recovered: the servo holds; type "track" to move again', "hold")
         finally:
@@ -226,10 +229,7 @@ class Loopback(TwoPrograms):
         hw = self.operator(port, "--enable")
         try:
             self.wait_for(hw, "hold")
-            self.server.send_signal(signal.SIGUSR1)
-            self.wait_for(hw, "fault: the arm returned errors, or nothing (arm_lost)")
-            self.server.send_signal(signal.SIGUSR1)
-            time.sleep(0.3)
+            self.press_and_release_stop(hw)
             self.say(hw, "recover")
             self.wait_for(hw, "hold")
         finally:

@@ -107,7 +107,7 @@ void OperatorThread::HearWords() {
       case Word::kTrack:
       case Word::kHold:
         control_.hold_asked = *word == Word::kHold;
-        loop = control_.loop;  // after that, so that none of both misses the other
+        loop = control_.loop;  // after that: Connect looks in the other order
         if (loop != nullptr) {
           loop->Ask(*word == Word::kTrack ? task::Request::kTrack : task::Request::kHold);
         }

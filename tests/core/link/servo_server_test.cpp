@@ -316,16 +316,28 @@ TEST_F(ServoServerByTimerTest, HoldOfAnOvertakenFrameComesFirst) {
   }
   ASSERT_EQ(outputs.record.mode, hal::Mode::kTrack);
   std::uint32_t sequence = reader_.frame().sequence;
-  for (const task::Request request : {task::Request::kHold, task::Request::kTrack}) {
+  const auto send = [&](std::uint32_t number, task::Request request) {
     task::ServoInputs inputs;
     inputs.arm = arm_->State();
     inputs.request = request;
-    Give({FrameKind::kInputs, ++sequence, Encode(inputs, payload_)});
-  }
+    Give({FrameKind::kInputs, number, Encode(inputs, payload_)});
+  };
+  send(++sequence, task::Request::kHold);
+  send(++sequence, task::Request::kTrack);
   for (const hal::Mode mode : {hal::Mode::kHold, hal::Mode::kTrack}) {
     Pass(1);
     EXPECT_EQ(Taken().record.mode, mode);
   }
+  // Of a frame that was overtaken, the Hold still counts, and nothing else.
+  send(sequence + 2, task::Request::kNone);
+  Pass(1);
+  EXPECT_EQ(Taken().record.mode, hal::Mode::kTrack);
+  send(sequence + 1, task::Request::kHold);
+  Pass(1);
+  EXPECT_EQ(Taken().record.mode, hal::Mode::kHold);
+  send(sequence + 1, task::Request::kTrack);
+  Pass(1);
+  EXPECT_EQ(Taken().record.mode, hal::Mode::kHold);
 }
 
 // A frame that is older than an arm may be silent is ignored, even if it is the newest.

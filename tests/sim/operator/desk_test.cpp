@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -117,12 +118,19 @@ TEST(OperatorDesk, ATargetBeyondReachLeadsToHoldWithItsReason) {
 TEST(OperatorDesk, ATargetInTheArmLeadsToHoldWithItsReason) {
   OperatedBench bench;
   bench.RunUntil(4.0);
-  const Eigen::Vector3d elbow = bench.world->truth().X_BE.translation() * 0.5;
-  EXPECT_EQ(bench.Ask(live::HoldTarget{{elbow.x(), elbow.y(), 0.45}}), "");
-  bench.RunUntil(12.0);
+  const std::vector<SimLink>& links = bench.about.scene.robot.links;
+  const auto forearm =
+      std::find_if(links.begin(), links.end(), [](const SimLink& link) { return link.dof == 3; });
+  const Exposure seen = bench.world->Look();
+  const Eigen::Vector3d p = seen.X_BL[static_cast<std::size_t>(forearm - links.begin())].translation();
+  EXPECT_EQ(bench.Ask(live::HoldTarget{{p.x(), p.y(), p.z()}}), "");
+  bool touched = false;
+  for (int i = 0; i < 80; ++i) {
+    bench.RunUntil(4.0 + 0.1 * (i + 1));
+    touched = touched || bench.world->truth().contacts.target;
+  }
+  EXPECT_TRUE(touched) << "the target is where the arm is";
   const live::State state = bench.desk->State();
-  std::printf("mode %s, %s; contact target %d\n", state.mode.c_str(), state.hold_reason_words.c_str(),
-              bench.world->truth().contacts.target);
   EXPECT_EQ(state.mode, "hold");
   EXPECT_FALSE(state.hold_reason == "none" || state.hold_reason_words.empty()) << state.hold_reason;
 }

@@ -57,7 +57,7 @@ export class Hands {
   #tool = "move";
   #after = "stay";
   #trail = []; // the last poses of a drag: {at [s], p, q}
-  #moved = 0; // when the hand moved last [s]
+  #moved = 0; // when the hand moved, or let go, last [s]
   #pull = null; // {node, link, p_link, to_B, plane}
   #pulling = false; // a request is on its way
   #controlled = false; // this page had control at the last message
