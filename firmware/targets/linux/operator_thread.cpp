@@ -101,14 +101,13 @@ void OperatorThread::HearSignal() {
 void OperatorThread::HearWords() {
   while (const std::optional<Word> word = input_.Next()) {
     GiveLeave(options_.dead_man_s, clock_, control_);
-    task::ServoLoop* loop = control_.loop;
     switch (*word) {
       case Word::kEnable: control_.enable_asked = true; break;
       case Word::kTrack:
       case Word::kHold:
         control_.hold_asked = *word == Word::kHold;
-        loop = control_.loop;  // after that: Connect looks in the other order
-        if (loop != nullptr) {
+        // Read after that: Connect sets the loop, and then looks whether a Hold was asked for.
+        if (task::ServoLoop* loop = control_.loop) {
           loop->Ask(*word == Word::kTrack ? task::Request::kTrack : task::Request::kHold);
         }
         break;
