@@ -213,6 +213,33 @@ void KeyTable::Numbers(std::string name, const std::vector<double>& values, std:
   Add(std::move(key));
 }
 
+void KeyTable::OneOrMore(std::string name, std::vector<double>& field, std::size_t size_max, double min,
+                         double max, std::string unit, std::string meaning) {
+  Key key{std::move(name),
+          fmt::format("a number, or a list of 1 to {} numbers", size_max),
+          std::move(unit),
+          "each " + Range(min, max),
+          std::move(meaning),
+          ToText(field),
+          {}};
+  key.set = [key, size_max, min, max, &field](const Setting& setting) {
+    std::vector<double> numbers(1);
+    if (const auto* list = std::get_if<std::vector<double>>(&setting.value)) {
+      numbers = *list;
+    } else if (!ToDouble(setting.value, numbers[0])) {
+      Refuse(setting, key);
+    }
+    const bool fits = std::all_of(numbers.begin(), numbers.end(), [min, max](double number) {
+      return std::isfinite(number) && number >= min && number <= max;
+    });
+    if (!fits || numbers.empty() || numbers.size() > size_max) {
+      Refuse(setting, key);
+    }
+    field = numbers;
+  };
+  Add(std::move(key));
+}
+
 void KeyTable::Renamed(std::string former, std::string successor) {
   successors_[std::move(former)] = std::move(successor);
 }

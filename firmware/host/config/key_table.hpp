@@ -52,6 +52,9 @@ class KeyTable {
   void Numbers(std::string name, const std::vector<double>& values, std::size_t size_min,
                std::size_t size_max, double min, double max, std::string unit, std::string meaning,
                std::function<void(const std::vector<double>&)> set);
+  // One number, or a list of 1 to `size_max`; the field is empty if nothing is set.
+  void OneOrMore(std::string name, std::vector<double>& field, std::size_t size_max, double min, double max,
+                 std::string unit, std::string meaning);
 
   // Registers a renamed key: `former` is now called `successor` and means the same.
   void Renamed(std::string former, std::string successor);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/truth/truth_draw.hpp"
+
+#include <fmt/format.h>
+
+#include "firmware/host/config/input_error.hpp"
+#include "sim/camera/mix_bits.hpp"
+
+namespace fovea::sim {
+
+std::vector<double> TruthDraw::Get(Quantity quantity, const std::vector<double>& believed) {
+  return Get(quantity, believed, InfoOf(quantity).low);
+}
+
+std::vector<double> TruthDraw::Get(Quantity quantity, const std::vector<double>& believed, double least) {
+  const Deviation& deviation = settings_.of.at(static_cast<std::size_t>(quantity));
+  if (!deviation.IsAny()) {
+    return believed;
+  }
+  const QuantityInfo& info = InfoOf(quantity);
+  const std::string key = std::string("truth.") + info.key;
+  CheckSizes(deviation, key, believed.size());
+  const std::string unit = info.unit[0] == '\0' ? "" : std::string(" ") + info.unit;
+  std::size_t entry = 0;
+  for (const Span& span : SpansOf(deviation, believed)) {
+    if (!(span.low >= least && span.high <= info.high)) {
+      throw config::InputError(
+          fmt::format("{} is not allowed: entry {} could be from {:.6g} to {:.6g}{}; allowed is {:g} to {:g}{}",
+                      key, entry + 1, span.low, span.high, unit, least, info.high, unit));
+    }
+    ++entry;
+  }
+  const std::uint64_t seed = MixBits(seed_ + static_cast<std::uint64_t>(quantity));
+  std::vector<double> actual = Draw(deviation, believed, seed);
+  differing_.push_back({quantity, believed, actual});
+  return actual;
+}
+
+}  // namespace fovea::sim

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The keys of section [truth]: what is true of arm, camera and target, where it is not what the servo believes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "firmware/host/config/key_table.hpp"
+#include "sim/truth/deviation.hpp"
+
+namespace fovea::sim {
+
+// What may differ. In order of their keys.
+enum class Quantity : std::uint8_t {
+  kMountXyz,
+  kMountTurn,
+  kFocalLengths,
+  kPrincipalPoint,
+  kLens,
+  kLatency,
+  kLatencyJitter,
+  kClockDrift,
+  kLinkMasses,
+  kLinkCentres,
+  kViscousFriction,
+  kCoulombFriction,
+  kLoadMass,
+  kLoadCentre,
+  kEncoderZeros,
+  kTorqueScales,
+  kTorqueBiases,
+  kBaseTilt,
+  kTargetScale,
+};
+inline constexpr std::size_t kNumQuantities = 19;
+
+struct QuantityInfo {
+  const char* key;   // without "truth."
+  const char* unit;  // "" if it has none
+  double low;        // the smallest true value
+  double high;
+  const char* meaning;
+};
+const QuantityInfo& InfoOf(Quantity quantity);
+
+struct TruthSettings {
+  std::array<Deviation, kNumQuantities> of;
+
+  [[nodiscard]] bool IsAny() const;
+};
+
+// The settings must outlive the table. A form of a deviation has no meaning of its own: see KeysAsMarkdown.
+void AddTruthKeys(TruthSettings& settings, config::KeyTable& keys);
+
+// The forms of a deviation, in words, as a paragraph of Markdown.
+std::string TruthFormsAsMarkdown();
+
+}  // namespace fovea::sim
