@@ -26,6 +26,7 @@
 #include "sim/run/trace.hpp"
 #include "sim/scenario/compose.hpp"
 #include "sim/scenario/run_description.hpp"
+#include "sim/scenario/world_config.hpp"
 #include "sim/verdict/config.hpp"
 #include "sim/verdict/mode_watch.hpp"
 #include "sim/world/sim_arm.hpp"
@@ -172,7 +173,7 @@ class Run {
     }
 
     const FaultSettings& faults = about_.scenario.faults;
-    WorldConfig world = MakeWorldConfig(about_.scenario, about_.scene.robot);
+    WorldConfig world = MakeWorldConfig(about_);
     world.physics.may_be_loaded = options_.live != nullptr;  // a viewer may hang a load at the hand
     world_ = std::make_unique<World>(world);
     world_->OnStep([this](const Truth& truth) { ObserveTruth(truth); });
@@ -325,6 +326,7 @@ class Run {
     Summary s;
     s.scenario = about_.scenario.name;
     s.seed = about_.scenario.run.seed;
+    s.truth = about_.truth;
     s.pace = options_.pace == Pace::kReal ? "real" : "lockstep";
     s.sim_time_s = static_cast<double>(world_->now_ns()) * 1e-9;
     shell_->Fill(s);

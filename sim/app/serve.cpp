@@ -29,6 +29,7 @@
 #include "sim/scenario/compose.hpp"
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/scenario/run_description.hpp"
+#include "sim/scenario/world_config.hpp"
 #include "sim/scenario/serve_keys.hpp"
 #include "sim/verdict/contact_count.hpp"
 #include "sim/verdict/target_error.hpp"
@@ -126,7 +127,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   CheckIsPanda(about);
   CheckServedFaults(scenario.faults);
   const linux_rt::SignalQueue signals({SIGINT, SIGTERM, SIGHUP, SIGUSR1});
-  WorldConfig bench = MakeWorldConfig(scenario, about.scene.robot);
+  WorldConfig bench = MakeWorldConfig(about);
   bench.physics.may_be_loaded = options.live.has_value();  // a viewer may hang a load at the hand
   World world(bench);
   FciRobot robot(world, about.scene.robot, options.walls);
@@ -226,7 +227,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
     summary.error = eye->fault().empty() ? "" : "the camera failed: " + eye->fault();
     summary.frames_sent = eye->sent();
     summary.frames_dropped = eye->dropped();
-    FillError(ErrorOf(world.truth(), about.pinhole, GoalOf(about.servo.feature)), summary);
+    FillError(ErrorOf(world.truth(), JudgedEyeOf(about), GoalOf(about.servo.feature)), summary);
   }
   try {
     folder.Write(ToJson(summary));

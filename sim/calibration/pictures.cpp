@@ -102,7 +102,7 @@ class Photographer {
   }
 
   void Take(Optics& optics, const fs::path& path) {
-    const Pinhole& p = about_.pinhole;
+    const Pinhole& p = about_.eye.pinhole;
     std::vector<std::uint8_t> rgba(static_cast<std::size_t>(p.width_px) *
                                    static_cast<std::size_t>(p.height_px) * 4);
     optics.Draw(exposure_, rgba);
@@ -168,14 +168,14 @@ Eigen::Isometry3d ViewOf(const Look& look, const Eigen::Matrix3d& R_down, const 
 void WriteTruth(const RunDescription& about, const calibration::Board& board, const fs::path& path) {
   const Eigen::Isometry3d& X_EC = about.scene.X_EC;
   const Eigen::Quaterniond q(X_EC.linear());
-  const Lens lens = MakeScenarioLens(about.scenario);
+  const Lens& lens = about.eye.lens;
   std::ofstream stream(path, std::ios::trunc);
-  stream << nlohmann::ordered_json{{"width_px", about.pinhole.width_px},
-                                   {"height_px", about.pinhole.height_px},
-                                   {"f_u_px", about.pinhole.f_px},
-                                   {"f_v_px", about.pinhole.FocalV()},
-                                   {"c_u_px", about.pinhole.c_u_px},
-                                   {"c_v_px", about.pinhole.c_v_px},
+  stream << nlohmann::ordered_json{{"width_px", about.eye.pinhole.width_px},
+                                   {"height_px", about.eye.pinhole.height_px},
+                                   {"f_u_px", about.eye.pinhole.f_px},
+                                   {"f_v_px", about.eye.pinhole.FocalV()},
+                                   {"c_u_px", about.eye.pinhole.c_u_px},
+                                   {"c_v_px", about.eye.pinhole.c_v_px},
                                    {"lens", {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3}},
                                    {"X_EC",
                                     {X_EC.translation().x(), X_EC.translation().y(), X_EC.translation().z(),
@@ -202,8 +202,8 @@ CalibrationPictures TakeCalibrationPictures(const Scenario& scenario,
   const BoardPlane board = MakeBoardPlane(options.board, kMiddle);
   Photographer photographer(scenario);
   const RunDescription& about = photographer.about();
-  const Pinhole& pinhole = about.pinhole;
-  const Lens lens = MakeScenarioLens(scenario);
+  const Pinhole& pinhole = about.eye.pinhole;
+  const Lens& lens = about.eye.lens;
   std::error_code error;
   fs::create_directories(options.out / "focal", error);
   if (error) {

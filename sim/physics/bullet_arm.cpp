@@ -311,9 +311,11 @@ Eigen::VectorXd BulletArm::StictionTorque() const {
   return tau;
 }
 
-void BulletArm::TiltBase(double tilt) {
+void BulletArm::TiltBase(double about_x, double about_y) {
   const double g = impl_->upright_gravity.length();
-  impl_->world.setGravity(btVector3(0, -g * std::sin(tilt), -g * std::cos(tilt)));
+  const double down = g * std::cos(about_x);
+  impl_->world.setGravity(
+      btVector3(down * std::sin(about_y), -g * std::sin(about_x), -down * std::cos(about_y)));
 }
 
 void BulletArm::SetLoad(double mass) {

@@ -48,8 +48,9 @@ class BulletArm {
   // it. Needs BulletArmOptions::may_be_loaded.
   void SetLoad(double mass);
 
-  // Tilts the base by `tilt` [rad] about B's x axis, which rotates gravity. GravityTorque ignores the tilt.
-  void TiltBase(double tilt);
+  // Tilts the base about its x axis, and then about its y axis [rad], which rotates gravity. GravityTorque
+  // ignores the tilt.
+  void TiltBase(double about_x, double about_y);
 
   // Advances by `dt` [s] under the joint torques `tau` [Nm, N], gravity and contact.
   void Step(const Eigen::VectorXd& tau, double dt);

@@ -16,7 +16,7 @@ constexpr std::size_t kMostNews = 512;  // half a second of the robot's time
 
 GigeCameraConfig MakeGigeConfig(const RunDescription& about, const std::string& address,
                                 const std::string& serial) {
-  const auto& camera = about.scenario.camera;
+  const auto& camera = about.bench.camera;
   GigeCameraConfig config;
   config.address = address;
   config.serial = serial;
@@ -37,13 +37,15 @@ NetworkEye::NetworkEye(const RunDescription& about, World& world, const std::str
       eye_(about, kQueue),
       watched_(eye_.camera(), std::move(watcher)),
       faults_(Seeded(about.scenario.faults.frames, SeedOf(about.scenario, RandomStream::kFrameFaults))),
+      stamps_(about.stamps),
       on_the_way_(kMostNews) {
   news_.faults = about.scenario.faults.picture;
   gige_ = std::make_unique<GigeCamera>(watched_, MakeGigeConfig(about, address, serial));
   world.OnExposure([this](const Exposure& exposure) {
     std::optional<Exposure> taken = faults_.Spoil(exposure);
     if (taken) {
-      news_.late_ns = faults_.DelayNs(taken->stamp_ns);
+      taken->stamp_error_ns += stamps_.DriftNs(taken->stamp_ns);
+      news_.late_ns = faults_.DelayNs(taken->stamp_ns) + stamps_.JitterNs(taken->sequence);
       news_.exposure = std::move(taken);
     }
   });

@@ -56,6 +56,7 @@ class NetworkEye {
   Eye eye_;
   WatchedCamera watched_;
   FrameSpoiler faults_;
+  const TrueStamps stamps_;
   std::unique_ptr<GigeCamera> gige_;
   News news_;                  // of the present millisecond; used by the world's thread
   std::uint64_t dropped_ = 0;  // used by the world's thread

@@ -64,7 +64,9 @@ bool SimVision::Expose(const Exposure& exposure) {
     ++lost_on_purpose_;
     return false;
   }
-  const auto latency_ns = static_cast<std::int64_t>(about_.scenario.camera.latency_ms * 1e6);
+  const auto latency_ns = static_cast<std::int64_t>(about_.bench.camera.latency_ms * 1e6) +
+                          about_.stamps.JitterNs(exposure.sequence);
+  taken->stamp_error_ns += about_.stamps.ErrorNs(exposure.sequence, exposure.stamp_ns);
   targets_.Put(exposure.sequence,
                {exposure.X_BC.linear().transpose() * exposure.R_BO, exposure.X_BC.inverse() * exposure.p_BO});
   delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns + frame_faults_.DelayNs(exposure.stamp_ns));

@@ -24,6 +24,9 @@ run::RunFacts FactsOf(const RunDescription& about) {
   facts.duration_s = about.scenario.run.duration_s;
   Scenario scenario = about.scenario;
   facts.keys = ScenarioKeys(scenario).Values();
+  for (const TrueValue& value : about.truth) {
+    facts.keys[std::string("truth.") + InfoOf(value.quantity).key] = config::ToText(value.actual);
+  }
   Scenario defaults;
   facts.default_keys = ScenarioKeys(defaults).Values();
   facts.frames = MakeLinkFrames(about.scene.robot, about.servo.arm, about.scene.X_EC);
@@ -32,7 +35,7 @@ run::RunFacts FactsOf(const RunDescription& about) {
 }
 
 log::TruthSample TruthSampleOf(const RunDescription& about, const Truth& truth) {
-  const TargetError error = ErrorOf(truth, about.pinhole, GoalOf(about.servo.feature));
+  const TargetError error = ErrorOf(truth, JudgedEyeOf(about), GoalOf(about.servo.feature));
   log::TruthSample sample;
   sample.stamp_ns = truth.stamp_ns;
   Eigen::Map<Eigen::Vector3d>(sample.p_BO.data()) = truth.p_BO;
@@ -60,7 +63,13 @@ void LogTheory(const TheorySample& sample, log::RunLog& log) {
 
 foxglove::ImageAnnotations TruthOnPicture(const RunDescription& about, const model::Pose& X_CO) {
   foxglove::ImageAnnotations annotations;
-  log::AddOutline(about.intrinsics, film::TargetCurve(about.intrinsics, about.servo.feature, X_CO),
+  const Pinhole& pinhole = about.eye.pinhole;
+  const Lens& lens = about.eye.lens;
+  vision::Intrinsics intrinsics{pinhole.width_px,  pinhole.height_px, pinhole.f_px,
+                                pinhole.FocalV(), pinhole.c_u_px,    pinhole.c_v_px};
+  intrinsics.lens = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+  const features::TargetFeature target = config::MakeTarget(about.bench.target);
+  log::AddOutline(intrinsics, film::TargetCurve(intrinsics, target, X_CO),
                   log::kTruthRole, annotations);
   return annotations;
 }

@@ -13,16 +13,13 @@
 #include "firmware/host/config/input_error.hpp"
 #include "sim/camera/mix_bits.hpp"
 #include "sim/scenario/roll_pitch_yaw.hpp"
+#include "sim/scenario/to_vector.hpp"
 
 namespace fovea::sim {
 namespace {
 
 using config::InputError;
 
-Eigen::Vector3d ToVector(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
-Eigen::VectorXd ToVectorX(const std::vector<double>& v) {
-  return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
-}
 
 }  // namespace
 
@@ -85,6 +82,9 @@ void SetFriction(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
 }
 
 void AddLoad(const model::Load& load, SimRobot& robot) {
+  if (!(load.mass > 0.0)) {
+    return;
+  }
   SimLink link;
   link.name = "fovea/load";
   link.parent = robot.tip;
@@ -153,33 +153,6 @@ void CheckOutside(const Scenario& s, const config::ServoConfig& servo) {
                     "safety.planes or safety.boxes",
                     -clearance));
   }
-}
-
-WorldConfig MakeWorldConfig(const Scenario& s, const SimRobot& robot) {
-  WorldConfig config;
-  config.robot = robot;
-  config.physics.integrator =
-      s.arm.integrator == "rk4" ? Integrator::kRungeKutta4 : Integrator::kSemiImplicitEuler;
-  config.q_start = ToVectorX(s.arm.q_start);
-  config.dq_start = ToVectorX(s.arm.dq_start);
-  config.spring = ToVectorX(s.arm.spring);
-  config.stiction = s.arm.stiction;
-  config.X_EC = CameraMount(s);
-  config.friction_compensation = s.arm.friction_compensation;
-  config.encoder_noise = s.arm.encoder_noise;
-  config.encoder_quantum = s.arm.encoder_quantum;
-  config.velocity_noise = s.arm.velocity_noise;
-  config.target = MakeTargetMotion(s.target, SeedOf(s, RandomStream::kTarget));
-  if (s.camera.enabled) {
-    config.target_body = MakeTargetBody(MakeTargetShape(config::MakeTarget(s.target)));
-  }
-  config.ball = MakeRollingBall(s.target);
-  config.ball_push = ToVector(s.target.push);
-  config.ball_push_s = s.target.push_s;
-  config.camera_rate_hz = s.camera.rate_hz;
-  static_cast<BenchFaults&>(config) = s.faults.bench;
-  config.seed = SeedOf(s, RandomStream::kEncoders);
-  return config;
 }
 
 CommandedMotion MakeMotion(const Scenario& s) {

@@ -11,7 +11,6 @@
 #include "sim/robot/sim_robot.hpp"
 #include "sim/scenario/commanded_motion.hpp"
 #include "sim/scenario/scenario.hpp"
-#include "sim/world/world.hpp"
 
 namespace fovea::sim {
 
@@ -20,7 +19,6 @@ Eigen::Isometry3d CameraMount(const Scenario& scenario);
 // InputError: incomplete intrinsics, or a principal point outside the picture.
 Pinhole MakeScenarioPinhole(const Scenario& scenario);
 Lens MakeScenarioLens(const Scenario& scenario);
-WorldConfig MakeWorldConfig(const Scenario& scenario, const SimRobot& robot);
 RenderScene MakeRenderScene(const Scenario& scenario, const SimRobot& robot);
 // The motion of [motion]. Call it only if motion.kind is not "none".
 CommandedMotion MakeMotion(const Scenario& scenario);
@@ -34,7 +32,8 @@ enum class RandomStream : std::uint8_t {
   kDetectorFaults,
   kStalls,
   kTarget,
-  kBoardLine
+  kBoardLine,
+  kTruth
 };
 std::uint64_t SeedOf(const Scenario& scenario, RandomStream stream);
 
@@ -44,7 +43,7 @@ void CheckSizes(const Scenario& scenario, const robots::Robot& robot);
 void CheckFriction(const Scenario& scenario);
 // Sets the scenario's springs and friction in the servo's model and in the physics.
 void SetFriction(const Scenario& scenario, robots::Robot& robot, SimRobot& sim_robot);
-// Adds `load` to the arm of the physics; the servo's model includes it separately.
+// Adds `load` to the arm of the physics, if it has a mass; the servo's model includes it separately.
 void AddLoad(const model::Load& load, SimRobot& robot);
 // InputError: arm.q_start is outside the joints' range or the workspace, or arm.dq_start is too fast.
 void CheckStart(const Scenario& scenario, const robots::Robot& robot);

@@ -6,6 +6,7 @@
 #include "firmware/host/config/input_error.hpp"
 
 #include "sim/scenario/compose.hpp"
+#include "sim/scenario/true_bench.hpp"
 
 namespace fovea::sim {
 
@@ -50,21 +51,20 @@ RunDescription DescribeRun(const Scenario& scenario) {
   run.scenario = scenario;
   run.robot = LoadScenarioRobot(scenario);
   CheckSizes(scenario, run.robot);
-  SimRobot robot = LoadSimRobot(run.robot.urdf, run.robot.base_link, run.robot.tip_link, run.robot.root);
+  SimRobot believed = LoadSimRobot(run.robot.urdf, run.robot.base_link, run.robot.tip_link, run.robot.root);
   CheckFriction(scenario);
-  SetFriction(scenario, run.robot, robot);
+  SetFriction(scenario, run.robot, believed);
   const model::Load load = config::MakeLoad(scenario.arm.load);
   if (load.mass > 0.0) {
     model::Attach(load, run.robot.model);
-    AddLoad(load, robot);
   }
   CheckStart(scenario, run.robot);
   const Eigen::Isometry3d X_EC = CameraMount(scenario);
   run.pinhole = MakeScenarioPinhole(scenario);
   run.intrinsics = {run.pinhole.width_px, run.pinhole.height_px, run.pinhole.f_px,
                     run.pinhole.FocalV(), run.pinhole.c_u_px,    run.pinhole.c_v_px};
-  const Lens lens = MakeScenarioLens(scenario);
-  run.intrinsics.lens = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
+  run.lens = MakeScenarioLens(scenario);
+  run.intrinsics.lens = {run.lens.k1, run.lens.k2, run.lens.p1, run.lens.p2, run.lens.k3};
   CheckLens(scenario);
   run.servo = config::MakeServoConfig(scenario.servo, {run.robot.name, run.robot.model},
                                       model::Pose{X_EC.linear(), X_EC.translation()}, run.intrinsics,
@@ -73,7 +73,9 @@ RunDescription DescribeRun(const Scenario& scenario) {
   CheckGoal(scenario);
   CheckTimes(scenario);
   CheckFaults(scenario.faults, run.robot.model.num_joints);
-  run.scene = MakeRenderScene(scenario, robot);
+  const SimRobot robot = DrawTruth(believed, run);
+  run.scene = MakeRenderScene(run.bench, robot);
+  run.scene.X_EC = run.eye.X_EC;
   if (scenario.motion.kind != "none") {
     run.motion = MakeMotion(scenario);
   }

@@ -138,6 +138,7 @@ config::KeyTable ScenarioKeys(Scenario& scenario) {
   AddTargetSceneKeys(scenario.target, keys);
   config::AddServoKeys(scenario.servo, keys);
   AddMotionKeys(scenario, keys);
+  AddTruthKeys(scenario.truth, keys);
   AddFaultKeys(scenario.faults, keys);
   AddRunKeys(scenario, keys);
   return keys;
@@ -153,8 +154,11 @@ std::string KeysAsMarkdown(const config::KeyTable& keys) {
     const auto dot = key.name.find('.');
     if (key.name.substr(0, dot) != section) {
       section = key.name.substr(0, dot);
-      text += fmt::format(
-          "\n## [{}]\n\n| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n", section);
+      text += fmt::format("\n## [{}]\n\n{}| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n",
+                          section, section == "truth" ? TruthFormsAsMarkdown() + "\n" : "");
+    }
+    if (key.meaning.empty()) {
+      continue;  // a form of [truth]
     }
     text += fmt::format("| `{}` | `{}` | {} | {}: {} | {} |\n", key.name.substr(dot + 1), key.default_text,
                         key.unit, key.kind, key.allowed, key.meaning);

@@ -14,6 +14,7 @@
 #include "firmware/host/robots/robot.hpp"
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/scenario/target_scene.hpp"
+#include "sim/truth/truth_settings.hpp"
 
 namespace fovea::sim {
 
@@ -58,6 +59,7 @@ struct Scenario {
   config::ServoSettings servo;
 
   FaultSettings faults;
+  TruthSettings truth;
 
   // A commanded motion; see commanded_motion.hpp.
   struct {

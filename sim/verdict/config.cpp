@@ -20,7 +20,8 @@ VerdictConfig MakeVerdictConfig(const RunDescription& about) {
     config.stop.ddq_max[i] = pace.ddq_max;
     config.stop.dddq_max[i] = pace.dddq_max;
   }
-  config.pinhole = about.pinhole;
+  config.eye = JudgedEyeOf(about);
+  config.judges_metres = about.truth.empty();
   config.goal = GoalOf(about.servo.feature);
   config.has_eye = about.scenario.camera.enabled;
   config.has_motion = about.motion.has_value();

@@ -13,6 +13,7 @@
 #include "firmware/host/run/run_figures.hpp"
 #include "sim/mcu/board_summary.hpp"
 #include "sim/theory/run.hpp"
+#include "sim/truth/truth_draw.hpp"
 
 namespace fovea::sim {
 
@@ -94,6 +95,7 @@ struct Summary : run::RunFigures {
   std::vector<run::FaultEvent> faults;
   std::vector<ModeEvent> modes;
   std::vector<InjectedFault> injected;
+  std::vector<TrueValue> truth;  // what is not as the servo believes
   RunEnd end;
 
   std::uint64_t frames = 0;  // that reached vision

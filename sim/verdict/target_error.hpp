@@ -2,13 +2,16 @@
 // The target's true error to its goal.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <vector>
 
 #include "firmware/core/features/target_feature.hpp"
+#include "sim/camera/lens.hpp"
 #include "sim/render/pinhole.hpp"
+#include "sim/scenario/run_description.hpp"
 #include "sim/world/world.hpp"
 
 namespace fovea::sim {
@@ -33,6 +36,44 @@ inline TargetGoal GoalOf(const features::TargetFeature& feature) {
   return goal;
 }
 
+// The true camera and target, and what the servo believes of them. The servo's goal in the picture follows from
+// its belief.
+struct JudgedEye {
+  Pinhole pinhole;
+  Lens lens;
+  Pinhole believed_pinhole;
+  Lens believed_lens;
+  double target_scale = 1.0;  // true size over the believed one
+  bool differs = false;       // the cameras are not the same
+};
+
+inline JudgedEye JudgedEyeOf(const RunDescription& about) {
+  const auto is_true = [&](Quantity quantity) {
+    return std::none_of(about.truth.begin(), about.truth.end(),
+                        [quantity](const TrueValue& value) { return value.quantity == quantity; });
+  };
+  const bool same = is_true(Quantity::kFocalLengths) && is_true(Quantity::kPrincipalPoint) &&
+                    is_true(Quantity::kLens);
+  return {about.eye.pinhole, about.eye.lens, about.pinhole, about.lens, about.target_scale, !same};
+}
+
+// Distance in the picture between the true image of `p` and the goal's, `p_star` [px]; both in C. With equal
+// cameras, as an ideal lens draws them.
+inline Eigen::Vector2d ImageError(const JudgedEye& eye, const Eigen::Vector3d& p,
+                                  const Eigen::Vector3d& p_star) {
+  const auto pixel = [](const Pinhole& pinhole, const Eigen::Vector3d& p_C) {
+    return Eigen::Vector2d(pinhole.U(p_C), pinhole.V(p_C));
+  };
+  if (!eye.differs) {
+    return pixel(eye.pinhole, p) - pixel(eye.pinhole, p_star);
+  }
+  const auto through = [](const Lens& lens, const Eigen::Vector3d& p_C) {
+    return Distort(lens, p_C.head<2>() / p_C.z()).homogeneous().eval();
+  };
+  return pixel(eye.pinhole, through(eye.lens, p)) -
+         pixel(eye.believed_pinhole, through(eye.believed_lens, p_star));
+}
+
 struct TargetError {
   // rms over the goal's points; infinite if one of them is behind the camera.
   double error_px = std::numeric_limits<double>::infinity();
@@ -40,7 +81,7 @@ struct TargetError {
   std::optional<double> error_rad;                    // of the orientation, if the goal has one
 };
 
-inline TargetError ErrorOf(const Truth& truth, const Pinhole& pinhole, const TargetGoal& goal) {
+inline TargetError ErrorOf(const Truth& truth, const JudgedEye& eye, const TargetGoal& goal) {
   const Eigen::Isometry3d X_CB = truth.X_BC.inverse();
   const Eigen::Vector3d p_CO_C = X_CB * truth.p_BO;
   Eigen::Matrix3d R_CO = X_CB.linear() * truth.R_BO;
@@ -62,13 +103,13 @@ inline TargetError ErrorOf(const Truth& truth, const Pinhole& pinhole, const Tar
   }
   double sum2 = 0.0;
   for (const Eigen::Vector3d& p_OP : goal.points) {
-    const Eigen::Vector3d p = p_CO_C + R_CO * p_OP;
+    const Eigen::Vector3d p = p_CO_C + R_CO * (eye.target_scale * p_OP);
     const Eigen::Vector3d p_star =
         goal.p_CO_C_star + (goal.R_CO_star ? Eigen::Vector3d(*goal.R_CO_star * p_OP) : p_OP);
     if (!(p.z() > 0.0)) {
       return error;
     }
-    sum2 += Eigen::Vector2d(pinhole.U(p) - pinhole.U(p_star), pinhole.V(p) - pinhole.V(p_star)).squaredNorm();
+    sum2 += ImageError(eye, p, p_star).squaredNorm();
   }
   error.error_px = std::sqrt(sum2 / static_cast<double>(goal.points.size()));
   return error;

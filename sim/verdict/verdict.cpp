@@ -32,7 +32,7 @@ Verdict::Verdict(const VerdictConfig& config)
 
 void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
   if (config_.has_eye) {
-    const TargetError error = ErrorOf(truth, config_.pinhole, config_.goal);
+    const TargetError error = ErrorOf(truth, config_.eye, config_.goal);
     AddSample({truth.stamp_ns, error.error_px, error.error_C, error.error_rad.value_or(0.0)});
   }
 
@@ -57,6 +57,11 @@ void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
   contacts_.Add(truth.contacts);
 }
 
+// A still target's errors in the picture [px], in space [m] and of the orientation [deg].
+bool Verdict::IsAtGoal(double px, double m, double deg) const {
+  return px <= kConvergedPx && (!config_.judges_metres || (m <= kConvergedM && deg <= kConvergedDeg));
+}
+
 void Verdict::AddSample(const Sample& sample) {
   if (!first_px_) {
     first_px_ = sample.error_px;
@@ -72,8 +77,7 @@ void Verdict::AddSample(const Sample& sample) {
   }
   NoteGoal(t_s, config_.target_moves
                     ? WindowPx() <= config_.tracking_bound_px
-                    : sample.error_px <= kConvergedPx && sample.error_C.norm() <= kConvergedM &&
-                          kDegPerRad * sample.error_rad <= kConvergedDeg);
+                    : IsAtGoal(sample.error_px, sample.error_C.norm(), kDegPerRad * sample.error_rad));
   if (t_s > 0.5 * config_.duration_s) {
     second_half_px2_ += sample.error_px * sample.error_px;
     second_half_m2_ += sample.error_C.squaredNorm();
@@ -260,13 +264,14 @@ void Verdict::FillStill(Summary& summary) const {
   if (config_.goal.R_CO_star) {
     summary.final_error_deg = kDegPerRad * std::sqrt(turn2 / n);
   }
-  summary.converged =
-      worst_px <= kConvergedPx && worst_m <= kConvergedM && worst_deg <= kConvergedDeg && faults_.empty();
+  summary.converged = IsAtGoal(worst_px, worst_m, worst_deg) && faults_.empty();
   if (!is_outside_ && last_outside_s_) {
     summary.settle_time_s = *last_outside_s_ + hal::kTickPeriodS;
   }
   if (summary.converged) {
-    summary.verdict = "converged: the target stands at its goal";
+    summary.verdict = config_.judges_metres
+                          ? "converged: the target stands at its goal"
+                          : "converged: the target stands at its goal in the picture";
   }
 }
 
@@ -275,12 +280,15 @@ void Verdict::FillMoving(Summary& summary) const {
     const auto n = static_cast<double>(second_half_samples_);
     summary.tracking_error_px_rms = std::sqrt(second_half_px2_ / n);
     summary.tracking_error_mm_rms = 1e3 * std::sqrt(second_half_m2_ / n);
-    summary.converged = *summary.tracking_error_px_rms <= config_.tracking_bound_px &&
-                        *summary.tracking_error_mm_rms <= config_.tracking_bound_mm && faults_.empty();
+    summary.converged =
+        *summary.tracking_error_px_rms <= config_.tracking_bound_px &&
+        (!config_.judges_metres || *summary.tracking_error_mm_rms <= config_.tracking_bound_mm) &&
+        faults_.empty();
   }
   if (summary.converged) {
-    summary.verdict = fmt::format("converged: the target is tracked within {:g} px and {:g} mm",
-                                  config_.tracking_bound_px, config_.tracking_bound_mm);
+    summary.verdict = fmt::format(
+        "converged: the target is tracked within {:g} px{}", config_.tracking_bound_px,
+        config_.judges_metres ? fmt::format(" and {:g} mm", config_.tracking_bound_mm) : std::string());
   }
 }
 
@@ -313,9 +321,12 @@ std::string Verdict::WhyNot(const Summary& summary) const {
         figure(summary.tracking_error_mm_rms), config_.tracking_bound_mm, LimitedBy());
   }
   return fmt::format(
-      "not converged: over the last {:g} s the target was not within {:g} px and {:g} mm{} of its goal{}",
-      1e-9 * static_cast<double>(kWindowNs), kConvergedPx, 1e3 * kConvergedM,
-      config_.goal.R_CO_star ? fmt::format(" and {:g} deg", kConvergedDeg) : std::string(), LimitedBy());
+      "not converged: over the last {:g} s the target was not within {:g} px{}{} of its goal{}",
+      1e-9 * static_cast<double>(kWindowNs), kConvergedPx,
+      config_.judges_metres ? fmt::format(" and {:g} mm", 1e3 * kConvergedM) : std::string(),
+      config_.judges_metres && config_.goal.R_CO_star ? fmt::format(" and {:g} deg", kConvergedDeg)
+                                                      : std::string(),
+      LimitedBy());
 }
 
 std::string Verdict::WhyNeverAccepted(const Summary& summary) const {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "fovea/hal/record.hpp"
-#include "sim/render/pinhole.hpp"
 #include "sim/scenario/commanded_motion.hpp"
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/verdict/barriers.hpp"
@@ -27,8 +26,9 @@ namespace fovea::sim {
 struct VerdictConfig {
   BarrierConfig barriers;
   StopRules stop;
-  Pinhole pinhole;
+  JudgedEye eye;
   TargetGoal goal;
+  bool judges_metres = true;  // false: what the servo believes is wrong, and only the picture can be at its goal
   bool has_eye = true;  // false: there is no target to judge
   bool target_moves = false;
   double tracking_bound_px = 3.0;
@@ -63,6 +63,7 @@ class Verdict {
     double error_rad = 0.0;                             // of the orientation, if the goal has one
   };
   void AddSample(const Sample& sample);
+  [[nodiscard]] bool IsAtGoal(double px, double m, double deg) const;
   [[nodiscard]] double WindowPx() const;
   void NoteGoal(double t_s, bool kept);
   void FillEnd(Summary& summary) const;

@@ -51,7 +51,12 @@ World::World(const WorldConfig& config)
   if (config_.target.kind == MotionKind::kPushed) {
     ball_.emplace(config_.ball);
   }
-  arm_.SetState(config_.q_start,
+  if (const auto& believed = config_.robot_truth.believed) {
+    BulletArmOptions options = config_.physics;
+    options.table = false;
+    believed_.emplace(*believed, options);
+  }
+  arm_.SetState(config_.q_start - EncoderZero(),
                 config_.dq_start.size() > 0 ? config_.dq_start : Eigen::VectorXd::Zero(arm_.num_dofs()));
   if (config_.stiction) {
     Eigen::VectorXd left(arm_.num_dofs());
@@ -118,6 +123,11 @@ void World::StepBall() {
   ball_->Step(hal::kTickPeriodS);
 }
 
+Eigen::VectorXd World::EncoderZero() const {
+  const Eigen::VectorXd& zero = config_.robot_truth.encoder_zero;
+  return zero.size() > 0 ? zero : Eigen::VectorXd::Zero(arm_.num_dofs());
+}
+
 // Torques of the springs and of external pushes.
 Eigen::VectorXd World::Pulls() const {
   Eigen::VectorXd tau = Eigen::VectorXd::Zero(arm_.num_dofs());
@@ -142,10 +152,16 @@ void World::TakeUpLoad(double mass) {
   }
 }
 
+// `tilt`: of the fault, in addition to the true tilt.
 void World::TiltBase(double tilt) {
-  if (config_.base_tilt.window.Begins()) {
-    arm_.TiltBase(tilt);
+  if (MayTilt()) {
+    const Eigen::Vector2d& always = config_.robot_truth.base_tilt;
+    arm_.TiltBase(always.x() + tilt, always.y());
   }
+}
+
+bool World::MayTilt() const {
+  return config_.base_tilt.window.Begins() || !config_.robot_truth.base_tilt.isZero(0.0);
 }
 
 // Difference of the next step's accelerations to those of an undisturbed arm, in the same state and under the
@@ -153,25 +169,37 @@ void World::TiltBase(double tilt) {
 Eigen::VectorXd World::AccelerationByDisturbance(double mass, double tilt) {
   const Eigen::VectorXd disturbed = MotorTorque() + Pulls();
   const Eigen::VectorXd wanted = WantedTorque();
-  if (mass == 0.0 && tilt == 0.0 && disturbed == wanted) {
+  if (mass == 0.0 && tilt == 0.0 && disturbed == wanted && config_.robot_truth.base_tilt.isZero(0.0)) {
     return {};
   }
   TakeUpLoad(mass);
   TiltBase(tilt);
   const Eigen::VectorXd ddq = arm_.ForwardDynamics(WithFriction(disturbed));
   TakeUpLoad(0.0);
-  TiltBase(0.0);
+  if (MayTilt()) {
+    arm_.TiltBase(0.0, 0.0);
+  }
   return ddq - arm_.ForwardDynamics(WithFriction(wanted));
 }
 
-// The command plus the gravity compensation of the robot's own controller.
+// The command plus the torque that carries the arm as it is, if its base is upright.
 Eigen::VectorXd World::WantedTorque() const {
   return arm_.GravityTorque() + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
 }
 
-// The part of the wanted torque that the motors deliver.
+// The command plus the gravity compensation of the robot's own controller.
+Eigen::VectorXd World::RobotTorque() const {
+  const Eigen::VectorXd gravity = believed_ ? believed_->GravityTorque() : arm_.GravityTorque();
+  return gravity + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
+}
+
+// What the motors deliver of it.
 Eigen::VectorXd World::MotorTorque() const {
-  Eigen::VectorXd tau = WantedTorque();
+  Eigen::VectorXd tau = RobotTorque();
+  const RobotTruth& truth = config_.robot_truth;
+  if (truth.torque_scale.size() > 0) {
+    tau = truth.torque_scale.cwiseProduct(tau) + truth.torque_bias;
+  }
   if (config_.torque_loss.window.Contains(now_ns_)) {
     tau[config_.torque_loss.joint] *= 1.0 - config_.torque_loss.share;
   }
@@ -220,6 +248,9 @@ void World::RecordTruth() {
   for (int i = 0; i < static_cast<int>(config_.robot.links.size()); ++i) {
     X_BL_.push_back(arm_.LinkPose(i));
   }
+  if (believed_) {
+    believed_->SetState(truth_.q + EncoderZero(), truth_.dq);
+  }
   truth_.X_BE = X_BL_[static_cast<std::size_t>(config_.robot.tip)];
   truth_.X_BC = truth_.X_BE * config_.X_EC;
   const Eigen::Isometry3d X_BO = TargetPose();
@@ -227,6 +258,12 @@ void World::RecordTruth() {
   truth_.R_BO = X_BO.linear();
   touch_.Place(X_BL_, X_BO);
   truth_.contacts = {arm_.Contacts(), touch_.Target(), touch_.Self()};
+}
+
+// What a joint's sensor reads of a motor's torque.
+double World::SensedTorque(double tau, Eigen::Index joint) const {
+  const RobotTruth& truth = config_.robot_truth;
+  return truth.torque_scale.size() > 0 ? (tau - truth.torque_bias[joint]) / truth.torque_scale[joint] : tau;
 }
 
 double World::Quantised(double q) const {
@@ -238,13 +275,14 @@ void World::MeasureState() {
   measured_.stamp_ns = now_ns_;
   ++measured_.sequence;
   const Eigen::VectorXd motor = MotorTorque();
+  const Eigen::VectorXd zero = EncoderZero();
   const Eigen::VectorXd stiction = arm_.StictionTorque();
   for (int i = 0; i < arm_.num_dofs(); ++i) {
     const auto k = static_cast<std::size_t>(i);
-    measured_.q[k] = Quantised(arm_.q()[i] + config_.encoder_noise * normal_(random_));
+    measured_.q[k] = Quantised(arm_.q()[i] + zero[i] + config_.encoder_noise * normal_(random_));
     measured_.dq[k] = arm_.dq()[i] + config_.velocity_noise * normal_(random_);
     measured_.tau_applied[k] = command_.tau_cmd[k];
-    measured_.tau_meas[k] = motor[i] - FrictionLeft(i, arm_.dq()[i]) + stiction[i];
+    measured_.tau_meas[k] = SensedTorque(motor[i], i) - FrictionLeft(i, arm_.dq()[i]) + stiction[i];
   }
 }
 

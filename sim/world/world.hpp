@@ -15,6 +15,7 @@
 #include "sim/physics/link_touch.hpp"
 #include "sim/physics/rolling_ball.hpp"
 #include "sim/render/exposure.hpp"
+#include "sim/world/robot_truth.hpp"
 #include "sim/world/target_motion.hpp"
 
 namespace fovea::sim {
@@ -22,8 +23,9 @@ namespace fovea::sim {
 // Includes the faults of the bench.
 struct WorldConfig : BenchFaults {
   SimRobot robot;
+  RobotTruth robot_truth;
   BulletArmOptions physics;
-  Eigen::VectorXd q_start;   // [num_dofs]
+  Eigen::VectorXd q_start;   // [num_dofs] as the encoders read
   Eigen::VectorXd dq_start;  // [num_dofs]; empty: at rest
   Eigen::VectorXd spring;    // [num_dofs] pulls each joint to 0 [Nm/rad, N/m]; empty: no springs
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
@@ -110,15 +112,20 @@ class World {
   [[nodiscard]] double FrictionLeft(int joint, double velocity) const;
   [[nodiscard]] Eigen::VectorXd Pulls() const;
   [[nodiscard]] Eigen::VectorXd WantedTorque() const;
+  [[nodiscard]] Eigen::VectorXd RobotTorque() const;
   [[nodiscard]] Eigen::VectorXd MotorTorque() const;
+  [[nodiscard]] double SensedTorque(double tau, Eigen::Index joint) const;
   void TakeUpLoad(double mass);
   void TiltBase(double tilt);
+  [[nodiscard]] bool MayTilt() const;
+  [[nodiscard]] Eigen::VectorXd EncoderZero() const;
   [[nodiscard]] Eigen::VectorXd AccelerationByDisturbance(double mass, double tilt);
   void StepBall();
   [[nodiscard]] Eigen::Isometry3d TargetPose() const;
 
   WorldConfig config_;
   BulletArm arm_;
+  std::optional<BulletArm> believed_;  // as the robot's own controller thinks it is, if that differs
   LinkTouch touch_;
   std::vector<Eigen::Isometry3d> X_BL_;  // of all links, by RecordTruth
   std::optional<RollingBall> ball_;

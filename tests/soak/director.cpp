@@ -209,7 +209,7 @@ void Director::Measure(std::int64_t now_ns, const sim::Truth& truth, const hal::
   seen.X_BC = truth.X_BC;
   seen.p_BO = TargetAt(now_ns);
   seen.R_BO = target_.R_BO;
-  error_px_.Add(sim::ErrorOf(seen, about_.pinhole, goal_).error_px);
+  error_px_.Add(sim::ErrorOf(seen, sim::JudgedEyeOf(about_), goal_).error_px);
   const int n = about_.servo.arm.num_joints;
   speed2_.Add(truth.dq.squaredNorm() / n);
   torque2_.Add(model::ToVector(record.command.tau_cmd, n).squaredNorm() / n);

@@ -117,7 +117,7 @@ class Pass {
         director_(about, end_ns_, options.seed),
         truth_eye_(about.servo.feature, about.pinhole.f_px, kSigmaPx, static_cast<unsigned>(options.seed)),
         vision_(config::MakeVisionConfig(about.scenario.vision, about.intrinsics, about.scenario.target)),
-        world_(sim::MakeWorldConfig(about.scenario, about.scene.robot)),
+        world_(sim::MakeWorldConfig(about)),
         digest_(start_.tick),
         features_(mailbox_, start_, director_.acting()),
         sim_arm_(world_),

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/scenario/true_bench.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "sim/scenario/compose.hpp"
+#include "sim/scenario/roll_pitch_yaw.hpp"
+#include "sim/scenario/to_vector.hpp"
+
+namespace fovea::sim {
+namespace {
+
+
+std::vector<double> PerJoint(const RunDescription& run, double value) {
+  return std::vector<double>(static_cast<std::size_t>(run.robot.model.num_joints), value);
+}
+
+void DrawEye(TruthDraw& draw, RunDescription& run) {
+  config::CalibrationSettings& eye = run.bench.camera.calibration;
+  eye.mount_xyz = draw.Get(Quantity::kMountXyz, eye.mount_xyz);
+  run.eye.X_EC = CameraMount(run.bench);
+  const std::vector<double> turn = draw.Get(Quantity::kMountTurn, {0.0, 0.0, 0.0});
+  const Eigen::Vector3d turn_C = kRadPerDeg * Eigen::Vector3d(turn[0], turn[1], turn[2]);
+  if (const double angle = turn_C.norm(); angle > 0.0) {
+    run.eye.X_EC.linear() *= Eigen::AngleAxisd(angle, turn_C / angle).toRotationMatrix();
+  }
+  const Pinhole& believed = run.pinhole;
+  const std::vector<double> f = draw.Get(Quantity::kFocalLengths, {believed.f_px, believed.FocalV()});
+  const std::vector<double> c = draw.Get(Quantity::kPrincipalPoint, {believed.c_u_px, believed.c_v_px});
+  if (f != std::vector{believed.f_px, believed.FocalV()} ||
+      c != std::vector{believed.c_u_px, believed.c_v_px}) {
+    eye.intrinsics.f_u_px = f[0];
+    eye.intrinsics.f_v_px = f[1];
+    eye.intrinsics.c_u_px = c[0];
+    eye.intrinsics.c_v_px = c[1];
+  }
+  eye.lens = draw.Get(Quantity::kLens, eye.lens);
+  run.eye.pinhole = MakeScenarioPinhole(run.bench);
+  run.eye.lens = MakeScenarioLens(run.bench);
+  CheckLens(run.bench);
+}
+
+void DrawStamps(TruthDraw& draw, RunDescription& run) {
+  constexpr double kNsPerMs = 1e6;
+  auto& camera = run.bench.camera;
+  const double believed_ms = camera.latency_ms;
+  camera.latency_ms = draw.Get(Quantity::kLatency, {believed_ms}, 0.5 * camera.exposure_ms)[0];
+  run.stamps.late_ns = static_cast<std::int64_t>((camera.latency_ms - believed_ms) * kNsPerMs);
+  run.stamps.jitter_ns = draw.Get(Quantity::kLatencyJitter, {0.0})[0] * kNsPerMs;
+  run.stamps.drift = 1e-6 * draw.Get(Quantity::kClockDrift, {0.0})[0];
+  run.stamps.seed = SeedOf(run.scenario, RandomStream::kTruth);
+}
+
+// A larger ball or target lies where the believed one does; a ball on the table lies higher.
+void DrawTarget(TruthDraw& draw, RunDescription& run) {
+  TargetScene& target = run.bench.target;
+  const double scale = draw.Get(Quantity::kTargetScale, {1.0})[0];
+  run.target_scale = scale;
+  if (target.kind == "sphere") {
+    target.position[2] += 0.5 * (scale - 1.0) * target.diameter;
+  }
+  target.diameter *= scale;
+  target.side *= scale;
+  for (double& corner : target.triangle) {
+    corner *= scale;
+  }
+}
+
+// The moving link that carries link `index`: its degree of freedom, and its frame in that of the moving link; a
+// degree of freedom of -1 for the base.
+struct Carrier {
+  int dof = -1;
+  Eigen::Isometry3d X_ML = Eigen::Isometry3d::Identity();
+};
+Carrier CarrierOf(const SimRobot& robot, int index) {
+  Carrier carrier;
+  for (int i = index; i >= 0; i = robot.links[static_cast<std::size_t>(i)].parent) {
+    const SimLink& link = robot.links[static_cast<std::size_t>(i)];
+    if (link.dof >= 0) {
+      carrier.dof = link.dof;
+      return carrier;
+    }
+    carrier.X_ML = link.X_PL * carrier.X_ML;
+  }
+  return {};
+}
+
+void DrawLinks(TruthDraw& draw, const RunDescription& run, SimRobot& robot) {
+  const auto joints = static_cast<std::size_t>(run.robot.model.num_joints);
+  std::vector<double> masses(joints);
+  std::vector<double> viscous(joints);
+  std::vector<double> coulomb(joints);
+  std::vector<Carrier> carriers;
+  for (int i = 0; i < static_cast<int>(robot.links.size()); ++i) {
+    const SimLink& link = robot.links[static_cast<std::size_t>(i)];
+    carriers.push_back(CarrierOf(robot, i));
+    if (carriers.back().dof >= 0) {
+      masses.at(static_cast<std::size_t>(carriers.back().dof)) += link.mass;
+    }
+    if (link.dof >= 0) {
+      viscous.at(static_cast<std::size_t>(link.dof)) = link.viscous;
+      coulomb.at(static_cast<std::size_t>(link.dof)) = link.coulomb;
+    }
+  }
+  const std::vector<double> true_masses = draw.Get(Quantity::kLinkMasses, masses);
+  const std::vector<double> shifts = draw.Get(Quantity::kLinkCentres, std::vector<double>(3 * joints, 0.0));
+  viscous = draw.Get(Quantity::kViscousFriction, viscous);
+  coulomb = draw.Get(Quantity::kCoulombFriction, coulomb);
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    SimLink& link = robot.links[i];
+    if (link.dof >= 0) {
+      link.viscous = viscous.at(static_cast<std::size_t>(link.dof));
+      link.coulomb = coulomb.at(static_cast<std::size_t>(link.dof));
+    }
+    if (carriers[i].dof < 0) {
+      continue;
+    }
+    const auto k = static_cast<std::size_t>(carriers[i].dof);
+    if (true_masses[k] != masses[k]) {
+      link.mass *= true_masses[k] / masses[k];
+      link.I_Com *= true_masses[k] / masses[k];
+    }
+    const Eigen::Vector3d shift_M(shifts[3 * k], shifts[3 * k + 1], shifts[3 * k + 2]);
+    link.X_LCom.translation() += carriers[i].X_ML.linear().transpose() * shift_M;
+  }
+}
+
+void DrawDrives(TruthDraw& draw, RunDescription& run) {
+  RobotTruth& truth = run.robot_truth;
+  truth.encoder_zero = ToVectorX(draw.Get(Quantity::kEncoderZeros, PerJoint(run, 0.0)));
+  truth.torque_scale = ToVectorX(draw.Get(Quantity::kTorqueScales, PerJoint(run, 1.0)));
+  truth.torque_bias = ToVectorX(draw.Get(Quantity::kTorqueBiases, PerJoint(run, 0.0)));
+  const std::vector<double> tilt = draw.Get(Quantity::kBaseTilt, {0.0, 0.0});
+  truth.base_tilt = kRadPerDeg * Eigen::Vector2d(tilt[0], tilt[1]);
+}
+
+}  // namespace
+
+SimRobot DrawTruth(const SimRobot& believed, RunDescription& run) {
+  run.bench = run.scenario;
+  TruthDraw draw(run.scenario.truth, SeedOf(run.scenario, RandomStream::kTruth));
+  DrawEye(draw, run);
+  DrawStamps(draw, run);
+  DrawTarget(draw, run);
+  SimRobot robot = believed;
+  DrawLinks(draw, run, robot);
+  config::LoadSettings& load = run.bench.arm.load;
+  load.mass = draw.Get(Quantity::kLoadMass, {load.mass})[0];
+  load.com = draw.Get(Quantity::kLoadCentre, load.com);
+  DrawDrives(draw, run);
+  AddLoad(config::MakeLoad(load), robot);
+  run.truth = draw.differing();
+  if (run.truth.empty()) {
+    run.robot_truth = {};
+  } else {
+    run.robot_truth.believed = believed;
+    AddLoad(config::MakeLoad(run.scenario.arm.load), *run.robot_truth.believed);
+  }
+  return robot;
+}
+
+}  // namespace fovea::sim

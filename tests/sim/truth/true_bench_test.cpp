@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// [truth] changes the bench, and nothing that the servo believes.
+#include "sim/scenario/true_bench.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "fovea/hal/types.hpp"
+#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/world_config.hpp"
+#include "tests/support/input_error.hpp"
+#include "tests/support/temp_folder.hpp"
+
+namespace fovea::sim {
+namespace {
+
+using testing::HasSubstr;
+
+RunDescription Described(std::vector<std::string> assignments) {
+  return DescribeRun(LoadScenario("ball", assignments));
+}
+
+TEST(TrueBench, WithoutTruthWorldAndBeliefAreOne) {
+  const RunDescription run = Described({});
+  EXPECT_TRUE(run.truth.empty());
+  EXPECT_FALSE(run.robot_truth.believed.has_value());
+  EXPECT_EQ(run.eye.pinhole.f_px, run.pinhole.f_px);
+  EXPECT_TRUE(run.eye.X_EC.isApprox(run.scene.X_EC, 0.0));
+  EXPECT_EQ(run.stamps.ErrorNs(5, 1'000'000'000), 0);
+}
+
+TEST(TrueBench, ChangesTheBenchAndNotTheBelief) {
+  const RunDescription honest = Described({});
+  const RunDescription run = Described(
+      {"truth.camera.mount_xyz.offset=[0.005, 0, 0]", "truth.camera.mount_turn_deg=[0, 0, 1]",
+       "truth.camera.f_px.scale=1.02", "truth.camera.c_px.offset=[3, -2]", "truth.camera.lens=[-0.1, 0, 0, 0, 0]",
+       "truth.camera.latency_ms=58", "truth.arm.link_mass.scale=1.2", "truth.arm.load_mass.offset=0.2",
+       "truth.target.size_scale=1.05", "truth.arm.encoder_zero=0.01", "truth.arm.base_tilt_deg=[1, 2]"});
+  EXPECT_EQ(run.truth.size(), 11U);
+  // Belief
+  EXPECT_EQ(run.servo.X_EC.p, honest.servo.X_EC.p);
+  EXPECT_EQ(run.servo.X_EC.R, honest.servo.X_EC.R);
+  EXPECT_EQ(run.intrinsics.f_u_px, honest.intrinsics.f_u_px);
+  EXPECT_EQ(run.intrinsics.lens, honest.intrinsics.lens);
+  EXPECT_EQ(run.servo.feature.radius, honest.servo.feature.radius);
+  for (int i = 0; i < run.servo.arm.num_joints; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    EXPECT_EQ(run.servo.arm.links[k].mass, honest.servo.arm.links[k].mass);
+  }
+  // Truth
+  EXPECT_NEAR(run.eye.X_EC.translation().x(), honest.eye.X_EC.translation().x() + 0.005, 1e-15);
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(honest.eye.X_EC.linear().transpose() * run.eye.X_EC.linear()));
+  EXPECT_NEAR(turn.angle(), std::numbers::pi / 180.0, 1e-12);
+  EXPECT_NEAR(turn.axis().z(), 1.0, 1e-9);
+  EXPECT_DOUBLE_EQ(run.eye.pinhole.f_px, 1.02 * honest.pinhole.f_px);
+  EXPECT_DOUBLE_EQ(run.eye.pinhole.FocalV(), 1.02 * honest.pinhole.FocalV());
+  EXPECT_DOUBLE_EQ(run.eye.pinhole.c_v_px, honest.pinhole.c_v_px - 2.0);
+  EXPECT_EQ(run.eye.lens.k1, -0.1);
+  EXPECT_EQ(run.stamps.late_ns, 18'000'000);
+  EXPECT_EQ(run.bench.camera.latency_ms, 58.0);
+  EXPECT_DOUBLE_EQ(run.scene.target.radius, 1.05 * honest.scene.target.radius);
+  EXPECT_DOUBLE_EQ(run.bench.target.position[2], honest.bench.target.position[2] + 0.05 * 0.04);
+  const auto mass_of = [](const SimRobot& robot) {
+    double sum = 0.0;
+    for (const SimLink& link : robot.links) {
+      sum += link.mass;
+    }
+    return sum;
+  };
+  // The base link's mass is not a moving link's.
+  const double base = honest.scene.robot.links.front().mass;
+  const double moving = mass_of(*run.robot_truth.believed) - base - 0.25;
+  EXPECT_NEAR(mass_of(run.scene.robot), base + 1.2 * moving + 0.45, 1e-9);
+}
+
+TEST(TrueBench, ReadsInlineTablesAndRefusesWhatCannotBe) {
+  const test::TempFolder folder;
+  const auto load = [&](const std::string& text) {
+    const auto file = folder.path() / "mine.toml";
+    std::ofstream(file) << text;
+    return DescribeRun(LoadScenario(file.string(), {}));
+  };
+  const RunDescription run = load(
+      "[truth]\ncamera.mount_xyz = { sigma = 0.005 }\narm.link_mass = { scale = 1.2 }\n"
+      "camera.latency_ms = { offset = 5, sigma = 2 }\n");
+  EXPECT_EQ(run.truth.size(), 3U);
+  EXPECT_THAT(test::InputErrorOf([&] { load("[truth]\ncamera.mount_xzy = { sigma = 0.005 }\n"); }),
+              HasSubstr("mine.toml:2: unknown key truth.camera.mount_xzy.sigma; did you mean "
+                        "truth.camera.mount_xyz.sigma?"));
+  EXPECT_THAT(test::InputErrorOf([&] { load("[truth]\nservo.lambda = 3\n"); }),
+              HasSubstr("unknown key truth.servo.lambda"));
+  EXPECT_THAT(test::InputErrorOf([&] { load("[truth]\narm.link_mass = { sigma = -1 }\n"); }),
+              HasSubstr("truth.arm.link_mass.sigma = -1 is not allowed"));
+  EXPECT_THAT(test::InputErrorOf([&] { load("[truth]\narm.link_mass = { offset = -3 }\n"); }),
+              HasSubstr("truth.arm.link_mass is not allowed: entry"));
+  EXPECT_THAT(test::InputErrorOf([&] { load("[truth]\narm.encoder_zero = [0.01, 0.02]\n"); }),
+              HasSubstr("truth.arm.encoder_zero has 2 entries: 1 or 7 are allowed"));
+  EXPECT_THAT(test::InputErrorOf([&] { load("[truth]\ncamera.latency_ms = nan\n"); }),
+              HasSubstr("truth.camera.latency_ms = nan is not allowed"));
+  EXPECT_THAT(test::InputErrorOf([&] { load("[truth]\ncamera.latency_ms = { range = [-40, 0] }\n"); }),
+              HasSubstr("allowed is 2.5 to 500 ms")) << "half of the exposure";
+}
+
+// What the sensors of a standing arm read, and how it moves off, against the model by hand.
+TEST(TrueBench, EncodersReadTheirZerosAndTheArmStartsWhereTheyRead) {
+  const RunDescription run = Described({"truth.arm.encoder_zero=[0.01, -0.02, 0, 0, 0, 0, 0.03]",
+                                        "arm.encoder_noise=0"});
+  const World world(MakeWorldConfig(run));
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_NEAR(world.MeasuredState().q[i], run.scenario.arm.q_start[i], 1e-12) << i;
+  }
+  EXPECT_NEAR(world.truth().q[6], run.scenario.arm.q_start[6] - 0.03, 1e-12);
+}
+
+// The arm's first acceleration under command 0.
+Eigen::VectorXd FirstAcceleration(const std::vector<std::string>& assignments) {
+  std::vector<std::string> all{"arm.velocity_noise=0", "arm.encoder_noise=0"};
+  all.insert(all.end(), assignments.begin(), assignments.end());
+  World world(MakeWorldConfig(Described(all)));
+  world.AdvanceTo(hal::kTickPeriodNs);
+  return world.truth().dq / 1e-3;
+}
+
+TEST(TrueBench, ARobotThatBelievesWronglyDoesNotCarryItsWeight) {
+  EXPECT_LT(FirstAcceleration({}).norm(), 1e-6) << "with right beliefs it stands still";
+  const Eigen::VectorXd heavy = FirstAcceleration({"truth.arm.load_mass.offset=0.2"});
+  EXPECT_GT(heavy.norm(), 0.1) << "an unknown load pulls it down";
+  EXPECT_GT(FirstAcceleration({"truth.arm.link_mass.scale=1.1"}).norm(), 0.1);
+  EXPECT_GT(FirstAcceleration({"truth.arm.link_com_shift.offset=0.02"}).norm(), 0.1);
+  EXPECT_GT(FirstAcceleration({"truth.arm.base_tilt_deg=[2, 0]"}).norm(), 0.1);
+  // Twice the bias, twice the acceleration (Coulomb friction is smooth, and 0 at rest).
+  const Eigen::VectorXd one = FirstAcceleration({"truth.arm.torque_bias=[0, 0.5, 0, 0, 0, 0, 0]"});
+  const Eigen::VectorXd two = FirstAcceleration({"truth.arm.torque_bias=[0, 1, 0, 0, 0, 0, 0]"});
+  EXPECT_GT(one[1], 0.0);
+  EXPECT_LT((two - 2.0 * one).norm(), 1e-3 * two.norm());
+}
+
+// A tilt about y is a tilt about x, seen from a base that is turned by 90 degrees.
+TEST(TrueBench, TiltsAboutBothAxesAgree) {
+  const auto turned = [](double q1) {
+    return fmt::format("arm.q_start=[{}, -0.75, 0, -2.05, 0, 1.55, 0.485398]", q1);
+  };
+  const Eigen::VectorXd about_x = FirstAcceleration({"truth.arm.base_tilt_deg=[2, 0]", turned(-0.3)});
+  const Eigen::VectorXd about_y =
+      FirstAcceleration({"truth.arm.base_tilt_deg=[0, 2]", turned(-0.3 + 0.5 * std::numbers::pi)});
+  EXPECT_LT((about_x - about_y).norm(), 1e-6 * about_x.norm());
+}
+
+TEST(TrueBench, StampsFollowLatencyJitterAndDrift) {
+  const RunDescription run = Described({"truth.camera.latency_ms=30", "truth.camera.latency_jitter_ms=2",
+                                        "truth.camera.clock_drift_ppm=100"});
+  double sum2 = 0.0;
+  constexpr int kFrames = 5000;
+  for (std::uint64_t k = 0; k < kFrames; ++k) {
+    const auto jitter = static_cast<double>(run.stamps.JitterNs(k));
+    sum2 += jitter * jitter / kFrames;
+    EXPECT_LE(std::fabs(jitter), 6e6);
+    EXPECT_NEAR(static_cast<double>(run.stamps.ErrorNs(k, 10'000'000'000)), -10e6 + jitter + 1e6, 2.0);
+  }
+  EXPECT_NEAR(std::sqrt(sum2), 2e6, 1e5);
+}
+
+}  // namespace
+}  // namespace fovea::sim
