@@ -29,8 +29,9 @@
 #include "sim/scenario/compose.hpp"
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/scenario/run_description.hpp"
-#include "sim/scenario/world_config.hpp"
 #include "sim/scenario/serve_keys.hpp"
+#include "sim/scenario/world_config.hpp"
+#include "sim/truth/truth_text.hpp"
 #include "sim/verdict/contact_count.hpp"
 #include "sim/verdict/target_error.hpp"
 
@@ -130,7 +131,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   WorldConfig bench = MakeWorldConfig(about);
   bench.physics.may_be_loaded = options.live.has_value();  // a viewer may hang a load at the hand
   World world(bench);
-  FciRobot robot(world, about.scene.robot, options.walls);
+  FciRobot robot(world, about.robot_truth.believed.value_or(about.scene.robot), options.walls);
   FciServerConfig config = options.server;
   config.at.ip = franka::Resolve(options.address, 0).ip;
   config.seed = static_cast<std::uint64_t>(scenario.run.seed);
@@ -218,6 +219,7 @@ ServeSummary Serve(const Scenario& scenario, const ServeOptions& options, const 
   }
   summary.scenario = scenario.name;
   summary.seed = scenario.run.seed;
+  summary.truth = about.truth;
   summary.pace = config.lockstep ? "lockstep" : "real";
   summary.sim_time_s = static_cast<double>(world.now_ns()) * 1e-9;
   summary.robot = server.counters();
@@ -268,7 +270,8 @@ std::string ToJson(const ServeSummary& s) {
       {"error_deg", or_null(s.error_deg)},
       {"contact_ticks", s.contact_ticks},
       {"contacts", {{"bench", s.contacts.bench}, {"target", s.contacts.target}, {"self", s.contacts.self}}},
-      {"realtime_missing", s.realtime_missing}});
+      {"realtime_missing", s.realtime_missing},
+      {"truth", TruthAsJson(s.truth)}});
   run::AddBuild(json);
   // Replaces invalid UTF-8: a scenario's file name may hold any bytes.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

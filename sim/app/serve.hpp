@@ -30,6 +30,7 @@ struct ServeOptions {
 struct ServeSummary {
   std::string scenario;
   int seed = 0;
+  std::vector<TrueValue> truth;  // what is not as the client believes
   std::string pace;
   double sim_time_s = 0.0;  // of the robot
   FciServerCounters robot;

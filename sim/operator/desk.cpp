@@ -92,7 +92,7 @@ live::Answer OperatorDesk::Take(const live::Save& /*request*/) {
   present.faults = faults_.faults();
   const std::string name = std::filesystem::path(parts_.about.scenario.name).filename().string();
   const nlohmann::json answer{{"name", fmt::format("{}-at-{:.3f}s.toml", name, now_s())},
-                              {"toml", SaveScenario(parts_.about.scenario, present)}};
+                              {"toml", SaveScenario(parts_.about, present)}};
   return {"", answer.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace)};
 }
 

@@ -65,17 +65,22 @@ std::string ToToml(Scenario& scenario) {
 
 }  // namespace
 
-std::string SaveScenario(const Scenario& scenario, const PresentState& present) {
+std::string SaveScenario(const RunDescription& about, const PresentState& present) {
+  const Scenario& scenario = about.scenario;
   Scenario saved = scenario;
   const double now_s = static_cast<double>(present.truth.stamp_ns) * 1e-9;
-  saved.arm.q_start = ToList(present.truth.q);
+  const Eigen::VectorXd& zero = about.robot_truth.encoder_zero;
+  saved.arm.q_start = ToList(zero.size() > 0 ? present.truth.q + zero : present.truth.q);
   const bool rests = present.truth.dq.cwiseAbs().maxCoeff() < kRests;
   saved.arm.dq_start = rests ? std::vector<double>{} : ToList(present.truth.dq);
   std::string note;
   if (present.target_touched || scenario.target.motion == "still") {
     saved.target.motion = "still";
     saved.target.turn_deg_s = 0.0;
-    saved.target.position = ToList(present.truth.p_BO);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double true_offset = about.bench.target.position[i] - scenario.target.position[i];
+      saved.target.position[i] = present.truth.p_BO[static_cast<Eigen::Index>(i)] - true_offset;
+    }
     saved.target.rpy_deg = RollPitchYawOf(present.truth.R_BO);
   } else {
     note = "# The target's path begins anew.\n";

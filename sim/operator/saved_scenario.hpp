@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "sim/scenario/scenario.hpp"
+#include "sim/scenario/run_description.hpp"
 #include "sim/world/world.hpp"
 
 namespace fovea::sim {
@@ -18,9 +18,9 @@ struct PresentState {
   FaultSettings faults;                 // in the run's time
 };
 
-// The text of a scenario file: the keys of `scenario` that differ from the defaults, changed to begin at
-// `present`. Faults keep their remaining times. A target that the scenario still moves begins its path anew;
-// a comment in the file says so. InputError: a tuned key is no key of a scenario.
-std::string SaveScenario(const Scenario& scenario, const PresentState& present);
+// The text of a scenario file: the keys of the run's scenario that differ from the defaults, changed to begin
+// at `present`, with the same [truth]. Faults keep their remaining times. A target that the scenario still
+// moves begins its path anew; a comment in the file says so. InputError: a tuned key is no key of a scenario.
+std::string SaveScenario(const RunDescription& about, const PresentState& present);
 
 }  // namespace fovea::sim

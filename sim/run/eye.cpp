@@ -20,8 +20,8 @@ Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
   UseOneThreadPerRenderer();
   std::vector<Painter> painters;
   for (int i = 0; i < kRenderers; ++i) {  // one after the other: the first initialises the driver
-    optics_.push_back(std::make_unique<Optics>(about.scene, about.eye.pinhole, about.eye.lens,
-                                               Sampling::kPlain, i));
+    optics_.push_back(
+        std::make_unique<Optics>(about.scene, about.eye.pinhole, about.eye.lens, Sampling::kPlain, i));
     Optics* const optics = optics_.back().get();
     Painter painter;
     painter.draw = [this, optics](const Exposure& exposure, std::span<std::uint8_t> rgba) {

@@ -65,12 +65,11 @@ foxglove::ImageAnnotations TruthOnPicture(const RunDescription& about, const mod
   foxglove::ImageAnnotations annotations;
   const Pinhole& pinhole = about.eye.pinhole;
   const Lens& lens = about.eye.lens;
-  vision::Intrinsics intrinsics{pinhole.width_px,  pinhole.height_px, pinhole.f_px,
+  vision::Intrinsics intrinsics{pinhole.width_px, pinhole.height_px, pinhole.f_px,
                                 pinhole.FocalV(), pinhole.c_u_px,    pinhole.c_v_px};
   intrinsics.lens = {lens.k1, lens.k2, lens.p1, lens.p2, lens.k3};
   const features::TargetFeature target = config::MakeTarget(about.bench.target);
-  log::AddOutline(intrinsics, film::TargetCurve(intrinsics, target, X_CO),
-                  log::kTruthRole, annotations);
+  log::AddOutline(intrinsics, film::TargetCurve(intrinsics, target, X_CO), log::kTruthRole, annotations);
   return annotations;
 }
 

@@ -20,7 +20,6 @@ namespace {
 
 using config::InputError;
 
-
 }  // namespace
 
 Eigen::Isometry3d CameraMount(const Scenario& s) {

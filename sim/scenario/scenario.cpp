@@ -154,8 +154,9 @@ std::string KeysAsMarkdown(const config::KeyTable& keys) {
     const auto dot = key.name.find('.');
     if (key.name.substr(0, dot) != section) {
       section = key.name.substr(0, dot);
-      text += fmt::format("\n## [{}]\n\n{}| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n",
-                          section, section == "truth" ? TruthFormsAsMarkdown() + "\n" : "");
+      text +=
+          fmt::format("\n## [{}]\n\n{}| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n",
+                      section, section == "truth" ? TruthFormsAsMarkdown() + "\n" : "");
     }
     if (key.meaning.empty()) {
       continue;  // a form of [truth]

@@ -12,7 +12,6 @@
 namespace fovea::sim {
 namespace {
 
-
 std::vector<double> PerJoint(const RunDescription& run, double value) {
   return std::vector<double>(static_cast<std::size_t>(run.robot.model.num_joints), value);
 }
@@ -27,12 +26,15 @@ void DrawEye(TruthDraw& draw, RunDescription& run) {
     run.eye.X_EC.linear() *= Eigen::AngleAxisd(angle, turn_C / angle).toRotationMatrix();
   }
   const Pinhole& believed = run.pinhole;
-  const std::vector<double> f = draw.Get(Quantity::kFocalLengths, {believed.f_px, believed.FocalV()});
+  const double believed_aspect = believed.FocalV() / believed.f_px;
+  const double f_px = draw.Get(Quantity::kFocalLength, {believed.f_px})[0];
+  const double aspect = draw.Get(Quantity::kAspect, {believed_aspect})[0];
   const std::vector<double> c = draw.Get(Quantity::kPrincipalPoint, {believed.c_u_px, believed.c_v_px});
-  if (f != std::vector{believed.f_px, believed.FocalV()} ||
+  if (f_px != believed.f_px || aspect != believed_aspect ||
       c != std::vector{believed.c_u_px, believed.c_v_px}) {
-    eye.intrinsics.f_u_px = f[0];
-    eye.intrinsics.f_v_px = f[1];
+    eye.intrinsics.f_u_px = f_px;
+    eye.intrinsics.f_v_px =
+        aspect == believed_aspect ? believed.FocalV() * (f_px / believed.f_px) : aspect * f_px;
     eye.intrinsics.c_u_px = c[0];
     eye.intrinsics.c_v_px = c[1];
   }
@@ -68,8 +70,8 @@ void DrawTarget(TruthDraw& draw, RunDescription& run) {
   }
 }
 
-// The moving link that carries link `index`: its degree of freedom, and its frame in that of the moving link; a
-// degree of freedom of -1 for the base.
+// The moving link that carries link `index`: its degree of freedom, and its frame in that of the moving link;
+// a degree of freedom of -1 for the base.
 struct Carrier {
   int dof = -1;
   Eigen::Isometry3d X_ML = Eigen::Isometry3d::Identity();

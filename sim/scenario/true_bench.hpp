@@ -7,9 +7,9 @@
 
 namespace fovea::sim {
 
-// Draws the true values. `run` has robot, pinhole and lens as the servo believes them, `believed` is the believed
-// robot without a load. Fills in run.bench, run.eye, run.robot_truth, run.stamps and run.truth. Returns the true
-// robot with its true load. InputError: a value of [truth] is not allowed.
+// Draws the true values. `run` has robot, pinhole and lens as the servo believes them, `believed` is the
+// believed robot without a load. Fills in run.bench, run.eye, run.robot_truth, run.stamps and run.truth.
+// Returns the true robot with its true load. InputError: a value of [truth] is not allowed.
 SimRobot DrawTruth(const SimRobot& believed, RunDescription& run);
 
 }  // namespace fovea::sim

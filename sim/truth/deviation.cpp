@@ -54,7 +54,7 @@ bool Deviation::IsAny() const {
            sigma.empty() && range.empty());
 }
 
-void CheckSizes(const Deviation& d, const std::string& key, std::size_t size) {
+void CheckForms(const Deviation& d, const std::string& key, std::size_t size) {
   struct List {
     const char* form;
     const std::vector<double>& numbers;
@@ -66,9 +66,22 @@ void CheckSizes(const Deviation& d, const std::string& key, std::size_t size) {
                            {".sigma", d.sigma}}) {
     const std::size_t entries = list.numbers.size();
     if (entries > 1 && entries != size) {
-      throw config::InputError(fmt::format("{}{} has {} entries: 1 or {} are allowed", key, list.form,
-                                           entries, size));
+      throw config::InputError(
+          fmt::format("{}{} has {} entries: 1 or {} are allowed", key, list.form, entries, size));
     }
+  }
+  for (const List& list : {List{".scale_range", d.scale_range}, {".range", d.range}}) {
+    if (!list.numbers.empty() && list.numbers[0] > list.numbers[1]) {
+      throw config::InputError(
+          fmt::format("{}{} = [{:g}, {:g}] is not allowed: the smaller number comes first", key, list.form,
+                      list.numbers[0], list.numbers[1]));
+    }
+  }
+  Deviation others = d;
+  others.value.clear();
+  if (!d.value.empty() && others.IsAny()) {
+    throw config::InputError(fmt::format(
+        "{} is not allowed as a value and as a difference at once: use {}.offset for the first", key, key));
   }
 }
 

@@ -12,7 +12,7 @@ namespace fovea::sim {
 // apply in this order. Random numbers are independent for each entry; a normal one is within three standard
 // deviations, so that every value that can be drawn can be checked before a run.
 struct Deviation {
-  std::vector<double> value;        // the true value; empty: the believed one
+  std::vector<double> value;        // the true value, then there is nothing else; empty: the believed one
   std::vector<double> scale;        // factor
   std::vector<double> scale_sigma;  // standard deviation of a factor about 1
   std::vector<double> scale_range;  // {low, high} of a uniformly distributed factor
@@ -28,11 +28,12 @@ struct Span {
   double high = 0.0;
 };
 
-// InputError, which names `key`: a list has neither one entry nor `size`.
-void CheckSizes(const Deviation& deviation, const std::string& key, std::size_t size);
-// The span of each entry's true value over all draws. The sizes must fit.
+// InputError, which names `key`: a list has neither one entry nor `size`, a range ends below its begin, or a
+// value stands beside another form.
+void CheckForms(const Deviation& deviation, const std::string& key, std::size_t size);
+// The span of each entry's true value over all draws. CheckForms must allow it.
 std::vector<Span> SpansOf(const Deviation& deviation, const std::vector<double>& believed);
-// The true value. Equal seeds give equal values. The sizes must fit.
+// The true value. Equal seeds give equal values. CheckForms must allow it.
 std::vector<double> Draw(const Deviation& deviation, const std::vector<double>& believed, std::uint64_t seed);
 
 }  // namespace fovea::sim

@@ -3,10 +3,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "firmware/host/config/input_error.hpp"
 #include "sim/camera/mix_bits.hpp"
 
 namespace fovea::sim {
+namespace {
+
+bool OnlyScales(const Deviation& d) {
+  return d.value.empty() && d.offset.empty() && d.sigma.empty() && d.range.empty();
+}
+
+}  // namespace
 
 std::vector<double> TruthDraw::Get(Quantity quantity, const std::vector<double>& believed) {
   return Get(quantity, believed, InfoOf(quantity).low);
@@ -19,14 +28,20 @@ std::vector<double> TruthDraw::Get(Quantity quantity, const std::vector<double>&
   }
   const QuantityInfo& info = InfoOf(quantity);
   const std::string key = std::string("truth.") + info.key;
-  CheckSizes(deviation, key, believed.size());
+  CheckForms(deviation, key, believed.size());
+  if (OnlyScales(deviation) &&
+      std::all_of(believed.begin(), believed.end(), [](double v) { return v == 0.0; })) {
+    throw config::InputError(fmt::format(
+        "{} has no effect: the servo believes 0, and a factor leaves that; use {}.offset or .sigma", key,
+        key));
+  }
   const std::string unit = info.unit[0] == '\0' ? "" : std::string(" ") + info.unit;
   std::size_t entry = 0;
   for (const Span& span : SpansOf(deviation, believed)) {
     if (!(span.low >= least && span.high <= info.high)) {
-      throw config::InputError(
-          fmt::format("{} is not allowed: entry {} could be from {:.6g} to {:.6g}{}; allowed is {:g} to {:g}{}",
-                      key, entry + 1, span.low, span.high, unit, least, info.high, unit));
+      throw config::InputError(fmt::format(
+          "{} is not allowed: entry {} could be from {:.6g} to {:.6g}{}; allowed is {:g} to {:g}{}", key,
+          entry + 1, span.low, span.high, unit, least, info.high, unit));
     }
     ++entry;
   }

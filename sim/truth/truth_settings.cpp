@@ -14,7 +14,8 @@ constexpr std::array<QuantityInfo, kNumQuantities> kQuantities{{
     {"camera.mount_xyz", "m", -1.0, 1.0, "camera.mount_xyz"},
     {"camera.mount_turn_deg", "deg", -180.0, 180.0,
      "turn of the camera against its believed mount: a rotation vector in axes of the believed camera"},
-    {"camera.f_px", "px", 1.0, 1e6, "focal lengths along u and v"},
+    {"camera.f_px", "px", 1.0, 1e6, "focal length along u; that along v changes by the same factor"},
+    {"camera.aspect", "", 0.5, 2.0, "focal length along v over that along u"},
     {"camera.c_px", "px", -1e5, 1e5, "principal point: c_u, c_v"},
     {"camera.lens", "", -1e3, 1e3, "camera.lens"},
     {"camera.latency_ms", "ms", 0.0, 500.0,
@@ -61,13 +62,16 @@ void AddTruthKeys(TruthSettings& settings, config::KeyTable& keys) {
 }
 
 std::string TruthFormsAsMarkdown() {
-  return "What is true of arm, camera and target, where it is not what the servo believes. Without such a key, "
-         "what the servo believes is true. A key takes the true value, or an inline table of differences, for "
+  return "What is true of arm, camera and target, where it is not what the servo believes. Without such a "
+         "key, "
+         "what the servo believes is true. A key takes the true value, or an inline table of differences, "
+         "for "
          "example `camera.mount_xyz = { sigma = 0.005 }` in [truth], or `--set "
          "truth.camera.mount_xyz.sigma=0.005`:\n\n"
          "| form | true value |\n|---|---|\n"
          "| `scale` | the believed one times this |\n"
-         "| `scale_sigma` | the believed one times a normal random factor about 1, of this standard deviation |\n"
+         "| `scale_sigma` | the believed one times a normal random factor about 1, of this standard "
+         "deviation |\n"
          "| `scale_range` | the believed one times a uniform random factor, from the first to the second |\n"
          "| `offset` | the believed one plus this |\n"
          "| `sigma` | the believed one plus a normal random number about 0, of this standard deviation |\n"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keys of section [truth]: what is true of arm, camera and target, where it is not what the servo believes.
+// The keys of section [truth]: what is true of arm, camera and target, where it is not what the servo
+// believes.
 #pragma once
 
 #include <array>
@@ -16,7 +17,8 @@ namespace fovea::sim {
 enum class Quantity : std::uint8_t {
   kMountXyz,
   kMountTurn,
-  kFocalLengths,
+  kFocalLength,
+  kAspect,
   kPrincipalPoint,
   kLens,
   kLatency,
@@ -34,7 +36,7 @@ enum class Quantity : std::uint8_t {
   kBaseTilt,
   kTargetScale,
 };
-inline constexpr std::size_t kNumQuantities = 19;
+inline constexpr std::size_t kNumQuantities = 20;
 
 struct QuantityInfo {
   const char* key;   // without "truth."

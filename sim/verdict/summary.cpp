@@ -3,12 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "firmware/host/config/printed_table.hpp"
 #include "fovea/hal/events.hpp"
+#include "sim/truth/truth_text.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -86,26 +85,6 @@ ordered_json ToJson(const std::vector<InjectedFault>& injected) {
         {{"name", fault.name}, {"from_s", fault.from_s}, {"to_s", fault.to_s}, {"noticed", fault.noticed}});
   }
   return json;
-}
-
-ordered_json ToJson(const std::vector<TrueValue>& truth) {
-  ordered_json json = ordered_json::object();
-  for (const TrueValue& value : truth) {
-    const QuantityInfo& info = InfoOf(value.quantity);
-    json[info.key] = {{"unit", info.unit}, {"believed", value.believed}, {"true", value.actual}};
-  }
-  return json;
-}
-
-// E.g. "camera.latency_ms off by 18.2 ms"; of a list, the largest difference.
-std::string InWords(const TrueValue& value) {
-  double most = 0.0;
-  for (std::size_t i = 0; i < value.believed.size(); ++i) {
-    const double off = value.actual[i] - value.believed[i];
-    most = std::fabs(off) > std::fabs(most) ? off : most;
-  }
-  const QuantityInfo& info = InfoOf(value.quantity);
-  return fmt::format("{} {}by {:+.3g} {}", info.key, value.believed.size() > 1 ? "up to " : "", most, info.unit);
 }
 
 ordered_json ToJson(const std::map<std::string, StandingMotion>& motions) {
@@ -244,7 +223,7 @@ std::string ToJson(const Summary& s) {
   json["faults"] = faults;
   json["modes"] = modes;
   json["injected"] = ToJson(s.injected);
-  json["truth"] = ToJson(s.truth);
+  json["truth"] = TruthAsJson(s.truth);
   json["end"] = ToJson(s.end);
   json["frames"] = s.frames;
   json["frames_detected"] = s.frames_detected;

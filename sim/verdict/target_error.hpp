@@ -36,8 +36,8 @@ inline TargetGoal GoalOf(const features::TargetFeature& feature) {
   return goal;
 }
 
-// The true camera and target, and what the servo believes of them. The servo's goal in the picture follows from
-// its belief.
+// The true camera and target, and what the servo believes of them. The servo's goal in the picture follows
+// from its belief.
 struct JudgedEye {
   Pinhole pinhole;
   Lens lens;
@@ -52,8 +52,8 @@ inline JudgedEye JudgedEyeOf(const RunDescription& about) {
     return std::none_of(about.truth.begin(), about.truth.end(),
                         [quantity](const TrueValue& value) { return value.quantity == quantity; });
   };
-  const bool same = is_true(Quantity::kFocalLengths) && is_true(Quantity::kPrincipalPoint) &&
-                    is_true(Quantity::kLens);
+  const bool same = is_true(Quantity::kFocalLength) && is_true(Quantity::kAspect) &&
+                    is_true(Quantity::kPrincipalPoint) && is_true(Quantity::kLens);
   return {about.eye.pinhole, about.eye.lens, about.pinhole, about.lens, about.target_scale, !same};
 }
 

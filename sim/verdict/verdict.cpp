@@ -269,9 +269,8 @@ void Verdict::FillStill(Summary& summary) const {
     summary.settle_time_s = *last_outside_s_ + hal::kTickPeriodS;
   }
   if (summary.converged) {
-    summary.verdict = config_.judges_metres
-                          ? "converged: the target stands at its goal"
-                          : "converged: the target stands at its goal in the picture";
+    summary.verdict = config_.judges_metres ? "converged: the target stands at its goal"
+                                            : "converged: the target stands at its goal in the picture";
   }
 }
 

@@ -28,7 +28,8 @@ struct VerdictConfig {
   StopRules stop;
   JudgedEye eye;
   TargetGoal goal;
-  bool judges_metres = true;  // false: what the servo believes is wrong, and only the picture can be at its goal
+  bool judges_metres =
+      true;             // false: what the servo believes is wrong, and only the picture can be at its goal
   bool has_eye = true;  // false: there is no target to judge
   bool target_moves = false;
   double tracking_bound_px = 3.0;

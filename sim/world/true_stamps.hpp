@@ -11,8 +11,8 @@
 
 namespace fovea::sim {
 
-// The servo's computer stamps a picture at its arrival, less the believed latency. A picture that arrives later
-// than believed therefore seems newer than it is.
+// The servo's computer stamps a picture at its arrival, less the believed latency. A picture that arrives
+// later than believed therefore seems newer than it is.
 struct TrueStamps {
   std::int64_t late_ns = 0;  // true latency minus the believed one
   double jitter_ns = 0.0;    // standard deviation of each picture's latency

@@ -249,7 +249,7 @@ void World::RecordTruth() {
     X_BL_.push_back(arm_.LinkPose(i));
   }
   if (believed_) {
-    believed_->SetState(truth_.q + EncoderZero(), truth_.dq);
+    believed_->SetState(Reading(), truth_.dq);
   }
   truth_.X_BE = X_BL_[static_cast<std::size_t>(config_.robot.tip)];
   truth_.X_BC = truth_.X_BE * config_.X_EC;

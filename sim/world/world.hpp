@@ -97,6 +97,8 @@ class World {
   void PlaceTarget(const Eigen::Isometry3d& X_BO) { placed_ = X_BO; }
 
   [[nodiscard]] const Truth& truth() const { return truth_; }
+  // The joints as encoders without noise read them [rad, m].
+  [[nodiscard]] Eigen::VectorXd Reading() const { return truth_.q + EncoderZero(); }
   // The bench as it is now, for a picture.
   [[nodiscard]] Exposure Look() const;
   [[nodiscard]] int num_joints() const { return arm_.num_dofs(); }

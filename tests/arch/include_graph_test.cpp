@@ -210,7 +210,7 @@ INSTANTIATE_TEST_SUITE_P(
              "the simulated world depends on hal, not on the firmware"},
         Rule{"sim/truth",
              "firmware/host/config/(input_error|key_table)[.]hpp|sim/truth/.*|sim/camera/mix_bits[.]hpp|"
-             "sim/faults/chance[.]hpp|fmt/.*",
+             "sim/faults/chance[.]hpp|(fmt|nlohmann)/.*",
              "what may be true is known without a run"},
         Rule{"sim/scenario", Runs("scenario|camera|faults|physics|render|robot|truth|world"),
              "a scenario describes a run and knows no verdict"},
@@ -218,7 +218,8 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"sim/verdict",
              "fovea/hal/(events|record|types)[.]hpp|firmware/core/(config|features|model|trajectory)/.*|"
              "firmware/host/(config/(printed_table|terminal)|run/(fault_event|in_words|run_figures))[.]hpp|"
-             "sim/verdict/.*|sim/(camera/lens|mcu/board_summary|render/pinhole|theory/run|truth/truth_draw|world/world)[.]hpp|"
+             "sim/verdict/.*|sim/(camera/lens|mcu/board_summary|render/pinhole|theory/run|truth/"
+             "(truth_draw|truth_text)|world/world)[.]hpp|"
              "sim/scenario/(commanded_motion|fault_settings|run_description)[.]hpp|(fmt|nlohmann)/.*",
              "a verdict depends on truth, records and scenario, not on the run that it judges"},
         Rule{"sim/run", Runs("run|verdict|theory|scenario|camera|faults|gige|render|world"),

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "firmware/core/task/servo_loop.hpp"
-#include "sim/scenario/compose.hpp"
 #include "sim/scenario/run_description.hpp"
+#include "sim/scenario/world_config.hpp"
 #include "sim/verdict/config.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world_clock.hpp"
@@ -24,7 +24,7 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
         eye_(about_.servo.feature, about_.pinhole.f_px, sigma_px,
              static_cast<unsigned>(about_.scenario.run.seed)),
         verdict_(sim::MakeVerdictConfig(about_)),
-        world_(sim::MakeWorldConfig(about_.scenario, about_.scene.robot)) {}
+        world_(sim::MakeWorldConfig(about_)) {}
 
   sim::Summary Execute() {
     if (!task_.Init(about_.servo).ok()) {

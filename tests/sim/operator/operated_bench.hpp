@@ -11,8 +11,8 @@
 #include "firmware/host/recording/flight/flight_recorder.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "sim/operator/desk.hpp"
-#include "sim/scenario/compose.hpp"
 #include "sim/scenario/run_description.hpp"
+#include "sim/scenario/world_config.hpp"
 #include "sim/world/sim_arm.hpp"
 #include "sim/world/world_clock.hpp"
 #include "tests/support/truth_eye.hpp"
@@ -26,7 +26,7 @@ class OperatedBench {
     if (!servo_.Init(about.servo).ok()) {
       throw std::logic_error("the servo refuses its configuration");
     }
-    sim::WorldConfig config = sim::MakeWorldConfig(about.scenario, about.scene.robot);
+    sim::WorldConfig config = sim::MakeWorldConfig(about);
     config.physics.may_be_loaded = true;
     world = std::make_unique<sim::World>(config);
     world->OnExposure([this](const sim::Exposure& exposure) { See(exposure); });

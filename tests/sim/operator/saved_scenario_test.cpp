@@ -5,8 +5,8 @@
 
 #include <fstream>
 
-#include "sim/scenario/compose.hpp"
 #include "sim/scenario/run_description.hpp"
+#include "sim/scenario/world_config.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temp_folder.hpp"
 
@@ -40,7 +40,7 @@ TEST_F(SavedScenarioTest, BeginsAtThePresentState) {
   PresentState present{SomeTruth(), true, {{"servo.lambda", 3.75}}, scenario.faults};
   present.faults.bench.load = {{1.0, 5.25}, 2.5};
   present.faults.bench.camera_outage = {0.5, 1.0};  // over
-  const Scenario again = Reloaded(SaveScenario(scenario, present));
+  const Scenario again = Reloaded(SaveScenario(DescribeRun(scenario), present));
   EXPECT_EQ(again.servo.config.law.lambda, 3.75);
   EXPECT_EQ(again.camera.noise_sigma, 1.23456789);
   EXPECT_EQ(again.faults.bench.load.window.start_s, 0.0);
@@ -48,21 +48,33 @@ TEST_F(SavedScenarioTest, BeginsAtThePresentState) {
   EXPECT_EQ(again.faults.bench.load.mass, 2.5);
   EXPECT_FALSE(again.faults.bench.camera_outage.Begins());
   const RunDescription run = DescribeRun(again);
-  const World world(MakeWorldConfig(again, run.scene.robot));
+  const World world(MakeWorldConfig(run));
   EXPECT_EQ(world.truth().q, present.truth.q) << "to the last bit";
   EXPECT_EQ(world.truth().dq, present.truth.dq);
   EXPECT_EQ(world.truth().p_BO, present.truth.p_BO);
   EXPECT_TRUE(world.truth().R_BO.isApprox(present.truth.R_BO, 1e-12));
 }
 
+// The start is what the encoders read, and the target's place is that of the believed ball.
+TEST_F(SavedScenarioTest, BeginsAtThePresentStateWhereBeliefsAreWrong) {
+  const Scenario scenario = LoadScenario(
+      "ball", {"truth.arm.encoder_zero.sigma=0.01", "truth.target.size_scale.offset=0.1", "run.seed=3"});
+  const PresentState present{SomeTruth(), true, {}, scenario.faults};
+  const Scenario again = Reloaded(SaveScenario(DescribeRun(scenario), present));
+  const World world(MakeWorldConfig(DescribeRun(again)));
+  EXPECT_LT((world.truth().q - present.truth.q).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT((world.truth().p_BO - present.truth.p_BO).norm(), 1e-15);
+}
+
 TEST_F(SavedScenarioTest, AMovingTargetBeginsItsPathAnew) {
   const Scenario scenario = LoadScenario("ball-moving", {});
-  const std::string text = SaveScenario(scenario, {SomeTruth(), false, {}, scenario.faults});
+  const std::string text = SaveScenario(DescribeRun(scenario), {SomeTruth(), false, {}, scenario.faults});
   EXPECT_NE(text.find("# The target's path begins anew."), std::string::npos);
   const Scenario again = Reloaded(text);
   EXPECT_EQ(again.target.motion, scenario.target.motion);
   EXPECT_EQ(again.target.position, scenario.target.position);
-  const Scenario touched = Reloaded(SaveScenario(scenario, {SomeTruth(), true, {}, scenario.faults}));
+  const Scenario touched =
+      Reloaded(SaveScenario(DescribeRun(scenario), {SomeTruth(), true, {}, scenario.faults}));
   EXPECT_EQ(touched.target.motion, "still");
   EXPECT_EQ(touched.target.position[1], -0.1);
 }
@@ -70,7 +82,8 @@ TEST_F(SavedScenarioTest, AMovingTargetBeginsItsPathAnew) {
 TEST_F(SavedScenarioTest, SurvivesQuotesInItsName) {
   Scenario scenario = LoadScenario("ball", {});
   scenario.name = "my \"best\" ball \\ 1";
-  const Scenario again = Reloaded(SaveScenario(scenario, {SomeTruth(), true, {}, scenario.faults}));
+  const Scenario again =
+      Reloaded(SaveScenario(DescribeRun(scenario), {SomeTruth(), true, {}, scenario.faults}));
   EXPECT_NE(again.run.description.find(scenario.name), std::string::npos);
 }
 
@@ -83,7 +96,7 @@ TEST_F(SavedScenarioTest, EachShippedScenarioComesBack) {
     present.truth.q = Eigen::Map<const Eigen::VectorXd>(
         scenario.arm.q_start.data(), static_cast<Eigen::Index>(scenario.arm.q_start.size()));
     present.truth.dq = Eigen::VectorXd::Zero(present.truth.q.size());
-    Scenario again = Reloaded(SaveScenario(scenario, present));
+    Scenario again = Reloaded(SaveScenario(DescribeRun(scenario), present));
     Scenario before = scenario;
     std::map<std::string, std::string> values = ScenarioKeys(again).Values();
     std::map<std::string, std::string> wanted = ScenarioKeys(before).Values();
@@ -98,8 +111,8 @@ TEST_F(SavedScenarioTest, EachShippedScenarioComesBack) {
 TEST_F(SavedScenarioTest, RefusesATunedKeyThatNoScenarioHas) {
   const Scenario scenario = LoadScenario("ball", {});
   EXPECT_NE(test::InputErrorOf([&] {
-              static_cast<void>(
-                  SaveScenario(scenario, {SomeTruth(), true, {{"servo.lamda", 1.0}}, scenario.faults}));
+              static_cast<void>(SaveScenario(DescribeRun(scenario),
+                                             {SomeTruth(), true, {{"servo.lamda", 1.0}}, scenario.faults}));
             }).find("did you mean servo.lambda"),
             std::string::npos);
 }

@@ -15,8 +15,8 @@
 #include "sim/operator/served_desk.hpp"
 #include "sim/operator/served_page.hpp"
 #include "sim/panda/robot.hpp"
-#include "sim/scenario/compose.hpp"
 #include "sim/scenario/run_description.hpp"
+#include "sim/scenario/world_config.hpp"
 #include "tests/host/live/live_client.hpp"
 #include "tests/support/input_error.hpp"
 #include "tests/support/temp_folder.hpp"
@@ -27,7 +27,7 @@ namespace {
 using nlohmann::json;
 
 WorldConfig LoadableWorld(const RunDescription& about) {
-  WorldConfig config = MakeWorldConfig(about.scenario, about.scene.robot);
+  WorldConfig config = MakeWorldConfig(about);
   config.physics.may_be_loaded = true;
   return config;
 }

@@ -27,8 +27,9 @@ TEST(Deviation, FormsApplyInTheirOrder) {
   d.offset = {0.5, -0.5};
   EXPECT_TRUE(d.IsAny());
   EXPECT_EQ(Draw(d, {1.0, 2.0}, 3), (std::vector{3.5, 5.5}));
+  d = {};
   d.value = {10.0};
-  EXPECT_EQ(Draw(d, {1.0, 2.0}, 3), (std::vector{30.5, 29.5}));
+  EXPECT_EQ(Draw(d, {1.0, 2.0}, 3), (std::vector{10.0, 10.0}));
 }
 
 struct Moments {
@@ -103,8 +104,7 @@ TEST(Deviation, DrawsAreIndependent) {
       << "a key does not change the draw of another";
   EXPECT_EQ(two.differing().size(), 2U);
   TruthDraw other(alone, 8);
-  EXPECT_NE(TruthDraw(alone, 7).Get(Quantity::kLoadMass, {0.25}),
-            other.Get(Quantity::kLoadMass, {0.25}));
+  EXPECT_NE(TruthDraw(alone, 7).Get(Quantity::kLoadMass, {0.25}), other.Get(Quantity::kLoadMass, {0.25}));
 }
 
 TEST(TruthDraw, RefusesWhatACouldBeDrawnAndIsImpossible) {
@@ -120,8 +120,35 @@ TEST(TruthDraw, RefusesWhatACouldBeDrawnAndIsImpossible) {
   mass.sigma = {0.05};
   EXPECT_EQ(test::InputErrorOf([&] { TruthDraw(settings, 1).Get(Quantity::kLoadMass, {0.25}); }), "");
   settings.of[static_cast<std::size_t>(Quantity::kLoadCentre)].offset = {0.1, 0.2};
-  EXPECT_THAT(test::InputErrorOf([&] { TruthDraw(settings, 1).Get(Quantity::kLoadCentre, {0.0, 0.0, 0.0}); }),
+  EXPECT_THAT(test::InputErrorOf([&] {
+                TruthDraw(settings, 1).Get(Quantity::kLoadCentre, {0.0, 0.0, 0.0});
+              }),
               HasSubstr("truth.arm.load_com.offset has 2 entries: 1 or 3 are allowed"));
+}
+
+TEST(TruthDraw, RefusesFormsThatContradictOrChangeNothing) {
+  TruthSettings settings;
+  Deviation& mass = settings.of[static_cast<std::size_t>(Quantity::kLoadMass)];
+  const auto error = [&](double believed) {
+    return test::InputErrorOf([&] { TruthDraw(settings, 1).Get(Quantity::kLoadMass, {believed}); });
+  };
+  mass.range = {0.2, -0.2};
+  EXPECT_THAT(error(0.5), HasSubstr("truth.arm.load_mass.range = [0.2, -0.2] is not allowed: the smaller"));
+  mass = {};
+  mass.scale_range = {1.1, 0.9};
+  EXPECT_THAT(error(0.5),
+              HasSubstr("truth.arm.load_mass.scale_range = [1.1, 0.9] is not allowed: the smaller"));
+  mass = {};
+  mass.value = {0.5};
+  mass.sigma = {0.1};
+  EXPECT_THAT(error(0.5),
+              HasSubstr("truth.arm.load_mass is not allowed as a value and as a difference at once"));
+  mass = {};
+  mass.scale = {1.2};
+  EXPECT_EQ(error(0.5), "");
+  EXPECT_THAT(error(0.0), HasSubstr("truth.arm.load_mass has no effect: the servo believes 0, and a factor"));
+  mass.offset = {0.1};
+  EXPECT_EQ(error(0.0), "");
 }
 
 }  // namespace

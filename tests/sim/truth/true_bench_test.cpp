@@ -40,15 +40,16 @@ TEST(TrueBench, ChangesTheBenchAndNotTheBelief) {
   const RunDescription honest = Described({});
   const RunDescription run = Described(
       {"truth.camera.mount_xyz.offset=[0.005, 0, 0]", "truth.camera.mount_turn_deg=[0, 0, 1]",
-       "truth.camera.f_px.scale=1.02", "truth.camera.c_px.offset=[3, -2]", "truth.camera.lens=[-0.1, 0, 0, 0, 0]",
-       "truth.camera.latency_ms=58", "truth.arm.link_mass.scale=1.2", "truth.arm.load_mass.offset=0.2",
-       "truth.target.size_scale=1.05", "truth.arm.encoder_zero=0.01", "truth.arm.base_tilt_deg=[1, 2]"});
+       "truth.camera.f_px.scale=1.02", "truth.camera.c_px.offset=[3, -2]",
+       "truth.camera.lens=[-0.1, 0, 0, 0, 0]", "truth.camera.latency_ms=58", "truth.arm.link_mass.scale=1.2",
+       "truth.arm.load_mass.offset=0.2", "truth.target.size_scale=1.05", "truth.arm.encoder_zero=0.01",
+       "truth.arm.base_tilt_deg=[1, 2]"});
   EXPECT_EQ(run.truth.size(), 11U);
   // Belief
   EXPECT_EQ(run.servo.X_EC.p, honest.servo.X_EC.p);
   EXPECT_EQ(run.servo.X_EC.R, honest.servo.X_EC.R);
   EXPECT_EQ(run.intrinsics.f_u_px, honest.intrinsics.f_u_px);
-  EXPECT_EQ(run.intrinsics.lens, honest.intrinsics.lens);
+  EXPECT_EQ(run.intrinsics.lens.k1, honest.intrinsics.lens.k1);
   EXPECT_EQ(run.servo.feature.radius, honest.servo.feature.radius);
   for (int i = 0; i < run.servo.arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -80,6 +81,16 @@ TEST(TrueBench, ChangesTheBenchAndNotTheBelief) {
   EXPECT_NEAR(mass_of(run.scene.robot), base + 1.2 * moving + 0.45, 1e-9);
 }
 
+TEST(TrueBench, FocalLengthKeepsTheAspectAndTheAspectTheFocalLength) {
+  const Pinhole believed = Described({}).pinhole;
+  const Pinhole longer = Described({"truth.camera.f_px.scale_sigma=0.1"}).eye.pinhole;
+  EXPECT_GT(std::abs(longer.f_px - believed.f_px), 1.0);
+  EXPECT_NEAR(longer.FocalV() / longer.f_px, believed.FocalV() / believed.f_px, 1e-15);
+  const Pinhole wider = Described({"truth.camera.aspect=1.01"}).eye.pinhole;
+  EXPECT_EQ(wider.f_px, believed.f_px);
+  EXPECT_DOUBLE_EQ(wider.FocalV(), 1.01 * believed.f_px);
+}
+
 TEST(TrueBench, ReadsInlineTablesAndRefusesWhatCannotBe) {
   const test::TempFolder folder;
   const auto load = [&](const std::string& text) {
@@ -105,13 +116,14 @@ TEST(TrueBench, ReadsInlineTablesAndRefusesWhatCannotBe) {
   EXPECT_THAT(test::InputErrorOf([&] { load("[truth]\ncamera.latency_ms = nan\n"); }),
               HasSubstr("truth.camera.latency_ms = nan is not allowed"));
   EXPECT_THAT(test::InputErrorOf([&] { load("[truth]\ncamera.latency_ms = { range = [-40, 0] }\n"); }),
-              HasSubstr("allowed is 2.5 to 500 ms")) << "half of the exposure";
+              HasSubstr("allowed is 2.5 to 500 ms"))
+      << "half of the exposure";
 }
 
 // What the sensors of a standing arm read, and how it moves off, against the model by hand.
 TEST(TrueBench, EncodersReadTheirZerosAndTheArmStartsWhereTheyRead) {
-  const RunDescription run = Described({"truth.arm.encoder_zero=[0.01, -0.02, 0, 0, 0, 0, 0.03]",
-                                        "arm.encoder_noise=0"});
+  const RunDescription run =
+      Described({"truth.arm.encoder_zero=[0.01, -0.02, 0, 0, 0, 0, 0.03]", "arm.encoder_noise=0"});
   const World world(MakeWorldConfig(run));
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_NEAR(world.MeasuredState().q[i], run.scenario.arm.q_start[i], 1e-12) << i;
@@ -154,8 +166,8 @@ TEST(TrueBench, TiltsAboutBothAxesAgree) {
 }
 
 TEST(TrueBench, StampsFollowLatencyJitterAndDrift) {
-  const RunDescription run = Described({"truth.camera.latency_ms=30", "truth.camera.latency_jitter_ms=2",
-                                        "truth.camera.clock_drift_ppm=100"});
+  const RunDescription run = Described(
+      {"truth.camera.latency_ms=30", "truth.camera.latency_jitter_ms=2", "truth.camera.clock_drift_ppm=100"});
   double sum2 = 0.0;
   constexpr int kFrames = 5000;
   for (std::uint64_t k = 0; k < kFrames; ++k) {

@@ -67,8 +67,8 @@ TEST_F(VerdictTest, FiguresAreOfTheLastHalfSecond) {
     return t < 1.5 ? Eigen::Vector3d(0.1, 0.0, 0.0) : Eigen::Vector3d(0.0003, 0.0004, 0.0012);
   });
   EXPECT_TRUE(s.converged);
-  EXPECT_NEAR(*s.start_error_px, config_.pinhole.f_px * 0.1 / 0.4, 1e-9);
-  EXPECT_NEAR(*s.final_error_px_rms, config_.pinhole.f_px * 0.0005 / 0.4012, 1e-9);
+  EXPECT_NEAR(*s.start_error_px, config_.eye.pinhole.f_px * 0.1 / 0.4, 1e-9);
+  EXPECT_NEAR(*s.final_error_px_rms, config_.eye.pinhole.f_px * 0.0005 / 0.4012, 1e-9);
   EXPECT_NEAR(*s.final_error_lateral_mm, 0.5, 1e-9);
   EXPECT_NEAR(*s.final_error_depth_mm, 1.2, 1e-9);
   EXPECT_NEAR(*s.final_error_mm, 1.3, 1e-9);
@@ -77,7 +77,8 @@ TEST_F(VerdictTest, FiguresAreOfTheLastHalfSecond) {
 
 TEST_F(VerdictTest, OneSampleTooFarOffInTheWindowIsNotConverged) {
   const auto pixel_off = [&](double t) {
-    return Eigen::Vector3d(std::abs(t - 1.7) < 1e-6 ? 1.01 * kGoalZ / config_.pinhole.f_px : 0.0, 0.0, 0.0);
+    return Eigen::Vector3d(std::abs(t - 1.7) < 1e-6 ? 1.01 * kGoalZ / config_.eye.pinhole.f_px : 0.0, 0.0,
+                           0.0);
   };
   EXPECT_FALSE(Judge(2.0, pixel_off).converged);
   const auto depth_off = [](double t) {
@@ -105,7 +106,7 @@ TEST_F(VerdictTest, TargetBehindTheCameraHasNoPixelError) {
 
 TEST_F(VerdictTest, MovingTargetIsJudgedOverTheSecondHalf) {
   config_.target_moves = true;
-  const double px = kGoalZ / config_.pinhole.f_px;
+  const double px = kGoalZ / config_.eye.pinhole.f_px;
   EXPECT_TRUE(
       Judge(2.0, [&](double t) { return Eigen::Vector3d((t < 0.99 ? 50 : 2.9) * px, 0, 0); }).converged);
   const Summary s = Judge(2.0, [&](double) { return Eigen::Vector3d(3.1 * px, 0, 0); });
@@ -161,7 +162,7 @@ TEST_F(VerdictTest, MotionThatWasGivenUpOrNeverBegunIsNotFollowed) {
 // A moving target is kept while its rms error over half a second is within the bound; a sample may exceed it.
 TEST_F(VerdictTest, MovingTargetIsKeptByItsMeanErrorOverHalfASecond) {
   config_.target_moves = true;
-  const double px = kGoalZ / config_.pinhole.f_px;
+  const double px = kGoalZ / config_.eye.pinhole.f_px;
   const Summary kept = Judge(3.0, [&](double t) {
     const bool peak = std::fmod(t, 0.1) < 0.01;
     return Eigen::Vector3d((t < 1.0 ? 50.0 : peak ? 5.0 : 1.0) * px, 0, 0);
