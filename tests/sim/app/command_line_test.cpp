@@ -54,7 +54,7 @@ TEST_F(CommandLineTest, UnknownScenarioIsRefusedWithASuggestion) {
   EXPECT_THAT(Refusal({"bal"}), AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
                                       HasSubstr("ball, ball-clutter, ball-dark, ball-eight, ball-jump, "
                                                 "ball-line, ball-moving, ball-occluded, ball-puma560, "
-                                                "ball-pushed, ball-ur5e, circle")));
+                                                "ball-pushed, ball-uncertain, ball-ur5e, circle")));
   EXPECT_THAT(Refusal({"nowhere/to/be.toml"}), HasSubstr("nowhere/to/be.toml"));
 }
 
