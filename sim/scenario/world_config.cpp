@@ -7,6 +7,7 @@
 #include "sim/scenario/to_vector.hpp"
 
 namespace fovea::sim {
+
 WorldConfig MakeWorldConfig(const RunDescription& run) {
   const Scenario& s = run.bench;
   WorldConfig config;

@@ -25,7 +25,7 @@ std::string InWords(const TrueValue& value) {
   }
   const QuantityInfo& info = InfoOf(value.quantity);
   const char* separator = info.unit[0] == '\0' ? "" : " ";
-  return fmt::format("{} {}by {:+.3g}{}{}", info.key, value.believed.size() > 1 ? "up to " : "", most,
+  return fmt::format("{} by {}{:+.3g}{}{}", info.key, value.believed.size() > 1 ? "up to " : "", most,
                      separator, info.unit);
 }
 
