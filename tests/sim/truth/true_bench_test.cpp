@@ -23,7 +23,7 @@ namespace {
 
 using testing::HasSubstr;
 
-RunDescription Described(std::vector<std::string> assignments) {
+RunDescription Described(const std::vector<std::string>& assignments) {
   return DescribeRun(LoadScenario("ball", assignments));
 }
 
