@@ -127,6 +127,7 @@ async function checkWatching(port) {
   let held = await viewer.call("/servo/hold", {});
   while (/no connection to the robot yet/.test(held)) held = await viewer.call("/servo/hold", {});
   assert.equal(held, "done");
+  await run.program.says(/^hold/); // a run that never leaves Boot is no success
   assert.equal(await viewer.call("/run/end", {}), "done");
   assert.equal(await viewer.call("/run/end", {}).catch(() => "done"), "done", "a second time changes nothing");
   assert.equal(await run.program.exited, 0);
