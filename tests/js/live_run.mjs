@@ -148,7 +148,9 @@ async function checkDragAndLambda(context) {
   await untilTime(page, 5.0);
   const { rate, speed } = await pictureRate(page, 5);
   console.log(`${rate.toFixed(1)} pictures/s on the page, the run at ${speed.toFixed(2)} times real time`);
-  assert.ok(rate > 20, "the camera's picture moves");
+  // A timing, and so only printed: 26 to 30 a second on an idle computer of two cores without a GPU. The test fails for a page
+  // that does not show them.
+  assert.ok(rate > 10, "the camera's picture moves");
   const marks = [];
   for (const [lambda, direction] of [
     [2, 1],
