@@ -64,6 +64,7 @@ async function open(context, url) {
   return { page, said, sent };
 }
 
+const SHOWN_S = 0.02; // the page shows rounded times
 const runTime = (page) => page.evaluate(() => parseFloat(document.querySelector(".when").textContent));
 const untilTime = (page, t) =>
   page.waitForFunction((end) => parseFloat(document.querySelector(".when").textContent) >= end, t);
@@ -157,13 +158,13 @@ async function checkDragAndLambda(context) {
     [4, -1],
   ]) {
     await setLambda(page, lambda);
-    marks.push(await runTime(page));
+    marks.push((await runTime(page)) - SHOWN_S);
     await waitForPictures(page, 1);
     await dragTarget(page, sent, 0.1, direction);
     await untilTime(page, (await runTime(page)) + 4.0);
     // Back while the run is paused: for the arm that is one quick move, however slow this computer is.
     await press(page, ".pause", /Run/);
-    marks.push(await runTime(page));
+    marks.push((await runTime(page)) - SHOWN_S);
     await dragTarget(page, sent, 0.1, -direction);
     await press(page, ".pause", /Pause/);
     await untilTime(page, (await runTime(page)) + 4.0);
