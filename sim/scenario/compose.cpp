@@ -16,11 +16,7 @@
 #include "sim/scenario/to_vector.hpp"
 
 namespace fovea::sim {
-namespace {
-
 using config::InputError;
-
-}  // namespace
 
 Eigen::Isometry3d CameraMount(const Scenario& s) {
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();

@@ -31,7 +31,7 @@ class Dice {
   double Uniform(const std::vector<double>& range) {
     return range[0] + (range[1] - range[0]) * Chance(seed_, event_++);
   }
-  // The polar form of Box and Muller (A note on the generation of random normal deviates, 1958).
+  // Box and Muller, A note on the generation of random normal deviates (1958).
   double Normal() {
     for (;;) {
       const double radius = std::sqrt(-2.0 * std::log(1.0 - Chance(seed_, event_++)));

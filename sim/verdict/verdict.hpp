@@ -28,8 +28,6 @@ struct VerdictConfig {
   StopRules stop;
   JudgedEye eye;
   TargetGoal goal;
-  bool judges_metres =
-      true;             // false: what the servo believes is wrong, and only the picture can be at its goal
   bool has_eye = true;  // false: there is no target to judge
   bool target_moves = false;
   double tracking_bound_px = 3.0;
@@ -61,6 +59,7 @@ class Verdict {
     std::int64_t stamp_ns = 0;
     double error_px = 0.0;                              // infinite if the target is behind the camera
     Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal minus truth, in axes of C [m]
+    double judged_m = 0.0;                              // distance to where the goal's picture is true
     double error_rad = 0.0;                             // of the orientation, if the goal has one
   };
   void AddSample(const Sample& sample);

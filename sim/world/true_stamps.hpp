@@ -12,7 +12,8 @@
 namespace fovea::sim {
 
 // The servo's computer stamps a picture at its arrival, less the believed latency. A picture that arrives
-// later than believed therefore seems newer than it is.
+// later than believed therefore seems newer than it is. Pictures arrive in their order. The clock of the
+// stamps may run at another rate than the robot's; they agree at time 0.
 struct TrueStamps {
   std::int64_t late_ns = 0;  // true latency minus the believed one
   double jitter_ns = 0.0;    // standard deviation of each picture's latency
@@ -33,9 +34,10 @@ struct TrueStamps {
   [[nodiscard]] std::int64_t DriftNs(std::int64_t stamp_ns) const {
     return static_cast<std::int64_t>(drift * static_cast<double>(stamp_ns));
   }
-  // Error of the stamp of frame `sequence`, exposed at `stamp_ns`.
-  [[nodiscard]] std::int64_t ErrorNs(std::uint64_t sequence, std::int64_t stamp_ns) const {
-    return late_ns + JitterNs(sequence) + DriftNs(stamp_ns);
+  // Error of the stamp of a picture that was exposed at `stamp_ns` and arrived `by_jitter_ns` later than by
+  // the mean latency.
+  [[nodiscard]] std::int64_t ErrorNs(std::int64_t by_jitter_ns, std::int64_t stamp_ns) const {
+    return late_ns + by_jitter_ns + DriftNs(stamp_ns);
   }
 };
 

@@ -36,16 +36,22 @@ World::World(const WorldConfig& config)
       arm_(config.robot, WithLoad(config.physics, config.load)),
       touch_(config.robot, config.target_body),
       random_(config.seed) {
-  for (const SimLink& link : config_.robot.links) {
+  // The robot's controller compensates a share of the friction that it believes in. It may do so too much.
+  const SimRobot& believed = config_.robot_truth.believed ? *config_.robot_truth.believed : config_.robot;
+  for (std::size_t i = 0; i < config_.robot.links.size(); ++i) {
+    const SimLink& link = config_.robot.links[i];
     if (link.dof >= 0) {
-      joints_.push_back(&link);
       // On a light link, the full friction of one step would reverse the speed. Each of its two parts
       // therefore removes at most half of the speed per step.
-      const double left = 1.0 - config_.friction_compensation;
+      const auto left = [&](double friction, double friction_believed) {
+        return friction == friction_believed ? (1.0 - config_.friction_compensation) * friction
+                                             : friction - config_.friction_compensation * friction_believed;
+      };
       const double most =
           0.5 * OwnInertia(link) / hal::kTickPeriodS;  // damping of one part [N m s/rad, N s/m]
-      viscous_.push_back(std::min(left * link.viscous, most));
-      stiction_speed_.push_back(std::max(kStictionSpeed, left * link.coulomb / most));
+      viscous_.push_back(std::min(left(link.viscous, believed.links[i].viscous), most));
+      coulomb_.push_back(left(link.coulomb, believed.links[i].coulomb));
+      stiction_speed_.push_back(std::max(kStictionSpeed, std::fabs(coulomb_.back()) / most));
     }
   }
   if (config_.target.kind == MotionKind::kPushed) {
@@ -61,7 +67,7 @@ World::World(const WorldConfig& config)
   if (config_.stiction) {
     Eigen::VectorXd left(arm_.num_dofs());
     for (Eigen::Index i = 0; i < left.size(); ++i) {
-      left[i] = (1.0 - config_.friction_compensation) * joints_[static_cast<std::size_t>(i)]->coulomb;
+      left[i] = std::max(coulomb_[static_cast<std::size_t>(i)], 0.0);
     }
     arm_.SetStiction(left);
   }
@@ -165,41 +171,36 @@ bool World::MayTilt() const {
 }
 
 // Difference of the next step's accelerations to those of an undisturbed arm, in the same state and under the
-// same command. Empty if there is no disturbance.
+// same command. Empty if there is no disturbance. A wrong belief of the servo is none.
 Eigen::VectorXd World::AccelerationByDisturbance(double mass, double tilt) {
   const Eigen::VectorXd disturbed = MotorTorque() + Pulls();
-  const Eigen::VectorXd wanted = WantedTorque();
-  if (mass == 0.0 && tilt == 0.0 && disturbed == wanted && config_.robot_truth.base_tilt.isZero(0.0)) {
+  const Eigen::VectorXd wanted = UnimpairedTorque();
+  if (mass == 0.0 && tilt == 0.0 && disturbed == wanted) {
     return {};
   }
   TakeUpLoad(mass);
   TiltBase(tilt);
   const Eigen::VectorXd ddq = arm_.ForwardDynamics(WithFriction(disturbed));
   TakeUpLoad(0.0);
-  if (MayTilt()) {
-    arm_.TiltBase(0.0, 0.0);
-  }
+  TiltBase(0.0);
   return ddq - arm_.ForwardDynamics(WithFriction(wanted));
 }
 
-// The command plus the torque that carries the arm as it is, if its base is upright.
-Eigen::VectorXd World::WantedTorque() const {
-  return arm_.GravityTorque() + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
-}
-
-// The command plus the gravity compensation of the robot's own controller.
-Eigen::VectorXd World::RobotTorque() const {
-  const Eigen::VectorXd gravity = believed_ ? believed_->GravityTorque() : arm_.GravityTorque();
-  return gravity + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
-}
-
-// What the motors deliver of it.
-Eigen::VectorXd World::MotorTorque() const {
-  Eigen::VectorXd tau = RobotTorque();
+// What the motors deliver without a fault: the command plus the gravity compensation of the robot's own
+// controller.
+Eigen::VectorXd World::UnimpairedTorque() const {
+  Eigen::VectorXd tau = believed_ ? believed_->GravityTorque() : arm_.GravityTorque();
+  tau += Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
   const RobotTruth& truth = config_.robot_truth;
   if (truth.torque_scale.size() > 0) {
     tau = truth.torque_scale.cwiseProduct(tau) + truth.torque_bias;
   }
+  return tau;
+}
+
+// What the motors deliver.
+Eigen::VectorXd World::MotorTorque() const {
+  Eigen::VectorXd tau = UnimpairedTorque();
   if (config_.torque_loss.window.Contains(now_ns_)) {
     tau[config_.torque_loss.joint] *= 1.0 - config_.torque_loss.share;
   }
@@ -212,8 +213,7 @@ double World::FrictionLeft(int joint, double velocity) const {
   if (config_.stiction) {
     return viscous_[k] * velocity;
   }
-  return viscous_[k] * velocity + (1.0 - config_.friction_compensation) * joints_[k]->coulomb *
-                                      std::tanh(velocity / stiction_speed_[k]);
+  return viscous_[k] * velocity + coulomb_[k] * std::tanh(velocity / stiction_speed_[k]);
 }
 
 // All torques on the joints: motors, springs, external pushes and the remaining friction.

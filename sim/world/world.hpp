@@ -60,7 +60,7 @@ struct Truth {
   Eigen::VectorXd dq;
   Eigen::VectorXd tau_cmd;  // command of the last step
   // Share of the joints' accelerations in the last step caused by disturbances [rad/s^2, m/s^2]: pushes,
-  // springs, loads, a tilted base, weak motors. Empty if there was none.
+  // springs, faults of loads, base and motors, not by a wrong belief. Empty if there was none.
   Eigen::VectorXd ddq_disturbed;
   Eigen::Isometry3d X_BE = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
@@ -113,8 +113,7 @@ class World {
   [[nodiscard]] Eigen::VectorXd WithFriction(Eigen::VectorXd tau) const;
   [[nodiscard]] double FrictionLeft(int joint, double velocity) const;
   [[nodiscard]] Eigen::VectorXd Pulls() const;
-  [[nodiscard]] Eigen::VectorXd WantedTorque() const;
-  [[nodiscard]] Eigen::VectorXd RobotTorque() const;
+  [[nodiscard]] Eigen::VectorXd UnimpairedTorque() const;
   [[nodiscard]] Eigen::VectorXd MotorTorque() const;
   [[nodiscard]] double SensedTorque(double tau, Eigen::Index joint) const;
   void TakeUpLoad(double mass);
@@ -134,8 +133,9 @@ class World {
   std::optional<Eigen::Isometry3d> placed_;  // the target's pose, by PlaceTarget
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
-  std::vector<const SimLink*> joints_;  // moving links, base to tip
-  std::vector<double> viscous_;         // uncompensated damping of each [N m s/rad, N s/m]
+  // Of the moving links, base to tip.
+  std::vector<double> viscous_;  // uncompensated damping [N m s/rad, N s/m]
+  std::vector<double> coulomb_;  // uncompensated Coulomb friction [N m, N]; below 0: compensated too much
   std::vector<double> stiction_speed_;  // speed scale of each joint's smooth Coulomb friction [rad/s, m/s]
   std::int64_t now_ns_ = 0;
   std::uint64_t next_frame_ = 0;
