@@ -57,10 +57,10 @@ World::World(const WorldConfig& config)
   if (config_.target.kind == MotionKind::kPushed) {
     ball_.emplace(config_.ball);
   }
-  if (const auto& believed = config_.robot_truth.believed) {
+  if (config_.robot_truth.believed) {
     BulletArmOptions options = config_.physics;
     options.table = false;
-    believed_.emplace(*believed, options);
+    believed_.emplace(believed, options);
   }
   arm_.SetState(config_.q_start - EncoderZero(),
                 config_.dq_start.size() > 0 ? config_.dq_start : Eigen::VectorXd::Zero(arm_.num_dofs()));
