@@ -43,4 +43,10 @@ class JointHistory {
 [[nodiscard]] bool CameraPoseAt(const JointHistory& history, const model::ArmModel& arm,
                                 const model::Pose& X_EC, std::int64_t stamp_ns, model::Pose& X_BC) noexcept;
 
+// The camera's mean twist [v; w] in its own axes [m/s, rad/s] within 10 ms around `stamp_ns`, at whose pose
+// it is `X_BC`. Zero if the history does not reach back that far. Real-time: yes.
+[[nodiscard]] model::Vec6 CameraTwistAt(const JointHistory& history, const model::ArmModel& arm,
+                                        const model::Pose& X_EC, std::int64_t stamp_ns,
+                                        const model::Pose& X_BC) noexcept;
+
 }  // namespace fovea::estimate

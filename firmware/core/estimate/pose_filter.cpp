@@ -5,6 +5,7 @@
 
 #include "firmware/core/estimate/first_sight.hpp"
 #include "firmware/core/estimate/shortened.hpp"
+#include "firmware/core/estimate/stamp_error.hpp"
 #include "firmware/core/model/cholesky.hpp"
 #include "firmware/core/model/rotation.hpp"
 
@@ -132,6 +133,7 @@ void Advance(const config::PredictConfig& config, double dt, PoseFilter& f) noex
   add(F::kTurn, F::kTurn, q * dt3 / 3.0);
   add(F::kTurn, F::kTurnRate, q * dt2 / 2.0);
   add(F::kTurnRate, F::kTurnRate, q * dt);
+  P(F::kLate, F::kLate) += kLateDrift * dt;
 }
 
 }  // namespace
@@ -178,6 +180,7 @@ bool StartPose(const Polygon& polygon, const CornerView& view, const SeenCorners
   spread(PoseFilter::kVelocity, kStartSpeedSigma);
   spread(PoseFilter::kAcceleration, kStartAccelerationSigma);
   spread(PoseFilter::kTurnRate, kStartTurnSigma);
+  start.P(PoseFilter::kLate, PoseFilter::kLate) = view.stamp_sigma * view.stamp_sigma;
   if (!start.P.allFinite() || !start.X_BO.p.allFinite() || !start.X_BO.R.allFinite()) {
     return false;
   }
@@ -200,12 +203,15 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   SeenCorners::Vector innovation;
   SeenCorners::Covariance S;
   InOrder(view.seen, NearestFirst(view.seen.xy, expected), innovation, S);
-  innovation -= expected;
   const CornerSlope by_camera = SlopeByCamera(polygon, view.X_CB * next.X_BO);
   AddCameraNoise(by_camera, S);
+  const SeenCorners::Vector by_late = -by_camera.lazyProduct(view.V_BC_C);
+  innovation -= expected + (next.late - view.late) * by_late;
   // With S = L L^T and Y = L^-1 H P, the gain is Y^T L^-1 and reduces P by Y^T Y.
   Gain Y = H.lazyProduct(next.P.topRows<6>());
+  Y += by_late.lazyProduct(next.P.row(F::kLate));
   S += Y.leftCols<6>().lazyProduct(H.transpose());
+  S += Y.col(F::kLate).lazyProduct(by_late.transpose());
   S += bent;
   const double gate2 = config.gate_sigma * config.gate_sigma;
   const SeenCorners::Covariance S_noise = S;
@@ -232,6 +238,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   next.v_BO_B += correction.segment<3>(F::kVelocity);
   next.a_BO_B += correction.segment<3>(F::kAcceleration);
   next.w_BO_B += correction.segment<3>(F::kTurnRate);
+  next.late = CredibleLateness(next.late + correction[F::kLate], config.stamp_sigma);
   next.v_BO_B = Shortened(next.v_BO_B, config.target_speed_max);
   next.a_BO_B = Shortened(next.a_BO_B, config.target_acceleration_max);
   next.w_BO_B = Shortened(next.w_BO_B, config.target_turn_max);
@@ -242,7 +249,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
 
 FlatMotion MotionAt(const config::PredictConfig& config, const PoseFilter& filter,
                     std::int64_t now_ns) noexcept {
-  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns);
+  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns) + filter.late;
   const Mat3 R = model::RotationOf(filter.w_BO_B * dt).lazyProduct(filter.X_BO.R);
   const Vec3 way = dt * (filter.v_BO_B + 0.5 * dt * filter.a_BO_B);
   return {{R, filter.X_BO.p + Shortened(way, config.target_speed_max * std::fabs(dt))},

@@ -12,12 +12,17 @@ namespace {
 // A measurement, and the camera's pose at its stamp.
 struct Seen {
   const hal::FeatureMeasurement& measurement;
+  double late;  // how much older than its stamp [s]
   model::Pose X_BC;
-  model::Mat6 doubt;  // of that pose, as a twist of C
+  model::Vec6 V_BC_C;  // the camera's twist then
+  model::Mat6 doubt;   // of that pose, as a twist of C
 };
 
 hal::Intake TakePose(const config::ServoConfig& config, const Seen& seen, CornerView& view,
                      PredictState& state) noexcept {
+  view.late = seen.late;
+  view.stamp_sigma = config.predict.stamp_sigma;
+  view.V_BC_C = seen.V_BC_C;
   view.doubt = seen.doubt;
   view.stamp_ns = seen.measurement.stamp_ns;
   view.X_CB = seen.X_BC.Inverse();
@@ -40,10 +45,12 @@ hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, fe
     if (verdict.changed) {  // the centre's estimate belongs to the other pose
       const int accepted = state.filter.accepted;
       state.filter = TargetFilter{};
-      const hal::Intake intake =
-          Update(config.predict,
-                 {seen.measurement.stamp_ns, seen.X_BC * lifted.p_CO_C, R * lifted.cov_p * R.transpose()},
-                 state.filter);
+      const hal::Intake intake = Update(config.predict,
+                                        {.stamp_ns = seen.measurement.stamp_ns,
+                                         .late = seen.late,
+                                         .p_BO = seen.X_BC * lifted.p_CO_C,
+                                         .cov_B = R * lifted.cov_p * R.transpose()},
+                                        state.filter);
       state.filter.accepted = std::max(accepted, 1);
       state.X_CO_meas.p = lifted.p_CO_C;
       return intake;
@@ -53,8 +60,9 @@ hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, fe
   Eigen::Matrix<double, 3, 6> by_camera;
   by_camera << model::Mat3::Identity(), -model::CrossMatrix(lifted.p_CO_C);
   const model::Mat3 doubt_C = by_camera * seen.doubt * by_camera.transpose();
-  const MeasuredCentre centre{seen.measurement.stamp_ns, seen.X_BC * lifted.p_CO_C,
-                              R * lifted.cov_p * R.transpose(), R * doubt_C * R.transpose()};
+  const MeasuredCentre centre{seen.measurement.stamp_ns,     seen.late,
+                              seen.X_BC * lifted.p_CO_C,     R * lifted.cov_p * R.transpose(),
+                              R * (by_camera * seen.V_BC_C), R * doubt_C * R.transpose()};
   const hal::Intake intake = Update(config.predict, centre, state.filter);
   if (intake == hal::Intake::kTaken) {
     state.X_CO_meas.p = lifted.p_CO_C;
@@ -99,6 +107,11 @@ FlatMotion BelievedMotion(const config::ServoConfig& config, const PredictState&
   return {{model::Mat3::Identity(), motion.p_BO}, motion.v_BO, model::Vec3::Zero()};
 }
 
+// How much older than its stamp a picture is believed to be [s].
+double Lateness(const config::ServoConfig& config, const PredictState& state) noexcept {
+  return config.feature.SeesOrientation() ? state.hypotheses.plate.best().filter.late : state.filter.late;
+}
+
 // Extrapolates `belief` to `now_ns` without acceleration.
 FlatMotion GoesOn(const LastBelief& belief, std::int64_t now_ns) noexcept {
   const double dt = 1e-9 * static_cast<double>(now_ns - belief.stamp_ns);
@@ -135,8 +148,10 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   const auto camera_at = [&](std::int64_t time_ns, model::Pose& X) {
     return CameraPoseAt(state.history, config.arm, config.X_EC, time_ns, X);
   };
+  const double late = Lateness(config, state);
+  const std::int64_t taken_ns = measurement.stamp_ns - static_cast<std::int64_t>(late * 1e9);
   model::Pose X_BC;
-  if (!camera_at(measurement.stamp_ns, X_BC)) {
+  if (!camera_at(taken_ns, X_BC)) {
     return hal::Intake::kTooOld;
   }
   const bool is_flat = config.feature.SeesOrientation();
@@ -149,7 +164,7 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   const model::Vec3 p_CO_C = is_flat ? PlaceOfCorners(view.seen, X_BC, state.hypotheses) : lifted.p_CO_C;
 
   WatchPicture(config.predict, X_BC, p_CO_C, eye);
-  PictureView picture{measurement.stamp_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
+  PictureView picture{taken_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
   if (measurement.same_for_ns > 0) {
     // If the history does not reach back that far, the hand's motion counts from now on.
     static_cast<void>(camera_at(picture.since_ns, picture.X_BC_since));
@@ -162,7 +177,9 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   }
 
   const LastBelief before{now_ns, BelievedMotion(config, state, now_ns)};
-  const Seen seen{measurement, X_BC, MeasurementDoubt(config, state.history, measurement.stamp_ns, X_BC)};
+  const Seen seen{measurement, late, X_BC,
+                  CameraTwistAt(state.history, config.arm, config.X_EC, taken_ns, X_BC),
+                  MeasurementDoubt(config, state.history, taken_ns, X_BC)};
   const hal::Intake intake =
       is_flat ? TakePose(config, seen, view, state) : TakePosition(config, seen, lifted, state);
   if (intake != hal::Intake::kTaken) {

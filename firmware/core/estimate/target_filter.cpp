@@ -2,10 +2,14 @@
 #include "firmware/core/estimate/target_filter.hpp"
 
 #include <Eigen/LU>  // inverse of a 3x3
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include "firmware/core/estimate/first_sight.hpp"
 #include "firmware/core/estimate/shortened.hpp"
+#include "firmware/core/estimate/stamp_error.hpp"
 
 namespace fovea::estimate {
 namespace {
@@ -16,8 +20,11 @@ using model::Vec3;
 constexpr int kOrder = TargetFilter::kOrder;
 constexpr double kJerkTime = 0.1;  // the configured jerk is a mean over this [s]
 
-void StartAt(const MeasuredCentre& measured, TargetFilter& filter) noexcept {
+void StartAt(const MeasuredCentre& measured, double stamp_sigma, TargetFilter& filter) noexcept {
+  const double late = filter.late;
   filter = TargetFilter{};
+  filter.late = late;
+  filter.P_late = stamp_sigma * stamp_sigma;
   filter.accepted = 1;
   filter.stamp_ns = measured.stamp_ns;
   filter.x[0] = measured.p_BO;
@@ -50,7 +57,12 @@ void Advance(double dt, double jerk, TargetFilter& filter) noexcept {
       }
       filter.P[i][j] = sum;
     }
+    filter.P_x_late[i].setZero();
+    for (std::size_t k = i; k < kOrder; ++k) {
+      filter.P_x_late[i] += F[i][k] * before.P_x_late[k];
+    }
   }
+  filter.P_late += dt * kLateDrift;
 }
 
 }  // namespace
@@ -58,6 +70,7 @@ void Advance(double dt, double jerk, TargetFilter& filter) noexcept {
 TargetFilter::TargetFilter() noexcept {
   for (std::size_t i = 0; i < kOrder; ++i) {
     x[i].setZero();
+    P_x_late[i].setZero();
     for (std::size_t j = 0; j < kOrder; ++j) {
       P[i][j].setZero();
     }
@@ -67,7 +80,7 @@ TargetFilter::TargetFilter() noexcept {
 hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& measured,
                    TargetFilter& filter) noexcept {
   if (filter.accepted == 0) {
-    StartAt(measured, filter);
+    StartAt(measured, config.stamp_sigma, filter);
     return hal::Intake::kTaken;
   }
   if (measured.stamp_ns <= filter.stamp_ns) {
@@ -76,14 +89,21 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
   TargetFilter next = filter;
   Advance(hal::ToSeconds(measured.stamp_ns - filter.stamp_ns), config.target_jerk, next);
 
-  const Vec3 innovation = measured.p_BO - next.x[0];
-  const Mat3 S = next.P[0][0] + measured.cov_B;
+  // The state is that of the shown target. Its place also depends on where the camera was: with an error in
+  // `late`, it seems to have moved with the camera.
+  const Vec3 innovation = measured.p_BO - next.x[0] - (next.late - measured.late) * measured.v_BO_held;
+  std::array<Mat3, kOrder> P_xz;  // the covariance of the state and the place
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    P_xz[i] = next.P[i][0] + next.P_x_late[i] * measured.v_BO_held.transpose();
+  }
+  const Vec3 P_late_z = next.P_x_late[0] + next.P_late * measured.v_BO_held;
+  const Mat3 S = P_xz[0] + measured.v_BO_held * P_late_z.transpose() + measured.cov_B;
   const Mat3 S_inverse = S.inverse();
   const double gate2 = config.gate_sigma * config.gate_sigma;
   const auto fits = [&](const Mat3& inverse) { return innovation.dot(inverse * innovation) <= gate2; };
   if (!fits(S_inverse) && !fits((S + measured.doubt_B).inverse())) {
     if (filter.rejected_in_row + 1 >= config.gate_rejects_max) {
-      StartAt(measured, filter);
+      StartAt(measured, config.stamp_sigma, filter);
       return hal::Intake::kTaken;
     }
     ++filter.rejected_in_row;
@@ -91,12 +111,14 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
   }
   std::array<Mat3, kOrder> K;
   for (std::size_t i = 0; i < kOrder; ++i) {
-    K[i] = next.P[i][0] * S_inverse;
+    K[i] = P_xz[i] * S_inverse;
     next.x[i] += K[i] * innovation;
   }
+  const Vec3 K_late = S_inverse * P_late_z;
+  next.late += K_late.dot(innovation);
   for (std::size_t i = 0; i < kOrder; ++i) {
     for (std::size_t j = i; j < kOrder; ++j) {
-      next.P[i][j] -= K[i] * S * K[j].transpose();
+      next.P[i][j] -= K[i] * P_xz[j].transpose();
       // Keeps the covariance symmetric over hours of rounding.
       if (i == j) {
         next.P[i][i] = 0.5 * (next.P[i][i] + next.P[i][i].transpose()).eval();
@@ -104,7 +126,10 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
         next.P[j][i] = next.P[i][j].transpose();
       }
     }
+    next.P_x_late[i] -= K[i] * P_late_z;
   }
+  next.P_late = std::max(next.P_late - K_late.dot(P_late_z), 0.0);
+  next.late = CredibleLateness(next.late, config.stamp_sigma);
   next.x[1] = Shortened(next.x[1], config.target_speed_max);
   next.x[2] = Shortened(next.x[2], config.target_acceleration_max);
   next.stamp_ns = measured.stamp_ns;
@@ -112,13 +137,17 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
   if (next.accepted < config.accepted_min) {
     ++next.accepted;
   }
+  if (std::getenv("DBG"))
+    std::fprintf(stderr, "LATE %.3f late %.4f sig %.4f v %.4f %.4f %.4f rel %.4f\n",
+                 1e-9 * double(next.stamp_ns), next.late, std::sqrt(next.P_late), next.x[1].x(),
+                 next.x[1].y(), next.x[1].z(), measured.v_BO_held.norm());
   filter = next;
   return hal::Intake::kTaken;
 }
 
 TargetMotion MotionAt(const config::PredictConfig& config, const TargetFilter& filter,
                       std::int64_t now_ns) noexcept {
-  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns);
+  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns) + filter.late;
   const Vec3 way = dt * (filter.x[1] + 0.5 * dt * filter.x[2]);
   return {filter.x[0] + Shortened(way, config.target_speed_max * std::fabs(dt)),
           Shortened(filter.x[1] + dt * filter.x[2], config.target_speed_max)};

@@ -112,6 +112,11 @@ void TargetFilterFields(Archive& a, T& f) noexcept {
       Entries(a, block);
     }
   }
+  a(f.late);
+  a(f.P_late);
+  for (auto& covariance : f.P_x_late) {
+    Entries(a, covariance);
+  }
 }
 
 template <class Archive, class T>
@@ -138,6 +143,7 @@ void PlatePoseFields(Archive& a, T& pose) noexcept {
   Entries(a, pose.filter.v_BO_B);
   Entries(a, pose.filter.a_BO_B);
   Entries(a, pose.filter.w_BO_B);
+  a(pose.filter.late);
   Entries(a, pose.filter.P);
   PoseFields(a, pose.X_BO_still);
   a(pose.motion_misfit);
