@@ -36,7 +36,7 @@ async function waitForSent(page, sent, from, pattern) {
   throw new assert.AssertionError({ message: `nothing like ${pattern} was sent` });
 }
 
-const waitForText = (page, selector, pattern) =>
+export const waitForText = (page, selector, pattern) =>
   page.waitForFunction(
     ([where, text]) => new RegExp(text).test(document.querySelector(where)?.innerText || ""),
     [selector, pattern.source],
