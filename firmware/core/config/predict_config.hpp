@@ -75,8 +75,10 @@ void Fields(Visitor& v, Config& c) noexcept {
              "a picture that stays the same within its noise is rejected once the hand's motion must have "
              "shifted the scene by more than this"},
             c.stuck_shift, 1e-6, 1e6);
-  v.Number({"servo.stamp_sigma", "s", "standard deviation of the measurements' stamps"}, c.stamp_sigma, 0.0,
-           1.0);
+  v.Number({"servo.stamp_sigma", "s",
+            "standard deviation of camera.latency_ms: the servo finds an error of up to three of them while the "
+            "camera moves; 0: the stamps are right"},
+           c.stamp_sigma, 0.0, 0.1);
   v.Number({"servo.mount_shift_sigma", "m", "standard deviation of camera.mount_xyz"}, c.mount_shift_sigma,
            0.0, 1.0);
   v.Number({"servo.mount_turn_sigma", "rad", "standard deviation of the mount's orientation"},

@@ -180,6 +180,7 @@ bool StartPose(const Polygon& polygon, const CornerView& view, const SeenCorners
   spread(PoseFilter::kVelocity, kStartSpeedSigma);
   spread(PoseFilter::kAcceleration, kStartAccelerationSigma);
   spread(PoseFilter::kTurnRate, kStartTurnSigma);
+  start.late = view.late;
   start.P(PoseFilter::kLate, PoseFilter::kLate) = view.stamp_sigma * view.stamp_sigma;
   if (!start.P.allFinite() || !start.X_BO.p.allFinite() || !start.X_BO.R.allFinite()) {
     return false;

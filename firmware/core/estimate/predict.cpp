@@ -2,6 +2,7 @@
 #include "firmware/core/estimate/predict.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "firmware/core/estimate/measurement_doubt.hpp"
 #include "firmware/core/model/rotation.hpp"
@@ -47,9 +48,9 @@ hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, fe
       state.filter = TargetFilter{};
       const hal::Intake intake = Update(config.predict,
                                         {.stamp_ns = seen.measurement.stamp_ns,
-                                         .late = seen.late,
                                          .p_BO = seen.X_BC * lifted.p_CO_C,
-                                         .cov_B = R * lifted.cov_p * R.transpose()},
+                                         .cov_B = R * lifted.cov_p * R.transpose(),
+                                         .late = seen.late},
                                         state.filter);
       state.filter.accepted = std::max(accepted, 1);
       state.X_CO_meas.p = lifted.p_CO_C;
@@ -60,9 +61,12 @@ hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, fe
   Eigen::Matrix<double, 3, 6> by_camera;
   by_camera << model::Mat3::Identity(), -model::CrossMatrix(lifted.p_CO_C);
   const model::Mat3 doubt_C = by_camera * seen.doubt * by_camera.transpose();
-  const MeasuredCentre centre{seen.measurement.stamp_ns,     seen.late,
-                              seen.X_BC * lifted.p_CO_C,     R * lifted.cov_p * R.transpose(),
-                              R * (by_camera * seen.V_BC_C), R * doubt_C * R.transpose()};
+  const MeasuredCentre centre{.stamp_ns = seen.measurement.stamp_ns,
+                              .p_BO = seen.X_BC * lifted.p_CO_C,
+                              .cov_B = R * lifted.cov_p * R.transpose(),
+                              .doubt_B = R * doubt_C * R.transpose(),
+                              .late = seen.late,
+                              .v_BO_held = R * (by_camera * seen.V_BC_C)};
   const hal::Intake intake = Update(config.predict, centre, state.filter);
   if (intake == hal::Intake::kTaken) {
     state.X_CO_meas.p = lifted.p_CO_C;
@@ -107,9 +111,12 @@ FlatMotion BelievedMotion(const config::ServoConfig& config, const PredictState&
   return {{model::Mat3::Identity(), motion.p_BO}, motion.v_BO, model::Vec3::Zero()};
 }
 
-// How much older than its stamp a picture is believed to be [s].
-double Lateness(const config::ServoConfig& config, const PredictState& state) noexcept {
-  return config.feature.SeesOrientation() ? state.hypotheses.plate.best().filter.late : state.filter.late;
+StampError Lateness(const config::ServoConfig& config, const PredictState& state) noexcept {
+  if (config.feature.SeesOrientation()) {
+    const PoseFilter& filter = state.hypotheses.plate.best().filter;
+    return {filter.late, std::sqrt(filter.P(PoseFilter::kLate, PoseFilter::kLate))};
+  }
+  return {state.filter.late, std::sqrt(state.filter.P_late)};
 }
 
 // Extrapolates `belief` to `now_ns` without acceleration.
@@ -148,7 +155,7 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   const auto camera_at = [&](std::int64_t time_ns, model::Pose& X) {
     return CameraPoseAt(state.history, config.arm, config.X_EC, time_ns, X);
   };
-  const double late = Lateness(config, state);
+  const double late = Lateness(config, state).mean_s;
   const std::int64_t taken_ns = measurement.stamp_ns - static_cast<std::int64_t>(late * 1e9);
   model::Pose X_BC;
   if (!camera_at(taken_ns, X_BC)) {
@@ -201,6 +208,7 @@ Prediction Predict(const config::ServoConfig& config, std::int64_t now_ns, const
   const bool is_flat = config.feature.SeesOrientation();
   prediction.known = state.knowledge != Knowledge::kTooLittle;
   prediction.age_ns = now_ns - state.accepted_stamp_ns;
+  prediction.late = Lateness(config, state);
   if (!config.predict.enabled) {
     // As in a camera-rate servo, a measurement counts until the next one.
     prediction.seen.X_CO = state.X_CO_meas;

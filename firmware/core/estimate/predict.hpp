@@ -11,6 +11,7 @@
 #include "firmware/core/estimate/eye_watch.hpp"
 #include "firmware/core/estimate/joint_history.hpp"
 #include "firmware/core/estimate/pose_hypotheses.hpp"
+#include "firmware/core/estimate/stamp_error.hpp"
 #include "firmware/core/estimate/stuck_picture.hpp"
 #include "firmware/core/estimate/target_filter.hpp"
 #include "firmware/core/model/kinematics.hpp"
@@ -59,6 +60,7 @@ struct Prediction {
   model::Vec3 p_BO = model::Vec3::Zero();      // now [m]
   model::Mat3 R_BO = model::Mat3::Identity();  // now; of a target whose orientation is seen
   model::Vec3 v_BO = model::Vec3::Zero();      // [m/s]
+  StampError late;                             // of the camera
   features::TargetInCamera seen;               // now: pose and twist in axes of C
 };
 

@@ -14,6 +14,12 @@ namespace fovea::estimate {
 
 inline constexpr double kLateDrift = 1e-6;  // the latency may change by a millisecond within a second [s^2/s]
 
+// How much older than their stamps the pictures are.
+struct StampError {
+  double mean_s = 0.0;
+  double sigma_s = 0.0;
+};
+
 // Keeps the estimate within what the configured standard deviation of stamps makes credible. Real-time: yes.
 inline double CredibleLateness(double late, double stamp_sigma) noexcept {
   constexpr double kMostSigmas = 3.0;

@@ -4,8 +4,6 @@
 #include <Eigen/LU>  // inverse of a 3x3
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include "firmware/core/estimate/first_sight.hpp"
 #include "firmware/core/estimate/shortened.hpp"
@@ -21,9 +19,8 @@ constexpr int kOrder = TargetFilter::kOrder;
 constexpr double kJerkTime = 0.1;  // the configured jerk is a mean over this [s]
 
 void StartAt(const MeasuredCentre& measured, double stamp_sigma, TargetFilter& filter) noexcept {
-  const double late = filter.late;
   filter = TargetFilter{};
-  filter.late = late;
+  filter.late = measured.late;
   filter.P_late = stamp_sigma * stamp_sigma;
   filter.accepted = 1;
   filter.stamp_ns = measured.stamp_ns;
@@ -137,10 +134,6 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
   if (next.accepted < config.accepted_min) {
     ++next.accepted;
   }
-  if (std::getenv("DBG"))
-    std::fprintf(stderr, "LATE %.3f late %.4f sig %.4f v %.4f %.4f %.4f rel %.4f\n",
-                 1e-9 * double(next.stamp_ns), next.late, std::sqrt(next.P_late), next.x[1].x(),
-                 next.x[1].y(), next.x[1].z(), measured.v_BO_held.norm());
   filter = next;
   return hal::Intake::kTaken;
 }

@@ -36,12 +36,12 @@ struct TargetFilter {
 
 // A measured centre of the target.
 struct MeasuredCentre {
-  std::int64_t stamp_ns = 0;  // of its picture
-  double late = 0.0;          // p_BO follows from the camera's pose this long before the stamp [s]
+  std::int64_t stamp_ns = 0;                    // of its picture
   model::Vec3 p_BO = model::Vec3::Zero();       // [m] in B
   model::Mat3 cov_B = model::Mat3::Zero();      // of its noise [m^2]
-  model::Vec3 v_BO_held = model::Vec3::Zero();  // of a point there that the camera holds [m/s]
   model::Mat3 doubt_B = model::Mat3::Zero();    // uncertainty from calibration, for the gate alone [m^2]
+  double late = 0.0;                            // p_BO uses the camera's pose this long before the stamp [s]
+  model::Vec3 v_BO_held = model::Vec3::Zero();  // then, of a point there that the camera holds [m/s]
 };
 
 // Adds a measurement. Rejects an outlier; after too many in a row the filter restarts at the newest. Velocity

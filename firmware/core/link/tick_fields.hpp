@@ -115,6 +115,8 @@ void RecordFields(Archive& a, T& r) noexcept {
   EachOf(a, r.p_BO);
   EachOf(a, r.q_BO);
   EachOf(a, r.v_BO);
+  a(r.stamp_late_s);
+  a(r.stamp_late_sigma_s);
   a.Count(r.dim, hal::kMaxFeatureDim);
   EachOf(a, r.s);
   EachOf(a, r.s_star);

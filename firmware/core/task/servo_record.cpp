@@ -28,6 +28,8 @@ void ServoTask::WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) 
     record.p_BO[i] = state_.prediction.p_BO[static_cast<Eigen::Index>(i)];
     record.v_BO[i] = state_.prediction.v_BO[static_cast<Eigen::Index>(i)];
   }
+  record.stamp_late_s = state_.prediction.late.mean_s;
+  record.stamp_late_sigma_s = state_.prediction.late.sigma_s;
   if (state_.prediction.known) {
     record.q_BO = model::QuaternionOf(state_.prediction.R_BO);
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -85,6 +86,70 @@ TEST(TargetFilterTest, CovarianceIsConsistentForATargetOfItsModel) {
   const double nees = sum / count;
   std::cout << "mean normalised squared error " << nees << ", expected 9\n";
   EXPECT_NEAR(nees, 9.0, 1.0);  // 300 runs: standard deviation 0.24
+}
+
+// The camera swings to and fro, and its stamps have a common error. The filter finds the error, whatever the
+// target does, and its variance is right.
+TEST(TargetFilterTest, MovingCameraShowsTheStampsCommonError) {
+  config::PredictConfig config;
+  config.target_speed_max = config.target_acceleration_max = 1e3;
+  std::mt19937_64 engine(12);
+  std::normal_distribution<double> normal;
+  const double sigma = 2e-4;
+  const double q = config.target_jerk * config.target_jerk * 0.1;
+  constexpr int kRuns = 300;
+  double nees = 0.0;
+  double before2 = 0.0;
+  double after2 = 0.0;
+  double sigma_sum = 0.0;
+  for (int run = 0; run < kRuns; ++run) {
+    const double late = config.stamp_sigma * std::clamp(normal(engine), -2.0, 2.0);
+    TargetFilter filter;
+    Vec3 p(0.5, 0.0, 0.1);
+    Vec3 v = 0.3 * Vec3(normal(engine), normal(engine), normal(engine));
+    Vec3 a = 0.5 * Vec3(normal(engine), normal(engine), normal(engine));
+    for (int k = 0; k < 60; ++k) {
+      const Vec3 v_held(0.3 * std::sin(3.0 * TimeOf(k)), 0.2 * std::cos(4.0 * TimeOf(k)), 0.0);
+      const Vec3 noise(normal(engine), normal(engine), normal(engine));
+      MeasuredCentre measured{StampOf(k), p + late * v_held + sigma * noise,
+                              Mat3::Identity() * sigma * sigma};
+      measured.late = filter.late;
+      measured.p_BO -= filter.late * v_held;  // the servo uses the camera's pose of the time that it believes
+      measured.v_BO_held = v_held;
+      EXPECT_EQ(Update(config, measured, filter), Intake::kTaken);
+      for (int ms = 0; ms < 33; ++ms) {
+        const double dt = static_cast<double>(kFrameNs) * 1e-9 / 33;
+        a += std::sqrt(q * dt) * Vec3(normal(engine), normal(engine), normal(engine));
+        v += dt * a;
+        p += dt * v;
+      }
+    }
+    const double error = filter.late - late;
+    nees += error * error / filter.P_late / kRuns;
+    before2 += late * late / kRuns;
+    after2 += error * error / kRuns;
+    sigma_sum += std::sqrt(filter.P_late) / kRuns;
+  }
+  std::cout << "common error of stamps " << 1e3 * std::sqrt(before2) << " ms rms, found within "
+            << 1e3 * std::sqrt(after2) << " ms rms, stated " << 1e3 * sigma_sum
+            << " ms; mean normalised squared error " << nees << "\n";
+  EXPECT_LT(std::sqrt(after2), 0.2 * std::sqrt(before2));
+  EXPECT_GT(nees, 0.4);
+  EXPECT_LT(nees, 1.3);
+}
+
+// From a camera at rest, a late picture of a moving target is the same as one of a target that is further
+// back.
+TEST(TargetFilterTest, RestingCameraCannotTellTheStampsCommonError) {
+  const config::PredictConfig config;
+  TargetFilter filter;
+  for (int k = 0; k < 300; ++k) {
+    const double t = TimeOf(k);
+    const Vec3 p(0.5 + 0.1 * std::sin(2.0 * t), 0.1 * std::cos(2.0 * t), 0.04);
+    EXPECT_EQ(Update(config, {StampOf(k), p, Mat3::Identity() * 1e-8}, filter), Intake::kTaken);
+  }
+  EXPECT_EQ(filter.late, 0.0);
+  EXPECT_GE(std::sqrt(filter.P_late), config.stamp_sigma);
 }
 
 TEST(TargetFilterTest, RejectsOutliersAndRestartsWhenTheTargetMoved) {

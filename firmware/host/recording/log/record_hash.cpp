@@ -96,7 +96,7 @@ void RecordHash::Add(const hal::TickRecord& r) {
     write.All(r.tuning.result, r.tuning.key, r.tuning.before, r.tuning.asked);
   }
   write.All(r.intake, r.mode, r.hold_reason, r.fault, r.fault_joint, r.limits_active);
-  write.All(r.target_known, r.feature_age_ns, r.p_BO, r.q_BO, r.v_BO);
+  write.All(r.target_known, r.feature_age_ns, r.p_BO, r.q_BO, r.v_BO, r.stamp_late_s, r.stamp_late_sigma_s);
   write.All(r.dim, r.s, r.s_star, r.e, r.V_BC_C_cmd);
   write.All(r.q_cmd, r.dq_cmd, r.ddq_cmd);
   write.All(r.command.state_sequence, r.command.num_joints, r.command.tau_cmd, r.command.engage_brakes);

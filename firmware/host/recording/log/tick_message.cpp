@@ -89,6 +89,8 @@ void ToMessage(const hal::TickRecord& r, Tick& m) {
   Put(r.p_BO, 3, *m.mutable_p_bo());
   Put(r.q_BO, 4, *m.mutable_q_bo());
   Put(r.v_BO, 3, *m.mutable_v_bo());
+  m.set_stamp_late_s(r.stamp_late_s);
+  m.set_stamp_late_sigma_s(r.stamp_late_sigma_s);
   Put(r.s, r.dim, *m.mutable_s());
   Put(r.s_star, r.dim, *m.mutable_s_star());
   Put(r.e, r.dim, *m.mutable_e());
@@ -194,6 +196,8 @@ hal::TickRecord FromMessage(const Tick& m, const hal::FeatureMeasurement& featur
   Get(m.p_bo(), r.p_BO);
   Get(m.q_bo(), r.q_BO);
   Get(m.v_bo(), r.v_BO);
+  r.stamp_late_s = m.stamp_late_s();
+  r.stamp_late_sigma_s = m.stamp_late_sigma_s();
   r.dim = m.s_size();
   Get(m.s(), r.s);
   Get(m.s_star(), r.s_star);

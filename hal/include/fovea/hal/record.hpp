@@ -48,6 +48,8 @@ struct TickRecord {
   std::array<double, 3> p_BO{};                    // target's centre [m]
   std::array<double, 4> q_BO{1.0, 0.0, 0.0, 0.0};  // its orientation (w, x, y, z); identity if none is seen
   std::array<double, 3> v_BO{};                    // its velocity [m/s]
+  double stamp_late_s = 0.0;                       // pictures seem to be this much older than their stamps
+  double stamp_late_sigma_s = 0.0;                 // standard deviation of that
 
   // Visual law, units as the feature's kind says
   std::int32_t dim = 0;

@@ -66,6 +66,8 @@ TEST(RecordHashTest, EveryFieldChangesTheHash) {
       [](hal::TickRecord& r) { r.p_BO[0] = 1e-300; },
       [](hal::TickRecord& r) { r.q_BO[3] = 1e-300; },
       [](hal::TickRecord& r) { r.v_BO[0] = 1e-300; },
+      [](hal::TickRecord& r) { r.stamp_late_s = 1e-300; },
+      [](hal::TickRecord& r) { r.stamp_late_sigma_s = 1e-300; },
       [](hal::TickRecord& r) { r.s[0] = 1e-300; },
       [](hal::TickRecord& r) { r.s_star[0] = 1e-300; },
       [](hal::TickRecord& r) { r.e[0] = 1e-300; },

@@ -98,6 +98,8 @@ hal::TickRecord RandomRecord(Random& random) {
   random.Fill(r.p_BO, 3);
   random.Fill(r.q_BO, 4);
   random.Fill(r.v_BO, 3);
+  r.stamp_late_s = 1e-3 * static_cast<double>(random.Whole(60)) - 0.03;
+  r.stamp_late_sigma_s = 1e-3 * static_cast<double>(random.Whole(60));
   r.dim = static_cast<std::int32_t>(random.Whole(hal::kMaxFeatureDim));
   random.Fill(r.s, r.dim);
   random.Fill(r.s_star, r.dim);
