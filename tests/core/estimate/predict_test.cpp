@@ -107,6 +107,52 @@ TEST_F(PredictTest, CompensatesLatencyWhileCameraAndTargetMove) {
   EXPECT_GT(worst_held, 10e-3);
 }
 
+// The pictures are 20 ms older or newer than their stamps say. While the camera moves, the filter finds that,
+// and predicts the target where it is; without it, the target is off by centimetres.
+TEST_F(PredictTest, FindsThatTheLatencyIsWrong) {
+  const auto target = [](double t) {
+    return model::Vec3(0.55 + 0.1 * std::cos(2.0 * t), 0.1 * std::sin(2.0 * t), 0.05);
+  };
+  constexpr int kBelievedMs = 40;
+  config::ServoConfig trusting = config_;
+  trusting.predict.stamp_sigma = 0.0;
+  for (const int late_ms : {-20, 0, 20}) {
+    PredictState state;
+    PredictState state_trusting;
+    double worst = 0.0;
+    double worst_trusting = 0.0;
+    Prediction p;
+    for (int ms = 0; ms < 4000; ++ms) {
+      const double t = 1e-3 * ms;
+      const std::int64_t now = ms * hal::kNsPerMs;
+      state.history.Push(now, JointsAt(t));
+      state_trusting.history.Push(now, JointsAt(t));
+      if (ms >= 100 && ms % 33 == 0) {
+        const double taken = t - 1e-3 * (kBelievedMs + late_ms);
+        hal::FeatureMeasurement m = Measure(taken, target(taken));
+        m.stamp_ns = now - kBelievedMs * hal::kNsPerMs;
+        (void)TakeMeasurement(config_, now, m, state, eye_);
+        (void)TakeMeasurement(trusting, now, m, state_trusting, eye_);
+      }
+      p = Predict(config_, now, CameraAt(t), state);
+      if (ms > 2000) {
+        worst = std::max(worst, (p.p_BO - target(t)).norm());
+        worst_trusting = std::max(
+            worst_trusting, (Predict(trusting, now, CameraAt(t), state_trusting).p_BO - target(t)).norm());
+      }
+    }
+    std::cout << "pictures " << late_ms << " ms older than their stamps: found " << 1e3 * p.late.mean_s
+              << " +- " << 1e3 * p.late.sigma_s << " ms; worst error " << 1e3 * worst
+              << " mm, without finding it " << 1e3 * worst_trusting << " mm\n";
+    EXPECT_NEAR(1e3 * p.late.mean_s, late_ms, 2.0);
+    EXPECT_LT(p.late.sigma_s, 0.004);
+    EXPECT_LT(worst, 1e-3);
+    if (late_ms != 0) {
+      EXPECT_GT(worst_trusting, 3e-3);
+    }
+  }
+}
+
 TEST_F(PredictTest, RejectsUnusableMeasurementsWithTheirReason) {
   PredictState state;
   for (int ms = 0; ms < 100; ++ms) {
