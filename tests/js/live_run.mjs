@@ -104,6 +104,7 @@ function afterMove(truths, from, to) {
   for (let i = 1; i < part.length; i++)
     if (part[i].data.p_BO.some((x, k) => Math.abs(x - part[i - 1].data.p_BO[k]) > 5e-6)) rest = i;
   assert.ok(rest > 0, "the target moved");
+  assert.ok(Math.max(...part.map(({ data }) => data.error_px)) > 10, "the drag disturbed the servo");
   return part.slice(rest);
 }
 
@@ -147,11 +148,10 @@ async function checkDragAndLambda(context) {
   const run = await begin("ball", "drag");
   const { page, said, sent } = await open(context, run.url);
   await untilTime(page, 5.0);
-  const { rate, speed } = await pictureRate(page, 5);
+  const { rate, speed } = await pictureRate(page, 10);
   console.log(`${rate.toFixed(1)} pictures/s on the page, the run at ${speed.toFixed(2)} times real time`);
-  // A timing, and so only printed: 26 to 30 a second on an idle computer of two cores without a GPU. The test fails for a page
-  // that does not show them.
-  assert.ok(rate > 10, "the camera's picture moves");
+  // The camera makes 30 in each second of the run, which a slow computer stretches.
+  assert.ok(rate / Math.min(speed, 1) > 20, "the camera's picture moves");
   const marks = [];
   for (const [lambda, direction] of [
     [2, 1],
@@ -190,7 +190,7 @@ async function checkDragAndLambda(context) {
   }
   const [two, four] = [timeConstant(drags[1]), timeConstant(drags[3])];
   console.log(`time constant: ${(1e3 * two).toFixed(0)} ms, with lambda 4 ${(1e3 * four).toFixed(0)} ms`);
-  assert.ok(four / two > 0.35 && four / two < 0.65, "lambda 4 halves the time constant");
+  assert.ok(four / two > 0.45 && four / two < 0.55, "lambda 4 halves the time constant");
   const told = touches.map(({ data }) => data.text);
   for (const words of [/^the target is taken/, /^the target is let go/])
     assert.ok(told.filter((text) => words.test(text)).length >= 2, `both drags are in the log: ${told.join("; ")}`);
