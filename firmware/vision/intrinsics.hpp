@@ -30,6 +30,7 @@ struct Intrinsics {
   double c_u_px = 0.0;
   double c_v_px = 0.0;
   Distortion lens{};
+  double row_time = 0.0;  // of a rolling shutter: from one row to the next [s]; the stamp is the middle row's
 
   // The ray (x, y, 1) of an ideal pixel, in axes of C.
   [[nodiscard]] model::Vec3 Ray(double u_px, double v_px) const {

@@ -97,12 +97,33 @@ constexpr Table<kNumTuningResults> kTuningResultTable{{
     {"unknown", "", "an unknown answer"},
 }};
 
+constexpr Table<kNumWays> kWayTable{{
+    {"law"},
+    {"await_plan"},
+    {"plan"},
+    {"unknown"},
+}};
+
+constexpr Table<kNumPlanEvents> kPlanEventTable{{
+    {"none", "", "nothing happened to a plan"},
+    {"asked", "", "a plan to the goal is asked for"},
+    {"taken", "", "a plan came, and the arm follows it"},
+    {"no_motion", "", "no plan: the visual law goes on alone"},
+    {"stale", "", "a plan came for another start or target, and is refused"},
+    {"late", "", "no plan came in time: the visual law goes on alone"},
+    {"held", "", "limits hold the arm up on its plan: a new one is asked for"},
+    {"target_moved", "", "the target is elsewhere than planned: a new plan is asked for"},
+    {"done", "", "the plan's end is reached: the visual law goes on"},
+    {"unknown", "", "an unknown event of a plan"},
+}};
+
 template <std::size_t kSize>
 constexpr bool IsComplete(const std::array<Entry, kSize>& table) {
   return std::all_of(table.begin(), table.end(), [](const Entry& entry) { return entry.name != nullptr; });
 }
 static_assert(IsComplete(kModeTable) && IsComplete(kHoldReasonTable) && IsComplete(kFaultTable) &&
-              IsComplete(kLimitTable) && IsComplete(kIntakeTable) && IsComplete(kTuningResultTable));
+              IsComplete(kLimitTable) && IsComplete(kIntakeTable) && IsComplete(kTuningResultTable) &&
+              IsComplete(kWayTable) && IsComplete(kPlanEventTable));
 
 template <std::size_t kSize, typename Enumerator>
 const Entry& EntryOf(const std::array<Entry, kSize>& table, Enumerator which) noexcept {
@@ -122,6 +143,10 @@ const char* Words(HoldReason reason) noexcept { return EntryOf(kHoldReasonTable,
 const char* Words(Fault fault) noexcept { return EntryOf(kFaultTable, fault).words; }
 const char* Words(Intake intake) noexcept { return EntryOf(kIntakeTable, intake).words; }
 
+const char* Name(Way way) noexcept { return EntryOf(kWayTable, way).name; }
+const char* Name(PlanEvent event) noexcept { return EntryOf(kPlanEventTable, event).name; }
+
+const char* Words(PlanEvent event) noexcept { return EntryOf(kPlanEventTable, event).words; }
 const char* Words(TuningResult result) noexcept { return EntryOf(kTuningResultTable, result).words; }
 
 const char* Key(Fault fault) noexcept { return EntryOf(kFaultTable, fault).key; }

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "firmware/host/build_info.hpp"
 #include "firmware/host/config/board_flags.hpp"
@@ -87,11 +88,45 @@ int List() {
   return kDone;
 }
 
-int Keys(bool markdown) {
+struct KeysArguments {
+  bool markdown = false;
+  std::string scenario;
+  std::vector<std::string> assignments;
+};
+
+// The values of a scenario, for programs.
+int ValuesOf(const KeysArguments& arguments) {
+  sim::Scenario scenario = sim::LoadScenario(arguments.scenario, arguments.assignments);
+  const nlohmann::json values(sim::ScenarioKeys(scenario).Values());
+  fmt::print("{}\n", values.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+  return kDone;
+}
+
+void AddKeys(CLI::App& keys, KeysArguments& arguments) {
+  CLI::Option* markdown =
+      keys.add_flag("--markdown", arguments.markdown, "as the table in sim/scenarios/KEYS.md");
+  CLI::Option* values = keys.add_option("--values", arguments.scenario,
+                                        "each key's value in a scenario, as JSON: a shipped name or a .toml")
+                            ->excludes(markdown);
+  keys.add_option("--set", arguments.assignments, "key=value, overrides the scenario; may be repeated")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false)
+      ->needs(values);
+}
+
+int Keys(const KeysArguments& arguments) {
+  if (!arguments.scenario.empty()) {
+    return ValuesOf(arguments);
+  }
   sim::Scenario scenario;
   const config::KeyTable keys = sim::ScenarioKeys(scenario);
-  fmt::print("{}", markdown ? sim::KeysAsMarkdown(keys)
-                            : config::KeysAsText(keys, config::TerminalWidth(STDOUT_FILENO)));
+  if (arguments.markdown) {
+    fmt::print("{}", sim::KeysAsMarkdown(keys));
+    return kDone;
+  }
+  const std::size_t width = config::TerminalWidth(STDOUT_FILENO);
+  fmt::print("{}\n{}", config::KeysAsText(keys, width), config::Fitted(sim::TruthFormsAsText(), 15, width));
   return kDone;
 }
 
@@ -128,14 +163,14 @@ int main(int argc, char** argv) {
       app.add_subcommand("pictures", "render a calibration board from many views, for `fovea calibrate`");
   AddPictures(*pictures, picture_arguments);
   CLI::App* list = app.add_subcommand("list", "list the shipped scenarios");
-  bool markdown = false;
+  KeysArguments keys_arguments;
   CLI::App* keys = app.add_subcommand("keys", "list every key of a scenario: default, meaning, range, unit");
-  keys->add_flag("--markdown", markdown, "as the table in sim/scenarios/KEYS.md");
+  AddKeys(*keys, keys_arguments);
   return config::RunProgram("fovea-sim", app, argc, argv, [&] {
     return run->parsed()        ? sim::RunCommand(arguments)
            : serve->parsed()    ? sim::ServeCommand(serve_arguments)
            : pictures->parsed() ? TakePictures(picture_arguments)
            : list->parsed()     ? List()
-                                : Keys(markdown);
+                                : Keys(keys_arguments);
   });
 }

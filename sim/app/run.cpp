@@ -13,6 +13,7 @@
 #include "firmware/core/task/servo_loop.hpp"
 #include "firmware/host/recording/trace/tick_trace.hpp"
 #include "firmware/host/run/run_shell.hpp"
+#include "firmware/planning/plan_desk.hpp"
 #include "fovea/linux_rt/monotonic_clock.hpp"
 #include "sim/faults/faulty_arm.hpp"
 #include "sim/faults/stalling_clock.hpp"
@@ -22,6 +23,7 @@
 #include "sim/run/files.hpp"
 #include "sim/run/outcome.hpp"
 #include "sim/run/progress.hpp"
+#include "sim/run/run_beliefs.hpp"
 #include "sim/run/sim_vision.hpp"
 #include "sim/run/trace.hpp"
 #include "sim/scenario/compose.hpp"
@@ -119,7 +121,7 @@ class Run {
     wall_time_s_ = SecondsSince(begin);
     vision_.End();
     shell_->TakeRecords();
-    const std::string trace_error = WriteTrace();
+    const std::string trace_error = trace_ ? trace_->Write() : "";
     if (failure) {
       std::rethrow_exception(failure);
     }
@@ -154,20 +156,10 @@ class Run {
     return about;
   }
 
-  // Returns why it cannot; "" otherwise.
-  std::string WriteTrace() {
-    try {
-      if (trace_) {
-        trace_->Write();
-      }
-      return "";
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-  }
-
   void BuildWorld() {
     verdict_ = std::make_unique<Verdict>(MakeVerdictConfig(about_));
+    shell_->UsePlanner(plans_.emplace(about_.servo).box());
+    beliefs_.emplace(about_, options_.live != nullptr, WaitsForFrames());
     if (about_.theory) {
       theory_.emplace(*about_.theory);
     }
@@ -207,6 +199,7 @@ class Run {
 
   void ObserveRecord(const hal::TickRecord& record) {
     verdict_->AddRecord(record);
+    beliefs_->Add(record);
     if (options_.observer.on_record) {
       options_.observer.on_record(record);
     }
@@ -215,6 +208,7 @@ class Run {
   // Called by the main thread at real pace; in lockstep by the servo's thread, between two ticks.
   void TakeRecords() {
     shell_->TakeRecords();
+    beliefs_->Act();
     progress_.Update(shell_->now_s(), hal::Name(shell_->mode()));
   }
 
@@ -238,9 +232,12 @@ class Run {
       loop.UseMotion(*motion_);
     }
     if (live_) {
-      live_->Begin({about_, *world_, *faulty_arm_, vision_, loop, stalling, {}});
+      live_->Begin({about_, *world_, *faulty_arm_, vision_, loop, stalling, {}},
+                   [this] { return beliefs_->now(); });
     }
+    beliefs_->UseLoop(&loop);
     const hal::Status status = loop.Run(EndNs());
+    beliefs_->UseLoop(nullptr);
     if (live_) {
       live_->End();
     }
@@ -264,6 +261,9 @@ class Run {
     if (IsInterrupted() && now_ns < EndNs()) {
       EndEarly();
       return true;
+    }
+    if (wait) {
+      plans_->Act(now_ns);
     }
     if (!trace_) {
       return vision_.HandOver(now_ns, wait, shell_->features());
@@ -305,6 +305,9 @@ class Run {
     }
     std::atomic<bool> done{false};
     hal::Status status;
+    if (!WaitsForFrames()) {
+      plans_->Begin();
+    }
     std::optional<RealPaceClock> clock;  // its time begins when the thread is ready
     std::jthread servo_thread([&] {      // joins even if the code below throws
       shell_->MakeThreadRealtime({});
@@ -332,6 +335,7 @@ class Run {
     shell_->Fill(s);
     files_->Fill(s);
     verdict_->Fill(s);
+    s.beliefs = beliefs_->Finish();
     if (theory_) {
       FillTheory(theory_->Finish(), s);
     }
@@ -368,6 +372,8 @@ class Run {
   std::unique_ptr<RunFiles> files_;
   SimVision vision_;  // its thread uses trace_, shell_ and files_
   std::unique_ptr<Verdict> verdict_;
+  std::optional<planning::PlanDesk> plans_;
+  std::optional<RunBeliefs> beliefs_;
   std::optional<TheoryRun> theory_;
   std::optional<LiveSession> live_;
   std::optional<CommandedMotionSource> motion_;

@@ -58,7 +58,7 @@ class Photographer {
  public:
   explicit Photographer(const Scenario& scenario)
       : about_(DescribeRun(scenario)),
-        sensor_(scenario.camera.noise_sigma, SeedOf(scenario, RandomStream::kSensor)),
+        sensor_(MakeScenarioSensor(scenario), SeedOf(scenario, RandomStream::kSensor)),
         encoders_(SeedOf(scenario, RandomStream::kEncoders)),
         chain_(about_.scene.robot),
         arm_(about_.scene.robot, {}),
@@ -117,8 +117,9 @@ class Photographer {
   model::Pose HandByEncoders() {
     std::normal_distribution<double> noise(0.0, std::max(about_.scenario.arm.encoder_noise, 1e-15));
     model::VecN q = q_;
+    const Eigen::VectorXd& zero = about_.robot_truth.encoder_zero;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      q[i] += noise(encoders_);
+      q[i] += noise(encoders_) + (zero.size() > 0 ? zero[i] : 0.0);
     }
     model::ArmPoses poses;
     model::ComputePoses(about_.servo.arm, q, poses);

@@ -61,8 +61,9 @@ bool Undistort(const Lens& lens, const Eigen::Vector2d& xy, Eigen::Vector2d& ide
   return true;
 }
 
-LensMap::LensMap(const Lens& lens, const Pinhole& pinhole) {
-  const auto width = static_cast<std::size_t>(pinhole.width_px);
+LensMap::LensMap(const Lens& lens, const Pinhole& pinhole)
+    : width_(static_cast<std::size_t>(pinhole.width_px)) {
+  const std::size_t width = width_;
   const auto height = static_cast<std::size_t>(pinhole.height_px);
   std::vector<Eigen::Vector2d> ideal(width * height * kPoints);
   Eigen::Vector2d reach = Eigen::Vector2d::Zero();
@@ -102,10 +103,26 @@ LensMap::LensMap(const Lens& lens, const Pinhole& pinhole) {
   }
 }
 
+std::pair<int, int> LensMap::WideRows(int begin, int end) const {
+  int first = wide_.height_px;
+  int last = 0;
+  for (std::size_t i = PlaceOfRow(begin); i < PlaceOfRow(end); ++i) {
+    const int row = places_[i].top_left / wide_.width_px;
+    first = std::min(first, row);
+    last = std::max(last, row + 1);  // of the pixels below
+  }
+  return {first, last + 1};
+}
+
 void LensMap::Apply(std::span<const std::uint8_t> from, std::span<std::uint8_t> to) const {
+  ApplyRows(0, static_cast<int>(to.size() / 4 / width_), from, to);
+}
+
+void LensMap::ApplyRows(int begin, int end, std::span<const std::uint8_t> from,
+                        std::span<std::uint8_t> to) const {
   const std::size_t row = 4 * static_cast<std::size_t>(wide_.width_px);
   constexpr unsigned kWhole = 256 * 256 * kPoints;
-  for (std::size_t pixel = 0; 4 * pixel < to.size(); ++pixel) {
+  for (std::size_t pixel = PlaceOfRow(begin) / kPoints; pixel < PlaceOfRow(end) / kPoints; ++pixel) {
     std::array<unsigned, 4> sum{};
     for (std::size_t i = kPoints * pixel; i < kPoints * (pixel + 1); ++i) {
       const Place& place = places_[i];

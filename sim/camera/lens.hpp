@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "sim/render/pinhole.hpp"
@@ -44,6 +45,10 @@ class LensMap {
   [[nodiscard]] const Pinhole& wide() const { return wide_; }
   // Resamples a picture of `wide` [pixels * 4] to the sensor [pixels * 4]: four points per pixel, averaged.
   void Apply(std::span<const std::uint8_t> from, std::span<std::uint8_t> to) const;
+  // The same for rows of the sensor only: from `begin` to the one before `end`.
+  void ApplyRows(int begin, int end, std::span<const std::uint8_t> from, std::span<std::uint8_t> to) const;
+  // The rows of the wide picture that ApplyRows needs: from the first to the one before the second.
+  [[nodiscard]] std::pair<int, int> WideRows(int begin, int end) const;
 
  private:
   // The four pixels of the wide picture around a point, and their weights.
@@ -54,6 +59,12 @@ class LensMap {
   };
   static constexpr int kPoints = 4;  // per pixel
 
+  // Of the first point in row `row` of the sensor.
+  [[nodiscard]] std::size_t PlaceOfRow(int row) const {
+    return static_cast<std::size_t>(row) * width_ * kPoints;
+  }
+
+  std::size_t width_;  // of the sensor [px]
   Pinhole wide_;
   std::vector<Place> places_;  // kPoints for each pixel
 };

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture on the sensor: renders the scene, then resamples it through the lens if the lens is not ideal.
+// The picture on the sensor: renders the scene at the times of the exposure, and resamples it through the
+// lens if the lens is not ideal.
+//
+// The renderer's values are linear in light, and so is the sensor. Blur is the mean of these values.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +13,7 @@
 #include <vector>
 
 #include "sim/camera/lens.hpp"
+#include "sim/camera/shutter.hpp"
 #include "sim/render/scene_renderer.hpp"
 
 namespace fovea::sim {
@@ -23,10 +27,11 @@ enum class Sampling : std::uint8_t {
 class Optics {
  public:
   // Throws as SceneRenderer; std::invalid_argument as LensMap.
-  Optics(const RenderScene& scene, const Pinhole& pinhole, const Lens& lens, Sampling sampling,
-         int index = 0);
+  Optics(const RenderScene& scene, const Pinhole& pinhole, const Lens& lens, Sampling sampling, int index = 0,
+         const Shutter& shutter = {});
 
-  // Draws `exposure` into `rgba` [height * width * 4], top row first.
+  // Draws `exposure` into `rgba` [height * width * 4], top row first. A scene that stands still during the
+  // exposure (`around` is null) is drawn once.
   void Draw(const Exposure& exposure, std::span<std::uint8_t> rgba);
   // As SceneRenderer's.
   void Watch(RenderWatch watch) { renderer_.Watch(std::move(watch)); }
@@ -34,9 +39,15 @@ class Optics {
   [[nodiscard]] const std::string& driver_name() const { return renderer_.driver_name(); }
 
  private:
+  void DrawSharp(const Moment& moment, std::span<std::uint8_t> rgba);
+  void DrawRows(const Exposure& exposure, double offset_ns, std::span<std::uint8_t> rgba);
+
+  const Shutter shutter_;
+  const int height_px_;
   const std::optional<LensMap> lens_;
   SceneRenderer renderer_;
   std::vector<std::uint8_t> wide_;  // the pinhole picture that the lens resamples
+  std::vector<std::uint16_t> sum_;  // of the sub-exposures
 };
 
 }  // namespace fovea::sim

@@ -8,7 +8,7 @@
 namespace fovea::sim {
 
 SimCamera::SimCamera(const SimCameraConfig& config, Sensor sensor, std::vector<Painter> painters)
-    : config_(config), sensor_(std::move(sensor)) {
+    : config_(config), sensor_(std::move(sensor)), auto_exposure_(config.auto_exposure) {
   for (Painter& painter : painters) {
     workers_.emplace_back([this, painter = std::move(painter)] { Work(painter); });
   }
@@ -29,6 +29,14 @@ void SimCamera::Expose(Exposure exposure) {
     }
     auto job = std::make_shared<Job>();
     job->exposure = std::move(exposure);
+    job->index = exposed_++;
+    if (!job->exposure.pixels_of) {
+      frozen_gain_ = nullptr;
+    } else if (frozen_gain_ == nullptr || frozen_gain_->sequence != job->exposure.pixels_of->sequence) {
+      frozen_gain_ =
+          std::make_shared<FrozenGain>(FrozenGain{job->exposure.pixels_of->sequence, std::nullopt});
+    }
+    job->frozen_gain = frozen_gain_;
     jobs_.push_back(std::move(job));
   }
   changed_.notify_all();
@@ -43,6 +51,9 @@ void SimCamera::LoseOldest() {
   }
   if ((*oldest)->progress == Progress::kDone) {
     spare_buffers_.push_back(std::move((*oldest)->bgr));
+  }
+  if ((*oldest)->progress == Progress::kWaiting) {
+    auto_exposure_.Measure((*oldest)->index, (*oldest)->exposure.stamp_ns, std::nullopt);
   }
   jobs_.erase(oldest);
   ++lost_;
@@ -108,17 +119,50 @@ void SimCamera::DrawUntilClosed(const Painter& painter) {
     }
     job->bgr.resize(pixels * 3);
     const Exposure& exposure = job->exposure;
+    const double gain = config_.auto_exposure.IsOn() ? WaitForGain(*job) : 1.0;
     sensor_.Expose(rgba, config_.width_px,
-                   exposure.pixels_of ? exposure.pixels_of->sequence : exposure.sequence, job->bgr);
+                   exposure.pixels_of ? exposure.pixels_of->sequence : exposure.sequence, job->bgr, gain);
     if (painter.picture_done) {
       painter.picture_done();
     }
     {
+      const double mean = config_.auto_exposure.IsOn() ? MeanOf(job->bgr) : 0.0;
       const std::lock_guard lock(mutex_);
+      if (config_.auto_exposure.IsOn()) {
+        auto_exposure_.Measure(job->index, exposure.stamp_ns, Brightness{mean, gain});
+      }
       job->progress = Progress::kDone;
     }
     changed_.notify_all();
   }
+}
+
+// The picture two before this one may still be drawn by another painter. It does not wait for this one.
+double SimCamera::WaitForGain(const Job& job) {
+  std::unique_lock lock(mutex_);
+  std::optional<double> gain;
+  changed_.wait(lock, [&] {
+    gain = TakeGain(job);
+    return gain || !fault_.empty();
+  });
+  changed_.notify_all();
+  return gain.value_or(1.0);
+}
+
+// None: it is not known yet.
+std::optional<double> SimCamera::TakeGain(const Job& job) {
+  FrozenGain* frozen = job.frozen_gain.get();
+  if (frozen == nullptr) {
+    return auto_exposure_.TakeGain(job.index);
+  }
+  if (!frozen->gain) {
+    const auto first = std::find_if(jobs_.begin(), jobs_.end(),
+                                    [&](const auto& other) { return other->frozen_gain == job.frozen_gain; });
+    if (first == jobs_.end() || first->get() == &job) {
+      frozen->gain = auto_exposure_.TakeGain(job.index);
+    }
+  }
+  return frozen->gain;
 }
 
 hal::Status SimCamera::DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept {

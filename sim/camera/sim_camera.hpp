@@ -11,12 +11,14 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "fovea/hal/camera.hpp"
+#include "sim/camera/auto_exposure.hpp"
 #include "sim/camera/sensor.hpp"
 #include "sim/render/exposure.hpp"
 
@@ -39,6 +41,7 @@ struct SimCameraConfig {
   std::int64_t exposure_ns = 5'000'000;
   // Largest number of exposures that wait. The next one then drops the oldest, as in a real camera.
   std::size_t queue = 2;
+  AutoExposureConfig auto_exposure{};
 };
 
 class SimCamera final : public hal::Camera {
@@ -59,10 +62,17 @@ class SimCamera final : public hal::Camera {
 
  private:
   enum class Progress { kWaiting, kDrawing, kDone };
+  // Pictures with the same frozen pixels also have the same gain: that of the first one.
+  struct FrozenGain {
+    std::uint64_t sequence = 0;  // of the frame that the pixels come from
+    std::optional<double> gain;  // none: not known yet
+  };
   struct Job {
     Exposure exposure;
+    std::uint64_t index = 0;  // counts the calls of Expose
     Progress progress = Progress::kWaiting;
     std::vector<std::uint8_t> bgr;
+    std::shared_ptr<FrozenGain> frozen_gain;  // null: its pixels are its own
   };
 
   hal::Status DoAcquire(hal::Frame& frame, std::int64_t timeout_ns) noexcept override;
@@ -70,6 +80,8 @@ class SimCamera final : public hal::Camera {
   void Work(const Painter& painter);
   void DrawUntilClosed(const Painter& painter);
   [[nodiscard]] std::shared_ptr<Job> NextWaiting() const;
+  double WaitForGain(const Job& job);
+  [[nodiscard]] std::optional<double> TakeGain(const Job& job);
 
   const SimCameraConfig config_;
   const Sensor sensor_;
@@ -79,6 +91,9 @@ class SimCamera final : public hal::Camera {
   std::deque<std::shared_ptr<Job>> jobs_;                 // in order of exposure
   std::vector<std::vector<std::uint8_t>> spare_buffers_;  // reused
   std::vector<std::uint8_t> handed_out_;                  // the pixels of the last frame
+  AutoExposure auto_exposure_;
+  std::shared_ptr<FrozenGain> frozen_gain_;  // of the last exposure
+  std::uint64_t exposed_ = 0;
   bool closed_ = false;
   std::uint64_t lost_ = 0;
   std::string fault_;

@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "firmware/host/desk/found.hpp"
 #include "firmware/host/recording/log/topics.hpp"
 #include "fovea/run.pb.h"
 
@@ -37,7 +38,8 @@ LiveSession::~LiveSession() {
   page_.SetResets(end_ == LiveEnd::kReset);
 }
 
-void LiveSession::Begin(DeskParts parts) {
+void LiveSession::Begin(DeskParts parts, Found found) {
+  found_ = std::move(found);
   parts.reports.touch = [this](const std::string& what, const std::string& text) { Record(what, text); };
   parts.reports.parameter = [this](std::size_t parameter, double value) {
     page_.server().SetParameter(parameter, value);
@@ -96,6 +98,7 @@ void LiveSession::ShowState(std::int64_t wall_ns, bool ends) {
   next_state_ns_ = wall_ns + kStatePeriodNs;
   live::State state = desk_->State();
   state.ends = state.ends || ends;
+  desk::Fill(found_(), state);
   state.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   if (const auto ticks = shell_.NewTickDurations()) {
     state.tick = {ticks->median_ns, ticks->max_ns};

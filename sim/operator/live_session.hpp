@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 
+#include "firmware/host/beliefs/belief.hpp"
 #include "firmware/host/recording/flight/flight_recorder.hpp"
 #include "firmware/host/run/run_shell.hpp"
 #include "sim/operator/desk.hpp"
@@ -21,8 +22,11 @@ class LiveSession {
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
 
+  // The newest findings, or null.
+  using Found = std::function<const beliefs::Findings*()>;
+
   // From the thread that runs the servo. `parts` without its callbacks.
-  void Begin(DeskParts parts);
+  void Begin(DeskParts parts, Found found);
   // The desk's parts are about to end.
   void End() { desk_.reset(); }
 
@@ -44,6 +48,7 @@ class LiveSession {
   const std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   std::int64_t next_state_ns_ = 0;  // by the wall clock
   std::optional<OperatorDesk> desk_;
+  Found found_;
   LiveEnd end_ = LiveEnd::kNone;
 };
 

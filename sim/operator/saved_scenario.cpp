@@ -71,6 +71,7 @@ std::string SaveScenario(const RunDescription& about, const PresentState& presen
   const double now_s = static_cast<double>(present.truth.stamp_ns) * 1e-9;
   const Eigen::VectorXd& zero = about.robot_truth.encoder_zero;
   saved.arm.q_start = ToList(zero.size() > 0 ? present.truth.q + zero : present.truth.q);
+  saved.arm.realism = "ideal";  // the keys that it set are saved one by one
   const bool rests = present.truth.dq.cwiseAbs().maxCoeff() < kRests;
   saved.arm.dq_start = rests ? std::vector<double>{} : ToList(present.truth.dq);
   std::string note;

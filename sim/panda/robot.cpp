@@ -27,7 +27,7 @@ MotionGeneratorMode Shown(franka::MoveGenerator generator) {
 
 FciRobot::FciRobot(World& world, const SimRobot& robot, std::vector<CartesianWall> walls)
     : world_(world), chain_(robot), reference_(chain_), self_distance_(robot), walls_(std::move(walls)) {
-  Measure(world_.Reading(), world_.truth().dq);
+  Measure(world_.Reading(), world_.ReadingSpeed());
   reference_.Hold(measured_.q, Joints::Zero());
   state_.robot_mode = RobotMode::kIdle;
   state_.controller_mode = ControllerMode::kOther;
@@ -177,7 +177,7 @@ void FciRobot::Step(const std::optional<franka::RobotCommand>& command) {
     tau_ = ControllerTorque().cwiseMax(-most).cwiseMin(most);
   }
   const Joints q_before = world_.Reading();
-  const Joints dq_before = world_.truth().dq;
+  const Joints dq_before = world_.ReadingSpeed();
   hal::ArmCommand to_arm;
   to_arm.num_joints = franka::kJoints;
   Eigen::Map<Joints>(to_arm.tau_cmd.data()) = tau_ + LoadTorque();

@@ -23,8 +23,8 @@ namespace fovea::sim {
 
 class FciRobot {
  public:
-  // `robot` is the arm in `world`: seven joints, and fixed links for its tools. Both must outlive this. The
-  // end effector may not enter `walls`.
+  // `robot` is the arm in `world` as its own controller believes it to be: seven joints, and fixed links for
+  // its tools. `world` must outlive this. The end effector may not enter `walls`.
   FciRobot(World& world, const SimRobot& robot, std::vector<CartesianWall> walls = {});
 
   [[nodiscard]] franka::SetterStatus Set(franka::Command command, std::span<const std::byte> payload);

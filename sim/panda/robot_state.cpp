@@ -38,9 +38,9 @@ void FciRobot::Measure(const Joints& q_before, const Joints& dq_before) {
 // External torques tau_ext, defined by M ddq + C dq = tau + tau_ext. The physics steps by semi-implicit
 // Euler, so this holds with M and C of the step's beginning.
 void FciRobot::FeelForces(const Joints& q_before, const Joints& dq_before) {
-  const Joints ddq = (Joints(world_.truth().dq) - dq_before) / kFciStepS;
-  const Joints tau_ext =
-      chain_.MassMatrix(q_before) * ddq + chain_.CoriolisTorque(q_before, dq_before) - tau_;
+  const Joints ddq = (Joints(world_.ReadingSpeed()) - dq_before) / kFciStepS;
+  const Joints tau_ext = chain_.MassMatrix(q_before) * ddq + chain_.CoriolisTorque(q_before, dq_before) -
+                         tau_ - Joints(world_.DriveError());
   const double w = 2.0 * std::numbers::pi * kForceFilterHz * kFciStepS;
   tau_ext_ += w / (1.0 + w) * (tau_ext - tau_ext_);
   state_.tau_ext_hat_filtered = ToArray(tau_ext_);

@@ -7,56 +7,26 @@
 #include <BulletCollision/CollisionShapes/btCompoundShape.h>
 #include <BulletCollision/CollisionShapes/btEmptyShape.h>
 #include <BulletCollision/CollisionShapes/btStaticPlaneShape.h>
-#include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
 #include <BulletDynamics/Featherstone/btMultiBodyJointMotor.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "sim/physics/bullet_shapes.hpp"
 #include "sim/physics/bullet_types.hpp"
+#include "sim/physics/multi_body_joints.hpp"
+#include "sim/physics/multi_body_links.hpp"
+#include "sim/physics/rotors.hpp"
 #include "sim/physics/weight_on_joints.hpp"
 
 namespace fovea::sim {
 namespace {
-
-Eigen::Isometry3d ToEigen(const btTransform& t) {
-  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
-  const btQuaternion q = t.getRotation();
-  X.linear() = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).toRotationMatrix();
-  X.translation() = Eigen::Vector3d(t.getOrigin().x(), t.getOrigin().y(), t.getOrigin().z());
-  return X;
-}
-
-// A body's frame in Bullet's convention: at the centre of mass, along the principal axes of inertia.
-struct PrincipalBody {
-  Eigen::Isometry3d X_LP = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d X_PL = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d moments = Eigen::Vector3d::Zero();
-};
-
-PrincipalBody Diagonalise(const SimLink& link) {
-  PrincipalBody body;
-  if (link.mass == 0.0) {
-    return body;
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(link.I_Com);
-  Eigen::Matrix3d axes = solver.eigenvectors();
-  if (axes.determinant() < 0.0) {
-    axes.col(0) = -axes.col(0);
-  }
-  body.moments = solver.eigenvalues();
-  body.X_LP = link.X_LCom;
-  body.X_LP.linear() = link.X_LCom.linear() * axes;
-  body.X_PL = body.X_LP.inverse();
-  return body;
-}
 
 // Bullet's world without the predicted link poses between two steps, which only soft bodies need.
 class RigidWorld final : public btMultiBodyDynamicsWorld {
@@ -102,16 +72,13 @@ struct BulletArm::Impl {
 
   SimRobot robot;
   std::vector<PrincipalBody> principal;  // per link of the robot
-  std::vector<int> dof_link;             // link index of each moving joint
-  int load = -1;                         // Bullet's link for the load; -1: none
+  std::optional<MultiBodyJoints> joints;
+  std::optional<Rotors> rotors;    // none: all inertias are 0
+  Eigen::VectorXd rotor_stiction;  // torques of the last step, with rotors
+  int load = -1;                   // Bullet's link for the load; -1: none
   Eigen::VectorXd q;
   Eigen::VectorXd dq;
   std::optional<Eigen::VectorXd> gravity_torque;  // at q; computed on the first request
-
-  btAlignedObjectArray<btScalar> scratch_r;
-  btAlignedObjectArray<btVector3> scratch_v;
-  btAlignedObjectArray<btMatrix3x3> scratch_m;
-  btAlignedObjectArray<btQuaternion> scratch_q;
 
   ~Impl() {
     for (const auto& motor : stiction) {
@@ -127,27 +94,34 @@ struct BulletArm::Impl {
   }
 
   void Build(const BulletArmOptions& options) {
-    for (const SimLink& link : robot.links) {
-      principal.push_back(Diagonalise(link));
-    }
+    principal = PrincipalBodies(robot);
     const int num_links = static_cast<int>(robot.links.size()) - 1;
     load = options.may_be_loaded ? num_links : -1;
     body = std::make_unique<btMultiBody>(options.may_be_loaded ? num_links + 1 : num_links, 0.0,
                                          btVector3(0, 0, 0), /*fixedBase=*/true,
                                          /*canSleep=*/false);
-    dof_link.resize(static_cast<std::size_t>(robot.num_dofs));
+    std::vector<int> dof_link(static_cast<std::size_t>(robot.num_dofs));  // Bullet's link of each joint
+    Eigen::VectorXd inertia = Eigen::VectorXd::Zero(robot.num_dofs);      // of the rotors
     for (int i = 0; i < num_links; ++i) {
-      AddLink(i);
+      SetUpLink(robot, principal, i, *body);
+      if (const SimLink& link = robot.links[static_cast<std::size_t>(i + 1)]; link.dof >= 0) {
+        dof_link[static_cast<std::size_t>(link.dof)] = i;
+        inertia[link.dof] = link.rotor_inertia;
+      }
     }
     if (load >= 0) {
-      AddLoad();
+      SetUpLoad(robot, principal, load, *body);
+    }
+    joints.emplace(*body, std::move(dof_link));
+    if (!inertia.isZero(0.0)) {
+      rotors.emplace(std::move(inertia), options.integrator, *joints);
     }
     body->setLinearDamping(0.0);
     body->setAngularDamping(0.0);
     body->setMaxCoordinateVelocity(1e6);
     body->setMaxAppliedImpulse(1e6);
     body->setHasSelfCollision(false);
-    body->useRK4Integration(options.integrator == Integrator::kRungeKutta4);
+    body->useRK4Integration(options.integrator == Integrator::kRungeKutta4 && !rotors);
     body->finalizeMultiDof();
     upright_gravity = btVector3(0, 0, options.gravity ? -kGravity : 0.0);
     world.setGravity(upright_gravity);
@@ -162,44 +136,6 @@ struct BulletArm::Impl {
     }
     q.setZero(robot.num_dofs);
     dq.setZero(robot.num_dofs);
-  }
-
-  // Link i of Bullet is link i + 1 of the robot; Bullet's base is the robot's link 0.
-  void AddLink(int i) {
-    const auto k = static_cast<std::size_t>(i + 1);
-    const SimLink& link = robot.links[k];
-    const PrincipalBody& own = principal[k];
-    const PrincipalBody& parent = principal[static_cast<std::size_t>(link.parent)];
-    const Eigen::Isometry3d X_PaL = parent.X_PL * link.X_PL;  // link frame in the parent's body frame
-    const Eigen::Isometry3d X_PaPo = X_PaL * own.X_LP;
-    const btQuaternion parent_to_this = ToBullet(Eigen::Matrix3d(X_PaPo.linear().transpose()));
-    const btVector3 com_to_pivot = ToBullet(Eigen::Vector3d(X_PaL.translation()));
-    const Eigen::Matrix3d R_PoL = own.X_LP.linear().transpose();
-    const btVector3 pivot_to_com = ToBullet(Eigen::Vector3d(R_PoL * own.X_LP.translation()));
-    const btVector3 axis = ToBullet(Eigen::Vector3d(R_PoL * link.axis_L));
-    const btVector3 inertia = ToBullet(own.moments);
-    switch (link.joint) {
-      case SimJointKind::kFixed:
-        body->setupFixed(i, link.mass, inertia, link.parent - 1, parent_to_this, com_to_pivot, pivot_to_com);
-        return;
-      case SimJointKind::kRevolute:
-        body->setupRevolute(i, link.mass, inertia, link.parent - 1, parent_to_this, axis, com_to_pivot,
-                            pivot_to_com, true);
-        break;
-      case SimJointKind::kPrismatic:
-        body->setupPrismatic(i, link.mass, inertia, link.parent - 1, parent_to_this, axis, com_to_pivot,
-                             pivot_to_com, true);
-        break;
-    }
-    dof_link[static_cast<std::size_t>(link.dof)] = i;
-  }
-
-  // Adds the load as a fixed link in the tip's frame. It has no mass until SetLoad.
-  void AddLoad() {
-    const Eigen::Isometry3d X_PaL = principal[static_cast<std::size_t>(robot.tip)].X_PL;
-    body->setupFixed(load, 0.0, btVector3(0, 0, 0), robot.tip - 1,
-                     ToBullet(Eigen::Matrix3d(X_PaL.linear().transpose())),
-                     ToBullet(Eigen::Vector3d(X_PaL.translation())), btVector3(0, 0, 0));
   }
 
   // The base always stands on the table, so it has no collider.
@@ -236,16 +172,14 @@ struct BulletArm::Impl {
 
   void ReadState() {
     gravity_torque.reset();
-    for (int i = 0; i < robot.num_dofs; ++i) {
-      const int link = dof_link[static_cast<std::size_t>(i)];
-      q[i] = body->getJointPos(link);
-      dq[i] = body->getJointVel(link);
-    }
+    q = joints->q();
+    dq = joints->dq();
   }
 
-  void UpdatePoses() {
-    body->forwardKinematics(scratch_q, scratch_v);
-    body->updateCollisionObjectWorldTransforms(scratch_q, scratch_v);
+  // A step of Bullet under `tau`.
+  void StepBullet(const Eigen::VectorXd& tau, double dt) {
+    joints->AddTorque(tau);
+    world.stepSimulation(dt, 0);
   }
 
   Eigen::Isometry3d LinkPose(int index) const {
@@ -254,12 +188,6 @@ struct BulletArm::Impl {
     }
     return ToEigen(body->getLink(index - 1).m_cachedWorldTransform) *
            principal[static_cast<std::size_t>(index)].X_PL;
-  }
-
-  void ApplyTorque(const Eigen::VectorXd& tau) {
-    for (int i = 0; i < robot.num_dofs; ++i) {
-      body->addJointTorque(dof_link[static_cast<std::size_t>(i)], tau[i]);
-    }
   }
 };
 
@@ -277,26 +205,25 @@ const Eigen::VectorXd& BulletArm::q() const { return impl_->q; }
 const Eigen::VectorXd& BulletArm::dq() const { return impl_->dq; }
 
 void BulletArm::SetState(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) {
-  for (int i = 0; i < num_dofs(); ++i) {
-    const int link = impl_->dof_link[static_cast<std::size_t>(i)];
-    impl_->body->setJointPos(link, q[i]);
-    impl_->body->setJointVel(link, dq[i]);
-  }
-  impl_->UpdatePoses();
+  impl_->joints->SetState(q, dq);
   impl_->ReadState();
 }
 
 // Models Coulomb friction by a motor with target speed 0 and at most this torque.
 void BulletArm::SetStiction(const Eigen::VectorXd& coulomb) {
   Impl& m = *impl_;
+  if (m.rotors) {
+    m.rotors->SetStiction(coulomb);
+    return;
+  }
   m.coulomb = coulomb;
   if (m.colliders.empty()) {
     m.AddEmptyCollider();
   }
   for (int i = 0; i < num_dofs(); ++i) {
-    m.stiction.push_back(
-        std::make_unique<btMultiBodyJointMotor>(m.body.get(), m.dof_link[static_cast<std::size_t>(i)],
-                                                /*desiredVelocity=*/0.0, /*maxMotorImpulse=*/0.0));
+    m.stiction.push_back(std::make_unique<btMultiBodyJointMotor>(m.body.get(), m.joints->link(i),
+                                                                 /*desiredVelocity=*/0.0,
+                                                                 /*maxMotorImpulse=*/0.0));
     m.stiction.back()->finalizeMultiDof();
     m.world.addMultiBodyConstraint(m.stiction.back().get());
   }
@@ -305,6 +232,9 @@ void BulletArm::SetStiction(const Eigen::VectorXd& coulomb) {
 Eigen::VectorXd BulletArm::StictionTorque() const {
   const Impl& m = *impl_;
   Eigen::VectorXd tau = Eigen::VectorXd::Zero(num_dofs());
+  if (m.rotor_stiction.size() > 0) {
+    tau = m.rotor_stiction;
+  }
   for (std::size_t i = 0; i < m.stiction.size(); ++i) {
     tau[static_cast<Eigen::Index>(i)] = m.stiction[i]->getAppliedImpulse(0) / m.last_dt;
   }
@@ -330,31 +260,26 @@ void BulletArm::Step(const Eigen::VectorXd& tau, double dt) {
     impl_->stiction[i]->setMaxAppliedImpulse(impl_->coulomb[static_cast<Eigen::Index>(i)] * dt);
   }
   impl_->last_dt = dt;
-  impl_->ApplyTorque(tau);
-  impl_->world.stepSimulation(dt, 0);
-  // Except for the colliders, Bullet's poses are still those of the step's beginning.
-  impl_->body->forwardKinematics(impl_->scratch_q, impl_->scratch_v);
+  if (impl_->rotors) {
+    const RotorStep step = impl_->rotors->Plan(tau, impl_->world.getGravity(), dt);
+    impl_->StepBullet(step.tau, dt);
+    impl_->joints->SetState(impl_->joints->q() + step.shift, impl_->joints->dq());
+    impl_->rotor_stiction = step.stiction;
+  } else {
+    impl_->StepBullet(tau, dt);
+    // Except for the colliders, Bullet's poses are still those of the step's beginning.
+    impl_->joints->PlaceLinks();
+  }
   impl_->ReadState();
 }
 
 Eigen::VectorXd BulletArm::ForwardDynamics(const Eigen::VectorXd& tau) {
   Impl& m = *impl_;
-  const Eigen::VectorXd q = m.q;
-  const Eigen::VectorXd dq = m.dq;
-  m.body->clearForcesAndTorques();
-  m.ApplyTorque(tau);
-  for (int i = 0; i < m.body->getNumLinks(); ++i) {
-    m.body->addLinkForce(i, m.world.getGravity() * m.body->getLinkMass(i));
-  }
-  // Bullet's function integrates the velocities over dt. With dt = 1 their change is the acceleration.
-  m.body->computeAccelerationsArticulatedBodyAlgorithmMultiDof(1.0, m.scratch_r, m.scratch_v, m.scratch_m,
-                                                               false, false, false);
-  m.ReadState();
-  const Eigen::VectorXd ddq = m.dq - dq;
-  m.body->clearForcesAndTorques();
-  SetState(q, dq);
-  return ddq;
+  const btVector3 g = m.world.getGravity();
+  return m.rotors ? m.rotors->Acceleration(tau, g) : m.joints->Acceleration(tau, g);
 }
+
+Eigen::MatrixXd BulletArm::InverseMass() { return impl_->joints->InverseMass(); }
 
 Eigen::VectorXd BulletArm::GravityTorque() const {
   if (!impl_->gravity_torque) {
@@ -379,7 +304,7 @@ double BulletArm::Energy() const {
     const btVector3 p = impl_->body->getLink(i).m_cachedWorldTransform.getOrigin();
     energy -= impl_->body->getLinkMass(i) * impl_->world.getGravity().dot(p);
   }
-  return energy;
+  return energy + (impl_->rotors ? impl_->rotors->Energy() : 0.0);
 }
 
 void BulletArm::FindContacts() { impl_->world.performDiscreteCollisionDetection(); }

@@ -8,14 +8,10 @@
 #include <Eigen/Geometry>
 #include <memory>
 
+#include "sim/physics/integrator.hpp"
 #include "sim/robot/sim_robot.hpp"
 
 namespace fovea::sim {
-
-enum class Integrator {
-  kSemiImplicitEuler,  // Bullet's default, one evaluation per step
-  kRungeKutta4,        // four evaluations per step; keeps energy 7 orders better
-};
 
 struct BulletArmOptions {
   Integrator integrator = Integrator::kSemiImplicitEuler;
@@ -57,6 +53,9 @@ class BulletArm {
 
   // Joint accelerations at the present state under `tau` and gravity, without contact. Keeps the state.
   [[nodiscard]] Eigen::VectorXd ForwardDynamics(const Eigen::VectorXd& tau);
+
+  // The inverse of the links' mass matrix [num_dofs x num_dofs], in the state of the last ForwardDynamics.
+  [[nodiscard]] Eigen::MatrixXd InverseMass();
 
   // Joint torques that compensate the links' weights at the present position, for an upright base.
   [[nodiscard]] Eigen::VectorXd GravityTorque() const;

@@ -19,4 +19,12 @@ inline btTransform ToBullet(const Eigen::Isometry3d& X) {
   return btTransform(ToBullet(Eigen::Matrix3d(X.linear())), ToBullet(Eigen::Vector3d(X.translation())));
 }
 
+inline Eigen::Isometry3d ToEigen(const btTransform& t) {
+  Eigen::Isometry3d X = Eigen::Isometry3d::Identity();
+  const btQuaternion q = t.getRotation();
+  X.linear() = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).toRotationMatrix();
+  X.translation() = Eigen::Vector3d(t.getOrigin().x(), t.getOrigin().y(), t.getOrigin().z());
+  return X;
+}
+
 }  // namespace fovea::sim

@@ -5,11 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "sim/render/ball_painter.hpp"
+#include "sim/render/canvas.hpp"
 #include "sim/render/cover.hpp"
 #include "sim/render/egl_context.hpp"
 #include "sim/render/gl_program.hpp"
@@ -54,26 +57,27 @@ struct SceneRenderer::Impl {
   RenderScene scene;
   Pinhole pinhole;
   RenderQuality quality;
+  std::optional<SensorRows> sensor;
   EglContext egl;
-  std::unique_ptr<GlProgram> mesh_program, hem_program, ball_program;
+  std::unique_ptr<GlProgram> mesh_program, hem_program;
+  std::unique_ptr<Canvas> canvas;
   std::unique_ptr<OutlineSmoother> smoother;
   std::unique_ptr<ShadowMap> shadow;
   std::unique_ptr<PlanePainter> planes;
+  std::unique_ptr<BallPainter> balls;
   std::unique_ptr<PlatePainter> plate;  // null if the target is a ball, or there is none
   std::vector<Thing> things;
   std::vector<Link> links;
   std::unique_ptr<GpuMesh> unit_ball;
-  GLuint no_vertices = 0;    // for balls, which are drawn from uniforms only
-  GLuint frame[2] = {0, 0};  // drawn into (may be multisampled), resolved
-  GLuint buffers[3] = {0, 0, 0};
   RenderWatch watch;
 
-  Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q, int index)
-      : scene(s), pinhole(p), quality(q), egl(index) {
+  Impl(const RenderScene& s, const Pinhole& p, const RenderQuality& q, int index,
+       const std::optional<SensorRows>& r)
+      : scene(s), pinhole(p), quality(q), sensor(r), egl(index) {
     egl.MakeCurrent();
     const std::string head =
-        fmt::format("#version 330 core\n#define SHADOW_TAPS {}\n#define SHADOW_SPREAD {:.3f}\n",
-                    quality.shadow_taps, quality.shadow_spread);
+        fmt::format("#version 330 core\n#define SHADOW_TAPS {}\n#define SHADOW_SPREAD {:.3f}\n{}",
+                    quality.shadow_taps, quality.shadow_spread, sensor ? "#define ROLLING\n" : "");
     const std::string light = shaders::kLight;
     const std::string lit = shaders::kShadow;
     mesh_program =
@@ -81,25 +85,19 @@ struct SceneRenderer::Impl {
     hem_program =
         std::make_unique<GlProgram>(head + light + shaders::kHemVertex, head + lit + shaders::kHemFragment);
     smoother = std::make_unique<OutlineSmoother>();
-    ball_program =
-        std::make_unique<GlProgram>(head + shaders::kBallVertex, head + light + lit + shaders::kBallFragment);
+    balls = std::make_unique<BallPainter>(head);
     if (scene.has_eye && scene.target.kind != TargetShape::Kind::kBall) {
       plate = std::make_unique<PlatePainter>(scene.target, head);
     }
     shadow = std::make_unique<ShadowMap>(quality.shadow_map_px);
     Upload();
-    MakeFrames();
+    canvas = std::make_unique<Canvas>(pinhole.width_px, pinhole.height_px, quality.samples);
     const auto draw_static = [this](const ShadowMap::DrawAt& draw) { DrawStaticCasters(draw); };
     shadow->DrawStatic(draw_static);
     planes = std::make_unique<PlanePainter>(scene.bench.planes, head, draw_static);
   }
 
-  ~Impl() {
-    egl.MakeCurrent();
-    glDeleteVertexArrays(1, &no_vertices);
-    glDeleteFramebuffers(2, frame);
-    glDeleteRenderbuffers(3, buffers);
-  }
+  ~Impl() { egl.MakeCurrent(); }
 
   void Upload() {
     for (const Mesh& mesh : scene.bench.things) {
@@ -120,38 +118,19 @@ struct SceneRenderer::Impl {
                        FindAllEdges(seen), FindBounds(mesh), std::move(shapes)});
     }
     unit_ball = std::make_unique<GpuMesh>(MakeSphere(1.0F, 24, Vector3f::Ones()));
-    glGenVertexArrays(1, &no_vertices);
   }
 
-  void MakeFrames() {
-    const int samples = quality.samples > 1 ? quality.samples : 0;
-    glGenFramebuffers(2, frame);
-    glGenRenderbuffers(3, buffers);
-    const auto attach = [&](GLuint buffer, GLenum format, GLenum point, int count) {
-      glBindRenderbuffer(GL_RENDERBUFFER, buffer);
-      glRenderbufferStorageMultisample(GL_RENDERBUFFER, count, format, pinhole.width_px, pinhole.height_px);
-      glFramebufferRenderbuffer(GL_FRAMEBUFFER, point, GL_RENDERBUFFER, buffer);
-    };
-    glBindFramebuffer(GL_FRAMEBUFFER, frame[0]);
-    attach(buffers[0], GL_RGBA8, GL_COLOR_ATTACHMENT0, samples);
-    attach(buffers[1], GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT, samples);
-    CheckFramebuffer("picture");
-    glBindFramebuffer(GL_FRAMEBUFFER, frame[1]);
-    attach(buffers[2], GL_RGBA8, GL_COLOR_ATTACHMENT0, 0);
-    CheckFramebuffer("resolved picture");
-  }
-
-  Ball Target(const Exposure& exposure) const {
+  Ball Target(const Moment& moment) const {
     if (!HasBall()) {
       return {Vector3f(0.0F, 0.0F, -10.0F), 1e-3F, scene.target_colour};  // far under the table
     }
-    return {exposure.p_BO.cast<float>(), static_cast<float>(scene.target.radius), scene.target_colour};
+    return {moment.p_BO.cast<float>(), static_cast<float>(scene.target.radius), scene.target_colour};
   }
   bool HasBall() const { return scene.has_eye && scene.target.kind == TargetShape::Kind::kBall; }
-  static Isometry3f PlatePose(const Exposure& exposure) {
+  static Isometry3f PlatePose(const Moment& moment) {
     Eigen::Isometry3d X_BO = Eigen::Isometry3d::Identity();
-    X_BO.linear() = exposure.R_BO;
-    X_BO.translation() = exposure.p_BO;
+    X_BO.linear() = moment.R_BO;
+    X_BO.translation() = moment.p_BO;
     return X_BO.cast<float>();
   }
 
@@ -171,13 +150,13 @@ struct SceneRenderer::Impl {
     }
   }
 
-  void DrawMovingCasters(const Exposure& exposure, const ShadowMap::DrawAt& draw) const {
-    for (std::size_t i = 0; i < links.size() && i < exposure.X_BL.size(); ++i) {
-      draw(*links[i].shadow, exposure.X_BL[i].matrix().cast<float>());
+  void DrawMovingCasters(const Moment& moment, const ShadowMap::DrawAt& draw) const {
+    for (std::size_t i = 0; i < links.size() && i < moment.X_BL.size(); ++i) {
+      draw(*links[i].shadow, moment.X_BL[i].matrix().cast<float>());
     }
-    DrawBallCaster(Target(exposure), draw);
+    DrawBallCaster(Target(moment), draw);
     if (plate) {
-      draw(plate->caster(), PlatePose(exposure).matrix());
+      draw(plate->caster(), PlatePose(moment).matrix());
     }
   }
 
@@ -205,13 +184,13 @@ struct SceneRenderer::Impl {
     return std::nullopt;
   }
 
-  void DrawMeshes(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_B,
+  void DrawMeshes(const Moment& moment, const Isometry3f& X_BC, const Matrix4f& clip_of_B,
                   const std::optional<Box>& seen) const {
     const Isometry3f X_CB = X_BC.inverse();
     SetLight(*mesh_program, X_BC);
     mesh_program->Set("u_clip_of_B", clip_of_B);
-    for (std::size_t i = 0; i < links.size() && i < exposure.X_BL.size(); ++i) {
-      const Isometry3f X_BL = exposure.X_BL[i].cast<float>();
+    for (std::size_t i = 0; i < links.size() && i < moment.X_BL.size(); ++i) {
+      const Isometry3f X_BL = moment.X_BL[i].cast<float>();
       if (InView(pinhole, X_CB * (X_BL * links[i].bounds.centre), links[i].bounds.radius)) {
         mesh_program->Set("u_B_of_mesh", X_BL.matrix());
         links[i].mesh->Draw();
@@ -245,14 +224,14 @@ struct SceneRenderer::Impl {
     return {Isometry3f::Identity(), {p_B - half, p_B + half}};
   }
 
-  void DrawPlanes(const Exposure& exposure, const Matrix4f& clip_of_B, const std::optional<Box>& seen) const {
-    const Ball target = Target(exposure);
+  void DrawPlanes(const Moment& moment, const Matrix4f& clip_of_B, const std::optional<Box>& seen) const {
+    const Ball target = Target(moment);
     std::vector<MovingBounds> moving{BoxAbout(target.p_B, target.radius)};
     if (plate) {
-      moving.push_back(BoxAbout(exposure.p_BO.cast<float>(), static_cast<float>(scene.target.Reach())));
+      moving.push_back(BoxAbout(moment.p_BO.cast<float>(), static_cast<float>(scene.target.Reach())));
     }
-    for (std::size_t i = 0; i < links.size() && i < exposure.X_BL.size(); ++i) {
-      const Isometry3f X_BL = exposure.X_BL[i].cast<float>();
+    for (std::size_t i = 0; i < links.size() && i < moment.X_BL.size(); ++i) {
+      const Isometry3f X_BL = moment.X_BL[i].cast<float>();
       for (const Box& shape : links[i].shapes) {
         moving.push_back({X_BL, shape});
       }
@@ -261,55 +240,74 @@ struct SceneRenderer::Impl {
     planes->Draw(clip_of_B, static_cast<float>(scene.light), *shadow, target, moving, bottom);
   }
 
-  void DrawPlate(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_C) const {
+  // The rows of a band, for a program that draws a target.
+  void SetRows(const GlProgram& program, const RowBand& band) const {
+    const std::array<double, 5>& k = sensor->lens;
+    program.Set("u_rows",
+                Vector3f(Eigen::Vector3d(sensor->f_v_px, sensor->c_v_px, band.middle_row).cast<float>()));
+    program.Set("u_lens", Vector4f(Eigen::Vector4d(k[0], k[1], k[2], k[3]).cast<float>()));
+    program.Set("u_k3", static_cast<float>(k[4]));
+  }
+
+  void DrawPlate(const Moment& moment, const Isometry3f& X_BC, const Matrix4f& clip_of_C,
+                 const RowBand* band) const {
     if (!plate) {
       return;
     }
-    glEnable(GL_BLEND);
     SetLight(plate->program(), X_BC);
-    plate->Draw(X_BC.inverse() * PlatePose(exposure), X_BC, pinhole, clip_of_C, scene.target_colour);
-    glDisable(GL_BLEND);
-  }
-
-  // Drawn last, over their background, by the covered share of each pixel; far balls first.
-  void DrawBalls(const Exposure& exposure, const Isometry3f& X_BC, const Matrix4f& clip_of_C) const {
-    const Isometry3f X_CB = X_BC.inverse();
-    std::vector<Ball> balls = scene.bench.balls;
-    balls.push_back(Target(exposure));
-    std::sort(balls.begin(), balls.end(), [&](const Ball& a, const Ball& b) {
-      return (X_CB * a.p_B).squaredNorm() > (X_CB * b.p_B).squaredNorm();
-    });
-    glEnable(GL_BLEND);
-    SetLight(*ball_program, X_BC);
-    ball_program->Set("u_clip_of_C", clip_of_C);
-    ball_program->Set("u_B_of_C", X_BC.matrix());
-    ball_program->Set("u_f_px", static_cast<float>(pinhole.f_px));
-    ball_program->Set("u_depth", WindowDepth(clip_of_C));
-    glBindVertexArray(no_vertices);
-    for (const Ball& ball : balls) {
-      const Vector3f c = X_CB * ball.p_B;
-      if (c.z() < 1.5F * ball.radius + kNear || !InView(pinhole, c, ball.radius)) {
-        continue;
-      }
-      ball_program->Set("u_rectangle",
-                        OutlineRectangle(c, ball.radius, static_cast<float>(2.0 / pinhole.f_px)));
-      ball_program->Set("u_ball_C", Vector4f(c.x(), c.y(), c.z(), ball.radius));
-      ball_program->Set("u_colour", ball.colour);
-      glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    std::optional<PlateMotion> motion;
+    if (band != nullptr) {
+      SetRows(plate->program(), *band);
+      const auto X_CO = [](const Moment& m) { return m.X_BC.cast<float>().inverse() * PlatePose(m); };
+      motion = {X_CO(band->first), X_CO(band->last), static_cast<float>(band->rows)};
     }
-    glDisable(GL_BLEND);
+    plate->Draw(X_BC.inverse() * PlatePose(moment), X_BC, pinhole, clip_of_C, scene.target_colour, motion);
   }
 
-  void Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC_exact, std::span<std::uint8_t> rgba) {
+  void DrawBalls(const Moment& moment, const Isometry3f& X_BC, const Matrix4f& clip_of_C,
+                 const RowBand* band) const {
+    const auto see = [](const Ball& ball, const Isometry3f& X_CB) {
+      return SeenBall{X_CB * ball.p_B, ball.radius, ball.colour};
+    };
+    const auto add = [&](const auto& ball_at) {
+      SeenBall ball = see(ball_at(moment), X_BC.inverse());
+      if (band != nullptr) {
+        ball.first = see(ball_at(band->first), band->first.X_BC.cast<float>().inverse()).centre;
+        ball.last = see(ball_at(band->last), band->last.X_BC.cast<float>().inverse()).centre;
+      }
+      return ball;
+    };
+    std::vector<SeenBall> seen;
+    for (const Ball& ball : scene.bench.balls) {
+      seen.push_back(add([&ball](const Moment&) { return ball; }));
+    }
+    seen.push_back(add([this](const Moment& m) { return Target(m); }));
+    SetLight(balls->program(), X_BC);
+    std::optional<float> rows;
+    if (band != nullptr) {
+      SetRows(balls->program(), *band);
+      rows = static_cast<float>(band->rows);
+    }
+    balls->Draw(std::move(seen), X_BC, pinhole, clip_of_C, rows);
+  }
+
+  // With `band`: only its rows.
+  void Draw(const Moment& moment, const Eigen::Isometry3d& X_BC_exact, const RowBand* band,
+            std::span<std::uint8_t> rgba) {
     egl.MakeCurrent();
+    const int begin = band != nullptr ? band->begin_px : 0;
+    const int rows = band != nullptr ? band->end_px - begin : pinhole.height_px;
     const Isometry3f X_BC = X_BC_exact.cast<float>();
     const Matrix4f clip_of_C = ClipOfC(pinhole);
     const Matrix4f clip_of_B = clip_of_C * X_BC.inverse().matrix();
-    shadow->DrawMoving([&](const ShadowMap::DrawAt& draw) { DrawMovingCasters(exposure, draw); });
+    shadow->DrawMoving([&](const ShadowMap::DrawAt& draw) { DrawMovingCasters(moment, draw); });
     Tell("shadow");
+    if (band != nullptr) {
+      glEnable(GL_SCISSOR_TEST);
+      glScissor(0, begin, pinhole.width_px, rows);
+    }
 
-    glBindFramebuffer(GL_FRAMEBUFFER, frame[0]);
-    glViewport(0, 0, pinhole.width_px, pinhole.height_px);
+    canvas->Bind();
     const auto gain = static_cast<float>(scene.light);
     glClearColor(0.45F * gain, 0.46F * gain, 0.47F * gain, 1.0F);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -320,29 +318,26 @@ struct SceneRenderer::Impl {
     // The table first: it fills most of the camera's picture and hides everything below it.
     glDisable(GL_CULL_FACE);  // tiles and the balls' rectangles have no back side
     const std::optional<Box> seen = Seen(X_BC);
-    DrawPlanes(exposure, clip_of_B, seen);
+    DrawPlanes(moment, clip_of_B, seen);
     Tell("planes");
     glEnable(GL_CULL_FACE);
     glFrontFace(GL_CW);  // see ClipOfC
-    DrawMeshes(exposure, X_BC, clip_of_B, seen);
+    DrawMeshes(moment, X_BC, clip_of_B, seen);
     Tell("meshes");
     glDisable(GL_CULL_FACE);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     DrawHems(X_BC, clip_of_B);
     Tell("outlines");
-    DrawPlate(exposure, X_BC, clip_of_C);
-    DrawBalls(exposure, X_BC, clip_of_C);
+    glEnable(GL_BLEND);
+    DrawPlate(moment, X_BC, clip_of_C, band);
+    DrawBalls(moment, X_BC, clip_of_C, band);
+    glDisable(GL_BLEND);
 
-    if (quality.samples > 1) {
-      glBindFramebuffer(GL_READ_FRAMEBUFFER, frame[0]);
-      glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frame[1]);
-      glBlitFramebuffer(0, 0, pinhole.width_px, pinhole.height_px, 0, 0, pinhole.width_px, pinhole.height_px,
-                        GL_COLOR_BUFFER_BIT, GL_NEAREST);
-      glBindFramebuffer(GL_FRAMEBUFFER, frame[1]);
-    }
+    canvas->Resolve();
     Tell("target and balls");
-    glReadPixels(0, 0, pinhole.width_px, pinhole.height_px, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+    canvas->Read(begin, rows, rgba);
     Tell("read-back");
+    glDisable(GL_SCISSOR_TEST);
   }
 
   // Waits until the driver has finished the part, so that a watcher can time it.
@@ -355,21 +350,29 @@ struct SceneRenderer::Impl {
 };
 
 SceneRenderer::SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality,
-                             int index)
-    : impl_(std::make_unique<Impl>(scene, pinhole, quality, index)) {
+                             int index, const std::optional<SensorRows>& rows)
+    : impl_(std::make_unique<Impl>(scene, pinhole, quality, index, rows)) {
   driver_name_ = impl_->egl.RendererName();
   Release();
 }
 SceneRenderer::~SceneRenderer() = default;
 
-void SceneRenderer::Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC,
-                         std::span<std::uint8_t> rgba) {
+void SceneRenderer::CheckSize(std::span<const std::uint8_t> rgba) const {
   const auto needed = static_cast<std::size_t>(impl_->pinhole.width_px) *
                       static_cast<std::size_t>(impl_->pinhole.height_px) * 4;
   if (rgba.size() != needed) {
-    throw std::invalid_argument("SceneRenderer::Draw: the buffer does not have the picture's size");
+    throw std::invalid_argument("SceneRenderer: the buffer does not have the picture's size");
   }
-  impl_->Draw(exposure, X_BC, rgba);
+}
+
+void SceneRenderer::Draw(const Moment& moment, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba) {
+  CheckSize(rgba);
+  impl_->Draw(moment, X_BC, nullptr, rgba);
+}
+
+void SceneRenderer::DrawBand(const RowBand& band, std::span<std::uint8_t> rgba) {
+  CheckSize(rgba);
+  impl_->Draw(band.middle, band.middle.X_BC, &band, rgba);
 }
 
 void SceneRenderer::Watch(RenderWatch watch) { impl_->watch = std::move(watch); }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "sim/render/bench.hpp"
 #include "sim/render/exposure.hpp"
 #include "sim/render/pinhole.hpp"
+#include "sim/render/row_band.hpp"
 #include "sim/render/target_shape.hpp"
 #include "sim/robot/sim_robot.hpp"
 
@@ -43,16 +45,21 @@ using RenderWatch = std::function<void(const char* part)>;
 // One thread at a time. The first call on a thread takes the OpenGL context; Release releases it.
 class SceneRenderer {
  public:
-  // `index` numbers the renderers that work at the same time, from 0 (see EglContext). std::runtime_error
-  // (one line): there is no EGL, or the driver cannot draw.
-  SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality,
-                int index = 0);
+  // `index` numbers the renderers that work at the same time, from 0 (see EglContext). `rows`: for DrawBand.
+  // std::runtime_error (one line): there is no EGL, or the driver cannot draw.
+  SceneRenderer(const RenderScene& scene, const Pinhole& pinhole, const RenderQuality& quality, int index = 0,
+                const std::optional<SensorRows>& rows = std::nullopt);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-  // Draws `exposure` as seen from `X_BC` into `rgba` [height * width * 4], top row first.
-  void Draw(const Exposure& exposure, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba);
+  // Draws `moment` as seen from `X_BC` into `rgba` [height * width * 4], top row first.
+  void Draw(const Moment& moment, const Eigen::Isometry3d& X_BC, std::span<std::uint8_t> rgba);
+
+  // Draws the rows of `band` into those of `rgba`, a whole picture; the others stay as they are. Each pixel
+  // of a ball or a plate shows it at the time of its row. All else, shadows too, is as in the band's middle.
+  // Call it only on a renderer that knows the sensor's rows.
+  void DrawBand(const RowBand& band, std::span<std::uint8_t> rgba);
 
   // Call it before the first Draw. Draw then finishes each part separately, which makes it a little slower.
   void Watch(RenderWatch watch);
@@ -63,6 +70,8 @@ class SceneRenderer {
 
  private:
   struct Impl;
+  void CheckSize(std::span<const std::uint8_t> rgba) const;
+
   std::string driver_name_;
   std::unique_ptr<Impl> impl_;
 };

@@ -183,6 +183,23 @@ inline constexpr const char* kShadowFragment = R"glsl(
 void main() {}
 )glsl";
 
+// For a sensor that exposes its rows one after the other: a preamble defines ROLLING. A target is then drawn
+// where it is when the pixel's row is exposed; in the rows of one band it moves uniformly.
+inline constexpr const char* kRows = R"glsl(
+#ifdef ROLLING
+uniform vec3 u_rows;   // of the sensor: focal length and principal point along v, middle row of the band [px]
+uniform vec4 u_lens;   // Brown's k1, k2, p1, p2
+uniform float u_k3;
+// Rows from the band's middle to the image of an ideal point.
+float Rows(vec2 xy) {
+  float r2 = dot(xy, xy);
+  float radial = 1.0 + r2 * (u_lens.x + r2 * (u_lens.y + r2 * u_k3));
+  float y = xy.y * radial + u_lens.z * (r2 + 2.0 * xy.y * xy.y) + 2.0 * u_lens.w * xy.x * xy.y;
+  return u_rows.x * y + u_rows.y - u_rows.z;
+}
+#endif
+)glsl";
+
 // A ball is drawn on a rectangle around its outline, pixel by pixel. A ray d is tangent to the ball if
 // |d x c| = R |d|. The first-order distance to this outline in pixels gives the covered share of the pixel.
 inline constexpr const char* kBallVertex = R"glsl(
@@ -203,16 +220,25 @@ uniform vec3 u_colour;
 uniform float u_f_px;
 uniform mat4 u_B_of_C;
 uniform vec2 u_depth;       // z of the depth buffer = u_depth.x + u_depth.y / Z
+#ifdef ROLLING
+uniform vec3 u_centre_rate;  // motion of the centre from row to row
+#endif
 out vec4 pixel;
 void main() {
   vec3 d = vec3(xy, 1.0);
   vec3 c = u_ball_C.xyz;
+#ifdef ROLLING
+  c += Rows(xy) * u_centre_rate;
+#endif
   float R2 = u_ball_C.w * u_ball_C.w;
   vec3 m = cross(d, c);
   float d2 = dot(d, d);
   float inside = R2 * d2 - dot(m, m);  // above 0 if the ray meets the ball
   // Its slope along x and y of the image: d/dd (R2 d.d - |d x c|^2) = 2 (R2 d - c x (d x c)).
   vec2 slope = 2.0 * (R2 * d - cross(c, m)).xy;
+#ifdef ROLLING
+  slope.y -= 2.0 * u_rows.x * dot(cross(m, d), u_centre_rate);
+#endif
   float per_px = u_f_px * inversesqrt(dot(slope, slope));
   float cover = clamp(inside * per_px + 0.5, 0.0, 1.0);
   if (cover <= 0.0) discard;
@@ -244,11 +270,21 @@ uniform vec3 u_colour;
 uniform float u_f_px;
 uniform mat4 u_B_of_C;
 uniform vec2 u_depth;
+#ifdef ROLLING
+uniform vec3 u_normal_rate;  // their changes from row to row
+uniform vec3 u_centre_rate;
+uniform vec3 u_edge_rates[4];
+#endif
 out vec4 pixel;
 void main() {
   vec3 d = vec3(xy, 1.0);
   vec3 n = u_normal_C;
   vec3 p = u_centre_C;
+#ifdef ROLLING
+  float rows = Rows(xy);
+  n += rows * u_normal_rate;
+  p += rows * u_centre_rate;
+#endif
   float to_plane = dot(n, p);
   float slant = dot(n, d);
   float cover = 1.0;
@@ -256,10 +292,21 @@ void main() {
     vec3 m = to_plane * d - slant * p;
     float inside = u_radius * u_radius * slant * slant - dot(m, m);
     vec2 slope = 2.0 * (u_radius * u_radius * slant * n - to_plane * m + dot(p, m) * n).xy;
+#ifdef ROLLING
+    float slant_rate = dot(u_normal_rate, d);
+    vec3 m_rate = (dot(u_normal_rate, p) + dot(n, u_centre_rate)) * d - slant_rate * p - slant * u_centre_rate;
+    slope.y += 2.0 * u_rows.x * (u_radius * u_radius * slant * slant_rate - dot(m, m_rate));
+#endif
     cover = clamp(inside * u_f_px * inversesqrt(dot(slope, slope)) + 0.5, 0.0, 1.0);
   }
   for (int i = 0; i < u_num_edges; ++i) {
+#ifdef ROLLING
+    vec3 edge = u_edges[i] + rows * u_edge_rates[i];
+    vec2 across = edge.xy + vec2(0.0, u_rows.x * dot(u_edge_rates[i], d));
+    cover *= clamp(dot(edge, d) * u_f_px * inversesqrt(dot(across, across)) + 0.5, 0.0, 1.0);
+#else
     cover *= clamp(dot(u_edges[i], d) * u_f_px + 0.5, 0.0, 1.0);
+#endif
   }
   if (cover <= 0.0) discard;
   vec3 p_C = (to_plane / slant) * d;

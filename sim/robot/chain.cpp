@@ -67,6 +67,9 @@ Eigen::MatrixXd Chain::MassMatrix(const Eigen::VectorXd& q) const {
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(robot_.num_dofs, robot_.num_dofs);
   for (std::size_t k = 1; k < links.size(); ++k) {
     const SimLink& link = robot_.links[k];
+    if (link.dof >= 0) {
+      M(link.dof, link.dof) += link.rotor_inertia;
+    }
     if (link.mass == 0.0) {
       continue;
     }

@@ -27,7 +27,7 @@ class Chain {
   // Pose of each link in B.
   [[nodiscard]] std::vector<Eigen::Isometry3d> LinkPoses(const Eigen::VectorXd& q) const;
 
-  // The joint-space mass matrix.
+  // The joint-space mass matrix, with the rotors' inertias on its diagonal.
   [[nodiscard]] Eigen::MatrixXd MassMatrix(const Eigen::VectorXd& q) const;
   // Centrifugal and Coriolis torques C(q, dq) dq.
   [[nodiscard]] Eigen::VectorXd CoriolisTorque(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) const;

@@ -37,6 +37,7 @@ struct SimLink {
   Eigen::Vector3d axis_L = Eigen::Vector3d::UnitZ();
   double viscous = 0.0;                                      // friction [Nm s/rad]
   double coulomb = 0.0;                                      // friction [Nm]
+  double rotor_inertia = 0.0;                                // of its motor, seen at the joint [kg m^2, kg]
   double mass = 0.0;                                         // [kg]
   Eigen::Isometry3d X_LCom = Eigen::Isometry3d::Identity();  // centre of mass, axes of the inertia
   Eigen::Matrix3d I_Com = Eigen::Matrix3d::Zero();           // [kg m^2]

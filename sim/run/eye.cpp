@@ -18,10 +18,11 @@ void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);
 Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
     : faults_(about.scenario.faults.picture), width_px_(about.pinhole.width_px) {
   UseOneThreadPerRenderer();
+  const Shutter shutter = MakeScenarioShutter(about.bench);
   std::vector<Painter> painters;
   for (int i = 0; i < kRenderers; ++i) {  // one after the other: the first initialises the driver
-    optics_.push_back(
-        std::make_unique<Optics>(about.scene, about.eye.pinhole, about.eye.lens, Sampling::kPlain, i));
+    optics_.push_back(std::make_unique<Optics>(about.scene, about.eye.pinhole, about.eye.lens,
+                                               Sampling::kPlain, i, shutter));
     Optics* const optics = optics_.back().get();
     Painter painter;
     painter.draw = [this, optics](const Exposure& exposure, std::span<std::uint8_t> rgba) {
@@ -36,10 +37,13 @@ Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
   SimCameraConfig config;
   config.width_px = about.pinhole.width_px;
   config.height_px = about.pinhole.height_px;
-  config.exposure_ns = static_cast<std::int64_t>(about.scenario.camera.exposure_ms * 1e6);
+  config.exposure_ns = shutter.exposure_ns;
   config.queue = queue;
+  const auto& sensor = about.bench.camera;
+  config.auto_exposure = {sensor.auto_exposure_level, sensor.auto_exposure_lag_s,
+                          sensor.auto_exposure_gain_max};
   camera_ = std::make_unique<SimCamera>(
-      config, Sensor(about.scenario.camera.noise_sigma, SeedOf(about.scenario, RandomStream::kSensor)),
+      config, Sensor(MakeScenarioSensor(about.bench), SeedOf(about.scenario, RandomStream::kSensor)),
       std::move(painters));
 }
 

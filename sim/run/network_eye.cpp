@@ -81,7 +81,9 @@ void NetworkEye::SetFaults(const FaultSettings& faults) {
 }
 
 void NetworkEye::Take(const News& news, bool wait) {
-  if (news.exposure && gige_->Expect(news.exposure->stamp_ns, news.late_ns)) {
+  // The camera stamps its pictures by its own clock. They leave by the world's time.
+  if (news.exposure && gige_->Expect(news.exposure->stamp_ns + news.exposure->stamp_error_ns,
+                                     news.late_ns - news.exposure->stamp_error_ns)) {
     eye_.SetFaults(news.faults);
     eye_.camera().Expose(*news.exposure);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/run/sim_vision.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -64,12 +65,13 @@ bool SimVision::Expose(const Exposure& exposure) {
     ++lost_on_purpose_;
     return false;
   }
-  const auto latency_ns = static_cast<std::int64_t>(about_.bench.camera.latency_ms * 1e6) +
-                          about_.stamps.JitterNs(exposure.sequence);
-  taken->stamp_error_ns += about_.stamps.ErrorNs(exposure.sequence, exposure.stamp_ns);
+  const std::int64_t mean_ns =
+      exposure.stamp_ns + static_cast<std::int64_t>(about_.bench.camera.latency_ms * 1e6);
+  arrived_ns_ = std::max(arrived_ns_, mean_ns + about_.stamps.JitterNs(exposure.sequence));
+  taken->stamp_error_ns += about_.stamps.ErrorNs(arrived_ns_ - mean_ns, exposure.stamp_ns);
   targets_.Put(exposure.sequence,
                {exposure.X_BC.linear().transpose() * exposure.R_BO, exposure.X_BC.inverse() * exposure.p_BO});
-  delay_.Expect(exposure.sequence, exposure.stamp_ns + latency_ns + frame_faults_.DelayNs(exposure.stamp_ns));
+  delay_.Expect(exposure.sequence, arrived_ns_ + frame_faults_.DelayNs(exposure.stamp_ns));
   eye_->camera().Expose(*std::move(taken));
   return true;
 }

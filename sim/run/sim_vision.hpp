@@ -69,6 +69,7 @@ class SimVision {
   const RunDescription& about_;
   const Observer observer_;
   vision::VisionTask task_;
+  std::int64_t arrived_ns_ = 0;  // when the newest picture arrives, without faults
   FeatureDelay delay_;
   FaultyDetector detector_;
   FrameSpoiler frame_faults_;

@@ -37,6 +37,15 @@ RunTrace::RunTrace(std::filesystem::path file, double duration_s, double camera_
   }
 }
 
+std::string RunTrace::Write() const {
+  try {
+    trace_.Write(file_);
+    return "";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 Painter RunTrace::Watched(Painter painter, Optics& optics, int renderer) {
   trace::Track& track = *renderers_[static_cast<std::size_t>(renderer)];
   const auto last_ns = std::make_shared<std::int64_t>(0);  // both functions run on the painter's thread

@@ -22,8 +22,8 @@ class RunTrace {
   // Wraps `painter`. Records each picture, its parts and the sensor's work on the renderer's own track.
   [[nodiscard]] Painter Watched(Painter painter, Optics& optics, int renderer);
 
-  // Call it after all threads have ended. std::runtime_error as Trace::Write.
-  void Write() const { trace_.Write(file_); }
+  // Call it after all threads have ended. Returns why the file cannot be written; "" if it was.
+  [[nodiscard]] std::string Write() const;
 
  private:
   std::filesystem::path file_;

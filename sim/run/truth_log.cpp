@@ -25,7 +25,8 @@ run::RunFacts FactsOf(const RunDescription& about) {
   Scenario scenario = about.scenario;
   facts.keys = ScenarioKeys(scenario).Values();
   for (const TrueValue& value : about.truth) {
-    facts.keys[std::string("truth.") + InfoOf(value.quantity).key] = config::ToText(value.actual);
+    facts.keys[std::string("truth.") + InfoOf(value.quantity).key + " (drawn)"] =
+        config::ToText(value.actual);
   }
   Scenario defaults;
   facts.default_keys = ScenarioKeys(defaults).Values();

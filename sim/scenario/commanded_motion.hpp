@@ -19,6 +19,17 @@ struct CommandedJoints {
   [[nodiscard]] moves::MotionCommand At(double t_s) const noexcept;
 };
 
+// q(t) = from + amplitude sin(multiple angle) for each joint. The angle's rate rises from 0 to omega within
+// the first second.
+struct CommandedWaves {
+  hal::JointArray from{};       // [num_joints] [rad, m]
+  hal::JointArray amplitude{};  // [num_joints]
+  hal::JointArray multiple{};   // [num_joints]
+  double omega = 1.0;           // [rad/s]
+
+  [[nodiscard]] moves::MotionCommand At(double t_s) const noexcept;
+};
+
 // The end effector moves to the circle's lowest point until lead_s. Then it follows the circle, at full speed
 // after one second.
 struct CommandedCircle {
@@ -38,7 +49,7 @@ struct CommandedHome {
   [[nodiscard]] moves::MotionCommand At(double t_s) const noexcept;
 };
 
-using CommandedMotion = std::variant<CommandedJoints, CommandedCircle, CommandedHome>;
+using CommandedMotion = std::variant<CommandedJoints, CommandedWaves, CommandedCircle, CommandedHome>;
 
 class CommandedMotionSource final : public moves::MotionSource {
  public:

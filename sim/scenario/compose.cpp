@@ -16,11 +16,7 @@
 #include "sim/scenario/to_vector.hpp"
 
 namespace fovea::sim {
-namespace {
-
 using config::InputError;
-
-}  // namespace
 
 Eigen::Isometry3d CameraMount(const Scenario& s) {
   Eigen::Isometry3d X_EC = Eigen::Isometry3d::Identity();
@@ -41,10 +37,12 @@ void CheckSizes(const Scenario& s, const robots::Robot& robot) {
         {"arm.spring", s.arm.spring.size(), true},
         {"arm.viscous", s.arm.viscous.size(), true},
         {"arm.coulomb", s.arm.coulomb.size(), true},
+        {"arm.rotor_inertia", s.arm.rotor_inertia.size(), true},
         {"faults.push", static_cast<std::size_t>(s.faults.bench.push.tau.size()), true},
         {"motion.from", s.motion.from.size(), true},
         {"motion.velocity", s.motion.velocity.size(), true},
-        {"motion.amplitude", s.motion.amplitude.size(), true}}) {
+        {"motion.amplitude", s.motion.amplitude.size(), true},
+        {"motion.multiple", s.motion.multiple.size(), true}}) {
     const bool fits = static_cast<int>(list.size) == robot.model.num_joints;
     if (!fits && !(list.size == 0 && list.may_be_empty)) {
       throw InputError(fmt::format("{} has {} entries, arm \"{}\" has {} joints", list.key, list.size,
@@ -64,17 +62,19 @@ void CheckFriction(const Scenario& s) {
   }
 }
 
-void SetFriction(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
+void SetJoints(const Scenario& s, robots::Robot& robot, SimRobot& sim_robot) {
   for (int i = 0; i < robot.model.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     model::Joint& joint = robot.model.joints[k];
     joint.spring = s.arm.spring.empty() ? 0.0 : s.arm.spring[k];
     joint.viscous = s.arm.viscous.empty() ? joint.viscous : s.arm.viscous[k];
     joint.coulomb = s.arm.coulomb.empty() ? joint.coulomb : s.arm.coulomb[k];
+    joint.rotor_inertia = s.arm.rotor_inertia.empty() ? joint.rotor_inertia : s.arm.rotor_inertia[k];
     for (SimLink& link : sim_robot.links) {
       if (link.dof == i) {
         link.viscous = joint.viscous;
         link.coulomb = joint.coulomb;
+        link.rotor_inertia = joint.rotor_inertia;
       }
     }
   }
@@ -181,6 +181,12 @@ CommandedMotion MakeMotion(const Scenario& s) {
   if (m.kind == "home") {
     return CommandedHome{};
   }
+  if (m.kind == "waves") {
+    hal::JointArray multiple{};
+    multiple.fill(1.0);
+    return CommandedWaves{joints(m.from.empty() ? s.arm.q_start : m.from), joints(m.amplitude),
+                          m.multiple.empty() ? multiple : joints(m.multiple), m.omega};
+  }
   return CommandedJoints{joints(m.from.empty() ? s.arm.q_start : m.from), joints(m.velocity),
                          joints(m.amplitude), m.omega};
 }
@@ -234,6 +240,23 @@ Lens MakeScenarioLens(const Scenario& s) {
   return {k[0], k[1], k[2], k[3], k[4]};
 }
 
+Shutter MakeScenarioShutter(const Scenario& s) {
+  return {static_cast<std::int64_t>(s.camera.exposure_ms * 1e6), s.camera.sub_exposures,
+          1e3 * s.camera.calibration.row_time_us};
+}
+
+SensorConfig MakeScenarioSensor(const Scenario& s) {
+  SensorConfig config{.read_sigma = s.camera.noise_sigma,
+                      .shot_noise = s.camera.shot_noise,
+                      .gain = s.camera.gain,
+                      .saturation = s.camera.saturation};
+  if (s.camera.vignetting) {
+    config.vignetting = MakeScenarioPinhole(s);
+  }
+  config.mosaic = camera::FormatOf(s.camera.bayer);
+  return config;
+}
+
 void CheckLens(const Scenario& s) {
   const Lens lens = MakeScenarioLens(s);
   const Pinhole pinhole = MakeScenarioPinhole(s);
@@ -276,10 +299,25 @@ void CheckTimes(const Scenario& s) {
         fmt::format("camera.exposure_ms = {} is not allowed: at camera.rate_hz = {} the period is {:.3g} ms",
                     s.camera.exposure_ms, s.camera.rate_hz, period_ms));
   }
+  const auto& camera = s.camera.calibration;
+  const double rows_ms = 1e-3 * camera.row_time_us * camera.intrinsics.height_px;
+  if (rows_ms > period_ms) {
+    throw InputError(
+        fmt::format("camera.row_time_us = {} is not allowed: {} rows would take {:.3g} ms; at camera.rate_hz "
+                    "= {} the period "
+                    "is {:.3g} ms",
+                    camera.row_time_us, camera.intrinsics.height_px, rows_ms, s.camera.rate_hz, period_ms));
+  }
   if (s.camera.latency_ms < 0.5 * s.camera.exposure_ms) {
     throw InputError(fmt::format(
         "camera.latency_ms = {} is not allowed: it must be at least half of camera.exposure_ms = {}",
         s.camera.latency_ms, s.camera.exposure_ms));
+  }
+  if (const double ends_ms = 0.5 * (s.camera.exposure_ms + rows_ms); s.camera.latency_ms < ends_ms) {
+    throw InputError(fmt::format(
+        "camera.latency_ms = {} is not allowed: with camera.row_time_us = {} the last row's exposure "
+        "ends {:.3g} ms after the stamp",
+        s.camera.latency_ms, camera.row_time_us, ends_ms));
   }
   const double stale_ms = 1e3 * s.servo.config.predict.stale_s;
   if (s.camera.latency_ms >= stale_ms) {

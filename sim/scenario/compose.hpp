@@ -6,6 +6,8 @@
 #include <cstdint>
 
 #include "sim/camera/lens.hpp"
+#include "sim/camera/sensor.hpp"
+#include "sim/camera/shutter.hpp"
 #include "sim/render/pinhole.hpp"
 #include "sim/render/scene_renderer.hpp"
 #include "sim/robot/sim_robot.hpp"
@@ -19,6 +21,8 @@ Eigen::Isometry3d CameraMount(const Scenario& scenario);
 // InputError: incomplete intrinsics, or a principal point outside the picture.
 Pinhole MakeScenarioPinhole(const Scenario& scenario);
 Lens MakeScenarioLens(const Scenario& scenario);
+Shutter MakeScenarioShutter(const Scenario& scenario);
+SensorConfig MakeScenarioSensor(const Scenario& scenario);
 RenderScene MakeRenderScene(const Scenario& scenario, const SimRobot& robot);
 // The motion of [motion]. Call it only if motion.kind is not "none".
 CommandedMotion MakeMotion(const Scenario& scenario);
@@ -33,7 +37,8 @@ enum class RandomStream : std::uint8_t {
   kStalls,
   kTarget,
   kBoardLine,
-  kTruth
+  kTruth,
+  kDrives
 };
 std::uint64_t SeedOf(const Scenario& scenario, RandomStream stream);
 
@@ -41,8 +46,8 @@ std::uint64_t SeedOf(const Scenario& scenario, RandomStream stream);
 void CheckSizes(const Scenario& scenario, const robots::Robot& robot);
 // InputError: robot and servo together compensate more friction than there is.
 void CheckFriction(const Scenario& scenario);
-// Sets the scenario's springs and friction in the servo's model and in the physics.
-void SetFriction(const Scenario& scenario, robots::Robot& robot, SimRobot& sim_robot);
+// Sets the scenario's springs, friction and rotors in the servo's model and in the physics.
+void SetJoints(const Scenario& scenario, robots::Robot& robot, SimRobot& sim_robot);
 // Adds `load` to the arm of the physics, if it has a mass; the servo's model includes it separately.
 void AddLoad(const model::Load& load, SimRobot& robot);
 // InputError: arm.q_start is outside the joints' range or the workspace, or arm.dq_start is too fast.

@@ -6,6 +6,7 @@
 #include "firmware/host/config/input_error.hpp"
 
 #include "sim/scenario/compose.hpp"
+#include "sim/scenario/scenario_arm.hpp"
 #include "sim/scenario/true_bench.hpp"
 
 namespace fovea::sim {
@@ -49,15 +50,8 @@ TheoryConfig MakeTheoryConfig(const Scenario& s, const RunDescription& run) {
 RunDescription DescribeRun(const Scenario& scenario) {
   RunDescription run;
   run.scenario = scenario;
-  run.robot = LoadScenarioRobot(scenario);
-  CheckSizes(scenario, run.robot);
-  SimRobot believed = LoadSimRobot(run.robot.urdf, run.robot.base_link, run.robot.tip_link, run.robot.root);
-  CheckFriction(scenario);
-  SetFriction(scenario, run.robot, believed);
-  const model::Load load = config::MakeLoad(scenario.arm.load);
-  if (load.mass > 0.0) {
-    model::Attach(load, run.robot.model);
-  }
+  const ScenarioArm arm = LoadScenarioArm(scenario);
+  run.robot = arm.robot;
   CheckStart(scenario, run.robot);
   const Eigen::Isometry3d X_EC = CameraMount(scenario);
   run.pinhole = MakeScenarioPinhole(scenario);
@@ -65,15 +59,21 @@ RunDescription DescribeRun(const Scenario& scenario) {
                     run.pinhole.FocalV(), run.pinhole.c_u_px,    run.pinhole.c_v_px};
   run.lens = MakeScenarioLens(scenario);
   run.intrinsics.lens = {run.lens.k1, run.lens.k2, run.lens.p1, run.lens.p2, run.lens.k3};
+  run.intrinsics.row_time = 1e-6 * scenario.camera.calibration.row_time_us;
   CheckLens(scenario);
-  run.servo = config::MakeServoConfig(scenario.servo, {run.robot.name, run.robot.model},
-                                      model::Pose{X_EC.linear(), X_EC.translation()}, run.intrinsics,
-                                      scenario.target);
+  run.servo = config::MakeServoConfig(
+      scenario.servo, {run.robot.name, run.robot.model, config::MakeLoad(scenario.arm.load)},
+      model::Pose{X_EC.linear(), X_EC.translation()}, run.intrinsics, scenario.target);
+  if (!scenario.servo.learn.empty() && !scenario.camera.enabled) {
+    throw config::InputError(
+        "servo.learn is not allowed with camera.enabled = false: the servo needs to see");
+  }
   CheckOutside(scenario, run.servo);
   CheckGoal(scenario);
   CheckTimes(scenario);
   CheckFaults(scenario.faults, run.robot.model.num_joints);
-  const SimRobot robot = DrawTruth(believed, run);
+  const SimRobot robot = DrawTruth(arm.unloaded, run);
+  CheckRotors(scenario.arm.drives, robot);
   run.scene = MakeRenderScene(run.bench, robot);
   run.scene.X_EC = run.eye.X_EC;
   if (scenario.motion.kind != "none") {

@@ -11,6 +11,7 @@
 #include "firmware/host/config/inside_folder.hpp"
 #include "firmware/host/config/share_folder.hpp"
 #include "firmware/host/robots/shipped_robots.hpp"
+#include "sim/scenario/realism.hpp"
 
 namespace fovea::sim {
 namespace {
@@ -45,6 +46,35 @@ void AddArmKeys(Scenario& s, config::KeyTable& keys) {
   keys.Choice("arm.integrator", s.arm.integrator, {"euler", "rk4"},
               "how the physics steps: semi-implicit Euler, or Runge-Kutta of order 4 at 3.5 times the cost");
   config::AddLoadKeys(s.arm.load, keys);
+  keys.Choice("arm.realism", s.arm.realism, {"ideal", "panda", "ur"},
+              "figures of real arms for rotors, drives and encoders, in place of the defaults of those keys: "
+              "a Panda's, a UR5e's; a key that is given wins");
+  keys.Numbers("arm.rotor_inertia", s.arm.rotor_inertia, 1, model::kMaxJoints, 0.0, 1e3, "kg m^2",
+               "inertias of the motors' rotors, seen at the joints, one per joint, known to the servo; the "
+               "arm file's when not given");
+  AddDriveKeys(s.arm.drives, keys);
+}
+
+void AddSensorKeys(Scenario& s, config::KeyTable& keys) {
+  keys.Number("camera.shot_noise", s.camera.shot_noise, 0.0, 100.0, "gray levels",
+              "photon noise: variance of a pixel per gray level, at gain 1; the reciprocal is the number of "
+              "electrons per gray level");
+  keys.Number("camera.gain", s.camera.gain, 0.05, 100.0, "",
+              "the sensor's gain: signal and noise times this");
+  keys.Number("camera.saturation", s.camera.saturation, 1.0, 255.0, "gray levels",
+              "a pixel collects no more light than this, at gain 1");
+  keys.Flag("camera.vignetting", s.camera.vignetting,
+            "true: a pixel gets cos^4 of the light, of its angle to the optical axis");
+  keys.Choice(
+      "camera.bayer", s.camera.bayer, {"none", "BayerRG8", "BayerGR8", "BayerGB8", "BayerBG8"},
+      "each pixel has one colour, by this pattern; the others are interpolated as the drivers do; none: "
+      "each pixel has all colours");
+  keys.Number("camera.auto_exposure_level", s.camera.auto_exposure_level, 0.0, 255.0, "gray levels",
+              "automatic exposure: a gain that keeps the mean of a picture at this; 0: none");
+  keys.Number("camera.auto_exposure_lag_s", s.camera.auto_exposure_lag_s, 0.001, 100.0, "s",
+              "time constant of the automatic exposure");
+  keys.Number("camera.auto_exposure_gain_max", s.camera.auto_exposure_gain_max, 1.0, 1000.0, "",
+              "largest gain of the automatic exposure, and the reciprocal of its smallest");
 }
 
 void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
@@ -55,10 +85,14 @@ void AddCameraKeys(Scenario& s, config::KeyTable& keys) {
   keys.Number("camera.rate_hz", s.camera.rate_hz, 1.0, 240.0, "Hz", "frames per second");
   keys.Number("camera.exposure_ms", s.camera.exposure_ms, 0.01, 100.0, "ms",
               "exposure time; stamps are at its middle");
+  keys.Integer("camera.sub_exposures", s.camera.sub_exposures, 1, 64, "",
+               "motion blur: a picture is the mean of this many sharp ones, spread over the exposure; 1: no "
+               "blur");
   keys.Number("camera.latency_ms", s.camera.latency_ms, 0.0, 500.0, "ms",
               "from mid-exposure until the feature reaches the servo");
   keys.Number("camera.noise_sigma", s.camera.noise_sigma, 0.0, 60.0, "gray levels",
-              "standard deviation of read noise");
+              "standard deviation of read noise, at gain 1");
+  AddSensorKeys(s, keys);
   keys.Number("camera.light", s.camera.light, 0.01, 4.0, "",
               "brightness of the picture; 1 is a well-lit bench");
 }
@@ -78,15 +112,18 @@ void AddRunKeys(Scenario& s, config::KeyTable& keys) {
 void AddMotionKeys(Scenario& s, config::KeyTable& keys) {
   constexpr std::size_t kMax = model::kMaxJoints;
   keys.Choice(
-      "motion.kind", s.motion.kind, {"none", "joints", "circle", "home"},
-      "commanded motion; joints: from + velocity t + amplitude sin(omega t) for each joint; circle: of "
-      "the end effector; home: to the arm's ready posture");
+      "motion.kind", s.motion.kind, {"none", "joints", "waves", "circle", "home"},
+      "commanded motion; joints: from + velocity t + amplitude sin(omega t) for each joint; waves: from + "
+      "amplitude sin(multiple omega t), softly begun; circle: of the end effector; home: to the arm's ready "
+      "posture");
   keys.Numbers("motion.from", s.motion.from, 1, kMax, -1e4, 1e4, "rad",
                "joint positions, one per joint; arm.q_start when not given");
   keys.Numbers("motion.velocity", s.motion.velocity, 1, kMax, -100.0, 100.0, "rad/s",
                "one per joint; 0 when not given");
   keys.Numbers("motion.amplitude", s.motion.amplitude, 1, kMax, -100.0, 100.0, "rad",
                "one per joint; 0 when not given");
+  keys.Numbers("motion.multiple", s.motion.multiple, 1, kMax, 0.0, 100.0, "",
+               "waves: frequency of each joint, in multiples of omega; 1 when not given");
   keys.Number("motion.omega", s.motion.omega, 1e-3, 1e3, "rad/s", "angular frequency of the sine");
   keys.Numbers("motion.centre", s.motion.centre, 3, 3, -5.0, 5.0, "m", "centre of the circle, in B");
   keys.Numbers("motion.normal", s.motion.normal, 3, 3, -1.0, 1.0, "", "normal of the circle's plane, in B");
@@ -203,6 +240,7 @@ Scenario LoadScenario(const std::string& name_or_path, const std::vector<std::st
     given.insert(setting.key);
     scenario.arm_is_the_users = scenario.arm_is_the_users || setting.key == "arm.model";
   }
+  ApplyRealism(given, scenario);
   if (given.contains("target.colour") && !given.contains("vision.hue_deg")) {
     scenario.vision.config.colour.hue_deg =
         HueOfColour(scenario.target.colour).value_or(scenario.vision.config.colour.hue_deg);

@@ -12,6 +12,7 @@
 #include "firmware/host/config/servo_keys.hpp"
 #include "firmware/host/config/vision_keys.hpp"
 #include "firmware/host/robots/robot.hpp"
+#include "sim/scenario/drive_settings.hpp"
 #include "sim/scenario/fault_settings.hpp"
 #include "sim/scenario/target_scene.hpp"
 #include "sim/truth/truth_settings.hpp"
@@ -37,6 +38,9 @@ struct Scenario {
     double velocity_noise = 5e-4;
     std::string integrator = "euler";
     config::LoadSettings load;
+    std::vector<double> rotor_inertia;  // empty: the arm file's
+    std::string realism = "ideal";      // see realism.hpp
+    DriveSettings drives;
   } arm;
 
   struct {
@@ -44,8 +48,17 @@ struct Scenario {
     double hfov_deg = 60.0;
     double rate_hz = 30.0;
     double exposure_ms = 5.0;
+    int sub_exposures = 1;
     double latency_ms = 40.0;
     double noise_sigma = 3.0;
+    double shot_noise = 0.0;
+    double gain = 1.0;
+    double saturation = 255.0;
+    bool vignetting = false;
+    std::string bayer = "none";
+    double auto_exposure_level = 0.0;
+    double auto_exposure_lag_s = 0.2;
+    double auto_exposure_gain_max = 16.0;
     double light = 1.0;
     // As `fovea calibrate` writes it. How well its views fit has no effect here.
     config::CalibrationSettings calibration{.intrinsics = {640, 480, 0.0, 0.0, 0.0, 0.0},
@@ -67,6 +80,7 @@ struct Scenario {
     std::vector<double> from;
     std::vector<double> velocity;
     std::vector<double> amplitude;
+    std::vector<double> multiple;
     double omega = 1.0;
     std::vector<double> centre{0.45, 0.0, 0.50};
     std::vector<double> normal{1.0, 0.0, 0.0};

@@ -7,6 +7,9 @@
 
 namespace fovea::sim {
 
+// Sets what the keys of [arm] say of the arm `config.robot`.
+void SetArm(const Scenario& scenario, WorldConfig& config);
+
 WorldConfig MakeWorldConfig(const RunDescription& run);
 
 }  // namespace fovea::sim

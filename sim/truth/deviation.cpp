@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "firmware/host/config/input_error.hpp"
 #include "sim/faults/chance.hpp"
@@ -31,11 +30,10 @@ class Dice {
   double Uniform(const std::vector<double>& range) {
     return range[0] + (range[1] - range[0]) * Chance(seed_, event_++);
   }
-  // The polar form of Box and Muller (A note on the generation of random normal deviates, 1958).
   double Normal() {
     for (;;) {
-      const double radius = std::sqrt(-2.0 * std::log(1.0 - Chance(seed_, event_++)));
-      const double normal = radius * std::cos(2.0 * std::numbers::pi * Chance(seed_, event_++));
+      const double normal = NormalChance(seed_, event_);
+      event_ += 2;
       if (std::fabs(normal) <= kMostSigmas) {
         return normal;
       }

@@ -18,10 +18,12 @@ bool OnlyScales(const Deviation& d) {
 }  // namespace
 
 std::vector<double> TruthDraw::Get(Quantity quantity, const std::vector<double>& believed) {
-  return Get(quantity, believed, InfoOf(quantity).low);
+  const QuantityInfo& info = InfoOf(quantity);
+  return Get(quantity, believed, std::vector<Span>(believed.size(), {info.low, info.high}));
 }
 
-std::vector<double> TruthDraw::Get(Quantity quantity, const std::vector<double>& believed, double least) {
+std::vector<double> TruthDraw::Get(Quantity quantity, const std::vector<double>& believed,
+                                   const std::vector<Span>& allowed) {
   const Deviation& deviation = settings_.of.at(static_cast<std::size_t>(quantity));
   if (!deviation.IsAny()) {
     return believed;
@@ -36,19 +38,26 @@ std::vector<double> TruthDraw::Get(Quantity quantity, const std::vector<double>&
         key));
   }
   const std::string unit = info.unit[0] == '\0' ? "" : std::string(" ") + info.unit;
-  std::size_t entry = 0;
-  for (const Span& span : SpansOf(deviation, believed)) {
-    if (!(span.low >= least && span.high <= info.high)) {
+  const std::vector<Span> spans = SpansOf(deviation, believed);
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    if (!(spans[i].low >= allowed[i].low && spans[i].high <= allowed[i].high)) {
       throw config::InputError(fmt::format(
           "{} is not allowed: entry {} could be from {:.6g} to {:.6g}{}; allowed is {:g} to {:g}{}", key,
-          entry + 1, span.low, span.high, unit, least, info.high, unit));
+          i + 1, spans[i].low, spans[i].high, unit, allowed[i].low, allowed[i].high, unit));
     }
-    ++entry;
   }
   const std::uint64_t seed = MixBits(seed_ + static_cast<std::uint64_t>(quantity));
   std::vector<double> actual = Draw(deviation, believed, seed);
-  differing_.push_back({quantity, believed, actual});
+  if (actual != believed) {
+    differing_.push_back({quantity, believed, actual});
+  }
   return actual;
+}
+
+void TruthDraw::Refuse(Quantity quantity, const std::string& reason) const {
+  if (settings_.of.at(static_cast<std::size_t>(quantity)).IsAny()) {
+    throw config::InputError(fmt::format("truth.{} has no effect: {}", InfoOf(quantity).key, reason));
+  }
 }
 
 }  // namespace fovea::sim

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "sim/truth/truth_settings.hpp"
@@ -22,9 +23,13 @@ class TruthDraw {
   TruthDraw(const TruthSettings& settings, std::uint64_t seed) : settings_(settings), seed_(seed) {}
 
   // The true value of a quantity; `believed` itself if no key says otherwise. InputError: lists of a wrong
-  // size, or a value that could be drawn is not allowed. `least`: a higher bound than the quantity's own.
+  // size, or a value that could be drawn is not allowed. `allowed`: for each entry, within the quantity's
+  // own.
   std::vector<double> Get(Quantity quantity, const std::vector<double>& believed);
-  std::vector<double> Get(Quantity quantity, const std::vector<double>& believed, double least);
+  std::vector<double> Get(Quantity quantity, const std::vector<double>& believed,
+                          const std::vector<Span>& allowed);
+  // InputError if a key of the quantity is given: it would have no effect because of `reason`.
+  void Refuse(Quantity quantity, const std::string& reason) const;
 
   [[nodiscard]] const std::vector<TrueValue>& differing() const { return differing_; }
 

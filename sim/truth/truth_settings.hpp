@@ -13,7 +13,7 @@
 
 namespace fovea::sim {
 
-// What may differ. In order of their keys.
+// What may differ, in order of their keys. Random draws depend on the order: a new one comes last.
 enum class Quantity : std::uint8_t {
   kMountXyz,
   kMountTurn,
@@ -35,8 +35,10 @@ enum class Quantity : std::uint8_t {
   kTorqueBiases,
   kBaseTilt,
   kTargetScale,
+  kRotorInertias,
+  kRowTime,
 };
-inline constexpr std::size_t kNumQuantities = 20;
+inline constexpr std::size_t kNumQuantities = 22;
 
 struct QuantityInfo {
   const char* key;   // without "truth."
@@ -56,7 +58,8 @@ struct TruthSettings {
 // The settings must outlive the table. A form of a deviation has no meaning of its own: see KeysAsMarkdown.
 void AddTruthKeys(TruthSettings& settings, config::KeyTable& keys);
 
-// The forms of a deviation, in words, as a paragraph of Markdown.
+// The forms of a deviation, for a terminal and as Markdown.
+std::string TruthFormsAsText();
 std::string TruthFormsAsMarkdown();
 
 }  // namespace fovea::sim

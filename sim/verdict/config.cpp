@@ -21,7 +21,6 @@ VerdictConfig MakeVerdictConfig(const RunDescription& about) {
     config.stop.dddq_max[i] = pace.dddq_max;
   }
   config.eye = JudgedEyeOf(about);
-  config.judges_metres = about.truth.empty();
   config.goal = GoalOf(about.servo.feature);
   config.has_eye = about.scenario.camera.enabled;
   config.has_motion = about.motion.has_value();

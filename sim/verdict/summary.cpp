@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "firmware/host/beliefs/findings_json.hpp"
 #include "firmware/host/config/printed_table.hpp"
 #include "fovea/hal/events.hpp"
 #include "sim/truth/truth_text.hpp"
@@ -153,6 +154,19 @@ void AddTheory(const TheoryResult& theory, PrintedTable& table) {
   table.Row("largest error", fmt::format("{:.3g} m after the first second", theory.error_max));
 }
 
+void AddFindings(const beliefs::Findings& findings, PrintedTable& table) {
+  const char* name = "found out";
+  for (const std::string& sentence : findings.verdict) {
+    table.Row(name, sentence);
+    name = "";
+  }
+  name = "learnt";
+  for (const beliefs::Correction& correction : findings.learnt) {
+    table.Row(name, correction.text);
+    name = "";
+  }
+}
+
 void AddBoard(const BoardSummary& board, PrintedTable& table) {
   table.Row(
       "servo's processor",
@@ -224,6 +238,7 @@ std::string ToJson(const Summary& s) {
   json["modes"] = modes;
   json["injected"] = ToJson(s.injected);
   json["truth"] = TruthAsJson(s.truth);
+  json["beliefs"] = s.beliefs ? ToJson(*s.beliefs) : ordered_json(nullptr);
   json["end"] = ToJson(s.end);
   json["frames"] = s.frames;
   json["frames_detected"] = s.frames_detected;
@@ -247,6 +262,9 @@ std::string ToTable(const Summary& s, const config::TextStyle& style) {
   for (const TrueValue& value : s.truth) {
     table.Row(&value == s.truth.data() ? "truth differs" : "", InWords(value));
   }
+  if (s.beliefs) {
+    AddFindings(*s.beliefs, table);
+  }
   if (s.theory) {
     AddTheory(*s.theory, table);
   } else if (s.path_error_mm_max) {
@@ -257,7 +275,7 @@ std::string ToTable(const Summary& s, const config::TextStyle& style) {
   } else if (s.tracking_error_px_rms) {
     table.Row("tracking error", fmt::format("{}, {}", Figure(s.tracking_error_px_rms, "px rms"),
                                             Figure(s.tracking_error_mm_rms, "mm rms")));
-  } else {
+  } else if (s.final_error_mm) {
     table.Row("image error", fmt::format("{} at the start, {} at the end", Figure(s.start_error_px, "px"),
                                          Figure(s.final_error_px_rms, "px rms")));
     table.Row("position error",

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/host/beliefs/belief.hpp"
 #include "firmware/host/config/terminal.hpp"
 #include "firmware/host/run/fault_event.hpp"
 #include "firmware/host/run/run_figures.hpp"
@@ -95,7 +96,8 @@ struct Summary : run::RunFigures {
   std::vector<run::FaultEvent> faults;
   std::vector<ModeEvent> modes;
   std::vector<InjectedFault> injected;
-  std::vector<TrueValue> truth;  // what is not as the servo believes
+  std::vector<TrueValue> truth;              // what is not as the servo believes
+  std::optional<beliefs::Findings> beliefs;  // what the run tells of them; none without a camera
   RunEnd end;
 
   std::uint64_t frames = 0;  // that reached vision

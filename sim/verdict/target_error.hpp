@@ -45,6 +45,12 @@ struct JudgedEye {
   Lens believed_lens;
   double target_scale = 1.0;  // true size over the believed one
   bool differs = false;       // the cameras are not the same
+  // False: no place of the target gives exactly the goal's picture, or the truth is not as believed and the
+  // picture of the target's corners tells all of its pose: then the picture alone is judged.
+  bool judges_metres = true;
+
+  // True if the goal's picture is not seen of a target at the goal, but of one elsewhere.
+  [[nodiscard]] bool MovesGoal() const { return differs || target_scale != 1.0; }
 };
 
 inline JudgedEye JudgedEyeOf(const RunDescription& about) {
@@ -52,9 +58,29 @@ inline JudgedEye JudgedEyeOf(const RunDescription& about) {
     return std::none_of(about.truth.begin(), about.truth.end(),
                         [quantity](const TrueValue& value) { return value.quantity == quantity; });
   };
-  const bool same = is_true(Quantity::kFocalLength) && is_true(Quantity::kAspect) &&
-                    is_true(Quantity::kPrincipalPoint) && is_true(Quantity::kLens);
-  return {about.eye.pinhole, about.eye.lens, about.pinhole, about.lens, about.target_scale, !same};
+  const bool similar = is_true(Quantity::kAspect) && is_true(Quantity::kLens);
+  const bool same = similar && is_true(Quantity::kFocalLength) && is_true(Quantity::kPrincipalPoint);
+  const bool is_judged_by_corners = GoalOf(about.servo.feature).R_CO_star && !about.truth.empty();
+  return {about.eye.pinhole,
+          about.eye.lens,
+          about.pinhole,
+          about.lens,
+          about.target_scale,
+          !same,
+          similar && !is_judged_by_corners};
+}
+
+// Where the target must be for its true picture to be the goal's, `p_star`, of the believed camera and
+// target; both in C [m]. A longer camera and a larger target are further away. Only focal length, principal
+// point and size may differ.
+inline Eigen::Vector3d TrueGoal(const JudgedEye& eye, const Eigen::Vector3d& p_star) {
+  const Pinhole& believed = eye.believed_pinhole;
+  const double z = p_star.z() * eye.target_scale * eye.pinhole.f_px / believed.f_px;
+  if (!eye.MovesGoal()) {
+    return p_star;
+  }
+  return {z * (believed.U(p_star) - eye.pinhole.c_u_px) / eye.pinhole.f_px,
+          z * (believed.V(p_star) - eye.pinhole.c_v_px) / eye.pinhole.FocalV(), z};
 }
 
 // Distance in the picture between the true image of `p` and the goal's, `p_star` [px]; both in C. With equal
@@ -78,6 +104,7 @@ struct TargetError {
   // rms over the goal's points; infinite if one of them is behind the camera.
   double error_px = std::numeric_limits<double>::infinity();
   Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal minus truth, in axes of C [m]
+  double judged_m = 0.0;                              // distance to TrueGoal
   std::optional<double> error_rad;                    // of the orientation, if the goal has one
 };
 
@@ -87,6 +114,7 @@ inline TargetError ErrorOf(const Truth& truth, const JudgedEye& eye, const Targe
   Eigen::Matrix3d R_CO = X_CB.linear() * truth.R_BO;
   TargetError error;
   error.error_C = goal.p_CO_C_star - p_CO_C;
+  error.judged_m = (TrueGoal(eye, goal.p_CO_C_star) - p_CO_C).norm();
   if (goal.R_CO_star) {
     const Eigen::Matrix3d R_CO_given = R_CO;
     for (int turn = 0; turn < goal.turns; ++turn) {

@@ -33,7 +33,7 @@ Verdict::Verdict(const VerdictConfig& config)
 void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
   if (config_.has_eye) {
     const TargetError error = ErrorOf(truth, config_.eye, config_.goal);
-    AddSample({truth.stamp_ns, error.error_px, error.error_C, error.error_rad.value_or(0.0)});
+    AddSample({truth.stamp_ns, error.error_px, error.error_C, error.judged_m, error.error_rad.value_or(0.0)});
   }
 
   const double t_s = 1e-9 * static_cast<double>(truth.stamp_ns);
@@ -59,7 +59,7 @@ void Verdict::AddTruth(const Truth& truth, hal::Mode mode) {
 
 // A still target's errors in the picture [px], in space [m] and of the orientation [deg].
 bool Verdict::IsAtGoal(double px, double m, double deg) const {
-  return px <= kConvergedPx && (!config_.judges_metres || (m <= kConvergedM && deg <= kConvergedDeg));
+  return px <= kConvergedPx && (!config_.eye.judges_metres || (m <= kConvergedM && deg <= kConvergedDeg));
 }
 
 void Verdict::AddSample(const Sample& sample) {
@@ -77,10 +77,11 @@ void Verdict::AddSample(const Sample& sample) {
   }
   NoteGoal(t_s, config_.target_moves
                     ? WindowPx() <= config_.tracking_bound_px
-                    : IsAtGoal(sample.error_px, sample.error_C.norm(), kDegPerRad * sample.error_rad));
+                    : IsAtGoal(sample.error_px, sample.judged_m, kDegPerRad * sample.error_rad));
   if (t_s > 0.5 * config_.duration_s) {
     second_half_px2_ += sample.error_px * sample.error_px;
     second_half_m2_ += sample.error_C.squaredNorm();
+    second_half_judged_m2_ += sample.judged_m * sample.judged_m;
     ++second_half_samples_;
   }
 }
@@ -153,7 +154,7 @@ void Verdict::Fill(Summary& summary) const {
   summary.faults = faults_;
   summary.modes = modes_;
   FillEnd(summary);
-  if (window_.empty()) {
+  if (window_.empty() || config_.has_motion) {
     FillMotion(summary);
     return;
   }
@@ -187,7 +188,7 @@ void Verdict::FillEnd(Summary& summary) const {
   summary.end.goal_kept_since_s = goal_kept_since_s_;
 }
 
-// Verdict of a run without a target: whether the commanded motion was followed.
+// Verdict of a run without a target, or beside it: whether the commanded motion was followed.
 void Verdict::FillMotion(Summary& summary) const {
   if (path_samples_ > 0) {
     summary.path_error_mm_rms = 1e3 * std::sqrt(path2_ / static_cast<double>(path_samples_));
@@ -250,7 +251,7 @@ void Verdict::FillStill(Summary& summary) const {
     lateral2 += sample.error_C.head<2>().squaredNorm();
     depth2 += sample.error_C.z() * sample.error_C.z();
     worst_px = std::max(worst_px, sample.error_px);
-    worst_m = std::max(worst_m, sample.error_C.norm());
+    worst_m = std::max(worst_m, sample.judged_m);
     turn2 += sample.error_rad * sample.error_rad;
     worst_deg = std::max(worst_deg, kDegPerRad * sample.error_rad);
   }
@@ -269,8 +270,9 @@ void Verdict::FillStill(Summary& summary) const {
     summary.settle_time_s = *last_outside_s_ + hal::kTickPeriodS;
   }
   if (summary.converged) {
-    summary.verdict = config_.judges_metres ? "converged: the target stands at its goal"
-                                            : "converged: the target stands at its goal in the picture";
+    summary.verdict = config_.eye.MovesGoal() || !config_.eye.judges_metres
+                          ? "converged: the target stands at its goal in the picture"
+                          : "converged: the target stands at its goal";
   }
 }
 
@@ -279,15 +281,15 @@ void Verdict::FillMoving(Summary& summary) const {
     const auto n = static_cast<double>(second_half_samples_);
     summary.tracking_error_px_rms = std::sqrt(second_half_px2_ / n);
     summary.tracking_error_mm_rms = 1e3 * std::sqrt(second_half_m2_ / n);
-    summary.converged =
-        *summary.tracking_error_px_rms <= config_.tracking_bound_px &&
-        (!config_.judges_metres || *summary.tracking_error_mm_rms <= config_.tracking_bound_mm) &&
-        faults_.empty();
+    summary.converged = *summary.tracking_error_px_rms <= config_.tracking_bound_px &&
+                        (!config_.eye.judges_metres ||
+                         1e3 * std::sqrt(second_half_judged_m2_ / n) <= config_.tracking_bound_mm) &&
+                        faults_.empty();
   }
   if (summary.converged) {
     summary.verdict = fmt::format(
         "converged: the target is tracked within {:g} px{}", config_.tracking_bound_px,
-        config_.judges_metres ? fmt::format(" and {:g} mm", config_.tracking_bound_mm) : std::string());
+        config_.eye.judges_metres ? fmt::format(" and {:g} mm", config_.tracking_bound_mm) : std::string());
   }
 }
 
@@ -314,17 +316,20 @@ std::string Verdict::WhyNot(const Summary& summary) const {
     const auto figure = [](const std::optional<double>& error) {
       return error ? fmt::format("{:.2f}", *error) : std::string("infinite");
     };
-    return fmt::format(
-        "not converged: tracking error {} px rms, bound {:g} px, and {} mm rms, bound {:g} mm{}",
-        figure(summary.tracking_error_px_rms), config_.tracking_bound_px,
-        figure(summary.tracking_error_mm_rms), config_.tracking_bound_mm, LimitedBy());
+    return fmt::format("not converged: tracking error {} px rms, bound {:g} px{}{}",
+                       figure(summary.tracking_error_px_rms), config_.tracking_bound_px,
+                       config_.eye.judges_metres
+                           ? fmt::format(", and {} mm rms, bound {:g} mm",
+                                         figure(summary.tracking_error_mm_rms), config_.tracking_bound_mm)
+                           : std::string(),
+                       LimitedBy());
   }
   return fmt::format(
       "not converged: over the last {:g} s the target was not within {:g} px{}{} of its goal{}",
       1e-9 * static_cast<double>(kWindowNs), kConvergedPx,
-      config_.judges_metres ? fmt::format(" and {:g} mm", 1e3 * kConvergedM) : std::string(),
-      config_.judges_metres && config_.goal.R_CO_star ? fmt::format(" and {:g} deg", kConvergedDeg)
-                                                      : std::string(),
+      config_.eye.judges_metres ? fmt::format(" and {:g} mm", 1e3 * kConvergedM) : std::string(),
+      config_.eye.judges_metres && config_.goal.R_CO_star ? fmt::format(" and {:g} deg", kConvergedDeg)
+                                                          : std::string(),
       LimitedBy());
 }
 

@@ -28,14 +28,12 @@ struct VerdictConfig {
   StopRules stop;
   JudgedEye eye;
   TargetGoal goal;
-  bool judges_metres =
-      true;             // false: what the servo believes is wrong, and only the picture can be at its goal
   bool has_eye = true;  // false: there is no target to judge
   bool target_moves = false;
   double tracking_bound_px = 3.0;
   double tracking_bound_mm = 5.0;
   double duration_s = 8.0;                // of the run
-  bool has_motion = true;                 // a motion is commanded; used without a camera
+  bool has_motion = false;                // a motion is commanded, and judged instead of the target
   std::optional<CommandedCircle> circle;  // that the end effector must follow
   double path_bound_mm = 1.0;
   bool goes_home = false;           // the arm must be at arm.q_ready at the end
@@ -61,6 +59,7 @@ class Verdict {
     std::int64_t stamp_ns = 0;
     double error_px = 0.0;                              // infinite if the target is behind the camera
     Eigen::Vector3d error_C = Eigen::Vector3d::Zero();  // goal minus truth, in axes of C [m]
+    double judged_m = 0.0;                              // distance to where the goal's picture is true
     double error_rad = 0.0;                             // of the orientation, if the goal has one
   };
   void AddSample(const Sample& sample);
@@ -90,8 +89,9 @@ class Verdict {
   std::optional<double> first_px_;  // error at the start
   bool is_outside_ = false;         // the last sample was not settled
   std::optional<double> last_outside_s_;
-  double second_half_px2_ = 0.0;  // sum of squares of the image error [px^2]
-  double second_half_m2_ = 0.0;   // sum of squares of the position error [m^2]
+  double second_half_px2_ = 0.0;        // sum of squares of the image error [px^2]
+  double second_half_m2_ = 0.0;         // sum of squares of the position error [m^2]
+  double second_half_judged_m2_ = 0.0;  // of the distance to where the goal's picture is true [m^2]
   std::uint64_t second_half_samples_ = 0;
   ContactCount contacts_;
   double home_error_ = 0.0;  // largest joint error to arm.q_ready, at the last step [rad]

@@ -3,16 +3,15 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <numbers>
 
 #include "sim/faults/chance.hpp"
 
 namespace fovea::sim {
 
 // The servo's computer stamps a picture at its arrival, less the believed latency. A picture that arrives
-// later than believed therefore seems newer than it is.
+// later than believed therefore seems newer than it is. Pictures arrive in their order. The clock of the
+// stamps may run at another rate than the robot's; they agree at time 0.
 struct TrueStamps {
   std::int64_t late_ns = 0;  // true latency minus the believed one
   double jitter_ns = 0.0;    // standard deviation of each picture's latency
@@ -25,17 +24,17 @@ struct TrueStamps {
       return 0;
     }
     constexpr double kMostSigmas = 3.0;
-    const double radius = std::sqrt(-2.0 * std::log(1.0 - Chance(seed, 2 * sequence)));
-    const double normal = radius * std::cos(2.0 * std::numbers::pi * Chance(seed, 2 * sequence + 1));
-    return static_cast<std::int64_t>(jitter_ns * std::clamp(normal, -kMostSigmas, kMostSigmas));
+    const double normal = std::clamp(NormalChance(seed, 2 * sequence), -kMostSigmas, kMostSigmas);
+    return static_cast<std::int64_t>(jitter_ns * normal);
   }
   // How much the camera's clock is ahead at `stamp_ns`.
   [[nodiscard]] std::int64_t DriftNs(std::int64_t stamp_ns) const {
     return static_cast<std::int64_t>(drift * static_cast<double>(stamp_ns));
   }
-  // Error of the stamp of frame `sequence`, exposed at `stamp_ns`.
-  [[nodiscard]] std::int64_t ErrorNs(std::uint64_t sequence, std::int64_t stamp_ns) const {
-    return late_ns + JitterNs(sequence) + DriftNs(stamp_ns);
+  // Error of the stamp of a picture that was exposed at `stamp_ns` and arrived `by_jitter_ns` later than by
+  // the mean latency.
+  [[nodiscard]] std::int64_t ErrorNs(std::int64_t by_jitter_ns, std::int64_t stamp_ns) const {
+    return late_ns + by_jitter_ns + DriftNs(stamp_ns);
   }
 };
 

@@ -10,18 +10,17 @@
 namespace fovea::sim {
 namespace {
 
-constexpr double kStictionSpeed = 0.02;  // Coulomb friction reaches its full size beyond this [rad/s, m/s]
-constexpr double kBrakeDecay = 0.8;      // share of the speed that an engaged brake leaves per step
-constexpr double kBrakeRest = 1e-3;      // below this speed an engaged brake holds the joint [rad/s]
+constexpr double kBrakeDecay = 0.8;  // share of the speed that an engaged brake leaves per step
+constexpr double kBrakeRest = 1e-3;  // below this speed an engaged brake holds the joint [rad/s]
 
-// The inertia of a single link about its own joint [kg m^2, kg].
-double OwnInertia(const SimLink& link) {
-  if (link.joint == SimJointKind::kPrismatic) {
-    return link.mass;
+Eigen::VectorXd RotorInertias(const SimRobot& robot) {
+  Eigen::VectorXd inertias = Eigen::VectorXd::Zero(robot.num_dofs);
+  for (const SimLink& link : robot.links) {
+    if (link.dof >= 0) {
+      inertias[link.dof] = link.rotor_inertia;
+    }
   }
-  const Eigen::Matrix3d I_L = link.X_LCom.linear() * link.I_Com * link.X_LCom.linear().transpose();
-  return link.axis_L.dot(I_L * link.axis_L) +
-         link.mass * link.axis_L.cross(link.X_LCom.translation()).squaredNorm();
+  return inertias;
 }
 
 BulletArmOptions WithLoad(BulletArmOptions options, const Load& load) {
@@ -29,45 +28,75 @@ BulletArmOptions WithLoad(BulletArmOptions options, const Load& load) {
   return options;
 }
 
+// Behind elastic joints the physics moves the links without the rotors.
+SimRobot PhysicsRobot(const WorldConfig& config) {
+  SimRobot robot = config.robot;
+  for (SimLink& link : robot.links) {
+    link.rotor_inertia = config.joint_springs.empty() ? link.rotor_inertia : 0.0;
+  }
+  return robot;
+}
+
+ElasticJointsConfig ElasticConfig(const WorldConfig& config, const JointFriction& friction) {
+  const auto joints = static_cast<Eigen::Index>(config.joint_springs.size());
+  ElasticJointsConfig elastic{Eigen::VectorXd(joints), Eigen::VectorXd(joints), RotorInertias(config.robot),
+                              Eigen::VectorXd::Zero(joints)};
+  for (Eigen::Index i = 0; i < joints; ++i) {
+    elastic.stiffness[i] = config.joint_springs[static_cast<std::size_t>(i)].stiffness;
+    elastic.damping[i] = config.joint_springs[static_cast<std::size_t>(i)].damping;
+  }
+  if (config.stiction) {
+    elastic.holding = friction.Holding();
+  }
+  return elastic;
+}
+
+// The robot as its own controller thinks it is.
+const SimRobot& BelievedRobot(const WorldConfig& config) {
+  return config.robot_truth.believed ? *config.robot_truth.believed : config.robot;
+}
+
 }  // namespace
 
 World::World(const WorldConfig& config)
     : config_(config),
-      arm_(config.robot, WithLoad(config.physics, config.load)),
+      arm_(PhysicsRobot(config), WithLoad(config.physics, config.load)),
       touch_(config.robot, config.target_body),
-      random_(config.seed) {
-  for (const SimLink& link : config_.robot.links) {
-    if (link.dof >= 0) {
-      joints_.push_back(&link);
-      // On a light link, the full friction of one step would reverse the speed. Each of its two parts
-      // therefore removes at most half of the speed per step.
-      const double left = 1.0 - config_.friction_compensation;
-      const double most =
-          0.5 * OwnInertia(link) / hal::kTickPeriodS;  // damping of one part [N m s/rad, N s/m]
-      viscous_.push_back(std::min(left * link.viscous, most));
-      stiction_speed_.push_back(std::max(kStictionSpeed, left * link.coulomb / most));
-    }
-  }
+      random_(config.seed),
+      friction_(config.robot, BelievedRobot(config), config.friction_compensation, config.stiction,
+                !config.joint_springs.empty()),
+      rotor_inertia_(RotorInertias(config.robot)),
+      rotor_torque_(Eigen::VectorXd::Zero(config.robot.num_dofs)),
+      exposures_(config.exposure_reach_ns) {
   if (config_.target.kind == MotionKind::kPushed) {
     ball_.emplace(config_.ball);
   }
-  if (const auto& believed = config_.robot_truth.believed) {
+  // The controller does not see where elastic joints let the links go.
+  if (config_.robot_truth.believed || !config_.joint_springs.empty()) {
     BulletArmOptions options = config_.physics;
     options.table = false;
-    believed_.emplace(*believed, options);
+    believed_.emplace(BelievedRobot(config_), options);
   }
-  arm_.SetState(config_.q_start - EncoderZero(),
-                config_.dq_start.size() > 0 ? config_.dq_start : Eigen::VectorXd::Zero(arm_.num_dofs()));
-  if (config_.stiction) {
-    Eigen::VectorXd left(arm_.num_dofs());
-    for (Eigen::Index i = 0; i < left.size(); ++i) {
-      left[i] = (1.0 - config_.friction_compensation) * joints_[static_cast<std::size_t>(i)]->coulomb;
-    }
-    arm_.SetStiction(left);
+  const Eigen::VectorXd dq_start =
+      config_.dq_start.size() > 0 ? config_.dq_start : Eigen::VectorXd::Zero(arm_.num_dofs());
+  arm_.SetState(config_.q_start - EncoderZero(), dq_start);
+  if (!config_.joint_springs.empty()) {
+    elastic_.emplace(ElasticConfig(config_, friction_));
+    Settle(dq_start);
+  } else if (config_.stiction) {
+    arm_.SetStiction(friction_.Holding());
   }
   command_.num_joints = arm_.num_dofs();
   measured_.num_joints = arm_.num_dofs();
+  if (config_.velocity_filter_hz > 0.0) {
+    for (const double dq : dq_start) {
+      speeds_.emplace_back(config_.velocity_filter_hz, dq);
+    }
+  }
   RecordTruth();
+  if (!config_.drives.empty()) {
+    drives_.emplace(config_.drives, CommandedTorque());
+  }
   MeasureState();
 }
 
@@ -84,23 +113,54 @@ void World::AdvanceTo(std::int64_t time_ns) {
   }
 }
 
+void World::PlaceArm(const Eigen::VectorXd& q, const Eigen::VectorXd& dq) {
+  if (elastic_) {
+    // The springs stay as they are.
+    const Eigen::VectorXd rate = elastic_->motor_speed() - arm_.dq();
+    Eigen::VectorXd q_links = q - EncoderZero();
+    Eigen::VectorXd dq_links = dq;
+    if (config_.encoder_on_motor) {
+      q_links -= elastic_->deflection();
+      dq_links -= rate;
+    }
+    arm_.SetState(q_links, dq_links);
+    elastic_->SetMotorSpeed(dq_links + rate);
+  } else {
+    arm_.SetState(q - EncoderZero(), dq);
+  }
+  RecordTruth();
+}
+
+// At the start the springs carry the links' weight, and the encoders read q_start.
+void World::Settle(const Eigen::VectorXd& dq) {
+  constexpr int kRounds = 50;  // each divides the error by stiffness over change of weight
+  elastic_->Settle(arm_.GravityTorque(), dq);
+  for (int i = 0; i < kRounds && config_.encoder_on_motor; ++i) {
+    arm_.SetState(config_.q_start - EncoderZero() - elastic_->deflection(), dq);
+    elastic_->Settle(arm_.GravityTorque(), dq);
+  }
+}
+
+Eigen::VectorXd World::MotorPosition() const {
+  return elastic_ ? Eigen::VectorXd(arm_.q() + elastic_->deflection()) : arm_.q();
+}
+
+const Eigen::VectorXd& World::MotorSpeed() const { return elastic_ ? elastic_->motor_speed() : arm_.dq(); }
+
 void World::Step() {
   truth_.ddq_disturbed.resize(0);
+  if (drives_) {
+    drives_->Step(CommandedTorque(), MotorPosition(), MotorSpeed());
+  }
   if (command_.engage_brakes) {
-    // The brakes stop each joint separately, whatever its load.
-    Eigen::VectorXd dq = arm_.dq() * kBrakeDecay;
-    for (Eigen::Index i = 0; i < dq.size(); ++i) {
-      dq[i] = std::fabs(dq[i]) < kBrakeRest ? 0.0 : dq[i];
-    }
-    arm_.SetState(arm_.q() + dq * hal::kTickPeriodS, dq);
-    arm_.FindContacts();
+    Brake();
   } else {
     const double mass = config_.load.window.Contains(now_ns_) ? config_.load.mass : 0.0;
     const double tilt = config_.base_tilt.window.Contains(now_ns_) ? config_.base_tilt.tilt : 0.0;
     truth_.ddq_disturbed = AccelerationByDisturbance(mass, tilt);
     TakeUpLoad(mass);
     TiltBase(tilt);
-    arm_.Step(JointTorque(), hal::kTickPeriodS);
+    StepArm();
   }
   StepBall();
   now_ns_ += hal::kTickPeriodNs;
@@ -109,6 +169,33 @@ void World::Step() {
   ExposeIfDue();
   if (on_step_) {
     on_step_(truth_);
+  }
+}
+
+// The brakes stop each joint separately, whatever its load. Springs keep their deflection.
+void World::Brake() {
+  Eigen::VectorXd dq = arm_.dq() * kBrakeDecay;
+  for (Eigen::Index i = 0; i < dq.size(); ++i) {
+    dq[i] = std::fabs(dq[i]) < kBrakeRest ? 0.0 : dq[i];
+  }
+  arm_.SetState(arm_.q() + dq * hal::kTickPeriodS, dq);
+  arm_.FindContacts();
+  rotor_torque_.setZero();  // the brakes hold the rotors
+  if (elastic_) {
+    elastic_->SetMotorSpeed(dq);
+  }
+}
+
+void World::StepArm() {
+  const Eigen::VectorXd dq_before = arm_.dq();
+  if (elastic_) {
+    const Eigen::VectorXd pulls = Pulls();
+    const Eigen::VectorXd ddq_links = arm_.ForwardDynamics(pulls);
+    elastic_->Step(WithFriction(MotorTorque()), dq_before, ddq_links, arm_.InverseMass(), hal::kTickPeriodS);
+    arm_.Step(elastic_->torque() + pulls, hal::kTickPeriodS);
+  } else {
+    arm_.Step(JointTorque(), hal::kTickPeriodS);
+    rotor_torque_ = rotor_inertia_.cwiseProduct(arm_.dq() - dq_before) / hal::kTickPeriodS;
   }
 }
 
@@ -121,11 +208,6 @@ void World::StepBall() {
     ball_->Push(config_.ball_push);
   }
   ball_->Step(hal::kTickPeriodS);
-}
-
-Eigen::VectorXd World::EncoderZero() const {
-  const Eigen::VectorXd& zero = config_.robot_truth.encoder_zero;
-  return zero.size() > 0 ? zero : Eigen::VectorXd::Zero(arm_.num_dofs());
 }
 
 // Torques of the springs and of external pushes.
@@ -165,55 +247,51 @@ bool World::MayTilt() const {
 }
 
 // Difference of the next step's accelerations to those of an undisturbed arm, in the same state and under the
-// same command. Empty if there is no disturbance.
+// same command. Empty if there is no disturbance. A wrong belief of the servo is none.
 Eigen::VectorXd World::AccelerationByDisturbance(double mass, double tilt) {
-  const Eigen::VectorXd disturbed = MotorTorque() + Pulls();
-  const Eigen::VectorXd wanted = WantedTorque();
-  if (mass == 0.0 && tilt == 0.0 && disturbed == wanted && config_.robot_truth.base_tilt.isZero(0.0)) {
+  // Behind elastic joints a motor acts on the links through the springs alone.
+  const Eigen::VectorXd disturbed = (elastic_ ? elastic_->torque() : MotorTorque()) + Pulls();
+  const Eigen::VectorXd wanted = elastic_ ? elastic_->torque() : UnimpairedTorque();
+  if (mass == 0.0 && tilt == 0.0 && disturbed == wanted) {
     return {};
   }
   TakeUpLoad(mass);
   TiltBase(tilt);
-  const Eigen::VectorXd ddq = arm_.ForwardDynamics(WithFriction(disturbed));
+  const auto on_links = [this](const Eigen::VectorXd& tau) { return elastic_ ? tau : WithFriction(tau); };
+  const Eigen::VectorXd ddq = arm_.ForwardDynamics(on_links(disturbed));
   TakeUpLoad(0.0);
-  if (MayTilt()) {
-    arm_.TiltBase(0.0, 0.0);
-  }
-  return ddq - arm_.ForwardDynamics(WithFriction(wanted));
+  TiltBase(0.0);
+  return ddq - arm_.ForwardDynamics(on_links(wanted));
 }
 
-// The command plus the torque that carries the arm as it is, if its base is upright.
-Eigen::VectorXd World::WantedTorque() const {
-  return arm_.GravityTorque() + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
+// What the drives are told: the command plus the gravity compensation of the robot's own controller.
+Eigen::VectorXd World::CommandedTorque() const {
+  Eigen::VectorXd tau = believed_ ? believed_->GravityTorque() : arm_.GravityTorque();
+  tau += Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
+  return tau;
 }
 
-// The command plus the gravity compensation of the robot's own controller.
-Eigen::VectorXd World::RobotTorque() const {
-  const Eigen::VectorXd gravity = believed_ ? believed_->GravityTorque() : arm_.GravityTorque();
-  return gravity + Eigen::Map<const Eigen::VectorXd>(command_.tau_cmd.data(), arm_.num_dofs());
+Eigen::VectorXd World::DriveError() const {
+  return drives_ ? drives_->error() : Eigen::VectorXd::Zero(arm_.num_dofs());
 }
 
-// What the motors deliver of it.
-Eigen::VectorXd World::MotorTorque() const {
-  Eigen::VectorXd tau = RobotTorque();
+// What the motors deliver without a fault.
+Eigen::VectorXd World::UnimpairedTorque() const {
+  Eigen::VectorXd tau = drives_ ? drives_->delivered() : CommandedTorque();
   const RobotTruth& truth = config_.robot_truth;
   if (truth.torque_scale.size() > 0) {
     tau = truth.torque_scale.cwiseProduct(tau) + truth.torque_bias;
   }
+  return tau;
+}
+
+// What the motors deliver.
+Eigen::VectorXd World::MotorTorque() const {
+  Eigen::VectorXd tau = UnimpairedTorque();
   if (config_.torque_loss.window.Contains(now_ns_)) {
     tau[config_.torque_loss.joint] *= 1.0 - config_.torque_loss.share;
   }
   return tau;
-}
-
-// The joint friction that the robot's controller does not compensate [N m, N], without that of BulletArm.
-double World::FrictionLeft(int joint, double velocity) const {
-  const auto k = static_cast<std::size_t>(joint);
-  if (config_.stiction) {
-    return viscous_[k] * velocity;
-  }
-  return viscous_[k] * velocity + (1.0 - config_.friction_compensation) * joints_[k]->coulomb *
-                                      std::tanh(velocity / stiction_speed_[k]);
 }
 
 // All torques on the joints: motors, springs, external pushes and the remaining friction.
@@ -221,7 +299,7 @@ Eigen::VectorXd World::JointTorque() const { return WithFriction(MotorTorque() +
 
 Eigen::VectorXd World::WithFriction(Eigen::VectorXd tau) const {
   for (int i = 0; i < arm_.num_dofs(); ++i) {
-    tau[i] -= FrictionLeft(i, arm_.dq()[i]);
+    tau[i] -= friction_.Torque(i, MotorSpeed()[i]);
   }
   return tau;
 }
@@ -260,34 +338,9 @@ void World::RecordTruth() {
   truth_.contacts = {arm_.Contacts(), touch_.Target(), touch_.Self()};
 }
 
-// What a joint's sensor reads of a motor's torque.
-double World::SensedTorque(double tau, Eigen::Index joint) const {
-  const RobotTruth& truth = config_.robot_truth;
-  return truth.torque_scale.size() > 0 ? (tau - truth.torque_bias[joint]) / truth.torque_scale[joint] : tau;
-}
-
-double World::Quantised(double q) const {
-  const double quantum = config_.encoder_quantum;
-  return quantum > 0.0 ? quantum * std::round(q / quantum) : q;
-}
-
-void World::MeasureState() {
-  measured_.stamp_ns = now_ns_;
-  ++measured_.sequence;
-  const Eigen::VectorXd motor = MotorTorque();
-  const Eigen::VectorXd zero = EncoderZero();
-  const Eigen::VectorXd stiction = arm_.StictionTorque();
-  for (int i = 0; i < arm_.num_dofs(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    measured_.q[k] = Quantised(arm_.q()[i] + zero[i] + config_.encoder_noise * normal_(random_));
-    measured_.dq[k] = arm_.dq()[i] + config_.velocity_noise * normal_(random_);
-    measured_.tau_applied[k] = command_.tau_cmd[k];
-    measured_.tau_meas[k] = SensedTorque(motor[i], i) - FrictionLeft(i, arm_.dq()[i]) + stiction[i];
-  }
-}
-
 Exposure World::Look() const {
   Exposure exposure;
+  exposure.time_ns = now_ns_;
   exposure.stamp_ns = now_ns_;
   exposure.X_BC = truth_.X_BC;
   exposure.p_BO = truth_.p_BO;
@@ -301,14 +354,20 @@ void World::ExposeIfDue() {
   const double period_ns = static_cast<double>(hal::kNsPerSecond) / config_.camera_rate_hz;
   const auto due_ns = config_.first_exposure_ns +
                       static_cast<std::int64_t>(std::llround(static_cast<double>(next_frame_) * period_ns));
-  if (now_ns_ + hal::kTickPeriodNs / 2 < due_ns) {
+  const bool due = now_ns_ + hal::kTickPeriodNs / 2 >= due_ns;
+  const std::uint64_t frame = due ? next_frame_++ : next_frame_;
+  if (!on_exposure_) {
     return;
   }
-  const std::uint64_t frame = next_frame_++;
-  if (on_exposure_ && !config_.camera_outage.Contains(now_ns_)) {
-    Exposure exposure = Look();
-    exposure.sequence = frame;
-    on_exposure_(std::move(exposure));
+  const bool begins = due && !config_.camera_outage.Contains(now_ns_);
+  if (begins || config_.exposure_reach_ns > 0) {
+    exposures_.Add(Look());
+  }
+  if (begins) {
+    exposures_.Begin(frame);
+  }
+  while (std::optional<Exposure> exposure = exposures_.TakeEnded()) {
+    on_exposure_(*std::move(exposure));
   }
 }
 

@@ -10,11 +10,16 @@
 #include <vector>
 
 #include "fovea/hal/arm.hpp"
+#include "sim/drives/elastic_joints.hpp"
+#include "sim/drives/joint_friction.hpp"
+#include "sim/drives/speed_by_differences.hpp"
+#include "sim/drives/torque_drives.hpp"
 #include "sim/faults/bench_faults.hpp"
 #include "sim/physics/bullet_arm.hpp"
 #include "sim/physics/link_touch.hpp"
 #include "sim/physics/rolling_ball.hpp"
 #include "sim/render/exposure.hpp"
+#include "sim/world/exposure_history.hpp"
 #include "sim/world/robot_truth.hpp"
 #include "sim/world/target_motion.hpp"
 
@@ -34,7 +39,11 @@ struct WorldConfig : BenchFaults {
   bool stiction = false;         // true: Coulomb friction holds a joint at rest; false: smooth around rest
   double encoder_noise = 0.0;    // standard deviation of q [rad]
   double encoder_quantum = 0.0;  // q is measured in multiples of it [rad, m]; 0: not rounded
-  double velocity_noise = 0.0;   // standard deviation of dq [rad/s]
+  double velocity_noise = 0.0;   // standard deviation of dq [rad/s], if it is not measured by differences
+  double velocity_filter_hz = 0.0;         // corner frequency of SpeedByDifferences; 0: dq is the true speed
+  std::vector<TorqueDriveConfig> drives;   // one per moving joint; empty: a torque acts at once and exactly
+  std::vector<JointSpring> joint_springs;  // between motors and links, one per moving joint; empty: rigid
+  bool encoder_on_motor = true;            // of a joint with a spring; otherwise on the link
   TargetMotion target;
   std::optional<Shape> target_body;  // the target's shape in O, for contacts with links; empty: no target
   RollingBallConfig ball;            // used for a pushed target
@@ -42,6 +51,7 @@ struct WorldConfig : BenchFaults {
   double ball_push_s = 0.0;                             // time of the push
   double camera_rate_hz = 30.0;
   std::int64_t first_exposure_ns = 20'000'000;
+  std::int64_t exposure_reach_ns = 0;  // Shutter::ReachNs: from an exposure's middle to its end
   std::uint64_t seed = 1;
 };
 
@@ -60,7 +70,7 @@ struct Truth {
   Eigen::VectorXd dq;
   Eigen::VectorXd tau_cmd;  // command of the last step
   // Share of the joints' accelerations in the last step caused by disturbances [rad/s^2, m/s^2]: pushes,
-  // springs, loads, a tilted base, weak motors. Empty if there was none.
+  // springs, faults of loads, base and motors, not by a wrong belief. Empty if there was none.
   Eigen::VectorXd ddq_disturbed;
   Eigen::Isometry3d X_BE = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d X_BC = Eigen::Isometry3d::Identity();
@@ -76,12 +86,16 @@ class World {
 
   // Calls `callback` at once, and then after each step.
   void OnStep(std::function<void(const Truth&)> callback);
-  // Calls `callback` at each exposure, on the thread that advances the world.
+  // Calls `callback` at the end of each exposure, on the thread that advances the world.
   void OnExposure(std::function<void(Exposure)> callback);
 
   // Steps until the world's time is `time_ns`, rounded down to a multiple of 1 ms.
   void AdvanceTo(std::int64_t time_ns);
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
+
+  // Goes on from another state of the arm: joint positions `q` as the encoders read, and velocities `dq`
+  // [num_dofs]. Time, the drives and all else stay; the measured state is that of the next step.
+  void PlaceArm(const Eigen::VectorXd& q, const Eigen::VectorXd& dq);
 
   // Measurements and commands for SimArm.
   [[nodiscard]] const hal::ArmState& MeasuredState() const { return measured_; }
@@ -98,23 +112,30 @@ class World {
 
   [[nodiscard]] const Truth& truth() const { return truth_; }
   // The joints as encoders without noise read them [rad, m].
-  [[nodiscard]] Eigen::VectorXd Reading() const { return truth_.q + EncoderZero(); }
+  [[nodiscard]] Eigen::VectorXd Reading() const;
+  // The joints' true velocities where the encoders are [rad/s, m/s].
+  [[nodiscard]] const Eigen::VectorXd& ReadingSpeed() const;
+  // How much the drives' torques of the last step differed from their command [num_dofs; Nm, N].
+  [[nodiscard]] Eigen::VectorXd DriveError() const;
   // The bench as it is now, for a picture.
   [[nodiscard]] Exposure Look() const;
   [[nodiscard]] int num_joints() const { return arm_.num_dofs(); }
 
  private:
   void Step();
+  void StepArm();
+  void Brake();
+  void Settle(const Eigen::VectorXd& dq);
   void MeasureState();
-  [[nodiscard]] double Quantised(double q) const;
   void RecordTruth();
   void ExposeIfDue();
   [[nodiscard]] Eigen::VectorXd JointTorque() const;
+  [[nodiscard]] const Eigen::VectorXd& MotorSpeed() const;
+  [[nodiscard]] Eigen::VectorXd MotorPosition() const;
   [[nodiscard]] Eigen::VectorXd WithFriction(Eigen::VectorXd tau) const;
-  [[nodiscard]] double FrictionLeft(int joint, double velocity) const;
   [[nodiscard]] Eigen::VectorXd Pulls() const;
-  [[nodiscard]] Eigen::VectorXd WantedTorque() const;
-  [[nodiscard]] Eigen::VectorXd RobotTorque() const;
+  [[nodiscard]] Eigen::VectorXd CommandedTorque() const;
+  [[nodiscard]] Eigen::VectorXd UnimpairedTorque() const;
   [[nodiscard]] Eigen::VectorXd MotorTorque() const;
   [[nodiscard]] double SensedTorque(double tau, Eigen::Index joint) const;
   void TakeUpLoad(double mass);
@@ -134,11 +155,15 @@ class World {
   std::optional<Eigen::Isometry3d> placed_;  // the target's pose, by PlaceTarget
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_{0.0, 1.0};
-  std::vector<const SimLink*> joints_;  // moving links, base to tip
-  std::vector<double> viscous_;         // uncompensated damping of each [N m s/rad, N s/m]
-  std::vector<double> stiction_speed_;  // speed scale of each joint's smooth Coulomb friction [rad/s, m/s]
+  JointFriction friction_;
+  Eigen::VectorXd rotor_inertia_;           // [num_dofs; kg m^2, kg]
+  Eigen::VectorXd rotor_torque_;            // what accelerated the rotors in the last step [num_dofs; Nm, N]
+  std::optional<TorqueDrives> drives_;      // none: ideal
+  std::optional<ElasticJoints> elastic_;    // none: rigid
+  std::vector<SpeedByDifferences> speeds_;  // one per moving joint; empty: dq is the true speed
   std::int64_t now_ns_ = 0;
   std::uint64_t next_frame_ = 0;
+  ExposureHistory exposures_;
   hal::ArmCommand command_;
   Eigen::VectorXd pulled_;  // torques of PullAt; empty: none
   Eigen::VectorXd sprung_;  // torques of PullBySpring; empty: none

@@ -80,7 +80,9 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"hal/drivers/linux_rt",
              "fovea/(hal|linux_rt)/.*|(sys/|fcntl|malloc|poll|sched|unistd|pthread).*",
              "a driver depends on the contract and on its device"},
-        Rule{"hal/drivers/camera", "fovea/(hal|linux_rt|camera)/.*|opencv2/.*",
+        Rule{"hal/drivers/camera", "fovea/(hal|camera)/.*|opencv2/.*",
+             "a driver depends on the contract and on its device"},
+        Rule{"hal/drivers/recorded", "fovea/(hal|linux_rt|camera|recorded)/.*|opencv2/.*",
              "a driver depends on the contract and on its device"},
         Rule{"hal/drivers/genicam",
              "fovea/(hal|linux_rt|camera|genicam)/.*|opencv2/.*|(aravis_session|device_clock)[.]hpp|arv[.]h",
@@ -128,6 +130,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Rule{"firmware/include", "firmware/(core|vision|host)/.*",
              "public headers expose no driver and no hardware target"},
+        Rule{"firmware/planning", "fovea/hal/.*|firmware/(core|planning)/.*|Eigen/.*",
+             "planning depends on the core alone"},
         Rule{"firmware/vision", "fovea/hal/.*|firmware/(core|vision)/.*|(Eigen|opencv2)/.*",
              "vision depends only on core and OpenCV"},
         Rule{"firmware/vision/find", Vision("find"), "finding depends on no fit and no pose"},
@@ -145,7 +149,9 @@ INSTANTIATE_TEST_SUITE_P(
              ".*|(CLI|fmt|toml\\+\\+|Eigen)/.*|"
              "(unistd|fcntl|poll|sys/file|sys/ioctl)[.]h",
              "keys configure servo and vision only"},
-        Rule{"firmware/host/desk", "fovea/hal/.*|firmware/(core/(config|task)|host/(desk|live))/.*|fmt/.*",
+        Rule{"firmware/host/desk",
+             "fovea/hal/.*|firmware/(core/(config|task)|host/(desk|live))/.*|firmware/host/beliefs/"
+             "belief[.]hpp|fmt/.*",
              "a desk passes on what viewers ask of a servo, and knows no program"},
         Rule{"firmware/host/live",
              "firmware/host/(config|live|recording)/.*|(arpa|boost|fmt|google|netinet|nlohmann|sys)/.*|"
@@ -154,6 +160,8 @@ INSTANTIATE_TEST_SUITE_P(
         Rule{"firmware/host/robots",
              "firmware/(core/model|host/(config|robots))/.*|(fmt|urdf_parser|console_bridge|Eigen)/.*",
              "an arm is read from its files only"},
+        Rule{"firmware/host/beliefs", "fovea/hal/.*|firmware/(core|host/beliefs)/.*|(Eigen|fmt|nlohmann)/.*",
+             "what a run tells follows from the servo's records, whatever program ran it"},
         Rule{"firmware/host/design", "firmware/host/design/.*|(unsupported/)?Eigen/.*",
              "gain design is mathematics only"},
         Rule{"firmware/host/recording",
@@ -184,10 +192,14 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Sim, IncludeRule,
     testing::Values(
-        Rule{"sim/camera", "fovea/hal/.*|sim/(camera|render)/.*|Eigen/.*",
-             "the simulated world depends on hal, not on the firmware"},
+        Rule{"sim/camera",
+             "fovea/(hal/.*|camera/raw_picture[.]hpp)|opencv2/core[.]hpp|sim/(camera|render)/.*|Eigen/.*",
+             "the simulated world depends on hal and the formats of its drivers, not on the firmware"},
+        Rule{"sim/drives",
+             "fovea/hal/types[.]hpp|sim/(drives|robot)/.*|sim/physics/friction_impulse[.]hpp|Eigen/.*",
+             "a drive knows its joint only"},
         Rule{"sim/faults", "fovea/hal/.*|sim/(camera|faults|render)/.*|Eigen/.*",
-             "the simulated world depends on hal, not on the firmware"},
+             "the simulated world depends on hal and the formats of its drivers, not on the firmware"},
         Rule{"sim/physics", "sim/(physics|robot)/.*|Eigen/.*|(Bullet|LinearMath).*",
              "physics depends only on Bullet and the robot"},
         Rule{"sim/render", "sim/(render|robot)/.*|(Eigen|epoxy|fmt)/.*",
@@ -206,18 +218,19 @@ INSTANTIATE_TEST_SUITE_P(
             "the robot's network end depends on its messages and on the simulator"},
         Rule{"sim/gige", "fovea/(hal|linux_rt)/.*|fovea/franka/sockets[.]hpp|sim/gige/.*|arv[.]h",
              "the camera's network end depends only on frames"},
-        Rule{"sim/world", "fovea/hal/.*|sim/(world|physics|render|robot|faults)/.*|Eigen/.*",
-             "the simulated world depends on hal, not on the firmware"},
+        Rule{"sim/world", "fovea/hal/.*|sim/(world|drives|physics|render|robot|faults)/.*|Eigen/.*",
+             "the simulated world depends on hal and the formats of its drivers, not on the firmware"},
         Rule{"sim/truth",
              "firmware/host/config/(input_error|key_table)[.]hpp|sim/truth/.*|sim/camera/mix_bits[.]hpp|"
              "sim/faults/chance[.]hpp|(fmt|nlohmann)/.*",
              "what may be true is known without a run"},
-        Rule{"sim/scenario", Runs("scenario|camera|faults|physics|render|robot|truth|world"),
+        Rule{"sim/scenario", Runs("scenario|camera|drives|faults|physics|render|robot|truth|world"),
              "a scenario describes a run and knows no verdict"},
         Rule{"sim/theory", Runs("theory|scenario|world"), "an analytic response depends on no run"},
         Rule{"sim/verdict",
              "fovea/hal/(events|record|types)[.]hpp|firmware/core/(config|features|model|trajectory)/.*|"
-             "firmware/host/(config/(printed_table|terminal)|run/(fault_event|in_words|run_figures))[.]hpp|"
+             "firmware/host/(beliefs/(belief|findings_json)|config/(printed_table|terminal)|run/"
+             "(fault_event|in_words|run_figures))[.]hpp|"
              "sim/verdict/.*|sim/(camera/lens|mcu/board_summary|render/pinhole|theory/run|truth/"
              "(truth_draw|truth_text)|world/world)[.]hpp|"
              "sim/scenario/(commanded_motion|fault_settings|run_description)[.]hpp|(fmt|nlohmann)/.*",
@@ -235,14 +248,29 @@ INSTANTIATE_TEST_SUITE_P(
     Tools, IncludeRule,
     testing::Values(
         Rule{"tools/fovea",
-             "(fovea|firmware|tools|foxglove|fmt|google|CLI|nlohmann|Eigen|opencv2|sys)/.*|[a-z_]+[.]h",
-             "the programs work on recorded runs, without the simulator"},
+             "(fovea|firmware|tools|foxglove|fmt|google|CLI|nlohmann|Eigen|opencv2|sys)/.*|[a-z_]+[.]h|"
+             "sim/(scenario|world)/.*",
+             "the programs work on recorded runs; one of them compares these with the simulated arm"},
         Rule{"tools/bench",
              "(fovea|firmware|foxglove|tools|fmt|CLI|nlohmann|opencv2|Eigen|kdl|visp3|arpa|netinet|sys|linux)"
              "/.*|"
              "[a-z_]+[.]h",
              "the benchmarks run without the simulator"}),
     NameOf);
+
+// The others are built without the simulator.
+TEST(ToolsTest, OnlyTheComparisonUsesTheSimulator) {
+  int used = 0;
+  for (const auto& file : test::SourcesIn("tools/fovea")) {
+    const std::string name = std::filesystem::relative(file, test::SourceRoot()).generic_string();
+    for (const std::string& include : test::IncludesOf(file)) {
+      const bool is_sim = include.starts_with("sim/");
+      used += is_sim ? 1 : 0;
+      EXPECT_TRUE(!is_sim || name.starts_with("tools/fovea/compare/")) << name << " includes " << include;
+    }
+  }
+  EXPECT_GT(used, 0);
+}
 
 // Boost's headers take long to compile.
 TEST(IncludeRules, OnlyTheServersConnectionsIncludeBoost) {

@@ -57,5 +57,15 @@ TEST(SharedLibrariesTest, FirmwareProgramNeedsNoBulletOrEgl) {
   }
 }
 
+#ifdef FOVEA_SIM_PROGRAM
+// The simulator plays no recorded pictures.
+TEST(SharedLibrariesTest, SimulatorNeedsNoVideoFiles) {
+  const std::string needed = test::OutputOf("readelf -d '" FOVEA_SIM_PROGRAM "' | grep NEEDED");
+  ASSERT_NE(needed.find("libopencv_imgproc"), std::string::npos)
+      << "readelf printed no OpenCV library: is it installed?";
+  EXPECT_EQ(needed.find("libopencv_videoio"), std::string::npos);
+}
+#endif
+
 }  // namespace
 }  // namespace fovea

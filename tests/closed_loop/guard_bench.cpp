@@ -57,11 +57,13 @@ GuardBench::GuardBench(GuardSetup setup)
       clock_(world_,
              [this](std::int64_t now_ns) {
                HandOver(now_ns);
+               plans_.Act(now_ns);
                return true;
              }),
       stalling_(clock_, setup_.stall),
       recorder_(*this),
       motion_(*this),
+      plans_(setup_.servo),
       loop_(task_, faulty_arm_, stalling_, mailbox_, recorder_, probe_),
       p_before_(world_.truth().X_BE.translation()),
       R_before_(world_.truth().X_BE.linear()) {
@@ -70,6 +72,7 @@ GuardBench::GuardBench(GuardSetup setup)
   world_.OnStep([this](const sim::Truth& truth) { Watch(truth); });
   world_.OnExposure([this](const sim::Exposure& exposure) { See(exposure); });
   loop_.UseMotion(motion_);
+  loop_.UsePlanner(plans_.box());
 }
 
 void GuardBench::RunUntil(double t_s) {

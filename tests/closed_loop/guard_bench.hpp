@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "firmware/core/task/servo_loop.hpp"
+#include "firmware/planning/plan_desk.hpp"
 #include "sim/faults/faulty_arm.hpp"
 #include "sim/faults/stalling_clock.hpp"
 #include "sim/world/sim_arm.hpp"
@@ -114,6 +115,7 @@ class GuardBench {
   Motion motion_;
   NoProbe probe_;
   task::ServoTask task_;
+  planning::PlanDesk plans_;
   task::ServoLoop loop_;
   std::mt19937_64 random_{7};
   std::deque<std::pair<std::int64_t, hal::FeatureMeasurement>> under_way_;  // with the time of delivery

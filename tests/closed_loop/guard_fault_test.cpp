@@ -33,7 +33,7 @@ GuardSetup Moving() {
 
 // Checks that the fault comes `ticks` after `begin_ms`, that the arm stops, and that only a reset frees it.
 void ExpectStop(GuardBench& bench, Fault fault, int begin_ms, int ticks, int tolerance,
-                PushedBy by = PushedBy::kServo) {
+                PushedBy by = PushedBy::kServo, double faster = 0.05) {
   bench.RunUntil(2.5);
   const int at = bench.FirstFault();
   ASSERT_GE(at, 0) << "no fault came";
@@ -53,7 +53,7 @@ void ExpectStop(GuardBench& bench, Fault fault, int begin_ms, int ticks, int tol
                    std::to_string(bench.AtRest() - at) + " and brakes " + std::to_string(braked->ms - at) +
                    " ticks after the fault",
                bench);
-  EXPECT_LE(*fastest, 1.05 * speed + 0.05) << "the arm must not speed up";
+  EXPECT_LE(*fastest, 1.05 * speed + faster) << "the arm must not speed up";
   EXPECT_LT(bench.AtRest() - at, 700);
   EXPECT_EQ(bench.speeds().back(), 0.0);
   ExpectInsideLimits(bench, by);
@@ -90,10 +90,13 @@ void ProvokeNonFiniteSensor() {
   EXPECT_EQ(bench.ticks()[static_cast<std::size_t>(bench.FirstFault())].record.fault_joint, 3);
 }
 
+namespace {
+
 // The arm tracks a target when the detector reports NaN.
-void ProvokeNonFiniteFeature() {
+void SpoilAFeature(bool plans) {
   GuardSetup setup;
   setup.servo.auto_track = true;
+  setup.servo.law.plans = plans;
   setup.target = [](double) { return Eigen::Vector3d(0.56, 0.14, 0.04); };
   setup.spoil = [](hal::FeatureMeasurement& m) {
     if (m.stamp_ns >= (kStartMs - 40) * hal::kNsPerMs) {
@@ -101,12 +104,21 @@ void ProvokeNonFiniteFeature() {
     }
   };
   GuardBench bench(setup);
-  ExpectStop(bench, Fault::kNonFiniteFeature, kStartMs, 17, 17);  // with the next frame
+  // With the next frame. On a plan the arm is accelerating: it goes on until the torque has changed, at its
+  // rate.
+  ExpectStop(bench, Fault::kNonFiniteFeature, kStartMs, 17, 17, PushedBy::kServo, plans ? 0.20 : 0.05);
   const auto said = std::find_if(bench.ticks().begin(), bench.ticks().end(), [](const GuardTick& tick) {
     return tick.record.has_feature && std::isnan(tick.record.feature.s[1]);
   });
   ASSERT_NE(said, bench.ticks().end());
   EXPECT_EQ(said->ms, bench.FirstFault()) << "in the tick that receives NaN";
+}
+
+}  // namespace
+
+void ProvokeNonFiniteFeature() {
+  SpoilAFeature(false);
+  SpoilAFeature(true);
 }
 
 // The computer stalls for 30 ticks, the last command stays in force: a fault. One tick below the limit: none.
@@ -183,7 +195,7 @@ void ProvokeJointTooFast() {
 // The motor of joint 1 gives no torque. The contact check, which would notice this sooner, is off.
 void ProvokeNotFollowing() {
   GuardSetup setup = Moving();
-  setup.servo.safety.contact_torque_fraction = 1e3;
+  setup.servo.safety.contact_torque_fraction = setup.servo.safety.contact_sudden_fraction = 1e3;
   setup.world.torque_loss = {{0.1, kNever}, 0, 1.0};
   GuardBench bench(setup);
   ExpectStop(bench, Fault::kNotFollowing, 100, 143, 20);
@@ -196,14 +208,15 @@ void ProvokeNotFollowing() {
 }
 
 // Joint 2 of a standing arm is pushed with 1.5 times the allowed external torque. The observer's share of the
-// push is 1 - exp(-K t).
+// push is 1 - exp(-K t): it exceeds the limit of a sudden torque first.
 void ProvokeContact() {
   GuardSetup setup;
   const config::SafetyConfig& safety = setup.servo.safety;
   const double most = safety.contact_torque_fraction * Panda().model.joints[1].tau_max;
   setup.world.push.tau = 1.5 * most * Eigen::VectorXd::Unit(7, 1);
-  const double after_ms = 1e3 * std::log(3.0) / safety.contact_gain;
-  setup.world.push.window = {kStart, kStart + 1e-3 * (after_ms + 3.0)};
+  const double share = safety.contact_sudden_fraction / (1.5 * safety.contact_torque_fraction);
+  const double after_ms = -1e3 * std::log(1.0 - share) / safety.contact_gain;
+  setup.world.push.window = {kStart, kStart + 1e-3 * (after_ms + 1.0)};  // then the arm must not speed up
   GuardBench bench(setup);
   std::cout << "expected after " << after_ms << " ticks\n";
   ExpectStop(bench, Fault::kContact, kStartMs, static_cast<int>(std::lround(after_ms)), 3);
@@ -227,7 +240,7 @@ TEST(GuardFault, DeadMotorUnderLoadFaultsAndTheBrakesHold) {
                      " rad/s, fastest " + std::to_string(fastest) + " rad/s, at rest " +
                      std::to_string(bench.AtRest() - at) + " ticks after the fault",
                  bench);
-    EXPECT_LT(bench.AtRest() - at, 150);
+    EXPECT_LT(bench.AtRest() - kStartMs, joint == 1 ? 250 : 50) << "from the failure to rest";
     EXPECT_LT(fastest, speed + 2.4) << "the gain until the torque has faded and the brakes close";
     EXPECT_EQ(bench.speeds().back(), 0.0);
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware/core/task/servo_loop.hpp"
+#include "firmware/planning/plan_desk.hpp"
 #include "sim/scenario/run_description.hpp"
 #include "sim/scenario/world_config.hpp"
 #include "sim/verdict/config.hpp"
@@ -42,14 +43,17 @@ class TruthRun final : private hal::Recorder, private hal::TickProbe {
     });
     hal::FeatureMailbox mailbox;
     sim::SimArm arm(world_);
+    planning::PlanDesk plans(about_.servo);
     sim::LockstepClock clock(world_, [&](std::int64_t now_ns) {
       while (!under_way_.empty() && under_way_.front().stamp_ns + latency_ns <= now_ns) {
         mailbox.Put(under_way_.front());
         under_way_.pop_front();
       }
+      plans.Act(now_ns);
       return true;
     });
     task::ServoLoop loop(task_, arm, clock, mailbox, *this, *this);
+    loop.UsePlanner(plans.box());
     const hal::Status status = loop.Run(static_cast<std::int64_t>(about_.scenario.run.duration_s * 1e9));
     clock.RethrowFailure();
     if (!status.ok()) {

@@ -75,7 +75,7 @@ struct SimCameraFixture {
             {}};
   }
   sim::SimCamera driver{{.width_px = 64, .height_px = 48, .exposure_ns = 1000, .queue = 16},
-                        sim::Sensor(2.0, 1),
+                        sim::Sensor({.read_sigma = 2.0}, 1),
                         {Painter(), Painter()}};
   std::uint64_t next = 0;
   hal::Camera& camera() { return driver; }

@@ -43,8 +43,8 @@ struct Everything {
     const model::Load carried = config::MakeLoad(load);
     Require(std::isfinite(carried.mass) && carried.mass >= 0.0, "a load's mass is finite and not negative");
     const model::Pose X_EC = config::MakeMount(camera);
-    const config::ServoConfig made = config::MakeServoConfig(servo, {test::Panda().name, test::Panda().model},
-                                                             X_EC, config::MakeIntrinsics(camera), target);
+    const config::ServoConfig made = config::MakeServoConfig(
+        servo, {test::Panda().name, test::Panda().model, {}}, X_EC, config::MakeIntrinsics(camera), target);
     task::ServoTask task;
     Require(task.Init(made).ok(), "the servo accepts every configuration that was made");
   }

@@ -35,6 +35,25 @@ TEST(EventsTest, EveryFaultHasItsOwnWords) { ExpectOwnWords<Fault>(kNumFaults); 
 
 TEST(EventsTest, EveryIntakeHasItsOwnWords) { ExpectOwnWords<Intake>(kNumIntakes); }
 
+TEST(EventsTest, EveryPlanEventHasItsOwnWords) { ExpectOwnWords<PlanEvent>(kNumPlanEvents); }
+
+TEST(EventsTest, EveryWayAndPlanEventHasItsOwnName) {
+  std::set<std::string> names{Name(static_cast<Way>(kNumWays))};
+  for (int i = 0; i < kNumWays; ++i) {
+    EXPECT_TRUE(names.insert(Name(static_cast<Way>(i))).second) << i;
+  }
+  EXPECT_STREQ(Name(Way::kLaw), "law");
+  EXPECT_STREQ(Name(Way::kAwaitPlan), "await_plan");
+  EXPECT_STREQ(Name(Way::kPlan), "plan");
+  names = {Name(static_cast<PlanEvent>(kNumPlanEvents))};
+  for (int i = 0; i < kNumPlanEvents; ++i) {
+    EXPECT_TRUE(names.insert(Name(static_cast<PlanEvent>(i))).second) << i;
+  }
+  EXPECT_STREQ(Name(PlanEvent::kAsked), "asked");
+  EXPECT_STREQ(Name(PlanEvent::kTargetMoved), "target_moved");
+  EXPECT_STREQ(Name(PlanEvent::kDone), "done");
+}
+
 TEST(EventsTest, WordsReadAsPartOfASentence) {
   EXPECT_STREQ(Words(HoldReason::kTargetLost), "the target was lost");
   EXPECT_STREQ(Words(Fault::kNonFiniteSensor), "a sensor value was not finite");

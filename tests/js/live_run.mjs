@@ -69,22 +69,38 @@ const runTime = (page) => page.evaluate(() => parseFloat(document.querySelector(
 const untilTime = (page, t) =>
   page.waitForFunction((end) => parseFloat(document.querySelector(".when").textContent) >= end, t);
 
-// Drags the target with the mouse, sideways in the window, until it is `metres` away.
+// The page scrolls smoothly to what is clicked: waits until the bench stands.
+async function untilBenchStands(page) {
+  const top = () => page.evaluate(() => document.querySelector("#bench canvas").getBoundingClientRect().top);
+  for (let last = NaN, now = await top(); now !== last; now = await top()) {
+    last = now;
+    await page.waitForTimeout(200);
+  }
+}
+
+// Drags the target with the mouse, sideways in the window, until it is `metres` away. Each step of the mouse waits for
+// the page's own answer, so that a slow computer does not let the mouse run ahead.
 async function dragTarget(page, sent, metres, direction) {
   await page.getByRole("button", { name: "Move target" }).click();
+  await page.locator("#bench canvas").scrollIntoViewIfNeeded();
+  await untilBenchStands(page);
   const from = sent.length;
+  const poses = () =>
+    texts(sent.slice(from))
+      .filter((text) => /"p_BO"/.test(text))
+      .map((text) => JSON.parse(text).p_BO);
   const at = await targetAt(page);
   await page.mouse.move(at.x, at.y);
   await page.waitForTimeout(150);
   await page.mouse.down();
   let way = 0;
   for (let i = 1; i <= 200 && way < metres; i++) {
+    const before = poses().length;
     await page.mouse.move(at.x + direction * 10 * i, at.y);
-    await page.waitForTimeout(20);
-    const poses = texts(sent.slice(from))
-      .filter((text) => /"p_BO"/.test(text))
-      .map((text) => JSON.parse(text).p_BO);
-    if (poses.length) way = Math.hypot(...poses.at(-1).map((x, k) => x - poses[0][k]));
+    for (const end = performance.now() + 500; poses().length === before && performance.now() < end; )
+      await page.waitForTimeout(20);
+    const drawn = poses();
+    if (drawn.length) way = Math.hypot(...drawn.at(-1).map((x, k) => x - drawn[0][k]));
   }
   await page.mouse.up();
   assert.ok(way >= metres && way < metres + 0.05, `the mouse moved the target by ${way} m`);
@@ -262,7 +278,8 @@ async function checkFaults(context) {
     for (const state of [".active", ":not(.active)"]) {
       await row.locator("button").first().click();
       await page.locator(`#faults li[data-fault="${name}"]${state}`).waitFor();
-      await page.waitForTimeout(60);
+      // In the run's own time, which a slow computer stretches: at least two pictures are made under each fault.
+      await untilTime(page, (await runTime(page)) + SHOWN_S + 0.08);
     }
   }
   await page.screenshot({ path: path.join(folder, "faults.png") });

@@ -38,7 +38,7 @@ async function changes(place, what, act) {
 const asked = process.argv[4] ?? "eye";
 const hardware = asked === "hardware";
 const kind = ["hardware", "faults"].includes(asked) ? "eye" : asked;
-const own = { eye: ["eye", "error", "components", "features"], theory: ["theory"], circle: ["way"] }[kind];
+const own = { eye: ["eye", "error", "components", "features", "beliefs"], theory: ["theory"], circle: ["way"] }[kind];
 const parts = ["verdict", ...own, "path", "velocity", "joints", "timeline", "free", "ticks", "config", "about"];
 await withBrowser(async (context) => {
   for (const [width, height] of [

@@ -164,10 +164,16 @@ for (const { time, data: t } of of("/servo/tick")) {
   out.f64s(t.p_BO, 3);
   out.f64s(t.q_BO, 4);
   out.f64s(t.v_BO, 3);
+  out.f64(t.stamp_late_s);
+  out.f64(t.stamp_late_sigma_s);
   out.i32(t.s.length);
   for (const values of [t.s, t.s_star, t.e]) out.f64s(values, kMostFeature);
   out.f64s(t.V_BC_C_cmd, 6);
-  for (const values of [t.q_cmd, t.dq_cmd, t.ddq_cmd]) out.f64s(values, kMostJoints);
+  out.u8(t.way.kind);
+  out.u8(t.way.event);
+  for (const number of [t.way.plans_asked, t.way.tries, t.way.outcome]) out.i32(number);
+  out.f64s(t.way.normal_B, 3);
+  for (const values of [t.q_cmd, t.dq_cmd, t.ddq_cmd, t.tau_ext]) out.f64s(values, kMostJoints);
   out.u64(t.command.state_sequence);
   out.i32(t.command.tau.length);
   out.f64s(t.command.tau, kMostJoints);
@@ -222,7 +228,10 @@ for (const { data } of of("/tf")) {
   }
 }
 const words = of("/servo/events").map(({ data }) => data.message);
-assert.equal(words.length, summary.modes.length, words.join("; "));
+const ofModes = words.filter((text) => /^(mode|fault): /.test(text));
+assert.equal(ofModes.length, summary.modes.length, words.join("; "));
+const ofPlans = of("/servo/tick").filter(({ data }) => data.way.event).length;
+assert.equal(words.length, ofModes.length + ofPlans, words.join("; "));
 assert.equal(of("/setup").length, 1);
 const counted = of("/servo/tick_times")[0].data.counts.reduce((sum, count) => sum + Number(count), 0);
 assert.equal(counted, summary.ticks);

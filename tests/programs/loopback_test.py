@@ -75,6 +75,19 @@ class Loopback(TwoPrograms):
                                       text=True)
                 self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
+    def test_a_log_is_compared_with_the_simulated_arm(self):
+        """The robot carries 0.2 kg of which nobody knows. The client's log tells it, as a real robot's would."""
+        with tempfile.TemporaryDirectory() as out:
+            port = self.serve("--pace", "lockstep", "--set", "truth.arm.load_mass=0.45")
+            self.hardware(port, "--seconds", "2", "--enable", "--out", out, *two_programs.PATIENT)
+            done = subprocess.run([pathlib.Path(two_programs.HW).parent / "fovea", "compare", out, "--json"], timeout=60,
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            found = json.loads(done.stdout)
+            print(f"\nload {found['load_mass']:+.3f} kg")
+            self.assertAlmostEqual(found["load_mass"], 0.2, delta=0.01)
+            self.assertGreaterEqual(found["joints"][1]["shares"]["load"], 0.9)
+
     def test_serve_leaves_summary_json_in_its_out_folder(self):
         with tempfile.TemporaryDirectory() as temp:
             out = pathlib.Path(temp) / "served"
@@ -264,7 +277,7 @@ class Loopback(TwoPrograms):
         rows = {row["what"]: row for row in json.loads(done.stdout)}
         self.assertEqual(set(rows), {"kernel", "processor speed", "privileges", "wake-up", "limits", "robot",
                                      "robot's mode", "states", "joint ranges", "kinematics", "gravity", "calibration",
-                                     "mounting", "camera"})
+                                     "mounting", "camera", "beliefs"})
         self.assertEqual(rows["camera"]["verdict"], "fail")  # there is no camera
         for what in ("robot", "robot's mode", "limits", "joint ranges", "kinematics", "gravity"):
             self.assertEqual(rows[what]["verdict"], "pass", rows[what])

@@ -143,8 +143,9 @@ TEST_F(TickHeapTest, NoHeapCallInCommandedMotionsAndWithAnyLaw) {
   config.guard.obstacles.boxes[0] = {model::Vec3(0.9, 0.9, 0.0), model::Vec3(1.0, 1.0, 1.0)};
   config.guard.singularity_min = 0.15;  // near enough that each tick checks it
   config.motion_law.integral = 0.5;
-  config.safety.contact_torque_fraction = 1e3;  // the arm ignores its commands
-  config.safety.non_finite_ticks = 10'000;      // and its readings never change
+  config.safety.contact_torque_fraction = config.safety.contact_sudden_fraction =
+      1e3;                                  // the arm ignores its commands
+  config.safety.non_finite_ticks = 10'000;  // and its readings never change
   config.safety.following_error = 1.0;
   config.motion_law.friction_compensation = 1.0;
   config.motion_law.k_p.fill(50.0);

@@ -12,6 +12,7 @@
 #include "firmware/core/features/square.hpp"
 #include "firmware/core/features/triangle.hpp"
 #include "firmware/core/task/servo_task.hpp"
+#include "firmware/core/trajectory/smooth_step.hpp"
 #include "tests/support/ideal_arm.hpp"
 #include "tests/support/panda.hpp"
 #include "tests/support/truth_eye.hpp"
@@ -39,10 +40,10 @@ inline config::ServoConfig ConfigOf(hal::FeatureKind target, features::FeatureFo
   return config;
 }
 
-// `change(tick, inputs)` may change each tick's inputs.
-template <class Change>
+// `change(tick, inputs)` may change each tick's inputs; `look(record)` sees what came of them.
+template <class Change, class Look>
 ServoRun RunOnIdealArm(const std::string& name, const config::ServoConfig& config, int ticks, bool sees,
-                       const Change& change) {
+                       const Change& change, const Look& look, double far = 1.0) {
   constexpr int kFrameTicks = 33;
   constexpr std::int64_t kLatencyNs = 40 * hal::kNsPerMs;
   ServoRun run{name, config, {}};
@@ -53,7 +54,7 @@ ServoRun RunOnIdealArm(const std::string& name, const config::ServoConfig& confi
       poses.X_BE * config.X_EC * model::Pose{config.feature.R_CO_star, config.feature.p_CO_C_star};
   const double off[] = {-0.30, -0.10, 0.05, -0.12, 0.10, 0.12, 0.25};
   for (int i = 0; i < 7; ++i) {
-    q[i] += off[i];
+    q[i] += far * off[i];
   }
   IdealArm arm(config.arm, q);
   TruthEye eye(config.feature, 554.256, 0.05, 71);
@@ -77,11 +78,18 @@ ServoRun RunOnIdealArm(const std::string& name, const config::ServoConfig& confi
     }
     change(k, inputs);
     task.Step(inputs, outputs);
+    look(outputs.record);
     arm.Apply(outputs.command());
     arm.Step();
     run.inputs.push_back(inputs);
   }
   return run;
+}
+
+template <class Change>
+ServoRun RunOnIdealArm(const std::string& name, const config::ServoConfig& config, int ticks, bool sees,
+                       const Change& change) {
+  return RunOnIdealArm(name, config, ticks, sees, change, [](const hal::TickRecord&) {});
 }
 
 inline ServoRun TrackingRun(const std::string& name, hal::FeatureKind target, features::FeatureForm form,
@@ -155,6 +163,44 @@ inline ServoRun TunedRun(int ticks) {
                        });
 }
 
+// A ball to whose place plans lead: the first one is interrupted by a Hold request, the second one is for
+// another target.
+inline ServoRun PlannedRun(int ticks) {
+  trajectory::PlanSender sender;
+  const config::ServoConfig config = ConfigOf(hal::FeatureKind::kSphere, features::FeatureForm::kSphere);
+  return RunOnIdealArm(
+      "planned", config, ticks, true,
+      [&sender](int k, task::ServoInputs& inputs) {
+        inputs.plan = sender.Next();
+        inputs.request = k == 1000   ? task::Request::kHold
+                         : k == 1300 ? task::Request::kTrack
+                                     : task::Request::kNone;
+      },
+      [&](const hal::TickRecord& record) {
+        if (record.way.event != hal::PlanEvent::kAsked) {
+          return;
+        }
+        trajectory::Plan plan;
+        plan.outcome = trajectory::PlanOutcome::kFound;
+        plan.num_joints = config.arm.num_joints;
+        plan.num_points = 60;
+        plan.period_s = 0.05;
+        plan.stamp_ns = record.stamp_ns;
+        plan.p_BO = record.p_BO;
+        plan.p_BO[0] += record.way.plans_asked == 2 ? 0.5 : 0.0;
+        const model::VecN q_asked = model::ToVector(record.q_cmd, plan.num_joints);
+        for (int i = 0; i < plan.num_points; ++i) {
+          const double share = trajectory::SmoothStep((i - 2.0) / (plan.num_points - 5.0));
+          for (int j = 0; j < plan.num_joints; ++j) {
+            plan.points[static_cast<std::size_t>(i * plan.num_joints + j)] =
+                q_asked[j] + share * (Ready()[j] - q_asked[j]);
+          }
+        }
+        sender.Begin(plan);
+      },
+      /*far=*/2.5);  // so far that a plan is asked for
+}
+
 // All runs. Each lasts 2600 ticks, past the keyframes of ticks 1000 and 2000.
 inline std::vector<ServoRun> AllServoRuns() {
   using features::FeatureForm;
@@ -167,6 +213,7 @@ inline std::vector<ServoRun> AllServoRuns() {
   runs.push_back(CommandedRun(2600));
   runs.push_back(TroubledRun(2600));
   runs.push_back(TunedRun(2600));
+  runs.push_back(PlannedRun(2600));
   return runs;
 }
 

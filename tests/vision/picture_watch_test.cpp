@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <opencv2/imgproc.hpp>
 #include <random>
@@ -78,6 +80,49 @@ TEST(PictureWatch, SlowDriftIsDetectedWithinTwoPixels) {
   }
   std::cout << "counted as the same over at most " << longest_px << " px\n";
   EXPECT_LT(longest_px, 2.0);
+}
+
+// A dark square on a plain bench, its edges along the rows and columns, softened over a pixel.
+cv::Mat SquareOnPlain(double left, double top, double right, double bottom) {
+  cv::Mat gray(480, 640, CV_64FC1);
+  const auto within = [](int at, double from, double to) {
+    return std::clamp(at + 0.5 - from, 0.0, 1.0) * std::clamp(to - at + 0.5, 0.0, 1.0);
+  };
+  for (int y = 0; y < gray.rows; ++y) {
+    for (int x = 0; x < gray.cols; ++x) {
+      gray.at<double>(y, x) = 170.0 - 140.0 * within(x, left, right) * within(y, top, bottom);
+    }
+  }
+  return gray;
+}
+
+// Wherever the edges of an upright square are, some patches see them move: none fall between all patches.
+TEST(PictureWatch, UprightSquareThatMovesIsAChange) {
+  std::mt19937_64 engine(5);
+  std::uniform_real_distribution<double> size(40.0, 300.0);
+  std::uniform_real_distribution<double> share(0.05, 0.95);
+  for (int k = 0; k < 16; ++k) {
+    const double side = k == 0 ? 138.6 : size(engine);
+    const double left = k == 0 ? 250.7 : share(engine) * (640.0 - side);
+    const double top = k == 0 ? 170.7 : share(engine) * (480.0 - side);
+    const double sigma = k % 3 == 0 ? 0.0 : 2.0;
+    const cv::Mat here = SquareOnPlain(left, top, left + side, top + side);
+    const cv::Mat first = Photo(here, sigma, engine);
+    const cv::Mat second = Photo(here, sigma, engine);
+    for (const double px : {1.0, 2.0}) {
+      for (const bool down : {false, true}) {
+        PictureWatch watch;
+        const double x = left + (down ? 0.0 : px);
+        const double y = top + (down ? px : 0.0);
+        ASSERT_EQ(watch.Look(first, 0), 0);
+        ASSERT_EQ(watch.Look(second, kFrameNs), kFrameNs) << "it stands still";
+        const cv::Mat moved = SquareOnPlain(x, y, x + side, y + side);
+        EXPECT_EQ(watch.Look(Photo(moved, sigma, engine), 2 * kFrameNs), 0)
+            << side << " px at (" << left << ", " << top << "), moved " << px << " px "
+            << (down ? "down" : "aside") << ", noise " << sigma;
+      }
+    }
+  }
 }
 
 TEST(PictureWatch, HandlesGrayPicturesAndChangesOfSize) {

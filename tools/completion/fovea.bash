@@ -23,7 +23,7 @@ _fovea_help() {
 }
 
 # The keys that --set of "$@" accepts. Those of fovea-hw depend on its configuration, the first word after the program. A
-# replay accepts the keys of the servo.
+# replay accepts the keys of the servo, a comparison those of the arm.
 _fovea_keys() {
   local folder=$1 sections='[a-z]'
   local -a ask=("${folder}fovea-sim" keys)
@@ -34,8 +34,13 @@ _fovea_keys() {
       ask=("${folder}fovea-hw" loopback --keys)
       sections='\(servo\|safety\)\.'
       ;;
+    'fovea compare') sections='arm\.' ;;
   esac
   "${ask[@]}" 2> /dev/null | sed -n "s/^\($sections[^ ]*\) = .*/\1=/p"
+}
+
+_fovea_scenarios() {
+  "${1}fovea-sim" list 2> /dev/null | awk '{ print $1 }'
 }
 
 _fovea() {
@@ -54,6 +59,12 @@ _fovea() {
   if [ "$previous" = --set ]; then
     mapfile -t found < <(compgen -W "$(_fovea_keys "$folder" "${call[@]}")" -- "$word")
     compopt -o nospace 2> /dev/null
+  elif [[ "${call[*]##*/} $previous" == 'fovea compare --scenario' ]]; then
+    mapfile -t found < <(
+      compgen -W "$(_fovea_scenarios "$folder")" -- "$word"
+      compgen -f -- "$word"
+    )
+    compopt -o filenames 2> /dev/null
   elif [[ $word == -* ]]; then
     mapfile -t found < <(compgen -W "$(_fovea_help options "${call[@]}")" -- "$word")
   elif [[ $previous == --* ]] && choices=$(_fovea_help "$previous" "${call[@]}") && [ -n "$choices" ]; then
@@ -62,7 +73,7 @@ _fovea() {
     local names
     names=$(_fovea_help commands "${call[@]}")
     case "${call[*]##*/}" in
-      'fovea-sim run' | 'fovea-sim serve' | 'fovea-sim pictures') names=$("${folder}fovea-sim" list 2> /dev/null | awk '{ print $1 }') ;;
+      'fovea-sim run' | 'fovea-sim serve' | 'fovea-sim pictures') names=$(_fovea_scenarios "$folder") ;;
       fovea-hw) names='loopback panda' ;;
     esac
     mapfile -t found < <(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program fovea: reports and replays of recorded runs, atlases of simulated runs, gains, arm models,
-// features, detection and calibration.
+// The program fovea: reports, replays and comparisons of recorded runs, atlases of simulated runs, gains, arm
+// models, features, detection and calibration.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +15,7 @@
 #include "firmware/host/report/report.hpp"
 #include "tools/fovea/atlas/atlas.hpp"
 #include "tools/fovea/calibrate/calibrate.hpp"
+#include "tools/fovea/compare/compare.hpp"
 #include "tools/fovea/detect/detect.hpp"
 #include "tools/fovea/features/features.hpp"
 #include "tools/fovea/gains/gains.hpp"
@@ -75,6 +76,7 @@ int main(int argc, char** argv) {
       "  fovea report out/ball/log.mcap --out ball.html\n"
       "  fovea report out/slow out/fast --out comparison.html\n"
       "  fovea replay out/ball\n"
+      "  fovea compare out/ball\n"
       "  fovea gains --mass 16 --damping 16 --stiffness 4 --closed-loop-stiffness 16\n"
       "  fovea model panda\n"
       "  fovea features --target triangle --pose 0,0,0.4,1,0,0,0\n"
@@ -94,6 +96,8 @@ int main(int argc, char** argv) {
 
   ReplayArguments replay_arguments;
   const CLI::App* replay = AddReplay(app, replay_arguments);
+  CompareArguments compare_arguments;
+  const CLI::App* compare = AddCompare(app, compare_arguments);
   GainsArguments gains_arguments;
   const CLI::App* gains = AddGains(app, gains_arguments);
   DetectArguments detect_arguments;
@@ -117,6 +121,9 @@ int main(int argc, char** argv) {
     }
     if (replay->parsed()) {
       return Replay(replay_arguments);
+    }
+    if (compare != nullptr && compare->parsed()) {
+      return Compare(compare_arguments);
     }
     if (atlas->parsed()) {
       return Atlas(atlas_arguments);

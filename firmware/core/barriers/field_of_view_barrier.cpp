@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/barriers/field_of_view_barrier.hpp"
 
+#include <algorithm>
+
 #include "firmware/core/features/point.hpp"
 
 namespace fovea::barriers {
@@ -51,6 +53,16 @@ PictureBarriers FieldOfViewBarriers(const config::GuardConfig& guard, const View
     barriers[k].gradient = -target.J_C.transpose().lazyProduct(along);
     barriers[k].drift = -side.sign * point.dxy_dt_target[side.axis];
     barriers[k].rate = guard.barrier_rate;
+  }
+  return barriers;
+}
+
+PictureBarriers FieldOfViewBarriersOnPlan(const config::GuardConfig& guard,
+                                          const ViewedTarget& target) noexcept {
+  constexpr double kRate = 8.0;  // [1/s]
+  PictureBarriers barriers = FieldOfViewBarriers(guard, target);
+  for (Barrier& side : barriers) {
+    side.rate = std::max(side.rate, kRate);
   }
   return barriers;
 }

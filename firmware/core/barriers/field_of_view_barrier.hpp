@@ -29,4 +29,9 @@ using PictureBarriers = std::array<Barrier, 4>;
 [[nodiscard]] PictureBarriers FieldOfViewBarriers(const config::GuardConfig& guard,
                                                   const ViewedTarget& target) noexcept;
 
+// The same for a motion along a plan, which is known to turn before the edge: it may come near it faster,
+// with a rate of 8 1/s or more, from which the arm can still stop.
+[[nodiscard]] PictureBarriers FieldOfViewBarriersOnPlan(const config::GuardConfig& guard,
+                                                        const ViewedTarget& target) noexcept;
+
 }  // namespace fovea::barriers

@@ -28,6 +28,7 @@ struct LawConfig {
   hal::JointArray q_posture{};
   double unreachable_s = 1.0;
   double unreachable_progress = 0.05;
+  bool plans = true;
 };
 
 template <class Visitor, Struct<LawConfig> Config>
@@ -69,6 +70,9 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Number({"servo.unreachable_progress", "",
             "the arm counts as blocked if limits leave less than this share of the wanted motion"},
            c.unreachable_progress, 0.0, 1.0);
+  v.Flag({"servo.plans", "",
+          "far from its goal, and where limits stop the law, the arm follows a plan; false: the law alone"},
+         c.plans);
 }
 
 }  // namespace fovea::config

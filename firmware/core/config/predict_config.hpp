@@ -7,6 +7,8 @@
 
 namespace fovea::config {
 
+inline constexpr int kStampOffsetKey = 13;  // number of servo.stamp_offset, for servo.learn
+
 struct Box {
   model::Vec3 low = model::Vec3::Zero();   // [m]
   model::Vec3 high = model::Vec3::Zero();  // [m]
@@ -26,11 +28,15 @@ struct PredictConfig {
   double target_turn_max = 3.0;
   Box target_region{model::Vec3::Constant(-3.0), model::Vec3::Constant(3.0)};
   double stuck_shift = 0.0036;  // in the normalised image
-  double stamp_sigma = 0.004;
+  double stamp_sigma = 0.01;
   double mount_shift_sigma = 0.005;
   double mount_turn_sigma = 0.02;
   double scale_sigma = 0.02;
   double way_in_vain = 0.5;
+  // Rolling shutter: row y of the normalised image is exposed row_time (y - row_y) after the stamp.
+  double row_time = 0.0;      // [s]; 0: all rows at once
+  double row_y = 0.0;         // of the stamp's row
+  double stamp_offset = 0.0;  // [s]
 };
 
 // Coast comes before Hold. Init checks it, and so does each change in motion.
@@ -75,8 +81,11 @@ void Fields(Visitor& v, Config& c) noexcept {
              "a picture that stays the same within its noise is rejected once the hand's motion must have "
              "shifted the scene by more than this"},
             c.stuck_shift, 1e-6, 1e6);
-  v.Number({"servo.stamp_sigma", "s", "standard deviation of the measurements' stamps"}, c.stamp_sigma, 0.0,
-           1.0);
+  v.Number(
+      {"servo.stamp_sigma", "s",
+       "standard deviation of camera.latency_ms: the servo finds an error of up to three of them while the "
+       "camera moves; 0: the stamps are right"},
+      c.stamp_sigma, 0.0, 0.1);
   v.Number({"servo.mount_shift_sigma", "m", "standard deviation of camera.mount_xyz"}, c.mount_shift_sigma,
            0.0, 1.0);
   v.Number({"servo.mount_turn_sigma", "rad", "standard deviation of the mount's orientation"},
@@ -87,6 +96,14 @@ void Fields(Visitor& v, Config& c) noexcept {
             "Hold if the camera moves this far and the error does not decrease; Track must then be requested "
             "again"},
            c.way_in_vain, 0.001, 1000.0);
+  v.Derived({"camera.row_time_us"}, c.row_time, 0.0, 1e3);
+  v.Derived({"camera.row_time_us"}, c.row_y, -1e6, 1e6);
+  v.Number(
+      {"servo.stamp_offset", "s",
+       "the pictures are this much older than camera.latency_ms says: what the servo expects before it has "
+       "seen a target, and the middle of the errors that it believes (servo.stamp_sigma)",
+       kInMotion<kStampOffsetKey>},
+      c.stamp_offset, -0.05, 0.05);
 }
 
 }  // namespace fovea::config

@@ -17,6 +17,7 @@ struct SafetyConfig {
   double setpoint_jump = 1e-3;
   double following_error = 0.15;
   double contact_torque_fraction = 0.2;
+  double contact_sudden_fraction = 0.1;
   double contact_gain = 60.0;
   double fault_damping = 10.0;
   double brake_velocity = 0.02;
@@ -86,6 +87,10 @@ void Fields(Visitor& v, Config& c) noexcept {
        "a standing arm compensates three quarters of an unknown load, with at most this share of a joint's "
        "torque; not with the spring laws (pd, joint_impedance) or with `servo.integral`; 0: no compensation"},
       c.carried_torque_fraction, 0.0, 1.0);
+  v.Number({"safety.contact_sudden_fraction", "",
+            "Fault if the external torque changes by more than this share of a joint's torque within about "
+            "0.2 s"},
+           c.contact_sudden_fraction, 0.001, 1e6);
 }
 
 }  // namespace fovea::config

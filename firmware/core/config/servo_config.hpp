@@ -6,6 +6,7 @@
 #include "firmware/core/config/feature_fields.hpp"
 #include "firmware/core/config/guard_config.hpp"
 #include "firmware/core/config/law_config.hpp"
+#include "firmware/core/config/load_config.hpp"
 #include "firmware/core/config/motion_law_config.hpp"
 #include "firmware/core/config/move_config.hpp"
 #include "firmware/core/config/predict_config.hpp"
@@ -26,6 +27,7 @@ struct ServoConfig {
   MotionLawConfig motion_law;
   GuardConfig guard;
   SafetyConfig safety;
+  LoadConfig load;
 };
 
 inline constexpr Field kAutoTrackField{"servo.auto_track", "", "go to Track as soon as the target is known"};
@@ -46,6 +48,7 @@ void EachSection(Config& c, const Visit& visit) noexcept {
   visit("motion_law", [&c](auto& v) { Fields(v, c.motion_law); });
   visit("guard", [&c](auto& v) { Fields(v, c.guard); });
   visit("safety", [&c](auto& v) { Fields(v, c.safety); });
+  visit("load", [&c](auto& v) { Fields(v, c.load); });
 }
 
 template <class Visitor, Struct<ServoConfig> Config>

@@ -4,7 +4,9 @@
 // Only keys above the guard are among them: gains of the visual law and of the target's filter, and the ages
 // of a measurement. The guard proves for each reference that the arm can stop, whatever motion the law
 // wishes, so no value of these keys weakens the proof. The filter's state stays valid, because these keys are
-// no part of it. All other keys stay fixed:
+// no part of it. One more changes: servo.load_offset, below the guard. It is bounded, its ramp keeps the
+// torque smooth, and the better the model knows the load, the better the arm follows the reference that is
+// proved. All other keys stay fixed:
 //   - limits ([safety]): the proof holds only while the limits last. After a limit shrinks, the present
 //   motion
 //     may be outside it, and no stop is proved.

@@ -46,7 +46,9 @@ void Gather(const config::ServoConfig& config, const MotionScene& scene, barrier
     }
   }
   if (scene.target != nullptr) {
-    for (const barriers::Barrier& side : barriers::FieldOfViewBarriers(config.guard, *scene.target)) {
+    for (const barriers::Barrier& side :
+         scene.by_joints ? barriers::FieldOfViewBarriersOnPlan(config.guard, *scene.target)
+                         : barriers::FieldOfViewBarriers(config.guard, *scene.target)) {
       limits.Add(side);
     }
     const model::Pose X_BC = scene.poses.X_BE * config.X_EC;

@@ -3,174 +3,283 @@
 
 #include <algorithm>
 
-#include "firmware/core/control/way_in_view.hpp"
+#include "firmware/core/features/equal_turn.hpp"
+#include "firmware/core/model/cholesky.hpp"
+#include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/model/rotation.hpp"
+#include "firmware/core/trajectory/plan_request.hpp"
+#include "firmware/core/trajectory/smooth_step.hpp"
 
 namespace fovea::control {
 namespace {
 
-constexpr int kStepsInATick = 4;  // of the search for a posture
-constexpr int kTicksToAStep = 4;  // a posture found follows the target more slowly
+using hal::PlanEvent;
+using hal::Way;
+using trajectory::Plan;
 
-// When a joint motion takes over.
-constexpr double kLookS = 0.2;      // in Track, before the target's pose is trusted enough for a joint motion
-constexpr double kIdleS = 0.4;      // without progress: the law is stalled
-constexpr double kNearer = 0.8;     // progress: the distance falls to this share
-constexpr double kIdleSureS = 1.0;  // kIdleS and kNearer for targets that the law usually reaches
-constexpr double kNearerSure = 0.5;
-constexpr double kThereM = 0.0015;  // the law alone reaches a goal this near
-constexpr double kThereRad = 0.006;
+// When a plan is asked for.
 constexpr double kMetrePerRad = 0.1;
-constexpr double kBegins = 0.04;  // if a joint is further from the posture than this [rad]
+constexpr double kFar = 0.12;           // from here on a plan is worth a stop [m]
+constexpr double kNear = 0.03;          // after a goal that was this near, a far one is a new one
+constexpr double kMovingTarget = 0.05;  // a faster target is followed by the law [m/s]
+constexpr double kIdleS = 0.4;          // without progress: the law is stalled
+constexpr double kNearer = 0.8;         // progress: the distance falls to this share
+constexpr double kThereM = 0.0015;      // the law alone reaches a goal this near
+constexpr double kThereRad = 0.006;
+constexpr int kTriesOfSure = 2;     // count more if the planner knows of no posture
+constexpr int kMostTries = 6;       // for the same goal
+constexpr double kWaitS = 1.5;      // for a plan
+constexpr double kWaitLateS = 0.1;  // if the last one did not come in time
 
-// Speed and end of a joint motion.
-constexpr double kGain = 3.0;       // [1/s]
-constexpr double kSpeed = 1.8;      // of the fastest joint [rad/s]
-constexpr double kEnds = 0.015;     // when no joint is further from the posture [rad]
-constexpr double kAtDetour = 0.15;  // a waypoint this near counts as passed [rad]
-constexpr double kHeldShare = 0.1;  // limits block the motion if they leave less than this share of it
-constexpr double kHeldS = 0.4;      // after this time the search looks for another posture
-
-constexpr std::int64_t kSeekNs = 1'500'000'000;  // maximum time that the arm waits for a path
+// When a plan is followed.
+constexpr double kSameStart = 1e-9;   // [rad]
+constexpr double kElsewhereM = 0.08;  // a target this far from where it was planned for
+constexpr double kElsewhereRad = 0.25;
+constexpr double kSamePlaceM = 0.2;    // as near as this, the plan's end is a posture to keep
+constexpr double kShiftMost = 0.3;     // of the plan's end [rad]
+constexpr double kShiftS = 0.05;       // time constant with which the end follows the estimate
+constexpr double kDamping = 1e-4;      // of J J^T [m^2, rad^2]
+constexpr double kTrustS = 0.1;        // until a sound eye is trusted, and until one that sees nothing is not
+constexpr double kTrustAnywayS = 1.5;  // until one is that had nothing to show
+constexpr double kFirstPace = 0.5;     // without trust
+constexpr double kGain = 10.0;         // back to the plan [1/s]
+constexpr double kBehind = 0.02;       // the plan slows down if the reference is so far off it [rad]
+constexpr double kHeldS = 0.4;
 
 bool IsLonger(std::int64_t ns, double s) noexcept {
   return static_cast<double>(ns) > s * static_cast<double>(hal::kNsPerSecond);
 }
 
-void NoteIdle(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
-  const int turns = features::TraitsOf(config.feature.target).turns;
-  const model::Mat3 R_CO = sight.X_CO.R * EqualTurn(way.goal.turn, turns);
-  const bool turns_freely = !config.feature.SeesOrientation();
-  const double turn =
-      turns_freely ? 0.0 : model::RotationVector(config.feature.R_CO_star.transpose() * R_CO).norm();
-  const double shift = (sight.X_CO.p - config.feature.p_CO_C_star).norm();
-  const double off = shift + kMetrePerRad * turn;
-  if (turn < kThereRad && shift < kThereM) {
+struct Off {
+  double shift;  // [m]
+  double turn;   // [rad]; 0 if the feature leaves it free
+  [[nodiscard]] double Both() const noexcept { return shift + kMetrePerRad * turn; }
+};
+
+Off OffGoal(const config::ServoConfig& config, const WaySight& sight, int turn) noexcept {
+  Off off{(sight.X_CO.p - config.feature.p_CO_C_star).norm(), 0.0};
+  if (config.feature.SeesOrientation()) {
+    const int turns = features::TraitsOf(config.feature.target).turns;
+    const model::Mat3 R_CO = sight.X_CO.R * features::EqualTurn(turn, turns);
+    off.turn = model::RotationVector(config.feature.R_CO_star.transpose() * R_CO).norm();
+  }
+  return off;
+}
+
+bool IsMoving(const config::ServoConfig& config, const WaySight& sight) noexcept {
+  const double turn = config.feature.SeesOrientation() ? kMetrePerRad * sight.w_BO.norm() : 0.0;
+  return sight.v_BO.norm() + turn > kMovingTarget;
+}
+
+void NoteIdle(const WaySight& sight, const Off& off, WayToGoal& way) noexcept {
+  if (off.turn < kThereRad && off.shift < kThereM) {
     way.stalled_ns = 0;
-  } else if (off < (turns_freely ? kNearerSure : kNearer) * way.least_off) {
-    way.least_off = off;
+    way.note.tries = 0;
+  } else if (off.Both() < kNearer * way.least_off) {
+    way.least_off = off.Both();
     way.stalled_ns = 0;
   } else {
     CountTick((sight.limits & kBarriers) != 0, way.stalled_ns);
   }
 }
 
-void SeekOn(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
-  const int turn = way.goal.turn;
-  if (way.goal.found) {
-    way.ticks_to_step = way.ticks_to_step > 0 ? way.ticks_to_step - 1 : kTicksToAStep - 1;
-  } else {
-    way.ticks_to_step = 0;
+void Change(Way to, PlanEvent event, std::int64_t now_ns, WayToGoal& way) noexcept {
+  way.note.way = to;
+  way.note.event = event;
+  way.since_ns = now_ns;
+  way.asked_ns = -1;
+  way.stalled_ns = 0;
+  way.held_ns = 0;
+  way.least_off = HUGE_VAL;
+}
+
+void GoOnByLaw(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
+  if (!way.turn_known || (!sight.is_told_apart && !way.keeps_posture)) {
+    way.turn = features::NearestTurn(config.feature, sight.X_CO.R);
+    way.turn_known = true;
   }
-  const int steps = way.goal.found ? 1 : kStepsInATick;
-  for (int i = 0; i < steps && way.ticks_to_step == 0; ++i) {
-    SeekGoalPosture(config, sight.X_BO, sight.q, way.goal);
+  if (!config.law.plans) {
+    return;
   }
-  if (way.goal.turn != turn) {
-    way.least_off = HUGE_VAL;  // it belonged to another goal
+  const Off off = OffGoal(config, sight, way.turn);
+  NoteIdle(sight, off, way);
+  way.is_fresh = way.is_fresh || off.Both() < kNear;
+  way.is_new_goal = way.is_new_goal || off.Both() < kNear;
+  if (!sight.is_told_apart || way.note.tries >= kMostTries) {
+    return;  // the pose may be the wrong one, and the law's motion tells them apart; or no plan helps
+  }
+  const bool far = way.is_fresh && off.Both() > kFar && !IsMoving(config, sight);
+  if (far || IsLonger(way.stalled_ns, kIdleS)) {
+    way.note.tries = far && way.is_new_goal ? 0 : way.note.tries;
+    way.is_new_goal = false;
+    Change(Way::kAwaitPlan, PlanEvent::kNone, sight.now_ns, way);
   }
 }
 
-// Chooses the first way after Track began. True while the arm waits for it, kSeekNs at most.
-bool StandsToChoose(const WaySight& sight, WayToGoal& way) noexcept {
-  if (way.chosen || way.preferred || !sight.is_told_apart) {
-    return false;  // the law's motion is needed to tell the poses apart
+model::Vec3 PlaceOf(const Plan& plan) noexcept { return {plan.p_BO[0], plan.p_BO[1], plan.p_BO[2]}; }
+
+// The twist that takes the camera from the plan's goal to the present one, in axes of the camera there.
+model::Vec6 GoalTwist(const config::ServoConfig& config, const WaySight& sight, const Plan& plan,
+                      const model::Pose& X_BC_end) noexcept {
+  const model::Vec3 p_BO = PlaceOf(plan);
+  model::Vec3 turn_B = model::Vec3::Zero();
+  model::Mat3 R_BO;
+  if (config.feature.SeesOrientation() && model::RotationOfQuaternion(plan.q_BO, R_BO)) {
+    turn_B = model::RotationVector(sight.X_BO.R * R_BO.transpose());
   }
-  if (way.goal.found && !way.goal.clear && !way.goal.downhill && way.sought_ns <= kSeekNs) {
-    SeekClearerPosture(way.goal);
+  model::Vec6 twist;
+  twist.head<3>() = X_BC_end.R.transpose() *
+                    (sight.X_BO.p - p_BO + model::CrossMatrix(turn_B).lazyProduct(X_BC_end.p - p_BO));
+  twist.tail<3>() = X_BC_end.R.transpose() * turn_B;
+  return twist;
+}
+
+bool IsElsewhere(const config::ServoConfig& config, const WaySight& sight, const Plan& plan) noexcept {
+  const double turn = GoalTwist(config, sight, plan, model::Pose{}).tail<3>().norm();
+  return !((sight.X_BO.p - PlaceOf(plan)).norm() < kElsewhereM) || !(turn < kElsewhereRad);
+}
+
+// Takes a plan for this start: from its end on, the joints follow the estimate.
+void Take(const config::ServoConfig& config, const Plan& plan, const WaySight& sight,
+          WayToGoal& way) noexcept {
+  Change(Way::kPlan, PlanEvent::kTaken, sight.now_ns, way);
+  trajectory::Reference end;
+  plan.At(plan.Duration(), end);
+  way.q_end = end.q;
+  way.t = 0.0;
+  way.turn = plan.turn;
+  way.keeps_posture = true;
+  way.p_BO_end = PlaceOf(plan);
+  way.shift.setZero(end.q.size());
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, end.q, poses);
+  model::ComputeJacobian(config.arm, poses, config.X_EC, way.pull);
+  model::Mat6 A = way.pull.lazyProduct(way.pull.transpose());
+  A.diagonal().array() += kDamping;
+  model::FactorCholesky(A);
+  model::SolveCholesky(A, way.pull);
+}
+
+void AwaitPlan(const config::ServoConfig& config, const WaySight& sight, const Plan& plan,
+               WayToGoal& way) noexcept {
+  if (way.asked_ns < 0) {
+    if (sight.reference.IsAtRest()) {
+      way.asked_ns = sight.now_ns;
+      way.is_fresh = false;
+      ++way.note.plans_asked;
+      ++way.note.tries;
+      way.note.event = PlanEvent::kAsked;
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        way.note.normal_B[static_cast<std::size_t>(i)] = sight.normal_B[i];
+      }
+    }
+    return;
   }
-  way.chosen = way.goal.found || way.sought_ns > kSeekNs;
-  way.by_joints = !way.chosen;
-  return !way.chosen;
+  if (!sight.has_answer) {
+    if (IsLonger(sight.now_ns - way.asked_ns, way.planner_late ? kWaitLateS : kWaitS)) {
+      way.planner_late = true;
+      Change(Way::kLaw, PlanEvent::kLate, sight.now_ns, way);
+    }
+    return;
+  }
+  way.planner_late = false;
+  way.note.outcome = static_cast<std::int32_t>(plan.outcome);
+  if (!plan.IsFound()) {
+    const bool is_sure = plan.outcome == trajectory::PlanOutcome::kNoGoalPosture ||
+                         plan.outcome == trajectory::PlanOutcome::kGoalNotClear;
+    way.note.tries += is_sure ? kTriesOfSure : 0;
+    Change(Way::kLaw, PlanEvent::kNoMotion, sight.now_ns, way);
+    return;
+  }
+  trajectory::Reference start;
+  plan.At(0.0, start);
+  const bool fits = plan.num_joints == config.arm.num_joints &&
+                    (start.q - sight.reference.q).lpNorm<Eigen::Infinity>() < kSameStart;
+  if (!fits || IsElsewhere(config, sight, plan)) {
+    Change(Way::kLaw, PlanEvent::kStale, sight.now_ns, way);
+    way.is_fresh = true;
+    return;
+  }
+  Take(config, plan, sight, way);
+}
+
+// After a plan that did not lead to the goal.
+Way NextWay(const WayToGoal& way) noexcept {
+  return way.note.tries < kMostTries ? Way::kAwaitPlan : Way::kLaw;
+}
+
+void GoOnByPlan(const config::ServoConfig& config, const WaySight& sight, const Plan& plan,
+                WayToGoal& way) noexcept {
+  if (way.t >= plan.Duration()) {
+    Change(Way::kLaw, PlanEvent::kDone, sight.now_ns, way);
+    return;
+  }
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, way.q_end, poses);
+  const model::Vec6 twist = GoalTwist(config, sight, plan, poses.X_BE * config.X_EC);
+  const model::VecN shift = way.pull.transpose().lazyProduct(twist);
+  if (IsElsewhere(config, sight, plan) || !(shift.lpNorm<Eigen::Infinity>() < kShiftMost)) {
+    Change(IsMoving(config, sight) ? Way::kLaw : NextWay(way), PlanEvent::kTargetMoved, sight.now_ns, way);
+    return;
+  }
+  const double trust_s = !sight.is_seen || sight.is_eye_suspected ? -kTrustS
+                         : sight.is_eye_trusted                   ? kTrustS
+                                                                  : kTrustAnywayS;
+  way.trust = std::clamp(way.trust + hal::kTickPeriodS / trust_s, 0.0, 1.0);
+  way.shift += (hal::kTickPeriodS / kShiftS) * (shift - way.shift);
+  if (IsLonger(way.held_ns, kHeldS)) {
+    Change(NextWay(way), PlanEvent::kHeld, sight.now_ns, way);
+  }
 }
 
 }  // namespace
+
+void WayToGoal::Restart() noexcept {
+  const hal::WayNote before = note;
+  const bool late = planner_late;
+  *this = WayToGoal{};
+  note.plans_asked = before.plans_asked;
+  note.outcome = before.outcome;
+  planner_late = late;
+}
 
 void CountTick(bool holds, std::int64_t& ns) noexcept {
   ns = std::max<std::int64_t>(ns + (holds ? hal::kTickPeriodNs : -hal::kTickPeriodNs), 0);
 }
 
-void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept {
-  if (SeeksWhenIdle(config) && !way.preferred) {
-    NoteIdle(config, sight, way);
-    way.preferred = IsLonger(way.stalled_ns, kIdleSureS);
-    return;
-  }
-  way.sought_ns = way.by_joints && !way.goal.found ? way.sought_ns + hal::kTickPeriodNs : 0;
-  SeekOn(config, sight, way);
-  if (StandsToChoose(sight, way)) {
-    return;
-  }
-  if (way.by_joints && way.goal.found && IsLonger(way.held_ns, kHeldS)) {
-    DropGoalPosture(way.goal);
-    way.since_ns = sight.now_ns;
-    way.held_ns = 0;
-  }
-  NoteIdle(config, sight, way);
-  if (!way.goal.found) {
-    return;
-  }
-  const double left = (way.goal.q - sight.q).lpNorm<Eigen::Infinity>();
-  if (way.by_joints) {
-    if (way.goal.detour > 0 && (way.goal.q_via - sight.q).lpNorm<Eigen::Infinity>() < kAtDetour) {
-      way.goal.detour = 0;
-    }
-    if (left < kEnds) {
-      way.by_joints = false;
-      way.since_ns = sight.now_ns;
-      way.stalled_ns = 0;
-      way.least_off = HUGE_VAL;
-    }
-    return;
-  }
-  if (!sight.is_told_apart) {
-    return;  // the pose may be the wrong one
-  }
-  const bool elsewhere =
-      !way.preferred && !way.goal.downhill && IsLonger(sight.now_ns - sight.track_since_ns, kLookS);
-  const bool idle = IsLonger(way.stalled_ns, kIdleS);
-  if (idle && way.goal.downhill && !way.preferred) {
-    way.preferred = true;
-    SeekAnew(way.goal);  // the old posture led to this goal posture; the present one may lead to another
-    return;
-  }
-  if (idle && way.goal.downhill && !way.goal.clear) {
-    SeekClearerPosture(way.goal);  // its path is blocked: a joint motion would come no nearer than the law
-    way.stalled_ns = 0;
-    return;
-  }
-  if (elsewhere || idle) {
-    way.preferred = true;
-    way.held_ns = 0;
-    way.stalled_ns = 0;
-    if (left > kBegins) {
-      way.by_joints = true;
-      way.since_ns = sight.now_ns;
-    }
+void ChooseWay(const config::ServoConfig& config, const WaySight& sight, const Plan& plan,
+               WayToGoal& way) noexcept {
+  way.note.event = PlanEvent::kNone;
+  switch (way.note.way) {
+    case Way::kLaw: GoOnByLaw(config, sight, way); return;
+    case Way::kAwaitPlan: AwaitPlan(config, sight, plan, way); return;
+    case Way::kPlan: GoOnByPlan(config, sight, plan, way); return;
   }
 }
 
-void SteerByJoints(const WayToGoal& way, const model::VecN& q, const features::TargetInCamera& seen,
-                   const model::Mat6N& J_C, const model::Vec3& p_CO_C_star, MotionTask& task) noexcept {
-  task.v.setZero(q.size());
-  if (way.goal.found) {
-    const model::VecN& there = way.goal.detour > 0 ? way.goal.q_via : way.goal.q;
-    task.v = kGain * WayInView(there - q, seen, J_C, p_CO_C_star);
-  }
-  const double fastest = task.v.lpNorm<Eigen::Infinity>();
-  task.v *= fastest > kSpeed ? kSpeed / fastest : 1.0;
-  task.J.setIdentity(q.size(), q.size());
-  task.dq_0.setZero(q.size());
-  task.weight.setOnes(q.size());
+void FollowPlan(const Plan& plan, const trajectory::Reference& reference, bool is_seen, WayToGoal& way,
+                PlanStep& step) noexcept {
+  trajectory::Reference at;
+  plan.At(way.t, at);
+  const double share = trajectory::SmoothStep(way.t / plan.Duration());
+  const model::VecN behind = at.q + share * way.shift - reference.q;
+  const double keeps_up = std::clamp(2.0 - behind.lpNorm<Eigen::Infinity>() / kBehind, 0.0, 1.0);
+  CountTick(keeps_up < 0.5, way.held_ns);
+  const double pace = keeps_up * (is_seen ? kFirstPace + (1.0 - kFirstPace) * way.trust : way.trust);
+  way.t += pace * hal::kTickPeriodS;
+  plan.At(way.t, at);
+  const double growth = (trajectory::SmoothStep(way.t / plan.Duration()) - share) / hal::kTickPeriodS;
+  step.task.v = pace * at.dq + growth * way.shift + kGain * behind;
+  step.task.J.setIdentity(at.q.size(), at.q.size());
+  step.task.dq_0.setZero(at.q.size());
+  step.task.weight.setOnes(at.q.size());
+  step.ddq = pace * at.ddq;
 }
 
-bool NoteHeld(const MotionTask& task, const model::VecN& dq, WayToGoal& way) noexcept {
-  if (!way.goal.found) {
-    return way.sought_ns > kSeekNs;
-  }
-  const bool held = dq.dot(task.v) < kHeldShare * task.v.squaredNorm();
-  CountTick(held, way.held_ns);
-  return held;
+bool KeepsPosture(const WayToGoal& way, const model::Vec3& p_BO) noexcept {
+  return way.keeps_posture && (p_BO - way.p_BO_end).norm() < kSamePlaceM;
 }
+
+bool IsHeldUp(const WayToGoal& way) noexcept { return way.note.way == hal::Way::kPlan && way.held_ns > 0; }
 
 }  // namespace fovea::control

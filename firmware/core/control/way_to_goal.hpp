@@ -1,64 +1,99 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses how the arm moves to a target: by the visual law, or by a joint motion.
+// Chooses how the arm goes to a target: by the visual law, or along a plan of the planner beside the tick.
 //
 // The law always reduces the feature's error. A limit, such as the end of a joint's range or the workspace's
-// edge, may stop it although another posture reaches the goal. The servo therefore searches for such a
-// posture (goal_posture.hpp). If the target leaves the hand no freedom, it searches all the time. For a disc
-// or ball, where the law usually succeeds, it searches only after limits have stopped the progress.
+// edge, may stop it although another posture reaches the goal; and far from the goal it is slow. So a servo
+// that is far from its goal stands still, asks for a plan (firmware/planning), and follows it:
 //
-// If the search that starts at the arm's posture finds one, the law starts first. Otherwise the arm
-// waits, for a limited time, until a posture with a clear path is found. If limits stop the progress, the
-// search starts from there. The joints then move to the posture together, by the detour with which it was
-// found, as straight as the target's place in the picture and the limits allow. Near the posture the law
-// takes over. All limits apply to both, except the guard of the hand's singularities, which a joint motion
-// may cross.
+//   law -> await plan -> plan -> law         near the goal, at its end
+//             |           |
+//             |           +-> await plan     limits hold it up, or the target is elsewhere
+//             +-> law                        no plan in time, none found, or not for this start and target
+//
+// The servo also asks if limits stop the law. After some tries for the same goal it stays with the law. A
+// plan is for the target as it was estimated at the start. While the arm follows it, the plan's end moves
+// with the estimate: the joints' path is shifted by a share that grows from 0 to 1,
+//
+//   q(t) = plan(t) + SmoothStep(t / T) J_C^+(q_end) xi,
+//
+// where xi is the twist that takes the camera from the planned goal to the present one. A plan begins slowly,
+// and waits while the target is not seen: its motion is quick, so that an eye that is not as the servo
+// believes has to be noticed early. All limits apply, except the guard of the hand's singularities, which a
+// joint motion may cross.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
 
-#include "firmware/core/control/goal_posture.hpp"
+#include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/control/resolve_damped.hpp"
+#include "firmware/core/trajectory/plan.hpp"
+#include "firmware/core/trajectory/reference.hpp"
 #include "fovea/hal/events.hpp"
+#include "fovea/hal/record.hpp"
 
 namespace fovea::control {
 
 struct WayToGoal {
-  GoalPosture goal;
-  int ticks_to_step = 0;  // until the posture found is next adapted to the target
-  bool chosen = false;    // a way was chosen since Track began
-  bool by_joints = false;
-  bool preferred = false;       // the law failed without the posture found, and is now pulled towards it
+  hal::WayNote note;
+  int turn = 0;                 // the equal turn of the target that is its goal
+  bool turn_known = false;      // it was chosen since Track began
+  bool is_fresh = true;         // no plan was asked for since the goal was last near
+  bool is_new_goal = true;      // the goal was near since the last plan for a far one
+  bool planner_late = false;    // the last request had no answer in time
+  bool keeps_posture = false;   // q_end reaches the goal: the law is pulled towards it
   std::int64_t since_ns = 0;    // time of the last change of the way, which starts smoothly
-  std::int64_t held_ns = 0;     // joint motion: time held up by limits less time not held up
-  std::int64_t sought_ns = 0;   // how long the arm has waited for a posture
+  std::int64_t asked_ns = -1;   // awaiting a plan: when it was asked for; -1: the arm still stops
   std::int64_t stalled_ns = 0;  // law: time with active limits less time without, since the last progress
-  double least_off = HUGE_VAL;  // smallest distance from the goal [m]; a turn of 1 rad counts as 0.1 m
+  std::int64_t held_ns = 0;     // plan: time held up less time not held up
+  double least_off = HUGE_VAL;  // law: smallest distance from the goal [m]; a turn of 1 rad counts as 0.1 m
+  double t = 0.0;               // plan: time along it [s]
+  double trust = 0.0;           // in the eye, 0 to 1: how fast a plan is followed
+  model::VecN shift;            // plan: of its end, for the present estimate [num_joints]
+  model::VecN q_end;            // of the last plan [num_joints]
+  model::Vec3 p_BO_end = model::Vec3::Zero();  // the target that it reaches [m]
+  model::Mat6N pull;                           // transposed: a twist of the camera at q_end to joints
+
+  // A new try, from Track's beginning.
+  void Restart() noexcept;
 };
 
 // What is known of target and arm in this tick.
 struct WaySight {
   model::Pose X_BO;  // the estimate
   model::Pose X_CO;
-  const model::VecN& q;      // [num_joints]
+  model::Vec3 v_BO;  // [m/s]
+  model::Vec3 w_BO;  // [rad/s]; 0 if no orientation is seen
+  model::Vec3 normal_B;
+  const trajectory::Reference& reference;
   hal::LimitSet limits = 0;  // active in the previous tick
   std::int64_t now_ns = 0;
-  std::int64_t track_since_ns = 0;
-  bool is_told_apart = false;  // only one of the poses that fit the corners is left
+  bool is_told_apart = false;     // only one of the poses that fit the corners is left
+  bool has_answer = false;        // the plan that was asked for is there
+  bool is_seen = false;           // the target, at present
+  bool is_eye_trusted = false;    // the picture has gone with the hand's motion since Track began
+  bool is_eye_suspected = false;  // it seems to go against it
 };
 
-// Continues the search for a posture, and chooses the way. Real-time: yes.
-void ChooseWay(const config::ServoConfig& config, const WaySight& sight, WayToGoal& way) noexcept;
+// Chooses the way. `plan`: the last one that was asked for and came. Real-time: yes.
+void ChooseWay(const config::ServoConfig& config, const WaySight& sight, const trajectory::Plan& plan,
+               WayToGoal& way) noexcept;
 
-// Replaces the law's task by a joint motion: all joints together to the posture found, with the target in
-// view (way_in_view.hpp). While no posture is found, the task is to stand still. `q` [num_joints]; `J_C`:
-// body Jacobian of the camera; `p_CO_C_star` [m]. Real-time: yes.
-void SteerByJoints(const WayToGoal& way, const model::VecN& q, const features::TargetInCamera& seen,
-                   const model::Mat6N& J_C, const model::Vec3& p_CO_C_star, MotionTask& task) noexcept;
-
-// Records what the limits left of that task, `dq`. True if they block it, or no posture was found in time.
+// The joints' motion in the next tick on a plan.
+struct PlanStep {
+  MotionTask task;
+  model::VecN ddq;  // [num_joints]
+};
+// Only in way kPlan. Moves the plan's time on; a plan that the reference cannot follow waits for it.
 // Real-time: yes.
-bool NoteHeld(const MotionTask& task, const model::VecN& dq, WayToGoal& way) noexcept;
+void FollowPlan(const trajectory::Plan& plan, const trajectory::Reference& reference, bool is_seen,
+                WayToGoal& way, PlanStep& step) noexcept;
+
+// True if limits hold the arm up on its plan. Real-time: yes.
+[[nodiscard]] bool IsHeldUp(const WayToGoal& way) noexcept;
+
+// True if the last plan's end, `q_end`, is a good posture for a target at `p_BO` [m]. Real-time: yes.
+[[nodiscard]] bool KeepsPosture(const WayToGoal& way, const model::Vec3& p_BO) noexcept;
 
 // The limits that can block a path. All others only slow the motion down.
 inline constexpr hal::LimitSet kBarriers =

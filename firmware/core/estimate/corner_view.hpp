@@ -12,7 +12,13 @@ namespace fovea::estimate {
 // Corners in an image, and the camera's pose at its stamp.
 struct CornerView {
   std::int64_t stamp_ns = 0;
+  double late = 0.0;  // X_CB is the pose this long before the stamp [s]
+  // Rolling shutter, as in predict_config.hpp. `seen` is at the stamp if the target stands still in B.
+  double row_time = 0.0;
+  double row_y = 0.0;
+  double late_sigma = 0.0;  // standard deviation of `late` [s]; for a filter that starts
   model::Pose X_CB;
+  model::Vec6 V_BC_C = model::Vec6::Zero();  // the camera's twist then [m/s, rad/s]
   features::SeenCorners seen;
   model::Mat6 doubt = model::Mat6::Zero();  // uncertainty of X_CB, for the gate: measurement_doubt.hpp
 };

@@ -19,6 +19,8 @@ constexpr double kShown = 0.5;              // share of the expected speed chang
 constexpr double kFlicker = 1e-6;           // velocity noise is larger than this [rad/s, m/s]
 constexpr std::int32_t kFlickersMost = 30;  // this many make a joint noisy: about a tenth of a second
 constexpr std::int32_t kTicksMost = 1'000'000;  // counters stop here
+constexpr std::int32_t kNoiseTicks = 200;       // the noise of a velocity is a mean over so many ticks
+constexpr double kNoiseSigmas = 6.0;  // what a velocity's noise may come to, in its standard deviations
 
 // Accelerations that the readings do not show, from the change of each external torque against its mean. Zero
 // if friction may hold the joint. (If encoder i hangs and joint i moves by ddq, the observer sees -M e_i
@@ -63,6 +65,26 @@ bool TurnsRound(const EncoderWatch::Joint& joint, double dq) noexcept {
   return (joint.dq - dq) * joint.speed >= kShown * joint.speed * joint.speed;
 }
 
+// White noise n of dq makes two changes in a row n1 - n0, n2 - n1: the mean of their product is -sigma^2. A
+// motion that accelerates makes it larger. A reading that has stopped tells nothing.
+void LearnNoise(double change, EncoderWatch::Joint& joint) noexcept {
+  if (change == 0.0) {
+    return;
+  }
+  joint.noise_ticks = std::min(joint.noise_ticks + 1, kNoiseTicks);
+  joint.noise2 += (-change * joint.change_last - joint.noise2) / joint.noise_ticks;
+}
+
+// The largest distance that the noise of a joint's velocity seems to move it by.
+struct NoiseReach {
+  double travel = 0.0;  // the integral of dq
+  double way = 0.0;     // that of a speed which begins at one noisy reading
+};
+NoiseReach ReachOf(const EncoderWatch::Joint& joint) noexcept {
+  const double most = kNoiseSigmas * std::sqrt(std::max(joint.noise2, 0.0)) * hal::kTickPeriodS;
+  return {most * std::sqrt(static_cast<double>(joint.ticks)), most * joint.unseen_ticks};
+}
+
 // True if a joint that flickers has stopped flickering. Only a joint that flickers at rest and never repeats
 // a reading there does so from noise. An encoder with steps flickers too, but only in motion or now and then.
 bool HasFrozen(const config::ServoConfig& config, double q, double dq, EncoderWatch::Joint& joint) noexcept {
@@ -77,6 +99,7 @@ bool HasFrozen(const config::ServoConfig& config, double q, double dq, EncoderWa
     joint.flickers = std::max<std::int32_t>(joint.flickers + (is_up_and_down ? 1 : -1), 0);
   }
   joint.is_noisy = joint.is_noisy || joint.flickers >= kFlickersMost;
+  LearnNoise(change, joint);
   joint.change_last = change != 0.0 ? change : joint.change_last;
   joint.q_last = q;
   joint.dq_last = dq;
@@ -105,6 +128,7 @@ std::int32_t WatchEncoders(const config::ServoConfig& config, const WatchedJoint
       joint.q_reference = now.q_reference[i];
       joint.dq = now.dq[i];
       joint.speed = joint.way = joint.travel = 0.0;
+      joint.unseen_ticks = 0;
       continue;
     }
     if (!watch.drove) {
@@ -115,9 +139,11 @@ std::int32_t WatchEncoders(const config::ServoConfig& config, const WatchedJoint
     if (unseen[k] != 0.0) {
       joint.speed += unseen[k] * hal::kTickPeriodS;
       joint.way += joint.speed * hal::kTickPeriodS;
+      joint.unseen_ticks = std::min(joint.unseen_ticks + 1, kTicksMost);
     } else {
       joint.dq = now.dq[i];
       joint.speed = joint.way = 0.0;
+      joint.unseen_ticks = 0;
     }
     const double held = config.safety.stiction_fraction * arm_joint.coulomb;
     const double M = now.dynamics.M(i, i);
@@ -125,9 +151,10 @@ std::int32_t WatchEncoders(const config::ServoConfig& config, const WatchedJoint
     const double wished = now.drives ? std::fabs(now.q_reference[i] - joint.q_reference) : 0.0;
     // The joint has not yet made an allowed step of the reference.
     const double late = std::max(kWishSlack, config.safety.setpoint_jump);
+    const NoiseReach noise = ReachOf(joint);
     const double gone =
-        std::max({TurnsRound(joint, now.dq[i]) ? 0.0 : std::fabs(joint.way) / (enough + kLeast),
-                  std::fabs(joint.travel) / (enough + kTravelSlack),
+        std::max({TurnsRound(joint, now.dq[i]) ? 0.0 : std::fabs(joint.way) / (enough + kLeast + noise.way),
+                  std::fabs(joint.travel) / (enough + kTravelSlack + noise.travel),
                   wished / (enough + late + held / (M * omega_n * omega_n))});
     if (gone > 1.0 && joint.ticks >= config.safety.non_finite_ticks && hangs < 0) {
       hangs = i;

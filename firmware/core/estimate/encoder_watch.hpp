@@ -11,6 +11,9 @@
 // A fourth sign needs no motion: most encoders have noise in their last bits. After a joint at rest has
 // flickered for a tenth of a second without repeating a reading, readings that repeat to the last bit are
 // invalid. This is known before the arm leaves Boot and finds its target.
+//
+// Noise of the velocity seems to move a resting joint. What the watch integrates must therefore exceed what
+// the noise comes to in the same time.
 #pragma once
 
 #include <array>
@@ -27,19 +30,22 @@ struct EncoderWatch {
     double mean = 0.0;      // of the external torque [Nm, N]
     // Since its reading last changed
     std::int32_t ticks = 0;
-    double q = 0.0;            // that reading [rad, m]
-    double q_reference = 0.0;  // its reference at that time [rad, m]
-    double dq = 0.0;           // its velocity before the unseen acceleration [rad/s, m/s]
-    double speed = 0.0;        // gained from that acceleration [rad/s, m/s]
-    double way = 0.0;          // moved at that speed [rad, m]
-    double travel = 0.0;       // moved at its measured velocity [rad, m]
+    double q = 0.0;                 // that reading [rad, m]
+    double q_reference = 0.0;       // its reference at that time [rad, m]
+    double dq = 0.0;                // its velocity before the unseen acceleration [rad/s, m/s]
+    double speed = 0.0;             // gained from that acceleration [rad/s, m/s]
+    double way = 0.0;               // moved at that speed [rad, m]
+    double travel = 0.0;            // moved at its measured velocity [rad, m]
+    std::int32_t unseen_ticks = 0;  // in a row with an unseen acceleration
     // Its noise
-    double q_last = 0.0;          // of the state before [rad, m]
-    double dq_last = 0.0;         // [rad/s, m/s]
-    double change_last = 0.0;     // of dq, in the last state in which it changed [rad/s, m/s]
-    std::int32_t flickers = 0;    // at rest: states in which dq reversed its change, less those without
-    std::int32_t same_ticks = 0;  // states in a row that repeat the one before to the last bit
-    bool is_noisy = false;        // it flickers at rest
+    double q_last = 0.0;           // of the state before [rad, m]
+    double dq_last = 0.0;          // [rad/s, m/s]
+    double change_last = 0.0;      // of dq, in the last state in which it changed [rad/s, m/s]
+    std::int32_t flickers = 0;     // at rest: states in which dq reversed its change, less those without
+    std::int32_t same_ticks = 0;   // states in a row that repeat the one before to the last bit
+    bool is_noisy = false;         // it flickers at rest
+    double noise2 = 0.0;           // variance of dq [rad^2/s^2, m^2/s^2]; below 0: its motion hides it
+    std::int32_t noise_ticks = 0;  // that the mean `noise2` is over
   };
   bool drove = false;  // the servo drove the arm in the previous tick
   std::array<Joint, hal::kMaxJoints> joints{};

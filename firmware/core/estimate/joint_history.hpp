@@ -23,6 +23,11 @@ class JointHistory {
   // that far. A stamp after the newest entry gives the newest. Real-time: yes, at most 9 steps of search.
   [[nodiscard]] bool At(std::int64_t stamp_ns, model::VecN& q) const noexcept;
 
+  // The stamp of the newest entry. There must be one.
+  [[nodiscard]] std::int64_t newest_ns() const noexcept {
+    return entries_[static_cast<std::size_t>(newest_)].stamp_ns;
+  }
+
   void Clear() noexcept { size_ = 0; }
 
  private:
@@ -42,5 +47,11 @@ class JointHistory {
 // history does not reach back that far. Real-time: yes.
 [[nodiscard]] bool CameraPoseAt(const JointHistory& history, const model::ArmModel& arm,
                                 const model::Pose& X_EC, std::int64_t stamp_ns, model::Pose& X_BC) noexcept;
+
+// The camera's mean twist [v; w] in its own axes [m/s, rad/s] within 10 ms around `stamp_ns`, at whose pose
+// it is `X_BC`; of the part that the history has. Zero if it has less than half of that. Real-time: yes.
+[[nodiscard]] model::Vec6 CameraTwistAt(const JointHistory& history, const model::ArmModel& arm,
+                                        const model::Pose& X_EC, std::int64_t stamp_ns,
+                                        const model::Pose& X_BC) noexcept;
 
 }  // namespace fovea::estimate

@@ -2,15 +2,16 @@
 // The effect of calibration errors on a measurement: how far the camera's pose, as the measurement sees it,
 // may disagree with what the filter absorbed a moment before.
 //
-// A wrong mount, stamp or scale puts the target in a wrong place. While the hand's motion stays the same, so
+// A wrong mount or scale puts the target in a wrong place. While the hand's motion stays the same, so
 // does the place, and the filter absorbs the error. It cannot absorb the error's change. With delta the
-// mount's error as a twist of C, V the camera's twist, dt the stamp's error, c the target in C, sigma its
-// relative error in scale, and 1 -> 2 the camera's motion since a moment before:
+// mount's error as a twist of C, c the target in C, sigma its relative error in scale, and 1 -> 2 the
+// camera's motion since a moment before:
 //
-//   (I - Ad(X_C2C1)) delta,   (V_2 - Ad(X_C2C1) V_1) dt,   (c - R_C2C1 c_1) sigma
+//   (I - Ad(X_C2C1)) delta,   (c - R_C2C1 c_1) sigma
 //
 // Only the gate uses the sum of their covariances (a consider covariance: Schmidt, Application of state-space
 // methods to navigation problems, 1966). The gain ignores it, because averaging does not remove these errors.
+// A wrong stamp is a state of the filters (stamp_error.hpp).
 #pragma once
 
 #include "firmware/core/config/servo_config.hpp"

@@ -58,26 +58,6 @@ void Average(const PlateView& newest, PlateView& mean) noexcept {
   }
 }
 
-// The normal equations of a pose's correction.
-struct Fit {
-  model::Mat6 information = model::Mat6::Zero();
-  model::Vec6 right = model::Vec6::Zero();
-};
-
-// Adds one view; false if a corner is not in front of the camera.
-bool AddTo(Fit& fit, const Polygon& polygon, const PlateView& view, const model::Pose& X_BO) noexcept {
-  SeenCorners::Vector e;
-  if (!OffFrom(polygon, view, X_BO, e)) {
-    return false;
-  }
-  CornerSlope H;
-  SlopeOfCorners(polygon, view.X_CB, X_BO, H);
-  const double weight = WeightOf(view.variance, view.frames);
-  fit.information += weight * H.transpose().lazyProduct(H);
-  fit.right += weight * H.transpose().lazyProduct(e);
-  return true;
-}
-
 }  // namespace
 
 PlateView SeePlate(const CornerView& view) noexcept {
@@ -106,22 +86,31 @@ double MisfitOf(const Polygon& polygon, std::span<const PlateView> views, const 
   return fits ? misfit : kNoFit;
 }
 
-void FitPose(const Polygon& polygon, std::span<const PlateView> views, const PlateView& mean,
-             model::Pose& X_BO) noexcept {
-  Fit fit;
-  const auto add = [&](const PlateView& view) { return AddTo(fit, polygon, view, X_BO); };
-  if (!add(mean) || !std::all_of(views.begin(), views.end(), add)) {
+void PlateFit::Add(const Polygon& polygon, const PlateView& view, const model::Pose& X_BO) noexcept {
+  SeenCorners::Vector e;
+  is_possible_ = is_possible_ && OffFrom(polygon, view, X_BO, e);
+  if (!is_possible_) {
     return;
   }
-  fit.information.diagonal().head<3>().array() += 1.0 / (kStepM * kStepM);
-  fit.information.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
-  model::FactorCholesky(fit.information);
-  model::SolveCholesky(fit.information, fit.right);
-  if (!fit.right.allFinite()) {
+  CornerSlope H;
+  SlopeOfCorners(polygon, view.X_CB, X_BO, H);
+  const double weight = WeightOf(view.variance, view.frames);
+  information_ += weight * H.transpose().lazyProduct(H);
+  right_ += weight * H.transpose().lazyProduct(e);
+}
+
+void PlateFit::Improve(model::Pose& X_BO) const noexcept {
+  model::Mat6 information = information_;
+  model::Vec6 step = right_;
+  information.diagonal().head<3>().array() += 1.0 / (kStepM * kStepM);
+  information.diagonal().tail<3>().array() += 1.0 / (kStepRad * kStepRad);
+  model::FactorCholesky(information);
+  model::SolveCholesky(information, step);
+  if (!is_possible_ || !step.allFinite()) {
     return;
   }
-  X_BO.p += fit.right.head<3>();
-  X_BO.R = model::RotationOf(fit.right.tail<3>()) * X_BO.R;
+  X_BO.p += step.head<3>();
+  X_BO.R = model::RotationOf(step.tail<3>()) * X_BO.R;
 }
 
 }  // namespace fovea::estimate

@@ -37,9 +37,27 @@ void TakeIntoMean(const PlateView& newest, PlateView& mean) noexcept;
 [[nodiscard]] double MisfitOf(const features::Polygon& polygon, std::span<const PlateView> views,
                               const PlateView& newest, const model::Pose& X_BO) noexcept;
 
-// Improves `X_BO` with `views` and `mean` by one Gauss-Newton step, which suffices because the previous view
-// left it close. `X_BO` stays unchanged if a corner is not in front of the camera. Real-time: yes.
-void FitPose(const features::Polygon& polygon, std::span<const PlateView> views, const PlateView& mean,
-             model::Pose& X_BO) noexcept;
+// One Gauss-Newton step of a pose to several views, view by view. One step suffices, because the views before
+// left the pose close. Real-time: yes.
+class PlateFit {
+ public:
+  // Adds a view. `X_BO`: the same pose for all of them.
+  void Add(const features::Polygon& polygon, const PlateView& view, const model::Pose& X_BO) noexcept;
+  // Improves `X_BO`. It stays unchanged if a corner of a view was not in front of the camera.
+  void Improve(model::Pose& X_BO) const noexcept;
+
+  // Calls `visit` for each of the sums.
+  template <class Self, class Visit>
+  static void Sums(Self& self, const Visit& visit) noexcept {
+    visit(self.information_);
+    visit(self.right_);
+    visit(self.is_possible_);
+  }
+
+ private:
+  model::Mat6 information_ = model::Mat6::Zero();  // of the normal equations
+  model::Vec6 right_ = model::Vec6::Zero();
+  bool is_possible_ = true;
+};
 
 }  // namespace fovea::estimate

@@ -5,6 +5,7 @@
 
 #include "firmware/core/estimate/first_sight.hpp"
 #include "firmware/core/estimate/shortened.hpp"
+#include "firmware/core/estimate/stamp_error.hpp"
 #include "firmware/core/model/cholesky.hpp"
 #include "firmware/core/model/rotation.hpp"
 
@@ -78,6 +79,16 @@ CornerSlope SlopeByCamera(const Polygon& polygon, const model::Pose& X_CO) noexc
   return by_camera;
 }
 
+// Rolling shutter: how the seen corners `xy` depend on the target's velocity and turn rate. Each is seen
+// delta after the stamp, so it has moved by delta times these. `H`: their slope over the pose; the result is
+// over velocity and turn rate.
+CornerSlope SlopeByRates(const CornerView& view, const SeenCorners::Vector& xy, CornerSlope H) noexcept {
+  for (Eigen::Index i = 0; i + 1 < xy.size(); i += 2) {
+    H.middleRows<2>(i) *= view.row_time * (xy[i + 1] - view.row_y);
+  }
+  return H;
+}
+
 // Adds the noise of the camera's own pose.
 void AddCameraNoise(CornerSlope by_camera, SeenCorners::Covariance& cov) noexcept {
   by_camera.leftCols<3>() *= kCameraShiftSigma;
@@ -132,6 +143,24 @@ void Advance(const config::PredictConfig& config, double dt, PoseFilter& f) noex
   add(F::kTurn, F::kTurn, q * dt3 / 3.0);
   add(F::kTurn, F::kTurnRate, q * dt2 / 2.0);
   add(F::kTurnRate, F::kTurnRate, q * dt);
+  P(F::kLate, F::kLate) = DriftedVariance(P(F::kLate, F::kLate), dt, config.stamp_sigma);
+}
+
+// Begins the estimate of the stamps' common error: what it adds to the measured pose, the motion of a plate
+// that the camera holds, it takes from the state.
+void AddLateness(const CornerView& view, PoseFilter& start) noexcept {
+  using F = PoseFilter;
+  const model::Pose X_BC = view.X_CB.Inverse();
+  const Vec3 p_CO_C = view.X_CB * start.X_BO.p;
+  model::Vec6 V_BO_held;  // in axes of B
+  V_BO_held << X_BC.R * (view.V_BC_C.head<3>() + model::CrossMatrix(view.V_BC_C.tail<3>()) * p_CO_C),
+      X_BC.R * view.V_BC_C.tail<3>();
+  const double P_late = view.late_sigma * view.late_sigma;
+  start.late = view.late;
+  start.P.topLeftCorner<6, 6>() += P_late * V_BO_held * V_BO_held.transpose();
+  start.P.col(F::kLate).head<6>() = -P_late * V_BO_held;
+  start.P.row(F::kLate).head<6>() = -P_late * V_BO_held.transpose();
+  start.P(F::kLate, F::kLate) = P_late;
 }
 
 }  // namespace
@@ -142,10 +171,18 @@ bool StartPose(const Polygon& polygon, const CornerView& view, const SeenCorners
   SeenCorners::Vector xy;
   SeenCorners::Covariance L;
   InOrder(view.seen, branch.first, xy, L);
-  model::FactorCholesky(L);
   PoseFilter start;
   start.stamp_ns = view.stamp_ns;
   start.X_BO = view.X_CB.Inverse() * branch.X_CO;
+  if (view.row_time > 0.0) {  // the target's velocity is not known yet
+    CornerSlope by_pose;
+    SlopeOfCorners(polygon, view.X_CB, start.X_BO, by_pose);
+    CornerSlope by_rates = SlopeByRates(view, xy, by_pose);
+    by_rates.leftCols<3>() *= kStartSpeedSigma;
+    by_rates.rightCols<3>() *= kStartTurnSigma;
+    L += by_rates.lazyProduct(by_rates.transpose());
+  }
+  model::FactorCholesky(L);
   model::Mat6 cov;
   for (int round = 0; round <= kRounds; ++round) {
     SeenCorners::Vector e;
@@ -178,6 +215,7 @@ bool StartPose(const Polygon& polygon, const CornerView& view, const SeenCorners
   spread(PoseFilter::kVelocity, kStartSpeedSigma);
   spread(PoseFilter::kAcceleration, kStartAccelerationSigma);
   spread(PoseFilter::kTurnRate, kStartTurnSigma);
+  AddLateness(view, start);
   if (!start.P.allFinite() || !start.X_BO.p.allFinite() || !start.X_BO.R.allFinite()) {
     return false;
   }
@@ -200,12 +238,25 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   SeenCorners::Vector innovation;
   SeenCorners::Covariance S;
   InOrder(view.seen, NearestFirst(view.seen.xy, expected), innovation, S);
-  innovation -= expected;
   const CornerSlope by_camera = SlopeByCamera(polygon, view.X_CB * next.X_BO);
   AddCameraNoise(by_camera, S);
+  const SeenCorners::Vector by_late = -by_camera.lazyProduct(view.V_BC_C);
+  const CornerSlope by_rates = SlopeByRates(view, innovation, H);
+  innovation -= expected + (next.late - view.late) * by_late;
+  if (view.row_time > 0.0) {
+    innovation -= by_rates.leftCols<3>() * next.v_BO_B + by_rates.rightCols<3>() * next.w_BO_B;
+  }
   // With S = L L^T and Y = L^-1 H P, the gain is Y^T L^-1 and reduces P by Y^T Y.
   Gain Y = H.lazyProduct(next.P.topRows<6>());
+  Y += by_late.lazyProduct(next.P.row(F::kLate));
+  if (view.row_time > 0.0) {
+    Y += by_rates.leftCols<3>().lazyProduct(next.P.middleRows<3>(F::kVelocity));
+    Y += by_rates.rightCols<3>().lazyProduct(next.P.middleRows<3>(F::kTurnRate));
+    S += Y.middleCols<3>(F::kVelocity).lazyProduct(by_rates.leftCols<3>().transpose());
+    S += Y.middleCols<3>(F::kTurnRate).lazyProduct(by_rates.rightCols<3>().transpose());
+  }
   S += Y.leftCols<6>().lazyProduct(H.transpose());
+  S += Y.col(F::kLate).lazyProduct(by_late.transpose());
   S += bent;
   const double gate2 = config.gate_sigma * config.gate_sigma;
   const SeenCorners::Covariance S_noise = S;
@@ -232,6 +283,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   next.v_BO_B += correction.segment<3>(F::kVelocity);
   next.a_BO_B += correction.segment<3>(F::kAcceleration);
   next.w_BO_B += correction.segment<3>(F::kTurnRate);
+  next.late = CredibleLateness(next.late + correction[F::kLate], config.stamp_offset, config.stamp_sigma);
   next.v_BO_B = Shortened(next.v_BO_B, config.target_speed_max);
   next.a_BO_B = Shortened(next.a_BO_B, config.target_acceleration_max);
   next.w_BO_B = Shortened(next.w_BO_B, config.target_turn_max);
@@ -242,7 +294,7 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
 
 FlatMotion MotionAt(const config::PredictConfig& config, const PoseFilter& filter,
                     std::int64_t now_ns) noexcept {
-  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns);
+  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns) + filter.late;
   const Mat3 R = model::RotationOf(filter.w_BO_B * dt).lazyProduct(filter.X_BO.R);
   const Vec3 way = dt * (filter.v_BO_B + 0.5 * dt * filter.a_BO_B);
   return {{R, filter.X_BO.p + Shortened(way, config.target_speed_max * std::fabs(dt))},

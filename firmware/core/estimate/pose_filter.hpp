@@ -28,19 +28,21 @@ inline constexpr double kCameraTurnSigma = 5e-5;   // [rad]
 
 // Estimate at `stamp_ns`, the stamp of the last accepted view.
 struct PoseFilter {
-  static constexpr int kDim = 15;
+  static constexpr int kDim = 16;
   // First index of each part of the error, three entries each, all in axes of B.
   static constexpr int kPosition = 0;      // [m]
   static constexpr int kTurn = 3;          // delta [rad]
   static constexpr int kVelocity = 6;      // [m/s]
   static constexpr int kAcceleration = 9;  // [m/s^2]
   static constexpr int kTurnRate = 12;     // dw [rad/s]
+  static constexpr int kLate = 15;         // of `late` [s]
 
   std::int64_t stamp_ns = 0;
   model::Pose X_BO;
   model::Vec3 v_BO_B = model::Vec3::Zero();
   model::Vec3 a_BO_B = model::Vec3::Zero();
   model::Vec3 w_BO_B = model::Vec3::Zero();
+  double late = 0.0;  // the views are this much older than their stamps [s]
   Eigen::Matrix<double, kDim, kDim> P = Eigen::Matrix<double, kDim, kDim>::Zero();
 };
 

@@ -2,6 +2,7 @@
 #include "firmware/core/estimate/pose_hypotheses.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "firmware/core/model/rotation.hpp"
 
@@ -13,10 +14,18 @@ using features::SeenCorners;
 
 constexpr double kSameNormal = 0.15;  // normals no further apart are the same [rad]
 constexpr double kSameTurn = 0.02;    // poses closer than this are the same [rad]
+constexpr double kSteepest = 0.2;     // cosine of a disc's tilt, below which its outline tells little
 constexpr double kSlip = 0.05;        // a filter that is further from the still pose may have slipped [rad]
 
 double TurnBetween(const model::Pose& a, const model::Pose& b) noexcept {
   return model::RotationVector(a.R.lazyProduct(b.R.transpose())).norm();
+}
+
+// How the centre of a disc with the normal `n` is off that of the middle of its outline, along the ray `r`:
+// this times radius^2 / distance. The near half of a tilted disc looks larger than the far one.
+model::Vec3 OffMiddle(const model::Vec3& n, const model::Vec3& r) noexcept {
+  const double along = n.dot(r);
+  return -along * (n - along * r);
 }
 
 // The view's pose whose orientation is nearest to `R_CO`; -1: it has none.
@@ -34,9 +43,9 @@ int Nearest(const SeenCorners& seen, const model::Mat3& R_CO) noexcept {
   return pose;
 }
 
-Verdict TakenBy(const CornerView& view, const PoseHypotheses& hypotheses, bool changed) noexcept {
+Verdict TakenBy(const CornerView& view, const PoseHypotheses& hypotheses) noexcept {
   const model::Mat3& R_BO = hypotheses.plate.best().filter.X_BO.R;
-  return {hal::Intake::kTaken, Nearest(view.seen, view.X_CB.R * R_BO), changed};
+  return {hal::Intake::kTaken, Nearest(view.seen, view.X_CB.R * R_BO)};
 }
 
 // Restarts with the poses of `view`. False, with nothing changed, if it has none.
@@ -61,31 +70,40 @@ bool Start(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypot
 }
 
 // Where two poses merge, a filter may slip from one to the other. The views from other places reveal it.
-void CatchSlip(const Polygon& polygon, const CornerView& view, const PlateView& newest,
-               PoseHypotheses& hypotheses) noexcept {
-  const auto views = hypotheses.plate.views.kept();
+bool HasSlipped(const Polygon& polygon, const PoseHypotheses& hypotheses) noexcept {
+  const PlatePose& left = hypotheses.plate.best();
+  return hypotheses.plate.count == 1 && TurnBetween(left.filter.X_BO, left.X_BO_still) > kSlip &&
+         MisfitOf(polygon, hypotheses.plate.views.kept(), hypotheses.comparison.newest, left.filter.X_BO) >
+             left.still_misfit + PlatePose::kRule.give_up;
+}
+
+// Sets a filter that has slipped back to the pose that fits all views.
+void CatchSlip(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypotheses) noexcept {
   PlatePose& left = hypotheses.plate.best();
   SeenCorners::Vector expected;
-  if (hypotheses.plate.count == 1 && TurnBetween(left.filter.X_BO, left.X_BO_still) > kSlip &&
-      MisfitOf(polygon, views, newest, left.filter.X_BO) > left.still_misfit + PlatePose::kRule.give_up &&
-      ExpectCorners(polygon, view.X_CB, left.X_BO_still, expected)) {
+  if (hypotheses.slipped && ExpectCorners(polygon, view.X_CB, left.X_BO_still, expected)) {
     const SeenCorners::Branch still{view.X_CB * left.X_BO_still, NearestFirst(view.seen.xy, expected)};
     (void)StartPose(polygon, view, still, left.filter);
   }
+  hypotheses.slipped = false;
 }
 
-// Fits all views together, and keeps the hypotheses that fit. True if another one is believed than before.
-bool Compare(const Polygon& polygon, const CornerView& view, PoseHypotheses& hypotheses) noexcept {
+void BeginComparison(const CornerView& view, PoseHypotheses& hypotheses) noexcept {
+  PlateComparison& comparison = hypotheses.comparison;
+  comparison = PlateComparison{};
+  comparison.runs = true;
+  comparison.newest = SeePlate(view);
+  TakeIntoMean(comparison.newest, hypotheses.plate_mean);
+  hypotheses.plate.views.Keep(comparison.newest);
+}
+
+// All hypotheses are fitted: keeps those that fit.
+void EndComparison(const Polygon& polygon, PoseHypotheses& hypotheses) noexcept {
   auto& plate = hypotheses.plate;
-  const PlateView newest = SeePlate(view);
-  TakeIntoMean(newest, hypotheses.plate_mean);
-  plate.views.Keep(newest);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(plate.count); ++i) {
-    PlatePose& pose = plate.all[i];
-    FitPose(polygon, plate.views.kept(), hypotheses.plate_mean, pose.X_BO_still);
-    pose.still_misfit = MisfitOf(polygon, plate.views.kept(), newest, pose.X_BO_still);
-  }
-  const bool changed = plate.Choose(static_cast<double>((plate.views.count + 1) * newest.xy.size()));
+  const PlateView& newest = hypotheses.comparison.newest;
+  hypotheses.comparison.runs = false;
+  hypotheses.comparison.ended = true;
+  (void)plate.Choose(static_cast<double>((plate.views.count + 1) * newest.xy.size()));
   if (plate.stillness == Stillness::kMoving) {
     plate.views.Forget();
     plate.views.Keep(newest);
@@ -94,9 +112,8 @@ bool Compare(const Polygon& polygon, const CornerView& view, PoseHypotheses& hyp
       plate.all[i].X_BO_still = plate.all[i].filter.X_BO;
     }
   } else {
-    CatchSlip(polygon, view, newest, hypotheses);
+    hypotheses.slipped = HasSlipped(polygon, hypotheses);
   }
-  return changed;
 }
 
 }  // namespace
@@ -133,15 +150,22 @@ Verdict TakeView(const hal::FeatureMeasurement& measurement, const model::Pose& 
     best.normal_B = view.normal_B[static_cast<std::size_t>(Nearer(view, before.normal_B))];
   }
   disc.views.Keep(view);
-  return {hal::Intake::kTaken, Nearer(view, best.normal_B), !before.IsSame(best)};
+  // The normal of all views is better than that of this one. Seen nearly from the front, a disc's tilt is
+  // lost in the noise of its outline.
+  const int nearer = Nearer(view, best.normal_B);
+  const model::Vec3& seen = view.normal_B[static_cast<std::size_t>(nearer)];
+  // Both half axes of the outline, a and a cos(tilt), tell the size.
+  const double cosine = std::fabs(best.normal_B.dot(view.ray_B));
+  const double farther = cosine > kSteepest ? 2.0 / (1.0 + std::fabs(seen.dot(view.ray_B)) / cosine) : 1.0;
+  return {hal::Intake::kTaken, nearer, !before.IsSame(best), farther,
+          OffMiddle(best.normal_B, view.ray_B) - OffMiddle(seen, view.ray_B)};
 }
 
 Verdict TakeView(const config::PredictConfig& config, const Polygon& polygon, const CornerView& view,
                  PoseHypotheses& hypotheses) noexcept {
   auto& plate = hypotheses.plate;
   if (plate.count == 0) {
-    return Start(polygon, view, hypotheses) ? TakenBy(view, hypotheses, false)
-                                            : Verdict{hal::Intake::kWrongKind};
+    return Start(polygon, view, hypotheses) ? TakenBy(view, hypotheses) : Verdict{hal::Intake::kWrongKind};
   }
   if (view.stamp_ns <= hypotheses.stamp_ns) {
     return {hal::Intake::kTooOld};
@@ -155,16 +179,47 @@ Verdict TakeView(const config::PredictConfig& config, const Polygon& polygon, co
   }
   if (!fits) {
     if (hypotheses.rejected_in_row + 1 >= config.gate_rejects_max && Start(polygon, view, hypotheses)) {
-      return TakenBy(view, hypotheses, true);
+      return TakenBy(view, hypotheses);
     }
     hypotheses.rejected_in_row = std::min(hypotheses.rejected_in_row + 1, config.gate_rejects_max);
     return {hal::Intake::kOutlier};
   }
-  const bool changed = Compare(polygon, view, hypotheses);
+  CatchSlip(polygon, view, hypotheses);
+  if (!hypotheses.comparison.runs) {
+    BeginComparison(view, hypotheses);
+  }
   hypotheses.stamp_ns = view.stamp_ns;
   hypotheses.rejected_in_row = 0;
   hypotheses.accepted = std::min(hypotheses.accepted + 1, config.accepted_min);
-  return TakenBy(view, hypotheses, changed);
+  return TakenBy(view, hypotheses);
+}
+
+bool GoOn(const Polygon& polygon, PoseHypotheses& hypotheses) noexcept {
+  PlateComparison& comparison = hypotheses.comparison;
+  if (!comparison.runs) {
+    comparison.ended = false;
+    return false;
+  }
+  PlatePose& pose = hypotheses.plate.all[static_cast<std::size_t>(comparison.pose)];
+  const auto views = hypotheses.plate.views.kept();
+  const auto count = static_cast<std::int32_t>(views.size()) + 1;
+  if (comparison.next < count) {
+    const std::int32_t end = std::min<std::int32_t>(comparison.next + PlateComparison::kViewsInTick, count);
+    for (; comparison.next < end; ++comparison.next) {
+      const std::int32_t i = comparison.next;
+      comparison.fit.Add(polygon, i == 0 ? hypotheses.plate_mean : views[static_cast<std::size_t>(i - 1)],
+                         pose.X_BO_still);
+    }
+    return true;
+  }
+  comparison.fit.Improve(pose.X_BO_still);
+  pose.still_misfit = MisfitOf(polygon, views, comparison.newest, pose.X_BO_still);
+  comparison.fit = PlateFit{};
+  comparison.next = 0;
+  if (++comparison.pose >= hypotheses.plate.count) {
+    EndComparison(polygon, hypotheses);
+  }
+  return true;
 }
 
 FlatMotion MotionAt(const config::PredictConfig& config, const PoseHypotheses& hypotheses,

@@ -10,6 +10,7 @@
 // A ball has no such ambiguity.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 
 #include "firmware/core/estimate/disc_fit.hpp"
@@ -48,6 +49,19 @@ struct PlatePose {
   [[nodiscard]] bool IsSame(const PlatePose& other) const noexcept;
 };
 
+// The comparison of a flat target's hypotheses with all views. It takes more than a tick may take, so each
+// tick does a share of it, with the same result. A view that comes meanwhile only updates the filters.
+struct PlateComparison {
+  static constexpr int kViewsInTick = 4;  // that are fitted
+
+  bool runs = false;
+  bool ended = false;     // in this tick
+  std::int32_t pose = 0;  // number of the hypothesis
+  std::int32_t next = 0;  // view to fit it to: 0 is the mean, then the kept ones; then its misfit is computed
+  PlateFit fit;
+  PlateView newest;  // with which it began
+};
+
 // A target has one kind. The other kind's set stays empty.
 struct PoseHypotheses {
   HypothesisSet<DiscNormal, 3, DiscView, 12> disc;
@@ -55,6 +69,8 @@ struct PoseHypotheses {
 
   // of a flat target
   PlateView plate_mean;  // of the frames since the camera stands still
+  PlateComparison comparison;
+  bool slipped = false;  // the believed pose's filter has slipped to another pose
   int accepted = 0;      // views since the start, up to accepted_min
   int rejected_in_row = 0;
   std::int64_t stamp_ns = 0;  // of the last accepted view
@@ -64,7 +80,11 @@ struct PoseHypotheses {
 struct Verdict {
   hal::Intake intake = hal::Intake::kTaken;
   int pose = -1;         // the measurement's pose nearest to the believed one; -1: it has none
-  bool changed = false;  // another hypothesis is believed than before
+  bool changed = false;  // of a disc: another hypothesis is believed than before
+  // Of a disc: its distance relative to the measured pose's; then its centre in B is off by this times
+  // radius^2 / distance.
+  double farther = 1.0;
+  model::Vec3 off_B = model::Vec3::Zero();
 };
 
 // Adds a measurement of a circle with both its poses, by a camera at `X_BC`. The first view's first pose is
@@ -73,10 +93,13 @@ struct Verdict {
 [[nodiscard]] Verdict TakeView(const hal::FeatureMeasurement& measurement, const model::Pose& X_BC,
                                PoseHypotheses& hypotheses) noexcept;
 
-// Adds a view of a flat target. Rejects a view that fits no hypothesis as an outlier. After too many in a
-// row, the hypotheses restart with the poses of that view. Real-time: yes.
+// Adds a view of a flat target, and begins to compare it. Rejects a view that fits no hypothesis as an
+// outlier. After too many in a row, the hypotheses restart with the poses of that view. Real-time: yes.
 [[nodiscard]] Verdict TakeView(const config::PredictConfig& config, const features::Polygon& polygon,
                                const CornerView& view, PoseHypotheses& hypotheses) noexcept;
+
+// Call in each tick: does a share of the comparison. False if there is nothing to do. Real-time: yes.
+bool GoOn(const features::Polygon& polygon, PoseHypotheses& hypotheses) noexcept;
 
 // The believed pose of a flat target at `now_ns`. For a target at rest it is the pose that fits all views.
 // While the camera stands still, the corner errors are constant. A filter would treat each view as

@@ -2,8 +2,10 @@
 #include "firmware/core/estimate/predict.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "firmware/core/estimate/measurement_doubt.hpp"
+#include "firmware/core/estimate/rolling_shutter.hpp"
 #include "firmware/core/model/rotation.hpp"
 
 namespace fovea::estimate {
@@ -12,12 +14,24 @@ namespace {
 // A measurement, and the camera's pose at its stamp.
 struct Seen {
   const hal::FeatureMeasurement& measurement;
+  double late;        // how much older than its stamp [s]
+  double late_sigma;  // of it, for a filter that starts [s]
   model::Pose X_BC;
-  model::Mat6 doubt;  // of that pose, as a twist of C
+  model::Vec6 V_BC_C;  // the camera's twist then
+  model::Mat6 doubt;   // of that pose, as a twist of C
+  // Rolling shutter, of a ball or disc: how far its measured centre is off because of the camera's motion
+  // [m], and per velocity of the target [s].
+  model::Vec3 shift_C = model::Vec3::Zero();
+  model::Mat3 shift_by_v_C = model::Mat3::Zero();
 };
 
 hal::Intake TakePose(const config::ServoConfig& config, const Seen& seen, CornerView& view,
                      PredictState& state) noexcept {
+  view.late = seen.late;
+  view.late_sigma = seen.late_sigma;
+  view.row_time = config.predict.row_time;
+  view.row_y = config.predict.row_y;
+  view.V_BC_C = seen.V_BC_C;
   view.doubt = seen.doubt;
   view.stamp_ns = seen.measurement.stamp_ns;
   view.X_CB = seen.X_BC.Inverse();
@@ -31,30 +45,38 @@ hal::Intake TakePose(const config::ServoConfig& config, const Seen& seen, Corner
 
 hal::Intake TakePosition(const config::ServoConfig& config, const Seen& seen, features::LiftedTarget lifted,
                          PredictState& state) noexcept {
-  const model::Mat3& R = seen.X_BC.R;
+  lifted.p_CO_C -= seen.shift_C;
   const bool is_disc = features::TraitsOf(config.feature.target).body == features::TargetBody::kDisc;
+  bool changed = false;  // the centre's estimate belongs to the disc's other pose
   if (is_disc && seen.measurement.num_poses == 2) {
     const Verdict verdict = TakeView(seen.measurement, seen.X_BC, state.hypotheses);
     const auto& p = seen.measurement.poses[static_cast<std::size_t>(verdict.pose)].p_CO_C;
-    lifted.p_CO_C = {p[0], p[1], p[2]};
-    if (verdict.changed) {  // the centre's estimate belongs to the other pose
-      const int accepted = state.filter.accepted;
-      state.filter = TargetFilter{};
-      const hal::Intake intake =
-          Update(config.predict,
-                 {seen.measurement.stamp_ns, seen.X_BC * lifted.p_CO_C, R * lifted.cov_p * R.transpose()},
-                 state.filter);
-      state.filter.accepted = std::max(accepted, 1);
-      state.X_CO_meas.p = lifted.p_CO_C;
-      return intake;
-    }
+    const double size = config.feature.radius * config.feature.radius;
+    lifted.p_CO_C = verdict.farther * model::Vec3(p[0], p[1], p[2]);
+    lifted.p_CO_C += size / lifted.p_CO_C.norm() * (seen.X_BC.R.transpose() * verdict.off_B) - seen.shift_C;
+    changed = verdict.changed;
   }
   // The camera's twist [v; w] moves the target's place by v + w x p_CO_C.
+  const model::Mat3& R = seen.X_BC.R;
   Eigen::Matrix<double, 3, 6> by_camera;
   by_camera << model::Mat3::Identity(), -model::CrossMatrix(lifted.p_CO_C);
   const model::Mat3 doubt_C = by_camera * seen.doubt * by_camera.transpose();
-  const MeasuredCentre centre{seen.measurement.stamp_ns, seen.X_BC * lifted.p_CO_C,
-                              R * lifted.cov_p * R.transpose(), R * doubt_C * R.transpose()};
+  const MeasuredCentre centre{.stamp_ns = seen.measurement.stamp_ns,
+                              .p_BO = seen.X_BC * lifted.p_CO_C,
+                              .cov_B = R * lifted.cov_p * R.transpose(),
+                              .doubt_B = R * doubt_C * R.transpose(),
+                              .late = seen.late,
+                              .late_sigma = seen.late_sigma,
+                              .v_BO_held = R * (by_camera * seen.V_BC_C),
+                              .shift_by_v_B = R * seen.shift_by_v_C * R.transpose()};
+  if (changed) {
+    const int accepted = state.filter.accepted;
+    state.filter = TargetFilter{};
+    const hal::Intake intake = Update(config.predict, centre, state.filter);
+    state.filter.accepted = std::max(accepted, 1);
+    state.X_CO_meas.p = lifted.p_CO_C;
+    return intake;
+  }
   const hal::Intake intake = Update(config.predict, centre, state.filter);
   if (intake == hal::Intake::kTaken) {
     state.X_CO_meas.p = lifted.p_CO_C;
@@ -99,6 +121,40 @@ FlatMotion BelievedMotion(const config::ServoConfig& config, const PredictState&
   return {{model::Mat3::Identity(), motion.p_BO}, motion.v_BO, model::Vec3::Zero()};
 }
 
+// Moves the measurement to the time of its stamp, as if the target stood still in B: the corners of `view`,
+// or the centre by `seen`.shift_C. The filters add the target's own motion.
+void CorrectRows(const config::ServoConfig& config, std::int64_t taken_ns,
+                 const features::LiftedTarget& lifted, const PredictState& state, Seen& seen,
+                 CornerView& view) noexcept {
+  const features::TargetFeature& feature = config.feature;
+  const auto from_here = [&](const model::Pose& X_CO) {
+    return SeenFrom(seen.X_BC, seen.V_BC_C, X_CO, model::Vec3::Zero(), model::Vec3::Zero());
+  };
+  if (!feature.SeesOrientation()) {
+    seen.shift_by_v_C = features::TraitsOf(feature.target).body == features::TargetBody::kDisc
+                            ? DiscShiftByVelocity(config.predict, lifted.p_CO_C)
+                            : SphereShiftByVelocity(config.predict, feature.radius, lifted.p_CO_C);
+    seen.shift_C = seen.shift_by_v_C * from_here({model::Mat3::Identity(), lifted.p_CO_C}).v;
+  } else if (state.hypotheses.plate.count > 0) {
+    const model::Pose X_BO = BelievedMotion(config, state, taken_ns).X_BO;
+    MoveCornersToStamp(config.predict, from_here(seen.X_BC.Inverse() * X_BO), view.seen.xy);
+  } else if (view.seen.num_branches > 0) {
+    MoveCornersToStamp(config.predict, from_here(view.seen.branches[0].X_CO), view.seen.xy);
+  }
+}
+
+StampError Lateness(const config::ServoConfig& config, const PredictState& state,
+                    std::int64_t now_ns) noexcept {
+  if (state.knowledge == Knowledge::kNone) {
+    return LatenessAt(state.lateness, now_ns, config.predict.stamp_offset, config.predict.stamp_sigma);
+  }
+  if (config.feature.SeesOrientation()) {
+    const PoseFilter& filter = state.hypotheses.plate.best().filter;
+    return {filter.late, std::sqrt(std::max(filter.P(PoseFilter::kLate, PoseFilter::kLate), 0.0))};
+  }
+  return {state.filter.late, std::sqrt(state.filter.P_late)};
+}
+
 // Extrapolates `belief` to `now_ns` without acceleration.
 FlatMotion GoesOn(const LastBelief& belief, std::int64_t now_ns) noexcept {
   const double dt = 1e-9 * static_cast<double>(now_ns - belief.stamp_ns);
@@ -135,8 +191,12 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   const auto camera_at = [&](std::int64_t time_ns, model::Pose& X) {
     return CameraPoseAt(state.history, config.arm, config.X_EC, time_ns, X);
   };
+  // No picture is from the future.
+  const StampError lateness = Lateness(config, state, measurement.stamp_ns);
+  const double late = std::max(lateness.mean_s, hal::ToSeconds(measurement.stamp_ns - now_ns));
+  const std::int64_t taken_ns = measurement.stamp_ns - static_cast<std::int64_t>(late * 1e9);
   model::Pose X_BC;
-  if (!camera_at(measurement.stamp_ns, X_BC)) {
+  if (!camera_at(taken_ns, X_BC)) {
     return hal::Intake::kTooOld;
   }
   const bool is_flat = config.feature.SeesOrientation();
@@ -149,7 +209,7 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   const model::Vec3 p_CO_C = is_flat ? PlaceOfCorners(view.seen, X_BC, state.hypotheses) : lifted.p_CO_C;
 
   WatchPicture(config.predict, X_BC, p_CO_C, eye);
-  PictureView picture{measurement.stamp_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
+  PictureView picture{taken_ns - measurement.same_for_ns, X_BC, X_BC, p_CO_C};
   if (measurement.same_for_ns > 0) {
     // If the history does not reach back that far, the hand's motion counts from now on.
     static_cast<void>(camera_at(picture.since_ns, picture.X_BC_since));
@@ -162,13 +222,25 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
   }
 
   const LastBelief before{now_ns, BelievedMotion(config, state, now_ns)};
-  const Seen seen{measurement, X_BC, MeasurementDoubt(config, state.history, measurement.stamp_ns, X_BC)};
+  // A filter that begins anew though a target is known may do so because of a wrong lateness.
+  const double late_sigma =
+      state.knowledge == Knowledge::kNone ? lateness.sigma_s : config.predict.stamp_sigma;
+  Seen seen{measurement,
+            late,
+            late_sigma,
+            X_BC,
+            CameraTwistAt(state.history, config.arm, config.X_EC, taken_ns, X_BC),
+            MeasurementDoubt(config, state.history, taken_ns, X_BC)};
+  if (config.predict.row_time > 0.0) {
+    CorrectRows(config, taken_ns, lifted, state, seen, view);
+  }
   const hal::Intake intake =
       is_flat ? TakePose(config, seen, view, state) : TakePosition(config, seen, lifted, state);
   if (intake != hal::Intake::kTaken) {
     return intake;
   }
   NoteTaken(HasEnough(config, state), before, state);
+  state.lateness = {true, measurement.stamp_ns, Lateness(config, state, measurement.stamp_ns)};
   if (state.knowledge != Knowledge::kBegunAnew) {
     state.accepted_stamp_ns = measurement.stamp_ns;
   }
@@ -178,6 +250,7 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
 Prediction Predict(const config::ServoConfig& config, std::int64_t now_ns, const model::Pose& X_BC,
                    const PredictState& state) noexcept {
   Prediction prediction;
+  prediction.late = Lateness(config, state, now_ns);
   if (state.knowledge == Knowledge::kNone) {
     return prediction;
   }

@@ -11,6 +11,7 @@
 #include "firmware/core/estimate/eye_watch.hpp"
 #include "firmware/core/estimate/joint_history.hpp"
 #include "firmware/core/estimate/pose_hypotheses.hpp"
+#include "firmware/core/estimate/stamp_error.hpp"
 #include "firmware/core/estimate/stuck_picture.hpp"
 #include "firmware/core/estimate/target_filter.hpp"
 #include "firmware/core/model/kinematics.hpp"
@@ -41,10 +42,11 @@ struct PredictState {
   Knowledge knowledge = Knowledge::kNone;
   LastBelief belief;                   // for kBegunAnew
   std::int64_t accepted_stamp_ns = 0;  // of the last measurement in the present estimate
+  LearntLateness lateness;             // of the camera
   // The last measurement itself, for servo.predict = false.
   model::Pose X_CO_meas;
 
-  // Forgets the target. Keeps the history of arm and camera.
+  // Forgets the target. Keeps the history of arm and camera, and the lateness.
   void Reset() noexcept {
     filter = TargetFilter{};
     hypotheses = PoseHypotheses{};
@@ -59,6 +61,7 @@ struct Prediction {
   model::Vec3 p_BO = model::Vec3::Zero();      // now [m]
   model::Mat3 R_BO = model::Mat3::Identity();  // now; of a target whose orientation is seen
   model::Vec3 v_BO = model::Vec3::Zero();      // [m/s]
+  StampError late;                             // of the camera
   features::TargetInCamera seen;               // now: pose and twist in axes of C
 };
 

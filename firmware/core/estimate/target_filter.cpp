@@ -2,10 +2,12 @@
 #include "firmware/core/estimate/target_filter.hpp"
 
 #include <Eigen/LU>  // inverse of a 3x3
+#include <algorithm>
 #include <cmath>
 
 #include "firmware/core/estimate/first_sight.hpp"
 #include "firmware/core/estimate/shortened.hpp"
+#include "firmware/core/estimate/stamp_error.hpp"
 
 namespace fovea::estimate {
 namespace {
@@ -18,18 +20,26 @@ constexpr double kJerkTime = 0.1;  // the configured jerk is a mean over this [s
 
 void StartAt(const MeasuredCentre& measured, TargetFilter& filter) noexcept {
   filter = TargetFilter{};
+  filter.late = measured.late;
+  filter.P_late = measured.late_sigma * measured.late_sigma;
+  // What the lateness adds to the measured place it takes from the state.
+  filter.P_x_late[0] = -filter.P_late * measured.v_BO_held;
   filter.accepted = 1;
   filter.stamp_ns = measured.stamp_ns;
   filter.x[0] = measured.p_BO;
-  filter.P[0][0] = measured.cov_B;
+  filter.P[0][0] = measured.cov_B + filter.P_late * measured.v_BO_held * measured.v_BO_held.transpose();
   filter.P[1][1] = Mat3::Identity() * (kStartSpeedSigma * kStartSpeedSigma);
   filter.P[2][2] = Mat3::Identity() * (kStartAccelerationSigma * kStartAccelerationSigma);
+  // So does the unknown velocity what it adds.
+  filter.P[0][1] = -measured.shift_by_v_B * filter.P[1][1];
+  filter.P[1][0] = filter.P[0][1].transpose();
+  filter.P[0][0] -= filter.P[0][1] * measured.shift_by_v_B.transpose();
 }
 
 // Predicts the estimate over `dt` [s]: x' = F x, P' = F P F^T + Q, with jerk of spectral density q [m^2/s^5].
-void Advance(double dt, double jerk, TargetFilter& filter) noexcept {
+void Advance(const config::PredictConfig& config, double dt, TargetFilter& filter) noexcept {
   const double F[kOrder][kOrder] = {{1.0, dt, 0.5 * dt * dt}, {0.0, 1.0, dt}, {0.0, 0.0, 1.0}};
-  const double q = jerk * jerk * kJerkTime;
+  const double q = config.target_jerk * config.target_jerk * kJerkTime;
   const double dt2 = dt * dt;
   const double dt3 = dt2 * dt;
   const double Q[kOrder][kOrder] = {{q * dt3 * dt2 / 20.0, q * dt2 * dt2 / 8.0, q * dt3 / 6.0},
@@ -50,7 +60,12 @@ void Advance(double dt, double jerk, TargetFilter& filter) noexcept {
       }
       filter.P[i][j] = sum;
     }
+    filter.P_x_late[i].setZero();
+    for (std::size_t k = i; k < kOrder; ++k) {
+      filter.P_x_late[i] += F[i][k] * before.P_x_late[k];
+    }
   }
+  filter.P_late = DriftedVariance(filter.P_late, dt, config.stamp_sigma);
 }
 
 }  // namespace
@@ -58,6 +73,7 @@ void Advance(double dt, double jerk, TargetFilter& filter) noexcept {
 TargetFilter::TargetFilter() noexcept {
   for (std::size_t i = 0; i < kOrder; ++i) {
     x[i].setZero();
+    P_x_late[i].setZero();
     for (std::size_t j = 0; j < kOrder; ++j) {
       P[i][j].setZero();
     }
@@ -74,10 +90,19 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
     return hal::Intake::kTooOld;
   }
   TargetFilter next = filter;
-  Advance(hal::ToSeconds(measured.stamp_ns - filter.stamp_ns), config.target_jerk, next);
+  Advance(config, hal::ToSeconds(measured.stamp_ns - filter.stamp_ns), next);
 
-  const Vec3 innovation = measured.p_BO - next.x[0];
-  const Mat3 S = next.P[0][0] + measured.cov_B;
+  // The state is that of the shown target. Its measured place also depends on where the camera was: with an
+  // error in `late`, it seems to have moved with the camera. And on its velocity, under a rolling shutter.
+  const Mat3& D = measured.shift_by_v_B;
+  const Vec3 innovation =
+      measured.p_BO - next.x[0] - (next.late - measured.late) * measured.v_BO_held - D * next.x[1];
+  std::array<Mat3, kOrder> P_xz;  // the covariance of the state and the place
+  for (std::size_t i = 0; i < kOrder; ++i) {
+    P_xz[i] = next.P[i][0] + next.P_x_late[i] * measured.v_BO_held.transpose() + next.P[i][1] * D.transpose();
+  }
+  const Vec3 P_late_z = next.P_x_late[0] + next.P_late * measured.v_BO_held + D * next.P_x_late[1];
+  const Mat3 S = P_xz[0] + measured.v_BO_held * P_late_z.transpose() + D * P_xz[1] + measured.cov_B;
   const Mat3 S_inverse = S.inverse();
   const double gate2 = config.gate_sigma * config.gate_sigma;
   const auto fits = [&](const Mat3& inverse) { return innovation.dot(inverse * innovation) <= gate2; };
@@ -91,12 +116,14 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
   }
   std::array<Mat3, kOrder> K;
   for (std::size_t i = 0; i < kOrder; ++i) {
-    K[i] = next.P[i][0] * S_inverse;
+    K[i] = P_xz[i] * S_inverse;
     next.x[i] += K[i] * innovation;
   }
+  const Vec3 K_late = S_inverse * P_late_z;
+  next.late += K_late.dot(innovation);
   for (std::size_t i = 0; i < kOrder; ++i) {
     for (std::size_t j = i; j < kOrder; ++j) {
-      next.P[i][j] -= K[i] * S * K[j].transpose();
+      next.P[i][j] -= K[i] * P_xz[j].transpose();
       // Keeps the covariance symmetric over hours of rounding.
       if (i == j) {
         next.P[i][i] = 0.5 * (next.P[i][i] + next.P[i][i].transpose()).eval();
@@ -104,7 +131,10 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
         next.P[j][i] = next.P[i][j].transpose();
       }
     }
+    next.P_x_late[i] -= K[i] * P_late_z;
   }
+  next.P_late = std::max(next.P_late - K_late.dot(P_late_z), 0.0);
+  next.late = CredibleLateness(next.late, config.stamp_offset, config.stamp_sigma);
   next.x[1] = Shortened(next.x[1], config.target_speed_max);
   next.x[2] = Shortened(next.x[2], config.target_acceleration_max);
   next.stamp_ns = measured.stamp_ns;
@@ -118,7 +148,7 @@ hal::Intake Update(const config::PredictConfig& config, const MeasuredCentre& me
 
 TargetMotion MotionAt(const config::PredictConfig& config, const TargetFilter& filter,
                       std::int64_t now_ns) noexcept {
-  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns);
+  const double dt = hal::ToSeconds(now_ns - filter.stamp_ns) + filter.late;
   const Vec3 way = dt * (filter.x[1] + 0.5 * dt * filter.x[2]);
   return {filter.x[0] + Shortened(way, config.target_speed_max * std::fabs(dt)),
           Shortened(filter.x[1] + dt * filter.x[2], config.target_speed_max)};

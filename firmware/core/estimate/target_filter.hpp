@@ -28,14 +28,23 @@ struct TargetFilter {
   std::int64_t stamp_ns = 0;
   std::array<model::Vec3, kOrder> x;  // p_BO [m] and its derivatives
   std::array<Block, kOrder> P;        // covariance of x, block by block
+  // The measurements' common error in time: they are this much older than their stamps [s].
+  double late = 0.0;
+  double P_late = 0.0;                       // its variance [s^2]
+  std::array<model::Vec3, kOrder> P_x_late;  // covariance of x and it
 };
 
 // A measured centre of the target.
 struct MeasuredCentre {
-  std::int64_t stamp_ns = 0;                  // time at which it is valid
-  model::Vec3 p_BO = model::Vec3::Zero();     // [m] in B
-  model::Mat3 cov_B = model::Mat3::Zero();    // of its noise [m^2]
-  model::Mat3 doubt_B = model::Mat3::Zero();  // uncertainty from calibration, for the gate alone [m^2]
+  std::int64_t stamp_ns = 0;                    // of its picture
+  model::Vec3 p_BO = model::Vec3::Zero();       // [m] in B
+  model::Mat3 cov_B = model::Mat3::Zero();      // of its noise [m^2]
+  model::Mat3 doubt_B = model::Mat3::Zero();    // uncertainty from calibration, for the gate alone [m^2]
+  double late = 0.0;                            // p_BO uses the camera's pose this long before the stamp [s]
+  double late_sigma = 0.0;                      // standard deviation of `late` [s]; for a filter that starts
+  model::Vec3 v_BO_held = model::Vec3::Zero();  // then, of a point there that the camera holds [m/s]
+  // Rolling shutter: p_BO is off its place at the stamp by this times the target's velocity [s].
+  model::Mat3 shift_by_v_B = model::Mat3::Zero();
 };
 
 // Adds a measurement. Rejects an outlier; after too many in a row the filter restarts at the newest. Velocity

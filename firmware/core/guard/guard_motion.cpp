@@ -6,6 +6,7 @@
 
 #include "firmware/core/barriers/barrier_speed.hpp"
 #include "firmware/core/barriers/workspace_barrier.hpp"
+#include "firmware/core/guard/approach_velocity.hpp"
 #include "firmware/core/guard/stop_path.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"
 #include "firmware/core/trajectory/velocity_step.hpp"
@@ -122,25 +123,6 @@ LimitSet LimitWorkspace(const config::ServoConfig& config, const model::Vec3& p_
   return limits;
 }
 
-// Acceleration and jerk, joint by joint.
-LimitSet LimitAcceleration(const config::ServoConfig& config, const model::VecN& dq_des,
-                           const model::VecN& ddq_des, trajectory::Reference& reference) noexcept {
-  bool at_a_max = false;
-  bool at_j_max = false;
-  for (int i = 0; i < dq_des.size(); ++i) {
-    const trajectory::JointPace pace = trajectory::PaceOf(config, i);
-    const trajectory::VelocityStep step =
-        trajectory::StepVelocity({reference.q[i], reference.dq[i], reference.ddq[i]}, dq_des[i], ddq_des[i],
-                                 {0.0, pace.ddq_max, pace.dddq_max}, hal::kTickPeriodS);
-    reference.q[i] = step.state.x;
-    reference.dq[i] = step.state.v;
-    reference.ddq[i] = step.state.a;
-    at_a_max = at_a_max || step.at_a_max;
-    at_j_max = at_j_max || step.at_j_max;
-  }
-  return (at_a_max ? Bit(Limit::kJointAcceleration) : 0) | (at_j_max ? Bit(Limit::kJointJerk) : 0);
-}
-
 }  // namespace
 
 MotionWish StopTogether(const config::ServoConfig& config, const trajectory::Reference& reference) noexcept {
@@ -183,20 +165,28 @@ LimitSet GuardMotion(const config::ServoConfig& config, const MotionWish& wish, 
     dq.setZero();
   }
 
-  // The largest share of the wish from which a stop is proved, found by halving; the last try is braking.
+  // The largest share of the wish from which a stop is proved, found by halving; the last try is braking. The
+  // whole wish is approached by all joints together, to keep its direction. Not where a barrier has bent it
+  // or the hand is at its own speed limit: there each joint must follow as fast as it can. (A stop's wish has
+  // all joints in step.)
   constexpr int kTries = 5;
+  constexpr LimitSet kShapes = Bit(Limit::kJointPosition) | Bit(Limit::kWorkspace) |
+                               Bit(Limit::kRotationSpeed) | Bit(Limit::kCartesianSpeed);
+  bool together = (limits & kShapes) == 0 && !wish.stops;
   double share = 1.0;
   trajectory::Reference next;
   LimitSet acceleration_limits = 0;
   for (int i = 0; i < kTries; ++i) {
     next = reference;
-    acceleration_limits = LimitAcceleration(config, share * dq, share * ddq, next);
+    acceleration_limits = together ? ApproachTogether(config, dq, ddq, next)
+                                   : ApproachAlone(config, share * dq, share * ddq, next);
     const LimitSet passed = share > 0.0 ? LimitsPassed(config, next, reference.q, reference_poses) : 0;
     if (passed == 0) {
       break;
     }
     limits |= passed;
     share = i + 2 < kTries ? 0.5 * share : 0.0;
+    together = false;
   }
   reference = next;
   return limits | acceleration_limits;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "firmware/core/barriers/levers.hpp"
 #include "firmware/core/barriers/solid_barriers.hpp"
 #include "firmware/core/model/kinematics.hpp"
 #include "firmware/core/trajectory/velocity_change.hpp"
@@ -38,33 +39,6 @@ StopPlan PlanAll(const config::ServoConfig& config, const trajectory::Reference&
   return plan;
 }
 
-using PerJoint = std::array<double, model::kMaxJoints>;
-
-// The largest travel of any point of arm and hand per travel of each joint: the point's distance from the
-// joint's axis, bounded by the lengths of the links between them; 1 for a prismatic joint.
-PerJoint Levers(const model::ArmModel& arm, const config::HandShape& hand) noexcept {
-  PerJoint levers{};
-  double reach = 0.0;  // of the parts bolted to the end effector
-  for (int i = 0; i < hand.num_balls; ++i) {
-    reach = std::max(reach, hand.balls[static_cast<std::size_t>(i)].p_EP.norm());
-  }
-  double length = arm.X_LnE.p.norm() + reach;  // of the links from here on
-  for (int i = arm.num_joints - 1; i >= 0; --i) {
-    const auto k = static_cast<std::size_t>(i);
-    const model::Capsule& body = arm.shape.bodies[k + 1];
-    length = std::max({length, body.p_LA.norm(), body.p_LB.norm()});
-    const model::Joint& joint = arm.joints[k];
-    if (joint.type == model::JointType::kRevolute) {
-      levers[k] = length;
-    } else {
-      levers[k] = 1.0;
-      length += std::max(std::fabs(joint.q_min), std::fabs(joint.q_max));
-    }
-    length += joint.X_PJ.p.norm();
-  }
-  return levers;
-}
-
 // The stop as a function of time.
 class StopWay {
  public:
@@ -72,7 +46,7 @@ class StopWay {
       : config_(config),
         reference_(reference),
         plan_(PlanAll(config, reference)),
-        levers_(Levers(config.arm, config.guard.hand)) {}
+        levers_(barriers::Levers(config.arm, config.guard.hand)) {}
 
   // The tick's own step precedes the continuous motion.
   [[nodiscard]] double Duration() const noexcept { return plan_.duration_s + hal::kTickPeriodS; }
@@ -117,7 +91,7 @@ class StopWay {
   const config::ServoConfig& config_;
   const trajectory::Reference& reference_;
   StopPlan plan_;
-  PerJoint levers_;
+  barriers::PerJoint levers_;
 };
 
 // The arm's barriers, each with its margin. Past a barrier the arm may only come back.

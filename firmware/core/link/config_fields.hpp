@@ -105,6 +105,9 @@ void ArmFields(Archive& a, T& arm) noexcept {
     a.Count(pair.near, model::ArmShape::kMostBodies - 1);
     a.Count(pair.far, model::ArmShape::kMostBodies - 1);
   }
+  for (auto& j : arm.joints) {  // last, so that a log without them can be read
+    a(j.rotor_inertia);
+  }
 }
 
 }  // namespace fovea::link

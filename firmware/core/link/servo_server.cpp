@@ -137,6 +137,9 @@ void ServoServer::TakeInputsByTimer(const Frame& frame) noexcept {
     if (!received_.tuning.IsAsked()) {
       received_.tuning = inputs_.tuning;
     }
+    if (!received_.plan.IsThere()) {
+      received_.plan = inputs_.plan;
+    }
   }
   if (received_.request != task::Request::kNone) {
     requests_.Put(received_.request);
@@ -188,6 +191,7 @@ void ServoServer::TickByTimer(std::int32_t missed_ticks) noexcept {
     inputs_.motion = moves::MotionCommand{};
     inputs_.change_law = false;
     inputs_.tuning = {};
+    inputs_.plan = {};
   }
   inputs_.request = requests_.Take();
   fresh_ = false;

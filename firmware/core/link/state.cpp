@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "firmware/core/link/state_fields.hpp"
+#include "firmware/core/trajectory/plan_request.hpp"
 
 namespace fovea::link {
 namespace {
@@ -66,6 +67,14 @@ class Mixer {
   std::uint64_t next_ = 0x13198A2E03707344U;
 };
 
+// True unless the arm is on a plan that is not whole.
+bool HasItsPlan(const task::ServoState& state) noexcept {
+  const trajectory::Plan& plan = state.plans.plan();
+  return state.way.note.way != hal::Way::kPlan ||
+         (plan.IsFound() && plan.IsSound() && state.plans.received() == plan.NumNumbers() &&
+          plan.num_joints == state.way.q_end.size() && plan.num_joints == state.way.shift.size());
+}
+
 template <class Archive, class T>
 void FieldsOfDemand(Archive& a, T& demand) noexcept {
   a.Choice(demand.arm_status, kNumStatusCodes);
@@ -77,8 +86,11 @@ void FieldsOfDemand(Archive& a, T& demand) noexcept {
 Bytes Encode(const Demand& message, Storage storage) noexcept {
   FieldWriter writer(storage);
   FieldsOfDemand(writer, message);
-  if (message.tuning.IsAsked()) {
+  if (message.tuning.IsAsked() || message.plan.IsThere()) {
     TuningFields(writer, message.tuning);
+  }
+  if (message.plan.IsThere()) {
+    PlanPartFields(writer, message.plan);
   }
   return writer.ok() ? writer.written() : Bytes{};
 }
@@ -87,8 +99,12 @@ bool Decode(Bytes bytes, Demand& message) noexcept {
   FieldReader reader(bytes);
   FieldsOfDemand(reader, message);
   message.tuning = {};
+  message.plan = {};
   if (!reader.Done()) {
     TuningFields(reader, message.tuning);
+  }
+  if (!reader.Done()) {
+    PlanPartFields(reader, message.plan);
   }
   return reader.Done();
 }
@@ -102,19 +118,22 @@ Bytes Encode(const task::ServoState& state, Storage storage) noexcept {
 bool Decode(Bytes bytes, task::ServoState& state) noexcept {
   FieldReader reader(bytes);
   EachGroup(state, [&reader](Pace, const char*, const auto& fields) { fields(reader); });
-  return reader.Done();
+  const estimate::PoseHypotheses& poses = state.predict.hypotheses;
+  const bool compares = !poses.comparison.runs || poses.comparison.pose < poses.plate.count;
+  return reader.Done() && HasItsPlan(state) && compares;
 }
 
 std::uint64_t DigestOf(const config::ServoConfig& config, const task::ServoState& state,
                        bool measured) noexcept {
   const hal::Mode mode = state.mode.mode;
   const bool tracks = mode == hal::Mode::kTrack || mode == hal::Mode::kCoast;
-  const bool seeks =
-      tracks && control::SeeksGoalPosture(config) && (!control::SeeksWhenIdle(config) || state.way.preferred);
+  const bool seeks = tracks && trajectory::HasGoalPosture(config);
   const auto counts = [&](Pace pace) {
     switch (pace) {
       case Pace::kTick: return true;
-      case Pace::kMeasurement: return measured;
+      case Pace::kMeasurement:
+        return measured || state.predict.hypotheses.comparison.runs ||
+               state.predict.hypotheses.comparison.ended;
       case Pace::kSeeking: return seeks;
       case Pace::kMoving: return mode == hal::Mode::kMove;
       case Pace::kTuning: return state.tuning.active;

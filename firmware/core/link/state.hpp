@@ -16,15 +16,17 @@ struct Demand {
   bool change_law = false;
   config::MotionLawKind law = config::MotionLawKind::kComputedTorque;
   config::Tuning tuning;
+  trajectory::PlanPart plan;
 
   // True if the arm answered and nothing was requested.
   [[nodiscard]] bool IsPlain() const noexcept {
     return arm_status == hal::StatusCode::kOk && request == task::Request::kNone &&
-           motion.kind == moves::MotionKind::kNone && !change_law && !tuning.IsAsked();
+           motion.kind == moves::MotionKind::kNone && !change_law && !tuning.IsAsked() && !plan.IsThere();
   }
 };
-inline constexpr std::size_t kMaxDemand = 320;  // bytes
-// The key that changes is last, and only written if there is one: older logs end before it.
+inline constexpr std::size_t kMaxDemand = 784;  // bytes
+// The key that changes and the plan's part are last, and only written if there is one: older logs end before
+// them.
 [[nodiscard]] Bytes Encode(const Demand& message, Storage storage) noexcept;
 [[nodiscard]] bool Decode(Bytes bytes, Demand& message) noexcept;
 

@@ -4,11 +4,10 @@
 // Add a new field of a struct here too; state_test.cpp checks the structs' sizes.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <span>
 
+#include "firmware/core/link/estimate_fields.hpp"
 #include "firmware/core/link/fields.hpp"
 #include "firmware/core/link/tick_fields.hpp"
 #include "firmware/core/task/servo_task.hpp"
@@ -18,34 +17,12 @@ namespace fovea::link {
 // When a group can change, so that the digest must include it.
 enum class Pace : std::uint8_t {
   kTick,         // in every tick
-  kMeasurement,  // in a tick that takes a measurement
+  kMeasurement,  // in a tick that takes a measurement, and while its poses are compared
   kSeeking,      // while the servo tracks a target and searches for a posture
   kMoving,       // in mode Move
   kTuning,       // in a tick with a request to change a key, and while a key moves
   kFollows,      // follows from inputs and the other groups alone
 };
-
-// Entries of a size that is set at run time, up to the capacity.
-template <class Archive, class Matrix>
-void SizedEntries(Archive& a, Matrix& m) noexcept {
-  auto rows = static_cast<std::int32_t>(m.rows());
-  auto cols = static_cast<std::int32_t>(m.cols());
-  a.Count(rows, Matrix::MaxRowsAtCompileTime);
-  if constexpr (Matrix::ColsAtCompileTime == Eigen::Dynamic) {
-    a.Count(cols, Matrix::MaxColsAtCompileTime);
-  }
-  if constexpr (!std::is_const_v<Matrix>) {
-    m.resize(rows, cols);
-  }
-  Row(a, m.data(), static_cast<std::size_t>(m.size()));
-}
-
-// The first `count` of `values`; the others are never used.
-template <class Array>
-auto FirstOf(Array& values, int count) noexcept {
-  const int size = static_cast<int>(values.size());
-  return std::span(values).first(static_cast<std::size_t>(std::clamp(count, 0, size)));
-}
 
 template <class Archive, class T>
 void InputStateFields(Archive& a, T& s) noexcept {
@@ -75,12 +52,15 @@ void EncoderWatchFields(Archive& a, T& w) noexcept {
     a(joint.speed);
     a(joint.way);
     a(joint.travel);
+    a.Int(joint.unseen_ticks);
     a(joint.q_last);
     a(joint.dq_last);
     a(joint.change_last);
     a.Int(joint.flickers);
     a.Int(joint.same_ticks);
     a(joint.is_noisy);
+    a(joint.noise2);
+    a.Int(joint.noise_ticks);
   }
 }
 
@@ -99,127 +79,48 @@ void ModeFields(Archive& a, T& s) noexcept {
   Entries(a, s.R_BC_held);
 }
 
-template <class Archive, class T>
-void TargetFilterFields(Archive& a, T& f) noexcept {
-  a.Int(f.accepted);
-  a.Int(f.rejected_in_row);
-  a(f.stamp_ns);
-  for (auto& x : f.x) {
-    Entries(a, x);
-  }
-  for (auto& row : f.P) {
-    for (auto& block : row) {
-      Entries(a, block);
-    }
-  }
-}
-
-template <class Archive, class T>
-void DiscViewFields(Archive& a, T& view) noexcept {
-  for (auto& normal : view.normal_B) {
-    Entries(a, normal);
-  }
-  Entries(a, view.ray_B);
-  a(view.weight);
-}
-
-template <class Archive, class T>
-void PlateViewFields(Archive& a, T& view) noexcept {
-  PoseFields(a, view.X_CB);
-  SizedEntries(a, view.xy);
-  a(view.variance);
-  a.Int(view.frames);
-}
-
-template <class Archive, class T>
-void PlatePoseFields(Archive& a, T& pose) noexcept {
-  a(pose.filter.stamp_ns);
-  PoseFields(a, pose.filter.X_BO);
-  Entries(a, pose.filter.v_BO_B);
-  Entries(a, pose.filter.a_BO_B);
-  Entries(a, pose.filter.w_BO_B);
-  Entries(a, pose.filter.P);
-  PoseFields(a, pose.X_BO_still);
-  a(pose.motion_misfit);
-}
-
-template <class Archive, class Set>
-void HypothesisSetFields(Archive& a, Set& set) noexcept {
-  a.Count(set.count, Set::kMost);
-  a.Count(set.believed, Set::kMost - 1);
-  a.Choice(set.stillness, estimate::kNumStillness);
-  a.Count(set.views.count, decltype(set.views)::kMost);
-  a(set.views.step);
-}
-
-// Without the misfits to the still pose, which are computed before use.
-template <class Archive, class T>
-void PoseHypothesesFields(Archive& a, T& h) noexcept {
-  HypothesisSetFields(a, h.disc);
-  for (auto& view : FirstOf(h.disc.views.views, h.disc.views.count)) {
-    DiscViewFields(a, view);
-  }
-  for (auto& normal : FirstOf(h.disc.all, h.disc.count)) {
-    Entries(a, normal.normal_B);
-  }
-  HypothesisSetFields(a, h.plate);
-  for (auto& view : FirstOf(h.plate.views.views, h.plate.views.count)) {
-    PlateViewFields(a, view);
-  }
-  for (auto& pose : FirstOf(h.plate.all, h.plate.count)) {
-    PlatePoseFields(a, pose);
-  }
-  PlateViewFields(a, h.plate_mean);
-  a.Int(h.accepted);
-  a.Int(h.rejected_in_row);
-  a(h.stamp_ns);
-}
-
-template <class Archive, class T>
-void GoalPostureFields(Archive& a, T& g) noexcept {
-  a(g.found);
-  a(g.begun);
-  a(g.reached);
-  a(g.downhill);
-  a(g.clear);
-  a.Count(g.turn, 3);
-  a.Count(g.trial_turn, 3);
-  a.Int(g.trial);
-  a.Int(g.step);
-  a(g.last_off);
-  SizedEntries(a, g.q);
-  SizedEntries(a, g.way.q);
-  a.Int(g.way.steps);
-  a(g.way.length);
-  a(g.way.barred);
-  a.Int(g.detour);
-  a.Int(g.detour_steps);
-  a(g.turned);
-  SizedEntries(a, g.q_via);
-  a(g.random);
-  a(g.nearest);
-  a.Count(g.nearest_turn, 3);
-  a(g.nearest_detour);
-  SizedEntries(a, g.q_nearest);
-  SizedEntries(a, g.q_nearest_via);
-  a.Count(g.drops, std::numeric_limits<std::int32_t>::max());
-  for (auto& q : FirstOf(g.q_dropped, g.drops)) {
-    SizedEntries(a, q);
-  }
-}
-
+// Without the note's event, which each tick writes anew, and without `pull`, which follows from q_end.
 template <class Archive, class T>
 void WayFields(Archive& a, T& w) noexcept {
-  GoalPostureFields(a, w.goal);
-  a.Int(w.ticks_to_step);
-  a(w.chosen);
-  a(w.by_joints);
-  a(w.preferred);
+  WayNoteFields(a, w.note);
+  a.Count(w.turn, 3);
+  a(w.turn_known);
+  a(w.is_fresh);
+  a(w.is_new_goal);
+  a(w.planner_late);
+  a(w.keeps_posture);
   a(w.since_ns);
-  a(w.held_ns);
-  a(w.sought_ns);
+  a(w.asked_ns);
   a(w.stalled_ns);
+  a(w.held_ns);
   a(w.least_off);
+  a(w.t);
+  a(w.trust);
+  SizedEntries(a, w.shift);
+  SizedEntries(a, w.q_end);
+  Entries(a, w.p_BO_end);
+}
+
+// 0: nothing is received, or what came was dropped.
+template <class Archive>
+void PlansFields(Archive& a, const trajectory::PlanReceiver& plans) noexcept {
+  const std::int32_t numbers = plans.received() + 1;
+  a.Count(numbers, trajectory::Plan::kMostNumbers + 1);
+  if (numbers > 0) {
+    PlanHeadFields(a, plans.plan());
+    Row(a, plans.plan().points.data(), static_cast<std::size_t>(plans.received()));
+  }
+}
+template <class Archive>
+void PlansFields(Archive& a, trajectory::PlanReceiver& plans) noexcept {
+  trajectory::Plan plan;
+  std::int32_t numbers = 0;
+  a.Count(numbers, trajectory::Plan::kMostNumbers + 1);
+  if (numbers > 0) {
+    PlanHeadFields(a, plan);
+    Row(a, plan.points.data(), static_cast<std::size_t>(numbers - 1));
+  }
+  plans.Restore(plan, numbers - 1);
 }
 
 template <class Archive, class T>
@@ -339,6 +240,8 @@ void EachGroup(State& s, const Visit& visit) noexcept {
     a(s.contact.started);
     SizedEntries(a, s.contact.residual);
     a(s.contact.carried);
+    a.Int(s.push.ticks);
+    SizedEntries(a, s.push.followed);
   });
   visit(Pace::kTick, "encoder watch", [&s](auto& a) {
     EncoderWatchFields(a, s.encoders);
@@ -358,6 +261,10 @@ void EachGroup(State& s, const Visit& visit) noexcept {
   visit(Pace::kMeasurement, "knowledge", [&s](auto& a) {
     a.Choice(s.predict.knowledge, estimate::kNumKnowledge);
     a(s.predict.accepted_stamp_ns);
+    a(s.predict.lateness.known);
+    a(s.predict.lateness.stamp_ns);
+    a(s.predict.lateness.error.mean_s);
+    a(s.predict.lateness.error.sigma_s);
     a(s.predict.belief.stamp_ns);
     PoseFields(a, s.predict.belief.motion.X_BO);
     Entries(a, s.predict.belief.motion.v_BO_B);
@@ -369,8 +276,15 @@ void EachGroup(State& s, const Visit& visit) noexcept {
     Entries(a, s.eye.p_CO_C_last);
     EachOf(a, s.eye.predicted);
     EachOf(a, s.eye.seen);
+    a(s.eye.predicted2);
+    a(s.eye.seen2);
+    a(s.eye.along);
+    a(s.eye.aside);
+    a(s.eye.by_axis2);
+    a.Int(s.eye.shifts);
     a(s.eye.least_error);
     a(s.eye.way);
+    a(s.eye.suspected);
     a(s.eye.doubted);
   });
   visit(Pace::kMeasurement, "target filter", [&s](auto& a) {
@@ -381,6 +295,8 @@ void EachGroup(State& s, const Visit& visit) noexcept {
         [&s](auto& a) { PoseHypothesesFields(a, s.predict.hypotheses); });
   visit(Pace::kTick, "mode", [&s](auto& a) { ModeFields(a, s); });
   visit(Pace::kSeeking, "way to the goal", [&s](auto& a) { WayFields(a, s.way); });
+  visit(Pace::kFollows, "pull of the way", [&s](auto& a) { SizedEntries(a, s.way.pull); });
+  visit(Pace::kFollows, "plan", [&s](auto& a) { PlansFields(a, s.plans); });
   visit(Pace::kTick, "resolved motion", [&s](auto& a) { ResolvedFields(a, s.resolved); });
   visit(Pace::kTick, "reference", [&s](auto& a) {
     ReferenceFields(a, s.reference);

@@ -75,6 +75,34 @@ void TuningFields(Archive& a, T& t) noexcept {
   }
 }
 
+template <class Archive, class T>
+void PlanHeadFields(Archive& a, T& head) noexcept {
+  a.Choice(head.outcome, static_cast<int>(trajectory::kPlanOutcomeWords.size()));
+  a.Choice(head.blocker, hal::kNumLimits);
+  a.Count(head.num_joints, hal::kMaxJoints);
+  a.Int(head.num_points);
+  a.Count(head.turn, 3);
+  a(head.stamp_ns);
+  a(head.period_s);
+  EachOf(a, head.p_BO);
+  EachOf(a, head.q_BO);
+}
+
+// Nothing but the count if there is no part.
+template <class Archive, class T>
+void PlanPartFields(Archive& a, T& part) noexcept {
+  std::int32_t numbers = part.count + 1;
+  a.Count(numbers, trajectory::PlanPart::kMostNumbers + 1);
+  if constexpr (!std::is_const_v<T>) {
+    part.count = numbers - 1;
+  }
+  if (part.IsThere()) {
+    PlanHeadFields(a, part.head);
+    a.Count(part.first, trajectory::Plan::kMostNumbers);
+    Row(a, part.numbers.data(), static_cast<std::size_t>(part.count));
+  }
+}
+
 // All inputs except the arm's status, whose text stays with its driver.
 template <class Archive, class T>
 void InputFields(Archive& a, T& in) noexcept {
@@ -85,6 +113,7 @@ void InputFields(Archive& a, T& in) noexcept {
   }
   DemandFields(a, in);
   TuningFields(a, in.tuning);
+  PlanPartFields(a, in.plan);
   a.Int(in.missed_ticks);
 }
 
@@ -96,6 +125,16 @@ void TuningNoteFields(Archive& a, T& note) noexcept {
     a(note.before);
     a(note.asked);
   }
+}
+
+template <class Archive, class T>
+void WayNoteFields(Archive& a, T& note) noexcept {
+  a.Choice(note.way, hal::kNumWays);
+  a.Choice(note.event, hal::kNumPlanEvents);
+  a.Int(note.plans_asked);
+  a.Int(note.tries);
+  a.Int(note.outcome);
+  EachOf(a, note.normal_B);
 }
 
 template <class Archive, class T>
@@ -115,14 +154,18 @@ void RecordFields(Archive& a, T& r) noexcept {
   EachOf(a, r.p_BO);
   EachOf(a, r.q_BO);
   EachOf(a, r.v_BO);
+  a(r.stamp_late_s);
+  a(r.stamp_late_sigma_s);
   a.Count(r.dim, hal::kMaxFeatureDim);
   EachOf(a, r.s);
   EachOf(a, r.s_star);
   EachOf(a, r.e);
   EachOf(a, r.V_BC_C_cmd);
+  WayNoteFields(a, r.way);
   EachOf(a, r.q_cmd);
   EachOf(a, r.dq_cmd);
   EachOf(a, r.ddq_cmd);
+  EachOf(a, r.tau_ext);
   a(r.command.state_sequence);
   a.Count(r.command.num_joints, hal::kMaxJoints);
   EachOf(a, r.command.tau_cmd);

@@ -26,10 +26,11 @@ struct Joint {
   double ddq_max = 0.0;
   double dddq_max = 0.0;
   double tau_max = 0.0;
-  double dtau_max = 0.0;  // fastest change of the torque command [Nm/s]
-  double viscous = 0.0;   // friction per speed [Nm s/rad]
-  double coulomb = 0.0;   // friction against any motion [Nm]
-  double spring = 0.0;    // that pulls the joint to 0 [Nm/rad]; not part of robot descriptions
+  double dtau_max = 0.0;       // fastest change of the torque command [Nm/s]
+  double viscous = 0.0;        // friction per speed [Nm s/rad]
+  double coulomb = 0.0;        // friction against any motion [Nm]
+  double rotor_inertia = 0.0;  // of the motor's rotor, seen at the joint: times the gear's ratio squared
+  double spring = 0.0;         // that pulls the joint to 0 [Nm/rad]; not part of robot descriptions
 };
 
 struct LinkInertia {

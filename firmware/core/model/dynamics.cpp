@@ -127,6 +127,7 @@ void ComputeDynamics(const ArmModel& model, const ArmPoses& poses, const VecN& d
       dynamics.M(i, j) = m;
       dynamics.M(j, i) = m;
     }
+    dynamics.M(j, j) += model.joints[k].rotor_inertia;
     const Wrench weight{body.mass * model.g_B, Cross(body.h, model.g_B)};
     dynamics.g[j] = -Power(S[k], weight);
   }
@@ -140,6 +141,9 @@ void InverseDynamics(const ArmModel& model, const ArmPoses& poses, const VecN& d
   std::array<LinkInB, kMaxJoints> links;
   PlaceAll(model, poses, S, links);
   NewtonEuler(model, S, links, dq, &ddq, -model.g_B, tau);
+  for (int i = 0; i < model.num_joints; ++i) {
+    tau[i] += model.joints[static_cast<std::size_t>(i)].rotor_inertia * ddq[i];
+  }
 }
 
 }  // namespace fovea::model

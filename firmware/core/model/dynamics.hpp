@@ -4,6 +4,10 @@
 // All spatial quantities are taken about the origin of B in axes of B. There a sum over bodies is a plain
 // sum, without transforms between neighbours: composite rigid bodies for M (Featherstone, Rigid Body Dynamics
 // Algorithms, 2008, ch. 6), recursive Newton-Euler for the rest (ch. 5).
+//
+// A motor's rotor turns with its joint, faster by the gear's ratio. Its inertia, seen at the joint, is added
+// to the diagonal of M (ch. 9.6). The slow turn of its axis with the links, and its gyroscopic torque, are
+// left out, as usual for high ratios; its mass is part of the link that carries the motor.
 #pragma once
 
 #include "firmware/core/model/kinematics.hpp"

@@ -26,4 +26,25 @@ void Attach(const Load& load, ArmModel& arm) noexcept {
   last = Join(last, {load.mass, X_LnE * load.p_ECom, X_LnE.R * load.I_Com_E * X_LnE.R.transpose()});
 }
 
+// With the point's velocity J dq, its mass has the kinetic energy m/2 |J dq|^2, and needs the force
+// m (J ddq + dJ/dt dq - g).
+void AddPointMass(const ArmModel& arm, const ArmPoses& poses, const VecN& dq, const PointMass& extra,
+                  ArmDynamics& dynamics) noexcept {
+  const Vec3 r_B = poses.X_BE.R * extra.p_E;
+  LinearJacobian J;
+  ComputeLinearJacobian(arm, poses, poses.X_BE.p + r_B, J);
+  const Vec6 bias = BiasAcceleration(arm, poses, dq);
+  const Vec3 w = AngularVelocity(arm, poses, dq);
+  const Vec3 a = bias.head<3>() + Cross(bias.tail<3>(), r_B) + Cross(w, Cross(w, r_B));
+  dynamics.M += extra.mass * J.transpose().lazyProduct(J);
+  dynamics.Cdq += extra.mass * J.transpose().lazyProduct(a);
+  dynamics.g -= extra.mass * J.transpose().lazyProduct(arm.g_B);
+}
+
+VecN HoldingTorque(const ArmModel& arm, const ArmPoses& poses, const PointMass& extra) noexcept {
+  LinearJacobian J;
+  ComputeLinearJacobian(arm, poses, poses.X_BE * extra.p_E, J);
+  return -extra.mass * J.transpose().lazyProduct(arm.g_B);
+}
+
 }  // namespace fovea::model

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "firmware/core/model/arm_model.hpp"
+#include "firmware/core/model/dynamics.hpp"
 
 namespace fovea::model {
 
@@ -18,5 +19,19 @@ struct Load {
 
 // Adds `load` to the last link of `arm`. Real-time: yes.
 void Attach(const Load& load, ArmModel& arm) noexcept;
+
+// A mass at a point of the end effector. It may be negative: a load that is lighter than believed.
+struct PointMass {
+  double mass = 0.0;        // [kg]
+  Vec3 p_E = Vec3::Zero();  // [m]
+};
+
+// Adds what `extra` does to `dynamics`, which are those of `arm` without it, at the same `poses` and `dq`.
+// Real-time: yes.
+void AddPointMass(const ArmModel& arm, const ArmPoses& poses, const VecN& dq, const PointMass& extra,
+                  ArmDynamics& dynamics) noexcept;
+
+// The torques [num_joints] that hold `extra` against gravity. Real-time: yes.
+[[nodiscard]] VecN HoldingTorque(const ArmModel& arm, const ArmPoses& poses, const PointMass& extra) noexcept;
 
 }  // namespace fovea::model

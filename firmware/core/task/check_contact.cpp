@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/core/task/check_contact.hpp"
 
-#include <cmath>
-
 #include "firmware/core/motion_laws/friction.hpp"
 
 namespace fovea::task {
 namespace {
 
-// The first joint whose external torque exceeds its limit; -1: none.
-std::int32_t PushedJoint(const config::ServoConfig& config, const model::VecN& residual) noexcept {
-  for (int i = 0; i < residual.size(); ++i) {
-    const double most =
-        config.safety.contact_torque_fraction * config.arm.joints[static_cast<std::size_t>(i)].tau_max;
-    if (!(std::fabs(residual[i]) <= most)) {
-      return i;
-    }
+// The torques in force that move the arm of the model: without those that hold its springs, and without those
+// that hold the part of the load that only the servo knows.
+model::VecN MovingTorque(const config::ServoConfig& config, const ServoState& state) noexcept {
+  model::VecN tau = state.tau_applied - motion_laws::SpringTorque(config.arm, state.q);
+  if (config.load.offset != 0.0) {
+    tau -= model::HoldingTorque(config.arm, state.poses, config::OffsetOf(config.load));
   }
-  return -1;
+  return tau;
 }
 
 }  // namespace
@@ -28,8 +24,11 @@ void CheckContact(const config::ServoConfig& config, const ContactScene& scene, 
     state.contact.started = false;
   } else {
     estimate::ObserveContact(config.safety.contact_gain, state.dynamics, state.dq,
-                             state.tau_applied - motion_laws::SpringTorque(config.arm, state.q),
-                             state.contact);
+                             MovingTorque(config, state), state.contact);
+    estimate::WatchPush(state.contact.residual, state.push);
+  }
+  if (!scene.drives) {
+    state.push = estimate::PushWatch{};
   }
   if (!scene.sound) {
     return;
@@ -44,7 +43,10 @@ void CheckContact(const config::ServoConfig& config, const ContactScene& scene, 
   if (state.blind) {
     check = {hal::Fault::kArmStale, hangs};
   } else if (scene.drives) {
-    if (const std::int32_t pushed = PushedJoint(config, state.contact.residual); pushed >= 0) {
+    const estimate::PushShares limits{config.safety.contact_torque_fraction,
+                                      config.safety.contact_sudden_fraction};
+    const std::int32_t pushed = estimate::PushedJoint(config.arm, limits, state.contact.residual, state.push);
+    if (pushed >= 0) {
       check = {hal::Fault::kContact, pushed};
     }
   }

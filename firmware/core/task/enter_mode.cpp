@@ -9,14 +9,18 @@ void BeginToTrack(ServoState& state) noexcept {
   state.track_since_ns = state.now_ns;
   state.reach.blocked_ns = 0;
   state.eye = estimate::EyeWatch{};
-  state.way = control::WayToGoal{};
+  state.way.Restart();
   state.R_BC_held = state.X_BC.R;
 }
 
 void BeginToHold(ServoState& state) noexcept {
   state.reach.p_BO_unreachable = state.prediction.p_BO;
-  if (state.mode.hold_reason == hal::HoldReason::kTargetLost) {
+  if (state.mode.hold_reason == hal::HoldReason::kTargetLost ||
+      state.mode.hold_reason == hal::HoldReason::kEyeDoubted) {
     state.predict.Reset();
+  }
+  if (state.mode.hold_reason == hal::HoldReason::kEyeDoubted) {
+    state.predict.lateness = estimate::LearntLateness{};  // it was learnt from pictures that are not believed
   }
 }
 
@@ -24,6 +28,7 @@ void BeginToBoot(const ModeChange& change, ServoState& state) noexcept {
   state.inputs.sound_ticks = 0;
   state.holds = false;
   state.contact.Reset(change.num_joints, change.carries_loads);
+  state.push = estimate::PushWatch{};
   state.encoders = estimate::EncoderWatch{};
   state.fault_joint = -1;
   state.stop = guard::FaultStop{};
@@ -40,6 +45,9 @@ void EnterMode(const ModeChange& change, ServoState& state) noexcept {
     state.motion.off.setZero(change.num_joints);
   }
   ForgetMotion(state);
+  if (now != hal::Mode::kTrack && now != hal::Mode::kCoast) {
+    state.way.Restart();
+  }
   switch (now) {
     case hal::Mode::kTrack:
       if (change.before == hal::Mode::kHold) {

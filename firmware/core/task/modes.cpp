@@ -78,7 +78,7 @@ ModeFacts FactsOf(const config::PredictConfig& config, const ModeInputs& inputs,
   f.lost = !inputs.target_known || inputs.feature_age_ns > Ns(config.coast_s);
   f.unreachable = inputs.goal_unreachable;
   f.moved = inputs.target_moved;
-  f.doubted = inputs.eye_doubted;
+  f.doubted = inputs.eye_doubted || (f.lost && inputs.eye_suspected);
   f.motion = inputs.motion_asked && !state.motion_barred;
   f.refused = inputs.motion_refused;
   f.astray = inputs.motion_not_followed;

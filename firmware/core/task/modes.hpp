@@ -28,6 +28,7 @@ struct ModeInputs {
   bool goal_unreachable = false;         // limits kept the arm from the goal for too long
   bool target_moved = false;             // far enough from where it was unreachable to try again
   bool eye_doubted = false;              // the eye cannot steer the arm
+  bool eye_suspected = false;            // the same, if it has lost the target
   bool motion_asked = false;             // a motion is commanded, or not yet finished
   bool motion_refused = false;           // the motion of the previous tick was refused
   bool motion_not_followed = false;      // the arm is too far off it

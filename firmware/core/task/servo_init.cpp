@@ -44,6 +44,9 @@ Status CheckArmModel(const model::ArmModel& arm) noexcept {
     if (!(joint.viscous >= 0.0 && joint.coulomb >= 0.0 && joint.spring >= 0.0)) {
       return Status(StatusCode::kOutOfRange, "joint friction or spring");
     }
+    if (!(joint.rotor_inertia >= 0.0 && std::isfinite(joint.rotor_inertia))) {
+      return Status(StatusCode::kOutOfRange, "rotor inertia");
+    }
   }
   return Status::Ok();
 }
@@ -119,6 +122,9 @@ Status CheckGuard(const config::GuardConfig& guard) noexcept {
 Status CheckTogether(const config::ServoConfig& config) noexcept {
   if (!config::IsStaleBeforeLost(config.predict)) {
     return Status(StatusCode::kOutOfRange, "servo.stale_s");
+  }
+  if (!config::IsPossible(config.load)) {
+    return Status(StatusCode::kOutOfRange, "servo.load_offset");
   }
   // Half of the stability limit of the joints' error (Routh), so that the true gain may be twice as large.
   if (!(config.motion_law.integral <= config.motion_law.zeta * config.motion_law.omega_n)) {

@@ -154,10 +154,12 @@ void ServoLoop::Tick(std::int32_t missed_ticks) noexcept {
       inputs_.motion = moves::MotionCommand{};
     }
   }
+  inputs_.plan = planner_.Next();
   inputs_.missed_ticks = missed_ticks;
   task_.Step(inputs_, outputs_);
   const hal::Status written = arm_.Write(outputs_.command());
   recorder_.Record(outputs_.record);
+  planner_.Note(outputs_.record);
 
   ++counters_.ticks;
   counters_.arm_read_errors += inputs_.arm_status.ok() ? 0U : 1U;

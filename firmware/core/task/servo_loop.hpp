@@ -10,6 +10,7 @@
 #include "firmware/core/task/request_box.hpp"
 #include "firmware/core/task/servo_task.hpp"
 #include "firmware/core/task/tuning_box.hpp"
+#include "firmware/core/trajectory/plan_line.hpp"
 #include "fovea/hal/arm.hpp"
 #include "fovea/hal/clock.hpp"
 #include "fovea/hal/feature.hpp"
@@ -62,6 +63,8 @@ class ServoLoop {
   }
   // Before Run: sets the source of commanded motions. Without it there are none.
   void UseMotion(moves::MotionSource& motion) noexcept { motion_ = &motion; }
+  // Before Run: sets the planner's end of the line. Without it no plan comes.
+  void UsePlanner(trajectory::PlanBox& planner) noexcept { planner_.Use(&planner); }
   // From any thread: passed to the task in the next tick, or in one of the two after it when several wait
   // (see RequestBox). A request after GiveLeave is handled with that permission.
   void Ask(Request request) noexcept { requests_.Put(request); }
@@ -107,6 +110,7 @@ class ServoLoop {
   std::atomic<int> law_{-1};  // requested; -1: none
   TuningBox tunings_;
   moves::MotionSource* motion_ = nullptr;
+  trajectory::PlanLine planner_;
   bool leave_ended_ = false;    // in the last tick
   bool motion_barred_ = false;  // the present command was interrupted
   int finishing_ticks_ = 0;

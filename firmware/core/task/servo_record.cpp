@@ -28,6 +28,8 @@ void ServoTask::WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) 
     record.p_BO[i] = state_.prediction.p_BO[static_cast<Eigen::Index>(i)];
     record.v_BO[i] = state_.prediction.v_BO[static_cast<Eigen::Index>(i)];
   }
+  record.stamp_late_s = state_.prediction.late.mean_s;
+  record.stamp_late_sigma_s = state_.prediction.late.sigma_s;
   if (state_.prediction.known) {
     record.q_BO = model::QuaternionOf(state_.prediction.R_BO);
   }
@@ -40,6 +42,7 @@ void ServoTask::WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) 
       record.e[i] = state_.law.e[k];
     }
   }
+  record.way = state_.way.note;
   const model::Vec6 V_BC_C_cmd = state_.J_C.lazyProduct(state_.reference.dq);
   for (std::size_t i = 0; i < 6; ++i) {
     record.V_BC_C_cmd[i] = V_BC_C_cmd[static_cast<Eigen::Index>(i)];
@@ -47,6 +50,7 @@ void ServoTask::WriteRecord(const ServoInputs& inputs, hal::TickRecord& record) 
   record.q_cmd = model::ToArray(state_.reference.q);
   record.dq_cmd = model::ToArray(state_.reference.dq);
   record.ddq_cmd = model::ToArray(state_.reference.ddq);
+  record.tau_ext = model::ToArray(state_.contact.residual);
 
   record.command.state_sequence = state_.inputs.sequence;
   record.command.num_joints = config_.arm.num_joints;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stages that decide where the arm moves: the visual law and the reference.
 #include <algorithm>
+#include <cmath>
 
+#include "firmware/core/features/equal_turn.hpp"
 #include "firmware/core/features/hold_orientation.hpp"
 #include "firmware/core/guard/following.hpp"
 #include "firmware/core/guard/guard_motion.hpp"
 #include "firmware/core/task/enter_mode.hpp"
 #include "firmware/core/task/servo_task.hpp"
+#include "firmware/core/trajectory/joint_pace.hpp"
+#include "firmware/core/trajectory/plan_request.hpp"
 #include "firmware/core/trajectory/smooth_step.hpp"
 
 namespace fovea::task {
@@ -16,43 +20,83 @@ constexpr double kOffShare = hal::kTickPeriodS / 0.25;  // of a tick in the mean
 
 bool IsTracking(hal::Mode mode) noexcept { return mode == hal::Mode::kTrack || mode == hal::Mode::kCoast; }
 
+// The rates `ddq` of a plan's velocities `dq`, as far as a plan that keeps the limits has them. A plan uses
+// 95 % of a velocity's limit: above that, no acceleration is anticipated.
+model::VecN SoundRates(const config::ServoConfig& config, const model::VecN& dq,
+                       const model::VecN& ddq) noexcept {
+  constexpr double kShare = 0.97;
+  model::VecN sound = ddq;
+  for (int i = 0; i < dq.size(); ++i) {
+    const double dq_max =
+        config.guard.joint_velocity_fraction * config.arm.joints[static_cast<std::size_t>(i)].dq_max;
+    const double ddq_max = trajectory::PaceOf(config, i).ddq_max;
+    sound[i] = std::fabs(dq[i]) < kShare * dq_max ? std::clamp(ddq[i], -ddq_max, ddq_max) : 0.0;
+  }
+  return sound;
+}
+
 }  // namespace
 
-void ServoTask::ComputeVisualLaw() noexcept {
+// Takes a part of the plan that was asked for. All others are dropped: no plan changes under the arm.
+void ServoTask::TakePlan(const trajectory::PlanPart& part) noexcept {
+  const bool awaited = state_.way.asked_ns >= 0 && part.head.stamp_ns == state_.way.asked_ns;
+  if (part.IsThere() && awaited) {
+    static_cast<void>(state_.plans.Take(part));
+  }
+}
+
+void ServoTask::ComputeVisualLaw(const trajectory::PlanPart& plan) noexcept {
+  TakePlan(plan);
+  state_.way.note.event = hal::PlanEvent::kNone;
   state_.feature_valid = state_.prediction.known && ComputeFeature();
   if (state_.feature_valid) {
     control::ChooseInteraction(config_.law, goal_.L_s, state_.feature);
     config::LawConfig law = config_.law;
-    if (state_.way.preferred && state_.way.goal.found) {
-      law.q_posture = model::ToArray(state_.way.goal.q);
+    if (control::KeepsPosture(state_.way, state_.prediction.p_BO)) {
+      law.q_posture = model::ToArray(state_.way.q_end);
     }
     control::VisualLaw(law, config_.arm, state_.feature, state_.J_C, state_.q, state_.law);
-    if (IsTracking(state_.mode.mode) && control::SeeksGoalPosture(config_)) {
+    // A person leads an arm that floats.
+    const bool floats = state_.law_state.kind == config::MotionLawKind::kFloat;
+    if (IsTracking(state_.mode.mode) && !floats && trajectory::HasGoalPosture(config_)) {
       ChooseTheWay();
     }
   }
 }
 
 void ServoTask::ChooseTheWay() noexcept {
-  control::WaySight sight{
-      {state_.prediction.R_BO, state_.prediction.p_BO}, state_.prediction.seen.X_CO, state_.q};
-  sight.limits = state_.limits;
-  sight.now_ns = state_.now_ns;
-  sight.track_since_ns = state_.track_since_ns;
-  sight.is_told_apart = !config_.feature.SeesOrientation() || state_.predict.hypotheses.plate.count == 1;
-  control::ChooseWay(config_, sight, state_.way);
-  if (state_.way.by_joints) {
-    control::SteerByJoints(state_.way, state_.q, state_.prediction.seen, state_.J_C,
-                           config_.feature.p_CO_C_star, state_.law.task);
+  const auto& disc = state_.predict.hypotheses.disc;
+  const control::WaySight sight{
+      .X_BO = {state_.prediction.R_BO, state_.prediction.p_BO},
+      .X_CO = state_.prediction.seen.X_CO,
+      .v_BO = state_.prediction.v_BO,
+      .w_BO = state_.prediction.seen.w_BO_C,
+      .normal_B = disc.count > 0 ? disc.best().normal_B : model::Vec3(model::Vec3::Zero()),
+      .reference = state_.reference,
+      .limits = state_.limits,
+      .now_ns = state_.now_ns,
+      .is_told_apart = !config_.feature.SeesOrientation() || state_.predict.hypotheses.plate.count == 1,
+      .has_answer = state_.plans.IsWhole() && state_.plans.plan().stamp_ns == state_.way.asked_ns,
+      .is_seen = state_.mode.mode == hal::Mode::kTrack,
+      .is_eye_trusted = state_.eye.IsTrusted(),
+      .is_eye_suspected = state_.eye.suspected,
+  };
+  const hal::Way before = state_.way.note.way;
+  control::ChooseWay(config_, sight, state_.plans.plan(), state_.way);
+  if (before == hal::Way::kPlan && state_.way.note.way != hal::Way::kPlan) {
+    estimate::ForgetSteering(state_.eye);
+  }
+  if (state_.way.note.way == hal::Way::kPlan) {
+    control::FollowPlan(state_.plans.plan(), state_.reference, sight.is_seen, state_.way, state_.plan_step);
   }
 }
 
 // Target feature, plus orientation-hold rows if enabled.
 bool ServoTask::ComputeFeature() noexcept {
   features::TargetInCamera seen = state_.prediction.seen;
-  if (state_.way.goal.turn != 0) {
+  if (state_.way.turn != 0) {
     const int turns = features::TraitsOf(config_.feature.target).turns;
-    seen.X_CO.R = seen.X_CO.R * control::EqualTurn(state_.way.goal.turn, turns);
+    seen.X_CO.R = seen.X_CO.R * features::EqualTurn(state_.way.turn, turns);
   }
   if (!config_.feature.Compute(seen, state_.feature)) {
     return false;
@@ -96,31 +140,13 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
     state_.motion.off += kOffShare * (state_.reference.q - state_.q - state_.motion.off);
     return;
   }
+  const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
   guard::MotionWish wish;
-  if (IsTracking(state_.mode.mode) && state_.feature_valid) {
-    const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
-    const double since_s =
-        static_cast<double>(state_.now_ns - since_ns) / static_cast<double>(hal::kNsPerSecond);
-    const double blend = trajectory::SmoothStep(since_s / config_.law.smooth_start_s);
-    state_.law.task.v *= blend;
-    state_.law.task.dq_0 *= blend;
-    barriers::ViewedTarget target{config_.feature.Outline(), state_.prediction.seen, state_.J_C};
-    const auto& disc = state_.predict.hypotheses.disc;
-    if (disc.count > 0) {
-      target.normal_C = state_.X_BC.R.transpose() * disc.best().normal_B;
-    }
-    control::ResolveMotion(
-        config_, state_.law.task,
-        {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, state_.way.by_joints},
-        state_.resolved);
-    if (!state_.resolved.finite || !state_.resolved.dq.allFinite()) {
-      LatchFault(hal::Fault::kNonFiniteControl, -1);
-      return;
-    }
-    wish = guard::MotionWish::Velocity(state_.resolved.dq);
-    state_.limits = state_.resolved.limits;
-  } else {
+  if (!steering || state_.way.note.way == hal::Way::kAwaitPlan) {
     wish = guard::StopTogether(config_, state_.reference);
+  } else if (!ResolveWish(wish)) {
+    LatchFault(hal::Fault::kNonFiniteControl, -1);
+    return;
   }
   model::ArmPoses reference_poses;
   model::ComputePoses(config_.arm, state_.reference.q, reference_poses);
@@ -134,6 +160,36 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
   NoteSteering();
 }
 
+// The wish of the law, or of the plan, within the limits. False if it is not finite.
+bool ServoTask::ResolveWish(guard::MotionWish& wish) noexcept {
+  const bool planned = state_.way.note.way == hal::Way::kPlan;
+  if (!planned) {
+    const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
+    const double since_s =
+        static_cast<double>(state_.now_ns - since_ns) / static_cast<double>(hal::kNsPerSecond);
+    const double blend = trajectory::SmoothStep(since_s / config_.law.smooth_start_s);
+    state_.law.task.v *= blend;
+    state_.law.task.dq_0 *= blend;
+  }
+  barriers::ViewedTarget target{config_.feature.Outline(), state_.prediction.seen, state_.J_C};
+  const auto& disc = state_.predict.hypotheses.disc;
+  if (disc.count > 0) {
+    target.normal_C = state_.X_BC.R.transpose() * disc.best().normal_B;
+  }
+  control::ResolveMotion(config_, planned ? state_.plan_step.task : state_.law.task,
+                         {state_.reference, state_.poses, state_.J_E_B, state_.J_C, &target, planned},
+                         state_.resolved);
+  if (!state_.resolved.finite || !state_.resolved.dq.allFinite()) {
+    return false;
+  }
+  wish = guard::MotionWish::Velocity(state_.resolved.dq);
+  state_.limits = state_.resolved.limits;
+  if (planned && state_.limits == 0) {
+    wish.ddq = SoundRates(config_, state_.resolved.dq, state_.plan_step.ddq);
+  }
+  return true;
+}
+
 void ServoTask::CheckFollowing() noexcept {
   const int joint = guard::JointThatDoesNotFollow(config_.safety, state_.reference.q, state_.q);
   if (joint >= 0) {
@@ -141,12 +197,16 @@ void ServoTask::CheckFollowing() noexcept {
   }
 }
 
-// Updates the time for which limits have blocked the arm from its goal.
+// Updates the time for which limits have blocked the arm from its goal. It does not run while a plan is
+// awaited.
 void ServoTask::UpdateBlockedTime() noexcept {
   const bool steering = IsTracking(state_.mode.mode) && state_.feature_valid;
+  if (steering && state_.way.note.way == hal::Way::kAwaitPlan) {
+    return;
+  }
   bool blocked = false;
-  if (steering && state_.way.by_joints) {
-    blocked = control::NoteHeld(state_.law.task, state_.reference.dq, state_.way);
+  if (steering && state_.way.note.way == hal::Way::kPlan) {
+    blocked = control::IsHeldUp(state_.way);
   } else if (steering) {
     blocked = control::IsBlocked(config_.law, state_.feature, state_.law, state_.J_C, state_.reference.dq,
                                  state_.limits);
@@ -156,7 +216,7 @@ void ServoTask::UpdateBlockedTime() noexcept {
 
 // Checks that the visual law brings the goal nearer. A joint motion may lead away from it at first.
 void ServoTask::NoteSteering() noexcept {
-  if (!IsTracking(state_.mode.mode) || !state_.feature_valid || state_.way.by_joints) {
+  if (!IsTracking(state_.mode.mode) || !state_.feature_valid || state_.way.note.way != hal::Way::kLaw) {
     return;
   }
   const model::Vec6 V_BC_C = state_.J_C.lazyProduct(state_.reference.dq);

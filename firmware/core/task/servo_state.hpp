@@ -12,6 +12,7 @@
 #include "firmware/core/estimate/encoder_watch.hpp"
 #include "firmware/core/estimate/eye_watch.hpp"
 #include "firmware/core/estimate/predict.hpp"
+#include "firmware/core/estimate/push.hpp"
 #include "firmware/core/features/feature_state.hpp"
 #include "firmware/core/guard/fault_stop.hpp"
 #include "firmware/core/model/dynamics.hpp"
@@ -20,6 +21,7 @@
 #include "firmware/core/task/check_inputs.hpp"
 #include "firmware/core/task/modes.hpp"
 #include "firmware/core/task/tune.hpp"
+#include "firmware/core/trajectory/plan_part.hpp"
 #include "firmware/core/trajectory/reference.hpp"
 #include "fovea/hal/events.hpp"
 
@@ -48,6 +50,7 @@ struct ServoState {
 
   // contact
   estimate::ContactState contact;
+  estimate::PushWatch push;
   estimate::EncoderWatch encoders;
   bool blind = false;  // a joint's encoder hangs
 
@@ -69,7 +72,9 @@ struct ServoState {
   features::FeatureState feature;
   model::Mat3 R_BC_held = model::Mat3::Identity();  // the camera's orientation when Track began
   control::VisualLawOutput law;
-  control::WayToGoal way;  // the law or a joint motion to the target
+  control::WayToGoal way;          // the law, or a plan to the target
+  trajectory::PlanReceiver plans;  // the last plan that was asked for
+  control::PlanStep plan_step;     // in way kPlan
 
   // guard
   control::ResolvedMotion resolved;

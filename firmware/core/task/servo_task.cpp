@@ -46,7 +46,7 @@ void ServoTask::Step(const ServoInputs& inputs, ServoOutputs& outputs) noexcept 
   MarkStageEnd(Stage::kPredict);
   ChooseMode(inputs, check);
   MarkStageEnd(Stage::kModes);
-  ComputeVisualLaw();
+  ComputeVisualLaw(inputs.plan);
   MarkStageEnd(Stage::kVisualLaw);
   MoveReference(inputs);
   MarkStageEnd(Stage::kReference);
@@ -72,6 +72,10 @@ void ServoTask::CheckArm(const ServoInputs& inputs, InputCheck& check) noexcept 
 void ServoTask::ComputeModel() noexcept {
   model::ComputePoses(config_.arm, state_.q, state_.poses);
   model::ComputeDynamics(config_.arm, state_.poses, state_.dq, state_.dynamics);
+  if (config_.load.offset != 0.0) {
+    model::AddPointMass(config_.arm, state_.poses, state_.dq, config::OffsetOf(config_.load),
+                        state_.dynamics);
+  }
   state_.X_BC = state_.poses.X_BE * config_.X_EC;
   model::ComputeJacobian(config_.arm, state_.poses, config_.X_EC, state_.J_C);
   model::ComputeLinearJacobian(config_.arm, state_.poses, state_.poses.X_BE.p, state_.J_E_B);
@@ -92,6 +96,7 @@ void ServoTask::PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noe
   if (new_state) {
     state_.predict.history.Push(state_.now_ns, state_.q);
   }
+  static_cast<void>(estimate::GoOn(config_.feature.corners, state_.predict.hypotheses));
   state_.intake = hal::Intake::kNone;
   if (inputs.has_feature && IsFinite(inputs.feature)) {
     state_.intake =
@@ -113,6 +118,7 @@ void ServoTask::ChooseMode(const ServoInputs& inputs, const InputCheck& check) n
   mode_inputs.goal_unreachable = control::IsUnreachable(config_.law, state_.reach);
   mode_inputs.target_moved = control::HasMoved(state_.prediction.p_BO, state_.reach);
   mode_inputs.eye_doubted = state_.eye.doubted;
+  mode_inputs.eye_suspected = state_.eye.suspected;
   moves::NoteAsked(config_, inputs.motion, state_.motion);
   const bool asked = inputs.motion.kind != moves::MotionKind::kNone && !state_.motion.HasArrived();
   mode_inputs.motion_asked = asked || state_.motion.IsUnderWay();
@@ -145,6 +151,7 @@ void ServoTask::LatchFault(hal::Fault fault, std::int32_t joint) noexcept {
   state_.mode.fault = fault;
   state_.fault_joint = joint;
   state_.mode_since_ns = state_.now_ns;
+  state_.way.Restart();
 }
 
 }  // namespace fovea::task

@@ -10,11 +10,13 @@
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/config/tuning.hpp"
 #include "firmware/core/features/feature_state.hpp"
+#include "firmware/core/guard/guard_motion.hpp"
 #include "firmware/core/moves/follow_motion.hpp"
 #include "firmware/core/task/check_inputs.hpp"
 #include "firmware/core/task/modes.hpp"
 #include "firmware/core/task/servo_state.hpp"
 #include "firmware/core/task/stage_probe.hpp"
+#include "firmware/core/trajectory/plan_part.hpp"
 #include "fovea/hal/arm.hpp"
 #include "fovea/hal/record.hpp"
 #include "fovea/hal/status.hpp"
@@ -31,6 +33,7 @@ struct ServoInputs {
   bool change_law = false;  // change to `law`
   config::MotionLawKind law = config::MotionLawKind::kComputedTorque;
   config::Tuning tuning;          // change this key in motion
+  trajectory::PlanPart plan;      // a part of the plan that the servo asked for
   std::int32_t missed_ticks = 0;  // deadlines missed since the previous tick
 };
 
@@ -76,16 +79,19 @@ class ServoTask final : public ServoStep {
   void WatchForContact(std::int32_t missed_ticks, InputCheck& check) noexcept;
   void PredictFeature(const ServoInputs& inputs, hal::Fault& fault) noexcept;
   void ChooseMode(const ServoInputs& inputs, const InputCheck& check) noexcept;
-  void ComputeVisualLaw() noexcept;
+  void ComputeVisualLaw(const trajectory::PlanPart& plan) noexcept;
   [[nodiscard]] bool ComputeFeature() noexcept;
   void ChooseTheWay() noexcept;
+  void TakePlan(const trajectory::PlanPart& part) noexcept;
   void MoveReference(const ServoInputs& inputs) noexcept;
+  [[nodiscard]] bool ResolveWish(guard::MotionWish& wish) noexcept;
   [[nodiscard]] bool IsOutside() const noexcept;
   void CheckFollowing() noexcept;
   void UpdateBlockedTime() noexcept;
   void NoteSteering() noexcept;
   void ComputeTorque(const ServoInputs& inputs) noexcept;
   [[nodiscard]] bool CarriesLoads() const noexcept;
+  void HoldLoadOffset() noexcept;
   [[nodiscard]] bool Stands() const noexcept;
   void StopDamped() noexcept;
   void Clamp() noexcept;

@@ -30,9 +30,17 @@ void ServoTask::ComputeTorque(const ServoInputs& inputs) noexcept {
         estimate::CarryLoad(
             {config_.arm, config_.safety.stiction_fraction, config_.safety.carried_torque_fraction, Stands()},
             state_.contact, state_.tau);
+        HoldLoadOffset();
       }
       break;
     case hal::Mode::kFault: StopDamped(); break;
+  }
+}
+
+// Adds the weight of the part of the load that the robot does not know.
+void ServoTask::HoldLoadOffset() noexcept {
+  if (config_.load.offset != 0.0) {
+    state_.tau += model::HoldingTorque(config_.arm, state_.poses, config::OffsetOf(config_.load));
   }
 }
 
@@ -55,6 +63,9 @@ void ServoTask::StopDamped() noexcept {
   const double since_s =
       static_cast<double>(state_.now_ns - state_.mode_since_ns) / static_cast<double>(hal::kNsPerSecond);
   guard::StopAfterFault(config_.safety, state_.dynamics, state_.dq, blind, since_s, state_.stop, state_.tau);
+  if (!blind && state_.stop.stage == guard::FaultStop::Stage::kDamped) {
+    HoldLoadOffset();
+  }
 }
 
 void ServoTask::Clamp() noexcept {

@@ -35,10 +35,14 @@ double ValueOn(const TuningState::Ramp& ramp, const config::LawConfig& law, cons
 // True if the checks across keys hold with the requested value, all the way. Each key moves between its
 // present value and its goal, so it is enough that they hold with the present values and with the goals of
 // the others.
-bool FitsTheOthers(const config::Tuning& request, const config::PredictConfig& config,
+bool FitsTheOthers(const config::Tuning& request, const config::ServoConfig& config,
                    const TuningState& state) noexcept {
-  config::PredictConfig now = config;
-  config::PredictConfig end = config;
+  config::PredictConfig now = config.predict;
+  config::PredictConfig end = config.predict;
+  config::LoadConfig load = config.load;
+  config::EachTunable(load, [&](const Field& field, double& value, double, double) {
+    value = field.in_motion == request.key ? request.value : value;
+  });
   config::EachTunable(now, [&](const Field& field, double& value, double, double) {
     value = field.in_motion == request.key ? request.value : value;
   });
@@ -46,7 +50,7 @@ bool FitsTheOthers(const config::Tuning& request, const config::PredictConfig& c
     const TuningState::Ramp& ramp = RampOf(field, state);
     value = field.in_motion == request.key ? request.value : ramp.asked ? ramp.to : value;
   });
-  return config::IsStaleBeforeLost(now) && config::IsStaleBeforeLost(end);
+  return config::IsStaleBeforeLost(now) && config::IsStaleBeforeLost(end) && config::IsPossible(load);
 }
 
 hal::TuningNote Answer(const config::Tuning& request, const config::ServoConfig& config,
@@ -61,7 +65,7 @@ hal::TuningNote Answer(const config::Tuning& request, const config::ServoConfig&
       note.result = TuningResult::kNotFinite;
     } else if (request.value < min || request.value > max) {
       note.result = TuningResult::kOutOfRange;
-    } else if (!FitsTheOthers(request, config.predict, state)) {
+    } else if (!FitsTheOthers(request, config, state)) {
       note.result = TuningResult::kInconsistent;
     } else {
       note.result = TuningResult::kTaken;

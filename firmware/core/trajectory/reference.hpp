@@ -10,6 +10,12 @@ struct Reference {
   model::VecN q;    // [num_joints]
   model::VecN dq;   // [num_joints]
   model::VecN ddq;  // [num_joints]
+
+  // At rest: it may stay here for ever without a jump. Real-time: yes.
+  [[nodiscard]] bool IsAtRest() const noexcept {
+    constexpr double kAtRest = 1e-6;  // [rad/s, rad/s^2]
+    return dq.lpNorm<Eigen::Infinity>() <= kAtRest && ddq.lpNorm<Eigen::Infinity>() <= kAtRest;
+  }
 };
 
 }  // namespace fovea::trajectory

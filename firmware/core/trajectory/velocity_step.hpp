@@ -16,6 +16,7 @@ struct VelocityStep {
   AxisState state;        // after the tick
   bool at_a_max = false;  // the limit acted
   bool at_j_max = false;
+  bool reaches = false;  // the velocity, in this tick
 };
 
 // One tick of `period_s` from `state` towards the velocity `v`, which itself changes by `a`. `limits.v_max`

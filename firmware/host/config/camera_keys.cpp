@@ -25,6 +25,10 @@ void AddCalibrationKeys(CalibrationSettings& settings, KeyTable& keys, PictureRa
   keys.Numbers("camera.mount_xyz", settings.mount_xyz, 3, 3, -1.0, 1.0, "m", "position of C in E");
   keys.Numbers("camera.mount_rpy_deg", settings.mount_rpy_deg, 3, 3, -360.0, 360.0, "deg",
                "orientation of C in E: roll, pitch, yaw about fixed axes");
+  keys.Number(
+      "camera.row_time_us", settings.row_time_us, 0.0, 1e3, "us",
+      "rolling shutter: time from the exposure of one row to that of the next, from top to bottom; the "
+      "stamp is that of the middle row; 0: all rows at once");
 }
 
 vision::Intrinsics MakeIntrinsics(const CalibrationSettings& settings) {
@@ -36,6 +40,7 @@ vision::Intrinsics MakeIntrinsics(const CalibrationSettings& settings) {
   }
   const std::vector<double>& k = settings.lens;
   in.lens = {k[0], k[1], k[2], k[3], k[4]};
+  in.row_time = 1e-6 * settings.row_time_us;
   return in;
 }
 

@@ -18,6 +18,7 @@ struct CalibrationSettings {
   double mount_rms_mm = 0.0;                         // rms error of the mounting's position; 0: unknown
   std::vector<double> mount_xyz{0.0, 0.0, 0.0};      // p_EC [m]
   std::vector<double> mount_rpy_deg{0.0, 0.0, 0.0};  // R_EC
+  double row_time_us = 0.0;                          // of a rolling shutter
 };
 
 // Allowed width and height of a picture [px].

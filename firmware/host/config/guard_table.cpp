@@ -27,9 +27,11 @@ GuardRow RowOf(hal::Limit limit) {
     case hal::Limit::kJointVelocity:
       return {"speed of a joint's reference", "the motion slows down as a whole and keeps its direction"};
     case hal::Limit::kJointAcceleration:
-      return {"acceleration of a joint's reference", "the reference of that joint is delayed"};
+      return {"acceleration of a joint's reference",
+              "all joints are delayed together, so that the motion keeps its direction"};
     case hal::Limit::kJointJerk:
-      return {"jerk of a joint's reference", "the reference of that joint is delayed"};
+      return {"jerk of a joint's reference",
+              "all joints are delayed together, so that the motion keeps its direction"};
     case hal::Limit::kWorkspace:
       return {
           "distance of the end effector from the base, now and on the stopping path",
@@ -96,7 +98,12 @@ GuardRow RowOf(hal::Fault fault) {
           "`safety.non_finite_ticks` the servo uses only the change that the motors can make",
           kStop};
     case hal::Fault::kNotFollowing: return {"a joint too far from its reference", kStop};
-    case hal::Fault::kContact: return {"external torque, estimated from the arm's momentum", kStop};
+    case hal::Fault::kContact:
+      return {
+          "external torque, estimated from the arm's momentum, that is too large, or that changes too much "
+          "within "
+          "about 0.2 s (`safety.contact_sudden_fraction`)",
+          kStop};
   }
   return {"", ""};
 }

@@ -278,4 +278,23 @@ std::string DidYouMean(const std::string& name, const std::vector<std::string>& 
   return nearest.empty() ? nearest : "; did you mean " + nearest + "?";
 }
 
+std::set<std::string> KeyTable::ApplyRecorded(const std::map<std::string, std::string>& recorded) const {
+  std::map<std::string, std::string> values;
+  for (const auto& [name, text] : recorded) {
+    values[NameToday(name)] = text;
+  }
+  std::set<std::string> applied;
+  for (const Key& key : keys_) {
+    const auto text = values.find(key.name);
+    if (text == values.end()) {
+      continue;
+    }
+    if (text->second != key.default_text) {
+      Apply(ParseAssignment(key.name + "=" + text->second));
+    }
+    applied.insert(key.name);
+  }
+  return applied;
+}
+
 }  // namespace fovea::config

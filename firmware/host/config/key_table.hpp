@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -62,6 +63,9 @@ class KeyTable {
   // Sets one field. Throws InputError and leaves the field unchanged for an unknown key (names the nearest
   // known one), a renamed key (names the current one), a wrong kind or a value out of range.
   void Apply(const Setting& setting) const;
+  // Sets the fields to the values that a log recorded, by former names too. Returns the recorded keys of the
+  // table, by their names today. Other recorded keys are ignored. InputError: a value that is not allowed.
+  std::set<std::string> ApplyRecorded(const std::map<std::string, std::string>& recorded) const;
   // The current name of a key. `name` may be a former name.
   [[nodiscard]] const std::string& NameToday(const std::string& name) const;
 

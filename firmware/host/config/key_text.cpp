@@ -11,6 +11,9 @@ std::string KeysAsText(const KeyTable& keys, std::size_t width) {
   constexpr std::size_t kIndent = 4;
   std::string text;
   for (const Key& key : keys.keys()) {
+    if (key.meaning.empty()) {
+      continue;  // a form of the key before it
+    }
     text += Fitted(fmt::format("{} = {}\n{:{}}{}; {}: {}{}{}\n", key.name, key.default_text, "", kIndent,
                                key.meaning, key.kind, key.allowed, key.unit.empty() ? "" : " ", key.unit),
                    kIndent, width);

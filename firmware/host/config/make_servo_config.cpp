@@ -95,6 +95,11 @@ void CheckTogether(const ServoConfig& c) {
     throw InputError(fmt::format("servo.stale_s = {} is not allowed: at most servo.coast_s, which is {} s",
                                  c.predict.stale_s, c.predict.coast_s));
   }
+  if (!IsPossible(c.load)) {
+    throw InputError(
+        fmt::format("servo.load_offset = {:g} is not allowed: at least -arm.load_mass, which is {:g} kg",
+                    c.load.offset, c.load.mass));
+  }
   if (const double most = c.motion_law.zeta * c.motion_law.omega_n; c.motion_law.integral > most) {
     throw InputError(fmt::format(
         "servo.integral = {} is not allowed: at most servo.zeta times servo.omega_n, which is {:g} "
@@ -166,6 +171,8 @@ void SetPredict(const ServoSettings& settings, const vision::Intrinsics& in, Pre
   }
   if (in.f_u_px > 0.0) {  // a log without a camera has none
     c.stuck_shift = settings.stuck_shift_px / in.f_u_px;
+    c.row_time = in.row_time * in.f_v_px;
+    c.row_y = in.row_time > 0.0 ? (0.5 * (in.height_px - 1) - in.c_v_px) / in.f_v_px : 0.0;
   }
 }
 
@@ -227,9 +234,12 @@ void SetMotionLaw(const ServoSettings& settings, const NamedArm& arm, MotionLawC
 
 ServoConfig MakeServoConfig(const ServoSettings& settings, const NamedArm& arm, const model::Pose& X_EC,
                             const vision::Intrinsics& intrinsics, const TargetSettings& target) {
+  static_cast<void>(LearntOf(settings));  // refuses an unknown word
   ServoConfig config = settings.config;
   config.arm = arm.model;
   config.X_EC = X_EC;
+  config.load.mass = arm.load.mass;
+  config.load.p_ECom = arm.load.p_ECom;
   SetFeature(settings, target, config.feature);
   config.guard.view = MakeView(settings, intrinsics);
   config.law.q_posture = arm.model.q_ready;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/host/config/servo_keys.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "firmware/host/config/field_keys.hpp"
+#include "firmware/host/config/input_error.hpp"
 
 namespace fovea::config {
 namespace {
@@ -74,6 +78,10 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
   Fields(fields, c.motion_law);
   Fields(fields, c.predict);
   Fields(fields, c.move);
+  Fields(fields, c.load);
+  keys.Text("servo.learn", settings.learn,
+            "what the servo finds out and applies while it runs, separated by commas: latency "
+            "(servo.stamp_offset), payload (servo.load_offset); needs a camera");
   Fields(fields, c.guard);
   keys.Number("safety.camera_radius", settings.camera_radius, 0.0, 1.0, "m",
               "the camera is guarded as a capsule of this radius from the flange to its lens; 0: unguarded");
@@ -82,6 +90,25 @@ void AddServoKeys(ServoSettings& settings, KeyTable& keys) {
   keys.Renamed("safety.face_tilt_max", "safety.disc_tilt_max");
   keys.Renamed("safety.hand_clearance", "safety.self_clearance");
   keys.Renamed("safety.link_radius", "safety.link_clearance");
+}
+
+LearntQuantities LearntOf(const ServoSettings& settings) {
+  LearntQuantities learnt;
+  std::istringstream words(settings.learn);
+  for (std::string word; std::getline(words, word, ',');) {
+    const std::size_t begin = word.find_first_not_of(' ');
+    word = begin == std::string::npos ? "" : word.substr(begin, word.find_last_not_of(' ') + 1 - begin);
+    if (word == "latency") {
+      learnt.latency = true;
+    } else if (word == "payload") {
+      learnt.payload = true;
+    } else {
+      throw InputError(fmt::format(
+          "servo.learn = \"{}\" is not allowed: \"{}\" is none of latency, payload, separated by commas{}",
+          settings.learn, word, DidYouMean(word, {"latency", "payload"})));
+    }
+  }
+  return learnt;
 }
 
 void ScaleSpeed(double scale, ServoSettings& settings) {

@@ -15,6 +15,7 @@ namespace fovea::config {
 // The values of the keys, before robot, camera mount and target are known.
 struct ServoSettings {
   ServoConfig config;
+  std::string learn;                                // quantities, separated by commas; see LearntOf
   std::vector<double> goal{0.0, 0.0, 0.40};         // p_CO_C_star [m]
   std::vector<double> goal_rpy_deg{0.0, 0.0, 0.0};  // R_CO_star, of square and triangle
   std::string feature = "auto";                     // the target's usual one
@@ -35,12 +36,21 @@ struct ServoSettings {
 // The settings must outlive the table.
 void AddServoKeys(ServoSettings& settings, KeyTable& keys);
 
+// What the servo shall find out and apply while it runs.
+struct LearntQuantities {
+  bool latency = false;
+  bool payload = false;
+};
+// InputError: servo.learn has an unknown word.
+LearntQuantities LearntOf(const ServoSettings& settings);
+
 // Scales gains and speed limits by robot.speed_scale.
 void ScaleSpeed(double scale, ServoSettings& settings);
 
 struct NamedArm {
   std::string name;  // for messages
   model::ArmModel model;
+  model::Load load;  // part of the model already
 };
 
 // The servo's whole configuration for `arm`, with the camera at `X_EC`. InputError: a posture that does not

@@ -70,6 +70,23 @@ ordered_json FaultsJson(const State& state, const Catalogue& catalogue) {
   return faults;
 }
 
+ordered_json FindingsJson(const State& state) {
+  ordered_json findings = ordered_json::array();
+  for (const FindingState& finding : state.findings) {
+    const auto number = [&](double value) {
+      return finding.known ? ordered_json(value) : ordered_json(nullptr);
+    };
+    findings.push_back({{"name", finding.name},
+                        {"key", finding.key},
+                        {"unit", finding.unit},
+                        {"configured", finding.configured ? ordered_json(*finding.configured) : nullptr},
+                        {"known", finding.known},
+                        {"difference", number(finding.difference)},
+                        {"sigma", number(finding.sigma)}});
+  }
+  return findings;
+}
+
 }  // namespace
 
 Outgoing ServerInfoMessage(const Catalogue& catalogue, const std::string& session) {
@@ -210,6 +227,7 @@ std::string StateJson(const State& state, const Catalogue& catalogue) {
                          {"target", nullptr},
                          {"pull", nullptr},
                          {"tick_us", nullptr},
+                         {"findings", FindingsJson(state)},
                          {"notice", state.notice}};
   if (state.target) {
     object["target"] = {

@@ -41,6 +41,19 @@ struct TickTimesState {
   bool operator==(const TickTimesState&) const = default;
 };
 
+// What the run tells so far of a value that the servo believes.
+struct FindingState {
+  std::string name;
+  std::string key;                   // of the configuration; "" if it has none
+  std::string unit;                  // of the differences
+  std::optional<double> configured;  // the key's value, if it is one number in `unit`
+  bool known = false;                // false: this motion does not tell it
+  double difference = 0.0;           // true value less the believed one
+  double sigma = 0.0;
+
+  bool operator==(const FindingState&) const = default;
+};
+
 struct State {
   double stamp_s = 0.0;  // time of the run, from its start
   double wall_s = 0.0;   // the same by the wall clock
@@ -57,6 +70,7 @@ struct State {
   std::optional<TargetState> target;
   std::optional<PullState> pull;
   std::optional<TickTimesState> tick;  // durations of the servo's ticks since the last state
+  std::vector<FindingState> findings;  // empty: none yet
   std::string notice;                  // one sentence for all viewers; "" where there is none
 
   bool operator==(const State&) const = default;

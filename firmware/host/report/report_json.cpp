@@ -31,7 +31,7 @@ ordered_json Ticks(const RunData& run) {
   ordered_json ticks;
   ticks["t_s"] = Base64(rows.t_s);
   std::size_t column = 0;
-  for (const char* name : {"q", "dq", "tau", "tau_meas"}) {
+  for (const char* name : {"q", "dq", "tau", "tau_meas", "tau_ext"}) {
     ticks[name] = ordered_json::array();
     for (std::size_t i = 0; i < joints; ++i) {
       ticks[name].push_back(Base64(rows.columns[column++]));
@@ -235,6 +235,10 @@ std::string ToJson(const RunData& run) {
   json["modes"] = ordered_json::array();
   for (const ModeChange& change : run.modes) {
     json["modes"].push_back({{"t_s", change.t_s}, {"mode", change.mode}, {"reason", change.reason}});
+  }
+  json["ways"] = ordered_json::array();
+  for (const WayChange& change : run.ways) {
+    json["ways"].push_back({{"t_s", change.t_s}, {"way", change.way}, {"why", change.why}});
   }
   json["faults"] = ordered_json::array();
   for (const FaultNote& fault : run.faults) {

@@ -131,7 +131,8 @@ class Reader {
     image_error_ = ImageError(setup);
     feature_path_.Begin(setup);
     run_.error_components = ErrorComponentsOf(setup);
-    run_.ticks.emplace(4 * run_.joints.size() + RunData::kNumTickColumns, kMostBuckets);
+    run_.ticks.emplace(RunData::kJointQuantities * run_.joints.size() + RunData::kNumTickColumns,
+                       kMostBuckets);
   }
 
   // If the configuration is from a later program, the parts that need the arm's model are left out.
@@ -165,8 +166,8 @@ class Reader {
     Row row;
     row.stamp_ns = tick.stamp_ns();
     const auto joints = static_cast<int>(run_.joints.size());
-    for (const auto* values :
-         {&tick.arm().q(), &tick.arm().dq(), &tick.command().tau(), &tick.arm().tau_meas()}) {
+    for (const auto* values : {&tick.arm().q(), &tick.arm().dq(), &tick.command().tau(),
+                               &tick.arm().tau_meas(), &tick.tau_ext()}) {
       for (int i = 0; i < joints; ++i) {
         row.values.push_back(i < values->size() ? static_cast<float>((*values)[i]) : kGap);
       }
@@ -203,6 +204,11 @@ class Reader {
     if (run_.modes.empty() || run_.modes.back().mode != mode_name ||
         run_.modes.back().reason != reason_name) {
       run_.modes.push_back({t_s, mode_name, reason_name});
+    }
+    const std::string way = hal::Name(static_cast<hal::Way>(tick.way().kind()));
+    const bool begins = run_.ways.empty() && tick.way().kind() == log::Way::LAW;
+    if (!begins && (run_.ways.empty() || run_.ways.back().way != way)) {
+      run_.ways.push_back({t_s, way, log::InWords(tick.way())});
     }
     const auto fault = static_cast<hal::Fault>(tick.fault());
     if (fault != hal::Fault::kNone && fault != last_fault_) {

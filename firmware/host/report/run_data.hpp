@@ -42,13 +42,20 @@ struct FaultNote {
 struct TuningEvent {
   double t_s = 0.0;
   bool taken = false;
-  std::string words;  // "servo.lambda 2 -> 4 1/s, by the operator"
+  std::string words;  // "servo.lambda 2 -> 4 1/s, in motion"
 };
 
 // Another request of the operator that acted: hold, a fault, the target.
 struct TouchEvent {
   double t_s = 0.0;
   std::string words;
+};
+
+// The way to the target changes.
+struct WayChange {
+  double t_s = 0.0;
+  std::string way;  // as hal::Name
+  std::string why;  // in words; "" at the start
 };
 
 struct LimitSpans {
@@ -126,7 +133,8 @@ struct RunData {
   std::optional<std::string> summary_json;
   std::optional<std::string> video;
 
-  // Columns of `ticks`: q, dq, tau, tau_meas of each joint, then these.
+  // Columns of `ticks`: q, dq, tau, tau_meas, tau_ext of each joint, then these.
+  static constexpr std::size_t kJointQuantities = 5;
   enum TickColumn : std::uint8_t {
     kErrorPx,
     kErrorMm,
@@ -152,6 +160,7 @@ struct RunData {
   std::vector<FrameSpan> lost;       // frames between two of them that did not reach the servo
   std::vector<FrameSpan> not_found;  // in which the target was not found
   std::vector<ModeChange> modes;
+  std::vector<WayChange> ways;  // empty if the arm never left the visual law
   std::vector<FaultNote> faults;
   std::vector<TuningEvent> tunings;
   std::vector<TouchEvent> touches;

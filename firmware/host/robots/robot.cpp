@@ -20,12 +20,13 @@ struct Derived {
 };
 constexpr Derived kDerived;
 
-// The limits that URDF cannot express, one entry per joint, or none.
+// Limits and figures that URDF cannot express, one entry per joint, or none.
 struct ExtraLimits {
   std::vector<double> acceleration;
   std::vector<double> jerk;
   std::vector<double> torque_rate;
   std::vector<double> ready;
+  std::vector<double> rotor_inertia;
 };
 
 // Entry `i` of `values`, or `derived` if `values` is empty.
@@ -46,12 +47,14 @@ void SetLimits(const std::filesystem::path& file, const ExtraLimits& extra, mode
   CheckSize(file, "jerk_max", extra.jerk, arm.num_joints);
   CheckSize(file, "torque_rate_max", extra.torque_rate, arm.num_joints);
   CheckSize(file, "ready", extra.ready, arm.num_joints);
+  CheckSize(file, "rotor_inertia", extra.rotor_inertia, arm.num_joints);
   for (int i = 0; i < arm.num_joints; ++i) {
     const auto k = static_cast<std::size_t>(i);
     model::Joint& joint = arm.joints[k];
     joint.ddq_max = EntryOr(extra.acceleration, k, joint.dq_max * kDerived.velocity_to_acceleration);
     joint.dddq_max = EntryOr(extra.jerk, k, joint.ddq_max * kDerived.acceleration_to_jerk);
     joint.dtau_max = EntryOr(extra.torque_rate, k, joint.tau_max * kDerived.torque_to_torque_rate);
+    joint.rotor_inertia = EntryOr(extra.rotor_inertia, k, 0.0);
     const double middle = 0.5 * (joint.q_min + joint.q_max);
     arm.q_ready[k] = EntryOr(extra.ready, k, middle);
     if (arm.q_ready[k] < joint.q_min || arm.q_ready[k] > joint.q_max) {
@@ -95,6 +98,8 @@ Robot LoadRobot(const std::filesystem::path& file, const std::filesystem::path& 
   keys.Numbers("jerk_max", extra.jerk, 1, kMax, 1e-3, kHuge, "rad/s^3", "per joint");
   keys.Numbers("torque_rate_max", extra.torque_rate, 1, kMax, 1e-3, kHuge, "Nm/s", "per joint");
   keys.Numbers("ready", extra.ready, 1, kMax, -kHuge, kHuge, "rad", "a posture far from limits, per joint");
+  keys.Numbers("rotor_inertia", extra.rotor_inertia, 1, kMax, 0.0, kHuge, "kg m^2",
+               "inertia of the motor's rotor times the gear's ratio squared, per joint; 0 when not given");
   for (const config::Setting& setting : config::ReadTomlFile(file)) {
     keys.Apply(setting);
   }

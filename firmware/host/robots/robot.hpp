@@ -20,10 +20,10 @@ struct Robot {
   model::ArmModel model;
 };
 
-// Reads an arm file (.toml: the URDF's name, base and tip links, and the limits that URDF cannot express), or
-// a bare .urdf, whose base is its root, whose tip is its only leaf, and whose acceleration, jerk and
-// torque-rate limits are derived from velocity and effort (see kDerived in robot.cpp). `root` is for an arm
-// named in an untrusted file: reads only files that lie in it after links are resolved.
+// Reads an arm file (.toml: the URDF's name, base and tip links, and limits and rotors, which URDF cannot
+// express), or a bare .urdf, whose base is its root, whose tip is its only leaf, and whose acceleration, jerk
+// and torque-rate limits are derived from velocity and effort (see kDerived in robot.cpp). `root` is for an
+// arm named in an untrusted file: reads only files that lie in it after links are resolved.
 //
 // InputError, naming file, link or joint: file missing, malformed or outside `root`, unknown key, a chain
 // that the servo cannot drive (a loop, a second moving branch, no moving joint, more than kMaxJoints, a joint

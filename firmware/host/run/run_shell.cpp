@@ -26,7 +26,12 @@ hal::Recorder& RunShell::recorder() { return ticks_ ? static_cast<hal::Recorder&
 
 task::ServoLoop& RunShell::BeginLoop(hal::Arm& arm, hal::Clock& clock, hal::Recorder* first) {
   hal::TickProbe& probe = ticks_ ? static_cast<hal::TickProbe&>(*ticks_) : meter_;
-  return loop_.emplace(recorder_, arm, clock, features_, first != nullptr ? *first : recorder(), probe);
+  task::ServoLoop& loop =
+      loop_.emplace(recorder_, arm, clock, features_, first != nullptr ? *first : recorder(), probe);
+  if (planner_ != nullptr) {
+    loop.UsePlanner(*planner_);
+  }
+  return loop;
 }
 
 void RunShell::EndLoop() {

@@ -53,6 +53,8 @@ class RunShell {
   // Returns the loop, ready to run. Borrows all until EndLoop. `first`: gets each record in the tick instead
   // of recorder(), and must pass it on to recorder().
   task::ServoLoop& BeginLoop(hal::Arm& arm, hal::Clock& clock, hal::Recorder* first = nullptr);
+  // Call before BeginLoop: the planner's end of the loop's line, which is borrowed.
+  void UsePlanner(trajectory::PlanBox& planner) { planner_ = &planner; }
   // Null before BeginLoop, and after EndLoop.
   [[nodiscard]] task::ServoLoop* loop() { return loop_ ? &*loop_ : nullptr; }
   // Call when no thread uses the loop any more; not needed if arm and clock outlive the shell. Keeps the
@@ -92,6 +94,7 @@ class RunShell {
   task::ServoTask* task_;
   RunFolder folder_;
   hal::FeatureMailbox features_;
+  trajectory::PlanBox* planner_ = nullptr;
   flight::FlightRecorder recorder_;
   linux_rt::TickMeter meter_;
   std::optional<trace::TickTrace> ticks_;  // around meter and recorder

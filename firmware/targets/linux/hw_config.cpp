@@ -143,6 +143,10 @@ HwConfig LoadHwConfig(const std::string& name_or_path, const std::vector<std::st
     keys.Apply(setting);
   }
   ArmDriverOf(config).check_settings(config);
+  const config::LearntQuantities learnt = config::LearntOf(config.servo);
+  if ((learnt.latency || learnt.payload) && !config.HasCamera()) {
+    throw InputError("servo.learn is not allowed with camera.driver = \"none\": the servo needs to see");
+  }
   return config;
 }
 
@@ -163,7 +167,7 @@ robots::Robot LoadHwRobot(const HwConfig& config) {
 config::ServoConfig MakeHwServoConfig(const HwConfig& config, const robots::Robot& robot) {
   config::ServoSettings settings = config.servo;
   config::ScaleSpeed(config.robot.speed_scale, settings);
-  const config::NamedArm arm{robot.name, robot.model};
+  const config::NamedArm arm{robot.name, robot.model, config::MakeLoad(config.arm.load)};
   if (!config.HasCamera()) {
     settings.keep_in_view = false;  // without a camera there is no view
     return config::MakeServoConfig(settings, arm, model::Pose{}, vision::Intrinsics{},

@@ -66,4 +66,16 @@ run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot
   return folder;
 }
 
+beliefs::Configured ConfiguredBeliefs(const HwConfig& config) {
+  // Only where the camera's clock cannot be read is the latency configured.
+  const double transport_ms = config.camera.transport_ms;
+  return {transport_ms > 0.0 ? std::optional(transport_ms) : std::nullopt, config::MakeLoad(config.arm.load),
+          "camera.transport_ms"};
+}
+
+beliefs::Learns LearnsOf(const HwConfig& config) {
+  const config::LearntQuantities learnt = config::LearntOf(config.servo);
+  return {learnt.latency, learnt.payload};
+}
+
 }  // namespace fovea::hw

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "firmware/host/beliefs/learner.hpp"
+#include "firmware/host/beliefs/run_watch.hpp"
 #include "firmware/host/robots/robot.hpp"
 #include "firmware/host/run/run_folder.hpp"
 #include "firmware/targets/linux/hw_config.hpp"
@@ -15,5 +17,10 @@ namespace fovea::hw {
 run::RunFolderConfig FolderOf(const HwConfig& config, const robots::Robot& robot,
                               const config::ServoConfig& servo, const std::string& out, double duration_s,
                               const std::string& command, const log::LogTap& tap = {});
+
+// What the configuration says of the values that a run may find wrong.
+beliefs::Configured ConfiguredBeliefs(const HwConfig& config);
+// What it wants the servo to learn.
+beliefs::Learns LearnsOf(const HwConfig& config);
 
 }  // namespace fovea::hw

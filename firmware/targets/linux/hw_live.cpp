@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "firmware/host/desk/found.hpp"
 #include "firmware/host/recording/log/topics.hpp"
 #include "fovea/run.pb.h"
 
@@ -72,7 +73,7 @@ void HwLive::Note(const hal::TickRecord& record) {
   }
 }
 
-void HwLive::Attend() {
+void HwLive::Attend(const beliefs::Findings* findings) {
   server_->TakeCalls([this](const live::Call& call) { return Do(call); });
   live::State state;
   state.stamp_s = static_cast<double>(now_ns_ - begin_ns_) * 1e-9;
@@ -87,6 +88,7 @@ void HwLive::Attend() {
   if (book != nullptr && book->log().failed()) {
     state.notice = "The log cannot be written, e.g. because the disk is full: it ends here.";
   }
+  desk::Fill(findings, state);
   server_->SetState(state);
 }
 

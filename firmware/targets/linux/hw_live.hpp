@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/host/beliefs/belief.hpp"
 #include "firmware/host/desk/servo_desk.hpp"
 #include "firmware/host/live/live_feed.hpp"
 #include "firmware/host/live/server.hpp"
@@ -42,8 +43,8 @@ class HwLive {
   void Begin(run::RunShell& shell, RunControl& control, bool allow_motion, const hal::Clock& clock,
              std::function<void(const Heard& heard)> heard);
   void Note(const hal::TickRecord& record);
-  // Call often: takes the viewers' calls, and shows them the state.
-  void Attend();
+  // Call often: takes the viewers' calls, and shows them the state. `findings`: the newest, or null.
+  void Attend(const beliefs::Findings* findings);
 
  private:
   [[nodiscard]] live::Answer Do(const live::Call& call);

@@ -12,7 +12,9 @@
 #include <thread>
 #include <utility>
 
+#include "firmware/host/beliefs/finder.hpp"
 #include "firmware/host/run/run_shell.hpp"
+#include "firmware/planning/plan_desk.hpp"
 #include "firmware/targets/linux/await_leave.hpp"
 #include "firmware/targets/linux/hw_facts.hpp"
 #include "firmware/targets/linux/operator_thread.hpp"
@@ -59,6 +61,10 @@ class Session {
     }
     shell_.OnRecord([this](const flight::FlightRecord& flown) { Observe(flown.record); });
     if (config.HasCamera()) {
+      beliefs_.emplace(servo_, ConfiguredBeliefs(config),
+                       beliefs::FinderConfig{LearnsOf(config), live_ != nullptr, /*waits=*/false});
+      shell_.UsePlanner(plans_.emplace(servo_).box());
+      plans_->Begin();
       OpenCamera();
     }
   }
@@ -161,8 +167,11 @@ class Session {
     TellLease();
     operator_.Drain([this](const Heard& heard) { Tell(heard); });
     shell_.TakeRecords();
+    if (beliefs_) {
+      beliefs_->Act();
+    }
     if (live_) {
-      live_->Attend();
+      live_->Attend(beliefs_ ? beliefs_->now() : nullptr);
     }
     EndSilentRun();
     LookAtRecovery();
@@ -178,6 +187,9 @@ class Session {
       return;
     }
     connection_told_ = true;
+    if (beliefs_) {
+      beliefs_->UseLoop(control_.loop);
+    }
     if (live_) {
       live_->Begin(shell_, control_, options_.allow_motion, clock_,
                    [this](const Heard& heard) { Tell(heard); });
@@ -269,6 +281,9 @@ class Session {
 
   void Observe(const hal::TickRecord& record) {
     watch_.Add(record, record.tick >= shell_.loop()->finish_tick());
+    if (beliefs_) {
+      beliefs_->Add(record);
+    }
     if (live_) {
       live_->Note(record);
     }
@@ -308,6 +323,13 @@ class Session {
       summary_.dead_man_holds = loop->lease_ends();
       summary_.robot = robot_link_->figures();
     }
+    if (beliefs_) {
+      beliefs_->UseLoop(nullptr);
+      summary_.beliefs = beliefs_->Finish();
+      for (const std::string& sentence : summary_.beliefs->verdict) {
+        watch_.Say("found out: " + sentence);
+      }
+    }
     shell_.Fill(summary_);
     Judge(summary_);
     for (const std::string& error : summary_.film_errors) {
@@ -343,8 +365,10 @@ class Session {
   std::uint64_t looked_at_ = 0;    // sequence of its newest state
   const std::unique_ptr<HwLive> live_;
   run::RunShell shell_;
-  std::optional<HwVision> vision_;  // its thread uses the shell
-  hal::Arm* arm_ = nullptr;         // once connected
+  std::optional<planning::PlanDesk> plans_;
+  std::optional<beliefs::Finder> beliefs_;  // with a camera: what the run tells of the servo's beliefs
+  std::optional<HwVision> vision_;          // its thread uses the shell
+  hal::Arm* arm_ = nullptr;                 // once connected
   hal::Status status_;
   std::exception_ptr failure_;  // why there is no connection
   OperatorThread operator_;     // last: it uses the loop, the arm and the clock

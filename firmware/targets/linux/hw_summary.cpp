@@ -8,6 +8,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "firmware/host/beliefs/findings_json.hpp"
 #include "firmware/host/run/in_words.hpp"
 
 namespace fovea::hw {
@@ -196,6 +197,7 @@ std::string ToJson(const HwSummary& s) {
       {"robot", RobotOf(s.robot)},
   });
   run::AddFigures(s, json);
+  json["beliefs"] = s.beliefs ? beliefs::ToJson(*s.beliefs) : Json(nullptr);
   if (s.seen) {
     json["camera"] = {
         {"frames", s.seen->frames},

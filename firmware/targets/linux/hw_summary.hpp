@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware/host/beliefs/belief.hpp"
 #include "firmware/host/run/fault_event.hpp"
 #include "firmware/host/run/run_figures.hpp"
 #include "firmware/targets/linux/gravity_check.hpp"
@@ -50,6 +51,7 @@ struct HwSummary : run::RunFigures {
   RobotFigures robot;
   std::optional<SeenError> seen;  // with a camera
   CameraCounters camera;
+  std::optional<beliefs::Findings> beliefs;           // what the run tells of them; none without a camera
   std::map<std::string, std::uint64_t> measurements;  // counts by the name of hal::Intake
   linux_rt::DurationHistogram feature_ages;           // from exposure to the tick that took the measurement
   // At the end of the run, before the arm was brought to rest.

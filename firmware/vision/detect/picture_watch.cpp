@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kSide = 4;      // of a patch [px]
 constexpr int kSpacing = 16;  // from one patch to the next [px]
+constexpr int kStagger =
+    kSpacing / kSide;  // by which patches are staggered, so that no line runs between them
 constexpr std::size_t kPixels = kSide * kSide;
 constexpr double kSigmas = 6.0;         // R of pure noise exceeds 1 by fewer standard deviations than this
 constexpr double kMoreThanNoise = 1.3;  // mean square differences larger by this factor are not noise
@@ -20,11 +22,13 @@ void PictureWatch::TakePatches(const cv::Mat& image, std::vector<std::uint8_t>& 
   const int channels = image.channels();
   const int channel = channels == 3 ? 1 : 0;  // green
   std::size_t k = 0;
-  const auto across = static_cast<std::size_t>((image.cols - kSide) / kSpacing + 1);
-  const auto down = static_cast<std::size_t>((image.rows - kSide) / kSpacing + 1);
-  patches.resize(across * down * kPixels);
-  for (int top = 0; top + kSide <= image.rows; top += kSpacing) {
-    for (int left = 0; left + kSide <= image.cols; left += kSpacing) {
+  const int across = image.cols / kSpacing;
+  const int down = image.rows / kSpacing;
+  patches.resize(static_cast<std::size_t>(across * down) * kPixels);
+  for (int i = 0; i < down; ++i) {
+    for (int j = 0; j < across; ++j) {
+      const int left = kSpacing * j + kSide * (i % kStagger);
+      const int top = kSpacing * i + kSide * (j % kStagger);
       for (int y = top; y < top + kSide; ++y) {
         const std::uint8_t* row = image.ptr<std::uint8_t>(y) + left * channels + channel;
         for (int x = 0; x < kSide; ++x) {
@@ -64,7 +68,7 @@ bool PictureWatch::IsSame(const std::vector<std::uint8_t>& patches) {
 }
 
 std::int64_t PictureWatch::Look(const cv::Mat& image, std::int64_t stamp_ns) {
-  if (image.cols < kSide || image.rows < kSide) {
+  if (image.cols < kSpacing || image.rows < kSpacing) {
     return 0;
   }
   TakePatches(image, now_);

@@ -34,7 +34,8 @@ TEST(TuningTest, EachNumberBelongsToOneKeyForEver) {
                            testing::Pair(6, "servo.manipulability_gain"),
                            testing::Pair(7, "servo.free_speed"), testing::Pair(8, "servo.target_jerk"),
                            testing::Pair(9, "servo.target_turn"), testing::Pair(10, "servo.gate_sigma"),
-                           testing::Pair(11, "servo.stale_s"), testing::Pair(12, "servo.coast_s")));
+                           testing::Pair(11, "servo.stale_s"), testing::Pair(12, "servo.coast_s"),
+                           testing::Pair(13, "servo.stamp_offset"), testing::Pair(14, "servo.load_offset")));
 }
 
 // The proof of a stop assumes that these are fixed.

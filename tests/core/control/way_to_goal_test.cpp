@@ -1,242 +1,283 @@
 // SPDX-License-Identifier: Apache-2.0
+// Which way the servo takes: every change of the drawing in way_to_goal.hpp, and when it does not happen.
 #include "firmware/core/control/way_to_goal.hpp"
 
-#include <gtest/gtest.h>
+#include <cmath>
 
-#include "firmware/core/features/triangle.hpp"
-#include "tests/support/panda.hpp"
+#include "firmware/core/features/equal_turn.hpp"
+#include "tests/core/control/planned_way.hpp"
 
 namespace fovea::control {
 namespace {
 
-using model::Pose;
-using model::VecN;
+using hal::PlanEvent;
+using hal::Way;
+using WayToGoalTest = PlannedWay;
 
-class WayToGoalTest : public testing::Test {
- protected:
-  WayToGoalTest() : config_(test::PandaConfig()) {
-    config_.feature.target = hal::FeatureKind::kTriangle;
-    config_.feature.form = features::FeatureForm::kPose;
-    config_.feature.corners = features::MakeTriangle(features::kDefaultTriangle);
+constexpr int kSecond = 1000;  // ticks
+
+TEST_F(WayToGoalTest, FarGoalIsPlannedForAndReached) {
+  normal_B_ = {0.1, -0.2, 0.3};
+  reference_.dq[2] = 0.1;
+  EXPECT_EQ(Choose(), PlanEvent::kNone);
+  EXPECT_EQ(way_.note.way, Way::kAwaitPlan);
+  Choose(50);
+  EXPECT_EQ(way_.note.plans_asked, 0) << "the arm still moves";
+  StandAt(reference_.q);
+  EXPECT_EQ(Choose(), PlanEvent::kAsked);
+  EXPECT_EQ(way_.asked_ns, now_ns_);
+  EXPECT_EQ(way_.note.plans_asked, 1);
+  EXPECT_EQ(way_.note.tries, 1);
+  EXPECT_EQ(way_.note.normal_B[1], -0.2);
+  Choose(20);
+  EXPECT_EQ(way_.note.plans_asked, 1) << "it waits for the answer";
+  EXPECT_EQ(Answer(PlanToGoal()), PlanEvent::kTaken);
+  EXPECT_EQ(way_.note.way, Way::kPlan);
+  EXPECT_EQ(FollowOn(), PlanEvent::kDone);
+  EXPECT_LT((reference_.q - q_goal_).lpNorm<Eigen::Infinity>(), 1e-4);
+  EXPECT_EQ(way_.note.way, Way::kLaw);
+  Choose(10 * kSecond);
+  EXPECT_EQ(events_, (std::vector{PlanEvent::kAsked, PlanEvent::kTaken, PlanEvent::kDone}))
+      << "each is told once, and nothing is asked for at the goal";
+}
+
+TEST_F(WayToGoalTest, NearGoalIsLeftToTheLaw) {
+  q_goal_ = test::Ready();
+  q_goal_[0] += 0.08;
+  PutTargetFor(q_goal_);
+  Choose(10 * kSecond);
+  EXPECT_EQ(way_.note.way, Way::kLaw);
+  EXPECT_EQ(way_.note.plans_asked, 0);
+}
+
+TEST_F(WayToGoalTest, MovingTargetIsLeftToTheLaw) {
+  v_BO_ = {0.0, 0.2, 0.0};
+  Choose(5 * kSecond);
+  EXPECT_EQ(way_.note.way, Way::kLaw);
+  EXPECT_EQ(way_.note.plans_asked, 0);
+  v_BO_.setZero();
+  AskForPlan();
+}
+
+TEST_F(WayToGoalTest, TargetOfTwoPossiblePosesIsLeftToTheLaw) {
+  told_apart_ = false;
+  limits_ = hal::Bit(hal::Limit::kWorkspace);
+  Choose(5 * kSecond);
+  EXPECT_EQ(way_.note.way, Way::kLaw);
+  EXPECT_EQ(way_.note.plans_asked, 0);
+  told_apart_ = true;
+  AskForPlan();
+}
+
+// A limit that may block the path, not one that only slows the motion down.
+TEST_F(WayToGoalTest, LawThatLimitsStopAsksForAPlan) {
+  q_goal_ = test::Ready();
+  q_goal_[0] += 0.08;
+  PutTargetFor(q_goal_);
+  for (int i = 0; i < hal::kNumLimits; ++i) {
+    way_.Restart();
+    limits_ = hal::LimitSet{1} << static_cast<unsigned>(i);
+    Choose(kSecond);
+    EXPECT_EQ(way_.note.way == Way::kAwaitPlan, (limits_ & kBarriers) != 0) << i;
   }
-
-  [[nodiscard]] Pose CameraAt(const VecN& q) const {
-    model::ArmPoses poses;
-    model::ComputePoses(config_.arm, q, poses);
-    return poses.X_BE * config_.X_EC;
+  way_.Restart();
+  for (int i = 0; i < 5 * kSecond; ++i) {
+    limits_ = i % 2 == 0 ? kBarriers : 0;
+    Choose();
   }
+  EXPECT_EQ(way_.note.way, Way::kLaw) << "half of the time is no stop";
+}
 
-  // Places the target so that the camera is at its goal with the joints at `q`.
-  void PutTargetFor(const VecN& q) {
-    X_BO_ = CameraAt(q) * Pose{config_.feature.R_CO_star, config_.feature.p_CO_C_star};
+// As long as the distance shrinks, limits on the way do not matter.
+TEST_F(WayToGoalTest, LawThatMakesProgressAsksForNoPlan) {
+  limits_ = kBarriers;
+  for (double off = 0.08; off > 1e-3; off *= 0.75) {
+    model::VecN q = q_goal_;
+    q[0] -= off;
+    StandAt(q);
+    Choose(300);
+    EXPECT_EQ(way_.note.plans_asked, 0) << off;
   }
+  StandAt(q_goal_);
+  Choose(5 * kSecond);
+  EXPECT_EQ(way_.note.way, Way::kLaw) << "at the goal limits do not matter";
+}
 
-  // The arm stands at `q` for `ticks`.
-  void Stand(const VecN& q, int ticks, hal::LimitSet limits = 0) {
-    for (int i = 0; i < ticks; ++i) {
-      now_ns_ += hal::kTickPeriodNs;
-      WaySight sight{X_BO_, CameraAt(q).Inverse() * X_BO_, q};
-      sight.limits = limits;
-      sight.now_ns = now_ns_;
-      sight.is_told_apart = told_apart_;
-      ChooseWay(config_, sight, way_);
+TEST_F(WayToGoalTest, WithoutAMotionTheLawGoesOnAlone) {
+  AskForPlan();
+  trajectory::Plan none;
+  none.outcome = trajectory::PlanOutcome::kNoGoalPosture;
+  EXPECT_EQ(Answer(none), PlanEvent::kNoMotion);
+  EXPECT_EQ(way_.note.way, Way::kLaw);
+  EXPECT_EQ(way_.note.outcome, static_cast<int>(trajectory::PlanOutcome::kNoGoalPosture));
+  EXPECT_FALSE(KeepsPosture(way_, X_BO_.p));
+  Choose(10 * kSecond);
+  EXPECT_EQ(way_.note.plans_asked, 1) << "the same question has the same answer";
+  limits_ = hal::Bit(hal::Limit::kJointPosition);
+  AskForPlan();
+  EXPECT_EQ(way_.note.tries, 4) << "a sure answer counts three times";
+}
+
+// A target that turns in place is followed by the law, which compensates the turn.
+TEST_F(WayToGoalTest, TurningTargetIsFollowedByTheLaw) {
+  w_BO_ = {0.0, 0.0, 0.6};
+  Choose(5 * kSecond);
+  EXPECT_EQ(way_.note.plans_asked, 0);
+  w_BO_.setZero();
+  AskForPlan();
+}
+
+// Plans that limits hold up one after the other end, too: the law goes on, and can find the goal unreachable.
+TEST_F(WayToGoalTest, PlansThatAreHeldUpEnd) {
+  AskForPlan();
+  for (int k = 1; way_.note.way != Way::kLaw && k < 20; ++k) {
+    ASSERT_EQ(Answer(PlanToGoal()), PlanEvent::kTaken);
+    FollowFor(300);
+    PlanEvent event = PlanEvent::kNone;
+    for (int i = 0; i < 3000 && event == PlanEvent::kNone; ++i) {
+      Follow(/*held=*/true);
+      event = Choose();
+    }
+    ASSERT_EQ(event, PlanEvent::kHeld) << k;
+    if (way_.note.way == Way::kAwaitPlan) {
+      reference_.dq.setZero();
+      reference_.ddq.setZero();
+      AskForPlan();
     }
   }
-
-  void Steer(const VecN& q, MotionTask& task) const {
-    model::ArmPoses poses;
-    model::ComputePoses(config_.arm, q, poses);
-    model::Mat6N J_C;
-    model::ComputeJacobian(config_.arm, poses, config_.X_EC, J_C);
-    const features::TargetInCamera seen{CameraAt(q).Inverse() * X_BO_, model::Vec3::Zero(),
-                                        model::Vec3::Zero()};
-    SteerByJoints(way_, q, seen, J_C, config_.feature.p_CO_C_star, task);
-  }
-
-  // The last joint is near its upper end, the goal a third of a turn further: only the long way round leads
-  // there. Returns the start.
-  VecN PutTargetPastTheEnd() {
-    VecN q = test::Ready();
-    q[6] = config_.arm.joints[6].q_max - 0.1;
-    VecN q_goal = q;
-    q_goal[6] = q[6] + 2.0 - 2.0 * model::kPi;
-    PutTargetFor(q_goal);
-    return q;
-  }
-
-  config::ServoConfig config_;
-  Pose X_BO_;
-  WayToGoal way_;
-  std::int64_t now_ns_ = 0;
-  bool told_apart_ = true;
-};
-
-TEST_F(WayToGoalTest, DownhillGoalIsLeftToTheVisualLaw) {
-  VecN q_goal = test::Ready();
-  q_goal[0] += 0.3;
-  PutTargetFor(q_goal);
-  Stand(test::Ready(), 1000);
-  EXPECT_TRUE(way_.goal.found);
-  EXPECT_TRUE(way_.goal.downhill);
-  EXPECT_FALSE(way_.by_joints);
+  EXPECT_EQ(way_.note.way, Way::kLaw);
+  EXPECT_EQ(way_.note.tries, 6);
 }
 
-TEST_F(WayToGoalTest, GoalInAnotherPostureIsReachedByJointMotion) {
-  const VecN q = PutTargetPastTheEnd();
-  Stand(q, 1000);
-  ASSERT_TRUE(way_.goal.found);
-  EXPECT_FALSE(way_.goal.downhill);
-  ASSERT_TRUE(way_.by_joints);
-
-  MotionTask task;
-  Steer(q, task);
-  EXPECT_GT(task.v.dot(VecN(way_.goal.q - q)), 0.0);
-  EXPECT_LT(task.v.lpNorm<Eigen::Infinity>(), 2.0);
-
-  Stand(way_.goal.q, 1);
-  EXPECT_FALSE(way_.by_joints) << "at the goal posture the law takes over";
+TEST_F(WayToGoalTest, TriesForOneGoalAreLimited) {
+  limits_ = kBarriers;
+  trajectory::Plan none;
+  none.outcome = trajectory::PlanOutcome::kNoPath;
+  int answers = 0;
+  for (; answers < 100 && TicksUntil(PlanEvent::kAsked) > 0; ++answers) {
+    Answer(none);
+  }
+  EXPECT_GE(answers, 2);
+  EXPECT_LE(answers, 10);
+  EXPECT_EQ(way_.note.tries, answers);
+  EXPECT_EQ(way_.note.way, Way::kLaw);
+  // Also near the goal, where limits still stop the law.
+  const model::VecN start = reference_.q;
+  model::VecN near = q_goal_;
+  near[0] += 0.01;
+  StandAt(near);
+  EXPECT_EQ(TicksUntil(PlanEvent::kAsked), -1);
+  StandAt(start);
+  EXPECT_EQ(TicksUntil(PlanEvent::kAsked), -1);
+  // A goal that was reached is a new one afterwards.
+  const model::VecN far = reference_.q;
+  StandAt(q_goal_);
+  Choose();
+  EXPECT_EQ(way_.note.tries, 0);
+  StandAt(far);
+  AskForPlan();
+  EXPECT_EQ(way_.note.tries, 1);
+  EXPECT_EQ(way_.note.plans_asked, answers + 1);
 }
 
-TEST_F(WayToGoalTest, JointMotionWaitsForAnUnambiguousTargetPose) {
+TEST_F(WayToGoalTest, PlanForAnotherStartOrTargetIsRefused) {
+  const auto refused = [this](const auto& change) {
+    way_ = WayToGoal{};
+    EXPECT_GT(TicksUntil(PlanEvent::kAsked), 0);
+    trajectory::Plan plan = PlanToGoal();
+    change(plan);
+    return Answer(plan) == PlanEvent::kStale && way_.note.way == Way::kLaw && way_.q_end.size() == 0;
+  };
+  EXPECT_FALSE(refused([](trajectory::Plan&) {}));
+  for (int joint = 0; joint < 7; ++joint) {
+    EXPECT_TRUE(refused([this, joint](trajectory::Plan& plan) {
+      model::VecN q = reference_.q;
+      q[joint] += 1e-6;
+      plan = PlanTo(q, q_goal_);
+    })) << joint;
+  }
+  EXPECT_TRUE(refused([this](trajectory::Plan& plan) {
+    plan = PlanTo(reference_.q.head(6), q_goal_.head(6));
+  })) << "of another arm";
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    EXPECT_TRUE(refused([axis](trajectory::Plan& plan) { plan.p_BO[axis] += 0.15; })) << axis;
+    EXPECT_TRUE(refused([axis](trajectory::Plan& plan) { plan.p_BO[axis] -= 0.15; })) << axis;
+  }
+  EXPECT_TRUE(refused([this](trajectory::Plan& plan) {
+    plan.q_BO = model::QuaternionOf(X_BO_.R * model::RotationOf(model::Vec3(0.0, 0.4, 0.0)));
+  }));
+  EXPECT_TRUE(refused([](trajectory::Plan& plan) { plan.p_BO[0] = std::nan(""); }));
+}
+
+TEST_F(WayToGoalTest, AfterAStalePlanAnotherOneIsAskedFor) {
+  int stale = 0;
+  while (TicksUntil(PlanEvent::kAsked, 2000) > 0) {
+    trajectory::Plan plan = PlanToGoal();
+    plan.p_BO[2] += 0.5;
+    ASSERT_EQ(Answer(plan), PlanEvent::kStale);
+    ASSERT_LT(++stale, 20);
+  }
+  EXPECT_GE(stale, 2);
+}
+
+TEST_F(WayToGoalTest, LatePlannerIsNotWaitedForAgain) {
+  AskForPlan();
+  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 1500, 2);
+  EXPECT_EQ(way_.note.way, Way::kLaw);
+  way_.Restart();
+  EXPECT_EQ(way_.note.plans_asked, 1) << "the number of a request is never used twice";
+  AskForPlan();
+  EXPECT_EQ(way_.note.plans_asked, 2);
+  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 100, 2);
+  way_.Restart();
+  AskForPlan();
+  ASSERT_EQ(Answer(PlanToGoal()), PlanEvent::kTaken);
+  way_.Restart();
+  AskForPlan();
+  EXPECT_NEAR(TicksUntil(PlanEvent::kLate), 1500, 2) << "it answers again";
+}
+
+TEST_F(WayToGoalTest, LawKeepsThePostureAndTheTurnOfTheLastPlan) {
+  config_.feature.target = hal::FeatureKind::kSquare;
+  config_.feature.corners = features::MakeSquare(0.08);
+  EXPECT_FALSE(KeepsPosture(way_, X_BO_.p));
+  AskForPlan();
+  // The goal is reached with a quarter of a turn of the square, which looks the same.
+  q_goal_[6] += 0.5 * model::kPi;
+  trajectory::Plan plan = PlanToGoal();
+  plan.turn = features::NearestTurn(config_.feature, CameraAt(q_goal_).R.transpose() * X_BO_.R);
+  ASSERT_NE(plan.turn, 0);
+  ASSERT_EQ(Answer(plan), PlanEvent::kTaken);
+  EXPECT_EQ(FollowOn(), PlanEvent::kDone);
+  EXPECT_EQ(way_.since_ns, now_ns_) << "the law starts smoothly";
+  EXPECT_LT(reference_.dq.lpNorm<Eigen::Infinity>(), 1e-3) << "from rest";
+  EXPECT_EQ((way_.q_end - q_goal_).norm(), 0.0);
+  Choose(kSecond);
+  EXPECT_EQ(way_.note.way, Way::kLaw);
+  EXPECT_EQ(way_.turn, plan.turn);
+  EXPECT_TRUE(KeepsPosture(way_, X_BO_.p));
+  EXPECT_TRUE(KeepsPosture(way_, X_BO_.p + model::Vec3(0.05, 0.0, 0.0)));
+  EXPECT_FALSE(KeepsPosture(way_, X_BO_.p + model::Vec3(0.0, 0.5, 0.0)));
+  EXPECT_FALSE(KeepsPosture(way_, model::Vec3(std::nan(""), 0.0, 0.0)));
+}
+
+TEST_F(WayToGoalTest, TurnFollowsTheEstimateWhilePosesAreNotToldApart) {
+  config_.feature.target = hal::FeatureKind::kSquare;
+  config_.feature.corners = features::MakeSquare(0.08);
   told_apart_ = false;
-  const VecN q = PutTargetPastTheEnd();
-  Stand(q, 1000);
-  EXPECT_TRUE(way_.goal.found);
-  EXPECT_FALSE(way_.by_joints);
-}
-
-TEST_F(WayToGoalTest, LawBlockedByLimitsSwitchesToJointMotion) {
-  VecN q_goal = test::Ready();
-  q_goal[0] += 0.3;
-  PutTargetFor(q_goal);
-  Stand(test::Ready(), 200, hal::Bit(hal::Limit::kWorkspace));
-  EXPECT_FALSE(way_.by_joints);
-  Stand(test::Ready(), 400, hal::Bit(hal::Limit::kWorkspace));
-  EXPECT_TRUE(way_.by_joints);
-}
-
-// Joint motion would come no nearer to it than the law.
-TEST_F(WayToGoalTest, DownhillPostureWithABlockedPathIsAbandoned) {
-  VecN q_goal = test::Ready();
-  q_goal[0] += 0.8;
-  PutTargetFor(q_goal);
-  config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // no path keeps the target in this view
-  Stand(test::Ready(), 300, hal::Bit(hal::Limit::kWorkspace));
-  EXPECT_TRUE(way_.goal.downhill);
-  EXPECT_FALSE(way_.goal.clear);
-  Stand(test::Ready(), 300, hal::Bit(hal::Limit::kWorkspace));
-  EXPECT_FALSE(way_.by_joints);
-  EXPECT_FALSE(way_.goal.found) << "the search continues";
-}
-
-TEST_F(WayToGoalTest, PostureBlockedByLimitsIsReplacedByAnother) {
-  const VecN q = PutTargetPastTheEnd();
-  Stand(q, 1000);
-  ASSERT_TRUE(way_.by_joints);
-  const VecN first = way_.goal.q;
-  MotionTask task;
-  int ticks = 0;
-  for (; ticks < 1000 && way_.goal.found; ++ticks) {
-    Steer(q, task);
-    EXPECT_TRUE(NoteHeld(task, VecN::Zero(q.size()), way_));
-    Stand(q, 1);
+  const model::Mat3 R_BO = X_BO_.R;
+  for (int turn = 0; turn < 4; ++turn) {
+    X_BO_.R = R_BO * features::EqualTurn(turn, 4).transpose();
+    Choose();
+    EXPECT_EQ(way_.turn, features::NearestTurn(config_.feature, Sight().X_CO.R)) << turn;
   }
-  EXPECT_LT(ticks, 1000);
-  Steer(q, task);
-  EXPECT_EQ(task.v.norm(), 0.0) << "the arm stands during the search";
-
-  X_BO_.p.x() += 1.0;  // out of reach, so that the search goes on
-  int first_held = -1;
-  for (int i = 0; i < 2000; ++i) {
-    first_held = first_held < 0 && NoteHeld(task, VecN::Zero(q.size()), way_) ? i : first_held;
-    Stand(q, 1);
-  }
-  EXPECT_NEAR(first_held, 1500, 5) << "the longest time of a search";
-  EXPECT_EQ((way_.goal.q_dropped[0] - first).norm(), 0.0) << "a posture that was only tried is not dropped";
-  X_BO_.p.x() -= 1.0;
-  Stand(q, 3000);
-  ASSERT_TRUE(way_.goal.found);
-  EXPECT_GT((way_.goal.q - first).lpNorm<Eigen::Infinity>(), 0.1);
-}
-
-// While no posture is downhill or has a clear path, the arm stands and the search goes on: the law would lead
-// into a dead end.
-TEST_F(WayToGoalTest, ArmStandsUntilAClearPathIsFound) {
-  const VecN q = PutTargetPastTheEnd();
-  config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};  // no path keeps the target in this view
-  Stand(q, 1000);
-  EXPECT_TRUE(way_.by_joints);
-  EXPECT_FALSE(way_.goal.found);
-  MotionTask task;
-  Steer(q, task);
-  EXPECT_EQ(task.v.norm(), 0.0);
-  config_.guard.view = {};
-  Stand(q, 400);
-  EXPECT_TRUE(way_.by_joints);
-  EXPECT_TRUE(way_.goal.found);
-  EXPECT_TRUE(way_.goal.clear);
-}
-
-TEST_F(WayToGoalTest, LawTakesOverWhenNoClearPathIsFoundInTime) {
-  const VecN q = PutTargetPastTheEnd();
-  config_.guard.view = {true, 0.4, 0.5, 0.3, 0.4};
-  Stand(q, 1490);
-  EXPECT_TRUE(way_.by_joints);
-  Stand(q, 20);
-  EXPECT_FALSE(way_.by_joints) << "then the law may try";
-}
-
-TEST_F(WayToGoalTest, DetourPostureIsVisitedBeforeTheGoal) {
-  const VecN q = PutTargetPastTheEnd();
-  Stand(q, 1000);
-  ASSERT_TRUE(way_.by_joints);
-  way_.goal.detour = 1;
-  way_.goal.q_via = q;
-  way_.goal.q_via[6] += 0.5;
-  MotionTask task;
-  Steer(q, task);
-  EXPECT_GT(task.v[6], 0.5);
-  VecN on_the_way = way_.goal.q_via;
-  on_the_way[6] -= 0.2;
-  Stand(on_the_way, 1);
-  EXPECT_EQ(way_.goal.detour, 1);
-  on_the_way[6] += 0.1;
-  Stand(on_the_way, 1);
-  EXPECT_EQ(way_.goal.detour, 0);
-  Steer(on_the_way, task);
-  EXPECT_LT(task.v[6], -0.5);
-}
-
-// A posture downhill from the start may be far away when the law gets stuck.
-TEST_F(WayToGoalTest, StuckLawStartsANewPostureSearchFromThere) {
-  VecN q_goal = test::Ready();
-  q_goal[0] += 0.3;
-  PutTargetFor(q_goal);
-  Stand(test::Ready(), 100);
-  ASSERT_TRUE(way_.goal.downhill);
-  const VecN far = way_.goal.q;
-  VecN elsewhere = q_goal;
-  elsewhere[0] += 0.8;  // the third joint turns back, so that the elbow swings
-  elsewhere[2] -= 0.8;
-  Stand(elsewhere, 600, hal::Bit(hal::Limit::kWorkspace));
-  ASSERT_TRUE(way_.goal.found);
-  EXPECT_LT((way_.goal.q - elsewhere).norm(), 0.9 * (far - elsewhere).norm());
-}
-
-// A ball can be seen from any side: while the law makes progress, no search runs.
-TEST_F(WayToGoalTest, SphereStartsAPostureSearchOnlyOnceTheLawIsStuck) {
-  config_.feature = features::TargetFeature{};
-  ASSERT_TRUE(SeeksGoalPosture(config_));
-  VecN q_goal = test::Ready();
-  q_goal[0] += 0.4;
-  X_BO_ = CameraAt(q_goal) * Pose{model::Mat3::Identity(), config_.feature.p_CO_C_star};
-  Stand(test::Ready(), 2000);
-  EXPECT_FALSE(way_.goal.begun || way_.goal.found);
-  Stand(test::Ready(), 1700, hal::Bit(hal::Limit::kWorkspace));
-  ASSERT_TRUE(way_.goal.found);
-  EXPECT_TRUE(way_.by_joints);
-  const model::Vec3 p_CO = CameraAt(way_.goal.q).Inverse() * X_BO_.p;
-  EXPECT_LT((p_CO - config_.feature.p_CO_C_star).norm(), 3e-3);
+  told_apart_ = true;
+  limits_ = 0;
+  way_.is_fresh = false;
+  const int turn = way_.turn;
+  X_BO_.R = R_BO;
+  Choose(5);
+  EXPECT_EQ(way_.turn, turn) << "then it is kept";
 }
 
 }  // namespace

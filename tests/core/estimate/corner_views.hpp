@@ -75,6 +75,27 @@ inline CornerView ViewOf(const Polygon& polygon, const Pose& X_BC, const Pose& X
   return view;
 }
 
+// Rolling shutter: moves each corner to where a target that moves by `v`, `w` is in the time of the corner's
+// row. `X_BO`: at the stamp.
+inline void RollRows(const Polygon& polygon, double row_time, const Pose& X_BO, const Vec3& v, const Vec3& w,
+                     CornerView& view) {
+  view.row_time = row_time;
+  const int n = polygon.num_corners;
+  const int shift = view.seen.branches[0].first;
+  for (int i = 0; i < n; ++i) {
+    const auto at = [&](double t) {
+      const Pose moved{Turned(w * t) * X_BO.R, X_BO.p + t * v};
+      const Vec3 p = view.X_CB * (moved * polygon.corners[static_cast<std::size_t>(i)]);
+      return Eigen::Vector2d(p.head<2>() / p.z());
+    };
+    double t = 0.0;
+    for (int round = 0; round < 20; ++round) {
+      t = row_time * (at(t).y() - view.row_y);
+    }
+    view.seen.xy.segment<2>(2 * ((i + shift) % n)) += at(t) - at(0.0);
+  }
+}
+
 // A camera that moves to and fro above the table and looks down.
 inline Pose CameraAt(double t, double swing = 1.0) {
   Pose X_BC;

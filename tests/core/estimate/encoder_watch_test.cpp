@@ -7,7 +7,9 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <iostream>
+#include <random>
 
+#include "firmware/core/estimate/contact.hpp"
 #include "tests/support/panda.hpp"
 #include "tests/support/random_states.hpp"
 
@@ -203,6 +205,68 @@ TEST_F(EncoderWatchTest, FlickeringStepsAreNotTakenForNoise) {
   }
   dq_[3] = 0.0;
   EXPECT_EQ(TicksUntil(10'000), -1);
+}
+
+// A resting joint's velocity has noise. The contact observer sees it, too: from tick to tick the momentum
+// changes by M times the noise's change.
+class NoisyVelocityTest : public EncoderWatchTest {
+ protected:
+  // The readings of one tick at rest, `sigma` [rad/s].
+  void Rest(double sigma) {
+    for (int i = 0; i < 7; ++i) {
+      dq_[i] = sigma * noise_(random_);
+    }
+    ObserveContact(config_.safety.contact_gain, dynamics_, dq_, model::VecN::Zero(7), contact_);
+    residual_ = contact_.residual;
+  }
+
+  ContactState contact_ = [] {
+    ContactState contact;
+    contact.Reset(7, false);
+    return contact;
+  }();
+  std::mt19937_64 random_{5};
+  std::normal_distribution<double> noise_;
+};
+
+TEST_F(NoisyVelocityTest, VelocityNoiseAtRestIsSound) {
+  for (const double sigma : {5e-4, 1e-3, 2e-3, 5e-3}) {
+    watch_ = EncoderWatch{};
+    contact_.Reset(7, false);
+    int tick = 0;
+    for (; tick < 60'000; ++tick) {
+      Rest(sigma);
+      if (TicksUntil(1) >= 0) {
+        break;
+      }
+    }
+    std::cout << sigma << " rad/s: " << 1e-3 * tick << " s without an alarm\n";
+    EXPECT_EQ(tick, 60'000) << "joint " << joint_ + 1;
+  }
+}
+
+// An encoder that hangs after such noise is detected nearly as soon as without.
+TEST_F(NoisyVelocityTest, HangAfterVelocityNoiseIsDetected) {
+  for (const double sigma : {0.0, 5e-4, 2e-3, 5e-3}) {
+    for (int joint = 0; joint < 7; ++joint) {
+      config_.safety.frozen_ticks = 0;  // the sign that needs no motion is not tested here
+      watch_ = EncoderWatch{};
+      contact_.Reset(7, false);
+      for (int tick = 0; tick < 1000; ++tick) {
+        Rest(sigma);
+        ASSERT_EQ(TicksUntil(1), -1);
+      }
+      const double unbalanced = -0.2 * config_.arm.joints[static_cast<std::size_t>(joint)].tau_max;
+      int ticks = 0;
+      do {
+        residual_[joint] += 1e-3 * config_.safety.contact_gain * (unbalanced - residual_[joint]);
+        ++ticks;
+      } while (TicksUntil(1) < 0 && ticks < 1000);
+      std::cout << sigma << " rad/s, joint " << joint + 1 << ": after " << ticks << " ticks\n";
+      EXPECT_EQ(joint_, joint);
+      EXPECT_LE(ticks, 60);
+    }
+  }
 }
 
 // A reading that changes by one encoder step now and then is sound.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -44,6 +46,59 @@ TEST(EyeWatchTest, MirroredPictureIsDoubted) {
   std::cout << "after " << 1e3 * way << " mm\n";
   EXPECT_GT(way, 0.0);
   EXPECT_LT(way, 0.2);
+}
+
+// The camera is turned about its axis against its mount. Up to 45 degrees the servo gets there all the same.
+TEST(EyeWatchTest, TurnedPictureIsDoubtedBeforeSteeringLeadsAway) {
+  for (const double deg : {-170.0, -90.0, -65.0, -45.0, 0.0, 30.0, 45.0, 65.0, 90.0, 135.0, 180.0}) {
+    const double way = WayUntilDoubted(
+        5.0, [](double) { return 0.3; }, kStill,
+        [deg](const Vec3& p) -> Vec3 { return Eigen::AngleAxisd(deg / 57.29577951, Vec3::UnitZ()) * p; });
+    std::cout << deg << " degrees: after " << 1e3 * way << " mm\n";
+    EXPECT_EQ(way > 0.0, std::fabs(deg) > 60.0) << deg;
+    EXPECT_LT(way, 0.2) << deg;
+  }
+}
+
+// The camera turns about its axis while it moves a little, and its pictures are 10 ms older than believed.
+TEST(EyeWatchTest, WrongStampsOfATurningCameraAreNoTurnedPicture) {
+  const config::PredictConfig config;
+  EyeWatch watch;
+  const auto camera_at = [](double t) {
+    const double way = t * t;  // from rest
+    return model::Pose{Eigen::AngleAxisd(2.0 * way, Vec3::UnitZ()).toRotationMatrix(),
+                       {0.03 * way, 0.0, 0.0}};
+  };
+  for (int k = 0; k < 15; ++k) {
+    const double t = k / 30.0;
+    const Vec3 seen = camera_at(std::max(t - 0.01, 0.0)).Inverse() * Vec3(0.1, 0.1, 0.5);
+    WatchPicture(config, camera_at(t), seen, watch);
+    EXPECT_FALSE(watch.suspected) << k;
+  }
+  EXPECT_FALSE(watch.doubted);
+}
+
+// Targets that move on their own, while the hand follows up to 0.16 s behind.
+TEST(EyeWatchTest, MovingTargetsAreNotTurnedPictures) {
+  const config::PredictConfig config;
+  int doubted = 0;
+  for (int run = 0; run < 64; ++run) {
+    EyeWatch watch;
+    const double rate = 0.5 + 0.05 * run;
+    const double behind = 0.04 * (run % 5);
+    const auto target = [&](double t) {
+      return Vec3(0.1 * std::cos(rate * t), 0.1 * std::sin(rate * t), 0.5);
+    };
+    for (int k = 0; k < 600; ++k) {
+      const double t = k / 30.0;
+      Vec3 hand = target(t - behind);
+      hand.z() = 0.0;
+      const model::Pose X_BC{model::Mat3::Identity(), hand};
+      WatchPicture(config, X_BC, X_BC.Inverse() * target(t), watch);
+    }
+    doubted += watch.doubted ? 1 : 0;
+  }
+  EXPECT_EQ(doubted, 0);
 }
 
 TEST(EyeWatchTest, RestingOrTrackedTargetIsNotDoubted) {

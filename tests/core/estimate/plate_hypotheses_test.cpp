@@ -15,6 +15,50 @@
 namespace fovea::estimate {
 namespace {
 
+// A view, and the whole comparison with the views before it.
+Verdict TakeWhole(const config::PredictConfig& config, const Polygon& polygon, const CornerView& view,
+                  PoseHypotheses& hypotheses) {
+  const Verdict verdict = TakeView(config, polygon, view, hypotheses);
+  while (GoOn(polygon, hypotheses)) {
+  }
+  return verdict;
+}
+
+// The comparison of all poses with all views ends before the next picture of a camera with 30 Hz. A view that
+// comes before its end changes nothing of it.
+TEST(PlateHypothesesTest, ComparisonIsSpreadOverTicks) {
+  constexpr int kTicksBetweenPictures = 33;
+  const config::PredictConfig config;
+  const Polygon triangle = features::MakeTriangle(features::kDefaultTriangle);
+  Draw draw(11);
+  PoseHypotheses hypotheses;
+  int most_ticks = 0;
+  int most_poses = 0;
+  for (int k = 0; k < 60; ++k) {
+    const CornerView view = ViewOf(triangle, CameraAt(0.02 * k), kOnTable, k, 0.05, draw);
+    ASSERT_EQ(TakeView(config, triangle, view, hypotheses).intake, hal::Intake::kTaken);
+    most_poses = std::max(most_poses, hypotheses.plate.count);
+    PoseHypotheses disturbed = hypotheses;
+    int ticks = 0;
+    while (GoOn(triangle, hypotheses)) {
+      ++ticks;
+    }
+    most_ticks = std::max(most_ticks, ticks);
+    if (GoOn(triangle, disturbed)) {
+      const CornerView early = ViewOf(triangle, CameraAt(0.02 * k + 0.01), kOnTable, k + 1, 0.05, draw);
+      (void)TakeView(config, triangle, early, disturbed);
+      while (GoOn(triangle, disturbed)) {
+      }
+      ASSERT_EQ(disturbed.plate.views.count, hypotheses.plate.views.count);
+      ASSERT_TRUE(disturbed.plate.best().X_BO_still.R == hypotheses.plate.best().X_BO_still.R ||
+                  disturbed.plate.stillness == Stillness::kMoving);
+    }
+  }
+  std::cout << "at most " << most_ticks << " ticks for " << most_poses << " poses\n";
+  EXPECT_GT(most_ticks, 5);
+  EXPECT_LT(most_ticks, kTicksBetweenPictures);
+}
+
 // A detector that reports another place now and then.
 TEST(PlateHypothesesTest, RejectsOutliersAndRestartsAfterSeveral) {
   config::PredictConfig config;
@@ -24,7 +68,7 @@ TEST(PlateHypothesesTest, RejectsOutliersAndRestartsAfterSeveral) {
   PoseHypotheses hypotheses;
   int k = 0;
   const auto see = [&](const Pose& X_BO) {
-    return TakeView(config, square, ViewOf(square, CameraAt(0.0), X_BO, k++, 0.05, draw), hypotheses)
+    return TakeWhole(config, square, ViewOf(square, CameraAt(0.0), X_BO, k++, 0.05, draw), hypotheses)
                .intake == hal::Intake::kTaken;
   };
   while (k < 30) {
@@ -41,13 +85,13 @@ TEST(PlateHypothesesTest, RejectsOutliersAndRestartsAfterSeveral) {
   EXPECT_EQ(hypotheses.accepted, 1);
   EXPECT_LT((hypotheses.plate.best().filter.X_BO.p - elsewhere.p).norm(), 1e-3);
   EXPECT_TRUE(hypotheses.plate.best().filter.w_BO_B.isZero());
-  EXPECT_EQ(TakeView(config, square, ViewOf(square, CameraAt(0.0), elsewhere, k - 1, 0.05, draw), hypotheses)
+  EXPECT_EQ(TakeWhole(config, square, ViewOf(square, CameraAt(0.0), elsewhere, k - 1, 0.05, draw), hypotheses)
                 .intake,
             hal::Intake::kTooOld);
   CornerView nothing = ViewOf(square, CameraAt(0.0), kOnTable, k, 0.05, draw);
   nothing.seen.num_branches = 0;
   PoseHypotheses empty;
-  EXPECT_EQ(TakeView(config, square, nothing, empty).intake, hal::Intake::kWrongKind);
+  EXPECT_EQ(TakeWhole(config, square, nothing, empty).intake, hal::Intake::kWrongKind);
   EXPECT_EQ(empty.plate.count, 0);
 }
 
@@ -129,13 +173,13 @@ TEST(PlateHypothesesTest, CameraMotionFindsTheTruePoseOfATriangle) {
     view.seen.num_branches = std::min<int>(static_cast<int>(all.size()), hal::kMaxPoses);
     std::copy_n(all.begin(), view.seen.num_branches, view.seen.branches.begin());
     most = std::max(most, view.seen.num_branches);
-    ASSERT_EQ(TakeView(config, triangle, view, hypotheses).intake, hal::Intake::kTaken);
+    ASSERT_EQ(TakeWhole(config, triangle, view, hypotheses).intake, hal::Intake::kTaken);
     const auto off = [&] { return Between(hypotheses.plate.best().filter.X_BO.R, X_BO.R).norm(); };
     first_was_wrong += off() > 0.05 ? 1 : 0;
     for (int k = 1; k <= 60; ++k) {
       view = ViewOf(triangle, camera(k * kFrameS), X_BO, k, 0.03, draw, k % 3);
       view.seen.num_branches = 0;
-      (void)TakeView(config, triangle, view, hypotheses);
+      (void)TakeWhole(config, triangle, view, hypotheses);
       if (off() > 0.05) {
         last_wrong_s = std::max(last_wrong_s, k * kFrameS);
       }
@@ -186,7 +230,7 @@ TEST(PlateHypothesesTest, AllViewsOfAStillTargetOutweighOneBiasedPlace) {
     if (k * kFrameS > 1.8) {
       view.seen.xy[0] += 0.25 / kFocalPx;
     }
-    (void)TakeView(config, square, view, hypotheses);
+    (void)TakeWhole(config, square, view, hypotheses);
   }
   const double filter =
       Between(hypotheses.plate.best().filter.X_BO.R, flat.R).norm() * 180.0 / std::numbers::pi;
@@ -212,7 +256,7 @@ TEST(PlateHypothesesTest, CreepingCameraDoesNotBiasTheMean) {
     for (int k = 0; k < 150; ++k) {
       Pose X_BC = ComesOver(flat, k * kFrameS);
       X_BC.p.x() += speed * k * kFrameS;
-      (void)TakeView(config, square, ViewOf(square, X_BC, flat, k, 0.0, draw), hypotheses);
+      (void)TakeWhole(config, square, ViewOf(square, X_BC, flat, k, 0.0, draw), hypotheses);
       if (k > 75) {
         const Pose X_BO = MotionAt(config, hypotheses, hypotheses.stamp_ns).X_BO;
         worst_mm = std::max(worst_mm, 1e3 * (X_BO.p - flat.p).norm());
@@ -239,7 +283,7 @@ TEST(PlateHypothesesTest, StartOfMotionEndsTheStillState) {
     const Pose X_BC = ComesOver(flat, k * kFrameS);
     Pose X_BO = flat;
     X_BO.p.x() += k < kSetsOut ? 0.0 : 0.05 * (k - kSetsOut) * kFrameS;  // [m], at 0.05 m/s
-    (void)TakeView(config, square, ViewOf(square, X_BC, X_BO, k, 0.03, draw), hypotheses);
+    (void)TakeWhole(config, square, ViewOf(square, X_BC, X_BO, k, 0.03, draw), hypotheses);
     still_until = hypotheses.plate.stillness == Stillness::kStill ? k : still_until;
     if (k >= 60) {
       worst = std::max(worst, (MotionAt(config, hypotheses, hypotheses.stamp_ns).X_BO.p - X_BO.p).norm());

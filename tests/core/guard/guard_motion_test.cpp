@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "firmware/core/barriers/barrier_speed.hpp"
+#include "firmware/core/guard/approach_velocity.hpp"
 #include "firmware/core/trajectory/joint_pace.hpp"
 #include "fovea/hal/types.hpp"
 #include "tests/support/panda.hpp"
@@ -31,6 +32,11 @@ class Walker {
   }
 
   hal::LimitSet Step(const model::VecN& dq_des) { return Step(MotionWish::Velocity(dq_des)); }
+  void BrakeJointByJoint() {
+    const model::VecN rest = model::VecN::Zero(reference_.dq.size());
+    ApproachAlone(config_, rest, rest, reference_);
+    Update();
+  }
   hal::LimitSet Stop() { return Step(StopTogether(config_, reference_)); }
   hal::LimitSet Step(const MotionWish& wish) {
     const trajectory::Reference before = reference_;
@@ -280,8 +286,7 @@ TEST(GuardMotionTest, JointsStoppingTogetherDoNotSpeedUpTheHand) {
       return std::pair(gained, ticks);
     };
     const auto [gained, ticks] = stop(together, [](Walker& w) { w.Stop(); });
-    const auto [gained_alone, ticks_alone] =
-        stop(alone, [](Walker& w) { w.Step(model::VecN::Zero(w.reference().dq.size())); });
+    const auto [gained_alone, ticks_alone] = stop(alone, [](Walker& w) { w.BrakeJointByJoint(); });
     most_gained = std::max(most_gained, gained);
     most_gained_alone = std::max(most_gained_alone, gained_alone);
     latest = std::max(latest, ticks - ticks_alone);
@@ -319,6 +324,24 @@ TEST(GuardMotionTest, ScalesTheVelocityWithoutChangingItsDirection) {
   const model::VecN dq = walker.reference().dq;
   EXPECT_GT(dq.dot(wish) / (dq.norm() * wish.norm()), 1.0 - 1e-9);
   EXPECT_NEAR(dq[0], config.guard.joint_velocity_fraction * config.arm.joints[0].dq_max, 1e-9);
+}
+
+// Below all limits of speed, a motion that begins, changes and ends does so on its way.
+TEST(GuardMotionTest, KeepsTheDirectionWhileTheSpeedChanges) {
+  const config::ServoConfig config = test::PandaConfig();
+  Walker walker(config, test::Ready());
+  model::VecN way(7);
+  way << 0.3, 0.02, -0.1, 0.05, 0.2, -0.15, 0.4;
+  double aside = 0.0;
+  for (int tick = 0; tick < 900; ++tick) {
+    const double share = tick < 300 ? 1.0 : tick < 600 ? -0.5 : 0.0;
+    walker.Step(share * way);
+    const model::VecN dq = walker.reference().dq;
+    aside = std::max(aside, (dq - dq.dot(way) / way.squaredNorm() * way).norm() / way.norm());
+  }
+  std::cout << "aside at most " << aside << " of the speed\n";
+  EXPECT_LT(aside, 0.1);
+  EXPECT_LT(walker.reference().dq.norm(), 1e-9);
 }
 
 TEST(GuardMotionTest, OutsideTheWorkspaceOnlyInwardMotionIsAllowed) {

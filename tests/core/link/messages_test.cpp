@@ -21,9 +21,12 @@ namespace {
 static_assert(sizeof(moves::MotionCommand) == 304);
 static_assert(sizeof(hal::ArmState) == 280);
 static_assert(sizeof(hal::FeatureMeasurement) == 1016);
-static_assert(sizeof(hal::TickRecord) == 1992);
+static_assert(sizeof(hal::WayNote) == 40);
+static_assert(sizeof(trajectory::PlanHead) == 88);
+static_assert(sizeof(trajectory::PlanPart) == 432);
+static_assert(sizeof(hal::TickRecord) == 2112);
 static_assert(sizeof(LineCounters) == 24);
-static_assert(sizeof(Outputs) == 1992 + 4 * (kNumStages + 4) + sizeof(LineCounters));
+static_assert(sizeof(Outputs) == 2112 + 4 * (kNumStages + 4) + sizeof(LineCounters));
 
 std::array<std::uint8_t, kMaxPayload> storage;
 
@@ -64,6 +67,23 @@ class Values {
   std::mt19937_64 engine_;
 };
 
+trajectory::PlanPart SomePart(Values& values) {
+  trajectory::PlanPart part;
+  part.head.outcome = trajectory::PlanOutcome::kFound;
+  part.head.blocker = hal::Limit::kFieldOfView;
+  part.head.num_joints = 7;
+  part.head.num_points = 200;
+  part.head.turn = 3;
+  part.head.stamp_ns = -987654321012345;
+  part.head.period_s = values.Number();
+  values.Fill(part.head.p_BO);
+  values.Fill(part.head.q_BO);
+  part.first = 1358;
+  part.count = trajectory::PlanPart::kMostNumbers;
+  values.Fill(part.numbers);
+  return part;
+}
+
 task::ServoInputs SomeInputs(Values& values) {
   task::ServoInputs in;
   in.arm_status = hal::Status(hal::StatusCode::kTimeout, "arm");
@@ -96,6 +116,7 @@ task::ServoInputs SomeInputs(Values& values) {
   in.change_law = true;
   in.law = config::MotionLawKind::kFloat;
   in.tuning = {12, values.Number()};
+  in.plan = SomePart(values);
   in.missed_ticks = -3;
   return in;
 }
@@ -121,6 +142,8 @@ TEST(Messages, RoundTripKeepsEveryField) {
   ExpectComesBack(outputs);
   outputs.record.tuning = {hal::TuningResult::kOutOfRange, -5, values.Number(), std::nan("")};
   values.Fill(outputs.record.command.tau_cmd);
+  outputs.record.way = {hal::Way::kPlan, hal::PlanEvent::kDone, 5, -6, 7, {}};
+  values.Fill(outputs.record.way.normal_B);
   outputs.stage_counts[3] = 4711;
   outputs.link_counts = 12;
   outputs.periods_passed = 13;
@@ -131,6 +154,10 @@ TEST(Messages, RoundTripKeepsEveryField) {
   EXPECT_EQ(back.line, outputs.line);
   EXPECT_EQ(back.record.tuning.key, -5);
   EXPECT_EQ(back.record.tuning.before, outputs.record.tuning.before);
+  EXPECT_EQ(back.record.way.way, hal::Way::kPlan);
+  EXPECT_EQ(back.record.way.event, hal::PlanEvent::kDone);
+  EXPECT_EQ(back.record.way.tries, -6);
+  EXPECT_EQ(back.record.way.normal_B, outputs.record.way.normal_B);
   EXPECT_EQ(back.link_counts, outputs.link_counts);
   EXPECT_EQ(back.periods_passed, outputs.periods_passed);
 
@@ -157,6 +184,52 @@ TEST(Messages, CountsAndEnumsOutOfRangeAreRefused) {
   EXPECT_LE(back.arm.num_joints, hal::kMaxJoints);
 }
 
+TEST(Messages, PartOfAPlanComesBackWhole) {
+  Values values(4);
+  task::ServoInputs in;
+  in.plan = SomePart(values);
+  task::ServoInputs back;
+  ASSERT_TRUE(Decode(BytesOf(in), back));
+  EXPECT_EQ(back.plan.first, in.plan.first);
+  EXPECT_EQ(back.plan.count, in.plan.count);
+  EXPECT_EQ(back.plan.numbers, in.plan.numbers);
+  EXPECT_EQ(back.plan.head.outcome, in.plan.head.outcome);
+  EXPECT_EQ(back.plan.head.num_points, 200);
+  EXPECT_EQ(back.plan.head.stamp_ns, in.plan.head.stamp_ns);
+  EXPECT_EQ(back.plan.head.q_BO, in.plan.head.q_BO);
+  for (const int count : {0, 1, 41}) {
+    in.plan.count = count;
+    ExpectComesBack(in);
+    ASSERT_TRUE(Decode(BytesOf(in), back));
+    EXPECT_EQ(back.plan.count, count);
+    EXPECT_TRUE(back.plan.IsThere());
+  }
+  in.plan.count = -1;
+  ASSERT_TRUE(Decode(BytesOf(in), back)) << "into inputs that held a part";
+  EXPECT_FALSE(back.plan.IsThere());
+}
+
+TEST(Messages, PartOfAPlanWithASizeOutOfRangeIsRefused) {
+  const auto is_refused = [](const auto& change) {
+    Values values(5);
+    task::ServoInputs in;
+    in.plan = SomePart(values);
+    change(in.plan);
+    return BytesOf(in).empty();
+  };
+  EXPECT_FALSE(is_refused([](trajectory::PlanPart&) {}));
+  EXPECT_TRUE(is_refused([](trajectory::PlanPart& p) { p.count = trajectory::PlanPart::kMostNumbers + 1; }));
+  EXPECT_TRUE(is_refused([](trajectory::PlanPart& p) { p.count = -2; }));
+  EXPECT_TRUE(is_refused([](trajectory::PlanPart& p) { p.first = -1; }));
+  EXPECT_TRUE(is_refused([](trajectory::PlanPart& p) { p.first = trajectory::Plan::kMostNumbers + 1; }));
+  EXPECT_TRUE(is_refused([](trajectory::PlanPart& p) { p.head.num_joints = hal::kMaxJoints + 1; }));
+  EXPECT_TRUE(is_refused([](trajectory::PlanPart& p) { p.head.num_joints = -1; }));
+  EXPECT_TRUE(is_refused([](trajectory::PlanPart& p) { p.head.turn = 4; }));
+  EXPECT_TRUE(is_refused([](trajectory::PlanPart& p) {
+    p.head.outcome = static_cast<trajectory::PlanOutcome>(trajectory::kPlanOutcomeWords.size());
+  }));
+}
+
 // Whatever the bytes are, all decoded values are in range.
 TEST(Messages, RandomBytesDecodeOnlyToValuesInRange) {
   std::mt19937 engine(7);
@@ -175,6 +248,10 @@ TEST(Messages, RandomBytesDecodeOnlyToValuesInRange) {
     EXPECT_LE(in.feature.num_poses, hal::kMaxPoses);
     EXPECT_LE(in.feature.dim, hal::kMaxFeatureDim);
     EXPECT_LT(static_cast<int>(in.law), config::kNumMotionLaws);
+    EXPECT_GE(in.plan.count, -1);
+    EXPECT_LE(in.plan.count, trajectory::PlanPart::kMostNumbers);
+    EXPECT_GE(in.plan.first, 0);
+    EXPECT_LE(in.plan.first, trajectory::Plan::kMostNumbers);
   }
   EXPECT_GT(taken, 0);
 }
@@ -183,6 +260,9 @@ TEST(Messages, ArmChecksumChangesWithItsParameters) {
   const model::ArmModel arm = test::Panda().model;
   model::ArmModel other = arm;
   other.joints[6].coulomb = std::nextafter(other.joints[6].coulomb, 1e9);
+  EXPECT_NE(ArmCrc(other), ArmCrc(arm));
+  other = arm;
+  other.joints[6].rotor_inertia = 1e-15;
   EXPECT_NE(ArmCrc(other), ArmCrc(arm));
   other = arm;
   other.q_ready[0] += 1e-15;

@@ -21,18 +21,20 @@ namespace {
 // (state_fields.hpp), then change the size here.
 static_assert(sizeof(task::InputState) == 232);
 static_assert(sizeof(estimate::ContactState) == 688);
-static_assert(sizeof(estimate::TargetFilter) == 736);
-static_assert(sizeof(estimate::PoseHypotheses) == 16792);
-static_assert(sizeof(estimate::PredictState) == 58896);
-static_assert(sizeof(estimate::EncoderWatch) == 904);
-static_assert(sizeof(estimate::EyeWatch) == 184);
+static_assert(sizeof(estimate::PushWatch) == 80);
+static_assert(sizeof(estimate::TargetFilter) == 824);
+static_assert(sizeof(estimate::PoseHypotheses) == 18880);
+static_assert(sizeof(estimate::PredictState) == 61104);
+static_assert(sizeof(estimate::EncoderWatch) == 1096);
+static_assert(sizeof(estimate::EyeWatch) == 232);
 static_assert(sizeof(task::ModeState) == 5);
-static_assert(sizeof(control::WayToGoal) == 800);
+static_assert(sizeof(control::WayToGoal) == 672);
+static_assert(sizeof(trajectory::PlanReceiver) == 14496);
 static_assert(sizeof(control::ResolvedMotion) == 88);
 static_assert(sizeof(moves::MotionState) == 16160);
 static_assert(sizeof(motion_laws::MotionLawState) == 232);
 static_assert(sizeof(task::TuningState) == 544);
-static_assert(sizeof(task::ServoState) == 83504);
+static_assert(sizeof(task::ServoState) == 101232);
 
 using Buffer = std::vector<std::uint8_t>;
 
@@ -135,11 +137,12 @@ void ExpectDigestToSeeAllBut(const std::set<std::string>& left_out, hal::Mode mo
     const char* group = FirstDifference(task.state(), *state, storage_a, storage_b);
     ASSERT_NE(group, nullptr) << i;
     tried.insert(group);
-    if (state->way.preferred != task.state().way.preferred) {
-      continue;  // decides whether its group is covered
-    }
     const bool differs = DigestOf(run.config, *state, true) != digest;
     seen += differs ? 1 : 0;
+    if (std::string(group) == "pull of the way") {
+      EXPECT_FALSE(differs) << "it follows from the end of the plan";
+      continue;
+    }
     EXPECT_NE(differs, left_out.contains(group)) << "byte " << i << ", " << group;
   }
   std::cout << run.name << ": " << tried.size() << " groups, " << seen << " changes seen\n";
@@ -150,10 +153,12 @@ void ExpectDigestToSeeAllBut(const std::set<std::string>& left_out, hal::Mode mo
   }
 }
 
+const std::set<std::string> kLeftOutInTrack{"joint history", "planned motion", "momentum", "commanded motion",
+                                            "plan"};
+
 // While a key moves, the digest covers the ramps.
 TEST(ServoStateTest, DigestChangesWithEachRamp) {
-  ExpectDigestToSeeAllBut({"joint history", "planned motion", "momentum", "commanded motion"},
-                          hal::Mode::kTrack, test::TunedRun(600));
+  ExpectDigestToSeeAllBut(kLeftOutInTrack, hal::Mode::kTrack, test::TunedRun(600));
   const test::ServoRun run = test::TunedRun(600);
   task::ServoTask task;
   ASSERT_TRUE(task.Init(run.config).ok());
@@ -178,14 +183,37 @@ TEST(ServoStateTest, DigestChangesWithEachRamp) {
 TEST(ServoStateTest, DigestChangesWithEachCoveredField) {
   using features::FeatureForm;
   using hal::FeatureKind;
-  ExpectDigestToSeeAllBut({"joint history", "planned motion", "momentum", "commanded motion"},
-                          hal::Mode::kTrack,
+  ExpectDigestToSeeAllBut(kLeftOutInTrack, hal::Mode::kTrack,
                           test::TrackingRun("square", FeatureKind::kSquare, FeatureForm::kCorners, 600));
-  ExpectDigestToSeeAllBut(
-      {"joint history", "planned motion", "momentum", "commanded motion", "way to the goal"},
-      hal::Mode::kTrack, test::TrackingRun("sphere", FeatureKind::kSphere, FeatureForm::kSphere, 600));
-  ExpectDigestToSeeAllBut({"joint history", "planned motion", "momentum", "way to the goal"},
+  ExpectDigestToSeeAllBut(kLeftOutInTrack, hal::Mode::kTrack,
+                          test::TrackingRun("sphere", FeatureKind::kSphere, FeatureForm::kSphere, 600));
+  ExpectDigestToSeeAllBut({"joint history", "planned motion", "momentum", "way to the goal", "plan"},
                           hal::Mode::kMove, test::CommandedRun(300));
+}
+
+// The plan and the pull follow from the inputs and the rest of the way.
+TEST(ServoStateTest, DigestChangesWithEachFieldOfTheWayOnAPlan) {
+  const test::ServoRun run = test::PlannedRun(900);
+  ExpectDigestToSeeAllBut(kLeftOutInTrack, hal::Mode::kTrack, run);
+  task::ServoTask task;
+  ASSERT_TRUE(task.Init(run.config).ok());
+  task::ServoOutputs outputs;
+  for (const task::ServoInputs& inputs : run.inputs) {
+    task.Step(inputs, outputs);
+  }
+  ASSERT_EQ(task.state().way.note.way, hal::Way::kPlan);
+  const std::uint64_t digest = DigestOf(run.config, task.state(), false);
+  const auto changed = [&](const auto& change) {
+    auto state = std::make_unique<task::ServoState>(task.state());
+    change(state->way);
+    return DigestOf(run.config, *state, false) != digest;
+  };
+  EXPECT_TRUE(changed([](control::WayToGoal& w) { w.t += 1e-12; }));
+  EXPECT_TRUE(changed([](control::WayToGoal& w) { w.q_end[6] += 1e-12; }));
+  EXPECT_TRUE(changed([](control::WayToGoal& w) { w.shift[0] += 1e-12; }));
+  EXPECT_TRUE(changed([](control::WayToGoal& w) { w.held_ns += 1; }));
+  EXPECT_TRUE(changed([](control::WayToGoal& w) { w.note.tries += 1; }));
+  EXPECT_TRUE(changed([](control::WayToGoal& w) { w.planner_late = !w.planner_late; }));
 }
 
 // A state with an index outside its array is refused.
@@ -200,10 +228,45 @@ TEST(ServoStateTest, IndicesOutOfRangeAreRefused) {
     return Encode(*state, storage).empty();
   };
   EXPECT_FALSE(is_refused([](task::ServoState&) {}));
-  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.goal.turn = 4; }));
-  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.goal.nearest_turn = -1; }));
-  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.goal.drops = -1; }));
+  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.turn = 4; }));
+  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.turn = -1; }));
+  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.way.note.way = static_cast<hal::Way>(hal::kNumWays); }));
+  EXPECT_TRUE(
+      is_refused([](task::ServoState& s) { s.plans.Restore({}, trajectory::Plan::kMostNumbers + 1); }));
+  EXPECT_TRUE(is_refused([](task::ServoState& s) { s.plans.Restore({}, -2); }));
+  EXPECT_FALSE(is_refused([](task::ServoState& s) { s.plans.Restore({}, -1); }));
   EXPECT_TRUE(is_refused([](task::ServoState& s) { s.predict.hypotheses.plate.believed = hal::kMaxPoses; }));
+}
+
+// A state on a plan needs the whole plan: the next tick reads its points.
+TEST(ServoStateTest, StateOnAPlanThatIsNotWholeIsRefused) {
+  task::ServoTask task;
+  ASSERT_TRUE(task.Init(test::PandaConfig()).ok());
+  trajectory::Plan plan;
+  plan.outcome = trajectory::PlanOutcome::kFound;
+  plan.num_joints = 7;
+  plan.num_points = 10;
+  plan.period_s = 0.1;
+  auto state = std::make_unique<task::ServoState>(task.state());
+  auto back = std::make_unique<task::ServoState>(task.state());
+  const auto is_taken = [&](const trajectory::Plan& changed, int received) {
+    state->plans.Restore(changed, received);
+    return Decode(BytesOf(*state), *back);
+  };
+  EXPECT_TRUE(is_taken(plan, 42)) << "still on its way";
+  state->way.note.way = hal::Way::kPlan;
+  state->way.q_end.setZero(7);
+  state->way.shift.setZero(7);
+  EXPECT_TRUE(is_taken(plan, 70));
+  EXPECT_EQ(back->plans.plan().num_points, 10);
+  EXPECT_FALSE(is_taken(plan, 42));
+  EXPECT_FALSE(is_taken(plan, -1));
+  trajectory::Plan absurd = plan;
+  absurd.num_points = 100'000'000;
+  EXPECT_FALSE(is_taken(absurd, 70));
+  EXPECT_FALSE(is_taken({}, 0)) << "no motion";
+  state->way.shift.setZero(6);
+  EXPECT_FALSE(is_taken(plan, 70));
 }
 
 TEST(ServoStateTest, DemandRoundTripKeepsEveryField) {
@@ -241,6 +304,41 @@ TEST(ServoStateTest, DemandRoundTripKeepsEveryField) {
   Demand asked;
   asked.tuning = {0, 1.0};
   EXPECT_FALSE(asked.IsPlain());
+}
+
+// The plan's part comes after the key, with and without one.
+TEST(ServoStateTest, DemandRoundTripKeepsAPartOfAPlan) {
+  for (const bool with_key : {false, true}) {
+    Demand demand;
+    if (with_key) {
+      demand.tuning = {7, 0.25};
+    }
+    demand.plan.head.outcome = trajectory::PlanOutcome::kFound;
+    demand.plan.head.num_joints = 7;
+    demand.plan.head.num_points = 12;
+    demand.plan.head.stamp_ns = 99;
+    demand.plan.first = 42;
+    demand.plan.count = trajectory::PlanPart::kMostNumbers;
+    demand.plan.numbers.fill(-0.0);
+    demand.plan.numbers[41] = 1e-300;
+    EXPECT_FALSE(demand.IsPlain());
+    std::array<std::uint8_t, kMaxDemand> storage{};
+    const Bytes bytes = Encode(demand, storage);
+    ASSERT_FALSE(bytes.empty()) << "it always fits";
+    Demand back;
+    back.tuning = {3, 1.0};
+    ASSERT_TRUE(Decode(bytes, back));
+    EXPECT_EQ(back.tuning.IsAsked(), with_key);
+    EXPECT_EQ(back.plan.first, 42);
+    EXPECT_EQ(back.plan.head.num_points, 12);
+    EXPECT_EQ(back.plan.head.stamp_ns, 99);
+    EXPECT_EQ(back.plan.numbers, demand.plan.numbers);
+    EXPECT_FALSE(Decode(bytes.first(bytes.size() - 1), back));
+    demand.plan = {};
+    const Bytes shorter = Encode(demand, storage);
+    ASSERT_TRUE(Decode(shorter, back));
+    EXPECT_FALSE(back.plan.IsThere()) << "that of the message before does not stay";
+  }
 }
 
 }  // namespace

@@ -39,14 +39,17 @@ KDL::Chain BuildKdlChain(const robots::Robot& robot) {
   }
   std::reverse(joints.begin(), joints.end());
   KDL::Chain chain;
+  std::size_t moving = 0;
   for (const auto& joint : joints) {
     const KDL::Frame X = ToKdl(joint->parent_to_joint_origin_transform);
     const KDL::Vector axis(joint->axis.x, joint->axis.y, joint->axis.z);
     KDL::Joint kdl_joint(joint->name, KDL::Joint::None);
+    const double rotor =
+        joint->type == urdf::Joint::FIXED ? 0.0 : robot.model.joints.at(moving++).rotor_inertia;
     if (joint->type == urdf::Joint::REVOLUTE || joint->type == urdf::Joint::CONTINUOUS) {
-      kdl_joint = KDL::Joint(joint->name, X.p, X.M * axis, KDL::Joint::RotAxis);
+      kdl_joint = KDL::Joint(joint->name, X.p, X.M * axis, KDL::Joint::RotAxis, 1.0, 0.0, rotor);
     } else if (joint->type == urdf::Joint::PRISMATIC) {
-      kdl_joint = KDL::Joint(joint->name, X.p, X.M * axis, KDL::Joint::TransAxis);
+      kdl_joint = KDL::Joint(joint->name, X.p, X.M * axis, KDL::Joint::TransAxis, 1.0, 0.0, rotor);
     }
     KDL::RigidBodyInertia inertia = KDL::RigidBodyInertia::Zero();
     if (const auto& in = urdf->getLink(joint->child_link_name)->inertial) {
@@ -66,9 +69,18 @@ KDL::JntArray ToKdl(const model::VecN& v) {
   return array;
 }
 
+// Each joint with a rotor of another inertia.
+robots::Robot LoadWithRotors(const std::string& file) {
+  robots::Robot robot = robots::LoadRobot(file);
+  for (int i = 0; i < robot.model.num_joints; ++i) {
+    robot.model.joints[static_cast<std::size_t>(i)].rotor_inertia = 0.6 / (1.0 + i);
+  }
+  return robot;
+}
+
 class KdlTest : public testing::TestWithParam<const char*> {
  protected:
-  KdlTest() : robot_(robots::LoadRobot(test::RobotsFolder() + GetParam())), chain_(BuildKdlChain(robot_)) {
+  KdlTest() : robot_(LoadWithRotors(test::RobotsFolder() + GetParam())), chain_(BuildKdlChain(robot_)) {
     // Every arm carries a load beside its flange, with six different moments of inertia.
     model::Load load;
     load.mass = 1.7;

@@ -52,5 +52,41 @@ TEST(LoadTest, LoadAddsItsWeightAndInertiaAtItsPosition) {
   EXPECT_LT(worst, 1e-12);
 }
 
+// A point mass beside the model is the same as one in it, whichever its sign.
+TEST(LoadTest, PointMassBesideTheModelIsLikeOneInIt) {
+  const ArmModel bare = test::Panda().model;
+  const PointMass extra{0.8, Vec3(0.05, -0.03, 0.12)};
+  ArmModel loaded = bare;
+  Attach({extra.mass, extra.p_E, Mat3::Zero()}, loaded);
+  test::RandomStates random(32);
+  double worst = 0.0;
+  const auto compare = [&](const ArmDynamics& a, const ArmDynamics& b) {
+    worst = std::max({worst, Eigen::MatrixXd(a.M - b.M).cwiseAbs().maxCoeff(),
+                      Eigen::VectorXd(a.Cdq - b.Cdq).cwiseAbs().maxCoeff(),
+                      Eigen::VectorXd(a.g - b.g).cwiseAbs().maxCoeff()});
+  };
+  for (int k = 0; k < 200; ++k) {
+    const VecN q = test::Ready() + random.Joints(bare, 0.5);
+    const VecN dq = random.Joints(bare, 0.5);
+    ArmPoses poses;
+    ComputePoses(bare, q, poses);
+    ArmDynamics without;
+    ArmDynamics with;
+    ComputeDynamics(bare, poses, dq, without);
+    ComputeDynamics(loaded, poses, dq, with);
+    ArmDynamics added = without;
+    AddPointMass(bare, poses, dq, extra, added);
+    compare(added, with);
+    AddPointMass(bare, poses, dq, {-extra.mass, extra.p_E}, added);
+    compare(added, without);
+    worst = std::max(
+        worst,
+        Eigen::VectorXd(HoldingTorque(bare, poses, extra) - (with.g - without.g)).cwiseAbs().maxCoeff());
+    ASSERT_TRUE(std::isfinite(worst));
+  }
+  std::cout << "worst difference: " << worst << " [kg m^2, Nm]\n";
+  EXPECT_LT(worst, 1e-12);
+}
+
 }  // namespace
 }  // namespace fovea::model

@@ -31,8 +31,8 @@ class TargetLoop {
   static constexpr double kFocal = 554.256;
 
   // `turn`: additional offset of the last joint at the start [rad].
-  TargetLoop(const config::ServoConfig& config, double sigma_px, double turn = 0.0)
-      : config_(config), arm_(config.arm, Start(turn)), eye_(config.feature, kFocal, sigma_px, 71) {
+  TargetLoop(const config::ServoConfig& config, double sigma_px, double turn = 0.0, unsigned seed = 71)
+      : config_(config), arm_(config.arm, Start(turn)), eye_(config.feature, kFocal, sigma_px, seed) {
     EXPECT_TRUE(task_.Init(config).ok());
     // Places the target so that the goal is near the ready posture.
     model::ArmPoses poses;
@@ -159,6 +159,7 @@ class TargetLoop {
 
 config::ServoConfig ConfigFor(FeatureKind target, FeatureForm form) {
   config::ServoConfig config = test::PandaConfig();
+  config.law.plans = false;
   config.feature.target = target;
   config.feature.form = form;
   if (target == FeatureKind::kSquare) {
@@ -185,12 +186,21 @@ class FourTargets : public testing::TestWithParam<Case> {};
 
 TEST_P(FourTargets, StillTargetConvergesToItsGoal) {
   const Case& c = GetParam();
-  TargetLoop loop(ConfigFor(c.target, c.form), 0.05);
-  const Residual start = loop.Now();
-  EXPECT_EQ(loop.Run(6000).mode, Mode::kTrack);
-  const Residual end = loop.Over(500);
+  constexpr int kRuns = 8;  // each with its own noise: half a second has only a few independent errors
+  Residual start;
+  Residual end;
+  for (unsigned seed = 71; seed < 71 + kRuns; ++seed) {
+    TargetLoop loop(ConfigFor(c.target, c.form), 0.05, 0.0, seed);
+    start = loop.Now();
+    EXPECT_EQ(loop.Run(6000).mode, Mode::kTrack);
+    const Residual rms = loop.Over(500);
+    end.px += rms.px * rms.px / kRuns;
+    end.mm += rms.mm * rms.mm / kRuns;
+    end.deg += rms.deg * rms.deg / kRuns;
+  }
+  end = {std::sqrt(end.px), std::sqrt(end.mm), std::sqrt(end.deg)};
   std::cout << c.name << ": from " << start.px << " px, " << start.mm << " mm, " << start.deg << " deg to "
-            << end.px << " px, " << end.mm << " mm, " << end.deg << " deg rms\n";
+            << end.px << " px, " << end.mm << " mm, " << end.deg << " deg rms of " << kRuns << " runs\n";
   EXPECT_GT(start.px, 40.0);
   EXPECT_LT(end.px, c.bound.px);
   EXPECT_LT(end.mm, c.bound.mm);
@@ -268,14 +278,14 @@ TEST(FourTargetsLaw, EveryGainInteractionAndOrientationChoiceConverges) {
 
 // The view ends just outside the corners at the start and at the goal. With the pose feature a corner leaves
 // it on the way; with the view as a limit it does so by a third of that.
-TEST(FourTargetsLaw, FieldOfViewLimitsKeepTheSquareInThePicture) {
+TEST(FourTargetsLaw, FieldOfViewLimitsKeepTheTriangleInThePicture) {
   double out[2] = {0.0, 0.0};  // largest distance of a corner outside, in the normalised image
   for (const bool keep : {false, true}) {
-    config::ServoConfig config = ConfigFor(FeatureKind::kSquare, FeatureForm::kPose);
-    config.guard.view = TargetLoop(config, 0.0, 0.9).ViewOfStartAndGoal(0.02);
+    config::ServoConfig config = ConfigFor(FeatureKind::kTriangle, FeatureForm::kPose);
+    config.guard.view = TargetLoop(config, 0.0, -3.0).ViewOfStartAndGoal(0.005);
     const config::ViewConfig view = config.guard.view;
     config.guard.view.enabled = keep;
-    TargetLoop loop(config, 0.0, 0.9);
+    TargetLoop loop(config, 0.0, -3.0);
     bool acted = false;
     for (int ms = 0; ms < 6000; ++ms) {
       acted = (loop.Run(1).limits_active & hal::Bit(hal::Limit::kFieldOfView)) != 0 || acted;

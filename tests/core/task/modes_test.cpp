@@ -197,11 +197,27 @@ TEST_F(ModesTest, StoppedMotionIsNotResumed) {
   EXPECT_EQ(After(last_, track), Mode::kTrack);
 }
 
+// An eye that is only suspected goes on; once it has lost the target, nothing starts again by itself.
+TEST_F(ModesTest, ASuspectedEyeCountsOnceItHasLostTheTarget) {
+  ModeInputs inputs = Seen(kFresh);
+  inputs.eye_suspected = true;
+  EXPECT_EQ(After(In(Mode::kTrack), inputs), Mode::kTrack);
+  inputs.feature_age_ns = Lost();
+  for (const Mode mode : {Mode::kTrack, Mode::kCoast}) {
+    EXPECT_EQ(After(In(mode), inputs), Mode::kHold);
+    EXPECT_EQ(last_.hold_reason, HoldReason::kEyeDoubted);
+    EXPECT_EQ(After(last_, Seen(kFresh)), Mode::kHold) << "only a request starts it again";
+  }
+  inputs.eye_suspected = false;
+  EXPECT_EQ(After(In(Mode::kTrack), inputs), Mode::kHold);
+  EXPECT_EQ(last_.hold_reason, HoldReason::kTargetLost);
+}
+
 // All combinations of requests and conditions in a tick.
 std::vector<ModeInputs> AllInputs(std::int64_t stale_ns, std::int64_t lost_ns) {
   std::vector<ModeInputs> all;
   for (const Request request : {Request::kNone, Request::kTrack, Request::kHold, Request::kReset}) {
-    for (unsigned bits = 0; bits < 256; ++bits) {
+    for (unsigned bits = 0; bits < 512; ++bits) {
       for (const std::int64_t age : {std::int64_t{0}, stale_ns, lost_ns}) {
         for (const Fault fault : {Fault::kNone, Fault::kArmStale}) {
           ModeInputs inputs;
@@ -214,6 +230,7 @@ std::vector<ModeInputs> AllInputs(std::int64_t stale_ns, std::int64_t lost_ns) {
           inputs.motion_refused = (bits & 32U) != 0;
           inputs.eye_doubted = (bits & 64U) != 0;
           inputs.motion_not_followed = (bits & 128U) != 0;
+          inputs.eye_suspected = (bits & 256U) != 0;
           inputs.feature_age_ns = age;
           inputs.fault = fault;
           all.push_back(inputs);

@@ -311,7 +311,7 @@ TEST_F(FaultTest, StopUnderAPullEndsInTheBrakes) {
 // Without the contact observer a jammed arm is detected later, by its following error.
 TEST_F(FaultTest, ArmOffItsReferenceRaisesNotFollowing) {
   config::ServoConfig config = test::PandaConfig();
-  config.safety.contact_torque_fraction = 1e3;
+  config.safety.contact_torque_fraction = config.safety.contact_sudden_fraction = 1e3;
   config.safety.non_finite_ticks = 10'000;  // and constant readings do not count
   Start(config);
   Run(500);

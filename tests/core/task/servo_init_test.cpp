@@ -104,6 +104,8 @@ TEST(ServoInitTest, RefusesABadValueAndNamesTheKey) {
       {"servo.k_v", [=](config::ServoConfig& c) { c.motion_law.k_v[3] = infinity; }},
       {"joint friction or spring", [](config::ServoConfig& c) { c.arm.joints[1].coulomb = -0.1; }},
       {"joint friction or spring", [=](config::ServoConfig& c) { c.arm.joints[1].spring = nan; }},
+      {"rotor inertia", [](config::ServoConfig& c) { c.arm.joints[2].rotor_inertia = -0.1; }},
+      {"rotor inertia", [=](config::ServoConfig& c) { c.arm.joints[2].rotor_inertia = infinity; }},
       {"safety.planes", [](config::ServoConfig& c) { c.guard.obstacles.num_planes = -1; }},
       {"safety.boxes",
        [](config::ServoConfig& c) { c.guard.obstacles.num_boxes = config::Obstacles::kMost + 1; }},

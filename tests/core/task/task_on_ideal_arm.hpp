@@ -22,7 +22,8 @@ class ServoTaskTest : public testing::Test {
  protected:
   void Start(const config::ServoConfig& config) {
     config_ = config;
-    ASSERT_TRUE(task_.Init(config).ok());
+    config_.law.plans = plans_;
+    ASSERT_TRUE(task_.Init(config_).ok());
     model::VecN q = test::Ready();
     q[0] -= 0.3;
     arm_ = std::make_unique<test::IdealArm>(config.arm, q);
@@ -83,6 +84,7 @@ class ServoTaskTest : public testing::Test {
   std::unique_ptr<test::IdealArm> arm_;
   model::Vec3 target_;
   bool camera_on_ = true;
+  bool plans_ = false;  // the law alone
   int ticks_ = 0;
   std::vector<hal::FeatureMeasurement> pending_;
 };

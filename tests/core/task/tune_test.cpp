@@ -18,7 +18,15 @@ namespace {
 
 using hal::TuningResult;
 
-enum Key : std::int32_t { kLambda = 0, kLambdaNear = 1, kPosture = 4, kStale = 11, kCoast = 12 };
+enum Key : std::int32_t {
+  kLambda = 0,
+  kLambdaNear = 1,
+  kPosture = 4,
+  kStale = 11,
+  kCoast = 12,
+  kStampOffset = config::kStampOffsetKey,
+  kLoadOffset = config::kLoadOffsetKey
+};
 
 class TuneTest : public testing::Test {
  protected:
@@ -55,7 +63,7 @@ TEST_F(TuneTest, EachBadRequestIsRefusedWithItsReason) {
                           Case{kLambda, -1e-300, TuningResult::kOutOfRange},
                           Case{kStale, std::nextafter(0.6, 1.0), TuningResult::kInconsistent},
                           Case{kCoast, 0.14, TuningResult::kInconsistent},
-                          Case{13, 1.0, TuningResult::kUnknownKey}, Case{-7, 1.0, TuningResult::kUnknownKey},
+                          Case{15, 1.0, TuningResult::kUnknownKey}, Case{-7, 1.0, TuningResult::kUnknownKey},
                           Case{std::numeric_limits<std::int32_t>::max(), 1.0, TuningResult::kUnknownKey}}) {
     const hal::TuningNote note = Ask(bad.key, bad.value);
     EXPECT_EQ(note.result, bad.result)
@@ -178,6 +186,31 @@ TEST_F(TuneTest, RandomRequestsKeepTheChecksAcrossKeys) {
   std::printf("%d requests taken, %d refused\n", taken, refused);
   EXPECT_GT(taken, 500);
   EXPECT_GT(refused, 500);
+}
+
+// What servo.learn asks for is bounded like any other request.
+TEST_F(TuneTest, LearntOffsetsAreBounded) {
+  config_.load.mass = 0.25;
+  EXPECT_EQ(Ask(kStampOffset, std::nextafter(0.05, 1.0)).result, TuningResult::kOutOfRange);
+  EXPECT_EQ(Ask(kStampOffset, -0.051).result, TuningResult::kOutOfRange);
+  EXPECT_EQ(Ask(kStampOffset, std::nan("")).result, TuningResult::kNotFinite);
+  EXPECT_EQ(Ask(kLoadOffset, 1.01).result, TuningResult::kOutOfRange);
+  EXPECT_EQ(Ask(kLoadOffset, std::nan("")).result, TuningResult::kNotFinite);
+  EXPECT_EQ(Ask(kLoadOffset, -0.26).result, TuningResult::kInconsistent)
+      << "no load weighs less than nothing";
+  EXPECT_EQ(config_.predict.stamp_offset, 0.0);
+  EXPECT_EQ(config_.load.offset, 0.0);
+  EXPECT_EQ(Ask(kLoadOffset, -0.25).result, TuningResult::kTaken);
+  EXPECT_EQ(Ask(kStampOffset, 0.05).result, TuningResult::kTaken);
+  double last = 0.0;
+  for (int ticks = 2; ticks <= 250; ++ticks) {
+    Pass();
+    EXPECT_GT(config_.predict.stamp_offset, last);
+    EXPECT_LT(config_.predict.stamp_offset - last, 1.6 * 0.05 / 250.0);
+    last = config_.predict.stamp_offset;
+  }
+  EXPECT_EQ(config_.predict.stamp_offset, 0.05);
+  EXPECT_EQ(config_.load.offset, -0.25);
 }
 
 TEST_F(TuneTest, StateAloneRestoresTheKeys) {

@@ -77,6 +77,34 @@ TEST_F(TunedLoopTest, TorqueStaysSmoothWhenTheGainChanges) {
   EXPECT_LT(with, start);
 }
 
+// A learnt load comes into the torque without a step, and the standing arm then carries its weight.
+TEST_F(TunedLoopTest, LoadComesInWithoutAStep) {
+  config::ServoConfig config = test::PandaConfig();
+  config.load.p_ECom = {0.05, 0.0, 0.02};
+  Start(config);
+  camera_on_ = false;
+  Run(200);
+  hal::TickRecord last = outputs_.record;
+  ASSERT_EQ(last.mode, hal::Mode::kHold);
+  double most_step = 0.0;
+  for (int k = 0; k < 300; ++k) {
+    const hal::TickRecord& r = Tick([&](ServoInputs& inputs) {
+      if (k == 0) {
+        inputs.tuning = {config::kLoadOffsetKey, 0.5};
+      }
+    });
+    for (std::size_t i = 0; i < 7; ++i) {
+      most_step = std::max(most_step, std::fabs(r.command.tau_cmd[i] - last.command.tau_cmd[i]));
+    }
+    last = r;
+  }
+  const model::VecN weight = model::HoldingTorque(config.arm, task_.state().poses, {0.5, config.load.p_ECom});
+  std::cout << "largest step " << most_step << " Nm per tick of " << weight.lpNorm<Eigen::Infinity>()
+            << " Nm\n";
+  EXPECT_GT(weight.lpNorm<Eigen::Infinity>(), 1.0);
+  EXPECT_LT(most_step, 0.02 * weight.lpNorm<Eigen::Infinity>()) << "of one step: 1.5 / 250, and the law";
+}
+
 // Whatever is requested, the servo keeps its limits: torque and its rate, the reference's speed and
 // acceleration, the workspace; and it raises no fault.
 TEST_F(TunedLoopTest, RandomRequestsBreakNoLimit) {

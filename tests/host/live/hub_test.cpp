@@ -149,6 +149,24 @@ TEST(LiveState, ShowsTheFaultsWithTheirSizes) {
   EXPECT_EQ(fault["settings"][1]["value"], 0.25);
 }
 
+TEST(LiveState, ShowsWhatIsFoundOutAndWhatIsUnknown) {
+  State state;
+  state.findings = {{"latency", "camera.latency_ms", "ms", 40.0, true, 18.0, 0.4},
+                    {"focal length", "camera.f_u_px", "%", std::nullopt, false, 3.0, 20.0}};
+  const json findings = json::parse(StateJson(state, Catalogue{}) + "}")["findings"];
+  EXPECT_EQ(findings[0], (json{{"name", "latency"},
+                               {"key", "camera.latency_ms"},
+                               {"unit", "ms"},
+                               {"configured", 40.0},
+                               {"known", true},
+                               {"difference", 18.0},
+                               {"sigma", 0.4}}));
+  EXPECT_EQ(findings[1]["known"], false);
+  EXPECT_EQ(findings[1]["configured"], nullptr);
+  EXPECT_EQ(findings[1]["difference"], nullptr) << "no number of what is unknown";
+  EXPECT_EQ(findings[1]["sigma"], nullptr);
+}
+
 TEST_F(HubTest, StateComesAtOnceForEventsElseAtTenHertz) {
   const std::uint64_t viewer = Join();
   State state;

@@ -122,7 +122,7 @@ TEST_F(ReportTest, ShowsTheRunOfALog) {
   }
   const Envelope::Rows ticks = run.ticks->rows();
   ASSERT_EQ(ticks.t_s.size(), 500U);
-  const std::size_t at = 4 * run.joints.size();
+  const std::size_t at = RunData::kJointQuantities * run.joints.size();
   EXPECT_FLOAT_EQ(ticks.columns[1][250], 0.25F);
   EXPECT_FLOAT_EQ(ticks.columns[at + RunData::kErrorPx][250], 75.0F) << "the truth of the same tick";
   EXPECT_TRUE(std::isnan(ticks.columns[at + RunData::kPredictedPx][50])) << "the target is not known yet";
@@ -153,7 +153,7 @@ TEST_F(ReportTest, ShowsFlatTargetErrorsInPixels) {
     log.AddTick(r);
     log.Finish();
     const RunData run = ReadRun(folder_);
-    const std::size_t at = 4 * run.joints.size() + RunData::kPredictedPx;
+    const std::size_t at = RunData::kJointQuantities * run.joints.size() + RunData::kPredictedPx;
     return std::pair(run.ticks->rows().columns[at][0], run.measured.rows().columns[RunData::kMeasuredPx][0]);
   };
   hal::TickRecord r = Record(140);

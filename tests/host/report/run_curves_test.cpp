@@ -77,7 +77,7 @@ class RunCurvesTest : public testing::Test {
     return ReadRun(folder_.path());
   }
   static std::vector<float> Column(const RunData& run, std::size_t which) {
-    return run.ticks->rows().columns[4 * run.joints.size() + which];
+    return run.ticks->rows().columns[RunData::kJointQuantities * run.joints.size() + which];
   }
   // Adds a measurement per frame of `sequences`; a negative number means that no target is found.
   static void AddFrames(log::RunLog& log, const std::vector<int>& sequences) {
@@ -202,12 +202,11 @@ TEST_F(RunCurvesTest, OperatorsChangesAreEvents) {
   }
   EXPECT_THAT(times_ms, ElementsAre(300, 410, 420, 700));
   const json expected = json::array(
-      {{{"taken", true}, {"words", "servo.lambda 2 -> 3.2 1/s, by the operator"}},
+      {{{"taken", true}, {"words", "servo.lambda 2 -> 3.2 1/s, in motion"}},
        {{"taken", false},
-        {"words",
-         "servo.lambda 3.2 -> 40 1/s, by the operator, refused: the value is outside the key's range"}},
-       {{"taken", true}, {"words", "servo.posture_gain 0.6 -> 0.5 1/s, by the operator"}},
-       {{"taken", true}, {"words", "servo.posture_gain 0.6 -> 0.5 1/s, by the operator"}}});
+        {"words", "servo.lambda 3.2 -> 40 1/s, in motion, refused: the value is outside the key's range"}},
+       {{"taken", true}, {"words", "servo.posture_gain 0.6 -> 0.5 1/s, in motion"}},
+       {{"taken", true}, {"words", "servo.posture_gain 0.6 -> 0.5 1/s, in motion"}}});
   EXPECT_EQ(events, expected);
 }
 

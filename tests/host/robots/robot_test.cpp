@@ -232,6 +232,17 @@ TEST(RobotTest, RefusesMoreJointsThanItHolds) {
   EXPECT_THAT(ErrorOf(urdf.str()), HasSubstr("more than 8 moving joints"));
 }
 
+TEST(RobotTest, ArmFileHasTheRotors) {
+  const test::TempFolder folder;
+  std::ofstream(folder.path() / "arm.urdf") << GoodUrdf();
+  std::ofstream(folder.path() / "arm.toml") << "urdf = \"arm.urdf\"\nrotor_inertia = [0.25, 0.125]\n";
+  const Robot robot = LoadRobot(folder.path() / "arm.toml");
+  ASSERT_EQ(robot.model.num_joints, 2);
+  EXPECT_EQ(robot.model.joints[0].rotor_inertia, 0.25);
+  EXPECT_EQ(robot.model.joints[1].rotor_inertia, 0.125);
+  EXPECT_EQ(LoadRobot(folder.path() / "arm.urdf").model.joints[0].rotor_inertia, 0.0);
+}
+
 TEST(RobotTest, ArmFileErrorsNameKeyAndLine) {
   const test::TempFolder folder;
   std::ofstream(folder.path() / "arm.urdf") << GoodUrdf();
@@ -259,6 +270,9 @@ TEST(RobotTest, ArmFileErrorsNameKeyAndLine) {
               HasSubstr("does not descend from"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\njerk_max = [1.0]\n"), HasSubstr("jerk_max has 1 entries"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\nready = [0.0, 5.0]\n"), HasSubstr("outside the joint's range"));
+  EXPECT_THAT(error("urdf = \"arm.urdf\"\nrotor_inertia = [0.1]\n"),
+              HasSubstr("rotor_inertia has 1 entries"));
+  EXPECT_THAT(error("urdf = \"arm.urdf\"\nrotor_inertia = [0.1, -0.1]\n"), HasSubstr("rotor_inertia"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\nreday = [0.0, 0.0]\n"), HasSubstr("did you mean ready?"));
   EXPECT_THAT(error("urdf = \"arm.urdf\"\njerk_max = [1.0, -2.0]\n"), HasSubstr("arm.toml:2"));
 }

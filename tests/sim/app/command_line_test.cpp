@@ -51,10 +51,11 @@ TEST_F(CommandLineTest, RunWithoutAnyFrameFailsAndWritesNoFilm) {
 }
 
 TEST_F(CommandLineTest, UnknownScenarioIsRefusedWithASuggestion) {
-  EXPECT_THAT(Refusal({"bal"}), AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
-                                      HasSubstr("ball, ball-clutter, ball-dark, ball-eight, ball-jump, "
-                                                "ball-line, ball-moving, ball-occluded, ball-puma560, "
-                                                "ball-pushed, ball-uncertain, ball-ur5e, circle")));
+  EXPECT_THAT(Refusal({"bal"}),
+              AllOf(HasSubstr("unknown scenario \"bal\""), HasSubstr("did you mean ball?"),
+                    HasSubstr("ball, ball-clutter, ball-dark, ball-eight, ball-exciting, "
+                              "ball-jump, ball-line, ball-moving, ball-occluded, ball-puma560, "
+                              "ball-pushed, ball-shutter, ball-uncertain, ball-ur5e, circle")));
   EXPECT_THAT(Refusal({"nowhere/to/be.toml"}), HasSubstr("nowhere/to/be.toml"));
 }
 
@@ -99,6 +100,16 @@ TEST_F(CommandLineTest, ContradictingValuesAreRefused) {
               AllOf(HasSubstr("servo.stale_s = 0.7"), HasSubstr("servo.coast_s, which is 0.6 s")));
   EXPECT_THAT(Refusal({"ball", "--set", "camera.latency_ms=200"}),
               AllOf(HasSubstr("camera.latency_ms = 200"), HasSubstr("servo.stale_s = 0.15 s")));
+  EXPECT_THAT(Refusal({"ball", "--set", "camera.row_time_us=80"}),
+              AllOf(HasSubstr("camera.row_time_us = 80"), HasSubstr("38.4 ms"), HasSubstr("33.3 ms")));
+  EXPECT_THAT(Refusal({"ball", "--set", "camera.row_time_us=60", "--set", "camera.latency_ms=10"}),
+              AllOf(HasSubstr("camera.latency_ms = 10"), HasSubstr("16.9 ms")));
+  EXPECT_THAT(Refusal({"ball", "--set", "camera.sub_exposures=65"}),
+              AllOf(HasSubstr("camera.sub_exposures"), HasSubstr("64")));
+  EXPECT_THAT(Refusal({"ball", "--set", "camera.bayer=RGGB"}),
+              AllOf(HasSubstr("camera.bayer"), HasSubstr("BayerRG8")));
+  EXPECT_THAT(Refusal({"ball", "--set", "truth.camera.row_time_us=80"}),
+              AllOf(HasSubstr("truth.camera.row_time_us"), HasSubstr("69.4")));
   EXPECT_THAT(Refusal({"ball", "--set", "camera.exposure_ms=40"}),
               AllOf(HasSubstr("camera.exposure_ms = 40"), HasSubstr("33.3 ms")));
   EXPECT_THAT(Refusal({"ball", "--set", "faults.camera_outage_s=[3, 1]"}),
@@ -212,13 +223,22 @@ TEST_F(CommandLineTest, HelpShowsExamplesAndExitCodes) {
 
 TEST_F(CommandLineTest, ListAndKeysShowScenariosAndKeys) {
   const std::string list = Sim({"list"}).out;
-  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 24) << "a pipe gets one line for each scenario";
+  EXPECT_EQ(std::count(list.begin(), list.end(), '\n'), 26) << "a pipe gets one line for each scenario";
   EXPECT_THAT(list, AllOf(HasSubstr("ball "), HasSubstr("ball-moving "), HasSubstr("ball-dark "),
                           HasSubstr("ball-clutter "), HasSubstr("circle "), HasSubstr("flange-circle "),
                           HasSubstr("theory/open-loop ")));
   EXPECT_THAT(Sim({"keys"}).out,
               HasSubstr("servo.lambda = 2\n    gain: the error decays like exp(-lambda t); "
                         "may change in motion; a number: 0 to 20 1/s\n"));
+}
+
+TEST_F(CommandLineTest, KeysHaveTheValuesOfAScenario) {
+  const ProgramResult result = Sim({"keys", "--values", "square", "--set", "camera.hfov_deg=70"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, AllOf(HasSubstr("\"camera.hfov_deg\": \"70\""), HasSubstr("\"target.kind\": "),
+                                HasSubstr("\"servo.goal\": \"[0, 0, 0.4]\"")));
+  EXPECT_EQ(Sim({"keys", "--values", "squar"}).exit_code, 2);
+  EXPECT_EQ(Sim({"keys", "--set", "camera.hfov_deg=70"}).exit_code, 2);
 }
 
 // The table in the repository matches the program; renew it with `fovea-sim keys --markdown`.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <iostream>
 #include <latch>
 #include <semaphore>
 #include <stdexcept>
@@ -54,7 +55,7 @@ TEST(SimCameraTest, FramesKeepTheirOrderWhenALaterPictureIsReadyFirst) {
       third_is_drawn.count_down();
     }
   };
-  SimCamera camera(Small(8), Sensor(0.0, 1), {{draw, {}}, {draw, {}}});
+  SimCamera camera(Small(8), Sensor({.read_sigma = 0.0}, 1), {{draw, {}}, {draw, {}}});
   for (std::uint64_t i = 0; i < 4; ++i) {
     camera.Expose(Numbered(i));
   }
@@ -73,7 +74,7 @@ TEST(SimCameraTest, SlowDrawingDropsAndCountsTheOldestFrames) {
     all_exposed.wait();
     Fill(exposure, rgba);
   };
-  SimCamera camera(Small(2), Sensor(0.0, 1), {{draw, {}}});
+  SimCamera camera(Small(2), Sensor({.read_sigma = 0.0}, 1), {{draw, {}}});
   for (std::uint64_t i = 0; i < 6; ++i) {
     camera.Expose(Numbered(i));
   }
@@ -88,7 +89,7 @@ TEST(SimCameraTest, UntakenFramesDropAndCountTheOldest) {
     Fill(exposure, rgba);
     drawn.release();
   };
-  SimCamera camera(Small(2), Sensor(0.0, 1), {{draw, {}}});
+  SimCamera camera(Small(2), Sensor({.read_sigma = 0.0}, 1), {{draw, {}}});
   for (std::uint64_t i = 0; i < 6; ++i) {
     camera.Expose(Numbered(i));
     drawn.acquire();
@@ -97,11 +98,38 @@ TEST(SimCameraTest, UntakenFramesDropAndCountTheOldest) {
   ExpectTheNewestOf(6, camera);
 }
 
+// What the exposure measures is what the sensor outputs: pixels that the lens darkens, and full ones.
+TEST(SimCameraTest, AutomaticExposureReachesItsLevelThroughVignettingAndSaturation) {
+  constexpr double kLevel = 110.0;
+  SimCameraConfig config = Small(4);
+  config.auto_exposure = {.level = kLevel, .lag_s = 0.02, .gain_max = 16.0};
+  SensorConfig sensor;
+  sensor.vignetting = MakePinhole(64, 48, 1.4);
+  sensor.saturation = 80.0;
+  const auto draw = [](const Exposure&, std::span<std::uint8_t> rgba) {
+    for (std::size_t i = 0; i < rgba.size(); ++i) {
+      rgba[i] = i < rgba.size() / 4 ? 200 : 60;  // a quarter of the picture is full
+    }
+  };
+  SimCamera camera(config, Sensor(sensor, 1), {{draw, {}}, {draw, {}}});
+  double mean = 0.0;
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    Exposure exposure = Numbered(i);
+    exposure.stamp_ns = static_cast<std::int64_t>(10'000'000 * i);
+    camera.Expose(exposure);
+    hal::Frame frame;
+    ASSERT_TRUE(camera.Acquire(frame, kLong).ok());
+    mean = MeanOf(frame.pixels);
+  }
+  std::cout << "mean of the last picture " << mean << ", wanted " << kLevel << "\n";
+  EXPECT_NEAR(mean, kLevel, 0.5);  // the rounding of its pixels
+}
+
 TEST(SimCameraTest, FailingPainterIsADeviceFaultWithItsMessage) {
   const auto fail = [](const Exposure&, std::span<std::uint8_t>) {
     throw std::runtime_error("the driver is gone");
   };
-  SimCamera camera(Small(2), Sensor(0.0, 1), {{fail, {}}});
+  SimCamera camera(Small(2), Sensor({.read_sigma = 0.0}, 1), {{fail, {}}});
   camera.Expose(Numbered(0));
   hal::Frame frame;
   EXPECT_EQ(camera.Acquire(frame, kLong).code(), hal::StatusCode::kDeviceFault);

@@ -41,12 +41,14 @@ std::vector<Exposure> TakeAll(const FrameFaults& faults, int frames) {
 }
 
 // The frames' pixels as the camera outputs them: the scene's gray level plus sensor noise.
-std::vector<std::vector<std::uint8_t>> PixelsOf(const std::vector<Exposure>& taken) {
+std::vector<std::vector<std::uint8_t>> PixelsOf(const std::vector<Exposure>& taken,
+                                                const AutoExposureConfig& auto_exposure = {}) {
   const auto draw = [](const Exposure& exposure, std::span<std::uint8_t> rgba) {
     std::fill(rgba.begin(), rgba.end(), static_cast<std::uint8_t>(100.0 + exposure.p_BO.x()));
   };
-  SimCamera camera({.width_px = 64, .height_px = 48, .exposure_ns = 1000, .queue = 100}, Sensor(kNoise, 1),
-                   {{draw, {}}});
+  SimCamera camera(
+      {.width_px = 64, .height_px = 48, .exposure_ns = 1000, .queue = 100, .auto_exposure = auto_exposure},
+      Sensor({.read_sigma = kNoise}, 1), {{draw, {}}});
   std::vector<std::vector<std::uint8_t>> pictures;
   for (const Exposure& exposure : taken) {
     camera.Expose(exposure);
@@ -70,6 +72,22 @@ TEST(FrozenPictureTest, FrozenSceneHasFreshNoiseUnlessPixelsFreezeToo) {
       EXPECT_EQ(taken[k].p_BO.x(), frozen ? 5.0 : static_cast<double>(k));
       if (k != 5) {
         EXPECT_EQ(pictures[k] == pictures[5], frozen && pixels) << "picture " << k;
+      }
+    }
+  }
+}
+
+// Frozen pixels keep their gain, although the automatic exposure is not yet at its level.
+TEST(FrozenPictureTest, FrozenPixelsStayEqualWithAutomaticExposure) {
+  for (const bool pixels : {false, true}) {
+    FrameFaults faults;
+    faults.freeze = {0.050, 0.100};
+    faults.freeze_pixels = pixels;
+    const std::vector<Exposure> taken = TakeAll(faults, 15);
+    const auto pictures = PixelsOf(taken, {.level = 200.0, .lag_s = 0.1});
+    for (std::size_t k = 0; k < 15; ++k) {
+      if (k != 5) {
+        EXPECT_EQ(pictures[k] == pictures[5], k > 5 && k < 10 && pixels) << "picture " << k;
       }
     }
   }

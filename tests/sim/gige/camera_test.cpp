@@ -77,7 +77,7 @@ struct Bench {
   }
 
   sim::SimCamera eye{{.width_px = kWidth, .height_px = kHeight, .exposure_ns = 1000, .queue = 16},
-                     sim::Sensor(0.0, 1),
+                     sim::Sensor({.read_sigma = 0.0}, 1),
                      {NumberPainter()}};
   std::uint64_t next = 0;
   std::unique_ptr<sim::GigeCamera> server;

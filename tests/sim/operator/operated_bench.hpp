@@ -9,6 +9,7 @@
 
 #include "firmware/core/task/servo_loop.hpp"
 #include "firmware/host/recording/flight/flight_recorder.hpp"
+#include "firmware/planning/plan_desk.hpp"
 #include "fovea/linux_rt/tick_meter.hpp"
 #include "sim/operator/desk.hpp"
 #include "sim/scenario/run_description.hpp"
@@ -35,6 +36,7 @@ class OperatedBench {
     clock_.emplace(*world, [this](std::int64_t now_ns) { return Between(now_ns); });
     stalling_.emplace(*clock_, about.scenario.faults.stall);
     loop.emplace(recorder_, *arm, *stalling_, features_, recorder_, meter_);
+    loop->UsePlanner(plans_.box());
     sim::DeskParts parts{about, *world, *arm, vision_, *loop, *stalling_, {}};
     parts.reports.touch = [this](const std::string& what, const std::string& text) {
       touches.push_back(what + ": " + text);
@@ -89,7 +91,8 @@ class OperatedBench {
   std::vector<std::pair<std::size_t, double>> answers;
 
  private:
-  bool Between(std::int64_t /*now_ns*/) {
+  bool Between(std::int64_t now_ns) {
+    plans_.Act(now_ns);
     recorder_.Drain(
         [this](const flight::FlightRecord& flown) {
           records.push_back(flown.record);
@@ -109,6 +112,7 @@ class OperatedBench {
   flight::FlightRecorder recorder_{servo_, &servo_, 4096};
   linux_rt::TickMeter meter_;
   hal::FeatureMailbox features_;
+  planning::PlanDesk plans_{about.servo};
   TruthEye eye_{about.servo.feature, about.intrinsics.f_u_px, 0.0, 1};
   sim::SimVision vision_{about, {}};
   std::optional<sim::SimArm> sim_arm_;

@@ -66,6 +66,18 @@ TEST_F(SavedScenarioTest, BeginsAtThePresentStateWhereBeliefsAreWrong) {
   EXPECT_LT((world.truth().p_BO - present.truth.p_BO).norm(), 1e-15);
 }
 
+// A key that stood beside a preset is saved even if it has its default.
+TEST_F(SavedScenarioTest, KeepsAPresetWithItsExceptions) {
+  const Scenario scenario = LoadScenario("ball", {"arm.realism=panda", "arm.torque_delay_ms=0"});
+  const Scenario again =
+      Reloaded(SaveScenario(DescribeRun(scenario), {SomeTruth(), true, {}, scenario.faults}));
+  EXPECT_EQ(again.arm.rotor_inertia, scenario.arm.rotor_inertia);
+  EXPECT_EQ(again.arm.encoder_quantum, scenario.arm.encoder_quantum);
+  EXPECT_EQ(again.arm.drives.torque_ripple, scenario.arm.drives.torque_ripple);
+  EXPECT_EQ(again.arm.drives.torque_bandwidth_hz, scenario.arm.drives.torque_bandwidth_hz);
+  EXPECT_EQ(again.arm.drives.torque_delay_ms, 0.0);
+}
+
 TEST_F(SavedScenarioTest, AMovingTargetBeginsItsPathAnew) {
   const Scenario scenario = LoadScenario("ball-moving", {});
   const std::string text = SaveScenario(DescribeRun(scenario), {SomeTruth(), false, {}, scenario.faults});

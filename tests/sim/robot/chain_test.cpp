@@ -19,8 +19,15 @@ TEST(Chain, AgreesWithTheServosModel) {
   double mass = 0.0;
   double coriolis = 0.0;
   for (const char* name : {"panda", "ur5e", "puma560"}) {
-    const robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/" + name + ".toml");
-    const sim::Chain chain(sim::LoadSimRobot(robot.urdf, robot.base_link, robot.tip_link));
+    robots::Robot robot = robots::LoadRobot(test::RobotsFolder() + "/" + name + ".toml");
+    sim::SimRobot links = sim::LoadSimRobot(robot.urdf, robot.base_link, robot.tip_link);
+    for (sim::SimLink& link : links.links) {
+      if (link.dof >= 0) {
+        link.rotor_inertia = 0.1 * (1.0 + link.dof);
+        robot.model.joints.at(static_cast<std::size_t>(link.dof)).rotor_inertia = link.rotor_inertia;
+      }
+    }
+    const sim::Chain chain(links);
     ASSERT_EQ(chain.num_dofs(), robot.model.num_joints);
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> even(-2.5, 2.5);

@@ -44,6 +44,87 @@ TEST(ScenarioTest, EveryRenamedKeyHasASuccessorAndIsNoKeyItself) {
   }
 }
 
+TEST(ScenarioTest, RealismFillsInWhatIsNotGiven) {
+  const auto arm = [](std::vector<std::string> assignments) { return LoadScenario("ball", assignments).arm; };
+  EXPECT_TRUE(arm({}).rotor_inertia.empty());
+  EXPECT_EQ(arm({}).drives.torque_delay_ms, 0.0);
+  const auto panda = arm({"arm.realism=panda"});
+  EXPECT_EQ(panda.rotor_inertia.size(), 7U);
+  EXPECT_GT(panda.drives.torque_bandwidth_hz, 0.0);
+  EXPECT_GT(panda.drives.torque_delay_ms, 0.0);
+  EXPECT_GT(panda.drives.velocity_filter_hz, 0.0);
+  EXPECT_GT(panda.encoder_quantum, 0.0);
+  const auto own = arm({"arm.torque_delay_ms=0", "arm.encoder_quantum=0", "arm.realism=panda"});
+  EXPECT_EQ(own.drives.torque_delay_ms, 0.0);
+  EXPECT_EQ(own.encoder_quantum, 0.0);
+  EXPECT_EQ(own.drives.torque_bandwidth_hz, panda.drives.torque_bandwidth_hz);
+}
+
+TEST(ScenarioTest, ServoAndPhysicsHaveTheRotors) {
+  const RunDescription run = DescribeRun(LoadScenario("ball", {"arm.realism=panda"}));
+  for (const SimLink& link : run.scene.robot.links) {
+    if (link.dof >= 0) {
+      EXPECT_EQ(link.rotor_inertia, run.scenario.arm.rotor_inertia.at(static_cast<std::size_t>(link.dof)));
+      EXPECT_EQ(link.rotor_inertia,
+                run.servo.arm.joints.at(static_cast<std::size_t>(link.dof)).rotor_inertia);
+    }
+  }
+}
+
+TEST(ScenarioTest, DrivesThatCannotBeAreRefused) {
+  const auto message = [](const std::vector<std::string>& assignments) -> std::string {
+    try {
+      DescribeRun(LoadScenario("ball", assignments));
+    } catch (const config::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(
+      message({"arm.realism=ur"}),
+      "arm.realism = \"ur\" is not allowed with arm \"panda\": it is for a Universal Robot (a name that "
+      "begins with \"ur\" and a digit)");
+  // A Puma has six joints, too.
+  const std::vector<std::string> puma{"arm.model=puma560", "arm.q_start=[0,0.5,0,0,0.5,0]", "arm.realism=ur"};
+  EXPECT_NE(message(puma).find("\"ur\" is not allowed with arm \"puma560\""), std::string::npos);
+  EXPECT_NE(message({"arm.model=ur5e", "arm.q_start=[0,0,0,0,0,0]", "arm.realism=panda"})
+                .find("\"panda\" is not allowed with arm \"ur5e\": it is for a Panda"),
+            std::string::npos);
+  EXPECT_EQ(message({"arm.torque_ripple=[1, 2]"}), "arm.torque_ripple has 2 entries: 1 or 7 are allowed");
+  EXPECT_EQ(message({"arm.rotor_inertia=[0.1]"}),
+            "arm.rotor_inertia has 1 entries, arm \"panda\" has 7 joints");
+  EXPECT_NE(message({"arm.rotor_inertia=[-0.1]"}).find("arm.rotor_inertia"), std::string::npos);
+  EXPECT_NE(message({"arm.torque_delay_ms=51"}).find("arm.torque_delay_ms"), std::string::npos);
+  EXPECT_NE(message({"truth.arm.rotor_inertia.offset=-0.1"}).find("truth.arm.rotor_inertia"),
+            std::string::npos);
+}
+
+TEST(ScenarioTest, ElasticJointsThatCannotBeAreRefused) {
+  const auto message = [](std::vector<std::string> assignments) -> std::string {
+    assignments.insert(assignments.begin(), "arm.realism=panda");
+    try {
+      DescribeRun(LoadScenario("ball", assignments));
+    } catch (const config::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const auto refuses = [&message](const std::vector<std::string>& assignments, const std::string& says) {
+    EXPECT_NE(message(assignments).find(says), std::string::npos) << message(assignments);
+  };
+  EXPECT_EQ(message({"arm.joint_stiffness=14000", "arm.joint_damping=20", "arm.encoder_side=link"}), "");
+  EXPECT_EQ(message({"arm.joint_stiffness=0"}), "");
+  refuses({"arm.joint_stiffness=[1000, 2000]"}, "arm.joint_stiffness has 2 entries: 1 or 7 are allowed");
+  refuses({"arm.joint_stiffness=-1"}, "arm.joint_stiffness");
+  refuses({"arm.joint_stiffness=99"}, "a joint has at least 100 Nm/rad, or all have 0");
+  refuses({"arm.joint_stiffness=[0,1e4,1e4,1e4,1e4,1e4,1e4]"}, "or all have 0");
+  refuses({"arm.joint_damping=1"}, "arm.joint_damping is not allowed without arm.joint_stiffness");
+  refuses({"arm.joint_stiffness=1e4", "arm.rotor_inertia=[1,1,1,1,1,1,0]"}, "joint 7 has no rotor");
+  refuses({"arm.joint_stiffness=1e4", "truth.arm.rotor_inertia=[1,1,1,1,1,1,0]"}, "joint 7 has no rotor");
+  refuses({"arm.joint_stiffness=1e4", "arm.integrator=rk4"}, "arm.integrator = \"rk4\" is not allowed");
+  refuses({"arm.encoder_side=gear"}, "arm.encoder_side");
+}
+
 TEST(ScenarioTest, HueFollowsTheTargetsColourUnlessItIsSet) {
   const auto hue = [](const std::vector<std::string>& assignments) {
     return LoadScenario("ball", assignments).vision.config.colour.hue_deg;

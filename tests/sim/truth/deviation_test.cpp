@@ -93,6 +93,17 @@ TEST(Deviation, DrawsAreIndependent) {
     product += drawn[0] * drawn[1] / kDraws;
   }
   EXPECT_NEAR(product, 0.0, 0.03);
+  // Two quantities of one seed: their draws are not correlated.
+  TruthSettings two_of_them;
+  for (const Quantity quantity : {Quantity::kMountTurn, Quantity::kClockDrift}) {
+    two_of_them.of[static_cast<std::size_t>(quantity)].sigma = {1.0};
+  }
+  product = 0.0;
+  for (std::uint64_t seed = 0; seed < kDraws; ++seed) {
+    TruthDraw draw(two_of_them, seed);
+    product += draw.Get(Quantity::kMountTurn, {0.0})[0] * draw.Get(Quantity::kClockDrift, {0.0})[0] / kDraws;
+  }
+  EXPECT_NEAR(product, 0.0, 0.03);
   TruthSettings alone;
   alone.of[static_cast<std::size_t>(Quantity::kLoadMass)].sigma = {0.01};
   TruthSettings both = alone;

@@ -89,6 +89,18 @@ TEST_F(VerdictTest, OneSampleTooFarOffInTheWindowIsNotConverged) {
   EXPECT_THAT(s.verdict, testing::HasSubstr("not converged"));
 }
 
+// A camera that is longer than the servo believes sees the goal's picture from further away. At the goal in
+// metres a ball on the axis has its centre at the right pixel, but not its size.
+TEST_F(VerdictTest, LongerCameraIsJudgedWhereItsPictureIsTheGoals) {
+  config_.eye.believed_pinhole = config_.eye.pinhole;
+  config_.eye.pinhole.f_px *= 1.05;
+  config_.eye.differs = true;
+  const Summary further = Judge(2.0, [](double) { return Eigen::Vector3d(0.0, 0.0, 0.05 * kGoalZ); });
+  EXPECT_TRUE(further.converged);
+  EXPECT_NEAR(*further.final_error_mm, 50.0 * kGoalZ, 1e-9) << "to the goal in metres";
+  EXPECT_FALSE(Judge(2.0, [](double) { return Eigen::Vector3d(0.0, 0.0, 0.0); }).converged);
+}
+
 TEST_F(VerdictTest, SettleTimeIsThatOfTheLastReturn) {
   const Summary s = Judge(4.0, [](double t) {
     const bool peak = t > 2.4 && t < 2.6;
@@ -135,6 +147,7 @@ TEST_F(VerdictTest, MovingTargetIsJudgedInDepthToo) {
 // Without a camera: a motion that was aborted or never started counts as not followed.
 TEST_F(VerdictTest, MotionThatWasGivenUpOrNeverBegunIsNotFollowed) {
   config_.has_eye = false;
+  config_.has_motion = true;
   hal::TickRecord record;
   record.mode = hal::Mode::kMove;
   records_ = {record};

@@ -105,6 +105,89 @@ TEST(WorldTest, EncodersHaveTheSetNoise) {
   EXPECT_NEAR(std::sqrt(dq2 / count), 2e-3, 6e-5);
 }
 
+// Under a step of torque, the arm with a drive moves as the ideal one does under the drive's torques.
+TEST(WorldTest, DrivesDelayTheArmsMotion) {
+  const TorqueDriveConfig slow{.bandwidth_hz = 50.0, .delay_s = 0.003};
+  hal::ArmCommand command;
+  command.num_joints = 7;
+  command.tau_cmd[3] = 2.0;
+
+  WorldConfig config = PandaWorld();
+  World ideal(config);
+  config.drives.assign(7, slow);
+  World driven(config);
+  driven.Command(command);
+  std::vector<TorqueDrive> reference(7, TorqueDrive(slow));
+  BulletArm arm(config.robot, config.physics);
+  arm.SetState(config.q_start, Eigen::VectorXd::Zero(7));
+  for (std::size_t i = 0; i < 7; ++i) {
+    reference[i].Settle(arm.GravityTorque()[static_cast<Eigen::Index>(i)]);
+  }
+  double worst = 0.0;
+  for (int k = 1; k <= 60; ++k) {
+    // What is left of a command after the ideal arm's own gravity compensation.
+    arm.SetState(ideal.truth().q, ideal.truth().dq);
+    const Eigen::VectorXd gravity = arm.GravityTorque();
+    hal::ArmCommand delivered;
+    delivered.num_joints = 7;
+    for (std::size_t i = 0; i < 7; ++i) {
+      const double own = gravity[static_cast<Eigen::Index>(i)];
+      delivered.tau_cmd[i] = reference[i].Step(own + command.tau_cmd[i], 0.0, 0.0) - own;
+    }
+    ideal.Command(delivered);
+    ideal.AdvanceTo(k * kMs);
+    driven.AdvanceTo(k * kMs);
+    worst = std::max(worst, (ideal.truth().dq - driven.truth().dq).cwiseAbs().maxCoeff());
+    if (k == 3) {
+      EXPECT_LT(driven.truth().dq.cwiseAbs().maxCoeff(), 1e-9) << "still under way";
+    }
+  }
+  std::cout << "speeds up to " << driven.truth().dq.cwiseAbs().maxCoeff() << " rad/s, apart by " << worst
+            << '\n';
+  EXPECT_GT(driven.truth().dq.cwiseAbs().maxCoeff(), 0.05);
+  EXPECT_LT(worst, 1e-10);
+  EXPECT_LT(driven.DriveError().cwiseAbs().maxCoeff(), 0.1) << "after 57 ms of a lag of 3 ms";
+}
+
+TEST(WorldTest, SpeedsComeFromTheMeasuredPositions) {
+  WorldConfig config = PandaWorld();
+  config.velocity_filter_hz = 30.0;
+  config.encoder_noise = 1e-5;
+  config.encoder_quantum = 5e-5;
+  World world(config);
+  hal::ArmCommand command;
+  command.num_joints = 7;
+  command.tau_cmd[0] = 1.0;
+  world.Command(command);
+  SpeedByDifferences own(30.0, 0.0);
+  for (int k = 0; k <= 200; ++k) {
+    world.AdvanceTo(k * kMs);
+    EXPECT_EQ(world.MeasuredState().dq[0], own.Next(world.MeasuredState().q[0]));
+  }
+  EXPECT_GT(world.truth().dq[0], 0.1);
+  EXPECT_NEAR(world.MeasuredState().dq[0], world.truth().dq[0], 0.1 * world.truth().dq[0]);
+}
+
+// Link-side sensors do not see what accelerates the rotor.
+TEST(WorldTest, TorqueSensorsReadTheLinkSide) {
+  WorldConfig config = PandaWorld();
+  config.friction_compensation = 1.0;
+  for (SimLink& link : config.robot.links) {
+    link.rotor_inertia = link.dof == 6 ? 0.2 : 0.0;
+  }
+  World world(config);
+  hal::ArmCommand command;
+  command.num_joints = 7;
+  command.tau_cmd[6] = 0.5;
+  world.Command(command);
+  world.AdvanceTo(1 * kMs);
+  const double ddq = world.truth().dq[6] / 1e-3;
+  BulletArm arm(config.robot, config.physics);
+  arm.SetState(world.truth().q, world.truth().dq);
+  EXPECT_GT(ddq, 2.0);
+  EXPECT_NEAR(world.MeasuredState().tau_meas[6], arm.GravityTorque()[6] + 0.5 - 0.2 * ddq, 1e-9);
+}
+
 TEST(WorldTest, WorldRepeatsForTheSameSeedOnly) {
   WorldConfig config = PandaWorld();
   config.encoder_noise = 1e-5;
@@ -132,6 +215,44 @@ TEST(WorldTest, CameraKeepsItsRateAndItsOutage) {
     EXPECT_LE(std::fabs(static_cast<double>(e.stamp_ns) - ideal_ns), 0.5e6 + 1.0) << "no drift";
     EXPECT_FALSE(e.stamp_ns >= 500 * kMs && e.stamp_ns < 800 * kMs);
   }
+}
+
+// A longer exposure is handed over when it has ended, with the moments around its middle. The exposure at
+// 20 ms of an arm that moves shows it as it was at each of them.
+TEST(WorldTest, LongExposureComesAtItsEndWithTheMomentsAroundIt) {
+  WorldConfig config = PandaWorld();
+  config.dq_start = Eigen::VectorXd::Constant(7, 0.1);
+  config.exposure_reach_ns = 3'500'000;
+  World world(config);
+  std::vector<std::pair<std::int64_t, Exposure>> exposures;
+  std::vector<Truth> truths;
+  world.OnStep([&](const Truth& t) { truths.push_back(t); });
+  world.OnExposure([&](Exposure e) { exposures.emplace_back(world.now_ns(), std::move(e)); });
+  world.AdvanceTo(100 * kMs);
+  ASSERT_EQ(exposures.size(), 3U);
+  const auto& [at_ns, exposure] = exposures.front();
+  EXPECT_EQ(exposure.stamp_ns, 20 * kMs);
+  EXPECT_EQ(exposure.time_ns, 20 * kMs);
+  EXPECT_EQ(at_ns, 24 * kMs);
+  ASSERT_NE(exposure.around, nullptr);
+  EXPECT_LE(exposure.around->front().time_ns, 16'500'000);
+  EXPECT_GE(exposure.around->back().time_ns, 23'500'000);
+  for (const Moment& moment : *exposure.around) {
+    const Truth& truth = truths[static_cast<std::size_t>(moment.time_ns / kMs)];
+    ASSERT_EQ(truth.stamp_ns, moment.time_ns);
+    EXPECT_TRUE(moment.X_BC.isApprox(truth.X_BC, 0.0));
+    EXPECT_EQ(moment.p_BO, truth.p_BO);
+  }
+  // Between two steps: the mean of both, and its orientation a turn half as far.
+  const Eigen::Isometry3d before = truths[21].X_BC;
+  const Eigen::Isometry3d after = truths[22].X_BC;
+  const Moment between = exposure.At(1'500'000);
+  EXPECT_LT((between.X_BC.translation() - 0.5 * (before.translation() + after.translation())).norm(), 1e-15);
+  const Eigen::AngleAxisd first(before.linear().transpose() * between.X_BC.linear());
+  const Eigen::AngleAxisd whole(before.linear().transpose() * after.linear());
+  EXPECT_GT(whole.angle(), 1e-5) << "the camera does not turn";
+  EXPECT_NEAR(first.angle(), 0.5 * whole.angle(), 1e-7 * whole.angle() + 1e-9);
+  EXPECT_TRUE(exposure.At(-10 * kMs).X_BC.isApprox(exposure.around->front().X_BC, 0.0));
 }
 
 // An observer's exception does not pass through the loop: the clock closes and rethrows it on request.

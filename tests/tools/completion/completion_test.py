@@ -118,6 +118,11 @@ class Simulator:
     def test_keys(self):
         self.assertEqual(self.complete("fovea-sim run ball --set servo.lambda_n"), ["servo.lambda_near="])
 
+    def test_keys_and_scenarios_of_a_comparison(self):
+        self.assertEqual(self.complete("fovea compare out --set arm.load_ma"), ["arm.load_mass="])
+        self.assertEqual([key for key in self.complete("fovea compare out --set truth.arm.load_ma") if "=" in key], [])
+        self.assertIn("ball-moving", self.complete("fovea compare out --scenario ball-m"))
+
     def test_keys_of_a_program_off_the_path(self):
         self.assertEqual(self.complete(f"{BIN}/fovea-sim run ball --set servo.lambda_n", PATH="/usr/bin:/bin"),
                          ["servo.lambda_near="])

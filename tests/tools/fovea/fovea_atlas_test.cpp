@@ -12,9 +12,8 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware/host/config/folder_lock.hpp"
-#include "firmware/host/config/target_keys.hpp"
-#include "tests/support/panda.hpp"
 #include "tests/support/program.hpp"
+#include "tests/tools/fovea/atlas_scene.hpp"
 #include "tools/fovea/atlas/figures.hpp"
 #include "tools/fovea/atlas/page.hpp"
 #include "tools/fovea/atlas/sampler.hpp"
@@ -34,6 +33,14 @@ std::string Content(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+int CountOf(const std::string& text, const std::string& what) {
+  int count = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
 class AtlasTest : public testing::Test {
  protected:
   // Runs too short to converge, so that many fit into a test.
@@ -46,6 +53,14 @@ class AtlasTest : public testing::Test {
   }
   test::ProgramResult Atlas(const std::string& folder, const std::vector<std::string>& more) const {
     return test::RunProgram(Arguments(folder_.path() / folder, more), {}, std::chrono::seconds(300));
+  }
+  // The first row of rows.jsonl, behind its heading.
+  json FirstRow(const std::string& folder) const {
+    std::ifstream rows(folder_.path() / folder / "rows.jsonl");
+    std::string line;
+    std::getline(rows, line);
+    std::getline(rows, line);
+    return json::parse(line);
   }
   void ExpectRefused(const std::vector<std::string>& more, const std::string& says) const {
     const test::ProgramResult result = Atlas("refused", more);
@@ -66,7 +81,16 @@ TEST_F(AtlasTest, ResultIsTheSameForAnyJobCountAndAfterAKill) {
   EXPECT_EQ(figures["converged"], 0);
   EXPECT_EQ(figures["failures"].size(), 3U);
   EXPECT_EQ(Content(folder_.path() / "one" / "atlas.json"), one.out);
-  EXPECT_THAT(Content(folder_.path() / "one" / "atlas.html"), HasSubstr("0 of 3 converged"));
+  EXPECT_THAT(Content(folder_.path() / "one" / "atlas.html"), HasSubstr("0 of 3 with a way converged"));
+
+  // Every failed start was judged, and is not judged again.
+  const std::string kept = Content(folder_.path() / "one" / "rows.jsonl");
+  EXPECT_EQ(CountOf(kept, "\"judged\""), 3);
+  EXPECT_EQ(Atlas("one", {"--runs", "3", "--resume"}).out, one.out);
+  EXPECT_EQ(Content(folder_.path() / "one" / "rows.jsonl"), kept);
+  for (const json& failure : figures["failures"]) {
+    EXPECT_THAT(failure["way"], testing::MatchesRegex("a way of .* rad exists"));
+  }
 
   const test::ProgramResult two = Atlas("two", {"--runs", "3", "-j", "2"});
   EXPECT_EQ(two.out, one.out);
@@ -118,9 +142,7 @@ TEST_F(AtlasTest, FailureCommandRepeatsItsRunBitExact) {
   const std::string shell = fs::path(FOVEA_PROGRAM).parent_path().string() + "/" + command +
                             " --json --no-report --out " + (folder_.path() / "again").string();
   const test::ProgramResult again = test::RunProgram({"sh", "-c", shell});
-  const std::string text = Content(folder_.path() / "atlas" / "rows.jsonl");
-  const json row = json::parse(text.substr(text.find('\n') + 1));
-  EXPECT_EQ(json::parse(again.out)["log_hash"], row["log_hash"]);
+  EXPECT_EQ(json::parse(again.out)["log_hash"], FirstRow("atlas")["log_hash"]);
 }
 
 // Drawing starts only gives the same refusals as running them.
@@ -134,7 +156,7 @@ TEST_F(AtlasTest, DrawsStartsWithoutRunningThem) {
 }
 
 TEST_F(AtlasTest, RefusesBadOptionsInOneLine) {
-  ExpectRefused({"--set", "target.kind=circle"}, "the atlas sets target. itself");
+  ExpectRefused({"--set", "target.kind=circle"}, "the atlas sets target.kind itself");
   ExpectRefused({"--runs", "1", "--set", "servo.lamda=3"}, "did you mean servo.lambda");
   fs::create_directories(folder_.path() / "refused");
   std::ofstream(folder_.path() / "refused" / "rows.jsonl") << "{}\n";
@@ -146,6 +168,53 @@ TEST_F(AtlasTest, RefusesBadOptionsInOneLine) {
   EXPECT_EQ(Atlas("refused", {"--jobs", "0"}).exit_code, 2);
   EXPECT_EQ(test::RunProgram({FOVEA_PROGRAM, "atlas", "--target", "cube"}).exit_code, 2);
   EXPECT_EQ(test::RunProgram({FOVEA_PROGRAM, "atlas"}).exit_code, 2);
+}
+
+// Arm, camera, mount and goal follow from --set. The rows' check against the simulator's first picture fails
+// if the sampler has another one.
+TEST_F(AtlasTest, TakesAnyArmCameraMountAndGoal) {
+  const test::ProgramResult result =
+      Atlas("ur5e", {"--runs", "2", "--set", "arm.model=ur5e", "--set", "camera.width_px=800", "--set",
+                     "camera.height_px=600", "--set", "camera.hfov_deg=70", "--set",
+                     "camera.mount_xyz=[0.03,0.02,0.05]", "--set", "camera.mount_rpy_deg=[0,5,60]", "--set",
+                     "servo.goal=[0.02,0,0.5]"});
+  ASSERT_EQ(result.exit_code, 1) << result.err;  // too short to converge
+  EXPECT_EQ(json::parse(result.out)["runs"], 2);
+  EXPECT_EQ(FirstRow("ur5e")["start"]["q"].size(), 6U);
+  ExpectRefused({"--set", "arm.model=ur6e"}, "did you mean ur5e");
+}
+
+// Runs from a file: the goal of each start reaches the simulator, and rows name the line.
+TEST_F(AtlasTest, RunsGivenStarts) {
+  Atlas("drawn", {"--runs", "1"});
+  const json start = FirstRow("drawn")["start"];
+  json given{{"goal_x", 0.0},     {"goal_y", 0.0},   {"goal_z", 0.45}, {"goal_roll", 0.0},
+             {"goal_pitch", 0.0}, {"goal_yaw", 0.0}, {"seed", 5}};
+  for (std::size_t i = 0; i < 7; ++i) {
+    given["q" + std::to_string(i + 1)] = start["q"][i];
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    given[std::string("target_") + "xyz"[i]] = start["p_BO"][i];
+    given[std::vector<std::string>{"target_roll", "target_pitch", "target_yaw"}[i]] = start["rpy_deg"][i];
+  }
+  const fs::path file = folder_.path() / "starts.json";
+  std::ofstream(file) << "[\n" << given.dump() << "]\n";
+  const test::ProgramResult result = Atlas("given", {"--starts", file});
+  ASSERT_EQ(result.exit_code, 1) << result.err;
+  const json figures = json::parse(result.out);
+  EXPECT_EQ(figures["runs"], 1);
+  EXPECT_EQ(figures["failures"][0]["line"], 2);
+  EXPECT_THAT(figures["failures"][0]["command"], HasSubstr("--seed 5 "));
+  EXPECT_THAT(figures["failures"][0]["command"], HasSubstr("servo.goal=[0,0,0.45]"));
+  EXPECT_THAT(Content(folder_.path() / "given" / "rows.jsonl"), HasSubstr("\"line\":2"));
+  EXPECT_THAT(Content(folder_.path() / "given" / "atlas.html"), HasSubstr("(line 2)"));
+
+  given["q4"] = 1.0;
+  std::ofstream(file) << "[\n" << given.dump() << "]\n";
+  const test::ProgramResult changed = Atlas("given", {"--starts", file, "--resume"});
+  EXPECT_EQ(changed.exit_code, 2);
+  EXPECT_THAT(changed.err, HasSubstr("starts.json:2: q4 = 1 is not allowed"));
+  EXPECT_EQ(std::count(changed.err.begin(), changed.err.end(), '\n'), 1) << changed.err;
 }
 
 // Each bound is the rate at which the observed share is 1.96 deviations off.
@@ -164,11 +233,11 @@ TEST(AtlasFigures, WilsonIntervalMatchesItsDefinition) {
 }
 
 // A start is refused only if no servo could succeed, never for being difficult.
-TEST(AtlasSampler, RefusesStartsOnlyForGeometryOrAMissingPath) {
+TEST(AtlasSampler, RefusesStartsOnlyForGeometry) {
   EXPECT_THAT(atlas::kRejectionNames,
-              testing::ElementsAreArray({"start_outside_barrier", "start_below_table", "target_near_edge",
+              testing::ElementsAreArray({"start_outside_barrier", "start_near_solid", "target_near_edge",
                                          "target_below_table", "arm_in_the_way", "thing_in_the_way",
-                                         "no_goal_posture", "no_way"}));
+                                         "no_goal_posture"}));
 }
 
 TEST(AtlasFigures, GoalAllowsOneMissInAThousand) {
@@ -186,9 +255,9 @@ TEST(AtlasFigures, GoalAllowsOneMissInAThousand) {
 // Page, table and JSON of every target report the refusals and the seed.
 TEST(AtlasFigures, RefusalsAndSeedAreReported) {
   atlas::Figures figures;
-  figures.heading = {"circle", 7, {}, "0123456789abcdef"};
+  figures.heading = {"circle", 7, {}, "0123456789abcdef", {}, ""};
   figures.runs = 10;
-  figures.rejections = {11, 12, 13, 14, 15, 16, 17, 18};
+  figures.rejections = {11, 12, 13, 14, 15, 16, 17};
   const json told = json::parse(atlas::ToJson(figures));
   const std::string table = atlas::ToTable(figures);
   const std::string page =
@@ -220,25 +289,38 @@ TEST(AtlasSeed, EachServoHashHasItsOwnJudgingSeed) {
 TEST(AtlasRows, RunOfAnotherCameraIsRefused) {
   atlas::Start start;
   start.error_px = 100.0;
-  json summary{{"converged", true},        {"verdict", ""},
-               {"limit_violations", 0},    {"contact_ticks", 0},
-               {"settle_time_s", 1.0},     {"final_error_px_rms", 0.1},
-               {"final_error_mm", 0.1},    {"final_error_deg", nullptr},
-               {"limits", json::object()}, {"log_hash", ""},
-               {"start_error_px", 100.2}};
+  json summary{{"converged", true},
+               {"verdict", ""},
+               {"limit_violations", 0},
+               {"contact_ticks", 0},
+               {"settle_time_s", 1.0},
+               {"final_error_px_rms", 0.1},
+               {"final_error_mm", 0.1},
+               {"final_error_deg", nullptr},
+               {"limits", json::object()},
+               {"log_hash", ""},
+               {"truth", json::object()},
+               {"start_error_px", 100.2},
+               {"end", {{"mode", "hold"}, {"reason", "goal_unreachable"}}}};
   EXPECT_TRUE(atlas::MakeRow(3, start, summary).converged);
+  EXPECT_TRUE(atlas::MakeRow(3, start, summary).HeldAsUnreachable());
   summary["start_error_px"] = 101.0;
   EXPECT_THROW(atlas::MakeRow(3, start, summary), std::runtime_error);
+  // A true camera that is not the believed one may see the target elsewhere.
+  summary["truth"]["camera.c_px"] = {{"unit", "px"}, {"believed", {320.0, 240.0}}, {"true", {320.0, 243.0}}};
+  const atlas::Row row = atlas::MakeRow(3, start, summary);
+  ASSERT_EQ(row.drawn.size(), 1U);
+  EXPECT_EQ(row.drawn[0].key, "camera.c_px");
+  EXPECT_EQ(row.drawn[0].entry, 2);
+  EXPECT_EQ(row.drawn[0].actual, 243.0);
 }
 
 class AtlasStarts : public testing::TestWithParam<const char*> {};
 
 TEST_P(AtlasStarts, DrawnStartsMatchTheirDescription) {
-  config::TargetSettings settings;
-  settings.kind = GetParam();
-  const model::ArmModel& arm = test::Panda().model;
-  const features::TargetFeature feature = config::MakeTarget(settings);
-  const atlas::Sampler sampler(arm, feature);
+  const atlas::Scene scene = test::AtlasScene("panda", GetParam());
+  const model::ArmModel& arm = scene.servo.arm;
+  const atlas::Sampler sampler(scene);
   double least_px = 1e9;
   double least_rad = 1e9;
   double most_radius = 0.0;
@@ -261,6 +343,7 @@ TEST_P(AtlasStarts, DrawnStartsMatchTheirDescription) {
     const atlas::Start again = sampler.Draw(1, index);
     EXPECT_EQ(again.q, start.q);
     EXPECT_EQ(again.run_seed, start.run_seed);
+    EXPECT_EQ(again.way_seed, start.way_seed);
     EXPECT_NE(sampler.Draw(2, index).q, start.q);
   }
   std::cout << "centre " << least_px << " px inside the picture, joints " << least_rad / kRadPerDeg

@@ -81,9 +81,9 @@ void ExpectSame(const model::ArmModel& emitted, const model::ArmModel& read) {
     EXPECT_EQ(a.type, b.type);
     ExpectSame(a.X_PJ, b.X_PJ);
     EXPECT_EQ((std::array{a.q_min, a.q_max, a.dq_max, a.ddq_max, a.dddq_max, a.tau_max, a.dtau_max, a.viscous,
-                          a.coulomb, a.spring}),
+                          a.coulomb, a.rotor_inertia, a.spring}),
               (std::array{b.q_min, b.q_max, b.dq_max, b.ddq_max, b.dddq_max, b.tau_max, b.dtau_max, b.viscous,
-                          b.coulomb, b.spring}));
+                          b.coulomb, b.rotor_inertia, b.spring}));
     EXPECT_EQ(emitted.links[k].mass, read.links[k].mass);
     EXPECT_EQ(emitted.links[k].p_LiCom, read.links[k].p_LiCom);
     EXPECT_EQ(emitted.links[k].I_Com_Li, read.links[k].I_Com_Li);

@@ -215,6 +215,11 @@ TEST_F(FoveaProgramTest, HelpShowsExamples) {
   EXPECT_EQ(Fovea({}).exit_code, 2);
 }
 
+TEST_F(FoveaProgramTest, CalibrateFromLogNeedsTheServosConfiguration) {
+  ExpectRefused(Fovea({"calibrate", "from-log", MakeRun("bare").string()}),
+                "holds no run with a camera: its /servo/configuration is missing");
+}
+
 // The table in the repository matches the program; renew it with `fovea guards`.
 TEST_F(FoveaProgramTest, TableOfGuardsIsUpToDateAndComplete) {
   std::ifstream stream(test::SourceRoot() / "firmware/GUARDS.md");

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "firmware/core/trajectory/plan_line.hpp"
+#include "firmware/planning/plan_desk.hpp"
 #include "tools/bench/tick/model_arm.hpp"
 
 namespace fovea::bench {
@@ -34,6 +36,9 @@ void Fill(const Loop& loop, TickCase& run) {
   ModelArm arm(run.config.arm, loop.q_start);
   std::vector<hal::FeatureMeasurement> seen;
   task::ServoOutputs outputs;
+  planning::PlanDesk planner(run.config);
+  trajectory::PlanLine plans;
+  plans.Use(&planner.box());
   run.inputs.reserve(static_cast<std::size_t>(loop.ticks));
   for (int k = 0; k < loop.ticks; ++k) {
     task::ServoInputs inputs;
@@ -51,7 +56,10 @@ void Fill(const Loop& loop, TickCase& run) {
     if (loop.command) {
       inputs.motion = loop.command(kTickS * k);
     }
+    planner.Act(k * hal::kTickPeriodNs);
+    inputs.plan = plans.Next();
     task.Step(inputs, outputs);
+    plans.Note(outputs.record);
     arm.Tick(outputs.command());
     run.inputs.push_back(inputs);
   }

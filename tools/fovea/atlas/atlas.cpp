@@ -2,52 +2,40 @@
 #include "tools/fovea/atlas/atlas.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <thread>
 
 #include "firmware/host/build_info.hpp"
-#include "firmware/host/config/folder_lock.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/printed_table.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/config/share_folder.hpp"
-#include "firmware/host/config/target_keys.hpp"
-#include "firmware/host/robots/robot.hpp"
-#include "tools/bench/common/shell.hpp"
-#include "tools/fovea/atlas/children.hpp"
+#include "tools/fovea/atlas/batch.hpp"
 #include "tools/fovea/atlas/figures.hpp"
 #include "tools/fovea/atlas/files.hpp"
 #include "tools/fovea/atlas/page.hpp"
 #include "tools/fovea/atlas/progress.hpp"
-#include "tools/fovea/atlas/rows.hpp"
-#include "tools/fovea/atlas/sampler.hpp"
 #include "tools/fovea/atlas/seed.hpp"
+#include "tools/fovea/atlas/starts_file.hpp"
+#include "tools/fovea/robustness/robustness.hpp"
 
 namespace fovea {
 namespace {
 
 namespace fs = std::filesystem;
-using atlas::Row;
 
-constexpr std::chrono::seconds kRunLimit{900};  // of wall time; a run takes some seconds
-
-const char* ScenarioOf(const std::string& target) { return target == "sphere" ? "ball" : target.c_str(); }
-
-atlas::Sampler MakeSampler(const std::string& target) {
-  config::TargetSettings settings;
-  settings.kind = target;
-  return {robots::LoadRobot(config::ShareFolder() / "robots" / "panda.toml").model,
-          config::MakeTarget(settings)};
-}
+constexpr int kRuns = 1000;
+constexpr int kRunsWithCases = 20;
 
 // --set must not change what the sampler sets or relies on.
 void CheckAssignments(const std::vector<std::string>& assignments) {
   for (const std::string& assignment : assignments) {
-    for (const char* own : {"arm.model", "arm.q_start", "camera.enabled", "camera.width_px",
-                            "camera.height_px", "camera.hfov_deg", "camera.f_", "camera.c_", "camera.mount_",
-                            "target.", "servo.goal", "run.seed"}) {
+    for (const char* own : {"arm.q_start", "camera.enabled", "target.kind", "target.position",
+                            "target.rpy_deg", "target.motion", "run.seed"}) {
       if (assignment.rfind(own, 0) == 0) {
         throw config::InputError(fmt::format("--set {}: the atlas sets {} itself", assignment, own));
       }
@@ -55,19 +43,26 @@ void CheckAssignments(const std::vector<std::string>& assignments) {
   }
 }
 
-atlas::Heading HeadingOf(const AtlasArguments& arguments) {
-  return {arguments.target,
-          static_cast<std::uint64_t>(arguments.seed.value_or(atlas::JudgingSeed(kServoLibraryHash))),
-          arguments.assignments, kServoLibraryHash};
+// The assignments of [truth] among --set, or the others.
+std::vector<std::string> Assignments(const AtlasArguments& arguments, bool of_truth) {
+  std::vector<std::string> assignments;
+  std::copy_if(arguments.assignments.begin(), arguments.assignments.end(), std::back_inserter(assignments),
+               [&](const std::string& assignment) { return robustness::IsTruth(assignment) == of_truth; });
+  return assignments;
+}
+
+bool HasTruth(const AtlasArguments& arguments) {
+  return !arguments.truth.empty() || !Assignments(arguments, true).empty();
 }
 
 int DrawOnly(const AtlasArguments& arguments) {
-  const atlas::Sampler sampler = MakeSampler(arguments.target);
   atlas::Figures figures;
-  figures.heading = HeadingOf(arguments);
-  figures.scenario = ScenarioOf(arguments.target);
-  figures.runs = arguments.runs;
-  for (int index = 0; index < arguments.runs; ++index) {
+  figures.heading = HeadingOf(arguments, arguments.target, {});
+  const atlas::Sampler sampler(
+      atlas::LoadScene(arguments.target, atlas::SceneAssignments(figures.heading.assignments)));
+  figures.scenario = atlas::ScenarioOf(arguments.target);
+  figures.runs = RunsOf(arguments);
+  for (int index = 0; index < figures.runs; ++index) {
     const atlas::Start start = sampler.Draw(figures.heading.seed, index);
     for (std::size_t i = 0; i < figures.rejections.size(); ++i) {
       figures.rejections[i] += start.rejections[i];
@@ -78,113 +73,57 @@ int DrawOnly(const AtlasArguments& arguments) {
   return config::kDone;
 }
 
-class AtlasRun {
- public:
-  explicit AtlasRun(const AtlasArguments& arguments)
-      : arguments_(arguments),
-        heading_(HeadingOf(arguments)),
-        scenario_(ScenarioOf(arguments_.target)),
-        simulator_(bench::SimulatorBeside("fovea atlas")),
-        sampler_(MakeSampler(arguments.target)),
-        page_(config::ShareFolder() / "report"),
-        out_(arguments.out.empty() ? fs::path("out") / ("atlas-" + arguments.target)
-                                   : fs::path(arguments.out)) {
-    std::error_code error;
-    fs::create_directories(out_ / "runs", error);
-    if (error) {
-      throw config::InputError(out_.string() + ": cannot create this folder");
-    }
-    lock_.emplace(out_);
-    rows_.emplace(out_ / "rows.jsonl", heading_, arguments.resume);
+// The options for wrong beliefs.
+void AddTruth(CLI::App& app, AtlasArguments& arguments, CLI::Option* faults, CLI::Option* robust) {
+  app.add_option(
+         "--truth", arguments.truth,
+         fmt::format("what is not as the servo believes: a shipped specification ({}) or the path of a .toml "
+                     "with a section [truth]; --set with keys of [truth] adds to it or changes it",
+                     fmt::join(robustness::ShippedSpecs(), ", ")))
+      ->excludes(faults);
+  CLI::Option* sizes = app.add_option("--truth-size", arguments.sizes,
+                                      "sizes of all these differences, such as 0,0.5,1,2: runs at each size")
+                           ->delimiter(',')
+                           ->check(CLI::Range(0.0, 100.0))
+                           ->excludes(faults)
+                           ->excludes(robust);
+  for (CLI::Option* option :
+       {app.add_flag("--tornado", arguments.tornado, "each of these differences alone: which costs most"),
+        app.add_flag("--margin", arguments.margin,
+                     "as --tornado, and how large each may be, by bisection of its size")}) {
+    option->excludes(faults)->excludes(robust)->excludes(sizes);
   }
-
-  atlas::Figures Execute() {
-    const auto jobs = static_cast<std::size_t>(JobsOf(arguments_));
-    atlas::Progress progress("atlas " + arguments_.target, arguments_.runs);
-    int next = 0;
-    for (;;) {
-      for (; next < arguments_.runs && children_.running() < jobs; ++next) {
-        if (rows_->rows().count(next) == 0) {
-          Begin(next);
-        }
-      }
-      if (children_.running() == 0) {
-        break;
-      }
-      Finish(children_.WaitForOne());
-      const auto& rows = rows_->rows();
-      progress.Show(static_cast<int>(std::distance(rows.begin(), rows.lower_bound(arguments_.runs))),
-                    static_cast<int>(std::count_if(rows.begin(), rows.lower_bound(arguments_.runs),
-                                                   [](const auto& row) { return !row.second.converged; })));
-    }
-    progress.End();
-    const atlas::Figures figures = atlas::Summarise(heading_, scenario_, rows_->rows(), arguments_.runs);
-    atlas::WriteFile(out_ / "atlas.json", atlas::ToJson(figures));
-    atlas::WriteFile(out_ / "atlas.html", page_.Make(figures, rows_->rows()));
-    return figures;
-  }
-
-  [[nodiscard]] const fs::path& out() const { return out_; }
-
- private:
-  [[nodiscard]] fs::path Folder(int index) const { return out_ / "runs" / fmt::format("{:04}", index); }
-  [[nodiscard]] fs::path Printed(int index) const { return out_ / "runs" / fmt::format("{:04}.json", index); }
-  [[nodiscard]] fs::path Said(int index) const { return out_ / "runs" / fmt::format("{:04}.txt", index); }
-
-  void Begin(int index) {
-    const atlas::Start& start = starts_[index] = sampler_.Draw(heading_.seed, index);
-    std::vector<std::string> command{
-        simulator_,    "run",    scenario_, "--seed",     std::to_string(start.run_seed),
-        "--no-report", "--json", "--out",   Folder(index)};
-    for (const std::string& assignment : atlas::AssignmentsOf(heading_, start)) {
-      command.emplace_back("--set");
-      command.push_back(assignment);
-    }
-    children_.Start(index, command, Printed(index), Said(index), kRunLimit);
-  }
-
-  // Deletes the run's folder if the run converged. Failed runs keep their pictures.
-  void Finish(const atlas::Children::Ended& ended) {
-    const int index = ended.tag;
-    Row row;
-    if (ended.exit_code == config::kDone || ended.exit_code == config::kGoalMissed) {
-      row = atlas::MakeRow(index, starts_[index], nlohmann::json::parse(atlas::Content(Printed(index))));
-    } else if (ended.exit_code < 0) {
-      row.index = index;
-      row.start = starts_[index];
-      row.verdict = fmt::format("the simulator was killed, or did not end within {} s", kRunLimit.count());
-    } else {
-      throw std::runtime_error(
-          fmt::format("run {}: {}", index, atlas::FirstLine(atlas::Content(Said(index)))));
-    }
-    rows_->Add(row);
-    starts_.erase(index);
-    std::error_code ignored;
-    fs::remove(Printed(index), ignored);
-    fs::remove(Said(index), ignored);
-    if (row.converged) {
-      fs::remove_all(Folder(index), ignored);
-    }
-  }
-
-  const AtlasArguments& arguments_;
-  const atlas::Heading heading_;
-  const std::string scenario_;
-  const fs::path simulator_;
-  const atlas::Sampler sampler_;
-  const atlas::AtlasPage page_;
-  const fs::path out_;
-  std::optional<config::FolderLock> lock_;
-  std::optional<atlas::RowFile> rows_;
-  std::map<int, atlas::Start> starts_;  // of the runs in progress
-  atlas::Children children_;
-};
+  app.add_option("--alone", arguments.alone,
+                 "with --tornado, --margin or --robustness: number of starts for each difference alone")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+}
 
 }  // namespace
 
 int JobsOf(const AtlasArguments& arguments) {
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   return arguments.jobs > 0 ? arguments.jobs : std::max(cores / 2, 1);
+}
+
+int RunsOf(const AtlasArguments& arguments) {
+  const bool has_cases = arguments.robustness || arguments.tornado || arguments.margin;
+  return arguments.runs.value_or(has_cases ? kRunsWithCases : kRuns);
+}
+
+robustness::Spec TruthOf(const AtlasArguments& arguments) {
+  const bool is_default = arguments.robustness && !HasTruth(arguments);
+  return robustness::LoadSpec(is_default ? "uncertain" : arguments.truth, Assignments(arguments, true));
+}
+
+atlas::Heading HeadingOf(const AtlasArguments& arguments, const std::string& target,
+                         const std::vector<std::string>& truth) {
+  return {target,
+          static_cast<std::uint64_t>(arguments.seed.value_or(atlas::JudgingSeed(kServoLibraryHash))),
+          Assignments(arguments, false),
+          kServoLibraryHash,
+          truth,
+          ""};
 }
 
 CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
@@ -196,15 +135,29 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
                                                                            features::kTargetNames.end())));
   CLI::Option* faults = kind->add_flag("--faults", arguments.faults,
                                        "every fault, mild to extreme, in every kind of run, at every stage");
+  CLI::Option* robust =
+      kind->add_flag("--robustness", arguments.robustness,
+                     "every target with wrong beliefs: each alone, all together, and how wrong they may be");
+  CLI::Option* contact = kind->add_flag(
+      "--contact", arguments.contact,
+      "pushes while masses are wrong: false alarms and detected pushes, over the detector's threshold");
   kind->require_option(1);
-  atlas->add_option("--runs", arguments.runs, "number of random starts")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str()
-      ->excludes(faults);
   atlas
-      ->add_option("--only", arguments.only,
-                   "with --faults: only cells whose name (such as ball.approach.torque_loss.severe) contains "
-                   "this; may be repeated")
+      ->add_option(
+          "--runs", arguments.runs,
+          fmt::format("number of random starts; default: {}; with --tornado, --margin or --robustness: {}",
+                      kRuns, kRunsWithCases))
+      ->check(CLI::Range(1, 100000))
+      ->excludes(faults);
+  AddTruth(*atlas, arguments, faults, robust);
+  for (const char* option : {"--runs", "--truth", "--truth-size", "--tornado", "--margin"}) {
+    atlas->get_option(option)->excludes(contact);
+  }
+  atlas
+      ->add_option(
+          "--only", arguments.only,
+          "with --faults: only cells whose name (such as ball.approach.torque_loss.severe) contains "
+          "this; with --robustness: only this target; with --contact: only this motion; may be repeated")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false)
@@ -218,7 +171,7 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
           "--seed", arguments.seed,
           fmt::format(
               "seed of the starts and runs. Seeds below {} are for tuning. Default: a seed derived from "
-              "the servo's code, so that nobody has tuned on its starts; with --faults: 1",
+              "the servo's code, so that nobody has tuned on its starts; with --faults or --contact: 1",
               atlas::kFirstJudgingSeed))
       ->check(CLI::Range(0, 2147483647));
   atlas
@@ -227,16 +180,37 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false)
-      ->excludes(faults);
+      ->excludes(faults)
+      ->excludes(contact);
   atlas->add_option("--out", arguments.out,
-                    "folder for the files; default: out/atlas-<target> or out/atlas-faults");
+                    "folder for the files; default: out/atlas-<target>, out/atlas-faults, "
+                    "out/atlas-robustness or out/atlas-contact");
   atlas->add_flag("--resume", arguments.resume, "keep the finished runs in the folder, do the rest");
   atlas
       ->add_flag("--draw-only", arguments.draw_only,
                  "draw the starts without running them; print how many are rejected, and why")
-      ->excludes(faults);
+      ->excludes(faults)
+      ->excludes(robust)
+      ->excludes(contact)
+      ->excludes(atlas->get_option("--truth"))
+      ->excludes(atlas->get_option("--truth-size"))
+      ->excludes(atlas->get_option("--tornado"))
+      ->excludes(atlas->get_option("--margin"));
+  CLI::Option* starts =
+      atlas
+          ->add_option("--starts", arguments.starts,
+                       "file of starts, CSV or JSON, instead of random ones: q1, q2, ... or camera_x, ..., "
+                       "camera_yaw; target_x, ..., target_yaw; goal_x, ..., goal_yaw; seed")
+          ->needs(target);
+  for (const char* option : {"--runs", "--truth-size", "--tornado", "--margin", "--draw-only"}) {
+    starts->excludes(atlas->get_option(option));
+  }
   CLI::Option* json = atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
-  atlas->add_flag("--markdown", arguments.markdown, "with --faults: print the page sim/FAULTS.md")
+  atlas
+      ->add_flag(
+          "--markdown", arguments.markdown,
+          "with --faults, --robustness or --contact: print the page sim/FAULTS.md, sim/ROBUSTNESS.md or "
+          "sim/CONTACT.md")
       ->excludes(target)
       ->excludes(json);
   return atlas;
@@ -246,18 +220,49 @@ int Atlas(const AtlasArguments& arguments) {
   if (arguments.faults) {
     return FaultAtlas(arguments);
   }
+  if (arguments.contact) {
+    return ContactAtlas(arguments);
+  }
   CheckAssignments(arguments.assignments);
   if (arguments.draw_only) {
     return DrawOnly(arguments);
   }
-  AtlasRun run(arguments);
-  const atlas::Figures figures = run.Execute();
+  if (arguments.robustness || arguments.tornado || arguments.margin || !arguments.sizes.empty()) {
+    return RobustnessAtlas(arguments);
+  }
+  const atlas::AtlasPage maker(config::ShareFolder() / "report");
+  const fs::path out =
+      arguments.out.empty() ? fs::path("out") / ("atlas-" + arguments.target) : fs::path(arguments.out);
+  atlas::Heading heading = HeadingOf(arguments, arguments.target, {});
+  std::vector<atlas::Start> given;
+  if (!arguments.starts.empty()) {
+    heading.starts = atlas::HashOfFile(arguments.starts);
+    given = atlas::ReadStarts(
+        arguments.starts, atlas::LoadScene(arguments.target, atlas::SceneAssignments(heading.assignments)));
+  }
+  const std::optional<robustness::Spec> spec =
+      HasTruth(arguments) ? std::optional(TruthOf(arguments)) : std::nullopt;
+  const atlas::Case truth{"", spec ? robustness::Scaled(*spec, 1.0) : std::vector<std::string>(), false};
+  heading.truth = truth.truth;
+  atlas::Batch batch(heading, out, JobsOf(arguments), arguments.resume, given);
+  if (spec) {
+    batch.Try(truth, spec->name);
+  }
+  const int runs = given.empty() ? RunsOf(arguments) : static_cast<int>(given.size());
+  {
+    atlas::Progress progress("atlas " + arguments.target, runs);
+    batch.Execute({truth}, runs, progress);
+  }
+  batch.JudgeFailures({truth}, runs);
+  const atlas::Figures figures = batch.FiguresOf(truth.name, runs);
+  atlas::WriteFile(out / "atlas.json", atlas::ToJson(figures));
+  atlas::WriteFile(out / "atlas.html", maker.Make(figures, batch.rows()));
   if (arguments.json) {
     fmt::print("{}", atlas::ToJson(figures));
   } else {
     const config::TextStyle style = config::StyleOf(STDOUT_FILENO);
     config::PrintedTable page(style);
-    page.WholeRow("page", (run.out() / "atlas.html").string());
+    page.WholeRow("page", (out / "atlas.html").string());
     fmt::print("{}{}", atlas::ToTable(figures, style), page.text());
   }
   return figures.ReachedGoal() ? config::kDone : config::kGoalMissed;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fovea atlas: the convergence rate of simulated runs from random starts; with --faults, the outcome of every
-// fault in every mode and stage.
+// fault in every mode and stage; with --robustness, what wrong beliefs cost; with --contact, which pushes are
+// detected.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,17 +9,28 @@
 #include <string>
 #include <vector>
 
+#include "tools/fovea/atlas/rows.hpp"
+#include "tools/fovea/robustness/spec.hpp"
+
 namespace fovea {
 
 struct AtlasArguments {
   std::string target;
   bool faults = false;
+  bool robustness = false;
+  bool contact = false;
+  std::string truth;          // a specification; "": none, or the shipped one with --robustness
+  std::vector<double> sizes;  // of all its differences
+  bool tornado = false;
+  bool margin = false;
+  int alone = 3;  // starts of each quantity alone
   bool markdown = false;
   std::vector<std::string> only;
-  int runs = 1000;
+  std::optional<int> runs;
   int jobs = 0;  // 0: one for every two cores
   std::optional<int> seed;
   std::vector<std::string> assignments;
+  std::string starts;  // file; "": random starts
   std::string out;
   bool resume = false;
   bool draw_only = false;
@@ -32,8 +44,16 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments);
 int Atlas(const AtlasArguments& arguments);
 // The same for --faults.
 int FaultAtlas(const AtlasArguments& arguments);
+// And for --contact.
+int ContactAtlas(const AtlasArguments& arguments);
 
-// The number of runs in parallel.
+// The number of runs in parallel; of starts.
 int JobsOf(const AtlasArguments& arguments);
+int RunsOf(const AtlasArguments& arguments);
+// What is not as the servo believes, by --truth and --set. InputError: nothing is, or it cannot be read.
+robustness::Spec TruthOf(const AtlasArguments& arguments);
+// What all runs with `target` share. `truth`: assignments of [truth] from which all cases follow.
+atlas::Heading HeadingOf(const AtlasArguments& arguments, const std::string& target,
+                         const std::vector<std::string>& truth);
 
 }  // namespace fovea

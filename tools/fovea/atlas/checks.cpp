@@ -4,102 +4,146 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
-#include "firmware/core/model/rotation.hpp"
 #include "tools/fovea/atlas/bench.hpp"
 
 namespace fovea::atlas {
 namespace {
 
+using model::ArmShape;
+using model::Capsule;
 using model::Pose;
 using model::Vec3;
-using model::VecN;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kHfovDeg = 60.0;
 constexpr double kEdgePx = 30.0;
-constexpr double kRadius = 0.845;  // 3 mm inside the servo's bound, workspace_radius - workspace_margin [m]
-constexpr double kAboveTable = 0.10;  // [m]
-constexpr double kThingClear = 0.01;  // distance of things from the lines of sight and the target [m]
-// Along a path: the bounds that the servo itself keeps.
-constexpr double kEdgeOnTheWayPx = 10.0;
-constexpr double kAboveTableOnTheWay = 0.09;  // [m]
-constexpr double kDepthOnTheWay = 0.05;       // [m]
-constexpr double kSteepest = 0.2;             // cosine between a flat target's normal and the line of sight
-constexpr int kUpperLinks = 6;                // segments up to the forearm: not in a line of sight
-constexpr int kTrunkLinks = 3;                // segments up to the elbow: not near the hand
+constexpr double kInsideWorkspace = 0.003;  // distance of the hand from the servo's bound [m]
+constexpr double kHandRadius = 0.03;        // of a ball about the flange [m]
+constexpr double kThingClear = 0.01;        // distance of things from the lines of sight and the target [m]
+// Along a path.
+constexpr double kDepthOnTheWay = 0.05;  // [m]
+constexpr double kSteepest = 0.2;        // cosine between a flat target's normal and the line of sight
+// Of the links, only these may come near a plane: those before them stand on the table.
+constexpr std::size_t kOuterLinks = 4;
 
-double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+// A segment's point nearest to `p`, as a share of the way from `a` to `b`.
+double ShareOf(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
   const double length2 = ab.squaredNorm();
-  const double t = length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - t * ab).norm();
+  return length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
 }
 
-// Approximate, from points along the first segment. Accurate enough for something as thick as an arm.
-double DistanceOfSegments(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  constexpr int kPoints = 20;
-  double least = DistanceToSegment(a, c, d);
-  for (int i = 1; i <= kPoints; ++i) {
-    least = std::min(least, DistanceToSegment(a + (b - a) * i / kPoints, c, d));
+double DistanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  return (p - a - ShareOf(p, a, b) * (b - a)).norm();
+}
+
+// Whether two segments are nearer to each other than `bound`: by alternating projections onto the two convex
+// sets, which converge to their distance from above. Starts at both ends and in the middle make a few rounds
+// enough.
+bool AreNearer(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double bound) {
+  constexpr int kRounds = 8;
+  const double reach = 0.5 * ((b - a).norm() + (d - c).norm());
+  if (0.5 * (a + b - c - d).norm() - reach > bound) {
+    return false;
   }
-  return least;
+  if (DistanceToSegment(c, a, b) < bound || DistanceToSegment(d, a, b) < bound) {
+    return true;
+  }
+  for (const double from : {0.0, 0.5, 1.0}) {
+    Vec3 p = a + from * (b - a);
+    for (int round = 0; round < kRounds; ++round) {
+      const Vec3 other = c + ShareOf(p, c, d) * (d - c);
+      if ((p - other).norm() < bound) {
+        return true;
+      }
+      p = a + ShareOf(other, a, b) * (b - a);
+    }
+  }
+  return false;
+}
+
+double DistanceToBox(const Vec3& p, const config::Box& box) {
+  return (p - p.cwiseMax(box.low).cwiseMin(box.high)).norm();
 }
 
 }  // namespace
 
-double FocalPx() { return 0.5 * kWidthPx / std::tan(0.5 * kHfovDeg * kRadPerDeg); }
-double U(const Vec3& p_C) { return 0.5 * (kWidthPx - 1.0) + FocalPx() * p_C.x() / p_C.z(); }
-double V(const Vec3& p_C) { return 0.5 * (kHeightPx - 1.0) + FocalPx() * p_C.y() / p_C.z(); }
+const StartChecks::Clear StartChecks::kAtEnds{0.02, 0.04, 0.02, 0.02, 0.03};
+const StartChecks::Clear StartChecks::kOnTheWay{0.0, 0.03, 0.0, 0.0, 0.01};
 
-const StartChecks::Clear StartChecks::kAtEnds{0.10, 0.15, 0.15};
-const StartChecks::Clear StartChecks::kOnTheWay{0.08, 0.10, 0.13};
-
-StartChecks::StartChecks(const model::ArmModel& arm, const features::TargetFeature& feature)
-    : arm_(arm), feature_(feature) {
-  X_EC_.R = model::RotationOf({0.0, 0.0, 0.5 * std::numbers::pi});
-  X_EC_.p = {0.05, 0.0, 0.04};
-}
-
-StartPosture StartChecks::At(const VecN& q) const {
+StartPosture StartChecks::At(const model::VecN& q) const {
+  const config::ServoConfig& servo = scene_.servo;
   StartPosture posture;
   posture.q = q;
-  model::ComputePoses(arm_, q, posture.poses);
-  posture.X_BC = posture.poses.X_BE * X_EC_;
+  model::ComputePoses(servo.arm, q, posture.poses);
+  posture.X_BC = posture.poses.X_BE * servo.X_EC;
+  posture.bodies.push_back(servo.arm.shape.bodies[0]);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(servo.arm.num_joints); ++i) {
+    const Capsule& body = servo.arm.shape.bodies[i + 1];
+    const Pose& X_BL = posture.poses.X_BL[i];
+    posture.bodies.push_back({X_BL * body.p_LA, X_BL * body.p_LB, body.radius});
+  }
   return posture;
 }
 
 bool StartChecks::InsideBarrier(const StartPosture& posture) const {
-  return posture.poses.X_BE.p.norm() <= kRadius;
+  const config::GuardConfig& guard = scene_.servo.guard;
+  return posture.poses.X_BE.p.norm() <= guard.workspace_radius - guard.workspace_margin - kInsideWorkspace;
 }
 
-// The start of the forearm's axis, beside the elbow joint (a_5 in the Panda's table).
-Vec3 StartChecks::ForearmStart(const StartPosture& posture) const {
-  const Pose& X_BL4 = posture.poses.X_BL[3];
-  return X_BL4 * Vec3(arm_.joints[4].X_PJ.p.x(), 0.0, 0.0);
-}
-
-bool StartChecks::AboveTable(const StartPosture& posture, double height) const {
-  double lowest = std::min({posture.poses.X_BE.p.z(), posture.X_BC.p.z(), ForearmStart(posture).z()});
-  for (int i = 3; i < arm_.num_joints; ++i) {  // the links before it stand on the table
-    lowest = std::min(lowest, posture.poses.X_BL[static_cast<std::size_t>(i)].p.z());
+bool StartChecks::ClearOfSolids(const StartPosture& posture, const Clear& clear) const {
+  const config::GuardConfig& guard = scene_.servo.guard;
+  const double margin = 2.0 * guard.workspace_margin;
+  const config::Obstacles& solids = guard.obstacles;
+  const auto hand_is_clear = [&](const Vec3& p_B, double radius) {
+    const double least = radius + margin + clear.hand;
+    for (int i = 0; i < solids.num_planes; ++i) {
+      const config::Plane& plane = solids.planes[static_cast<std::size_t>(i)];
+      if (plane.normal.dot(p_B) - plane.distance < least) {
+        return false;
+      }
+    }
+    for (int i = 0; i < solids.num_boxes; ++i) {
+      if (DistanceToBox(p_B, solids.boxes[static_cast<std::size_t>(i)]) < least) {
+        return false;
+      }
+    }
+    return true;
+  };
+  for (int i = 0; i < guard.hand.num_balls; ++i) {
+    const auto& ball = guard.hand.balls[static_cast<std::size_t>(i)];
+    if (!hand_is_clear(posture.poses.X_BE * ball.p_EP, ball.radius)) {
+      return false;
+    }
   }
-  return lowest >= height;
+  const double least = guard.link_clearance + margin + clear.links;
+  const std::size_t links = std::min(kOuterLinks, posture.bodies.size() - 1);
+  for (auto body = posture.bodies.end() - static_cast<std::ptrdiff_t>(links); body != posture.bodies.end();
+       ++body) {
+    for (int i = 0; i < solids.num_planes; ++i) {
+      const config::Plane& plane = solids.planes[static_cast<std::size_t>(i)];
+      const double nearest = std::min(plane.normal.dot(body->p_LA), plane.normal.dot(body->p_LB));
+      if (nearest - plane.distance - body->radius < least) {
+        return false;
+      }
+    }
+  }
+  return hand_is_clear(posture.poses.X_BE.p, kHandRadius) && hand_is_clear(posture.X_BC.p, kHandRadius);
 }
 
 // Along each axis of the picture, a ball's outline ends at the tangents to the ball (exact, also off axis).
 bool StartChecks::InPicture(const Pose& X_CO, double edge_px) const {
-  const features::TargetOutline outline = feature_.Outline();
-  const auto inside = [&](double across, double depth, double size_px) {
+  const vision::Intrinsics& camera = scene_.camera;
+  const features::TargetOutline outline = scene_.servo.feature.Outline();
+  const auto inside = [&](double across, double depth, double f_px, double c_px, double size_px) {
     const double at = std::atan2(across, depth);
     const double half = std::asin(std::min(outline.radius / std::hypot(across, depth), 1.0));
-    const double most = FocalPx() * std::tan(std::fabs(at) + half);
-    return std::fabs(at) + half < 0.5 * std::numbers::pi && most <= 0.5 * (size_px - 1.0) - edge_px;
+    return std::fabs(at) + half < 0.5 * std::numbers::pi && c_px + f_px * std::tan(at - half) >= edge_px &&
+           c_px + f_px * std::tan(at + half) <= size_px - 1.0 - edge_px;
   };
   for (int i = 0; i < outline.num_points; ++i) {
     const Vec3 p = X_CO * outline.p_OP[static_cast<std::size_t>(i)];
-    if (!inside(p.x(), p.z(), kWidthPx) || !inside(p.y(), p.z(), kHeightPx)) {
+    if (!inside(p.x(), p.z(), camera.f_u_px, camera.c_u_px, camera.width_px) ||
+        !inside(p.y(), p.z(), camera.f_v_px, camera.c_v_px, camera.height_px)) {
       return false;
     }
   }
@@ -107,7 +151,7 @@ bool StartChecks::InPicture(const Pose& X_CO, double edge_px) const {
 }
 
 bool StartChecks::TargetAboveTable(const Pose& X_BO) const {
-  const features::TargetOutline outline = feature_.Outline();
+  const features::TargetOutline outline = scene_.servo.feature.Outline();
   for (int i = 0; i < outline.num_points; ++i) {
     if ((X_BO * outline.p_OP[static_cast<std::size_t>(i)]).z() < outline.radius) {
       return false;
@@ -116,31 +160,39 @@ bool StartChecks::TargetAboveTable(const Pose& X_BO) const {
   return true;
 }
 
-// The arm as thick segments from joint to joint. Keeps apart: hand and links up to the elbow; target and
-// whole arm; lines of sight and all links except the wrist, where the camera sits.
+// Keeps apart: the pairs of links that could touch; target and whole arm; lines of sight and all links except
+// the last, which move with the camera.
 bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO, const Clear& clear) const {
-  const features::TargetOutline outline = feature_.Outline();
-  std::vector<Vec3> line{Vec3::Zero()};
-  for (int i = 0; i < arm_.num_joints; ++i) {
-    line.push_back(posture.poses.X_BL[static_cast<std::size_t>(i)].p);
-    if (i == 3) {
-      line.push_back(ForearmStart(posture));
-    }
-  }
-  line.push_back(posture.poses.X_BE.p);
-  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    if (DistanceToSegment(X_BO.p, line[i], line[i + 1]) < clear.target) {
+  const config::ServoConfig& servo = scene_.servo;
+  const ArmShape& shape = servo.arm.shape;
+  for (int i = 0; i < shape.num_pairs; ++i) {
+    const ArmShape::Pair& pair = shape.pairs[static_cast<std::size_t>(i)];
+    const Capsule& one = posture.bodies[static_cast<std::size_t>(pair.near)];
+    const Capsule& other = posture.bodies[static_cast<std::size_t>(pair.far)];
+    if (AreNearer(one.p_LA, one.p_LB, other.p_LA, other.p_LB,
+                  one.radius + other.radius + servo.guard.self_clearance + clear.itself)) {
       return true;
     }
-    const bool upper = static_cast<int>(i) < kUpperLinks;
-    for (int k = 0; upper && k < outline.num_points; ++k) {
-      const Vec3 p_BP = X_BO * outline.p_OP[static_cast<std::size_t>(k)];
-      if (DistanceOfSegments(posture.X_BC.p, p_BP, line[i], line[i + 1]) < clear.sight) {
+  }
+  const features::TargetOutline outline = servo.feature.Outline();
+  std::vector<Vec3> points{X_BO.p};
+  for (int k = 0; k < outline.num_points; ++k) {
+    points.push_back(X_BO * outline.p_OP[static_cast<std::size_t>(k)]);
+  }
+  for (const Vec3& p_BP : points) {
+    const auto near = [&](const Vec3& a, const Vec3& b, double radius) {
+      return DistanceToSegment(p_BP, a, b) - radius - outline.radius < clear.target;
+    };
+    for (std::size_t i = 0; i < posture.bodies.size(); ++i) {
+      const Capsule& body = posture.bodies[i];
+      const bool could_hide = i + ArmShape::kNeighbours + 1 < posture.bodies.size();
+      if (near(body.p_LA, body.p_LB, body.radius) ||
+          (could_hide && AreNearer(posture.X_BC.p, p_BP, body.p_LA, body.p_LB,
+                                   body.radius + servo.guard.sight_clearance + clear.sight))) {
         return true;
       }
     }
-    const bool trunk = static_cast<int>(i) < kTrunkLinks;
-    if (trunk && DistanceOfSegments(line[line.size() - 2], line.back(), line[i], line[i + 1]) < clear.trunk) {
+    if (near(posture.poses.X_BE.p, posture.X_BC.p, kHandRadius)) {
       return true;
     }
   }
@@ -148,7 +200,7 @@ bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO, con
 }
 
 bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO) const {
-  const features::TargetOutline outline = feature_.Outline();
+  const features::TargetOutline outline = scene_.servo.feature.Outline();
   for (int k = 0; k < outline.num_points; ++k) {
     const Vec3 p_BP = X_BO * outline.p_OP[static_cast<std::size_t>(k)];
     if (ThingInTheWay(posture.X_BC.p, p_BP, kThingClear + outline.radius)) {
@@ -158,7 +210,7 @@ bool StartChecks::BenchInTheWay(const StartPosture& posture, const Pose& X_BO) c
   return false;
 }
 
-bool StartChecks::AboveTable(const StartPosture& posture) const { return AboveTable(posture, kAboveTable); }
+bool StartChecks::ClearOfSolids(const StartPosture& posture) const { return ClearOfSolids(posture, kAtEnds); }
 
 bool StartChecks::InPicture(const Pose& X_CO) const { return InPicture(X_CO, kEdgePx); }
 
@@ -166,15 +218,22 @@ bool StartChecks::ArmInTheWay(const StartPosture& posture, const Pose& X_BO) con
   return ArmInTheWay(posture, X_BO, kAtEnds);
 }
 
+bool StartChecks::StandsAtGoal(const StartPosture& posture, const Pose& X_BO) const {
+  return InsideBarrier(posture) && ClearOfSolids(posture) && !ArmInTheWay(posture, X_BO) &&
+         !BenchInTheWay(posture, X_BO);
+}
+
 bool StartChecks::OnTheWay(const StartPosture& posture, const Pose& X_BO) const {
   const Pose X_CO = posture.X_BC.Inverse() * X_BO;
-  const bool faces = !feature_.SeesOrientation() || X_CO.R.col(2).dot(X_CO.p) > kSteepest * X_CO.p.norm();
-  return X_CO.p.z() > kDepthOnTheWay && faces && InPicture(X_CO, kEdgeOnTheWayPx) && InsideBarrier(posture) &&
-         AboveTable(posture, kAboveTableOnTheWay) && !ArmInTheWay(posture, X_BO, kOnTheWay) &&
+  const bool faces =
+      !scene_.servo.feature.SeesOrientation() || X_CO.R.col(2).dot(X_CO.p) > kSteepest * X_CO.p.norm();
+  return X_CO.p.z() > kDepthOnTheWay && faces && !OutOfViewOnTheWay(X_CO) && InsideBarrier(posture) &&
+         ClearOfSolids(posture, kOnTheWay) && !ArmInTheWay(posture, X_BO, kOnTheWay) &&
          !BenchInTheWay(posture, X_BO);
 }
 
 bool StartChecks::OutOfViewOnTheWay(const Pose& X_CO) const {
+  constexpr double kEdgeOnTheWayPx = 10.0;
   return X_CO.p.z() > kDepthOnTheWay && !InPicture(X_CO, kEdgeOnTheWayPx);
 }
 

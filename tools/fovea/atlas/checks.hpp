@@ -1,37 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conditions for a start of an atlas and for the postures of a path from it: hand and arm, target and lines
-// of sight. The geometry shares no code with the servo, so the servo is not judged by its own code.
+// of sight. The geometry shares no code with the servo, so the servo is not judged by its own code. The arm
+// is the capsules of its model (model::ArmShape), so the conditions are the same for all arms.
 #pragma once
 
-#include "firmware/core/features/target_feature.hpp"
-#include "firmware/core/model/kinematics.hpp"
+#include <vector>
+
+#include "tools/fovea/atlas/scene.hpp"
 
 namespace fovea::atlas {
-
-// The picture of the scenario `ball`.
-inline constexpr double kWidthPx = 640.0;
-inline constexpr double kHeightPx = 480.0;
-[[nodiscard]] double FocalPx();
-// Position of the point in the picture [px].
-[[nodiscard]] double U(const model::Vec3& p_C);
-[[nodiscard]] double V(const model::Vec3& p_C);
 
 struct StartPosture {
   model::VecN q;
   model::ArmPoses poses;
   model::Pose X_BC;
+  std::vector<model::Capsule> bodies;  // of the base and each link, in B
 };
 
 class StartChecks {
  public:
-  // `feature`: the target with its goal.
-  StartChecks(const model::ArmModel& arm, const features::TargetFeature& feature);
+  explicit StartChecks(const Scene& scene) : scene_(scene) {}
 
   [[nodiscard]] StartPosture At(const model::VecN& q) const;
   // True when the hand is inside the workspace.
   [[nodiscard]] bool InsideBarrier(const StartPosture& posture) const;
-  // True when elbow, forearm, wrist, hand and camera are at least 0.10 m above the table.
-  [[nodiscard]] bool AboveTable(const StartPosture& posture) const;
+  // True when links, hand and camera are clear of the planes, and hand and camera of the boxes.
+  [[nodiscard]] bool ClearOfSolids(const StartPosture& posture) const;
   // True when the target's outline is completely 30 px inside the picture; when it is above the table.
   [[nodiscard]] bool InPicture(const model::Pose& X_CO) const;
   [[nodiscard]] bool TargetAboveTable(const model::Pose& X_BO) const;
@@ -39,33 +33,34 @@ class StartChecks {
   [[nodiscard]] bool ArmInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
   // True when a thing on the bench is in the target or in a line of sight.
   [[nodiscard]] bool BenchInTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
+  // True when a posture that reaches the goal meets all these conditions.
+  [[nodiscard]] bool StandsAtGoal(const StartPosture& posture, const model::Pose& X_BO) const;
 
-  // True when a posture on a path meets all conditions. The bounds are less strict than at its ends.
+  // True when a posture on a path meets all conditions. The bounds are less strict than at its ends: those
+  // that the servo itself keeps.
   [[nodiscard]] bool OnTheWay(const StartPosture& posture, const model::Pose& X_BO) const;
   // True when the target is in front of the camera but not completely in the picture, by the path's bound.
   [[nodiscard]] bool OutOfViewOnTheWay(const model::Pose& X_CO) const;
 
-  // X_EC.
-  [[nodiscard]] const model::Pose& camera() const { return X_EC_; }
+  [[nodiscard]] const Scene& scene() const { return scene_; }
 
  private:
-  // Distances of the arm's segments from lines of sight, target and trunk [m].
+  // What the arm must keep beyond the servo's own bounds [m].
   struct Clear {
-    double sight;
-    double target;
-    double trunk;
+    double links;   // from planes
+    double hand;    // from planes and boxes
+    double sight;   // links from lines of sight
+    double itself;  // links from each other
+    double target;  // whole arm from the target
   };
   static const Clear kAtEnds;
   static const Clear kOnTheWay;
   [[nodiscard]] bool InPicture(const model::Pose& X_CO, double edge_px) const;
-  [[nodiscard]] bool AboveTable(const StartPosture& posture, double height) const;
+  [[nodiscard]] bool ClearOfSolids(const StartPosture& posture, const Clear& clear) const;
   [[nodiscard]] bool ArmInTheWay(const StartPosture& posture, const model::Pose& X_BO,
                                  const Clear& clear) const;
-  [[nodiscard]] model::Vec3 ForearmStart(const StartPosture& posture) const;
 
-  model::ArmModel arm_;
-  features::TargetFeature feature_;
-  model::Pose X_EC_;
+  Scene scene_;
 };
 
 }  // namespace fovea::atlas

@@ -16,6 +16,16 @@ std::string Content(const std::filesystem::path& file) {
 
 std::string FirstLine(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+std::string ReasonOf(const std::string& said) {
+  std::string line = FirstLine(said);
+  for (const std::string begin : {"fovea-sim: ", "--set: "}) {
+    if (line.rfind(begin, 0) == 0) {
+      line.erase(0, begin.size());
+    }
+  }
+  return line;
+}
+
 void WriteFile(const std::filesystem::path& file, const std::string& content) {
   std::ofstream stream(file, std::ios::binary | std::ios::trunc);
   stream << content;

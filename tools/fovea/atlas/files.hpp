@@ -10,6 +10,9 @@ namespace fovea::atlas {
 // The content of `file`; "" when it cannot be read.
 std::string Content(const std::filesystem::path& file);
 std::string FirstLine(const std::string& text);
+// The first line of what the simulator `said`, without its name and without --set, which the caller did not
+// write.
+std::string ReasonOf(const std::string& said);
 // InputError: the file cannot be written.
 void WriteFile(const std::filesystem::path& file, const std::string& content);
 

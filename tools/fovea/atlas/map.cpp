@@ -81,18 +81,6 @@ std::string CellText(const Frame& frame, std::pair<int, int> at, Cell cell, cons
       share >= kFromDark ? "#ffffff" : "#17202a", cell.heat.size() + static_cast<std::size_t>(cell.failed));
 }
 
-// A step of 1, 2 or 5 times a power of ten that gives about six labels.
-double TickStep(double range) {
-  const double rough = range / 6.0;
-  const double power = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (step * power >= rough) {
-      return step * power;
-    }
-  }
-  return 10.0 * power;
-}
-
 constexpr double kRounding = 1e-9;
 
 int FirstTick(double least, double step) { return static_cast<int>(std::ceil(least / step - kRounding)); }
@@ -123,6 +111,17 @@ std::string Numbers(const Frame& frame) {
 }
 
 }  // namespace
+
+double TickStep(double range) {
+  const double rough = range / 6.0;
+  const double power = std::pow(10.0, std::floor(std::log10(rough)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * power >= rough) {
+      return step * power;
+    }
+  }
+  return 10.0 * power;
+}
 
 std::string HeatMap(const std::vector<MapPoint>& points, const MapAxes& axes, const HeatScale& scale) {
   const Frame frame(axes);

@@ -34,6 +34,9 @@ struct HeatScale {
 // the run's number.
 std::string HeatMap(const std::vector<MapPoint>& points, const MapAxes& axes, const HeatScale& scale);
 
+// A step of 1, 2 or 5 times a power of ten that gives about six labels on an axis of length `range`.
+double TickStep(double range);
+
 // The colours with their values.
 std::string HeatLegend(const HeatScale& scale, const std::string& name);
 

@@ -33,16 +33,18 @@ std::string Verdict(const Figures& f) {
   return fmt::format(
       "<section id=\"verdict\"><div class=\"banner {}\"><div><p class=\"run-tag\">{} runs, {} seed {}, "
       "scenario "
-      "{}</p><p class=\"verdict-word\">{} of {} converged</p><p class=\"verdict-sentence\">The rate lies "
-      "between "
-      "{:.1f} and {:.1f} % (Wilson, 95 %); limits were exceeded in {} ticks.</p></div></div><dl "
+      "{}</p><p class=\"verdict-word\">{} of {} with a way converged</p><p class=\"verdict-sentence\">The "
+      "rate lies between {:.1f} and {:.1f} % (Wilson, 95 %); limits were exceeded in {} ticks. {} runs "
+      "failed "
+      "although a way leads to the goal. From {} starts no way was found{}.</p></div></div><dl "
       "class=\"tiles\">"
       "{}{}{}{}</dl></section>",
       f.ReachedGoal() ? "good" : "bad", f.runs, KindOfSeed(f.heading.seed, f.heading.servo), f.heading.seed,
-      Escaped(f.scenario), f.converged, f.runs, 100.0 * f.wilson_95[0], 100.0 * f.wilson_95[1],
-      f.limit_violations, SpreadTile("Settled after", f.settle_s, "s"),
-      SpreadTile("Image error", f.error_px, "px rms"), SpreadTile("Position error", f.error_mm, "mm"),
-      SpreadTile("Orientation error", f.error_deg, "deg"));
+      Escaped(f.scenario), f.converged, f.WithWay(), 100.0 * f.wilson_95[0], 100.0 * f.wilson_95[1],
+      f.limit_violations, f.FailedWithWay(), f.without_way.size(),
+      f.without_way.empty() ? "" : fmt::format("; {} of these held with goal_unreachable", f.held),
+      SpreadTile("Settled after", f.settle_s, "s"), SpreadTile("Image error", f.error_px, "px rms"),
+      SpreadTile("Position error", f.error_mm, "mm"), SpreadTile("Orientation error", f.error_deg, "deg"));
 }
 
 // The multiple of `cell` nearest to 0 that no value exceeds: upwards for `sign` 1, downwards for -1.
@@ -58,14 +60,15 @@ std::string Figure(const char* title, const std::string& drawing) {
   return fmt::format("<figure><h3>{}</h3>{}</figure>", title, drawing);
 }
 
-std::string Maps(const std::map<int, Row>& rows, int runs) {
+std::string Maps(const Figures& f, const std::map<int, Row>& rows) {
   constexpr double kCell = 0.1;  // [m]
   std::vector<MapPoint> picture;
   std::vector<MapPoint> above;
   std::vector<MapPoint> side;
   HeatScale scale{1e9, 0.0};
+  const MapAxes picture_axes{"u [px]", "v [px]", 0.0, f.width_px, 0.0, f.height_px, f.width_px / 8.0, true};
   for (const auto& [index, row] : rows) {
-    if (index >= runs) {
+    if (index >= f.runs) {
       continue;
     }
     MapPoint point;
@@ -87,7 +90,6 @@ std::string Maps(const std::map<int, Row>& rows, int runs) {
     side.push_back(at(start.p_BO.z(), start.depth));
   }
   scale.least = std::min(scale.least, scale.most);
-  const MapAxes picture_axes{"u [px]", "v [px]", 0.0, 640.0, 0.0, 480.0, 80.0, true};
   const MapAxes above_axes{"x of B [m]",
                            "y of B [m]",
                            Bound(above, &MapPoint::x, kCell, -1),
@@ -135,6 +137,27 @@ std::string SamplerTable(const Figures& f) {
       rows);
 }
 
+// The line of a start's file.
+std::string LineInWords(int line) { return line > 0 ? fmt::format(" (line {})", line) : std::string(); }
+
+std::string WithoutWayTable(const Figures& f) {
+  if (f.without_way.empty()) {
+    return {};
+  }
+  std::string rows;
+  for (const WithoutWay& one : f.without_way) {
+    rows += fmt::format(
+        "<tr><th class=\"brief\" scope=\"row\">{}{}</th><td>{}; it ended in {}<code class=\"listing\" "
+        "style=\"display:block\">{}</code></td></tr>",
+        one.index, LineInWords(one.line), Escaped(InWords(one.judgement)), Escaped(one.end),
+        Escaped(one.command));
+  }
+  return fmt::format(
+      "<section><h2>Starts without a way</h2><p>{}.</p><table><thead><tr><th class=\"brief\">run</th><th>"
+      "search and end of the run</th></tr></thead><tbody>{}</tbody></table></section>",
+      Escaped(NoWayInWords(f)), rows);
+}
+
 std::string FailureTable(const Figures& f) {
   if (f.failures.empty()) {
     return "<section><h2>Failures</h2><p>None.</p></section>";
@@ -142,12 +165,13 @@ std::string FailureTable(const Figures& f) {
   std::string rows;
   for (const Failure& failure : f.failures) {
     rows += fmt::format(
-        "<tr><th class=\"brief\" scope=\"row\">{0}</th><td>{1}<code class=\"listing\" "
+        "<tr><th class=\"brief\" scope=\"row\">{0}{4}</th><td>{1}; {5}<code class=\"listing\" "
         "style=\"display:block\">{2}</code></td>"
-        "<td class=\"brief\"><a href=\"runs/{0:04}/eye-first.png\">first</a>, <a "
-        "href=\"runs/{0:04}/eye-last.png\">last</a></td>"
+        "<td class=\"brief\"><a href=\"{3}/eye-first.png\">first</a>, <a "
+        "href=\"{3}/eye-last.png\">last</a></td>"
         "</tr>",
-        failure.index, Escaped(failure.verdict), Escaped(failure.command));
+        failure.index, Escaped(failure.verdict), Escaped(failure.command), Escaped(failure.folder),
+        LineInWords(failure.line), Escaped(failure.way));
   }
   return fmt::format(
       "<section><h2>Failures</h2><table><thead><tr><th class=\"brief\">run</th><th>verdict and command</th>"
@@ -174,8 +198,9 @@ std::string AtlasPage::Wrap(const std::string& title, const std::string& main) c
 
 std::string AtlasPage::Make(const Figures& figures, const std::map<int, Row>& rows) const {
   return Wrap(figures.heading.target,
-              fmt::format("{}\n{}\n{}\n{}\n{}", Verdict(figures), Maps(rows, figures.runs),
-                          FailureTable(figures), LimitTable(figures), SamplerTable(figures)));
+              fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", Verdict(figures), Maps(figures, rows),
+                          DeviationsAsHtml(figures.deviations), FailureTable(figures),
+                          WithoutWayTable(figures), LimitTable(figures), SamplerTable(figures)));
 }
 
 }  // namespace fovea::atlas

@@ -8,17 +8,20 @@ namespace fovea::atlas {
 
 class Progress {
  public:
-  Progress(std::string name, int runs);
+  // `things`: what is done, `counted`: what Show counts among them, such as "failed".
+  Progress(std::string name, int total, std::string things = "runs", std::string counted = "failed");
   ~Progress() { End(); }
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  void Show(int done, int failed);
+  void Show(int done, int counted);
   void End();
 
  private:
   std::string name_;
-  int runs_;
+  int total_;
+  std::string things_;
+  std::string counted_;
   int shown_tenth_ = 0;
   bool is_terminal_;
 };

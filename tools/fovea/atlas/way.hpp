@@ -24,9 +24,15 @@ struct WayProblem {
   int draws = 60000;  // largest number of random postures
 };
 
-// True when a path to any of `goals` was found. The same seed gives the same result. Goals that are not
-// allowed are ignored. From a start that is not allowed there is no path.
-[[nodiscard]] bool WayExists(const WayProblem& problem, const model::VecN& start,
-                             const std::vector<model::VecN>& goals, std::uint64_t seed);
+struct WayResult {
+  bool found = false;
+  double length = 0.0;  // of the path, after shortcuts [rad]
+  int draws = 0;        // random postures that were drawn
+};
+
+// Searches a path to any of `goals`. The same seed gives the same result. Goals that are not allowed are
+// ignored. From a start that is not allowed there is no path.
+[[nodiscard]] WayResult FindWay(const WayProblem& problem, const model::VecN& start,
+                                const std::vector<model::VecN>& goals, std::uint64_t seed);
 
 }  // namespace fovea::atlas

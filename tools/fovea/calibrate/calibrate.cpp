@@ -12,12 +12,14 @@
 #include <optional>
 #include <sstream>
 
+#include "firmware/host/beliefs/findings_json.hpp"
 #include "firmware/host/config/input_error.hpp"
 #include "firmware/host/config/program.hpp"
 #include "firmware/host/config/roll_pitch_yaw.hpp"
 #include "firmware/host/config/toml_edit.hpp"
 #include "firmware/vision/detect/target_detector.hpp"
 #include "tools/fovea/calibrate/camera_file.hpp"
+#include "tools/fovea/calibrate/from_log.hpp"
 #include "tools/fovea/calibrate/hand_poses.hpp"
 #include "tools/fovea/detect/image_files.hpp"
 
@@ -241,6 +243,35 @@ int HandEye(const CalibrateArguments& a) {
   return config::kDone;
 }
 
+int FromLog(const CalibrateArguments& a) {
+  const LogCalibration r = CalibrateFromLog(a.log);
+  if (!r.values.empty()) {
+    Write(a, r.values);
+  } else if (!a.write.empty()) {
+    fmt::print(stderr, "{}: nothing is known from this log; {} stays as it is\n", a.log, a.write);
+  }
+  if (a.json) {
+    nlohmann::ordered_json json = beliefs::ToJson(r.findings);
+    for (const config::NewValue& value : r.values) {
+      json["camera"][value.key] = value.value;
+    }
+    fmt::print("{}\n", json.dump(2));
+    return config::kDone;
+  }
+  fmt::print("# {} views of the target fit to {:.2f} of their stated errors\n", r.findings.views,
+             r.findings.misfit);
+  for (const std::string& sigma : r.sigmas) {
+    fmt::print("# {}\n", sigma);
+  }
+  for (const std::string& unknown : r.unknown) {
+    fmt::print("# unknown: {}; this motion cannot tell\n", unknown);
+  }
+  if (!r.values.empty()) {
+    PrintSection(a, r.values);
+  }
+  return config::kDone;
+}
+
 int WriteBoard(const CalibrateArguments& a) {
   constexpr int kSquarePx = 120;
   constexpr int kMarginPx = 60;
@@ -275,6 +306,7 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
       "  fovea calibrate intrinsics boards/ --board 8x5 --square 0.03 --marker 0.022 --out camera.toml\n"
       "  fovea calibrate hand-eye boards/ --board 9x6 --square 0.025 --camera camera.toml\n"
       "  fovea calibrate hand-eye boards/ --board 9x6 --square 0.025 --camera camera.toml --write cell.toml\n"
+      "  fovea calibrate from-log out/ball-exciting\n"
       "Exit: 0 done, 2 wrong usage or input.");
   CLI::App* focal = calibrate->add_subcommand(
       "focal", "calibrate the focal length from views of one disc or ball, each --delta-z further away");
@@ -301,14 +333,17 @@ CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& a) {
   }
   board->add_option("--out", a.out, "the picture to write: .png")->required();
   intrinsics->add_option("--out", a.out, "the camera file to write");
-  for (CLI::App* command : {focal, intrinsics, hand_eye}) {
+  CLI::App* from_log = calibrate->add_subcommand(
+      "from-log", "refine mount, focal length and latency from the log of a run with a still target");
+  from_log->add_option("log", a.log, "a log.mcap, or the folder of a run")->required();
+  for (CLI::App* command : {focal, intrinsics, hand_eye, from_log}) {
     command->add_option(
         "--write", a.write,
         "write the result into [camera] of this configuration (.toml); the rest is unchanged");
   }
   hand_eye->add_option("--camera", a.camera_file, "camera file from `calibrate intrinsics --out`")
       ->required();
-  for (CLI::App* command : {focal, intrinsics, hand_eye}) {
+  for (CLI::App* command : {focal, intrinsics, hand_eye, from_log}) {
     command->add_flag("--json", a.json, "print JSON");
   }
   return calibrate;
@@ -321,6 +356,9 @@ int Calibrate(const CLI::App& calibrate, CalibrateArguments& a) {
     const std::string name = calibrate.get_subcommands().front()->get_name();
     if (name == "focal") {
       return Focal(a);
+    }
+    if (name == "from-log") {
+      return FromLog(a);
     }
     return name == "board" ? WriteBoard(a) : name == "intrinsics" ? FindIntrinsics(a) : HandEye(a);
   } catch (const calibration::CalibrationError& error) {

@@ -20,12 +20,13 @@ struct CalibrateArguments {
   config::BoardFlags board_flags;
   calibration::Board board;  // made from board_flags
   std::string camera_file;
+  std::string log;  // from-log
   std::string out;
   std::string write;  // a configuration to write the result into; empty: none
   bool json = false;
 };
 
-// Adds the subcommand, which has four subcommands itself.
+// Adds the subcommand, which has five subcommands itself.
 CLI::App* AddCalibrate(CLI::App& app, CalibrateArguments& arguments);
 
 // Runs the given one of them; returns the program's exit code. Throws config::InputError.

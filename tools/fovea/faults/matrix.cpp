@@ -17,6 +17,16 @@ constexpr double kGoalS = 0.8;  // a run goes on at least this long after the go
 constexpr double kStopS = 1.5;  // time that a run in Fault gets after the fault; safety.brake_after_s is 0.3
 constexpr double kLongerS = 6.0;  // extra time for a run that is still on its way at its end
 
+// The entries of a summary that the judge needs. The rest is dropped.
+nlohmann::json Excerpt(const nlohmann::json& summary) {
+  nlohmann::json excerpt;
+  for (const char* key : {"verdict", "modes", "injected", "end", "limits", "violations", "unwanted_motion",
+                          "contact_ticks", "sim_time_s", "path_error_mm_max"}) {
+    excerpt[key] = summary.at(key);
+  }
+  return excerpt;
+}
+
 // End of a run with a fault from `onset_s` on for `lasts_s`. A fault without end lasts as long as the run.
 double EndFor(const RunMode& mode, Stage stage, double goal_s, double onset_s, double lasts_s) {
   const bool forever = lasts_s >= kForever;
@@ -130,7 +140,9 @@ Matrix RunMatrix(const MatrixOptions& options) {
     }
     return jobs;
   };
-  Runs runs(options.out, options.seed, options.jobs, options.resume);
+  Runs runs(options.out, options.seed, options.jobs, options.resume,
+            {"fovea atlas --faults", false,
+             [](const Job&, const nlohmann::json& summary, const auto&) { return Excerpt(summary); }});
   {
     atlas::Progress progress("without a fault", static_cast<int>(undisturbed.size()));
     runs.Execute(jobs_of(undisturbed), progress);

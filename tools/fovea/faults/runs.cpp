@@ -5,6 +5,7 @@
 
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "firmware/host/build_info.hpp"
 #include "firmware/host/config/input_error.hpp"
@@ -19,16 +20,6 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::chrono::seconds kRunLimit{900};  // of wall time; a run takes some seconds
-
-// The entries of a summary that the judge needs. The rest is dropped.
-json Excerpt(const json& summary) {
-  json excerpt;
-  for (const char* key : {"verdict", "modes", "injected", "end", "limits", "violations", "unwanted_motion",
-                          "contact_ticks", "sim_time_s", "path_error_mm_max"}) {
-    excerpt[key] = summary.at(key);
-  }
-  return excerpt;
-}
 
 // Whether `row` is the result of `job` with this servo.
 bool IsOf(const json& row, const Job& job, int seed) {
@@ -47,11 +38,12 @@ std::string CommandOf(const Job& job, int seed) {
   return command;
 }
 
-Runs::Runs(const fs::path& folder, int seed, int jobs, bool resume)
-    : folder_(folder),
+Runs::Runs(const fs::path& folder, int seed, int jobs, bool resume, RunKind kind)
+    : kind_(std::move(kind)),
+      folder_(folder),
       seed_(seed),
       jobs_(static_cast<std::size_t>(jobs)),
-      simulator_(bench::SimulatorBeside("fovea atlas --faults")) {
+      simulator_(bench::SimulatorBeside(kind_.program)) {
   std::error_code error;
   fs::create_directories(folder_ / "runs", error);
   if (error) {
@@ -103,8 +95,11 @@ void Runs::Execute(const std::vector<Job>& jobs, atlas::Progress& progress) {
     for (; next < left.size() && children_.running() < jobs_; ++next) {
       const Job& job = *left[next];
       std::vector<std::string> command{
-          simulator_,    "run",    job.scenario, "--seed",          std::to_string(seed_),
-          "--no-report", "--json", "--out",      File(job.name, "")};
+          simulator_, "run",   job.scenario,      "--seed", std::to_string(seed_),
+          "--json",   "--out", File(job.name, "")};
+      if (!kind_.keeps_log) {
+        command.emplace_back("--no-report");
+      }
       for (const std::string& assignment : job.assignments) {
         command.emplace_back("--set");
         command.push_back(assignment);
@@ -127,7 +122,8 @@ void Runs::Finish(const Job& job, int exit_code) {
   json row{{"run", job.name}, {"scenario", job.scenario},   {"set", job.assignments},
            {"seed", seed_},   {"servo", kServoLibraryHash}, {"summary", nullptr}};
   if (exit_code == config::kDone || exit_code == config::kGoalMissed) {
-    row["summary"] = Excerpt(json::parse(atlas::Content(File(job.name, ".json"))));
+    const json summary = json::parse(atlas::Content(File(job.name, ".json")));
+    row["summary"] = kind_.excerpt(job, summary, File(job.name, ""));
   } else if (exit_code >= 0) {
     throw std::runtime_error(
         fmt::format("{}: {}", job.name, atlas::FirstLine(atlas::Content(File(job.name, ".txt")))));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The runs of a fault matrix: each is a simulator process, and its summary is kept on disk.
+// The runs of an atlas: each is a simulator process, and an excerpt of what it wrote is kept on disk.
 #pragma once
 
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -26,16 +27,26 @@ struct Job {
 // The shell command that repeats `job`.
 std::string CommandOf(const Job& job, int seed);
 
+// What is done with the runs.
+struct RunKind {
+  std::string program;     // for messages
+  bool keeps_log = false;  // until the excerpt is made
+  // What is kept of a run, from its summary and its folder.
+  std::function<nlohmann::json(const Job& job, const nlohmann::json& summary,
+                               const std::filesystem::path& folder)>
+      excerpt;
+};
+
 class Runs {
  public:
   // Keeps its rows in `folder`/rows.jsonl. With `resume`, existing rows with the same servo, seed, scenario
   // and assignments count as done. InputError: the file cannot be written.
-  Runs(const std::filesystem::path& folder, int seed, int jobs, bool resume);
+  Runs(const std::filesystem::path& folder, int seed, int jobs, bool resume, RunKind kind);
 
   // Runs the jobs that are not done yet. std::runtime_error: the simulator refuses one.
   void Execute(const std::vector<Job>& jobs, atlas::Progress& progress);
 
-  // The summary of a run; null when the run did not finish.
+  // The excerpt of a run; null when the run did not finish.
   [[nodiscard]] const nlohmann::json& SummaryOf(const std::string& name) const;
 
  private:
@@ -43,6 +54,7 @@ class Runs {
   void Finish(const Job& job, int exit_code);
   [[nodiscard]] std::filesystem::path File(const std::string& name, const char* ending) const;
 
+  RunKind kind_;
   std::filesystem::path folder_;
   std::optional<config::FolderLock> lock_;
   int seed_;

@@ -49,9 +49,9 @@ std::string Row(const Matrix& matrix) {
 std::string JointRow(const model::Joint& joint) {
   std::string text = fmt::format("    {{{}, {{{}}}, {{{}}}, {{", joint.type == model::JointType::kPrismatic,
                                  Row(joint.X_PJ.R), Row(joint.X_PJ.p));
-  const std::vector<double> values{joint.q_min,    joint.q_max,   joint.dq_max,   joint.ddq_max,
-                                   joint.dddq_max, joint.tau_max, joint.dtau_max, joint.viscous,
-                                   joint.coulomb,  joint.spring};
+  const std::vector<double> values{joint.q_min,    joint.q_max,         joint.dq_max,   joint.ddq_max,
+                                   joint.dddq_max, joint.tau_max,       joint.dtau_max, joint.viscous,
+                                   joint.coulomb,  joint.rotor_inertia, joint.spring};
   for (std::size_t i = 0; i < values.size(); ++i) {
     text += (i == 0 ? "" : ", ") + Number(values[i]);
   }
@@ -93,7 +93,7 @@ std::string EmitModel(const robots::Robot& robot) {
       "  bool prismatic;\n"
       "  double R_PJ[9];  // row by row\n"
       "  double p_PJ[3];\n"
-      "  double limits[10];  // q_min, q_max, dq, ddq, dddq, tau, dtau; viscous, coulomb, spring\n"
+      "  double limits[11];  // q_min, q_max, dq, ddq, dddq, tau, dtau; viscous, coulomb, rotor, spring\n"
       "  double mass;\n"
       "  double p_LiCom[3];\n"
       "  double I_Com_Li[9];  // row by row\n"
@@ -140,7 +140,8 @@ std::string EmitModel(const robots::Robot& robot) {
       "    joint.dtau_max = data.limits[6];\n"
       "    joint.viscous = data.limits[7];\n"
       "    joint.coulomb = data.limits[8];\n"
-      "    joint.spring = data.limits[9];\n"
+      "    joint.rotor_inertia = data.limits[9];\n"
+      "    joint.spring = data.limits[10];\n"
       "    arm.links[k] = {{data.mass, Eigen::Map<const model::Vec3>(data.p_LiCom),\n"
       "                    Eigen::Map<const RowMajor>(data.I_Com_Li)}};\n"
       "    arm.q_ready[k] = data.q_ready;\n"

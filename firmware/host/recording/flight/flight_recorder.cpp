@@ -18,6 +18,11 @@ void TakeDemand(const From& from, link::Demand& to) noexcept {
   to.change_law = from.change_law;
   to.law = from.law;
   to.tuning = from.tuning;
+  if (from.plan.IsThere()) {
+    to.plan = from.plan;
+  } else {
+    to.plan.count = -1;
+  }
 }
 
 }  // namespace

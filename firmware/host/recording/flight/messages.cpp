@@ -148,6 +148,7 @@ task::ServoInputs InputsOf(const log::Tick& message, const hal::FeatureMeasureme
     inputs.change_law = demand.change_law;
     inputs.law = demand.law;
     inputs.tuning = demand.tuning;
+    inputs.plan = demand.plan;
   }
   return inputs;
 }

@@ -96,9 +96,10 @@ void RecordHash::Add(const hal::TickRecord& r) {
     write.All(r.tuning.result, r.tuning.key, r.tuning.before, r.tuning.asked);
   }
   write.All(r.intake, r.mode, r.hold_reason, r.fault, r.fault_joint, r.limits_active);
-  write.All(r.target_known, r.feature_age_ns, r.p_BO, r.q_BO, r.v_BO);
+  write.All(r.target_known, r.feature_age_ns, r.p_BO, r.q_BO, r.v_BO, r.stamp_late_s, r.stamp_late_sigma_s);
   write.All(r.dim, r.s, r.s_star, r.e, r.V_BC_C_cmd);
-  write.All(r.q_cmd, r.dq_cmd, r.ddq_cmd);
+  write.All(r.way.way, r.way.event, r.way.plans_asked, r.way.tries, r.way.outcome, r.way.normal_B);
+  write.All(r.q_cmd, r.dq_cmd, r.ddq_cmd, r.tau_ext);
   write.All(r.command.state_sequence, r.command.num_joints, r.command.tau_cmd, r.command.engage_brakes);
   digest_->Add(bytes_);
 }
@@ -116,7 +117,7 @@ std::string HashOfModel(const model::ArmModel& model) {
     write.Matrix(j.X_PJ.R);
     write.Matrix(j.X_PJ.p);
     write.All(j.q_min, j.q_max, j.dq_max, j.ddq_max, j.dddq_max, j.tau_max, j.dtau_max, j.viscous, j.coulomb,
-              j.spring);
+              j.rotor_inertia, j.spring);
     write(model.links[i].mass);
     write.Matrix(model.links[i].p_LiCom);
     write.Matrix(model.links[i].I_Com_Li);

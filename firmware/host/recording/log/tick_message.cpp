@@ -10,6 +10,7 @@
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/config/tuning.hpp"
 #include "firmware/core/features/target_traits.hpp"
+#include "firmware/core/trajectory/plan.hpp"
 #include "fovea/tick.pb.h"
 
 namespace fovea::log {
@@ -45,6 +46,10 @@ static_assert(static_cast<int>(hal::Intake::kOutlier) == OUTLIER && hal::kNumInt
 static_assert(static_cast<int>(hal::TuningResult::kInconsistent) == Tuning::INCONSISTENT &&
               hal::kNumTuningResults == Tuning::Result_ARRAYSIZE);
 
+static_assert(static_cast<int>(hal::Way::kPlan) == Way::PLAN && hal::kNumWays == Way::Kind_ARRAYSIZE);
+static_assert(static_cast<int>(hal::PlanEvent::kDone) == Way::DONE &&
+              hal::kNumPlanEvents == Way::Event_ARRAYSIZE);
+
 void PutTuning(const hal::TuningNote& note, Tuning& m) {
   m.set_result(Same<Tuning::Result>(note.result));
   m.set_number(note.key);
@@ -57,6 +62,26 @@ void PutTuning(const hal::TuningNote& note, Tuning& m) {
       m.set_unit(field.unit);
     }
   });
+}
+
+void PutWay(const hal::WayNote& note, Way& m) {
+  m.set_kind(Same<Way::Kind>(note.way));
+  m.set_event(Same<Way::Event>(note.event));
+  m.set_plans_asked(note.plans_asked);
+  m.set_tries(note.tries);
+  m.set_outcome(note.outcome);
+  Put(note.normal_B, 3, *m.mutable_normal_b());
+}
+
+hal::WayNote WayOf(const Way& m) {
+  hal::WayNote note;
+  note.way = Same<hal::Way>(m.kind());
+  note.event = Same<hal::PlanEvent>(m.event());
+  note.plans_asked = m.plans_asked();
+  note.tries = m.tries();
+  note.outcome = m.outcome();
+  Get(m.normal_b(), note.normal_B);
+  return note;
 }
 
 }  // namespace
@@ -89,14 +114,18 @@ void ToMessage(const hal::TickRecord& r, Tick& m) {
   Put(r.p_BO, 3, *m.mutable_p_bo());
   Put(r.q_BO, 4, *m.mutable_q_bo());
   Put(r.v_BO, 3, *m.mutable_v_bo());
+  m.set_stamp_late_s(r.stamp_late_s);
+  m.set_stamp_late_sigma_s(r.stamp_late_sigma_s);
   Put(r.s, r.dim, *m.mutable_s());
   Put(r.s_star, r.dim, *m.mutable_s_star());
   Put(r.e, r.dim, *m.mutable_e());
   Put(r.V_BC_C_cmd, 6, *m.mutable_v_bc_c_cmd());
+  PutWay(r.way, *m.mutable_way());
   const int commanded = r.command.num_joints;
   Put(r.q_cmd, commanded, *m.mutable_q_cmd());
   Put(r.dq_cmd, commanded, *m.mutable_dq_cmd());
   Put(r.ddq_cmd, commanded, *m.mutable_ddq_cmd());
+  Put(r.tau_ext, commanded, *m.mutable_tau_ext());
   ArmCommand& command = *m.mutable_command();
   command.set_state_sequence(r.command.state_sequence);
   Put(r.command.tau_cmd, commanded, *command.mutable_tau());
@@ -194,14 +223,18 @@ hal::TickRecord FromMessage(const Tick& m, const hal::FeatureMeasurement& featur
   Get(m.p_bo(), r.p_BO);
   Get(m.q_bo(), r.q_BO);
   Get(m.v_bo(), r.v_BO);
+  r.stamp_late_s = m.stamp_late_s();
+  r.stamp_late_sigma_s = m.stamp_late_sigma_s();
   r.dim = m.s_size();
   Get(m.s(), r.s);
   Get(m.s_star(), r.s_star);
   Get(m.e(), r.e);
   Get(m.v_bc_c_cmd(), r.V_BC_C_cmd);
+  r.way = WayOf(m.way());
   Get(m.q_cmd(), r.q_cmd);
   Get(m.dq_cmd(), r.dq_cmd);
   Get(m.ddq_cmd(), r.ddq_cmd);
+  Get(m.tau_ext(), r.tau_ext);
   r.command.state_sequence = m.command().state_sequence();
   r.command.num_joints = m.command().tau_size();
   Get(m.command().tau(), r.command.tau_cmd);
@@ -215,8 +248,18 @@ std::string InWords(const Tuning& tuning) {
   const auto result = Same<hal::TuningResult>(tuning.result());
   const std::string refused =
       result == hal::TuningResult::kTaken ? "" : fmt::format(", refused: {}", hal::Words(result));
-  return fmt::format("{} {:g} -> {:g}{}, by the operator{}", key, tuning.before(), tuning.asked(), unit,
-                     refused);
+  return fmt::format("{} {:g} -> {:g}{}, in motion{}", key, tuning.before(), tuning.asked(), unit, refused);
+}
+
+std::string InWords(const Way& way) {
+  const auto event = Same<hal::PlanEvent>(way.event());
+  if (event == hal::PlanEvent::kNone) {
+    return "";
+  }
+  const auto outcome = static_cast<std::size_t>(way.outcome());
+  const bool told = event == hal::PlanEvent::kNoMotion && outcome < trajectory::kPlanOutcomeWords.size();
+  return fmt::format("{}{}{}", hal::Words(event), told ? ": " : "",
+                     told ? trajectory::kPlanOutcomeWords[outcome] : "");
 }
 
 }  // namespace fovea::log

@@ -47,6 +47,15 @@ void TickWriter::WriteEvents(const hal::TickRecord& record, LogFile& file) const
     line.set_message(InWords(tick_.tuning()));
     file.Write(kEventTopic, record.stamp_ns, line);
   }
+  if (const std::string text = InWords(tick_.way()); !text.empty()) {
+    foxglove::Log line;
+    SetStamp(record.stamp_ns, *line.mutable_timestamp());
+    line.set_name("servo");
+    const bool alone = record.way.event == hal::PlanEvent::kLate;
+    line.set_level(alone ? foxglove::Log::WARNING : foxglove::Log::INFO);
+    line.set_message(text);
+    file.Write(kEventTopic, record.stamp_ns, line);
+  }
   if (!is_first_ && record.mode == mode_ && record.hold_reason == reason_) {
     return;
   }

@@ -33,7 +33,7 @@ Fovea.decode = function (run) {
   run.ticks = {};
   for (const key of ["t_s", "error_px", "error_mm", "predicted_px", "path_error_mm"])
     run.ticks[key] = Fovea.floats(ticks[key]);
-  for (const key of ["q", "dq", "tau", "tau_meas", "twist_cmd", "twist_meas", "e"])
+  for (const key of ["q", "dq", "tau", "tau_meas", "tau_ext", "twist_cmd", "twist_meas", "e"])
     run.ticks[key] = list(ticks[key]).map(Fovea.floats);
   const measured = run.measured || {};
   run.measured = {};

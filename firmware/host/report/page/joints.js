@@ -15,6 +15,12 @@ Fovea.joints = (function () {
       unit: ["N m", "N"],
     },
     tau_meas: { title: "measured torque", low: (j) => -j.tau_max, high: (j) => j.tau_max, unit: ["N m", "N"] },
+    tau_ext: {
+      title: "external torque, as the servo observes it",
+      low: (j) => -j.tau_max,
+      high: (j) => j.tau_max,
+      unit: ["N m", "N"],
+    },
   };
 
   const limited = (kind, joint) =>
@@ -201,23 +207,18 @@ Fovea.joints = (function () {
       runs[0].joints.map((joint, i) => el("option", { value: i, text: `joint ${i + 1}: ${joint.name}` })),
     );
     bar.append(pick);
-    const measured = runs.some((run) => run.ticks.tau_meas.some(hasNumbers));
-    const commanded = runs.some((run) => run.ticks.tau.some(hasNumbers));
-    if (!commanded && measured) torque = "tau_meas";
-    if (measured && commanded)
+    const torques = [
+      ["tau", "Commanded torque"],
+      ["tau_meas", "Measured"],
+      ["tau_ext", "External"],
+    ].filter(([key]) => runs.some((run) => run.ticks[key].some(hasNumbers)));
+    if (torques.length) torque = torques[0][0];
+    if (torques.length > 1)
       bar.append(
-        Fovea.choice(
-          "Which torque",
-          [
-            ["tau", "Commanded torque"],
-            ["tau_meas", "Measured"],
-          ],
-          "tau",
-          (key) => {
-            torque = key;
-            redraw();
-          },
-        ),
+        Fovea.choice("Which torque", torques, torque, (key) => {
+          torque = key;
+          redraw();
+        }),
       );
     const box = el("input", {
       type: "checkbox",

@@ -14,6 +14,7 @@
     ["joints", "joints"],
     ["timeline", "timeline"],
     ["free", "freePlot"],
+    ["beliefs", "beliefs"],
     ["ticks", "ticks"],
     ["config", "config"],
     ["about", "footer"],
@@ -52,6 +53,7 @@
     }
     if (!Fovea.runs.some((run) => run.theory)) dropSection("theory");
     if (!Fovea.runs.some((run) => run.has_eye)) ["eye", "error", "components", "features"].forEach(dropSection);
+    if (!Fovea.runs.some(Fovea.beliefs.isShown)) dropSection("beliefs");
     if (!Fovea.runs.some(Fovea.pathError.isShown)) dropSection("way");
     Fovea.clock.duration = Math.max(0.001, ...Fovea.runs.map((run) => run.duration_s));
     Fovea.clock.span = [0, Fovea.clock.duration];

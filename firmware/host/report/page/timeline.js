@@ -79,6 +79,7 @@ Fovea.timeline = (function () {
   function asTable(run) {
     const events = run.modes
       .map((m) => [m.t_s, "mode", modeSay(m)])
+      .concat(run.ways.map((w) => [w.t_s, "way", w.why || words(w.way)]))
       .concat(run.faults.map((f) => [f.t_s, "fault", [words(f.name), f.key, f.detail].filter(Boolean).join(", ")]))
       .concat(run.operator.map((o) => [o.t_s, "operator", o.words]))
       .concat(Fovea.bands.injectedOf(run).map((f) => [f.from, "injected", `${f.name}, until ${f.to.toFixed(3)} s`]))

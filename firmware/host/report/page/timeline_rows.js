@@ -16,6 +16,20 @@ Fovea.timelineRows = (function () {
       say: modeSay(m),
     }));
 
+  // The parts of the way to the target that are not the visual law's. The colours are those of modes in which the arm
+  // stands, and follows a commanded motion.
+  const WAYS = {
+    await_plan: { kind: "hold", label: "awaits a plan" },
+    plan: { kind: "move", label: "follows a plan" },
+  };
+  const spansOfWays = (run) =>
+    run.ways.flatMap((change, i) => {
+      const to = i + 1 < run.ways.length ? run.ways[i + 1].t_s : run.duration_s;
+      const way = WAYS[change.way];
+      const why = change.why ? ` (${change.why})` : "";
+      return way ? [{ from: change.t_s, to, ...way, say: `the arm ${way.label}${why}` }] : [];
+    });
+
   const spansOfInjected = (run) =>
     injectedOf(run).map((f) => ({
       from: f.from,
@@ -53,6 +67,7 @@ Fovea.timelineRows = (function () {
     const add = (name, of, more) =>
       runs.forEach((run) => rows.push({ name: name + suffix(run), spans: of(run), empty: "none", ...more }));
     add("mode", spansOfModes, { empty: "not in the log" });
+    add("way to the target", spansOfWays, { empty: "by the visual law alone" });
     for (const run of runs) {
       const names = Array.from(new Set(injectedOf(run).map((f) => f.name))).join(", ");
       rows.push({
@@ -102,6 +117,7 @@ Fovea.timelineRows = (function () {
         .pop();
       const parts = [
         mode ? mode.say : "no mode",
+        ...at(spansOfWays(run)),
         ...at(spansOfInjected(run)),
         ...at(spansOfLost(run)),
         ...at(spansOfNotFound(run)),

@@ -3,8 +3,8 @@
 
 #include "firmware/targets/linux/cameras/camera_driver.hpp"
 #include "firmware/targets/linux/hw_config.hpp"
-#include "fovea/camera/recorded_camera.hpp"
 #include "fovea/hal/types.hpp"
+#include "fovea/recorded/recorded_camera.hpp"
 
 namespace fovea::hw {
 namespace {
@@ -12,9 +12,9 @@ namespace {
 constexpr double kRecordedRateHz = 30.0;  // of a folder, if camera.rate_hz is 0
 constexpr double kRecordedExposureMs = 5.0;
 
-camera::RecordedCameraConfig MakeRecordedConfig(const HwConfig& config, std::int64_t start_ns) {
+recorded::RecordedCameraConfig MakeRecordedConfig(const HwConfig& config, std::int64_t start_ns) {
   const auto& camera = config.camera;
-  camera::RecordedCameraConfig out;
+  recorded::RecordedCameraConfig out;
   out.path = camera.device;
   out.rate_hz = camera.rate_hz > 0.0 ? camera.rate_hz : kRecordedRateHz;
   out.exposure_ns =
@@ -35,7 +35,7 @@ class Recorded final : public CameraDriver {
 
  private:
   const std::string path_;
-  camera::RecordedCamera camera_;
+  recorded::RecordedCamera camera_;
 };
 
 }  // namespace

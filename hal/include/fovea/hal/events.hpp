@@ -60,6 +60,28 @@ enum class Intake : std::uint8_t {
 };
 inline constexpr int kNumIntakes = 9;
 
+// How the arm goes to the target.
+enum class Way : std::uint8_t {
+  kLaw,        // by the visual law
+  kAwaitPlan,  // it stops, and stands until a plan comes
+  kPlan,       // along a plan
+};
+inline constexpr int kNumWays = 3;
+
+// What happened to a plan in a tick.
+enum class PlanEvent : std::uint8_t {
+  kNone,
+  kAsked,        // the arm stands, and a plan is asked for from its reference
+  kTaken,        // a plan came, and the arm follows it
+  kNoMotion,     // the planner found none: the law goes on alone
+  kStale,        // a plan came that is not for this start and target: it is refused
+  kLate,         // none came in time: the law goes on alone
+  kHeld,         // limits held the arm up on its plan: a new one is asked for
+  kTargetMoved,  // the target is elsewhere than planned: a new one is asked for
+  kDone,         // the plan's end is reached: the law goes on
+};
+inline constexpr int kNumPlanEvents = 9;
+
 // The answer to a request to change a key in motion.
 enum class TuningResult : std::uint8_t {
   kNone,        // no request in this tick
@@ -99,6 +121,8 @@ const char* Name(Fault fault) noexcept;
 const char* Name(Limit limit) noexcept;
 const char* Name(Intake intake) noexcept;
 const char* Name(TuningResult result) noexcept;
+const char* Name(Way way) noexcept;
+const char* Name(PlanEvent event) noexcept;
 
 // The same for a person, e.g. "the target was lost"; static storage. An intake's words describe a
 // measurement: "3 rejected as outlier".
@@ -106,6 +130,7 @@ const char* Words(HoldReason reason) noexcept;
 const char* Words(Fault fault) noexcept;
 const char* Words(Intake intake) noexcept;
 const char* Words(TuningResult result) noexcept;
+const char* Words(PlanEvent event) noexcept;
 
 // The configuration key that sets the threshold, "" when none does; static storage.
 const char* Key(Fault fault) noexcept;

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 
+#include "fovea/hal/mailbox.hpp"
 #include "fovea/hal/types.hpp"
 
 namespace fovea::hal {
@@ -61,10 +61,7 @@ class FeatureSink {
   ~FeatureSink() = default;
 };
 
-// Hand-over from one vision thread (Put) to one servo thread (Take): wait-free on both sides, the newest
-// measurement wins, none is ever seen half-written.
-//
-// Three slots: one is being written, one is being read, the third changes hands by one atomic exchange.
+// Hand-over from one vision thread (Put) to one servo thread (Take).
 class FeatureMailbox final : public FeatureSink {
  public:
   FeatureMailbox() noexcept = default;
@@ -77,13 +74,7 @@ class FeatureMailbox final : public FeatureSink {
   [[nodiscard]] bool Take(FeatureMeasurement& measurement) noexcept;
 
  private:
-  static constexpr std::uint8_t kFresh = 0x80;  // the slot in the middle was not read yet
-  static constexpr std::uint8_t kSlotMask = 0x03;
-
-  std::array<FeatureMeasurement, 3> slots_{};
-  std::uint8_t write_slot_ = 0;  // the writer's own
-  alignas(64) std::atomic<std::uint8_t> middle_{1};
-  alignas(64) std::uint8_t read_slot_ = 2;  // the reader's own
+  Mailbox<FeatureMeasurement> box_;
 };
 
 }  // namespace fovea::hal

@@ -20,6 +20,16 @@ struct TuningNote {
   double asked = 0.0;     // the value that it shall have
 };
 
+// How the arm goes to the target, and what it asks of the planner beside the tick.
+struct WayNote {
+  Way way = Way::kLaw;
+  PlanEvent event = PlanEvent::kNone;
+  std::int32_t plans_asked = 0;      // so far; one more: a plan is asked for from this tick's reference
+  std::int32_t tries = 0;            // of them, since the goal was last reached
+  std::int32_t outcome = 0;          // of the last plan that came: trajectory::PlanOutcome
+  std::array<double, 3> normal_B{};  // a disc's axis, away from the camera; 0: none is seen
+};
+
 // Everything that a person needs to understand one tick. Grouped by the stage that computes it.
 struct TickRecord {
   // The tick
@@ -48,6 +58,8 @@ struct TickRecord {
   std::array<double, 3> p_BO{};                    // target's centre [m]
   std::array<double, 4> q_BO{1.0, 0.0, 0.0, 0.0};  // its orientation (w, x, y, z); identity if none is seen
   std::array<double, 3> v_BO{};                    // its velocity [m/s]
+  double stamp_late_s = 0.0;                       // pictures seem to be this much older than their stamps
+  double stamp_late_sigma_s = 0.0;                 // standard deviation of that
 
   // Visual law, units as the feature's kind says
   std::int32_t dim = 0;
@@ -56,10 +68,13 @@ struct TickRecord {
   std::array<double, kMaxFeatureDim> e{};       // [dim] s_star - s
   std::array<double, 6> V_BC_C_cmd{};           // camera's twist from the reference [m/s, rad/s]
 
+  WayNote way;
+
   // Reference after the guard
   JointArray q_cmd{};
   JointArray dq_cmd{};
   JointArray ddq_cmd{};
+  JointArray tau_ext{};  // external torques on the joints, from the momentum of the believed arm [Nm, N]
 
   // Output
   ArmCommand command;

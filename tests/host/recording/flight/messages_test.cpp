@@ -19,17 +19,22 @@ config::ServoConfig SomeConfig() {
   config.law.unreachable_progress = 0.07;
   config.guard.obstacles.num_planes = 2;
   config.safety.carried_torque_fraction = 0.0;
+  config.safety.contact_sudden_fraction = 0.3;
+  config.load.offset = 0.3;
   config.arm.joints[6].spring = 4.5;
+  config.arm.joints[6].rotor_inertia = 0.2;
   return config;
 }
 
 TEST(ServoConfigurationTest, RoundTripKeepsEveryField) {
   const log::ServoConfiguration message = ToMessage(SomeConfig());
-  EXPECT_EQ(message.sections_size(), 10);
+  EXPECT_EQ(message.sections_size(), 11);
   const config::ServoConfig back = FromMessage(message);
   EXPECT_EQ(ToMessage(back).SerializeAsString(), message.SerializeAsString());
   EXPECT_EQ(back.law.lambda, 1.0 / 3.0);
+  EXPECT_EQ(back.load.offset, 0.3);
   EXPECT_EQ(back.arm.joints[6].spring, 4.5);
+  EXPECT_EQ(back.arm.joints[6].rotor_inertia, 0.2);
 }
 
 TEST(ServoConfigurationTest, FieldMissingFromALogTakesItsDefault) {
@@ -37,14 +42,20 @@ TEST(ServoConfigurationTest, FieldMissingFromALogTakesItsDefault) {
   for (auto& section : *message.mutable_sections()) {
     std::string& fields = *section.mutable_fields();
     if (section.name() == "law") {
-      fields.resize(fields.size() - sizeof(double));
+      fields.resize(fields.size() - sizeof(double) - sizeof(bool));
     } else if (section.name() == "safety") {
       fields.resize(fields.size() - sizeof(double));
+    } else if (section.name() == "arm") {
+      fields.resize(fields.size() - model::kMaxJoints * sizeof(double));
     }
   }
   const config::ServoConfig back = FromMessage(message);
+  EXPECT_EQ(back.arm.joints[6].spring, 4.5);
+  EXPECT_EQ(back.arm.joints[6].rotor_inertia, 0.0);
+  EXPECT_EQ(back.law.plans, config::LawConfig{}.plans);
   EXPECT_EQ(back.law.unreachable_progress, config::LawConfig{}.unreachable_progress);
-  EXPECT_EQ(back.safety.carried_torque_fraction, config::SafetyConfig{}.carried_torque_fraction);
+  EXPECT_EQ(back.safety.contact_sudden_fraction, config::SafetyConfig{}.contact_sudden_fraction);
+  EXPECT_EQ(back.safety.carried_torque_fraction, 0.0);
   EXPECT_EQ(back.law.lambda, 1.0 / 3.0);
 }
 

@@ -77,7 +77,7 @@ hal::TickRecord RandomRecord(Random& random) {
   r.arm.num_joints = r.command.num_joints = static_cast<std::int32_t>(random.Whole(hal::kMaxJoints));
   const int n = r.arm.num_joints;
   for (auto* values : {&r.arm.q, &r.arm.dq, &r.arm.tau_meas, &r.arm.tau_applied, &r.q_cmd, &r.dq_cmd,
-                       &r.ddq_cmd, &r.command.tau_cmd}) {
+                       &r.ddq_cmd, &r.tau_ext, &r.command.tau_cmd}) {
     random.Fill(*values, n);
   }
   r.has_feature = random.Whole(1) == 1;
@@ -98,11 +98,19 @@ hal::TickRecord RandomRecord(Random& random) {
   random.Fill(r.p_BO, 3);
   random.Fill(r.q_BO, 4);
   random.Fill(r.v_BO, 3);
+  r.stamp_late_s = 1e-3 * static_cast<double>(random.Whole(60)) - 0.03;
+  r.stamp_late_sigma_s = 1e-3 * static_cast<double>(random.Whole(60));
   r.dim = static_cast<std::int32_t>(random.Whole(hal::kMaxFeatureDim));
   random.Fill(r.s, r.dim);
   random.Fill(r.s_star, r.dim);
   random.Fill(r.e, r.dim);
   random.Fill(r.V_BC_C_cmd, 6);
+  r.way.way = static_cast<hal::Way>(random.Whole(hal::kNumWays - 1));
+  r.way.event = static_cast<hal::PlanEvent>(random.Whole(hal::kNumPlanEvents - 1));
+  r.way.plans_asked = static_cast<std::int32_t>(random.Whole(1000));
+  r.way.tries = static_cast<std::int32_t>(random.Whole(10));
+  r.way.outcome = static_cast<std::int32_t>(random.Whole(20)) - 5;
+  random.Fill(r.way.normal_B, 3);
   r.command.state_sequence = static_cast<std::uint64_t>(random.Whole(1'000'000));
   r.command.engage_brakes = random.Whole(1) == 1;
   return r;
@@ -132,16 +140,35 @@ TEST(TickMessageTest, TuningNamesItsKeyAndTheRefusal) {
     ToMessage(record, tick);
     return InWords(tick.tuning());
   };
-  EXPECT_EQ(words({hal::TuningResult::kTaken, 0, 2.0, 4.0}), "servo.lambda 2 -> 4 1/s, by the operator");
-  EXPECT_EQ(words({hal::TuningResult::kTaken, 3, 0.05, 0.125}),
-            "servo.damping 0.05 -> 0.125, by the operator");
+  EXPECT_EQ(words({hal::TuningResult::kTaken, 0, 2.0, 4.0}), "servo.lambda 2 -> 4 1/s, in motion");
+  EXPECT_EQ(words({hal::TuningResult::kTaken, 3, 0.05, 0.125}), "servo.damping 0.05 -> 0.125, in motion");
   EXPECT_EQ(words({hal::TuningResult::kOutOfRange, 0, 2.0, 40.0}),
-            "servo.lambda 2 -> 40 1/s, by the operator, refused: the value is outside the key's range");
+            "servo.lambda 2 -> 40 1/s, in motion, refused: the value is outside the key's range");
   EXPECT_EQ(words({hal::TuningResult::kUnknownKey, 15, 0.0, 4.0}),
-            "key 15 0 -> 4, by the operator, refused: no such key changes in motion");
+            "key 15 0 -> 4, in motion, refused: no such key changes in motion");
   Tick tick;
   ToMessage(hal::TickRecord{}, tick);
   EXPECT_FALSE(tick.has_tuning()) << "a tick without a request is as in older logs";
+}
+
+TEST(TickMessageTest, WayTellsWhatHappenedToAPlan) {
+  const auto words = [](hal::PlanEvent event, int outcome) {
+    hal::TickRecord record;
+    record.way.event = event;
+    record.way.outcome = outcome;
+    Tick tick;
+    ToMessage(record, tick);
+    return InWords(tick.way());
+  };
+  EXPECT_EQ(words(hal::PlanEvent::kNone, 6), "") << "nothing to tell";
+  EXPECT_EQ(words(hal::PlanEvent::kAsked, 6), "a plan to the goal is asked for");
+  EXPECT_EQ(words(hal::PlanEvent::kLate, 6), "no plan came in time: the visual law goes on alone");
+  EXPECT_EQ(words(hal::PlanEvent::kNoMotion, 6),
+            "no plan: the visual law goes on alone: no posture was found that reaches the goal inside the "
+            "joints' ranges");
+  for (const int unknown : {-1, 10, 1'000'000}) {
+    EXPECT_EQ(words(hal::PlanEvent::kNoMotion, unknown), "no plan: the visual law goes on alone");
+  }
 }
 
 TEST(TickMessageTest, RefusesMoreEntriesThanTheServoHas) {

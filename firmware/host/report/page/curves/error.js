@@ -4,10 +4,11 @@
 Fovea.error = (function () {
   const { el, hasNumbers, plots } = Fovea;
 
-  // e0 * exp(-lambda (t - t0)) from the moment the servo first tracks, on 300 points; null for a moving target.
+  // e0 * exp(-lambda (t - t0)) from the moment the servo first tracks, on 300 points; null for a moving target,
+  // and for an arm that follows a plan.
   function ideal(run) {
     const start = run.modes.find((m) => m.mode === "track");
-    if (!start || !run.lambda || run.target.moves) return null;
+    if (!start || !run.lambda || run.target.moves || run.ways.some((w) => w.way === "plan")) return null;
     const reach = run.duration_s / 20;
     const first = (times, values) => {
       if (!times || !values) return NaN;

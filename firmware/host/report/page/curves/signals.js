@@ -40,6 +40,7 @@ Fovea.signals = (function () {
       tick(`dq.${i}`, `${which} velocity`, slides ? "m/s" : "rad/s", ticks.dq[i]);
       tick(`tau.${i}`, `${which} torque, commanded without gravity`, slides ? "N" : "N m", ticks.tau[i]);
       tick(`tau_meas.${i}`, `${which} torque, measured`, slides ? "N" : "N m", ticks.tau_meas[i]);
+      tick(`tau_ext.${i}`, `${which} torque, external`, slides ? "N" : "N m", ticks.tau_ext[i]);
     });
     add("age_ms", "age of the measurement when taken", "ms", measured.t_s, measured.age_ms, true);
     add("confidence", "confidence of the detection", "1", measured.t_s, measured.confidence, true);

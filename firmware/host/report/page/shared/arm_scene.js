@@ -119,10 +119,15 @@ Fovea.armScene = (function () {
       geometry = new THREE.CylinderBufferGeometry(radius, radius, thick, 64).rotateX(Math.PI / 2);
       geometry.translate(0, 0, thick / 2);
     } else if (corners && corners.length >= 6) {
+      // The corners are as the servo believes them; the true target may have another size.
+      let believed = 0;
+      for (let i = 0; i + 1 < corners.length; i += 2)
+        believed = Math.max(believed, Math.hypot(corners[i], corners[i + 1]));
+      const size = radius > 0 && believed > 0 ? radius / believed : 1;
       const shape = new THREE.Shape();
       for (let i = 0; i + 1 < corners.length; i += 2)
-        if (i) shape.lineTo(corners[i], corners[i + 1]);
-        else shape.moveTo(corners[i], corners[i + 1]);
+        if (i) shape.lineTo(size * corners[i], size * corners[i + 1]);
+        else shape.moveTo(size * corners[i], size * corners[i + 1]);
       geometry = new THREE.ExtrudeBufferGeometry(shape, { depth: thick, bevelEnabled: false });
     } else geometry = new THREE.SphereBufferGeometry(radius || 0.02, 40, 28);
     const mesh = new THREE.Mesh(

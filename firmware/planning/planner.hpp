@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plans a motion of all joints to a posture that reaches the goal: firmware/planning/README.md.
+//
+// It runs on a thread beside the tick. It allocates in its constructor, its memory and work are bounded, and
+// the same request has the same answer.
+#pragma once
+
+#include <memory>
+
+#include "firmware/core/config/servo_config.hpp"
+#include "firmware/core/trajectory/plan.hpp"
+#include "firmware/core/trajectory/plan_request.hpp"
+
+namespace fovea::planning {
+
+class Planner {
+ public:
+  // `config` must be one that the servo accepts, and outlive the planner. May throw std::bad_alloc.
+  explicit Planner(const config::ServoConfig& config);
+  ~Planner();
+  Planner(const Planner&) = delete;
+  Planner& operator=(const Planner&) = delete;
+
+  // What a plan took.
+  struct Effort {
+    std::int64_t work = 0;  // postures
+    int goals = 0;          // postures found that reach the goal
+    double length = 0.0;    // of the path [rad]
+  };
+
+  // Fills in `plan`: its outcome says whether there is one. Not real-time: up to about 5 us for each unit of
+  // the request's budget.
+  void Compute(const trajectory::PlanRequest& request, trajectory::Plan& plan) noexcept;
+  [[nodiscard]] const Effort& effort() const noexcept;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace fovea::planning

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// The arm on a plan: the end follows the target's estimate, time waits for the arm, and no number is trusted.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "tests/core/control/planned_way.hpp"
+#include "tests/support/random_states.hpp"
+
+namespace fovea::control {
+namespace {
+
+using hal::PlanEvent;
+using hal::Way;
+
+class FollowPlanTest : public PlannedWay {
+ protected:
+  // How far the camera is from its goal: along and about all axes, 1 rad as 0.1 m.
+  [[nodiscard]] double OffGoal() const {
+    const model::Pose X_CO = CameraAt(reference_.q).Inverse() * X_BO_;
+    const double turn = model::RotationVector(config_.feature.R_CO_star.transpose() * X_CO.R).norm();
+    return (X_CO.p - config_.feature.p_CO_C_star).norm() +
+           (config_.feature.SeesOrientation() ? 0.1 * turn : 0.0);
+  }
+  // The target jumps by `d` [m] and turns by `turn_B` [rad] about its own centre.
+  void MoveTarget(const model::Vec3& d, const model::Vec3& turn_B) {
+    X_BO_.p += d;
+    X_BO_.R = model::RotationOf(turn_B) * X_BO_.R;
+  }
+};
+
+TEST_F(FollowPlanTest, PlanIsFollowedExactlyInItsTime) {
+  BeginPlan();
+  trajectory::Reference at;
+  int ticks = 0;
+  for (; way_.note.way == Way::kPlan && ticks < 5000; ++ticks) {
+    Follow();
+    plan_.At(way_.t, at);
+    EXPECT_LT((at.q - reference_.q).lpNorm<Eigen::Infinity>(), 2e-3);
+    EXPECT_LT((at.dq - reference_.dq).lpNorm<Eigen::Infinity>(), 2e-2);
+    EXPECT_EQ((at.ddq - step_.ddq).norm(), 0.0);
+    EXPECT_TRUE(step_.task.J.isIdentity(0.0) && step_.task.dq_0.isZero(0.0));
+    Choose();
+  }
+  EXPECT_NEAR(ticks, 1e3 * plan_.Duration(), 2.0);
+  EXPECT_EQ(events_.back(), PlanEvent::kDone);
+}
+
+// The joints' path then ends where the camera reaches the moved goal: checked by the arm's kinematics. The
+// shift is linear in the target's motion, so that the share that is left shrinks with it.
+TEST_F(FollowPlanTest, EndOfThePlanFollowsTheTarget) {
+  test::RandomStates random(51);
+  for (const double size : {1.0, 0.1}) {
+    double worst = 0.0;
+    for (int k = 0; k < 40; ++k) {
+      way_ = WayToGoal{};
+      q_goal_ = test::Ready() + random.Joints(config_.arm, 0.15);
+      q_goal_[0] += k % 2 == 0 ? 0.9 : -0.9;
+      PutTargetFor(q_goal_);
+      StandAt(test::Ready());
+      BeginPlan();
+      FollowFor(static_cast<int>(random.Uniform(1.0, 1000.0)));
+      MoveTarget(size * random.Vector(0.02), size * random.Vector(0.05));
+      const trajectory::Reference here = reference_;
+      StandAt(q_goal_);
+      const double moved = OffGoal();
+      reference_ = here;
+      ASSERT_EQ(FollowOn(), PlanEvent::kDone) << k;
+      worst = std::max(worst, (OffGoal() - 1e-4) / moved);
+    }
+    std::printf("left at the end: %.3f of the target's motion\n", worst);
+    EXPECT_LT(worst, 0.25 * size);
+  }
+}
+
+TEST_F(FollowPlanTest, EndOfThePlanFollowsABallWithoutTurning) {
+  config_.feature = features::TargetFeature{};
+  q_goal_[5] += 0.2;
+  PutTargetFor(q_goal_);
+  BeginPlan();
+  FollowFor(500);
+  MoveTarget({0.02, -0.03, 0.01}, {0.0, 0.0, 0.0});
+  X_BO_.R = model::RotationOf(model::Vec3(1.0, 2.0, 0.5));  // means nothing
+  ASSERT_EQ(FollowOn(), PlanEvent::kDone);
+  EXPECT_LT(OffGoal(), 0.15 * 0.037);
+  const model::Mat3 R = CameraAt(reference_.q).R.transpose() * CameraAt(q_goal_).R;
+  EXPECT_LT(model::RotationVector(R).norm(), 0.01);
+}
+
+TEST_F(FollowPlanTest, JumpOfTheEstimateMakesNoJumpOfTheWish) {
+  BeginPlan();
+  double most = 0.0;
+  model::VecN v_before = model::VecN::Zero(7);
+  for (int i = 0; way_.note.way == Way::kPlan && i < 5000; ++i) {
+    if (i == 900) {
+      MoveTarget({0.04, 0.0, -0.02}, {0.05, 0.0, 0.05});
+    }
+    Follow();
+    most = std::max(most, (step_.task.v - v_before).lpNorm<Eigen::Infinity>());
+    v_before = step_.task.v;
+    Choose();
+  }
+  EXPECT_EQ(events_.back(), PlanEvent::kDone);
+  EXPECT_LT(most, 0.05);
+}
+
+TEST_F(FollowPlanTest, TargetThatIsElsewhereNeedsANewPlan) {
+  const model::Vec3 far[] = {{0.2, 0.0, 0.0}, {0.0, 0.0, -0.2}, {0.0, 0.0, 0.0}};
+  const model::Vec3 turned[] = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.6}};
+  for (int k = 0; k < 3; ++k) {
+    way_ = WayToGoal{};
+    PutTargetFor(q_goal_);
+    StandAt(test::Ready());
+    BeginPlan();
+    FollowFor(400);
+    MoveTarget(far[k], turned[k]);
+    EXPECT_EQ(Choose(), PlanEvent::kTargetMoved) << k;
+    EXPECT_EQ(way_.note.way, Way::kAwaitPlan);
+    Choose(100);
+    EXPECT_EQ(way_.note.plans_asked, 1) << "the arm still moves";
+    StandAt(reference_.q);
+    EXPECT_EQ(Choose(), PlanEvent::kAsked);
+    EXPECT_EQ(way_.note.tries, 2);
+  }
+}
+
+TEST_F(FollowPlanTest, SlowMotionOfTheTargetAddsUp) {
+  BeginPlan();
+  PlanEvent event = PlanEvent::kNone;
+  int ticks = 0;
+  for (; event == PlanEvent::kNone && ticks < 1500; ++ticks) {
+    X_BO_.p.z() += 2e-4;
+    Follow();
+    event = Choose();
+  }
+  EXPECT_EQ(event, PlanEvent::kTargetMoved);
+  EXPECT_GT(ticks * 2e-4, 0.03);
+  EXPECT_LT(ticks * 2e-4, 0.15);
+}
+
+TEST_F(FollowPlanTest, TimeWaitsForAnArmThatLimitsHoldUp) {
+  BeginPlan();
+  FollowFor(600);
+  EXPECT_FALSE(IsHeldUp(way_));
+  trajectory::Reference at;
+  for (int i = 0; i < 250; ++i) {
+    Follow(true);
+    plan_.At(way_.t, at);
+    EXPECT_LT((at.q - reference_.q).lpNorm<Eigen::Infinity>(), 0.05);
+    ASSERT_EQ(Choose(), PlanEvent::kNone);
+  }
+  EXPECT_TRUE(IsHeldUp(way_));
+  EXPECT_EQ(FollowOn(), PlanEvent::kDone) << "a short stop needs no new plan";
+  EXPECT_LT((reference_.q - q_goal_).lpNorm<Eigen::Infinity>(), 1e-4);
+}
+
+TEST_F(FollowPlanTest, ArmThatStaysHeldUpGetsANewPlan) {
+  BeginPlan();
+  FollowFor(600);
+  int ticks = 0;
+  for (PlanEvent event = PlanEvent::kNone; event == PlanEvent::kNone && ticks < 5000; ++ticks) {
+    Follow(true);
+    event = Choose();
+  }
+  EXPECT_EQ(events_.back(), PlanEvent::kHeld);
+  EXPECT_GT(ticks, 300);
+  EXPECT_LT(ticks, 700);
+  EXPECT_EQ(way_.note.way, Way::kAwaitPlan);
+  EXPECT_FALSE(IsHeldUp(way_));
+  StandAt(reference_.q);
+  EXPECT_EQ(Choose(), PlanEvent::kAsked);
+}
+
+// An estimate that is not finite, in each way: nothing of it stays, and the wish is finite.
+TEST_F(FollowPlanTest, EstimateThatIsNotFiniteChangesNothingForGood) {
+  const double bad[] = {std::nan(""), std::numeric_limits<double>::infinity(), 1e308, -1e308};
+  for (const double value : bad) {
+    for (int entry = 0; entry < 12; ++entry) {
+      for (const Way from : {Way::kLaw, Way::kAwaitPlan, Way::kPlan}) {
+        way_ = WayToGoal{};
+        PutTargetFor(q_goal_);
+        StandAt(test::Ready());
+        if (from == Way::kAwaitPlan) {
+          AskForPlan();
+        } else if (from == Way::kPlan) {
+          BeginPlan();
+          FollowFor(300);
+        }
+        const model::Pose X_BO = X_BO_;
+        (entry < 3 ? X_BO_.p[entry] : X_BO_.R.data()[entry - 3]) = value;
+        for (int i = 0; i < 20; ++i) {
+          Choose(from == Way::kAwaitPlan);
+          if (way_.note.way == Way::kPlan) {
+            Follow();
+            ASSERT_TRUE(step_.task.v.allFinite() && step_.ddq.allFinite());
+          }
+        }
+        ASSERT_TRUE(way_.shift.allFinite() && reference_.q.allFinite() && std::isfinite(way_.t));
+        X_BO_ = X_BO;
+        StandAt(reference_.q);
+        way_.note.tries = 0;
+        way_.is_fresh = way_.note.way == Way::kLaw;
+        if (way_.note.way == Way::kLaw) {
+          AskForPlan();
+        }
+      }
+    }
+  }
+}
+
+TEST_F(FollowPlanTest, TimeThatTicksCountIsNeverNegative) {
+  std::int64_t ns = 0;
+  CountTick(false, ns);
+  EXPECT_EQ(ns, 0);
+  CountTick(true, ns);
+  CountTick(true, ns);
+  EXPECT_EQ(ns, 2 * hal::kTickPeriodNs);
+  CountTick(false, ns);
+  EXPECT_EQ(ns, hal::kTickPeriodNs);
+}
+
+}  // namespace
+}  // namespace fovea::control

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the planner answers when there is no motion, or no sound request.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "firmware/planning/planner.hpp"
+#include "tests/planning/starts.hpp"
+
+namespace fovea {
+namespace {
+
+using planning::Planner;
+using trajectory::Plan;
+using trajectory::PlanOutcome;
+using trajectory::PlanRequest;
+
+// The Panda in its ready posture, with the target `p_CO_C` [m] in the camera, which it faces.
+PlanRequest FromReady(const config::ServoConfig& config, const model::Vec3& p_CO_C) {
+  const int n = config.arm.num_joints;
+  PlanRequest request;
+  request.start.q = model::ToVector(config.arm.q_ready, n);
+  request.start.dq.setZero(n);
+  request.start.ddq.setZero(n);
+  model::ArmPoses poses;
+  model::ComputePoses(config.arm, request.start.q, poses);
+  request.X_BO = poses.X_BE * config.X_EC * model::Pose{model::Mat3::Identity(), p_CO_C};
+  return request;
+}
+
+class PlannerRefusal : public testing::Test {
+ protected:
+  // The answer to `request` with the servo as it is.
+  const Plan& Answer(const PlanRequest& request) {
+    Planner(config_).Compute(request, plan_);
+    EXPECT_TRUE(plan_.IsSound());
+    EXPECT_EQ(plan_.num_points, plan_.IsFound() ? plan_.num_points : 0);
+    return plan_;
+  }
+  PlanOutcome OutcomeOf(const PlanRequest& request) { return Answer(request).outcome; }
+
+  config::ServoConfig config_ = test::PlannedServo("panda", "square");
+  Plan plan_;
+};
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+const model::Vec3 kAhead(0.05, 0.02, 0.45);
+
+TEST_F(PlannerRefusal, ASoundRequestIsAnswered) {
+  EXPECT_EQ(OutcomeOf(FromReady(config_, kAhead)), PlanOutcome::kFound);
+}
+
+TEST_F(PlannerRefusal, ABadRequestIsNamed) {
+  const PlanRequest sound = FromReady(config_, kAhead);
+  const auto outcome = [&](auto change) {
+    PlanRequest request = sound;
+    change(request);
+    return OutcomeOf(request);
+  };
+  EXPECT_EQ(outcome([](PlanRequest& r) { r.start.q[3] = kNan; }), PlanOutcome::kBadRequest);
+  EXPECT_EQ(outcome([](PlanRequest& r) { r.start.dq[0] = kNan; }), PlanOutcome::kBadRequest);
+  EXPECT_EQ(outcome([](PlanRequest& r) { r.start.ddq[6] = HUGE_VAL; }), PlanOutcome::kBadRequest);
+  EXPECT_EQ(outcome([](PlanRequest& r) { r.X_BO.p.x() = kNan; }), PlanOutcome::kBadRequest);
+  EXPECT_EQ(outcome([](PlanRequest& r) { r.X_BO.R(1, 2) = kNan; }), PlanOutcome::kBadRequest);
+  EXPECT_EQ(outcome([](PlanRequest& r) { r.normal_B.z() = kNan; }), PlanOutcome::kBadRequest);
+  EXPECT_EQ(outcome([](PlanRequest& r) { r.start.q.conservativeResize(6); }), PlanOutcome::kBadRequest);
+  EXPECT_EQ(outcome([](PlanRequest& r) { r.start.dq.resize(0); }), PlanOutcome::kBadRequest);
+}
+
+TEST_F(PlannerRefusal, AStartThatMovesIsNamed) {
+  PlanRequest request = FromReady(config_, kAhead);
+  request.start.dq[2] = 0.01;
+  EXPECT_EQ(OutcomeOf(request), PlanOutcome::kStartMoves);
+}
+
+TEST_F(PlannerRefusal, AStartPastALimitIsNamedWithTheLimit) {
+  PlanRequest request = FromReady(config_, kAhead);
+  request.start.q[5] = config_.arm.joints[5].q_max + 0.01;
+  EXPECT_EQ(Answer(request).outcome, PlanOutcome::kStartNotClear);
+  EXPECT_EQ(plan_.blocker, hal::Limit::kJointPosition);
+
+  config_.guard.workspace_radius = 0.3;
+  EXPECT_EQ(Answer(FromReady(config_, kAhead)).outcome, PlanOutcome::kStartNotClear);
+  EXPECT_EQ(plan_.blocker, hal::Limit::kWorkspace);
+
+  config_ = test::PlannedServo("panda", "square");
+  config_.guard.obstacles.planes[0].distance = 0.7;
+  EXPECT_EQ(Answer(FromReady(config_, kAhead)).outcome, PlanOutcome::kStartNotClear);
+  EXPECT_EQ(plan_.blocker, hal::Limit::kObstacle);
+}
+
+// Between the margin of the tick's resolution and that of the proof of a stop: the way leads back.
+TEST_F(PlannerRefusal, AStartNearerThanTheMarginsIsNotRefused) {
+  const PlanRequest request = FromReady(config_, {0.0, 0.0, 0.5});
+  model::ArmPoses poses;
+  model::ComputePoses(config_.arm, request.start.q, poses);
+  config_.guard.workspace_radius = poses.X_BE.p.norm() + config_.guard.workspace_margin + 1e-3;
+  config_.guard.obstacles.num_planes = 0;
+  EXPECT_EQ(OutcomeOf(request), PlanOutcome::kFound);
+  config_.guard.workspace_radius -= 1.1e-3;
+  EXPECT_EQ(OutcomeOf(request), PlanOutcome::kStartNotClear);
+}
+
+TEST_F(PlannerRefusal, ATargetThatIsNotSeenIsNamed) {
+  EXPECT_EQ(OutcomeOf(FromReady(config_, {0.0, 0.0, -0.4})), PlanOutcome::kTargetNotInSight);
+  EXPECT_EQ(OutcomeOf(FromReady(config_, {0.6, 0.0, 0.4})), PlanOutcome::kTargetNotInSight);
+  PlanRequest from_behind = FromReady(config_, kAhead);
+  from_behind.X_BO.R = from_behind.X_BO.R * model::RotationOf({model::kPi, 0.0, 0.0});
+  EXPECT_EQ(OutcomeOf(from_behind), PlanOutcome::kTargetNotInSight);
+}
+
+TEST_F(PlannerRefusal, AGoalOutOfReachIsNamed) {
+  EXPECT_EQ(OutcomeOf(FromReady(config_, {0.0, 0.0, 3.0})), PlanOutcome::kNoGoalPosture);
+}
+
+TEST_F(PlannerRefusal, AGoalPastALimitIsNamedWithTheLimit) {
+  config_.feature.p_CO_C_star = {0.0, 0.0, 0.20};
+  config_.guard.obstacles.planes[0].distance = 0.35;  // the camera would have to go below it
+  EXPECT_EQ(Answer(FromReady(config_, {0.0, 0.0, 0.5})).outcome, PlanOutcome::kGoalNotClear);
+  EXPECT_EQ(plan_.blocker, hal::Limit::kObstacle);
+}
+
+TEST_F(PlannerRefusal, AWallWithoutAWayAroundItIsNamed) {
+  // Two boxes beside the hand that leave no path to the goal's side.
+  config_.guard.obstacles.num_boxes = 1;
+  config_.guard.obstacles.boxes[0] = {{-2.0, 0.10, -2.0}, {2.0, 0.14, 2.0}};
+  PlanRequest request = FromReady(config_, kAhead);
+  request.X_BO.p.y() += 0.24;
+  config_.guard.view.enabled = false;
+  config_.guard.sight_clearance = 0.0;
+  request.budget = 60'000;
+  EXPECT_EQ(OutcomeOf(request), PlanOutcome::kNoPath);
+}
+
+TEST_F(PlannerRefusal, AFeatureThatLeavesTheGoalOpenIsNamed) {
+  config_.feature.form = features::FeatureForm::kSide;
+  EXPECT_EQ(OutcomeOf(FromReady(config_, kAhead)), PlanOutcome::kNotPlanned);
+}
+
+}  // namespace
+}  // namespace fovea
