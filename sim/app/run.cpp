@@ -60,11 +60,11 @@ class Run {
           config::MakeLoad(about_.scenario.arm.load));
     }
     if (!options_.trace.empty()) {
-      trace_.emplace(options_.trace, scenario.run.duration_s, scenario.camera.rate_hz, kRenderers);
+      trace_.emplace(options_.trace, scenario.run.duration_s, scenario.camera.rate_hz, options_.renderers);
     }
     if (HasEye()) {
       // If the world waits for each frame, no frame is lost. A real camera buffers two.
-      vision_.Open(WaitsForFrames() ? 1024 : 2, trace_ ? &*trace_ : nullptr);
+      vision_.Open(WaitsForFrames() ? 1024 : 2, trace_ ? &*trace_ : nullptr, options_.renderers);
     }
     // The folder is created last, so that a refused run leaves none.
     // A board that ticks by its own timer sees other inputs than the host: its log cannot be replayed.
@@ -72,7 +72,8 @@ class Run {
     RunFilesConfig files;
     files.out = options_.out;
     files.report = options_.report;
-    files.renderer_index = kRenderers;
+    files.renderer_index = options_.renderers;
+    files.pictures_if_failed = options_.pictures_if_failed;
     files.may_drop = options_.pace == Pace::kReal;
     files.replayable = replayable;
     files.command = options_.command;
@@ -251,14 +252,29 @@ class Run {
   }
 
   void EndEarly() {
-    interrupted_ = true;
     stalling_->EndAt(0);
     shell_->loop()->Stop();  // after the current tick, which is still recorded
+  }
+  void EndInterrupted() {
+    interrupted_ = true;
+    EndEarly();
+  }
+
+  // By run.settled_s. In lockstep only the servo's thread uses the verdict.
+  [[nodiscard]] bool HasSettled(std::int64_t now_ns) const {
+    const double settled_s = about_.scenario.run.settled_s;
+    const std::optional<double> since_s = verdict_->goal_kept_since_s();
+    return settled_s > 0.0 && WaitsForFrames() && since_s &&
+           static_cast<double>(now_ns) * 1e-9 - *since_s >= settled_s;
   }
 
   // Passes the measurements that are due to the servo. Called between two ticks, on the servo's thread.
   bool HandOver(std::int64_t now_ns, bool wait) {
     if (IsInterrupted() && now_ns < EndNs()) {
+      EndInterrupted();
+      return true;
+    }
+    if (wait && HasSettled(now_ns)) {
       EndEarly();
       return true;
     }
@@ -286,7 +302,7 @@ class Run {
         throw std::runtime_error(board_->failure() + "; the arm's brakes were closed");
       }
       if (live_ && !live_->WaitForTick(now_ns, [this] { return IsInterrupted(); })) {
-        EndEarly();
+        EndInterrupted();
         return true;
       }
       return HandOver(now_ns, /*wait=*/true);

@@ -10,6 +10,7 @@
 #include "fovea/linux_rt/interrupt.hpp"
 #include "sim/mcu/board_servo.hpp"
 #include "sim/operator/live_page.hpp"
+#include "sim/run/eye.hpp"
 #include "sim/scenario/scenario.hpp"
 #include "sim/verdict/summary.hpp"
 #include "sim/world/world.hpp"
@@ -35,7 +36,9 @@ struct RunOptions {
   BoardConfig board;          // used with a servo_image
   std::filesystem::path out;  // empty: no files
   bool report = true;         // also write films, log, report and the bench's picture
-  std::string command;        // the command line, for the log; "" if none
+  bool pictures_if_failed = false;  // the camera's pictures only if the run does not reach its goal
+  int renderers = kRenderers;       // pictures that are drawn at the same time
+  std::string command;              // the command line, for the log; "" if none
   bool show_progress = true;
   std::filesystem::path trace;  // file for the timeline of all threads; empty: none
   RunObserver observer;

@@ -170,7 +170,17 @@ void AddRun(CLI::App& run, RunArguments& arguments) {
   run.add_option("--out", arguments.out, "folder for the files; default: out/<scenario>");
   run.add_option("--trace", arguments.trace,
                  "write a timeline of all threads for ui.perfetto.dev or chrome://tracing");
-  run.add_flag("--no-report", arguments.no_report, "write no report and no pictures");
+  run.add_flag("--no-report", arguments.no_report,
+               "write no log, no films, no report and no picture of the bench");
+  run.add_option(
+         "--pictures", arguments.pictures,
+         "the camera's first and last pictures: always; failed: only if the run does not reach its goal")
+      ->check(CLI::IsMember({"always", "failed"}))
+      ->capture_default_str();
+  run.add_option("--renderers", arguments.renderers,
+                 "pictures that are drawn at the same time; they do not depend on it")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
   run.add_flag("--json", arguments.json, "print summary.json instead of the table");
   run.add_flag(
       "--live", arguments.live,
@@ -212,6 +222,8 @@ int RunCommand(const RunArguments& arguments) {
   options.board = MakeBoard(arguments, scenario);
   options.out = arguments.out.empty() ? "out/" + scenario.name : arguments.out;
   options.report = !arguments.no_report;
+  options.pictures_if_failed = arguments.pictures == "failed";
+  options.renderers = arguments.renderers;
   options.trace = arguments.trace;
   options.command = arguments.command;
   options.interrupt = &interrupt;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/mcu/board_servo.hpp"
+#include "sim/run/eye.hpp"
 
 namespace CLI {
 class App;
@@ -37,6 +38,8 @@ struct RunArguments {
   std::string out;
   std::string trace;
   bool no_report = false;
+  std::string pictures = "always";
+  int renderers = kRenderers;
   bool json = false;
   bool live = false;
   LiveArguments page;

@@ -47,6 +47,10 @@ void Optics::Draw(const Exposure& exposure, std::span<std::uint8_t> rgba) {
     return;
   }
   const int count = shutter_.sub_exposures;
+  if (count == 1) {
+    DrawRows(exposure, shutter_.SubExposureNs(0), rgba);
+    return;
+  }
   sum_.assign(rgba.size(), static_cast<std::uint16_t>(count / 2));  // rounds
   for (int k = 0; k < count; ++k) {
     const double offset_ns = shutter_.SubExposureNs(k);

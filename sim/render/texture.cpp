@@ -42,6 +42,44 @@ float Noise(float x, float y, std::uint32_t seed, int period = 0) {
   return low + ty * (high - low);
 }
 
+// The largest whole number that is at most `x`; without SSE 4.1 much faster than std::floor.
+int Floor(float x) {
+  const int whole = static_cast<int>(x);
+  return static_cast<float>(whole) > x ? whole - 1 : whole;
+}
+
+// The same noise with its grid's values computed once, for |x| <= `reach_x` and |y| <= `reach_y`: each value
+// serves many pixels.
+class NoiseGrid {
+ public:
+  NoiseGrid(float reach_x, float reach_y, std::uint32_t seed)
+      : low_x_(-static_cast<int>(std::ceil(reach_x)) - 1),
+        low_y_(-static_cast<int>(std::ceil(reach_y)) - 1),
+        columns_(2 - 2 * low_x_) {
+    for (int y = low_y_; y <= 1 - low_y_; ++y) {
+      for (int x = low_x_; x <= 1 - low_x_; ++x) {
+        values_.push_back(Hash(x, y, seed));
+      }
+    }
+  }
+  float At(float x, float y) const {
+    const int column = Floor(x);
+    const int row = Floor(y);
+    const float tx = Fade(x - static_cast<float>(column));
+    const float ty = Fade(y - static_cast<float>(row));
+    const float* here = values_.data() + (row - low_y_) * columns_ + (column - low_x_);
+    const float low = here[0] + tx * (here[1] - here[0]);
+    const float high = here[columns_] + tx * (here[columns_ + 1] - here[columns_]);
+    return low + ty * (high - low);
+  }
+
+ private:
+  int low_x_;
+  int low_y_;
+  std::ptrdiff_t columns_;
+  std::vector<float> values_;
+};
+
 using Colour = std::array<float, 3>;
 
 Colour Mix(const Colour& a, const Colour& b, float t) {
@@ -53,7 +91,7 @@ void Put(Texture& texture, int x, int y, const Colour& colour) {
                    static_cast<std::size_t>(x)) *
                   4;
   for (std::size_t c = 0; c < 3; ++c) {
-    texture.rgba[at + c] = static_cast<std::uint8_t>(std::lround(std::clamp(colour[c], 0.0F, 1.0F) * 255.0F));
+    texture.rgba[at + c] = static_cast<std::uint8_t>(std::clamp(colour[c], 0.0F, 1.0F) * 255.0F + 0.5F);
   }
   texture.rgba[at + 3] = 255;
 }
@@ -64,15 +102,31 @@ Texture Blank(int width_px, int height_px) {
                                     4)};
 }
 
-// Birch: fibres along x, broad bands, fine pores. Position in metres.
-Colour Birch(float x, float y) {
-  const float warp = 0.02F * Noise(3.0F * x, 5.0F * y, 1);
-  const float band = Noise(1.5F * x, 22.0F * (y + warp), 2);
-  const float fibre = Noise(14.0F * x, 420.0F * (y + warp), 3);
-  const float pore = Noise(60.0F * x, 900.0F * y, 4);
-  const float tone = 0.55F * band + 0.30F * fibre + 0.15F * pore;
-  return Mix({0.64F, 0.52F, 0.37F}, {0.80F, 0.69F, 0.52F}, tone);
-}
+// Birch: fibres along x, broad bands, fine pores. For |x| <= `half_x` and |y| <= `half_y` [m].
+class Birch {
+ public:
+  Birch(float half_x, float half_y)
+      : warp_(3.0F * half_x, 5.0F * half_y, 1),
+        band_(1.5F * half_x, 22.0F * (half_y + kWarp), 2),
+        fibre_(14.0F * half_x, 420.0F * (half_y + kWarp), 3),
+        pore_(60.0F * half_x, 900.0F * half_y, 4) {}
+  Colour At(float x, float y) const {
+    const float warp = kWarp * warp_.At(3.0F * x, 5.0F * y);
+    const float band = band_.At(1.5F * x, 22.0F * (y + warp));
+    const float fibre = fibre_.At(14.0F * x, 420.0F * (y + warp));
+    const float pore = pore_.At(60.0F * x, 900.0F * y);
+    const float tone = 0.55F * band + 0.30F * fibre + 0.15F * pore;
+    return Mix({0.64F, 0.52F, 0.37F}, {0.80F, 0.69F, 0.52F}, tone);
+  }
+
+ private:
+  static constexpr float kWarp = 0.02F;  // [m]
+
+  NoiseGrid warp_;
+  NoiseGrid band_;
+  NoiseGrid fibre_;
+  NoiseGrid pore_;
+};
 
 // 1 on a ruled line, 0 beside it, with soft edges. `pitch` and `half_width` in metres.
 float Line(float x, float pitch, float half_width, float soft) {
@@ -80,12 +134,27 @@ float Line(float x, float pitch, float half_width, float soft) {
   return 1.0F - std::clamp((d - half_width) / soft, 0.0F, 1.0F);
 }
 
-// A rubber mat: fine grain, thin lines every 10 mm, stronger ones every 50 mm. Position from its centre.
-Colour Mat(float x, float y, float texel) {
-  const float grain = 0.6F * Noise(260.0F * x, 260.0F * y, 5) + 0.4F * Noise(900.0F * x, 900.0F * y, 6);
+// A rubber mat: fine grain, thin lines every 10 mm, stronger ones every 50 mm. For positions from its centre,
+// |x| <= `half_x` and |y| <= `half_y` [m]; `texel` is the size of a pixel there.
+class Mat {
+ public:
+  Mat(float half_x, float half_y, float texel)
+      : coarse_(260.0F * half_x, 260.0F * half_y, 5),
+        fine_(900.0F * half_x, 900.0F * half_y, 6),
+        texel_(texel) {}
+  Colour At(float x, float y) const;
+
+ private:
+  NoiseGrid coarse_;
+  NoiseGrid fine_;
+  float texel_;
+};
+
+Colour Mat::At(float x, float y) const {
+  const float grain = 0.6F * coarse_.At(260.0F * x, 260.0F * y) + 0.4F * fine_.At(900.0F * x, 900.0F * y);
   Colour colour = Mix({0.085F, 0.155F, 0.185F}, {0.135F, 0.215F, 0.245F}, grain);
-  const float fine = std::max(Line(x, 0.01F, 0.0001F, texel), Line(y, 0.01F, 0.0001F, texel));
-  const float strong = std::max(Line(x, 0.05F, 0.0005F, texel), Line(y, 0.05F, 0.0005F, texel));
+  const float fine = std::max(Line(x, 0.01F, 0.0001F, texel_), Line(y, 0.01F, 0.0001F, texel_));
+  const float strong = std::max(Line(x, 0.05F, 0.0005F, texel_), Line(y, 0.05F, 0.0005F, texel_));
   colour = Mix(colour, {0.30F, 0.42F, 0.46F}, 0.25F * fine);
   return Mix(colour, {0.48F, 0.60F, 0.62F}, 0.75F * strong);
 }
@@ -96,6 +165,9 @@ Texture MakeTableTop(int size_px, double width_m, double depth_m, double mat_x, 
                      double mat_width, double mat_depth) {
   Texture texture = Blank(size_px, size_px);
   const auto texel = static_cast<float>(std::max(width_m, depth_m) / size_px);
+  const Birch birch(0.5F * static_cast<float>(width_m), 0.5F * static_cast<float>(depth_m));
+  const Mat rubber(0.5F * static_cast<float>(mat_width) + texel, 0.5F * static_cast<float>(mat_depth) + texel,
+                   texel);
   for (int j = 0; j < size_px; ++j) {
     for (int i = 0; i < size_px; ++i) {
       const auto x = static_cast<float>(((i + 0.5) / size_px - 0.5) * width_m);
@@ -105,9 +177,9 @@ Texture MakeTableTop(int size_px, double width_m, double depth_m, double mat_x, 
       // Distance to the mat's outline, negative inside.
       const float out = std::max(std::fabs(u) - 0.5F * static_cast<float>(mat_width),
                                  std::fabs(v) - 0.5F * static_cast<float>(mat_depth));
-      Colour colour = Birch(x, y);
+      Colour colour = birch.At(x, y);
       if (out < texel) {
-        const Colour mat = out > -0.006F ? Colour{0.08F, 0.10F, 0.11F} : Mat(u, v, texel);
+        const Colour mat = out > -0.006F ? Colour{0.08F, 0.10F, 0.11F} : rubber.At(u, v);
         colour = Mix(mat, colour, std::clamp(out / texel + 0.5F, 0.0F, 1.0F));
       } else {
         colour = Mix({0.30F, 0.23F, 0.15F}, colour, std::clamp(out / 0.008F, 0.0F, 1.0F));  // its soft shadow

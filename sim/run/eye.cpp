@@ -15,12 +15,12 @@ void UseOneThreadPerRenderer() { setenv("LP_NUM_THREADS", "0", /*overwrite=*/0);
 
 }  // namespace
 
-Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace)
+Eye::Eye(const RunDescription& about, std::size_t queue, RunTrace* trace, int renderers)
     : faults_(about.scenario.faults.picture), width_px_(about.pinhole.width_px) {
   UseOneThreadPerRenderer();
   const Shutter shutter = MakeScenarioShutter(about.bench);
   std::vector<Painter> painters;
-  for (int i = 0; i < kRenderers; ++i) {  // one after the other: the first initialises the driver
+  for (int i = 0; i < renderers; ++i) {  // one after the other: the first initialises the driver
     optics_.push_back(std::make_unique<Optics>(about.scene, about.eye.pinhole, about.eye.lens,
                                                Sampling::kPlain, i, shutter));
     Optics* const optics = optics_.back().get();

@@ -15,14 +15,14 @@
 
 namespace fovea::sim {
 
-// Number of pictures that are drawn at the same time.
+// Number of pictures that are drawn at the same time. Pictures do not depend on it.
 inline constexpr int kRenderers = 2;
 
 class Eye {
  public:
   // `about` and `trace` (may be null) must outlive it. `queue`: see SimCameraConfig. InputError,
   // std::runtime_error: this computer cannot draw it.
-  Eye(const RunDescription& about, std::size_t queue, RunTrace* trace = nullptr);
+  Eye(const RunDescription& about, std::size_t queue, RunTrace* trace = nullptr, int renderers = kRenderers);
 
   // Changes the faults of all pictures that are not drawn yet. From any thread.
   void SetFaults(const PictureFaults& faults) { faults_.Set(faults); }

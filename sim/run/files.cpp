@@ -32,7 +32,7 @@ run::RunFolderConfig FolderOf(const RunDescription& about, const RunFilesConfig&
 }
 
 RunFiles::RunFiles(const RunDescription& about, const RunFilesConfig& config, run::RunShell& shell)
-    : about_(about), shell_(shell) {
+    : about_(about), shell_(shell), pictures_if_failed_(config.pictures_if_failed) {
   if (shell_.book() != nullptr && about.scenario.run.scene_video) {
     scene_film_ = std::make_unique<SceneFilm>(SceneFilmConfig{
         shell_.book()->BeginFile(kSceneFilm), about.scene, config.renderer_index, config.may_drop});
@@ -85,12 +85,14 @@ void RunFiles::Write(const Summary& summary, const Exposure& end) {
       return DrawBenchPicture(about_.scene, end, camera_path_.points(), target_path_.points());
     });
   }
-  shell_.Write(ToJson(summary), [&] { return PicturesAndScene(std::move(bench)); });
+  const bool with_pictures = !pictures_if_failed_ || !ReachedItsGoal(summary);
+  shell_.Write(ToJson(summary), [&] { return PicturesAndScene(std::move(bench), with_pictures); });
 }
 
-std::vector<config::OutputFile> RunFiles::PicturesAndScene(std::future<std::string> bench) {
+std::vector<config::OutputFile> RunFiles::PicturesAndScene(std::future<std::string> bench,
+                                                           bool with_pictures) {
   std::vector<config::OutputFile> files;
-  if (frames_.frames() > 0) {
+  if (with_pictures && frames_.frames() > 0) {
     for (const auto& [name, frame] :
          {std::pair{"eye-first.png", &frames_.first()}, std::pair{"eye-last.png", &frames_.last()}}) {
       files.push_back({name, DrawEyePicture(*frame, about_.intrinsics, about_.servo.feature)});

@@ -19,14 +19,15 @@
 namespace fovea::sim {
 
 struct RunFilesConfig {
-  std::filesystem::path out;  // empty: no files
-  bool report = true;         // also write films, log, report and the bench's picture
-  int renderer_index = 0;     // the first index that the run itself does not use; see SceneRenderer
-  bool may_drop = false;      // at real pace: the run does not wait for film or log
-  bool replayable = true;     // the recorded inputs are those of the servo
-  std::string command;        // command line of the run; "" if none
-  log::LogTap tap;            // gets each message of the log; empty: nobody does
-  bool open_ended = false;    // the run lasts until somebody ends it
+  std::filesystem::path out;        // empty: no files
+  bool report = true;               // also write films, log, report and the bench's picture
+  bool pictures_if_failed = false;  // the camera's pictures only if the run does not reach its goal
+  int renderer_index = 0;           // the first index that the run itself does not use; see SceneRenderer
+  bool may_drop = false;            // at real pace: the run does not wait for film or log
+  bool replayable = true;           // the recorded inputs are those of the servo
+  std::string command;              // command line of the run; "" if none
+  log::LogTap tap;                  // gets each message of the log; empty: nobody does
+  bool open_ended = false;          // the run lasts until somebody ends it
 };
 
 // The folder for the RunShell of these RunFiles.
@@ -52,11 +53,13 @@ class RunFiles {
   void Write(const Summary& summary, const Exposure& end);
 
  private:
-  // The pictures of the camera, the film of the bench, and the bench's picture if `bench` is valid.
-  std::vector<config::OutputFile> PicturesAndScene(std::future<std::string> bench);
+  // The pictures of the camera if `with_pictures`, the film of the bench, and its picture if `bench` is
+  // valid.
+  std::vector<config::OutputFile> PicturesAndScene(std::future<std::string> bench, bool with_pictures);
 
   const RunDescription& about_;
   run::RunShell& shell_;
+  const bool pictures_if_failed_;
   std::unique_ptr<SceneFilm> scene_film_;
   bool has_scene_film_ = false;  // the film is complete
   FrameKeeper frames_;

@@ -36,7 +36,7 @@ class SimVision {
 
   // Opens the camera; call it only if the scenario has one. `queue`: see SimCameraConfig. `trace`: may be
   // null; must outlive this. InputError, std::runtime_error: this computer cannot draw it.
-  void Open(std::size_t queue, RunTrace* trace);
+  void Open(std::size_t queue, RunTrace* trace, int renderers = kRenderers);
   // Starts the vision thread. Call it after Open.
   void Begin();
   // Closes the camera and waits for the vision thread, if it runs.

@@ -45,6 +45,15 @@ TheoryConfig MakeTheoryConfig(const Scenario& s, const RunDescription& run) {
   return theory;
 }
 
+// InputError: the run cannot end early as it asks.
+void CheckEnd(const Scenario& s) {
+  if (s.run.settled_s > 0.0 && (KeepsMoving(s.target) || s.motion.kind != "none")) {
+    throw config::InputError(fmt::format(
+        "run.settled_s = {} is not allowed: it needs a target that stands still, and motion.kind = \"none\"",
+        s.run.settled_s));
+  }
+}
+
 }  // namespace
 
 RunDescription DescribeRun(const Scenario& scenario) {
@@ -71,6 +80,7 @@ RunDescription DescribeRun(const Scenario& scenario) {
   CheckOutside(scenario, run.servo);
   CheckGoal(scenario);
   CheckTimes(scenario);
+  CheckEnd(scenario);
   CheckFaults(scenario.faults, run.robot.model.num_joints);
   const SimRobot robot = DrawTruth(arm.unloaded, run);
   CheckRotors(scenario.arm.drives, robot);

@@ -107,6 +107,10 @@ void AddRunKeys(Scenario& s, config::KeyTable& keys) {
               "a moving target counts as tracked only if this error is also met, rms over the second half");
   keys.Flag("run.scene_video", s.run.scene_video,
             "also film the bench with the paths of camera and target: scene.mp4");
+  keys.Number(
+      "run.settled_s", s.run.settled_s, 0.0, 1e6, "s",
+      "the run ends early once the goal has been kept for this time; in lockstep, with a still target; "
+      "0: never");
 }
 
 void AddMotionKeys(Scenario& s, config::KeyTable& keys) {

@@ -103,6 +103,7 @@ struct Scenario {
     double tracking_bound_px = 3.0;
     double tracking_bound_mm = 5.0;
     bool scene_video = false;
+    double settled_s = 0.0;
   } run;
 
   Scenario() {

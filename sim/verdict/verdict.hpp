@@ -50,6 +50,9 @@ class Verdict {
   void AddTruth(const Truth& truth, hal::Mode mode);
   void AddRecord(const hal::TickRecord& record);
 
+  // By the truth so far: since then within the bounds of `converged`; none if not.
+  [[nodiscard]] std::optional<double> goal_kept_since_s() const { return goal_kept_since_s_; }
+
   // Fills in everything that follows from truth and records. Call it after both threads have ended, and after
   // the number of frames is in `summary`.
   void Fill(Summary& summary) const;

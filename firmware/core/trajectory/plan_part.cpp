@@ -21,17 +21,19 @@ PlanPart PartOf(const Plan& plan, int first) noexcept {
 }
 
 bool PlanReceiver::Take(const PlanPart& part) noexcept {
-  if (part.first == 0) {
+  if (part.first == 0 && (received_ <= 0 || part.head.stamp_ns != plan_.stamp_ns)) {
     static_cast<PlanHead&>(plan_) = part.head;
     received_ = 0;
   }
-  const bool continues = part.first >= 0 && part.first == received_ && part.count >= 0 &&
-                         part.count <= PlanPart::kMostNumbers && part.head.stamp_ns == plan_.stamp_ns &&
-                         plan_.IsHeadSound() && received_ + part.count <= plan_.NumNumbers();
-  bool sound = continues;
-  for (std::int32_t i = 0; continues && i < part.count; ++i) {
+  const bool continues = part.first >= 0 && part.first == received_ && part.head.stamp_ns == plan_.stamp_ns;
+  if (!continues || part.count < 0) {
+    return false;  // what is missing comes again
+  }
+  bool sound = plan_.IsHeadSound() && part.count <= PlanPart::kMostNumbers &&
+               received_ + part.count <= plan_.NumNumbers();
+  for (std::int32_t i = 0; sound && i < part.count; ++i) {
     const double number = part.numbers[static_cast<std::size_t>(i)];
-    sound = sound && std::fabs(number) <= kMost;
+    sound = std::fabs(number) <= kMost;
     plan_.points[static_cast<std::size_t>(received_ + i)] = number;
   }
   if (!sound) {

@@ -56,8 +56,9 @@ class PlanSender {
 // Puts a plan together again.
 class PlanReceiver {
  public:
-  // True if `part` completes a sound plan, which is then in plan(). A part that is not sound, or does not
-  // continue what came before, drops all of it. Real-time: yes.
+  // True if `part` completes a sound plan, which is then in plan(). What came before is kept if `part` does
+  // not continue it, since a plan is sent again until all of it is there. The first part of a plan of another
+  // time begins anew. A part that continues it but is not sound drops all of it. Real-time: yes.
   [[nodiscard]] bool Take(const PlanPart& part) noexcept;
   // All of a sound plan is there.
   [[nodiscard]] bool IsWhole() const noexcept {

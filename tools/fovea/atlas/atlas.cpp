@@ -30,6 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr int kRuns = 1000;
 constexpr int kRunsWithCases = 20;
+constexpr int kRunsOfFindings = 300;
 
 // --set must not change what the sampler sets or relies on.
 void CheckAssignments(const std::vector<std::string>& assignments) {
@@ -108,7 +109,7 @@ int JobsOf(const AtlasArguments& arguments) {
 
 int RunsOf(const AtlasArguments& arguments) {
   const bool has_cases = arguments.robustness || arguments.tornado || arguments.margin;
-  return arguments.runs.value_or(has_cases ? kRunsWithCases : kRuns);
+  return arguments.runs.value_or(arguments.findings ? kRunsOfFindings : has_cases ? kRunsWithCases : kRuns);
 }
 
 robustness::Spec TruthOf(const AtlasArguments& arguments) {
@@ -141,17 +142,24 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
   CLI::Option* contact = kind->add_flag(
       "--contact", arguments.contact,
       "pushes while masses are wrong: false alarms and detected pushes, over the detector's threshold");
+  CLI::Option* findings = kind->add_flag(
+      "--findings", arguments.findings,
+      "runs of ball-exciting: is what they find out about wrong beliefs true, and as sure as they say");
   kind->require_option(1);
   atlas
       ->add_option(
           "--runs", arguments.runs,
-          fmt::format("number of random starts; default: {}; with --tornado, --margin or --robustness: {}",
-                      kRuns, kRunsWithCases))
+          fmt::format("number of random starts; default: {}; with --tornado, --margin or --robustness: {}; "
+                      "with --findings, of runs: {}",
+                      kRuns, kRunsWithCases, kRunsOfFindings))
       ->check(CLI::Range(1, 100000))
       ->excludes(faults);
   AddTruth(*atlas, arguments, faults, robust);
   for (const char* option : {"--runs", "--truth", "--truth-size", "--tornado", "--margin"}) {
     atlas->get_option(option)->excludes(contact);
+  }
+  for (const char* option : {"--truth", "--truth-size", "--tornado", "--margin"}) {
+    atlas->get_option(option)->excludes(findings);
   }
   atlas
       ->add_option(
@@ -171,7 +179,8 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
           "--seed", arguments.seed,
           fmt::format(
               "seed of the starts and runs. Seeds below {} are for tuning. Default: a seed derived from "
-              "the servo's code, so that nobody has tuned on its starts; with --faults or --contact: 1",
+              "the servo's code, so that nobody has tuned on its starts; with --faults, --contact or "
+              "--findings: 1",
               atlas::kFirstJudgingSeed))
       ->check(CLI::Range(0, 2147483647));
   atlas
@@ -181,10 +190,11 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       ->expected(1)
       ->allow_extra_args(false)
       ->excludes(faults)
-      ->excludes(contact);
+      ->excludes(contact)
+      ->excludes(findings);
   atlas->add_option("--out", arguments.out,
                     "folder for the files; default: out/atlas-<target>, out/atlas-faults, "
-                    "out/atlas-robustness or out/atlas-contact");
+                    "out/atlas-robustness, out/atlas-contact or out/atlas-findings");
   atlas->add_flag("--resume", arguments.resume, "keep the finished runs in the folder, do the rest");
   atlas
       ->add_flag("--draw-only", arguments.draw_only,
@@ -192,6 +202,7 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
       ->excludes(faults)
       ->excludes(robust)
       ->excludes(contact)
+      ->excludes(findings)
       ->excludes(atlas->get_option("--truth"))
       ->excludes(atlas->get_option("--truth-size"))
       ->excludes(atlas->get_option("--tornado"))
@@ -207,10 +218,9 @@ CLI::App* AddAtlas(CLI::App& app, AtlasArguments& arguments) {
   }
   CLI::Option* json = atlas->add_flag("--json", arguments.json, "print atlas.json instead of the table");
   atlas
-      ->add_flag(
-          "--markdown", arguments.markdown,
-          "with --faults, --robustness or --contact: print the page sim/FAULTS.md, sim/ROBUSTNESS.md or "
-          "sim/CONTACT.md")
+      ->add_flag("--markdown", arguments.markdown,
+                 "with --faults, --robustness, --contact or --findings: print the page sim/FAULTS.md, "
+                 "sim/ROBUSTNESS.md, sim/CONTACT.md or sim/FINDINGS.md")
       ->excludes(target)
       ->excludes(json);
   return atlas;
@@ -222,6 +232,9 @@ int Atlas(const AtlasArguments& arguments) {
   }
   if (arguments.contact) {
     return ContactAtlas(arguments);
+  }
+  if (arguments.findings) {
+    return FindingsAtlas(arguments);
   }
   CheckAssignments(arguments.assignments);
   if (arguments.draw_only) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // fovea atlas: the convergence rate of simulated runs from random starts; with --faults, the outcome of every
 // fault in every mode and stage; with --robustness, what wrong beliefs cost; with --contact, which pushes are
-// detected.
+// detected; with --findings, whether what runs find out about wrong beliefs is true.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -19,6 +19,7 @@ struct AtlasArguments {
   bool faults = false;
   bool robustness = false;
   bool contact = false;
+  bool findings = false;
   std::string truth;          // a specification; "": none, or the shipped one with --robustness
   std::vector<double> sizes;  // of all its differences
   bool tornado = false;
@@ -46,6 +47,8 @@ int Atlas(const AtlasArguments& arguments);
 int FaultAtlas(const AtlasArguments& arguments);
 // And for --contact.
 int ContactAtlas(const AtlasArguments& arguments);
+// And for --findings.
+int FindingsAtlas(const AtlasArguments& arguments);
 
 // The number of runs in parallel; of starts.
 int JobsOf(const AtlasArguments& arguments);

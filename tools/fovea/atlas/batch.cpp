@@ -53,6 +53,10 @@ void Batch::Begin(int tag, const Task& task, const std::vector<std::string>& mor
   std::vector<std::string> command{
       simulator_,    "run",    scenario_, "--seed",      std::to_string(start.run_seed),
       "--no-report", "--json", "--out",   File(task, "")};
+  // One renderer keeps one core busy.
+  for (const char* option : {"--pictures", "failed", "--renderers", "1"}) {
+    command.emplace_back(option);
+  }
   std::vector<std::string> assignments = AssignmentsOf(heading_, task.truth->truth, start);
   assignments.insert(assignments.end(), more.begin(), more.end());
   for (const std::string& assignment : assignments) {

@@ -132,8 +132,10 @@ std::array<double, 2> Wilson95(int converged, int runs) {
 
 std::vector<std::string> AssignmentsOf(const Heading& heading, const std::vector<std::string>& truth,
                                        const Start& start) {
-  std::vector<std::string> assignments = SceneAssignments(heading.assignments);
-  assignments.insert(assignments.end(), truth.begin(), truth.end());
+  std::vector<std::string> assignments{fmt::format("run.settled_s={}", kSettledS)};
+  for (const auto& more : {SceneAssignments(heading.assignments), truth}) {
+    assignments.insert(assignments.end(), more.begin(), more.end());
+  }
   std::vector<std::string> q;
   for (const double value : start.q) {
     q.push_back(fmt::format("{:.6g}", value));

@@ -14,6 +14,9 @@
 
 namespace fovea::atlas {
 
+// A run ends once the goal has been kept for this time [s]. A run that fails lasts as long as its scenario.
+inline constexpr double kSettledS = 2.0;
+
 // Share of the runs that should converge, of those from whose start a way leads to the goal.
 inline constexpr double kGoalShare = 0.999;
 

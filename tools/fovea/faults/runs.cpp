@@ -23,7 +23,7 @@ constexpr std::chrono::seconds kRunLimit{900};  // of wall time; a run takes som
 
 // Whether `row` is the result of `job` with this servo.
 bool IsOf(const json& row, const Job& job, int seed) {
-  return row.at("servo") == kServoLibraryHash && row.at("seed") == seed &&
+  return row.at("servo") == kServoLibraryHash && row.at("seed") == job.seed.value_or(seed) &&
          row.at("scenario") == job.scenario &&
          row.at("set").get<std::vector<std::string>>() == job.assignments;
 }
@@ -31,7 +31,7 @@ bool IsOf(const json& row, const Job& job, int seed) {
 }  // namespace
 
 std::string CommandOf(const Job& job, int seed) {
-  std::string command = fmt::format("fovea-sim run {} --seed {}", job.scenario, seed);
+  std::string command = fmt::format("fovea-sim run {} --seed {}", job.scenario, job.seed.value_or(seed));
   for (const std::string& assignment : job.assignments) {
     command += " --set " + bench::Quoted(assignment);
   }
@@ -95,8 +95,12 @@ void Runs::Execute(const std::vector<Job>& jobs, atlas::Progress& progress) {
     for (; next < left.size() && children_.running() < jobs_; ++next) {
       const Job& job = *left[next];
       std::vector<std::string> command{
-          simulator_, "run",   job.scenario,      "--seed", std::to_string(seed_),
+          simulator_, "run",   job.scenario,      "--seed", std::to_string(job.seed.value_or(seed_)),
           "--json",   "--out", File(job.name, "")};
+      // One renderer keeps one core busy.
+      for (const char* option : {"--pictures", "failed", "--renderers", "1"}) {
+        command.emplace_back(option);
+      }
       if (!kind_.keeps_log) {
         command.emplace_back("--no-report");
       }
@@ -119,8 +123,12 @@ void Runs::Execute(const std::vector<Job>& jobs, atlas::Progress& progress) {
 }
 
 void Runs::Finish(const Job& job, int exit_code) {
-  json row{{"run", job.name}, {"scenario", job.scenario},   {"set", job.assignments},
-           {"seed", seed_},   {"servo", kServoLibraryHash}, {"summary", nullptr}};
+  json row{{"run", job.name},
+           {"scenario", job.scenario},
+           {"set", job.assignments},
+           {"seed", job.seed.value_or(seed_)},
+           {"servo", kServoLibraryHash},
+           {"summary", nullptr}};
   if (exit_code == config::kDone || exit_code == config::kGoalMissed) {
     const json summary = json::parse(atlas::Content(File(job.name, ".json")));
     row["summary"] = kind_.excerpt(job, summary, File(job.name, ""));

@@ -22,9 +22,10 @@ struct Job {
   std::string name;
   std::string scenario;
   std::vector<std::string> assignments;
+  std::optional<int> seed = std::nullopt;  // none: that of all runs
 };
 
-// The shell command that repeats `job`.
+// The shell command that repeats `job`. `seed`: that of all runs.
 std::string CommandOf(const Job& job, int seed);
 
 // What is done with the runs.
