@@ -14,17 +14,23 @@ namespace {
 
 constexpr double kRoom = 0.001;        // of a path before solids [m]
 constexpr double kProofRoom = 0.0005;  // a start nearer than this could not be proved to keep the margin [m]
-constexpr double kSightRoom = 0.005;   // before lines of sight [m]
+// Before lines of sight [m]: links are rounder in the model than in the picture, and the mount is not known
+// exactly.
+constexpr double kSightRoom = 0.025;
 constexpr double kPictureRoom = 0.01;  // before the picture's edge, normalised
 constexpr double kOutside = 0.05;      // a start with the target further past the picture's bound is refused
 constexpr double kTiltRoom = 0.02;     // before a disc's largest tilt, cosine
 constexpr double kJointRoom = 0.02;    // before the ends of a joint's range [rad, m]
 constexpr double kGoalJointRoom = 0.06;   // the same at the goal
 constexpr double kSingularityRoom = 1.5;  // times the guard's smallest singular value
-constexpr double kSteepest = 0.2;         // smallest cosine to a flat target's normal for its detection
-constexpr double kNearestPoint = 0.05;    // of the target's points [m]
-constexpr double kLookDamping = 1e-6;     // of J J^T
-constexpr double kTurnMost = 0.3;         // of one LookStep [rad]
+// Smallest cosine between a flat target's normal and the line of sight: at a start that is planned from, and
+// on the way, unless the start has less. The detector loses a square at 0.25 to 0.2.
+constexpr double kEdgeOn = 0.1;
+constexpr double kSteepest = 0.35;
+constexpr double kFacingRoom = 0.01;    // of this cosine, for a start that has less
+constexpr double kNearestPoint = 0.05;  // of the target's points [m]
+constexpr double kLookDamping = 1e-6;   // of J J^T
+constexpr double kTurnMost = 0.3;       // of one LookStep [rad]
 constexpr int kPulls = 5;
 constexpr double kPullShare = 0.3;  // of the way to the picture's centre
 
@@ -87,6 +93,7 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
   }
   Work none(1);
   Posture start;
+  steepest_ = kEdgeOn;
   Place(q, none, start);
   picture_room_ = 0.0;
   if (!start.is_faced || !(PictureRoom(start) > -kOutside)) {
@@ -104,6 +111,7 @@ trajectory::PlanOutcome PostureSpace::Begin(const trajectory::PlanRequest& reque
     room_[k] = std::min(kRoom, value - margin_[k]);
     bound_[k] = value - margin_[k] < kProofRoom ? solid_.StopMarginOf(i) : margin_[k];
   }
+  steepest_ = std::max(kEdgeOn, std::min(kSteepest, CosineTo(start) - kFacingRoom));
   picture_room_ = std::min(kPictureRoom, PictureRoom(start));
   sight_room_ = std::min(kSightRoom, Sight(start, bodies));
   tilt_room_ = std::min(kTiltRoom, Tilt(start));
@@ -117,9 +125,7 @@ void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) con
   posture.X_BC = posture.poses.X_BE * config_.X_EC;
   posture.X_CO = posture.X_BC.Inverse() * X_BO_;
   model::ComputeJacobian(config_.arm, posture.poses, config_.X_EC, posture.J_C);
-  const model::Vec3& p = posture.X_CO.p;
-  const double away = p.norm();
-  bool faced = !config_.feature.SeesOrientation() || posture.X_CO.R.col(2).dot(p) > kSteepest * away;
+  bool faced = !config_.feature.SeesOrientation() || CosineTo(posture) > steepest_;
   for (int i = 0; i < outline_.num_points; ++i) {
     faced = faced && (posture.X_CO * outline_.p_OP[static_cast<std::size_t>(i)]).z() > kNearestPoint;
   }
@@ -128,6 +134,10 @@ void PostureSpace::Place(const model::VecN& q, Work& work, Posture& posture) con
     posture.picture = barriers::FieldOfViewBarriersOnPlan(
         config_.guard, {outline_, {posture.X_CO, model::Vec3::Zero(), model::Vec3::Zero()}, posture.J_C});
   }
+}
+
+double PostureSpace::CosineTo(const Posture& posture) noexcept {
+  return posture.X_CO.R.col(2).dot(posture.X_CO.p) / posture.X_CO.p.norm();
 }
 
 double PostureSpace::PictureRoom(const Posture& posture) const noexcept {

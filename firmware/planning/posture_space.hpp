@@ -91,6 +91,8 @@ class PostureSpace {
  private:
   static constexpr std::size_t kMostSolids = barriers::SolidBarriers::kMost;
 
+  // Cosine between a flat target's normal and the line of sight.
+  [[nodiscard]] static double CosineTo(const Posture& posture) noexcept;
   [[nodiscard]] double Tilt(const Posture& posture) const noexcept;
   [[nodiscard]] double Sight(const Posture& posture, const barriers::ArmBodies& bodies) const noexcept;
 
@@ -103,6 +105,7 @@ class PostureSpace {
   std::array<double, kMostSolids> room_{};    // that a path keeps beyond [m]
   // What the proof uses instead of margin_ [m]: from a start nearer than that, the guard's proof of a stop's.
   std::array<double, kMostSolids> bound_{};
+  double steepest_ = 0.0;      // least CosineTo
   double picture_room_ = 0.0;  // normalised
   double sight_room_ = 0.0;    // [m]
   double tilt_room_ = 0.0;     // cosine

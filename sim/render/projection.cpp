@@ -27,12 +27,17 @@ Eigen::Vector2f WindowDepth(const Eigen::Matrix4f& clip_of_C) {
 
 bool InView(const Pinhole& pinhole, const Eigen::Vector3f& p_C, float radius) {
   const auto f = static_cast<float>(pinhole.f_px);
-  const float half_u = 0.5F * static_cast<float>(pinhole.width_px) / f;
-  const float half_v = 0.5F * static_cast<float>(pinhole.height_px) / f;
-  // Distance outside each side plane of the view's pyramid.
-  const float du = (std::fabs(p_C.x()) - half_u * p_C.z()) / std::sqrt(1.0F + half_u * half_u);
-  const float dv = (std::fabs(p_C.y()) - half_v * p_C.z()) / std::sqrt(1.0F + half_v * half_v);
-  return p_C.z() > -radius && du < radius && dv < radius;
+  // `x` is not outside of the two side planes of the view's pyramid that belong to an axis by more than
+  // radius.
+  const auto is_between = [&](float x, int size_px, double c_px) {
+    const auto c = static_cast<float>(c_px);
+    const float low = (-0.5F - c) / f;
+    const float high = (static_cast<float>(size_px) - 0.5F - c) / f;
+    return (low * p_C.z() - x) / std::sqrt(1.0F + low * low) < radius &&
+           (x - high * p_C.z()) / std::sqrt(1.0F + high * high) < radius;
+  };
+  return p_C.z() > -radius && is_between(p_C.x(), pinhole.width_px, pinhole.c_u_px) &&
+         is_between(p_C.y(), pinhole.height_px, pinhole.c_v_px);
 }
 
 Eigen::Vector4f OutlineRectangle(const Eigen::Vector3f& p_C, float radius, float margin) {

@@ -174,24 +174,35 @@ struct SceneRenderer::Impl {
     program.Set("u_shadow", 1);
   }
 
-  // The box that contains everything visible; none if there is no such box.
-  std::optional<Box> Seen(const Isometry3f& X_BC) const {
+  // The box that contains everything visible in the picture `shown`; none if there is no such box.
+  std::optional<Box> Seen(const Isometry3f& X_BC, const Pinhole& shown) const {
     for (const TexturedPlane& plane : scene.bench.planes) {
-      if (const std::optional<Box> seen = SeenOver(plane, pinhole, X_BC); seen && quality.skip_hidden) {
+      if (const std::optional<Box> seen = SeenOver(plane, shown, X_BC); seen && quality.skip_hidden) {
         return seen;
       }
     }
     return std::nullopt;
   }
 
+  // The picture of some rows alone, and of some around them that hems reach from.
+  [[nodiscard]] Pinhole PictureOf(int begin, int rows) const {
+    constexpr int kAround = 4;
+    Pinhole part = pinhole;
+    const int first = std::max(begin - kAround, 0);
+    part.height_px = std::min(begin + rows + kAround, pinhole.height_px) - first;
+    part.c_v_px -= first;
+    return part;
+  }
+
+  // Those that may be in the picture `shown`.
   void DrawMeshes(const Moment& moment, const Isometry3f& X_BC, const Matrix4f& clip_of_B,
-                  const std::optional<Box>& seen) const {
+                  const Pinhole& shown, const std::optional<Box>& seen) const {
     const Isometry3f X_CB = X_BC.inverse();
     SetLight(*mesh_program, X_BC);
     mesh_program->Set("u_clip_of_B", clip_of_B);
     for (std::size_t i = 0; i < links.size() && i < moment.X_BL.size(); ++i) {
       const Isometry3f X_BL = moment.X_BL[i].cast<float>();
-      if (InView(pinhole, X_CB * (X_BL * links[i].bounds.centre), links[i].bounds.radius)) {
+      if (InView(shown, X_CB * (X_BL * links[i].bounds.centre), links[i].bounds.radius)) {
         mesh_program->Set("u_B_of_mesh", X_BL.matrix());
         links[i].mesh->Draw();
         smoother->Add(links[i].edges, X_BL, X_BC.translation());
@@ -200,7 +211,7 @@ struct SceneRenderer::Impl {
     mesh_program->Set("u_B_of_mesh", Matrix4f(Matrix4f::Identity()));
     for (const Thing& thing : things) {
       const bool hidden = seen && !seen->intersects(thing.box);
-      if (!hidden && InView(pinhole, X_CB * thing.bounds.centre, thing.bounds.radius)) {
+      if (!hidden && InView(shown, X_CB * thing.bounds.centre, thing.bounds.radius)) {
         thing.mesh->Draw();
         smoother->Add(thing.edges, Isometry3f::Identity(), X_BC.translation());
       }
@@ -317,12 +328,13 @@ struct SceneRenderer::Impl {
     glActiveTexture(GL_TEXTURE0);
     // The table first: it fills most of the camera's picture and hides everything below it.
     glDisable(GL_CULL_FACE);  // tiles and the balls' rectangles have no back side
-    const std::optional<Box> seen = Seen(X_BC);
+    const Pinhole shown = PictureOf(begin, rows);
+    const std::optional<Box> seen = Seen(X_BC, shown);
     DrawPlanes(moment, clip_of_B, seen);
     Tell("planes");
     glEnable(GL_CULL_FACE);
     glFrontFace(GL_CW);  // see ClipOfC
-    DrawMeshes(moment, X_BC, clip_of_B, seen);
+    DrawMeshes(moment, X_BC, clip_of_B, shown, seen);
     Tell("meshes");
     glDisable(GL_CULL_FACE);
     glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
