@@ -17,10 +17,12 @@ constexpr double kProofRoom = 0.0005;  // a start nearer than this could not be 
 // Before lines of sight [m]: links are rounder in the model than in the picture, and the mount is not known
 // exactly.
 constexpr double kSightRoom = 0.025;
-constexpr double kPictureRoom = 0.01;  // before the picture's edge, normalised
-constexpr double kOutside = 0.05;      // a start with the target further past the picture's bound is refused
-constexpr double kTiltRoom = 0.02;     // before a disc's largest tilt, cosine
-constexpr double kJointRoom = 0.02;    // before the ends of a joint's range [rad, m]
+// Before the edges of the picture, normalised: about what a mount that is turned by 1 degree moves the target
+// by as the hand turns.
+constexpr double kPictureRoom = 0.04;
+constexpr double kOutside = 0.05;    // a start with the target further past the picture's bound is refused
+constexpr double kTiltRoom = 0.02;   // before a disc's largest tilt, cosine
+constexpr double kJointRoom = 0.02;  // before the ends of a joint's range [rad, m]
 constexpr double kGoalJointRoom = 0.06;   // the same at the goal
 constexpr double kSingularityRoom = 1.5;  // times the guard's smallest singular value
 // Smallest cosine between a flat target's normal and the line of sight: at a start that is planned from, and

@@ -8,10 +8,19 @@ namespace {
 
 constexpr std::int64_t kMomentNs = 200 * hal::kNsPerMs;  // in which the filter absorbs an error
 
+// What a focal length that is wrong by its whole size does to a target at `c`, to first order: shift [m] and
+// turn [rad] in axes of C.
+model::Vec6 ByFocalLength(const model::Vec3& c) noexcept {
+  model::Vec6 error;
+  error << 0.0, 0.0, -c.z(), model::Vec3(-c.y(), c.x(), 0.0) * (c.z() / c.squaredNorm());
+  return error;
+}
+
 }  // namespace
 
 model::Mat6 MeasurementDoubt(const config::ServoConfig& config, const JointHistory& history,
-                             std::int64_t stamp_ns, const model::Pose& X_BC) noexcept {
+                             std::int64_t stamp_ns, const model::Pose& X_BC,
+                             const model::Vec3& p_CO_C) noexcept {
   const config::PredictConfig& c = config.predict;
   model::Pose X_BC1;
   if (!CameraPoseAt(history, config.arm, config.X_EC, stamp_ns - kMomentNs, X_BC1)) {
@@ -28,6 +37,14 @@ model::Mat6 MeasurementDoubt(const config::ServoConfig& config, const JointHisto
   // For a target at rest, c - R_C2C1 c_1 is the camera's displacement in its own axes.
   const model::Vec3 by_scale = c.scale_sigma * (X_BC.R.transpose() * (X_BC1.p - X_BC.p));
   cov.topLeftCorner<3, 3>() += by_scale.lazyProduct(by_scale.transpose());
+  const model::Vec6 before = ByFocalLength(X_C2C1.Inverse() * p_CO_C);
+  const model::Vec6 now = ByFocalLength(p_CO_C);
+  // The twist of the camera that would move the target in the same way: -v - w x c is the shift, -w the turn.
+  const model::Vec3 w = X_C2C1.R * before.tail<3>() - now.tail<3>();
+  model::Vec6 by_focal;
+  by_focal << X_C2C1.R * before.head<3>() - now.head<3>() - model::Cross(w, p_CO_C), w;
+  by_focal *= c.scale_sigma;
+  cov += by_focal.lazyProduct(by_focal.transpose());
   return cov;
 }
 

@@ -103,6 +103,21 @@ double Distance2(SeenCorners::Covariance S, SeenCorners::Vector innovation) noex
   return innovation.squaredNorm();
 }
 
+// What a focal length that is wrong by its whole size does to the corners `xy` and no pose of the camera
+// explains: the part of d(xy)/d(ln f) = xy that is perpendicular to the columns of `by_camera`. A near tilted
+// square's perspective does not fit a wrong focal length. Zero if the columns depend on each other.
+SeenCorners::Vector ShapeByFocalLength(const CornerSlope& by_camera, const SeenCorners::Vector& xy) noexcept {
+  model::Mat6 normal = by_camera.transpose().lazyProduct(by_camera);
+  model::Vec6 pose = by_camera.transpose().lazyProduct(xy);
+  model::FactorCholesky(normal);
+  model::SolveCholesky(normal, pose);
+  SeenCorners::Vector shape = xy - by_camera.lazyProduct(pose);
+  if (!shape.allFinite()) {
+    shape.setZero();
+  }
+  return shape;
+}
+
 void Advance(const config::PredictConfig& config, double dt, PoseFilter& f) noexcept {
   using F = PoseFilter;
   const Vec3 turn = f.w_BO_B * dt;
@@ -271,7 +286,10 @@ bool UpdatePose(const config::PredictConfig& config, const Polygon& polygon, con
   distance2 = off;
   if (off > gate2) {
     const CornerSlope doubted = by_camera.lazyProduct(view.doubt);
-    if (!(Distance2(S_noise + doubted.lazyProduct(by_camera.transpose()), off_by) <= gate2)) {
+    const SeenCorners::Vector bent_by_focal = config.scale_sigma * ShapeByFocalLength(by_camera, expected);
+    const SeenCorners::Covariance S_doubt = S_noise + doubted.lazyProduct(by_camera.transpose()) +
+                                            bent_by_focal.lazyProduct(bent_by_focal.transpose());
+    if (!(Distance2(S_doubt, off_by) <= gate2)) {
       return false;
     }
   }

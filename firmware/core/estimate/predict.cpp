@@ -230,7 +230,7 @@ hal::Intake TakeMeasurement(const config::ServoConfig& config, std::int64_t now_
             late_sigma,
             X_BC,
             CameraTwistAt(state.history, config.arm, config.X_EC, taken_ns, X_BC),
-            MeasurementDoubt(config, state.history, taken_ns, X_BC)};
+            MeasurementDoubt(config, state.history, taken_ns, X_BC, p_CO_C)};
   if (config.predict.row_time > 0.0) {
     CorrectRows(config, taken_ns, lifted, state, seen, view);
   }
