@@ -150,6 +150,38 @@ TEST_P(PoseFilterConsistencyTest, CovarianceIsRightForATargetOfItsModel) {
 INSTANTIATE_TEST_SUITE_P(Shutters, PoseFilterConsistencyTest, testing::Values(0.0, 30e-6 * kFocalPx),
                          [](const auto& given) { return given.param > 0.0 ? "rolling" : "global"; });
 
+// A wrong focal length enlarges a picture. A near, tilted square then has a shape that fits no pose. Its
+// views are taken if the gate knows how wrong the focal length may be; a corner in a wrong place is still an
+// outlier.
+TEST(PoseFilterTest, AWrongFocalLengthIsNoOutlier) {
+  const Polygon square = features::MakeSquare(0.10);
+  const Pose X_BO{Turned({0.4, 0.3, 0.2}), {0.02, -0.03, 0.25}};
+  int rejected[2] = {0, 0};
+  for (const bool knows : {false, true}) {
+    config::PredictConfig config;
+    config.scale_sigma = knows ? 0.02 : 1e-9;
+    Draw draw(4);
+    PoseFilter filter;
+    double distance2 = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      CornerView view = ViewOf(square, Pose{Mat3::Identity(), Vec3::Zero()}, X_BO, k, 0.03, draw);
+      view.seen.xy *= 1.02;
+      if (k == 0) {
+        ASSERT_TRUE(StartPose(square, view, view.seen.branches[0], filter));
+      } else {
+        rejected[knows ? 1 : 0] += UpdatePose(config, square, view, filter, distance2) ? 0 : 1;
+      }
+    }
+    CornerView wrong = ViewOf(square, Pose{Mat3::Identity(), Vec3::Zero()}, X_BO, 60, 0.03, draw);
+    wrong.seen.xy *= 1.02;
+    wrong.seen.xy[3] += 8.0 / kFocalPx;
+    EXPECT_FALSE(UpdatePose(config, square, wrong, filter, distance2)) << std::sqrt(distance2) << " sigma";
+  }
+  std::cout << "rejected of 59 views: " << rejected[0] << ", and " << rejected[1] << " with the doubt\n";
+  EXPECT_GT(rejected[0], 30);
+  EXPECT_EQ(rejected[1], 0);
+}
+
 // The views have a common lateness, which drifts by a millisecond (1 sigma) in a second: the camera was
 // elsewhere than at their stamps. The filter finds it from the camera's own motion, and its variance is
 // right.
