@@ -27,7 +27,7 @@ struct TargetGoal {
 inline TargetGoal GoalOf(const features::TargetFeature& feature) {
   TargetGoal goal;
   goal.p_CO_C_star = feature.p_CO_C_star;
-  if (feature.form == features::FeatureForm::kCorners || feature.form == features::FeatureForm::kPose) {
+  if (feature.SeesOrientation() && features::TakesWholePose(feature.form)) {
     goal.R_CO_star = feature.R_CO_star;
     goal.turns = features::TraitsOf(feature.target).turns;
     const auto corners = feature.corners.corners.begin();

@@ -4,21 +4,58 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "firmware/core/config/fields.hpp"
+#include "firmware/core/features/target_traits.hpp"
 #include "fovea/hal/types.hpp"
 
 namespace fovea::config {
 
-// The interaction matrix that the law inverts: of now, of the goal, or the mean of both.
-enum class Interaction : std::uint8_t { kCurrent, kDesired, kMean };
-inline constexpr std::array<const char*, 3> kInteractionNames{"current", "desired", "mean"};
+// The visual laws; core/control/visual_laws.hpp has what each computes.
+enum class Law : std::uint8_t { kIbvs, kPbvs, kHybrid, kMean, kDesired, kSecondOrder };
+
+struct LawTraits {
+  const char* name;
+  // The feature of a law that is not on the target's picture alone. The others take any in the image.
+  std::optional<features::FeatureForm> form = std::nullopt;
+};
+
+// In the order of Law.
+inline constexpr std::array<LawTraits, 6> kLaws{{{"ibvs"},
+                                                 {"pbvs", features::FeatureForm::kPose},
+                                                 {"hybrid", features::FeatureForm::kHybrid},
+                                                 {"mean"},
+                                                 {"desired"},
+                                                 {"second_order"}}};
+
+inline constexpr std::array<const char*, kLaws.size()> kLawNames = [] {
+  std::array<const char*, kLaws.size()> names{};
+  for (std::size_t i = 0; i < kLaws.size(); ++i) {
+    names[i] = kLaws[i].name;
+  }
+  return names;
+}();
+
+[[nodiscard]] constexpr const LawTraits& TraitsOf(Law law) noexcept {
+  return kLaws[static_cast<std::size_t>(law)];
+}
+
+// The law of a feature if none is named.
+[[nodiscard]] constexpr Law LawOf(features::FeatureForm form) noexcept {
+  for (std::size_t i = 0; i < kLaws.size(); ++i) {
+    if (kLaws[i].form == form) {
+      return static_cast<Law>(i);
+    }
+  }
+  return Law::kIbvs;
+}
 
 struct LawConfig {
   double lambda = 2.0;
   double lambda_near = 0.0;
   double lambda_slope = 30.0;
-  Interaction interaction = Interaction::kCurrent;
+  Law law = Law::kIbvs;
   double smooth_start_s = 0.25;
   double damping = 0.05;
   double posture_gain = 0.6;
@@ -42,9 +79,13 @@ void Fields(Visitor& v, Config& c) noexcept {
   v.Number(
       {"servo.lambda_slope", "1/s", "slope of the gain over the feature's error, at error 0", kInMotion<2>},
       c.lambda_slope, 0.0, 1e6);
-  v.Choice({"servo.interaction", "",
-            "the interaction matrix that the law inverts: of now, of the goal, or the mean of both"},
-           c.interaction, kInteractionNames);
+  v.Choice(
+      {"servo.law", "",
+       "visual law; auto: that of servo.feature, ibvs unless it is pose or hybrid. ibvs: on the picture; "
+       "pbvs: on the pose; hybrid: place in the picture, ln Z and turn; mean, desired: on the picture, "
+       "with the mean of the interaction matrices of now and of the goal, or that of the goal; "
+       "second_order: on the picture, commands its acceleration"},
+      c.law, kLawNames);
   v.Number({"servo.smooth_start_s", "s", "the law is blended in over this time"}, c.smooth_start_s, 0.001,
            10.0);
   v.Number({"servo.damping", "",

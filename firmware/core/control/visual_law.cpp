@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "firmware/core/control/compress_task.hpp"
-#include "firmware/core/control/visual_laws.hpp"
 
 namespace fovea::control {
 
@@ -18,20 +17,21 @@ double GainAt(const config::LawConfig& config, double e) noexcept {
 
 void ChooseInteraction(const config::LawConfig& config, const features::InteractionMatrix& L_s_star,
                        features::FeatureState& feature) noexcept {
-  kVisualLaws[static_cast<std::size_t>(config.interaction)](L_s_star, feature);
+  LineOf(config.law).interaction(L_s_star, feature);
 }
 
 void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,
-               const features::FeatureState& feature, const model::Mat6N& J_C, const model::VecN& q,
+               const features::FeatureState& feature, const LawJoints& joints,
                VisualLawOutput& output) noexcept {
   output.e = feature.s_star - feature.s;
-  output.ds_cmd = GainAt(config, output.e.norm()) * output.e - feature.ds_dt_target;
+  const LawScene scene{feature, joints, output.e, GainAt(config, output.e.norm())};
+  output.ds_cmd = LineOf(config.law).motion(scene) - feature.ds_dt_target;
   features::InteractionMatrix L = feature.L_s;
   output.task.v = output.ds_cmd;
   CompressTask(L, output.task.v);
-  output.task.J = L.lazyProduct(J_C);
-  output.task.dq_0 = FreeWish(config, arm, q, J_C);
-  output.task.weight.setOnes(q.size());
+  output.task.J = L.lazyProduct(joints.J_C);
+  output.task.dq_0 = FreeWish(config, arm, joints.q, joints.J_C);
+  output.task.weight.setOnes(joints.q.size());
 }
 
 double Progress(const features::FeatureState& feature, const features::FeatureVector& ds_cmd,

@@ -4,6 +4,8 @@
 //   ds_cmd = lambda(|e|) e - ds/dt of the target's own motion          e = s_star - s
 //   J_s dq = ds_cmd                                               J_s = L_s J_C
 //
+// The first line is that of a law of first order; visual_laws.hpp has them all.
+//
 // (Chaumette and Hutchinson, Visual servo control I and II, 2006 and 2007.) The joint velocities follow in
 // the next stage, where the limits are known (resolve_motion.hpp); the secondary task uses the directions
 // that the feature leaves free.
@@ -11,6 +13,7 @@
 
 #include "firmware/core/config/servo_config.hpp"
 #include "firmware/core/control/resolve_motion.hpp"
+#include "firmware/core/control/visual_laws.hpp"
 #include "firmware/core/features/feature_state.hpp"
 
 namespace fovea::control {
@@ -21,9 +24,9 @@ struct VisualLawOutput {
   MotionTask task;                 // before smooth start and limits
 };
 
-// `J_C` [6 x num_joints] body Jacobian of the camera, `q` [num_joints]. Real-time: yes.
+// `feature.L_s`: as ChooseInteraction left it. Real-time: yes.
 void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,
-               const features::FeatureState& feature, const model::Mat6N& J_C, const model::VecN& q,
+               const features::FeatureState& feature, const LawJoints& joints,
                VisualLawOutput& output) noexcept;
 
 // The gain [1/s] at an error of size `e`, in the feature's own units: lambda_near at 0, with the slope
@@ -35,7 +38,7 @@ void VisualLaw(const config::LawConfig& config, const model::ArmModel& arm,
 // vpAdaptiveGain uses an exponential.) Real-time: yes.
 [[nodiscard]] double GainAt(const config::LawConfig& config, double e) noexcept;
 
-// Writes the matrix that the law inverts into `feature.L_s`, by the law that config.interaction selects
+// Writes the matrix that the law inverts into `feature.L_s`, by the law that config.law selects
 // (visual_laws.hpp). `L_s_star`: the matrix at the goal, of the same size. Real-time: yes.
 void ChooseInteraction(const config::LawConfig& config, const features::InteractionMatrix& L_s_star,
                        features::FeatureState& feature) noexcept;

@@ -38,7 +38,7 @@ void TakeCovariance(const hal::FeatureMeasurement& measurement, Matrix& cov) noe
 bool TargetFeature::IsListed() const noexcept {
   const TargetTraits& traits = TraitsOf(target);
   bool listed = std::find(traits.forms.begin(), traits.forms.end(), form) != traits.forms.end();
-  if (form == FeatureForm::kCorners || form == FeatureForm::kPose) {
+  if (TakesWholePose(form)) {
     listed = listed && corners.num_corners == traits.num_corners;
   }
   return listed && Dim() <= kMaxDim;
@@ -52,7 +52,8 @@ int TargetFeature::Dim() const noexcept {
     case FeatureForm::kCorners: return 2 * corners.num_corners + held;
     case FeatureForm::kSide:
     case FeatureForm::kCornerSide: return SquareSideFeature::kDim + held;
-    case FeatureForm::kPose: return PoseFeature::kDim + held;
+    case FeatureForm::kPose:
+    case FeatureForm::kHybrid: return (SeesOrientation() ? 6 : 3) + held;
   }
   return 0;
 }
@@ -76,7 +77,8 @@ bool TargetFeature::Compute(const TargetInCamera& seen, FeatureState& state) con
       return SphereFeature{radius, p_CO_C_star}.Compute(seen.X_CO.p, seen.v_BO_C, state);
     case FeatureForm::kCircle: return CircleFeature{2.0 * radius, 1.0, p_CO_C_star}.Compute(seen, state);
     case FeatureForm::kCorners: return ComputeCorners(corners, seen, X_CO_star, state);
-    case FeatureForm::kPose: return PoseFeature{X_CO_star}.Compute(seen, state);
+    case FeatureForm::kPose: return PoseFeature{X_CO_star, SeesOrientation()}.Compute(seen, state);
+    case FeatureForm::kHybrid: return HybridFeature{X_CO_star, SeesOrientation()}.Compute(seen, state);
     case FeatureForm::kSide:
     case FeatureForm::kCornerSide: {
       const auto anchor = form == FeatureForm::kSide ? SquareSideFeature::Anchor::kCentre

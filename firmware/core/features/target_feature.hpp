@@ -4,12 +4,16 @@
 //   target     feature     dim  controls                      file
 //   sphere     sphere       3   x, y, z                       sphere.hpp
 //              circle       3   x, y, z                       circle.hpp, the exercises' simple form
-//   circle     circle       3   x, y, z                       circle.hpp
+//              pose         3   x, y, z                       pose.hpp
+//              hybrid       3   x, y, z                       hybrid.hpp
+//   circle     circle       3   x, y, z                       circle.hpp; also pose, hybrid
 //   square     corners      8   all six                       polygon.hpp, square.hpp
 //              side         4   x, y, z, turn about the line of sight; from the centre
 //              corner_side  4   the same from the first corner
 //              pose         6   all six                       pose.hpp
+//              hybrid       6   all six                       hybrid.hpp
 //   triangle   pose         6   all six
+//              hybrid       6   all six
 //              corners      6   all six, up to four goals     polygon.hpp, triangle.hpp
 //
 // hold_orientation stacks three more entries below (hold_orientation.hpp).
@@ -19,6 +23,7 @@
 #include <cstdint>
 
 #include "firmware/core/features/circle.hpp"
+#include "firmware/core/features/hybrid.hpp"
 #include "firmware/core/features/polygon.hpp"
 #include "firmware/core/features/pose.hpp"
 #include "firmware/core/features/sphere.hpp"

@@ -15,9 +15,19 @@
 namespace fovea::features {
 
 // The features that the servo can steer by; target_feature.hpp lists them for each target.
-enum class FeatureForm : std::uint8_t { kSphere, kCircle, kCorners, kSide, kCornerSide, kPose };
-inline constexpr std::array<const char*, 6> kFormNames{"sphere", "circle",      "corners",
-                                                       "side",   "corner_side", "pose"};
+enum class FeatureForm : std::uint8_t { kSphere, kCircle, kCorners, kSide, kCornerSide, kPose, kHybrid };
+inline constexpr std::array<const char*, 7> kFormNames{"sphere",      "circle", "corners", "side",
+                                                       "corner_side", "pose",   "hybrid"};
+
+// Whether the form has, of a flat target, all six degrees of freedom. Otherwise it leaves some open.
+[[nodiscard]] constexpr bool TakesWholePose(FeatureForm form) noexcept {
+  return form == FeatureForm::kCorners || form == FeatureForm::kPose || form == FeatureForm::kHybrid;
+}
+
+// Whether the form consists of the target's picture alone.
+[[nodiscard]] constexpr bool IsInImage(FeatureForm form) noexcept {
+  return form != FeatureForm::kPose && form != FeatureForm::kHybrid;
+}
 
 // The shape of a target: a ball, a flat disc, or a flat plate with corners.
 enum class TargetBody : std::uint8_t { kBall, kDisc, kPlate };
@@ -29,7 +39,17 @@ struct TargetTraits {
   int num_corners;  // of a plate; else 0
   int turns;  // equal-looking orientations in a full turn about O's z: a square's 4; a divisor of num_corners
   FeatureForm form;                  // the default
-  std::array<FeatureForm, 4> forms;  // all of its features; `form` fills the rest
+  std::array<FeatureForm, 5> forms;  // all of its features; `form` fills the rest
+
+  // The first of its features that is in the image.
+  [[nodiscard]] constexpr FeatureForm ImageForm() const noexcept {
+    for (const FeatureForm one : forms) {
+      if (IsInImage(one)) {
+        return one;
+      }
+    }
+    return form;
+  }
 };
 
 // In the order of hal::FeatureKind.
@@ -40,28 +60,32 @@ inline constexpr std::array<TargetTraits, 4> kTargets{{
      0,
      1,
      FeatureForm::kSphere,
-     {FeatureForm::kSphere, FeatureForm::kCircle, FeatureForm::kSphere, FeatureForm::kSphere}},
+     {FeatureForm::kSphere, FeatureForm::kCircle, FeatureForm::kPose, FeatureForm::kHybrid,
+      FeatureForm::kSphere}},
     {hal::FeatureKind::kCircle,
      "circle",
      TargetBody::kDisc,
      0,
      1,
      FeatureForm::kCircle,
-     {FeatureForm::kCircle, FeatureForm::kCircle, FeatureForm::kCircle, FeatureForm::kCircle}},
+     {FeatureForm::kCircle, FeatureForm::kPose, FeatureForm::kHybrid, FeatureForm::kCircle,
+      FeatureForm::kCircle}},
     {hal::FeatureKind::kSquare,
      "square",
      TargetBody::kPlate,
      4,
      4,
      FeatureForm::kCorners,
-     {FeatureForm::kCorners, FeatureForm::kSide, FeatureForm::kCornerSide, FeatureForm::kPose}},
+     {FeatureForm::kCorners, FeatureForm::kSide, FeatureForm::kCornerSide, FeatureForm::kPose,
+      FeatureForm::kHybrid}},
     {hal::FeatureKind::kTriangle,
      "triangle",
      TargetBody::kPlate,
      3,
      1,
      FeatureForm::kPose,
-     {FeatureForm::kPose, FeatureForm::kCorners, FeatureForm::kPose, FeatureForm::kPose}},
+     {FeatureForm::kPose, FeatureForm::kCorners, FeatureForm::kHybrid, FeatureForm::kPose,
+      FeatureForm::kPose}},
 }};
 
 // `kind` is one of the table. Real-time: yes.

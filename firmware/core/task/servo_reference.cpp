@@ -55,7 +55,8 @@ void ServoTask::ComputeVisualLaw(const trajectory::PlanPart& plan) noexcept {
     if (control::KeepsPosture(state_.way, state_.prediction.p_BO)) {
       law.q_posture = model::ToArray(state_.way.q_end);
     }
-    control::VisualLaw(law, config_.arm, state_.feature, state_.J_C, state_.q, state_.law);
+    control::VisualLaw(law, config_.arm, state_.feature, {state_.J_C, state_.q, state_.reference.dq},
+                       state_.law);
     // A person leads an arm that floats.
     const bool floats = state_.law_state.kind == config::MotionLawKind::kFloat;
     if (IsTracking(state_.mode.mode) && !floats && trajectory::HasGoalPosture(config_)) {
@@ -163,7 +164,7 @@ void ServoTask::MoveReference(const ServoInputs& inputs) noexcept {
 // The wish of the law, or of the plan, within the limits. False if it is not finite.
 bool ServoTask::ResolveWish(guard::MotionWish& wish) noexcept {
   const bool planned = state_.way.note.way == hal::Way::kPlan;
-  if (!planned) {
+  if (!planned && !control::LineOf(config_.law.law).starts_smoothly) {
     const std::int64_t since_ns = std::max(state_.track_since_ns, state_.way.since_ns);
     const double since_s =
         static_cast<double>(state_.now_ns - since_ns) / static_cast<double>(hal::kNsPerSecond);

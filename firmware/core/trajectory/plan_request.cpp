@@ -15,8 +15,7 @@ constexpr std::int32_t kMostBudgets = 2;   // so that the servo waits long enoug
 
 bool HasGoalPosture(const config::ServoConfig& config) noexcept {
   const features::TargetFeature& feature = config.feature;
-  const bool whole_pose = feature.SeesOrientation() && (feature.form == features::FeatureForm::kCorners ||
-                                                        feature.form == features::FeatureForm::kPose);
+  const bool whole_pose = feature.SeesOrientation() && features::TakesWholePose(feature.form);
   const bool turns_freely = !feature.SeesOrientation() && !feature.hold_orientation;
   return config.arm.num_joints >= 6 && (whole_pose || turns_freely);
 }

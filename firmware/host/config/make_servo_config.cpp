@@ -18,6 +18,12 @@
 namespace fovea::config {
 namespace {
 
+// `name` is one of kLawNames.
+Law LawNamed(const std::string& name) {
+  const auto* found = std::find(kLawNames.begin(), kLawNames.end(), name);
+  return static_cast<Law>(found - kLawNames.begin());
+}
+
 // "sphere has sphere and circle, circle has circle, ..."
 std::string FormsInWords() {
   std::string words;
@@ -37,6 +43,31 @@ std::string FormsInWords() {
   return words;
 }
 
+// The feature of servo.law, if that is named, or else the target's own.
+features::FeatureForm DefaultForm(const ServoSettings& settings, const features::TargetTraits& traits) {
+  if (settings.law == "auto") {
+    return traits.form;
+  }
+  return TraitsOf(LawNamed(settings.law)).form.value_or(traits.ImageForm());
+}
+
+// Law and feature must fit together.
+void SetLaw(const ServoSettings& settings, features::FeatureForm form, LawConfig& config) {
+  if (settings.law == "auto") {
+    config.law = LawOf(form);
+    return;
+  }
+  config.law = LawNamed(settings.law);
+  const std::optional<features::FeatureForm> own = TraitsOf(config.law).form;
+  if (own ? form != *own : !features::IsInImage(form)) {
+    throw InputError(fmt::format(
+        "servo.law = \"{}\" is not allowed with servo.feature = \"{}\": allowed are \"auto\" and {}",
+        settings.law, settings.feature,
+        own ? fmt::format("\"{}\"", features::kFormNames[static_cast<std::size_t>(*own)])
+            : "a feature in the image"));
+  }
+}
+
 void SetFeature(const ServoSettings& settings, const TargetSettings& target,
                 features::TargetFeature& feature) {
   const bool hold_orientation = feature.hold_orientation;
@@ -44,6 +75,7 @@ void SetFeature(const ServoSettings& settings, const TargetSettings& target,
   feature.hold_orientation = hold_orientation;
   feature.p_CO_C_star = model::Vec3(settings.goal[0], settings.goal[1], settings.goal[2]);
   feature.R_CO_star = RollPitchYaw(settings.goal_rpy_deg);
+  feature.form = DefaultForm(settings, features::TraitsOf(feature.target));
   if (settings.feature != "auto") {
     const auto* form = std::find(features::kFormNames.begin(), features::kFormNames.end(), settings.feature);
     feature.form = static_cast<features::FeatureForm>(form - features::kFormNames.begin());
@@ -241,6 +273,7 @@ ServoConfig MakeServoConfig(const ServoSettings& settings, const NamedArm& arm, 
   config.load.mass = arm.load.mass;
   config.load.p_ECom = arm.load.p_ECom;
   SetFeature(settings, target, config.feature);
+  SetLaw(settings, config.feature.form, config.law);
   config.guard.view = MakeView(settings, intrinsics);
   config.law.q_posture = arm.model.q_ready;
   CheckSize("servo.posture", settings.posture, arm);

@@ -35,6 +35,11 @@ FieldKeys::Add Number(double& value, double min, double max) {
 void BindDerived(ServoSettings& s, FieldKeys& keys) {
   keys.Bind("servo.target_region", List(s.target_region, 6, 6, -100.0, 100.0));
   keys.Bind("servo.stuck_shift_px", Number(s.stuck_shift_px, 0.5, 1000.0));
+  keys.Bind("servo.law", [&s](KeyTable& table, const Field& field) {
+    std::vector<std::string> laws{"auto"};
+    laws.insert(laws.end(), kLawNames.begin(), kLawNames.end());
+    table.Choice(field.key, s.law, laws, field.meaning);
+  });
   keys.Bind("servo.posture", List(s.posture, 1, model::kMaxJoints, -1e4, 1e4));
   keys.Bind("servo.k_p", List(s.k_p, 1, model::kMaxJoints, 0.0, 1e6));
   keys.Bind("servo.k_v", List(s.k_v, 1, model::kMaxJoints, 0.0, 1e6));
@@ -54,8 +59,9 @@ void AddFeatureKeys(ServoSettings& s, KeyTable& keys) {
   keys.Choice(
       "servo.feature", s.feature, forms,
       "feature that the law controls; auto: sphere P/R, circle x, y, D/Z, the square's corners, the "
-      "triangle's pose; also allowed: circle for a sphere, side and corner_side for a square (4 of 6 degrees "
-      "of freedom), pose and corners for square and triangle");
+      "triangle's pose, or what servo.law needs; also allowed: circle for a sphere, side and corner_side for "
+      "a square (4 of 6 degrees of freedom), pose and corners for square and triangle, pose and hybrid for "
+      "all");
   keys.Flag("servo.hold_orientation", s.config.feature.hold_orientation,
             "also keep the camera's orientation as it was when tracking began; sphere, circle, side");
   keys.Numbers("servo.goal", s.goal, 3, 3, -10.0, 10.0, "m",

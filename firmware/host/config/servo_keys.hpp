@@ -18,7 +18,8 @@ struct ServoSettings {
   std::string learn;                                // quantities, separated by commas; see LearntOf
   std::vector<double> goal{0.0, 0.0, 0.40};         // p_CO_C_star [m]
   std::vector<double> goal_rpy_deg{0.0, 0.0, 0.0};  // R_CO_star, of square and triangle
-  std::string feature = "auto";                     // the target's usual one
+  std::string feature = "auto";                     // the target's usual one, or the law's
+  std::string law = "auto";                         // the feature's
   bool keep_in_view = true;
   double view_margin_px = 10.0;
   double disc_tilt_max = 1.05;  // [rad]

@@ -36,7 +36,7 @@ Scene RandomScene(test::RandomStates& random, const config::ServoConfig& config)
 model::VecN Unlimited(const config::ServoConfig& config, const config::LawConfig& law,
                       const features::FeatureState& feature, const model::Mat6N& J_C, const model::VecN& q,
                       VisualLawOutput& out) {
-  VisualLaw(law, config.arm, feature, J_C, q, out);
+  VisualLaw(law, config.arm, feature, {J_C, q, model::VecN::Zero(q.size())}, out);
   DampingConfig damping;
   damping.threshold = law.damping;
   DampedMotion motion;
@@ -149,17 +149,74 @@ TEST(InteractionTest, UsesCurrentGoalOrMeanMatrixAsConfigured) {
   const Scene s = RandomScene(random, config);
   features::FeatureState goal;
   ASSERT_TRUE(config.feature.ComputeAtGoal(goal));
-  for (const config::Interaction which :
-       {config::Interaction::kCurrent, config::Interaction::kDesired, config::Interaction::kMean}) {
-    config.law.interaction = which;
+  for (const config::Law which : {config::Law::kIbvs, config::Law::kDesired, config::Law::kMean}) {
+    config.law.law = which;
     features::FeatureState feature = s.feature;
     ChooseInteraction(config.law, goal.L_s, feature);
-    const double of_goal = which == config::Interaction::kCurrent   ? 0.0
-                           : which == config::Interaction::kDesired ? 1.0
-                                                                    : 0.5;
+    const double of_goal = which == config::Law::kIbvs ? 0.0 : which == config::Law::kDesired ? 1.0 : 0.5;
     EXPECT_LT((feature.L_s - (of_goal * goal.L_s + (1.0 - of_goal) * s.feature.L_s)).norm(), 1e-13);
     EXPECT_EQ(feature.s, s.feature.s);
   }
+}
+
+// A feature that is the camera's position, whose target moves at `ds_dt_target`, under the law's own wish.
+struct FreeFeature {
+  explicit FreeFeature(const Eigen::Vector3d& e, const Eigen::Vector3d& ds_dt_target) {
+    feature.Resize(3);
+    feature.s_star = e;
+    feature.ds_dt_target = ds_dt_target;
+    feature.L_s.leftCols<3>().setIdentity();
+  }
+  void Tick(const config::LawConfig& law) {
+    VisualLaw(law, camera, feature, {along_itself, zero, V}, output);
+    V.head<3>() = output.ds_cmd;
+    feature.s += hal::kTickPeriodS * (output.ds_cmd + feature.ds_dt_target);
+  }
+
+  features::FeatureState feature;
+  const model::ArmModel camera = [] {
+    model::ArmModel free;
+    free.num_joints = 6;
+    return free;
+  }();
+  const model::Mat6N along_itself = model::Mat6::Identity();
+  const model::VecN zero = model::VecN::Zero(6);
+  model::VecN V = model::VecN::Zero(6);
+  VisualLawOutput output;
+};
+
+// e(t) = e(0) (1 + omega t) exp(-omega t), and the wish starts at rest.
+TEST(SecondOrderTest, DecaysCriticallyDamped) {
+  config::LawConfig law;
+  law.law = config::Law::kSecondOrder;
+  law.lambda = 2.0;
+  const double omega = 3.0;
+  FreeFeature free({0.4, -0.2, 0.1}, Eigen::Vector3d::Zero());
+  const Eigen::Vector3d start = free.feature.s_star;
+  double worst = 0.0;
+  for (int ms = 1; ms <= 4000; ++ms) {
+    free.Tick(law);
+    const double t = 1e-3 * ms;
+    const Eigen::Vector3d e = free.feature.s_star - free.feature.s;
+    worst = std::max(worst, (e - start * (1.0 + omega * t) * std::exp(-omega * t)).norm());
+    ASSERT_LT(free.output.ds_cmd.norm(), start.norm() * omega * omega * t + 1e-12) << "from rest, at " << ms;
+    ASSERT_GE(e.dot(start), 0.0) << "no overshoot";
+  }
+  std::cout << "largest deviation from the analytic error: " << worst << " of " << start.norm() << "\n";
+  EXPECT_LT(worst, 2e-3 * start.norm());
+  EXPECT_LT((free.feature.s_star - free.feature.s).norm(), 1e-4);
+}
+
+// A target that moves steadily leaves no error behind.
+TEST(SecondOrderTest, FollowsAMovingTargetWithoutLag) {
+  config::LawConfig law;
+  law.law = config::Law::kSecondOrder;
+  FreeFeature free({0.1, 0.0, 0.0}, {0.3, -0.2, 0.1});
+  for (int ms = 0; ms < 8000; ++ms) {
+    free.Tick(law);
+  }
+  EXPECT_LT((free.feature.s_star - free.feature.s).norm(), 1e-6);
+  EXPECT_LT((free.V.head<3>() + free.feature.ds_dt_target).norm(), 1e-6);
 }
 
 }  // namespace

@@ -243,14 +243,25 @@ TEST(FourTargetsLaw, TriangleCornersAloneLeaveThePoseAmbiguous) {
 }
 
 // Every option of the law converges.
-TEST(FourTargetsLaw, EveryGainInteractionAndOrientationChoiceConverges) {
+TEST(FourTargetsLaw, EveryGainAndLawConverges) {
   struct Way {
     const char* name;
     void (*set)(config::ServoConfig&);
   };
   const Way ways[] = {
-      {"desired", [](config::ServoConfig& c) { c.law.interaction = config::Interaction::kDesired; }},
-      {"mean", [](config::ServoConfig& c) { c.law.interaction = config::Interaction::kMean; }},
+      {"desired", [](config::ServoConfig& c) { c.law.law = config::Law::kDesired; }},
+      {"mean", [](config::ServoConfig& c) { c.law.law = config::Law::kMean; }},
+      {"second order", [](config::ServoConfig& c) { c.law.law = config::Law::kSecondOrder; }},
+      {"pose",
+       [](config::ServoConfig& c) {
+         c.law.law = config::Law::kPbvs;
+         c.feature.form = FeatureForm::kPose;
+       }},
+      {"hybrid",
+       [](config::ServoConfig& c) {
+         c.law.law = config::Law::kHybrid;
+         c.feature.form = FeatureForm::kHybrid;
+       }},
       {"gain fast near",
        [](config::ServoConfig& c) {
          c.law.lambda = 1.0;
@@ -348,6 +359,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"circle", FeatureKind::kCircle, FeatureForm::kCircle, {0.25, 0.5, 0}, false},
                     Case{"square", FeatureKind::kSquare, FeatureForm::kCorners, {0.3, 0.5, 0.2}, true},
                     Case{"square_pose", FeatureKind::kSquare, FeatureForm::kPose, {0.3, 0.5, 0.2}, true},
+                    Case{"square_hybrid", FeatureKind::kSquare, FeatureForm::kHybrid, {0.3, 0.5, 0.2}, true},
+                    Case{
+                        "sphere_hybrid", FeatureKind::kSphere, FeatureForm::kHybrid, {0.25, 0.5, 0.0}, false},
                     Case{"triangle", FeatureKind::kTriangle, FeatureForm::kPose, {0.3, 0.5, 0.2}, true}),
     [](const auto& c) { return std::string(c.param.name); });
 

@@ -75,13 +75,13 @@ std::vector<Figure> LawSpeed(const model::ArmModel& arm) {
   control::DampedMotion motion;
   const auto twist = [&](const control::DampingConfig& damping) {
     return MedianNs(kRounds, cases, [&](Case& c) {
-      control::VisualLaw(config.law, free_camera, c.feature, along_itself, nowhere, c.camera_law);
+      control::VisualLaw(config.law, free_camera, c.feature, {along_itself, nowhere, nowhere}, c.camera_law);
       control::ResolveDamped(damping, c.camera_law.task, motion);
     });
   };
   const auto joints = [&](const control::DampingConfig& damping) {
     return MedianNs(kRounds, cases, [&](Case& c) {
-      control::VisualLaw(config.law, arm, c.feature, c.J_C, c.reference.q, c.law);
+      control::VisualLaw(config.law, arm, c.feature, {c.J_C, c.reference.q, c.reference.dq}, c.law);
       control::ResolveDamped(damping, c.law.task, motion);
     });
   };

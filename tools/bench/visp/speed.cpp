@@ -69,7 +69,7 @@ class FoveaLaw {
       feature_.s.segment<2>(row) = point.xy;
       feature_.L_s.middleRows<2>(row) = point.L;
     }
-    control::VisualLaw(config_, camera_, feature_, along_itself_, nowhere_, law_);
+    control::VisualLaw(config_, camera_, feature_, {along_itself_, nowhere_, nowhere_}, law_);
     control::ResolveDamped(exact_, law_.task, motion_);
     c.V = motion_.dq;
   }

@@ -92,7 +92,7 @@ int PrintStudy(const FeaturesArguments& arguments) {
   std::vector<double> s(study.state.s.begin(), study.state.s.end());
   // With a focal length, image coordinates are printed in pixels too.
   std::vector<double> s_px;
-  const bool in_image = feature.form != FeatureForm::kSphere && feature.form != FeatureForm::kPose;
+  const bool in_image = feature.form != FeatureForm::kSphere && features::IsInImage(feature.form);
   for (std::size_t i = 0; arguments.focal_px > 0.0 && in_image && i < s.size(); ++i) {
     const bool is_angle =
         i == 2 && (feature.form == FeatureForm::kSide || feature.form == FeatureForm::kCornerSide);

@@ -164,6 +164,7 @@ model::Pose LookFrom(const Vec3& p_OC) {
 
 std::string Parameters(const features::TargetFeature& feature) {
   const std::string held = feature.hold_orientation ? ", turn held (3)" : "";
+  const std::string turn = feature.SeesOrientation() ? ", turn (3)" : "";
   switch (feature.form) {
     case features::FeatureForm::kSphere: return "X/R, Y/R, Z/R" + held;
     case features::FeatureForm::kCircle: return "x, y, D/Z" + held;
@@ -171,7 +172,8 @@ std::string Parameters(const features::TargetFeature& feature) {
       return fmt::format("x, y of {} corners{}", feature.corners.num_corners, held);
     case features::FeatureForm::kSide: return "x, y of the centre, angle, side" + held;
     case features::FeatureForm::kCornerSide: return "x, y of a corner, angle, side" + held;
-    case features::FeatureForm::kPose: return "X, Y, Z, turn (3)" + held;
+    case features::FeatureForm::kPose: return "X, Y, Z" + turn + held;
+    case features::FeatureForm::kHybrid: return "x, y, ln Z" + turn + held;
   }
   return "";
 }
